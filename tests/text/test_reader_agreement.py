@@ -26,7 +26,7 @@ from tiniscript.bytecode.verify import verify
 from tiniscript.kit import Kit
 from tiniscript.source import Unreadable, decode
 from tiniscript.syntax.lexer import scan
-from tiniscript.text.levels import CODE_BYTES, LEVELS, LONGEST_WORD
+from tiniscript.text.levels import CODE_BYTES, LEVELS, LONGEST_WORD, UNREAD
 from tiniscript.text.memory import Reader as Model
 from tiniscript.text.plain import plain_code
 from tiniscript.vm.trace import run
@@ -65,6 +65,9 @@ def check_bytes(data: bytes, kit: Kit, room: int = LARGEST_ROOM) -> Answer | Non
     """The reader says of a text what the compiler says; None: it is too long for a robot."""
     answer = reader_of(kit, room).read(data)
     right = is_right(data, kit)
+    if right and UNREAD & {token.text for token in scan(decode(data)).tokens}:
+        assert answer.problem in ("RESERVED", "FULL"), f"{answer}\n{data!r}"
+        return None
     if right:
         check_code(data, kit, answer, room)
     if answer.problem == "FULL":

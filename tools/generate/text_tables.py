@@ -11,6 +11,7 @@ from tiniscript.bytecode.image import STARTS
 from tiniscript.bytecode.opcodes import BLOCKS, BY_NAME
 from tiniscript.fixed_point import HIGHEST, LOWEST
 from tiniscript.robots.kit_words import packed, packed_range
+from tiniscript.text.levels import UNREAD
 from tiniscript.text.problems import PROBLEMS
 from tiniscript.words import WORDS, Word
 from tools.generate.cpp_header import camel
@@ -26,7 +27,12 @@ OPCODES = {"W": "WAIT", "M": "MOTORS", "BEEP": "BEEP", "SHOW": "SHOW", "LOOP": "
 
 
 def role_of(word: Word) -> str:
-    """Return the role by which the reader tells words apart."""
+    """Return the role by which the reader tells words apart: one of ROLES.
+
+    A word that no level reads is like those of later versions: its name is taken, and that is all.
+    """
+    if word.text in UNREAD:
+        return "later"
     if word.text in ("LOOP", "DEF", "ELSE"):
         return word.text.lower()
     roles = {"block": "question", "arm": "question", "until": "question", "alias": "end"}
@@ -34,9 +40,21 @@ def role_of(word: Word) -> str:
     if role not in ROLES:
         raise LookupError(
             f"{word.text} has a role of its own, {role}. A robot's reader of text needs it: a name "
-            "in ROLES of tools/generate/text_tables.py, and what it does in vm_arduino/src/text/"
+            "in ROLES of tools/generate/text_tables.py, and what it does in vm_arduino/src/text/; "
+            "or it reads it not: `lacks` of all LEVELS in compiler/tiniscript/text/levels.py"
         )
     return role
+
+
+def opcode_of(word: Word) -> int:
+    """Return the code of the instruction that a reader makes of a word behind its arguments."""
+    name = OPCODES.get(word.text, f"MOVE_{word.text}")
+    if name not in BY_NAME:
+        raise LookupError(
+            f"{word.text} takes arguments, and a robot's reader of text does not know its "
+            "instruction: a row of OPCODES in tools/generate/text_tables.py"
+        )
+    return BY_NAME[name].code
 
 
 def words_in_order() -> list[Word]:
@@ -80,7 +98,9 @@ def _kinds(word: Word) -> int:
 def bytes_before(name: str) -> int:
     """Return how many letters the words have before this one, or before the first of this role."""
     words = words_in_order()
-    (first, *_) = (at for at, word in enumerate(words) if name in (word.text, word.role))
+    (first, *_) = (
+        at for at, word in enumerate(words) if name in (word.text, word.role, role_of(word))
+    )
     return sum(len(word.text) for word in words[:first])
 
 
@@ -144,8 +164,8 @@ def words_tables(command: str) -> str:
     rows = []
     for word in words:
         if role_of(word) in ROLES[: ROLES.index("stop")]:
-            op = BY_NAME[OPCODES.get(word.text, f"MOVE_{word.text}")]
-            rows.append(f"    {{0x{_kinds(word):02x}, 0x{op.code:02x}}},  // {word.text}")
+            row = f"{{0x{_kinds(word):02x}, 0x{opcode_of(word):02x}}}"
+            rows.append(f"    {row},  // {word.text}")
     return file_of(
         command,
         "words.cpp",

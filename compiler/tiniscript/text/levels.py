@@ -48,6 +48,9 @@ LEVELS = {
     )
 }
 
+# Words that no level reads: a robot knows that their names are taken, and no more.
+UNREAD = frozenset.intersection(*(level.lacks for level in LEVELS.values()))
+
 
 def level_of(chip: str) -> Level:
     """Return the level of a robot with this chip, a name of `robots.boards`."""

@@ -3,6 +3,7 @@
 // Goes along the blocks with lists of its own: a long program must not exhaust the stack.
 
 import * as Blockly from 'blockly/core';
+import { wordOf } from './block_places.js';
 import { Checker, SHAPES } from './block_shapes.js';
 
 /** @typedef {[number, number, number, number]} Range line and column, from 1, and those of the end */
@@ -76,7 +77,7 @@ function bodyOf(first, ids) {
     const kept = dataOf(block);
     found.push({
       kind: block.type,
-      word: String(block.getFieldValue('WORD') ?? kept.word ?? (block.type === 'stop' ? 'S' : defaultWord(block.type))),
+      word: String(block.getFieldValue('WORD') ?? kept.word ?? wordOf(block.type)),
       values: block.inputList.filter((input) => /^V\d/.test(input.name)).map((input) => valueOf(input.connection?.targetBlock() ?? null)),
       bodies: block.inputList.filter((input) => /^B\d|^OTHERWISE/.test(input.name))
         .map((input) => bodyOf(input.connection?.targetBlock() ?? null, ids)),
@@ -85,11 +86,6 @@ function bodyOf(first, ids) {
     });
   }
   return found;
-}
-
-/** @param {string} kind */
-function defaultWord(kind) {
-  return { wait: 'W', wait_until: 'W', motors: 'M', beep: 'BEEP', show: 'SHOW', start: 'START' }[kind] ?? '';
 }
 
 /**

@@ -8,10 +8,12 @@ import description from '../made/description.json';
 const ANY = { low: -2147483.648, high: 2147483.647, sample: '1' };
 /** @type {Map<string, Range[]>} */
 const ARGUMENTS = new Map(description.words.map((word) => [word.text, word.arguments]));
-/** The word whose arguments a kind of block has, where the block does not say it. */
-const WORD_OF = /** @type {Record<string, string>} */ ({
-  wait: 'W', wait_until: 'W', motors: 'M', beep: 'BEEP', loop: 'LOOP', round: 'ROUND', random: 'RANDOM',
-});
+/** Of each role of an instruction its first word: a kind of block is named like it. @type {Map<string, string>} */
+const FIRST_WORDS = new Map(description.words
+  .filter((word) => word.arguments.length || ['stop', 'start'].includes(word.role))
+  .map((word) => /** @type {[string, string]} */ ([word.role, word.text])).reverse());
+/** Words with arguments whose kinds are no roles. */
+const OTHERS = /** @type {Record<string, string>} */ ({ loop: 'LOOP', round: 'ROUND', random: 'RANDOM' });
 /** @type {Map<string, Range>} */
 let actuators = new Map();
 
@@ -24,13 +26,21 @@ export function setActuators(robot) {
 
 /**
  * @param {string} kind
+ * @returns {string} the word of a block that does not say it
+ */
+export function wordOf(kind) {
+  return FIRST_WORDS.get(kind.replace(/_until$/, '')) ?? '';
+}
+
+/**
+ * @param {string} kind
  * @param {string} word
  * @param {number} index of the place
  * @returns {Range}
  */
 export function rangeOf(kind, word, index) {
   if (kind === 'set') return actuators.get(word) ?? ANY;
-  const range = ARGUMENTS.get(WORD_OF[kind] ?? word)?.[index] ?? ANY;
+  const range = ARGUMENTS.get(word || OTHERS[kind] || wordOf(kind))?.[index] ?? ANY;
   return Number.isFinite(Number(range.sample)) ? range : { ...range, sample: '1' };
 }
 
