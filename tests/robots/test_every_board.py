@@ -8,6 +8,7 @@ import pytest
 
 from tests.machines.board import VARIANTS
 from tests.support.casefile import ROOT
+from tiniscript.cli.texts.options import OPTIONS
 from tiniscript.flash import bootloaders
 from tiniscript.robots import firmware
 from tiniscript.robots.boards import CHIPS
@@ -32,6 +33,21 @@ def test_a_board_with_an_avr_is_written_and_has_sketches(board: str) -> None:
     assert board in written, "flash/bootloaders.py says how its firmware is written"
     assert board in writing.BOARDS, "sketch/writing.py says how a sketch calls it"
     assert board in VARIANTS, "tests/machines/board.py names the core's folder with its pins"
+
+
+def test_every_board_is_told_to_people() -> None:
+    (option,) = (each for each in OPTIONS if (each.flags, each.verbs) == ("--board", "firmware"))
+    for help_text in option.help:
+        assert set(bootloaders.BOARDS) <= set(re.findall(r"[\w-]+", help_text)), (
+            "cli/texts/options.py names the values of --board"
+        )
+    sample = (ROOT / "compiler" / "tiniscript" / "robots" / "tinibot.toml").read_text(
+        encoding="utf-8"
+    )
+    comment = re.search(r"(?m)^chip = .*# (.*)$", sample.read_text(encoding="utf-8"))
+    assert comment and set(re.findall(r"\w+", comment[1])) >= set(CHIPS), (
+        "robots/tinibot.toml names the boards that a profile may have"
+    )
 
 
 def test_no_table_has_a_board_without_firmware() -> None:

@@ -102,6 +102,17 @@ def test_shipped_headers_are_for_every_board_that_they_fit() -> None:
         assert header == (KITS / f"{name}.h").read_text(encoding="utf-8")
 
 
+def test_another_board_with_an_unos_chip_is_no_uno(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The liner's battery is on a pin that an Uno lacks, whatever else has that pin."""
+    other = CHIPS["nano"]._replace(name="promini")
+    monkeypatch.setitem(CHIPS, "promini", other)
+    monkeypatch.setitem(AVRS, "promini", AVRS["nano"])
+    header = firmware.header([wired(board, "liner") for board in ("nano", "promini")], "a test.")
+    assert (
+        "#if defined(__AVR_ATmega328P__) && !defined(ARDUINO_AVR_UNO)  // nano, promini" in header
+    )
+
+
 def test_every_shipped_header_can_be_chosen() -> None:
     chooser = (KITS.parent / "kit.h").read_text(encoding="utf-8")
     settings = (ROOT / "vm_arduino" / "platformio.ini").read_text(encoding="utf-8")

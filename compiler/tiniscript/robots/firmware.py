@@ -54,9 +54,10 @@ def _condition(robots: Sequence[Robot]) -> str:
     chips = [robot.board.chip for robot in robots]
     if chips[0] in ESP32S:
         return f"defined({ESP32S[chips[0]]})"
-    condition = f"defined({AVRS[chips[0]].macro})"
-    # A Nano has pins that an Uno does not have.
-    return condition + (" && !defined(ARDUINO_AVR_UNO)" if chips == ["nano"] else "")
+    avr = AVRS[chips[0]]
+    # Boards with an Uno's chip have pins that an Uno does not have.
+    is_no_uno = avr is AVRS["uno"] and "uno" not in chips
+    return f"defined({avr.macro}){' && !defined(ARDUINO_AVR_UNO)' if is_no_uno else ''}"
 
 
 class _Part:
