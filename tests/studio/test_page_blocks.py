@@ -193,6 +193,22 @@ def test_looking_at_blocks_changes_no_text(page: Page) -> None:
     becomes(page, text)
 
 
+def test_an_undo_while_a_block_is_dragged_does_nothing(page: Page) -> None:
+    """Blocks of the text before would take the place of the one that is in the hand."""
+    place = box_of(block(page, "S stop"))
+    page.mouse.move(place["x"] + 8, place["y"] + 12)
+    page.mouse.down()
+    page.mouse.move(500, 400, steps=6)
+    page.keyboard.press("Control+z")
+    page.mouse.move(520, 420, steps=3)
+    page.wait_for_timeout(300)
+    page.mouse.move(500, 430, steps=3)
+    page.mouse.up()
+    becomes(page, "SI|F(2, 80)\n\n/// S\n")
+    page.keyboard.press("Control+z")
+    becomes(page, "SI|F(2, 80);\nS;\n")
+
+
 def test_a_block_that_hangs_on_nothing_is_kept(page: Page) -> None:
     page.locator(".blocklyToolboxCategory", has_text="Move").click()
     source = page.locator(".blocklyFlyout:visible .blocklyDraggable").first.bounding_box()

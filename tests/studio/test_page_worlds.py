@@ -110,6 +110,35 @@ def test_a_mouse_adds_moves_and_deletes(floor: Page) -> None:
     assert abs(number(floor, "x_cm") - 145) <= 1 and abs(number(floor, "y_cm") - 120) <= 1
 
 
+def test_an_undo_while_a_finger_moves_a_part_puts_it_back(floor: Page) -> None:
+    shipped = worlds.load("obstacles")
+    floor.click("#world_add_boxes")
+    drag(floor, [(140, 60), (170, 80)])
+    wanted = saved(floor)
+    for undo in ("key", "button"):
+        floor.mouse.move(*on_screen(floor, (155, 70)))
+        floor.mouse.down()
+        floor.mouse.move(*on_screen(floor, (155, 110)), steps=4)
+        floor.keyboard.press("Delete")  # not what is moved
+        if undo == "key":
+            floor.keyboard.press("Control+z")
+        else:
+            floor.evaluate("document.querySelector('#world_undo').click()")  # another finger
+        floor.mouse.move(*on_screen(floor, (155, 120)), steps=2)
+        floor.mouse.up()
+        assert saved(floor).boxes == wanted.boxes
+    floor.click("#world_undo")
+    assert saved(floor).boxes == shipped.boxes
+
+
+def test_a_press_with_ctrl_is_the_menu_of_a_mac(floor: Page) -> None:
+    wanted = saved(floor)
+    floor.keyboard.down("Control")
+    drag(floor, [(56, 75), (56, 90)])
+    floor.keyboard.up("Control")
+    assert saved(floor).start == wanted.start
+
+
 def test_each_kind_is_drawn_and_found_again(floor: Page) -> None:
     floor.click("#world_add_walls")
     drag(floor, [(60, 30), (100, 60)])

@@ -71,13 +71,13 @@ export function breakpoints(toggle, changed) {
 }
 
 /**
- * A press beside a line; the right button has the menu of the browser.
+ * A press beside a line; the right button has the menu of the browser, and so has a press with Ctrl on a Mac.
  * @param {BlockInfo} line
  * @param {Event} event
  * @param {(at: number, isLine: boolean) => void} toggle
  */
 export function pressed(line, event, toggle) {
-  if (!(event instanceof MouseEvent) || event.button !== 0) return false;
+  if (!(event instanceof MouseEvent) || event.button !== 0 || event.ctrlKey) return false;
   toggle(line.from, true);
   return true;
 }

@@ -42,6 +42,7 @@ const theme = EditorView.theme({
   '.cm-gutters': { backgroundColor: '#eef2f6', color: '#4a5663', border: 'none' },
   '.cm-activeLine': { backgroundColor: '#eef4fb' },
   '.cm-running': { backgroundColor: '#ffd84d' },
+  '@media (forced-colors: active)': { '.cm-running': { outline: '2px solid Highlight' } },
   '.cm-breakpoint': { boxShadow: 'inset 3px 0 #a8200f' },
   '.cm-breakpoints': { width: '1.3em', color: '#a8200f', cursor: 'pointer', textAlign: 'center' },
   '.cm-lineNumbers': { cursor: 'pointer' },

@@ -15,7 +15,7 @@ import { RobotPanel } from './robot_panel.js';
 import { chooseSide, showSide } from './robot_side.js';
 import { Views } from './views.js';
 import { ROBOTS } from './words.js';
-import { keep, keptWork } from './work.js';
+import { keep, keptWork, LONGEST } from './work.js';
 
 /** @typedef {import('./python.js').Checked} Checked */
 /** @typedef {import('./python.js').Finding} Finding */
@@ -188,7 +188,7 @@ function showRobots() {
 }
 
 function remember() {
-  if (!keep(work)) note.textContent = text('not_kept');
+  if (!keep(work)) note.textContent = text(work.text.length > LONGEST ? 'kept_too_long' : 'not_kept');
 }
 
 robots.addEventListener('change', () => setRobot(robots.value));

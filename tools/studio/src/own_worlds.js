@@ -51,14 +51,14 @@ export class OwnWorlds {
     return answer;
   }
 
-  /** Keeps them on this device. @param {string} robot that is in them */
+  /** Keeps them on this device; returns whether that was possible. @param {string} robot that is in them @returns {Promise<boolean>} */
   async keep(robot) {
     const asked = ++this.#asked;
     const { newest, before } = this;
     const texts = await Promise.all([newest, ...before].map((world) => this.#textOf(world, robot)));
-    if (asked !== this.#asked) return;
+    if (asked !== this.#asked) return true; // a newer one says it
     const [text, ...others] = texts;
-    keepWorlds(text ?? '', others.filter(Boolean));
+    return keepWorlds(text ?? '', others.filter(Boolean));
   }
 
   /** @param {World | null} world @param {string} robot @returns {Promise<string>} empty where there is none */

@@ -6,7 +6,7 @@ import { element } from './elements.js';
 import { downloadFile } from './files.js';
 import { linkOf, sharedIn } from './links.js';
 import { currentLanguage, text } from './texts.js';
-import { keepVersion, versions } from './versions.js';
+import { keepVersion, MOST_CHARACTERS, versions } from './versions.js';
 import { ROBOTS } from './words.js';
 
 /** @typedef {import('./versions.js').Version} Version */
@@ -58,12 +58,15 @@ export class Programs {
     this.#copy.addEventListener('click', () => this.#copyIt());
     element('run', HTMLButtonElement).addEventListener('click', () => this.keep());
     addEventListener('pagehide', () => this.keep());
+    document.addEventListener('visibilitychange', () => { // a phone ends a page without a word
+      if (document.hidden) this.keep();
+    });
     addEventListener('hashchange', () => this.openLink());
   }
 
   /** Keeps what is in the editor among the earlier programs. */
   keep() {
-    if (!keepVersion(this.#work)) this.#tell(text('not_kept'));
+    if (!keepVersion(this.#work)) this.#tell(text(this.#work.text.length > MOST_CHARACTERS ? 'kept_too_long' : 'not_kept'));
   }
 
   /**

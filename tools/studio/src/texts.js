@@ -119,6 +119,8 @@ export const TEXTS = {
     'El navegador no lo puede leer. Cópialo a otra carpeta y prueba otra vez.'],
   not_kept: ['This browser keeps nothing for this page: save your program before you leave.',
     'Este navegador no guarda nada para esta página: guarda tu programa antes de salir.'],
+  kept_too_long: ['A program as long as this one is not kept by the browser: save it before you leave.',
+    'Un programa tan largo no lo guarda el navegador: guárdalo antes de salir.'],
   no_compiler: ['The compiler did not start. Reload the page; your program is kept.',
     'El compilador no arrancó. Recarga la página; tu programa queda guardado.'],
   bug: ['The studio met something it was not made for. That is our mistake, not yours. Reload the page; your program is kept. ({why})',

@@ -9,7 +9,7 @@ import { keepsNothing } from './work.js';
 
 const PLACE = 'tiniscript.versions';
 const MOST = 40;
-const MOST_CHARACTERS = 400_000; // in all; a browser keeps about five million
+export const MOST_CHARACTERS = 400_000; // in all; a browser keeps about five million
 
 /** @returns {Version[]} */
 export function versions() {
@@ -30,6 +30,7 @@ export function versions() {
  */
 export function keepVersion({ text, robot, name }, at_ms = Date.now()) {
   if (!text.trim() || keepsNothing()) return true;
+  if (text.length > MOST_CHARACTERS) return false;
   const others = versions().filter((each) => each.text !== text || each.robot !== robot);
   const all = [{ text, robot, name, at_ms }, ...others].slice(0, MOST);
   while (all.length > 1 && all.reduce((sum, each) => sum + each.text.length, 0) > MOST_CHARACTERS) all.pop();

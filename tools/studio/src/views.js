@@ -203,8 +203,9 @@ export class Views {
     return this.#shown !== this.#editor.text;
   }
 
-  /** Undo and redo once what the blocks are has become text. @param {() => void} act */
+  /** Undo and redo once what the blocks are has become text; not while one is dragged. @param {() => void} act */
   async #again(act) {
+    if (this.#blocks?.isBusy) return;
     await this.#send();
     act();
     if (this.#isOn) this.#refresh(true);
@@ -266,6 +267,7 @@ export class Views {
         const now = this.#editor.text;
         /** @type {Form & {size: number}} */
         const form = await this.#python.ask({ do: 'blocks', robot: this.#work.robot }, new TextEncoder().encode(now));
+        while (this.#blocks.isBusy) await new Promise((resolve) => setTimeout(resolve, BUSY_MS));
         if (now !== this.#editor.text) continue;
         const isKept = !this.#isWanted && this.#editor.hasFocus && this.#shown !== null && hasGrey(form);
         if (!form.body || isKept) {

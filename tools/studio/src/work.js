@@ -11,14 +11,21 @@ const WORLD_PLACE = 'tiniscript.world'; // the text of the newest world that was
 const BEFORE_PLACE = 'tiniscript.worlds_before'; // the texts of those before it
 export const OWN_WORLD = ':own'; // no name of a shipped world
 const OURS = 'tiniscript.'; // all places of this page
-const LONGEST = 1_000_000; // characters
+export const LONGEST = 1_000_000; // characters
+const STORES = /** @type {const} */ (['sessionStorage', 'localStorage']); // of this tab, and of the next one
+
+const MOST_OTHERS = 5;
 
 let isForgotten = false;
+/** The worlds that this tab has put in place, or found there: others are of another tab. @type {string[]} */
+let knownWorlds = [];
+/** Those of other tabs. @type {string[]} */
+let otherWorlds = [];
 
 /** Deletes all that this page has kept on this device; it keeps nothing from then on. */
 export function forgetAll() {
   isForgotten = true;
-  for (const name of ['sessionStorage', 'localStorage']) {
+  for (const name of STORES) {
     try {
       const storage = /** @type {any} */ (window)[name];
       for (const place of Object.keys(storage)) if (place.startsWith(OURS)) storage.removeItem(place);
@@ -39,25 +46,29 @@ export function keptWork() {
 
 /** Returns the texts of the worlds that were drawn here; who reads them checks them. @returns {{newest: string, before: string[]}} */
 export function keptWorlds() {
-  return {
-    newest: kept(WORLD_PLACE, (found) => found) ?? '',
-    before: kept(BEFORE_PLACE, (found) => {
-      const texts = JSON.parse(found);
-      return Array.isArray(texts) ? texts.filter((each) => typeof each === 'string' && each) : null;
-    }) ?? [],
-  };
+  const newest = kept(WORLD_PLACE, (found) => found) ?? '';
+  const before = kept(BEFORE_PLACE, readWorlds) ?? [];
+  knownWorlds = [newest, ...before];
+  return { newest, before };
+}
+
+/** @param {string} found @returns {string[] | null} */
+function readWorlds(found) {
+  const texts = JSON.parse(found);
+  return Array.isArray(texts) ? texts.filter((each) => typeof each === 'string' && each) : null;
 }
 
 /**
  * @template T
  * @param {string} place
  * @param {(found: string) => T | null} read
+ * @param {readonly string[]} [stores] where it is looked for
  * @returns {T | null}
  */
-function kept(place, read) {
-  for (const storage of ['sessionStorage', 'localStorage']) {
+function kept(place, read, stores = STORES) {
+  for (const name of stores) {
     try {
-      const found = /** @type {any} */ (window)[storage].getItem(place);
+      const found = /** @type {any} */ (window)[name].getItem(place);
       const whole = found && read(found);
       if (whole) return whole;
     } catch {
@@ -68,36 +79,47 @@ function kept(place, read) {
 }
 
 /**
- * Keeps the work; returns whether that was possible.
+ * Keeps the work; returns whether the next tab will find it.
  * @param {Work} work
  * @returns {boolean}
  */
 export function keep(work) {
-  return put(PLACE, JSON.stringify(work));
+  return work.text.length <= LONGEST && put(PLACE, JSON.stringify(work));
 }
 
 /**
  * Keeps the texts of the worlds that were drawn: the newest, and of those before it as many as fit in.
+ * What another tab has kept meanwhile is a world before, for the next tab. Returns whether it is kept.
  * @param {string} newest
  * @param {string[]} before the last one first
+ * @returns {boolean}
  */
 export function keepWorlds(newest, before) {
+  const found = lastingWorlds().filter((each) => !knownWorlds.includes(each));
+  otherWorlds = [...new Set([...found, ...otherWorlds])].filter((each) => each !== newest && !before.includes(each)).slice(0, MOST_OTHERS);
   let rest = LONGEST;
-  const fitting = before.filter((each) => (rest -= each.length) >= 0);
-  put(BEFORE_PLACE, JSON.stringify(fitting));
-  if (newest) put(WORLD_PLACE, newest);
+  const fitting = [...otherWorlds, ...before].filter((each) => (rest -= each.length) >= 0);
+  knownWorlds = [newest, ...fitting];
+  const isKept = put(BEFORE_PLACE, JSON.stringify(fitting));
+  return newest ? put(WORLD_PLACE, newest) && isKept : isKept;
 }
 
-/** @param {string} place @param {string} whole @returns {boolean} */
+/** Those that the next tab would find. @returns {string[]} */
+function lastingWorlds() {
+  const from = /** @type {const} */ (['localStorage']);
+  return [kept(WORLD_PLACE, (found) => found, from) ?? '', ...(kept(BEFORE_PLACE, readWorlds, from) ?? [])].filter(Boolean);
+}
+
+/** @param {string} place @param {string} whole @returns {boolean} whether it is kept for the next tab, too */
 function put(place, whole) {
   if (isForgotten) return true;
   let isKept = false;
-  for (const storage of ['sessionStorage', 'localStorage']) {
+  for (const name of STORES) {
     try {
-      /** @type {any} */ (window)[storage].setItem(place, whole);
-      isKept = true;
+      /** @type {any} */ (window)[name].setItem(place, whole);
+      isKept = name === 'localStorage';
     } catch {
-      // full, or forbidden
+      isKept = false; // full, or forbidden
     }
   }
   return isKept;

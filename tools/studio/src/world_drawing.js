@@ -23,7 +23,7 @@ import { nameOf, showNumbers } from './world_numbers.js';
  * @property {() => boolean} isOwn whether that world was drawn or opened here
  * @property {() => void} rest the robot is off, and its floor seen in place of curves
  * @property {(world: World) => Promise<{text?: string, is_blocked?: boolean, refused?: string[]}>} write it as a file has it, or why it is none
- * @property {() => void} keepOwn what was drawn or opened here is kept
+ * @property {() => Promise<boolean>} keepOwn what was drawn or opened here, if that is possible
  * @property {(world: World, isOther: boolean) => void} put a changed world, or another one, takes the place of the one that is seen
  * @property {(world: World) => void} preview the same, for as long as a finger is down
  * @property {() => void} tell something is to be shown anew
@@ -86,7 +86,11 @@ export class WorldDrawing {
       ['open', () => this.#file.click()],
       ['save', () => this.#save()],
     ];
-    for (const [name, act] of buttons) element(`world_${name}`, HTMLButtonElement).addEventListener('click', act);
+    for (const [name, act] of buttons) {
+      element(`world_${name}`, HTMLButtonElement).addEventListener('click', () => {
+        if (!this.letGo() || name !== 'undo') act(); // by another finger, of a world that a first one changes
+      });
+    }
     for (const kind of KINDS) {
       element(`world_add_${kind}`, HTMLButtonElement).addEventListener('click', (event) => {
         if (event.detail === 0) this.#add(kind, []); // by its key: there is no finger that draws
@@ -201,11 +205,11 @@ export class WorldDrawing {
     const { text: written = '', is_blocked = false, refused } = await this.#page.write(this.#page.world());
     if (refused) this.#say(refused.join(' '));
     else if (asked === this.#written) {
-      this.#page.keepOwn();
       if (is_blocked !== this.#isBlocked) {
         this.#isBlocked = is_blocked;
         this.#say(is_blocked ? text('world_blocked') : this.#sentence());
       }
+      if (!(await this.#page.keepOwn())) this.#say(text('world_not_kept'));
     }
     return written;
   }
@@ -259,8 +263,11 @@ export class WorldDrawing {
   /** @param {KeyboardEvent} event */
   #key(event) {
     if (!this.isOn || event.altKey) return;
+    const isUndo = (event.ctrlKey || event.metaKey) && event.key === 'z';
+    if (this.#drag && !isUndo) return event.preventDefault();
     if (event.ctrlKey || event.metaKey) {
-      if (event.key === 'z') this.#again(this.#before, this.#after);
+      if (isUndo && this.letGo()) this.#show();
+      else if (isUndo) this.#again(this.#before, this.#after);
       else if (event.key === 'y' || event.key === 'Z') this.#again(this.#after, this.#before);
       else return;
     } else if (ARROWS[event.key]) {
@@ -277,7 +284,7 @@ export class WorldDrawing {
 
   /** @param {PointerEvent} event */
   #down(event) {
-    if (!event.isPrimary || event.button !== 0 || this.#drag || this.#pencil.disabled) return;
+    if (!event.isPrimary || event.button !== 0 || event.ctrlKey || this.#drag || this.#pencil.disabled) return;
     const { place, reach_cm } = this.#arena.floorAt(event);
     const before = this.#page.world();
     if (!this.isOn) {
@@ -338,10 +345,12 @@ export class WorldDrawing {
     this.#change(world, drag.before);
   }
 
-  /** What a finger moves is again where it was. */
+  /** What a finger moves is again where it was; returns whether there was such a thing. */
   letGo() {
-    if (this.#drag?.how === 'move') this.#page.preview(this.#drag.before);
+    const drag = this.#drag;
     this.#drag = null;
+    if (drag?.how === 'move') this.#page.preview(drag.before);
+    return drag !== null;
   }
 
   async #open() {

@@ -43,5 +43,6 @@ export const WORLD_TEXTS = {
   world_blocked: ['The robot does not fit there: move it away from walls and boxes.', 'El robot no cabe ahí: aléjalo de paredes y cajas.'],
   world_opened: ['Opened: {name}', 'Abierto: {name}'],
   world_not_opened: ['{name} was not opened. {why}', '{name} no se abrió. {why}'],
+  world_not_kept: ['This browser has no room for this world: save it as a file.', 'Este navegador no tiene espacio para este mundo: guárdalo como archivo.'],
   world_lost: ['The world that you had drawn cannot be read any more.', 'El mundo que habías dibujado ya no se puede leer.'],
 };

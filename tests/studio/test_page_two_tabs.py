@@ -1,0 +1,119 @@
+"""Two tabs of one browser, and a browser that has no room: no work goes without a word."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from tests.studio.test_page_worlds import drag, saved
+from tests.studio.test_page_worlds_kept import draw_wall
+from tests.support.studio import Pages, checked, image, noted, write
+from tiniscript import compile
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Page
+
+# As a browser does it whose storage is full: what was there stays there.
+FULL = """(full) => {
+  const put = Storage.prototype.setItem;
+  Storage.prototype.setItem = function (place, whole) {
+    if (full.some((name) => this === window[name])) {
+      throw new DOMException('full', 'QuotaExceededError');
+    }
+    put.call(this, place, whole);
+  };
+}"""
+REFUSED = """for (const name of ['localStorage', 'sessionStorage']) {
+  Object.defineProperty(window, name, { get() { throw new DOMException('no', 'SecurityError'); } });
+}"""
+PASTE = """(count) => {
+  const data = new DataTransfer();
+  data.setData('text/plain', '// a long note\\n'.repeat(count));
+  const options = { clipboardData: data, bubbles: true, cancelable: true };
+  const event = new ClipboardEvent('paste', options);
+  document.querySelector('#editor').shadowRoot.querySelector('.cm-content').dispatchEvent(event);
+}"""
+
+
+def second(pages: Pages, page: Page) -> Page:
+    """Open another tab of the same person."""
+    other: Page = page.context.new_page()
+    pages.watch(other)
+    other.goto(pages.address)
+    checked(other)
+    return other
+
+
+def test_work_of_two_tabs_is_kept_of_both(pages: Pages) -> None:
+    page = pages.open()
+    other = second(pages, page)
+    for k in (1, 2):
+        write(page, f"SI|F({k}, 10)")
+        write(other, f"SI|B({k}, 20)")
+    draw_wall(page)
+    other.locator("#world_draw:enabled").wait_for()
+    other.click("#world_draw")
+    for count in (1, 2):  # the second change does not forget what the first one has found
+        other.click("#world_add_walls")
+        drag(other, [(150, 30), (190, 60)])
+        other.locator("#world_part option", has_text=f"Wall {count}").wait_for(state="attached")
+        assert len(saved(other).walls) == count
+    other.click("#world_done")
+    page.close(run_before_unload=True)
+    assert "SI|F(2, 10)" in other.evaluate("localStorage['tiniscript.versions']")
+    assert "B(2, 20)" in other.evaluate("localStorage['tiniscript.work']")  # for the next tab
+    newest, before = other.evaluate(
+        "[localStorage['tiniscript.world'], JSON.parse(localStorage['tiniscript.worlds_before'])]"
+    )
+    assert [each.count("[[walls]]") for each in (newest, *before)] == [2, 1]
+
+
+def test_a_program_of_a_tab_that_is_hidden_is_kept(page: Page) -> None:
+    """A phone ends hidden pages, which hear nothing of it."""
+    write(page, "SI|F(9, 91)")
+    page.evaluate(
+        "() => { Object.defineProperty(document, 'hidden', { value: true, configurable: true });"
+        " document.dispatchEvent(new Event('visibilitychange')); delete document.hidden; }"
+    )
+    assert "SI|F(9, 91)" in page.evaluate("localStorage['tiniscript.versions']")
+
+
+def test_a_browser_without_room_or_storage_says_so_and_does_all_else(pages: Pages) -> None:
+    """Else the next tab would begin with an older program, and nobody would know why."""
+    page = pages.open()
+    page.evaluate(FULL, ["localStorage"])
+    write(page, "SI|F(2, 20)")
+    noted(page, "This browser keeps nothing for this page")
+    page.locator("#world_draw:enabled").wait_for()
+    page.click("#world_draw")
+    page.click("#world_add_walls")
+    drag(page, [(60, 30), (100, 60)])
+    page.locator("#doing", has_text="This browser has no room for this world").wait_for()
+    assert "F(2, 20)" in page.evaluate("sessionStorage['tiniscript.work']")  # this tab has it
+    page.context.add_init_script(REFUSED)
+    page.reload()
+    checked(page)
+    page.click("#view_text")
+    write(page, "SI|F(0.1, 80)")
+    noted(page, "This browser keeps nothing for this page")
+    assert image(page) == compile("SI|F(0.1, 80)").image
+    page.click("#run")
+    page.locator("html[data-phase=ended]").wait_for(state="attached")
+    page.click("#my_programs")
+    page.locator("#programs[data-shared=done]").wait_for()
+
+
+def test_a_program_that_is_too_long_to_be_kept_says_so(page: Page) -> None:
+    """450,000 characters are kept as the work; a million is more than the compiler reads."""
+    for count in (30_000, 70_000):
+        write(page, "")
+        page.locator(".cm-content").focus()
+        page.evaluate("document.querySelector('#note').textContent = ''")
+        page.evaluate(PASTE, count)
+        if count == 30_000:
+            assert page.inner_text("#note") == ""
+            page.click("#my_programs")
+            page.click("#programs_close")
+        noted(page, "A program as long as this one is not kept by the browser")
+        kept = page.evaluate("JSON.parse(localStorage['tiniscript.work']).text.length")
+        assert (kept > 400_000) == (count == 30_000)
+    write(page, "S")
