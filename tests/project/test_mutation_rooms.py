@@ -10,6 +10,7 @@ import pytest
 
 from tests.support.casefile import ROOT
 from tools.mutation import rooms
+from tools.mutation.javascript_operators import javascript_changes
 from tools.mutation.python_operators import python_changes
 from tools.mutation.rooms import Change
 from tools.mutation.rooms_equivalent import EQUIVALENT
@@ -46,6 +47,45 @@ def test_each_operator_word_and_number_is_changed_and_nothing_else() -> None:
         "return not a is not None or x < 10",
         "return not a is not None and x <= 10",
         "return not a is not None and x < 11",
+    ]
+
+
+SCRIPT = """
+// a < b
+const MOST = 1_000; // and 2
+class Box {
+  #count = 0;
+  add(text) {
+    if (!text || text.length > MOST && text !== 'a < 3') return `${1 + 2} <`;
+    this.#count += text.replace(/[/*] + 4/g, "5").length ?? 6;
+    this.tell();
+    return text;
+  }
+}
+"""
+
+
+def test_of_a_script_too() -> None:
+    lines = []
+    for start, end, instead in javascript_changes(SCRIPT):
+        changed = SCRIPT[:start] + instead + SCRIPT[end:]
+        lines.append(changed.splitlines()[SCRIPT.count("\n", 0, start)].strip())
+    condition = "if (!text || text.length > MOST && text !== 'a < 3') return `${1 + 2} <`;"
+    count = 'this.#count += text.replace(/[/*] + 4/g, "5").length ?? 6;'
+    assert lines == [
+        condition.replace("||", "&&"),
+        condition.replace("> MOST", ">= MOST"),
+        condition.replace("MOST &&", "MOST ||"),
+        condition.replace("!==", "==="),
+        count.replace("+=", "-="),
+        count.replace("??", "&&"),
+        condition.replace("!text", "text"),
+        "const MOST = 1001; // and 2",
+        "#count = 1;",
+        count.replace("6", "7"),
+        ";",
+        ";",
+        ";",
     ]
 
 

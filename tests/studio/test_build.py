@@ -142,3 +142,11 @@ def test_firmware_is_beside_the_page_and_in_no_count(
     assert row == {"title": "tinibot", "board": "uno", "file": brought.path.name}
     assert given[row["file"]].data == brought.path.read_bytes()
     assert len(studio.size_rows(tmp_path / "page")) == 2  # the head, and the sum
+
+
+def test_only_a_page_that_is_there_is_built_again(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert studio.main(["--again", "-o", str(tmp_path / "page")]) == 2
+    assert "the page is not built" in capsys.readouterr().err
+    assert not (tmp_path / "page").exists()

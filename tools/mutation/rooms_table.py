@@ -15,7 +15,8 @@ class Room(NamedTuple):
     """`files` are patterns below the repository; `tests` are given to pytest, quick ones first.
 
     Of a file whose name is in `about`, only those run that have one of its words. No test runs
-    whose name has a word of `without`: it takes long, and others ask the same.
+    whose name has a word of `without`: it takes long, and others ask the same. Of `is_page` the
+    studio's page is built before its tests run.
     """
 
     name: str
@@ -23,6 +24,7 @@ class Room(NamedTuple):
     tests: tuple[str, ...]
     about: Mapping[str, str] = MappingProxyType({})
     without: tuple[str, ...] = ()
+    is_page: bool = False
 
     def tests_of(self, file: str) -> tuple[str, ...]:
         words = self.about.get(Path(file).name, "").split()
@@ -30,7 +32,7 @@ class Room(NamedTuple):
         return tuple(dict.fromkeys(fit)) or self.tests
 
 
-_CPP, _PY = "vm_arduino/src", "compiler/tiniscript"
+_CPP, _PY, _JS = "vm_arduino/src", "compiler/tiniscript", "tools/studio/src"
 ROOMS = (
     Room(
         "link",
@@ -199,6 +201,38 @@ ROOMS = (
             "tests/pupils/test_pupils.py",
             "tests/diagnostics/test_rendering.py",
         ),
+    ),
+    Room("recordings", (f"{_PY}/studio/recordings.py",), ("tests/studio/test_recordings.py",)),
+    Room(
+        "page-flash",
+        (f"{_JS}/stk500.js", f"{_JS}/intel_hex.js"),
+        ("tests/studio/test_flashing.py",),
+        without=("new_board", "sketch"),  # simulated boards, which node meets more slowly
+    ),
+    Room(
+        "page-work",
+        tuple(f"{_JS}/{name}.js" for name in ("work", "versions", "links", "own_worlds")),
+        (
+            "tests/studio/test_page_two_tabs.py",
+            "tests/studio/test_page_programs.py",
+            "tests/studio/test_page_worlds_kept.py",
+            "tests/studio/test_page.py",
+        ),
+        {
+            "work.js": "test_page.py two_tabs worlds_kept",
+            "versions.js": "programs two_tabs",
+            "links.js": "programs",
+            "own_worlds.js": "worlds_kept two_tabs",
+        },
+        ("every_line", "pictures", "saved_as_a_picture", "seen", "every_program", "long_program"),
+        is_page=True,
+    ),
+    Room(
+        "page-worlds",
+        (f"{_JS}/world_parts.js", f"{_JS}/world_drawing.js", f"{_JS}/world_numbers.js"),
+        ("tests/studio/test_page_worlds.py", "tests/studio/test_page_worlds_kept.py"),
+        without=("seen",),
+        is_page=True,
     ),
 )
 BY_NAME = {room.name: room for room in ROOMS}
