@@ -15,19 +15,7 @@ import { nameOf, showNumbers } from './world_numbers.js';
 /** @typedef {import('./world_parts.js').Part} Part */
 /** @typedef {import('./world_parts.js').Kind} Kind */
 /** @typedef {import('./world_parts.js').Place} Place */
-/**
- * @typedef {object} Page what the page does for this
- * @property {() => World} world that is seen
- * @property {() => Place} robot where it is seen
- * @property {() => boolean} isDriving
- * @property {() => boolean} isOwn whether that world was drawn or opened here
- * @property {() => void} rest the robot is off, and its floor seen in place of curves
- * @property {(world: World) => Promise<{text?: string, is_blocked?: boolean, refused?: string[]}>} write it as a file has it, or why it is none
- * @property {() => Promise<boolean>} keepOwn what was drawn or opened here, if that is possible
- * @property {(world: World, isOther: boolean) => void} put a changed world, or another one, takes the place of the one that is seen
- * @property {(world: World) => void} preview the same, for as long as a finger is down
- * @property {() => void} tell something is to be shown anew
- */
+/** @typedef {import('./world_choice.js').Page} Page */
 /** @typedef {{how: 'move' | 'draw', part: Part, point: number, from: Place, before: World, base: World, way: Place[]}} Drag `base`: what is moved */
 
 const STEP_CM = 5;
