@@ -113,6 +113,8 @@ CHANGES: dict[str, tuple[Change, str]] = {
         altered("STOPPED", payload=lambda p: p + b"?"), "stops: STOP"),
     "a rule is another": (with_status(of("PROGRAM"), 21), "refused: refused: A power over 100"),
     "a message that nobody knows": (with_status(31, 65), "link: a message that nobody knows"),
+    "a place of something else": (
+        altered("PING", payload=lambda p: p[:3] + bytes(len(p) - 3)), "link: where a program is"),
     "a long payload": (with_status(of("PING"), 64), "link: a payload that is too long"),
     "damaged frames are not counted": (
         altered("STATUS", payload=lambda p: p[:-4] + bytes(4)), "link: a damaged frame"),

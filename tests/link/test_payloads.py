@@ -18,6 +18,7 @@ from tiniscript.link.outcomes import (
     JoinedEvent,
     LeftEvent,
     MissedEvent,
+    PlaceEvent,
     TextEvent,
 )
 from tiniscript.link.payloads import EVENTS, REPLIES, ReceiptReply, StatusReply
@@ -47,6 +48,7 @@ def test_an_event_has_the_fields_of_the_table_and_its_name() -> None:
 
 OTHERS: tuple[Event, ...] = (
     TextEvent(b"hello"), MissedEvent(3), EchoEvent(), JoinedEvent(b"live"), LeftEvent(b"live"),
+    PlaceEvent(255, 2**32 - 1, -1),
     EndedEvent(QUIET._replace(state=3, fault_program=2**32 - 1)),
 )  # fmt: skip
 

@@ -54,11 +54,11 @@ def event(name: str, seq: int, values: dict[str, int | bytes], epoch: int = 11) 
     return encoded(Frame(message.number, seq, epoch, payload, is_reply=True))
 
 
-def greeted(baud: int = 9600, now_ms: int = 0) -> Session:
+def greeted(baud: int = 9600, now_ms: int = 0, features: int = 0) -> Session:
     """Return a session that has said HELLO."""
     session = Session(1, baud, KIT)
     session.hello()
-    session.receive(answer(session.poll(now_ms), {**DESCRIPTION}), now_ms)
+    session.receive(answer(session.poll(now_ms), {**DESCRIPTION, "features": features}), now_ms)
     assert session.robot and session.robot.name == "Tini" and session.robot.room == 389
     return session
 
@@ -236,7 +236,7 @@ def test_what_a_newer_robot_sends_is_no_harm() -> None:
     sent = decoded(data.strip(b"\0"))
     assert sent
     session.receive(encoded(Frame(2, sent.seq, 10, b"", is_reply=True)), 7)
-    session.receive(encoded(Frame(2, sent.seq, 10, b"\0\1\1\1\1", is_reply=True)), 7)
+    session.receive(encoded(Frame(2, sent.seq, 10, b"\0\1\1" + bytes(7), is_reply=True)), 7)
     assert request.outcome is None and session.damaged == 3
     session.receive(answer(data, {"state": 0, "run": 0}), 8)
     assert request.outcome

@@ -224,6 +224,9 @@ class SessionSide:
         if words[0] == "stop":
             session.stop(self.now_ms)
             return
+        if words[0] == "places":
+            session.tells_places = True
+            return
         actions: dict[str, Callable[[], PendingRequest[Any]]] = {
             "hello": session.hello,
             "ping": session.ping,
@@ -288,6 +291,7 @@ class Sender:
             if field.kind == "rest"
             else int(texts[field.name])
             for field in message.request
+            if field.name in texts
         }
         payload = written(message.request, values)
         self.data = encoded(Frame(message.number, int(seq), int(epoch), payload))
@@ -319,7 +323,7 @@ class CppSide:
 
     def happens(self, words: list[str]) -> None:
         letters = {"done": "d", "fault": "f", "show": "s", "button": "b", "released": "r",
-                   "busy": "w", "saving": "k", "off": "!"}  # fmt: skip
+                   "busy": "w", "saving": "k", "at": "a", "tells": "o", "off": "!"}  # fmt: skip
         if letters[words[0]] == "!":
             self.cpp.begin(kit=KIT, epoch=77)
         else:

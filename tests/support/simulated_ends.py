@@ -163,7 +163,8 @@ class Firmware(Nobody):
         elif message.name in ("HELLO", "STATUS", "PING"):
             known = {**self.hello, **self.counts}
             payload += written(
-                message.reply, {field.name: known[field.name] for field in message.reply}
+                message.reply,
+                {field.name: known[field.name] for field in message.reply if field.name in known},
             )
         else:
             payload = bytes([STATUSES["UNKNOWN_MESSAGE"], 0, 0])

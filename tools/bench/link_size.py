@@ -42,6 +42,8 @@ void port_start(bool is_live) { sink = is_live; }
 void port_stop(uint8_t fault) { sink = fault; }
 void port_release() { sink = 0; }
 uint16_t port_image_length() { return sink; }
+uint16_t port_run_at() { return sink; }
+const uint8_t* port_run_image() { return bytes; }
 Answer port_image_byte(uint16_t offset, uint8_t* byte) { *byte = offset; return (Answer)sink; }
 uint8_t* port_text_memory(uint16_t*, bool* has_room) { *has_room = sink; return bytes; }
 uint8_t* port_text_room(uint16_t* room) { *room = sink; return (uint8_t*)0x300; }

@@ -20,6 +20,8 @@ from tiniscript.link.messages import (
     BY_NAME,
     MAJOR,
     PAYLOAD_BYTES,
+    PLACE_BYTES,
+    PLACES,
     RUN,
     SMALL_FRAME,
     STATUSES,
@@ -226,14 +228,38 @@ def _stale(robot: WireRobot) -> tuple[str, ...]:
     return (said(robot.ask_frame(number, b"", epoch=(robot.epoch + 100) & 0xFF)),)
 
 
+_WHERE = ("no place before", "1 of what runs", "no place unasked")
+
+
+def _where(robot: WireRobot) -> tuple[str, ...]:
+    if not met(robot).number("features") & PLACES:
+        return _WHERE  # it does not say that it tells places: nobody asks it
+    before = robot.ask("PING", {"asks": b"?"})
+    program = live(robot, WAIT_20).number("program")
+    place = _rest(robot.ask("PING", {"asks": b"?"}), "place")
+    told = f"{int.from_bytes(place[:2], 'little')} of "
+    told += "what runs" if place[2:] == program.to_bytes(4, "little") else "something else"
+    return (
+        "a place before" if _rest(before, "place") else "no place before",
+        told if len(place) == PLACE_BYTES else f"{len(place)} bytes of a place",
+        "a place unasked" if _rest(robot.ask("PING"), "place") else "no place unasked",
+    )
+
+
+def _rest(answer: Answer, name: str) -> bytes:
+    value = answer.values.get(name)
+    return value if isinstance(value, bytes) else b""
+
+
 LINK_CHECKS = (
     Check("link: HELLO", (f"link {MAJOR}", f"isa {ISA_MAJOR}.{ISA_MINOR}", "frames of 63 bytes",
                           "the same nonce again: the same session"), _hello),
     Check("link: PING", ("OK",), lambda robot: (said(robot.ask("PING")),)),
+    Check("link: where a program is", _WHERE, _where),
     Check("link: a message that nobody knows", ("UNKNOWN_MESSAGE",),
           lambda robot: (said(robot.ask_frame(NO_MESSAGE, b"")),)),
     Check("link: a payload that is too long", ("BAD_LENGTH",),
-          lambda robot: (said(robot.ask_frame(BY_NAME["PING"].number, b"?")),)),
+          lambda robot: (said(robot.ask_frame(BY_NAME["PING"].number, b"??")),)),
     Check("link: a payload that is too short", ("BAD_LENGTH",),
           lambda robot: (said(robot.ask_frame(BY_NAME["COMMIT"].number, b"abc")),)),
     Check("link: a request of another epoch", ("STALE",), _stale),

@@ -36,6 +36,7 @@ TRIM_BYTES = 3
 KEY_BYTES = 16
 CHALLENGE_BYTES = 8
 TAG_BYTES = 8
+PLACE_BYTES = 6  # of a reply to PING: where a program is (16 bits), and which (its checksum)
 COUNTER_BYTES = 4
 
 
@@ -72,10 +73,11 @@ MODES = (
 
 # What a robot is able to do and who may drive it, in one number of the reply to HELLO. A robot whose
 # firmware is older has 0.
-TEXT_LEVEL, OWNERS, OWNED, TEXT_ALLOWED = 0x0003, 0x0010, 0x0020, 0x0040
+TEXT_LEVEL, PLACES, OWNERS, OWNED, TEXT_ALLOWED = 0x0003, 0x0008, 0x0010, 0x0020, 0x0040
 YOURS, BY_TEACHER, SEALS = 0x0080, 0x0100, 0x0200
 FEATURES = (
     (TEXT_LEVEL, "TEXT_LEVEL", "Which level of text the robot reads, a number of the table below."),
+    (PLACES, "PLACES", "It tells where its program is, when PING asks."),
     (OWNERS, "OWNERS", "The robot knows owners."),
     (OWNED, "OWNED", "It has an owner."),
     (TEXT_ALLOWED, "TEXT_ALLOWED", "Lines of text may drive it."),
@@ -169,7 +171,8 @@ MESSAGES = (
              "major:u8 minor:u8 isa_major:u8 isa_minor:u8 largest:u8 window:u8 " + _IDENTITY + " room:u16 "
              + _STATUS + " name:rest=0..16",
              "Begins a session. The same `nonce` again is the same session."),
-    _message(2, "PING", False, "", "state:u8 run:u8", "Are you there? Also the heartbeat."),
+    _message(2, "PING", False, "asks:rest=0..1", f"state:u8 run:u8 place:rest=0..{PLACE_BYTES}",
+             "Are you there? Also the heartbeat. With a byte, whatever it is: and where is your program?"),
     _message(3, "STATUS", False, "",
              _STATUS + " damaged:u8 dropped:u8 framing:u8 overrun:u8",
              "What the robot does, its last fault, and how well it hears."),
@@ -330,11 +333,12 @@ class Malformed(Exception):
 
 
 def written(fields: tuple[Field, ...], values: Mapping[str, int | bytes]) -> bytes:
-    """Return the payload with these values, one for each field."""
-    assert set(values) == {field.name for field in fields}, (fields, values)
+    """Return the payload with these values, one for each field; a rest that may be empty is, where
+    it has none."""
+    assert set(values) <= {field.name for field in fields}, (fields, values)
     parts = []
     for field in fields:
-        value = values[field.name]
+        value = values.get(field.name, b"") if field.kind == "rest" else values[field.name]
         if isinstance(value, bytes):
             assert field.kind == "rest" and field.low <= len(value) <= field.high, field
             parts.append(value)

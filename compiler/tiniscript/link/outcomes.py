@@ -62,6 +62,18 @@ class StartedEvent(NamedTuple):
     name: Literal["STARTED"] = "STARTED"
 
 
+class PlaceEvent(NamedTuple):
+    """The program is at another place: byte `at` of its code, or -1 when nothing runs any more.
+
+    `program` is the checksum of its image.
+    """
+
+    run: int
+    program: int
+    at: int
+    name: Literal["PLACE"] = "PLACE"
+
+
 class JoinedEvent(NamedTuple):
     """A client has joined the port: `verb` is its command."""
 
@@ -87,6 +99,7 @@ Event = (
     | EchoEvent
     | EndedEvent
     | StartedEvent
+    | PlaceEvent
     | JoinedEvent
     | LeftEvent
 )
@@ -96,6 +109,7 @@ OWN_EVENTS: dict[str, type[Event]] = {
     "LOST": LostEvent,
     "ECHO": EchoEvent,
     "STARTED": StartedEvent,
+    "PLACE": PlaceEvent,
     "JOINED": JoinedEvent,
     "LEFT": LeftEvent,
 }

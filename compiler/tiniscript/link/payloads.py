@@ -36,6 +36,7 @@ class PingReply(NamedTuple):
 
     state: int
     run: int
+    place: bytes
 
 
 class StatusReply(NamedTuple):

@@ -1,12 +1,15 @@
 """The state of the robot, as known from its replies and events.
 
-Knows which run is ours and which has ended. Knows no frame and no time, and sends no request.
+Knows which run is ours, which has ended, and where a program was last. Knows no frame and no time,
+and sends no request.
 """
 
 from __future__ import annotations
 
-from tiniscript.link.messages import STATE_IDLE, STATE_RUNNING, STATE_STOPPED
-from tiniscript.link.outcomes import Event
+import struct
+
+from tiniscript.link.messages import PLACE_BYTES, STATE_IDLE, STATE_RUNNING, STATE_STOPPED
+from tiniscript.link.outcomes import Event, PlaceEvent
 from tiniscript.link.payloads import (
     DoneEvent,
     FaultEvent,
@@ -18,6 +21,9 @@ from tiniscript.link.payloads import (
     StoppedEvent,
 )
 
+_PLACE = struct.Struct("<HI")
+assert _PLACE.size == PLACE_BYTES
+
 
 class RobotState:
     def __init__(self) -> None:
@@ -25,6 +31,7 @@ class RobotState:
         self.run: int | None = None  # the run that we have started
         self._ended: int | None = None  # the last run whose end we know
         self._event_seq: int | None = None
+        self._place: PlaceEvent | None = None  # the last one that was told
 
     @property
     def is_running(self) -> bool:
@@ -36,7 +43,7 @@ class RobotState:
 
     def reset(self) -> None:
         """Note that the robot was reset: its counters start again."""
-        self._event_seq = self.run = self._ended = None
+        self._event_seq = self.run = self._ended = self._place = None
 
     def missed(self, seq: int) -> int:
         """Take the number of an event; return how many events before it are missing."""
@@ -55,7 +62,21 @@ class RobotState:
         self._ended = self.run
         return not isinstance(values, HelloReply)
 
+    def moved(self, values: SentReply) -> list[PlaceEvent]:
+        """Take a reply; return where the program is now, if that is another place than before."""
+        if not isinstance(values, PingReply):
+            return []
+        before, self._place = self._place, None
+        if values.state == STATE_RUNNING and len(values.place) == PLACE_BYTES:
+            at, program = _PLACE.unpack(values.place)
+            self._place = PlaceEvent(values.run, program, at)
+        elif before is not None:
+            return [before._replace(at=-1)]
+        return [self._place] if self._place and self._place != before else []
+
     def take(self, event: Event) -> None:
+        if isinstance(event, (StoppedEvent, FaultEvent, DoneEvent)):
+            self._place = None  # who is told of the end needs no more
         if isinstance(event, (StoppedEvent, FaultEvent)):
             self.state = STATE_STOPPED
         if isinstance(event, (DoneEvent, FaultEvent)):
@@ -71,3 +92,4 @@ class RobotState:
     def clear(self) -> None:
         """Note that the latch is released or the robot is lost."""
         self.state = STATE_IDLE
+        self._place = None

@@ -175,7 +175,7 @@ class Session(SessionRequests):
             heartbeat_ms = self._heartbeat_ms()
             if heartbeat_ms is None or now_ms < self._sent_ms + heartbeat_ms:
                 return
-            self._pending = PendingExchange(self._ping(), DEAF_MS, is_own=True)
+            self._pending = PendingExchange(self._beat(), DEAF_MS, is_own=True)
         self._pending.deadline_ms = now_ms + self._pending.limit_ms
         self._advance(None, now_ms)
 
@@ -303,6 +303,7 @@ class Session(SessionRequests):
             if message.name == "CLEAR":
                 self._state.clear()
             has_ended = self._state.learn(reply.values)
+            self._events += self._state.moved(reply.values)
             if has_ended and isinstance(reply.values, StatusReply):
                 self._events.append(EndedEvent(reply.values))
             elif has_ended:

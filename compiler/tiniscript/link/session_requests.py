@@ -13,6 +13,7 @@ from tiniscript.link import requests, wifi
 from tiniscript.link.authority import KeyRing
 from tiniscript.link.connection import DEADLINE_MS, PendingRequest
 from tiniscript.link.handshake import Handshake
+from tiniscript.link.messages import PLACES
 from tiniscript.link.payloads import (
     EmptyReply,
     HelloReply,
@@ -72,6 +73,7 @@ class SessionRequests:
         keys: KeyRing | None,
         epoch: Callable[[], int],
     ) -> None:
+        self.tells_places = False  # PLACE events are wanted
         self._state = RobotState()
         self._handshake = Handshake(nonce, kit, isa, self._state, keys, epoch)
 
@@ -110,8 +112,14 @@ class SessionRequests:
     def status(self) -> PendingExchange[StatusReply]:
         return self._add(self._status())
 
-    def _ping(self) -> Exchange[PingReply]:
-        return self._handshake.with_key(lambda: requests.single(Request("PING"), PingReply))
+    def _ping(self, asks: bytes = b"") -> Exchange[PingReply]:
+        ping = Request("PING", {"asks": asks})
+        return self._handshake.with_key(lambda: requests.single(ping, PingReply))
+
+    def _beat(self) -> Exchange[PingReply]:
+        """Ping, and ask where the program is, if that is wanted and the robot tells it."""
+        asks = self.tells_places and self.robot and self.robot.values.features & PLACES
+        return self._ping(b"\1" if asks else b"")
 
     def _status(self) -> Exchange[StatusReply]:
         return self._handshake.with_key(lambda: requests.single(Request("STATUS"), StatusReply))

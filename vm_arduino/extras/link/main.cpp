@@ -1,4 +1,5 @@
-// The robot's half of the link on a computer, for tests: many requests to one process, or to a library.
+// The robot's half of the link on a computer, for tests: many requests to one process, or to a
+// library.
 //
 // A request is four bytes of length and a letter with what it asks; an answer is four bytes of
 // length and what was found. `tests/machines/link.py` is the other side. Ends with its input.
@@ -101,6 +102,9 @@ void answer_robot(RequestReader* request, Writer* answer) {
       port_release();
       link_half.drop();
       port_start(false);
+      break;
+    case 'a':
+      port.at = static_cast<uint16_t>(value);
       break;
     case 'w':
       port.is_busy = value != 0;

@@ -128,6 +128,8 @@ void port_seal(const uint8_t* image) {
 void port_start(bool is_live) {
   port.robot_status.state = State::kRunning;
   port.robot_status.run++;
+  port.run_image = is_live ? sealed(text_of(port.live.get())) : port.held;
+  port.at = 0;
   say(is_live ? "START live, run %u" : "START run %u", port.robot_status.run);
 }
 
@@ -159,6 +161,7 @@ void port_take_text(uint8_t* image, bool is_for_button) {
     hold(whole, Saved::kMemory);
   } else {
     port_start(false);
+    port.run_image = whole;
   }
 }
 
@@ -193,6 +196,9 @@ void port_release() {
   if (port.robot_status.state > State::kRunning) port.robot_status.state = State::kIdle;
   say("RELEASE");
 }
+
+uint16_t port_run_at() { return port.at; }
+const uint8_t* port_run_image() { return bytes_of(port.run_image); }
 
 uint16_t port_image_length() { return static_cast<uint16_t>(port.held.size()); }
 

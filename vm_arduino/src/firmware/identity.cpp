@@ -33,7 +33,7 @@ void begin_identity(const Board& board) {
   identity.kit = board_kit();
   identity.nonce = board.seed;
   identity.reset = board.reset;
-  identity.features = static_cast<uint8_t>(kRobotTextLevel);
+  identity.features = static_cast<uint8_t>(kRobotTextLevel) | kPlaces;
   device_info.sensors = board_sensors();
   device_info.actuators = board_actuators();
 }

@@ -1,6 +1,7 @@
 #include "run.h"
 
 #include "../link/frames.h"
+#include "../link/port.h"
 #include "../robot.h"
 #include "../vm/flags.h"
 #include "../vm/image.h"
@@ -163,6 +164,10 @@ void firmware_on_part(Transport transport) {
   link.stopped(Cause::kCable);
 }
 #endif
+
+uint16_t port_run_at() { return machine.at(); }
+
+const uint8_t* port_run_image() { return run_image; }
 
 // The image may not contain its checksum yet.
 bool firmware_runs(Place* place) {

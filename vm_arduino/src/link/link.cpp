@@ -220,6 +220,8 @@ uint8_t Link::answer(Message message, const uint8_t* payload, uint8_t length) {
       return set_wifi(payload, length);
 #endif
     case Message::kPing:
+      said_.detail = length;
+      break;
     case Message::kStatus:
     case Message::kShow:
     case Message::kFault:

@@ -2,6 +2,7 @@
 
 #include "../vm/bytecode.h"
 #include "../vm/flash.h"
+#include "../vm/image.h"
 #include "../vm/small.h"
 #include "link.h"
 #include "port.h"
@@ -25,6 +26,14 @@ static_assert(sizeof(Identity) == 13 && sizeof(RobotStatus) == 17, "they are as 
 template <class Type>
 uint8_t byte_of(Type value) {
   return static_cast<uint8_t>(value);
+}
+
+// Two bytes as one number: on an AVR that is less code than one after the other.
+uint16_t both(uint8_t first, uint8_t second) {
+  const uint8_t bytes[] = {first, second};
+  uint16_t found;
+  __builtin_memcpy(&found, bytes, sizeof found);
+  return found;
 }
 
 }  // namespace
@@ -111,13 +120,15 @@ void Link::reply() {
       break;
     case Message::kPing:
       put_all(&robot_status, kPulseBytes);
+      if (byte_of(said_.detail) != 0 && robot_status.state == State::kRunning) {
+        put16(port_run_at());
+        put_all(port_run_image() + kChecksumAt, kChecksumBytes);
+      }
       break;
     case Message::kStatus:
       put_all(&robot_status, sizeof robot_status);
-      put(byte_of(damaged_ + receiver_->damaged()));
-      put(receiver_->dropped());
-      put(port_line_errors().framing);
-      put(port_line_errors().overrun);
+      put16(both(byte_of(damaged_ + receiver_->damaged()), receiver_->dropped()));
+      put16(both(port_line_errors().framing, port_line_errors().overrun));
       break;
     case Message::kFetch:
       fetch();

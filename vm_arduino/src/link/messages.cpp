@@ -8,7 +8,7 @@ namespace tiniscript {
 
 const uint8_t kRequestBytes[][2] tini_progmem = {
     {10, 10},  // HELLO
-    {0, 0},  // PING
+    {0, 1},  // PING
     {0, 0},  // STATUS
     {2, 2},  // FETCH
     {0, 0},  // STOP

@@ -64,6 +64,7 @@ constexpr uint8_t kRightReversed = 4;
 
 // What the robot is able to do and who may drive it, in one number.
 constexpr uint8_t kTextLevel = 3;
+constexpr uint8_t kPlaces = 8;
 constexpr uint8_t kOwners = 16;
 constexpr uint8_t kOwned = 32;
 constexpr uint8_t kTextAllowed = 64;
@@ -73,7 +74,7 @@ constexpr uint16_t kSeals = 512;
 
 enum class Message : uint8_t {
   kHello = 1,  // Begins a session. The same `nonce` again is the same session.
-  kPing = 2,  // Are you there? Also the heartbeat.
+  kPing = 2,  // Are you there? Also the heartbeat. With a byte, whatever it is: and where is your program?
   kStatus = 3,  // What the robot does, its last fault, and how well it hears.
   kFetch = 4,  // The stored program's image, from `offset` on. `length` is that of all of it.
   kStop = 5,  // The same as the stop sequence, and answered.
@@ -117,6 +118,7 @@ constexpr uint8_t kHelloIsaMajorAt = 2;
 constexpr uint8_t kHelloIsaMinorAt = 3;
 constexpr uint8_t kHelloKitAt = 4;
 constexpr uint8_t kHelloNonceAt = 6;
+constexpr uint8_t kPingAsksAt = 0;
 constexpr uint8_t kFetchOffsetAt = 0;
 constexpr uint8_t kStartModeAt = 0;
 constexpr uint8_t kLiveModeAt = 0;

@@ -135,6 +135,11 @@ void port_end();
 void port_stop(uint8_t fault);
 void port_release();
 
+// What runs: where it is, the byte of its code with which the instruction begins that runs or
+// waits, and its image. Only while something runs.
+uint16_t port_run_at();
+const uint8_t* port_run_image();
+
 // The length of the image that the robot holds.
 uint16_t port_image_length();
 

@@ -49,6 +49,7 @@ void TiniLink::begin(uint32_t random) {
   info_.actuators = kit.actuators;
   identity_.kit = kit.fingerprint();
   identity_.nonce = random;
+  identity_.features = kPlaces;
   player_->show_by(show_on_link);
   link_.begin(&receiver, static_cast<uint8_t>(random));
 }
@@ -168,6 +169,8 @@ void port_start(bool is_live) { only->start(is_live); }
 void port_end() { only->make_way(); }
 void port_stop(uint8_t fault) { only->stop(fault); }
 void port_release() { only->release(); }
+uint16_t port_run_at() { return only->at(); }
+const uint8_t* port_run_image() { return only->run_image(); }
 uint16_t port_image_length() { return image_length(only->held()); }
 
 Answer port_image_byte(uint16_t offset, uint8_t* byte) {

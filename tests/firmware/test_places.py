@@ -1,0 +1,150 @@
+"""Where a program is: the firmware tells the place at which the machine in Python is then."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pytest
+
+from tests.firmware.test_host_firmware import KIT, computer, image_of, switched_on
+from tests.machines.host_firmware import HostFirmware, missing
+from tests.support.owners import Keys, Owned, owner_of
+from tiniscript.bytecode.image import Image
+from tiniscript.link.authority import YOUR_OWN
+from tiniscript.link.frames import Frame, decoded, encoded
+from tiniscript.link.messages import BY_NAME, PLACES, STATE_RUNNING, read
+from tiniscript.link.outcomes import Event, PlaceEvent
+from tiniscript.link.requests import OK
+from tiniscript.link.session import Session
+from tiniscript.vm.machine import Machine
+from tiniscript.vm.trace import TracedRobot
+
+pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
+
+PROGRAMS = [
+    "SI|F(1, 80);R(0.6, 60);F(1, 80)",
+    "SI|DEF TURN;L(0.1, 50);END_DEF;LOOP(3);F(0.2, 80);TURN;END_LOOP;B(0.3, 40)",
+    "SI|N = 1;WHILE(N < 4);F(0.1, 30);W(0.05);N = N + 1;END_WHILE;R(0.2, 20)",
+    "SI|F(1, 50) UNTIL(DISTANCE < 20);IF(DISTANCE > 20);R(0.4, 70);ELSE;L(0.4, 70);ENDIF;B(1, 8)",
+]
+DRIVE = PROGRAMS[0]
+
+
+def asked(robot: HostFirmware, seq: int, epoch: int) -> tuple[int, int, bytes]:
+    """Ask for the place in one frame; return state, run and place of the reply."""
+    data = b"\0" + encoded(Frame(BY_NAME["PING"].number, seq & 0xFF, epoch, b"\1"))
+    frames = [decoded(each) for each in robot.step(data).split(b"\0") if each]
+    frame = next(each for each in frames if each and each.number == BY_NAME["PING"].number)
+    assert frame.payload[0] == OK
+    values = read(BY_NAME["PING"].reply, frame.payload[1:])
+    state, run, place = values["state"], values["run"], values["place"]
+    assert isinstance(state, int) and isinstance(run, int) and isinstance(place, bytes)
+    return state, run, place
+
+
+def places(image: Image, begun_ms: int, sensed: int) -> Iterator[int]:
+    """Yield where the machine in Python is, each millisecond from its begin on."""
+    robot = TracedRobot(KIT, lambda sensor: sensed)
+    machine = Machine(image.code, robot, len(KIT.sensors), now_ms=begun_ms)
+    now_ms = begun_ms
+    while machine.tick(now_ms, 1000) == "waiting":
+        yield machine.at
+        now_ms += 1
+
+
+@pytest.mark.parametrize("text", PROGRAMS)
+def test_a_place_is_that_of_the_machine_in_python(text: str) -> None:
+    robot, session = switched_on(), computer()
+    robot.sense(*[30_000] * len(KIT.sensors))
+    assert robot.until(session, session.hello()) == OK
+    assert session.robot and session.robot.values.features & PLACES
+    image = image_of(text)
+    assert robot.until(session, session.upload(image, saves=False)) == OK
+    begun_ms = int(robot.did[0].split()[0])
+    machine = places(image, begun_ms, 30_000)
+    told = []
+    for _ in range(robot.now_ms - begun_ms + 1):
+        next(machine)
+    for seq, at in enumerate(machine, 50):
+        state, _, place = asked(robot, seq, session._epoch)
+        assert state == STATE_RUNNING
+        assert place == at.to_bytes(2, "little") + image.checksum.to_bytes(4, "little")
+        told.append(at)
+    assert len(set(told)) >= 3
+    robot.wait(20)
+    assert asked(robot, 40, session._epoch)[2] == b""
+
+
+def listener(nonce: int = 1) -> Session:
+    session = computer(nonce)
+    session.tells_places = True
+    return session
+
+
+def heard(robot: HostFirmware, session: Session, milliseconds: int) -> list[Event]:
+    robot.talk(session, milliseconds)
+    return session.events()
+
+
+def told(events: list[Event]) -> list[PlaceEvent]:
+    return [each for each in events if isinstance(each, PlaceEvent)]
+
+
+def test_a_session_that_wants_it_hears_each_place_once() -> None:
+    robot, session = switched_on(), listener()
+    image = image_of(DRIVE)
+    assert robot.until(session, session.upload(image, saves=False)) == OK
+    events = heard(robot, session, 3000)
+    found = told(events)
+    assert [each.at for each in found] == sorted({each.at for each in found})
+    assert len(found) == 3 and all(each[:2] == (1, image.checksum) for each in found)
+    assert [each.name for each in events].count("DONE") == 1
+
+
+def test_who_has_not_asked_hears_of_no_place() -> None:
+    robot, session = switched_on(), computer()
+    assert robot.until(session, session.upload(image_of(DRIVE), saves=False)) == OK
+    assert told(heard(robot, session, 1000)) == []
+
+
+def test_what_the_button_starts_and_a_line_have_places_too() -> None:
+    robot, session = switched_on(), listener()
+    waits = image_of("SB" + DRIVE[2:])
+    assert robot.until(session, session.upload(waits, saves=False)) == OK
+    assert told(heard(robot, session, 1500)) == []
+    robot.push()
+    assert told(heard(robot, session, 1500))[0].program == waits.checksum
+    line = image_of("SI|L(3, 20)")
+    assert robot.until(session, session.live(line.code)) == OK
+    assert told(heard(robot, session, 500))[0].program == line.checksum
+
+
+def test_after_a_stop_there_is_no_place_and_the_next_run_has_its_own() -> None:
+    robot, session = switched_on(), listener()
+    image = image_of(DRIVE)
+    assert robot.until(session, session.upload(image, saves=False)) == OK
+    assert told(heard(robot, session, 500))
+    session.stop(robot.now_ms)
+    assert told(heard(robot, session, 1500)) == []
+    assert robot.until(session, session.start()) == OK
+    assert told(heard(robot, session, 500))[0].run == 2
+
+
+def test_a_sealed_session_hears_places_sealed() -> None:
+    table, keys = Owned(), Keys()
+    table.claimed(keys)
+    session = table.session(keys, nonce=4)
+    assert owner_of(table, session) == YOUR_OWN
+    session.tells_places = True
+    image = image_of(DRIVE)
+    assert table.robot.until(session, session.upload(image, saves=False)) == OK
+    there = b""
+    found: list[Event] = []
+    for _ in range(900):
+        data = session.poll(table.robot.now_ms)
+        there += data
+        session.receive(table.robot.step(data), table.robot.now_ms)
+        found += session.events()
+    frames = [decoded(each) for each in there.split(b"\0") if each]
+    assert frames and all(frame and frame.is_sealed for frame in frames)
+    assert {each.program for each in told(found)} == {image.checksum}
