@@ -28,7 +28,6 @@ THREADS = (
     "simulated_tls.cpp",
 )
 PIPE = "src/boards/esp32/pipe.h"
-SECONDS = "2"
 
 
 def program(sources: Path = SOURCES) -> Path:
@@ -46,8 +45,8 @@ def program(sources: Path = SOURCES) -> Path:
     return made(CLANG, BUILDS, "", FLAGS, [name.encode() for name in objects], [*objects, *TLS])
 
 
-def run(sources: Path = SOURCES) -> subprocess.CompletedProcess[str]:
-    words = [str(program(sources)), SECONDS]
+def run(sources: Path = SOURCES, seconds: int = 2) -> subprocess.CompletedProcess[str]:
+    words = [str(program(sources)), str(seconds)]
     environment = {"TSAN_OPTIONS": "exitcode=66 halt_on_error=1"}
     return subprocess.run(
         words, capture_output=True, text=True, check=False, timeout=120, env=environment
@@ -74,5 +73,8 @@ def test_a_race_is_noticed(file: str, old: str, new: str, tmp_path: Path) -> Non
     text = (copy / file).read_text(encoding="utf-8")
     assert old in text
     (copy / file).write_text(text.replace(old, new), encoding="utf-8")
-    done = run(copy)
+    for seconds in (2, 10, 40):  # a busy computer rarely runs both at once
+        done = run(copy, seconds)
+        if done.returncode:
+            break
     assert done.returncode == 66 and "data race" in done.stderr, done.stdout

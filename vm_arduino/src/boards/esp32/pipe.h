@@ -37,6 +37,16 @@ class Ring {
     __atomic_store_n(&first_, first, __ATOMIC_RELEASE);
     return true;
   }
+  // Leaves out what is before a place that `end` has given, if that is still to come.
+  void drop_to(uint16_t place) {
+    const uint16_t behind = __atomic_load_n(&behind_, __ATOMIC_ACQUIRE);
+    const uint16_t dropped = static_cast<uint16_t>((place + kPlaces - first_) % kPlaces);
+    const uint16_t kept = static_cast<uint16_t>((behind + kPlaces - first_) % kPlaces);
+    if (dropped <= kept) __atomic_store_n(&first_, place, __ATOMIC_RELEASE);
+  }
+
+  // Anybody's: the place of what will be put next.
+  uint16_t end() const { return __atomic_load_n(&behind_, __ATOMIC_ACQUIRE); }
 
  private:
   uint16_t first_;   // written by the reader alone
@@ -46,12 +56,14 @@ class Ring {
 
 class Pipe {
  public:
-  // The radio's task calls these four.
+  // The radio's task calls `take`. The three before it are called by that or by one other task, the
+  // Bluetooth stack's.
 
   // Somebody is connected: what was meant for the one before is gone.
   void begin() {
-    uint8_t byte;
-    while (out_.take(&byte)) continue;
+    const uint16_t turn = static_cast<uint16_t>(began_ / kOutPlaces + 1);
+    const uint16_t began = static_cast<uint16_t>(turn * kOutPlaces + out_.end());
+    __atomic_store_n(&began_, began, __ATOMIC_RELEASE);
     __atomic_store_n(&is_connected_, true, __ATOMIC_RELEASE);
   }
 
@@ -72,7 +84,12 @@ class Pipe {
   }
 
   // The next byte for the client.
-  bool take(uint8_t* byte) { return out_.take(byte); }
+  bool take(uint8_t* byte) {
+    const uint16_t began = __atomic_load_n(&began_, __ATOMIC_ACQUIRE);
+    if (began != followed_) out_.drop_to(began % kOutPlaces);
+    followed_ = began;
+    return out_.take(byte);
+  }
 
   // The main loop calls these.
 
@@ -91,9 +108,12 @@ class Pipe {
  private:
   static constexpr uint16_t kInPlaces = 1024;
   static constexpr uint16_t kOutPlaces = 512;
+  static_assert(65536 % kOutPlaces == 0, "turn and place are in 16 bits");
 
   Ring<uint16_t, kInPlaces> in_;
   Ring<uint8_t, kOutPlaces> out_;
+  uint16_t began_;     // the place of the client's first byte, and above it which turn that is
+  uint16_t followed_;  // the reader's: the last one that it has gone to
   bool is_connected_;
   bool has_parted_;  // the radio's: nothing has come since
   uint8_t lost_;
