@@ -13,7 +13,7 @@ from pathlib import Path
 from struct import pack
 from typing import NamedTuple
 
-from tests.machines.host import BUILDS, FLAGS, SOURCES, WARNINGS, Process, made, missing
+from tests.machines.host import BUILDS, FLAGS, SOURCES, WARNINGS, Process, made, missing, objects_of
 from tests.machines.host_firmware import TICKS, HostFirmware
 from tiniscript import robots
 from tiniscript.robots import firmware
@@ -152,19 +152,19 @@ def built(header: str, chip: str, major: int) -> Path:
         for path in sorted((SOURCES / part).rglob("*"))
         if path.suffix in (".h", ".cpp") and path.name != "own.h"
     }
-    headers = [text for path, text in texts.items() if path.suffix == ".h"]
     usual = (*FLAGS, *flags_of(chip, major), *WARNINGS)
     of_boards = ("-Wno-shadow", "-Wno-conversion", f'-Dtiniscript_own="{own}"')
-    objects = []
-    for path, text in texts.items():
-        is_other = "extras" in path.parts and (
-            path.parent != STAND_INS or path.name not in SIMULATED
-        )
-        if path.suffix != ".cpp" or is_other:
-            continue
+
+    def is_other(path: Path) -> bool:
+        is_stand_in = path.parent == STAND_INS and path.name in SIMULATED
+        return path.suffix == ".cpp" and "extras" in path.parts and not is_stand_in
+
+    def flags(path: Path) -> tuple[str, ...]:
         is_own = path.parent.name in ("boards", "esp32", "src")
-        flags = (*usual, *of_boards) if is_own else usual
-        objects.append(str(made("g++", BUILDS, ".o", flags, [*headers, text], ["-c", str(path)])))
+        return (*usual, *of_boards) if is_own else usual
+
+    used = {path: text for path, text in texts.items() if not is_other(path)}
+    objects = objects_of("g++", BUILDS, used, flags)
     return made("g++", BUILDS, "", usual, [name.encode() for name in objects], [*objects, *TLS])
 
 

@@ -9,10 +9,11 @@ from __future__ import annotations
 
 import hashlib
 import os
+import re
 import shutil
 import subprocess
 import tempfile
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import lru_cache
 from pathlib import Path
 from struct import Struct, pack
@@ -32,6 +33,7 @@ SOURCES = ROOT / "vm_arduino"
 WARNINGS = ("-Wall", "-Wextra", "-Wconversion", "-Wshadow", "-Werror")
 FLAGS = ("-std=c++11", "-O1", "-g", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
 
+FOLDER = re.compile(rb'^(# \d+ ")[^"\n]*/', re.M)  # of a line that says where the next are from
 USER = os.getuid() if hasattr(os, "getuid") else ""
 BUILDS = Path(tempfile.gettempdir()) / f"tiniscript-host-{USER}"
 
@@ -181,7 +183,8 @@ def built(sources: Path, builds: Path = BUILDS) -> Path:
 def compiled(inputs: Sequence[Path], flags: Sequence[str], builds: Path = BUILDS) -> Path:
     """Return the program made from sources and headers; what has not changed is used again.
 
-    Workers may build at the same time: each builds for itself, and the last one stays.
+    Workers may build at the same time: each object that two build at once is built twice, and the
+    last one stays.
     """
     return built_by("g++", inputs, (*flags, *WARNINGS), builds)
 
@@ -191,13 +194,28 @@ def built_by(
 ) -> Path:
     """The same with any compiler, and with all of its flags."""
     texts = {path: path.name.encode() + path.read_bytes() for path in inputs}
-    headers = [text for path, text in texts.items() if path.suffix == ".h"]
-    objects = [
-        str(made(compiler, builds, ".o", flags, [*headers, text], ["-c", str(path)]))
-        for path, text in texts.items()
-        if path.suffix == ".cpp"
-    ]
+    objects = objects_of(compiler, builds, texts, lambda _: flags)
     return made(compiler, builds, "", flags, [name.encode() for name in objects], objects)
+
+
+def objects_of(
+    compiler: str, builds: Path, texts: Mapping[Path, bytes],
+    flags_of: Callable[[Path], Sequence[str]],
+) -> list[str]:  # fmt: skip
+    """Return the objects of all sources among `texts`, which has their headers, too.
+
+    Two workers that need the same ones begin at different ends, and meet.
+    """
+    headers = [text for path, text in texts.items() if path.suffix == ".h"]
+    sources = [path for path in texts if path.suffix == ".cpp"]
+    is_other_end = os.environ.get("PYTEST_XDIST_WORKER", "gw0")[-1] in "13579"
+    found = {
+        path: made(
+            compiler, builds, ".o", flags_of(path), [*headers, texts[path]], ["-c", str(path)]
+        )
+        for path in (reversed(sources) if is_other_end else sources)
+    }
+    return [str(found[path]) for path in sources]
 
 
 def made(
@@ -212,12 +230,34 @@ def made(
     if not made.exists():
         builds.mkdir(mode=0o700, exist_ok=True)
         own = made.with_suffix(f".{os.getpid()}-{get_ident()}")
-        done = subprocess.run(
-            [compiler, *flags, *words, "-o", str(own)], capture_output=True, text=True
-        )
-        assert done.returncode == 0, f"{compiler} refuses the C++ sources:\n{done.stderr[:4000]}"
+        same = _preprocessed(compiler, builds, flags, words) if suffix == ".o" else made
+        if same.exists():
+            own.hardlink_to(same)
+        else:
+            _compiled(compiler, [*flags, *words, "-o", str(own)])
+            if same != made:
+                own.replace(same)
+                own.hardlink_to(same)
         own.replace(made)
     return made
+
+
+def _preprocessed(compiler: str, builds: Path, flags: Sequence[str], words: list[str]) -> Path:
+    """Return the place of an object, named after what its source is behind the preprocessor.
+
+    Most files of a robot are the same for all chips, headers and sizes that macros choose.
+    """
+    text = _compiled(compiler, [*flags, *words, "-E"])
+    key = hashlib.sha256(repr((compiler, [f for f in flags if f[:2] != "-D"])).encode())
+    key.update(FOLDER.sub(rb"\1", text))  # a copy of the sources is the same elsewhere
+    return builds / f"same-{key.hexdigest()[:16]}.o"
+
+
+def _compiled(compiler: str, words: Sequence[str]) -> bytes:
+    done = subprocess.run([compiler, *words], capture_output=True)
+    said = done.stderr.decode(errors="replace")[:4000]
+    assert done.returncode == 0, f"{compiler} refuses the C++ sources:\n{said}"
+    return done.stdout
 
 
 @lru_cache(maxsize=1)
