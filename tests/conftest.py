@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import os
 import signal
 import tempfile
@@ -18,6 +19,7 @@ from tiniscript import robots
 os.environ.setdefault(
     "HYPOTHESIS_STORAGE_DIRECTORY", str(Path(tempfile.gettempdir()) / "tiniscript-hypothesis")
 )
+UNSEEN = itertools.count()  # folders of tests that have none of their own
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -60,10 +62,22 @@ def pytest_sessionfinish(session: pytest.Session) -> None:
 
 
 @pytest.fixture(autouse=True)
-def own_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """No test reads or writes what the person who runs it keeps, or follows their language."""
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
-    monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path / "settings"))
+def own_cache(
+    request: pytest.FixtureRequest,
+    tmp_path_factory: pytest.TempPathFactory,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """No test reads or writes what the person who runs it keeps, or follows their language.
+
+    The folders are in the test's own. Most tests have none and keep nothing: for them nothing is
+    made, since pytest looks at all folders of a run for the name of the next one.
+    """
+    if "tmp_path" in request.fixturenames:
+        own = request.getfixturevalue("tmp_path")
+    else:
+        own = tmp_path_factory.getbasetemp() / "kept" / str(next(UNSEEN))
+    monkeypatch.setenv("XDG_CACHE_HOME", str(own / "cache"))
+    monkeypatch.setenv("XDG_CONFIG_HOME", str(own / "settings"))
     monkeypatch.setenv("LC_ALL", "C.UTF-8")
     monkeypatch.setenv("DBUS_SYSTEM_BUS_ADDRESS", "unix:path=/nonexistent")  # nor their Bluetooth
     monkeypatch.delenv("TINISCRIPT_DEBUG", raising=False)
