@@ -61,7 +61,8 @@ def test_any_input_gets_an_answer(tsc: Tsc, tmp_path: Path, verb: str, name: str
     program = tmp_path / "any.ts"
     program.write_bytes(HOSTILE[name])
     extra = ["--max-steps", "1000"] if verb == "run" else []
-    for language in ("en", "es"):
+    # what is said of a program is the same for all verbs: one says it in both languages
+    for language in ("en", "es") if verb == "check" else ("es",):
         done = tsc(verb, program, "--lang", language, *extra)
         assert done.code in (0, 1)
         if name in ("too large", "ten megabytes", "binary", "nul", "latin-1", "utf-16"):

@@ -188,7 +188,9 @@ def test_a_registry_takes_both_packages(wheel: Path, unpacked: Path) -> None:
 
 def test_the_tests_of_a_source_package_run(unpacked: Path) -> None:
     pytest_here = ("-m", "pytest", "-p", "no:cacheprovider", "-p", "no:xdist")
-    every = python(*pytest_here, "--collect-only", "-qq", folder=unpacked, PYTEST_ADDOPTS="")
+    every = python(
+        *pytest_here, "--assert=plain", "--collect-only", "-qq", folder=unpacked, PYTEST_ADDOPTS=""
+    )
     assert every.returncode == 0, every.stdout[-3000:]
     some = ("tests/project/test_directions.py", "tests/bytecode/test_image.py",
             "tests/robots/test_robots.py",
