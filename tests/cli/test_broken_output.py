@@ -16,6 +16,7 @@ from tests.machines.host_firmware import missing
 from tests.support.command import FOREVER, PROGRAM, TSC, Tsc, process
 from tests.support.pty_robot import PtyRobot
 from tests.support.robot_fleet import RobotFleet
+from tests.support.waiting import HANGS_S
 from tiniscript import robots
 from tiniscript.cli import CLOSED
 from tiniscript.cli.robot import connect, fleet
@@ -40,7 +41,7 @@ def after_lines(count: int, *words: str, both: bool = False) -> tuple[int, str]:
             assert running.stdout.readline()
         running.stdout.close()
         said = running.stderr.read().decode() if running.stderr else ""
-        return running.wait(60), said
+        return running.wait(HANGS_S), said
 
 
 @pytest.mark.parametrize("lines", [0, 1, 3])
@@ -137,7 +138,7 @@ def test_a_full_disk_stops_the_robot_too(pty_robot: PtyRobot) -> None:
         pytest.skip("this system has no full device")
     with Path("/dev/full").open("wb") as full:
         done = subprocess.run([*TSC, "upload", "-e", SHOWS, "--port", pty_robot.port],
-                              stdout=full, stderr=subprocess.PIPE, timeout=60)  # fmt: skip
+                              stdout=full, stderr=subprocess.PIPE, timeout=HANGS_S)  # fmt: skip
     assert done.returncode == 2
     said = done.stderr.decode()
     assert "was stopped" in said and "cannot be written" in said and "Traceback" not in said
@@ -155,7 +156,7 @@ def test_every_verb_has_the_same_exit_code(words: list[str]) -> None:
     os.close(ours)
     try:
         done = subprocess.run([*TSC, *words], stdin=subprocess.DEVNULL, stdout=theirs,
-                              stderr=theirs, timeout=60)  # fmt: skip
+                              stderr=theirs, timeout=HANGS_S)  # fmt: skip
     finally:
         os.close(theirs)
     assert done.returncode == CLOSED
@@ -210,6 +211,6 @@ def test_a_robot_that_is_busy_for_too_long_is_not_lost(
 
 def test_json_stays_json_until_the_end(pty_robot: PtyRobot) -> None:
     done = subprocess.run([*TSC, "upload", "-e", "SI|SHOW(1)", "--json", "--port", pty_robot.port],
-                          capture_output=True, timeout=60)  # fmt: skip
+                          capture_output=True, timeout=HANGS_S)  # fmt: skip
     events = [json.loads(line)["event"] for line in done.stdout.splitlines()]
     assert events[:2] == ["RECEIPT", "SHOW"]

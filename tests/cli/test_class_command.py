@@ -8,7 +8,6 @@ import shutil
 import signal
 import subprocess
 import sys
-import time
 from collections.abc import Iterator
 from pathlib import Path
 from types import SimpleNamespace
@@ -22,6 +21,7 @@ from tests.support.command import FOREVER, Command, process
 from tests.support.esp32_pty_robot import Esp32PtyRobot
 from tests.support.mosquitto import Mosquitto, missing
 from tests.support.pty_robot import on
+from tests.support.waiting import HANGS_S, until
 from tiniscript.cli.robot.classroom import Listener
 from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.fleet import Member
@@ -118,10 +118,9 @@ def test_a_driver_that_is_stopped_keeps_no_robot_driving(room: Class) -> None:
     for robot in room:
         robot.until(lambda robot=robot: robot.moves, "it drives")  # type: ignore[misc]
     command.process.send_signal(signal.SIGSTOP)
-    begun_s = time.monotonic()
-    for robot in room:
-        robot.until(lambda robot=robot: not robot.moves, "it stands")  # type: ignore[misc]
-    assert time.monotonic() - begun_s < 2, "the tether is a second of the robot's time"
+    begun_ms = [robot.robot_ms for robot in room]
+    for robot, began_ms in zip(room, begun_ms, strict=True):
+        assert robot.stands_after_ms(began_ms) < 2000, "the tether is a second"
     command.process.kill()
 
 
@@ -129,10 +128,13 @@ def test_values_are_collected(room: Class, tmp_path: Path) -> None:
     text = "SI|LOOP(FOREVER); SHOW(5); W(0.3); END_LOOP"
     assert tsc(room, "upload", "-e", text, "--detach")[0] == 0
     (tmp_path / "rows.csv").write_bytes(b"robot,id,ms,event,value\nan older one\n")
-    words = ("show", "--max-time", "3", "--json", "--csv", str(tmp_path / "rows.csv"))
-    code, said, error = tsc(room, *words)
-    values = [json.loads(line) for line in said.splitlines() if '"SHOW"' in line]
-    assert code == 0, said + error
+    for listens_s in ("3", "15", "60"):  # a busy computer hears the second robot later
+        words = ("show", "--max-time", listens_s, "--json", "--csv", str(tmp_path / "rows.csv"))
+        code, said, error = tsc(room, *words)
+        values = [json.loads(line) for line in said.splitlines() if '"SHOW"' in line]
+        assert code == 0, said + error
+        if len({each["port"] for each in values}) == 2:
+            break
     assert len({each["port"] for each in values}) == 2, said
     with (tmp_path / "rows.csv").open(encoding="utf-8", newline="") as file:
         first, *rows = csv.reader(file)
@@ -173,11 +175,7 @@ def test_the_times_of_all_robots_count_from_one_start() -> None:
 
 def test_a_robot_that_is_off_is_told(room: Class) -> None:
     room[1].switch_off()
-    end_s = time.monotonic() + 15
-    said = ""
-    while "not at the broker any more" not in said and time.monotonic() < end_s:
-        said = tsc(room)[1]
-    assert "0badcafe) is not at the broker any more" in said
+    until(lambda: "0badcafe) is not at the broker any more" in tsc(room)[1], "its last will")
 
 
 def test_a_broker_that_does_not_let_us_in(room: Class) -> None:
@@ -195,7 +193,7 @@ def test_what_a_stranger_retains_reaches_no_terminal_raw(tmp_path: Path) -> None
         stranger = broker.connected()
         for robot, data in (("00000001", b"+\x1b[2Jtsc: ok\n"), ("00000002", b"-\x9b2J\r")):
             stranger._client.publish(f"{ROOT}/class/{robot}", data, retain=True)
-        time.sleep(0.3)
+        stranger._client.publish("last", b"", qos=1).wait_for_publish(HANGS_S)
         done = process("class", "--broker", f"127.0.0.1:{broker.port}")
         assert done.code == 3
         assert not set(done.out + done.err) & set("\x1b\x9b\r")

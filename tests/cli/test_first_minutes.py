@@ -16,6 +16,7 @@ from tests.support.casefile import ROOT
 from tests.support.command import OBSTACLE, TSC, Tsc, process
 from tests.support.link_events import event
 from tests.support.virtual_robot import Talk, missing, robot_in
+from tests.support.waiting import HANGS_S
 from tiniscript import compile_text, robots
 from tiniscript.cli.commands.live import HELP_ME, LEAVE, Catch, wished
 from tiniscript.cli.robot.event_printer import Bookkeeping, EventPrinter
@@ -72,7 +73,7 @@ def test_a_program_with_a_button_ends_when_it_is_told() -> None:
         assert "its button is pushed" in up.stdout.readline()
         assert up.stdout.readline() == "SHOW 1\n"
         up.send_signal(signal.SIGINT)
-        assert "Stopped: the robot has confirmed it." in up.communicate(timeout=60)[1]
+        assert "Stopped: the robot has confirmed it." in up.communicate(timeout=HANGS_S)[1]
     assert up.returncode == 2
 
 
@@ -158,7 +159,7 @@ def test_stop_finds_the_one_robot_that_is_in_use(options: list[str]) -> None:
     assert (done.code, done.out) == (
         0, f"Stopped: the robot on {upload.port} has confirmed it.\n",
     )  # fmt: skip
-    ended = upload._process.communicate(timeout=60)
+    ended = upload._process.communicate(timeout=HANGS_S)
     assert upload._process.returncode == 3
     assert "The robot was stopped from a computer." in ended[0]
     done = process("stop", *options)
@@ -177,7 +178,7 @@ def test_stop_stops_all_that_are_in_use() -> None:
         assert done.err == "Done: 3 of 3.\n"
         assert {found.port, first.port, second.port} <= set(re.findall(r"socket:\S*\d", done.out))
         for each in (first, second):
-            each._process.communicate(timeout=60)
+            each._process.communicate(timeout=HANGS_S)
             assert each._process.returncode == 3
         assert found.until("STOP")
 

@@ -11,6 +11,7 @@ import pytest
 from tests.machines.host_firmware import missing
 from tests.support.command import TSC, process
 from tests.support.pty_robot import PtyRobot
+from tests.support.waiting import HANGS_S
 from tiniscript import robots
 from tiniscript.cli.robot.live_state import Known, Value
 
@@ -71,7 +72,7 @@ def test_a_person_at_the_prompt(pty_robot: PtyRobot) -> None:
     stream = pyte.ByteStream(screen)
 
     def see(text: str, times: int = 1) -> None:
-        end_s = time.monotonic() + 30
+        end_s = time.monotonic() + HANGS_S
         while "\n".join(screen.display).count(text) < times:
             assert time.monotonic() < end_s, (text, screen.display)
             stream.feed(os.read(ours, 4096))
@@ -93,7 +94,7 @@ def test_a_person_at_the_prompt(pty_robot: PtyRobot) -> None:
     see("SHOW 55")
     see("tini> ", 5)
     os.write(ours, b"\x04")
-    assert command.wait(30) == 0
+    assert command.wait(HANGS_S) == 0
     os.close(ours)
 
 

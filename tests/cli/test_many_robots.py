@@ -14,6 +14,7 @@ import pytest
 from tests.machines.host_firmware import missing
 from tests.support.command import FOREVER, TSC, Done, Tsc, ended, process, running
 from tests.support.robot_fleet import RobotFleet
+from tests.support.waiting import HANGS_S
 from tiniscript import robots
 from tiniscript.cli.robot.fleet import Member, Result
 from tiniscript.cli.robot.targets import Target
@@ -259,7 +260,7 @@ def test_the_table_shows_every_robot_and_leaves_plain_rows(class_: RobotFleet) -
         if text.count("running") == 4:
             seen.add("running")
     os.close(ours)
-    assert command.wait(30) == 0
+    assert command.wait(HANGS_S) == 0
     assert seen == {"values", "running"}
     rows = [line.rstrip() for line in screen.display if line.strip()]
     assert "Done: 4 of 4." in rows

@@ -8,6 +8,8 @@ from collections.abc import Iterator
 
 import pytest
 
+from tests.support.waiting import until
+
 pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
 
 from tests.support.command import Command, Tsc
@@ -144,7 +146,7 @@ def test_a_cable_that_is_pulled_says_what_is_known_of_the_speed() -> None:
     end = Hm10()
     with PtyEnd(end) as pty_end:
         command = Command("module", "--port", pty_end.port, "--baud", "115200")
-        pty_end.until(lambda: b"AT+BAUD4" in pty_end.heard)
+        until(lambda: b"AT+BAUD4" in pty_end.heard, "it is asked")
         pty_end.pull()
         done = command.ended()
     assert done.code == 3
@@ -156,7 +158,7 @@ def test_ctrl_c_says_at_which_speeds_the_module_may_be() -> None:
     end.is_on = False
     with PtyEnd(end) as pty_end:
         command = Command("module", "--port", pty_end.port, "--baud", "115200")
-        pty_end.until(lambda: bool(pty_end.heard))
+        until(lambda: bool(pty_end.heard), "it is asked")
         command.signal(signal.SIGINT)
         done = command.ended()
     assert done.code == 2
@@ -167,7 +169,7 @@ def test_ctrl_c_while_the_speed_changes() -> None:
     end = Hm10()
     with PtyEnd(end) as pty_end:
         command = Command("module", "--port", pty_end.port, "--baud", "115200")
-        pty_end.until(lambda: b"AT+BAUD4" in pty_end.heard)
+        until(lambda: b"AT+BAUD4" in pty_end.heard, "it is asked")
         command.signal(signal.SIGINT)
         done = command.ended()
     assert done.code == 2

@@ -13,6 +13,7 @@ import pytest
 from tests.machines.host_firmware import missing
 from tests.support.command import TSC, ended, process, rest_of, running
 from tests.support.pty_robot import PtyRobot, on
+from tests.support.waiting import HANGS_S
 
 pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
 pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
@@ -73,7 +74,7 @@ def test_monitor_draws_a_curve(pty_robot: PtyRobot) -> None:
     command.send_signal(signal.SIGINT)
     while part := rest_of(ours):
         written += part
-    assert command.wait(30) == 0
+    assert command.wait(HANGS_S) == 0
     os.close(ours)
     seen = written.decode()
     assert "SHOW -2.5" in seen and "SHOW TRUE" in seen

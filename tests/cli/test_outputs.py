@@ -11,6 +11,7 @@ import pytest
 
 from tests.support.command import PROGRAM, TSC, Done, Tsc
 from tests.support.verbs import parsers, values_of
+from tests.support.waiting import HANGS_S
 from tiniscript.cli import paths
 from tiniscript.cli.texts.options import of_verb
 from tiniscript.robots import DEFAULT
@@ -169,7 +170,7 @@ def test_links_to_what_is_not_there_yet(
 
 
 def run(command: str, folder: Path) -> Done:
-    done = subprocess.run(["sh", "-c", command], cwd=folder, capture_output=True, timeout=60)
+    done = subprocess.run(["sh", "-c", command], cwd=folder, capture_output=True, timeout=HANGS_S)
     return Done(done.returncode, done.stdout.decode(errors="replace"), done.stderr.decode())
 
 

@@ -32,14 +32,14 @@ def test_a_second_stop_is_confirmed_like_the_first(pty_robot: PtyRobot) -> None:
     for _ in range(3):
         code, took_ms = passed_ms(pty_robot, "stop")
         assert code == 0
-        assert took_ms < CONFIRM_MS // 2
+        assert took_ms < CONFIRM_MS
 
 
 def test_a_second_stop_through_a_server_is_too(pty_robot: PtyRobot, link: Command) -> None:
     for _ in range(3):
         code, took_ms = passed_ms(pty_robot, "stop")
         assert code == 0
-        assert took_ms < CONFIRM_MS // 2
+        assert took_ms < CONFIRM_MS
     assert on(pty_robot, "info").code == 0
 
 
@@ -74,7 +74,7 @@ def test_a_stop_that_nobody_confirms_holds_up_nobody_for_long(
     pty_robot.switch_on()
     link.until("is back")
     code, took_ms = passed_ms(pty_robot, "info")
-    assert (code, took_ms < CONFIRM_MS // 2) == (0, True)
+    assert (code, took_ms < CONFIRM_MS) == (0, True)
     assert on(pty_robot, "stop").code == 0
 
 

@@ -13,6 +13,7 @@ import pytest
 from tests.machines.host_firmware import EMPTY, HostFirmware, missing
 from tests.support.command import TSC, Done, process
 from tests.support.pty_robot import PtyRobot
+from tests.support.waiting import HANGS_S
 from tiniscript import robots
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.robot import trim_wizard
@@ -224,7 +225,7 @@ def test_ctrl_c_stops_the_robot_and_it_keeps_what_it_had(pty_robot: PtyRobot) ->
     command.stdin.flush()
     pty_robot.until(lambda: pty_robot.moves, "a motor turns")
     command.send_signal(signal.SIGINT)
-    out, err = command.communicate(timeout=60)
+    out, err = command.communicate(timeout=HANGS_S)
     done = Done(command.returncode, out.decode(), err.decode())
     assert done.code == 2
     assert not pty_robot.moves

@@ -12,6 +12,7 @@ import pytest
 from tests.machines.host_firmware import missing
 from tests.support.command import LONG, OBSTACLE, TSC, process, rest_of
 from tests.support.pty_robot import PtyRobot, on
+from tests.support.waiting import HANGS_S
 from tiniscript import compile_text, robots
 
 pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
@@ -162,7 +163,7 @@ def test_a_long_way_has_a_bar_that_is_gone_at_the_end() -> None:
         while part := rest_of(ours):
             written += part
         os.close(ours)
-        assert command.wait(30) == 0
+        assert command.wait(HANGS_S) == 0
     assert b"sending [" in written
     screen = pyte.Screen(200, 5)
     pyte.ByteStream(screen).feed(written)

@@ -19,6 +19,7 @@ import pytest
 
 from tests.support.command import OBSTACLE, TSC, Done, Tsc, process
 from tests.support.virtual_robot import missing
+from tests.support.waiting import HANGS_S
 from tiniscript.cli.commands.robot import ended_by_signal
 from tiniscript.library import install_advice
 from tiniscript.virtual import directory
@@ -58,7 +59,7 @@ class Robot:
     def end(self, number: int = signal.SIGINT) -> Done:
         if self._process.poll() is None:
             self._process.send_signal(number)
-        out, err = self._process.communicate(timeout=60)
+        out, err = self._process.communicate(timeout=HANGS_S)
         return Done(self._process.returncode, out, err)
 
 
@@ -301,7 +302,7 @@ def test_ctrl_c_stops_the_virtual_robot_and_draws_what_there_was(tmp_path: Path)
         assert "SI: running" in up.stdout.readline()
         assert up.stdout.readline() == "SHOW 1\n"
         up.send_signal(signal.SIGINT)
-        out, err = up.communicate(timeout=60)
+        out, err = up.communicate(timeout=HANGS_S)
     assert up.returncode == 2
     assert "Stopped: the robot has confirmed it." in err
     assert str(picture) in out

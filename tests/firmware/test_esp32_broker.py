@@ -17,6 +17,8 @@ from tests.machines.esp32 import missing as no_compiler
 from tests.support.esp32_radio import in_reach, talk
 from tests.support.mosquitto import AtBroker, Mosquitto, missing
 from tests.support.owners import Keys
+from tests.support.waiting import HANGS_S
+from tests.support.waiting import until as in_time
 from tiniscript.link import ports, wifi
 from tiniscript.link.broker import ROOT, Access, Broker, Present
 from tiniscript.link.messages import AUTHORITY_MS, STOP_BYTES
@@ -55,7 +57,7 @@ def at(
     return robot, owner
 
 
-def until(robot: Esp32Robot, holds: Callable[[], bool], limit_ms: int = 6000) -> None:
+def until(robot: Esp32Robot, holds: Callable[[], bool], limit_ms: int = 60_000) -> None:
     for _ in range(limit_ms // 20):
         if holds():
             return
@@ -384,11 +386,8 @@ def test_the_last_will_says_who_is_not_there(broker: Mosquitto, is_silent: bool)
     teacher = broker.connected()
     if not is_silent:
         robot.close()
-    for _ in range(60):
-        if teacher.present("aula") == [Present(ID, "tini-5678", False)]:
-            break
-        time.sleep(0.05)
-    assert teacher.present("aula") == [Present(ID, "tini-5678", False)]
+    gone = [Present(ID, "tini-5678", False)]
+    in_time(lambda: teacher.present("aula") == gone, "its last will")
     teacher.close()
 
 
@@ -402,13 +401,12 @@ def test_what_strangers_say_of_robots_is_bounded(broker: Mosquitto) -> None:
     topics |= {f"{ROOT}/many/{k:08x}": b"+x" for k in range(300)}
     for topic, data in topics.items():
         stranger._client.publish(topic, data, retain=True)
-    time.sleep(0.2)
+    stranger._client.publish("last", b"", qos=1).wait_for_publish(HANGS_S)  # now it has them all
     assert {each.id for each in teacher.present("odd")} == {"12345678", "dddddddd"}
     assert len(teacher.present("many")) == 250
     for topic in topics:
         stranger._client.publish(topic, b"", retain=True)
-    time.sleep(0.2)
-    assert teacher.present("many") == []
+    in_time(lambda: teacher.present("many") == [], "they are forgotten")
     stranger.close()
     teacher.close()
 

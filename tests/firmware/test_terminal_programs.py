@@ -23,13 +23,13 @@ from tests.machines.host_firmware import missing
 from tests.support.casefile import Case, all_cases
 from tests.support.pty_robot import PtyRobot
 from tests.support.shell import Shell, termios
+from tests.support.waiting import until
 from tiniscript import robots
 from tools.uno import Uno
 
 assert sketch  # a fixture
 
 BAUD = 9600
-LIMIT_S = 60  # only a test that fails waits so long
 LOCAL_FLAGS = 3  # their place in what tcgetattr returns
 ENTER = "\r"  # what a terminal sends for that key, and for a line end that is pasted
 FOREVER = "SI|LOOP(FOREVER);M(50,50);W(0.1);END_LOOP"
@@ -70,10 +70,10 @@ class Terminal(Shell):
             pytest.skip(f"no {words[0]} on this computer")
         super().__init__(words, {**os.environ, "TERM": "xterm"})
         self.until(ready)
-        end_s = time.monotonic() + LIMIT_S
-        while termios.tcgetattr(self._terminal)[LOCAL_FLAGS] & termios.ECHO:
-            assert time.monotonic() < end_s, "it does not take the terminal over"
-            time.sleep(0.01)
+        until(
+            lambda: not termios.tcgetattr(self._terminal)[LOCAL_FLAGS] & termios.ECHO,
+            "it takes the terminal over",
+        )
 
     def type_letters(self, text: str) -> None:
         """Type a letter, and another one when that has gone."""
@@ -99,7 +99,7 @@ def pty_robot() -> Iterator[PtyRobot]:
 def rest(robot: PtyRobot, milliseconds: int = SILENT_MS) -> None:
     """Let time pass on the robot's clock."""
     end_ms = robot.robot_ms + milliseconds
-    robot.until(lambda: robot.robot_ms >= end_ms, "its time passes", limit_s=60)
+    robot.until(lambda: robot.robot_ms >= end_ms, "its time passes")
 
 
 @each_program

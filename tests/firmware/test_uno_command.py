@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import re
 import signal
-import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -15,6 +14,7 @@ from tests.machines.uno import needed
 from tests.support.casefile import ROOT
 from tests.support.command import FOREVER, LONG, Done, process, running
 from tests.support.platformio import changed
+from tests.support.waiting import HANGS_S, until
 from tools.uno import CYCLES_PER_MS, Uno
 
 DRIVES = "SI|F(0.3, 80)"
@@ -37,13 +37,6 @@ def at_work(elf: Path, memory: Path) -> Uno:
 
 def on(uno: Uno, *arguments: str) -> Done:
     return process(*arguments, "--port", uno.pty)
-
-
-def until(is_so: Callable[[], bool], what: str, limit_s: float = 60) -> None:
-    end_s = time.monotonic() + limit_s
-    while not is_so():
-        assert time.monotonic() < end_s, f"not after {limit_s} s: {what}"
-        time.sleep(0.02)
 
 
 def drives(uno: Uno) -> int:
@@ -77,7 +70,7 @@ def test_the_papers_obstacle_program_drives_around_an_obstacle(uno: Uno) -> None
     uno.sonar("trigger", "echo", 6)
     until(lambda: uno.pins["right backward"].state == "high", "it turns right")
     command.send_signal(signal.SIGINT)
-    _, err = command.communicate(timeout=60)
+    _, err = command.communicate(timeout=HANGS_S)
     assert command.returncode == 2, err
     assert states(uno) == OFF
 
@@ -90,7 +83,7 @@ def test_live_lines_and_a_stop_from_another_terminal(uno: Uno) -> None:
     resets = sum(event.what == "reset" for event in uno.events)
     stopped = on(uno, "stop")
     assert stopped.code == 0, stopped.err
-    _, err = command.communicate(timeout=60)
+    _, err = command.communicate(timeout=HANGS_S)
     assert command.returncode == 3, err
     assert states(uno) == OFF
     assert sum(event.what == "reset" for event in uno.events) == resets  # the port was open
@@ -147,7 +140,7 @@ def test_noise_on_the_line_costs_time_and_nothing_else(uno: Uno) -> None:
     assert done.code == 0, done.err
     assert drives(uno) == 1
     command.send_signal(signal.SIGINT)
-    command.communicate(timeout=60)
+    command.communicate(timeout=HANGS_S)
 
 
 def test_a_robot_of_another_version_is_named(tmp_path: Path) -> None:

@@ -19,6 +19,7 @@ from tests.robots.test_robots import TEXTS
 from tests.support.casefile import ROOT
 from tests.support.command import Tsc, process
 from tests.support.platformio import need, prepared
+from tests.support.waiting import HANGS_S
 from tiniscript import robots
 from tiniscript.cli import firmware_build
 from tiniscript.cli.errors import CommandError
@@ -296,7 +297,7 @@ time.sleep(600)
     while not told.exists():
         assert running.poll() is None
     running.send_signal(signal.SIGINT)
-    _, said = running.communicate(timeout=60)
+    _, said = running.communicate(timeout=HANGS_S)
     assert running.returncode == 2 and "Traceback" not in said
     for number in told.read_text().split():
         stat = Path(f"/proc/{number}/stat")

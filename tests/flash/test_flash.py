@@ -18,6 +18,7 @@ from tests.machines.uno import built, needed
 from tests.support.casefile import ROOT
 from tests.support.command import Done
 from tests.support.platformio import firmware, need, prepared, shared
+from tests.support.waiting import HANGS_S
 from tiniscript import robots
 from tiniscript.cli.commands import firmware as firmware_command
 from tiniscript.cli.texts.firmware import FLASH_TEXTS
@@ -211,7 +212,7 @@ def test_ctrl_c_in_the_middle_says_what_is_on_the_board(
     while not (told.exists() and told.read_text()):
         assert running.poll() is None
     running.send_signal(signal.SIGINT)
-    _, said = running.communicate(timeout=30)
+    _, said = running.communicate(timeout=HANGS_S)
     assert running.returncode == 2
     assert "half a firmware" in said or said.strip() == "Stopped."  # it may not have read that far
     assert not Path(f"/proc/{told.read_text()}").exists()

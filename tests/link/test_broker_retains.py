@@ -2,16 +2,25 @@
 
 from __future__ import annotations
 
-import time
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from tests.support.mosquitto import Mosquitto, missing
+from tests.support.waiting import HANGS_S, until
+from tiniscript.link.broker import Broker
 from tiniscript.link.messages import STOP_BYTES
 
 pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a broker")
+
+
+LAST = "tests/last"
+
+
+def heard(client: Broker) -> None:
+    """Wait until the broker has taken all that a client has said."""
+    client._client.publish(LAST, b"", qos=1).wait_for_publish(HANGS_S)
 
 
 def kept(own: Mosquitto) -> list[str]:
@@ -24,9 +33,10 @@ def kept(own: Mosquitto) -> list[str]:
 
     late._client.on_message = keep
     late._client.subscribe("#")
-    time.sleep(0.3)
+    late._client.publish(LAST, b"")  # what is retained comes before what is said later
+    until(lambda: LAST in found, "all that is retained has come")
     late.close()
-    return found
+    return found[: found.index(LAST)]
 
 
 def test_stops_and_frames_are_not_retained(tmp_path: Path) -> None:
@@ -37,10 +47,10 @@ def test_stops_and_frames_are_not_retained(tmp_path: Path) -> None:
         port.write(bytes(STOP_BYTES))
         teacher.stop("aula")
         port.close()
-        time.sleep(0.1)
+        heard(teacher)
         assert kept(own) == []
         teacher._client.publish("tiniscript/aula/12345678", b"+x", retain=True)
-        time.sleep(0.1)
+        heard(teacher)
         assert kept(own) == ["tiniscript/aula/12345678"], "what is retained would be seen"
         teacher.close()
     finally:

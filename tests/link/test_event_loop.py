@@ -33,9 +33,9 @@ class Endless:
 
 def test_results_and_failures_come_back() -> None:
     loop = EventLoop()
-    assert loop.run(asyncio.sleep(0, "done"), 10) == "done"
+    assert loop.run(asyncio.sleep(0, "done"), 100) == "done"
     with pytest.raises(ValueError, match="so it is"):
-        loop.run(fail(), 10)
+        loop.run(fail(), 100)
     loop.close()
     loop.close()  # as at the end of the process
 
@@ -44,7 +44,7 @@ def test_what_takes_too_long_is_cancelled_before_the_failure() -> None:
     loop, endless = EventLoop(), Endless()
     with pytest.raises(TimeoutError):
         loop.run(endless.work(), 0)
-    loop.run(asyncio.sleep(0), 10)
+    loop.run(asyncio.sleep(0), 100)
     assert endless.is_cancelled or not endless.has_begun.is_set()
     loop.close()
 
@@ -53,12 +53,12 @@ def test_ctrl_c_cancels_what_it_interrupts(monkeypatch: pytest.MonkeyPatch) -> N
     loop, endless = EventLoop(), Endless()
 
     def interrupted(*_: object) -> None:
-        assert endless.has_begun.wait(10)
+        assert endless.has_begun.wait(100)
         raise KeyboardInterrupt
 
     with monkeypatch.context() as patch, pytest.raises(KeyboardInterrupt):
         patch.setattr(event_loop, "wait", interrupted)
-        loop.run(endless.work(), 10)
+        loop.run(endless.work(), 100)
     assert endless.is_cancelled
     loop.close()
 
@@ -75,7 +75,7 @@ def test_the_end_of_a_process_cancels_what_runs() -> None:
         "async def begin():\n"
         "    global task\n"
         "    task = asyncio.create_task(work())\n"
-        "shared().run(begin(), 10); begun.wait(10)\n"
+        "shared().run(begin(), 100); begun.wait(100)\n"
     )
     done = Command(code=code).ended()
     assert (done.code, done.out, done.err) == (0, "cancelled\n", "")

@@ -209,7 +209,7 @@ def test_names_without_an_address_do_not_hold_up_the_list() -> None:
         names = [each.name for each in named_robots.listed()]
         took_s = time.monotonic() - begun
     assert names == ["robot"]
-    assert took_s < 15  # a second for each were 40
+    assert took_s < 35  # a second for each were 40
 
 
 def test_a_hostile_name_is_shown_without_what_a_terminal_obeys() -> None:

@@ -112,8 +112,9 @@ def test_what_a_guide_types_prints_what_it_shows(
             continue
         name = next((word for word in step.words if word in PORTS), name)
         if step.words == ["claim"]:
-            pty_robot.hold(after_ms=HAND_MS)
+            pty_robot.hold(after_ms=HAND_MS, times=3)  # a hand that tries again
         main([pty_robot.port if word in PORTS else word for word in step.words])
+        pty_robot.let_go()
         said = capsys.readouterr()
         printed.append((step, (said.err + said.out).replace(pty_robot.port, name)))
     assert len(printed) >= 10

@@ -24,6 +24,7 @@ import pytest
 from tests.sharing.test_strangers import few, registration_of
 from tests.support.command import FOREVER, process
 from tests.support.virtual_robot import missing
+from tests.support.waiting import HANGS_S
 from tiniscript.studio.serving import CONNECTIONS
 
 pytestmark = [
@@ -115,15 +116,15 @@ def attack(kind: str, count: int) -> list[tuple[str, Had, Had, Had]]:
                     meanwhile = had(pid)
                     state = json.loads(process("info", "--port", port, "--json").out)["state"]
                     assert state == "RUNNING"
-                end_s = time.monotonic() + 60
+                end_s = time.monotonic() + HANGS_S
                 while had(pid).files > before.files + 3 and time.monotonic() < end_s:
                     time.sleep(0.1)
                 found.append((name, before, meanwhile, had(pid)))
             with visitors(places[0][2], kind, count), visitors(places[1][2], kind, count):
                 assert process("stop", "--port", port).code == 0
-            assert command.wait(timeout=60) == 3
+            assert command.wait(timeout=HANGS_S) == 3
         robot.send_signal(signal.SIGINT)
-        assert b"FAULT" not in robot.communicate(timeout=60)[0]
+        assert b"FAULT" not in robot.communicate(timeout=HANGS_S)[0]
     return found
 
 
@@ -157,7 +158,7 @@ def studio() -> Iterator[tuple[int, int]]:
 
 
 def page(port: int) -> bytes:
-    with urlopen(f"http://127.0.0.1:{port}/", timeout=5) as response:
+    with urlopen(f"http://127.0.0.1:{port}/", timeout=HANGS_S) as response:
         data: bytes = response.read()
     return data
 
@@ -170,7 +171,7 @@ def attack_studio(kind: str, count: int) -> tuple[str, Had, Had, Had]:
             meanwhile = had(pid)
             assert page(port) == b"<!doctype html>"
             meanwhile = max(meanwhile, had(pid))
-        end_s = time.monotonic() + 60
+        end_s = time.monotonic() + HANGS_S
         while had(pid).files > before.files + 3 and time.monotonic() < end_s:
             time.sleep(0.1)
         assert page(port) == b"<!doctype html>"

@@ -16,6 +16,7 @@ from tests.cli.test_virtual_command import robot, visitor
 from tests.sharing.test_strangers import few, registration_of
 from tests.support.command import FOREVER, process
 from tests.support.virtual_robot import missing as no_wasm
+from tests.support.waiting import HANGS_S
 from tiniscript import files
 from tiniscript.sharing import peers, registry
 from tiniscript.sharing.registry import Registration
@@ -33,7 +34,7 @@ if sys.argv[2] == "reset":
     peer.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
 peer.sendall(bytes.fromhex(sys.argv[3]))
 if sys.argv[2] == "stays":
-    peer.settimeout(20)
+    peer.settimeout(120)
     try:
         print(len(peer.recv(100)))
     except ConnectionError:
@@ -120,12 +121,12 @@ def test_another_user_moves_nothing(how: str) -> None:
             LINE.hex(),
         ]
         for _ in range(3):
-            done = subprocess.run(words, capture_output=True, text=True, timeout=60)
+            done = subprocess.run(words, capture_output=True, text=True, timeout=HANGS_S)
             assert done.returncode == 0, done.stderr
             assert done.stdout.strip() == ("0" if how == "stays" else "")
         time.sleep(1)
         with visitor(found.port) as own:
-            own.settimeout(30)
+            own.settimeout(HANGS_S)
             own.sendall(LINE)
             heard = b""
             while not heard.endswith(b"// DONE\r\n"):
@@ -178,7 +179,7 @@ def test_the_token_is_in_one_private_file() -> None:
                     having += [path] if any(each in content for each in secrets) else []
                     seen.append(str(path).encode())
             assert process("stop", "--port", port).code == 0
-            out, err = command.communicate(timeout=60)
+            out, err = command.communicate(timeout=HANGS_S)
             seen += [out, err]
     assert len(having) == 1 and len(seen) > 6
     assert not [each for each in seen for secret in secrets if secret in each]

@@ -16,6 +16,7 @@ from tests.machines.host_firmware import missing
 from tests.support.command import Command, Tsc
 from tests.support.pty_robot import PtyRobot, on, uploading
 from tests.support.shared_pty_robot import Shared
+from tests.support.waiting import HANGS_S
 from tiniscript import __version__
 from tiniscript.link.payloads import DoneEvent, ShowEvent
 from tiniscript.sharing import protocol, registry
@@ -32,7 +33,7 @@ def greeting(registration: Registration, **other: object) -> bytes:
 
 
 def visitor(registration: Registration) -> socket.socket:
-    return socket.create_connection((protocol.HOST, registration.number), 10)
+    return socket.create_connection((protocol.HOST, registration.number), HANGS_S)
 
 
 def is_let_go(peer: socket.socket) -> bool:
@@ -214,7 +215,7 @@ def test_a_bug_of_ours_in_a_thread_is_raised_where_somebody_waits() -> None:
             with pytest.raises(AttributeError):
                 while True:
                     shared.line.event()
-            peer.settimeout(10)
+            peer.settimeout(HANGS_S)
             assert is_let_go(peer)
 
 

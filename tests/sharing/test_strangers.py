@@ -16,6 +16,7 @@ import pytest
 from tests.machines.host_firmware import missing
 from tests.support.command import FOREVER, TSC, Command, process
 from tests.support.pty_robot import PtyRobot, on, uploading
+from tests.support.waiting import HANGS_S
 from tiniscript import __version__
 from tiniscript.sharing import protocol, registry
 from tiniscript.sharing.registry import Registration
@@ -203,9 +204,9 @@ def test_a_stop_gets_through_a_thousand_connections(there: bytes, here: bytes) -
                 done = process("info", "--port", port, "--json")
                 assert json.loads(done.out)["state"] == "RUNNING"
                 assert process("stop", "--port", port).code == 0
-            out, err = command.communicate(timeout=60)
+            out, err = command.communicate(timeout=HANGS_S)
             assert command.returncode == 3
             assert b"was stopped from a computer" in out + err
         robot.send_signal(signal.SIGINT)
-        did = robot.communicate(timeout=60)[0].decode()
+        did = robot.communicate(timeout=HANGS_S)[0].decode()
     assert "FAULT" not in did

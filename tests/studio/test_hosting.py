@@ -11,6 +11,7 @@ import pytest
 from tests.support.command import FOREVER, process
 from tests.support.pty_robot import PtyRobot
 from tests.support.shared_pty_robot import Shared
+from tests.support.waiting import HANGS_S, until
 from tiniscript import compile, robots
 from tiniscript.link.messages import STOP_BYTES
 from tiniscript.studio import hosted_robot
@@ -41,7 +42,9 @@ class Page:
             self._seen = max(self._seen, each["number"])
             self.news.append(each)
 
-    def until(self, is_so: Callable[[dict[str, Any]], bool], limit_s: float = 15) -> dict[str, Any]:
+    def until(
+        self, is_so: Callable[[dict[str, Any]], bool], limit_s: float = HANGS_S
+    ) -> dict[str, Any]:
         """Wait for news, beating."""
         end_s = time.monotonic() + limit_s
         while True:
@@ -130,11 +133,10 @@ def test_a_page_that_falls_silent_stops_its_robot(page: Page, robot: PtyRobot) -
     page.upload(FOREVER)
     robot.until(lambda: robot.moves, "it drives")
     page.beat()
-    began_s = time.monotonic()
-    robot.until(lambda: not robot.moves, "it stands")
-    passed_s = time.monotonic() - began_s
-    # Before the robot's own dead-man timer, which ends a run after a second.
-    assert hosted_robot.HEARD_S <= passed_s < 0.95
+    began_s, began_ms = time.monotonic(), robot.robot_ms
+    passed_ms = robot.stands_after_ms(began_ms)
+    assert time.monotonic() - began_s >= hosted_robot.HEARD_S
+    assert passed_ms < 950  # before the robot's own dead-man timer, which ends a run after a second
     assert robot.heard.endswith(bytes(STOP_BYTES))
 
 
@@ -153,7 +155,7 @@ def test_nobody_pings_for_a_page_that_is_silent(
     page.upload(FOREVER)
     robot.until(lambda: robot.moves, "it drives")
     monkeypatch.setattr(hosted_robot.HostedRobot, "_attend", lambda *_: time.sleep(0.1))
-    robot.until(lambda: not robot.moves, "its dead-man timer stops it", limit_s=3)
+    robot.until(lambda: not robot.moves, "its dead-man timer stops it")
 
 
 def test_stop_stops_and_says_so(page: Page, robot: PtyRobot) -> None:
@@ -199,8 +201,7 @@ def test_a_port_has_one_page(hosting: Hosting, page: Page, robot: PtyRobot) -> N
     assert hosting.answer({"do": "stop_all"}) == {"stopping": 1}  # STOP of a page without a robot
     page.until(lambda each: each.get("event") == "STOPPED")
     page.beat(do="leave")
-    time.sleep(0.5)
-    assert other.connect(robot.port) == {}
+    until(lambda: other.connect(robot.port) == {}, "the port is free")
     other.until(lambda each: "connected" in each)
 
 
@@ -211,7 +212,7 @@ def test_it_shares_a_port_that_a_command_holds(hosting: Hosting) -> None:
         assert page.until(lambda each: "connected" in each)["held_by"] == "link"
         page.upload(FOREVER)
         robot.until(lambda: robot.moves, "it drives")
-        robot.until(lambda: not robot.moves, "the page is silent", limit_s=2)
+        robot.until(lambda: not robot.moves, "the page is silent")
         hosting.close()
 
 
@@ -312,7 +313,7 @@ def test_what_a_page_does_not_fetch_is_bounded() -> None:
     robot._tell([{"event": "DONE"}])
     news = robot.hear([], 0)
     assert len(news) == hosted_robot.KEPT and news[-1]["event"] == "DONE"
-    robot.join(10)
+    robot.join(HANGS_S)
 
 
 def test_ports_are_listed_without_opening_any(

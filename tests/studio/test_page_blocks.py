@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 PROGRAM = "#blocks .blocklySvg > .blocklyWorkspace > .blocklyBlockCanvas"  # no toolbox
 FLYOUT = ".blocklyFlyout:visible .blocklyBlockCanvas > .blocklyDraggable"  # no numbers in blocks
-PATIENCE_MS = 15_000
+PATIENCE_MS = 90_000
 # The blocks of the page, made of forms and read again, without the page around them.
 ROUND = """async ({name, forms}) => {
   const {Blocks} = await import(new URL(name, location.href).href);

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 FOLDERS = catalogue.folders()
 SLOW = "SI|LOOP(FOREVER);SHOW(1);END_LOOP"  # thousands of actions in a second
-PATIENCE_MS = 60_000
+PATIENCE_MS = 90_000
 
 
 @pytest.fixture

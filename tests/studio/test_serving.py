@@ -13,6 +13,7 @@ import pytest
 
 from tests.support.command import Command, Tsc
 from tests.support.page_server import serves
+from tests.support.waiting import HANGS_S
 from tiniscript.studio import serving
 from tiniscript.studio.policy import POLICY
 
@@ -40,7 +41,7 @@ def server(folder: Path) -> Iterator[serving.Server]:
 def ask(
     server: serving.Server, path: str, method: str = "GET", headers: dict[str, str] | None = None
 ) -> tuple[HTTPResponse, bytes]:
-    connection = HTTPConnection(serving.HOST, server.server_port, timeout=10)
+    connection = HTTPConnection(serving.HOST, server.server_port, timeout=HANGS_S)
     try:
         connection.request(method, path, headers=headers or {})
         response = connection.getresponse()
@@ -107,7 +108,7 @@ def test_nothing_can_be_sent_to_it(server: serving.Server, method: str) -> None:
 
 def test_two_names_of_a_host_are_none(server: serving.Server) -> None:
     own = f"127.0.0.1:{server.server_port}"
-    with socket.create_connection((serving.HOST, server.server_port), timeout=10) as client:
+    with socket.create_connection((serving.HOST, server.server_port), timeout=HANGS_S) as client:
         client.sendall(f"GET / HTTP/1.1\r\nHost: {own}\r\nHost: evil.example\r\n\r\n".encode())
         assert client.recv(100).startswith(b"HTTP/1.1 403")
 

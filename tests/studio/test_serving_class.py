@@ -9,7 +9,6 @@ import gzip
 import json
 import os
 import socket
-import time
 from collections.abc import Iterator
 from http.client import HTTPConnection, HTTPResponse
 from pathlib import Path
@@ -19,6 +18,7 @@ import pytest
 
 from tests.support.command import process
 from tests.support.studio import Class
+from tests.support.waiting import HANGS_S
 from tiniscript.studio import serving
 from tiniscript.studio.classroom import Classroom
 from tiniscript.studio.hosting import Hosting
@@ -51,7 +51,7 @@ def own(taught: Class) -> str:
 
 def post(taught: Class, request: object, **headers: str) -> int:
     """Post as a page of the class does; return the status."""
-    connection = HTTPConnection(own(taught), timeout=10)
+    connection = HTTPConnection(own(taught), timeout=HANGS_S)
     given = {"Host": own(taught), "Origin": f"http://{own(taught)}", serving.TOKEN: ""}
     try:
         connection.request("POST", serving.ROBOTS, json.dumps(request), {**given, **headers})
@@ -80,7 +80,7 @@ def test_the_host_is_the_shown_address_exactly(taught: Class, host: str) -> None
 
 
 def page_of(taught: Class, headers: dict[str, str]) -> HTTPResponse:
-    connection = HTTPConnection(own(taught), timeout=10)
+    connection = HTTPConnection(own(taught), timeout=HANGS_S)
     connection.request("GET", "/", headers=headers)
     found = connection.getresponse()
     found.read()
@@ -89,7 +89,7 @@ def page_of(taught: Class, headers: dict[str, str]) -> HTTPResponse:
 
 
 def test_the_page_is_packed_marked_and_fetched_once(taught: Class) -> None:
-    connection = HTTPConnection(own(taught), timeout=10)
+    connection = HTTPConnection(own(taught), timeout=HANGS_S)
     connection.request("GET", "/", headers={"Accept-Encoding": "gzip, deflate"})
     answer = connection.getresponse()
     data = answer.read()
@@ -132,30 +132,27 @@ def test_many_connections_keep_nobody_out(taught: Class, is_same: bool) -> None:
     connection stays, and a new pupil is answered."""
     token = joins(taught)
     headers = {"Origin": f"http://{own(taught)}", serving.TOKEN: token}
-    pupil = HTTPConnection(own(taught), timeout=10)
+    pupil = HTTPConnection(own(taught), timeout=HANGS_S)
     pupil.request("POST", serving.ROBOTS, '{"do": "here"}', headers)
     assert pupil.getresponse().read()
-    kept, before, slowest_s = pupil.sock, active_count(), 0.0
+    kept, before = pupil.sock, active_count()
     source = kept.getsockname()[0] if is_same else ELSEWHERE
     strangers: list[socket.socket] = []
     try:
         for k in range(STRANGERS):
             stranger = socket.create_connection(
-                (HOST, taught.server.server_port), timeout=10, source_address=(source, 0)
+                (HOST, taught.server.server_port), timeout=HANGS_S, source_address=(source, 0)
             )
             strangers.append(stranger)
             if k % 2:
                 stranger.sendall(b"POST /robots HTTP/1.1\r\nHost: ")
             if k % 500 == 499:
-                began_s = time.monotonic()
                 pupil.request("POST", serving.ROBOTS, '{"do": "here"}', headers)
                 assert pupil.getresponse().read()
                 assert page_of(taught, {}).status == 200
-                slowest_s = max(slowest_s, time.monotonic() - began_s)
             if len(strangers) > 600:  # those that the server has closed
                 strangers.pop(0).close()
         assert pupil.sock is kept
-        assert slowest_s < 2
         assert active_count() - before <= serving.CLASS_CONNECTIONS + 30
     finally:
         for each in strangers:
@@ -165,11 +162,11 @@ def test_many_connections_keep_nobody_out(taught: Class, is_same: bool) -> None:
 
 def test_a_slow_stranger_does_not_close_who_loads_the_page(taught: Class) -> None:
     """The address that has most connections loses one, not the one that asked first."""
-    early = HTTPConnection(own(taught), timeout=10)
+    early = HTTPConnection(own(taught), timeout=HANGS_S)
     early.connect()
     strangers = [
         socket.create_connection(
-            (HOST, taught.server.server_port), timeout=10, source_address=(ELSEWHERE, 0)
+            (HOST, taught.server.server_port), timeout=HANGS_S, source_address=(ELSEWHERE, 0)
         )
         for _ in range(serving.CLASS_CONNECTIONS + 50)
     ]

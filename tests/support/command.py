@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from tests.support.casefile import ROOT
+from tests.support.waiting import HANGS_S
 from tiniscript.cli import main
 
 PROGRAM = "SI|F(5,80)"
@@ -56,7 +57,7 @@ def running(*arguments: str) -> subprocess.Popen[bytes]:
 
 def ended(command: subprocess.Popen[bytes]) -> Done:
     """Wait until a process has ended."""
-    out, err = command.communicate(timeout=60)
+    out, err = command.communicate(timeout=HANGS_S)
     return Done(command.returncode, out.decode(), err.decode())
 
 
@@ -94,7 +95,7 @@ class Command:
         return True
 
     def ended(self) -> Done:
-        out, err = self.process.communicate(timeout=30)
+        out, err = self.process.communicate(timeout=HANGS_S)
         return Done(self.process.returncode, out.decode(), err.decode())
 
 

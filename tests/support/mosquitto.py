@@ -8,9 +8,11 @@ import signal
 import socket
 import subprocess
 import time
+from contextlib import suppress
 from pathlib import Path
 
 from tests.machines.esp32 import Esp32Robot
+from tests.support.waiting import until
 from tiniscript.link import broker, wifi
 from tiniscript.link.broker import Access, Broker, BrokerPort
 
@@ -28,9 +30,7 @@ class Mosquitto:
 
     def __init__(self, folder: Path, user: str = "", password: str = "", more: str = "") -> None:
         assert PROGRAM
-        self.port = free_port()
-        self._rules = folder / f"mosquitto-{self.port}.conf"
-        lines = [f"listener {self.port} 127.0.0.1", "persistence false", f"user {_me()}", more]
+        lines = ["persistence false", f"user {_me()}", more]
         if user:
             passwords = folder / "passwords"
             passwords.touch(mode=0o600)
@@ -39,21 +39,31 @@ class Mosquitto:
             lines += ["allow_anonymous false", f"password_file {passwords}"]
         else:
             lines.append("allow_anonymous true")
-        self._rules.write_text("\n".join(lines) + "\n", encoding="utf-8")
-        self.start()
+        for _ in range(5):  # between the two somebody else may take the port
+            self.port = free_port()
+            self._rules = folder / f"mosquitto-{self.port}.conf"
+            rows = [f"listener {self.port} 127.0.0.1", *lines, ""]
+            self._rules.write_text("\n".join(rows), encoding="utf-8")
+            with suppress(OSError):
+                self.start()
+                return
+        raise AssertionError("the broker does not begin")
 
     def start(self) -> None:
+        """Raises OSError where it ends instead, as where the port is another one's."""
         self.process = subprocess.Popen(
             [str(PROGRAM), "-c", str(self._rules)],
             stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
         )  # fmt: skip
-        for _ in range(200):
-            try:
-                socket.create_connection(("127.0.0.1", self.port), 1).close()
-                return
-            except OSError:
-                time.sleep(0.02)
-        raise AssertionError("the broker has not begun")
+        until(self._answers, "the broker has begun")
+
+    def _answers(self) -> bool:
+        if self.process.poll() is not None:
+            raise OSError(f"mosquitto ends: {self.process.returncode}")
+        with suppress(OSError):
+            socket.create_connection(("127.0.0.1", self.port), 1).close()
+            return self.process.poll() is None  # else it was another one's
+        return False
 
     def stall(self, is_stalled: bool = True) -> None:
         self.process.send_signal(signal.SIGSTOP if is_stalled else signal.SIGCONT)

@@ -11,7 +11,6 @@ import select
 import termios
 import threading
 import time
-from collections.abc import Callable
 
 from tests.support.simulated_wire import OtherEnd, garbled
 
@@ -50,13 +49,6 @@ class PtyEnd:
         self._thread.join()
         for each in (self._ours, self._theirs):
             os.close(each)
-
-    def until(self, is_so: Callable[[], bool], limit_s: float = 60) -> None:
-        """Wait until something is so."""
-        end_s = time.monotonic() + limit_s
-        while not is_so():
-            assert time.monotonic() < end_s, f"not after {limit_s} s"
-            time.sleep(0.005)
 
     def _baud(self) -> int:
         """Return the speed that the computer has set."""

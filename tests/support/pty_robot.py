@@ -14,6 +14,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from tests.machines.host_firmware import EMPTY, POWER_ON, HostFirmware
+from tests.support import waiting
 from tests.support.command import FOREVER, Command, Done, process
 from tiniscript.kit import Kit
 
@@ -101,10 +102,14 @@ class PtyRobot:
         """Push the button, and let it go."""
         self._flags = [PUSHED, *[0] * 20, RELEASED]
 
-    def hold(self, milliseconds: int = 2300, after_ms: int = 0) -> None:
-        """Hold the button down, after a while."""
+    def hold(self, milliseconds: int = 2300, after_ms: int = 0, times: int = 1) -> None:
+        """Hold the button down, after a while; so many times, or until `let_go`."""
         press = [PUSHED, *[0] * 30, HELD, *[0] * (milliseconds - 32), RELEASED]
-        self._flags = [*[0] * after_ms, *press]
+        self._flags = [*[0] * after_ms, *press] * times
+
+    def let_go(self) -> None:
+        if self._flags:
+            self._flags = [RELEASED]
 
     def switch_off(self) -> None:
         """Only what is in its memory is kept."""
@@ -129,12 +134,18 @@ class PtyRobot:
         if self._robot:
             self._robot.close()
 
-    def until(self, is_so: Callable[[], bool], what: str, limit_s: float = 20) -> None:
+    def until(self, is_so: Callable[[], bool], what: str) -> None:
         """Wait until something is so."""
-        end_s = time.monotonic() + limit_s
-        while not is_so():
-            assert time.monotonic() < end_s, f"not after {limit_s} s: {what}"
-            time.sleep(0.01)
+        waiting.until(is_so, what)
+
+    def stands_after_ms(self, began_ms: int) -> int:
+        """Wait until the motors are off; return how long that took of the robot's own time.
+
+        It goes on like the time of the wall, and no further than this computer has come.
+        """
+        self.until(lambda: not self.moves, "it stands")
+        off = [line for line in self.timed if line.split(" ", 1)[1] == "MOTORS 0 0"]
+        return int(off[-1].split()[0]) - began_ms
 
     def _made(self, reset: int = POWER_ON, seed: int = 0x12345678) -> HostFirmware:
         """Return a robot that starts with what its memory has kept."""

@@ -13,6 +13,7 @@ import time
 from collections.abc import Callable, Sequence
 
 from tests.machines.host_firmware import EMPTY, TICKS, HostFirmware
+from tests.support import waiting
 from tests.support.pty_robot import damaged, drives_now
 from tiniscript.kit import Kit
 
@@ -87,12 +88,9 @@ class RobotFleet:
         for pupil in self.pupils:
             pupil.close()
 
-    def until(self, is_so: Callable[[], bool], what: str, limit_s: float = 30) -> None:
+    def until(self, is_so: Callable[[], bool], what: str) -> None:
         """Wait until something is so."""
-        end_s = time.monotonic() + limit_s
-        while not is_so():
-            assert time.monotonic() < end_s, f"not after {limit_s} s: {what}"
-            time.sleep(0.02)
+        waiting.until(is_so, what)
 
     def _run(self) -> None:
         by_end = {pupil.ours: pupil for pupil in self.pupils}

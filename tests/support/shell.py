@@ -10,13 +10,14 @@ from collections.abc import Mapping
 
 import pytest
 
+from tests.support.waiting import HANGS_S
+
 NO_PTY = "Windows has no pseudo-terminals of this kind"
 pty = pytest.importorskip("pty", reason=NO_PTY)
 fcntl = pytest.importorskip("fcntl", reason=NO_PTY)
 termios = pytest.importorskip("termios", reason=NO_PTY)
 
 CONTROL = re.compile(r"\x1b\[[0-9;?]*[A-Za-z]|\x00|\x07")  # colors, the cursor, padding
-HANGS_S = 60  # after which nothing comes any more
 COLUMNS = 80
 
 

@@ -140,7 +140,7 @@ class Pages:
     """Pages of one server; each must have said no error, and asked nobody else, at the end."""
 
     def __init__(
-        self, opened: Browser, address: str, origin: str = "", patience_s: int = 30
+        self, opened: Browser, address: str, origin: str = "", patience_s: int = 90
     ) -> None:
         """`origin` is the beginning of what pages may ask, where it is not the whole address."""
         self.patience_s = patience_s
@@ -205,6 +205,9 @@ def shown(page: Page) -> None:
     """Wait until the blocks are those of the text, and the text is compiled."""
     page.locator("#blocks[data-state=shown]").wait_for()
     checked(page)
+
+
+HUNG_MS = 4000  # longer than any robot goes on without a word
 
 
 def hang(page: Page, milliseconds: int) -> None:

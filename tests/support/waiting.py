@@ -1,0 +1,16 @@
+"""Waiting for something in real time. The limit ends a test that hangs, and no other."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+
+HANGS_S = 120.0
+
+
+def until(is_so: Callable[[], bool], what: str, limit_s: float = HANGS_S) -> None:
+    """Wait until something is so."""
+    end_s = time.monotonic() + limit_s
+    while not is_so():
+        assert time.monotonic() < end_s, f"not after {limit_s} s: {what}"
+        time.sleep(0.01)
