@@ -15,9 +15,12 @@ from types import SimpleNamespace
 
 import pytest
 
+from tests.support.virtual_robot import missing
 from tiniscript import compile_text, robots
-from tiniscript.cli.terminal import run_drawing, sketch
+from tiniscript.cli.terminal import run_drawing, sketch, world_drawing
 from tiniscript.cli.terminal import screen as terminal_screen
+from tiniscript.virtual import worlds
+from tiniscript.virtual.robot import Settings, VirtualRobot
 from tiniscript.vm.trace import Ending, Event, Senses, run
 
 NO_PTY = "Windows has no pseudo-terminals of this kind"
@@ -267,6 +270,22 @@ def test_every_picture_fits_its_terminal(language: str) -> None:
                 lines = seen.lines(width, height, event.time_ms)
                 assert 1 <= len(lines) <= height
                 assert all(line.cell_len <= width for line in lines)
+
+
+@pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")
+def test_values_stand_beside_the_floor_on_a_wide_terminal() -> None:
+    """As far from it on 200 columns as on 100, and at one place while the robot drives."""
+    robot = VirtualRobot(robots.load("tinibot"), worlds.load("obstacles"), Settings())
+    picture = world_drawing.WorldPicture(robot, "es")
+    places = {}
+    for width in (60, 100, 200):
+        lines = [line.plain for line in picture.lines(width, 16, 0)]
+        places[width] = lines[1].index("tiempo")
+        assert all(len(line) <= width for line in lines)
+        assert lines[1][: places[width]].rstrip()[-1] > "\u2800"  # the floor's right wall
+        assert lines[1][: places[width]].endswith("  ")
+        assert any(line.endswith("sensor de luz izquierdo") for line in lines) == (width > 60)
+    assert places[100] == places[200]
 
 
 def test_a_long_way_stays_in_view_and_in_memory(monkeypatch: pytest.MonkeyPatch) -> None:

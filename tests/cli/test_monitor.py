@@ -86,7 +86,9 @@ def test_monitor_draws_a_curve(pty_robot: PtyRobot) -> None:
 def test_every_curve_fits_its_terminal(values: list[tuple[int, int]]) -> None:
     from tiniscript.cli.terminal.plot import Plot
 
-    plot = Plot()
+    plot = Plot("todavía ningún valor")
+    title = plot.lines(80, 8, 0)[0].plain
+    assert title.startswith("── SHOW todavía ningún valor ──")
     for time_ms, value in values:
         plot.take(time_ms, value, is_yes_no=False)
     for now_ms in (20_000, 45_000, 90_000):

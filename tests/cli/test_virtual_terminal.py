@@ -119,7 +119,7 @@ def test_upload_draws_the_world_and_the_way(tmp_path: Path) -> None:
 def test_keys_push_the_buttons_of_the_robot(tmp_path: Path) -> None:
     memory = tmp_path / "kept.bin"
     terminal = Terminal("robot", "--memory", memory, "--lang", "es")
-    terminal.until(r"b: botón de inicio")
+    terminal.until("q: terminar   b: botón   h: botón 2 s   r: reinicio   p: apagar y encender")
     upload = [sys.executable, "-m", "tiniscript", "upload", "--virtual", "-e",
               "SB|LOOP(FOREVER);L(1, 40);END_LOOP"]  # fmt: skip
     terminal.until("todavía sin programa")

@@ -36,7 +36,7 @@ def run(options: Namespace, language: str) -> int:
             if options.plot and sys.stderr.isatty():
                 from tiniscript.cli.terminal.plot import Board
 
-                with Board() as board:
+                with Board(text("plot_waiting", language)) as board:
                     printer = EventPrinter(language, options.json, has_times=True, rows=add,
                                     out=board.say, err=board.warn)  # fmt: skip
                     _watch(connection, printer, seconds, board)

@@ -27,9 +27,9 @@ STEPS = 4  # between the marks of the axis, about
 class Board:
     """The terminal while values come: what is told, and below it the curve."""
 
-    def __init__(self) -> None:
+    def __init__(self, waiting: str) -> None:
         self.screen = Screen()
-        self.plot = Plot()
+        self.plot = Plot(waiting)
         self.drawn_s = 0.0
 
     def __enter__(self) -> Board:
@@ -57,9 +57,10 @@ class Board:
 
 
 class Plot:
-    """`now_ms` is the time of the newest value."""
+    """`now_ms` is the time of the newest value; `waiting` is said until there is one."""
 
-    def __init__(self) -> None:
+    def __init__(self, waiting: str = "") -> None:
+        self.waiting = waiting
         self.now_ms = 0
         self.values: deque[tuple[int, int]] = deque(maxlen=KEPT)  # when, and thousandths
         self.margin = 0  # columns of the labels
@@ -81,7 +82,7 @@ class Plot:
         self.margin = max(self.margin, *(len(each) + 1 for each in ticks))  # it never jumps back
         margin = self.margin
         columns = width - margin
-        newest = as_text(known[-1]) if known else ""
+        newest = as_text(known[-1]) if known else self.waiting
         title = Text(f"── SHOW {newest} ".ljust(width - 6, "─") + f" {SECONDS} s ", style="dim")
         title.truncate(max(1, width))
         if rows < 2 or columns < 4:

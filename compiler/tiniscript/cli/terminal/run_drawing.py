@@ -20,6 +20,7 @@ from tiniscript.robots.profile import Robot
 from tiniscript.vm.trace import Ending, Event
 
 SHOWN = 5  # values of SHOW that stay in the picture
+WIDEST = 80  # columns of the values, where the way leaves so many
 BESIDE = 60  # columns from which on the values are beside the way, not below it
 
 
@@ -89,12 +90,12 @@ class Picture:
         """Return at most `height` lines of at most `width` columns."""
         room = max(1, height - 1)  # below the title
         if width >= BESIDE:
-            values_width = min(44, width * 11 // 20)
-            values = self._values(values_width, room, now_ms)
-            way = self.sketch.drawn(width - values_width - 2, room, now_ms)
+            columns = self.sketch.columns(width - min(44, width * 11 // 20) - 2, room)
+            values = self._values(min(WIDEST, width - columns - 2), room, now_ms)
+            way = self.sketch.drawn(columns, room, now_ms)
             values += [Text()] * (room - len(values))
             for line in way:
-                line.align("left", width - values_width)
+                line.align("left", columns + 2)
             below = [line + value for line, value in zip(way, values, strict=True)]
         else:
             values = self._values(width, max(room - 3, min(room, 3)), now_ms)

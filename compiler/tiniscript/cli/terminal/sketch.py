@@ -76,6 +76,10 @@ class Sketch:
         length = f"{cm:g} cm" if cm < 100 else f"{cm / 100:g} m" if cm < 1e5 else f"{cm / 1e5:g} km"
         return f" ├────────┤ {length} "
 
+    def columns(self, most: int, rows: int) -> int:
+        """Return how many columns of `most` the picture takes: a way may go anywhere."""
+        return most
+
     def drawn(self, columns: int, rows: int, now_ms: float) -> list[Text]:
         ahead = self.way.ahead(now_ms)
         view = self._view(columns, rows, ahead)

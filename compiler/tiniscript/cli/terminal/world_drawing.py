@@ -74,6 +74,7 @@ class WorldSketch(Sketch):
         self.robot = robot
         self.world = robot.world
         self.floor: Floor | None = None
+        self._room = (0, 0, 0)  # columns and rows that there were, and the columns that it takes
 
     def set_motors(self, now_ms: float, left: int, right: int) -> None:
         self.way.left, self.way.right = left, right
@@ -82,6 +83,13 @@ class WorldSketch(Sketch):
         if self.floor is None:
             return ""
         return f" ├────────┤ {10 * ACROSS * self.floor.cm_per_dot:g} cm "
+
+    def columns(self, most: int, rows: int) -> int:
+        """Return how many columns the floor takes; the values are beside it, not at the edge."""
+        if self._room[:2] != (most, rows):
+            right, _ = Floor(self.world, most, rows).dot(Point(self.world.width_cm, 0))
+            self._room = most, rows, min(most, right // ACROSS + 1)
+        return self._room[2]
 
     def drawn(self, columns: int, rows: int, now_ms: float) -> list[Text]:
         ground = self.floor

@@ -295,6 +295,7 @@ LINK_TEXTS: dict[str, tuple[str, str]] = {
     "port_held": ("held by tsc {verb}", "lo tiene tsc {verb}"),
     # stop and monitor
     "stopped_on": ("Stopped: the robot on {port} has confirmed it.", "Detenido: el robot en {port} lo ha confirmado."),
+    "plot_waiting": ("no value so far", "todavía ningún valor"),
     "watching": ("{robot} on {port}. Ctrl-C leaves; the robot goes on.", "{robot} en {port}. Ctrl-C sale; el robot sigue."),
     "unwritable_rows": ("tsc: {file} cannot be written: {why}. Make room, or choose another place with --csv.",
                         "tsc: no se puede escribir {file}: {why}. Haz espacio, o elige otro lugar con --csv."),

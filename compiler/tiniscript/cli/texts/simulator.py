@@ -43,8 +43,8 @@ VIRTUAL_TEXTS: dict[str, tuple[str, str]] = {
     # what it says
     "robot_here": ("{robot} in the world \"{world}\". In another terminal:  tsc upload prog.ts --virtual   Ctrl-C ends.",
                    "{robot} en el mundo \"{world}\". En otra terminal:  tsc upload prog.ts --virtual   Ctrl-C termina."),
-    "robot_keys": ("b: start button   h: hold it 2 s   r: reset   p: off and on   q: end",
-                   "b: botón de inicio   h: pulsado 2 s   r: reinicio   p: apagar y encender   q: terminar"),
+    "robot_keys": ("q: end   b: start button   h: hold it 2 s   r: reset   p: off and on",
+                   "q: terminar   b: botón   h: botón 2 s   r: reinicio   p: apagar y encender"),
     "button_keys": ("b: start button   q: end   Ctrl-C: stop", "b: botón de inicio   q: terminar   Ctrl-C: detener"),
     "how_key": ("{start}: waits for its button, the key b", "{start}: espera su botón, la tecla b"),
     "how_pushed": ("{start}: its button is pushed right away, since there are no keys here",
