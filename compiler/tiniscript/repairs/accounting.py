@@ -66,6 +66,7 @@ _PHRASES = tuple(
         (r"DE\s+LO\s+CONTRARIO", "ELSE"),
         (r"\A\s*IF\s+NOT?\s*\Z", "ELSE"),
         (r"SIEMPRE\s+QUE", "IF"),
+        (r"\A\s*(?:S|STOP)\s+LOOP\s*\Z", "BREAK"),
         (r"BACK\s+UP", "BACK"),
         (r"(?:PARA|DEJA|NO)\s+(?:DE\s+)?AVANZ?C?[AE]R?S?(?:\s+MAS)?", "S"),
         (r"LUZ\s+(?=IZQUIERD|DERECH)", "LUZ_"),

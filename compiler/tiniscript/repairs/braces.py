@@ -48,7 +48,7 @@ def without_braces(text: str) -> list[Edit] | None:
 def _header(tokens: Sequence[Token], brace: int) -> str | None:
     """Return the word of the block that a bracket begins."""
     k = brace
-    while k and tokens[k - 1].kind is NEWLINE:  # on a line of its own
+    while k and tokens[k - 1].kind in (NEWLINE, ";"):  # on a line of its own
         k -= 1
     while k and tokens[k - 1].kind not in (NEWLINE, ";", "{", "}", "|"):
         k -= 1

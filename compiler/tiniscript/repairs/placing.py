@@ -233,6 +233,7 @@ _PLACES: dict[Code, Callable[[Diagnostic, Source], Edits]] = {
     codes.MISSING_CLOSE: _close,
     codes.MISSING_COMMA: _own,
     codes.MISSING_VALUE: _assigned,
+    codes.MISSING_SIGN: _assigned,
     codes.SEMICOLON_INSIDE: _written(","),
     codes.ARGUMENT_COUNT: _own,
     codes.ELSE_IF: _assigned,

@@ -129,6 +129,9 @@ class Kinds:
         which = {} if len(several) != 2 else {"first": several[0], "second": several[1]}
         if name == target or name in scope.set_somewhere:
             first = scope.line_to_move_up(name, span)
+            if any(each.code is codes.USED_BEFORE_SET and each.values["name"] == name
+                   for each in scope.diagnostics[-ENOUGH:]):  # fmt: skip
+                return  # said once
             scope.report(codes.USED_BEFORE_SET, span, None, name=name, near=near, **first)
         else:
             near = "" if which else near
@@ -198,7 +201,11 @@ class Kinds:
         if name is not None:
             return {"example": f"{word} < 10" if name.what == "sensor" else f"{word} > 0"}
         meant = {"0": "FALSE", "1": "TRUE"}.get(word)
-        return {"fix": meant} if meant else {"times": word} if word.isdecimal() else {}
+        if meant or not word.isdecimal():
+            return {"fix": meant} if meant else {}
+        names = {each.name for each in self.kit.sensors if not each.is_yes_no}
+        sensor = "DISTANCE" if "DISTANCE" in names else "X"
+        return {"times": word, "example": f"{sensor} < {word}"}
 
     def _yes_no_alone(self, op: str, left: _Operand, right: _Operand) -> str:
         """`BUTTON = 1` is `BUTTON`, and `BUTTON = 0` is `NOT BUTTON`."""

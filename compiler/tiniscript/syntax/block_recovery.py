@@ -77,6 +77,8 @@ class BlockRecovery:
             self.to_command()
         if any(self.is_name(a.text) and b.kind == "(" for a, b in pairwise(written)):
             fix = ""  # `IF DISTANCE(15)`
+            if len(written) > 4 and written[2].kind in COMPARISONS and written[-1].kind == ")":
+                fix = head_in(known, [written[0], *written[2:-1]])  # `IF DISTANCE(< 15)`
         if written and written[0].text[:1] == "." and written[0].start == word.end:
             fix = ""  # `LOOP.4)`
         if any(ends_value(a) and b.kind is NUMBER for a, b in pairwise(with_signs(written))):
@@ -238,7 +240,12 @@ class BlockRecovery:
         elif self._owed:
             self._owed -= 1
         elif block is not None and word == "LOOP" and _has_a_number(block):
-            self.blocks.end(span)  # `WHILE(4)`: it is said there
+            head = self.cursor.source[block.span]
+            number = head[head.find("(") + 1 :].rstrip(") ")
+            self.reporter.report(codes.WANTS_CONDITION, block.span, block.span, by=block.word,
+                                 found=number, fix=f"LOOP({number})")  # fmt: skip
+            block.head = None
+            self.blocks.end(span)
         elif block is not None:
             self._report_wrong_end(span, found, block, fix=BLOCK_ENDS[block.word])
             self._owed += 1
@@ -319,7 +326,7 @@ class BlockRecovery:
         start = block.arms[0].span.end if block.arms else block.span.end
         for k, diagnostic in enumerate(self.reporter.diagnostics):
             if diagnostic.code is codes.BRACES and start <= diagnostic.span.start:
-                if not self.cursor.source[Span(start, diagnostic.span.start)].strip():
+                if not self.cursor.source[Span(start, diagnostic.span.start)].strip("; \t\r\n"):
                     values = {**diagnostic.values, "right": BLOCK_ENDS[block.word]}
                     self.reporter.change(k, diagnostic._replace(values=values))
 

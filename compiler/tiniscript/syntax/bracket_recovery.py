@@ -15,7 +15,7 @@ from tiniscript.syntax.phrases import BEFORE_TIME, TIMES
 from tiniscript.syntax.reporter import Failed, Reporter, Resumed
 from tiniscript.syntax.sentence_recovery import SentenceRecovery
 from tiniscript.syntax.suggestions import body_begins
-from tiniscript.words import Word
+from tiniscript.words import Word, other_name
 
 
 class BracketRecovery:
@@ -58,11 +58,15 @@ class BracketRecovery:
             self._braces_for_brackets(word, known)
         span = Span(word.start, rest[-1].end if rest else word.end)
         is_def = known.role != "actuator" and self.in_block.is_name(word.text)  # `DEF B` comes
-        fix = "" if is_def else call_in(known, rest)
+        fix = call_in(known, rest)
         if rest and rest[0].text.startswith(".") and rest[0].start == word.end:
             fix = ""  # `F.2.80`
         if not rest and cursor.token.text == "UNTIL" and known.role in ("move", "wait"):
             fix = known.example.replace("2" if known.role == "move" else "1", "FOREVER", 1)
+        if is_def:
+            self.reporter.fail(
+                codes.RESERVED, word.span, word=word.text, right=other_name(word.text)
+            )
         self.reporter.report(codes.MISSING_OPEN, span, word=word.text, fix=fix, usage=known.usage)
         if cursor.token.kind is WORD and cursor.token.text != "UNTIL":
             self.in_block.go_on()

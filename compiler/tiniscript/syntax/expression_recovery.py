@@ -22,6 +22,7 @@ from tiniscript.syntax.call_suggestions import (
     starts_value,
 )
 from tiniscript.syntax.cursor import AFTER_VALUE, AT_END, Cursor
+from tiniscript.syntax.joined_questions import JoinedQuestions
 from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, ODD, WORD, Token
 from tiniscript.syntax.number_recovery import NumberRecovery
 from tiniscript.syntax.operators import COMPARISONS, Operator, Postfix
@@ -39,7 +40,9 @@ class ExpressionRecovery:
         self.reporter = reporter
         self.kit = kit
         self.numbers = NumberRecovery(cursor, reporter)
-        self.constructs = ValueConstructs(cursor, reporter, Vocabulary(cursor.tokens, kit))
+        known = Vocabulary(cursor.tokens, kit)
+        self.constructs = ValueConstructs(cursor, reporter, known)
+        self.questions = JoinedQuestions(cursor, reporter, known)
 
     # -- where an operand is wanted -----------------------------------------------------------
 
@@ -107,6 +110,7 @@ class ExpressionRecovery:
 
     def _no_value_word(self, token: Token) -> NoReturn:
         word, fail = WORDS[token.text], self.reporter.fail
+        self.questions.asked_twice(token)
         if word.role == "forever":
             fail(codes.FOREVER_NOT_HERE, token.span)
         if word.role == "until":
@@ -143,15 +147,9 @@ class ExpressionRecovery:
         meant = WORDS.get(meant_by(name.text) or "")
         if meant is not None and meant.arguments:
             fix = call_in(meant, self._in_brackets(cursor.i))
-            reporter.fail(
-                codes.OTHER_LANGUAGE,
-                name.span,
-                Span(name.start, self._end_of(cursor.i)),
-                found=name.text,
-                right=meant.text,
-                fix=fix,
-                usage=meant.usage,
-            )
+            place = Span(name.start, self._end_of(cursor.i))
+            reporter.fail(codes.OTHER_LANGUAGE, name.span, place, found=name.text,
+                          right=meant.text, fix=fix, usage=meant.usage)  # fmt: skip
         self.constructs.called(name, cursor.token)
         close = cursor.following
         devices = self.kit.sensors if self.kit is not None else ()
@@ -281,6 +279,8 @@ class ExpressionRecovery:
                 cursor.i += 1
             cursor.i += 1
             fail(codes.SEMICOLON_INSIDE, token.span)
+        if token.kind == "|":
+            self.questions.bar_for_or(token)
         if token.kind == "|" and self._close_comes() and starts_value(cursor.following):
             self._nothing_between(last, cursor.following, bracket)
         if token.kind == "=":

@@ -115,7 +115,10 @@ class ExpressionParser:
     def word(self, token: Token, read: Postfix) -> bool:
         cursor = self.cursor
         known = WORDS.get(token.text)
-        if known is None and self.recovery.constructs.is_said_with_more(token):
+        if known is None and (
+            self.recovery.constructs.is_said_with_more(token)
+            or self.recovery.questions.is_sign_alone(token)
+        ):
             return False
         if known is None or known.role == "value":
             cursor.i += 1

@@ -55,6 +55,7 @@ class GroupRecovery:
             self._loop(times, group, k, end)
         tokens = self.cursor.tokens
         fix = ";".join(self._said(each) for each in group.orders)
+        fix += "" if tokens[group.end].kind in AT_END else ";"
         self._report(Span(tokens[k].start, tokens[group.end - 1].end), tokens[k], fix)
         self._read_on(k, group.end, self._row(group, k))
 

@@ -9,9 +9,10 @@ from typing import NoReturn
 
 from tiniscript.diagnostics import codes
 from tiniscript.source import Span
-from tiniscript.syntax.blocks import ENDS, Blocks
+from tiniscript.syntax.blocks import ENDS, Block, Blocks
 from tiniscript.syntax.cursor import Cursor
 from tiniscript.syntax.lexer import ODD, Token
+from tiniscript.syntax.operators import COMPARISONS
 from tiniscript.syntax.phrases import AFTER_HEADER
 from tiniscript.syntax.reporter import Reporter, Resumed
 from tiniscript.syntax.suggestions import (
@@ -19,6 +20,7 @@ from tiniscript.syntax.suggestions import (
     body_begins,
     counted,
     end_of_values,
+    head_in,
     inside,
     opposite,
     with_signs,
@@ -121,14 +123,48 @@ class HeaderRecovery:
             cursor.i = start + 1
             raise Resumed
 
+    # -- a question in two brackets -----------------------------------------------------------
+
+    def second_question(self, header: Block) -> None:
+        """`IF(A)(B)`: both questions are asked."""
+        cursor, tokens = self.cursor, self.cursor.tokens
+        end = after_bracket(tokens, cursor.i)
+        row = tokens[cursor.i + 1 : end - 1] if end is not None else []
+        if header.word not in ("IF", "WHILE") or not any(t.kind in COMPARISONS for t in row):
+            return
+        span = Span(cursor.last.start, cursor.token.end)
+        header.is_reported, cursor.i = True, end or cursor.i
+        self.reporter.report(codes.OTHER_SIGN, span, found=")(", right=" AND ")
+        self._go_on()
+
+    def question_goes_on(self, first: Token, header: Block) -> NoReturn:
+        """`IF (A) AND (B)`: the brackets go around the whole question."""
+        cursor = self.cursor
+        start = cursor.i
+        while cursor.tokens[start] is not first:
+            start -= 1
+        cursor.i = body_begins(cursor.tokens, cursor.i)
+        known = WORDS[first.text]
+        fix = head_in(known, cursor.tokens[start + 1 : cursor.i])
+        header.is_reported, header.head = True, None
+        span = cursor.span_from(first)
+        values = {"word": first.text, "fix": fix, "usage": known.usage}
+        self.reporter.report(codes.MISSING_OPEN, span, span, **values)
+        self._go_on()
+
+    # -- the block that was meant -------------------------------------------------------------
+
     def _begin(self, word: str, place: Span) -> NoReturn:
         """Open the block of a header that has a diagnostic, and go on behind it."""
+        self.blocks.begin(word, place).is_reported = True
+        self._go_on()
+
+    def _go_on(self) -> NoReturn:
         cursor = self.cursor
         while cursor.token.text in AFTER_HEADER or (
             cursor.token.kind is ODD and cursor.token.text == ":"
         ):
             self.reporter.answer(cursor.token)
             cursor.i += 1
-        self.blocks.begin(word, place).is_reported = True
         self.reporter.crowded_line = cursor.line_of(cursor.last)
         raise Resumed

@@ -227,6 +227,9 @@ class NameRecovery:
         """`LET X = 5`, `CALL DANCE`, `MY SPEED = 5`: go on with what is right."""
         cursor, start = self.cursor, self.cursor.i
         fix = ""
+        if word.text in BEFORE_NAME and following.text in BEFORE_NAME:  # `const int X = 5`
+            start = cursor.i = start + 1
+            word, following = Token(WORD, word.text, word.start, following.end), cursor.following
         name = spaced_name(cursor.tokens, start)
         if name is not None and word.text not in BEFORE_NAME:
             text, end = name

@@ -28,7 +28,7 @@ from tiniscript.syntax.units import converted
 from tiniscript.syntax.vocabulary import Vocabulary
 from tiniscript.words import BLOCK_ENDS, IN_MILLISECONDS, UNITS, WORDS, Word
 
-_LOOSE = (";", ",", "{", ODD)  # signs between instructions, here or elsewhere
+_LOOSE = (";", ",", "{", "|", ODD)  # signs between instructions, here or elsewhere
 # What goes on behind a block as well as in it: `repite 4 veces avanza y luego pita`.
 _AFTERWARDS = frozenset(("LUEGO", "DESPUES", "NEXT", "FINALMENTE", "FINALLY"))
 _FARTHEST = 1000  # tokens in which the end of a block is looked for
@@ -138,6 +138,8 @@ class _Reader:
         if block in HEADERS and following.kind in (NEWLINE, END) and block in self.open[-1:]:
             self.k += 1  # `LOOP(4) F(1, 50) LOOP`
             return self._end()
+        if block == "IF" and not self.has_braces and self._stands_beside():
+            return False  # `IF(a) S IF(b) S`: the second may be in the first, or behind it
         if block in HEADERS or block == "ELSEIF":
             return self._header(block) and (self.token.kind == "{" or not self.has_braces)
         if following.kind == "=":
@@ -148,6 +150,17 @@ class _Reader:
             self.row.append(text)
             return True
         return self._command(word)
+
+    def _stands_beside(self) -> bool:
+        """Whether an IF comes behind what another one does, with no ends on the line."""
+        is_within = self.open[-1:] == ["IF"] and self.row[-1].partition("(")[0] not in (
+            *HEADERS, "ELSE", "ELSEIF"
+        )  # fmt: skip
+        k = self.k
+        while is_within and self.tokens[k].kind not in (NEWLINE, END):
+            is_within = self._block_of(self.tokens[k]) not in (*ENDS, "END")
+            k += 1
+        return is_within
 
     def _block_of(self, token: Token) -> str | None:
         """Return the word of a block that a token means, here or elsewhere."""
@@ -239,6 +252,9 @@ class _Reader:
             if token.kind is WORD and self.known.is_name(token.text) and padded[k].kind == "(":
                 return None  # `DISTANCE(15)`
             text = self.known.value(token.text) if token.kind is WORD else token.text
+            joined = self.known.value(f"{token.text}_{padded[k].text}")
+            if token.kind is padded[k].kind is WORD and self.known.is_number(joined):
+                text, k = joined, k + 1  # `luz derecha`
             row.append(token._replace(text=text))
         return written(row) or None
 

@@ -72,8 +72,10 @@ NO_VARIABLES = frozenset(
         "BAJA",
     )
 )
+KEEPING = frozenset(("GUARDAR", "GUARDA", "STORE", "SAVE"))  # a value, and then its name
 SETTING = frozenset(
     (
+        *KEEPING,
         "SUBE",
         "BAJA",
         "SUBIR",

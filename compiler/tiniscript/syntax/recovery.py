@@ -26,8 +26,6 @@ from tiniscript.syntax.phrases import AFTER_HEADER, BETWEEN, FINALLY
 from tiniscript.syntax.reporter import Failed, Reporter, Resumed
 from tiniscript.syntax.setup_recovery import SetupRecovery
 from tiniscript.syntax.suggestions import (
-    body_begins,
-    head_in,
     shortened,
 )
 from tiniscript.syntax.times_recovery import TimesRecovery
@@ -181,6 +179,9 @@ class Recovery:
             self.groups.line_of_def(header)
         if header is not None and kind == "(":
             self.groups.body(header, cursor.i)
+            self.in_block.other.second_question(header)
+        if first.text in ("S", "STOP", "BREAK"):
+            self._stop_of_loop(first)
         if header is not None and header.word != "DEF" and first.text != "ELSE" and not goes_on:
             self._line_of(header, token)
         if kind in ("{", "}"):
@@ -212,7 +213,7 @@ class Recovery:
             self.of_name.note_behind(first, token, after)
         if header is not None and first.text in WORDS and WORDS[first.text].arguments:
             if kind in SIGNS or text in ("AND", "OR"):
-                self._question_goes_on(first, header)
+                self.in_block.other.question_goes_on(first, header)
         self._words_behind(first, token, header)
         self.times.times_behind(first, token, before)
         if kind == "-" and after.kind == ">":  # `F(2, 80) -> R(1, 50)`
@@ -357,17 +358,16 @@ class Recovery:
             tokens[other] = Token(WORD, "ELSE", *tokens[other].span)
         return True
 
-    def _question_goes_on(self, first: Token, header: Block) -> NoReturn:
-        """`IF (A) AND (B)`: the brackets go around the whole question."""
-        cursor = self.cursor
-        start = cursor.i
-        while cursor.tokens[start] is not first:
-            start -= 1
-        cursor.i = body_begins(cursor.tokens, cursor.i)
-        known = WORDS[first.text]
-        fix = head_in(known, cursor.tokens[start + 1 : cursor.i])
-        header.is_reported = True
-        span = cursor.span_from(first)
-        values = {"word": first.text, "fix": fix, "usage": known.usage}
-        self.reporter.report(codes.MISSING_OPEN, span, span, **values)
-        self.in_block.go_on()
+    def _stop_of_loop(self, first: Token) -> None:
+        """`STOP LOOP`: what leaves a loop is BREAK."""
+        cursor, after = self.cursor, self.cursor.following
+        here = self.blocks.here
+        is_alone = cursor.token.text == "LOOP" and after.kind in AT_END
+        if not is_alone or not here or here[-1].span.start != first.start:
+            return
+        del here[-1]
+        place = Span(first.start, cursor.token.end)
+        found = cursor.source[place]
+        cursor.i += 1
+        self.reporter.fail(codes.OTHER_LANGUAGE, place, place, found=found, right="BREAK",
+                           fix="BREAK", usage="BREAK")  # fmt: skip

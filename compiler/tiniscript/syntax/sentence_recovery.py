@@ -23,6 +23,7 @@ from tiniscript.syntax.phrases import (
     CHANGING,
     EVENTS,
     FILLERS,
+    KEEPING,
     READING,
     TIMES,
 )
@@ -55,7 +56,7 @@ from tiniscript.words import (
 
 # What stands between a variable and its new value: `set x to 5`.
 _SMALL = frozenset(
-    ("A", "TO", "EN", "POR", "BY", "COMO", "IGUAL", "EL", "LA", "THE", "AL", "VALOR")
+    ("A", "TO", "EN", "IN", "POR", "BY", "COMO", "IGUAL", "EL", "LA", "THE", "AL", "VALOR")
 )
 
 
@@ -215,11 +216,12 @@ class SentenceRecovery:
         row = [each for each in cursor.tokens[k + 1 : end] if each.text not in _SMALL]
         if len(row) != 2 or end > k + 6:
             return
-        name, value = row if row[0].kind is WORD else row[::-1]
+        is_kept = word.text in KEEPING  # `guardar distancia en x`
+        name, value = row[::-1] if is_kept or row[0].kind is not WORD else row
         is_value = value.kind is NUMBER or value.kind is WORD
         if name.kind is not WORD or name.text in WORDS or not is_value:
             return
-        fix = f"{name.text} = {value.text}"
+        fix = f"{name.text} = {self.in_block.known.value(value.text)}"
         is_set = word.text.startswith("C") and {"A", "TO"} & {t.text for t in cursor.tokens[k:end]}
         if word.text in CHANGING and not is_set:
             sign = "-" if word.text in ("RESTAR", "RESTA") else "+"

@@ -255,7 +255,7 @@ def operator_words(tokens: Sequence[Token], k: int) -> tuple[int, str] | None:
         elif not (said and text in _OPERATOR_TAILS):
             break
         end += 1
-    if is_not and said in ("<", "<=", ">", ">="):  # `no es menor que`
+    if is_not and said[:1] in ("<", ">") and said != SIGN_OF["NE"]:  # `no es menor que`
         said = OPPOSITES[said]
     operand = tokens[end].kind == "-" or starts_value(tokens[end]) or tokens[end].text == "NOT"
     return (end, said) if said and operand else None

@@ -12,6 +12,7 @@ from tiniscript.syntax.blocks import Block
 from tiniscript.words import WORDS
 
 _WORD = re.compile("[A-Za-z]+")
+_IF = re.compile(r"(?i)\s*(?:if|si)\b(?!\s+no\b)")
 _UNREAD = re.compile(r"[{}]|[)\w]\s+\w")  # what shows that more than the end is missing
 _FARTHEST = 400  # lines that are looked at
 
@@ -32,6 +33,9 @@ def where_it_ends(block: Block, source: Source) -> dict[str, str]:
         if _indent(row) <= _indent(first[1]):
             break
         within.append((k, row))
+    if block.word == "IF" and not within:  # the next IF beside it is no part of it
+        beside = (i for i, (_, row) in enumerate(rest) if i and _IF.match(row))
+        rest = rest[: next(beside, len(rest))]
     if block.name is not None:  # a DEF that calls itself: the call is the program's
         for i, (_, row) in enumerate(rest):
             if row.split("//")[0].strip(" \t;()").upper() == block.name.text:

@@ -1,0 +1,58 @@
+"""Recovery of questions that are joined as people say them: `DISTANCE > 10 y menor 20`, `A | B`.
+
+Knows the tokens on both sides of AND and OR, and which sign or word was meant between them.
+"""
+
+from __future__ import annotations
+
+from tiniscript.diagnostics import codes
+from tiniscript.source import Span
+from tiniscript.syntax.cursor import Cursor
+from tiniscript.syntax.lexer import Token
+from tiniscript.syntax.operators import COMPARISONS
+from tiniscript.syntax.reporter import Reporter
+from tiniscript.syntax.suggestions import operator_words
+from tiniscript.syntax.vocabulary import Vocabulary
+
+
+class JoinedQuestions:
+    def __init__(self, cursor: Cursor, reporter: Reporter, known: Vocabulary) -> None:
+        self.cursor = cursor
+        self.reporter = reporter
+        self.known = known
+
+    def is_sign_alone(self, word: Token) -> bool:
+        """`DISTANCE > 10 y menor 20`: read on with what is compared."""
+        tokens, k = self.cursor.tokens, self.cursor.i
+        said = operator_words(tokens, k)
+        if (
+            k < 4
+            or said is None
+            or said[1] not in COMPARISONS
+            or tokens[k - 1].text not in ("AND", "OR")
+        ):
+            return False
+        subject = tokens[k - 4]
+        if tokens[k - 3].kind not in COMPARISONS or not self.known.is_own(subject.text):
+            return False
+        end, sign = said
+        span = Span(word.start, tokens[end - 1].end)
+        self.reporter.report(codes.OTHER_SIGN, span, found=self.cursor.source[span],
+                             right=f"{subject.text} {sign}")  # fmt: skip
+        tokens[k:end] = [subject._replace(start=span.start, end=span.end), Token(sign, sign, *span)]
+        return True
+
+    def asked_twice(self, word: Token) -> None:
+        """`DISTANCE < 10 AND IF LIGHT_R > 50`: one IF asks all of it."""
+        before = self.cursor.tokens[self.cursor.i - 1]
+        if word.text in ("IF", "WHILE") and before.text in ("AND", "OR"):
+            span = Span(before.start, word.end)
+            found = self.cursor.source[span]
+            self.reporter.fail(codes.OTHER_SIGN, span, found=found, right=before.text)
+
+    def bar_for_or(self, bar: Token) -> None:
+        """`DISTANCE < 10 | LIGHT_R > 50`: between two questions the sign is OR."""
+        tokens, k = self.cursor.tokens, self.cursor.after_newlines(self.cursor.i)
+        before = tokens[max(0, k - 2)].kind in COMPARISONS
+        if before and tokens[min(k + 2, len(tokens) - 1)].kind in COMPARISONS:
+            self.reporter.fail(codes.OTHER_SIGN, bar.span, found="|", right="OR")
