@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 
+from tests.support.casefile import ROOT
 from tests.wiring.test_wiring import DEVICES, MOTORS, robot_with
 from tiniscript import compile_text, robots
 from tiniscript.robots import firmware
-from tiniscript.robots.boards import Driver
-from tiniscript.robots.profile import Robot
+from tiniscript.robots.boards import DRIVERS, Driver
+from tiniscript.robots.profile import Robot, Wiring
+from tiniscript.sketch.wiring import Plan
 from tiniscript.sketch.writing import sketch_of
+from tiniscript.wiring.parts import SHAPES
 
 
 def written(robot: Robot) -> tuple[str, str]:
@@ -32,7 +37,36 @@ def names(drivers: list[Driver]) -> list[str]:
 def test_a_device_is_read_or_set_by_firmware_and_sketch(driver: Driver) -> None:
     header, sketch = written(robot_with("l298n", [driver]))
     assert "case 0:  // D0" in header
-    assert "D0_PIN" in sketch or "D0_TRIGGER_PIN" in sketch
+    for pin in driver.pins:
+        assert ("D0_PIN" if pin.key == "pin" else f"D0_{pin.key.upper()}_PIN") in sketch
+
+
+@pytest.mark.parametrize("driver", DRIVERS.values(), ids=names([*DRIVERS.values()]))
+def test_a_driver_is_drawn_and_told_to_who_writes_a_profile(driver: Driver) -> None:
+    assert (driver.used_by, driver.name) in SHAPES, "wiring/parts.py says what a driver looks like"
+    sample = ROOT / "compiler" / "tiniscript" / "robots" / "tinibot.toml"
+    said = re.findall(r"(?m)^# {3,}(.*)", sample.read_text(encoding="utf-8"))
+    assert re.search(rf"\b{driver.name}\b", " ".join(said)), "robots/tinibot.toml lists drivers"
+
+
+def test_a_driver_that_a_sketch_does_not_know_is_named() -> None:
+    """Whatever its pins are called."""
+    for driver in DEVICES:
+        robot = robot_with("l298n", [driver])
+        board = robot.board
+        new = Wiring("new", {"left": 5}, {})
+        board = board._replace(
+            sensors=(new,) * len(board.sensors),
+            actuators=(new,) * len(board.actuators),
+        )
+        with pytest.raises(NotImplementedError, match="new"):
+            firmware.header([robot._replace(board=board)], "a test.")
+        plan = Plan(robot._replace(board=board), str, is_exact=True)
+        with pytest.raises(NotImplementedError, match="new"):
+            if board.sensors:
+                plan.reader(0, "d0", "readD0")
+            else:
+                plan.setter(0, "setD0")
 
 
 @pytest.mark.parametrize("motors", MOTORS)

@@ -235,6 +235,8 @@ class _Part:
 
     def _actuator(self, device: Device, wiring: Wiring) -> list[str]:
         driver, pins, settings = wiring
+        if driver not in ("digital", "pwm", "servo"):
+            raise _untold(driver)
         pin = pins["pin"]
         if driver == "digital":
             off = "true" if settings["yes_is_low"] else "false"
@@ -251,8 +253,6 @@ class _Part:
             self.off.append(f"disconnect(Pwm{self._pwm(pin)});  // {device.name}")
             part = f"part_of_range(value, {low}, {high}, 0, 255)"
             return [f"      connect(Pwm{self._pwm(pin)}, {part});", "      return;"]
-        if driver != "servo":
-            raise _untold(driver)
         self.servos.append(pin)
         pulse = f"part_of_range(value, {low}, {high}, {settings['low_us']}, {settings['high_us']})"
         number = len(self.servos) - 1

@@ -13,6 +13,7 @@ from tiniscript.robots.profile import Robot, Wiring
 
 FULL_COUNT = 1023  # of the converter
 _SIDES = ("LEFT", "RIGHT")
+_ONE_PIN = ("analog", "digital", "threshold")  # drivers of sensors
 
 
 class Parts(NamedTuple):
@@ -89,6 +90,8 @@ class Plan:
         beside = self.label(device.name)
         if wiring.driver == "hc_sr04":
             lines = self.distance(device, wiring, name, beside)
+        elif wiring.driver not in _ONE_PIN:
+            raise _untold(wiring.driver)
         else:
             mode = ""
             if wiring.driver == "digital":
@@ -102,8 +105,6 @@ class Plan:
                 lines = [f"{name} = analogRead({pin}) {sign} {wiring.settings['threshold']};"]
             elif is_count(device, wiring):
                 lines = [f"{name} = analogRead({pin});"]
-            elif wiring.driver != "analog":
-                raise _untold(wiring.driver)
             else:
                 lines = self.scaled(device, wiring, name, pin)
         body = "\n".join(f"  {line}" for line in (*lines, f"return {name};"))
@@ -158,13 +159,13 @@ class Plan:
                 self.parts.off.append(f"$servo_pulse({number}, 0, 0);")
             what = f"$servo_pulse({number}, {_part(device, first, last)}, 0);"
             return f"void {function}(long value) {{\n  {what}\n}}"
+        if wiring.driver not in ("pwm", "digital"):
+            raise _untold(wiring.driver)
         pin = self.pin(f"{device.name}_$PIN", wiring.pins["pin"], "OUTPUT", beside)
         if wiring.driver == "pwm":
             self.parts.off.append(f"analogWrite({pin}, 0);")
             part = _part(device, 0, 255)
             return f"void {function}(long value) {{\n  analogWrite({pin}, {part});\n}}"
-        if wiring.driver != "digital":
-            raise _untold(wiring.driver)
         on, off = ("LOW", "HIGH") if wiring.settings["yes_is_low"] else ("HIGH", "LOW")
         self.parts.off.append(f"digitalWrite({pin}, {off});")
         if off == "HIGH":  # before the pin is an output, so that the part stays off
