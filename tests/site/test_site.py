@@ -199,6 +199,8 @@ def _is_too_wide(page: Page) -> bool:
         ("en", "heartbeat", "The link"),
         ("es", "obstáculos", "lenguaje"),
         ("en", "END_LOOP", "language"),
+        ("en", "UNTIL", "UNTIL: look while you move"),
+        ("es", "SI", "lenguaje"),
     ],
 )
 def test_a_word_is_found(visitor: Page, address: str, language: str, word: str, title: str) -> None:

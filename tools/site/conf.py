@@ -7,8 +7,11 @@ from pathlib import Path
 
 from pygments.lexers.special import TextLexer
 from sphinx.application import Sphinx
+from sphinx.search.en import SearchEnglish
+from sphinx.search.es import SearchSpanish
 
 from tiniscript import __version__
+from tiniscript.words import WORDS
 from tools.site.lexer import TiniScriptLexer
 
 project = "TiniScript"
@@ -61,7 +64,15 @@ def lead_to_the_other_half(
     context["studio_address"] = f"{up}studio/index.html"
 
 
+def find_words_of_the_language() -> None:
+    """Have the search find IF, UNTIL and SI, too: words that it leaves out as too common."""
+    ours = {word.lower() for word in WORDS}
+    for language in (SearchEnglish, SearchSpanish):
+        language.stopwords = frozenset(language.stopwords) - ours
+
+
 def setup(app: Sphinx) -> None:
+    find_words_of_the_language()
     app.connect("html-page-context", lead_to_the_other_half)
     app.add_lexer("tiniscript", TiniScriptLexer)
     for name in PLAIN:
