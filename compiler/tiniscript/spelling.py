@@ -17,7 +17,7 @@ _LONGEST = 24
 _SOUNDS = tuple(
     (re.compile(pattern), sound)
     for pattern, sound in (
-        ("CH", "9"), ("SH", "9"), ("H", ""), ("QU(?=[EI])", "K"), ("C(?=[EI])", "S"),
+        ("CH", "9"), ("SH", "9"), ("X", "9"), ("H", ""), ("QU(?=[EI])", "K"), ("C(?=[EI])", "S"),
         ("[CQ]", "K"), ("Z", "S"), ("V", "B"), ("LL", "Y"), ("G(?=[EI])", "J"), (r"(.)\1", r"\1"),
     )
 )  # fmt: skip

@@ -34,6 +34,8 @@ def is_certain(diagnostic: Diagnostic, edits: Sequence[Edit], source: Source) ->
         after = text[span.end : span.end + 1]
         is_mark = set(source[span]) <= set(_MARKS)
         return is_mark or not (after.isalnum() or after in ("_", "."))  # `:PEED`, `0.?1`
+    if diagnostic.code is codes.MISSING_SEPARATOR and diagnostic.values.get("fix"):
+        return False  # `STOP 2` may have a number too many
     if diagnostic.code is codes.EXTRA_CLOSE:
         return _PLAIN_CALL.fullmatch(_before(text, span.end)) is not None
     if diagnostic.code is codes.MISSING_CLOSE and not diagnostic.values.get("fix"):

@@ -13,28 +13,41 @@ from unicodedata import combining, normalize
 
 from tiniscript.fixed_point import as_text
 from tiniscript.syntax.call_suggestions import LONG_TIME_S
-from tiniscript.words import NUMBER_WORDS, UNITS, WORDS, Word, meant_by
+from tiniscript.words import (
+    NOTE_WORDS,
+    NUMBER_WORDS,
+    OTHER_WORDS,
+    POWER_WORDS,
+    UNITS,
+    WORDS,
+    Word,
+    meant_by,
+)
 
-_ROLES = ("move", "wait", "motors", "beep")
+_ROLES = ("move", "wait", "motors", "beep", "show")
 LONGEST = 120  # characters of an instruction that are read
-_HEAD = re.compile(r"\s*([A-Za-z]+)(?!\.)")
+_HEAD = re.compile(r"\s*\(?\s*([A-Za-z]+)(?!\.)")
 _GOES_ON = re.compile(r"\)\s*[^\s)]")  # `F(2, 80) S`
 _STOPS = re.compile(r"[0-9] +[Ss]$")  # `W 1 S`: seconds, or the command
 _DIGITS = str.maketrans("OoIl", "0011")
 _LETTERED = re.compile(r"(?<![\w.,])(?:[0-9OoIl]+(?:\.[0-9OoIl]+)?)(?![A-Za-z_])")
 _LETTER = re.compile(r"(?<=[(,])\s*[OoIl]\s*(?=[,)])")
+_SPLITS = re.compile(r"(?<=[0-9])['\u00b4\u2019_](?=[0-9])")  # `2'80`, `2_80`
+_POINTS = re.compile(r"([0-9]\.[0-9]+)\.([1-9]0|100)(?![\w.])")  # `0.5.80`
+_PERCENT = re.compile(r"(?i)\b(por ciento|percent)\b")
 _PIECE = re.compile(
     r"(?P<number>[0-9]+(?:\.[0-9]+)?|\.[0-9]+)|(?P<word>[A-Z][A-Z_]*[0-9]*)|(?P<sign>\S)"
 )
 _BETWEEN = frozenset('()[]{}<>,;:=/"')
 _SMALL = frozenset("A AL CON POR DE DURANTE EN LA EL THE AT WITH FOR OF TO Y E AND".split())  # noqa: SIM905
+_BESIDE_SENSOR = frozenset("EL LA THE DE DEL OF VALOR VALUE SENSOR EN IN CM".split())  # noqa: SIM905
 # Names of values, which stand before or behind their number.
 _NAMES = {
     name: unit
     for unit, names in (
         ("s", "TIEMPO TIME T DURACION"),
         ("%", "POTENCIA POWER POT P VELOCIDAD VEL SPEED FUERZA"),
-        ("Hz", "FRECUENCIA FREQUENCY TONO"),
+        ("Hz", "FRECUENCIA FREQUENCY TONO NOTA"),
     )
     for name in names.split()
 }
@@ -69,28 +82,46 @@ def said_call(text: str, names: Container[str]) -> Said | None:
     if len(text) > LONGEST or _GOES_ON.search(text) or _STOPS.search(text):
         return None
     plain = "".join(c for c in normalize("NFKD", text) if not combining(c)).replace("、", ",")
+    plain = _PERCENT.sub("%", plain)
+    plain = _SPLITS.sub(",", _POINTS.sub(r"\1,\2", plain))
     head = _HEAD.match(plain)
-    if head is None or head[1].upper() in names:
+    is_around = head is not None and "(" in head[0] and plain.count("(") > 1  # `(F(2, 80)`
+    if head is None or is_around or head[1].upper() in names:
         return None
     name = head[1].upper()
     word = WORDS.get(name) or WORDS.get(meant_by(name) or "")
     if word is None or word.role not in _ROLES:
         return None
-    values = _values(plain[head.end() :], names)
+    if word.role == "show":
+        return _shown(word, plain[head.end() :], names)
+    values = _values(word, plain[head.end() :], names)
     return None if not values else _fitted(word, values)
 
 
-def _values(text: str, names: Container[str]) -> list[_Value] | None:
+def _shown(word: Word, text: str, names: Container[str]) -> Said | None:
+    """`mostrar luz izquierda`, `SHOW(distancia cm)`: the value that its words say together."""
+    if not re.fullmatch(r"[\s()A-Za-z_'\"]+", text):
+        return None
+    words = [each for each in re.findall(r"\w+", text.upper()) if each not in _BESIDE_SENSOR]
+    name = "_".join(words)
+    meant = name if name in names or name in OTHER_WORDS else meant_by(name)
+    if meant is None or (meant in WORDS and WORDS[meant].role != "value"):
+        return None
+    return Said(word, f"{word.text}({meant})", "")
+
+
+def _values(word: Word, text: str, names: Container[str]) -> list[_Value] | None:
     text = _LETTERED.sub(lambda match: _digits(match[0]), text)
     text = _LETTER.sub(lambda match: match[0].translate(_DIGITS), text).upper()
-    reader = _Reader(list(_PIECE.finditer(text)), names)
+    reader = _Reader(word, list(_PIECE.finditer(text)), names)
     return reader.found if reader.is_read() and not reader.unit else None
 
 
 class _Reader:
     """Takes the pieces of a text one by one into the values that it says."""
 
-    def __init__(self, pieces: list[re.Match[str]], names: Container[str]) -> None:
+    def __init__(self, word: Word, pieces: list[re.Match[str]], names: Container[str]) -> None:
+        self._notes = NOTE_WORDS if word.role == "beep" else {}
         self._pieces = pieces
         self._names = names
         self.found: list[_Value] = []
@@ -109,9 +140,7 @@ class _Reader:
                 count = len(self.found)
                 if not self._is_word(k):
                     return False
-                is_value = len(self.found) > count or (
-                    self._is_behind_value and piece[0] in NUMBER_WORDS
-                )
+                is_value = len(self.found) > count or piece[0] in NUMBER_WORDS
             elif not self._is_sign(k):
                 return False
             self._is_behind_value = is_value
@@ -147,8 +176,8 @@ class _Reader:
         if sign == "%":
             return self._is_behind_value and self._takes_unit("%")
         if sign == "-":  # between two values, and none of them is negative
-            is_between = self._is_behind_value and k + 1 < len(self._pieces)
-            return is_between and not self._touches(k) and not self._touches(k + 1)
+            is_between = k + 1 < len(self._pieces) and (k == 0 or self._is_behind_value)
+            return is_between and not (k and self._touches(k)) and not self._touches(k + 1)
         return sign in _BETWEEN
 
     def _is_word(self, k: int) -> bool:
@@ -156,8 +185,14 @@ class _Reader:
         number = _TEENS.get(word, NUMBER_WORDS.get(word))
         if word in self._names:
             self._add(word)
+        elif word in self._notes and (word != "LA" or self._at(k - 1) in ("NOTA", ",")):
+            self.unit = "Hz"
+            self._add(self._notes[word])
         elif word in _HALVES:
             return self._is_half(k)
+        elif word in POWER_WORDS:
+            self.unit = "%"
+            self._add(POWER_WORDS[word])
         elif number is not None:
             self._count(k, int(number))
         elif word in _NAMES:

@@ -86,7 +86,11 @@ def _around(text: str, place: int) -> Span:
     )
     if start == 0 and place > 200:
         start = place - 200
-    cut = _ENDS.search(text, place)
+    before = text[max(0, start - 40) : start - 1]
+    if text[start - 1 : start] == ";" and _CLOSES.match(text, start):  # `F(2; 80 %)`
+        inner = re.search(r"[A-Za-z]\w*\s*\([^;\r\n|{}()]*\Z", before)
+        start = start - 1 - len(before) + inner.start() if inner else start
+    cut = _ENDS.search(text, start if text[start:place].count(";") else place)
     end = cut.start() if cut else len(text)
     part = text[start:end]
     if cut and cut[0] in ";|" and part.count("(") > part.count(")"):
@@ -102,10 +106,11 @@ def _around(text: str, place: int) -> Span:
 
 
 def _is_better(whole: _Whole, found: Sequence[Diagnostic], source: Source) -> bool:
-    """Whether the repairs of the mistakes do not give what the instruction says."""
+    """Whether the repairs of the mistakes are many, or do not give what the instruction says."""
     text = source.text
     edits = [edit for k in whole.places for edit in edits_of(found[k], source) or ()]
-    if not all(edits_of(found[k], source) for k in whole.places):
+    is_crowded = len(whole.places) > 2
+    if is_crowded or not all(edits_of(found[k], source) for k in whole.places):
         return True
     start, end = whole.span
     inside = [edit for edit in sorted(edits) if start <= edit.span.start and edit.span.end <= end]

@@ -152,8 +152,11 @@ def _very_long(move: Move, time: int | None, found: list[Diagnostic]) -> None:
 def _long_beep(beep: Beep, found: list[Diagnostic]) -> None:
     time, hertz = constant(fold(beep.time)), constant(fold(beep.hertz))
     if time is not None and hertz is not None and time >= LONG_BEEP:
-        # of an Arduino: `tone(pin, hertz, milliseconds)`
+        # of an Arduino: `tone(pin, hertz, milliseconds)`; or in this order, with milliseconds
         fix = f"BEEP({as_text(hertz // 1000)}, {as_text(time)})"
+        if time % 100_000 == 0:  # a round time, and no note's hertz
+            fix = f"BEEP({as_text(time // 1000)}, {as_text(hertz)})"
+            fix = fix if hertz % 100_000 else ""
         _report(found, codes.LONG_TIME, beep.span, time=as_text(time), fix=fix)
 
 

@@ -127,6 +127,9 @@ class Kinds:
         stem = SENSOR_STEMS.get(name, name) + "_"  # `LIGHT` of LIGHT_R and LIGHT_L
         several = [each for each in known if each.startswith(stem)]
         which = {} if len(several) != 2 else {"first": several[0], "second": several[1]}
+        sensors = [each for each, its in names if its.what == "sensor"]
+        if name in ("SENSOR", "SENSORES", "SENSORS") and len(sensors) > 1:
+            which = {"first": ", ".join(sensors[:-1]), "second": sensors[-1]}
         if name == target or name in scope.set_somewhere:
             first = scope.line_to_move_up(name, span)
             if any(each.code is codes.USED_BEFORE_SET and each.values["name"] == name

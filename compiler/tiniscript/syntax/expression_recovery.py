@@ -201,6 +201,7 @@ class ExpressionRecovery:
             return True
         if token.kind is not WORD and not starts_value(token):
             return False
+        token = self.numbers.percent(token, k)
         in_brackets = bool(read.brackets)
         return (
             self._is_said_in_words(token, k, in_brackets)
@@ -334,6 +335,7 @@ class ExpressionRecovery:
                 values = {"found": found, "right": meant, "fix": meant, "usage": meant}
                 self.reporter.fail(codes.OTHER_LANGUAGE, span, None, **values)
             self.constructs.near_said(span, found, last, token, bracket)
+            self.numbers.unknown_time(span, last, token)
             self.constructs.words_shown(right)
             self.reporter.fail(codes.NAME_WITH_SPACE, span, found=found, right=right)
         self.numbers.with_part(last, token)

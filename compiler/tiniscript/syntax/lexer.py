@@ -54,6 +54,7 @@ _PATTERN = re.compile(
       | (?P<lettered>[OoIl]\.[0-9]+(?!\w))
       | (?P<word>[A-Za-z][A-Za-z0-9_]*)(?!\w)
       | (?P<clock>[0-9]{1,2}:[0-5][0-9](?=[ ]*,)|(?<=[Ww]\()[0-9]{1,2}:[0-5][0-9](?=[ ]*\)))
+      | (?P<percent>(?:[0-9]+(?:\.[0-9]+)?|\.[0-9]+)[ ]?%(?=[ ]*[,)]))
       | (?P<spaced>[0-9]{1,3}[ ]000(?=[ ]*[,;)]))
       | (?P<number>(?:[0-9]+(?:\.[0-9]+)?|\.[0-9]+)
             (?![\w.\u00b0]|['\u00b4\u2019][0-9]|["\u201d\u2033][ ]*[,)]))
@@ -220,7 +221,7 @@ class _Repairs:
 
     def badnumber(self, text: str, span: Span) -> Token:
         number = _number_in(text)
-        unit = text[len(number) :].upper() if text.startswith(number) else ""
+        unit = text[len(number) :].strip().upper() if text.startswith(number) else ""
         if unit in UNITS:
             before = self._text[max(0, span.start - 1) : span.start]
             is_part = before in ("/", "*") and UNITS[unit][1] != 1000
@@ -233,6 +234,10 @@ class _Repairs:
 
     def lettered(self, text: str, span: Span) -> Token:
         """`O.5`: a letter in the place of the first digit."""
+        return self.badnumber(text, span)
+
+    def percent(self, text: str, span: Span) -> Token:
+        """`80%`, `80 %`, where nothing is left that might be divided by."""
         return self.badnumber(text, span)
 
     def clock(self, text: str, span: Span) -> Token:

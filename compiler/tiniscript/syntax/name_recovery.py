@@ -330,7 +330,7 @@ class NameRecovery:
         self.reporter.fail(codes.NOT_AN_INSTRUCTION, place.span, found=place.text, fix=fix)
 
     def note_behind(self, first: Token, token: Token, after: Token) -> None:
-        """`F(2, 80) -- go`, `F(2, 80) - avanza`, `F(2, 80) (avanza)`.
+        """`F(2, 80) -- go`, `F(2, 80) - avanza`, `F(2, 80) / go`, `F(2, 80) (avanza)`.
 
         What says another command than the instruction's is an order: `F(2, 80) - retrocede 2`.
         """
@@ -338,7 +338,7 @@ class NameRecovery:
             self.other_note(token.start, "--", after.end)
         behind = self.cursor.tokens[min(self.cursor.i + 2, len(self.cursor.tokens) - 1)]
         is_talk = after.kind is WORD and after.text not in WORDS and behind.kind not in ("(", ",")
-        if token.kind in ("(", "-") and is_talk and not self._orders_behind(first):
+        if token.kind in ("(", "-", "/") and is_talk and not self._orders_behind(first):
             self.other_note(token.start, token.kind, after.start)
 
     def _orders_behind(self, first: Token) -> bool:

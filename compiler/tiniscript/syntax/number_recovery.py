@@ -12,6 +12,8 @@ from tiniscript.syntax.reporter import Reporter
 from tiniscript.syntax.units import converted
 from tiniscript.words import NUMBER_WORDS, UNITS, WORDS, Word
 
+_ARTICLES = frozenset(("UN", "UNA", "EL", "LA", "A", "THE"))
+
 
 class NumberRecovery:
     def __init__(self, cursor: Cursor, reporter: Reporter) -> None:
@@ -48,6 +50,20 @@ class NumberRecovery:
         self.reporter.report(codes.UNIT, span, found=found, number=number, right=right, unit=unit)
         cursor.i = k + 1
         return True
+
+    def percent(self, token: Token, k: int) -> Token:
+        """`50 por ciento`: return one word for both."""
+        after = self.cursor.tokens[min(k + 1, len(self.cursor.tokens) - 1)]
+        if token.text != "POR" or after.text != "CIENTO":
+            return token
+        both = Token(WORD, "PORCIENTO", token.start, after.end)
+        self.cursor.tokens[k : k + 2] = [both]
+        return both
+
+    def unknown_time(self, span: Span, article: Token, name: Token) -> None:
+        """`W(un rato)`: no name of two words, and no number."""
+        if article.text in _ARTICLES:
+            self.reporter.fail(codes.UNKNOWN_NAME, span, found=name.text, near="")
 
     def plus(self, token: Token, place: int) -> None:
         """`F(+2, 80)`; and `v =+ 10` adds."""

@@ -95,7 +95,7 @@ class Recovery:
         if token.kind is NUMBER:
             self.times.times_before(token)
             self._line_number(token)
-        if token.kind in ("-", "*") and cursor.token.kind is WORD:
+        if token.kind in ("-", "*", "|") and cursor.token.kind is WORD:
             self.reporter.report(codes.LINE_NUMBER, token.span, found=token.text, dash=token.text)
             raise Resumed
         code = codes.EXTRA_CLOSE if token.kind == ")" else codes.NOT_AN_INSTRUCTION
@@ -209,6 +209,10 @@ class Recovery:
             fail(codes.EXTRA_CLOSE, token.span, found=")")
         if kind == "|":
             self.setup.bar_between(first, token)
+        if kind is NUMBER and before is first and self._is_stop(first) and after.kind in AT_END:
+            cursor.i += 1
+            fix = f"{first.text};W({text})"  # `S 2`
+            fail(codes.MISSING_SEPARATOR, token.span, Span(first.start, token.end), fix=fix)
         if header is None:
             self.of_name.note_behind(first, token, after)
         if header is not None and first.text in WORDS and WORDS[first.text].arguments:
@@ -271,6 +275,9 @@ class Recovery:
     def _is_command(self, token: Token) -> bool:
         known = WORDS.get(token.text) if token.kind is WORD else None
         return known is not None and known.is_instruction
+
+    def _is_stop(self, token: Token) -> bool:
+        return token.text in WORDS and WORDS[token.text].role == "stop"
 
     def _words_behind(self, first: Token, token: Token, header: Block | None) -> None:
         """`SHOW(DISTANCE) cm`, `STOP the robot`: words that say no more."""

@@ -80,6 +80,8 @@ class SetupRecovery:
             self.reporter.report(codes.MISSING_OPEN, word.span, None, **values)
             return "SI"
         right = "SI|START;" if word.text == "START" else "SI|"
+        if word.text.startswith(("SB", "BOT", "BUT")) or meant_by(word.text) == "BUTTON":
+            right = "SB|"
         self.reporter.report(codes.SETUP_UNKNOWN, word.span, found=word.text, right=right)
         return "SI"
 
