@@ -74,6 +74,6 @@ def _is_slip(one: str, other: str) -> bool:
     one, other = one[k:], other[k:]
     if len(one) == len(other) and one[:2] == other[1::-1] and one[2:] == other[2:]:
         return True
-    if min(len(one), len(other)) + k < _SLIPPED:
-        return False
+    if min(len(one), len(other)) + k < _SLIPPED:  # `AVNZA`: a vowel that nobody texts
+        return len(other) + k >= _SLIPPED and other[:1] in tuple("AEIOU") and one == other[1:]
     return one[1:] in (other, other[1:]) or one == other[1:]

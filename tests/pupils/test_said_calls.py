@@ -39,6 +39,12 @@ from tiniscript.source import Source
         ("BEEP(440 hz, 1 s)", "BEEP(1, 440)"),
         ("BEEP(1 segundo, nota DO)", "BEEP(1, 262)"),
         ("M 50% 60%", "M(50, 60)"),
+        ("beep(uno, cuatrocientos cuarenta)", "BEEP(1, 440)"),
+        ("F(vel=60, t=2)", "F(2, 60)"),
+        ("F2-60", "F(2, 60)"),
+        ("F(2, 60,0)", "F(2, 60.0)"),
+        ("F(2 y medio segundos, 60)", "F(2.5, 60)"),
+        ("F(2\u00b760)", "F(2, 60)"),
         ("mostrar luz izquierda", "SHOW(LIGHT_L)"),
         ("SHOW(distancia cm)", "SHOW(DISTANCE)"),
     ],
@@ -61,6 +67,8 @@ def test_all_that_is_said_is_in_the_call(text: str, call: str) -> None:
         "F(2, 120)",
         "F(2 potencia 80)",  # the power may be the 2
         "F(2, half)",
+        "F(2, 1velocidad)",  # a name, with its digit in front
+        "F(2-60)",  # calculated
         "F(2,8 0)",
         "F(2, 80) cuatro veces",
         "F(2, 80) S",
@@ -105,6 +113,15 @@ def test_what_was_not_said_is_called_an_example() -> None:
 )
 def test_the_whole_instruction_is_replaced_and_nothing_beside_it(program: str, right: str) -> None:
     assert fixed(program, check).text == right
+
+
+@pytest.mark.parametrize(
+    "program", ["R(media vuelta)", "L(vuelta, 50)", "R 90", "R(90)", "l(dos vueltas, 80)"]
+)
+def test_a_turn_by_rounds_or_degrees_takes_a_time(program: str) -> None:
+    (found,) = check(program)
+    assert found.code is codes.WHICH_WAY
+    assert found.values["word"] == program[0].upper()
 
 
 def test_a_call_that_is_cut_in_two_gets_no_example() -> None:

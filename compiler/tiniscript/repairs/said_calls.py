@@ -32,7 +32,7 @@ _STOPS = re.compile(r"[0-9] +[Ss]$")  # `W 1 S`: seconds, or the command
 _DIGITS = str.maketrans("OoIl", "0011")
 _LETTERED = re.compile(r"(?<![\w.,])(?:[0-9OoIl]+(?:\.[0-9OoIl]+)?)(?![A-Za-z_])")
 _LETTER = re.compile(r"(?<=[(,])\s*[OoIl]\s*(?=[,)])")
-_SPLITS = re.compile(r"(?<=[0-9])['\u00b4\u2019_](?=[0-9])")  # `2'80`, `2_80`
+_SPLITS = re.compile(r"(?<=[0-9])['\u00b4\u2019_\u00b7\u2022](?=[0-9])")  # `2'80`, `2_80`
 _POINTS = re.compile(r"([0-9]\.[0-9]+)\.([1-9]0|100)(?![\w.])")  # `0.5.80`
 _PERCENT = re.compile(r"(?i)\b(por ciento|percent)\b")
 _PIECE = re.compile(
@@ -55,7 +55,12 @@ _TEENS = {
     "CERO": 0, "ZERO": 0, "ONCE": 11, "DOCE": 12, "TRECE": 13, "CATORCE": 14, "QUINCE": 15,
     "VEINTICINCO": 25, "FIFTEEN": 15,
 }  # fmt: skip
+_TEENS.update(
+    CIENTO=100, DOSCIENTOS=200, TRESCIENTOS=300, CUATROCIENTOS=400, QUINIENTOS=500,
+    SEISCIENTOS=600, SETECIENTOS=700, OCHOCIENTOS=800, NOVECIENTOS=900,
+)  # fmt: skip
 _HALVES = ("MEDIO", "MEDIA", "HALF")
+_COUNTED = frozenset((*NUMBER_WORDS, *_TEENS, *_HALVES))
 _PARTS = (("1", "2"), ("1", "4"), ("3", "4"))  # of one, with a `/`
 
 
@@ -125,6 +130,7 @@ class _Reader:
         self._pieces = pieces
         self._names = names
         self.found: list[_Value] = []
+        self._has_bracket = any(piece[0] == "(" for piece in pieces)
         self.unit = ""  # of the value that comes
         self._is_behind_value = False
 
@@ -140,7 +146,7 @@ class _Reader:
                 count = len(self.found)
                 if not self._is_word(k):
                     return False
-                is_value = len(self.found) > count or piece[0] in NUMBER_WORDS
+                is_value = len(self.found) > count or piece[0] in _COUNTED
             elif not self._is_sign(k):
                 return False
             self._is_behind_value = is_value
@@ -175,10 +181,16 @@ class _Reader:
         sign = self._at(k)
         if sign == "%":
             return self._is_behind_value and self._takes_unit("%")
+        if sign == "-" and not self._has_bracket and self._is_between_numbers(k):
+            return True  # `F2-80`
         if sign == "-":  # between two values, and none of them is negative
             is_between = k + 1 < len(self._pieces) and (k == 0 or self._is_behind_value)
             return is_between and not (k and self._touches(k)) and not self._touches(k + 1)
         return sign in _BETWEEN
+
+    def _is_between_numbers(self, k: int) -> bool:
+        beside = self._pieces[max(0, k - 1) : k + 2]
+        return len(beside) == 3 and beside[0].lastgroup == beside[2].lastgroup == "number"
 
     def _is_word(self, k: int) -> bool:
         word = self._at(k)
@@ -205,6 +217,13 @@ class _Reader:
 
     def _is_name(self, k: int) -> bool:
         """`potencia 80`, `80 pot`; but of `2 potencia 80` it may be both."""
+        if (
+            k
+            and self._touches(k)
+            and self._pieces[k - 1].lastgroup == "number"
+            and len(self._at(k)) > 3
+        ):
+            return False  # `1velocidad` is rather a name
         is_before = k + 1 < len(self._pieces) and self._pieces[k + 1].lastgroup == "number"
         is_before = is_before or self._at(k + 1) in ("=", ":", *NUMBER_WORDS)
         if self._is_behind_value:
@@ -241,8 +260,10 @@ class _Reader:
     def _count(self, k: int, number: int) -> None:
         """Take a number in words: `dos`, `treinta y cinco`."""
         last = self.found[-1] if self.found else None
-        is_ten = last is not None and last.text.isdecimal() and 30 <= int(last.text[:9]) <= 90
-        if last is not None and is_ten and self._at(k - 1) == "Y" and number < 10:
+        whole = int(last.text[:9]) if last is not None and last.text.isdecimal() else 0
+        is_ten = 30 <= whole <= 90 and self._at(k - 1) == "Y" and number < 10
+        is_hundred = whole >= 100 and not whole % 100 and self._is_behind_value and number < 100
+        if last is not None and not last.unit and (is_ten or is_hundred):
             self.found[-1] = last._replace(text=str(int(last.text) + number))
         else:
             self._add(str(number))
@@ -293,6 +314,10 @@ def _checked(word: Word, places: list[str], is_unnamed: bool) -> Said | None:
 
 def _with_points(values: Sequence[_Value], wanted: int) -> Sequence[_Value]:
     """`0,5, 80` is 0.5 and 80, where that makes as many as there should be."""
+    if len(values) == wanted + 1 == 3 and values[2].text == "0" and values[1].text.isdecimal():
+        whole = values[1]._replace(text=f"{values[1].text}.0")  # `80,0`
+        is_meant = values[2].is_joined and not values[1].is_joined
+        return [values[0], whole] if is_meant else values
     if len(values) != wanted + 1 or not values[1].is_joined or values[0].unit:
         return values
     first, second = values[:2]

@@ -15,16 +15,20 @@ from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.repairs.edits import Edit, applied
 from tiniscript.repairs.placing import edits_of
-from tiniscript.repairs.said_calls import Said, said_call
+from tiniscript.repairs.said_calls import LONGEST, Said, said_call
 from tiniscript.source import Source, Span
 from tiniscript.syntax.lexer import NEWLINE, scan
+from tiniscript.words import WORDS
 
 Check = Callable[[str], Sequence[Diagnostic]]
 MANY = 20  # instructions of a text that are read
 _ENDS = re.compile(r"[;\r\n|{}]|//")
 _CLOSES = re.compile(r"[^;\r\n|{}()A-Za-z]*\)")  # `F(2;80)`
 _UNTIL = re.compile(r"(?i)\s*\bUNTIL\b")
-_VARIABLE = re.compile(r"([A-Za-z]\w*)\s*=(?!=)")
+_VARIABLE = re.compile(r"(?:^|[;|\r\n])[ \t]*([A-Za-z]\w*)\s*=(?!=)")
+# `R(media vuelta)`, `L 90`: how far, and not how long.
+_TURN = re.compile(r"(?i)([LR])\b(?:.*\bvueltas?\b.*|[\s(]*(?:45|90|135|180|270|360)[\s)]*)")
+_WAYS = {"L": "left", "R": "right"}
 # Messages that are true of the whole instruction, too.
 _KEPT = (codes.MISSING_OPEN, codes.OTHER_LANGUAGE)
 # Mistakes of a block, and those that have more to say than how a call is written.
@@ -46,6 +50,7 @@ class _Whole(NamedTuple):
 def with_whole_calls(found: Sequence[Diagnostic], source: Source, check: Check) -> list[Diagnostic]:
     """Return the diagnostics with one for each instruction that is read as a whole."""
     text = source.text
+    found = [_by_time(each, text) for each in found]
     names = {match[1].upper() for match in _VARIABLE.finditer(text)}
     wholes = [each for each in _instructions(found, text, names) if _is_better(each, found, source)]
     if not wholes:
@@ -63,6 +68,19 @@ def with_whole_calls(found: Sequence[Diagnostic], source: Source, check: Check) 
                 kept[k] = None
             kept[each.places[0]] = _of_the_whole(found[each.places[0]], each, text)
     return [each for each in kept if each is not None]
+
+
+def _by_time(diagnostic: Diagnostic, text: str) -> Diagnostic:
+    """Say of a turn by degrees or rounds that it takes a time."""
+    if not diagnostic.is_mistake or diagnostic.code in _OTHERS:
+        return diagnostic
+    span = _around(text, diagnostic.span.start)
+    turn = _TURN.fullmatch(text[slice(*span)]) if span.end - span.start <= LONGEST else None
+    if turn is None:
+        return diagnostic
+    word = turn[1].upper()
+    values = {"word": word, "way": _WAYS[word], "usage": WORDS[word].usage}
+    return Diagnostic(codes.WHICH_WAY, span, values)
 
 
 def _instructions(found: Sequence[Diagnostic], text: str, names: set[str]) -> list[_Whole]:
