@@ -15,6 +15,7 @@ _WORD = re.compile("[A-Za-z]+")
 _IF = re.compile(r"(?i)\s*(?:if|si)\b(?!\s+no\b)")
 _UNREAD = re.compile(r"[{}]|[)\w]\s+\w")  # what shows that more than the end is missing
 _FARTHEST = 400  # lines that are looked at
+_LONGEST = 200  # characters behind a header that are looked at and said: a text may be one line
 
 
 def where_it_ends(block: Block, source: Source) -> dict[str, str]:
@@ -41,7 +42,10 @@ def where_it_ends(block: Block, source: Source) -> dict[str, str]:
             if row.split("//")[0].strip(" \t;()").upper() == block.name.text:
                 rest = rest[:i] or [(head, first[1])]
                 break
-    on_line = source.text[block.span.end :].split("\n", 1)[0].split("//")[0].strip(" \t\r;:{")
+    behind = source.text[block.span.end : block.span.end + _LONGEST].split("\n", 1)[0]
+    on_line = behind.split("//")[0].strip(" \t\r;:{")
+    if len(behind) == _LONGEST and block.name is None and not within:
+        return {"line": "", "last": ""}
     if on_line and not within and block.name is None:  # `IF(c);S` may be all of it
         return _on_its_line(block, on_line, is_last=not rest)
     if not rest:
