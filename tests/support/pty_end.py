@@ -18,6 +18,7 @@ _SPEEDS = {
     getattr(termios, name): int(name[1:])
     for name in ("B9600", "B19200", "B38400", "B57600", "B115200")
 }
+BEHIND_S = 1.0  # more than that behind, its clock goes slower
 
 
 class PtyEnd:
@@ -59,7 +60,7 @@ class PtyEnd:
     def _run(self) -> None:
         next_s = time.monotonic()
         while not self._is_over:
-            next_s = max(next_s + 0.001, time.monotonic() - 0.2)
+            next_s = max(next_s + 0.001, time.monotonic() - BEHIND_S)
             ready, _, _ = select.select([self._ours], [], [], 0)
             data = os.read(self._ours, 4096) if ready else b""
             self.heard += data
