@@ -221,6 +221,25 @@ def test_a_battery_has_the_resistors_that_its_range_asks_for() -> None:
         assert row[3:] == ("M+", f"{ohms} in the wire; 10 kΩ from the pin to GND")
 
 
+@pytest.mark.parametrize("name", robots.names())
+def test_no_pin_gets_more_than_it_takes(name: str) -> None:
+    """What comes from a part with 5 V and goes to the pin, by the resistors on its way.
+
+    Seen from the pin there is `series`, then `to_ground`, then `beyond`: nothing flows through
+    `series`, so the pin has the volts of the middle.
+    """
+    plan = plan_of(robots.load(name), "en")
+    is_3v3 = robots.load(name).board.chip.startswith("esp32")
+    for echo in [each for part in plan.parts for each in part.ends if each.name == "ECHO"]:
+        ohms = [float(each.removesuffix(" kΩ") or 0) for each in (echo.to_ground, echo.beyond)]
+        volts = 5.0 * ohms[0] / sum(ohms) if all(ohms) else 5.0
+        assert volts <= (3.4 if is_3v3 else 5.0)
+        assert volts >= (2.5 if is_3v3 else 5.0), "a yes is above three quarters of the supply"
+    if is_3v3:
+        rows = [row[4] for row in wire_rows(plan) if row[3] == "ECHO"]
+        assert rows == ["1 kΩ in the wire; 2 kΩ from the pin to GND"]
+
+
 # -- the drawing
 
 

@@ -70,11 +70,11 @@ def _at_3v3(shape: Shape) -> Shape:
     """Return a part as it is joined to a board whose pins have 3.3 V.
 
     It gets 3.3 V, so that nothing else comes back; what needs 5 V gets them, and a divider where
-    it answers with them.
+    it answers with them: its middle is the pin.
     """
     if shape.need in NEEDS_5V:
         ends = (
-            each._replace(series="1 kΩ", to_ground="2 kΩ") if each.pin_key == "echo" else each
+            each._replace(to_ground="2 kΩ", beyond="1 kΩ") if each.pin_key == "echo" else each
             for each in shape.terminals
         )
     else:

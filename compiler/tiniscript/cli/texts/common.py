@@ -120,8 +120,8 @@ TEXTS: dict[str, tuple[str, str]] = {
                           "tsc: {file} es un programa compilado; un sketch se hace de su texto. Prueba:  tsc show --arduino prog.ts"),
     "sketch_or_json": ("tsc: --arduino prints a sketch, --json data: one of them at a time.",
                        "tsc: --arduino imprime un sketch, --json datos: uno a la vez."),
-    "sketch_no_board": ("tsc: there are no sketches for the board {chip} yet. There are for: {known}.",
-                        "tsc: todavía no hay sketches para la placa {chip}. Hay para: {known}."),
+    "sketch_no_board": ("tsc: there are no sketches for the board {chip} yet. There are for: {known}. For the same program on an Uno:  tsc show --arduino --robot tinibot",
+                        "tsc: todavía no hay sketches para la placa {chip}. Hay para: {known}. El mismo programa para un Uno:  tsc show --arduino --robot tinibot"),
     "output_needs_arduino": ("tsc: -o is where a sketch goes. Try:  tsc show --arduino prog.ts -o {file}",
                              "tsc: -o dice a dónde va un sketch. Prueba:  tsc show --arduino prog.ts -o {file}"),
     # images
