@@ -371,6 +371,9 @@ def test_the_command_lists_the_wires(tsc: Tsc) -> None:
     assert " ".join(rows[0].split()) == "cable pin de la placa pieza su terminal en el camino"
     assert " ".join(rows[4].split()) == "4 violeta 4 TB6612 STBY 10 kΩ del terminal a GND"
     assert rows[-1] == "Como página con un dibujo:  tsc wiring -o conexiones.html"
+    (ground,) = [row for row in rows if row.startswith("GND ")]
+    for end in ("placa: GND", "TB6612: GND", "botón de inicio: pata 2", "HC-05: GND"):
+        assert end in ground
 
 
 def test_on_a_narrow_terminal_the_last_column_is_broken(

@@ -52,6 +52,25 @@ def wire_rows(plan: Plan) -> list[tuple[str, ...]]:
     return rows
 
 
+def rail_rows(plan: Plan) -> list[tuple[str, ...]]:
+    """Return a row for each wire that joins power or GND, its head first: tag, colour, end."""
+    language = plan.language
+    rows = [tuple(text(key, language) for key in ("head_tag", "head_colour", "head_joined"))]
+    for rail in plan.rails:
+        colour = text("colour_black" if rail == GROUND else "colour_red", language)
+        joined = []
+        if rail in BOARD_RAILS:
+            joined.append(text("the_board", language).format(pin=rail))
+        for part in plan.parts:
+            joined += [
+                f"{part.title}: {end.name}"
+                for end in part.ends
+                if end.rail == rail or (end.name == rail and end.wire)
+            ]
+        rows += [(rail, colour, each) for each in joined]
+    return rows
+
+
 def _way(end: End, language: str) -> str:
     to_ground = "to_ground_pin" if end.beyond else "to_ground"
     pairs = (("series", end.series), ("beyond", end.beyond), (to_ground, end.to_ground))
@@ -84,7 +103,7 @@ class _Page:
             Block("ticks", rows=tuple(wire_rows(self.plan))),
             Block("heading", say("rails")),
             Block("paragraph", say("rails_intro")),
-            Block("ticks", rows=tuple(self._rails())),
+            Block("ticks", rows=tuple(rail_rows(self.plan))),
             *(Block("paragraph", words) for words in self._others()),
             Block("list", rows=_column(self._power())),
             Block("heading", say("mind")),
@@ -109,29 +128,12 @@ class _Page:
             needs.append(need)
         values = ", ".join(f"{count} × {value}" for value, count in self.plan.resistors.items())
         needs.append(self.say("need_resistors", values=values))
-        joins = len(self.plan.wires) + len(self._rails()) - 1
+        joins = len(self.plan.wires) + len(rail_rows(self.plan)) - 1
         needs.append(self.say("need_breadboard", count=joins + SPARE_WIRES))
         body = self.plan.body
         size = f"{body.length_cm:g} × {body.width_cm:g} cm"
         needs += [self.say("need_plate", size=size), self.say("need_power_bank")]
         return needs
-
-    def _rails(self) -> list[tuple[str, ...]]:
-        """Return a row for each wire that joins power or GND, its head first."""
-        rows = [tuple(self.say(key) for key in ("head_tag", "head_colour", "head_joined"))]
-        for rail in self.plan.rails:
-            colour = self.say("colour_black" if rail == GROUND else "colour_red")
-            joined = []
-            if rail in BOARD_RAILS:
-                joined.append(self.say("the_board", pin=rail))
-            for part in self.plan.parts:
-                joined += [
-                    f"{part.title}: {end.name}"
-                    for end in part.ends
-                    if end.rail == rail or (end.name == rail and end.wire)
-                ]
-            rows += [(rail, colour, each) for each in joined]
-        return rows
 
     def _others(self) -> list[str]:
         """Return what is joined to no pin and no rail: motors, and what stays free."""

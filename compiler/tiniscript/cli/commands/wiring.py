@@ -28,9 +28,12 @@ def run(options: Namespace, language: str) -> int:
 
     plan = plan_of(robot, language)
     if options.output is None:
-        from tiniscript.wiring.page import wire_rows
+        from tiniscript.wiring.page import rail_rows, wire_rows
 
         _print_rows(wire_rows(plan))
+        print()
+        _print_rows(_by_tag(rail_rows(plan)))
+        print()
         print(text("wiring_page", language))
         return 0
     from tiniscript.wiring.html import html_of
@@ -44,6 +47,14 @@ def run(options: Namespace, language: str) -> int:
         file=inputs.shown(options.output), robot=inputs.shown(plan.robot)
     ))  # fmt: skip
     return 0
+
+
+def _by_tag(rows: list[tuple[str, ...]]) -> list[tuple[str, ...]]:
+    """Return the rows of power and GND with one row for a tag."""
+    found: dict[tuple[str, ...], list[str]] = {}
+    for *tag, end in rows:
+        found.setdefault(tuple(tag), []).append(end)
+    return [(*tag, ", ".join(ends)) for tag, ends in found.items()]
 
 
 def _print_rows(rows: list[tuple[str, ...]]) -> None:
