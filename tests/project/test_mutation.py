@@ -7,6 +7,7 @@ with `--avr`.
 
 from __future__ import annotations
 
+import re
 import shutil
 from collections.abc import Iterator
 from pathlib import Path
@@ -180,3 +181,14 @@ def test_a_compiler_is_needed(
     monkeypatch.setattr(__main__, "missing", lambda: "no g++")
     assert __main__.main([]) == 2
     assert capsys.readouterr().err == "no g++\n"
+
+
+def test_documents_tell_how_many_breaks_there_are() -> None:
+    found = len(breaks(SOURCES))
+    for name in ("CONTRIBUTING.md", "docs/promises.md"):
+        told = re.findall(
+            r"(?:in|list of) over (\d+)", (SOURCES.parent / name).read_text(encoding="utf-8")
+        )
+        assert told, name
+        for each in told:
+            assert 0 <= found - int(each) < 50, f"{name} says {each}, there are {found}"

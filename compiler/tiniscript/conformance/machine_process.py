@@ -105,7 +105,7 @@ class MachineProcess:
                 start_new_session=True,
             )
         except (OSError, ValueError) as why:
-            raise CannotStart(str(why)) from None
+            raise CannotStart(getattr(why, "strerror", None) or str(why)) from None
         assert process.stdin and process.stdout and process.stderr
         self._chunks: queue.Queue[bytes] = queue.Queue(maxsize=64)
         self._tail = bytearray()
