@@ -15,10 +15,10 @@ find_python() {
             return
         fi
     done
-    fail "TiniScript needs Python 3.10 or newer. On Debian and Ubuntu: sudo apt-get install python3-venv"
+    return 1
 }
 
-# Debian and Ubuntu keep a part of venv in a package of its own.
+# Debian and Ubuntu keep a part of venv in a package of its own; it brings a Python, too.
 install_venv() {
     command -v apt-get >/dev/null 2>&1 ||
         fail "This Python cannot make virtual environments (no ensurepip). Install that part of it."
@@ -58,7 +58,13 @@ debian_packages() {
 make_venv() {
     found="$PYTHON"
     if ! "$found" -m pip --version >/dev/null 2>&1; then
-        found=$(find_python)
+        found=$(find_python) || found=""
+        if [ -z "$found" ] && command -v apt-get >/dev/null 2>&1; then
+            install_venv
+            found=$(find_python) || found=""
+        fi
+        [ -n "$found" ] ||
+            fail "TiniScript needs Python 3.10 or newer. On Debian and Ubuntu: sudo apt-get install python3-venv"
         "$found" -c 'import ensurepip' 2>/dev/null || install_venv
     fi
     "$found" "$ROOT/tools/environment.py" "$1" || exit 2

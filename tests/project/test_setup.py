@@ -113,6 +113,31 @@ def test_the_shell_leaves_the_work_to_python(tmp_path: Path) -> None:
     assert done.stdout == f"{tmp_path / 'tools' / 'environment.py'} [test]\n"
 
 
+@pytest.mark.parametrize(("has_apt", "code"), [(True, 0), (False, 2)])
+def test_a_debian_without_any_python_gets_one(has_apt: bool, code: int, tmp_path: Path) -> None:
+    tools, programs = tmp_path / "tools", tmp_path / "bin"
+    tools.mkdir()
+    programs.mkdir()
+    shutil.copy(ROOT / "tools" / "venv.sh", tools)
+    for name in ("sh", "dirname", "id", "chmod"):
+        (programs / name).symlink_to(shutil.which(name) or name)
+    python = programs / "python3"
+    if has_apt:
+        brings = f'printf "#!/bin/sh\\n" >{python}; chmod +x {python}'
+        apt = f'#!/bin/sh\ncase "$*" in *"install -y"*python3-venv*) {brings};; esac\n'
+        (programs / "apt-get").write_text(apt)
+        (programs / "apt-get").chmod(0o755)
+        (programs / "sudo").write_text('#!/bin/sh\n"$@"\n')
+        (programs / "sudo").chmod(0o755)
+    script = tools / "script.sh"
+    script.write_text('set -eu\n. "$(dirname "$0")/venv.sh"\nmake_venv "[test]"\n')
+    done = subprocess.run([programs / "sh", script], capture_output=True, text=True,
+                          env={"PATH": str(programs), "LC_ALL": "C"})  # fmt: skip
+    assert done.returncode == code, done.stderr
+    assert ("needs Python 3.10 or newer" in done.stderr) != has_apt
+    assert python.exists() == has_apt
+
+
 # -- tools/try.py, for every system
 
 
