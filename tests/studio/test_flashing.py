@@ -42,7 +42,7 @@ def flashed(port: str, board: str, file: Path, *cancelled: str) -> str:
 
 
 def hex_file(folder: Path, data: bytes) -> Path:
-    rows = []
+    rows = [b"\2\0\0\4\0\0\xfa", b"\2\0\0\2\0\0\xfc"]  # as linkers write them: what follows is at 0
     for at in range(0, len(data), 16):
         part = data[at : at + 16]
         row = bytes([len(part), at >> 8, at & 255, 0]) + part

@@ -47,6 +47,11 @@ def test_the_first_time_that_differs_is_told() -> None:
     assert (found.what, found.agreed, found.line) == ("time", 2, 3)
 
 
+def test_a_quarter_of_a_second_and_a_twentieth_of_the_time_are_the_same_time() -> None:
+    assert parting((281, "SHOW 1"), text="SHOW(1)") == Parting("same", 1)  # the virtual one: 17
+    assert parting((282, "SHOW 1"), text="SHOW(1)").what == "time"
+
+
 def test_who_goes_on_alone_is_told() -> None:
     found = parting(*LINES[:2], (9000, "STOPPED"))
     assert (found.what, found.agreed, found.line) == ("virtual_more", 2, 3)

@@ -1,4 +1,4 @@
-"""`tsc run`: prints the trace of a simulated robot."""
+"""`tsc run`: prints the trace of a simulated robot, or compares a robot with the virtual one."""
 
 from __future__ import annotations
 
@@ -29,6 +29,12 @@ def run(options: Namespace, language: str) -> int:
     seed = whole_number("--seed", options.seed, 1, 1, 2**32 - 1, language)
     given = inputs.program(options)
     robot = inputs.robot(options, language)
+    if options.replay is not None:
+        from tiniscript.cli.robot.replay import replay
+
+        return replay(given, robot, options, language)
+    if options.world is not None:
+        raise CommandError(2, "world_without_replay")
     lists = sensor_lists(options.sensor, robot, language)
     ready = images.ready(given, robot, language)
     if ready is None:

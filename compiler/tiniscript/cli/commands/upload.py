@@ -34,6 +34,9 @@ def run(options: Namespace, language: str) -> int:
     ready = _ready(given, robot, options, is_open)
     if ready is None:
         return 1
+    is_followed = ready.image.start == "SI" and not (options.no_run or options.detach)
+    if options.record is not None and (is_many or not is_followed):
+        raise CommandError(2, "record_follows")
     if is_many:
         _keep_map(ready)
         from tiniscript.cli.robot.fleet_upload import upload_to_many
@@ -90,6 +93,13 @@ def _upload(
     finally:
         progress.end()
     printer = connection.event_printer(options.json, ready.places)
+    recorder = None
+    if options.record is not None:
+        from tiniscript.cli.robot.recorder import Recorder
+
+        robot = connection.profile.name
+        recorder = Recorder(options.record, values.program, robot, has_begun=True)
+        printer.rows = recorder.add
     saving = Saving(connection, printer, values)
     try:
         if options.json:
@@ -109,6 +119,13 @@ def _upload(
         if connection.stop_unseen():
             saving.wait_unseen()
         raise
+    except CommandError:
+        if recorder is not None:
+            recorder.end("LOST")
+        raise
+    finally:
+        if recorder is not None:
+            recorder.close()
 
 
 def _keep_map(ready: images.Ready) -> None:

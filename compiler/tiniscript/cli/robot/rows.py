@@ -1,4 +1,6 @@
-"""Rows of events in a CSV file: what `tsc monitor` and `tsc class show` write with `--csv`."""
+"""Rows of events in a CSV file: what `tsc monitor` and `tsc class show` write with `--csv`.
+
+And lines of a recording."""
 
 from __future__ import annotations
 
@@ -15,11 +17,13 @@ from tiniscript.cli.inputs import shown
 class Rows:
     """A file that begins with the row `first`; until that is there, the old file stays.
 
-    Threads may add rows at once. Both raise CommandError where the file cannot be written.
+    Threads may add rows at once. All raise CommandError where the file cannot be written, with
+    the sentence `failure`.
     """
 
-    def __init__(self, name: str, first: bytes) -> None:
+    def __init__(self, name: str, first: bytes, failure: str = "unwritable_rows") -> None:
         self._name = name
+        self._key = failure
         self._lock = Lock()
         try:
             path = Path(name)
@@ -41,10 +45,18 @@ class Rows:
         except (OSError, ValueError) as why:
             raise self._failure(why) from None
 
+    def line(self, whole: str) -> None:
+        try:
+            with self._lock:
+                self._file.write(whole + "\n")
+                self._file.flush()
+        except (OSError, ValueError) as why:
+            raise self._failure(why) from None
+
     def close(self) -> None:
         with suppress(OSError):  # a write failure was told already
             self._file.close()
 
     def _failure(self, why: Exception) -> CommandError:
         reason = why.strerror if isinstance(why, OSError) and why.strerror else str(why)
-        return CommandError(2, "unwritable_rows", file=shown(self._name), why=reason)
+        return CommandError(2, self._key, file=shown(self._name), why=reason)

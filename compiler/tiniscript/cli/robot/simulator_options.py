@@ -62,7 +62,7 @@ def made(
     try:
         return VirtualRobot(profile.speaking(language), world, settings, memory)
     except WorldRefused as refused:
-        raise _refused(world.name, refused, language) from None
+        raise refused_world(world.name, refused, language) from None
 
 
 def world_of(options: Namespace, language: str) -> World:
@@ -74,10 +74,11 @@ def world_of(options: Namespace, language: str) -> World:
     try:
         return worlds.load(name)
     except WorldRefused as refused:
-        raise _refused(name, refused, language) from None
+        raise refused_world(name, refused, language) from None
 
 
-def _refused(name: str, refused: Exception, language: str) -> CommandError:
+def refused_world(name: str, refused: Exception, language: str) -> CommandError:
+    """Return why the robot or a file of a world is refused."""
     from tiniscript.virtual.world import WorldRefused
     from tiniscript.virtual.world_refusals import describe
 

@@ -224,6 +224,7 @@ def _plain(value: object) -> object:
 _LATER = (
     ("checking", "CHECK_TEXTS"),
     ("robot", "LINK_TEXTS"),
+    ("recordings", "RECORDING_TEXTS"),
     ("simulator", "VIRTUAL_TEXTS"),
     ("owners", "OWNER_TEXTS"),
     ("firmware", "FLASH_TEXTS"),

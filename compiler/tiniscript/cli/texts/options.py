@@ -65,6 +65,8 @@ MAP = Kind("file", writes="unwritable_map")
 PICTURE = Kind("file", writes="unwritable_picture")
 REPORT = Kind("file", writes="unwritable_report")
 ROWS = Kind("file", writes="unwritable_rows")
+RECORDING = Kind("file", writes="unwritable_recording")
+OLD_RECORDING = Kind("file", reads="path_recording")
 KEYS = Kind("file", reads="path_keys")
 NEW_KEYS = Kind("file", writes="unwritable_keys")
 MEMORY = Kind("file", reads="path_memory", writes="unwritable_memory")
@@ -150,6 +152,8 @@ OPTIONS: tuple[Option, ...] = (
     Option("--show", "run", ("on a terminal: draws the way and the values as they come", "en una terminal: dibuja el camino y los valores según llegan")),
     Option("--pace", "run", ("with --show: N times as fast as the robot (1); 0 is as fast as possible", "con --show: N veces más rápido que el robot (1); 0 es lo más rápido posible"), NUMBER, N),
     Option("--machine", "run", ("which machine runs it: the one in Python, or the robot's own, in C++", "qué máquina lo ejecuta: la de Python, o la del robot mismo, en C++"), MACHINE, ("python|cpp", "python|cpp")),
+    Option("--replay", "run", ("compares it with the recording of a robot's run, on the virtual robot, and says where the two part", "lo compara con la grabación de una ejecución de un robot, en el robot virtual, y dice dónde se separan"), OLD_RECORDING, A_FILE),
+    Option("--world", "run", ("with --replay: the world of the virtual robot: obstacles, line, light, or a file (obstacles)", "con --replay: el mundo del robot virtual: obstacles, line, light, o un archivo (obstacles)"), WORLD, A_ROBOT),
     # another machine or robot
     Option("--machine", "conform", ("a machine of your own: the command that starts it", "una máquina tuya: el comando que la inicia"), TEXT, ("COMMAND", "COMANDO")),
     Option("--only", "conform", ("only the cases that have this in their name", "solo los casos que tienen esto en su nombre"), TEXT, A_TEXT),
@@ -178,6 +182,7 @@ OPTIONS: tuple[Option, ...] = (
     Option("--no-run", "upload class", ("sends the program, and does not start it", "envía el programa y no lo inicia")),
     Option("--no-save", "upload class", ("the robot forgets it when it is switched off", "el robot lo olvida cuando se apaga")),
     Option("--detach", "upload start class", ("starts it and leaves: it goes on without tsc", "lo inicia y se va: sigue sin tsc")),
+    Option("--record", "upload", ("writes what the robot tells of its run, and when: for `tsc run`, and for the studio", "escribe lo que dice el robot de su ejecución, y cuándo: para `tsc run` y para el estudio"), RECORDING, A_FILE),
     Option("--ask", "ports", ("opens each and says which robot answers there; searches with Bluetooth LE and in the network, too", "abre cada uno y dice qué robot responde ahí; busca también por Bluetooth LE y en la red")),
     Option("--count", "ping", ("how many round trips (10)", "cuántas idas y vueltas (10)"), NUMBER, N),
     Option("--plot", "monitor", ("on a terminal: draws the values of the last 30 seconds as a curve", "en una terminal: dibuja los valores de los últimos 30 segundos como una curva")),

@@ -1,0 +1,69 @@
+"""Compares a recording with the same run on the virtual robot: `tsc run --replay`."""
+
+from __future__ import annotations
+
+from argparse import Namespace
+from typing import TYPE_CHECKING
+
+from tiniscript.cli import inputs
+from tiniscript.cli.errors import CommandError
+from tiniscript.cli.texts.common import text
+
+if TYPE_CHECKING:
+    from tiniscript.robots.profile import Robot
+    from tiniscript.studio.recordings import Parting, Recorded, Recording
+
+SAME = ("same", "missed")
+
+
+def replay(given: inputs.Input, robot: Robot, options: Namespace, language: str) -> int:
+    """Say where a robot and the virtual one part; return the exit code: 1 where they do."""
+    from tiniscript import robots
+    from tiniscript.cli.robot.simulator_options import not_installed, refused_world, world_of
+    from tiniscript.virtual.world import WorldRefused
+
+    if given.is_image:
+        raise CommandError(2, "replay_text")
+    if options.robot not in (None, *robots.names()):
+        raise CommandError(2, "replay_robot", known=", ".join(robots.names()))
+    recording = _read(options.replay)
+    world = world_of(options, language)
+    try:
+        from tiniscript.studio import recordings
+
+        found = recordings.replay(recording, given.data, robot.name, world)
+    except WorldRefused as refused:
+        raise refused_world(world.name, refused, language) from None
+    except (ImportError, OSError, RuntimeError) as why:  # missing, or not for this computer
+        raise not_installed("virtual_needs_wasmtime", why) from None
+    print(sentence(found, language))
+    return int(found.what not in SAME)
+
+
+def _read(name: str) -> Recording:
+    from tiniscript.studio.recordings import BadRecording, read
+
+    try:
+        return read(inputs.file(name).data)
+    except BadRecording as bad:
+        raise CommandError(
+            2, f"recording_{bad.reason}", file=inputs.shown(name), line=str(bad.line)
+        ) from None
+
+
+def sentence(found: Parting, language: str) -> str:
+    """Return what a person reads of a comparison."""
+    place = text("replay_line" if found.line else "replay_end", language)
+    return text(f"replay_{found.what}", language).format(
+        count=found.agreed,
+        place=place.format(line=found.line),
+        robot=_told(found.robot, language),
+        virtual=_told(found.virtual, language),
+    )
+
+
+def _told(event: Recorded | None, language: str) -> str:
+    if event is None:
+        return ""
+    what = event.event.removeprefix("SHOW ")
+    return text("replay_at", language).format(what=what, seconds=f"{event.ms / 1000:.1f}")

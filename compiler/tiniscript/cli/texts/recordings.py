@@ -1,0 +1,36 @@
+"""The sentences about recordings of a run, in English and Spanish."""
+
+from __future__ import annotations
+
+RECORDING_TEXTS = {
+    "path_recording": ("the recording", "la grabación"),
+    "unwritable_recording": ("tsc: {file} cannot be written: {why}. Make room, or choose another place with --record.",
+                             "tsc: no se puede escribir {file}: {why}. Haz espacio, o elige otro lugar con --record."),
+    "record_follows": ("tsc: --record is for one run that tsc follows: a program that begins with SI, without --detach, --no-run or --all",
+                       "tsc: --record es para una ejecución que tsc sigue: un programa que empieza con SI, sin --detach, --no-run ni --all"),
+    "world_without_replay": ("tsc: --world is for --replay: without it nothing is in a world", "tsc: --world es para --replay: sin él no hay ningún mundo"),
+    "replay_text": ("tsc: --replay needs the program as text, to say at which line the two part", "tsc: --replay necesita el programa como texto, para decir en qué línea se separan"),
+    "replay_robot": ("tsc: --replay is for the robots that tsc brings: {known}", "tsc: --replay es para los robots que trae tsc: {known}"),
+    "recording_unreadable": ("tsc: {file} is damaged, or no recording (line {line}). Choose one that tsc upload --record or the studio has saved.",
+                             "tsc: {file} está dañado o no es una grabación (línea {line}). Elige una que haya guardado tsc upload --record o el estudio."),
+    "recording_other_version": ("tsc: {file} comes from a newer tsc. Install that one, then compare again.",
+                                "tsc: {file} viene de un tsc más nuevo. Instálalo y compara otra vez."),
+    "recording_too_long": ("tsc: {file} is too long (line {line}): ten minutes at most", "tsc: {file} es demasiado largo (línea {line}): diez minutos como máximo"),
+    "replay_same": ("Both did the same: {count} times the robot said what the virtual one says.",
+                    "Los dos hicieron lo mismo: {count} veces el robot dijo lo que dice el virtual."),
+    "replay_missed": ("Then values of the robot did not arrive, so nothing after that is compared. Before that both were the same ({count} times).",
+                      "Después no llegaron valores del robot, y desde ahí no se compara. Hasta ahí los dos iban igual ({count} veces)."),
+    "replay_value": ("{place}: the robot says {robot}, the virtual one {virtual}. Before that both were the same ({count} times).",
+                     "{place}: el robot dice {robot}; el virtual, {virtual}. Hasta ahí los dos iban igual ({count} veces)."),
+    "replay_time": ("{place}: the robot got there at another time. The robot says {robot}, the virtual one {virtual}.",
+                    "{place}: el robot llegó ahí en otro momento. El robot dice {robot}; el virtual, {virtual}."),
+    "replay_robot_more": ("{place}: the robot says {robot}, the virtual one nothing more. Before that both were the same ({count} times).",
+                          "{place}: el robot dice {robot}; el virtual, nada más. Hasta ahí los dos iban igual ({count} veces)."),
+    "replay_virtual_more": ("{place}: the virtual robot says {virtual}, the real one nothing more. Before that both were the same ({count} times).",
+                            "{place}: el robot virtual dice {virtual}; el de verdad, nada más. Hasta ahí los dos iban igual ({count} veces)."),
+    "replay_other_program": ("The recording is of another program. Name the program that ran then, for the same robot.",
+                             "La grabación es de otro programa. Indica el programa que marchaba entonces, para el mismo robot."),
+    "replay_line": ("Line {line}", "Línea {line}"),
+    "replay_end": ("The end", "El final"),
+    "replay_at": ("{what} after {seconds} s", "{what} a los {seconds} s"),
+}  # fmt: skip

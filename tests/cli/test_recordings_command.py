@@ -1,0 +1,168 @@
+"""`tsc upload --record` and `tsc run --replay`: the same files as those of the studio."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from tests.support.command import Tsc, process
+from tests.support.virtual_robot import missing
+from tiniscript import compile
+from tiniscript.cli.errors import CommandError
+from tiniscript.cli.made import is_foreign
+from tiniscript.cli.robot import recorder
+from tiniscript.cli.robot.recorder import Recorder
+from tiniscript.studio import recordings
+from tiniscript.studio.recordings import Recorded, read
+
+pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")
+TEXT = "SI|W(0.2); SHOW(5);\nX = 0; W(0.2);\nSHOW(1 / X)"
+CHECKSUM = compile(TEXT).checksum
+
+
+def of_the_page(*events: tuple[int, str]) -> bytes:
+    """Return a file as the studio's page writes it."""
+    head = {"tiniscript_recording": 1, "program": f"{CHECKSUM:08x}", "robot": "tinibot"}
+    rows = [head, *({"ms": ms, "event": event} for ms, event in events)]
+    return "".join(json.dumps(row, separators=(",", ":")) + "\n" for row in rows).encode()
+
+
+def test_a_run_is_recorded_and_compared(tsc: Tsc, tmp_path: Path) -> None:
+    program, file = tmp_path / "p.ts", tmp_path / "run.jsonl"
+    program.write_text(TEXT)
+    done = process("upload", program, "--virtual", "--record", file)
+    assert (done.code, "3" in done.err) == (1, True)
+    found = read(file.read_bytes())
+    assert found.program == CHECKSUM
+    assert [each.event for each in found.events] == ["SHOW 5", "FAULT DIVIDE_BY_ZERO"]
+    assert 0 < found.events[0].ms <= found.events[1].ms < 2000
+    assert not is_foreign(file)
+    done = tsc("run", program, "--replay", file)
+    assert (done.code, done.out) == (
+        0, "Both did the same: 2 times the robot said what the virtual one says.\n",
+    )  # fmt: skip
+    file.write_bytes(file.read_bytes().replace(b"SHOW 5", b"SHOW 6"))
+    done = tsc("run", program, "--replay", file, "--world", "line", "--lang", "es")
+    assert done.code == 1
+    assert done.out.startswith("Línea 1: el robot dice 6 a los 0.")
+    assert "el virtual, 5 a los 0.2 s" in done.out
+
+
+@pytest.mark.parametrize(
+    ("events", "code", "said"),
+    [
+        (((200, "SHOW 5"), (400, "FAULT DIVIDE_BY_ZERO")), 0, "Both did the same: 2 times"),
+        (((200, "SHOW 5"), (300, "LOST")), 0, "Both did the same: 1 times"),
+        (((200, "SHOW 5"), (400, "MISSED")), 0, "Then values of the robot did not arrive"),
+        (((900, "SHOW 5"),), 1, "Line 1: the robot got there at another time."),
+        (((200, "SHOW 5"), (400, "DONE")), 1, "Line 3: the robot says DONE after 0.4 s"),
+        (((200, "SHOW 5"), (9000, "STOPPED")), 1, "Line 3: the virtual robot says FAULT"),
+    ],
+)
+def test_a_recording_of_the_page_is_compared(
+    tsc: Tsc, tmp_path: Path, events: tuple[tuple[int, str], ...], code: int, said: str
+) -> None:
+    file = tmp_path / "run.jsonl"
+    file.write_bytes(of_the_page(*events))
+    assert not is_foreign(file)
+    done = tsc("run", "-e", TEXT, "--replay", file)
+    assert (done.code, done.out[: len(said)]) == (code, said)
+    done = tsc("run", "-e", "SHOW(5)", "--replay", file)
+    assert (done.code, done.out[:39]) == (1, "The recording is of another program. Na")
+
+
+@pytest.mark.parametrize(
+    ("data", "said", "dicho"),
+    [
+        (b"a letter", "is damaged, or no recording (line 1)", "no es una grabación (línea 1)"),
+        (of_the_page((5, "SHOW 1"))[:-4], "(line 2)", "(línea 2)"),
+        (b'{"tiniscript_recording": 2}', "comes from a newer tsc", "viene de un tsc más nuevo"),
+        (of_the_page((999_999, "DONE")), "ten minutes at most", "diez minutos como máximo"),
+        (b" " * 1_100_000, "is too long", "es demasiado largo"),
+    ],
+    ids=["letter", "cut", "newer", "long", "large"],
+)
+def test_a_file_that_cannot_be_compared_says_why(
+    tsc: Tsc, tmp_path: Path, data: bytes, said: str, dicho: str
+) -> None:
+    file = tmp_path / "run.jsonl"
+    file.write_bytes(data)
+    for language, words in (("en", said), ("es", dicho)):
+        done = tsc("run", "-e", TEXT, "--replay", file, "--lang", language)
+        assert (done.code, done.out) == (2, "")
+        assert words in done.err and "Traceback" not in done.err
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("run", "-e", TEXT, "--world", "line"), "--world is for --replay"),
+        (("run", "p.bin", "--replay", "r"), "needs the program as text"),
+        (("run", "-e", TEXT, "--replay", "nowhere"), "there is no file nowhere"),
+        (("run", "-e", TEXT, "--replay", "r", "--world", "nowhere"), "nowhere"),
+        (("run", "-e", TEXT, "--replay", "r", "--robot", "own.toml"), "robots that tsc brings"),
+        (("upload", "-e", "SB|S", "--record", "r"), "--record is for one run that tsc follows"),
+        (("upload", "-e", TEXT, "--detach", "--record", "r"), "--record is for one run"),
+        (("upload", "-e", TEXT, "--no-run", "--record", "r"), "--record is for one run"),
+        (("upload", "-e", TEXT, "--all", "--record", "r"), "--record is for one run"),
+        (("upload", "-e", TEXT, "--virtual", "--record", "letter"), "tsc has not made it"),
+    ],
+)
+def test_what_is_not_recorded_or_compared_says_why(
+    tsc: Tsc, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, words: tuple[str, ...], said: str
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert tsc("compile", "-e", TEXT, "-o", "p.bin").code == 0
+    Path("own.toml").write_text(Path(recordings.__file__).parents[1].joinpath(
+        "robots/tinibot.toml").read_text(encoding="utf-8"), encoding="utf-8")  # fmt: skip
+    Path("letter").write_bytes(b"a letter")
+    Path("r").write_bytes(of_the_page((5, "SHOW 5")))
+    done = tsc(*words)
+    assert (done.code, done.out) == (2, "")
+    assert said in done.err and "Traceback" not in done.err
+    assert Path("r").read_bytes() == of_the_page((5, "SHOW 5"))
+
+
+def recorded(file: Path) -> list[str]:
+    return [each.event for each in read(file.read_bytes()).events]
+
+
+def test_a_recording_has_an_end_and_no_more(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    file = tmp_path / "run.jsonl"
+    for ends, wanted in (
+        ((), ["SHOW 1", "STOPPED"]),
+        ((("MISSED", "3"), ("SHOW", "2"), ("DONE", "")), ["SHOW 1", "MISSED"]),
+        ((("TEXT", "hello"), ("STOPPED", "BUTTON"), ("DONE", "")), ["SHOW 1", "STOPPED"]),
+    ):
+        made = Recorder(str(file), CHECKSUM, "tinibot", has_begun=True)
+        made.add(7, "SHOW", "1")
+        for event in ends:
+            made.add(7, *event)
+        made.close()
+        assert recorded(file) == wanted
+    monkeypatch.setattr(recorder, "MOST", 3)
+    made = Recorder(str(file), CHECKSUM, "tinibot", has_begun=False)
+    for k in range(9):
+        made.add(7, "SHOW", str(k))
+    made.end("LOST")
+    made.close()
+    assert recorded(file) == ["SHOW 0", "SHOW 1", "STOPPED"]
+    assert read(file.read_bytes()).events[0] == Recorded(0, "SHOW 0")  # it began with that
+    made = Recorder(str(file), CHECKSUM, "tinibot", has_begun=True)
+    monkeypatch.setattr(recorder, "monotonic", lambda: 1e9)
+    made.add(7, "SHOW", "1")
+    made.close()
+    assert recorded(file) == ["STOPPED"]  # it is as long as one may be
+
+
+def test_a_place_without_room_says_so(tmp_path: Path) -> None:
+    with pytest.raises(CommandError) as refused:
+        Recorder(str(tmp_path / "no" / "run.jsonl"), CHECKSUM, "tinibot", has_begun=True)
+    assert "with --record" in refused.value.sentence("en")
+    if Path("/dev/full").exists():
+        with pytest.raises(CommandError, match="unwritable_recording"):
+            Recorder("/dev/full", CHECKSUM, "tinibot", has_begun=True)
