@@ -215,3 +215,13 @@ def test_examples_have_no_mistakes(capsys: pytest.CaptureFixture[str]) -> None:
         assert main(["fmt", "--check", str(example)]) == 0
         assert main(["run", str(example), "--robot", robot, "--max-time", "5"]) == 0
         capsys.readouterr()
+
+
+@pytest.mark.parametrize("base", ["compiler/tiniscript", "vm_arduino/src", "tools"])
+def test_the_house_has_a_row_for_every_folder(base: str) -> None:
+    house = (ROOT / "docs" / "house.md").read_text(encoding="utf-8")
+    places = "".join(re.findall(r"(?m)^\| (`.*?) \|", house))
+    folders = {path.parent.relative_to(ROOT).as_posix() for path in ROOT.glob(f"{base}/*/*.*")}
+    folders = {name for name in folders if not name.endswith("__pycache__")}
+    assert len(folders) > 5
+    assert {name for name in folders if f"`{name}/`" not in places} == set()
