@@ -100,6 +100,20 @@ _REASONS: dict[str, tuple[tuple[str, str], ...]] = {
         ("for each, its in zip(arguments[forever:], word.arguments[forever:], strict=True)",
          "for each, its in zip(arguments[forever:], word.arguments[forever:], strict=False)"),
     ),
+    "a row of a HEX file has five bytes at least": (
+        ("const [count = 0, high = 0, low = 0, kind = 0] = found;",
+         "const [count = 0, high = 0, low = 0, kind = 1] = found;"),
+    ),
+    "a board answers at once, or not at all": (
+        ("const ANSWER_MS = 1000;",
+         "const ANSWER_MS = 1001;"),
+        ("if (left <= 0) break;",
+         "if (left <= 1) break;"),
+    ),
+    "whoever cannot write hears that the cable has gone, too": (
+        ("} catch { this.#isGone = true;",
+         "} catch { ;"),
+    ),
 }
 # fmt: on
 
