@@ -30,6 +30,8 @@ class Backlog:
 
     def put(self, told: Iterable[Told]) -> None:
         for each in told:
+            if each[1].name == "PLACE":  # the newest one says all
+                self._events = deque(one for one in self._events if one[1].name != "PLACE")
             self._events.append(each)
             if len(self._events) > KEPT:
                 self._drop()

@@ -117,6 +117,10 @@ class LinkConnection(Heard, Protocol):
         """Return the next event and its arrival time (ms), or None after the time limit."""
         ...
 
+    def tell_places(self) -> None:
+        """Have PLACE events come from now on, from a robot that tells where its program is."""
+        ...
+
     def stop(self) -> None:
         """Stop the robot. The event STOPPED follows when the robot has confirmed."""
         ...

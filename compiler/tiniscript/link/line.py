@@ -60,6 +60,7 @@ class Line:
         self._listener: Callable[[list[Told]], None] | None = None
         self._gone: str | None = None
         self._bug: Exception | None = None
+        self._takes_places = False
         self._is_closing = False
         self._thread = Thread(target=self._run, name="link", daemon=True)
         self._thread.start()
@@ -114,6 +115,10 @@ class Line:
         with self._news:
             self.session.stop(now_ms())
         self._wake()
+
+    def tell_places(self) -> None:
+        """Have PLACE events come from now on: where the program is, while one runs."""
+        self._takes_places = self.session.tells_places = True
 
     def tell(self, event: Event) -> None:
         """Add an event of this process to those that `event` returns."""
@@ -210,7 +215,8 @@ class Line:
         if over:
             self._under_way = [request for request in self._under_way if request.outcome is None]
         self.is_echoed = self.is_echoed or any(event.name == "ECHO" for _, event in told)
-        self._events.put(told)
+        mine = [each for each in told if self._takes_places or each[1].name != "PLACE"]
+        self._events.put(mine)
         self._news.notify_all()
         if self._listener is not None and (told or over):
             self._listener(told)

@@ -89,6 +89,9 @@ class Client:
             self._listen(limit_s)
         return self._events.popleft() if self._events else None
 
+    def tell_places(self) -> None:
+        self._send({"do": "places"})
+
     def stop(self) -> None:
         self._send({"do": "stop"})
 

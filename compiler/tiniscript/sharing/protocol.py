@@ -8,6 +8,7 @@
                                                  {"id": 1, "status": 0, "detail": 0, "values": {..},
                                                   "heard": 99, "is_echoed": false}
                                                  {"event": "SHOW", "ms": 1234, "values": {..}}
+    {"do": "places"}                             {"event": "PLACE", "ms": 1234, "values": {..}}
     {"do": "stop"}
     {"do": "beat"}                               {"beat": true}
                                                  {"over": "ended", "why": ""}

@@ -57,6 +57,7 @@ class ConnectedClient:
         self.requests: dict[int, ServedRequest] = {}
         self.out = bytearray()
         self.missed = 0  # number of events
+        self.takes_places = False
 
 
 class ServedRequest(NamedTuple):
@@ -215,6 +216,8 @@ class Server:
             self._line.stop()
         elif action == "beat":
             self._send(client, {"beat": True})
+        elif action == "places":
+            client.takes_places = self._line.session.tells_places = True
         else:
             self._begin(client, message)
 
@@ -304,6 +307,8 @@ class Server:
                     self._tell_event(client, time_ms, event)
 
     def _tell_event(self, client: ConnectedClient, time_ms: int, event: Event) -> None:
+        if event.name == "PLACE" and not (client.takes_places and len(client.out) <= FULL_BYTES):
+            return
         if len(client.out) > FULL_BYTES and event.name in _MAY_MISS:
             client.missed += 1
             return

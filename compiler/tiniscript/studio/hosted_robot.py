@@ -33,7 +33,7 @@ HEARD_S = 0.5  # a page that is silent for longer does not drive
 LEFT_S = 3.0  # a page that is silent for longer has left
 LOOK_S = 0.02
 KEPT = 1000  # news for a page that does not fetch them
-_MAY_MISS = ("SHOW", "TEXT")
+_MAY_MISS = ("SHOW", "TEXT", "PLACE")
 
 
 class HostedRobot:

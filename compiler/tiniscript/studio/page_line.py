@@ -92,6 +92,9 @@ class PageLine:
     def event(self, limit_s: float = 0) -> tuple[int, Event] | None:
         return self._events.take() if self._events else None
 
+    def tell_places(self) -> None:
+        self.session.tells_places = True
+
     def stop(self) -> None:
         self.session.stop(self.now_ms)
 

@@ -62,6 +62,8 @@ class Connection(Heard, Protocol):
 
     def event(self, limit_s: float = ...) -> tuple[int, Event] | None: ...
 
+    def tell_places(self) -> None: ...
+
     def stop(self) -> None: ...
 
 
@@ -78,6 +80,7 @@ class RobotLink:
     def __init__(self, connection: Connection, language: str) -> None:
         self.language = language
         self._connection = connection
+        connection.tell_places()
         self._asked: list[_Asked] = []
         self._answers: list[Json] = []
         # The numbers of runs: which the page has started, which was the last to begin, and to end.
@@ -201,6 +204,8 @@ class RobotLink:
             found |= _fault(event.fault, event.at, event.program)
         elif event.name == "STOPPED":
             found["cause"] = CAUSES[event.cause if event.cause < len(CAUSES) else 0][0]
+        elif event.name == "PLACE":
+            found |= {"at": event.at, "program": f"{event.program:08x}"}
         elif event.name == "MISSED":
             found["count"] = event.count
         elif event.name == "TEXT":

@@ -11,6 +11,7 @@ from collections.abc import Callable
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from tiniscript.bytecode.image import checksum
 from tiniscript.diagnostics.rendering import Message
 from tiniscript.studio import checking
 from tiniscript.studio.block_form import data_of, from_data, size_of
@@ -36,6 +37,7 @@ def _check(fields: Answer, data: bytes) -> Answer:
     found = checking.check(data, fields["robot"], fields["language"])
     return {
         "image": found.image.hex(),
+        "program": f"{checksum(found.image):08x}" if found.image else "",
         "bytes": found.code_bytes,
         "findings": [
             {**each.message._asdict(), "repair": [change._asdict() for change in each.repair]}

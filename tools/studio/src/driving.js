@@ -4,7 +4,7 @@ import { Arena } from './arena.js';
 import { element } from './elements.js';
 import { faultSaid } from './faults.js';
 import { download } from './files.js';
-import { offsetsOf } from './parts.js';
+import { offsetsOf, rangeAt } from './parts.js';
 import { Plot } from './plot.js';
 import { Simulator } from './simulator.js';
 import { text } from './texts.js';
@@ -286,20 +286,16 @@ export class Driving {
     this.#showValues();
     this.#plot.draw();
     this.#arena.draw(state);
-    const place = this.#place();
-    const [, line = 0, column = 0, end_line = 0, end_column = 0] = place ?? [];
-    const end = end_line > line ? { end_line: line, end_column: Infinity } : { end_line, end_column }; // of a block its head
-    const range = place ? { line, column, ...end } : null;
+    const range = this.#place();
     this.#editor.showRunning(range, Boolean(state?.is_held));
     this.#editor.showFault(state?.fault ? range : null, state?.fault ? faultSaid(state.fault) : '');
     document.documentElement.dataset['phase'] = phase;
   }
 
-  /** What runs in the text that is seen, or what had a fault. @returns {Checked['places'][0] | undefined} */
+  /** What runs in the text that is seen, or what had a fault. */
   #place() {
     const { state } = this.#simulator;
-    const at = state?.fault ? state.fault_at : state?.at;
-    return at == null ? undefined : this.#places.findLast(([offset]) => offset <= at);
+    return rangeAt(this.#places, state?.fault ? state.fault_at : state?.at);
   }
 
   /** Keeps for the curves what is to be seen. @param {import('./python.js').RobotState} state */
@@ -326,11 +322,11 @@ export class Driving {
     if (phase === 'off' || !state) return text('robot_off');
     if (state.fault) {
       const what = faultSaid(state.fault);
-      const line = this.#place()?.[1];
+      const line = this.#place()?.line;
       return line ? text('say_fault', { line, what }) : text('robot_fault', { what });
     }
     if (this.#wasStopped) return text('robot_stopped');
-    const held = state.is_held && this.#place()?.[1];
+    const held = state.is_held && this.#place()?.line;
     if (phase === 'paused' && held) return text('robot_held', { line: held });
     if (phase === 'paused') return text('robot_paused');
     if (phase === 'ended') return text('robot_ended');

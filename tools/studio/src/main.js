@@ -12,6 +12,7 @@ import { currentLanguage, setLanguage, text } from './texts.js';
 import { Driving } from './driving.js';
 import { Recorder } from './recorder.js';
 import { RobotPanel } from './robot_panel.js';
+import { RobotPlace } from './robot_place.js';
 import { chooseSide, showSide } from './robot_side.js';
 import { Views } from './views.js';
 import { ROBOTS } from './words.js';
@@ -54,8 +55,13 @@ const programs = new Programs(python, work, putProgram, (said) => {
 }, () => views.picture());
 
 const recorder = new Recorder({ python, text: () => editor.text, robot: () => work.robot, world: () => driving.world });
+const place = new RobotPlace({
+  program: () => (isStale() ? null : newest.answer),
+  show: (range) => views.showRunningThere(range),
+});
 const panel = new RobotPanel({
   recorder,
+  place,
   python,
   program: () => (isStale() ? null : newest.answer),
   robot: () => work.robot,
@@ -110,6 +116,7 @@ function changed() {
   document.documentElement.dataset['state'] = 'changed';
   work.text = editor.text;
   driving.forgetPlaces();
+  place.programChanged();
   views.textChanged();
   lessons.textChanged();
   remember();
@@ -166,6 +173,7 @@ function isStale() {
 function show(answer) {
   editor.showFindings(answer.findings, repair);
   editor.setPlaces(answer.places);
+  place.programChanged();
   views.showFindings(answer.findings);
   showMessages(list, answer.findings, (finding) => views.goTo(finding), repair);
   status.textContent = summary(answer.findings, answer.bytes);

@@ -7,6 +7,19 @@
 const startOf = ([, line, column]) => ({ line, column });
 
 /**
+ * What is marked of the text while a program is at a place: of a block its head.
+ * @param {Places} places
+ * @param {number | null | undefined} at an offset in the code
+ * @returns {import('./editor.js').Range | null}
+ */
+export function rangeAt(places, at) {
+  const place = at == null ? undefined : places.findLast(([offset]) => offset <= at);
+  if (!place) return null;
+  const [, line, column, end_line, end_column] = place;
+  return { line, column, ...(end_line > line ? { end_line: line, end_column: Infinity } : { end_line, end_column }) };
+}
+
+/**
  * Where a program stops that is to stop at a place: at the last part that begins there or before
  * in the same line, or else at the next one.
  * @param {Places} places

@@ -25,7 +25,8 @@
 /**
  * @typedef {object} Checked
  * @property {string} image hexadecimal; empty where there are mistakes
- * @property {number} bytes
+ * @property {string} program the image's checksum, in hexadecimal; empty where there are mistakes
+ * @property {number} bytes of code
  * @property {Finding[]} findings
  * @property {[number, number, number, number, number][]} places offset, line, column and the end
  * @property {{name: string, is_yes_no: boolean}[]} variables

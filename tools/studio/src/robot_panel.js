@@ -32,6 +32,7 @@ import { LINK, ROBOTS } from './words.js';
  * @property {(name: string) => void} setRobot
  * @property {(place: import('./editor.js').Range) => void} goTo
  * @property {import('./recorder.js').Recorder} recorder of what the robot tells
+ * @property {import('./robot_place.js').RobotPlace} place where its program is
  */
 
 export class RobotPanel {
@@ -196,7 +197,7 @@ export class RobotPanel {
     /** @type {Way | null} */
     let way = null;
     const heard = {
-      event: (/** @type {RobotEvent} */ event) => (this.#page.recorder.hear(event), this.#hear(event)),
+      event: (/** @type {RobotEvent} */ event) => (this.#page.recorder.hear(event), this.#page.place.hear(event), this.#hear(event)),
       over: (/** @type {Failed} */ why) => {
         if (this.#way && this.#way === way) this.#end(why);
       },
@@ -234,6 +235,7 @@ export class RobotPanel {
     this.#about = null;
     this.#sent = null;
     this.#page.recorder.end('LOST');
+    this.#page.place.end();
     clearTimeout(this.#confirming);
     if (why.reason === 'left') this.#speech.say('say_left');
     else this.#speech.fail(why);

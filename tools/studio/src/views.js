@@ -38,6 +38,8 @@ export class Views {
   #fault = [null, ''];
   /** @type {import('./editor.js').Range | null} */
   #running = null;
+  /** The same on the virtual robot, and on a real one. @type {[import('./editor.js').Range | null, import('./editor.js').Range | null]} */
+  #run = [null, null];
   #pane = element('blocks', HTMLElement);
   #note = element('blocks_note', HTMLElement);
   #level = element('level', HTMLSelectElement);
@@ -128,6 +130,20 @@ export class Views {
    * @param {boolean} isHeld there, so somebody wants to see it
    */
   showRunning(range, isHeld) {
+    this.#run[0] = range;
+    this.#mark(isHeld);
+  }
+
+  /** Where both robots run, this is what is seen of them, but where the virtual one is held. @param {import('./editor.js').Range | null} range */
+  showRunningThere(range) {
+    this.#run[1] = range;
+    this.#mark(false);
+  }
+
+  /** @param {boolean} isHeld */
+  #mark(isHeld) {
+    const [virtual, real] = this.#run;
+    const range = isHeld ? virtual : real ?? virtual;
     this.#running = range;
     this.#editor.showRunning(range, isHeld);
     if (!this.#isStale()) this.#blocks?.showRunning(range);

@@ -1,0 +1,62 @@
+"""Where a program is, through a port that another command holds: told to who asks for it alone."""
+
+from __future__ import annotations
+
+from time import monotonic
+
+import pytest
+
+from tests.firmware.test_host_firmware import image_of
+from tests.machines.host_firmware import missing
+from tests.support.shared_pty_robot import Shared
+from tiniscript.link.backlog import KEPT, Backlog
+from tiniscript.link.connection import LinkConnection
+from tiniscript.link.outcomes import Event, PlaceEvent
+from tiniscript.link.payloads import ShowEvent
+from tiniscript.link.requests import OK
+from tiniscript.sharing.client import joined
+
+pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
+needs_host = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
+
+
+def until_done(connection: LinkConnection) -> list[Event]:
+    """Return the events up to the end of a run."""
+    found: list[Event] = []
+    limit_s = monotonic() + 20
+    while monotonic() < limit_s:
+        told = connection.event(0.2)
+        if told is not None:
+            found.append(told[1])
+            if told[1].name == "DONE":
+                return found
+    raise AssertionError(found)
+
+
+@needs_host
+def test_a_client_that_asks_hears_places_and_others_hear_none() -> None:
+    image = image_of("SI|F(0.5, 80);R(0.5, 60)")
+    shared = Shared()
+    with shared as (pty_robot, _):
+        client, other = joined(pty_robot.port, "studio"), joined(pty_robot.port, "monitor")
+        assert client and other
+        client.tell_places()
+        assert client.wait(client.do(lambda session: session.hello())).status == OK
+        request = client.do(lambda session: session.upload(image, saves=False))
+        assert client.wait(request).status == OK
+        places = [each for each in until_done(client) if isinstance(each, PlaceEvent)]
+        assert len(places) == 2 and {each.program for each in places} == {image.checksum}
+        assert places[0].at < places[1].at < len(image.code)
+        for connection in (other, shared.line):
+            assert "PLACE" not in {each.name for each in until_done(connection)}
+        client.close()
+        other.close()
+
+
+def test_who_takes_no_events_keeps_the_newest_place_alone() -> None:
+    backlog = Backlog()
+    backlog.put((k, PlaceEvent(1, 2, k)) for k in range(2 * KEPT))
+    backlog.put([(0, ShowEvent(1, 0))])
+    assert backlog.take() == (2 * KEPT - 1, PlaceEvent(1, 2, 2 * KEPT - 1))
+    assert backlog.take()[1] == ShowEvent(1, 0)
+    assert not backlog

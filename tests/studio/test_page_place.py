@@ -1,0 +1,72 @@
+"""The line and the block that a real robot runs now, marked in the page through `tsc studio`."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from tests.studio.test_page_link import page, pages, robot, said, server  # noqa: F401
+from tests.support.studio import checked, shown, write
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Page, Route
+
+DRIVE = "F(1, 80);\nR(1, 60);\nF(1, 80)"
+
+
+def marked(page: Page, part: str) -> None:  # noqa: F811
+    page.locator(".cm-running", has_text=part).wait_for(state="attached")
+
+
+def unmarked(page: Page) -> None:  # noqa: F811
+    page.locator(".cm-running").wait_for(state="detached")
+    assert page.locator("#blocks .running").count() == 0
+
+
+def test_the_line_that_runs_is_marked_until_the_end(page: Page) -> None:  # noqa: F811
+    write(page, DRIVE)
+    page.click("#view_blocks")
+    shown(page)
+    page.click("#link_upload")
+    for part in DRIVE.split(";\n"):
+        marked(page, part)
+        assert page.locator("#blocks .blocklyDraggable.running").count() == 1
+    page.click("#view_text")
+    said(page, "Done.")
+    unmarked(page)
+
+
+def test_an_edit_takes_the_mark_away_and_its_undo_brings_it_back(page: Page) -> None:  # noqa: F811
+    write(page, "F(60, 80)")
+    page.click("#link_upload")
+    page.locator(".cm-running").wait_for()
+    page.locator(".cm-content").focus()
+    page.keyboard.press("Control+End")
+    page.keyboard.insert_text(";\nW(1)")
+    unmarked(page)
+    checked(page)
+    unmarked(page)
+    page.keyboard.press("Control+z")
+    page.locator(".cm-running").wait_for()
+    page.click("#link_leave")
+    unmarked(page)
+
+
+def test_a_place_outside_of_the_program_marks_nothing(page: Page) -> None:  # noqa: F811
+    told: list[int] = []
+
+    def changed(route: Route) -> None:
+        response = route.fetch()
+        answer = response.json()
+        for each in answer.get("news", []):
+            if each.get("event") == "PLACE":
+                each["at"] = 60_000
+                told.append(each["at"])
+        route.fulfill(response=response, json=answer)
+
+    page.route("**/robots", changed)
+    write(page, "F(60, 80)")
+    page.click("#link_upload")
+    while not told:
+        page.wait_for_timeout(20)
+    page.wait_for_timeout(200)
+    assert page.locator(".cm-running").count() == 0
