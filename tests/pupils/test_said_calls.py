@@ -39,6 +39,12 @@ from tiniscript.source import Source
         ("BEEP(440 hz, 1 s)", "BEEP(1, 440)"),
         ("BEEP(1 segundo, nota DO)", "BEEP(1, 262)"),
         ("M 50% 60%", "M(50, 60)"),
+        ("F;2;60", "F(2, 60)"),
+        ("F.2.60", "F(2, 60)"),
+        ("F_2_60", "F(2, 60)"),
+        ("F(2),(60)", "F(2, 60)"),
+        ("F(2|60)", "F(2, 60)"),
+        ("F(2 & 60)", "F(2, 60)"),
         ("beep(uno, cuatrocientos cuarenta)", "BEEP(1, 440)"),
         ("F(vel=60, t=2)", "F(2, 60)"),
         ("F2-60", "F(2, 60)"),
@@ -67,6 +73,7 @@ def test_all_that_is_said_is_in_the_call(text: str, call: str) -> None:
         "F(2, 120)",
         "F(2 potencia 80)",  # the power may be the 2
         "F(2, half)",
+        "F.1.5",  # 1.5 s, or 1 s with 5 %
         "F(2, 1velocidad)",  # a name, with its digit in front
         "F(2-60)",  # calculated
         "F(2,8 0)",
@@ -107,6 +114,8 @@ def test_what_was_not_said_is_called_an_example() -> None:
         ("SI|F 2 s 60 // gira", "SI|F(2, 60) // gira"),
         ("F(2 s; 60 %);R 1 s 40", "F(2, 60);R(1, 40)"),
         ("F 2 s 60 UNTIL(DISTANCE < 10)", "F(2, 60) UNTIL(DISTANCE < 10)"),
+        ("F;2;60;R;1;50", "F(2, 60);R(1, 50)"),
+        ("F(2|60)", "F(2, 60)"),
         ("LOOP(2)\n  F 2 s 60\nEND_LOOP", "LOOP(2)\n  F(2, 60)\nEND_LOOP"),
         ("F(2, 80)\r\nF 2 s 60\r\n", "F(2, 80)\r\nF(2, 60)\r\n"),
     ],

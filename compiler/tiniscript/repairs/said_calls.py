@@ -28,6 +28,8 @@ _ROLES = ("move", "wait", "motors", "beep", "show")
 LONGEST = 120  # characters of an instruction that are read
 _HEAD = re.compile(r"\s*\(?\s*([A-Za-z]+)(?!\.)")
 _GOES_ON = re.compile(r"\)\s*[^\s)]")  # `F(2, 80) S`
+_DOTTED = re.compile(r"^\s*([A-Za-z]+)[._]([0-9]+)[._]([1-9]0|100)\s*$")  # `F.2.80`
+_AGAIN = re.compile(r"\)\s*,?\s*\((?=\s*[0-9])")  # `F(2),(80)`
 _STOPS = re.compile(r"[0-9] +[Ss]$")  # `W 1 S`: seconds, or the command
 _DIGITS = str.maketrans("OoIl", "0011")
 _LETTERED = re.compile(r"(?<![\w.,])(?:[0-9OoIl]+(?:\.[0-9OoIl]+)?)(?![A-Za-z_])")
@@ -38,7 +40,7 @@ _PERCENT = re.compile(r"(?i)\b(por ciento|percent)\b")
 _PIECE = re.compile(
     r"(?P<number>[0-9]+(?:\.[0-9]+)?|\.[0-9]+)|(?P<word>[A-Z][A-Z_]*[0-9]*)|(?P<sign>\S)"
 )
-_BETWEEN = frozenset('()[]{}<>,;:=/"')
+_BETWEEN = frozenset('()[]{}<>,;:=/"|&')
 _SMALL = frozenset("A AL CON POR DE DURANTE EN LA EL THE AT WITH FOR OF TO Y E AND".split())  # noqa: SIM905
 _BESIDE_SENSOR = frozenset("EL LA THE DE DEL OF VALOR VALUE SENSOR EN IN CM".split())  # noqa: SIM905
 # Names of values, which stand before or behind their number.
@@ -84,6 +86,7 @@ def said_call(text: str, names: Container[str]) -> Said | None:
 
     `names` are those of the program's variables.
     """
+    text = _AGAIN.sub(",", _DOTTED.sub(r"\1 \2,\3", text[: LONGEST + 1]))
     if len(text) > LONGEST or _GOES_ON.search(text) or _STOPS.search(text):
         return None
     plain = "".join(c for c in normalize("NFKD", text) if not combining(c)).replace("、", ",")

@@ -24,6 +24,11 @@ Check = Callable[[str], Sequence[Diagnostic]]
 MANY = 20  # instructions of a text that are read
 _ENDS = re.compile(r"[;\r\n|{}]|//")
 _CLOSES = re.compile(r"[^;\r\n|{}()A-Za-z]*\)")  # `F(2;80)`
+# `F;2;80`: what stands behind the `;` is a number alone.
+_IN_PIECES = re.compile(
+    r"(?i)\b(?:[FBLRMW]|BEEP)[ \t]*;[ \t]*[0-9][0-9. \t%;]{0,60}(?<![; \t])"
+    r"(?=[ \t]*(?:[;\r\n]|//|\Z))"
+)
 _UNTIL = re.compile(r"(?i)\s*\bUNTIL\b")
 _VARIABLE = re.compile(r"(?:^|[;|\r\n])[ \t]*([A-Za-z]\w*)\s*=(?!=)")
 # `R(media vuelta)`, `L 90`: how far, and not how long.
@@ -99,6 +104,9 @@ def _instructions(found: Sequence[Diagnostic], text: str, names: set[str]) -> li
 
 def _around(text: str, place: int) -> Span:
     """Return the instruction at `place`, without what stands around it and its UNTIL."""
+    for match in _IN_PIECES.finditer(text, max(0, place - 60), place + 60):
+        if match.start() <= place < match.end():
+            return Span(*match.span())
     start = max(
         (match.end() for match in _ENDS.finditer(text, max(0, place - 200), place)), default=0
     )

@@ -66,7 +66,7 @@ def _report_unknown_word(scope: Scope, node: ast.Command) -> None:
     if meant is not None and (meant in WORDS or meant in scope.names):
         _report_foreign(scope, node, meant)
         return
-    if word in TURN_WORDS:
+    if word in TURN_WORDS or word in ("VUELTA", "VUELTAS"):
         scope.report(codes.WHICH_WAY, span)
         return
     if word in SWITCH_WORDS:

@@ -53,7 +53,7 @@ def count_diagnostic(
     if fixed is not None:
         return Diagnostic(codes.DECIMAL_COMMA, span, {"fix": _call(word, fixed)})
     wanted = len(word.arguments)
-    goes_on = source.text[span.end : span.end + 9].lstrip(" ")[:1] == "("  # `F(2)(80)`
+    goes_on = source.text[span.end : span.end + 9].lstrip(" ,")[:1] == "("  # `F(2)(80)`
     fix = "" if goes_on else _filled(texts, word)
     if len(texts) > wanted == 1 and word.arguments[0].name == "c":
         fix = _call(word, [" AND ".join(texts)])

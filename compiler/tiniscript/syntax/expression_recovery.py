@@ -28,7 +28,7 @@ from tiniscript.syntax.number_recovery import NumberRecovery
 from tiniscript.syntax.operators import COMPARISONS, Operator, Postfix
 from tiniscript.syntax.phrases import AFTER_HEADER
 from tiniscript.syntax.reporter import Failed, Reporter
-from tiniscript.syntax.suggestions import after_bracket, between, operator_words, unchained
+from tiniscript.syntax.suggestions import after_bracket, operator_words, unchained
 from tiniscript.syntax.value_constructs import ValueConstructs
 from tiniscript.syntax.vocabulary import Vocabulary
 from tiniscript.words import POWER_WORDS, WORDS, Word, meant_by, other_name
@@ -327,7 +327,7 @@ class ExpressionRecovery:
         span = Span(last.start, token.end)
         devices = (*self.kit.sensors, *self.kit.actuators) if self.kit is not None else ()
         known = {*WORDS, *(each.name for each in devices)}
-        self._between(last)
+        self.numbers.between(last)
         if last.kind is WORD and token.kind is WORD and not {last.text, token.text} & known:
             right, found = f"{last.text}_{token.text}", self.cursor.source[span]
             meant = meant_by(right)
@@ -352,16 +352,6 @@ class ExpressionRecovery:
         elif token.kind is WORD and token.text not in known and last.text in known:
             shown["fix"] = f"{last.text} < 10"  # `DISTANCE cerca`: no value that may be compared
         self.reporter.fail(codes.MISSING_SIGN, span, None, **shown)
-
-    def _between(self, subject: Token) -> None:
-        """`DISTANCE entre 5 y 10`."""
-        k = self.cursor.after_newlines(self.cursor.i)
-        said = between(self.cursor.tokens[k : k + 4], subject.text)
-        if said is not None:
-            right, end = said
-            span = Span(subject.start, end)
-            found = self.cursor.source[span]
-            self.reporter.fail(codes.OTHER_SIGN, span, found=found, right=right)
 
     def _word_of(self, token: Token) -> Word | None:
         """Return the word of the language or of the kit that takes values in brackets here."""

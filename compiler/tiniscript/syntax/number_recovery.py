@@ -9,6 +9,7 @@ from tiniscript.syntax.cursor import AFTER_VALUE, AT_END, Cursor
 from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, WORD, Token
 from tiniscript.syntax.operators import BINARY
 from tiniscript.syntax.reporter import Reporter
+from tiniscript.syntax.suggestions import between
 from tiniscript.syntax.units import converted
 from tiniscript.words import NUMBER_WORDS, UNITS, WORDS, Word
 
@@ -64,6 +65,16 @@ class NumberRecovery:
         """`W(un rato)`: no name of two words, and no number."""
         if article.text in _ARTICLES:
             self.reporter.fail(codes.UNKNOWN_NAME, span, found=name.text, near="")
+
+    def between(self, subject: Token) -> None:
+        """`DISTANCE entre 5 y 10`."""
+        k = self.cursor.after_newlines(self.cursor.i)
+        said = between(self.cursor.tokens[k : k + 4], subject.text)
+        if said is not None:
+            right, end = said
+            span = Span(subject.start, end)
+            found = self.cursor.source[span]
+            self.reporter.fail(codes.OTHER_SIGN, span, found=found, right=right)
 
     def plus(self, token: Token, place: int) -> None:
         """`F(+2, 80)`; and `v =+ 10` adds."""
