@@ -40,6 +40,8 @@ from tiniscript.source import Source
         ("BEEP(1 segundo, nota DO)", "BEEP(1, 262)"),
         ("M 50% 60%", "M(50, 60)"),
         ("F;2;60", "F(2, 60)"),
+        ("F(60 de potencia, 2 segundos)", "F(2, 60)"),
+        ("BEEP 440 1", "BEEP(1, 440)"),
         ("F.2.60", "F(2, 60)"),
         ("F_2_60", "F(2, 60)"),
         ("F(2),(60)", "F(2, 60)"),
@@ -97,6 +99,11 @@ def test_all_that_is_said_is_in_the_call(text: str, call: str) -> None:
 )
 def test_what_is_not_all_sure_is_not_read(text: str) -> None:
     assert said_call(text, {"X"}) is None
+
+
+def test_a_tone_without_a_time_is_an_example() -> None:
+    (found,) = check("BEEP(440 Hz)")
+    assert (found.values["fix"], found.values["example"]) == ("BEEP(1, 440)", "1 s")
 
 
 def test_what_was_not_said_is_called_an_example() -> None:

@@ -229,7 +229,8 @@ class _Reader:
             return False  # `1velocidad` is rather a name
         is_before = k + 1 < len(self._pieces) and self._pieces[k + 1].lastgroup == "number"
         is_before = is_before or self._at(k + 1) in ("=", ":", *NUMBER_WORDS)
-        if self._is_behind_value:
+        is_of = k > 1 and self._at(k - 1) in ("DE", "OF") and self._pieces[k - 2][0][0].isdigit()
+        if self._is_behind_value or (is_of and not is_before):  # `80 de potencia`
             return not is_before and self._takes_unit(self._at(k))
         self.unit = _NAMES[self._at(k)]
         return True
@@ -299,8 +300,14 @@ def _checked(word: Word, places: list[str], is_unnamed: bool) -> Said | None:
     example = ""
     numbers = [float(text) if _is_number(text) else None for text in places]
     first = numbers[0]
+    second = numbers[-1]
+    if is_unnamed and word.role == "beep" and first and second and second < LONG_TIME_S < first:
+        return _checked(word, places[::-1], is_unnamed)  # `BEEP 440 1`
     if is_unnamed and word.role != "motors" and first is not None and first >= LONG_TIME_S:
         return None  # the power, degrees, milliseconds
+    if word.role == "beep" and not places[0] and second is not None:
+        its = word.arguments[0]
+        return Said(word, f"{word.text}({its.sample}, {places[1]})", f"{its.sample} {its.unit}")
     if "" in places:
         if places.count("") > 1 or first is None or "." in places[0] or word.role == "motors":
             return None

@@ -23,7 +23,7 @@ from tiniscript.words import WORDS
 Check = Callable[[str], Sequence[Diagnostic]]
 MANY = 20  # instructions of a text that are read
 _ENDS = re.compile(r"[;\r\n|{}]|//")
-_CLOSES = re.compile(r"[^;\r\n|{}()A-Za-z]*\)")  # `F(2;80)`
+_CLOSES = re.compile(r"[^;\r\n|{}()]*\)")  # `F(2;80)`
 # `F;2;80`: what stands behind the `;` is a number alone.
 _IN_PIECES = re.compile(
     r"(?i)\b(?:[FBLRMW]|BEEP)[ \t]*;[ \t]*[0-9][0-9. \t%;]{0,60}(?<![; \t])"
