@@ -41,9 +41,7 @@ def test_every_board_is_told_to_people() -> None:
         assert set(bootloaders.BOARDS) <= set(re.findall(r"[\w-]+", help_text)), (
             "cli/texts/options.py names the values of --board"
         )
-    sample = (ROOT / "compiler" / "tiniscript" / "robots" / "tinibot.toml").read_text(
-        encoding="utf-8"
-    )
+    sample = ROOT / "compiler" / "tiniscript" / "robots" / "tinibot.toml"
     comment = re.search(r"(?m)^chip = .*# (.*)$", sample.read_text(encoding="utf-8"))
     assert comment and set(re.findall(r"\w+", comment[1])) >= set(CHIPS), (
         "robots/tinibot.toml names the boards that a profile may have"

@@ -5,7 +5,7 @@
 takes the commit that is checked out into two clean folders, makes firmware, studio, wheel, source
 package, library, site and USB stick in both, and says what is not the same byte for byte; looks at
 the packages as a registry does; installs each into a fresh environment and drives the virtual robot
-with it. FOLDER then has the files and SHA256SUMS. Nothing is uploaded. It takes about twenty minutes.
+with it. FOLDER then has the files and SHA256SUMS. Nothing is uploaded. It takes twenty minutes.
 
 `--url https://…` rehearses with an address that pyproject.toml does not have yet; `--as-is` goes on
 where something keeps the commit from being released; `--part NAME` makes only some; `--once`
