@@ -97,6 +97,16 @@ def tried(program: str) -> list[str]:
         ("IF(DISTANCE<10,S)", "S_1"),
         ("IF(DISTANCE < 10);S\nF(1,50)", "Write ENDIF after line 2: F(1,50)"),
         ("para cada vuelta\nF(1,50)\nfin", "LOOP(3)"),
+        (
+            "si DISTANCE < 10 S si DISTANCE > 10 F(1,50)",  # the second is not in the first
+            "IF(DISTANCE < 10);S;IF(DISTANCE > 10);F(1, 50);ENDIF;ENDIF",
+        ),
+        (
+            "IF(DISTANCE < 10)\nS\nIF(DISTANCE > 10)\nF(1,50)\nENDIF",
+            "Write ENDIF after line 5: ENDIF",
+        ),
+        ("repeat F(1,50) until DISTANCE < 10", "LOOP(3)"),
+        ("4 LOOP(F(1,50))", "Take out 4"),
     ],
 )
 def test_what_does_something_else_is_not_offered(program: str, wrong: str) -> None:
@@ -164,6 +174,9 @@ def test_a_slip_that_has_two_repairs_is_left_to_its_author(program: str) -> None
         ("F(dos segundos, 80)", "F(2, 80)"),
         ("TIEMPO 2\nF(TIEMPO, 80)", "TIEMPO = 2\nF(TIEMPO, 80)"),
         ("for i in range(3): F(1, 60); S", "LOOP(3);F(1, 60);S;END_LOOP"),
+        ("LOOP(4);(F(1,60);S)", "LOOP(4);F(1,60);S;END_LOOP"),
+        ("F(power=80, time=2)", "F(power=80, time=2)"),  # in another order: its author looks
+        ("IF(DISTANCE no es menor que 10);S;ENDIF", "IF(DISTANCE >= 10);S;ENDIF"),
     ],
 )
 def test_a_slip_that_has_one_repair_gets_it(program: str, right: str) -> None:

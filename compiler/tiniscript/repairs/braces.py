@@ -12,7 +12,7 @@ from tiniscript.source import Span
 from tiniscript.syntax.cursor import AT_END
 from tiniscript.syntax.lexer import NEWLINE, WORD, Token, scan
 from tiniscript.syntax.suggestions import foreign_block
-from tiniscript.words import BLOCK_ENDS, WORDS
+from tiniscript.words import ALIASES, BLOCK_ENDS, WORDS
 
 _ARMS = ("ELSE", "ELSEIF")
 
@@ -41,7 +41,8 @@ def without_braces(text: str) -> list[Edit] | None:
                 is_alone = tokens[k - 1].kind in (NEWLINE, ";", "{") or k == 0
                 edits.append(_replaced(text, tokens, k, "" if is_alone else ";"))
                 continue
-            edits.append(_ended(tokens, k, BLOCK_ENDS[word]) if word else _gone(tokens, k))
+            is_gone = not word or _says(tokens, k, BLOCK_ENDS[word])
+            edits.append(_gone(tokens, k) if is_gone else _ended(tokens, k, BLOCK_ENDS[word]))
     return None if opened else edits
 
 
@@ -72,6 +73,14 @@ def _is_alone(tokens: Sequence[Token], brace: int) -> bool:
         k -= 1
     known = WORDS.get(tokens[k].text)
     return known is not None and known.is_instruction
+
+
+def _says(tokens: Sequence[Token], brace: int, end: str) -> bool:
+    """Whether the end of the block stands behind its `}` already."""
+    k = brace + 1
+    while tokens[k].kind in (NEWLINE, ";"):
+        k += 1
+    return ALIASES.get(tokens[k].text, tokens[k].text) == end
 
 
 def _gone(tokens: Sequence[Token], k: int) -> Edit:

@@ -52,6 +52,7 @@ class BlockRecovery:
         """`IF DISTANCE < 10`: suggest the same with brackets."""
         cursor = self.cursor
         start = cursor.i
+        self.other.in_braces(word, start)
         cursor.i = body_begins(cursor.tokens, start)
         if is_reported:
             raise Failed
@@ -186,7 +187,12 @@ class BlockRecovery:
         start = cursor.i
         end = after_bracket(cursor.tokens, start) if cursor.token.kind == "(" else None
         written = cursor.tokens[start : end or body_begins(cursor.tokens, start)]
-        if written and written[0].kind == "(" and written[-1].kind == ")":
+        if not written:  # `ELSE IF {`: it asks nothing
+            found = cursor.source[span]
+            self.reporter.report(codes.OTHER_LANGUAGE, span, span, found=found, right="ELSE",
+                                 fix="ELSE", usage="ELSE")  # fmt: skip
+            return Token(WORD, "ELSE", *span)
+        if written[0].kind == "(" and written[-1].kind == ")":
             written = written[1:-1]
         fix = head_in(WORDS["ELSEIF"], written)
         last = cursor.tokens[(end or body_begins(cursor.tokens, start)) - 1]

@@ -9,7 +9,7 @@ from tiniscript.diagnostics import codes
 from tiniscript.source import Span
 from tiniscript.syntax.ast import Argument, Assign
 from tiniscript.syntax.block_recovery import BlockRecovery
-from tiniscript.syntax.blocks import Block, Blocks
+from tiniscript.syntax.blocks import Block
 from tiniscript.syntax.cursor import Cursor
 from tiniscript.syntax.lexer import NUMBER, ODD, WORD, Token
 from tiniscript.syntax.reporter import Reporter, Resumed
@@ -18,12 +18,10 @@ from tiniscript.words import WORDS
 
 
 class DefRecovery:
-    def __init__(
-        self, cursor: Cursor, reporter: Reporter, blocks: Blocks, in_block: BlockRecovery
-    ) -> None:
+    def __init__(self, cursor: Cursor, reporter: Reporter, in_block: BlockRecovery) -> None:
         self.cursor = cursor
         self.reporter = reporter
-        self.blocks = blocks
+        self.blocks = in_block.blocks
         self.in_block = in_block
 
     def no_name(self, word: Token) -> NoReturn:

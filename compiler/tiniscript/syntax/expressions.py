@@ -118,6 +118,7 @@ class ExpressionParser:
         if known is None and (
             self.recovery.constructs.is_said_with_more(token)
             or self.recovery.questions.is_sign_alone(token)
+            or self.recovery.questions.is_in_words(token)
         ):
             return False
         if known is None or known.role == "value":

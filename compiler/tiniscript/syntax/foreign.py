@@ -48,6 +48,9 @@ def foreign_word(parser: Parser, word: Token, meant: str) -> None:
         return
     if meant in ("LOOP", "FOREVER"):
         construct.asked_behind(word)
+        parser.recovery.in_block.other.around(word)
+    if meant == "FOREVER":
+        parser.recovery.groups.forever(word)
     if meant == "FOREVER":
         _report(parser, word, meant, "LOOP(FOREVER)")
         forever_alone(parser, word)

@@ -160,7 +160,7 @@ class GroupRecovery:
         has_end = ENDS.get(orders[-1][0].text) == "DEF"
         is_ended, last = (True, end) if has_end else self._end_comes("DEF", end)
         right = "" if has_end else BLOCK_ENDS["DEF"]
-        texts = (self.cursor.source[block.span], *(self._said(each) for each in orders), right)
+        texts = (f"DEF {block.name.text}", *(self._said(each) for each in orders), right)
         self.reporter.answer(tokens[k])
         place = Span(block.span.start, tokens[last - 1].end if is_ended else tokens[end - 1].end)
         fix = ";".join(filter(None, texts))
@@ -170,6 +170,14 @@ class GroupRecovery:
         if not is_ended:
             row.append(Token(WORD, BLOCK_ENDS["DEF"], *tokens[end - 1].span))
         self._read_on(k, end, row)
+
+    def function_on_a_line(self, block: Block) -> None:
+        """`def turn(): R(1, 60)`."""
+        tokens, k = self.cursor.tokens, self.cursor.i
+        if [each.text for each in tokens[k : k + 3]] == ["(", ")", ":"]:
+            self.cursor.i = k + 2
+            self.line_of_def(block)
+            self.cursor.i = k
 
     def named(self, name: Token, start: int, said: int) -> None:
         """`TURN = R(1, 60)` at `start` behind the sign, where TURN alone is an instruction below.
@@ -213,11 +221,12 @@ class GroupRecovery:
         for i in range(k, min(len(tokens), k + _FARTHEST)):
             token = tokens[i]
             depth += (token.kind == "(") - (token.kind == ")")
-            if (depth == 1 and i > k and token.kind in _BETWEEN) or not depth:
+            is_next = depth == 1 and i > first and self._begins_order(i)
+            if (depth == 1 and i > k and token.kind in _BETWEEN) or is_next or not depth:
                 piece = tokens[first:i]
                 if piece:
                     (orders if self._is_order(piece) else values).append(piece)
-                first = i + 1
+                first = i + (not is_next)
             if not depth:
                 return _Group(tuple(values), tuple(orders), i + 1)
             if token.kind in (END, "{", "}"):
@@ -236,6 +245,13 @@ class GroupRecovery:
         is_block = command is not None and command.role in ("block", "arm", "end")
         is_doing = command is not None and (command.is_instruction or command.role == "actuator")
         return (is_call and (is_doing or is_block)) or first.text in ENDS
+
+    def _begins_order(self, i: int) -> bool:
+        """Whether `F(` stands at `i` behind a value or an order: `LOOP(3 F(1, 50))`."""
+        token, before = self.cursor.tokens[i], self.cursor.tokens[i - 1]
+        known = WORDS.get(token.text) if token.kind is WORD else None
+        is_call = known is not None and known.is_call and self.cursor.tokens[i + 1].kind == "("
+        return is_call and (before.kind in (NUMBER, ")") or before.text in ("S", "STOP"))
 
     def _is_head(self, word: str, piece: Sequence[Token]) -> bool:
         if word == "LOOP":

@@ -10,10 +10,11 @@ from typing import NoReturn
 from tiniscript.diagnostics import codes
 from tiniscript.source import Span
 from tiniscript.syntax.blocks import ENDS, Block, Blocks
-from tiniscript.syntax.cursor import Cursor
-from tiniscript.syntax.lexer import ODD, Token
+from tiniscript.syntax.call_suggestions import written
+from tiniscript.syntax.cursor import AT_END, Cursor
+from tiniscript.syntax.lexer import NUMBER, ODD, WORD, Token
 from tiniscript.syntax.operators import COMPARISONS
-from tiniscript.syntax.phrases import AFTER_HEADER
+from tiniscript.syntax.phrases import AFTER_HEADER, TIMES
 from tiniscript.syntax.reporter import Reporter, Resumed
 from tiniscript.syntax.suggestions import (
     after_bracket,
@@ -23,6 +24,7 @@ from tiniscript.syntax.suggestions import (
     head_in,
     inside,
     opposite,
+    shortened,
     with_signs,
 )
 from tiniscript.words import BLOCK_ENDS, WORDS, meant_by
@@ -122,6 +124,77 @@ class HeaderRecovery:
                 block.otherwise = []
             cursor.i = start + 1
             raise Resumed
+
+    def in_braces(self, word: Token, start: int) -> None:
+        """`IF{DISTANCE < 10}`: braces for brackets."""
+        cursor, tokens = self.cursor, self.cursor.tokens
+        close = cursor.closing(start) if tokens[start].kind == "{" else None
+        row = tokens[start + 1 : close]
+        if close is None or any(each.kind in AT_END for each in row) or not row:
+            return
+        if (word.text == "LOOP" and len(row) > 1) or (word.text != "LOOP" and not any(
+            each.kind in COMPARISONS for each in row
+        )):  # fmt: skip
+            return
+        self.reporter.answer(tokens[start])
+        cursor.i = close + 1
+        place = cursor.span_from(word)
+        known = WORDS[word.text]
+        fix = head_in(known, row)
+        self.reporter.report(codes.MISSING_OPEN, place, word=word.text, fix=fix, usage=known.usage)
+        self._begin(word.text, place)
+
+    # -- what is written as one line in another order -----------------------------------------
+
+    def around(self, word: Token) -> None:
+        """`repeat F(1, 50) 3 times`, `repeat F(1, 50) until DISTANCE < 10`."""
+        cursor, tokens = self.cursor, self.cursor.tokens
+        first = tokens[min(cursor.i + 1, len(tokens) - 1)]
+        known = WORDS.get(first.text) if first.kind is WORD else None
+        end = after_bracket(tokens, cursor.i + 2) if known is not None and known.is_call else None
+        if end is None or tokens[cursor.i + 2].kind != "(":
+            return
+        body = cursor.source[Span(first.start, tokens[end - 1].end)]
+        number, after = tokens[end], tokens[min(end + 2, len(tokens) - 1)]
+        fix = ""
+        if number.kind is NUMBER and tokens[end + 1].text in TIMES and after.kind in AT_END:
+            fix, end = f"LOOP({number.text});{body};{BLOCK_ENDS['LOOP']}", end + 2
+        elif "UNTIL" in (number.text, meant_by(number.text)):
+            values = inside(tokens, end + 1)
+            asked = written(with_signs(values))
+            fix = f"LOOP(FOREVER);{body};IF({asked});BREAK;ENDIF;{BLOCK_ENDS['LOOP']}"
+            last = end_of_values(tokens, end + 1, values)
+            if not any(each.kind in COMPARISONS for each in with_signs(values)):
+                return
+            while tokens[end].start < last:
+                end += 1
+        if fix and tokens[end].kind in AT_END:
+            cursor.i = end
+            place = Span(word.start, tokens[end - 1].end)
+            found = shortened(cursor.source[place])
+            self.reporter.fail(codes.REPEATED, place, place, found=found, fix=fix)
+
+    def choice(self, first: Token) -> None:
+        """`DISTANCE < 10 ? S : F(1, 50)`: IF and ELSE choose."""
+        cursor, tokens = self.cursor, self.cursor.tokens
+        start = end = cursor.i
+        while tokens[end].kind not in AT_END:
+            end += 1
+        row = tokens[start:end]
+        signs = [k for k, each in enumerate(row) if each.kind is ODD and each.text in ("?", ":")]
+        if [row[k].text for k in signs] != ["?", ":"] or signs[0] + 1 == signs[1]:
+            return
+        one, two = signs
+        if two + 1 == len(row):
+            return
+        pieces = (row[:one], row[one + 1 : two], row[two + 1 :])
+        asked, yes, no = (cursor.source[Span(p[0].start, p[-1].end)] for p in pieces)
+        for k in signs:
+            self.reporter.answer(row[k])
+        cursor.i = end
+        place = Span(first.start, row[-1].end)
+        fix = f"IF({asked});{yes};ELSE;{no};{BLOCK_ENDS['IF']}"
+        self.reporter.fail(codes.NOT_AN_INSTRUCTION, row[one].span, place, found="?", fix=fix)
 
     # -- a question in two brackets -----------------------------------------------------------
 

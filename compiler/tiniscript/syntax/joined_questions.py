@@ -13,6 +13,9 @@ from tiniscript.syntax.operators import COMPARISONS
 from tiniscript.syntax.reporter import Reporter
 from tiniscript.syntax.suggestions import operator_words
 from tiniscript.syntax.vocabulary import Vocabulary
+from tiniscript.words import NEAR_WORDS
+
+_TOWARDS = frozenset(["A", "AL", "LA", "EL", "DE", "DEL", "UN", "UNA", "TO", "THE", "OF", "FROM"])
 
 
 class JoinedQuestions:
@@ -40,6 +43,25 @@ class JoinedQuestions:
         self.reporter.report(codes.OTHER_SIGN, span, found=self.cursor.source[span],
                              right=f"{subject.text} {sign}")  # fmt: skip
         tokens[k:end] = [subject._replace(start=span.start, end=span.end), Token(sign, sign, *span)]
+        return True
+
+    def is_in_words(self, word: Token) -> bool:
+        """`la distancia a la pared < 10`: what is far away says no more than the sensor."""
+        tokens, k = self.cursor.tokens, self.cursor.i
+        name = self.known.value(word.text)
+        end = k + 1
+        while tokens[end].text in _TOWARDS or tokens[end].text in NEAR_WORDS:
+            end += 1
+        is_asked = tokens[end].kind in COMPARISONS or operator_words(tokens, end) is not None
+        if name != "DISTANCE" or end == k + 1 or not (self.known.is_number(name) and is_asked):
+            return False
+        if tokens[end - 1].text not in NEAR_WORDS:
+            return False
+        span = Span(word.start, tokens[end - 1].end)
+        found = self.cursor.source[span]
+        self.reporter.report(codes.OTHER_LANGUAGE, span, span, found=found, right=name, fix=name,
+                             usage=name)  # fmt: skip
+        tokens[k:end] = [word._replace(text=name, end=span.end)]
         return True
 
     def asked_twice(self, word: Token) -> None:

@@ -29,6 +29,7 @@ from tiniscript.syntax.foreign import foreign_word
 from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, ODD, WORD, Token
 from tiniscript.syntax.operators import COMPARISONS, SIGNS
 from tiniscript.syntax.phrases import (
+    AFTER_HEADER,
     BEFORE_CALL,
     BEFORE_NAME,
     BEFORE_NOTE,
@@ -81,7 +82,7 @@ class NameRecovery:
         self.blocks = blocks
         self.kit = kit
         self.in_block = in_block
-        self.sentence = SentenceRecovery(cursor, reporter, blocks, in_block)
+        self.sentence = SentenceRecovery(cursor, reporter, in_block)
         self.of_value = AssignmentRecovery(cursor, reporter, self.unread_assignment)
         self.talk = TalkRecovery(cursor, reporter, in_block)
         self.clauses = ClauseRecovery(cursor, reporter, in_block)
@@ -132,6 +133,8 @@ class NameRecovery:
         self.talk.label(word, following, after)
         if self.kit is not None:
             self.clauses.several(self.cursor.i)
+        if word.text in AFTER_HEADER:
+            self.in_block.other.around(word)  # `hacer F(1, 50) 3 veces`
         if kind is NUMBER and after.text in TIMES and meant_by(word.text) is None:
             foreign_word(parser, word, "LOOP")  # `hacer 4 veces`
         if word.text == "SIEMPRE" and following.text == "QUE":  # no loop without end
@@ -142,6 +145,12 @@ class NameRecovery:
             foreign_word(parser, word, "LOOP")
         if word.text in FRAME_WORDS:
             parser.recovery.construct.frame(word)
+            if (
+                kind is WORD
+                and after.kind == "("
+                and meant_by(f"{word.text}_{following.text}") is None
+            ):
+                foreign_word(parser, word, "DEF")  # `void turn() {`
         if word.text in COUNTING and is_counting(self.cursor.tokens, self.cursor.i + 1):
             foreign_word(parser, word, "LOOP")
         if kind is WORD and word.text in ("WHEN", "CUANDO", "AL"):
@@ -280,6 +289,8 @@ class NameRecovery:
             following = cursor.tokens[start]
         end = body_begins(cursor.tokens, start, names_end=False)
         rest = cursor.tokens[start:end]
+        if not rest:
+            return
         is_new = (
             word.text not in NO_VARIABLES
             and meant_by(word.text) in (None, "TIME")
@@ -324,6 +335,8 @@ class NameRecovery:
         if is_variable and first.text not in WORDS and not self.in_block.is_name(first.text):
             self.of_value.changed(first, tokens)
         asks = any(token.kind in COMPARISONS or token.text == "NOT" for token in tokens)
+        if asks:
+            self.in_block.other.choice(first)
         sign = next((token for token in tokens if token.kind in SIGNS), first)
         place = sign if asks else first
         fix = head_in(WORDS["IF"], tokens) if asks else ""

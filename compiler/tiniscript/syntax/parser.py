@@ -273,6 +273,7 @@ class Parser:
         block = self.blocks.begin("DEF", Span(word.start, name.end), name=name)
         if cursor.token.kind == "(":
             self.recovery.groups.body(block, cursor.i)
+            self.recovery.groups.function_on_a_line(block)
             self.recovery.of_def.def_with_values(word, name, self.expressions.arguments())
             block.span = cursor.span_from(word)
             self.recovery.of_def.body_of_def(block)

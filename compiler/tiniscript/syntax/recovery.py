@@ -59,7 +59,7 @@ class Recovery:
         self.setup = SetupRecovery(cursor, reporter)
         self.in_block = BlockRecovery(cursor, reporter, blocks, kit)
         self.of_name = NameRecovery(cursor, reporter, blocks, kit, self.in_block)
-        self.of_def = DefRecovery(cursor, reporter, blocks, self.in_block)
+        self.of_def = DefRecovery(cursor, reporter, self.in_block)
         self.of_until = UntilRecovery(cursor, reporter, blocks)
         self.times = TimesRecovery(cursor, reporter, self.in_block)
         self.construct = ConstructRecovery(cursor, reporter, self.in_block)

@@ -12,7 +12,6 @@ from tiniscript.diagnostics import codes
 from tiniscript.source import Span
 from tiniscript.syntax.ast import Assign, Command
 from tiniscript.syntax.block_recovery import BlockRecovery
-from tiniscript.syntax.blocks import Blocks
 from tiniscript.syntax.call_suggestions import LONG_TIME_S, call_in
 from tiniscript.syntax.cursor import AT_END, Cursor
 from tiniscript.syntax.lexer import NUMBER, ODD, WORD, Token
@@ -61,12 +60,10 @@ _SMALL = frozenset(
 
 
 class SentenceRecovery:
-    def __init__(
-        self, cursor: Cursor, reporter: Reporter, blocks: Blocks, in_block: BlockRecovery
-    ) -> None:
+    def __init__(self, cursor: Cursor, reporter: Reporter, in_block: BlockRecovery) -> None:
         self.cursor = cursor
         self.reporter = reporter
-        self.blocks = blocks
+        self.blocks = in_block.blocks
         self.in_block = in_block
         self.questions = QuestionRecovery(cursor, reporter, in_block)
 
