@@ -81,6 +81,7 @@ def test_all_that_is_said_is_in_the_call(text: str, call: str) -> None:
         "F(2,8 0)",
         "F(2, 80) cuatro veces",
         "F(2, 80) S",
+        "F(2) 60",  # the 60 may be another instruction's
         "F 2 60 60",
         "F 2 s o 60",
         "F 2 s no 60",

@@ -282,8 +282,6 @@ def _fitted(word: Word, values: Sequence[_Value]) -> Said | None:
     for value in values:
         if not value.unit:
             loose.append(value.text)
-        elif value.unit not in units:
-            return None
         else:
             free = [k for k, unit in enumerate(units) if unit == value.unit and not places[k]]
             if not free:
