@@ -271,7 +271,7 @@ def test_another_run_of_tsc_studio_is_said(pages: Pages, server: serving.Server)
     page.goto(server.address)
     checked(page)
     page.click("#side_real")
-    said(page, "This tsc studio is another one than at first.")
+    said(page, "tsc studio was started again meanwhile.")
     assert [each for each in pages.wrong if "403" not in each] == []
     pages.wrong.clear()
 
@@ -284,7 +284,7 @@ def test_a_line_and_a_lost_link_leave_a_recording_as_it_is(page: Page) -> None:
     page.click("#record summary")
     told = page.locator("#record_said")
     page.click("#record_compare")
-    told.filter(has_text="Both did the same: 1 times").wait_for()  # it still runs
+    told.filter(has_text="Both did the same. Comparisons: 1.").wait_for()  # it still runs
     page.click("#stop")
     said(page, "stopped")
     page.fill("#link_line", "SHOW(7)")
@@ -310,7 +310,7 @@ def test_a_program_of_the_button_is_recorded_from_its_first_event(
     said(page, "Done.")
     page.click("#record summary")
     page.click("#record_compare")
-    page.locator("#record_said").filter(has_text="Both did the same: 3 times").wait_for()
+    page.locator("#record_said").filter(has_text="Both did the same. Comparisons: 3.").wait_for()
     assert events(page) == ["SHOW 5", "SHOW 6", "DONE"]
 
 
@@ -328,7 +328,7 @@ def test_a_run_is_recorded_and_compared_with_the_virtual_robot(page: Page, tmp_p
     page.click("#record summary")
     page.click("#record_compare")
     told = page.locator("#record_said")
-    told.filter(has_text="Both did the same: 3 times").wait_for()
+    told.filter(has_text="Both did the same. Comparisons: 3.").wait_for()
     with page.expect_download() as saved:
         page.click("#record_save")
     lines = saved.value.path().read_text().splitlines()
