@@ -110,7 +110,9 @@ _REASONS: dict[str, tuple[tuple[str, str], ...]] = {
         ("if (left <= 0) break;",
          "if (left <= 1) break;"),
     ),
-    "whoever cannot write hears that the cable has gone, too": (
+    "whoever cannot write hears that the cable has gone, too, and whoever hears it cannot write": (
+        ("() => { this.#isGone = true;",
+         "() => { ;"),
         ("} catch { this.#isGone = true;",
          "} catch { ;"),
     ),
