@@ -179,3 +179,14 @@ def test_who_says_a_line_in_a_chat_is_no_part_of_it(speaker: str) -> None:
     (found,) = check(program)
     assert found.code is codes.PASTED
     assert not check("F(2, 80)\nR(1, 50)")
+
+
+def test_a_long_program_of_such_lines_is_repaired_in_a_few_steps() -> None:
+    checks = []
+
+    def counted(text: str) -> list[codes.Diagnostic]:
+        checks.append(text)
+        return check(text)
+
+    assert fixed("F 2 s 60;" * 150, counted).text == "F(2, 60);" * 150
+    assert len(checks) < 20

@@ -117,7 +117,8 @@ def _all_of(
         return None
     changed = applied(text, [edit for repair in chosen for edit in repair.edits])
     after = check(changed)
-    is_cut = len(found) > MANY  # the reader stopped there: what comes after it comes now
+    # The reader stops at so many, of which several may be one here: what comes after it comes now.
+    is_cut = len(found) > MANY // 4
     if is_cut and _mistakes(after) <= _mistakes(found) and _first(after) > _first(found):
         return changed, after, len(chosen)
     if _mistakes(after) > _mistakes(found) - len(chosen):

@@ -21,7 +21,7 @@ from tiniscript.syntax.lexer import NEWLINE, scan
 from tiniscript.words import WORDS
 
 Check = Callable[[str], Sequence[Diagnostic]]
-MANY = 20  # instructions of a text that are read
+MANY = 100  # instructions of a text that are read
 _ENDS = re.compile(r"[;\r\n|{}]|//")
 _CLOSES = re.compile(r"[^;\r\n|{}()]*\)")  # `F(2;80)`
 # `F;2;80`: what stands behind the `;` is a number alone.
