@@ -207,7 +207,7 @@ def shown(page: Page) -> None:
     checked(page)
 
 
-HUNG_MS = 4000  # longer than any robot goes on without a word
+HUNG_MS = 2500  # longer than any robot goes on without a word; a page of 4 s ago is given up
 
 
 def hang(page: Page, milliseconds: int) -> None:
