@@ -31,6 +31,7 @@ class JoinedQuestions:
         if (
             k < 4
             or said is None
+            or self.known.is_own(word.text)
             or said[1] not in COMPARISONS
             or tokens[k - 1].text not in ("AND", "OR")
         ):
