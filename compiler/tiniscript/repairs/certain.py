@@ -20,6 +20,7 @@ _MARKS = "¡¿→•·►▶"  # that stand before a sentence or in a list, and 
 _LETTERS = re.compile(r"[A-Za-z]")
 # A call without calculations: of `5 / 3 - 3)` a bracket may be missing.
 _PLAIN_CALL = re.compile(r"\s*[A-Za-z_]\w*\s*\([^()+*/%<>=-]*\)+\s*")
+_UNIT_BEHIND = re.compile(r"(?i)[ \t]*s[ \t]+[0-9]")
 _AROUND = 80  # characters of an instruction that are looked at
 
 
@@ -36,6 +37,10 @@ def is_certain(diagnostic: Diagnostic, edits: Sequence[Edit], source: Source) ->
         return is_mark or not (after.isalnum() or after in ("_", "."))  # `:PEED`, `0.?1`
     if diagnostic.code is codes.MISSING_SEPARATOR and diagnostic.values.get("fix"):
         return False  # `STOP 2` may have a number too many
+    if diagnostic.code is codes.MISSING_OPEN and _UNIT_BEHIND.match(
+        text, max((edit.span.end for edit in edits), default=span.end)
+    ):
+        return False  # `W 2 s 80`: its S is a unit
     if diagnostic.code is codes.EXTRA_CLOSE:
         return _PLAIN_CALL.fullmatch(_before(text, span.end)) is not None
     if diagnostic.code is codes.MISSING_CLOSE and not diagnostic.values.get("fix"):

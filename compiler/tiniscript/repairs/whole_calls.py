@@ -103,7 +103,10 @@ def _instructions(found: Sequence[Diagnostic], text: str, names: set[str]) -> li
 
 
 def _around(text: str, place: int) -> Span:
-    """Return the instruction at `place`, without what stands around it and its UNTIL."""
+    """Return the instruction at `place`, without what stands around it and its UNTIL.
+
+    Of one that is longer than anybody reads a part is returned that is longer than `LONGEST`.
+    """
     for match in _IN_PIECES.finditer(text, max(0, place - 60), place + 60):
         if match.start() <= place < match.end():
             return Span(*match.span())
@@ -116,8 +119,9 @@ def _around(text: str, place: int) -> Span:
     if text[start - 1 : start] == ";" and _CLOSES.match(text, start):  # `F(2; 80 %)`
         inner = re.search(r"[A-Za-z]\w*\s*\([^;\r\n|{}()]*\Z", before)
         start = start - 1 - len(before) + inner.start() if inner else start
-    cut = _ENDS.search(text, start if text[start:place].count(";") else place)
-    end = cut.start() if cut else len(text)
+    farthest = min(len(text), place + LONGEST + 1)
+    cut = _ENDS.search(text, start if text[start:place].count(";") else place, farthest)
+    end = cut.start() if cut else farthest
     part = text[start:end]
     if cut and cut[0] in ";|" and part.count("(") > part.count(")"):
         closes = _CLOSES.match(text, cut.end())

@@ -40,8 +40,9 @@ class NumberRecovery:
             return False
         number, first = NUMBER_WORDS.get(before.text, before.text), before
         sign, over = tokens[cursor.before(k) - 1], tokens[max(0, cursor.before(k) - 2)]
-        if before.kind is NUMBER and sign.kind in ("/", "*"):  # `1/2 minuto`
-            number = _divided(over, sign, before)
+        if before.kind is NUMBER and sign.kind in ("/", "*"):  # `1/2 minuto`, not `1/2/2 s`
+            outer = tokens[max(0, cursor.before(k) - 3)].kind
+            number = "" if outer in ("/", "*") else _divided(over, sign, before)
             first = over if number else before
         span = Span(first.start, token.end)
         found = cursor.source[span]

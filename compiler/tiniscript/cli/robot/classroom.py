@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 STOPS = 3  # messages to all, as each may be lost
 WITHOUT: dict[str, object] = {  # what the fleet and its verbs ask of options that this verb has not
     "ports": [], "port": None, "all": False, "baud": None, "virtual": False, "plot": None,
+    "record": None,
 }  # fmt: skip
 
 
