@@ -199,7 +199,7 @@ def _is_too_wide(page: Page) -> bool:
         ("en", "heartbeat", "The link"),
         ("es", "obstáculos", "lenguaje"),
         ("en", "END_LOOP", "language"),
-        ("en", "UNTIL", "UNTIL: look while you move"),
+        ("en", "UNTIL", "Stop before the wall: UNTIL"),
         ("es", "SI", "lenguaje"),
     ],
 )
