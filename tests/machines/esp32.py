@@ -7,6 +7,7 @@ hold goes on to the next one.
 
 from __future__ import annotations
 
+import os
 from functools import lru_cache
 from hashlib import sha256
 from pathlib import Path
@@ -144,8 +145,10 @@ def built(header: str, chip: str, major: int) -> Path:
     """
     BUILDS.mkdir(mode=0o700, exist_ok=True)
     own = BUILDS / f"own-{sha256(header.encode()).hexdigest()[:16]}.h"
-    if not own.exists():
-        own.write_text(header, encoding="utf-8")
+    if not own.exists():  # another worker may look for it, too
+        draft = own.with_suffix(f".{os.getpid()}")
+        draft.write_text(header, encoding="utf-8")
+        draft.replace(own)
     texts = {
         path: path.name.encode() + path.read_bytes()
         for part in ("src", "extras/esp32", "extras/host")

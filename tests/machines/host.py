@@ -223,7 +223,7 @@ def made(
     words: list[str],
 ) -> Path:  # fmt: skip
     """Return what the compiler makes of `words`, named after all that it is made from."""
-    key = hashlib.sha256(repr((compiler, tuple(flags))).encode())
+    key = hashlib.sha256(repr((_version(compiler), tuple(flags))).encode())
     for part in made_from:
         key.update(part)
     made = builds / (key.hexdigest()[:16] + suffix)
@@ -239,7 +239,14 @@ def made(
                 own.replace(same)
                 own.hardlink_to(same)
         own.replace(made)
+        own.unlink(missing_ok=True)  # it stays where both are one file already
     return made
+
+
+@lru_cache
+def _version(compiler: str) -> bytes:
+    """Return what a compiler says that it is: another one makes other objects."""
+    return _compiled(compiler, ["--version"])
 
 
 def _preprocessed(compiler: str, builds: Path, flags: Sequence[str], words: list[str]) -> Path:
@@ -248,7 +255,8 @@ def _preprocessed(compiler: str, builds: Path, flags: Sequence[str], words: list
     Most files of a robot are the same for all chips, headers and sizes that macros choose.
     """
     text = _compiled(compiler, [*flags, *words, "-E"])
-    key = hashlib.sha256(repr((compiler, [f for f in flags if f[:2] != "-D"])).encode())
+    told = [flag for flag in flags if flag[:2] != "-D"]
+    key = hashlib.sha256(repr((_version(compiler), told)).encode())
     key.update(FOLDER.sub(rb"\1", text))  # a copy of the sources is the same elsewhere
     return builds / f"same-{key.hexdigest()[:16]}.o"
 
