@@ -43,7 +43,7 @@ class BlockRecovery:
         self.blocks = blocks
         self.kit = kit
         self.known = Vocabulary(cursor.tokens, kit)
-        self.other = HeaderRecovery(cursor, reporter, blocks)
+        self.other = HeaderRecovery(cursor, reporter, blocks, self.known)
         self._owed = 0  # blocks that were closed by another one's end: their own may still come
 
     # -- headers ------------------------------------------------------------------------------

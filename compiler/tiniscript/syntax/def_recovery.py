@@ -49,9 +49,9 @@ class DefRecovery:
         """`DEF MY TURN`, `DEF PASO-UNO`: a name has no space, and no `-`."""
         cursor, tokens = self.cursor, self.cursor.tokens
         k = cursor.i + (cursor.token.kind == "-")
-        second = tokens[k]
+        second, after = tokens[k], tokens[min(k + 1, len(tokens) - 1)]
         is_word = second.kind is WORD or k > cursor.i  # no number behind a space
-        if not is_word or name.text in WORDS or not is_part_of_name(second, tokens[k + 1]):
+        if not is_word or name.text in WORDS or not is_part_of_name(second, after):
             return name
         cursor.i = k + 1
         whole = Token(WORD, f"{name.text}_{second.text}", name.start, second.end)

@@ -15,7 +15,7 @@ from tiniscript.syntax.cursor import AT_END, Cursor
 from tiniscript.syntax.lexer import NUMBER, ODD, WORD, Token
 from tiniscript.syntax.operators import COMPARISONS
 from tiniscript.syntax.phrases import AFTER_HEADER, TIMES
-from tiniscript.syntax.reporter import Reporter, Resumed
+from tiniscript.syntax.reporter import Failed, Reporter, Resumed
 from tiniscript.syntax.suggestions import (
     after_bracket,
     body_begins,
@@ -27,16 +27,20 @@ from tiniscript.syntax.suggestions import (
     shortened,
     with_signs,
 )
+from tiniscript.syntax.vocabulary import Vocabulary
 from tiniscript.words import BLOCK_ENDS, WORDS, meant_by
 
-_BESIDE_TIMES = frozenset(("X", "POR", "BY", "*", "=", "-", ">", *AFTER_HEADER))
+_BESIDE_TIMES = frozenset(("X", "POR", "BY", "*", "=", "->", ">", *AFTER_HEADER))
 
 
 class HeaderRecovery:
-    def __init__(self, cursor: Cursor, reporter: Reporter, blocks: Blocks) -> None:
+    def __init__(
+        self, cursor: Cursor, reporter: Reporter, blocks: Blocks, known: Vocabulary
+    ) -> None:
         self.cursor = cursor
         self.reporter = reporter
         self.blocks = blocks
+        self.known = known
 
     def bare_header(self, word: Token) -> None:
         """`LOOP` alone behind the body of a LOOP: its end is meant, if no other comes."""
@@ -96,7 +100,11 @@ class HeaderRecovery:
         """`LOOP x4`, `LOOP = 4`: how often, with a sign before it."""
         cursor = self.cursor
         row = cursor.tokens[start : body_begins(cursor.tokens, start)]
+        if any(self.known.is_own(each.text) for each in row):
+            return  # `LOOP X4`, of a program with X4
         texts = [each.text.removeprefix("X") or each.text for each in row]
+        if texts[:2] == ["-", ">"]:
+            texts[:2] = ["->"]
         digits = [text for text in texts if text.isdecimal()]
         if len(digits) != 1 or len(row) > 3 or texts == [row[0].text]:
             return
@@ -142,6 +150,8 @@ class HeaderRecovery:
         known = WORDS[word.text]
         fix = head_in(known, row)
         self.reporter.report(codes.MISSING_OPEN, place, word=word.text, fix=fix, usage=known.usage)
+        if word.text not in BLOCK_ENDS:
+            raise Failed  # `UNTIL{c}`, `ELSEIF{c}`: what has read the word goes on
         self._begin(word.text, place)
 
     # -- what is written as one line in another order -----------------------------------------
