@@ -96,6 +96,11 @@ def test_all_that_is_said_is_in_the_call(text: str, call: str) -> None:
         "SHOW(hola)",
         "S 2",
         "F(2 s, 60 %" + " " * LONGEST + ")",
+        "M 50 -50",  # a wheel that goes back
+        "MOTOR 30 -30",
+        "motores 50 -50",
+        "M 50-50",
+        "M(50 - 50)",
     ],
 )
 def test_what_is_not_all_sure_is_not_read(text: str) -> None:
@@ -125,6 +130,9 @@ def test_what_was_not_said_is_called_an_example() -> None:
         ("F;2;60;R;1;50", "F(2, 60);R(1, 50)"),
         ("F(2|60)", "F(2, 60)"),
         ("LOOP(2)\n  F 2 s 60\nEND_LOOP", "LOOP(2)\n  F(2, 60)\nEND_LOOP"),
+        ("M 50 -50", "M(50, -50)"),
+        ("motores 30 -30", "M(30, -30)"),
+        ("M 50-50", "M 50-50"),  # calculated, or two values
         ("F(2, 80)\r\nF 2 s 60\r\n", "F(2, 80)\r\nF(2, 60)\r\n"),
     ],
 )

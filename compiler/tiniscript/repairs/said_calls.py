@@ -130,6 +130,7 @@ class _Reader:
 
     def __init__(self, word: Word, pieces: list[re.Match[str]], names: Container[str]) -> None:
         self._notes = NOTE_WORDS if word.role == "beep" else {}
+        self._is_signed = word.role == "motors"  # `M 50 -50`: a `-` says that a wheel goes back
         self._pieces = pieces
         self._names = names
         self.found: list[_Value] = []
@@ -184,6 +185,8 @@ class _Reader:
         sign = self._at(k)
         if sign == "%":
             return self._is_behind_value and self._takes_unit("%")
+        if sign == "-" and self._is_signed:
+            return False
         if sign == "-" and not self._has_bracket and self._is_between_numbers(k):
             return True  # `F2-80`
         if sign == "-":  # between two values, and none of them is negative
