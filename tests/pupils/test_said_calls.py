@@ -44,6 +44,8 @@ from tiniscript.source import Source
         ("BEEP 440 1", "BEEP(1, 440)"),
         ("F.2.60", "F(2, 60)"),
         ("F_2_60", "F(2, 60)"),
+        ("F 80 %, 2 s", "F(2, 80)"),
+        ("R 50 %, 3 S", "R(3, 50)"),
         ("F(2),(60)", "F(2, 60)"),
         ("F(2|60)", "F(2, 60)"),
         ("F(2 & 60)", "F(2, 60)"),
@@ -105,6 +107,16 @@ def test_all_that_is_said_is_in_the_call(text: str, call: str) -> None:
 )
 def test_what_is_not_all_sure_is_not_read(text: str) -> None:
     assert said_call(text, {"X"}) is None
+
+
+@pytest.mark.parametrize(
+    ("program", "call"),
+    [("F 80 %, 2 s", "F(2, 80)"), ("R 50 %, 3 s", "R(3, 50)"), ("F 80 %, 2", "F(2, 80)")],
+)
+def test_a_power_before_its_time_stays_a_power(program: str, call: str) -> None:
+    (found,) = check(program)
+    assert found.values["fix"] == call
+    assert fixed(program, check).text == program, "its author looks"
 
 
 def test_a_tone_without_a_time_is_an_example() -> None:

@@ -150,6 +150,8 @@ def test_names_of_examples_are_made_up(before: str, after: str, is_made_up: bool
         "F(2,80,60)",
         "WAIT(500)",
         "F(TIEMPO, 80)",  # a variable whose value is missing
+        "F 80 %, 2 S F(1, 50)",  # a power, and then a time or not
+        "BEEP 80 %, 2",
         "DEF LOOK;S;END_DEF;LOOK:F(2, 80)",  # LOOK is called
     ],
 )

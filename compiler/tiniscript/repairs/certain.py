@@ -12,7 +12,7 @@ from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.repairs.accounting import makes_up_names
 from tiniscript.repairs.edits import Edit
-from tiniscript.source import Source
+from tiniscript.source import Source, Span
 
 # `8O`, `1OO` and `O.5`: in any other place a letter may be one too many.
 _LETTER_FOR_ZERO = re.compile(r"[1-9][Oo]{1,2}|[Oo]\.[0-9]+")
@@ -21,6 +21,7 @@ _LETTERS = re.compile(r"[A-Za-z]")
 # A call without calculations: of `5 / 3 - 3)` a bracket may be missing.
 _PLAIN_CALL = re.compile(r"\s*[A-Za-z_]\w*\s*\([^()+*/%<>=-]*\)+\s*")
 _UNIT_BEHIND = re.compile(r"(?i)[ \t]*s[ \t]+[0-9]")
+_PERCENT = re.compile(r"[0-9.]+ ?% *,")
 _AROUND = 80  # characters of an instruction that are looked at
 
 
@@ -29,6 +30,8 @@ def is_certain(diagnostic: Diagnostic, edits: Sequence[Edit], source: Source) ->
     text, span = source.text, diagnostic.span
     if diagnostic.code is codes.BAD_NUMBER:
         return _is_number(source[span])
+    if diagnostic.code is codes.UNIT and _is_first_percent(text, span):
+        return False
     if diagnostic.code is codes.OTHER_LANGUAGE and diagnostic.values.get("right") == "TIME":
         return False  # TIEMPO is rather a variable whose value is not set
     if diagnostic.code is codes.ODD_CHARACTER:
@@ -52,6 +55,12 @@ def _is_number(written: str) -> bool:
     if _LETTERS.search(written):
         return _LETTER_FOR_ZERO.fullmatch(written) is not None
     return written[-1:].isnumeric()  # `15.` may be 1.5, and `10"` has a slip in it
+
+
+def _is_first_percent(text: str, span: Span) -> bool:
+    """Whether the `%` of `F 80 %, 2` is at `span`, whose call says which value is meant."""
+    is_parted = _PERCENT.match(text, span.start) is not None
+    return is_parted and "(" not in _before(text, span.start)
 
 
 def _before(text: str, end: int) -> str:

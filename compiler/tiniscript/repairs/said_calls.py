@@ -30,7 +30,7 @@ _HEAD = re.compile(r"\s*\(?\s*([A-Za-z]+)(?!\.)")
 _GOES_ON = re.compile(r"\)\s*[^\s)]")  # `F(2, 80) S`
 _DOTTED = re.compile(r"^\s*([A-Za-z]+)[._]([0-9]+)[._]([1-9]0|100)\s*$")  # `F.2.80`
 _AGAIN = re.compile(r"\)\s*,?\s*\((?=\s*[0-9])")  # `F(2),(80)`
-_STOPS = re.compile(r"[0-9] +[Ss]$")  # `W 1 S`: seconds, or the command
+_STOPS = re.compile(r"[^%]*[0-9] +[Ss]")  # `W 1 S`: seconds, or the command
 _DIGITS = str.maketrans("OoIl", "0011")
 _LETTERED = re.compile(r"(?<![\w.,])(?:[0-9OoIl]+(?:\.[0-9OoIl]+)?)(?![A-Za-z_])")
 _LETTER = re.compile(r"(?<=[(,])\s*[OoIl]\s*(?=[,)])")
@@ -87,7 +87,7 @@ def said_call(text: str, names: Container[str]) -> Said | None:
     `names` are those of the program's variables.
     """
     text = _AGAIN.sub(",", _DOTTED.sub(r"\1 \2,\3", text[: LONGEST + 1]))
-    if len(text) > LONGEST or _GOES_ON.search(text) or _STOPS.search(text):
+    if len(text) > LONGEST or _GOES_ON.search(text) or _STOPS.fullmatch(text):
         return None
     plain = "".join(c for c in normalize("NFKD", text) if not combining(c)).replace("、", ",")
     plain = _PERCENT.sub("%", plain)

@@ -61,6 +61,8 @@ class BracketRecovery:
         fix = call_in(known, rest)
         if rest and rest[0].text.startswith(".") and rest[0].start == word.end:
             fix = ""  # `F.2.80`
+        if rest and cursor.source[rest[0].span].endswith("%") and known.role != "motors":
+            fix = ""  # `F 80 %, 2`
         if not rest and cursor.token.text == "UNTIL" and known.role in ("move", "wait"):
             fix = known.example.replace("2" if known.role == "move" else "1", "FOREVER", 1)
         if is_def:
