@@ -179,6 +179,11 @@ PLACEHOLDERS = {
     "power": ("POWER", "POTENCIA", "P"), "left": ("LEFT", "IZQUIERDA"), "right": ("RIGHT", "DERECHA"),
     "hertz": ("HERTZ", "HERCIOS", "HZ"),
 }
+# How pupils name a value, beside its placeholders: `F(t=2, vel=80)`.
+_OTHER_NAMES = {
+    "time": ("SECONDS", "SEGUNDOS", "SEG", "DURACION", "DURATION"),
+    "power": ("VEL", "VELOCIDAD", "SPEED", "V", "FUERZA", "POT"),
+}
 
 # Words that have a meaning elsewhere in this table, and are no misspelt ones.
 _KNOWN_OTHERWISE = frozenset(("CONTINUE", "CONTINUA", "CONTINUAR", *TURN_WORDS, *SWITCH_WORDS, *SENSOR_STEMS, *NOT_DONE))
@@ -219,6 +224,11 @@ UNITS = {name: (unit, thousandths) for unit, thousandths, names in (
 def usage_of(word: str) -> str:
     """Return how a word is used, as messages print it: `F(time, power)`; else the word."""
     return WORDS[word].usage if word in WORDS else word
+
+
+def names_of(argument: str) -> tuple[str, ...]:
+    """Return how pupils name a value of a call, `power`: POWER, POTENCIA, VEL."""
+    return (*PLACEHOLDERS.get(argument, ()), *_OTHER_NAMES.get(argument, ()))
 
 
 def meant_by(word: str) -> str | None:

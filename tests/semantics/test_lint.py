@@ -28,6 +28,9 @@ KIT = robots.load("tinibot").kit
         ("DEF A;S;END_DEF", "TS807"),
         ("SHOW(5 % (3 - 3))", "TS808"),
         ("IF(2147483 * 2 > DISTANCE);S;ENDIF", "TS808"),
+        ("SPEED = 80;TIME_S = 2;F(SPEED, TIME_S)", "TS810"),
+        ("VEL1 = 80;X = 2;F(VEL1, X)", "TS810"),
+        ("X = 80;SEGUNDOS = 2;R(X, SEGUNDOS)", "TS810"),
         ("F(2, 80)//R(1, 60)", "TS816"),
         ("F(2, 80); // r(1,60); S", "TS816"),
     ],
@@ -57,6 +60,13 @@ def test_advice(text: str, code: str) -> None:
         "// R(1, 60)\nF(2, 80)",
         "F(2, // R(1, 60)\n80)",
         "F(2, 80) // S",
+        "TIEMPO = 30;POTENCIA = 10;F(TIEMPO, POTENCIA)",
+        "T = 30;P = 10;F(T, P)",
+        "SECONDS = 20;SLOW = 10;F(SECONDS, SLOW)",
+        "VELOCIDAD = 5;TIEMPO = 30;F(TIEMPO, VELOCIDAD)",
+        "SPEED = 30;SLOW = 5;F(SPEED, SLOW)",
+        "T1 = 30;T2 = 10;F(T1, T2)",
+        "X = 30;Y = 10;F(X, Y)",
     ],
 )
 def test_no_advice(text: str) -> None:

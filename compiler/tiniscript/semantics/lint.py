@@ -35,7 +35,7 @@ from tiniscript.semantics.ir import (
 from tiniscript.semantics.optimizer import constant, fold, sure_fault
 from tiniscript.source import Span
 from tiniscript.syntax.operators import SIGN_OF
-from tiniscript.words import DEVICE_WORDS
+from tiniscript.words import DEVICE_WORDS, POWER_WORDS, names_of
 
 LONG_MOVE = 500  # ms: a robot goes a hand's breadth in this time
 LONG_TIME = 20_000  # ms: a power was meant, where the power is a time
@@ -44,6 +44,9 @@ VERY_LONG_MOVE = 150_000  # ms: no room is as long as that
 LONG_BEEP = 100_000  # ms
 ANGLES = (45_000, 90_000, 135_000, 180_000, 270_000, 360_000)  # ms: degrees were meant
 LITTLE_POWER = 10_000  # thousandths of a percent
+# Names of variables that say which value is in them.
+_TIMES = frozenset(names_of("time"))
+_POWERS = frozenset((*names_of("power"), *POWER_WORDS))
 _COMPARATORS = frozenset(name for name, _ in COMPARATORS)
 
 
@@ -111,7 +114,7 @@ def _swapped(move: Move, time: int | None, found: list[Diagnostic]) -> None:
 
 
 def _swapped_names(body: Body, program: Program, found: list[Diagnostic]) -> None:
-    """`F(SPEED, TIME_S)`: a long time and a little power in variables that are set once."""
+    """`F(SPEED, TIME_S)`: variables that are set once, in the wrong order by name and number."""
     routines = [*(procedure.body for procedure in program.procedures), program.body]
     set_to: dict[int, list[int | None]] = {}
     for statement in (each for routine in routines for each in walk(routine)):
@@ -128,11 +131,25 @@ def _swapped_names(body: Body, program: Program, found: list[Diagnostic]) -> Non
         if not all(len(each) == 1 and each[0] is not None for each in values):
             continue
         time, power = (each[0] or 0 for each in values)
+        first, second = (program.variables[each] for each in numbers)
+        if _is_right_order(first, second):
+            continue
         if LONG_TIME <= time <= 100_000 and 0 < power <= LITTLE_POWER:
-            first, second = (program.variables[each] for each in numbers)
             fix = f"{move.direction}({second}, {first})"
             _report(found, codes.SWAPPED, move.span, fix=fix,
                     time=as_text(time), power=as_text(power))  # fmt: skip
+
+
+def _is_right_order(first: str, second: str) -> bool:
+    """Whether no name of `F(first, second)` says that it is in the other's place."""
+    if _says(first, _TIMES) or _says(second, _POWERS):
+        return True
+    return not _says(first, _POWERS) and not _says(second, _TIMES)
+
+
+def _says(name: str, meanings: frozenset[str]) -> bool:
+    """Whether a part of a name is in `meanings`: TIME_S, MI_TIEMPO, VEL1."""
+    return any(part.rstrip("0123456789") in meanings for part in name.split("_"))
 
 
 def _very_long(move: Move, time: int | None, found: list[Diagnostic]) -> None:

@@ -7,7 +7,6 @@ calls this module for mistakes.
 from __future__ import annotations
 
 import re
-from collections import defaultdict
 from itertools import chain
 
 from tiniscript.diagnostics import codes
@@ -28,6 +27,7 @@ from tiniscript.words import (
     Word,
     is_guessed,
     meant_by,
+    names_of,
     said_instead,
     usage_of,
 )
@@ -139,13 +139,6 @@ def report_placeholders(scope: Scope, node: ast.Command, word: Word, said: int) 
         scope.report(codes.PLACEHOLDER, node.span, usage=word.usage, example=word.example)
 
 
-# How pupils name a value, beside its placeholders: `F(t=2, vel=80)`.
-_NAMES = defaultdict(tuple, {
-    "time": ("SECONDS", "SEGUNDOS", "SEG", "DURACION", "DURATION"),
-    "power": ("VEL", "VELOCIDAD", "SPEED", "V", "FUERZA", "POT"),
-})  # fmt: skip
-
-
 def report_named_arguments(scope: Scope, node: ast.Command, word: Word, said: int) -> None:
     """`F(t=2, p=80)`: values have no names here. Drops the diagnostics since `said`."""
     codes_of_names = (codes.UNKNOWN_NAME, codes.OTHER_LANGUAGE)  # `TIEMPO` is TIME elsewhere
@@ -157,7 +150,7 @@ def report_named_arguments(scope: Scope, node: ast.Command, word: Word, said: in
         first, last = argument.expression[0], argument.expression[-1]
         name = Span(first.start, first.end)
         text = scope.source[name].upper()
-        means = [each for each in names if text in (*PLACEHOLDERS.get(each, ()), *_NAMES[each])]
+        means = [each for each in names if text in names_of(each)]
         is_named = last.op == "EQ" and (name in unknown or slot in means)
         if not is_named and not argument.is_plain:
             return
