@@ -44,6 +44,8 @@ from tiniscript.source import Source
         ("BEEP 440 1", "BEEP(1, 440)"),
         ("F.2.60", "F(2, 60)"),
         ("F_2_60", "F(2, 60)"),
+        ("F: t=2, vel=60", "F(2, 60)"),
+        ("F 80 s, vel 60", "F(80, 60)"),
         ("F 80 %, 2 s", "F(2, 80)"),
         ("R 50 %, 3 S", "R(3, 50)"),
         ("F(2),(60)", "F(2, 60)"),
@@ -98,6 +100,13 @@ def test_all_that_is_said_is_in_the_call(text: str, call: str) -> None:
         "SHOW(hola)",
         "S 2",
         "F(2 s, 60 %" + " " * LONGEST + ")",
+        "F 80=vel 2",  # the power is rather the 80
+        "F(80 = vel, 2)",
+        "F(80:vel, 2)",
+        "F(80 => vel 2)",
+        "F 80, vel 2",  # 80 s
+        "R(90, potencia 50)",
+        "BEEP(440, nota DO)",
         "M 50 -50",  # a wheel that goes back
         "MOTOR 30 -30",
         "motores 50 -50",

@@ -230,6 +230,8 @@ class _Reader:
             and len(self._at(k)) > 3
         ):
             return False  # `1velocidad` is rather a name
+        if k > 1 and self._at(k - 1) in ("=", ":", ">"):
+            return False  # `80 = vel`: of `80 = vel, 2` it may be both, too
         is_before = k + 1 < len(self._pieces) and self._pieces[k + 1].lastgroup == "number"
         is_before = is_before or self._at(k + 1) in ("=", ":", *NUMBER_WORDS)
         is_of = k > 1 and self._at(k - 1) in ("DE", "OF") and self._pieces[k - 2][0][0].isdigit()
@@ -290,21 +292,22 @@ def _fitted(word: Word, values: Sequence[_Value]) -> Said | None:
             if not free:
                 return None
             places[free[0]] = value.text
+    is_time_loose = bool(loose) and not places[0] and word.role != "motors"
     for text in loose:
         if all(places):
             return None
         places[places.index("")] = text
-    return _checked(word, places, is_unnamed=len(loose) == len(values))
+    return _checked(word, places, is_unnamed=len(loose) == len(values), is_time_loose=is_time_loose)
 
 
-def _checked(word: Word, places: list[str], is_unnamed: bool) -> Said | None:
+def _checked(word: Word, places: list[str], is_unnamed: bool, is_time_loose: bool) -> Said | None:
     example = ""
     numbers = [float(text) if _is_number(text) else None for text in places]
     first = numbers[0]
     second = numbers[-1]
     if is_unnamed and word.role == "beep" and first and second and second < LONG_TIME_S < first:
-        return _checked(word, places[::-1], is_unnamed)  # `BEEP 440 1`
-    if is_unnamed and word.role != "motors" and first is not None and first >= LONG_TIME_S:
+        return _checked(word, places[::-1], is_unnamed, is_time_loose)  # `BEEP 440 1`
+    if is_time_loose and first is not None and first >= LONG_TIME_S:
         return None  # the power, degrees, milliseconds
     if word.role == "beep" and not places[0] and second is not None:
         its = word.arguments[0]
