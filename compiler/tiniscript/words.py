@@ -182,6 +182,8 @@ PLACEHOLDERS = {
 # How pupils name a value, beside its placeholders: `F(t=2, vel=80)`.
 _OTHER_NAMES = {
     "time": ("SECONDS", "SEGUNDOS", "SEG", "DURACION", "DURATION"),
+    "seconds": ("T", "SEG", "DURACION", "DURATION"),
+    "hertz": ("FRECUENCIA", "FREQUENCY", "FREQ", "TONO", "TONE", "NOTA", "NOTE"),
     "power": ("VEL", "VELOCIDAD", "SPEED", "V", "FUERZA", "POT"),
 }
 

@@ -98,6 +98,7 @@ def test_all_that_is_said_is_in_the_call(text: str, call: str) -> None:
         "X 2 60",
         "(F(2, 80)",
         "SHOW(hola)",
+        "SHOW EL distancia",  # EL is a variable here
         "S 2",
         "F(2 s, 60 %" + " " * LONGEST + ")",
         "F 80=vel 2",  # the power is rather the 80
@@ -115,7 +116,7 @@ def test_all_that_is_said_is_in_the_call(text: str, call: str) -> None:
     ],
 )
 def test_what_is_not_all_sure_is_not_read(text: str) -> None:
-    assert said_call(text, {"X"}) is None
+    assert said_call(text, {"X", "EL"}) is None
 
 
 @pytest.mark.parametrize(
@@ -151,6 +152,7 @@ def test_what_was_not_said_is_called_an_example() -> None:
         ("F;2;60;R;1;50", "F(2, 60);R(1, 50)"),
         ("F(2|60)", "F(2, 60)"),
         ("LOOP(2)\n  F 2 s 60\nEND_LOOP", "LOOP(2)\n  F(2, 60)\nEND_LOOP"),
+        ("EL = 5\nSHOW EL distancia", "EL = 5\nSHOW(EL);SHOW(DISTANCE)"),
         ("M 50 -50", "M(50, -50)"),
         ("motores 30 -30", "M(30, -30)"),
         ("M 50-50", "M 50-50"),  # calculated, or two values
@@ -185,7 +187,10 @@ def test_a_call_that_is_cut_in_two_gets_no_example() -> None:
         ("BEEP(1000, 440)", "BEEP(1, 440)"),
         ("BEEP(440, 1000)", "BEEP(1, 440)"),
         ("BEEP(1000, 500)", "1000 milisegundos son 1 segundo"),  # either may be the time
-        ("F(200, 80)", "F(0.2, 80)"),
+        ("F(500, 80)", "F(0.5, 80)"),
+        ("BEEP(hz=440, t=1)", "BEEP(1, 440)"),
+        ("BEEP(tono=440, seg=1)", "BEEP(1, 440)"),
+        ("BEEP(freq=440, time=1)", "BEEP(1, 440)"),
         ("W(-1)", "desde 0"),
         ("STOP 2", "STOP;W(2)"),
         ("W(un ratito)", "RATITO = 0"),

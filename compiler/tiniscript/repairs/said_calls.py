@@ -110,7 +110,8 @@ def _shown(word: Word, text: str, names: Container[str]) -> Said | None:
     """`mostrar luz izquierda`, `SHOW(distancia cm)`: the value that its words say together."""
     if not re.fullmatch(r"[\s()A-Za-z_'\"]+", text):
         return None
-    words = [each for each in re.findall(r"\w+", text.upper()) if each not in _BESIDE_SENSOR]
+    said = re.findall(r"\w+", text.upper())
+    words = [each for each in said if each in names or each not in _BESIDE_SENSOR]
     name = "_".join(words)
     meant = name if name in names or name in OTHER_WORDS else meant_by(name)
     if meant is None or (meant in WORDS and WORDS[meant].role != "value"):

@@ -40,7 +40,6 @@ from tiniscript.words import DEVICE_WORDS, POWER_WORDS, names_of
 LONG_MOVE = 500  # ms: a robot goes a hand's breadth in this time
 LONG_TIME = 20_000  # ms: a power was meant, where the power is a time
 VERY_LONG_TIME = 500_000  # ms: milliseconds were meant, as `delay(1000)` of an Arduino has them
-VERY_LONG_MOVE = 150_000  # ms: no room is as long as that
 LONG_BEEP = 100_000  # ms
 ANGLES = (45_000, 90_000, 135_000, 180_000, 270_000, 360_000)  # ms: degrees were meant
 LITTLE_POWER = 10_000  # thousandths of a percent
@@ -161,7 +160,7 @@ def _very_long(move: Move, time: int | None, found: list[Diagnostic]) -> None:
     if move.direction in ("L", "R") and time in ANGLES:
         fix = f"{move.direction}(1{shown})"
         _report(found, codes.LONG_TIME, move.span, degrees=as_text(time), fix=fix)
-    elif time >= (VERY_LONG_TIME if move.direction == "W" else VERY_LONG_MOVE):
+    elif time >= VERY_LONG_TIME:
         fix = f"{move.direction}({as_text(time // 1000)}{shown})"
         _report(found, codes.LONG_TIME, move.span, time=as_text(time), fix=fix)
 

@@ -151,7 +151,7 @@ def report_named_arguments(scope: Scope, node: ast.Command, word: Word, said: in
         name = Span(first.start, first.end)
         text = scope.source[name].upper()
         means = [each for each in names if text in names_of(each)]
-        is_named = last.op == "EQ" and (name in unknown or slot in means)
+        is_named = last.op == "EQ" and (name in unknown or bool(means))
         if not is_named and not argument.is_plain:
             return
         count += is_named
