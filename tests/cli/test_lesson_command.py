@@ -271,30 +271,67 @@ def test_notes_are_no_programs_and_folders_of_pupils_are(tsc: Tsc, tmp_path: Pat
     for name in ("Ana", "Beto", "x.ts"):
         (pupils / name).mkdir(parents=True)
         (pupils / name / "square.ts").write_text(RIGHT, encoding="utf-8")
-    files = {
+    notes = {
         "README.txt": "Para entregar: los de tercero.\nGracias (a todos).\n",
-        "lista.TXT": "Ana 15\nBeto 12\n", "notepad.txt": RIGHT, "wrong.txt": "ADELANTE (2)",
-        "empty.txt": "", "note.ts": "Ana 15", "also.ts.txt": "Ana 15",
+        "Léeme primero.TXT": "Ana 15\nBeto 12\n", "notas (2).txt": "Todo bien",
     }  # fmt: skip
-    for name, content in files.items():
+    files = {
+        "notepad.txt": RIGHT, "wrong.txt": "ADELANTE (2)", "notasio.txt": "hola",
+        "readme ana.txt": RIGHT, "notes.txt": "SI\rF 2,80", "notas.txt": "F 2 80;R 1 60",
+        "empty.txt": "", "note.ts": "Ana 15", "also.ts.txt": "Ana 15", "lista.txt": "Ana 15",
+    }  # fmt: skip
+    for name, content in {**files, **notes}.items():
         (pupils / name).write_text(content, encoding="utf-8")
     (pupils / ".hidden").mkdir()
     (pupils / ".hidden" / "old.ts").write_text(RIGHT, encoding="utf-8")
-    done = tsc("lesson", "check", "1", pupils, "--json")
+    rows = tmp_path / "marks.csv"
+    done = tsc("lesson", "check", "1", pupils, "--json", "--csv", rows)
     assert done.code == 1
     found = {row["file"].replace(os.sep, "/"): row["verdict"] for row in json.loads(done.out)}
     assert found == {
         "also.ts.txt": "mistakes", "empty.txt": "failed", "note.ts": "mistakes",
         "notepad.txt": "passed", "wrong.txt": "mistakes", "Ana/square.ts": "passed",
-        "Beto/square.ts": "passed", "x.ts/square.ts": "passed",
+        "Beto/square.ts": "passed", "x.ts/square.ts": "passed", "notasio.txt": "mistakes",
+        "readme ana.txt": "passed", "notes.txt": "mistakes", "notas.txt": "mistakes",
+        "lista.txt": "mistakes", **dict.fromkeys(notes, "no_program"),
     }  # fmt: skip
-    assert done.err.startswith("Not checked, since no line looks like a program: README.txt, lista")
-    for name in found:
+    verdicts = [row[1] for row in csv.reader(rows.read_text("utf-8-sig").splitlines())]
+    assert verdicts.count("no_program") == len(notes)
+    assert done.err.startswith("Not checked, since they look like notes: Léeme primero.TXT, README")
+    table = tsc("lesson", "check", "1", pupils).out.splitlines()
+    assert [row[len("README.txt") :].strip() for row in table if row.startswith("README")] == [
+        "no program"
+    ]
+    assert table[-1] == "Lesson 1 done: 5 of 13."
+    for name in files:
         (pupils / name).unlink()
+    assert tsc("lesson", "check", "1", pupils).code == 0  # notes are nobody's failure
+    for name in ("Ana", "Beto", "x.ts"):
+        (pupils / name / "square.ts").unlink()
     for language, words in (("en", "there is no program"), ("es", "no hay ningún programa")):
         done = tsc("lesson", "check", "1", pupils, "--lang", language)
         assert (done.code, done.out) == (2, "")
         assert words in done.err
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        "SI\nF 2,80\nR 1,60", "F 2 80;R 1 60", "adelante 5 segundos\nderecha 1",
+        "forward 5\nright 90", "if distancia < 10 parar", "Nombre: Ana\nSI;F 2,80;R 1,60",
+    ],
+)  # fmt: skip
+def test_a_wrong_program_of_a_pupil_has_a_row(tsc: Tsc, tmp_path: Path, wrong: str) -> None:
+    (tmp_path / "ana.txt").write_text(wrong, encoding="utf-8")
+    done = tsc("lesson", "check", "1", tmp_path, "--json")
+    (row,) = json.loads(done.out)
+    assert (done.code, row["file"], row["verdict"]) == (1, "ana.txt", "mistakes")
+
+
+def test_a_note_of_empty_lines_is_looked_at_once(tsc: Tsc, tmp_path: Path) -> None:
+    """With quadratic time this takes minutes."""
+    (tmp_path / "README.txt").write_text("\n" * 100_000 + " " * 100_000 + "." + "a" * 100_000)
+    assert "there is no program" in tsc("lesson", "check", "1", tmp_path).err
 
 
 @pytest.mark.skipif(os.name == "nt", reason="Windows has no pipes among its files")

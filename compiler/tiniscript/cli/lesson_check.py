@@ -11,6 +11,7 @@ import os
 import re
 import sys
 import textwrap
+import unicodedata
 from argparse import Namespace
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import islice
@@ -34,9 +35,14 @@ if TYPE_CHECKING:
 PROGRAMS = 200  # of a folder
 LEAST_COLUMNS = 24  # of a sentence beside its program; below that it stands under it
 TEXTS = (*ENDS, ".txt")
-# A line of a program begins so, also a wrong one: `SI|`, `F(2, 80)`, `ADELANTE (2)`, `x = 3`.
-LIKE_A_PROGRAM = re.compile(r"^\s*\w+(?:\s*[|=]|\(|\s+\(\s*\d)", re.MULTILINE)
+LIKE_NOTES = re.compile(r"(?:read ?me|leeme|notes|notas)(?![^\W\d_])", re.IGNORECASE)  # names
+# A line of a program begins so, also a wrong one: `SI|`, `SI`, `F 2`, `ADELANTE (2)`, `x = 3`.
+LIKE_A_PROGRAM = re.compile(
+    r"[ \t]*(?:\w+(?:[ \t]*[|=]|\(|[ \t]+\([ \t]*\d)|S[IB][ \t]*(?:[;:,.]|$)|[A-Z][ \t]*\d)",
+    re.IGNORECASE,
+)
 PASSED, FAILED, MISTAKES, UNREADABLE = "passed", "failed", "mistakes", "unreadable"
+NO_PROGRAM = "no_program"  # notes beside the programs; they count for nothing
 
 
 class Mark(NamedTuple):
@@ -64,7 +70,8 @@ def check(options: Namespace, lesson: Lesson, language: str) -> int:
     if _is_folder(options):
         if options.plot is not None:
             raise CommandError(2, "lesson_one_picture", file=inputs.shown(options.program))
-        marks = [marker.of_file(found, name) for name, found in _programs(options, language)]
+        marks = [marker.of_file(found, name) for name, found in _programs(options)]
+        _name_notes(marks, options, language)
     else:
         if options.plot is not None:
             from tiniscript.cli.robot.simulator_options import check_picture
@@ -85,7 +92,7 @@ def check(options: Namespace, lesson: Lesson, language: str) -> int:
         _print_table(marks, options, language)
     else:
         _print_one(marks[0], seeds, options, language)
-    return 0 if all(mark.verdict == PASSED for mark in marks) else 1
+    return 0 if all(mark.verdict in (PASSED, NO_PROGRAM) for mark in marks) else 1
 
 
 class _Marker:
@@ -98,7 +105,9 @@ class _Marker:
         self.language = language
 
     def of_file(self, found: Found, name: str) -> Mark:
-        """Mark a file of a folder; one that cannot be read gets a row, too."""
+        """Mark a file of a folder; one that cannot be read, and notes, get a row, too."""
+        if _is_note(found):
+            return Mark(name, NO_PROGRAM, 0, ())
         given = inputs.Input(name, found.data, Path(found.name))
         try:
             if found.problem is not None:
@@ -169,10 +178,9 @@ def _is_folder(options: Namespace) -> bool:
         return False
 
 
-def _programs(options: Namespace, language: str) -> Iterator[tuple[str, Found]]:
-    """Yield the programs of a folder and those below, each with its name there.
+def _programs(options: Namespace) -> Iterator[tuple[str, Found]]:
+    """Yield the files of a folder and those below, each with its name there.
 
-    A `.txt` without a line that looks like a program is a note: those are named at the end.
     Raises CommandError.
     """
     folder = options.program
@@ -184,15 +192,15 @@ def _programs(options: Namespace, language: str) -> Iterator[tuple[str, Found]]:
     names = list(islice(in_folder(folder, TEXTS), PROGRAMS + 1))
     if len(names) > PROGRAMS:
         raise CommandError(2, "lesson_many", file=inputs.shown(folder), most=str(PROGRAMS))
-    notes = []
     for each in names:
-        name, found = os.path.relpath(each, folder), read(each)
-        if _is_note(found):
-            notes.append(inputs.shown(name))
-        else:
-            yield name, found
-    if len(notes) == len(names):
-        raise CommandError(2, "lesson_empty", file=inputs.shown(folder))
+        yield os.path.relpath(each, folder), read(each)
+
+
+def _name_notes(marks: Sequence[Mark], options: Namespace, language: str) -> None:
+    """Name the notes of a folder on standard error. Raises CommandError where all are notes."""
+    notes = [inputs.shown(mark.name) for mark in marks if mark.verdict == NO_PROGRAM]
+    if len(notes) == len(marks):
+        raise CommandError(2, "lesson_empty", file=inputs.shown(options.program))
     if notes:
         said = text("lesson_notes", language)
         number = inputs.shown(options.number)
@@ -200,8 +208,15 @@ def _programs(options: Namespace, language: str) -> Iterator[tuple[str, Found]]:
 
 
 def _is_note(found: Found) -> bool:
-    """Whether a file is a `.txt` with text, and no program in it; in doubt it is a program."""
+    """Whether a `.txt` is called like notes, and no line looks like a program.
+
+    In doubt it is a program: what a pupil has handed in is marked, however wrong it is.
+    """
     if found.name.lower().endswith(ENDS) or found.problem is not None:
+        return False
+    letters = unicodedata.normalize("NFD", Path(found.name).name)
+    plain = "".join(each for each in letters if not unicodedata.combining(each))
+    if LIKE_NOTES.match(plain) is None:
         return False
     from tiniscript.source import Unreadable, decode
 
@@ -209,7 +224,7 @@ def _is_note(found: Found) -> bool:
         note = decode(found.data)
     except Unreadable:
         return False
-    return bool(note.strip()) and LIKE_A_PROGRAM.search(note) is None
+    return bool(note.strip()) and not any(map(LIKE_A_PROGRAM.match, note.splitlines()))
 
 
 def _print_one(mark: Mark, seeds: Sequence[int], options: Namespace, language: str) -> None:
@@ -257,7 +272,8 @@ def _print_table(marks: Sequence[Mark], options: Namespace, language: str) -> No
     passed = sum(mark.verdict == PASSED for mark in marks)
     count = text("lesson_count", language)
     number = inputs.shown(options.number)
-    print(count.format(passed=passed, all=len(marks), number=number))
+    programs = sum(mark.verdict != NO_PROGRAM for mark in marks)
+    print(count.format(passed=passed, all=programs, number=number))
 
 
 def _first(mark: Mark) -> str:
@@ -293,4 +309,4 @@ def _picture(run: Run, language: str) -> bytes:
     return png(robot.world, robot.driving.hull, robot.driving.corners, robot.pose, title)
 
 
-__all__ = ("FAILED", "MISTAKES", "PASSED", "UNREADABLE", "Mark", "check")
+__all__ = ("FAILED", "MISTAKES", "NO_PROGRAM", "PASSED", "UNREADABLE", "Mark", "check")

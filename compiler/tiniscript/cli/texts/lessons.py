@@ -25,8 +25,8 @@ LESSON_TEXTS: dict[str, tuple[str, str]] = {
                      "tsc: en el mundo {seed} de la lección {file} el robot no cabe:\n{reasons}"),
     "lesson_empty": ("tsc: in the folder {file} there is no program. Their names end in .ts, or in .txt where a program is inside.",
                      "tsc: en la carpeta {file} no hay ningún programa. Sus nombres terminan en .ts, o en .txt si tienen un programa dentro."),
-    "lesson_notes": ("Not checked, since no line looks like a program: {files}. To check one all the same:  tsc lesson check {number} FILE",
-                     "Sin revisar, porque ninguna línea parece un programa: {files}. Para revisar uno de todos modos:  tsc lesson check {number} ARCHIVO"),
+    "lesson_notes": ("Not checked, since they look like notes: {files}. To check one all the same:  tsc lesson check {number} FILE",
+                     "Sin revisar, porque parecen apuntes: {files}. Para revisar uno de todos modos:  tsc lesson check {number} ARCHIVO"),
     "lesson_many": ("tsc: the folder {file} has more than {most} programs. Check a part of them at a time.",
                     "tsc: la carpeta {file} tiene más de {most} programas. Revisa una parte cada vez."),
     "lesson_folder": ("tsc: the folder {file} cannot be read: {why}. Copy it to another place and try again.",
@@ -59,5 +59,6 @@ LESSON_TEXTS: dict[str, tuple[str, str]] = {
     "verdict_failed": ("not yet", "todavía no"),
     "verdict_mistakes": ("mistakes", "errores"),
     "verdict_unreadable": ("unreadable", "ilegible"),
+    "verdict_no_program": ("no program", "no es un programa"),
 }
 # fmt: on
