@@ -10,12 +10,15 @@ import pytest
 from tests.support.command import Tsc, process
 from tests.support.virtual_robot import missing
 from tiniscript import compile
+from tiniscript.cli.commands import upload
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.made import is_foreign
 from tiniscript.cli.robot import recorder
 from tiniscript.cli.robot.recorder import Recorder
+from tiniscript.cli.robot.run_monitor import Saving
 from tiniscript.studio import recordings
-from tiniscript.studio.recordings import Recorded, read
+from tiniscript.studio.recordings import Recorded, read, replay
+from tiniscript.virtual import worlds
 
 pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")
 TEXT = "SI|W(0.2); SHOW(5);\nX = 0; W(0.2);\nSHOW(1 / X)"
@@ -157,6 +160,58 @@ def test_a_recording_has_an_end_and_no_more(
     made.add(7, "SHOW", "1")
     made.close()
     assert recorded(file) == ["STOPPED"]  # it is as long as one may be
+
+
+@pytest.mark.parametrize(("event", "wanted"), [("", "STOPPED"), ("LOST", "LOST")])
+def test_a_recording_ends_when_the_run_does(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, event: str, wanted: str
+) -> None:
+    """A robot that hangs after its first value and is stopped by hand has not done the same."""
+    file, clock = tmp_path / "run.jsonl", iter((10.0, 10.2, 70.0))
+    monkeypatch.setattr(recorder, "monotonic", lambda: next(clock))
+    made = Recorder(str(file), CHECKSUM, "tinibot", has_begun=True)
+    made.add(7, "SHOW", "5")
+    if event:
+        made.end(event)
+    made.close()
+    found = read(file.read_bytes())
+    assert found.events == (Recorded(200, "SHOW 5"), Recorded(60_000, wanted))
+    compared = replay(found, TEXT.encode(), "tinibot", worlds.load("obstacles"))
+    assert compared.what == ("same" if event else "virtual_more")
+
+
+def test_after_ctrl_c_saving_is_no_time_of_the_run(
+    tsc: Tsc, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    file, now_s = tmp_path / "run.jsonl", [5.0]
+
+    def ctrl_c(*_: object) -> int:
+        now_s[0] += 2
+        raise KeyboardInterrupt
+
+    def saves(_: Saving) -> None:
+        now_s[0] += 30
+
+    monkeypatch.setattr(recorder, "monotonic", lambda: now_s[0])
+    monkeypatch.setattr(upload, "looked_after", ctrl_c)
+    monkeypatch.setattr(Saving, "wait", saves)
+    done = tsc("upload", "-e", "SI|F(9, 60)", "--virtual", "--record", file)
+    assert (done.code, "confirmed" in done.err) == (2, True), done.err
+    assert read(file.read_bytes()).events == (Recorded(2000, "STOPPED"),)
+
+
+def test_a_recording_is_no_longer_than_one_may_be(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    file, now_s = tmp_path / "run.jsonl", [0.0]
+    monkeypatch.setattr(recorder, "monotonic", lambda: now_s[0])
+    made = Recorder(str(file), CHECKSUM, "tinibot", has_begun=True)
+    now_s[0] = 1e9
+    made.close()
+    assert read(file.read_bytes()).events == (Recorded(600_000, "STOPPED"),)
+    made = Recorder(str(file), CHECKSUM, "tinibot", has_begun=False)
+    made.close()
+    assert read(file.read_bytes()).events == (Recorded(0, "STOPPED"),)
 
 
 def test_a_place_without_room_says_so(tmp_path: Path) -> None:

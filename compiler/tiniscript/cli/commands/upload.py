@@ -111,6 +111,8 @@ def _upload(
     except KeyboardInterrupt:
         code = stop_and_say(connection)
         try:
+            if recorder is not None:
+                recorder.end("STOPPED")
             saving.wait()  # short, as the motors stand now
         except CommandError as failure:
             print(failure.sentence(language), file=sys.stderr)

@@ -1,6 +1,6 @@
 """Writes what a robot tells of a run into a file: what `tsc upload --record` leaves.
 
-The form of the file is that of `studio/recordings.py`, which reads it. Each line is on the disk
+The form of the file is that of `studio/recordings.py`, which reads it. Each line is flushed
 before the next one comes.
 """
 
@@ -27,7 +27,6 @@ class Recorder:
         head = {"tiniscript_recording": VERSION, "program": f"{program:08x}", "robot": robot}
         self._began_s = monotonic() if has_begun else None
         self._count = 0
-        self._last_ms = 0
         self._is_over = False
         self._rows = Rows(name, (json.dumps(head) + "\n").encode(), "unwritable_recording")
 
@@ -39,22 +38,19 @@ class Recorder:
 
         now_s = monotonic()
         self._began_s = now_s if self._began_s is None else self._began_s
-        ms = round((now_s - self._began_s) * 1000)
+        ms = self._ms(now_s)
         self._count += 1
         if ms > MOST_MS or self._count >= MOST:
-            self.end("STOPPED")
-            return
-        self._last_ms = ms
-        if name in ENDS:
-            self.end(f"FAULT {what}" if name == "FAULT" else name)
+            self._end(ms, "STOPPED")
+        elif name in ENDS:
+            self._end(ms, f"FAULT {what}" if name == "FAULT" else name)
         else:
-            self._put(f"SHOW {what}")
+            self._put(ms, f"SHOW {what}")
 
     def end(self, event: str) -> None:
-        """The recording is over, if it was not: `event` is the last one."""
+        """The recording is over now, if it was not: `event` is the last one."""
         if not self._is_over:
-            self._is_over = True
-            self._put(event)
+            self._end(self._ms(monotonic()), event)
 
     def close(self) -> None:
         """Close the file; a run whose end nobody has told was stopped by this computer."""
@@ -63,5 +59,14 @@ class Recorder:
         finally:
             self._rows.close()
 
-    def _put(self, event: str) -> None:
-        self._rows.line(json.dumps({"ms": self._last_ms, "event": event}))
+    def _ms(self, now_s: float) -> int:
+        return 0 if self._began_s is None else round((now_s - self._began_s) * 1000)
+
+    def _end(self, ms: int, event: str) -> None:
+        from tiniscript.studio.recordings import MOST_MS
+
+        self._is_over = True
+        self._put(min(ms, MOST_MS), event)
+
+    def _put(self, ms: int, event: str) -> None:
+        self._rows.line(json.dumps({"ms": ms, "event": event}))
