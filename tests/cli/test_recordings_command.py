@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.support.casefile import ROOT
 from tests.support.command import Tsc, process
 from tests.support.virtual_robot import missing
 from tiniscript import compile
@@ -16,12 +17,14 @@ from tiniscript.cli.made import is_foreign
 from tiniscript.cli.robot import recorder
 from tiniscript.cli.robot.recorder import Recorder
 from tiniscript.cli.robot.run_monitor import Saving
+from tiniscript.cli.texts.recordings import RECORDING_TEXTS
 from tiniscript.studio import recordings
 from tiniscript.studio.recordings import Recorded, read, replay
 from tiniscript.virtual import worlds
 
 pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")
 TEXT = "SI|W(0.2); SHOW(5);\nX = 0; W(0.2);\nSHOW(1 / X)"
+PAGE_TEXTS = ROOT / "tools/studio/src/robot_texts.js"
 CHECKSUM = compile(TEXT).checksum
 
 
@@ -44,7 +47,7 @@ def test_a_run_is_recorded_and_compared(tsc: Tsc, tmp_path: Path) -> None:
     assert not is_foreign(file)
     done = tsc("run", program, "--replay", file)
     assert (done.code, done.out) == (
-        0, "Both did the same: 2 times the robot said what the virtual one says.\n",
+        0, "Both did the same. Comparisons: 2.\n",
     )  # fmt: skip
     file.write_bytes(file.read_bytes().replace(b"SHOW 5", b"SHOW 6"))
     done = tsc("run", program, "--replay", file, "--world", "line", "--lang", "es")
@@ -56,8 +59,8 @@ def test_a_run_is_recorded_and_compared(tsc: Tsc, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("events", "code", "said"),
     [
-        (((200, "SHOW 5"), (400, "FAULT DIVIDE_BY_ZERO")), 0, "Both did the same: 2 times"),
-        (((200, "SHOW 5"), (300, "LOST")), 0, "Both did the same: 1 times"),
+        (((200, "SHOW 5"), (400, "FAULT DIVIDE_BY_ZERO")), 0, "Both did the same. Comparisons: 2."),
+        (((200, "SHOW 5"), (300, "LOST")), 0, "Both did the same. Comparisons: 1."),
         (((200, "SHOW 5"), (400, "MISSED")), 0, "Then values of the robot did not arrive"),
         (((900, "SHOW 5"),), 1, "Line 1: the robot got there at another time."),
         (((200, "SHOW 5"), (400, "DONE")), 1, "Line 3: the robot says DONE after 0.4 s"),
@@ -74,6 +77,13 @@ def test_a_recording_of_the_page_is_compared(
     assert (done.code, done.out[: len(said)]) == (code, said)
     done = tsc("run", "-e", "SHOW(5)", "--replay", file)
     assert (done.code, done.out[:39]) == (1, "The recording is of another program. Na")
+
+
+@pytest.mark.parametrize("what", ["same", "missed", "value", "time", "robot_more", "virtual_more"])
+def test_the_command_says_what_the_page_says(what: str) -> None:
+    page = PAGE_TEXTS.read_text(encoding="utf-8")
+    for said in RECORDING_TEXTS[f"replay_{what}"]:
+        assert f"'{said}'" in page
 
 
 @pytest.mark.parametrize(
