@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from tests.support.casefile import ROOT
-from tests.support.command import Tsc, process
+from tests.support.command import Done, Tsc, process
 from tests.support.virtual_robot import missing
 from tiniscript import compile
 from tiniscript.cli.commands import upload
@@ -116,6 +116,7 @@ def test_a_file_that_cannot_be_compared_says_why(
         (("run", "-e", TEXT, "--replay", "nowhere"), "there is no file nowhere"),
         (("run", "-e", TEXT, "--replay", "r", "--world", "nowhere"), "nowhere"),
         (("run", "-e", TEXT, "--replay", "r", "--robot", "own.toml"), "robots that tsc brings"),
+        (("run", "-e", TEXT, "--replay", "r", "--robot", "liner"), "is of the robot tinibot, and"),
         (("upload", "-e", "SB|S", "--record", "r"), "--record is for one run that tsc follows"),
         (("upload", "-e", TEXT, "--detach", "--record", "r"), "--record is for one run"),
         (("upload", "-e", TEXT, "--no-run", "--record", "r"), "--record is for one run"),
@@ -136,6 +137,49 @@ def test_what_is_not_recorded_or_compared_says_why(
     assert (done.code, done.out) == (2, "")
     assert said in done.err and "Traceback" not in done.err
     assert Path("r").read_bytes() == of_the_page((5, "SHOW 5"))
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("--sensor", "DISTANCE=5"), ("--seed", "7"), ("--max-time", "3"), ("--max-steps", "9"),
+        ("--machine", "python"), ("--show",), ("--pace", "0"), ("--pace", "fast"),
+    ],
+)  # fmt: skip
+def test_what_a_comparison_does_not_take_is_refused(
+    tsc: Tsc, tmp_path: Path, words: tuple[str, ...]
+) -> None:
+    file = tmp_path / "run.jsonl"
+    file.write_bytes(of_the_page((200, "SHOW 5")))
+    for language, said in (("en", "does not go with --replay"), ("es", "no va con --replay")):
+        done = tsc("run", "-e", TEXT, "--replay", file, *words, "--lang", language)
+        assert (done.code, done.out) == (2, "")
+        assert f"{words[0]} {said}" in done.err
+
+
+def test_the_robot_of_a_comparison_is_that_of_the_recording(tsc: Tsc, tmp_path: Path) -> None:
+    text, file = "SI|SHOW(LINE_L)", tmp_path / "run.jsonl"
+    event = {"ms": 3, "event": "SHOW FALSE"}
+    head = {"tiniscript_recording": 1, "program": f"{compile(text, 'liner').checksum:08x}"}
+
+    def done_with(robot: object, *words: str) -> Done:
+        rows = [head if robot is None else {**head, "robot": robot}, event]
+        file.write_text("".join(json.dumps(row) + "\n" for row in rows), encoding="utf-8")
+        return tsc("run", "-e", text, "--replay", file, *words)
+
+    for words in ((), ("--robot", "liner")):
+        done = done_with("liner", *words)
+        assert (done.code, done.out) == (0, "Both did the same. Comparisons: 1.\n"), done.err
+    assert done_with(None, "--robot", "liner").code == 0  # no robot in the file
+    assert done_with(None).out.startswith("The recording is of another program.")  # for tinibot
+    for robot in ("mine", "../liner", "", "a\x1b[31m\n" * 999):
+        done = done_with(robot)
+        assert (done.code, done.out, "that tsc brings: tinibot" in done.err) == (2, "", True)
+        done = done_with(robot, "--robot", "liner", "--lang", "es")
+        assert (done.code, "y --robot dice liner" in done.err) == (2, True), done.err
+        assert "\x1b" not in done.err and len(done.err) < 1000
+    for odd in (5, ["liner"], False):
+        assert "is damaged, or no recording (line 1)" in done_with(odd).err
 
 
 def recorded(file: Path) -> list[str]:

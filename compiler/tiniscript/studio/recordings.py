@@ -51,8 +51,11 @@ class Recorded(NamedTuple):
 
 
 class Recording(NamedTuple):
+    """`robot` is the name that the file has, which need not be that of a robot; None for none."""
+
     program: int
     events: tuple[Recorded, ...]
+    robot: str | None = None
 
 
 class Parting(NamedTuple):
@@ -78,8 +81,10 @@ def read(data: bytes) -> Recording:
     head = _fields(lines[0], 1)
     if "tiniscript_recording" in head and head["tiniscript_recording"] != VERSION:
         raise BadRecording("other_version", 1)
-    program = head.get("program")
+    program, robot = head.get("program"), head.get("robot")
     if head.get("tiniscript_recording") != VERSION or not _is(_PROGRAM, program):
+        raise BadRecording("unreadable", 1)
+    if robot is not None and not isinstance(robot, str):
         raise BadRecording("unreadable", 1)
     events: list[Recorded] = []
     for number, line in enumerate(lines[1:], 2):
@@ -92,7 +97,7 @@ def read(data: bytes) -> Recording:
         if events and not events[-1].event.startswith("SHOW"):
             raise BadRecording("unreadable", number)  # behind the end
         events.append(Recorded(ms, str(event)))
-    return Recording(int(str(program), 16), tuple(events))
+    return Recording(int(str(program), 16), tuple(events), robot)
 
 
 def _fields(line: str, number: int) -> dict[str, object]:

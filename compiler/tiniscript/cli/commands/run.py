@@ -23,16 +23,16 @@ STEPS = 10_000_000
 
 
 def run(options: Namespace, language: str) -> int:
+    if options.replay is not None:
+        from tiniscript.cli.robot.replay import replay
+
+        return replay(options, language)
     max_ms = _decimal("--max-time", options.max_time, 60_000, LONGEST, language)
     pace = _decimal("--pace", options.pace, 1000, 1_000_000, language)
     max_steps = whole_number("--max-steps", options.max_steps, STEPS, 0, 10**15, language)
     seed = whole_number("--seed", options.seed, 1, 1, 2**32 - 1, language)
     given = inputs.program(options)
     robot = inputs.robot(options, language)
-    if options.replay is not None:
-        from tiniscript.cli.robot.replay import replay
-
-        return replay(given, robot, options, language)
     if options.world is not None:
         raise CommandError(2, "world_without_replay")
     lists = sensor_lists(options.sensor, robot, language)

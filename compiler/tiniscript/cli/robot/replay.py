@@ -10,34 +10,52 @@ from tiniscript.cli.errors import CommandError
 from tiniscript.cli.texts.common import text
 
 if TYPE_CHECKING:
-    from tiniscript.robots.profile import Robot
     from tiniscript.studio.recordings import Parting, Recorded, Recording
 
 SAME = ("same", "missed")
+# options of `tsc run` that say what the recording says, or the virtual robot
+NOT_TAKEN = ("sensor", "seed", "max_time", "max_steps", "machine", "show", "pace")
 
 
-def replay(given: inputs.Input, robot: Robot, options: Namespace, language: str) -> int:
+def replay(options: Namespace, language: str) -> int:
     """Say where a robot and the virtual one part; return the exit code: 1 where they do."""
-    from tiniscript import robots
     from tiniscript.cli.robot.simulator_options import not_installed, refused_world, world_of
     from tiniscript.virtual.world import WorldRefused
 
+    for name in NOT_TAKEN:
+        if getattr(options, name) not in (None, False, []):
+            raise CommandError(2, "replay_only", option="--" + name.replace("_", "-"))
+    given = inputs.program(options)
     if given.is_image:
         raise CommandError(2, "replay_text")
-    if options.robot not in (None, *robots.names()):
-        raise CommandError(2, "replay_robot", known=", ".join(robots.names()))
     recording = _read(options.replay)
+    robot = _robot(options, recording)
     world = world_of(options, language)
     try:
         from tiniscript.studio import recordings
 
-        found = recordings.replay(recording, given.data, robot.name, world)
+        found = recordings.replay(recording, given.data, robot, world)
     except WorldRefused as refused:
         raise refused_world(world.name, refused, language) from None
     except (ImportError, OSError, RuntimeError) as why:  # missing, or not for this computer
         raise not_installed("virtual_needs_wasmtime", why) from None
     print(sentence(found, language))
     return int(found.what not in SAME)
+
+
+def _robot(options: Namespace, recording: Recording) -> str:
+    """Return the robot's name: that of the recording, or where it has none, of `--robot`."""
+    from tiniscript import robots
+
+    known = robots.names()
+    recorded = recording.robot
+    name: str = next(name for name in (options.robot, recorded, robots.DEFAULT) if name is not None)
+    if name not in known:
+        raise CommandError(2, "replay_robot", known=", ".join(known))
+    if recorded not in (None, name):
+        file, of = inputs.shown(options.replay), inputs.shown(str(recorded))
+        raise CommandError(2, "replay_other_robot", file=file, of=of, robot=name)
+    return name
 
 
 def _read(name: str) -> Recording:
