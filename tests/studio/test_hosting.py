@@ -20,6 +20,7 @@ from tiniscript.studio.robot_link import BadRequest
 
 KIT = robots.load("tinibot").kit
 BEAT_S = 0.1
+SILENT_MS = 2000  # after HEARD_S and the robot's dead-man timer, and before LEFT_S ends it anyway
 
 
 class Page:
@@ -155,7 +156,8 @@ def test_nobody_pings_for_a_page_that_is_silent(
     page.upload(FOREVER)
     robot.until(lambda: robot.moves, "it drives")
     monkeypatch.setattr(hosted_robot.HostedRobot, "_attend", lambda *_: time.sleep(0.1))
-    robot.until(lambda: not robot.moves, "its dead-man timer stops it")
+    page.beat()
+    assert robot.stands_after_ms(robot.robot_ms) < SILENT_MS  # by its dead-man timer
 
 
 def test_stop_stops_and_says_so(page: Page, robot: PtyRobot) -> None:
@@ -212,7 +214,8 @@ def test_it_shares_a_port_that_a_command_holds(hosting: Hosting) -> None:
         assert page.until(lambda each: "connected" in each)["held_by"] == "link"
         page.upload(FOREVER)
         robot.until(lambda: robot.moves, "it drives")
-        robot.until(lambda: not robot.moves, "the page is silent")
+        page.beat()
+        assert robot.stands_after_ms(robot.robot_ms) < SILENT_MS
         hosting.close()
 
 
