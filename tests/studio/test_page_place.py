@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from time import monotonic
 from typing import TYPE_CHECKING
 
 from tests.studio.test_page_link import page, pages, robot, said, server  # noqa: F401
 from tests.support.studio import checked, shown, write
+from tests.support.waiting import HANGS_S
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page, Route
 
-DRIVE = "F(1, 80);\nR(1, 60);\nF(1, 80)"
+DRIVE = "F(3, 80);\nR(3, 60)"  # parts that differ, and longer than a busy page is late
 
 
 def marked(page: Page, part: str) -> None:  # noqa: F811
@@ -66,7 +68,9 @@ def test_a_place_outside_of_the_program_marks_nothing(page: Page) -> None:  # no
     page.route("**/robots", changed)
     write(page, "F(60, 80)")
     page.click("#link_upload")
+    end_s = monotonic() + HANGS_S
     while not told:
+        assert monotonic() < end_s, "no place was told"
         page.wait_for_timeout(20)
     page.wait_for_timeout(200)
     assert page.locator(".cm-running").count() == 0

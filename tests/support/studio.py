@@ -18,6 +18,7 @@ from tests.support.platformio import need
 from tiniscript import run
 from tiniscript.studio import serving
 from tiniscript.studio.classroom import Classroom
+from tiniscript.studio.hosted_robot import LEFT_S
 from tiniscript.studio.hosting import Hosting
 from tools.builds import studio
 
@@ -207,7 +208,8 @@ def shown(page: Page) -> None:
     checked(page)
 
 
-HUNG_MS = 2500  # longer than any robot goes on without a word; a page of 4 s ago is given up
+# Longer than any robot goes on without a word, and a second shorter than a page has left after.
+HUNG_MS = round(1000 * (LEFT_S - 1))
 
 
 def hang(page: Page, milliseconds: int) -> None:
