@@ -15,6 +15,7 @@ from tiniscript.syntax.block_recovery import BlockRecovery
 from tiniscript.syntax.blocks import ENDS, Block
 from tiniscript.syntax.call_suggestions import written
 from tiniscript.syntax.cursor import AT_END, Cursor
+from tiniscript.syntax.ends import arm_at, comes_later
 from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, WORD, Token
 from tiniscript.syntax.operators import COMPARISONS
 from tiniscript.syntax.phrases import TIMES
@@ -67,22 +68,39 @@ class GroupRecovery:
         cursor, tokens = self.cursor, self.cursor.tokens
         right, end = BLOCK_ENDS[block.word], group.end
         is_ended, last = self._end_comes(block.word, end)
-        head = cursor.source[block.span]
+        around = self.in_block.blocks.open[:-1]
+        is_going_on = not is_ended and self._goes_on(block, around, end)
         orders = ";".join(self._said(each) for each in group.orders)
-        place = Span(block.span.start, tokens[(last if is_ended else end) - 1].end)
-        otherwise = self.in_block.cursor.tokens[cursor.after_newlines(end)].text
-        if otherwise in ("ELSE", "ELSEIF", "SINO"):
-            place, right, is_ended = Span(block.span.start, tokens[end - 1].end), "", True
-        fix = ";".join(filter(None, (head, orders, right)))
+        last = last if is_ended else end
+        place = Span(block.span.start, tokens[last - 1].end)
+        fix = ";".join((cursor.source[block.span], orders, right))
+        if is_going_on:
+            is_beside = not cursor.source.text[block.span.end : tokens[k].start].strip(" \t:")
+            place = Span((block.span if is_beside else tokens[k]).start, place.end)
+            fix = f"{cursor.source[block.span]};{orders}" if is_beside else orders
+        fix += "" if tokens[last].kind in AT_END else ";"
         if not block.is_reported:
             self._report(place, tokens[k], fix)
         else:
             self.reporter.answer(tokens[k])
         row = self._row(group, k)
-        if not is_ended:
+        if not is_ended and not is_going_on:
             span = tokens[end - 1].span
-            row += [Token(WORD, BLOCK_ENDS[block.word], *span), Token(";", ";", *span)]
+            row += [Token(WORD, right, *span), Token(";", ";", *span)]
         self._read_on(k, end, row)
+
+    def is_body(self, k: int) -> bool:
+        """Whether the bracket at `k` holds instructions: `ELSE(B(1, 50))`."""
+        return self.cursor.tokens[k].kind == "(" and self._orders_at(k) is not None
+
+    def is_whole(self, header: Block, k: int) -> bool:
+        """Whether an IF with its body at `k` goes on there with ELSE, and has no end of its own."""
+        group = self._orders_at(k)
+        tokens = self.cursor.tokens
+        if group is None or tokens[group.end].kind is not WORD or not arm_at(tokens, group.end):
+            return False
+        around = [each.word for each in self.in_block.blocks.open[:-1]]
+        return not comes_later(header.word, around, tokens, group.end)
 
     def forever(self, word: Token) -> None:
         """`FOREVER(F(1, 60);R(1, 60))`."""
@@ -127,16 +145,24 @@ class GroupRecovery:
         span = Span(word.start, tokens[group.end - 1].end)
         orders = ";".join(self._said(each) for each in group.orders)
         head = written(with_signs(asked[0])) if asked else ""
-        fix = f"{word.text}({head});{orders};{right}" if known and is_one else ""
+        block = Block(word.text, span, None, None)
+        is_going_on = self._goes_on(block, self.in_block.blocks.open, group.end)
+        whole = f"{word.text}({head});{orders}"
+        whole += "" if is_going_on else f";{right}"
+        whole += "" if tokens[group.end].kind in AT_END else ";"
         self.reporter.report(
-            codes.GROUPED, span, span, word=word.text, fix=fix, right=right,
+            codes.GROUPED, span, span, word=word.text, right=right,
+            fix=whole if known and is_one else "",
             head=f"{word.text}({head})" if head else WORDS[word.text].usage,
         )  # fmt: skip
         for token in tokens[bracket : group.end]:
             self.reporter.answer(token)
-        row = [*self._row(group, bracket), Token(WORD, right, *tokens[group.end - 1].span)]
+        row = self._row(group, bracket)
+        if not is_going_on:
+            last = tokens[group.end - 1].span
+            row += [Token(WORD, right, *last), Token(";", ";", *last)]
         self.in_block.begin_reported(word.text, span)
-        self._read_on(bracket, group.end, [*row, Token(";", ";", *tokens[group.end - 1].span)])
+        self._read_on(bracket, group.end, row)
 
     def line_of_def(self, block: Block) -> None:
         """`DEF TURN = R(1, 60)`: behind the sign at the cursor stands what it does."""
@@ -159,7 +185,8 @@ class GroupRecovery:
             return
         has_end = ENDS.get(orders[-1][0].text) == "DEF"
         is_ended, last = (True, end) if has_end else self._end_comes("DEF", end)
-        right = "" if has_end else BLOCK_ENDS["DEF"]
+        is_later = not is_ended and self._goes_on(block, self.in_block.blocks.open[:-1], end)
+        right = "" if has_end or is_later else BLOCK_ENDS["DEF"]
         texts = (f"DEF {block.name.text}", *(self._said(each) for each in orders), right)
         self.reporter.answer(tokens[k])
         place = Span(block.span.start, tokens[last - 1].end if is_ended else tokens[end - 1].end)
@@ -167,7 +194,7 @@ class GroupRecovery:
         self.reporter.report(codes.HEADER_SEPARATOR, tokens[k].span, place, fix=fix,
                              before=self.cursor.source[block.span])  # fmt: skip
         row = self._row(_Group((), tuple(orders), end), k)
-        if not is_ended:
+        if not is_ended and not is_later:
             row.append(Token(WORD, BLOCK_ENDS["DEF"], *tokens[end - 1].span))
         self._read_on(k, end, row)
 
@@ -274,6 +301,14 @@ class GroupRecovery:
             k += 1
         return ENDS.get(tokens[k].text) == word, k + 1
 
+    def _goes_on(self, block: Block, around: Sequence[Block], k: int) -> bool:
+        """Whether the end of `block` or its ELSE comes behind `k`, and not of those `around` it."""
+        tokens = self.cursor.tokens
+        if comes_later(block.word, [each.word for each in around], tokens, k):
+            return True
+        ifs = [each for each in (*around, block) if each.word == "IF" and each.otherwise is None]
+        return ifs == [block] and arm_at(tokens, k)
+
     def _place_of(self, word: Token, k: int) -> int:
         while self.cursor.tokens[k].start > word.start:
             k -= 1
@@ -299,7 +334,10 @@ class GroupRecovery:
         tokens = self.cursor.tokens
         place = Span(tokens[start].start, tokens[end - 1].end)
         orders = ";".join(self._said(each) for each in group.orders)
-        fix = f"LOOP({times.text});{orders};{BLOCK_ENDS['LOOP']}"
+        around = self.in_block.blocks.open
+        is_going_on = self._goes_on(Block("LOOP", place, None, None), around, end)
+        fix = f"LOOP({times.text});{orders}"
+        fix += "" if is_going_on else f";{BLOCK_ENDS['LOOP']}"
         bracket = next(each for each in tokens[start:end] if each.kind == "(")
         self._report(place, bracket, fix)
         head = [Token(kind, text, *times.span) for kind, text in (
@@ -307,7 +345,8 @@ class GroupRecovery:
         )]  # fmt: skip
         last = tokens[end - 1].span
         tail = [Token(WORD, BLOCK_ENDS["LOOP"], *last), Token(";", ";", *last)]
-        self._read_on(start, end, [*head, *self._row(group, start), *tail])
+        row = [*head, *self._row(group, start)]
+        self._read_on(start, end, row if is_going_on else [*row, *tail])
 
     def _row(self, group: _Group, k: int) -> list[Token]:
         """Return the orders with a `;` around each."""

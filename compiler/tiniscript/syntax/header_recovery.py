@@ -215,6 +215,8 @@ class HeaderRecovery:
         row = tokens[cursor.i + 1 : end - 1] if end is not None else []
         if header.word not in ("IF", "WHILE") or not any(t.kind in COMPARISONS for t in row):
             return
+        if row[0].text in BLOCK_ENDS or (row[0].text in WORDS and WORDS[row[0].text].is_call):
+            return  # `IF(A)(IF(B);S;ENDIF)`
         span = Span(cursor.last.start, cursor.token.end)
         header.is_reported, cursor.i = True, end or cursor.i
         self.reporter.report(codes.OTHER_SIGN, span, found=")(", right=" AND ")

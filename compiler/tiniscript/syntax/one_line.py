@@ -13,6 +13,7 @@ from typing import NamedTuple
 from tiniscript.syntax.blocks import ENDS, HEADERS
 from tiniscript.syntax.call_suggestions import LONGEST, call_in, written
 from tiniscript.syntax.clauses import order_at
+from tiniscript.syntax.ends import ends_behind
 from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, ODD, WORD, Token
 from tiniscript.syntax.near import ASKING, near_at
 from tiniscript.syntax.operators import SIGNS
@@ -31,7 +32,6 @@ from tiniscript.words import BLOCK_ENDS, IN_MILLISECONDS, UNITS, WORDS, Word
 _LOOSE = (";", ",", "{", "|", ODD)  # signs between instructions, here or elsewhere
 # What goes on behind a block as well as in it: `repite 4 veces avanza y luego pita`.
 _AFTERWARDS = frozenset(("LUEGO", "DESPUES", "NEXT", "FINALMENTE", "FINALLY"))
-_FARTHEST = 1000  # tokens in which the end of a block is looked for
 
 
 class Line(NamedTuple):
@@ -336,25 +336,7 @@ class _Reader:
             return False
         if _column(tokens, after) > _column(tokens, start):
             return True
-        inner = 0
-        is_first = True
-        for k in range(after, min(len(tokens) - 1, after + _FARTHEST)):
-            token = tokens[k]
-            if is_first and token.kind is WORD:
-                text = token.text
-                block = text if text in WORDS else foreign_block(text)
-                if text == "SI" and tokens[k + 1].text == "NO":
-                    text, block = "SINO", "ELSE"
-                if block in BLOCK_ENDS or (text == "SI" and tokens[k + 1].kind != "|"):
-                    inner += 1
-                elif block in ENDS or text in ENDS_OF_ANY or block in ("ELSE", "ELSEIF"):
-                    if not inner:
-                        return True
-                    inner -= block not in ("ELSE", "ELSEIF")
-            elif token.kind == "}":
-                inner = max(0, inner - 1)
-            is_first = token.kind in (NEWLINE, ";", "{", "}")
-        return False
+        return next(ends_behind(tokens, after), None) is not None
 
 
 def _column(tokens: Sequence[Token], k: int) -> int:

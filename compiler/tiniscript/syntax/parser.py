@@ -287,7 +287,8 @@ class Parser:
             word, is_reported = self.recovery.in_block.else_if(word), True
         head, is_read, span = None, True, word.span
         if word.text == "ELSE":
-            self.no_arguments(word, "ELSEIF")
+            if cursor.token.kind == "(" and not self.recovery.groups.is_body(cursor.i):
+                self.no_arguments(word, "ELSEIF")
         else:
             try:
                 head = self.argument_of(word, is_reported)

@@ -178,6 +178,8 @@ class Recovery:
         if header is not None and header.word == "DEF" and text in ("=", ":"):
             self.groups.line_of_def(header)
         if header is not None and kind == "(":
+            if first.text == "IF" and self.groups.is_whole(header, cursor.i):
+                self._line_of(header, token)  # `IF(c)(S)ELSE(B(1, 50))`
             self.groups.body(header, cursor.i)
             self.in_block.other.second_question(header)
         if first.text in ("S", "STOP", "BREAK"):
