@@ -34,6 +34,9 @@ KIT = robots.load("tinibot").kit
         ("X = 80;SEGUNDOS = 2;R(X, SEGUNDOS)", "TS810"),
         ("F(2, 80)//R(1, 60)", "TS816"),
         ("F(2, 80); // r(1,60); S", "TS816"),
+        ("SI|F(2, 80);S // W(1) R(1, 60)", "TS816"),
+        ("LOOP(2);F(2, 80);END_LOOP // R(1, 60)", "TS816"),
+        ("X = MAX(1,\n2);SHOW(X) // R(1, 60)", "TS816"),
     ],
 )  # fmt: skip
 def test_advice(text: str, code: str) -> None:
@@ -70,6 +73,15 @@ def test_advice(text: str, code: str) -> None:
         "SPEED = 30;SLOW = 5;F(SPEED, SLOW)",
         "T1 = 30;T2 = 10;F(T1, T2)",
         "X = 30;Y = 10;F(X, Y)",
+        "PING|check_connection // F(2,80)",
+        "SI|// F(2, 80)\nS",
+        "SI|; // F(2, 80)\nS",
+        "SI|START // F(2, 80)\nS",
+        "DEF A //F(1, 2)\nS;END_DEF;A",
+        "LOOP(2); // F(1, 2)\nF(1, 50);END_LOOP",
+        "IF(ABS(DISTANCE) <\n 5) // F(1, 2)\nS;ELSE // F(1, 50)\nW(1);ENDIF",
+        "F(2, 80) // W(1), S",
+        "F(2, 80) // R(1, 60)/S",
     ],
 )
 def test_no_advice(text: str) -> None:

@@ -1,7 +1,8 @@
 """A warning for instructions that stand in a note: `F(2, 80)//R(1, 60)`.
 
 Knows the notes of a text and what stands before them on their line. Only a note that is a row of
-calls with numbers is taken for a slip, behind an instruction: a whole line may be set aside.
+calls with numbers is taken for a slip, and only behind an instruction, where a `;` would do: a
+whole line may be set aside, and behind a header or `SI|` a note tells what comes.
 """
 
 from __future__ import annotations
@@ -12,10 +13,11 @@ from collections.abc import Sequence
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.source import Source
-from tiniscript.syntax.lexer import Token
+from tiniscript.syntax.lexer import NEWLINE, Token
+from tiniscript.words import WORDS
 
 _CALL = r"(?:[FBLRM]|BEEP)\(\s*-?[0-9.]+\s*,\s*-?[0-9.]+\s*\)|W\(\s*[0-9.]+\s*\)"
-_CALLS = re.compile(rf"/+\s*(?:{_CALL})(?:[;,/\s]*(?:{_CALL}|STOP|S))*[;,/\s]*", re.IGNORECASE)
+_CALLS = re.compile(rf"/+\s*(?:{_CALL})(?:[;\s]*(?:{_CALL}|STOP|S))*[;\s]*", re.IGNORECASE)
 LONGEST = 200  # characters of a note that is looked at
 
 
@@ -23,13 +25,31 @@ def in_notes(notes: Sequence[Token], tokens: Sequence[Token], source: Source) ->
     """Return the warnings for instructions that the robot does not do."""
     found = []
     rows = [each for each in notes if len(each.text) <= LONGEST and _CALLS.fullmatch(each.text)]
+    is_ping = [each.text for each in tokens[:2]] == ["PING", "|"]
     depth = k = 0
     for note in rows:
         while tokens[k].start < note.start:
             depth += (tokens[k].kind == "(") - (tokens[k].kind == ")")
             k += 1
         begin = max(source.text.rfind(sign, 0, note.start) for sign in "\r\n") + 1
-        if not depth and source.text[begin : note.start].strip(" \t;"):
+        if depth or not source.text[begin : note.start].strip(" \t;"):
+            continue
+        if _ends_instruction(tokens, k) and not is_ping:
             values = {"found": note.text.strip("/; \t")}
             found.append(Diagnostic(codes.IN_A_NOTE, note.span, values))
     return found
+
+
+def _ends_instruction(tokens: Sequence[Token], end: int) -> bool:
+    """Whether what stands before the token at `end` is an instruction, and no header nor `SI|`."""
+    k = end - 1
+    while k >= 0 and tokens[k].kind == ";":
+        k -= 1
+    if k < 0 or tokens[k].kind == "|":
+        return False
+    depth = 0
+    while k >= 0 and (depth or tokens[k].kind not in (";", "|", NEWLINE)):
+        depth += (tokens[k].kind == ")") - (tokens[k].kind == "(")
+        k -= 1
+    known = WORDS.get(tokens[k + 1].text)
+    return known is None or known.role not in ("start", "block", "arm")
