@@ -29,16 +29,18 @@ class JoinedQuestions:
         tokens, k = self.cursor.tokens, self.cursor.i
         said = operator_words(tokens, k)
         if (
-            k < 4
+            k < 5
             or said is None
             or self.known.is_own(word.text)
             or said[1] not in COMPARISONS
             or tokens[k - 1].text not in ("AND", "OR")
         ):
             return False
-        subject = tokens[k - 4]
+        subject, before = tokens[k - 4], tokens[k - 5]
         if tokens[k - 3].kind not in COMPARISONS or not self.known.is_own(subject.text):
             return False
+        if before.kind != "(" and before.text not in ("AND", "OR", "NOT"):
+            return False  # of `DISTANCE + LIGHT_R > 10` the whole sum is compared
         end, sign = said
         span = Span(word.start, tokens[end - 1].end)
         self.reporter.report(codes.OTHER_SIGN, span, found=self.cursor.source[span],
