@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import pytest
 
+import tiniscript
 from tests.pupils.corpus import check
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.diagnostics.rendering import message
-from tiniscript.repairs import fixing
+from tiniscript.kit import Kit
+from tiniscript.repairs import fixing, vouching, whole_calls
 from tiniscript.repairs.accounting import lost, makes_up, makes_up_names
 from tiniscript.repairs.edits import Edit
 from tiniscript.repairs.fixing import fixed
 from tiniscript.repairs.placing import edits_of
-from tiniscript.source import Source
+from tiniscript.repairs.vouching import vouched
+from tiniscript.source import Source, Span
 from tiniscript.syntax.parser import parse
 
 
@@ -203,6 +206,50 @@ def test_a_long_hostile_text_takes_few_steps(piece: str, monkeypatch: pytest.Mon
     fixed(text, counted)
     assert len(checks) <= 20 + fixing.CHECKED_CHARACTERS // len(text) + fixing.MANY
     assert len(looked_at) <= fixing.MANY * len(checks)
+
+
+def test_repairs_that_touch_are_tried_in_few_checks(monkeypatch: pytest.MonkeyPatch) -> None:
+    checks = []
+    checked = tiniscript._checked
+
+    def counted(text: str, kit: Kit, name: str = "") -> tiniscript.Compiled:
+        checks.append(text)
+        return checked(text, kit, name)
+
+    monkeypatch.setattr(tiniscript, "_checked", counted)
+    assert check("F(t=2, vel=80)" * 60)[0].values["fix"] == "F(2, 80)"
+    assert len(checks) <= 4
+
+
+def test_of_repairs_that_all_touch_those_that_nobody_tries_are_not_offered() -> None:
+    text = "LOOP 4" + " " * 20_000
+    values = {"word": "LOOP", "fix": "LOOP(4)", "usage": "LOOP(times)"}
+    found = [Diagnostic(codes.MISSING_OPEN, Span(0, 6), values, Span(0, 6))] * 50
+    checks: list[str] = []
+
+    def none(other: str) -> list[Diagnostic]:
+        checks.append(other)
+        return []
+
+    kept = vouched(found, Source(text), none)
+    tried = 1 + vouching.CHECKED_CHARACTERS // len(text)
+    assert len(checks) == tried
+    assert [bool(each.values["fix"]) for each in kept] == [True] * tried + [False] * (50 - tried)
+
+
+def test_of_a_text_with_many_mistakes_the_first_are_looked_at_as_a_whole(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    places = []
+    around = whole_calls._around
+
+    def counted(text: str, place: int) -> Span:
+        places.append(place)
+        return around(text, place)
+
+    monkeypatch.setattr(whole_calls, "_around", counted)
+    assert len(check("[20:14] x" * 400)) > whole_calls.MANY
+    assert len(places) <= 2 * whole_calls.MANY
 
 
 def _read(text: str) -> list[Diagnostic]:

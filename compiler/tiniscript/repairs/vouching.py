@@ -22,7 +22,7 @@ from tiniscript.syntax.call_suggestions import LONG_TIME_S
 from tiniscript.words import usage_of
 
 Check = Callable[[str], Sequence[Diagnostic]]
-ALONE = 8  # repairs that are tried alone, because they touch another one
+CHECKED_CHARACTERS = 60_000  # in which repairs are tried that touch another one
 MANY = 100  # diagnostics of a text whose repairs are tried
 # Mistakes of other places, or that no repair of an instruction can know.
 _ELSEWHERE = frozenset((
@@ -64,15 +64,28 @@ def vouched(found: Sequence[Diagnostic], source: Source, check: Check) -> list[D
             kept[k] = _without(diagnostic)
         else:
             offers.append(_Offer(k, edits))
-    together: list[_Offer] = []
-    apart: list[_Offer] = []
-    for offer in offers:
-        touches = any(overlap(offer.edits, other.edits) for other in together)
-        (apart if touches else together).append(offer)
-    for group in (together, *([each] for each in apart if found[each.place].values.get("fix"))):
+    groups = _apart(offers)
+    tried = 1 + CHECKED_CHARACTERS // (len(source.text) + 1)
+    for group in groups[:tried]:
         for k in _partial(group, source.text, found, check):
             kept[k] = _without(kept[k])
+    for offer in (each for group in groups[tried:] for each in group):
+        if found[offer.place].values.get("fix"):
+            kept[offer.place] = _without(kept[offer.place])
     return with_whole_calls(kept, source, check)
+
+
+def _apart(offers: Sequence[_Offer]) -> list[list[_Offer]]:
+    """Return groups of repairs that do not touch one another."""
+    groups: list[list[_Offer]] = []
+    for offer in offers:
+        for group in groups:
+            if not any(overlap(offer.edits, other.edits) for other in group):
+                group.append(offer)
+                break
+        else:
+            groups.append([offer])
+    return groups
 
 
 def _takes_long(before: str, after: str) -> bool:

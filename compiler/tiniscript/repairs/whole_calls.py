@@ -21,7 +21,7 @@ from tiniscript.syntax.lexer import NEWLINE, scan
 from tiniscript.words import WORDS
 
 Check = Callable[[str], Sequence[Diagnostic]]
-MANY = 100  # instructions of a text that are read
+MANY = 100  # diagnostics and instructions of a text that are read
 _ENDS = re.compile(r"[;\r\n|{}]|//")
 _CLOSES = re.compile(r"[^;\r\n|{}()]*\)")  # `F(2;80)`
 # `F;2;80`: what stands behind the `;` is a number alone.
@@ -55,7 +55,7 @@ class _Whole(NamedTuple):
 def with_whole_calls(found: Sequence[Diagnostic], source: Source, check: Check) -> list[Diagnostic]:
     """Return the diagnostics with one for each instruction that is read as a whole."""
     text = source.text
-    found = [_by_time(each, text) for each in found]
+    found = [*(_by_time(each, text) for each in found[:MANY]), *found[MANY:]]
     names = {match[1].upper() for match in _VARIABLE.finditer(text)}
     wholes = [each for each in _instructions(found, text, names) if _is_better(each, found, source)]
     if not wholes:
