@@ -277,7 +277,7 @@ def test_notes_are_no_programs_and_folders_of_pupils_are(tsc: Tsc, tmp_path: Pat
     }  # fmt: skip
     files = {
         "notepad.txt": RIGHT, "wrong.txt": "ADELANTE (2)", "notasio.txt": "hola",
-        "readme ana.txt": RIGHT, "notes.txt": "SI\rF 2,80", "notas.txt": "F 2 80;R 1 60",
+        "readme ana.txt": RIGHT, "notes.txt": "SI\rforward 5", "notas.txt": "F 2 80;R 1 60",
         "empty.txt": "", "note.ts": "Ana 15", "also.ts.txt": "Ana 15", "lista.txt": "Ana 15",
     }  # fmt: skip
     for name, content in {**files, **notes}.items():
