@@ -53,7 +53,8 @@ def test_an_edit_takes_the_mark_away_and_its_undo_brings_it_back(page: Page) -> 
     unmarked(page)
 
 
-def test_a_place_outside_of_the_program_marks_nothing(page: Page) -> None:  # noqa: F811
+def upload_until_told(page: Page, at: int | None = None) -> None:  # noqa: F811
+    """Upload, and wait until the page was told a place of the robot, or `at` in its stead."""
     told: list[int] = []
 
     def changed(route: Route) -> None:
@@ -61,16 +62,37 @@ def test_a_place_outside_of_the_program_marks_nothing(page: Page) -> None:  # no
         answer = response.json()
         for each in answer.get("news", []):
             if each.get("event") == "PLACE":
-                each["at"] = 60_000
+                each["at"] = each["at"] if at is None else at
                 told.append(each["at"])
         route.fulfill(response=response, json=answer)
 
     page.route("**/robots", changed)
-    write(page, "F(60, 80)")
     page.click("#link_upload")
     end_s = monotonic() + HANGS_S
     while not told:
         assert monotonic() < end_s, "no place was told"
         page.wait_for_timeout(20)
+    page.unroute_all(behavior="wait")
     page.wait_for_timeout(200)
+
+
+def test_a_place_outside_of_the_program_marks_nothing(page: Page) -> None:  # noqa: F811
+    write(page, "F(60, 80)")
+    upload_until_told(page, 60_000)
     assert page.locator(".cm-running").count() == 0
+
+
+def test_a_breakpoint_keeps_its_mark_while_the_robot_runs(page: Page) -> None:  # noqa: F811
+    """The virtual robot waits at the first line; the real one is at the second one."""
+    write(page, "W(0.1);\nF(60, 80)")
+    page.click("#side_virtual")
+    page.locator(".cm-lineNumbers .cm-gutterElement").filter(has_text="1").last.click()
+    page.click("#run")
+    marked(page, "W(0.1)")
+    page.locator("#doing").filter(has_text="It stops before line 1.").wait_for()
+    page.click("#side_real")
+    upload_until_told(page)
+    assert page.locator(".cm-running").all_inner_texts() == ["W(0.1)"]
+    page.click("#side_virtual")
+    page.click("#pause")  # goes on
+    marked(page, "F(60, 80)")

@@ -40,6 +40,7 @@ export class Views {
   #running = null;
   /** The same on the virtual robot, and on a real one. @type {[import('./editor.js').Range | null, import('./editor.js').Range | null]} */
   #run = [null, null];
+  #isHeld = false; // the virtual robot, at a breakpoint or after a step
   #pane = element('blocks', HTMLElement);
   #note = element('blocks_note', HTMLElement);
   #level = element('level', HTMLSelectElement);
@@ -131,21 +132,21 @@ export class Views {
    */
   showRunning(range, isHeld) {
     this.#run[0] = range;
-    this.#mark(isHeld);
+    this.#isHeld = isHeld;
+    this.#mark();
   }
 
   /** Where both robots run, this is what is seen of them, but where the virtual one is held. @param {import('./editor.js').Range | null} range */
   showRunningThere(range) {
     this.#run[1] = range;
-    this.#mark(false);
+    this.#mark();
   }
 
-  /** @param {boolean} isHeld */
-  #mark(isHeld) {
+  #mark() {
     const [virtual, real] = this.#run;
-    const range = isHeld ? virtual : real ?? virtual;
+    const range = this.#isHeld ? virtual : real ?? virtual;
     this.#running = range;
-    this.#editor.showRunning(range, isHeld);
+    this.#editor.showRunning(range, this.#isHeld);
     if (!this.#isStale()) this.#blocks?.showRunning(range);
   }
 
