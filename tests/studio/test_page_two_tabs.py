@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from time import monotonic
 from typing import TYPE_CHECKING
 
-from tests.studio.test_page_worlds import drag, saved
-from tests.studio.test_page_worlds_kept import draw_wall
+from tests.studio.test_page_worlds import drag, put, said, saved
+from tests.studio.test_page_worlds_kept import NO_BORDER, draw_wall
 from tests.support.studio import Pages, checked, image, noted, write
+from tests.support.waiting import HANGS_S
 from tiniscript import compile
+from tiniscript.virtual.world_reader import read
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
@@ -58,13 +61,54 @@ def test_work_of_two_tabs_is_kept_of_both(pages: Pages) -> None:
         other.locator("#world_part option", has_text=f"Wall {count}").wait_for(state="attached")
         assert len(saved(other).walls) == count
     other.click("#world_done")
-    page.close(run_before_unload=True)
-    assert "SI|F(2, 10)" in other.evaluate("localStorage['tiniscript.versions']")
+    with page.expect_event("close"):
+        page.close(run_before_unload=True)
+    end_s = monotonic() + HANGS_S
+    while "SI|F(2, 10)" not in other.evaluate("localStorage['tiniscript.versions'] ?? ''"):
+        assert monotonic() < end_s, "the closed tab has kept nothing"
+        other.wait_for_timeout(20)  # one tab sees a little later what another one has kept
     assert "B(2, 20)" in other.evaluate("localStorage['tiniscript.work']")  # for the next tab
     newest, before = other.evaluate(
         "[localStorage['tiniscript.world'], JSON.parse(localStorage['tiniscript.worlds_before'])]"
     )
     assert [each.count("[[walls]]") for each in (newest, *before)] == [2, 1]
+
+
+def test_changes_in_another_tab_are_one_world_before(pages: Pages) -> None:
+    """They come behind this tab's own worlds before, and push none of them out."""
+
+    def opens(tab: Page, width_cm: int) -> None:
+        name = f"w{width_cm}.toml"
+        put(tab, NO_BORDER.replace(b"120.06", b"%d" % width_cm).replace(b"118", b"20"), name)
+        said(tab, f"Opened: {name}")
+        saved(tab)
+
+    page = pages.open()
+    page.locator("#world_draw:enabled").wait_for()
+    page.click("#world_draw")
+    opens(page, 100)
+    opens(page, 101)
+    other = second(pages, page)
+    other.locator("#world_draw:enabled").wait_for()
+    other.click("#world_draw")
+    opens(other, 102)
+    for _ in range(5):
+        for tab in (page, other):
+            tab.select_option("#world_part", label="Robot")
+            tab.locator("#arena").focus()
+            tab.keyboard.press("ArrowRight")
+            saved(tab)
+    kept = "(store) => JSON.parse(window[store]['tiniscript.worlds_before'])"
+    widths = {
+        store: [read(each, "before").width_cm for each in other.evaluate(kept, store)]
+        for store in ("localStorage", "sessionStorage")
+    }
+    # The next tab finds those of both; this one has its own.
+    assert widths == {"localStorage": [101, 100, 101], "sessionStorage": [101, 100]}
+    newest = read(other.evaluate("localStorage['tiniscript.world']"), "newest")
+    theirs = read(other.evaluate(kept, "localStorage")[-1], "theirs")
+    assert (newest.width_cm, newest.start.x_cm) == (102, 45)
+    assert theirs.start.x_cm == 45  # and no earlier step
 
 
 def test_a_program_of_a_tab_that_is_hidden_is_kept(page: Page) -> None:

@@ -17,10 +17,8 @@ const STORES = /** @type {const} */ (['sessionStorage', 'localStorage']); // of 
 const MOST_OTHERS = 5;
 
 let isForgotten = false;
-/** The worlds that this tab has put in place, or found there: others are of another tab. @type {string[]} */
-let knownWorlds = [];
-/** Those of other tabs. @type {string[]} */
-let otherWorlds = [];
+/** The worlds of this tab that may be in the place: others there are of another tab. @type {Set<string>} */
+let ownWorlds = new Set();
 
 /** Deletes all that this page has kept on this device; it keeps nothing from then on. */
 export function forgetAll() {
@@ -48,7 +46,7 @@ export function keptWork() {
 export function keptWorlds() {
   const newest = kept(WORLD_PLACE, (found) => found) ?? '';
   const before = kept(BEFORE_PLACE, readWorlds) ?? [];
-  knownWorlds = [newest, ...before];
+  ownWorlds = new Set([newest, ...before]);
   return { newest, before };
 }
 
@@ -89,19 +87,22 @@ export function keep(work) {
 
 /**
  * Keeps the texts of the worlds that were drawn: the newest, and of those before it as many as fit in.
- * What another tab has kept meanwhile is a world before, for the next tab. Returns whether it is kept.
+ * The next tab finds those of other tabs, too: as they are now, behind the ones before. Returns whether it does.
  * @param {string} newest
  * @param {string[]} before the last one first
  * @returns {boolean}
  */
 export function keepWorlds(newest, before) {
-  const found = lastingWorlds().filter((each) => !knownWorlds.includes(each));
-  otherWorlds = [...new Set([...found, ...otherWorlds])].filter((each) => each !== newest && !before.includes(each)).slice(0, MOST_OTHERS);
+  for (const each of [newest, ...before]) ownWorlds.add(each);
+  // What lasts was put there by the tab that changed last, with the worlds of all tabs as it found them.
+  const others = [...new Set(lastingWorlds())].filter((each) => !ownWorlds.has(each)).slice(0, MOST_OTHERS);
   let rest = LONGEST;
-  const fitting = [...otherWorlds, ...before].filter((each) => (rest -= each.length) >= 0);
-  knownWorlds = [newest, ...fitting];
-  const isKept = put(BEFORE_PLACE, JSON.stringify(fitting));
-  return newest ? put(WORLD_PLACE, newest) && isKept : isKept;
+  const fitting = [...before, ...others].filter((each) => (rest -= each.length) >= 0);
+  const own = fitting.filter((each) => before.includes(each));
+  const areKept = put(BEFORE_PLACE, JSON.stringify(own), JSON.stringify(fitting));
+  const isKept = newest ? put(WORLD_PLACE, newest) && areKept : areKept;
+  if (isKept) ownWorlds = new Set([newest, ...before]);
+  return isKept;
 }
 
 /** Those that the next tab would find. @returns {string[]} */
@@ -110,13 +111,13 @@ function lastingWorlds() {
   return [kept(WORLD_PLACE, (found) => found, from) ?? '', ...(kept(BEFORE_PLACE, readWorlds, from) ?? [])].filter(Boolean);
 }
 
-/** @param {string} place @param {string} whole @returns {boolean} whether it is kept for the next tab, too */
-function put(place, whole) {
+/** @param {string} place @param {string} whole @param {string} [lasting] for the next tab @returns {boolean} whether that is kept, too */
+function put(place, whole, lasting = whole) {
   if (isForgotten) return true;
   let isKept = false;
   for (const name of STORES) {
     try {
-      /** @type {any} */ (window)[name].setItem(place, whole);
+      /** @type {any} */ (window)[name].setItem(place, name === 'localStorage' ? lasting : whole);
       isKept = name === 'localStorage';
     } catch {
       isKept = false; // full, or forbidden
