@@ -131,6 +131,34 @@ def test_an_undo_while_a_finger_moves_a_part_puts_it_back(floor: Page) -> None:
     assert saved(floor).boxes == shipped.boxes
 
 
+def picture(page: Page) -> str:
+    """Return what the floor looks like once it is drawn."""
+    found: str = page.evaluate(
+        "() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() =>"
+        " done(document.querySelector('#arena').toDataURL()))))"
+    )
+    return found
+
+
+@pytest.mark.parametrize("way", ["undo", "cancel"])
+def test_a_stroke_that_is_let_go_is_not_seen(floor: Page, way: str) -> None:
+    drag(floor, [(56, 75), (56, 90)])  # there is something to undo
+    floor.click("#world_add_walls")
+    wanted = picture(floor)
+    floor.mouse.move(*on_screen(floor, (60, 30)))
+    floor.mouse.down()
+    floor.mouse.move(*on_screen(floor, (100, 60)), steps=4)
+    assert picture(floor) != wanted
+    if way == "undo":
+        floor.evaluate("document.querySelector('#world_undo').click()")  # another finger
+    else:
+        floor.locator("#arena").dispatch_event("pointercancel")
+    found = picture(floor)
+    floor.mouse.up()
+    assert found == wanted
+    assert saved(floor).walls == ()
+
+
 def test_a_press_with_ctrl_is_the_menu_of_a_mac(floor: Page) -> None:
     wanted = saved(floor)
     floor.keyboard.down("Control")

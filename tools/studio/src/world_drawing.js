@@ -76,7 +76,7 @@ export class WorldDrawing {
     ];
     for (const [name, act] of buttons) {
       element(`world_${name}`, HTMLButtonElement).addEventListener('click', () => {
-        if (!this.letGo() || name !== 'undo') act(); // by another finger, of a world that a first one changes
+        if (!this.#giveUp() || name !== 'undo') act(); // by another finger, of a world that a first one changes
       });
     }
     for (const kind of KINDS) {
@@ -93,7 +93,7 @@ export class WorldDrawing {
     this.#canvas.addEventListener('pointerdown', (event) => this.#down(event));
     this.#canvas.addEventListener('pointermove', (event) => this.#move(event));
     this.#canvas.addEventListener('pointerup', () => this.#up());
-    this.#canvas.addEventListener('pointercancel', () => this.letGo());
+    this.#canvas.addEventListener('pointercancel', () => this.#giveUp());
     this.#canvas.addEventListener('keydown', (event) => this.#key(event));
   }
 
@@ -133,7 +133,6 @@ export class WorldDrawing {
     else this.#canvas.removeAttribute('tabindex');
     element(isOn ? 'world_part' : 'world_draw', HTMLElement).focus();
     if (isOn) this.#page.rest();
-    else this.#arena.mark(null);
     this.#show();
   }
 
@@ -254,8 +253,7 @@ export class WorldDrawing {
     const isUndo = (event.ctrlKey || event.metaKey) && event.key === 'z';
     if (this.#drag && !isUndo) return event.preventDefault();
     if (event.ctrlKey || event.metaKey) {
-      if (isUndo && this.letGo()) this.#show();
-      else if (isUndo) this.#again(this.#before, this.#after);
+      if (isUndo) this.#giveUp() || this.#again(this.#before, this.#after);
       else if (event.key === 'y' || event.key === 'Z') this.#again(this.#after, this.#before);
       else return;
     } else if (ARROWS[event.key]) {
@@ -277,8 +275,7 @@ export class WorldDrawing {
     const before = this.#page.world();
     if (!this.isOn) {
       const [x, y] = this.#page.robot();
-      const isMissed = Math.hypot(x - place[0], y - place[1]) > reach_cm;
-      if (this.#page.isDriving() || isMissed) return;
+      if (this.#page.isDriving() || Math.hypot(x - place[0], y - place[1]) > reach_cm) return;
       // Where the robot is taken it also begins, though it has driven away.
       const start = { ...before.start, x_cm: Math.round(x), y_cm: Math.round(y) };
       this.#begin(event, { how: 'move', part: START, point: -1, from: place, before, base: { ...before, start }, way: [] });
@@ -341,6 +338,13 @@ export class WorldDrawing {
     return drag !== null;
   }
 
+  /** The same, and it is seen. */
+  #giveUp() {
+    const isGivenUp = this.letGo();
+    if (isGivenUp) this.#show();
+    return isGivenUp;
+  }
+
   async #open() {
     const chosen = this.#file.files?.[0];
     this.#file.value = '';
@@ -373,8 +377,7 @@ export class WorldDrawing {
   }
 
   #mark() {
-    const world = this.#page.world();
-    this.#arena.mark(this.isOn ? { points: pointsOf(world, this.#chosen), point: this.#point } : null);
+    this.#arena.mark(this.isOn ? { points: pointsOf(this.#page.world(), this.#chosen), point: this.#point } : null);
     this.#page.tell();
   }
 
