@@ -254,7 +254,7 @@ def _preprocessed(compiler: str, builds: Path, flags: Sequence[str], words: list
 
     Most files of a robot are the same for all chips, headers and sizes that macros choose.
     """
-    text = _compiled(compiler, [*flags, *words, "-E"])
+    text = _compiled(compiler, [*flags, *(word for word in words if word != "-c"), "-E"])
     told = [flag for flag in flags if flag[:2] != "-D"]
     key = hashlib.sha256(repr((_version(compiler), told)).encode())
     key.update(FOLDER.sub(rb"\1", text))  # a copy of the sources is the same elsewhere
