@@ -13,6 +13,8 @@ import pytest
 from tests.machines.host_firmware import missing
 from tests.support.command import FOREVER, Command, Done
 from tests.support.pty_robot import PtyRobot, on
+from tiniscript.cli import main
+from tiniscript.cli.commands import claim
 from tiniscript.keys import KeyFile
 from tiniscript.link.messages import KEY_OWNER, KEY_TEACHER
 from tiniscript.sharing.requests import ClientRequests
@@ -40,6 +42,23 @@ def claimed(pty_robot: PtyRobot, *options: str) -> Done:
 
 def as_another(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, name: str = "another") -> None:
     monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path / name))
+
+
+def test_a_slow_computer_has_asked_the_robot_when_it_says_hold(
+    pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The press is over before the command goes on."""
+
+    def slowly(words: str, file: object = None, flush: bool = False) -> None:
+        if file is None:
+            return
+        assert "2 s" in words
+        began_ms = pty_robot.robot_ms
+        pty_robot.hold()
+        pty_robot.until(lambda: pty_robot.robot_ms > began_ms + 2400, "the press is over")
+
+    monkeypatch.setattr(claim, "print", slowly, raising=False)
+    assert main(["claim", "--port", pty_robot.port]) == 0
 
 
 def test_who_claims_a_robot_drives_it_and_nobody_else(
