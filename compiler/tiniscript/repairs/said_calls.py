@@ -22,6 +22,7 @@ from tiniscript.words import (
     WORDS,
     Word,
     meant_by,
+    names_of,
 )
 
 _ROLES = ("move", "wait", "motors", "beep", "show")
@@ -43,15 +44,12 @@ _PIECE = re.compile(
 _BETWEEN = frozenset('()[]{}<>,;:=/"|&')
 _SMALL = frozenset("A AL CON POR DE DURANTE EN LA EL THE AT WITH FOR OF TO Y E AND".split())  # noqa: SIM905
 _BESIDE_SENSOR = frozenset("EL LA THE DE DEL OF VALOR VALUE SENSOR EN IN CM".split())  # noqa: SIM905
-# Names of values, which stand before or behind their number.
+# Names of values, which stand before or behind their number; a unit stands behind it alone.
 _NAMES = {
     name: unit
-    for unit, names in (
-        ("s", "TIEMPO TIME T DURACION"),
-        ("%", "POTENCIA POWER POT P VELOCIDAD VEL SPEED FUERZA"),
-        ("Hz", "FRECUENCIA FREQUENCY TONO NOTA"),
-    )
-    for name in names.split()
+    for argument, unit in (("time", "s"), ("power", "%"), ("hertz", "Hz"))
+    for name in names_of(argument)
+    if unit == "%" or name not in UNITS
 }
 _TEENS = {
     "CERO": 0, "ZERO": 0, "ONCE": 11, "DOCE": 12, "TRECE": 13, "CATORCE": 14, "QUINCE": 15,
