@@ -27,7 +27,7 @@ __all__ = ("joined", "robot")
 
 def is_listed() -> bool:
     rows = [row for row in process("ports", "--ask").out.split("\n") if row.startswith(PLACE)]
-    return "announced in the network" in rows[0] and "robot tinibot (yours)" in rows[0]
+    return any("announced in the network" in row and "robot tinibot (yours)" in row for row in rows)
 
 
 def test_a_robot_is_found_and_driven_by_its_name(joined: Esp32PtyRobot) -> None:
