@@ -175,6 +175,9 @@ def _braces(diagnostic: Diagnostic, source: Source) -> Edits:
 def _wrong_end(diagnostic: Diagnostic, source: Source) -> Edits:
     if diagnostic.values.get("fix"):
         return _span(diagnostic, source)
+    if diagnostic.values.get("after"):
+        values = diagnostic.values
+        return _end_below(values["right"], source, int(values["after"]), int(values["line"]))
     start = diagnostic.span.start
     return [Edit(Span(start, start), diagnostic.values["right"] + ";")]
 
@@ -185,19 +188,24 @@ def _assigned(diagnostic: Diagnostic, source: Source) -> Edits:
 
 
 def _missing_end(diagnostic: Diagnostic, source: Source) -> Edits:
-    """The end of a block, on a line of its own below the line that the message names."""
+    """The end of a block, below the line that the message names."""
     number = diagnostic.values.get("line", "")
     if not number:
         return None
+    header = source.position(diagnostic.span.start)[0]
+    return _end_below(diagnostic.values["right"], source, int(number), header)
+
+
+def _end_below(end: str, source: Source, number: int, header: int) -> Edits:
+    """An end on a line of its own below a line, as far in as the line of its block's header."""
     text = source.text
     lines = text.splitlines(keepends=True)
-    place = sum(len(line) for line in lines[: int(number)])
-    above = lines[int(number) - 1]
+    place = sum(len(line) for line in lines[:number])
+    above = lines[number - 1]
     bare = above.rstrip("\r\n")
     line_end = above[len(bare) :] or ("\r\n" if "\r\n" in text else "\n")
-    head = source.line_text(source.position(diagnostic.span.start)[0])
+    head = source.line_text(header)
     indent = head[: len(head) - len(head.lstrip())]
-    end = diagnostic.values["right"]
     if above == bare:  # the last line of a file that has no line end there
         return [Edit(Span(place, place), f"{line_end}{indent}{end}")]
     return [Edit(Span(place, place), f"{indent}{end}{line_end}")]

@@ -31,7 +31,7 @@ from tiniscript.syntax.suggestions import (
     head_in,
     with_signs,
 )
-from tiniscript.syntax.unended import where_it_ends
+from tiniscript.syntax.unended import open_above, where_it_ends
 from tiniscript.syntax.vocabulary import Vocabulary
 from tiniscript.words import ALIASES, BLOCK_ENDS, TURN_WORDS, WORDS, meant_by, nearest
 
@@ -359,9 +359,12 @@ class BlockRecovery:
     def _report_wrong_end(self, span: Span, found: str, block: Block, fix: str = "") -> None:
         if self._is_misspelt(block):
             return
-        line = self.cursor.source.position(block.span.start)[0]
-        self.reporter.report(codes.WRONG_END, span, found=found, word=block.word,
-                             line=str(line), right=BLOCK_ENDS[block.word], fix=fix)  # fmt: skip
+        line, after, last = open_above(block, self.cursor.source, span.start)
+        if fix:
+            after = last = ""
+        self.reporter.report(codes.WRONG_END, span, found=found, word=block.word, line=str(line),
+                             after=after, last=last, right=BLOCK_ENDS[block.word],
+                             fix=fix)  # fmt: skip
 
     def _is_misspelt(self, block: Block) -> bool:
         """Report what is probably the end of a block, with a letter of it wrong."""
