@@ -122,9 +122,13 @@ def check_text(text: str, kit: Kit, name: str = "") -> Compiled:
     if found.is_right:
         return found
     from tiniscript.repairs.vouching import vouched
+    from tiniscript.repairs.whole_blocks import with_whole_blocks
 
-    kept = vouched(found.diagnostics, found.source, lambda other: _checked(other, kit).diagnostics)
-    return found._replace(diagnostics=kept)
+    def offered(result: Compiled) -> list[Diagnostic]:
+        return vouched(result.diagnostics, result.source, lambda it: _checked(it, kit).diagnostics)
+
+    whole = with_whole_blocks(offered(found), found.source, lambda it: offered(_checked(it, kit)))
+    return found._replace(diagnostics=whole)
 
 
 def _checked(text: str, kit: Kit, name: str = "") -> Compiled:

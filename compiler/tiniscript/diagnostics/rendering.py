@@ -167,7 +167,7 @@ def _filled(texts: str | list[str], values: Mapping[str, str], lang: str) -> str
             break
 
     def gap(match: re.Match[str]) -> str:
-        longest = FIX_CHARACTERS if match[2] in ("fix", "right") else VALUE_CHARACTERS
+        longest = FIX_CHARACTERS if match[2] in ("fix", "right", "whole") else VALUE_CHARACTERS
         return _value(values.get(match[2], ""), match[1] == "@", lang, longest)
 
     return _GAP.sub(gap, chosen)

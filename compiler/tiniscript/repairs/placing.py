@@ -26,6 +26,8 @@ _TO_ITS_END = re.compile(r"[^;\r\n{}]*")
 
 def edits_of(diagnostic: Diagnostic, source: Source) -> Edits:
     """Return the changes that the thing to try asks for; None where it is no change of the text."""
+    if diagnostic.place is not None and diagnostic.values.get("block"):
+        return [Edit(diagnostic.place, diagnostic.values["block"])]  # see `whole_blocks`
     place = _PLACES.get(diagnostic.code)
     return None if place is None else place(diagnostic, source)
 
