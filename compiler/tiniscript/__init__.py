@@ -121,11 +121,13 @@ def check_text(text: str, kit: Kit, name: str = "") -> Compiled:
     found = _checked(text, kit, name)
     if found.is_right:
         return found
+    from tiniscript.repairs.everywhere import said_once
     from tiniscript.repairs.vouching import vouched
     from tiniscript.repairs.whole_blocks import with_whole_blocks
 
     def offered(result: Compiled) -> list[Diagnostic]:
-        return vouched(result.diagnostics, result.source, lambda it: _checked(it, kit).diagnostics)
+        kept = vouched(result.diagnostics, result.source, lambda it: _checked(it, kit).diagnostics)
+        return said_once(kept, result.source)
 
     whole = with_whole_blocks(offered(found), found.source, lambda it: offered(_checked(it, kit)))
     return found._replace(diagnostics=whole)

@@ -46,3 +46,34 @@ def test_the_set_up_of_a_port_is_no_start() -> None:
     (found,) = check("Serial.begin(9600);\nF(1, 50)")
     assert found.code is codes.UNKNOWN_WORD
     assert found.values["found"] == "Serial.begin"
+
+
+@pytest.mark.parametrize(
+    ("program", "right"),
+    [
+        ("DEF MEDIA VUELTA;R(1, 50);END_DEF;MEDIA VUELTA", "MEDIA_VUELTA"),  # no turn is meant
+        ("DEF GIRAR DERECHA;R(1, 50);END_DEF;GIRAR DERECHA", "GIRAR_DERECHA"),
+        ("DEF MI BAILE LOCO;S;END_DEF;MI BAILE LOCO", "MI_BAILE_LOCO"),
+        ("DEF PASO 2;S;END_DEF;PASO 2", "PASO_2"),
+        ("DEF 2PASOS;S;END_DEF;2PASOS", "PASOS2"),
+    ],
+)
+def test_a_name_of_several_words_gets_one_message_for_all_its_places(
+    program: str, right: str
+) -> None:
+    (found,) = check(program)
+    assert message(found, Source(program), "es").fix == f"{right}, las 2 veces"
+    assert fixed(program, check).text.count(right) == 2
+    assert check(fixed(program, check).text) == []
+
+
+def test_lines_of_other_places_are_named() -> None:
+    program = "mi vel = 50\nF(2, mi vel)\nB(2, mi vel)"
+    (found,) = check(program)
+    assert message(found, Source(program), "en").fix == "MI_VEL, and so in lines 2, 3"
+    assert found.values["also"].count(":") == 2
+
+
+def test_a_word_of_a_name_is_the_name() -> None:
+    assert check("MI_VEL = 5\nF(2, VEL)")[0].values["near"] == "MI_VEL"
+    assert check("MI_VEL = 5;TU_VEL = 6\nF(2, VEL)\nSHOW(MI_VEL + TU_VEL)")[0].values["near"] == ""

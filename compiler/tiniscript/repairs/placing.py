@@ -14,6 +14,7 @@ from tiniscript.diagnostics.codes import Code, Diagnostic
 from tiniscript.repairs.braces import without_braces
 from tiniscript.repairs.copied import without_pasted
 from tiniscript.repairs.edits import Edit
+from tiniscript.repairs.everywhere import edits_elsewhere
 from tiniscript.source import Source, Span
 
 Edits = list[Edit] | None
@@ -29,7 +30,8 @@ def edits_of(diagnostic: Diagnostic, source: Source) -> Edits:
     if diagnostic.place is not None and diagnostic.values.get("block"):
         return [Edit(diagnostic.place, diagnostic.values["block"])]  # see `whole_blocks`
     place = _PLACES.get(diagnostic.code)
-    return None if place is None else place(diagnostic, source)
+    edits = None if place is None else place(diagnostic, source)
+    return [*edits, *edits_elsewhere(diagnostic, edits[0])] if edits else edits
 
 
 def _span(diagnostic: Diagnostic, source: Source) -> Edits:

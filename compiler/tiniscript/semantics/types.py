@@ -12,7 +12,7 @@ from typing import NamedTuple
 from tiniscript.diagnostics import codes
 from tiniscript.semantics.ir import Expression, Term
 from tiniscript.semantics.symbols import ENOUGH, Scope
-from tiniscript.semantics.unknown_words import hyphened, meant_value
+from tiniscript.semantics.unknown_words import hyphened, meant_value, whole_name
 from tiniscript.source import Span
 from tiniscript.syntax.ast import Argument, Part
 from tiniscript.syntax.operators import SIGN_OF
@@ -124,6 +124,7 @@ class Kinds:
         near = NUMBER_WORDS.get(name) or scope.near(name, known) or meant_value(
             scope, span, name, is_assigned=target is not None
         )  # fmt: skip
+        near = near or whole_name(name, scope.set_somewhere)
         stem = SENSOR_STEMS.get(name, name) + "_"  # `LIGHT` of LIGHT_R and LIGHT_L
         several = [each for each in known if each.startswith(stem)]
         which = {} if len(several) != 2 else {"first": several[0], "second": several[1]}

@@ -7,6 +7,7 @@ calls this module for mistakes.
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 from itertools import chain
 
 from tiniscript.diagnostics import codes
@@ -65,6 +66,10 @@ def _report_unknown_word(scope: Scope, node: ast.Command) -> None:
         return
     if meant is not None and (meant in WORDS or meant in scope.names):
         _report_foreign(scope, node, meant)
+        return
+    own = whole_name(word, scope.def_names) if node.arguments is None else ""
+    if own:  # `VUELTA`, where there is a DEF MEDIA_VUELTA
+        scope.report(codes.UNKNOWN_WORD, span, found=word, near=own)
         return
     if word in TURN_WORDS or word in ("VUELTA", "VUELTAS"):
         scope.report(codes.WHICH_WAY, span)
@@ -194,6 +199,12 @@ def hyphened(scope: Scope, span: Span, name: str) -> bool:
         return True
     before = re.search(r"([A-Za-z][A-Za-z0-9_]*)-$", text[max(0, span.start - 60) : span.start])
     return before is not None and f"{before[1].upper()}_{name}" in scope.set_somewhere
+
+
+def whole_name(part: str, names: Iterable[str]) -> str:
+    """Return the one name that `part` is a word of: MI_VELOCIDAD for VELOCIDAD, else nothing."""
+    found = [each for each in names if part in each.split("_")]
+    return found[0] if len(found) == 1 else ""
 
 
 def meant_value(scope: Scope, span: Span, name: str, is_assigned: bool) -> str:

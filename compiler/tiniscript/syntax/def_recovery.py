@@ -13,8 +13,9 @@ from tiniscript.syntax.blocks import Block
 from tiniscript.syntax.cursor import Cursor
 from tiniscript.syntax.lexer import NUMBER, ODD, WORD, Token
 from tiniscript.syntax.reporter import Reporter, Resumed
-from tiniscript.syntax.vocabulary import is_part_of_name
-from tiniscript.words import WORDS
+from tiniscript.syntax.vocabulary import name_at
+
+_FARTHEST = 4000  # tokens in which calls of a DEF are looked for
 
 
 class DefRecovery:
@@ -35,29 +36,53 @@ class DefRecovery:
                                  word=word.text, fix=f"DEF {name.text}")  # fmt: skip
             self.blocks.begin("DEF", place, name=name)
             raise Resumed
-        self.in_block.begin_reported("DEF", word.span)
         name = self.cursor.token
-        found = self.cursor.source[name.span]
+        found = self.cursor.source[name.span].upper()
         letters = found.lstrip("0123456789_")
         if name.kind is NUMBER and letters.isalnum() and letters.isascii():
-            self.reporter.answer(name)
+            self.cursor.i += 1
             right = letters + found[: len(found) - len(letters)]
-            self.reporter.fail(codes.BAD_NAME, name.span, found=found, right=right)
+            self._digits_first(found, right)
+            own = Token(WORD, right, *name.span)
+            self.in_block.known.add(right)
+            self.blocks.begin("DEF", Span(word.start, name.end), name=own).is_reported = True
+            raise Resumed
+        self.in_block.begin_reported("DEF", word.span)
         self.reporter.fail(codes.DEF_NEEDS_NAME, word.span)
 
+    def _digits_first(self, found: str, right: str) -> None:
+        """`DEF 2PASOS`: it and its calls have their digits behind."""
+        tokens, start = self.cursor.tokens, self.cursor.i - 1
+        for k in range(start, min(len(tokens), start + _FARTHEST)):
+            span = tokens[k].span
+            if tokens[k].kind is NUMBER and self.cursor.source[span].upper() == found:
+                self.reporter.answer(tokens[k])
+                self.reporter.report(codes.BAD_NAME, span, found=found, right=right)
+                tokens[k] = Token(WORD, right, *span)
+
     def joined(self, name: Token) -> Token:
-        """`DEF MY TURN`, `DEF PASO-UNO`: a name has no space, and no `-`."""
-        cursor, tokens = self.cursor, self.cursor.tokens
-        k = cursor.i + (cursor.token.kind == "-")
-        second, after = tokens[k], tokens[min(k + 1, len(tokens) - 1)]
-        is_word = second.kind is WORD or k > cursor.i  # no number behind a space
-        if not is_word or name.text in WORDS or not is_part_of_name(second, after):
+        """`DEF MY TURN`, `DEF PASO-UNO`: a name has no space, and no `-`. So its calls, too."""
+        cursor = self.cursor
+        start = cursor.i - 1
+        words = name_at(cursor.tokens, start)
+        if len(words) < 2:
             return name
-        cursor.i = k + 1
-        whole = Token(WORD, f"{name.text}_{second.text}", name.start, second.end)
-        found = cursor.source[whole.span]
-        self.reporter.report(codes.NAME_WITH_SPACE, whole.span, found=found, right=whole.text)
+        cursor.i = _end_of_name(cursor.tokens, start, words)
+        whole = Token(WORD, "_".join(words), name.start, cursor.last.end)
+        self._report_spaced(whole)
+        k = cursor.i
+        while k < min(len(cursor.tokens) - 1, cursor.i + _FARTHEST):
+            end = _end_of_name(cursor.tokens, k, words)
+            if end:
+                call = Token(WORD, whole.text, cursor.tokens[k].start, cursor.tokens[end - 1].end)
+                cursor.tokens[k:end] = [call]
+                self._report_spaced(call)
+            k += 1
         return whole
+
+    def _report_spaced(self, name: Token) -> None:
+        found = self.cursor.source[name.span]
+        self.reporter.report(codes.NAME_WITH_SPACE, name.span, found=found, right=name.text)
 
     def def_with_values(self, word: Token, name: Token, arguments: Sequence[Argument]) -> None:
         """`DEF SQUARE(SIDE)`: a DEF takes no values, but a variable can bring them."""
@@ -85,3 +110,14 @@ class DefRecovery:
             self.reporter.answer(cursor.token)
             cursor.i += 1
         block.is_reported = True
+
+
+def _end_of_name(tokens: Sequence[Token], start: int, words: Sequence[str]) -> int:
+    """Return the place behind these words, with spaces or `-` between them; 0 for others."""
+    k = start
+    for word in words:
+        k += k > start and tokens[k].kind == "-"
+        if tokens[k].text != word:
+            return 0
+        k += 1
+    return k

@@ -37,7 +37,7 @@ from tiniscript.syntax.ast import Argument, Assign, Break, Command, Program
 from tiniscript.syntax.blocks import ENDS, HEADERS, Blocks
 from tiniscript.syntax.cursor import AT_END, Cursor
 from tiniscript.syntax.expressions import ExpressionParser
-from tiniscript.syntax.lexer import END, NEWLINE, WORD, Scan, Token, scan
+from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, WORD, Scan, Token, scan
 from tiniscript.syntax.reporter import Failed, Reporter, Resumed
 from tiniscript.syntax.suggestions import foreign_block
 from tiniscript.words import BLOCK_ENDS, WORDS, Word, other_name
@@ -268,7 +268,7 @@ class Parser:
         if name.text in WORDS:
             right = other_name(name.text)
             self.reporter.report(codes.RESERVED, name.span, word=name.text, right=right)
-        if cursor.token.kind is WORD or cursor.token.kind == "-":
+        if cursor.token.kind in (WORD, NUMBER, "-"):
             name = self.recovery.of_def.joined(name)
         block = self.blocks.begin("DEF", Span(word.start, name.end), name=name)
         if cursor.token.kind == "(":

@@ -17,6 +17,8 @@ from tiniscript.syntax.cursor import AT_END
 from tiniscript.syntax.lexer import NUMBER, WORD, Token
 from tiniscript.words import NUMBER_WORDS, WORDS, Word, meant_by
 
+LONGEST_NAME = 4  # words of a name of a DEF
+_FARTHEST = 2000  # tokens in which a call of it is looked for
 _WORD = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 
 
@@ -37,10 +39,8 @@ class Vocabulary:
             if first.text == "DEF" and name.kind == "(":  # `DEF(DANCE)`
                 found.add(self._tokens[min(k + 2, len(self._tokens) - 1)].text)
             elif first.text == "DEF":
-                row = [*self._tokens[k + 2 : k + 5], *[self._tokens[-1]] * 3]
-                second, after = row[1:3] if row[0].kind == "-" else row[:2]
-                is_joined = name.text not in WORDS and is_part_of_name(second, after)
-                found.add(f"{name.text}_{second.text}" if is_joined else name.text)
+                words = name_at(self._tokens, k + 1)
+                found.add("_".join(words) or name.text)
         actuators = self._kit.actuators if self._kit else ()
         return frozenset(found | self._sensors | {each.name for each in actuators})
 
@@ -99,8 +99,37 @@ class Vocabulary:
         return _WORD.sub(lambda match: self.value(match[0]), text)
 
 
-def is_part_of_name(second: Token, after: Token) -> bool:
-    """Whether the word behind the name of a DEF belongs to it: `DEF MY TURN`, `DEF a b`."""
-    known = WORDS.get(second.text)
-    is_instruction = known is not None and not (known.is_instruction and known.arguments)
-    return second.kind in (WORD, NUMBER) and not is_instruction and after.kind in AT_END
+def name_at(tokens: Sequence[Token], start: int) -> list[str]:
+    """Return the words of a DEF's name at `start`: `MY TURN`, `PASO-1`, `a b`; or of one alone.
+
+    A number behind a space belongs to it where it is called so, too.
+    """
+    if tokens[start].kind is not WORD or tokens[start].text in WORDS:
+        return []
+    words, k = [tokens[start].text], start + 1
+    while tokens[k].kind not in AT_END:
+        is_hyphen = tokens[k].kind == "-"
+        k += is_hyphen
+        if not _is_part_of_name(tokens[k]) or len(words) == LONGEST_NAME:
+            return words[:1]
+        if tokens[k].kind is NUMBER and not (is_hyphen or _is_called(tokens, start, k)):
+            return words[:1]
+        words.append(tokens[k].text)
+        k += 1
+    return words
+
+
+def _is_part_of_name(token: Token) -> bool:
+    known = WORDS.get(token.text)
+    is_own = known is None or bool(known.is_instruction and known.arguments)
+    return token.kind in (WORD, NUMBER) and is_own
+
+
+def _is_called(tokens: Sequence[Token], start: int, end: int) -> bool:
+    """Whether the words from `start` to `end` stand alone further down."""
+    row = [token.text for token in tokens[start : end + 1]]
+    count = len(row)
+    return any(
+        [token.text for token in tokens[k : k + count]] == row and tokens[k + count].kind in AT_END
+        for k in range(end + 1, min(len(tokens) - count, end + _FARTHEST))
+    )

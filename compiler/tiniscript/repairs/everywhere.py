@@ -1,0 +1,51 @@
+"""One message for a name that is written wrongly in several places.
+
+Each place would get the same message with the same repair. The first one names the others' lines,
+and its repair changes all of them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from tiniscript.diagnostics import codes
+from tiniscript.diagnostics.codes import Diagnostic
+from tiniscript.repairs.edits import Edit
+from tiniscript.source import Source, Span
+
+_NAMES = (codes.NAME_WITH_SPACE, codes.BAD_NAME, codes.EMPTY_BRACKETS)
+
+
+def said_once(found: Sequence[Diagnostic], source: Source) -> list[Diagnostic]:
+    """Return the diagnostics with one for each name that several of them are about."""
+    groups: dict[tuple[str, str], list[int]] = {}
+    for k, each in enumerate(found):
+        right = each.values.get("right") or each.values.get("word", "")
+        if each.code in _NAMES and right and each.values.get("fix") is None:
+            groups.setdefault((each.code.number, right), []).append(k)
+    kept: list[Diagnostic | None] = list(found)
+    for places in groups.values():
+        if len(places) > 1:
+            kept[places[0]] = _with_places([found[k] for k in places], source)
+            for k in places[1:]:
+                kept[k] = None
+    return [each for each in kept if each is not None]
+
+
+def _with_places(found: Sequence[Diagnostic], source: Source) -> Diagnostic:
+    first, *others = found
+    line, *rest = [source.position(each.span.start)[0] for each in found]
+    lines = [str(each) for each in dict.fromkeys(rest) if each != line]
+    also = " ".join(f"{each.span.start}:{each.span.end}" for each in others)
+    values = {**first.values, "also": also, "times": str(len(found))}
+    if len(lines) > 1:
+        values["lines"] = ", ".join(lines)
+    elif lines:
+        values["line"] = lines[0]
+    return first._replace(values=values)
+
+
+def edits_elsewhere(diagnostic: Diagnostic, edit: Edit) -> list[Edit]:
+    """Return the changes of the other places that a diagnostic is about, too."""
+    spans = [each.split(":") for each in diagnostic.values.get("also", "").split()]
+    return [Edit(Span(int(start), int(end)), edit.text) for start, end in spans]
