@@ -120,6 +120,7 @@ PROSE = _mistake("TS073")
 SEVERAL_ORDERS = _mistake("TS074")
 OTHER_CALL = _mistake("TS076")
 GROUPED = _mistake("TS080")
+WORDS_BEHIND = _mistake("TS085")
 # the checksum of a line
 CHECKSUM_WRONG = _mistake("TS058")
 CHECKSUM_FORM = _mistake("TS059")
@@ -191,6 +192,9 @@ def in_order(found: list[Diagnostic]) -> list[Diagnostic]:
     seen = set()
     other_units = [each.span for each in found if each.code is OTHER_UNIT]
     translated = {each.span.start for each in found if each.code is OTHER_LANGUAGE}
+    meant = {each.span.start for each in found if each.code is UNKNOWN_WORD or (
+        each.code is UNKNOWN_NAME and each.values.get("near")
+    )}  # fmt: skip
     for diagnostic in found:
         start = diagnostic.span.start
         if diagnostic.code is ARGUMENT_COUNT and any(
@@ -198,8 +202,8 @@ def in_order(found: list[Diagnostic]) -> list[Diagnostic]:
         ):
             continue  # `R(90 grados)`
         key = (diagnostic.code, diagnostic.span)
-        if diagnostic.code is BAD_NAME and start in translated:
-            continue  # `atrás(2, 80)`: the word goes, with its accent
+        if diagnostic.code is BAD_NAME and (start in translated or start in meant):
+            continue  # `atrás(2, 80)`, `Bebé(1, 440)`: the word goes, with its accent
         if key in seen or (diagnostic.is_mistake and start in mistaken):
             continue
         seen.add(key)

@@ -285,6 +285,7 @@ _PLACES: dict[Code, Callable[[Diagnostic, Source], Edits]] = {
     codes.SEVERAL_ORDERS: _span,
     codes.OTHER_CALL: _span,
     codes.GROUPED: _span,
+    codes.WORDS_BEHIND: _span,
     codes.NAME_WITH_SPACE: _span,
     codes.MISSING_EQUALS: _span,
     codes.UNKNOWN_WORD: _span,

@@ -40,7 +40,7 @@ _KEPT = (codes.MISSING_OPEN, codes.OTHER_LANGUAGE)
 _OTHERS = frozenset((
     codes.NEVER_ENDS, codes.NOT_OPEN, codes.WRONG_END, codes.BRACES, codes.SETUP_TWICE,
     codes.OUT_OF_RANGE, codes.PLACEHOLDER, codes.WHICH_WAY, codes.REPEATED, codes.PASTED,
-    codes.MISSING_VALUE, codes.BAR_BETWEEN,
+    codes.MISSING_VALUE, codes.BAR_BETWEEN, codes.WORDS_BEHIND,
 ))  # fmt: skip
 
 

@@ -18,7 +18,7 @@ from tiniscript.syntax.vocabulary import Vocabulary
 # What is mended within a larger repair: a word, a number or a sign.
 _SMALL = (codes.OTHER_LANGUAGE, codes.UNIT, codes.OTHER_SIGN, codes.BAD_NUMBER)
 # Whose fix is a note, or the name of a new variable.
-_OWN_WORDS = (codes.PROSE, codes.MISSING_EQUALS)
+_OWN_WORDS = (codes.PROSE, codes.WORDS_BEHIND, codes.MISSING_EQUALS)
 ENOUGH = 100  # diagnostics that are joined
 
 

@@ -34,6 +34,15 @@ from tiniscript.words import (
 )
 
 _LETTERS = {"D": "R", "I": "L", "P": "S", "E": "W"}  # derecha, izquierda, parar, esperar
+# What phones make of a word of the language.
+_MENDED = {
+    "BEBE": "BEEP",
+    "BEBER": "BEEP",
+    "BEBES": "BEEP",
+    "BIPE": "BEEP",
+    "VIP": "BEEP",
+    "UTIL": "UNTIL",
+}
 _OPPOSITE = {"F": "B", "B": "F", "L": "R", "R": "L"}
 
 
@@ -86,7 +95,7 @@ def _report_unknown_word(scope: Scope, node: ast.Command) -> None:
         return
     commands = [each.text for each in WORDS.values() if each.role not in
                 ("setup", "later", "value", "operator", "function", "forever")]  # fmt: skip
-    near = scope.near(word, chain(commands, scope.names, scope.def_names))
+    near = _MENDED.get(word) or scope.near(word, chain(commands, scope.names, scope.def_names))
     glued_loop = re.fullmatch(r"LOOP_?([0-9]+)", word)
     if glued_loop and node.arguments is None:
         near = f"LOOP({glued_loop[1]})"
@@ -94,7 +103,11 @@ def _report_unknown_word(scope: Scope, node: ast.Command) -> None:
     letter = word[0] if is_held and word[0] in WORDS else _LETTERS.get(word, "")
     if letter and len(node.arguments or ()) == len(WORDS[letter].arguments):
         near = letter
-    values = {"found": word, "near": near, **({} if near else said_instead(word))}
+    values = {
+        "found": scope.source[span].upper(),
+        "near": near,
+        **({} if near else said_instead(word)),
+    }
     scope.report(codes.UNKNOWN_WORD, span, None, **values)
 
 

@@ -56,6 +56,7 @@ class BlockRecovery:
         cursor.i = body_begins(cursor.tokens, start)
         if is_reported:
             raise Failed
+        self.other.until_near(word, start)
         self.other.if_not(word, start)
         end = body_begins(cursor.tokens, start)
         if word.text in HEADERS and cursor.tokens[end].kind not in AT_END:

@@ -13,6 +13,7 @@ from tiniscript.syntax.blocks import ENDS, Block, Blocks
 from tiniscript.syntax.call_suggestions import written
 from tiniscript.syntax.cursor import AT_END, Cursor
 from tiniscript.syntax.lexer import NUMBER, ODD, WORD, Token
+from tiniscript.syntax.near import near_at
 from tiniscript.syntax.operators import COMPARISONS
 from tiniscript.syntax.phrases import AFTER_HEADER, TIMES
 from tiniscript.syntax.reporter import Failed, Reporter, Resumed
@@ -132,6 +133,26 @@ class HeaderRecovery:
                 block.otherwise = []
             cursor.i = start + 1
             raise Resumed
+
+    def is_sign_before_bracket(self) -> bool:
+        """Whether one sign too much stands before a bracket, as in `UNTIL.(c)`; then drop it."""
+        token = self.cursor.token
+        is_one = (
+            token.kind is ODD and token.text in (".", ":") and self.cursor.following.kind == "("
+        )
+        if is_one:
+            del self.cursor.tokens[self.cursor.i]
+        return is_one
+
+    def until_near(self, word: Token, start: int) -> None:
+        """`F(2, 80) until the wall`."""
+        cursor = self.cursor
+        near = near_at(cursor.tokens, start, self.known) if word.text == "UNTIL" else None
+        if near is not None and cursor.tokens[near.end].kind in AT_END:
+            cursor.i = near.end
+            place = cursor.span_from(word)
+            fix = f"UNTIL({near.question})"
+            self.reporter.fail(codes.MISSING_OPEN, place, place, word=word.text, fix=fix, usage="")
 
     def in_braces(self, word: Token, start: int) -> None:
         """`IF{DISTANCE < 10}`: braces for brackets."""

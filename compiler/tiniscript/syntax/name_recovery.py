@@ -191,9 +191,13 @@ class NameRecovery:
         if word.text not in BEFORE_SENTENCE or following.kind not in (WORD, ","):
             return
         cursor.i += 1 + (following.kind == ",")
+        while cursor.token.text in BEFORE_SENTENCE and cursor.following.kind is WORD:
+            self.reporter.answer(cursor.token)  # `después`
+            cursor.i += 1
         if cursor.token.kind is WORD:
             span = cursor.span_from(word)
-            self.reporter.report(codes.EXTRA_WORD, span, found=word.text, label=word.text)
+            words = cursor.source[span].strip(" ,").upper()
+            self.reporter.report(codes.EXTRA_WORD, span, found=words, label=words)
             raise Resumed
 
     def _is_contrary(self, word: Token) -> bool:

@@ -37,7 +37,7 @@ from tiniscript.syntax.ast import Argument, Assign, Break, Command, Program
 from tiniscript.syntax.blocks import ENDS, HEADERS, Blocks
 from tiniscript.syntax.cursor import AT_END, Cursor
 from tiniscript.syntax.expressions import ExpressionParser
-from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, WORD, Scan, Token, scan
+from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, ODD, WORD, Scan, Token, scan
 from tiniscript.syntax.reporter import Failed, Reporter, Resumed
 from tiniscript.syntax.suggestions import foreign_block
 from tiniscript.words import BLOCK_ENDS, WORDS, Word, other_name
@@ -201,7 +201,10 @@ class Parser:
             self.recovery.no_command(self, word, known.role)
         cursor.i += 1
         arguments = until = None
-        if following.kind == "(":
+        is_call = following.kind == "("
+        if not is_call and following.kind is ODD:
+            is_call = self.recovery.in_block.other.is_sign_before_bracket()
+        if is_call:
             arguments = self.arguments_of(word, known)
         elif known is not None and known.arguments:
             self.recovery.of_name.brackets.no_bracket(word, known)
@@ -324,7 +327,7 @@ class Parser:
         """
         cursor = self.cursor
         start = cursor.i
-        if cursor.token.kind != "(":
+        if cursor.token.kind != "(" and not self.recovery.in_block.other.is_sign_before_bracket():
             self.recovery.in_block.no_bracket(word, is_reported)
         try:
             arguments = self.expressions.arguments()

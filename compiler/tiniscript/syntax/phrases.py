@@ -130,3 +130,5 @@ FRAME_NAMES = frozenset(("MAIN", "PRINCIPAL", "SETUP"))
 CASE_WORDS = frozenset(("SWITCH", "CASE", "CASO", "SEGUN", "SELECT", "MATCH"))
 # An IF that asks for the opposite.
 NEGATED = frozenset(("UNLESS", "A_MENOS_QUE", "SALVO", "EXCEPTO"))
+# Words that mean something elsewhere, and little in the middle of a sentence.
+OFTEN_SAID = frozenset(("PARA", "FOR", "DO", "DI", "OTRO", "NEXT", "MOTOR", "MOTORES", "A", "E"))

@@ -19,10 +19,12 @@ from tiniscript.syntax.cursor import AT_END, Cursor
 from tiniscript.syntax.def_recovery import DefRecovery
 from tiniscript.syntax.foreign import forever_alone
 from tiniscript.syntax.group_recovery import GroupRecovery
+from tiniscript.syntax.joining_recovery import JoiningRecovery
 from tiniscript.syntax.lexer import NUMBER, ODD, WORD, Token
 from tiniscript.syntax.name_recovery import NameRecovery
+from tiniscript.syntax.note_recovery import NoteRecovery
 from tiniscript.syntax.operators import SIGNS
-from tiniscript.syntax.phrases import AFTER_HEADER, BETWEEN, FINALLY
+from tiniscript.syntax.phrases import AFTER_HEADER, BETWEEN
 from tiniscript.syntax.reporter import Failed, Reporter, Resumed
 from tiniscript.syntax.setup_recovery import SetupRecovery
 from tiniscript.syntax.suggestions import (
@@ -60,10 +62,12 @@ class Recovery:
         self.in_block = BlockRecovery(cursor, reporter, blocks, kit)
         self.of_name = NameRecovery(cursor, reporter, blocks, kit, self.in_block)
         self.of_def = DefRecovery(cursor, reporter, self.in_block)
-        self.of_until = UntilRecovery(cursor, reporter, blocks)
+        self.of_until = UntilRecovery(cursor, reporter, blocks, self.in_block.known)
         self.times = TimesRecovery(cursor, reporter, self.in_block)
         self.construct = ConstructRecovery(cursor, reporter, self.in_block)
         self.groups = GroupRecovery(cursor, reporter, self.in_block)
+        self.of_note = NoteRecovery(cursor, reporter, self.in_block)
+        self.joining = JoiningRecovery(cursor, reporter, self.in_block)
 
     # -- what is no instruction ---------------------------------------------------------------
 
@@ -182,6 +186,9 @@ class Recovery:
                 self._line_of(header, token)  # `IF(c)(S)ELSE(B(1, 50))`
             self.groups.body(header, cursor.i)
             self.in_block.other.second_question(header)
+        self._words_behind(first, token, header)
+        if self.kit is not None and (header is None or not goes_on):
+            self.of_note.behind(first, before, header)
         if first.text in ("S", "STOP", "BREAK"):
             self._stop_of_loop(first)
         if header is not None and header.word != "DEF" and first.text != "ELSE" and not goes_on:
@@ -197,6 +204,8 @@ class Recovery:
         is_glued = before.kind is WORD and before.end == token.start and token.end == after.start
         if text == "." and after.kind is WORD and is_glued:  # `motorA.setSpeed(200)`
             self._dotted(first, token)
+        if kind == "," and header is None and after.text in BETWEEN:
+            self.joining.by_comma(token)
         is_colon = kind is ODD and text == ":" and header is not None
         if is_colon or ((kind == "," or text in (".", ":")) and after.kind is WORD):
             if header is None or not header.is_reported:
@@ -220,7 +229,6 @@ class Recovery:
         if header is not None and first.text in WORDS and WORDS[first.text].arguments:
             if kind in SIGNS or text in ("AND", "OR"):
                 self.in_block.other.question_goes_on(first, header)
-        self._words_behind(first, token, header)
         self.times.times_behind(first, token, before)
         if kind == "-" and after.kind == ">":  # `F(2, 80) -> R(1, 50)`
             cursor.tokens[cursor.i : cursor.i + 2] = [Token("→", "->", token.start, after.end)]
@@ -242,32 +250,19 @@ class Recovery:
             fix = f"{whole}.{after.text}"
             span = Span(before.start, after.end)
             fail(codes.DECIMAL_COMMA, span, Span(first.start, after.end), fix=fix)
-        is_joining = header is None and kind is WORD and self._joining_words() > 0
+        is_joining = header is None and kind is WORD and self.joining.words() > 0
         if is_joining or (kind is WORD and header is not None and text in AFTER_HEADER):
             if header is not None or (after.kind is WORD and not self.in_block.is_name(text)):
-                cursor.i += 1 if header is not None else self._joining_words()
+                cursor.i += 1 if header is not None else self.joining.words()
                 span = cursor.span_from(token)
                 shown = cursor.source[span].upper()
-                self.reporter.report(codes.EXTRA_WORD, span, found=shown, fix="")
+                joining = "" if header is not None else cursor.source[span]
+                self.reporter.report(codes.EXTRA_WORD, span, found=shown, fix="", joining=joining)
                 self.in_block.go_on()
         if header is not None or not self._is_no_instruction(first):
             self._separator_missing(first, token, before, header)
         if kind is not WORD:
             raise Failed
-
-    def _joining_words(self) -> int:
-        """Return how many words at the cursor only join two instructions: `y despues al final`."""
-        tokens, start = self.cursor.tokens, self.cursor.i
-        k = start
-        while tokens[k].kind is WORD:
-            if (tokens[k].text, tokens[k + 1].text) in FINALLY:
-                k += 2
-            elif tokens[k].text in BETWEEN and not self.in_block.is_name(tokens[k].text):
-                self.reporter.answer(tokens[k])  # `después` has an accent
-                k += 1
-            else:
-                break
-        return k - start
 
     def meant(self, word: Token) -> Word | None:
         """Return the command that a word of another language means."""

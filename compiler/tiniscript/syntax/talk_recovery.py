@@ -13,13 +13,18 @@ from tiniscript.syntax.block_recovery import BlockRecovery
 from tiniscript.syntax.call_suggestions import LONGEST
 from tiniscript.syntax.cursor import AT_END, Cursor
 from tiniscript.syntax.lexer import NEWLINE, NUMBER, WORD, Token
-from tiniscript.syntax.phrases import BEFORE_NAME, BEFORE_NOTE, CHANGING, SETTING, STEPS
+from tiniscript.syntax.phrases import (
+    BEFORE_NAME,
+    BEFORE_NOTE,
+    CHANGING,
+    OFTEN_SAID,
+    SETTING,
+    STEPS,
+)
 from tiniscript.syntax.reporter import Reporter, Resumed
 from tiniscript.syntax.suggestions import foreign_block, shortened
 from tiniscript.words import SWITCH_WORDS, TURN_WORDS, WORDS, is_guessed, meant_by
 
-# Words that mean something elsewhere, and little in the middle of a sentence.
-_OFTEN_SAID = frozenset(("PARA", "FOR", "DO", "DI", "OTRO", "NEXT", "MOTOR", "MOTORES", "A", "E"))
 _MOTORS = frozenset(("MOTOR", "RUEDA", "WHEEL", "LLANTA"))
 _SIDES = {
     "L": {"IZQUIERDO", "IZQUIERDA", "IZQ", "LEFT"},
@@ -80,7 +85,7 @@ class TalkRecovery:
         text = token.text
         if token.kind is not WORD:
             return False
-        if text in _OFTEN_SAID and after.kind is WORD and tokens[k - 1].kind is WORD:
+        if text in OFTEN_SAID and after.kind is WORD and tokens[k - 1].kind is WORD:
             return False
         if text in BEFORE_NAME or text in SETTING or text in CHANGING:
             return True

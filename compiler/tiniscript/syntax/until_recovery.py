@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, NoReturn
 
 from tiniscript.diagnostics import codes
@@ -10,10 +11,19 @@ from tiniscript.syntax.ast import Command
 from tiniscript.syntax.blocks import Blocks
 from tiniscript.syntax.call_suggestions import starts_value
 from tiniscript.syntax.cursor import AT_END, Cursor
-from tiniscript.syntax.lexer import WORD, Token
+from tiniscript.syntax.lexer import NUMBER, WORD, Token
+from tiniscript.syntax.near import near_at
+from tiniscript.syntax.operators import COMPARISONS
 from tiniscript.syntax.reporter import Failed, Reporter
-from tiniscript.syntax.suggestions import after_bracket, end_of_values, head_in, inside
-from tiniscript.words import WORDS, meant_by
+from tiniscript.syntax.suggestions import (
+    after_bracket,
+    end_of_values,
+    head_in,
+    inside,
+    with_signs,
+)
+from tiniscript.syntax.vocabulary import Vocabulary
+from tiniscript.words import WORDS, meant_by, nearest
 
 if TYPE_CHECKING:
     from tiniscript.syntax.parser import Parser
@@ -22,7 +32,10 @@ _TIMED = ("move", "wait")
 
 
 class UntilRecovery:
-    def __init__(self, cursor: Cursor, reporter: Reporter, blocks: Blocks) -> None:
+    def __init__(
+        self, cursor: Cursor, reporter: Reporter, blocks: Blocks, known: Vocabulary
+    ) -> None:
+        self.known = known
         self.cursor = cursor
         self.reporter = reporter
         self.blocks = blocks
@@ -37,13 +50,31 @@ class UntilRecovery:
             cursor.i += 1
             self._alone(following, cursor.source[Span(word.start, token.start)])
             return True
+        if token.kind is WORD and meant_by(token.text) is None and self._is_misspelt(token, word):
+            return True
         if token.kind is not WORD or meant_by(token.text) != "UNTIL":
             return False
+        if following.text == "QUE":  # `hasta que(DISTANCE < 10)`
+            token = Token(WORD, "HASTA QUE", token.start, following.end)
+            cursor.tokens[cursor.i : cursor.i + 2] = [token]
+            following = cursor.following
         if not starts_value(following):
             return False
         values = inside(cursor.tokens, cursor.i + 1)
-        fix = head_in(WORDS["UNTIL"], values)
+        fix = usage = head_in(WORDS["UNTIL"], values)
         place = Span(token.start, end_of_values(cursor.tokens, cursor.i + 1, values))
+        near = near_at(cursor.tokens, cursor.i + 1, self.known)
+        is_near = near is not None and cursor.tokens[near.end].kind in AT_END
+        if near is not None and is_near:  # `hasta la pared`
+            fix = usage = f"UNTIL({near.question})"
+            place = Span(token.start, cursor.tokens[near.end - 1].end)
+        elif (
+            following.kind != "("
+            and not any(each.kind in COMPARISONS for each in with_signs(values))
+            and not (len(values) == 1 and self.known.is_own(self.known.value(values[0].text)))
+        ):
+            call = cursor.source[Span(word.start, cursor.last.end)]
+            fix, usage = "", f"{call} UNTIL(DISTANCE < {self._distance(values)})"
         self.reporter.report(
             codes.OTHER_LANGUAGE,
             token.span,
@@ -51,8 +82,42 @@ class UntilRecovery:
             found=token.text,
             right="UNTIL",
             fix=fix,
-            usage=fix,
+            usage=usage,
         )
+        if is_near or not fix:
+            cursor.skip_instruction()
+            raise Failed
+        return True
+
+    @staticmethod
+    def _distance(values: Sequence[Token]) -> str:
+        """Return the one number of `hasta 20 cm`, else an example."""
+        numbers = [each.text for each in values if each.kind is NUMBER]
+        return numbers[0] if len(numbers) == 1 else "10"
+
+    def _is_misspelt(self, token: Token, move: Token) -> bool:
+        """`F(5, 60) Útil(DISTANCE < 30)`: behind a move a word with a question is UNTIL."""
+        cursor, start = self.cursor, self.cursor.i + 1
+        known, its = WORDS.get(token.text), WORDS.get(move.text)
+        if known is not None or its is None or its.role not in _TIMED:
+            return False
+        if self.known.is_own(token.text):
+            return False
+        is_near = nearest(token.text, ("UNTIL",)) is not None
+        values = inside(cursor.tokens, start)
+        asks = any(each.kind in COMPARISONS for each in with_signs(values))
+        if cursor.tokens[start].kind == "(":
+            end = after_bracket(cursor.tokens, start)
+            is_last = end is not None and cursor.tokens[end].kind in AT_END
+            if not is_last or not values or not (asks or is_near):
+                return False
+        elif not (is_near and asks):
+            return False
+        self.reporter.answer(token)
+        fix = head_in(WORDS["UNTIL"], values)
+        place = Span(token.start, end_of_values(cursor.tokens, start, values))
+        found = cursor.source[token.span].upper()
+        self.reporter.report(codes.UNKNOWN_WORD, token.span, place, found=found, near=fix, fix=fix)
         return True
 
     def after_its_move(self, parser: Parser, word: Token) -> NoReturn:

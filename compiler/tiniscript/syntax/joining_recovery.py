@@ -1,0 +1,45 @@
+"""Recovery of words between two instructions: `F(2, 80) y después B(2, 80)`."""
+
+from __future__ import annotations
+
+from tiniscript.diagnostics import codes
+from tiniscript.syntax.block_recovery import BlockRecovery
+from tiniscript.syntax.cursor import Cursor
+from tiniscript.syntax.lexer import WORD, Token
+from tiniscript.syntax.phrases import BETWEEN, FINALLY
+from tiniscript.syntax.reporter import Reporter, Resumed
+
+
+class JoiningRecovery:
+    def __init__(self, cursor: Cursor, reporter: Reporter, in_block: BlockRecovery) -> None:
+        self.cursor = cursor
+        self.reporter = reporter
+        self.in_block = in_block
+
+    def by_comma(self, comma: Token) -> None:
+        """`F(2, 80), y luego B(1, 80)`: one `;` stands for both."""
+        cursor = self.cursor
+        cursor.i += 1
+        count = self.words()
+        if not count or cursor.tokens[cursor.i + count].kind is not WORD:
+            cursor.i -= 1
+            return
+        cursor.i += count
+        span = cursor.span_from(comma)
+        joining = cursor.source[span]
+        self.reporter.report(codes.EXTRA_WORD, span, found=joining, fix="", joining=joining)
+        raise Resumed
+
+    def words(self) -> int:
+        """Return how many words at the cursor only join two instructions: `y despues al final`."""
+        tokens, start = self.cursor.tokens, self.cursor.i
+        k = start
+        while tokens[k].kind is WORD:
+            if (tokens[k].text, tokens[k + 1].text) in FINALLY:
+                k += 2
+            elif tokens[k].text in BETWEEN and not self.in_block.is_name(tokens[k].text):
+                self.reporter.answer(tokens[k])  # `después` has an accent
+                k += 1
+            else:
+                break
+        return k - start
