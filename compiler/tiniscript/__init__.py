@@ -151,7 +151,7 @@ def _checked(text: str, kit: Kit, name: str = "") -> Compiled:
 
         found = joined(found, source, parsed.scan.tokens, kit)
     else:
-        found += advice(checked.program, kit)
+        found += advice(checked.program, kit, source)
         found += in_notes(parsed.scan.comments, parsed.scan.tokens, source)
     return Compiled(source, in_order(found), checked.program)
 

@@ -180,6 +180,13 @@ SWAPPED = _warning("TS810")
 LONG_TIME = _warning("TS811")
 NEVER_REPEATS = _warning("TS812")
 IN_A_NOTE = _warning("TS816")
+LITTLE_POWER = _warning("TS820")
+IDLE_STOP = _warning("TS821")
+FROZEN_UNTIL = _warning("TS822")
+FROZEN_WHILE = _warning("TS823")
+TURNED_ROUND = _warning("TS824")
+EXACT = _warning("TS825")
+UNSEEN_MOTORS = _warning("TS826")
 
 
 def in_order(found: list[Diagnostic]) -> list[Diagnostic]:

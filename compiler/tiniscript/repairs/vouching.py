@@ -106,7 +106,8 @@ def _without(diagnostic: Diagnostic) -> Diagnostic:
 def _speaks_against(diagnostic: Diagnostic) -> bool:
     """Whether a diagnostic says that the instruction it is in is not meant as it stands."""
     if not diagnostic.is_mistake:
-        return diagnostic.code in (codes.SWAPPED, codes.LONG_TIME)
+        is_a_drive = "drive" in diagnostic.values  # `avanza 1 minuto y 30 segundos`
+        return diagnostic.code in (codes.SWAPPED, codes.LONG_TIME) and not is_a_drive
     if diagnostic.code is codes.OUT_OF_RANGE and diagnostic.values.get("fix"):
         return False  # `F -1 80`: the next message says B
     return diagnostic.code not in _ELSEWHERE

@@ -1,0 +1,215 @@
+"""Warns of questions whose answer does not come: nothing changes it, or it never comes exactly.
+
+`D = DISTANCE; F(5, 60) UNTIL(D < 20)`, `N = 0; WHILE(N < 3)` without `N = N + 1`,
+`F(5, 60) UNTIL(DISTANCE > 20)`, `UNTIL(DISTANCE = 20)`. Knows the IR, before it is optimised, and
+the text of the questions.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection, Mapping
+from typing import NamedTuple
+
+from tiniscript.diagnostics import codes
+from tiniscript.diagnostics.codes import Code, Diagnostic
+from tiniscript.fixed_point import as_text
+from tiniscript.kit import Device, Kit
+from tiniscript.semantics.ir import (
+    Arm,
+    Assign,
+    Body,
+    Call,
+    Expression,
+    If,
+    Move,
+    Program,
+    Statement,
+    While,
+    every,
+    loops_end,
+    walk,
+)
+from tiniscript.semantics.optimizer import constant, fold
+from tiniscript.semantics.written_questions import question_of
+from tiniscript.source import Source, Span
+from tiniscript.syntax.operators import SIGN_OF
+
+SHORT = 1000  # ms: a loop looks again after so long
+MANY_VALUES = 100_000  # thousandths: a sensor with such a range is hardly ever at one of them
+_CHANGING = frozenset(("SENSOR", "TIME", "RANDOM"))
+_MIRRORED = {"LT": "GT", "LE": "GE", "GT": "LT", "GE": "LE", "EQ": "EQ", "NE": "NE"}
+_TURNED = {"GT": "LT", "GE": "LE"}
+_REACHED = {"F": "LE", "B": "GE"}  # what is sure to come true, by the way that the robot goes
+
+
+class _Comparison(NamedTuple):
+    """A sensor, the name of the comparator that stands behind it, and a number."""
+
+    device: Device
+    op: str
+    number: int
+
+
+class FrozenQuestions:
+    """Looks at the statements of one program; `found` are its warnings."""
+
+    def __init__(self, program: Program, kit: Kit, source: Source) -> None:
+        self._program = program
+        self._kit = kit
+        self._source = source
+        self._set_to: dict[int, list[Expression]] = {}
+        for statement in every(program):
+            if isinstance(statement, Assign):
+                self._set_to.setdefault(statement.variable, []).append(statement.value)
+        self._sets: list[set[int]] = []  # for each DEF, the variables that it gives a value
+        for procedure in program.procedures:
+            self._sets.append(self._set_in(procedure.body))
+        self.found: list[Diagnostic] = []
+
+    def look_at(self, statement: Statement, is_repeated: bool, asked: Collection[int]) -> None:
+        """Look at one statement.
+
+        It is in a loop or a DEF where `is_repeated`. The questions around it ask the sensors
+        `asked`: an answer may be known there.
+        """
+        if isinstance(statement, Move) and statement.until is not None:
+            self._until(statement, statement.until.condition, is_repeated, asked)
+        elif isinstance(statement, While):
+            self._while(statement)
+        elif isinstance(statement, If):
+            for arm in statement.arms:
+                self._exact_if(arm)
+
+    # -- UNTIL --------------------------------------------------------------------------------
+
+    def _until(
+        self, move: Move, condition: Expression, is_repeated: bool, asked: Collection[int]
+    ) -> None:
+        variables = _variables(condition)
+        if variables and not any(term.op in _CHANGING for term in condition):
+            time = None if move.time is None else constant(fold(move.time))
+            if not (is_repeated and time is not None and time < SHORT):
+                self._frozen(move, variables)
+            return
+        comparison = self._comparison(condition)
+        if comparison is None:
+            return
+        device, op, number = comparison
+        is_ahead = move.direction == "F" and device.unit in ("cm", "mm", "m")
+        if op in _TURNED and is_ahead and not set(asked) & _sensors(condition):
+            question = f"{device.name} {SIGN_OF[_TURNED[op]]} {as_text(number)}"
+            self._report(codes.TURNED_ROUND, move.span, sensor=device.name, number=as_text(number),
+                         fix=self._with(move, question))  # fmt: skip
+        elif op == "EQ" and _is_between(device, number):
+            sign = SIGN_OF.get(_REACHED.get(move.direction, ""), "")
+            is_distance = device.unit in ("cm", "mm", "m")
+            question = f"{device.name} {sign} {as_text(number)}"
+            fix = self._with(move, question) if sign and is_distance else ""
+            self._report(codes.EXACT, move.span, sensor=device.name, number=as_text(number),
+                         word="UNTIL", fix=fix)  # fmt: skip
+
+    def _frozen(self, move: Move, variables: list[int]) -> None:
+        held = self._sensors_of(variables)
+        name = self._program.variables[variables[0]]
+        values = {"name": name, "fix": ""}
+        if held:
+            values["sensor"] = held[name]
+            question = _replaced(question_of(self._source, move.span, "UNTIL"), held)
+            values["fix"] = self._with(move, question) if question else ""
+        self.found.append(Diagnostic(codes.FROZEN_UNTIL, move.span, values))
+
+    def _with(self, move: Move, question: str) -> str:
+        """Return a move as it is written, with another question behind UNTIL."""
+        text = self._source[move.span]
+        end = max((each.start() for each in re.finditer(r"(?i)\bUNTIL\b", text)), default=0)
+        return f"{text[:end].rstrip()} UNTIL({question})" if end else ""
+
+    # -- WHILE and IF -------------------------------------------------------------------------
+
+    def _while(self, loop: While) -> None:
+        condition = loop.condition
+        variables = _variables(condition)
+        if not variables or any(term.op in _CHANGING for term in condition):
+            return
+        if len(condition) == 1 or loops_end(loop.body) or self._set_in(loop.body) & set(variables):
+            return
+        held = self._sensors_of(variables)
+        if not held and condition[-1].op not in ("LT", "LE", "GT", "GE", "NE"):
+            return  # `WHILE(ON = 1)` is how others write LOOP(FOREVER)
+        name = self._program.variables[variables[0]]
+        head = Span(loop.span.start, loop.span.start + len("WHILE"))
+        values = {"name": name, "fix": ""}
+        if held:
+            question = _replaced(question_of(self._source, loop.span, "WHILE"), held)
+            values["sensor"] = held[name]
+            values["fix"] = f"WHILE({question})" if question else ""
+        elif [term.op for term in condition[:-1]] == ["VARIABLE", "NUMBER"]:
+            is_down = condition[-1].op in ("GT", "GE")
+            values["step"] = f"{name} = {name} {'-' if is_down else '+'} 1"
+        self.found.append(Diagnostic(codes.FROZEN_WHILE, head, values))
+
+    def _set_in(self, body: Body) -> set[int]:
+        """Return the variables that a body, or a DEF that it calls, gives a value."""
+        found = set()
+        for statement in walk(body):
+            if isinstance(statement, Assign):
+                found.add(statement.variable)
+            elif isinstance(statement, Call) and statement.procedure < len(self._sets):
+                found |= self._sets[statement.procedure]
+        return found
+
+    def _exact_if(self, arm: Arm) -> None:
+        comparison = self._comparison(arm.condition)
+        if comparison is not None:
+            device, op, number = comparison
+            if op == "EQ" and _is_between(device, number):
+                self._report(codes.EXACT, arm.span, sensor=device.name, number=as_text(number),
+                             word="IF", fix="")  # fmt: skip
+
+    # -- what is in them ----------------------------------------------------------------------
+
+    def _comparison(self, condition: Expression) -> _Comparison | None:
+        """Return `DISTANCE < 10` for a question that is just that, whichever side is first."""
+        if len(condition) != 3 or condition[2].op not in _MIRRORED:
+            return None
+        first, second, sign = condition[0], condition[1], condition[2].op
+        if (first.op, second.op) == ("NUMBER", "SENSOR"):
+            first, second, sign = second, first, _MIRRORED[sign]
+        if (first.op, second.op) != ("SENSOR", "NUMBER"):
+            return None
+        return _Comparison(self._kit.sensors[first.value], sign, second.value)
+
+    def _sensors_of(self, variables: list[int]) -> dict[str, str]:
+        """Return the sensor that each of these variables holds; nothing where one holds another."""
+        held = {}
+        for variable in variables:
+            values = set(self._set_to.get(variable, ()))
+            value = next(iter(values)) if len(values) == 1 else ()
+            if len(value) != 1 or value[0].op != "SENSOR":
+                return {}
+            name = self._program.variables[variable]
+            held[name] = self._kit.sensors[value[0].value].name
+        return held
+
+    def _report(self, code: Code, span: Span, **values: str) -> None:
+        self.found.append(Diagnostic(code, span, values))
+
+
+def _variables(condition: Expression) -> list[int]:
+    return [term.value for term in condition if term.op == "VARIABLE"]
+
+
+def _sensors(condition: Expression) -> set[int]:
+    return {term.value for term in condition if term.op == "SENSOR"}
+
+
+def _is_between(device: Device, number: int) -> bool:
+    """Whether a number is one of very many that a sensor may read, and not the last."""
+    is_fine = not device.is_yes_no and device.high - device.low >= MANY_VALUES
+    return is_fine and device.low < number < device.high
+
+
+def _replaced(question: str, held: Mapping[str, str]) -> str:
+    """Return a question that asks the sensors themselves."""
+    return re.sub(r"[A-Za-z_]\w*", lambda each: held.get(each[0].upper(), each[0]), question)

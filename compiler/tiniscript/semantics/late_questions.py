@@ -1,0 +1,170 @@
+"""Warns where a program looks at a sensor when a move is over, and meant: while the robot moves.
+
+`F(5, 60)`, then `IF(DISTANCE < 20); S; ENDIF`. Knows the IR, before it is optimised, and the text
+of the questions. The repair is the move with that question behind UNTIL.
+"""
+
+from __future__ import annotations
+
+from tiniscript.diagnostics import codes
+from tiniscript.diagnostics.codes import Diagnostic
+from tiniscript.fixed_point import as_text
+from tiniscript.kit import Kit
+from tiniscript.semantics.ir import (
+    Assign,
+    Beep,
+    Body,
+    Expression,
+    If,
+    Loop,
+    Motors,
+    Move,
+    Program,
+    Read,
+    Show,
+    Statement,
+    Stop,
+    While,
+    every,
+)
+from tiniscript.semantics.optimizer import constant, fold
+from tiniscript.semantics.written_questions import question_of
+from tiniscript.source import Source
+from tiniscript.syntax.operators import OPPOSITES, SIGN_OF
+
+LONG_MOVE = 500  # ms: a robot goes a hand's breadth in this time
+LONG_STEP = 1000  # ms: in a WHILE it is looked at again after so long
+_PASSED_OVER = (Read, Assign, Show, Beep)  # they leave the robot where it is
+_GREATER = ("GT", "GE")
+
+
+class LateQuestions:
+    """Looks at the bodies of one program; `found` are its warnings."""
+
+    def __init__(self, program: Program, kit: Kit, source: Source) -> None:
+        self._kit = kit
+        self._source = source
+        # Without M the motors stand between two instructions.
+        self._stands = not any(isinstance(each, Motors) for each in every(program))
+        self.found: list[Diagnostic] = []
+
+    def look_at(self, body: Body, loop: Loop | While | None) -> None:
+        """Look at the statements of a body, which `loop` repeats; not at those within them."""
+        late = self._in_loop(body) if loop is not None else set()
+        if isinstance(loop, While):
+            self._in_while(loop)
+        for k, statement in enumerate(body):
+            if isinstance(statement, If) and k not in late:
+                self._idle_stop(body, k, statement)
+
+    def _in_loop(self, body: Body) -> set[int]:
+        """Find a long move, then a look at a distance: the robot drives blind in between.
+
+        Return the places of the questions.
+        """
+        late = set()
+        for k, statement in enumerate(body):
+            if not isinstance(statement, Move) or not self._is_blind(statement, LONG_MOVE):
+                continue
+            after = range(k + 1, len(body))
+            place = next((at for at in after if not isinstance(body[at], Read)), k)
+            question = body[place]
+            if not isinstance(question, If):
+                continue
+            condition = question.arms[0].condition
+            sensor = self._distance_in(condition)
+            if sensor is not None:
+                asked = question_of(self._source, question.arms[0].span, "IF")
+                self._late(statement, sensor, asked)
+                late.add(place)
+        return late
+
+    def _in_while(self, loop: While) -> None:
+        """`WHILE(DISTANCE > 20); F(5, 60); END_WHILE`: it looks every 5 s."""
+        body = [each for each in loop.body if not isinstance(each, _PASSED_OVER)]
+        condition = loop.condition
+        if len(body) != 1 or len(condition) != 3 or condition[2].op not in _GREATER:
+            return
+        (move,) = body
+        sensor = self._distance_in(condition[:1])
+        if sensor is None or condition[1].op != "NUMBER" or not isinstance(move, Move):
+            return
+        if move.direction == "F" and self._is_blind(move, LONG_STEP):
+            sign = OPPOSITES[SIGN_OF[condition[2].op]]
+            name = self._kit.sensors[sensor].name
+            self._late(move, sensor, f"{name} {sign} {as_text(condition[1].value)}")
+
+    def _late(self, move: Move, sensor: int, asked: str) -> None:
+        name = self._kit.sensors[sensor].name
+        written = self._source[move.span]
+        values = {
+            "word": move.direction,
+            "time": as_text(_time(move) or 0),
+            "sensor": name,
+            "move": written,
+            "fix": f"{written} UNTIL({asked})" if asked else "",
+        }
+        self.found.append(Diagnostic(codes.LATE_CHECK, move.span, values))
+
+    def _idle_stop(self, body: Body, k: int, question: If) -> None:
+        """`F(5, 60); IF(DISTANCE < 20); S; ENDIF`: its S stops what stands."""
+        stop = _only_stop(question)
+        condition = question.arms[0].condition
+        if stop is None or not self._stands or not _can_change(condition):
+            return
+        before = next((each for each in body[:k][::-1] if not isinstance(each, _PASSED_OVER)), None)
+        after = next((each for each in body[k + 1 :] if not isinstance(each, _PASSED_OVER)), None)
+        for move, place in ((before, "move"), (after, "next")):
+            if (
+                isinstance(move, Move)
+                and move.direction in "FB"
+                and self._is_blind(move, LONG_MOVE)
+            ):
+                asked = question_of(self._source, question.arms[0].span, "IF")
+                written = self._source[move.span]
+                values = {"found": self._source[stop.span], "move": "", "next": "", place: written}
+                values["fix"] = f"{written} UNTIL({asked})" if asked else ""
+                self.found.append(Diagnostic(codes.IDLE_STOP, stop.span, values))
+                return
+
+    def _is_blind(self, move: Move, least: int) -> bool:
+        """Whether a move lasts long, and looks at nothing."""
+        time = _time(move)
+        if move.direction not in ("F", "B") or move.until is not None:
+            return False
+        return time is not None and time >= least
+
+    def _distance_in(self, condition: Expression) -> int | None:
+        """Return the first sensor of a distance that a question looks at."""
+        for op, value in condition:
+            if op == "SENSOR" and self._kit.sensors[value].unit in ("cm", "mm", "m"):
+                return value
+        return None
+
+
+def _time(move: Move) -> int | None:
+    return None if move.time is None else constant(fold(move.time))
+
+
+def _can_change(condition: Expression) -> bool:
+    """Whether an answer may be another one while the robot moves: only sensors and numbers."""
+    ops = [term.op for term in condition]
+    return "SENSOR" in ops and "VARIABLE" not in ops and "RANDOM" not in ops
+
+
+def _only_stop(question: If) -> Stop | None:
+    """Return the S of an IF that does nothing else with the motors, and has no ELSE."""
+    if len(question.arms) != 1 or question.has_else:
+        return None
+    stop: Stop | None = None
+    for statement in question.arms[0].body:
+        if isinstance(statement, Stop):
+            stop = stop or statement
+        elif not _is_talk(statement):
+            return None
+    return stop
+
+
+def _is_talk(statement: Statement) -> bool:
+    is_wait = isinstance(statement, Move) and statement.direction == "W"
+    return is_wait or isinstance(statement, (Read, Show, Beep))

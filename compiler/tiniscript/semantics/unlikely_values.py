@@ -1,0 +1,162 @@
+"""Warns of times and powers that nobody means: degrees, centimetres, milliseconds, `F(80, 2)`.
+
+Knows the IR, before it is optimised. Only numbers that are written are looked at, and variables
+that are set once.
+"""
+
+from __future__ import annotations
+
+from tiniscript.diagnostics import codes
+from tiniscript.diagnostics.codes import Code, Diagnostic
+from tiniscript.fixed_point import as_text
+from tiniscript.semantics.ir import Assign, Beep, Body, Expression, Move, Program, walk
+from tiniscript.semantics.optimizer import constant, fold
+from tiniscript.source import Span
+from tiniscript.words import POWER_WORDS, names_of
+
+SECOND = 1000  # ms
+LONG_TIME = 20 * SECOND  # a power was meant, where the power is a time
+LONG_DRIVE = 30 * SECOND  # no classroom is so long: centimetres or degrees were meant
+LONGEST_DRIVE = 60 * SECOND  # … also where the number is no round one
+LONG_WAIT = 100 * SECOND
+VERY_LONG_TIME = 500 * SECOND  # milliseconds were meant, as `delay(1000)` of an Arduino has them
+LONG_BEEP = 100 * SECOND
+LOW_HERTZ = 100_000  # thousandths: a power was meant
+ANGLES = (360 * SECOND, 720 * SECOND)
+LITTLE_POWER = 10_000  # thousandths of a percent
+# Names of variables that say which value is in them.
+_TIMES = frozenset(names_of("time"))
+_POWERS = frozenset((*names_of("power"), *POWER_WORDS))
+
+
+def of_move(move: Move) -> list[Diagnostic]:
+    """Return what there is to say of the numbers of a move or a wait without UNTIL: one at most."""
+    time, power = _number(move.time), _number(move.power)
+    found: list[Diagnostic] = []
+    if time is None:
+        return found
+    if time <= 0:
+        _report(found, codes.MOVE_OF_NO_TIME, move.span, word=move.direction)
+    elif _is_swapped(time, power):
+        seconds, percent = as_text(time), as_text(power or 0)
+        fix = f"{move.direction}({percent}, {seconds})"
+        _report(found, codes.SWAPPED, move.span, time=seconds, power=percent, fix=fix)
+    else:
+        _long(move, time, power, found)
+    return found or of_power(move)
+
+
+def of_power(move: Move) -> list[Diagnostic]:
+    """Return what there is to say of a power that moves no robot."""
+    time, power = _number(move.time), _number(move.power)
+    found: list[Diagnostic] = []
+    if power is not None and 0 <= power < LITTLE_POWER and (time is None or time < LONG_TIME):
+        shown = "2" if not time else as_text(time)
+        shown = "FOREVER" if move.time is None else shown
+        _report(found, codes.LITTLE_POWER, move.span, power=as_text(power), word=move.direction,
+                example=f"{move.direction}({shown}, 50)")  # fmt: skip
+    return found
+
+
+def _long(move: Move, time: int, power: int | None, found: list[Diagnostic]) -> None:
+    """`R(90, 50)`, `F(90, 60)`, `W(1000)`: degrees, centimetres and milliseconds were meant."""
+    word = move.direction
+    shown = as_text(80_000 if power is None else power)
+    turns, drives = word in ("L", "R"), word in ("F", "B")
+    is_round = time % (5 * SECOND) == 0
+    is_long = time > LONGEST_DRIVE or (time >= LONG_DRIVE and is_round)
+    is_very_long = time >= VERY_LONG_TIME
+    usage = f"{word}(time, {shown})"
+    length = as_text(time)
+    if turns and (time in ANGLES or (is_long and not is_very_long)):
+        _report(found, codes.LONG_TIME, move.span, degrees=length, word=word, turn=usage)
+    elif drives and is_long and not is_very_long:
+        _report(found, codes.LONG_TIME, move.span, centimetres=length, word=word, drive=usage)
+    elif is_very_long or (word == "W" and _is_milliseconds(time)):
+        power_shown = "" if word == "W" else f", {shown}"
+        fix = f"{word}({as_text(time // 1000)}{power_shown})"
+        _report(found, codes.LONG_TIME, move.span, time=length, fix=fix)
+
+
+def _is_milliseconds(time: int) -> bool:
+    """`W(200)`: a round number, and no round number of minutes."""
+    return time >= LONG_WAIT and time % (50 * SECOND) == 0 and time % (60 * SECOND) != 0
+
+
+def of_beep(beep: Beep) -> list[Diagnostic]:
+    """Return what there is to say of a sound that lasts longer than anybody can bear."""
+    time, hertz = _number(beep.time), _number(beep.hertz)
+    found: list[Diagnostic] = []
+    if time is None or hertz is None or time < LONG_BEEP:
+        return found
+    # of an Arduino: `tone(pin, hertz, milliseconds)`; or in this order, with milliseconds
+    fix = f"BEEP({as_text(hertz // 1000)}, {as_text(time)})"
+    sound = ""
+    if time % (100 * SECOND) == 0:  # a round time, and no note's hertz
+        fix = f"BEEP({as_text(time // 1000)}, {as_text(hertz)})"
+        fix = fix if hertz % 100_000 else ""
+    elif hertz <= LOW_HERTZ:  # `BEEP(440, 80)`: how long it lasts is not said
+        fix, sound = "", f"BEEP(seconds, {as_text(time)})"
+    _report(found, codes.LONG_TIME, beep.span, time=as_text(time), fix=fix, sound=sound)
+    return found
+
+
+def swapped_names(body: Body, program: Program) -> list[Diagnostic]:
+    """`F(SPEED, TIME_S)`: variables that are set once, in the wrong order by name and number."""
+    found: list[Diagnostic] = []
+    routines = [*(procedure.body for procedure in program.procedures), program.body]
+    set_to: dict[int, list[int | None]] = {}
+    for statement in (each for routine in routines for each in walk(routine)):
+        if isinstance(statement, Assign):
+            set_to.setdefault(statement.variable, []).append(constant(fold(statement.value)))
+    for move in (each for each in walk(body) if isinstance(each, Move)):
+        if move.until is not None or move.time is None or move.power is None:
+            continue
+        sides = (move.time, move.power)
+        if not all(len(side) == 1 and side[0].op == "VARIABLE" for side in sides):
+            continue
+        numbers = [side[0].value for side in sides]
+        values = [set_to.get(each, []) for each in numbers]
+        if not all(len(each) == 1 and each[0] is not None for each in values):
+            continue
+        time, power = (each[0] or 0 for each in values)
+        first, second = (program.variables[each] for each in numbers)
+        if _is_right_order(first, second):
+            continue
+        if LONG_TIME <= time <= 100_000 and 0 < power <= LITTLE_POWER:
+            fix = f"{move.direction}({second}, {first})"
+            _report(found, codes.SWAPPED, move.span, fix=fix,
+                    time=as_text(time), power=as_text(power))  # fmt: skip
+    return found
+
+
+def _is_right_order(first: str, second: str) -> bool:
+    """Whether no name of `F(first, second)` says that it is in the other's place."""
+    if _says(first, _TIMES) or _says(second, _POWERS):
+        return True
+    return not _says(first, _POWERS) and not _says(second, _TIMES)
+
+
+def _says(name: str, meanings: frozenset[str]) -> bool:
+    """Whether a part of a name is in `meanings`: TIME_S, MI_TIEMPO, VEL1."""
+    return any(part.rstrip("0123456789") in meanings for part in name.split("_"))
+
+
+def _is_swapped(time: int, power: int | None) -> bool:
+    """`F(80, 2)`: a long time with a power that moves hardly any robot."""
+    return power is not None and LONG_TIME <= time <= 100_000 and 0 < power <= LITTLE_POWER
+
+
+def example_of(name: str) -> str:
+    """Return how a variable of this name is used: `F(2, SPEED)`, `F(TIME_S, 80)`, `SHOW(X)`."""
+    if _says(name, _POWERS):
+        return f"F(2, {name})"
+    return f"F({name}, 80)" if _says(name, _TIMES) else f"SHOW({name})"
+
+
+def _number(expression: Expression | None) -> int | None:
+    return None if expression is None else constant(fold(expression))
+
+
+def _report(found: list[Diagnostic], code: Code, span: Span, **values: str) -> None:
+    found.append(Diagnostic(code, span, values))

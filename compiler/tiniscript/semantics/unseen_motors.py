@@ -1,0 +1,46 @@
+"""Warns of an M that nobody sees: the program ends right behind it, or the motors change at once.
+
+`SI|M(2, 80)` and `M(80, 80); S`, where W is missing. Knows the IR, before it is optimised.
+"""
+
+from __future__ import annotations
+
+from tiniscript.diagnostics import codes
+from tiniscript.diagnostics.codes import Diagnostic
+from tiniscript.fixed_point import as_text
+from tiniscript.semantics.ir import Assign, Body, Motors, Move, Read, Set, Show, Stop
+from tiniscript.semantics.optimizer import constant, fold
+from tiniscript.source import Source
+
+_TAKE_NO_TIME = (Read, Assign, Show, Set)
+_TIMES = range(1, 10_001)  # of `M(2, 80)`: a time was meant,
+_POWERS = range(20_000, 100_001)  # and a power
+
+
+def unseen(body: Body, ends: bool, source: Source) -> list[Diagnostic]:
+    """Return the warnings for each M of a body; the program ends with the body where `ends`."""
+    found = []
+    for k, motors in enumerate(body):
+        if not isinstance(motors, Motors) or _is_still(motors):
+            continue
+        after = next((each for each in body[k + 1 :] if not isinstance(each, _TAKE_NO_TIME)), None)
+        if isinstance(after, Motors) and after[:2] == motors[:2]:
+            continue  # they are set again to the same
+        values = {"found": source[motors.span]}
+        if isinstance(after, (Motors, Stop)) or (
+            isinstance(after, Move) and after.direction != "W" and after.until is None
+        ):
+            values["next"] = source[after.span]
+        elif after is not None or not ends:
+            continue
+        left, right = constant(fold(motors.left)) or 0, constant(fold(motors.right)) or 0
+        if left in _TIMES and right in _POWERS:
+            values["time"] = as_text(left)
+            values["move"] = f"F({as_text(left)}, {as_text(right)})"
+        found.append(Diagnostic(codes.UNSEEN_MOTORS, motors.span, values))
+    return found
+
+
+def _is_still(motors: Motors) -> bool:
+    """`M(0, 0)` is a way to stop."""
+    return not constant(fold(motors.left)) and not constant(fold(motors.right))
