@@ -146,9 +146,9 @@ def person(pty_robot: PtyRobot, motors: str = "1", is_noticed: bool = True) -> C
     """Return a person with a hand, who sees what the motors do."""
 
     def answer(question: str) -> str:
-        if "Now a hand" in question and is_noticed:
+        if "Now put a hand" in question and is_noticed:
             pty_robot.ask(lambda robot: robot.sense(100_000, 100_000, 5_000))
-        elif "Nothing near" in question:
+        elif "away from it" in question:
             pty_robot.ask(lambda robot: robot.sense(*GOOD))
         return motors if question.endswith("more: ") and "wheel" in question else "1"
 

@@ -154,7 +154,7 @@ SENTENCES: dict[str, dict[str, str]] = {
     },
     "pin_of_link": {
         "en": "{path} is pin {pin}, which carries the link to the computer. Choose another pin.",
-        "es": "{path} es el pin {pin}, que lleva el enlace con la computadora. Elige otro pin.",
+        "es": "{path} es el pin {pin}, que usa la conexión con la computadora. Elige otro pin.",
     },
     "pin_twice": {
         "en": "{path} is pin {pin}, which {first} uses already. Choose another pin.",

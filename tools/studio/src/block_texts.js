@@ -72,7 +72,7 @@ export const TIPS = {
   stop: ['The robot stops.', 'El robot se detiene.'],
   start: ['Does nothing: it names the beginning.', 'No hace nada: da nombre al comienzo.'],
   beep: ['The buzzer sounds; more hertz are higher.', 'Suena el zumbador; con más hercios, más agudo.'],
-  show: ['Sends a value to the computer or phone.', 'Manda un valor a la computadora o al teléfono.'],
+  show: ['Sends a value to the computer or phone.', 'Envía un valor a la computadora o al teléfono.'],
   read: ['Takes a reading, which counts from now on.', 'Toma una medida, que vale desde ahora.'],
   set: ['Sets what the robot has: a gripper, a lamp.', 'Mueve o enciende lo que tiene el robot: una pinza, una lámpara.'],
   call: ['Does what the word of your own says.', 'Hace lo que dice tu palabra.'],

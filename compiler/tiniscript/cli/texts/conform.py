@@ -33,6 +33,6 @@ CONFORM_TEXTS: dict[str, tuple[str, str]] = {
     "conform_machine_end": ("{good} of {all} cases agree. Kit {version}, bytecode {isa}.",
                             "{good} de {all} casos coinciden. Kit {version}, bytecode {isa}."),
     "conform_port_end": ("{good} of {all} checks agree. Kit {version}, link {link}, bytecode {isa}.",
-                         "{good} de {all} pruebas coinciden. Kit {version}, enlace {link}, bytecode {isa}."),
+                         "{good} de {all} pruebas coinciden. Kit {version}, conexión {link}, bytecode {isa}."),
 }
 # fmt: on

@@ -185,7 +185,7 @@ DOCTOR_TEXTS: dict[str, tuple[str, str]] = {
     "next_not_saved_yet": ("It does so as soon as its motors have stopped; do not switch it off before.", "Lo hace en cuanto sus motores estén quietos; no lo apagues antes."),
     "doctor_other_program": ("The robot holds a program of another version, and runs none", "El robot tiene un programa de otra versión, y no ejecuta ninguno"),
     "seen_other_program": ("it says so", "lo dice él"),
-    "next_other_program": ("Upload the program again:  tsc upload prog.ts", "Sube el programa otra vez:  tsc upload prog.ts"),
+    "next_other_program": ("Send the program again:  tsc upload prog.ts", "Envía el programa otra vez:  tsc upload prog.ts"),
     "doctor_fine": ("{name} is fine", "{name} está bien"),
     "seen_fine": ("kit {kit}, id {id}; it answered {n} questions, and was not restarted", "kit {kit}, id {id}; respondió {n} preguntas, y no se reinició"),
     "next_fine": ("Nothing to do. If it restarts when it drives:  tsc doctor --watch 20", "No hay nada que hacer. Si se reinicia al moverse:  tsc doctor --watch 20"),

@@ -77,8 +77,8 @@ SELFTEST_TEXTS: dict[str, tuple[str, str]] = {
     "selftest_silent": ("it shows nothing", "no muestra nada"),
     # questions
     "ask_lift": ("Lift the robot so that its wheels turn in the air, and press Enter. ", "Levanta el robot, con las ruedas en el aire, y pulsa Enter. "),
-    "ask_free": ("{name} reads {values}. Nothing near it? Press Enter. ", "{name} lee {values}. ¿No hay nada cerca? Pulsa Enter. "),
-    "ask_hand": ("Now a hand on {name}, or close in front of it; keep it there and press Enter. ", "Ahora una mano sobre {name}, o muy cerca; déjala ahí y pulsa Enter. "),
+    "ask_free": ("{name} reads {values}. Keep everything away from it, and press Enter. ", "{name} mide {values}. Que no haya nada cerca de él; pulsa Enter. "),
+    "ask_hand": ("Now put a hand on {name}, or close in front of it; keep it there and press Enter. ", "Ahora pon una mano sobre {name}, o muy cerca por delante; déjala ahí y pulsa Enter. "),
     "ask_left": ("The LEFT wheel: 1 it turned forward, 2 backward or another wheel, 3 nothing turned, 4 once more: ", "La rueda IZQUIERDA: 1 giró hacia adelante, 2 hacia atrás u otra rueda, 3 nada giró, 4 otra vez: "),
     "ask_right": ("The RIGHT wheel: 1 it turned forward, 2 backward or another wheel, 3 nothing turned, 4 once more: ", "La rueda DERECHA: 1 giró hacia adelante, 2 hacia atrás u otra rueda, 3 nada giró, 4 otra vez: "),
     "ask_buzzer": ("The buzzer: 1 you heard it, 3 nothing, 4 once more: ", "El zumbador: 1 lo oíste, 3 nada, 4 otra vez: "),

@@ -180,9 +180,9 @@ VERBS: dict[str, Verb] = {
         ("NEW [options]", "NUEVO [opciones]"),
     ),
     "trim": Verb(
-        ROBOTS, ("trim", "trim"), ("make the robot drive straight", "hace que el robot vaya derecho"),
+        ROBOTS, ("trim", "trim"), ("make the robot drive straight", "hace que el robot vaya en línea recta"),
         ("Makes a robot drive straight: turns its motors, asks what you see, and the robot keeps what follows from it in its own memory, whatever program it runs. No wire is changed and nothing flashed.",
-         "Hace que un robot vaya derecho: hace girar sus motores, pregunta qué ves, y el robot guarda lo que resulta en su propia memoria, con cualquier programa. No se cambia ningún cable ni se escribe otro firmware."),
+         "Hace que un robot vaya en línea recta: hace girar sus motores, pregunta qué ves, y el robot guarda lo que resulta en su propia memoria, con cualquier programa. No se cambia ningún cable ni se escribe otro firmware."),
     ),
     "identify": Verb(
         ROBOTS, ("identify", "identify"), ("which robot is it? it blinks and plays", "¿qué robot es? parpadea y toca"),
@@ -208,15 +208,15 @@ VERBS: dict[str, Verb] = {
         ("on|off [options]", "on|off [opciones]"),
     ),
     "wifi": Verb(
-        ROBOTS, ("wifi NETWORK", "wifi RED"), ("bring your robot into a WiFi network", "lleva tu robot a una red WiFi"),
+        ROBOTS, ("wifi NETWORK", "wifi RED"), ("connect your robot to a WiFi network", "conecta tu robot a una red WiFi"),
         ("Has a robot with an ESP32 join a network, now and whenever it is switched on; with `--access-point` it opens one itself. tsc asks for the password, without showing it; where nobody types, it is the first line of standard input. It is in no argument and in no file of this computer, goes to the robot so that nobody who listens can read it, and no robot shows it. Only a robot with an owner takes a network, from a computer with its key. Without a network, tsc says which one the robot has. With `--broker` the robot also connects to an MQTT broker in that network, for `tsc class`: by its name, or, where the network does not know that, at the address that it has now.",
          "Une un robot con ESP32 a una red, ahora y cada vez que se enciende; con `--access-point` la abre él mismo. tsc pide la contraseña sin mostrarla; si nadie escribe, es la primera línea de la entrada estándar. No está en ningún argumento ni en ningún archivo de esta computadora, va al robot sin que quien escuche pueda leerla, y ningún robot la muestra. Solo un robot con dueño acepta una red, desde una computadora con su llave. Sin una red, tsc dice cuál tiene el robot. Con `--broker` el robot se conecta además a un broker MQTT de esa red, para `tsc class`: por su nombre o, si la red no lo conoce, en la dirección que tiene ahora."),
         ("[NETWORK] [options]", "[RED] [opciones]"),
     ),
     "class": Verb(
         ROBOTS, ("class --broker HOST", "class --broker HOST"), ("a class of robots at an MQTT broker", "una clase de robots en un broker MQTT"),
-        ("Reaches robots with an ESP32 that `tsc wifi --broker` has brought to the MQTT broker of a school: it lists them, uploads a program to all of them, stops all of them, or prints what they show. Each of them has an owner, and this computer its key (`tsc keys --import`): what it says is sealed, so a broker, and whoever else is at it, can keep it from arriving, and do nothing else. A stop reaches every robot of the class, whoever drives it.",
-         "Llega a robots con ESP32 que `tsc wifi --broker` llevó al broker MQTT de una escuela: los lista, lleva un programa a todos, los detiene a todos, o imprime lo que muestran. Cada uno tiene dueño, y esta computadora su llave (`tsc keys --import`): lo que dice va sellado, así que un broker, y cualquiera que esté en él, puede impedir que llegue y nada más. Una parada llega a todos los robots de la clase, sin importar quién los conduce."),
+        ("Reaches robots with an ESP32 that `tsc wifi --broker` has connected to the MQTT broker of a school: it lists them, sends a program to all of them, stops all of them, or prints what they show. Each of them has an owner, and this computer its key (`tsc keys --import`): what it says is sealed, so a broker, and whoever else is at it, can keep it from arriving, and do nothing else. A stop reaches every robot of the class, whoever drives it.",
+         "Llega a robots con ESP32 que `tsc wifi --broker` conectó al broker MQTT de una escuela: los lista, envía un programa a todos, los detiene a todos, o imprime lo que muestran. Cada uno tiene dueño, y esta computadora su llave (`tsc keys --import`): lo que dice va sellado, así que un broker, y cualquiera que esté en él, puede impedir que llegue y nada más. Una parada llega a todos los robots de la clase, sin importar quién los conduce."),
         ("[ACTION] [PROGRAM] --broker HOST [options]",
          "[ACCIÓN] [PROGRAMA] --broker HOST [opciones]"),
         ends=("It needs `pip install \".[broker]\"`. Only one tsc at a time has a robot; a second one says so.\nWith `--tls` this computer speaks TLS with the broker; a robot does where `tsc wifi --tls` has said so. Without it, passwords for the broker go through the school's network as they are.",
