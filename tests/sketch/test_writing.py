@@ -14,7 +14,7 @@ from tiniscript import compile_text, robots
 from tiniscript.cli.made import is_foreign
 from tiniscript.sketch.names import Names
 from tiniscript.sketch.reserved import RESERVED
-from tiniscript.sketch.texts import IDENTIFIERS, TEXTS
+from tiniscript.sketch.texts import IDENTIFIERS, LOCALS, TEXTS
 from tiniscript.sketch.writing import sketch_of
 
 AVR = pytest.mark.skipif(bool(boards.missing()), reason=boards.missing() or "there is one")
@@ -146,7 +146,7 @@ def test_names_are_like_those_of_cpp() -> None:
 
 def test_no_helper_has_a_reserved_name() -> None:
     for both in IDENTIFIERS.values():
-        assert not RESERVED & set(both) - {"read", "leer", "time"}
+        assert not RESERVED & set(both) - {"read", "leer", "time", "value"}
 
 
 @AVR
@@ -160,6 +160,23 @@ def test_names_of_cpp_and_of_the_core_can_be_variables(first: int) -> None:
     for start in range(0, len(usable), 30):
         program = ";".join(f"{each} = 1" for each in usable[start : start + 30])
         built(sketch(f"{program};W({usable[start]})"), "uno")
+
+
+def test_no_name_of_a_helper_is_in_the_other_language() -> None:
+    """In Spanish no parameter is English, and where helpers meet, both sides say the same."""
+    program = (
+        "SI|X = RANDOM(1, 6) / 2 % 3;SHOW(ROUND(ABS(MIN(X, -X)), 1));SHOW(MAX(X, 1) > 2);M(X, X);"
+        "BEEP(X, 440);GRIPPER(X);W(TIME) UNTIL(X > 3);F(FOREVER, 50) UNTIL(DISTANCE < 9)"
+    )
+    said = sketch(program, "es", "grabber")
+    code = re.sub(r"//.*|\"[^\"]*\"", "", said)
+    assert not set(re.findall(r"\w+", code)) & set(LOCALS)
+    assert "segundos.milesimas == PARA_SIEMPRE.milesimas" in code
+    notes = " ".join(re.findall(r"// (.*)", said))
+    assert not set(re.findall(r"\w+", notes)) & {"low", "high", "first", "last"}
+    names = [*LOCALS.values(), *(both[1] for both in IDENTIFIERS.values())]
+    assert len(set(LOCALS.values())) == len(LOCALS) and not set(names) & RESERVED - {"leer"}
+    assert set(LOCALS.values()) & {both[1] for both in IDENTIFIERS.values()} == {"valor"}
 
 
 # -- what it says of itself

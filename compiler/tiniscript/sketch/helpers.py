@@ -1,7 +1,8 @@
 """The functions of a sketch that move, wait and sound, for every kit.
 
 Each is text whose `$words` are names that `texts` has: a function that stands in another's text
-is written, too. `$N` is the type of numbers.
+is written, too. `$N` is the type of numbers. Parameters and own variables are English here;
+`texts.LOCALS` has them in Spanish.
 """
 
 from __future__ import annotations

@@ -117,13 +117,13 @@ class Plan:
         zero, full = wiring.settings["zero"], wiring.settings["full"]
         step, rest = divmod(full - zero, FULL_COUNT)
         lowest, highest = sorted((zero, full))
-        value = f"{zero} + count * {step} + (count * {rest} + 511) / {FULL_COUNT}"
+        value = f"{zero} + $counted * {step} + ($counted * {rest} + 511) / {FULL_COUNT}"
         if device.low <= lowest and highest <= device.high:
-            return [f"long count = analogRead({pin});", f"{name} = {self.value(value)};"]
-        limits = f"constrain(value, {device.low}, {device.high})"
+            return [f"long $counted = analogRead({pin});", f"{name} = {self.value(value)};"]
+        limits = f"constrain($value, {device.low}, {device.high})"
         return [
-            f"long count = analogRead({pin});",
-            f"long value = {value};",
+            f"long $counted = analogRead({pin});",
+            f"long $value = {value};",
             f"{name} = {self.value(limits)};",
         ]
 
@@ -134,16 +134,16 @@ class Plan:
         drivers = [each.driver for each in self.robot.board.sensors]
         first, again, last = [], "", []
         if drivers.count("hc_sr04") > 1:
-            first = ["static unsigned long pinged = -60;"]
-            again = " && millis() - pinged < 58"
-            last = ["pinged = $last_ping;"]
+            first = ["static unsigned long $own_ping = -60;"]
+            again = " && millis() - $own_ping < 58"
+            last = ["$own_ping = $last_ping;"]
         farthest = min(FARTHEST, device.high)
         return [
             *first,
             f"if (millis() - $last_ping < 30{again}) return {name};",
-            f"long value = $ping_ms({trigger}, {echo}) * 4390UL >> 8;",
+            f"long $value = $ping_ms({trigger}, {echo}) * 4390UL >> 8;",
             *last,
-            f"{name} = {self.value(f'constrain(value, {max(0, device.low)}, {farthest})')};",
+            f"{name} = {self.value(f'constrain($value, {max(0, device.low)}, {farthest})')};",
         ]
 
     # -- actuators

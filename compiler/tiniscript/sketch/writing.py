@@ -12,7 +12,7 @@ from tiniscript.sketch.expressions import Expressions
 from tiniscript.sketch.kinds import needs_numbers
 from tiniscript.sketch.names import Names
 from tiniscript.sketch.statements import Comment, Named, Statements, harmless
-from tiniscript.sketch.texts import IDENTIFIERS, TEXTS, called, said
+from tiniscript.sketch.texts import IDENTIFIERS, TEXTS, called, said, with_locals
 from tiniscript.sketch.wiring import Plan
 from tiniscript.source import Source
 from tiniscript.syntax.lexer import scan
@@ -54,6 +54,9 @@ class _Sketch:
 
     def label(self, name: str) -> str:
         return harmless(self.robot.labels[self.language][name])
+
+    def in_language(self, code: str) -> str:
+        return with_locals(code, self.language)
 
     def says(self, key: str, **values: str) -> str:
         return said(key, self.language).format(**values)
@@ -120,7 +123,7 @@ class _Sketch:
                 for k in sorted(rows.read_sensors)
             },
             **{
-                self.named.sets[k]: self.plan.setter(k, self.named.sets[k])
+                self.named.sets[k]: self.in_language(self.plan.setter(k, self.named.sets[k]))
                 for k in sorted(rows.set_actuators)
             },
         }
@@ -134,7 +137,11 @@ class _Sketch:
             *(self.says("read", name=kit.sensors[k].name) for k in sorted(rows.read_sensors)),
             *(self.says("set", name=kit.actuators[k].name) for k in sorted(rows.set_actuators)),
         ]
-        functions = {key: self.functions[key] for key in self.needed if key in self.functions}
+        functions = {
+            key: self.in_language(self.functions[key])
+            for key in self.needed
+            if key in self.functions
+        }
         written = [
             *(self.commented(note, code) for note, code in zip(about, wired, strict=True)),
             *(self.commented(self.note(key), code) for key, code in functions.items()),
@@ -238,7 +245,7 @@ class _Sketch:
         return "\n".join([head, *self.plan.parts.constants]) + "\n"
 
     def number(self) -> str:
-        return self.commented(self.says("Number"), numbers.STRUCT.rstrip())
+        return self.commented(self.says("Number"), self.in_language(numbers.STRUCT.rstrip()))
 
     def kept(self, rows: Statements) -> str:
         """Return the variables of the program, of the readings, and those that functions share."""
@@ -290,7 +297,8 @@ class _Sketch:
 
     def filled(self, text: str) -> str:
         """Return a text with names in the place of its `$words`."""
-        text = text.replace("$is_forever", helpers.IS_FOREVER[self.is_exact])
+        is_forever = self.in_language(helpers.IS_FOREVER[self.is_exact])
+        text = text.replace("$is_forever", is_forever)
         text = re.sub(r"\$N\b", called("Number", self.language) if self.is_exact else "float", text)
 
         def name(match: re.Match[str]) -> str:
