@@ -121,6 +121,7 @@ def check_text(text: str, kit: Kit, name: str = "") -> Compiled:
     found = _checked(text, kit, name)
     if found.is_right:
         return found
+    from tiniscript.repairs.def_order import with_moved_defs
     from tiniscript.repairs.everywhere import said_once
     from tiniscript.repairs.vouching import vouched
     from tiniscript.repairs.whole_blocks import with_whole_blocks
@@ -129,8 +130,12 @@ def check_text(text: str, kit: Kit, name: str = "") -> Compiled:
         kept = vouched(result.diagnostics, result.source, lambda it: _checked(it, kit).diagnostics)
         return said_once(kept, result.source)
 
-    whole = with_whole_blocks(offered(found), found.source, lambda it: offered(_checked(it, kit)))
-    return found._replace(diagnostics=whole)
+    def offered_in(text: str) -> list[Diagnostic]:
+        return offered(_checked(text, kit))
+
+    kept = with_moved_defs(offered(found), found.source, offered_in)
+    kept = with_whole_blocks(kept, found.source, offered_in)
+    return found._replace(diagnostics=kept)
 
 
 def _checked(text: str, kit: Kit, name: str = "") -> Compiled:

@@ -26,6 +26,7 @@ _GUESSED = frozenset((
     codes.WRONG_END, codes.NOT_AN_INSTRUCTION, codes.MISSING_VALUE, codes.ARGUMENT_COUNT,
     codes.PROSE, codes.LISTS, codes.WORDS_SHOWN, codes.QUESTION_BEHIND,
     codes.WORDS_BEHIND,
+    codes.NOT_CALLABLE, codes.CALLS_ITSELF, codes.DEF_NOT_TOP,
 ))  # fmt: skip
 # Codes of headers: how a block ends is not looked at before its header is right.
 _HEADERS = frozenset((

@@ -287,6 +287,9 @@ _PLACES: dict[Code, Callable[[Diagnostic, Source], Edits]] = {
     codes.GROUPED: _span,
     codes.WORDS_BEHIND: _span,
     codes.NAME_WITH_SPACE: _span,
+    codes.NOT_CALLABLE: lambda found, source: (
+        _span(found, source) if "times" in found.values else None
+    ),
     codes.MISSING_EQUALS: _span,
     codes.UNKNOWN_WORD: _span,
     codes.OTHER_LANGUAGE: _other_word,

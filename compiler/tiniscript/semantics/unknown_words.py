@@ -17,6 +17,7 @@ from tiniscript.syntax import ast
 from tiniscript.syntax.call_suggestions import LOWEST_HERTZ, call_of, glued_call
 from tiniscript.syntax.units import converted
 from tiniscript.words import (
+    BLOCK_ENDS,
     IN_MILLISECONDS,
     NEAR_WORDS,
     NOTE_WORDS,
@@ -33,6 +34,7 @@ from tiniscript.words import (
     usage_of,
 )
 
+MANY_TIMES = 20  # that a DEF is done by hand in a class
 _LETTERS = {"D": "R", "I": "L", "P": "S", "E": "W"}  # derecha, izquierda, parar, esperar
 # What phones make of a word of the language.
 _MENDED = {
@@ -242,7 +244,11 @@ def report_not_callable(scope: Scope, node: ast.Command) -> None:
     if texts and len(names) == len(texts):
         pairs = zip(names, texts, strict=True)
         fix = ";".join((*(f"{name} = {text}" for name, text in pairs), node.word))
-    scope.report(codes.NOT_CALLABLE, node.span, name=node.word, fix=fix)
+    said = {"named": node.word} if node.word in scope.def_names and not fix else {}
+    if said and len(texts) == 1 and texts[0].isdecimal() and 1 < int(texts[0][:9]) <= MANY_TIMES:
+        said["times"] = texts[0]
+        fix = f"LOOP({texts[0]});{node.word};{BLOCK_ENDS['LOOP']}"
+    scope.report(codes.NOT_CALLABLE, node.span, None, name=node.word, fix=fix, **said)
 
 
 def _is_pitch(text: str) -> bool:

@@ -99,6 +99,12 @@ class DefRecovery:
         if names:
             span = Span(name.end, place.end)
             self.reporter.report(codes.NO_BRACKETS_HERE, span, place, word=name.text, fix=fix)
+        elif arguments:  # `DEF JUMP(3)`
+            span = Span(name.end, place.end)
+            text = self.cursor.source[arguments[0].span]
+            times = text if len(arguments) == 1 and text.isdecimal() else ""
+            values = {"word": name.text, "name": name.text, "times": times, "fix": ""}
+            self.reporter.report(codes.NO_BRACKETS_HERE, span, place, **values)
         else:
             span = self.cursor.span_from(name)
             self.reporter.report(codes.EMPTY_BRACKETS, span, word=name.text)

@@ -31,6 +31,7 @@ from tiniscript.syntax.operators import COMPARISONS, SIGNS
 from tiniscript.syntax.phrases import (
     AFTER_HEADER,
     BEFORE_CALL,
+    BEFORE_DEF,
     BEFORE_NAME,
     BEFORE_NOTE,
     BEFORE_SENTENCE,
@@ -135,7 +136,8 @@ class NameRecovery:
             self.clauses.several(self.cursor.i)
         if word.text in AFTER_HEADER:
             self.in_block.other.around(word)  # `hacer F(1, 50) 3 veces`
-        if kind is NUMBER and after.text in TIMES and meant_by(word.text) is None:
+        is_own = self.in_block.is_name(word.text)
+        if kind is NUMBER and after.text in TIMES and meant_by(word.text) is None and not is_own:
             foreign_word(parser, word, "LOOP")  # `hacer 4 veces`
         if word.text == "SIEMPRE" and following.text == "QUE":  # no loop without end
             whenever = Token(WORD, "SIEMPRE QUE", word.start, following.end)
@@ -229,7 +231,7 @@ class NameRecovery:
             self._arrow(word)
             self._call_with_hyphen(word)
             self.of_value.hyphened(word)
-        if kind in SIGNS:
+        if kind in SIGNS and not (kind == "*" and self.in_block.known.is_def(word.text)):
             self.not_an_instruction(word)
         if kind == ",":
             self.of_value.several_at_once(word)
@@ -260,7 +262,9 @@ class NameRecovery:
             place = cursor.span_from(word)
             self.unread_assignment(following)
             self.reporter.fail(codes.EXTRA_WORD, word.span, place, found=word.text, fix=fix)
-        elif word.text in BEFORE_CALL:
+        elif word.text in BEFORE_CALL or (
+            word.text in BEFORE_DEF and self.in_block.known.is_def(following.text)
+        ):
             fix = following.text
         if fix:
             self.reporter.report(codes.EXTRA_WORD, word.span, found=word.text, fix=fix)

@@ -28,6 +28,11 @@ class TimesRecovery:
             return
         first = self.cursor.token
         is_call = _is_command(first) and self.cursor.following.kind == "("
+        if self.in_block.known.is_def(first.text) and self.cursor.following.kind in AT_END:
+            self.reporter.answer(number)  # `3x DANCE`
+            self.cursor.i += 1
+            times = number._replace(text=written[:-1])
+            self._loop_of(times, first.span, self.cursor.span_from(number))
         end = after_bracket(self.cursor.tokens, self.cursor.i + 1) if is_call else None
         if end is not None and self.cursor.tokens[end].kind in AT_END:
             self.reporter.answer(number)
@@ -47,7 +52,14 @@ class TimesRecovery:
             self.reporter.report(codes.REPEATED, span, span, found=cursor.source[span], fix=fix)
             self.in_block.begin_reported("LOOP", span)
             self.in_block.go_on()
-        if cursor.token.kind != "*" and cursor.token.text not in TIMES and cursor.token.text != "X":
+        is_said = cursor.token.kind == "*" or cursor.token.text in (*TIMES, "X")
+        name = cursor.following if is_said else cursor.token
+        after = cursor.i + is_said + 1
+        is_called = self.in_block.known.is_def(name.text) and cursor.tokens[after].kind in AT_END
+        if is_called and (is_said or not self._counts_lines(number)):
+            cursor.i = after  # `3 DANCE`, `3 veces DANCE`
+            self._loop_of(number, name.span, cursor.span_from(number))
+        if not is_said:
             return
         first = cursor.following
         is_call = _is_command(first) and cursor.tokens[cursor.i + 2].kind == "("
@@ -57,6 +69,13 @@ class TimesRecovery:
         cursor.i = end
         body = Span(first.start, cursor.tokens[end - 1].end)
         self._loop_of(number, body, cursor.span_from(number))
+
+    def _counts_lines(self, number: Token) -> bool:
+        """Whether the line above begins with a number, too."""
+        source = self.cursor.source
+        line = source.position(number.start)[0]
+        above = source.line_text(line - 1) if line > 1 else ""
+        return number.text == "1" or above.lstrip()[:1].isdecimal()
 
     def times_behind(self, first: Token, token: Token, before: Token) -> None:
         """`F(1, 50) * 3`, `F(1, 50) x 3`, `F(1, 50) 3 veces`."""
