@@ -134,8 +134,8 @@ def _written(new: str) -> Callable[[Diagnostic, Source], Edits]:
 
 
 def _bar(diagnostic: Diagnostic, source: Source) -> Edits:
-    word = diagnostic.values["found"].upper()
-    return None if word == "PING" else [Edit(diagnostic.span, word + "|")]
+    fix = diagnostic.values.get("fix", "")
+    return [Edit(diagnostic.place or diagnostic.span, fix)] if fix else None
 
 
 def _setup(diagnostic: Diagnostic, source: Source) -> Edits:

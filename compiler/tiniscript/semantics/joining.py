@@ -14,6 +14,7 @@ from tiniscript.kit import Kit
 from tiniscript.source import Source
 from tiniscript.syntax.lexer import Token
 from tiniscript.syntax.vocabulary import Vocabulary
+from tiniscript.words import WORDS
 
 # What is mended within a larger repair: a word, a number or a sign.
 _SMALL = (codes.OTHER_LANGUAGE, codes.UNIT, codes.OTHER_SIGN, codes.BAD_NUMBER)
@@ -31,6 +32,9 @@ def joined(
     mended: set[int] = set()
     for diagnostic in found[:ENOUGH]:
         fix = diagnostic.values.get("fix", "")
+        right = diagnostic.values.get("right", "").upper()
+        if diagnostic.code is codes.BAD_NAME and right in WORDS:  # `Sí|`
+            diagnostic = diagnostic._replace(values={**diagnostic.values, "word": right})
         if fix:
             place = diagnostic.place or diagnostic.span
             for k, other in enumerate(found[:ENOUGH]):

@@ -160,6 +160,8 @@ class NoteRecovery:
         is_only = len([token for token in row if token.kind is WORD]) == 1
         own = [word for word in WORDS if len(word) > 2]
         is_word = meant_by(first.text) or first.text in (*_FAST, *_SLOW)
+        if is_only and len(row) == len(first.text) == 1:
+            return True  # `S I`
         if not is_only or is_word:
             return False
         written = self.cursor.source[first.span]

@@ -48,6 +48,7 @@ if TYPE_CHECKING:
 ENOUGH = 100  # diagnostics after which reading on helps nobody
 
 _SETUPS = frozenset(("SI", "SB", "PING"))
+_MISREAD = frozenset(("S1", "SL", "5I"))  # SI, with a letter or a digit for another one
 _AFTER_NAME = frozenset(("(", *AT_END))
 
 
@@ -111,7 +112,7 @@ class Parser:
         if (
             self._kit
             and word.text not in WORDS
-            and (word.kind is not WORD or word.text[:2] in _SETUPS)
+            and (word.kind is not WORD or word.text[:2] in _SETUPS or word.text[:2] == "S1")
             and bar.kind in ("|", "(")
         ):
             misread = self.recovery.setup.misread(word, bar)
@@ -120,8 +121,10 @@ class Parser:
         if word.kind is not WORD:
             return "SI"
         if bar.kind != "|":
-            if word.text not in _SETUPS or not self.recovery.setup.is_taken_for_bar(word, bar):
-                return "SI"
+            is_in_two = word.text == "S" and bar.text == "I"
+            if word.text in _SETUPS or is_in_two or (self._kit and word.text in _MISREAD):
+                return self.recovery.setup.without_bar(word) or "SI"
+            return "SI"
         cursor.i += 2
         if word.text == "PING":
             self.check_connection(word)

@@ -5,16 +5,17 @@ Knows what people write in place of `SI|`, and bars that stand elsewhere.
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING, NoReturn
 
 from tiniscript.diagnostics import codes
 from tiniscript.source import Span
-from tiniscript.syntax.cursor import Cursor
+from tiniscript.syntax.cursor import AT_END, Cursor
 from tiniscript.syntax.foreign import foreign_header
-from tiniscript.syntax.lexer import WORD, Token
+from tiniscript.syntax.lexer import END, NEWLINE, ODD, WORD, Token
 from tiniscript.syntax.near import near_at
 from tiniscript.syntax.reporter import Reporter, Resumed
-from tiniscript.syntax.suggestions import head_in, inside, is_question
+from tiniscript.syntax.suggestions import after_bracket, head_in, inside, is_question
 from tiniscript.words import WORDS, meant_by
 
 if TYPE_CHECKING:
@@ -26,22 +27,112 @@ _SEEING = frozenset(
 )
 
 
+_BARS = (":", "||", "/", "\\", "¦", "!", "¡")  # that stand for the bar whatever follows
+# Signs that mean nothing right behind SI, where an instruction comes after them.
+_FOR_BAR = frozenset((";", ",", "-", "<", ">", "<=", ">=", "=", "+", "*", "/", "%", ")", "{"))
+_SIGNS = 3  # of them in a row
+_NOTE = re.compile(r"[ \t]*(//|#)(?=[ \t]*[A-Za-z]\w*[ \t]*\()")  # `SI//F(2, 80)`
+
+
 class SetupRecovery:
     def __init__(self, cursor: Cursor, reporter: Reporter) -> None:
         self.cursor = cursor
         self.reporter = reporter
 
-    def is_taken_for_bar(self, word: Token, sign: Token) -> bool:
-        """Whether `SI:` or `SI||` begins the program."""
-        found = self.cursor.source[sign.span]
-        is_sign = found in (":", "||", "/", "\\", "¦", "!", "¡")
-        is_letter = found in ("l", "L", "I", "i", "1") and self._is_command(self.cursor.i + 2)
-        if not (is_sign or is_letter):
+    def without_bar(self, word: Token) -> str | None:
+        """`SI:F(2, 80)`, `SI°F(2, 80)`, `SI F(2, 80)`: return how the program begins, and go on.
+
+        None where another thing than a program may begin here, as a question in Spanish.
+        """
+        cursor, tokens = self.cursor, self.cursor.tokens
+        start = k = cursor.i + 1
+        if word.text == "PING" or (word.text == "S" and not self._is_in_two(word)):
+            return None
+        if word.text == "S":
+            cursor.i += 3
+            return "SI"
+        line = cursor.line_of(word)
+        while self._is_sign(k) and k - start < _SIGNS and cursor.line_of(tokens[k]) == line:
+            k += 1
+        if k > start and tokens[k].kind == "|":  # `SI.|F(2, 80)`
+            k += 1
+        if k == start and tokens[k].kind == "(":
+            return self._in_brackets(word, start)
+        is_letter = tokens[k].text in ("L", "I") or cursor.source[tokens[k].span] == "1"
+        if k == start and is_letter and self._begins(k + 1, line):
+            k += 1
+        note = _NOTE.match(cursor.source.text, word.end)
+        if k == start and note is not None:
+            self.reporter.answer(Token(ODD, "", note.start(1), note.end()))
+            self._bar_missing(word, Span(word.start, note.end()))
+            cursor.i = k
+            return "SB" if word.text == "SB" else "SI"
+        is_bar = k == start + 1 and cursor.source[tokens[start].span] in _BARS
+        is_line = k > start and tokens[k].kind in (NEWLINE, END)
+        if not (is_bar or is_line or self._begins(k, line, k > start)):
+            return None
+        for token in tokens[cursor.i : k]:
+            self.reporter.answer(token)
+        span = Span(word.start, tokens[k - 1].end)
+        self._bar_missing(word, span)
+        cursor.i = k
+        return "SB" if word.text == "SB" else "SI"
+
+    def _is_in_two(self, word: Token) -> bool:
+        """`S I|F(2, 80)`."""
+        letter, bar = self.cursor.tokens[self.cursor.i + 1 : self.cursor.i + 3]
+        if letter.text != "I" or bar.kind != "|":
             return False
-        self.reporter.answer(sign)
-        span = Span(word.start, sign.end)
-        self.reporter.report(codes.SETUP_NEEDS_BAR, span, found=word.text)
+        span = Span(word.start, letter.end)
+        found = self.cursor.source[span]
+        self.reporter.report(codes.SETUP_UNKNOWN, span, None, found=found, right="SI|")
         return True
+
+    def _bar_missing(
+        self, word: Token, span: Span, place: Span | None = None, fix: str = ""
+    ) -> None:
+        sign = self.cursor.source[Span(word.end, span.end)].strip()
+        found = "SB" if word.text == "SB" else "SI"
+        self.reporter.report(
+            codes.SETUP_NEEDS_BAR, span, place, found=found, fix=fix or f"{found}|", sign=sign
+        )
+
+    def _in_brackets(self, word: Token, start: int) -> str | None:
+        """`SI(F(2, 80))`: a bracket for the bar, and perhaps its other one."""
+        tokens = self.cursor.tokens
+        if not self._begins(start + 1, self.cursor.line_of(word)):
+            return None
+        end = after_bracket(tokens, start)
+        self.reporter.answer(tokens[start])
+        span = Span(word.start, tokens[start].end)
+        self.cursor.i = start + 1
+        if end is None:
+            self._bar_missing(word, span)
+        else:
+            close = tokens.pop(end - 1)
+            self.reporter.answer(close)
+            inner = self.cursor.source[Span(tokens[start].end, close.start)]
+            self._bar_missing(word, span, Span(word.start, close.end), f"{word.text}|{inner}")
+        return word.text
+
+    def _is_sign(self, k: int) -> bool:
+        """Whether a sign is at `k` that stands for nothing at the beginning of a program."""
+        token = self.cursor.tokens[k]
+        is_bar = self.cursor.source[token.span] in _BARS
+        return is_bar or token.kind is ODD or token.kind in _FOR_BAR
+
+    def _begins(self, k: int, line: int, is_sure: bool = False) -> bool:
+        """Whether an instruction begins at `k`; `is_sure`: it cannot be a question."""
+        tokens = self.cursor.tokens
+        if k >= len(tokens) or self.cursor.line_of(tokens[k]) != line:
+            return False
+        word, after = tokens[k], tokens[min(k + 1, len(tokens) - 1)]
+        known = WORDS.get(word.text) if word.kind is WORD else None
+        if known is not None and known.role not in ("setup", "value", "operator", "function"):
+            return is_sure or after.kind in ("(", *AT_END) or word.text == "DEF" or known.is_call
+        if word.kind is not WORD or not is_sure:
+            return False
+        return after.kind == "=" or (after.kind == "(" and meant_by(word.text) is not None)
 
     def misread(self, first: Token, bar: Token) -> str | None:
         """`5I|F(2, 80)` and `SILF(2, 80)`: return how the program begins, None if not so."""
@@ -54,23 +145,19 @@ class SetupRecovery:
             cursor.i += 2
             return right[:2]
         rest, length = WORDS.get(text[2:]), 2  # `SIF(2, 80)`
-        if rest is None and text[2:3] in ("L", "I", "1"):
+        if rest is None and text[2:3] in ("L", "I", "1", "_"):
             rest, length = WORDS.get(text[3:]), 3
-        is_glued = (
-            text not in WORDS and text[:2] in ("SI", "SB") and rest is not None and rest.is_call
-        )
+        begin = "SI" if text[:2] == "S1" else text[:2]
+        is_glued = text not in WORDS and begin in ("SI", "SB") and rest is not None and rest.is_call
         if not is_glued or bar.kind != "(" or rest is None:
             return None
         span = Span(first.start, first.start + length)
-        self.reporter.report(codes.SETUP_NEEDS_BAR, span, found=text[:2])
+        sign = cursor.source[Span(first.start + 2, first.start + length)]
+        self.reporter.report(
+            codes.SETUP_NEEDS_BAR, span, None, found=begin, fix=f"{begin}|", sign=sign
+        )
         cursor.tokens[cursor.i] = Token(WORD, rest.text, first.start + length, first.end)
-        return text[:2]
-
-    def _is_command(self, k: int) -> bool:
-        """Whether an instruction begins at `k`: `SI l F(2, 80)` has a letter for its bar."""
-        tokens = self.cursor.tokens
-        known = WORDS.get(tokens[k].text) if k < len(tokens) else None
-        return known is not None and known.role not in ("setup", "value", "operator")
+        return begin
 
     def unknown(self, word: Token) -> str:
         """`START|F(2, 80)`, `GO|F(2, 80)`: go on as after `SI|`."""
@@ -79,8 +166,8 @@ class SetupRecovery:
             values = {"word": word.text, "fix": "", "usage": known.usage}
             self.reporter.report(codes.MISSING_OPEN, word.span, None, **values)
             return "SI"
-        right = "SI|START;" if word.text == "START" else "SI|"
-        if word.text.startswith(("SB", "BOT", "BUT")) or meant_by(word.text) == "BUTTON":
+        right = "SI|"
+        if word.text.startswith(("SB", "S8", "BOT", "BUT")) or meant_by(word.text) == "BUTTON":
             right = "SB|"
         self.reporter.report(codes.SETUP_UNKNOWN, word.span, found=word.text, right=right)
         return "SI"
@@ -127,8 +214,10 @@ class SetupRecovery:
         if word.text == "SI" and following.text in _SEEING:
             self.reporter.report(codes.SPANISH_IF, word.span, fix=WORDS["IF"].example)
             foreign_header(parser, word, "IF")
-        code = codes.SETUP_TWICE if following.kind == "|" else codes.SETUP_NEEDS_BAR
-        self.reporter.fail(code, word.span, found=word.text)
+        if following.kind == "|":
+            self.reporter.fail(codes.SETUP_TWICE, word.span, found=word.text)
+        fix = f"{word.text}|" if word.text != "PING" else ""
+        self.reporter.fail(codes.SETUP_NEEDS_BAR, word.span, None, found=word.text, fix=fix)
 
     def _near(self, parser: Parser, word: Token) -> None:
         """`si hay una pared para`, `si no hay pared`."""
