@@ -6,7 +6,7 @@ ranges, kinds, limits; and the rule which reading a sensor's name means. Does no
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import NamedTuple
 
 from tiniscript.bytecode.opcodes import BLOCKS, CALLS, DEFS, STACK_VALUES, VARIABLES
@@ -16,6 +16,7 @@ from tiniscript.fixed_point import HIGHEST, as_text
 from tiniscript.kit import Kit
 from tiniscript.semantics import ir
 from tiniscript.semantics.ir import Statement
+from tiniscript.semantics.out_of_range import meant
 from tiniscript.semantics.symbols import Name, Scope
 from tiniscript.semantics.types import ANY, Kinds, Value
 from tiniscript.semantics.unknown_words import (
@@ -24,7 +25,6 @@ from tiniscript.semantics.unknown_words import (
     report_placeholders,
     report_unknown,
     report_words_for_numbers,
-    the_other_way,
 )
 from tiniscript.source import Source, Span
 from tiniscript.syntax import ast
@@ -160,7 +160,7 @@ class _Checker(Scope):
         values = [
             self.kinds.value(each)
             if word.role == "show"
-            else self.number(each, its, word.text, the_other_way(self.source, node, word))
+            else self.number(each, its, word.text, meant(self.source, node, word))
             for each, its in zip(arguments[forever:], word.arguments[forever:], strict=True)
         ]
         if len(self.diagnostics) > said:
@@ -189,16 +189,22 @@ class _Checker(Scope):
         spans = [argument.span for argument in arguments]
         self.diagnostics.append(count_diagnostic(self.source, word, spans, span))
 
-    def number(self, argument: ast.Argument, its: Argument, word: str, fix: str = "") -> Value:
-        """Check a number argument; a plain one must be in range, otherwise suggest `fix`."""
+    def number(
+        self,
+        argument: ast.Argument,
+        its: Argument,
+        word: str,
+        said: Mapping[str, str] | None = None,
+    ) -> Value:
+        """Check a number argument; a plain one must be in range, `said` tells what is meant."""
         if argument.is_plain:
             part = argument.expression[0]
             assert isinstance(part.value, int)
             if not its.low <= part.value <= its.high:
                 low, high = as_text(its.low), "" if its.high == HIGHEST else as_text(its.high)
-                self.report(codes.OUT_OF_RANGE, argument.span, word=word, name=its.name,
+                self.report(codes.OUT_OF_RANGE, argument.span, None, word=word, name=its.name,
                             unit=its.unit, low=low, high=high,
-                            found=as_text(part.value), fix=fix)  # fmt: skip
+                            found=as_text(part.value), **(said or {}))  # fmt: skip
         value = self.kinds.value(argument)
         if value.kind == "yes_no":
             text = self.source[argument.span]

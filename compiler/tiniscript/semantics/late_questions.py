@@ -112,8 +112,8 @@ class LateQuestions:
         condition = question.arms[0].condition
         if stop is None or not self._stands or not _can_change(condition):
             return
-        before = next((each for each in body[:k][::-1] if not isinstance(each, _PASSED_OVER)), None)
-        after = next((each for each in body[k + 1 :] if not isinstance(each, _PASSED_OVER)), None)
+        before = _nearest(body, range(k - 1, -1, -1))
+        after = _nearest(body, range(k + 1, len(body)))
         for move, place in ((before, "move"), (after, "next")):
             if (
                 isinstance(move, Move)
@@ -140,6 +140,11 @@ class LateQuestions:
             if op == "SENSOR" and self._kit.sensors[value].unit in ("cm", "mm", "m"):
                 return value
         return None
+
+
+def _nearest(body: Body, places: range) -> Statement | None:
+    """Return the first statement there that may move the robot."""
+    return next((body[at] for at in places if not isinstance(body[at], _PASSED_OVER)), None)
 
 
 def _time(move: Move) -> int | None:

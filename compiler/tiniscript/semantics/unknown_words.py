@@ -12,9 +12,9 @@ from itertools import chain
 
 from tiniscript.diagnostics import codes
 from tiniscript.semantics.symbols import Scope
-from tiniscript.source import Source, Span
+from tiniscript.source import Span
 from tiniscript.syntax import ast
-from tiniscript.syntax.call_suggestions import LOWEST_HERTZ, call_of, glued_call
+from tiniscript.syntax.call_suggestions import call_of, glued_call
 from tiniscript.syntax.units import converted
 from tiniscript.words import (
     BLOCK_ENDS,
@@ -45,7 +45,6 @@ _MENDED = {
     "VIP": "BEEP",
     "UTIL": "UNTIL",
 }
-_OPPOSITE = {"F": "B", "B": "F", "L": "R", "R": "L"}
 
 
 def report_unknown(scope: Scope, node: ast.Command, inside: str | None) -> None:
@@ -249,21 +248,3 @@ def report_not_callable(scope: Scope, node: ast.Command) -> None:
         said["times"] = texts[0]
         fix = f"LOOP({texts[0]});{node.word};{BLOCK_ENDS['LOOP']}"
     scope.report(codes.NOT_CALLABLE, node.span, None, name=node.word, fix=fix, **said)
-
-
-def _is_pitch(text: str) -> bool:
-    """Whether a number is rather hertz than seconds."""
-    return text.isdecimal() and int(text[:9]) > LOWEST_HERTZ
-
-
-def the_other_way(source: Source, node: ast.Command, word: Word) -> str:
-    """Return `B(2, 80)` for `F(-2, 80)`, `BEEP(1, 440)` for `BEEP(440, 1)`, else nothing."""
-    arguments = node.arguments or ()
-    texts = [source[each.span] for each in arguments]
-    signs = sum(text.startswith("-") for text in texts)
-    if word.role == "beep" and len(texts) == 2 and all(each.is_plain for each in arguments):
-        return f"{word.text}({texts[1]}, {texts[0]})" if _is_pitch(texts[0]) else ""
-    if word.role != "move" or signs != 1 or not all(each.is_plain for each in arguments):
-        return ""
-    values = ", ".join(text.lstrip("- ") for text in texts)
-    return f"{_OPPOSITE[word.text]}({values})"

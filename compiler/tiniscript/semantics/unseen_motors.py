@@ -23,7 +23,8 @@ def unseen(body: Body, ends: bool, source: Source) -> list[Diagnostic]:
     for k, motors in enumerate(body):
         if not isinstance(motors, Motors) or _is_still(motors):
             continue
-        after = next((each for each in body[k + 1 :] if not isinstance(each, _TAKE_NO_TIME)), None)
+        rest = (body[at] for at in range(k + 1, len(body)))
+        after = next((each for each in rest if not isinstance(each, _TAKE_NO_TIME)), None)
         if isinstance(after, Motors) and after[:2] == motors[:2]:
             continue  # they are set again to the same
         values = {"found": source[motors.span]}

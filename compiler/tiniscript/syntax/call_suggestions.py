@@ -23,6 +23,8 @@ from tiniscript.words import NOTE_WORDS, UNITS, WORDS, Argument, Word, meant_by
 LONGEST = 60  # tokens of which a suggestion is made
 LONG_TIME_S = 20  # a longer move is rarely meant: so much is a power, degrees or steps
 LOWEST_HERTZ = 30
+_MOST_POWER = 100
+_TIME_AND_POWER = (0, 1)  # their places
 _HAS_DECIMALS = ("s",)  # units whose values are often no whole numbers
 _NUMBER = re.compile(r"[0-9]+(\.[0-9]+)?|\.[0-9]+")
 _DIVIDED = re.compile(r"([0-9]+)(?:\s*[-/]\s*|\.(?=[6-9]0|100))([0-9]{2}|100)(?<=0)")  # `2.80`
@@ -57,6 +59,8 @@ def count_diagnostic(
     fix = "" if goes_on else _filled(texts, word)
     if len(texts) > wanted == 1 and word.arguments[0].name == "c":
         fix = _call(word, [" AND ".join(texts)])
+    if word.role == "motors" and len(texts) == wanted + 1:
+        fix = _timed_motors(texts, word)
     shown = [text for text in texts if text[:1] not in QUOTES]
     if word.role == "show" and len(shown) == 1 < len(texts):  # `SHOW("far", DISTANCE)`
         fix = _call(word, shown)
@@ -71,10 +75,41 @@ def count_diagnostic(
         "usage": word.usage,
         "fix": fix,
         "example": "" if texts else word.example,
+        **_said_of_count(texts, word),
         "wanted": str(wanted),
         "found": str(len(arguments)),
     }
     return Diagnostic(codes.ARGUMENT_COUNT, span, values)
+
+
+def _timed_motors(texts: Sequence[str], word: Word) -> str:
+    """`M(2, 80, 80)`, `M(80, 80, 2)`: return M with the powers, and a wait of that time."""
+    if not all(_NUMBER.fullmatch(text) for text in texts):
+        return ""
+    for time, powers in ((texts[0], texts[1:]), (texts[-1], texts[:-1])):
+        are_powers = all(LONG_TIME_S <= float(each) <= _MOST_POWER for each in powers)
+        if are_powers and 0 < float(time) < LONG_TIME_S:
+            return f"{_call(word, powers)};W({time})"
+    return ""
+
+
+def _said_of_count(texts: Sequence[str], word: Word) -> dict[str, str]:
+    """Return what is said of a wrong number of values: `power` of F(80), `spare` of F(2, 80, 5).
+
+    `kept` is W(2) for W(2, 80): a wait has no power.
+    """
+    numbers = [float(text) if _NUMBER.fullmatch(text) else -1 for text in texts]
+    said = {"power": "", "spare": "", "kept": ""}
+    if word.role == "move" and len(texts) == 1 and LONG_TIME_S <= numbers[0] <= _MOST_POWER:
+        said["power"] = f"{word.text}(time, {texts[0]})"
+        said["number"] = texts[0]
+    elif len(texts) > len(word.arguments) and min(numbers) >= 0:
+        said["spare"] = word.usage
+        is_timed = word.role == "wait" and len(texts) == len(_TIME_AND_POWER)
+        for time, power in (_TIME_AND_POWER, _TIME_AND_POWER[::-1]):
+            if is_timed and 0 <= numbers[time] < LONG_TIME_S <= numbers[power] <= _MOST_POWER:
+                said["kept"] = _call(word, [texts[time]])
+    return said
 
 
 def call_of(source: Source, word: Word, arguments: Sequence[Span]) -> str:
