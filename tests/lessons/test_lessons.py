@@ -15,6 +15,7 @@ from tiniscript.lessons.judging import JUDGES, judged
 from tiniscript.lessons.lesson import Answer, Lesson
 from tiniscript.lessons.markdown import blocks
 from tiniscript.lessons.sentences import sentence
+from tiniscript.lessons.sheet import MOVES, sheet
 from tiniscript.lessons.text_judging import judged_text
 from tiniscript.library.compiling import compiled, image_of
 from tiniscript.robots.profile import LANGUAGES
@@ -117,6 +118,19 @@ def test_every_row_of_a_table_has_its_cells(folder: Path, language: str) -> None
     for block in blocks(catalogue.page(folder, catalogue.PUPIL, language)):
         if block.kind == "table":
             assert {len(row) for row in block.rows} == {len(block.rows[0])}
+
+
+@each
+@in_both
+def test_a_sheet_draws_what_it_says(folder: Path, language: str) -> None:
+    """Dashes are what moves and nothing else, and a blank is wide enough to write in."""
+    lesson = catalogue.load(folder)
+    page = catalogue.page(folder, catalogue.PUPIL, language)
+    made = sheet(page, lesson, False, language)
+    dashed = len({(each.place.part, each.place.number) for each in lesson.variations})
+    assert made.count("stroke-dasharray") == dashed
+    assert (MOVES[language] in made) is (dashed > 0)
+    assert "__" not in made and made.count('class="blank"') == page.count("____")
 
 
 @each

@@ -141,6 +141,7 @@ def test_names_are_like_those_of_cpp() -> None:
         "number",
     ]
     assert [names.of(each) for each in asked] == made
+    assert Names("en").of("COUNTED") == "myCounted" and Names("es").of("VALOR") == "miValor"
     assert Names("es").of("INT") == "miInt" and Names("en").of("LIGHT_R", "read") == "readLightR"
 
 

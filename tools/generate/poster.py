@@ -30,8 +30,8 @@ SUBTITLES = {
     "es": "Una línea mueve un robot. El primer número son segundos; el segundo, potencia en porcentaje.",
 }
 FEET = {
-    "en": "A ; or a new line ends an instruction. // begins a note.  Help:  tsc explain · tsc help · tsc lesson",
-    "es": "Un ; o una línea nueva termina una instrucción. // empieza una nota.  Ayuda:  tsc explain · tsc help · tsc lesson",
+    "en": "A ; or a new line ends an instruction. // begins a comment.  Help:  tsc explain · tsc help · tsc lesson",
+    "es": "Un ; o una línea nueva termina una instrucción. // empieza un comentario.  Ayuda:  tsc explain · tsc help · tsc lesson",
 }
 
 
@@ -59,11 +59,11 @@ GROUPS = (
         Row("SI|{F}", "starts at once", "empieza enseguida"),
         Row("SB|{F}", "waits for the robot's button", "espera el botón del robot"),
         Row("PING|CHECK_CONNECTION", "asks: who is there?", "pregunta: ¿quién está ahí?"),
-        Row("START", "names the beginning, and does nothing", "le da nombre al comienzo, y no hace nada"),
+        Row("START", "marks the beginning; nothing moves", "marca el comienzo; nada se mueve"),
     )),
     Group("Move", "Moverse", (
         Row("{F}   {B}", "forward, back", "adelante, atrás"),
-        Row("{L}   {R}", "turn left, turn right", "girar a la izquierda, a la derecha"),
+        Row("{L}   {R}", "turns left, turns right", "gira a la izquierda, a la derecha"),
         Row("{M}", "left and right motor, and goes on at once", "motor izquierdo y derecho, y sigue enseguida"),
         Row("{W}", "waits", "espera"),
         Row("S   STOP", "stops the motors", "detiene los motores"),
@@ -76,7 +76,7 @@ GROUPS = (
     )),
     Group("Decide and repeat", "Decidir y repetir", (
         Row("{IF} ... ENDIF", "only if the answer is yes", "solo si la respuesta es sí"),
-        Row("ELSEIF(DISTANCE < 30)   ELSE", "otherwise, if; otherwise", "si no, pero si; si no"),
+        Row("ELSEIF(DISTANCE < 30)   ELSE", "otherwise, another question; otherwise", "si no, otra pregunta; si no"),
         Row("{LOOP} ... END_LOOP", "three times; LOOP(FOREVER) without end", "tres veces; LOOP(FOREVER), sin fin"),
         Row("{WHILE} ... END_WHILE", "as long as the answer is yes", "mientras la respuesta sea sí"),
         Row("BREAK", "leaves the loop", "sale del bucle"),

@@ -57,7 +57,7 @@ def plan(lesson: Lesson, title: str) -> str:
             f"{dash('lamps', number)}/>"
         )
     parts += _goals(lesson)
-    parts.append(_robot(lesson))
+    parts.append(_robot(lesson, DASHED if any(part == "start" for part, _ in moved) else ""))
     if world.has_border:
         parts.append(
             f'<rect width="{width:g}" height="{height:g}" fill="none" stroke="#333"'
@@ -91,8 +91,7 @@ def _goals(lesson: Lesson) -> list[str]:
             y = lesson.world.height_cm - y
             within_cm = criterion.numbers["within_cm"]
             found.append(
-                f'<circle cx="{x:.1f}" cy="{y:.1f}" r="{within_cm:g}" fill="none" stroke="#555"'
-                ' stroke-dasharray="1.5 2"/>'
+                f'<circle cx="{x:.1f}" cy="{y:.1f}" r="{within_cm:g}" fill="none" stroke="#777"/>'
             )
             if len(criterion.places) > 1:
                 found.append(
@@ -106,7 +105,7 @@ def _goals(lesson: Lesson) -> list[str]:
     return found
 
 
-def _robot(lesson: Lesson) -> str:
+def _robot(lesson: Lesson, dash: str) -> str:
     """Return the robot where it begins, with an arrow to where it looks."""
     hull = Hull(robots.load(lesson.robot).body)
     start = lesson.world.start
@@ -119,7 +118,7 @@ def _robot(lesson: Lesson) -> str:
             for turn in (0.5, -0.5)]  # fmt: skip
     head = " ".join(f"L{px:.1f} {py:.1f}" for px, py in [back[0], (tip_x, tip_y), back[1]])
     return (
-        f'<polygon points="{outline}" fill="#eee" stroke="#333" stroke-width="1.5"/>'
+        f'<polygon points="{outline}" fill="#eee" stroke="#333" stroke-width="1.5"{dash}/>'
         f'<path d="M{x:.1f} {y:.1f}L{tip_x:.1f} {tip_y:.1f}M{back[0][0]:.1f} {back[0][1]:.1f}'
         f'{head}" fill="none" stroke="#333" stroke-width="1.5"/>'
     )

@@ -29,7 +29,8 @@ pre, code { font-family: 'DejaVu Sans Mono', Consolas, monospace; font-size: 0.9
 table { border-collapse: collapse; width: 100%; break-inside: avoid; }
 th, td { border: 1px solid #777; padding: 0.25em 0.5em; text-align: left; vertical-align: top;
   overflow-wrap: anywhere; }
-th { background: #eee; }
+th { background: #eee; overflow-wrap: normal; }
+.blank { display: inline-block; min-width: 4em; border-bottom: 1px solid #333; }
 li, p { break-inside: avoid; }
 ul.checks { list-style: none; padding-left: 1.6em; }
 ul.checks li { text-indent: -1.6em; }
@@ -87,9 +88,14 @@ def _words(words: str) -> str:
     return "".join(
         f"<code>{escape(part[1:-1])}</code>"
         if len(part) > 2 and part[0] == part[-1] == "`"
-        else re.sub(r"\*\*([^*]+)\*\*", r"<strong>\1</strong>", escape(part))
+        else re.sub(r"\*\*([^*]+)\*\*", r"<strong>\1</strong>", _with_blanks(escape(part)))
         for part in parts
     )
+
+
+def _with_blanks(words: str) -> str:
+    """Return words with room for a pupil's answer where they have `____`."""
+    return words.replace("____", '<span class="blank">&nbsp;</span>')
 
 
 def _html(block: Block) -> str:

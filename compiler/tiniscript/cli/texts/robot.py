@@ -112,7 +112,7 @@ LINK_TEXTS: dict[str, tuple[str, str]] = {
     "trim_way": ("Did it turn forward?  1 yes  2 no: ", "¿Giró hacia adelante?  1 sí  2 no: "),
     "trim_moves": ("Both wheels had {n} % for a second. Did both turn?  1 yes  2 no: ",
                    "Las dos ruedas tuvieron {n} % un segundo. ¿Giraron las dos?  1 sí  2 no: "),
-    "trim_floor": ("Put the robot on the floor, with a free meter in front of it, and press Enter. ",
+    "trim_floor": ("Put the robot on the floor, with a free metre in front of it, and press Enter. ",
                    "Pon el robot en el piso, con un metro libre por delante, y pulsa Enter. "),
     "trim_straight": ("It drove for 2 seconds. Where did it go?  1 straight  2 to its left  3 to its right  4 again: ",
                       "Avanzó 2 segundos. ¿Hacia dónde fue?  1 en línea recta  2 a su izquierda  3 a su derecha  4 otra vez: "),
