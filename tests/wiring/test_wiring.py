@@ -447,7 +447,7 @@ def test_a_page_has_both_drawings_and_fits_a_phone() -> None:
     page = html_of(plan_of(robots.load("tinibot"), "es"))
     assert page.count("<svg") == 2
     assert '<div class="drawing">' in page and '<div class="finished">' in page
-    assert ".drawing { overflow-x: auto; }" in page
+    assert ".drawing, .finished { overflow-x: auto; }" in page
 
 
 def test_parts_have_quantities() -> None:

@@ -36,6 +36,7 @@ ul.checks { list-style: none; padding-left: 1.6em; }
 ul.checks li { text-indent: -1.6em; }
 ul.checks li::before { content: "\\2610"; display: inline-block; width: 1.33em; font-size: 1.2em;
   text-indent: 0; }
+@media (max-width: 30em) { th, td { padding: 0.2em 0.3em; } }
 @media print {
   body { font-size: 9.5pt; line-height: 1.32; max-width: none; margin: 0; padding: 0; }
   svg { max-height: 46mm; }

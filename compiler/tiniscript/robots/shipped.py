@@ -90,7 +90,7 @@ def _grabber() -> Robot:
                 "robot": "Grabber",
                 "DISTANCE": "sensor de distancia",
                 "TEMPERATURE": "termómetro",
-                "BUTTON": "botón entre las pinzas",
+                "BUTTON": "botón en la pinza",
                 "GRIPPER": "pinza",
                 "LED": "foco LED",
             },

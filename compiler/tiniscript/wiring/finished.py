@@ -81,10 +81,10 @@ class _Finished:
         diameter, width = self.wheel
         for side, key in ((-1, "left_motor"), (1, "right_motor")):
             x = self.x + side * across
-            inner = min(x, x - side * across * 0.62)
+            inner = x - side * across * 0.62  # under the boxes on the plate, as is the motor's end
+            rows = (self.y - diameter * 0.17, self.y + diameter * 0.17)
             lines += [
-                _box(inner, self.y - diameter * 0.17, across * 0.62, diameter * 0.34, "none",
-                     more=BELOW),
+                *(_line(x, row, inner, row, LINE, more=BELOW) for row in rows),
                 _box(x - width / 2, self.y - diameter / 2, width, diameter, "#333333", corner=8),
             ]  # fmt: skip
             outside = self.left - 10 if side < 0 else self.right + 10
@@ -180,16 +180,18 @@ def _is_supply(part: Part) -> bool:
 
 def _box(
     x: float, y: float, width: float, height: float, fill: str, ink: str = LINE, corner: int = 6,
-    more: str = "",
 ) -> str:  # fmt: skip
     return (
         f'<rect x="{x:g}" y="{y:g}" width="{width:g}" height="{height:g}" rx="{corner}" '
-        f'fill="{fill}" stroke="{ink}" stroke-width="1.5"{more}/>'
+        f'fill="{fill}" stroke="{ink}" stroke-width="1.5"/>'
     )
 
 
-def _line(x1: float, y1: float, x2: float, y2: float, ink: str = "#888888", width: int = 1) -> str:
+def _line(
+    x1: float, y1: float, x2: float, y2: float, ink: str = "#888888", width: float = 1,
+    more: str = "",
+) -> str:  # fmt: skip
     return (
         f'<line x1="{x1:g}" y1="{y1:g}" x2="{x2:g}" y2="{y2:g}" stroke="{ink}" '
-        f'stroke-width="{width}"/>'
+        f'stroke-width="{width:g}"{more}/>'
     )

@@ -31,8 +31,9 @@ ul.checks li::before { content: "\\2610"; display: inline-block; width: 1.67em; 
 td:first-child::before { content: "\\2610"; display: inline-block; width: 1.5em; }
 .finished svg { max-height: 640px; }
 @media screen and (max-width: 640px) {
-  .drawing { overflow-x: auto; }
+  .drawing, .finished { overflow-x: auto; }
   .drawing svg { width: 900px; }
+  .finished svg { width: 640px; }
   thead { display: none; }
   table, tbody, tr, td { display: block; border: 0; }
   tr { border: 1px solid #777; margin: 0.5em 0; padding: 0.2em 0.4em; }

@@ -17,7 +17,7 @@ TEXTS: dict[str, tuple[str, str]] = {
     "legend_3V3": ("3.3 V of the board", "3.3 V de la placa"),
     "legend_GND": ("ground, the minus of everything", "tierra, el menos de todo"),
     "legend_M+": ("plus of the motors' battery", "más de la batería de los motores"),
-    "legend_S+": ("plus of the servos' supply", "más de la alimentación de los servos"),
+    "legend_S+": ("plus of the servos' supply", "más de la fuente de los servos"),
     "legend_same": ("Tags with the same text are joined to each other: a rail of a breadboard does that.",
                     "Las etiquetas con el mismo texto van unidas entre sí: para eso sirve una línea del protoboard."),
     "legend_dot": ("A dot joins wires. Where there is none, they only cross.",
