@@ -183,6 +183,8 @@ def test_wrong_use_is_an_error_with_a_sentence(reason: str) -> None:
     assert isinstance(raised.value, ValueError)
     assert str(raised.value).endswith((".", "]"))
     assert "{" not in str(raised.value)
+    if reason == "bad_choice":
+        assert str(raised.value) == "machine is python or cpp, not 'perl'."
 
 
 @pytest.mark.parametrize(

@@ -97,8 +97,7 @@ def run(
     whole("seed", seed, 1, LARGEST_SEED, language)
     lists = thousandths(sensors or {}, profile, language)
     if machine not in ("python", "cpp"):
-        values = {"name": "machine", "known": "python, cpp", "found": printable(repr(machine))}
-        raise UsageError("bad_choice", language, values)
+        raise UsageError("bad_choice", language, {"found": printable(repr(machine))})
     machine_of: MachineOf | None = None
     if machine == "cpp":
         try:

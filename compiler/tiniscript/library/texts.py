@@ -30,7 +30,7 @@ TEXTS: dict[str, tuple[str, str]] = {
                     "{found} no es una lectura de {name}: mide {range}."),
     "range": ("{low} to {high}", "de {low} a {high}"),
     "range_yes_no": ("True or False", "True o False"),
-    "bad_choice": ("{name} is {known}, not {found}.", "{name} es {known}, no {found}."),
+    "bad_choice": ("machine is python or cpp, not {found}.", "machine es python o cpp, no {found}."),
     "no_wasmtime": ("The C++ machine and the virtual robot need wasmtime:  {how}  ({why})",
                     "La máquina en C++ y el robot virtual necesitan wasmtime:  {how}  ({why})"),
     "live_button": ("SB waits for the button, and a live line starts right away. Leave SB| out, or upload the line.",
