@@ -35,7 +35,7 @@ _STOPS = re.compile(r"[^%]*[0-9] +[Ss]")  # `W 1 S`: seconds, or the command
 _DIGITS = str.maketrans("OoIl", "0011")
 _LETTERED = re.compile(r"(?<![\w.,])(?:[0-9OoIl]+(?:\.[0-9OoIl]+)?)(?![A-Za-z_])")
 _LETTER = re.compile(r"(?<=[(,])\s*[OoIl]\s*(?=[,)])")
-_SPLITS = re.compile(r"(?<=[0-9])['\u00b4\u2019_\u00b7\u2022](?=[0-9])")  # `2'80`, `2_80`
+_SPLITS = re.compile(r"(?<=[0-9])['\u00b4\u2019_\u00b7\u2022](?=[1-9]|0[0-9.])")  # `2'80`, `2_80`
 _POINTS = re.compile(r"([0-9]\.[0-9]+)\.([1-9]0|100)(?![\w.])")  # `0.5.80`
 _PERCENT = re.compile(r"(?i)\b(por ciento|percent)\b")
 _PIECE = re.compile(
@@ -65,11 +65,16 @@ _PARTS = (("1", "2"), ("1", "4"), ("3", "4"))  # of one, with a `/`
 
 
 class Said(NamedTuple):
-    """`call` is the instruction; `example` what of it was not said, or nothing."""
+    """`call` is the instruction; `example` what of it was not said, or nothing.
+
+    `sign` was typed for the `digit` of its key.
+    """
 
     word: Word
     call: str
     example: str
+    sign: str = ""
+    digit: str = ""
 
 
 class _Value(NamedTuple):
@@ -234,6 +239,9 @@ class _Reader:
         is_before = k + 1 < len(self._pieces) and self._pieces[k + 1].lastgroup == "number"
         is_before = is_before or self._at(k + 1) in ("=", ":", *NUMBER_WORDS)
         is_of = k > 1 and self._at(k - 1) in ("DE", "OF") and self._pieces[k - 2][0][0].isdigit()
+        if k and self._touches(k) and len(self._at(k)) == 1 and self.found:  # `8p`, for 80
+            if _is_number(self.found[-1].text) and float(self.found[-1].text) < 10:
+                return False
         if self._is_behind_value or (is_of and not is_before):  # `80 de potencia`
             return not is_before and self._takes_unit(self._at(k))
         self.unit = _NAMES[self._at(k)]

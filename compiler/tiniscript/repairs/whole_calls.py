@@ -16,6 +16,7 @@ from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.repairs.edits import Edit, applied
 from tiniscript.repairs.placing import edits_of
 from tiniscript.repairs.said_calls import LONGEST, Said, said_call
+from tiniscript.repairs.shifted_keys import shifted_call
 from tiniscript.source import Source, Span
 from tiniscript.syntax.lexer import NEWLINE, scan
 from tiniscript.words import WORDS
@@ -96,6 +97,12 @@ def _instructions(found: Sequence[Diagnostic], text: str, names: set[str]) -> li
             groups.setdefault(_around(text, diagnostic.span.start), []).append(k)
     wholes = []
     for span, places in sorted(groups.items()):
+        shifted = shifted_call(text[slice(*span)])
+        if shifted is not None:
+            if shifted.call:
+                said = Said(shifted.word, shifted.call, "", shifted.sign, shifted.digit)
+                wholes.append(_Whole(span, said, places))
+            continue
         said = said_call(text[slice(*span)], names)
         if said is not None and not any(found[k].code in _OTHERS for k in places):
             wholes.append(_Whole(span, said, places))
@@ -159,6 +166,9 @@ def _signs(text: str) -> list[str]:
 def _of_the_whole(first: Diagnostic, whole: _Whole, text: str) -> Diagnostic:
     said = whole.said
     has_bracket = "(" in text[slice(*whole.span)]
+    if said.sign:
+        values = {"word": said.word.text, "fix": said.call, "sign": said.sign, "digit": said.digit}
+        return Diagnostic(codes.OTHER_CALL, whole.span, values)
     if first.code in _KEPT and not (first.code is codes.MISSING_OPEN and has_bracket):
         return first._replace(values={**first.values, "fix": said.call}, place=whole.span)
     values = {"word": said.word.text, "usage": said.word.usage, "fix": said.call}

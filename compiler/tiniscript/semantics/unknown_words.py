@@ -91,7 +91,7 @@ def _report_unknown_word(scope: Scope, node: ast.Command) -> None:
         return
     glued = glued_call(word)
     if glued is not None and node.arguments is None:
-        name = glued.partition("(")[0]
+        name = word.rstrip("0123456789")
         scope.report(codes.MISSING_OPEN, span, word=name, fix=glued, usage=usage_of(name))
         return
     commands = [each.text for each in WORDS.values() if each.role not in

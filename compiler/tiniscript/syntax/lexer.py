@@ -56,6 +56,7 @@ _PATTERN = re.compile(
       | (?P<clock>[0-9]{1,2}:[0-5][0-9](?=[ ]*,)|(?<=[Ww]\()[0-9]{1,2}:[0-5][0-9](?=[ ]*\)))
       | (?P<percent>(?:[0-9]+(?:\.[0-9]+)?|\.[0-9]+)[ ]?%(?=[ ]*[,)]))
       | (?P<spaced>[0-9]{1,3}[ ]000(?=[ ]*[,;)]))
+      | (?P<shifted>(?:(?<=[<>])|(?<=[<>][ ]))[1-9]=(?=[ ]*\)))
       | (?P<number>(?:[0-9]+(?:\.[0-9]+)?|\.[0-9]+)
             (?![\w.\u00b0]|['\u00b4\u2019][0-9]|["\u201d\u2033][ ]*[,)]))
       | (?P<newline>\r\n|\n|\r)
@@ -247,6 +248,12 @@ class _Repairs:
         self.report(codes.BAD_NUMBER, span, found=text, right=right)
         return Token(NUMBER, right, *span)
 
+    def shifted(self, text: str, span: Span) -> Token:
+        """`DISTANCE < 3=`: the sign is on the key of the 0."""
+        right = text[0] + "0"
+        self.report(codes.BAD_NUMBER, span, found=text, right=right)
+        return Token(NUMBER, right, *span)
+
     def spaced(self, text: str, span: Span) -> Token:
         """`1 000`: a thousand."""
         right = text.replace(" ", "")
@@ -305,7 +312,8 @@ def _digits_meant(text: str) -> str:
         return _PARTS[text]
     digits = re.sub("['´’]", ".", text.rstrip('"”″').translate(_LETTERS_FOR_DIGITS))
     match = re.fullmatch(r"([0-9]{1,40}(?:\.[0-9]{1,40})?)\.?", digits)
-    return match[1] if match else ""
+    is_cut = digits.endswith(".0") and digits != text  # `8'0`
+    return match[1] if match and not is_cut else ""
 
 
 def _number_in(text: str) -> str:

@@ -314,7 +314,7 @@ class NameRecovery:
         glued = glued_call(word.text, rest)
         if glued is not None:
             cursor.i = end
-            name = glued.partition("(")[0]
+            name = word.text.rstrip("0123456789")
             self.reporter.fail(codes.MISSING_OPEN, span, word=name, fix=glued, usage=usage_of(name))
         meant = WORDS.get(meant_by(word.text) or "")
         if meant is not None and following.kind is NUMBER and meant.is_instruction:
