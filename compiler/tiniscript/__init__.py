@@ -142,6 +142,7 @@ def _checked(text: str, kit: Kit, name: str = "") -> Compiled:
     """Return the checked program of a text, and what is wrong with it; no repair is vouched for."""
     from tiniscript.diagnostics.codes import in_order
     from tiniscript.semantics.checker import check
+    from tiniscript.semantics.empty_blocks import empty_blocks
     from tiniscript.semantics.lint import advice
     from tiniscript.semantics.notes import in_notes
     from tiniscript.source import Source
@@ -157,6 +158,7 @@ def _checked(text: str, kit: Kit, name: str = "") -> Compiled:
         found = joined(found, source, parsed.scan.tokens, kit)
     else:
         found += advice(checked.program, kit, source)
+        found += empty_blocks(checked.program, source)
         found += in_notes(parsed.scan.comments, parsed.scan.tokens, source)
     return Compiled(source, in_order(found), checked.program)
 

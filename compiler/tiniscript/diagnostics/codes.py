@@ -120,6 +120,7 @@ PROSE = _mistake("TS073")
 SEVERAL_ORDERS = _mistake("TS074")
 OTHER_CALL = _mistake("TS076")
 GROUPED = _mistake("TS080")
+DOTS = _mistake("TS082")
 WORDS_BEHIND = _mistake("TS085")
 # the checksum of a line
 CHECKSUM_WRONG = _mistake("TS058")
@@ -187,6 +188,7 @@ FROZEN_WHILE = _warning("TS823")
 TURNED_ROUND = _warning("TS824")
 EXACT = _warning("TS825")
 UNSEEN_MOTORS = _warning("TS826")
+EMPTY_BLOCK = _warning("TS828")
 
 
 def in_order(found: list[Diagnostic]) -> list[Diagnostic]:

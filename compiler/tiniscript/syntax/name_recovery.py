@@ -122,6 +122,9 @@ class NameRecovery:
         is_alone = kind in AT_END
         if kind == "|":
             self.reporter.fail(codes.SETUP_TWICE, word.span, found=word.text)
+        parser.recovery.of_end.with_a_sign(word, following)
+        if is_alone:
+            parser.recovery.of_end.with_its_name(word)
         after = self.cursor.tokens[min(self.cursor.i + 2, len(self.cursor.tokens) - 1)]
         is_title = word.text in TITLES and after.kind in AT_END
         if (is_title or word.text in IMPORTING) and (

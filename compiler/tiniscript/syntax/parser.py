@@ -49,6 +49,7 @@ ENOUGH = 100  # diagnostics after which reading on helps nobody
 
 _SETUPS = frozenset(("SI", "SB", "PING"))
 _MISREAD = frozenset(("S1", "SL", "5I"))  # SI, with a letter or a digit for another one
+_BEGIN_ENDS = ("END", "FIN")  # END_JUMP, FIN
 _AFTER_NAME = frozenset(("(", *AT_END))
 
 
@@ -198,7 +199,8 @@ class Parser:
         known = WORDS.get(word.text)
         following = tokens[cursor.i + 1]
         if known is None:
-            if following.kind not in _AFTER_NAME or foreign_block(word.text):
+            is_end = word.text[:3] in _BEGIN_ENDS
+            if following.kind not in _AFTER_NAME or is_end or foreign_block(word.text):
                 self.recovery.of_name.unknown_word(self, word, following)
         elif not known.is_instruction and known.role != "start":
             self.recovery.no_command(self, word, known.role)

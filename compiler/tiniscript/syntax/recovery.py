@@ -17,6 +17,7 @@ from tiniscript.syntax.blocks import Block, Blocks
 from tiniscript.syntax.construct_recovery import ConstructRecovery
 from tiniscript.syntax.cursor import AT_END, Cursor
 from tiniscript.syntax.def_recovery import DefRecovery
+from tiniscript.syntax.end_recovery import EndRecovery
 from tiniscript.syntax.foreign import forever_alone
 from tiniscript.syntax.group_recovery import GroupRecovery
 from tiniscript.syntax.joining_recovery import JoiningRecovery
@@ -62,6 +63,7 @@ class Recovery:
         self.in_block = BlockRecovery(cursor, reporter, blocks, kit)
         self.of_name = NameRecovery(cursor, reporter, blocks, kit, self.in_block)
         self.of_def = DefRecovery(cursor, reporter, self.in_block)
+        self.of_end = EndRecovery(cursor, reporter, self.in_block)
         self.of_until = UntilRecovery(cursor, reporter, blocks, self.in_block.known)
         self.times = TimesRecovery(cursor, reporter, self.in_block)
         self.construct = ConstructRecovery(cursor, reporter, self.in_block)
@@ -82,6 +84,10 @@ class Recovery:
         if token.kind in ("{", "}"):
             return
         if token.kind is ODD:
+            block = self.blocks.innermost
+            cursor.i -= 1
+            self.of_end.dots(block if block is not None and not block.here else None)
+            cursor.i += 1
             self.of_name.talk.prose(cursor.i - 1)
             raise Failed
         if token.kind == "-" and cursor.token.kind == "-":
@@ -174,6 +180,8 @@ class Recovery:
             raise
         block = self.blocks.innermost
         header = block if block is not None and block.span.end == before.end else None
+        self.of_end.dots(header)
+        self.of_end.named_again(first, token)
         if header is not None and header.word != "DEF" and self._is_colon(token):
             token, after = cursor.token, cursor.following
             kind, text = token.kind, token.text

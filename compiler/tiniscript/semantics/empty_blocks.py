@@ -1,0 +1,67 @@
+"""A warning for a block with nothing inside, beside what was probably meant to be in it.
+
+`LOOP(4)`, `END_LOOP`, and the moves below. Knows the IR and the text. Says nothing of an endless
+LOOP or a WHILE, which wait, nor of a block with a note inside.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from itertools import takewhile
+
+from tiniscript.diagnostics import codes
+from tiniscript.diagnostics.codes import Diagnostic
+from tiniscript.semantics.ir import Body, Break, If, Loop, Program, Read, Statement, While, bodies
+from tiniscript.source import Source, Span
+from tiniscript.words import BLOCK_ENDS
+
+MANY = 12  # instructions that an example has
+_HEAD = re.compile(r"\w+\s*\([^\r\n;]*\)")
+
+
+def empty_blocks(program: Program, source: Source) -> list[Diagnostic]:
+    """Return the warnings for a program that has no mistakes."""
+    rest = [program.body, *(each.body for each in program.procedures)]
+    found: list[Diagnostic] = []
+    while rest:
+        body = rest.pop()
+        found += _empty_in(body, source)
+        rest += [inner for statement in body for inner in bodies(statement)]
+    return found
+
+
+def _empty_in(body: Body, source: Source) -> Iterator[Diagnostic]:
+    for k, statement in enumerate(body):
+        if not _is_empty(statement):
+            continue
+        text = source[statement.span]
+        head = _HEAD.match(text)
+        if head is None or "//" in text:
+            continue
+        word = "IF" if isinstance(statement, If) else "LOOP"
+        span = Span(statement.span.start, statement.span.start + head.end())
+        behind = _said(body[k + 1 :], source)
+        before = [] if behind else _said(body[k - 1 :: -1] if k else (), source)[::-1]
+        if not behind and not before:
+            continue
+        shown, end = source[span], BLOCK_ENDS[word]
+        values = {"head": shown, "end": end}
+        for name, rows in (("example", behind), ("before", before)):
+            if 0 < len(rows) <= MANY:
+                values[name] = "; ".join((shown, *rows, end))
+        yield Diagnostic(codes.EMPTY_BLOCK, span, values)
+
+
+def _is_empty(statement: Statement) -> bool:
+    if isinstance(statement, Loop):
+        return statement.times is not None and not statement.body
+    if isinstance(statement, If):
+        return len(statement.arms) == 1 and not statement.arms[0].body and not statement.has_else
+    return False
+
+
+def _said(statements: Sequence[Statement], source: Source) -> list[str]:
+    """Return the instructions at the beginning of a row that are no blocks, as written."""
+    plain = takewhile(lambda each: not isinstance(each, (If, Loop, While, Break)), statements)
+    return [source[each.span] for each in plain if not isinstance(each, Read)]
