@@ -50,11 +50,16 @@ def check_line(text: str, kit: Kit) -> None:
     assert again.is_right and again.image == found.image, line
     assert found.program is not None and again.program is not None
     assert plain_code(again.program).code == plain_code(found.program).code, line
-    # A line has no notes.
-    told = [each.code for each in found.diagnostics if each.code is not codes.IN_A_NOTE]
-    assert sorted(each.number for each in told) == sorted(
-        each.code.number for each in again.diagnostics
+    # A line has no notes, nor a block with nothing but a note inside.
+    told, then = (
+        sorted(
+            each.code.number
+            for each in one.diagnostics
+            if each.code not in (codes.IN_A_NOTE, codes.EMPTY_BLOCK)
+        )
+        for one in (found, again)
     )
+    assert told == then
     assert line_of(Source(line)) == line
 
 

@@ -6,7 +6,6 @@ LOOP or a WHILE, which wait, nor of a block with a note inside.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Sequence
 from itertools import takewhile
 
@@ -17,7 +16,6 @@ from tiniscript.source import Source, Span
 from tiniscript.words import BLOCK_ENDS
 
 MANY = 12  # instructions that an example has
-_HEAD = re.compile(r"\w+\s*\([^\r\n;]*\)")
 
 
 def empty_blocks(program: Program, source: Source) -> list[Diagnostic]:
@@ -36,21 +34,30 @@ def _empty_in(body: Body, source: Source) -> Iterator[Diagnostic]:
         if not _is_empty(statement):
             continue
         text = source[statement.span]
-        head = _HEAD.match(text)
-        if head is None or "//" in text:
+        if "//" in text:
             continue
         word = "IF" if isinstance(statement, If) else "LOOP"
-        span = Span(statement.span.start, statement.span.start + head.end())
+        span = Span(statement.span.start, statement.span.start + _end_of_head(text))
         behind = _said(body[k + 1 :], source)
         before = [] if behind else _said(body[k - 1 :: -1] if k else (), source)[::-1]
         if not behind and not before:
             continue
-        shown, end = source[span], BLOCK_ENDS[word]
+        shown, end = " ".join(source[span].split()), BLOCK_ENDS[word]
         values = {"head": shown, "end": end}
         for name, rows in (("example", behind), ("before", before)):
             if 0 < len(rows) <= MANY:
                 values[name] = "; ".join((shown, *rows, end))
         yield Diagnostic(codes.EMPTY_BLOCK, span, values)
+
+
+def _end_of_head(text: str) -> int:
+    """Return the place behind the brackets of a header at the beginning of a right text."""
+    depth = 0
+    for k, sign in enumerate(text):
+        depth += (sign == "(") - (sign == ")")
+        if sign == ")" and not depth:
+            return k + 1
+    return len(text)
 
 
 def _is_empty(statement: Statement) -> bool:
