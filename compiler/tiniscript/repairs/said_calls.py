@@ -64,6 +64,20 @@ _COUNTED = frozenset((*NUMBER_WORDS, *_TEENS, *_HALVES))
 _PARTS = (("1", "2"), ("1", "4"), ("3", "4"))  # of one, with a `/`
 
 
+_SIDE = "(?P<{}>IZQ[A-Z]*|LEFT|L|DER[A-Z]*|RIGHT|R|D|I)"
+_POWER = "(?P<{}>-?[0-9]+)[ ]*%?"
+_SIGNS = "[ =:]*"
+# `izq 50, der 80`, and `50 izq, 80 der`.
+_SIDES = re.compile(
+    rf"[ (]*{_SIDE.format('one')}{_SIGNS}{_POWER.format('a')}[ ,;Y]+"
+    rf"{_SIDE.format('two')}{_SIGNS}{_POWER.format('b')}[ )]*"
+)
+_SIDES_BEHIND = re.compile(
+    rf"[ (]*{_POWER.format('a')}[ ]*{_SIDE.format('one')}[ ,;Y]+"
+    rf"{_POWER.format('b')}[ ]*{_SIDE.format('two')}[ )]*"
+)
+
+
 class Said(NamedTuple):
     """`call` is the instruction; `example` what of it was not said, or nothing.
 
@@ -103,10 +117,22 @@ def said_call(text: str, names: Container[str]) -> Said | None:
     word = WORDS.get(name) or WORDS.get(meant_by(name) or "")
     if word is None or word.role not in _ROLES:
         return None
+    if word.role == "motors" and (sides := _sides(plain[head.end() :])) is not None:
+        return Said(word, f"{word.text}({sides[0]}, {sides[1]})", "")
     if word.role == "show":
         return _shown(word, plain[head.end() :], names)
     values = _values(word, plain[head.end() :], names)
     return None if not values else _fitted(word, values)
+
+
+def _sides(text: str) -> tuple[str, str] | None:
+    """`M(izq 50, der 80)`: the power of the left motor and of the right one."""
+    both = _SIDES.fullmatch(text.upper()) or _SIDES_BEHIND.fullmatch(text.upper())
+    if both is None:
+        return None
+    one, two = ({"I": 0, "L": 0}.get(each[0], 1) for each in both.group("one", "two"))
+    powers = both.group("a", "b")
+    return None if one == two else (powers[one], powers[two])
 
 
 def _shown(word: Word, text: str, names: Container[str]) -> Said | None:

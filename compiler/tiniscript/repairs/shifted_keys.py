@@ -22,6 +22,7 @@ _POINT = re.compile(r"=(\.[0-9]+)")  # `=.39`
 _COLON = re.compile(r"0[:;]([0-9]{1,2})")  # `0:39`, the point's key; `0;39`, the comma's
 # `F82, 809`: no Shift for the brackets.
 _UNSHIFTED = re.compile(r"\s*([FBLRfblr])8([0-9](?:\.[0-9]+)?)\s*,\s*([1-9]0|100)9\s*")
+_UNCLOSED = re.compile(r"\s*([FBLRfblr])\s*\(\s*([0-9.]+)\s*,\s*([1-9]0|100)9\s*")  # `F(2, 809`
 _LEAST = {"%": 20, "Hz": 100}  # what is lower, pupils do not write
 _LONGEST_S = 10
 
@@ -41,8 +42,11 @@ class Shifted(NamedTuple):
 def shifted_call(text: str) -> Shifted | None:
     """Return the call that was meant, None where no sign stands for a digit."""
     if match := _UNSHIFTED.fullmatch(text):
-        word = WORDS[match[1].upper()]
-        return Shifted(word, f"{word.text}({match[2]}, {match[3]})", "", "")
+        move = WORDS[match[1].upper()]
+        return Shifted(move, f"{move.text}({match[2]}, {match[3]})", "", "")
+    if match := _UNCLOSED.fullmatch(text):
+        move = WORDS[match[1].upper()]
+        return Shifted(move, f"{move.text}({match[2]}, {match[3]})", "", "")
     match = _CALL.fullmatch(text)
     word = WORDS.get(match[1].upper()) if match else None
     if match is None or word is None or word.role not in _ROLES:

@@ -27,7 +27,8 @@ _ENDS = re.compile(r"[;\r\n|{}]|//")
 _CLOSES = re.compile(r"[^;\r\n|{}()]*\)")  # `F(2;80)`
 # `F;2;80`: what stands behind the `;` is a number alone.
 _IN_PIECES = re.compile(
-    r"(?i)\b(?:[FBLRMW]|BEEP)[ \t]*;[ \t]*[0-9][0-9. \t%;]{0,60}(?<![; \t])"
+    r"(?i)\b(?:[FBLRMW]|BEEP)(?:[ \t]*;|[ \t]+[0-9][0-9.]*;)[ \t]*[0-9]"
+    r"[0-9. \t%;]{0,60}(?<![; \t])"
     r"(?=[ \t]*(?:[;\r\n]|//|\Z))"
 )
 _UNTIL = re.compile(r"(?i)\s*\bUNTIL\b")
@@ -100,8 +101,8 @@ def _instructions(found: Sequence[Diagnostic], text: str, names: set[str]) -> li
         shifted = shifted_call(text[slice(*span)])
         if shifted is not None:
             if shifted.call:
-                said = Said(shifted.word, shifted.call, "", shifted.sign, shifted.digit)
-                wholes.append(_Whole(span, said, places))
+                typed = Said(shifted.word, shifted.call, "", shifted.sign, shifted.digit)
+                wholes.append(_Whole(span, typed, places))
             continue
         said = said_call(text[slice(*span)], names)
         if said is not None and not any(found[k].code in _OTHERS for k in places):

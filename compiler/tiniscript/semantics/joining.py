@@ -33,7 +33,9 @@ def joined(
     for diagnostic in found[:ENOUGH]:
         fix = diagnostic.values.get("fix", "")
         right = diagnostic.values.get("right", "").upper()
-        if diagnostic.code is codes.BAD_NAME and right in WORDS:  # `Sí|`
+        if (
+            diagnostic.code is codes.BAD_NAME and right in WORDS and _has_accent(source, diagnostic)
+        ):  # `Sí|`
             diagnostic = diagnostic._replace(values={**diagnostic.values, "word": right})
         if fix:
             place = diagnostic.place or diagnostic.span
@@ -52,6 +54,11 @@ def joined(
             diagnostic = diagnostic._replace(values={**diagnostic.values, "fix": fix})
         kept.append(diagnostic)
     return [each for k, each in enumerate(kept) if k not in mended] + list(found[ENOUGH:])
+
+
+def _has_accent(source: Source, diagnostic: Diagnostic) -> bool:
+    """Whether a name has its length without what makes it bad: `_F` has not."""
+    return len(source[diagnostic.span]) == len(diagnostic.values["right"])
 
 
 def _replaced(text: str, old: str, new: str) -> str:

@@ -35,7 +35,14 @@ from tiniscript.words import (
 )
 
 MANY_TIMES = 20  # that a DEF is done by hand in a class
-_LETTERS = {"D": "R", "I": "L", "P": "S", "E": "W"}  # derecha, izquierda, parar, esperar
+# Short for derecha, izquierda, parar, esperar …, and what pupils say of the way that they go.
+_SHORT = {
+    "D": "R", "I": "L", "P": "S", "E": "W", "DE": "R", "IZ": "L", "ES": "W", "AD": "F", "AV": "F",
+    "AT": "B", "RE": "B", "BP": "BEEP", "BE": "BEEP", "BIIP": "BEEP",
+    "VE": "F", "VOY": "F", "VAMOS": "F", "VAYA": "F", "DALE": "F",
+    "VUELVE": "B", "VUELVO": "B", "VOLVER": "B",
+}  # fmt: skip
+_CURVES = frozenset(("FL", "LF", "FR", "RF"))  # both at once
 # What phones make of a word of the language.
 _MENDED = {
     "BEBE": "BEEP",
@@ -101,9 +108,20 @@ def _report_unknown_word(scope: Scope, node: ast.Command) -> None:
     if glued_loop and node.arguments is None:
         near = f"LOOP({glued_loop[1]})"
     is_held = len(word) <= 3 and len(set(word)) == 1  # `FF(2, 80)`: a key that was held
-    letter = word[0] if is_held and word[0] in WORDS else _LETTERS.get(word, "")
+    letter = word[0] if is_held and word[0] in WORDS else _SHORT.get(word, "")
     if letter and len(node.arguments or ()) == len(WORDS[letter].arguments):
         near = letter
+    texts = [scope.source[each.span] for each in node.arguments or ()]
+    if word in _CURVES and len(texts) == 2 and texts[1].isdecimal():
+        less = str(int(texts[1][:9]) // 2)
+        powers = (less, texts[1]) if "L" in word else (texts[1], less)
+        curve = f"M({', '.join(powers)});W({texts[0]});S"
+        scope.report(codes.UNKNOWN_WORD, span, None, found=word, near="", curve=curve)
+        return
+    if word == "A" and len(texts) == 2:  # adelante, or atrás
+        ahead, back = (f"{each}({', '.join(texts)})" for each in "FB")
+        scope.report(codes.UNKNOWN_WORD, span, None, found=word, near="", ahead=ahead, back=back)
+        return
     values = {
         "found": scope.source[span].upper(),
         "near": near,
@@ -187,7 +205,16 @@ def report_named_arguments(scope: Scope, node: ast.Command, word: Word, said: in
 
 
 def report_words_for_numbers(scope: Scope, node: ast.Command, word: Word, said: int) -> None:
-    """`F(2, rapido)`, `BEEP(1, DO)`: the number that the word says. Changes those since `said`."""
+    """`F(2, rapido)`, `BEEP(1, DO)`: the number that the word says. Changes those since `said`.
+
+    `SHOW(HOLA)` has none: words are not shown.
+    """
+    if word.role == "show":
+        for k, each in enumerate(scope.diagnostics[said:], said):
+            if each.code is codes.UNKNOWN_NAME and not each.values.get("near"):
+                values = {**each.values, "shown": each.values["found"]}
+                scope.diagnostics[k] = each._replace(values=values)
+        return
     tables = {"%": POWER_WORDS, "Hz": NOTE_WORDS}
     if word.role == "beep":
         tables["s"] = NOTE_WORDS  # in the wrong order

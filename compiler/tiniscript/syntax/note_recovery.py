@@ -284,14 +284,21 @@ class NoteRecovery:
     def _is_told(self, row: Sequence[Token], k: int, its: set[str]) -> bool:
         """Whether the number at `k` says the same again, counts the lines, or was measured."""
         token = row[k]
+        after = row[k + 1].text if k + 1 < len(row) else ""
+        if token.kind is not NUMBER and UNITS.get(after, ("", 0))[0] == "s":  # `dos segundos`
+            return token.text not in NUMBER_WORDS or NUMBER_WORDS[token.text] in its
         if token.kind is not NUMBER:
             return True
-        after = row[k + 1].text if k + 1 < len(row) else ""
         is_first = all(each.kind is not WORD for each in row[:k])
         unit = UNITS.get(after, ("", 0))[0]
         if token.text in its or unit in _OTHER_UNITS:
             return True
         return not is_first and not unit
+
+    def _has_until(self) -> bool:
+        """Whether the instruction that was read last ends with its UNTIL."""
+        here = self.in_block.blocks.here
+        return bool(here) and isinstance(here[-1], Command) and here[-1].until is not None
 
     def _order(self, row: Sequence[Token], k: int, own: str) -> bool:
         """Whether the word at `k` says what `own` does not."""
@@ -305,7 +312,7 @@ class NoteRecovery:
         if self.known.is_def(text):
             return not (k and row[k - 1].text in (*FILLERS, "DEL", "MI", "MY"))  # `fin del salto`
         if text in TURN_WORDS or text in ("VUELTA", "VUELTAS"):
-            return own not in ("L", "R", "M")
+            return own not in (("L", "R", "M", "B") if text[0] == "V" else ("L", "R", "M"))
         if text in SWITCH_WORDS or text in _OTHER_ORDERS:
             return True
         if text in ENDS_OF_ANY:
@@ -313,15 +320,17 @@ class NoteRecovery:
         if text in _ASKING:
             return own not in ("IF", "WHILE")
         if text in ("HASTA", "UNTIL"):
-            return row[0].kind != "("
+            return row[0].kind != "(" and not self._has_until()
         known = WORDS.get(text)
         if known is not None and known.role in ("value", "operator"):
             return False
         meant = known.text if known is not None else meant_by(text)
+        if meant == "S" and self._has_until():
+            return False  # `frena antes de la pared`
         if meant is None or meant == own or (own in ("IF", "WHILE") and text in BETWEEN):
             return False
         word = WORDS.get(meant)
-        if word is None or word.role in ("value", "operator", "function"):
+        if word is None or word.role in ("value", "operator", "function", "start"):
             return False
         if own in ("LOOP", "DEF", "S", "STOP") and meant in ("S", "LOOP", "DEF"):
             return False

@@ -50,6 +50,7 @@ ENOUGH = 100  # diagnostics after which reading on helps nobody
 _SETUPS = frozenset(("SI", "SB", "PING"))
 _MISREAD = frozenset(("S1", "SL", "5I"))  # SI, with a letter or a digit for another one
 _BEGIN_ENDS = ("END", "FIN")  # END_JUMP, FIN
+_IN_TITLE = frozenset((WORD, NUMBER, ODD, NEWLINE, ",", "-"))  # behind the first word of a sentence
 _AFTER_NAME = frozenset(("(", *AT_END))
 
 
@@ -110,6 +111,9 @@ class Parser:
         cursor = self.cursor
         cursor.to_inner()
         word, bar = cursor.token, cursor.following
+        if self._kit and word.text not in WORDS and bar.kind in _IN_TITLE:
+            self.recovery.setup.titles()
+            word, bar = cursor.token, cursor.following
         if (
             self._kit
             and word.text not in WORDS
@@ -123,7 +127,11 @@ class Parser:
             return "SI"
         if bar.kind != "|":
             is_in_two = word.text == "S" and bar.text == "I"
-            if word.text in _SETUPS or is_in_two or (self._kit and word.text in _MISREAD):
+            if (
+                word.text in _SETUPS
+                or is_in_two
+                or (self._kit and self._is_misread(self._kit, word))
+            ):
                 return self.recovery.setup.without_bar(word) or "SI"
             return "SI"
         cursor.i += 2
@@ -132,6 +140,11 @@ class Parser:
         elif word.text not in ("SI", "SB"):
             return self.recovery.setup.unknown(word)
         return word.text
+
+    @staticmethod
+    def _is_misread(kit: Kit, word: Token) -> bool:
+        devices = (*kit.sensors, *kit.actuators)
+        return word.text in _MISREAD and all(each.name != word.text for each in devices)
 
     def check_connection(self, ping: Token) -> None:
         cursor = self.cursor

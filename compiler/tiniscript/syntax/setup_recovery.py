@@ -14,6 +14,7 @@ from tiniscript.syntax.cursor import AT_END, Cursor
 from tiniscript.syntax.foreign import foreign_header
 from tiniscript.syntax.lexer import END, NEWLINE, ODD, WORD, Token
 from tiniscript.syntax.near import near_at
+from tiniscript.syntax.operators import COMPARISONS
 from tiniscript.syntax.reporter import Reporter, Resumed
 from tiniscript.syntax.suggestions import after_bracket, head_in, inside, is_question
 from tiniscript.words import WORDS, meant_by
@@ -29,7 +30,9 @@ _SEEING = frozenset(
 
 _BARS = (":", "||", "/", "\\", "¦", "!", "¡")  # that stand for the bar whatever follows
 # Signs that mean nothing right behind SI, where an instruction comes after them.
-_FOR_BAR = frozenset((";", ",", "-", "<", ">", "<=", ">=", "=", "+", "*", "/", "%", ")", "{"))
+_FOR_BAR = COMPARISONS | {";", ",", "-", "+", "*", "/", "%", ")", "{"}
+_TITLES = 3  # lines above a program
+_IN_INSTRUCTION = frozenset(("(", "=", "|", "{", "}", "<", ">", ";"))
 _SIGNS = 3  # of them in a row
 _NOTE = re.compile(r"[ \t]*(//|#)(?=[ \t]*[A-Za-z]\w*[ \t]*\()")  # `SI//F(2, 80)`
 
@@ -38,6 +41,31 @@ class SetupRecovery:
     def __init__(self, cursor: Cursor, reporter: Reporter) -> None:
         self.cursor = cursor
         self.reporter = reporter
+
+    def titles(self) -> None:
+        """`Valentina Quispe 5to B`, above the line that begins with SI|: such lines are notes."""
+        cursor, tokens = self.cursor, self.cursor.tokens
+        ends: list[int] = []
+        k = cursor.i
+        while len(ends) < _TITLES and tokens[k].text not in ("SI", "SB"):
+            while tokens[k].kind not in (NEWLINE, END):
+                if tokens[k].kind in _IN_INSTRUCTION:
+                    return
+                k += 1
+            ends.append(k)
+            k = cursor.after_newlines(k)
+        if tokens[k].text not in ("SI", "SB") or tokens[k + 1].kind != "|":
+            return
+        for end in ends:
+            cursor.to_inner()
+            row = tokens[cursor.i : end]
+            for token in row:
+                self.reporter.answer(token)
+            span = Span(row[0].start, row[-1].end)
+            fix = f"// {cursor.source[span]}"
+            self.reporter.report(codes.PROSE, span, None, fix=fix)
+            cursor.i = end
+        cursor.to_inner()
 
     def without_bar(self, word: Token) -> str | None:
         """`SI:F(2, 80)`, `SI°F(2, 80)`, `SI F(2, 80)`: return how the program begins, and go on.
@@ -147,8 +175,13 @@ class SetupRecovery:
         rest, length = WORDS.get(text[2:]), 2  # `SIF(2, 80)`
         if rest is None and text[2:3] in ("L", "I", "1", "_"):
             rest, length = WORDS.get(text[3:]), 3
+        if text == "SIIF" and not any(
+            each.kind in COMPARISONS for each in inside(cursor.tokens, cursor.i + 1)
+        ):
+            rest, length = WORDS["F"], 3  # an I for the bar
         begin = "SI" if text[:2] == "S1" else text[:2]
-        is_glued = text not in WORDS and begin in ("SI", "SB") and rest is not None and rest.is_call
+        is_known = rest is not None and (rest.is_call or rest.role == "block")
+        is_glued = text not in WORDS and begin in ("SI", "SB") and is_known
         if not is_glued or bar.kind != "(" or rest is None:
             return None
         span = Span(first.start, first.start + length)
