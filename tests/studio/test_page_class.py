@@ -103,6 +103,9 @@ def test_three_pupils_share_a_robot(pages: Pages, taught: Class, robot: PtyRobot
     rows = teacher.locator("#class ul").first.locator("li")
     rows.nth(0).filter(has_text="Ana drives ").wait_for()
     rows.nth(2).filter(has_text="Teo waits, place 2").wait_for()
+    for action in ("stop", "class_next"):  # nothing of a turn beside who has none
+        visible = [rows.nth(k).locator(f"[data-text={action}]").is_visible() for k in range(3)]
+        assert visible == [True, False, False]
     rows.nth(0).locator("[data-text=class_see]").click()
     teacher.locator("#class pre").filter(has_text=FOREVER.split(";")[0]).wait_for()
     teacher.click("#stop")
@@ -186,6 +189,7 @@ def test_the_end(pages: Pages, taught: Class, erases: bool) -> None:
     teacher.click("[data-text=class_end]")
     teacher.click("[data-text=class_end_sure]")
     teacher.locator("[data-teacher=class_over]").wait_for(state="attached")
+    assert teacher.locator("#class").inner_text().strip() == "The class is over."
     ana.locator(f"[data-pupil={'class_erased' if erases else 'class_kept'}]").wait_for(
         state="attached"
     )

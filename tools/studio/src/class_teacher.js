@@ -15,6 +15,7 @@ import { text } from './texts.js';
 const LOOK_MS = 1000;
 const SURE_MS = 5000;
 const SILENT_S = 5;
+const OF_A_TURN = '[data-text=stop], [data-text=class_next]'; // what a pupil without a robot needs not
 
 export class Teacher {
   #code = made('strong');
@@ -65,7 +66,7 @@ export class Teacher {
       this.#show(state);
       if (state.over) return;
     } catch {
-      this.#say('class_silent');
+      this.#say('why_host_gone');
     }
     clearTimeout(this.#timer);
     this.#timer = window.setTimeout(() => this.#ask({ do: 'class' }), LOOK_MS);
@@ -76,7 +77,7 @@ export class Teacher {
       const found = await hostPorts();
       this.#ports.replaceChildren(...found.map(({ port, name }) => new Option(shown([name, port].filter(Boolean).join(' · ')), port)));
     } catch {
-      this.#say('class_silent');
+      this.#say('why_host_gone');
     }
   }
 
@@ -102,8 +103,12 @@ export class Teacher {
   #show({ code, turn_s, over, pupils, robots }) {
     this.#code.textContent = code;
     if (document.activeElement !== this.#minutes) this.#minutes.value = String(Math.round(turn_s / 60));
-    if (over) this.#say('class_over');
-    else this.#say('class_count', { pupils: pupils.length, robots: robots.length, waiting: pupils.filter(({ place }) => place).length });
+    if (over) {
+      this.#say('class_over');
+      element('class', HTMLElement).replaceChildren(this.#said); // nobody is left to do the rest
+      return;
+    }
+    this.#say('class_count', { pupils: pupils.length, robots: robots.length, waiting: pupils.filter(({ place }) => place).length });
     const old = this.#rows;
     this.#rows = new Map();
     for (const each of pupils) this.#showPupil(each, old);
@@ -120,6 +125,7 @@ export class Teacher {
       button('class_remove', () => this.#ask({ do: 'class_remove', pupil: number })),
     ]);
     const key = robot ? 'class_drives' : place ? 'class_waits' : silent_s > SILENT_S ? 'class_away' : 'class_writes';
+    for (const each of row.item.querySelectorAll(OF_A_TURN)) /** @type {HTMLElement} */ (each).hidden = !robot;
     put(row.name, shown(name));
     put(row.said, text(key, { robot: shown(robot), place }));
   }
@@ -159,7 +165,7 @@ export class Teacher {
       this.#program.hidden = false;
       this.#program.textContent = answer.text;
     } catch {
-      this.#say('class_silent');
+      this.#say('why_host_gone');
     }
   }
 

@@ -26,8 +26,7 @@ export const CLASS_TEXTS = {
   class_place: ['Your place in the queue: {place} of {waiting}. Robots: {robots}.', 'Tu lugar en la cola: {place} de {waiting}. Robots: {robots}.'],
   class_turn: ['It is your turn. Time left: {time}. Waiting: {waiting}.', 'Es tu turno. Tiempo que queda: {time}. En la cola: {waiting}.'],
   class_turn_alone: ['It is your turn. Nobody waits.', 'Es tu turno. Nadie espera.'],
-  why_turn_over: ['Your turn is over, and the robot was stopped. Ask for a robot again when you want.',
-    'Tu turno terminó y el robot se detuvo. Pide un robot otra vez cuando quieras.'],
+  why_turn_over: ['Your turn is over, and the robot was stopped.', 'Tu turno terminó y el robot se detuvo.'],
   why_turn_none: ['It is not your turn now. Ask for a robot, and wait for your place.', 'Ahora no es tu turno. Pide un robot y espera tu lugar.'],
 
   class_address: ['Pupils open', 'Los alumnos abren'],

@@ -44,7 +44,7 @@ export const TEXTS = {
   copy: ['Copy', 'Copiar'],
   copied: ['Copied.', 'Copiado.'],
   copy_by_hand: ['It is selected: copy it with Ctrl+C.', 'Está seleccionado: cópialo con Ctrl+C.'],
-  earlier: ['Earlier programs on this device', 'Programas anteriores en este equipo'],
+  earlier: ['Earlier programs on this device', 'Programas anteriores en este dispositivo'],
   open_again: ['Open', 'Abrir'],
   open_again_from: ['Open the program of {time}', 'Abrir el programa de {time}'],
   opened_again: ['Opened: the program of {time}', 'Abierto: el programa de {time}'],
