@@ -176,7 +176,7 @@ LINK_TEXTS: dict[str, tuple[str, str]] = {
     "output_stopped": ("tsc: what tsc prints has nowhere to go any more, so the robot on {port} was stopped: it has confirmed it.",
                        "tsc: lo que tsc imprime ya no tiene a dónde ir, así que el robot en {port} se detuvo: lo ha confirmado."),
     "not_confirmed": ("tsc: the robot on {port} has not confirmed the stop. If it moves, lift it, and take its batteries or its plug out. Leave its button alone: it would start a robot that has stopped.",
-                      "tsc: el robot en {port} no ha confirmado que se detuvo. Si se mueve, levántalo y quítale las pilas o el enchufe. No toques su botón: haría arrancar un robot detenido."),
+                      "tsc: el robot en {port} no ha confirmado que se detuvo. Si se mueve, levántalo y quítale las pilas o el cable. No toques su botón: haría arrancar un robot detenido."),
     "stopped_NONE": ("The robot was stopped.", "El robot se detuvo."),
     "stopped_SEQUENCE": ("The robot was stopped from a computer.", "El robot se detuvo desde una computadora."),
     "stopped_MESSAGE": ("The robot was stopped from a computer.", "El robot se detuvo desde una computadora."),
