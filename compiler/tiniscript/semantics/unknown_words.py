@@ -40,7 +40,7 @@ _SHORT = {
     "D": "R", "I": "L", "P": "S", "E": "W", "DE": "R", "IZ": "L", "ES": "W", "AD": "F", "AV": "F",
     "AT": "B", "RE": "B", "BP": "BEEP", "BE": "BEEP", "BIIP": "BEEP",
     "VE": "F", "VOY": "F", "VAMOS": "F", "VAYA": "F", "DALE": "F",
-    "VUELVE": "B", "VUELVO": "B", "VOLVER": "B",
+    "VUELVE": "B", "VUELVO": "B", "VOLVER": "B", "V": "B",
 }  # fmt: skip
 _CURVES = frozenset(("FL", "LF", "FR", "RF"))  # both at once
 # What phones make of a word of the language.

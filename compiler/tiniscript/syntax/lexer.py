@@ -55,7 +55,7 @@ _PATTERN = re.compile(
       | (?P<word>[A-Za-z][A-Za-z0-9_]*)(?!\w)
       | (?P<clock>[0-9]{1,2}:[0-5][0-9](?=[ ]*,)|(?<=[Ww]\()[0-9]{1,2}:[0-5][0-9](?=[ ]*\)))
       | (?P<percent>(?:[0-9]+(?:\.[0-9]+)?|\.[0-9]+)[ ]?%(?=[ ]*[,)]))
-      | (?P<spaced>[0-9]{1,3}[ ]000(?=[ ]*[,;)]))
+      | (?P<spaced>[0-9]{1,3}[ ]000(?=[ ]*[,;)])|[0-9]{1,3}\.[ ]{1,2}[0-9]{1,3}(?=[ ]*,))
       | (?P<shifted>(?:(?<=[<>])|(?<=[<>][ ]))[1-9]=(?=[ ]*\)))
       | (?P<number>(?:[0-9]+(?:\.[0-9]+)?|\.[0-9]+)
             (?![\w.\u00b0]|['\u00b4\u2019][0-9]|["\u201d\u2033][ ]*[,)]))
@@ -255,7 +255,7 @@ class _Repairs:
         return Token(NUMBER, right, *span)
 
     def spaced(self, text: str, span: Span) -> Token:
-        """`1 000`: a thousand."""
+        """`1 000`, `0. 39`: a thousand, and what a phone writes behind a point."""
         right = text.replace(" ", "")
         self.report(codes.BAD_NUMBER, span, found=text, right=right)
         return Token(NUMBER, right, *span)
@@ -265,6 +265,10 @@ class _Repairs:
             digits = "".join(str(int(digit)) for digit in text)
             self.report(codes.BAD_NUMBER, span, found=text, right=digits)
             return Token(NUMBER, digits, *span)
+        before = self._text[max(0, span.start - 9) : span.start].rstrip(SPACES)
+        if not text.strip("_") and before.endswith(("(", ",", "=")):  # a gap to fill: `F(____, 60)`
+            self.report(codes.BAD_NUMBER, span, found=text, right="")
+            return Token(NUMBER, "1", *span)
         plain = _plain(text)
         self.report(codes.BAD_NAME, span, found=text, right=plain)
         return Token(WORD, plain.upper() or "X", *span)

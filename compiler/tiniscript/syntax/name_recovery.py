@@ -348,6 +348,9 @@ class NameRecovery:
         asks = any(token.kind in COMPARISONS or token.text == "NOT" for token in tokens)
         if asks:
             self.in_block.other.choice(first)
+        if first.text == "TIME" and [token.kind for token in tokens[1:]] == ["(", NUMBER, ")"]:
+            whole, fix = Span(first.start, tokens[-1].end), f"W({tokens[2].text})"
+            self.reporter.fail(codes.NOT_AN_INSTRUCTION, first.span, whole, found="TIME", fix=fix)
         sign = next((token for token in tokens if token.kind in SIGNS), first)
         place = sign if asks else first
         fix = head_in(WORDS["IF"], tokens) if asks else ""
