@@ -7,7 +7,9 @@ import pytest
 from tests.pupils.corpus import check
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.rendering import message
+from tiniscript.repairs.edits import applied
 from tiniscript.repairs.fixing import fixed
+from tiniscript.repairs.placing import edits_of
 from tiniscript.source import Source
 
 
@@ -72,3 +74,51 @@ def test_a_block_with_nothing_inside_is_named(program: str, part: str) -> None:
 )
 def test_a_block_that_waits_or_is_to_be_filled_is_not(program: str) -> None:
     assert not any(each.code is codes.EMPTY_BLOCK for each in check(program))
+
+
+@pytest.mark.parametrize(
+    ("program", "right"),
+    [
+        (
+            "LOOP(5)\nIF(DISTANCE < 20)\nS\nEND_LOOP\nENDIF\nS",
+            "LOOP(5)\nIF(DISTANCE < 20)\nS\nENDIF\nEND_LOOP\nS",
+        ),
+        (
+            "LOOP(5);IF(DISTANCE < 20);S;END_LOOP;ENDIF",
+            "LOOP(5);IF(DISTANCE < 20);S;ENDIF;END_LOOP",
+        ),
+    ],
+)
+def test_ends_the_wrong_way_round_are_swapped(program: str, right: str) -> None:
+    (found,) = check(program)
+    assert found.values["swapped"] == "ENDIF"
+    assert applied(program, edits_of(found, Source(program)) or []) == right
+
+
+def test_an_unknown_word_with_a_number_is_the_loop_that_ends_below() -> None:
+    (found,) = check("Loco(4)\nF(1, 60)\nEnd_loop")
+    assert (found.code, found.values["near"]) == (codes.UNKNOWN_WORD, "LOOP")
+    assert len(check("Loco(4)\nF(1, 60)")) == 1
+    assert check("Loco(4)\nF(1, 60)")[0].values["near"] == ""
+
+
+def test_how_much_of_a_line_is_repeated_is_asked() -> None:
+    program = "SI|F(1.3, 60); L(0.39, 60) x4"
+    (found,) = check(program)
+    assert found.values["fix"] == "" and fixed(program, check).text == program
+    assert found.values["all"] == "LOOP(4);F(1.3, 60);L(0.39, 60);END_LOOP"
+    assert found.values["last"] == "LOOP(4);L(0.39, 60);END_LOOP"
+    (found,) = check("LOOP(2); S; END_LOOP; F(1, 50) x3")
+    assert found.values["fix"] == "LOOP(3);F(1, 50);END_LOOP"
+
+
+def test_moves_without_values_get_one_message() -> None:
+    (found,) = check("SI|F; R; F")
+    assert found.values["words"] == "F, R" and found.values["fix"] == ""
+    shown = message(found, Source("SI|F; R; F"), "es").fix
+    assert shown == "Con tus números, como en F(2, 80); R(2, 80); F(2, 80)"
+
+
+def test_a_function_of_python_gets_one_message() -> None:
+    (found,) = check("def v():\n  F(1, 50)\n\nv()\nv()")
+    assert found.values["whole"] == "DEF V; F(1, 50); END_DEF; V; V"

@@ -13,7 +13,10 @@ from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.repairs.edits import Edit
 from tiniscript.source import Source, Span
 
-_NAMES = (codes.NAME_WITH_SPACE, codes.BAD_NAME, codes.EMPTY_BRACKETS)
+_NAMES = (codes.NAME_WITH_SPACE, codes.BAD_NAME, codes.EMPTY_BRACKETS, codes.RESERVED)
+
+MOVES = ("F", "B", "L", "R")
+MANY = 6  # of them that an example has
 
 
 def said_once(found: Sequence[Diagnostic], source: Source) -> list[Diagnostic]:
@@ -29,7 +32,24 @@ def said_once(found: Sequence[Diagnostic], source: Source) -> list[Diagnostic]:
             kept[places[0]] = _with_places([found[k] for k in places], source)
             for k in places[1:]:
                 kept[k] = None
+    bare = [k for k, each in enumerate(found) if _is_bare(each, source)]
+    if len(bare) > 1:
+        first = found[bare[0]]
+        words = ", ".join(dict.fromkeys(found[k].values["word"] for k in bare))
+        example = "; ".join(found[k].values["fix"] for k in bare[:MANY])
+        values = {**first.values, "words": words, "fix": "", "whole": "", "example": example}
+        kept[bare[0]] = first._replace(values=values, place=None)
+        for k in bare[1:]:
+            kept[k] = None
     return [each for each in kept if each is not None]
+
+
+def _is_bare(diagnostic: Diagnostic, source: Source) -> bool:
+    """Whether a word stands without its brackets and without values: `F; R; F`."""
+    said = diagnostic.values
+    is_one = diagnostic.code is codes.MISSING_OPEN and diagnostic.place is None
+    is_one = is_one and bool(said.get("fix"))
+    return is_one and source[diagnostic.span].upper() == said["word"] in MOVES
 
 
 def _with_places(found: Sequence[Diagnostic], source: Source) -> Diagnostic:

@@ -166,7 +166,8 @@ def _sure(found: list[Diagnostic], text: str) -> list[_Repair]:
     source = Source(text)
     repairs = []
     for diagnostic in found[:MANY]:  # the others come when these are made
-        if not diagnostic.is_mistake or diagnostic.code in _GUESSED:
+        is_guess = diagnostic.code in _GUESSED and "ends" not in diagnostic.values
+        if not diagnostic.is_mistake or is_guess:  # a whole block is none: see `whole_blocks`
             continue
         if diagnostic.code is codes.OTHER_LANGUAGE and any(
             is_guessed(word) for word in diagnostic.values.get("found", "").upper().split()

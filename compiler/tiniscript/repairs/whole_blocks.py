@@ -58,13 +58,15 @@ def with_whole_blocks(found: list[Diagnostic], source: Source, check: Check) -> 
     bare = [each for each in of_blocks if _is_bare(each)]
     if not of_blocks or len(text) > LONGEST or len(found) > MANY or "\r" in text:
         return found
-    if not bare and all(each.code is codes.NEVER_ENDS for each in of_blocks):
+    kinds = {each.code for each in of_blocks}
+    if not bare and kinds in ({codes.NEVER_ENDS}, {codes.EMPTY_BRACKETS}):
         return found
     right, repairs = _repaired(text, check)
     is_uncovered = repairs > sum(bool(edits_of(each, source)) for each in found)
     if not (bare or is_uncovered or len(of_blocks) > 1):
         return found
-    heads = [each for each in of_blocks if each.code is not codes.NEVER_ENDS]
+    at_end = (codes.NEVER_ENDS, codes.EMPTY_BRACKETS)
+    heads = [each for each in of_blocks if each.code not in at_end]
     first = (heads or of_blocks)[0]
     block = _differing(text, right, first.span.start, check)
     if block is None:
@@ -80,6 +82,8 @@ def with_whole_blocks(found: list[Diagnostic], source: Source, check: Check) -> 
 
 def _is_structure(diagnostic: Diagnostic) -> bool:
     said = diagnostic.values
+    if diagnostic.code is codes.EMPTY_BRACKETS:
+        return bool(said.get("of_def"))  # `def turn():`
     if diagnostic.code in _HEADED:
         return (said.get("right") or said.get("word", "")) in _OF_BLOCKS
     return diagnostic.code in _STRUCTURE

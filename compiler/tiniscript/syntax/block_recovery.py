@@ -33,6 +33,7 @@ from tiniscript.syntax.suggestions import (
 )
 from tiniscript.syntax.unended import open_above, where_it_ends
 from tiniscript.syntax.vocabulary import Vocabulary
+from tiniscript.syntax.wrong_ends import is_swapped, is_taken_for_header
 from tiniscript.words import ALIASES, BLOCK_ENDS, TURN_WORDS, WORDS, meant_by, nearest
 
 
@@ -241,7 +242,8 @@ class BlockRecovery:
         found = self.cursor.source[span].upper()
         found = found if found in ALIASES else BLOCK_ENDS[word]
         if block is not None and self._is_open(word):
-            self._report_wrong_end(span, found, block)
+            if not is_swapped(self, block, end):
+                self._report_wrong_end(span, found, block)
             self._end_until(word, span)
             self.blocks.end(span)
         elif self._owed:
@@ -257,7 +259,7 @@ class BlockRecovery:
             self._report_wrong_end(span, found, block, fix=BLOCK_ENDS[block.word])
             self._owed += 1
             self.blocks.end(span)
-        elif not self._is_misspelt_header(word):
+        elif not self._is_misspelt_header(word) and not is_taken_for_header(self, word):
             right = WORDS[word].example if word != "DEF" else "DEF DANCE"
             self.reporter.report(codes.NOT_OPEN, span, found=found, right=right)
 

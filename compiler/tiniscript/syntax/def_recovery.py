@@ -107,7 +107,7 @@ class DefRecovery:
             self.reporter.report(codes.NO_BRACKETS_HERE, span, place, **values)
         else:
             span = self.cursor.span_from(name)
-            self.reporter.report(codes.EMPTY_BRACKETS, span, word=name.text)
+            self.reporter.report(codes.EMPTY_BRACKETS, span, word=name.text, of_def=name.text)
 
     def body_of_def(self, block: Block) -> None:
         """`def turn():`: go past the colon. That it lacks its END_DEF is another mistake."""

@@ -319,7 +319,8 @@ class Parser:
         if block is None or block.word != "IF":
             block = self.recovery.in_block.misplaced_arm(word.text, span)
         if block.otherwise is not None:
-            self.reporter.report(codes.AFTER_ELSE, span, found=word.text)
+            line = str(cursor.source.position(block.span.start)[0]) if word.text == "ELSE" else ""
+            self.reporter.report(codes.AFTER_ELSE, span, found=word.text, line=line)
             block.otherwise.clear()
         else:
             block.next_arm(head, span)

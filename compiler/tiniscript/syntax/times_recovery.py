@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import NoReturn
 
 from tiniscript.diagnostics import codes
@@ -12,7 +13,11 @@ from tiniscript.syntax.lexer import NUMBER, WORD, Token
 from tiniscript.syntax.phrases import TIMES
 from tiniscript.syntax.reporter import Reporter
 from tiniscript.syntax.suggestions import after_bracket, shortened
-from tiniscript.words import NUMBER_WORDS, WORDS
+from tiniscript.words import BLOCK_ENDS, NUMBER_WORDS, WORDS
+
+_WORDS = re.compile(r"\W")
+MOST_ON_A_LINE = 8  # instructions before the one that says how often
+_OF_BLOCKS = frozenset((*BLOCK_ENDS, *BLOCK_ENDS.values(), "ELSE", "ELSEIF"))
 
 
 class TimesRecovery:
@@ -98,7 +103,28 @@ class TimesRecovery:
             return
         if _is_command(first) or is_called:
             cursor.skip_instruction()
-            self._loop_of(row[0], Span(first.start, before.end), cursor.span_from(first))
+            body = Span(first.start, before.end)
+            if not is_called:
+                self._all_or_last(row[0], body, cursor.span_from(first))
+            self._loop_of(row[0], body, cursor.span_from(first))
+
+    def _all_or_last(self, number: Token, body: Span, place: Span) -> None:
+        """`F(1, 60); L(1, 60) x4`: how much of the line is done so often is not said."""
+        source = self.cursor.source
+        start = source.text.rfind("\n", 0, body.start) + 1
+        start = max(start, source.text.find("|", start, body.start) + 1)
+        row = [each.strip() for each in source.text[start : body.start].split(";")]
+        row = [each for each in row if each and each.upper() != "START"]
+        is_of_block = any(_WORDS.split(each)[0].upper() in _OF_BLOCKS for each in row)
+        if is_of_block or not 0 < len(row) <= MOST_ON_A_LINE:
+            return
+        head, end = f"LOOP({number.text})", BLOCK_ENDS["LOOP"]
+        values = {
+            "found": shortened(source[place]), "fix": "",
+            "last": f"{head};{source[body]};{end}",
+            "all": ";".join((head, *row, source[body], end)),
+        }  # fmt: skip
+        self.reporter.fail(codes.REPEATED, place, None, **values)
 
     def _loop_of(self, number: Token, body: Span, place: Span) -> NoReturn:
         fix = f"LOOP({number.text});{self.cursor.source[body]};END_LOOP"
