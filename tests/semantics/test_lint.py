@@ -63,6 +63,8 @@ KIT = robots.load("tinibot").kit
         ("M(80, 80);M(-80, -80);W(1)", "TS826"),
         ("WHILE(DISTANCE > 20);F(5, 60);END_WHILE", "TS805"),
         ("F(2, 80)//R(1, 60)", "TS816"),
+        ("F(2, 80) // voy; W(2) // compro; B(2, 80) // regreso", "TS816"),
+        ("F(2, 80) // voy; STOP", "TS816"),
         ("F(2, 80); // r(1,60); S", "TS816"),
         ("SI|F(2, 80);S // W(1) R(1, 60)", "TS816"),
         ("LOOP(2);F(2, 80);END_LOOP // R(1, 60)", "TS816"),

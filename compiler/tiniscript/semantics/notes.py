@@ -1,8 +1,9 @@
 """A warning for instructions that stand in a note: `F(2, 80)//R(1, 60)`.
 
 Knows the notes of a text and what stands before them on their line. Only a note that is a row of
-calls with numbers is taken for a slip, and only behind an instruction, where a `;` would do: a
-whole line may be set aside, and behind a header or `SI|` a note tells what comes.
+calls with numbers, or that has such a call behind a `;`, is taken for a slip, and only behind an
+instruction, where a `;` would do: a whole line may be set aside, and behind a header or `SI|` a
+note tells what comes.
 """
 
 from __future__ import annotations
@@ -18,13 +19,16 @@ from tiniscript.words import WORDS
 
 _CALL = r"(?:[FBLRM]|BEEP)\(\s*-?[0-9.]+\s*,\s*-?[0-9.]+\s*\)|W\(\s*[0-9.]+\s*\)"
 _CALLS = re.compile(rf"/+\s*(?:{_CALL})(?:[;\s]*(?:{_CALL}|STOP|S))*[;\s]*", re.IGNORECASE)
+# `// voy; W(2) // compro`: an instruction behind the note of the one before.
+_SWALLOWED = re.compile(rf"//[^;()]*;\s*((?:{_CALL}|STOP\b).*)", re.IGNORECASE)
 LONGEST = 200  # characters of a note that is looked at
 
 
 def in_notes(notes: Sequence[Token], tokens: Sequence[Token], source: Source) -> list[Diagnostic]:
     """Return the warnings for instructions that the robot does not do."""
     found = []
-    rows = [each for each in notes if len(each.text) <= LONGEST and _CALLS.fullmatch(each.text)]
+    short = [each for each in notes if len(each.text) <= LONGEST]
+    rows = [each for each in short if _CALLS.fullmatch(each.text) or _SWALLOWED.match(each.text)]
     is_ping = [each.text for each in tokens[:2]] == ["PING", "|"]
     depth = k = 0
     for note in rows:
@@ -35,7 +39,10 @@ def in_notes(notes: Sequence[Token], tokens: Sequence[Token], source: Source) ->
         if depth or not source.text[begin : note.start].strip(" \t;"):
             continue
         if _ends_instruction(tokens, k) and not is_ping:
-            values = {"found": note.text.strip("/; \t")}
+            swallowed = _SWALLOWED.match(note.text)
+            rest = swallowed[1].strip("; \t") if swallowed else ""
+            line = rest.partition(";")[0] if "//" in rest else rest
+            values = {"found": rest or note.text.strip("/; \t"), "rest": line}
             found.append(Diagnostic(codes.IN_A_NOTE, note.span, values))
     return found
 

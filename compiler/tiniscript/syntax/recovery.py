@@ -28,9 +28,7 @@ from tiniscript.syntax.operators import SIGNS
 from tiniscript.syntax.phrases import AFTER_HEADER, BETWEEN
 from tiniscript.syntax.reporter import Failed, Reporter, Resumed
 from tiniscript.syntax.setup_recovery import SetupRecovery
-from tiniscript.syntax.suggestions import (
-    shortened,
-)
+from tiniscript.syntax.suggestions import after_bracket, shortened
 from tiniscript.syntax.times_recovery import TimesRecovery
 from tiniscript.syntax.until_recovery import UntilRecovery
 from tiniscript.syntax.value_constructs import ValueConstructs
@@ -245,7 +243,10 @@ class Recovery:
         if text in ("+", "/", "&", "-", "→", "->", ">") and self._is_command(after):
             self.reporter.answer(token)
             shown = shortened(cursor.source.text[first.start : before.end])
-            self.reporter.report(codes.SIGN_BETWEEN, token.span, found=text, before=shown)
+            both = self._at_once(first, before, after) if text in ("+", "&") else ""
+            self.reporter.report(
+                codes.SIGN_BETWEEN, token.span, found=text, before=shown, both=both
+            )
             cursor.i += 1
             raise Resumed
         if kind in SIGNS:
@@ -271,6 +272,19 @@ class Recovery:
             self._separator_missing(first, token, before, header)
         if kind is not WORD:
             raise Failed
+
+    def _at_once(self, first: Token, before: Token, after: Token) -> str:
+        """`F(2, 80) + BEEP(2, 440)`: return the program for both at once, or nothing."""
+        tokens, cursor = self.cursor.tokens, self.cursor
+        move = [each.text for each in tokens[max(0, cursor.i - 6) : cursor.i]]
+        end = after_bracket(tokens, cursor.i + 2) if after.text == "BEEP" else None
+        if first.text not in ("F", "B") or end is None or len(move) < 6 or move[0] != first.text:
+            return ""
+        if move[2] != tokens[cursor.i + 3].text:  # they do not take as long
+            return ""
+        power = move[4] if first.text == "F" else f"-{move[4]}"
+        beep = cursor.source[Span(after.start, tokens[end - 1].end)]
+        return f"M({power}, {power});{beep};S"
 
     def meant(self, word: Token) -> Word | None:
         """Return the command that a word of another language means."""
