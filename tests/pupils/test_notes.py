@@ -45,7 +45,8 @@ def test_a_note_keeps_all_and_changes_nothing(program: str) -> None:
         "otra vez", "de nuevo", "again", "sin parar", "siempre", "hasta la mesa", "despacio",
         "retrocede", "gira", "y gira a la derecha", "B", "S", "STPO", "DANCE", "y DANCE",
         "B(1, 80)", "DANZA", "si no hay pared", "cuando choque", "mientras no haya pared",
-        "AND", "prende la luz", "dos veces", "x3", "X = 5", "tres segundos", "espera 2 segundos", "para", "vuelve",
+        "AND", "prende la luz", "dos veces", "x3", "X = 5", "tres segundos", "espera 2 segundos",
+        "para", "vuelve",
     ],
 )  # fmt: skip
 def test_what_asks_for_something_is_no_note(words: str) -> None:
