@@ -188,7 +188,9 @@ FROZEN_WHILE = _warning("TS823")
 TURNED_ROUND = _warning("TS824")
 EXACT = _warning("TS825")
 UNSEEN_MOTORS = _warning("TS826")
-EMPTY_BLOCK = _warning("TS828")
+KNOWN_ANSWER = _warning("TS827")
+ROUNDED_TIMES = _warning("TS828")
+EMPTY_BLOCK = _warning("TS831")
 
 
 def in_order(found: list[Diagnostic]) -> list[Diagnostic]:

@@ -137,7 +137,10 @@ class _Checker(Scope):
         if node.until is not None and (word is None or word.role not in ("move", "wait")):
             before = self.source[Span(node.span.start, node.until.span.start)]
             start = node.span.start + before.upper().rfind("UNTIL")
-            self.report(codes.UNTIL_NOT_HERE, Span(start, node.span.end), word=node.word)
+            call = self.source[Span(node.span.start, start)].rstrip()
+            asked = f"UNTIL({self.source[node.until.span]})"
+            self.report(codes.UNTIL_NOT_HERE, Span(start, node.span.end), word=node.word,
+                        example=self.ended_by(asked, call, word, made))  # fmt: skip
             node = node._replace(until=None)
         if word is None:
             self.kit_or_def(node, made)
@@ -184,6 +187,18 @@ class _Checker(Scope):
             made.append(ir.Beep(values[0].terms, values[1].terms, span))
         else:
             made.append(ir.Show(values[0].terms, values[0].kind == "yes_no", span))
+
+    def ended_by(self, asked: str, call: str, word: Word | None, made: list[Statement]) -> str:
+        """Return how something is ended by a question: `F(5, 60); S UNTIL(c)`, `M(5, 5) UNTIL(c)`.
+
+        `call` is what UNTIL stands behind, `made` what comes before that.
+        """
+        before = made[-1] if made else None
+        if word is not None and word.role == "motors":
+            return f"{call};W(FOREVER) {asked};S"
+        if isinstance(before, ir.Move) and word is not None and word.role == "stop":
+            return f"{self.source[before.span]} {asked}" if before.until is None else asked
+        return f"{WORDS['F'].example} {asked}"
 
     def count(self, word: Word, arguments: tuple[ast.Argument, ...], span: Span) -> None:
         spans = [argument.span for argument in arguments]

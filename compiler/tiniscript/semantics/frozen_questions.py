@@ -13,8 +13,8 @@ from typing import NamedTuple
 
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic
-from tiniscript.fixed_point import as_text
-from tiniscript.kit import Device, Kit
+from tiniscript.fixed_point import HIGHEST, as_text
+from tiniscript.kit import NUMBER, Device, Kit
 from tiniscript.semantics.ir import (
     Arm,
     Assign,
@@ -22,6 +22,7 @@ from tiniscript.semantics.ir import (
     Call,
     Expression,
     If,
+    Loop,
     Move,
     Program,
     Statement,
@@ -39,7 +40,9 @@ SHORT = 1000  # ms: a loop looks again after so long
 MANY_VALUES = 100_000  # thousandths: a sensor with such a range is hardly ever at one of them
 _CHANGING = frozenset(("SENSOR", "TIME", "RANDOM"))
 _MIRRORED = {"LT": "GT", "LE": "GE", "GT": "LT", "GE": "LE", "EQ": "EQ", "NE": "NE"}
-_TURNED = {"GT": "LT", "GE": "LE"}
+# By the way that the robot goes, what is true where the robot stands, and what comes true.
+_TURNED = {"F": {"GT": "LT", "GE": "LE"}, "B": {"LT": "GT", "LE": "GE"}}
+_TIME = Device("TIME", NUMBER, "s", 0, HIGHEST)
 _REACHED = {"F": "LE", "B": "GE"}  # what is sure to come true, by the way that the robot goes
 
 
@@ -62,24 +65,37 @@ class FrozenQuestions:
         for statement in every(program):
             if isinstance(statement, Assign):
                 self._set_to.setdefault(statement.variable, []).append(statement.value)
+        # By a loop's start, the variables that get a value in it; None where it does not drive.
+        self._in_loops: dict[int, set[int] | None] = {}
         self._sets: list[set[int]] = []  # for each DEF, the variables that it gives a value
         for procedure in program.procedures:
             self._sets.append(self._set_in(procedure.body))
         self.found: list[Diagnostic] = []
 
-    def look_at(self, statement: Statement, is_repeated: bool, asked: Collection[int]) -> None:
+    def look_at(
+        self,
+        statement: Statement,
+        is_repeated: bool,
+        asked: Collection[int],
+        outermost: Loop | While | None,
+    ) -> None:
         """Look at one statement.
 
-        It is in a loop or a DEF where `is_repeated`. The questions around it ask the sensors
-        `asked`: an answer may be known there.
+        It is in a loop or a DEF where `is_repeated`; `outermost` is the loop around all others. The
+        questions around it ask the sensors `asked`: an answer may be known there.
         """
         if isinstance(statement, Move) and statement.until is not None:
             self._until(statement, statement.until.condition, is_repeated, asked)
         elif isinstance(statement, While):
             self._while(statement)
+            head = Span(statement.span.start, statement.span.start + len("WHILE"))
+            self._known(self._comparison(statement.condition), head)
         elif isinstance(statement, If):
             for arm in statement.arms:
-                self._exact_if(arm)
+                if not self._known(self._comparison(arm.condition), arm.span):
+                    self._exact_if(arm)
+                if outermost is not None:
+                    self._frozen_if(arm, outermost)
 
     # -- UNTIL --------------------------------------------------------------------------------
 
@@ -93,19 +109,23 @@ class FrozenQuestions:
                 self._frozen(move, variables)
             return
         comparison = self._comparison(condition)
-        if comparison is None:
+        if comparison is None or self._known(comparison, move.span):
             return
         device, op, number = comparison
-        is_ahead = move.direction == "F" and device.unit in ("cm", "mm", "m")
-        if op in _TURNED and is_ahead and not set(asked) & _sensors(condition):
-            question = f"{device.name} {SIGN_OF[_TURNED[op]]} {as_text(number)}"
-            self._report(codes.TURNED_ROUND, move.span, sensor=device.name, number=as_text(number),
-                         fix=self._with(move, question))  # fmt: skip
+        is_distance = device.unit in ("cm", "mm", "m")
+        is_turned = op in _TURNED.get(move.direction, {}) and is_distance
+        if is_turned and not set(asked) & _sensors(condition):
+            sign = SIGN_OF[_TURNED[move.direction][op]]
+            other = self._with(move, f"{device.name} {sign} {as_text(number)}")
+            is_ahead = move.direction == "F"
+            number_is, repair = ("number", "fix") if is_ahead else ("far", "away")
+            values = {"sensor": device.name, number_is: as_text(number), repair: other}
+            self.found.append(Diagnostic(codes.TURNED_ROUND, move.span, values))
         elif op == "EQ" and _is_between(device, number):
-            sign = SIGN_OF.get(_REACHED.get(move.direction, ""), "")
-            is_distance = device.unit in ("cm", "mm", "m")
-            question = f"{device.name} {sign} {as_text(number)}"
-            fix = self._with(move, question) if sign and is_distance else ""
+            reached = "GE" if device is _TIME else _REACHED.get(move.direction, "")
+            question = f"{device.name} {SIGN_OF.get(reached, '')} {as_text(number)}"
+            is_sure = bool(reached) and (is_distance or device is _TIME)
+            fix = self._with(move, question) if is_sure else ""
             self._report(codes.EXACT, move.span, sensor=device.name, number=as_text(number),
                          word="UNTIL", fix=fix)  # fmt: skip
 
@@ -159,6 +179,39 @@ class FrozenQuestions:
                 found |= self._sets[statement.procedure]
         return found
 
+    def _frozen_if(self, arm: Arm, outermost: Loop | While) -> None:
+        """`D = DISTANCE; LOOP(FOREVER); IF(D < 20) …`: it moves, and looks at what was before."""
+        variables = _variables(arm.condition)
+        held = self._sensors_of(variables)
+        if not held or any(term.op in _CHANGING for term in arm.condition):
+            return
+        place = outermost.span.start
+        if place not in self._in_loops:
+            drives = any(
+                isinstance(each, Move) and each.direction in ("F", "B")
+                for each in walk(outermost.body)
+            )
+            self._in_loops[place] = self._set_in(outermost.body) if drives else None
+        changed = self._in_loops[place]
+        if changed is None or changed & set(variables):
+            return
+        name = self._program.variables[variables[0]]
+        word = "IF" if self._source[arm.span][:1].upper() == "I" else "ELSEIF"
+        question = _replaced(question_of(self._source, arm.span, word), held)
+        fix = f"{word}({question})" if question else ""
+        self._report(codes.FROZEN_WHILE, arm.span, name=name, sensor=held[name], fix=fix)
+
+    def _known(self, comparison: _Comparison | None, span: Span) -> bool:
+        """Warn where the answer is known: `LIGHT_L > 5000`, of a sensor that goes up to 1023."""
+        if comparison is None:
+            return False
+        device, op, number = comparison
+        answer = _answer(device, op, number)
+        if answer:
+            self._report(codes.KNOWN_ANSWER, span, sensor=device.name, low=as_text(device.low),
+                         high=as_text(device.high), answer=answer)  # fmt: skip
+        return bool(answer)
+
     def _exact_if(self, arm: Arm) -> None:
         comparison = self._comparison(arm.condition)
         if comparison is not None:
@@ -174,11 +227,12 @@ class FrozenQuestions:
         if len(condition) != 3 or condition[2].op not in _MIRRORED:
             return None
         first, second, sign = condition[0], condition[1], condition[2].op
-        if (first.op, second.op) == ("NUMBER", "SENSOR"):
+        if first.op == "NUMBER":
             first, second, sign = second, first, _MIRRORED[sign]
-        if (first.op, second.op) != ("SENSOR", "NUMBER"):
+        if first.op not in ("SENSOR", "TIME") or second.op != "NUMBER":
             return None
-        return _Comparison(self._kit.sensors[first.value], sign, second.value)
+        device = _TIME if first.op == "TIME" else self._kit.sensors[first.value]
+        return _Comparison(device, sign, second.value)
 
     def _sensors_of(self, variables: list[int]) -> dict[str, str]:
         """Return the sensor that each of these variables holds; nothing where one holds another."""
@@ -208,6 +262,28 @@ def _is_between(device: Device, number: int) -> bool:
     """Whether a number is one of very many that a sensor may read, and not the last."""
     is_fine = not device.is_yes_no and device.high - device.low >= MANY_VALUES
     return is_fine and device.low < number < device.high
+
+
+def _answer(device: Device, op: str, number: int) -> str:
+    """Return the answer that a comparison always has, as a term; nothing where it may change."""
+    if device.is_yes_no:
+        return ""
+    is_never = {
+        "LT": number <= device.low,
+        "LE": number < device.low,
+        "GT": number >= device.high,
+        "GE": number > device.high,
+        "EQ": not device.low <= number <= device.high,
+    }
+    is_always = {
+        "LT": number > device.high,
+        "LE": number > device.high,
+        "GT": number < device.low,
+        "GE": number < device.low,
+    }
+    if is_never.get(op):
+        return "answer_no"
+    return "answer_yes" if is_always.get(op) else ""
 
 
 def _replaced(question: str, held: Mapping[str, str]) -> str:

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic
-from tiniscript.fixed_point import as_text
+from tiniscript.fixed_point import as_text, whole
 from tiniscript.kit import Kit
 from tiniscript.semantics.frozen_questions import FrozenQuestions
 from tiniscript.semantics.ir import (
@@ -53,6 +53,7 @@ class _Around(NamedTuple):
     is_repeated: bool = False  # by a loop, or in a DEF
     is_last: bool = False
     asked: frozenset[int] = frozenset()  # sensors of the questions around it
+    outermost: Loop | While | None = None  # of the loops around it
 
 
 class _Look:
@@ -99,15 +100,20 @@ def _look_at(body: Body, look: _Look, around: _Around) -> None:
             break
     for statement in body:
         _expressions(statement, found)
-        look.frozen.look_at(statement, around.is_repeated, around.asked)
+        look.frozen.look_at(statement, around.is_repeated, around.asked, around.outermost)
         if isinstance(statement, Move):
             found += of_power(statement) if statement.until is not None else of_move(statement)
         if isinstance(statement, Beep):
             found += of_beep(statement)
-        inside = _Around(None, around.is_repeated, False, around.asked | _asked(statement))
+        inside = around._replace(
+            loop=None,
+            is_last=around.is_last and isinstance(statement, If) and statement is body[-1],
+            asked=around.asked | _asked(statement),
+        )
         if isinstance(statement, (Loop, While)):
-            inside = inside._replace(loop=statement, is_repeated=True)
-            _never_repeats(statement, found)
+            outermost = around.outermost or statement
+            inside = inside._replace(loop=statement, is_repeated=True, outermost=outermost)
+            _odd_times(statement, found)
             if _is_forever(statement) and not (
                 loops_end(statement.body) or _takes_time(statement.body, program)
             ):
@@ -148,12 +154,15 @@ def _expressions(statement: Statement, found: list[Diagnostic]) -> None:
             return
 
 
-def _never_repeats(loop: Loop | While, found: list[Diagnostic]) -> None:
-    """`LOOP(0)`, `LOOP(-1)`, which other languages take for one without an end."""
+def _odd_times(loop: Loop | While, found: list[Diagnostic]) -> None:
+    """`LOOP(0)`, `LOOP(-1)`, which other languages take for one without an end; `LOOP(4.5)`."""
     times = None if isinstance(loop, While) or loop.times is None else constant(fold(loop.times))
     if times is not None and times < 500:  # it is rounded
         head = Span(loop.span.start, loop.span.start + len("LOOP"))
         _report(found, codes.NEVER_REPEATS, head, times=as_text(times))
+    elif times is not None and times % 1000:
+        head = Span(loop.span.start, loop.span.start + len("LOOP"))
+        _report(found, codes.ROUNDED_TIMES, head, times=as_text(times), right=str(whole(times)))
 
 
 def _is_forever(statement: Loop | While) -> bool:

@@ -87,6 +87,8 @@ def of_beep(beep: Beep) -> list[Diagnostic]:
     """Return what there is to say of a sound that lasts longer than anybody can bear."""
     time, hertz = _number(beep.time), _number(beep.hertz)
     found: list[Diagnostic] = []
+    if time is not None and time <= 0:
+        _report(found, codes.MOVE_OF_NO_TIME, beep.span, word="BEEP")
     if time is None or hertz is None or time < LONG_BEEP:
         return found
     # of an Arduino: `tone(pin, hertz, milliseconds)`; or in this order, with milliseconds

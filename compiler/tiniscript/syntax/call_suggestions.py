@@ -28,6 +28,7 @@ _TIME_AND_POWER = (0, 1)  # their places
 _HAS_DECIMALS = ("s",)  # units whose values are often no whole numbers
 _NUMBER = re.compile(r"[0-9]+(\.[0-9]+)?|\.[0-9]+")
 _DIVIDED = re.compile(r"([0-9]+)(?:\s*[-/]\s*|\.(?=[6-9]0|100))([0-9]{2}|100)(?<=0)")  # `2.80`
+_UNTIL = re.compile(r"(?i)\s*\bUNTIL\b.*")  # with its question
 _ASKS = re.compile(r"[<>=]")  # a comparison, which no number has
 _WORDS_FOR_YES_NO = {
     "ON": "TRUE", "YES": "TRUE", "1": "TRUE", "ENCENDIDO": "TRUE", "PRENDIDO": "TRUE",
@@ -75,7 +76,7 @@ def count_diagnostic(
         "usage": word.usage,
         "fix": fix,
         "example": "" if texts else word.example,
-        **_said_of_count(texts, word),
+        **_said_of_count(texts, word, _UNTIL.search(source[span])),
         "wanted": str(wanted),
         "found": str(len(arguments)),
     }
@@ -93,22 +94,26 @@ def _timed_motors(texts: Sequence[str], word: Word) -> str:
     return ""
 
 
-def _said_of_count(texts: Sequence[str], word: Word) -> dict[str, str]:
+def _said_of_count(texts: Sequence[str], word: Word, until: re.Match[str] | None) -> dict[str, str]:
     """Return what is said of a wrong number of values: `power` of F(80), `spare` of F(2, 80, 5).
 
-    `kept` is W(2) for W(2, 80): a wait has no power.
+    `kept` is W(2) for W(2, 80): a wait has no power. With UNTIL the time may be FOREVER.
     """
     numbers = [float(text) if _NUMBER.fullmatch(text) else -1 for text in texts]
     said = {"power": "", "spare": "", "kept": ""}
     if word.role == "move" and len(texts) == 1 and LONG_TIME_S <= numbers[0] <= _MOST_POWER:
-        said["power"] = f"{word.text}(time, {texts[0]})"
+        said["power"] = f"{word.text}({word.arguments[0].name}, {texts[0]})"
+        if until is not None:
+            said["power"] = f"{word.text}(FOREVER, {texts[0]}){until[0]}"
         said["number"] = texts[0]
     elif len(texts) > len(word.arguments) and min(numbers) >= 0:
         said["spare"] = word.usage
+        if word.role == "move" and numbers[0] < LONG_TIME_S <= numbers[1] <= _MOST_POWER:
+            said["spare"] = _call(word, texts[:2])
         is_timed = word.role == "wait" and len(texts) == len(_TIME_AND_POWER)
-        for time, power in (_TIME_AND_POWER, _TIME_AND_POWER[::-1]):
-            if is_timed and 0 <= numbers[time] < LONG_TIME_S <= numbers[power] <= _MOST_POWER:
-                said["kept"] = _call(word, [texts[time]])
+        for first, second in (_TIME_AND_POWER, _TIME_AND_POWER[::-1]):
+            if is_timed and 0 <= numbers[first] < LONG_TIME_S <= numbers[second] <= _MOST_POWER:
+                said["kept"] = _call(word, [texts[first]])
     return said
 
 
