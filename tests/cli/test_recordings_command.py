@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from time import monotonic
 
 import pytest
 
@@ -15,6 +16,8 @@ from tiniscript.cli.commands import upload
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.made import is_foreign
 from tiniscript.cli.robot import recorder
+from tiniscript.cli.robot.connect import Connection
+from tiniscript.cli.robot.event_printer import EventPrinter
 from tiniscript.cli.robot.recorder import Recorder
 from tiniscript.cli.robot.run_monitor import Saving
 from tiniscript.cli.texts.recordings import RECORDING_TEXTS
@@ -195,21 +198,21 @@ def test_a_recording_has_an_end_and_no_more(
         ((("MISSED", "3"), ("SHOW", "2"), ("DONE", "")), ["SHOW 1", "MISSED"]),
         ((("TEXT", "hello"), ("STOPPED", "BUTTON"), ("DONE", "")), ["SHOW 1", "STOPPED"]),
     ):
-        made = Recorder(str(file), CHECKSUM, "tinibot", has_begun=True)
+        made = Recorder(str(file), CHECKSUM, "tinibot", began_s=monotonic())
         made.add(7, "SHOW", "1")
         for event in ends:
             made.add(7, *event)
         made.close()
         assert recorded(file) == wanted
     monkeypatch.setattr(recorder, "MOST", 3)
-    made = Recorder(str(file), CHECKSUM, "tinibot", has_begun=False)
+    made = Recorder(str(file), CHECKSUM, "tinibot", began_s=None)
     for k in range(9):
         made.add(7, "SHOW", str(k))
     made.end("LOST")
     made.close()
     assert recorded(file) == ["SHOW 0", "SHOW 1", "STOPPED"]
     assert read(file.read_bytes()).events[0] == Recorded(0, "SHOW 0")  # it began with that
-    made = Recorder(str(file), CHECKSUM, "tinibot", has_begun=True)
+    made = Recorder(str(file), CHECKSUM, "tinibot", began_s=monotonic())
     monkeypatch.setattr(recorder, "monotonic", lambda: 1e9)
     made.add(7, "SHOW", "1")
     made.close()
@@ -221,9 +224,9 @@ def test_a_recording_ends_when_the_run_does(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, event: str, wanted: str
 ) -> None:
     """A robot that hangs after its first value and is stopped by hand has not done the same."""
-    file, clock = tmp_path / "run.jsonl", iter((10.0, 10.2, 70.0))
+    file, clock = tmp_path / "run.jsonl", iter((10.2, 70.0))
     monkeypatch.setattr(recorder, "monotonic", lambda: next(clock))
-    made = Recorder(str(file), CHECKSUM, "tinibot", has_begun=True)
+    made = Recorder(str(file), CHECKSUM, "tinibot", began_s=10.0)
     made.add(7, "SHOW", "5")
     if event:
         made.end(event)
@@ -246,12 +249,19 @@ def test_after_ctrl_c_saving_is_no_time_of_the_run(
     def saves(_: Saving) -> None:
         now_s[0] += 30
 
+    def printer(*given: object) -> EventPrinter:
+        now_s[0] += 3  # the robot runs while this is loaded, and its time counts from before
+        return made(*given)  # type: ignore[arg-type]
+
+    made = Connection.event_printer
+    monkeypatch.setattr(Connection, "event_printer", printer)
+    monkeypatch.setattr(upload, "monotonic", lambda: now_s[0])
     monkeypatch.setattr(recorder, "monotonic", lambda: now_s[0])
     monkeypatch.setattr(upload, "looked_after", ctrl_c)
     monkeypatch.setattr(Saving, "wait", saves)
     done = tsc("upload", "-e", "SI|F(9, 60)", "--virtual", "--record", file)
     assert (done.code, "confirmed" in done.err) == (2, True), done.err
-    assert read(file.read_bytes()).events == (Recorded(2000, "STOPPED"),)
+    assert read(file.read_bytes()).events == (Recorded(5000, "STOPPED"),)
 
 
 def test_a_recording_is_no_longer_than_one_may_be(
@@ -259,19 +269,19 @@ def test_a_recording_is_no_longer_than_one_may_be(
 ) -> None:
     file, now_s = tmp_path / "run.jsonl", [0.0]
     monkeypatch.setattr(recorder, "monotonic", lambda: now_s[0])
-    made = Recorder(str(file), CHECKSUM, "tinibot", has_begun=True)
+    made = Recorder(str(file), CHECKSUM, "tinibot", began_s=0.0)
     now_s[0] = 1e9
     made.close()
     assert read(file.read_bytes()).events == (Recorded(600_000, "STOPPED"),)
-    made = Recorder(str(file), CHECKSUM, "tinibot", has_begun=False)
+    made = Recorder(str(file), CHECKSUM, "tinibot", began_s=None)
     made.close()
     assert read(file.read_bytes()).events == (Recorded(0, "STOPPED"),)
 
 
 def test_a_place_without_room_says_so(tmp_path: Path) -> None:
     with pytest.raises(CommandError) as refused:
-        Recorder(str(tmp_path / "no" / "run.jsonl"), CHECKSUM, "tinibot", has_begun=True)
+        Recorder(str(tmp_path / "no" / "run.jsonl"), CHECKSUM, "tinibot", began_s=monotonic())
     assert "with --record" in refused.value.sentence("en")
     if Path("/dev/full").exists():
         with pytest.raises(CommandError, match="unwritable_recording"):
-            Recorder("/dev/full", CHECKSUM, "tinibot", has_begun=True)
+            Recorder("/dev/full", CHECKSUM, "tinibot", began_s=monotonic())

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import sys
 from argparse import Namespace
+from time import monotonic
 from typing import TYPE_CHECKING
 
 from tiniscript.cli import images, inputs, outputs
@@ -90,6 +91,7 @@ def _upload(
     progress = Progress(language, 1 + len(ready.image.later) + len(ready.image.code))
     try:
         values = brought(connection, ready, options, progress.draw)
+        began_s = monotonic()  # before anything else is loaded or told
     finally:
         progress.end()
     printer = connection.event_printer(options.json, ready.places)
@@ -98,7 +100,7 @@ def _upload(
         from tiniscript.cli.robot.recorder import Recorder
 
         robot = connection.profile.name
-        recorder = Recorder(options.record, values.program, robot, has_begun=True)
+        recorder = Recorder(options.record, values.program, robot, began_s)
         printer.rows = recorder.add
     saving = Saving(connection, printer, values)
     try:

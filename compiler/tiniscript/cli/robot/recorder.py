@@ -16,16 +16,16 @@ ENDS = ("DONE", "FAULT", "STOPPED", "MISSED")
 
 
 class Recorder:
-    """The recording of a run that has just begun, or that begins with its first event.
+    """The recording of a run that began at `began_s` (monotonic); None: at its first event.
 
     Until there is one, the old file stays. Raises CommandError where it cannot be written.
     """
 
-    def __init__(self, name: str, program: int, robot: str, has_begun: bool) -> None:
+    def __init__(self, name: str, program: int, robot: str, began_s: float | None) -> None:
         from tiniscript.studio.recordings import VERSION
 
         head = {"tiniscript_recording": VERSION, "program": f"{program:08x}", "robot": robot}
-        self._began_s = monotonic() if has_begun else None
+        self._began_s = began_s
         self._count = 0
         self._is_over = False
         self._rows = Rows(name, (json.dumps(head) + "\n").encode(), "unwritable_recording")
