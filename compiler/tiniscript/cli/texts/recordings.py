@@ -33,7 +33,7 @@ RECORDING_TEXTS = {
     "replay_virtual_more": ("{place}: the virtual robot says {virtual}, the real one nothing more. Comparisons that agreed before: {count}.",
                             "{place}: el robot virtual dice {virtual}; el de verdad, nada más. Comparaciones iguales hasta ahí: {count}."),
     "replay_other_program": ("The recording is of another program. Name the program that ran then, for the same robot.",
-                             "La grabación es de otro programa. Indica el programa que marchaba entonces, para el mismo robot."),
+                             "La grabación es de otro programa. Indica el programa que se ejecutó entonces, para el mismo robot."),
     "replay_line": ("Line {line}", "Línea {line}"),
     "replay_end": ("The end", "El final"),
     "replay_at": ("{what} after {seconds} s", "{what} a los {seconds} s"),
