@@ -11,8 +11,6 @@ from collections.abc import Iterator
 from contextlib import ExitStack, closing, contextmanager, suppress
 from importlib.util import find_spec
 from ipaddress import ip_address
-from pathlib import Path
-from tempfile import gettempdir
 from typing import TYPE_CHECKING
 
 import pytest
@@ -32,20 +30,20 @@ pytestmark = pytest.mark.skipif(bool(WHY), reason=WHY or "there is zeroconf")
 # Every announcement is heard by all tests of this computer: names are of one test process, and
 # those that list what is announced, or fill the list, run one at a time.
 HERE = os.getpid()
-LISTING = Path(gettempdir()) / f"tiniscript-listing-{getattr(os, 'getuid', int)()}"
 FAR = f"far-{HERE}.local."
 LATE_S = 0.04  # each way
 LOST = 0.05  # of the pieces
 
 
 @pytest.fixture
-def listing() -> Iterator[None]:
+def listing(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
     """No other test lists what is announced, or announces what has no address, meanwhile."""
+    shared = tmp_path_factory.getbasetemp().parent / "listing"  # by the workers of a run
     end_s = time.monotonic() + HANGS_S
     with ExitStack() as stack:
         while True:
             with suppress(TimeoutError):
-                stack.enter_context(files.alone(LISTING))
+                stack.enter_context(files.alone(shared))
                 break
             assert time.monotonic() < end_s, "another test does not end"
         yield

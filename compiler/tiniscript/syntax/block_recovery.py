@@ -21,7 +21,7 @@ from tiniscript.syntax.header_recovery import HeaderRecovery
 from tiniscript.syntax.lexer import NEWLINE, NUMBER, ODD, WORD, Token
 from tiniscript.syntax.one_line import line_of_block
 from tiniscript.syntax.operators import COMPARISONS
-from tiniscript.syntax.phrases import AFTER_HEADER, TITLES
+from tiniscript.syntax.phrases import AFTER_HEADER, COUNTING, TITLES
 from tiniscript.syntax.reporter import Failed, Reporter, Resumed
 from tiniscript.syntax.suggestions import (
     OPERATOR_WORDS,
@@ -277,8 +277,9 @@ class BlockRecovery:
         cursor = self.cursor
         cursor.i += 1
         named = cursor.token
-        if named.text == "SI" or (named.kind is WORD and meant_by(named.text) in BLOCK_ENDS):
-            cursor.i += 1  # `FIN SI`, `FIN MIENTRAS`
+        is_header = named.text in ("SI", *COUNTING) or meant_by(named.text) in BLOCK_ENDS
+        if named.kind is WORD and is_header:
+            cursor.i += 1  # `FIN SI`, `FIN MIENTRAS`, `FIN PARA`
         block = self.blocks.innermost
         if named is cursor.token and block is not None and self._else_comes():
             self.reporter.report(codes.EXTRA_WORD, end.span, found=end.text, fix="")

@@ -6,7 +6,7 @@ is too much.
 
 from __future__ import annotations
 
-from itertools import pairwise, takewhile
+from itertools import takewhile
 from typing import TYPE_CHECKING, NoReturn
 
 from tiniscript.diagnostics import codes
@@ -69,9 +69,6 @@ if TYPE_CHECKING:
     from tiniscript.syntax.parser import Parser
 
 
-_LINES = 8  # of a name that a message lists
-
-
 class NameRecovery:
     def __init__(
         self,
@@ -111,23 +108,13 @@ class NameRecovery:
             self.in_block.begin_reported("LOOP", place)
             self.in_block.go_on()
         self.reporter.reserved_words.add(name.text)
-        right, everywhere = other_name(name.text), self._lines_of(name)
+        right, everywhere = (
+            other_name(name.text),
+            self.in_block.known.lines_of(name.text, self.cursor.source),
+        )
         self.reporter.report(
             codes.RESERVED, name.span, word=name.text, right=right, everywhere=everywhere
         )
-
-    def _lines_of(self, name: Token) -> str:
-        """Return the lines in which a word is a variable, `1, 2, 4`; nothing for one line alone."""
-        tokens, depth = self.cursor.tokens, 0
-        found: dict[int, None] = {}
-        is_value = WORDS[name.text].role == "value"
-        for token, after in pairwise(tokens):
-            depth = 0 if token.kind == ";" else depth + (token.kind == "(") - (token.kind == ")")
-            if token.text == name.text and (is_value or depth > 0 or after.kind == "="):
-                found[self.cursor.line_of(token)] = None
-            if len(found) > _LINES:
-                return ""
-        return ", ".join(map(str, found)) if len(found) > 1 else ""
 
     def unread_assignment(self, name: Token) -> None:
         """Remember that a variable is set here, to a value that cannot be read."""

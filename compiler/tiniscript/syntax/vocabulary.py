@@ -12,12 +12,14 @@ from functools import cached_property
 from itertools import pairwise
 
 from tiniscript.kit import Kit
+from tiniscript.source import Source
 from tiniscript.syntax.call_suggestions import actuator_word
 from tiniscript.syntax.cursor import AT_END
 from tiniscript.syntax.lexer import NUMBER, WORD, Token
 from tiniscript.words import NUMBER_WORDS, WORDS, Word, meant_by
 
 LONGEST_NAME = 4  # words of a name of a DEF
+_LINES = 8  # of a name that a message lists
 _FARTHEST = 2000  # tokens in which a call of it is looked for
 _WORD = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 
@@ -50,6 +52,19 @@ class Vocabulary:
         return frozenset(
             name.text for name, sign in pairs if name.kind is WORD and sign.kind == "="
         )
+
+    def lines_of(self, name: str, source: Source) -> str:
+        """Return the lines in which a word is a variable, `1, 2, 4`; nothing for one line alone."""
+        depth = 0
+        found: dict[int, None] = {}
+        is_value = WORDS[name].role == "value"
+        for token, after in pairwise(self._tokens):
+            depth = 0 if token.kind == ";" else depth + (token.kind == "(") - (token.kind == ")")
+            if token.text == name and (is_value or depth > 0 or after.kind == "="):
+                found[source.position(token.start)[0]] = None
+            if len(found) > _LINES:
+                return ""
+        return ", ".join(map(str, found)) if len(found) > 1 else ""
 
     def add(self, name: str) -> None:
         """Know a DEF that is written without its word."""
@@ -116,6 +131,8 @@ def name_at(tokens: Sequence[Token], start: int) -> list[str]:
             return words[:1]
         words.append(tokens[k].text)
         k += 1
+    if not _is_called(tokens, start, k - 1) and _is_called(tokens, start, start):
+        return words[:1]  # `DEF JUMP my jump … JUMP`
     return words
 
 
