@@ -77,3 +77,12 @@ def test_values_of_a_def_are_not_lost(call: str) -> None:
 def test_numbers_of_lines_are_not_how_often() -> None:
     program = "DEF V;S;END_DEF\n1 F(1, 50)\n2 V"
     assert "LOOP" not in fixed(program, check).text
+
+
+@pytest.mark.parametrize(
+    ("program", "name"), [("GIRITO\nGIRITO\nGIRITO", "GIRITO"), ("F(1, 50);PASO", "PASO"), ("hola", "")]
+)
+def test_a_word_that_no_def_teaches_gets_one_message(program: str, name: str) -> None:
+    (found,) = check(program)
+    assert (found.code is codes.UNTAUGHT) == bool(name)
+    assert found.values.get("name", "") == name

@@ -122,3 +122,8 @@ def test_moves_without_values_get_one_message() -> None:
 def test_a_function_of_python_gets_one_message() -> None:
     (found,) = check("def v():\n  F(1, 50)\n\nv()\nv()")
     assert found.values["whole"] == "DEF V; F(1, 50); END_DEF; V; V"
+
+
+def test_dots_around_what_goes_inside_are_no_more_than_a_new_line() -> None:
+    (found,) = check("LOOP(4) ... F(1, 60); S ... END_LOOP")
+    assert found.values["fix"] == "LOOP(4);F(1, 60);S;END_LOOP"

@@ -148,6 +148,7 @@ OTHER_ROBOT = _mistake("TS119")
 NO_BUTTON = _mistake("TS120")
 WHICH_WAY = _mistake("TS121")
 SWITCH_WHAT = _mistake("TS122")
+UNTAUGHT = _mistake("TS129")
 # values
 WANTS_NUMBER = _mistake("TS201")
 WANTS_CONDITION = _mistake("TS202")

@@ -6,6 +6,7 @@ and its repair changes all of them.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 
 from tiniscript.diagnostics import codes
@@ -16,6 +17,7 @@ from tiniscript.source import Source, Span
 _NAMES = (codes.NAME_WITH_SPACE, codes.BAD_NAME, codes.EMPTY_BRACKETS, codes.RESERVED)
 
 MOVES = ("F", "B", "L", "R")
+TAUGHT = ("SALTO", "PASO", "BAILE", "JUMP", "STEP", "DANCE")  # by the poster and the lessons
 MANY = 6  # of them that an example has
 
 
@@ -41,7 +43,33 @@ def said_once(found: Sequence[Diagnostic], source: Source) -> list[Diagnostic]:
         kept[bare[0]] = first._replace(values=values, place=None)
         for k in bare[1:]:
             kept[k] = None
+    _untaught(kept, source)
     return [each for each in kept if each is not None]
+
+
+def _untaught(kept: list[Diagnostic | None], source: Source) -> None:
+    """Say once of a word that stands alone in several places that no DEF teaches it."""
+    groups: dict[str, list[int]] = {}
+    for k, each in enumerate(kept):
+        if each is not None and each.code is codes.UNKNOWN_WORD and _stands_alone(each, source):
+            groups.setdefault(each.values["found"], []).append(k)
+    for name, places in groups.items():
+        is_taught = re.search(rf"(?i)\bDEF\s*\(?\s*{name}\b", source.text) is not None
+        if (len(places) > 1 or name in TAUGHT) and not is_taught:
+            first = kept[places[0]]
+            assert first is not None
+            kept[places[0]] = Diagnostic(codes.UNTAUGHT, first.span, {"name": name})
+            for k in places[1:]:
+                kept[k] = None
+
+
+def _stands_alone(diagnostic: Diagnostic, source: Source) -> bool:
+    """Whether nothing is said of an unknown word, which is all of its instruction."""
+    text, (start, end) = source.text, diagnostic.span
+    said = {key for key, value in diagnostic.values.items() if value}
+    before = text[max(0, start - 100) : start].rstrip(" \t")[-1:]
+    after = text[end : end + 100].lstrip(" \t")[:1]
+    return said == {"found"} and before in ("", *";\r\n|") and after in ("", *";\r\n")
 
 
 def _is_bare(diagnostic: Diagnostic, source: Source) -> bool:

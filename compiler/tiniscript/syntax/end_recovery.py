@@ -73,6 +73,8 @@ class EndRecovery:
             k += 1
         if header is None or not (k - start > 1 or tokens[start].text == "…"):
             return
+        if tokens[k].kind not in AT_END and tokens[k].text not in ENDS:
+            return  # `LOOP(4) ... F(1, 60) ... END_LOOP`
         for token in tokens[start:k]:
             self.reporter.answer(token)
         right = BLOCK_ENDS[header.word]
