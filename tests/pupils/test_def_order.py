@@ -80,7 +80,8 @@ def test_numbers_of_lines_are_not_how_often() -> None:
 
 
 @pytest.mark.parametrize(
-    ("program", "name"), [("GIRITO\nGIRITO\nGIRITO", "GIRITO"), ("F(1, 50);PASO", "PASO"), ("hola", "")]
+    ("program", "name"),
+    [("GIRITO\nGIRITO\nGIRITO", "GIRITO"), ("F(1, 50);PASO", "PASO"), ("hola", "")],
 )
 def test_a_word_that_no_def_teaches_gets_one_message(program: str, name: str) -> None:
     (found,) = check(program)

@@ -127,3 +127,20 @@ def test_a_function_of_python_gets_one_message() -> None:
 def test_dots_around_what_goes_inside_are_no_more_than_a_new_line() -> None:
     (found,) = check("LOOP(4) ... F(1, 60); S ... END_LOOP")
     assert found.values["fix"] == "LOOP(4);F(1, 60);S;END_LOOP"
+
+
+def test_how_often_behind_all_of_it_names_all_of_it() -> None:
+    (found,) = check("F(1, 50); R(1, 50); repetir 4 veces")
+    assert found.code is codes.REPEATED
+    assert found.values["all"] == "LOOP(4);F(1, 50);R(1, 50);END_LOOP"
+    (found,) = check("F(1, 50)\nrepetir")
+    assert found.code is codes.REPEATED and not found.values.get("all")  # how often is not said
+    (found,) = check("F(1, 50)\nrepetir 4\nR(1, 50)")
+    assert found.code is codes.OTHER_LANGUAGE
+
+
+@pytest.mark.parametrize(
+    ("program", "right"), [("M 50;-50", "M(50, -50)"), ("M -5; 3", "M(-5, 3)")]
+)
+def test_the_other_motor_behind_a_semicolon_keeps_its_power(program: str, right: str) -> None:
+    assert fixed(program, check).text == right

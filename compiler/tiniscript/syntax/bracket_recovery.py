@@ -9,8 +9,8 @@ from tiniscript.source import Span
 from tiniscript.syntax.block_recovery import BlockRecovery
 from tiniscript.syntax.call_suggestions import call_in
 from tiniscript.syntax.clause_recovery import ClauseRecovery
-from tiniscript.syntax.cursor import Cursor
-from tiniscript.syntax.lexer import END, NEWLINE, QUOTES, WORD, Token
+from tiniscript.syntax.cursor import AT_END, Cursor
+from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, QUOTES, WORD, Token
 from tiniscript.syntax.phrases import BEFORE_TIME, TIMES
 from tiniscript.syntax.reporter import Failed, Reporter, Resumed
 from tiniscript.syntax.sentence_recovery import SentenceRecovery
@@ -51,6 +51,8 @@ class BracketRecovery:
             self.sentence.so_often(word.span, known, rest, 0)
         if len(rest) > 1 and rest[0].kind in ("-", "=", "=>") and rest[1].kind == ">":
             rest = rest[2:]  # `F -> 2, 80`
+        if known.role == "motors":
+            rest = self._with_second_motor(rest)
         is_dash = known.role in ("move", "wait", "beep")  # no value of theirs is below 0
         if is_dash and len(rest) > 1 and rest[0].kind == "-" and rest[0].start == word.end:
             rest = rest[1:]  # `F-2, 80`
@@ -76,6 +78,18 @@ class BracketRecovery:
             cursor.i += 1
             raise Resumed
         raise Failed
+
+    def _with_second_motor(self, rest: list[Token]) -> list[Token]:
+        """`M 50;-50`: what stands alone behind the `;` is the other motor's power."""
+        cursor = self.cursor
+        tokens, k = cursor.tokens, cursor.i + 1
+        if len(rest) - (rest[:1] != [] and rest[0].kind == "-") != 1 or cursor.token.kind != ";":
+            return rest
+        end = k + (tokens[k].kind == "-")
+        if tokens[end].kind is not NUMBER or tokens[end + 1].kind not in AT_END:
+            return rest
+        cursor.i = end + 1
+        return [*rest, Token(",", ",", *tokens[k - 1].span), *tokens[k : end + 1]]
 
     def _letter_of_list(self, word: Token) -> None:
         """`b) R(1, 50)`, below `a) F(2, 80)`: what counts the lines."""

@@ -62,6 +62,8 @@ def foreign_word(parser: Parser, word: Token, meant: str) -> None:
         _repeat_until(parser, word)
     if meant == "LOOP":
         _for_ever(parser, word)
+    if meant == "LOOP":
+        parser.recovery.times.all_before(word)
     if meant in HEADERS:
         in_block = parser.recovery.in_block
         line = None if word.text in NEGATED else in_block.whole_line(word, meant)

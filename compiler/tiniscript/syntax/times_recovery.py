@@ -7,6 +7,7 @@ from typing import NoReturn
 
 from tiniscript.diagnostics import codes
 from tiniscript.source import Span
+from tiniscript.syntax.ast import Command
 from tiniscript.syntax.block_recovery import BlockRecovery
 from tiniscript.syntax.cursor import AT_END, Cursor
 from tiniscript.syntax.lexer import NUMBER, WORD, Token
@@ -107,6 +108,27 @@ class TimesRecovery:
             if not is_called:
                 self._all_or_last(row[0], body, cursor.span_from(first))
             self._loop_of(row[0], body, cursor.span_from(first))
+
+    def all_before(self, word: Token) -> None:
+        """`F(1, 50); R(1, 50); repetir 4 veces`, at the end: what is repeated stands before."""
+        cursor, blocks = self.cursor, self.in_block.blocks
+        row = cursor.tokens[cursor.i + 1 :]
+        numbers = [each.text for each in row if each.kind is NUMBER]
+        is_last = all(
+            each.kind in ("(", ")", *AT_END) or each.text in (*TIMES, *numbers) for each in row
+        )
+        before = [each for each in blocks.here if isinstance(each, Command)]
+        if not is_last or blocks.open or not before or len(numbers) > 1:
+            return
+        source = self.cursor.source
+        rows = [source[each.span] for each in before]
+        cursor.i = len(cursor.tokens) - 1
+        last = max((each.end for each in row if each.kind not in AT_END), default=word.end)
+        span = Span(word.start, last)
+        values = {"found": source[span], "fix": ""}
+        if numbers and len(rows) == len(blocks.here) <= MOST_ON_A_LINE:
+            values["all"] = ";".join((f"LOOP({numbers[0]})", *rows, BLOCK_ENDS["LOOP"]))
+        self.reporter.fail(codes.REPEATED, span, None, **values)
 
     def _all_or_last(self, number: Token, body: Span, place: Span) -> None:
         """`F(1, 60); L(1, 60) x4`: how much of the line is done so often is not said."""
