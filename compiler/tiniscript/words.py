@@ -143,7 +143,7 @@ OTHER_WORDS = {
 SENSOR_STEMS = {"LUZ": "LIGHT", "LINEA": "LINE"}
 
 # What no single word says here: which way to turn, and what to switch on or off.
-TURN_WORDS = frozenset(["TURN", "ROTATE", "SPIN", "GIRAR", "GIRA", "GIRO", "ROTAR", "ROTA", "VOLTEAR", "VOLTEA", "DOBLAR", "DOBLA"])
+TURN_WORDS = frozenset(["TURN", "ROTATE", "SPIN", "GIRAR", "GIRA", "GIRO", "ROTAR", "ROTA", "VOLTEAR", "VOLTEA", "VOLTEE", "GIRE", "DOBLAR", "DOBLA"])
 SWITCH_WORDS = {
     **dict.fromkeys(["TURN_ON", "SWITCH_ON", "PRENDER", "PRENDE", "ENCENDER", "ENCIENDE"], "TRUE"),
     **dict.fromkeys(["TURN_OFF", "SWITCH_OFF", "APAGAR", "APAGA"], "FALSE"),

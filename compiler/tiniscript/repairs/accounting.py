@@ -77,6 +77,7 @@ _PHRASES = tuple(
 _SAME = {"STOP": "S", "TRUE": "FOREVER", "WHILE": "LOOP", "FALSE": "NOT"}
 _STRUCTURAL = ("alias", "end", "setup", "start", "later")
 _EXAMPLES = (80.0, 440.0)  # a power and a tone, which pupils leave out
+_AGAIN = ("OTRA", "NUEVO", "ONCE", "MORE")
 _OTHER_WAY = {"F": "B", "B": "F", "L": "R", "R": "L"}
 # Repairs that write a number in another way, and those that name or note what was written.
 _REWRITES = frozenset((
@@ -201,6 +202,9 @@ class _Account:
                 return True
         if word == "SI" and not self._old.signs["|"]:  # of a question, in Spanish
             return bool({"IF", "SI", "TRUE", "ELSE"} & set(self._new.words))
+        if word in _AGAIN:  # of an order that is there a second time
+            commands = Counter(each for each in self._new.words if _is_command(each))
+            return any(count > 1 for count in commands.values())
         if word in _SMALL or (word in WORDS and WORDS[word].role in _STRUCTURAL):
             return True
         return (

@@ -16,6 +16,7 @@ from tiniscript.syntax.cursor import AT_END
 from tiniscript.syntax.lexer import END, NUMBER, ODD, WORD, Token
 from tiniscript.syntax.near import near_at
 from tiniscript.syntax.phrases import (
+    AGAIN,
     BEFORE_MOVE,
     BEFORE_POWER,
     BEFORE_SENTENCE,
@@ -70,6 +71,11 @@ def sentence_at(tokens: Sequence[Token], start: int, known: Vocabulary) -> Sente
         if not order.is_read():
             return None
         text = order.text()
+        head = text.partition("(")[0] + "("
+        is_again = order.is_again and not (order.time or order.power)
+        if is_again and any(each.startswith(head) for each in orders):
+            text = next(each for each in reversed(orders) if each.startswith(head))
+            order.examples.clear()
         if order.is_turn and order.verb is None:
             turn = turn or Span(row[k].start, row[order.k - 1].end)
             order.verb = WORDS["R"]
@@ -123,6 +129,7 @@ class _Order:
         self.power = ""
         self.times = ""
         self.until = ""
+        self.is_again = False
         self.examples: set[str] = set()
 
     def _at(self, k: int) -> Token | None:
@@ -203,6 +210,10 @@ class _Order:
         if token.kind is not WORD:
             return False
         text, has_verb = token.text, self.verb is not None or self.is_turn
+        following = self._at(self.k + 1)
+        if has_verb and following is not None and (text, following.text) in AGAIN:
+            self.k, self.is_again = self.k + 2, True
+            return True
         if text in POWER_WORDS and has_verb and not self.power:
             self.power = POWER_WORDS[text]
             self.k += 1

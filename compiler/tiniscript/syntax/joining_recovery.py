@@ -8,6 +8,9 @@ from tiniscript.syntax.cursor import Cursor
 from tiniscript.syntax.lexer import WORD, Token
 from tiniscript.syntax.phrases import BETWEEN, FINALLY
 from tiniscript.syntax.reporter import Reporter, Resumed
+from tiniscript.words import WORDS
+
+_TOO = frozenset(("TAMBIEN", "ADEMAS", "ALSO"))
 
 
 class JoiningRecovery:
@@ -30,6 +33,9 @@ class JoiningRecovery:
         self.reporter.report(codes.EXTRA_WORD, span, found=joining, fix="", joining=joining)
         raise Resumed
 
+    def _is_call(self, k: int) -> bool:
+        return self.cursor.tokens[k].text in WORDS and self.cursor.tokens[k + 1].kind == "("
+
     def words(self) -> int:
         """Return how many words at the cursor only join two instructions: `y despues al final`."""
         tokens, start = self.cursor.tokens, self.cursor.i
@@ -37,6 +43,9 @@ class JoiningRecovery:
         while tokens[k].kind is WORD:
             if (tokens[k].text, tokens[k + 1].text) in FINALLY:
                 k += 2
+            elif tokens[k].text in _TOO and self._is_call(k + 1):
+                self.reporter.answer(tokens[k])  # `también` has an accent
+                k += 1
             elif tokens[k].text in BETWEEN and not self.in_block.is_name(tokens[k].text):
                 self.reporter.answer(tokens[k])  # `después` has an accent
                 k += 1

@@ -23,6 +23,7 @@ from tiniscript.syntax.near import near_at
 from tiniscript.syntax.operators import COMPARISONS
 from tiniscript.syntax.phrases import (
     AFTER_HEADER,
+    AGAIN,
     BEFORE_POWER,
     BETWEEN,
     ENDS_OF_ANY,
@@ -34,6 +35,7 @@ from tiniscript.syntax.reporter import Reporter, Resumed
 from tiniscript.syntax.suggestions import shortened
 from tiniscript.words import (
     BLOCK_ENDS,
+    NOTE_WORDS,
     NUMBER_WORDS,
     SWITCH_WORDS,
     TURN_WORDS,
@@ -47,7 +49,6 @@ from tiniscript.words import (
 # Signs that stand before a note, and the words of one.
 _LEADING = frozenset(("=", ">", "<", "*", ":", ",", "\\", "→", "←", "=>"))
 _BARE = ":,\\* "  # signs that a note needs not
-_AGAIN = (("OTRA", "VEZ"), ("DE", "NUEVO"), ("ONCE", "MORE"), ("VEZ", "MAS"))
 _AGAIN_ALONE = frozenset(("AGAIN", "NUEVAMENTE", "REPITO", "REPETIDO"))
 _NEVER_ENDS = frozenset(("FOREVER", "ETERNAMENTE", "INFINITO", "SIEMPRE"))
 _WITHOUT_END = frozenset(("PARAR", "PARA", "FIN", "DETENERSE", "DETENER", "STOP", "STOPPING"))
@@ -57,6 +58,7 @@ _OTHER_ORDERS = frozenset("VUELVE VOLVER RETURN BAILA BAILAR DANCE ACELERA CANTA
 _FAST = ("RAPIDO", "RAPIDA", "RAPIDITO", "FAST", "FUERTE", "VELOZ", "MAX", "MAXIMO")
 _SLOW = ("LENTO", "LENTA", "LENTITO", "SLOW", "DESPACIO", "DESPACITO")
 _OTHER_UNITS = ("cm", "°", "steps")  # that no instruction has, and pupils measure in
+_OPPOSITE = {"F": "B", "B": "F", "L": "R", "R": "L"}
 _HALF = 60  # a power that is neither fast nor slow
 
 
@@ -71,7 +73,7 @@ class NoteRecovery:
         """Report words from the cursor to the end of the line that are no instruction."""
         row = self._row()
         words = [token for token in row if token.kind is WORD]
-        if not words or self._is_call(row):
+        if not (words or self._is_measured(row)) or self._is_call(row):
             return
         whole = Span(first.start, before.end)
         known = WORDS.get(first.text)
@@ -113,6 +115,14 @@ class NoteRecovery:
             end += 1
         return cursor.tokens[cursor.i : end]
 
+    def _is_measured(self, row: Sequence[Token]) -> bool:
+        """`L(0.39, 60) 90°`, `F(2, 80) = 60cm`: what came of it, in a unit that no value has."""
+        numbers = [each for each in row if each.kind is NUMBER]
+        if len(numbers) != 1 or any(each.kind is WORD for each in row):
+            return False
+        unit = self.cursor.source[numbers[0].span].lstrip("0123456789. ").upper()
+        return UNITS.get(unit, ("", 0))[0] in _OTHER_UNITS
+
     def _ends_line(self, semicolon: Token) -> bool:
         """Whether nothing but its `;` ends the line."""
         after = self.cursor.source.text[semicolon.end :][:200].lstrip(" \t;")
@@ -145,7 +155,7 @@ class NoteRecovery:
 
     def _begins_order(self, row: Sequence[Token], header: Block | None) -> bool:
         """Whether the first word begins another instruction, or is a name of the program."""
-        first = next(token for token in row if token.kind is WORD)
+        first = next((token for token in row if token.kind is WORD), row[-1])
         if self.known.is_def(first.text) or self.known.is_own(first.text):
             return len(row) == 1 or self.known.is_def(first.text)
         if header is not None and (first.text in AFTER_HEADER or row[0].text in (":", ",", "=")):
@@ -203,7 +213,7 @@ class NoteRecovery:
         pairs = list(pairwise(texts))
         loops = [text for text in texts if meant_by(text) == "LOOP" and text not in OFTEN_SAID]
         has_number = any(token.kind is NUMBER or token.text in NUMBER_WORDS for token in row)
-        if any(pair in _AGAIN for pair in pairs) or _AGAIN_ALONE & set(texts) or (
+        if any(pair in AGAIN for pair in pairs) or _AGAIN_ALONE & set(texts) or (
             loops and not (has_number and texts[-1] in TIMES)
         ):  # fmt: skip
             return {"again": f"LOOP(2);{call};END_LOOP"}
@@ -217,6 +227,10 @@ class NoteRecovery:
             text in ("HASTA", "UNTIL") or meant_by(text) == "UNTIL" for text in texts
         ):
             return {"until": f"{call} UNTIL(DISTANCE < 10)"} if "UNTIL" not in call else None
+        other = _OPPOSITE.get(known.text, "")
+        said = {meant_by(text) for text in texts if text not in OFTEN_SAID} & {*_OPPOSITE}
+        if said == {other} and not has_number and not BETWEEN & set(texts):
+            return {"other": f"{other}{call[len(known.text) :]}"}  # `R(0.39, 60) izquierda`
         powers = [token.text for token in row if token.kind is NUMBER]
         if known.role == "move" and self._wants_power(call, texts, powers):
             return {"power": call}
@@ -285,6 +299,8 @@ class NoteRecovery:
         """Whether the number at `k` says the same again, counts the lines, or was measured."""
         token = row[k]
         after = row[k + 1].text if k + 1 < len(row) else ""
+        if self._is_measured([token]):
+            return True
         if token.kind is not NUMBER and UNITS.get(after, ("", 0))[0] == "s":  # `dos segundos`
             return token.text not in NUMBER_WORDS or NUMBER_WORDS[token.text] in its
         if token.kind is not NUMBER:
@@ -307,6 +323,8 @@ class NoteRecovery:
         if token.kind is not WORD:
             return False
         is_last = k + 1 == len(row)
+        if own == "BEEP" and text in NOTE_WORDS:
+            return False
         if text in OFTEN_SAID and k + 1 < len(row) and (k or text in ("A", "E", "PARA")):
             return False
         if self.known.is_def(text):

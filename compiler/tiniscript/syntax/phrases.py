@@ -31,7 +31,8 @@ WAYS = frozenset(
 # Two words that say the same: `y al final`.
 FINALLY = frozenset((
     ("AL", "FINAL"), ("AL", "FIN"), ("POR", "ULTIMO"), ("POR", "FIN"), ("AND", "FINALLY"),
-    ("A", "CONTINUACION"), ("MAS", "TARDE"), ("AFTER", "THAT"),
+    ("A", "CONTINUACION"), ("MAS", "TARDE"), ("AFTER", "THAT"), ("SEGUIDO", "DE"),
+    ("FOLLOWED", "BY"),
 ))  # fmt: skip
 BETWEEN = frozenset(("AND", "Y", "THEN", "ENTONCES", "LUEGO", "DESPUES", "NEXT"))
 # What begins a sentence, and says only when: `Luego gira a la derecha`.
@@ -131,5 +132,7 @@ FRAME_NAMES = frozenset(("MAIN", "PRINCIPAL", "SETUP"))
 CASE_WORDS = frozenset(("SWITCH", "CASE", "CASO", "SEGUN", "SELECT", "MATCH"))
 # An IF that asks for the opposite.
 NEGATED = frozenset(("UNLESS", "A_MENOS_QUE", "SALVO", "EXCEPTO"))
+# Two words that say to do it once more: `avanza otra vez`.
+AGAIN = frozenset((("OTRA", "VEZ"), ("DE", "NUEVO"), ("ONCE", "MORE"), ("VEZ", "MAS")))
 # Words that mean something elsewhere, and little in the middle of a sentence.
 OFTEN_SAID = frozenset(("PARA", "FOR", "DO", "DI", "OTRO", "NEXT", "MOTOR", "MOTORES", "A", "E"))
