@@ -190,8 +190,10 @@ TURNED_ROUND = _warning("TS824")
 EXACT = _warning("TS825")
 UNSEEN_MOTORS = _warning("TS826")
 KNOWN_ANSWER = _warning("TS827")
-ROUNDED_TIMES = _warning("TS828")
-EMPTY_BLOCK = _warning("TS831")
+EMPTY_BLOCK = _warning("TS828")
+ROUNDED_TIMES = _warning("TS829")
+LATE_ARM = _warning("TS830")
+ZERO_BEFORE = _warning("TS831")
 
 
 def in_order(found: list[Diagnostic]) -> list[Diagnostic]:

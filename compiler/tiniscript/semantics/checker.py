@@ -26,6 +26,7 @@ from tiniscript.semantics.unknown_words import (
     report_unknown,
     report_words_for_numbers,
 )
+from tiniscript.semantics.until_examples import asked_next, ended_by
 from tiniscript.source import Source, Span
 from tiniscript.syntax import ast
 from tiniscript.syntax.call_suggestions import actuator_word, count_diagnostic
@@ -140,7 +141,7 @@ class _Checker(Scope):
             call = self.source[Span(node.span.start, start)].rstrip()
             asked = f"UNTIL({self.source[node.until.span]})"
             self.report(codes.UNTIL_NOT_HERE, Span(start, node.span.end), word=node.word,
-                        example=self.ended_by(asked, call, word, made))  # fmt: skip
+                        example=ended_by(self.source, call, asked, word, made))  # fmt: skip
             node = node._replace(until=None)
         if word is None:
             self.kit_or_def(node, made)
@@ -157,8 +158,8 @@ class _Checker(Scope):
             return
         forever = word.role in ("move", "wait") and arguments[0].expression[0].op == "FOREVER"
         if forever and node.until is None:
-            self.report(codes.FOREVER_NEEDS_UNTIL, arguments[0].span, word=word.text,
-                        fix=self.source[node.span] + " UNTIL(DISTANCE < 10)")  # fmt: skip
+            fix = f"{self.source[span]} UNTIL({asked_next(self.source, span)})"
+            self.report(codes.FOREVER_NEEDS_UNTIL, arguments[0].span, word=word.text, fix=fix)
         said = len(self.diagnostics)
         values = [
             self.kinds.value(each)
@@ -187,18 +188,6 @@ class _Checker(Scope):
             made.append(ir.Beep(values[0].terms, values[1].terms, span))
         else:
             made.append(ir.Show(values[0].terms, values[0].kind == "yes_no", span))
-
-    def ended_by(self, asked: str, call: str, word: Word | None, made: list[Statement]) -> str:
-        """Return how something is ended by a question: `F(5, 60); S UNTIL(c)`, `M(5, 5) UNTIL(c)`.
-
-        `call` is what UNTIL stands behind, `made` what comes before that.
-        """
-        before = made[-1] if made else None
-        if word is not None and word.role == "motors":
-            return f"{call};W(FOREVER) {asked};S"
-        if isinstance(before, ir.Move) and word is not None and word.role == "stop":
-            return f"{self.source[before.span]} {asked}" if before.until is None else asked
-        return f"{WORDS['F'].example} {asked}"
 
     def count(self, word: Word, arguments: tuple[ast.Argument, ...], span: Span) -> None:
         spans = [argument.span for argument in arguments]

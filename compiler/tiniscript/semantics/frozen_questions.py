@@ -42,6 +42,8 @@ _CHANGING = frozenset(("SENSOR", "TIME", "RANDOM"))
 _MIRRORED = {"LT": "GT", "LE": "GE", "GT": "LT", "GE": "LE", "EQ": "EQ", "NE": "NE"}
 # By the way that the robot goes, what is true where the robot stands, and what comes true.
 _TURNED = {"F": {"GT": "LT", "GE": "LE"}, "B": {"LT": "GT", "LE": "GE"}}
+_WAYS = {"LT": "below", "LE": "below", "GT": "above", "GE": "above"}
+_MOST_ARMS = 50  # of an IF whose questions are compared
 _TIME = Device("TIME", NUMBER, "s", 0, HIGHEST)
 _REACHED = {"F": "LE", "B": "GE"}  # what is sure to come true, by the way that the robot goes
 
@@ -91,6 +93,7 @@ class FrozenQuestions:
             head = Span(statement.span.start, statement.span.start + len("WHILE"))
             self._known(self._comparison(statement.condition), head)
         elif isinstance(statement, If):
+            self._late_arms(statement)
             for arm in statement.arms:
                 if not self._known(self._comparison(arm.condition), arm.span):
                     self._exact_if(arm)
@@ -201,6 +204,21 @@ class FrozenQuestions:
         fix = f"{word}({question})" if question else ""
         self._report(codes.FROZEN_WHILE, arm.span, name=name, sensor=held[name], fix=fix)
 
+    def _late_arms(self, statement: If) -> None:
+        """`IF(DISTANCE < 60) … ELSEIF(DISTANCE < 20)`: what is below 20 is below 60, too."""
+        widest: dict[tuple[str, str], _Comparison] = {}  # by sensor and the way of the sign
+        for k, arm in enumerate(statement.arms[:_MOST_ARMS]):
+            comparison = self._comparison(arm.condition)
+            if comparison is None or comparison.op not in _WAYS:
+                continue
+            key = (comparison.device.name, _WAYS[comparison.op])
+            before = widest.get(key)
+            if before is None or not _is_within(comparison, before):
+                widest[key] = comparison
+            elif k:
+                self._report(codes.LATE_ARM, arm.span, wide=_written(before),
+                             narrow=_written(comparison))  # fmt: skip
+
     def _known(self, comparison: _Comparison | None, span: Span) -> bool:
         """Warn where the answer is known: `LIGHT_L > 5000`, of a sensor that goes up to 1023."""
         if comparison is None:
@@ -262,6 +280,17 @@ def _is_between(device: Device, number: int) -> bool:
     """Whether a number is one of very many that a sensor may read, and not the last."""
     is_fine = not device.is_yes_no and device.high - device.low >= MANY_VALUES
     return is_fine and device.low < number < device.high
+
+
+def _written(comparison: _Comparison) -> str:
+    return f"{comparison.device.name} {SIGN_OF[comparison.op]} {as_text(comparison.number)}"
+
+
+def _is_within(narrow: _Comparison, wide: _Comparison) -> bool:
+    """Whether one comparison is true only where the other one is; their signs go the same way."""
+    if narrow.number == wide.number:
+        return narrow.op == wide.op or wide.op in ("LE", "GE")
+    return (narrow.number < wide.number) == (_WAYS[wide.op] == "below")
 
 
 def _answer(device: Device, op: str, number: int) -> str:

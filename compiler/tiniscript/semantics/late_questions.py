@@ -55,7 +55,7 @@ class LateQuestions:
             self._in_while(loop)
         for k, statement in enumerate(body):
             if isinstance(statement, If) and k not in late:
-                self._idle_stop(body, k, statement)
+                self._idle_stop(body, k, statement, loop)
 
     def _in_loop(self, body: Body) -> set[int]:
         """Find a long move, then a look at a distance: the robot drives blind in between.
@@ -106,7 +106,7 @@ class LateQuestions:
         }
         self.found.append(Diagnostic(codes.LATE_CHECK, move.span, values))
 
-    def _idle_stop(self, body: Body, k: int, question: If) -> None:
+    def _idle_stop(self, body: Body, k: int, question: If, loop: Loop | While | None) -> None:
         """`F(5, 60); IF(DISTANCE < 20); S; ENDIF`: its S stops what stands."""
         stop = _only_stop(question)
         condition = question.arms[0].condition
@@ -114,6 +114,7 @@ class LateQuestions:
             return
         before = _nearest(body, range(k - 1, -1, -1))
         after = _nearest(body, range(k + 1, len(body)))
+        pauses = any(isinstance(each, (Move, Beep)) for each in question.arms[0].body)
         for move, place in ((before, "move"), (after, "next")):
             if (
                 isinstance(move, Move)
@@ -124,8 +125,14 @@ class LateQuestions:
                 written = self._source[move.span]
                 values = {"found": self._source[stop.span], "move": "", "next": "", place: written}
                 values["fix"] = f"{written} UNTIL({asked})" if asked else ""
-                self.found.append(Diagnostic(codes.IDLE_STOP, stop.span, values))
+                if place == "move" or not pauses:
+                    self.found.append(Diagnostic(codes.IDLE_STOP, stop.span, values))
                 return
+        again = before if isinstance(before, Move) else after
+        if loop is not None and isinstance(again, Move) and self._is_blind(again, 1) and not pauses:
+            values = {"found": self._source[stop.span], "next": ""}
+            values["again"] = self._source[again.span]
+            self.found.append(Diagnostic(codes.IDLE_STOP, stop.span, values))
 
     def _is_blind(self, move: Move, least: int) -> bool:
         """Whether a move lasts long, and looks at nothing."""

@@ -61,6 +61,7 @@ class _Look:
 
     def __init__(self, program: Program, kit: Kit, source: Source) -> None:
         self.program = program
+        self.kit = kit
         self.source = source
         self.late = LateQuestions(program, kit, source)
         self.frozen = FrozenQuestions(program, kit, source)
@@ -102,7 +103,10 @@ def _look_at(body: Body, look: _Look, around: _Around) -> None:
         _expressions(statement, found)
         look.frozen.look_at(statement, around.is_repeated, around.asked, around.outermost)
         if isinstance(statement, Move):
-            found += of_power(statement) if statement.until is not None else of_move(statement)
+            if statement.until is None:
+                found += of_move(statement, look.kit, look.source)
+            else:
+                found += of_power(statement)
         if isinstance(statement, Beep):
             found += of_beep(statement)
         inside = around._replace(

@@ -6,12 +6,15 @@ that are set once.
 
 from __future__ import annotations
 
+import re
+
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic
-from tiniscript.fixed_point import as_text
+from tiniscript.fixed_point import ONE, as_text
+from tiniscript.kit import Kit
 from tiniscript.semantics.ir import Assign, Beep, Body, Expression, Move, Program, walk
 from tiniscript.semantics.optimizer import constant, fold
-from tiniscript.source import Span
+from tiniscript.source import Source, Span
 from tiniscript.words import POWER_WORDS, names_of
 
 SECOND = 1000  # ms
@@ -23,19 +26,27 @@ VERY_LONG_TIME = 500 * SECOND  # milliseconds were meant, as `delay(1000)` of an
 LONG_BEEP = 100 * SECOND
 LOW_HERTZ = 100_000  # thousandths: a power was meant
 ANGLES = (360 * SECOND, 720 * SECOND)
+_LENGTHS = ("cm", "mm", "m")
+_ZERO = re.compile(r"\w+\s*\(\s*(0[0-9]{2,})\s*[,)]")  # a point is missing behind its 0
 LITTLE_POWER = 10_000  # thousandths of a percent
 # Names of variables that say which value is in them.
 _TIMES = frozenset(names_of("time"))
 _POWERS = frozenset((*names_of("power"), *POWER_WORDS))
 
 
-def of_move(move: Move) -> list[Diagnostic]:
+def of_move(move: Move, kit: Kit, source: Source) -> list[Diagnostic]:
     """Return what there is to say of the numbers of a move or a wait without UNTIL: one at most."""
     time, power = _number(move.time), _number(move.power)
     found: list[Diagnostic] = []
     if time is None:
-        return found
-    if time <= 0:
+        return _measured(move, kit, source)
+    zero = _ZERO.match(source[move.span])
+    if zero is not None:  # `L(039, 60)`
+        text = source[move.span]
+        fix = f"{text[: zero.start(1)]}0.{zero[1][1:]}{text[zero.end(1) :]}"
+        values = {"found": zero[1], "right": as_text(time), "fix": fix}
+        found.append(Diagnostic(codes.ZERO_BEFORE, move.span, values))
+    elif time <= 0:
         _report(found, codes.MOVE_OF_NO_TIME, move.span, word=move.direction)
     elif _is_swapped(time, power):
         seconds, percent = as_text(time), as_text(power or 0)
@@ -46,6 +57,20 @@ def of_move(move: Move) -> list[Diagnostic]:
     return found or of_power(move)
 
 
+def _measured(move: Move, kit: Kit, source: Source) -> list[Diagnostic]:
+    """`F(DISTANCE, 60)`: centimetres in the place of seconds."""
+    time = move.time or ()
+    if len(time) != 1 or time[0].op != "SENSOR" or kit.sensors[time[0].value].unit not in _LENGTHS:
+        return []
+    found: list[Diagnostic] = []
+    name, power = kit.sensors[time[0].value].name, source[move.span].rpartition(",")[2].rstrip(") ")
+    until = f"F(FOREVER,{power}) UNTIL({name} < 10)" if move.direction == "F" else ""
+    seconds = f"{move.direction}(1)" if move.power is None else f"{move.direction}(2,{power})"
+    _report(found, codes.LONG_TIME, move.span, sensor=name, word=move.direction, until=until,
+            seconds=seconds)  # fmt: skip
+    return found
+
+
 def of_power(move: Move) -> list[Diagnostic]:
     """Return what there is to say of a power that moves no robot."""
     time, power = _number(move.time), _number(move.power)
@@ -53,8 +78,11 @@ def of_power(move: Move) -> list[Diagnostic]:
     if power is not None and 0 <= power < LITTLE_POWER and (time is None or time < LONG_TIME):
         shown = "2" if not time else as_text(time)
         shown = "FOREVER" if move.time is None else shown
-        _report(found, codes.LITTLE_POWER, move.span, power=as_text(power), word=move.direction,
-                example=f"{move.direction}({shown}, 50)")  # fmt: skip
+        values = {"power": as_text(power), "example": f"{move.direction}({shown}, 50)"}
+        if 0 < power < ONE:  # `F(2, 0.8)`
+            values["percent"] = as_text(power * 100)
+            values["whole"] = f"{move.direction}({shown}, {as_text(power * 100)})"
+        found.append(Diagnostic(codes.LITTLE_POWER, move.span, values))
     return found
 
 

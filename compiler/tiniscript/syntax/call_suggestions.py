@@ -24,6 +24,7 @@ LONGEST = 60  # tokens of which a suggestion is made
 LONG_TIME_S = 20  # a longer move is rarely meant: so much is a power, degrees or steps
 LOWEST_HERTZ = 30
 _MOST_POWER = 100
+_MOST_TONES = 9  # of a BEEP that gets one for each
 _TIME_AND_POWER = (0, 1)  # their places
 _HAS_DECIMALS = ("s",)  # units whose values are often no whole numbers
 _NUMBER = re.compile(r"[0-9]+(\.[0-9]+)?|\.[0-9]+")
@@ -62,6 +63,8 @@ def count_diagnostic(
         fix = _call(word, [" AND ".join(texts)])
     if word.role == "motors" and len(texts) == wanted + 1:
         fix = _timed_motors(texts, word)
+    if word.role == "beep" and len(texts) > wanted:
+        fix = _melody(texts, word)
     shown = [text for text in texts if text[:1] not in QUOTES]
     if word.role == "show" and len(shown) == 1 < len(texts):  # `SHOW("far", DISTANCE)`
         fix = _call(word, shown)
@@ -81,6 +84,16 @@ def count_diagnostic(
         "found": str(len(arguments)),
     }
     return Diagnostic(codes.ARGUMENT_COUNT, span, values)
+
+
+def _melody(texts: Sequence[str], word: Word) -> str:
+    """`BEEP(0.2, 440, 660, 880)`: return a BEEP for each tone."""
+    if len(texts) > _MOST_TONES or not all(_NUMBER.fullmatch(text) for text in texts):
+        return ""
+    time, *tones = texts
+    if float(time) >= LONG_TIME_S or any(float(tone) <= LOWEST_HERTZ for tone in tones):
+        return ""
+    return ";".join(_call(word, [time, tone]) for tone in tones)
 
 
 def _timed_motors(texts: Sequence[str], word: Word) -> str:
