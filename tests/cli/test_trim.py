@@ -157,6 +157,7 @@ def test_a_person_is_guided_to_a_robot_that_drives_straight(pty_robot: PtyRobot)
     assert done.code == 0, done.err
     assert keeps(pty_robot) == Trim(True, False, True, -8, 15)
     assert "A number from 1 to 4" in done.err
+    assert done.err.index("One motor turned") < done.err.index("The other motor turned")
     moves = [line for line in pty_robot.did if line.startswith("MOTORS") and line != "MOTORS 0 0"]
     assert moves == [
         "MOTORS 60 0", "MOTORS 0 60",  # as they are wired

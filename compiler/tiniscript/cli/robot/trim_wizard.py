@@ -66,8 +66,8 @@ class TrimWizard:
     def trim(self) -> Trim:
         self._ask_line("trim_lift")
         self._set(Trim())
-        left, left_forward = self._turned(f"M({TURNING}, 0)")
-        right, right_forward = self._turned(f"M(0, {TURNING})")
+        left, left_forward = self._turned(f"M({TURNING}, 0)", "trim_which")
+        right, right_forward = self._turned(f"M(0, {TURNING})", "trim_which_other")
         if left == right:
             raise CommandError(3, "trim_same_wheel")
         is_exchanged = left == 2
@@ -79,12 +79,12 @@ class TrimWizard:
         self._ask_line("trim_floor")
         return self._straight(found)
 
-    def _turned(self, motors: str) -> tuple[int, bool]:
+    def _turned(self, motors: str, question: str) -> tuple[int, bool]:
         """Turn a motor; return the wheel, 1 left or 2 right, and whether it turned forward."""
         wheel = AGAIN
         while wheel == AGAIN:
             self._drive(f"{motors}; W(1); M(0, 0)")
-            wheel = self._choice("trim_which", AGAIN)
+            wheel = self._choice(question, AGAIN)
         if wheel == 3:
             raise CommandError(3, "trim_no_wheel")
         return wheel, self._choice("trim_way", 2) == YES

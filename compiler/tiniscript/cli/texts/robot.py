@@ -109,6 +109,8 @@ LINK_TEXTS: dict[str, tuple[str, str]] = {
                   "Levanta el robot: sus ruedas giran en el aire. Después pulsa Enter. Ctrl-C lo detiene, y el robot conserva lo que tenía. "),
     "trim_which": ("One motor turned for a second. Which wheel was it?  1 left  2 right  3 none  4 again: ",
                    "Un motor giró un segundo. ¿Qué rueda fue?  1 izquierda  2 derecha  3 ninguna  4 otra vez: "),
+    "trim_which_other": ("The other motor turned for a second. Which wheel was it?  1 left  2 right  3 none  4 again: ",
+                         "El otro motor giró un segundo. ¿Qué rueda fue?  1 izquierda  2 derecha  3 ninguna  4 otra vez: "),
     "trim_way": ("Did it turn forward?  1 yes  2 no: ", "¿Giró hacia adelante?  1 sí  2 no: "),
     "trim_moves": ("Both wheels had {n} % for a second. Did both turn?  1 yes  2 no: ",
                    "Las dos ruedas tuvieron {n} % un segundo. ¿Giraron las dos?  1 sí  2 no: "),
