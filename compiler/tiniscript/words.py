@@ -151,7 +151,7 @@ SWITCH_WORDS = {
 
 # What a pupil asks for, where a robot measures how far something is.
 NEAR_WORDS = frozenset(
-    "OBSTACULO OBSTACLE PARED WALL MURO OBJETO OBJECT CERCA NEAR CHOCA CHOQUE COLISION".split()  # noqa: SIM905
+    "OBSTACULO OBSTACLE PARED WALL MURO OBJETO OBJECT CERCA NEAR CHOCA CHOQUE COLISION CERRADO BLOCKED".split()  # noqa: SIM905
 )
 # What a robot may have, and what nobody calls a variable.
 DEVICE_WORDS = frozenset(["LED", "LUZ", "FOCO", "LIGHT", "LAMP", "LAMPARA", "SERVO", "BUZZER", "ZUMBADOR", "BOCINA", "ALARMA", "MOTOR", "MOTORES", "GRIPPER", "GARRA", "PINZA", "PANTALLA", "LCD", "SCREEN"])

@@ -291,7 +291,7 @@ class BlockRecovery:
             self.reporter.report(codes.EXTRA_WORD, span, found=end.text, label=shown)
             return
         if block is None:
-            self.reporter.report(codes.EXTRA_WORD, end.span, found=end.text, fix="")
+            self.reporter.report(codes.EXTRA_WORD, end.span, found=end.text, label=end.text)
             return
         if not block.is_reported:
             right = BLOCK_ENDS[block.word]

@@ -34,6 +34,11 @@ class Block:
         self.is_reported = False  # its header has a diagnostic: how it ends needs no other
 
     @property
+    def header(self) -> Span:
+        """The header of its first arm."""
+        return self.arms[0].span if self.arms else self.span
+
+    @property
     def here(self) -> list[Instruction]:
         """Where the next instruction belongs."""
         return self.body if self.otherwise is None else self.otherwise

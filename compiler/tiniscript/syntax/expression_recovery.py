@@ -29,6 +29,7 @@ from tiniscript.syntax.operators import COMPARISONS, Operator, Postfix
 from tiniscript.syntax.phrases import AFTER_HEADER
 from tiniscript.syntax.reporter import Failed, Reporter
 from tiniscript.syntax.suggestions import after_bracket, operator_words, unchained
+from tiniscript.syntax.until_recovery import in_its_move
 from tiniscript.syntax.value_constructs import ValueConstructs
 from tiniscript.syntax.vocabulary import Vocabulary
 from tiniscript.words import POWER_WORDS, WORDS, Word, meant_by, other_name
@@ -114,7 +115,8 @@ class ExpressionRecovery:
         if word.role == "forever":
             fail(codes.FOREVER_NOT_HERE, token.span)
         if word.role == "until":
-            fail(codes.UNTIL_ALONE, token.span, fix="")
+            found = in_its_move(self.cursor.tokens, self.cursor.i)
+            fail(codes.UNTIL_ALONE, token.span, found and found[1], fix=found[0] if found else "")
         if word.text == "SI":  # `X = si`
             fail(codes.OTHER_LANGUAGE, token.span, found="SI", right="TRUE", fix="TRUE", usage="")
         if word.is_call:

@@ -247,7 +247,8 @@ class SetupRecovery:
         if word.text == "SI" and following.text in _SEEING:
             self.reporter.report(codes.SPANISH_IF, word.span, fix=WORDS["IF"].example)
             foreign_header(parser, word, "IF")
-        if following.kind == "|":
+        is_later = any(each.kind is WORD for each in cursor.tokens[: cursor.i])
+        if following.kind == "|" or (word.text == "SB" and is_later):
             self.reporter.fail(codes.SETUP_TWICE, word.span, found=word.text)
         fix = f"{word.text}|" if word.text != "PING" else ""
         self.reporter.fail(codes.SETUP_NEEDS_BAR, word.span, None, found=word.text, fix=fix)

@@ -57,8 +57,7 @@ def open_above(block: Block, source: Source, end: int) -> tuple[int, str, str]:
     """Return the line of the header of the block that has no end before `end`, the offset of
     another block's end; and the line it probably ends with, and its text, if that is not the last
     one before `end`. By how far in the lines stand, or else it is `block`."""
-    header = block.arms[0].span if block.arms else block.span
-    line = source.position(header.start)[0]
+    line = source.position(block.header.start)[0]
     head = source.position(block.span.start)[0]
     last = min(source.position(end)[0], head + _FARTHEST + 1)
     rest = [(k, row) for k in range(head + 1, last) if (row := source.line_text(k)).strip()]

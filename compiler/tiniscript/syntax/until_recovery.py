@@ -31,6 +31,19 @@ if TYPE_CHECKING:
 _TIMED = ("move", "wait")
 
 
+def in_its_move(tokens: Sequence[Token], k: int) -> tuple[str, Span] | None:
+    """`F(UNTIL(DISTANCE < 20), 60)`: return how it is written, and where it stands."""
+    known = WORDS.get(tokens[k - 2].text) if k > 1 and tokens[k - 1].kind == "(" else None
+    end = after_bracket(tokens, k + 1) if tokens[k + 1].kind == "(" else None
+    if known is None or known.role != "move" or end is None:
+        return None
+    if [token.kind for token in tokens[end : end + 3]] != [",", NUMBER, ")"]:
+        return None
+    head = head_in(WORDS["UNTIL"], inside(tokens, k + 1))
+    span = Span(tokens[k - 2].start, tokens[end + 2].end)
+    return f"{known.text}(FOREVER, {tokens[end + 1].text}) {head}", span
+
+
 class UntilRecovery:
     def __init__(
         self, cursor: Cursor, reporter: Reporter, blocks: Blocks, known: Vocabulary

@@ -338,8 +338,11 @@ class ValueConstructs:
             fix = f"IF({contrary});{call};{_ENDIF}" if contrary else ""
         elif meant == "WHILE" and word.role in ("move", "wait"):
             fix = f"{call} UNTIL({contrary})" if contrary else ""
-        place = Span(first.start, end)
-        self.reporter.fail(codes.QUESTION_BEHIND, token.span, place, found=token.text, fix=fix)
+        until = ""
+        if token.text == "IF" and first.text == "F" and any(each.kind == "<" for each in row):
+            fix, until = "", f"{call} UNTIL({asked})"  # up to it, rather than only if it is near
+        self.reporter.fail(codes.QUESTION_BEHIND, token.span, Span(first.start, end),
+                           found=token.text, until=until, fix=fix)  # fmt: skip
 
     def _has_body(self, block: str) -> bool:
         """Whether an end of this block comes that no header behind the cursor's begins."""

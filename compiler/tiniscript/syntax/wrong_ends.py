@@ -33,7 +33,7 @@ def is_swapped(reader: BlockRecovery, block: Block, end: Token) -> bool:
     between = cursor.source.text[end.end : other.start]
     reader.reporter.report(
         codes.WRONG_END, end.span, Span(end.start, other.end), found=end.text, right=right,
-        word=block.word, line=str(cursor.source.position(block.span.start)[0]),
+        word=block.word, line=str(cursor.source.position(block.header.start)[0]),
         swapped=other.text, fix=f"{cursor.source[other.span]}{between}{cursor.source[end.span]}",
     )  # fmt: skip
     return True
