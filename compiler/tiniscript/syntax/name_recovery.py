@@ -108,10 +108,8 @@ class NameRecovery:
             self.in_block.begin_reported("LOOP", place)
             self.in_block.go_on()
         self.reporter.reserved_words.add(name.text)
-        right, everywhere = (
-            other_name(name.text),
-            self.in_block.known.lines_of(name.text, self.cursor.source),
-        )
+        everywhere = self.in_block.known.lines_of(name.text, self.cursor.source)
+        right = "@MY_TIME" if name.text == "TIME" else other_name(name.text)
         self.reporter.report(
             codes.RESERVED, name.span, word=name.text, right=right, everywhere=everywhere
         )

@@ -18,7 +18,7 @@ from tiniscript.syntax.blocks import Block
 from tiniscript.syntax.call_suggestions import LONGEST
 from tiniscript.syntax.clauses import sentence_at
 from tiniscript.syntax.cursor import AT_END, Cursor
-from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, ODD, WORD, Token
+from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, ODD, QUOTES, WORD, Token
 from tiniscript.syntax.near import near_at
 from tiniscript.syntax.operators import COMPARISONS
 from tiniscript.syntax.phrases import (
@@ -48,7 +48,7 @@ from tiniscript.words import (
 
 # Signs that stand before a note, and the words of one.
 _LEADING = frozenset(("=", ">", "<", "*", ":", ",", "\\", "→", "←", "=>"))
-_BARE = ":,\\* "  # signs that a note needs not
+_BARE = ":,\\* " + QUOTES  # signs that a note needs not
 _AGAIN_ALONE = frozenset(("AGAIN", "NUEVAMENTE", "REPITO", "REPETIDO"))
 _NEVER_ENDS = frozenset(("FOREVER", "ETERNAMENTE", "INFINITO", "SIEMPRE"))
 _WITHOUT_END = frozenset(("PARAR", "PARA", "FIN", "DETENERSE", "DETENER", "STOP", "STOPPING"))
@@ -73,7 +73,9 @@ class NoteRecovery:
         """Report words from the cursor to the end of the line that are no instruction."""
         row = self._row()
         words = [token for token in row if token.kind is WORD]
-        if not (words or self._is_measured(row)) or self._is_call(row):
+        if not (words or self._is_measured(row) or self._is_quoted(first, row)):
+            return
+        if self._is_call(row):
             return
         whole = Span(first.start, before.end)
         known = WORDS.get(first.text)
@@ -122,6 +124,14 @@ class NoteRecovery:
             return False
         unit = self.cursor.source[numbers[0].span].lstrip("0123456789. ").upper()
         return UNITS.get(unit, ("", 0))[0] in _OTHER_UNITS
+
+    def _is_quoted(self, first: Token, row: Sequence[Token]) -> bool:
+        """`F(1, 80) "adelante"`: words in quotation marks that order nothing else."""
+        text = self.cursor.source[row[0].span] if len(row) == 1 else ""
+        if text[:1] not in QUOTES or not text.strip(QUOTES).replace(" ", "").isalpha():
+            return False
+        said = {meant_by(word) for word in text.strip(QUOTES).upper().split()}
+        return all(each is None or each == first.text for each in said)
 
     def _ends_line(self, semicolon: Token) -> bool:
         """Whether nothing but its `;` ends the line."""

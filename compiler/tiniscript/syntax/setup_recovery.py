@@ -12,12 +12,27 @@ from tiniscript.diagnostics import codes
 from tiniscript.source import Span
 from tiniscript.syntax.cursor import AT_END, Cursor
 from tiniscript.syntax.foreign import foreign_header
-from tiniscript.syntax.lexer import END, NEWLINE, ODD, WORD, Token
+from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, ODD, WORD, Token
 from tiniscript.syntax.near import near_at
 from tiniscript.syntax.operators import COMPARISONS
+from tiniscript.syntax.phrases import (
+    BEFORE_CALL,
+    BEFORE_NAME,
+    CHANGING,
+    EVENTS,
+    FRAME_WORDS,
+    IMPORTING,
+    SETTING,
+)
 from tiniscript.syntax.reporter import Reporter, Resumed
-from tiniscript.syntax.suggestions import after_bracket, head_in, inside, is_question
-from tiniscript.words import WORDS, meant_by
+from tiniscript.syntax.suggestions import (
+    OPERATOR_WORDS,
+    after_bracket,
+    head_in,
+    inside,
+    is_question,
+)
+from tiniscript.words import TURN_WORDS, WORDS, meant_by
 
 if TYPE_CHECKING:
     from tiniscript.syntax.parser import Parser
@@ -32,6 +47,12 @@ _BARS = (":", "||", "/", "\\", "¦", "!", "¡")  # that stand for the bar whatev
 # Signs that mean nothing right behind SI, where an instruction comes after them.
 _FOR_BAR = COMPARISONS | {";", ",", "-", "+", "*", "/", "%", ")", "{"}
 _TITLES = 3  # lines above a program
+# Words of a line that does something in another language.
+_SAYING = (
+    SETTING | CHANGING | BEFORE_NAME | BEFORE_CALL | IMPORTING | EVENTS | FRAME_WORDS | TURN_WORDS
+    | {*OPERATOR_WORDS, "TO"}
+)  # fmt: skip
+_SHORT = 3  # letters of names that may be variables
 _IN_INSTRUCTION = frozenset(("(", "=", "|", "{", "}", "<", ">", ";"))
 _SIGNS = 3  # of them in a row
 _NOTE = re.compile(r"[ \t]*(//|#)(?=[ \t]*[A-Za-z]\w*[ \t]*\()")  # `SI//F(2, 80)`
@@ -48,14 +69,15 @@ class SetupRecovery:
         ends: list[int] = []
         k = cursor.i
         while len(ends) < _TITLES and tokens[k].text not in ("SI", "SB"):
-            while tokens[k].kind not in (NEWLINE, END):
-                if tokens[k].kind in _IN_INSTRUCTION:
-                    return
-                k += 1
-            ends.append(k)
-            k = cursor.after_newlines(k)
+            end = k
+            while tokens[end].kind not in (NEWLINE, END, *_IN_INSTRUCTION):
+                end += 1
+            if tokens[end].kind in _IN_INSTRUCTION:
+                break
+            ends.append(end)
+            k = cursor.after_newlines(end)
         if tokens[k].text not in ("SI", "SB") or tokens[k + 1].kind != "|":
-            return
+            ends = [end for end in ends[:1] if self._is_name(cursor.i, end)]
         for end in ends:
             cursor.to_inner()
             row = tokens[cursor.i : end]
@@ -66,6 +88,20 @@ class SetupRecovery:
             self.reporter.report(codes.PROSE, span, None, fix=fix)
             cursor.i = end
         cursor.to_inner()
+
+    def _is_name(self, start: int, end: int) -> bool:
+        """Whether a first line says nothing, `Valentina Quispe`, and the next one is a call."""
+        tokens = self.cursor.tokens
+        row, k = tokens[start:end], self.cursor.after_newlines(end)
+        known = WORDS.get(tokens[k].text)
+        is_before_call = known is not None and known.is_call and tokens[k + 1].kind == "("
+        says = any(
+            each.kind is NUMBER or each.text in _SAYING or each.text in WORDS or meant_by(each.text)
+            for each in row
+        )
+        words = [each for each in row if each.kind is WORD]
+        is_long = len(words) > 1 and any(len(each.text) > _SHORT for each in words)
+        return is_before_call and not says and is_long
 
     def without_bar(self, word: Token) -> str | None:
         """`SI:F(2, 80)`, `SI°F(2, 80)`, `SI F(2, 80)`: return how the program begins, and go on.
