@@ -66,6 +66,7 @@ KIT = robots.load("tinibot").kit
         ("LOOP(3);F(0.4, 80);IF(DISTANCE < 10);S;ENDIF;END_LOOP", "TS821"),
         ("F(2, 0.8)", "TS820"),
         ("B(DISTANCE, 60)", "TS811"),
+        ("F(TIME, 60)", "TS811"),
         ("IF(DISTANCE < 60);W(1);ELSEIF(DISTANCE < 20);S;ENDIF", "TS830"),
         ("IF(5 <= LIGHT_L);W(1);ELSEIF(LIGHT_R < 9);W(1);ELSEIF(LIGHT_L > 5);S;ENDIF", "TS830"),
         ("L(039, 60)", "TS831"),

@@ -167,6 +167,8 @@ class _Reader:
         self._has_bracket = any(piece[0] == "(" for piece in pieces)
         self.unit = ""  # of the value that comes
         self._is_behind_value = False
+        parts = 1 + sum(piece[0] == "," for piece in pieces)
+        self._has_a_part_each = self._has_bracket and parts <= len(word.arguments)
 
     def is_read(self) -> bool:
         """Whether all pieces are values, what they are, and signs between them."""
@@ -253,6 +255,8 @@ class _Reader:
 
     def _is_name(self, k: int) -> bool:
         """`potencia 80`, `80 pot`; but of `2 potencia 80` it may be both."""
+        if self._has_a_part_each and self._at(k - 1) in "(," and self._at(k + 1) in ",)":
+            return False  # `F(T, 60)`: it is a value itself, of a variable that is not set
         if (
             k
             and self._touches(k)

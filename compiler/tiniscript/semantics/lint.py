@@ -33,9 +33,9 @@ from tiniscript.semantics.ir import (
     walk,
 )
 from tiniscript.semantics.late_questions import LateQuestions
+from tiniscript.semantics.named_values import use_of
 from tiniscript.semantics.optimizer import constant, fold, sure_fault
 from tiniscript.semantics.unlikely_values import (
-    example_of,
     of_beep,
     of_move,
     of_power,
@@ -199,7 +199,7 @@ def _unused(program: Program, statements: list[Statement]) -> Iterator[Diagnosti
             used.add(statement.variable)  # said once
             name = program.variables[statement.variable]
             device = name if name in DEVICE_WORDS else ""
-            values = {"name": name, "device": device, "example": example_of(name)}
+            values = {"name": name, "device": device, "example": use_of(name)}
             yield Diagnostic(codes.UNUSED_VARIABLE, statement.span, values)
     called = {each.procedure for each in statements if isinstance(each, Call)}
     for number, procedure in enumerate(program.procedures):

@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 from tiniscript.diagnostics import codes
 from tiniscript.semantics.ir import Expression, Term
+from tiniscript.semantics.named_values import value_of
 from tiniscript.semantics.symbols import ENOUGH, Scope
 from tiniscript.semantics.unknown_words import hyphened, meant_value, whole_name
 from tiniscript.source import Span
@@ -43,6 +44,10 @@ _EQUAL = frozenset(("EQ", "NE"))
 _COMPARES = re.compile(r"\w+\s*((?:<=|>=|<>|[<>=])\s*[\w.]+)")  # `> 5` of `X > 5`
 _COMPARED = re.compile(r"[^<>=]{1,40}?\s*(?:<=|>=|<>|[<>=])(?=[^<>=]*$)")  # `X =` of `X = 5`
 _UNARY = {"NEG": "-", "ABS": "ABS"}
+_TIME, _POWER = "2", "50"  # examples of what a variable may hold
+_POWER_BEFORE = re.compile(r"(?i)\b[FBLR][ \t]*\([^(),]*,[ \t]*$")
+_NEAR = 20  # characters before a name in which its word is looked for
+_TIME_BEFORE = re.compile(r"(?i)\b(?:[FBLRW]|BEEP)[ \t]*\([ \t]*$")  # a time comes first
 _LEAVES = {"TRUE": Term("YES_NO", 1), "FALSE": Term("YES_NO", 0), "TIME": Term("TIME")}
 
 
@@ -107,7 +112,9 @@ class Kinds:
             scope.report(codes.DEF_READ, span, name=name)
             return
         meant = meant_by(name) or ""
-        if name not in scope.set_somewhere and name != target and (
+        before = scope.source.text[max(0, span.start - _NEAR) : span.start]
+        is_variable = meant == "TIME" and _TIME_BEFORE.search(before) is not None
+        if not is_variable and name not in scope.set_somewhere and name != target and (
             (meant in WORDS and WORDS[meant].role in ("value", "forever")) or meant in scope.names
         ):  # fmt: skip
             scope.report(
@@ -139,7 +146,15 @@ class Kinds:
             scope.report(codes.USED_BEFORE_SET, span, None, name=name, near=near, **first)
         else:
             near = "" if which else near
-            scope.report(codes.UNKNOWN_NAME, span, None, found=name, near=near, **which)
+            near = "" if is_variable else near
+            value = value_of(name)
+            if _TIME_BEFORE.search(before):
+                value = _TIME
+            elif _POWER_BEFORE.search(before):
+                value = _POWER
+            only = next((each for each in sensors if name.startswith(each + "_")), "")
+            scope.report(codes.UNKNOWN_NAME, span, None, found=name, near=only or near,
+                         value=value, only=only, **which)  # fmt: skip
 
     def _apply(self, part: Part, stack: list[_Operand]) -> None:
         """Take the operands of an operator from `stack` and put its result there."""

@@ -13,9 +13,9 @@ from tiniscript.diagnostics.codes import Code, Diagnostic
 from tiniscript.fixed_point import ONE, as_text
 from tiniscript.kit import Kit
 from tiniscript.semantics.ir import Assign, Beep, Body, Expression, Move, Program, walk
+from tiniscript.semantics.named_values import is_power, is_time
 from tiniscript.semantics.optimizer import constant, fold
 from tiniscript.source import Source, Span
-from tiniscript.words import POWER_WORDS, names_of
 
 SECOND = 1000  # ms
 LONG_TIME = 20 * SECOND  # a power was meant, where the power is a time
@@ -29,9 +29,6 @@ ANGLES = (360 * SECOND, 720 * SECOND)
 _LENGTHS = ("cm", "mm", "m")
 _ZERO = re.compile(r"\w+\s*\(\s*(0[0-9]{2,})\s*[,)]")  # a point is missing behind its 0
 LITTLE_POWER = 10_000  # thousandths of a percent
-# Names of variables that say which value is in them.
-_TIMES = frozenset(names_of("time"))
-_POWERS = frozenset((*names_of("power"), *POWER_WORDS))
 
 
 def of_move(move: Move, kit: Kit, source: Source) -> list[Diagnostic]:
@@ -58,14 +55,19 @@ def of_move(move: Move, kit: Kit, source: Source) -> list[Diagnostic]:
 
 
 def _measured(move: Move, kit: Kit, source: Source) -> list[Diagnostic]:
-    """`F(DISTANCE, 60)`: centimetres in the place of seconds."""
+    """`F(DISTANCE, 60)`, `F(TIME, 60)`: centimetres, or a clock, in the place of seconds."""
     time = move.time or ()
+    is_clock = len(time) == 1 and time[0].op == "TIME"
+    power = source[move.span].rpartition(",")[2].rstrip(") ")
+    seconds = f"{move.direction}(1)" if move.power is None else f"{move.direction}(2,{power})"
+    if is_clock:
+        values = {"clock": "TIME", "seconds": seconds}
+        return [Diagnostic(codes.LONG_TIME, move.span, values)]
     if len(time) != 1 or time[0].op != "SENSOR" or kit.sensors[time[0].value].unit not in _LENGTHS:
         return []
     found: list[Diagnostic] = []
-    name, power = kit.sensors[time[0].value].name, source[move.span].rpartition(",")[2].rstrip(") ")
+    name = kit.sensors[time[0].value].name
     until = f"F(FOREVER,{power}) UNTIL({name} < 10)" if move.direction == "F" else ""
-    seconds = f"{move.direction}(1)" if move.power is None else f"{move.direction}(2,{power})"
     _report(found, codes.LONG_TIME, move.span, sensor=name, word=move.direction, until=until,
             seconds=seconds)  # fmt: skip
     return found
@@ -162,26 +164,14 @@ def swapped_names(body: Body, program: Program) -> list[Diagnostic]:
 
 def _is_right_order(first: str, second: str) -> bool:
     """Whether no name of `F(first, second)` says that it is in the other's place."""
-    if _says(first, _TIMES) or _says(second, _POWERS):
+    if is_time(first) or is_power(second):
         return True
-    return not _says(first, _POWERS) and not _says(second, _TIMES)
-
-
-def _says(name: str, meanings: frozenset[str]) -> bool:
-    """Whether a part of a name is in `meanings`: TIME_S, MI_TIEMPO, VEL1."""
-    return any(part.rstrip("0123456789") in meanings for part in name.split("_"))
+    return not is_power(first) and not is_time(second)
 
 
 def _is_swapped(time: int, power: int | None) -> bool:
     """`F(80, 2)`: a long time with a power that moves hardly any robot."""
     return power is not None and LONG_TIME <= time <= 100_000 and 0 < power <= LITTLE_POWER
-
-
-def example_of(name: str) -> str:
-    """Return how a variable of this name is used: `F(2, SPEED)`, `F(TIME_S, 80)`, `SHOW(X)`."""
-    if _says(name, _POWERS):
-        return f"F(2, {name})"
-    return f"F({name}, 80)" if _says(name, _TIMES) else f"SHOW({name})"
 
 
 def _number(expression: Expression | None) -> int | None:
