@@ -69,3 +69,8 @@ def test_how_it_is_written_is_said(program: str, es: str, en: str) -> None:
     found = check(program)[0]
     assert es in message(found, Source(program), "es").fix
     assert en in message(found, Source(program), "en").fix
+
+
+def test_a_variable_may_be_called_so() -> None:
+    assert check("S1 = 5 = 5\nSHOW(S1)") == []
+    assert check("SL = ABS(3)\nSHOW(SL)") == []

@@ -130,7 +130,7 @@ class Parser:
             if (
                 word.text in _SETUPS
                 or is_in_two
-                or (self._kit and self._is_misread(self._kit, word))
+                or (self._kit and bar.kind != "=" and self._is_misread(self._kit, word))
             ):
                 return self.recovery.setup.without_bar(word) or "SI"
             return "SI"
