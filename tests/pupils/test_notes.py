@@ -72,5 +72,5 @@ def test_how_it_is_written_is_said(program: str, es: str, en: str) -> None:
 
 
 def test_a_variable_may_be_called_so() -> None:
-    assert check("S1 = 5 = 5\nSHOW(S1)") == []
+    assert check("S1 = DISTANCE = 3\nSHOW(S1)") == []
     assert check("SL = ABS(3)\nSHOW(SL)") == []
