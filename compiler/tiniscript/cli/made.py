@@ -34,10 +34,17 @@ def is_foreign(path: Path) -> bool:
 
 def _is_ours(head: bytes) -> bool:
     from tiniscript.bytecode.image import MAGIC
-    from tiniscript.doctor import report
 
     is_image = head.startswith(MAGIC) and len(head) > len(MAGIC) and head[len(MAGIC)] < 0x20
     begins = head.startswith((HEADER, ROWS, CLASS_ROWS, RECORDING, *TABLES)) or _PAGE in head
-    return is_image or begins or report.is_ours(head) or any(
+    return is_image or begins or _is_report(head) or any(
         each.match(head) is not None for each in (_PICTURE, _MAP)
     ) or _LINE.fullmatch(head) is not None  # fmt: skip
+
+
+def _is_report(head: bytes) -> bool:
+    if not head.startswith(GENERATOR.encode()):
+        return False
+    from tiniscript.doctor import report
+
+    return report.is_ours(head)
