@@ -144,7 +144,6 @@ def _checked(text: str, kit: Kit, name: str = "") -> Compiled:
     from tiniscript.semantics.checker import check
     from tiniscript.semantics.empty_blocks import empty_blocks
     from tiniscript.semantics.lint import advice
-    from tiniscript.semantics.notes import in_notes
     from tiniscript.source import Source
     from tiniscript.syntax.parser import parse
 
@@ -159,7 +158,10 @@ def _checked(text: str, kit: Kit, name: str = "") -> Compiled:
     else:
         found += advice(checked.program, kit, source)
         found += empty_blocks(checked.program, source)
-        found += in_notes(parsed.scan.comments, parsed.scan.tokens, source)
+        if parsed.scan.comments:
+            from tiniscript.semantics.notes import in_notes
+
+            found += in_notes(parsed.scan.comments, parsed.scan.tokens, source)
     return Compiled(source, in_order(found), checked.program)
 
 

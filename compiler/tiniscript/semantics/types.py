@@ -131,7 +131,7 @@ class Kinds:
         near = NUMBER_WORDS.get(name) or scope.near(name, known) or meant_value(
             scope, span, name, is_assigned=target is not None
         )  # fmt: skip
-        near = near or whole_name(name, scope.set_somewhere - {name})
+        near = near or whole_name(scope, name, scope.set_somewhere)
         stem = SENSOR_STEMS.get(name, name) + "_"  # `LIGHT` of LIGHT_R and LIGHT_L
         several = [each for each in known if each.startswith(stem)]
         which = {} if len(several) != 2 else {"first": several[0], "second": several[1]}

@@ -7,11 +7,11 @@ calls this module for mistakes.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Set as AbstractSet
 from itertools import chain
 
 from tiniscript.diagnostics import codes
-from tiniscript.semantics.symbols import Scope
+from tiniscript.semantics.symbols import ENOUGH, Scope
 from tiniscript.source import Span
 from tiniscript.syntax import ast
 from tiniscript.syntax.call_suggestions import call_of, glued_call
@@ -84,7 +84,7 @@ def _report_unknown_word(scope: Scope, node: ast.Command) -> None:
     if meant is not None and (meant in WORDS or meant in scope.names):
         _report_foreign(scope, node, meant)
         return
-    own = whole_name(word, scope.def_names) if node.arguments is None else ""
+    own = whole_name(scope, word, scope.def_names) if node.arguments is None else ""
     if own:  # `VUELTA`, where there is a DEF MEDIA_VUELTA
         scope.report(codes.UNKNOWN_WORD, span, found=word, near=own)
         return
@@ -242,8 +242,13 @@ def hyphened(scope: Scope, span: Span, name: str) -> bool:
     return before is not None and f"{before[1].upper()}_{name}" in scope.set_somewhere
 
 
-def whole_name(part: str, names: Iterable[str]) -> str:
-    """Return the one name that `part` is a word of: MI_VELOCIDAD for VELOCIDAD, else nothing."""
+def whole_name(scope: Scope, part: str, names: AbstractSet[str]) -> str:
+    """Return the one name that `part` is a word of: MI_VELOCIDAD for VELOCIDAD, else nothing.
+
+    After ENOUGH mistakes the names are not searched, so that a long program stays fast.
+    """
+    if part in names or len(scope.diagnostics) >= ENOUGH:
+        return ""
     found = [each for each in names if part in each.split("_")]
     return found[0] if len(found) == 1 else ""
 
