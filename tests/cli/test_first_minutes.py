@@ -235,7 +235,7 @@ def test_the_robots_that_have_a_word_are_named(tsc: Tsc) -> None:
     assert "--robot liner to the command" in tsc("check", "-e", "LED(LINE_L)").err
     assert "--robot grabber to" in tsc("check", "-e", "LED(DISTANCE > 5)").err
     # a name that no kit has
-    assert "write LINE_X = 0 at the beginning" in tsc("check", "-e", "F(LINE_X, 80)").err
+    assert "write LINE_X = 2 at the beginning" in tsc("check", "-e", "F(LINE_X, 80)").err
     assert "write LINE_X = 0 before it" in tsc("check", "-e", "SHOW(LINE_X)").err
     assert tsc("live", "LED(TRUE)", "--virtual").err.count("TS119") == 1
 
