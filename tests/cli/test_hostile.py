@@ -124,7 +124,7 @@ def test_the_language_comes_from_the_locale(tsc: Tsc, monkeypatch: pytest.Monkey
         ("LC_ALL", "C", "mistakes"),
     ):
         monkeypatch.setenv(name, value)
-        assert word in tsc("check", "-e", "S = 5;S = 6").err
+        assert word in tsc("check", "-e", "S = 5;F = 6").err
 
 
 def test_a_closed_pipe_ends_the_command_as_any_other() -> None:
