@@ -29,6 +29,7 @@ _TIME_AND_POWER = (0, 1)  # their places
 _HAS_DECIMALS = ("s",)  # units whose values are often no whole numbers
 _NUMBER = re.compile(r"[0-9]+(\.[0-9]+)?|\.[0-9]+")
 _DIVIDED = re.compile(r"([0-9]+)(?:\s*[-/]\s*|\.(?=[6-9]0|100))([0-9]{2}|100)(?<=0)")  # `2.80`
+_POWER = re.compile("[2-9]0|100")
 _UNTIL = re.compile(r"(?i)\s*\bUNTIL\b.*")  # with its question
 _ASKS = re.compile(r"[<>=]")  # a comparison, which no number has
 _WORDS_FOR_YES_NO = {
@@ -54,6 +55,8 @@ def count_diagnostic(
     """Return the diagnostic of `word` with these arguments; `span` is the place to point at."""
     texts = [source[each] for each in arguments]
     fixed = _with_points(texts, arguments, word)
+    if word.role == "wait" and _POWER.fullmatch(texts[-1] if texts else "") and texts[0] != "0":
+        fixed = None  # `W(2,80)`: as F has it
     if fixed is not None:
         return Diagnostic(codes.DECIMAL_COMMA, span, {"fix": _call(word, fixed)})
     wanted = len(word.arguments)

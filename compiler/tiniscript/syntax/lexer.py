@@ -230,7 +230,8 @@ class _Repairs:
             self.report(codes.UNIT, span, found=text, number=number, right=right, unit=unit)
             return Token(NUMBER, number, *span)
         meant = _digits_meant(text)
-        self.report(codes.BAD_NUMBER, span, found=text, right=meant)
+        pointed = text if re.fullmatch(r"[0-9]*\.[0-9]+\.[0-9.]+", text) else ""
+        self.report(codes.BAD_NUMBER, span, found=text, right=meant, pointed=pointed)
         return Token(NUMBER, meant or number, *span)
 
     def lettered(self, text: str, span: Span) -> Token:

@@ -351,7 +351,8 @@ class Recovery:
             self.reporter.crowded_line = line
             code = codes.MISSING_SEPARATOR if header is None else codes.HEADER_SEPARATOR
             shown = shortened(self.cursor.source.text[first.start : before.end])
-            self.reporter.report(code, token.span, found=token.text, before=shown)
+            sign = "," if token.kind == "," and header is None else ""
+            self.reporter.report(code, token.span, found=token.text, before=shown, sign=sign)
 
     def _dotted(self, first: Token, point: Token) -> NoReturn:
         cursor = self.cursor

@@ -77,7 +77,8 @@ class TalkRecovery:
         cursor.i = end
         span = Span(row[0].start, row[-1].end)
         fix = f"// {cursor.source[span]}"
-        self.reporter.fail(codes.PROSE, span, None, fix=fix)
+        command = cursor.source[span] if row[0].text in ("TSC", "TINISCRIPT") else ""
+        self.reporter.fail(codes.PROSE, span, None, fix=fix, command=command)
 
     def _says_something(self, tokens: Sequence[Token], k: int) -> bool:
         """Whether the word at `k` says what a robot does, or is a name of the program."""
