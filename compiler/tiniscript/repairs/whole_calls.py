@@ -151,6 +151,8 @@ def _is_better(whole: _Whole, found: Sequence[Diagnostic], source: Source) -> bo
     if is_crowded or not all(edits_of(found[k], source) for k in whole.places):
         return True
     start, end = whole.span
+    if len(edits) == 1 and edits[0].span.start <= start and end < edits[0].span.end:
+        return False  # it mends what is behind the instruction, too: its UNTIL
     inside = [edit for edit in sorted(edits) if start <= edit.span.start and edit.span.end <= end]
     if len(inside) < len(edits) or any(
         one.span.end > other.span.start for one, other in pairwise(inside)

@@ -37,8 +37,8 @@ from tiniscript.semantics.named_values import use_of
 from tiniscript.semantics.optimizer import constant, fold, sure_fault
 from tiniscript.semantics.unlikely_values import (
     of_beep,
+    of_ended_move,
     of_move,
-    of_power,
     swapped_names,
 )
 from tiniscript.semantics.unseen_motors import unseen
@@ -106,7 +106,7 @@ def _look_at(body: Body, look: _Look, around: _Around) -> None:
             if statement.until is None:
                 found += of_move(statement, look.kit, look.source)
             else:
-                found += of_power(statement)
+                found += of_ended_move(statement, look.source)
         if isinstance(statement, Beep):
             found += of_beep(statement)
         inside = around._replace(

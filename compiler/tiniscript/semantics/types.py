@@ -47,6 +47,8 @@ _UNARY = {"NEG": "-", "ABS": "ABS"}
 _TIME, _POWER = "2", "50"  # examples of what a variable may hold
 _POWER_BEFORE = re.compile(r"(?i)\b[FBLR][ \t]*\([^(),]*,[ \t]*$")
 _NEAR = 20  # characters before a name in which its word is looked for
+# Where a sensor does not look that looks ahead.
+_ASIDE = ("L", "R", "LEFT", "RIGHT", "IZQ", "DER", "IZQUIERDA", "DERECHA", "BACK", "ATRAS")
 _TIME_BEFORE = re.compile(r"(?i)\b(?:[FBLRW]|BEEP)[ \t]*\([ \t]*$")  # a time comes first
 _LEAVES = {"TRUE": Term("YES_NO", 1), "FALSE": Term("YES_NO", 0), "TIME": Term("TIME")}
 
@@ -153,8 +155,10 @@ class Kinds:
             elif _POWER_BEFORE.search(before):
                 value = _POWER
             only = next((each for each in sensors if name.startswith(each + "_")), "")
-            scope.report(codes.UNKNOWN_NAME, span, None, found=name, near=only or near,
-                         value=value, only=only, **which)  # fmt: skip
+            aside = only if name.rpartition("_")[2] in _ASIDE else ""
+            near = "" if aside else only or near
+            scope.report(codes.UNKNOWN_NAME, span, None, found=name, near=near,
+                         value=value, only=only, aside=aside, **which)  # fmt: skip
 
     def _apply(self, part: Part, stack: list[_Operand]) -> None:
         """Take the operands of an operator from `stack` and put its result there."""

@@ -28,6 +28,7 @@ LOW_HERTZ = 100_000  # thousandths: a power was meant
 ANGLES = (360 * SECOND, 720 * SECOND)
 _LENGTHS = ("cm", "mm", "m")
 _ZERO = re.compile(r"\w+\s*\(\s*(0[0-9]{2,})\s*[,)]")  # a point is missing behind its 0
+_UNTIL = re.compile(r"(?is)\s*\bUNTIL\b.*")  # with its question
 LITTLE_POWER = 10_000  # thousandths of a percent
 
 
@@ -54,6 +55,18 @@ def of_move(move: Move, kit: Kit, source: Source) -> list[Diagnostic]:
     return found or of_power(move)
 
 
+def of_ended_move(move: Move, source: Source) -> list[Diagnostic]:
+    """Return what there is to say of the numbers of a move or a wait with UNTIL: one at most."""
+    time, power = _number(move.time), _number(move.power)
+    if time is None or not _is_swapped(time, power):
+        return of_power(move)
+    seconds, percent = as_text(time), as_text(power or 0)
+    until = _UNTIL.search(source[move.span])
+    fix = f"{move.direction}({percent}, {seconds}){until[0] if until else ''}"
+    values = {"time": seconds, "power": percent, "fix": fix}
+    return [Diagnostic(codes.SWAPPED, move.span, values)]
+
+
 def _measured(move: Move, kit: Kit, source: Source) -> list[Diagnostic]:
     """`F(DISTANCE, 60)`, `F(TIME, 60)`: centimetres, or a clock, in the place of seconds."""
     time = move.time or ()
@@ -63,11 +76,16 @@ def _measured(move: Move, kit: Kit, source: Source) -> list[Diagnostic]:
     if is_clock:
         values = {"clock": "TIME", "seconds": seconds}
         return [Diagnostic(codes.LONG_TIME, move.span, values)]
-    if len(time) != 1 or time[0].op != "SENSOR" or kit.sensors[time[0].value].unit not in _LENGTHS:
+    is_sum = all(
+        part.op in ("SENSOR", "NUMBER", "ADD", "SUB") for part in time
+    )  # `F(DISTANCE - 5, 60)`
+    sensors = [kit.sensors[part.value] for part in time if part.op == "SENSOR"]
+    if not is_sum or len(sensors) != 1 or sensors[0].unit not in _LENGTHS:
         return []
     found: list[Diagnostic] = []
-    name = kit.sensors[time[0].value].name
-    until = f"F(FOREVER,{power}) UNTIL({name} < 10)" if move.direction == "F" else ""
+    name = sensors[0].name
+    left = next((as_text(part.value) for part in time if part.op == "NUMBER"), "10")
+    until = f"F(FOREVER,{power}) UNTIL({name} < {left})" if move.direction == "F" else ""
     _report(found, codes.LONG_TIME, move.span, sensor=name, word=move.direction, until=until,
             seconds=seconds)  # fmt: skip
     return found

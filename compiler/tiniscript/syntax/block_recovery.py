@@ -171,13 +171,14 @@ class BlockRecovery:
             self.reporter.report(codes.EMPTY_BRACKETS, span, word=word.text)
             return
         inside = cursor.source[Span(arguments[0].span.start, arguments[-1].span.end)]
-        fix = f"{other}({inside})" if other else word.text
+        fix, asked = f"{other}({inside})" if other else word.text, ""
         if word.text in WORDS and WORDS[word.text].role == "stop":
             is_time = len(arguments) == 1 and arguments[0].is_plain
             fix = f"{word.text};W({inside})" if is_time else word.text
+            asked = f"UNTIL({inside})" if set(inside) & set("<>=") else ""
         span = cursor.span_from(bracket)
-        place = cursor.span_from(word)
-        self.reporter.report(codes.NO_BRACKETS_HERE, span, place, word=word.text, fix=fix)
+        values = {"word": word.text, "asked": asked, "fix": "" if asked else fix}
+        self.reporter.report(codes.NO_BRACKETS_HERE, span, cursor.span_from(word), **values)
 
     # -- arms ---------------------------------------------------------------------------------
 

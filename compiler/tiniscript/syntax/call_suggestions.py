@@ -77,12 +77,15 @@ def count_diagnostic(
         fix = f"{_call(word, texts[:-1])} UNTIL({texts[-1]})"
     if word.role == "move" and len(texts) == wanted + 1 and meant_by(texts[0].upper()) == word.text:
         fix = _call(word, texts[1:])  # `R(derecha, 2, 80)`
+    until = _UNTIL.search(source[span])
+    if fix and until is not None and "UNTIL" not in fix:
+        fix += until[0]  # `F(5.60) UNTIL(DISTANCE < 15)`
     values = {
         "word": word.text,
         "usage": word.usage,
         "fix": fix,
         "example": "" if texts else word.example,
-        **_said_of_count(texts, word, _UNTIL.search(source[span])),
+        **_said_of_count(texts, word, until),
         "wanted": str(wanted),
         "found": str(len(arguments)),
     }

@@ -29,7 +29,7 @@ from tiniscript.syntax.operators import COMPARISONS, Operator, Postfix
 from tiniscript.syntax.phrases import AFTER_HEADER
 from tiniscript.syntax.reporter import Failed, Reporter
 from tiniscript.syntax.suggestions import after_bracket, operator_words, unchained
-from tiniscript.syntax.until_recovery import in_its_move
+from tiniscript.syntax.until_recovery import before_bracket, in_its_move
 from tiniscript.syntax.value_constructs import ValueConstructs
 from tiniscript.syntax.vocabulary import Vocabulary
 from tiniscript.words import POWER_WORDS, WORDS, Word, meant_by, other_name
@@ -297,6 +297,11 @@ class ExpressionRecovery:
                 self._nothing_between(last, cursor.following, bracket)
         self._open_too_many(bracket, token)
         self.numbers.cut_in_two(self._word_of(cursor.tokens[bracket - 1]), bracket)
+        found = before_bracket(cursor.tokens, bracket, cursor.i)
+        if found is not None:
+            cursor.i = found[1]
+            place = Span(cursor.tokens[bracket - 1].start, cursor.last.end)
+            fail(codes.MISSING_CLOSE, last.span, place, last=last.text, fix=found[0])
         fail(codes.MISSING_CLOSE, last.span, last=last.text)
 
     def _sensor_in_two(self, first: Token, second: Token) -> None:

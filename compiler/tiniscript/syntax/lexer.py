@@ -231,7 +231,9 @@ class _Repairs:
             return Token(NUMBER, number, *span)
         meant = _digits_meant(text)
         pointed = text if re.fullmatch(r"[0-9]*\.[0-9]+\.[0-9.]+", text) else ""
-        self.report(codes.BAD_NUMBER, span, found=text, right=meant, pointed=pointed)
+        letter = next((each for each in text if each in "OoIl"), "") if meant else ""
+        values = {"found": text, "right": meant, "pointed": pointed, "letter": letter}
+        self.report(codes.BAD_NUMBER, span, **values)
         return Token(NUMBER, meant or number, *span)
 
     def lettered(self, text: str, span: Span) -> Token:

@@ -9,7 +9,7 @@ from tiniscript.diagnostics import codes
 from tiniscript.source import Span
 from tiniscript.syntax.ast import Command
 from tiniscript.syntax.blocks import Blocks
-from tiniscript.syntax.call_suggestions import starts_value
+from tiniscript.syntax.call_suggestions import call_in, starts_value
 from tiniscript.syntax.cursor import AT_END, Cursor
 from tiniscript.syntax.lexer import NUMBER, WORD, Token
 from tiniscript.syntax.near import near_at
@@ -42,6 +42,18 @@ def in_its_move(tokens: Sequence[Token], k: int) -> tuple[str, Span] | None:
     head = head_in(WORDS["UNTIL"], inside(tokens, k + 1))
     span = Span(tokens[k - 2].start, tokens[end + 2].end)
     return f"{known.text}(FOREVER, {tokens[end + 1].text}) {head}", span
+
+
+def before_bracket(tokens: Sequence[Token], bracket: int, k: int) -> tuple[str, int] | None:
+    """`F(5, 60 UNTIL(DISTANCE < 15))`: return how it is written, and the place behind it."""
+    known = WORDS.get(tokens[bracket - 1].text) if bracket else None
+    if known is None or known.role not in _TIMED or tokens[k].text != "UNTIL":
+        return None
+    end = after_bracket(tokens, k + 1) if tokens[k + 1].kind == "(" else None
+    if end is None or tokens[end].kind != ")" or tokens[end + 1].kind not in AT_END:
+        return None
+    call = call_in(known, tokens[bracket + 1 : k])
+    return f"{call} {head_in(WORDS['UNTIL'], inside(tokens, k + 1))}", end + 1
 
 
 class UntilRecovery:
