@@ -48,6 +48,11 @@ _TIME = Device("TIME", NUMBER, "s", 0, HIGHEST)
 _REACHED = {"F": "LE", "B": "GE"}  # what is sure to come true, by the way that the robot goes
 
 
+def goes_on_for_ever(loop: Loop | While) -> bool:
+    """Whether a loop counts nothing: what counts may do what was decided before it."""
+    return not isinstance(loop, Loop) or loop.times is None
+
+
 class _Comparison(NamedTuple):
     """A sensor, the name of the comparator that stands behind it, and a number."""
 
@@ -97,7 +102,7 @@ class FrozenQuestions:
             for arm in statement.arms:
                 if not self._known(self._comparison(arm.condition), arm.span):
                     self._exact_if(arm)
-                if outermost is not None:
+                if outermost is not None and goes_on_for_ever(outermost):
                     self._frozen_if(arm, outermost)
 
     # -- UNTIL --------------------------------------------------------------------------------
@@ -115,7 +120,7 @@ class FrozenQuestions:
         if comparison is None or self._known(comparison, move.span):
             return
         device, op, number = comparison
-        is_distance = device.unit in ("cm", "mm", "m")
+        is_distance = device.name == "DISTANCE"  # that it looks ahead no kit's file says of others
         is_turned = op in _TURNED.get(move.direction, {}) and is_distance
         if is_turned and not set(asked) & _sensors(condition):
             sign = SIGN_OF[_TURNED[move.direction][op]]

@@ -120,15 +120,16 @@ def _long(move: Move, time: int, power: int | None, found: list[Diagnostic]) -> 
         _report(found, codes.LONG_TIME, move.span, degrees=length, word=word, turn=usage)
     elif drives and is_long and not is_very_long:
         _report(found, codes.LONG_TIME, move.span, centimetres=length, word=word, drive=usage)
-    elif is_very_long or (word == "W" and _is_milliseconds(time)):
+    elif _is_milliseconds(time) if word == "W" else is_very_long:
         power_shown = "" if word == "W" else f", {shown}"
         fix = f"{word}({as_text(time // 1000)}{power_shown})"
         _report(found, codes.LONG_TIME, move.span, time=length, fix=fix)
 
 
 def _is_milliseconds(time: int) -> bool:
-    """`W(200)`: a round number, and no round number of minutes."""
-    return time >= LONG_WAIT and time % (50 * SECOND) == 0 and time % (60 * SECOND) != 0
+    """`W(200)`: a round number, and no round number of minutes, but for W(1500) and W(3000)."""
+    is_whole = time >= LONG_WAIT and time % (50 * SECOND) == 0
+    return is_whole and (time % (500 * SECOND) == 0 or time % (30 * SECOND) != 0)
 
 
 def of_beep(beep: Beep) -> list[Diagnostic]:
