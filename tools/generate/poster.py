@@ -30,8 +30,8 @@ SUBTITLES = {
     "es": "Una línea mueve un robot. El primer número son segundos; el segundo, potencia en porcentaje.",
 }
 FEET = {
-    "en": "A ; or a new line ends an instruction. // begins a comment.  Help:  tsc explain · tsc help · tsc lesson",
-    "es": "Un ; o una línea nueva termina una instrucción. // empieza un comentario.  Ayuda:  tsc explain · tsc help · tsc lesson",
+    "en": "A ; or a new line ends an instruction. // begins a note.  Help:  tsc explain · tsc help · tsc lesson",
+    "es": "Un ; o una línea nueva termina una instrucción. // empieza una nota.  Ayuda:  tsc explain · tsc help · tsc lesson",
 }
 
 

@@ -43,8 +43,20 @@ def said_once(found: Sequence[Diagnostic], source: Source) -> list[Diagnostic]:
         kept[bare[0]] = first._replace(values=values, place=None)
         for k in bare[1:]:
             kept[k] = None
+    _unknown(kept)
     _untaught(kept, source)
     return [each for each in kept if each is not None]
+
+
+def _unknown(kept: list[Diagnostic | None]) -> None:
+    """Say once of a variable that is nowhere set what would be said of it in several places."""
+    said: list[dict[str, str]] = []
+    for k, each in enumerate(kept):
+        if each is None or each.code is not codes.UNKNOWN_NAME or each.values.get("near"):
+            continue
+        if each.values in said:
+            kept[k] = None
+        said.append(dict(each.values))
 
 
 def _untaught(kept: list[Diagnostic | None], source: Source) -> None:

@@ -6,7 +6,9 @@ ranges, kinds, limits; and the rule which reading a sensor's name means. Does no
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping, Sequence
+from itertools import count, islice
 from typing import NamedTuple
 
 from tiniscript.bytecode.opcodes import BLOCKS, CALLS, DEFS, STACK_VALUES, VARIABLES
@@ -31,6 +33,8 @@ from tiniscript.source import Source, Span
 from tiniscript.syntax import ast
 from tiniscript.syntax.call_suggestions import actuator_word, count_diagnostic
 from tiniscript.words import WORDS, Argument, Word
+
+_NAME = re.compile(r"\w+")
 
 
 class Checked(NamedTuple):
@@ -107,7 +111,8 @@ class _Checker(Scope):
                         name=node.name, value=shown)  # fmt: skip
             return
         if node.name in self.def_names:
-            self.report(codes.NAME_TAKEN, node.name_span, name=node.name)
+            other = self._free_name(node.name)
+            self.report(codes.NAME_TAKEN, node.name_span, name=node.name, other=other)
             return
         if node.value is None:
             if name is None:
@@ -352,7 +357,7 @@ class _Checker(Scope):
         known = self.names.get(node.name)
         if known is not None:
             code = codes.DEF_TWICE if known.what == "def" else codes.NAME_TAKEN
-            self.report(code, node.name_span, name=node.name)
+            self.report(code, node.name_span, name=node.name, other=self._free_name(node.name))
         if len(self.procedures) == DEFS:
             self.report(codes.TOO_MANY_DEFS, node.name_span, limit=str(DEFS))
         outside = self.surely_read, self.deepest, self.calls
@@ -365,6 +370,13 @@ class _Checker(Scope):
         if known is None:
             self.names[node.name] = Name("def", len(self.procedures))
         self.procedures.append(ir.Procedure(node.name, body, node.span))
+
+    def _free_name(self, name: str) -> str:
+        """Return `DANCE_2`, or with the first number of which the text has no name yet."""
+        used = set(_NAME.findall(self.source.text.upper()))
+        free = (f"{name}_{k}" for k in count(2) if f"{name}_{k}" not in used)
+        twice = sum(each.name == name for each in self.procedures) - 1  # these got one already
+        return next(islice(free, max(0, twice), None))
 
 
 _CHECKS: dict[type, Callable[..., None]] = {

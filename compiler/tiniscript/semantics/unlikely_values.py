@@ -114,7 +114,7 @@ def _long(move: Move, time: int, power: int | None, found: list[Diagnostic]) -> 
     is_round = time % (5 * SECOND) == 0
     is_long = time > LONGEST_DRIVE or (time >= LONG_DRIVE and is_round)
     is_very_long = time >= VERY_LONG_TIME
-    usage = f"{word}(time, {shown})"
+    usage = f"{word}( , {shown})"
     length = as_text(time)
     if turns and (time in ANGLES or (is_long and not is_very_long)):
         _report(found, codes.LONG_TIME, move.span, degrees=length, word=word, turn=usage)

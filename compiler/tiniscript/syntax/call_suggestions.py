@@ -121,12 +121,14 @@ def _said_of_count(texts: Sequence[str], word: Word, until: re.Match[str] | None
     numbers = [float(text) if _NUMBER.fullmatch(text) else -1 for text in texts]
     said = {"power": "", "spare": "", "kept": ""}
     if word.role == "move" and len(texts) == 1 and LONG_TIME_S <= numbers[0] <= _MOST_POWER:
-        said["power"] = f"{word.text}({word.arguments[0].name}, {texts[0]})"
+        said["power"] = f"{word.text}( , {texts[0]})"
         if until is not None:
-            said["power"] = f"{word.text}(FOREVER, {texts[0]}){until[0]}"
+            said["endless"] = f"{word.text}(FOREVER, {texts[0]}){until[0]}"
         said["number"] = texts[0]
     elif len(texts) > len(word.arguments) and min(numbers) >= 0:
-        said["spare"] = word.usage
+        is_sound = word.role == "beep" and numbers[1] > LOWEST_HERTZ
+        if is_sound or len(word.arguments) == 1:
+            said["spare"] = _call(word, texts[: len(word.arguments)])
         if word.role == "move" and numbers[0] < LONG_TIME_S <= numbers[1] <= _MOST_POWER:
             said["spare"] = _call(word, texts[:2])
         is_timed = word.role == "wait" and len(texts) == len(_TIME_AND_POWER)

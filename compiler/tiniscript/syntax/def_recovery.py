@@ -102,7 +102,8 @@ class DefRecovery:
         elif arguments:  # `DEF JUMP(3)`
             span = Span(name.end, place.end)
             text = self.cursor.source[arguments[0].span]
-            times = text if len(arguments) == 1 and text.isdecimal() else ""
+            is_often = len(arguments) == 1 and text.isdecimal() and int(text[:9]) > 1
+            times = text if is_often else ""
             values = {"word": name.text, "name": name.text, "times": times, "fix": ""}
             self.reporter.report(codes.NO_BRACKETS_HERE, span, place, **values)
         else:

@@ -29,8 +29,8 @@ class JoiningRecovery:
             return
         cursor.i += count
         span = cursor.span_from(comma)
-        joining = cursor.source[span]
-        self.reporter.report(codes.EXTRA_WORD, span, found=joining, fix="", joining=joining)
+        mixed = cursor.source[span]
+        self.reporter.report(codes.EXTRA_WORD, span, found=mixed, fix="", mixed=mixed)
         raise Resumed
 
     def _is_call(self, k: int) -> bool:

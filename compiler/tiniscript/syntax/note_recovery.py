@@ -56,7 +56,11 @@ _ASKING = frozenset(("SI", "IF", "CUANDO", "WHEN", "MIENTRAS", "WHILE", "SINO", 
 # Orders for which the language has no single word.
 _OTHER_ORDERS = frozenset("VUELVE VOLVER RETURN BAILA BAILAR DANCE ACELERA CANTA".split())  # noqa: SIM905
 _FAST = ("RAPIDO", "RAPIDA", "RAPIDITO", "FAST", "FUERTE", "VELOZ", "MAX", "MAXIMO")
-_SLOW = ("LENTO", "LENTA", "LENTITO", "SLOW", "DESPACIO", "DESPACITO")
+_SLOW = ("LENTO", "LENTA", "LENTITO", "SLOW", "SLOWLY", "DESPACIO", "DESPACITO")
+_CHANGING = frozenset(("FASTER", "SLOWER"))  # than now, whatever the power is
+_ASKING_FOR = frozenset((
+    "ESQUIVA", "EVITA", "ABRE", "CIERRA", "AGARRA", "COGE", "SUELTA", "GRAB", "AVOID", "DODGE",
+))  # fmt: skip
 _OTHER_UNITS = ("cm", "°", "steps")  # that no instruction has, and pupils measure in
 _OPPOSITE = {"F": "B", "B": "F", "L": "R", "R": "L"}
 _HALF = 60  # a power that is neither fast nor slow
@@ -173,6 +177,8 @@ class NoteRecovery:
         if _says_how_often(row) and (header is None or header.word != "LOOP"):
             return True
         known = WORDS.get(first.text)
+        if header is None and len(row) == 1 and first.text == "FOREVER":
+            return False  # `F(1, 80) forever`
         if header is not None and header.word in ("IF", "WHILE") and first.text in _ASKING:
             return False  # `IF(DISTANCE < 30) si hay pared`
         if known is not None:
@@ -229,15 +235,17 @@ class NoteRecovery:
             return {"again": f"LOOP(2);{call};END_LOOP"}
         is_endless = any(a == "SIN" and b in _WITHOUT_END for a, b in pairs)
         is_endless |= any(a in ("TODO", "ALL") and b in ("EL", "THE") for a, b in pairs)
-        if known.role in ("move", "wait") and (is_endless or _NEVER_ENDS & set(texts)):
-            values = call.partition("(")[2].partition(",")
-            rest = f",{values[2]}" if values[1] else ")"
-            return {"endless": f"{known.text}(FOREVER{rest}"}
+        if known.role in ("move", "wait", "motors") and (is_endless or _NEVER_ENDS & set(texts)):
+            return {"endless": f"LOOP(FOREVER);{call};END_LOOP"}
         if known.role in ("move", "wait") and any(
             text in ("HASTA", "UNTIL") or meant_by(text) == "UNTIL" for text in texts
         ):
             return {"until": f"{call} UNTIL(DISTANCE < 10)"} if "UNTIL" not in call else None
         other = _OPPOSITE.get(known.text, "")
+        if other and texts == ["AL", "REVES"]:
+            return {"other": f"{other}{call[len(known.text) :]}"}
+        if texts and texts[0] in _ASKING_FOR and row[0].kind is WORD:
+            return {"order": shortened(" ".join(texts).lower())}
         said = {meant_by(text) for text in texts if text not in OFTEN_SAID} & {*_OPPOSITE}
         if said == {other} and not has_number and not BETWEEN & set(texts):
             return {"other": f"{other}{call[len(known.text) :]}"}  # `R(0.39, 60) izquierda`
@@ -251,8 +259,13 @@ class NoteRecovery:
         power = call.rpartition(",")[2].strip(" )")
         if set(texts) & BEFORE_POWER and numbers:
             return power not in numbers
+        if texts == ["A"] and len(numbers) == 1 and len(numbers[0]) == len(power) == 2:
+            return power != numbers[0]  # `F(1, 80) a 50`
         if len(texts) > 3 or not power.isdecimal() or not 0 < len(power) < 4:
             return False
+        is_more = bool({"MAS", "MORE"} & set(texts)) and bool({*_FAST, *_SLOW} & set(texts))
+        if is_more or _CHANGING & set(texts):
+            return True
         is_fast = int(power) >= _HALF
         return bool(set(texts) & set(_SLOW if is_fast else _FAST))
 

@@ -117,6 +117,7 @@ IMPORTING = frozenset("IMPORT FROM USING INCLUDE PACKAGE REQUIRE".split())  # no
 # What names a program, and what counts its lines: `Algoritmo cuadrado`, `Paso 1:`.
 TITLES = frozenset("PROGRAMA PROGRAM ALGORITMO ALGORITHM PROYECTO".split())  # noqa: SIM905
 STEPS = frozenset("PASO STEP LINEA LINE INSTRUCCION PARTE ETAPA MOVIMIENTO".split())  # noqa: SIM905
+TERMINAL = frozenset(("TSC", "TINISCRIPT"))  # with these a line is for the terminal
 BEFORE_CALL = frozenset(("CALL", "RUN", "GOSUB", "LLAMAR", "LLAMA", "EJECUTAR", "EJECUTA"))
 BEFORE_DEF = frozenset("HACER HAZ HAGA DO USAR USA REALIZAR REALIZA".split())  # noqa: SIM905
 READING = frozenset("LEE LEER READ MIDE MEDIR MEASURE SENSAR CHECK REVISA".split())  # noqa: SIM905

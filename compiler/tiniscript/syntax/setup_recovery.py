@@ -23,6 +23,7 @@ from tiniscript.syntax.phrases import (
     FRAME_WORDS,
     IMPORTING,
     SETTING,
+    TERMINAL,
 )
 from tiniscript.syntax.reporter import Reporter, Resumed
 from tiniscript.syntax.suggestions import (
@@ -85,7 +86,8 @@ class SetupRecovery:
                 self.reporter.answer(token)
             span = Span(row[0].start, row[-1].end)
             fix = f"// {cursor.source[span]}"
-            self.reporter.report(codes.PROSE, span, None, fix=fix)
+            command = cursor.source[span] if row[0].text in TERMINAL else ""
+            self.reporter.report(codes.PROSE, span, None, fix=fix, command=command)
             cursor.i = end
         cursor.to_inner()
 

@@ -20,6 +20,7 @@ from tiniscript.syntax.phrases import (
     OFTEN_SAID,
     SETTING,
     STEPS,
+    TERMINAL,
 )
 from tiniscript.syntax.reporter import Reporter, Resumed
 from tiniscript.syntax.suggestions import foreign_block, shortened
@@ -77,7 +78,7 @@ class TalkRecovery:
         cursor.i = end
         span = Span(row[0].start, row[-1].end)
         fix = f"// {cursor.source[span]}"
-        command = cursor.source[span] if row[0].text in ("TSC", "TINISCRIPT") else ""
+        command = cursor.source[span] if row[0].text in TERMINAL else ""
         self.reporter.fail(codes.PROSE, span, None, fix=fix, command=command)
 
     def _says_something(self, tokens: Sequence[Token], k: int) -> bool:

@@ -17,6 +17,7 @@ from tiniscript.syntax.suggestions import after_bracket, shortened
 from tiniscript.words import BLOCK_ENDS, NUMBER_WORDS, WORDS
 
 _WORDS = re.compile(r"\W")
+_NOT_OFTEN = ("0", "1")
 MOST_ON_A_LINE = 8  # instructions before the one that says how often
 _OF_BLOCKS = frozenset((*BLOCK_ENDS, *BLOCK_ENDS.values(), "ELSE", "ELSEIF"))
 
@@ -126,7 +127,8 @@ class TimesRecovery:
         last = max((each.end for each in row if each.kind not in AT_END), default=word.end)
         span = Span(word.start, last)
         values = {"found": source[span], "fix": ""}
-        if numbers and len(rows) == len(blocks.here) <= MOST_ON_A_LINE:
+        is_often = bool(numbers) and numbers[0] not in _NOT_OFTEN
+        if is_often and len(rows) == len(blocks.here) <= MOST_ON_A_LINE:
             values["all"] = ";".join((f"LOOP({numbers[0]})", *rows, BLOCK_ENDS["LOOP"]))
         self.reporter.fail(codes.REPEATED, span, None, **values)
 
@@ -138,7 +140,8 @@ class TimesRecovery:
         row = [each.strip() for each in source.text[start : body.start].split(";")]
         row = [each for each in row if each and each.upper() != "START"]
         is_of_block = any(_WORDS.split(each)[0].upper() in _OF_BLOCKS for each in row)
-        if is_of_block or not 0 < len(row) <= MOST_ON_A_LINE:
+        is_often = number.text not in _NOT_OFTEN
+        if is_of_block or not is_often or not 0 < len(row) <= MOST_ON_A_LINE:
             return
         head, end = f"LOOP({number.text})", BLOCK_ENDS["LOOP"]
         values = {
@@ -149,8 +152,11 @@ class TimesRecovery:
         self.reporter.fail(codes.REPEATED, place, None, **values)
 
     def _loop_of(self, number: Token, body: Span, place: Span) -> NoReturn:
-        fix = f"LOOP({number.text});{self.cursor.source[body]};END_LOOP"
         found = shortened(self.cursor.source[place])
+        if number.text in _NOT_OFTEN:  # nothing is repeated
+            once = self.cursor.source[body] if number.text == "1" else ""
+            self.reporter.fail(codes.REPEATED, place, None, found=found, fix="", once=once)
+        fix = f"LOOP({number.text});{self.cursor.source[body]};END_LOOP"
         self.reporter.fail(codes.REPEATED, place, found=found, fix=fix)
 
 
