@@ -9,12 +9,20 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Mapping
-from typing import NamedTuple
 
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic
-from tiniscript.fixed_point import HIGHEST, as_text
-from tiniscript.kit import NUMBER, Device, Kit
+from tiniscript.fixed_point import as_text
+from tiniscript.kit import Kit
+from tiniscript.semantics.comparisons import (
+    TIME,
+    Comparison,
+    answer_of,
+    comes_true,
+    comparison,
+    is_between,
+    looks_ahead,
+)
 from tiniscript.semantics.ir import (
     Arm,
     Assign,
@@ -26,6 +34,7 @@ from tiniscript.semantics.ir import (
     Move,
     Program,
     Statement,
+    Term,
     While,
     every,
     loops_end,
@@ -37,28 +46,17 @@ from tiniscript.source import Source, Span
 from tiniscript.syntax.operators import SIGN_OF
 
 SHORT = 1000  # ms: a loop looks again after so long
-MANY_VALUES = 100_000  # thousandths: a sensor with such a range is hardly ever at one of them
 _CHANGING = frozenset(("SENSOR", "TIME", "RANDOM"))
-_MIRRORED = {"LT": "GT", "LE": "GE", "GT": "LT", "GE": "LE", "EQ": "EQ", "NE": "NE"}
 # By the way that the robot goes, what is true where the robot stands, and what comes true.
 _TURNED = {"F": {"GT": "LT", "GE": "LE"}, "B": {"LT": "GT", "LE": "GE"}}
 _WAYS = {"LT": "below", "LE": "below", "GT": "above", "GE": "above"}
 _MOST_ARMS = 50  # of an IF whose questions are compared
-_TIME = Device("TIME", NUMBER, "s", 0, HIGHEST)
 _REACHED = {"F": "LE", "B": "GE"}  # what is sure to come true, by the way that the robot goes
 
 
 def goes_on_for_ever(loop: Loop | While) -> bool:
     """Whether a loop counts nothing: what counts may do what was decided before it."""
     return not isinstance(loop, Loop) or loop.times is None
-
-
-class _Comparison(NamedTuple):
-    """A sensor, the name of the comparator that stands behind it, and a number."""
-
-    device: Device
-    op: str
-    number: int
 
 
 class FrozenQuestions:
@@ -114,37 +112,39 @@ class FrozenQuestions:
         if variables and not any(term.op in _CHANGING for term in condition):
             time = None if move.time is None else constant(fold(move.time))
             if not (is_repeated and time is not None and time < SHORT):
-                self._frozen(move, variables)
+                self._frozen(move, condition, variables)
             return
-        comparison = self._comparison(condition)
-        if comparison is None or self._known(comparison, move.span):
+        compared = self._comparison(condition)
+        if compared is None or self._known(compared, move.span):
             return
-        device, op, number = comparison
-        is_distance = device.name == "DISTANCE"  # that it looks ahead no kit's file says of others
-        is_turned = op in _TURNED.get(move.direction, {}) and is_distance
+        device, op, number = compared
+        is_ahead = looks_ahead(device)
+        is_turned = op in _TURNED.get(move.direction, {}) and is_ahead
         if is_turned and not set(asked) & _sensors(condition):
-            sign = SIGN_OF[_TURNED[move.direction][op]]
-            other = self._with(move, f"{device.name} {sign} {as_text(number)}")
-            is_ahead = move.direction == "F"
-            number_is, repair = ("number", "fix") if is_ahead else ("far", "away")
+            turned = compared._replace(op=_TURNED[move.direction][op])
+            other = "" if answer_of(turned) else self._with(move, str(turned))
+            is_forward = move.direction == "F"
+            number_is, repair = ("number", "fix") if is_forward else ("far", "away")
             values = {"sensor": device.name, number_is: as_text(number), repair: other}
             self.found.append(Diagnostic(codes.TURNED_ROUND, move.span, values))
-        elif op == "EQ" and _is_between(device, number):
-            reached = "GE" if device is _TIME else _REACHED.get(move.direction, "")
+        elif op == "EQ" and is_between(device, number):
+            reached = "GE" if device is TIME else _REACHED.get(move.direction, "")
             question = f"{device.name} {SIGN_OF.get(reached, '')} {as_text(number)}"
-            is_sure = bool(reached) and (is_distance or device is _TIME)
+            is_sure = bool(reached) and (is_ahead or device is TIME)
             fix = self._with(move, question) if is_sure else ""
             self._report(codes.EXACT, move.span, sensor=device.name, number=as_text(number),
                          word="UNTIL", fix=fix)  # fmt: skip
 
-    def _frozen(self, move: Move, variables: list[int]) -> None:
+    def _frozen(self, move: Move, condition: Expression, variables: list[int]) -> None:
         held = self._sensors_of(variables)
         name = self._program.variables[variables[0]]
-        values = {"name": name, "fix": ""}
+        sign = ">" if move.direction == "B" else "<"
+        values = {"name": name, "fix": "", "example": f"UNTIL(DISTANCE {sign} 20)"}
         if held:
             values["sensor"] = held[name]
-            question = _replaced(question_of(self._source, move.span, "UNTIL"), held)
-            values["fix"] = self._with(move, question) if question else ""
+            if self._is_good(condition, held, move.direction):
+                question = _replaced(question_of(self._source, move.span, "UNTIL"), held)
+                values["fix"] = self._with(move, question) if question else ""
         self.found.append(Diagnostic(codes.FROZEN_UNTIL, move.span, values))
 
     def _with(self, move: Move, question: str) -> str:
@@ -171,7 +171,8 @@ class FrozenQuestions:
         if held:
             question = _replaced(question_of(self._source, loop.span, "WHILE"), held)
             values["sensor"] = held[name]
-            values["fix"] = f"WHILE({question})" if question else ""
+            is_good = question and self._is_good(condition, held)
+            values["fix"] = f"WHILE({question})" if is_good else ""
         elif [term.op for term in condition[:-1]] == ["VARIABLE", "NUMBER"]:
             is_down = condition[-1].op in ("GT", "GE")
             values["step"] = f"{name} = {name} {'-' if is_down else '+'} 1"
@@ -206,56 +207,59 @@ class FrozenQuestions:
         name = self._program.variables[variables[0]]
         word = "IF" if self._source[arm.span][:1].upper() == "I" else "ELSEIF"
         question = _replaced(question_of(self._source, arm.span, word), held)
-        fix = f"{word}({question})" if question else ""
+        is_good = question and self._is_good(arm.condition, held)
+        fix = f"{word}({question})" if is_good else ""
         self._report(codes.FROZEN_WHILE, arm.span, name=name, sensor=held[name], fix=fix)
 
     def _late_arms(self, statement: If) -> None:
         """`IF(DISTANCE < 60) … ELSEIF(DISTANCE < 20)`: what is below 20 is below 60, too."""
-        widest: dict[tuple[str, str], _Comparison] = {}  # by sensor and the way of the sign
+        widest: dict[tuple[str, str], Comparison] = {}  # by sensor and the way of the sign
         for k, arm in enumerate(statement.arms[:_MOST_ARMS]):
-            comparison = self._comparison(arm.condition)
-            if comparison is None or comparison.op not in _WAYS:
+            compared = self._comparison(arm.condition)
+            if compared is None or compared.op not in _WAYS:
                 continue
-            key = (comparison.device.name, _WAYS[comparison.op])
+            key = (compared.device.name, _WAYS[compared.op])
             before = widest.get(key)
-            if before is None or not _is_within(comparison, before):
-                widest[key] = comparison
+            if before is None or not _is_within(compared, before):
+                widest[key] = compared
             elif k:
-                self._report(codes.LATE_ARM, arm.span, wide=_written(before),
-                             narrow=_written(comparison))  # fmt: skip
+                self._report(codes.LATE_ARM, arm.span, wide=str(before),
+                             narrow=str(compared))  # fmt: skip
 
-    def _known(self, comparison: _Comparison | None, span: Span) -> bool:
+    def _known(self, compared: Comparison | None, span: Span) -> bool:
         """Warn where the answer is known: `LIGHT_L > 5000`, of a sensor that goes up to 1023."""
-        if comparison is None:
+        if compared is None:
             return False
-        device, op, number = comparison
-        answer = _answer(device, op, number)
+        device = compared.device
+        answer = answer_of(compared)
         if answer:
             self._report(codes.KNOWN_ANSWER, span, sensor=device.name, low=as_text(device.low),
                          high=as_text(device.high), answer=answer)  # fmt: skip
         return bool(answer)
 
     def _exact_if(self, arm: Arm) -> None:
-        comparison = self._comparison(arm.condition)
-        if comparison is not None:
-            device, op, number = comparison
-            if op == "EQ" and _is_between(device, number):
+        compared = self._comparison(arm.condition)
+        if compared is not None:
+            device, op, number = compared
+            if op == "EQ" and is_between(device, number):
                 self._report(codes.EXACT, arm.span, sensor=device.name, number=as_text(number),
                              word="IF", fix="")  # fmt: skip
 
     # -- what is in them ----------------------------------------------------------------------
 
-    def _comparison(self, condition: Expression) -> _Comparison | None:
-        """Return `DISTANCE < 10` for a question that is just that, whichever side is first."""
-        if len(condition) != 3 or condition[2].op not in _MIRRORED:
-            return None
-        first, second, sign = condition[0], condition[1], condition[2].op
-        if first.op == "NUMBER":
-            first, second, sign = second, first, _MIRRORED[sign]
-        if first.op not in ("SENSOR", "TIME") or second.op != "NUMBER":
-            return None
-        device = _TIME if first.op == "TIME" else self._kit.sensors[first.value]
-        return _Comparison(device, sign, second.value)
+    def _comparison(self, condition: Expression) -> Comparison | None:
+        return comparison(condition, self._kit)
+
+    def _is_good(self, condition: Expression, held: Mapping[str, str], direction: str = "") -> bool:
+        """Whether a question is one to write where it asks the sensors themselves."""
+        numbers = {device.name: k for k, device in enumerate(self._kit.sensors)}
+        asking = tuple(
+            Term("SENSOR", numbers[held[self._program.variables[term.value]]])
+            if term.op == "VARIABLE"
+            else term
+            for term in condition
+        )
+        return comes_true(asking, direction, self._kit) is not False
 
     def _sensors_of(self, variables: list[int]) -> dict[str, str]:
         """Return the sensor that each of these variables holds; nothing where one holds another."""
@@ -281,43 +285,11 @@ def _sensors(condition: Expression) -> set[int]:
     return {term.value for term in condition if term.op == "SENSOR"}
 
 
-def _is_between(device: Device, number: int) -> bool:
-    """Whether a number is one of very many that a sensor may read, and not the last."""
-    is_fine = not device.is_yes_no and device.high - device.low >= MANY_VALUES
-    return is_fine and device.low < number < device.high
-
-
-def _written(comparison: _Comparison) -> str:
-    return f"{comparison.device.name} {SIGN_OF[comparison.op]} {as_text(comparison.number)}"
-
-
-def _is_within(narrow: _Comparison, wide: _Comparison) -> bool:
+def _is_within(narrow: Comparison, wide: Comparison) -> bool:
     """Whether one comparison is true only where the other one is; their signs go the same way."""
     if narrow.number == wide.number:
         return narrow.op == wide.op or wide.op in ("LE", "GE")
     return (narrow.number < wide.number) == (_WAYS[wide.op] == "below")
-
-
-def _answer(device: Device, op: str, number: int) -> str:
-    """Return the answer that a comparison always has, as a term; nothing where it may change."""
-    if device.is_yes_no:
-        return ""
-    is_never = {
-        "LT": number <= device.low,
-        "LE": number < device.low,
-        "GT": number >= device.high,
-        "GE": number > device.high,
-        "EQ": not device.low <= number <= device.high,
-    }
-    is_always = {
-        "LT": number > device.high,
-        "LE": number > device.high,
-        "GT": number < device.low,
-        "GE": number < device.low,
-    }
-    if is_never.get(op):
-        return "answer_no"
-    return "answer_yes" if is_always.get(op) else ""
 
 
 def _replaced(question: str, held: Mapping[str, str]) -> str:

@@ -10,6 +10,7 @@ from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.fixed_point import as_text
 from tiniscript.kit import Kit
+from tiniscript.semantics.comparisons import asks_if_near, comes_true, is_distance, looks_ahead
 from tiniscript.semantics.ir import (
     Assign,
     Beep,
@@ -73,8 +74,9 @@ class LateQuestions:
                 continue
             condition = question.arms[0].condition
             sensor = self._distance_in(condition)
-            if sensor is not None:
-                asked = question_of(self._source, question.arms[0].span, "IF")
+            comes = comes_true(condition, statement.direction, self._kit)
+            if sensor is not None and comes is not False:
+                asked = question_of(self._source, question.arms[0].span, "IF") if comes else ""
                 self._late(statement, sensor, asked)
                 late.add(place)
         return late
@@ -91,8 +93,10 @@ class LateQuestions:
             return
         if move.direction == "F" and self._is_blind(move, LONG_STEP):
             sign = OPPOSITES[SIGN_OF[condition[2].op]]
-            name = self._kit.sensors[sensor].name
-            self._late(move, sensor, f"{name} {sign} {as_text(condition[1].value)}")
+            device, number = self._kit.sensors[sensor], condition[1].value
+            is_good = looks_ahead(device) and device.low < number <= device.high
+            asked = f"{device.name} {sign} {as_text(number)}" if is_good else ""
+            self._late(move, sensor, asked)
 
     def _late(self, move: Move, sensor: int, asked: str) -> None:
         name = self._kit.sensors[sensor].name
@@ -121,10 +125,11 @@ class LateQuestions:
                 and move.direction in "FB"
                 and self._is_blind(move, LONG_MOVE)
             ):
-                asked = question_of(self._source, question.arms[0].span, "IF")
-                written = self._source[move.span]
-                values = {"found": self._source[stop.span], "move": "", "next": "", place: written}
-                values["fix"] = f"{written} UNTIL({asked})" if asked else ""
+                if move.direction == "B" and asks_if_near(condition, self._kit):
+                    if place == "move":
+                        break
+                    return  # it drives away from what is near
+                values = self._idle(stop, move, place, question)
                 if place == "move" or not pauses:
                     self.found.append(Diagnostic(codes.IDLE_STOP, stop.span, values))
                 return
@@ -133,6 +138,20 @@ class LateQuestions:
             values = {"found": self._source[stop.span], "next": ""}
             values["again"] = self._source[again.span]
             self.found.append(Diagnostic(codes.IDLE_STOP, stop.span, values))
+
+    def _idle(self, stop: Stop, move: Move, place: str, question: If) -> dict[str, str]:
+        """Return the words for an S before or after a move, with a repair where one is sure."""
+        found, written = self._source[stop.span], self._source[move.span]
+        condition = question.arms[0].condition
+        comes = comes_true(condition, move.direction, self._kit)
+        if move.direction == "B" and self._distance_in(condition) is not None:
+            comes = False  # what is behind the robot is not seen
+        asked = question_of(self._source, question.arms[0].span, "IF") if comes else ""
+        values = {"found": found, "move": "", "next": "", place: written}
+        values["fix"] = f"{written} UNTIL({asked})" if asked else ""
+        if comes is False:
+            values["needless" if place == "move" else "behind"] = written
+        return values
 
     def _is_blind(self, move: Move, least: int) -> bool:
         """Whether a move lasts long, and looks at nothing."""
@@ -144,7 +163,7 @@ class LateQuestions:
     def _distance_in(self, condition: Expression) -> int | None:
         """Return the first sensor of a distance that a question looks at."""
         for op, value in condition:
-            if op == "SENSOR" and self._kit.sensors[value].unit in ("cm", "mm", "m"):
+            if op == "SENSOR" and is_distance(self._kit.sensors[value]):
                 return value
         return None
 

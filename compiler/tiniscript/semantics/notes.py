@@ -19,8 +19,7 @@ from tiniscript.words import WORDS
 
 _CALL = r"(?:[FBLRM]|BEEP)\(\s*-?[0-9.]+\s*,\s*-?[0-9.]+\s*\)|W\(\s*[0-9.]+\s*\)"
 _CALLS = re.compile(rf"/+\s*(?:{_CALL})(?:[;\s]*(?:{_CALL}|STOP|S))*[;\s]*", re.IGNORECASE)
-# `// voy; W(2) // compro`: an instruction behind the note of the one before.
-_SWALLOWED = re.compile(rf"//[^;()]*;\s*((?:{_CALL}|STOP\b).*)", re.IGNORECASE)
+_CALL_IN_IT = re.compile(rf"(?:{_CALL})|STOP|S", re.IGNORECASE)
 LONGEST = 200  # characters of a note that is looked at
 
 
@@ -28,7 +27,7 @@ def in_notes(notes: Sequence[Token], tokens: Sequence[Token], source: Source) ->
     """Return the warnings for instructions that the robot does not do."""
     found = []
     short = [each for each in notes if len(each.text) <= LONGEST]
-    rows = [each for each in short if _CALLS.fullmatch(each.text) or _SWALLOWED.match(each.text)]
+    rows = [each for each in short if _CALLS.fullmatch(each.text) or swallowed(each.text)]
     is_ping = [each.text for each in tokens[:2]] == ["PING", "|"]
     depth = k = 0
     for note in rows:
@@ -39,12 +38,22 @@ def in_notes(notes: Sequence[Token], tokens: Sequence[Token], source: Source) ->
         if depth or not source.text[begin : note.start].strip(" \t;"):
             continue
         if _ends_instruction(tokens, k) and not is_ping:
-            swallowed = _SWALLOWED.match(note.text)
-            rest = swallowed[1].strip("; \t") if swallowed else ""
-            line = rest.partition(";")[0] if "//" in rest else rest
-            values = {"found": rest or note.text.strip("/; \t"), "rest": line}
+            rest = "; ".join(swallowed(note.text))
+            values = {"found": rest or note.text.strip("/; \t"), "rest": rest}
             found.append(Diagnostic(codes.IN_A_NOTE, note.span, values))
     return found
+
+
+def swallowed(note: str) -> list[str]:
+    """Return the instructions behind the words of a note: `// voy; W(2) // compro`.
+
+    None where a bracket stands in anything but a whole instruction: `// L va; R(1, 60) es derecha`.
+    """
+    first, *others = (each.strip() for each in re.split(r";|//", note.removeprefix("//")))
+    found = [each for each in others if _CALL_IN_IT.fullmatch(each)]
+    is_row = all(each in found or not set("()") & set(each) for each in (first, *others))
+    is_row = is_row and bool(found) and found != ["S"] * len(found)
+    return found if is_row and first else []
 
 
 def _ends_instruction(tokens: Sequence[Token], end: int) -> bool:

@@ -10,6 +10,7 @@ import re
 from typing import NamedTuple
 
 from tiniscript.diagnostics import codes
+from tiniscript.semantics.comparisons import ASIDE
 from tiniscript.semantics.ir import Expression, Term
 from tiniscript.semantics.named_values import value_of
 from tiniscript.semantics.symbols import ENOUGH, Scope
@@ -44,11 +45,12 @@ _EQUAL = frozenset(("EQ", "NE"))
 _COMPARES = re.compile(r"\w+\s*((?:<=|>=|<>|[<>=])\s*[\w.]+)")  # `> 5` of `X > 5`
 _COMPARED = re.compile(r"[^<>=]{1,40}?\s*(?:<=|>=|<>|[<>=])(?=[^<>=]*$)")  # `X =` of `X = 5`
 _UNARY = {"NEG": "-", "ABS": "ABS"}
-_TIME, _POWER = "2", "50"  # examples of what a variable may hold
+_TIME, _POWER, _TIMES, _HERTZ = "2", "50", "3", "440"  # examples of what a variable may hold
 _POWER_BEFORE = re.compile(r"(?i)\b[FBLR][ \t]*\([^(),]*,[ \t]*$")
 _NEAR = 20  # characters before a name in which its word is looked for
 # Where a sensor does not look that looks ahead.
-_ASIDE = ("L", "R", "LEFT", "RIGHT", "IZQ", "DER", "IZQUIERDA", "DERECHA", "BACK", "ATRAS")
+_TIMES_BEFORE = re.compile(r"(?i)\bLOOP[ \t]*\([ \t]*$")
+_HERTZ_BEFORE = re.compile(r"(?i)\bBEEP[ \t]*\([^(),]*,[ \t]*$")
 _TIME_BEFORE = re.compile(r"(?i)\b(?:[FBLRW]|BEEP)[ \t]*\([ \t]*$")  # a time comes first
 _LEAVES = {"TRUE": Term("YES_NO", 1), "FALSE": Term("YES_NO", 0), "TIME": Term("TIME")}
 
@@ -154,8 +156,12 @@ class Kinds:
                 value = _TIME
             elif _POWER_BEFORE.search(before):
                 value = _POWER
+            elif _TIMES_BEFORE.search(before):
+                value = _TIMES
+            elif _HERTZ_BEFORE.search(before):
+                value = _HERTZ
             only = next((each for each in sensors if name.startswith(each + "_")), "")
-            aside = only if name.rpartition("_")[2] in _ASIDE else ""
+            aside = only if name.rpartition("_")[2] in ASIDE else ""
             near = "" if aside else only or near
             scope.report(codes.UNKNOWN_NAME, span, None, found=name, near=near,
                          value=value, only=only, aside=aside, **which)  # fmt: skip

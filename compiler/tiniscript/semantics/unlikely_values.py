@@ -39,13 +39,14 @@ def of_move(move: Move, kit: Kit, source: Source) -> list[Diagnostic]:
     if time is None:
         return _measured(move, kit, source)
     zero = _ZERO.match(source[move.span])
-    if zero is not None:  # `L(039, 60)`
+    if time <= 0:
+        _report(found, codes.MOVE_OF_NO_TIME, move.span, word=move.direction)
+    elif zero is not None:  # `L(039, 60)`
         text = source[move.span]
         fix = f"{text[: zero.start(1)]}0.{zero[1][1:]}{text[zero.end(1) :]}"
+        fix = "" if zero[1].startswith("00") else fix
         values = {"found": zero[1], "right": as_text(time), "fix": fix}
         found.append(Diagnostic(codes.ZERO_BEFORE, move.span, values))
-    elif time <= 0:
-        _report(found, codes.MOVE_OF_NO_TIME, move.span, word=move.direction)
     elif _is_swapped(time, power):
         seconds, percent = as_text(time), as_text(power or 0)
         fix = f"{move.direction}({percent}, {seconds})"

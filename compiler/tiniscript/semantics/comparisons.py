@@ -1,0 +1,114 @@
+"""Knows comparisons of a sensor, and which questions can come true behind UNTIL of a move.
+
+Going forward a distance gets smaller, going back it gets bigger.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from tiniscript.fixed_point import HIGHEST, as_text
+from tiniscript.kit import NUMBER, Device, Kit
+from tiniscript.semantics.ir import Expression
+from tiniscript.syntax.operators import SIGN_OF
+
+MANY_VALUES = 100_000  # thousandths: a sensor with such a range is hardly ever at one of them
+ASIDE = ("L", "R", "LEFT", "RIGHT", "IZQ", "DER", "IZQUIERDA", "DERECHA", "BACK", "ATRAS")
+TIME = Device("TIME", NUMBER, "s", 0, HIGHEST)
+_MIRRORED = {"LT": "GT", "LE": "GE", "GT": "LT", "GE": "LE", "EQ": "EQ", "NE": "NE"}
+_LESS = ("LT", "LE")
+_COMES = {"F": _LESS, "B": ("GT", "GE")}  # what comes true, by the way that the robot goes
+
+
+class Comparison(NamedTuple):
+    """A sensor, the name of the comparator that stands behind it, and a number."""
+
+    device: Device
+    op: str
+    number: int
+
+    def __str__(self) -> str:
+        return f"{self.device.name} {SIGN_OF[self.op]} {as_text(self.number)}"
+
+
+def comparison(condition: Expression, kit: Kit) -> Comparison | None:
+    """Return `DISTANCE < 10` for a question that is just that, whichever side is first."""
+    if len(condition) != 3 or condition[2].op not in _MIRRORED:
+        return None
+    first, second, sign = condition[0], condition[1], condition[2].op
+    if first.op == "NUMBER":
+        first, second, sign = second, first, _MIRRORED[sign]
+    if first.op not in ("SENSOR", "TIME") or second.op != "NUMBER":
+        return None
+    device = TIME if first.op == "TIME" else kit.sensors[first.value]
+    return Comparison(device, sign, second.value)
+
+
+def is_distance(device: Device) -> bool:
+    return device.unit in ("cm", "mm", "m")
+
+
+def looks_ahead(device: Device) -> bool:
+    """Whether a sensor has a distance that gets smaller as the robot goes forward.
+
+    Its name says so: `DISTANCE`, `DISTANCE_FRONT`, but not `TRAVEL` or `DISTANCE_BACK`.
+    """
+    kind, _, way = device.name.partition("_")
+    return is_distance(device) and kind == "DISTANCE" and way not in ASIDE
+
+
+def is_between(device: Device, number: int) -> bool:
+    """Whether a number is one of very many that a sensor may read, and not the last."""
+    is_fine = not device.is_yes_no and device.high - device.low >= MANY_VALUES
+    return is_fine and device.low < number < device.high
+
+
+def answer_of(compared: Comparison) -> str:
+    """Return the answer that a comparison always has, as a term; nothing where it may change."""
+    device, op, number = compared
+    if device.is_yes_no:
+        return ""
+    is_never = {
+        "LT": number <= device.low,
+        "LE": number < device.low,
+        "GT": number >= device.high,
+        "GE": number > device.high,
+        "EQ": not device.low <= number <= device.high,
+    }
+    is_always = {
+        "LT": number > device.high,
+        "LE": number > device.high,
+        "GT": number < device.low,
+        "GE": number < device.low,
+    }
+    if is_never.get(op):
+        return "answer_no"
+    return "answer_yes" if is_always.get(op) else ""
+
+
+def comes_true(condition: Expression, direction: str, kit: Kit) -> bool | None:
+    """Return whether a question is one for the UNTIL of a move; None where that is not known.
+
+    It is none where a distance changes the other way, where it asks for exactly one of very many
+    numbers, and where its answer is always the same.
+    """
+    left = sum(term.op == "SENSOR" and is_distance(kit.sensors[term.value]) for term in condition)
+    is_sure = all(term.op != "NOT" for term in condition)
+    for k in range(len(condition) - 2):
+        compared = comparison(condition[k : k + 3], kit)
+        if compared is None:
+            continue
+        if answer_of(compared) or (compared.op == "EQ" and is_between(*compared[::2])):
+            return False
+        if is_distance(compared.device):
+            left -= looks_ahead(compared.device)
+            if is_sure and looks_ahead(compared.device):
+                if compared.op not in _COMES.get(direction, (compared.op,)):
+                    return False
+    return True if is_sure and (not left or direction not in _COMES) else None
+
+
+def asks_if_near(condition: Expression, kit: Kit) -> bool:
+    """Whether a part of a question is `DISTANCE < 20`, of a sensor that looks ahead."""
+    parts = (comparison(condition[k : k + 3], kit) for k in range(len(condition) - 2))
+    return any(each and looks_ahead(each.device) and each.op in _LESS for each in parts)

@@ -1,0 +1,92 @@
+"""What a warning offers is right: with its repair the program has no mistake and no new warning."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+
+import pytest
+
+from tests.pupils.corpus import check, entries
+from tests.semantics.test_lint import ADVISED
+from tiniscript.diagnostics import codes
+from tiniscript.diagnostics.codes import Diagnostic
+from tiniscript.diagnostics.rendering import message
+from tiniscript.source import Source
+
+WARNED = re.compile(r"[0-9]+ TS8")
+PROGRAMS = [text for text, _ in ADVISED]
+PROGRAMS += [each.program for each in entries() if any(map(WARNED.match, each.said))]
+# A question of no use becomes one of use, which is looked at then; its variable is left over.
+COMES_TO_LIGHT = {
+    codes.FROZEN_UNTIL: {codes.UNUSED_VARIABLE},
+    codes.FROZEN_WHILE: {codes.UNUSED_VARIABLE, codes.LATE_CHECK, codes.IDLE_STOP},
+}
+
+
+def repaired(text: str, warning: Diagnostic) -> str:
+    """Return a program with the repair of a warning in its place; "" where it offers none."""
+    fix = warning.values.get("fix", "")
+    start, end = warning.place or warning.span
+    if not fix:
+        return ""
+    if warning.code is codes.IDLE_STOP:
+        move, after = warning.values["move"], warning.values["next"]
+        start = text.rfind(move, 0, start) if move else text.index(after, end)
+        end = start + len(move or after)
+    elif warning.code is codes.FROZEN_WHILE:
+        end = text.index(")", start) + 1
+    return f"{text[:start]}{fix}{text[end:]}"
+
+
+def new_in(text: str) -> list[tuple[str, str]]:
+    """Return the repairs of a program's warnings that make a new warning or mistake, with those."""
+    found = check(text)
+    before = Counter(each.code for each in found)
+    wrong = []
+    for each in found:
+        after = "" if each.is_mistake else repaired(text, each)
+        new = Counter(other.code for other in check(after)) - before if after else Counter()
+        new -= Counter(COMES_TO_LIGHT.get(each.code, ()))
+        wrong += [(after, code.number) for code in new]
+    return wrong
+
+
+def test_no_repair_of_a_warning_makes_a_new_one() -> None:
+    offered = [(text, wrong) for text in PROGRAMS for wrong in new_in(text)]
+    assert not offered, f"{len(offered)}, the first: {offered[0]}"
+
+
+@pytest.mark.parametrize(
+    ("text", "fix"),
+    [
+        ("B(5, 60);IF(DISTANCE > 20);S;ENDIF", "Behind B(5, 60) the robot stands anyway"),
+        ("F(5, 60);IF(DISTANCE = 20);S;ENDIF", "Behind F(5, 60) the robot stands anyway"),
+        ("IF(DISTANCE > 20);S;ENDIF;F(5, 60)", "To stand still, put F(5, 60) behind an ELSE."),
+        ("F(5, 60);IF(DISTANCE < 20);S;ENDIF", "F(5, 60) UNTIL(DISTANCE < 20)"),
+        ("D = DISTANCE;B(5, 60) UNTIL(D < 20)", "Ask a sensor in UNTIL, as in UNTIL(DISTANCE > 2"),
+        ("D = DISTANCE;B(5, 60) UNTIL(D > 20)", "B(5, 60) UNTIL(DISTANCE > 20)"),
+        ("F(5, 60) UNTIL(DISTANCE > 0)", "Let a time end the move"),
+        ("WHILE(DISTANCE > 0);F(5, 60);END_WHILE", "Write the question right behind"),
+        ("F(007, 60)", "Write 7, or the seconds"),
+        ("LOOP(VECES);S;END_LOOP", "VECES = 3"),
+        ("BEEP(1, NOTA)", "NOTA = 440"),
+        ("BEEP(LARGO, 440)", "LARGO = 2"),
+    ],
+)  # fmt: skip
+def test_what_is_offered(text: str, fix: str) -> None:
+    offered = [message(each, Source(text), "en").fix for each in check(text)]
+    assert fix in offered[-1]
+
+
+@pytest.mark.parametrize(
+    ("text", "rows"),
+    [
+        ("F(1, 80) // voy; W(2) // compro; B(2, 80) // regreso", ["W(2)", "B(2, 80)"]),
+        ("F(1, 80) // voy; W(2); compro; STOP", ["W(2)", "STOP"]),
+    ],
+)
+def test_all_the_instructions_of_a_note_are_offered(text: str, rows: list[str]) -> None:
+    (warning,) = check(text)
+    assert warning.values["rest"] == "; ".join(rows)
+    assert check("\n".join(["F(1, 80) // voy", *rows])) == []
