@@ -17,6 +17,28 @@ from tiniscript.source import Source
 WARNED = re.compile(r"[0-9]+ TS8")
 PROGRAMS = [text for text, _ in ADVISED]
 PROGRAMS += [each.program for each in entries() if any(map(WARNED.match, each.said))]
+PROGRAMS += [
+    program.format(move=move, q=question, d=question.replace("DISTANCE", "D"))
+    for program in (
+        "{move};IF({q});S;ENDIF",
+        "LOOP(3);IF({q});S;ENDIF;{move};END_LOOP",
+        "LOOP(3);{move};IF({q});R(1, 60);ENDIF;END_LOOP",
+        "WHILE({q});{move};END_WHILE",
+        "{move} UNTIL({q})",
+        "D = DISTANCE;{move} UNTIL({d})",
+        "D = DISTANCE;WHILE({d});{move};END_WHILE",
+        "D = DISTANCE;LOOP(3);{move};IF({d});S;ENDIF;END_LOOP",
+    )
+    for move in ("F(5, 60)", "B(5, 60)")
+    for question in (
+        *(f"DISTANCE {sign} {n}" for sign in ("<", ">=", "=", "!=") for n in (0, 20, 400)),
+        "20 > DISTANCE",
+        "NOT (DISTANCE < 20)",
+        "DISTANCE - 5 < 20",
+        "DISTANCE < 20 AND LIGHT_L > 3",
+        "DISTANCE > 20 OR DISTANCE = 5",
+    )
+]
 # A question of no use becomes one of use, which is looked at then; its variable is left over.
 COMES_TO_LIGHT = {
     codes.FROZEN_UNTIL: {codes.UNUSED_VARIABLE},
@@ -35,7 +57,8 @@ def repaired(text: str, warning: Diagnostic) -> str:
         start = text.rfind(move, 0, start) if move else text.index(after, end)
         end = start + len(move or after)
     elif warning.code is codes.FROZEN_WHILE:
-        end = text.index(")", start) + 1
+        brackets = re.compile(r"\w+\((?:[^()]|\([^()]*\))*\)").match(text, start)
+        end = brackets.end() if brackets else end
     return f"{text[:start]}{fix}{text[end:]}"
 
 
@@ -67,7 +90,9 @@ def test_no_repair_of_a_warning_makes_a_new_one() -> None:
         ("D = DISTANCE;B(5, 60) UNTIL(D < 20)", "Ask a sensor in UNTIL, as in UNTIL(DISTANCE > 2"),
         ("D = DISTANCE;B(5, 60) UNTIL(D > 20)", "B(5, 60) UNTIL(DISTANCE > 20)"),
         ("F(5, 60) UNTIL(DISTANCE > 0)", "Let a time end the move"),
-        ("WHILE(DISTANCE > 0);F(5, 60);END_WHILE", "Write the question right behind"),
+        ("F(5, 60);IF(NOT (DISTANCE < 20));S;ENDIF", "Behind F(5, 60) the robot stands anyway"),
+        ("D = 2;LOOP(3);F(5, 60);IF(DISTANCE < D);S;ENDIF;END_LOOP", "F(5, 60) UNTIL(DISTANCE < D)"),
+        ("D = DISTANCE;F(5, 60) UNTIL(NOT (D < 20))", "Ask a sensor in UNTIL"),
         ("F(007, 60)", "Write 7, or the seconds"),
         ("LOOP(VECES);S;END_LOOP", "VECES = 3"),
         ("BEEP(1, NOTA)", "NOTA = 440"),

@@ -5,11 +5,12 @@ Going forward a distance gets smaller, going back it gets bigger.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import NamedTuple
 
 from tiniscript.fixed_point import HIGHEST, as_text
 from tiniscript.kit import NUMBER, Device, Kit
-from tiniscript.semantics.ir import Expression
+from tiniscript.semantics.ir import Expression, Term
 from tiniscript.syntax.operators import SIGN_OF
 
 MANY_VALUES = 100_000  # thousandths: a sensor with such a range is hardly ever at one of them
@@ -94,10 +95,7 @@ def comes_true(condition: Expression, direction: str, kit: Kit) -> bool | None:
     """
     left = sum(term.op == "SENSOR" and is_distance(kit.sensors[term.value]) for term in condition)
     is_sure = all(term.op != "NOT" for term in condition)
-    for k in range(len(condition) - 2):
-        compared = comparison(condition[k : k + 3], kit)
-        if compared is None:
-            continue
+    for compared in _parts(condition, kit):
         if answer_of(compared) or (compared.op == "EQ" and is_between(*compared[::2])):
             return False
         if is_distance(compared.device):
@@ -110,5 +108,21 @@ def comes_true(condition: Expression, direction: str, kit: Kit) -> bool | None:
 
 def asks_if_near(condition: Expression, kit: Kit) -> bool:
     """Whether a part of a question is `DISTANCE < 20`, of a sensor that looks ahead."""
-    parts = (comparison(condition[k : k + 3], kit) for k in range(len(condition) - 2))
-    return any(each and looks_ahead(each.device) and each.op in _LESS for each in parts)
+    return any(looks_ahead(each.device) and each.op in _LESS for each in _parts(condition, kit))
+
+
+def _parts(condition: Expression, kit: Kit) -> Iterator[Comparison]:
+    """Yield the comparisons within a question; a variable is taken for a number amid the range."""
+    for k in range(len(condition) - 2):
+        part = condition[k : k + 3]
+        middle = next(((device.low + device.high) // 2 for device in _devices(part, kit)), 0)
+        likely = tuple(Term("NUMBER", middle) if term.op == "VARIABLE" else term for term in part)
+        compared = comparison(likely, kit)
+        if compared is not None:
+            yield compared
+
+
+def _devices(part: Expression, kit: Kit) -> Iterator[Device]:
+    for term in part:
+        if term.op in ("SENSOR", "TIME"):
+            yield TIME if term.op == "TIME" else kit.sensors[term.value]

@@ -259,7 +259,8 @@ class FrozenQuestions:
             else term
             for term in condition
         )
-        return comes_true(asking, direction, self._kit) is not False
+        comes = comes_true(asking, direction, self._kit)
+        return bool(comes) or (comes is None and not direction)
 
     def _sensors_of(self, variables: list[int]) -> dict[str, str]:
         """Return the sensor that each of these variables holds; nothing where one holds another."""

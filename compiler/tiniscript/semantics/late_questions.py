@@ -75,8 +75,8 @@ class LateQuestions:
             condition = question.arms[0].condition
             sensor = self._distance_in(condition)
             comes = comes_true(condition, statement.direction, self._kit)
-            if sensor is not None and comes is not False:
-                asked = question_of(self._source, question.arms[0].span, "IF") if comes else ""
+            if sensor is not None and comes:
+                asked = question_of(self._source, question.arms[0].span, "IF")
                 self._late(statement, sensor, asked)
                 late.add(place)
         return late
@@ -94,9 +94,8 @@ class LateQuestions:
         if move.direction == "F" and self._is_blind(move, LONG_STEP):
             sign = OPPOSITES[SIGN_OF[condition[2].op]]
             device, number = self._kit.sensors[sensor], condition[1].value
-            is_good = looks_ahead(device) and device.low < number <= device.high
-            asked = f"{device.name} {sign} {as_text(number)}" if is_good else ""
-            self._late(move, sensor, asked)
+            if looks_ahead(device) and device.low < number <= device.high:
+                self._late(move, sensor, f"{device.name} {sign} {as_text(number)}")
 
     def _late(self, move: Move, sensor: int, asked: str) -> None:
         name = self._kit.sensors[sensor].name
@@ -149,7 +148,7 @@ class LateQuestions:
         asked = question_of(self._source, question.arms[0].span, "IF") if comes else ""
         values = {"found": found, "move": "", "next": "", place: written}
         values["fix"] = f"{written} UNTIL({asked})" if asked else ""
-        if comes is False:
+        if not comes:
             values["needless" if place == "move" else "behind"] = written
         return values
 
