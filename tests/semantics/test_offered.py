@@ -91,7 +91,7 @@ def test_no_repair_of_a_warning_makes_a_new_one() -> None:
         ("D = DISTANCE;B(5, 60) UNTIL(D > 20)", "B(5, 60) UNTIL(DISTANCE > 20)"),
         ("F(5, 60) UNTIL(DISTANCE > 0)", "Let a time end the move"),
         ("F(5, 60);IF(NOT (DISTANCE < 20));S;ENDIF", "Behind F(5, 60) the robot stands anyway"),
-        ("D = 2;LOOP(3);F(5, 60);IF(DISTANCE < D);S;ENDIF;END_LOOP", "F(5, 60) UNTIL(DISTANCE < D)"),
+        ("D = 2;LOOP(3);F(5, 60);IF(DISTANCE < D);S;ENDIF;END_LOOP", "F(5, 60) UNTIL(DISTANCE < D"),
         ("D = DISTANCE;F(5, 60) UNTIL(NOT (D < 20))", "Ask a sensor in UNTIL"),
         ("F(007, 60)", "Write 7, or the seconds"),
         ("LOOP(VECES);S;END_LOOP", "VECES = 3"),
