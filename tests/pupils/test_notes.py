@@ -60,7 +60,11 @@ def test_what_asks_for_something_is_no_note(words: str) -> None:
     ("program", "es", "en"),
     [
         ("F(2, 80) otra vez", "LOOP(2);F(2, 80);END_LOOP", "LOOP(2);F(2, 80);END_LOOP"),
-        ("F(2, 80) sin parar", "sin fin, escribe F(FOREVER, 80)", "write F(FOREVER, 80)"),
+        (
+            "F(2, 80) sin parar",
+            "sin fin, escribe LOOP(FOREVER);F(2, 80);END_LOOP",
+            "write LOOP(FOREVER);F(2, 80);END_LOOP",
+        ),
         ("F(2, 80) despacio", "segundo número de F(2, 80)", "second number of F(2, 80)"),
         ("F(2, 80) voy; S", "al final de la línea", "at the end of the line"),
     ],

@@ -50,13 +50,16 @@ def said_once(found: Sequence[Diagnostic], source: Source) -> list[Diagnostic]:
 
 def _unknown(kept: list[Diagnostic | None]) -> None:
     """Say once of a variable that is nowhere set what would be said of it in several places."""
-    said: list[dict[str, str]] = []
+    groups: dict[str, list[int]] = {}
     for k, each in enumerate(kept):
-        if each is None or each.code is not codes.UNKNOWN_NAME or each.values.get("near"):
-            continue
-        if each.values in said:
-            kept[k] = None
-        said.append(dict(each.values))
+        if each is not None and each.code is codes.UNKNOWN_NAME:
+            groups.setdefault(each.values["found"], []).append(k)
+    for places in groups.values():
+        said = [each.values for k in places if (each := kept[k]) is not None]
+        is_same = all(each == said[0] for each in said)
+        if is_same and not (said[0].get("near") or said[0].get("first")):
+            for k in places[1:]:
+                kept[k] = None
 
 
 def _untaught(kept: list[Diagnostic | None], source: Source) -> None:
