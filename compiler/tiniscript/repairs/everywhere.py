@@ -18,6 +18,7 @@ _NAMES = (codes.NAME_WITH_SPACE, codes.BAD_NAME, codes.EMPTY_BRACKETS, codes.RES
 
 MOVES = ("F", "B", "L", "R")
 TAUGHT = ("SALTO", "PASO", "BAILE", "JUMP", "STEP", "DANCE")  # by the poster and the lessons
+_IN_DEF = re.compile(r"(?i)\bDEF\s{0,9}\(?\s{0,9}(\w+)")
 MANY = 6  # of them that an example has
 
 
@@ -68,9 +69,9 @@ def _untaught(kept: list[Diagnostic | None], source: Source) -> None:
     for k, each in enumerate(kept):
         if each is not None and each.code is codes.UNKNOWN_WORD and _stands_alone(each, source):
             groups.setdefault(each.values["found"], []).append(k)
+    taught = {each.upper() for each in _IN_DEF.findall(source.text)} if groups else set()
     for name, places in groups.items():
-        is_taught = re.search(rf"(?i)\bDEF\s*\(?\s*{name}\b", source.text) is not None
-        if (len(places) > 1 or name in TAUGHT) and not is_taught:
+        if (len(places) > 1 or name in TAUGHT) and name.upper() not in taught:
             first = kept[places[0]]
             assert first is not None
             kept[places[0]] = Diagnostic(codes.UNTAUGHT, first.span, {"name": name})

@@ -26,6 +26,7 @@ from tiniscript.syntax.reporter import Reporter, Resumed
 from tiniscript.syntax.suggestions import foreign_block, shortened
 from tiniscript.words import SWITCH_WORDS, TURN_WORDS, WORDS, is_guessed, meant_by
 
+_LONGEST_MOTOR = 8  # tokens of `motor izquierdo (-50 %)`
 _MOTORS = frozenset(("MOTOR", "RUEDA", "WHEEL", "LLANTA"))
 _SIDES = {
     "L": {"IZQUIERDO", "IZQUIERDA", "IZQ", "LEFT"},
@@ -125,11 +126,13 @@ class TalkRecovery:
         tokens, end = self.cursor.tokens, start
         while tokens[end].kind not in AT_END:
             end += 1
+            if end - start > _LONGEST_MOTOR:
+                return None
         row = tokens[start:end]
         texts = {each.text for each in row}
         numbers = [each.text for each in row if each.kind is NUMBER]
         sides = [side for side, names in _SIDES.items() if texts & names]
-        if not texts & _MOTORS or len(sides) != 1 or len(numbers) != 1 or len(row) > 8:
+        if not texts & _MOTORS or len(sides) != 1 or len(numbers) != 1:
             return None
         if any(each.kind not in (WORD, NUMBER, "%", "(", ")", ",", "-") for each in row):
             return None
