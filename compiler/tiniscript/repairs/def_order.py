@@ -41,7 +41,16 @@ def with_moved_defs(found: list[Diagnostic], source: Source, check: Check) -> li
         names = {each.values.get("name", "") for each in found if each.code is code}
         for name in sorted(names) if len(source.text) <= LONGEST else ():
             found = _moved(found, code, name, source, check)
+    if any(each.code is codes.DEF_NOT_TOP for each in found):
+        pieces = [each for each in pieces_of(scan(source.text)) if each.tokens]
+        names = {each.tokens[1].text for each in pieces if _word(each) == "DEF" and each.tokens[1:]}
+        return [each for each in found if not _is_unknown(each, names)]
     return found
+
+
+def _is_unknown(diagnostic: Diagnostic, names: set[str]) -> bool:
+    found = diagnostic.values.get("found", "").upper()
+    return diagnostic.code is codes.UNKNOWN_WORD and found in names
 
 
 def _moved(
@@ -56,8 +65,11 @@ def _moved(
     is_late = code is codes.CALLS_ITSELF
     before = [each for each in found if each.is_mistake and each not in of_it]
     unknown = [each for each in before if each.values.get("found", "").upper() == one.name]
+    if code is codes.DEF_NOT_TOP and not _is_used_around(pieces, one):
+        return others
     ways = _end_moved(pieces, one, source) if is_late else _block_moved(pieces, one, source)
-    for edits in ways:
+    down = _calls_moved(pieces, one, source) if code is codes.CALL_BEFORE_DEF else []
+    for edits in (*ways, *down):
         new = applied(source.text, edits)
         after = [each for each in check(new) if each.is_mistake]
         if len(after) <= len(before) - len(unknown):
@@ -65,9 +77,11 @@ def _moved(
     else:
         return others
     line = in_one_line(new) if not after else ""
+    is_down = edits in down
     target = edits[-1].span.start if is_late else edits[0].span.start
     first, last = (str(_line(source, pieces[k])) for k in (one.first, one.last))
     lines = {"first": first, "last": last} if first != last or is_late else {"row": first}
+    lines = {"down": last} if is_down else lines
     values = {
         **of_it[0].values, **lines, "name": one.name, "block": new,
         "whole": line if len(line) <= FIX_CHARACTERS else "",
@@ -128,6 +142,44 @@ def _block_moved(pieces: Sequence[Piece], one: _Def, source: Source) -> list[lis
     gone = _gone(pieces, one.first, one.last, source.text)
     places = dict.fromkeys((start, _first_call(pieces, one.name, start)))
     return [[_put(block, pieces[k], source.text), gone] for k in places if k < one.first]
+
+
+def _calls_moved(pieces: Sequence[Piece], one: _Def, source: Source) -> list[list[Edit]]:
+    """Return the changes that put the calls, and what follows them, behind the end of the DEF.
+
+    There are none where other instructions stand between, or notes that belong to the calls.
+    """
+    start = next(k for k, each in enumerate(pieces) if each.is_instruction)
+    first = _first_call(pieces, one.name, start)
+    below = next((k for k in range(first, one.last) if _word(pieces[k]) == "DEF"), first)
+    last = pieces[one.last].tokens[-1].end
+    depth = 0
+    for piece in pieces[below : one.last + 1]:
+        depth += (_word(piece) == "DEF") - (_word(piece) == BLOCK_ENDS["DEF"])
+        if not depth and _word(piece) != BLOCK_ENDS["DEF"]:
+            return []
+    gone = Span(pieces[first].tokens[0].start, pieces[below].tokens[0].start)
+    calls = source[gone].rstrip("; \t\r\n")
+    if "//" in source[gone] or not calls:
+        return []
+    between = "\n" if "\n" in source.text else "; "
+    return [[Edit(gone, ""), Edit(Span(last, last), between + calls)]]
+
+
+def _is_used_around(pieces: Sequence[Piece], one: _Def) -> bool:
+    """Whether something stays in the block around a DEF, and a LOOP, IF or WHILE calls it."""
+    depth, start = 0, one.first
+    while start > 0 and depth >= 0:
+        start -= 1
+        depth += (_word(pieces[start]) in _ENDS) - (_word(pieces[start]) in BLOCK_ENDS)
+    depth, end = 0, one.last
+    while end < len(pieces) - 1 and depth >= 0:
+        end += 1
+        depth += (_word(pieces[end]) in BLOCK_ENDS) - (_word(pieces[end]) in _ENDS)
+    stays = (*pieces[start + 1 : one.first], *pieces[one.last + 1 : end])
+    if _word(pieces[start]) == "DEF":
+        return bool(stays)
+    return any(_word(each) == one.name for each in stays)
 
 
 def _first_call(pieces: Sequence[Piece], name: str, start: int) -> int:

@@ -19,7 +19,7 @@ _LAST = re.compile(r"([1-9][0-9]?)(={1,2})")  # `8=`, `44=`, `1==`
 _FIRST = re.compile(r"([!\"#$%&/(])(0{1,2})")  # `(0`, `&0`
 _ALONE = re.compile(r"[!\"#$%&/]")
 _POINT = re.compile(r"=(\.[0-9]+)")  # `=.39`
-_COLON = re.compile(r"0[:;]([0-9]{1,2})")  # `0:39`, the point's key; `0;39`, the comma's
+_SEMICOLON = re.compile(r"0;([0-9]{1,2})")  # `0;39`, the comma's key; `0:39` may be a clock
 # `F82, 809`: no Shift for the brackets.
 _UNSHIFTED = re.compile(r"\s*([FBLRfblr])8([0-9](?:\.[0-9]+)?)\s*,\s*([1-9]0|100)9\s*")
 _UNCLOSED = re.compile(r"\s*([FBLRfblr])\s*\(\s*([0-9.]+)\s*,\s*([1-9]0|100)9\s*")  # `F(2, 809`
@@ -86,7 +86,7 @@ def _typed(value: str) -> str | None:
         return _KEYS[match[1]] + match[2]
     if match := _POINT.fullmatch(value):
         return "0" + match[1]
-    if match := _COLON.fullmatch(value):
+    if match := _SEMICOLON.fullmatch(value):
         return "0." + match[1]
     return _KEYS[value] if _ALONE.fullmatch(value) else None
 

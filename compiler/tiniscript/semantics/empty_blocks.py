@@ -1,11 +1,13 @@
 """A warning for a block with nothing inside, beside what was probably meant to be in it.
 
 `LOOP(4)`, `END_LOOP`, and the moves below. Knows the IR and the text. Says nothing of an endless
-LOOP or a WHILE, which wait, nor of a block with a note inside.
+LOOP or a WHILE, which wait, nor of a block with a note inside or
+behind its end.
 """
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 from itertools import takewhile
 
@@ -15,6 +17,7 @@ from tiniscript.semantics.ir import Body, Break, If, Loop, Program, Read, Statem
 from tiniscript.source import Source, Span
 from tiniscript.words import BLOCK_ENDS
 
+_NOTE_BEHIND = re.compile(r"[ \t;]{0,99}//")
 MANY = 12  # instructions that an example has
 
 
@@ -34,7 +37,7 @@ def _empty_in(body: Body, source: Source) -> Iterator[Diagnostic]:
         if not _is_empty(statement):
             continue
         text = source[statement.span]
-        if "//" in text:
+        if "//" in text or _NOTE_BEHIND.match(source.text, statement.span.end):
             continue
         word = "IF" if isinstance(statement, If) else "LOOP"
         span = Span(statement.span.start, statement.span.start + _end_of_head(text))

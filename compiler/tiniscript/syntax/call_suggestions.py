@@ -57,6 +57,8 @@ def count_diagnostic(
     fixed = _with_points(texts, arguments, word)
     if word.role == "wait" and _POWER.fullmatch(texts[-1] if texts else "") and texts[0] != "0":
         fixed = None  # `W(2,80)`: as F has it
+    if word.role == "wait" and texts and texts[0].isdecimal() and float(texts[0]) >= LONG_TIME_S:
+        fixed = None  # `W(80,2)`
     if fixed is not None:
         return Diagnostic(codes.DECIMAL_COMMA, span, {"fix": _call(word, fixed)})
     wanted = len(word.arguments)

@@ -16,6 +16,7 @@ from tiniscript.syntax.reporter import Reporter, Resumed
 from tiniscript.words import BLOCK_ENDS
 
 _SIGNS = ("-", "/", "*", "+", ".", ":", "·", "–", "—")
+_ARMS = ("ELSE", "ELSEIF", "SINO", "ELIF")
 _DOTS = (".", "…")
 _MANY = 12  # instructions below a block that an example shows
 
@@ -73,15 +74,21 @@ class EndRecovery:
             k += 1
         if header is None or not (k - start > 1 or tokens[start].text == "…"):
             return
-        if tokens[k].kind not in AT_END and tokens[k].text not in ENDS:
+        if tokens[k].kind not in AT_END and tokens[k].text not in (*ENDS, *_ARMS):
             return  # `LOOP(4) ... F(1, 60) ... END_LOOP`
         for token in tokens[start:k]:
             self.reporter.answer(token)
+        if header.is_reported and any(
+            each.code is codes.DOTS and each.span.start > header.header.start
+            for each in self.reporter.diagnostics
+        ):
+            cursor.i = k  # of another arm
+            raise Resumed
         right = BLOCK_ENDS[header.word]
         span = Span(tokens[start].start, tokens[k - 1].end)
         values = {"head": cursor.source[header.span], "right": right}
         after = cursor.after_newlines(k)
-        if tokens[k].kind is NEWLINE and ENDS.get(tokens[after].text) is None:
+        if tokens[k].kind is NEWLINE and tokens[after].text not in (*ENDS, *_ARMS):
             values["out"] = cursor.source[span]
         else:
             values["example"] = self._with_what_follows(header, right, after)

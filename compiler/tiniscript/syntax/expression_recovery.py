@@ -28,7 +28,7 @@ from tiniscript.syntax.number_recovery import NumberRecovery
 from tiniscript.syntax.operators import COMPARISONS, Operator, Postfix
 from tiniscript.syntax.phrases import AFTER_HEADER
 from tiniscript.syntax.reporter import Failed, Reporter
-from tiniscript.syntax.suggestions import after_bracket, operator_words, unchained
+from tiniscript.syntax.suggestions import after_bracket, operator_words, tells, unchained
 from tiniscript.syntax.until_recovery import before_bracket, in_its_move
 from tiniscript.syntax.value_constructs import ValueConstructs
 from tiniscript.syntax.vocabulary import Vocabulary
@@ -216,7 +216,7 @@ class ExpressionRecovery:
         cursor, tokens = self.cursor, self.cursor.tokens
         said = operator_words(tokens, k)
         begins_instruction = tokens[k + 1].kind in ("=", "(", *AT_END)
-        if said is None or (begins_instruction and not in_brackets):
+        if said is None or (not in_brackets and (begins_instruction or tells(tokens, *said))):
             return False
         end, right = said
         if right == "AND":

@@ -245,10 +245,12 @@ class _Repairs:
         return self.badnumber(text, span)
 
     def clock(self, text: str, span: Span) -> Token:
-        """`1:30` is a minute and a half, in seconds."""
+        """`1:30` is a minute and a half, in seconds; `L(0:39, 60)` may have no point."""
         minutes, seconds = text.split(":")
         right = str(60 * int(minutes) + int(seconds))
-        self.report(codes.BAD_NUMBER, span, found=text, right=right)
+        is_wait = self._text[span.end : span.end + 9].lstrip(SPACES)[:1] == ")"
+        is_sure = minutes.strip("0") or is_wait
+        self.report(codes.BAD_NUMBER, span, found=text, right=right if is_sure else "")
         return Token(NUMBER, right, *span)
 
     def shifted(self, text: str, span: Span) -> Token:

@@ -224,9 +224,13 @@ class NoteRecovery:
         known = WORDS.get(first.text)
         if row[0].kind == "(":
             return None  # `F(2, 80) (hasta la mesa)`
+        pairs = list(pairwise(texts))
+        if known is None and self.known.is_def(first.text) and (
+            any(pair in AGAIN for pair in pairs) or _AGAIN_ALONE & set(texts)
+        ):  # fmt: skip
+            return {"again": f"LOOP(2);{call};END_LOOP"}
         if known is None or not known.is_instruction or known.role == "block":
             return None
-        pairs = list(pairwise(texts))
         loops = [text for text in texts if meant_by(text) == "LOOP" and text not in OFTEN_SAID]
         has_number = any(token.kind is NUMBER or token.text in NUMBER_WORDS for token in row)
         if any(pair in AGAIN for pair in pairs) or _AGAIN_ALONE & set(texts) or (

@@ -77,6 +77,8 @@ class _Reader:
                 return None
         if self.open and self.open[-1] != "LOOP" and self.has_parted and not self.has_braces:
             return None  # `IF(c) S; F(1, 50)`: which of them belong to it is not said
+        if self.open and self.has_braces and self._closes_below(start):
+            return None
         if self.open and not self._goes_on(start):
             while self.open:
                 self._end()
@@ -84,6 +86,12 @@ class _Reader:
         if all(word is not None and word.role in ("block", "arm", "end") for word in heads):
             return None  # no instruction: the header alone is to be mended
         return Line(";".join(self.row), self.k, tuple(self.open), tuple(self.variables))
+
+    def _closes_below(self, start: int) -> bool:
+        """Whether a `{` of the line has its `}` on another one."""
+        row = [each.kind for each in self.tokens[start : self.k]]
+        rest = self.tokens[self.k : self.k + 20 * LONGEST]
+        return row.count("{") > row.count("}") and any(each.kind == "}" for each in rest)
 
     def _step(self) -> bool:
         """Read an instruction or what stands between two; return whether it is understood."""

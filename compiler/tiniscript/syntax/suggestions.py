@@ -261,6 +261,12 @@ def operator_words(tokens: Sequence[Token], k: int) -> tuple[int, str] | None:
     return (end, said) if said and operand else None
 
 
+def tells(tokens: Sequence[Token], k: int, sign: str) -> bool:
+    """Whether words that say `sign` before `k` begin a note: `X = 5 es la velocidad`."""
+    is_named = tokens[k].text in (*FILLERS, "MI", "MY") and tokens[k + 1].kind is WORD
+    return sign == "=" and is_named
+
+
 def between(tokens: Sequence[Token], name: str) -> tuple[str, int] | None:
     """Return what `ENTRE 5 Y 10` asks of `name`, and where that ends in the text."""
     if len(tokens) < 4 or tokens[0].text not in ("ENTRE", "BETWEEN"):
