@@ -133,6 +133,7 @@ def test_advice(text: str, code: str) -> None:
         "F(0.4, 80);IF(DISTANCE < 10);S;ENDIF",
         "F(1, 80);IF(DISTANCE < 10);S;ELSE;F(1, 80);ENDIF",
         "F(1, 80);IF(DISTANCE < 10);S;R(1, 60);ENDIF",
+        "F(0.8, 60);IF(LIGHT_L < 300);S;W(2);ENDIF;F(1, 60)",
         "M(50, 50);IF(DISTANCE < 10);S;ENDIF;F(1, 80)",
         "M(50, 50);W(1);IF(LIGHT_L < 10);S;ENDIF;F(1, 80)",
         "IF(DISTANCE < 10);S;ENDIF;L(1, 80)",

@@ -117,7 +117,10 @@ class LateQuestions:
             return
         before = _nearest(body, range(k - 1, -1, -1))
         after = _nearest(body, range(k + 1, len(body)))
-        pauses = any(isinstance(each, (Move, Beep)) for each in question.arms[0].body)
+        stands = [each for each in question.arms[0].body if isinstance(each, (Move, Beep))]
+        if any(isinstance(each, Move) and each.direction == "W" for each in stands):
+            return  # S with its wait is a pause
+        pauses = bool(stands)
         for move, place in ((before, "move"), (after, "next")):
             if (
                 isinstance(move, Move)
