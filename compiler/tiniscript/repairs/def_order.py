@@ -44,13 +44,13 @@ def with_moved_defs(found: list[Diagnostic], source: Source, check: Check) -> li
     if any(each.code is codes.DEF_NOT_TOP for each in found):
         pieces = [each for each in pieces_of(scan(source.text)) if each.tokens]
         names = {each.tokens[1].text for each in pieces if _word(each) == "DEF" and each.tokens[1:]}
-        return [each for each in found if not _is_unknown(each, names)]
+        return [each for each in found if not _is_unknown(each, names, source)]
     return found
 
 
-def _is_unknown(diagnostic: Diagnostic, names: set[str]) -> bool:
-    found = diagnostic.values.get("found", "").upper()
-    return diagnostic.code is codes.UNKNOWN_WORD and found in names
+def _is_unknown(diagnostic: Diagnostic, names: set[str], source: Source) -> bool:
+    is_word = diagnostic.code in (codes.UNKNOWN_WORD, codes.WHICH_WAY)
+    return is_word and source[diagnostic.span].upper() in names
 
 
 def _moved(
