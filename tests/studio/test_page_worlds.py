@@ -48,6 +48,9 @@ def said(page: Page, text: str) -> None:
     page.locator("#doing").filter(has_text=text).wait_for()
 
 
+DRAWN = "() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))"
+
+
 def saved(page: Page) -> World:
     """Save the world as a person does, and read it as `tsc robot --world` does."""
     with page.expect_download() as download:
@@ -242,6 +245,7 @@ def test_nothing_leaves_the_floor(floor: Page) -> None:
 def finger(page: Page, way: Sequence[Place]) -> None:
     """Go along a way on the floor with a finger."""
     session = page.context.new_cdp_session(page)
+    page.evaluate(DRAWN)  # what was tapped before has made the floor smaller or larger
     for k, place in enumerate([*way, None]):
         kind = "touchEnd" if place is None else "touchMove" if k else "touchStart"
         x, y = on_screen(page, place) if place else (0, 0)
