@@ -150,6 +150,7 @@ SWITCH_WORDS = {
 }
 
 # What a pupil asks for, where a robot measures how far something is.
+OTHER_WAY = {"F": "B", "B": "F", "L": "R", "R": "L"}  # the moves, and those that undo them
 NEAR_WORDS = frozenset(
     "OBSTACULO OBSTACLE PARED WALL MURO OBJETO OBJECT CERCA NEAR CHOCA CHOQUE COLISION CERRADO BLOCKED".split()  # noqa: SIM905
 )

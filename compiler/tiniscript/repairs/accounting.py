@@ -24,6 +24,7 @@ from tiniscript.words import (
     NEAR_WORDS,
     NOTE_WORDS,
     NUMBER_WORDS,
+    OTHER_WAY,
     PLACEHOLDERS,
     POWER_WORDS,
     SWITCH_WORDS,
@@ -78,7 +79,6 @@ _SAME = {"STOP": "S", "TRUE": "FOREVER", "WHILE": "LOOP", "FALSE": "NOT"}
 _STRUCTURAL = ("alias", "end", "setup", "start", "later")
 _EXAMPLES = (80.0, 440.0)  # a power and a tone, which pupils leave out
 _AGAIN = ("OTRA", "NUEVO", "ONCE", "MORE")
-_OTHER_WAY = {"F": "B", "B": "F", "L": "R", "R": "L"}
 # Repairs that write a number in another way, and those that name or note what was written.
 _REWRITES = frozenset((
     codes.UNIT, codes.BAD_NUMBER, codes.LINE_NUMBER, codes.LOOP_COUNTS, codes.NEEDLESS_FRAME,
@@ -187,7 +187,7 @@ class _Account:
     def _loses_a_minus(self) -> bool:
         """Whether a value changes its sign: in `F-2, 80` and `F(2-80)` the `-` is none."""
         lost = self._old.signs["-"] > self._new.signs["-"]
-        is_turned = any(word in _OTHER_WAY for word in self._new.words)
+        is_turned = any(word in OTHER_WAY for word in self._new.words)
         return lost and not is_turned and bool({"SHOW", "M"} & set(self._new.words))
 
     def fills_a_note(self) -> bool:
@@ -291,8 +291,8 @@ class _Account:
             return BLOCK_ENDS[word] in new
         if word == "TRUE":  # `DISTANCE < 10 = TRUE`
             return any(sign in COMPARISONS for sign in self._new.signs)
-        if meant in _OTHER_WAY and self._old.signs["-"] > self._new.signs["-"]:
-            return _OTHER_WAY[meant] in new
+        if meant in OTHER_WAY and self._old.signs["-"] > self._new.signs["-"]:
+            return OTHER_WAY[meant] in new
         return word == "CUANDO" and "START" in new
 
 

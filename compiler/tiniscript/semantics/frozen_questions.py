@@ -54,7 +54,7 @@ _MOST_ARMS = 50  # of an IF whose questions are compared
 _REACHED = {"F": "LE", "B": "GE"}  # what is sure to come true, by the way that the robot goes
 
 
-def goes_on_for_ever(loop: Loop | While) -> bool:
+def _is_endless(loop: Loop | While) -> bool:
     """Whether a loop counts nothing: what counts may do what was decided before it."""
     return not isinstance(loop, Loop) or loop.times is None
 
@@ -100,7 +100,7 @@ class FrozenQuestions:
             for arm in statement.arms:
                 if not self._known(self._comparison(arm.condition), arm.span):
                     self._exact_if(arm)
-                if outermost is not None and goes_on_for_ever(outermost):
+                if outermost is not None and _is_endless(outermost):
                     self._frozen_if(arm, outermost)
 
     # -- UNTIL --------------------------------------------------------------------------------

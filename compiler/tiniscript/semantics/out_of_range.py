@@ -10,9 +10,8 @@ from tiniscript.fixed_point import as_text
 from tiniscript.source import Source
 from tiniscript.syntax import ast
 from tiniscript.syntax.call_suggestions import LONG_TIME_S, LOWEST_HERTZ
-from tiniscript.words import WORDS, Word
+from tiniscript.words import OTHER_WAY, WORDS, Word
 
-_OPPOSITE = {"F": "B", "B": "F", "L": "R", "R": "L"}
 _LOW_TONE = 150  # hertz: a note that is no round number, as powers are
 _ROUND = 50
 
@@ -31,10 +30,10 @@ def meant(source: Source, node: ast.Command, word: Word) -> dict[str, str]:
             values["fix"] = f"{word.text}({second}, {first})"
         elif is_short:
             values["tone"] = f"{word.text}({first}, {WORDS['BEEP'].arguments[1].sample})"
-    elif word.role == "move" and word.text in _OPPOSITE:
+    elif word.role == "move" and word.text in OTHER_WAY:
         if sum(text.startswith("-") for text in texts) == 1:
             shown = ", ".join(text.lstrip("- ") for text in texts)
-            values["fix"] = f"{_OPPOSITE[word.text]}({shown})"
+            values["fix"] = f"{OTHER_WAY[word.text]}({shown})"
         elif word.text == "B" and is_short and _is_note(second):
             values["sound"] = f"BEEP({first}, {second})"
         elif is_short:

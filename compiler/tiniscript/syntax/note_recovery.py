@@ -37,6 +37,7 @@ from tiniscript.words import (
     BLOCK_ENDS,
     NOTE_WORDS,
     NUMBER_WORDS,
+    OTHER_WAY,
     SWITCH_WORDS,
     TURN_WORDS,
     UNITS,
@@ -62,7 +63,6 @@ _ASKING_FOR = frozenset((
     "ESQUIVA", "EVITA", "ABRE", "CIERRA", "AGARRA", "COGE", "SUELTA", "GRAB", "AVOID", "DODGE",
 ))  # fmt: skip
 _OTHER_UNITS = ("cm", "°", "steps")  # that no instruction has, and pupils measure in
-_OPPOSITE = {"F": "B", "B": "F", "L": "R", "R": "L"}
 _HALF = 60  # a power that is neither fast nor slow
 
 
@@ -245,12 +245,12 @@ class NoteRecovery:
             text in ("HASTA", "UNTIL") or meant_by(text) == "UNTIL" for text in texts
         ):
             return {"until": f"{call} UNTIL(DISTANCE < 10)"} if "UNTIL" not in call else None
-        other = _OPPOSITE.get(known.text, "")
+        other = OTHER_WAY.get(known.text, "")
         if other and texts == ["AL", "REVES"]:
             return {"other": f"{other}{call[len(known.text) :]}"}
         if texts and texts[0] in _ASKING_FOR and row[0].kind is WORD:
             return {"order": shortened(" ".join(texts).lower())}
-        said = {meant_by(text) for text in texts if text not in OFTEN_SAID} & {*_OPPOSITE}
+        said = {meant_by(text) for text in texts if text not in OFTEN_SAID} & {*OTHER_WAY}
         if said == {other} and not has_number and not BETWEEN & set(texts):
             return {"other": f"{other}{call[len(known.text) :]}"}  # `R(0.39, 60) izquierda`
         powers = [token.text for token in row if token.kind is NUMBER]
