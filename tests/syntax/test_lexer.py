@@ -9,6 +9,7 @@ import pytest
 from tests.oracle.interpreter import PAPER_KIT
 from tests.oracle.programs import broken, program
 from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, ODD, WORD, scan
+from tiniscript.syntax.lexer_recovery import scan_with_repairs
 
 SIGNS = ("<=", ">=", "<>", "+", "-", "*", "/", "%", "=", "<", ">", "(", ")", ",", ";", "|")
 
@@ -168,3 +169,22 @@ def test_what_is_neither_space_nor_reported_is_a_token_as_it_is_written() -> Non
             if is_own and not written.startswith(("（", "）", "]", "[")):  # said once before
                 assert token.text == dashes.get(written, written.upper()) or token.kind == "comment"
             assert token.kind in (WORD, NUMBER, NEWLINE, END, ODD, "comment", "{", "}", *SIGNS)
+
+
+def test_a_text_has_the_same_tokens_in_both_lexers() -> None:
+    """That of right texts reads nothing which the other one takes for something else."""
+    rng = random.Random(11)
+    pieces = [
+        *"""F W X SI b br span u < > = / * % ( ) , ; | - + . 0 3 50 000 1.5 .5 O.5 : 1:30 [ ] '
+        " # // /* */ \\n & ! Ñ é _ ½ ° − <b> </b> <br/> 50% ``` $""".split(),  # noqa: SIM905
+        *"\n\r\t            ",
+    ]
+    told = ["X<3=)", "X < 3=)", "F(1,50 %)", "F(1 000,5)", "X<b>Y", "X <u >", "1<EM>5", "<!--X-->"]
+    noise = ["".join(rng.choices(pieces, k=rng.randint(1, 7))) for _ in range(20_000)]
+    right = [program(rng, PAPER_KIT) for _ in range(50)]
+    plain = 0
+    for text in (*texts(), *told, *noise, *right):
+        scanned, whole = scan(text), scan_with_repairs(text)
+        assert scanned == whole, text
+        plain += not whole.diagnostics
+    assert plain > 5_000
