@@ -6,35 +6,25 @@ ranges, kinds, limits; and the rule which reading a sensor's name means. Does no
 
 from __future__ import annotations
 
-import re
-from collections.abc import Callable, Mapping, Sequence
-from itertools import count, islice
-from typing import NamedTuple
+from collections.abc import Callable, Sequence
+from functools import cached_property
+from typing import TYPE_CHECKING, NamedTuple
 
 from tiniscript.bytecode.opcodes import BLOCKS, CALLS, DEFS, STACK_VALUES, VARIABLES
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
-from tiniscript.fixed_point import HIGHEST, as_text
 from tiniscript.kit import Kit
 from tiniscript.semantics import ir
 from tiniscript.semantics.ir import Statement
-from tiniscript.semantics.out_of_range import meant
 from tiniscript.semantics.symbols import Name, Scope
 from tiniscript.semantics.types import ANY, Kinds, Value
-from tiniscript.semantics.unknown_words import (
-    report_named_arguments,
-    report_not_callable,
-    report_placeholders,
-    report_unknown,
-    report_words_for_numbers,
-)
-from tiniscript.semantics.until_examples import asked_next, ended_by
 from tiniscript.source import Source, Span
 from tiniscript.syntax import ast
-from tiniscript.syntax.call_suggestions import actuator_word, count_diagnostic
+from tiniscript.syntax.devices import actuator_word
 from tiniscript.words import WORDS, Argument, Word
 
-_NAME = re.compile(r"\w+")
+if TYPE_CHECKING:
+    from tiniscript.semantics.wrong_calls import WrongCalls
 
 
 class Checked(NamedTuple):
@@ -74,6 +64,13 @@ class _Checker(Scope):
         self.deepest = 0  # blocks open at once in the routine that is being checked
         self.calls = 0  # calls open at once in it
 
+    @cached_property
+    def wrong(self) -> WrongCalls:
+        """What there is to say of wrong instructions. A right program never loads it."""
+        from tiniscript.semantics.wrong_calls import WrongCalls
+
+        return WrongCalls(self)
+
     def body(self, instructions: Sequence[ast.Instruction]) -> ir.Body:
         made: list[Statement] = []
         for instruction in instructions:
@@ -111,7 +108,7 @@ class _Checker(Scope):
                         name=node.name, value=shown)  # fmt: skip
             return
         if node.name in self.def_names:
-            other = self._free_name(node.name)
+            other = self.wrong.free_name(node.name, self.procedures)
             self.report(codes.NAME_TAKEN, node.name_span, name=node.name, other=other)
             return
         if node.value is None:
@@ -141,12 +138,7 @@ class _Checker(Scope):
     def command(self, node: ast.Command, made: list[Statement]) -> None:
         word = WORDS.get(node.word)
         if node.until is not None and (word is None or word.role not in ("move", "wait")):
-            before = self.source[Span(node.span.start, node.until.span.start)]
-            start = node.span.start + before.upper().rfind("UNTIL")
-            call = self.source[Span(node.span.start, start)].rstrip()
-            asked = f"UNTIL({self.source[node.until.span]})"
-            self.report(codes.UNTIL_NOT_HERE, Span(start, node.span.end), word=node.word,
-                        example=ended_by(self.source, call, asked, word, made))  # fmt: skip
+            self.wrong.until_not_here(node, node.until, word, made)
             node = node._replace(until=None)
         if word is None:
             self.kit_or_def(node, made)
@@ -159,23 +151,20 @@ class _Checker(Scope):
         arguments = node.arguments or ()
         span = node.span
         if len(arguments) != len(word.arguments):
-            self.count(word, arguments, span)
+            self.wrong.count(word, arguments, span)
             return
         forever = word.role in ("move", "wait") and arguments[0].expression[0].op == "FOREVER"
         if forever and node.until is None:
-            fix = f"{self.source[span]} UNTIL({asked_next(self.source, span)})"
-            self.report(codes.FOREVER_NEEDS_UNTIL, arguments[0].span, word=word.text, fix=fix)
+            self.wrong.forever(arguments[0].span, word, span)
         said = len(self.diagnostics)
         values = [
             self.kinds.value(each)
             if word.role == "show"
-            else self.number(each, its, word.text, meant(self.source, node, word))
+            else self.number(each, its, word.text, (node, word))
             for each, its in zip(arguments[forever:], word.arguments[forever:], strict=True)
         ]
         if len(self.diagnostics) > said:
-            report_words_for_numbers(self, node, word, said)
-            report_named_arguments(self, node, word, said)
-            report_placeholders(self, node, word, said)
+            self.wrong.values(node, word, said)
         self.stack_fits(values, span)
         self.take(values, span, made)
         if word.role in ("move", "wait"):
@@ -194,33 +183,22 @@ class _Checker(Scope):
         else:
             made.append(ir.Show(values[0].terms, values[0].kind == "yes_no", span))
 
-    def count(self, word: Word, arguments: tuple[ast.Argument, ...], span: Span) -> None:
-        spans = [argument.span for argument in arguments]
-        self.diagnostics.append(count_diagnostic(self.source, word, spans, span))
-
     def number(
         self,
         argument: ast.Argument,
         its: Argument,
         word: str,
-        said: Mapping[str, str] | None = None,
+        of: tuple[ast.Command, Word] | None = None,
     ) -> Value:
-        """Check a number argument; a plain one must be in range, `said` tells what is meant."""
+        """Check a number argument, `of` a command; a plain one must be in range."""
         if argument.is_plain:
             part = argument.expression[0]
             assert isinstance(part.value, int)
             if not its.low <= part.value <= its.high:
-                low, high = as_text(its.low), "" if its.high == HIGHEST else as_text(its.high)
-                self.report(codes.OUT_OF_RANGE, argument.span, None, word=word, name=its.name,
-                            unit=its.unit, low=low, high=high,
-                            found=as_text(part.value), **(said or {}))  # fmt: skip
+                self.wrong.out_of_range(argument.span, part.value, its, word, of)
         value = self.kinds.value(argument)
         if value.kind == "yes_no":
-            text = self.source[argument.span]
-            fix = f"W(FOREVER) UNTIL({text})" if word == "W" and set(text) & set("<>=") else ""
-            if word == "LOOP":
-                fix = "LOOP(FOREVER)" if text.upper() == "TRUE" else f"WHILE({text})"
-            self.report(codes.WANTS_NUMBER, argument.span, by=word, found=text, fix=fix)
+            self.wrong.no_number(argument.span, word)
         return value
 
     def until(self, argument: ast.Argument) -> ir.Until:
@@ -236,7 +214,7 @@ class _Checker(Scope):
 
     def wants_condition(self, argument: ast.Argument, by: str) -> None:
         found = self.source[argument.span]
-        values = self.kinds.question(found)
+        values = self.kinds.wrong.question(found)
         self.report(codes.WANTS_CONDITION, argument.span, None, by=by, found=found, **values)
 
     def stack_fits(self, values: Sequence[Value], span: Span) -> None:
@@ -248,11 +226,11 @@ class _Checker(Scope):
     def kit_or_def(self, node: ast.Command, made: list[Statement]) -> None:
         name = self.names.get(node.word)
         if name is None:
-            report_unknown(self, node, self.inside)
+            self.wrong.unknown(node, self.inside)
         elif name.what == "actuator":
             self.actuator(node, name.number, made)
         elif node.arguments is not None:
-            report_not_callable(self, node)
+            self.wrong.not_callable(node)
         elif name.what == "sensor":
             made.append(ir.Read(name.number, node.span))
             self.surely_read |= 1 << name.number
@@ -268,7 +246,7 @@ class _Checker(Scope):
             self.report(codes.ACTUATOR_ALONE, node.span, name=device.name, fix=word.example)
             return
         if len(node.arguments) != 1:
-            self.count(word, node.arguments, node.span)
+            self.wrong.count(word, node.arguments, node.span)
             return
         argument = node.arguments[0]
         if device.is_yes_no:
@@ -357,7 +335,8 @@ class _Checker(Scope):
         known = self.names.get(node.name)
         if known is not None:
             code = codes.DEF_TWICE if known.what == "def" else codes.NAME_TAKEN
-            self.report(code, node.name_span, name=node.name, other=self._free_name(node.name))
+            other = self.wrong.free_name(node.name, self.procedures)
+            self.report(code, node.name_span, name=node.name, other=other)
         if len(self.procedures) == DEFS:
             self.report(codes.TOO_MANY_DEFS, node.name_span, limit=str(DEFS))
         outside = self.surely_read, self.deepest, self.calls
@@ -370,13 +349,6 @@ class _Checker(Scope):
         if known is None:
             self.names[node.name] = Name("def", len(self.procedures))
         self.procedures.append(ir.Procedure(node.name, body, node.span))
-
-    def _free_name(self, name: str) -> str:
-        """Return `DANCE_2`, or with the first number of which the text has no name yet."""
-        used = set(_NAME.findall(self.source.text.upper()))
-        free = (f"{name}_{k}" for k in count(2) if f"{name}_{k}" not in used)
-        twice = sum(each.name == name for each in self.procedures) - 1  # these got one already
-        return next(islice(free, max(0, twice), None))
 
 
 _CHECKS: dict[type, Callable[..., None]] = {

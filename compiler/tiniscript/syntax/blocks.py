@@ -55,6 +55,7 @@ class Blocks:
         self._reporter = reporter
         self.program: list[Instruction] = []
         self.open: list[Block] = []
+        self.defs: set[str] = set()  # the names of those that have ended
         self._depth = 0  # open blocks, DEF not counted
 
     @property
@@ -98,6 +99,7 @@ class Blocks:
         if block.word == "DEF":
             if block.name is not None and not self.open:
                 name = block.name
+                self.defs.add(name.text)
                 self.program.append(Def(name.text, name.span, tuple(block.body), span))
             return
         is_too_deep = self._depth > BLOCKS

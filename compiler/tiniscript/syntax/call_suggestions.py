@@ -13,12 +13,10 @@ from itertools import pairwise
 
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
-from tiniscript.fixed_point import as_text
-from tiniscript.kit import Device
 from tiniscript.source import Source, Span
 from tiniscript.syntax.lexer import NEWLINE, NUMBER, ODD, QUOTES, WORD, Token
 from tiniscript.syntax.units import converted
-from tiniscript.words import NOTE_WORDS, UNITS, WORDS, Argument, Word, meant_by
+from tiniscript.words import NOTE_WORDS, UNITS, WORDS, Word, meant_by
 
 LONGEST = 60  # tokens of which a suggestion is made
 LONG_TIME_S = 20  # a longer move is rarely meant: so much is a power, degrees or steps
@@ -36,17 +34,6 @@ _WORDS_FOR_YES_NO = {
     "ON": "TRUE", "YES": "TRUE", "1": "TRUE", "ENCENDIDO": "TRUE", "PRENDIDO": "TRUE",
     "OFF": "FALSE", "NO": "FALSE", "0": "FALSE", "APAGADO": "FALSE",
 }  # fmt: skip
-
-
-def actuator_word(device: Device) -> Word:
-    """Return an actuator of a kit as a word that takes one value."""
-    middle = device.low + (device.high - device.low) // 2000 * 1000
-    sample = "TRUE" if device.is_yes_no else as_text(middle)
-    return Word(
-        device.name,
-        "actuator",
-        (Argument("value", device.unit, device.low, device.high, sample),),
-    )
 
 
 def count_diagnostic(

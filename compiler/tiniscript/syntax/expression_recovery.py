@@ -14,7 +14,6 @@ from tiniscript.fixed_point import HIGHEST, LOWEST, as_text
 from tiniscript.kit import Kit
 from tiniscript.source import Span
 from tiniscript.syntax.call_suggestions import (
-    actuator_word,
     call_in,
     count_diagnostic,
     ends_value,
@@ -22,6 +21,7 @@ from tiniscript.syntax.call_suggestions import (
     starts_value,
 )
 from tiniscript.syntax.cursor import AFTER_VALUE, AT_END, Cursor
+from tiniscript.syntax.devices import actuator_word
 from tiniscript.syntax.joined_questions import JoinedQuestions
 from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, ODD, WORD, Token
 from tiniscript.syntax.number_recovery import NumberRecovery

@@ -23,6 +23,9 @@ from tiniscript.words import WORDS, Word
 if TYPE_CHECKING:
     from tiniscript.syntax.expression_recovery import ExpressionRecovery
 
+_BESIDE = frozenset((WORD, NUMBER, ODD))
+_OPERANDS = frozenset(("-", "("))  # what begins one
+
 
 class ExpressionParser:
     def __init__(self, cursor: Cursor, reporter: Reporter, kit: Kit | None) -> None:
@@ -115,10 +118,14 @@ class ExpressionParser:
     def word(self, token: Token, read: Postfix) -> bool:
         cursor = self.cursor
         known = WORDS.get(token.text)
-        if known is None and (
-            self.recovery.constructs.is_said_with_more(token)
-            or self.recovery.questions.is_sign_alone(token)
-            or self.recovery.questions.is_in_words(token)
+        if (
+            known is None
+            and self._may_be_more()
+            and (
+                self.recovery.constructs.is_said_with_more(token)
+                or self.recovery.questions.is_sign_alone(token)
+                or self.recovery.questions.is_in_words(token)
+            )
         ):
             return False
         if known is None or known.role == "value":
@@ -140,6 +147,14 @@ class ExpressionParser:
         else:
             self.recovery.no_value(token)
         return False
+
+    def _may_be_more(self) -> bool:
+        """Whether what stands beside a name lets it mean more than itself: `DISTANCE cm`."""
+        cursor = self.cursor
+        after = cursor.following
+        if after.kind in _BESIDE:
+            return after.kind is ODD or after.text not in BINARY
+        return after.kind in _OPERANDS and cursor.last.text in ("AND", "OR")
 
     def begin_call(self, name: Token, function: Word, read: Postfix) -> None:
         cursor = self.cursor

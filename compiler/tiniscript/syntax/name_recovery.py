@@ -18,13 +18,13 @@ from tiniscript.syntax.block_recovery import BlockRecovery
 from tiniscript.syntax.blocks import Blocks
 from tiniscript.syntax.bracket_recovery import BracketRecovery
 from tiniscript.syntax.call_suggestions import (
-    actuator_word,
     call_in,
     glued_call,
     written,
 )
 from tiniscript.syntax.clause_recovery import ClauseRecovery
 from tiniscript.syntax.cursor import AT_END, Cursor
+from tiniscript.syntax.devices import actuator_word
 from tiniscript.syntax.foreign import foreign_word
 from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, ODD, WORD, Token
 from tiniscript.syntax.operators import COMPARISONS, SIGNS

@@ -39,7 +39,6 @@ from tiniscript.syntax.cursor import AT_END, Cursor
 from tiniscript.syntax.expressions import ExpressionParser
 from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, ODD, WORD, Scan, Token, scan
 from tiniscript.syntax.reporter import Failed, Reporter, Resumed
-from tiniscript.syntax.suggestions import foreign_block
 from tiniscript.words import BLOCK_ENDS, WORDS, Word, other_name
 
 if TYPE_CHECKING:
@@ -78,6 +77,8 @@ class Parser:
         self.blocks = Blocks(self.reporter)
         self.expressions = ExpressionParser(self.cursor, self.reporter, kit)
         self._kit = kit
+        devices = (*kit.sensors, *kit.actuators) if kit else ()
+        self._devices = frozenset(each.name for each in devices)
 
     @cached_property
     def recovery(self) -> Recovery:
@@ -130,7 +131,7 @@ class Parser:
             if (
                 word.text in _SETUPS
                 or is_in_two
-                or (self._kit and bar.kind != "=" and self._is_misread(self._kit, word))
+                or (self._kit and bar.kind != "=" and self._is_misread(word))
             ):
                 return self.recovery.setup.without_bar(word) or "SI"
             return "SI"
@@ -141,10 +142,8 @@ class Parser:
             return self.recovery.setup.unknown(word)
         return word.text
 
-    @staticmethod
-    def _is_misread(kit: Kit, word: Token) -> bool:
-        devices = (*kit.sensors, *kit.actuators)
-        return word.text in _MISREAD and all(each.name != word.text for each in devices)
+    def _is_misread(self, word: Token) -> bool:
+        return word.text in _MISREAD and word.text not in self._devices
 
     def check_connection(self, ping: Token) -> None:
         cursor = self.cursor
@@ -212,8 +211,7 @@ class Parser:
         known = WORDS.get(word.text)
         following = tokens[cursor.i + 1]
         if known is None:
-            is_end = word.text[:3] in _BEGIN_ENDS
-            if following.kind not in _AFTER_NAME or is_end or foreign_block(word.text):
+            if not self._is_name(word, following):
                 self.recovery.of_name.unknown_word(self, word, following)
         elif not known.is_instruction and known.role != "start":
             self.recovery.no_command(self, word, known.role)
@@ -230,6 +228,16 @@ class Parser:
             until = self.until(word)
         span = cursor.span_from(word)
         self.blocks.here.append(Command(word.text, word.span, arguments, until, span))
+
+    def _is_name(self, word: Token, following: Token) -> bool:
+        """Whether a word may stand here for a device, or for a DEF of the program."""
+        if following.kind not in _AFTER_NAME or word.text[:3] in _BEGIN_ENDS:
+            return False
+        if word.text in self._devices or word.text in self.blocks.defs:
+            return True
+        from tiniscript.syntax.suggestions import foreign_block  # a right program needs it not
+
+        return foreign_block(word.text) is None
 
     def arguments_of(self, word: Token, known: Word | None) -> tuple[Argument, ...] | None:
         if known is not None and not known.arguments:

@@ -13,8 +13,8 @@ from itertools import pairwise
 
 from tiniscript.kit import Kit
 from tiniscript.source import Source
-from tiniscript.syntax.call_suggestions import actuator_word
 from tiniscript.syntax.cursor import AT_END
+from tiniscript.syntax.devices import actuator_word
 from tiniscript.syntax.lexer import NUMBER, WORD, Token
 from tiniscript.words import NUMBER_WORDS, WORDS, Word, meant_by
 

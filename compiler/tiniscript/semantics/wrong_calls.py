@@ -1,0 +1,100 @@
+"""Says what is wrong with an instruction: its word, how many values it has, a number out of range.
+
+Knows the program up to there. The checker knows which instructions are right, and asks here about
+the others.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from itertools import count, islice
+
+from tiniscript.diagnostics import codes
+from tiniscript.fixed_point import HIGHEST, as_text
+from tiniscript.semantics import ir
+from tiniscript.semantics.out_of_range import meant
+from tiniscript.semantics.symbols import Scope
+from tiniscript.semantics.unknown_words import (
+    report_named_arguments,
+    report_not_callable,
+    report_placeholders,
+    report_unknown,
+    report_words_for_numbers,
+)
+from tiniscript.semantics.until_examples import asked_next, ended_by
+from tiniscript.source import Span
+from tiniscript.syntax import ast
+from tiniscript.syntax.call_suggestions import count_diagnostic
+from tiniscript.words import Argument, Word
+
+_NAME = re.compile(r"\w+")
+
+
+class WrongCalls:
+    def __init__(self, scope: Scope) -> None:
+        self.scope = scope
+
+    def unknown(self, node: ast.Command, inside: str | None) -> None:
+        report_unknown(self.scope, node, inside)
+
+    def not_callable(self, node: ast.Command) -> None:
+        report_not_callable(self.scope, node)
+
+    def until_not_here(
+        self,
+        node: ast.Command,
+        until: ast.Argument,
+        word: Word | None,
+        made: Sequence[ir.Statement],
+    ) -> None:
+        """`made` is what comes before the UNTIL of this command."""
+        source = self.scope.source
+        before = source[Span(node.span.start, until.span.start)]
+        start = node.span.start + before.upper().rfind("UNTIL")
+        call = source[Span(node.span.start, start)].rstrip()
+        asked = f"UNTIL({source[until.span]})"
+        self.scope.report(codes.UNTIL_NOT_HERE, Span(start, node.span.end), word=node.word,
+                          example=ended_by(source, call, asked, word, made))  # fmt: skip
+
+    def forever(self, span: Span, word: Word, call: Span) -> None:
+        """FOREVER at `span` in a move without UNTIL."""
+        source = self.scope.source
+        fix = f"{source[call]} UNTIL({asked_next(source, call)})"
+        self.scope.report(codes.FOREVER_NEEDS_UNTIL, span, word=word.text, fix=fix)
+
+    def count(self, word: Word, arguments: Sequence[ast.Argument], span: Span) -> None:
+        spans = [argument.span for argument in arguments]
+        found = count_diagnostic(self.scope.source, word, spans, span)
+        self.scope.diagnostics.append(found)
+
+    def values(self, node: ast.Command, word: Word, said: int) -> None:
+        """Say more of values that have had diagnostics since there were `said`."""
+        report_words_for_numbers(self.scope, node, word, said)
+        report_named_arguments(self.scope, node, word, said)
+        report_placeholders(self.scope, node, word, said)
+
+    def out_of_range(
+        self, span: Span, number: int, its: Argument, word: str,
+        of: tuple[ast.Command, Word] | None,
+    ) -> None:  # fmt: skip
+        """`number`, in thousandths, is a value of the command `of`, if of one."""
+        low, high = as_text(its.low), "" if its.high == HIGHEST else as_text(its.high)
+        said = {} if of is None else meant(self.scope.source, *of)
+        self.scope.report(codes.OUT_OF_RANGE, span, None, word=word, name=its.name, unit=its.unit,
+                          low=low, high=high, found=as_text(number), **said)  # fmt: skip
+
+    def no_number(self, span: Span, word: str) -> None:
+        """A yes or no where `word` takes a number."""
+        text = self.scope.source[span]
+        fix = f"W(FOREVER) UNTIL({text})" if word == "W" and set(text) & set("<>=") else ""
+        if word == "LOOP":
+            fix = "LOOP(FOREVER)" if text.upper() == "TRUE" else f"WHILE({text})"
+        self.scope.report(codes.WANTS_NUMBER, span, by=word, found=text, fix=fix)
+
+    def free_name(self, name: str, procedures: Sequence[ir.Procedure]) -> str:
+        """Return `DANCE_2`, or with the first number of which the text has no name yet."""
+        used = set(_NAME.findall(self.scope.source.text.upper()))
+        free = (f"{name}_{k}" for k in count(2) if f"{name}_{k}" not in used)
+        twice = sum(each.name == name for each in procedures) - 1  # these got one already
+        return next(islice(free, max(0, twice), None))

@@ -1,0 +1,145 @@
+"""Says what is wrong with a value: an unknown name, a number in the place of a yes or no.
+
+Knows the names of the program and the text around a value. `types` knows which values are right,
+and asks here about the others.
+"""
+
+from __future__ import annotations
+
+import re
+
+from tiniscript.diagnostics import codes
+from tiniscript.semantics.comparisons import ASIDE
+from tiniscript.semantics.named_values import value_of
+from tiniscript.semantics.symbols import ENOUGH, Scope
+from tiniscript.semantics.types import NUMBER, Operand
+from tiniscript.semantics.unknown_words import hyphened, meant_value, whole_name
+from tiniscript.source import Span
+from tiniscript.syntax.ast import Part
+from tiniscript.syntax.operators import SIGN_OF
+from tiniscript.words import NUMBER_WORDS, SENSOR_STEMS, WORDS, meant_by
+
+_EQUAL = frozenset(("EQ", "NE"))
+_COMPARES = re.compile(r"\w+\s*((?:<=|>=|<>|[<>=])\s*[\w.]+)")  # `> 5` of `X > 5`
+_COMPARED = re.compile(r"[^<>=]{1,40}?\s*(?:<=|>=|<>|[<>=])(?=[^<>=]*$)")  # `X =` of `X = 5`
+_TIME, _POWER, _TIMES, _HERTZ = "2", "50", "3", "440"  # examples of what a variable may hold
+_POWER_BEFORE = re.compile(r"(?i)\b[FBLR][ \t]*\([^(),]*,[ \t]*$")
+_NEAR = 20  # characters before a name in which its word is looked for
+# Where a sensor does not look that looks ahead.
+_TIMES_BEFORE = re.compile(r"(?i)\bLOOP[ \t]*\([ \t]*$")
+_HERTZ_BEFORE = re.compile(r"(?i)\bBEEP[ \t]*\([^(),]*,[ \t]*$")
+_TIME_BEFORE = re.compile(r"(?i)\b(?:[FBLRW]|BEEP)[ \t]*\([ \t]*$")  # a time comes first
+
+
+class WrongValues:
+    def __init__(self, scope: Scope) -> None:
+        self.scope = scope
+
+    def unknown(self, part: Part, name: str, target: str | None) -> None:
+        scope, span = self.scope, Span(part.start, part.end)
+        if name in scope.def_names:
+            scope.report(codes.DEF_READ, span, name=name)
+            return
+        meant = meant_by(name) or ""
+        before = scope.source.text[max(0, span.start - _NEAR) : span.start]
+        is_variable = meant == "TIME" and _TIME_BEFORE.search(before) is not None
+        if not is_variable and name not in scope.set_somewhere and name != target and (
+            (meant in WORDS and WORDS[meant].role in ("value", "forever")) or meant in scope.names
+        ):  # fmt: skip
+            scope.report(
+                codes.OTHER_LANGUAGE, span, found=name, right=meant, fix=meant, usage=meant
+            )
+            return
+        if meant == "BUTTON" or name == "BUTTON":
+            scope.report(codes.NO_BUTTON, span)
+            return
+        if hyphened(scope, span, name):
+            return
+        names = scope.names.items() if len(scope.diagnostics) < ENOUGH else ()
+        known = [each for each, its in names if its.what in ("sensor", "variable")]
+        near = NUMBER_WORDS.get(name) or scope.near(name, known) or meant_value(
+            scope, span, name, is_assigned=target is not None
+        )  # fmt: skip
+        near = near or whole_name(scope, name, scope.set_somewhere)
+        stem = SENSOR_STEMS.get(name, name) + "_"  # `LIGHT` of LIGHT_R and LIGHT_L
+        several = [each for each in known if each.startswith(stem)]
+        which = {} if len(several) != 2 else {"first": several[0], "second": several[1]}
+        sensors = [each for each, its in names if its.what == "sensor"]
+        if name in ("SENSOR", "SENSORES", "SENSORS") and len(sensors) > 1:
+            which = {"first": ", ".join(sensors[:-1]), "second": sensors[-1]}
+        if name == target or name in scope.set_somewhere:
+            first = scope.line_to_move_up(name, span)
+            if any(each.code is codes.USED_BEFORE_SET and each.values["name"] == name
+                   for each in scope.diagnostics[-ENOUGH:]):  # fmt: skip
+                return  # said once
+            scope.report(codes.USED_BEFORE_SET, span, None, name=name, near=near, **first)
+        else:
+            near = "" if which else near
+            near = "" if is_variable else near
+            value = value_of(name)
+            if _TIME_BEFORE.search(before):
+                value = _TIME
+            elif _POWER_BEFORE.search(before):
+                value = _POWER
+            elif _TIMES_BEFORE.search(before):
+                value = _TIMES
+            elif _HERTZ_BEFORE.search(before):
+                value = _HERTZ
+            only = next((each for each in sensors if name.startswith(each + "_")), "")
+            aside = only if name.rpartition("_")[2] in ASIDE else ""
+            near = "" if aside else only or near
+            scope.report(codes.UNKNOWN_NAME, span, None, found=name, near=near,
+                         value=value, only=only, aside=aside, **which)  # fmt: skip
+
+    def mixed(self, op: str, left: Operand, right: Operand, span: Span) -> None:
+        """A number is compared with a yes or no."""
+        self.scope.report(codes.MIXED_COMPARE, span, sign=SIGN_OF[op],
+                          left="@" + left.kind, right="@" + right.kind,
+                          fix=self._yes_no_alone(op, left, right))  # fmt: skip
+
+    def yes_no_order(self, op: str, span: Span) -> None:
+        self.scope.report(codes.YES_NO_ORDER, span, sign=SIGN_OF[op])
+
+    def no_number(self, op: str, operand: Operand) -> None:
+        span = Span(operand.start, operand.end)
+        by = "-" if op == "NEG" else SIGN_OF.get(op, op)
+        self.scope.report(codes.WANTS_NUMBER, span, by=by, found=self.scope.source[span])
+
+    def no_yes_no(self, by: str, operand: Operand, other: Operand | None) -> None:
+        """`other` is the other side of an AND or OR.
+
+        `X = 5 OR 6` means `X = 5 OR X = 6`, and `X AND Y > 5` means `X > 5 AND Y > 5`.
+        """
+        span = Span(operand.start, operand.end)
+        found = self.scope.source[span]
+        values = self.question(found)
+        if other is not None and other.end - other.start <= 80:
+            asked = self.scope.source[Span(other.start, other.end)]
+            before, behind = _COMPARED.match(asked), _COMPARES.fullmatch(asked)
+            if other.start < operand.start and before:
+                values = {"fix": f"{before[0]} {found}"}
+            elif behind and found.isidentifier():
+                values = {"fix": f"{found} {behind[1]}"}
+        self.scope.report(codes.WANTS_CONDITION, span, None, by=by, found=found, **values)
+
+    def question(self, found: str) -> dict[str, str]:
+        """Return the yes or no that a number alone means, or an example of a question with it."""
+        word = found.upper()
+        name = self.scope.names.get(word)
+        if name is not None:
+            return {"example": f"{word} < 10" if name.what == "sensor" else f"{word} > 0"}
+        meant = {"0": "FALSE", "1": "TRUE"}.get(word)
+        if meant or not word.isdecimal():
+            return {"fix": meant} if meant else {}
+        names = {each.name for each in self.scope.kit.sensors if not each.is_yes_no}
+        sensor = "DISTANCE" if "DISTANCE" in names else "X"
+        return {"times": word, "example": f"{sensor} < {word}"}
+
+    def _yes_no_alone(self, op: str, left: Operand, right: Operand) -> str:
+        """`BUTTON = 1` is `BUTTON`, and `BUTTON = 0` is `NOT BUTTON`."""
+        number, answer = (left, right) if left.kind == NUMBER else (right, left)
+        digit = self.scope.source[Span(number.start, number.end)]
+        found = self.scope.source[Span(answer.start, answer.end)]
+        if digit not in ("0", "1") or op not in _EQUAL or not found.isidentifier():
+            return ""
+        return found.upper() if (digit == "1") == (op == "EQ") else f"NOT {found.upper()}"
