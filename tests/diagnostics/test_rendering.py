@@ -84,6 +84,22 @@ def test_one_table_alone_is_what_it_is_among_all() -> None:
         assert rendering._table(name) == table
 
 
+def test_what_is_read_without_tomllib_is_what_tomllib_reads() -> None:
+    for code, table in TEXTS.items():
+        keys = ("en", "en_try", "es", "es_try")
+        assert rendering._said(code) == {key: table[key] for key in keys}, code
+    for name in ("terms", "labels"):
+        table = {key: (each["en"], each["es"]) for key, each in rendering._texts()[name].items()}
+        assert rendering._terms(name) == table
+
+
+def test_a_text_with_an_escape_is_read_by_tomllib(monkeypatch: pytest.MonkeyPatch) -> None:
+    rows = '[TS999]\nen = "a"\nen_try = ["b {x}", "c]"]\nes = "\\"d\\""\nes_try = "e"\n'
+    monkeypatch.setattr(rendering, "_file", lambda: f"\n{rows}")
+    said = {"en": "a", "en_try": ["b {x}", "c]"], "es": '"d"', "es_try": "e"}
+    assert rendering._said("TS999") == said
+
+
 @pytest.mark.parametrize("code", sorted(TEXTS))
 def test_each_code_has_all_texts_in_both_languages(code: str) -> None:
     texts = TEXTS[code]

@@ -23,6 +23,13 @@ VALUE_CHARACTERS = 60  # of a program's text within a message
 FIX_CHARACTERS = 200  # of what to try, which is cut only where nobody would copy it
 TAB = "    "
 
+# Rows of `catalogue.toml`, without escapes.
+_SAID = re.compile(
+    r'^((?:en|es)(?:_try)?) = (?:"([^"\\\n]*)"|\[((?:\s*"[^"\\\n]*",?)+)\s*\])$', re.MULTILINE
+)
+_TERM = re.compile(r'^"?([^\s"=]+)"? = \{ en = "([^"\\\n]*)", es = "([^"\\\n]*)" \}$', re.MULTILINE)
+_TEXT = re.compile(r'"([^"]*)"')
+
 _GAP = re.compile(r"\{(@?)(\w+)\}")
 _TERM_WORD = re.compile(r"[A-Za-z_]+")
 _RED, _YELLOW, _DIM, _PLAIN = "\033[1;31m", "\033[1;33m", "\033[2m", "\033[0m"
@@ -46,7 +53,7 @@ class Message(NamedTuple):
 
 def message(diagnostic: Diagnostic, source: Source, lang: str) -> Message:
     """Return what is said of a diagnostic, and where."""
-    texts = _table(diagnostic.code.number)
+    texts = _said(diagnostic.code.number)
     start, end = _shown_range(source.text, diagnostic.span)
     line, column = source.position(start)
     end_line, end_column = line, column
@@ -127,11 +134,33 @@ def _texts() -> dict[str, dict[str, Any]]:
 
 
 @cache
+def _said(number: str) -> dict[str, str | list[str]]:
+    """Return the messages of a code and what to try, in both languages.
+
+    Importing tomllib and reading with it takes a tenth as long as compiling a program.
+    """
+    found: dict[str, str | list[str]] = {}
+    for key, text, several in _SAID.findall(_part(number)):
+        found[key] = _TEXT.findall(several) if several else text
+    return found if len(found) == 4 else _table(number)  # with an escape
+
+
+@cache
+def _terms(name: str) -> dict[str, tuple[str, str]]:
+    """Return the table of [labels] or [terms], in English and Spanish."""
+    return {key: (en, es) for key, en, es in _TERM.findall(_part(name))}
+
+
 def _table(name: str) -> dict[str, Any]:
-    """Return one table of `catalogue.toml`: reading all takes as long as compiling."""
+    """Return one table of `catalogue.toml`."""
+    return _read(_part(name))[name]
+
+
+def _part(name: str) -> str:
+    """Return the rows of one table: reading all takes as long as compiling."""
     begin = _file().index(f"\n[{name}]\n") + 1
     end = _file().find("\n[", begin)
-    return _read(_file()[begin : end if end >= 0 else None])[name]
+    return _file()[begin : end if end >= 0 else None]
 
 
 @cache
@@ -150,13 +179,12 @@ def _read(toml: str) -> dict[str, dict[str, Any]]:
 
 
 def _label(name: str, lang: str) -> str:
-    label: str = _table("labels")[name][lang]
-    return label
+    return _terms("labels")[name][lang == "es"]
 
 
 def _term(word: str, lang: str) -> str | None:
-    term: dict[str, str] | None = _table("terms").get(word)
-    return None if term is None else term[lang]
+    term = _terms("terms").get(word)
+    return None if term is None else term[lang == "es"]
 
 
 def _filled(texts: str | list[str], values: Mapping[str, str], lang: str) -> str:
