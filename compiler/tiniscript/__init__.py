@@ -10,11 +10,11 @@ instructions, image. It prints nothing, opens nothing and needs the standard lib
 from __future__ import annotations
 
 import gc
-from typing import NamedTuple
+
+from tiniscript.records import TYPE_CHECKING, NamedTuple
 
 __version__ = "0.2.0"
 
-TYPE_CHECKING = False
 if TYPE_CHECKING:
     from tiniscript.bytecode.verify import Verdict
     from tiniscript.codegen.lower import Place

@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import re
 from bisect import bisect_right
-from typing import NamedTuple
+
+from tiniscript.records import NamedTuple
 
 LARGEST_SOURCE = 1_000_000  # bytes
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -14,23 +15,24 @@ FULL = 400  # lines of a file, as CONTRIBUTING says
 # What is to be split; it gets no longer.
 TOO_FULL: dict[str, int] = {}
 
-SHARED = {"fixed_point", "kit", "words", "spelling", "files", "printable"}
+SHARED = {"records", "fixed_point", "kit", "words", "spelling", "files", "printable"}
 TEXT = {"source", "diagnostics", *SHARED}
 # Each stage, and each table that stages share: what it may import besides itself.
 UPSTREAM: dict[str, set[str]] = {
-    "source": set(),
+    "records": set(),
+    "source": {"records"},
     "files": set(),
     "printable": set(),
     "fixed_point": set(),
-    "kit": {"fixed_point"},
+    "kit": {"records", "fixed_point"},
     "spelling": set(),
-    "words": {"fixed_point", "spelling"},
-    "diagnostics": {"source"},
-    "bytecode": {"kit"},
+    "words": {"records", "fixed_point", "spelling"},
+    "diagnostics": {"records", "source"},
+    "bytecode": {"records", "kit"},
     "syntax": {*TEXT, "bytecode"},  # of the bytecode its limits and its comparators
     "semantics": {*TEXT, "bytecode", "syntax"},
     "repairs": {*TEXT, "syntax"},
-    "codegen": {"source", "files", "fixed_point", "bytecode", "semantics"},
+    "codegen": {"records", "source", "files", "fixed_point", "bytecode", "semantics"},
     "vm": {"fixed_point", "kit", "bytecode"},
     "robots": SHARED,
     "text": {*TEXT, "bytecode", "syntax", "semantics", "codegen", "robots"},
@@ -172,7 +174,43 @@ def test_the_road_needs_the_standard_library_alone() -> None:
 def test_importing_the_package_imports_nothing_else() -> None:
     """What the library offers is imported when it is asked for."""
     found = {name for name in imported_by("import tiniscript") if name.startswith("tiniscript")}
-    assert found == {"tiniscript"}
+    assert found == {"tiniscript", "tiniscript.records"}
+
+
+# What a right program may have: names of all kinds, every block, a note, and a warning.
+RIGHT = """SB|SPEED = 40; // fast
+DEF TURN; R(0.5, SPEED + 10); END_DEF
+LOOP(3);
+  IF(DISTANCE < 10 AND NOT (SPEED > 3 OR BUTTON)); B(1, 50); TURN;
+  ELSEIF(ABS(SPEED - 3) > 50 % 7); DISTANCE; SHOW(DISTANCE); ELSE; F(1, 80); ENDIF
+END_LOOP
+WHILE(TRUE); W(1) UNTIL(DISTANCE < SPEED); BREAK; END_WHILE
+LED(TRUE); GRIPPER(90); BEEP(1, 440); M(-5, 5); S
+"""
+# And what only wrong ones need.
+OF_WRONG = re.compile(
+    r"tiniscript\.(repairs|spelling|semantics\.(wrong_|unknown_|out_of_range|until_examples|joining)"
+    r"|syntax\.(\w*recovery|\w*suggestions|phrases|vocabulary|units|pasted|checksums))"
+)
+
+
+@pytest.mark.parametrize("verb", ["compile", "check"])
+def test_a_right_program_loads_nothing_for_wrong_ones(verb: str, tmp_path: Path) -> None:
+    program = tmp_path / "right.ts"
+    program.write_text(RIGHT)
+    modules = imported_by(
+        "from tiniscript.cli import main; "
+        f"assert main([{verb!r}, '--robot', 'grabber', {str(program)!r}]) == 0"
+    )
+    own = {each for each in modules if each.startswith("tiniscript")}
+    assert not {each for each in own if OF_WRONG.match(each)}
+    assert "tomllib" not in modules and len(own) <= 66
+    for name in own:
+        path = PACKAGE.parent / name.replace(".", "/")
+        path = path / "__init__.py" if path.is_dir() else path.with_suffix(".py")
+        loaded = [node for node in ast.parse(path.read_text(encoding="utf-8")).body
+                  if isinstance(node, ast.ImportFrom)]  # fmt: skip
+        assert "typing" not in {node.module for node in loaded}, f"{name}: see records.py"
 
 
 @pytest.mark.parametrize(

@@ -10,8 +10,6 @@ in C++. Same names, same order, same verdict at the same offset: change all thre
 
 from __future__ import annotations
 
-from typing import NamedTuple, NoReturn
-
 from tiniscript.bytecode.opcodes import (
     BY_CODE,
     CALLS,
@@ -26,6 +24,10 @@ from tiniscript.bytecode.opcodes import (
     OperandKind,
     read_operands,
 )
+from tiniscript.records import TYPE_CHECKING, NamedTuple
+
+if TYPE_CHECKING:
+    from typing import NoReturn
 
 # fmt: off
 RULES = {

@@ -11,10 +11,13 @@ import re
 import sys
 from collections.abc import Iterable, Mapping
 from functools import cache
-from typing import Any, Literal, NamedTuple
 
 from tiniscript.diagnostics.codes import CODES, Diagnostic
+from tiniscript.records import TYPE_CHECKING, NamedTuple
 from tiniscript.source import Source, Span
+
+if TYPE_CHECKING:
+    from typing import Any, Literal
 
 LINE_COLUMNS = 100  # of a program's line; of a longer one a window is shown
 COLUMNS_BEFORE = 40  # of that window, before the place

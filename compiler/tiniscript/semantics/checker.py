@@ -8,12 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
 
 from tiniscript.bytecode.opcodes import BLOCKS, CALLS, DEFS, STACK_VALUES, VARIABLES
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.kit import Kit
+from tiniscript.records import TYPE_CHECKING, NamedTuple
 from tiniscript.semantics import ir
 from tiniscript.semantics.ir import Statement
 from tiniscript.semantics.symbols import Name, Scope

@@ -5,12 +5,13 @@ numbers here: variables, sensors, actuators and DEFs by their order. Numbers are
 TRUE is 1 and FALSE is 0. All mistakes have been reported before.
 """
 
-# No `from __future__ import annotations`: typing would compile each field's again, one by one.
+from __future__ import annotations
+
 from collections.abc import Iterator
-from typing import NamedTuple
 
 from tiniscript.fixed_point import as_text
 from tiniscript.kit import Kit
+from tiniscript.records import NamedTuple
 from tiniscript.source import Span
 
 # An expression is flat, in the order in which a stack machine meets it. `op` is NUMBER, YES_NO,
@@ -85,7 +86,7 @@ class Assign(NamedTuple):
 class Arm(NamedTuple):
     reads: tuple[int, ...]
     condition: Expression
-    body: "tuple[Statement, ...]"
+    body: tuple[Statement, ...]
     span: Span
 
 
@@ -93,7 +94,7 @@ class If(NamedTuple):
     """`has_else`: the text has an ELSE, perhaps with nothing behind it."""
 
     arms: tuple[Arm, ...]
-    otherwise: "tuple[Statement, ...]"
+    otherwise: tuple[Statement, ...]
     span: Span
     has_else: bool = False
 
@@ -102,14 +103,14 @@ class Loop(NamedTuple):
     """`times` is None for FOREVER."""
 
     times: Expression | None
-    body: "tuple[Statement, ...]"
+    body: tuple[Statement, ...]
     span: Span
 
 
 class While(NamedTuple):
     reads: tuple[int, ...]
     condition: Expression
-    body: "tuple[Statement, ...]"
+    body: tuple[Statement, ...]
     span: Span
 
 

@@ -5,11 +5,13 @@ Knows how the parser abandons a rule: it reports why, and raises Failed. Knows n
 
 from __future__ import annotations
 
-from typing import NoReturn
-
 from tiniscript.diagnostics.codes import Code, Diagnostic
+from tiniscript.records import TYPE_CHECKING
 from tiniscript.source import Span
 from tiniscript.syntax.lexer import Token
+
+if TYPE_CHECKING:
+    from typing import NoReturn
 
 
 class Failed(Exception):

@@ -7,7 +7,7 @@ in it.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from tiniscript.records import NamedTuple
 
 Both = tuple[str, str]  # a text in English and in Spanish
 
