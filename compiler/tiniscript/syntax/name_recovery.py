@@ -202,11 +202,10 @@ class NameRecovery:
         while cursor.token.text in BEFORE_SENTENCE and cursor.following.kind is WORD:
             self.reporter.answer(cursor.token)  # `después`
             cursor.i += 1
-        if cursor.token.kind is WORD:
-            span = cursor.span_from(word)
-            words = cursor.source[span].strip(" ,").upper()
-            self.reporter.report(codes.EXTRA_WORD, span, found=words, label=words)
-            raise Resumed
+        span = cursor.span_from(word)
+        words = cursor.source[span].strip(" ,").upper()
+        self.reporter.report(codes.EXTRA_WORD, span, found=words, label=words)
+        raise Resumed
 
     def _is_contrary(self, word: Token) -> bool:
         """`DE LO CONTRARIO`: then go to its last word."""
