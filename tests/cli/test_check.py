@@ -66,6 +66,18 @@ def test_the_table_as_data_and_for_a_spreadsheet(folder: Path, tsc: Tsc) -> None
     assert (table[1]["mistakes"], table[1]["line"], table[1]["code"]) == ("1", "1", "TS017")
 
 
+def test_a_spreadsheet_in_spanish_has_semicolons_and_may_be_written_again(
+    folder: Path, tsc: Tsc
+) -> None:
+    for _ in range(2):
+        done = tsc("check", "a.ts", "b.ts", "--lang", "es", "--csv", "tabla.csv")
+        assert done.code == 1
+    table = StringIO((folder / "tabla.csv").read_text("utf-8-sig"))
+    first, second = csv.DictReader(table, delimiter=";")
+    assert (first["archivo"], first["errores"], first["mensaje"]) == ("a.ts", "0", "")
+    assert (second["errores"], second["línea"], second["código"]) == ("1", "1", "TS017")
+
+
 def test_one_that_cannot_be_read_has_its_row_and_gives_two(folder: Path, tsc: Tsc) -> None:
     done = tsc("check", "a.ts", "none.ts", "b.ts")
     assert done.code == 2

@@ -96,6 +96,25 @@ def test_a_folder_gets_a_table(tsc: Tsc, folder: Path, tmp_path: Path) -> None:
 
 
 @needs_wasm
+def test_the_table_of_a_teacher_in_lima_is_spanish_and_may_be_written_again(
+    tsc: Tsc, folder: Path, tmp_path: Path
+) -> None:
+    rows = tmp_path / "notas.csv"
+    (folder / "a,=1+1;@x.ts").write_text("F(", encoding="utf-8")
+    for _ in range(2):  # after a lesson pupils repair, and the teacher checks again
+        assert tsc("lesson", "check", "1", folder, "--lang", "es", "--csv", rows).code == 1
+    data = rows.read_bytes()
+    assert data.startswith(b"\xef\xbb\xbf")
+    cells = list(csv.reader(data.decode("utf-8-sig").splitlines(), delimiter=";"))
+    assert cells[0] == ["archivo", "resultado", "mundo", "frase"]
+    assert {row[1] for row in cells[1:]} == {"listo", "todavía no", "errores"}
+    assert {len(row) for row in cells} == {4}
+    assert "a,'=1+1;'@x.ts" in [row[0] for row in cells]  # whatever ends a cell there
+    assert tsc("lesson", "check", "1", folder, "--csv", rows).code == 1  # and in English
+    assert rows.read_text("utf-8-sig").startswith("file,verdict,seed,sentence\n")
+
+
+@needs_wasm
 def test_json_is_a_list(tsc: Tsc, folder: Path) -> None:
     found = json.loads(tsc("lesson", "check", "1", folder, "--json").out)
     assert [each["verdict"] for each in found] == [

@@ -9,7 +9,8 @@ import json
 import pytest
 
 from tests.link.test_session import DESCRIPTION
-from tiniscript.cli.robot.event_printer import EventPrinter, no_formula
+from tiniscript.cli.robot.event_printer import EventPrinter
+from tiniscript.cli.spreadsheet import no_formula
 from tiniscript.link import known_ports, ports
 from tiniscript.link.fields import filled
 from tiniscript.link.outcomes import TextEvent

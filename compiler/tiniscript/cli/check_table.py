@@ -54,7 +54,7 @@ def check(options: Namespace, robot: Robot, language: str) -> int:
     else:
         print("\n" + "\n".join(_table(rows, language)))
     if options.csv is not None:
-        outputs.write(Path(options.csv), _as_csv(rows), "unwritable_rows")
+        outputs.write(Path(options.csv), _as_csv(rows, language), "unwritable_rows")
     if any(row.problem for row in rows):
         return 2
     return 1 if any(row.mistakes for row in rows) else 0
@@ -157,7 +157,7 @@ def _as_data(row: Row) -> dict[str, object]:
     }
 
 
-def _as_csv(rows: Sequence[Row]) -> bytes:
+def _as_csv(rows: Sequence[Row], language: str) -> bytes:
     from tiniscript.cli.spreadsheet import as_csv
 
     def cells(row: Row) -> tuple[object, ...]:
@@ -167,5 +167,4 @@ def _as_csv(rows: Sequence[Row]) -> bytes:
         first = row.messages[0]
         return (*counts, first.line, first.code, first.message)
 
-    head = ("file", "mistakes", "warnings", "repaired", "line", "code", "message")
-    return as_csv(head, map(cells, rows))
+    return as_csv("check", language, map(cells, rows))

@@ -83,7 +83,7 @@ def check(options: Namespace, lesson: Lesson, language: str) -> int:
             outputs.print_diagnostics(compiled, language)
         marks = [marker.mark(given, compiled)]
     if options.csv is not None:
-        outputs.write(Path(options.csv), _rows(marks), "unwritable_rows")
+        outputs.write(Path(options.csv), _rows(marks, language), "unwritable_rows")
     if options.plot is not None and marks[0].run is not None:
         outputs.write(Path(options.plot), _picture(marks[0].run, language), "unwritable_picture")
     if options.json:
@@ -289,16 +289,14 @@ def _data(mark: Mark) -> dict[str, object]:
     return {"file": mark.name, "verdict": mark.verdict, "seed": seed, "findings": findings}
 
 
-def _rows(marks: Sequence[Mark]) -> bytes:
+def _rows(marks: Sequence[Mark], language: str) -> bytes:
     from tiniscript.cli.spreadsheet import as_csv
 
-    return as_csv(
-        ("file", "verdict", "seed", "sentence"),
-        (
-            (mark.name, mark.verdict, mark.seed or "", mark.said[0][1] if mark.said else "")
-            for mark in marks
-        ),
-    )
+    def cells(mark: Mark) -> tuple[object, ...]:
+        verdict = mark.verdict if language == "en" else text(f"verdict_{mark.verdict}", language)
+        return mark.name, verdict, mark.seed or "", mark.said[0][1] if mark.said else ""
+
+    return as_csv("lesson", language, map(cells, marks))
 
 
 def _picture(run: Run, language: str) -> bytes:

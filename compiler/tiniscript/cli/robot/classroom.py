@@ -147,8 +147,9 @@ class Listener:
         self.began_ms = now_ms()
 
     def listen(self, connection: Connection, member: Member) -> Result:
-        from tiniscript.cli.robot.event_printer import Bookkeeping, EventPrinter, no_formula
+        from tiniscript.cli.robot.event_printer import Bookkeeping, EventPrinter
         from tiniscript.cli.robot.fleet import Result
+        from tiniscript.cli.spreadsheet import no_formula
 
         member.meet(connection)
         about = {"port": connection.port, "robot": connection.name}

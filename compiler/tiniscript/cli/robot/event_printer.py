@@ -10,6 +10,7 @@ import sys
 from typing import TYPE_CHECKING
 
 from tiniscript.cli.inputs import shown
+from tiniscript.cli.spreadsheet import no_formula
 from tiniscript.cli.texts.common import text
 
 if TYPE_CHECKING:
@@ -50,13 +51,6 @@ def value_text(value: int, is_yes_no: bool) -> str:
     if is_yes_no:
         return "TRUE" if value else "FALSE"
     return as_text(value)
-
-
-def no_formula(text: str) -> str:
-    """Return a text that a spreadsheet takes for text, whether its cells end with , or with ;."""
-    import re
-
-    return re.sub(r"(^|[;|\"])(\s*)(?=[=+\-@＝＋－＠])", r"\1\2'", text)
 
 
 def cause_name(number: int) -> str:

@@ -160,7 +160,7 @@ OPTIONS: tuple[Option, ...] = (
     # a lesson
     Option("--teacher", "lesson", ("with show or sheet: the teacher's notes, with answers", "con show o sheet: las notas para el docente, con respuestas")),
     Option("--seed", "lesson", ("with check: only the world of this number, 1 to 4294967295", "con check: solo el mundo de este número, de 1 a 4294967295"), NUMBER, N),
-    Option("--csv", "lesson", ("with check: writes rows of file,verdict,seed,sentence, too", "con check: escribe además filas de file,verdict,seed,sentence"), ROWS, A_FILE),
+    Option("--csv", "lesson", ("with check: writes the table into a file, too, for a spreadsheet", "con check: escribe además la tabla en un archivo, para una hoja de cálculo"), ROWS, A_FILE),
     Option("--plot", "lesson", ("with check: draws the way in the world where it failed, or in the last one", "con check: dibuja el camino en el mundo donde falló, o en el último"), PICTURE, ("F.png", "F.png")),
     # the firmware
     Option("--port", "firmware", ("the port of the board's USB cable: `tsc ports` lists them", "el puerto del cable USB de la placa: `tsc ports` los lista"), PORT, P),
