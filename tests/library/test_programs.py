@@ -8,14 +8,14 @@ import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import pytest
 
 import tiniscript
 from tests.machines.wasm import missing
 from tests.support.command import OBSTACLE, Tsc
-from tiniscript.bytecode.image import pack
+from tiniscript.bytecode.image import REFUSALS, pack
 from tiniscript.bytecode.verify import RULES
 from tiniscript.library import install_advice
 from tiniscript.library.texts import TEXTS
@@ -157,6 +157,26 @@ def test_a_damaged_image_is_refused() -> None:
     with pytest.raises(tiniscript.ProgramError) as raised:
         tiniscript.run(pack("SI", 0, b"\xff"))  # whole, and no code
     assert raised.value.reason in RULES
+
+
+@pytest.mark.parametrize("language", ["en", "es"])
+def test_what_is_said_of_bytes_names_no_robot_that_is_not_there(
+    language: Literal["en", "es"],
+) -> None:
+    whole = tiniscript.compile(PROGRAM).image
+    for image, reason in {
+        b"xx": "NOT_AN_IMAGE", b"": "NOT_AN_IMAGE",
+        whole[:-1]: "TRUNCATED", whole + b"?": "TRAILING",
+        b"TS\xff" + whole[3:]: "OTHER_VERSION", pack("SI", 0, b"\xff"): "",
+    }.items():  # fmt: skip
+        with pytest.raises(tiniscript.ProgramError) as raised:
+            tiniscript.show(image, language=language)
+        said = str(raised.value)
+        assert raised.value.reason == reason or not reason
+        assert raised.value.reason in said
+        assert "robot" not in said.lower()
+        assert ("ompila" if language == "es" else "ompile") in said
+    assert set(REFUSALS) <= set(TEXTS)
 
 
 # -- wrong use -------------------------------------------------------------------------------------

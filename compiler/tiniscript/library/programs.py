@@ -224,11 +224,14 @@ def _read(data: bytes, profile: Robot, language: Language) -> Image:
         check(image, profile.kit)
     except Refused as refused:
         if refused.name == "NO_SUCH_DEVICE" and image.devices:  # an image for a larger kit
-            other = ImageRefused("OTHER_KIT")
-            raise _refused(other.name, other.number, 0, language) from None
-        raise _refused(refused.name, refused.number, refused.offset, language) from None
+            raise ProgramError("OTHER_KIT", language, {"robot": profile.name}) from None
+        from tiniscript.library.texts import sentence
+
+        values = {"offset": f"{refused.offset:04x}", "rule": refused.name}
+        said = sentence("bad_code", language, values)
+        raise ProgramError(refused.name, language, values, said) from None
     except ImageRefused as refused:
-        raise _refused(refused.name, refused.number, 0, language) from None
+        raise ProgramError(refused.name, language, {"robot": profile.name}) from None
     return image
 
 
@@ -238,14 +241,7 @@ def _unpacked(data: bytes, language: Language) -> Image:
     try:
         return unpack(data)
     except ImageRefused as refused:
-        raise _refused(refused.name, refused.number, 0, language) from None
-
-
-def _refused(name: str, number: int, detail: int, language: Language) -> ProgramError:
-    from tiniscript.link.statuses import sentence
-
-    said = " ".join(sentence(number, detail, _checked(language))).strip()
-    return ProgramError(name, language, said=said)
+        raise ProgramError(refused.name, _checked(language)) from None
 
 
 def _checked(language: Language) -> Language:
