@@ -429,6 +429,27 @@ def test_the_finished_robot_has_each_sensor_where_the_body_says(robot: Robot) ->
         assert f"{robot.body.length_cm:g} × {robot.body.width_cm:g} cm" in shown
 
 
+def test_a_gripper_is_drawn_around_its_button_and_another_servo_has_an_arm() -> None:
+    grabber = robots.load("grabber")
+    for language, label in (("en", "gripper"), ("es", "pinza")):
+        plan = plan_of(grabber, language)
+        svg = finished_of(plan)
+        assert {"GRIPPER", label} <= set(texts_of(svg))
+        jaws = [
+            [tuple(map(float, point.split(","))) for point in re.findall(r"[\d.]+,[\d.]+", path)]
+            for path in re.findall(r'<path d="([^"]*)"', svg)
+        ]
+        assert len(jaws) == 2
+        x, y = places_of(plan, grabber.body.places["BUTTON"])
+        for side, points in zip((-1, 1), jaws, strict=True):
+            assert all((point[0] - x) * side > 9 for point in points)  # beside the button's circle
+            assert points[-1][1] < y < points[0][1]  # from behind it to ahead of it
+    bare = grabber._replace(body=grabber.body._replace(places={}))
+    svg = finished_of(plan_of(bare, "en"))
+    assert "GRIPPER" in texts_of(svg) and "<path" not in svg and 'stroke-width="7"' in svg
+    assert "GRIPPER" not in texts_of(finished_of(plan_of(robots.load("tinibot"), "en")))
+
+
 def places_of(plan: Plan, place: Place) -> tuple[float, float]:
     return _Finished(plan).at(place.x_cm, place.y_cm)
 

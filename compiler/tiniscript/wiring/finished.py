@@ -21,6 +21,8 @@ BESIDE = 230  # left and right of it, for the labels
 WHEEL_CM = 6.5, 2.6  # its diameter and its width
 ROW_STEP = 44  # between two labels
 ARROW = 30
+JAW = 46  # how far the arm of a servo reaches ahead
+BETWEEN_CM = 3  # from the middle line: so far is between the jaws
 PLATE, PARTS = "#f4f4f4", "#ffffff"
 BELOW = ' stroke-dasharray="5 4"'  # what is under the plate
 
@@ -43,6 +45,8 @@ class _Finished:
         places = [0.0, *(each.x_cm for each in body.places.values())]
         ahead = max(0.0, max(places) * self.scale - self.length / 2)
         self.x, self.y = BESIDE + half, MARGIN + ahead + self.length / 2
+        self.servos = [each for each in plan.parts if each.is_device and each.shape.icon == "servo"]
+        self.y += JAW if self.servos and self._held() is None else 0
         self.width = self.right + BESIDE
         self.height = self.y + self.length / 2 + MARGIN
 
@@ -56,7 +60,8 @@ class _Finished:
             f'role="img" aria-label="{title}">',
             f"<title>{title}</title>",
             f'<rect width="{width}" height="{height}" fill="#ffffff"/>',
-            *self._plate(), *self._wheels(), *self._rows(), *self._sensors(), *self._sizes(),
+            *self._plate(), *self._wheels(), *self._rows(), *self._servos(), *self._sensors(),
+            *self._sizes(),
             "</svg>",
         ]) + "\n"  # fmt: skip
 
@@ -123,6 +128,47 @@ class _Finished:
                 text_at(label, self.x, top + high / 2 + 16, broad - 12, "middle", 12, FAINT),
             ]
             top += high + gap
+        return lines
+
+    def _held(self) -> Place | None:
+        """Return the touch sensor that is held before the plate, in the middle: between jaws."""
+        front_cm = self.plan.body.length_cm / 2
+        for place in self.plan.body.places.values():
+            if place.sees == "touch" and place.x_cm > front_cm and abs(place.y_cm) < BETWEEN_CM:
+                return place
+        return None
+
+    def _servos(self) -> list[str]:
+        """Return each servo at the front edge with its name: two jaws around a button, or an arm.
+
+        The profile does not say where they are: they share the edge.
+        """
+        lines: list[str] = []
+        held = self._held()
+        edge = self.y - self.length / 2
+        above = sum(each.y_cm > 0 for each in self.plan.body.places.values())  # other labels there
+        first_row = max(edge + 26, MARGIN + 14 + ROW_STEP * above)
+        for k, part in enumerate(self.servos):
+            x = self.x + ((k + 0.5) / len(self.servos) - 0.5) * self.breadth
+            lines.append(_box(x - 26, edge + 4, 52, 30, PARTS))
+            if k == 0 and held is not None:
+                tip = self.at(held.x_cm, 0)[1] - ARROW
+                for side in (-1, 1):
+                    inner, outer = self.x + side * 24, self.x + side * 46
+                    lines.append(
+                        f'<path d="M{x + side * 14:g},{edge + 6:g} L{outer:g},{edge - 26:g} '
+                        f'L{outer:g},{tip + 22:g} L{inner:g},{tip:g}" fill="none" '
+                        f'stroke="{LINE}" stroke-width="7" stroke-linejoin="round" '
+                        f'stroke-linecap="round"/>'
+                    )
+            else:
+                lines.append(_line(x, edge + 10, x, edge - JAW, LINE, 7))
+            row = first_row + k * ROW_STEP
+            lines += [
+                _line(self.left - 4, row - 5, x - 26, edge + 19),
+                text_at(part.title, self.left - 10, row, BESIDE - 20, "end", style=BOLD),
+                text_at(part.label, self.left - 10, row + 17, BESIDE - 20, "end", 12, FAINT),
+            ]
         return lines
 
     def _sensors(self) -> list[str]:
