@@ -18,6 +18,7 @@ from urllib.parse import unquote
 
 import pytest
 
+from tests.support import studio
 from tests.support.casefile import ROOT
 from tools.builds import stick_wheels, usb_stick
 from tools.builds.stick_wheels import PYTHONS, SYSTEMS
@@ -218,6 +219,25 @@ def test_the_pages_speak_one_language_and_have_boxes_to_tick(stick: Path) -> Non
     assert materials.count('<li class="check">☐ ') == 12
     assert "[ ]" not in materials
     assert not re.search(r"Poster|Wiring|teacher</a>", index)
+
+
+def test_a_phone_shows_each_page_of_a_teacher_whole(stick: Path) -> None:
+    """Nothing is cut at 390 px, but the drawing of the wires, which says that it slides."""
+    pages = [*sorted(stick.glob("pages/**/*.es.html")), stick / "pages" / "indice.html"]
+    cut = """[...document.querySelectorAll('pre, table, .finished')]
+        .filter(each => each.scrollWidth > each.clientWidth + 1).length"""
+    wide = "document.documentElement.scrollWidth > window.innerWidth"
+    slides = "getComputedStyle(document.querySelector('.slide')).display"
+    with studio.driver() as driver, studio.browser(driver) as browser:
+        phone = browser.new_page(viewport={"width": 390, "height": 844})
+        found = {}
+        for each in pages:
+            phone.goto(each.as_uri(), wait_until="domcontentloaded")
+            found[each.name] = phone.evaluate(f"[{wide}, {cut}]")
+            is_drawn = each.parent == stick / "pages" / "wiring"
+            assert not is_drawn or phone.evaluate(slides) == "block"
+    assert {name: each for name, each in found.items() if each != [False, 0]} == {}
+    assert len(found) > 20
 
 
 def test_a_folder_with_something_in_it_is_left_alone(tmp_path: Path) -> None:

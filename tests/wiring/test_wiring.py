@@ -468,7 +468,8 @@ def test_a_page_has_both_drawings_and_fits_a_phone() -> None:
     page = html_of(plan_of(robots.load("tinibot"), "es"))
     assert page.count("<svg") == 2
     assert '<div class="drawing">' in page and '<div class="finished">' in page
-    assert ".drawing, .finished { overflow-x: auto; }" in page
+    assert ".drawing { overflow-x: auto; }" in page  # with a line that says so
+    assert '<p class="slide">Desliza el dibujo' in page
 
 
 def test_parts_have_quantities() -> None:

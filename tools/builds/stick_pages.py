@@ -27,7 +27,7 @@ LANGUAGES = ("en", "es")
 STYLE = """\
 body { font-family: Verdana, 'DejaVu Sans', Arial, sans-serif; line-height: 1.5; color: #111;
   max-width: 55em; margin: 1em auto; padding: 0 1em; overflow-wrap: break-word; }
-pre { background: #f3f3f3; padding: 0.6em; overflow-x: auto; }
+pre { background: #f3f3f3; padding: 0.6em; white-space: pre-wrap; overflow-wrap: anywhere; }
 table { border-collapse: collapse; display: block; overflow-x: auto; }
 th, td { border: 1px solid #999; padding: 0.25em 0.6em; text-align: left; vertical-align: top; }
 th { background: #eee; }

@@ -9,6 +9,7 @@ from tiniscript.wiring.drawing import drawing_of
 from tiniscript.wiring.finished import finished_of
 from tiniscript.wiring.page import Block, page_of
 from tiniscript.wiring.plan import Plan
+from tiniscript.wiring.texts import text
 
 STYLE = """\
 @page { size: A4; margin: 11mm; }
@@ -30,10 +31,11 @@ ul.checks li::before { content: "\\2610"; display: inline-block; width: 1.67em; 
   text-indent: 0; }
 td:first-child::before { content: "\\2610"; display: inline-block; width: 1.5em; }
 .finished svg { max-height: 640px; }
+.slide { display: none; }
 @media screen and (max-width: 640px) {
-  .drawing, .finished { overflow-x: auto; }
+  .drawing { overflow-x: auto; }
   .drawing svg { width: 900px; }
-  .finished svg { width: 640px; }
+  .slide { display: block; font-weight: bold; }
   thead { display: none; }
   table, tbody, tr, td { display: block; border: 0; }
   tr { border: 1px solid #777; margin: 0.5em 0; padding: 0.2em 0.4em; }
@@ -71,7 +73,10 @@ def _words(words: str) -> str:
 def _block(block: Block, plan: Plan) -> str:
     if block.kind in ("drawing", "finished"):
         svg = drawing_of(plan) if block.kind == "drawing" else finished_of(plan)
-        return f'<p>{_words(block.words)}</p>\n<div class="{block.kind}">\n{svg}</div>'
+        words = f"<p>{_words(block.words)}</p>\n"
+        if block.kind == "drawing":  # of which a phone shows a part
+            words += f'<p class="slide">{escape(text("slide", plan.language))}</p>\n'
+        return f'{words}<div class="{block.kind}">\n{svg}</div>'
     if block.kind == "ticks":
         head, *rows = block.rows
         lines = "\n".join(_row(row, head) for row in rows)

@@ -92,6 +92,7 @@ TEXTS: dict[str, tuple[str, str]] = {
     "need_plate": ("1 × chassis plate of about {size}, 2 wheels, 1 ball or wheel that turns freely; screws, double-sided tape",
                    "1 × chasis de unos {size}, 2 ruedas, 1 rueda loca; tornillos, cinta de doble cara"),
     "need_power_bank": ("1 × power bank for the board, with a USB cable", "1 × batería portátil (power bank) para la placa, con cable USB"),
+    "slide": ("Slide the drawing sideways to see all of it.", "Desliza el dibujo hacia los lados para verlo entero."),
     # the finished robot
     "finished": ("{robot}, finished", "{robot}, terminado"),
     "finished_drawing": ("From above, the front at the top. Dashed: under the plate. Wheels and sensors are where the profile says; the other parts may lie otherwise, the heavy ones low and near the wheels.",
