@@ -33,6 +33,8 @@ _IN_PIECES = re.compile(
 )
 _UNTIL = re.compile(r"(?i)\s*\bUNTIL\b")
 _VARIABLE = re.compile(r"(?:^|[;|\r\n])[ \t]*([A-Za-z]\w*)\s*=(?!=)")
+_TAUGHT = re.compile(r"(?i)(?:^|[;|\r\n])[ \t]*DEF\b[\s(]*([A-Z]\w*)")
+_FIRST = re.compile(r"\w*")
 # `R(media vuelta)`, `L 90`: how far, and not how long.
 _TURN = re.compile(r"(?i)([LR])\b(?:.*\bvueltas?\b.*|[\s(]*(?:45|90|135|180|270|360)[\s)]*)")
 _WAYS = {"L": "left", "R": "right"}
@@ -59,6 +61,7 @@ def with_whole_calls(found: Sequence[Diagnostic], source: Source, check: Check) 
     text = source.text
     found = [*(_by_time(each, text) for each in found[:MANY]), *found[MANY:]]
     names = {match[1].upper() for match in _VARIABLE.finditer(text)}
+    names |= {match[1].upper() for match in _TAUGHT.finditer(text)}
     wholes = [each for each in _instructions(found, text, names) if _is_better(each, found, source)]
     if not wholes:
         return list(found)
@@ -98,6 +101,9 @@ def _instructions(found: Sequence[Diagnostic], text: str, names: set[str]) -> li
             groups.setdefault(_around(text, diagnostic.span.start), []).append(k)
     wholes = []
     for span, places in sorted(groups.items()):
+        first = _FIRST.match(text, *span)
+        if first is not None and first[0].upper() in names:
+            continue  # `B1`, which a DEF teaches
         shifted = shifted_call(text[slice(*span)])
         if shifted is not None:
             if shifted.call:

@@ -15,7 +15,7 @@ from tiniscript.syntax.phrases import BEFORE_TIME, TIMES
 from tiniscript.syntax.reporter import Failed, Reporter, Resumed
 from tiniscript.syntax.sentence_recovery import SentenceRecovery
 from tiniscript.syntax.suggestions import body_begins
-from tiniscript.words import Word, other_name
+from tiniscript.words import Word
 
 
 class BracketRecovery:
@@ -69,7 +69,7 @@ class BracketRecovery:
             fix = known.example.replace("2" if known.role == "move" else "1", "FOREVER", 1)
         if is_def:
             self.reporter.fail(
-                codes.RESERVED, word.span, word=word.text, right=other_name(word.text)
+                codes.RESERVED, word.span, word=word.text, right=cursor.free_name(word.text)
             )
         self.reporter.report(codes.MISSING_OPEN, span, word=word.text, fix=fix, usage=known.usage)
         if cursor.token.kind is WORD and cursor.token.text != "UNTIL":

@@ -5,8 +5,11 @@ Knows how to look around and how to go on. Knows no grammar and reports nothing.
 
 from __future__ import annotations
 
+from itertools import chain, count, pairwise
+
 from tiniscript.source import Source, Span
 from tiniscript.syntax.lexer import END, NEWLINE, Token
+from tiniscript.words import other_name
 
 AT_END = frozenset((";", NEWLINE, END))  # where an instruction ends
 AFTER_VALUE = frozenset((",", ")", *AT_END))  # where a value does
@@ -15,13 +18,14 @@ AFTER_VALUE = frozenset((",", ")", *AT_END))  # where a value does
 class Cursor:
     """`tokens[i]` is the token to read next. The caller that reads it advances `i`."""
 
-    __slots__ = ("_braces", "i", "source", "tokens")
+    __slots__ = ("_braces", "_free", "i", "source", "tokens")
 
     def __init__(self, source: Source, tokens: list[Token]) -> None:
         self.source = source
         self.tokens = tokens  # the last one is END, and is never gone past
         self.i = 0
         self._braces: tuple[int, dict[int, int]] = (0, {})  # of so many tokens, see `closing`
+        self._free: dict[str, str] = {}  # names for words of the language, see `free_name`
 
     @property
     def token(self) -> Token:
@@ -55,6 +59,22 @@ class Cursor:
                     pairs[open_ones.pop()] = k
             self._braces = (len(self.tokens), pairs)
         return self._braces[1].get(start)
+
+    def free_name(self, word: str) -> str:
+        """Return a name for a variable or a DEF that was called `word`: F_1, or F_2 beside an F_1.
+
+        Where no `F =` and no `DEF F` is left, F_1 is rather the name that it got already.
+        """
+        if word not in self._free:
+            pairs = list(pairwise(each.text for each in self.tokens))
+            right = other_name(word)
+            if (word, "=") in pairs or ("DEF", word) in pairs:
+                used = {each for each, _ in pairs}
+                stem = right.removesuffix("_1")
+                others = (f"{stem}_{k}" for k in count(2))
+                right = next(each for each in chain((right,), others) if each not in used)
+            self._free[word] = right
+        return self._free[word]
 
     # -- looking over line ends, which are white space in brackets ------------------------------
 

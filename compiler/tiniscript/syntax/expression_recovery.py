@@ -32,7 +32,7 @@ from tiniscript.syntax.suggestions import after_bracket, operator_words, tells, 
 from tiniscript.syntax.until_recovery import before_bracket, in_its_move
 from tiniscript.syntax.value_constructs import ValueConstructs
 from tiniscript.syntax.vocabulary import Vocabulary
-from tiniscript.words import POWER_WORDS, WORDS, Word, meant_by, other_name
+from tiniscript.words import POWER_WORDS, WORDS, Word, meant_by
 
 
 class ExpressionRecovery:
@@ -131,7 +131,7 @@ class ExpressionRecovery:
         place = self.cursor.before(self.cursor.i)
         if self.cursor.tokens[place].kind == "-" and place:
             self._sensor_in_two(self.cursor.tokens[place - 1], token)
-        fail(codes.RESERVED, token.span, word=word.text, right=other_name(word.text))
+        fail(codes.RESERVED, token.span, word=word.text, right=self.cursor.free_name(word.text))
 
     def literal(self, number: Token, span: Span, value: int) -> int:
         """Report a number that is out of range or too exact, and return what is read for it."""

@@ -61,7 +61,6 @@ from tiniscript.words import (
     TURN_WORDS,
     WORDS,
     meant_by,
-    other_name,
     usage_of,
 )
 
@@ -109,7 +108,7 @@ class NameRecovery:
             self.in_block.go_on()
         self.reporter.reserved_words.add(name.text)
         everywhere = self.in_block.known.lines_of(name.text, self.cursor.source)
-        right = "@MY_TIME" if name.text == "TIME" else other_name(name.text)
+        right = "@MY_TIME" if name.text == "TIME" else cursor.free_name(name.text)
         self.reporter.report(
             codes.RESERVED, name.span, word=name.text, right=right, everywhere=everywhere
         )
@@ -316,7 +315,8 @@ class NameRecovery:
             self.unread_assignment(word)
             raise Failed
         span = Span(word.start, rest[-1].end)
-        glued = glued_call(word.text, rest)
+        is_taught = self.in_block.is_name(word.text)  # `DEF B1`
+        glued = None if is_taught else glued_call(word.text, rest)
         if glued is not None:
             cursor.i = end
             name = word.text.rstrip("0123456789")

@@ -39,7 +39,7 @@ from tiniscript.syntax.cursor import AT_END, Cursor
 from tiniscript.syntax.expressions import ExpressionParser
 from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, ODD, WORD, Scan, Token, scan
 from tiniscript.syntax.reporter import Failed, Reporter, Resumed
-from tiniscript.words import BLOCK_ENDS, WORDS, Word, other_name
+from tiniscript.words import BLOCK_ENDS, WORDS, Word
 
 if TYPE_CHECKING:
     from tiniscript.syntax.recovery import Recovery
@@ -295,7 +295,7 @@ class Parser:
             self.recovery.of_def.no_name(word)
         cursor.i += 1
         if name.text in WORDS:
-            right = other_name(name.text)
+            right = cursor.free_name(name.text)
             self.reporter.report(codes.RESERVED, name.span, word=name.text, right=right)
         if cursor.token.kind in (WORD, NUMBER, "-"):
             name = self.recovery.of_def.joined(name)
