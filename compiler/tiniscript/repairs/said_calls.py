@@ -18,6 +18,7 @@ from tiniscript.words import (
     NUMBER_WORDS,
     OTHER_WORDS,
     POWER_WORDS,
+    TURN_WORDS,
     UNITS,
     WORDS,
     Word,
@@ -28,6 +29,11 @@ from tiniscript.words import (
 _ROLES = ("move", "wait", "motors", "beep", "show")
 LONGEST = 120  # characters of an instruction that are read
 _HEAD = re.compile(r"\s*\(?\s*([A-Za-z]+)(?!\.)")
+_SENTENCE_END = re.compile(r"(?<=[A-Za-z%)])\s*\.\s*\Z")
+_TURNED = re.compile(  # `girar a la derecha`
+    rf"(?i)\A\s*(?:{'|'.join(sorted(TURN_WORDS))})\s+(?:(?:a|al|la|el|hacia|para|to|the)\s+)*"
+    r"(izq[a-z]*|der(?:echa)?|left|right)(?![a-z])"
+)
 _GOES_ON = re.compile(r"\)\s*[^\s)]")  # `F(2, 80) S`
 _DOTTED = re.compile(r"^\s*([A-Za-z]+)[._]([0-9]+)[._]([1-9]0|100)\s*$")  # `F.2.80`
 _AGAIN = re.compile(r"\)\s*,?\s*\((?=\s*[0-9])")  # `F(2),(80)`
@@ -109,6 +115,7 @@ def said_call(text: str, names: Container[str]) -> Said | None:
     plain = "".join(c for c in normalize("NFKD", text) if not combining(c)).replace("、", ",")
     plain = _PERCENT.sub("%", plain)
     plain = _SPLITS.sub(",", _POINTS.sub(r"\1,\2", plain))
+    plain = _TURNED.sub(r"\1", _SENTENCE_END.sub("", plain))
     head = _HEAD.match(plain)
     is_around = head is not None and "(" in head[0] and plain.count("(") > 1  # `(F(2, 80)`
     if head is None or is_around or head[1].upper() in names:
@@ -272,6 +279,8 @@ class _Reader:
         if k and self._touches(k) and len(self._at(k)) == 1 and self.found:  # `8p`, for 80
             if _is_number(self.found[-1].text) and float(self.found[-1].text) < 10:
                 return False
+        if not is_before and self.found and self.found[-1].unit == _NAMES[self._at(k)] == "%":
+            return True  # `80 % de potencia`, `toda la potencia`
         if self._is_behind_value or (is_of and not is_before):  # `80 de potencia`
             return not is_before and self._takes_unit(self._at(k))
         self.unit = _NAMES[self._at(k)]

@@ -6,7 +6,6 @@ another number, for a round more or for an end is said in words.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 from itertools import pairwise
 
@@ -33,6 +32,7 @@ from tiniscript.syntax.phrases import (
 )
 from tiniscript.syntax.reporter import Reporter, Resumed
 from tiniscript.syntax.suggestions import shortened
+from tiniscript.syntax.times_recovery import says_how_often
 from tiniscript.words import (
     BLOCK_ENDS,
     NOTE_WORDS,
@@ -85,9 +85,9 @@ class NoteRecovery:
         known = WORDS.get(first.text)
         if header is None and known is not None and known.role in ("move", "wait", "beep"):
             self._condition(row, whole)
-        if self._begins_order(row, header):
+        if self._begins_order(row, header) and not self._is_title(first, row):
             return
-        said = self._asked(first, row, whole)
+        said = self.asked(first, row, whole)
         if said is None and header is None and self._orders(row, whole):
             return
         if said is None and not self._is_note(first, row, header):
@@ -135,7 +135,8 @@ class NoteRecovery:
         if text[:1] not in QUOTES or not text.strip(QUOTES).replace(" ", "").isalpha():
             return False
         said = {meant_by(word) for word in text.strip(QUOTES).upper().split()}
-        return all(each is None or each == first.text for each in said)
+        named = said & {*WORDS} if first.text in WORDS else said - {None}
+        return named <= {first.text}
 
     def _ends_line(self, semicolon: Token) -> bool:
         """Whether nothing but its `;` ends the line."""
@@ -150,6 +151,12 @@ class NoteRecovery:
     def _is_reported(self, span: Span) -> bool:
         found = self.reporter.diagnostics
         return any(span.start <= each.span.start < span.end for each in found)
+
+    def _is_title(self, first: Token, row: Sequence[Token]) -> bool:
+        """`START BAILE`, where BAILE is nothing that the program knows."""
+        name = row[0].text
+        is_known = name in WORDS or meant_by(name) is not None or self.known.is_own(name)
+        return first.text == "START" and len(row) == 1 and not is_known
 
     def _is_call(self, row: Sequence[Token]) -> bool:
         """Whether brackets hold values, or a sign compares or sets something."""
@@ -174,7 +181,7 @@ class NoteRecovery:
             return len(row) == 1 or self.known.is_def(first.text)
         if header is not None and (first.text in AFTER_HEADER or row[0].text in (":", ",", "=")):
             return True
-        if _says_how_often(row) and (header is None or header.word != "LOOP"):
+        if says_how_often(row) and (header is None or header.word != "LOOP"):
             return True
         known = WORDS.get(first.text)
         if header is None and len(row) == 1 and first.text == "FOREVER":
@@ -217,7 +224,7 @@ class NoteRecovery:
         self.reporter.report(codes.QUESTION_BEHIND, span, place, found=text, fix=fix)
         raise Resumed
 
-    def _asked(self, first: Token, row: Sequence[Token], whole: Span) -> dict[str, str] | None:
+    def asked(self, first: Token, row: Sequence[Token], whole: Span) -> dict[str, str] | None:
         """Return how it is written what the words ask for, None where they ask for nothing."""
         texts = [token.text for token in row if token.kind is WORD]
         call = self.cursor.source[whole]
@@ -365,7 +372,7 @@ class NoteRecovery:
         if text in _ASKING:
             return own not in ("IF", "WHILE")
         if text in ("HASTA", "UNTIL"):
-            return row[0].kind != "(" and not self._has_until()
+            return own != "SHOW" and row[0].kind != "(" and not self._has_until()
         known = WORDS.get(text)
         if known is not None and known.role in ("value", "operator"):
             return False
@@ -381,14 +388,3 @@ class NoteRecovery:
             return False
         after = row[k + 1].kind if not is_last else END
         return not is_guessed(text) or after in (NUMBER, END)
-
-
-def _says_how_often(row: Sequence[Token]) -> bool:
-    """`3 veces`, `por 3`, `x3`, `twice`."""
-    texts = [token.text for token in row]
-    if texts[0] in ("TWICE", "THRICE") or re.fullmatch("X[0-9]+", texts[0]):
-        return True
-    if texts[0] in ("POR", "X", "*") and len(row) == 2 and row[1].kind is NUMBER:
-        return True
-    numbers = [k for k, each in enumerate(row) if each.kind is NUMBER or each.text in NUMBER_WORDS]
-    return any(k + 1 < len(row) and texts[k + 1] in TIMES and texts[k] != "UNA" for k in numbers)

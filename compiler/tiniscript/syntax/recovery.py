@@ -12,6 +12,7 @@ from tiniscript.diagnostics import codes
 from tiniscript.kit import Kit
 from tiniscript.source import Span
 from tiniscript.syntax.ast import Assign, Command
+from tiniscript.syntax.behind_recovery import BehindRecovery
 from tiniscript.syntax.block_recovery import BlockRecovery
 from tiniscript.syntax.blocks import Block, Blocks
 from tiniscript.syntax.construct_recovery import ConstructRecovery
@@ -67,6 +68,7 @@ class Recovery:
         self.construct = ConstructRecovery(cursor, reporter, self.in_block)
         self.groups = GroupRecovery(cursor, reporter, self.in_block)
         self.of_note = NoteRecovery(cursor, reporter, self.in_block)
+        self.of_call = BehindRecovery(cursor, reporter, self.in_block, self.of_note, self.times)
         self.joining = JoiningRecovery(cursor, reporter, self.in_block)
 
     # -- what is no instruction ---------------------------------------------------------------
@@ -193,10 +195,12 @@ class Recovery:
             self.groups.body(header, cursor.i)
             self.in_block.other.second_question(header)
         self._words_behind(first, token, header)
+        if self.kit is not None and header is None:
+            self.of_call.call(first, before)
         if self.kit is not None and (header is None or not goes_on):
             self.of_note.behind(first, before, header)
         if first.text in ("S", "STOP", "BREAK"):
-            self._stop_of_loop(first)
+            self.of_call.stop_of_loop(first)
         if header is not None and header.word != "DEF" and first.text != "ELSE" and not goes_on:
             self._line_of(header, token)
         if kind in ("{", "}"):
@@ -262,6 +266,8 @@ class Recovery:
         is_joining = header is None and kind is WORD and self.joining.words() > 0
         if is_joining or (kind is WORD and header is not None and text in AFTER_HEADER):
             if header is not None or (after.kind is WORD and not self.in_block.is_name(text)):
+                if header is None and self.kit is not None:
+                    self.of_call.words(first, before, self.joining.words())
                 cursor.i += 1 if header is not None else self.joining.words()
                 span = cursor.span_from(token)
                 shown = cursor.source[span].upper()
@@ -269,6 +275,8 @@ class Recovery:
                 self.reporter.report(codes.EXTRA_WORD, span, found=shown, fix="", joining=joining)
                 self.in_block.go_on()
         if header is not None or not self._is_no_instruction(first):
+            if header is None and self.kit is not None:
+                self.of_call.words(first, before)
             self._separator_missing(first, token, before, header)
         if kind is not WORD:
             raise Failed
@@ -384,17 +392,3 @@ class Recovery:
             self.reporter.answer(tokens[other])
             tokens[other] = Token(WORD, "ELSE", *tokens[other].span)
         return True
-
-    def _stop_of_loop(self, first: Token) -> None:
-        """`STOP LOOP`: what leaves a loop is BREAK."""
-        cursor, after = self.cursor, self.cursor.following
-        here = self.blocks.here
-        is_alone = cursor.token.text == "LOOP" and after.kind in AT_END
-        if not is_alone or not here or here[-1].span.start != first.start:
-            return
-        del here[-1]
-        place = Span(first.start, cursor.token.end)
-        found = cursor.source[place]
-        cursor.i += 1
-        self.reporter.fail(codes.OTHER_LANGUAGE, place, place, found=found, right="BREAK",
-                           fix="BREAK", usage="BREAK")  # fmt: skip

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from typing import NoReturn
 
 from tiniscript.diagnostics import codes
@@ -104,11 +105,16 @@ class TimesRecovery:
         if not is_sign or len(row) < 2 or row[0].kind is not NUMBER or row[1].kind not in AT_END:
             return
         if _is_command(first) or is_called:
-            cursor.skip_instruction()
-            body = Span(first.start, before.end)
-            if not is_called:
-                self._all_or_last(row[0], body, cursor.span_from(first))
-            self._loop_of(row[0], body, cursor.span_from(first))
+            self.repeated(row[0], first, before)
+
+    def repeated(self, number: Token, first: Token, before: Token) -> NoReturn:
+        """Report how often the call from `first` to `before` is done, and go past it."""
+        cursor = self.cursor
+        cursor.skip_instruction()
+        body = Span(first.start, before.end)
+        if not self.in_block.known.is_def(first.text):
+            self._all_or_last(number, body, cursor.span_from(first))
+        self._loop_of(number, body, cursor.span_from(first))
 
     def all_before(self, word: Token) -> None:
         """`F(1, 50); R(1, 50); repetir 4 veces`, at the end: what is repeated stands before."""
@@ -163,3 +169,14 @@ class TimesRecovery:
 def _is_command(token: Token) -> bool:
     known = WORDS.get(token.text) if token.kind is WORD else None
     return known is not None and known.is_instruction
+
+
+def says_how_often(row: Sequence[Token]) -> bool:
+    """`3 veces`, `por 3`, `x3`, `twice`."""
+    texts = [token.text for token in row]
+    if texts[0] in ("TWICE", "THRICE") or re.fullmatch("X[0-9]+", texts[0]):
+        return True
+    if texts[0] in ("POR", "X", "*") and len(row) == 2 and row[1].kind is NUMBER:
+        return True
+    numbers = [k for k, each in enumerate(row) if each.kind is NUMBER or each.text in NUMBER_WORDS]
+    return any(k + 1 < len(row) and texts[k + 1] in TIMES and texts[k] != "UNA" for k in numbers)
