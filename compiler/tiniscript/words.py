@@ -98,6 +98,7 @@ WORDS = {word.text: word for word in (
     Word("SEND", "later"),
 )}
 
+FUNCTIONS = tuple(word.text for word in WORDS.values() if word.role == "function")
 ALIASES = {"END_IF": "ENDIF", "ENDLOOP": "END_LOOP", "ENDWHILE": "END_WHILE", "ENDDEF": "END_DEF"}
 BLOCK_ENDS = {"IF": "ENDIF", "LOOP": "END_LOOP", "WHILE": "END_WHILE", "DEF": "END_DEF"}
 
@@ -130,13 +131,36 @@ OTHER_WORDS = {
     "UNTIL": "HASTA HASTA_QUE",
     "TRUE": "YES VERDADERO CIERTO",
     "FALSE": "NO FALSO",
-    "RANDOM": "RAND AZAR ALEATORIO",
+    "RANDOM": "RAND RANDINT AZAR ALEATORIO DADO",
     "ROUND": "REDONDEAR",
     "TIME": "MILLIS TIMER TIEMPO",
     "BUTTON": "BOTON PULSADOR",
     "DISTANCE": "DISTANCIA ULTRASONIDO ULTRASONICO ULTRASONIC",
     "LIGHT_R": "LUZ_D LUZ_DERECHA LIGHT_RIGHT",
     "LIGHT_L": "LUZ_I LUZ_IZQUIERDA LIGHT_LEFT",
+}
+
+# How who has Spanish in the ear spells a word of the language: LOOP, SHOW, WHILE, FOREVER.
+HEARD_WORDS = {
+    "LOOP": "LUP LUUP LUB",
+    "END_LOOP": "END_LUP ENDLUP EN_LUP ENLUP EN_LOOP ENLOOP FIN_LUP",
+    "SHOW": "CHOU CHOW CHO XOU SOU",
+    "WHILE": "UAIL GUAIL GUAIEL WAIL HUAIL JUAIL UAIEL WUAIL",
+    "END_WHILE": "END_WAIL END_GUAIL END_UAIL ENDWAIL ENDGUAIL ENDUAIL",
+    "ELSE": "EL_SE ELS_E",
+    "ENDIF": "EN_IF ENIF",
+    "END_DEF": "ENDEF EN_DEF",
+    "BREAK": "BREC BREIC BREK",
+    "START": "ESTAR ESTARD",
+    "BEEP": "VIIP BIIP BIPP",
+    "FOREVER": "FOREBER FOREVE FOREBE FOR_EVER FOR_EBER FOREVERR FORREVER FOREVA",
+    "TIME": "TAIM TAIN TAIME",
+    "TRUE": "TRU TRUU",
+    "FALSE": "FALS FOLS FALCE",
+    "RANDOM": "RANDON RAMDOM RAMDON RANDUM RANDOMM",
+    "ROUND": "RAUND RAUN ROUN",
+    "LIGHT_R": "LAIT_R LIGTH_R LIGH_R",
+    "LIGHT_L": "LAIT_L LIGTH_L LIGH_L",
 }
 
 # The sensor of which a robot has a left and a right one.
@@ -294,7 +318,9 @@ def _speller() -> Speller:
 
 @cache
 def _meanings() -> dict[str, str]:
-    return {other: ours for ours, others in OTHER_WORDS.items() for other in others.split()}
+    tables = (OTHER_WORDS, HEARD_WORDS)
+    rows = (row for table in tables for row in table.items())
+    return {other: ours for ours, others in rows for other in others.split()}
 
 
 def other_name(word: str) -> str:

@@ -194,6 +194,7 @@ EMPTY_BLOCK = _warning("TS828")
 ROUNDED_TIMES = _warning("TS829")
 LATE_ARM = _warning("TS830")
 ZERO_BEFORE = _warning("TS831")
+UNUSED_READING = _warning("TS840")
 
 
 def in_order(found: list[Diagnostic]) -> list[Diagnostic]:

@@ -45,7 +45,7 @@ _TURNING = frozenset((
 _PLAIN = (
     "RETURN START IN EN RANGE STEP I J OF AT ON WITH ITS SU SUS HAY HAYA THERE VALUE VALOR YOUR TU"
     " THAT THIS EACH THAN SEE SEES VE VES VEA VEAS YOU DETECTA DETECTS GRACIAS ES IS SEA"
-    " ESTA BE ALGO SERIAL CONSOLE SYSTEM OUT"
+    " ESTA BE ALGO SERIAL CONSOLE SYSTEM OUT DEL"
 )
 # What may go: small words, and what this language needs no word for.
 _SMALL = frozenset((
@@ -223,15 +223,15 @@ class _Account:
         )
         if meant == "UNTIL" and "LOOP" in self._new.words and not new["<"] + new[">"]:
             return True  # `PARA I = 1 HASTA 4`
-        if meant == "UNTIL" and "BREAK" in self._new.words:
-            return True
+        if meant == "UNTIL" and {"BREAK", "RANDOM"} & set(self._new.words):
+            return True  # `RANDOM(1 hasta 6)`
         if word in ("NO", "NOT") or meant in ("WHILE", "UNTIL", "FALSE"):
             is_loop = meant in ("WHILE", "UNTIL") and not (
                 {"WHILE", "UNTIL", "BREAK"} & set(self._new.words)
             )
             return is_turned and not is_loop
         if word in ("ENTRE", "BETWEEN"):
-            return bool(new["/"] or (new["<"] and new[">"]))
+            return bool(new["/"] or (new["<"] and new[">"]) or "RANDOM" in self._new.words)
         if word in ("IGUAL", "EQUAL", "EQUALS", "DIVIDIDO"):
             return bool(signs or new["/"])
         if word in ("AND", "OR", "Y", "O") and new[";"]:

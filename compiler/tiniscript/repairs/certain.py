@@ -38,6 +38,8 @@ def is_certain(diagnostic: Diagnostic, edits: Sequence[Edit], source: Source) ->
         after = text[span.end : span.end + 1]
         is_mark = set(source[span]) <= set(_MARKS)
         return is_mark or not (after.isalnum() or after in ("_", "."))  # `:PEED`, `0.?1`
+    if diagnostic.values.get("pause"):
+        return False  # `SB|F(1, 80);SB|B(1, 80)`: a wait may be meant
     if diagnostic.values.get("both"):
         return False  # `F(2, 80) + BEEP(2, 440)`: at once, or one after the other
     if diagnostic.code is codes.MISSING_SEPARATOR and diagnostic.values.get("fix"):

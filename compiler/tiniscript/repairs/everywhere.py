@@ -15,6 +15,8 @@ from tiniscript.repairs.edits import Edit
 from tiniscript.source import Source, Span
 
 _NAMES = (codes.NAME_WITH_SPACE, codes.BAD_NAME, codes.EMPTY_BRACKETS, codes.RESERVED)
+_SIGNS = (codes.OTHER_SIGN, codes.ODD_CHARACTER)
+_FULL_STOP = re.compile(r"\)[ \t]{0,9}(?P<stop>\.)(?![.\w])")
 
 MOVES = ("F", "B", "L", "R")
 TAUGHT = ("SALTO", "PASO", "BAILE", "JUMP", "STEP", "DANCE")  # by the poster and the lessons
@@ -46,6 +48,7 @@ def said_once(found: Sequence[Diagnostic], source: Source) -> list[Diagnostic]:
             kept[k] = None
     _unknown(kept)
     _untaught(kept, source)
+    _full_stops(kept, source)
     return [each for each in kept if each is not None]
 
 
@@ -61,6 +64,28 @@ def _unknown(kept: list[Diagnostic | None]) -> None:
         if is_same and not (said[0].get("near") or said[0].get("first")):
             for k in places[1:]:
                 kept[k] = None
+
+
+def _full_stops(kept: list[Diagnostic | None], source: Source) -> None:
+    """Say once of `F(1, 80). W(2).` how instructions end."""
+    stops = [
+        k
+        for k, each in enumerate(kept)
+        if each is not None and each.code in _SIGNS and each.values.get("found") == "."
+    ]
+    places = [
+        Span(*each.span("stop"))
+        for each in _FULL_STOP.finditer(source.text)
+        if "//" not in source.text[source.text.rfind("\n", 0, each.end()) + 1 : each.end()]
+    ]
+    spans = [each.span for k in stops if (each := kept[k]) is not None]
+    if len(places) < 2 or not stops or any(span not in places for span in spans):
+        return
+    also = " ".join(f"{start}:{end}" for start, end in places if (start, end) != spans[0])
+    values = {"found": ".", "right": ";", "stops": str(len(places)), "also": also}
+    kept[stops[0]] = Diagnostic(codes.OTHER_SIGN, spans[0], values)
+    for k in stops[1:]:
+        kept[k] = None
 
 
 def _untaught(kept: list[Diagnostic | None], source: Source) -> None:

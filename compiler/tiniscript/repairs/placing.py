@@ -81,6 +81,8 @@ def _taken_out(diagnostic: Diagnostic, source: Source) -> Edits:
     """The span is too much, and the spaces behind it."""
     if diagnostic.values.get("between"):
         return None
+    if diagnostic.place is not None and "fix" in diagnostic.values:  # `¿DISTANCE < 20?`
+        return [Edit(diagnostic.place, diagnostic.values["fix"])]
     start, end = diagnostic.span
     if source[diagnostic.span].isdecimal():
         return None  # `4 F(2, 80)` may mean four times

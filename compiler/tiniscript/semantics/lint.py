@@ -24,6 +24,7 @@ from tiniscript.semantics.ir import (
     Motors,
     Move,
     Program,
+    Read,
     Statement,
     While,
     bodies,
@@ -83,7 +84,7 @@ def advice(program: Program, kit: Kit, source: Source) -> list[Diagnostic]:
     found = look.all_found
     routines = [*(procedure.body for procedure in program.procedures), program.body]
     statements = [statement for body in routines for statement in walk(body)]
-    found += _unused(program, statements)
+    found += _unused(program, kit, statements)
     return found
 
 
@@ -186,7 +187,7 @@ def _takes_time(body: Body, program: Program) -> bool:
     return False
 
 
-def _unused(program: Program, statements: list[Statement]) -> Iterator[Diagnostic]:
+def _unused(program: Program, kit: Kit, statements: list[Statement]) -> Iterator[Diagnostic]:
     used = {
         term.value
         for statement in statements
@@ -201,8 +202,26 @@ def _unused(program: Program, statements: list[Statement]) -> Iterator[Diagnosti
             device = name if name in DEVICE_WORDS else ""
             values = {"name": name, "device": device, "example": use_of(name)}
             yield Diagnostic(codes.UNUSED_VARIABLE, statement.span, values)
+    yield from _unused_readings(kit, statements)
     called = {each.procedure for each in statements if isinstance(each, Call)}
     for number, procedure in enumerate(program.procedures):
         if number not in called:
             span = Span(procedure.span.start, procedure.span.start + len("DEF"))
             yield Diagnostic(codes.UNUSED_DEF, span, {"name": procedure.name})
+
+
+def _unused_readings(kit: Kit, statements: list[Statement]) -> Iterator[Diagnostic]:
+    """`SI|DISTANCE`, where nothing asks for the distance: it is measured, and nobody sees it."""
+    asked = {
+        term.value
+        for statement in statements
+        for expression in expressions(statement)
+        for term in expression
+        if term.op == "SENSOR"
+    }
+    for statement in statements:
+        if isinstance(statement, Read) and statement.sensor not in asked:
+            asked.add(statement.sensor)  # said once
+            name = kit.sensors[statement.sensor].name
+            values = {"name": name, "fix": f"SHOW({name})"}
+            yield Diagnostic(codes.UNUSED_READING, statement.span, values)

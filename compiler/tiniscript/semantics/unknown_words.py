@@ -14,7 +14,7 @@ from tiniscript.diagnostics import codes
 from tiniscript.semantics.symbols import ENOUGH, Scope
 from tiniscript.source import Span
 from tiniscript.syntax import ast
-from tiniscript.syntax.call_suggestions import call_of, glued_call
+from tiniscript.syntax.call_suggestions import LONG_TIME_S, call_of, glued_call
 from tiniscript.syntax.units import converted
 from tiniscript.words import (
     BLOCK_ENDS,
@@ -89,7 +89,7 @@ def _report_unknown_word(scope: Scope, node: ast.Command) -> None:
         scope.report(codes.UNKNOWN_WORD, span, found=word, near=own)
         return
     if word in TURN_WORDS or word in ("VUELTA", "VUELTAS"):
-        scope.report(codes.WHICH_WAY, span)
+        scope.report(codes.WHICH_WAY, span, None, **_both_ways(scope, node))
         return
     if word in SWITCH_WORDS:
         switched = next((each.name for each in scope.kit.actuators if each.is_yes_no), "")
@@ -130,9 +130,23 @@ def _report_unknown_word(scope: Scope, node: ast.Command) -> None:
     scope.report(codes.UNKNOWN_WORD, span, None, **values)
 
 
+def _both_ways(scope: Scope, node: ast.Command) -> dict[str, str]:
+    """`girar(2, 80)`: return the turns to both sides, nothing where the 2 is no time."""
+    texts = [scope.source[each.span] for each in node.arguments or ()]
+    if len(texts) != 2 or not all(each.replace(".", "", 1).isdecimal() for each in texts):
+        return {}
+    if float(texts[0]) >= LONG_TIME_S:
+        return {}
+    return {
+        f"to_{way}": f"{word}({texts[0]}, {texts[1]})"
+        for way, word in (("left", "L"), ("right", "R"))
+    }
+
+
 def _report_foreign(scope: Scope, node: ast.Command, meant: str) -> None:
     """`ADELANTE(5)`, `delay(1000)`, `DISTANCIA`: the same in a word of the language or the kit."""
     fix = usage = meant
+    said = {"milli": node.word} if node.word in IN_MILLISECONDS else {}
     if meant in WORDS:
         spans = [each.span for each in node.arguments or ()]
         usage = WORDS[meant].usage
@@ -143,7 +157,7 @@ def _report_foreign(scope: Scope, node: ast.Command, meant: str) -> None:
             number = scope.source[spans[0]]
             fix = f"W({converted(number, 'MS')})" if number.isdecimal() else ""
     scope.report(codes.OTHER_LANGUAGE, node.word_span, node.span, found=node.word, right=meant,
-                 fix=fix, usage=usage)  # fmt: skip
+                 fix=fix, usage=usage, **said)  # fmt: skip
 
 
 def _report_way(scope: Scope, node: ast.Command) -> bool:

@@ -15,6 +15,7 @@ from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.source import Source, Span
 from tiniscript.syntax.lexer import NEWLINE, NUMBER, ODD, QUOTES, WORD, Token
+from tiniscript.syntax.ranges import range_in
 from tiniscript.syntax.units import converted
 from tiniscript.words import NOTE_WORDS, UNITS, WORDS, Word, meant_by
 
@@ -145,6 +146,9 @@ def call_in(word: Word, tokens: Sequence[Token]) -> str:
 
     `2 80` for F is `F(2, 80)`, `0,5` for W is `W(0.5)`; nothing at all is an example.
     """
+    said = range_in(" ".join(token.text for token in tokens[:LONGEST]))
+    if word.text == "RANDOM" and said:
+        return _call(word, said)
     values = _values(tokens[:LONGEST])
     if word.role == "show":  # `SHOW DISTANCE cm`
         values = [each for k, each in enumerate(values) if not k or each[0].text not in UNITS]
@@ -309,6 +313,8 @@ def _filled(texts: Sequence[str], word: Word) -> str:
     if word.text == "ROUND":
         return _call(word, [text, "0"])
     if word.text == "RANDOM":
+        if range_in(text):
+            return _call(word, range_in(text))
         return _call(word, ["1", text]) if text.isdecimal() and text not in ("0", "1") else ""
     if first.unit != "s":
         return ""

@@ -32,7 +32,7 @@ from tiniscript.syntax.suggestions import after_bracket, operator_words, tells, 
 from tiniscript.syntax.until_recovery import before_bracket, in_its_move
 from tiniscript.syntax.value_constructs import ValueConstructs
 from tiniscript.syntax.vocabulary import Vocabulary
-from tiniscript.words import POWER_WORDS, WORDS, Word, meant_by
+from tiniscript.words import FUNCTIONS, POWER_WORDS, WORDS, Word, meant_by, nearest
 
 
 class ExpressionRecovery:
@@ -146,7 +146,7 @@ class ExpressionRecovery:
     def called(self, name: Token) -> None:
         """`DISTANCE()` or `SQRT(4)`: no name of a program is a function."""
         cursor, reporter = self.cursor, self.reporter
-        meant = WORDS.get(meant_by(name.text) or "")
+        meant = WORDS.get(meant_by(name.text) or nearest(name.text, FUNCTIONS) or "")
         if meant is not None and meant.arguments:
             fix = call_in(meant, self._in_brackets(cursor.i))
             place = Span(name.start, self._end_of(cursor.i))

@@ -130,6 +130,9 @@ def _is_inside(tokens: list[Token]) -> bool:
     return depth > 0
 
 
+_PAIRS = {"?": "¿", "!": "¡"}  # the sign that opens what another one closes
+
+
 class _Repairs:
     """Reports what is wrong with a piece of text and returns the token to go on with.
 
@@ -273,6 +276,13 @@ class _Repairs:
 
     def odd(self, text: str, span: Span) -> Token:
         last = self.diagnostics[-1] if self.diagnostics else None
+        if last is not None and _PAIRS.get(text) == last.values.get("found"):
+            inside = self._text[last.span.end : span.start]
+            if "\n" not in inside and last.code is codes.ODD_CHARACTER:  # `¿DISTANCE < 20?`
+                values = {**last.values, "pair": f"{last.values['found']} {text}", "fix": inside}
+                place = Span(last.span.start, span.end)
+                self.diagnostics[-1] = last._replace(values=values, place=place)
+                return Token(ODD, text, *span)
         if last is None or last.code is not codes.ODD_CHARACTER or last.span.end != span.start:
             shown = text if text.isprintable() else f"U+{ord(text):04X}"
             between = shown if _calculates(text) else ""

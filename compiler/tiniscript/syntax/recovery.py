@@ -26,7 +26,7 @@ from tiniscript.syntax.lexer import NUMBER, ODD, WORD, Token
 from tiniscript.syntax.name_recovery import NameRecovery
 from tiniscript.syntax.note_recovery import NoteRecovery
 from tiniscript.syntax.operators import SIGNS
-from tiniscript.syntax.phrases import AFTER_HEADER, BETWEEN
+from tiniscript.syntax.phrases import AFTER_HEADER, AT_ONCE, BETWEEN
 from tiniscript.syntax.reporter import Failed, Reporter, Resumed
 from tiniscript.syntax.setup_recovery import SetupRecovery
 from tiniscript.syntax.suggestions import after_bracket, shortened
@@ -244,10 +244,10 @@ class Recovery:
             cursor.tokens[cursor.i : cursor.i + 2] = [Token("→", "->", token.start, after.end)]
             token, after = cursor.token, cursor.following
             kind, text = token.kind, token.text
-        if text in ("+", "/", "&", "-", "→", "->", ">") and self._is_command(after):
+        both = self._at_once(first, before, after) if text in AT_ONCE else ""
+        if both or (text in ("+", "/", "&", "-", "→", "->", ">") and self._is_command(after)):
             self.reporter.answer(token)
             shown = shortened(cursor.source.text[first.start : before.end])
-            both = self._at_once(first, before, after) if text in ("+", "&") else ""
             self.reporter.report(
                 codes.SIGN_BETWEEN, token.span, found=text, before=shown, both=both
             )

@@ -287,7 +287,8 @@ class SetupRecovery:
             foreign_header(parser, word, "IF")
         is_later = any(each.kind is WORD for each in cursor.tokens[: cursor.i])
         if following.kind == "|" or (word.text == "SB" and is_later):
-            self.reporter.fail(codes.SETUP_TWICE, word.span, found=word.text)
+            values = {"button": "SB", "pause": "W(2)"} if word.text == "SB" else {}
+            self.reporter.fail(codes.SETUP_TWICE, word.span, None, found=word.text, **values)
         fix = f"{word.text}|" if word.text != "PING" else ""
         self.reporter.fail(codes.SETUP_NEEDS_BAR, word.span, None, found=word.text, fix=fix)
 

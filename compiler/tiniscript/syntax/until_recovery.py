@@ -165,7 +165,12 @@ class UntilRecovery:
         if before:
             end = end_of_values(self.cursor.tokens, self.cursor.i + 1, values)
             place = Span(self.cursor.source.text.rindex(before, 0, until.start), end)
-        self.reporter.report(codes.UNTIL_ALONE, until.span, place, fix=fix)
+        source = self.cursor.source
+        said = {"fix": fix}
+        if place is not None and "\n" in source[Span(place.start, until.start)]:
+            said["line"] = str(source.position(place.start)[0])
+            said["here"] = str(source.position(until.start)[0])
+        self.reporter.report(codes.UNTIL_ALONE, until.span, place, **said)
 
     def _before_its_move(self, until: Token) -> None:
         """`UNTIL(DISTANCE < 10) F(2, 60)`: the question goes behind."""
