@@ -24,6 +24,7 @@ NEW = ".new"  # the end of the name of a file that is not yet whole
 NAME_CHARACTERS = 100  # of a file's name in that of its new one
 LOCK = ".lock"  # the end of the name of a file that commands lock while they change another one
 LOCK_S = 5.0  # for which a command waits for another one
+OPEN_S = 1.0  # for which a file may be open elsewhere until it cannot be replaced on Windows
 ABANDONED_S = 3600.0  # a new file that is older has lost its command
 
 
@@ -90,11 +91,28 @@ def replace(path: Path, data: bytes, mode: int | None = None, is_lasting: bool =
                 os.fsync(file)
         if mode is not None:
             new.chmod(mode)
-        new.replace(target)
+        _take_place(new, target)
     except BaseException:
         with suppress(OSError):
             new.unlink()
         raise
+
+
+def _take_place(new: Path, target: Path) -> None:
+    """Put a file in the place of another one.
+
+    Windows replaces no file that is open, and a virus scanner or another command may be reading it
+    just now: then this waits a moment.
+    """
+    end_s = monotonic() + OPEN_S
+    while True:
+        try:
+            new.replace(target)
+            return
+        except PermissionError:
+            if sys.platform != "win32" or monotonic() >= end_s:
+                raise
+        sleep(0.02)
 
 
 @contextmanager

@@ -5,18 +5,24 @@ Types for Windows are checked by `mypy --platform win32` in `tools/test.sh`.
 
 from __future__ import annotations
 
+import ctypes
+import errno
 import io
 import re
 import subprocess
 import sys
 from pathlib import Path
-from types import ModuleType
+from time import monotonic
+from types import ModuleType, SimpleNamespace
+from typing import Any
 
 import pytest
 
 from tests.support.casefile import ROOT
 from tests.support.command import Tsc
-from tiniscript.cli import encodings
+from tiniscript import files
+from tiniscript.cli import CLOSED, encodings
+from tiniscript.cli.terminal import sequences
 from tiniscript.cli.texts.common import tables
 from tiniscript.cli.windows_names import has_no_file
 
@@ -202,6 +208,118 @@ def test_keys_come_from_the_console(monkeypatch: pytest.MonkeyPatch) -> None:
         waiting += "\x03"
         with pytest.raises(KeyboardInterrupt):
             keys.pressed()
+
+
+class Kernel:
+    """What `kernel32` knows of consoles: the mode of one, and which bits it takes."""
+
+    def __init__(self, mode: int, taken: int) -> None:
+        self.mode, self.taken = mode, taken
+
+    def GetConsoleMode(self, handle: ctypes.c_void_p, mode: Any) -> int:  # noqa: N802
+        mode._obj.value = self.mode
+        return int(handle.value == 42)
+
+    def SetConsoleMode(self, handle: ctypes.c_void_p, mode: ctypes.c_ulong) -> int:  # noqa: N802
+        assert handle.value == 42
+        if mode.value & ~self.taken:
+            return 0
+        self.mode = mode.value
+        return 1
+
+
+@pytest.mark.parametrize(
+    ("before", "taken", "handle", "is_read", "after"),
+    [
+        (3, 7, 42, True, 7),  # cmd: it can, and was not asked
+        (2, 7, 42, True, 7),
+        (7, 7, 42, True, 7),  # PowerShell, the Windows Terminal
+        (3, 3, 42, False, 3),  # before Windows 10
+        (3, 7, 5, False, 3),  # NUL, which is a terminal to C's library
+    ],
+)  # fmt: skip
+def test_colors_are_for_consoles_that_read_them(
+    before: int, taken: int, handle: int, is_read: bool, after: int,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:  # fmt: skip
+    kernel = Kernel(before, taken)
+    runtime = ModuleType("msvcrt")
+    runtime.get_osfhandle = lambda number: handle  # type: ignore[attr-defined]
+    monkeypatch.setattr(sys, "platform", "win32")
+    monkeypatch.setitem(sys.modules, "msvcrt", runtime)
+    monkeypatch.setattr(ctypes, "windll", SimpleNamespace(kernel32=kernel), raising=False)
+    monkeypatch.delenv("NO_COLOR", raising=False)
+    console = Console()
+    assert not sequences.are_read(console), "it has no number"
+    monkeypatch.setattr(console, "fileno", lambda: 1)
+    assert sequences.are_read(console) is is_read
+    assert kernel.mode == after
+    assert sequences.has_colors(console) is is_read
+    monkeypatch.setenv("NO_COLOR", "1")
+    assert not sequences.has_colors(console)
+    assert not sequences.are_read(io.StringIO())
+
+
+LEFT = """\
+import errno, sys
+class Left:
+    encoding = "cp1252"
+    def write(self, text): raise OSError({number}, "Invalid argument")
+    def flush(self): pass
+    def isatty(self): return False
+sys.stdout = Left()
+from tiniscript.cli import main
+sys.platform = "{platform}"
+sys.exit(main(["help"]))
+"""
+
+
+@pytest.mark.parametrize(
+    ("platform", "number", "code"),
+    [("win32", errno.EINVAL, CLOSED), ("win32", errno.ENOSPC, 2), ("linux", errno.EINVAL, 2)],
+)
+def test_a_reader_that_has_left_is_no_mistake(platform: str, number: int, code: int) -> None:
+    """`tsc help | more`, and then q: the C library of Windows calls that an invalid argument."""
+    script = LEFT.format(platform=platform, number=number)
+    done = subprocess.run(
+        [sys.executable, "-c", script], capture_output=True, text=True,
+        env={"PYTHONPATH": str(ROOT / "compiler"), "LC_ALL": "C.UTF-8"},
+    )  # fmt: skip
+    assert done.returncode == code
+    assert bool(done.stderr) is (code != CLOSED), done.stderr
+
+
+# -- files
+
+
+@pytest.mark.parametrize("opened_s", [0.1, 60.0])
+def test_a_file_that_is_open_elsewhere_is_replaced_a_moment_later(
+    opened_s: float, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A virus scanner looks at what was just written; a spreadsheet keeps it."""
+    path = tmp_path / "keys.json"
+    path.write_bytes(b"old")
+    end_s = monotonic() + opened_s
+    real = Path.replace
+
+    def replace(self: Path, target: Path) -> Path:
+        if monotonic() < end_s:
+            raise PermissionError(13, "in use")
+        return real(self, target)
+
+    monkeypatch.setattr(Path, "replace", replace)
+    monkeypatch.setattr(files, "OPEN_S", 0.3)
+    with pytest.raises(PermissionError):
+        files.replace(path, b"new")  # elsewhere nobody waits
+    assert monotonic() < end_s
+    monkeypatch.setattr(sys, "platform", "win32")
+    if opened_s > 1:
+        with pytest.raises(PermissionError):
+            files.replace(path, b"new")
+    else:
+        files.replace(path, b"new")
+    assert path.read_bytes() == (b"old" if opened_s > 1 else b"new")
+    assert [each.name for each in tmp_path.iterdir()] == ["keys.json"]
 
 
 def test_programs_on_a_command_line_stand_in_double_quotes() -> None:

@@ -7,8 +7,10 @@ pipe has left, the code is CLOSED, without a sentence, as with other shell comma
 
 from __future__ import annotations
 
+import errno
 import gc
 import os
+import stat
 import sys
 
 from tiniscript.cli.texts.verbs import VERBS
@@ -48,12 +50,24 @@ def _main(arguments: list[str]) -> int:
     except BrokenPipeError:
         raise
     except OSError as failure:  # files have sentences of their own; this is the output
+        if _is_left_pipe(failure):
+            raise BrokenPipeError from None
         why = str(failure.strerror or failure)
         print(text("full", language).format(why=why), file=sys.stderr, flush=True)
         _drop_output()
         return 2
     except Exception as bug:
         return _explain_bug(bug, language)
+
+
+def _is_left_pipe(failure: OSError) -> bool:
+    """Return whether the reader of the output has left: on Windows that is an EINVAL of a pipe."""
+    if sys.platform != "win32" or failure.errno != errno.EINVAL:
+        return False
+    try:
+        return any(stat.S_ISFIFO(os.fstat(number).st_mode) for number in (1, 2))
+    except OSError:  # closed
+        return False
 
 
 def _mend_streams() -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import sys
 from pathlib import Path
 
@@ -38,9 +37,10 @@ def print_diagnostics(compiled: Compiled, language: str) -> None:
     """Print a program's diagnostics to standard error, the first ones in full."""
     if not compiled.diagnostics:
         return
+    from tiniscript.cli.terminal.sequences import has_colors
     from tiniscript.diagnostics.rendering import as_text, message
 
-    color = sys.stderr.isatty() and not os.environ.get("NO_COLOR")
+    color = has_colors(sys.stderr)
     for diagnostic in compiled.diagnostics[:SHOWN]:
         said = message(diagnostic, compiled.source, language)
         print(as_text(said, compiled.source, language, color) + "\n", file=sys.stderr)

@@ -5,12 +5,12 @@ Knows bytes, lines and colors. What is repaired, and what is not, `repairs.fixin
 
 from __future__ import annotations
 
-import os
 import sys
 from collections.abc import Iterator
 from difflib import unified_diff
 from typing import TYPE_CHECKING, NamedTuple
 
+from tiniscript.cli.terminal.sequences import has_colors
 from tiniscript.printable import printable
 
 if TYPE_CHECKING:
@@ -47,7 +47,7 @@ def repaired(data: bytes, robot: Robot, name: str) -> Repaired:
 
 def print_difference(old: bytes, new: bytes, name: str) -> None:
     """Print what differs in two texts, as `diff -u` does; on a terminal in colors."""
-    color = sys.stdout.isatty() and not os.environ.get("NO_COLOR")
+    color = has_colors(sys.stdout)
     for line in _difference(old.decode(), new.decode(), printable(name)):
         mark = _COLORS.get(line[:1], "") if color and line[:3] not in ("+++", "---") else ""
         print(mark + line + (_PLAIN if mark else ""))

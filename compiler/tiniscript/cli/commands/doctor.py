@@ -16,6 +16,7 @@ from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.options import whole_number
 from tiniscript.cli.robot.connect import Connection, baud_of, robot_of_kit
+from tiniscript.cli.terminal.sequences import are_read
 from tiniscript.cli.texts.common import has_text, text
 from tiniscript.doctor import report
 from tiniscript.doctor.findings import CAUSES, NOTE, Finding
@@ -34,7 +35,7 @@ def run(options: Namespace, language: str) -> int:
     question = _question(options, language)
     from tiniscript.doctor.diagnosis import diagnosed
 
-    doing = _Doing(language, is_shown=sys.stderr.isatty() and not options.json)
+    doing = _Doing(language, is_shown=not options.json and are_read(sys.stderr))
     try:
         diagnosis = diagnosed(_doors(options, language, doing), question)
     finally:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot.connect import port_failure
+from tiniscript.cli.terminal.sequences import are_read
 from tiniscript.cli.texts.common import text
 from tiniscript.modules import set_up
 from tiniscript.modules.dialects import BAUDS, DIALECTS, Dialect, value_of
@@ -138,12 +139,12 @@ class _SetUp:
         return text(key, self.language).format(**values)
 
     def _look(self, baud: int) -> None:
-        if sys.stderr.isatty() and not self.options.json:
+        if not self.options.json and are_read(sys.stderr):
             said = self._text("module_looking", baud=str(baud))
             print(f"\r\x1b[K{said}", end="", file=sys.stderr, flush=True)
 
     def _clear(self) -> None:
-        if sys.stderr.isatty() and not self.options.json:
+        if not self.options.json and are_read(sys.stderr):
             print("\r\x1b[K", end="", file=sys.stderr, flush=True)
 
     def _values(self, module: Module) -> dict[str, str]:

@@ -16,6 +16,7 @@ from rich.text import Text
 
 from tiniscript.cli.encodings import DRAWN
 from tiniscript.cli.terminal.frame import Frame
+from tiniscript.cli.terminal.sequences import are_read
 
 FRAME_S = 1 / 15
 SLOWEST_S = 0.2  # a frame that took longer (a long computation, Ctrl-Z) does not skip a move
@@ -31,7 +32,9 @@ class Screen:
     """The terminal: the trace, and below it the picture."""
 
     def __init__(self) -> None:
-        self.console = Console(stderr=True)
+        # rich looks at standard output, and does not ask the console to read sequences
+        is_legacy = sys.platform == "win32" and not are_read(sys.stderr)
+        self.console = Console(stderr=True, legacy_windows=is_legacy)
         self.frame = Frame(self.console)
         self.is_begun = False
         # Where nothing can be redrawn, only the last picture is printed.
