@@ -149,6 +149,7 @@ NO_BUTTON = _mistake("TS120")
 WHICH_WAY = _mistake("TS121")
 SWITCH_WHAT = _mistake("TS122")
 UNTAUGHT = _mistake("TS129")
+IN_WORDS = _mistake("TS135")
 # values
 WANTS_NUMBER = _mistake("TS201")
 WANTS_CONDITION = _mistake("TS202")

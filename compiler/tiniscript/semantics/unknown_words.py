@@ -16,6 +16,7 @@ from tiniscript.source import Span
 from tiniscript.syntax import ast
 from tiniscript.syntax.call_suggestions import LONG_TIME_S, call_of, glued_call
 from tiniscript.syntax.units import converted
+from tiniscript.syntax.worded_questions import example_of, is_asked_alone
 from tiniscript.words import (
     BLOCK_ENDS,
     IN_MILLISECONDS,
@@ -265,6 +266,18 @@ def whole_name(scope: Scope, part: str, names: AbstractSet[str]) -> str:
         return ""
     found = [each for each in names if part in each.split("_")]
     return found[0] if len(found) == 1 else ""
+
+
+def asks_of_light(scope: Scope, span: Span, name: str) -> bool:
+    """Whether a name is all that IF or WHILE asks, and means light or none: `IF(oscuro)`."""
+    text = scope.source.text
+    header = _HEADER.search(text[: span.start][-60:])
+    is_all = header is not None and text[span.end :][:60].lstrip()[:1] == ")"
+    if header is None or not (is_all and is_asked_alone(name)) or name in scope.set_somewhere:
+        return False
+    values = example_of([name], scope.kit)
+    scope.report(codes.IN_WORDS, span, None, word=header[1].upper(), **values)
+    return True
 
 
 def meant_value(scope: Scope, span: Span, name: str, is_assigned: bool) -> str:

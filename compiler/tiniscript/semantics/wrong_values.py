@@ -13,7 +13,7 @@ from tiniscript.semantics.comparisons import ASIDE
 from tiniscript.semantics.named_values import value_of
 from tiniscript.semantics.symbols import ENOUGH, Scope
 from tiniscript.semantics.types import NUMBER, Operand
-from tiniscript.semantics.unknown_words import hyphened, meant_value, whole_name
+from tiniscript.semantics.unknown_words import asks_of_light, hyphened, meant_value, whole_name
 from tiniscript.source import Span
 from tiniscript.syntax.ast import Part
 from tiniscript.syntax.operators import SIGN_OF
@@ -53,7 +53,7 @@ class WrongValues:
         if meant == "BUTTON" or name == "BUTTON":
             scope.report(codes.NO_BUTTON, span)
             return
-        if hyphened(scope, span, name):
+        if hyphened(scope, span, name) or asks_of_light(scope, span, name):
             return
         names = scope.names.items() if len(scope.diagnostics) < ENOUGH else ()
         known = [each for each, its in names if its.what in ("sensor", "variable")]

@@ -27,11 +27,11 @@ _WORD = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 class Vocabulary:
     def __init__(self, tokens: Sequence[Token], kit: Kit | None) -> None:
         self._tokens = tokens
-        self._kit = kit
+        self.kit = kit
 
     @cached_property
     def _sensors(self) -> frozenset[str]:
-        return frozenset(each.name for each in self._kit.sensors) if self._kit else frozenset()
+        return frozenset(each.name for each in self.kit.sensors) if self.kit else frozenset()
 
     @cached_property
     def _names(self) -> frozenset[str]:
@@ -43,7 +43,7 @@ class Vocabulary:
             elif first.text == "DEF":
                 words = name_at(self._tokens, k + 1)
                 found.add("_".join(words) or name.text)
-        actuators = self._kit.actuators if self._kit else ()
+        actuators = self.kit.actuators if self.kit else ()
         return frozenset(found | self._sensors | {each.name for each in actuators})
 
     @cached_property
@@ -73,7 +73,7 @@ class Vocabulary:
     def is_number(self, word: str) -> bool:
         """Whether a sensor of the kit, or what means one, gives a number."""
         name = self.value(word)
-        sensors = self._kit.sensors if self._kit else ()
+        sensors = self.kit.sensors if self.kit else ()
         return any(each.name == name and not each.is_yes_no for each in sensors)
 
     def is_name(self, word: str) -> bool:
@@ -82,7 +82,7 @@ class Vocabulary:
 
     def is_def(self, word: str) -> bool:
         """Whether a DEF anywhere in the text has this name."""
-        devices = (*self._kit.sensors, *self._kit.actuators) if self._kit else ()
+        devices = (*self.kit.sensors, *self.kit.actuators) if self.kit else ()
         return word in self._names and all(each.name != word for each in devices)
 
     def is_own(self, word: str) -> bool:
@@ -94,7 +94,7 @@ class Vocabulary:
         known = WORDS.get(word)
         if known is not None:
             return known
-        for device in self._kit.actuators if self._kit else ():
+        for device in self.kit.actuators if self.kit else ():
             if device.name == word:
                 return actuator_word(device)
         return None if self.is_own(word) else WORDS.get(meant_by(word) or "")

@@ -1,0 +1,133 @@
+"""Reads a question that is written in words: `IF(luz mucha)`, `UNTIL(hay una pared)`.
+
+Knows which sensor and which sign the words mean, as far as they say it. The number is not in them:
+so what is shown is an example.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import pairwise
+
+from tiniscript.diagnostics import codes
+from tiniscript.fixed_point import ONE
+from tiniscript.kit import Device, Kit
+from tiniscript.source import Span
+from tiniscript.syntax.lexer import NUMBER, WORD, Token
+from tiniscript.syntax.operators import COMPARISONS
+from tiniscript.syntax.phrases import FILLERS
+from tiniscript.syntax.reporter import Reporter
+from tiniscript.syntax.suggestions import OPERATOR_WORDS
+from tiniscript.syntax.vocabulary import Vocabulary
+from tiniscript.words import NEAR_WORDS, UNITS, WORDS, meant_by
+
+_SAID = {
+    "little": "POCA POCO POQUITA POQUITO CORTA CORTO PEQUENA PEQUENO CHICA CHICO BAJA BAJO MENOR"
+    " MENOS LITTLE LOW SMALL SHORT LESS SMALLER CLOSE CERQUITA CERCANO CERCANA DEBIL OSCURO"
+    " OSCURA DARK OSCURIDAD NEGRO NEGRA BLACK SOMBRA NOCHE LINEA LINE",
+    "much": "MUCHA MUCHO LARGA LARGO GRANDE ALTA ALTO MAYOR MAS FUERTE LEJOS LEJANO LEJANA MUCH"
+    " HIGH BIG LARGE LONG MORE BIGGER FAR STRONG FREE CLEAR BRIGHT LOT LIBRE CLARO CLARA"
+    " BRILLANTE BLANCO BLANCA WHITE CAMINO PASO PATH WAY",
+    "light": "LUZ LUCES LIGHT LIGHTS OSCURO OSCURA OSCURIDAD DARK CLARO CLARA BRILLANTE BRIGHT"
+    " SOMBRA NOCHE LINEA LINE NEGRO NEGRA BLACK BLANCO BLANCA WHITE COLOR PISO FLOOR",
+    "ahead": "DISTANCIA DISTANCE LEJOS CERQUITA CERCANO CERCANA CLOSE FAR ALGO ALGUIEN SOMETHING"
+    " CAMINO PATH WAY PASO LIBRE FREE CLEAR TOCA TOCAS TOUCH TOUCHES MESA SILLA CAJA BOX MANO"
+    " HAND",
+}
+_LITTLE, _MUCH, _LIGHT, _AHEAD = (frozenset(words.split()) for words in _SAID.values())
+_AHEAD |= NEAR_WORDS
+_NOT = frozenset(("NO", "NOT", "SIN", "WITHOUT"))
+_LIGHT_ROOTS = ("LIGHT", "LINE")
+_FAR = 10  # centimetres, as in every example
+_MANY = 50  # of what a variable holds
+
+
+def report_words(owner: str, row: Sequence[Token], reporter: Reporter, known: Vocabulary) -> None:
+    """Report the tokens behind IF, WHILE or UNTIL, and raise Failed, if they ask in words."""
+    texts = [token.text for token in row]
+    numbers = [token.text for token in row if token.kind is NUMBER]
+    if known.kit is None or any(token.kind not in (WORD, NUMBER) for token in row):
+        return
+    if len(numbers) > 1 or (numbers and not set(texts) & _AHEAD) or not _is_wordy(texts, known):
+        return
+    span = Span(row[0].start, row[-1].end)
+    if "BUTTON" in map(meant_by, texts):
+        if not known.is_own("BUTTON"):
+            reporter.fail(codes.NO_BUTTON, span)
+        return
+    for token in row:
+        reporter.answer(token)
+    own = [text for text in texts if known.is_own(text)]
+    values = example_of(texts, known.kit, own)
+    if numbers:
+        question = values["question"].rpartition(" ")[0]
+        values = {"asked": f"{question} {numbers[0]}"}
+    elif not own and not _is_asking(texts):
+        values = {"example": values["question"]}
+    reporter.fail(codes.IN_WORDS, span, None, word=owner, **values)
+
+
+def is_asked_alone(text: str) -> bool:
+    """Whether a word alone asks something of light: `IF(oscuro)`."""
+    return text in _LIGHT and text not in ("LUZ", "LIGHT")
+
+
+def example_of(texts: Sequence[str], kit: Kit, own: Sequence[str] = ()) -> dict[str, str]:
+    """Return the `question` that words in capital letters mean, with an example for its number.
+
+    `another` asks the sensor that may be meant as well. `own` are the program's names among them.
+    """
+    words = set(texts)
+    is_little, is_much = bool(words & _LITTLE), bool(words & _MUCH)
+    devices = {each.name: each for each in kit.sensors if not each.is_yes_no}
+    pairs = ["_".join(pair) for pair in pairwise(texts)]  # `luz derecha`
+    named = [meant_by(text) or text for text in (*own, *pairs, *texts)]
+    named = [name for name in named if name in devices]
+    lights = sorted(name for name in devices if name.partition("_")[0] in _LIGHT_ROOTS)
+    subjects = named[:1]
+    if not named and own:
+        subjects = [own[0]]
+    elif not named and words & _LIGHT and not words & _AHEAD:
+        subjects = lights[:2]
+    subjects = subjects or ["DISTANCE" if "DISTANCE" in devices else next(iter(devices), "X")]
+    is_below = is_little or (subjects[0] == "DISTANCE" and not is_much)
+    sign = "<" if is_below != bool(words & _NOT) else ">"
+    asked = [f"{name} {sign} {_number(name, devices.get(name))}" for name in subjects]
+    return dict(zip(("question", "another"), asked, strict=False))
+
+
+def _is_asking(texts: Sequence[str]) -> bool:
+    return bool(set(texts) & (_AHEAD | _LIGHT | _LITTLE | _MUCH))
+
+
+def _is_wordy(texts: Sequence[str], known: Vocabulary) -> bool:
+    """Whether words are a question in words, rather than values and signs said in words."""
+    if len(texts) < 2 or any(_is_done(text) for text in texts) or known.is_own("_".join(texts)):
+        return False
+    is_no = texts[0] in _NOT and len(texts) == 2 and not _is_asking(texts[1:])  # `IF(NO READY)`
+    if is_no or "AND" in texts or "OR" in texts:
+        return False
+    unknown = [text for text in texts if not _is_understood(text, known)]
+    is_compared = any(OPERATOR_WORDS.get(text) in COMPARISONS for text in texts[1:-1])
+    subject = next((text for text in texts if text not in FILLERS), "")
+    if is_compared and _is_understood(subject, known):  # `DISTANCE menor que LIMITE`
+        unknown = [text for text in unknown if text in _LITTLE | _MUCH | NEAR_WORDS]
+    return bool(unknown) or (texts[-1] in OPERATOR_WORDS and not known.is_own(texts[-1]))
+
+
+def _is_understood(text: str, known: Vocabulary) -> bool:
+    meant = known.value(text)
+    is_said = text in FILLERS or text in OPERATOR_WORDS or text in UNITS or text.isdecimal()
+    return is_said or known.is_own(meant) or meant in WORDS
+
+
+def _is_done(text: str) -> bool:
+    word = WORDS.get(text)
+    return word is not None and (word.is_instruction or word.role not in ("operator", "value"))
+
+
+def _number(name: str, device: Device | None) -> int:
+    if device is None:
+        return _MANY
+    middle = (device.low + device.high) // (2 * ONE)
+    return _FAR if name == "DISTANCE" else round(middle, -2) if middle > 100 else middle
