@@ -120,7 +120,7 @@ class _Checker(Scope):
         number = self.variable(node, value) if name is None else name.number
         known = self.kinds.of_variables[number]
         if ANY not in (known, value.kind) and known != value.kind:
-            other = f"{self._free_name(node.name)} = {self.source[node.value.span]}"
+            other = f"{self.wrong.free_name(node.name, self.procedures)} = {self.source[node.value.span]}"
             self.report(codes.KIND_CHANGES, node.value.span, name=node.name, other=other,
                         old="@" + known, new="@" + value.kind)  # fmt: skip
         self.take([value], node.span, made)
