@@ -19,6 +19,7 @@ from tests.support.virtual_robot import missing
 from tiniscript import compile_text, robots
 from tiniscript.cli.terminal import run_drawing, sketch, world_drawing
 from tiniscript.cli.terminal import screen as terminal_screen
+from tiniscript.cli.terminal.pace import FRAME_S
 from tiniscript.virtual import worlds
 from tiniscript.virtual.robot import Settings, VirtualRobot
 from tiniscript.vm.trace import Ending, Event, Senses, run
@@ -245,7 +246,7 @@ def frames(events: list[Event | Ending], pace: float, monkeypatch: pytest.Monkey
     assert drawn == sorted(drawn)
     if pace:
         passed_ms = (clock.now_s - 100) * 1000 * pace
-        assert 3000 <= passed_ms <= 3000 + 1000 * pace * terminal_screen.FRAME_S * 1.01
+        assert 3000 <= passed_ms <= 3000 + 1000 * pace * FRAME_S * 1.01
     return len(drawn)
 
 

@@ -279,3 +279,12 @@ def test_the_link_has_no_port_and_no_clock() -> None:
             elif isinstance(node, ast.ImportFrom):
                 names.add((node.module or "").split(".")[0])
         assert not names & {"serial", "socket", "time", "threading", "asyncio", "select"}, path.name
+
+
+def test_a_virtual_robot_without_a_terminal_loads_no_drawing() -> None:
+    """It moves when its thread has begun, and that would wait for it."""
+    modules = imported_by(
+        "from tiniscript.cli import main; "
+        "assert main(['upload', '-e', 'SI|S', '--virtual', '--hurry', 'max']) == 0"
+    )
+    assert not {"rich", "rich.console"} & modules

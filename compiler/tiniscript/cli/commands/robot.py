@@ -151,7 +151,7 @@ class _Stage:
 
     def _limit_s(self, pushes: list[tuple[int, int]], end_ms: int | None) -> float:
         """Return the time until the next action is due."""
-        from tiniscript.cli.terminal.screen import FRAME_S
+        from tiniscript.cli.terminal.pace import FRAME_S
         from tiniscript.virtual.simulator import CALM_S
 
         limits = [FRAME_S if self.screen else CALM_S]
@@ -178,7 +178,7 @@ class _Stage:
         self._draw()
 
     def _draw(self) -> None:
-        from tiniscript.cli.terminal.screen import FRAME_S
+        from tiniscript.cli.terminal.pace import FRAME_S
 
         if self.screen is not None and self.picture is not None:
             if monotonic() >= self._frame_s:

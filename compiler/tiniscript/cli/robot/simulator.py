@@ -168,7 +168,7 @@ class CommandSimulator:
         return (self.robot.now_ms if ended_ms is None else ended_ms) - began_ms
 
     def _live(self) -> None:
-        from tiniscript.cli.terminal.screen import FRAME_S
+        from tiniscript.cli.terminal.pace import FRAME_S
 
         try:
             while True:

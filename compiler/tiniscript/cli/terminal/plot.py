@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING
 from rich.text import Text
 
 from tiniscript.cli.terminal.canvas import ACROSS, DOWN, Canvas, layered
-from tiniscript.cli.terminal.screen import FRAME_S, Screen
+from tiniscript.cli.terminal.pace import FRAME_S
+from tiniscript.cli.terminal.screen import Screen
 from tiniscript.fixed_point import as_text
 
 if TYPE_CHECKING:

@@ -16,9 +16,9 @@ from rich.text import Text
 
 from tiniscript.cli.encodings import DRAWN
 from tiniscript.cli.terminal.frame import Frame
+from tiniscript.cli.terminal.pace import FRAME_S
 from tiniscript.cli.terminal.sequences import are_read
 
-FRAME_S = 1 / 15
 SLOWEST_S = 0.2  # a frame that took longer (a long computation, Ctrl-Z) does not skip a move
 
 
