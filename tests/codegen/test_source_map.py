@@ -123,6 +123,14 @@ def test_a_map_comes_back_from_json_as_it_was() -> None:
     assert source_map.from_json(source_map.as_json(found)) == found
 
 
+def test_a_map_is_written_as_json_writes_it() -> None:
+    text = "".join(map(chr, range(0x180))) + "\u2028\ud800 🤖"
+    places = (MapPlace(0, 1, 1, 1, 2), MapPlace(10, 2, 3, 40, 5))
+    for found in (source_map.Map(text, (text, "", "S"), places), source_map.Map("", (), ())):
+        fields = {"version": source_map.VERSION, **found._asdict()}
+        assert source_map.as_json(found) == json.dumps(fields, ensure_ascii=False)
+
+
 @pytest.mark.parametrize(
     "changed",
     [

@@ -194,7 +194,7 @@ ROOMS = (
     Room("lowering", (f"{_PY}/codegen/*.py",), ("tests/codegen", "tests/vm/test_cases.py")),
     Room(
         "checker",
-        (f"{_PY}/semantics/checker.py", f"{_PY}/semantics/types.py"),
+        tuple(f"{_PY}/semantics/{name}.py" for name in ("checker", "types", "wrong_*")),
         (
             "tests/semantics",
             "tests/vm/test_cases.py",
