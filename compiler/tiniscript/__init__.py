@@ -10,8 +10,7 @@ instructions, image. It prints nothing, opens nothing and needs the standard lib
 from __future__ import annotations
 
 import gc
-
-from tiniscript.records import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 __version__ = "0.2.0"
 

@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import zlib
 from collections.abc import Sequence
+from typing import NamedTuple
 
 from tiniscript.fixed_point import as_text
-from tiniscript.records import NamedTuple
 
 NUMBER = "number"
 YES_NO = "yes/no"

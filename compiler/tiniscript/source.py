@@ -8,8 +8,7 @@ from __future__ import annotations
 
 import re
 from bisect import bisect_right
-
-from tiniscript.records import NamedTuple
+from typing import NamedTuple
 
 LARGEST_SOURCE = 1_000_000  # bytes
 

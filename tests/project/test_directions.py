@@ -15,24 +15,23 @@ FULL = 400  # lines of a file, as CONTRIBUTING says
 # What is to be split; it gets no longer.
 TOO_FULL: dict[str, int] = {}
 
-SHARED = {"records", "fixed_point", "kit", "words", "spelling", "files", "printable"}
+SHARED = {"fixed_point", "kit", "words", "spelling", "files", "printable"}
 TEXT = {"source", "diagnostics", *SHARED}
 # Each stage, and each table that stages share: what it may import besides itself.
 UPSTREAM: dict[str, set[str]] = {
-    "records": set(),
-    "source": {"records"},
+    "source": set(),
     "files": set(),
     "printable": set(),
     "fixed_point": set(),
-    "kit": {"records", "fixed_point"},
+    "kit": {"fixed_point"},
     "spelling": set(),
-    "words": {"records", "fixed_point", "spelling"},
-    "diagnostics": {"records", "source"},
-    "bytecode": {"records", "kit"},
+    "words": {"fixed_point", "spelling"},
+    "diagnostics": {"source"},
+    "bytecode": {"kit"},
     "syntax": {*TEXT, "bytecode"},  # of the bytecode its limits and its comparators
     "semantics": {*TEXT, "bytecode", "syntax"},
     "repairs": {*TEXT, "syntax"},
-    "codegen": {"records", "source", "files", "fixed_point", "bytecode", "semantics"},
+    "codegen": {"source", "files", "fixed_point", "bytecode", "semantics"},
     "vm": {"fixed_point", "kit", "bytecode"},
     "robots": SHARED,
     "text": {*TEXT, "bytecode", "syntax", "semantics", "codegen", "robots"},
@@ -174,7 +173,7 @@ def test_the_road_needs_the_standard_library_alone() -> None:
 def test_importing_the_package_imports_nothing_else() -> None:
     """What the library offers is imported when it is asked for."""
     found = {name for name in imported_by("import tiniscript") if name.startswith("tiniscript")}
-    assert found == {"tiniscript", "tiniscript.records"}
+    assert found == {"tiniscript"}
 
 
 # What a right program may have: names of all kinds, every block, a note, and a warning.
@@ -205,12 +204,6 @@ def test_a_right_program_loads_nothing_for_wrong_ones(verb: str, tmp_path: Path)
     own = {each for each in modules if each.startswith("tiniscript")}
     assert not {each for each in own if OF_WRONG.match(each)}
     assert "tomllib" not in modules and len(own) <= 66
-    for name in own:
-        path = PACKAGE.parent / name.replace(".", "/")
-        path = path / "__init__.py" if path.is_dir() else path.with_suffix(".py")
-        loaded = [node for node in ast.parse(path.read_text(encoding="utf-8")).body
-                  if isinstance(node, ast.ImportFrom)]  # fmt: skip
-        assert "typing" not in {node.module for node in loaded}, f"{name}: see records.py"
 
 
 @pytest.mark.parametrize(

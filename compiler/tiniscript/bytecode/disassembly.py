@@ -8,10 +8,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
+from typing import NamedTuple
 
 from tiniscript.bytecode.opcodes import BY_CODE, Op, instruction_text, read_operands
 from tiniscript.kit import Kit
-from tiniscript.records import NamedTuple
 
 _ROW = re.compile(r"([0-9a-f]{4})  ((?:[0-9a-f]{2} )*[0-9a-f]{2})(?:  |$)")
 _BYTES_WIDTH = 18  # room for six bytes

@@ -11,9 +11,9 @@ import zlib
 from functools import lru_cache
 from struct import pack as struct_pack
 from struct import unpack as struct_unpack
+from typing import TYPE_CHECKING, NamedTuple
 
 from tiniscript.bytecode.opcodes import CODE_BYTES, ISA_MAJOR, ISA_MINOR
-from tiniscript.records import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
     from typing import Any

@@ -5,9 +5,10 @@ The three in this order, as every machine asks them. Knows no rule of its own.
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from tiniscript.bytecode.image import Image, ImageRefused, unpack
 from tiniscript.bytecode.verify import Verdict, verify
-from tiniscript.records import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from tiniscript.kit import Kit

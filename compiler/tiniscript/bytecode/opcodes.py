@@ -14,8 +14,7 @@ Knows numbers, operands, stack pictures, faults and limits. Does not know what a
 from __future__ import annotations
 
 from struct import Struct
-
-from tiniscript.records import NamedTuple
+from typing import NamedTuple
 
 ISA_MAJOR = 2  # a machine runs images of its own major version,
 ISA_MINOR = 0  # and of its own minor version or an earlier one

@@ -10,6 +10,8 @@ in C++. Same names, same order, same verdict at the same offset: change all thre
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING, NamedTuple
+
 from tiniscript.bytecode.opcodes import (
     BY_CODE,
     CALLS,
@@ -24,7 +26,6 @@ from tiniscript.bytecode.opcodes import (
     OperandKind,
     read_operands,
 )
-from tiniscript.records import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
     from typing import NoReturn

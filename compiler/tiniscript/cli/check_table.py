@@ -8,12 +8,12 @@ from __future__ import annotations
 from argparse import Namespace
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
 
 from tiniscript.cli import inputs, outputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.program_files import Found, programs
 from tiniscript.cli.texts.common import text
-from tiniscript.records import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
     from tiniscript import Compiled

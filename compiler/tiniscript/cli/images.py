@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING, NamedTuple
+
 from tiniscript.cli import inputs, outputs
 from tiniscript.cli.errors import CommandError
-from tiniscript.records import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
     from tiniscript import Compiled

@@ -6,12 +6,12 @@ import os
 import sys
 from argparse import Namespace
 from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
 
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.paths import real_name
 from tiniscript.cli.texts.common import Said
 from tiniscript.printable import printable
-from tiniscript.records import TYPE_CHECKING, NamedTuple
 from tiniscript.source import LARGEST_SOURCE
 
 if TYPE_CHECKING:

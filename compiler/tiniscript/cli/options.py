@@ -5,11 +5,11 @@ from __future__ import annotations
 import re
 from argparse import ArgumentParser, HelpFormatter, Namespace
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.texts.common import text
 from tiniscript.cli.texts.options import Option, of_verb
-from tiniscript.records import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from typing import NoReturn

@@ -16,11 +16,11 @@ from argparse import Namespace
 from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
+from typing import NamedTuple
 
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.texts.common import text
 from tiniscript.cli.texts.options import OPTIONS
-from tiniscript.records import NamedTuple
 
 # Inputs by their name in `Namespace`: the sentence that describes the input.
 READS = {each.name: each.kind.reads for each in OPTIONS if each.kind and each.kind.reads}

@@ -9,11 +9,11 @@ import os
 import stat
 from collections.abc import Iterator, Sequence
 from pathlib import Path
+from typing import NamedTuple
 
 from tiniscript.cli import inputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.paths import real_name
-from tiniscript.records import NamedTuple
 
 ENDS = (".ts", ".ts.txt")  # of a program's name; editors of Windows add .txt
 

@@ -9,6 +9,8 @@ Plain code is what one pass over the text can emit, as a robot does that reads t
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 from tiniscript.bytecode.opcodes import CODE_BYTES, time8
 from tiniscript.codegen.lower_expression import (
     Emitter,
@@ -20,7 +22,6 @@ from tiniscript.codegen.lower_expression import (
     tests,
 )
 from tiniscript.fixed_point import limited, whole
-from tiniscript.records import NamedTuple
 from tiniscript.semantics.ir import (
     Assign,
     Beep,

@@ -7,8 +7,9 @@ push: each operator is its instruction, and a condition is a value that IF or UN
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 from tiniscript.bytecode.opcodes import BY_NAME, PUSHED, SHORTS, Op
-from tiniscript.records import NamedTuple
 from tiniscript.semantics.ir import Expression, Term
 from tiniscript.semantics.optimizer import is_safe
 from tiniscript.source import Span

@@ -9,11 +9,11 @@ from __future__ import annotations
 import os
 from contextlib import suppress
 from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
 
 from tiniscript import files
 from tiniscript.bytecode import image as images
 from tiniscript.files import contents
-from tiniscript.records import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
     from tiniscript import Compiled

@@ -7,8 +7,8 @@ which `rendering` reads when there is something to say.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import NamedTuple
 
-from tiniscript.records import NamedTuple
 from tiniscript.source import Span
 
 

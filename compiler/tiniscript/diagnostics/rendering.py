@@ -11,9 +11,9 @@ import re
 import sys
 from collections.abc import Iterable, Mapping
 from functools import cache
+from typing import TYPE_CHECKING, NamedTuple
 
 from tiniscript.diagnostics.codes import CODES, Diagnostic
-from tiniscript.records import TYPE_CHECKING, NamedTuple
 from tiniscript.source import Source, Span
 
 if TYPE_CHECKING:

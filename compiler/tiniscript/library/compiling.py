@@ -5,7 +5,7 @@ The command and the functions of the library both use it. Imports no more than t
 
 from __future__ import annotations
 
-from tiniscript.records import TYPE_CHECKING
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from tiniscript import Compiled

@@ -6,9 +6,9 @@ Knows no TOML (`reader`), no chips (`boards`) and no sentences (`refusals`).
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import NamedTuple
 
 from tiniscript.kit import Kit
-from tiniscript.records import NamedTuple
 
 LANGUAGES = ("en", "es")
 Reason = tuple[str, Mapping[str, str]]

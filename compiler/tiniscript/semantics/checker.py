@@ -8,12 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from functools import cached_property
+from typing import TYPE_CHECKING, NamedTuple
 
 from tiniscript.bytecode.opcodes import BLOCKS, CALLS, DEFS, STACK_VALUES, VARIABLES
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.kit import Kit
-from tiniscript.records import TYPE_CHECKING, NamedTuple
 from tiniscript.semantics import ir
 from tiniscript.semantics.ir import Statement
 from tiniscript.semantics.symbols import Name, Scope
@@ -120,7 +120,8 @@ class _Checker(Scope):
         number = self.variable(node, value) if name is None else name.number
         known = self.kinds.of_variables[number]
         if ANY not in (known, value.kind) and known != value.kind:
-            other = f"{self.wrong.free_name(node.name, self.procedures)} = {self.source[node.value.span]}"
+            free = self.wrong.free_name(node.name, self.procedures)
+            other = f"{free} = {self.source[node.value.span]}"
             self.report(codes.KIND_CHANGES, node.value.span, name=node.name, other=other,
                         old="@" + known, new="@" + value.kind)  # fmt: skip
         self.take([value], node.span, made)

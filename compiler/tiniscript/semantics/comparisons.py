@@ -6,10 +6,10 @@ Going forward a distance gets smaller, going back it gets bigger.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import NamedTuple
 
 from tiniscript.fixed_point import HIGHEST, as_text
 from tiniscript.kit import NUMBER, Device, Kit
-from tiniscript.records import NamedTuple
 from tiniscript.semantics.ir import Expression, Term
 from tiniscript.syntax.operators import SIGN_OF
 

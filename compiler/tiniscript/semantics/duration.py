@@ -6,8 +6,9 @@ no time.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 from tiniscript.fixed_point import whole
-from tiniscript.records import NamedTuple
 from tiniscript.semantics.ir import (
     Beep,
     Body,

@@ -8,10 +8,10 @@ TRUE is 1 and FALSE is 0. All mistakes have been reported before.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import NamedTuple
 
 from tiniscript.fixed_point import as_text
 from tiniscript.kit import Kit
-from tiniscript.records import NamedTuple
 from tiniscript.source import Span
 
 # An expression is flat, in the order in which a stack machine meets it. `op` is NUMBER, YES_NO,

@@ -6,12 +6,12 @@ Knows the IR, before it is optimised. Gives warnings, never mistakes.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import NamedTuple
 
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic
 from tiniscript.fixed_point import as_text, whole
 from tiniscript.kit import Kit
-from tiniscript.records import NamedTuple
 from tiniscript.semantics.frozen_questions import FrozenQuestions
 from tiniscript.semantics.ir import (
     Assign,

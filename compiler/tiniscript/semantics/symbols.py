@@ -7,10 +7,10 @@ checker adds names as it reaches them; `types` looks them up.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from typing import NamedTuple
 
 from tiniscript.diagnostics.codes import Code, Diagnostic
 from tiniscript.kit import Kit
-from tiniscript.records import NamedTuple
 from tiniscript.source import Source, Span
 from tiniscript.syntax import ast
 from tiniscript.words import nearest

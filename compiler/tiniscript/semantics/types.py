@@ -7,9 +7,9 @@ expressions mean. Gives terms, and the sensors whose readings they use.
 from __future__ import annotations
 
 from functools import cached_property
+from typing import TYPE_CHECKING, NamedTuple
 
 from tiniscript.diagnostics import codes
-from tiniscript.records import TYPE_CHECKING, NamedTuple
 from tiniscript.semantics.ir import Expression, Term
 from tiniscript.semantics.symbols import Scope
 from tiniscript.source import Span

@@ -7,7 +7,8 @@ stack. Between the two sides of an AND or OR stands AND_LEFT or OR_LEFT.
 
 from __future__ import annotations
 
-from tiniscript.records import NamedTuple
+from typing import NamedTuple
+
 from tiniscript.source import Span
 
 

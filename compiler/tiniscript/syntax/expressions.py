@@ -7,11 +7,11 @@ own (`operators`), so that no depth of brackets exhausts Python's. Knows no inst
 from __future__ import annotations
 
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 from tiniscript.diagnostics import codes
 from tiniscript.fixed_point import HIGHEST, LOWEST, read_literal
 from tiniscript.kit import Kit
-from tiniscript.records import TYPE_CHECKING
 from tiniscript.source import Span
 from tiniscript.syntax.ast import Argument, Part
 from tiniscript.syntax.cursor import AFTER_VALUE, Cursor

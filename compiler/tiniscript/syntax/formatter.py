@@ -7,7 +7,8 @@ made for texts whose shape `parser` finds nothing wrong with.
 
 from __future__ import annotations
 
-from tiniscript.records import NamedTuple
+from typing import NamedTuple
+
 from tiniscript.source import Source
 from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, WORD, Scan, Token, scan
 from tiniscript.syntax.operators import SIGNS

@@ -7,9 +7,9 @@ has a checksum, is read by `lexer_recovery`, which right programs never load.
 from __future__ import annotations
 
 import re
+from typing import NamedTuple
 
 from tiniscript.diagnostics.codes import Diagnostic
-from tiniscript.records import NamedTuple
 from tiniscript.source import Span
 
 WORD = "word"

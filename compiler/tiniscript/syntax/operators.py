@@ -6,8 +6,9 @@ tokens itself.
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from tiniscript.bytecode.opcodes import COMPARATORS
-from tiniscript.records import TYPE_CHECKING
 from tiniscript.source import Source, Span
 from tiniscript.syntax.ast import Part
 from tiniscript.syntax.lexer import Token

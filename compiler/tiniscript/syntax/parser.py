@@ -28,10 +28,10 @@ which reports it and repairs the tokens or raises Failed; then the next instruct
 from __future__ import annotations
 
 from functools import cached_property
+from typing import TYPE_CHECKING, NamedTuple
 
 from tiniscript.diagnostics import codes
 from tiniscript.kit import Kit
-from tiniscript.records import TYPE_CHECKING, NamedTuple
 from tiniscript.source import Source, Span
 from tiniscript.syntax.ast import Argument, Assign, Break, Command, Program
 from tiniscript.syntax.blocks import ENDS, HEADERS, Blocks

@@ -5,8 +5,9 @@ Knows how the parser abandons a rule: it reports why, and raises Failed. Knows n
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from tiniscript.diagnostics.codes import Code, Diagnostic
-from tiniscript.records import TYPE_CHECKING
 from tiniscript.source import Span
 from tiniscript.syntax.lexer import Token
 

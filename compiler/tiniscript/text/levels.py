@@ -5,7 +5,8 @@ All other limits (variables, blocks, values on the stack, DEFs, calls) are those
 
 from __future__ import annotations
 
-from tiniscript.records import NamedTuple
+from typing import NamedTuple
+
 from tiniscript.words import ALIASES, BLOCK_ENDS
 
 CODE_BYTES = 255  # of a typed program: a jump of one byte reaches over all of it

@@ -5,11 +5,11 @@ from __future__ import annotations
 import sys
 from argparse import Namespace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from tiniscript.cli import inputs, outputs, paths
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.texts.common import text
-from tiniscript.records import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from tiniscript import Compiled

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import sys
 from argparse import Namespace
+from typing import TYPE_CHECKING
 
 from tiniscript.cli import images, inputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.options import decimal, whole_number
 from tiniscript.cli.texts.common import text
-from tiniscript.records import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from tiniscript.bytecode.image import Image

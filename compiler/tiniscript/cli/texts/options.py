@@ -6,8 +6,9 @@ Parsers, help, completion, `cli/paths.py` and the documents are made from it and
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 from tiniscript.cli.texts.verbs import Both
-from tiniscript.records import NamedTuple
 from tiniscript.text.levels import LEVELS
 
 

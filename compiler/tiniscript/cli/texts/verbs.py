@@ -7,7 +7,7 @@ in it.
 
 from __future__ import annotations
 
-from tiniscript.records import NamedTuple
+from typing import NamedTuple
 
 Both = tuple[str, str]  # a text in English and in Spanish
 
