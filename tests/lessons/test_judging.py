@@ -12,7 +12,7 @@ from tiniscript.lessons import catalogue, running
 from tiniscript.lessons.judging import judged
 from tiniscript.lessons.lesson import Lesson
 from tiniscript.lessons.sentences import SENTENCES, sentence
-from tiniscript.lessons.text_judging import judged_text
+from tiniscript.lessons.text_judging import explained, judged_text
 from tiniscript.lessons.variation import point_of, varied
 from tiniscript.library.compiling import compiled, image_of
 
@@ -49,7 +49,9 @@ def said(lesson: Lesson, text: str, seed: int = 1, language: str = "en") -> list
     found = compiled(text.encode(), robot, "p.ts", is_strict=True)
     assert found.is_right, found.diagnostics
     run = running.run(image_of(found, robot), robot, lesson, seed)
-    findings = judged(run, lesson) + judged_text(text, lesson)
+    findings = explained(judged(run, lesson), text, lesson)
+    keys = {each.key for each in findings}
+    findings += [each for each in judged_text(text, lesson) if each.key not in keys]
     return [sentence(each, language) for each in findings]
 
 
@@ -57,8 +59,8 @@ CASES = [
     ('kind = "ends_in"\nat = [140, 100]', "F(1, 89)", "F(0.5, 89)", "stopped 20 cm before the middle of the goal"),
     ('kind = "ends_in"\nat = [140, 100]\nwithin_cm = 5', "F(1, 89)", "F(1.3, 89)", "went 12 cm past the middle"),
     ('kind = "ends_in"\nat = "start"', "F(1, 50); B(1, 50)", "F(1, 50)", "was 22 cm from the goal"),
-    ('kind = "ends_in"\nat = [140, 100]', "F(1, 89)", "R(1, 60)", "only turned on the spot"),
-    ('kind = "reaches"\nat = [[140, 100], [60, 100]]', "F(1, 89); B(2, 89)", "B(1, 89); F(2, 89)", "get to the goal 2 of 2"),
+    ('kind = "ends_in"\nat = [140, 100]', "F(1, 89)", "R(1, 60)", "only turned on the spot. Forward is F"),
+    ('kind = "reaches"\nat = [[140, 100], [60, 100]]', "F(1, 89); B(2, 89)", "B(1, 89); F(2, 89)", "before the robot got to the goal 2 of 2"),
     ('kind = "reaches"\nat = [140, 100]\nby_seconds = 2', "F(1, 89)", "F(4, 22)", "after 3.0 s; it has 2 s"),
     ('kind = "reaches"\nat = [140, 100]\nby_cm = 50', "F(1, 89)", "B(1, 89); F(2, 89)", "drove 110 cm to the goal; 50 cm will do"),
     ('kind = "stays_in"\nat = "start"\nwithin_cm = 30', "F(0.5, 50)", "F(1, 89)", "After 0.8 s the robot left the goal"),
@@ -81,6 +83,25 @@ CASES = [
     ('kind = "drives"\nat_least_cm = 30', "F(1, 89)", "F(0.5, 50)", "drove 11 cm; the task asks for at least 30 cm"),
     ('kind = "drives"\nat_most_cm = 30', "F(0.5, 50)", "F(1, 89)", "drove 40 cm; the task allows 30 cm"),
     ('kind = "pauses"\nat_least_seconds = 1', "F(1,50);W(1);B(1,50)", "F(1,50);W(0.5);B(1,50)", "waited 0.5 s; the task asks for 1 s"),
+    ('kind = "ends_in"\nat = "start"', "F(1, 50); B(1, 50)", "F(1, 50); B(0.3, 50)", "change one thing only"),
+    ('kind = "ends_in"\nat = [140, 100]', "F(1, 89)", "F(1, 89) UNTIL(DISTANCE > 9)", "did not move. Is the question of UNTIL TRUE from the start? See what the robot reads: SHOW(DISTANCE)"),
+    ('kind = "ends_in"\nat = [140, 100]', "F(1, 89)", "WHILE(LIGHT_L > 900);F(1, 89);END_WHILE", "question of WHILE FALSE from the start? See what the robot reads: SHOW(LIGHT_L)"),
+    ('kind = "ends_in"\nat = [140, 100]', "F(1, 89)", "R(1, 60); IF(LIGHT_L > 900);F(1, 89);ENDIF", "only turned on the spot. Is the question of IF FALSE"),
+    ('kind = "ends_in"\nat = [140, 100]', "F(1, 89)", "DEF GO;F(1, 89);END_DEF", "teaches the word GO and never calls it"),
+    ('kind = "ends_in"\nat = [140, 100]', "F(1, 89)", "DEF GO;F(1, 89);END_DEF;DEF NO;B(1, 89);END_DEF;GO;GO;GO", "went 37 cm past"),
+    ('kind = "reaches"\nat = [140, 100]', "F(1, 89)", "F(0.6, 89); B(0.6, 89)", "than 16 cm; the task asks for 10 cm or less. Make it go further"),
+    ('kind = "reaches"\nat = [140, 100]', "F(1, 89)", "L(0.2, 60); F(0.6, 89)", "Look at the way that it went"),
+    ('kind = "reaches"\nat = [140, 100]', "F(1, 89)", "L(0.2, 60)", "only turned on the spot"),
+    ('kind = "reaches"\nat = [[140, 100], [60, 100]]', "F(1, 89); B(2, 89)", "F(1, 89)", "ended before the robot got to the goal 2 of 2"),
+    ('kind = "reaches"\nat = [[140, 100], [60, 100]]', "F(1, 89); B(2, 89)", "F(1, 89); B(20, 5)", "In 10.0 s the robot did not get to the goal 2 of 2"),
+    ('kind = "reaches"\nat = [[140, 100], [60, 100]]', "F(1, 89); B(2, 89)", "LOOP(20);F(1, 89);B(1, 89);END_LOOP", "did not get to the goal 2 of 2. Look at the move before it"),
+    ('kind = "faces"\nheading = 90', "L(0.39, 60)", "R(0.39, 60)", "looks the other way round"),
+    ('kind = "order"\nwords = ["moves", "beeps", "moves", "beeps", "moves"]', "LOOP(3);F(0.1, 50);BEEP(0.1,440);END_LOOP", "LOOP(2);F(0.1, 50);BEEP(0.1,440);END_LOOP", "After it beeps 2 times, the robot should move once more"),
+    ('kind = "shows"', "SHOW(1)", "IF(DISTANCE < 1);SHOW(1);ENDIF", "has SHOW, but the robot never gets there"),
+    ('kind = "beeps"', "BEEP(0.1,440)", "IF(DISTANCE < 1);BEEP(0.1,440);ENDIF", "has BEEP, but the robot never gets there"),
+    ('kind = "shows"\n[[criteria]]\nkind = "ends"', "SHOW(1)", "LOOP(FOREVER);W(1);END_LOOP;SHOW(1)", "After 10.0 s the program was still running"),
+    ('kind = "reaches"\nat = [[140, 100], [60, 100]]', "F(1, 89); B(2, 89)", "LOOP(FOREVER);F(9, 89) UNTIL(DISTANCE < 40);END_LOOP", "did not get to the goal 2 of 2. Look at the move"),
+    ('kind = "pauses"\nat_least_seconds = 1\ntimes = 2', "LOOP(3);F(0.2,50);W(1);END_LOOP", "LOOP(3);F(0.2,50);W(0.5);END_LOOP", "waited 0.5 s; the task asks for 1 s"),
     ('kind = "pauses"\nat_least_seconds = 1\ntimes = 2', "LOOP(3);F(0.2,50);W(1);END_LOOP", "F(1,50);W(1);B(1,50)", "1 of 2 times"),
     ('kind = "pauses"\nat_least_seconds = 1\nat = [140, 100]', "F(1,89);W(1);B(1,89)", "F(1,89);B(1,89);W(1);F(0.1,50)", "did not wait 1 s at the goal"),
     ('kind = "pauses"\nat_least_seconds = 1\nat = ["start", [140, 100]]', "F(0.1,50);W(1);F(0.9,89);W(1);B(1,50)", "F(0.1,50);W(1);F(0.9,89);B(1,50)", "at the goal 2"),
@@ -183,3 +204,13 @@ def test_every_sentence_has_two_languages_and_a_next_step() -> None:
         assert both[0] != both[1], key
         for said_so in both:
             assert said_so.count(". ") + said_so.count("; ") >= 1, key
+
+
+def test_a_wall_that_holds_a_robot_is_named_before_the_time(tmp_path: Path) -> None:
+    lesson = lesson_of(
+        tmp_path,
+        '[[criteria]]\nkind = "ends_in"\nat = [140, 100]\n[[criteria]]\nkind = "never_touches"\n',
+    )
+    first, second = said(lesson, "F(FOREVER, 60) UNTIL(DISTANCE = 500)")
+    assert "touched a box" in first
+    assert "still moving when the time was over" in second

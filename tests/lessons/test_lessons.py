@@ -16,7 +16,7 @@ from tiniscript.lessons.lesson import Answer, Lesson
 from tiniscript.lessons.markdown import blocks
 from tiniscript.lessons.sentences import sentence
 from tiniscript.lessons.sheet import MOVES, sheet
-from tiniscript.lessons.text_judging import judged_text
+from tiniscript.lessons.text_judging import explained, judged_text
 from tiniscript.library.compiling import compiled, image_of
 from tiniscript.robots.profile import LANGUAGES
 
@@ -50,7 +50,7 @@ def findings_of(text: str, lesson: Lesson, seeds: range) -> list[Finding]:
     for seed in seeds:
         findings = judged(run(image, robot, lesson, seed), lesson)
         if findings:
-            return findings + judged_text(text, lesson)
+            return explained(findings, text, lesson) + judged_text(text, lesson)
     return judged_text(text, lesson)
 
 
@@ -183,3 +183,10 @@ def test_spanish_speaks_to_one_pupil() -> None:
     for folder in FOLDERS:
         page = catalogue.page(folder, catalogue.PUPIL, "es")
         assert not re.search(r"\b(usted|ustedes|vosotros|coloque|escriba|pruebe)\b", page, re.I)
+
+
+def test_the_line_fits_between_the_sensors_as_the_page_says() -> None:
+    """In the middle both see white: so the table of the last lesson begins."""
+    lesson = catalogue.load(FOLDERS[-1])
+    left, right = (robots.load(lesson.robot).body.places[name] for name in ("LINE_L", "LINE_R"))
+    assert left.y_cm - right.y_cm > max(line.width_cm for line in lesson.world.lines)

@@ -22,6 +22,8 @@ from tiniscript.virtual.geometry import distance as distance_to
 from tiniscript.virtual.geometry import joined
 
 STILL_DEGREES = 5.0  # less is no turn
+EARLY_MS = 5000  # within them a robot that turns to the wrong side has lost its line
+STOOD_MS = 1000  # of a loop that took no time: so long it was where it is
 RESTED_MS = 3000  # without power at the end of the time: there it stays
 SAMPLE_CM = 5.0  # between two points of a line that is followed
 MOVING = frozenset({"ends_in", "reaches", "stands_before", "follows", "drives", "faces"})
@@ -33,14 +35,16 @@ def judged(run: Run, lesson: Lesson) -> list[Finding]:
     """Return what is missing in a run; nothing: it is right."""
     if run.ending == ASKS:
         return [Finding("", "asks")]
-    if run.ending == BUSY:
-        return [Finding("", "busy", {"seconds": in_seconds(run.end_ms)})]
     if run.ending == FAULT:
         values = {"fault": run.fault, "seconds": in_seconds(run.end_ms)}
         return [Finding("", f"fault/{run.fault}", values)]
     kinds = {criterion.kind for criterion in lesson.criteria}
     if kinds & MOVING and _is_still(run):
         return [Finding("", "still")]
+    busy = [Finding("", "busy", {"seconds": in_seconds(run.end_ms)})]
+    stood_ms = run.end_ms - run.track[-1].ms
+    if run.ending == BUSY and (stood_ms < STOOD_MS or _is_still(run)):
+        return busy
     found: list[Finding] = []
     if run.ending == LIMIT and kinds & AT_END and "ends" not in kinds and not _rests(run):
         found.append(Finding("", "long", {"seconds": in_seconds(run.end_ms)}))
@@ -50,12 +54,16 @@ def judged(run: Run, lesson: Lesson) -> list[Finding]:
         finding = judge(criterion, task) if judge is not None else None
         if finding is not None:
             found.append(finding)
+    if run.ending == BUSY and not found:  # it stands where it should, and may drive on from there
+        return busy
     return _causes(found)
 
 
 def _causes(found: list[Finding]) -> list[Finding]:
     """Leave out what follows from another finding: one misunderstanding gives one sentence."""
     kinds = {finding.kind for finding in found}
+    has_touched = any(each.kind == "never_touches" for each in found)
+    found.sort(key=lambda each: has_touched and each.key == "long")  # it may push against a wall
     is_lost = bool(kinds & {"never_touches", ""})  # then it is not where it should be
     return [
         each
@@ -124,7 +132,7 @@ def _follows(criterion: Criterion, task: Task) -> Finding | None:
     followed_cm = (there - len(left)) * SAMPLE_CM
     values = {"cm": in_cm(followed_cm, least_cm), "least": f"{least_cm:g}"}
     if off_ms is not None:
-        key = "early" if followed_cm < least_cm / 4 else "off"
+        key = "early" if followed_cm < least_cm / 4 and off_ms < EARLY_MS else "off"
         return Finding("follows", f"follows/{key}", {**values, "seconds": in_seconds(off_ms)})
     return Finding("follows", "follows/short", values) if followed_cm < least_cm else None
 
@@ -164,7 +172,7 @@ def _pauses(criterion: Criterion, task: Task) -> Finding | None:
     if len(long) >= times:
         return _paused_at(criterion, task, long)
     values = {"least": f"{least_s:g}", "times": str(times), "found": str(len(long))}
-    if times > 1:
+    if long:
         return Finding("pauses", "pauses/several", values)
     values["seconds"] = in_seconds(
         max((end_ms - begin_ms for begin_ms, end_ms in stands), default=0)
@@ -188,9 +196,10 @@ def _paused_at(criterion: Criterion, task: Task, long: list[int]) -> Finding | N
 def _order(criterion: Criterion, task: Task) -> Finding | None:
     happened = iter(task.run.happened)
     before = ""
-    for word in criterion.words:
+    for k, word in enumerate(criterion.words):
         if word not in happened:  # which goes on behind the one that it has found
-            return Finding("order", f"order/{before}/{word}")
+            times = criterion.words[:k].count(before) if word in criterion.words[:k] else 1
+            return Finding("order", f"order/{before}/{word}", {"times": str(times)})
         before = word
     return None
 

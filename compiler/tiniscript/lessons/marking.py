@@ -13,7 +13,7 @@ from tiniscript.lessons.findings import Finding
 from tiniscript.lessons.judging import judged
 from tiniscript.lessons.lesson import Lesson
 from tiniscript.lessons.running import Run, Trial
-from tiniscript.lessons.text_judging import judged_text
+from tiniscript.lessons.text_judging import explained, judged_text
 from tiniscript.robots.profile import Robot
 
 PASSED, FAILED = "passed", "failed"
@@ -41,6 +41,7 @@ class Marking:
         self._robot = robot
         self._lesson = lesson
         self._seeds = list(seeds)
+        self._text = text
         self._of_text = judged_text(text, lesson)
         self._trial: Trial | None = None  # none before a world
 
@@ -66,9 +67,11 @@ class Marking:
         run = self._trial.go(most_ms)
         if run is None:
             return None
-        findings = judged(run, self._lesson)
+        findings = explained(judged(run, self._lesson), self._text, self._lesson)
         if findings:
-            return Outcome(FAILED, self.seed, (*findings, *self._of_text), run)
+            said = {each.key for each in findings}
+            of_text = [each for each in self._of_text if each.key not in said]
+            return Outcome(FAILED, self.seed, (*findings, *of_text), run)
         if len(self._seeds) > 1:
             del self._seeds[0]
             self._trial = None

@@ -15,11 +15,13 @@ from tiniscript.lessons.findings import (
     in_seconds,
 )
 from tiniscript.lessons.lesson import Criterion
-from tiniscript.lessons.running import DONE, Run
+from tiniscript.lessons.running import DONE, LIMIT, STEP_MS, Run
 from tiniscript.robots.kinematics import Pose
 from tiniscript.virtual.geometry import Point, seen
 from tiniscript.virtual.sensing import CONE
 
+BACK_CM = 5.0  # nearer than where it was farthest: then it was on its way back
+OTHER_WAY_DEGREES = 150.0
 STRETCH_CM, TOWARDS = 20.0, 0.9  # the end of a way, and how much of it must lead to a place
 
 
@@ -44,6 +46,8 @@ def _ends_in(criterion: Criterion, task: Task) -> Finding | None:
             key = "turned" if run.driven_cm < STILL_CM else "away"
         elif beside_cm <= within_cm and along_cm >= 0:
             key = "short" if along_cm < way_cm else "far"
+    elif away_cm > max(math.dist(place, pose[:2]) for _, pose in run.track) - BACK_CM:
+        key = "gone"
     return Finding("ends_in", f"ends_in/{key}", {"cm": in_cm(away_cm)}, criterion.labels)
 
 
@@ -51,21 +55,23 @@ def _reaches(criterion: Criterion, task: Task) -> Finding | None:
     within_cm = criterion.numbers["within_cm"]
     way = between(task.run.track)
     points = iter(way)
-    at = On(0.0, 0.0, 0.0, 0.0)
+    at = way[0]
     for number in range(len(criterion.places)):
         place = task.point(criterion, number)
+        since, nearest = at, None
         nearest_cm = math.inf
         for at in points:
-            nearest_cm = min(nearest_cm, math.dist(place, (at.x_cm, at.y_cm)))
-            if nearest_cm <= within_cm:
+            gap_cm = math.dist(place, (at.x_cm, at.y_cm))
+            if gap_cm < nearest_cm:
+                nearest, nearest_cm = at, gap_cm
+            if gap_cm <= within_cm:
                 break
         else:
             values = {"number": str(number + 1), "all": str(len(criterion.places))}
-            if nearest_cm < math.inf:
-                values["cm"] = in_cm(nearest_cm)
-            key = "one" if len(criterion.places) == 1 else "several"
-            if key == "one" and task.run.ending == DONE and _is_on_its_way(way, place):
-                key = "over"
+            values |= {"within": f"{within_cm:g}", "seconds": in_seconds(task.run.end_ms)}
+            if nearest is not None:
+                values["cm"] = in_cm(nearest_cm, within_cm)
+            key = _missed(criterion, task, way, since, place, nearest)
             return Finding("reaches", f"reaches/{key}", values, criterion.labels)
     limit_s, limit_cm = criterion.numbers["by_seconds"], criterion.numbers["by_cm"]
     if at.ms > limit_s * 1000:
@@ -75,6 +81,33 @@ def _reaches(criterion: Criterion, task: Task) -> Finding | None:
         values = {"cm": in_cm(at.way_cm, limit_cm), "limit": f"{limit_cm:g}"}
         return Finding("reaches", "reaches/around", values, criterion.labels)
     return None
+
+
+def _missed(
+    criterion: Criterion, task: Task, way: list[On], since: On, place: Point, nearest: On | None
+) -> str:
+    """Return the sentence for a place that the robot has missed.
+
+    `since` is where it had to go there from; it was `nearest` at that point.
+    """
+    run, start = task.run, task.run.world.start
+    if run.driven_cm < STILL_CM:
+        return "turned"
+    if len(criterion.places) > 1:
+        gap_cm = math.dist(place, (since.x_cm, since.y_cm))
+        if run.ending == DONE and way[-1].way_cm - since.way_cm < gap_cm / 2:
+            return "ended"
+        was_coming = nearest is None or run.track[-1].ms - nearest.ms <= STEP_MS
+        return "time" if run.ending == LIMIT and was_coming else "several"
+    if run.ending == DONE and _is_on_its_way(way, place):
+        return "over"
+    if nearest is None:
+        return "one"
+    way_cm = math.dist(place, start[:2])
+    ux, uy = (place.x - start.x_cm) / way_cm, (place.y - start.y_cm) / way_cm
+    dx, dy = nearest.x_cm - start.x_cm, nearest.y_cm - start.y_cm
+    is_straight = abs(dy * ux - dx * uy) <= STILL_CM and nearest.way_cm > STILL_CM
+    return "short" if is_straight and 0 < dx * ux + dy * uy < way_cm else "one"
 
 
 def _is_on_its_way(way: list[On], place: Point) -> bool:
@@ -122,6 +155,8 @@ def _faces(criterion: Criterion, task: Task) -> Finding | None:
     if abs(off) <= criterion.numbers["within_degrees"]:
         return None
     key = "left" if off > 0 else "right"  # it looks too far to the left
+    if abs(off) > OTHER_WAY_DEGREES:
+        key = "behind"
     return Finding("faces", f"faces/{key}", {"degrees": f"{abs(off):.0f}"})
 
 

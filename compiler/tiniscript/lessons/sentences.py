@@ -18,6 +18,12 @@ SENTENCES: dict[str, tuple[str, str]] = {
              "En {seconds} s el robot hizo más de 200000 cosas sin descanso. Pon W(0.05) dentro del bucle."),
     "long": ("After {seconds} s the robot was still moving when the time was over. Times are seconds: look for one that is too large, or for a loop without an end.",
              "A los {seconds} s el robot todavía se movía y el tiempo se acabó. Los tiempos son segundos: busca uno demasiado grande, o un bucle sin final."),
+    "still/question": ("The robot did not move. Is the question of {word} {truth} from the start? See what the robot reads: {show}",
+                       "El robot no se movió. ¿La pregunta de {word} da {truth} desde el inicio? Mira qué lee el robot: {show}"),
+    "turned/question": ("The robot only turned on the spot. Is the question of {word} {truth} from the start? See what the robot reads: {show}",
+                        "El robot solo giró en su sitio. ¿La pregunta de {word} da {truth} desde el inicio? Mira qué lee el robot: {show}"),
+    "unreached": ("The program has {word}, but the robot never gets there. Look at what comes before: a question, or a loop without an end.",
+                  "El programa tiene {word}, pero el robot nunca llega ahí. Mira lo que está antes: una pregunta o un bucle sin final."),
     "still": ("The robot did not move. Give it a move with time and power: F(2, 80)",
               "El robot no se movió. Dale un movimiento con tiempo y potencia: F(2, 80)"),
     "fault/OVERFLOW": ("After {seconds} s a number got too large and the program stopped. Use smaller numbers.",
@@ -33,14 +39,24 @@ SENTENCES: dict[str, tuple[str, str]] = {
                     "El robot se pasó {cm} cm del centro {of_place}. Haz que pare antes."),
     "ends_in/turned": ("The robot only turned on the spot. Forward is F: F(2, 80)",
                        "El robot solo giró en su sitio. Adelante es F: F(2, 80)"),
-    "ends_in/away": ("At the end the robot was {cm} cm from {place}. Look at which way it went, and change one number.",
-                     "Al final el robot quedó a {cm} cm {of_place}. Mira por dónde fue y cambia un solo número."),
-    "reaches/one": ("The robot came no nearer to {place} than {cm} cm. Look at the way that it went.",
-                    "El robot no se acercó a menos de {cm} cm {of_place}. Mira por dónde fue."),
+    "ends_in/away": ("At the end the robot was {cm} cm from {place}. Look at which way it went, and change one thing only.",
+                     "Al final el robot quedó a {cm} cm {of_place}. Mira por dónde fue y cambia una sola cosa."),
+    "ends_in/gone": ("The robot did not come back: at the end it was {cm} cm from {place}. Add the way back.",
+                     "El robot no volvió: al final quedó a {cm} cm {of_place}. Agrega el camino de vuelta."),
+    "reaches/one": ("The robot came no nearer to {place} than {cm} cm; the task asks for {within} cm or less. Look at the way that it went.",
+                    "Lo más cerca que el robot estuvo {of_place} fue a {cm} cm; la tarea pide {within} cm o menos. Mira por dónde fue."),
+    "reaches/short": ("The robot came no nearer to {place} than {cm} cm; the task asks for {within} cm or less. Make it go further.",
+                      "Lo más cerca que el robot estuvo {of_place} fue a {cm} cm; la tarea pide {within} cm o menos. Haz que avance más."),
+    "reaches/turned": ("The robot only turned on the spot. Forward is F: F(2, 80)",
+                       "El robot solo giró en su sitio. Adelante es F: F(2, 80)"),
     "reaches/over": ("The program ended when {place} was still {cm} cm away. Let it go on for longer.",
                      "El programa terminó cuando al robot le faltaban {cm} cm para llegar {to_place}. Haz que siga más tiempo."),
     "reaches/several": ("The robot did not get to {place} {number} of {all}. Look at the move before it.",
                         "El robot no llegó {to_place} {number} de {all}. Mira el movimiento anterior."),
+    "reaches/ended": ("The program ended before the robot got to {place} {number} of {all}. Let it go on, or repeat more often.",
+                      "El programa terminó antes de que el robot llegara {to_place} {number} de {all}. Haz que siga o que repita más veces."),
+    "reaches/time": ("In {seconds} s the robot did not get to {place} {number} of {all}. Look at the move before it, and at how fast it goes.",
+                     "En {seconds} s el robot no llegó {to_place} {number} de {all}. Mira el movimiento anterior y qué tan rápido va."),
     "reaches/late": ("The robot was at {place} after {seconds} s; it has {limit} s. Make it quicker, or its way shorter.",
                      "El robot llegó {to_place} a los {seconds} s y tiene {limit} s. Hazlo más rápido o acorta el camino."),
     "reaches/around": ("The robot drove {cm} cm to {place}; {limit} cm will do. Make it go there more directly.",
@@ -57,6 +73,8 @@ SENTENCES: dict[str, tuple[str, str]] = {
                    "Al final el robot mira {degrees} grados demasiado a la izquierda. Gíralo menos a la izquierda o más a la derecha."),
     "faces/right": ("At the end the robot looks {degrees} degrees too far to the right. Turn it less to the right, or more to the left.",
                     "Al final el robot mira {degrees} grados demasiado a la derecha. Gíralo menos a la derecha o más a la izquierda."),
+    "faces/behind": ("At the end the robot looks the other way round. Check whether it turns to the right side, and whether it goes F or B.",
+                     "Al final el robot mira hacia el lado contrario. Revisa hacia qué lado gira y si va con F o con B."),
     # ways
     "touches/wall": ("The robot touched the wall after {seconds} s. Look at what it does just before.",
                      "El robot tocó la pared a los {seconds} s. Mira qué hace justo antes."),
@@ -91,6 +109,8 @@ SENTENCES: dict[str, tuple[str, str]] = {
     "order//shows": ("The robot showed nothing. Show a value: SHOW(DISTANCE)", "El robot no mostró nada. Muestra un valor: SHOW(DISTANCE)"),
     "order": ("After it {before}, the robot should {then}, but it does not. Check the order of the lines, or repeat them.",
               "Después de {before}, el robot tendría que {then}, pero no lo hace. Revisa el orden de las líneas o repítelas."),
+    "order_again": ("After it {before} {times} times, the robot should {then} once more, but it does not. Repeat those lines with LOOP, or add what is missing.",
+                    "Después de {before} {times} veces, el robot tendría que {then} otra vez, pero no lo hace. Repite esas líneas con LOOP o agrega lo que falta."),
     "ends": ("After {seconds} s the program was still running. It must end by itself: give its loop an end.",
              "A los {seconds} s el programa todavía seguía. Tiene que terminar solo: ponle un final al bucle."),
     # what it says
@@ -143,6 +163,8 @@ def sentence(finding: Finding, language: str) -> str:
     key = finding.key
     if key not in SENTENCES:
         key = key.partition("/")[0]
+    if key == "order" and finding.values["times"] != "1":
+        key = "order_again"
     k = language == "es"
     place = finding.labels.get(language, "")
     what = finding.values.get("what") or "DISTANCE"

@@ -16,6 +16,12 @@ from tiniscript.syntax.lexer import NUMBER, WORD, scan
 from tiniscript.words import ALIASES, BLOCK_ENDS
 
 MOVES = frozenset("FBLRM")
+QUESTIONS = {"UNTIL": "TRUE", "WHILE": "FALSE", "IF": "FALSE"}  # where nothing moves
+# What a run lacked altogether, by the sentence for it, and the word that does it.
+MISSING = {
+    "still": "move", "order//moves": "move", "ends_in/turned": "move", "reaches/turned": "move",
+    "shows/nothing": "SHOW", "order//shows": "SHOW", "beeps/none": "BEEP", "order//beeps": "BEEP",
+}  # fmt: skip
 ACTS = MOVES | {"S", "BEEP", "SHOW"}  # waiting alone is nothing to repeat
 
 
@@ -25,6 +31,43 @@ def judged_text(text: str, lesson: Lesson) -> list[Finding]:
     question = {"question": _question(lesson.robot)}
     found = (JUDGES[each.kind](each, words) for each in lesson.criteria if each.kind in JUDGES)
     return [each._replace(values={**each.values, **question}) for each in found if each]
+
+
+def explained(found: Sequence[Finding], text: str, lesson: Lesson) -> list[Finding]:
+    """Return what is missing in a run with the reason that the text has for it.
+
+    Where the robot did nothing, and the text has what it should do, then it was never reached.
+    """
+    words = [token.text for token in scan(text).tokens if token.kind in (WORD, NUMBER)]
+    own = _own_words(words)
+    uncalled = [name for name in own if words.count(name) == 1]
+    if uncalled and any(each.key in MISSING for each in found):
+        others = [each for each in found if each.key not in MISSING]
+        return [Finding("uses", "uses/uncalled", {"name": uncalled[0]}), *others]
+    is_endless = any(each.key in ("ends", "long") for each in found)
+    explained = []
+    for each in found:
+        word = MISSING.get(each.key, "")
+        if word == "move":
+            explained.append(_asked(each, words, lesson))
+        elif word not in words:
+            explained.append(each)
+        elif not is_endless:
+            explained.append(each._replace(key="unreached", values={"word": word}))
+    return explained
+
+
+def _asked(finding: Finding, words: Sequence[str], lesson: Lesson) -> Finding:
+    """Return a finding of a robot that stays where it is; with moves behind a question, that."""
+    asked = next((word for word in words if word in QUESTIONS), "")
+    if not asked or not MOVES.intersection(words):
+        return finding
+    sensors = [device.name for device in robots.load(lesson.robot).kit.sensors]
+    what = next((word for word in words if word in sensors), sensors[0])
+    key = "turned/question" if finding.key.endswith("/turned") else "still/question"
+    return finding._replace(
+        key=key, values={"word": asked, "what": what, "truth": QUESTIONS[asked]}
+    )
 
 
 def _question(robot: str) -> str:
