@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import re
 import shlex
+import sys
+from contextlib import redirect_stderr
 from importlib.util import find_spec
 from pathlib import Path
 from typing import NamedTuple
@@ -61,9 +63,10 @@ def test_console(
     # the documents' robot of one's own: a copy of tinibot whose DISTANCE is called EYES
     profile = (ROOT / "compiler" / "tiniscript" / "robots" / "tinibot.toml").read_text("utf-8")
     (tmp_path / "mine.toml").write_text(profile.replace("DISTANCE", "EYES"), encoding="utf-8")
-    main(command.words)
-    said = capsys.readouterr()
-    printed = "\n".join(row.rstrip() for row in (said.out + said.err).splitlines() if row.strip())
+    with redirect_stderr(sys.stdout):  # a terminal shows both in the order of their writing
+        main(command.words)
+    said = capsys.readouterr().out
+    printed = "\n".join(row.rstrip() for row in said.splitlines() if row.strip())
     shown = "\n".join(row.rstrip() for row in command.shown.splitlines() if row.strip())
     if shown:
         assert printed == shown, f"{command.document.name}:{command.line}"

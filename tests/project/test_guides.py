@@ -10,7 +10,9 @@ from __future__ import annotations
 
 import re
 import shlex
+import sys
 from collections.abc import Iterator
+from contextlib import redirect_stderr
 from pathlib import Path
 from typing import NamedTuple
 
@@ -113,10 +115,10 @@ def test_what_a_guide_types_prints_what_it_shows(
         name = next((word for word in step.words if word in PORTS), name)
         if step.words == ["claim"]:
             pty_robot.hold(after_ms=HAND_MS, times=3)  # a hand that tries again
-        main([pty_robot.port if word in PORTS else word for word in step.words])
+        with redirect_stderr(sys.stdout):  # a terminal shows both in the order of their writing
+            main([pty_robot.port if word in PORTS else word for word in step.words])
         pty_robot.let_go()
-        said = capsys.readouterr()
-        printed.append((step, (said.err + said.out).replace(pty_robot.port, name)))
+        printed.append((step, capsys.readouterr().out.replace(pty_robot.port, name)))
     assert len(printed) >= 10
     if request.config.getoption("--accept"):
         for step, said_now in reversed(printed):  # from the end on: the rows before stay in place
