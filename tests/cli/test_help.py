@@ -286,3 +286,17 @@ def test_what_argparse_says_is_said_in_plain_words(
         done = Tsc(capsys)(words[0], "--lang", language, *words[1:])
         assert done.code == 2
         assert done.err.startswith(f"tsc: {said}. ")
+
+
+@pytest.mark.parametrize(
+    ("words", "meant"),
+    [
+        (["wiring", "Grabber"], "--robot grabber"), (["upload", "x.ts", "--prot", "C"], "--port"),
+        (["info", "--al"], "--all"), (["nmae", "ANA"], "name"),
+    ],
+)  # fmt: skip
+def test_what_was_meant_stands_before_what_to_try(
+    capsys: pytest.CaptureFixture[str], words: list[str], meant: str
+) -> None:
+    assert f". Did you mean {meant}? Try:  tsc " in Tsc(capsys)(*words, "--lang", "en").err
+    assert f". ¿Quisiste decir {meant}? Prueba:  tsc " in Tsc(capsys)(*words, "--lang", "es").err

@@ -20,5 +20,7 @@ class CommandError(Exception):
     def sentence(self, language: str) -> str:
         said = text(self.key, language).format(**self.values)
         if self.values.get("near"):
-            said += " " + text("did_you_mean", language).format(near=self.values["near"])
+            near = text("did_you_mean", language).format(near=self.values["near"])
+            what, advice, example = said.partition(" Prueba:  " if language == "es" else " Try:  ")
+            return f"{what} {near}{advice}{example}"
         return said

@@ -79,9 +79,21 @@ class Options(ArgumentParser):
             raise bad_choice(label, known, found, self.language)
 
     def error(self, message: str) -> NoReturn:
+        near = self._near(message.partition("unrecognized arguments: ")[2].partition(" ")[0])
         for pattern, *said in _MESSAGES:
             message = re.sub(pattern, said[self.language == "es"], message)
-        raise CommandError(2, "bad_option", detail=message, verb=self.verb)
+        raise CommandError(2, "bad_option", detail=message, verb=self.verb, near=near)
+
+    def _near(self, found: str) -> str:
+        """Return what somebody may have meant with a word that is unknown here, or nothing."""
+        from tiniscript import robots
+        from tiniscript.words import nearest
+
+        flags = [flag for option in self.table if not option.is_argument
+                 for flag in option.flags.split()]  # fmt: skip
+        if "--robot" in flags and found.lower() in robots.names():
+            return f"--robot {found.lower()}"
+        return (nearest(found, flags) or "") if found.startswith("--") else ""
 
 
 def bad_choice(option: str, known: Sequence[str], found: str, language: str) -> CommandError:
