@@ -146,3 +146,11 @@ def test_what_is_printable_stays() -> None:
         assert printable(good) == good
     assert printable("abc", 2) == "ab…"
     assert printable("a\x1b[31m") == "a?[31m"
+
+
+def test_one_byte_is_no_bytes() -> None:
+    for language, said in (("en", "1 byte of code"), ("es", "1 byte de código")):
+        values = {"checksum": "0", "name": " (1 bytes.ts)", "saved": "x"}
+        one = text("info_program", language).format(code=1, **values)
+        assert said in one and "(1 bytes.ts)" in one
+        assert said not in text("info_program", language).format(code=11, **values)

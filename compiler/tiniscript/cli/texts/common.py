@@ -199,6 +199,11 @@ TEXTS: dict[str, tuple[str, str]] = {
 # fmt: on
 
 
+# What is counted, right behind its number, and how one of it is called; other words have a
+# sentence of their own for one.
+ONE = {"bytes": "byte", "checks": "check", "pruebas": "prueba"}
+
+
 class Said(str):
     """A sentence, or several: `format` makes all values printable.
 
@@ -210,7 +215,12 @@ class Said(str):
 
     def format(self, *values: object, **named: object) -> Said:
         plain = {key: _plain(value) for key, value in named.items()}
-        return Said(str.format(self, *map(_plain, values), **plain))
+        template = str(self)
+        for key, value in plain.items():
+            if value in (1, "1"):
+                for several, one in ONE.items():
+                    template = template.replace(f"{{{key}}} {several}", f"{{{key}}} {one}")
+        return Said(template.format(*map(_plain, values), **plain))
 
 
 def _plain(value: object) -> object:

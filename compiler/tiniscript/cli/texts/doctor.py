@@ -86,7 +86,7 @@ DOCTOR_TEXTS: dict[str, tuple[str, str]] = {
     "seen_other_tsc": ("tsc {verb}, version {theirs}", "tsc {verb}, versión {theirs}"),
     "next_other_tsc": ("End that command with Ctrl-C, and run tsc doctor again.", "Termina ese comando con Ctrl-C y ejecuta tsc doctor otra vez."),
     "doctor_out_of_reach": ("The robot is off or out of reach", "El robot está apagado o fuera de alcance"),
-    "seen_out_of_reach": ("the port exists, and nobody answers the call", "el puerto existe, y nadie responde a la llamada"),
+    "seen_out_of_reach": ("the port exists, and no robot answers there", "el puerto existe, y ahí no responde ningún robot"),
     "next_out_of_reach": ("Switch the robot on, bring it within two metres, and see that its module blinks. Then try again.", "Enciende el robot, acércalo a dos metros y mira que su módulo parpadee. Después prueba otra vez."),
     "doctor_other_host": ("Another computer or phone is connected to the robot", "Otra computadora o un teléfono está conectado al robot"),
     "seen_other_host": ("somebody is there, and refuses or ends the connection", "hay alguien ahí, y rechaza o corta la conexión"),

@@ -258,8 +258,8 @@ OPTIONS: tuple[Option, ...] = (
     Option("--virtual", "live", ("no robot: a virtual one does it here", "sin robot: lo hace aquí uno virtual")),
     # how it is said
     Option("--json", "check show lesson ping info ports keys doctor module selftest conform", ("the same as data", "lo mismo como datos")),
-    Option("--json", "upload class", ("prints the receipt and what comes after it as lines of JSON", "imprime el recibo y lo que viene después como líneas de JSON")),
-    Option("--json", "undo", ("prints the receipt, and that it is saved, as lines of JSON", "imprime el recibo, y que está guardado, como líneas de JSON")),
+    Option("--json", "upload class", ("prints the receipt and what comes after it as lines of JSON", "imprime lo que se envió y lo que viene después como líneas de JSON")),
+    Option("--json", "undo", ("prints the receipt, and that it is saved, as lines of JSON", "imprime a qué programa volvió, y que está guardado, como líneas de JSON")),
     Option("--json", "stop identify", ("prints a line of JSON for each robot", "imprime una línea de JSON por cada robot")),
     Option("--json", "link start monitor", ("prints lines of JSON", "imprime líneas de JSON")),
     Option("--json", "fetch", ("the listing as data", "la lista como datos")),

@@ -26,7 +26,7 @@ OWNER_TEXTS: dict[str, tuple[str, str]] = {
                   "tsc: el firmware de {robot} es demasiado antiguo para tener dueño. Ponle el más nuevo:  tsc firmware"),
     "unkept_key": ("tsc: this computer cannot keep the key: its file {file} cannot be read or written. Check its permissions and the free space, then claim the robot again.",
                    "tsc: esta computadora no puede guardar la llave: no se puede leer o escribir su archivo {file}. Revisa sus permisos y el espacio libre, y reclama el robot otra vez."),
-    "disowned": ("{robot} is free now: whoever reaches it drives it.", "{robot} ahora es libre: lo conduce quien lo alcance."),
+    "disowned": ("{robot} is free now: anybody who connects to it can drive it.", "{robot} ahora es libre: puede conducirlo cualquiera que se conecte."),
     "disowned_teacher": ("{robot} has no teacher's key any more.", "{robot} ya no tiene llave de docente."),
     "not_owned": ("{robot} has no owner: there is nothing to give up. To claim it:  tsc claim",
                   "{robot} no tiene dueño: no hay nada que soltar. Para reclamarlo:  tsc claim"),

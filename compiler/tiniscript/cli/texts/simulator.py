@@ -14,7 +14,7 @@ VIRTUAL_TEXTS: dict[str, tuple[str, str]] = {
                           "Install it:  {how}",
                           "tsc: --plot necesita Pillow, que aquí no se puede usar: {why}.\n"
                            "Instálalo:  {how}"),
-    "bad_hurry": ("tsc: --hurry takes how many times as fast the robot is, such as 10, or max; not {found}.",
+    "bad_hurry": ("tsc: --hurry takes how many times faster the robot goes, such as 10, or max; not {found}.",
                   "tsc: --hurry acepta cuántas veces más rápido va el robot, como 10, o max; no {found}."),
     "bad_motors": ("tsc: --motors takes two numbers, left and right, such as 100,90; not {found}.",
                    "tsc: --motors acepta dos números, izquierdo y derecho, como 100,90; no {found}."),

@@ -40,7 +40,7 @@ ITSELF = ("And:", "Y además:")
 NOTES = (
     ("A program is a file, - (standard input) or `-e \"SI|F(2, 80)\"`.",
      "Un programa es un archivo, - (entrada estándar) o `-e \"SI|F(2, 80)\"`."),
-    ("`tsc help COMMAND` says more about a command.", "`tsc help COMANDO` dice más de un comando."),
+    ("`tsc help COMMAND` says more about a command.", "`tsc help COMANDO` explica ese comando."),
     ("Exit codes: 0 done, 1 the program is wrong, 2 wrong use of tsc, 3 the robot or the link; 141 when the program that read the output has ended, which stops the robot that the command drives.",
      "Códigos de salida: 0 listo, 1 el programa está mal, 2 mal uso de tsc, 3 el robot o la conexión; 141 si el programa que leía la salida terminó, y eso detiene el robot que el comando mueve."),
 )
@@ -297,7 +297,7 @@ VERBS: dict[str, Verb] = {
               "Código de salida: 0 cuando terminó, 2 si la página no está en esta instalación, 3 si no se puede usar su puerto."),
     ),
     "help": Verb(
-        ITSELF, ("help upload", "help upload"), ("say more about a command", "dice más de un comando"),
+        ITSELF, ("help upload", "help upload"), ("say more about a command", "explica un comando"),
         ("Says what a command does and which options it has, as `tsc COMMAND --help` does. Without a command it lists all. `tsc ayuda` is the same.",
          "Dice qué hace un comando y qué opciones tiene, igual que `tsc COMANDO --help`. Sin comando los lista todos. `tsc ayuda` es lo mismo."),
     ),
