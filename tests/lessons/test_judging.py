@@ -107,6 +107,7 @@ CASES = [
     ('kind = "pauses"\nat_least_seconds = 1\nat = ["start", [140, 100]]', "F(0.1,50);W(1);F(0.9,89);W(1);B(1,50)", "F(0.1,50);W(1);F(0.9,89);B(1,50)", "at the goal 2"),
     ('kind = "ends_in"\nat = [140, 100]', "F(1, 89)", "F(1, 89);B(1, 89)", "was 40 cm from the goal"),
     ('kind = "uses"\nwords = ["DEF"]', "DEF HOP;BEEP(0.1,440);END_DEF;HOP", "DEF HOP;BEEP(0.1,440);END_DEF", "word HOP and never calls it"),
+    ('kind = "uses"\nwords = ["DEF"]', "DEF HOP;BEEP(0.1,440);END_DEF;DEF TWO;HOP;HOP;ENDDEF;TWO", "DEF HOP;BEEP(0.1,440);END_DEF;DEF TWO;HOP;HOP;ENDDEF;W(1)", "word HOP and never calls it"),
     ('kind = "uses"\nwords = ["LOOP"]', "LOOP(2);W(0.1);BEEP(0.1,440);ENDLOOP", "LOOP(2);W(0.1);END_LOOP", "LOOP of the program repeats nothing"),
     ('kind = "uses"\nwords = ["LOOP"]', "DEF HOP;BEEP(0.1,440);END_DEF;LOOP(2);HOP;END_LOOP", "LOOP(1);BEEP(0.1,440);END_LOOP", "LOOP of the program repeats nothing"),
     ('kind = "shows"\nvalue = 4', "SHOW(2 + 2)", "SHOW(5)", "showed 5; 4 is right"),

@@ -39,8 +39,7 @@ def explained(found: Sequence[Finding], text: str, lesson: Lesson) -> list[Findi
     Where the robot did nothing, and the text has what it should do, then it was never reached.
     """
     words = [token.text for token in scan(text).tokens if token.kind in (WORD, NUMBER)]
-    own = _own_words(words)
-    uncalled = [name for name in own if words.count(name) == 1]
+    uncalled = _uncalled(words)
     if uncalled and any(each.key in MISSING for each in found):
         others = [each for each in found if each.key not in MISSING]
         return [Finding("uses", "uses/uncalled", {"name": uncalled[0]}), *others]
@@ -85,7 +84,7 @@ def _uses(criterion: Criterion, words: list[str]) -> Finding | None:
             values = {"word": word, "times": str(times), "found": str(counted[word])}
             return Finding("uses", key, values)
     own = _own_words(words)
-    uncalled = [name for name in own if words.count(name) == 1]
+    uncalled = _uncalled(words)
     if "DEF" in criterion.words and len(own) - len(uncalled) < times and uncalled:
         return Finding("uses", "uses/uncalled", {"name": uncalled[0]})
     if "LOOP" in criterion.words and not any(
@@ -98,6 +97,25 @@ def _uses(criterion: Criterion, words: list[str]) -> Finding | None:
 def _own_words(words: Sequence[str]) -> list[str]:
     """Return the names that the program gives with DEF."""
     return [name for word, name in pairwise(words) if word == "DEF"]
+
+
+def _uncalled(words: Sequence[str]) -> list[str]:
+    """Return the words of DEF that nothing calls, or only such a word."""
+    bodies: dict[str, set[str]] = {name: set() for name in _own_words(words)}
+    inside, name = set[str](), ""
+    for before, word in pairwise(["", *words]):
+        if before == "DEF":
+            name = word
+        elif ALIASES.get(word, word) == BLOCK_ENDS["DEF"]:
+            name = ""
+        else:
+            (bodies[name] if name else inside).add(word)
+    called: set[str] = set()
+    found = inside & bodies.keys()
+    while found:
+        called |= found
+        found = set().union(*(bodies[each] for each in found)) & bodies.keys() - called
+    return [each for each in bodies if each not in called]
 
 
 def _repeated(words: Sequence[str]) -> list[list[str]]:
