@@ -149,6 +149,8 @@ NO_BUTTON = _mistake("TS120")
 WHICH_WAY = _mistake("TS121")
 SWITCH_WHAT = _mistake("TS122")
 UNTAUGHT = _mistake("TS129")
+SAME_AGAIN = _mistake("TS130")
+AND_SO_ON = _mistake("TS131")
 IN_WORDS = _mistake("TS135")
 # values
 WANTS_NUMBER = _mistake("TS201")

@@ -14,7 +14,9 @@ from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.repairs.edits import Edit
 from tiniscript.source import Source, Span
 
-_NAMES = (codes.NAME_WITH_SPACE, codes.BAD_NAME, codes.EMPTY_BRACKETS, codes.RESERVED)
+_NAMES = (
+    codes.NAME_WITH_SPACE, codes.BAD_NAME, codes.EMPTY_BRACKETS, codes.RESERVED, codes.SAME_AGAIN,
+)  # fmt: skip
 _SIGNS = (codes.OTHER_SIGN, codes.ODD_CHARACTER)
 _FULL_STOP = re.compile(r"\)[ \t]{0,9}(?P<stop>\.)(?![.\w])")
 

@@ -25,7 +25,7 @@ _GUESSED = frozenset((
     codes.WANTS_CONDITION, codes.MIXED_COMPARE, codes.SETUP_UNKNOWN, codes.NO_BRACKETS_HERE,
     codes.WRONG_END, codes.NOT_AN_INSTRUCTION, codes.MISSING_VALUE, codes.ARGUMENT_COUNT,
     codes.PROSE, codes.LISTS, codes.WORDS_SHOWN, codes.QUESTION_BEHIND,
-    codes.WORDS_BEHIND,
+    codes.WORDS_BEHIND, codes.SAME_AGAIN,
     codes.NOT_CALLABLE, codes.CALLS_ITSELF, codes.DEF_NOT_TOP,
 ))  # fmt: skip
 # Codes of headers: how a block ends is not looked at before its header is right.

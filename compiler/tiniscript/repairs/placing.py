@@ -288,6 +288,7 @@ _PLACES: dict[Code, Callable[[Diagnostic, Source], Edits]] = {
     codes.OTHER_CALL: _span,
     codes.GROUPED: _span,
     codes.WORDS_BEHIND: _span,
+    codes.SAME_AGAIN: _span,
     codes.NAME_WITH_SPACE: _span,
     codes.NOT_CALLABLE: lambda found, source: (
         _span(found, source) if "times" in found.values else None

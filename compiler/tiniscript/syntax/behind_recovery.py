@@ -33,6 +33,10 @@ _MEASURED = ("cm", "°", "steps")  # that no instruction has, and pupils look at
 _OFTEN = ("POR", "X", "*")
 _SENSIBLE = range(2, 51)  # times that a number in brackets may mean
 _CLOCKED = ("move", "wait", "beep")
+_SAYING_NO_MORE = frozenset((
+    "CM", "SEG", "SEGUNDOS", "SECONDS", "THE", "EL", "AL", "ROBOT", "CAR", "CARRO", "CARRITO",
+    "PLEASE", "GRACIAS",
+))  # fmt: skip
 
 
 class BehindRecovery:
@@ -84,6 +88,17 @@ class BehindRecovery:
                 return  # `F(2, 80) (hasta la mesa)`
             if asked is not None or row[0].kind is ODD:
                 self._report(row, whole, **(asked or {"order": self._text(row)}))
+
+    def no_more(self) -> None:
+        """`SHOW(DISTANCE) cm`, `STOP the robot`: words that say no more."""
+        cursor = self.cursor
+        k = start = cursor.i
+        while cursor.tokens[k].kind is WORD and cursor.tokens[k].text in _SAYING_NO_MORE:
+            k += 1
+        if k > start and cursor.tokens[k].kind in AT_END:
+            cursor.i = k
+            span = Span(cursor.tokens[start].start, cursor.last.end)
+            self.reporter.fail(codes.EXTRA_WORD, span, found=cursor.source[span], fix="")
 
     def words(self, first: Token, before: Token, joining: int = 0) -> None:
         """Report what is no instruction from the cursor on: a `;` before it would not help.

@@ -49,6 +49,8 @@ ENOUGH = 100  # diagnostics after which reading on helps nobody
 _SETUPS = frozenset(("SI", "SB", "PING"))
 _MISREAD = frozenset(("S1", "SL", "5I"))  # SI, with a letter or a digit for another one
 _BEGIN_ENDS = ("END", "FIN")  # END_JUMP, FIN
+# What stands alone for the line above, or for what follows.
+_AGAIN = frozenset("IDEM ÍDEM DITTO IGUAL SAME AGAIN NUEVAMENTE ETC ETCETERA ETCÉTERA".split())  # noqa: SIM905
 _IN_TITLE = frozenset((WORD, NUMBER, ODD, NEWLINE, ",", "-"))  # behind the first word of a sentence
 _AFTER_NAME = frozenset(("(", *AT_END))
 
@@ -237,7 +239,7 @@ class Parser:
             return True
         from tiniscript.syntax.suggestions import foreign_block  # a right program needs it not
 
-        return foreign_block(word.text) is None
+        return foreign_block(word.text) is None and word.text not in _AGAIN
 
     def arguments_of(self, word: Token, known: Word | None) -> tuple[Argument, ...] | None:
         if known is not None and not known.arguments:

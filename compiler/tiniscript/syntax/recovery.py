@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, NoReturn
 from tiniscript.diagnostics import codes
 from tiniscript.kit import Kit
 from tiniscript.source import Span
+from tiniscript.syntax.again_recovery import AgainRecovery
 from tiniscript.syntax.ast import Assign, Command
 from tiniscript.syntax.behind_recovery import BehindRecovery
 from tiniscript.syntax.block_recovery import BlockRecovery
@@ -38,11 +39,6 @@ from tiniscript.words import NOT_DONE, WORDS, Word, meant_by, said_instead
 if TYPE_CHECKING:
     from tiniscript.syntax.parser import Parser
 
-_SAYING_NO_MORE = frozenset((
-    "CM", "SEG", "SEGUNDOS", "SECONDS", "THE", "EL", "AL", "ROBOT", "CAR", "CARRO", "CARRITO",
-    "PLEASE", "GRACIAS",
-))  # fmt: skip
-
 
 class Recovery:
     def __init__(
@@ -69,6 +65,7 @@ class Recovery:
         self.groups = GroupRecovery(cursor, reporter, self.in_block)
         self.of_note = NoteRecovery(cursor, reporter, self.in_block)
         self.of_call = BehindRecovery(cursor, reporter, self.in_block, self.of_note, self.times)
+        self.again = AgainRecovery(cursor, reporter, self.in_block)
         self.joining = JoiningRecovery(cursor, reporter, self.in_block)
 
     # -- what is no instruction ---------------------------------------------------------------
@@ -76,6 +73,9 @@ class Recovery:
     def no_word(self, token: Token) -> None:
         """An instruction begins with a sign or a number."""
         cursor = self.cursor
+        block = self.blocks.innermost
+        if self.kit is not None and (block is None or block.here):
+            self.again.line()
         cursor.i += 1
         if token.kind == "}":
             self.in_block.close_brace(token)
@@ -84,7 +84,6 @@ class Recovery:
         if token.kind in ("{", "}"):
             return
         if token.kind is ODD:
-            block = self.blocks.innermost
             cursor.i -= 1
             self.of_end.dots(block if block is not None and not block.here else None)
             cursor.i += 1
@@ -145,6 +144,8 @@ class Recovery:
 
     def no_command(self, parser: Parser, word: Token, role: str) -> NoReturn:
         """A word of the language that is no command begins an instruction."""
+        if role == "operator" and self.kit is not None:
+            self.again.line()  # `and so on`
         if role == "setup":
             self.setup.in_the_middle(parser, word)
         if role == "until":
@@ -194,8 +195,10 @@ class Recovery:
                 self._line_of(header, token)  # `IF(c)(S)ELSE(B(1, 50))`
             self.groups.body(header, cursor.i)
             self.in_block.other.second_question(header)
-        self._words_behind(first, token, header)
+        if header is None:
+            self.of_call.no_more()
         if self.kit is not None and header is None:
+            self.again.behind()
             self.of_call.call(first, before)
         if self.kit is not None and (header is None or not goes_on):
             self.of_note.behind(first, before, header)
@@ -305,17 +308,6 @@ class Recovery:
 
     def _is_stop(self, token: Token) -> bool:
         return token.text in WORDS and WORDS[token.text].role == "stop"
-
-    def _words_behind(self, first: Token, token: Token, header: Block | None) -> None:
-        """`SHOW(DISTANCE) cm`, `STOP the robot`: words that say no more."""
-        cursor = self.cursor
-        k = cursor.i
-        while cursor.tokens[k].kind is WORD and cursor.tokens[k].text in _SAYING_NO_MORE:
-            k += 1
-        if header is None and k > cursor.i and cursor.tokens[k].kind in AT_END:
-            cursor.i = k
-            span = Span(token.start, cursor.last.end)
-            self.reporter.fail(codes.EXTRA_WORD, span, found=cursor.source[span], fix="")
 
     def _is_no_instruction(self, first: Token) -> bool:
         """Whether an instruction begins with a word that nobody knows: that is said of it."""
