@@ -193,7 +193,7 @@ def test_a_call_that_is_cut_in_two_gets_no_example() -> None:
         ("BEEP(freq=440, time=1)", "BEEP(1, 440)"),
         ("W(-1)", "desde 0"),
         ("STOP 2", "STOP;W(2)"),
-        ("W(un ratito)", "RATITO = 0"),
+        ("W(un ratito)", "W(2)"),
         ("SI | | S", "Quita |"),
         ("F(2, 80) / avanza", "// avanza"),
         ("IF(DISTANCE < 50 por ciento);S;ENDIF", "50"),

@@ -78,6 +78,7 @@ _PHRASES = tuple(
 _SAME = {"STOP": "S", "TRUE": "FOREVER", "WHILE": "LOOP", "FALSE": "NOT"}
 _STRUCTURAL = ("alias", "end", "setup", "start", "later")
 _EXAMPLES = (80.0, 440.0)  # a power and a tone, which pupils leave out
+_OF_RANGE = ("ENTRE", "BETWEEN", "HASTA", "DESDE")  # `RANDOM(entre 1 y 6)`
 _AGAIN = ("OTRA", "NUEVO", "ONCE", "MORE")
 # Repairs that write a number in another way, and those that name or note what was written.
 _REWRITES = frozenset((
@@ -223,8 +224,10 @@ class _Account:
         )
         if meant == "UNTIL" and "LOOP" in self._new.words and not new["<"] + new[">"]:
             return True  # `PARA I = 1 HASTA 4`
-        if meant == "UNTIL" and {"BREAK", "RANDOM"} & set(self._new.words):
+        if word in _OF_RANGE and "RANDOM" in self._new.words:
             return True  # `RANDOM(1 hasta 6)`
+        if meant == "UNTIL" and "BREAK" in self._new.words:
+            return True
         if word in ("NO", "NOT") or meant in ("WHILE", "UNTIL", "FALSE"):
             is_loop = meant in ("WHILE", "UNTIL") and not (
                 {"WHILE", "UNTIL", "BREAK"} & set(self._new.words)

@@ -23,6 +23,14 @@ _FULL_STOP = re.compile(r"\)[ \t]{0,9}(?P<stop>\.)(?![.\w])")
 MOVES = ("F", "B", "L", "R")
 TAUGHT = ("SALTO", "PASO", "BAILE", "JUMP", "STEP", "DANCE")  # by the poster and the lessons
 _IN_DEF = re.compile(r"(?i)\bDEF\s{0,9}\(?\s{0,9}(\w+)")
+_NAME = re.compile(r"[A-Z][A-Z_]{2,19}[0-9]{0,2}")
+# What nobody teaches: words of other languages and of talking.
+_NO_NAMES = frozenset((
+    "RETURN", "CONTINUE", "CONTINUA", "DELAYMICROSECONDS", "HOLA", "HELLO", "IDEM", "ETC", "NULL",
+))  # fmt: skip
+_TIMES = re.compile(r"[ \t]*\([ \t]*([0-9]{1,2})[ \t]*\)")
+_EMPTY = re.compile(r"[ \t]*\([ \t]*\)")
+_DIGITS = "0123456789"
 MANY = 6  # of them that an example has
 
 
@@ -91,27 +99,45 @@ def _full_stops(kept: list[Diagnostic | None], source: Source) -> None:
 
 
 def _untaught(kept: list[Diagnostic | None], source: Source) -> None:
-    """Say once of a word that stands alone in several places that no DEF teaches it."""
+    """Say once of a word that stands alone in several places that no DEF teaches it.
+
+    Of one that stands alone in one place that may be so, or it is a slip.
+    """
     groups: dict[str, list[int]] = {}
     for k, each in enumerate(kept):
         if each is not None and each.code is codes.UNKNOWN_WORD and _stands_alone(each, source):
             groups.setdefault(each.values["found"], []).append(k)
     taught = {each.upper() for each in _IN_DEF.findall(source.text)} if groups else set()
+    stems = {each.rstrip(_DIGITS) for each in taught}  # `PASO2`, where there is a DEF PASO1
     for name, places in groups.items():
-        if (len(places) > 1 or name in TAUGHT) and name.upper() not in taught:
-            first = kept[places[0]]
-            assert first is not None
-            kept[places[0]] = Diagnostic(codes.UNTAUGHT, first.span, {"name": name})
-            for k in places[1:]:
-                kept[k] = None
+        first = kept[places[0]]
+        assert first is not None
+        is_sure = len(places) > 1 or {name, name.rstrip(_DIGITS)} & {*TAUGHT, *stems}
+        if name.upper() in taught:
+            continue
+        if not is_sure:
+            own = name if _NAME.fullmatch(name) and name not in _NO_NAMES else ""
+            kept[places[0]] = first._replace(values={**first.values, "own": own})
+            continue
+        values = {"name": name}
+        times = _TIMES.match(source.text, first.span.end)
+        if times is not None and int(times[1]) > 1 and len(places) == 1:
+            values["often"] = f"LOOP({times[1]});{name};END_LOOP"
+        kept[places[0]] = Diagnostic(codes.UNTAUGHT, first.span, values)
+        for k in places[1:]:
+            kept[k] = None
 
 
 def _stands_alone(diagnostic: Diagnostic, source: Source) -> bool:
-    """Whether nothing is said of an unknown word, which is all of its instruction."""
+    """Whether nothing is said of an unknown word, which is all of its instruction.
+
+    Brackets may be behind it with how often it is done, or nothing.
+    """
     text, (start, end) = source.text, diagnostic.span
     said = {key for key, value in diagnostic.values.items() if value}
     before = text[max(0, start - 100) : start].rstrip(" \t")[-1:]
-    after = text[end : end + 100].lstrip(" \t")[:1]
+    bracket = _TIMES.match(text, end) or _EMPTY.match(text, end)
+    after = text[bracket.end() if bracket else end :][:100].lstrip(" \t")[:1]
     return said == {"found"} and before in ("", *";\r\n|") and after in ("", *";\r\n")
 
 

@@ -35,6 +35,7 @@ from tiniscript.words import (
     usage_of,
 )
 
+_DIGITS = "0123456789"
 MANY_TIMES = 20  # that a DEF is done by hand in a class
 # Short for derecha, izquierda, parar, esperar …, and what pupils say of the way that they go.
 _SHORT = {
@@ -105,6 +106,8 @@ def _report_unknown_word(scope: Scope, node: ast.Command) -> None:
     commands = [each.text for each in WORDS.values() if each.role not in
                 ("setup", "later", "value", "operator", "function", "forever")]  # fmt: skip
     near = _MENDED.get(word) or scope.near(word, chain(commands, scope.names, scope.def_names))
+    if near.rstrip(_DIGITS) == word.rstrip(_DIGITS):
+        near = ""  # `PASO2`, where there is a DEF PASO1
     glued_loop = re.fullmatch(r"LOOP_?([0-9]+)", word)
     if glued_loop and node.arguments is None:
         near = f"LOOP({glued_loop[1]})"

@@ -15,6 +15,7 @@ from tiniscript.semantics.symbols import ENOUGH, Scope
 from tiniscript.semantics.types import NUMBER, Operand
 from tiniscript.semantics.unknown_words import asks_of_light, hyphened, meant_value, whole_name
 from tiniscript.source import Span
+from tiniscript.syntax.amounts import is_amount, with_number
 from tiniscript.syntax.ast import Part
 from tiniscript.syntax.operators import SIGN_OF
 from tiniscript.words import NUMBER_WORDS, SENSOR_STEMS, WORDS, meant_by
@@ -28,6 +29,8 @@ _NEAR = 20  # characters before a name in which its word is looked for
 # Where a sensor does not look that looks ahead.
 _TIMES_BEFORE = re.compile(r"(?i)\bLOOP[ \t]*\([ \t]*$")
 _HERTZ_BEFORE = re.compile(r"(?i)\bBEEP[ \t]*\([^(),]*,[ \t]*$")
+_ASKED_BEFORE = re.compile(r"(?i)\b(?:IF|ELSEIF|UNTIL|WHILE)[ \t]*\([ \t]*$")
+_DIGITS = "0123456789"
 _TIME_BEFORE = re.compile(r"(?i)\b(?:[FBLRW]|BEEP)[ \t]*\([ \t]*$")  # a time comes first
 
 
@@ -55,13 +58,18 @@ class WrongValues:
             return
         if hyphened(scope, span, name) or asks_of_light(scope, span, name):
             return
+        amount = with_number(scope.source.text, span) if is_amount(name) else {}
+        if amount and target is None and name not in scope.set_somewhere:
+            scope.report(codes.UNKNOWN_NAME, span, None, found=name, **amount)
+            return
         names = scope.names.items() if len(scope.diagnostics) < ENOUGH else ()
         known = [each for each, its in names if its.what in ("sensor", "variable")]
         near = NUMBER_WORDS.get(name) or scope.near(name, known) or meant_value(
             scope, span, name, is_assigned=target is not None
         )  # fmt: skip
         near = near or whole_name(scope, name, scope.set_somewhere)
-        stem = SENSOR_STEMS.get(name, name) + "_"  # `LIGHT` of LIGHT_R and LIGHT_L
+        base = name.rstrip(_DIGITS).rstrip("_")  # DISTANCE, of DISTANCE2
+        stem = SENSOR_STEMS.get(base, base) + "_"  # `LIGHT` of LIGHT_R and LIGHT_L
         several = [each for each in known if each.startswith(stem)]
         which = {} if len(several) != 2 else {"first": several[0], "second": several[1]}
         sensors = [each for each, its in names if its.what == "sensor"]
@@ -87,9 +95,26 @@ class WrongValues:
                 value = _HERTZ
             only = next((each for each in sensors if name.startswith(each + "_")), "")
             aside = only if name.rpartition("_")[2] in ASIDE else ""
-            near = "" if aside else only or near
+            numbered = self._numbered(name, base, span, sensors)
+            only = numbered.get("bare") or only
+            alike = near if near and near.rstrip(_DIGITS) == name.rstrip(_DIGITS) else ""
+            near = "" if aside or numbered or alike else only or near
+            if alike and not which and not numbered:
+                numbered, value = {"alike": alike}, value or "0"
             scope.report(codes.UNKNOWN_NAME, span, None, found=name, near=near,
-                         value=value, only=only, aside=aside, **which)  # fmt: skip
+                         value=value, only=only, aside=aside, **numbered, **which)  # fmt: skip
+
+    def _numbered(self, name: str, base: str, span: Span, sensors: list[str]) -> dict[str, str]:
+        """`DISTANCE2`, `IF(DISTANCE20)`: there is one such sensor, or a sign is missing."""
+        sensor = base if base in sensors else meant_by(base) or ""
+        digits = name[len(base) :].lstrip("_")
+        if sensor not in sensors or not digits:
+            return {}
+        text = self.scope.source.text
+        is_asked = _ASKED_BEFORE.search(text[max(0, span.start - _NEAR) : span.start])
+        if is_asked and text[span.end : span.end + _NEAR].lstrip()[:1] == ")":
+            return {"bare": sensor, "less": f"{sensor} < {digits}"}
+        return {"bare": sensor, "digits": digits}
 
     def mixed(self, op: str, left: Operand, right: Operand, span: Span) -> None:
         """A number is compared with a yes or no."""

@@ -341,6 +341,7 @@ class ExpressionRecovery:
             if meant in known:
                 values = {"found": found, "right": meant, "fix": meant, "usage": meant}
                 self.reporter.fail(codes.OTHER_LANGUAGE, span, None, **values)
+            self.numbers.amount(span, last, token)
             self.constructs.near_said(span, found, last, token, bracket)
             self.numbers.unknown_time(span, last, token)
             self.constructs.words_shown(right)
@@ -349,8 +350,7 @@ class ExpressionRecovery:
         owner = self.cursor.tokens[bracket - 1] if bracket else self.cursor.tokens[bracket]
         word = self._word_of(owner)
         if word is not None and len(word.arguments) > 1:
-            inner = self._in_brackets(bracket)
-            fix = call_in(word, inner)
+            fix = call_in(word, self._in_brackets(bracket))
             place = Span(owner.start, self._end_of(bracket))
             self.reporter.fail(codes.MISSING_COMMA, span, place, fix=fix, usage=word.usage)
         shown = {"before": last.text, "found": token.text}

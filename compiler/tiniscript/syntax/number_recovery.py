@@ -5,6 +5,7 @@ from __future__ import annotations
 from tiniscript.diagnostics import codes
 from tiniscript.fixed_point import as_text
 from tiniscript.source import Span
+from tiniscript.syntax.amounts import is_amount, with_number
 from tiniscript.syntax.cursor import AFTER_VALUE, AT_END, Cursor
 from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, WORD, Token
 from tiniscript.syntax.operators import BINARY
@@ -21,6 +22,15 @@ class NumberRecovery:
         self.cursor = cursor
         self.reporter = reporter
 
+    def amount(self, span: Span, last: Token, token: Token) -> None:
+        """`F(2, muy rapido)`."""
+        said = (
+            with_number(self.cursor.source.text, span) if is_amount(last.text, token.text) else {}
+        )
+        if said:
+            found = self.cursor.source[span].upper()
+            self.reporter.fail(codes.UNKNOWN_NAME, span, None, found=found, **said)
+
     def is_unit(self, token: Token, k: int, in_brackets: bool) -> bool:
         """`W(2 s)`, `IF(DISTANCE < 10 cm)`."""
         cursor, tokens = self.cursor, self.cursor.tokens
@@ -28,6 +38,8 @@ class NumberRecovery:
         if k > cursor.i:
             return False  # `IF(DISTANCE < 20` and S on the next line
         is_name = before.kind is WORD and token.text not in WORDS and in_brackets
+        if is_name and is_amount(before.text):
+            return False  # `LOOP(varias veces)`
         if token.text not in UNITS or not (before.kind is NUMBER or is_name):
             return False
         ends_here = after in (AFTER_VALUE if in_brackets else AT_END)

@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 
 _RANGE = re.compile(
-    r"(?i)(?:(?:del?|entre|from|between) )?(\d{1,7})"
+    r"(?i)(?:(?:del?|desde|entre|from|between) )?(\d{1,7})"
     r" ?(?:-|al?|hasta|to|until|y|e|and) ?(?:el )?(\d{1,7})"
 )
 
