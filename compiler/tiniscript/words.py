@@ -230,7 +230,12 @@ POWER_WORDS = {name: str(value) for value, names in (
     (80, "NORMAL"), (50, "MEDIO MEDIA HALF MEDIUM MITAD"), (40, "SLOW LENTO LENTA DESPACIO DESPACITO LENTAMENTE"),
 ) for name in names.split()}
 # How much, in words that are no number.
-AMOUNT_WORDS = frozenset(["MAS", "MENOS", "POCO", "POCA", "POQUITO", "POQUITITO", "MUCHO", "MUCHA", "MUCHOS", "MUCHAS", "VARIOS", "VARIAS", "RATO", "RATITO", "MOMENTO", "MOMENTITO", "ALGO", "BASTANTE", "TANTO", "TANTAS", "UNOS", "UNAS", "MUY", "DEMASIADO", "AGUDO", "GRAVE", "LARGO", "CORTO", "MORE", "LESS", "LITTLE", "MUCH", "MANY", "SOME", "BIT", "MOMENT", "LONG", "SHORT", "VERY", "SEVERAL"])
+AMOUNT_WORDS = frozenset((
+    "MAS", "MENOS", "POCO", "POCA", "POQUITO", "POQUITITO", "MUCHO", "MUCHA", "MUCHOS", "MUCHAS",
+    "VARIOS", "VARIAS", "RATO", "RATITO", "MOMENTO", "MOMENTITO", "ALGO", "BASTANTE", "TANTO",
+    "TANTAS", "UNOS", "UNAS", "MUY", "DEMASIADO", "AGUDO", "GRAVE", "MORE", "LESS", "LITTLE",
+    "MUCH", "MANY", "SOME", "BIT", "MOMENT", "VERY", "SEVERAL",
+))
 NOTE_WORDS = {"DO": "262", "RE": "294", "MI": "330", "FA": "349", "SOL": "392", "LA": "440",
               "C4": "262", "D4": "294", "E4": "330", "F4": "349", "G4": "392", "A4": "440", "B4": "494", "C5": "523"}
 
