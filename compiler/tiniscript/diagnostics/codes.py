@@ -152,6 +152,8 @@ UNTAUGHT = _mistake("TS129")
 SAME_AGAIN = _mistake("TS130")
 AND_SO_ON = _mistake("TS131")
 IN_WORDS = _mistake("TS135")
+BY_CHANCE = _mistake("TS136")
+SET_TOGETHER = _mistake("TS137")
 # values
 WANTS_NUMBER = _mistake("TS201")
 WANTS_CONDITION = _mistake("TS202")

@@ -287,6 +287,8 @@ _PLACES: dict[Code, Callable[[Diagnostic, Source], Edits]] = {
     codes.SEVERAL_ORDERS: _span,
     codes.OTHER_CALL: _span,
     codes.GROUPED: _span,
+    codes.BY_CHANCE: _span,
+    codes.SET_TOGETHER: _span,
     codes.WORDS_BEHIND: _span,
     codes.SAME_AGAIN: _span,
     codes.NAME_WITH_SPACE: _span,

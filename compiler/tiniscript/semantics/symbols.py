@@ -33,7 +33,7 @@ class Scope:
         self.names = {device.name: Name("sensor", i) for i, device in enumerate(kit.sensors)}
         for i, device in enumerate(kit.actuators):
             self.names[device.name] = Name("actuator", i)
-        self.set_somewhere = set(_assigned(parsed.body))
+        self.set_somewhere = {each.name for each in _assignments(parsed.body)}
         self.parsed = parsed
         self.def_names = {each.name for each in parsed.body if isinstance(each, ast.Def)}
 
@@ -51,7 +51,15 @@ class Scope:
                 if line > here and is_alone and node.value.is_plain:
                     return {"line": str(line), "first": text}
                 break
-        return {"line": "", "first": ""}
+        return {"line": "", "first": "", "before": self._first_number(name)}
+
+    def _first_number(self, name: str) -> str:
+        """Return `V = 80`, what gives `name` its first value, where that is a plain number."""
+        for node in _assignments(self.parsed.body):
+            if node.name == name:
+                is_plain = node.value is not None and node.value.is_plain
+                return self.source[node.span] if is_plain else ""
+        return ""
 
     def near(self, word: str, known: Iterable[str]) -> str:
         """Return the nearest known word for a message, for the first ENOUGH mistakes.
@@ -61,16 +69,16 @@ class Scope:
         return (nearest(word, known) or "") if len(self.diagnostics) < ENOUGH else ""
 
 
-def _assigned(body: Sequence[ast.Instruction]) -> list[str]:
-    """Return the names that a program sets anywhere."""
-    found: list[str] = []
+def _assignments(body: Sequence[ast.Instruction]) -> list[ast.Assign]:
+    """Return all that set a variable, in the order of the text."""
+    found: list[ast.Assign] = []
     for node in body:
         if isinstance(node, ast.Assign):
-            found.append(node.name)
+            found.append(node)
         elif isinstance(node, ast.If):
             for arm in node.arms:
-                found += _assigned(arm.body)
-            found += _assigned(node.otherwise)
+                found += _assignments(arm.body)
+            found += _assignments(node.otherwise)
         elif isinstance(node, (ast.Loop, ast.While, ast.Def)):
-            found += _assigned(node.body)
+            found += _assignments(node.body)
     return found

@@ -9,12 +9,21 @@ from tiniscript.source import Span
 from tiniscript.syntax.cursor import AT_END, Cursor
 from tiniscript.syntax.lexer import NUMBER, WORD, Token
 from tiniscript.syntax.reporter import Reporter
+from tiniscript.syntax.vocabulary import Vocabulary
+from tiniscript.words import WORDS, other_name
 
 
 class AssignmentRecovery:
     """`unread` remembers that a variable is set to a value that cannot be read."""
 
-    def __init__(self, cursor: Cursor, reporter: Reporter, unread: Callable[[Token], None]) -> None:
+    def __init__(
+        self,
+        cursor: Cursor,
+        reporter: Reporter,
+        known: Vocabulary,
+        unread: Callable[[Token], None],
+    ) -> None:
+        self.known = known
         self.cursor = cursor
         self.reporter = reporter
         self.unread = unread
@@ -42,6 +51,39 @@ class AssignmentRecovery:
             found = self.cursor.source[span]
             self.reporter.fail(codes.NAME_WITH_SPACE, span, found=found, right=right)
 
+    def one_for_all(self, first: Token) -> None:
+        """`X = Y = 50`, where Y has no value before: each of them gets the 50."""
+        cursor = self.cursor
+        tokens, k = cursor.tokens, cursor.i
+        names = [first]
+        while tokens[k].kind is WORD and tokens[k + 1].kind == "=":
+            names.append(tokens[k])
+            k += 2
+        known = [name for name in names[1:] if self.known.is_name(name.text)
+                 or self.known.first_set.get(name.text, first.start) < first.start]  # fmt: skip
+        is_below = tokens[k].kind == "-"
+        k += is_below
+        is_twice = len({name.text for name in names}) < len(names)
+        if self.known.kit is None or known or is_twice:
+            return
+        if tokens[k].kind is not NUMBER or tokens[k + 1].kind not in AT_END:
+            return
+        value = "-" * is_below + tokens[k].text
+        reserved = [name.text for name in names if name.text in WORDS]
+        if any(WORDS[name].role in ("value", "operator") for name in reserved):
+            return
+        rows = [f"{_free(name.text)} = {value}" for name in names]
+        for name in names:
+            self.unread(name)
+        cursor.i = k + 1
+        values = {"fix": ";".join(rows)}
+        if reserved:
+            values = {"example": "; ".join(rows), "reserved": reserved[0],
+                      "free": _free(reserved[0])}  # fmt: skip
+        self.reporter.reserved_words.update(reserved)
+        span = cursor.span_from(first)
+        self.reporter.fail(codes.SET_TOGETHER, span, span, **values)
+
     def several_at_once(self, word: Token) -> None:
         """`X, Y = 5, 6`: each variable has a line of its own."""
         cursor = self.cursor
@@ -65,3 +107,7 @@ class AssignmentRecovery:
         cursor.i = end
         place = cursor.span_from(word)
         self.reporter.fail(codes.OTHER_ASSIGNMENT, word.span, place, found=",", fix=fix)
+
+
+def _free(name: str) -> str:
+    return other_name(name) if name in WORDS else name

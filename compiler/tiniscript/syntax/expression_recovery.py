@@ -26,6 +26,7 @@ from tiniscript.syntax.joined_questions import JoinedQuestions
 from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, ODD, WORD, Token
 from tiniscript.syntax.number_recovery import NumberRecovery
 from tiniscript.syntax.operators import COMPARISONS, Operator, Postfix
+from tiniscript.syntax.order_values import order_as_value
 from tiniscript.syntax.phrases import AFTER_HEADER
 from tiniscript.syntax.reporter import Failed, Reporter
 from tiniscript.syntax.suggestions import after_bracket, operator_words, tells, unchained
@@ -119,18 +120,16 @@ class ExpressionRecovery:
             fail(codes.UNTIL_ALONE, token.span, found and found[1], fix=found[0] if found else "")
         if word.text == "SI":  # `X = si`
             fail(codes.OTHER_LANGUAGE, token.span, found="SI", right="TRUE", fix="TRUE", usage="")
-        if word.is_call:
-            if self.cursor.following.kind == "(":
-                fail(codes.NO_VALUE, token.span, word=word.text)
+        if word.is_call and self.cursor.following.kind == "(":
+            fail(codes.NO_VALUE, token.span, word=word.text)
         if word.text in self.reporter.reserved_words:
             raise Failed
-        if word.role == "stop" and self.cursor.tokens[self.cursor.i - 1].kind == ",":
-            fail(codes.NO_VALUE, token.span, word=word.text)  # `IF(DISTANCE < 10, S)`
         if self.cursor.source[token.span] == "l" and self.cursor.following.kind in (",", ")"):
             fail(codes.BAD_NUMBER, token.span, found="l", right="1")
         place = self.cursor.before(self.cursor.i)
         if self.cursor.tokens[place].kind == "-" and place:
             self._sensor_in_two(self.cursor.tokens[place - 1], token)
+        order_as_value(self.cursor, self.reporter, self.constructs.known, token)
         fail(codes.RESERVED, token.span, word=word.text, right=self.cursor.free_name(word.text))
 
     def literal(self, number: Token, span: Span, value: int) -> int:
@@ -218,6 +217,8 @@ class ExpressionRecovery:
         begins_instruction = tokens[k + 1].kind in ("=", "(", *AT_END)
         if said is None or (not in_brackets and (begins_instruction or tells(tokens, *said))):
             return False
+        if not in_brackets and said[1] == "=" and not self.constructs.is_value(tokens[said[0]]):
+            return False  # `X = 5 es velocidad`
         end, right = said
         if right == "AND":
             self._and_for_comma(tokens[cursor.before(k)], tokens[end])

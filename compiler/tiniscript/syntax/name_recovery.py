@@ -27,7 +27,9 @@ from tiniscript.syntax.cursor import AT_END, Cursor
 from tiniscript.syntax.devices import actuator_word
 from tiniscript.syntax.foreign import foreign_word
 from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, ODD, WORD, Token
+from tiniscript.syntax.lone_questions import asked_alone
 from tiniscript.syntax.operators import COMPARISONS, SIGNS
+from tiniscript.syntax.order_values import at_random
 from tiniscript.syntax.phrases import (
     AFTER_HEADER,
     BEFORE_CALL,
@@ -49,7 +51,6 @@ from tiniscript.syntax.sentence_recovery import SentenceRecovery
 from tiniscript.syntax.suggestions import (
     body_begins,
     foreign_block,
-    head_in,
     is_assignment,
     is_counting,
     shortened,
@@ -83,7 +84,7 @@ class NameRecovery:
         self.kit = kit
         self.in_block = in_block
         self.sentence = SentenceRecovery(cursor, reporter, in_block)
-        self.of_value = AssignmentRecovery(cursor, reporter, self.unread_assignment)
+        self.of_value = AssignmentRecovery(cursor, reporter, in_block.known, self.unread_assignment)
         self.talk = TalkRecovery(cursor, reporter, in_block)
         self.clauses = ClauseRecovery(cursor, reporter, in_block)
         self.brackets = BracketRecovery(cursor, reporter, in_block, self.sentence, self.clauses)
@@ -348,16 +349,16 @@ class NameRecovery:
         is_variable = self.in_block.known.is_own(first.text) or meant_by(first.text) is None
         if is_variable and first.text not in WORDS and not self.in_block.is_name(first.text):
             self.of_value.changed(first, tokens)
+        at_random(self.cursor, self.reporter, self.in_block.known, first)
         asks = any(token.kind in COMPARISONS or token.text == "NOT" for token in tokens)
         if asks:
             self.in_block.other.choice(first)
         if first.text == "TIME" and [token.kind for token in tokens[1:]] == ["(", NUMBER, ")"]:
             whole, fix = Span(first.start, tokens[-1].end), f"W({tokens[2].text})"
             self.reporter.fail(codes.NOT_AN_INSTRUCTION, first.span, whole, found="TIME", fix=fix)
-        sign = next((token for token in tokens if token.kind in SIGNS), first)
-        place = sign if asks else first
-        fix = head_in(WORDS["IF"], tokens) if asks else ""
-        self.reporter.fail(codes.NOT_AN_INSTRUCTION, place.span, found=place.text, fix=fix)
+        if asks:
+            asked_alone(self.cursor, self.reporter, self.in_block, tokens)
+        self.reporter.fail(codes.NOT_AN_INSTRUCTION, first.span, found=first.text, fix="")
 
     def note_behind(self, first: Token, token: Token, after: Token) -> None:
         """`F(2, 80) -- go`, `F(2, 80) - avanza`, `F(2, 80) / go`, `F(2, 80) (avanza)`.

@@ -195,6 +195,9 @@ class Parser:
             self.recovery.of_name.reserved_name(name)
         self.cursor.i += 2
         start, said = self.cursor.i, len(self.reporter.diagnostics)
+        tokens = self.cursor.tokens
+        if tokens[start].kind is WORD and tokens[start + 1].kind == "=":
+            self.recovery.of_name.of_value.one_for_all(name)
         try:
             value = self.expressions.expression(in_brackets=False)
         except Failed:

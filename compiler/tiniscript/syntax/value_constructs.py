@@ -17,6 +17,7 @@ from tiniscript.syntax.call_suggestions import LONGEST, call_in, starts_value, w
 from tiniscript.syntax.cursor import AT_END, Cursor
 from tiniscript.syntax.lexer import NUMBER, ODD, QUOTES, WORD, Token
 from tiniscript.syntax.operators import COMPARISONS
+from tiniscript.syntax.order_values import one_or_other
 from tiniscript.syntax.phrases import FILLERS, NEGATED, READING
 from tiniscript.syntax.reporter import Reporter
 from tiniscript.syntax.suggestions import (
@@ -167,6 +168,10 @@ class ValueConstructs:
         self.cursor.i += 1
         return True
 
+    def is_value(self, token: Token) -> bool:
+        """Whether a token is a number, or the name of something that has a value."""
+        return token.kind is NUMBER or self.known.is_own(self.known.value(token.text))
+
     # -- what looks like a function -----------------------------------------------------------
 
     def called(self, name: Token, bracket: Token) -> None:
@@ -290,6 +295,7 @@ class ValueConstructs:
             self.unread_value(first, k + 2, len(self.reporter.diagnostics))
         command = self.known.command(first.text)
         if command is not None and (command.is_instruction or command.role == "actuator"):
+            one_or_other(cursor, self.reporter, self.known, k)
             self._brackets_behind(first, k, command)
             self._question_behind(first, command)
 

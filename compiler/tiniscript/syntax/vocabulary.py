@@ -53,6 +53,18 @@ class Vocabulary:
             name.text for name, sign in pairs if name.kind is WORD and sign.kind == "="
         )
 
+    @cached_property
+    def first_set(self) -> dict[str, int]:
+        """Where each variable is set first, in an instruction of its own."""
+        found: dict[str, int] = {}
+        for before, (name, sign) in zip(
+            (None, *self._tokens), pairwise(self._tokens), strict=False
+        ):
+            is_first = before is None or before.kind != "="
+            if is_first and name.kind is WORD and sign.kind == "=":
+                found.setdefault(name.text, name.start)
+        return found
+
     def lines_of(self, name: str, source: Source) -> str:
         """Return the lines in which a word is a variable, `1, 2, 4`; nothing for one line alone."""
         depth = 0

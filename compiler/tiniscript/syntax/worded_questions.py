@@ -6,7 +6,7 @@ so what is shown is an example.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from itertools import pairwise
 
 from tiniscript.diagnostics import codes
@@ -67,6 +67,18 @@ def report_words(owner: str, row: Sequence[Token], reporter: Reporter, known: Vo
     reporter.fail(codes.IN_WORDS, span, None, word=owner, **values)
 
 
+def sensors_of(text: str, known: Vocabulary) -> list[str]:
+    """Return the sensors of the kit that a word in capital letters may mean: `LUZ`, `PARED`."""
+    devices = [each.name for each in known.kit.sensors if not each.is_yes_no] if known.kit else []
+    if text in NEAR_WORDS:
+        return [name for name in devices if name == "DISTANCE"]
+    return _lights(devices) if text in _LIGHT else []
+
+
+def _lights(names: Iterable[str]) -> list[str]:
+    return sorted(name for name in names if name.partition("_")[0] in _LIGHT_ROOTS)
+
+
 def is_asked_alone(text: str) -> bool:
     """Whether a word alone asks something of light: `IF(oscuro)`."""
     return text in _LIGHT and text not in ("LUZ", "LIGHT")
@@ -83,12 +95,11 @@ def example_of(texts: Sequence[str], kit: Kit, own: Sequence[str] = ()) -> dict[
     pairs = ["_".join(pair) for pair in pairwise(texts)]  # `luz derecha`
     named = [meant_by(text) or text for text in (*own, *pairs, *texts)]
     named = [name for name in named if name in devices]
-    lights = sorted(name for name in devices if name.partition("_")[0] in _LIGHT_ROOTS)
     subjects = named[:1]
     if not named and own:
         subjects = [own[0]]
     elif not named and words & _LIGHT and not words & _AHEAD:
-        subjects = lights[:2]
+        subjects = _lights(devices)[:2]
     subjects = subjects or ["DISTANCE" if "DISTANCE" in devices else next(iter(devices), "X")]
     is_below = is_little or (subjects[0] == "DISTANCE" and not is_much)
     sign = "<" if is_below != bool(words & _NOT) else ">"
