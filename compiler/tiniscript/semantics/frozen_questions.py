@@ -31,12 +31,15 @@ from tiniscript.semantics.ir import (
     Expression,
     If,
     Loop,
+    Motors,
     Move,
     Program,
+    Show,
     Statement,
     Term,
     While,
     every,
+    expressions,
     loops_end,
     walk,
 )
@@ -70,8 +73,9 @@ class FrozenQuestions:
         for statement in every(program):
             if isinstance(statement, Assign):
                 self._set_to.setdefault(statement.variable, []).append(statement.value)
-        # By a loop's start, the variables that get a value in it; None where it does not drive.
+        # By a loop's start, the variables that get a value in it; None where it takes no time.
         self._in_loops: dict[int, set[int] | None] = {}
+        self._used: dict[int, set[Term]] = {}  # by a loop's start
         self._sets: list[set[int]] = []  # for each DEF, the variables that it gives a value
         for procedure in program.procedures:
             self._sets.append(self._set_in(procedure.body))
@@ -95,6 +99,8 @@ class FrozenQuestions:
             self._while(statement)
             head = Span(statement.span.start, statement.span.start + len("WHILE"))
             self._known(self._comparison(statement.condition), head)
+        elif isinstance(statement, Show) and outermost is not None:
+            self._frozen_show(statement, outermost)
         elif isinstance(statement, If):
             self._late_arms(statement)
             for arm in statement.arms:
@@ -196,10 +202,7 @@ class FrozenQuestions:
             return
         place = outermost.span.start
         if place not in self._in_loops:
-            drives = any(
-                isinstance(each, Move) and each.direction in ("F", "B")
-                for each in walk(outermost.body)
-            )
+            drives = any(isinstance(each, (Move, Motors)) for each in walk(outermost.body))
             self._in_loops[place] = self._set_in(outermost.body) if drives else None
         changed = self._in_loops[place]
         if changed is None or changed & set(variables):
@@ -210,6 +213,32 @@ class FrozenQuestions:
         is_good = question and self._is_good(arm.condition, held)
         fix = f"{word}({question})" if is_good else ""
         self._report(codes.FROZEN_WHILE, arm.span, name=name, sensor=held[name], fix=fix)
+
+    def _frozen_show(self, show: Show, outermost: Loop | While) -> None:
+        """`D = DISTANCE; LOOP(5); SHOW(D); W(1); END_LOOP`: each round shows the same."""
+        variables = _variables(show.value) if len(show.value) == 1 else []
+        held = self._sensors_of(variables)
+        if not held or self._set_in(outermost.body) & set(variables):
+            return
+        name = self._program.variables[variables[0]]
+        sensor = next(k for k, each in enumerate(self._kit.sensors) if each.name == held[name])
+        if {Term("SENSOR", sensor), Term("VARIABLE", variables[0])} & self._used_in(outermost):
+            return  # it is shown beside what is measured now, or the rounds need it
+        fix = f"SHOW({held[name]})"
+        self._report(codes.FROZEN_WHILE, show.span, name=name, sensor=held[name], fix=fix)
+
+    def _used_in(self, loop: Loop | While) -> set[Term]:
+        """Return the terms of a loop: all sensors, and what statements other than SHOW use."""
+        place = loop.span.start
+        if place not in self._used:
+            self._used[place] = {
+                term
+                for each in walk((loop,))
+                for expression in expressions(each)
+                for term in expression
+                if term.op == "SENSOR" or not isinstance(each, Show)
+            }
+        return self._used[place]
 
     def _late_arms(self, statement: If) -> None:
         """`IF(DISTANCE < 60) … ELSEIF(DISTANCE < 20)`: what is below 20 is below 60, too."""

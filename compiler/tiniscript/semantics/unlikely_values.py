@@ -28,6 +28,7 @@ LOW_HERTZ = 100_000  # thousandths: a power was meant
 ANGLES = (360 * SECOND, 720 * SECOND)
 _LENGTHS = ("cm", "mm", "m")
 _ZERO = re.compile(r"\w+\s*\(\s*(0[0-9]{2,})\s*[,)]")  # a point is missing behind its 0
+_ZERO_OF_TURN = re.compile(r"(?i)[LR]\s*\(\s*(0[1-9])\s*,\s*[1-9]")  # `L(03, 60)`
 _UNTIL = re.compile(r"(?is)\s*\bUNTIL\b.*")  # with its question
 LITTLE_POWER = 10_000  # thousandths of a percent
 
@@ -38,14 +39,16 @@ def of_move(move: Move, kit: Kit, source: Source) -> list[Diagnostic]:
     found: list[Diagnostic] = []
     if time is None:
         return _measured(move, kit, source)
-    zero = _ZERO.match(source[move.span])
+    zero = _ZERO.match(source[move.span]) or _ZERO_OF_TURN.match(source[move.span])
     if time <= 0:
         _report(found, codes.MOVE_OF_NO_TIME, move.span, word=move.direction)
     elif zero is not None:  # `L(039, 60)`
         text = source[move.span]
         fix = f"{text[: zero.start(1)]}0.{zero[1][1:]}{text[zero.end(1) :]}"
-        fix = "" if zero[1].startswith("00") else fix
-        values = {"found": zero[1], "right": as_text(time), "fix": fix}
+        is_sure = len(zero[1]) > 2 and not zero[1].startswith("00")
+        values = {"found": zero[1], "right": as_text(time), "fix": fix if is_sure else ""}
+        if len(zero[1]) == 2:  # 3 seconds or 0.3
+            values["point"] = f"0.{zero[1][1:]}"
         found.append(Diagnostic(codes.ZERO_BEFORE, move.span, values))
     elif _is_swapped(time, power):
         seconds, percent = as_text(time), as_text(power or 0)
