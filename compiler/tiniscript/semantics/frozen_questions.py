@@ -200,11 +200,7 @@ class FrozenQuestions:
         held = self._sensors_of(variables)
         if not held or any(term.op in _CHANGING for term in arm.condition):
             return
-        place = outermost.span.start
-        if place not in self._in_loops:
-            drives = any(isinstance(each, (Move, Motors)) for each in walk(outermost.body))
-            self._in_loops[place] = self._set_in(outermost.body) if drives else None
-        changed = self._in_loops[place]
+        changed = self._changed_in(outermost)
         if changed is None or changed & set(variables):
             return
         name = self._program.variables[variables[0]]
@@ -218,7 +214,8 @@ class FrozenQuestions:
         """`D = DISTANCE; LOOP(5); SHOW(D); W(1); END_LOOP`: each round shows the same."""
         variables = _variables(show.value) if len(show.value) == 1 else []
         held = self._sensors_of(variables)
-        if not held or self._set_in(outermost.body) & set(variables):
+        changed = self._changed_in(outermost)
+        if not held or changed is None or changed & set(variables):
             return
         name = self._program.variables[variables[0]]
         sensor = next(k for k, each in enumerate(self._kit.sensors) if each.name == held[name])
@@ -226,6 +223,14 @@ class FrozenQuestions:
             return  # it is shown beside what is measured now, or the rounds need it
         fix = f"SHOW({held[name]})"
         self._report(codes.FROZEN_WHILE, show.span, name=name, sensor=held[name], fix=fix)
+
+    def _changed_in(self, loop: Loop | While) -> set[int] | None:
+        """Return the variables that get a value in a loop; None where it takes no time."""
+        place = loop.span.start
+        if place not in self._in_loops:
+            drives = any(isinstance(each, (Move, Motors)) for each in walk(loop.body))
+            self._in_loops[place] = self._set_in(loop.body) if drives else None
+        return self._in_loops[place]
 
     def _used_in(self, loop: Loop | While) -> set[Term]:
         """Return the terms of a loop: all sensors, and what statements other than SHOW use."""
