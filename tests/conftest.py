@@ -78,6 +78,7 @@ def own_cache(
         own = tmp_path_factory.getbasetemp() / "kept" / str(next(UNSEEN))
     monkeypatch.setenv("XDG_CACHE_HOME", str(own / "cache"))
     monkeypatch.setenv("XDG_CONFIG_HOME", str(own / "settings"))
+    monkeypatch.setenv("WIN_PD_OVERRIDE_LOCAL_APPDATA", str(own / "local"))
     monkeypatch.setenv("LC_ALL", "C.UTF-8")
     monkeypatch.setenv("DBUS_SYSTEM_BUS_ADDRESS", "unix:path=/nonexistent")  # nor their Bluetooth
     monkeypatch.delenv("TINISCRIPT_DEBUG", raising=False)
