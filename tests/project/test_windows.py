@@ -24,7 +24,7 @@ from tiniscript import files
 from tiniscript.cli import CLOSED, encodings
 from tiniscript.cli.terminal import sequences
 from tiniscript.cli.texts.common import tables
-from tiniscript.cli.windows_names import has_no_file
+from tiniscript.cli.windows_names import has_no_file, is_device
 
 PROGRAM = "SI|F(2, 80)\n"
 
@@ -64,6 +64,43 @@ def test_an_output_that_windows_would_lose_is_refused(
         assert said in done.err
     assert not Path("aux.bin").exists()
     assert tsc("compile", "prog.ts", "-o", "good.bin").code == 0
+
+
+@pytest.mark.parametrize("name", ["aux.ts", "con", "x/NUL.ts", r"C:\x\com1.txt"])
+def test_a_device_is_no_program(
+    name: str, tsc: Tsc, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Reading the console or a serial port would wait for ever."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "x").mkdir()
+    (tmp_path / name).write_text(PROGRAM)
+    assert tsc("check", name).code == 0
+    monkeypatch.setattr(sys, "platform", "win32")
+    done = tsc("check", name, "--lang", "en")
+    assert done.code == 2 and "there is no file" in done.err
+    assert is_device(name) and not is_device(f"{name}/prog.ts") and not is_device("console.ts")
+
+
+def test_a_pattern_means_its_files(
+    tsc: Tsc, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """cmd and PowerShell hand `*.ts` on as it is; a shell of Unix has looked already."""
+    monkeypatch.chdir(tmp_path)
+    for name in ("b.ts", "a.ts", "[1].ts", "notes.txt"):
+        Path(name).write_text("SI|F(2 80)\n")
+    done = tsc("check", "*.ts", "--lang", "en")
+    assert done.code == 2 and "there is no file *.ts" in done.err
+    from serial.tools import list_ports  # noqa: F401 - it looks at the platform when imported
+
+    monkeypatch.setattr(sys, "platform", "win32")
+    assert tsc("check", "--fix", "?.ts", "[1]*.ts", "--lang", "en").code == 0
+    for name in ("b.ts", "a.ts", "[1].ts"):
+        assert Path(name).read_text() == "SI|F(2, 80)\n"
+    done = tsc("check", "*.ts", "b.ts", "--lang", "en")
+    assert [line for line in done.out.splitlines() if line.startswith("programs: 3")]
+    assert Path("notes.txt").read_text() == "SI|F(2 80)\n"
+    done = tsc("check", "*.tini", "--lang", "en")
+    assert done.code == 2 and "*.tini" in done.err
 
 
 # -- texts

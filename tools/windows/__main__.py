@@ -4,8 +4,8 @@
 
 makes a folder with a Windows of wine in it (once; `--folder` says where), puts python.org's
 CPython for Windows there, installs `tsc` from a USB stick by the stick's start.bat, and tries it:
-each TRY, or all of them. It asks apt for wine where it may, and takes about ten minutes. It needs
-`.[test]` installed, and PyPI.
+each TRY, or all of them. `install` takes the tree as it is now, other tries alone what is there. It
+asks apt for wine where it may, and takes about ten minutes. It needs `.[test]` installed, and PyPI.
 
 wine is no Windows. Python, the packages and their DLLs are those of Windows, and so is what they
 ask for: names, handles, sharing of files, code pages, processes, Winsock. What answers is wine: its

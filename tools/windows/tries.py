@@ -71,6 +71,8 @@ class Place(NamedTuple):
 def install(place: Place) -> str:
     """The stick for Windows is made here, and its start.bat run there, without PyPI."""
     stick = place.computer.drive / f"Memoria USB {WORD}"
+    for old in (stick, place.computer.home / "TiniScript"):
+        shutil.rmtree(old, ignore_errors=True)
     words = ["--system", "windows", "--python", VERSION, "--no-firmware", "--no-installer"]
     made = subprocess.run(
         [sys.executable, "-m", "tools.builds.usb_stick", str(stick), *words,
@@ -127,6 +129,8 @@ def programs(place: Place) -> str:
                 of("check", *verb[1:2], *verb[4:]) for of in (place.tsc, place_here(place))
             )
             _need(there == here, f"check {example.name}:\n{there.said}\n{here.said}")
+    done = place.tsc("check", "obst*.ts")
+    _need("obstacle_until.ts" in done.said, f"a pattern: {done.said}")
     return f"{len(examples)} examples, with LF and CR LF: the same images and sentences as here"
 
 
@@ -243,6 +247,8 @@ def files(place: Place) -> str:
     for name in ("aux.bin", "con.bin", "x:y.bin"):
         done = place.tsc("compile", "prog.ts", "-o", name)
         _need(done.code == 2 and "Traceback" not in done.said, f"{name}: {done.said}")
+    done = place.tsc("check", "aux.ts")
+    _need(done.code == 2 and "aux.ts" in done.said, f"aux.ts is read: {done.said}")
     left = [each.name for each in place.desk.iterdir() if each.name.endswith((".new", ".lock"))]
     _need(not left, f"left behind: {left}")
     return "read-only, open elsewhere, aux.bin: refused, and the old file stays"

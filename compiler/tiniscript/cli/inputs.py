@@ -63,6 +63,11 @@ def program(options: Namespace) -> Input:
 def file(name: str, typed: str | None = None) -> Input:
     """Return what is in a file. Raises CommandError, which names it as it was `typed`."""
     path, said = Path(name), shown(name if typed is None else typed)
+    if sys.platform == "win32":
+        from tiniscript.cli.windows_names import is_device
+
+        if is_device(name):
+            raise CommandError(2, "file_missing", file=said)
     try:
         with path.open("rb") as opened:
             return Input(name, opened.read(LARGEST_SOURCE + 1), path)

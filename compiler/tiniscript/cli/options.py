@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import sys
 from argparse import ArgumentParser, HelpFormatter, Namespace
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
@@ -66,6 +67,12 @@ class Options(ArgumentParser):
         options = self.parse_args(arguments, Namespace(verb=self.verb, language=self.language))
         for option in self.table:
             self._refuse_other(option, getattr(options, option.name))
+        if sys.platform == "win32" and getattr(options, "programs", None):
+            from tiniscript.cli.windows_names import matching
+
+            options.programs = [
+                each for name in options.programs for each in matching(name) or [name]
+            ]
         from tiniscript.cli import paths
 
         paths.check(options, self.language)

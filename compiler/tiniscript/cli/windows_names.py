@@ -1,11 +1,12 @@
 """Names that Windows gives to no file: whoever writes to one loses what was written.
 
 `con.bin` is the console there and `aux.html` a serial port, in each folder; `sheet:1.html` is a
-hidden part of the file `sheet`. Knows names alone, so it can be asked on every system.
+hidden part of the file `sheet`. Knows names, and can be asked on every system.
 """
 
 from __future__ import annotations
 
+import glob
 import ntpath
 
 DEVICES = {"con", "prn", "aux", "nul", "conin$", "conout$"} | {
@@ -21,6 +22,26 @@ def has_no_file(path: str) -> bool:
     return any(_is_impossible(each) for each in parts)
 
 
+def is_device(path: str) -> bool:
+    """Return whether Windows opens a device by this name: reading it would wait for a key, say."""
+    parts = ntpath.splitdrive(path)[1].replace("/", "\\").split("\\")
+    return _stem(parts[-1]) in DEVICES
+
+
+def matching(pattern: str) -> list[str]:
+    """Return the names of the files that a pattern such as `*.ts` means, in order.
+
+    No shell of Windows does this for the commands it starts.
+    """
+    if not set(pattern) & set("*?"):
+        return []
+    escaped = pattern.replace("[", "[[]")  # brackets are part of a name there
+    return sorted(glob.glob(escaped))  # noqa: PTH207 - names stay as they were typed
+
+
+def _stem(name: str) -> str:
+    return name.split(".")[0].rstrip(" ").lower()
+
+
 def _is_impossible(name: str) -> bool:
-    stem = name.split(".")[0].rstrip(" ").lower()
-    return stem in DEVICES or ":" in name or name[-1] in " ." or bool(FORBIDDEN & set(name))
+    return _stem(name) in DEVICES or ":" in name or name[-1] in " ." or bool(FORBIDDEN & set(name))
