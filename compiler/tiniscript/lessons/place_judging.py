@@ -37,6 +37,7 @@ def _ends_in(criterion: Criterion, task: Task) -> Finding | None:
     if away_cm <= within_cm:
         return None
     way_cm = math.dist(place, start[:2])
+    gaps_cm = [math.dist(place, pose[:2]) for _, pose in run.track]
     key = "away"
     if way_cm > within_cm:  # else it should come back
         ux, uy = (place.x - start.x_cm) / way_cm, (place.y - start.y_cm) / way_cm
@@ -46,7 +47,9 @@ def _ends_in(criterion: Criterion, task: Task) -> Finding | None:
             key = "turned" if run.driven_cm < STILL_CM else "away"
         elif beside_cm <= within_cm and along_cm >= 0:
             key = "short" if along_cm < way_cm else "far"
-    elif away_cm > max(math.dist(place, pose[:2]) for _, pose in run.track) - BACK_CM:
+        if key in ("short", "away") and min(gaps_cm) <= within_cm:
+            key = "left"
+    elif away_cm > max(gaps_cm) - BACK_CM:
         key = "gone"
     return Finding("ends_in", f"ends_in/{key}", {"cm": in_cm(away_cm)}, criterion.labels)
 

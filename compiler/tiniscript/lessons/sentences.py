@@ -41,6 +41,8 @@ SENTENCES: dict[str, tuple[str, str]] = {
                        "El robot solo giró en su sitio. Adelante es F: F(2, 80)"),
     "ends_in/away": ("At the end the robot was {cm} cm from {place}. Look at which way it went, and change one thing only.",
                      "Al final el robot quedó a {cm} cm {of_place}. Mira por dónde fue y cambia una sola cosa."),
+    "ends_in/left": ("The robot was at {place}, and left it: at the end it was {cm} cm away. Let it stay there.",
+                     "El robot estuvo en {place} y se fue: al final quedó a {cm} cm. Haz que se quede ahí."),
     "ends_in/gone": ("The robot did not come back: at the end it was {cm} cm from {place}. Add the way back.",
                      "El robot no volvió: al final quedó a {cm} cm {of_place}. Agrega el camino de vuelta."),
     "reaches/one": ("The robot came no nearer to {place} than {cm} cm; the task asks for {within} cm or less. Look at the way that it went.",
