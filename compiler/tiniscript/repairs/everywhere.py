@@ -116,7 +116,8 @@ def _untaught(kept: list[Diagnostic | None], source: Source) -> None:
         if name.upper() in taught:
             continue
         if not is_sure:
-            own = name if _NAME.fullmatch(name) and name not in _NO_NAMES else ""
+            is_name = _NAME.fullmatch(name) and name not in _NO_NAMES
+            own = name if is_name and name[:3] not in ("END", "FIN") else ""
             kept[places[0]] = first._replace(values={**first.values, "own": own})
             continue
         values = {"name": name}

@@ -44,6 +44,7 @@ _SHORT = {
     "VE": "F", "VOY": "F", "VAMOS": "F", "VAYA": "F", "DALE": "F",
     "VUELVE": "B", "VUELVO": "B", "VOLVER": "B", "V": "B",
 }  # fmt: skip
+_KEYS = re.compile("(?!FOR$)[FBLR]{2,8}")  # as the keys of another robot: `FFLFF`
 _CURVES = frozenset(("FL", "LF", "FR", "RF"))  # both at once
 # What phones make of a word of the language.
 _MENDED = {
@@ -125,6 +126,10 @@ def _report_unknown_word(scope: Scope, node: ast.Command) -> None:
     if word == "A" and len(texts) == 2:  # adelante, or atrás
         ahead, back = (f"{each}({', '.join(texts)})" for each in "FB")
         scope.report(codes.UNKNOWN_WORD, span, None, found=word, near="", ahead=ahead, back=back)
+        return
+    if node.arguments is None and _KEYS.fullmatch(word) and not near:
+        apart = "; ".join(f"{letter}(1, 60)" for letter in word)
+        scope.report(codes.UNKNOWN_WORD, span, None, found=word, near="", apart=apart)
         return
     values = {
         "found": scope.source[span].upper(),

@@ -18,7 +18,7 @@ from tiniscript.syntax.lexer import NUMBER, ODD, QUOTES, WORD, Token, scan
 from tiniscript.syntax.note_recovery import NoteRecovery
 from tiniscript.syntax.operators import COMPARISONS
 from tiniscript.syntax.phrases import BEFORE_POWER, BEFORE_TIME, TIMES
-from tiniscript.syntax.reporter import Reporter
+from tiniscript.syntax.reporter import Reporter, Resumed
 from tiniscript.syntax.suggestions import shortened
 from tiniscript.syntax.times_recovery import TimesRecovery
 from tiniscript.syntax.units import converted
@@ -32,6 +32,7 @@ _PERCENT = ("%", "CIENTO", "PORCIENTO", "PERCENT")
 _MEASURED = ("cm", "°", "steps")  # that no instruction has, and pupils look at
 _OFTEN = ("POR", "X", "*")
 _SENSIBLE = range(2, 51)  # times that a number in brackets may mean
+_FRAMES = ("*", "-", "/", "+", "=")
 _CLOCKED = ("move", "wait", "beep")
 _SAYING_NO_MORE = frozenset((
     "CM", "SEG", "SEGUNDOS", "SECONDS", "THE", "EL", "AL", "ROBOT", "CAR", "CARRO", "CARRITO",
@@ -124,6 +125,26 @@ class BehindRecovery:
             if number.kind is NUMBER and after.text in TIMES and first.text in WORDS:
                 self._alone(number.text, row, whole)  # `F(1, 50) 3 veces mas`
         self._report(row, whole, order=self._text(row))
+
+    def framed(self, sign: Token) -> None:
+        """`*F(2, 80)*`, `-F(2, 80)-`: an instruction between two signs."""
+        row = self._row()
+        inner = [each for each in row if each.kind != sign.kind]
+        count = (len(row) - len(inner)) // 2
+        if sign.kind not in _FRAMES or not (inner and count) or row[count:-count] != inner:
+            return
+        if inner[0].kind is not WORD or inner[-1].kind not in (")", WORD):
+            return
+        before = Span(row[0].start, row[count - 1].end)
+        also = f"{row[-count].start}:{row[-1].end}"
+        around = self.cursor.source[before]
+        self.reporter.report(
+            codes.LINE_NUMBER, before, None, found=around, around=around, also=also
+        )
+        end = self.cursor.i + len(row)
+        del self.cursor.tokens[end - count : end]
+        self.cursor.i += count
+        raise Resumed
 
     def stop_of_loop(self, first: Token) -> None:
         """`STOP LOOP`: what leaves a loop is BREAK."""

@@ -76,6 +76,7 @@ class Recovery:
         block = self.blocks.innermost
         if self.kit is not None and (block is None or block.here):
             self.again.line()
+            self.of_call.framed(token)
         cursor.i += 1
         if token.kind == "}":
             self.in_block.close_brace(token)

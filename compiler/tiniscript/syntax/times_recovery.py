@@ -56,8 +56,12 @@ class TimesRecovery:
         if cursor.token.text in TIMES and is_head:
             cursor.i += 1
             span = cursor.span_from(number)
-            fix = f"LOOP({number.text})"
-            self.reporter.report(codes.REPEATED, span, span, found=cursor.source[span], fix=fix)
+            found = cursor.source[span]
+            if number.text == "1":  # nothing is repeated
+                self.reporter.report(codes.REPEATED, span, None, found=found, fix="", line=found)
+            else:
+                fix = f"LOOP({number.text})"
+                self.reporter.report(codes.REPEATED, span, span, found=found, fix=fix)
             self.in_block.begin_reported("LOOP", span)
             self.in_block.go_on()
         is_said = cursor.token.kind == "*" or cursor.token.text in (*TIMES, "X")
