@@ -318,7 +318,7 @@ class BlockRecovery:
         cursor = self.cursor
         following = cursor.inner()
         if self.blocks.open and following.text not in ("ELSE", "ELSEIF", "SINO", "ELIF"):
-            self._name_end(self.blocks.open[-1])
+            self.name_end(self.blocks.open[-1])
             self.blocks.end(brace.span)
             self._owed += 1
 
@@ -332,7 +332,7 @@ class BlockRecovery:
             if diagnostic.code is codes.BRACES and diagnostic.span.start == brace.start:
                 self.reporter.change(k, diagnostic._replace(values={"alone": "{ }"}))
 
-    def _name_end(self, block: Block) -> None:
+    def name_end(self, block: Block) -> None:
         """Let the diagnostic of the first brace name the end of its block, which is known now."""
         start = block.arms[0].span.end if block.arms else block.span.end
         for k, diagnostic in enumerate(self.reporter.diagnostics):

@@ -65,6 +65,13 @@ class EndRecovery:
             said = name.text
             self.reporter.fail(codes.EXTRA_WORD, name.span, found=said, label=said, fix="")
 
+    def unclosed(self, header: Block | None) -> None:
+        """`LOOP(4) {` without its `}`: the message of the bracket says where the block ends."""
+        cursor = self.cursor
+        if header is not None and cursor.token.kind == "{" and cursor.closing(cursor.i) is None:
+            header.is_reported = True
+            self.in_block.name_end(header)
+
     def dots(self, header: Block | None) -> None:
         """`LOOP(3) ... END_LOOP`, as the poster has it: what is done goes where the dots are."""
         cursor = self.cursor

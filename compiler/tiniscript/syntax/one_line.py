@@ -88,10 +88,11 @@ class _Reader:
         return Line(";".join(self.row), self.k, tuple(self.open), tuple(self.variables))
 
     def _closes_below(self, start: int) -> bool:
-        """Whether a `{` of the line has its `}` on another one."""
+        """Whether a `{` of the line has its `}` on another one, or none where more follows."""
         row = [each.kind for each in self.tokens[start : self.k]]
         rest = self.tokens[self.k : self.k + 20 * LONGEST]
-        return row.count("{") > row.count("}") and any(each.kind == "}" for each in rest)
+        is_followed = any(each.kind not in (NEWLINE, END) for each in rest)
+        return row.count("{") > row.count("}") and is_followed
 
     def _step(self) -> bool:
         """Read an instruction or what stands between two; return whether it is understood."""

@@ -208,7 +208,7 @@ class Recovery:
         if header is not None and header.word != "DEF" and first.text != "ELSE" and not goes_on:
             self._line_of(header, token)
         if kind in ("{", "}"):
-            return
+            return self.of_end.unclosed(header)
         if header is None and self._is_no_instruction(first):
             if text == ".":
                 self.reporter.answer(token)

@@ -11,24 +11,27 @@ from tiniscript.syntax.ast import Command
 from tiniscript.syntax.blocks import Blocks
 from tiniscript.syntax.call_suggestions import call_in, starts_value
 from tiniscript.syntax.cursor import AT_END, Cursor
-from tiniscript.syntax.lexer import NUMBER, WORD, Token
+from tiniscript.syntax.lexer import NEWLINE, NUMBER, WORD, Token
 from tiniscript.syntax.near import near_at
 from tiniscript.syntax.operators import COMPARISONS
-from tiniscript.syntax.reporter import Failed, Reporter
+from tiniscript.syntax.reporter import Failed, Reporter, Resumed
 from tiniscript.syntax.suggestions import (
     after_bracket,
     end_of_values,
     head_in,
     inside,
+    opposite,
     with_signs,
 )
 from tiniscript.syntax.vocabulary import Vocabulary
-from tiniscript.words import WORDS, meant_by, nearest
+from tiniscript.words import BLOCK_ENDS, WORDS, meant_by, nearest
 
 if TYPE_CHECKING:
     from tiniscript.syntax.parser import Parser
 
 _TIMED = ("move", "wait")
+_ENDS_OF_UNTIL = ("END_UNTIL", "ENDUNTIL", "FIN_UNTIL")
+_FARTHEST = 300  # tokens of a body that ends so
 
 
 def in_its_move(tokens: Sequence[Token], k: int) -> tuple[str, Span] | None:
@@ -147,11 +150,13 @@ class UntilRecovery:
 
     def after_its_move(self, parser: Parser, word: Token) -> NoReturn:
         """`F(2, 80);UNTIL(c)`: the move has its UNTIL, only not where it belongs."""
+        self._as_block(word, is_strict=True)
         here = self.blocks.here
         last = here[-1] if here else None
         known = WORDS.get(last.word) if isinstance(last, Command) else None
         if not isinstance(last, Command) or known is None or known.role not in _TIMED or last.until:
             self._before_its_move(word)
+            self._as_block(word, is_strict=bool(self.blocks.open))
             self.reporter.fail(codes.UNTIL_ALONE, word.span, fix="")
         self._alone(word, self.cursor.source[last.span])
         self.cursor.i += 1
@@ -171,6 +176,40 @@ class UntilRecovery:
             said["line"] = str(source.position(place.start)[0])
             said["here"] = str(source.position(until.start)[0])
         self.reporter.report(codes.UNTIL_ALONE, until.span, place, **said)
+
+    def _as_block(self, until: Token, is_strict: bool) -> None:
+        """`UNTIL(DISTANCE < 10)`, a body, `END_UNTIL`: WHILE asks the opposite.
+
+        Where it `is_strict`, END alone may be that of another block.
+        """
+        cursor = self.cursor
+        tokens, start = cursor.tokens, cursor.i + 1
+        ends = [
+            k
+            for k in range(start, min(len(tokens), start + _FARTHEST))
+            if tokens[k - 1].kind in (";", NEWLINE) and self._ends_until(k, is_strict)
+        ]
+        values = inside(tokens, start)
+        question = self.known.translated(opposite(with_signs(values)))
+        if not ends or not question:
+            return
+        end = ends[0]
+        is_split = tokens[end].text in ("END", "FIN") and tokens[end + 1].text == "UNTIL"
+        span = Span(tokens[end].start, tokens[end + is_split].end)
+        tokens[end : end + 1 + is_split] = [Token(WORD, BLOCK_ENDS["WHILE"], *span)]
+        last = end_of_values(tokens, start, values)
+        while cursor.token.start < last or cursor.i < start:
+            cursor.i += 1
+        place = cursor.span_from(until)
+        self.reporter.report(codes.UNTIL_ALONE, until.span, None, fix="",
+                             header=f"WHILE({question})", right=BLOCK_ENDS["WHILE"])  # fmt: skip
+        self.blocks.begin("WHILE", place).is_reported = True
+        raise Resumed
+
+    def _ends_until(self, k: int, is_strict: bool) -> bool:
+        text, after = self.cursor.tokens[k].text, self.cursor.tokens[k + 1 : k + 2]
+        is_any = text in ("END", "FIN") and (not is_strict or after[0].text == "UNTIL")
+        return text in _ENDS_OF_UNTIL or is_any
 
     def _before_its_move(self, until: Token) -> None:
         """`UNTIL(DISTANCE < 10) F(2, 60)`: the question goes behind."""
