@@ -4,8 +4,7 @@ Knows names, order, kinds, units and ranges, and the fingerprints and hashes mad
 pins and no files: `robots` reads those.
 """
 
-from __future__ import annotations
-
+# No `from __future__ import annotations`: typing would compile each field's again, one by one.
 import zlib
 from collections.abc import Sequence
 from typing import NamedTuple

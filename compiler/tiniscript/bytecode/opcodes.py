@@ -11,8 +11,7 @@ are of eight too, and the last three bits are the comparator.
 Knows numbers, operands, stack pictures, faults and limits. Does not know what anything does.
 """
 
-from __future__ import annotations
-
+# No `from __future__ import annotations`: typing would compile each field's again, one by one.
 from struct import Struct
 from typing import NamedTuple
 

@@ -7,8 +7,7 @@ Plain code is what one pass over the text can emit, as a robot does that reads t
 (`docs/text.md`): no instruction that fuses others, every ELSE of the text, DEFs where they stand.
 """
 
-from __future__ import annotations
-
+# No `from __future__ import annotations`: typing would compile each field's again, one by one.
 from typing import NamedTuple
 
 from tiniscript.bytecode.opcodes import CODE_BYTES, time8

@@ -5,8 +5,7 @@ which conditions compare to a constant. In plain code (`lower`) nothing of that 
 push: each operator is its instruction, and a condition is a value that IF or UNTIL takes.
 """
 
-from __future__ import annotations
-
+# No `from __future__ import annotations`: typing would compile each field's again, one by one.
 from typing import NamedTuple
 
 from tiniscript.bytecode.opcodes import BY_NAME, PUSHED, SHORTS, Op

@@ -5,8 +5,7 @@ numbers here: variables, sensors, actuators and DEFs by their order. Numbers are
 TRUE is 1 and FALSE is 0. All mistakes have been reported before.
 """
 
-from __future__ import annotations
-
+# No `from __future__ import annotations`: typing would compile each field's again, one by one.
 from collections.abc import Iterator
 from typing import NamedTuple
 
@@ -86,7 +85,7 @@ class Assign(NamedTuple):
 class Arm(NamedTuple):
     reads: tuple[int, ...]
     condition: Expression
-    body: tuple[Statement, ...]
+    body: "tuple[Statement, ...]"
     span: Span
 
 
@@ -94,7 +93,7 @@ class If(NamedTuple):
     """`has_else`: the text has an ELSE, perhaps with nothing behind it."""
 
     arms: tuple[Arm, ...]
-    otherwise: tuple[Statement, ...]
+    otherwise: "tuple[Statement, ...]"
     span: Span
     has_else: bool = False
 
@@ -103,14 +102,14 @@ class Loop(NamedTuple):
     """`times` is None for FOREVER."""
 
     times: Expression | None
-    body: tuple[Statement, ...]
+    body: "tuple[Statement, ...]"
     span: Span
 
 
 class While(NamedTuple):
     reads: tuple[int, ...]
     condition: Expression
-    body: tuple[Statement, ...]
+    body: "tuple[Statement, ...]"
     span: Span
 
 

@@ -5,8 +5,7 @@ the order in which a stack machine meets them, so that deep brackets cannot exha
 stack. Between the two sides of an AND or OR stands AND_LEFT or OR_LEFT.
 """
 
-from __future__ import annotations
-
+# No `from __future__ import annotations`: typing would compile each field's again, one by one.
 from typing import NamedTuple
 
 from tiniscript.source import Span
@@ -55,7 +54,7 @@ class Arm(NamedTuple):
     """IF or ELSEIF: `condition` is None where it could not be read."""
 
     condition: Argument | None
-    body: tuple[Instruction, ...]
+    body: "tuple[Instruction, ...]"
     span: Span
 
 
@@ -63,7 +62,7 @@ class If(NamedTuple):
     """`has_else`: an ELSE stands in it, perhaps with nothing behind."""
 
     arms: tuple[Arm, ...]
-    otherwise: tuple[Instruction, ...]
+    otherwise: "tuple[Instruction, ...]"
     has_else: bool
     span: Span
 
@@ -72,13 +71,13 @@ class Loop(NamedTuple):
     """`times` is None for FOREVER."""
 
     times: Argument | None
-    body: tuple[Instruction, ...]
+    body: "tuple[Instruction, ...]"
     span: Span
 
 
 class While(NamedTuple):
     condition: Argument | None
-    body: tuple[Instruction, ...]
+    body: "tuple[Instruction, ...]"
     span: Span
 
 
@@ -89,7 +88,7 @@ class Break(NamedTuple):
 class Def(NamedTuple):
     name: str
     name_span: Span
-    body: tuple[Instruction, ...]
+    body: "tuple[Instruction, ...]"
     span: Span
 
 
@@ -100,4 +99,4 @@ class Program(NamedTuple):
     """`start` is SI, SB or PING."""
 
     start: str
-    body: tuple[Instruction, ...]
+    body: "tuple[Instruction, ...]"

@@ -3,8 +3,7 @@
 All other limits (variables, blocks, values on the stack, DEFs, calls) are those of the language.
 """
 
-from __future__ import annotations
-
+# No `from __future__ import annotations`: typing would compile each field's again, one by one.
 from typing import NamedTuple
 
 from tiniscript.words import ALIASES, BLOCK_ENDS

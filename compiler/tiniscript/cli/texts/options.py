@@ -4,8 +4,7 @@ Parsers, help, completion, `cli/paths.py` and the documents are made from it and
 `verbs.py`, which says how texts are written.
 """
 
-from __future__ import annotations
-
+# No `from __future__ import annotations`: typing would compile each field's again, one by one.
 from typing import NamedTuple
 
 from tiniscript.cli.texts.verbs import Both

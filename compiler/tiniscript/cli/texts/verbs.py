@@ -5,8 +5,7 @@ What is typed stands between backticks: documents show it as code, and on a term
 in it.
 """
 
-from __future__ import annotations
-
+# No `from __future__ import annotations`: typing would compile each field's again, one by one.
 from typing import NamedTuple
 
 Both = tuple[str, str]  # a text in English and in Spanish
