@@ -200,6 +200,7 @@ ROUNDED_TIMES = _warning("TS829")
 LATE_ARM = _warning("TS830")
 ZERO_BEFORE = _warning("TS831")
 UNUSED_READING = _warning("TS840")
+CUT_VALUE = _warning("TS841")
 
 
 def in_order(found: list[Diagnostic]) -> list[Diagnostic]:
@@ -212,6 +213,7 @@ def in_order(found: list[Diagnostic]) -> list[Diagnostic]:
     seen = set()
     other_units = [each.span for each in found if each.code is OTHER_UNIT]
     translated = {each.span.start for each in found if each.code is OTHER_LANGUAGE}
+    shown = {each.span.start for each in found if each.values.get("shown")}
     meant = {each.span.start for each in found if each.code is UNKNOWN_WORD or (
         each.code is UNKNOWN_NAME and each.values.get("near")
     )}  # fmt: skip
@@ -222,6 +224,8 @@ def in_order(found: list[Diagnostic]) -> list[Diagnostic]:
         ):
             continue  # `R(90 grados)`
         key = (diagnostic.code, diagnostic.span)
+        if diagnostic.code is QUOTE and start in shown:
+            continue  # `SHOW("HELLO")`
         if diagnostic.code is BAD_NAME and (start in translated or start in meant):
             continue  # `atrás(2, 80)`, `Bebé(1, 440)`: the word goes, with its accent
         if key in seen or (diagnostic.is_mistake and start in mistaken):

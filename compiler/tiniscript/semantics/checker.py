@@ -102,10 +102,7 @@ class _Checker(Scope):
     def assign(self, node: ast.Assign, made: list[Statement]) -> None:
         name = self.names.get(node.name)
         if name is not None and name.what in ("sensor", "actuator"):
-            sensor = name.what == "sensor"
-            shown = "5" if node.value is None else self.source[node.value.span]
-            self.report(codes.SENSOR_SET if sensor else codes.ACTUATOR_SET, node.name_span,
-                        name=node.name, value=shown)  # fmt: skip
+            self.wrong.device_set(node, name)
             return
         if node.name in self.def_names:
             other = self.wrong.free_name(node.name, self.procedures)

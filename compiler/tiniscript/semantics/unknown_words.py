@@ -8,9 +8,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Set as AbstractSet
-from itertools import chain
+from itertools import chain, takewhile
 
 from tiniscript.diagnostics import codes
+from tiniscript.semantics.named_values import value_of
 from tiniscript.semantics.symbols import ENOUGH, Scope
 from tiniscript.source import Span
 from tiniscript.syntax import ast
@@ -233,9 +234,14 @@ def report_words_for_numbers(scope: Scope, node: ast.Command, word: Word, said: 
     `SHOW(HOLA)` has none: words are not shown.
     """
     if word.role == "show":
+        shown = dict.fromkeys(each.values.get("shown") for each in scope.diagnostics[:ENOUGH])
         for k, each in enumerate(scope.diagnostics[said:], said):
             if each.code is codes.UNKNOWN_NAME and not each.values.get("near"):
-                values = {**each.values, "shown": each.values["found"]}
+                name = each.values["found"]
+                number = str(len([*takewhile(name.__ne__, filter(None, shown))]) + 1)
+                is_word = len(name) > 2 and not value_of(name)
+                said_as = {"meaning": name, "number": number} if is_word else {}
+                values = {**each.values, "shown": name, **said_as}
                 scope.diagnostics[k] = each._replace(values=values)
         return
     tables = {"%": POWER_WORDS, "Hz": NOTE_WORDS}

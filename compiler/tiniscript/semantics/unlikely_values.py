@@ -16,6 +16,7 @@ from tiniscript.semantics.ir import Assign, Beep, Body, Expression, Move, Progra
 from tiniscript.semantics.named_values import is_power, is_time
 from tiniscript.semantics.optimizer import constant, fold
 from tiniscript.source import Source, Span
+from tiniscript.words import HERTZ, POWER, Argument
 
 SECOND = 1000  # ms
 LONG_TIME = 20 * SECOND  # a power was meant, where the power is a time
@@ -96,9 +97,9 @@ def _measured(move: Move, kit: Kit, source: Source) -> list[Diagnostic]:
 
 
 def of_power(move: Move) -> list[Diagnostic]:
-    """Return what there is to say of a power that moves no robot."""
+    """Return what there is to say of a power that moves no robot, or that is too much."""
     time, power = _number(move.time), _number(move.power)
-    found: list[Diagnostic] = []
+    found = [] if move.power is None else _cut(move.power, POWER, move.span, move.direction)
     if power is not None and 0 <= power < LITTLE_POWER and (time is None or time < LONG_TIME):
         shown = "2" if not time else as_text(time)
         shown = "FOREVER" if move.time is None else shown
@@ -139,7 +140,7 @@ def _is_milliseconds(time: int) -> bool:
 def of_beep(beep: Beep) -> list[Diagnostic]:
     """Return what there is to say of a sound that lasts longer than anybody can bear."""
     time, hertz = _number(beep.time), _number(beep.hertz)
-    found: list[Diagnostic] = []
+    found = _cut(beep.hertz, HERTZ, beep.span, "BEEP")
     if time is not None and time <= 0:
         _report(found, codes.MOVE_OF_NO_TIME, beep.span, word="BEEP")
     if time is None or hertz is None or time < LONG_BEEP:
@@ -195,6 +196,16 @@ def _is_right_order(first: str, second: str) -> bool:
 def _is_swapped(time: int, power: int | None) -> bool:
     """`F(80, 2)`: a long time with a power that moves hardly any robot."""
     return power is not None and LONG_TIME <= time <= 100_000 and 0 < power <= LITTLE_POWER
+
+
+def _cut(expression: Expression, its: Argument, span: Span, word: str) -> list[Diagnostic]:
+    """`BEEP(0.2, 440-660)`: the robot takes the lowest or the highest value instead."""
+    value = _number(expression)
+    if value is None or its.low <= value <= its.high:
+        return []
+    taken = as_text(its.low if value < its.low else its.high)
+    values = {"word": word, "value": as_text(value), "unit": its.unit, "taken": taken}
+    return [Diagnostic(codes.CUT_VALUE, span, values)]
 
 
 def _number(expression: Expression | None) -> int | None:

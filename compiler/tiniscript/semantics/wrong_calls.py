@@ -13,8 +13,9 @@ from itertools import count, islice
 from tiniscript.diagnostics import codes
 from tiniscript.fixed_point import HIGHEST, as_text
 from tiniscript.semantics import ir
+from tiniscript.semantics.comparisons import looks_ahead
 from tiniscript.semantics.out_of_range import meant
-from tiniscript.semantics.symbols import Scope
+from tiniscript.semantics.symbols import Name, Scope
 from tiniscript.semantics.unknown_words import (
     report_named_arguments,
     report_not_callable,
@@ -91,6 +92,18 @@ class WrongCalls:
         if word == "LOOP":
             fix = "LOOP(FOREVER)" if text.upper() == "TRUE" else f"WHILE({text})"
         self.scope.report(codes.WANTS_NUMBER, span, by=word, found=text, fix=fix)
+
+    def device_set(self, node: ast.Assign, device: Name) -> None:
+        """`DISTANCE = 20`, `LED = TRUE`: a number for a distance may be where to stop."""
+        value = "5" if node.value is None else self.scope.source[node.value.span]
+        said = {"name": node.name, "value": value}
+        if device.what == "actuator":
+            self.scope.report(codes.ACTUATOR_SET, node.name_span, None, **said)
+            return
+        if value.isdecimal() and looks_ahead(self.scope.kit.sensors[device.number]):
+            until = f"UNTIL({node.name} < {value})"
+            said |= {"until": until, "example": f"F(5, 60) {until}"}
+        self.scope.report(codes.SENSOR_SET, node.name_span, None, **said)
 
     def free_name(self, name: str, procedures: Sequence[ir.Procedure]) -> str:
         """Return `DANCE_2`, or with the first number of which the text has no name yet."""

@@ -93,13 +93,13 @@ def _melody(texts: Sequence[str], word: Word) -> str:
 
 
 def _timed_motors(texts: Sequence[str], word: Word) -> str:
-    """`M(2, 80, 80)`, `M(80, 80, 2)`: return M with the powers, and a wait of that time."""
+    """`M(2, 80, 80)`, `M(80, 80, 2)`: return M with the powers, a wait of that time, and S."""
     if not all(_NUMBER.fullmatch(text) for text in texts):
         return ""
     for time, powers in ((texts[0], texts[1:]), (texts[-1], texts[:-1])):
         are_powers = all(LONG_TIME_S <= float(each) <= _MOST_POWER for each in powers)
         if are_powers and 0 < float(time) < LONG_TIME_S:
-            return f"{_call(word, powers)};W({time})"
+            return f"{_call(word, powers)};W({time});S"
     return ""
 
 

@@ -60,6 +60,7 @@ _PATTERN = re.compile(
     re.VERBOSE | re.DOTALL,
 )
 
+_TIMES = re.compile(r"[0-9]{1,3}[xX][0-9]{1,3}")
 # What people write, and what the language writes.
 _OTHER_SIGNS = {
     "==": "=", "!=": "<>", "¡=": "<>",
@@ -209,11 +210,20 @@ class _Repairs:
             self.report(codes.UNIT, span, found=text, number=number, right=right, unit=unit)
             return Token(NUMBER, number, *span)
         meant = _digits_meant(text)
+        if not meant and _TIMES.fullmatch(text) and not self._is_alone(span):  # `F(3x2, 80)`
+            meant_by_x = " * ".join(re.split("[xX]", text))
+            self.report(codes.BAD_NUMBER, span, found=text, right=meant_by_x)
+            return Token(NUMBER, number, *span)
         pointed = text if re.fullmatch(r"[0-9]*\.[0-9]+\.[0-9.]+", text) else ""
         letter = next((each for each in text if each in "OoIl"), "") if meant else ""
         values = {"found": text, "right": meant, "pointed": pointed, "letter": letter}
         self.report(codes.BAD_NUMBER, span, **values)
         return Token(NUMBER, meant or number, *span)
+
+    def _is_alone(self, span: Span) -> bool:
+        """Whether it is all that its brackets hold: `F(2x80)` lacks a comma."""
+        before = self._text[max(0, span.start - 9) : span.start].rstrip(SPACES)[-1:]
+        return before == "(" and self._text[span.end : span.end + 9].lstrip(SPACES)[:1] == ")"
 
     def lettered(self, text: str, span: Span) -> Token:
         """`O.5`: a letter in the place of the first digit."""

@@ -10,6 +10,7 @@ from typing import NoReturn
 
 from tiniscript.diagnostics import codes
 from tiniscript.source import Span
+from tiniscript.syntax.ast import Assign
 from tiniscript.syntax.block_recovery import BlockRecovery
 from tiniscript.syntax.cursor import AT_END, Cursor
 from tiniscript.syntax.lexer import NUMBER, WORD, Token
@@ -26,6 +27,8 @@ def asked_alone(
     """Report the question at the cursor, whose tokens are `row`, or the whole line with it."""
     start, first, known = cursor.i, row[0], in_block.known
     span = Span(first.start, row[-1].end)
+    if len(row) > 2 and row[-2].kind == "=" and row[-1].kind is WORD:
+        _turned(cursor, reporter, in_block, row)
     said = {"found": row[1].text if len(row) > 1 else first.text, "asked": cursor.source[span]}
     sensors = sensors_of(first.text, known)
     is_short = len(row) == 3 and row[1].kind in SIGNS and row[2].kind is NUMBER
@@ -48,3 +51,20 @@ def asked_alone(
         cursor.i = start
     fix = known.translated(head_in(WORDS["IF"], row))
     reporter.fail(codes.NOT_AN_INSTRUCTION, span, span, **said, fix=fix)
+
+
+def _turned(
+    cursor: Cursor, reporter: Reporter, in_block: BlockRecovery, row: Sequence[Token]
+) -> None:
+    """`DISTANCE - 5 = REST`: the value stands before the name."""
+    name, is_last = row[-1], cursor.tokens[cursor.i + len(row)].kind in AT_END
+    is_free = name.text not in WORDS and not in_block.known.is_name(name.text)
+    if not (is_last and is_free) or any(each.kind in ("<", ">") for each in row):
+        return
+    span = Span(row[0].start, name.end)
+    value = in_block.known.translated(cursor.source[Span(row[0].start, row[-3].end)])
+    fix = f"{name.text} = {value}"
+    in_block.blocks.here.append(Assign(name.text, name.span, None, name.span))
+    cursor.i += len(row)
+    reporter.report(codes.NOT_AN_INSTRUCTION, span, span, found="=", turned=name.text, fix=fix)
+    raise Resumed
