@@ -75,7 +75,9 @@ _PHRASES = tuple(
     )
 )
 # Words of this language of which one may stand for the other in a repair.
-_SAME = {"STOP": "S", "TRUE": "FOREVER", "WHILE": "LOOP", "FALSE": "NOT"}
+_SAME = {
+    "STOP": "S", "TRUE": "FOREVER", "WHILE": "LOOP", "FALSE": "NOT", BLOCK_ENDS["LOOP"]: BLOCK_ENDS["WHILE"],
+}  # fmt: skip
 _STRUCTURAL = ("alias", "end", "setup", "start", "later")
 _EXAMPLES = (80.0, 440.0)  # a power and a tone, which pupils leave out
 _OF_RANGE = ("ENTRE", "BETWEEN", "HASTA", "DESDE")  # `RANDOM(entre 1 y 6)`

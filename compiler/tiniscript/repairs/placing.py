@@ -300,6 +300,7 @@ _PLACES: dict[Code, Callable[[Diagnostic, Source], Edits]] = {
     codes.OTHER_LANGUAGE: _other_word,
     codes.UNKNOWN_NAME: _span,
     codes.OUT_OF_RANGE: _around,
+    codes.FOREVER_NOT_HERE: _span,
     codes.WANTS_CONDITION: _span,
     codes.MIXED_COMPARE: _span,
 }

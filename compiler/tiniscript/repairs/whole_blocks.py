@@ -37,7 +37,8 @@ _STRUCTURE = frozenset((
     codes.BRACES, codes.END_ALONE, codes.END_SPLIT, codes.NEVER_ENDS, codes.SPANISH_IF,
     codes.HEADER_SEPARATOR, codes.ELSE_IF, codes.NEEDLESS_FRAME,
 ))  # fmt: skip
-_HEADED = (codes.OTHER_LANGUAGE, codes.MISSING_OPEN)  # where the word is one of a block
+# Where the word is one of a block.
+_HEADED = (codes.OTHER_LANGUAGE, codes.MISSING_OPEN, codes.FOREVER_NOT_HERE)
 
 
 class _Block(NamedTuple):
@@ -85,7 +86,10 @@ def _is_structure(diagnostic: Diagnostic) -> bool:
     if diagnostic.code is codes.EMPTY_BRACKETS:
         return bool(said.get("of_def"))  # `def turn():`
     if diagnostic.code in _HEADED:
-        return (said.get("right") or said.get("word", "")) in _OF_BLOCKS
+        word = said.get("right") or said.get("word", "")
+        return word.removesuffix("(FOREVER)") in _OF_BLOCKS
+    if diagnostic.code is codes.WRONG_END:
+        return bool(said.get("fix")) and not said.get("swapped")
     return diagnostic.code in _STRUCTURE
 
 

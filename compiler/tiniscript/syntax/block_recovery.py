@@ -33,7 +33,7 @@ from tiniscript.syntax.suggestions import (
 )
 from tiniscript.syntax.unended import open_above, where_it_ends
 from tiniscript.syntax.vocabulary import Vocabulary
-from tiniscript.syntax.wrong_ends import is_swapped, is_taken_for_header
+from tiniscript.syntax.wrong_ends import is_swapped, is_taken_for_header, told_with_header
 from tiniscript.words import ALIASES, BLOCK_ENDS, TURN_WORDS, WORDS, meant_by, nearest
 
 
@@ -257,7 +257,8 @@ class BlockRecovery:
             block.head = None
             self.blocks.end(span)
         elif block is not None:
-            self._report_wrong_end(span, found, block, fix=BLOCK_ENDS[block.word])
+            if not told_with_header(self, block):
+                self._report_wrong_end(span, found, block, fix=BLOCK_ENDS[block.word])
             self._owed += 1
             self.blocks.end(span)
         elif not self._is_misspelt_header(word) and not is_taken_for_header(self, word):
@@ -278,21 +279,18 @@ class BlockRecovery:
         cursor = self.cursor
         cursor.i += 1
         named = cursor.token
-        is_header = named.text in ("SI", *COUNTING) or meant_by(named.text) in BLOCK_ENDS
+        said = {named.text, meant_by(named.text) or ""}
+        is_header = bool(said & {"SI", "FOREVER", *COUNTING, *BLOCK_ENDS})
         if named.kind is WORD and is_header:
             cursor.i += 1  # `FIN SI`, `FIN MIENTRAS`, `FIN PARA`
         block = self.blocks.innermost
         if named is cursor.token and block is not None and self._else_comes():
             self.reporter.report(codes.EXTRA_WORD, end.span, found=end.text, fix="")
             return
-        if block is None and named.text in TITLES:  # `FIN PROGRAMA`
-            cursor.i += 1
-            span = cursor.span_from(end)
-            shown = cursor.source[span]
-            self.reporter.report(codes.EXTRA_WORD, span, found=end.text, label=shown)
-            return
         if block is None:
-            self.reporter.report(codes.EXTRA_WORD, end.span, found=end.text, label=end.text)
+            cursor.i += named.text in TITLES  # `FIN PROGRAMA`
+            span = cursor.span_from(end)
+            self.reporter.report(codes.EXTRA_WORD, span, found=end.text, label=cursor.source[span])
             return
         if not block.is_reported:
             right = BLOCK_ENDS[block.word]

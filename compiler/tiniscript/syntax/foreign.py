@@ -24,7 +24,7 @@ from tiniscript.syntax.suggestions import (
     opposite,
     with_signs,
 )
-from tiniscript.words import WORDS, meant_by
+from tiniscript.words import BLOCK_ENDS, WORDS, meant_by
 
 if TYPE_CHECKING:
     from tiniscript.syntax.parser import Parser
@@ -51,8 +51,7 @@ def foreign_word(parser: Parser, word: Token, meant: str) -> None:
         parser.recovery.in_block.other.around(word)
     if meant == "FOREVER":
         parser.recovery.groups.forever(word)
-    if meant == "FOREVER":
-        _report(parser, word, meant, "LOOP(FOREVER)")
+        _report(parser, word, "LOOP(FOREVER)", "LOOP(FOREVER)")
         forever_alone(parser, word)
     if meant in ENDS:
         _end(parser, word, meant)
@@ -148,11 +147,17 @@ def foreign_header(parser: Parser, word: Token, meant: str) -> NoReturn:
 
 def forever_alone(parser: Parser, word: Token) -> NoReturn:
     """`FOREVER` alone on its line begins a block elsewhere."""
-    cursor = parser.cursor
-    cursor.i += 1
-    if cursor.token.kind in ("{", *AT_END) or cursor.token.text == ":":
+    is_header = begins_forever(parser)
+    parser.cursor.i += 1
+    if is_header:
         parser.recovery.in_block.begin_reported("LOOP", word.span)
     parser.recovery.in_block.go_on()
+
+
+def begins_forever(parser: Parser) -> bool:
+    """Whether nothing but a sign of a block stands behind the FOREVER at the cursor."""
+    following = parser.cursor.following
+    return following.kind in ("{", *AT_END) or following.text == ":"
 
 
 def _end(parser: Parser, word: Token, meant: str) -> NoReturn:
@@ -160,9 +165,14 @@ def _end(parser: Parser, word: Token, meant: str) -> NoReturn:
     if block is not None and block.is_reported:
         parser.recovery.in_block.end_of_any(word)
     else:
-        _report(parser, word, meant, meant)
+        is_open = any(each.word == ENDS[meant] for each in parser.blocks.open)
+        right = meant if block is None or is_open else BLOCK_ENDS[block.word]
+        if right == meant:
+            _report(parser, word, meant, meant)
+        else:  # `WHILE(c)`, a body, `FIN_REPETIR`
+            parser.reporter.report(codes.END_ALONE, word.span, found=word.text, right=right)
         parser.cursor.i += 1
-        parser.recovery.in_block.end(ENDS[meant], word)
+        parser.recovery.in_block.end(ENDS[right], word)
     raise Failed
 
 

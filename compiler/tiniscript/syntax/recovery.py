@@ -20,7 +20,7 @@ from tiniscript.syntax.construct_recovery import ConstructRecovery
 from tiniscript.syntax.cursor import AT_END, Cursor
 from tiniscript.syntax.def_recovery import DefRecovery
 from tiniscript.syntax.end_recovery import EndRecovery
-from tiniscript.syntax.foreign import forever_alone
+from tiniscript.syntax.foreign import begins_forever, forever_alone
 from tiniscript.syntax.group_recovery import GroupRecovery
 from tiniscript.syntax.joining_recovery import JoiningRecovery
 from tiniscript.syntax.lexer import NUMBER, ODD, WORD, Token
@@ -153,7 +153,8 @@ class Recovery:
             self.of_until.after_its_move(parser, word)
         if role == "forever":
             self.groups.forever(word)
-            self.reporter.report(codes.FOREVER_NOT_HERE, word.span)
+            fix = {"fix": "LOOP(FOREVER)", "right": "LOOP"} if begins_forever(parser) else {}
+            self.reporter.report(codes.FOREVER_NOT_HERE, word.span, None, **fix)
             if self.cursor.following.kind == "(":
                 raise Failed
             forever_alone(parser, word)

@@ -39,6 +39,16 @@ def is_swapped(reader: BlockRecovery, block: Block, end: Token) -> bool:
     return True
 
 
+def told_with_header(reader: BlockRecovery, block: Block) -> bool:
+    """Whether the header is said in another language, so that its message names the end, too."""
+    for k, each in enumerate(reader.reporter.diagnostics):
+        if each.code is codes.OTHER_LANGUAGE and each.span.start == block.header.start:
+            values = {**each.values, "ends": BLOCK_ENDS[block.word]}
+            reader.reporter.change(k, each._replace(values=values))
+            return True
+    return False
+
+
 def is_taken_for_header(reader: BlockRecovery, word: str) -> bool:
     """Whether `Loco(4)` stands before, where END_LOOP ends nothing; then say so."""
     here = reader.blocks.here
