@@ -168,7 +168,7 @@ HEARD_WORDS = {
 SENSOR_STEMS = {"LUZ": "LIGHT", "LINEA": "LINE"}
 
 # What no single word says here: which way to turn, and what to switch on or off.
-TURN_WORDS = frozenset(["TURN", "ROTATE", "SPIN", "GIRAR", "GIRA", "GIRO", "ROTAR", "ROTA", "VOLTEAR", "VOLTEA", "VOLTEE", "GIRE", "DOBLAR", "DOBLA"])
+TURN_WORDS = frozenset(["TURN", "ROTATE", "SPIN", "GIRAR", "GIRA", "GIRO", "ROTAR", "ROTA", "VOLTEAR", "VOLTEA", "VOLTEAS", "VOLTEE", "GIRE", "GIRAS", "DOBLAR", "DOBLA", "DOBLAS"])
 SWITCH_WORDS = {
     **dict.fromkeys(["TURN_ON", "SWITCH_ON", "PRENDER", "PRENDE", "ENCENDER", "ENCIENDE"], "TRUE"),
     **dict.fromkeys(["TURN_OFF", "SWITCH_OFF", "APAGAR", "APAGA"], "FALSE"),

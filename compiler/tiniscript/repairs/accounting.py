@@ -76,7 +76,8 @@ _PHRASES = tuple(
 )
 # Words of this language of which one may stand for the other in a repair.
 _SAME = {
-    "STOP": "S", "TRUE": "FOREVER", "WHILE": "LOOP", "FALSE": "NOT", BLOCK_ENDS["LOOP"]: BLOCK_ENDS["WHILE"],
+    "STOP": "S", "TRUE": "FOREVER", "WHILE": "LOOP", "FALSE": "NOT",
+    BLOCK_ENDS["LOOP"]: BLOCK_ENDS["WHILE"],
 }  # fmt: skip
 _STRUCTURAL = ("alias", "end", "setup", "start", "later")
 _EXAMPLES = (80.0, 440.0)  # a power and a tone, which pupils leave out

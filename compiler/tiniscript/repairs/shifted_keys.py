@@ -20,8 +20,8 @@ _FIRST = re.compile(r"([!\"#$%&/(])(0{1,2})")  # `(0`, `&0`
 _ALONE = re.compile(r"[!\"#$%&/]")
 _POINT = re.compile(r"=(\.[0-9]+)")  # `=.39`
 _SEMICOLON = re.compile(r"0;([0-9]{1,2})")  # `0;39`, the comma's key; `0:39` may be a clock
-# `F82, 809`: no Shift for the brackets.
-_UNSHIFTED = re.compile(r"\s*([FBLRfblr])8([0-9](?:\.[0-9]+)?)\s*,\s*([1-9]0|100)9\s*")
+# `F82, 809`, `F82, 80)`: no Shift for the brackets, or for the first one.
+_UNSHIFTED = re.compile(r"\s*([FBLRfblr])8([0-9](?:\.[0-9]+)?)\s*,\s*([1-9]0|100)[9)]\s*")
 _UNCLOSED = re.compile(r"\s*([FBLRfblr])\s*\(\s*([0-9.]+)\s*,\s*([1-9]0|100)9\s*")  # `F(2, 809`
 _LEAST = {"%": 20, "Hz": 100}  # what is lower, pupils do not write
 _LONGEST_S = 10

@@ -14,6 +14,7 @@ from collections.abc import Sequence
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.source import Source
+from tiniscript.syntax.cursor import AT_END
 from tiniscript.syntax.lexer import NEWLINE, Token
 from tiniscript.words import WORDS
 
@@ -27,6 +28,8 @@ def in_notes(notes: Sequence[Token], tokens: Sequence[Token], source: Source) ->
     """Return the warnings for instructions that the robot does not do."""
     found = []
     short = [each for each in notes if len(each.text) <= LONGEST]
+    if all(each.kind in AT_END for each in tokens):
+        return _all_of_it(short)
     rows = [each for each in short if _CALLS.fullmatch(each.text) or swallowed(each.text)]
     is_ping = [each.text for each in tokens[:2]] == ["PING", "|"]
     depth = k = 0
@@ -42,6 +45,15 @@ def in_notes(notes: Sequence[Token], tokens: Sequence[Token], source: Source) ->
             values = {"found": rest or note.text.strip("/; \t"), "rest": rest}
             found.append(Diagnostic(codes.IN_A_NOTE, note.span, values))
     return found
+
+
+def _all_of_it(notes: Sequence[Token]) -> list[Diagnostic]:
+    """Return a warning for `// I go F(1, 80); W(2)`, where the program is nothing but notes."""
+    for note in notes:
+        rest = "; ".join(re.findall(_CALL, note.text, re.IGNORECASE))
+        if rest:
+            return [Diagnostic(codes.IN_A_NOTE, note.span, {"found": rest, "rest": rest})]
+    return []
 
 
 def swallowed(note: str) -> list[str]:

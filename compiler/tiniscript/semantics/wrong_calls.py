@@ -30,6 +30,7 @@ from tiniscript.syntax.call_suggestions import count_diagnostic
 from tiniscript.words import Argument, Word
 
 _NAME = re.compile(r"\w+")
+_NEAR = 500  # characters behind a value for a sensor in which its use is looked for
 
 
 class WrongCalls:
@@ -103,6 +104,10 @@ class WrongCalls:
         if value.isdecimal() and looks_ahead(self.scope.kit.sensors[device.number]):
             until = f"UNTIL({node.name} < {value})"
             said |= {"until": until, "example": f"F(5, 60) {until}"}
+            behind = self.scope.source.text[node.span.end : node.span.end + _NEAR]
+            used = re.search(rf"(?i)\b([FBLR])\s*\(\s*{node.name}\s*,[^)\n]*\)", behind)
+            if used:  # `DISTANCE = 90;F(DISTANCE, 80)`
+                said |= {"word": used[1].upper(), "used": used[0]}
         self.scope.report(codes.SENSOR_SET, node.name_span, None, **said)
 
     def free_name(self, name: str, procedures: Sequence[ir.Procedure]) -> str:

@@ -15,7 +15,9 @@ from tiniscript.syntax.phrases import BEFORE_TIME, TIMES
 from tiniscript.syntax.reporter import Failed, Reporter, Resumed
 from tiniscript.syntax.sentence_recovery import SentenceRecovery
 from tiniscript.syntax.suggestions import body_begins
-from tiniscript.words import Word
+from tiniscript.words import OTHER_WAY, WORDS, Word
+
+_MANY = 6  # moves that an example has
 
 
 class BracketRecovery:
@@ -71,7 +73,12 @@ class BracketRecovery:
             self.reporter.fail(
                 codes.RESERVED, word.span, word=word.text, right=cursor.free_name(word.text)
             )
-        self.reporter.report(codes.MISSING_OPEN, span, word=word.text, fix=fix, usage=known.usage)
+        values = {"word": word.text, "fix": fix, "usage": known.usage}
+        if rest and all(each.text in OTHER_WAY for each in (word, *rest)):  # `F F L F`
+            letters = [each.text for each in (word, *rest)]
+            values["words"] = ", ".join(dict.fromkeys(letters))
+            values["example"] = "; ".join(WORDS[each].example for each in letters[:_MANY])
+        self.reporter.report(codes.MISSING_OPEN, span, None, **values)
         if cursor.token.kind is WORD and cursor.token.text != "UNTIL":
             self.in_block.go_on()
         if cursor.token.kind == ",":  # `F 2, 80, R 1, 50`

@@ -358,10 +358,9 @@ class ValueConstructs:
                 said = token.text if token.text in WORDS else foreign_block(token.text)
                 said = ENDS.get(said or "", said)
                 is_end = token.text in ENDS or foreign_block(token.text) in (*ENDS, "END")
-                if said == block or is_end:
-                    depth += -1 if is_end else 1
-                    if depth < 0:
-                        return True
+                if is_end and not depth:
+                    return said in (block, "END")
+                depth += -1 if is_end else said in BLOCK_ENDS
         return False
 
     # -- values in front of their word --------------------------------------------------------
