@@ -195,10 +195,11 @@ class GroupRecovery:
         raise Resumed
 
     def line_of_def(self, block: Block) -> None:
-        """`DEF TURN = R(1, 60)`: behind the sign at the cursor stands what it does."""
+        """`DEF TURN = R(1, 60)`, `DEF TURN R(1, 60)`: at the cursor, what it does, or the sign."""
         tokens, k = self.cursor.tokens, self.cursor.i
-        end = first = k + 1
-        self._block_of_def(block)
+        has_sign = tokens[k].kind is not WORD
+        end = first = k + has_sign
+        self._block_of_def(block, first)
         if tokens[first].text in HEADERS:
             return
         orders: list[Sequence[Token]] = []
@@ -219,6 +220,8 @@ class GroupRecovery:
         has_end = ENDS.get(orders[-1][0].text) == "DEF"
         is_ended, last = (True, end) if has_end else self.seen.end_comes("DEF", end)
         is_later = not is_ended and self.seen.goes_on(block, self.in_block.blocks.open[:-1], end)
+        if not (has_sign or has_end or is_ended or is_later or self._is_over(end)):
+            return
         right = "" if has_end or is_later else BLOCK_ENDS["DEF"]
         texts = (f"DEF {block.name.text}", *(self.seen.said(each) for each in orders), right)
         self.reporter.answer(tokens[k])
@@ -231,9 +234,19 @@ class GroupRecovery:
             row.append(Token(WORD, BLOCK_ENDS["DEF"], *tokens[end - 1].span))
         self._read_on(k, end, row)
 
-    def _block_of_def(self, block: Block) -> None:
+    def _is_over(self, k: int) -> bool:
+        """Whether a DEF whose line ends at `k` has no more: a call, a DEF or nothing follows."""
+        tokens, known = self.cursor.tokens, self.in_block.known
+        k = self.cursor.after_newlines(k)
+        while tokens[k].text in HEADERS:  # a block that begins with a call
+            while tokens[k].kind not in AT_END:
+                k += 1
+            k = self.cursor.after_newlines(k)
+        return tokens[k].kind is END or tokens[k].text == "DEF" or known.is_def(tokens[k].text)
+
+    def _block_of_def(self, block: Block, start: int) -> None:
         """`DEF DANCE: LOOP(2): F(1, 60)`: all of the line is what it does."""
-        cursor, start = self.cursor, self.cursor.i + 1
+        cursor = self.cursor
         first = cursor.tokens[start]
         line = None
         if first.text in HEADERS and block.name is not None:

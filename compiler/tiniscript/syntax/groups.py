@@ -69,7 +69,8 @@ class Groups:
         known = self.in_block.known
         command = known.command(first.text)
         if len(piece) == 1:
-            return command is not None and command.role in ("stop", "break")
+            is_alone = command is not None and command.role in ("stop", "break")
+            return is_alone or first.text in ENDS
         is_call = piece[1].kind == "("
         is_block = command is not None and command.role in ("block", "arm", "end")
         is_doing = command is not None and (command.is_instruction or command.role == "actuator")

@@ -38,6 +38,7 @@ from tiniscript.syntax.blocks import ENDS, HEADERS, Blocks
 from tiniscript.syntax.cursor import AT_END, Cursor
 from tiniscript.syntax.expressions import ExpressionParser
 from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, ODD, WORD, Scan, Token, scan
+from tiniscript.syntax.operators import COMPARISONS
 from tiniscript.syntax.reporter import Failed, Reporter, Resumed
 from tiniscript.words import BLOCK_ENDS, WORDS, Word
 
@@ -322,7 +323,10 @@ class Parser:
         head, is_read, span = None, True, word.span
         if word.text == "ELSE":
             if cursor.token.kind == "(" and not self.recovery.groups.is_body(cursor.i):
+                start = cursor.i
                 self.no_arguments(word, "ELSEIF")
+                if any(each.kind in COMPARISONS for each in cursor.tokens[start : cursor.i]):
+                    word = Token(WORD, "ELSEIF", *word.span)  # an ELSE may follow it
         else:
             try:
                 head = self.argument_of(word, is_reported)

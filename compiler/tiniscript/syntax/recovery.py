@@ -190,7 +190,7 @@ class Recovery:
             kind, text = token.kind, token.text
         goes_on = kind in SIGNS or text in ("AND", "OR")  # of the question, or of its line
         goes_on = goes_on or (text in AFTER_HEADER and after.kind in AT_END)
-        if header is not None and header.word == "DEF" and text in ("=", ":"):
+        if header is not None and header.word == "DEF" and (kind is WORD or text in ("=", ":")):
             self.groups.line_of_def(header)
         if header is not None and kind == "(":
             if first.text == "IF" and self.groups.is_whole(header, cursor.i):
