@@ -213,6 +213,8 @@ class FrozenQuestions:
     def _frozen_show(self, show: Show, outermost: Loop | While) -> None:
         """`D = DISTANCE; LOOP(5); SHOW(D); W(1); END_LOOP`: each round shows the same."""
         variables = _variables(show.value) if len(show.value) == 1 else []
+        if variables and self._thrown_once(show, variables[0], outermost):
+            return
         held = self._sensors_of(variables)
         changed = self._changed_in(outermost)
         if not held or changed is None or changed & set(variables):
@@ -223,6 +225,38 @@ class FrozenQuestions:
             return  # it is shown beside what is measured now, or the rounds need it
         fix = f"SHOW({held[name]})"
         self._report(codes.FROZEN_WHILE, show.span, name=name, sensor=held[name], fix=fix)
+
+    def _thrown_once(self, show: Show, variable: int, loop: Loop | While) -> bool:
+        """`DICE = RANDOM(1, 6); LOOP(5); SHOW(DICE); END_LOOP`: five times the same number.
+
+        It is said where the loop shows it in each round, shows nothing else that changes, and
+        where the number is there for nothing else.
+        """
+        sets = [
+            each
+            for each in self._program.body
+            if isinstance(each, Assign) and each.variable == variable
+        ]
+        if len(sets) != 1 or self._set_to[variable] != [sets[0].value]:
+            return False
+        if all(term.op != "RANDOM" for term in sets[0].value) or _goes_once(loop):
+            return False
+        term = Term("VARIABLE", variable)
+        is_only_shown = all(
+            isinstance(each, Show)
+            for each in every(self._program)
+            if any(term in expression for expression in expressions(each))
+        )
+        shown = {term for each in walk(loop.body) if isinstance(each, Show) for term in each.value}
+        others = [each for each in shown if each.op in _CHANGING or each.op == "VARIABLE"]
+        is_before = sets[0].span.end <= loop.span.start
+        if not (is_before and is_only_shown and others == [term] and show in _each_round(loop)):
+            return False
+        name, said = self._program.variables[variable], self._source[sets[0].span]
+        if not any(each.values.get("thrown") == name for each in self.found):
+            within = f"{said};{self._source[show.span]}"
+            self._report(codes.FROZEN_WHILE, show.span, thrown=name, within=within)
+        return True
 
     def _changed_in(self, loop: Loop | While) -> set[int] | None:
         """Return the variables that get a value in a loop; None where it takes no time."""
@@ -310,6 +344,23 @@ class FrozenQuestions:
 
     def _report(self, code: Code, span: Span, **values: str) -> None:
         self.found.append(Diagnostic(code, span, values))
+
+
+def _goes_once(loop: Loop | While) -> bool:
+    times = loop.times if isinstance(loop, Loop) else None
+    return times is not None and constant(fold(times)) == 1000
+
+
+def _each_round(loop: Loop | While) -> list[Statement]:
+    """Return the statements of a loop that no IF is around."""
+    found: list[Statement] = []
+    rest: list[Loop | While] = [loop]
+    while rest:
+        for each in rest.pop().body:
+            found.append(each)
+            if isinstance(each, (Loop, While)):
+                rest.append(each)
+    return found
 
 
 def _variables(condition: Expression) -> list[int]:

@@ -30,7 +30,7 @@ from tiniscript.semantics.ir import (
 )
 from tiniscript.semantics.optimizer import constant, fold
 from tiniscript.semantics.written_questions import question_of
-from tiniscript.source import Source
+from tiniscript.source import Source, Span
 from tiniscript.syntax.operators import OPPOSITES, SIGN_OF
 
 LONG_MOVE = 500  # ms: a robot goes a hand's breadth in this time
@@ -132,6 +132,8 @@ class LateQuestions:
                         break
                     return  # it drives away from what is near
                 values = self._idle(stop, move, place, question)
+                if values["fix"]:
+                    values |= self._instead(body, move, question)
                 if place == "move" or not pauses:
                     self.found.append(Diagnostic(codes.IDLE_STOP, stop.span, values))
                 return
@@ -154,6 +156,26 @@ class LateQuestions:
         if not comes:
             values["needless" if place == "move" else "behind"] = written
         return values
+
+    def _instead(self, body: Body, move: Move, question: If) -> dict[str, str]:
+        """Return what the move with its UNTIL takes the place of: all of it, or the move alone."""
+        first, last = sorted((move.span, question.span))
+        begin, there, end = (
+            str(self._source.position(at)[0])
+            for at in (first.start, question.span.start, last.end - 1)
+        )
+        between = [each for each in body if first.end <= each.span.start < last.start]
+        of = self._source[move.span]
+        if len(question.arms[0].body) > 1:
+            return {"of": of, "rest": there}
+        text = self._source.text
+        beside = text[: first.start].rpartition("\n")[2] + text[last.end :].partition("\n")[0]
+        is_alone = begin == end or not beside.partition("//")[0].strip()
+        if any(not isinstance(each, Read) for each in between) or not is_alone:
+            return {"of": of, "out": there}
+        if begin == end:
+            return {"all": self._source[Span(first.start, last.end)]}
+        return {"first": begin, "last": end}
 
     def _is_blind(self, move: Move, least: int) -> bool:
         """Whether a move lasts long, and looks at nothing."""
