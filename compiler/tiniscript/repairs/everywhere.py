@@ -20,6 +20,7 @@ _NAMES = (
 _SIGNS = (codes.OTHER_SIGN, codes.ODD_CHARACTER)
 _FULL_STOP = re.compile(r"\)[ \t]{0,9}(?P<stop>\.)(?![.\w])")
 
+_CALLS = (codes.UNKNOWN_WORD, codes.UNTAUGHT, codes.WHICH_WAY)
 MOVES = ("F", "B", "L", "R")
 TAUGHT = ("SALTO", "PASO", "BAILE", "JUMP", "STEP", "DANCE")  # by the poster and the lessons
 _IN_DEF = re.compile(r"(?i)\bDEF\s{0,9}\(?\s{0,9}(\w+)")
@@ -58,6 +59,7 @@ def said_once(found: Sequence[Diagnostic], source: Source) -> list[Diagnostic]:
             kept[k] = None
     _unknown(kept)
     _untaught(kept, source)
+    _other_name(kept, source)
     _full_stops(kept, source)
     return [each for each in kept if each is not None]
 
@@ -127,6 +129,32 @@ def _untaught(kept: list[Diagnostic | None], source: Source) -> None:
         kept[places[0]] = Diagnostic(codes.UNTAUGHT, first.span, values)
         for k in places[1:]:
             kept[k] = None
+
+
+def _other_name(kept: list[Diagnostic | None], source: Source) -> None:
+    """`DEF JUMP` twice, and one name below that no DEF teaches: it is that of the second."""
+    found = [(k, each) for k, each in enumerate(kept) if each is not None and each.is_mistake]
+    twice = [(k, each) for k, each in found if each.code is codes.DEF_TWICE]
+    calls = [(k, each) for k, each in found if each.code in _CALLS and _is_call(each, source)]
+    names = {source[each.span].upper() for _, each in calls}
+    if len(twice) != 1 or len(names) != 1:
+        return
+    place, double = twice[0]
+    if any(each.span.start < double.span.start for _, each in calls):
+        return
+    kept[place] = double._replace(values={**double.values, "called": names.pop()})
+    for k, _ in calls:
+        kept[k] = None
+
+
+def _is_call(diagnostic: Diagnostic, source: Source) -> bool:
+    """Whether a name that a DEF may have is all of an instruction."""
+    text, (start, end) = source.text, diagnostic.span
+    before = text[max(0, start - 100) : start].rstrip(" \t")[-1:]
+    after = text[end:][:100].lstrip(" \t")[:1]
+    name = source[diagnostic.span].upper()
+    is_name = _NAME.fullmatch(name) is not None and name not in _NO_NAMES
+    return is_name and before in ("", *";\r\n|") and after in ("", *";\r\n")
 
 
 def _stands_alone(diagnostic: Diagnostic, source: Source) -> bool:

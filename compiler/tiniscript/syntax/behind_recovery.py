@@ -17,7 +17,7 @@ from tiniscript.syntax.cursor import AT_END, Cursor
 from tiniscript.syntax.lexer import NUMBER, ODD, QUOTES, WORD, Token, scan
 from tiniscript.syntax.note_recovery import NoteRecovery
 from tiniscript.syntax.operators import COMPARISONS
-from tiniscript.syntax.phrases import BEFORE_POWER, BEFORE_TIME, TIMES
+from tiniscript.syntax.phrases import BEFORE_POWER, BEFORE_TIME, BESIDE, TIMES
 from tiniscript.syntax.reporter import Reporter, Resumed
 from tiniscript.syntax.suggestions import shortened
 from tiniscript.syntax.times_recovery import TimesRecovery
@@ -124,7 +124,9 @@ class BehindRecovery:
         for number, after in pairwise(row):
             if number.kind is NUMBER and after.text in TIMES and first.text in WORDS:
                 self._alone(number.text, row, whole)  # `F(1, 50) 3 veces mas`
-        self._report(row, whole, order=self._text(row))
+        is_order = len(row) > 1 and row[1].text in WORDS and WORDS[row[1].text].is_instruction
+        is_beside = row[0].text in BESIDE and is_order  # `F(1, 80) con BEEP(2, 440)`
+        self._report(row, whole, order=self._text(row[is_beside:]))
 
     def framed(self, sign: Token) -> None:
         """`*F(2, 80)*`, `-F(2, 80)-`: an instruction between two signs."""

@@ -11,6 +11,7 @@ from typing import NoReturn
 
 from tiniscript.diagnostics import codes
 from tiniscript.source import Span
+from tiniscript.syntax.amounts import is_amount
 from tiniscript.syntax.block_recovery import BlockRecovery
 from tiniscript.syntax.blocks import ENDS, HEADERS, Block
 from tiniscript.syntax.call_suggestions import written
@@ -18,6 +19,7 @@ from tiniscript.syntax.cursor import AT_END, Cursor
 from tiniscript.syntax.ends import arm_at, comes_later
 from tiniscript.syntax.groups import Group, Groups
 from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, WORD, Token
+from tiniscript.syntax.near import ASKING, near_at
 from tiniscript.syntax.one_line import line_of_block
 from tiniscript.syntax.phrases import TIMES
 from tiniscript.syntax.reporter import Reporter, Resumed
@@ -128,6 +130,11 @@ class GroupRecovery:
             self.reporter.withdraw(said)
             self._loop(times, group, self.seen.place_of(word, bracket), end)
         asked = [each for each in group.values if self.seen.is_head(word.text, each)]
+        near = near_at(tokens, bracket + 1, self.in_block.known) if word.text in ASKING else None
+        if not asked and near is not None and tokens[near.end].kind == ",":
+            asked = list(group.values[:1])  # `IF(hay pared, S)`
+        else:
+            near = None
         known = len(asked) == len(group.values) == 1 and bool(right)
         is_one = word.text == "LOOP" or len(group.orders) == 1
         if len(group.values) > len(asked) or len(asked) > 1 or not right:
@@ -135,7 +142,12 @@ class GroupRecovery:
         self.reporter.withdraw(said)
         span = Span(word.start, tokens[group.end - 1].end)
         orders = ";".join(self.seen.said(each) for each in group.orders)
-        head = written(with_signs(asked[0])) if asked else ""
+        head = self.in_block.known.translated(written(with_signs(asked[0]))) if asked else ""
+        head = near.question if near is not None else head
+        if asked and is_amount(asked[0][-1].text):  # `IF(distancia < poca, S)`
+            known = False
+            sample = "20" if head.startswith("DISTANCE") else "500"
+            head = head.removesuffix(asked[0][-1].text) + sample
         block = Block(word.text, span, None, None)
         is_going_on = self.seen.goes_on(block, self.in_block.blocks.open, group.end)
         other = self._other_order(group.end) if word.text == "IF" and known and is_one else None

@@ -14,7 +14,8 @@ FILLERS = frozenset(
     ("LA", "EL", "LOS", "LAS", "THE", "QUE", "A", "AL", "HACIA", "DE", "CON", "UN", "UNA")
 )
 # What joins two instructions that are wanted at the same time: `F(2, 80) y BEEP(2, 440)`.
-AT_ONCE = frozenset(("+", "&", "AND", "Y", "CON", "WITH", "MIENTRAS", "WHILE"))
+BESIDE = frozenset(("CON", "WITH", "MIENTRAS", "WHILE"))  # while the move goes on
+AT_ONCE = frozenset(("+", "&", "AND", "Y", *BESIDE))
 # What stands before how long something takes: `avanza por 3 segundos`.
 BEFORE_POWER = frozenset(("POTENCIA", "POWER", "VELOCIDAD", "SPEED", "FUERZA"))
 BEFORE_TIME = frozenset(("POR", "DURANTE", "FOR"))

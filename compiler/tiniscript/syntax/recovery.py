@@ -27,7 +27,7 @@ from tiniscript.syntax.lexer import NUMBER, ODD, WORD, Token
 from tiniscript.syntax.name_recovery import NameRecovery
 from tiniscript.syntax.note_recovery import NoteRecovery
 from tiniscript.syntax.operators import SIGNS
-from tiniscript.syntax.phrases import AFTER_HEADER, AT_ONCE, BETWEEN
+from tiniscript.syntax.phrases import AFTER_HEADER, AT_ONCE, BESIDE, BETWEEN
 from tiniscript.syntax.reporter import Failed, Reporter, Resumed
 from tiniscript.syntax.setup_recovery import SetupRecovery
 from tiniscript.syntax.suggestions import after_bracket, shortened
@@ -293,11 +293,16 @@ class Recovery:
         end = after_bracket(tokens, cursor.i + 2) if after.text == "BEEP" else None
         if first.text not in ("F", "B") or end is None or len(move) < 6 or move[0] != first.text:
             return ""
-        if move[2] != tokens[cursor.i + 3].text:  # they do not take as long
+        times = (move[2], tokens[cursor.i + 3].text)
+        if not all(each.replace(".", "", 1).isdecimal() for each in times):
+            return ""
+        longer = round(float(times[0]) - float(times[1]), 3)
+        if longer < 0 or (longer and cursor.token.text not in BESIDE):
             return ""
         power = move[4] if first.text == "F" else f"-{move[4]}"
         beep = cursor.source[Span(after.start, tokens[end - 1].end)]
-        return f"M({power}, {power});{beep};S"
+        rest = f"W({longer:g});" if longer else ""
+        return f"M({power}, {power});{beep};{rest}S"
 
     def meant(self, word: Token) -> Word | None:
         """Return the command that a word of another language means."""

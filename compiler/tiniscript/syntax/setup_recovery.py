@@ -33,6 +33,7 @@ from tiniscript.syntax.suggestions import (
     inside,
     is_question,
 )
+from tiniscript.syntax.worded_questions import either_sensor
 from tiniscript.words import TURN_WORDS, WORDS, meant_by
 
 if TYPE_CHECKING:
@@ -276,8 +277,9 @@ class SetupRecovery:
                     place = cursor.span_from(word)
                     self.reporter.report(codes.SPANISH_IF, word.span, place, fix=line)
                     raise Resumed
-                fix = head_in(WORDS["IF"], inside(cursor.tokens, cursor.i + 1))
-                self.reporter.report(codes.SPANISH_IF, word.span, fix=fix)
+                values = inside(cursor.tokens, cursor.i + 1)
+                said = either_sensor(values, known) or {"fix": head_in(WORDS["IF"], values)}
+                self.reporter.report(codes.SPANISH_IF, word.span, None, **said)
                 foreign_header(parser, word, "IF")
         row = cursor.tokens[cursor.i + 1 : cursor.i + 5]
         if word.text == "SI" and any(meant_by(each.text) == "BUTTON" for each in row):

@@ -13,11 +13,12 @@ from tiniscript.diagnostics import codes
 from tiniscript.fixed_point import ONE
 from tiniscript.kit import Device, Kit
 from tiniscript.source import Span
+from tiniscript.syntax.call_suggestions import written
 from tiniscript.syntax.lexer import NUMBER, WORD, Token
 from tiniscript.syntax.operators import COMPARISONS
 from tiniscript.syntax.phrases import FILLERS
 from tiniscript.syntax.reporter import Reporter
-from tiniscript.syntax.suggestions import OPERATOR_WORDS
+from tiniscript.syntax.suggestions import OPERATOR_WORDS, with_signs
 from tiniscript.syntax.vocabulary import Vocabulary
 from tiniscript.words import NEAR_WORDS, UNITS, WORDS, meant_by
 
@@ -77,6 +78,24 @@ def sensors_of(text: str, known: Vocabulary) -> list[str]:
 
 def _lights(names: Iterable[str]) -> list[str]:
     return sorted(name for name in names if name.partition("_")[0] in _LIGHT_ROOTS)
+
+
+def either_sensor(values: Sequence[Token], known: Vocabulary) -> dict[str, str]:
+    """`luz > 50`: return the headers that ask one sensor or the other, where two may be meant."""
+    row = with_signs(values)
+    meant = {
+        each.text: sensors_of(each.text, known)
+        for each in row
+        if each.kind is WORD and not known.is_own(known.value(each.text))
+    }
+    places = [text for text, names in meant.items() if len(names) > 1]
+    if len(places) != 1 or len(meant[places[0]]) != 2:
+        return {}
+    one, two = (
+        written([each._replace(text=name) if each.text == places[0] else each for each in row])
+        for name in meant[places[0]]
+    )
+    return {"one": f"IF({one})", "two": f"IF({two})"}
 
 
 def is_asked_alone(text: str) -> bool:
