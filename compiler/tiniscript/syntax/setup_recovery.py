@@ -277,8 +277,8 @@ class SetupRecovery:
                     place = cursor.span_from(word)
                     self.reporter.report(codes.SPANISH_IF, word.span, place, fix=line)
                     raise Resumed
-                values = inside(cursor.tokens, cursor.i + 1)
-                said = either_sensor(values, known) or {"fix": head_in(WORDS["IF"], values)}
+                row = inside(cursor.tokens, cursor.i + 1)
+                said = either_sensor(row, known) or {"fix": head_in(WORDS["IF"], row)}
                 self.reporter.report(codes.SPANISH_IF, word.span, None, **said)
                 foreign_header(parser, word, "IF")
         row = cursor.tokens[cursor.i + 1 : cursor.i + 5]
