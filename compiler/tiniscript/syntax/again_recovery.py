@@ -43,6 +43,7 @@ class AgainRecovery:
         self.cursor = cursor
         self.reporter = reporter
         self.in_block = in_block
+        self._said: dict[int, int] = {}  # of a line: the one above it that says more, see `_above`
 
     def line(self) -> None:
         """Report an instruction at the cursor that says no more than that it is done again."""
@@ -128,7 +129,8 @@ class AgainRecovery:
         if tokens[k].kind is not NEWLINE:  # `F(2, 80); "`
             here = [each for each in self.in_block.blocks.here if isinstance(each, Command)]
             return source[here[-1].span] if here else None
-        number = source.position(first.start)[0] - 1
+        line = source.position(first.start)[0]
+        number = line - 1
         while number > 0:
             text = source.line_text(number).partition("//")[0].strip()
             if text and not _MARKS.fullmatch(text) and not _SAME.fullmatch(text.upper()):
@@ -140,8 +142,10 @@ class AgainRecovery:
                     for each in self.reporter.diagnostics[:_ENOUGH]
                 )
                 is_plain = not (words & blocks or is_wrong) and words & {*WORDS}
+                self._said[line] = number
                 return text.rstrip(" ;") if is_plain else ""
-            number -= 1
+            number = self._said.get(number, number - 1)
+        self._said[line] = 0
         return None
 
     def _goes_on(self, row: Sequence[Token]) -> None:

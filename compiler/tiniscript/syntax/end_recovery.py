@@ -33,8 +33,10 @@ class EndRecovery:
         cursor = self.cursor
         if end.text not in ENDS_OF_ANY or sign.text not in _SIGNS:
             return
-        named, after = cursor.tokens[cursor.i + 2], cursor.tokens[cursor.i + 3]
-        if named.kind is not WORD or named.text not in BLOCK_ENDS or after.kind not in AT_END:
+        named = cursor.tokens[cursor.i + 2]
+        if named.kind is not WORD or named.text not in BLOCK_ENDS:  # `END .`
+            return
+        if cursor.tokens[cursor.i + 3].kind not in AT_END:
             return
         self.reporter.answer(sign)
         del cursor.tokens[cursor.i + 1]

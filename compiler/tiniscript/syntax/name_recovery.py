@@ -247,8 +247,8 @@ class NameRecovery:
     def _word_before(self, word: Token, following: Token) -> None:
         """`LET X = 5`, `CALL DANCE`, `MY SPEED = 5`: go on with what is right."""
         cursor, start = self.cursor, self.cursor.i
-        fix = ""
-        if word.text in BEFORE_NAME and following.text in BEFORE_NAME:  # `const int X = 5`
+        fix, names = "", (word.text in BEFORE_NAME) + (following.text in BEFORE_NAME)
+        if names > 1 and cursor.tokens[start + 2].kind is WORD:  # `const int X = 5`
             start = cursor.i = start + 1
             word, following = Token(WORD, word.text, word.start, following.end), cursor.following
         name = spaced_name(cursor.tokens, start)

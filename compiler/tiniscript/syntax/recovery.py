@@ -249,7 +249,7 @@ class Recovery:
             cursor.tokens[cursor.i : cursor.i + 2] = [Token("→", "->", token.start, after.end)]
             token, after = cursor.token, cursor.following
             kind, text = token.kind, token.text
-        both = self._at_once(first, before, after) if text in AT_ONCE else ""
+        both = self._at_once(first, after) if text in AT_ONCE else ""
         if both or (text in ("+", "/", "&", "-", "→", "->", ">") and self._is_command(after)):
             self.reporter.answer(token)
             shown = shortened(cursor.source.text[first.start : before.end])
@@ -286,11 +286,12 @@ class Recovery:
         if kind is not WORD:
             raise Failed
 
-    def _at_once(self, first: Token, before: Token, after: Token) -> str:
+    def _at_once(self, first: Token, after: Token) -> str:
         """`F(2, 80) + BEEP(2, 440)`: return the program for both at once, or nothing."""
         tokens, cursor = self.cursor.tokens, self.cursor
         move = [each.text for each in tokens[max(0, cursor.i - 6) : cursor.i]]
-        end = after_bracket(tokens, cursor.i + 2) if after.text == "BEEP" else None
+        is_beep = after.text == "BEEP" and tokens[cursor.i + 2].kind == "("
+        end = after_bracket(tokens, cursor.i + 2) if is_beep else None
         if first.text not in ("F", "B") or end is None or len(move) < 6 or move[0] != first.text:
             return ""
         times = (move[2], tokens[cursor.i + 3].text)

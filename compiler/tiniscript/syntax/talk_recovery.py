@@ -146,6 +146,8 @@ class TalkRecovery:
         if is_end and cursor.tokens[k].text != "DE":
             return
         k += is_end
+        if cursor.tokens[k].kind is not WORD:  # `deja de`
+            return
         moves = WORDS.get(meant_by(cursor.tokens[k].text) or "")
         is_move = cursor.tokens[k].text in TURN_WORDS or (moves and moves.role == "move")
         end = k + 1
