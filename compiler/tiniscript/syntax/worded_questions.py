@@ -19,8 +19,9 @@ from tiniscript.syntax.operators import COMPARISONS
 from tiniscript.syntax.phrases import FILLERS
 from tiniscript.syntax.reporter import Reporter
 from tiniscript.syntax.suggestions import OPERATOR_WORDS, with_signs
+from tiniscript.syntax.units import converted
 from tiniscript.syntax.vocabulary import Vocabulary
-from tiniscript.words import NEAR_WORDS, UNITS, WORDS, meant_by
+from tiniscript.words import NEAR_WORDS, NUMBER_WORDS, UNITS, WORDS, meant_by
 
 _SAID = {
     "little": "POCA POCO POQUITA POQUITO CORTA CORTO PEQUENA PEQUENO CHICA CHICO BAJA BAJO MENOR"
@@ -37,7 +38,13 @@ _SAID = {
 }
 _LITTLE, _MUCH, _LIGHT, _AHEAD = (frozenset(words.split()) for words in _SAID.values())
 _AHEAD |= NEAR_WORDS
-_NOT = frozenset(("NO", "NOT", "SIN", "WITHOUT"))
+_NONE = frozenset(("NADA", "NADIE", "NOTHING", "NOBODY", "NINGUN", "NINGUNO", "NINGUNA"))
+_NO = frozenset(("NO", "NOT", "SIN", "WITHOUT"))
+_NOT = _NO | _NONE
+_RIGHT = frozenset(("DERECHA", "DERECHO", "DER", "RIGHT"))
+_LEFT = frozenset(("IZQUIERDA", "IZQUIERDO", "IZQ", "LEFT"))
+_JOINED = {"Y": "AND", "E": "AND", "AND": "AND", "O": "OR", "U": "OR", "OR": "OR"}
+_HALF = frozenset(("MEDIO", "MEDIA", "HALF"))
 _LIGHT_ROOTS = ("LIGHT", "LINE")
 _FAR = 10  # centimetres, as in every example
 _MANY = 50  # of what a variable holds
@@ -45,27 +52,85 @@ _MANY = 50  # of what a variable holds
 
 def report_words(owner: str, row: Sequence[Token], reporter: Reporter, known: Vocabulary) -> None:
     """Report the tokens behind IF, WHILE or UNTIL, and raise Failed, if they ask in words."""
-    texts = [token.text for token in row]
-    numbers = [token.text for token in row if token.kind is NUMBER]
-    if known.kit is None or any(token.kind not in (WORD, NUMBER) for token in row):
-        return
-    if len(numbers) > 1 or (numbers and not set(texts) & _AHEAD) or not _is_wordy(texts, known):
+    if not row or known.kit is None or any(token.kind not in (WORD, NUMBER) for token in row):
         return
     span = Span(row[0].start, row[-1].end)
+    joint = _joint([token.text for token in row], known)
+    if joint:
+        _answer(row, reporter)
+        reporter.fail(codes.IN_WORDS, span, None, joint=joint)
+    row, number = _measured(row, known)
+    texts = [token.text for token in row]
+    numbers = [token.text for token in row if token.kind is NUMBER]
+    is_of_light = _asks_light(texts)
+    if len(numbers) > 1 or not _is_wordy(texts, known):
+        return
+    if numbers and not set(texts) & (_AHEAD | _NONE) and not is_of_light and not _is_no_sign(texts):
+        return
     if "BUTTON" in map(meant_by, texts):
         if not known.is_own("BUTTON"):
             reporter.fail(codes.NO_BUTTON, span)
         return
-    for token in row:
-        reporter.answer(token)
-    own = [text for text in texts if known.is_own(text)]
+    _answer(row, reporter)
+    own = [text for text in texts if known.is_own(text) and text != number]
     values = example_of(texts, known.kit, own)
-    if numbers:
-        question = values["question"].rpartition(" ")[0]
-        values = {"asked": f"{question} {numbers[0]}"}
+    if number:
+        also = values.get("another", "").rpartition(" ")[0]
+        values = {"asked": f"{values['question'].rpartition(' ')[0]} {number}"}
+        values |= {"also": f"{also} {number}"} if also else {}
     elif not own and not _is_asking(texts):
         values = {"example": values["question"]}
     reporter.fail(codes.IN_WORDS, span, None, word=owner, **values)
+
+
+def _answer(row: Sequence[Token], reporter: Reporter) -> None:
+    for token in row:
+        reporter.answer(token)
+
+
+def _joint(texts: Sequence[str], known: Vocabulary) -> str:
+    """Return AND or OR, if two questions are joined and one of them is in words."""
+    places = [k for k, text in enumerate(texts) if text in _JOINED and not known.is_own(text)]
+    if not places or places[0] == 0 or places[-1] == len(texts) - 1:
+        return ""
+    pieces = [texts[a + 1 : b] for a, b in pairwise((-1, *places, len(texts)))]
+    are_asking = all(set(piece) & (_AHEAD | _LIGHT | _NONE) for piece in pieces)
+    is_done = any(_is_done(text) for text in texts if text not in _JOINED and text not in UNITS)
+    are_clear = all(_is_understood(piece[0], known) and not _is_wordy(piece, known)
+                    for piece in pieces if piece)  # fmt: skip
+    return _JOINED[texts[places[0]]] if are_asking and not (is_done or are_clear) else ""
+
+
+def _measured(row: Sequence[Token], known: Vocabulary) -> tuple[Sequence[Token], str]:
+    """Return the row without units, and its number in centimetres or of light, "" where none."""
+    texts = [token.text for token in row]
+    for k, (token, after) in enumerate(zip(row, (*texts[1:], ""), strict=True)):
+        unit = UNITS.get(after, ("", 0))
+        is_near = bool(set(texts) & (_AHEAD | _NONE))
+        if token.kind is NUMBER:
+            rest = [*row[: k + 1], *row[k + 2 :]] if unit[0] else row
+            is_whole = token.end - token.start == len(token.text)  # no `300mm`
+            fits = unit[0] == "cm" if unit[0] else is_whole
+            return rest, (converted(token.text, after) if unit[0] else token.text) if fits else ""
+        is_length = unit[0] == "cm" and is_near
+        if is_length and (token.text in _HALF or token.text in NUMBER_WORDS):
+            number = "0.5" if token.text in _HALF else NUMBER_WORDS[token.text]
+            return [*row[:k], *row[k + 2 :]], converted(number, after)
+        is_limit = is_near and known.is_own(token.text) and not known.is_number(token.text)
+        if is_limit and (is_length or (not after and k > 1 and texts[k - 1] in ("A", "DE", "QUE"))):
+            rest = [*row[: k + 1], *row[k + 2 :]]
+            return rest, token.text if unit[1] in (0, 1000) else ""
+    return row, ""
+
+
+def _asks_light(texts: Sequence[str]) -> bool:
+    """Whether light is compared with a number: `la luz es mayor que 500`."""
+    return bool(set(texts) & _LIGHT) and bool(set(texts) & (_LITTLE | _MUCH))
+
+
+def _is_no_sign(texts: Sequence[str]) -> bool:
+    """`distancia no menor 20`."""
+    return any(a in _NO and OPERATOR_WORDS.get(b) in ("<", ">") for a, b in pairwise(texts))
 
 
 def sensors_of(text: str, known: Vocabulary) -> list[str]:
@@ -119,24 +184,30 @@ def example_of(texts: Sequence[str], kit: Kit, own: Sequence[str] = ()) -> dict[
         subjects = [own[0]]
     elif not named and words & _LIGHT and not words & _AHEAD:
         subjects = _lights(devices)[:2]
+    turned = [f"LIGHT_{way}" for way, its in (("R", _RIGHT), ("L", _LEFT)) if words & its]
+    if len(turned) == 1 and turned[0] in subjects:  # `mucha luz a la derecha`
+        subjects = turned
     subjects = subjects or ["DISTANCE" if "DISTANCE" in devices else next(iter(devices), "X")]
     is_below = is_little or (subjects[0] == "DISTANCE" and not is_much)
     sign = "<" if is_below != bool(words & _NOT) else ">"
+    sign += "=" * _is_no_sign(texts)
     asked = [f"{name} {sign} {_number(name, devices.get(name))}" for name in subjects]
     return dict(zip(("question", "another"), asked, strict=False))
 
 
 def _is_asking(texts: Sequence[str]) -> bool:
-    return bool(set(texts) & (_AHEAD | _LIGHT | _LITTLE | _MUCH))
+    return bool(set(texts) & (_AHEAD | _LIGHT | _LITTLE | _MUCH | _NONE))
 
 
 def _is_wordy(texts: Sequence[str], known: Vocabulary) -> bool:
     """Whether words are a question in words, rather than values and signs said in words."""
     if len(texts) < 2 or any(_is_done(text) for text in texts) or known.is_own("_".join(texts)):
         return False
-    is_no = texts[0] in _NOT and len(texts) == 2 and not _is_asking(texts[1:])  # `IF(NO READY)`
+    is_no = texts[0] in _NO and len(texts) == 2 and not _is_asking(texts[1:])  # `IF(NO READY)`
     if is_no or "AND" in texts or "OR" in texts:
         return False
+    if _is_no_sign(texts):
+        return True
     unknown = [text for text in texts if not _is_understood(text, known)]
     is_compared = any(OPERATOR_WORDS.get(text) in COMPARISONS for text in texts[1:-1])
     subject = next((text for text in texts if text not in FILLERS), "")
