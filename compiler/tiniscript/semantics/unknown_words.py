@@ -283,13 +283,14 @@ def whole_name(scope: Scope, part: str, names: AbstractSet[str]) -> str:
 
 
 def asks_of_light(scope: Scope, span: Span, name: str) -> bool:
-    """Whether a name is all that IF or WHILE asks, and means light or none: `IF(oscuro)`."""
+    """Whether IF or WHILE asks only a name that means light or none: `IF(NOT oscuro = TRUE)`."""
     text = scope.source.text
     header = _HEADER.search(text[: span.start][-60:])
-    is_all = header is not None and text[span.end :][:60].lstrip()[:1] == ")"
-    if header is None or not (is_all and is_asked_alone(name)) or name in scope.set_somewhere:
+    behind = _ANSWERED.match(text, span.end)
+    if header is None or behind is None or not is_asked_alone(name) or name in scope.set_somewhere:
         return False
-    values = example_of([name], scope.kit)
+    is_no = bool(header[2]) != ((behind[1] or "").upper() in ("FALSE", "0"))
+    values = example_of(["NOT"] * is_no + [name], scope.kit)
     scope.report(codes.IN_WORDS, span, None, word=header[1].upper(), **values)
     return True
 
@@ -303,7 +304,8 @@ def meant_value(scope: Scope, span: Span, name: str, is_assigned: bool) -> str:
     return POWER_WORDS.get(name, "") if is_assigned and before == "=" else ""
 
 
-_HEADER = re.compile(r"(?i)\b(IF|ELSEIF|UNTIL|WHILE)\s*\(\s*$")
+_HEADER = re.compile(r"(?i)\b(IF|ELSEIF|UNTIL|WHILE)\s*\(\s*(NOT\s+)?$")
+_ANSWERED = re.compile(r"(?i)[ \t]*(?:=[ \t]*(TRUE|FALSE|1|0)[ \t]*)?\)")
 
 
 def report_not_callable(scope: Scope, node: ast.Command) -> None:

@@ -18,7 +18,7 @@ from tiniscript.source import Span
 from tiniscript.syntax.amounts import is_amount, with_number
 from tiniscript.syntax.ast import Part
 from tiniscript.syntax.operators import SIGN_OF
-from tiniscript.words import NUMBER_WORDS, SENSOR_STEMS, WORDS, meant_by
+from tiniscript.words import NUMBER_WORDS, POWER_WORDS, SENSOR_STEMS, WORDS, meant_by
 
 _EQUAL = frozenset(("EQ", "NE"))
 _COMPARES = re.compile(r"\w+\s*((?:<=|>=|<>|[<>=])\s*[\w.]+)")  # `> 5` of `X > 5`
@@ -58,9 +58,11 @@ class WrongValues:
             return
         if hyphened(scope, span, name) or asks_of_light(scope, span, name):
             return
-        amount = with_number(scope.source.text, span) if is_amount(name) else {}
-        if amount and target is None and name not in scope.set_somewhere:
-            scope.report(codes.UNKNOWN_NAME, span, None, found=name, **amount)
+        is_free = name != target and name not in scope.set_somewhere
+        amount = self._amount(span, name) if is_free else {}
+        if amount:
+            if not self._is_said(span):
+                scope.report(codes.UNKNOWN_NAME, span, None, found=name, **amount)
             return
         names = scope.names.items() if len(scope.diagnostics) < ENOUGH else ()
         known = [each for each, its in names if its.what in ("sensor", "variable")]
@@ -103,6 +105,22 @@ class WrongValues:
                 numbered, value = {"alike": alike}, value or "0"
             scope.report(codes.UNKNOWN_NAME, span, None, found=name, near=near,
                          value=value, only=only, aside=aside, **numbered, **which)  # fmt: skip
+
+    def _amount(self, span: Span, name: str) -> dict[str, str]:
+        """Return how the call around `poco` is written, or around the `lento` beside it."""
+        scope = self.scope
+        if not is_amount(name) and name not in POWER_WORDS:
+            return {}
+        said = with_number(scope.source.text, span, scope.set_somewhere)
+        return said if is_amount(name) or "(" in said.get("example", "") else {}
+
+    def _is_said(self, span: Span) -> bool:
+        """Whether the example for a value of the same call has a number for this one, too."""
+        found = self.scope.diagnostics[-1:]
+        if not found or "amount" not in found[0].values or found[0].span.start > span.start:
+            return False
+        between = self.scope.source[Span(found[0].span.end, span.start)]
+        return not set(between) & set("();\r\n") and "," in between
 
     def _numbered(self, name: str, base: str, span: Span, sensors: list[str]) -> dict[str, str]:
         """`DISTANCE2`, `IF(DISTANCE20)`: there is one such sensor, or a sign is missing."""

@@ -3,40 +3,56 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Container
+from unicodedata import combining, normalize
 
 from tiniscript.source import Span
-from tiniscript.syntax.near import ASKING
-from tiniscript.words import AMOUNT_WORDS, POWER_WORDS, WORDS, meant_by
+from tiniscript.words import AMOUNT_WORDS, POWER_WORDS, WORDS
 
 _NEAR = 80  # characters around a value in which its call is looked for
 _BEFORE = re.compile(r"([A-Za-z]+)[ \t]*\(([^()\r\n;]*)\Z")
 _AFTER = re.compile(r"[^()\r\n;]*\)")
-_ASKED = re.compile(r"[ \t]*(\w+)[ \t]*(<=?|>=?)[ \t]*")  # up to what it is compared with
+_ASKED = re.compile(r"([A-Za-z_]\w*)[ \t]*(?:<>|[<>]=?|=)[ \t]*\Z")
 _SAMPLES = {"n": "3", "seconds": "2", "power": "50"}
+_CENTIMETRES, _ANY = "10", "50"  # examples of what a sensor sees, and of a variable
 
 
 def is_amount(*words: str) -> bool:
-    return any(each in AMOUNT_WORDS for each in words)
+    return any(_plain(each) in AMOUNT_WORDS for each in words)
 
 
-def with_number(text: str, span: Span) -> dict[str, str]:
-    """Return how the call around a value is written with a number, nothing where there is none."""
-    before = _BEFORE.search(text[max(0, span.start - _NEAR) : span.start])
-    after = _AFTER.match(text[span.end : span.end + _NEAR])
-    word = WORDS.get(before[1].upper()) if before else None
-    if before is None or after is None or word is None:
-        return {}
-    asked = _ASKED.fullmatch(before[2])
-    if word.text in ASKING and asked is not None and after[0] == ")":
-        sensor = meant_by(asked[1].upper()) or asked[1].upper()
-        sample = "20" if sensor == "DISTANCE" else "500"
-        example = f"{word.text}({sensor} {asked[2]} {sample})"
-        return {"amount": text[slice(*span)], "example": example}
-    place = before[2].count(",")
-    if place >= len(word.arguments) or not (word.is_call or word.text == "LOOP"):
-        return {}
-    its = word.arguments[place]
+def with_number(text: str, span: Span, own: Container[str] = ()) -> dict[str, str]:
+    """Return how the call around a value is written with numbers, nothing where there is none.
+
+    All its values in words get one, but for the program's `own` names. `DISTANCE < poco` and
+    `X = mucho` are shown alone.
+    """
+    before = text[max(0, span.start - _NEAR) : span.start]
     amount = text[slice(*span)]
-    said = [POWER_WORDS[each] for each in amount.upper().split() if each in POWER_WORDS]
-    sample = said[0] if said and its.unit == "%" else _SAMPLES.get(its.name, its.sample)
-    return {"amount": amount, "example": f"{before[0].lstrip()}{sample}{after[0]}"}
+    if asked := _ASKED.search(before):
+        sample = _CENTIMETRES if asked[1].upper() == "DISTANCE" else _ANY
+        return {"amount": amount, "example": f"{asked[0]}{sample}"}
+    call, after = _BEFORE.search(before), _AFTER.match(text[span.end : span.end + _NEAR])
+    word = WORDS.get(call[1].upper()) if call else None
+    if call is None or after is None or word is None:
+        return {}
+    place = call[2].count(",")
+    takes = word.is_call or word.text == "LOOP" or word.role == "function"
+    if place >= len(word.arguments) or not takes:
+        return {}
+    values = f"{call[2]}{amount}{after[0][:-1]}".split(",")
+    if not any(is_amount(*each.split()) for each in values):
+        return {}
+    for k, (value, its) in enumerate(zip(values, word.arguments, strict=False)):
+        words = [each for each in _plain(value).split() if each not in own]
+        said = [POWER_WORDS[each] for each in words if each in POWER_WORDS]
+        if said or is_amount(*words) or k == place:
+            sample = said[0] if said and its.unit == "%" else _SAMPLES.get(its.name, its.sample)
+            values[k] = f"{' ' * (k > 0)}{sample}"
+    head = call[0][: len(call[0]) - len(call[2])]
+    return {"amount": amount, "example": f"{head.lstrip()}{','.join(values)})"}
+
+
+def _plain(text: str) -> str:
+    """Return a text in capitals and without accents."""
+    return "".join(each for each in normalize("NFD", text.upper()) if not combining(each))

@@ -13,6 +13,7 @@ from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic
 from tiniscript.source import Span
 from tiniscript.syntax import pasted
+from tiniscript.syntax.amounts import is_amount, with_number
 from tiniscript.syntax.checksums import SPACES, without_checksums
 from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, ODD, QUOTES, WORD, Scan, Token
 from tiniscript.syntax.pasted import PATTERN as PASTED
@@ -71,6 +72,7 @@ _OTHER_SIGNS = {
     "（": "(", "）": ")", "，": ",", "、": ",", "；": ";", "＝": "=", "＜": "<", "＞": ">",
     "｜": "|", "＋": "+", "－": "-", "[": "(", "]": ")",
 }  # fmt: skip
+_FARTHEST = 10_000  # characters in which a variable is looked for
 _NEAR = 100  # tokens in which an open bracket is looked for
 
 
@@ -264,7 +266,11 @@ class _Repairs:
             self.report(codes.BAD_NUMBER, span, found=text, right="")
             return Token(NUMBER, "1", *span)
         plain = _plain(text)
-        self.report(codes.BAD_NAME, span, found=text, right=plain)
+        amount = with_number(self._text, span) if is_amount(plain) else {}
+        if amount and not any(text + sign in self._text[:_FARTHEST] for sign in ("=", " =")):
+            self.report(codes.UNKNOWN_NAME, span, found=plain.upper(), **amount)  # `W(más)`
+        else:
+            self.report(codes.BAD_NAME, span, found=text, right=plain)
         return Token(WORD, plain.upper() or "X", *span)
 
     def quote(self, text: str, span: Span) -> Token:

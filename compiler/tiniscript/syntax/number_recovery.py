@@ -28,6 +28,8 @@ class NumberRecovery:
             with_number(self.cursor.source.text, span) if is_amount(last.text, token.text) else {}
         )
         if said:
+            self.reporter.answer(last)  # `rápido` has an accent
+            self.reporter.answer(token)
             found = self.cursor.source[span].upper()
             self.reporter.fail(codes.UNKNOWN_NAME, span, None, found=found, **said)
 
