@@ -66,6 +66,16 @@ def test_the_table_as_data_and_for_a_spreadsheet(folder: Path, tsc: Tsc) -> None
     assert (table[1]["mistakes"], table[1]["line"], table[1]["code"]) == ("1", "1", "TS017")
 
 
+def test_a_sentence_of_a_table_is_what_the_command_says(folder: Path, tsc: Tsc) -> None:
+    """But for its first sign, where that would begin a formula."""
+    (folder / "d.ts").write_text("SI|F(2, =X)", encoding="utf-8")
+    (folder / "e.ts").write_text("SI|+F(2,80)", encoding="utf-8")
+    rows = json.loads(tsc("check", "d.ts", "e.ts", "--json", "--csv", "table.csv").out)
+    said = [row["messages"][0]["message"] for row in rows]
+    table = list(csv.DictReader(StringIO((folder / "table.csv").read_text("utf-8-sig"))))
+    assert [row["message"] for row in table] == [said[0], f"'{said[1]}"]
+
+
 def test_a_spreadsheet_in_spanish_has_semicolons_and_may_be_written_again(
     folder: Path, tsc: Tsc
 ) -> None:

@@ -18,6 +18,9 @@ FOREIGN = (
     b"a letter", b"\0", b"TS", b"TSV\tfile", b"\x89PNG\r\n\x1a\n a photo", b"\xff\xd8\xff\xe0 JPEG",
     b"// by hand", b"{}", b'{"version": "1"}', b"ms;event;value\n", b"<!DOCTYPE html><p>mine</p>",
     b"F(1,2)~1234567", b"a\nF(1,2)~12345678\n",
+    "\ufeffarchivo;resultado;mundo;frase;nota\na.ts;listo;;;18\n".encode(),
+    "\ufefffile,verdict,seed,sentence,mark\r\n".encode(),
+    "\ufefffile,mistakes,warnings,repaired,line,code,message;\n".encode(),
 )  # fmt: skip
 WRITERS = [
     (("compile", "-e", PROGRAM, "-o"), "-o"),
@@ -48,6 +51,23 @@ def test_a_foreign_file_stays_and_an_own_one_is_replaced(
             done = tsc(*words, target, "--lang", lang)
             assert done.code == 2 and said in done.err and option in done.err
         assert target.read_bytes() == content
+
+
+@pytest.mark.parametrize("lang", ["es", "en"])
+def test_a_table_with_a_column_of_the_teacher_stays(tsc: Tsc, tmp_path: Path, lang: str) -> None:
+    folder, table = tmp_path / "class", tmp_path / "marks.csv"
+    folder.mkdir()
+    (folder / "ana.ts").write_text(PROGRAM)
+    words = ("check", folder, "--lang", lang, "--csv", table)
+    assert tsc(*words).code == 0
+    made = table.read_bytes()
+    table.write_bytes(made.replace(b"\n", b"\r\n"))  # a spreadsheet has kept it
+    assert tsc(*words).code == 0 and table.read_bytes() == made
+    marked = made.replace(b"\n", b";18\n")
+    table.write_bytes(marked)
+    done = tsc(*words)
+    assert done.code == 2 and "--csv" in done.err
+    assert table.read_bytes() == marked
 
 
 def test_the_image_that_nobody_names_spares_a_foreign_file(tsc: Tsc, tmp_path: Path) -> None:

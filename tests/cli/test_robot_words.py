@@ -76,5 +76,5 @@ def test_no_cell_of_a_row_is_a_formula(text: str, separator: str) -> None:
 
 
 def test_numbers_and_words_stay() -> None:
-    for text in ("F(1, -2) = 3", "a-b", "1 + 1", "x@y", "hello"):
+    for text in ("F(1, -2) = 3", "F(2, -X)", "M(-X, +Y)", "a-b", "1 + 1", "x@y", "hello"):
         assert no_formula(text) == text

@@ -25,31 +25,44 @@ HEADS: dict[str, dict[str, tuple[str, ...]]] = {
         "es": ("archivo", "resultado", "mundo", "frase"),
     },
 }
-# Behind a comma a number may have a sign: M(50, -50).
-_SIGN = re.compile(
-    r"(^|[;|\"])(\s*)(?=[=+\-@＝＋－＠])|(,)(\s*)(?=[=@＝＠]|[+\-＋－](?![\d.]+\s*[,);]))"
-)
+# What begins a formula: at the beginning of a cell; in a name wherever a cell may begin, too, since
+# whoever opens the file chooses what ends its cells. Ours end with a comma or a semicolon.
+_SIGN = "(?=[=+\\-@＝＋－＠])"
+_FIRST = re.compile(rf"(^)(\s*){_SIGN}")
+_BEHIND_END = re.compile(rf"(^|[;|\"])(\s*){_SIGN}")
+_BEHIND_ANY = re.compile(rf"(^|[,;|\"])(\s*){_SIGN}")
 
 
 def as_csv(table: str, language: str, rows: Iterable[Sequence[object]]) -> bytes:
-    """Return a table of HEADS as a file."""
+    """Return a table of HEADS as a file. The first cell of a row is the name of somebody's file."""
     written = StringIO()
     writer = csv.writer(written, delimiter=SEPARATORS[language], lineterminator="\n")
     writer.writerow(HEADS[table][language])
-    writer.writerows([_cell(each) for each in row] for row in rows)
+    writer.writerows([_name(row[0]), *map(_cell, row[1:])] for row in rows)
     return written.getvalue().encode("utf-8-sig", "backslashreplace")
 
 
 def beginnings() -> tuple[bytes, ...]:
-    """Return how a file of `as_csv` begins, for each table and language."""
-    empty = (as_csv(table, each, ()) for table, heads in HEADS.items() for each in heads)
-    return tuple(each.rstrip(b"\n") for each in empty)
+    """Return how a file of `as_csv` begins, for each table and language: its head, with its end.
+
+    A spreadsheet that has kept such a file may have given it other line ends.
+    """
+    empty = [as_csv(table, each, ()) for table, heads in HEADS.items() for each in heads]
+    return (*empty, *(each.replace(b"\n", b"\r\n") for each in empty))
 
 
 def no_formula(text: str) -> str:
-    """Return a text that a spreadsheet takes for text, whether its cells end with , or with ;."""
-    return _SIGN.sub(r"\1\2\3\4'", text)
+    """Return what somebody wrote so that a spreadsheet takes it for text, in cells behind commas.
+
+    It may take ; for their end, which no quotation marks keep in a cell then.
+    """
+    return _BEHIND_END.sub(r"\1\2'", text)
+
+
+def _name(value: object) -> str:
+    return _BEHIND_ANY.sub(r"\1\2'", printable(str(value), LONGEST))
 
 
 def _cell(value: object) -> object:
-    return no_formula(printable(value, LONGEST)) if isinstance(value, str) else value
+    """Return a number, or a sentence, of which nothing but a first sign can be a formula."""
+    return _FIRST.sub(r"\1\2'", printable(value, LONGEST)) if isinstance(value, str) else value
