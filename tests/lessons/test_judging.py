@@ -55,7 +55,7 @@ def missing_in(lesson: Lesson, text: str, seed: int = 1) -> list[Finding]:
     found = compiled(text.encode(), robot, "p.ts", is_strict=True)
     assert found.is_right, found.diagnostics
     run = running.run(image_of(found, robot), robot, lesson, seed)
-    findings = explained(judged(run, lesson), text, lesson)
+    findings = explained(judged(run, lesson), text, lesson, run.ending)
     keys = {each.key for each in findings}
     return findings + [each for each in judged_text(text, lesson) if each.key not in keys]
 
@@ -94,6 +94,22 @@ CASES = [
     ('kind = "ends_in"\nat = [140, 100]', "F(1, 89)", "R(1, 60); IF(LIGHT_L > 900);F(1, 89);ENDIF", "only turned on the spot. Is the question of IF FALSE"),
     ('kind = "ends_in"\nat = [140, 100]', "F(1, 89)", "DEF GO;F(1, 89);END_DEF", "teaches the word GO and never calls it"),
     ('kind = "ends_in"\nat = [140, 100]', "F(1, 89)", "DEF GO;F(1, 89);END_DEF;DEF NO;B(1, 89);END_DEF;GO;GO;GO", "went 37 cm past"),
+    ('kind = "ends_in"\nat = [140, 100]', "F(1, 89)", "W(FOREVER) UNTIL(DISTANCE < 9); F(1, 89)", "did not move. Does the question of UNTIL ever become TRUE? See what the robot reads: SHOW(DISTANCE)"),
+    ('kind = "ends_in"\nat = [140, 100]', "F(1, 89)", "WHILE(LIGHT_L < 900);W(0.1);END_WHILE;F(1, 89)", "Does the question of WHILE ever become FALSE? See what the robot reads: SHOW(LIGHT_L)"),
+    ('kind = "ends_in"\nat = [140, 100]', "F(1, 89)", "LOOP(FOREVER);IF(LIGHT_L > 900);F(1, 89);ENDIF;W(0.1);END_LOOP", "Does the question of IF ever become TRUE?"),
+    ('kind = "ends_in"\nat = [140, 100]', "F(1, 89)", "WHILE(DISTANCE > 9);IF(LIGHT_L > 900);F(1, 89);ENDIF;W(0.1);END_WHILE", "Does the question of IF ever become TRUE?"),
+    ('kind = "ends_in"\nat = [140, 100]', "F(1, 89)", "LOOP(2);IF(LIGHT_L > 900);F(1, 89);ENDIF;END_LOOP", "question of IF FALSE from the start?"),
+    ('kind = "ends_in"\nat = [140, 100]', "F(1, 89)", "IF(DISTANCE > 9);S;ELSE;F(1, 89);ENDIF", "question of IF TRUE from the start?"),
+    ('kind = "ends_in"\nat = [140, 100]', "F(1, 89)", "IF(LIGHT_L > 900);BEEP(0.1,440);ENDIF;F(1, 89) UNTIL(DISTANCE > 9)", "question of UNTIL TRUE from the start?"),
+    ('kind = "ends_in"\nat = [140, 100]', "F(1, 89)", "W(0.5) UNTIL(LIGHT_L > 900);F(1, 89) UNTIL(DISTANCE > 9)", "See what the robot reads: SHOW(DISTANCE)"),
+    ('kind = "ends_in"\nat = [140, 100]', "F(1, 89)", "DEF GO;F(1, 89);END_DEF;IF(LIGHT_L > 900);GO;ENDIF", "question of IF FALSE from the start?"),
+    ('kind = "ends_in"\nat = [140, 100]', "F(1, 89)", "R(1, 60);W(FOREVER) UNTIL(LIGHT_L > 900);F(1, 89)", "only turned on the spot. Does the question of UNTIL ever become TRUE?"),
+    ('kind = "ends_in"\nat = [140, 100]', "F(1, 89)", "F(1, 0) UNTIL(DISTANCE < 9)", "Give it a move with time and power"),
+    ('kind = "ends_in"\nat = [140, 100]', "F(1, 89)", "F(0, 89) UNTIL(DISTANCE < 9)", "Give it a move with time and power"),
+    ('kind = "ends_in"\nat = [140, 100]', "F(1, 89)", "DEF GO;F(1, 0);END_DEF;GO;IF(LIGHT_L > 900);S;ENDIF", "Give it a move with time and power"),
+    ('kind = "ends_in"\nat = [140, 100]', "F(1, 89)", "DEF A;BEEP(0.1,440);END_DEF;F(1, 0)", "Give it a move with time and power"),
+    ('kind = "shows"', "SHOW(1)", "DEF A;BEEP(0.1,440);END_DEF;F(1, 60)", "The robot showed nothing"),
+    ('kind = "shows"', "SHOW(1)", "DEF A;SHOW(1);END_DEF;F(1, 60)", "teaches the word A and never calls it"),
     ('kind = "reaches"\nat = [140, 100]', "F(1, 89)", "F(0.6, 89); B(0.6, 89)", "than 16 cm; the task asks for 10 cm or less. Make it go further"),
     ('kind = "reaches"\nat = [140, 100]', "F(1, 89)", "L(0.2, 60); F(0.6, 89)", "Look at the way that it went"),
     ('kind = "reaches"\nat = [140, 100]', "F(1, 89)", "L(0.2, 60)", "only turned on the spot"),

@@ -48,9 +48,10 @@ def findings_of(text: str, lesson: Lesson, seeds: range) -> list[Finding]:
     assert found.is_right, found.diagnostics
     image = image_of(found, robot)
     for seed in seeds:
-        findings = judged(run(image, robot, lesson, seed), lesson)
+        done = run(image, robot, lesson, seed)
+        findings = judged(done, lesson)
         if findings:
-            return explained(findings, text, lesson) + judged_text(text, lesson)
+            return explained(findings, text, lesson, done.ending) + judged_text(text, lesson)
     return judged_text(text, lesson)
 
 

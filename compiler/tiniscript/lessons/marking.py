@@ -67,7 +67,7 @@ class Marking:
         run = self._trial.go(most_ms)
         if run is None:
             return None
-        findings = explained(judged(run, self._lesson), self._text, self._lesson)
+        findings = explained(judged(run, self._lesson), self._text, self._lesson, run.ending)
         if findings:
             said = {each.key for each in findings}
             of_text = [each for each in self._of_text if each.key not in said]

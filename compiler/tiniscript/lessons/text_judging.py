@@ -10,13 +10,13 @@ from collections.abc import Callable, Sequence
 from itertools import pairwise
 
 from tiniscript import robots
+from tiniscript.lessons import kept
 from tiniscript.lessons.findings import Finding
+from tiniscript.lessons.kept import MOVES
 from tiniscript.lessons.lesson import Criterion, Lesson
-from tiniscript.syntax.lexer import NUMBER, WORD, scan
+from tiniscript.syntax.lexer import NUMBER, WORD, Token, scan
 from tiniscript.words import ALIASES, BLOCK_ENDS
 
-MOVES = frozenset("FBLRM")
-QUESTIONS = {"UNTIL": "TRUE", "WHILE": "FALSE", "IF": "FALSE"}  # where nothing moves
 # What a run lacked altogether, by the sentence for it, and the word that does it.
 MISSING = {
     "still": "move", "order//moves": "move", "ends_in/turned": "move", "reaches/turned": "move",
@@ -33,39 +33,67 @@ def judged_text(text: str, lesson: Lesson) -> list[Finding]:
     return [each._replace(values={**each.values, **question}) for each in found if each]
 
 
-def explained(found: Sequence[Finding], text: str, lesson: Lesson) -> list[Finding]:
-    """Return what is missing in a run with the reason that the text has for it.
+def explained(found: Sequence[Finding], text: str, lesson: Lesson, ending: str) -> list[Finding]:
+    """Return what is missing in a run that ended so, with the reason that the text has for it.
 
     Where the robot did nothing, and the text has what it should do, then it was never reached.
     """
-    words = [token.text for token in scan(text).tokens if token.kind in (WORD, NUMBER)]
-    uncalled = _uncalled(words)
-    if uncalled and any(each.key in MISSING for each in found):
-        others = [each for each in found if each.key not in MISSING]
-        return [Finding("uses", "uses/uncalled", {"name": uncalled[0]}), *others]
+    tokens = scan(text).tokens
+    words = [token.text for token in tokens if token.kind in (WORD, NUMBER)]
     is_endless = any(each.key in ("ends", "long") for each in found)
+    uncalled: list[Finding] = []
     explained = []
     for each in found:
         word = MISSING.get(each.key, "")
-        if word == "move":
-            explained.append(_asked(each, words, lesson))
+        name = _name_of_uncalled(word, tokens, words) if word else ""
+        if name:
+            uncalled = [Finding("uses", "uses/uncalled", {"name": name})]
+        elif word == "move":
+            explained.append(_asked(each, tokens, words, lesson, ending))
         elif word not in words:
             explained.append(each)
         elif not is_endless:
             explained.append(each._replace(key="unreached", values={"word": word}))
-    return explained
+    return uncalled + explained
 
 
-def _asked(finding: Finding, words: Sequence[str], lesson: Lesson) -> Finding:
-    """Return a finding of a robot that stays where it is; with moves behind a question, that."""
-    asked = next((word for word in words if word in QUESTIONS), "")
-    if not asked or not MOVES.intersection(words):
+def _name_of_uncalled(word: str, tokens: Sequence[Token], words: Sequence[str]) -> str:
+    """Return a word of DEF that nothing calls, and that has what is missing."""
+    for name in _uncalled(words):
+        inside = [token for own, token in _owned(tokens) if own == name]
+        if kept.moving(inside) if word == "move" else word in [each.text for each in inside]:
+            return name
+    return ""
+
+
+def _owned(tokens: Sequence[Token]) -> list[tuple[str, Token]]:
+    """Return each token with the word of the DEF that it belongs to, or ""."""
+    found, name = [], ""
+    for k, token in enumerate(tokens):
+        if token.text == "DEF":
+            name = tokens[k + 1].text
+        found.append((name, token))
+        if ALIASES.get(token.text, token.text) == BLOCK_ENDS["DEF"]:
+            name = ""
+    return found
+
+
+def _asked(
+    finding: Finding, tokens: Sequence[Token], words: Sequence[str], lesson: Lesson, ending: str
+) -> Finding:
+    """Return a finding of a robot that stays where it is; with a question that kept it, that."""
+    uncalled = _uncalled(words)
+    called = [token for name, token in _owned(tokens) if name not in uncalled]
+    is_turned = finding.key.endswith("/turned")
+    asked = kept.question(called, is_turned, ending)
+    if asked is None:
         return finding
     sensors = [device.name for device in robots.load(lesson.robot).kit.sensors]
-    what = next((word for word in words if word in sensors), sensors[0])
-    key = "turned/question" if finding.key.endswith("/turned") else "still/question"
+    named = [word for word in [*asked.inside, *words] if word in sensors]
+    key = f"{'turned' if is_turned else 'still'}/{'ever' if asked.is_ever else 'question'}"
+    what = (*named, sensors[0])[0]
     return finding._replace(
-        key=key, values={"word": asked, "what": what, "truth": QUESTIONS[asked]}
+        key=key, values={"word": asked.word, "what": what, "truth": asked.truth}
     )
 
 

@@ -1,0 +1,140 @@
+"""Finds the question that kept a robot where it is, and what a move needs to be one.
+
+Knows tokens, and how a run ended. Does not know what the robot reads, or what the lesson asks for.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from typing import NamedTuple
+
+from tiniscript.lessons.running import DONE
+from tiniscript.syntax.lexer import NUMBER, WORD, Token
+from tiniscript.words import ALIASES, BLOCK_ENDS
+
+MOVES = frozenset("FBLRM")
+AHEAD = frozenset("FBM")  # what is more than a turn
+STATEMENTS = frozenset({"W", "S", "BEEP", "SHOW"})  # an UNTIL behind them is not that of a move
+
+
+class Question(NamedTuple):
+    """A question at a place of the text that kept the robot.
+
+    It gave `truth` from the start; with `is_ever` the robot waited for `truth`. `inside` are its
+    words.
+    """
+
+    start: int
+    word: str
+    truth: str
+    is_ever: bool
+    inside: list[str]
+
+
+class _Block:
+    """An open block: whether it stands in one that repeats, and what it asks."""
+
+    def __init__(self, start: int, word: str, inside: list[str], is_repeated: bool) -> None:
+        self.start, self.word, self.inside = start, word, inside
+        self.is_repeated = is_repeated
+        self.is_else = False
+        self.needed = ""  # what its question must give for a move in it, once there is one
+
+    def question(self) -> Question | None:
+        """Return its question, if a robot that does not move may be kept by it."""
+        if self.word == "WHILE" and not self.needed:  # it waits
+            return Question(self.start, self.word, "FALSE", True, self.inside)
+        if self.word in ("LOOP", "DEF") or not self.needed:
+            return None
+        is_ever = self.is_repeated and self.word == "IF"
+        other = "FALSE" if self.needed == "TRUE" else "TRUE"
+        return Question(
+            self.start, self.word, self.needed if is_ever else other, is_ever, self.inside
+        )
+
+
+def moving(tokens: Sequence[Token], moves: Collection[str] = MOVES) -> list[int]:
+    """Return where there are moves that have time and power, as far as the text says it."""
+    return [
+        k
+        for k, token in enumerate(tokens)
+        if token.kind == WORD and token.text in moves and _has_power(tokens, k)
+    ]
+
+
+def _has_power(tokens: Sequence[Token], at: int) -> bool:
+    values = _values(tokens, at)
+    zeros = [len(each) == 1 and each[0].kind == NUMBER and not float(each[0].text)
+             for each in values]  # fmt: skip
+    return not all(zeros) if tokens[at].text == "M" else not any(zeros)
+
+
+def _values(tokens: Sequence[Token], at: int) -> list[list[Token]]:
+    """Return the values between the brackets behind a word."""
+    values: list[list[Token]] = [[]]
+    depth = 0
+    for token in tokens[at + 1 :]:
+        depth += (token.text == "(") - (token.text == ")")
+        if depth < 1:
+            break
+        if token.text == "," and depth == 1:
+            values.append([])
+        elif depth > 1 or token.text != "(":
+            values[-1].append(token)
+    return values
+
+
+def question(tokens: Sequence[Token], is_turned: bool, ending: str) -> Question | None:
+    """Return what kept a robot from each of its moves, or from all but turns; None: no question.
+
+    `tokens` are those of a program without what nothing calls.
+    """
+    moves = set(moving(tokens, AHEAD if is_turned else MOVES))
+    found: list[Question] = []
+    blocks: list[_Block] = []
+    movers = set[str]()  # words of DEF with a move
+    head = -1  # the word of the statement that an UNTIL may belong to
+    for k, token in enumerate(tokens):
+        word = ALIASES.get(token.text, token.text)
+        if token.kind != WORD:
+            continue
+        if k in moves or word in movers:
+            for block in blocks:
+                block.needed = block.needed or ("FALSE" if block.is_else else "TRUE")
+                if block.word == "DEF":
+                    movers |= set(block.inside)
+        if word in BLOCK_ENDS:
+            is_repeated = any(each.word in ("LOOP", "WHILE", "DEF") for each in blocks)
+            inside = [tokens[k + 1].text] if word == "DEF" else _words(tokens, k)
+            blocks.append(_Block(token.start, word, inside, is_repeated))
+        elif word == "ELSE" and blocks:
+            blocks[-1].is_else = True
+        elif word in BLOCK_ENDS.values() and blocks:
+            asked = blocks.pop().question()
+            found += [asked] if asked else []
+        elif word == "UNTIL" and head >= 0:
+            is_wait = tokens[head].text == "W" and "FOREVER" in _words(tokens, head)
+            if head in moves or is_wait:
+                found.append(Question(token.start, word, "TRUE", is_wait, _words(tokens, k)))
+        elif word in MOVES or word in STATEMENTS:
+            head = k
+    if not moves:
+        return None
+    if ending == DONE:
+        found = [each for each in found if not each.is_ever or each.word == "IF"]
+        found = [_from_start(each) for each in found]
+    # A WHILE with moves that the robot was in when its time was over has let it in.
+    found.sort(key=lambda each: (ending != DONE and not each.is_ever and each.word == "WHILE",
+                                 each.start))  # fmt: skip
+    return found[0] if found else None
+
+
+def _from_start(asked: Question) -> Question:
+    """Return a question that was to give something, with what it gave."""
+    if not asked.is_ever:
+        return asked
+    return asked._replace(is_ever=False, truth="FALSE" if asked.truth == "TRUE" else "TRUE")
+
+
+def _words(tokens: Sequence[Token], at: int) -> list[str]:
+    return [token.text for value in _values(tokens, at) for token in value if token.kind == WORD]
