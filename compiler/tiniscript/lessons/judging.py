@@ -64,11 +64,16 @@ def _causes(found: list[Finding]) -> list[Finding]:
     kinds = {finding.kind for finding in found}
     has_touched = any(each.kind == "never_touches" for each in found)
     found.sort(key=lambda each: has_touched and each.key == "long")  # it may push against a wall
+    has_missed = any(
+        each.kind == "reaches" and each.key not in ("reaches/late", "reaches/around")
+        for each in found
+    )  # then its way back is not what is to be changed first
     is_lost = bool(kinds & {"never_touches", ""})  # then it is not where it should be
     return [
         each
         for each in found
         if not (is_lost and each.kind in WHERE)
+        and not (each.key == "ends_in/gone" and has_missed)
         and not (each.key.startswith("pauses/place") and (is_lost or "reaches" in kinds))
         and not (each.kind == "order" and each.key.rpartition("/")[2] in kinds)
     ]

@@ -49,9 +49,15 @@ def _ends_in(criterion: Criterion, task: Task) -> Finding | None:
             key = "short" if along_cm < way_cm else "far"
         if key in ("short", "away") and min(gaps_cm) <= within_cm:
             key = "left"
-    elif away_cm > max(gaps_cm) - BACK_CM:
+    elif away_cm > max(gaps_cm) - BACK_CM and not _was_back(gaps_cm, within_cm):
         key = "gone"
     return Finding("ends_in", f"ends_in/{key}", {"cm": in_cm(away_cm)}, criterion.labels)
+
+
+def _was_back(gaps_cm: list[float], within_cm: float) -> bool:
+    """Whether it had left a place, and came by there again."""
+    left = next((k for k, gap in enumerate(gaps_cm) if gap > within_cm), len(gaps_cm))
+    return any(gap <= within_cm for gap in gaps_cm[left:])
 
 
 def _reaches(criterion: Criterion, task: Task) -> Finding | None:
