@@ -13,12 +13,15 @@ from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.repairs.edits import Edit
 from tiniscript.source import Source, Span
+from tiniscript.words import BLOCK_ENDS
 
 _NAMES = (
     codes.NAME_WITH_SPACE, codes.BAD_NAME, codes.EMPTY_BRACKETS, codes.RESERVED, codes.SAME_AGAIN,
 )  # fmt: skip
 _SIGNS = (codes.OTHER_SIGN, codes.ODD_CHARACTER)
-_FULL_STOP = re.compile(r"\)[ \t]{0,9}(?P<stop>\.)(?![.\w])")
+_LAST = "|".join(("S", "STOP", "BREAK", *BLOCK_ENDS.values()))  # instructions without brackets
+_FULL_STOP = re.compile(rf"(?i)(?:\)|\b(?:{_LAST}))[ \t]{{0,9}}(?P<stop>\.)(?![.\w])")
+_ROW = re.compile(r"[^\n]+")
 
 _CALLS = (codes.UNKNOWN_WORD, codes.UNTAUGHT, codes.WHICH_WAY)
 MOVES = ("F", "B", "L", "R")
@@ -85,13 +88,15 @@ def _full_stops(kept: list[Diagnostic | None], source: Source) -> None:
         for k, each in enumerate(kept)
         if each is not None and each.code in _SIGNS and each.values.get("found") == "."
     ]
+    if not stops:
+        return
     places = [
-        Span(*each.span("stop"))
-        for each in _FULL_STOP.finditer(source.text)
-        if "//" not in source.text[source.text.rfind("\n", 0, each.end()) + 1 : each.end()]
+        Span(row.start() + each.start("stop"), row.start() + each.end("stop"))
+        for row in _ROW.finditer(source.text)
+        for each in _FULL_STOP.finditer(row[0].partition("//")[0])
     ]
     spans = [each.span for k in stops if (each := kept[k]) is not None]
-    if len(places) < 2 or not stops or any(span not in places for span in spans):
+    if len(places) < 2 or not {*places}.issuperset(spans):
         return
     also = " ".join(f"{start}:{end}" for start, end in places if (start, end) != spans[0])
     values = {"found": ".", "right": ";", "stops": str(len(places)), "also": also}

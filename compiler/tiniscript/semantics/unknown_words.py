@@ -108,7 +108,8 @@ def _report_unknown_word(scope: Scope, node: ast.Command) -> None:
     commands = [each.text for each in WORDS.values() if each.role not in
                 ("setup", "later", "value", "operator", "function", "forever")]  # fmt: skip
     near = _MENDED.get(word) or scope.near(word, chain(commands, scope.names, scope.def_names))
-    if near.rstrip(_DIGITS) == word.rstrip(_DIGITS):
+    is_own = near in scope.set_somewhere or near in scope.def_names
+    if is_own and near.rstrip(_DIGITS) == word.rstrip(_DIGITS):
         near = ""  # `PASO2`, where there is a DEF PASO1
     glued_loop = re.fullmatch(r"LOOP_?([0-9]+)", word)
     if glued_loop and node.arguments is None:

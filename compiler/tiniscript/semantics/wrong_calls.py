@@ -6,9 +6,8 @@ the others.
 
 from __future__ import annotations
 
-import re
-from collections.abc import Sequence
-from itertools import count, islice
+from collections.abc import Iterator, Sequence
+from itertools import islice
 
 from tiniscript.diagnostics import codes
 from tiniscript.fixed_point import HIGHEST, as_text
@@ -27,15 +26,16 @@ from tiniscript.semantics.until_examples import asked_next, ended_by
 from tiniscript.source import Span
 from tiniscript.syntax import ast
 from tiniscript.syntax.call_suggestions import count_diagnostic
+from tiniscript.syntax.free_names import numbered
 from tiniscript.words import Argument, Word
 
-_NAME = re.compile(r"\w+")
 _NEAR = 500  # characters behind a value for a sensor in which its use is looked for
 
 
 class WrongCalls:
     def __init__(self, scope: Scope) -> None:
         self.scope = scope
+        self._free: dict[str, tuple[Iterator[str], list[str]]] = {}  # see `free_name`
 
     def unknown(self, node: ast.Command, inside: str | None) -> None:
         report_unknown(self.scope, node, inside)
@@ -112,7 +112,9 @@ class WrongCalls:
 
     def free_name(self, name: str, procedures: Sequence[ir.Procedure]) -> str:
         """Return `DANCE_2`, or with the first number of which the text has no name yet."""
-        used = set(_NAME.findall(self.scope.source.text.upper()))
-        free = (f"{name}_{k}" for k in count(2) if f"{name}_{k}" not in used)
-        twice = sum(each.name == name for each in procedures) - 1  # these got one already
-        return next(islice(free, max(0, twice), None))
+        if name not in self._free:
+            self._free[name] = (numbered(self.scope.source.text, name), [])
+        others, found = self._free[name]
+        k = max(0, sum(each.name == name for each in procedures) - 1)  # these got one already
+        found += islice(others, max(0, k + 1 - len(found)))
+        return found[k]

@@ -10,7 +10,7 @@ from tiniscript.syntax.cursor import AT_END, Cursor
 from tiniscript.syntax.lexer import NUMBER, WORD, Token
 from tiniscript.syntax.reporter import Reporter
 from tiniscript.syntax.vocabulary import Vocabulary
-from tiniscript.words import WORDS, other_name
+from tiniscript.words import WORDS
 
 
 class AssignmentRecovery:
@@ -72,14 +72,15 @@ class AssignmentRecovery:
         reserved = [name.text for name in names if name.text in WORDS]
         if any(WORDS[name].role in ("value", "operator") for name in reserved):
             return
-        rows = [f"{_free(name.text)} = {value}" for name in names]
+        free = {name: cursor.free_name(name) for name in reserved}
+        rows = [f"{free.get(name.text, name.text)} = {value}" for name in names]
         for name in names:
             self.unread(name)
         cursor.i = k + 1
         values = {"fix": ";".join(rows)}
         if reserved:
             values = {"example": "; ".join(rows), "reserved": reserved[0],
-                      "free": _free(reserved[0])}  # fmt: skip
+                      "free": free[reserved[0]]}  # fmt: skip
         self.reporter.reserved_words.update(reserved)
         span = cursor.span_from(first)
         self.reporter.fail(codes.SET_TOGETHER, span, span, **values)
@@ -107,7 +108,3 @@ class AssignmentRecovery:
         cursor.i = end
         place = cursor.span_from(word)
         self.reporter.fail(codes.OTHER_ASSIGNMENT, word.span, place, found=",", fix=fix)
-
-
-def _free(name: str) -> str:
-    return other_name(name) if name in WORDS else name

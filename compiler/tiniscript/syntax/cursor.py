@@ -5,7 +5,7 @@ Knows how to look around and how to go on. Knows no grammar and reports nothing.
 
 from __future__ import annotations
 
-from itertools import chain, count, pairwise
+from itertools import pairwise
 
 from tiniscript.source import Source, Span
 from tiniscript.syntax.lexer import END, NEWLINE, Token
@@ -68,11 +68,10 @@ class Cursor:
         if word not in self._free:
             pairs = list(pairwise(each.text for each in self.tokens))
             right = other_name(word)
-            if (word, "=") in pairs or ("DEF", word) in pairs:
-                used = {each for each, _ in pairs}
-                stem = right.removesuffix("_1")
-                others = (f"{stem}_{k}" for k in count(2))
-                right = next(each for each in chain((right,), others) if each not in used)
+            if not {(word, "="), (word, ":"), ("DEF", word)}.isdisjoint(pairs):
+                from tiniscript.syntax.free_names import in_place_of  # a right program needs it not
+
+                right = in_place_of(self.source.text, word)
             self._free[word] = right
         return self._free[word]
 

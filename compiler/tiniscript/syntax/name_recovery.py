@@ -221,7 +221,8 @@ class NameRecovery:
     def _what_follows_a_name(self, word: Token, following: Token) -> None:
         cursor, kind = self.cursor, following.kind
         self.sentence.word_and_sign(word, following)
-        changed = update(word, cursor.tokens, cursor.i + 1)
+        own = cursor.free_name(word.text) if word.text in WORDS else word.text
+        changed = update(own, cursor.tokens, cursor.i + 1)
         if changed is not None:
             fix, found = changed
             self.reporter.answer(following)

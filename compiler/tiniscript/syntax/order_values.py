@@ -11,6 +11,7 @@ from tiniscript.diagnostics import codes
 from tiniscript.source import Span
 from tiniscript.syntax.call_suggestions import call_in
 from tiniscript.syntax.cursor import AT_END, Cursor
+from tiniscript.syntax.free_names import for_a_number
 from tiniscript.syntax.lexer import NUMBER, WORD, Token
 from tiniscript.syntax.reporter import Reporter
 from tiniscript.syntax.suggestions import after_bracket
@@ -37,7 +38,7 @@ def order_as_value(cursor: Cursor, reporter: Reporter, known: Vocabulary, token:
         orders = _orders(cursor, known, tokens[start + 1 : end - 1])
         if len(orders) > 1:  # `X = RANDOM(L, R)`
             span = Span(tokens[start - 1].start, tokens[end - 1].end)
-            _choose(reporter, span, orders, is_sure=False)
+            _choose(cursor, reporter, span, orders, is_sure=False)
     if owner is None or not owner.is_call:
         reporter.fail(codes.RESERVED, token.span, word=word.text, right="")
     values = {"example": owner.example}
@@ -62,8 +63,9 @@ def at_random(cursor: Cursor, reporter: Reporter, known: Vocabulary, first: Toke
     cursor.i = end or k + 1
     span = cursor.span_from(first)
     if len(orders) > 1 and tokens[cursor.i].kind in AT_END:
-        _choose(reporter, span, orders)
-    values = {"given": shown, "number": f"N = {shown}"}
+        _choose(cursor, reporter, span, orders)
+    name = for_a_number(cursor.source.text)
+    values = {"given": shown, "number": f"{name} = {shown}"}
     reporter.fail(codes.NOT_AN_INSTRUCTION, span, None, found=first.text, **values)
 
 
@@ -79,17 +81,20 @@ def one_or_other(cursor: Cursor, reporter: Reporter, known: Vocabulary, start: i
     orders = [each for row in rows for each in _orders(cursor, known, row)]
     if len(orders) == len(rows) and tokens[end].kind in AT_END:
         cursor.i = end
-        _choose(reporter, cursor.span_from(tokens[start]), orders)
+        _choose(cursor, reporter, cursor.span_from(tokens[start]), orders)
 
 
-def _choose(reporter: Reporter, span: Span, orders: Sequence[str], is_sure: bool = True) -> None:
+def _choose(
+    cursor: Cursor, reporter: Reporter, span: Span, orders: Sequence[str], is_sure: bool = True
+) -> None:
     is_whole = is_sure and all("(" in each or each == "S" for each in orders)
+    name = for_a_number(cursor.source.text)
     shown = [each if "(" in each else WORDS[each].example for each in orders]
     row = ["IF(RANDOM(1, 2) = 1)", shown[0]]
     if len(shown) > 2:
-        row = [f"N = RANDOM(1, {len(shown)})", "IF(N = 1)", shown[0]]
+        row = [f"{name} = RANDOM(1, {len(shown)})", f"IF({name} = 1)", shown[0]]
     for number, order in enumerate(shown[1:-1], 2):
-        row += [f"ELSEIF(N = {number})", order]
+        row += [f"ELSEIF({name} = {number})", order]
     row += ["ELSE", shown[-1], BLOCK_ENDS["IF"]]
     values = {"fix": ";".join(row) if is_whole else "", "example": "; ".join(row)}
     reporter.fail(codes.BY_CHANCE, span, span, **values)

@@ -20,7 +20,7 @@ from tiniscript.syntax.phrases import (
     FILLERS,
     FRAME_NAMES,
 )
-from tiniscript.words import POWER_WORDS, TURN_WORDS, UNITS, WORDS, Word, meant_by, other_name
+from tiniscript.words import POWER_WORDS, TURN_WORDS, UNITS, WORDS, Word, meant_by
 
 # Words in the place of an operator, and those that go with them.
 OPERATOR_WORDS = {
@@ -345,7 +345,7 @@ def is_assignment(tokens: Sequence[Token], k: int) -> bool:
     return tokens[k].kind is WORD and tokens[k + 1].kind == "="
 
 
-def update(name: Token, tokens: Sequence[Token], k: int) -> tuple[str, str] | None:
+def update(name: str, tokens: Sequence[Token], k: int) -> tuple[str, str] | None:
     """Return how `X += 1`, `X++`, `X := 5` or `X <- 5` is written here, and the sign used.
 
     `k` is the place after the name.
@@ -353,27 +353,26 @@ def update(name: Token, tokens: Sequence[Token], k: int) -> tuple[str, str] | No
     sign, second = tokens[k], tokens[min(k + 1, len(tokens) - 1)]
     says_is = sign.kind is WORD and OPERATOR_WORDS.get(sign.text) == "="
     if (says_is or sign.text == ":") and starts_value(second) and tokens[k + 2].kind in AT_END:
-        return f"{name.text} = {second.text}", sign.text.lower()
+        return f"{name} = {second.text}", sign.text.lower()
     if sign.end != second.start:
         return None
     found = sign.text + second.text
     if found in ("++", "--") and tokens[k + 2].kind in (")", *AT_END):
-        return f"{name.text} = {name.text} {sign.text} 1", found
+        return f"{name} = {name} {sign.text} 1", found
     if found not in ("+=", "-=", "*=", "/=", "%=", ":=", "<-"):
         return None
     end = k + 2
     while tokens[end].kind not in ("{", "}", *AT_END):
         end += 1
-    target = other_name(name.text) if name.text in WORDS else name.text
     value = written(tokens[k + 2 : min(end, k + 2 + LONGEST)])
     if not value:
         return None
     if found in (":=", "<-"):
-        return f"{target} = {value}", found
+        return f"{name} = {value}", found
     single = end == k + 3 or (sign.text in ("+", "-") and not {"+", "-"} & {
         token.kind for token in tokens[k + 2 : end]
     })  # fmt: skip
-    return f"{target} = {target} {sign.text} {value if single else f'({value})'}", found
+    return f"{name} = {name} {sign.text} {value if single else f'({value})'}", found
 
 
 def shortened(text: str) -> str:

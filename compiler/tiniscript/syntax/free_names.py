@@ -1,0 +1,39 @@
+"""Names that a program does not have yet, for its variables and its DEFs.
+
+Knows the text of the program, and no grammar: a word in a note is a name that is taken, too.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from functools import lru_cache
+from itertools import count
+
+from tiniscript.words import other_name
+
+_NAME = re.compile(r"\w+")
+
+
+@lru_cache(maxsize=1)
+def names_in(text: str) -> frozenset[str]:
+    """Return all words of a text, in capitals."""
+    return frozenset(_NAME.findall(text.upper()))
+
+
+def numbered(text: str, stem: str) -> Iterator[str]:
+    """Yield `stem`_2, `stem`_3 … without those that the text has."""
+    names = (f"{stem}_{k}" for k in count(2))
+    return (each for each in names if each not in names_in(text))
+
+
+def in_place_of(text: str, word: str) -> str:
+    """Return a name for what was called `word`, a word of the language: F_1, or F_2 beside F_1."""
+    right = other_name(word)
+    is_free = right not in names_in(text)
+    return right if is_free else next(numbered(text, right.removesuffix("_1")))
+
+
+def for_a_number(text: str) -> str:
+    """Return a name for a variable that gets a number: N, or N_2 beside an N."""
+    return "N" if "N" not in names_in(text) else next(numbered(text, "N"))
