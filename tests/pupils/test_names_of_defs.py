@@ -17,7 +17,7 @@ from tiniscript.source import Source
         ("DEF a b;R(1, 50);END_DEF;a b", "DEF A_B;R(1, 50);END_DEF;A_B"),
         ("DEF PASO-UNO;S;END_DEF;PASO-UNO", "DEF PASO_UNO;S;END_DEF;PASO_UNO"),
         ("DEF PASO-1;S;END_DEF;PASO-1", "DEF PASO_1;S;END_DEF;PASO_1"),
-        ("DEF PARAR S\nEND_DEF;PARAR", "DEF PARAR; S\nEND_DEF;PARAR"),  # S does something
+        ("DEF PARAR S\nEND_DEF;PARAR", "DEF PARAR;S;END_DEF;PARAR"),  # S does something
         ("F(1, 80) cuatro veces", "F(1, 80) cuatro veces"),  # a number in words is left to look at
     ],
 )
