@@ -7,7 +7,7 @@ from collections.abc import Container
 from unicodedata import combining, normalize
 
 from tiniscript.source import Span
-from tiniscript.words import AMOUNT_WORDS, POWER_WORDS, WORDS
+from tiniscript.words import AMOUNT_WORDS, POWER_WORDS, WORDS, meant_by
 
 _NEAR = 80  # characters around a value in which its call is looked for
 _BEFORE = re.compile(r"([A-Za-z]+)[ \t]*\(([^()\r\n;]*)\Z")
@@ -30,8 +30,9 @@ def with_number(text: str, span: Span, own: Container[str] = ()) -> dict[str, st
     before = text[max(0, span.start - _NEAR) : span.start]
     amount = text[slice(*span)]
     if asked := _ASKED.search(before):
-        sample = _CENTIMETRES if asked[1].upper() == "DISTANCE" else _ANY
-        return {"amount": amount, "example": f"{asked[0]}{sample}"}
+        name = meant_by(asked[1].upper()) or asked[1].upper()
+        sample = _CENTIMETRES if name == "DISTANCE" else _ANY
+        return {"amount": amount, "example": f"{name}{asked[0][len(asked[1]) :]}{sample}"}
     call, after = _BEFORE.search(before), _AFTER.match(text[span.end : span.end + _NEAR])
     word = WORDS.get(call[1].upper()) if call else None
     if call is None or after is None or word is None:

@@ -219,23 +219,31 @@ class GroupRecovery:
         while True:
             depth += (tokens[end].kind == "(") - (tokens[end].kind == ")")
             is_parted = tokens[end].kind in (";", ",") and not depth
-            if is_parted or tokens[end].kind in (NEWLINE, END):
-                if end > first and not self.seen.is_order(tokens[first:end]):
+            is_next = not depth and end > first and (
+                self.seen.begins_order(end) or tokens[end].text in (*ENDS, "END", "FIN")
+            )
+            if is_parted or is_next or tokens[end].kind in (NEWLINE, END):
+                piece = tokens[first:end]
+                if [each.text for each in piece] in (["END"], ["FIN"]):
+                    piece = [piece[0]._replace(text=BLOCK_ENDS["DEF"])]
+                if piece and not self.seen.is_order(piece):
                     return
-                orders += [tokens[first:end]] * (end > first)
-                first = end + 1
+                orders += [piece] * bool(piece)
+                first = end + (not is_next)
             if tokens[end].kind in (NEWLINE, END):
                 break
             end += 1
         if not orders or block.name is None:
             return
-        has_end = ENDS.get(orders[-1][0].text) == "DEF"
+        end_word = orders[-1][0]
+        has_end = ENDS.get(end_word.text) == "DEF"
         is_ended, last = (True, end) if has_end else self.seen.end_comes("DEF", end)
         is_later = not is_ended and self.seen.goes_on(block, self.in_block.blocks.open[:-1], end)
         if not (has_sign or has_end or is_ended or is_later or self._is_over(end)):
             return
-        right = "" if has_end or is_later else BLOCK_ENDS["DEF"]
-        texts = (f"DEF {block.name.text}", *(self.seen.said(each) for each in orders), right)
+        right = "" if is_later else end_word.text if has_end else BLOCK_ENDS["DEF"]
+        said = (self.seen.said(each) for each in (orders[:-1] if has_end else orders))
+        texts = (f"DEF {block.name.text}", *said, right)
         self.reporter.answer(tokens[k])
         place = Span(block.span.start, tokens[last - 1].end if is_ended else tokens[end - 1].end)
         fix = ";".join(filter(None, texts))
