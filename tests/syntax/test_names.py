@@ -10,7 +10,7 @@ import pytest
 
 from tiniscript import compile_text
 from tiniscript.kit import NUMBER, YES_NO, Device, Kit
-from tiniscript.words import OTHER_WORDS, WORDS
+from tiniscript.words import HEARD_WORDS, OTHER_WORDS, WORDS
 
 FOREIGN = sorted({word for words in OTHER_WORDS.values() for word in words.split()} - {"DISTANCE"})
 SLIPS = ["END", "Y", "O", "THEN", "DO", "BEGIN", "NO", "YES", "IS", "LET", "VAR", "INT", "CALL",
@@ -54,3 +54,10 @@ def test_an_actuator_may_be_called_so(name: str, kind: str) -> None:
     kit = Kit((), (Device(name, kind, "", 0, 1 if kind == YES_NO else 180_000),))
     value = "TRUE" if kind == YES_NO else "90"
     assert is_right(f"{name}({value});IF(TRUE);{name}({value});ENDIF;W(1)\n{name}({value})", kit)
+
+
+def test_a_word_has_one_meaning_in_one_table() -> None:
+    said = [word for table in (OTHER_WORDS, HEARD_WORDS) for row in table.values()
+            for word in row.split()]  # fmt: skip
+    assert len(said) > 300
+    assert sorted(said) == sorted({*said})

@@ -259,7 +259,7 @@ class FrozenQuestions:
         return True
 
     def _changed_in(self, loop: Loop | While) -> set[int] | None:
-        """Return the variables that get a value in a loop; None where it takes no time."""
+        """Return the variables that get a value in a loop; None where nothing drives in it."""
         place = loop.span.start
         if place not in self._in_loops:
             drives = any(isinstance(each, (Move, Motors)) for each in walk(loop.body))

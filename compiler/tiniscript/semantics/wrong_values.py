@@ -26,7 +26,6 @@ _COMPARED = re.compile(r"[^<>=]{1,40}?\s*(?:<=|>=|<>|[<>=])(?=[^<>=]*$)")  # `X 
 _TIME, _POWER, _TIMES, _HERTZ = "2", "50", "3", "440"  # examples of what a variable may hold
 _POWER_BEFORE = re.compile(r"(?i)\b[FBLR][ \t]*\([^(),]*,[ \t]*$")
 _NEAR = 20  # characters before a name in which its word is looked for
-# Where a sensor does not look that looks ahead.
 _TIMES_BEFORE = re.compile(r"(?i)\bLOOP[ \t]*\([ \t]*$")
 _HERTZ_BEFORE = re.compile(r"(?i)\bBEEP[ \t]*\([^(),]*,[ \t]*$")
 _ASKED_BEFORE = re.compile(r"(?i)\b(?:IF|ELSEIF|UNTIL|WHILE)[ \t]*\([ \t]*$")

@@ -12,6 +12,10 @@ from tiniscript.syntax.reporter import Reporter
 from tiniscript.syntax.vocabulary import Vocabulary
 from tiniscript.words import WORDS
 
+_IN_VALUE = frozenset((NUMBER, "+", "-", "*", "/", "(", ")"))
+_ANSWERS = ("TRUE", "FALSE")
+_MOST_IN_VALUE = 12  # tokens of a value that several variables get
+
 
 class AssignmentRecovery:
     """`unread` remembers that a variable is set to a value that cannot be read."""
@@ -51,24 +55,25 @@ class AssignmentRecovery:
             found = self.cursor.source[span]
             self.reporter.fail(codes.NAME_WITH_SPACE, span, found=found, right=right)
 
-    def one_for_all(self, first: Token) -> None:
-        """`X = Y = 50`, where Y has no value before: each of them gets the 50."""
+    def one_for_all(self, first: Token, k: int) -> None:
+        """`X = Y = 50`, with Y at `k`, where Y has no value before: each of them gets the 50."""
         cursor = self.cursor
-        tokens, k = cursor.tokens, cursor.i
+        tokens = cursor.tokens
         names = [first]
         while tokens[k].kind is WORD and tokens[k + 1].kind == "=":
             names.append(tokens[k])
             k += 2
         known = [name for name in names[1:] if self.known.is_name(name.text)
                  or self.known.first_set.get(name.text, first.start) < first.start]  # fmt: skip
-        is_below = tokens[k].kind == "-"
-        k += is_below
-        is_twice = len({name.text for name in names}) < len(names)
-        if self.known.kit is None or known or is_twice:
+        if self.known.kit is None or known:
             return
-        if tokens[k].kind is not NUMBER or tokens[k + 1].kind not in AT_END:
+        end = k
+        while tokens[end].kind in _IN_VALUE or tokens[end].text in _ANSWERS:
+            end += 1
+        is_value = any(each.kind is NUMBER or each.kind is WORD for each in tokens[k:end])
+        if not is_value or tokens[end].kind not in AT_END or end - k > _MOST_IN_VALUE:
             return
-        value = "-" * is_below + tokens[k].text
+        value = cursor.source[Span(tokens[k].start, tokens[end - 1].end)]
         reserved = [name.text for name in names if name.text in WORDS]
         if any(WORDS[name].role in ("value", "operator") for name in reserved):
             return
@@ -76,7 +81,8 @@ class AssignmentRecovery:
         rows = [f"{free.get(name.text, name.text)} = {value}" for name in names]
         for name in names:
             self.unread(name)
-        cursor.i = k + 1
+        rows = list(dict.fromkeys(rows))  # `X = X = 5`
+        cursor.i = end
         values = {"fix": ";".join(rows)}
         if reserved:
             values = {"example": "; ".join(rows), "reserved": reserved[0],

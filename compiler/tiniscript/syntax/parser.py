@@ -51,7 +51,7 @@ _SETUPS = frozenset(("SI", "SB", "PING"))
 _MISREAD = frozenset(("S1", "SL", "5I"))  # SI, with a letter or a digit for another one
 _BEGIN_ENDS = ("END", "FIN")  # END_JUMP, FIN
 # What stands alone for the line above, or for what follows.
-_AGAIN = frozenset("IDEM ÍDEM DITTO IGUAL SAME AGAIN NUEVAMENTE ETC ETCETERA ETCÉTERA".split())  # noqa: SIM905
+_AGAIN = frozenset("IDEM DITTO IGUAL SAME AGAIN NUEVAMENTE ETC ETCETERA".split())  # noqa: SIM905
 _IN_TITLE = frozenset((WORD, NUMBER, ODD, NEWLINE, ",", "-"))  # behind the first word of a sentence
 _AFTER_NAME = frozenset(("(", *AT_END))
 
@@ -192,13 +192,12 @@ class Parser:
 
     def assignment(self, name: Token) -> None:
         is_reserved = name.text in WORDS
+        tokens, start = self.cursor.tokens, self.cursor.i + 2
+        if tokens[start].kind is WORD and tokens[start + 1].kind == "=":
+            self.recovery.of_name.of_value.one_for_all(name, start)
         if is_reserved:
             self.recovery.of_name.reserved_name(name)
-        self.cursor.i += 2
-        start, said = self.cursor.i, len(self.reporter.diagnostics)
-        tokens = self.cursor.tokens
-        if tokens[start].kind is WORD and tokens[start + 1].kind == "=":
-            self.recovery.of_name.of_value.one_for_all(name)
+        self.cursor.i, said = start, len(self.reporter.diagnostics)
         try:
             value = self.expressions.expression(in_brackets=False)
         except Failed:

@@ -289,10 +289,20 @@ class SetupRecovery:
             foreign_header(parser, word, "IF")
         is_later = any(each.kind is WORD for each in cursor.tokens[: cursor.i])
         if following.kind == "|" or (word.text == "SB" and is_later):
-            values = {"button": "SB", "pause": "W(2)"} if word.text == "SB" else {}
+            values = self._button_later(following) if word.text == "SB" else {}
             self.reporter.fail(codes.SETUP_TWICE, word.span, None, found=word.text, **values)
         fix = f"{word.text}|" if word.text != "PING" else ""
         self.reporter.fail(codes.SETUP_NEEDS_BAR, word.span, None, found=word.text, fix=fix)
+
+    def _button_later(self, following: Token) -> dict[str, str]:
+        """`F(1, 80); SB|B(1, 80)`: return what is said of the SB before `following`."""
+        cursor = self.cursor
+        first = cursor.after_newlines(0)
+        begins = cursor.tokens[first].text if cursor.tokens[first + 1].kind == "|" else ""
+        values = {"button": "SB", "pause": "W(2)", "here": "SB|" if following.kind == "|" else "SB"}
+        if begins == "SB":
+            return {**values, "twice": values["here"]}
+        return {**values, "instead": begins} if begins else values
 
     def _near(self, parser: Parser, word: Token) -> None:
         """`si hay una pared para`, `si no hay pared`."""
