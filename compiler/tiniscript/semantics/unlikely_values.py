@@ -35,7 +35,10 @@ LITTLE_POWER = 10_000  # thousandths of a percent
 
 
 def of_move(move: Move, kit: Kit, source: Source) -> list[Diagnostic]:
-    """Return what there is to say of the numbers of a move or a wait without UNTIL: one at most."""
+    """Return what there is to say of the numbers of a move or a wait without UNTIL.
+
+    It is one thing at most, and for `R(03, 2)` what is said of its power, too.
+    """
     time, power = _number(move.time), _number(move.power)
     found: list[Diagnostic] = []
     if time is None:
@@ -51,6 +54,7 @@ def of_move(move: Move, kit: Kit, source: Source) -> list[Diagnostic]:
         if len(zero[1]) == 2:  # 3 seconds or 0.3
             values["point"] = f"0.{zero[1][1:]}"
         found.append(Diagnostic(codes.ZERO_BEFORE, move.span, values))
+        return found + of_power(move)
     elif _is_swapped(time, power):
         seconds, percent = as_text(time), as_text(power or 0)
         fix = f"{move.direction}({percent}, {seconds})"
