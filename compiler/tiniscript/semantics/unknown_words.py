@@ -37,6 +37,7 @@ from tiniscript.words import (
 )
 
 _DIGITS = "0123456789"
+MOST_POWER = 100
 MANY_TIMES = 20  # that a DEF is done by hand in a class
 # Short for derecha, izquierda, parar, esperar …, and what pupils say of the way that they go.
 _SHORT = {
@@ -146,7 +147,7 @@ def _both_ways(scope: Scope, node: ast.Command) -> dict[str, str]:
     texts = [scope.source[each.span] for each in node.arguments or ()]
     if len(texts) != 2 or not all(each.replace(".", "", 1).isdecimal() for each in texts):
         return {}
-    if float(texts[0]) >= LONG_TIME_S:
+    if float(texts[0]) >= LONG_TIME_S or float(texts[1]) > MOST_POWER:
         return {}
     return {
         f"to_{way}": f"{word}({texts[0]}, {texts[1]})"

@@ -29,7 +29,8 @@ _SAME = re.compile(
     _THEN + r"(?:IDEM|DITTO|IGUAL|(?:LO|LA|THE)? ?(?:MISMO|MISMA|SAME)(?: THING)?|OTRA VEZ|DE NUEVO"
     r"|NUEVAMENTE|AGAIN|ONCE MORE)(?: (?:OTRA VEZ|DE NUEVO|AGAIN))?"
     r"(?: (?:QUE|DE|A|AS|COMO) (?:LA |LO |EL )?(?:ARRIBA|ANTES|ANTERIOR|DE ARRIBA|ABOVE|BEFORE))?"
-    r"(?:(?: POR)? (?P<often>[0-9]{1,3}|DOS|TRES|CUATRO|CINCO) ?(?:VECES|TIMES)(?: MAS| MORE)?)?"
+    r"(?:(?: POR)? (?P<often>[0-9]{1,3}|DOS|TRES|CUATRO|CINCO) ?(?:VECES|TIMES)"
+    r"(?P<more> MAS| MORE)?)?"
 )
 _SO_ON = re.compile(
     r"(?:(?:Y|AND|E) +)?(?:ETC(?:ETERA)?|ASI SUCESIVAMENTE|SO ON|SO FORTH)\b.*|Y ASI\b.*|"
@@ -55,7 +56,8 @@ class AgainRecovery:
             self._same(row, text, is_mark=True)
         if same := _SAME.fullmatch(text.strip(" .!")):
             if same["often"]:
-                self._so_often(row, NUMBER_WORDS.get(same["often"], same["often"]))
+                times = int(NUMBER_WORDS.get(same["often"], same["often"]))
+                self._so_often(row, str(times + bool(same["more"])))
             self._same(row, text, is_mark=False)
         if _SO_ON.fullmatch(text) or _DOTS.fullmatch(text):
             self._goes_on(row)

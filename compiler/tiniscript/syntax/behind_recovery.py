@@ -17,7 +17,7 @@ from tiniscript.syntax.cursor import AT_END, Cursor
 from tiniscript.syntax.lexer import NUMBER, ODD, QUOTES, WORD, Token, scan
 from tiniscript.syntax.note_recovery import NoteRecovery
 from tiniscript.syntax.operators import COMPARISONS
-from tiniscript.syntax.phrases import BEFORE_POWER, BEFORE_TIME, BESIDE, TIMES
+from tiniscript.syntax.phrases import BEFORE_POWER, BEFORE_TIME, TIMES
 from tiniscript.syntax.reporter import Reporter, Resumed
 from tiniscript.syntax.suggestions import shortened
 from tiniscript.syntax.times_recovery import TimesRecovery
@@ -32,6 +32,8 @@ _PERCENT = ("%", "CIENTO", "PORCIENTO", "PERCENT")
 _MEASURED = ("cm", "°", "steps")  # that no instruction has, and pupils look at
 _OFTEN = ("POR", "X", "*")
 _SENSIBLE = range(2, 51)  # times that a number in brackets may mean
+_DEGREES = 20  # a number behind a turn that is rather an angle
+_JOINING = frozenset(("CON", "WITH", "Y", "AND", "O", "OR", "U"))
 _FRAMES = ("*", "-", "/", "+", "=")
 _CLOCKED = ("move", "wait", "beep")
 _SAYING_NO_MORE = frozenset((
@@ -124,9 +126,15 @@ class BehindRecovery:
         for number, after in pairwise(row):
             if number.kind is NUMBER and after.text in TIMES and first.text in WORDS:
                 self._alone(number.text, row, whole)  # `F(1, 50) 3 veces mas`
-        is_order = len(row) > 1 and row[1].text in WORDS and WORDS[row[1].text].is_instruction
-        is_beside = row[0].text in BESIDE and is_order  # `F(1, 80) con BEEP(2, 440)`
-        self._report(row, whole, order=self._text(row[is_beside:]))
+        self._report(row, whole, order=self._text(self._bare(row)))
+
+    def _bare(self, row: Sequence[Token]) -> Sequence[Token]:
+        """Return the instruction in `con SHOW(1)` and in `(L(1, 60))`, else the row."""
+        inner = row[1:] if row[0].text in _JOINING else row
+        if row[0].kind == "(" and row[-1].kind == ")" and len(row) > 2:
+            inner = row[1:-1]
+        known = WORDS.get(inner[0].text) if inner else None
+        return inner if known is not None and known.is_instruction else row
 
     def framed(self, sign: Token) -> None:
         """`*F(2, 80)*`, `-F(2, 80)-`: an instruction between two signs."""
@@ -254,11 +262,18 @@ class BehindRecovery:
         call = self.cursor.source[whole]
         if is_motors:
             self._report(row, whole, seconds=number, waiting=f"{call};W({number});S")
+        is_turn = call[:2].upper() in ("L(", "R(") and self._text(row).strip("()") == number
+        if is_turn and number.isdecimal() and int(number[:9]) >= _DEGREES:
+            self._report(row, whole, extra=self._text(row))  # `L(1, 60)(45)`
         if number.isdecimal() and int(number[:9]) in _SENSIBLE:
             self._report(row, whole, often=f"LOOP({number});{call};END_LOOP", times=number)
 
     def _time(self, known: Word, row: Sequence[Token], said: Sequence[Token], whole: Span) -> None:
         """`F(2, 80) por 5 segundos`, `M(50, 50) 2 segundos`, `S 2 segundos`."""
+        k = next((k for k, each in enumerate(said) if each.text == "UNTIL"), len(said))
+        is_asked = 0 < k < len(said) and known.role in ("move", "wait")
+        until = f" {self._text(said[k:])}" if is_asked else ""
+        said = said[:k] if is_asked else said
         seconds = self._seconds(said)
         call = self.cursor.source[whole]
         if not seconds:
@@ -266,12 +281,14 @@ class BehindRecovery:
         if known.role in ("motors", "stop"):
             fix = f"{call};W({seconds})" + ";S" * (known.role == "motors")
             self._report(row, whole, fix=fix)
-        values = call.partition("(")[2]
+        values = _values(call)
         if known.role not in _CLOCKED or not values or self._has_until():
             return
-        time = values[:-1].partition(",")[0].strip()
-        if time != seconds:
-            longer = f"{call[: -len(values)]}{seconds}{values[values.index(time) + len(time) :]}"
+        time = values[0]
+        if call[slice(*time)] == seconds and row[0].kind == "(":
+            self._report(row, whole, f"{call} // {self._text(row)}")
+        if call[slice(*time)] != seconds:
+            longer = f"{call[: time.start]}{seconds}{call[time.end :]}{until}"
             self._report(row, whole, longer=longer, time=f"{seconds} s")
 
     def _power(self, row: Sequence[Token], said: Sequence[Token], whole: Span) -> None:
@@ -284,14 +301,17 @@ class BehindRecovery:
         if len(rest) == 1 and rest[0].kind is NUMBER:
             is_power |= self.cursor.source[rest[0].span].endswith("%")
             is_power |= any(each.text in BEFORE_POWER for each in said)
-        head, comma, power = self.cursor.source[whole].rpartition(",")
-        now = power.strip(" )")
+        call = self.cursor.source[whole]
+        values = _values(call)
         is_number = len(rest) == 1 and rest[0].kind is NUMBER
-        if not (is_power and is_number) or not comma or not now.isdecimal() or self._has_until():
+        if not (is_power and is_number) or len(values) < 2:
             return
-        if now == rest[0].text:
-            self._report(row, whole, f"{self.cursor.source[whole]} // {self._text(row)}")
-        self._report(row, whole, power=f"{head},{power.replace(now, rest[0].text)}")
+        start, end = values[-1]
+        if not call[start:end].isdecimal():
+            return
+        if call[start:end] == rest[0].text:
+            self._report(row, whole, f"{call} // {self._text(row)}")
+        self._report(row, whole, power=f"{call[:start]}{rest[0].text}{call[end:]}")
 
     def _has_until(self) -> bool:
         here = self.in_block.blocks.here
@@ -338,3 +358,22 @@ class BehindRecovery:
         place = Span(whole.start, span.end) if fix else None
         values = {"before": shortened(self.cursor.source[whole]), "words": self._text(row)}
         self.reporter.fail(codes.WORDS_BEHIND, span, place, **{**values, "fix": fix, **said})
+
+
+def _values(call: str) -> list[Span]:
+    """Return where the values of a call stand in its text, without the spaces around them."""
+    found: list[Span] = []
+    depth = start = 0
+    for k, sign in enumerate(call):
+        depth += sign == "("
+        if sign == "(" and depth == 1:
+            start = k + 1
+        elif sign in ",)" and depth == 1:
+            value = call[start:k]
+            first = start + len(value) - len(value.lstrip())
+            found.append(Span(first, first + len(value.strip())))
+            start = k + 1
+        depth -= sign == ")"
+        if sign == ")" and not depth:
+            break
+    return found

@@ -219,8 +219,10 @@ class GroupRecovery:
         while True:
             depth += (tokens[end].kind == "(") - (tokens[end].kind == ")")
             is_parted = tokens[end].kind in (";", ",") and not depth
-            is_next = not depth and end > first and (
-                self.seen.begins_order(end) or tokens[end].text in (*ENDS, "END", "FIN")
+            is_next = (
+                not depth
+                and end > first
+                and (self.seen.begins_order(end) or tokens[end].text in (*ENDS, "END", "FIN"))
             )
             if is_parted or is_next or tokens[end].kind in (NEWLINE, END):
                 piece = tokens[first:end]

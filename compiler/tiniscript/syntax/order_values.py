@@ -13,6 +13,7 @@ from tiniscript.syntax.call_suggestions import call_in
 from tiniscript.syntax.cursor import AT_END, Cursor
 from tiniscript.syntax.free_names import for_a_number
 from tiniscript.syntax.lexer import NUMBER, WORD, Token
+from tiniscript.syntax.ranges import range_in
 from tiniscript.syntax.reporter import Reporter
 from tiniscript.syntax.suggestions import after_bracket
 from tiniscript.syntax.vocabulary import Vocabulary
@@ -45,7 +46,9 @@ def order_as_value(cursor: Cursor, reporter: Reporter, known: Vocabulary, token:
     before = tokens[start + 1 : k - 1]
     count = sum(each.kind != "," for each in before)
     if tokens[k - 1].kind == "," and count == len(owner.arguments):
-        order = word.text if word.role == "stop" else call_in(word, before) or word.example
+        fits = word.arguments == owner.arguments  # of BEEP(1, 440, F) no number is a power
+        order = (call_in(word, before) if fits else "") or word.example
+        order = word.text if word.role == "stop" else order
         values = {"apart": f"{call_in(owner, before)}; {order}"}
     reporter.fail(codes.NO_VALUE, token.span, None, word=word.text, **values)
 
@@ -56,16 +59,18 @@ def at_random(cursor: Cursor, reporter: Reporter, known: Vocabulary, first: Toke
     if first.text != "RANDOM":
         return
     end = after_bracket(tokens, k + 1) if tokens[k + 1].kind == "(" else None
-    shown = WORDS["RANDOM"].example
+    written = shown = WORDS["RANDOM"].example
     if end is not None:
         shown = cursor.source[Span(first.start, tokens[end - 1].end)]
+        limits = range_in(cursor.source[Span(tokens[k + 1].end, tokens[end - 1].start)].strip())
+        written = f"RANDOM({', '.join(limits)})" if limits else shown
     orders = _orders(cursor, known, tokens[k + 2 : end - 1]) if end is not None else []
     cursor.i = end or k + 1
     span = cursor.span_from(first)
     if len(orders) > 1 and tokens[cursor.i].kind in AT_END:
         _choose(cursor, reporter, span, orders)
     name = for_a_number(cursor.source.text)
-    values = {"given": shown, "number": f"{name} = {shown}"}
+    values = {"given": shown, "number": f"{name} = {written}"}
     reporter.fail(codes.NOT_AN_INSTRUCTION, span, None, found=first.text, **values)
 
 
