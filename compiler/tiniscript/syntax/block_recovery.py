@@ -171,7 +171,8 @@ class BlockRecovery:
             self.reporter.report(codes.EMPTY_BRACKETS, span, word=word.text)
             return
         inside = cursor.source[Span(arguments[0].span.start, arguments[-1].span.end)]
-        fix, asked = f"{other}({inside})" if other else word.text, ""
+        is_else = not other or self.blocks.is_rest(inside, cursor.source)
+        fix, asked = word.text if is_else else f"{other}({inside})", ""
         if word.text in WORDS and WORDS[word.text].role == "stop":
             is_time = len(arguments) == 1 and arguments[0].is_plain
             fix = f"{word.text};W({inside})" if is_time else word.text

@@ -5,9 +5,11 @@ Knows which instructions belong to which block. Knows no tokens but the names of
 
 from __future__ import annotations
 
+import re
+
 from tiniscript.bytecode.opcodes import BLOCKS
 from tiniscript.diagnostics import codes
-from tiniscript.source import Span
+from tiniscript.source import Source, Span
 from tiniscript.syntax.ast import Argument, Arm, Def, If, Instruction, Loop, While
 from tiniscript.syntax.lexer import Token
 from tiniscript.syntax.reporter import Reporter
@@ -16,6 +18,7 @@ from tiniscript.words import ALIASES, BLOCK_ENDS
 HEADERS = frozenset(BLOCK_ENDS) - {"DEF"}  # IF, LOOP, WHILE
 ENDS = {end: word for word, end in BLOCK_ENDS.items()}  # ENDIF: IF …
 ENDS |= {alias: ENDS[end] for alias, end in ALIASES.items()}
+_COMPARED = re.compile(r"\s*([A-Za-z_]\w*)\s*(<>|[<>]=?|=)\s*([\w.]+)\s*")
 
 
 class Block:
@@ -79,6 +82,19 @@ class Blocks:
                 self._reporter.report(codes.BLOCKS_TOO_DEEP, span, limit=str(BLOCKS))
         self.open.append(Block(word, span, head, name))
         return self.open[-1]
+
+    def is_rest(self, asked: str, source: Source) -> bool:
+        """Whether a question is TRUE where the only one of the innermost block is not.
+
+        `DISTANCE > 30` is taken for it beside `DISTANCE < 30`: of 30 itself nobody thinks.
+        """
+        block = self.innermost
+        if block is None or block.word != "IF" or block.arms or block.head is None:
+            return False
+        one, other = (_COMPARED.fullmatch(each) for each in (asked, source[block.head.span]))
+        if one is None or other is None or one.group(1, 3) != other.group(1, 3):
+            return False
+        return {one[2][0], other[2][0]} == {"<", ">"} and "<>" not in (one[2], other[2])
 
     def forget(self) -> None:
         """Drop the innermost block, which has just begun, because its line is read anew."""
