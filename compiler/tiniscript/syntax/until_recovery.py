@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NoReturn
 from tiniscript.diagnostics import codes
 from tiniscript.source import Span
 from tiniscript.syntax.ast import Command
-from tiniscript.syntax.blocks import Blocks
+from tiniscript.syntax.blocks import ENDS, HEADERS, Blocks
 from tiniscript.syntax.call_suggestions import call_in, starts_value
 from tiniscript.syntax.cursor import AT_END, Cursor
 from tiniscript.syntax.lexer import NEWLINE, NUMBER, WORD, Token
@@ -189,6 +189,7 @@ class UntilRecovery:
             for k in range(start, min(len(tokens), start + _FARTHEST))
             if tokens[k - 1].kind in (";", NEWLINE) and self._ends_until(k, is_strict)
         ]
+        ends = ends or self._end_before_own(start)
         values = inside(tokens, start)
         question = self.known.translated(opposite(with_signs(values)))
         if not ends or not question:
@@ -205,6 +206,22 @@ class UntilRecovery:
                              header=f"WHILE({question})", right=BLOCK_ENDS["WHILE"])  # fmt: skip
         self.blocks.begin("WHILE", place).is_reported = True
         raise Resumed
+
+    def _end_before_own(self, start: int) -> list[int]:
+        """Return where an END alone stands before the own end of the block around it, if so."""
+        tokens, block = self.cursor.tokens, self.blocks.innermost
+        depth, found = 0, []
+        for k in range(start, min(len(tokens), start + _FARTHEST)):
+            text = tokens[k].text
+            if block is None or tokens[k - 1].kind not in (";", NEWLINE):
+                continue
+            depth += text in HEADERS
+            if text in ("END", "FIN") and not depth:
+                found.append(k)
+            elif text in ENDS and not depth:
+                return found if len(found) == 1 and ENDS[text] == block.word else []
+            depth -= depth > 0 and (text in ENDS or text in ("END", "FIN"))
+        return []
 
     def _ends_until(self, k: int, is_strict: bool) -> bool:
         text, after = self.cursor.tokens[k].text, self.cursor.tokens[k + 1 : k + 2]
