@@ -104,6 +104,7 @@ class FrozenQuestions:
         elif isinstance(statement, If):
             self._late_arms(statement)
             for arm in statement.arms:
+                self._subtracted(arm.condition, arm.span)
                 if not self._known(self._comparison(arm.condition), arm.span):
                     self._exact_if(arm)
                 if outermost is not None and _is_endless(outermost):
@@ -122,6 +123,7 @@ class FrozenQuestions:
             return
         compared = self._comparison(condition)
         if compared is None or self._known(compared, move.span):
+            self._subtracted(condition, move.span)
             return
         device, op, number = compared
         is_ahead = looks_ahead(device)
@@ -304,6 +306,19 @@ class FrozenQuestions:
             self._report(codes.KNOWN_ANSWER, span, sensor=device.name, low=as_text(device.low),
                          high=as_text(device.high), answer=answer)  # fmt: skip
         return bool(answer)
+
+    def _subtracted(self, condition: Expression, span: Span) -> None:
+        """`DISTANCE = 5-20`: no distance is -15, and between is asked with two signs."""
+        asked = [term.op for term in condition]
+        if asked != ["SENSOR", "NUMBER", "NUMBER", "SUB", "EQ"]:
+            return
+        device = self._kit.sensors[condition[0].value]
+        first, second = (term.value for term in condition[1:3])
+        if not device.is_yes_no and first - second < device.low <= first < second <= device.high:
+            name, low, high = device.name, as_text(device.low), as_text(device.high)
+            between = f"{name} > {as_text(first)} AND {name} < {as_text(second)}"
+            self._report(codes.KNOWN_ANSWER, span, sensor=name, low=low, high=high,
+                         answer="answer_no", between=between)  # fmt: skip
 
     def _exact_if(self, arm: Arm) -> None:
         compared = self._comparison(arm.condition)

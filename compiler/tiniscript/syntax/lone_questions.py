@@ -13,12 +13,14 @@ from tiniscript.source import Span
 from tiniscript.syntax.ast import Assign
 from tiniscript.syntax.block_recovery import BlockRecovery
 from tiniscript.syntax.cursor import AT_END, Cursor
-from tiniscript.syntax.lexer import NUMBER, WORD, Token
+from tiniscript.syntax.lexer import NUMBER, ODD, WORD, Token
 from tiniscript.syntax.operators import SIGNS
 from tiniscript.syntax.reporter import Reporter, Resumed
 from tiniscript.syntax.suggestions import head_in
 from tiniscript.syntax.worded_questions import sensors_of
 from tiniscript.words import WORDS
+
+_SHORT = 20  # tokens of a line with odd signs
 
 
 def asked_alone(
@@ -26,6 +28,13 @@ def asked_alone(
 ) -> NoReturn:
     """Report the question at the cursor, whose tokens are `row`, or the whole line with it."""
     start, first, known = cursor.i, row[0], in_block.known
+    is_last = row[-1].kind is not ODD  # else a repair would leave `¿si? S` behind it
+    while len(row) > 1 and row[-1].kind is ODD:  # `DISTANCE < 20 ¿si? S`
+        row = row[:-1]
+        for token in cursor.tokens[start : start + _SHORT]:
+            if token.kind in AT_END:
+                break
+            reporter.answer(token)
     span = Span(first.start, row[-1].end)
     if len(row) > 2 and row[-2].kind == "=" and row[-1].kind is WORD:
         _turned(cursor, reporter, in_block, row)
@@ -50,7 +59,7 @@ def asked_alone(
         del cursor.tokens[start]
         cursor.i = start
     fix = known.translated(head_in(WORDS["IF"], row))
-    reporter.fail(codes.NOT_AN_INSTRUCTION, span, span, **said, fix=fix)
+    reporter.fail(codes.NOT_AN_INSTRUCTION, span, span if is_last else None, **said, fix=fix)
 
 
 def _turned(
