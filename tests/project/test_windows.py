@@ -12,7 +12,6 @@ import re
 import subprocess
 import sys
 from pathlib import Path
-from time import monotonic
 from types import ModuleType, SimpleNamespace
 from typing import Any
 
@@ -326,7 +325,10 @@ LEFT = """\
 import errno, sys
 class Left:
     encoding = "cp1252"
-    def write(self, text): raise OSError({number}, "Invalid argument")
+    def write(self, text):
+        failure = OSError({number}, "Invalid argument")
+        {about} = {value!r}
+        raise failure
     def flush(self): pass
     def isatty(self): return False
 sys.stdout = Left()
@@ -337,12 +339,20 @@ sys.exit(main(["help"]))
 
 
 @pytest.mark.parametrize(
-    ("platform", "number", "code"),
-    [("win32", errno.EINVAL, CLOSED), ("win32", errno.ENOSPC, 2), ("linux", errno.EINVAL, 2)],
+    ("platform", "number", "about", "value", "code"),
+    [
+        ("win32", errno.EINVAL, "other", None, CLOSED),
+        ("win32", errno.EINVAL, "failure.filename", "a.bin", 2),
+        ("win32", errno.EINVAL, "failure.winerror", 87, 2),
+        ("win32", errno.ENOSPC, "other", None, 2),
+        ("linux", errno.EINVAL, "other", None, 2),
+    ],
 )
-def test_a_reader_that_has_left_is_no_mistake(platform: str, number: int, code: int) -> None:
+def test_a_reader_that_has_left_is_no_mistake(
+    platform: str, number: int, about: str, value: object, code: int
+) -> None:
     """`tsc help | more`, and then q: the C library of Windows calls that an invalid argument."""
-    script = LEFT.format(platform=platform, number=number)
+    script = LEFT.format(platform=platform, number=number, about=about, value=value)
     done = subprocess.run(
         [sys.executable, "-c", script], capture_output=True, text=True,
         env={"PYTHONPATH": str(ROOT / "compiler"), "LC_ALL": "C.UTF-8"},
@@ -354,33 +364,41 @@ def test_a_reader_that_has_left_is_no_mistake(platform: str, number: int, code: 
 # -- files
 
 
-@pytest.mark.parametrize("opened_s", [0.1, 60.0])
+@pytest.mark.parametrize("opened_s", [0.1, 60.0])  # of a clock that only sleeping moves
 def test_a_file_that_is_open_elsewhere_is_replaced_a_moment_later(
     opened_s: float, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A virus scanner looks at what was just written; a spreadsheet keeps it."""
     path = tmp_path / "keys.json"
     path.write_bytes(b"old")
-    end_s = monotonic() + opened_s
+    now_s, tries = [0.0], [0]
     real = Path.replace
 
     def replace(self: Path, target: Path) -> Path:
-        if monotonic() < end_s:
+        tries[0] += 1
+        if now_s[0] < opened_s:
             raise PermissionError(13, "in use")
         return real(self, target)
 
     monkeypatch.setattr(Path, "replace", replace)
-    monkeypatch.setattr(files, "OPEN_S", 0.3)
+
+    def slept(seconds: float) -> None:
+        now_s[0] += seconds
+
+    monkeypatch.setattr(files, "monotonic", lambda: now_s[0])
+    monkeypatch.setattr(files, "sleep", slept)
     monkeypatch.setattr(sys, "platform", "linux")
     with pytest.raises(PermissionError):
         files.replace(path, b"new")  # elsewhere nobody waits
-    assert monotonic() < end_s
+    assert (tries, now_s) == ([1], [0.0])
     monkeypatch.setattr(sys, "platform", "win32")
     if opened_s > 1:
         with pytest.raises(PermissionError):
             files.replace(path, b"new")
     else:
         files.replace(path, b"new")
+    assert now_s[0] == pytest.approx(min(opened_s, files.OPEN_S), abs=0.03)
+    assert tries[0] == 2 + round(now_s[0] / 0.02)
     assert path.read_bytes() == (b"old" if opened_s > 1 else b"new")
     assert [each.name for each in tmp_path.iterdir()] == ["keys.json"]
 

@@ -64,6 +64,8 @@ def _is_left_pipe(failure: OSError) -> bool:
     """Return whether the reader of the output has left: on Windows that is an EINVAL of a pipe."""
     if sys.platform != "win32" or failure.errno != errno.EINVAL:
         return False
+    if failure.filename is not None or getattr(failure, "winerror", None) is not None:
+        return False  # a file, or a question to the system: the C library names neither
     try:
         return any(stat.S_ISFIFO(os.fstat(number).st_mode) for number in (1, 2))
     except OSError:  # closed

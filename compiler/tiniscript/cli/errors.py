@@ -21,6 +21,7 @@ class CommandError(Exception):
         said = text(self.key, language).format(**self.values)
         if self.values.get("near"):
             near = text("did_you_mean", language).format(near=self.values["near"])
-            what, advice, example = said.partition(" Prueba:  " if language == "es" else " Try:  ")
-            return f"{what} {near}{advice}{example}"
+            try_it = " Prueba:  " if language == "es" else " Try:  "
+            what, advice, example = said.rpartition(try_it)  # what was typed may have it, too
+            return f"{what} {near}{advice}{example}" if advice else f"{said} {near}"
         return said
