@@ -228,7 +228,7 @@ def test_a_phone_shows_each_page_of_a_teacher_whole(stick: Path) -> None:
         .filter(each => each.scrollWidth > each.clientWidth + 1).length"""
     wide = "document.documentElement.scrollWidth > window.innerWidth"
     slides = "getComputedStyle(document.querySelector('.slide')).display"
-    with studio.driver() as driver, studio.browser(driver) as browser:
+    with studio.driver(of_studio=False) as driver, studio.browser(driver) as browser:
         phone = browser.new_page(viewport={"width": 390, "height": 844})
         found = {}
         for each in pages:

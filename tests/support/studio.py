@@ -32,12 +32,17 @@ OPTIONS = ("--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
 
 
 def missing() -> str:
-    """Return why no page can be opened here, or nothing."""
+    """Return why the studio's page cannot be opened here, or nothing."""
+    return missing_browser() or studio.stale()
+
+
+def missing_browser() -> str:
+    """Return why no page at all can be opened here, or nothing."""
     if find_spec("playwright") is None:
         return "playwright is not installed: pip install playwright"
     if chromium() is None:
         return "there is no Chromium: apt-get install chromium"
-    return studio.stale()
+    return ""
 
 
 def missing_firefox() -> str:
@@ -118,9 +123,9 @@ def taught(ports: list[str], turn_s: int = 180) -> Iterator[Class]:
 
 
 @contextmanager
-def driver() -> Iterator[Playwright]:
-    """What drives browsers; there is one in a process."""
-    need(missing())
+def driver(of_studio: bool = True) -> Iterator[Playwright]:
+    """What drives browsers; there is one in a process. Other pages need no studio."""
+    need(missing() if of_studio else missing_browser())
     from playwright.sync_api import sync_playwright
 
     with sync_playwright() as playwright:
