@@ -241,7 +241,7 @@ def report_words_for_numbers(scope: Scope, node: ast.Command, word: Word, said: 
             if each.code is codes.UNKNOWN_NAME and not each.values.get("near"):
                 name = each.values["found"]
                 number = str(len([*takewhile(name.__ne__, filter(None, shown))]) + 1)
-                is_word = len(name) > 2 and not value_of(name)
+                is_word = len(name) > 2 and name.isalpha() and not value_of(name)
                 said_as = {"meaning": name, "number": number} if is_word else {}
                 values = {**each.values, "shown": name, **said_as}
                 scope.diagnostics[k] = each._replace(values=values)

@@ -12,6 +12,7 @@ from tiniscript.diagnostics import codes
 from tiniscript.source import Source, Span
 from tiniscript.syntax.ast import Argument, Arm, Def, If, Instruction, Loop, While
 from tiniscript.syntax.lexer import Token
+from tiniscript.syntax.operators import SIGN_OF
 from tiniscript.syntax.reporter import Reporter
 from tiniscript.words import ALIASES, BLOCK_ENDS
 
@@ -94,7 +95,7 @@ class Blocks:
         one, other = (_COMPARED.fullmatch(each) for each in (asked, source[block.head.span]))
         if one is None or other is None or one.group(1, 3) != other.group(1, 3):
             return False
-        return {one[2][0], other[2][0]} == {"<", ">"} and "<>" not in (one[2], other[2])
+        return {one[2][0], other[2][0]} == {"<", ">"} and SIGN_OF["NE"] not in (one[2], other[2])
 
     def forget(self) -> None:
         """Drop the innermost block, which has just begun, because its line is read anew."""
