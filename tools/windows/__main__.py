@@ -65,7 +65,13 @@ def _tried(windows: computer.Computer, wheel: Path, chosen: Sequence[str]) -> in
         begun_s = time.monotonic()
         try:
             said = tried(place)
-        except (tries.Failed, OSError, subprocess.SubprocessError) as why:
+        except (
+            tries.Failed,
+            OSError,
+            ValueError,
+            StopIteration,
+            subprocess.SubprocessError,
+        ) as why:
             wrong += 1
             said = f"FAILED: {why}"
             if name == "install":

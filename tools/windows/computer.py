@@ -144,13 +144,14 @@ def make(folder: Path) -> Computer:
     computer = Computer(folder)
     _need_wine()
     folder.mkdir(parents=True, exist_ok=True)
-    if (folder / "made").is_file():
+    made = folder / "made"
+    if made.is_file() and made.read_text(encoding="utf-8") == f"{PYTHON}\n":
         return computer
     _locale(folder / "locale")
     _begin(computer)
     _put_python(computer)
     _put_stand_ins(computer)
-    (folder / "made").write_text(f"{PYTHON}\n", encoding="utf-8")
+    made.write_text(f"{PYTHON}\n", encoding="utf-8")
     return computer
 
 

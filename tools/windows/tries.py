@@ -81,7 +81,7 @@ def install(place: Place) -> str:
     _need(made.returncode == 0, f"no stick: {made.stderr.strip()[-300:]}")
     done = place.computer.run(
         ["cmd", "/c", f"C:\\{stick.name}\\start.bat"], limit_s=SLOW_S,
-        more={"PIP_INDEX_URL": "http://127.0.0.1:9/"}, encoding=CODEPAGE,
+        encoding=CODEPAGE,
     )  # fmt: skip
     _need((place.installed / "tsc.exe").is_file(), f"start.bat: {done.said[-500:]}")
     said = place.tsc("--version").said

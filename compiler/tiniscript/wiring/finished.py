@@ -149,7 +149,10 @@ class _Finished:
         above = sum(each.y_cm > 0 for each in self.plan.body.places.values())  # other labels there
         first_row = max(edge + 26, MARGIN + 14 + ROW_STEP * above)
         for k, part in enumerate(self.servos):
-            x = self.x + ((k + 0.5) / len(self.servos) - 0.5) * self.breadth
+            share = (k + 0.5) / len(self.servos) - 0.5
+            if held is not None:  # the jaws are in the middle, the others beside them
+                share = (0.38 - 0.12 * ((k - 1) // 2)) * (1 if k % 2 else -1) if k else 0
+            x = self.x + share * self.breadth
             lines.append(_box(x - 26, edge + 4, 52, 30, PARTS))
             if k == 0 and held is not None:
                 tip = self.at(held.x_cm, 0)[1] - ARROW
