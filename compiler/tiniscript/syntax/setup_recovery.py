@@ -160,9 +160,8 @@ class SetupRecovery:
     ) -> None:
         sign = self.cursor.source[Span(word.end, span.end)].strip()
         found = "SB" if word.text == "SB" else "SI"
-        self.reporter.report(
-            codes.SETUP_NEEDS_BAR, span, place, found=found, fix=fix or f"{found}|", sign=sign
-        )
+        said = {"found": found, "fix": fix or f"{found}|", _kind_of(sign): sign}
+        self.reporter.report(codes.SETUP_NEEDS_BAR, span, place, **said)
 
     def _in_brackets(self, word: Token, start: int) -> str | None:
         """`SI(F(2, 80))`: a bracket for the bar, and perhaps its other one."""
@@ -225,9 +224,8 @@ class SetupRecovery:
             return None
         span = Span(first.start, first.start + length)
         sign = cursor.source[Span(first.start + 2, first.start + length)]
-        self.reporter.report(
-            codes.SETUP_NEEDS_BAR, span, None, found=begin, fix=f"{begin}|", sign=sign
-        )
+        said = {"found": begin, "fix": f"{begin}|", _kind_of(sign): sign}
+        self.reporter.report(codes.SETUP_NEEDS_BAR, span, None, **said)
         cursor.tokens[cursor.i] = Token(WORD, rest.text, first.start + length, first.end)
         return begin
 
@@ -328,3 +326,8 @@ class SetupRecovery:
         self.reporter.report(codes.BAR_BETWEEN, bar.span)
         self.cursor.i += 1
         raise Resumed
+
+
+def _kind_of(sign: str) -> str:
+    """`SIlF(2, 80)` has a letter where the bar belongs, which looks like it."""
+    return "letter" if sign.isalpha() else "sign"
