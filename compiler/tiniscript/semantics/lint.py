@@ -5,7 +5,7 @@ Knows the IR, before it is optimised. Gives warnings, never mistakes.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from tiniscript.diagnostics import codes
@@ -133,12 +133,7 @@ def _asked(statement: Statement) -> frozenset[int]:
     """Return the sensors that IF or WHILE asks before its body."""
     if not isinstance(statement, (If, While)):
         return frozenset()
-    return frozenset(
-        term.value
-        for expression in expressions(statement)
-        for term in expression
-        if term.op == "SENSOR"
-    )
+    return _named("SENSOR", [statement])
 
 
 def _never_reached(before: Statement, after: Statement, look: _Look) -> None:
@@ -187,14 +182,19 @@ def _takes_time(body: Body, program: Program) -> bool:
     return False
 
 
-def _unused(program: Program, kit: Kit, statements: list[Statement]) -> Iterator[Diagnostic]:
-    used = {
+def _named(op: str, statements: Sequence[Statement]) -> frozenset[int]:
+    """Return the numbers of the variables or sensors that an expression of these has."""
+    return frozenset(
         term.value
         for statement in statements
         for expression in expressions(statement)
         for term in expression
-        if term.op == "VARIABLE"
-    }
+        if term.op == op
+    )
+
+
+def _unused(program: Program, kit: Kit, statements: list[Statement]) -> Iterator[Diagnostic]:
+    used = set(_named("VARIABLE", statements))
     for statement in statements:
         if isinstance(statement, Assign) and statement.variable not in used:
             used.add(statement.variable)  # said once
@@ -212,13 +212,7 @@ def _unused(program: Program, kit: Kit, statements: list[Statement]) -> Iterator
 
 def _unused_readings(kit: Kit, statements: list[Statement]) -> Iterator[Diagnostic]:
     """`SI|DISTANCE`, where nothing asks for the distance: it is measured, and nobody sees it."""
-    asked = {
-        term.value
-        for statement in statements
-        for expression in expressions(statement)
-        for term in expression
-        if term.op == "SENSOR"
-    }
+    asked = set(_named("SENSOR", statements))
     for statement in statements:
         if isinstance(statement, Read) and statement.sensor not in asked:
             asked.add(statement.sensor)  # said once

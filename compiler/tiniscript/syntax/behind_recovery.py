@@ -20,7 +20,7 @@ from tiniscript.syntax.operators import COMPARISONS
 from tiniscript.syntax.phrases import BEFORE_POWER, BEFORE_TIME, TIMES
 from tiniscript.syntax.reporter import Reporter, Resumed
 from tiniscript.syntax.suggestions import shortened
-from tiniscript.syntax.times_recovery import TimesRecovery
+from tiniscript.syntax.times_recovery import OFTEN, TimesRecovery
 from tiniscript.syntax.units import converted
 from tiniscript.words import NUMBER_WORDS, SWITCH_WORDS, TURN_WORDS, UNITS, WORDS, Word, nearest
 
@@ -30,7 +30,6 @@ _BEFORE_TIME = BEFORE_TIME | {"EN", "IN", "DE", "Y", "A", "CON", "X"}
 _BEFORE_VALUE = _BEFORE_TIME | BEFORE_POWER | {"AL", "AT", "LA", "UNA"}
 _PERCENT = ("%", "CIENTO", "PORCIENTO", "PERCENT")
 _MEASURED = ("cm", "°", "steps")  # that no instruction has, and pupils look at
-_OFTEN = ("POR", "X", "*")
 _SENSIBLE = range(2, 51)  # times that a number in brackets may mean
 _DEGREES = 20  # a number behind a turn that is rather an angle
 _JOINING = frozenset(("CON", "WITH", "Y", "AND", "O", "OR", "U"))
@@ -242,7 +241,7 @@ class BehindRecovery:
     ) -> None:
         """`F(2, 80) (3 veces)`, `F(2, 80), 3 veces`, `F(2, 80) (x3)`."""
         texts = [each.text for each in said]
-        is_led = texts[0] in _OFTEN and len(texts) > 1
+        is_led = texts[0] in OFTEN and len(texts) > 1
         number = said[is_led]
         rest = texts[is_led + 1 :]
         if not is_led and texts[0][:1] == "X" and texts[0][1:].isdecimal():

@@ -7,6 +7,7 @@ has a checksum, is read by `lexer_recovery`, which right programs never load.
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from typing import NamedTuple
 
 from tiniscript.diagnostics.codes import Diagnostic
@@ -58,21 +59,29 @@ _PATTERN = re.compile(
 
 def scan(text: str) -> Scan:
     """Return the tokens of `text`, its comments and what could not be read."""
-    found = None if "~" in text else _plain(text)
-    if found is None:
-        from tiniscript.syntax.lexer_recovery import scan_with_repairs
-
-        return scan_with_repairs(text)
-    return found
-
-
-def _plain(text: str) -> Scan | None:
-    """Return the tokens of a text in which everything can be read, None for another one."""
     tokens: list[Token] = []
     comments: list[Token] = []
+    if "~" not in text and read(_PATTERN, text, tokens, comments):
+        return Scan(tokens, comments, [])
+    from tiniscript.syntax.lexer_recovery import scan_with_repairs
+
+    return scan_with_repairs(text)
+
+
+def read(
+    pattern: re.Pattern[str],
+    text: str,
+    tokens: list[Token],
+    comments: list[Token],
+    repair: Callable[[re.Match[str], list[Token]], None] | None = None,
+) -> bool:
+    """Add the tokens and comments of `text`; `repair` adds those of what cannot be read.
+
+    Without it reading ends there, and the answer is no.
+    """
     add = tokens.append
     new = tuple.__new__  # in half the time of Token()
-    for match in _PATTERN.finditer(text):
+    for match in pattern.finditer(text):
         group = match.lastgroup
         if group == "space":
             continue
@@ -88,7 +97,9 @@ def _plain(text: str) -> Scan | None:
             add(new(Token, (NEWLINE, "\n", start, end)))
         elif group == "comment":
             comments.append(Token("comment", match.group(), start, end))
+        elif repair is None:
+            return False
         else:
-            return None
+            repair(match, tokens)
     add(Token(END, "", len(text), len(text)))
-    return Scan(tokens, comments, [])
+    return True

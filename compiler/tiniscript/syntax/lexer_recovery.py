@@ -15,7 +15,7 @@ from tiniscript.source import Span
 from tiniscript.syntax import pasted
 from tiniscript.syntax.amounts import is_amount, with_number
 from tiniscript.syntax.checksums import SPACES, without_checksums
-from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, ODD, QUOTES, WORD, Scan, Token
+from tiniscript.syntax.lexer import NEWLINE, NUMBER, ODD, QUOTES, WORD, Scan, Token, read
 from tiniscript.syntax.pasted import PATTERN as PASTED
 from tiniscript.syntax.pasted import SPEAKER
 from tiniscript.syntax.units import converted
@@ -83,38 +83,7 @@ def scan_with_repairs(text: str) -> Scan:
     repairs = _Repairs(text)
     if "~" in text:
         text, repairs.diagnostics = without_checksums(text)
-    add = tokens.append
-    new = tuple.__new__  # in half the time of Token()
-    for match in _PATTERN.finditer(text):
-        group = match.lastgroup
-        if group == "space":
-            continue
-        start, end = match.span()
-        if group == "word":
-            add(new(Token, (WORD, match.group().upper(), start, end)))
-        elif group == "sign":
-            sign = match.group()
-            add(new(Token, (sign, sign, start, end)))
-        elif group == "number":
-            add(new(Token, (NUMBER, match.group(), start, end)))
-        elif group == "newline":
-            add(new(Token, (NEWLINE, "\n", start, end)))
-        elif group == "dash":
-            add(Token("-", "-", start, end))
-        elif group == "comment":
-            comments.append(Token("comment", match.group(), start, end))
-        elif group == "point" and not _is_inside(tokens):
-            tokens.append(repairs.point(Span(start, end)))
-        elif group == "point":
-            tokens.append(repairs.odd(".", Span(start, end)))
-        elif group == "pasted" or group == "speaker":
-            tokens += repairs.pasted(match.group(), Span(start, end))
-        elif group == "othernote":
-            repairs.note(match.group(), Span(start, end))
-        else:
-            assert group is not None
-            add(getattr(repairs, group)(match.group(), Span(start, end)))
-    add(Token(END, "", len(text), len(text)))
+    read(_PATTERN, text, tokens, comments, repairs.add)
     return Scan(tokens, comments, repairs.diagnostics)
 
 
@@ -153,6 +122,21 @@ class _Repairs:
         self.has_braces = False
         self.has_pasted = False
         self.has_points = False
+
+    def add(self, match: re.Match[str], tokens: list[Token]) -> None:
+        """Add the tokens of what only this pattern knows."""
+        group, text, span = match.lastgroup, match.group(), Span(*match.span())
+        if group == "dash":
+            tokens.append(Token("-", "-", *span))
+        elif group == "point":
+            tokens.append(self.odd(".", span) if _is_inside(tokens) else self.point(span))
+        elif group == "pasted" or group == "speaker":
+            tokens += self.pasted(text, span)
+        elif group == "othernote":
+            self.note(text, span)
+        else:
+            assert group is not None
+            tokens.append(getattr(self, group)(text, span))
 
     def report(self, code: Code, span: Span, **values: str) -> None:
         self.diagnostics.append(Diagnostic(code, span, values))

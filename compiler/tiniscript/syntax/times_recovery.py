@@ -19,6 +19,7 @@ from tiniscript.words import BLOCK_ENDS, NUMBER_WORDS, WORDS
 
 _WORDS = re.compile(r"\W")
 _NOT_OFTEN = ("0", "1")
+OFTEN = ("POR", "X", "*")  # before how often
 MOST_ON_A_LINE = 8  # instructions before the one that says how often
 _OF_BLOCKS = frozenset((*BLOCK_ENDS, *BLOCK_ENDS.values(), "ELSE", "ELSEIF"))
 
@@ -180,7 +181,7 @@ def says_how_often(row: Sequence[Token]) -> bool:
     texts = [token.text for token in row]
     if texts[0] in ("TWICE", "THRICE") or re.fullmatch("X[0-9]+", texts[0]):
         return True
-    if texts[0] in ("POR", "X", "*") and len(row) == 2 and row[1].kind is NUMBER:
+    if texts[0] in OFTEN and len(row) == 2 and row[1].kind is NUMBER:
         return True
     numbers = [k for k, each in enumerate(row) if each.kind is NUMBER or each.text in NUMBER_WORDS]
     return any(k + 1 < len(row) and texts[k + 1] in TIMES and texts[k] != "UNA" for k in numbers)
