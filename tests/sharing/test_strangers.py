@@ -6,7 +6,6 @@ import json
 import signal
 import socket
 import subprocess
-import sys
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from random import Random
@@ -15,6 +14,7 @@ import pytest
 
 from tests.machines.host_firmware import missing
 from tests.support.command import FOREVER, TSC, Command, process
+from tests.support.crowd import crowd
 from tests.support.pty_robot import PtyRobot, on, uploading
 from tests.support.waiting import HANGS_S
 from tiniscript import __version__
@@ -131,45 +131,6 @@ def test_no_bytes_of_a_stranger_end_a_client_of_link(pty_robot: PtyRobot, link: 
 
 # -- many of them -------------------------------------------------------------------------------
 
-CROWD = """
-import socket, sys
-ports, say = [int(each) for each in sys.argv[1].split(",")], bytes.fromhex(sys.argv[2])
-peers = []
-for k in range(1000):
-    for port in ports:
-        peer = socket.socket()
-        peer.setblocking(False)
-        peer.connect_ex(("127.0.0.1", port))
-        peers.append(peer)
-print("here", flush=True)
-while sys.stdin.buffer.read(1):
-    for peer in peers:
-        try:
-            peer.send(say)
-        except OSError:
-            pass
-"""
-
-
-@contextmanager
-def crowd(*ports: int, says: bytes = b"") -> Iterator[None]:
-    """A thousand connections to each port that stay."""
-    code = ["sh", "-c", 'ulimit -n 4000; exec "$@"', "sh", sys.executable, "-c", CROWD]
-    numbers = ",".join(map(str, ports))
-    with subprocess.Popen(
-        [*code, numbers, says.hex()], stdin=subprocess.PIPE, stdout=subprocess.PIPE
-    ) as process:
-        try:
-            assert process.stdout and process.stdin
-            assert process.stdout.readline() == b"here\n"
-            process.stdin.write(b"!")
-            process.stdin.flush()
-            yield
-        finally:
-            process.kill()
-            process.communicate()
-
-
 FEW = ["sh", "-c", 'ulimit -n 256; exec "$@"', "sh", *TSC]  # files, as on macOS
 
 
@@ -193,14 +154,14 @@ def test_a_stop_gets_through_a_thousand_connections(there: bytes, here: bytes) -
         assert robot.stdout
         port = robot.stdout.readline().decode().strip()
         number = int(port.rpartition(":")[2])
-        with crowd(number, says=there):
+        with crowd(number, says=(there,)):
             done = process("stop", "--port", port)
             assert (done.code, done.err) == (0, "")
         with few("upload", "--port", port, "-e", FOREVER) as command:
             assert command.stdout
             assert b"running" in command.stdout.readline()
             held = registration_of(port).number
-            with crowd(number, says=there), crowd(held, says=here):
+            with crowd(number, says=(there,)), crowd(held, says=(here,)):
                 done = process("info", "--port", port, "--json")
                 assert json.loads(done.out)["state"] == "RUNNING"
                 assert process("stop", "--port", port).code == 0

@@ -8,8 +8,8 @@ from __future__ import annotations
 import gzip
 import json
 import os
-import socket
 from collections.abc import Iterator
+from contextlib import ExitStack
 from http.client import HTTPConnection, HTTPResponse
 from pathlib import Path
 from threading import Thread, active_count
@@ -17,6 +17,7 @@ from threading import Thread, active_count
 import pytest
 
 from tests.support.command import process
+from tests.support.crowd import HALF_A_REQUEST, crowd
 from tests.support.studio import Class
 from tests.support.waiting import HANGS_S
 from tiniscript.studio import serving
@@ -137,45 +138,32 @@ def test_many_connections_keep_nobody_out(taught: Class, is_same: bool) -> None:
     assert pupil.getresponse().read()
     kept, before = pupil.sock, active_count()
     source = kept.getsockname()[0] if is_same else ELSEWHERE
-    strangers: list[socket.socket] = []
-    try:
-        for k in range(STRANGERS):
-            stranger = socket.create_connection(
-                (HOST, taught.server.server_port), timeout=HANGS_S, source_address=(source, 0)
-            )
-            strangers.append(stranger)
-            if k % 2:
-                stranger.sendall(b"POST /robots HTTP/1.1\r\nHost: ")
-            if k % 500 == 499:
-                pupil.request("POST", serving.ROBOTS, '{"do": "here"}', headers)
-                assert pupil.getresponse().read()
-                assert page_of(taught, {}).status == 200
-            if len(strangers) > 600:  # those that the server has closed
-                strangers.pop(0).close()
+    with ExitStack() as strangers:
+        for _ in range(0, STRANGERS, 500):
+            some = crowd(
+                taught.server.server_port, count=500, says=(b"", HALF_A_REQUEST), host=HOST,
+                source=source,
+            )  # fmt: skip
+            strangers.enter_context(some)
+            pupil.request("POST", serving.ROBOTS, '{"do": "here"}', headers)
+            assert pupil.getresponse().read()
+            assert page_of(taught, {}).status == 200
         assert pupil.sock is kept
         assert active_count() - before <= serving.CLASS_CONNECTIONS + 30
-    finally:
-        for each in strangers:
-            each.close()
-        pupil.close()
+    pupil.close()
 
 
 def test_a_slow_stranger_does_not_close_who_loads_the_page(taught: Class) -> None:
     """The address that has most connections loses one, not the one that asked first."""
     early = HTTPConnection(own(taught), timeout=HANGS_S)
     early.connect()
-    strangers = [
-        socket.create_connection(
-            (HOST, taught.server.server_port), timeout=HANGS_S, source_address=(ELSEWHERE, 0)
-        )
-        for _ in range(serving.CLASS_CONNECTIONS + 50)
-    ]
-    assert page_of(taught, {}).status == 200  # so all of them have come
-    early.request("GET", "/")
-    assert early.getresponse().status == 200
+    with crowd(
+        taught.server.server_port, count=serving.CLASS_CONNECTIONS + 50, host=HOST, source=ELSEWHERE
+    ):
+        assert page_of(taught, {}).status == 200  # so all of them have come
+        early.request("GET", "/")
+        assert early.getresponse().status == 200
     early.close()
-    for each in strangers:
-        each.close()
 
 
 @pytest.mark.parametrize(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import socket
 from collections.abc import Iterator
+from contextlib import ExitStack
 from http.client import HTTPConnection
 from pathlib import Path
 from threading import Thread, active_count
@@ -12,6 +13,7 @@ from typing import Any
 
 import pytest
 
+from tests.support.crowd import HALF_A_REQUEST, crowd
 from tests.support.page_server import serves
 from tests.support.waiting import HANGS_S
 from tiniscript.studio import serving
@@ -180,18 +182,11 @@ def test_a_thousand_connections_keep_nobody_out(server: serving.Server) -> None:
     assert ask() == 200
     kept = page.sock
     before = active_count()
-    strangers = []
-    try:
-        for k in range(1000):
-            stranger = socket.create_connection((serving.HOST, server.server_port), timeout=HANGS_S)
-            strangers.append(stranger)
-            if k % 2:
-                stranger.sendall(b"POST /robots HTTP/1.1\r\nHost: ")
-            if k % 50 == 0:
-                assert ask() == 200
+    with ExitStack() as strangers:
+        for _ in range(10):
+            some = crowd(server.server_port, count=100, says=(b"", HALF_A_REQUEST))
+            strangers.enter_context(some)
+            assert ask() == 200
         assert page.sock is kept
         assert active_count() - before <= serving.CONNECTIONS + 30
-    finally:
-        for each in strangers:
-            each.close()
-        page.close()
+    page.close()

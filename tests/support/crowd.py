@@ -1,0 +1,58 @@
+"""Many connections that stay, of processes of their own.
+
+A person's process may have 1,024 files open, and the test itself needs some.
+"""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack, contextmanager
+
+HALF_A_REQUEST = b"POST /robots HTTP/1.1\r\nHost: "
+EACH = 100  # connections of a process: not more than wait for a listener at once
+CODE = """
+import contextlib, socket, sys
+host, port, source, count, says = sys.argv[1:]
+says = [bytes.fromhex(each) for each in says.split(",")]
+peers = []
+for k in range(int(count)):
+    peer = socket.socket()
+    if source:
+        peer.bind((source, 0))
+    peer.setblocking(False)
+    peer.connect_ex((host, int(port)))
+    peers.append((peer, says[k % len(says)]))
+for peer, said in peers:
+    with contextlib.suppress(OSError):
+        peer.send(said)
+print("here", flush=True)
+sys.stdin.read()
+"""
+
+
+@contextmanager
+def crowd(
+    *ports: int, count: int = 1000, says: Sequence[bytes] = (b"",), host: str = "127.0.0.1",
+    source: str = "",
+) -> Iterator[None]:  # fmt: skip
+    """So many connections to each port, which say one of `says` in turn."""
+    with ExitStack() as stack:
+        for port in ports:
+            for begin in range(0, count, EACH):
+                stack.enter_context(_some(port, min(EACH, count - begin), says, host, source))
+        yield
+
+
+@contextmanager
+def _some(port: int, count: int, says: Sequence[bytes], host: str, source: str) -> Iterator[None]:
+    said = ",".join(each.hex() for each in says)
+    words = [sys.executable, "-I", "-S", "-c", CODE, host, str(port), source, str(count), said]
+    with subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:
+        try:
+            assert process.stdout and process.stdout.readline() == b"here\n"
+            yield
+        finally:
+            process.kill()
+            process.communicate()
