@@ -53,10 +53,11 @@ def pair() -> tuple[socket.socket, socket.socket]:
 def test_the_end_of_a_connection_has_its_user() -> None:
     here, there = pair()
     with here, there:
-        assert peers._other_end(here.getpeername(), here.getsockname()) == (1, os.geteuid())
+        found = peers._other_end(here.getpeername(), here.getsockname())
+        assert found == (os.geteuid(), os.fstat(there.fileno()).st_ino)
         assert peers.is_of_this_user(here)
         there.shutdown(socket.SHUT_WR)  # it listens on
-        assert os.geteuid() == 0 or peers.is_of_this_user(here)
+        assert peers.is_of_this_user(here)
 
 
 @linux
@@ -65,27 +66,30 @@ def test_whoever_has_hung_up_can_have_been_anybody() -> None:
     with here:
         there.sendall(LINE)
         there.close()
-        found = peers._other_end(here.getpeername(), here.getsockname())
-        assert found.user == 0 and not found.is_open
+        assert not peers._other_end(here.getpeername(), here.getsockname()).is_open
+        assert not peers.is_of_this_user(here)
 
 
 @linux
-@pytest.mark.parametrize(("state", "user", "is_let_in"), [
-    (1, 0, True),  # root has every right
-    (5, 0, False),
-    (1, NOBODY, False),
-    (5, NOBODY, False),
+@pytest.mark.parametrize(("own", "user", "inode", "is_let_in"), [
+    (1234, 1234, 5, True),
+    (1234, 1234, 0, False),
+    (1234, 0, 5, True),  # root has every right
+    (1234, 0, 0, False),
+    (1234, NOBODY, 5, False),
+    (1234, NOBODY, 0, False),
+    (0, 0, 5, True),
+    (0, 0, 0, False),
+    (0, NOBODY, 5, False),
 ])  # fmt: skip
 def test_which_ends_are_let_in(
-    monkeypatch: pytest.MonkeyPatch, state: int, user: int, is_let_in: bool
+    monkeypatch: pytest.MonkeyPatch, own: int, user: int, inode: int, is_let_in: bool
 ) -> None:
-    monkeypatch.setattr(os, "geteuid", lambda: 1234)
-    monkeypatch.setattr(peers, "_other_end", lambda there, here: peers.End(state, user))
+    monkeypatch.setattr(os, "geteuid", lambda: own)
+    monkeypatch.setattr(peers, "_other_end", lambda there, here: peers.End(user, inode))
     here, there = pair()
     with here, there:
         assert peers.is_of_this_user(here) == is_let_in
-        monkeypatch.setattr(peers, "_other_end", lambda there, here: peers.End(state, 1234))
-        assert peers.is_of_this_user(here)
 
 
 def test_a_system_that_does_not_tell_lets_in(monkeypatch: pytest.MonkeyPatch) -> None:

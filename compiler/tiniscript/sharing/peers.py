@@ -20,21 +20,24 @@ _HEAD = struct.Struct("=IHHII")  # length, type, flags, number, sender
 _ASK = struct.Struct("=BBBBI")  # family, protocol, extensions, padding, states
 _ENDS = struct.Struct(">HH16s16sI8s")  # ports, addresses, interface, cookie
 _ANSWER = struct.Struct("=BBBB48sIIIII")  # family, state, .., expires, queues, user, inode
-_ESTABLISHED = 1
 ROOT = 0
 # Nobody has the other end any more; or this process has too many files open to ask.
 _NOBODY = (errno.ENOENT, errno.EMFILE, errno.ENFILE)
 
 
 class End(NamedTuple):
-    """The other end of a connection. A closed one has no user: the kernel says 0, as of root."""
+    """The other end of a connection.
 
-    state: int
+    What a process has closed has no inode. The kernel says 0, as of root, of its user then; Linux
+    6.17 and later say that for a moment still who it was.
+    """
+
     user: int
+    inode: int
 
     @property
     def is_open(self) -> bool:
-        return self.state == _ESTABLISHED
+        return self.inode != 0
 
 
 def is_of_this_user(peer: socket.socket) -> bool:
@@ -52,7 +55,7 @@ def is_of_this_user(peer: socket.socket) -> bool:
         found = _other_end(there, here)
     except OSError as why:  # a system that has no answer to that lets everybody in
         return why.errno not in _NOBODY
-    return found.user == os.geteuid() or (found.user == ROOT and found.is_open)
+    return found.is_open and found.user in (os.geteuid(), ROOT)
 
 
 def _other_end(there: tuple[str, int], here: tuple[str, int]) -> End:
@@ -69,5 +72,5 @@ def _other_end(there: tuple[str, int], here: tuple[str, int]) -> End:
     if _HEAD.unpack_from(data)[1] == _ERROR:
         number = -struct.unpack_from("=i", data, _HEAD.size)[0]
         raise OSError(number, os.strerror(number))
-    _, state, *_, user, _ = _ANSWER.unpack_from(data, _HEAD.size)
-    return End(state, user)
+    *_, user, inode = _ANSWER.unpack_from(data, _HEAD.size)
+    return End(user, inode)
