@@ -25,12 +25,9 @@ INSIDE = Path("tiniscript") / "flash" / "vm_arduino"  # where tsc firmware looks
 
 def sources() -> list[Path]:
     """Return what a build of the firmware needs; `own.h` is the robot of whoever has made it."""
-    folders = (PROJECT / "src", PROJECT / "extras" / "near")
-    files = (path for folder in folders for path in sorted(folder.rglob("*")))
+    files = sorted((PROJECT / "src").rglob("*"))
     found = [PROJECT / "platformio.ini", PROJECT / "partitions.csv", *files]
-    return [
-        path for path in found if path.is_file() and path.suffix != ".pyc" and path.name != "own.h"
-    ]
+    return [path for path in found if path.is_file() and path.name != "own.h"]
 
 
 class Build(build_py):

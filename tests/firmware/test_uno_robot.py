@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import subprocess
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -15,12 +14,6 @@ from tiniscript import compile_text, robots
 from tiniscript.bytecode.image import Image, unpack
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
-from tools.bench.firmware_size import (
-    FLASH_MUST,
-    RAM_MUST,
-    WITHOUT_OWNERS_MUST,
-    without_owners,
-)
 from tools.uno import CYCLES_PER_MS, Uno
 
 KIT = robots.load("tinibot").kit
@@ -63,19 +56,6 @@ def switched_on(sketch: Path, memory: Path) -> Uno:
     uno.run_ms(300)
     assert states(uno) == OFF
     return uno
-
-
-def test_the_sketch_keeps_to_its_size(sketch: Path) -> None:
-    done = subprocess.run(["avr-size", sketch], capture_output=True, text=True, check=True)
-    code, data = (int(word) for word in done.stdout.splitlines()[1].split()[:2])
-    assert 10_000 < code + data <= FLASH_MUST
-
-
-def test_without_owners_it_leaves_room(tmp_path: Path) -> None:
-    needed()
-    found = without_owners(tmp_path)
-    assert 10_000 < found.flash <= WITHOUT_OWNERS_MUST
-    assert found.ram <= RAM_MUST
 
 
 def states(uno: Uno) -> dict[str, str]:

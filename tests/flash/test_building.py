@@ -142,8 +142,7 @@ def test_a_package_without_sources_takes_the_file_in_the_language_of_the_robot(
 
 def source_bytes(clone: Path) -> dict[str, bytes]:
     project = clone.parent / "vm_arduino"
-    parts = [*(project / "src").rglob("*"), *(project / "extras" / "near").rglob("*")]
-    files = [project / "platformio.ini", *sorted(parts)]
+    files = [project / "platformio.ini", *sorted((project / "src").rglob("*"))]
     return {
         path.relative_to(project).as_posix(): path.read_bytes() for path in files if path.is_file()
     }
@@ -225,6 +224,23 @@ def test_a_build_that_fails_has_its_reason(
     code, out, err = built(clone, pretending(tmp_path, body))
     assert (code, out) == (2, "")
     assert said in err and "\x1b" not in err
+
+
+@pytest.mark.parametrize(
+    ("words", "said"), [([], "has no room on"), (["--lang", "es"], "no cabe en")]
+)
+def test_a_firmware_that_the_board_does_not_hold_is_refused_before_it_is_written(
+    words: list[str], said: str, clone: Path, tmp_path: Path
+) -> None:
+    body = """
+print("Compiling a")
+print("Error: The program size (33000 bytes) is greater than maximum allowed (32256 bytes)")
+sys.exit(1)
+"""
+    code, out, err = built(clone, pretending(tmp_path, body), *words)
+    assert (code, out) == (2, "")
+    assert said in err and "33000 > 32256" in err and "upgrade" not in err
+    assert not ready.files(ready.cache())
 
 
 def test_half_a_file_from_platformio_is_not_kept(clone: Path, tmp_path: Path) -> None:

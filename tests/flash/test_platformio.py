@@ -175,18 +175,31 @@ def test_sketch_builds(project: Path, name: str) -> None:
     assert (project / ".pio" / "build" / name / "firmware.hex").is_file()
 
 
+def test_a_sketch_that_the_board_does_not_hold_is_refused(project: Path) -> None:
+    with changed(
+        project / "platformio.ini",
+        ("= nanoatmega328\n", "= nanoatmega328\nboard_upload.maximum_size = 20000\n"),
+    ):
+        code, log = pio(project, "run", "-e", "nano")
+    assert code == 1
+    assert "is greater than maximum allowed (20000 bytes)" in log
+
+
 @pytest.mark.parametrize(("new", "old"), NEW_NANOS.items())
 def test_a_nano_with_a_new_bootloader_gets_the_same_sketch(
     project: Path, new: str, old: str
 ) -> None:
     """What differs is how it is uploaded: as PlatformIO's board for such Nanos."""
-    made = []
+    made: list[bytes] = []
+    held: list[int] = []
     for name in (new, old):
         code, log = pio(project, "run", "-e", name)
         assert code == 0, log
+        held += map(int, re.findall(r"Flash: .*bytes from (\d+)", log))
         made.append((project / ".pio" / "build" / name / "firmware.hex").read_bytes())
     assert made[0] == made[1]
     assert "nanoatmega328new" in pio(project, "project", "config")[1].partition(f"env:{new}\n")[2]
+    assert held == [32_256, 30_720]  # bytes that the bootloader leaves
 
 
 def test_sketch_of_a_robot_of_ones_own(project: Path) -> None:

@@ -115,7 +115,7 @@ def test_a_wheel_has_what_is_in_the_repository_and_nothing_stale(
     sources = {
         SOURCES + name.removeprefix("vm_arduino/")
         for name in kept
-        if name.startswith(("vm_arduino/src/", "vm_arduino/extras/near/"))
+        if name.startswith("vm_arduino/src/")
         or name in ("vm_arduino/platformio.ini", "vm_arduino/partitions.csv")
     }
     assert found == package | sources | {BUILT}

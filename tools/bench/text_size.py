@@ -25,8 +25,8 @@ RAM_MUST = 60
 FLAGS = (
     "-mmcu=atmega328p", "-std=gnu++11", "-Os", "-flto", "-fno-exceptions",
     "-fno-threadsafe-statics", "-ffunction-sections", "-fdata-sections", "-Wl,--gc-sections",
-    "-mrelax", "-mcall-prologues", "-Wl,--relax", "-mstrict-X", "-fno-devirtualize",
-    "-fno-partial-inlining", "-fno-gcse", "-fno-tree-sink", "-fno-move-loop-invariants",
+    "-mrelax", "-mcall-prologues", "-Wl,--relax", "-mstrict-X", "-fno-gcse",
+    "-fno-move-loop-invariants",
 )  # fmt: skip
 
 PROBE = """

@@ -45,6 +45,7 @@ _COMPILING = re.compile(r"^Compiling ", re.M)
 _INSTALLING = re.compile(r"^.*Manager: Installing (\S+)", re.M)
 _ONLINE = re.compile(r"Installing|HTTP|Internet|[Cc]onnection")  # what needs the internet
 _PERCENT = re.compile(r"(\d+)%")
+_TOO_LARGE = re.compile(r"size \((\d+) bytes\) is greater than maximum allowed \((\d+) bytes")
 
 
 class Seen(NamedTuple):
@@ -59,7 +60,7 @@ class CannotBuild(Exception):
     """The reason, a name from below; the last output of PlatformIO, and the whole output."""
 
     NO_SOURCES, NO_PLATFORMIO = "no_sources", "no_platformio"
-    UNREACHABLE, FAILED = "unreachable", "build_failed"
+    UNREACHABLE, FAILED, TOO_LARGE = "unreachable", "build_failed", "too_large"
 
     def __init__(self, why: str, said: str = "", log: str = "") -> None:
         super().__init__(said or why)
@@ -85,8 +86,7 @@ def sources() -> Sources | None:
     """Return the sources, or None where this package has none."""
     for place in PLACES:
         if (place / SETTINGS).is_file():
-            files = [*(place / "src").rglob("*"), *(place / "extras" / "near").rglob("*")]
-            found = [place / SETTINGS, *sorted(files)]
+            found = [place / SETTINGS, *sorted((place / "src").rglob("*"))]
             names = {path.relative_to(place).as_posix(): path for path in found if path.is_file()}
             names.pop(HEADER, None)
             return Sources({name: path.read_bytes() for name, path in names.items()})
@@ -127,6 +127,8 @@ def build(made_from: Sources, robot: Robot, look: Callable[[Seen], None]) -> byt
             [*command, "run", "-d", folder, "-e", environment], folder, look, made_from
         )
         made = project / ".pio" / "build" / environment / "firmware.hex"
+        if too_large := _TOO_LARGE.search(log):
+            raise CannotBuild(CannotBuild.TOO_LARGE, "{} > {}".format(*too_large.groups()), log)
         if code != 0 or not is_whole(made):
             has_begun = _COMPILING.search(log) or not _ONLINE.search(log)
             why = CannotBuild.FAILED if has_begun else CannotBuild.UNREACHABLE

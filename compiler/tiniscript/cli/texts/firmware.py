@@ -34,6 +34,8 @@ FLASH_TEXTS: dict[str, tuple[str, str]] = {
                           "tsc: PlatformIO no pudo descargar lo que necesita para compilar ({why}). ¿Tiene internet esta computadora? Haz lo mismo otra vez donde lo haya: una vez descargado, ya no hace falta. Todo lo que dijo PlatformIO está en {log}"),
     "flash_build_failed": ("tsc: the firmware of {robot} for the {board} could not be built ({why}). Bring PlatformIO up to date:  pip install --upgrade platformio   and do the same again. All that the compiler said is in {log}",
                            "tsc: el firmware de {robot} para el {board} no se pudo compilar ({why}). Actualiza PlatformIO:  pip install --upgrade platformio   y haz lo mismo otra vez. Todo lo que dijo el compilador está en {log}"),
+    "flash_too_large": ("tsc: the firmware of {robot} has no room on the {board} ({why} bytes). The board is as it was. Take devices out of its profile, or a board with more memory.",
+                        "tsc: el firmware de {robot} no cabe en el {board} ({why} bytes). La placa está como estaba. Quita dispositivos de su perfil, o usa una placa con más memoria."),
     "flash_no_room": ("tsc: the firmware was not built: {why}. It is kept in {folder}; make room there, and do the same again.",
                       "tsc: el firmware no se compiló: {why}. Se guarda en {folder}; haz espacio ahí, y repite."),
     # it cannot be written
