@@ -122,9 +122,10 @@ class Host(Process):
         """Run code whatever it is: it must end in a fault or go on, never outside its memory."""
         return _ran(self.ask(b"U", run_request(code, kit, senses)))
 
-    def run_late(self, image: bytes, kit: Kit, senses: Senses, late_ms: int) -> str:
-        """Return the trace where the first ticks after each wait come up to `late_ms` late."""
-        request = pack("<I", late_ms) + run_request(image, kit, senses)
+    def run_late(self, image: bytes, kit: Kit, senses: Senses, late_ms: Sequence[int]) -> str:
+        """Return the trace where the tick after each wait comes so late; after the last it ends."""
+        many = len(late_ms)
+        request = pack(f"<I{many}I", many, *late_ms) + run_request(image, kit, senses)
         return self.ask(b"L", request).decode()
 
     def all_of_three(self, first: int, sensors: int, actuators: int) -> tuple[int, int, int]:

@@ -8,7 +8,7 @@ from __future__ import annotations
 import argparse
 import random
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import pytest
 
@@ -17,10 +17,12 @@ from tests.machines.python import run_python
 from tests.oracle import machine, programs
 from tests.oracle.interpreter import Kit
 from tests.oracle.test_verifier import python as verdict
+from tests.support.cpp_checks import check_round, run_late
 from tests.support.images import image_for
 from tests.support.kits import KITS
 from tests.support.random_codes import random_codes
 from tiniscript import compile_text
+from tiniscript.bytecode.image import unpack
 from tiniscript.vm.machine import Machine
 from tiniscript.vm.state import WAITING
 from tiniscript.vm.trace import Senses as Lists
@@ -99,6 +101,18 @@ def test_late_calls() -> None:
         assert said[: len(ours)] == ours or said[:-1] == ours[: len(said) - 1], code.hex(" ")
         lines += min(len(ours), len(said) - 1)
     assert lines > 5000
+
+
+def test_a_watched_move_may_last_longer_than_the_clock() -> None:
+    """The page's machine and Python's: where the time since the beginning wraps around."""
+
+    def page(image: bytes, kit: object, senses: Senses, late_ms: Sequence[int]) -> str:
+        code, theirs = unpack(image).code, KITS[0][0]
+        said = machine.trace(code, theirs, senses.readings, 2**33, late=lambda k: late_ms[k - 1])
+        return said.removesuffix("4294967506 DONE\n")
+
+    check_round(run_late)
+    check_round(page)
 
 
 def test_the_kits_are_those_of_the_other_oracle() -> None:

@@ -29,7 +29,7 @@ from tests.support.random_codes import (
     some_programs,
 )
 from tests.vm.test_cases import robot_and_senses
-from tiniscript import fixed_point
+from tiniscript import compile_text, fixed_point
 from tiniscript.bytecode.disassembly import read_listing
 from tiniscript.bytecode.image import (
     unpack,
@@ -44,7 +44,7 @@ from tiniscript.bytecode.verify import RULES, Refused, verify
 from tiniscript.kit import Kit
 from tiniscript.vm.machine import Machine
 from tiniscript.vm.state import WAITING
-from tiniscript.vm.trace import Ending, TracedRobot, run
+from tiniscript.vm.trace import Ending, MachineOf, TracedRobot, run
 from tiniscript.vm.trace import Senses as Lists
 
 WIDE = KITS[1][1]
@@ -199,21 +199,61 @@ def check_clock(machine: Host, begin_ms: int) -> None:
 LATE_BUDGET = 250  # instructions, as many as the host machine runs in a tick
 
 
-def run_late(image: bytes, kit: Kit, senses: Senses, late_ms: int) -> str:
-    """Return the trace of Python's machine where each tick after a wait comes late."""
+def run_late(
+    image: bytes,
+    kit: Kit,
+    senses: Senses,
+    late_ms: Sequence[int],
+    machine_of: MachineOf = Machine,
+) -> str:
+    """Return the trace of Python's machine where the tick after each wait comes so late."""
     lists = {k: senses.readings.get(each.name, ()) for k, each in enumerate(kit.sensors)}
     robot = TracedRobot(kit, Lists(kit, lists))
-    machine = Machine(unpack(image).code, robot, len(kit.sensors), senses.seed)
-    for count in range(1, 200):
+    machine = machine_of(unpack(image).code, robot, len(kit.sensors), senses.seed)
+    for late in late_ms:
         if machine.tick(robot.now_ms, LATE_BUDGET) != WAITING:
             break
-        robot.now_ms = machine.task.wake_ms + count * 7 % (late_ms + 1)
+        robot.now_ms = max(machine.wake_ms, robot.now_ms) + late
     return "".join(f"{event}\n" for event in robot.events)
 
 
 def check_late(machine: Host, late_ms: int) -> None:
     """A program's own clock catches up with a delay of up to 20 ms, and not with more."""
+    each_ms = [count * 7 % (late_ms + 1) for count in range(1, 200)]
     for image, kit, senses in some_programs():
+        theirs = machine.run_late(image, kit, senses, each_ms)
+        assert theirs == run_late(image, kit, senses, each_ms), theirs
+
+
+# Ticks at 2^31 - 8 and 2^32 - 16 ms, both multiples of 20, and then in time, for what waits from 0.
+ROUND_MS = (2**31 - 28, 2**31 - 28, 0, 0, 0, 7, 30, 0, 0)
+ROUND = "F(FOREVER, 80) UNTIL(DISTANCE < 10); W(0.1)"
+ROUND_TRACE = """\
+0 READ DISTANCE 50
+0 MOTORS 80 80
+2147483640 READ DISTANCE 50
+4294967280 READ DISTANCE 50
+4294967300 READ DISTANCE 50
+4294967316 READ DISTANCE 50
+4294967336 READ DISTANCE 50
+4294967363 READ DISTANCE 50
+4294967406 READ DISTANCE 9
+4294967406 MOTORS 0 0
+"""
+
+
+def check_round(run: Callable[[bytes, Kit, Senses, Sequence[int]], str]) -> None:
+    """Where the time since an UNTIL's beginning wraps around a new row of checks begins."""
+    senses = Senses({"DISTANCE": [50_000] * 7 + [9_000]})
+    kit = KITS[0][1]
+    assert run(compile_text(ROUND, kit).image, kit, senses, ROUND_MS) == ROUND_TRACE
+
+
+def check_weeks(machine: Host) -> None:
+    """Programs go on where a tick comes up to 2^31 ms after the one before."""
+    for number, (image, kit, senses) in enumerate(some_programs()):
+        rng = random.Random(number)
+        late_ms = [rng.choice((0, 7, 30, rng.randrange(2**31 - 10**6))) for _ in range(60)]
         theirs = machine.run_late(image, kit, senses, late_ms)
         assert theirs == run_late(image, kit, senses, late_ms), theirs
 

@@ -65,6 +65,8 @@ def checks() -> Iterator[Check]:
     yield Check("images", "images of programs", partial(_whole_images, 0))
     for late_ms in (0, 19, 20, 21, 100):
         yield Check("time", f"{late_ms} ms late", partial(_late, late_ms))
+    yield Check("time", "behind 2^32 ms", lambda host: cpp_checks.check_round(host.run_late))
+    yield Check("time", "weeks between two ticks", cpp_checks.check_weeks)
     for begin_ms in (1, 2**31 - 500, 2**32 - 1500):
         yield Check("time", f"from {begin_ms} ms on", partial(_clock, begin_ms))
     yield Check("time", "a robot that is not ready", cpp_checks.check_not_ready)

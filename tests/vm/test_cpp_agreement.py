@@ -144,6 +144,16 @@ def test_ticks_may_come_late(late_ms: int) -> None:
 
 
 @needs_host
+def test_a_watched_move_may_last_longer_than_the_clock() -> None:
+    cpp_checks.check_round(host().run_late)
+
+
+@needs_host
+def test_weeks_may_pass_between_two_ticks() -> None:
+    cpp_checks.check_weeks(host())
+
+
+@needs_host
 def test_a_robot_that_is_not_ready_is_asked_again() -> None:
     cpp_checks.check_not_ready(host())
 

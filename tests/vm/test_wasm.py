@@ -5,16 +5,18 @@ from __future__ import annotations
 import os
 import shutil
 import sys
+from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
 
 import pytest
 
-from tests.machines import MACHINES
+from tests.machines import MACHINES, Senses
 from tests.machines.wasm import missing
 from tests.project.test_directions import imported_by
 from tests.support.casefile import ROOT, Case
 from tests.support.command import Tsc
+from tests.support.cpp_checks import check_round, run_late
 from tests.support.images import image_for
 from tests.support.kits import KITS
 from tests.vm.test_cases import having, listings_alone, robot_and_senses
@@ -24,6 +26,7 @@ from tiniscript.bytecode.image import Image, ImageRefused, unpack
 from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
 from tiniscript.bytecode.verify import Refused, verify
 from tiniscript.cli.commands import run
+from tiniscript.kit import Kit
 from tiniscript.library import install_advice
 from tiniscript.vm.machine import Machine
 from tiniscript.vm.state import WAITING
@@ -319,6 +322,16 @@ def test_a_slow_robot_and_any_beginning(begin_ms: int, budget: int) -> None:
         found.append((seen, robot.said, machine.fault))
     assert found[0] == found[1]
     assert found[0][1][-1] == "off"
+
+
+@needs_wasmtime
+def test_a_watched_move_may_last_longer_than_the_clock() -> None:
+    from tiniscript.vm.wasm import WasmImage
+
+    def run(image: bytes, kit: Kit, senses: Senses, late_ms: Sequence[int]) -> str:
+        return run_late(image, kit, senses, late_ms, WasmImage(image, kit).machine)
+
+    check_round(run)
 
 
 @needs_wasmtime

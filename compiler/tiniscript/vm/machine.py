@@ -1,8 +1,8 @@
 """The machine, in Python.
 
-Runs verified code. Time comes in as `now_ms`; the world is behind `task.Robot`. `tick` does a
-little and returns: nothing here waits. What each instruction does is in `instructions`.
-The C++ machine has the same names and the same order.
+Runs verified code. Time comes in as `now_ms`, which does not wrap around here; the world is behind
+`task.Robot`. `tick` does a little and returns: nothing here waits. What each instruction does is in
+`instructions`. The C++ machine has the same names and the same order.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from tiniscript.fixed_point import Fault
 from tiniscript.vm.handlers import STAY, stopped
 from tiniscript.vm.instructions import bound, instruction
 from tiniscript.vm.state import (
+    CLOCK_MS,
     DONE,
     FAULT,
     FOREVER,
@@ -95,7 +96,7 @@ class Machine:
 
     def begin(self) -> None:
         """Set the program's clock to the start time of the next wait or move."""
-        if self.now_ms - self.task.clock_ms > LATE_MS:
+        if (self.now_ms - self.task.clock_ms) % CLOCK_MS > LATE_MS:
             self.task.clock_ms = self.now_ms
 
     def until(self, stop: bool, after: int) -> int:
@@ -113,13 +114,11 @@ class Machine:
             task.begun_ms = task.clock_ms
             if task.powers is not None:
                 self.robot.motors(*task.powers)
-        gone_ms = self.now_ms - task.begun_ms
+        gone_ms = (self.now_ms - task.begun_ms) % CLOCK_MS
         next_ms = (gone_ms // CHECK_MS + 1) * CHECK_MS
+        is_last = task.move_ms != FOREVER and next_ms >= task.move_ms
+        due_ms = task.move_ms if is_last else next_ms
+        task.clock_ms = task.wake_ms = self.now_ms - gone_ms + due_ms
+        task.wait = MOVE if is_last and task.powers is not None else PAUSE
         self.status = WAITING
-        if task.move_ms != FOREVER and next_ms >= task.move_ms:
-            task.clock_ms = task.wake_ms = task.begun_ms + task.move_ms
-            task.wait = PAUSE if task.powers is None else MOVE
-            return stopped(after)
-        task.clock_ms = task.wake_ms = task.begun_ms + next_ms
-        task.wait = PAUSE
-        return stopped(task.check)
+        return stopped(after if is_last else task.check)

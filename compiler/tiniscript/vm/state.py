@@ -10,6 +10,7 @@ from typing import Protocol
 
 from tiniscript.bytecode.opcodes import VARIABLES
 
+CLOCK_MS = 2**32  # where a machine's clock wraps around
 FOREVER = -1  # the time of a move that only its UNTIL ends
 
 # What `tick` returns

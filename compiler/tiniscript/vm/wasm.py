@@ -21,7 +21,7 @@ from tiniscript.bytecode.opcodes import FAULTS
 from tiniscript.bytecode.verify import RULES, Refused
 from tiniscript.kit import Kit
 from tiniscript.vm import wasm_store
-from tiniscript.vm.state import DONE, FAULT, RUNNING, WAITING, Robot
+from tiniscript.vm.state import CLOCK_MS, DONE, FAULT, RUNNING, WAITING, Robot
 
 MODULE = Path(__file__).with_name("machine.wasm")
 
@@ -30,8 +30,7 @@ _FAULT_NAMES = {number: name for number, name, _ in FAULTS} | {0: ""}
 _RULE_NAMES = {number: name for name, (number, _) in RULES.items()}
 _REFUSAL_NAMES = {number: name for name, (number, _) in REFUSALS.items()}
 
-_CLOCK = 1 << 32  # where the clock of the machine wraps around
-_HALF = _CLOCK // 2
+_HALF = CLOCK_MS // 2
 _BUDGET = 65_535  # instructions, the most of one tick
 
 # Where numbers are in `Exchange` of `main.cpp`
@@ -92,7 +91,7 @@ class WasmImage:
         An image has one machine: a new one ends the previous one.
         """
         self.robot = robot
-        self.call("start", sensors, seed, now_ms % _CLOCK)
+        self.call("start", sensors, seed, now_ms % CLOCK_MS)
         assert self.exchange is not None, "the image is closed"
         return WasmMachine(self, self.exchange, now_ms)
 
@@ -168,7 +167,7 @@ class WasmImage:
 
 
 class WasmMachine:
-    """The same as `vm.Machine` from outside, for 2^32 milliseconds: then its clock wraps around."""
+    """The same as `vm.Machine` from outside."""
 
     def __init__(self, image: WasmImage, exchange: memoryview[int], now_ms: int) -> None:
         self.status = RUNNING
@@ -182,10 +181,10 @@ class WasmMachine:
         """Run at most `budget` instructions at the time `now_ms`; return the status."""
         budget = min(budget, _BUDGET)
         numbers = self._exchange
-        numbers[_NOW_MS] = (now_ms + _HALF) % _CLOCK - _HALF
+        numbers[_NOW_MS] = (now_ms + _HALF) % CLOCK_MS - _HALF
         numbers[_LEFT] = budget
         self._tick()
-        self.wake_ms = now_ms + ((numbers[_WAKE_MS] - now_ms + _HALF) % _CLOCK - _HALF)
+        self.wake_ms = now_ms + ((numbers[_WAKE_MS] - now_ms + _HALF) % CLOCK_MS - _HALF)
         self.steps += budget - numbers[_LEFT]
         self.status = _STATUSES[numbers[_STATUS]]
         return self.status

@@ -58,7 +58,7 @@ void run(const uint8_t* code, uint16_t length, const Limits& limits, Writer* ans
     const uint32_t more = limits.max_steps - (steps - before);
     const uint8_t budget = more < kSlice ? static_cast<uint8_t>(more) : kSlice;
     robot.must_wait = false;
-    const Status status = machine.tick(robot.now_ms + limits.begin_ms, budget);
+    const Status status = machine.tick(static_cast<uint32_t>(robot.now_ms) + limits.begin_ms, budget);
     steps += static_cast<uint32_t>(budget - machine.left());
     const uint32_t wake_ms = machine.wake_ms() - limits.begin_ms;
     if (status >= Status::kDone) {
@@ -145,9 +145,11 @@ void answer_run(RequestReader* request, bool is_verified, Writer* answer) {
   run(image.code, image.code_length, limits, answer);
 }
 
-// L: runs the code of an image whose ticks after a wait come late: the lines before its ending.
+// L: runs the code of an image whose ticks after a wait come late, each by as much as is asked for:
+// the lines before its ending.
 void answer_late(RequestReader* request, Writer* answer) {
-  const uint32_t late_ms = request->u32();
+  std::vector<uint32_t> late_ms(request->u32());
+  for (uint32_t& each : late_ms) each = request->u32();
   request->u32();  // longest time
   request->u32();  // most instructions
   const uint32_t seed = request->u32();
@@ -159,9 +161,11 @@ void answer_late(RequestReader* request, Writer* answer) {
   int32_t readings[kDevices] = {};
   machine.start(data.data.get() + kHeaderBytes, static_cast<uint16_t>(length), readings,
                 static_cast<uint8_t>(robot.sensors.size()), seed, 0);
-  for (uint32_t count = 1; count < 200; count++) {
-    if (machine.tick(robot.now_ms, kSlice) != Status::kWaiting) break;
-    robot.now_ms = machine.wake_ms() + count * 7 % (late_ms + 1);
+  for (const uint32_t late : late_ms) {
+    const uint32_t now_ms = static_cast<uint32_t>(robot.now_ms);
+    if (machine.tick(now_ms, kSlice) != Status::kWaiting) break;
+    const uint32_t more_ms = machine.wake_ms() - now_ms;
+    robot.now_ms += (more_ms < 0x80000000 ? more_ms : 0) + uint64_t{late};
   }
   answer->raw(robot.trace);
 }

@@ -25,7 +25,7 @@ struct TracedRobot {
   std::vector<Device> actuators;
   std::vector<std::vector<int32_t>> readings;  // of each sensor
   std::vector<size_t> taken;                   // how many, of each sensor
-  uint32_t now_ms = 0;
+  uint64_t now_ms = 0;  // does not wrap around
   std::string trace;
   uint32_t not_ready = 0;  // every so many questions the robot is not ready; 0: always ready
   uint32_t asked = 0;

@@ -90,12 +90,9 @@ bool Machine::until(bool stop) {
     task_.begun_ms = task_.clock_ms;
     if (task_.drives) robot_motors(task_.left, task_.right);
   }
-  // the last check was due at the program's clock: from there it is not far
   const uint32_t gone_ms = now_ms_ - task_.begun_ms;
-  uint32_t next_ms = task_.clock_ms - task_.begun_ms;
-  do {
-    next_ms += kCheckMs;
-  } while (next_ms <= gone_ms);  // never as much as kForever
+  // Never kForever. After 2^32 ms it wraps around, and a new row of checks begins.
+  uint32_t next_ms = gone_ms - gone_ms % kCheckMs + kCheckMs;
   const bool is_checked = next_ms < task_.move_ms;
   if (is_checked) {
     task_.pc = task_.check;
