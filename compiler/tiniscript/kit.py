@@ -14,6 +14,7 @@ from tiniscript.fixed_point import as_text
 NUMBER = "number"
 YES_NO = "yes/no"
 
+DEVICES = 32  # the most sensors of a kit, and the most actuators
 DEVICES_POLYNOMIAL = 0x2D  # x^16 + x^5 + x^3 + x^2 + 1 without its first term: primitive
 
 

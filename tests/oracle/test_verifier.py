@@ -122,6 +122,16 @@ def test_code_may_be_as_long_as_the_limit() -> None:
     ]
 
 
+def test_no_device_has_a_number_above_31() -> None:
+    """Whoever says that a kit has more hears it before code runs: a machine keeps 32 readings."""
+    codes = {name: code for code, row in spec_tables.instructions().items() for name in [row.name]}
+    for many in (32, 33, 255):
+        for name, number in (("READ", 31), ("READ", 32), ("PUSH_SENSOR", 32), ("PUSH_READ", 255)):
+            code = bytes([codes[name], number])
+            said = compare([code + bytes([codes["SHOW"]]) if name != "READ" else code], many, many)
+            assert said == {0 if number == 31 else RULES["BAD_OPERAND"][0]}
+
+
 READS = ("words", "tokens", "tree", "readings", "expressions", "text", "interpreter")
 CHECKS = ("spec_tables", "verifier", "arithmetic", "machine")
 

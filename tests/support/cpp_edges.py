@@ -23,8 +23,7 @@ from tiniscript.bytecode.opcodes import (
     STACK_VALUES,
     VARIABLES,
 )
-from tiniscript.kit import NUMBER, Device, Kit
-from tiniscript.robots.reader import DEVICES
+from tiniscript.kit import DEVICES, NUMBER, Device, Kit
 
 
 def show(number: int) -> bytes:

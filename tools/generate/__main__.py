@@ -17,6 +17,7 @@ ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
 from tiniscript.bytecode import image, opcodes, verify
+from tiniscript.kit import DEVICES
 from tiniscript.robots import firmware
 from tiniscript.robots.profile import LANGUAGES, ProfileRefused, Robot
 from tiniscript.robots.reader import read
@@ -180,6 +181,7 @@ def limit_table() -> str:
         ("blocks in a text, those open around a call included", opcodes.BLOCKS, "", compiler),
         ("stack", opcodes.STACK_VALUES, "values", both.format("STACK_OVERFLOW")),
         ("variables", opcodes.VARIABLES, "", f"{compiler}, and {operand}"),
+        ("sensors of a kit, and actuators", DEVICES, "", f"the robot's profile, and {operand}"),
         (
             "counted loops open at once, those around a call included",
             opcodes.COUNTERS,

@@ -11,8 +11,7 @@ from itertools import accumulate
 from typing import NamedTuple
 
 from tiniscript.bytecode import image, opcodes, verify
-from tiniscript.kit import DEVICES_POLYNOMIAL
-from tiniscript.robots.reader import DEVICES
+from tiniscript.kit import DEVICES, DEVICES_POLYNOMIAL
 
 HEADER_GUARD = "TINISCRIPT_VM_BYTECODE_H_"
 

@@ -106,6 +106,8 @@ inline const std::vector<RefusedCase>& refused_cases() {
       {"A motor power under -100: 23 BAD_OPERAND at 0000", {90, 155, 0}, Rule::kBadOperand, 0x0000},
       {"A loop of no times: 23 BAD_OPERAND at 0000", {109, 0, 112, 2}, Rule::kBadOperand, 0x0000},
       {"Variable 32: 23 BAD_OPERAND at 0000", {49, 32, 1}, Rule::kBadOperand, 0x0000},
+      {"Sensor 32, which no kit has: 23 BAD_OPERAND at 0000", {56, 32}, Rule::kBadOperand, 0x0000},
+      {"Actuator 32, which no kit has: 23 BAD_OPERAND at 0001", {6, 59, 32}, Rule::kBadOperand, 0x0001},
       {"A sensor that the kit does not have: 24 NO_SUCH_DEVICE at 0000", {56, 3}, Rule::kNoSuchDevice, 0x0000},
       {"An actuator that the kit does not have: 24 NO_SUCH_DEVICE at 0001", {6, 59, 0}, Rule::kNoSuchDevice, 0x0001},
       {"A sensor in an instruction of one byte: 24 NO_SUCH_DEVICE at 0002", {146, 57, 147, 57}, Rule::kNoSuchDevice, 0x0002},

@@ -36,7 +36,7 @@ RULES = {
     "CODE_LENGTH":     (20, "More than 32767 bytes of code."),
     "UNKNOWN_OPCODE":  (21, "A byte that begins no instruction."),
     "CUT_OPERAND":     (22, "The code ends inside an instruction."),
-    "BAD_OPERAND":     (23, "An operand outside its range: a power, a count, a variable."),
+    "BAD_OPERAND":     (23, "An operand outside its range: a power, a count, a variable, a device."),
     "NO_SUCH_DEVICE":  (24, "A sensor or an actuator that the kit does not have."),
     "STACK_UNDERFLOW": (25, "An instruction takes more values than are on the stack."),
     "STACK_OVERFLOW":  (26, "More than 16 values on the stack."),

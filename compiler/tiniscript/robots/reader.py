@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from tiniscript.fixed_point import ONE
-from tiniscript.kit import NUMBER, YES_NO, Device, Kit
+from tiniscript.kit import DEVICES, NUMBER, YES_NO, Device, Kit
 from tiniscript.robots.board_reader import device_tables, read_board
 from tiniscript.robots.profile import (
     LANGUAGES,
@@ -23,7 +23,6 @@ from tiniscript.robots.refusals import shown
 from tiniscript.robots.toml_table import Table, parse_toml
 from tiniscript.words import WORDS
 
-DEVICES = 32  # the most sensors, and the most actuators
 NAME_CHARACTERS = 24
 UNIT_CHARACTERS = 8
 LABEL_CHARACTERS = 60

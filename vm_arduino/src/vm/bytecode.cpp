@@ -123,8 +123,8 @@ const uint8_t kRanges[][2] tini_progmem = {
     {156, 200},  // percent
     {0, 31},  // variable
     {1, 254},  // count
-    {0, 255},  // sensor
-    {0, 255},  // actuator
+    {0, 31},  // sensor
+    {0, 31},  // actuator
 };
 
 }  // namespace tiniscript

@@ -274,7 +274,7 @@ enum class Rule : uint8_t {
   kCodeLength = 20,  // More than 32767 bytes of code.
   kUnknownOpcode = 21,  // A byte that begins no instruction.
   kCutOperand = 22,  // The code ends inside an instruction.
-  kBadOperand = 23,  // An operand outside its range: a power, a count, a variable.
+  kBadOperand = 23,  // An operand outside its range: a power, a count, a variable, a device.
   kNoSuchDevice = 24,  // A sensor or an actuator that the kit does not have.
   kStackUnderflow = 25,  // An instruction takes more values than are on the stack.
   kStackOverflow = 26,  // More than 16 values on the stack.

@@ -48,8 +48,8 @@ class TiniRobot {
 };
 
 // The devices of a robot: one line for each, as `bytecode_spec.md` hashes it, first the sensors,
-// then the actuators: "sensor DISTANCE number cm 0 400000". The profile that `tsc compile --robot`
-// gets has the same devices in the same order.
+// then the actuators, at most 32 of each: "sensor DISTANCE number cm 0 400000". The profile that
+// `tsc compile --robot` gets has the same devices in the same order.
 struct TiniKit {
   const char* const* lines;
   uint8_t sensors;
