@@ -14,13 +14,14 @@ from tests.studio.programs import programs
 from tests.studio.test_page_for_everyone import LOOK, SCREENS
 from tests.support.casefile import ROOT
 from tests.support.kits import KITS
+from tests.support.platformio import need
 from tests.support.studio import Pages, image, shown, write
 from tiniscript import check, compile, robots
 from tiniscript.studio.block_form import data_of
 from tiniscript.studio.block_reading import read
 from tiniscript.studio.serving import files
 from tools.builds.blockly_texts import english
-from tools.builds.studio import BLOCKLY, MODULES, SOURCES
+from tools.builds.studio import BLOCKLY, MODULES, SOURCES, stale
 
 if TYPE_CHECKING:
     from playwright.sync_api import Locator, Page
@@ -411,6 +412,7 @@ def test_a_finger_drags_a_block(pages: Pages) -> None:
 
 
 def test_blockly_speaks_spanish() -> None:
+    need("" if BLOCKLY.is_dir() else stale() or f"there is no {BLOCKLY}")
     wanted = english(BLOCKLY)
     ours = json.loads((SOURCES / "src" / "blockly_es.json").read_text(encoding="utf-8"))
     assert set(ours) == set(wanted) and len(ours) > 150
