@@ -13,7 +13,7 @@ from tests.machines.uno import needed
 from tests.support.casefile import ROOT, read
 from tests.support.platformio import firmware, shared
 from tiniscript.link.requests import OK
-from tools.uno import Uno
+from tools.uno import CYCLES_PER_MS, Uno
 
 LINE_MS = 5  # from the end of a line to the pins, at most
 PROGRAM_MS = 10  # the same for the last line of the obstacle program
@@ -110,3 +110,26 @@ def test_the_programs_of_the_paper(uno: Uno) -> None:
         answers = typed(uno, text, len(text) * BYTE_MS + 1200)
         assert answers[0].startswith("// OK") or ", kit " in answers[0], (text, answers)
         typed(uno, "SI|W(0)\n", 200)  # whatever runs has ended, and nothing is latched
+
+
+# What waits behind an answer is read where the image of LIVE is made before its frame has ended.
+# The bytes of this number are instructions: an `X` in front of them, as S, makes a move of them.
+DRIVES = "SI|SHOW(-1337933.387)"
+
+
+@pytest.mark.parametrize("text", ["X\0", "s\0", "A\n\0"])
+def test_text_that_waits_changes_no_line_of_live(uno: Uno, text: str) -> None:
+    wired = computer(uno)
+    assert wired.until(wired.session.hello()) == OK
+    for frame_ms in (22, 23, 24, 25):
+        wired.run(50)
+        wired.session.events()
+        request = wired.session.live(image_of(DRIVES).code)
+        begin = uno.cycle + CYCLES_PER_MS
+        uno.send(b"SB|\nSB|\n" + text.encode(), at=begin)
+        uno.send(wired.session.poll(wired.now_ms), at=begin + frame_ms * CYCLES_PER_MS)
+        assert wired.until(request) == OK
+        wired.run(80)
+        assert states(uno) == OFF
+        shown = [event.value for event in wired.session.events() if event.name == "SHOW"]
+        assert shown == [-1337933387]

@@ -122,6 +122,14 @@ class HostFirmware(Process):
         answer = self.ask(b"T", trim)
         return bool(answer[0]), list(iter_unpack("<hh", answer[1:]))
 
+    def codes(self) -> list[bytes]:
+        """Return the codes that were started since this was asked last."""
+        found, rest = [], self.ask(b"C", b"")
+        while rest:
+            code, rest = _text(rest)
+            found.append(code)
+        return found
+
     def memory(self) -> bytes:
         return _text(self.ask(b"E", b""))[0]
 

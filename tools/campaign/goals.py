@@ -74,6 +74,8 @@ GOALS: tuple[Goal, ...] = (
          "programs, and twenty changed texts of each", 100_000, 1_000, "tests.text.test_reader_agreement {count} --seed {seed}", 10_000),
     Goal("text", "A robot does a line of text after anything was thrown at it.",
          "robots", 10_000, 100, "tests.firmware.test_text {count} --seed {seed}", 1000),
+    Goal("waiting", "What runs of frames is what was verified, whatever text waits in front of them and behind.",
+         "programs", 100_000, 10_000, "tests.firmware.test_waiting_text {count} --seed {seed}"),
     Goal("clients", "A robot answers each whole frame, does nothing that is stale, and can be stopped, after any frames.",
          "clients", 10_000, 100, "tests.firmware.test_hostile_client {count} --seed {seed}", 1000),
     Goal("fuzz-mqtt", f"Whatever a broker says, an ESP32's reader of MQTT finds what a second one finds, within its memory ({FUZZ}).",

@@ -13,10 +13,13 @@
 
 #include "../../src/firmware/firmware.h"
 #include "../../src/firmware/trim.h"
+#include "../../src/link/frames.h"
 #include "../../src/robot.h"
 #include "../../src/store/layout.h"
 #include "../../src/store/nvm.h"
 #include "../../src/text/kit_words.h"
+#include "../../src/vm/image.h"
+#include "../../src/vm/verify.h"
 #include "../host/wire.h"
 
 using namespace tiniscript;
@@ -49,6 +52,8 @@ struct Tabletop {
   Place hung = {};
   uint8_t busy_ticks = 0;   // for which a byte is being written,
   uint8_t write_ticks = 0;  // as many as this
+  std::string code;                // that was started last
+  std::vector<std::string> codes;  // all that nobody has asked for
 };
 
 Tabletop table;
@@ -81,6 +86,20 @@ void turn(int8_t left, int8_t right) {
   table.right = right;
 }
 
+// The code that runs, or ran last.
+std::string run_code() {
+  const uint8_t* const image = port_run_image();
+  const uint8_t* const code = image + image[kHeaderLengthAt];
+  return std::string(code, code + get16(image + kCodeLengthAt));
+}
+
+// Says where other code runs than the one that began, which the verifier has accepted.
+void check_code() {
+  if (port_status().state == State::kRunning && run_code() != table.code) {
+    table.log += "CHANGED code\n";
+  }
+}
+
 // B: power on, with what the memory holds.
 void answer_begin(RequestReader* request) {
   table.kit = request->u16();
@@ -109,6 +128,7 @@ std::string pass(uint32_t now_ms, uint16_t ticks, const uint8_t* heard, size_t l
   for (uint16_t k = 0; k < ticks || next < length; k++) {
     if (next < length) firmware_on_rx_byte(heard[next++], static_cast<uint16_t>(now_ms));
     firmware_tick(now_ms);
+    check_code();
     if (table.busy_ticks != 0) table.busy_ticks--;
     uint8_t byte = 0;
     while (firmware_next_tx_byte(&byte)) sent += static_cast<char>(byte);
@@ -187,6 +207,12 @@ void answer_readings(RequestReader* request) {
   for (int32_t& reading : table.readings) reading = request->i32();
 }
 
+// C: the codes that were started since this was asked last.
+void answer_codes(Writer* answer) {
+  for (const std::string& code : table.codes) answer->text(code);
+  table.codes.clear();
+}
+
 // T: whether a trim is sound, and its levels for -128 to 127 percent, the left wheel's and that of
 // the right one.
 void answer_trim(RequestReader* request, Writer* answer) {
@@ -250,7 +276,18 @@ void board_stop() {
   turn(0, 0);
 }
 
-void board_release() { table.is_latched = false; }
+void board_release() {
+  table.is_latched = false;
+  table.code = run_code();
+  table.codes.push_back(table.code);
+  uint16_t devices;
+  const Verdict verdict = 
+      verify(reinterpret_cast<const uint8_t*>(table.code.data()), table.code.size(),
+             table.sensors, table.actuators, &devices);
+  if (verdict.rule != Rule::kNone) {
+    say("UNVERIFIED", static_cast<int32_t>(verdict.rule), verdict.offset);
+  }
+}
 
 bool board_has_hung(Place* place) {
   const bool found = table.has_hung;
@@ -325,6 +362,9 @@ int main() {
         break;
       case 'V':
         answer_readings(&request);
+        break;
+      case 'C':
+        answer_codes(&said);
         break;
       case 'T':
         answer_trim(&request, &said);

@@ -77,7 +77,9 @@ uint8_t* port_text_memory(uint16_t* room, bool* has_room) {
 #else
   *has_room = false;
   *room = sizeof live - kHeaderBytes;
-  return is_image_running(live) ? nullptr : live;
+  if (is_image_running(live)) return nullptr;
+  link.drop_ahead();
+  return live;
 #endif
 }
 

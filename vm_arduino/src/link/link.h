@@ -35,6 +35,9 @@ class Link {
   // Whether `tick` would start a LIVE now: everything else may wait for that.
   bool is_awaited() const { return is_ready_ && receiver_->has_frame(); }
 
+  // The memory of the image that was made ahead goes to somebody else: it must not start.
+  void drop_ahead() { is_ready_ = false; }
+
   // Call it after the motors are served: seals a program that came in one frame and starts to send
   // what is due.
   void tell();

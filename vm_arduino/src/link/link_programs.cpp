@@ -89,6 +89,7 @@ uint8_t Link::make_room(Use use, uint16_t length) {
     if (way != Answer::kOk) return refuse(way, 0);
   }
   made_ = image;
+  drop_ahead();
   image[kMagicAt] = 'T';
   image[kMagicAt + 1] = 'S';
   uint8_t* const end = image + length;

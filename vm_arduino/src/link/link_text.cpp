@@ -13,10 +13,7 @@ tini_noinline void Link::talk() {
   const Console::Act act = console->turn(receiver_, is_listened_to());
   if (act == Console::Act::kStop) halt(Cause::kText);
   if (act == Console::Act::kEnd) port_end();
-  if (act == Console::Act::kStart) {
-    is_ready_ = false;  // its image may lie where the one of a frame was made ahead
-    console->say(start_text(*console));
-  }
+  if (act == Console::Act::kStart) console->say(start_text(*console));
   if (console->has_answer()) due_ |= kDueText;
 }
 

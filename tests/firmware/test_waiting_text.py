@@ -1,0 +1,189 @@
+"""Text that waits in front of a program of frames, or behind it: what runs is what was verified.
+
+`python -m tests.firmware.test_waiting_text 100000` is a campaign.
+"""
+
+from __future__ import annotations
+
+import argparse
+import random
+from itertools import cycle
+
+import pytest
+
+from tests.firmware.test_host_firmware import KIT, computer, happened, image_of
+from tests.machines.host_firmware import HostFirmware, missing
+from tiniscript import compile_text
+from tiniscript.bytecode.image import HEADER_BYTES
+from tiniscript.link.frames import Frame, decoded, encoded
+from tiniscript.link.messages import BY_NAME, RUN, SAVE
+from tiniscript.link.requests import OK
+
+pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
+
+TRIALS = 1000  # in the tests; a campaign runs more
+LIVES = 100  # trials of one robot
+CHECKSUM_AT, BODY_AT = 10, 14  # in an image
+# A number whose bytes are instructions: one letter in front of them makes a move of them.
+DRIVES = "SI|SHOW(-1337933.387)"
+WHOLE = ("F(0.01,30)", "SI|R(0.02,40)", "SI|M(20,20);W(0.01)", "SB|F(0.01,30)", DRIVES,
+         "SI|LOOP(2);W(0.01);END_LOOP", "PING|CHECK_CONNECTION", "SI|X=9.87;SHOW(X)")  # fmt: skip
+OTHER = ("HELP", "FOO", "F(1,500)", "SI|LOOP(2)", "IF(TRUE)", "END_LOOP", "SI|F(1,", "+OK", "~",
+         "(", "SI|" + "X=1.2345;" * 9, "SB|" + "9" * 70)  # fmt: skip
+LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz"
+
+
+class Small(HostFirmware):
+    """A robot as an Uno, which reads the begin of a line where the image of LIVE lies."""
+
+    has_draft = False
+
+
+def new(kind: type[HostFirmware] = Small) -> HostFirmware:
+    robot = kind(KIT)
+    robot.wait(1400)
+    return robot
+
+
+def plain(line: str) -> bytes:
+    """Return the code that the robot's reader makes of a line."""
+    robot = new()
+    robot.wait(1500, (line + "\n").encode())
+    if line.startswith("SB"):
+        robot.push()
+        robot.wait(100)
+    return (robot.codes() or [b""])[0]
+
+
+class Trials:
+    """Robots that get text and frames in one burst, cut anywhere."""
+
+    def __init__(self, seed: int) -> None:
+        self.rng = random.Random(seed)
+        self.lines = {line: plain(line) for line in WHOLE}
+        self.kinds = cycle((Small, HostFirmware))
+        self.lives = 0
+        self.ran = 0
+
+    def begin(self) -> None:
+        """Take a new robot now and then."""
+        if self.lives == 0:
+            self.lives = LIVES
+            self.robot = new(next(self.kinds))
+            self.seq, self.epoch, self.heard = 0, 0, b""
+        self.lives -= 1
+        kit = KIT.fingerprint.to_bytes(2, "little")
+        self.put(self.frame("HELLO", bytes((1, 2, 2, 0)) + kit + self.rng.randbytes(4)), 12)
+
+    def frame(self, name: str, payload: bytes = b"") -> bytes:
+        self.seq = (self.seq + 1) % 256
+        return encoded(Frame(BY_NAME[name].number, self.seq, self.epoch, payload))
+
+    def put(self, data: bytes, milliseconds: int) -> None:
+        """Let bytes arrive in one burst, as where a turn was long; hear what the robot says."""
+        sent = self.robot.step(data, flags=16, ticks=self.rng.choice((0, 1, 1, 2, 20)))
+        if milliseconds:
+            sent += self.robot.wait(milliseconds)
+        *items, self.heard = (self.heard + sent).split(b"\0")
+        for frame in map(decoded, items):
+            self.epoch = frame.epoch if frame else self.epoch
+
+    def text(self) -> tuple[bytes, set[bytes]]:
+        """Return text that waits, ended before a frame, and the codes that it may run."""
+        rng = self.rng
+        data, codes = b"", set()
+        for _ in range(rng.choice((0, 1, 1, 1, 2, 3))):
+            kind = rng.randrange(4)
+            if kind == 0:
+                line = rng.choice(WHOLE)
+                codes.add(self.lines[line])
+                data += line.encode() + rng.choice((b"\n", b"\r", b"\r\n"))
+            else:
+                line = rng.choice(LETTERS) if kind < 3 else rng.choice(OTHER)
+                data += line.encode() + rng.choice((b"\n", b"\0", b"\0", b"\r\n"))
+        return data + b"\0", codes
+
+    def program(self) -> bytes:
+        """Return the image of a program whose bytes are as varied as they can be."""
+        rng = self.rng
+        parts = [
+            f"SHOW({rng.randrange(-(2**31), 2**31) / 1000:.3f})",
+            f"X = {rng.randrange(-(2**31), 2**31) / 1000:.3f}",
+            f"M({rng.randrange(-100, 101)}, {rng.randrange(-100, 101)})",
+            f"W(0.0{rng.randrange(1, 6)})",
+        ]
+        text = "SI|" + "; ".join(rng.choices(parts, k=rng.choice((1, 1, 2, 4))))
+        image = compile_text(rng.choice((text, text, text, DRIVES)), KIT).image
+        assert image
+        return image
+
+    def frames(self, image: bytes) -> list[bytes]:
+        """Return a program as a line of live, in one frame, or in pieces."""
+        how, mode = self.rng.randrange(4), RUN | self.rng.choice((0, 0, SAVE))
+        code, body = image[HEADER_BYTES:], image[BODY_AT:]
+        if how < 2:
+            return [self.frame("LIVE", bytes([RUN]) + code)]
+        if how == 2:
+            return [self.frame("PROGRAM", bytes([mode]) + code)]
+        pieces = [
+            self.frame("DATA", at.to_bytes(2, "little") + body[at : at + 9])
+            for at in range(0, len(body), 9)
+        ]
+        begin = self.frame("BEGIN", bytes([mode]) + image[2:CHECKSUM_AT])
+        return [begin, *pieces, self.frame("COMMIT", image[CHECKSUM_AT:BODY_AT])]
+
+    def trial(self) -> None:
+        rng = self.rng
+        self.begin()
+        self.put(self.frame("CLEAR"), 5)
+        self.robot.codes()
+        self.robot.did.clear()
+        image = self.program()
+        may_run = {image[HEADER_BYTES:]}
+        for frame in self.frames(image):
+            before, codes = self.text()
+            behind, more = self.text()
+            may_run |= codes | more
+            data = before + frame
+            most = min(12, len(frame))
+            cut = len(data) - rng.choice((rng.randrange(1, most), rng.randrange(len(frame))))
+            self.put(data[:cut], rng.choice((0, 0, 1)))
+            self.put(data[cut:] + rng.choice((b"", behind)), rng.choice((1, 4, 20)))
+        self.put(b"", rng.choice((5, 30, 1100)))
+        for line in self.robot.did:
+            assert "UNVERIFIED" not in line and "CHANGED" not in line, self.robot.did
+        ran = set(self.robot.codes())
+        assert ran <= may_run, (ran, may_run)
+        self.ran += image[HEADER_BYTES:] in ran
+
+
+def test_what_runs_is_what_was_verified() -> None:
+    trials = Trials(7)
+    for _ in range(TRIALS):
+        trials.trial()
+    assert trials.ran > TRIALS // 3
+
+
+@pytest.mark.parametrize("text", [b"X\0", b"s\0", b"D\0", b"a\n\0"])
+def test_one_letter_makes_no_move_of_a_number(text: bytes) -> None:
+    robot, session = new(), computer()
+    assert robot.until(session, session.hello()) == OK
+    request = session.live(image_of(DRIVES).code)
+    frame = session.poll(robot.now_ms)
+    robot.step(text + frame[:-1], flags=16, ticks=1)
+    session.receive(robot.step(frame[-1:]), robot.now_ms)
+    assert robot.until(session, request) == OK
+    robot.talk(session, 50)
+    assert [event.value for event in session.events() if event.name == "SHOW"] == [-1337933387]
+    assert happened(robot) == ["FINISHED"]
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("count", nargs="?", type=int, default=1000)
+    parser.add_argument("--seed", type=int, default=1_000_000)
+    options = parser.parse_args()
+    trials = Trials(options.seed)
+    for _ in range(options.count):
+        trials.trial()
+    print(f"{options.count} trials: {trials.ran} programs have run, each as it was verified")
