@@ -126,6 +126,24 @@ def test_name_and_trim_outlive_an_update() -> None:
     assert saved(again, session) == "OTHER_VERSION"
 
 
+@pytest.mark.parametrize("trim", [b"\x08\0\0", b"\0\x29\0", b"\0\xd7\0", b"\0\0\x29", b"\xff" * 3])
+def test_a_trim_that_other_firmware_has_kept_is_none(trim: bytes) -> None:
+    """Numbers that no trim of this version has would make levels beyond those of a motor."""
+    body = struct_pack("<I16s3s", 77, b"Ada", trim)
+    robot, session = met(kept((4, 3, struct_pack("<I", zlib.crc32(body)) + body)))
+    assert session.robot is not None
+    assert (session.robot.id, session.robot.name) == (77, "Ada")
+    request = session.trim()
+    assert robot.until(session, request) == OK
+    values = outcome(request).values
+    assert (values.wheels, values.balance, values.least) == (0, 0, 0)
+    sound = body[:-3] + b"\1\5\7"
+    robot, session = met(kept((4, 3, struct_pack("<I", zlib.crc32(sound)) + sound)))
+    request = session.trim()
+    assert robot.until(session, request) == OK
+    assert outcome(request).values.least == 7
+
+
 def test_an_owner_beside_a_program_of_version_0_1_0_gives_the_robot_up() -> None:
     """That program lies over the other slot of the keys, which has no generation then."""
     key, keys = bytes(range(1, 17)), Keys()

@@ -178,6 +178,30 @@ def test_what_it_cannot_run_does_not_come_back(image: bytes, is_first: bool) -> 
     assert held(robot, session) == good
 
 
+@pytest.mark.parametrize(
+    "image", [of_another_kit(), that_no_verifier_takes()], ids=["kit", "verifier"]
+)
+@pytest.mark.parametrize("has_good", [True, False])
+def test_a_robot_begins_with_the_newest_program_that_it_can_run(
+    image: bytes, has_good: bool
+) -> None:
+    """Its checksum is right, so that only the verifier or the kit says no."""
+    good = bytes_of(A)
+    robot, session = (
+        HostFirmware(KIT, kept(*[(SECOND, 6, good)][:has_good], (FIRST, 7, image))),
+        computer(),
+    )
+    robot.wait(400)
+    assert saved(robot, session) == ("STORED" if has_good else "NOTHING")
+    assert robot.is_lit == has_good
+    robot.push()
+    robot.talk(session, 400)
+    assert happened(robot) == ["MOTORS 50 50", "MOTORS 0 0", "FINISHED"] * has_good
+    send(robot, session, C, runs=False)
+    stored(robot, session)
+    assert program_after_power_off(robot) == bytes_of(C)
+
+
 # -- what is in RAM only --------------------------------------------------------------------------
 
 
