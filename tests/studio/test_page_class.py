@@ -71,7 +71,7 @@ def asks(page: Page) -> None:
 
 
 def teaches(pages: Pages, taught: Class) -> Page:
-    page = pages.visit(taught.server.entrance)
+    page = pages.visit(taught.server.entrance())
     page.locator("[data-teacher=class_count]").wait_for(state="attached")
     return page
 
@@ -183,7 +183,7 @@ def test_the_end(pages: Pages, taught: Class, erases: bool) -> None:
     ana.click("#my_programs")
     ana.click("#new")
     teacher = teaches(pages, taught)
-    assert taught.server.token not in teacher.evaluate("location.href")
+    assert taught.server.entrances.token not in teacher.evaluate("location.href")
     if erases:
         teacher.check("#class input[type=checkbox]")
     teacher.click("[data-text=class_end]")

@@ -34,7 +34,7 @@ def server(browser: Browser) -> Iterator[serving.Server]:
 
 @pytest.fixture
 def pages(browser: Browser, server: serving.Server) -> Iterator[Pages]:
-    found = Pages(browser, server.entrance, server.address)
+    found = Pages(browser, server.address, entrance=server.entrance)
     yield found
     found.close()
     assert not found.wrong
@@ -163,7 +163,7 @@ def test_a_page_that_reaches_nothing_stops_its_robot(
 def test_two_tabs_do_not_fight(pages: Pages, page: Page, robot: PtyRobot) -> None:
     other = page.context.new_page()
     pages.watch(other)
-    other.goto(pages.address)
+    other.goto(pages.entrance())
     checked(other)
     other.click("#side_real")
     other.locator("#link_port option").first.wait_for(state="attached")
@@ -265,13 +265,26 @@ def test_the_token_is_not_in_the_address(pages: Pages, server: serving.Server) -
     assert page.locator("#link_ports").is_visible()  # a tab keeps it
 
 
+def test_an_address_opens_the_robots_once_and_says_so(
+    pages: Pages, server: serving.Server, tmp_path: Path
+) -> None:
+    entrance = server.entrance()
+    first, second = pages.visit(entrance), pages.visit(entrance)
+    studio.noted(second, "This address was opened before")
+    second.screenshot(path=str(tmp_path / "used.png"))
+    assert first.locator("#note").inner_text() == ""
+    for page, has_robots in ((first, True), (second, False)):
+        page.click("#side_real")
+        assert page.locator("#link_ports").is_visible() is has_robots
+
+
 def test_another_run_of_tsc_studio_is_said(pages: Pages, server: serving.Server) -> None:
     page = pages.open()
     page.evaluate("sessionStorage.setItem('tiniscript.token', '0'.repeat(32))")
     page.goto(server.address)
     checked(page)
     page.click("#side_real")
-    said(page, "tsc studio was started again meanwhile.")
+    said(page, "tsc studio was started again meanwhile,")
     assert [each for each in pages.wrong if "403" not in each] == []
     pages.wrong.clear()
 

@@ -109,7 +109,7 @@ def test_the_page_is_packed_marked_and_fetched_once(taught: Class) -> None:
 
 
 def test_a_token_opens_its_own_door_alone(taught: Class) -> None:
-    ana, teacher = joins(taught), taught.server.token
+    ana, teacher = joins(taught), taught.server.entrances.token
     assert post(taught, {"do": "here"}, **{serving.TOKEN: ana}) == 200
     assert post(taught, {"do": "class"}, **{serving.TOKEN: ana}) == 400
     assert post(taught, {"do": "class"}, **{serving.TOKEN: teacher}) == 200

@@ -51,7 +51,7 @@ def post(
 ) -> tuple[int, bytes]:  # fmt: skip
     """Post as the page does, with other headers or without (None)."""
     own = f"127.0.0.1:{server.server_port}"
-    given = {"Host": own, "Origin": f"http://{own}", serving.TOKEN: server.token}
+    given = {"Host": own, "Origin": f"http://{own}", serving.TOKEN: server.entrances.token}
     kept = {name: value for name, value in {**given, **(headers or {})}.items()
             if value is not None}  # fmt: skip
     connection = HTTPConnection(serving.HOST, server.server_port, timeout=HANGS_S)
@@ -113,7 +113,7 @@ def test_a_wrong_length_is_refused(server: serving.Server, robots: Recorder, len
     own = f"127.0.0.1:{server.server_port}"
     head = (
         f"POST {serving.ROBOTS} HTTP/1.1\r\nHost: {own}\r\nOrigin: http://{own}\r\n"
-        f"{serving.TOKEN}: {server.token}\r\nContent-Length: {length}\r\n\r\n"
+        f"{serving.TOKEN}: {server.entrances.token}\r\nContent-Length: {length}\r\n\r\n"
     )
     with socket.create_connection((serving.HOST, server.server_port), timeout=HANGS_S) as client:
         client.sendall(head.encode() + b'{"do"')
@@ -125,7 +125,8 @@ def test_two_tokens_are_none(server: serving.Server, robots: Recorder) -> None:
     own = f"127.0.0.1:{server.server_port}"
     head = (
         f"POST {serving.ROBOTS} HTTP/1.1\r\nHost: {own}\r\nOrigin: http://{own}\r\n"
-        f"{serving.TOKEN}: {server.token}\r\n{serving.TOKEN}: x\r\nContent-Length: 2\r\n\r\n{{}}"
+        f"{serving.TOKEN}: {server.entrances.token}\r\n{serving.TOKEN}: x\r\n"
+        "Content-Length: 2\r\n\r\n{}"
     )
     with socket.create_connection((serving.HOST, server.server_port), timeout=HANGS_S) as client:
         client.sendall(head.encode())
@@ -142,15 +143,15 @@ def test_other_addresses_take_nothing(server: serving.Server, robots: Recorder) 
 def test_the_token_is_another_one_each_time_and_in_no_file(
     server: serving.Server, tmp_path: Path, robots: Recorder
 ) -> None:
-    assert server.entrance == f"{server.address}#token={server.token}"
-    assert len(server.token) == 32
+    assert server.entrances.token not in server.entrance()
+    assert len(server.entrances.token) == 32
     other = serving.Server(serving.files(tmp_path), 0, robots.answer)
     other.server_close()
-    assert other.token != server.token
+    assert other.entrances.token != server.entrances.token
     connection = HTTPConnection(serving.HOST, server.server_port, timeout=HANGS_S)
     connection.request("GET", "/")
     response = connection.getresponse()
-    assert server.token not in response.read().decode() + str(response.getheaders())
+    assert server.entrances.token not in response.read().decode() + str(response.getheaders())
     connection.close()
 
 
@@ -161,7 +162,7 @@ def test_a_server_without_robots_has_none(tmp_path: Path) -> None:
     thread.start()
     try:
         assert post(made)[0] == 404
-        assert made.entrance == made.address
+        assert made.entrance() == made.address
     finally:
         made.shutdown()
         made.server_close()
@@ -170,7 +171,7 @@ def test_a_server_without_robots_has_none(tmp_path: Path) -> None:
 def test_a_thousand_connections_keep_nobody_out(server: serving.Server) -> None:
     """They say nothing, or half a request; the page's own connection stays."""
     own = f"127.0.0.1:{server.server_port}"
-    headers = {"Origin": f"http://{own}", serving.TOKEN: server.token}
+    headers = {"Origin": f"http://{own}", serving.TOKEN: server.entrances.token}
     page = HTTPConnection(serving.HOST, server.server_port, timeout=HANGS_S)
 
     def ask() -> int:

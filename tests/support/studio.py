@@ -8,7 +8,7 @@ from __future__ import annotations
 import os
 import shutil
 import socket
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from importlib.util import find_spec
 from threading import Thread
@@ -146,12 +146,13 @@ class Pages:
     """Pages of one server; each must have said no error, and asked nobody else, at the end."""
 
     def __init__(
-        self, opened: Browser, address: str, origin: str = "", patience_s: int = 90
-    ) -> None:
-        """`origin` is the beginning of what pages may ask, where it is not the whole address."""
+        self, opened: Browser, address: str, patience_s: int = 90,
+        entrance: Callable[[], str] | None = None,
+    ) -> None:  # fmt: skip
+        """Pages ask at `address` alone; `entrance` makes the one that each is opened with."""
         self.patience_s = patience_s
         self.address = address
-        self.origin = origin or address
+        self.entrance = entrance or (lambda: address)
         self.wrong: list[str] = []
         self._browser = opened
         self._contexts: list[Any] = []
@@ -161,7 +162,7 @@ class Pages:
 
         `view` is `blocks`, which a new visitor sees, or `text`, which most tests write.
         """
-        return self.visit(self.address, view, **options)
+        return self.visit(self.entrance(), view, **options)
 
     def visit(self, address: str, view: str = "text", **options: Any) -> Page:
         """Open an address of the page, for a new visitor."""
@@ -198,7 +199,7 @@ class Pages:
             self.wrong.append(text)
 
     def _asked(self, address: str) -> None:
-        if not address.startswith((self.origin, "data:", "blob:")):
+        if not address.startswith((self.address, "data:", "blob:")):
             self.wrong.append(address)
 
 

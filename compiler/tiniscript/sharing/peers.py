@@ -45,7 +45,7 @@ def is_of_this_user(peer: socket.socket) -> bool:
 
     False where nobody has it any more: who has hung up can have been anybody.
     """
-    if sys.platform != "linux":
+    if not tells_users():
         return True
     try:
         there, here = peer.getpeername(), peer.getsockname()
@@ -56,6 +56,21 @@ def is_of_this_user(peer: socket.socket) -> bool:
     except OSError as why:  # a system that has no answer to that lets everybody in
         return why.errno not in _NOBODY
     return found.is_open and found.user in (os.geteuid(), ROOT)
+
+
+def tells_users() -> bool:
+    """Whether this system says whose a connection is."""
+    return sys.platform == "linux"
+
+
+def is_here(peer: socket.socket) -> bool:
+    """Whether the other end of an accepted connection is in this computer."""
+    try:
+        with socket.socket() as probe:
+            probe.bind((peer.getpeername()[0], 0))
+    except OSError:  # no address of this computer
+        return False
+    return True
 
 
 def _other_end(there: tuple[str, int], here: tuple[str, int]) -> End:

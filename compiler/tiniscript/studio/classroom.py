@@ -18,10 +18,11 @@ from typing import TYPE_CHECKING
 from tiniscript.link.port_names import same_for_all
 from tiniscript.printable import printable
 from tiniscript.studio.class_members import ClassRobot, Pupil
+from tiniscript.studio.entrances import new_token
 from tiniscript.studio.hosting import PORT_CHARACTERS, Hosting, listed
 from tiniscript.studio.rate import Rate
 from tiniscript.studio.robot_link import BadRequest, Json
-from tiniscript.studio.serving import REQUEST_BYTES, TOKEN_BYTES
+from tiniscript.studio.serving import REQUEST_BYTES
 
 if TYPE_CHECKING:
     from tiniscript.studio.hosted_robot import HostedRobot
@@ -121,7 +122,7 @@ class Classroom:
         same = [f"{plain} ({k})" for k in range(2, MOST_PUPILS + 2)]
         free = next(each for each in [plain, *same] if each not in names)
         self._count += 1
-        token = secrets.token_hex(TOKEN_BYTES)
+        token = new_token()
         self._pupils[token] = Pupil(self._count, free, address, now_s)
         return {"token": token, "name": free}
 

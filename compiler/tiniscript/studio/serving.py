@@ -2,18 +2,16 @@
 
 Knows which requests it answers. All of the page is read before: an update of the package does not
 change a page that is open. What a page asks of robots goes to `hosting`, if it shows the token of
-this run: that is in the address which `tsc studio` opens, behind a #, which no browser sends. With
-`--class` the address is one of the room's network, the token is the teacher's, and pupils have
-tokens of their own (`classroom`). Knows no robots.
+this run: a page gets it for the code that is in the address which `tsc studio` opens, behind a #,
+which no browser sends (`entrances`). With `--class` the address is one of the room's network, the
+token is the teacher's, and pupils have tokens of their own (`classroom`). Knows no robots.
 """
 
 from __future__ import annotations
 
 import gzip
 import hashlib
-import hmac
 import json
-import secrets
 import socket
 from collections import Counter
 from collections.abc import Callable
@@ -27,6 +25,7 @@ from urllib.parse import urlsplit
 
 from tiniscript.flash import ready
 from tiniscript.sharing.protocol import BadMessage, message_of
+from tiniscript.studio.entrances import Entrances
 from tiniscript.studio.policy import HEADERS, SECURE_ONLY, TYPES
 from tiniscript.studio.robot_link import BadRequest, Json
 
@@ -39,8 +38,10 @@ NAMES = (HOST, "localhost")  # by which a browser here may call it
 HTTP_PORT = 80
 SILENT_S = 10  # after which a client that asks nothing is left
 ROBOTS = "/robots"  # where a page asks for robots
+ENTER = "/enter"  # where it gets the token for its code
 TOKEN = "X-TiniScript-Token"
-TOKEN_BYTES = 16
+BEFORE_CODE = "#code="
+ENTER_BYTES = 200  # of a request with a code
 REQUEST_BYTES = 200_000  # the largest program has 32,781 bytes, and two digits for each
 # At a time; one more, and one is closed, of the address that has most. A browser has six.
 CONNECTIONS = 64
@@ -150,33 +151,40 @@ class Server(ThreadingHTTPServer):
         self.headers = {
             name: value for name, value in HEADERS.items() if host == HOST or name != SECURE_ONLY
         }
-        self.token = secrets.token_hex(TOKEN_BYTES)
+        self.entrances = Entrances()
         self.most_connections = CONNECTIONS if pupils is None else CLASS_CONNECTIONS
         self._lock = Lock()
         # Which has asked last is the last.
         self._connections: dict[socket.socket, _Client] = {}
 
-    @property
-    def entrance(self) -> str:
-        """The address with the token: whoever opens it reaches the robots of this computer."""
-        return f"{self.address}#token={self.token}" if self.robots else self.address
+    def entrance(self, is_for_here: bool = False) -> str:
+        """Return a new address by which the user's page reaches the robots, the first time."""
+        if self.robots is None:
+            return self.address
+        return f"{self.address}{BEFORE_CODE}{self.entrances.code(is_for_here)}"
 
-    def most_bytes(self, token: str) -> int:
+    def is_unused(self, entrance: str) -> bool:
+        """Whether nobody has opened such an address."""
+        return self.entrances.is_unused(entrance.rpartition(BEFORE_CODE)[2])
+
+    def enter(self, request: Json, peer: socket.socket) -> Json:
+        """Return the token of the run for a code that gives it."""
+        given = self.entrances.token_for(str(request.get("code")), peer)
+        return {"token": given} if given else {"failure": "host_used"}
+
+    def most_bytes(self, token: str, peer: socket.socket) -> int:
         """Return how large a request with this token may be; 0: it is refused."""
-        if self._is_own(token):
+        if self.entrances.is_owner(token, peer):
             return REQUEST_BYTES
         return self.pupils.most_bytes(token) if self.pupils else 0
 
-    def answer(self, token: str, address: str, request: Json) -> Json:
+    def answer(self, token: str, peer: socket.socket, address: str, request: Json) -> Json:
         """Return the answer to a request whose token is known. Raises BadRequest."""
-        if self._is_own(token):
+        if self.entrances.is_owner(token, peer):
             assert self.robots is not None
             return self.robots(request)
         assert self.pupils is not None
         return self.pupils.answer(token, address, request)
-
-    def _is_own(self, token: str) -> bool:
-        return hmac.compare_digest(token.encode("utf-8", "replace"), self.token.encode())
 
     def trust(self, client: socket.socket) -> None:
         """A client has shown a token: others are closed before it."""
@@ -230,18 +238,24 @@ class _Handler(BaseHTTPRequestHandler):
     def do_POST(self) -> None:
         server = self.server
         origins = self.headers.get_all("Origin", [])
-        if server.robots is None or self.path != ROBOTS:
+        if server.robots is None or self.path not in (ROBOTS, ENTER):
             self._send(HTTPStatus.NOT_FOUND, _MISSING, True)
             return
         # A browser says of each POST where it is from.
         tokens = self.headers.get_all(TOKEN, [])
         token = tokens[0] if len(tokens) == 1 else ""
-        most = server.most_bytes(token) if len(tokens) < 2 else 0
+        most = server.most_bytes(token, self.connection) if len(tokens) < 2 else 0
+        if self.path == ENTER:
+            most = ENTER_BYTES
         if not self._is_own() or len(origins) != 1 or not most:
             self._send(HTTPStatus.FORBIDDEN, _FOREIGN, True)
             return
         try:
-            answer = server.answer(token, self.client_address[0], self._request(most))
+            asked = self._request(most)
+            if self.path == ENTER:
+                answer = server.enter(asked, self.connection)
+            else:
+                answer = server.answer(token, self.connection, self.client_address[0], asked)
         except (BadRequest, OSError):
             self._send(HTTPStatus.BAD_REQUEST, _NO_REQUEST, True)
             return

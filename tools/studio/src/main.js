@@ -11,6 +11,7 @@ import { Python } from './python.js';
 import { currentLanguage, setLanguage, text } from './texts.js';
 import { Driving } from './driving.js';
 import { Recorder } from './recorder.js';
+import { whyOutside } from './robot_host.js';
 import { RobotPanel } from './robot_panel.js';
 import { RobotPlace } from './robot_place.js';
 import { chooseSide, showSide } from './robot_side.js';
@@ -97,6 +98,7 @@ let timer = 0;
 const waiting = [];
 
 showRobots();
+if (whyOutside) note.textContent = text(`why_${whyOutside}`);
 editor.replace(work.text);
 status.textContent = text('starting');
 python.ready.then(

@@ -1,6 +1,6 @@
 // A robot at a port of this computer, which `tsc studio` has. It is asked by POST with the token of
-// its run, which stands behind the # of the address that it opens. In a class that is the teacher's,
-// and pupils get tokens of their own.
+// its run. The address that it opens has a code behind the #, for which a page gets the token once. In
+// a class the token is the teacher's, and pupils get tokens of their own.
 //
 // The main thread asks many times a second; when it hangs or the page sleeps, `tsc studio` hears
 // nothing, and stops the robot.
@@ -18,7 +18,9 @@ const BEAT_MS = 100;
 const SILENT_MS = 3000; // without an answer
 const ASK_MS = 2000;
 
-let token = tokenOfAddress();
+let token = keptToken();
+/** Why the code of the address has given no token, or nothing. */
+export const whyOutside = await enter();
 
 /** Whether this page comes from a `tsc studio`, and may ask it for all that it has. */
 export const hasHost = token !== '';
@@ -32,25 +34,43 @@ export function askAs(own) {
   token = own;
 }
 
-/** Takes the token out of the address: nobody copies it with the address. */
-function tokenOfAddress() {
-  const found = /^#token=([0-9a-f]{32})$/.exec(location.hash)?.[1];
+function keptToken() {
   try {
-    if (found) sessionStorage.setItem(PLACE, found);
-    if (found) history.replaceState(null, '', location.pathname + location.search);
-    return found ?? sessionStorage.getItem(PLACE) ?? '';
+    return sessionStorage.getItem(PLACE) ?? '';
   } catch {
-    return found ?? '';
+    return '';
   }
+}
+
+/** Takes the code out of the address, and gets the token for it. @returns {Promise<string>} */
+async function enter() {
+  const code = /^#code=([0-9a-f]{32})$/.exec(location.hash)?.[1];
+  if (!code) return '';
+  history.replaceState(null, '', location.pathname + location.search);
+  token = '';
+  try {
+    const answer = await post({ code }, {}, './enter');
+    if (answer.failure) return answer.failure;
+    token = answer.token;
+  } catch {
+    return 'host_gone';
+  }
+  try {
+    sessionStorage.setItem(PLACE, token);
+  } catch {
+    // no storage here: a reload needs a new address
+  }
+  return '';
 }
 
 /**
  * @param {Record<string, unknown>} request
  * @param {RequestInit} [options]
+ * @param {string} [where]
  * @returns {Promise<any>}
  */
-export async function post(request, options = {}) {
-  const answer = await fetch('./robots', {
+export async function post(request, options = {}, where = './robots') {
+  const answer = await fetch(where, {
     method: 'POST',
     headers: { 'X-TiniScript-Token': token, 'Content-Type': 'application/json' },
     body: JSON.stringify(request),

@@ -55,15 +55,19 @@ def run(options: Namespace, language: str) -> int:
     try:
         with ended_by_signal():
             thread.start()
-            print(server.entrance, flush=True)
+            entrance = server.entrance()
+            print(entrance, flush=True)
             key = "studio_class" if classroom else "studio_here"
-            values = {"address": server.address if classroom else server.entrance}
-            values["code"] = classroom.code if classroom else ""
+            values = {"address": server.address, "code": classroom.code if classroom else ""}
             print(text(key, language).format(**values), file=sys.stderr, flush=True)
             if not options.no_browser:
-                webbrowser.open(server.entrance)
+                webbrowser.open(server.entrance(is_for_here=True))
             while thread.is_alive():
                 thread.join(1)
+                if not server.is_unused(entrance):
+                    entrance = server.entrance()
+                    print(text("studio_opened", language), file=sys.stderr, flush=True)
+                    print(entrance, flush=True)
                 if classroom is not None:
                     classroom.tend()
                     if classroom.has_ended:

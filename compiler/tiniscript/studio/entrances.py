@@ -1,0 +1,80 @@
+"""Who is the user that has started `tsc studio`: the token of the run, and codes that give it once.
+
+An address on a command line, such as a browser's, is read by every user of the computer. So no
+address has the token. It has a code, for which a page gets the token the first time. Knows no HTTP.
+"""
+
+from __future__ import annotations
+
+import hmac
+import secrets
+import socket
+from collections.abc import Callable
+from threading import Lock
+from time import monotonic
+from typing import NamedTuple
+
+from tiniscript.sharing import peers
+
+TOKEN_BYTES = 16
+OPENS_S = 120.0  # for a browser of this computer to open
+
+
+class _Code(NamedTuple):
+    is_for_here: bool
+    until_s: float
+
+
+class Entrances:
+    """Any thread may call it."""
+
+    def __init__(self, clock: Callable[[], float] = monotonic) -> None:
+        self.token = new_token()
+        self._clock = clock
+        self._lock = Lock()
+        self._codes: dict[str, _Code] = {}
+        self._used: set[str] = set()
+
+    def code(self, is_for_here: bool = False) -> str:
+        """Return a new code. `is_for_here`: a browser of this computer gets it, and is quick."""
+        made = new_token()
+        until_s = self._clock() + OPENS_S if is_for_here else float("inf")
+        with self._lock:
+            self._codes[made] = _Code(is_for_here, until_s)
+        return made
+
+    def is_unused(self, code: str) -> bool:
+        with self._lock:
+            return code in self._codes
+
+    def token_for(self, code: str, peer: socket.socket) -> str:
+        """Return the token, or nothing if this code gives none.
+
+        Where no system tells whose a connection is, another user may have been first: a code that
+        comes again ends what it has given.
+        """
+        if not may_be_owner(peer):
+            return ""
+        with self._lock:
+            if code in self._used and not peers.tells_users():
+                self.token = new_token()
+            found = self._codes.get(code)
+            if found is None or (found.is_for_here and not peers.is_here(peer)):
+                return ""
+            del self._codes[code]
+            self._used.add(code)
+            return self.token if self._clock() <= found.until_s else ""
+
+    def is_owner(self, token: str, peer: socket.socket) -> bool:
+        """Whether it is the token of this run, and nobody else of this computer shows it."""
+        is_token = hmac.compare_digest(token.encode("utf-8", "replace"), self.token.encode())
+        return is_token and may_be_owner(peer)
+
+
+def may_be_owner(peer: socket.socket) -> bool:
+    """Whether a connection is of this user, or of another computer."""
+    return peers.is_of_this_user(peer) or not peers.is_here(peer)
+
+
+def new_token() -> str:
+    return secrets.token_hex(TOKEN_BYTES)

@@ -1,0 +1,224 @@
+"""Who gets the robots of `tsc studio`: the user who has started it, and whoever reads the address
+on a command line does not."""
+
+from __future__ import annotations
+
+import json
+import os
+import socket
+import subprocess
+import sys
+from collections.abc import Iterator
+from http.client import HTTPConnection
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.sharing.test_peers import linux, pair
+from tests.support.page_server import serves
+from tests.support.waiting import HANGS_S, until
+from tiniscript.sharing import peers
+from tiniscript.studio import serving
+from tiniscript.studio.entrances import OPENS_S, Entrances
+
+NOBODY = 65534
+# Stands for a browser: another user reads its command line while it runs.
+BROWSER = """#!/bin/sh
+echo $$ "$@" > {folder}/opened.new
+mv {folder}/opened.new {folder}/opened
+while [ ! -e {folder}/closed ]; do sleep 0.1; done
+"""
+# Finds the address on the command line of a process, as another user, and asks what its page asks.
+STRANGER = """
+import encodings.idna, http.client, json, os, sys
+os.setgid(65534); os.setuid(65534)
+own, token, code, *pids = sys.argv[1:]
+words = " ".join(open("/proc/%s/cmdline" % each, "rb").read().decode() for each in pids)
+assert "http://%s/" % own in words, "the browser's command line is not read"
+shown = words.rpartition("#code=")[2][:32]
+assert shown == code, (shown, code)
+
+def post(token, request, path="/robots"):
+    connection = http.client.HTTPConnection(own, timeout=60)
+    connection.request("POST", path, json.dumps(request),
+                       {"Origin": "http://" + own, "X-TiniScript-Token": token})
+    answer = connection.getresponse()
+    return [answer.status, answer.read().decode()]
+
+print(json.dumps([post("", {"code": shown}, "/enter"), post(token, {"do": "ports"}),
+                  token in words]))
+"""
+
+
+class Clock:
+    now_s = 0.0
+
+    def __call__(self) -> float:
+        return self.now_s
+
+
+@pytest.fixture
+def peer() -> Iterator[socket.socket]:
+    """A connection of this user."""
+    here, there = pair()
+    with here, there:
+        yield here
+
+
+@pytest.fixture
+def of_another(monkeypatch: pytest.MonkeyPatch) -> None:
+    """All connections within this computer are of another user."""
+    monkeypatch.setattr(peers, "tells_users", lambda: True)
+    monkeypatch.setattr(peers, "_other_end", lambda there, here: peers.End(NOBODY, 1))
+    monkeypatch.setattr(os, "geteuid", lambda: 1234, raising=False)
+
+
+def test_a_code_gives_the_token_once(peer: socket.socket) -> None:
+    doors = Entrances()
+    code = doors.code()
+    assert doors.is_unused(code)
+    assert doors.token_for(code, peer) == doors.token
+    assert not doors.is_unused(code) and doors.token_for(code, peer) == ""
+    assert doors.token_for("0" * 32, peer) == doors.token_for("", peer) == ""
+    assert doors.is_owner(doors.token, peer) and not doors.is_owner(code, peer)
+
+
+def test_the_code_of_a_browser_is_valid_for_a_while(peer: socket.socket) -> None:
+    clock = Clock()
+    doors = Entrances(clock)
+    early, late, printed = doors.code(True), doors.code(True), doors.code()
+    clock.now_s = OPENS_S
+    assert doors.token_for(early, peer) == doors.token
+    clock.now_s = OPENS_S + 1
+    assert doors.token_for(late, peer) == ""
+    assert doors.token_for(printed, peer) == doors.token
+
+
+def test_a_code_that_comes_again_ends_what_it_has_given(
+    peer: socket.socket, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Where no system tells the user, another one may have been quicker than the browser."""
+    doors = Entrances()
+    monkeypatch.setattr(peers, "tells_users", lambda: False)
+    code = doors.code(True)
+    stolen = doors.token_for(code, peer)
+    assert doors.is_owner(stolen, peer)
+    assert doors.token_for(code, peer) == ""  # the browser
+    assert not doors.is_owner(stolen, peer)
+    monkeypatch.setattr(peers, "tells_users", lambda: True)
+    again = doors.code()
+    given = doors.token_for(again, peer)
+    assert doors.token_for(again, peer) == "" and doors.token == given
+
+
+@pytest.mark.usefixtures("of_another")
+def test_another_user_has_neither_code_nor_token(peer: socket.socket) -> None:
+    doors = Entrances()
+    for is_for_here in (True, False):
+        code = doors.code(is_for_here)
+        assert doors.token_for(code, peer) == "" and doors.is_unused(code)
+    assert not doors.is_owner(doors.token, peer)
+
+
+def test_a_browser_s_code_is_for_this_computer_and_the_printed_one_is_not(
+    peer: socket.socket, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    doors = Entrances()
+    shown, printed = doors.code(True), doors.code()
+    monkeypatch.setattr(peers, "is_here", lambda peer: False)
+    monkeypatch.setattr(peers, "is_of_this_user", lambda peer: False)
+    assert doors.token_for(shown, peer) == "" and doors.is_unused(shown)
+    assert doors.token_for(printed, peer) == doors.token  # the teacher's tablet
+    assert doors.is_owner(doors.token, peer)
+
+
+def test_which_addresses_are_here(peer: socket.socket) -> None:
+    assert peers.is_here(peer)
+
+    class Elsewhere:
+        def getpeername(self) -> tuple[str, int]:
+            return "198.51.100.1", 5
+
+    assert not peers.is_here(Elsewhere())  # type: ignore[arg-type]
+
+
+@pytest.mark.usefixtures("of_another")
+def test_the_server_answers_no_other_user(tmp_path: Path) -> None:
+    (tmp_path / "index.html").write_text("<!doctype html>")
+    asked: list[object] = []
+
+    def answer(request: dict[str, Any]) -> dict[str, Any]:
+        asked.append(request)
+        return {}
+
+    made = serving.Server(serving.files(tmp_path), 0, answer)
+    with serves(made) as server:
+        own = f"{serving.HOST}:{server.server_port}"
+        code = server.entrance(is_for_here=True).rpartition("=")[2]
+        assert enter(own, code) == (200, {"failure": "host_used"})
+        assert post(own, server.entrances.token, {"do": "ports"})[0] == 403
+    assert asked == []
+
+
+def enter(own: str, code: str) -> tuple[int, Any]:
+    return post(own, "", {"code": code}, serving.ENTER)
+
+
+def post(own: str, token: str, request: object, path: str = serving.ROBOTS) -> tuple[int, Any]:
+    connection = HTTPConnection(own, timeout=HANGS_S)
+    headers = {"Origin": f"http://{own}", serving.TOKEN: token}
+    connection.request("POST", path, json.dumps(request), headers)
+    answer = connection.getresponse()
+    data = answer.read()
+    connection.close()
+    return answer.status, json.loads(data) if answer.status == 200 else data.decode()
+
+
+@linux
+@pytest.mark.skipif(os.geteuid() != 0, reason="only root can be another user")
+@pytest.mark.parametrize("is_class", [False, True])
+def test_another_user_reads_the_browser_s_command_line_and_gets_nothing(
+    tmp_path: Path, is_class: bool
+) -> None:
+    browser = tmp_path / "browser"
+    browser.write_text(BROWSER.format(folder=tmp_path))
+    browser.chmod(0o755)
+    (tmp_path / "page").mkdir()
+    (tmp_path / "page" / "index.html").write_text('<html lang="en">')
+    start = ("import sys; from pathlib import Path; from tiniscript.studio import serving; "
+             f"serving.PAGE = Path({str(tmp_path / 'page')!r}); from tiniscript.cli import main; "
+             "sys.exit(main(sys.argv[1:]))")  # fmt: skip
+    more = ("--class", "--address", "127.0.0.2") if is_class else ()
+    words = [sys.executable, "-c", start, "studio", "--listen", "0", "--lang", "en", *more]
+    command = subprocess.Popen(
+        words, env={**os.environ, "BROWSER": f"{browser} %s &"},
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+    )  # fmt: skip
+    try:
+        assert command.stdout and command.stderr
+        printed = command.stdout.readline().strip()
+        until(lambda: (tmp_path / "opened").exists(), "the browser is opened")
+        pid, opened = (tmp_path / "opened").read_text().split()
+        address, _, code = opened.partition("#code=")
+        own = address.removeprefix("http://").rstrip("/")
+        assert printed.startswith(f"{address}#code=") and code not in printed
+
+        # The token is not on any command line, so it takes what another page was given.
+        token = enter(own, printed.rpartition("=")[2])[1]["token"]
+        stranger = [sys.executable, "-I", "-c", STRANGER, own, token, code, pid, str(command.pid)]
+        done = subprocess.run(stranger, capture_output=True, text=True, timeout=HANGS_S)
+        assert done.returncode == 0, done.stderr
+        entering, asking, is_shown = json.loads(done.stdout)
+        assert entering == [200, '{"failure": "host_used"}']
+        assert asking[0] == 403 and not is_shown
+
+        assert enter(own, code) == (200, {"token": token})
+        assert enter(own, code) == (200, {"failure": "host_used"})
+        assert post(own, token, {"do": "ports"})[0] == 200
+        again = command.stdout.readline().strip()  # the printed address was opened
+        assert again.startswith(f"{address}#code=") and again != printed
+    finally:
+        (tmp_path / "closed").touch()
+        command.terminate()
+        command.communicate(timeout=HANGS_S)
