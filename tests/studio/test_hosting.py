@@ -141,6 +141,21 @@ def test_a_page_that_falls_silent_stops_its_robot(page: Page, robot: PtyRobot) -
     assert robot.heard.endswith(bytes(STOP_BYTES))
 
 
+def test_a_silent_page_is_noticed_after_a_reset(page: Page, robot: PtyRobot) -> None:
+    """The robot counts its runs anew: the next one has the number of one that is over."""
+    page.upload("SHOW(1)")
+    page.until(lambda each: each.get("event") == "DONE")
+    robot.switch_off()
+    robot.switch_on()
+    ran = page.upload(FOREVER)
+    while "failure" in ran:  # until the session has noticed
+        ran = page.upload(FOREVER)
+    robot.until(lambda: robot.moves, "it drives")
+    page.beat()
+    assert robot.stands_after_ms(robot.robot_ms) < 950
+    assert robot.heard.endswith(bytes(STOP_BYTES))
+
+
 def test_a_page_that_is_heard_goes_on(page: Page, robot: PtyRobot) -> None:
     page.upload(FOREVER)
     for _ in range(20):

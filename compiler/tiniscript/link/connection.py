@@ -96,7 +96,7 @@ class LinkConnection(Heard, Protocol):
     """A connection to a robot. All methods but `close` and `stop` raise Gone once it has ended.
 
     `held_by` is the verb of the command that holds the port, if that is another command;
-    `has_ended`: the connection is gone.
+    `has_ended`: the connection is gone; `boot` is another number after each reset of the robot.
     """
 
     @property
@@ -104,6 +104,9 @@ class LinkConnection(Heard, Protocol):
 
     @property
     def has_ended(self) -> bool: ...
+
+    @property
+    def boot(self) -> int: ...
 
     def do(self, make: Callable[[Requester], PendingRequest[T]]) -> PendingRequest[T]:
         """Start a request; return while it is in progress."""

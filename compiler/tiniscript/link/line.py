@@ -70,6 +70,11 @@ class Line:
         return self.session.robot
 
     @property
+    def boot(self) -> int:
+        """A number of the robot that is another one after each of its resets."""
+        return self.robot.values.nonce if self.robot else 0
+
+    @property
     def gone(self) -> str | None:
         """Return why the port is gone, or None while it is open."""
         return self._gone

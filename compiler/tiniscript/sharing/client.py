@@ -49,6 +49,7 @@ class Client:
         self.robot: DeviceInfo | None = None
         self.heard = 0
         self.is_echoed = False
+        self.boot = 0
         self.held_by = registration.verb
         self.baud = registration.baud
         self._peer = peer
@@ -147,6 +148,7 @@ class Client:
             return
         self.heard = protocol.number(message, "heard")
         self.is_echoed = protocol.answer(message, "is_echoed")
+        self.boot = protocol.number(message, "boot")
         reply = protocol.reply(message, request.kind)
         request.outcome = reply
         del self._pending[number]

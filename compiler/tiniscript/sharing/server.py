@@ -294,6 +294,7 @@ class Server:
             "values": protocol.plain(values),
             "heard": self._line.heard,
             "is_echoed": self._line.is_echoed,
+            "boot": self._line.boot,
         })  # fmt: skip
 
     def _pass_on_events(self) -> None:

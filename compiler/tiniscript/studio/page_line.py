@@ -86,6 +86,11 @@ class PageLine:
     def robot(self) -> DeviceInfo | None:
         return self.session.robot
 
+    @property
+    def boot(self) -> int:
+        """A number of the robot that is another one after each of its resets."""
+        return self.robot.values.nonce if self.robot else 0
+
     def do(self, make: Callable[[Requester], PendingRequest[T]]) -> PendingRequest[T]:
         return make(self.session)
 

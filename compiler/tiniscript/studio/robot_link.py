@@ -58,6 +58,9 @@ class BadRequest(Exception):
 class Connection(Heard, Protocol):
     """The part of a LinkConnection that is needed here; the page's has no more."""
 
+    @property
+    def boot(self) -> int: ...
+
     def do(self, make: Callable[[Requester], PendingRequest[T]]) -> PendingRequest[T]: ...
 
     def event(self, limit_s: float = ...) -> tuple[int, Event] | None: ...
@@ -73,6 +76,13 @@ class _Asked(NamedTuple):
     is_program: bool  # it sends or starts one, and no line
 
 
+class _Run(NamedTuple):
+    """A robot counts its runs anew after a reset."""
+
+    boot: int
+    number: int
+
+
 class RobotLink:
     """A page's part in a connection: one thread uses it. `has_run`: a run that the page has started
     may still go on."""
@@ -83,11 +93,11 @@ class RobotLink:
         connection.tell_places()
         self._asked: list[_Asked] = []
         self._answers: list[Json] = []
-        # The numbers of runs: which the page has started, which was the last to begin, and to end.
-        self._run: int | None = None
-        self._begun: int | None = None
-        self._over: int | None = None
-        self._program_run: int | None = None  # that of the newest program that the page has started
+        # Runs: which the page has started, which was the last to begin, and to end.
+        self._run: _Run | None = None
+        self._begun: _Run | None = None
+        self._over: _Run | None = None
+        self._program_run: _Run | None = None  # that of the newest program that the page has started
 
     @property
     def has_run(self) -> bool:
@@ -141,22 +151,23 @@ class RobotLink:
             reply = each.pending.outcome
             if reply and reply.status == OK and isinstance(reply.values, ReceiptReply):
                 if each.is_program:
-                    self._program_run = reply.values.run
-                elif reply.values.run == self._program_run:  # the robot counts anew
-                    self._program_run = None
+                    self._program_run = self._known(reply.values.run)
         return [{"id": each.number, **self._answer(each.pending)} for each in over]
 
     def _follow(self, event: Event) -> None:
         """Find the end of the page's run. An end may come before the answer that names the run;
         one without a number may be that of a run before."""
         if event.name == "STARTED":
-            self._begun, self._over = event.run, None
+            self._begun, self._over = self._known(event.run), None
         elif event.name in ("DONE", "FAULT"):
-            self._over = event.run
+            self._over = self._known(event.run)
         elif event.name in ("STOPPED", "ENDED"):
             self._over = self._begun
         if event.name == "LOST" or (self._over is not None and self._over == self._run):
             self._run = None
+
+    def _known(self, number: int) -> _Run:
+        return _Run(self._connection.boot, number)
 
     # -- requests ---------------------------------------------------------------------------------
 
@@ -174,8 +185,9 @@ class RobotLink:
             return self._failure(reply)
         values = reply.values
         if isinstance(values, ReceiptReply):
-            if pending.starts and values.run != self._over:
-                self._run = values.run
+            run = self._known(values.run)
+            if pending.starts and run != self._over:
+                self._run = run
             return {"ok": True, "program": f"{values.program:08x}", "saved": _saved(values.saved)}
         if isinstance(values, TrimReply):
             return {"ok": True, "trim": told(values)._asdict()}
@@ -212,7 +224,8 @@ class RobotLink:
             found["text"] = printable(event.text.decode("utf-8", "replace"), TEXT_CHARACTERS)
         elif event.name == "STARTED":
             found["program"] = f"{event.program:08x}"
-            found["is_program"] = event.run == self._program_run  # no line, and nobody else's
+            # no line, and nobody else's
+            found["is_program"] = self._known(event.run) == self._program_run
         elif event.name not in ("DONE", "LOST"):
             return []  # who else uses the port is no news for a page
         return [found]
