@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import dataclasses
+from threading import Thread
 from typing import Any
 
 import pytest
 
+from tests.support.waiting import HANGS_S
 from tiniscript.studio import classroom
 from tiniscript.studio import rate as rate_of
 from tiniscript.studio.classroom import Classroom
@@ -403,3 +405,29 @@ def test_who_has_asked_is_forgotten_after_a_thousand_others() -> None:
     for k in range(rate_of.MOST_NAMES):
         assert rate.take(f"b{k}", 0)
     assert rate.take("a", 0)
+
+
+def test_no_stop_and_no_beat_waits_for_the_names_of_ports(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A list of ports may take seconds, and a robot drives meanwhile."""
+    room = Room()
+    ana = room.joins("Ana")
+    room.here(ana, True)
+    room.connects(ana)
+    answered: list[str] = []
+
+    def ask() -> None:
+        for do in ("stop", "beat", "here"):
+            room.made.answer(ana, HERE, {"do": do})
+            answered.append(do)
+
+    def slow() -> list[Json]:
+        asking = Thread(target=ask, daemon=True)
+        asking.start()
+        asking.join(HANGS_S / 10)
+        answered.append("listed")
+        return [{"port": "port9", "name": "NINE"}]
+
+    monkeypatch.setattr(classroom, "listed", slow)
+    state = room.teaches("class_robot", port="port9", gives=True)
+    assert answered == ["stop", "beat", "here", "listed"]
+    assert [each["name"] for each in state["robots"]] == ["", "NINE"]

@@ -242,9 +242,11 @@ class Classroom:
         do = request.get("do")
         if not isinstance(do, str) or not do.startswith("class"):
             return self._hosting.answer(request)
+        # A list of ports may take seconds: no pupil's stop waits for it.
+        given = _given(request) if do == "class_robot" else None
         with self._lock:
-            if do == "class_robot":
-                self._give(request)
+            if given is not None:
+                self._give(given, request.get("gives") is True)
             elif do == "class_turn":
                 self._turn_s = _whole(request, "seconds", SHORTEST_S, LONGEST_S)
             elif do == "class_code":
@@ -278,22 +280,18 @@ class Classroom:
         if robot is not None:
             robot.end()
 
-    def _give(self, request: Json) -> None:
+    def _give(self, given: ClassRobot, is_given: bool) -> None:
         """Give a robot to the class, or take it away."""
-        port = request.get("port")
-        if not isinstance(port, str) or not port.isprintable() or not port.strip():
-            raise BadRequest
-        if len(port) > PORT_CHARACTERS:
-            raise BadRequest
-        same = [each for each in self._robots if same_for_all(each.port) == same_for_all(port)]
+        port = same_for_all(given.port)
+        same = [each for each in self._robots if same_for_all(each.port) == port]
         for each in same:
-            if request.get("gives") is not True:
+            if not is_given:
                 self._take_back(each, each.hosted)
                 self._robots.remove(each)
-        if request.get("gives") is True and not same:
+        if is_given and not same:
             if len(self._robots) >= MOST_ROBOTS:
                 raise BadRequest
-            self._robots.append(ClassRobot(port.strip(), _name_of(port)))
+            self._robots.append(given)
 
     def _end(self, erases: bool) -> None:
         for each in self._robots:
@@ -350,6 +348,16 @@ def _may(asked: object) -> bool:
     if not isinstance(asked, dict) or asked.get("do") not in MAY:
         return False
     return asked["do"] != "trim" or asked.get("trim") is None
+
+
+def _given(request: Json) -> ClassRobot:
+    """Return the robot of a request, with the name that it had last. Raises BadRequest."""
+    port = request.get("port")
+    if not isinstance(port, str) or not port.isprintable() or not port.strip():
+        raise BadRequest
+    if len(port) > PORT_CHARACTERS:
+        raise BadRequest
+    return ClassRobot(port.strip(), _name_of(port) if request.get("gives") is True else "")
 
 
 def _whole(request: Json, name: str, low: int, high: int) -> int:
