@@ -27,7 +27,7 @@ MOST = 2000  # keys in a file
 MOST_PENDING = 1  # before a new one: a robot listens to few wrong keys
 MODE = 0o600  # only this person reads it
 _LOCK = Lock()  # the robots of a fleet have threads of their own
-_MARKS = ("is_pending", "is_stale")
+_MARKS = ("is_pending", "is_stale", "seals")
 _KINDS = tuple(name.lower() for name, _ in KEYS)
 
 
@@ -46,8 +46,12 @@ class TooManyKeys(BadKeys):
 class KeyFile:
     """The keys in a file; the user's own where no path is given. Each call reads it anew."""
 
-    def __init__(self, path: Path | None = None) -> None:
+    def __init__(self, path: Path | None = None, is_for_virtual: bool = False) -> None:
+        """`is_for_virtual`: whoever answers may be a virtual robot that begins anew each time, with
+        the same id and without the owner that it had.
+        """
         self.path = path or files.settings_folder() / "keys.json"
+        self._is_for_virtual = is_for_virtual
 
     def all(self) -> list[RobotKey]:
         """Return all keys. Raises BadKeys where the file is none."""
@@ -66,18 +70,24 @@ class KeyFile:
         """
         with self._alone():
             before = self.all()
-            given = {_place(key): key for key in keys}
+            given = {_place(key): key for key in known_seals(keys, before)}
             rest = [key for key in before if key.is_pending or _place(key) not in given]
             changed = [key for key in given.values() if key not in before]
             if changed:
                 self._write([*rest, *given.values()])
             return len(changed)
 
+    def forget(self, robot: int) -> None:
+        """Take the keys of a robot out of the file. Raises BadKeys."""
+        with self._alone():
+            self._write([key for key in self.all() if key.id != robot])
+
     # -- as a KeyRing: where the file cannot be read there is no key ------------------------------
 
-    def of_robot(self, robot: int) -> list[RobotKey]:
+    def of_robot(self, robot: int | None) -> list[RobotKey]:
         with suppress(BadKeys):
-            return [key for key in self.all() if key.id == robot]
+            found = [key for key in self.all() if robot in (None, key.id)]
+            return [key._replace(seals=False) for key in found] if self._is_for_virtual else found
         return []
 
     def made(self, robot: int, which: int, name: str) -> RobotKey | None:
@@ -97,8 +107,9 @@ class KeyFile:
     def settle(self, key: RobotKey) -> None:
         with suppress(BadKeys), self._alone():
             settled = key._replace(is_pending=False, is_stale=False)
-            rest = [each for each in self.all() if _place(each) != _place(key)]
-            self._write([*rest, settled])
+            before = self.all()
+            if settled not in before:
+                self._write([*(each for each in before if _place(each) != _place(key)), settled])
 
     def drop(self, key: RobotKey) -> None:
         with suppress(BadKeys), self._alone():
@@ -135,6 +146,12 @@ class KeyFile:
             files.replace(self.path, written(keys), MODE)
         except (OSError, ValueError) as failure:
             raise BadKeys(getattr(failure, "strerror", None) or str(failure)) from None
+
+
+def known_seals(given: Iterable[RobotKey], before: Iterable[RobotKey]) -> list[RobotKey]:
+    """Return keys with what was known before: that their robots seal."""
+    found = {key.key for key in before if key.seals}
+    return [key._replace(seals=key.seals or key.key in found) for key in given]
 
 
 def is_shared(path: Path) -> bool:

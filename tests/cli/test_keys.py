@@ -84,6 +84,33 @@ def test_keys_go_to_another_computer(own: KeyFile, tmp_path: Path) -> None:
     assert sorted(other.all()) == sorted([newer, teacher])
 
 
+def test_what_is_known_of_a_robots_seals_outlives_a_list_that_does_not_say_it(own: KeyFile) -> None:
+    own.settle(ONE._replace(seals=True))
+    own.settle(ONE._replace(id=7))
+    assert [key.seals for key in own.of_robot(None)] == [True, False]
+    own.add([ONE, ONE._replace(id=7)])
+    assert [key.seals for key in own.of_robot(ONE.id)] == [True]
+    assert KeyFile(own.path, is_for_virtual=True).of_robot(ONE.id) == [ONE]
+    own.add([ONE._replace(key=b"\2" * 16)])  # another one: nothing is known of it
+    assert [key.seals for key in own.of_robot(ONE.id)] == [False]
+
+
+def test_the_keys_of_one_robot_are_forgotten(tsc: Tsc) -> None:
+    ring = KeyFile()
+    teacher = ONE._replace(which=KEY_TEACHER)
+    ring.add([ONE, teacher, ONE._replace(id=7, name="A"), ONE._replace(id=8, name="A")])
+    for robot in ("tini", "A", "", "00000009"):  # two are called A
+        assert tsc("keys", "--forget", robot).code == 2
+        assert len(ring.all()) == 4
+    for robot in ("TINI", "12345678"):
+        ring.add([ONE, teacher])
+        done = tsc("keys", "--forget", robot)
+        assert done.code == 0 and robot in done.out, done.err
+        assert {key.id for key in ring.all()} == {7, 8}
+    assert tsc("keys", "--forget", "12345678").code == 2
+    assert tsc("keys", "--forget", "7", "--export", "f").code == 2
+
+
 CLAIMS = """
 import sys
 from pathlib import Path

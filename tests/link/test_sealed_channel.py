@@ -1,7 +1,8 @@
 """A bad line with a stranger on it: what is sealed is done once or not at all, and a stop always.
 
 The stranger hears all, and says what it likes to both ends: what it has heard, again, later, in
-another order or to the other end, frames without a seal or with a wrong one, and HELLO.
+another order or to the other end, frames without a seal or with a wrong one, and HELLO; it answers
+HELLO and what was asked last, as a robot that seals nothing does.
 `python -m tests.link.test_sealed_channel 10000` plays more uploads.
 """
 
@@ -29,11 +30,14 @@ from tiniscript.link.messages import (
     KEY_OWNER,
     LARGE_FRAME,
     MESSAGES,
+    OWNED,
     OWNERS,
     SEALS,
     SMALL_FRAME,
     STATUSES,
     payload_bytes,
+    read,
+    written,
 )
 from tiniscript.link.session import Session
 
@@ -50,6 +54,8 @@ class SealedWorld(World):
         self.keys = Keys()
         self.says = 0.0
         self.frames: list[bytes] = []
+        self.asked: Frame | None = None  # the last request
+        self.greeting = b""  # what the robot said to HELLO
         super().__init__(cpp, draw, 0, 0)
         largest = LARGE_FRAME if cpp.is_large else SMALL_FRAME
         self.line = (payload_bytes(largest, is_sealed=True) - 1) // 3 * 3
@@ -70,6 +76,11 @@ class SealedWorld(World):
     def heard(self, data: bytes) -> None:
         self.frames += [each + b"\0" for each in data.split(b"\0") if each]
         del self.frames[:-HEARD]
+        for frame in filter(None, map(decoded, filter(None, data.split(b"\0")))):
+            if not frame.is_reply:
+                self.asked = frame
+            elif frame.number == BY_NAME["HELLO"].number and frame.payload[0] == 0:
+                self.greeting = frame.payload
 
     def disturb(self) -> None:
         if self.says == 0 or self.draw.random() >= self.says or not self.frames:
@@ -79,8 +90,10 @@ class SealedWorld(World):
 
     def forged(self) -> bytes:
         draw = self.draw
-        how = draw.randrange(6)
+        how = draw.randrange(7)
         old = draw.choice(self.frames)
+        if how == 6 and self.asked is not None:
+            return self.answered(self.asked)
         if how == 0:
             return damaged(old, draw)
         frame = decoded(old.rstrip(b"\0"))
@@ -101,6 +114,17 @@ class SealedWorld(World):
         payload = draw.randbytes(draw.randint(least, most))
         seq, epoch = draw.randrange(256), frame.epoch
         return encoded(Frame(message.number, seq, epoch, payload))
+
+    def answered(self, asked: Frame) -> bytes:
+        """Return an answer that has no seal: HELLO as a robot that seals nothing, or done."""
+        message = next(each for each in MESSAGES if each.number == asked.number)
+        payload = b"\0" + self.draw.randbytes(sum(field.low for field in message.reply))
+        if message.name == "HELLO" and self.greeting:
+            values = read(message.reply, self.greeting[1:])
+            cleared = self.draw.choice((OWNED, SEALS, OWNED | SEALS))
+            values["features"] = int(values["features"]) & ~cleared
+            payload = b"\0" + written(message.reply, values)
+        return encoded(asked._replace(payload=payload, is_reply=True, is_sealed=False))
 
 
 class QuietWorld(SealedWorld):

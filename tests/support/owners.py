@@ -27,8 +27,8 @@ class Keys:
         self.next = first
         self.is_full = False
 
-    def of_robot(self, robot: int) -> list[RobotKey]:
-        return [key for key in self.found if key.id == robot]
+    def of_robot(self, robot: int | None) -> list[RobotKey]:
+        return [key for key in self.found if robot in (None, key.id)]
 
     def made(self, robot: int, which: int, name: str) -> RobotKey | None:
         if self.is_full:
@@ -69,6 +69,10 @@ class Owned:
         given = self.DEFINES if defines is None else defines
         self.robot = HostFirmware(KIT, memory, seed=seed, defines=given)
         self.robot.wait(300)
+
+    @property
+    def seals(self) -> bool:
+        return self.DEFINES != WITHOUT_SEALS
 
     def session(self, keys: Keys | None = None, nonce: int = 1) -> Session:
         return Session(nonce, 115200, KIT.fingerprint, keys=keys)

@@ -46,6 +46,8 @@ GOALS: tuple[Goal, ...] = (
          "uploads beside a stranger", 10_000, 500, "tests.link.test_sealed_channel {count} --seed {seed}", 1000),
     Goal("sealed-large", "The same of a robot with large frames.",
          "uploads beside a stranger", 10_000, 500, "tests.link.test_sealed_channel {count} --large --seed {seed}", 1000),
+    Goal("downgrade", "Who stands between and takes the seals out of HELLO, refuses keys, or answers in the robot's place is refused in words; nothing is believed done, and no stop confirmed.",
+         "requests and stops", 10_000, 2_000, "tests.firmware.test_downgrade {count} --seed {seed}", 2000),
     Goal("thieves", "Frames of an owner's line that are replayed, forged, reflected, cut or of another session have nothing done; a stop is obeyed.",
          "frames", 100_000, 20_000, "tests.firmware.test_sealed_robot {count} --seed {seed}"),
     Goal("strangers", "Without its owner's key a robot without seals does nothing that is replayed, forged or reordered; a stop is obeyed.",

@@ -102,7 +102,8 @@ def opened_line(
         if isinstance(failure, PortError):
             raise port_error(port or address, failure, language) from None
         raise
-    session = Session(int.from_bytes(os.urandom(4), "little"), baud, kit, keys=KeyFile())
+    keys = KeyFile(is_for_virtual=_is_virtual(address))
+    session = Session(int.from_bytes(os.urandom(4), "little"), baud, kit, keys=keys)
     return Line(device, session, lock, address)
 
 
@@ -218,16 +219,20 @@ def remember(port: str, name: str, is_used: bool = True) -> None:
     """Remember a port and the name of its robot; not for a virtual robot, whose port is new each
     time."""
     from tiniscript.link import known_ports
-    from tiniscript.link.port_names import is_address, is_at_broker
+    from tiniscript.link.port_names import is_at_broker
 
-    if is_at_broker(port):
-        return
-    if is_address(port) or port.startswith(PSEUDO):
-        from tiniscript.virtual import directory
+    if not is_at_broker(port) and not _is_virtual(port):
+        known_ports.remember(port, name, is_used)
 
-        if directory.is_virtual(port):
-            return
-    known_ports.remember(port, name, is_used)
+
+def _is_virtual(port: str) -> bool:
+    from tiniscript.link.port_names import is_address
+
+    if not is_address(port) and not port.startswith(PSEUDO):
+        return False
+    from tiniscript.virtual import directory
+
+    return directory.is_virtual(port)
 
 
 def shown(name: str) -> str:

@@ -140,6 +140,8 @@ TEXTS: dict[str, tuple[str, str]] = {
                    "Algo responde en {port}, pero no es TiniScript. Quizá la velocidad es otra (baud), o la placa tiene otro programa."),
     "link_echo": ("What is sent to {port} comes back. Are TX and RX connected to each other, or is the radio module in its set-up mode?",
                   "Lo que se envía a {port} vuelve. ¿TX y RX están unidos entre sí, o el módulo de radio está en modo de configuración?"),
+    "unproven": ("Who answers on {port} says that this robot has no owner, or does not seal; the key on this computer says otherwise. So nothing of it is believed, and nothing was done. Perhaps somebody changes what is said on the way: use the robot's cable. If its keys were taken away, by its button or by its owner:  tsc keys --forget ID",
+                 "Quien responde en {port} dice que este robot no tiene dueño, o que no sella; la llave de esta computadora dice lo contrario. Así que no se le cree nada, y no se hizo nada. Tal vez alguien cambia lo que se dice por el camino: usa el cable del robot. Si le quitaron las llaves, con su botón o su dueño:  tsc keys --forget ID"),
     "link_lost": ("Lost the connection to the robot on {port}: it does not answer any more. Its program ends by itself, unless it is detached. Look at its batteries and the distance.",
                   "Se perdió la conexión con el robot en {port}: ya no responde. Su programa termina solo, a menos que se iniciara con detach. Mira sus pilas y la distancia."),
     "stopped_elsewhere": ("The robot on {port} was stopped before it did this. Try again.",

@@ -28,7 +28,8 @@ class RobotKey(NamedTuple):
     """A key of a robot. `which` is one of KEYS; `name` is the robot's.
 
     `is_pending`: it is not known whether the robot has taken it; `is_stale`: the robot has refused
-    it, so it is shown only where something depends on it.
+    it, so it is shown only where something depends on it; `seals`: the robot seals, so what is not
+    sealed is not believed.
     """
 
     id: int
@@ -37,6 +38,7 @@ class RobotKey(NamedTuple):
     name: str = ""
     is_pending: bool = False
     is_stale: bool = False
+    seals: bool = False
 
     def __repr__(self) -> str:  # a key is in no message
         return f"RobotKey({self.id:08x}, {self.which})"
@@ -45,8 +47,8 @@ class RobotKey(NamedTuple):
 class KeyRing(Protocol):
     """Where the keys of a person are. No method raises an exception."""
 
-    def of_robot(self, robot: int) -> Sequence[RobotKey]:
-        """Return the keys of a robot."""
+    def of_robot(self, robot: int | None) -> Sequence[RobotKey]:
+        """Return the keys of a robot, or of all."""
         ...
 
     def made(self, robot: int, which: int, name: str) -> RobotKey | None:
@@ -74,6 +76,14 @@ def whose(robot: DeviceInfo) -> str:
     return YOUR_OWN if features & YOURS else OF_ANOTHER
 
 
+def has_to_seal(ring: KeyRing | None, robot: DeviceInfo | None) -> bool:
+    """Return whether our keys say that a robot seals; where none is known, whether any does."""
+    if ring is None:
+        return False
+    keys = ring.of_robot(None if robot is None else robot.id)
+    return any(key.seals and not key.is_pending for key in keys)
+
+
 def show_keys(
     ring: KeyRing | None,
     robot: DeviceInfo,
@@ -93,13 +103,19 @@ def show_keys(
         if which not in (None, each.which) or (each.is_stale and not is_needed):
             continue
         found = yield from _show(each, robot, nonce, epoch)
-        if ring is not None and (each.is_pending or each.is_stale) and found.status == OK:
-            ring.settle(each)
+        if ring is not None and found.status == OK:
+            now = each._replace(is_pending=False, is_stale=False, seals=_seals(robot) or each.seals)
+            if now != each:
+                ring.settle(now)
         if ring is not None and found.status == WRONG_KEY:
             ring.refuse(each)  # kept all the same: the robot is not known to have said so
         if found.status != WRONG_KEY:
             break
     return found
+
+
+def _seals(robot: DeviceInfo) -> bool:
+    return bool(robot.values.features & SEALS)
 
 
 def _order(key: RobotKey) -> tuple[bool, bool, bool]:
@@ -116,7 +132,7 @@ def _show(
     challenge = reply.values.challenge
     text = challenge + nonce.to_bytes(4, "little") + bytes([epoch(), key.which])
     seal = None
-    if robot.values.features & SEALS:
+    if _seals(robot):
         own = robot.values.nonce
         seal = Seal(session_key(key.key, challenge, nonce, own, epoch(), key.which))
     tag = siphash(key.key, text)
@@ -136,7 +152,7 @@ def claim(ring: KeyRing, robot: DeviceInfo, which: int) -> Exchange[EmptyReply]:
             break
         reply = yield from requests.kept(request._replace(pause_ms=HOLD_PAUSE_MS), EmptyReply)
     if reply.status == OK:
-        ring.settle(key)
+        ring.settle(key._replace(seals=_seals(robot)))
     elif reply.status not in TAKEN:
         ring.drop(key)
     return reply

@@ -11,17 +11,29 @@ from typing import TypeVar
 from tiniscript.bytecode.image import Image
 from tiniscript.link import authority, requests
 from tiniscript.link.authority import NOT_OWNER, KeyRing
-from tiniscript.link.messages import KEY_TEACHER, MAJOR, MINOR, OWNED, OWNERS, STATUSES
+from tiniscript.link.messages import (
+    KEY_TEACHER,
+    MAJOR,
+    MINOR,
+    OWNED,
+    OWNERS,
+    SEALS,
+    STATE_RUNNING,
+    STATUSES,
+)
+from tiniscript.link.outcomes import UNPROVEN
 from tiniscript.link.payloads import (
     AuthenticateReply,
     EmptyReply,
     HelloReply,
     ReceiptReply,
     SentReply,
+    StatusReply,
     TextReply,
 )
 from tiniscript.link.requests import OK, DeviceInfo, Exchange, Reply, Request, refused
 from tiniscript.link.robot_state import RobotState
+from tiniscript.link.sealing import NEED_NO_KEY
 
 T = TypeVar("T")
 
@@ -60,15 +72,25 @@ class Handshake:
         }
         reply = yield from requests.single(Request("HELLO", values), HelloReply)
         if reply.status == OK:
+            found = requests.described(reply.values)
+            must_seal = authority.has_to_seal(self._keys, found)
+            if must_seal and not found.values.features & SEALS:
+                self.is_open = False
+                return Reply(UNPROVEN)
             self.is_open = True
             if self.robot is None or self.robot.values.nonce != reply.values.nonce:
                 self._state.reset()
-            self.robot = requests.described(reply.values)
+            self.robot = found
             self._state.state = reply.values.state
-            if reply.values.features & OWNED:
-                shown = yield from self.show_keys(is_needed=False)
+            is_owned = bool(found.values.features & OWNED)
+            if is_owned or must_seal:
+                shown = yield from self.show_keys(is_needed=must_seal and not is_owned)
                 if shown.status == STATUSES["STALE"]:  # the robot was stopped meanwhile
                     return refused(shown)
+                # what is shown is sealed, and says whether HELLO has told the truth
+                if not is_owned and (shown.status != OK or shown.values.features & OWNED):
+                    self.is_open = False
+                    return Reply(UNPROVEN)
                 return Reply(OK, 0, self.robot.values)
         return reply
 
@@ -108,6 +130,27 @@ class Handshake:
     def _take_features(self, features: int) -> None:
         assert self.robot
         self.robot = requests.described(self.robot.values._replace(features=features))
+
+    @property
+    def is_doubted(self) -> bool:
+        """Whether what is not sealed is not the robot's, as far as our keys tell."""
+        return authority.has_to_seal(self._keys, self.robot)
+
+    def may_have_done(self, name: str) -> bool:
+        """Whether this robot may have done a request without a seal."""
+        features = self.robot.values.features if self.robot else 0
+        return name in NEED_NO_KEY or features & (OWNED | SEALS) != OWNED | SEALS
+
+    def stopped(self, is_sealed: Callable[[], bool]) -> Exchange[StatusReply]:
+        """Have the robot prove that it is stopped, if it is one that seals."""
+        hello = yield from self.hello()
+        if hello.status != OK:
+            return refused(hello)
+        reply = yield from requests.single(Request("STATUS"), StatusReply)
+        if reply.status == OK and self.is_doubted:
+            if not (is_sealed() and reply.values.state > STATE_RUNNING):
+                return Reply(UNPROVEN)
+        return reply
 
     def claim(self, which: int) -> Exchange[EmptyReply]:
         assert self.robot

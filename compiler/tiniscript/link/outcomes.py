@@ -17,7 +17,9 @@ from tiniscript.link.payloads import (
     StoppedEvent,
 )
 
-LOST, CANCELLED, UNKEPT = -1, -2, -3  # outcomes that the session produces; UNKEPT: of a key
+# Outcomes that the session produces. UNKEPT: of a key; UNPROVEN: whoever answers does not seal, and
+# our key says that the robot does.
+LOST, CANCELLED, UNKEPT, UNPROVEN = -1, -2, -3, -4
 LOOK_S = 0.1  # between two checks for events: Windows handles Ctrl-C only then
 
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Protocol
 
-from tiniscript.link.outcomes import CANCELLED, LOST
+from tiniscript.link.outcomes import CANCELLED, LOST, UNPROVEN
 from tiniscript.link.requests import DeviceInfo, Reply
 
 STATUS = "status"  # the robot's status says why
@@ -33,6 +33,8 @@ def reason_of(line: Heard, reply: Reply[object]) -> str:
     """Return why a reply is not OK."""
     if reply.status == CANCELLED:
         return "stopped_elsewhere"
+    if reply.status == UNPROVEN:
+        return "unproven"
     if reply.status != LOST:
         return STATUS
     if line.robot is not None:

@@ -14,6 +14,7 @@ from tiniscript.link.transmission import Transmission
 
 UNSEALED = ("HELLO", "AUTHENTICATE")  # a seal is made of what they say
 REFUSED_TRIES = 3  # sendings of a tag before a refusal counts, which anybody may have written
+NEED_NO_KEY = (*UNSEALED, "PING", "STATUS", "STOP", "CLAIM", "IDENTIFY")
 SEALED_ALONE = ("WIFI",)  # has a password, which only a seal covers
 
 

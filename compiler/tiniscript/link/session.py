@@ -9,13 +9,13 @@ what ends one. `transmission` times retries, `stop_sequence` times stops, `reque
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Callable
 from functools import partial
 from typing import Any, TypeVar
 
 from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
 from tiniscript.link.authority import NOT_OWNER, KeyRing
+from tiniscript.link.exchanges import Exchanges
 from tiniscript.link.frames import Frame, decoded
 from tiniscript.link.messages import (
     BY_NAME,
@@ -29,20 +29,17 @@ from tiniscript.link.messages import (
 )
 from tiniscript.link.outcomes import (
     CANCELLED,
-    LOST,
+    UNPROVEN,
     EchoEvent,
     EndedEvent,
     Event,
-    LostEvent,
     MissedEvent,
-    StartedEvent,
     TextEvent,
 )
 from tiniscript.link.payloads import (
     EVENTS,
     FaultEvent,
     NextReply,
-    ReceiptReply,
     SentReply,
     StatusReply,
     StoppedEvent,
@@ -50,7 +47,7 @@ from tiniscript.link.payloads import (
 from tiniscript.link.receiver import Receiver
 from tiniscript.link.requests import OK, Exchange, Reply, reply_of
 from tiniscript.link.sealing import SEALED_ALONE, UNSEALED, Sealing
-from tiniscript.link.session_requests import Interrupted, PendingExchange, SessionRequests
+from tiniscript.link.session_requests import Interrupted, PendingExchange
 from tiniscript.link.stop_sequence import StopSequence
 from tiniscript.link.transmission import TRIES, Transmission
 from tiniscript.link.window import Window
@@ -63,7 +60,7 @@ _STALE, _BUSY = STATUSES["STALE"], STATUSES["BUSY"]
 T = TypeVar("T")
 
 
-class Session(SessionRequests):
+class Session(Exchanges):
     def __init__(
         self,
         nonce: int,
@@ -75,19 +72,14 @@ class Session(SessionRequests):
         """`nonce` is a random number of 32 bits; `kit` and `isa` are those of our programs; `keys`
         has the keys of robots.
         """
-        super().__init__(nonce, kit, isa, keys, lambda: self._epoch)
+        super().__init__(nonce, baud, kit, isa, keys, lambda: self._epoch)
         self.is_attached = True  # events are wanted, so the heartbeat goes on while nothing runs
-        self.tells_starts = False  # STARTED events are wanted
         self.may_beat: Callable[[], bool] = lambda: True  # False: nobody attends to the robot
         self.damaged = 0  # count of damaged frames
         self._receiver = Receiver()
-        self._events: list[Event] = []
-        self._waiting: deque[PendingExchange[Any]] = deque()
-        self._pending: PendingExchange[Any] | None = None
         self._seq = nonce & 0xFF
         self._epoch = 0
         self._baud = baud
-        self._transmission = Transmission(baud)
         self._stop = StopSequence()
         self._sent_ms = 0  # time of the last transmission
         self._sealing = Sealing()
@@ -162,11 +154,6 @@ class Session(SessionRequests):
         return found
 
     # -- what is sent -----------------------------------------------------------------------------
-
-    def _add(self, exchange: Exchange[T], starts: bool = False) -> PendingExchange[T]:
-        pending = PendingExchange(exchange, starts=starts)
-        self._waiting.append(pending)
-        return pending
 
     def _next_pending(self, now_ms: int) -> None:
         if self._waiting:
@@ -289,6 +276,12 @@ class Session(SessionRequests):
         if reply is None:
             self.damaged += 1
             return
+        if (
+            reply.status == OK
+            and not frame.is_sealed
+            and not self._handshake.may_have_done(message.name)
+        ):
+            reply = Reply(UNPROVEN)
         if isinstance(self._transmission, Window) and self._goes_on(reply, frame, now_ms):
             return
         if frame.epoch != self._epoch:
@@ -344,6 +337,9 @@ class Session(SessionRequests):
         if missed:
             self._events.append(MissedEvent(missed))
         if isinstance(event, StoppedEvent):
+            if not frame.is_sealed and self._handshake.is_doubted:
+                self._ask_for_proof(event)
+                return
             if self._stop.is_sent:
                 self._stop.end()
             elif self._handshake.is_open and self.is_latched and frame.epoch == self._epoch:
@@ -354,45 +350,17 @@ class Session(SessionRequests):
         self._state.take(event)
         self._events.append(event)
 
-    def _finish(self, pending: PendingExchange[Any], outcome: Reply[Any]) -> None:
-        pending.outcome = outcome
-        if not pending.starts or outcome.status != OK:
-            return
-        receipt: ReceiptReply = outcome.values
-        if self.tells_starts:
-            self._events.append(StartedEvent(receipt.run, receipt.program))
-        self._state.begin(receipt.run)
+    def _ask_for_proof(self, event: StoppedEvent) -> None:
+        """Have the robot say under seal that it was stopped, if it was we who did that."""
+        if self._stop.is_sent:
+            self._stop.end()
+            self._waiting.append(PendingExchange(self._proof(event), DEAF_MS, is_own=True))
 
-    # -- endings ----------------------------------------------------------------------------------
-
-    def _lose(self) -> None:
-        """Give up: the robot does not answer, or is busy."""
-        pending, self._pending = self._pending, None
-        assert pending
-        if pending.resumes is not None:
-            pending = pending.resumes.pending
-        # a robot that answers, but is busy for too long, is not lost
-        is_busy = pending.is_busy and self._transmission.tries <= 1
-        self._transmission.end()
-        pending.outcome = Reply(_BUSY if is_busy else LOST)
-        if pending.is_own:
-            self._close()
-
-    def _close(self) -> None:
-        self._cancel(LOST)
-        self._handshake.is_open = False
-        self._state.clear()
-        self._events.append(LostEvent())
-
-    def _cancel(self, status: int) -> None:
-        if self._pending:
-            resumes = self._pending.resumes
-            (resumes.pending if resumes else self._pending).outcome = Reply(status)
-        self._pending = None
-        self._transmission.end()
-        self._cancel_waiting(status)
-
-    def _cancel_waiting(self, status: int) -> None:
-        for pending in self._waiting:
-            pending.outcome = Reply(status)
-        self._waiting.clear()
+    def _proof(self, event: StoppedEvent) -> Exchange[StatusReply]:
+        reply = yield from self._handshake.stopped(lambda: self._sealing.seal is not None)
+        if reply.status == OK:
+            self._state.take(event)
+            self._events.append(event)
+        else:
+            self._lost()
+        return reply

@@ -11,7 +11,7 @@ import os
 from collections.abc import Callable
 from typing import TypeVar
 
-from tiniscript.keys import BadKeys, read, written
+from tiniscript.keys import BadKeys, known_seals, read, written
 from tiniscript.link.authority import RobotKey
 from tiniscript.link.backlog import Backlog
 from tiniscript.link.connection import PendingRequest, Requester
@@ -41,13 +41,13 @@ class PageKeys:
 
     def add(self, data: bytes) -> int:
         """Put the keys of a file in the place of those before; return how many. Raises BadKeys."""
-        given = read(data)
+        given = known_seals(read(data), self.keys)
         for key in given:
             self.settle(key)
         return len(given)
 
-    def of_robot(self, robot: int) -> list[RobotKey]:
-        return [key for key in self.keys if key.id == robot]
+    def of_robot(self, robot: int | None) -> list[RobotKey]:
+        return [key for key in self.keys if robot in (None, key.id)]
 
     def made(self, robot: int, which: int, name: str) -> RobotKey:
         key = RobotKey(robot, which, os.urandom(KEY_BYTES), name, is_pending=True)

@@ -138,6 +138,8 @@ export const ROBOT_TEXTS = {
     'Algo responde, pero no es TiniScript. Pon en la placa el firmware del robot, aquí abajo o con:  tsc firmware'],
   why_link_echo: ['What is sent comes back. Are TX and RX connected to each other, or is the radio module in its set-up mode?',
     'Lo que se envía vuelve. ¿TX y RX están conectados entre sí, o el módulo de radio está en configuración?'],
+  why_unproven: ['Who answers says that this robot has no owner, or does not seal; your key says otherwise. Nothing of it is believed, and nothing was done. Use the robot’s cable; stop it by its button.',
+    'Quien responde dice que este robot no tiene dueño, o que no sella; tu llave dice lo contrario. No se le cree nada, y no se hizo nada. Usa el cable del robot; detenlo con su botón.'],
   why_link_lost: ['The robot does not answer any more; its program ends by itself. Look at its batteries and the distance, and connect again.',
     'El robot ya no responde; su programa termina solo. Mira sus pilas y la distancia, y conecta otra vez.'],
   why_stopped_elsewhere: ['The robot was stopped meanwhile, and did not do this. Try again.',

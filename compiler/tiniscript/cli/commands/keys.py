@@ -18,7 +18,7 @@ from tiniscript.link.messages import KEYS
 
 
 def run(options: Namespace, language: str) -> int:
-    if options.export is not None and options.bring is not None:
+    if sum(each is not None for each in (options.export, options.bring, options.forget)) > 1:
         raise CommandError(2, "one_way")
     own = KeyFile()
     try:
@@ -32,6 +32,8 @@ def run(options: Namespace, language: str) -> int:
         _export(found, options.export, language)
     elif options.bring is not None:
         _import(own, options.bring, language)
+    elif options.forget is not None:
+        _forget(own, found, options.forget, language)
     elif options.json:
         print(json.dumps([_fields(key) for key in found], indent=2))
     else:
@@ -63,6 +65,18 @@ def _import(own: KeyFile, name: str, language: str) -> None:
     print(said.format(n=changed, all=len(brought), file=shown(name)))
 
 
+def _forget(own: KeyFile, found: list[RobotKey], robot: str, language: str) -> None:
+    gone = [key for key in found if robot.lower() == f"{key.id:08x}"]
+    gone = gone or [key for key in found if robot == key.name]
+    if len({key.id for key in gone}) != 1:
+        raise CommandError(2, "no_such_key", robot=shown(robot))
+    try:
+        own.forget(gone[0].id)
+    except BadKeys as why:
+        raise _own(own, "own_keys_full", why) from None
+    print(text("keys_forgotten", language).format(robot=shown(robot)))
+
+
 def _own(own: KeyFile, key: str, why: BadKeys) -> CommandError:
     return CommandError(2, key, file=shown(str(own.path)), why=f": {why.why}" if why.why else "")
 
@@ -80,4 +94,4 @@ def _print(found: list[RobotKey], language: str) -> None:
 
 def _fields(key: RobotKey) -> dict[str, object]:
     return {"id": f"{key.id:08x}", "name": key.name, "kind": KEYS[key.which][0].lower(),
-            "is_pending": key.is_pending, "is_stale": key.is_stale}  # fmt: skip
+            "is_pending": key.is_pending, "is_stale": key.is_stale, "seals": key.seals}  # fmt: skip

@@ -307,7 +307,8 @@ def _name(robot: VirtualRobot, name: str) -> None:
     data = name_bytes(name)
     profile = robot.profile
     nonce = robot.chance.getrandbits(32)
-    session = Session(nonce, profile.board.baud, profile.kit.fingerprint, keys=KeyFile())
+    keys = KeyFile(is_for_virtual=True)
+    session = Session(nonce, profile.board.baud, profile.kit.fingerprint, keys=keys)
     request = session.name(data)
     while request.outcome is None and robot.now_ms < NAME_MS:
         now_ms = robot.now_ms + 1

@@ -202,6 +202,7 @@ OPTIONS: tuple[Option, ...] = (
     Option("--teacher", "stop class", ("with the teacher's key: only this computer, or the robot's button, lets it go on", "con la llave de docente: solo esta computadora, o el botón del robot, lo deja seguir")),
     Option("--export", "keys", ("writes the keys to a file, for another computer", "escribe las llaves en un archivo, para otra computadora"), NEW_KEYS, A_FILE),
     Option("--import", "keys", ("takes the keys of such a file, too", "toma también las llaves de un archivo así"), KEYS, A_FILE, "bring"),
+    Option("--forget", "keys", ("forgets the keys of this robot, by its id or its name", "olvida las llaves de este robot, por su id o su nombre"), TEXT, ("ROBOT", "ROBOT")),
     Option("--name", "robot", ("what it is called", "cómo se llama"), TEXT, ("NAME", "NOMBRE")),
     Option("--listen", "robot", ("its TCP port, on this computer alone (any free one)", "su puerto TCP, solo en esta computadora (uno libre)"), NUMBER, P),
     Option("--listen", "studio", ("its TCP port (7070), without --class on this computer alone; 0: any free one", "su puerto TCP (7070), sin --class solo en esta computadora; 0: uno libre"), NUMBER, P),

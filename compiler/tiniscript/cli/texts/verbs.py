@@ -223,9 +223,9 @@ VERBS: dict[str, Verb] = {
     ),
     "keys": Verb(
         ROBOTS, ("keys", "keys"), ("the robots whose keys this computer has", "los robots cuya llave tiene esta computadora"),
-        ("Lists the robots whose keys this computer has; no key is printed. `--export` writes them to a file that only you can read: a class list for another computer, which takes it with `--import`. Whoever has that file drives those robots. On Windows such a file has the permissions of its folder: keep it in your own.",
-         "Lista los robots cuyas llaves tiene esta computadora; no se imprime ninguna llave. `--export` las escribe en un archivo que solo tú puedes leer: la lista de la clase para otra computadora, que la toma con `--import`. Quien tiene ese archivo conduce esos robots. En Windows un archivo así tiene los permisos de su carpeta: guárdalo en la tuya."),
-        ("[--export FILE|--import FILE] [--json]", "[--export ARCHIVO|--import ARCHIVO] [--json]"),
+        ("Lists the robots whose keys this computer has; no key is printed. `--export` writes them to a file that only you can read: a class list for another computer, which takes it with `--import`. Whoever has that file drives those robots. `--forget` takes the keys of one robot out: of one that has forgotten them itself. On Windows such a file has the permissions of its folder: keep it in your own.",
+         "Lista los robots cuyas llaves tiene esta computadora; no se imprime ninguna llave. `--export` las escribe en un archivo que solo tú puedes leer: la lista de la clase para otra computadora, que la toma con `--import`. Quien tiene ese archivo conduce esos robots. `--forget` quita las llaves de un robot: de uno que las olvidó él mismo. En Windows un archivo así tiene los permisos de su carpeta: guárdalo en la tuya."),
+        ("[--export FILE|--import FILE|--forget ROBOT] [--json]", "[--export ARCHIVO|--import ARCHIVO|--forget ROBOT] [--json]"),
     ),
     "doctor": Verb(
         ROBOTS, ("doctor", "doctor"),

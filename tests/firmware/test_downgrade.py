@@ -1,0 +1,328 @@
+"""Who stands between a computer and a robot that seals, and clears bits of HELLO: is not believed.
+
+They have the line: what they do not pass on is not heard, and they answer in its place, whatever
+they like. They have no key. `python -m tests.firmware.test_downgrade 10000` has as many of them.
+"""
+
+from __future__ import annotations
+
+import argparse
+import random
+import sys
+import time
+from collections import Counter
+from collections.abc import Callable
+from typing import Any, Protocol
+
+import pytest
+
+from tests.machines.host_firmware import missing
+from tests.machines.wasm import missing as missing_wasm
+from tests.support.owners import FOREVER, KIT, Keys, Owned, image_of
+from tests.support.virtual_robot import Talk, robot_in
+from tiniscript.link.connection import PendingRequest
+from tiniscript.link.frames import Frame, decoded, encoded
+from tiniscript.link.messages import (
+    BY_NAME,
+    KEY_OWNER,
+    KEY_TEACHER,
+    OWNED,
+    SEALS,
+    STATE_RUNNING,
+    STATE_STOPPED,
+    STATUSES,
+    read,
+    written,
+)
+from tiniscript.link.outcomes import LOST, UNPROVEN
+from tiniscript.link.session import Session
+from tiniscript.virtual.simulator import HOLD_MS
+
+TRIALS = 150
+HELLO, AUTHENTICATE, STATUS, STOPPED = (
+    BY_NAME[name].number for name in ("HELLO", "AUTHENTICATE", "STATUS", "STOPPED")
+)
+LIMIT_MS = 9000
+CLEARED = (OWNED, SEALS, OWNED | SEALS)
+
+
+class End(Protocol):
+    """A robot with an owner, whose time passes as we like; `keys` has its key."""
+
+    keys: Keys
+
+    def passes(self, milliseconds: int, data: bytes = b"") -> bytes: ...
+
+    def session(self, nonce: int, keys: Keys | None) -> Session: ...
+
+
+class HostEnd:
+    def __init__(self, which: int = KEY_OWNER) -> None:
+        self.keys = Keys()
+        self.table = Owned()
+        self.table.claimed(self.keys, which)
+
+    def passes(self, milliseconds: int, data: bytes = b"") -> bytes:
+        return self.table.robot.wait(milliseconds, data)
+
+    def session(self, nonce: int, keys: Keys | None) -> Session:
+        return self.table.session(keys, nonce)
+
+
+class VirtualEnd:
+    def __init__(self, which: int = KEY_OWNER) -> None:
+        self.keys = Keys()
+        self.robot = robot_in(baud=115200)
+        talk = Talk(self.robot, keys=self.keys)
+        request = talk.session.claim(which)
+        talk.wait(500)
+        self.robot.press()
+        talk.wait(HOLD_MS)
+        self.robot.let_go()
+        assert talk.until(request).status == 0
+
+    def passes(self, milliseconds: int, data: bytes = b"") -> bytes:
+        said = self.robot.step(self.robot.now_ms + 1, data)
+        return said + self.robot.step(self.robot.now_ms + milliseconds - 1)
+
+    def session(self, nonce: int, keys: Keys | None) -> Session:
+        return Session(nonce, 115200, KIT.fingerprint, keys=keys)
+
+
+class Between:
+    """Whoever has the line. `cleared` are bits of HELLO; `passes_on` says which frames the robot
+    gets; the others are answered as done, after zeros STOPPED comes at once or later.
+    """
+
+    def __init__(
+        self, end: End, draw: random.Random, cleared: int, passes_on: Callable[[Frame], bool],
+        cuts_stops: bool = True,
+    ) -> None:  # fmt: skip
+        self.end, self.draw, self.cleared, self.passes_on = end, draw, cleared, passes_on
+        self.cuts_stops = cuts_stops
+        self.epoch = 0
+        self.waits_ms = draw.choice((0, 0, 300, 1900, 2500, 4000))
+        self.zeros_ms: int | None = None
+
+    def hears(self, data: bytes, now_ms: int) -> bytes:
+        """Return what the computer gets for what it has sent."""
+        said = b""
+        if b"\0\0\0\0" in data:
+            if not self.cuts_stops:
+                return self.end.passes(20, data)
+            if self.zeros_ms is None:
+                self.zeros_ms = now_ms
+        for item in filter(None, data.split(b"\0")):
+            frame = decoded(item)
+            assert frame
+            if self.passes_on(frame):
+                said += self.changed(self.end.passes(20, b"\0" + item + b"\0"))
+            else:
+                self.epoch = frame.epoch
+                said += self.done(frame)
+        if self.zeros_ms is not None and now_ms >= self.zeros_ms + self.waits_ms:
+            epoch = (self.epoch + self.draw.randrange(2)) & 0xFF
+            said += encoded(Frame(STOPPED, self.draw.randrange(256), epoch, b"\1", True))
+        return said
+
+    def changed(self, said: bytes) -> bytes:
+        """Return the answers of the robot with bits of HELLO cleared."""
+        found = b""
+        for item in filter(None, said.split(b"\0")):
+            frame = decoded(item)
+            if frame and frame.number == HELLO and frame.payload[0] == 0:
+                values = read(BY_NAME["HELLO"].reply, frame.payload[1:])
+                values["features"] = int(values["features"]) & ~self.cleared
+                payload = b"\0" + written(BY_NAME["HELLO"].reply, values)
+                found += encoded(frame._replace(payload=payload))
+            else:
+                found += item + b"\0"
+        return found
+
+    def done(self, frame: Frame) -> bytes:
+        """Return an answer that says done, where nothing was: of the right length."""
+        message = next(each for each in BY_NAME.values() if each.number == frame.number)
+        least = sum(field.low for field in message.reply)
+        payload = bytearray(self.draw.randbytes(least))
+        if frame.number == STATUS:
+            payload[0] = STATE_STOPPED
+        if frame.number == BY_NAME["PROGRAM"].number:
+            payload[:4] = image_of(FOREVER).checksum.to_bytes(4, "little")
+        if frame.number == AUTHENTICATE and self.draw.random() < 0.5:
+            wrong = bytes([self.draw.choice((STATUSES["WRONG_KEY"], STATUSES["NOT_OWNER"])), 4, 0])
+            return encoded(frame._replace(payload=wrong, is_reply=True, is_sealed=False))
+        frame = frame._replace(payload=b"\0" + bytes(payload), is_reply=True)
+        return encoded(frame._replace(is_sealed=False))
+
+
+def talk(between: Between, session: Session, request: PendingRequest[Any] | None) -> list[str]:
+    """Let a computer talk through them until its request, or its stop, is over; return events."""
+    told: list[str] = []
+    now_ms, end_ms = 0, LIMIT_MS
+    while now_ms < end_ms:
+        data = session.poll(now_ms)
+        said = between.hears(data, now_ms) if data else b""
+        session.receive(said, now_ms + 1)
+        told += [event.name for event in session.events()]
+        if (request is not None and request.outcome) or {"STOPPED", "LOST"} & set(told):
+            break
+        wakes_ms = session.wakes_at()
+        now_ms = max(now_ms + 2, min(now_ms + 100, now_ms + 100 if wakes_ms is None else wakes_ms))
+    return told
+
+
+def state_of(end: End) -> int:
+    """Return what the robot does; anybody may ask."""
+    end.passes(20, b"\0" + encoded(Frame(HELLO, 1, 0, b"\1" + bytes(5) + b"\1\2\3\4")))
+    said = end.passes(20, b"\0" + encoded(Frame(STATUS, 2, 0)))
+    frames = [decoded(item) for item in said.split(b"\0") if item]
+    return next(frame.payload[1] for frame in frames if frame and frame.number == STATUS)
+
+
+def everything(frame: Frame) -> bool:
+    return True
+
+
+def honest(end: End, session: Session, request: PendingRequest[Any] | None) -> list[str]:
+    between = Between(end, random.Random(1), 0, everything, cuts_stops=False)
+    return talk(between, session, request)
+
+
+def begun(end: End, draw: random.Random) -> None:
+    """Have the robot drive for a long time, whatever it did before."""
+    session = end.session(draw.getrandbits(32), end.keys)
+    request = session.upload(image_of(FOREVER), saves=False, is_detached=True)
+    honest(end, session, request)
+    assert request.outcome and request.outcome.status == 0, request.outcome
+    assert state_of(end) == STATE_RUNNING
+
+
+def one_trial(end: End, seed: int) -> str:
+    """Ask a robot for something beside whoever stands between; return what it was."""
+    draw = random.Random(seed)
+    keys = Keys()
+    keys.found = list(end.keys.found)
+    session = end.session(draw.getrandbits(32), keys)
+    cleared = draw.choice((0, *CLEARED))
+    greets = {HELLO} | ({AUTHENTICATE} if draw.random() < 0.5 else set())
+    if draw.random() < 0.3:
+        greets |= {STATUS, BY_NAME["PING"].number}
+    all_pass = cleared != 0 and draw.random() < 0.3
+    between = Between(end, draw, cleared, everything if all_pass else lambda f: f.number in greets)
+    kind = draw.choice(("hello", "stop", "upload", "live", "name"))
+    if kind == "stop":
+        if state_of(end) != STATE_RUNNING:
+            begun(end, draw)
+        is_greeted = draw.random() < 0.5
+        if is_greeted:  # by the robot itself
+            honest(end, session, session.hello())
+        session.stop(0)
+        told = talk(between, session, None)
+        assert "STOPPED" not in told, f"seed {seed}: a stop that nobody has heard is confirmed"
+        assert "LOST" in told, f"seed {seed}: {told}"
+        return "stop, greeted" if is_greeted else kind
+    request: PendingRequest[Any]
+    if kind == "upload":
+        request = session.upload(image_of(FOREVER), saves=False)
+    elif kind == "live":
+        request = session.live(image_of(FOREVER).code)
+    elif kind == "name":
+        request = session.name(b"EVE")
+    else:
+        request = session.hello()
+    talk(between, session, request)
+    status = request.outcome.status if request.outcome else LOST
+    if cleared & SEALS or AUTHENTICATE in greets or all_pass:
+        expected = (UNPROVEN,) if cleared else (0,) if kind == "hello" else (UNPROVEN, LOST)
+        assert status in expected, f"seed {seed}: {kind} with {cleared:x} cleared: {status}"
+    elif cleared or kind != "hello":
+        assert status != 0, f"seed {seed}: {kind} is believed done"
+    return f"{kind}, cleared" if cleared else kind
+
+
+def trials(end: End, seed: int, count: int) -> Counter[str]:
+    return Counter(one_trial(end, each) for each in range(seed, seed + count))
+
+
+ENDS = [
+    pytest.param(HostEnd, marks=pytest.mark.skipif(bool(missing()), reason=missing() or "host")),
+    pytest.param(
+        VirtualEnd, marks=pytest.mark.skipif(bool(missing_wasm()), reason=missing_wasm() or "wasm")
+    ),
+]
+
+
+@pytest.mark.parametrize("end_of", ENDS)
+def test_nobody_between_takes_the_seals_away(end_of: Callable[[], End]) -> None:
+    assert len(trials(end_of(), 1, TRIALS)) == 10  # each kind
+
+
+@pytest.mark.parametrize("end_of", ENDS)
+@pytest.mark.parametrize("which", [KEY_OWNER, KEY_TEACHER])
+@pytest.mark.parametrize("is_greeted", [False, True])
+def test_a_stop_that_the_robot_has_heard_is_confirmed(
+    end_of: Callable[[int], End], which: int, is_greeted: bool
+) -> None:
+    """A robot that seals says so under the seal, with a teacher's key alone, too."""
+    end = end_of(which)
+    begun(end, random.Random(3))
+    session = end.session(99, end.keys)
+    if is_greeted:
+        honest(end, session, session.hello())
+        end.passes(2500)  # until the robot has forgotten the seal
+    session.stop(0)
+    assert honest(end, session, None)[-1] == "STOPPED"
+    assert state_of(end) == STATE_STOPPED
+
+
+@pytest.mark.parametrize("end_of", ENDS)
+def test_a_robot_that_was_claimed_by_another_is_stopped_and_does_not_prove_it(
+    end_of: Callable[[], End],
+) -> None:
+    end = end_of()
+    begun(end, random.Random(3))
+    keys = Keys()
+    keys.found = [key._replace(key=bytes(15) + b"\7") for key in end.keys.found]
+    session = end.session(99, keys)
+    session.stop(0)
+    assert honest(end, session, None)[-1] == "LOST"
+    assert state_of(end) == STATE_STOPPED
+    request = session.hello()
+    honest(end, session, request)
+    assert request.outcome and request.outcome.status == 0  # what is for all is told
+    stranger = end.session(100, Keys())
+    stranger.stop(0)
+    assert honest(end, stranger, None)[-1] == "STOPPED"
+
+
+@pytest.mark.parametrize("end_of", ENDS)
+def test_a_key_learns_that_its_robot_seals_from_the_robot_alone(end_of: Callable[[], End]) -> None:
+    end = end_of()
+    assert [key.seals for key in end.keys.found] == [True]  # from its claim
+    keys = Keys()
+    keys.found = [key._replace(seals=False) for key in end.keys.found]  # as older files have it
+    cut = Between(end, random.Random(1), OWNED, everything)
+    session = end.session(50, keys)
+    talk(cut, session, session.hello())
+    assert not keys.found[0].seals
+    session = end.session(51, keys)
+    honest(end, session, session.hello())
+    assert keys.found[0].seals
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description="Stand between computer and robot for long.")
+    parser.add_argument("trials", type=int, nargs="?", default=10_000)
+    parser.add_argument("--seed", type=int, default=1)
+    options = parser.parse_args()
+    started = time.monotonic()
+    for name, end in (("host", HostEnd()), ("virtual robot", VirtualEnd())):
+        count = options.trials // 2
+        found = trials(end, options.seed, count)
+        print(f"{name}: {count} trials, {dict(sorted(found.items()))}, none believed: "
+              f"{time.monotonic() - started:.0f} s")  # fmt: skip
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
