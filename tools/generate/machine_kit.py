@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
-from itertools import product
+from itertools import chain, product, repeat
 from typing import NamedTuple
 
 from tests.machines import Senses
@@ -22,10 +22,10 @@ from tiniscript import robots
 from tiniscript.bytecode.disassembly import read_listing
 from tiniscript.bytecode.image import ImageRefused, pack, sealed
 from tiniscript.bytecode.loading import loaded
-from tiniscript.bytecode.opcodes import BY_NAME, ISA_MAJOR, ISA_MINOR, Op
+from tiniscript.bytecode.opcodes import BY_NAME, ISA_MAJOR, ISA_MINOR, SHORTS, Op
 from tiniscript.bytecode.verify import Refused
 from tiniscript.conformance.kit import FORM, VERSION
-from tiniscript.kit import Kit
+from tiniscript.kit import DEVICES, NUMBER, YES_NO, Device, Kit
 from tiniscript.vm.machine import Machine
 from tiniscript.vm.state import DONE, FAULT, WAITING
 from tiniscript.vm.trace import TracedRobot
@@ -34,9 +34,16 @@ from tools.generate.cpp_cases import CALCULATIONS, EDGES, push32
 TINIBOT = robots.load("tinibot").kit
 STEPS = 100_000  # a case that runs more without a wait says nothing about its end: it is left out
 RANDOM_PROGRAMS = range(1000, 1030)
-# When a run begins, and how often its machine is called. The first is as `tsc run` does it.
-USUAL, WRAPS, SELDOM = (0, 1), (2**32 - 7, 1), (2**31 - 30, 7)
-LATE = (0, 45)
+When = tuple[int, tuple[int, ...]]
+
+# When a run begins, and how often its machine is called: for the first wait, for the next, and the
+# last for all that follow. The first is as `tsc run` does it.
+USUAL: When = (0, (1,))
+WRAPS: When = (2**32 - 7, (1,))
+SELDOM: When = (2**31 - 30, (7,))
+LATE: When = (0, (45,))
+ROUND_MS = 2**31 - 8  # a multiple of the 20 ms of UNTIL; twice this is 16 ms before 2^32
+FAR = Senses({"DISTANCE": [50_000]})
 NOTHING = bytes([BY_NAME["SET_VAR8"].code, 0, 0])
 
 
@@ -47,14 +54,14 @@ class Run(NamedTuple):
     kit: Kit
     image: bytes
     senses: Senses = Senses()
-    when: tuple[int, int] = USUAL
+    when: When = USUAL
 
 
 def machine_kit(command: str) -> str:
     """Return the text of the file: a line for each case."""
     kits: list[Kit] = []
     rows = []
-    for run in [*documented(), *images(), *arithmetic(), *random_programs()]:
+    for run in [*documented(), *times(), *devices(), *images(), *arithmetic(), *random_programs()]:
         answer = answer_of(run)
         if answer is None:
             continue
@@ -75,7 +82,7 @@ def machine_kit(command: str) -> str:
 def case_of(run: Run, kit: int, answer: list[str]) -> dict[str, object]:
     """Return a case as the file has it."""
     names = [device.name for device in run.kit.sensors]
-    begin, every = run.when
+    begin, every_ms = run.when
     return {
         "name": run.name,
         "kit": kit,
@@ -83,7 +90,7 @@ def case_of(run: Run, kit: int, answer: list[str]) -> dict[str, object]:
         "readings": {str(names.index(name)): list(v) for name, v in run.senses.readings.items()},
         "seed": run.senses.seed,
         "begin": begin,
-        "every": every,
+        "every": list(every_ms),
         "until": run.senses.max_ms,
         "answer": answer,
     }
@@ -97,7 +104,8 @@ def answer_of(run: Run) -> list[str] | None:
         return [f"REFUSED {refused.name} {refused.offset}"]
     except ImageRefused as refused:
         return [f"REFUSED {refused.name}"]
-    begin, every = run.when
+    begin, every_ms = run.when
+    every = chain(every_ms, repeat(every_ms[-1]))
     robot = TracedRobot(run.kit, lists_of(run.kit, run.senses))
     machine = Machine(code, robot, len(run.kit.sensors), run.senses.seed, begin)
     while True:
@@ -108,7 +116,8 @@ def answer_of(run: Run) -> list[str] | None:
             robot.say("FAULT", (), f"FAULT {machine.fault}")
         elif status == WAITING:
             wake_ms = max(machine.wake_ms - begin, robot.now_ms)
-            wake_ms = -(-wake_ms // every) * every
+            each_ms = next(every)
+            wake_ms = -(-wake_ms // each_ms) * each_ms
             if wake_ms <= run.senses.max_ms:
                 robot.now_ms = wake_ms
                 continue
@@ -151,6 +160,54 @@ def image_of(case: Case, kit: Kit) -> bytes:
 def takes_time(run: Run) -> bool:
     answer = answer_of(run)
     return answer is not None and not answer[-1].startswith("0 ")
+
+
+def times() -> Iterator[Run]:
+    """Return runs that are called late, by as much as a clock catches up or not, or after weeks."""
+    beyond = Senses({"DISTANCE": [50_000] * 6 + [9_000]}, 2**33)
+    until = "F(0.1, 80) UNTIL(DISTANCE < 10)"
+    for name, text, when, senses in (
+        ("20 ms late", "W(0.001); F(0.1, 80)", (0, (21, 1)), Senses()),
+        ("21 ms late", "W(0.001); F(0.1, 80)", (0, (22, 1)), Senses()),
+        ("UNTIL begins 20 ms late", f"W(0.001); {until}", (0, (21, 1)), FAR),
+        ("UNTIL begins 21 ms late", f"W(0.001); {until}", (0, (22, 1)), FAR),
+        ("UNTIL is checked late", until, (0, (30, 61, 1)), FAR),
+        ("UNTIL behind 2^32 ms", "F(FOREVER, 80) UNTIL(DISTANCE < 10); W(0.1)",
+         (0, (ROUND_MS, ROUND_MS, 1)), beyond),
+        ("UNTIL behind 2^32 ms, and now wraps", "W(FOREVER) UNTIL(DISTANCE < 10); W(0.1)",
+         (2**31 + 5, (ROUND_MS, ROUND_MS, 1, 1, 27, 1)), beyond),
+        ("TIME is over for good", "W(FOREVER) UNTIL(DISTANCE < 10); SHOW(TIME)",
+         (0, (ROUND_MS, ROUND_MS, 1)), beyond),
+    ):  # fmt: skip
+        yield Run(f"time: {name}", TINIBOT, compile_image(text), senses, when)
+
+
+def devices() -> Iterator[Run]:
+    """Return a run with as many devices as a kit may have, by each way to name one."""
+    kinds = ((NUMBER, "cm", -1000, 400_000), (YES_NO, "", 0, 1))
+    kit = Kit(
+        tuple(Device(f"S{k}", *kinds[k % 3 == 1]) for k in range(DEVICES)),
+        tuple(Device(f"A{k}", *kinds[k % 3 == 2]) for k in range(DEVICES)),
+    )
+    code = b""
+    for sensor, actuator in chain(
+        ((f" s{k}", f" a{DEVICES - 1 - k}") for k in range(DEVICES)),
+        ((f"_{k}", f"_{k}") for k in range(SHORTS)),
+    ):
+        for name in (f"READ{sensor}", f"PUSH_SENSOR{sensor}", f"SET{actuator}"):
+            code += assembled(name)
+        code += assembled(f"PUSH_READ{sensor}") + assembled("SHOW")
+    readings = {
+        each.name: [0, 1, 1, 0] if each.is_yes_no else [1000 * k + many for many in range(4)]
+        for k, each in enumerate(kit.sensors)
+    }
+    yield Run("devices: 32 of each", kit, image_for(code, kit), Senses(readings))
+
+
+def assembled(text: str) -> bytes:
+    """Return the bytes of an instruction that has a device, or nothing, as operand."""
+    name, _, device = text.partition(" ")
+    return bytes([BY_NAME[name].code, *([int(device[1:])] if device else [])])
 
 
 def images() -> Iterator[Run]:

@@ -11,12 +11,13 @@ from importlib import resources
 from typing import NamedTuple
 
 FORM = "tiniscript-machine-kit"
-VERSION = 1  # of the form; grows when a reader of the file, or a machine, must know more
+VERSION = 2  # of the form; grows when a reader of the file, or a machine, must know more
 
 
 class MachineCase(NamedTuple):
     """One run. `devices` are the kit's lines, as the specification hashes them; `readings` are
-    thousandths by the number of the sensor; times are milliseconds."""
+    thousandths by the number of the sensor; times are milliseconds. `every_ms` has one for each
+    wait, the last for all that follow."""
 
     name: str
     devices: tuple[str, ...]
@@ -24,7 +25,7 @@ class MachineCase(NamedTuple):
     readings: dict[int, tuple[int, ...]]
     seed: int
     begin_ms: int
-    every_ms: int
+    every_ms: tuple[int, ...]
     until_ms: int
     answer: tuple[str, ...]
 
@@ -39,7 +40,7 @@ class MachineCase(NamedTuple):
             *lists,
             f"seed {self.seed}",
             f"begin {self.begin_ms}",
-            f"every {self.every_ms}",
+            f"every {' '.join(map(str, self.every_ms))}",
             f"until {self.until_ms}",
             f"image {self.image.hex()}".rstrip(),
             "run",
@@ -66,7 +67,7 @@ def cases_of(text: str) -> list[MachineCase]:
             {int(number): tuple(values) for number, values in row["readings"].items()},
             row["seed"],
             row["begin"],
-            row["every"],
+            tuple(row["every"]),
             row["until"],
             tuple(row["answer"]),
         )

@@ -21,7 +21,7 @@ function device(line) {
 }
 
 function freshRun() {
-  return { sensors: [], actuators: [], seed: 1, begin: 0, every: 1, until: 0, image: new Uint8Array() };
+  return { sensors: [], actuators: [], seed: 1, begin: 0, every: [1], until: 0, image: new Uint8Array() };
 }
 
 function take(run, line) {
@@ -29,6 +29,7 @@ function take(run, line) {
   if (word === "sensor") run.sensors.push(device(line));
   else if (word === "actuator") run.actuators.push(device(line));
   else if (word === "readings") run.sensors[rest[0]].readings = rest.slice(1).map(Number);
+  else if (word === "every") run.every = rest.map(Number);
   else if (word === "image") run.image = Uint8Array.from(Buffer.from(rest[0] ?? "", "hex"));
   else run[word] = Number(rest[0]);
 }
@@ -60,7 +61,8 @@ function perform(run) {
       machine.turn(run.begin + elapsed);
       if (machine.ended) break;
       const wait = (machine.clock - run.begin - elapsed) >> 0;
-      const next = Math.ceil(Math.max(elapsed + wait, elapsed) / run.every) * run.every;
+      const every = run.every.length > 1 ? run.every.shift() : run.every[0];
+      const next = Math.ceil(Math.max(elapsed + wait, elapsed) / every) * every;
       if (next > run.until) {
         elapsed = run.until;
         say("LIMIT");
