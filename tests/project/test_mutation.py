@@ -1,194 +1,187 @@
-"""The tests notice what is wrong: a fair sample of the breaks of `python -m tools.mutation`.
-
-One for each rule and each reason to refuse, one of every six opcodes, and what arithmetic and time
-come to; and some lines of the assembly for the AVR. All of them: `python -m tools.mutation`, and
-with `--avr`.
-"""
+"""`python -m tools.mutation`: which mistakes it makes, what it calls noticed; and the mutants that
+once survived, each of which its test must notice at every run."""
 
 from __future__ import annotations
 
-import re
-import shutil
+import ast
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
-from tests.machines import avr
-from tests.machines.host import SOURCES, missing
-from tests.support.avr_sample import AvrSample
-from tests.support.cpp_sample import Sample, Unfit
-from tools.mutation import __main__
-from tools.mutation.assembly import (
-    NEEDLESS,
-    OPEN,
-    assembly_breaks,
-    gone_from_avr,
-    noticeable_on_avr,
-)
-from tools.mutation.mutants import MACHINE, Break, Stale, breaks
-from tools.mutation.operators import small_changes
+from tests.project.known_mutants import KNOWN, Known
+from tests.support.casefile import ROOT
+from tools import mutation
+from tools.mutation import BY_NAME, EDITS, MODULES, Copy, Module, Mutant, drawn, equivalent, mutants
 
-needs_host = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
-ONE_OPCODE_IN = 6
-ONE_CHANGE_IN = 3  # of limits, arithmetic and time
-
-
-def sampled() -> Iterator[Break]:
-    """Yield breaks of every kind; for each rule and reason the first place that refuses for it."""
-    seen: dict[str, int] = {}
-    for each in __main__.noticeable(breaks(SOURCES)):
-        if each.file.endswith(".h"):
-            continue  # all is built again, for each of them: too long for a test
-        if each.kind in ("rule", "refusal"):
-            constant = each.name.split()[1]
-            seen[constant] = seen.get(constant, 0) + 1
-            if seen[constant] == 1:
-                yield each
-        else:
-            seen[each.kind] = seen.get(each.kind, -1) + 1
-            if seen[each.kind] % (ONE_OPCODE_IN if each.kind == "opcode" else ONE_CHANGE_IN) == 0:
-                yield each
-
-
-SAMPLE = list(sampled())
-
-
-@pytest.fixture(scope="module")
-def builds(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return tmp_path_factory.mktemp("builds")
-
-
-@pytest.fixture(scope="module")
-def sample(builds: Path) -> Iterator[Sample]:
-    found = Sample(SOURCES, builds)
-    yield found
-    found.close()
+PYTHON = '''
+from here import of
+NAMES: dict[str, int] = {"a": 1}
+def low(a: int | None, *rest: int) -> bool:
+    """a < b"""
+    x = -1 + a  # a + b
+    if x not in rest and a is not None:
+        tell(x)
+    return x < 10
+'''
+SCRIPT = """
+const MOST = 1000; // and 2
+class Box {
+  #count = 0;
+  add(text) {
+    if (!text || text.length > MOST) return `${1 + 2} <`;
+    this.#count += text.replace(/[/*] + 4/g, "5").length ?? 6;
+    this.tell();
+    return text;
+  }
+}
+"""
+CPP = """
+// a < b
+#define LESS 3 < 4
+uint8_t count = 7;
+void tell(char letter) {
+  if (letter == '<' && is_told(letter)) return;
+  told = count;
+}
+"""
+ASSEMBLY = """
+tell: ; a add b
+    ldi r18, 3  ; r18 = 3
+1:  add r18, r19
+    breq 1b
+"""
 
 
-@needs_host
-@pytest.mark.parametrize("each", SAMPLE, ids=lambda each: each.name)
-def test_break_is_noticed(each: Break, sample: Sample) -> None:
-    result = __main__.tried(each, sample)
-    assert result.kind, "every check passes"
-    assert result.kind != __main__.BUILD, result.said
+def changed_lines(suffix: str, text: str) -> list[str]:
+    found = []
+    for start, end, instead in EDITS[suffix](text):
+        changed = text[:start] + instead + text[end:]
+        if suffix == ".py":
+            ast.parse(changed)
+        found.append(changed.splitlines()[text.count("\n", 0, start)].strip())
+    return found
 
 
-ONE_LINE_IN = 31  # of the assembly
-AVR_BREAKS = [each for each in noticeable_on_avr(assembly_breaks(SOURCES)) if each.name not in OPEN]
-AVR_SAMPLE = [
-    each
-    for kind in sorted({each.kind for each in AVR_BREAKS})
-    for each in [each for each in AVR_BREAKS if each.kind == kind][::ONE_LINE_IN]
-]
-
-
-@pytest.fixture(scope="module")
-def avr_sample() -> AvrSample:
-    return AvrSample()
-
-
-@pytest.mark.skipif(bool(avr.missing()), reason=avr.missing() or "there is a simulated chip")
-@pytest.mark.parametrize("each", AVR_SAMPLE, ids=lambda each: each.name)
-def test_break_of_the_assembly_is_noticed(each: Break, avr_sample: AvrSample) -> None:
-    assert __main__.tried_on_avr(each, avr_sample).kind, "every answer is right"
-
-
-def test_the_sample_of_the_assembly_is_fair() -> None:
-    found = assembly_breaks(SOURCES)
-    assert len({each.name for each in found}) == len(found) > 500
-    assert {each.kind for each in AVR_SAMPLE} == {each.kind for each in found}
-    assert {each.file for each in AVR_SAMPLE} == {each.file for each in found}
-
-
-def test_what_is_needless_and_gone_is_told() -> None:
-    found = assembly_breaks(SOURCES)
-    assert {each.name for each in found} >= OPEN
-    name = next(each.name for each in found if each.name in NEEDLESS)
-    assert name not in {each.name for each in noticeable_on_avr(found)}
-    assert name in gone_from_avr([each for each in found if each.name != name])
-
-
-def test_the_sample_is_fair() -> None:
-    kinds = {each.kind for each in SAMPLE}
-    assert kinds == {"opcode", "rule", "refusal", "limit", "arithmetic"}
-    assert len(SAMPLE) >= 40
-
-
-def test_no_two_breaks_have_one_name() -> None:
-    names = [each.name for each in breaks(SOURCES)]
-    assert len({*names}) == len(names) > 300
-
-
-def test_every_small_change_has_a_name_of_its_own() -> None:
-    found = small_changes(SOURCES)
-    assert len({each.name for each in found}) == len(found) > 500
-
-
-@pytest.mark.parametrize(
-    ("was", "becomes", "said"),
-    [
-        ("uint8_t code = ", "uint8_t codes = ", "OPCODE_IS_READ stands in 0 places"),
-        ("Rule::kBadCall", "Rule::kBadDef", "Rule::kBadCall refuses nowhere"),
-        ("kLateMs = 20", "kLateMs = 30", "'a program catches up with one ms more'"),
-        ("kJoins = 16", "kJoins = kDefs", "does not say what kJoins is"),
-    ],
-)
-def test_a_place_that_is_not_there_is_said(
-    was: str, becomes: str, said: str, tmp_path: Path
-) -> None:
-    """No break is left out silently because the machine was rewritten."""
-    copy = Path(shutil.copytree(SOURCES / MACHINE, tmp_path / MACHINE))
-    for path in copy.glob("*"):
-        text = path.read_text(encoding="utf-8")
-        path.write_text(text.replace(was, becomes), encoding="utf-8")
-    with pytest.raises(Stale, match=said):
-        breaks(tmp_path)
-
-
-@needs_host
-def test_a_break_that_nothing_notices_is_said(capsys: pytest.CaptureFixture[str]) -> None:
-    each = Break("opcode", "some", "vm.cpp", "", "a < b;", "a <= b;")
-    results = [__main__.Result(each, "", "", "", 1), __main__.Result(each, "case", "a", "", 1)]
-    assert __main__.summary(results[1:], 1) == 0
-    assert __main__.summary(results, 1) == 1
-    assert "unnoticed: opcode: some\n  a < b;\n  a <= b;\n" in capsys.readouterr().out
-
-
-def test_what_is_equivalent_is_a_change(monkeypatch: pytest.MonkeyPatch) -> None:
-    each = Break("change", "some", "vm.cpp", "", "a < b;", "a <= b;")
-    monkeypatch.setattr(__main__, "EQUIVALENT", {("a < b;", "a <= b;"): "", ("c;", ";"): ""})
-    assert __main__.noticeable([each, each._replace(becomes="a > b;")]) == [
-        each._replace(becomes="a > b;")
+def test_each_operator_word_number_condition_and_call_is_changed_and_nothing_else() -> None:
+    assert changed_lines(".py", PYTHON) == [
+        'NAMES: dict[str, int] = {"a": 2}',
+        "x = -2 + a  # a + b",
+        "x = -1 - a  # a + b",
+        "if x not in rest or a is not None:",
+        "if x not in rest and a is  None:",
+        "if False:",
+        "pass",
+        "return x <= 10",
+        "return x < 11",
     ]
-    assert __main__.gone([each]) == ["c;"]
 
 
-@needs_host
-def test_a_machine_that_is_wrong_already_proves_nothing(tmp_path: Path, builds: Path) -> None:
-    copy = Path(shutil.copytree(SOURCES, tmp_path / "vm_arduino"))
-    each = next(each for each in breaks(SOURCES) if each.kind == "opcode")
-    (copy / MACHINE / each.file).write_text(each.text, encoding="utf-8")
-    wrong = Sample(copy, builds)
-    with pytest.raises(Unfit, match="case: "):
-        wrong.failing(SOURCES)
-    wrong.close()
+def test_of_a_script_and_of_the_robots_code_too() -> None:
+    condition = "if (!text || text.length > MOST) return `${1 + 2} <`;"
+    count = 'this.#count += text.replace(/[/*] + 4/g, "5").length ?? 6;'
+    assert changed_lines(".js", SCRIPT) == [
+        condition.replace("||", "&&"),
+        condition.replace(">", ">=", 1),
+        count.replace("+=", "-="),
+        count.replace("??", "&&"),
+        condition.replace("!text", "text"),
+        "const MOST = 1001; // and 2",
+        "#count = 1;",
+        count.replace("6", "7"),
+        "if (false) return `${1 + 2} <`;",
+        ";",
+        ";",
+    ]
+    condition = "if (letter == '<' && is_told(letter)) return;"
+    assert changed_lines(".cpp", CPP) == [
+        condition.replace("==", "!="),
+        condition.replace("&&", "||"),
+        "uint8_t count = 8;",
+        "if (false) return;",
+        ";",
+    ]
+    assert changed_lines(".S", ASSEMBLY) == [
+        "; r18 = 3",
+        "1:  sub r18, r19",
+        "1:",
+        "brne 1b",
+        "",
+    ]
 
 
-def test_a_compiler_is_needed(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    monkeypatch.setattr(__main__, "missing", lambda: "no g++")
-    assert __main__.main([]) == 2
-    assert capsys.readouterr().err == "no g++\n"
+@pytest.mark.parametrize("module", MODULES, ids=lambda module: module.name)
+def test_each_module_has_mutants_and_tests(module: Module) -> None:
+    assert len(mutants(module)) > 50
+    for test in module.tests:
+        assert (ROOT / test.split("::")[0]).exists(), test
 
 
-def test_documents_tell_how_many_breaks_there_are() -> None:
-    found = len(breaks(SOURCES))
-    for name in ("CONTRIBUTING.md", "docs/promises.md"):
-        told = re.findall(
-            r"(?:in|list of) over (\d+)", (SOURCES.parent / name).read_text(encoding="utf-8")
-        )
-        assert told, name
-        for each in told:
-            assert 0 <= found - int(each) < 50, f"{name} says {each}, there are {found}"
+def test_every_source_is_of_one_module() -> None:
+    sources = [*ROOT.glob("compiler/tiniscript/**/*.py"), *ROOT.glob("tools/studio/src/*.js")]
+    for suffix in ("cpp", "S"):
+        sources += ROOT.glob(f"vm_arduino/src/*/**/*.{suffix}")
+    found = [path for each in MODULES for pattern in each.files for path in ROOT.glob(pattern)]
+    assert sorted(found) == sorted(path for path in sources if "esp32/arduino" not in str(path))
+
+
+def test_the_same_seed_draws_the_same_mutants_in_turn_from_each_module() -> None:
+    modules = [BY_NAME["codegen"], BY_NAME["bytecode"]]
+    first = drawn(modules, 6, 1)
+    assert first == drawn(modules, 6, 1) != drawn(modules, 6, 2)
+    assert [mutation.module_of(each.file) for each in first] == modules * 3
+
+
+def test_what_is_listed_as_equivalent_is_still_there() -> None:
+    for file, was, _ in equivalent():
+        lines = (ROOT / file).read_text(encoding="utf-8").splitlines()
+        assert was in {line.strip() for line in lines}, f"{file}: {was}"
+
+
+LOW = "def low(a):\n    x = a * 1\n    return a < 4\n"
+TEST = "from where import low\ndef test_low():\n    assert low(3) and not low(4)\n"
+
+
+@pytest.fixture
+def two_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Copy:
+    (tmp_path / "where.py").write_text(LOW, encoding="utf-8")
+    (tmp_path / "test_where.py").write_text(TEST, encoding="utf-8")
+    copy = Copy.__new__(Copy)
+    copy.folder = tmp_path
+    return copy
+
+
+def test_what_a_test_notices_is_told_from_what_none_does(two_files: Copy) -> None:
+    own = Module("own", ("where.py",), ("test_where.py",))
+    found = {
+        each.becomes: two_files.notices(each, own.tests) for each in mutants(own, two_files.folder)
+    }
+    assert [becomes for becomes, by in found.items() if not by] == ["x = a // 1", "x = a * 2"]
+    assert found["return a <= 4"].startswith("FAILED test_where.py::test_low")
+    assert (two_files.folder / "where.py").read_text(encoding="utf-8") == LOW
+    assert two_files.failing(own.tests) == ""
+
+
+def test_what_does_not_end_is_noticed(two_files: Copy, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(mutation, "LIMIT_S", 10)
+    text = LOW.replace("    return", "    while x: pass\n    return")
+    mutant = Mutant("where.py", 2, "", "", text)
+    assert two_files.notices(mutant, ["test_where.py"]) == "it does not end"
+
+
+# -- mutants that once survived --------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def copy(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Copy]:
+    yield Copy(tmp_path_factory.mktemp("mutants"))
+
+
+@pytest.mark.parametrize("each", KNOWN, ids=lambda each: each.missing)
+def test_a_known_mutant_is_noticed(each: Known, copy: Copy) -> None:
+    text = (ROOT / each.file).read_text(encoding="utf-8")
+    assert text.count(each.was) == 1, "the code has changed: find the place again"
+    line = text[: text.index(each.was)].count("\n") + 1
+    mutant = Mutant(each.file, line, each.was, each.becomes, text.replace(each.was, each.becomes))
+    noticed = copy.notices(mutant, [each.test])
+    assert noticed.startswith(f"FAILED {each.test}"), noticed or "no test notices it"

@@ -1,8 +1,7 @@
 """What holds of the machine in C++: each check asks one process, and compares with Python.
 
-`test_cpp_agreement` runs these on this computer, `test_cpp_chips` on chips,
-`python -m tools.mutation` on machines that it has broken. Nothing asked depends on time or
-chance: the same machine gives the same answers.
+`test_cpp_agreement` runs these on this computer, `test_cpp_chips` on chips. Nothing asked depends
+on time or chance: the same machine gives the same answers.
 """
 
 from __future__ import annotations

@@ -22,7 +22,7 @@ from tests.machines.qemu import emulated
 from tests.machines.qemu import missing as emulator_missing
 from tests.oracle import programs
 from tests.support import cpp_checks, cpp_images
-from tests.support.avr_sample import of_changed_code, of_long_loops
+from tests.support.avr_questions import of_changed_code, of_long_loops
 from tests.support.casefile import Case
 from tests.support.images import image_for
 from tests.support.kits import KITS

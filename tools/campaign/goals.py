@@ -94,8 +94,8 @@ GOALS: tuple[Goal, ...] = (
          "messages", 1_000_000, 5_000, "tests.fuzz.test_python messages {count} --seed {seed}"),
     Goal("fuzz-greetings", "Any bytes of a stranger on a shared port are a greeting, or none.",
          "rows of bytes", 1_000_000, 5_000, "tests.fuzz.test_python greetings {count} --seed {seed}"),
-    Goal("mutation", "A break of the C++ machine is noticed by a test; none of a list of over 450 is not.",
-         "runs over the list", 1, 1, "tools.mutation"),
+    Goal("mutation", "A small mistake in the code is noticed by a test of its module.",
+         "mutants", 1_500, 150, "tools.mutation {count} --seed {seed}"),
 )
 # fmt: on
 

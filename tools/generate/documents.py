@@ -37,11 +37,8 @@ def text_document() -> str:
 def promises_document() -> str:
     """Return `docs/promises.md` with the table of goals and figures."""
     from tools.campaign.table import HEAD, rows
-    from tools.mutation import rooms
 
-    text = _text("promises.md")
-    text = spliced(text, "promises", table(HEAD, rows()))
-    return spliced(text, "mutation", table(rooms.HEAD, rooms.rows()))
+    return spliced(_text("promises.md"), "promises", table(HEAD, rows()))
 
 
 def lessons_document() -> str:

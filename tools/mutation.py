@@ -1,0 +1,387 @@
+"""Makes small mistakes in the code, one at a time, and says which of them no test notices.
+
+`python -m tools.mutation 150 --seed 1` draws 150 mutants, the same number of every module that
+still has some, and runs the tests of each one's module until one fails. `--module vm` and
+`--file PATTERN` draw from less, `--list` only shows them, `--all` takes every one. What was tried
+is kept in a file of the cache folder, so an interrupted run goes on. Exit code 1: mutants survived.
+
+A survivor gets a test, and a row in `tests/project/known_mutants.py`, which CI tries at every run;
+or a row in `tools/equivalent_mutants.json`, where nothing can notice it. Knows how the languages
+are written here (formatters put blanks around binary operators), not what the code does.
+"""
+
+from __future__ import annotations
+
+import argparse
+import hashlib
+import io
+import json
+import os
+import random
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import tokenize
+from collections.abc import Callable, Iterator, Sequence
+from itertools import accumulate, zip_longest
+from pathlib import Path
+from typing import NamedTuple
+
+ROOT = Path(__file__).resolve().parent.parent
+sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
+
+from tiniscript.files import cache_folder
+
+EQUIVALENT = Path(__file__).with_name("equivalent_mutants.json")
+LIMIT_S = 900  # for the tests of one mutant: an endless loop is noticed, too
+NODE_MODULES = Path("tools/studio/node_modules")
+
+_CPP, _PY, _JS = "vm_arduino/src", "compiler/tiniscript", "tools/studio/src"
+_HOST = "tests/firmware/test_host_firmware.py"
+
+
+class Module(NamedTuple):
+    """The files of a module, as patterns, and the tests about it, quick ones first."""
+
+    name: str
+    files: tuple[str, ...]
+    tests: tuple[str, ...]
+
+
+def _python(name: str, *tests: str) -> Module:
+    return Module(name, (f"{_PY}/{name}/**/*.py",), tests or (f"tests/{name}",))
+
+
+# fmt: off
+MODULES = (
+    Module("shared", (f"{_PY}/*.py",), ("tests/vm/test_fixed_point.py", "tests/vm/test_cases.py", "tests/robots", "tests/cli/test_keys.py", "tests/project/test_one_home.py")),
+    _python("syntax", "tests/syntax", "tests/vm/test_cases.py", "tests/pupils"),
+    _python("semantics", "tests/semantics", "tests/vm/test_cases.py", "tests/pupils/test_pupils.py"),
+    _python("repairs", "tests/pupils"),
+    _python("diagnostics", "tests/diagnostics", "tests/pupils/test_pupils.py"),
+    _python("codegen", "tests/codegen", "tests/vm/test_cases.py"),
+    _python("bytecode", "tests/bytecode", "tests/vm/test_cases.py"),
+    _python("vm", "tests/vm/test_cases.py", "tests/vm"),
+    _python("text"), _python("sketch"), _python("conformance", "tests/conform"),
+    _python("library"), _python("link"), _python("sharing"), _python("modules"), _python("doctor"),
+    _python("robots"), _python("wiring"), _python("virtual"), _python("lessons"), _python("flash"),
+    _python("studio"), _python("cli"),
+    Module("machine", (f"{_CPP}/vm/*.cpp",), ("tests/vm/test_cases.py", "tests/vm/test_cpp_agreement.py", "tests/vm/test_cpp_chips.py")),
+    Module("machine-avr", (f"{_CPP}/vm/*.S",), ("tests/vm/test_cases.py", "tests/vm/test_cpp_chips.py", "tests/vm/test_cpp_avr_arithmetic.py")),
+    Module("reader", (f"{_CPP}/text/*.cpp", f"{_CPP}/text/*.S"), ("tests/text/test_reader.py", "tests/text")),
+    Module("robot-link", (f"{_CPP}/link/*.cpp",), ("tests/link/test_link_cases.py", "tests/link", _HOST, "tests/firmware/test_owners.py", "tests/firmware/test_text_limits.py", "tests/firmware/test_terminal_programs.py", "tests/firmware/test_text.py")),
+    Module("store", (f"{_CPP}/store/*.cpp",), ("tests/firmware/test_store.py", "tests/firmware/test_keeping.py", "tests/firmware/test_undo.py", _HOST)),
+    Module("firmware", (f"{_CPP}/firmware/*.cpp",), (_HOST, *(f"tests/firmware/test_{name}.py" for name in ("keeping", "undo", "stops", "button", "owners", "trim", "text", "other_versions", "actuator_stops", "random_numbers", "replaced_runs", "stop_states")))),
+    Module("avr-boards", (f"{_CPP}/boards/*.cpp", f"{_CPP}/boards/avr/*.cpp"), tuple(f"tests/firmware/test_{name}.py" for name in ("boards", "board_devices", "board_sonar", "board_stops", "uno_robot", "uno_line", "uno_watchdog", "uno_supply", "uno_stops"))),
+    Module("esp32-boards", (f"{_CPP}/boards/esp32/*.cpp",), tuple(f"tests/firmware/test_esp32_{name}.py" for name in ("robot", "store", "transports", "wifi", "broker", "guests"))),
+    Module("page", (f"{_JS}/*.js",), ("tests/studio",)),
+)
+# fmt: on
+BY_NAME = {module.name: module for module in MODULES}
+
+
+class Mutant(NamedTuple):
+    """A file below the repository, its text with one small mistake, and the line it was made in."""
+
+    file: str
+    line: int
+    was: str
+    becomes: str
+    text: str
+
+    @property
+    def name(self) -> str:
+        return f"{self.file}:{self.line}: {self.was}  ->  {self.becomes}"
+
+
+# -- mutation operators ----------------------------------------------------------------------------
+
+Edit = tuple[int, int, str]  # from, to, what comes there
+
+SHARED = {
+    "<": "<=", "<=": "<", ">": ">=", ">=": ">", "==": "!=", "!=": "==", "+": "-", "-": "+",
+    "*": "/", "/": "*", "%": "*", "&": "|", "|": "&", "^": "&", "<<": ">>", ">>": "<<",
+    "+=": "-=", "-=": "+=", "&=": "|=", "|=": "&=", "&&": "||", "||": "&&", "===": "!==",
+    "!==": "===", "??": "&&",
+}  # fmt: skip
+PYTHON = {**SHARED, "*": "//", "//": "*", "/": "*"}
+WORDS = {"and": "or", "or": "and", "True": "False", "False": "True", "break": "pass",
+         "continue": "pass"}  # fmt: skip
+OPPOSITES = [("breq", "brne"), ("brsh", "brlo"), ("brcs", "brcc"), ("brmi", "brpl"),
+             ("brlt", "brge"), ("brtc", "brts"), ("sbrc", "sbrs"), ("sbic", "sbis"),
+             ("add", "sub"), ("adc", "sbc"), ("dec", "inc"), ("and", "or")]  # fmt: skip
+OPPOSITE = dict(OPPOSITES) | {b: a for a, b in OPPOSITES}
+
+OPERATOR = re.compile(r"(?<= )(?:[!=]==?|<<=?|>>=?|[-+&|]=|[-+*/%&|^<>]|[<>]=|&&|\|\||\?\?)(?= )")
+NOT = re.compile(r"!(?=[\w(])")
+NUMBER = re.compile(r"(?<![\w.#$])(0x[0-9a-f]+|\d+)\b(?!\.)")
+IF = re.compile(r"\bif \(")
+# A call, an assignment or a way out, alone on its line; no declaration.
+STATEMENT = re.compile(
+    r"^ +(?!return \w|const |let |if |else|case |using |import |export |static |get |set |#\w+ = "
+    r"|[A-Za-z][\w:<>]* [*&]?\w+(?: =|;|\{))[#\w*].*;$",
+    re.M,
+)
+# Strings, comments, directives, and in JavaScript templates and patterns: what is in them stays.
+_STRING = r"\"(?:[^\"\\\n]|\\.)*\"|'(?:[^'\\\n]|\\.)*'"
+_COMMENT = r"//[^\n]*|/\*.*?\*/"
+_ITEM = r"\\.|\[(?:[^\]\\\n]|\\.)*\]"
+_PATTERN = rf"(?<=[(,=:!&|?])\s?/(?:[^/\\\n\[ ]|{_ITEM})(?:[^/\\\n\[]|{_ITEM})*/\w*"
+STILL = {
+    ".cpp": re.compile(rf"{_STRING}|{_COMMENT}|^ *#[^\n]*", re.S | re.M),
+    ".js": re.compile(rf"{_STRING}|`(?:[^`\\]|\\.)*`|{_COMMENT}|{_PATTERN}", re.S),
+}
+
+
+def braces_edits(text: str, suffix: str) -> Iterator[Edit]:
+    """Yield the edits of a text in C++ or JavaScript."""
+    plain = STILL[suffix].sub(lambda found: re.sub(r"[^\n]", "\0", found[0]), text)
+    for found in OPERATOR.finditer(plain):
+        if found[0] in SHARED:
+            yield found.start(), found.end(), SHARED[found[0]]
+    for found in NOT.finditer(plain):
+        yield found.start(), found.end(), ""
+    for found in NUMBER.finditer(plain):
+        yield found.start(), found.end(), str(int(found[0], 0) + 1)
+    for found in IF.finditer(plain):
+        end = _closing(plain, found.end())
+        yield found.end(), end, "false"
+    for found in STATEMENT.finditer(plain):
+        yield found.end() - len(found[0].lstrip()), found.end(), ";"
+
+
+def _closing(text: str, at: int) -> int:
+    """Return where the bracket closes that opened right before `at`."""
+    depth = 1
+    while depth:
+        depth += {"(": 1, ")": -1}.get(text[at], 0)
+        at += 1
+    return at - 1
+
+
+def assembly_edits(text: str) -> Iterator[Edit]:
+    """Yield the edits of a text in assembly: an instruction less, or the opposite one."""
+    for found in re.finditer(r"^(?:\d+:)? +([a-z]\w*)(?: [^;\n]*)?", text, re.M):
+        start, end = found.span(1)
+        if found[1] in OPPOSITE:
+            yield start, end, OPPOSITE[found[1]]
+        yield start, found.end(), ""
+
+
+def python_edits(text: str) -> Iterator[Edit]:
+    """Yield the edits of a text in Python. Imports, heads and annotations stay."""
+    begins = [0, *accumulate(len(line) for line in text.splitlines(keepends=True))]
+    line: list[tokenize.TokenInfo] = []
+    depth = 0  # in a class without functions nothing happens but declarations
+    for token in tokenize.generate_tokens(io.StringIO(text).readline):
+        if token.type in (tokenize.COMMENT, tokenize.NL, tokenize.INDENT, tokenize.DEDENT):
+            depth += (token.type == tokenize.INDENT) - (token.type == tokenize.DEDENT)
+        elif token.type != tokenize.NEWLINE:
+            line.append(token)
+        elif line:
+            if line[0].string not in ("import", "from", "def", "class", "@", "async", "type"):
+                yield from _line_edits(line, begins, is_inside=depth > 0)
+            line = []
+
+
+def _line_edits(
+    line: list[tokenize.TokenInfo], begins: Sequence[int], *, is_inside: bool
+) -> Iterator[Edit]:
+    places = [(begins[t.start[0] - 1] + t.start[1], begins[t.end[0] - 1] + t.end[1]) for t in line]
+    words = [token.string for token in line]
+    is_annotated = len(words) > 2 and words[1] == ":"
+    begin = words.index("=") if is_annotated and "=" in words else len(words) * is_annotated
+    for at in range(begin, len(words)):
+        start, end = places[at]
+        before = line[at - 1] if at else None
+        follows_value = before is not None and (
+            before.type in (tokenize.NAME, tokenize.NUMBER, tokenize.STRING)
+            or before.string in (")", "]", "}")
+        )
+        if line[at].type == tokenize.OP and words[at] in PYTHON and follows_value:
+            yield start, end, PYTHON[words[at]]
+        elif words[at] == "not" and words[at + 1] != "in":
+            yield start, end, ""
+        elif words[at] in WORDS:
+            yield start, end, WORDS[words[at]]
+        elif line[at].type == tokenize.NUMBER and words[at].isdecimal():
+            yield start, end, str(int(words[at]) + 1)
+    if words[0] in ("if", "elif", "while") and words[-1] == ":":
+        yield places[1][0], places[-2][1], "False"
+    is_call = words[-1] == ")" and words[0] not in ("return", "yield", "raise", "assert")
+    if is_inside and line[0].type == tokenize.NAME and (is_call or words[0] == "raise"):
+        yield places[0][0], places[-1][1], "pass"
+
+
+EDITS: dict[str, Callable[[str], Iterator[Edit]]] = {
+    ".py": python_edits,
+    ".cpp": lambda text: braces_edits(text, ".cpp"),
+    ".js": lambda text: braces_edits(text, ".js"),
+    ".S": assembly_edits,
+}
+
+
+# -- which mutants ---------------------------------------------------------------------------------
+
+
+def equivalent() -> dict[tuple[str, str, str], str]:
+    """Return why nothing can notice a mutant: of this file, of this line, that becomes this."""
+    rows: dict[str, list[tuple[str, str, str]]]
+    rows = json.loads(EQUIVALENT.read_text(encoding="utf-8"))
+    return {(file, was, becomes): why for why, row in rows.items() for file, was, becomes in row}
+
+
+def mutants(module: Module, root: Path = ROOT) -> list[Mutant]:
+    """Return all mutants of a module but those that are listed as equivalent."""
+    needless = equivalent()
+    found = []
+    for path in sorted({path for pattern in module.files for path in root.glob(pattern)}):
+        text = path.read_text(encoding="utf-8")
+        if "enerated" in text.partition("\n")[0]:
+            continue
+        for start, end, instead in EDITS[path.suffix](text):
+            changed = text[:start] + instead + text[end:]
+            line = text.count("\n", 0, start)
+            was = text.splitlines()[line].strip()
+            becomes = changed.splitlines()[line].strip()
+            name = path.relative_to(root).as_posix()
+            if was != becomes and (name, was, becomes) not in needless:
+                found.append(Mutant(name, line + 1, was, becomes, changed))
+    return found
+
+
+def drawn(
+    modules: Sequence[Module], count: int | None, seed: int, pattern: str = "*"
+) -> list[Mutant]:
+    """Draw mutants in turn from each module, the same ones for the same seed and code."""
+    rows = []
+    for module in modules:
+        row = [each for each in mutants(module) if Path(each.file).match(pattern)]
+        random.Random(f"{seed} {module.name}").shuffle(row)
+        rows.append(row)
+    in_turn = [each for turn in zip_longest(*rows) for each in turn if each is not None]
+    return in_turn[:count]
+
+
+def module_of(file: str) -> Module:
+    """Return the module that a file is of."""
+    return next(
+        module
+        for module in MODULES
+        if any(path == ROOT / file for pattern in module.files for path in ROOT.glob(pattern))
+    )
+
+
+# -- trying them -----------------------------------------------------------------------------------
+
+
+class Copy:
+    """A copy of what git tracks, in which the tests run."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        names = subprocess.run(
+            ["git", "ls-files", "-z"], cwd=ROOT, check=True, capture_output=True, text=True
+        ).stdout.split("\0")
+        for name in filter(None, names):
+            if (ROOT / name).is_file():
+                (folder / name).parent.mkdir(parents=True, exist_ok=True)
+                shutil.copy(ROOT / name, folder / name)
+        if (ROOT / NODE_MODULES).is_dir():
+            (folder / NODE_MODULES).symlink_to(ROOT / NODE_MODULES)
+
+    def notices(self, mutant: Mutant, tests: Sequence[str]) -> str:
+        """Return which test notices a mutant, or nothing."""
+        path = self.folder / mutant.file
+        right = path.read_bytes()
+        path.write_text(mutant.text, encoding="utf-8")
+        try:
+            return self.failing(tests, is_page=path.suffix == ".js")
+        finally:
+            path.write_bytes(right)
+
+    def failing(self, tests: Sequence[str], *, is_page: bool = False) -> str:
+        """Return what fails first of the tests, or nothing."""
+        if is_page and (why := self._ends(["-m", "tools.builds.studio", "--again"])):
+            return f"the build: {why}"
+        # A size, and what is generated, notice any change.
+        left_out = "not keeps_to_its_size and not generated and not is_of_these_sources"
+        return self._ends(
+            ["-m", "pytest", "-q", "-x", "-p", "no:cacheprovider", "-k", left_out, *tests]
+        )
+
+    def _ends(self, words: list[str]) -> str:
+        environment = {
+            **os.environ,
+            "PYTHONPATH": str(self.folder / "compiler"),
+            "PYTHONDONTWRITEBYTECODE": "1",
+        }
+        process = subprocess.Popen(
+            [sys.executable, *words], cwd=self.folder, env=environment, stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace",
+            start_new_session=True,
+        )  # fmt: skip
+        try:
+            output, _ = process.communicate(timeout=LIMIT_S)
+        except subprocess.TimeoutExpired:
+            os.killpg(process.pid, signal.SIGKILL)  # and robots that its tests have started
+            process.communicate()
+            return "it does not end"
+        if process.returncode == 0:
+            return ""
+        told = [line for line in output.splitlines() if line.startswith(("FAILED", "ERROR"))]
+        return told[0] if told else f"exit code {process.returncode}: {output[-200:].strip()}"
+
+
+def main(arguments: list[str] | None = None) -> int:
+    parser = argparse.ArgumentParser(description="Make small mistakes; say which no test notices.")
+    parser.add_argument("count", nargs="?", type=int, default=30, help="how many (30)")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--module", action="append", choices=list(BY_NAME))
+    parser.add_argument("--file", default="*", help="only files like this one")
+    parser.add_argument("--all", action="store_true", help="every mutant")
+    parser.add_argument("--list", action="store_true", help="only list them")
+    options = parser.parse_args(arguments)
+    modules = [BY_NAME[name] for name in options.module or BY_NAME]
+    chosen = drawn(modules, None if options.all else options.count, options.seed, options.file)
+    if options.list:
+        print("\n".join(each.name for each in chosen))
+        return 0
+    kept = cache_folder() / f"mutation-{_code()}.json"
+    results: dict[str, str] = json.loads(kept.read_text("utf-8")) if kept.is_file() else {}
+    kept.parent.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory() as folder:
+        copy = Copy(Path(folder))
+        for module in modules:  # tests that fail without a mutant would notice all of them
+            if any(each.name not in results and module_of(each.file) == module for each in chosen):
+                if why := copy.failing(module.tests, is_page=module.name == "page"):
+                    print(f"{module.name}: without any mutant: {why}", file=sys.stderr)
+                    return 2
+        for number, each in enumerate(chosen, 1):
+            begun = time.monotonic()
+            if each.name not in results:
+                results[each.name] = copy.notices(each, module_of(each.file).tests)
+                kept.write_text(json.dumps(results, indent=1), encoding="utf-8")
+            by = results[each.name] or "**nothing**"
+            print(
+                f"{number}/{len(chosen)} {each.name}: {by} ({time.monotonic() - begun:.0f} s)",
+                flush=True,
+            )
+    survivors = [each.name for each in chosen if not results[each.name]]
+    print(f"\n{len(chosen)} mutants, {len(survivors)} survived:", *survivors, sep="\n  ")
+    return int(bool(survivors))
+
+
+def _code() -> str:
+    """Return which code is tried: results of other code say nothing."""
+    words = (["git", "rev-parse", "HEAD"], ["git", "diff", "HEAD"])
+    asked = [subprocess.run(each, cwd=ROOT, capture_output=True).stdout for each in words]
+    return hashlib.sha256(b"".join(asked)).hexdigest()[:12]
+
+
+if __name__ == "__main__":
+    sys.exit(main())
