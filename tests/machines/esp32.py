@@ -101,6 +101,10 @@ class Esp32Robot(HostFirmware):
         """Return what a pin has: 0 to 255, PWM as its share."""
         return self.ask(b"O", pack("<B", pin))[0]
 
+    def panic(self) -> None:
+        """Let the chip do what it does first in a panic. Only its pins count from then on."""
+        self.ask(b"X", b"")
+
     def stick_ledc(self) -> None:
         """Let LEDC go on with what it does, whatever is asked of it."""
         self.ask(b"L", b"")

@@ -203,6 +203,8 @@ void answer_radio(RequestReader* request, Writer* answer) {
       return low_energy_subscribe(request->u8() != 0);
     case 'w':
       return low_energy_write(request->text());
+    case 'k':
+      return low_energy_congest(request->u8() != 0);
     case 'n': {
       const std::vector<std::string> found = low_energy_notified();
       answer->u32(static_cast<uint32_t>(found.size()));
@@ -258,6 +260,12 @@ void answer_moved(Writer* answer) {
   answer->u32(static_cast<uint32_t>(moved_ns));
 }
 
+// X: a panic. What a stack that is not to be relied on would make is not simulated.
+void answer_panic() {
+  simulated_panic();
+  look();
+}
+
 // O: what a pin has, 0 to 255. F: whether NVS is full. L: LEDC does nothing any more.
 void answer_output(RequestReader* request, Writer* answer) { answer->u8(output_of(request->u8())); }
 
@@ -295,6 +303,9 @@ int main() {
         break;
       case 'R':
         answer_radio(&request, &said);
+        break;
+      case 'X':
+        answer_panic();
         break;
       case 'G':
         answer_guest(&request, &said);

@@ -21,7 +21,9 @@
 #include <mbedtls/version.h>
 #include <mbedtls/x509_crt.h>
 #include <nvs.h>
+#include <soc/gpio_reg.h>
 #include <soc/gpio_sig_map.h>
+#include <soc/soc.h>
 
 #include <type_traits>
 #include <utility>
@@ -35,7 +37,11 @@
 // cores/esp32/esp32-hal-ledc.h of 3.0.4: the first argument is the pin
 is_a(&ledcWrite, bool (*)(uint8_t, uint32_t));
 is_a(&ledcWriteTone, uint32_t (*)(uint8_t, uint32_t));
+is_a(&ledcChangeFrequency, uint32_t (*)(uint8_t, uint32_t, uint8_t));
 is_a(ledcAttachChannel(uint8_t{}, uint32_t{}, uint8_t{}, 0), bool);
+// cores/esp32/esp32-hal.h of 3.0.4
+is_a(&set_arduino_panic_handler, void (*)(arduino_panic_handler_t, void*));
+is_a(static_cast<arduino_panic_handler_t>(nullptr), void (*)(arduino_panic_info_t*, void*));
 // components/esp_system/include/esp_task_wdt.h of ESP-IDF 5.1
 is_a(&esp_task_wdt_init, esp_err_t (*)(const esp_task_wdt_config_t*));
 is_a(&esp_task_wdt_reconfigure, esp_err_t (*)(const esp_task_wdt_config_t*));
@@ -71,7 +77,7 @@ is_a(Serial.read(), int);
 is_a(Serial.write(uint8_t{}), size_t);
 
 // ESP-IDF 4.4 and 5.1: driver/gpio.h, esp_rom_gpio.h, esp_system.h, esp_timer.h, nvs.h
-is_a(&gpio_set_level, esp_err_t (*)(gpio_num_t, uint32_t));
+is_a(GPIO_OUT_W1TS_REG + GPIO_OUT_W1TC_REG + GPIO_FUNC0_OUT_SEL_CFG_REG > 0, bool);
 is_a(&gpio_get_level, int (*)(gpio_num_t));
 is_a(&gpio_intr_enable, esp_err_t (*)(gpio_num_t));
 is_a(&gpio_intr_disable, esp_err_t (*)(gpio_num_t));
@@ -85,6 +91,7 @@ is_a(&nvs_set_u32, esp_err_t (*)(nvs_handle_t, const char*, uint32_t));
 is_a(&nvs_get_blob, esp_err_t (*)(nvs_handle_t, const char*, void*, size_t*));
 is_a(&nvs_set_blob, esp_err_t (*)(nvs_handle_t, const char*, const void*, size_t));
 is_a(&nvs_commit, esp_err_t (*)(nvs_handle_t));
+is_a(&nvs_close, void (*)(nvs_handle_t));
 is_a(&nvs_open, esp_err_t (*)(const char*, nvs_open_mode_t, nvs_handle_t*));
 
 static_assert(SIG_GPIO_OUT_IDX == 256 || SIG_GPIO_OUT_IDX == 128, "an ESP32, or an ESP32-C3");
@@ -96,7 +103,9 @@ is_a(&BLECharacteristic::notify, void (BLECharacteristic::*)(bool));
 is_a(std::declval<BLECharacteristic&>().setValue(std::declval<uint8_t*>(), size_t{}), void);
 is_a(std::declval<BLEServer&>().createService(""), BLEService*);
 is_a(std::declval<BLEService&>().createCharacteristic("", uint32_t{}), BLECharacteristic*);
-is_a(std::declval<BLE2902&>().getNotifications(), bool);
+is_a(&BLECharacteristicCallbacks::onStatus,
+     void (BLECharacteristicCallbacks::*)(BLECharacteristic*, BLECharacteristicCallbacks::Status,
+                                          uint32_t));
 is_a(&BLEDevice::createServer, BLEServer* (*)());
 is_a(&BLEDevice::getAdvertising, BLEAdvertising* (*)());
 is_a(&BLEDevice::setMTU, esp_err_t (*)(uint16_t));
@@ -117,13 +126,10 @@ is_a(std::declval<BluetoothSerial&>().write(std::declval<const uint8_t*>(), size
 
 // libraries/WiFi/src and libraries/ESPmDNS/src, as called
 is_a(WiFi.begin("", ""), wl_status_t);
-is_a(WiFi.disconnect(true), bool);
 is_a(WiFi.localIP(), IPAddress);
 is_a(WiFi.mode(WIFI_STA), bool);
 is_a(WiFi.setHostname(""), bool);
-is_a(WiFi.setSleep(false), bool);
 is_a(WiFi.softAP("", ""), bool);
-is_a(WiFi.softAPdisconnect(true), bool);
 is_a(WiFi.softAPIP(), IPAddress);
 is_a(WiFi.status(), wl_status_t);
 is_a(MDNS.begin(""), bool);

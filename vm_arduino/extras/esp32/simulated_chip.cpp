@@ -5,7 +5,9 @@
 #include <esp_task_wdt.h>
 #include <esp_timer.h>
 #include <nvs.h>
+#include <soc/gpio_reg.h>
 #include <soc/gpio_sig_map.h>
+#include <soc/soc.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,7 +18,9 @@
 #include "simulated_timer.h"
 
 SimulatedChip chip;
+#ifndef ARDUINO_USB_CDC_ON_BOOT
 HardwareSerial Serial;
+#endif
 uint64_t (*next_task_us)();
 void (*run_tasks)();
 
@@ -28,6 +32,30 @@ namespace {
 
 constexpr uint64_t kNever = ~uint64_t{0};
 constexpr uint32_t kEchoBeginsUs = 450;
+constexpr uint32_t kNextPort = 0xc;  // from a register of pins 0 to 31 to that of the others
+constexpr int kMostHandles = 4;  // of NVS: the store's, and one that is just used
+
+// Pins, as components/soc/CHIP/include/soc/soc_caps.h has them, and the data sheets: those of the
+// flash are not for the firmware.
+#ifdef CONFIG_IDF_TARGET_ESP32
+constexpr uint64_t kPins = 0xff0effffff & ~uint64_t{0xfc0};
+constexpr uint64_t kOutputs = kPins & 0x3ffffffff;
+constexpr uint64_t kFirstAdc = 0xff00000000;    // 32 to 39
+constexpr uint64_t kSecondAdc = 0x00000e00f015;  // 0, 2, 4, 12 to 15, 25 to 27
+constexpr uint8_t kChannels = 16;
+constexpr uint8_t kMostBits = 20;
+constexpr uint64_t kClocks[] = {80000000, 1000000};
+#else
+constexpr uint64_t kPins = 0x3c07ff;
+constexpr uint64_t kOutputs = kPins;
+constexpr uint64_t kFirstAdc = 0x1f;
+constexpr uint64_t kSecondAdc = 0x20;
+constexpr uint8_t kChannels = 6;
+constexpr uint8_t kMostBits = 14;
+constexpr uint64_t kClocks[] = {40000000};
+#endif
+
+bool is_in(uint64_t pins, uint32_t pin) { return pin < 64 && (pins >> pin & 1) != 0; }
 
 struct Timer {
   esp_timer_cb_t callback;
@@ -44,14 +72,6 @@ thread_local uint32_t in_critical;  // how many sections this core is in
 uint8_t analog_bits = 12;
 uint64_t echo_rises_us = kNever;
 uint64_t echo_falls_us = kNever;
-
-void expect(bool is_so, const char* what) {
-  if (is_so) return;
-  fprintf(stderr, "MISUSE %s\n", what);
-  abort();
-}
-
-void expect_free(const char* what) { expect(in_critical == 0, what); }
 
 // Starts the echo of a trigger pulse that ends.
 void on_write(uint8_t pin, bool was_high, bool is_high) {
@@ -106,12 +126,27 @@ uint32_t signal_of_channel(uint8_t channel) {
 #endif
 }
 
-// Two channels share a timer, so the neighbour of one gets its frequency too.
-void set_frequency(uint8_t channel, uint32_t hertz, uint8_t bits) {
+// A clock is divided by 1 to 1023, with 8 binary places.
+bool can_make(uint32_t hertz, uint8_t bits) {
+  if (hertz == 0) return false;
+  for (uint64_t clock : kClocks) {
+    const uint64_t divider = (clock << 8) / hertz >> bits;
+    if (divider >= 256 && divider <= 0x3ffff) return true;
+  }
+  return false;
+}
+
+// Two channels share a timer, so the neighbour of one gets its frequency too. False: no clock makes
+// that, and all stays as it is.
+bool set_frequency(uint8_t channel, uint32_t hertz, uint8_t bits) {
+  expect(channel < kChannels, "a channel of LEDC that the chip does not have");
+  expect(bits <= kMostBits, "more bits of LEDC than the chip has");
+  if (!can_make(hertz, bits)) return false;
   for (uint8_t each : {channel, static_cast<uint8_t>(channel ^ 1)}) {
     chip.channels[each].hertz = hertz;
     chip.channels[each].bits = bits;
   }
+  return true;
 }
 
 void set_duty(uint8_t channel, uint32_t duty) {
@@ -122,9 +157,20 @@ void set_duty(uint8_t channel, uint32_t duty) {
   each.duty = duty == most ? most + 1 : duty;  // as both versions of the core do
 }
 
-void set_tone(uint8_t channel, uint32_t hertz) {
-  set_frequency(channel, hertz, 10);
-  chip.channels[channel].duty = hertz == 0 ? 0 : 0x1ff;
+uint32_t set_tone(uint8_t channel, uint32_t hertz) {
+  if (hertz == 0) {
+    set_duty(channel, 0);
+    return 0;
+  }
+  if (!set_frequency(channel, hertz, 10)) return 0;
+  chip.channels[channel].duty = 0x1ff;
+  return hertz;
+}
+
+SimulatedPin& output_at(uint32_t pin) {
+  expect(is_in(kPins, pin), "a pin that the chip does not have free");
+  expect(is_in(kOutputs, pin), "an output on a pin that only reads");
+  return chip.pins[pin];
 }
 
 // The entries of NVS that a value takes: a number has one; a blob has one for its index, one for
@@ -165,6 +211,14 @@ esp_err_t put(const char* key, const std::string& value) {
 }
 
 }  // namespace
+
+void expect(bool is_so, const char* what) {
+  if (is_so) return;
+  fprintf(stderr, "MISUSE %s\n", what);
+  abort();
+}
+
+void expect_free(const char* what) { expect(in_critical == 0, what); }
 
 void pass_us(uint64_t us) {
   const uint64_t end_us = chip.now_us + us;
@@ -209,6 +263,9 @@ unsigned long micros() { return static_cast<unsigned long>(chip.now_us); }
 
 void pinMode(uint8_t pin, uint8_t mode) {
   expect_free("pinMode in a critical section");
+  expect(is_in(kPins, pin), "a pin that the chip does not have free");
+  expect(mode != OUTPUT || is_in(kOutputs, pin), "an output on a pin that only reads");
+  expect(mode != INPUT_PULLUP || is_in(kOutputs, pin), "a pull-up on a pin that has none");
   SimulatedPin& each = chip.pins[pin];
   each.is_output = mode == OUTPUT;
   each.signal = SIG_GPIO_OUT_IDX;
@@ -225,6 +282,8 @@ void attachInterrupt(uint8_t pin, void (*handler)(void), int mode) {
 
 uint16_t analogRead(uint8_t pin) {
   expect_free("analogRead in a critical section");
+  expect(is_in(kFirstAdc | kSecondAdc, pin), "analogRead of a pin without a converter");
+  expect(!chip.has_wifi || is_in(kFirstAdc, pin), "analogRead of the second converter beside WiFi");
   return static_cast<uint16_t>(chip.analog[pin] >> (12 - analog_bits));
 }
 
@@ -235,9 +294,10 @@ static uint8_t attached[40];  // the channel of each pin, as the core keeps it
 
 bool ledcAttachChannel(uint8_t pin, uint32_t freq, uint8_t resolution, uint8_t channel) {
   expect_free("ledcAttachChannel in a critical section");
-  set_frequency(channel, freq, resolution);
-  chip.pins[pin].is_output = true;
-  chip.pins[pin].signal = signal_of_channel(channel);
+  SimulatedPin& its = output_at(pin);
+  if (!set_frequency(channel, freq, resolution)) return false;
+  its.is_output = true;
+  its.signal = signal_of_channel(channel);
   attached[pin] = channel;
   return true;
 }
@@ -247,37 +307,43 @@ bool ledcWrite(uint8_t pin, uint32_t duty) {
   return true;
 }
 
-uint32_t ledcWriteTone(uint8_t pin, uint32_t freq) {
-  set_tone(attached[pin], freq);
-  return freq;
+uint32_t ledcWriteTone(uint8_t pin, uint32_t freq) { return set_tone(attached[pin], freq); }
+
+uint32_t ledcChangeFrequency(uint8_t pin, uint32_t freq, uint8_t resolution) {
+  expect_free("ledcChangeFrequency in a critical section");
+  return set_frequency(attached[pin], freq, resolution) ? freq : 0;
 }
 #else
 uint32_t ledcSetup(uint8_t channel, uint32_t freq, uint8_t resolution_bits) {
   expect_free("ledcSetup in a critical section");
-  set_frequency(channel, freq, resolution_bits);
-  return freq;
+  return set_frequency(channel, freq, resolution_bits) ? freq : 0;
 }
 
 void ledcAttachPin(uint8_t pin, uint8_t channel) {
   expect_free("ledcAttachPin in a critical section");
-  chip.pins[pin].is_output = true;
-  chip.pins[pin].signal = signal_of_channel(channel);
+  expect(channel < kChannels, "a channel of LEDC that the chip does not have");
+  SimulatedPin& its = output_at(pin);
+  its.is_output = true;
+  its.signal = signal_of_channel(channel);
 }
 
 void ledcWrite(uint8_t channel, uint32_t duty) { set_duty(channel, duty); }
 
-uint32_t ledcWriteTone(uint8_t channel, uint32_t freq) {
-  set_tone(channel, freq);
-  return freq;
-}
+uint32_t ledcWriteTone(uint8_t channel, uint32_t freq) { return set_tone(channel, freq); }
 #endif
 
-esp_err_t gpio_set_level(gpio_num_t gpio_num, uint32_t level) {
-  SimulatedPin& each = chip.pins[gpio_num];
+void simulated_register(uint32_t at, uint32_t value) {
+  if (at >= GPIO_FUNC0_OUT_SEL_CFG_REG) {
+    output_at((at - GPIO_FUNC0_OUT_SEL_CFG_REG) / 4).signal = value;
+    return;
+  }
+  const bool is_high = at == GPIO_OUT_W1TS_REG || at == GPIO_OUT_W1TS_REG + kNextPort;
+  const uint32_t first = at == GPIO_OUT_W1TS_REG || at == GPIO_OUT_W1TC_REG ? 0 : 32;
+  const uint32_t pin = first + static_cast<uint32_t>(__builtin_ctz(value));
+  SimulatedPin& each = output_at(pin);
   const bool before = each.level;
-  each.level = level != 0;
-  on_write(static_cast<uint8_t>(gpio_num), before, each.level);
-  return ESP_OK;
+  each.level = is_high;
+  on_write(static_cast<uint8_t>(pin), before, is_high);
 }
 
 int gpio_get_level(gpio_num_t gpio_num) {
@@ -310,6 +376,22 @@ void simulated_exit_critical(portMUX_TYPE*) {
   critical.unlock();
 }
 
+#if ESP_ARDUINO_VERSION_MAJOR >= 3
+static arduino_panic_handler_t on_panic;
+
+void set_arduino_panic_handler(arduino_panic_handler_t handler, void*) { on_panic = handler; }
+
+void simulated_panic() {
+  arduino_panic_info_t info = {};
+  if (on_panic != nullptr) on_panic(&info, nullptr);
+}
+#else
+void __wrap_esp_panic_handler(void* info);
+void __real_esp_panic_handler(void*) {}
+
+void simulated_panic() { __wrap_esp_panic_handler(nullptr); }
+#endif
+
 esp_reset_reason_t esp_reset_reason(void) { return chip.reset; }
 
 uint32_t esp_random(void) { return chip.random; }
@@ -323,6 +405,7 @@ esp_err_t esp_timer_create(const esp_timer_create_args_t* create_args,
 }
 
 esp_err_t esp_timer_start_periodic(esp_timer_handle_t, uint64_t period_us) {
+  expect(timer.period_us == 0, "a timer that runs already");
   timer.period_us = period_us;
   timer.due_us = is_timer_taken ? kNever : chip.now_us + period_us;
   return ESP_OK;
@@ -354,19 +437,26 @@ esp_err_t esp_task_wdt_delete(TaskHandle_t handle) {
 #endif
 
 esp_err_t esp_task_wdt_add(TaskHandle_t) {
+  expect(chip.restart_ms != 0, "the task watchdog before it has begun");
+  chip.is_watched = true;
   chip.fed_us = chip.now_us;
   return ESP_OK;
 }
 
 esp_err_t esp_task_wdt_reset(void) {
+  expect(chip.is_watched, "the task watchdog fed by who is not watched");
   chip.fed_us = chip.now_us;
   return ESP_OK;
 }
 
-esp_err_t nvs_open(const char*, nvs_open_mode_t, nvs_handle_t* out_handle) {
+esp_err_t nvs_open(const char* name, nvs_open_mode_t, nvs_handle_t* out_handle) {
+  expect(strlen(name) < 16, "a key of NVS that is too long");
+  expect(++chip.nvs_handles <= kMostHandles, "handles of NVS that are left open");
   *out_handle = 1;
   return ESP_OK;
 }
+
+void nvs_close(nvs_handle_t) { chip.nvs_handles--; }
 
 esp_err_t nvs_get_u32(nvs_handle_t, const char* key, uint32_t* out_value) {
   const auto found = chip.entries.find(key);
@@ -396,11 +486,21 @@ esp_err_t nvs_commit(nvs_handle_t) { return ESP_OK; }
 
 }  // extern "C"
 
-void HardwareSerial::begin(unsigned long, uint32_t, int8_t, int8_t, bool, unsigned long, uint8_t) {}
+void HardwareSerial::begin(unsigned long, uint32_t, int8_t, int8_t, bool, unsigned long, uint8_t) {
+  chip.has_uart = true;
+}
 
 void HardwareSerial::onReceiveError(OnReceiveErrorCb function) { on_error = function; }
-size_t HardwareSerial::setRxBufferSize(size_t new_size) { return chip.receive_room = new_size; }
-size_t HardwareSerial::setTxBufferSize(size_t new_size) { return chip.send_room = new_size; }
+
+size_t HardwareSerial::setRxBufferSize(size_t new_size) {
+  expect(!chip.has_uart, "room of a serial port that has begun");
+  return chip.receive_room = new_size;
+}
+
+size_t HardwareSerial::setTxBufferSize(size_t new_size) {
+  expect(!chip.has_uart, "room of a serial port that has begun");
+  return chip.send_room = new_size;
+}
 
 int HardwareSerial::available() {
   expect_free("Serial in a critical section");
@@ -421,6 +521,7 @@ int HardwareSerial::read() {
 }
 
 size_t HardwareSerial::write(uint8_t byte) {
+  expect(availableForWrite() > 0, "a byte for a serial port that has no room");
   chip.sent += static_cast<char>(byte);
   chip.sending++;
   return 1;

@@ -1,8 +1,8 @@
 // An ESP32 on a computer, for tests: what `core/` declares, done by variables.
 //
 // Knows time, pins, the GPIO matrix, LEDC, timers, UART 0, NVS and the watchdog; no instructions.
-// `simulated_radio` has the radios. What may not be called in a critical section ends the program
-// there.
+// `simulated_radio` has the radios. What the real parts refuse is refused: `refuses.md` says what,
+// and by whose word.
 
 #ifndef TINISCRIPT_ESP32_SIMULATED_CHIP_H_
 #define TINISCRIPT_ESP32_SIMULATED_CHIP_H_
@@ -51,9 +51,11 @@ struct SimulatedChip {
   size_t receive_room = 256;
   size_t send_room = 128;
   size_t sending = 0;  // bytes that the UART has still to send
+  bool has_uart = false;
 
   std::map<std::string, std::string> entries;  // of NVS
   uint32_t nvs_writes = 0;
+  int nvs_handles = 0;  // that are open
   bool is_nvs_full = false;
   size_t nvs_room = 15 * kPageEntries;  // of 16 pages: one stays free
   uint32_t cut_at = 0;  // the power fails at this write; 0: it does not
@@ -62,10 +64,12 @@ struct SimulatedChip {
 
   uint32_t restart_ms = 0;  // of the task watchdog; 0: it does not run
   uint64_t fed_us = 0;
+  bool is_watched = false;   // the main loop, by it
   bool watches_idle = true;  // the task watchdog, that of core 0, which nobody feeds meanwhile
   bool has_restarted = false;
 
   bool is_heap_full = false;  // no stack finds room
+  std::atomic<bool> has_wifi{false};
 
   bool is_ledc_stuck = false;  // no duty changes any more
 
@@ -76,6 +80,10 @@ struct SimulatedChip {
 
 extern SimulatedChip chip;
 
+// Ends the program with "MISUSE" and a row of `refuses.md`, unless it is so.
+void expect(bool is_so, const char* what);
+void expect_free(const char* what);  // of a critical section
+
 // Lets time pass; what is due meanwhile happens at its microsecond.
 void pass_us(uint64_t us);
 
@@ -83,6 +91,9 @@ void pass_us(uint64_t us);
 uint8_t output_of(uint8_t pin);
 
 void set_input(uint8_t pin, bool level);
+
+// What the sketch does in a panic, before anything is printed.
+extern "C" void simulated_panic();
 
 // The bytes that a reset leaves alone.
 std::string noinit();

@@ -12,9 +12,12 @@
 #include <string.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <deque>
 #include <map>
 #include <mutex>
+
+#include "simulated_chip.h"
 
 WiFiClass WiFi;
 MDNSResponder MDNS;
@@ -32,8 +35,14 @@ BLEService service;
 BLEAdvertising advertising;
 BLECharacteristic characteristics[2];
 size_t made;
+bool has_le;
+bool has_server;
+bool has_started;  // its service
+uint16_t agreed_mtu = 23;
 BLEServerCallbacks* on_client;
 BLECharacteristicCallbacks* on_write;
+BLECharacteristicCallbacks* on_taken;  // of notifications
+bool is_congested;
 std::string written;
 std::string value;
 bool is_advertising;
@@ -46,13 +55,36 @@ bool has_port_client;
 std::deque<uint8_t> port_in;
 std::string port_out;
 
+// Both kinds of Bluetooth, which begin the same controller.
+constexpr uint16_t kBeginningMs = 20;
+std::atomic<bool> bluetooth_begins{false};
+std::atomic<bool> has_bluetooth{false};
+
 // WiFi
 wifi_mode_t wifi_mode = WIFI_OFF;
+bool has_modem_sleep = true;
+std::atomic<bool> has_network_stack{false};
+std::atomic<int> sockets{0};
+constexpr int kMostSockets = 16;
 std::string near_name;
 std::string near_password;
 uint16_t bound_port;
 std::map<std::string, std::string> addresses = {{"localhost", "127.0.0.1"}};
 std::map<std::string, uint16_t> waits_ms;  // until a name is looked up
+
+// The controller takes its time, in which other tasks go on.
+void begin_bluetooth() {
+  expect(!bluetooth_begins.exchange(true), "Bluetooth that begins in two tasks at once");
+  if (!has_bluetooth) vTaskDelay(kBeginningMs);
+  has_bluetooth = true;
+  bluetooth_begins = false;
+}
+
+// Of whoever holds the lock.
+void look_at_sleep() {
+  expect(has_modem_sleep || !has_bluetooth || (wifi_mode & WIFI_STA) == 0,
+         "WiFi without modem sleep beside Bluetooth");
+}
 
 }  // namespace
 
@@ -66,6 +98,7 @@ void low_energy_connect() {
     is_advertising = false;
     is_connected = true;
     has_subscribed = false;
+    agreed_mtu = 23;
     told = on_client;
   }
   told->onConnect(&server);
@@ -86,6 +119,7 @@ void low_energy_agree(uint16_t mtu) {
   {
     const Lock lock(guard);
     if (!is_connected) return;
+    agreed_mtu = mtu < 23 ? 23 : mtu > 247 ? 247 : mtu;
   }
   esp_ble_gatts_cb_param_t its = {};
   its.mtu.mtu = mtu;
@@ -95,6 +129,11 @@ void low_energy_agree(uint16_t mtu) {
 void low_energy_subscribe(bool has) {
   const Lock lock(guard);
   has_subscribed = has;
+}
+
+void low_energy_congest(bool is_so) {
+  const Lock lock(guard);
+  is_congested = is_so;
 }
 
 void low_energy_write(const std::string& bytes) {
@@ -164,7 +203,9 @@ bool BluetoothSerial::begin(String localName, bool, bool) {
 #else
 bool BluetoothSerial::begin(String localName, bool) {
 #endif
+  begin_bluetooth();
   const Lock lock(guard);
+  look_at_sleep();
   settings.serial_port = localName.c_str();
   return true;
 }
@@ -194,34 +235,46 @@ size_t BluetoothSerial::write(const uint8_t* buffer, size_t size) {
 }
 
 void BLECharacteristicCallbacks::onWrite(BLECharacteristic*) {}
+void BLECharacteristicCallbacks::onStatus(BLECharacteristic*, Status, uint32_t) {}
 void BLEServerCallbacks::onConnect(BLEServer*) {}
 void BLEServerCallbacks::onDisconnect(BLEServer*) {}
 void BLEServerCallbacks::onMtuChanged(BLEServer*, esp_ble_gatts_cb_param_t*) {}
 
-bool BLE2902::getNotifications() {
-  const Lock lock(guard);
-  return has_subscribed;
+void BLECharacteristic::addDescriptor(BLEDescriptor*) {
+  expect(!has_started, "a part of a service that has started");
 }
-
-void BLECharacteristic::addDescriptor(BLEDescriptor*) {}
 uint8_t* BLECharacteristic::getData() { return reinterpret_cast<uint8_t*>(&written[0]); }
 size_t BLECharacteristic::getLength() { return written.size(); }
 void BLECharacteristic::setCallbacks(BLECharacteristicCallbacks* pCallbacks) {
   const Lock lock(guard);
-  on_write = pCallbacks;
+  (this == characteristics ? on_taken : on_write) = pCallbacks;
 }
 void BLECharacteristic::setValue(uint8_t* data, size_t size) {
   value.assign(reinterpret_cast<const char*>(data), size);  // of the radio's task alone
 }
 void BLECharacteristic::notify(bool) {
-  const Lock lock(guard);
-  if (is_connected && has_subscribed) notified.push_back(value);
+  typedef BLECharacteristicCallbacks Callbacks;
+  Callbacks::Status status = Callbacks::SUCCESS_NOTIFY;
+  {
+    const Lock lock(guard);
+    if (!is_connected) {
+      status = Callbacks::ERROR_NO_CLIENT;
+    } else if (!has_subscribed) {
+      status = Callbacks::ERROR_NOTIFY_DISABLED;
+    } else if (is_congested) {
+      status = Callbacks::ERROR_GATT;
+    } else {
+      notified.push_back(value.substr(0, agreed_mtu - 3U));  // the stack cuts the rest off
+    }
+  }
+  if (on_taken != nullptr) on_taken->onStatus(this, status, 0);
 }
 
 BLECharacteristic* BLEService::createCharacteristic(const char*, uint32_t) {
+  expect(!has_started, "a part of a service that has started");
   return &characteristics[made++];
 }
-void BLEService::start() {}
+void BLEService::start() { has_started = true; }
 
 BLEService* BLEServer::createService(const char*) { return &service; }
 void BLEServer::setCallbacks(BLEServerCallbacks* pCallbacks) {
@@ -232,14 +285,26 @@ void BLEServer::setCallbacks(BLEServerCallbacks* pCallbacks) {
 void BLEAdvertising::addServiceUUID(const char*) {}
 void BLEAdvertising::setScanResponse(bool) {}
 
-BLEServer* BLEDevice::createServer() { return &server; }
+BLEServer* BLEDevice::createServer() {
+  expect(has_le, "Bluetooth LE before BLEDevice::init");
+  has_server = true;
+  return &server;
+}
 BLEAdvertising* BLEDevice::getAdvertising() { return &advertising; }
 void BLEDevice::init(BleText deviceName) {
+  begin_bluetooth();
   const Lock lock(guard);
+  look_at_sleep();
+  has_le = true;
   settings.advertised = deviceName.c_str();
 }
-esp_err_t BLEDevice::setMTU(uint16_t) { return ESP_OK; }
+esp_err_t BLEDevice::setMTU(uint16_t mtu) {
+  expect(has_le, "Bluetooth LE before BLEDevice::init");
+  expect(mtu >= 23 && mtu <= 517, "an MTU that Bluetooth LE does not have");
+  return ESP_OK;
+}
 void BLEDevice::startAdvertising() {
+  expect(has_server && has_started, "advertising before the service has started");
   const Lock lock(guard);
   is_advertising = true;
 }
@@ -251,6 +316,7 @@ uint8_t IPAddress::operator[](int index) const { return bytes_[index]; }
 wl_status_t WiFiClass::begin(const char* ssid, const char* passphrase, int32_t, const uint8_t*,
                              bool) {
   const Lock lock(guard);
+  if (ssid[0] == 0 || strlen(ssid) > 32 || strlen(passphrase) > 64) return WL_CONNECT_FAILED;
   settings.network = ssid;
   settings.password = passphrase;
   settings.is_access_point = false;
@@ -267,6 +333,7 @@ wl_status_t WiFiClass::status() {
 
 bool WiFiClass::softAP(const char* ssid, const char* passphrase, int, int, int, bool) {
   const Lock lock(guard);
+  if (ssid[0] == 0 || strlen(passphrase) < 8) return false;
   settings.network = ssid;
   settings.password = passphrase;
   settings.is_access_point = true;
@@ -276,20 +343,39 @@ bool WiFiClass::softAP(const char* ssid, const char* passphrase, int, int, int, 
 bool WiFiClass::mode(wifi_mode_t m) {
   const Lock lock(guard);
   wifi_mode = m;
+  chip.has_wifi = m != WIFI_OFF;
+  if (chip.has_wifi) has_network_stack = true;
+  look_at_sleep();
   if (m == WIFI_OFF) settings.network = settings.password = "";
   return true;
 }
 
 bool WiFiClass::disconnect(bool, bool) { return true; }
-bool WiFiClass::softAPdisconnect(bool) { return true; }
-void WiFiClass::persistent(bool) {}
-bool WiFiClass::setHostname(const char*) { return true; }
-bool WiFiClass::setSleep(bool) { return true; }
+bool WiFiClass::softAPdisconnect(bool) {
+  expect((wifi_mode & WIFI_AP) != 0, "softAPdisconnect where there is no access point");
+  return true;
+}
+void WiFiClass::persistent(bool) {
+  expect(!has_network_stack, "WiFi that learns too late to keep no password");
+}
+bool WiFiClass::setHostname(const char*) {
+  expect(wifi_mode == WIFI_OFF, "a host name after WiFi has begun");
+  return true;
+}
+
+bool WiFiClass::setSleep(bool enabled) {
+  const Lock lock(guard);
+  has_modem_sleep = enabled;
+  look_at_sleep();
+  return true;
+}
+
 IPAddress WiFiClass::localIP() { return IPAddress(127, 0, 0, 1); }
 IPAddress WiFiClass::softAPIP() { return IPAddress(192, 168, 4, 1); }
 
 #if ESP_ARDUINO_VERSION_MAJOR >= 3
 bool MDNSResponder::begin(const String& hostName) {
+  expect(has_network_stack, "the network before WiFi has begun");
   const Lock lock(guard);
   settings.host = hostName.c_str();
   return true;
@@ -297,6 +383,7 @@ bool MDNSResponder::begin(const String& hostName) {
 void MDNSResponder::setInstanceName(const String& name) {
 #else
 bool MDNSResponder::begin(const char* hostName) {
+  expect(has_network_stack, "the network before WiFi has begun");
   const Lock lock(guard);
   settings.host = hostName;
   return true;
@@ -321,7 +408,9 @@ void MDNSResponder::end() {
 extern "C" {
 
 int lwip_accept(int s, struct sockaddr* addr, socklen_t* addrlen) {
-  return accept(s, addr, addrlen);
+  const int found = accept(s, addr, addrlen);
+  if (found >= 0) sockets++;
+  return found;
 }
 
 // On 127.0.0.1, at a port that is free: many robots are on one computer.
@@ -337,7 +426,10 @@ int lwip_bind(int s, const struct sockaddr*, socklen_t) {
   return 0;
 }
 
-int lwip_close(int s) { return close(s); }
+int lwip_close(int s) {
+  sockets--;
+  return close(s);
+}
 int lwip_connect(int s, const struct sockaddr* name, socklen_t namelen) {
   return connect(s, name, namelen);
 }
@@ -366,6 +458,14 @@ ssize_t lwip_send(int s, const void* dataptr, size_t size, int flags) {
 int lwip_setsockopt(int s, int level, int optname, const void* optval, socklen_t optlen) {
   return setsockopt(s, level, optname, optval, optlen);
 }
-int lwip_socket(int domain, int type, int protocol) { return socket(domain, type, protocol); }
+int lwip_socket(int domain, int type, int protocol) {
+  expect(has_network_stack, "the network before WiFi has begun");
+  if (sockets == kMostSockets) {
+    errno = ENFILE;
+    return -1;
+  }
+  sockets++;
+  return socket(domain, type, protocol);
+}
 
 }  // extern "C"

@@ -17,6 +17,7 @@ void low_energy_connect();
 void low_energy_disconnect();
 void low_energy_agree(uint16_t mtu);
 void low_energy_subscribe(bool has_subscribed);
+void low_energy_congest(bool is_so);  // its stack takes no notification meanwhile
 void low_energy_write(const std::string& bytes);
 std::vector<std::string> low_energy_notified();  // since the last call
 

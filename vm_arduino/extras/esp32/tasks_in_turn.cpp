@@ -1,9 +1,6 @@
 // Tasks that go on in the chip's time, one after the other: each run repeats.
 
 #include <freertos/task.h>
-#include <stdio.h>
-#include <stdlib.h>
-
 #include <condition_variable>
 #include <memory>
 #include <mutex>
@@ -66,12 +63,11 @@ extern "C" {
 
 BaseType_t xTaskCreatePinnedToCore(TaskFunction_t pvTaskCode, const char* const, const uint32_t,
                                    void* const pvParameters, UBaseType_t, TaskHandle_t* const,
-                                   const BaseType_t) {
+                                   const BaseType_t xCoreID) {
+  expect(xCoreID < portNUM_PROCESSORS, "a task on a core that the chip does not have");
   if (chip.is_heap_full) return 0;
-  if (chip.watches_idle && chip.restart_ms != 0 && chip.restart_ms < kLongestMs) {
-    fprintf(stderr, "MISUSE a task beside an idle task that is watched\n");
-    abort();
-  }
+  expect(!chip.watches_idle || chip.restart_ms == 0 || chip.restart_ms >= kLongestMs,
+         "a task that calculates for long beside an idle task that is watched");
   tasks.emplace_back(new Task{pvTaskCode, pvParameters, chip.now_us + 1000});
   std::thread(live, tasks.back().get()).detach();
   next_task_us = next_us;
@@ -80,6 +76,8 @@ BaseType_t xTaskCreatePinnedToCore(TaskFunction_t pvTaskCode, const char* const,
 }
 
 void vTaskDelay(const TickType_t xTicksToDelay) {
+  expect_free("vTaskDelay in a critical section");
+  if (own == nullptr) return pass_us(uint64_t{xTicksToDelay} * 1000);  // the main loop
   std::unique_lock<std::mutex> lock(turn);
   own->due_us = chip.now_us + uint64_t{xTicksToDelay} * 1000;
   active = nullptr;

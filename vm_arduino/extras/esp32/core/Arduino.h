@@ -52,12 +52,23 @@ unsigned long micros();
 // cores/esp32/esp32-hal-misc.c, weak there
 void initVariant();
 
+#if ESP_ARDUINO_VERSION_MAJOR >= 3
+// cores/esp32/esp32-hal.h
+typedef struct {
+  int core;
+  const char* reason;
+} arduino_panic_info_t;
+typedef void (*arduino_panic_handler_t)(arduino_panic_info_t* info, void* arg);
+void set_arduino_panic_handler(arduino_panic_handler_t handler, void* arg);
+#endif
+
 // cores/esp32/esp32-hal-ledc.h
 #if ESP_ARDUINO_VERSION_MAJOR >= 3
 // Since 3.1 the channel is an int8_t; a number from 0 to 15 is right for both.
 bool ledcAttachChannel(uint8_t pin, uint32_t freq, uint8_t resolution, uint8_t channel);
 bool ledcWrite(uint8_t pin, uint32_t duty);
 uint32_t ledcWriteTone(uint8_t pin, uint32_t freq);
+uint32_t ledcChangeFrequency(uint8_t pin, uint32_t freq, uint8_t resolution);
 #else
 uint32_t ledcSetup(uint8_t channel, uint32_t freq, uint8_t resolution_bits);
 void ledcAttachPin(uint8_t pin, uint8_t channel);
@@ -125,6 +136,23 @@ class HardwareSerial {
   size_t write(uint8_t byte);
 };
 
+#ifdef ARDUINO_USB_CDC_ON_BOOT
+// cores/esp32/HWCDC.h: the USB of an ESP32-C3 itself
+class HWCDC {
+ public:
+  void begin(unsigned long baud = 0);
+  size_t setRxBufferSize(size_t);
+  size_t setTxBufferSize(size_t);
+  void setTxTimeoutMs(uint32_t timeout);
+  int available();
+  int availableForWrite();
+  int read();
+  size_t write(uint8_t);
+};
+
+extern HWCDC Serial;
+#else
 extern HardwareSerial Serial;
+#endif
 
 #endif  // TINISCRIPT_CORE_ARDUINO_H_

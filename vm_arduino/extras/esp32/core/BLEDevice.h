@@ -27,15 +27,24 @@ class BLEServer;
 
 class BLEDescriptor {};
 
-class BLE2902 : public BLEDescriptor {
- public:
-  bool getNotifications();
-};
+class BLE2902 : public BLEDescriptor {};
 
 class BLECharacteristicCallbacks {
  public:
   virtual ~BLECharacteristicCallbacks() {}
+  typedef enum {
+    SUCCESS_INDICATE,
+    SUCCESS_NOTIFY,
+    ERROR_INDICATE_DISABLED,
+    ERROR_NOTIFY_DISABLED,
+    ERROR_GATT,
+    ERROR_NO_CLIENT,
+    ERROR_INDICATE_TIMEOUT,
+    ERROR_INDICATE_FAILURE
+  } Status;
+
   virtual void onWrite(BLECharacteristic* pCharacteristic);
+  virtual void onStatus(BLECharacteristic* pCharacteristic, Status s, uint32_t code);
 };
 
 class BLECharacteristic {

@@ -22,6 +22,7 @@ esp_err_t nvs_set_u32(nvs_handle_t handle, const char* key, uint32_t value);
 esp_err_t nvs_get_blob(nvs_handle_t handle, const char* key, void* out_value, size_t* length);
 esp_err_t nvs_set_blob(nvs_handle_t handle, const char* key, const void* value, size_t length);
 esp_err_t nvs_commit(nvs_handle_t handle);
+void nvs_close(nvs_handle_t handle);
 }
 
 #endif  // TINISCRIPT_CORE_NVS_H_

@@ -21,13 +21,16 @@ class KeptSettings {
   explicit constexpr KeptSettings(const char* key)
       : key_(key), changes_(0), seen_changes_(0), now_() {}
 
-  // The main loop calls these three. `load` is called once, before there is a task.
+  // The main loop calls these four. `load` is called once, before there is a task.
   void load() {
     size_t length = sizeof now_;
     nvs_handle_t handle;
-    const bool is_there = nvs_open(kNamespace, NVS_READWRITE, &handle) == ESP_OK &&
-                          nvs_get_blob(handle, key_, &now_, &length) == ESP_OK && now_.is_sound() &&
-                          length == now_.kept_bytes();
+    bool is_there = nvs_open(kNamespace, NVS_READWRITE, &handle) == ESP_OK;
+    if (is_there) {
+      is_there = nvs_get_blob(handle, key_, &now_, &length) == ESP_OK && now_.is_sound() &&
+                 length == now_.kept_bytes();
+      nvs_close(handle);
+    }
     if (is_there) {
       changes_ = 1;
     } else {
@@ -37,12 +40,22 @@ class KeptSettings {
 
   Answer keep(const Settings& settings) {
     nvs_handle_t handle;
-    const bool is_kept = nvs_open(kNamespace, NVS_READWRITE, &handle) == ESP_OK &&
-                         nvs_set_blob(handle, key_, &settings, settings.kept_bytes()) == ESP_OK &&
+    if (nvs_open(kNamespace, NVS_READWRITE, &handle) != ESP_OK) return Answer::kNotKept;
+    const bool is_kept = nvs_set_blob(handle, key_, &settings, settings.kept_bytes()) == ESP_OK &&
                          nvs_commit(handle) == ESP_OK;
+    nvs_close(handle);
     if (!is_kept) return Answer::kNotKept;
     use(settings);
     return Answer::kOk;
+  }
+
+  // Not over a reset.
+  void use(const Settings& settings) {
+    {
+      const CriticalSection critical;
+      now_ = settings;
+    }
+    __atomic_store_n(&changes_, changes_ + 1, __ATOMIC_RELEASE);  // it has one writer
   }
 
   const Settings& now() const { return now_; }
@@ -67,14 +80,6 @@ class KeptSettings {
 
  private:
   static constexpr const char* kNamespace = "tiniscript";
-
-  void use(const Settings& settings) {
-    {
-      const CriticalSection critical;
-      now_ = settings;
-    }
-    __atomic_store_n(&changes_, changes_ + 1, __ATOMIC_RELEASE);  // it has one writer
-  }
 
   const char* key_;
   uint32_t changes_;

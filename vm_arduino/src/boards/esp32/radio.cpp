@@ -27,8 +27,10 @@ struct Radio {
   uint32_t stack_bytes;
 };
 
-const Radio kSerialPortRadio = {"tini spp", serial_port_begin, serial_port_turn, kStackBytes};
-const Radio kLowEnergyRadio = {"tini ble", low_energy_begin, low_energy_turn, kStackBytes};
+void begin_bluetooth();
+
+const Radio kSerialPortRadio = {"tini spp", nullptr, serial_port_turn, kStackBytes};
+const Radio kLowEnergyRadio = {"tini ble", begin_bluetooth, low_energy_turn, kStackBytes};
 const Radio kNetworkRadio = {"tini wifi", network_begin, network_turn, kStackBytes};
 const Radio kBrokerRadio = {"tini mqtt", nullptr, broker_turn, kTlsStackBytes};
 
@@ -55,6 +57,14 @@ bool begin(const Radio& radio) {
                                  kPriority, nullptr, kCore) == pdPASS;
 }
 
+// Both kinds of Bluetooth begin the same controller and the same stack, without a lock: this task
+// begins one after the other. What a serial port sends makes it wait, so that has a task, too.
+void begin_bluetooth() {
+  const bool has_port = serial_port_begin();
+  low_energy_begin();
+  if (has_port) begin(kSerialPortRadio);
+}
+
 // The broker has a task of its own: looking its name up waits, and TLS calculates, for seconds. Who
 // uses no broker has no stack taken by it.
 void begin_broker() {
@@ -79,7 +89,6 @@ void radio_tick() {
   has_begun = true;
   wifi_load();
   broker_load();
-  if (has_serial_port()) begin(kSerialPortRadio);
   begin(kLowEnergyRadio);
   begin(kNetworkRadio);
 }

@@ -24,20 +24,17 @@ void radio_send();
 // Bytes that found no room. It wraps around to 0.
 uint8_t radio_lost();
 
-// What the tasks are made of. `begin` is called once in the task, `turn` every millisecond.
+// What the tasks are made of: what begins them is called once in a task, `turn` every millisecond.
 const RadioName& radio_name();
 Pipe& radio_pipe(Transport transport);
 
-void serial_port_begin();
+bool serial_port_begin();  // whether this chip has Bluetooth with a serial port
 void serial_port_turn();
 void low_energy_begin();
 void low_energy_turn();
 void network_begin();
 void network_turn();
 void broker_turn();
-
-// Whether this chip has Bluetooth with a serial port.
-bool has_serial_port();
 
 }  // namespace tiniscript
 

@@ -18,9 +18,7 @@ bool has_client;
 
 }  // namespace
 
-bool has_serial_port() { return true; }
-
-void serial_port_begin() { port.begin(radio_name().name); }
+bool serial_port_begin() { return port.begin(radio_name().name); }
 
 // `write` waits while the peer takes nothing: this task alone does.
 void serial_port_turn() {
@@ -42,8 +40,7 @@ void serial_port_turn() {
 
 namespace tiniscript {
 
-bool has_serial_port() { return false; }
-void serial_port_begin() {}
+bool serial_port_begin() { return false; }
 void serial_port_turn() {}
 
 }  // namespace tiniscript
