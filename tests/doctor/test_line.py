@@ -29,6 +29,7 @@ from tiniscript.link.messages import (
     SAVED,
     STATUSES,
     STOP_RUN,
+    WIFI_RESTS,
     YOURS,
 )
 from tiniscript.robots import load
@@ -108,6 +109,7 @@ def test_only_questions_are_asked_of_a_robot_and_nothing_that_stops_it(is_radio:
         ({"reset": 5}, "fine"),
         ({"reset": 99}, "fine"),
         ({"fault": STALL}, "hung"),
+        ({"features": WIFI_RESTS}, "wifi_rests"),
         ({"saved": SAVED_BY_NAME["LOW_SUPPLY"]}, "low_supply"),
     ],
 )

@@ -8,7 +8,15 @@ import pytest
 
 from tests.firmware.test_esp32_transports import AWAY, Ends, booted, ended, uploaded
 from tests.firmware.test_host_firmware import happened, image_of
-from tests.machines.esp32 import Esp32Robot, Kept, missing
+from tests.machines.esp32 import (
+    BROWN_OUT,
+    EXTERNAL,
+    POWER_ON,
+    TASK_WATCHDOG,
+    Esp32Robot,
+    Kept,
+    missing,
+)
 from tests.support.esp32_radio import (
     Bytes,
     LowEnergy,
@@ -23,7 +31,7 @@ from tests.support.owners import Keys
 from tiniscript.link import wifi
 from tiniscript.link.authority import RobotKey
 from tiniscript.link.frames import Frame, decoded, encoded
-from tiniscript.link.messages import AUTHORITY_MS, BY_NAME, written
+from tiniscript.link.messages import AUTHORITY_MS, BY_NAME, WIFI_RESTS, written
 from tiniscript.link.payloads import WifiReply
 from tiniscript.link.session import Session
 
@@ -350,3 +358,87 @@ def test_a_client_that_takes_nothing_stops_nobody() -> None:
         deaf.send(b"PING|check_connection\n" * 3)
         talk(robot, ends, 5)
     assert happened(robot)[-1] == "MOTORS 80 80"
+
+
+# -- a chip that restarts whenever WiFi begins --------------------------------------------------
+
+PANIC = 4  # of esp_reset_reason_t
+
+
+def restarted(robot: Esp32Robot, reset: int, lived_ms: int) -> Esp32Robot:
+    """Return the robot after a reset that comes so long after the one before."""
+    robot.wait(lived_ms)
+    kept = robot.kept()
+    robot.close()
+    again = Esp32Robot(kept=kept, reset=reset)
+    in_reach(again, SCHOOL.name.decode(), SCHOOL.password.decode())
+    again.wait(400)
+    return again
+
+
+def rests(robot: Esp32Robot) -> bool:
+    """Return whether its WiFi is off, as HELLO says as well."""
+    client = session(40, robot)
+    ends: Ends = [(None, client)]
+    assert ended(robot, ends, client.hello()) == "OK"
+    assert client.robot
+    says_so = bool(client.robot.values.features & WIFI_RESTS)
+    assert says_so == (radios(robot).joins == 0)
+    return says_so
+
+
+@pytest.mark.parametrize("reset", [PANIC, TASK_WATCHDOG, BROWN_OUT])
+def test_after_three_restarts_wifi_rests_and_the_cable_brings_it_back(reset: int) -> None:
+    keys = Keys()
+    robot, _ = joined(keys)
+    for is_third in (False, False, True):
+        robot = restarted(robot, reset, 1000)
+        assert rests(robot) == is_third
+    owner = remote(robot, keys, 41)
+    assert state(robot, owner) == ("STATION", "RESTS")
+    assert told(robot, [(None, owner)], owner).network == SCHOOL.name
+    robot = restarted(robot, POWER_ON, 1000)
+    assert rests(robot), "until somebody sets it again"
+    owner = remote(robot, keys, 42)
+    assert ended(robot, [(None, owner)], owner.join(SCHOOL)) == "OK"
+    talk(robot, [(None, owner)], 50)
+    assert state(robot, owner) == ("STATION", "READY") and not rests(robot)
+    for _ in range(2):
+        robot = restarted(robot, reset, 1000)
+        assert not rests(robot), "it counts anew"
+
+
+@pytest.mark.parametrize("between", [POWER_ON, EXTERNAL])
+def test_a_power_on_does_not_count(between: int) -> None:
+    robot, _ = joined(Keys())
+    for _ in range(4):
+        robot = restarted(robot, between, 1000)
+        assert not rests(robot)
+    for reset in (PANIC, between, PANIC, between):
+        robot = restarted(robot, reset, 1000)
+        assert not rests(robot)
+    assert rests(restarted(robot, PANIC, 1000))
+
+
+def test_a_restart_later_than_20_seconds_ends_the_row() -> None:
+    robot, _ = joined(Keys())
+    for lived_ms in (1000, 1000, 20_000, 1000, 1000, 20_000):
+        robot = restarted(robot, PANIC, lived_ms)
+        assert not rests(robot)
+
+
+def test_wifi_rests_where_nvs_is_full_and_without_wifi_nothing_counts() -> None:
+    keys = Keys()
+    robot, owner = joined(keys)
+    for _ in range(2):
+        robot = restarted(robot, PANIC, 1000)
+    kept = robot.kept()
+    full = Esp32Robot(kept=kept, reset=PANIC)
+    full.fill_nvs()
+    full.wait(400)
+    assert rests(full)
+    owner = remote(robot, keys, 43)
+    assert ended(robot, [(None, owner)], owner.forget_wifi()) == "OK"
+    for _ in range(4):
+        robot = restarted(robot, PANIC, 1000)
+        assert state(robot, remote(robot, keys, 44)) == ("OFF", "OFF")

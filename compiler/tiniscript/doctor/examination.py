@@ -22,6 +22,7 @@ from tiniscript.link.messages import (
     SAVED_SAVING,
     STATE_RUNNING,
     STATUSES,
+    WIFI_RESTS,
     YOURS,
 )
 from tiniscript.link.payloads import HelloReply, SentReply, StatusReply
@@ -68,6 +69,8 @@ def examined(
     if hello is None:
         return [_other_link(first)]
     findings = [*_versions(hello), *_kit(hello, expected), *_owner(hello, expected)]
+    if hello.features & WIFI_RESTS:
+        findings.append(sure("wifi_rests"))
     before = robot.status()
     restarts: list[Restart] = []
     if before is not None:

@@ -57,6 +57,7 @@ CAUSES: dict[str, str] = {
     "brown_out": WRONG,
     "hung": WRONG,
     "low_supply": WRONG,
+    "wifi_rests": WRONG,
     "lossy": WRONG,
     "falls_silent": WRONG,
     "of_another_owner": NOTE,

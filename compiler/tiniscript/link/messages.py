@@ -74,7 +74,7 @@ MODES = (
 # What a robot is able to do and who may drive it, in one number of the reply to HELLO. A robot whose
 # firmware is older has 0.
 TEXT_LEVEL, PLACES, OWNERS, OWNED, TEXT_ALLOWED = 0x0003, 0x0008, 0x0010, 0x0020, 0x0040
-YOURS, BY_TEACHER, SEALS = 0x0080, 0x0100, 0x0200
+YOURS, BY_TEACHER, SEALS, WIFI_RESTS = 0x0080, 0x0100, 0x0200, 0x0400
 FEATURES = (
     (TEXT_LEVEL, "TEXT_LEVEL", "Which level of text the robot reads, a number of the table below."),
     (PLACES, "PLACES", "It tells where its program is, when PING asks."),
@@ -87,6 +87,11 @@ FEATURES = (
         SEALS,
         "SEALS",
         "It seals what is said with a key, and takes nothing else from who has shown one.",
+    ),
+    (
+        WIFI_RESTS,
+        "WIFI_RESTS",
+        "Its WiFi is off after three restarts in a row, soon after it began.",
     ),
 )
 # The keys of a robot: `which` of CLAIM and AUTHENTICATE.

@@ -52,4 +52,8 @@ WIFI_STATES = (
     ("OTHER_NAME", "The broker's certificate is for a computer of another name."),
     ("EXPIRED", "The broker's certificate had ended before the robot was told of it."),
     ("NO_TLS", "The broker and the robot agree on no TLS, or the robot has no memory left for it."),
+    (
+        "RESTS",
+        "Off: three times in a row the robot has restarted soon after its start. JOIN, HOST and FORGET end that.",
+    ),
 )

@@ -61,6 +61,9 @@ struct RadioName {
 // False: the robot does not know yet.
 bool firmware_radio_name(RadioName* name);
 
+// Whether WiFi is off after restarts: HELLO says so.
+void firmware_wifi_rests(bool is_so);
+
 // Nobody is connected over a transport any more: ends a tethered run that it has started.
 void firmware_on_part(Transport transport);
 #else

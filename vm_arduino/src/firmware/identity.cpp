@@ -66,6 +66,11 @@ bool change_trim(const Trim& found) {
 }
 
 #ifdef tiniscript_transports
+void firmware_wifi_rests(bool is_so) {
+  uint8_t& features = port_identity().more_features;
+  features = static_cast<uint8_t>(is_so ? features | kMoreWifiRests : features & ~kMoreWifiRests);
+}
+
 bool firmware_radio_name(RadioName* name) {
   if (!has_booted()) return false;
   static const char kStart[] = "tini-";

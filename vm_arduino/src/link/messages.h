@@ -71,6 +71,7 @@ constexpr uint8_t kTextAllowed = 64;
 constexpr uint8_t kYours = 128;
 constexpr uint16_t kByTeacher = 256;
 constexpr uint16_t kSeals = 512;
+constexpr uint16_t kWifiRests = 1024;
 
 enum class Message : uint8_t {
   kHello = 1,  // Begins a session. The same `nonce` again is the same session.
@@ -252,6 +253,7 @@ enum class WifiState : uint8_t {
   kOtherName = 5,  // The broker's certificate is for a computer of another name.
   kExpired = 6,  // The broker's certificate had ended before the robot was told of it.
   kNoTls = 7,  // The broker and the robot agree on no TLS, or the robot has no memory left for it.
+  kRests = 8,  // Off: three times in a row the robot has restarted soon after its start. JOIN, HOST and FORGET end that.
 };
 
 // Faults that no instruction makes. The others are `Fault`.

@@ -22,7 +22,7 @@ struct tini_packed Identity {
   uint32_t id;
   uint32_t nonce;
   uint8_t features;
-  uint8_t more_features;  // kByTeacher and kSeals are here: two bytes take less code than a number
+  uint8_t more_features;  // kByTeacher and on are here: two bytes take less code than a number
                           // of both
   Reset reset;
 };
@@ -60,6 +60,7 @@ constexpr uint8_t kFaultBytes = 7;     // of a RobotStatus, from `fault` on
 constexpr uint8_t kFeaturesBytes = 2;  // of an Identity, from `features` on
 constexpr uint8_t kMoreByTeacher = kByTeacher >> 8;
 constexpr uint8_t kMoreSeals = kSeals >> 8;
+constexpr uint8_t kMoreWifiRests = kWifiRests >> 8;
 
 // The number of devices of the kit, and the robot's name.
 struct DeviceInfo {

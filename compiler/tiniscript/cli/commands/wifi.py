@@ -87,11 +87,11 @@ def _join(connection: Connection, name: bytes, is_access_point: bool) -> None:
     _tell(connection, told)
 
 
-def _ends() -> tuple[int, int]:
+def _ends() -> tuple[int, ...]:
     """Return the states from which nothing further follows by itself."""
     from tiniscript.link.wifi import STATES
 
-    return STATES.index("READY"), STATES.index("REFUSED")
+    return STATES.index("READY"), STATES.index("REFUSED"), STATES.index("RESTS")
 
 
 def _given(connection: Connection, network: Network) -> Reply[WifiReply]:

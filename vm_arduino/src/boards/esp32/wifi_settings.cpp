@@ -10,12 +10,14 @@
 #include <Arduino.h>
 #include <ESPmDNS.h>
 #include <WiFi.h>
+#include <esp_attr.h>
 
 #include "../../firmware/board.h"
 #include "broker_settings.h"
 #include "kept_settings.h"
 #include "radio.h"
 #include "tcp_clients.h"
+#include "watchdog.h"
 #include "zero_ended.h"
 
 namespace tiniscript {
@@ -24,19 +26,31 @@ namespace {
 
 constexpr uint8_t kReady = static_cast<uint8_t>(WifiState::kReady);
 constexpr uint32_t kJoinAgainMs = 15000;  // between two tries to join
+constexpr uint32_t kYoungMs = 20000;      // a restart so soon after WiFi began counts
+constexpr uint8_t kMostRestarts = 3;      // in a row: then WiFi rests
+constexpr uint8_t kRests = 0x80;          // flag of a mode
 
 // As in NVS. Texts end with a 0.
 struct Settings {
-  WifiMode mode;
+  uint8_t kept_mode;
   char network[kNetworkBytes + 1];
   char password[kPasswordBytes + 1];
 
+  WifiMode mode() const { return static_cast<WifiMode>(kept_mode & ~kRests); }
+  bool rests() const { return (kept_mode & kRests) != 0; }
   size_t kept_bytes() const { return sizeof *this; }
   bool is_sound() const {
-    return mode <= WifiMode::kAccessPoint && network[kNetworkBytes] == 0 &&
+    return mode() <= WifiMode::kAccessPoint && network[kNetworkBytes] == 0 &&
            password[kPasswordBytes] == 0;
   }
 };
+
+// Survives a restart, and has any value after power-on: whether WiFi has begun lately, and how many
+// of the starts before have ended in a restart soon after that.
+constexpr uint32_t kStarts = 0x5a3c1d00;
+constexpr uint32_t kYoung = 0x80;
+constexpr uint32_t kRestarts = 0x7f;
+RTC_NOINIT_ATTR uint32_t starts;  // changed in a critical section
 
 KeptSettings<Settings> kept("wifi");
 Settings wanted;  // the main loop's: what has come so far
@@ -46,6 +60,8 @@ uint32_t address;  // its bytes in their order
 
 // The network's task.
 uint32_t tried_ms;
+uint32_t began_ms;
+bool is_young;
 bool is_announced;
 Settings used;
 
@@ -55,39 +71,66 @@ void set_state(WifiState found) {
 
 void clear(Settings* settings) { __builtin_memset(settings, 0, sizeof *settings); }
 
+// The network's task.
+void set_young(bool is_so, uint32_t kept_bits) {
+  const CriticalSection critical;
+  starts = (starts & kept_bits) | kStarts | (is_so ? kYoung : 0);
+  is_young = is_so;
+}
+
+// The main loop's, after a reset: counts it, and returns whether there were too many.
+bool has_restarted_too_often() {
+  const Reset cause = watchdog_reset_cause();
+  const bool is_failure = cause == Reset::kBrownOut || cause == Reset::kWatchdog;
+  const bool is_known = (starts & ~(kYoung | kRestarts)) == kStarts;
+  uint32_t restarts = is_known ? starts & kRestarts : 0;
+  if (is_known && is_failure && (starts & kYoung) != 0) restarts++;
+  const bool is_often = restarts >= kMostRestarts;
+  starts = kStarts | (is_often ? 0 : restarts);
+  return is_often;
+}
+
+// Has what came kept: a new beginning.
+Answer keep() {
+  const Answer found = kept.keep(wanted);
+  if (found != Answer::kOk) return found;
+  clear(&wanted);
+  firmware_wifi_rests(false);
+  const CriticalSection critical;
+  starts &= ~kRestarts;
+  return found;
+}
+
 Answer set(WifiMode mode) {
   if (wanted.network[0] == 0 || length_of(wanted.password) < kLeastPassword) {
     return Answer::kBadValue;
   }
-  wanted.mode = mode;
-  const Answer found = kept.keep(wanted);
-  if (found == Answer::kOk) clear(&wanted);
-  return found;
+  wanted.kept_mode = static_cast<uint8_t>(mode);
+  return keep();
 }
 
 void leave() {
   if (is_announced) MDNS.end();
   is_announced = false;
-  WiFi.disconnect(true);
-  WiFi.softAPdisconnect(true);
-  WiFi.mode(WIFI_OFF);
-  set_state(WifiState::kOff);
+  WiFi.mode(WIFI_OFF);  // and nothing else: softAPdisconnect would start an access point first
+  set_state(used.rests() ? WifiState::kRests : WifiState::kOff);
   __atomic_store_n(&address, 0U, __ATOMIC_RELAXED);
+  set_young(false, kRestarts);
 }
 
 void begin() {
   leave();
-  WiFi.persistent(false);  // the core would keep the password a second time
-  if (used.mode == WifiMode::kOff) return;
+  if (used.mode() == WifiMode::kOff || used.rests()) return;
   WiFi.setHostname(radio_name().host);
   set_state(WifiState::kSearching);
-  tried_ms = static_cast<uint32_t>(millis());
-  if (used.mode == WifiMode::kAccessPoint) {
+  tried_ms = began_ms = static_cast<uint32_t>(millis());
+  set_young(true, kRestarts);
+  if (used.mode() == WifiMode::kAccessPoint) {
     WiFi.mode(WIFI_AP);
     WiFi.softAP(used.network, used.password);
   } else {
     WiFi.mode(WIFI_STA);
-    WiFi.setSleep(false);  // a stop would wait for the next beacon
+    // Modem sleep stays on: where Bluetooth is on, too, turning it off ends the chip.
     WiFi.begin(used.network, used.password);
   }
 }
@@ -109,14 +152,24 @@ void note_address(const IPAddress& found) {
 
 }  // namespace
 
-void wifi_load() { kept.load(); }
+void wifi_load() {
+  WiFi.persistent(false);  // the core would keep the password a second time
+  kept.load();
+  Settings its = kept.now();
+  if (has_restarted_too_often() && its.mode() != WifiMode::kOff) {
+    its.kept_mode |= kRests;
+    if (kept.keep(its) != Answer::kOk) kept.use(its);
+  }
+  firmware_wifi_rests(kept.now().rests());
+}
 
 bool wifi_is_there() { return __atomic_load_n(&state, __ATOMIC_RELAXED) == kReady; }
 
 bool wifi_turn() {
   if (kept.changed(&used)) begin();
-  if (used.mode == WifiMode::kOff) return false;
-  if (used.mode == WifiMode::kAccessPoint) {
+  if (used.mode() == WifiMode::kOff || used.rests()) return false;
+  if (is_young && static_cast<uint32_t>(millis()) - began_ms >= kYoungMs) set_young(false, 0);
+  if (used.mode() == WifiMode::kAccessPoint) {
     announce();
     note_address(WiFi.softAPIP());
     return true;
@@ -140,7 +193,7 @@ bool wifi_turn() {
 WifiReport board_wifi(WifiStep step) {
   if (step > WifiStep::kForget) return broker_report();
   WifiReport report = {};
-  report.mode = kept.now().mode;
+  report.mode = kept.now().mode();
   report.state = static_cast<WifiState>(__atomic_load_n(&state, __ATOMIC_RELAXED));
   const uint32_t found = __atomic_load_n(&address, __ATOMIC_RELAXED);
   __builtin_memcpy(report.address, &found, sizeof report.address);
@@ -169,7 +222,7 @@ Answer board_set_wifi(WifiStep step, const uint8_t* text, uint8_t length) {
     case WifiStep::kForget: {
       clear(&wanted);
       const Answer found = broker_forget();
-      return found == Answer::kOk ? kept.keep(wanted) : found;
+      return found == Answer::kOk ? keep() : found;
     }
     case WifiStep::kBroker:
     case WifiStep::kBrokerUser:
