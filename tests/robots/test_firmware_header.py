@@ -219,7 +219,7 @@ def test_the_header_of_an_esp32(tsc: Tsc) -> None:
         "#define tiniscript_ultrasonics",
         "constexpr Pwm kBuzzer = {{18}, 0};",
         "constexpr TwoWire kLeftMotor = {{{3}, 2}, {{4}, 3}};",  # a channel each, from an even one
-        "  return {{7}, {{10}}};",
+        "  return {{7}, {{6}}};",
     ):
         assert line in said.splitlines()
     assert "kPort" not in said and "ultrasonic_vectors" not in said

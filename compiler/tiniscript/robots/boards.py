@@ -92,7 +92,7 @@ _PWM_2560 = {
 # pulled down.
 # An ESP32-C3 has its flash on 12 to 17 (11 feeds it), its link on 20 and 21; its analog pins are
 # those of ADC1, as the chip's errata sheet tells not to use ADC2 (5). It reads 2, 8 and 9 at a
-# reset; 18 and 19 are its own USB, and 19 is pulled up until the firmware runs.
+# reset; 18 and 19 are its own USB, and 19 is pulled up until the firmware runs. So is 6, for JTAG.
 _ESP32 = _pins(0, 2, 4, 5, range(12, 20), 21, 22, 23, 25, 26, 27, 32, 33)
 _ESP32C3 = _pins(range(11), 18, 19)
 
@@ -167,7 +167,7 @@ CHIPS = {
             first_analog=None,
             servo_timer=None,
             tone_timer=None,
-            boot_pins=_pins(2, 8, 9, 18, 19),
+            boot_pins=_pins(2, 6, 8, 9, 18, 19),
             reset_pin=9,
             pwm_timers=3,
             pin_volts=3_300,

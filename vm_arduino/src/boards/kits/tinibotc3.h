@@ -26,11 +26,11 @@ constexpr Pwm kBuzzer = {{18}, 0};
 constexpr Pin kLight = kNoPin;
 constexpr Pin kBluetoothState = kNoPin;
 constexpr TwoWire kLeftMotor = {{{3}, 2}, {{4}, 3}};
-constexpr TwoWire kRightMotor = {{{5}, 4}, {{6}, 5}};
+constexpr TwoWire kRightMotor = {{{5}, 4}, {{10}, 5}};
 constexpr uint8_t kUltrasonics = 1;
 
 tini_always_inline Ultrasonic ultrasonic_at(uint8_t) {
-  return {{7}, {{10}}};
+  return {{7}, {{6}}};
 }
 
 inline void begin_devices() {
