@@ -58,12 +58,32 @@ def test_what_it_asks_of_tls_is_what_mbedtls_has() -> None:
     assert done.returncode == 0, done.stderr[:3000]
 
 
+@needs_host
+@pytest.mark.parametrize("major", [2, 3])
+def test_a_chip_whose_own_usb_is_the_port(major: int) -> None:
+    """A board of an ESP32-C3 without a USB chip: `Serial` is a HWCDC there."""
+    flags = (*flags_of("esp32c3", major), "-DARDUINO_USB_CDC_ON_BOOT=1", "-DARDUINO_USB_MODE=1")
+    command = ["g++", "-std=gnu++11", *STRICT, *flags, str(BOARD / "esp32" / "serial.cpp")]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr[:3000]
+
+
+@needs_host
+def test_a_core_with_another_bluetooth_is_told() -> None:
+    """Arduino's core 3.3 has NimBLE on an ESP32-C3, which hands on what was written late."""
+    command = ["g++", "-std=gnu++11", *STRICT, *flags_of("esp32c3", 3), "-DCONFIG_NIMBLE_ENABLED",
+               str(BOARD / "esp32" / "low_energy.cpp")]  # fmt: skip
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode != 0
+    assert "wants the core esp32 2.0.17 to 3.2" in done.stderr.splitlines()[0]
+
+
 # What the whole sketch asks of the core and of the compiler's library.
 CORE = {
     "analogRead", "analogReadResolution", "attachInterrupt", "esp_reset_reason",
     "esp_rom_gpio_connect_out_signal", "esp_task_wdt_add", "esp_task_wdt_init",
     "esp_task_wdt_reset", "esp_timer_create", "esp_timer_start_periodic", "gpio_get_level",
-    "gpio_intr_disable", "gpio_intr_enable", "gpio_set_level", "ledcWrite", "ledcWriteTone",
+    "gpio_intr_disable", "gpio_intr_enable", "ledcWrite", "nvs_close", "simulated_register",
     "micros", "millis", "nvs_commit", "nvs_get_blob", "nvs_get_u32", "nvs_open", "nvs_set_blob",
     "nvs_set_u32", "pinMode", "Serial", "simulated_enter_critical", "simulated_exit_critical",
     "lwip_accept", "lwip_bind", "lwip_close", "lwip_connect", "lwip_fcntl", "lwip_htonl",
@@ -83,8 +103,10 @@ RADIO = re.compile(
 OF_CLASSES = {"_ZdlPv", "_ZdlPvj", "__cxa_guard_acquire", "__cxa_guard_release", "__cxa_atexit",
               "__dso_handle", "atexit", "__cxa_pure_virtual"}  # fmt: skip
 OF_VERSION = {2: {"ledcSetup", "ledcAttachPin", "esp_task_wdt_delete",
-                  "xTaskGetIdleTaskHandleForCPU", "mbedtls_ssl_conf_min_version"},
-              3: {"ledcAttachChannel", "esp_task_wdt_reconfigure"}}  # fmt: skip
+                  "xTaskGetIdleTaskHandleForCPU", "mbedtls_ssl_conf_min_version",
+                  "__real_esp_panic_handler"},
+              3: {"ledcAttachChannel", "ledcChangeFrequency", "esp_task_wdt_reconfigure",
+                  "set_arduino_panic_handler"}}  # fmt: skip
 SERIAL = {"begin", "onReceiveError", "setRxBufferSize", "setTxBufferSize", "available",
           "availableForWrite", "read", "write"}  # fmt: skip
 LIBRARY = re.compile(r"__\w+(si|di|sf|df)[234]?\d*|mem(cpy|set|cmp|move)|__\w*div\w*|__\w*mod\w*")

@@ -173,6 +173,29 @@ def test_other_motors(motors: str) -> None:
         assert robot.output(25) == robot.output(26) == 0
 
 
+@pytest.mark.parametrize("major", [2, 3])
+@pytest.mark.parametrize("name", KITS)
+def test_a_panic_turns_the_motors_off_first(name: str, major: int) -> None:
+    """Before it prints or dumps anything, by registers alone."""
+    robot = switched_on(Esp32Robot(robots.load(name), major=major))
+    send(robot, computer(), AWAY)
+    robot.wait(50)
+    assert happened(robot) == ["MOTORS 80 80"]
+    robot.stick_ledc()
+    robot.panic()
+    pins = robot.robot.board.motors.pins.values()
+    assert [robot.output(pin) for pin in pins] == [0] * len(pins)
+
+
+def test_a_panic_leaves_servos_without_pulses() -> None:
+    robot = wired(SERVOS)
+    run(robot, "SI|F(1, 80)")
+    robot.wait(300)
+    assert robot.output(25) > 0
+    robot.panic()
+    assert robot.output(25) == robot.output(26) == 0
+
+
 def test_actuators_and_what_a_stop_makes_of_them() -> None:
     robot = wired(TWO_WIRE)
     assert (robot.output(13), robot.output(16), robot.output(17)) == (0, 0, 255)
@@ -219,6 +242,17 @@ def test_a_beep() -> None:
     robot.wait(400)
     assert happened(robot)[0] == "TONE 880" and "TONE 0" in happened(robot)
     assert robot.output(23) == 0
+
+
+@pytest.mark.parametrize("major", [2, 3])
+@pytest.mark.parametrize("name", KITS)
+@pytest.mark.parametrize("hertz", [31, 37, 76, 999, 1000, 20000])
+def test_every_tone_that_a_program_may_ask_for(name: str, major: int, hertz: int) -> None:
+    robot = switched_on(Esp32Robot(robots.load(name), major=major))
+    send(robot, computer(), f"SI|BEEP(0.2, {hertz});F(1, 50)")
+    robot.wait(100)
+    assert happened(robot)[0] == f"TONE {hertz}"
+    assert robot.output(robot.robot.board.buzzer) in (127, 128)
 
 
 def test_the_button_starts_what_is_stored_and_the_light_says_that_it_can() -> None:

@@ -23,7 +23,7 @@ from tests.support.esp32_radio import (
 from tests.support.owners import Keys
 from tiniscript import robots
 from tiniscript.link.connection import PendingRequest
-from tiniscript.link.frames import Frame, encoded
+from tiniscript.link.frames import Frame, decoded, encoded
 from tiniscript.link.messages import AUTHORITY_MS, BY_NAME, STATUS_NAMES, STOP_BYTES
 from tiniscript.link.session import Session
 
@@ -208,6 +208,33 @@ def test_slow_notifications_delay_nobody_else() -> None:
     slow.stop(robot.now_ms)
     talk(robot, ends, 20)
     assert happened(robot)[-1] == "MOTORS 0 0", "a stop needs no notification"
+
+
+def test_what_a_congested_stack_does_not_take_comes_later() -> None:
+    robot = booted()
+    once = Bytes(b"\0" + encoded(Frame(BY_NAME["STATUS"].number, 1, 0, b"")))
+    end = LowEnergy(robot)
+    ends: Ends = [(end, once)]
+    robot.radio("k", b"\1")
+    talk(robot, ends, 100)
+    assert not once.heard
+    for is_congested in (b"\0", b"\1") * 20:
+        robot.radio("k", is_congested)
+        talk(robot, ends, 3)
+    frame = decoded(once.heard.strip(b"\0"))
+    assert frame and len(end.lengths) == 2, "whole, and never asked for again"
+
+
+def test_what_waits_for_one_client_is_not_told_to_the_next_one() -> None:
+    robot = booted()
+    first = LowEnergy(robot)
+    robot.radio("k", b"\1")
+    talk(robot, [(first, session(1, robot))], 40)
+    first.leave()
+    second = LowEnergy(robot)
+    robot.radio("k", b"\0")
+    talk(robot, [(second, Bytes())], 100)
+    assert not second.lengths
 
 
 def test_a_client_that_takes_nothing_stops_nobody() -> None:

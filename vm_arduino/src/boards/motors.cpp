@@ -34,6 +34,9 @@ void tiniscript_motors_low() { begin_motors(); }
 #else
 // The Arduino core calls it before it starts the task of setup() and loop().
 extern "C" void initVariant() { begin_motors(); }
+
+// In RAM, and by registers alone: in a panic flash may be out of reach.
+extern "C" void IRAM_ATTR tiniscript_motors_low() { motors_low(); }
 #endif
 
 void board_motors(int16_t left, int16_t right) {

@@ -32,6 +32,8 @@ tini_always_inline void motors_off() {
   if (is_there(kStandby)) write(kStandby, false);
 }
 
+tini_always_inline void motors_low() { motors_off(); }
+
 // `level` is 1 to 255.
 tini_always_inline void drive(Bridge motor, bool is_backward, uint8_t level) {
   if (is_backward) {

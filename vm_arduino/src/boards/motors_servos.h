@@ -25,6 +25,14 @@ tini_always_inline void motors_off() {
   off(kRightMotor);
 }
 
+#ifndef __AVR__
+// Their pins, after a panic.
+tini_always_inline void motors_low() {
+  disconnect_inside(kServos[kLeftMotor.number]);
+  disconnect_inside(kServos[kRightMotor.number]);
+}
+#endif
+
 // At level 255 the pulse is 510 us longer or shorter.
 tini_always_inline void drive(TurningServo motor, bool is_backward, uint8_t level) {
   const uint16_t more = static_cast<uint16_t>(2 * level);

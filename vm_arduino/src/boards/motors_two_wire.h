@@ -24,6 +24,8 @@ tini_always_inline void motors_off() {
   off(kRightMotor);
 }
 
+tini_always_inline void motors_low() { motors_off(); }
+
 tini_always_inline void drive(TwoWire motor, bool is_backward, uint8_t level) {
   if (is_backward) {
     disconnect_inside(motor.forward);

@@ -12,6 +12,10 @@
 
 #include "radio.h"
 
+#ifdef CONFIG_NIMBLE_ENABLED
+#error "An ESP32-C3 wants the core esp32 2.0.17 to 3.2 by Espressif, or pio run: see docs/esp32.md"
+#endif
+
 namespace tiniscript {
 
 namespace {
@@ -26,8 +30,14 @@ constexpr uint16_t kMtuHead = 3;    // bytes of it that are no payload
 constexpr uint8_t kPauseTurns = 4;  // between two notifications: the stack takes no more at once
 
 uint16_t mtu = kLeastMtu;
+uint8_t clients;  // so far; the core's task counts
 BLECharacteristic* to_computer;
-BLE2902* subscription;
+
+// The radio's task: a notification that waits, and for which client.
+uint8_t waiting[kMostMtu - kMtuHead];
+size_t length;
+uint8_t its_client;
+bool is_sent;
 uint8_t pause_turns;
 
 Pipe& pipe() { return radio_pipe(Transport::kLowEnergy); }
@@ -41,10 +51,20 @@ class Heard : public BLECharacteristicCallbacks {
   }
 };
 
+// Of a notification. The stack takes none while it is congested, nor before somebody has asked for
+// them.
+class Taken : public BLECharacteristicCallbacks {
+ public:
+  void onStatus(BLECharacteristic*, Status its, uint32_t) override {
+    is_sent = its == Status::SUCCESS_NOTIFY;
+  }
+};
+
 class Client : public BLEServerCallbacks {
  public:
   void onConnect(BLEServer*) override {
     __atomic_store_n(&mtu, kLeastMtu, __ATOMIC_RELAXED);
+    __atomic_store_n(&clients, static_cast<uint8_t>(clients + 1), __ATOMIC_RELAXED);
     pipe().begin();
   }
   void onDisconnect(BLEServer*) override {
@@ -62,6 +82,7 @@ class Client : public BLEServerCallbacks {
 
 void low_energy_begin() {
   static Heard heard;
+  static Taken taken;
   static Client client;
   static BLE2902 notifications;
   BLEDevice::init(radio_name().name);
@@ -71,7 +92,7 @@ void low_energy_begin() {
   BLEService* const service = server->createService(kService);
   to_computer = service->createCharacteristic(kToComputer, BLECharacteristic::PROPERTY_NOTIFY);
   to_computer->addDescriptor(&notifications);
-  subscription = &notifications;
+  to_computer->setCallbacks(&taken);
   BLECharacteristic* const to_robot = service->createCharacteristic(
       kToRobot, BLECharacteristic::PROPERTY_WRITE | BLECharacteristic::PROPERTY_WRITE_NR);
   to_robot->setCallbacks(&heard);
@@ -87,14 +108,17 @@ void low_energy_turn() {
     pause_turns--;
     return;
   }
-  if (!pipe().is_connected() || !subscription->getNotifications()) return;
-  uint8_t bytes[kMostMtu - kMtuHead];
+  const uint8_t client = __atomic_load_n(&clients, __ATOMIC_RELAXED);
+  if (client != its_client) length = 0;  // what waits is for one before
+  its_client = client;
+  if (!pipe().is_connected()) return;
   const size_t most = static_cast<size_t>(__atomic_load_n(&mtu, __ATOMIC_RELAXED) - kMtuHead);
-  size_t length = 0;
-  while (length < most && pipe().take(bytes + length)) length++;
+  while (length < most && pipe().take(waiting + length)) length++;
   if (length == 0) return;
-  to_computer->setValue(bytes, length);
+  is_sent = false;
+  to_computer->setValue(waiting, length);
   to_computer->notify();
+  if (is_sent) length = 0;
   pause_turns = kPauseTurns;
 }
 

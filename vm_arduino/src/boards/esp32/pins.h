@@ -10,7 +10,9 @@
 #include <driver/gpio.h>
 #include <esp_rom_gpio.h>
 #include <freertos/FreeRTOS.h>
+#include <soc/gpio_reg.h>
 #include <soc/gpio_sig_map.h>
+#include <soc/soc.h>
 #include <stdint.h>
 
 #define tini_always_inline inline __attribute__((always_inline))
@@ -52,7 +54,17 @@ inline bool is_there(Pin pin) { return pin.number != kNoPin.number; }
 
 inline gpio_num_t gpio_of(Pin pin) { return static_cast<gpio_num_t>(pin.number); }
 
-inline void write(Pin pin, bool is_high) { gpio_set_level(gpio_of(pin), is_high ? 1 : 0); }
+// By registers, not by a function: that is in flash, which may be out of reach in a panic.
+tini_always_inline void write(Pin pin, bool is_high) {
+#ifdef GPIO_OUT1_W1TS_REG
+  if (pin.number >= 32) {
+    const uint32_t bit = 1U << (pin.number - 32);
+    REG_WRITE(is_high ? GPIO_OUT1_W1TS_REG : GPIO_OUT1_W1TC_REG, bit);
+    return;
+  }
+#endif
+  REG_WRITE(is_high ? GPIO_OUT_W1TS_REG : GPIO_OUT_W1TC_REG, 1U << (pin.number & 31));
+}
 
 inline bool is_high(Pin pin) { return gpio_get_level(gpio_of(pin)) != 0; }
 
@@ -92,10 +104,10 @@ inline void join(Pwm pwm) {
   esp_rom_gpio_connect_out_signal(pwm.pin.number, signal_of(pwm.channel), false, false);
 }
 
-// Sets the pin low, and joins it to its GPIO register: three writes of registers.
-inline void disconnect_inside(Pwm pwm) {
+// Sets the pin low, and joins it to its GPIO register: two writes of registers.
+tini_always_inline void disconnect_inside(Pwm pwm) {
   write(pwm.pin, false);
-  esp_rom_gpio_connect_out_signal(pwm.pin.number, SIG_GPIO_OUT_IDX, false, false);
+  REG_WRITE(GPIO_FUNC0_OUT_SEL_CFG_REG + 4U * pwm.pin.number, SIG_GPIO_OUT_IDX);
 }
 
 // Sets up the channel. The pin is low, and stays so until it is connected.

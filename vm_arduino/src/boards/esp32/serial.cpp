@@ -1,7 +1,8 @@
 // The link over USB: UART 0, behind the USB chip of the board.
 //
 // The driver of the core takes bytes in its interrupt, and the main loop hands them to the firmware
-// in each turn, with those of the radios. A break comes as a byte 0.
+// in each turn, with those of the radios. A break comes as a byte 0. Where a board has no USB chip,
+// `Serial` may be the USB of an ESP32-C3 itself.
 
 #ifdef ARDUINO_ARCH_ESP32
 
@@ -38,12 +39,20 @@ void on_error(hardwareSerial_error_t error) {
   }
 }
 
+inline void begin_port(HardwareSerial& port) { port.onReceiveError(on_error); }
+
+// The chip's own USB: it knows no errors of a line, and must not wait where nobody reads.
+template <class Port>
+void begin_port(Port& port) {
+  port.setTxTimeoutMs(0);
+}
+
 }  // namespace
 
 void uart_begin(uint32_t baud) {
   Serial.setRxBufferSize(kRoomBytes);
   Serial.setTxBufferSize(kRoomBytes);
-  Serial.onReceiveError(on_error);
+  begin_port(Serial);
   Serial.begin(baud);
 }
 

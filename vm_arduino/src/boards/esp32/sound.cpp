@@ -9,7 +9,21 @@ namespace tiniscript {
 namespace {
 
 constexpr uint32_t kRestHertz = 1000;  // the frequency that a silent channel has
-constexpr uint8_t kToneBits = 10;      // as ledcWriteTone sets them
+// A timer of LEDC divides its clock by 1023 at most: low tones need more bits, high ones fewer.
+constexpr uint8_t kToneBits = 10;
+constexpr uint8_t kLowBits = 14;  // of an ESP32-C3, at most
+constexpr uint16_t kLowHertz = 1000;
+
+// Half of each period is high.
+void play(uint16_t hertz) {
+  const uint8_t bits = hertz < kLowHertz ? kLowBits : kToneBits;
+#if ESP_ARDUINO_VERSION_MAJOR >= 3
+  ledcChangeFrequency(kBuzzer.pin.number, hertz, bits);
+#else
+  ledcSetup(kBuzzer.channel, hertz, bits);
+#endif
+  write_duty(kBuzzer, 1U << (bits - 1));
+}
 
 bool is_on;
 uint16_t next_hertz;  // the next note, or 0
@@ -27,11 +41,7 @@ void sound_begin() { begin_channel(kBuzzer, kRestHertz, kToneBits); }
 void sound_start(uint16_t hertz, uint32_t duration_ms) {
   sound_off();
   if (duration_ms == 0) return;
-#if ESP_ARDUINO_VERSION_MAJOR >= 3
-  ledcWriteTone(kBuzzer.pin.number, hertz);
-#else
-  ledcWriteTone(kBuzzer.channel, hertz);
-#endif
+  play(hertz);
   join(kBuzzer);
   end_ms = clock_ms() + duration_ms;
   is_on = true;

@@ -98,6 +98,7 @@ void begin_restart() {
 }  // namespace
 
 void watchdog_begin() {
+  panic_begin();
   cause = cause_of(esp_reset_reason());
   has_hung = cause == Reset::kWatchdog && last.mark == hung_mark();
   last.mark = 0;

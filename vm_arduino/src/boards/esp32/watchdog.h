@@ -16,6 +16,7 @@ namespace tiniscript {
 constexpr uint8_t kStallMs = 100;
 
 void watchdog_begin();
+void panic_begin();  // of `panic.cpp`
 
 // Call it at least every 10 ms.
 void watchdog_feed();
