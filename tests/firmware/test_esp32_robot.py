@@ -331,6 +331,15 @@ def test_a_main_loop_that_hangs_is_stopped_and_restarted() -> None:
     assert again.is_latched
 
 
+def test_a_main_loop_that_goes_on_while_it_is_looked_at_is_no_stall() -> None:
+    """On two cores the clock may tick between two reads of the timer's task."""
+    robot = driving()
+    for _ in range(5):
+        robot.go_on_beside_the_timer()
+        robot.wait(20)
+    assert robot.did == []
+
+
 def test_a_short_stall_is_a_fault_and_no_restart() -> None:
     robot = driving()
     robot.hang(150)

@@ -66,6 +66,7 @@ struct Timer {
 
 Timer timer = {nullptr, nullptr, 0, kNever};
 bool is_timer_taken;
+bool is_timer_on;
 OnReceiveErrorCb on_error;
 std::recursive_mutex critical;
 thread_local uint32_t in_critical;  // how many sections this core is in
@@ -101,7 +102,9 @@ void do_event() {
     set_input(chip.echo_pin, false);
   } else if (timer.due_us <= chip.now_us) {
     timer.due_us += timer.period_us;
+    is_timer_on = true;
     timer.callback(timer.argument);
+    is_timer_on = false;
   } else if (next_task_us != nullptr && next_task_us() <= chip.now_us) {
     run_tasks();
   } else {
@@ -258,7 +261,16 @@ void set_noinit(const std::string& bytes) {
 
 extern "C" {
 
-unsigned long millis() { return static_cast<unsigned long>(chip.now_us / 1000); }
+unsigned long millis() {
+  const unsigned long now = static_cast<unsigned long>(chip.now_us / 1000);
+  void (*const meanwhile)() = is_timer_on ? chip.meanwhile : nullptr;
+  if (meanwhile != nullptr) {
+    chip.meanwhile = nullptr;
+    chip.now_us += 1000;
+    meanwhile();
+  }
+  return now;
+}
 unsigned long micros() { return static_cast<unsigned long>(chip.now_us); }
 
 void pinMode(uint8_t pin, uint8_t mode) {

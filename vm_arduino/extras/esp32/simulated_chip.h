@@ -67,6 +67,7 @@ struct SimulatedChip {
   bool is_watched = false;   // the main loop, by it
   bool watches_idle = true;  // the task watchdog, that of core 0, which nobody feeds meanwhile
   bool has_restarted = false;
+  void (*meanwhile)() = nullptr;  // what another core does once, while the timer reads the clock
 
   bool is_heap_full = false;  // no stack finds room
   std::atomic<bool> has_wifi{false};

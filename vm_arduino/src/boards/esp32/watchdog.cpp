@@ -71,7 +71,8 @@ Reset cause_of(esp_reset_reason_t reason) {
 
 // The timer's task.
 void look(void*) {
-  if (read(is_hanging) || clock_ms() - read(fed_ms) <= kStallMs) return;
+  const uint32_t last_fed_ms = read(fed_ms);  // before the clock: it may be fed once more meanwhile
+  if (read(is_hanging) || clock_ms() - last_fed_ms <= kStallMs) return;
   motors_stop();
   actuators_off(true);
   if (!firmware_runs(&last.place)) last.place = Place();
