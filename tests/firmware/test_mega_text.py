@@ -68,7 +68,7 @@ def test_a_line_turns_the_motors_and_s_stops_them(mega: Uno) -> None:
 
 def test_a_wrong_line_leaves_what_runs(mega: Uno) -> None:
     assert typed(mega, "SI|LOOP(FOREVER)\r\nM(50,50)\r\nW(0.1)\r\nEND_LOOP\r\n", 200) == ["// OK"]
-    assert typed(mega, "SI|R(1,500)\r\n", 100) == ["// 8: Too small or too large"]
+    assert typed(mega, "SI|R(1,500)\r\n", 100) == ["// 500: 0 to 100"]
     assert states(mega) == FORWARD
 
 
@@ -91,8 +91,8 @@ def test_a_profile_in_spanish_makes_a_robot_that_answers_in_spanish(tmp_path: Pa
     needed()
     project = copied(tmp_path)
     for language, answer, other in (
-        ("es", "Muy chico o muy grande", "en"),
-        ("en", "Too small or too large", "es"),
+        ("es", "500: 0 a 100", "en"),
+        ("en", "500: 0 to 100", "es"),
     ):
         robot = robots.load("tinibot", "mega").speaking(language)
         (project / building.HEADER).write_text(building.header(robot), encoding="utf-8")
@@ -102,7 +102,7 @@ def test_a_profile_in_spanish_makes_a_robot_that_answers_in_spanish(tmp_path: Pa
         assert in_flash(elf, language) and not in_flash(elf, other)
         with Uno(elf, names=NAMES, board="mega", baud=BAUD, resets_on_open=False) as mega:
             mega.run_ms(300)
-            assert typed(mega, "SI|R(1, 500)\n", 100) == [f"// 9: {answer}"]
+            assert typed(mega, "SI|R(1, 500)\n", 100) == [f"// {answer}"]
 
 
 def test_its_words_and_its_end(mega: Uno) -> None:

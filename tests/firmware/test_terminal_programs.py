@@ -214,7 +214,7 @@ def test_picocom_drives_the_sketch_on_a_simulated_mega(sketch: Path, tmp_path: P
         mega.go()
         terminal = Terminal("picocom, CR LF, echo", mega.pty)
         terminal.type_letters("SI|R(1, 500)" + ENTER)
-        terminal.until("// 9: Too small or too large")
+        terminal.until("// 500: 0 to 100")
         terminal.type_letters(FOREVER + ENTER)
         terminal.until("// OK")
         mega.wait_for(lambda event: event.what == "pin" and states(mega) == FORWARD)

@@ -42,13 +42,73 @@ def typed(robot: HostFirmware, text: str | bytes, milliseconds: int = 30) -> lis
     return (sent + robot.wait(milliseconds)).decode("latin-1").splitlines()
 
 
-def test_a_robot_answers_in_its_language() -> None:
-    robot = HostFirmware(robots.load("tinibot").kit, is_spanish=True)
+# What a person types at a robot that stands, and what it answers in English and in Spanish.
+ANSWERS = (
+    ("S~00000000", "1: Line damaged. Send it again", "1: Linea danada. Enviala de nuevo"),
+    ("F(2,80)#", "8: Sign not known", "8: Signo desconocido"),
+    ("W(5.)", "3: Write it like 5 or 0.5", "3: Escribelo como 5 o 0.5"),
+    ("X = 2147483.648", "5: Most is 2147483.647", "5: Lo maximo es 2147483.647"),
+    ("SI F(1,50)", "4: SI| or SB| goes first", "4: SI| o SB| va al principio"),
+    ("PING|S", "6: PING|CHECK_CONNECTION alone", "6: PING|CHECK_CONNECTION solo"),
+    ("X=1; X + 1", "6: Begin with a word like F", "6: Empieza con algo como F"),
+    ("SI|FOO(1)", "4: Word not known", "4: Palabra desconocida"),
+    ("X = X + 1", "5: No value yet. Write X = 0", "5: Sin valor. Escribe X = 0"),
+    ("TASK", "1: This word is not for here", "1: Esta palabra no va aqui"),
+    ("F(1,50) R(1,50)", "9: Put ; before this", "9: Pon ; antes de esto"),
+    ("F 2, 80", "3: Put ( before this", "3: Pon ( antes de esto"),
+    ("F(2 80)", "5: Put , before this", "5: Pon , antes de esto"),
+    ("F(2,80;", "5: Check the ( and )", "5: Revisa los ( y )"),
+    ("W()", "2: A value is missing", "2: Falta un valor"),
+    ("F(1)", "3: Too many or too few values", "3: Sobran o faltan valores"),
+    ("F(1,500)", "500: 0 to 100", "500: 0 a 100"),
+    ("M(-100.4,0)", "-100.4: -100 to 100", "-100.4: -100 a 100"),
+    ("W(-1)", "-1: 0 to 2147483.647", "-1: 0 a 2147483.647"),
+    ("BEEP(1,5)", "5: 31 to 20000", "5: 31 a 20000"),
+    ("W(TRUE)", "3: Needs a number", "3: Debe ser un numero"),
+    ("IF(5)", "4: Ask, like DISTANCE < 10", "4: Pregunta: DISTANCE < 10"),
+    ("X=1<2<3", "6: Compare 2 values of one kind", "6: Compara 2 del mismo tipo"),
+    ("X=1+NOT TRUE", "5: Write (NOT X)", "5: Escribe (NOT X)"),
+    ("X=1;X=TRUE", "7: Keep it a number, or yes/no", "7: Que siga numero, o si/no"),
+    ("F(FOREVER,80)", "3: Only in LOOP, or with UNTIL", "3: Solo en LOOP, o con UNTIL"),
+    ("UNTIL(TRUE)", "1: UNTIL goes after F B L R W", "1: UNTIL va tras F B L R W"),
+    ("ENDIF", "1: There is no such block", "1: No hay tal bloque"),
+    ("BREAK", "1: BREAK goes in a loop", "1: BREAK va en un bucle"),
+    ("DISTANCE = 5", "1: It is another thing's name", "1: Es nombre de otra cosa"),
+    ("LOOP(1);" * 17, "134: Too many, or too deep", "134: Demasiado, o muy adentro"),
+    ("A" * 300, "1: Too long. Make it shorter", "1: Muy largo. Hazlo mas corto"),
+    ("SI|W(0)", "OK", "OK"),
+    ("S", "STOPPED", "DETENIDO"),
+    ("F(1,50)", "It was stopped. Begin with SI|", "Esta detenido. Empieza con SI|"),
+    ("SI|W(1/0)", "OK", "OK"),
+    ("F(1,50)", "It had a fault. Begin with SI|", "Hubo una falla. Empieza con SI|"),
+    ("SB|W(0)", "OK. The button starts it.", "OK. El boton lo inicia."),
+    ("LOOP(2)", "Waiting for END_LOOP", "Espero END_LOOP"),
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("is_spanish", [False, True])
+def test_every_sentence_in_its_language(is_spanish: bool) -> None:
+    robot = HostFirmware(robots.load("tinibot").kit, is_spanish=is_spanish)
     robot.wait(1000)  # a new robot saves who it is
-    assert typed(robot, "SI|F(0.1,50)\n", 200) == ["// OK", "// FIN"]
-    assert typed(robot, "S\n") == ["// PARADO"]
-    robot.wait(1500)
-    assert typed(robot, "SI|R(1,500)\n") == ["// 8: Muy chico o muy grande"]
+    for line, english, spanish in ANSWERS:
+        answers = typed(robot, line + "\n", 1100)
+        assert answers[0] == f"// {spanish if is_spanish else english}", line
+        robot.wait(4000)
+
+
+@pytest.mark.parametrize("is_spanish", [False, True])
+def test_who_makes_many_mistakes_is_told_that_once(is_spanish: bool) -> None:
+    """And is answered again after a pause."""
+    robot = HostFirmware(robots.load("tinibot").kit, is_spanish=is_spanish)
+    robot.wait(1000)
+    mute = ["// Son muchos. Espera 5 s." if is_spanish else "// Too many. Wait 5 s."]
+    for _ in range(2):
+        answers = [typed(robot, "FOO\n", 1100) for _ in range(30)]
+        assert answers[0] and answers[:16] == [answers[0]] * 16
+        assert answers[16:] == [mute] + [[]] * 13
+        robot.wait(3800)
+        assert typed(robot, "FOO\n", 1100) == []
+        robot.wait(4000)
 
 
 def holding(text: str = "SB|B(0.2, 60)", saves: bool = True) -> tuple[HostFirmware, Session]:
@@ -248,7 +308,7 @@ def test_a_fault_is_told_recorded_and_kept() -> None:
     again = status(switched_on(robot.memory()), computer(2))
     assert (again.fault, again.fault_at) == (2, values.fault_at)
     assert again.fault_program == values.fault_program
-    assert typed(robot, "F(0.2,50)\n") == ["// It was stopped. Begin with SI|"]
+    assert typed(robot, "F(0.2,50)\n") == ["// It had a fault. Begin with SI|"]
 
 
 def test_a_fault_names_the_image_of_the_text() -> None:

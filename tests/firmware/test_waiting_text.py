@@ -28,7 +28,7 @@ CHECKSUM_AT, BODY_AT = 10, 14  # in an image
 DRIVES = "SI|SHOW(-1337933.387)"
 WHOLE = ("F(0.01,30)", "SI|R(0.02,40)", "SI|M(20,20);W(0.01)", "SB|F(0.01,30)", DRIVES,
          "SI|LOOP(2);W(0.01);END_LOOP", "PING|CHECK_CONNECTION", "SI|X=9.87;SHOW(X)")  # fmt: skip
-OTHER = ("HELP", "FOO", "F(1,500)", "SI|LOOP(2)", "IF(TRUE)", "END_LOOP", "SI|F(1,", "+OK", "~",
+OTHER = ("HELP", "FOO", "F(1,500)", "SI|LOOP(2)", "IF(TRUE)", "ENDWHILE", "SI|F(1,", "+OK", "~",
          "(", "SI|" + "X=1.2345;" * 9, "SB|" + "9" * 70)  # fmt: skip
 LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz"
 

@@ -20,7 +20,7 @@ from tiniscript.link.messages import (
 
 needs_host = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a host machine")
 FORWARD = bytes.fromhex("448c50")  # F(5,80)
-MISTAKES = 16  # that a robot answers without a pause of five seconds
+ANSWERS = 17  # to mistakes, without a pause of five seconds: the last one says that these are all
 
 
 def cpp_items(stream: list[tuple[int, int]]) -> list[str]:
@@ -134,7 +134,7 @@ def test_an_echo_of_everything_starts_no_endless_conversation(
         for k in range(-(-len(echo) // piece_bytes)):
             piece = echo[k * piece_bytes : (k + 1) * piece_bytes]
             under_way.append((now_ms + 10 + late_ms + k * gap_ms, piece))
-    assert 1 <= len(answers) <= MISTAKES, answers
+    assert 1 <= len(answers) <= ANSWERS, answers
 
 
 @needs_host
@@ -143,7 +143,7 @@ def test_a_module_that_answers_each_line_gets_few_answers(line: bytes) -> None:
     cpp = cpp_link()
     cpp.begin(kit=KIT)
     answers = [cpp.step(now_ms, line).sent for now_ms in range(0, 60_000, 500)]
-    assert sum(bool(each) for each in answers) <= MISTAKES
+    assert sum(bool(each) for each in answers) <= ANSWERS
     assert cpp.step(60_000, b"SI|F(1,50)\r\n").sent == b"// OK\r\n"
     for now_ms in range(60_000, 66_000, 100):
         cpp.step(now_ms)

@@ -152,10 +152,16 @@ WRONG = {
     "W(TRUE)": ("WANTS_NUMBER", 3), "IF(5);S": ("WANTS_YES_NO", 4),
     "X=1<2<3": ("COMPARE", 6), "X=1=TRUE": ("COMPARE", 5), "X=1+NOT TRUE": ("NOT", 5),
     "X=TRUE<FALSE": ("COMPARE", 8), "X=TRUE<=FALSE": ("COMPARE", 9),
-    "X=1;X=TRUE": ("KIND", 7), "F(FOREVER,80)": ("FOREVER_HERE", 11),
+    "X=1;X=TRUE": ("KIND", 7), "F(FOREVER,80)": ("FOREVER_HERE", 3),
     "M(FOREVER,1)": ("FOREVER_HERE", 3),
     "UNTIL(TRUE)": ("UNTIL", 1), "ENDIF": ("BLOCK", 1), "LOOP(2);ELSE": ("BLOCK", 9),
-    "BREAK": ("BREAK", 1), "LOOP(2);DEF X": ("DEF", 13), "DISTANCE=5": ("TAKEN", 9),
+    "BREAK": ("BREAK", 1), "LOOP(2);DEF X": ("DEF", 13), "DISTANCE=5": ("TAKEN", 1),
+    "SI|FOO(1)": ("UNKNOWN_WORD", 4), "FOO // note": ("UNKNOWN_WORD", 1),
+    "X=1;X + 1": ("INSTRUCTION", 5), "X=1;X=TRUE // note": ("KIND", 7),
+    "X=TRUE+1+2": ("WANTS_NUMBER", 8), "X=1 AND TRUE OR FALSE": ("WANTS_YES_NO", 9),
+    "F(2 80)": ("COMMA", 5), "F(2-1 (80))": ("COMMA", 7), "X=MIN(1 DISTANCE)": ("COMMA", 9),
+    "F(2,80 5)": ("CLOSE", 8), "X=(1 2)": ("CLOSE", 6), "X=ABS(1 2)": ("CLOSE", 9),
+    "F(1,80;L(1,50)": ("CLOSE", 5), "W(1 2)": ("CLOSE", 5),
     "DEF F": ("RESERVED", 5), "TASK": ("RESERVED", 1), "ROUND(1)": ("RESERVED", 1),
 }  # fmt: skip
 

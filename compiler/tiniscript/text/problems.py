@@ -12,7 +12,11 @@ LONGEST = 40  # characters of a text
 
 
 class Problem(NamedTuple):
-    """`english` and `spanish` say what is wrong, or what to try."""
+    """`english` and `spanish` say what is wrong, or what to try.
+
+    In front of them stands a column; of RANGE, the number and the least that goes there, and behind
+    it the most.
+    """
 
     name: str
     english: str
@@ -36,7 +40,7 @@ PROBLEMS = (  # by number, from 1
     Problem("CLOSE",          "Check the ( and )",            "Revisa los ( y )"),
     Problem("VALUE",          "A value is missing",           "Falta un valor"),
     Problem("COUNT",          "Too many or too few values",   "Sobran o faltan valores"),
-    Problem("RANGE",          "Too small or too large",       "Muy chico o muy grande"),
+    Problem("RANGE",          " to ",                         " a "),  # between the two ends
     Problem("WANTS_NUMBER",   "Needs a number",               "Debe ser un numero"),
     Problem("WANTS_YES_NO",   "Ask, like DISTANCE < 10",      "Pregunta: DISTANCE < 10"),
     Problem("COMPARE",        "Compare 2 values of one kind", "Compara 2 del mismo tipo"),
@@ -51,6 +55,7 @@ PROBLEMS = (  # by number, from 1
     Problem("LIMIT",          "Too many, or too deep",        "Demasiado, o muy adentro"),
     Problem("FULL",           "Too long. Make it shorter",    "Muy largo. Hazlo mas corto"),
     Problem("LACKS",          "Not read by this robot",       "Este robot no lo lee"),
+    Problem("COMMA",          "Put , before this",            "Pon , antes de esto"),
 )
 # fmt: on
 

@@ -24,8 +24,8 @@ REMARKS = (  # in the order of their numbers
     Remark("OK_LOST",   "OK. The old program is lost.",     "OK. El programa anterior se perdio."),
     Remark("WAITING",   "Waiting for ",                     "Espero "),
     Remark("GIVEN_UP",  "Too late. Begin again.",           "Muy tarde. Empieza otra vez."),
-    Remark("STOPPED",   "STOPPED",                          "PARADO"),
-    Remark("LATCHED",   "It was stopped. Begin with SI|",   "Fue parado. Empieza con SI|"),
+    Remark("STOPPED",   "STOPPED",                          "DETENIDO"),
+    Remark("LATCHED",   "It was stopped. Begin with SI|",   "Esta detenido. Empieza con SI|"),
     Remark("SAVING",    "Still saving. Send it again.",     "Aun guardo. Envialo otra vez."),
     Remark("REFUSED",   "Not possible here.",               "Aqui no es posible."),
     Remark("NOT_OWNER", "Owned: tsc text on, or button 2 s.", "Con dueno: tsc text on, o boton 2s"),
@@ -39,5 +39,7 @@ REMARKS = (  # in the order of their numbers
     Remark("LEVEL_UNO", ", text uno",                       ", text uno"),  # behind the kit
     Remark("LEVEL_MEGA", ", text mega",                     ", text mega"),
     Remark("LEVEL_ESP32", ", text esp32",                   ", text esp32"),
+    Remark("FAILED",    "It had a fault. Begin with SI|",   "Hubo una falla. Empieza con SI|"),
+    Remark("MUTE",      "Too many. Wait 5 s.",              "Son muchos. Espera 5 s."),  # mistakes
 )
 # fmt: on

@@ -11,7 +11,7 @@ namespace {
 constexpr uint16_t kPatienceMs = 60000;  // for the rest of a line with a SETUP word or of a block
 constexpr uint8_t kBytesATurn = 8;
 // So many mistakes are answered without a pause of this length between two bytes: then something that
-// echoes or answers each line is on the other side.
+// echoes or answers each line is on the other side. The next one is told that.
 constexpr uint8_t kMostMistakes = 16;
 constexpr uint16_t kPauseMs = 5000;
 constexpr uint8_t kOtherWord = 5;  // in place of a count of letters
@@ -208,12 +208,14 @@ Console::Act Console::end_line(bool is_heard) {
       break;
     case Text::kProblem:
       is_ignoring_ = has_setup || was_waiting;
-      if (first_ != '+' && !is_heard && mistakes_ != kMostMistakes) {
+      if (first_ != '+' && !is_heard && mistakes_ <= kMostMistakes) {
         const uint8_t word = reader_.find_unknown(kSpoken);
         if (word < kChatter) break;
-        mistakes_++;
         is_talking_ = true;
-        say(word < kAsking ? Remark::kHelp : Remark::kMistake);
+        say(mistakes_ == kMostMistakes ? Remark::kMute
+            : word < kAsking           ? Remark::kHelp
+                                       : Remark::kMistake);
+        mistakes_++;
       }
       break;
     case Text::kGoesOn:

@@ -143,12 +143,16 @@ tini_noinline uint8_t Console::write(uint8_t* out) {
   remark_ = Remark::kNone;
   uint8_t text = text_of(remark);
   switch (remark) {
-    case Remark::kMistake:
-      put_number(reader_.column() * int32_t{1000});
+    case Remark::kMistake: {
+      const Problem problem = reader_.problem();
+      const bool is_range = problem == Problem::kRange;
+      put_number(is_range ? reader_.value() : reader_.column() * int32_t{1000});
       put(':');
       put(' ');
-      text = text_of(reader_.problem());
+      if (is_range) put_number(reader_.limit(0));
+      text = text_of(problem);
       break;
+    }
     case Remark::kHelp:
       if (put_words()) remark_ = Remark::kHelp;
       break;
@@ -166,10 +170,15 @@ tini_noinline uint8_t Console::write(uint8_t* out) {
       text = text_of(kLevel);
       break;
     }
+    case Remark::kLatched:
+      // Nobody has stopped it.
+      if (port_status().state == State::kFaulted) text = text_of(Remark::kFailed);
+      break;
     default:
       break;
   }
   put_text<put>(text);
+  if (text == text_of(Problem::kRange)) put_number(reader_.limit(4));
   if (remark == Remark::kWaiting) put_token(awaited_);
   if (remark == Remark::kFault) put_text<put>(name_of_fault(port_status().fault));
   return ended_line();

@@ -30,7 +30,7 @@ enum class Problem : uint8_t {
   kClose = 13,  // Check the ( and )
   kValue = 14,  // A value is missing
   kCount = 15,  // Too many or too few values
-  kRange = 16,  // Too small or too large
+  kRange = 16,  //  to 
   kWantsNumber = 17,  // Needs a number
   kWantsYesNo = 18,  // Ask, like DISTANCE < 10
   kCompare = 19,  // Compare 2 values of one kind
@@ -45,6 +45,7 @@ enum class Problem : uint8_t {
   kLimit = 28,  // Too many, or too deep
   kFull = 29,  // Too long. Make it shorter
   kLacks = 30,  // Not read by this robot
+  kComma = 31,  // Put , before this
 };
 
 }  // namespace tiniscript

@@ -195,6 +195,7 @@ void Reader::take(uint8_t letter) {
     token(kNumberToken);
   } else if (place != kBetween) {
     if (place == '/' && letter == '/') {
+      token_column_ = before_column_;
       place_ = kComment;
       return;
     }

@@ -81,6 +81,10 @@ class Reader {
   Problem problem() const { return problem_; }
   uint8_t column() const { return token_column_; }
 
+  // After kRange: the number in thousandths, and the least (0) or the most (4) that goes there.
+  int32_t value() const { return static_cast<int32_t>(value_); }
+  int32_t limit(uint8_t at) const;
+
  private:
   struct Block;
   struct Def;
@@ -110,6 +114,8 @@ class Reader {
   Problem parse(uint8_t token);
   Problem instruction(uint8_t token);
   Problem after_name(uint8_t token);
+  Problem before(Problem problem);
+  bool is_forever() const { return forever_column_ != 0; }
   void end_arguments();
   Problem end_move(uint8_t token);
   Problem end_assignment(uint8_t token);
@@ -162,6 +168,7 @@ class Reader {
   uint8_t letters_;  // of the word behind the code
   uint8_t column_;
   uint8_t token_column_;  // or that of the problem
+  uint8_t before_column_;  // of the token before
   uint8_t lead_;          // the first byte of a character of UTF-8 that is not whole
   uint8_t second_;
   uint8_t byte_;
@@ -181,7 +188,7 @@ class Reader {
   uint8_t target_;    // the variable or the actuator that it sets
   uint8_t brackets_;  // that are open
   uint8_t shape_;     // whether this argument is just a number
-  bool is_forever_;
+  uint8_t forever_column_;  // of FOREVER among these arguments, or 0
   uint8_t depth_;         // values that wait
   uint16_t value_kinds_;  // a bit for each, the last one lowest: whether it is a yes/no
   SensorBits read_;       // that are surely read

@@ -30,6 +30,13 @@ void Reader::token(uint8_t token) {
   }
   const Problem problem = parse(token);
   if (problem != Problem::kNone) report(problem);
+  before_column_ = token_column_;
+}
+
+// The problem with what stands before this token.
+Problem Reader::before(Problem problem) {
+  token_column_ = before_column_;
+  return problem;
 }
 
 Problem Reader::parse(uint8_t token) {
@@ -108,7 +115,7 @@ Problem Reader::instruction(uint8_t token) {
   }
   if (token < kFirstWord) return token == ')' ? Problem::kClose : Problem::kInstruction;
   state_ = kArguments;
-  is_forever_ = false;
+  forever_column_ = 0;
   const uint8_t* const row = kCommandRows[token - kFirstWord];
   kinds_ = flash_byte(row);
   op_ = flash_byte(row + 1);
@@ -128,11 +135,11 @@ Problem Reader::after_name(uint8_t token) {
   target_ = number_;
   if (token == token_of(Op::kEq)) {
     if (found == 0) {
-      if (variables_ == kVariables) return Problem::kLimit;
+      if (variables_ == kVariables) return before(Problem::kLimit);
       target_ = variables_;
       add_name(variables_, 0);
     } else if ((found & kIsVariable) == 0) {
-      return Problem::kTaken;
+      return before(Problem::kTaken);
     }
     if ((found & kIsYesNo) != 0) target_ |= kNameYesNo;
     kinds_ = kAnyKind;
@@ -140,7 +147,7 @@ Problem Reader::after_name(uint8_t token) {
     state_ = kOperand;
     return Problem::kNone;
   }
-  if (found == 0) return Problem::kUnknownWord;
+  if (found == 0) return before(Problem::kUnknownWord);
   if ((found & kIsActuator) != 0) {
     if (token != '(') return Problem::kOpen;
     kinds_ = (found & kIsYesNo) != 0 ? kYesNoKind : kDeviceRange;
@@ -148,7 +155,7 @@ Problem Reader::after_name(uint8_t token) {
     begin_value();
     return Problem::kNone;
   }
-  if ((found & kIsVariable) != 0) return Problem::kInstruction;
+  if ((found & kIsVariable) != 0) return before(Problem::kInstruction);
   if (!ends(token)) return Problem::kSeparator;
   if (kReadsDefs && found == kIsDef) return call();
   emit_numbered(byte_of(Op::kRead), byte_of(Op::kRead0), number_);
@@ -171,7 +178,7 @@ void Reader::end_arguments() {
   }
   uint8_t op = op_;
   if (what == kWordShow && (value_kinds_ & 1) != 0) op++;
-  if (what == kWordLoop && is_forever_) {
+  if (what == kWordLoop && is_forever()) {
     emit(byte_of(Op::kForever));
     open(kForeverBlock, 0);
   } else if (what == kWordLoop) {
@@ -198,7 +205,7 @@ Problem Reader::end_move(uint8_t token) {
   if (token == kWordUntil) {
     const uint8_t step = what_ == kWordW ? kWatchWait : kWatchMove;
     op = static_cast<uint8_t>(op + step);
-    if (is_forever_) op = static_cast<uint8_t>(op + step / 2);
+    if (is_forever()) op = static_cast<uint8_t>(op + step / 2);
     emit(op);
     first_ = length_;
     known_ = 0;
@@ -209,7 +216,10 @@ Problem Reader::end_move(uint8_t token) {
     state_ = kArguments;
     return Problem::kNone;
   }
-  if (is_forever_) return Problem::kForeverHere;
+  if (is_forever()) {
+    token_column_ = forever_column_;
+    return Problem::kForeverHere;
+  }
   emit(op);
   state_ = kInstruction;
   return no_end(token);

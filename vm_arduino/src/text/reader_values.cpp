@@ -18,7 +18,7 @@ tini_noinline uint8_t binding_of(uint8_t op) {
   return op >= byte_of(Op::kMul) ? kProducts : kSums;
 }
 
-inline int32_t flash_long(const uint8_t* at) {
+int32_t flash_long(const uint8_t* at) {
 #ifdef __AVR__
   return static_cast<int32_t>(pgm_read_dword(at));
 #else
@@ -67,7 +67,7 @@ Problem Reader::operand(uint8_t token) {
   } else if (token == kWordForever) {
     const uint8_t what = what_;
     if (state_ != kArgument || (what != kWordLoop && what > kWordW)) return Problem::kForeverHere;
-    is_forever_ = true;
+    forever_column_ = token_column_;
     state_ = kAfterForever;
   } else if (token == kWordNot) {
     if (binding_of(*stack_) > kNots) return Problem::kNot;
@@ -122,16 +122,19 @@ Problem Reader::operators(uint8_t token) {
   if (state_ == kOperator) {
     if (token >= kBinary) return binary(token & static_cast<uint8_t>(~kBinary));
     const bool is_end = token == ';';
-    if (!is_end && !is_comma && token != ')') {
-      return brackets_ != 0 ? Problem::kClose : Problem::kSeparator;
-    }
     while (*stack_ < kBracket) apply(pop());
     const uint8_t bracket = *stack_;
+    const uint8_t op = bracket & static_cast<uint8_t>(~(kBracket | kSecond));
+    // whether its argument may be the last one
+    const bool is_last = bracket == kBase ? kinds_ < 16
+                                          : (bracket & kSecond) != 0 || op == 0 ||
+                                                op == byte_of(Op::kAbs);
+    if (!is_end && !is_comma && token != ')') {
+      if (brackets_ == 0) return Problem::kSeparator;
+      return is_last ? Problem::kClose : Problem::kComma;
+    }
     if (bracket != kBase) {
       if (is_end) return Problem::kClose;
-      const uint8_t op = bracket & static_cast<uint8_t>(~(kBracket | kSecond));
-      // whether its argument may be the last one
-      const bool is_last = (bracket & kSecond) != 0 || op == 0 || op == byte_of(Op::kAbs);
       if (is_comma == is_last) return Problem::kCount;
       if (is_comma) {
         *stack_ |= kSecond;
@@ -187,13 +190,15 @@ void Reader::apply(uint8_t op) {
   uint8_t low = static_cast<uint8_t>(value_kinds_);
   const uint8_t kinds = low & all;
   const bool is_yes_no = op >= byte_of(Op::kEq);
+  Problem found = Problem::kNone;
   if (!is_yes_no) {
-    if (kinds != 0) report(Problem::kWantsNumber);
+    if (kinds != 0) found = Problem::kWantsNumber;
   } else if (op >= byte_of(Op::kNot)) {
-    if (kinds != all) report(Problem::kWantsYesNo);
+    if (kinds != all) found = Problem::kWantsYesNo;
   } else if (kinds != 0 && (kinds != all || op > byte_of(Op::kNe))) {
-    report(Problem::kCompare);
+    found = Problem::kCompare;
   }
+  if (found != Problem::kNone) report(before(found));
   if (!is_unary) {
     value_kinds_ >>= 1;
     depth_--;
@@ -217,10 +222,14 @@ Problem Reader::end_value() {
   if (kind == kAnyKind) return Problem::kNone;
   if (is_yes_no) return Problem::kWantsNumber;
   if (kind < kFirstRange || shape_ != kPlain) return Problem::kNone;
-  const uint8_t* const range = kind == kDeviceRange ? entry_ : kArgumentRanges[kind - kFirstRange];
-  const int32_t value = static_cast<int32_t>(value_);
-  if (value < flash_long(range) || value > flash_long(range + 4)) return Problem::kRange;
+  if (value() < limit(0) || value() > limit(4)) return Problem::kRange;
   return Problem::kNone;
+}
+
+tini_noinline int32_t Reader::limit(uint8_t at) const {
+  const uint8_t kind = kinds_ & 15;
+  const uint8_t* const range = kind == kDeviceRange ? entry_ : kArgumentRanges[kind - kFirstRange];
+  return flash_long(range + at);
 }
 
 }  // namespace tiniscript

@@ -35,6 +35,8 @@ enum class Remark : uint8_t {
   kLevelUno = 18,  // , text uno
   kLevelMega = 19,  // , text mega
   kLevelEsp32 = 20,  // , text esp32
+  kFailed = 21,  // It had a fault. Begin with SI|
+  kMute = 22,  // Too many. Wait 5 s.
 };
 
 }  // namespace tiniscript
