@@ -50,6 +50,12 @@ def pytest_sessionstart() -> None:
         signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
+def pytest_runtest_setup(item: pytest.Item) -> None:
+    is_root = hasattr(os, "geteuid") and os.geteuid() == 0
+    if item.get_closest_marker("root") and not is_root:
+        pytest.skip("only root can be another user")
+
+
 def pytest_sessionfinish(session: pytest.Session) -> None:
     """In CI a test that is skipped is a failure: there everything is to be had."""
     reporter = session.config.pluginmanager.get_plugin("terminalreporter")

@@ -44,9 +44,11 @@ SAID = {
     ),
     "no_pip": (
         "pip could not install; is this computer online? A proxy is given by the variable"
-        " HTTPS_PROXY, as http://proxy:3128. Without internet: docs/monday.en.md, a USB stick",
+        " HTTPS_PROXY, as http://proxy:3128. Without internet: docs/monday.en.md, a USB stick."
+        " What pip said is in {log}; at its end:\n{end}",
         "pip no pudo instalar; ¿hay internet? Un proxy se indica con la variable"
-        " HTTPS_PROXY, como http://proxy:3128. Sin internet: docs/lunes.es.md, una memoria USB",
+        " HTTPS_PROXY, como http://proxy:3128. Sin internet: docs/lunes.es.md, una memoria USB."
+        " Lo que dijo pip está en {log}; al final:\n{end}",
     ),
 }
 
@@ -89,8 +91,19 @@ def make(extras: str, root: Path = ROOT) -> Path:
     if not stamp.is_file() or stamp.read_text(encoding="utf-8") != wanted:
         say(said("installing"))
         pip = [str(python), "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
-        if subprocess.run([*pip, "--editable", f"{root}{extras}"]).returncode:
-            _fail(said("no_pip"))
+        pip += ["--no-input", "--editable", f"{root}{extras}"]
+        done = subprocess.run(
+            pip,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            encoding="utf-8",
+            errors="replace",
+        )
+        if done.returncode:
+            log = root / ".venv" / "pip.log"
+            log.write_text(done.stdout, encoding="utf-8")
+            rows = [row.strip() for row in done.stdout.splitlines() if "ERROR:" in row]
+            _fail(said("no_pip", log=log.relative_to(root).as_posix(), end="\n".join(rows[-2:])))
         stamp.write_text(wanted, encoding="utf-8")
     return python
 

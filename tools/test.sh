@@ -6,10 +6,7 @@
 set -eu
 . "$(dirname "$0")/venv.sh"
 make_venv "[test]"
-debian_packages g++ gcc-avr avr-libc binutils-avr simavr libsimavr-dev libelf-dev \
-    arduino-core-avr arduino-builder avrdude doctest-dev picocom \
-    clang-22 libclang-rt-22-dev gcc-xtensa-lx106 gcc-riscv64-unknown-elf qemu-system-misc zsh less dbus-daemon mosquitto \
-    libmbedtls-dev chromium firefox-esr
+test_packages
 
 cd "$ROOT"
 run() {

@@ -4,8 +4,15 @@
 ROOT=$(cd "$(dirname "$0")/.." && pwd)
 PYTHON="$ROOT/.venv/bin/python"
 
-say() { printf '\033[1m%s\033[0m\n' "$*" >&2; }
-fail() { printf '%s\n' "$*" >&2; exit 2; }
+# in_language ENGLISH SPANISH: the sentence in the person's language, as `tsc` finds it.
+in_language() {
+    case "${LC_ALL:-${LC_MESSAGES:-${LANG:-}}}" in
+    [eE][sS]*) printf '%s' "$2" ;;
+    *) printf '%s' "$1" ;;
+    esac
+}
+say() { printf '\033[1m%s\033[0m\n' "$(in_language "$@")" >&2; }
+fail() { printf '%s\n' "$(in_language "$@")" >&2; exit 2; }
 
 find_python() {
     for name in python3 python3.13 python3.12 python3.11 python3.10 python; do
@@ -18,14 +25,24 @@ find_python() {
     return 1
 }
 
+# apt_get WORDS: as root. Fails without a word where this user cannot become root.
+apt_get() {
+    if [ "$(id -u)" = 0 ]; then
+        apt-get "$@" >&2
+    else
+        command -v sudo >/dev/null 2>&1 && sudo apt-get "$@" >&2
+    fi
+}
+
 # Debian and Ubuntu keep a part of venv in a package of its own; it brings a Python, too.
 install_venv() {
-    command -v apt-get >/dev/null 2>&1 ||
-        fail "This Python cannot make virtual environments (no ensurepip). Install that part of it."
-    if [ "$(id -u)" = 0 ]; then sudo=""; else sudo="sudo"; fi
-    say "Installing python3-venv with apt-get"
-    { $sudo apt-get update -qq && $sudo apt-get install -y -qq python3-venv; } >&2 ||
-        fail "That did not work. Try yourself:  sudo apt-get install python3-venv"
+    command -v apt-get >/dev/null 2>&1 || fail \
+        "This Python cannot make virtual environments (no ensurepip). Install that part of it." \
+        "Este Python no puede crear entornos virtuales (falta ensurepip). Instala esa parte."
+    say "Installing python3-venv with apt-get" "Se instala python3-venv con apt-get"
+    { apt_get update -qq && apt_get install -y -qq python3-venv; } || fail \
+        "That did not work. Who administers this computer installs it as root, online:  apt-get install python3-venv" \
+        "No se pudo. Quien administra esta computadora lo instala como root, con internet:  apt-get install python3-venv"
 }
 
 # debian_packages NAMES: installs those that are missing, where apt-get is there to do it. A name
@@ -37,35 +54,49 @@ debian_packages() {
         dpkg -s "$package" >/dev/null 2>&1 || missing="$missing $package"
     done
     [ -n "$missing" ] || return 0
-    if [ "$(id -u)" = 0 ]; then sudo=""; else sudo="sudo"; fi
-    say "Installing with apt-get:$missing"
-    $sudo apt-get update -qq >&2 || say "apt-get could not ask for what is new."
+    say "Installing with apt-get:$missing" "Se instala con apt-get:$missing"
+    apt_get update -qq || say "apt-get could not ask for what is new." \
+        "apt-get no pudo preguntar qué hay de nuevo."
     found=""
     for package in $missing; do
         if apt-cache show "$package" >/dev/null 2>&1; then
             found="$found $package"
         else
-            say "This system has no package $package: the tests that need it will be skipped."
+            say "This system has no package $package: the tests that need it will be skipped." \
+                "Este sistema no tiene el paquete $package: se omiten las pruebas que lo usan."
         fi
     done
     [ -n "$found" ] || return 0
     # shellcheck disable=SC2086 # the names are words
-    $sudo apt-get install -y -qq --no-install-recommends $found >&2 ||
-        say "That did not work: the tests that need them will be skipped and say so."
+    apt_get install -y -qq --no-install-recommends $found ||
+        say "That did not work: the tests that need them will be skipped and say so." \
+            "No se pudo: las pruebas que los usan se omiten y lo dicen."
+}
+
+# What the tests need of Debian.
+test_packages() {
+    debian_packages g++ gcc-avr avr-libc binutils-avr simavr libsimavr-dev libelf-dev \
+        arduino-core-avr arduino-builder avrdude doctest-dev picocom clang-22 libclang-rt-22-dev \
+        gcc-xtensa-lx106 gcc-riscv64-unknown-elf qemu-system-misc zsh less dbus-daemon mosquitto \
+        libmbedtls-dev chromium firefox-esr
+}
+
+# Sets found to a Python that can make virtual environments.
+find_venv_python() {
+    found=$(find_python) || found=""
+    if [ -z "$found" ] && command -v apt-get >/dev/null 2>&1; then
+        install_venv
+        found=$(find_python) || found=""
+    fi
+    [ -n "$found" ] || fail \
+        "TiniScript needs Python 3.10 or newer, and there is none here. Debian 12 and Ubuntu 22.04 have one." \
+        "TiniScript necesita Python 3.10 o más nuevo, y aquí no hay. Debian 12 y Ubuntu 22.04 lo tienen."
+    "$found" -c 'import ensurepip' 2>/dev/null || install_venv
 }
 
 # make_venv EXTRAS: installs this repo, with EXTRAS such as [test], if anything changed since.
 make_venv() {
     found="$PYTHON"
-    if ! "$found" -m pip --version >/dev/null 2>&1; then
-        found=$(find_python) || found=""
-        if [ -z "$found" ] && command -v apt-get >/dev/null 2>&1; then
-            install_venv
-            found=$(find_python) || found=""
-        fi
-        [ -n "$found" ] ||
-            fail "TiniScript needs Python 3.10 or newer. On Debian and Ubuntu: sudo apt-get install python3-venv"
-        "$found" -c 'import ensurepip' 2>/dev/null || install_venv
-    fi
+    "$found" -m pip --version >/dev/null 2>&1 || find_venv_python
     "$found" "$ROOT/tools/environment.py" "$1" || exit 2
 }

@@ -20,18 +20,82 @@ pytestmark = pytest.mark.skipif(not shutil.which("sh"), reason="no sh: Windows h
 SPECIAL = ("PYTHONDONTWRITEBYTECODE", "PYTHONUNBUFFERED", "PYTHONOPTIMIZE", "PYTEST_ADDOPTS")
 
 
+HELPS = """
+say() { :; }
+find_venv_python() { :; }
+test_packages() { echo packages by $(id -u); }
+make_venv() {
+    mkdir -p .venv/bin
+    printf '#!/bin/sh\necho $* by $(id -u)\n' >.venv/bin/python
+    chmod +x .venv/bin/python
+}
+"""
+TESTS = """
+echo "$*, $(id -un)"
+env
+echo "FILES=$(ulimit -n)"
+git log --format=HISTORY=%s
+echo "THERE=$(ls -A | tr '\\n' ' ')"
+echo "PIP=$(cat "${PIP_CONFIG_FILE:-/dev/null}")"
+echo "NPM=$(cat "${NPM_CONFIG_USERCONFIG:-/dev/null}")"
+touch "$HOME/kept"
+exit 7
+"""
+
+
+def ci(folder: Path) -> tuple[list[str], dict[str, str]]:
+    """Run CI in a clone with an own test command. Return what it said, and its variables."""
+    files = {"tools/venv.sh": HELPS, "tools/test.sh": TESTS, "new": "",
+             ".ci/run": (ROOT / ".ci/run").read_text(encoding="utf-8")}  # fmt: skip
+    for name, text in files.items():
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_text(text, encoding="utf-8")
+    git = ["git", "-C", str(folder), "-c", "user.name=x", "-c", "user.email=x"]
+    subprocess.run(["git", "init", "--quiet", str(folder)], check=True)
+    subprocess.run([*git, "add", ".ci", "tools"], check=True)
+    subprocess.run([*git, "commit", "--quiet", "-m", "first"], check=True)
+    home = folder.parent / "home of root"
+    (home / ".config" / "pip").mkdir(parents=True, exist_ok=True)
+    (home / ".config" / "pip" / "pip.conf").write_text("[global] of root")
+    (home / ".npmrc").write_text("registry of root")
+    variables = {
+        **os.environ, **dict.fromkeys(SPECIAL, "1"), "PIP_INDEX_URL": "file:///no 'ne",
+        "https_proxy": "http://p:1", "SECRET": "x", "HOME": str(home),
+    }  # fmt: skip
+    variables.pop("XDG_CONFIG_HOME", None)
+    done = subprocess.run(["sh", ".ci/run"], cwd=folder, env=variables, capture_output=True,
+                          text=True)  # fmt: skip
+    assert done.returncode == 7, done.stderr
+    rows = done.stdout.splitlines()
+    return rows, dict(row.partition("=")[::2] for row in rows)
+
+
+@pytest.mark.skipif(os.name == "nt" or os.geteuid() == 0, reason="root is another user there")
 def test_ci_runs_the_tests_as_users_do(tmp_path: Path) -> None:
     """Without what hides failing tests; with the pip configuration that the machine has."""
-    for name, text in (("tools/test.sh", "env\n"), (".ci/run", (ROOT / ".ci/run").read_text())):
-        (tmp_path / name).parent.mkdir()
-        (tmp_path / name).write_text(text, encoding="utf-8")
-    variables = {**os.environ, **dict.fromkeys(SPECIAL, "1"), "PIP_INDEX_URL": "file:///none"}
-    done = subprocess.run(
-        ["sh", ".ci/run"], cwd=tmp_path, env=variables, capture_output=True, text=True, check=True
-    )
-    seen = dict(row.partition("=")[::2] for row in done.stdout.splitlines())
+    rows, seen = ci(tmp_path / "clone")
+    assert rows[0].startswith("-m not root, ")
     assert not set(SPECIAL) & set(seen)
-    assert (seen["CI"], seen["PIP_INDEX_URL"]) == ("true", "file:///none")
+    assert (seen["CI"], seen["PIP_INDEX_URL"]) == ("true", "file:///no 'ne")
+    assert int(seen["FILES"]) == 1024
+
+
+@pytest.mark.root
+def test_ci_of_root_runs_the_tests_as_a_new_user(tmp_path: Path) -> None:
+    """With packages of Debian, and the tests of other users, by root; again and again."""
+    clone = tmp_path / "clone"
+    for _ in range(2):
+        rows, seen = ci(clone)
+        assert rows[:3] == ["packages by 0", "-m pytest -p no:cacheprovider -m root by 0",
+                            f"-m not root, {seen['USER']}"]  # fmt: skip
+        assert not {*SPECIAL, "SECRET"} & set(seen)
+        assert (seen["CI"], seen["PIP_INDEX_URL"]) == ("true", "file:///no 'ne")
+        assert (seen["https_proxy"], seen["FILES"]) == ("http://p:1", "1024")
+        assert (seen["PIP"], seen["NPM"]) == ("[global] of root", "registry of root")
+        assert (seen["HISTORY"], seen["THERE"]) == ("first", ".ci .git .venv new tools ")
+        assert seen["HOME"].startswith("/home/") and not Path(seen["HOME"]).exists()
+        assert subprocess.run(["id", seen["USER"]], capture_output=True).returncode
+        shutil.rmtree(clone)
 
 
 def test_readme_says_what_stays_in_the_folder_for_temporary_files() -> None:
@@ -175,19 +239,58 @@ def test_an_old_python_is_told_where_to_get_one(
     environment.check_version((3, 10))
 
 
+@pytest.mark.parametrize(
+    ("language", "sentence"),
+    [("en", "pip could not install; is this computer online?"),
+     ("es", "pip no pudo instalar; ¿hay internet?")],
+)  # fmt: skip
 def test_a_computer_without_internet_is_told_of_proxies_and_the_stick(
-    folder: Path, tmp_path: Path
+    folder: Path, language: str, sentence: str
 ) -> None:
+    """Before what pip says of itself, of which the end is enough."""
     python = folder / ".venv" / "bin" / "python"
-    python.write_text('#!/bin/sh\ncase "$*" in *" install "*) exit 1;; esac\n')
+    said = "  Traceback (most recent call last)\n  ERROR: no setuptools\nERROR: no network\n"
+    python.write_text(f"#!/bin/sh\ncase $* in *' install '*) printf '{said}' >&2; exit 1;; esac\n")
     done = subprocess.run(
         [sys.executable, str(folder / "tools" / "environment.py"), "[virtual]"],
-        capture_output=True, text=True, env=ENGLISH,
+        capture_output=True, encoding="utf-8",
+        env={**ENGLISH, "LC_ALL": f"{language}_MX.UTF-8", "PYTHONUTF8": "1"},
     )  # fmt: skip
     assert done.returncode == 2
-    assert "HTTPS_PROXY" in done.stderr
-    assert "USB stick" in done.stderr
+    assert done.stderr.splitlines()[1].startswith(sentence), done.stderr
+    assert "HTTPS_PROXY" in done.stderr and "USB" in done.stderr
     assert "Traceback" not in done.stderr
+    assert done.stderr.endswith("\nERROR: no setuptools\nERROR: no network\n")
+    assert (folder / ".venv" / "pip.log").read_text() == said
+
+
+@pytest.mark.parametrize("why", ["no sudo", "no rights", "no network"])
+@pytest.mark.parametrize(("locale", "english"), [("C", True), ("es_MX.UTF-8", False)])
+def test_who_cannot_install_venv_is_not_told_to_do_it_again(
+    why: str, locale: str, english: bool, tmp_path: Path
+) -> None:
+    tools, programs = tmp_path / "tools", tmp_path / "bin"
+    tools.mkdir()
+    programs.mkdir()
+    shutil.copy(ROOT / "tools" / "venv.sh", tools)
+    sh, dirname = (shutil.which(name) for name in ("sh", "dirname"))
+    fakes = {
+        "id": "echo 1000", "dirname": f'exec {dirname} "$@"',
+        "python3": "case $* in *ensurepip*) exit 1;; esac", "apt-get": "exit 100",
+    }  # fmt: skip
+    if why != "no sudo":
+        fakes["sudo"] = "exit 1" if why == "no rights" else '"$@"'
+    for name, text in fakes.items():
+        (programs / name).write_text(f"#!{sh}\n{text}\n")
+        (programs / name).chmod(0o755)
+    script = tools / "script.sh"
+    script.write_text('set -eu\n. "$(dirname "$0")/venv.sh"\nmake_venv "[virtual]"\n')
+    done = subprocess.run([str(sh), script], capture_output=True, encoding="utf-8",
+                          env={"PATH": str(programs), "LANG": locale})  # fmt: skip
+    assert done.returncode == 2
+    assert ("Who administers" in done.stderr) == english
+    assert ("Quien administra" in done.stderr) != english
+    assert "sudo" not in done.stderr
 
 
 def test_the_first_command_drives_the_virtual_robot(

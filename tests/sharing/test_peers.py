@@ -110,7 +110,7 @@ def test_a_system_that_does_not_tell_lets_in(monkeypatch: pytest.MonkeyPatch) ->
 
 
 @linux
-@pytest.mark.skipif(os.geteuid() != 0, reason="only root can be another user")
+@pytest.mark.root
 @pytest.mark.skipif(bool(no_wasm()), reason=no_wasm() or "there is wasmtime")
 @pytest.mark.parametrize("how", ["stays", "leaves", "reset"])
 def test_another_user_moves_nothing(how: str) -> None:
