@@ -200,7 +200,9 @@ def test_the_spec_has_an_example_of_hashes() -> None:
     """The lines that are hashed, and what comes out, as `bytecode_spec.md` has it."""
     text = SPEC.read_text(encoding="utf-8")
     kit = robots.load("grabber").kit
-    rows = re.findall(r"^\| `(sensor|actuator) (.*)` \| `([0-9a-f]{4})` \|$", text, flags=re.M)
+    rows = re.findall(
+        r"^\| `grabber` \| \d \| `(sensor|actuator) (.*)` \| `([0-9a-f]{4})` \|$", text, flags=re.M
+    )
     lines = [f"{what} {rest}" for what, rest, _ in rows]
     assert lines == [line.rstrip("\n") for line in kit.lines()]
     assert [int(number, 16) for _, _, number in rows] == list(kit.hashes)
@@ -211,6 +213,15 @@ def test_the_spec_has_an_example_of_hashes() -> None:
     assert source
     image = compile_text(source[1], kit).image
     assert f"`{unpack(image).devices:04x}`" in text
+
+
+def test_the_spec_has_the_devices_of_every_robot() -> None:
+    text = SPEC.read_text(encoding="utf-8")
+    for name in robots.names():
+        kit = robots.load(name).kit
+        for line, number in zip(kit.lines(), kit.hashes, strict=True):
+            assert f"| `{line.rstrip()}` | `{number:04x}` |" in text
+        assert f"`{name}`" in text
 
 
 def test_the_spec_has_a_whole_image() -> None:

@@ -16,6 +16,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
+from tiniscript import robots
 from tiniscript.bytecode import image, opcodes, verify
 from tiniscript.kit import DEVICES
 from tiniscript.robots import firmware
@@ -29,6 +30,7 @@ from tools.generate.poster import posters
 
 COMMAND = "python -m tools.generate"
 LINE_LENGTH = 100
+KITS = ("tinibot", "liner", "grabber")  # that differ
 ROBOTS = ROOT / "compiler" / "tiniscript" / "robots"
 
 
@@ -202,6 +204,17 @@ def limit_table() -> str:
     return table(("what", "at most", "", "refused by"), rows)
 
 
+def device_table() -> str:
+    rows = []
+    for name in KITS:
+        kit = robots.load(name).kit
+        many = len(kit.sensors)
+        for k, (line, hashed) in enumerate(zip(kit.lines(), kit.hashes, strict=True)):
+            number = k if k < many else k - many
+            rows.append((f"`{name}`", number, f"`{line.rstrip()}`", f"`{hashed:04x}`"))
+    return table(("kit of", "number", "line", "hash"), rows)
+
+
 def cpp_header() -> str:
     """Return `bytecode.h`: what the C++ machine takes from the tables of the compiler."""
     from tools.generate.cpp_header import header
@@ -301,6 +314,7 @@ SPEC_TABLES: dict[str, Callable[[], str]] = {
     "roles": role_table,
     "faults": fault_table,
     "limits": limit_table,
+    "devices": device_table,
 }
 
 

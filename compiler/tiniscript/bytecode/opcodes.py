@@ -182,9 +182,9 @@ OPS = (
     _op(0x26, "NOT",             "",                    "a -- not-a",      "value", "TRUE if `a` is FALSE, else FALSE."),
     _op(0x27, "AND",             "",                    "a b -- a-and-b",  "value", "TRUE if both are, else FALSE."),
     _op(0x28, "OR",              "",                    "a b -- a-or-b",   "value", "TRUE if one is, else FALSE."),
-    _op(0x2A, "AND_THEN",        "to:fwd8",             "a --",            "join",  "If `a` is FALSE leave it and go to `to`."),
+    _op(0x2A, "AND_THEN",        "to:fwd8",             "a --",            "join",  "If `a` is FALSE go to `to` with `a` on the stack; else drop it."),
     _op(0x2B, "AND_THEN_FAR",    "to:fwd16",            "a --",            "join",  "The same, further."),
-    _op(0x2C, "OR_ELSE",         "to:fwd8",             "a --",            "join",  "If `a` is TRUE leave it and go to `to`."),
+    _op(0x2C, "OR_ELSE",         "to:fwd8",             "a --",            "join",  "If `a` is TRUE go to `to` with `a` on the stack; else drop it."),
     _op(0x2D, "OR_ELSE_FAR",     "to:fwd16",            "a --",            "join",  "The same, further."),
     # variables
     _op(0x30, "SET_VAR",         "v:variable",          "value --",        "plain", "Put the value into variable `v`."),
