@@ -11,13 +11,12 @@ from tests.machines.wasm import missing
 from tiniscript import robots
 from tiniscript.lessons import catalogue, text_judging
 from tiniscript.lessons.findings import Finding
-from tiniscript.lessons.judging import JUDGES, judged
+from tiniscript.lessons.judging import JUDGES
 from tiniscript.lessons.lesson import Answer, Lesson
 from tiniscript.lessons.markdown import blocks
 from tiniscript.lessons.sentences import sentence
 from tiniscript.lessons.sheet import MOVES, sheet
-from tiniscript.lessons.text_judging import explained, judged_text
-from tiniscript.library.compiling import compiled, image_of
+from tiniscript.library.compiling import compiled, maker
 from tiniscript.robots.profile import LANGUAGES
 
 FOLDERS = catalogue.folders()
@@ -41,18 +40,10 @@ def name_of(value: object) -> str:
 
 def findings_of(text: str, lesson: Lesson, seeds: range) -> list[Finding]:
     """Return what is missing in the first world where something is, or in the text."""
-    from tiniscript.lessons.running import run
+    from tiniscript.lessons.marking import Marking
 
     robot = robots.load(lesson.robot)
-    found = compiled(text.encode(), robot, "answer.ts", is_strict=True)
-    assert found.is_right, found.diagnostics
-    image = image_of(found, robot)
-    for seed in seeds:
-        done = run(image, robot, lesson, seed)
-        findings = judged(done, lesson)
-        if findings:
-            return explained(findings, text, lesson, done.ending) + judged_text(text, lesson)
-    return judged_text(text, lesson)
+    return list(Marking(text, maker(robot), robot, lesson, seeds).whole().findings)
 
 
 def test_there_are_twelve() -> None:

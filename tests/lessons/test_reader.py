@@ -45,6 +45,10 @@ CASES = [
     (HEAD + '[[criteria]]\nkind = "order"\nwords = ["sings"]\n', "sings, which is not a known word"),
     (HEAD + '[[criteria]]\nkind = "shows"\nwhat = "LINE_L"\n', "Write one of these: LIGHT_R"),
     (HEAD + '[[criteria]]\nkind = "stands_before"\nlow_cm = 9\nhigh_cm = 5\n', "is larger than criteria[1].high_cm"),
+    (HEAD + '[[criteria]]\nkind = "ends_in"\nat = "start"\nx_cm = [5, -5]\n', "the first number is not the smaller one"),
+    (HEAD + '[[criteria]]\nkind = "reaches"\nat = "start"\nwhat = "TIME"\n', "Write one of these: LIGHT_R"),
+    (HEAD + '[[criteria]]\nkind = "needs"\nwords = ["IF"]\n', "IF, which is not a known word"),
+    (HEAD + '[[criteria]]\nkind = "moves"\nat_most = 1\nahead = 3\n', "criteria[1].ahead"),
     (HEAD + TOUCH + '[[varies]]\npart = "walls[1]"\n', "world.toml has 0 of them"),
     (HEAD + TOUCH + '[[varies]]\npart = "start"\nx_cm = [5, -5]\n', "the first number is not the smaller one"),
     (HEAD + TOUCH + '[[varies]]\npart = "start"\nheading = [-900, 5]\n', "from -360 to 360"),
@@ -79,3 +83,18 @@ def test_answers_are_read_strictly(folder: Path) -> None:
     said = describe(found.value, "en")
     assert any("right[1].program is missing" in each for each in said)
     assert any("right[1].says" in each for each in said)
+
+
+def test_a_page_names_the_numbers_of_its_lesson(folder: Path) -> None:
+    pauses = '[[criteria]]\nkind = "pauses"\nat_least_seconds = 2.5\nat = [90, 80]\n'
+    (folder / "lesson.toml").write_text(HEAD + pauses, encoding="utf-8")
+    page = folder / "pupil.en.md"
+    page.write_text("{pauses.at_least_seconds} s, {pauses.way_cm} cm, {} {X}", encoding="utf-8")
+    assert catalogue.page(folder, catalogue.PUPIL, "en") == "2.5 s, 50 cm, {} {X}"
+    page.write_text("{pauses.seconds}", encoding="utf-8")
+    with pytest.raises(LessonRefused) as found:
+        catalogue.page(folder, catalogue.PUPIL, "en")
+    (said,) = describe(found.value, "en")
+    assert "pupil.en.md has {pauses.seconds}, which is no number of this lesson" in said
+    assert "pauses.at_least_seconds" in said
+    assert describe(found.value, "es") != [said]

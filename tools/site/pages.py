@@ -13,6 +13,8 @@ from html import escape
 from pathlib import Path, PurePosixPath
 from typing import NamedTuple
 
+from tiniscript.lessons import catalogue
+from tiniscript.lessons.numbers import filled
 from tools.site.documents import Document
 
 _FENCED = re.compile(r"(^ *```.*?^ *```$)", re.DOTALL | re.MULTILINE)
@@ -61,7 +63,10 @@ def page(source: str, on: Shelf) -> str:
     Raises Missing where a link leads to no file.
     """
     found: list[str] = []
-    text = (on.root / source).read_text(encoding="utf-8")
+    path = on.root / source
+    text = path.read_text(encoding="utf-8")
+    if (path.parent / "lesson.toml").is_file():
+        text = filled(text, source, catalogue.load(path.parent))
     for number, part in enumerate(_FENCED.split(text)):
         is_code = number % 2 == 1
         found.append(part if is_code else _LINK.sub(lambda link: _led(link, source, on), part))

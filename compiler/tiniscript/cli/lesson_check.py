@@ -134,11 +134,11 @@ class _Marker:
             from tiniscript.cli.robot.simulator_options import not_installed
 
             raise not_installed("virtual_needs_wasmtime", why) from None
-        from tiniscript.library.compiling import image_of
+        from tiniscript.library.compiling import maker
         from tiniscript.virtual.world import WorldRefused
 
-        image = image_of(compiled, self.robot)
-        marking = Marking(compiled.source.text, image, self.robot, self.lesson, self.seeds)
+        made = maker(self.robot)
+        marking = Marking(compiled.source.text, made, self.robot, self.lesson, self.seeds)
         try:
             found = marking.whole()
         except WorldRefused as refused:

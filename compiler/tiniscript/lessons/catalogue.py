@@ -6,6 +6,7 @@ from pathlib import Path
 
 from tiniscript import robots
 from tiniscript.lessons.lesson import Answer, Lesson, LessonRefused
+from tiniscript.lessons.numbers import filled
 from tiniscript.lessons.reader import read, read_answers
 from tiniscript.robots.profile import ProfileRefused
 from tiniscript.robots.refusals import shown
@@ -48,11 +49,11 @@ def load(folder: Path) -> Lesson:
 
 
 def page(folder: Path, who: str, language: str) -> str:
-    """Return a page of a lesson, as Markdown. Raises LessonRefused."""
+    """Return a page of a lesson with its numbers, as Markdown. Raises LessonRefused."""
     path = folder / f"{who}.{language}.md"
     if not path.is_file():
         raise LessonRefused(("no_page", {"file": shown(path.name)}))
-    return _text(path)
+    return filled(_text(path), shown(path.name), load(folder))
 
 
 def answers(folder: Path) -> tuple[list[Answer], list[Answer]]:

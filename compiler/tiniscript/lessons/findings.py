@@ -46,13 +46,14 @@ class On(NamedTuple):
     x_cm: float
     y_cm: float
     way_cm: float
+    heading: float
 
 
 def between(track: tuple[Sample, ...]) -> list[On]:
     """Return points of the way, at most a centimetre from each other."""
-    found = [On(float(track[0].ms), *track[0].pose[:2], 0.0)]
+    found = [On(float(track[0].ms), *track[0].pose[:2], 0.0, track[0].pose.heading)]
     for sample in track[1:]:
-        ms, x, y, way_cm = found[-1]
+        ms, x, y, way_cm, _ = found[-1]
         step_cm = math.dist((x, y), sample.pose[:2])
         steps = max(1, math.ceil(step_cm))
         for k in range(1, steps + 1):
@@ -63,6 +64,7 @@ def between(track: tuple[Sample, ...]) -> list[On]:
                     x + (sample.pose.x_cm - x) * part,
                     y + (sample.pose.y_cm - y) * part,
                     way_cm + step_cm * part,
+                    sample.pose.heading,
                 )
             )
     return found

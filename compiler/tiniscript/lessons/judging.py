@@ -8,7 +8,7 @@ text of a program.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 
 from tiniscript.fixed_point import ONE, as_text
 from tiniscript.lessons import place_judging
@@ -18,6 +18,7 @@ from tiniscript.lessons.lesson import Criterion, Lesson
 from tiniscript.lessons.reader import TIME
 from tiniscript.lessons.running import ASKS, BUSY, DONE, FAULT, LIMIT, Run, Shown
 from tiniscript.lessons.variation import is_mirrored
+from tiniscript.robots.kinematics import Pose
 from tiniscript.virtual.geometry import distance as distance_to
 from tiniscript.virtual.geometry import joined
 
@@ -29,6 +30,8 @@ SAMPLE_CM = 5.0  # between two points of a line that is followed
 MOVING = frozenset({"ends_in", "reaches", "stands_before", "follows", "drives", "faces"})
 AT_END = frozenset({"ends_in", "stands_before", "faces"})  # where the robot is when it is over
 WHERE = AT_END | {"reaches"}
+# What is to be changed before the place of a wait or a sound.
+BEFORE = {"pauses": {"reaches"}, "beeps": {"reaches", "ends_in", "pauses"}}
 
 
 def judged(run: Run, lesson: Lesson) -> list[Finding]:
@@ -40,7 +43,7 @@ def judged(run: Run, lesson: Lesson) -> list[Finding]:
         return [Finding("", f"fault/{run.fault}", values)]
     kinds = {criterion.kind for criterion in lesson.criteria}
     if kinds & MOVING and _is_still(run):
-        return [Finding("", "still")]
+        return [Finding("", "still/brief" if _had_power(run) else "still")]
     busy = [Finding("", "busy", {"seconds": in_seconds(run.end_ms)})]
     stood_ms = run.end_ms - run.track[-1].ms
     if run.ending == BUSY and (stood_ms < STOOD_MS or _is_still(run)):
@@ -62,6 +65,7 @@ def judged(run: Run, lesson: Lesson) -> list[Finding]:
 def _causes(found: list[Finding]) -> list[Finding]:
     """Leave out what follows from another finding: one misunderstanding gives one sentence."""
     kinds = {finding.kind for finding in found}
+    keys = {finding.key for finding in found}
     has_touched = any(each.kind == "never_touches" for each in found)
     found.sort(key=lambda each: has_touched and each.key == "long")  # it may push against a wall
     has_missed = any(
@@ -74,7 +78,8 @@ def _causes(found: list[Finding]) -> list[Finding]:
         for each in found
         if not (is_lost and each.kind in WHERE)
         and not (each.key == "ends_in/gone" and has_missed)
-        and not (each.key.startswith("pauses/place") and (is_lost or "reaches" in kinds))
+        and not (each.kind == "pauses" and "ends_in/gone" in keys)  # it may have waited there
+        and not ("/place" in each.key and (is_lost or kinds & BEFORE[each.kind]))
         and not (each.kind == "order" and each.key.rpartition("/")[2] in kinds)
     ]
 
@@ -86,6 +91,10 @@ def _is_still(run: Run) -> bool:
         and abs(pose.heading - first.heading) < STILL_DEGREES
         for _, pose in run.track
     )
+
+
+def _had_power(run: Run) -> bool:
+    return any(any(powers) for _, *powers in run.motors)
 
 
 def _rests(run: Run) -> bool:
@@ -139,7 +148,11 @@ def _follows(criterion: Criterion, task: Task) -> Finding | None:
     if off_ms is not None:
         key = "early" if followed_cm < least_cm / 4 and off_ms < EARLY_MS else "off"
         return Finding("follows", f"follows/{key}", {**values, "seconds": in_seconds(off_ms)})
-    return Finding("follows", "follows/short", values) if followed_cm < least_cm else None
+    if followed_cm >= least_cm:
+        return None
+    values["seconds"] = in_seconds(run.end_ms)
+    goes_on = run.ending == LIMIT and not _rests(run)
+    return Finding("follows", f"follows/{'slow' if goes_on else 'short'}", values)
 
 
 def _drives(criterion: Criterion, task: Task) -> Finding | None:
@@ -173,7 +186,7 @@ def _stands(run: Run) -> list[tuple[int, int]]:
 def _pauses(criterion: Criterion, task: Task) -> Finding | None:
     least_s, times = criterion.numbers["at_least_seconds"], int(criterion.numbers["times"])
     stands = _stands(task.run)
-    long = [end_ms for begin_ms, end_ms in stands if end_ms - begin_ms >= least_s * 1000 - 1]
+    long = [each for each in stands if each[1] - each[0] >= least_s * 1000 - 1]
     if len(long) >= times:
         return _paused_at(criterion, task, long)
     values = {"least": f"{least_s:g}", "times": str(times), "found": str(len(long))}
@@ -185,16 +198,36 @@ def _pauses(criterion: Criterion, task: Task) -> Finding | None:
     return Finding("pauses", "pauses/short" if stands else "pauses/none", values)
 
 
-def _paused_at(criterion: Criterion, task: Task, long: list[int]) -> Finding | None:
-    """Compare where the robot stood until these times with where it should."""
-    track, least_s = task.run.track, criterion.numbers["at_least_seconds"]
-    poses = [next((pose for ms, pose in track if ms >= end), track[-1].pose) for end in long]
-    key = "pauses/place" if len(criterion.places) == 1 else "pauses/places"
+def _paused_at(criterion: Criterion, task: Task, long: list[tuple[int, int]]) -> Finding | None:
+    """Compare where the robot stood in these times with where it should."""
+    track = task.run.track
+    poses = [next((pose for ms, pose in track if ms >= end), track[-1].pose) for _, end in long]
+    seconds = [in_seconds(end_ms - begin_ms) for begin_ms, end_ms in long]
+    return _nowhere(
+        criterion, task, poses, {"least": f"{criterion.numbers['at_least_seconds']:g}"}, seconds
+    )
+
+
+def _nowhere(
+    criterion: Criterion,
+    task: Task,
+    poses: list[Pose],
+    values: Mapping[str, str],
+    seconds: Sequence[str],
+) -> Finding | None:
+    """Return the first place of a criterion that none of the poses is near, or None."""
+    within_cm = criterion.numbers.get("within_cm", 0.0)  # none where it has no places
+    kind = criterion.kind
+    key = f"{kind}/place" if len(criterion.places) == 1 else f"{kind}/places"
     for number in range(len(criterion.places)):
-        place, within_cm = task.point(criterion, number), criterion.numbers["within_cm"]
-        if all(math.dist(place, pose[:2]) > within_cm for pose in poses):
-            values = {"least": f"{least_s:g}", "number": str(number + 1)}
-            return Finding("pauses", key, values, criterion.labels)
+        place = task.point(criterion, number)
+        gaps_cm = [math.dist(place, pose[:2]) for pose in poses]
+        nearest_cm = min(gaps_cm)
+        if nearest_cm > within_cm:
+            told = {"number": str(number + 1), "within": f"{within_cm:g}"}
+            told["cm"] = in_cm(nearest_cm, within_cm)
+            told["seconds"] = seconds[gaps_cm.index(nearest_cm)]
+            return Finding(kind, key, {**values, **told}, criterion.labels)
     return None
 
 
@@ -269,7 +302,10 @@ def _beeps(criterion: Criterion, task: Task) -> Finding | None:
         return Finding("beeps", "beeps/none", values)
     if len(beeps) < times:
         return Finding("beeps", "beeps/few", values)
-    return Finding("beeps", "beeps/pitches", values) if different < pitches else None
+    if different < pitches:
+        return Finding("beeps", "beeps/pitches", values)
+    seconds = [in_seconds(each.ms) for each in beeps]
+    return _nowhere(criterion, task, [each.pose for each in beeps], values, seconds)
 
 
 JUDGES: dict[str, Callable[[Criterion, Task], Finding | None]] = {

@@ -14,6 +14,7 @@ from tiniscript.words import ALIASES, BLOCK_ENDS
 
 MOVES = frozenset("FBLRM")
 AHEAD = frozenset("FBM")  # what is more than a turn
+FIXED = frozenset({"TRUE", "FALSE", "NOT", "AND", "OR"})  # of a question
 STATEMENTS = frozenset({"W", "S", "BEEP", "SHOW"})  # an UNTIL behind them is not that of a move
 
 
@@ -84,6 +85,39 @@ def _values(tokens: Sequence[Token], at: int) -> list[list[Token]]:
     return values
 
 
+def end_of_values(tokens: Sequence[Token], at: int) -> int:
+    """Return where in the text the bracket behind a word closes, or where the word ends."""
+    values = [token for value in _values(tokens, at) for token in value]
+    behind = [token for token in tokens[at + 1 :] if token.text == ")"]
+    last = values[-1].end if values else tokens[at].end
+    return next((token.end for token in behind if token.start >= last), last)
+
+
+def ahead(tokens: Sequence[Token]) -> int:
+    """Return how many moves a text has that are no turns on the spot."""
+    return sum(
+        token.kind == WORD and token.text in AHEAD and not _is_turn(tokens, k)
+        for k, token in enumerate(tokens)
+    )
+
+
+def _is_turn(tokens: Sequence[Token], at: int) -> bool:
+    """Whether a move is M(-x, x) or M(x, -x)."""
+    values = [[token.text for token in value] for value in _values(tokens, at)]
+    if tokens[at].text != "M" or len(values) != 2:
+        return False
+    left, right = values
+    return left == ["-", *right] or right == ["-", *left]
+
+
+def unasked(tokens: Sequence[Token]) -> int:
+    """Return how many UNTIL have nothing in their question that may change."""
+    return sum(
+        token.text == "UNTIL" and not set(_words(tokens, k)) - FIXED
+        for k, token in enumerate(tokens)
+    )
+
+
 def question(tokens: Sequence[Token], is_turned: bool, ending: str) -> Question | None:
     """Return what kept a robot from each of its moves, or from all but turns; None: no question.
 
@@ -93,7 +127,7 @@ def question(tokens: Sequence[Token], is_turned: bool, ending: str) -> Question 
     found: list[Question] = []
     blocks: list[_Block] = []
     movers = set[str]()  # words of DEF with a move
-    head = -1  # the word of the statement that an UNTIL may belong to
+    before = head = -1  # the words of the statements that an UNTIL may belong to, or to a wait
     for k, token in enumerate(tokens):
         word = ALIASES.get(token.text, token.text)
         if token.kind != WORD:
@@ -113,11 +147,12 @@ def question(tokens: Sequence[Token], is_turned: bool, ending: str) -> Question 
             asked = blocks.pop().question()
             found += [asked] if asked else []
         elif word == "UNTIL" and head >= 0:
-            is_wait = tokens[head].text == "W" and "FOREVER" in _words(tokens, head)
-            if head in moves or is_wait:
+            is_m = tokens[head].text == "W" and before in moves and tokens[before].text == "M"
+            is_wait = tokens[head].text == "W" and "FOREVER" in _words(tokens, head) and not is_m
+            if head in moves or is_wait or is_m:
                 found.append(Question(token.start, word, "TRUE", is_wait, _words(tokens, k)))
         elif word in MOVES or word in STATEMENTS:
-            head = k
+            before, head = head, k
     if not moves:
         return None
     if ending == DONE:

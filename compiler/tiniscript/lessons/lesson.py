@@ -31,7 +31,8 @@ class Criterion(NamedTuple):
     """What a run or a program must be like. `kind` is a row of `criteria.KINDS`.
 
     `numbers` has the numbers of that row by their keys, `words` its words, `places` its places.
-    `labels[language]` is what a place is called in sentences.
+    `labels[language]` is what a place is called in sentences. `area` is around a place: from and
+    to, along x and y, in centimetres.
     """
 
     kind: str
@@ -39,6 +40,7 @@ class Criterion(NamedTuple):
     words: tuple[str, ...]
     places: tuple[Place, ...]
     labels: Mapping[str, str]
+    area: tuple[tuple[float, float], tuple[float, float]] | None = None
 
 
 class Variation(NamedTuple):

@@ -10,7 +10,7 @@ import math
 from collections.abc import Iterable
 
 from tiniscript import robots
-from tiniscript.lessons.lesson import Lesson
+from tiniscript.lessons.lesson import Criterion, Lesson
 from tiniscript.lessons.variation import point_of
 from tiniscript.virtual.driving import Hull
 from tiniscript.virtual.geometry import Point
@@ -84,7 +84,9 @@ def _grid(width: float, height: float) -> str:
 def _goals(lesson: Lesson) -> list[str]:
     found = []
     for criterion in lesson.criteria:
-        if criterion.kind not in GOALS:
+        if criterion.area and criterion.places[0].part == "start":
+            found.append(_area(criterion, lesson))
+        if criterion.kind not in GOALS or criterion.words:
             continue
         for number, place in enumerate(criterion.places, 1):
             x, y = point_of(place, lesson.world, False)
@@ -103,6 +105,16 @@ def _goals(lesson: Lesson) -> list[str]:
                     f'<path d="M{x:.1f} {y:.1f}v-12l9 3.5l-9 3.5" fill="#fff" stroke="#333"/>'
                 )
     return found
+
+
+def _area(criterion: Criterion, lesson: Lesson) -> str:
+    assert criterion.area is not None
+    (left, right), (low, high) = criterion.area
+    x, y = point_of(criterion.places[0], lesson.world, False)
+    return (
+        f'<rect x="{x + left:.1f}" y="{lesson.world.height_cm - y - high:.1f}"'
+        f' width="{right - left:g}" height="{high - low:g}" fill="none" stroke="#777"/>'
+    )
 
 
 def _robot(lesson: Lesson, dash: str) -> str:

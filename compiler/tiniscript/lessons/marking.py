@@ -5,7 +5,7 @@ Knows no files and no languages: `sentences` has the words for findings.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 from tiniscript.bytecode.image import Image
@@ -13,7 +13,7 @@ from tiniscript.lessons.findings import Finding
 from tiniscript.lessons.judging import judged
 from tiniscript.lessons.lesson import Lesson
 from tiniscript.lessons.running import Run, Trial
-from tiniscript.lessons.text_judging import explained, judged_text
+from tiniscript.lessons.text_judging import explained, idle, judged_text, without
 from tiniscript.robots.profile import Robot
 
 PASSED, FAILED = "passed", "failed"
@@ -32,18 +32,40 @@ class Outcome(NamedTuple):
 
 
 class Marking:
-    """A program on its way through the worlds of `seeds`, at least one."""
+    """A program on its way through the worlds of `seeds`, at least one.
+
+    Where a lesson says that it needs a LOOP or a DEF, the program that has done its task goes
+    through them again without that, until it misses something.
+    """
 
     def __init__(
-        self, text: str, image: Image, robot: Robot, lesson: Lesson, seeds: Sequence[int]
+        self,
+        text: str,
+        made: Callable[[str], Image | None],
+        robot: Robot,
+        lesson: Lesson,
+        seeds: Sequence[int],
     ) -> None:
+        """`made` returns the image of a text, or None where that has mistakes."""
+        image = made(text)
+        assert image is not None, "a program with mistakes"
         self._image = image
+        self._made = made
         self._robot = robot
         self._lesson = lesson
+        self._all_seeds = list(seeds)
         self._seeds = list(seeds)
         self._text = text
         self._of_text = judged_text(text, lesson)
         self._trial: Trial | None = None  # none before a world
+        self._needs = [
+            (word, lesson._replace(criteria=lesson.criteria[:k]))
+            for k, each in enumerate(lesson.criteria)
+            if each.kind == "needs"
+            for word in each.words
+        ]
+        self._done: Run | None = None  # the last run of the task, once it is done
+        self._without = ""  # the word that the program is tried without now
 
     @property
     def seed(self) -> int:
@@ -67,7 +89,10 @@ class Marking:
         run = self._trial.go(most_ms)
         if run is None:
             return None
-        findings = explained(judged(run, self._lesson), self._text, self._lesson, run.ending)
+        found = judged(run, self._lesson)
+        if found and self._without:
+            return self._next(run)
+        findings = explained(found, self._text, self._lesson, run.ending)
         if findings:
             said = {each.key for each in findings}
             of_text = [each for each in self._of_text if each.key not in said]
@@ -76,5 +101,20 @@ class Marking:
             del self._seeds[0]
             self._trial = None
             return None
-        verdict = FAILED if self._of_text else PASSED
-        return Outcome(verdict, 0, tuple(self._of_text), run)
+        if self._without:
+            assert self._done is not None
+            return Outcome(FAILED, 0, (idle(self._without, self._text),), self._done)
+        self._done = run
+        if self._of_text:
+            return Outcome(FAILED, 0, tuple(self._of_text), run)
+        return self._next(run)
+
+    def _next(self, run: Run) -> Outcome | None:
+        """Try the program without the next word that the lesson needs; it passes without more."""
+        while self._needs:
+            self._without, self._lesson = self._needs.pop(0)
+            image = self._made(without(self._without, self._text))
+            if image is not None:
+                self._image, self._seeds, self._trial = image, list(self._all_seeds), None
+                return None
+        return Outcome(PASSED, 0, (), self._done or run)

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Sequence
+from itertools import pairwise
 
 from tiniscript.lessons.findings import (
     STILL_CM,
@@ -16,8 +17,9 @@ from tiniscript.lessons.findings import (
 )
 from tiniscript.lessons.lesson import Criterion
 from tiniscript.lessons.running import DONE, LIMIT, STEP_MS, Run
+from tiniscript.lessons.variation import shape_of
 from tiniscript.robots.kinematics import Pose
-from tiniscript.virtual.geometry import Point, seen
+from tiniscript.virtual.geometry import Point, distance, seen
 from tiniscript.virtual.sensing import CONE
 
 BACK_CM = 5.0  # nearer than where it was farthest: then it was on its way back
@@ -29,12 +31,25 @@ def _end(run: Run) -> Pose:
     return run.track[-1].pose
 
 
+def _is_outside(criterion: Criterion, task: Task, points: Iterable[Point]) -> bool:
+    """Whether one of the points is not in the area of a criterion."""
+    assert criterion.area is not None
+    (left, right), (low, high) = criterion.area
+    if task.mirrored:
+        low, high = -high, -low
+    x, y = task.point(criterion)
+    return not all(left <= each.x - x <= right and low <= each.y - y <= high for each in points)
+
+
 def _ends_in(criterion: Criterion, task: Task) -> Finding | None:
     place, run = task.point(criterion), task.run
     within_cm = criterion.numbers["within_cm"]
     start, end = run.world.start, _end(run)
     away_cm = math.dist(place, end[:2])
-    if away_cm <= within_cm:
+    is_missed = away_cm > within_cm
+    if criterion.area:
+        is_missed = _is_outside(criterion, task, run.robot.driving.hull.outline(end))
+    if not is_missed:
         return None
     way_cm = math.dist(place, start[:2])
     gaps_cm = [math.dist(place, pose[:2]) for _, pose in run.track]
@@ -61,16 +76,38 @@ def _was_back(gaps_cm: list[float], within_cm: float) -> bool:
 
 
 def _reaches(criterion: Criterion, task: Task) -> Finding | None:
+    order = range(len(criterion.places))
+    reached, finding = _reached(criterion, task, order)
+    if finding is not None and criterion.numbers["either_way"]:
+        backwards, other = _reached(criterion, task, order[::-1])
+        finding = other if backwards > reached else finding
+    return finding
+
+
+def _gap(criterion: Criterion, task: Task, number: int, at: On) -> float:
+    """Return how far a place is from the robot's middle, or a part of the world from a sensor."""
+    if not criterion.words:
+        return math.dist(task.point(criterion, number), (at.x_cm, at.y_cm))
+    sensor = task.run.robot.profile.body.places[criterion.words[0]]
+    along = math.radians(at.heading)
+    x = at.x_cm + sensor.x_cm * math.cos(along) - sensor.y_cm * math.sin(along)
+    y = at.y_cm + sensor.x_cm * math.sin(along) + sensor.y_cm * math.cos(along)
+    shape = shape_of(criterion.places[number], task.run.world, task.mirrored)
+    return min(distance(each, x, y) for each in shape)
+
+
+def _reached(criterion: Criterion, task: Task, order: Sequence[int]) -> tuple[int, Finding | None]:
+    """Return how many of its places the robot has reached in this order, and what is missing."""
     within_cm = criterion.numbers["within_cm"]
     way = between(task.run.track)
     points = iter(way)
     at = way[0]
-    for number in range(len(criterion.places)):
+    for count, number in enumerate(order):
         place = task.point(criterion, number)
         since, nearest = at, None
         nearest_cm = math.inf
         for at in points:
-            gap_cm = math.dist(place, (at.x_cm, at.y_cm))
+            gap_cm = _gap(criterion, task, number, at)
             if gap_cm < nearest_cm:
                 nearest, nearest_cm = at, gap_cm
             if gap_cm <= within_cm:
@@ -81,7 +118,24 @@ def _reaches(criterion: Criterion, task: Task) -> Finding | None:
             if nearest is not None:
                 values["cm"] = in_cm(nearest_cm, within_cm)
             key = _missed(criterion, task, way, since, place, nearest)
-            return Finding("reaches", f"reaches/{key}", values, criterion.labels)
+            if count and key in ("several", "time"):
+                past_cm = _past(criterion, task, order[count - 1], since, way)
+                if past_cm > within_cm:
+                    key = "past"
+                    values |= {"number": str(order[count - 1] + 1), "cm": in_cm(past_cm)}
+            return count, Finding("reaches", f"reaches/{key}", values, criterion.labels)
+    return len(order), _too_long(criterion, at)
+
+
+def _past(criterion: Criterion, task: Task, number: int, since: On, way: list[On]) -> float:
+    """Return how far from a place that it had reached the robot stood for the first time."""
+    for before, at in pairwise(way[way.index(since) :]):
+        if at.way_cm == before.way_cm:
+            return _gap(criterion, task, number, at)
+    return 0.0
+
+
+def _too_long(criterion: Criterion, at: On) -> Finding | None:
     limit_s, limit_cm = criterion.numbers["by_seconds"], criterion.numbers["by_cm"]
     if at.ms > limit_s * 1000:
         values = {"seconds": in_seconds(at.ms), "limit": f"{limit_s:g}"}
@@ -112,6 +166,8 @@ def _missed(
         return "over"
     if nearest is None:
         return "one"
+    if run.ending == LIMIT and nearest.way_cm >= way[-1].way_cm - STILL_CM > 0:
+        return "slow"
     way_cm = math.dist(place, start[:2])
     ux, uy = (place.x - start.x_cm) / way_cm, (place.y - start.y_cm) / way_cm
     dx, dy = nearest.x_cm - start.x_cm, nearest.y_cm - start.y_cm
@@ -130,9 +186,21 @@ def _is_on_its_way(way: list[On], place: Point) -> bool:
 def _stays_in(criterion: Criterion, task: Task) -> Finding | None:
     place, within_cm = task.point(criterion), criterion.numbers["within_cm"]
     for ms, pose in task.run.track:
-        if math.dist(place, pose[:2]) > within_cm:
+        is_out = math.dist(place, pose[:2]) > within_cm
+        if criterion.area:
+            is_out = _is_outside(criterion, task, _wheels(task.run, pose))
+        if is_out:
             return Finding("stays_in", "stays_in", {"seconds": in_seconds(ms)}, criterion.labels)
     return None
+
+
+def _wheels(run: Run, pose: Pose) -> list[Point]:
+    half_cm = run.robot.profile.body.wheel_base_cm / 2
+    across = math.radians(pose.heading + 90)
+    return [
+        Point(pose.x_cm + side * math.cos(across), pose.y_cm + side * math.sin(across))
+        for side in (half_cm, -half_cm)
+    ]
 
 
 def _stands_before(criterion: Criterion, task: Task) -> Finding | None:
@@ -144,11 +212,15 @@ def _stands_before(criterion: Criterion, task: Task) -> Finding | None:
     eye = Point(
         front.x + hull.radius_cm * math.cos(along), front.y + hull.radius_cm * math.sin(along)
     )
-    gap_cm = seen(run.world.obstacles(), eye, along, CONE)
+    ahead = run.world.obstacles()
+    if criterion.places:
+        ahead = shape_of(criterion.places[0], run.world, task.mirrored)
+    gap_cm = seen(ahead, eye, along, CONE)
     low, high = criterion.numbers["low_cm"], criterion.numbers["high_cm"]
     values = {"low": f"{low:g}", "high": f"{high:g}"}
     if gap_cm is None:
-        return Finding("stands_before", "stands_before/nothing", values)
+        key = "other" if criterion.places else "nothing"
+        return Finding("stands_before", f"stands_before/{key}", values, criterion.labels)
     if low <= gap_cm <= high:
         return None
     key, limit = ("far", high) if gap_cm > high else ("near", low)

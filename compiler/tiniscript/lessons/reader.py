@@ -6,10 +6,11 @@ Opens no files.
 from __future__ import annotations
 
 import re
+from collections.abc import Collection
 
 from tiniscript import robots
 from tiniscript.fixed_point import ONE
-from tiniscript.lessons.criteria import ANY_VALUE, EVENTS, KINDS, WITHIN, Number
+from tiniscript.lessons.criteria import ANY_VALUE, AREA, BLOCKS, EVENTS, KINDS, WITHIN, Number
 from tiniscript.lessons.lesson import (
     PARTS,
     Answer,
@@ -43,8 +44,11 @@ def read(text: str, world: World, name: str) -> Lesson:
     title.finish()
     robot = root.choice("robot", robots.names())
     sensors: tuple[str, ...] = ()
+    eyes: Collection[str] = ()
     if robot:
-        sensors = tuple(device.name for device in robots.load(robot).kit.sensors)
+        profile = robots.load(robot)
+        sensors = tuple(device.name for device in profile.kit.sensors)
+        eyes = profile.body.places.keys()
     lesson = Lesson(
         shown(name),
         robot,
@@ -55,7 +59,7 @@ def read(text: str, world: World, name: str) -> Lesson:
         root.yes_no("mirror", False),
         world,
         tuple(_variation(each, world) for each in _rows(root, "varies")),
-        tuple(_criterion(each, world, sensors) for each in _rows(root, "criteria")),
+        tuple(_criterion(each, world, sensors, eyes) for each in _rows(root, "criteria")),
     )
     if not lesson.criteria and not reasons:
         root.complain("no_criteria", "criteria")
@@ -121,22 +125,30 @@ def _labels(table: Table, most: int = LABEL_CHARACTERS) -> dict[str, str]:
 def _variation(table: Table, world: World) -> Variation:
     text = table.text("part", 'part = "walls[1]"')
     place = Place("start", 0) if text is None else _part(table, "part", text, world)
-    spans = []
-    for key, most in (("x_cm", MOST_CM), ("y_cm", MOST_CM), ("heading", 360)):
-        low, high = table.pair(key, "") if table.has(key) else (0, 0)
-        if low > high:
-            table.complain("range_empty", key)
-        if max(abs(low), abs(high)) > most * ONE:
-            table.complain("out_of_range", key, found=f"[{low / ONE:g}, {high / ONE:g}]",
-                           low=str(-most), high=str(most))  # fmt: skip
-        spans.append((low / ONE, high / ONE))
+    spans = [
+        _span(table, *each) for each in (("x_cm", MOST_CM), ("y_cm", MOST_CM), ("heading", 360))
+    ]
     if place.part == "lamps" and table.has("heading"):
         table.complain("lamp_has_no_heading", "heading")
     table.finish()
     return Variation(place, *spans)
 
 
-def _criterion(table: Table, world: World, sensors: tuple[str, ...]) -> Criterion:
+def _span(table: Table, key: str, most: int) -> tuple[float, float]:
+    """Return from and to; both are 0 if they are left out."""
+    low, high = table.pair(key, "") if table.has(key) else (0, 0)
+    if low > high:
+        table.complain("range_empty", key)
+    if max(abs(low), abs(high)) > most * ONE:
+        table.complain("out_of_range", key, found=f"[{low / ONE:g}, {high / ONE:g}]",
+                       low=str(-most), high=str(most))  # fmt: skip
+    return low / ONE, high / ONE
+
+
+def _criterion(
+    table: Table, world: World, sensors: tuple[str, ...], eyes: Collection[str]
+) -> Criterion:
+    """Return a row. `eyes` are the sensors that have a place in the robot's body."""
     name = table.text("kind", 'kind = "never_touches"')
     kind = KINDS.get(name or "")
     if name is None or kind is None:
@@ -148,20 +160,28 @@ def _criterion(table: Table, world: World, sensors: tuple[str, ...]) -> Criterio
     has_places = bool(kind.places) and not (kind.may_be_anywhere and not table.has("at"))
     asked = [each for each in kind.numbers if has_places or each is not WITHIN]
     numbers = {each.key: _number(table, each) for each in asked}
+    numbers |= {each: float(table.yes_no(each, False)) for each in kind.flags}
     for low, high in (("low_cm", "high_cm"), ("at_least_cm", "at_most_cm")):
         if low in numbers and numbers[low] > numbers.get(high, numbers[low]):
             table.complain("low_above_high", low, other=table.path_of(high))
     places = _places(table, world, kind.places) if has_places else ()
+    area = None
+    if kind.has_area and any(table.has(key) for key in AREA):
+        x_cm, y_cm = (_span(table, key, MOST_CM) for key in AREA)
+        area = x_cm, y_cm
     labels: dict[str, str] = NO_LABELS
     if has_places and any(table.has(language) for language in LANGUAGES):
         labels = _labels(table)
     words: tuple[str, ...] = ()
-    if kind.words == "sensor":
-        words = _sensor(table, sensors)
+    if kind.words == "value":
+        words = _sensor(table, (*sensors, TIME))
+    elif kind.words == "sensor":
+        words = _sensor(table, tuple(each for each in sensors if each in eyes))
     elif kind.words:
-        words = _words(table, EVENTS if kind.words == "event" else (*WORDS, *sensors))
+        others = (*WORDS, *sensors)
+        words = _words(table, {"event": EVENTS, "block": BLOCKS}.get(kind.words, others))
     table.finish()
-    return Criterion(name, numbers, words, places, labels)
+    return Criterion(name, numbers, words, places, labels, area)
 
 
 def _number(table: Table, what: Number) -> float:
@@ -172,13 +192,13 @@ def _number(table: Table, what: Number) -> float:
 
 
 def _sensor(table: Table, sensors: tuple[str, ...]) -> tuple[str, ...]:
-    """Return whose value `shows` asks for, if it does."""
+    """Return whose value a criterion asks for, if it does."""
     if not table.has("what"):
         return ()
     found = table.text("what")
-    if found is None or found in (*sensors, TIME):
+    if found is None or found in sensors:
         return () if found is None else (found,)
-    table.complain("not_one_of", "what", found=shown(found), choices=", ".join((*sensors, TIME)))
+    table.complain("not_one_of", "what", found=shown(found), choices=", ".join(sensors))
     return ()
 
 

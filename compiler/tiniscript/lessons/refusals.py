@@ -19,6 +19,10 @@ SENTENCES: dict[str, dict[str, str]] = {
         "en": "{file} is missing. Write it, or choose another language with --lang.",
         "es": "Falta {file}. Escríbelo, o elige otro idioma con --lang.",
     },
+    "no_such_number": {
+        "en": "{file} has {found}, which is no number of this lesson. There are: {known}.",
+        "es": "{file} tiene {found}, que no es un número de esta lección. Hay: {known}.",
+    },
     "file_too_large": {
         "en": "{file} has more than {limit}. Check that it belongs to a lesson.",
         "es": "{file} pesa más de {limit}. Comprueba que sea de una lección.",

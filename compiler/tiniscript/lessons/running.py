@@ -58,6 +58,7 @@ class Shown(NamedTuple):
 class Beep(NamedTuple):
     ms: int
     hertz: int
+    pose: Pose
 
 
 class Run(NamedTuple):
@@ -204,7 +205,7 @@ class _Witness:
                 self._stops(ms)
             self._is_moving = any(event.values)
         elif event.what == "BEEP":
-            self._beeps.append(Beep(ms, event.values[0]))
+            self._beeps.append(Beep(ms, event.values[0], pose))
             self._happened.append("beeps")
         elif event.what == "SHOW":
             self._happened.append("shows")

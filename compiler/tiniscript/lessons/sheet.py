@@ -48,7 +48,7 @@ PLAN = {
     "es": "La pista desde arriba, un cuadrado mide 20 cm. La flecha es el robot.",
 }
 MOVES = {
-    "en": "Dashed things stand elsewhere each time.",
+    "en": "What is drawn with dashes is in a different place each time.",
     "es": "Lo dibujado con rayas está cada vez en otro lugar.",
 }
 MIRRORED = {

@@ -19,7 +19,8 @@ from tiniscript.words import ALIASES, BLOCK_ENDS
 
 # What a run lacked altogether, by the sentence for it, and the word that does it.
 MISSING = {
-    "still": "move", "order//moves": "move", "ends_in/turned": "move", "reaches/turned": "move",
+    "still": "move", "still/brief": "move", "order//moves": "move",
+    "ends_in/turned": "move", "reaches/turned": "move",
     "shows/nothing": "SHOW", "order//shows": "SHOW", "beeps/none": "BEEP", "order//beeps": "BEEP",
 }  # fmt: skip
 ACTS = MOVES | {"S", "BEEP", "SHOW"}  # waiting alone is nothing to repeat
@@ -27,9 +28,9 @@ ACTS = MOVES | {"S", "BEEP", "SHOW"}  # waiting alone is nothing to repeat
 
 def judged_text(text: str, lesson: Lesson) -> list[Finding]:
     """Return what is missing in a program's text, whatever it does."""
-    words = [token.text for token in scan(text).tokens if token.kind in (WORD, NUMBER)]
     question = {"question": _question(lesson.robot)}
-    found = (JUDGES[each.kind](each, words) for each in lesson.criteria if each.kind in JUDGES)
+    tokens = scan(text).tokens
+    found = (JUDGES[each.kind](each, tokens) for each in lesson.criteria if each.kind in JUDGES)
     return [each._replace(values={**each.values, **question}) for each in found if each]
 
 
@@ -85,6 +86,11 @@ def _asked(
     uncalled = _uncalled(words)
     called = [token for name, token in _owned(tokens) if name not in uncalled]
     is_turned = finding.key.endswith("/turned")
+    if finding.key == "still/brief":  # it had power, so no IF kept it
+        does = {token.text for token in called}
+        if "M" in does and "UNTIL" not in does:
+            return finding
+        finding = finding._replace(key="still")
     asked = kept.question(called, is_turned, ending)
     if asked is None:
         return finding
@@ -104,8 +110,12 @@ def _question(robot: str) -> str:
     return yes_no[0] if yes_no else "DISTANCE < 15"
 
 
-def _uses(criterion: Criterion, words: list[str]) -> Finding | None:
-    times, counted = int(criterion.numbers["times"]), Counter(words)
+def _uses(criterion: Criterion, tokens: Sequence[Token]) -> Finding | None:
+    words = _words(tokens)
+    times, counted = int(criterion.numbers.get("times", 1)), Counter(words)
+    if "UNTIL" in criterion.words and counted["UNTIL"] - kept.unasked(tokens) < times:
+        if counted["UNTIL"] >= times:
+            return Finding("uses", "uses/unasked")
     for word in criterion.words:
         if counted[word] < times:
             key = "uses/none" if not counted[word] else "uses/few"
@@ -120,6 +130,10 @@ def _uses(criterion: Criterion, words: list[str]) -> Finding | None:
     ):
         return Finding("uses", "uses/idle")
     return None
+
+
+def _words(tokens: Sequence[Token]) -> list[str]:
+    return [token.text for token in tokens if token.kind in (WORD, NUMBER)]
 
 
 def _own_words(words: Sequence[str]) -> list[str]:
@@ -162,13 +176,38 @@ def _repeated(words: Sequence[str]) -> list[list[str]]:
     return found
 
 
-def _moves(criterion: Criterion, words: list[str]) -> Finding | None:
-    most, found = int(criterion.numbers["at_most"]), sum(word in MOVES for word in words)
+def _moves(criterion: Criterion, tokens: Sequence[Token]) -> Finding | None:
+    most, is_ahead = int(criterion.numbers["at_most"]), bool(criterion.numbers["ahead"])
+    found = kept.ahead(tokens) if is_ahead else sum(word in MOVES for word in _words(tokens))
     values = {"found": str(found), "most": str(most)}
-    return Finding("moves", "moves", values) if found > most else None
+    return Finding("moves", f"moves{'/ahead' * is_ahead}", values) if found > most else None
 
 
-JUDGES: dict[str, Callable[[Criterion, list[str]], Finding | None]] = {
+def without(word: str, text: str) -> str:
+    """Return a program whose loops are done once (LOOP), or without its own words (DEF)."""
+    tokens = scan(text).tokens
+    own = _own_words(_words(tokens))
+    parts, end = [], 0
+    for k, token in enumerate(tokens):
+        new = None
+        if word == "LOOP" and token.text == "LOOP":
+            new = "LOOP(1)", kept.end_of_values(tokens, k)
+        elif word == "DEF" and token.text in own and tokens[k - 1].text != "DEF":
+            new = "W(0)", token.end
+        if new is not None and token.kind == WORD:
+            parts += [text[end : token.start], new[0]]
+            end = new[1]
+    return "".join([*parts, text[end:]])
+
+
+def idle(word: str, text: str) -> Finding:
+    """Return what is missing where the task is done without LOOP or DEF, too."""
+    own = _own_words(_words(scan(text).tokens))
+    return Finding("needs", f"needs/{word}", {"name": own[0] if own else ""})
+
+
+JUDGES: dict[str, Callable[[Criterion, Sequence[Token]], Finding | None]] = {
     "uses": _uses,
+    "needs": _uses,
     "moves": _moves,
 }

@@ -8,6 +8,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from tiniscript import Compiled
     from tiniscript.bytecode.image import Image
     from tiniscript.robots.profile import Robot
@@ -66,6 +68,16 @@ def image_of(compiled: Compiled, robot: Robot) -> Image:
     devices = robot.kit.hash_of_used(compiled.verdict.uses)
     return Image(compiled.program.start, devices, compiled.code,
                  checksum(compiled.image), (ISA_MAJOR, ISA_MINOR))  # fmt: skip
+
+
+def maker(robot: Robot) -> Callable[[str], Image | None]:
+    """Return what makes the image of a text for a robot, or None where the text has mistakes."""
+
+    def made(text: str) -> Image | None:
+        found = compiled(text.encode("utf-8", "surrogatepass"), robot, "", is_strict=True)
+        return image_of(found, robot) if found.is_right else None
+
+    return made
 
 
 def kit_of(compiled: Compiled, robot: Robot) -> int:

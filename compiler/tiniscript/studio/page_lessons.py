@@ -16,7 +16,7 @@ from tiniscript.lessons.markdown import Block, blocks
 from tiniscript.lessons.marking import Marking, Outcome
 from tiniscript.lessons.sentences import sentence
 from tiniscript.lessons.variation import varied
-from tiniscript.library.compiling import compiled, image_of
+from tiniscript.library.compiling import compiled, maker
 from tiniscript.studio.checking import profile_of
 from tiniscript.studio.world_form import Form, form_of
 from tiniscript.virtual.world import World
@@ -60,9 +60,9 @@ class Check:
         profile = profile_of(lesson.robot)
         found = compiled(data, profile, "", is_strict=True)
         if found.is_right:
-            image = image_of(found, profile)
             seeds = range(1, lesson.worlds + 1)
-            self._marking = Marking(found.source.text, image, profile, lesson, seeds)
+            text = found.source.text
+            self._marking = Marking(text, maker(profile), profile, lesson, seeds)
 
     def go(self, most_ms: int) -> dict[str, Any]:
         """Let the robot's time go on, at most by `most_ms`.
