@@ -50,6 +50,7 @@ def documents(root: Path) -> list[Document]:
     """Return the documents of a clone, in the order in which the site shows them."""
     return [
         _both("monday", "teach", "docs/monday.en.md", "docs/lunes.es.md"),
+        _both("bring-up", "teach", "docs/bring-up.md", "docs/puesta-en-marcha.es.md"),
         _both("lessons", "teach", "docs/lessons.en.md", "docs/lecciones.es.md"),
         _both("materials", "teach", "docs/materials.en.md", "docs/materiales.es.md"),
         _both("modules", "teach", "docs/modules.en.md", "docs/modulos.es.md"),

@@ -5,13 +5,14 @@ Everything is asked; nothing is started, stopped, set or written.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
 from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
 from tiniscript.doctor.findings import Finding, probably, sure
 from tiniscript.doctor.robot import Robot, values_of
 from tiniscript.link.messages import (
+    FEATURES,
     LINK_FAULTS,
     MAJOR,
     MINOR,
@@ -41,13 +42,15 @@ _WATCHDOG = "WATCHDOG"
 class Expected(NamedTuple):
     """The kit that the robot should have, None for any; `names` says whose a kit is, or nothing.
 
-    `has_key` says whether this computer has a key of the robot with this id.
+    `has_key` says whether this computer has a key of the robot with this id. `note` gets what a
+    robot has told of itself, whatever is wrong with it.
     """
 
     kit: int | None
     name: str
     names: Callable[[int], str | None]
     has_key: Callable[[int], bool] = lambda robot: False
+    note: Callable[[Mapping[str, str]], None] = lambda told: None
 
 
 class Restart(NamedTuple):
@@ -71,11 +74,12 @@ def examined(
     findings = [*_versions(hello), *_kit(hello, expected), *_owner(hello, expected)]
     if hello.features & WIFI_RESTS:
         findings.append(sure("wifi_rests"))
+    expected.note(_about(hello, expected))
     before = robot.status()
     restarts: list[Restart] = []
     if before is not None:
         findings += _told(before)
-        findings += _hearing(robot, before, tell)
+        findings += _hearing(robot, before, expected, tell)
         tell("watch")
         restarts = _watched(robot, hello, watch_ms)
     after = robot.status() if before is not None else None
@@ -93,6 +97,19 @@ def examined(
         values = {"name": name or whose, "kit": whose, "id": f"{hello.id:08x}", "n": str(PINGS)}
         findings.append(sure("fine", **values))
     return findings
+
+
+def _about(hello: HelloReply, expected: Expected) -> dict[str, str]:
+    """Return what a report tells of a robot: not whose it is."""
+    features = [name for bit, name, _ in FEATURES if hello.features & bit]
+    return {
+        "kit": expected.names(hello.kit) or f"{hello.kit:04x}",
+        "link": f"{hello.major}.{hello.minor}",
+        "machine": f"{hello.isa_major}.{hello.isa_minor}",
+        "room": str(hello.room),
+        "features": ", ".join(features) or "-",
+        "reset": RESETS[_row(hello.reset)][0],
+    }
 
 
 def _row(reset: int) -> int:
@@ -154,7 +171,9 @@ def _counts(status: StatusReply) -> int:
     return status.damaged + status.dropped + status.framing + status.overrun
 
 
-def _hearing(robot: Robot, before: StatusReply, tell: Callable[[str], None]) -> list[Finding]:
+def _hearing(
+    robot: Robot, before: StatusReply, expected: Expected, tell: Callable[[str], None]
+) -> list[Finding]:
     """Send PING, and count what is not answered at once and what the robot heard damaged."""
     tell("pings")
     missed = robot.missed
@@ -168,6 +187,7 @@ def _hearing(robot: Robot, before: StatusReply, tell: Callable[[str], None]) -> 
         pairs = zip(_four(before), _four(after), strict=True)
         damaged = sum((now - then) & 0xFF for then, now in pairs)
     values = {"missed": str(missed), "n": str(PINGS), "damaged": str(damaged)}
+    expected.note({"good": str(PINGS - missed), **values})
     if missed >= LOSSY or damaged >= LOSSY:
         return [sure("lossy", **values)] if after is not None else []
     if after is not None and _counts(before) >= 10 * LOSSY:

@@ -32,7 +32,8 @@ LONGEST_WATCH_S = 600
 
 
 def run(options: Namespace, language: str) -> int:
-    question = _question(options, language)
+    told: dict[str, str] = {}  # by a robot, of itself
+    question = _question(options, language, told)
     from tiniscript.doctor.diagnosis import diagnosed
 
     doing = _Doing(language, is_shown=not options.json and are_read(sys.stderr))
@@ -45,7 +46,7 @@ def run(options: Namespace, language: str) -> int:
     else:
         print("\n".join(_lines(diagnosis, language)), flush=True)
     if options.report is not None:
-        data = "\n".join(_report(diagnosis, language)) + "\n"
+        data = "\n".join(_report(diagnosis, told, language)) + "\n"
         outputs.write(Path(options.report), data.encode(), "unwritable_report")
         said = text("doctor_report", language).format(file=shown(options.report))
         print(said, file=sys.stderr if options.json else sys.stdout)
@@ -53,7 +54,7 @@ def run(options: Namespace, language: str) -> int:
     return 0 if is_fine else 3
 
 
-def _question(options: Namespace, language: str) -> Question:
+def _question(options: Namespace, language: str, told: dict[str, str]) -> Question:
     from tiniscript.doctor.diagnosis import Question
     from tiniscript.doctor.examination import Expected
     from tiniscript.link import known_ports, port_names
@@ -72,7 +73,7 @@ def _question(options: Namespace, language: str) -> Question:
         port,
         last,
         baud_of(options, robot, language),
-        Expected(kit, robot.name, _name_of_kit, _has_key),
+        Expected(kit, robot.name, _name_of_kit, _has_key, told.update),
         int.from_bytes(os.urandom(4), "little"),
         watch_s * 1000,
         tuple(each.address for each in directory.for_all()),
@@ -192,7 +193,26 @@ def _lines(diagnosis: Diagnosis, language: str) -> list[str]:
     return head + _rows(diagnosis, language, is_private=False)
 
 
-def _report(diagnosis: Diagnosis, language: str) -> list[str]:
+def _form(told: Mapping[str, str], language: str) -> list[str]:
+    """Return the form of a bring-up, filled as far as a computer can."""
+    from tiniscript.cli.texts.doctor import BLANK, STEPS
+    from tiniscript.link.messages import RESETS
+
+    known = dict(told)
+    if known.get("reset") in dict(RESETS):
+        known["reset"] = text(f"reset_{known['reset']}", language)
+    rows = [text("bring_up_about", language), text("bring_up_person", language)]
+    rows.append(text("bring_up_robot", language).format(**known) if known
+                else text("bring_up_no_robot", language))  # fmt: skip
+    for number, step in enumerate(STEPS, 1):
+        seen = BLANK
+        if step == "answers" and "good" in known:
+            seen = text("bring_up_answers", language).format(**known)
+        rows.append(f"{number}. {text(f'step_{step}', language)}: {seen}")
+    return rows
+
+
+def _report(diagnosis: Diagnosis, told: Mapping[str, str], language: str) -> list[str]:
     """Return the lines of a report."""
     from tiniscript import __version__
 
@@ -204,7 +224,7 @@ def _report(diagnosis: Diagnosis, language: str) -> list[str]:
     rows += [
         f"{each.cause} {'sure' if each.is_sure else 'probably'}" for each in diagnosis.findings
     ]
-    return [*rows, "", *_rows(diagnosis, language, is_private=True)]
+    return [*rows, "", *_rows(diagnosis, language, is_private=True), "", *_form(told, language)]
 
 
 def _fields(diagnosis: Diagnosis, language: str) -> dict[str, object]:

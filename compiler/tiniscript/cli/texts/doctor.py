@@ -7,6 +7,10 @@ step (`next_`). `tests/doctor/test_texts.py` compares.
 from __future__ import annotations
 
 # fmt: off
+BLANK = "____"
+# The steps of a bring-up, in the order of its document.
+STEPS = ("answers", "boot", "drive", "stop", "typed", "cable", "upload", "power", "bluetooth",
+         "wifi", "supply")  # fmt: skip
 DOCTOR_TEXTS: dict[str, tuple[str, str]] = {
     # key: (English, Spanish)
     "doctor_port": ("Port {port}", "Puerto {port}"),
@@ -22,6 +26,25 @@ DOCTOR_TEXTS: dict[str, tuple[str, str]] = {
                       "El informe está en {file}. Léelo antes de enviarlo."),
     "unwritable_report": ("tsc: {file} cannot be written: {why}. Choose another place with --report.",
                           "tsc: no se puede escribir {file}: {why}. Elige otro lugar con --report."),
+    "bring_up_about": ("A bring-up (docs/bring-up.md): write yes or no behind each step, and what you saw instead.",
+                       "Una puesta en marcha (docs/puesta-en-marcha.es.md): escribe sí o no en cada paso, y qué viste en su lugar."),
+    "bring_up_person": ("date: ____   board and where it is from: ____   motor module: ____   supply: ____",
+                        "fecha: ____   placa y de dónde es: ____   módulo de motores: ____   alimentación: ____"),
+    "bring_up_robot": ("robot: {kit}, link {link}, machine {machine}, room for {room} bytes, features: {features}; last start: {reset}",
+                       "robot: {kit}, enlace {link}, máquina {machine}, espacio para {room} bytes, funciones: {features}; último arranque: {reset}"),
+    "bring_up_no_robot": ("robot: none has answered", "robot: no respondió ninguno"),
+    "bring_up_answers": ("{good} of {n} came at once, and {damaged} arrived damaged", "{good} de {n} llegaron de inmediato, y {damaged} con daños"),
+    "step_answers": ("It answers", "Responde"),
+    "step_boot": ("Pins at boot", "Pines al arrancar"),
+    "step_drive": ("It drives", "Se mueve"),
+    "step_stop": ("Stop", "Parada"),
+    "step_typed": ("Typed stop", "Parada escrita"),
+    "step_cable": ("The cable is pulled", "Sin el cable"),
+    "step_upload": ("Upload", "Carga de un programa"),
+    "step_power": ("Power is cut", "Corte de energía"),
+    "step_bluetooth": ("Bluetooth", "Bluetooth"),
+    "step_wifi": ("WiFi (an ESP32)", "WiFi (un ESP32)"),
+    "step_supply": ("Motors and supply", "Motores y alimentación"),
     "report_about": ("For a teacher. There are no names of people, computers, networks or robots in it, and no serial numbers.",
                      "Para un docente. No lleva nombres de personas, computadoras, redes ni robots, ni números de serie."),
     # what is done just now

@@ -1,0 +1,142 @@
+"""The list for a real board: its steps are those of the report, and what it types works on a robot.
+
+The robot is the firmware behind a pseudo-terminal; that the wheels stand is what it tells its
+motors. Bluetooth, WiFi and what hands do are not tried here.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import shlex
+from pathlib import Path
+
+import pytest
+
+pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
+
+from tests.machines.host_firmware import missing
+from tests.support.casefile import ROOT
+from tests.support.command import Command, process
+from tests.support.pty_robot import PtyRobot, on
+from tests.support.waiting import until
+from tiniscript.cli.options import Options
+from tiniscript.cli.texts.doctor import BLANK, DOCTOR_TEXTS, STEPS
+
+LISTS = {"en": ROOT / "docs" / "bring-up.md", "es": ROOT / "docs" / "puesta-en-marcha.es.md"}
+needs_robot = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
+each_list = pytest.mark.parametrize(("language", "path"), LISTS.items(), ids=list(LISTS))
+
+
+def steps(path: Path) -> dict[str, tuple[str, str]]:
+    """Return what to do and what must be seen in each step, by its name."""
+    rows = re.findall(r"^\| \d+ \| (.+?) \| (.+?) \| (.+?) \|$", path.read_text("utf-8"), re.M)
+    return {name: (do, seen) for name, do, seen in rows}
+
+
+def commands(text: str) -> list[list[str]]:
+    """Return the commands in a text, each as its words without `tsc`."""
+    found = re.findall(r"(?:`|^ {4})tsc ([^`\n]+)", text.replace("\\|", "|"), re.M)
+    return [shlex.split(each) for each in found]
+
+
+@each_list
+def test_the_form_has_the_steps_of_the_list(language: str, path: Path) -> None:
+    named = [DOCTOR_TEXTS[f"step_{step}"][language == "es"] for step in STEPS]
+    assert list(steps(path)) == named
+    assert path.relative_to(ROOT).as_posix() in DOCTOR_TEXTS["bring_up_about"][language == "es"]
+
+
+def test_both_lists_type_the_same() -> None:
+    own = {"PUERTO": "PORT", "RED": "NETWORK", "puesta.txt": "bring-up.txt"}
+    english, spanish = (
+        [[own.get(word, word) for word in each] for each in commands(path.read_text("utf-8"))]
+        for path in LISTS.values()
+    )
+    assert english == spanish
+    assert len(english) > 15
+
+
+@needs_robot
+def test_the_report_is_filled_as_far_as_a_computer_can(pty_robot: PtyRobot, tmp_path: Path) -> None:
+    """Whose robot it is stays out of it."""
+    report = tmp_path / "bring-up.txt"
+    done = on(pty_robot, "doctor", "--yes", "--report", report)
+    assert done.code == 0
+    form = report.read_text("utf-8").split("\n\n")[-1].splitlines()
+    assert re.match(r"robot: tinibot, link \d+\.\d+, machine \d+\.\d+, room for \d+ bytes", form[2])
+    assert form[2].endswith("last start: power on")
+    assert "12345678" not in report.read_text("utf-8")
+    assert form[3] == "1. It answers: 20 of 20 came at once, and 0 arrived damaged"
+    assert [row.endswith(f": {BLANK}") for row in form[4:]] == [True] * (len(STEPS) - 1)
+    on(pty_robot, "doctor", "--yes", "--report", report, "--lang", "es")
+    assert "1. Responde: 20 de 20 llegaron de inmediato" in report.read_text("utf-8")
+
+
+@needs_robot
+def test_who_does_not_answer_gets_the_form_all_the_same(tmp_path: Path) -> None:
+    report = tmp_path / "bring-up.txt"
+    assert process("doctor", "--port", "/dev/ttyUSB99", "--report", report).code == 3
+    form = report.read_text("utf-8").split("\n\n")[-1].splitlines()
+    assert form[2:4] == ["robot: none has answered", f"1. It answers: {BLANK}"]
+
+
+@needs_robot
+def test_what_the_list_types_does_what_it_says(pty_robot: PtyRobot) -> None:
+    found = steps(LISTS["en"])
+
+    def typed(step: str) -> list[list[str]]:
+        text = found[DOCTOR_TEXTS[f"step_{step}"][0]][0]
+        return [[pty_robot.port if word == "PORT" else word for word in each]
+                for each in commands(text)]  # fmt: skip
+
+    (ping,) = (process(*words) for words in typed("answers"))
+    assert ping.code == 0
+    (trips,) = re.findall(r"`(.+?)`", found["It answers"][1])
+    assert trips in ping.out
+    assert "(tinibot)" in ping.out
+    drive, *_ = typed("drive")
+    assert process(*drive).code == 0
+    assert pty_robot.did[:2] == ["MOTORS 50 50", "MOTORS 0 0"]
+    live, stop = typed("stop")
+    driving = Command(*live)
+    pty_robot.until(lambda: pty_robot.moves, "it drives")
+    stopped = process(*stop)
+    assert stopped.code == 0
+    assert "confirmed" in stopped.out + stopped.err
+    assert not pty_robot.moves
+    driving.ended()
+    upload, *_ = typed("upload")
+    assert process(*upload, "--detach").code == 0
+    pty_robot.switch_off()
+    pty_robot.switch_on()
+    until(lambda: pty_robot.robot_ms > 1000, "it has started")
+    assert not pty_robot.moves
+    pty_robot.push()
+    pty_robot.until(lambda: pty_robot.moves, "the button starts it")
+    pty_robot.until(lambda: not pty_robot.moves, "it ends")
+
+
+@needs_robot
+@pytest.mark.parametrize("before", ["", "(\n"])
+def test_the_typed_stop_of_the_list(pty_robot: PtyRobot, before: str) -> None:
+    typed = re.findall(r"`([^`]+)`", steps(LISTS["en"])["Typed stop"][0].replace("\\|", "|"))
+    start, stop, bracket, again = typed
+    assert (bracket, again) == ("(", stop)
+    port = os.open(pty_robot.port, os.O_RDWR | os.O_NOCTTY)
+    try:
+        os.write(port, f"{start}\n".encode())
+        pty_robot.until(lambda: pty_robot.moves, "it drives")
+        os.write(port, f"{before}{stop}\n".encode())
+        pty_robot.until(lambda: not pty_robot.moves, "it stands")
+        said = b""
+        while b"// " not in said:
+            said += os.read(port, 4096)
+    finally:
+        os.close(port)
+
+
+@each_list
+def test_every_command_of_the_list_is_one(language: str, path: Path) -> None:
+    for verb, *arguments in commands(path.read_text("utf-8")):
+        assert Options(verb, language).read(arguments) is not None
