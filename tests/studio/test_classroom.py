@@ -32,7 +32,11 @@ class FakeRobot:
         self.left = why
         self.has_ended = True
 
-    def stop(self) -> None:
+    @property
+    def attending(self) -> FakeRobot:
+        return self
+
+    def latch(self) -> None:
         self.stopped += 1
 
 

@@ -14,7 +14,7 @@ from tests.support.shared_pty_robot import Shared
 from tests.support.waiting import HANGS_S, until
 from tiniscript import compile, robots
 from tiniscript.link.messages import STOP_BYTES
-from tiniscript.studio import hosted_robot
+from tiniscript.studio import attending, hosted_robot
 from tiniscript.studio.hosting import Hosting
 from tiniscript.studio.robot_link import BadRequest
 
@@ -136,7 +136,7 @@ def test_a_page_that_falls_silent_stops_its_robot(page: Page, robot: PtyRobot) -
     page.beat()
     began_s, began_ms = time.monotonic(), robot.robot_ms
     passed_ms = robot.stands_after_ms(began_ms)
-    assert time.monotonic() - began_s >= hosted_robot.HEARD_S
+    assert time.monotonic() - began_s >= attending.HEARD_S
     assert passed_ms < 950  # before the robot's own dead-man timer, which ends a run after a second
     assert robot.heard.endswith(bytes(STOP_BYTES))
 
@@ -170,7 +170,7 @@ def test_nobody_pings_for_a_page_that_is_silent(
     """Not even where the thread that should stop the robot hangs."""
     page.upload(FOREVER)
     robot.until(lambda: robot.moves, "it drives")
-    monkeypatch.setattr(hosted_robot.HostedRobot, "_attend", lambda *_: time.sleep(0.1))
+    monkeypatch.setattr(attending.Attending, "attend", lambda *_: time.sleep(0.1))
     page.beat()
     assert robot.stands_after_ms(robot.robot_ms) < SILENT_MS  # by its dead-man timer
 
@@ -209,14 +209,26 @@ def test_the_end_of_the_server_stops_robots(hosting: Hosting, page: Page, robot:
     assert not robot.moves
 
 
-def test_a_port_has_one_page(hosting: Hosting, page: Page, robot: PtyRobot) -> None:
+def test_a_port_has_one_page(
+    hosting: Hosting, page: Page, robot: PtyRobot, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(attending, "LATCH_S", 3600.0)
     other = Page(hosting, "other")
     assert other.connect(robot.port) == {"failure": "other_tab"}
     assert page.connect(robot.port) == {"failure": "connected"}
     page.upload(FOREVER)
     robot.until(lambda: robot.moves, "it drives")
-    assert hosting.answer({"do": "stop_all"}) == {"stopping": 1}  # STOP of a page without a robot
+    # STOP of a page without a robot
+    told = {"name": robot.port, "stop": "asked"}
+    assert hosting.answer({"do": "stop_all"}) == {"robots": [told]}
     page.until(lambda each: each.get("event") == "STOPPED")
+    told["stop"] = "confirmed"
+    assert hosting.answer({"do": "stops"}) == {"robots": [told]}
+    image = compile(FOREVER).image.hex()
+    refused = page.ask("upload", image=image, robot="tinibot", runs=True)  # it was on its way
+    assert refused["failure"] == "stopped_elsewhere" and not robot.moves
+    done = process("upload", "--port", robot.port, "-e", FOREVER)  # by another command
+    assert done.code != 0 and not robot.moves, done.out
     page.beat(do="leave")
     until(lambda: other.connect(robot.port) == {}, "the port is free")
     other.until(lambda each: "connected" in each)
@@ -327,10 +339,10 @@ def test_a_request_that_comes_twice_is_done_once(page: Page, robot: PtyRobot) ->
 
 def test_what_a_page_does_not_fetch_is_bounded() -> None:
     robot = hosted_robot.HostedRobot("socket://127.0.0.1:1", "tinibot", "en")
-    robot._tell([{"event": "SHOW", "value": str(k)} for k in range(3000)])
-    robot._tell([{"event": "DONE"}])
-    news = robot.hear([], 0)
-    assert len(news) == hosted_robot.KEPT and news[-1]["event"] == "DONE"
+    robot.attending.tell([{"event": "SHOW", "value": str(k)} for k in range(3000)])
+    robot.attending.tell([{"event": "DONE"}])
+    news = robot.attending.hear([], 0)
+    assert len(news) == attending.KEPT and news[-1]["event"] == "DONE"
     robot.join(HANGS_S)
 
 

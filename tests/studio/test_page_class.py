@@ -9,6 +9,7 @@ import sys
 import time
 from collections.abc import Iterator
 from contextlib import ExitStack
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
@@ -19,6 +20,7 @@ from tests.support.command import FOREVER
 from tests.support.pty_robot import PtyRobot
 from tests.support.studio import HUNG_MS, Class, Pages, checked, hang, write
 from tiniscript import robots
+from tiniscript.studio.attending import LATCH_S
 from tools.builds.studio import MODULES
 
 if TYPE_CHECKING:
@@ -111,9 +113,13 @@ def test_three_pupils_share_a_robot(pages: Pages, taught: Class, robot: PtyRobot
     teacher.click("#stop")
     robot.until(lambda: not robot.moves, "the teacher stops it")
     linked(ana, "Stopped: the robot has confirmed it.")
+    teacher.locator("#stops").filter(has_text="STOP: 1 of 1 robots have confirmed it.").wait_for()
+    assert not teacher.locator("#stops .wrong").count()
+    time.sleep(LATCH_S)
     drives(ana, robot)
     rows.nth(0).locator("[data-text=stop]").click()
     robot.until(lambda: not robot.moves, "the teacher stops this one")
+    time.sleep(LATCH_S)
     drives(ana, robot)
     rows.nth(0).locator("[data-text=class_next]").click()
     robot.until(lambda: not robot.moves, "the turn is over")
@@ -174,6 +180,22 @@ def test_a_wrong_code_is_said_and_a_pupil_is_removed(pages: Pages, taught: Class
     row.wait_for(state="detached")
     assert [each for each in pages.wrong if "403" not in each] == []
     pages.wrong.clear()
+
+
+def test_a_robot_that_does_not_confirm_a_stop_is_red(
+    pages: Pages, taught: Class, robot: PtyRobot, tmp_path: Path
+) -> None:
+    ana = joined(pages, taught, "Ana")
+    teacher = teaches(pages, taught)
+    asks(ana)
+    linked(ana, "Connected: ")
+    drives(ana, robot)
+    robot.switch_off()  # it hears nothing, and its port is there
+    teacher.keyboard.press("Escape")
+    red = teacher.locator("#stops .wrong")
+    red.filter(has_text=f"Not confirmed: {robot.port}. If one moves, lift it").wait_for()
+    assert "STOP: 0 of 1 robots" in teacher.locator("#stops").inner_text()
+    teacher.screenshot(path=str(tmp_path / "red.png"))
 
 
 @pytest.mark.parametrize("erases", [True, False])

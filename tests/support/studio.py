@@ -17,8 +17,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from tests.support.platformio import need
 from tiniscript import run
 from tiniscript.studio import serving
+from tiniscript.studio.attending import LEFT_S
 from tiniscript.studio.classroom import Classroom
-from tiniscript.studio.hosted_robot import LEFT_S
 from tiniscript.studio.hosting import Hosting
 from tools.builds import studio
 

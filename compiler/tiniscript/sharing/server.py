@@ -14,6 +14,7 @@ import os
 import selectors
 import socket
 from collections import deque
+from collections.abc import Callable
 from contextlib import suppress
 from threading import Thread
 from time import monotonic, sleep
@@ -24,7 +25,7 @@ from tiniscript.link import fields
 from tiniscript.link.backlog import Told
 from tiniscript.link.connection import PendingRequest
 from tiniscript.link.line import Line
-from tiniscript.link.outcomes import Event, JoinedEvent, LeftEvent, MissedEvent
+from tiniscript.link.outcomes import CANCELLED, Event, JoinedEvent, LeftEvent, MissedEvent
 from tiniscript.link.payloads import ReceiptReply
 from tiniscript.link.port_names import same_for_all
 from tiniscript.link.requests import OK, Reply
@@ -43,6 +44,7 @@ PAUSE_S = 0.1  # between two checks while a client has a run or a request
 REST_S = 1.0  # between two checks while none has
 _ENDS = ("DONE", "FAULT", "STOPPED", "ENDED", "LOST")
 _MAY_MISS = ("SHOW", "TEXT")
+_STARTING = ("upload", "live", "start")
 
 
 class ConnectedClient:
@@ -69,8 +71,13 @@ class ServedRequest(NamedTuple):
 class Server:
     """Shares a line until `close`. Raises OSError where the line cannot be shared."""
 
-    def __init__(self, line: Line, port: str, baud: int, verb: str) -> None:
+    def __init__(
+        self, line: Line, port: str, baud: int, verb: str,
+        is_latched: Callable[[], bool] = lambda: False,
+    ) -> None:  # fmt: skip
+        """`is_latched`: somebody has just stopped the robot, and no client starts anything."""
         self._line = line
+        self._is_latched = is_latched
         self._listening = socket.create_server((protocol.HOST, 0))
         self._listening.setblocking(False)
         number = self._listening.getsockname()[1]
@@ -249,6 +256,9 @@ class Server:
             self._tell_outcome(client, number, Reply(OK, 0, robot.values))
             return
         make = asked_for(message, limit_ms)
+        if self._is_latched() and message["do"] in _STARTING:
+            self._tell_outcome(client, number, Reply(CANCELLED))
+            return
         client.requests[number] = ServedRequest(self._line.do(make), is_detached(message))
 
     def _pass_on_outcomes(self) -> None:

@@ -268,7 +268,7 @@ class Classroom:
         hosted = robot.hosted if robot else None
         if do == "class_stop":
             if hosted is not None:
-                hosted.stop()
+                hosted.attending.latch()
             return
         self._take_back(robot, hosted)
         if do == "class_remove":

@@ -7,12 +7,14 @@ Knows no HTTP: `serving` lets only the page of this computer come here.
 from __future__ import annotations
 
 from threading import Lock
+from time import monotonic
 from typing import Any
 
 from tiniscript import robots
 from tiniscript.link import known_ports, ports
 from tiniscript.link.port_names import is_there, same_for_all
 from tiniscript.printable import printable
+from tiniscript.studio.attending import LATCH_S
 from tiniscript.studio.hosted_robot import HostedRobot
 from tiniscript.studio.robot_link import BadRequest, Json
 from tiniscript.virtual import directory
@@ -33,6 +35,8 @@ class Hosting:
         self._lock = Lock()
         self._by_page: dict[str, HostedRobot] = {}
         self._parting: list[HostedRobot] = []
+        self._stopping: list[HostedRobot] = []  # those that the last STOP for all has reached
+        self._latched_until_s = 0.0
 
     def answer(self, request: Json) -> Json:
         """Return the answer to a page's request. Raises BadRequest."""
@@ -41,6 +45,8 @@ class Hosting:
             return {"ports": listed()}
         if do == "stop_all":
             return self._stop_all()
+        if do == "stops":
+            return self._stops()
         page = _text(request, "page", NAME_CHARACTERS)
         if do == "connect":
             return self._connect(page, request)
@@ -51,10 +57,10 @@ class Hosting:
         if robot is None:
             return {"news": [{"over": "left", "said": "", "number": 0}]}
         if do == "stop":
-            robot.stop(_count(request, "stops"))
+            robot.attending.stop(_count(request, "stops"))
         elif do == "leave":
             robot.leave()
-        return {"news": robot.hear(_requests(request), _count(request, "seen"))}
+        return {"news": robot.attending.hear(_requests(request), _count(request, "seen"))}
 
     def robot_of(self, page: str) -> HostedRobot | None:
         """Return what a page drives, or has driven last."""
@@ -92,7 +98,9 @@ class Hosting:
                 return {"failure": "other_tab"}
             if len(self._by_page) >= MOST_ROBOTS:
                 return {"failure": "too_many"}
-            self._by_page[page] = HostedRobot(port, str(robot), str(language))
+            made = HostedRobot(port, str(robot), str(language))
+            made.attending.latch(self._latched_until_s, stops=False)
+            self._by_page[page] = made
         return {}
 
     def _forget_ended(self) -> None:
@@ -101,11 +109,20 @@ class Hosting:
         self._by_page = {name: each for name, each in self._by_page.items() if not each.has_ended}
 
     def _stop_all(self) -> Json:
+        """Stop all robots, and refuse for a while what is on its way to them."""
         with self._lock:
-            found = [each for each in self._by_page.values() if not each.has_ended]
-        for each in found:
-            each.stop()
-        return {"stopping": len(found)}
+            self._stopping = [each for each in self._by_page.values() if not each.has_ended]
+            self._latched_until_s = monotonic() + LATCH_S
+        for each in self._stopping:
+            each.attending.latch()
+        return self._stops()
+
+    def _stops(self) -> Json:
+        """Return what is known of the last STOP for all."""
+        with self._lock:
+            found = self._stopping
+        return {"robots": [{"name": each.name or each.port, "stop": each.attending.last_stop}
+                           for each in found]}  # fmt: skip
 
 
 def listed() -> list[Json]:

@@ -91,10 +91,6 @@ export async function hostPorts() {
   }
 }
 
-/** Stops all robots of this `tsc studio`. */
-export function stopHost() {
-  post({ do: 'stop_all' }, { keepalive: true }).catch(() => {});
-}
 
 export class HostRobot {
   #page = [...crypto.getRandomValues(new Uint8Array(16))].map((byte) => byte.toString(16).padStart(2, '0')).join('');
@@ -201,6 +197,7 @@ export class HostRobot {
   #take(news) {
     if (this.#isOver || (news.number && news.number <= this.#seen)) return;
     this.#seen = Math.max(this.#seen, news.number ?? 0);
+    if (news.stops) this.#stops = Math.max(this.#stops, news.stops);
     if (news.over) this.#end(new Failed(news.over, news.said));
     else if (news.connected) this.#met(news.connected);
     else if (news.event) this.#heard.event(news);

@@ -6,12 +6,13 @@ import { faultSaid } from './faults.js';
 import { bytesOf } from './files.js';
 import { chosenDevice, BluetoothPort, hasBluetooth } from './robot_bluetooth.js';
 import { DirectRobot } from './robot_direct.js';
-import { hasHost, hostPorts, HostRobot, isPupil, isTeacher, stopHost } from './robot_host.js';
+import { hasHost, hostPorts, HostRobot, isPupil, isTeacher } from './robot_host.js';
 import { keepKeys, keptKeys } from './robot_keys.js';
 import { Flashing } from './robot_flashing.js';
 import { readTrim, showTrim } from './robot_trim.js';
 import { chosenPort, hasSerial, knownPorts, SerialPort } from './robot_serial.js';
 import { refusal, shown } from './robot_said.js';
+import { stopAll } from './robot_stops.js';
 import { Speech } from './robot_speech.js';
 import { Failed } from './robot_way.js';
 import { currentLanguage, text } from './texts.js';
@@ -113,7 +114,7 @@ export class RobotPanel {
 
   /** Stops the robot; a page without one, or a teacher's, stops all that its `tsc studio` has. */
   stop() {
-    if (hasHost && (isTeacher || !this.#way)) stopHost();
+    if (hasHost && (isTeacher || !this.#way)) stopAll();
     if (this.#way) {
       this.#way.stop();
       this.#speech.say('say_stopping');

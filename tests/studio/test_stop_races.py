@@ -1,0 +1,137 @@
+"""A teacher's STOP and uploads that are on their way, in the robot's own time.
+
+`python -m tests.studio.test_stop_races 10000` lets so many meet.
+"""
+
+from __future__ import annotations
+
+import sys
+from random import Random
+from typing import Any
+
+import pytest
+
+from tests.support.virtual_robot import missing, robot_in
+from tiniscript import compile, robots
+from tiniscript.studio.attending import CONFIRMED, LATCH_S, SILENT, Attending
+from tiniscript.studio.page_line import PageKeys, PageLine
+from tiniscript.studio.robot_link import RobotLink
+from tiniscript.virtual.world_reader import read
+
+BEAT_MS = 100
+LOOK_MS = 20  # as often as a thread attends to its robot
+PROGRAMS = [compile(f"SI|LOOP(FOREVER);{'R(0.1, 40);' * k}END_LOOP").image.hex() for k in (1, 40)]
+
+pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")
+
+
+class Meeting:
+    """A page, its robot, and a teacher."""
+
+    def __init__(self, seed: int) -> None:
+        self.chance = Random(seed)
+        floor = "[floor]\nwidth_cm = 200\nheight_cm = 200\n[start]\nx_cm = 100\ny_cm = 100\n"
+        self.robot = robot_in(read(floor, "floor"))
+        profile = robots.load("tinibot")
+        self.line = PageLine(profile.board.baud, profile.kit.fingerprint, PageKeys(b""))
+        self.link = RobotLink(self.line, "en")
+        self.attending = Attending(lambda: self.robot.now_ms / 1000)
+        self.news: list[dict[str, Any]] = []
+        self._sent = b""
+        self._number = 0
+        self._stops = 0  # as the page knows
+        self._beat_ms = 0
+        self._look_ms = 0
+        self._under_way: list[tuple[int, dict[str, Any]]] = []  # with when they arrive
+        self.is_cut = False
+
+    def go(self, milliseconds: int, step_ms: int = 1) -> None:
+        for _ in range(0, milliseconds, step_ms):
+            now_ms = self.robot.now_ms + step_ms
+            heard = self.robot.step(now_ms, b"" if self.is_cut else self._sent)
+            self._sent = self.line.go(b"" if self.is_cut else heard, now_ms)
+            arrived = [each for at_ms, each in self._under_way if at_ms <= now_ms]
+            self._under_way = [each for each in self._under_way if each[0] > now_ms]
+            if arrived or now_ms >= self._beat_ms:
+                self._beat_ms = now_ms + BEAT_MS
+                seen = max((each["number"] for each in self.news), default=0)
+                new = self.attending.hear(arrived, seen)
+                self._stops = max([self._stops, *(each.get("stops", 0) for each in new)])
+                self.news += new
+            if now_ms >= self._look_ms:
+                self._look_ms = now_ms + self.chance.randrange(1, LOOK_MS)
+                self.attending.attend(self.link, 0)
+
+    def upload(self, delay_ms: int) -> int:
+        """The page sends a program; return the number of the request."""
+        self._number += 1
+        request = {"do": "upload", "id": self._number, "image": self.chance.choice(PROGRAMS),
+                   "robot": "tinibot", "runs": True, "stops": self._stops}  # fmt: skip
+        self._under_way.append((self.robot.now_ms + delay_ms, request))
+        return self._number
+
+    def answer(self, number: int) -> dict[str, Any]:
+        return next((each for each in self.news if each.get("id") == number), {})
+
+    def races(self) -> None:
+        """Some uploads are before the STOP, in the middle of it, and behind it."""
+        late_ms = self.chance.choice((30, 400, 1900, 4000))
+        numbers = []
+        for _ in range(self.chance.randrange(1, 4)):
+            numbers.append(self.upload(self.chance.randrange(late_ms)))
+            self.go(self.chance.choice((1, 5, 20, 60, 150)) + self.chance.randrange(10))
+        self.attending.latch()
+        self.go(500)
+        assert self.attending.last_stop == CONFIRMED
+        stood = self.robot.driving.look(self.robot.now_ms)
+        for _ in range(7):
+            self.go(max(1, late_ms // 5), 10)
+            assert not self.robot.is_running
+            assert self.robot.driving.look(self.robot.now_ms) == stood
+        assert self.answer(numbers[-1])  # an older one that comes later is a lost one
+
+
+def race(count: int, seed: int) -> None:
+    meeting = Meeting(seed)
+    meeting.go(2000)
+    meeting.attending.hear([], 0)
+    for _ in range(count):
+        meeting.races()
+        meeting.go(round(1000 * LATCH_S), 10)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_stop_latches_whatever_is_on_its_way(seed: int) -> None:
+    race(10, seed)
+
+
+def test_afterwards_a_page_drives_again() -> None:
+    meeting = Meeting(5)
+    meeting.upload(0)
+    meeting.go(1500)
+    assert meeting.robot.is_running
+    meeting.attending.latch()
+    meeting.go(round(1000 * LATCH_S) - 200)
+    early = meeting.upload(0)
+    meeting.go(300)
+    assert meeting.answer(early)["failure"] == "stopped_elsewhere"
+    late = meeting.upload(0)
+    meeting.go(1500)
+    assert meeting.answer(late)["ok"] and meeting.robot.is_running
+
+
+def test_a_robot_that_hears_no_stop_is_told() -> None:
+    meeting = Meeting(6)
+    meeting.upload(0)
+    meeting.go(1500)
+    meeting.is_cut = True
+    meeting.attending.latch()
+    meeting.go(7000)
+    assert meeting.attending.last_stop == SILENT
+
+
+if __name__ == "__main__":
+    wanted = int(sys.argv[1])
+    for each in range(0, wanted, 100):
+        race(min(100, wanted - each), each)
+        print(f"{min(wanted, each + 100)} races, none drives", flush=True)

@@ -1,0 +1,68 @@
+// STOP for all robots of a `tsc studio`: how many have confirmed it, and in red which have not.
+
+import { made } from './class_made.js';
+import { element } from './elements.js';
+import { post } from './robot_host.js';
+import { shown } from './robot_said.js';
+import { text } from './texts.js';
+import { LINK } from './words.js';
+
+/** @typedef {{name: string, stop: 'asked' | 'confirmed' | 'silent'}} Stop */
+
+const LOOK_MS = 200;
+const LATE_MS = 1000; // after which a robot that has not confirmed is red
+const TRIES = 5;
+
+let newest = 0;
+
+/** Stops all robots, and tells of it until each has confirmed or the time is over. */
+export async function stopAll() {
+  const own = ++newest;
+  const began = performance.now();
+  /** @type {Stop[] | null} */
+  let robots = null;
+  for (let k = 0; own === newest && !robots; k += 1) {
+    robots = await asked('stop_all');
+    if (!robots && k >= TRIES) {
+      show(null, false);
+      return;
+    }
+    if (!robots) await pause();
+  }
+  while (own === newest && robots) {
+    const passed = performance.now() - began;
+    const isOver = passed > 2 * LINK.confirm_ms || robots.every(({ stop }) => stop !== 'asked');
+    show(robots, isOver || passed > LATE_MS);
+    if (isOver) return;
+    await pause();
+    robots = (await asked('stops')) ?? robots;
+  }
+}
+
+/** @param {string} what @returns {Promise<Stop[] | null>} */
+async function asked(what) {
+  try {
+    return (await post({ do: what }, { keepalive: true })).robots;
+  } catch {
+    return null;
+  }
+}
+
+function pause() {
+  return new Promise((resolve) => setTimeout(resolve, LOOK_MS));
+}
+
+/** @param {Stop[] | null} robots @param {boolean} isLate */
+function show(robots, isLate) {
+  const place = element('stops', HTMLElement);
+  const late = robots?.filter(({ stop }) => stop === 'silent' || (isLate && stop === 'asked')) ?? [];
+  const confirmed = robots?.filter(({ stop }) => stop === 'confirmed').length ?? 0;
+  const silent = robots ? late.length && text('stops_silent', { names: late.map(({ name }) => shown(name)).join(', ') }) : text('stops_gone');
+  place.hidden = robots?.length === 0;
+  place.dataset['confirmed'] = `${confirmed}`;
+  const red = made('span');
+  red.className = 'wrong';
+  red.textContent = silent || '';
+  const said = robots ? text('stops_confirmed', { confirmed, count: robots.length }) : '';
+  place.replaceChildren(said, ...(silent ? [' ', red] : []));
+}
