@@ -15,7 +15,7 @@ from tests.machines.esp32 import HAS_TLS, STAND_INS, flags_of
 from tests.machines.host import SOURCES, missing
 from tests.project.test_cpp_sources import code_of
 from tiniscript.robots.ports import ESP32S
-from tools.builds.chips import CHIPS, compile_one
+from tools.builds.chips import CHIPS, Chip, compile_one
 from tools.builds.chips import missing as no_compiler
 
 BOARD = SOURCES / "src" / "boards"
@@ -78,12 +78,25 @@ def test_a_core_with_another_bluetooth_is_told() -> None:
     assert "wants the core esp32 2.0.17 to 3.2" in done.stderr.splitlines()[0]
 
 
+# Static RAM of the sketch without Espressif's libraries: those and their radios take about 45 K of
+# what an ESP32-C3 has, and TLS 40.
+MOST_RAM = 48 * 1024
+
+
+def ram_of(isa: Chip, file: str) -> int:
+    """Return the bytes of data and bss of a file."""
+    said = subprocess.run([isa.measurer, file], capture_output=True, text=True, check=True).stdout
+    _, data, bss = map(int, said.splitlines()[1].split()[:3])
+    return data + bss
+
+
 # What the whole sketch asks of the core and of the compiler's library.
 CORE = {
     "analogRead", "analogReadResolution", "attachInterrupt", "esp_reset_reason",
     "esp_rom_gpio_connect_out_signal", "esp_task_wdt_add", "esp_task_wdt_init",
     "esp_task_wdt_reset", "esp_timer_create", "esp_timer_start_periodic", "gpio_get_level",
-    "gpio_intr_disable", "gpio_intr_enable", "ledcWrite", "nvs_close", "simulated_register",
+    "calloc", "gpio_intr_disable", "gpio_intr_enable", "ledcWrite", "nvs_close",
+    "simulated_register",
     "micros", "millis", "nvs_commit", "nvs_get_blob", "nvs_get_u32", "nvs_open", "nvs_set_blob",
     "nvs_set_u32", "pinMode", "Serial", "simulated_enter_critical", "simulated_exit_critical",
     "lwip_accept", "lwip_bind", "lwip_close", "lwip_connect", "lwip_fcntl", "lwip_htonl",
@@ -127,6 +140,7 @@ def test_the_whole_sketch_links_with_the_core_alone(chip: str, major: int, tmp_p
         compile_one(isa, path, objects[-1], flags)
     whole = str(tmp_path / "whole.o")
     subprocess.run([*isa.linker, "-r", *objects, "-o", whole], check=True)
+    assert ram_of(isa, whole) <= MOST_RAM, "the radios need the rest"
     names = isa.measurer.replace("-size", "-nm")
     said = subprocess.run([names, "-u", whole], capture_output=True, text=True, check=True).stdout
     found = {line.split()[-1] for line in said.splitlines()}

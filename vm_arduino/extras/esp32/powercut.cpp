@@ -41,7 +41,9 @@ const char* doing = "";
 void forget() {
   is_loaded = false;
   is_open = false;
-  waiting = kSlots;
+  chip.nvs_handles = 0;
+  its_slot = kSlots;
+  waits = false;
 }
 
 void run(Store* store) {

@@ -25,7 +25,6 @@
 
 void setup() {}
 void loop() {}
-extern "C" void __wrap_esp_panic_handler(void*) {}
 
 namespace {
 

@@ -398,7 +398,7 @@ void simulated_panic() {
   if (on_panic != nullptr) on_panic(&info, nullptr);
 }
 #else
-void __wrap_esp_panic_handler(void* info);
+void __attribute__((weak)) __wrap_esp_panic_handler(void* info);  // not all programs have a board
 void __real_esp_panic_handler(void*) {}
 
 void simulated_panic() { __wrap_esp_panic_handler(nullptr); }

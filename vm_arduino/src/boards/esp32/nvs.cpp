@@ -1,9 +1,10 @@
-// Implements `nvm.h` on an ESP32: each slot of the store is two entries of NVS.
+// Implements `nvm.h` on an ESP32: each slot of the store is some entries of NVS.
 //
-// The head of a slot (generation and marks) is a number, written at once. Its body is a blob: the
-// bytes that are written wait, and the first one that is read again has them all written. So what
-// is read is in flash, and a program takes one write instead of one for each byte. NVS leaves an
-// entry as it was when the power fails, or writes it, or loses it; the store stands all three.
+// The head of a slot (generation and marks) is a number, written at once. Its body is blobs of 1,024
+// bytes, of which one at a time is in RAM: the bytes that are written wait there, and the first one
+// that is read again, or another blob, has them all written. So what is read is in flash, and a
+// program takes a few writes instead of one for each byte. NVS leaves an entry as it was when the
+// power fails, or writes it, or loses it; the store stands all three.
 //
 // A write may stop the chip for 50 ms and more, as long as a page is erased: `kWritesStopTheChip`
 // lets the store wait until the motors are off.
@@ -21,30 +22,38 @@ namespace {
 
 constexpr char kNamespace[] = "tiniscript";
 constexpr uint8_t kEmpty = 0xff;
+constexpr uint16_t kBlobBytes = 1024;
 
-uint8_t memory[kMemoryBytes];
-uint16_t used[kSlots];  // bytes of each body that its blob has
+uint8_t heads[kSlots][kBodyAt];
 bool is_loaded;
 bool is_open;
 nvs_handle_t handle;
-uint8_t waiting = kSlots;  // the slot whose body waits to be written
-uint16_t first_waiting;    // the places of its bytes that wait
+
+// The blob that was used last.
+uint8_t blob[kBlobBytes];
+uint8_t its_slot = kSlots;  // none
+uint8_t its_number;
+uint16_t its_bytes;  // those that NVS has, or will have
+bool waits;          // to be written: the bytes from the first to the last place
+uint16_t first_waiting;
 uint16_t last_waiting;
 
-// A key: h0 is the head of slot 0, b0 its body.
+// A key: h0 is the head of slot 0, b0a the first blob of its body.
 struct Key {
-  char text[3];
+  char text[4];
 };
 
-Key key_of(char what, uint8_t slot) { return {{what, static_cast<char>('0' + slot), '\0'}}; }
+Key head_key(uint8_t slot) { return {{'h', static_cast<char>('0' + slot), 0, 0}}; }
+
+Key blob_key() {
+  return {{'b', static_cast<char>('0' + its_slot), static_cast<char>('a' + its_number), 0}};
+}
 
 // Where the body of a slot ends at the latest.
 uint16_t room_of(uint8_t slot) {
   if (slot >= kFirstOwnerSlot) return kOwnerBytes;
   return slot < 2 ? kProgramSlot - kBodyAt : kRecordBytes;
 }
-
-uint8_t* body_of(uint8_t slot) { return memory + place_of(slot) + kBodyAt; }
 
 // The slot of a place. A program of version 1 could reach behind its slot, but none is on this
 // chip.
@@ -58,53 +67,53 @@ uint8_t slot_of(uint16_t place) {
 
 void load_head(uint8_t slot) {
   uint32_t head = 0xffffffff;
-  const Key key = key_of('h', slot);
-  if (!is_open || nvs_get_u32(handle, key.text, &head) != ESP_OK) head = 0xffffffff;
-  __builtin_memcpy(memory + place_of(slot), &head, kBodyAt);
-}
-
-void load_body(uint8_t slot) {
-  const uint16_t room = room_of(slot);
-  size_t length = room;
-  __builtin_memset(body_of(slot), kEmpty, room);
-  const Key key = key_of('b', slot);
-  if (!is_open || nvs_get_blob(handle, key.text, body_of(slot), &length) != ESP_OK) {
-    __builtin_memset(body_of(slot), kEmpty, room);
-    length = 0;
-  }
-  used[slot] = static_cast<uint16_t>(length);
-}
-
-void load() {
-  is_loaded = true;
-  __builtin_memset(memory, kEmpty, sizeof memory);
-  is_open = nvs_open(kNamespace, NVS_READWRITE, &handle) == ESP_OK;
-  for (uint8_t slot = 0; slot < kSlots; slot++) {
-    load_head(slot);
-    load_body(slot);
-  }
+  if (!is_open || nvs_get_u32(handle, head_key(slot).text, &head) != ESP_OK) head = 0xffffffff;
+  __builtin_memcpy(heads[slot], &head, kBodyAt);
 }
 
 void write_head(uint8_t slot) {
   uint32_t head;
-  __builtin_memcpy(&head, memory + place_of(slot), kBodyAt);
-  const Key key = key_of('h', slot);
-  if (is_open && nvs_set_u32(handle, key.text, head) == ESP_OK) nvs_commit(handle);
+  __builtin_memcpy(&head, heads[slot], kBodyAt);
+  if (is_open && nvs_set_u32(handle, head_key(slot).text, head) == ESP_OK) nvs_commit(handle);
   load_head(slot);
 }
 
-void write_body() {
-  const uint8_t slot = waiting;
-  if (slot == kSlots) return;
-  waiting = kSlots;
-  const Key key = key_of('b', slot);
-  if (is_open && nvs_set_blob(handle, key.text, body_of(slot), used[slot]) == ESP_OK) {
-    nvs_commit(handle);
+void load_blob() {
+  size_t length = kBlobBytes;
+  __builtin_memset(blob, kEmpty, kBlobBytes);
+  if (!is_open || nvs_get_blob(handle, blob_key().text, blob, &length) != ESP_OK) {
+    __builtin_memset(blob, kEmpty, kBlobBytes);
+    length = 0;
   }
-  load_body(slot);
+  its_bytes = static_cast<uint16_t>(length);
 }
 
-bool waits(uint16_t place) { return place >= first_waiting && place <= last_waiting; }
+void write_blob() {
+  if (!waits) return;
+  waits = false;
+  if (is_open && nvs_set_blob(handle, blob_key().text, blob, its_bytes) == ESP_OK) {
+    nvs_commit(handle);
+  }
+  load_blob();
+}
+
+// Has the blob of a place of a body in RAM; returns where the byte is there.
+uint16_t go_to(uint8_t slot, uint16_t at) {
+  const uint8_t number = static_cast<uint8_t>(at / kBlobBytes);
+  if (slot != its_slot || number != its_number) {
+    write_blob();
+    its_slot = slot;
+    its_number = number;
+    load_blob();
+  }
+  return at % kBlobBytes;
+}
+
+void load() {
+  is_loaded = true;
+  is_open = nvs_open(kNamespace, NVS_READWRITE, &handle) == ESP_OK;
+  for (uint8_t slot = 0; slot < kSlots; slot++) load_head(slot);
+}
 
 }  // namespace
 
@@ -115,8 +124,13 @@ bool nvm_is_ready() {
 
 uint8_t nvm_read(uint16_t place) {
   if (!is_loaded) load();
-  if (waiting != kSlots && waits(place)) write_body();
-  return memory[place];
+  const uint8_t slot = slot_of(place);
+  if (slot == kSlots) return kEmpty;
+  const uint16_t at = static_cast<uint16_t>(place - place_of(slot));
+  if (at < kBodyAt) return heads[slot][at];
+  const uint16_t its = go_to(slot, static_cast<uint16_t>(at - kBodyAt));
+  if (waits && its >= first_waiting && its <= last_waiting) write_blob();
+  return blob[its];
 }
 
 void nvm_write(uint16_t place, uint8_t value) {
@@ -124,15 +138,17 @@ void nvm_write(uint16_t place, uint8_t value) {
   const uint8_t slot = slot_of(place);
   if (slot == kSlots) return;
   const uint16_t at = static_cast<uint16_t>(place - place_of(slot));
-  if (slot != waiting || at < kBodyAt) write_body();
-  memory[place] = value;
-  if (at < kBodyAt) return write_head(slot);
-  if (waiting == kSlots) first_waiting = last_waiting = place;
-  waiting = slot;
-  if (place < first_waiting) first_waiting = place;
-  if (place > last_waiting) last_waiting = place;
-  const uint16_t end = static_cast<uint16_t>(at - kBodyAt + 1);
-  if (end > used[slot]) used[slot] = end;
+  if (at < kBodyAt) {
+    write_blob();
+    heads[slot][at] = value;
+    return write_head(slot);
+  }
+  const uint16_t its = go_to(slot, static_cast<uint16_t>(at - kBodyAt));
+  blob[its] = value;
+  if (!waits || its < first_waiting) first_waiting = its;
+  if (!waits || its > last_waiting) last_waiting = its;
+  if (its >= its_bytes) its_bytes = static_cast<uint16_t>(its + 1);
+  waits = true;
 }
 
 void nvm_clear(uint16_t place) { nvm_write(place, 0); }

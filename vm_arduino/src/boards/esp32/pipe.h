@@ -2,7 +2,8 @@
 //
 // Each direction has one writer and one reader, on different cores: the writer publishes what it
 // has written with its index, so neither waits and no lock is needed. That a client has left comes
-// in the row of its bytes, so that none of the next one's is taken for its own.
+// in the row of its bytes, so that none of the next one's is taken for its own. The rings of a
+// transport come from the heap with its first client, and stay.
 
 #ifndef TINISCRIPT_ESP32_PIPE_H_
 #define TINISCRIPT_ESP32_PIPE_H_
@@ -59,18 +60,26 @@ class Pipe {
   // The radio's task calls `take`. The three before it are called by that or by one other task, the
   // Bluetooth stack's.
 
-  // Somebody is connected: what was meant for the one before is gone.
-  void begin() {
+  // Somebody is connected: what was meant for the one before is gone. False: there is no memory, and
+  // nobody hears.
+  bool begin() {
+    if (rings_ == nullptr) {
+      Rings* const made = static_cast<Rings*>(__builtin_calloc(1, sizeof(Rings)));
+      if (made == nullptr) return false;
+      __atomic_store_n(&rings_, made, __ATOMIC_RELEASE);
+    }
     const uint16_t turn = static_cast<uint16_t>(began_ / kOutPlaces + 1);
-    const uint16_t began = static_cast<uint16_t>(turn * kOutPlaces + out_.end());
+    const uint16_t began = static_cast<uint16_t>(turn * kOutPlaces + rings_->out.end());
     __atomic_store_n(&began_, began, __ATOMIC_RELEASE);
     __atomic_store_n(&is_connected_, true, __ATOMIC_RELEASE);
+    return true;
   }
 
   // A byte of the client. False: it found no room, and is counted.
   bool put(uint8_t byte) {
     has_parted_ = false;
-    if (in_.room() > 1 && in_.put(byte)) return true;  // one place is for `part`
+    Rings* const its = rings();
+    if (its != nullptr && its->in.room() > 1 && its->in.put(byte)) return true;  // one for `part`
     const uint8_t lost = __atomic_load_n(&lost_, __ATOMIC_RELAXED);
     __atomic_store_n(&lost_, static_cast<uint8_t>(lost + 1), __ATOMIC_RELAXED);
     return false;
@@ -79,16 +88,18 @@ class Pipe {
   // The client has left.
   void part() {
     __atomic_store_n(&is_connected_, false, __ATOMIC_RELEASE);
-    if (!has_parted_) in_.put(kParted);
+    if (!has_parted_ && rings() != nullptr) rings()->in.put(kParted);
     has_parted_ = true;  // further ones change nothing until a byte comes
   }
 
   // The next byte for the client.
   bool take(uint8_t* byte) {
+    Rings* const its = rings();
+    if (its == nullptr) return false;
     const uint16_t began = __atomic_load_n(&began_, __ATOMIC_ACQUIRE);
-    if (began != followed_) out_.drop_to(began % kOutPlaces);
+    if (began != followed_) its->out.drop_to(began % kOutPlaces);
     followed_ = began;
-    return out_.take(byte);
+    return its->out.take(byte);
   }
 
   // The main loop calls these.
@@ -96,9 +107,12 @@ class Pipe {
   bool is_connected() const { return __atomic_load_n(&is_connected_, __ATOMIC_ACQUIRE); }
 
   // What has come: a byte, or kParted.
-  bool hear(uint16_t* item) { return in_.take(item); }
-  bool has_room() const { return out_.room() != 0; }
-  void say(uint8_t byte) { out_.put(byte); }
+  bool hear(uint16_t* item) {
+    Rings* const its = rings();
+    return its != nullptr && its->in.take(item);
+  }
+  bool has_room() const { return rings()->out.room() != 0; }  // of somebody who is connected
+  void say(uint8_t byte) { rings()->out.put(byte); }
 
   // How many bytes were lost. It wraps around to 0.
   uint8_t lost() const { return __atomic_load_n(&lost_, __ATOMIC_RELAXED); }
@@ -110,8 +124,14 @@ class Pipe {
   static constexpr uint16_t kOutPlaces = 512;
   static_assert(65536 % kOutPlaces == 0, "turn and place are in 16 bits");
 
-  Ring<uint16_t, kInPlaces> in_;
-  Ring<uint8_t, kOutPlaces> out_;
+  struct Rings {
+    Ring<uint16_t, kInPlaces> in;
+    Ring<uint8_t, kOutPlaces> out;
+  };
+
+  Rings* rings() const { return __atomic_load_n(&rings_, __ATOMIC_ACQUIRE); }
+
+  Rings* rings_;
   uint16_t began_;     // the place of the client's first byte, and above it which turn that is
   uint16_t followed_;  // the reader's: the last one that it has gone to
   bool is_connected_;

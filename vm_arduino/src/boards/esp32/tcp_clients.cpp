@@ -117,8 +117,8 @@ void look(Client* client, const uint8_t* bytes, size_t length) {
     return close_client(client);
   }
   if (guest == Guest::kUnknownYet) return;
+  if (!radio_pipe(client->transport).begin()) return close_client(client);
   client->is_admitted = true;
-  radio_pipe(client->transport).begin();
   pass_on(client, client->first, client->first_length);
   pass_on(client, bytes + more, length - more);
 }
