@@ -20,6 +20,7 @@ from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.event_printer import EventPrinter
 from tiniscript.cli.robot.recorder import Recorder
 from tiniscript.cli.robot.run_monitor import Saving
+from tiniscript.cli.robot.simulator import CommandSimulator
 from tiniscript.cli.texts.recordings import RECORDING_TEXTS
 from tiniscript.studio import recordings
 from tiniscript.studio.recordings import Recorded, read, replay
@@ -59,12 +60,39 @@ def test_a_run_is_recorded_and_compared(tsc: Tsc, tmp_path: Path) -> None:
     assert "el virtual, 5 a los 0.2 s" in done.out
 
 
+@pytest.mark.parametrize("hurry", ["20", "max"])
+def test_a_virtual_robot_that_hurries_is_recorded_in_its_own_time(
+    tsc: Tsc, tmp_path: Path, hurry: str
+) -> None:
+    program, file = tmp_path / "p.ts", tmp_path / "run.jsonl"
+    program.write_text("X = 0; LOOP(6); W(2); X = X + 1; SHOW(X); END_LOOP; W(3)")
+    done = process("upload", program, "--virtual", "--hurry", hurry, "--record", file)
+    assert done.code == 0, done.err
+    events = read(file.read_bytes()).events
+    assert [each.event for each in events] == [*(f"SHOW {k}" for k in range(1, 7)), "DONE"]
+    for each, wanted_ms in zip(events, (*range(2000, 12_001, 2000), 15_000), strict=True):
+        assert wanted_ms <= each.ms <= wanted_ms + 100, events
+    done = tsc("run", program, "--replay", file)
+    assert (done.code, done.out) == (0, "Both did the same. Comparisons: 7.\n")
+
+
+def test_a_run_that_is_stopped_ends_in_the_time_of_the_robot(tmp_path: Path) -> None:
+    program, file = tmp_path / "p.ts", tmp_path / "run.jsonl"
+    program.write_text("SHOW(TRUE); W(FOREVER) UNTIL(FALSE)")
+    process("upload", program, "--virtual", "--hurry", "max", "--for", "30", "--record", file)
+    first, last = read(file.read_bytes()).events
+    assert (first.event, last.event) == ("SHOW TRUE", "STOPPED")
+    assert first.ms <= 100 and last.ms >= 29_900
+
+
 @pytest.mark.parametrize(
     ("events", "code", "said"),
     [
         (((200, "SHOW 5"), (400, "FAULT DIVIDE_BY_ZERO")), 0, "Both did the same. Comparisons: 2."),
         (((200, "SHOW 5"), (300, "LOST")), 0, "Both did the same. Comparisons: 1."),
         (((200, "SHOW 5"), (400, "MISSED")), 0, "Then values of the robot did not arrive"),
+        ((), 1, "The recording ends before the robot said anything"),
+        (((200, "LOST"),), 1, "The recording ends before the robot said anything"),
         (((900, "SHOW 5"),), 1, "Line 1: the robot got there at another time."),
         (((200, "SHOW 5"), (400, "DONE")), 1, "Line 3: the robot says DONE after 0.4 s"),
         (((200, "SHOW 5"), (9000, "STOPPED")), 1, "Line 3: the virtual robot says FAULT"),
@@ -82,7 +110,23 @@ def test_a_recording_of_the_page_is_compared(
     assert (done.code, done.out[:39]) == (1, "The recording is of another program. Na")
 
 
-@pytest.mark.parametrize("what", ["same", "missed", "value", "time", "robot_more", "virtual_more"])
+@pytest.mark.parametrize("encoding", ["utf-8-sig", "utf-16", "utf-16-le", "utf-16-be"])
+@pytest.mark.parametrize("end", ["\n", "\r\n"])
+def test_a_recording_that_another_program_has_saved_is_read(
+    tsc: Tsc, tmp_path: Path, encoding: str, end: str
+) -> None:
+    """PowerShell and Notepad write a byte order mark and other line ends."""
+    file = tmp_path / "run.jsonl"
+    text = of_the_page((200, "SHOW 5"), (400, "FAULT DIVIDE_BY_ZERO")).decode() + "\n"
+    mark = "\ufeff" if encoding.startswith("utf-16-") else ""
+    file.write_bytes((mark + text.replace("\n", end)).encode(encoding))
+    done = tsc("run", "-e", TEXT, "--replay", file)
+    assert (done.code, done.out) == (0, "Both did the same. Comparisons: 2.\n"), done.err
+
+
+@pytest.mark.parametrize(
+    "what", ["same", "missed", "empty", "value", "time", "robot_more", "virtual_more"]
+)
 def test_the_command_says_what_the_page_says(what: str) -> None:
     page = PAGE_TEXTS.read_text(encoding="utf-8")
     for said in RECORDING_TEXTS[f"replay_{what}"]:
@@ -259,6 +303,7 @@ def test_after_ctrl_c_saving_is_no_time_of_the_run(
     monkeypatch.setattr(recorder, "monotonic", lambda: now_s[0])
     monkeypatch.setattr(upload, "looked_after", ctrl_c)
     monkeypatch.setattr(Saving, "wait", saves)
+    monkeypatch.setattr(CommandSimulator, "told_ms", None)  # as a real robot, it has no clock
     done = tsc("upload", "-e", "SI|F(9, 60)", "--virtual", "--record", file)
     assert (done.code, "confirmed" in done.err) == (2, True), done.err
     assert read(file.read_bytes()).events == (Recorded(5000, "STOPPED"),)

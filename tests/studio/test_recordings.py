@@ -87,7 +87,8 @@ def test_a_program_of_the_button_is_pushed_and_compared_from_its_first_event(
     assert found.virtual is not None and found.virtual.ms < 3100
     assert found.robot is not None and found.robot.ms == found.virtual.ms + 1000
     assert parting(lines[0], (lines[0][0] + 900, "STOPPED"), text=text) == Parting("same", 1)
-    assert parting(text=text) == parting((0, "STOPPED"), text=text) == Parting("same", 0)
+    assert parting((0, "STOPPED"), text=text) == Parting("same", 0)
+    assert parting(text=text) == Parting("empty")
     assert parting((0, "SHOW 5"), (1, "DONE"), text="SB|SHOW(5)") == Parting("same", 2)
     assert parting((0, "SHOW 5"), text="SB|W(1)").what == "value"
 

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import json
 import re
+from codecs import BOM_UTF16_BE, BOM_UTF16_LE
 from typing import NamedTuple
 
 from tiniscript.bytecode.image import checksum
@@ -61,9 +62,9 @@ class Recording(NamedTuple):
 class Parting(NamedTuple):
     """Where a recording and the virtual robot part.
 
-    `what` is same, missed (the same until values did not arrive), other_program, value, time,
-    robot_more or virtual_more; `line` is that of the program, or 0, and `robot` and `virtual` are
-    the events there. `agreed` events were the same.
+    `what` is same, missed (the same until values did not arrive), empty (nothing to compare),
+    other_program, value, time, robot_more or virtual_more; `line` is that of the program, or 0,
+    and `robot` and `virtual` are the events there. `agreed` events were the same.
     """
 
     what: str
@@ -77,7 +78,7 @@ def read(data: bytes) -> Recording:
     """Return the recording in a file. Raises BadRecording."""
     if len(data) > MOST_BYTES:
         raise BadRecording("too_long", 1)
-    lines = data.decode("utf-8", "replace").removesuffix("\n").split("\n")
+    lines = _decoded(data).rstrip("\r\n").split("\n")
     head = _fields(lines[0], 1)
     if "tiniscript_recording" in head and head["tiniscript_recording"] != VERSION:
         raise BadRecording("other_version", 1)
@@ -98,6 +99,12 @@ def read(data: bytes) -> Recording:
             raise BadRecording("unreadable", number)  # behind the end
         events.append(Recorded(ms, str(event)))
     return Recording(int(str(program), 16), tuple(events), robot)
+
+
+def _decoded(data: bytes) -> str:
+    """Return the text of a file, also as PowerShell and Notepad write it."""
+    is_wide = data.startswith((BOM_UTF16_LE, BOM_UTF16_BE))
+    return data.decode("utf-16" if is_wide else "utf-8-sig", "replace")
 
 
 def _fields(line: str, number: int) -> dict[str, object]:
@@ -125,6 +132,8 @@ def replay(recording: Recording, text: bytes, robot: str, world: World) -> Parti
     found = compiled(text, profile, "", is_strict=True)
     if found.program is None or not found.image or checksum(found.image) != recording.program:
         return Parting("other_program")
+    if not recording.events or recording.events[0].event == "LOST":
+        return Parting("empty")
     sensors = _shown_sensors(found.program)
     places = from_compiled(found).places
     shows = {place.offset: (place.line, sensors[its.span.start]) for its, place in

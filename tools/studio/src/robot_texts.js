@@ -17,6 +17,8 @@ export const ROBOT_TEXTS = {
     'Los dos hicieron lo mismo. Comparaciones: {count}.'],
   record_missed: ['Then values of the robot did not arrive, so nothing after that is compared. Comparisons that agreed before: {count}.',
     'Después no llegaron valores del robot, y desde ahí no se compara. Comparaciones iguales hasta ahí: {count}.'],
+  record_empty: ['The recording ends before the robot said anything, so there is nothing to compare. Record the run again.',
+    'La grabación termina antes de que el robot dijera algo: no hay nada que comparar. Graba la ejecución otra vez.'],
   record_value: ['{place}: the robot says {robot}, the virtual one {virtual}. Comparisons that agreed before: {count}.',
     '{place}: el robot dice {robot}; el virtual, {virtual}. Comparaciones iguales hasta ahí: {count}.'],
   record_time: ['{place}: the robot got there at another time. The robot says {robot}, the virtual one {virtual}.',

@@ -100,7 +100,9 @@ def _upload(
         from tiniscript.cli.robot.recorder import Recorder
 
         robot = connection.profile.name
-        recorder = Recorder(options.record, values.program, robot, began_s)
+        own = connection.simulator
+        robot_ms = None if own is None else own.told_ms
+        recorder = Recorder(options.record, values.program, robot, began_s, robot_ms)
         printer.rows = recorder.add
     saving = Saving(connection, printer, values)
     try:

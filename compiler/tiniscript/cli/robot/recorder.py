@@ -7,6 +7,7 @@ before the next one comes.
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from time import monotonic
 
 from tiniscript.cli.robot.rows import Rows
@@ -18,39 +19,50 @@ ENDS = ("DONE", "FAULT", "STOPPED", "MISSED")
 class Recorder:
     """The recording of a run that began at `began_s` (monotonic); None: at its first event.
 
-    Until there is one, the old file stays. Raises CommandError where it cannot be written.
+    A virtual robot has a clock of its own: `robot_ms` says when it did an event, since the run
+    began. Until there is an event, the old file stays. Raises CommandError where it cannot be
+    written.
     """
 
-    def __init__(self, name: str, program: int, robot: str, began_s: float | None) -> None:
+    def __init__(
+        self,
+        name: str,
+        program: int,
+        robot: str,
+        began_s: float | None,
+        robot_ms: Callable[[str], int] | None = None,
+    ) -> None:
         from tiniscript.studio.recordings import VERSION
 
         head = {"tiniscript_recording": VERSION, "program": f"{program:08x}", "robot": robot}
         self._began_s = began_s
+        self._robot_ms = robot_ms
         self._count = 0
         self._is_over = False
         self._rows = Rows(name, (json.dumps(head) + "\n").encode(), "unwritable_recording")
 
     def add(self, _: int, name: str, what: str) -> None:
-        """Add an event as `EventPrinter` tells it: times are those at which it came here."""
+        """Add an event as `EventPrinter` tells it, at the time at which it came here."""
         if self._is_over or name not in ("SHOW", *ENDS):
             return
         from tiniscript.studio.recordings import MOST_MS
 
-        now_s = monotonic()
-        self._began_s = now_s if self._began_s is None else self._began_s
-        ms = self._ms(now_s)
+        event = f"{name} {what}" if name in ("SHOW", "FAULT") else name
+        if self._began_s is None:
+            self._began_s = monotonic()
+        ms = self._ms(event)
         self._count += 1
         if ms > MOST_MS or self._count >= MOST:
             self._end(ms, "STOPPED")
         elif name in ENDS:
-            self._end(ms, f"FAULT {what}" if name == "FAULT" else name)
+            self._end(ms, event)
         else:
-            self._put(ms, f"SHOW {what}")
+            self._put(ms, event)
 
     def end(self, event: str) -> None:
         """The recording is over now, if it was not: `event` is the last one."""
         if not self._is_over:
-            self._end(self._ms(monotonic()), event)
+            self._end(self._ms(event), event)
 
     def close(self) -> None:
         """Close the file; a run whose end nobody has told was stopped by this computer."""
@@ -59,8 +71,10 @@ class Recorder:
         finally:
             self._rows.close()
 
-    def _ms(self, now_s: float) -> int:
-        return 0 if self._began_s is None else round((now_s - self._began_s) * 1000)
+    def _ms(self, event: str) -> int:
+        if self._robot_ms is not None:
+            return self._robot_ms(event)
+        return 0 if self._began_s is None else round((monotonic() - self._began_s) * 1000)
 
     def _end(self, ms: int, event: str) -> None:
         from tiniscript.studio.recordings import MOST_MS

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import sys
 from argparse import Namespace
+from collections import deque
 from threading import Condition, Thread
 from time import monotonic
 from typing import TYPE_CHECKING
@@ -21,9 +22,12 @@ if TYPE_CHECKING:
     from tiniscript.cli.terminal.screen import Screen
     from tiniscript.cli.terminal.world_drawing import WorldPicture
     from tiniscript.robots.profile import Robot
+    from tiniscript.vm.trace import Event
 
 JOIN_S = 5.0
 ROUND_S = 1.0  # the longest round; a robot draws at least 15 pictures per second
+TOLD = ("SHOW", "DONE", "FAULT", "STOP")  # events of a robot that it tells its client, too
+MOST_EVENTS = 10_000  # that nobody has asked for yet; the oldest are lost
 
 
 def running_address(options: Namespace) -> str | None:
@@ -70,6 +74,8 @@ class CommandSimulator:
         self._bookkeeping = Bookkeeping()
         self._frame_s = 0.0
         self._drawing = Condition()
+        self._undrawn: deque[Event] = deque(maxlen=MOST_EVENTS)
+        self._told: deque[Event] = deque(maxlen=MOST_EVENTS)  # what `told_ms` may be asked for
         self._rounds = 0  # rounds after which the picture is up to date
         world = self.robot.world.name
         self._note = directory.announce(
@@ -128,6 +134,27 @@ class CommandSimulator:
         sys.stdout.flush()
         print(line, file=sys.stderr, flush=True)
 
+    def told_ms(self, event: str) -> int:
+        """Return when the robot did what it tells next as `event`, since its program began.
+
+        Of what it has not told itself (that its values did not arrive), the time now.
+        """
+        wanted = "STOP" if event == "STOPPED" else event
+
+        def is_there() -> bool:
+            return any(each.text == wanted for each in self._told)
+
+        with self._drawing:
+            began_ms = self.robot.started_ms or 0
+            if wanted.partition(" ")[0] not in TOLD or not self._drawing.wait_for(
+                is_there, ROUND_S
+            ):
+                return self.robot.now_ms - began_ms
+            while True:
+                found = self._told.popleft()
+                if found.text == wanted:
+                    return found.time_ms - began_ms
+
     def unwatch(self) -> None:
         """Stop drawing; the last picture stays."""
         with self._drawing:
@@ -181,12 +208,13 @@ class CommandSimulator:
                         self.simulator.push()
                     self.simulator.turn(FRAME_S)
                 with self._drawing:
-                    if self._picture is not None:
-                        for event in self.robot.take_events():
-                            if not self._bookkeeping.hides_trace(event):
-                                self._picture.take(event)
-                    elif not sys.stderr.isatty():
-                        self.robot.take_events()  # discarded: nothing draws them
+                    events = self.robot.take_events()
+                    self._told.extend(each for each in events if each.what in TOLD)
+                    self._undrawn.extend(events)
+                    while self._picture is not None and self._undrawn:
+                        event = self._undrawn.popleft()
+                        if not self._bookkeeping.hides_trace(event):
+                            self._picture.take(event)
                     if self.screen is not None and monotonic() >= self._frame_s:
                         self._frame_s = monotonic() + FRAME_S
                         self._draw(self.screen)
