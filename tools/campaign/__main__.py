@@ -124,12 +124,14 @@ def tell(goals: Sequence[Goal], done: Results) -> None:
 
 
 def put_down(done: Results) -> int:
-    """Put the figures of code that is committed into the document; return the exit code."""
-    fit = {name: each for name, each in done.items() if "+" not in each.commit}
-    left_out = sorted(set(done) - set(fit))
-    results.write(results.WRITTEN, {**results.read(results.WRITTEN), **fit})
+    """Put the figures of commits that led here into the document; return the exit code."""
+    rows = [*results.read(results.WRITTEN).items(), *done.items()]
+    fit = {name: each for name, each in rows if results.is_in_history(each.commit)}
+    left_out = sorted({name for name, _ in rows} - set(fit))
+    results.write(results.WRITTEN, fit)
     if left_out:
-        print(f"Left out, as their code is not committed: {', '.join(left_out)}.", file=sys.stderr)
+        said = f"Left out, as their code is in no commit that led here: {', '.join(left_out)}."
+        print(said, file=sys.stderr)
     return subprocess.run([sys.executable, "-m", "tools.generate"], cwd=ROOT).returncode
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 import json
 import subprocess
 from pathlib import Path
+from shutil import which
 from typing import NamedTuple
 
 from tiniscript.files import cache_folder, replace
@@ -59,6 +60,19 @@ def commit() -> str:
     """Return the commit of the code that is tested; with a `+` where it has changed since."""
     head = _git("rev-parse", "--short=10", "HEAD")
     return head + "+" * bool(_git("status", "--porcelain", "--", *CODE))
+
+
+def is_in_history(commit: str) -> bool:
+    """Whether a commit leads to the one that is checked out: who has this can look at its code."""
+    if "+" in commit:
+        return False
+    words = ["git", "merge-base", "--is-ancestor", commit, "HEAD"]
+    return subprocess.run(words, cwd=ROOT, capture_output=True).returncode == 0
+
+
+def has_history() -> bool:
+    """Whether all commits that led here are on this computer."""
+    return bool(which("git")) and _git("rev-parse", "--is-shallow-repository") == "false"
 
 
 def is_same_code(one: str, other: str) -> bool:
