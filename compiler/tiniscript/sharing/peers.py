@@ -45,7 +45,7 @@ def is_of_this_user(peer: socket.socket) -> bool:
 
     False where nobody has it any more: who has hung up can have been anybody.
     """
-    if not tells_users():
+    if sys.platform != "linux":
         return True
     try:
         there, here = peer.getpeername(), peer.getsockname()
