@@ -12,6 +12,7 @@ from tiniscript.cli.inputs import shown
 from tiniscript.cli.options import bad_choice
 from tiniscript.cli.robot.connect import Connection, port_failure
 from tiniscript.cli.terminal.progress import Progress
+from tiniscript.cli.terminal.waiting import waiting
 from tiniscript.cli.texts.common import text
 
 if TYPE_CHECKING:
@@ -133,12 +134,14 @@ def _written(
         nonlocal has_begun
         if seen is not None:
             has_begun = True
+            silence.cancel()
             label = "flash_writing" if seen.phase == avrdude.WRITING else "flash_reading"
             progress.label = text(label, language)
             progress.draw(seen.percent)
 
     try:
-        return avrdude.write(command, bootloader, port, firmware.path, look)
+        with waiting("flash_waits", language, port) as silence:
+            return avrdude.write(command, bootloader, port, firmware.path, look)
     except KeyboardInterrupt:
         if not has_begun:
             raise

@@ -8,7 +8,7 @@ from __future__ import annotations
 import sys
 from argparse import Namespace
 from collections.abc import Callable
-from contextlib import suppress
+from contextlib import AbstractContextManager, nullcontext, suppress
 from typing import IO, TYPE_CHECKING, TypeVar
 
 from tiniscript.cli import inputs
@@ -81,7 +81,8 @@ class Connection:
         asked_baud = None if options.baud is None else baud
         try:
             verb = options.verb
-            self.line = opened_connection(self.port, baud, robot, verb, asked_baud=asked_baud)
+            with self._waiting():
+                self.line = opened_connection(self.port, baud, robot, verb, asked_baud=asked_baud)
             self.server = shared_port.shared(self.line, self.port, baud, verb)
         except BaseException:
             self._end_simulator()
@@ -147,7 +148,8 @@ class Connection:
         """
         from tiniscript.link.outcomes import CANCELLED
 
-        reply = opening.met(self.line, self.port, board or self.profile.board.chip, self.wait)
+        with self._waiting():
+            reply = opening.met(self.line, self.port, board or self.profile.board.chip, self.wait)
         while reply.status == CANCELLED and self.starts_nothing:  # a stop came first
             reply = self.wait(opening.hello(self.line, opening.ANSWER_MS))
         device_info = self.line.robot
@@ -158,6 +160,14 @@ class Connection:
             self.remember(device_info.name)
             self._tell_stale_key(device_info)
         return device_info
+
+    def _waiting(self) -> AbstractContextManager[object]:
+        """Say what takes so long; a fleet has a table that does."""
+        if self.is_one_of_many:
+            return nullcontext()
+        from tiniscript.cli.terminal.waiting import waiting
+
+        return waiting("waits_for_robot", self.language, self.port)
 
     def _tell_stale_key(self, device_info: DeviceInfo) -> None:
         """Say what to do where the robot has refused a key of this computer."""

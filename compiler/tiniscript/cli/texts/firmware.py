@@ -5,6 +5,7 @@ from __future__ import annotations
 # fmt: off
 FLASH_TEXTS: dict[str, tuple[str, str]] = {
     # key: (English, Spanish)
+    "flash_waits": ("Waiting for the board on {port} …", "Esperando a la placa en {port} …"),
     "flash_writing": ("writing", "escribiendo"),
     "flash_reading": ("reading back", "comprobando"),
     "flash_older": ("Nobody answers yet; now as an older Nano.", "Todavía nadie responde; ahora como un Nano más antiguo."),

@@ -286,6 +286,7 @@ LINK_TEXTS: dict[str, tuple[str, str]] = {
     "joined": ("tsc {verb}: connected.", "tsc {verb}: se conectó."),
     "left": ("tsc {verb}: disconnected.", "tsc {verb}: se desconectó."),
     "link_started": ("Started: program {program}.", "Iniciado: programa {program}."),
+    "waits_for_robot": ("Waiting for the robot on {port} …", "Esperando al robot en {port} …"),
     "link_searching": ("The robot on {port} does not answer any more. Looking for it …",
                        "El robot en {port} ya no responde. Buscándolo …"),
     "link_found": ("{robot} is back.", "{robot} volvió."),
