@@ -46,13 +46,14 @@ exit 7
 def ci(folder: Path) -> tuple[list[str], dict[str, str]]:
     """Run CI in a clone with an own test command. Return what it said, and its variables."""
     files = {"tools/venv.sh": HELPS, "tools/test.sh": TESTS, "new": "",
+             "tests/x.py": "@pytest.mark.root\n", "tests/y.py": "",
              ".ci/run": (ROOT / ".ci/run").read_text(encoding="utf-8")}  # fmt: skip
     for name, text in files.items():
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
         (folder / name).write_text(text, encoding="utf-8")
     git = ["git", "-C", str(folder), "-c", "user.name=x", "-c", "user.email=x"]
     subprocess.run(["git", "init", "--quiet", str(folder)], check=True)
-    subprocess.run([*git, "add", ".ci", "tools"], check=True)
+    subprocess.run([*git, "add", ".ci", "tests", "tools"], check=True)
     subprocess.run([*git, "commit", "--quiet", "-m", "first"], check=True)
     home = folder.parent / "home of root"
     (home / ".config" / "pip").mkdir(parents=True, exist_ok=True)
@@ -86,13 +87,16 @@ def test_ci_of_root_runs_the_tests_as_a_new_user(tmp_path: Path) -> None:
     clone = tmp_path / "clone"
     for _ in range(2):
         rows, seen = ci(clone)
-        assert rows[:3] == ["packages by 0", "-m pytest -p no:cacheprovider -m root by 0",
-                            f"-m not root, {seen['USER']}"]  # fmt: skip
+        assert rows[:3] == [
+            "packages by 0",
+            "-m pytest -p no:cacheprovider -m root tests/x.py by 0",
+            f"-m not root, {seen['USER']}",
+        ]
         assert not {*SPECIAL, "SECRET"} & set(seen)
         assert (seen["CI"], seen["PIP_INDEX_URL"]) == ("true", "file:///no 'ne")
         assert (seen["https_proxy"], seen["FILES"]) == ("http://p:1", "1024")
         assert (seen["PIP"], seen["NPM"]) == ("[global] of root", "registry of root")
-        assert (seen["HISTORY"], seen["THERE"]) == ("first", ".ci .git .venv new tools ")
+        assert (seen["HISTORY"], seen["THERE"]) == ("first", ".ci .git .venv new tests tools ")
         assert seen["HOME"].startswith("/home/") and not Path(seen["HOME"]).exists()
         assert subprocess.run(["id", seen["USER"]], capture_output=True).returncode
         shutil.rmtree(clone)
