@@ -4,14 +4,16 @@ The new content is written beside the file, under a name that nobody can foresee
 was not there before; then it takes the file's place. So nobody who may write to the folder can have
 another file changed, and whoever reads meanwhile reads the old content or the new.
 
-A symbolic link stays one: what it leads to is replaced, as by a shell's `>`. Another hard link to
-the file keeps the old content.
+A symbolic link stays one: what it leads to is replaced, as by a shell's `>`. One that another user
+has put into a folder where others may write is no way to a file: that is refused. Another hard link
+to the file keeps the old content.
 
 Knows where a command keeps what the next one may need. Does not know what is in a file.
 """
 
 from __future__ import annotations
 
+import errno
 import os
 import stat
 import sys
@@ -21,6 +23,7 @@ from pathlib import Path
 from time import monotonic, sleep, time
 
 NEW = ".new"  # the end of the name of a file that is not yet whole
+MOST_LINKS = 40  # on the way to a file
 NAME_CHARACTERS = 100  # of a file's name in that of its new one
 LOCK = ".lock"  # the end of the name of a file that commands lock while they change another one
 LOCK_S = 5.0  # for which a command waits for another one
@@ -68,6 +71,7 @@ def replace(path: Path, data: bytes, mode: int | None = None, is_lasting: bool =
     leaves. A device or a pipe, which has no old content, is written to. `is_lasting`: also where
     the power goes, or the stick is pulled, the old content is there or the new; that takes time.
     """
+    _refuse_foreign_links(path)
     found = _found(path)
     if found is not None and not stat.S_ISREG(found.st_mode):
         with path.open("wb") as device:
@@ -96,6 +100,37 @@ def replace(path: Path, data: bytes, mode: int | None = None, is_lasting: bool =
         with suppress(OSError):
             new.unlink()
         raise
+
+
+def _refuse_foreign_links(path: Path) -> None:
+    """Raise PermissionError where another user's link, in a folder of many, is on the way.
+
+    The rule is that of Linux for folders like /tmp: a link of the folder's owner, root or the own
+    user leads on.
+    """
+    if sys.platform == "win32":
+        return
+    here, rest = Path(path.anchor or "."), list(path.parts[1 if path.anchor else 0 :])
+    followed = 0
+    while rest:
+        step = here / rest.pop(0)
+        try:
+            link = step.lstat()
+        except OSError:  # nothing is there, so nothing leads away
+            return
+        if not stat.S_ISLNK(link.st_mode):
+            here = step
+            continue
+        folder = here.stat()
+        is_shared = folder.st_mode & (stat.S_IWGRP | stat.S_IWOTH)
+        if is_shared and link.st_uid not in (os.geteuid(), folder.st_uid, 0):
+            raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
+        followed += 1
+        if followed > MOST_LINKS:
+            return  # what opens it says so
+        target = step.readlink()
+        here = Path(target.anchor) if target.anchor else here
+        rest = [*target.parts[1 if target.anchor else 0 :], *rest]
 
 
 def _take_place(new: Path, target: Path) -> None:

@@ -333,3 +333,49 @@ def test_a_killed_link_leaves_nothing_for_long(cache: Path) -> None:
     assert len(names()) == 2
     assert json.loads(process("ports", "--json").out) is not None
     assert names() == set()
+
+
+@unix
+@pytest.mark.parametrize("is_of_folder", [False, True], ids=["the link itself", "of a folder"])
+def test_another_user_s_link_in_a_shared_folder_leads_nowhere(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, is_of_folder: bool
+) -> None:
+    """Where not even root can be two users: /tmp is root's, and this user stands for the other."""
+    kept = tmp_path / "kept"
+    kept.mkdir()
+    precious = kept / "precious"
+    precious.write_text("mine")
+    shared = tmp_path / "shared"
+    shared.mkdir()
+    shared.chmod(0o777)
+    link = shared / "way" if os.geteuid() == 0 else Path(f"/tmp/tiniscript-{os.urandom(8).hex()}")
+    link.symlink_to(kept if is_of_folder else precious)
+    target = link / "precious" if is_of_folder else link
+    try:
+        if os.geteuid() == 0:
+            files.replace(target, b"through an own link")
+            os.chown(link, 65534, 65534, follow_symlinks=False)
+        else:
+            monkeypatch.setattr(os, "geteuid", lambda: 12345)
+        before = precious.read_bytes()
+        for path in (
+            target,
+            link.parent / ".." / link.parent.name / target.relative_to(link.parent),
+        ):
+            with pytest.raises(PermissionError):
+                files.replace(path, b"somebody else's wish")
+        assert precious.read_bytes() == before and sorted(kept.iterdir()) == [precious]
+        if os.geteuid() == 0:
+            shared.chmod(0o755)  # a folder where nobody else may write: its owner has let it be
+            files.replace(target, b"now")
+            assert precious.read_bytes() == b"now" and link.is_symlink()
+    finally:
+        link.unlink()
+
+
+@unix
+def test_links_that_lead_in_a_circle_end(tmp_path: Path) -> None:
+    (tmp_path / "a").symlink_to("b")
+    (tmp_path / "b").symlink_to("a")
+    with pytest.raises(OSError, match="symbolic links"):
+        files.replace(tmp_path / "a", b"x")
