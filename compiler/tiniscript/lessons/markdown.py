@@ -10,6 +10,8 @@ import re
 from textwrap import fill
 from typing import NamedTuple
 
+from tiniscript.printable import printable
+
 WIDTH = 80  # columns of a page on a terminal
 ITEM = re.compile(r"(- \[ \]|-|[0-9]{1,2}\.) +(.*)")
 KINDS = {"- [ ]": "checks", "-": "list"}
@@ -58,7 +60,8 @@ def _paragraph(lines: list[str]) -> list[Block]:
     if lines[0].startswith("|"):
         inside = (line.strip().removeprefix("|").removesuffix("|") for line in lines)
         rows = [tuple(cell.strip() for cell in row.split("|")) for row in inside]
-        return [Block("table", tuple(row for row in rows if set("".join(row)) - set("-: ")))]
+        kept = tuple(row for row in rows if set("".join(row)) - set("-: "))
+        return [Block("table", kept)] if kept else []
     found: list[tuple[str, list[str]]] = []
     for line in lines:
         item = ITEM.match(line)
@@ -75,8 +78,9 @@ def _paragraph(lines: list[str]) -> list[Block]:
 
 
 def as_text(page: str) -> str:
-    """Return a page as a terminal shows it."""
-    return "\n".join(_as_text(block) + "\n" for block in blocks(page))
+    """Return a page as a terminal shows it; its control characters are those of lines alone."""
+    lines = "\n".join(printable(line) for line in page.expandtabs(4).splitlines())
+    return "\n".join(_as_text(block) + "\n" for block in blocks(lines))
 
 
 def _as_text(block: Block) -> str:
