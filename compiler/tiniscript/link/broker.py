@@ -36,6 +36,7 @@ LEAVE_S = 0.5
 PATIENCE_S = 4.0  # a robot frees its place when a client that was killed has been silent for 3 s
 QUIET_S = 0.3  # of silence, and that was all
 ROBOTS = 250  # that a list keeps
+MESSAGE_BYTES = 4096  # of one that is taken; a robot sends less
 PIECE_BYTES = 400  # of a message; a robot takes 512
 DRIVER_S = 0.5  # of silence of the driver, after which nothing keeps a run alive
 _PORT = re.compile(rf"{MQTT}(.+):(\d{{1,5}})/([a-z0-9-]{{1,16}})/([0-9a-f]{{8}})", re.IGNORECASE)
@@ -108,6 +109,18 @@ def _trusting(file: str | None) -> ssl.SSLContext:
     return context
 
 
+class _Client(mqtt.Client):
+    """Ends the connection where a message is too large, before any of it is in memory."""
+
+    too_large = ""
+
+    def _sock_recv(self, bufsize: int) -> bytes:
+        if bufsize > MESSAGE_BYTES:
+            self.too_large = f"the broker sends a message of {bufsize} bytes"
+            raise ConnectionError(self.too_large)
+        return super()._sock_recv(bufsize)
+
+
 class Broker:
     """A connection to a broker. `gone` says why it has ended."""
 
@@ -121,7 +134,7 @@ class Broker:
         self._told_s = 0.0
         self._ports: dict[tuple[str, str], BrokerPort] = {}
         self._reason: str | None = None  # of a refusal; empty: let in
-        self._client = mqtt.Client(
+        self._client = _Client(
             CallbackAPIVersion.VERSION2, protocol=mqtt.MQTTv311, reconnect_on_failure=False
         )
         self._client.connect_timeout = CONNECT_S
@@ -218,7 +231,7 @@ class Broker:
 
     def _on_disconnect(self, *_: Any) -> None:
         with self._news:
-            self.gone = self.gone or "the broker has gone"
+            self.gone = self.gone or self._client.too_large or "the broker has gone"
             self._news.notify_all()
             for port in self._ports.values():
                 port.end(self.gone)
