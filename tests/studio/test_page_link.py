@@ -265,6 +265,14 @@ def test_the_token_is_not_in_the_address(pages: Pages, server: serving.Server) -
     assert page.locator("#link_ports").is_visible()  # a tab keeps it
 
 
+def test_run_with_a_mistake_stops_what_runs(page: Page, robot: PtyRobot) -> None:
+    drives(page, robot)
+    write(page, "F(2, 80")
+    page.click("#link_upload")
+    robot.until(lambda: not robot.moves, "it stands")
+    said(page, "The robot was stopped. First repair the program.")
+
+
 def test_an_address_opens_the_robots_once_and_says_so(
     pages: Pages, server: serving.Server, tmp_path: Path
 ) -> None:

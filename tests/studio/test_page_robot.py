@@ -219,3 +219,14 @@ def test_another_world_or_robot_begins_again(page: Page) -> None:
         " return found.size; }"
     )
     assert colors > 5  # floor, border, line
+
+
+def test_run_with_a_mistake_stops_what_runs(page: Page) -> None:
+    write(page, FOREVER)
+    page.click("#run")
+    in_phase(page, "running")
+    write(page, "F(1, 80")
+    assert page.locator("html").get_attribute("data-phase") == "running"
+    page.click("#run")
+    in_phase(page, "ended")
+    page.locator("#doing").filter(has_text="First repair the program.").wait_for()

@@ -251,9 +251,8 @@ export class Driving {
     }
     this.#note = !program || program.image ? '' : text('first_repair');
     this.#show();
-    if (!program?.image) return;
-    await this.#simulator.stop();
-    if (start !== this.#starts) return;
+    await this.#simulator.stop(); // also before a program with mistakes: what runs is not what is seen
+    if (start !== this.#starts || !program?.image) return;
     this.#wasStopped = false;
     this.#arena.begin(this.#world.shapes, this.#work.robot);
     this.#plot.begin();

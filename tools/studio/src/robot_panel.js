@@ -49,6 +49,7 @@ export class RobotPanel {
   #sent = null;
   #speech = new Speech();
   #confirming = 0;
+  #isBroken = false; // a program with mistakes was to run, and what runs stops
   #list = element('link_port', HTMLSelectElement);
   #line = element('link_line', HTMLInputElement);
 
@@ -265,6 +266,8 @@ export class RobotPanel {
     const program = this.#page.program();
     if (!program?.image) {
       this.#speech.say(program ? 'first_repair' : 'press_again'); // a robot does not start late by itself
+      this.#isBroken = runs && program !== null;
+      if (this.#isBroken) this.#way?.stop(); // what runs is not what is seen
       return;
     }
     this.#speech.begin('say_sending');
@@ -344,7 +347,8 @@ export class RobotPanel {
     else if (event.event === 'LOST') this.#speech.say('why_link_lost');
     else if (event.event === 'STOPPED') {
       clearTimeout(this.#confirming);
-      if (document.visibilityState !== 'hidden') this.#speech.say(`stopped_${event.cause}`);
+      if (document.visibilityState !== 'hidden') this.#speech.say(this.#isBroken ? 'say_broken' : `stopped_${event.cause}`);
+      this.#isBroken = false;
     }
   }
 

@@ -102,6 +102,7 @@ export const ROBOT_TEXTS = {
   say_left: ['Disconnected.', 'Desconectado.'],
   say_hidden: ['The robot was stopped: this page was hidden. Come back here to drive it.',
     'El robot se detuvo: esta página quedó oculta. Vuelve aquí para conducirlo.'],
+  say_broken: ['The robot was stopped. First repair the program.', 'El robot se detuvo. Primero corrige el programa.'],
   say_stopping: ['Stopping…', 'Deteniendo…'],
   say_not_confirmed: ['The robot has not confirmed the stop. If it moves, lift it, and take its batteries or its plug out.',
     'El robot no ha confirmado que se detuvo. Si se mueve, levántalo y quítale las pilas o el cable.'],
