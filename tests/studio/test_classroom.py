@@ -285,7 +285,7 @@ def test_a_full_class_gives_away_the_places_of_who_has_gone() -> None:
     room.connects(first)
     room.now_s += 1
     for k in range(1, classroom.MOST_PUPILS):
-        room.joins(f"p{k}")
+        room.joins(f"p{k}", f"198.51.100.{k}")
     more = {"do": "join", "code": room.made.code, "name": "more"}
     room.now_s += 30
     assert room.made.answer("", HERE, more) == {"failure": "class_full"}
@@ -435,3 +435,28 @@ def test_no_stop_and_no_beat_waits_for_the_names_of_ports(monkeypatch: pytest.Mo
     state = room.teaches("class_robot", port="port9", gives=True)
     assert answered == ["stop", "beat", "here", "listed"]
     assert [each["name"] for each in state["robots"]] == ["", "NINE"]
+
+
+def test_an_address_has_three_places_at_once_unless_the_teacher_allows_more() -> None:
+    """Whoever has read the code on the board fills no class with pupils that nobody is."""
+    room = Room()
+
+    def enters(name: str, address: str = HERE) -> Json:
+        request = {"do": "join", "code": room.made.code, "name": name}
+        return room.made.answer("", address, request)
+
+    tokens = [room.joins(f"p{k}") for k in range(classroom.PLACES)]
+    assert enters("more") == {"failure": "class_crowded"}
+    assert "token" in enters("other", "192.0.2.10")
+    room.now_s += classroom.HERE_S + 1  # the first one's page was closed, and is opened again
+    for token in tokens[1:]:
+        room.here(token)
+    assert "token" in enters("again")
+    with pytest.raises(BadRequest):
+        room.here(tokens[0])
+    assert enters("more") == {"failure": "class_crowded"}
+    assert room.teaches("class_places", places=4)["places"] == 4
+    assert "token" in enters("more")
+    for wrong in (0, 61, "4", None):
+        with pytest.raises(BadRequest):
+            room.teaches("class_places", places=wrong)

@@ -286,6 +286,7 @@ def lesson(pupils: int, robots_count: int, turn_s: int = 30) -> None:
     with ExitStack() as stack:
         found = [stack.enter_context(PtyRobot(KIT)) for _ in range(robots_count)]
         taught = stack.enter_context(studio.taught([each.port for each in found], turn_s))
+        taught.room.teach({"do": "class_places", "places": pupils})
         playwright = stack.enter_context(studio.driver())
         browser = stack.enter_context(studio.browser(playwright))
         pages = Pages(browser, taught.server.address, patience_s=300)

@@ -191,3 +191,24 @@ def test_a_thousand_connections_keep_nobody_out(server: serving.Server) -> None:
         assert page.sock is kept
         assert active_count() - before <= serving.CONNECTIONS + 30
     page.close()
+
+
+@pytest.mark.parametrize("line", [b"X-More: " + b"x" * 1000 + b"\r\n", b"x" * 70_000, b"X: y\r\n"])
+def test_a_head_ends_at_16_kilobytes(server: serving.Server, line: bytes) -> None:
+    """However its bytes are divided into lines, and whether it ends or not."""
+    with socket.create_connection((serving.HOST, server.server_port), timeout=HANGS_S) as client:
+        client.sendall(b"GET / HTTP/1.1\r\n")
+        sent, heard = 0, b""
+        while not heard and sent < 20 * serving.HEAD_BYTES:
+            try:
+                client.sendall(line)
+                sent += len(line)
+                client.settimeout(0.01 if sent < serving.HEAD_BYTES else HANGS_S)
+                heard = client.recv(100)
+            except TimeoutError:
+                continue
+            except ConnectionError:
+                break
+        assert heard[:12] in (b"HTTP/1.1 431", b""), heard  # nothing: it was reset
+        assert sent <= serving.HEAD_BYTES + len(line)
+    assert post(server)[0] == 200

@@ -33,6 +33,7 @@ JOIN_BYTES = 1000
 NAME_CHARACTERS = 24
 TEXT_CHARACTERS = 20_000  # of a program, for the teacher
 MOST_PUPILS = 60
+PLACES = 3  # of one address; the teacher may allow more
 MOST_ROBOTS = 40
 TURN_S = 180
 SHORTEST_S, LONGEST_S = 10, 3600
@@ -64,6 +65,7 @@ class Classroom:
         self._lock = RLock()
         self._pupils: dict[str, Pupil] = {}  # by token
         self._robots = [ClassRobot(port, _name_of(port)) for port in ports]
+        self._places = PLACES
         self._wrong = Rate(*WRONG)
         self._requests = Rate(*REQUESTS)
         self._count = 0  # of pupils, and of places in the queue
@@ -116,19 +118,26 @@ class Classroom:
         plain = printable(" ".join(name.split()), NAME_CHARACTERS)
         if not plain:
             return {"failure": "class_nameless"}
-        if len(self._pupils) >= MOST_PUPILS and not self._give_place_away(now_s):
+        same = [token for token, each in self._pupils.items() if each.address == address]
+        if len(same) >= self._places and not self._give_place_away(now_s, HERE_S, same):
+            return {"failure": "class_crowded"}
+        if len(self._pupils) >= MOST_PUPILS and not self._give_place_away(
+            now_s, SILENT_S, list(self._pupils)
+        ):
             return {"failure": "class_full"}
         names = {each.name for each in self._pupils.values()}
-        same = [f"{plain} ({k})" for k in range(2, MOST_PUPILS + 2)]
-        free = next(each for each in [plain, *same] if each not in names)
+        others = [f"{plain} ({k})" for k in range(2, MOST_PUPILS + 2)]
+        free = next(each for each in [plain, *others] if each not in names)
         self._count += 1
         token = new_token()
         self._pupils[token] = Pupil(self._count, free, address, now_s)
         return {"token": token, "name": free}
 
-    def _give_place_away(self, now_s: float) -> bool:
-        silent = [(each.heard_s, token) for token, each in self._pupils.items()
-                  if now_s - each.heard_s > SILENT_S and self._turn(each) is None]  # fmt: skip
+    def _give_place_away(self, now_s: float, silent_s: float, tokens: list[str]) -> bool:
+        """Take the place of the one of these that has been silent longest."""
+        of = {token: self._pupils[token] for token in tokens}
+        silent = [(each.heard_s, token) for token, each in of.items()
+                  if now_s - each.heard_s > silent_s and self._turn(each) is None]  # fmt: skip
         if silent:
             del self._pupils[min(silent)[1]]
         return bool(silent)
@@ -249,6 +258,8 @@ class Classroom:
                 self._give(given, request.get("gives") is True)
             elif do == "class_turn":
                 self._turn_s = _whole(request, "seconds", SHORTEST_S, LONGEST_S)
+            elif do == "class_places":
+                self._places = _whole(request, "places", 1, MOST_PUPILS)
             elif do == "class_code":
                 self.code = _new_code()
             elif do == "class_over":
@@ -313,6 +324,7 @@ class Classroom:
         return {
             "code": self.code,
             "turn_s": self._turn_s,
+            "places": self._places,
             "over": self._over,
             "pupils": [
                 {

@@ -18,9 +18,10 @@ from collections.abc import Callable
 from contextlib import suppress
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from io import BufferedIOBase
 from pathlib import Path
 from threading import Lock
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple, Protocol, cast
 from urllib.parse import urlsplit
 
 from tiniscript.flash import ready
@@ -42,6 +43,7 @@ ENTER = "/enter"  # where it gets the token for its code
 TOKEN = "X-TiniScript-Token"
 BEFORE_CODE = "#code="
 ENTER_BYTES = 200  # of a request with a code
+HEAD_BYTES = 16_384  # of a request
 REQUEST_BYTES = 200_000  # the largest program has 32,781 bytes, and two digits for each
 # At a time; one more, and one is closed, of the address that has most. A browser has six.
 CONNECTIONS = 64
@@ -222,12 +224,51 @@ class Server(ThreadingHTTPServer):
         """A client that has gone is no news."""
 
 
+class _HeadTooLarge(Exception):
+    pass
+
+
+class _Reader:
+    """What a client sends; the lines of a head are no more than HEAD_BYTES in all."""
+
+    def __init__(self, stream: BufferedIOBase) -> None:
+        self._stream = stream
+        self._left = HEAD_BYTES
+        self.read = stream.read
+        self.close = stream.close
+
+    def begin(self) -> None:
+        self._left = HEAD_BYTES
+
+    def readline(self, size: int) -> bytes:
+        line = self._stream.readline(min(size, self._left + 1))
+        self._left -= len(line)
+        if self._left < 0:
+            raise _HeadTooLarge
+        return line
+
+
 class _Handler(BaseHTTPRequestHandler):
     server: Server
     protocol_version = "HTTP/1.1"
     server_version = "tsc"
     sys_version = ""
     timeout = SILENT_S
+
+    def setup(self) -> None:
+        super().setup()
+        self._reader = _Reader(self.rfile)
+        self.rfile = cast(Any, self._reader)
+
+    def handle_one_request(self) -> None:
+        self._reader.begin()
+        try:
+            super().handle_one_request()
+        except _HeadTooLarge:
+            self.close_connection = True
+            status = HTTPStatus.REQUEST_HEADER_FIELDS_TOO_LARGE
+            head = f"HTTP/1.1 {status.value} {status.phrase}\r\nConnection: close\r\n\r\n"
+            self.wfile.write(head.encode())
 
     def do_GET(self) -> None:
         self._answer(has_body=True)

@@ -9,7 +9,7 @@ import { text } from './texts.js';
 
 /** @typedef {{number: number, name: string, silent_s: number, place: number, robot: string, characters: number}} PupilRow */
 /** @typedef {{port: string, name: string, pupil: string, left_s: number}} RobotRow */
-/** @typedef {{code: string, turn_s: number, over: string, pupils: PupilRow[], robots: RobotRow[]}} State */
+/** @typedef {{code: string, turn_s: number, places: number, over: string, pupils: PupilRow[], robots: RobotRow[]}} State */
 /** @typedef {{item: HTMLElement, said: HTMLElement, name: HTMLElement}} Row */
 
 const LOOK_MS = 1000;
@@ -25,6 +25,7 @@ export class Teacher {
   #program = made('pre');
   #ports = made('select');
   #minutes = made('input');
+  #places = made('input');
   #erases = made('input');
   #end = button('class_end', () => this.#finish());
   /** @type {Map<string, Row>} */
@@ -42,6 +43,10 @@ export class Teacher {
     this.#minutes.min = '1';
     this.#minutes.max = '60';
     this.#minutes.addEventListener('change', () => this.#ask({ do: 'class_turn', seconds: 60 * Math.min(60, Math.max(1, Math.round(Number(this.#minutes.value)) || 1)) }));
+    this.#places.type = 'number';
+    this.#places.min = '1';
+    this.#places.max = '60';
+    this.#places.addEventListener('change', () => this.#ask({ do: 'class_places', places: Math.min(60, Math.max(1, Math.round(Number(this.#places.value)) || 1)) }));
     this.#erases.type = 'checkbox';
     element('class', HTMLElement).append(made('div', '',
       made('p', '', made('span', 'class_address'), ' ', made('strong', '', location.origin), ' ', made('span', 'class_code'), ' ', this.#code, ' ',
@@ -51,6 +56,7 @@ export class Teacher {
       made('h2', 'class_robots'), this.#robots,
       made('p', '', labelled('link_port', this.#ports), button('class_give', () => this.#give()), button('link_look', () => this.#lookForPorts())),
       made('p', '', labelled('class_minutes', this.#minutes)),
+      made('p', '', labelled('class_places', this.#places)),
       made('p', '', made('label', '', this.#erases, made('span', 'class_erases')), this.#end),
     ));
     this.#lookForPorts();
@@ -100,9 +106,10 @@ export class Teacher {
   }
 
   /** @param {State} state */
-  #show({ code, turn_s, over, pupils, robots }) {
+  #show({ code, turn_s, places, over, pupils, robots }) {
     this.#code.textContent = code;
     if (document.activeElement !== this.#minutes) this.#minutes.value = String(Math.round(turn_s / 60));
+    if (document.activeElement !== this.#places) this.#places.value = String(places);
     if (over) {
       this.#say('class_over');
       element('class', HTMLElement).replaceChildren(this.#said); // nobody is left to do the rest
