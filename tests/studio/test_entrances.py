@@ -176,7 +176,7 @@ def post(own: str, token: str, request: object, path: str = serving.ROBOTS) -> t
 
 
 @linux
-@pytest.mark.skipif(os.geteuid() != 0, reason="only root can be another user")
+@pytest.mark.root
 @pytest.mark.parametrize("is_class", [False, True])
 def test_another_user_reads_the_browser_s_command_line_and_gets_nothing(
     tmp_path: Path, is_class: bool
