@@ -14,9 +14,11 @@ from tests.machines.host_firmware import missing
 from tests.support.command import FOREVER, LONG, Command, process
 from tests.support.pty_robot import PtyRobot, on, uploading
 from tests.support.shared_pty_robot import Shared
-from tiniscript import __version__
+from tiniscript import __version__, compile_text, robots
+from tiniscript.bytecode.image import unpack
 from tiniscript.link.frames import decoded
 from tiniscript.sharing import protocol, registry
+from tiniscript.sharing.client import joined
 from tiniscript.sharing.registry import Registration
 
 pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
@@ -351,3 +353,16 @@ def test_a_tsc_of_another_version_can_be_stopped(pty_robot: PtyRobot) -> None:
         assert words in done.err
     assert on(pty_robot, "stop").code == 0
     assert command.ended().code == 3
+
+
+def test_a_run_that_begins_after_its_client_has_left_is_stopped() -> None:
+    """Its request was under way, and nobody attends to what it starts."""
+    with Shared() as (robot, _):
+        client = joined(robot.port, "upload")
+        assert client is not None
+        kit = robots.load("tinibot").kit
+        image = unpack(compile_text(FOREVER, kit).image)
+        client.do(lambda session: session.upload(image, True, kit=kit.fingerprint))
+        client.close()
+        robot.until(lambda: "MOTORS 80 80" in robot.did, "the run begins")
+        robot.until(lambda: not robot.moves, "it is stopped")

@@ -212,3 +212,20 @@ def test_a_head_ends_at_16_kilobytes(server: serving.Server, line: bytes) -> Non
         assert heard[:12] in (b"HTTP/1.1 431", b""), heard  # nothing: it was reset
         assert sent <= serving.HEAD_BYTES + len(line)
     assert post(server)[0] == 200
+
+
+def test_the_page_that_has_asked_last_is_kept(server: serving.Server) -> None:
+    """Where all have shown the token, the one is closed that has asked nothing for longest."""
+    server.most_connections = 2
+    own = f"127.0.0.1:{server.server_port}"
+    headers = {"Origin": f"http://{own}", serving.TOKEN: server.entrances.token}
+    pages = [HTTPConnection(serving.HOST, server.server_port, timeout=HANGS_S) for _ in range(3)]
+    kept = []
+    for k in (0, 1, 0, 2, 0):
+        pages[k].request("POST", serving.ROBOTS, b'{"do": "ports"}', headers)
+        pages[k].getresponse().read()
+        kept.append(pages[k].sock)
+    assert kept[0] is kept[2] is kept[4]
+    assert pages[1].sock.recv(1) == b""
+    for each in pages:
+        each.close()

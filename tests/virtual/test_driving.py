@@ -190,6 +190,13 @@ def test_a_lamp_is_brighter_near_and_ahead_and_not_through_a_wall() -> None:
     assert read(world, LEFT, Pose(100, 100, 0)) == round(1023 * expected)
     assert read(world, RIGHT, Pose(100, 100, 0)) == 0  # 120 degrees off
     wall = "[[walls]]\npoints = [[60, 150], [160, 150]]\n"
+    # turned round, it is behind: no brighter than without a lamp, and no darker
+    assert read(world, LEFT, Pose(112, 150, 180)) == 0
+    dim = "[light]\nambient_percent = 20\n"
+    behind = floor(lamp.replace("[light]\nambient_percent = 0\n", dim))
+    assert (
+        read(behind, LEFT, Pose(112, 150, 180)) == read(floor(dim), LEFT, Pose(112, 150, 180)) > 0
+    )
     assert read(floor(lamp + wall), LEFT, Pose(100, 100, 0)) == 0
     bright = floor(lamp.replace("ambient_percent = 0", "ambient_percent = 100"))
     assert read(bright, LEFT, Pose(100, 100, 0)) == 1023
