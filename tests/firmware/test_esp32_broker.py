@@ -187,6 +187,27 @@ def test_a_name_and_a_password_where_the_broker_asks_for_them(tmp_path: Path) ->
         own.kill()
 
 
+def test_who_has_the_robot_keeps_it_while_it_speaks(broker: Mosquitto) -> None:
+    """Its silence counts from its last message, not from its first."""
+    robot, _ = at(broker, Keys())
+    teacher, stranger = broker.connected(), broker.connected()
+    topic = f"{ROOT}/aula/{ID}/in/"
+    for k in range(4000):  # milliseconds: longer than a client may be silent
+        if k % 250 == 0:
+            teacher.publish(topic + teacher.peer, b"\0")
+        if k % 250 == 125:
+            stranger.publish(topic + stranger.peer, b"\0")
+        robot.step()
+        time.sleep(0.0005)
+    end, other = AtBroker(robot, stranger), remote(robot, None, 12)
+    end.port._patient_until_s = 0.0
+    other.ping()
+    talk(robot, [(end, other)], 300)
+    assert end.has_ended, "it is told that another one has the robot"
+    teacher.close()
+    stranger.close()
+
+
 # -- stops --------------------------------------------------------------------------------------
 
 

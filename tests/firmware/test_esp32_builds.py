@@ -212,6 +212,7 @@ def test_nothing_waits() -> None:
 def test_the_settings_need_no_registry_of_libraries() -> None:
     text = (SOURCES / "platformio.ini").read_text(encoding="utf-8")
     for row in ("[env:esp32dev]", "[env:esp32c3]", "board = esp32-c3-devkitm-1",
-                "platform = espressif32", "board_build.partitions = partitions.csv"):  # fmt: skip
+                "platform = espressif32 @ 6.13.0",
+                "board_build.partitions = partitions.csv"):  # fmt: skip
         assert row in text
     assert "lib_deps" not in text

@@ -67,6 +67,16 @@ def test_a_program_over_each_radio(make: Make, major: int) -> None:
     assert [event.name for event in client.events()] == ["SHOW", "DONE"]
 
 
+def test_the_idle_task_of_a_chip_with_one_core_gets_its_turn() -> None:
+    robot = booted("tinibotc3")
+    before = robot.rests()
+    robot.wait(1000)
+    assert 8 <= robot.rests() - before <= 12
+    two_cores = booted()
+    two_cores.wait(1000)
+    assert two_cores.rests() == 0
+
+
 def test_a_chip_without_a_serial_port_over_bluetooth() -> None:
     robot = booted("tinibotc3")
     assert radios(robot).advertised == "tini-5678"

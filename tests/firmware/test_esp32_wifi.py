@@ -194,9 +194,16 @@ def test_an_entry_of_nvs_that_is_none_is_none(entry: bytes) -> None:
     assert radios(again).joins == 0
 
 
-def test_a_wrong_password_and_a_network_out_of_reach_are_told() -> None:
+@pytest.mark.parametrize("reason", [15, 202, 203, 204])
+def test_a_wrong_password_and_a_network_out_of_reach_are_told(reason: int) -> None:
+    """The core says "disconnected" of a wrong password; its event has the reason."""
     robot, owner = joined(Keys())
     ends: Ends = [(None, owner)]
+    robot.radio("x", bytes([8]))  # it was only left
+    in_reach(robot, SCHOOL.name.decode(), "another one")
+    talk(robot, ends, 20)
+    assert state(robot, owner) == ("STATION", "SEARCHING")
+    robot.radio("x", bytes([reason]))
     in_reach(robot, SCHOOL.name.decode(), "another one")
     talk(robot, ends, 20)
     assert state(robot, owner) == ("STATION", "REFUSED")
@@ -325,26 +332,56 @@ def test_a_client_that_leaves_ends_its_run_at_once() -> None:
     assert happened(robot)[-1] == "MOTORS 0 0"
 
 
-def test_silent_clients_make_room_for_the_next_one() -> None:
+def test_strangers_who_trickle_bytes_keep_no_stop_out() -> None:
+    """Two have both places, and say a letter of a line now and then; an owner's keeps his."""
+    keys = Keys()
+    robot, _ = joined(keys)
+    talk(robot, [], AUTHORITY_MS + 100)
+    owner = remote(robot, keys)
+    end = Network(robot)
+    ends: Ends = [(end, owner)]
+    assert uploaded(robot, ends, owner) == "OK"
+    for _ in range(3):  # the place of one makes room for the next
+        stranger = Network(robot)
+        for _ in range(20):
+            stranger.send(b"X")
+            talk(robot, ends, 50)
+        assert not end.has_ended and not stranger.has_ended
+    assert happened(robot)[-1] == "MOTORS 80 80"
+    stopper = Network(robot)
+    stopper.send(bytes(4))
+    talk(robot, ends, 10)
+    assert happened(robot)[-1] == "MOTORS 0 0"
+
+
+def test_two_strangers_are_not_kept_before_who_comes_later() -> None:
     robot, owner = joined(Keys())
-    first, second = Network(robot), Network(robot)
-    first.send(bytes(2))
-    robot.wait(5)
-    third = Network(robot)
-    robot.wait(5)
-    third.taken()
-    assert third.has_ended, "the two before may be drivers"
-    robot.wait(10_000)
-    second.taken()
-    assert second.has_ended, "it has not said what it is"
-    fourth = remote(robot, None)
-    ends: Ends = [(Network(robot), fourth)]
-    assert ended(robot, ends, fourth.ping()) == "OK"
-    fifth = remote(robot, None, 14)
-    assert ended(robot, [(Network(robot), fifth), *ends], fifth.ping()) == "OK"
-    first.taken()
-    assert first.has_ended
+    waiting, looking = Network(robot), remote(robot, None)
+    looks: Ends = [(Network(robot), looking)]
+    assert ended(robot, looks, looking.ping()) == "OK"
+    third = remote(robot, None, 14)
+    comes: Ends = [(Network(robot), third), *looks]
+    assert ended(robot, comes, third.ping()) == "OK"
+    waiting.taken()
+    assert waiting.has_ended, "who has said nothing goes first"
+    fourth = remote(robot, None, 15)
+    end = Network(robot)
+    assert ended(robot, [(end, fourth)], fourth.ping()) == "OK"
     assert ended(robot, [(None, owner)], owner.ping()) == "OK"
+
+
+def test_whose_first_bytes_stay_unclear_is_hung_up_on() -> None:
+    robot, _ = joined(Keys())
+    slow = Network(robot)
+    for _ in range(99):
+        slow.send(b"X")
+        robot.wait(100)
+    slow.taken()
+    assert not slow.has_ended
+    slow.send(b"X")
+    robot.wait(200)
+    slow.taken()
+    assert slow.has_ended, "ten seconds after it came, whatever it says"
 
 
 def test_a_client_that_takes_nothing_stops_nobody() -> None:

@@ -257,11 +257,16 @@ def test_own_installation_is_left_alone(project: Path, tmp_path: Path) -> None:
     assert [path for path in tmp_path.rglob("*") if path.is_file()] == [manifest]
 
 
-def test_pinned_platform_is_refused(project: Path, tmp_path: Path) -> None:
-    with changed(project / "platformio.ini", ("= atmelavr", "= atmelavr@5.1.0")):
+def test_every_platform_has_its_version_and_another_one_is_refused(
+    project: Path, tmp_path: Path
+) -> None:
+    settings = (project / "platformio.ini").read_text(encoding="utf-8")
+    named = re.findall(r"(?m)^platform = (.*)", settings)
+    assert named and all(re.fullmatch(r"\w+ @ \d+\.\d+\.\d+", each) for each in named)
+    with changed(project / "platformio.ini", ("= atmelavr @ 5.1.0", "= atmelavr @ 5.0.0")):
         code, out, err = offline("--project", str(project), PLATFORMIO_CORE_DIR=str(tmp_path))
     assert (code, out) == (2, "")
-    assert "wants atmelavr@5.1.0: a stand-in is no version of it" in err
+    assert "wants atmelavr @ 5.0.0, the stand-in is one for 5.1.0" in err
 
 
 def test_other_doctest_is_refused(project: Path, tmp_path: Path) -> None:

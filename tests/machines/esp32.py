@@ -124,6 +124,10 @@ class Esp32Robot(HostFirmware):
         turns, ns = (int.from_bytes(answer[k : k + 4], "little") for k in (0, 4))
         return turns, ns / 1000
 
+    def rests(self) -> int:
+        """Return how often the main loop has left its turn to the idle task."""
+        return int.from_bytes(self.ask(b"M", b"")[8:12], "little")
+
     def fill_nvs(self, is_full: bool = True) -> None:
         self.ask(b"F", pack("<B", is_full))
 

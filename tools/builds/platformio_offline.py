@@ -89,7 +89,7 @@ def settings_for(project: Path, offline: bool, may_install: bool) -> dict[str, s
         say(f"nothing to do: {why}")
         return {}
     install_packages(may_install)
-    refuse_pinned(project)
+    refuse_others(project)
     made = stand_ins()
     libraries = HOME / "libraries"
     add_doctest(libraries / "native" / "doctest", project)
@@ -178,16 +178,27 @@ def install_packages(may_install: bool) -> None:
 # -- what does not match ------------------------------------------------------------------------
 
 
-def refuse_pinned(project: Path) -> None:
-    """A stand-in is no version of the platform that it stands for."""
+def version_of(stand_in: Path) -> str:
+    """Return the version of a platform that a stand-in stands for."""
+    return str(json.loads((stand_in / "platform.json").read_text("utf-8"))["version"])
+
+
+def refuse_others(project: Path) -> None:
+    """A stand-in stands for one version of its platform; a platform without one is not built."""
     from platformio.package.meta import PackageSpec
+    from semantic_version import Version
 
     config = config_of(project)
     for environment in config.envs():
         platform = config.get(f"env:{environment}", "platform")
-        if PackageSpec(platform).requirements:
+        wanted = PackageSpec(platform)
+        stand_in = STAND_INS / str(wanted.name)
+        if not stand_in.is_dir() or not wanted.requirements:
+            continue
+        version = version_of(stand_in)
+        if Version(version) not in wanted.requirements:
             raise CannotStandIn(
-                f"[env:{environment}] wants {platform}: a stand-in is no version of it"
+                f"[env:{environment}] wants {platform}, the stand-in is one for {version}"
             )
 
 
@@ -264,8 +275,7 @@ def stand_ins() -> Path:
     def fill(new: Path) -> None:
         for source in sorted(STAND_INS.iterdir()):
             platform = shutil.copytree(source, new / "platforms" / source.name)
-            version = json.loads((source / "platform.json").read_text("utf-8"))["version"]
-            describe(platform, "", "platform", source.name, version)
+            describe(platform, "", "platform", source.name, version_of(source))
         package = new / "packages" / "tool-scons"
         package.mkdir(parents=True)
         (package / "scons.py").write_text(

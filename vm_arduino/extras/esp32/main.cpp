@@ -131,6 +131,11 @@ void turns(uint32_t count) {
   turns_begun = 0;
   begun = Watch::now();
   for (uint32_t k = 0; k < count; k++) {
+    if (chip.slept_us >= kTurnUs) {
+      chip.slept_us -= kTurnUs;
+      look();
+      continue;
+    }
     turns_begun++;
     loop();
     pass(kTurnUs);
@@ -226,6 +231,8 @@ void answer_radio(RequestReader* request, Writer* answer) {
       const std::string address = request->text();
       return network_name(name, address, request->u16());
     }
+    case 'x':
+      return network_refuses(request->u8());
     case 'H':
       chip.is_heap_full = request->u8() != 0;
       return;
@@ -258,6 +265,7 @@ void answer_guest(RequestReader* request, Writer* answer) {
 void answer_moved(Writer* answer) {
   answer->u32(turns_until_moved);
   answer->u32(static_cast<uint32_t>(moved_ns));
+  answer->u32(chip.rests);
 }
 
 // Y: the main loop goes on to the next millisecond while the timer's task reads the clock. X: a panic. What a stack that is not to be relied on would make is not simulated.

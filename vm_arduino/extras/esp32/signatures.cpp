@@ -126,6 +126,7 @@ is_a(std::declval<BluetoothSerial&>().write(std::declval<const uint8_t*>(), size
 
 // libraries/WiFi/src and libraries/ESPmDNS/src, as called
 is_a(WiFi.begin("", ""), wl_status_t);
+is_a(arduino_event_t().event_info.wifi_sta_disconnected.reason, uint8_t);
 is_a(WiFi.localIP(), IPAddress);
 is_a(WiFi.mode(WIFI_STA), bool);
 is_a(WiFi.setHostname(""), bool);

@@ -67,6 +67,8 @@ struct SimulatedChip {
   bool is_watched = false;   // the main loop, by it
   bool watches_idle = true;  // the task watchdog, that of core 0, which nobody feeds meanwhile
   bool has_restarted = false;
+  uint32_t slept_us = 0;  // by the main loop, and not yet counted as turns of it
+  uint32_t rests = 0;     // how often it slept
   void (*meanwhile)() = nullptr;  // what another core does once, while the timer reads the clock
 
   bool is_heap_full = false;  // no stack finds room

@@ -61,6 +61,9 @@ std::atomic<bool> bluetooth_begins{false};
 std::atomic<bool> has_bluetooth{false};
 
 // WiFi
+constexpr uint8_t kNoNetwork = 201;
+uint8_t refusal = 15;
+WiFiEventSysCb on_disconnected;
 wifi_mode_t wifi_mode = WIFI_OFF;
 bool has_modem_sleep = true;
 std::atomic<bool> has_network_stack{false};
@@ -180,6 +183,8 @@ void network_name(const std::string& name, const std::string& address, uint16_t 
   addresses[name] = address;
   waits_ms[name] = wait_ms;
 }
+
+void network_refuses(uint8_t reason) { refusal = reason; }
 
 uint16_t network_port() {
   const Lock lock(guard);
@@ -324,11 +329,28 @@ wl_status_t WiFiClass::begin(const char* ssid, const char* passphrase, int32_t, 
   return WL_DISCONNECTED;
 }
 
+// What the core's task tells, which this one does in its place: a wrong password is "disconnected",
+// as `WiFiGenericClass::_eventCallback` has it.
 wl_status_t WiFiClass::status() {
-  const Lock lock(guard);
-  if (wifi_mode != WIFI_STA) return WL_NO_SHIELD;
-  if (near_name.empty() || near_name != settings.network) return WL_NO_SSID_AVAIL;
-  return near_password == settings.password ? WL_CONNECTED : WL_CONNECT_FAILED;
+  arduino_event_t event = {ARDUINO_EVENT_WIFI_STA_DISCONNECTED, {{refusal}}};
+  wl_status_t found = WL_DISCONNECTED;
+  {
+    const Lock lock(guard);
+    if (wifi_mode != WIFI_STA) return WL_NO_SHIELD;
+    if (near_name.empty() || near_name != settings.network) {
+      found = WL_NO_SSID_AVAIL;
+      event.event_info.wifi_sta_disconnected.reason = kNoNetwork;
+    } else if (near_password == settings.password) {
+      return WL_CONNECTED;
+    }
+  }
+  if (on_disconnected != nullptr) on_disconnected(&event);
+  return found;
+}
+
+int WiFiClass::onEvent(WiFiEventSysCb cbEvent, arduino_event_id_t) {
+  on_disconnected = cbEvent;
+  return 0;
 }
 
 bool WiFiClass::softAP(const char* ssid, const char* passphrase, int, int, int, bool) {

@@ -28,6 +28,7 @@ std::string serial_port_said();  // since the last call
 
 // WiFi: a network in reach with its password; none if `name` is empty.
 void network_in_reach(const std::string& name, const std::string& password);
+void network_refuses(uint8_t reason);  // a wrong password
 // Lets the network know a name of a computer; none but "localhost" is known before.
 // Looking it up takes `wait_ms`.
 void network_name(const std::string& name, const std::string& address, uint16_t wait_ms);

@@ -77,7 +77,11 @@ BaseType_t xTaskCreatePinnedToCore(TaskFunction_t pvTaskCode, const char* const,
 
 void vTaskDelay(const TickType_t xTicksToDelay) {
   expect_free("vTaskDelay in a critical section");
-  if (own == nullptr) return pass_us(uint64_t{xTicksToDelay} * 1000);  // the main loop
+  if (own == nullptr) {  // the main loop
+    chip.rests++;
+    chip.slept_us += xTicksToDelay * 1000;
+    return pass_us(uint64_t{xTicksToDelay} * 1000);
+  }
   std::unique_lock<std::mutex> lock(turn);
   own->due_us = chip.now_us + uint64_t{xTicksToDelay} * 1000;
   active = nullptr;

@@ -64,6 +64,9 @@ bool firmware_radio_name(RadioName* name);
 // Whether WiFi is off after restarts: HELLO says so.
 void firmware_wifi_rests(bool is_so);
 
+// Whether who is connected over a transport has shown a key of the robot.
+bool firmware_has_key(Transport transport);
+
 // Nobody is connected over a transport any more: ends a tethered run that it has started.
 void firmware_on_part(Transport transport);
 #else

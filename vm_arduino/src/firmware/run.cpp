@@ -158,6 +158,8 @@ void firmware_on_disconnect() {
 }
 
 #ifdef tiniscript_transports
+bool firmware_has_key(Transport transport) { return link.has_key(transport); }
+
 void firmware_on_part(Transport transport) {
   if (!link.part(transport) || !is_running()) return;
   end_run(State::kStopped);

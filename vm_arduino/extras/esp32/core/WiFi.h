@@ -23,6 +23,20 @@ typedef enum { WIFI_MODE_NULL = 0, WIFI_MODE_STA, WIFI_MODE_AP, WIFI_MODE_APSTA 
 #define WIFI_STA WIFI_MODE_STA
 #define WIFI_AP WIFI_MODE_AP
 
+// libraries/WiFi/src/WiFiGeneric.h of version 2, libraries/Network/src/NetworkEvents.h of version 3
+typedef enum { ARDUINO_EVENT_WIFI_STA_DISCONNECTED = 5, ARDUINO_EVENT_MAX = 40 } arduino_event_id_t;
+typedef struct {
+  uint8_t reason;
+} wifi_event_sta_disconnected_t;
+typedef union {
+  wifi_event_sta_disconnected_t wifi_sta_disconnected;
+} arduino_event_info_t;
+typedef struct {
+  arduino_event_id_t event_id;
+  arduino_event_info_t event_info;
+} arduino_event_t;
+typedef void (*WiFiEventSysCb)(arduino_event_t* event);
+
 // cores/esp32/IPAddress.h
 class IPAddress {
  public:
@@ -40,6 +54,7 @@ class WiFiClass {
                     const uint8_t* bssid = nullptr, bool connect = true);
   bool disconnect(bool wifioff = false, bool eraseap = false);
   IPAddress localIP();
+  int onEvent(WiFiEventSysCb cbEvent, arduino_event_id_t event = ARDUINO_EVENT_MAX);
   static bool mode(wifi_mode_t m);
   static void persistent(bool persistent);
   static bool setHostname(const char* hostname);

@@ -106,6 +106,10 @@ class Pipe {
 
   bool is_connected() const { return __atomic_load_n(&is_connected_, __ATOMIC_ACQUIRE); }
 
+  // Whether the client has shown a key: the main loop says it, the radio's task asks.
+  void note_key(bool has_key) { __atomic_store_n(&has_key_, has_key, __ATOMIC_RELAXED); }
+  bool has_key() const { return __atomic_load_n(&has_key_, __ATOMIC_RELAXED); }
+
   // What has come: a byte, or kParted.
   bool hear(uint16_t* item) {
     Rings* const its = rings();
@@ -135,6 +139,7 @@ class Pipe {
   uint16_t began_;     // the place of the client's first byte, and above it which turn that is
   uint16_t followed_;  // the reader's: the last one that it has gone to
   bool is_connected_;
+  bool has_key_;
   bool has_parted_;  // the radio's: nothing has come since
   uint8_t lost_;
 };

@@ -15,6 +15,7 @@ namespace {
 constexpr uint8_t kBytesATurn = 128;  // of a transport, taken in a turn of the main loop
 constexpr uint32_t kStackBytes = 6144;
 constexpr uint32_t kTlsStackBytes = 10240;
+constexpr uint32_t kRestMs = 100;    // between two turns of the idle task
 constexpr uint32_t kAgainMs = 1000;  // until the broker's task is tried again
 constexpr int kPriority = 1;  // that of the main loop
 constexpr int kCore = 0;
@@ -37,6 +38,7 @@ const Radio kBrokerRadio = {"tini mqtt", nullptr, broker_turn, kTlsStackBytes};
 Pipe pipes[kTransports - kFirst];
 RadioName name;
 bool has_begun;
+uint32_t rested_ms;
 bool has_broker;
 bool has_failed;  // to begin the broker's task
 uint32_t failed_ms;
@@ -77,6 +79,15 @@ void begin_broker() {
   broker_has_memory(has_broker);
 }
 
+// On a chip with one core the main loop would leave the idle task no turn, and that frees what tasks
+// leave behind.
+void rest() {
+  const uint32_t now_ms = static_cast<uint32_t>(millis());
+  if (portNUM_PROCESSORS > 1 || now_ms - rested_ms < kRestMs) return;
+  rested_ms = now_ms;
+  vTaskDelay(1);
+}
+
 }  // namespace
 
 Pipe& radio_pipe(Transport transport) { return pipes[static_cast<uint8_t>(transport) - kFirst]; }
@@ -110,10 +121,12 @@ void radio_attend() {
 
 // What is meant for nobody is gone.
 void radio_send() {
+  rest();
   for (uint8_t place = kFirst; place < kTransports; place++) {
     const Transport transport = static_cast<Transport>(place);
     Pipe& pipe = radio_pipe(transport);
     const bool is_connected = pipe.is_connected();
+    pipe.note_key(firmware_has_key(transport));
     uint8_t byte;
     while ((!is_connected || pipe.has_room()) && firmware_next_tx_byte(transport, &byte)) {
       if (is_connected) pipe.say(byte);

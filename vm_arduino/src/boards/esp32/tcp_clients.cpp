@@ -19,15 +19,18 @@ namespace tiniscript {
 namespace {
 
 constexpr uint8_t kClients = 2;
-constexpr uint32_t kBeginMs = 10000;   // until the first bytes are clear
-constexpr uint32_t kSilentMs = 10000;  // silence after which a place is given to the next one
+constexpr uint32_t kBeginMs = 10000;   // since it was accepted, until its first bytes are clear
+constexpr uint32_t kSilentMs = 10000;  // silence after which the place of an owner is given away
 constexpr size_t kChunk = 256;
 
 struct Client {
   int socket;
   Transport transport;
   bool is_admitted;
+  uint32_t accepted_ms;
   uint32_t heard_ms;
+
+  bool has_key() const { return is_admitted && radio_pipe(transport).has_key(); }
   size_t first_length;
   uint8_t first[kFirstBytes];
   size_t out_length;
@@ -72,16 +75,24 @@ void listen() {
   }
 }
 
-// A place for a new client: a free one, or that of the one that has been silent longest.
+// A place for a new client: a free one, or that of who has shown no key, the one first that has not
+// said yet what it is; so nobody keeps out an owner's stop. Owners keep theirs while they speak.
 Client* free_place() {
-  Client* oldest = nullptr;
+  Client* found = nullptr;
+  uint32_t most = 0;
   for (Client& client : clients) {
     if (client.socket == kNoSocket) return &client;
-    if (oldest == nullptr || client.heard_ms - oldest->heard_ms > UINT32_MAX / 2) oldest = &client;
+    uint32_t silent_ms = now_ms() - client.heard_ms;
+    if (client.has_key() && silent_ms < kSilentMs) continue;
+    if (silent_ms > kSilentMs) silent_ms = kSilentMs;
+    const uint32_t worth = client.has_key() ? 1 : client.is_admitted ? 2 + silent_ms : UINT32_MAX;
+    if (worth > most) {
+      most = worth;
+      found = &client;
+    }
   }
-  if (now_ms() - oldest->heard_ms < kSilentMs) return nullptr;
-  close_client(oldest);
-  return oldest;
+  if (found != nullptr) close_client(found);
+  return found;
 }
 
 void accept_next() {
@@ -96,7 +107,7 @@ void accept_next() {
   lwip_setsockopt(found, IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
   client->socket = found;
   client->is_admitted = false;
-  client->heard_ms = now_ms();
+  client->accepted_ms = client->heard_ms = now_ms();
   client->first_length = client->out_length = client->out_sent = 0;
 }
 
@@ -124,6 +135,9 @@ void look(Client* client, const uint8_t* bytes, size_t length) {
 }
 
 void hear(Client* client) {
+  if (!client->is_admitted && now_ms() - client->accepted_ms >= kBeginMs) {
+    return close_client(client);
+  }
   uint8_t bytes[kChunk];
   const ssize_t length = lwip_recv(client->socket, bytes, sizeof bytes, MSG_DONTWAIT);
   if (length > 0) {
@@ -131,8 +145,7 @@ void hear(Client* client) {
     if (!client->is_admitted) return look(client, bytes, static_cast<size_t>(length));
     return pass_on(client, bytes, static_cast<size_t>(length));
   }
-  if (length == 0 || !may_come_later()) return close_client(client);
-  if (!client->is_admitted && now_ms() - client->heard_ms >= kBeginMs) close_client(client);
+  if (length == 0 || !may_come_later()) close_client(client);
 }
 
 void say(Client* client) {

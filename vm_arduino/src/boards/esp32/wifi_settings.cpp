@@ -45,6 +45,25 @@ struct Settings {
   }
 };
 
+// Why the network has sent the robot away: only these say that the password is another one. The
+// core tells them as "disconnected".
+constexpr uint8_t kRefusals[] = {15, 202, 203, 204};  // 4-way handshake, authentication, association
+
+uint8_t reason;  // the last one; 0 since the last try. The core's task writes it
+
+void on_disconnected(arduino_event_t* event) {
+  __atomic_store_n(&reason, static_cast<uint8_t>(event->event_info.wifi_sta_disconnected.reason),
+                   __ATOMIC_RELAXED);
+}
+
+bool is_refused() {
+  const uint8_t found = __atomic_load_n(&reason, __ATOMIC_RELAXED);
+  for (uint8_t each : kRefusals) {
+    if (found == each) return true;
+  }
+  return false;
+}
+
 // Survives a restart, and has any value after power-on: whether WiFi has begun lately, and how many
 // of the starts before have ended in a restart soon after that.
 constexpr uint32_t kStarts = 0x5a3c1d00;
@@ -123,6 +142,7 @@ void begin() {
   if (used.mode() == WifiMode::kOff || used.rests()) return;
   WiFi.setHostname(radio_name().host);
   set_state(WifiState::kSearching);
+  __atomic_store_n(&reason, static_cast<uint8_t>(0), __ATOMIC_RELAXED);
   tried_ms = began_ms = static_cast<uint32_t>(millis());
   set_young(true, kRestarts);
   if (used.mode() == WifiMode::kAccessPoint) {
@@ -153,6 +173,7 @@ void note_address(const IPAddress& found) {
 }  // namespace
 
 void wifi_load() {
+  WiFi.onEvent(on_disconnected, ARDUINO_EVENT_WIFI_STA_DISCONNECTED);
   WiFi.persistent(false);  // the core would keep the password a second time
   kept.load();
   Settings its = kept.now();
@@ -181,7 +202,8 @@ bool wifi_turn() {
     return true;
   }
   __atomic_store_n(&address, 0U, __ATOMIC_RELAXED);
-  set_state(status == WL_CONNECT_FAILED ? WifiState::kRefused : WifiState::kSearching);
+  const bool is_sent_away = status == WL_CONNECT_FAILED || is_refused();
+  set_state(is_sent_away ? WifiState::kRefused : WifiState::kSearching);
   const uint32_t now_ms = static_cast<uint32_t>(millis());
   if (now_ms - tried_ms >= kJoinAgainMs) {
     tried_ms = now_ms;
