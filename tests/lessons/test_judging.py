@@ -71,7 +71,7 @@ CASES = [
     ('kind = "never_touches"', "F(1, 50)", "B(4, 80)", "touched the edge of the floor after 2.5 s"),
     ('kind = "never_touches"\nat = [140, 100]', "F(4, 80)", "B(4, 80)", "touched the edge of the floor after 2.5 s"),
     ('kind = "reaches"\nat = [140, 100]', "F(1, 89)", "F(0.6, 89)", "The program ended when the goal was still 16 cm away"),
-    ('kind = "ends_in"\nat = [140, 100]\nx_cm = [-15, 18]\ny_cm = [-10, 10]', "F(0.9, 89)", "F(0.7, 89)", "stopped 12 cm before the middle"),
+    ('kind = "ends_in"\nat = [140, 100]\nx_cm = [-25, 30]\ny_cm = [-10, 10]', "F(0.72, 89)", "F(0.6, 89)", "stopped 16 cm before the middle"),
     ('kind = "stays_in"\nat = "start"\nx_cm = [-30, 30]\ny_cm = [-30, 30]', "L(0.195,60);F(1,75)", "L(0.195,60);F(1,85)", "left the goal"),
     ('kind = "stands_before"\nat = "boxes[1]"\nlow_cm = 5\nhigh_cm = 90', "F(1, 89)", "L(0.39, 60)", "not in front of the goal"),
     ('kind = "reaches"\nat = "boxes[1]"\nwithin_cm = 50\nwhat = "DISTANCE"', "F(0.7, 89)", "F(0.65, 89)", "The program ended when"),

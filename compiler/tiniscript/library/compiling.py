@@ -74,7 +74,7 @@ def maker(robot: Robot) -> Callable[[str], Image | None]:
     """Return what makes the image of a text for a robot, or None where the text has mistakes."""
 
     def made(text: str) -> Image | None:
-        found = compiled(text.encode("utf-8", "surrogatepass"), robot, "", is_strict=True)
+        found = compiled(text.encode(), robot, "", is_strict=True)
         return image_of(found, robot) if found.is_right else None
 
     return made
