@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+from pygments.lexers.python import PythonLexer
 from pygments.lexers.special import TextLexer
 from sphinx.application import Sphinx
 from sphinx.search.en import SearchEnglish
@@ -75,5 +76,6 @@ def setup(app: Sphinx) -> None:
     find_words_of_the_language()
     app.connect("html-page-context", lead_to_the_other_half)
     app.add_lexer("tiniscript", TiniScriptLexer)
+    app.add_lexer("verifier", PythonLexer)
     for name in PLAIN:
         app.add_lexer(name, TextLexer)
