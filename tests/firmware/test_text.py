@@ -322,7 +322,7 @@ def test_a_fault_names_the_image_of_the_text() -> None:
 RUNS_ON = "SI|LOOP(FOREVER);M(50,50);W(9);END_LOOP\n"
 
 
-@pytest.mark.parametrize("text", ["S", "stop", "S;", "S // now"])
+@pytest.mark.parametrize("text", ["S", "stop", "S;", "\t STOP ;"])
 def test_s_in_an_open_block_ends_what_runs_also_without_the_end_of_its_line(text: str) -> None:
     """It does not latch, and is part of the program, whose line may go on."""
     robot = switched_on()

@@ -39,6 +39,22 @@ class CppDamage(Process):
         assert not wrong, f"{wrong} of seed {seed}"
         return int.from_bytes(answer[:4], "little")
 
+    def typed_stops(
+        self, seed: int, line: int, lines: int, is_damaged: bool = False, is_odd: bool = True
+    ) -> tuple[int, int]:
+        """Send frames of so many lines; return how many, and the typed stops found in them.
+
+        Of lines that are damaged it counts the damaged ones. A quarter of the odd ones is made of
+        five values, LF and S among them; others have any bytes.
+        """
+        answer = self.ask(b"F", pack("<IIBBI", seed, line, is_damaged, is_odd, lines))
+        return int.from_bytes(answer[:4], "little"), int.from_bytes(answer[4:], "little")
+
+    def type_behind(self, seed: int, prefix: int, prefixes: int) -> None:
+        """Type a stop behind so many prefixes. Raise what must not be."""
+        wrong = self.ask(b"T", pack("<III", seed, prefix, prefixes))[4:].decode()
+        assert not wrong, f"{wrong} of seed {seed}"
+
     def line(self, seed: int, line: int) -> DamagedLine:
         texts = _Texts(self.ask(b"L", pack("<II", seed, line)))
         data = texts.text()

@@ -53,6 +53,7 @@ def header(command: str) -> str:
             ("kMostLeast", messages.MOST_LEAST),
             ("kStopRun", messages.STOP_RUN),
             ("kSilenceMs", messages.SILENCE_MS),
+            ("kHeldMs", messages.HELD_MS),
             ("kTetherMs", messages.TETHER_MS),
             ("kListenMs", messages.LISTEN_MS),
             ("kAgainMs", messages.AGAIN_MS),

@@ -52,6 +52,7 @@ SEALED_PAYLOAD_BYTES = payload_bytes(SMALL_FRAME, is_sealed=True)
 STOP_BYTES = 8  # zeros that a computer sends to stop a robot
 STOP_RUN = 4  # zeros in a row that stop it
 SILENCE_MS = 1000  # after this silence the next byte begins an item
+HELD_MS = 100  # after this silence a typed stop acts in what began as a frame
 TETHER_MS = 1000  # dead-man timer: without a valid frame, a tethered program ends
 LISTEN_MS = 3000  # without a valid frame, a robot sends no more events
 AGAIN_MS = 50  # between two STOPPED events of a stopped robot

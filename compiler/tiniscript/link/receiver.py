@@ -29,6 +29,7 @@ LONGEST = 255  # a longer text counts as this long
 _BEGIN = "begin"  # the next byte begins an item
 _AFTER_TEXT = "after text"  # the same, but white space is skipped
 _BLANK = "blank"  # after white space, which may also be the first byte of a frame
+_CR, _CR_LF = "cr", "cr lf"  # the same after CR, and after CR and LF
 _HEAD = "head"  # after the first byte of a frame or of a line of text
 _LINE = "line"  # probably in a line of text; otherwise in a frame
 _FRAME = "frame"
@@ -36,7 +37,8 @@ _OTHER = "other"  # probably in a line of text; otherwise in noise
 _TEXT = "text"
 _SKIP = "skip"  # in noise, up to the next 0x00
 
-_MAYBE_FRAME = (_BLANK, _HEAD, _LINE, _FRAME)
+_BLANKS = (_BLANK, _CR, _CR_LF)
+_MAYBE_FRAME = (*_BLANKS, _HEAD, _LINE, _FRAME)
 _LETTERS = b"abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
 _DELETE = 0x7F
 
@@ -83,10 +85,17 @@ class Receiver:
         if byte == 0:
             return self._zero()
         self._zeros = 0
-        if self._place == _BLANK:
+        if self._place in _BLANKS:
             # the second byte of a request is its type, and no frame of a robot begins like this
-            self._place = _AFTER_TEXT if _is_printable(byte) and byte < 0x80 else _FRAME
-            self.dropped += self._place == _FRAME and self._is_dropping
+            if _is_printable(byte) and byte < 0x80:
+                self._place = _AFTER_TEXT
+            elif self._place == _CR and byte == 0x0A:
+                self._place = _CR_LF
+                self._add(byte)
+                return False
+            else:
+                self._place = _FRAME
+                self.dropped += self._is_dropping
         if self._place == _AFTER_TEXT and byte in b" \t\r\n":
             return False
         if self._place in (_BEGIN, _AFTER_TEXT):
@@ -108,10 +117,10 @@ class Receiver:
         elif byte >= TEXT_FROM:
             self._place = _OTHER
         elif byte in b" \t\r\n":
-            self._place = _BLANK
+            self._place = _CR if byte == 0x0D else _BLANK
         else:
             self._place = _HEAD if byte > 0x20 else _FRAME
-        self.dropped += self._place != _BLANK and self._is_dropping
+        self.dropped += self._place not in _BLANKS and self._is_dropping
         self._add(byte)
 
     def _go_on(self, byte: int) -> None:

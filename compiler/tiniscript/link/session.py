@@ -16,7 +16,7 @@ from typing import Any, TypeVar
 from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
 from tiniscript.link.authority import NOT_OWNER, KeyRing
 from tiniscript.link.exchanges import Exchanges
-from tiniscript.link.frames import Frame, decoded
+from tiniscript.link.frames import Frame, begins_text, decoded, encoded
 from tiniscript.link.messages import (
     BY_NAME,
     BY_NUMBER,
@@ -197,6 +197,8 @@ class Session(Exchanges):
             return
         payload = written(message.request, request.values)
         frame = Frame(message.number, number(), self._epoch, payload)
+        while begins_text(encoded(frame)):
+            frame = frame._replace(seq=number())
         largest = self.robot.values.largest if self.robot else 0
         self._transmission = Transmission(self._baud, largest)
         self._transmission.begin(frame, now_ms + request.pause_ms, seal)

@@ -64,7 +64,7 @@ std::string wrong;   // what must not be, or nothing
 
 // Returns a frame on the wire. Its payload begins with its number; in one of four frames it repeats
 // few values, so that COBS has much to do.
-std::string next_frame(uint32_t number, Draw* draw) {
+std::string next_frame(uint32_t number, Draw* draw, bool may_repeat) {
   uint8_t frame[kWireBytes] = {};
   const uint8_t payload = static_cast<uint8_t>(kNumberBytes + draw->below(kPayloadBytes - kNumberBytes + 1));
   const uint8_t begin = payload_at(static_cast<uint8_t>(kPayloadAt + payload));
@@ -73,7 +73,7 @@ std::string next_frame(uint32_t number, Draw* draw) {
   frame[kSeqAt] = static_cast<uint8_t>(draw->byte());
   frame[kEpochAt] = static_cast<uint8_t>(draw->byte());
   memcpy(frame + begin, &number, kNumberBytes);
-  const bool repeats = draw->below(4) == 0;
+  const bool repeats = may_repeat && draw->below(4) == 0;
   for (uint8_t k = static_cast<uint8_t>(begin + kNumberBytes); k < end; k++) {
     frame[k] = repeats ? "\0\0\1S\n"[draw->below(5)] : static_cast<uint8_t>(draw->byte());
   }
@@ -81,7 +81,13 @@ std::string next_frame(uint32_t number, Draw* draw) {
   here->length = static_cast<uint8_t>(end - kTypeAt);
   here->is_accepted = false;
   memcpy(here->bytes, frame + kTypeAt, here->length);
-  const uint8_t size = encode_frame(frame, end);
+  const std::string plain(frame, frame + end);
+  uint8_t size = encode_frame(frame, end);
+  if (frame[0] == '\r' && frame[1] == '\n' && frame[2] >= ' ' && frame[2] < 0x7f) {
+    memcpy(frame, plain.data(), plain.size());  // it would be text: it gets another number
+    here->bytes[kSeqAt - kTypeAt] = frame[kSeqAt] = static_cast<uint8_t>(frame[kSeqAt] | 0x80);
+    size = encode_frame(frame, end);
+  }
   return std::string(frame, frame + size);
 }
 
@@ -149,15 +155,16 @@ void damage_once(std::string* way, Draw* draw) {
   }
 }
 
-// Fills `sent` and `stream`. Returns how many frames are damaged: one to three times, half of them.
-uint32_t send_line(uint64_t seed) {
+// Fills `sent` and `stream`. Returns how many frames are damaged: one to three times, half of them or
+// none.
+uint32_t send_line(uint64_t seed, bool may_damage = true, bool may_repeat = true) {
   Draw draw(seed);
   uint32_t damaged = 0;
   stream.clear();
   for (uint32_t number = 0; number < kFrames; number++) {
-    const std::string frame = next_frame(number, &draw);
+    const std::string frame = next_frame(number, &draw, may_repeat);
     std::string way = frame;
-    if (draw.below(2) == 0) {
+    if (may_damage && draw.below(2) == 0) {
       const uint8_t times = "\1\1\2\3"[draw.below(4)];
       for (uint8_t k = 0; k < times && !way.empty(); k++) damage_once(&way, &draw);
     }
@@ -211,6 +218,164 @@ void judge_line(uint64_t seed) {
   if (what != nullptr) wrong = std::string(what) + ", line " + std::to_string(seed);
 }
 
+// -- typed stops ------------------------------------------------------------------------------------
+
+// How many typed stops a line of frames holds for the receiver, as the link takes them: where bytes
+// arrive, or behind a frame that is not whole.
+uint32_t count_typed_stops() {
+  Receiver receiver = Receiver();
+  uint32_t stops = 0;
+  uint8_t text;
+  for (const char byte : stream) {
+    const bool are_zeros = receiver.stops(static_cast<uint8_t>(byte), 0);
+    if (receiver.take(static_cast<uint8_t>(byte), 0) && !are_zeros) stops++;
+    while (receiver.has_text() && receiver.take_text(&text)) {
+    }
+    if (!receiver.has_frame()) continue;
+    const bool may_stop = receiver.frame_may_stop();
+    if (decode_frame(receiver.bytes(), receiver.length()) == 0 && may_stop) stops++;
+    receiver.let_frame();
+    receiver.release();
+  }
+  return stops;
+}
+
+// A byte and how long nothing came before it.
+struct Typed {
+  uint8_t byte;
+  uint16_t pause_ms;
+};
+
+bool is_in(uint8_t byte, const char* some) { return byte != 0 && strchr(some, byte) != nullptr; }
+
+// Whether the last of these bytes ends a typed stop: read backwards from it, unlike `TypedStop`.
+bool ends_typed_stop(const std::vector<Typed>& all) {
+  size_t at = all.size() - 1;
+  if (!is_in(all[at].byte, "\r\n") || all[at].pause_ms >= kSilenceMs) return false;
+  // Whether a line begins here: nothing is to be read before `at`.
+  const auto begins = [&] {
+    if (at == 0 || all[at].pause_ms >= kSilenceMs) return true;
+    const uint8_t before = all[at - 1].byte;
+    if ((before < ' ' && before != '\t') || before == 0x7f) return true;
+    if (before < '@' || before > '~') return false;
+    size_t key = at - 1;
+    while (key > 0 && all[key].pause_ms < kSilenceMs && all[key - 1].byte >= '0' && all[key - 1].byte < '@') key--;
+    return key > 1 && all[key].pause_ms < kSilenceMs && all[key - 1].pause_ms < kSilenceMs &&
+           is_in(all[key - 1].byte, "[O") && all[key - 2].byte == 0x1b;
+  };
+  const auto skip = [&] {
+    while (!begins() && is_in(all[at - 1].byte, " \t;")) at--;
+  };
+  skip();
+  const size_t end = at;
+  for (const char* letter = "POTS"; *letter != 0; letter++) {
+    if (*letter == 'P' && at > 0 && is_in(all[at - 1].byte, "sS")) letter += 3;
+    if (begins() || !is_in(all[at - 1].byte, std::string{*letter, static_cast<char>(*letter | 0x20)}.c_str()))
+      return false;
+    at--;
+  }
+  if (end == at) return false;
+  if (begins()) return true;
+  // A key's sequence may end in S itself; a line that has begun behind it is found above.
+  skip();
+  return begins();
+}
+
+const char* const kPrefixes[] = {
+    "\r\n", "\r\r", "\n", "\t\t", "5\n", "\x1b[A", "\x1b[1;5C", "\x1bOB", "\b", "\x7f", "(\n", " \n",
+    "SI|F(60,80)", "SI|LOOP(3)\n", "F(2,\n", "// x", "S", "STOP", "ST", "\x1b", "\x1b[", ";", " ", "\t", "\n",
+};
+const char* const kBegins[] = {"\r", "\n", "\r\n", "", "\b", "\x1b", "\x7f", "\x1b[A", "\x1bOD", "\x1b[1;5C"};
+const char* const kStops[] = {"S", "s", "STOP", "stop", "StOp", " S", "\tS", ";S", "S;", "S ", " ; STOP ;\t", "  s"};
+
+// So many typed stops behind bytes that are anything: each is seen at its end, or held where it is
+// in what began as a frame, until that ends. And what the matcher says of all bytes before it is
+// what `ends_typed_stop` says.
+void judge_typed(uint64_t seed) {
+  Draw draw(seed);
+  Receiver receiver = Receiver();
+  std::vector<Typed> all;
+  uint16_t now_ms = 0;
+  const char* what = nullptr;
+  bool was_held = false;
+  const auto put = [&](uint8_t byte, uint16_t pause_ms) {
+    now_ms = static_cast<uint16_t>(now_ms + pause_ms);
+    all.push_back({byte, pause_ms});
+    was_held = receiver.is_held();
+    const bool are_zeros = receiver.stops(byte, now_ms);
+    const bool is_stop = receiver.take(byte, now_ms);
+    const bool is_typed = ends_typed_stop(all);
+    if (is_typed && !is_stop && !receiver.is_held()) what = "a typed stop is not seen";
+    if (is_stop && !is_typed && !was_held && !are_zeros) what = "a stop that nobody has typed";
+    if (is_stop && receiver.due_stop() == Cause::kNone && !receiver.has_mark()) {
+      what = "the link does not know of a stop";
+    }
+    return is_stop;
+  };
+  const auto take = [&] {
+    uint8_t text;
+    while (receiver.take_text(&text)) {
+      if (text == kLineStop) receiver.take_mark();
+    }
+  };
+  const bool reads_text = draw.below(4) != 0;   // otherwise its ring is soon full
+  const bool reads_frames = draw.below(4) != 0;
+  const auto look = [&] {
+    if (reads_text) take();
+    if (!reads_frames || !receiver.has_frame()) return;
+    const bool may_stop = receiver.frame_may_stop();
+    if (decode_frame(receiver.bytes(), receiver.length()) == 0 && may_stop) receiver.stop();
+    receiver.let_frame();
+    receiver.release();
+  };
+  receiver.keep_line(draw.below(2) == 0);
+  for (uint32_t parts = draw.below(6); parts > 0; parts--) {
+    if (draw.below(2) == 0) {
+      const char* const prefix = kPrefixes[draw.below(sizeof kPrefixes / sizeof *kPrefixes)];
+      for (const char* at = prefix; *at != 0; at++) put(static_cast<uint8_t>(*at), 0);
+    } else {
+      for (uint32_t k = draw.below(80); k > 0; k--) {
+        const bool is_odd = draw.below(4) != 0;
+        put(static_cast<uint8_t>(is_odd ? "\0\1S\n s;T\r\x1b[OPp\t5"[draw.below(18)] : draw.byte()),
+            static_cast<uint16_t>(draw.below(200) == 0 ? 1000 + draw.below(500) : 0));
+        look();
+      }
+    }
+    look();
+  }
+  const uint32_t begin = draw.below(sizeof kBegins / sizeof *kBegins + 2);
+  uint16_t pause_ms = 0;
+  if (begin < sizeof kBegins / sizeof *kBegins) {
+    for (const char* at = kBegins[begin]; *at != 0; at++) put(static_cast<uint8_t>(*at), 0);
+    if (*kBegins[begin] == 0) put(0, 0);
+  } else {
+    pause_ms = static_cast<uint16_t>(kSilenceMs + draw.below(3));
+  }
+  for (const char* at = kStops[draw.below(sizeof kStops / sizeof *kStops)]; *at != 0; at++) {
+    put(static_cast<uint8_t>(*at), pause_ms);
+    pause_ms = 0;
+    look();
+  }
+  if (!ends_typed_stop([&] { auto ended = all; ended.push_back({'\n', 0}); return ended; }())) {
+    what = "the judge does not see the stop";
+  }
+  const bool is_stop = put(static_cast<uint8_t>("\r\n"[draw.below(2)]), 0);
+  if (!is_stop && !receiver.is_held()) what = "the last stop is not seen";
+  if (receiver.is_held()) {  // its item ends in another way than whole
+    const bool is_cut = draw.below(2) == 0;
+    bool has_stopped = false;
+    for (uint32_t k = is_cut ? 1 : 80 * 4; k > 0 && receiver.is_held(); k--) {
+      has_stopped = put(is_cut ? 0 : 1, 0);
+    }
+    const bool waits = receiver.has_frame() && receiver.frame_may_stop();
+    if (receiver.is_held() || (!has_stopped && !waits && reads_frames)) what = "a stop in a frame is forgotten";
+  }
+  if (receiver.has_frame()) receiver.release();
+  take();
+  if (receiver.has_mark()) what = "a mark is not among the text";
+  if (what != nullptr) wrong = std::string(what) + ", prefix " + std::to_string(seed);
+}
+
 // -- requests ---------------------------------------------------------------------------------------
 
 uint64_t seed_of(RequestReader* request) {
@@ -228,6 +393,33 @@ void answer_judged(RequestReader* request, Writer* answer) {
     judge_line(seed);
   }
   answer->u32(damaged);
+  answer->text(wrong);
+}
+
+// F: the seed of a line, whether frames are damaged and whether some repeat few values, and how many
+// lines: how many frames of that kind, and how many typed stops in them.
+void answer_false_stops(RequestReader* request, Writer* answer) {
+  uint64_t seed = seed_of(request);
+  const bool may_damage = request->u8() != 0;
+  const bool may_repeat = request->u8() != 0;
+  uint32_t stops = 0;
+  uint32_t frames = 0;
+  for (uint32_t lines = request->u32(); lines > 0; lines--, seed++) {
+    const uint32_t damaged = send_line(seed, may_damage, may_repeat);
+    frames += may_damage ? damaged : kFrames;
+    stops += count_typed_stops();
+  }
+  answer->u32(frames);
+  answer->u32(stops);
+}
+
+// T: the seed of a prefix, and how many prefixes: what was wrong.
+void answer_typed(RequestReader* request, Writer* answer) {
+  uint64_t seed = seed_of(request);
+  wrong.clear();
+  for (uint32_t prefixes = request->u32(); prefixes > 0 && wrong.empty(); prefixes--, seed++) {
+    judge_typed(seed);
+  }
   answer->text(wrong);
 }
 
@@ -257,6 +449,12 @@ int main() {
     switch (request.u8()) {
       case 'J':
         answer_judged(&request, &said);
+        break;
+      case 'F':
+        answer_false_stops(&request, &said);
+        break;
+      case 'T':
+        answer_typed(&request, &said);
         break;
       case 'L':
         answer_line(&request, &said);

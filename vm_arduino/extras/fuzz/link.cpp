@@ -157,7 +157,7 @@ int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     if (!looks()) continue;
     turn();
     // whatever came: the motors' pins are off where a stop has not been looked at
-    must(!link_half.stop_is_due() || port.robot_status.state != State::kRunning);
+    must(receiver.due_stop() == Cause::kNone || port.robot_status.state != State::kRunning);
   }
   return 0;
 }

@@ -148,6 +148,7 @@ void take_lines(std::string* line, std::string* rows) {
       const uint8_t* const bytes = reinterpret_cast<const uint8_t*>(line->data());
       *rows += row_of("text", bytes, std::min<size_t>(line->size(), 255), kSmallItem) + "\n";
     }
+    if (byte == kLineStop) continue;  // `test_typed_stops.py` is about these
     if (byte == kLineEnd || byte == kLineCut) {
       line->clear();
     } else {
@@ -168,7 +169,9 @@ void answer_items(RequestReader* request, Writer* answer) {
     const uint16_t now_ms = request->u16();
     if (left > 0 && --left == 0) receiver.release();
     if (left == 0) take_lines(&line, &rows);
-    if (receiver.put(request->u8(), now_ms)) rows += "stop\n";
+    const uint8_t byte = request->u8();
+    if (receiver.stops(byte, now_ms)) rows += "stop\n";
+    receiver.take(byte, now_ms);
     if (left > 0) continue;
     if (held == 0) take_lines(&line, &rows);
     if (!receiver.has_frame()) continue;

@@ -73,10 +73,12 @@ void firmware_on_rx_byte(uint8_t byte, uint16_t time_ms) {
     board_stop();
     return near(&receiver)->take_last_zero();
   }
-  near(&receiver)->take(byte, time_ms);
+  firmware_take_rx_byte(byte, time_ms);
 }
 
-void firmware_take_rx_byte(uint8_t byte, uint16_t time_ms) { near(&receiver)->take(byte, time_ms); }
+void firmware_take_rx_byte(uint8_t byte, uint16_t time_ms) {
+  if (near(&receiver)->take(byte, time_ms)) board_stop();
+}
 
 bool firmware_has_tx_byte() { return link.has_tx_byte(); }
 

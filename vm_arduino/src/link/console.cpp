@@ -14,7 +14,6 @@ constexpr uint8_t kBytesATurn = 8;
 // echoes or answers each line is on the other side. The next one is told that.
 constexpr uint8_t kMostMistakes = 16;
 constexpr uint16_t kPauseMs = 5000;
-constexpr uint8_t kOtherWord = 5;  // in place of a count of letters
 
 // What radio modules say, and words that ask for all others; 0x80 in the last letter of each.
 const uint8_t kSpoken[] tini_progmem = {'O', 'K' | 0x80, 'A', 'T' | 0x80,
@@ -28,8 +27,9 @@ bool is_latched() { return port_status().state >= State::kStopped; }
 
 }  // namespace
 
-void Console::pass(uint16_t passed_ms) {
+void Console::pass(uint16_t passed_ms, bool has_heard) {
   is_due_ = true;
+  if (has_heard && is_discarding_) return begin_silence();
   quiet_ms_ = passed_ms < kPatienceMs - quiet_ms_ ? static_cast<uint16_t>(quiet_ms_ + passed_ms)
                                                   : kPatienceMs;
 }
@@ -38,6 +38,8 @@ void Console::discard() {
   is_discarding_ = true;
   begin_silence();
   is_open_ = false;
+  refused_ = remark_ = Remark::kNone;
+  help_ = nullptr;
 }
 
 void Console::begin_silence() {
@@ -60,11 +62,20 @@ tini_noinline Console::Act Console::turn(Receiver* receiver, bool is_heard) {
   uint8_t byte;
   is_due_ = false;
   receiver->keep_line(is_open_ && is_patient());
-  if (receiver->has_heard() && is_discarding_) begin_silence();
   for (uint8_t left = kBytesATurn; left != 0; left--) {
-    if (has_answer()) return Act::kNone;
+    // A stop does not wait until the answers before it are said.
+    has_mark_ = receiver->has_mark();
+    if (has_answer() && !has_mark_) return Act::kNone;
     if (!receiver->take_text(&byte)) break;
     begin_silence();
+    if (byte == kLineCut && receiver->take_lost()) {
+      is_ignoring_ = true;  // the line may have opened a block
+      if (!is_discarding_) tell_cut(is_heard);
+    }
+    if (byte == kLineStop) {
+      receiver->take_mark();
+      return is_in_block() ? Act::kEnd : Act::kStop;
+    }
     const Act act = take(byte, is_heard);
     if (act != Act::kNone) return act;
   }
@@ -74,59 +85,40 @@ tini_noinline Console::Act Console::turn(Receiver* receiver, bool is_heard) {
     is_open_ = false;
   } else if (quiet_ms_ >= kSilenceMs && !is_silent_) {
     is_silent_ = true;
-    return fall_silent();
+    fall_silent();
   }
   return Act::kNone;
 }
 
 // A second has passed without a byte.
-Console::Act Console::fall_silent() {
+void Console::fall_silent() {
   is_discarding_ = is_ignoring_ = false;
   refused_ = Remark::kNone;
-  if (!is_open_) return Act::kNone;
-  // Whoever types letter by letter has typed S, and waits.
-  const bool is_stop =
-      port_status().state == State::kRunning && reader_.is_at_stop(length_);
+  if (!is_open_) return;
   if (is_waiting_) {
     say(Remark::kWaiting);
-    return is_stop ? Act::kEnd : Act::kNone;
+  } else if (!is_patient()) {
+    is_open_ = false;
   }
-  if (is_patient()) return Act::kNone;
-  is_open_ = false;
-  return is_stop ? stop() : Act::kNone;
 }
 
-Console::Act Console::stop() {
-  refused_ = Remark::kNone;
+void Console::tell_cut(bool is_heard) {
+  if (is_heard) return;
   is_talking_ = true;
-  return Act::kStop;
+  say(Remark::kCut);
 }
 
 Console::Act Console::take(uint8_t byte, bool is_heard) {
   if (byte == kLineCut) {
     refused_ = Remark::kNone;
-    if (drop() && !is_heard) {
-      is_talking_ = true;
-      say(Remark::kCut);
-    }
+    if (drop()) tell_cut(is_heard);
     return Act::kNone;
   }
   if (byte == kLineEnd) return end_line(is_heard);
-  if (refused_ != Remark::kNone || (!is_open_ && !begin(byte))) {
-    listen(byte);
-    return Act::kNone;
-  }
+  if (refused_ != Remark::kNone || (!is_open_ && !begin(byte))) return Act::kNone;
   reader_.put(byte);
   if (!has_moved_ && !is_ignored() && reader_.wants_room()) has_room();
   return Act::kNone;
-}
-
-// A line that is not read stops the robot too, if it is S or STOP.
-void Console::listen(uint8_t byte) {
-  static const uint8_t kStopWord[] tini_progmem = {'s', 't', 'o', 'p', 0, 0};
-  if (byte == ' ' || byte == ';') return;
-  const bool goes_on = (byte | 0x20) == flash_byte(kStopWord + stop_letters_);
-  stop_letters_ = goes_on ? static_cast<uint8_t>(stop_letters_ + 1) : kOtherWord;
 }
 
 // Begins a program in memory that nobody uses.
@@ -135,7 +127,6 @@ bool Console::begin(uint8_t byte) {
   image_ = port_text_memory(&room, &has_moved_);
   if (image_ == nullptr) {
     refused_ = Remark::kSaving;
-    stop_letters_ = 0;
     return false;
   }
   reader_.begin(image_ + kHeaderBytes, room);
@@ -166,15 +157,11 @@ bool Console::has_room() {
     }
   }
   is_open_ = false;
-  stop_letters_ = kOtherWord;
   return false;
 }
 
 Console::Act Console::end_line(bool is_heard) {
-  if (refused_ != Remark::kNone) {
-    if (stop_letters_ == 1 || stop_letters_ == 4) return stop();
-    if (!is_heard) refuse();
-  }
+  if (refused_ != Remark::kNone && !is_heard) refuse();
   refused_ = Remark::kNone;
   if (!is_open_) return Act::kNone;
   const Text text = reader_.put(kLineEnd);
@@ -183,8 +170,8 @@ Console::Act Console::end_line(bool is_heard) {
   const uint8_t before = length_;
   length_ = reader_.length();
   is_waiting_ = is_open_ = text == Text::kMore;
-  // S stops, also where nothing else is listened to.
-  if (text == Text::kProgram && reader_.is_stop()) return stop();
+  // With a comment behind it S is no typed stop, and stops all the same.
+  if (text == Text::kProgram && reader_.is_stop()) return has_mark_ ? Act::kNone : Act::kStop;
   if (is_ignored()) {
     is_open_ = is_waiting_ = false;
     return Act::kNone;

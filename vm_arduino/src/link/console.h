@@ -21,7 +21,8 @@ class Console {
   // was read.
   enum class Act : uint8_t { kNone, kStop, kEnd, kStart };
 
-  void pass(uint16_t passed_ms);
+  // Passes the time. `has_heard`: bytes of any kind have arrived meanwhile.
+  void pass(uint16_t passed_ms, bool has_heard);
 
   // Whether time has passed since the last turn: without that and without text none is needed.
   bool is_due() const { return is_due_; }
@@ -29,8 +30,12 @@ class Console {
   // Takes text that has arrived. `is_heard`: a client's frames arrive, so mistakes get no answer.
   Act turn(Receiver* receiver, bool is_heard);
 
-  // The robot was stopped: what arrives before a second of silence is ignored.
+  // The robot was stopped: what arrives before a second of silence is ignored, and no answer is due
+  // any more.
   void discard();
+
+  // Whether a typed stop would belong to the program that is read.
+  bool is_in_block() const { return is_open_ && is_waiting_ && awaited_ != ')'; }
 
   // Whether a line or a program has begun.
   bool is_open() const { return is_open_; }
@@ -41,6 +46,7 @@ class Console {
 
   // Whether the last one who spoke to the robot was a person.
   bool is_talking() const { return is_talking_; }
+  void pick_up() { is_talking_ = true; }
   void hang_up() { is_talking_ = false; }
 
   // The program that was read: its image, without a header.
@@ -61,14 +67,13 @@ class Console {
  private:
   Act take(uint8_t byte, bool is_heard);
   Act end_line(bool is_heard);
-  Act fall_silent();
+  void tell_cut(bool is_heard);
+  void fall_silent();
   void begin_silence();
   bool begin(uint8_t byte);
-  void listen(uint8_t byte);
   bool has_room();
   void refuse();
   bool is_ignored() const;
-  Act stop();
   bool is_patient();
 
   // writing
@@ -76,10 +81,7 @@ class Console {
 
   uint8_t* image_;
   uint16_t quiet_ms_;  // time since the last byte of text
-  union {
-    uint8_t length_;        // of the code before this line
-    uint8_t stop_letters_;  // of a line that is not read: how many of STOP it is, or kOtherWord
-  };
+  uint8_t length_;     // of the code before this line
   uint8_t first_;      // the first byte of the program
   uint8_t awaited_;    // the word that the last line has left open, or ')'
   Remark remark_;
@@ -95,6 +97,7 @@ class Console {
   bool is_ignoring_;   // lines without a SETUP word: their program is lost
   bool is_silent_;     // a second has passed
   bool is_due_;
+  bool has_mark_;      // a typed stop waits behind
   Reader reader_;
 };
 

@@ -41,23 +41,51 @@ void Link::pass_time(uint16_t now_ms) { near(this)->pass(now_ms); }
 void Link::pass(uint16_t now_ms) {
   const uint16_t passed = static_cast<uint16_t>(now_ms - now_ms_);
   now_ms_ = now_ms;
-  console_.pass(passed);
+  // Of a byte that arrives from here on nothing is known but that it was heard, at the latest in the
+  // next call.
+  const bool is_held = receiver_->is_held();
+  const bool is_at_stop = receiver_->is_at_stop();
+  const bool has_heard = receiver_->has_heard();
+  const uint16_t before = left_ms_[kSilence];
+  console_.pass(passed, has_heard);
   for (uint16_t& left_ms : left_ms_) {
     left_ms = passed < left_ms ? static_cast<uint16_t>(left_ms - passed) : 0;
   }
+  if (has_heard) {
+    left_ms_[kSilence] = kSilenceMs;
+  } else if (before != 0 && (is_held || is_at_stop)) {
+    end_silence(is_held, is_at_stop, before);
+  }
+}
+
+// What the silence behind a typed stop does: that of kHeldMs in what began as a frame, that of
+// kSilenceMs where its line has not ended.
+inline void Link::end_silence(bool is_held, bool is_at_stop, uint16_t before_ms) {
+  constexpr uint16_t kHeldLeftMs = kSilenceMs - kHeldMs;
+  const uint16_t left_ms = left_ms_[kSilence];
+  if (is_held && before_ms > kHeldLeftMs && left_ms <= kHeldLeftMs) return receiver_->stop();
+  if (left_ms != 0 || !is_at_stop || port_status().state != State::kRunning) return;
+  if (console_.is_in_block() && !receiver_->has_text()) return port_end();
+  receiver_->stop();
 }
 
 void Link::tick() { near(this)->turn(); }
 
 void Link::turn() {
-  if (stop_is_due()) {
+  const Cause cause = receiver_->due_stop();
+  if (cause != Cause::kNone) {
     receiver_->take_stop();  // cleared before it is handled, so that another stop is not lost
-    halt(Cause::kSequence);
+    halt(cause);
   }
   const bool is_there = receiver_->has_frame();  // the whole frame has arrived
   check();
-  // A reply that is due goes first, and text last.
-  if (is_there && (due_ & kDueReply) == 0) {
+  if (is_there && receiver_->frame_may_stop()) {
+    receiver_->let_frame();
+    if (!check_.is_whole()) halt(Cause::kText);
+  }
+  // A reply that is due goes first, and text last. Before a stop that waits among text no frame
+  // does anything.
+  if (is_there && (due_ & kDueReply) == 0 && !receiver_->has_mark()) {
     hear();
   } else if (console_.is_due() || receiver_->has_text()) {
     talk();
@@ -99,7 +127,7 @@ bool Link::next_tx_byte(uint8_t* byte) {
 tini_noinline void Link::halt(Cause cause) {
   const bool was_stopped = port_status().state == State::kStopped;
   port_stop(0);
-  const bool has_stale = cause == Cause::kSequence && receiver_->has_frame();
+  const bool has_stale = cause != Cause::kMessage && receiver_->has_frame();
   note_halt();
   if (!was_stopped || has_stale) return stopped(cause);
   confirm(cause);

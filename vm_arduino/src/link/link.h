@@ -60,7 +60,9 @@ class Link {
 
   // Whether a stop has arrived that `tick` has not handled yet: until then the motors must stay
   // off, whatever else was requested. Code that turns motors on checks this with interrupts off.
-  bool stop_is_due() const { return receiver_->stop_is_due(); }
+  bool stop_is_due() const {
+    return receiver_->due_stop() != Cause::kNone || receiver_->has_mark();
+  }
 
   // Events. The first three are sent when there is room; a value that finds no room is rejected,
   // and the caller tries again.
@@ -133,7 +135,7 @@ class Link {
     has_halted_ = false;
     return has_halted;
   }
-  void discard_text() { console_.discard(); }
+  void discard_text() { drop_answer(); }
 
   bool has_open_text() const { return console_.is_open(); }
   void drop_text() { console_.drop(); }
@@ -148,11 +150,12 @@ class Link {
   static constexpr uint8_t kDueText = 16;
 
   // Times that run down to 0: until a client without frames no longer counts as listening, until
-  // STOPPED is sent again, until a key may be shown again; and, as `kListen`, since a sealed frame.
+  // STOPPED is sent again, until a second of silence has passed, until a key may be shown again; and,
+  // as `kListen`, since a sealed frame.
 #ifdef tiniscript_seals
-  enum Time : uint8_t { kListen, kAgain, kKeyPause, kSealHeard, kTimes };
+  enum Time : uint8_t { kListen, kAgain, kSilence, kKeyPause, kSealHeard, kTimes };
 #else
-  enum Time : uint8_t { kListen, kAgain, kKeyPause, kTimes };
+  enum Time : uint8_t { kListen, kAgain, kSilence, kKeyPause, kTimes };
 #endif
 
   // Rights of the session, one bit each: it has a challenge, it has asked for a claim, the button
@@ -171,6 +174,7 @@ class Link {
   };
 
   void pass(uint16_t now_ms);
+  void end_silence(bool is_held, bool is_at_stop, uint16_t before_ms);
   // The purpose of an image: to be stored, to run once, or to run as soon as its frame ends.
   enum class Use : uint8_t { kStored, kLive, kAhead };
 
@@ -274,6 +278,7 @@ class Link {
 
   // text
   void talk();
+  void drop_answer();
   Remark start_text(const Console& console);
   void send_text();
   void show_text(int32_t value, bool is_yes_no);

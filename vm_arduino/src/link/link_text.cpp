@@ -17,12 +17,19 @@ tini_noinline void Link::talk() {
   if (console->has_answer()) due_ |= kDueText;
 }
 
+// A stop has ended what was typed, and what was to be said of it.
+void Link::drop_answer() {
+  console_.discard();
+  due_ &= static_cast<uint8_t>(~kDueText);
+}
+
 // Starts the program that was read. Returns what to say.
 Remark Link::start_text(const Console& console) {
   if (!text_may_drive()) return Remark::kNotOwner;
   if (port_may_drive(0) != Answer::kOk) return Remark::kRefused;
   const Reader* const reader = near(&console.reader());
   const uint8_t start = reader->start();
+  if (start == 0 && receiver_->has_mark()) return Remark::kNone;
   if (start == 0 && port_status().state >= State::kStopped) {
     if ((rights_ & kHeldBack) != 0) return Remark::kHeldBack;
     if (!reader->has_setup()) return Remark::kLatched;

@@ -58,8 +58,9 @@ void Link::stopped(Cause cause) {
 
 // What was typed before a stop is over. It is reported at a limited rate, to a client as a frame.
 tini_noinline void Link::confirm(Cause cause) {
-  console_.discard();
+  drop_answer();
   if (cause <= Cause::kMessage) console_.hang_up();  // one that is for computers
+  if (cause == Cause::kText) console_.pick_up();
   if (left_ms_[kAgain] != 0) return;
   left_ms_[kAgain] = kAgainMs;
   due_ |= kDueStopped;

@@ -30,6 +30,7 @@ constexpr uint8_t kMostBalance = 40;
 constexpr uint8_t kMostLeast = 40;
 constexpr uint8_t kStopRun = 4;
 constexpr uint16_t kSilenceMs = 1000;
+constexpr uint8_t kHeldMs = 100;
 constexpr uint16_t kTetherMs = 1000;
 constexpr uint16_t kListenMs = 3000;
 constexpr uint8_t kAgainMs = 50;

@@ -11,8 +11,6 @@ bool is_letter(uint8_t byte) {
   return small >= 'a' && small <= 'z';
 }
 
-bool ends_line(uint8_t byte) { return byte == '\r' || byte == '\n'; }
-
 bool is_blank(uint8_t byte) { return byte == ' ' || byte == '\t' || ends_line(byte); }
 
 // In a line of text. Bytes beyond ASCII are UTF-8.
@@ -20,22 +18,51 @@ bool is_printable(uint8_t byte) { return byte >= ' ' && byte != 0x7f; }
 
 }  // namespace
 
-tini_noinline void Receiver::take(uint8_t byte, uint16_t now_ms) {
+tini_noinline bool Receiver::take(uint8_t byte, uint16_t now_ms) {
   has_heard_ = true;
   const bool is_quiet = this->is_quiet(now_ms);
   last_ms_ = now_ms;
-  if (is_quiet) {
+  if (is_quiet) {  // a typed stop in a frame has acted long ago
     const bool is_text =
         place_ == Place::kText || place_ == Place::kLost || place_ == Place::kAfterText;
     if (!is_kept_ || !is_text) cut();
     zeros_ = 1;  // this byte, if it is one
+    typed_.begin();
   }
-  if (byte == 0) return zero();
-  zeros_ = 0;
-  if (place_ == Place::kBlank) {
+  const Place before = place_;
+  const bool is_typed = typed_.put(byte);
+  if (byte == 0) {
+    zero();
+  } else {
+    zeros_ = 0;
+    sort(byte);
+  }
+  if (is_typed) {
+    if (is_marked(before)) return true;
+    if (is_frame() && !is_dropping_) {  // one that is dropped is not whole
+      place_ = Place::kHeld;
+      return false;
+    }
+  } else if (before != Place::kHeld || place_ != Place::kSkip) {
+    return false;
+  }
+  stop();
+  return true;
+}
+
+// Takes a byte that is not 0.
+inline void Receiver::sort(uint8_t byte) {
+  if (place_ >= Place::kBlank && place_ <= Place::kCrLf) {
     // The second byte of a request is its type, and no frame to a robot begins like this.
-    place_ = is_printable(byte) && byte < 0x80 ? Place::kAfterText : Place::kFrame;
-    if (place_ == Place::kFrame) drop();
+    if (is_printable(byte) && byte < 0x80) {
+      place_ = Place::kAfterText;
+    } else if (place_ == Place::kCr && byte == '\n') {
+      place_ = Place::kCrLf;
+      return add(byte);
+    } else {
+      place_ = Place::kFrame;
+      drop();
+    }
   }
   if (place_ == Place::kAfterText && is_blank(byte)) return;
   if (place_ <= Place::kAfterText) {
@@ -43,6 +70,18 @@ tini_noinline void Receiver::take(uint8_t byte, uint16_t now_ms) {
   } else {
     go_on(byte);
   }
+}
+
+// A line has ended that is a typed stop; `before` is where the receiver was before its end. Returns
+// whether all of it has found a place as text, and a mark behind it.
+bool Receiver::is_marked(Place before) {
+  const bool is_in_item = before >= Place::kHead && before <= Place::kOther && !is_dropping_ &&
+                          item_[filled()] == Item::kText;
+  if (before != Place::kText && !is_in_item) return false;
+  if (place_ == Place::kAfterText) pass_on(kLineStop);
+  if (place_ != Place::kAfterText) return false;
+  marks_ = static_cast<uint8_t>(marks_ + 1);
+  return true;
 }
 
 // Determines the kind of an item from its first byte, as far as possible. A frame after text has a
@@ -62,11 +101,11 @@ void Receiver::begin(uint8_t byte) {
   if (byte >= kTextFrom) {
     place_ = Place::kOther;
   } else if (is_blank(byte)) {
-    place_ = Place::kBlank;
+    place_ = byte == '\r' ? Place::kCr : Place::kBlank;
   } else {
     place_ = byte > ' ' ? Place::kHead : Place::kFrame;
   }
-  if (place_ != Place::kBlank) drop();
+  if (!is_blank(byte)) drop();
   add(byte);
 }
 
@@ -81,9 +120,9 @@ void Receiver::go_on(uint8_t byte) {
   }
   if (place_ == Place::kHead) {
     place_ = is_printable(byte) ? Place::kLine : Place::kFrame;  // request types are smaller
-  } else if (place_ != Place::kFrame && ends_line(byte)) {
-    end(Item::kText);
+  } else if (!is_frame() && ends_line(byte)) {
     place_ = Place::kAfterText;
+    if (!end(Item::kText)) lose();
     return;
   } else if (place_ == Place::kLine && !is_text) {
     place_ = Place::kFrame;
@@ -91,11 +130,14 @@ void Receiver::go_on(uint8_t byte) {
     return skip();
   }
   if (length_[filled()] == most_bytes() && !is_dropping_) {
-    if (place_ == Place::kFrame) return skip();
+    if (is_frame()) return skip();
     place_ = Place::kText;
     end(Item::kText);
     is_begun_ = true;
-    if (item_[filled()] != Item::kText) place_ = Place::kLost;
+    if (item_[filled()] != Item::kText) {
+      place_ = Place::kLost;
+      is_lost_ = true;
+    }
     if (place_ == Place::kText) pass_on(byte);
     return;
   }
@@ -121,7 +163,7 @@ void Receiver::add(uint8_t byte) {
 }
 
 void Receiver::zero() {
-  if (place_ >= Place::kBlank && place_ <= Place::kFrame) {
+  if (place_ >= Place::kBlank && place_ <= Place::kHeld && place_ != Place::kOther) {
     end(Item::kFrame);
     place_ = Place::kBegin;
   } else {
@@ -129,7 +171,7 @@ void Receiver::zero() {
   }
   if (zeros_ != kStopRun) return;
   zeros_ = 0;  // four more zeros are another stop
-  stop_is_due_ = true;
+  due_stop_ = Cause::kSequence;
 }
 
 // Starts over; the open item never ended.
@@ -140,17 +182,19 @@ void Receiver::cut() {
   if (place == Place::kText || place == Place::kLost) pass_on(kLineCut);
 }
 
-// A line that may overtake older text, or a frame, is dropped.
-void Receiver::end(Item item) {
-  if (is_dropping_) return;
+// A line that may overtake older text, or a frame, is dropped. Returns whether the item waits.
+bool Receiver::end(Item item) {
+  if (is_dropping_) return false;
   is_begun_ = false;
   taken_ = 0;
   if (item == Item::kFrame || (first_ == behind_ && is_first())) {
+    may_stop_[filled()] = place_ == Place::kHeld;
     item_[filled()] = item;
     if (item == Item::kFrame) fill_on();
-  } else {
-    dropped_ = static_cast<uint8_t>(dropped_ + 1);
+    return true;
   }
+  dropped_ = static_cast<uint8_t>(dropped_ + 1);
+  return false;
 }
 
 // Passes a byte of text on. Where there is no room, the rest of its line is skipped.
@@ -160,11 +204,18 @@ void Receiver::pass_on(uint8_t byte) {
   if (behind == first_) {
     if (place_ != Place::kLost) damaged_ = static_cast<uint8_t>(damaged_ + 1);
     place_ = Place::kLost;
+    is_lost_ = true;
     return;
   }
   text_[at] = byte;
   asm volatile("" ::: "memory");  // barrier: `take_text` reads the byte after the index
   behind_ = behind;
+}
+
+// A line has found no room as an item.
+void Receiver::lose() {
+  is_lost_ = true;
+  pass_on(kLineCut);
 }
 
 void Receiver::end_text(uint8_t byte) {

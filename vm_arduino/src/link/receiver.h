@@ -1,4 +1,5 @@
-// Splits bytes into items: frames, lines of text, and the run of zeros that stops a robot.
+// Splits bytes into items: frames, lines of text, and what stops a robot: a run of zeros, or a line
+// that is a typed stop.
 //
 // Knows where an item begins and ends; `frames.h` checks whether a frame is whole. Holds frames until
 // they are released, kWindow of them; a frame that finds no place is dropped. Text is passed on as it
@@ -15,14 +16,17 @@
 #include "../vm/small.h"
 #include "messages.h"
 #include "sizes.h"
+#include "typed_stop.h"
 
 namespace tiniscript {
 
 enum class Item : uint8_t { kNone, kFrame, kText };
 
-// What `take_text` returns beside the bytes of a line.
+// What `take_text` returns beside the bytes of a line. kLineStop is behind the end of a line that is
+// a typed stop.
 constexpr uint8_t kLineEnd = '\n';
 constexpr uint8_t kLineCut = 0;
+constexpr uint8_t kLineStop = '\r';
 
 // The places of the items that wait: the main loop looks at one, the interrupt fills one. They are
 // the same where nothing waits, or where all places are taken.
@@ -52,13 +56,12 @@ class ItemPlaces<1> {
 
 class Receiver : private ItemPlaces<kWindow> {
  public:
-  // Takes a byte at the time `now_ms`. Returns whether it completes a run of four zeros, the stop
-  // sequence: the motors then go off at once. Eight zeros are two stops. A byte with a framing
-  // error is 0.
+  // Takes a byte at the time `now_ms`. Returns whether the motors go off at once: it completes a run
+  // of four zeros, the stop sequence, or a typed stop. Eight zeros are two stops. A byte with a
+  // framing error is 0.
   bool put(uint8_t byte, uint16_t now_ms) {
     const bool is_stop = stops(byte, now_ms);
-    take(byte, now_ms);
-    return is_stop;
+    return take(byte, now_ms) || is_stop;
   }
 
   // The halves of `put`: between them the caller turns the motors off.
@@ -70,7 +73,7 @@ class Receiver : private ItemPlaces<kWindow> {
     last_ms_ = now_ms;
     return true;
   }
-  void take(uint8_t byte, uint16_t now_ms);
+  bool take(uint8_t byte, uint16_t now_ms);
 
 #ifdef __AVR__
   // Where `zeros_` and `last_ms_` lie: its interrupt does `stops` in assembly.
@@ -85,6 +88,21 @@ class Receiver : private ItemPlaces<kWindow> {
   bool has_frame() const { return item_[looked_at()] == Item::kFrame; }
   uint8_t* bytes() { return bytes_[looked_at()]; }
   uint8_t length() const { return length_[looked_at()]; }
+
+  // Whether a typed stop is in the first frame that waits: unless that is whole, it stops.
+  bool frame_may_stop() const { return may_stop_[looked_at()]; }
+  void let_frame() { may_stop_[looked_at()] = false; }
+
+  // Whether a typed stop is in the unfinished frame: it stops when no byte has come for kHeldMs.
+  bool is_held() const { return *const_cast<const volatile Place*>(&place_) == Place::kHeld; }
+
+  // Whether what has come of a line would be a typed stop if it ended here.
+  bool is_at_stop() const { return typed_.is_whole(); }
+
+  // Whether a typed stop waits among the text: whether it belongs to an open block is decided where
+  // text is read, and nothing starts before.
+  bool has_mark() const { return marks_ != marks_taken_; }
+  void take_mark() { marks_taken_ = static_cast<uint8_t>(marks_taken_ + 1); }
 
   // Goes on to the next frame: as if it began now, though it may be whole already.
   void release() {
@@ -101,6 +119,13 @@ class Receiver : private ItemPlaces<kWindow> {
   // Takes the next byte of text. kLineEnd: the line is whole. kLineCut: it never ends, or bytes of
   // it were lost. False: none waits.
   bool take_text(uint8_t* byte);
+
+  // Whether a line has found no room since the last call. A kLineCut tells where.
+  bool take_lost() {
+    const bool is_lost = is_lost_;
+    is_lost_ = false;
+    return is_lost;
+  }
 
   // Whether a second of silence leaves the open line or program of text as it is. The caller limits
   // its time.
@@ -122,9 +147,12 @@ class Receiver : private ItemPlaces<kWindow> {
     return true;
   }
 
-  // Whether a stop has arrived since the last `take_stop`.
-  bool stop_is_due() const { return stop_is_due_; }
-  void take_stop() { stop_is_due_ = false; }
+  // Has the robot stop for a typed stop.
+  void stop() { due_stop_ = Cause::kText; }
+
+  // Why the robot is to stop since the last `take_stop`, or kNone.
+  Cause due_stop() const { return due_stop_; }
+  void take_stop() { due_stop_ = Cause::kNone; }
 
   // The number of damaged and dropped items. It wraps around to 0.
   uint8_t damaged() const { return damaged_; }
@@ -135,10 +163,13 @@ class Receiver : private ItemPlaces<kWindow> {
     kBegin,      // the next byte begins an item
     kAfterText,  // the same, except for white space
     kBlank,      // after white space; a frame may also begin
+    kCr,         // the same after CR, and after CR and LF
+    kCrLf,
     kHead,       // after the first byte of a frame or a line of text
     kLine,       // probably in a line of text, otherwise in a frame
+    kOther,      // probably in a line of text, otherwise in noise
     kFrame,
-    kOther,  // probably in a line of text, otherwise in noise
+    kHeld,  // in a frame with a typed stop in it
     kText,
     kLost,  // in a line of text whose bytes found no room
     kSkip,  // in noise, up to the next 0x00
@@ -148,15 +179,20 @@ class Receiver : private ItemPlaces<kWindow> {
     return static_cast<uint16_t>(now_ms - last_ms_) >= kSilenceMs;
   }
   void zero();
+  void sort(uint8_t byte);
   void cut();
   void begin(uint8_t byte);
   void go_on(uint8_t byte);
   void skip();
   void drop();
   void add(uint8_t byte);
-  void end(Item item);
+  bool end(Item item);
   void pass_on(uint8_t byte);
   void end_text(uint8_t byte);
+  void lose();
+  bool is_marked(Place before);
+
+  bool is_frame() const { return place_ == Place::kFrame || place_ == Place::kHeld; }
 
   // Whether no frame waits before the item that is being filled.
   bool is_first() const { return filled() == looked_at(); }
@@ -169,7 +205,12 @@ class Receiver : private ItemPlaces<kWindow> {
   // The waiting items. A line that might have been a frame waits in `bytes_` like one, as the last.
   volatile Item item_[kWindow];
   volatile bool has_begun_;
-  volatile bool stop_is_due_;
+  volatile Cause due_stop_;
+  TypedStop typed_;
+  volatile bool is_lost_;
+  volatile bool may_stop_[kWindow];
+  volatile uint8_t marks_;
+  uint8_t marks_taken_;
   volatile uint8_t damaged_;
   volatile uint8_t dropped_;
   Place place_;

@@ -57,10 +57,8 @@ class Reader {
   bool has_setup() const { return has_setup_; }
   bool may_have_setup();
 
-  // Whether all that was added to so many bytes of code is S. `is_at_stop`: also where the line has
-  // not ended.
+  // Whether all that was added to so many bytes of code is S.
   bool is_stop_behind(uint8_t before) const;
-  bool is_at_stop(uint8_t before);
 
   // Whether the program so far is S.
   bool is_stop() const { return !has_setup_ && is_stop_behind(0); }

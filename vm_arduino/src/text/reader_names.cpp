@@ -71,15 +71,6 @@ bool Reader::may_have_setup() {
   return word >= kWordSi && word <= kWordPing;
 }
 
-bool Reader::is_at_stop(uint8_t before) {
-  if (length_ == before) {
-    const uint8_t word = open_word();
-    return word == kWordS || word == kWordStop;
-  }
-  return is_stop_behind(before) && problem_ == Problem::kNone && place_ <= kComment &&
-         place_ != kWord;
-}
-
 bool Reader::find_in_kit() {
   const uint8_t* entry = robot_words();
   uint8_t sensors = 0;

@@ -1,0 +1,168 @@
+"""A typed stop on a simulated Uno: in every state of the receiver, in all spellings, at both rates.
+
+From the end of its line to the motor pins it takes less than a millisecond, in what began as a
+frame less than that behind 100 ms of silence. What came before it starts nothing afterwards.
+`python -m tests.firmware.test_typed_stops 10000` types it behind so many random bytes.
+"""
+
+from __future__ import annotations
+
+import argparse
+import random
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from tests.firmware.test_uno_robot import FORWARD, NAMES, OFF, states
+from tests.machines.uno import needed
+from tests.support.platformio import firmware, shared
+from tools.bench.link import built
+from tools.uno import CYCLES_PER_MS, Uno
+
+BAUDS = (9600, 115_200)
+RUNS = b"SI|F(60,80)\n"
+SILENCE_MS = 1000
+HELD_MS, MOST_MS = 100, 1.0
+TURN_MS = 2.1  # of the clock that counts the silence of a frame
+
+# What comes before the line of the stop, behind a program that runs and a second of silence.
+PREFIXES = {
+    "nothing": b"",
+    "CR LF": b"\r\n",
+    "CR CR": b"\r\r",
+    "LF CR": b"\n\r",
+    "tabs": b"\t\t",
+    "a digit": b"5\n",
+    "a cursor key": b"\x1b[A",
+    "a key with numbers": b"\x1b[1;5C",
+    "another key": b"\x1bOB",
+    "backspace": b"x\b",
+    "backspace first": b"\b",
+    "delete": b"\x7f",
+    "a bracket": b"(\n",
+    "a blank": b" \n",
+    "a line": b"F(1,80)\n",
+    "a line that is cut": b"F(1,\x03",
+    "half a program": b"SI|F(1,\n",
+    "a lost line": b"F(1,80);" * 12 + b"\n",
+    "a long number": b"9" * 90 + b"\n",
+    "noise": b"\x7f\x80\xff\n",
+    "a frame that has begun": b"\x08\x02\x02\n",
+    "a frame": b"\x08\x02\x02\x0a\xd7\xec\xe4\x2f\0",
+    "a damaged frame": b"\x08\x02\x02\x0b\xd7\xec\xe4\x2f\0",
+    "zeros": b"\0\0",
+    "a mistake": b"FORWARD!\n",
+    "six questions": b"HELP\n" * 6,
+    "eight questions": b"HELP\n" * 8,
+    "UTF-8": "ñandú\n".encode(),
+}
+SPELLINGS = (b"S\n", b"s\r", b"STOP\r\n", b"stop\n", b" \t;S ;\n", b";sToP\r\n")
+
+
+@pytest.fixture(scope="session", params=BAUDS)
+def sketch(
+    request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
+) -> tuple[Path, int]:
+    needed()
+    baud: int = request.param
+    folder = tmp_path_factory.mktemp("sketch")
+    if baud == BAUDS[0]:
+        return firmware("uno", folder, shared(tmp_path_factory)), baud
+    return built(baud, folder), baud
+
+
+@pytest.fixture
+def uno_at(sketch: tuple[Path, int]) -> Iterator[tuple[Uno, int]]:
+    with switched_on(*sketch) as found:
+        yield found, sketch[1]
+
+
+def switched_on(sketch: Path, baud: int) -> Uno:
+    uno = Uno(sketch, names=NAMES, baud=baud, resets_on_open=False, tells_sleep=False)
+    uno.run_ms(300)
+    return uno
+
+
+def said(uno: Uno, since: int) -> str:
+    return bytes(byte.value for byte in uno.sent[since:]).decode("latin-1")
+
+
+def drive(uno: Uno) -> None:
+    """Have the robot drive by a line, and be silent for a second."""
+    uno.run_ms(SILENCE_MS + 50)
+    uno.send(RUNS)
+    uno.run_ms(SILENCE_MS + 100)
+    assert states(uno) == FORWARD, said(uno, 0)[-200:]
+
+
+def stop_behind(uno: Uno, baud: int, prefix: bytes, spelling: bytes) -> None:
+    """Type a stop while the robot drives. Its pins are off in time, and nothing starts again."""
+    byte_ms = 10_000 / baud
+    uno.send(prefix + spelling)
+    uno.run_ms(len(prefix + spelling) * byte_ms + HELD_MS + 10)
+    end = next(
+        k for k in reversed(range(len(uno.received))) if uno.received[k].value not in b"\r\n"
+    )
+    line_end = uno.received[end + 1]  # of CR LF the first one
+    off = max(uno.pins[name].cycle for name in ("left", "right"))
+    what = f"{prefix!r} {spelling!r}"
+    assert states(uno) == OFF, what
+    late_ms = (off - line_end.cycle) / CYCLES_PER_MS
+    behind_ms = (off - uno.received[-1].cycle) / CYCLES_PER_MS
+    assert late_ms < MOST_MS or HELD_MS - 1 < behind_ms < HELD_MS + TURN_MS, f"{what}: {late_ms} ms"
+    changes = len(uno.pins.history("left"))
+    uno.send(b"F(1,80)\n")  # not before a second of silence
+    uno.run_ms(300)
+    assert states(uno) == OFF and len(uno.pins.history("left")) == changes, what
+
+
+@pytest.mark.parametrize("name", PREFIXES)
+def test_a_typed_stop_in_every_state(uno_at: tuple[Uno, int], name: str) -> None:
+    uno, baud = uno_at
+    for spelling in SPELLINGS:
+        drive(uno)
+        stop_behind(uno, baud, PREFIXES[name], spelling)
+    uno.run_ms(SILENCE_MS + 100)
+    before = len(uno.sent)
+    uno.send(b"F(1,80)\n")
+    uno.run_ms(200)
+    assert states(uno) == OFF and "// It was stopped." in said(uno, before), "it is latched"
+
+
+def random_prefix(draw: random.Random) -> bytes:
+    parts = [draw.choice(list(PREFIXES.values())) for _ in range(draw.randrange(3))]
+    odd = bytes(draw.choice(b"\0\x01S\n s;T\r\x1b[OPp\t5(") for _ in range(draw.randrange(20)))
+    parts += [odd, draw.randbytes(draw.randrange(30))]
+    draw.shuffle(parts)
+    return b"".join(parts).replace(b"\0\0\0", b"\0") + draw.choice(
+        (b"\n", b"\r\n", b"\0", b"\x1b[A", b"\b")
+    )
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(
+        description="Type stops behind random bytes on a simulated Uno."
+    )
+    parser.add_argument("prefixes", type=int, nargs="?", default=10_000)
+    parser.add_argument("--seed", type=int, default=1)
+    options = parser.parse_args()
+    draw = random.Random(options.seed)
+    begun = time.monotonic()
+    with tempfile.TemporaryDirectory() as folder:
+        for baud in BAUDS:
+            sketch = built(baud, Path(folder))
+            for first in range(0, options.prefixes // len(BAUDS), 500):
+                with switched_on(sketch, baud) as uno:
+                    for _ in range(min(500, options.prefixes // len(BAUDS) - first)):
+                        drive(uno)
+                        stop_behind(uno, baud, random_prefix(draw), draw.choice(SPELLINGS))
+    print(f"{options.prefixes} stops on the chip, all in time: {time.monotonic() - begun:.0f} s")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

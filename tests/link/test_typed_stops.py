@@ -1,0 +1,148 @@
+"""Typed stops where bytes arrive: found behind whatever came before, and in no frame that is whole.
+
+Prefixes, frames and damage are made and judged in C++ with the robot's receiver, which reads a line
+backwards to know whether it is a stop.
+`python -m tests.link.test_typed_stops 1000000 --frames 100000000` tries more than the tests.
+"""
+
+from __future__ import annotations
+
+import argparse
+import shutil
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from tests.machines.damage import CppDamage, cpp_damage
+from tests.machines.host import SOURCES
+from tests.machines.link import missing
+from tiniscript.link.frames import begins_text
+from tiniscript.link.session import Session
+
+needs_host = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a host machine")
+PREFIXES = 100_000  # in the tests
+FRAMES = 1_000_000
+LINES = 200  # asked for at a time; a line has 1,024 frames
+PER_LINE = 1024
+SEED = 7
+
+# Breaks that the prefixes must see: the file, what it has, and what becomes of that.
+STOPS, RECEIVER = "src/link/typed_stop.h", "src/link/receiver.cpp"
+BREAKS = {
+    "a control byte begins nothing": (STOPS, "kEscape : kBegin;", "kEscape : kOther;"),
+    "0x7f begins nothing": (STOPS, " || byte == 0x7f) {", ") {"),
+    "a key begins nothing": (STOPS, "(byte == '[' || byte == 'O')", "byte == ']'"),
+    "letters are kept from the line before": (
+        STOPS, "= byte == kEscapeByte ? kEscape : kBegin;", "= ends_line(byte) ? place : kBegin;"),
+    "silence begins nothing": (RECEIVER, "    typed_.begin();\n", ""),
+    "a tab is no blank": (STOPS, "byte == '\\t' || byte == ';'", "byte == ';'"),
+    "S alone is no stop": (STOPS, "place == kLetter || place == kStop;", "place == kStop;"),
+    "a frame that is cut keeps its stop": (
+        RECEIVER, "may_stop_[filled()] = place_ == Place::kHeld;", "may_stop_[filled()] = false;"),
+    "a frame that is too long keeps it": (
+        RECEIVER, "before == Place::kHeld && place_ == Place::kSkip", "false"),
+    "a mark without a place": (
+        RECEIVER, "  if (place_ != Place::kAfterText) return false;\n  marks_", "  marks_"),
+}  # fmt: skip
+# Breaks that undamaged frames must see.
+FALSE_STOPS = {
+    "frames stop at once": (RECEIVER, "is_frame() && !is_dropping_", "false"),
+}
+
+
+def false_stops(
+    cpp: CppDamage, count: int, seed: int, is_damaged: bool = False, is_odd: bool = True
+) -> tuple[int, int]:
+    """Send so many frames; return how many, and how many typed stops were found in them."""
+    frames = stops = lines = 0
+    while frames < count:
+        found = cpp.typed_stops(seed, lines, LINES, is_damaged, is_odd)
+        frames, stops, lines = frames + found[0], stops + found[1], lines + LINES
+    return frames, stops
+
+
+@needs_host
+@pytest.mark.parametrize("is_large", [False, True])
+def test_a_stop_is_seen_behind_any_prefix(is_large: bool) -> None:
+    cpp_damage(is_large).type_behind(SEED, 0, PREFIXES)
+
+
+@needs_host
+@pytest.mark.parametrize("is_large", [False, True])
+def test_no_frame_that_is_whole_stops(is_large: bool) -> None:
+    count = FRAMES if not is_large else FRAMES // 10
+    frames, stops = false_stops(cpp_damage(is_large), count, SEED)
+    assert frames >= count and stops == 0
+
+
+@needs_host
+def test_few_damaged_frames_stop() -> None:
+    """One with any bytes in it has to have a line S among them, and to be damaged."""
+    frames, stops = false_stops(cpp_damage(), FRAMES // 5, SEED, is_damaged=True, is_odd=False)
+    assert stops <= frames / 1000
+
+
+def test_a_request_that_would_be_text_gets_another_number(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Such a frame is rare: here all with some numbers are."""
+    asked = Session(0x40, 9600, 1)
+    monkeypatch.setattr("tiniscript.link.session.begins_text", lambda wire: wire[2] < 0x7F)
+    asked.hello()
+    frames = asked.poll(0).strip(b"\0")
+    assert frames[2] == 0x7F
+    assert begins_text(b"\r\nA") and not begins_text(b"\r\n\x7f") and not begins_text(b"\n\nA")
+
+
+def broken(name: str, tmp_path: Path) -> CppDamage:
+    file, old, new = {**BREAKS, **FALSE_STOPS}[name]
+    for part in ("src", "extras"):
+        shutil.copytree(SOURCES / part, tmp_path / part)
+    text = (tmp_path / file).read_text(encoding="utf-8")
+    assert text.count(old) == 1, "the sources were rewritten: BREAKS"
+    (tmp_path / file).write_text(text.replace(old, new), encoding="utf-8")
+    return CppDamage(tmp_path)
+
+
+@needs_host
+@pytest.mark.parametrize("name", BREAKS)
+def test_a_stop_that_is_missed_is_seen(name: str, tmp_path: Path) -> None:
+    with pytest.raises(AssertionError, match="prefix"):
+        broken(name, tmp_path).type_behind(SEED, 0, PREFIXES)
+
+
+@needs_host
+@pytest.mark.parametrize("name", FALSE_STOPS)
+def test_a_false_stop_is_seen(name: str, tmp_path: Path) -> None:
+    assert false_stops(broken(name, tmp_path), FRAMES // 10, SEED)[1] > 0
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description="Type stops behind many prefixes.")
+    parser.add_argument("prefixes", type=int, nargs="?", default=1_000_000)
+    parser.add_argument("--frames", type=int, default=0, help="undamaged ones, looked at for stops")
+    parser.add_argument("--seed", type=int, default=1_000_000)
+    options = parser.parse_args()
+    begun = time.monotonic()
+    for is_large in (False, True):
+        for first in range(0, options.prefixes, PREFIXES):
+            count = min(PREFIXES, options.prefixes - first)
+            cpp_damage(is_large).type_behind(options.seed, first, count)
+    seconds = time.monotonic() - begun
+    print(
+        f"{options.prefixes} stops behind any bytes, on both receivers, all seen: {seconds:.0f} s"
+    )
+    if not options.frames:
+        return 0
+    begun = time.monotonic()
+    frames, stops = false_stops(cpp_damage(), options.frames, options.seed)
+    print(f"{frames} undamaged frames, {stops} stops: {time.monotonic() - begun:.0f} s")
+    for is_odd in (False, True):
+        of, found = false_stops(cpp_damage(), FRAMES, options.seed, True, is_odd)
+        what = "some of few values" if is_odd else "of any bytes"
+        print(f"{of} damaged frames, {what}: {found} stops")
+    return int(stops != 0)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
