@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from tests.machines.host_firmware import missing
-from tests.support.command import LONG, OBSTACLE, TSC, process, rest_of
+from tests.support.command import LONG, OBSTACLE, TSC, Command, process, rest_of
 from tests.support.pty_robot import PtyRobot, on
 from tests.support.waiting import HANGS_S
 from tiniscript import compile_text, robots
@@ -169,3 +169,16 @@ def test_a_long_way_has_a_bar_that_is_gone_at_the_end() -> None:
     pyte.ByteStream(screen).feed(written)
     assert screen.display[0].startswith("-e -> tinibot")
     assert "sending" not in "".join(screen.display)
+
+
+@pytest.mark.parametrize("is_many", [False, True])
+def test_a_reset_during_a_run_is_no_success(pty_robot: PtyRobot, is_many: bool) -> None:
+    """Power off and on under a program: it has not ended by itself, whoever has it run."""
+    other = ("--port", "/dev/none") if is_many else ()
+    command = Command("upload", "-e", "SI|F(200, 80)", "--port", pty_robot.port, *other)
+    pty_robot.until(lambda: pty_robot.moves, "it drives")
+    pty_robot.switch_off()
+    pty_robot.switch_on()
+    done = command.ended()
+    assert done.code == 3 and "Done." not in done.out + done.err
+    assert "was restarted" in done.out + done.err, done

@@ -22,7 +22,7 @@ from tests.support.pty_robot import PtyRobot
 from tiniscript.library import opening
 from tiniscript.library.endings import End, Follower
 from tiniscript.link.connection import LinkConnection
-from tiniscript.link.outcomes import Event, LostEvent, StartedEvent
+from tiniscript.link.outcomes import Event, LostEvent, RestartedEvent, StartedEvent
 from tiniscript.link.payloads import DoneEvent
 from tiniscript.virtual import directory
 
@@ -305,10 +305,36 @@ def test_what_ended_before_a_run_is_not_its_end() -> None:
     assert follower.is_about(stopped, "P")
     assert follower.end(stopped) == End("STOPPED")
     assert follower.end(DoneEvent(5)) == End("DONE")
-    for last, reason in ((started[1], "replaced"), (LostEvent(), "link_lost")):
+    for last, reason in (
+        (started[1], "replaced"), (LostEvent(), "link_lost"), (RestartedEvent(), "restarted")
+    ):  # fmt: skip
         with pytest.raises(tiniscript.RobotError) as raised:
             follower.is_about(last, "P")
         assert raised.value.reason == reason
+
+
+@needs_pty
+def test_a_reset_during_a_run_is_no_end_of_the_program(pty_robot: PtyRobot) -> None:
+    with tiniscript.connect(pty_robot.port) as robot:
+        robot.upload("SI|F(200, 80)", save=False)
+        pty_robot.until(lambda: pty_robot.moves, "it drives")
+        pty_robot.switch_off()
+        pty_robot.switch_on()
+        with pytest.raises(tiniscript.RobotError) as raised:
+            robot.wait()
+        assert raised.value.reason == "restarted"
+        robot.live("W(0.01)")
+        assert robot.wait().name == "DONE"
+
+
+@needs_pty
+def test_a_reset_of_a_robot_that_stands_is_noticed_by_nobody(pty_robot: PtyRobot) -> None:
+    with tiniscript.connect(pty_robot.port) as robot:
+        for _ in range(2):
+            robot.upload("SI|SHOW(1)", save=False)
+            assert robot.wait().name == "DONE"
+            pty_robot.switch_off()
+            pty_robot.switch_on()
 
 
 @needs_pty

@@ -19,6 +19,7 @@ from tiniscript.link.outcomes import (
     LeftEvent,
     MissedEvent,
     PlaceEvent,
+    RestartedEvent,
     TextEvent,
 )
 from tiniscript.link.payloads import EVENTS, REPLIES, ReceiptReply, StatusReply
@@ -48,7 +49,7 @@ def test_an_event_has_the_fields_of_the_table_and_its_name() -> None:
 
 OTHERS: tuple[Event, ...] = (
     TextEvent(b"hello"), MissedEvent(3), EchoEvent(), JoinedEvent(b"live"), LeftEvent(b"live"),
-    PlaceEvent(255, 2**32 - 1, -1),
+    PlaceEvent(255, 2**32 - 1, -1), RestartedEvent(),
     EndedEvent(QUIET._replace(state=3, fault_program=2**32 - 1)),
 )  # fmt: skip
 

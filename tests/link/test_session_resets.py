@@ -7,6 +7,7 @@ import pytest
 from tests.machines.host_firmware import HostFirmware, missing
 from tiniscript import compile_text, robots
 from tiniscript.link.messages import STATUSES
+from tiniscript.link.outcomes import StartedEvent
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
 
@@ -26,8 +27,88 @@ def test_a_reset_robot_runs_its_first_program_with_a_heartbeat() -> None:
     second.now_ms = first.now_ms
     second.wait(100)
     code = compile_text("SHOW(2);F(2, 80);SHOW(3)", KIT).code
-    assert second.until(session, session.live(code)) == STATUSES["STALE"]
-    assert second.until(session, session.live(code)) == OK
+    assert second.until(session, session.live(code)) == OK  # after HELLO
     assert session.is_running
     second.talk(session, 2500)
     assert [event.name for event in session.events()] == ["SHOW", "SHOW", "DONE"]
+
+
+def running(seconds: int = 200) -> tuple[Session, HostFirmware]:
+    session, robot = Session(1, 9600, KIT.fingerprint), HostFirmware(KIT)
+    robot.wait(100)
+    assert robot.until(session, session.live(compile_text(f"F({seconds}, 80)", KIT).code)) == OK
+    robot.talk(session, 500)
+    assert session.is_running and not session.events()
+    return session, robot
+
+
+def reset(robot: HostFirmware, seed: int = 0x9ABCDEF1) -> HostFirmware:
+    """Return the robot after a reset; `seed` decides its epoch, too."""
+    found = HostFirmware(KIT, seed=seed)
+    found.now_ms = robot.now_ms
+    found.wait(100)
+    return found
+
+
+@pytest.mark.parametrize("seed", range(1, 9))
+def test_a_reset_during_a_run_is_told_and_is_no_end_of_the_program(seed: int) -> None:
+    session, robot = running()
+    robot = reset(robot, seed)
+    robot.talk(session, 1500)
+    assert [event.name for event in session.events()] == ["RESTARTED"]
+    assert not session.is_running and session.is_open
+    assert robot.until(session, session.live(compile_text("SHOW(2)", KIT).code)) == OK
+    robot.talk(session, 500)
+    assert [event.name for event in session.events()] == ["SHOW", "DONE"]
+
+
+def test_a_reset_during_a_run_is_told_where_a_request_is_the_first_to_notice_it() -> None:
+    for is_acting in (False, True):
+        session, robot = running()
+        robot = reset(robot)
+        request = session.identify() if is_acting else session.status()
+        assert robot.until(session, request) == OK
+        robot.talk(session, 500)
+        assert [event.name for event in session.events()] == ["RESTARTED"]
+
+
+def test_a_robot_that_was_reset_and_started_by_its_button_has_another_run() -> None:
+    session, robot = running()
+    robot = reset(robot)
+    other = Session(2, 9600, KIT.fingerprint)
+    code = compile_text("F(200, 80)", KIT).code
+    assert robot.until(other, other.live(code)) == OK  # run 1, as ours was
+    robot.talk(session, 1500)
+    assert [event.name for event in session.events()][:1] == ["RESTARTED"]
+
+
+def test_a_run_in_the_place_of_ours_is_no_end_of_it() -> None:
+    """The robot was not reset: somebody else has started something else on it."""
+    session, robot = running()
+    other = Session(2, 9600, KIT.fingerprint)
+    other.hello()
+    robot.talk(other, 200)
+    assert robot.until(other, other.live(compile_text("F(300, 80)", KIT).code)) == OK
+    robot.talk(session, 1500)
+    found = session.events()
+    assert StartedEvent in [type(event) for event in found], found
+    assert "RESTARTED" not in [event.name for event in found]
+    assert "ENDED" not in [event.name for event in found]
+
+
+def test_a_stop_that_nobody_has_told_is_no_reset() -> None:
+    session, robot = running()
+    robot.push()  # STOPPED is lost
+    robot.talk(session, 1500)
+    [ended] = session.events()
+    assert ended.name == "ENDED" and session.is_latched
+
+
+def test_nothing_is_asked_again_of_a_robot_that_was_stopped_after_its_reset() -> None:
+    session, robot = running()
+    session.events()
+    robot = reset(robot)
+    robot.wait(20, bytes(8))
+    code = compile_text("F(200, 80)", KIT).code
+    assert robot.until(session, session.live(code)) == STATUSES["STALE"]
+    assert robot.is_latched

@@ -39,6 +39,8 @@ class Follower:
         another program."""
         if event.name == "LOST":
             raise RobotError("link_lost", language, {"port": port})
+        if event.name == "RESTARTED":
+            raise RobotError("restarted", language, {"port": port})
         if event.name == "STARTED" and self.run is not None:
             is_it = event.run == self.run
             if self.has_begun and not is_it:

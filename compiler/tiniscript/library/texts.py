@@ -144,6 +144,8 @@ TEXTS: dict[str, tuple[str, str]] = {
                  "Quien responde en {port} dice que este robot no tiene dueño, o que no sella; la llave de esta computadora dice lo contrario. Así que no se le cree nada, y no se hizo nada. Tal vez alguien cambia lo que se dice por el camino: usa el cable del robot. Si le quitaron las llaves, con su botón o su dueño:  tsc keys --forget ID"),
     "link_lost": ("Lost the connection to the robot on {port}: it does not answer any more. Its program ends by itself, unless it is detached. Look at its batteries and the distance.",
                   "Se perdió la conexión con el robot en {port}: ya no responde. Su programa termina solo, a menos que se iniciara con detach. Mira sus pilas y la distancia."),
+    "restarted": ("The robot on {port} was restarted, and that ended its program: it was switched off and on, or its batteries are weak, or its reset button was pressed. Run the program again.",
+                  "El robot en {port} se reinició, y eso terminó su programa: se apagó y encendió, o sus pilas están débiles, o se pulsó su botón de reinicio. Ejecuta el programa otra vez."),
     "stopped_elsewhere": ("The robot on {port} was stopped before it did this. Try again.",
                           "El robot en {port} se detuvo antes de hacer esto. Prueba otra vez."),
     "replaced": ("Somebody else has started another program on the robot on {port}, which ended this one.",

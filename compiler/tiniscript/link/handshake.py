@@ -18,6 +18,7 @@ from tiniscript.link.messages import (
     OWNED,
     OWNERS,
     SEALS,
+    STATE_IDLE,
     STATE_RUNNING,
     STATUSES,
 )
@@ -78,7 +79,7 @@ class Handshake:
                 self.is_open = False
                 return Reply(UNPROVEN)
             self.is_open = True
-            if self.robot is None or self.robot.values.nonce != reply.values.nonce:
+            if self._boot != reply.values.nonce:
                 self._state.reset()
             self.robot = found
             self._state.state = reply.values.state
@@ -95,12 +96,19 @@ class Handshake:
         return reply
 
     def open_then(self, make: Callable[[], Exchange[T]]) -> Exchange[T]:
-        """Open the session if needed, then make and run an exchange."""
+        """Open the session if needed, then make and run an exchange; anew, after a reset."""
         if not self.is_open:
-            reply = yield from self.hello()
-            if reply.status != OK:
-                return refused(reply)
-        return (yield from self.with_key(make))
+            hello = yield from self.hello()
+            if hello.status != OK:
+                return refused(hello)
+        boot = self._boot
+        reply = yield from self.with_key(make)
+        if reply.status != STATUSES["STALE"]:
+            return reply
+        hello = yield from self.hello()
+        if hello.status != OK or self._boot == boot or self._state.state != STATE_IDLE:
+            return reply
+        return (yield from self.with_key(make))  # it was reset before, and has done nothing of this
 
     def with_key(self, make: Callable[[], Exchange[T]]) -> Exchange[T]:
         """Make and run an exchange; again, if the robot wants to be shown its key before."""
@@ -130,6 +138,11 @@ class Handshake:
     def _take_features(self, features: int) -> None:
         assert self.robot
         self.robot = requests.described(self.robot.values._replace(features=features))
+
+    @property
+    def _boot(self) -> int | None:
+        """A number of the robot that is another one after each of its resets."""
+        return self.robot.values.nonce if self.robot else None
 
     @property
     def is_doubted(self) -> bool:

@@ -56,6 +56,12 @@ class EndedEvent(NamedTuple):
     name: Literal["ENDED"] = "ENDED"
 
 
+class RestartedEvent(NamedTuple):
+    """The robot was reset while a run of ours went on."""
+
+    name: Literal["RESTARTED"] = "RESTARTED"
+
+
 class StartedEvent(NamedTuple):
     """A run has begun; another client of the line may have started it."""
 
@@ -100,6 +106,7 @@ Event = (
     | LostEvent
     | EchoEvent
     | EndedEvent
+    | RestartedEvent
     | StartedEvent
     | PlaceEvent
     | JoinedEvent
@@ -110,6 +117,7 @@ OWN_EVENTS: dict[str, type[Event]] = {
     "MISSED": MissedEvent,
     "LOST": LostEvent,
     "ECHO": EchoEvent,
+    "RESTARTED": RestartedEvent,
     "STARTED": StartedEvent,
     "PLACE": PlaceEvent,
     "JOINED": JoinedEvent,

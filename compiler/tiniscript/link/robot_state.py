@@ -30,6 +30,9 @@ class RobotState:
         self.state = STATE_IDLE
         self.run: int | None = None  # the run that we have started
         self._ended: int | None = None  # the last run whose end we know
+        self._is_going = False  # our run has begun, and nothing says that it has ended
+        self._is_asked = False  # how it has ended is
+        self.is_cut = False  # a reset has ended it
         self._event_seq: int | None = None
         self._place: PlaceEvent | None = None  # the last one that was told
 
@@ -43,6 +46,8 @@ class RobotState:
 
     def reset(self) -> None:
         """Note that the robot was reset: its counters start again."""
+        self.is_cut = self._is_going or self._is_asked
+        self._is_going = self._is_asked = False
         self._event_seq = self.run = self._ended = self._place = None
 
     def missed(self, seq: int) -> int:
@@ -50,17 +55,29 @@ class RobotState:
         before, self._event_seq = self._event_seq, seq
         return 0 if before is None else (seq - before - 1) & 0xFF
 
+    def may_be_reset(self, values: SentReply) -> bool:
+        """Take a reply in another epoch; return whether neither stop nor fault explains that."""
+        if not isinstance(values, (PingReply, StatusReply)):
+            return False
+        return values.state <= STATE_RUNNING or self.run not in (None, values.run)
+
     def learn(self, values: SentReply) -> bool:
         """Take a reply; return whether it tells of the end of our run, of which no event has."""
         if isinstance(values, ReceiptReply):
             self.run = values.run
         if not isinstance(values, (HelloReply, PingReply, StatusReply)):
             return False
-        was_running, self.state = self.is_running, values.state
-        if not was_running or self.is_running or self.run is None:
+        self.state = values.state
+        if self.is_running and values.run == self.run:
             return False
-        self._ended = self.run
-        return not isinstance(values, HelloReply)
+        if not self._is_going or isinstance(values, HelloReply):
+            return False
+        self._is_going, self._is_asked = False, True
+        return True
+
+    def end(self) -> None:
+        """Note that it is known how our run has ended, of which no event has told."""
+        self._ended, self._is_asked = self.run, False
 
     def moved(self, values: SentReply) -> list[PlaceEvent]:
         """Take a reply; return where the program is now, if that is another place than before."""
@@ -79,17 +96,21 @@ class RobotState:
             self._place = None  # who is told of the end needs no more
         if isinstance(event, (StoppedEvent, FaultEvent)):
             self.state = STATE_STOPPED
+            self._is_going = self._is_asked = False
         if isinstance(event, (DoneEvent, FaultEvent)):
             self._ended = event.run
             if isinstance(event, DoneEvent) and event.run == self.run:
                 self.state = STATE_IDLE
+                self._is_going = self._is_asked = False
 
     def begin(self, run: int) -> None:
         """Note that a run has begun, unless its end arrived before its receipt."""
         if run != self._ended:
             self.state = STATE_RUNNING
+            self._is_going = True
 
     def clear(self) -> None:
         """Note that the latch is released or the robot is lost."""
         self.state = STATE_IDLE
         self._place = None
+        self._is_going = self._is_asked = False

@@ -22,6 +22,7 @@ from tiniscript.link.messages import (
     BY_NUMBER,
     FIRST_ACTING,
     FIRST_EVENT,
+    STATE_RUNNING,
     STATUSES,
     Malformed,
     read,
@@ -34,6 +35,8 @@ from tiniscript.link.outcomes import (
     EndedEvent,
     Event,
     MissedEvent,
+    RestartedEvent,
+    StartedEvent,
     TextEvent,
 )
 from tiniscript.link.payloads import (
@@ -45,7 +48,7 @@ from tiniscript.link.payloads import (
     StoppedEvent,
 )
 from tiniscript.link.receiver import Receiver
-from tiniscript.link.requests import OK, Exchange, Reply, reply_of
+from tiniscript.link.requests import OK, Exchange, Reply, refused, reply_of
 from tiniscript.link.sealing import SEALED_ALONE, UNSEALED, Sealing
 from tiniscript.link.session_requests import Interrupted, PendingExchange
 from tiniscript.link.stop_sequence import StopSequence
@@ -286,7 +289,8 @@ class Session(Exchanges):
             reply = Reply(UNPROVEN)
         if isinstance(self._transmission, Window) and self._goes_on(reply, frame, now_ms):
             return
-        if frame.epoch != self._epoch:
+        is_other = frame.epoch != self._epoch
+        if is_other:
             self._epoch = frame.epoch
             if message.name != "HELLO":  # there was a stop: earlier requests are void
                 self._cancel_waiting(_STALE)
@@ -295,17 +299,22 @@ class Session(Exchanges):
         if message.name in UNSEALED and reply.status != OK:
             self._sealing.seal = None
         if reply.status == OK:
+            is_other = is_other and self._state.may_be_reset(reply.values)
             if message.name == "CLEAR":
                 self._state.clear()
             has_ended = self._state.learn(reply.values)
             self._events += self._state.moved(reply.values)
-            if has_ended and isinstance(reply.values, StatusReply):
-                self._events.append(EndedEvent(reply.values))
-            elif has_ended:
-                self._waiting.appendleft(PendingExchange(self._end(), DEAF_MS, is_own=True))
+            if has_ended and not is_other and isinstance(reply.values, StatusReply):
+                self._tell_end(reply.values)
+            elif has_ended or (is_other and self._handshake.is_open):
+                again = self._look_again(has_ended, is_other)
+                self._waiting.appendleft(PendingExchange(again, DEAF_MS, is_own=True))
             if self._pending and isinstance(reply.values, NextReply):
                 self._pending.done_bytes = reply.values.next
         self._advance(reply, now_ms)
+        if self._state.is_cut:
+            self._state.is_cut = False
+            self._events.append(RestartedEvent())
 
     def _goes_on(self, reply: Reply[SentReply], frame: Frame, now_ms: int) -> bool:
         """Take a reply to one of many DATA; return whether that was not the last one."""
@@ -318,12 +327,25 @@ class Session(Exchanges):
             next_offset = self._pending.done_bytes = reply.values.next
         return not self._transmission.take(frame, next_offset, now_ms)
 
-    def _end(self) -> Exchange[StatusReply]:
-        """Ask how a run has ended."""
+    def _look_again(self, has_ended: bool, is_other: bool) -> Exchange[StatusReply]:
+        """Ask who the robot is now that its epoch is an `is_other` one, and how a run has ended."""
+        run = self._state.run
+        if is_other:
+            hello = yield from self._handshake.hello()
+            if hello.status != OK:
+                return refused(hello)
         reply = yield from self._status()
-        if reply.status == OK:
-            self._events.append(EndedEvent(reply.values))
+        if reply.status == OK and has_ended and self._state.run == run:
+            self._tell_end(reply.values)
         return reply
+
+    def _tell_end(self, status: StatusReply) -> None:
+        """Tell how our run has ended: by another one, or as the robot's state says."""
+        self._state.end()
+        if status.state == STATE_RUNNING:
+            self._events.append(StartedEvent(status.run, status.program))
+        else:
+            self._events.append(EndedEvent(status))
 
     def _take_event(self, frame: Frame) -> None:
         message = BY_NUMBER.get(frame.number)

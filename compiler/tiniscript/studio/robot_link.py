@@ -165,7 +165,9 @@ class RobotLink:
             self._over = self._known(event.run)
         elif event.name in ("STOPPED", "ENDED"):
             self._over = self._begun
-        if event.name == "LOST" or (self._over is not None and self._over == self._run):
+        if event.name in ("LOST", "RESTARTED") or (
+            self._over is not None and self._over == self._run
+        ):
             self._run = None
 
     def _known(self, number: int) -> _Run:
@@ -228,7 +230,7 @@ class RobotLink:
             found["program"] = f"{event.program:08x}"
             # no line, and nobody else's
             found["is_program"] = self._known(event.run) == self._program_run
-        elif event.name not in ("DONE", "LOST"):
+        elif event.name not in ("DONE", "RESTARTED", "LOST"):
             return []  # who else uses the port is no news for a page
         return [found]
 

@@ -76,7 +76,7 @@ export class Recorder {
       if (event.is_program && event.program) this.#record(event.program, performance.now());
       else this.end('STOPPED');
     }
-    const said = { SHOW: `SHOW ${event.value}`, DONE: 'DONE', FAULT: `FAULT ${event.fault}`, STOPPED: 'STOPPED', LOST: 'LOST', MISSED: 'MISSED' }[event.event];
+    const said = { SHOW: `SHOW ${event.value}`, DONE: 'DONE', FAULT: `FAULT ${event.fault}`, STOPPED: 'STOPPED', RESTARTED: 'LOST', LOST: 'LOST', MISSED: 'MISSED' }[event.event];
     if (!said || this.#isOver) return;
     this.#began ??= performance.now();
     if (event.event !== 'SHOW') this.end(said);

@@ -345,6 +345,7 @@ export class RobotPanel {
     else if (event.event === 'DONE') this.#speech.say('say_done');
     else if (event.event === 'FAULT') this.#fault(event);
     else if (event.event === 'LOST') this.#speech.say('why_link_lost');
+    else if (event.event === 'RESTARTED') this.#speech.say('why_restarted');
     else if (event.event === 'STOPPED') {
       clearTimeout(this.#confirming);
       if (document.visibilityState !== 'hidden') this.#speech.say(this.#isBroken ? 'say_broken' : `stopped_${event.cause}`);

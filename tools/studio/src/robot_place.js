@@ -4,7 +4,7 @@ import { rangeAt } from './parts.js';
 
 /** @typedef {import('./robot_way.js').RobotEvent} RobotEvent */
 
-const ENDS = ['STARTED', 'DONE', 'FAULT', 'STOPPED', 'LOST'];
+const ENDS = ['STARTED', 'DONE', 'FAULT', 'STOPPED', 'RESTARTED', 'LOST'];
 
 export class RobotPlace {
   #page;

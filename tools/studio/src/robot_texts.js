@@ -143,6 +143,8 @@ export const ROBOT_TEXTS = {
     'Lo que se envía vuelve. ¿TX y RX están conectados entre sí, o el módulo de radio está en configuración?'],
   why_unproven: ['Who answers says that this robot has no owner, or does not seal; your key says otherwise. Nothing of it is believed, and nothing was done. Use the robot’s cable; stop it by its button.',
     'Quien responde dice que este robot no tiene dueño, o que no sella; tu llave dice lo contrario. No se le cree nada, y no se hizo nada. Usa el cable del robot; detenlo con su botón.'],
+  why_restarted: ['The robot was restarted, and that ended its program. Are its batteries weak, or was it switched off and on? Run the program again.',
+    'El robot se reinició, y eso terminó su programa. ¿Sus pilas están débiles, o se apagó y encendió? Ejecuta el programa otra vez.'],
   why_link_lost: ['The robot does not answer any more; its program ends by itself. Look at its batteries and the distance, and connect again.',
     'El robot ya no responde; su programa termina solo. Mira sus pilas y la distancia, y conecta otra vez.'],
   why_stopped_elsewhere: ['The robot was stopped meanwhile, and did not do this. Try again.',

@@ -36,12 +36,13 @@ void answer_begin(RequestReader* request) {
   port.hashes.resize(static_cast<size_t>(port.device_info.sensors + port.device_info.actuators));
   port.identity.id = 0x54696e69;
   port.identity.reset = Reset::kPower;
-  port.identity.nonce = 0x08070605;
   const uint8_t name[] = {'T', 'i', 'n', 'i'};
   port_rename(name, sizeof name);
   receiver = Receiver();
   link_half = Link();
-  link_half.begin(&receiver, request->u8());
+  const uint8_t epoch = request->u8();
+  port.identity.nonce = 0x080705fc + epoch;  // another one after a reset, as a board's
+  link_half.begin(&receiver, epoch);
   for (uint16_t& hash : port.hashes) hash = request->u16();
   const Bytes words = request->bytes();
   port.words.assign(words.data.get(), words.data.get() + words.length);

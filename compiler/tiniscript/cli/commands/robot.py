@@ -113,8 +113,8 @@ class _Stage:
         except KeyboardInterrupt:
             pass
         finally:
+            robot.switch_off()  # what it drives now counts, too
             if self.screen is not None and self.picture is not None:
-                robot.switch_off()
                 for event in robot.take_events():
                     self.picture.take(event)
                 self.screen.draw(self.picture, robot.now_ms)

@@ -67,19 +67,28 @@ class Classroom:
 
     def present(self) -> list[Present]:
         """Return the robots that the broker knows, those that have gone, too."""
-        found = self.broker.present(self.group)
+        from tiniscript.link.ports import PortError
+
+        try:
+            found = self.broker.present(self.group)
+        except PortError as why:
+            raise port_failure(f"mqtt://{self.place}", why) from None
         if not any(each.is_here for each in found):
             raise CommandError(3, "class_empty", group=self.group, host=str(self.place))
         return found
 
-    def targets(self, found: list[Present]) -> Namespace:
-        """Return the options with which a verb reaches these robots."""
+    def targets(self, found: list[Present], verb: str = "class") -> Namespace:
+        """Return the options with which a verb reaches these robots.
+
+        Only who has them drive has to attend to them.
+        """
         from tiniscript.link.broker import port_of
 
         ports = [port_of(*self.place, self.group, each.id) for each in found if each.is_here]
         own = Namespace(**{**WITHOUT, **vars(self.options)})
-        own.ports = ports
-        own.attend = self.broker.attend
+        own.ports, own.verb = ports, verb
+        if verb == "upload":
+            own.attend = self.broker.attend
         return own
 
 
@@ -100,7 +109,7 @@ def list_robots(room: Classroom) -> int:
 def upload(room: Classroom) -> int:
     from tiniscript.cli.commands import upload as verb
 
-    return verb.run(room.targets(room.present()), room.language)
+    return verb.run(room.targets(room.present(), "upload"), room.language)
 
 
 def stop(room: Classroom) -> int:
@@ -109,7 +118,7 @@ def stop(room: Classroom) -> int:
 
     for _ in range(STOPS):
         room.broker.stop(room.group)
-    return verb.run(room.targets(room.present()), room.language)
+    return verb.run(room.targets(room.present(), "stop"), room.language)
 
 
 def show(room: Classroom) -> int:

@@ -115,6 +115,8 @@ class EventPrinter:
             cause = cause_name(event.cause)
             said = text(f"stopped_{cause}", self.language)
             self.say(since_ms, "STOPPED", cause, said, cause=cause)
+        elif event.name == "RESTARTED":
+            self.say(since_ms, "RESTARTED", "", text("robot_restarted", self.language))
         elif event.name == "MISSED":
             said = text("missed", self.language).format(n=event.count)
             self.say(since_ms, "MISSED", str(event.count), said, count=event.count)
@@ -171,7 +173,7 @@ class Bookkeeping:
     def hides(self, event: Event) -> bool:
         from tiniscript.cli.robot.live_mark import MARK
 
-        if event.name in ("STARTED", "DONE", "FAULT", "STOPPED", "ENDED"):
+        if event.name in ("STARTED", "DONE", "FAULT", "STOPPED", "ENDED", "RESTARTED"):
             self.is_on = False
         elif event.name != "SHOW":
             return False

@@ -83,6 +83,9 @@ LINK_TEXTS: dict[str, tuple[str, str]] = {
                      "tsc: el puerto {port} lo tiene un tsc de otra versión, {theirs} (tsc {verb}). Termina ese comando y prueba otra vez. (tsc stop funciona.)"),
     "replaced": ("tsc: another command has started another program on the robot on {port}, which ended this one. To watch the new one:  tsc monitor",
                  "tsc: otro comando inició otro programa en el robot en {port}, y eso terminó este. Para ver el nuevo:  tsc monitor"),
+    "restarted": ("tsc: the robot on {port} was restarted, and that ended its program: it was switched off and on, or its batteries are weak, or its reset button was pressed. Why it started:  tsc info   Then run the program again.",
+                  "tsc: el robot en {port} se reinició, y eso terminó su programa: se apagó y encendió, o sus pilas están débiles, o se pulsó su botón de reinicio. Por qué arrancó:  tsc info   Después ejecuta el programa otra vez."),
+    "robot_restarted": ("The robot was restarted.", "El robot se reinició."),
     "stopped_elsewhere": ("tsc: another command has stopped the robot on {port} meanwhile, so this was not done. Try again.",
                           "tsc: otro comando detuvo mientras tanto el robot en {port}, así que esto no se hizo. Prueba otra vez."),
     # who answers
