@@ -176,6 +176,16 @@ def test_what_it_keeps_may_be_in_a_file(tmp_path: Path) -> None:
         assert json.loads(process("info", "--virtual", "--json").out)["name"] == "INTI"
 
 
+def test_what_it_drives_when_its_time_is_over_counts(tmp_path: Path) -> None:
+    memory = tmp_path / "kept.bin"
+    with robot("--memory", memory):
+        assert process("upload", "--virtual", "-e", "SB|F(30, 60)").code == 0
+    options = ("--memory", str(memory), "--button-at", "0.5", "--hurry", "max", "--for", "3")
+    done = process("robot", *options)
+    found = re.search(r"drove (\d+) cm in 3.0 s", done.err)
+    assert found and int(found[1]) > 50, done.err
+
+
 def test_it_ends_by_itself_and_chance_begins_with_its_seed(tmp_path: Path) -> None:
     """The button starts it at the same millisecond, so all is the same."""
     memory = tmp_path / "kept.bin"
