@@ -22,10 +22,10 @@ from tests.support.esp32_pty_robot import Esp32PtyRobot
 from tests.support.mosquitto import Mosquitto, missing
 from tests.support.pty_robot import on
 from tests.support.waiting import HANGS_S, until
-from tiniscript.cli.robot.classroom import Listener
+from tiniscript.cli.robot.classroom import Classroom, Listener
 from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.fleet import Member
-from tiniscript.link.broker import ROOT
+from tiniscript.link.broker import ROOT, Present
 from tiniscript.link.line import now_ms
 from tiniscript.link.payloads import ShowEvent
 
@@ -122,6 +122,39 @@ def test_a_driver_that_is_stopped_keeps_no_robot_driving(room: Class) -> None:
     for robot, began_ms in zip(room, begun_ms, strict=True):
         assert robot.stands_after_ms(began_ms) < 2000, "the tether is a second"
     command.process.kill()
+
+
+def test_who_only_looks_changes_nothing(room: Class) -> None:
+    """Also where the command stood still for longer than a driver may be silent."""
+    text = "SI|LOOP(FOREVER); F(0.3, 80); SHOW(5); END_LOOP"
+    assert tsc(room, "upload", "-e", text, "--detach")[0] == 0
+    command = Command("class", "show", *room.access, data=SECRET + b"\n")
+    command.until("SHOW 5")
+    command.process.send_signal(signal.SIGSTOP)
+    for robot in room:
+        until_ms = robot.robot_ms + 1200
+        robot.until(lambda r=robot, t=until_ms: r.robot_ms > t, "time has passed")  # type: ignore[misc]
+    command.process.send_signal(signal.SIGCONT)
+    for robot in room:
+        until_ms = robot.robot_ms + 2500
+        robot.until(lambda r=robot, t=until_ms: r.robot_ms > t, "it has heard that")  # type: ignore[misc]
+        shows = [line for line in robot.did if line.startswith("MOTORS")]
+        count = len(shows)
+        robot.until(lambda r=robot, n=count: len(r.did) > n + 3, "it drives on")  # type: ignore[misc]
+    command.process.kill()
+
+
+def test_only_who_has_robots_drive_has_to_attend_to_them() -> None:
+    room = SimpleNamespace(
+        place=("h", 1), group="c", options=SimpleNamespace(verb="class"),
+        broker=SimpleNamespace(attend=print),
+    )  # fmt: skip
+    here = [Present("00000001", "A", True), Present("00000002", "B", False)]
+    for verb, attends in (("class", False), ("stop", False), ("upload", True)):
+        found = Classroom.targets(cast(Classroom, room), here, verb)
+        assert found.verb == verb  # of an upload, who no longer reads stops the robots
+        assert hasattr(found, "attend") == attends
+        assert found.ports == ["mqtt://h:1/c/00000001"]
 
 
 def test_values_are_collected(room: Class, tmp_path: Path) -> None:

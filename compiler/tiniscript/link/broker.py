@@ -31,7 +31,7 @@ PLAIN_PORT, TLS_PORT = 1883, 8883
 ROOT = "tiniscript"
 CONNECT_S = 5.0
 KEEP_ALIVE_S = 4
-LIST_S = 2.0  # until a broker has sent what it retains
+LIST_S = 10.0  # until a broker has sent what it retains
 LEAVE_S = 0.5
 PATIENCE_S = 4.0  # a robot frees its place when a client that was killed has been silent for 3 s
 QUIET_S = 0.3  # of silence, and that was all
@@ -131,7 +131,8 @@ class Broker:
         self.driver_s: float | None = None  # when the driver was heard last; None: nobody attends
         self._news = Condition()
         self._here: dict[str, dict[str, Present]] = {}
-        self._told_s = 0.0
+        self._told_s = 0.0  # when a robot was told, or a request was answered
+        self._acknowledged: set[int] = set()
         self._ports: dict[tuple[str, str], BrokerPort] = {}
         self._reason: str | None = None  # of a refusal; empty: let in
         self._client = _Client(
@@ -139,6 +140,7 @@ class Broker:
         )
         self._client.connect_timeout = CONNECT_S
         self._client.on_connect = self._on_connect
+        self._client.on_subscribe = self._on_subscribe
         self._client.on_disconnect = self._on_disconnect
         self._client.on_message = self._on_message
         self._connect(host, port, access)
@@ -154,18 +156,33 @@ class Broker:
         return port
 
     def present(self, group: str) -> list[Present]:
-        """Return the robots of a class that the broker knows, in the order of their names."""
+        """Return the robots of a class that the broker knows, in the order of their names.
+
+        A broker does one request after the other. So the answer to a second one, which asks for
+        nothing, comes behind what it retains; silence counts from then on. Raises PortError.
+        """
         assert is_class(group)
         end_s = monotonic() + LIST_S
         with self._news:
             self._here[group] = {}
-            self._told_s = monotonic()
-            self._client.subscribe(f"{ROOT}/{group}/+")
-            while monotonic() < min(end_s, self._told_s + QUIET_S) and not self.gone:
+            asked = {
+                self._subscribed(f"{ROOT}/{group}/{rest}") for rest in ("+", f"+/out/{self.peer}")
+            }
+            while monotonic() < end_s and not self.gone:
+                if asked <= self._acknowledged and monotonic() > self._told_s + QUIET_S:
+                    break
                 self._news.wait(READ_S)
             found = list(self._here.pop(group).values())
-        self._client.unsubscribe(f"{ROOT}/{group}/+")
+            is_whole = asked <= self._acknowledged
+            self._acknowledged -= asked
+        if not is_whole:
+            raise PortError(ports.UNREACHABLE, self.gone or "no answer of a broker")
+        self._client.unsubscribe([f"{ROOT}/{group}/+", f"{ROOT}/{group}/+/out/{self.peer}"])
         return sorted(found, key=lambda each: (each.name.casefold(), each.id))
+
+    def _subscribed(self, topic: str) -> int:
+        """Ask for the messages of a topic; return the number of the request."""
+        return self._client.subscribe(topic)[1] or 0
 
     def stop(self, group: str) -> None:
         """Stop every robot of a class: one message for all. Nothing confirms it."""
@@ -227,6 +244,12 @@ class Broker:
         code = rest[3]
         with self._news:
             self._reason = str(code) if code.is_failure else ""
+            self._news.notify_all()
+
+    def _on_subscribe(self, _: Any, __: Any, number: int, *rest: Any) -> None:
+        with self._news:
+            self._acknowledged.add(number)
+            self._told_s = monotonic()
             self._news.notify_all()
 
     def _on_disconnect(self, *_: Any) -> None:
