@@ -6,6 +6,7 @@ import json
 import os
 import signal
 import subprocess
+from argparse import Namespace
 from collections import deque
 from collections.abc import Iterator
 
@@ -16,7 +17,7 @@ from tests.support.command import FOREVER, TSC, Done, Tsc, ended, process, runni
 from tests.support.robot_fleet import RobotFleet
 from tests.support.waiting import HANGS_S
 from tiniscript import robots
-from tiniscript.cli.robot.fleet import Member, Result
+from tiniscript.cli.robot.fleet import Fleet, Member, Result
 from tiniscript.cli.robot.targets import Target
 from tiniscript.cli.terminal.fleet_table import FleetTable
 from tiniscript.link import known_ports, ports
@@ -292,3 +293,31 @@ def _rest(terminal: int) -> bytes:
         return os.read(terminal, 65536)
     except OSError:  # Linux: the other end is closed
         return b""
+
+
+@pytest.mark.parametrize("when", ["_print", "_print_lines", "_news"])
+def test_ctrl_c_stops_all_whatever_is_printed_meanwhile(
+    when: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    options = Namespace(verb="upload", json=False, detach=False)
+    at = [Target(port, "", True, True) for port in "AB"]
+    fleet = Fleet(at, options, robots.load("tinibot"), "en")
+    fleet.members[0].result = Result(True, "fine")
+    pressed: list[str] = []
+
+    def press(*_: object) -> None:
+        if not pressed:
+            pressed.append(when)
+            raise KeyboardInterrupt
+
+    def interrupt() -> None:
+        fleet.is_interrupted = True
+        fleet.members[1].result = Result(False, "stopped")
+
+    if when == "_news":
+        monkeypatch.setattr(fleet._news, "wait", press)
+    else:
+        monkeypatch.setattr(fleet, when, press)
+    monkeypatch.setattr(fleet, "interrupt", interrupt)
+    fleet.watch(None)
+    assert fleet.is_interrupted and fleet.exit_code() == 2

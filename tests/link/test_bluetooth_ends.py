@@ -239,3 +239,31 @@ def test_an_hm10_gets_no_more_than_its_uart_passes_on(
     ))  # fmt: skip
     port.write(bytes(65))
     assert (written, slept) == (sizes, waits)
+
+
+def test_a_scan_that_fails_after_its_start_is_stopped(monkeypatch: pytest.MonkeyPatch) -> None:
+    from tiniscript.link import bluetooth_search
+
+    did: list[str] = []
+
+    async def start() -> None:
+        did.append("start")
+
+    async def stop() -> None:
+        did.append("stop")
+
+    async def fails() -> None:
+        raise OSError("the adapter is gone")
+
+    scanner = SimpleNamespace(start=start, stop=stop)
+    monkeypatch.setattr(bluetooth_search, "BleakScanner", lambda _: scanner)
+    monkeypatch.setattr(bluetooth_search, "_connected", fails)
+
+    async def search() -> None:
+        for _ in range(2):  # the second one begins anew
+            with pytest.raises(OSError, match="gone"):
+                async with bluetooth_search._Scan():
+                    pass
+
+    asyncio.run(search())
+    assert did == ["start", "stop"] * 2

@@ -65,18 +65,26 @@ class _Scan:
                 scanner = BleakScanner(self._notice)
                 await scanner.start()
                 self._scanner = scanner
-                for device in await _connected():
-                    self._keep(Seen(device, device.name or "", True))
+                try:
+                    for device in await _connected():
+                        self._keep(Seen(device, device.name or "", True))
+                except BaseException:
+                    await self._end()
+                    raise
             self._searches += 1
         return self
 
     async def __aexit__(self, *_: object) -> None:
         async with self._turn:
             self._searches -= 1
-            if self._searches == 0 and self._scanner is not None:
-                scanner, self._scanner = self._scanner, None
-                with suppress(Exception):  # the adapter is gone: the scan is over
-                    await asyncio.wait_for(scanner.stop(), LEAVE_S)
+            if self._searches == 0:
+                await self._end()
+
+    async def _end(self) -> None:
+        scanner, self._scanner = self._scanner, None
+        if scanner is not None:
+            with suppress(Exception):  # the adapter is gone: the scan is over
+                await asyncio.wait_for(scanner.stop(), LEAVE_S)
 
     def _notice(self, device: BLEDevice, said: AdvertisementData) -> None:
         services = {each.lower() for each in said.service_uuids}

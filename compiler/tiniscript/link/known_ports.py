@@ -6,6 +6,7 @@ They are in the user's cache: if it is lost, nothing else is lost. Opens no port
 from __future__ import annotations
 
 import json
+from contextlib import suppress
 from pathlib import Path
 from typing import NamedTuple
 
@@ -15,7 +16,7 @@ from tiniscript.link.port_names import is_address, same_for_all
 from tiniscript.printable import printable
 
 FILE_BYTES = 1_000_000
-KEPT = 100  # ports; the oldest go first
+KEPT = 2000  # ports; the oldest go first
 
 
 class Known(NamedTuple):
@@ -38,20 +39,19 @@ def known() -> Known:
 
 def remember(port: str, name: str, is_used: bool = True) -> None:
     """Keep the name of the robot on a port. If the cache cannot be written, it is not kept."""
-    before = known()
-    first = next(iter(before.names.items()), None)
-    if first == (port, name) and (before.last == port or not is_used):
-        return
-    others = {each: name for each, name in before.names.items() if not _is_same(each, port)}
-    names = {port: name, **others}
-    last = port if is_used else before.last
     path = _path()
-    try:
+    with suppress(OSError, ValueError):
         path.parent.mkdir(parents=True, exist_ok=True)
-        fields = {"last": last, "ports": list(names.items())[:KEPT]}
-        files.replace(path, json.dumps(fields).encode())
-    except (OSError, ValueError):
-        pass
+        with files.alone(path):  # other commands do the same
+            before = known()
+            first = next(iter(before.names.items()), None)
+            if first == (port, name) and (before.last == port or not is_used):
+                return
+            others = {each: name for each, name in before.names.items() if not _is_same(each, port)}
+            names = {port: name, **others}
+            last = port if is_used else before.last
+            fields = {"last": last, "ports": list(names.items())[:KEPT]}
+            files.replace(path, json.dumps(fields).encode())
 
 
 def _is_same(port: str, other: str) -> bool:

@@ -11,6 +11,7 @@ import sys
 from argparse import Namespace
 from collections import deque
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from threading import Event, Thread
 from time import monotonic
 from typing import TYPE_CHECKING, NamedTuple
@@ -134,10 +135,11 @@ def together(options: Namespace, robot: Robot, language: str, work: Work) -> int
                 fleet.watch(table)
         else:
             fleet.watch(None)
+    except KeyboardInterrupt:  # while something is printed, too
+        fleet.stop()
     except OSError:  # nobody reads, or can read, the output
         if options.verb == "upload" and not options.detach:
-            fleet.interrupt()
-            fleet.wait(CONFIRM_S)
+            fleet.stop()
         raise
     finally:
         fleet.remember()
@@ -177,24 +179,33 @@ class Fleet:
                 else:
                     self._news.wait(LOOK_S)
                     self._news.clear()
+                self._tell(untold, table)
             except KeyboardInterrupt:
                 if self.is_interrupted:
                     return
                 self.interrupt()
                 end_s = monotonic() + CONFIRM_S + 1
-            over = [member for member in untold if member.result is not None]
-            untold = [member for member in untold if member not in over]
-            for member in over:
-                if member.bug is not None:
-                    raise member.bug
-                if table is None:
-                    self._print(member)
-            self._print_lines(table)
         if table is not None:
             there = [member for member in self.in_order() if not member.is_absent]
             there.sort(key=lambda member: member.mark == "bad")  # failures are printed last
             table.end(member.row for member in there)
         self._print_sum()
+
+    def _tell(self, untold: list[Member], table: FleetTable | None) -> None:
+        """Print the results that are new, and take those robots out of `untold`."""
+        for member in [each for each in untold if each.result is not None]:
+            if member.bug is not None:
+                raise member.bug
+            if table is None:
+                self._print(member)
+            untold.remove(member)
+        self._print_lines(table)
+
+    def stop(self) -> None:
+        """Stop every robot, and wait until they have confirmed; a second Ctrl-C ends the wait."""
+        self.interrupt()
+        with suppress(KeyboardInterrupt):
+            self.wait(CONFIRM_S)
 
     def wait(self, limit_s: float) -> None:
         """Wait until all robots have a result."""

@@ -1,0 +1,29 @@
+"""The ports that are remembered: none is lost to a command at once, or for want of room."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+from tiniscript.link import known_ports
+
+COMMANDS, PORTS = 6, 8
+REMEMBERS = f"""
+import sys
+from tiniscript.link import known_ports
+for number in range({PORTS}):
+    known_ports.remember(f"socket://10.0.{{sys.argv[1]}}.{{number}}:1", "R", is_used=False)
+"""
+
+
+def test_commands_at_once_lose_no_port() -> None:
+    running = [subprocess.Popen([sys.executable, "-c", REMEMBERS, str(k)]) for k in range(COMMANDS)]
+    assert [each.wait() for each in running] == [0] * COMMANDS
+    assert len(known_ports.known().names) == COMMANDS * PORTS
+
+
+def test_a_school_has_more_than_a_hundred_robots() -> None:
+    for number in range(150):
+        known_ports.remember(f"socket://10.0.0.{number}:1", f"R{number}", is_used=False)
+    names = known_ports.known().names
+    assert len(names) == 150 and next(iter(names.values())) == "R149"
