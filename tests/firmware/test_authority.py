@@ -32,6 +32,7 @@ from tiniscript.link.messages import (
     STATUSES,
 )
 from tiniscript.link.session import Session
+from tiniscript.link.siphash import siphash
 
 __all__ = ("robots_of_both_kinds",)  # a fixture
 pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
@@ -211,6 +212,27 @@ def test_a_right_key_begins_the_count_of_wrong_ones_anew() -> None:
             assert table.outcome(thief, thief.start()) in ("WRONG_KEY", "NOT_OWNER")
         owner = table.session(keys, nonce=20 + count)
         assert table.outcome(owner, owner.trim()) == "OK"
+
+
+def test_no_challenge_is_a_tag() -> None:
+    """Both are hashes with one key: whoever chooses a session's nonce gets no tag by asking."""
+    table, keys = Owned(), Keys()
+    owner = table.claimed(keys)
+    assert owner.robot is not None
+    number, nonce = BY_NAME["AUTHENTICATE"].number, owner.robot.values.nonce.to_bytes(4, "little")
+    [key] = keys.of_robot(owner.robot.id)
+    challenges = []
+    for _ in range(2):
+        owner._seq = (owner._seq + 1) & 0xFF
+        asks = Frame(number, owner._seq, owner._epoch, bytes([key.which]))
+        answer = decoded(table.robot.wait(20, b"\0" + encoded(asks)).strip(b"\0"))
+        assert answer is not None and answer.payload[0] == 0
+        challenges.append(answer.payload[3:])
+    first, second = challenges
+    times = range(table.robot.now_ms - 100, table.robot.now_ms + 100)
+    texts = [first + nonce + (each & 0xFFFF).to_bytes(2, "little") for each in times]
+    assert [siphash(key.key, text + b"C") for text in texts].count(second) == 1
+    assert second not in [siphash(key.key, text) for text in texts]
 
 
 def test_the_same_seed_after_a_reset_is_another_challenge_or_needs_the_key() -> None:

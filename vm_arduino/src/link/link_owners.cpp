@@ -12,9 +12,12 @@ namespace tiniscript {
 namespace {
 
 constexpr uint8_t kIsFine = static_cast<uint8_t>(Answer::kOk);
-constexpr uint8_t kChallengeText = kChallengeBytes + sizeof(uint32_t) + sizeof(uint16_t);
 constexpr uint8_t kTagText = kChallengeBytes + sizeof(uint32_t) + 2;
+// Longer by a label than that of a tag: no challenge is the tag of another one.
+constexpr uint8_t kChallengeText = kChallengeBytes + sizeof(uint32_t) + sizeof(uint16_t) + 1;
+constexpr uint8_t kChallengeLabel = 'C';
 
+static_assert(kChallengeText > kTagText, "the hash has the length in it");
 static_assert(kTagBytes == kHashBytes && kChallengeBytes == kHashBytes, "both are hashes");
 
 uint8_t number_of(Answer answer) { return static_cast<uint8_t>(answer); }
@@ -97,12 +100,13 @@ tini_noinline uint8_t Link::authenticate(const uint8_t* payload, uint8_t length)
   const Answer found = port_key(which, key);
   if (found != Answer::kOk) return number_of(found);
   if (!is_key(key)) return refuse(Answer::kWrongKey, kKeyTries);
-  uint8_t text[kTagText];
+  uint8_t text[kChallengeText];
   copy_bytes(challenge_, text, kChallengeBytes);
   if (length == kAuthenticateTagAt) {
     if (may_seal()) lapse();  // a new seal replaces the one before
     copy_bytes(&port_identity().nonce, text + kChallengeBytes, sizeof(uint32_t));
     copy_bytes(&now_ms_, text + kChallengeBytes + sizeof(uint32_t), sizeof now_ms_);
+    text[kChallengeText - 1] = kChallengeLabel;
     siphash(key, text, kChallengeText, challenge_);
     rights_ |= kHasChallenge;
     return kIsFine;
