@@ -369,3 +369,52 @@ def test_a_package_without_sources_says_how_to_get_them(tmp_path: Path) -> None:
 ])  # fmt: skip
 def test_how_far_it_is(said: str, seen: Seen | None) -> None:
     assert building.seen(said, 10) == seen
+
+
+# -- a robot with an ESP32: PlatformIO builds and writes it
+
+
+ESP32 = """
+words = sys.argv[1:]
+print("Compiling .pio/build/esp32dev/src/main.cpp.o")
+if "upload" in words:
+    assert words[words.index("--upload-port") + 1] == os.environ["ITS_PORT"]
+    print("Writing at 0x00010000... (7 %)\\nWriting at 0x00020000... (100 %)")
+    sys.exit(int(os.environ["ITS_CODE"]))
+assert os.path.exists("partitions.csv") and "esp32dev" in words
+"""
+
+
+def written(clone: Path, tmp_path: Path, *words: str, code: int = 0) -> tuple[int, str, str]:
+    main_end, its_end = os.openpty()
+    port = os.ttyname(its_end)
+    variables = pretending(tmp_path, ESP32)
+    variables = {"PYTHONPATH": variables["PYTHONPATH"] + os.pathsep + str(clone),
+                 "ITS_PORT": port, "ITS_CODE": str(code)}  # fmt: skip
+    try:
+        done = tsc(clone, "--robot", "tinibot32", "--port", port, *words, **variables)
+    finally:
+        os.close(main_end)
+        os.close(its_end)
+    return done.code, done.out, done.err
+
+
+def test_an_esp32_is_built_and_written_in_one_command(clone: Path, tmp_path: Path) -> None:
+    code, out, err = written(clone, tmp_path)
+    assert "tinibot32 on the esp32dev: written" in out, err
+    assert code == 3 and "no robot answers" in err, "there is none on this port"
+
+
+@pytest.mark.parametrize(("words", "said"), [
+    ([], "BOOT button"), (["--lang", "es"], "botón BOOT"),
+])  # fmt: skip
+def test_an_esp32_that_is_not_written_is_told(
+    words: list[str], said: str, clone: Path, tmp_path: Path
+) -> None:
+    code, out, err = written(clone, tmp_path, *words, code=1)
+    assert (code, out) == (2, "") and said in err
+
+
+def test_an_esp32_is_only_built_where_that_is_asked(clone: Path, tmp_path: Path) -> None:
+    code, out, _ = written(clone, tmp_path, "--build", code=1)
+    assert code == 0 and "its firmware builds" in out

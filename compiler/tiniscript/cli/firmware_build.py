@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 from tiniscript import files, robots
@@ -86,7 +87,36 @@ def _ready(robot: Robot, sources: Sources | None) -> Ready | None:
     return None
 
 
+def upload(robot: Robot, port: str | None, language: str) -> None:
+    """Build and write the firmware of a robot with an ESP32. Raises CommandError."""
+    from tiniscript.flash import building, ready
+
+    sources = building.sources()
+    if sources is None:
+        raise CommandError(2, "flash_no_sources")
+    values = {"robot": robot.name, "board": robot.board.chip}
+    try:
+        with _shown(robot, language) as look:
+            building.upload(sources, robot, port, look)
+    except building.CannotBuild as why:
+        raise _failure(why, {**values, "port": shown(port or "")}) from None
+    except OSError as why:
+        folder = shown(str(ready.cache()))
+        raise CommandError(
+            2, "flash_no_room", why=str(why.strerror or why), folder=folder
+        ) from None
+
+
 def _built(robot: Robot, sources: Sources, language: str) -> bytes:
+    from tiniscript.flash import building
+
+    with _shown(robot, language) as look:
+        return building.build(sources, robot, look)
+
+
+@contextmanager
+def _shown(robot: Robot, language: str) -> Iterator[Callable[[Seen], None]]:
+    """Show the progress of a build."""
     from tiniscript.flash import building
 
     values = {"robot": robot.name, "board": robot.board.chip}
@@ -106,7 +136,7 @@ def _built(robot: Robot, sources: Sources, language: str) -> bytes:
         progress.draw(seen.percent)
 
     try:
-        return building.build(sources, robot, look)
+        yield look
     finally:
         progress.end()
 

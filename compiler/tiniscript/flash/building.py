@@ -27,11 +27,11 @@ from tiniscript.robots.profile import Robot
 PACKAGE = Path(__file__).resolve().parent.parent
 # A wheel brings the sources; in a clone they are beside `compiler`.
 PLACES = (PACKAGE / "flash" / "vm_arduino", PACKAGE.parent.parent / "vm_arduino")
-SETTINGS = "platformio.ini"
+SETTINGS, PARTITIONS = "platformio.ini", "partitions.csv"
 HEADER = "src/boards/kits/own.h"
 MADE_BY = "tsc firmware, from a robot profile."
 
-FETCHING, COMPILING = "fetching", "compiling"
+FETCHING, COMPILING, WRITING = "fetching", "compiling", "writing"
 CORE_FILES = 26  # of Arduino's core, about
 LOG_BYTES = 1 << 20  # of what PlatformIO says; the last ones
 KILLED_AFTER_S = 5.0  # that PlatformIO has to end by itself
@@ -44,6 +44,7 @@ _UNWANTED = re.compile(
 _COMPILING = re.compile(r"^Compiling ", re.M)
 _INSTALLING = re.compile(r"^.*Manager: Installing (\S+)", re.M)
 _ONLINE = re.compile(r"Installing|HTTP|Internet|[Cc]onnection")  # what needs the internet
+_WRITING = re.compile(r"Writing at 0x[0-9a-f]+.*?(\d+)(?:\.\d+)? ?%")  # esptool
 _PERCENT = re.compile(r"(\d+)%")
 _TOO_LARGE = re.compile(r"size \((\d+) bytes\) is greater than maximum allowed \((\d+) bytes")
 
@@ -61,6 +62,7 @@ class CannotBuild(Exception):
 
     NO_SOURCES, NO_PLATFORMIO = "no_sources", "no_platformio"
     UNREACHABLE, FAILED, TOO_LARGE = "unreachable", "build_failed", "too_large"
+    NOT_WRITTEN = "not_written"
 
     def __init__(self, why: str, said: str = "", log: str = "") -> None:
         super().__init__(said or why)
@@ -86,7 +88,7 @@ def sources() -> Sources | None:
     """Return the sources, or None where this package has none."""
     for place in PLACES:
         if (place / SETTINGS).is_file():
-            found = [place / SETTINGS, *sorted((place / "src").rglob("*"))]
+            found = [place / SETTINGS, place / PARTITIONS, *sorted((place / "src").rglob("*"))]
             names = {path.relative_to(place).as_posix(): path for path in found if path.is_file()}
             names.pop(HEADER, None)
             return Sources({name: path.read_bytes() for name, path in names.items()})
@@ -134,6 +136,35 @@ def build(made_from: Sources, robot: Robot, look: Callable[[Seen], None]) -> byt
             why = CannotBuild.FAILED if has_begun else CannotBuild.UNREACHABLE
             raise CannotBuild(why, _reason(log) or f"exit code {code}", log)
         return made.read_bytes()
+
+
+def upload(
+    made_from: Sources, robot: Robot, port: str | None, look: Callable[[Seen], None]
+) -> None:
+    """Build the firmware of a robot with an ESP32, and write it to the board on a port, if any.
+
+    PlatformIO brings the program that writes. Raises CannotBuild and OSError.
+    """
+    command = platformio()
+    if command is None:
+        raise CannotBuild(CannotBuild.NO_PLATFORMIO)
+    with tempfile.TemporaryDirectory(prefix="tiniscript-", ignore_cleanup_errors=True) as folder:
+        for name, data in {**made_from.files, HEADER: header(robot).encode()}.items():
+            path = Path(folder) / name
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_bytes(data)
+        words = [*command, "run", "-d", folder, "-e", robot.board.chip]
+        code, log = _run(words, folder, look, made_from)
+        if code != 0:
+            has_begun = _COMPILING.search(log) or not _ONLINE.search(log)
+            why = CannotBuild.FAILED if has_begun else CannotBuild.UNREACHABLE
+            raise CannotBuild(why, _reason(log) or f"exit code {code}", log)
+        if port is None:
+            return
+        words += ["-t", "upload", "--upload-port", port]
+        code, log = _run(words, folder, look, made_from)
+        if code != 0:
+            raise CannotBuild(CannotBuild.NOT_WRITTEN, _reason(log) or f"exit code {code}", log)
 
 
 def _run(
@@ -190,6 +221,9 @@ def _end(running: subprocess.Popen[bytes]) -> None:
 
 def seen(said: str, files: int) -> Seen | None:
     """Return the progress, from its whole output; `files` is the total number of files."""
+    written = _WRITING.findall(said)
+    if written:
+        return Seen(WRITING, min(100, int(written[-1])))
     compiled = len(_COMPILING.findall(said))
     if compiled:
         return Seen(COMPILING, min(99, 100 * compiled // files))

@@ -14,6 +14,7 @@ from tiniscript.cli.robot.connect import Connection, port_failure
 from tiniscript.cli.terminal.progress import Progress
 from tiniscript.cli.terminal.waiting import waiting
 from tiniscript.cli.texts.common import text
+from tiniscript.robots.ports import ESP32S
 
 if TYPE_CHECKING:
     from tiniscript.flash.avrdude import Ended, Seen
@@ -34,6 +35,8 @@ def run(options: Namespace, language: str) -> int:
     if options.list:
         firmware_build.print_list(language)
         return 0
+    if options.board is None and inputs.robot(options, language).board.chip in ESP32S:
+        return _esp32(options, language)
     robot, bootloaders = _chosen(options, language)
     if options.build:
         print(firmware_build.row(robot, firmware_build.firmware(robot, language), language))
@@ -49,6 +52,23 @@ def run(options: Namespace, language: str) -> int:
     return 0
 
 
+def _esp32(options: Namespace, language: str) -> int:
+    """Build and write the firmware of a robot with an ESP32, by PlatformIO alone."""
+    from tiniscript.cli import firmware_build
+
+    robot = inputs.robot(options, language).speaking(language)
+    values = {"robot": robot.name, "board": robot.board.chip}
+    if options.build:
+        firmware_build.upload(robot, None, language)
+        print(text("flash_built", language).format(**values))
+        return 0
+    port = _port(options)
+    firmware_build.upload(robot, port, language)
+    print(text("flash_written", language).format(**values), flush=True)
+    _introduce(port, robot, robot.board.chip, language)
+    return 0
+
+
 def _chosen(options: Namespace, language: str) -> tuple[Robot, tuple[Bootloader, ...]]:
     """Return the robot of the options, on its board, and the bootloaders that it may have."""
     from tiniscript.cli import firmware_build
@@ -57,12 +77,7 @@ def _chosen(options: Namespace, language: str) -> tuple[Robot, tuple[Bootloader,
     if options.board is not None and options.board not in BOARDS:
         raise bad_choice("--board", list(BOARDS), options.board, language)
     robot = inputs.robot(options, language)
-    board, bootloaders = BOARDS.get(options.board or robot.board.chip, ("", ()))
-    if not board:
-        raise CommandError(
-            2, "flash_by_hand", chip=robot.board.chip, robot=robot.name,
-            known=", ".join(firmware_build.BOARDS),
-        )  # fmt: skip
+    board, bootloaders = BOARDS[options.board or robot.board.chip]
     there = firmware_build.on_boards(options.robot, language, [board])
     if not there:
         fits = ", ".join(

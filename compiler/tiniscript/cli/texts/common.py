@@ -101,8 +101,6 @@ TEXTS: dict[str, tuple[str, str]] = {
                 "tsc: no existe el código {found}. La lista:  tsc explain"),
     "profile_refused": ("tsc: the robot profile {file} cannot be used:\n{reasons}",
                         "tsc: el perfil de robot {file} no se puede usar:\n{reasons}"),
-    "flash_by_hand": ("tsc: tsc firmware writes to the boards {known}, not to {chip} yet. From a copy of the sources:  tsc board {robot} -o vm_arduino/src/boards/kits/own.h   Then:  pio run -d vm_arduino -e {chip} -t upload",
-                      "tsc: tsc firmware escribe en las placas {known}, todavía no en {chip}. Desde una copia de las fuentes:  tsc board {robot} -o vm_arduino/src/boards/kits/own.h   Después:  pio run -d vm_arduino -e {chip} -t upload"),
     "no_firmware": ("tsc: there is no firmware for the board {chip} yet. There is for: {known}.",
                     "tsc: todavía no hay firmware para la placa {chip}. Hay para: {known}."),
     "board": ("{file}: how {robot} is wired, for the board {chip}. {now}",

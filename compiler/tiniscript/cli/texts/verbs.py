@@ -106,7 +106,7 @@ VERBS: dict[str, Verb] = {
          "Escribe el firmware de un robot en su placa, por el cable USB, y comprueba que quedó bien. Mientras tanto, ten desconectado el HC-05, o lo que esté en los pines 0 y 1. Si el firmware todavía no está listo, primero se compila, con PlatformIO; la primera vez hace falta internet."),
         ("--port P [--robot NAME|FILE] [--board BOARD]\n--build [--robot NAME|FILE] [--board BOARD]\n--list",
          "--port P [--robot NOMBRE|ARCHIVO] [--board PLACA]\n--build [--robot NOMBRE|ARCHIVO] [--board PLACA]\n--list"),
-        ("It needs avrdude.", "Necesita avrdude."),
+        ("It needs avrdude; for an ESP32 PlatformIO alone.", "Necesita avrdude; para un ESP32, solo PlatformIO."),
     ),
     "ports": Verb(
         ROBOTS, ("ports", "ports"),
