@@ -293,6 +293,8 @@ def test_what_argparse_says_is_said_in_plain_words(
     [
         (["wiring", "Grabber"], "--robot grabber"), (["upload", "x.ts", "--prot", "C"], "--port"),
         (["info", "--al"], "--all"), (["nmae", "ANA"], "name"),
+        (["flash"], "firmware"), (["serial"], "monitor"), (["simulate", "x"], "robot"),
+        (["repl"], "live"), (["version"], "--version"),
     ],
 )  # fmt: skip
 def test_what_was_meant_stands_before_what_to_try(

@@ -11,12 +11,18 @@ from tiniscript.cli.texts.verbs import VERBS
 from tiniscript.words import nearest
 
 PROGRAMS = (".ts", ".ts.txt", ".bin")
+MEANT = {  # what the same is called elsewhere
+    "flash": "firmware", "burn": "firmware", "serial": "monitor", "repl": "live", "shell": "live",
+    "simulate": "robot", "simulator": "robot", "sim": "robot", "version": "--version",
+}  # fmt: skip
 
 
 def refuse(name: str) -> NoReturn:
     """Raise CommandError where a word stands in place of a verb."""
     refuse_program(name)
-    raise CommandError(2, "no_verb", found=name, near=nearest(name, VERBS) or "")
+    raise CommandError(
+        2, "no_verb", found=name, near=MEANT.get(name.lower()) or nearest(name, VERBS) or ""
+    )
 
 
 def refuse_program(name: str) -> None:
