@@ -289,3 +289,21 @@ def test_without_wasmtime_the_next_step_is_said(
     with pytest.raises(tiniscript.UsageError) as found:
         tiniscript.run("W(1)", machine="cpp", language=language)
     assert install_advice.command("virtual") in str(found.value)
+
+
+def test_a_program_may_be_a_file(tmp_path: Path) -> None:
+    path = tmp_path / "drive.ts"
+    path.write_text("\ufeffSI|SHOW(7)\r\n", encoding="utf-8")
+    image = tmp_path / "drive.bin"
+    image.write_bytes(tiniscript.compile("SI|SHOW(7)").image)
+    assert str(tiniscript.run(path)) == str(tiniscript.run(image)) == str(
+        tiniscript.run("SI|SHOW(7)")
+    )  # fmt: skip
+    for name in (str(path), str(image)):
+        for use in (tiniscript.run, tiniscript.compile):
+            with pytest.raises(tiniscript.UsageError) as raised:
+                use(name)
+            assert raised.value.reason == "file_name" and "drive" in str(raised.value)
+    with pytest.raises(tiniscript.UsageError) as raised:
+        tiniscript.run(tmp_path / "none.ts")
+    assert raised.value.reason == "unreadable"

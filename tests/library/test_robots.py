@@ -460,3 +460,15 @@ def test_a_port_that_is_not_there_is_an_error() -> None:
     with pytest.raises(tiniscript.RobotError) as raised:
         tiniscript.connect("/dev/no-such-port" if os.name == "posix" else "COM199")
     assert raised.value.reason in ("port_missing", "port_missing_but")
+
+
+def test_a_port_that_is_not_there_has_one_reason(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its sentence says which ones there are; its reason is the one that the documents name."""
+    from tiniscript.link import ports
+
+    for listed in ([], [ports.Found("/dev/other", "")]):
+        monkeypatch.setattr(ports, "listed", lambda listed=listed: listed)
+        with pytest.raises(tiniscript.RobotError) as raised:
+            tiniscript.connect("/dev/none-here")
+        assert raised.value.reason == "port_missing"
+        assert ("/dev/other" in str(raised.value)) == bool(listed)

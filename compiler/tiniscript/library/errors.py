@@ -13,6 +13,13 @@ if TYPE_CHECKING:
     from tiniscript.diagnostics.rendering import Message
 
 
+_SAME = {
+    "port_missing_but": "port_missing",
+    "port_not_found_but": "port_not_found",
+    "port_forbidden_linux": "port_forbidden",
+}
+
+
 class TiniScriptError(Exception):
     """The base of all exceptions of the library."""
 
@@ -23,7 +30,8 @@ class TiniScriptError(Exception):
         """`said` replaces the sentence that `reason` has in `texts`."""
         from tiniscript.library.texts import sentence
 
-        self.reason = reason
+        self.key = reason  # of its sentence, which may say more than the reason
+        self.reason = _SAME.get(reason, reason)
         self.values = dict(values or {})
         super().__init__(sentence(reason, language, self.values) if said is None else said)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tiniscript.diagnostics.rendering import Message
@@ -18,6 +19,8 @@ if TYPE_CHECKING:
 Language = str  # "en" or "es"
 SHOWN = 200  # characters of a name or a value in a sentence
 REMARK = 60  # characters of a line in a listing
+MOST_BYTES = 1_000_000  # of a file
+FILES = (".ts", ".ts.txt", ".bin")
 
 
 class Program:
@@ -82,6 +85,7 @@ def compile(
     """
     if not isinstance(text, str):
         raise UsageError("bad_program", _checked(language), {"found": type(text).__name__})
+    _refuse_file_name(text, language)
     profile = profile_of(robot, language)
     return _program(text, profile, name, optimize, language)
 
@@ -110,8 +114,28 @@ def show(
 # -- for the other files of the library -----------------------------------------------------------
 
 
+def _refuse_file_name(text: str, language: Language) -> None:
+    """Raise UsageError where a text is the name of a program's file."""
+    if text.lower().endswith(FILES) and "\n" not in text and os.path.exists(text):  # noqa: PTH110
+        values = {"path": printable(text, SHOWN)}
+        raise UsageError("file_name", _checked(language), values)
+
+
+def _contents(path: os.PathLike[str], language: Language) -> str | bytes:
+    """Return the text of a program's file, or the bytes of an image. Raises UsageError."""
+    from tiniscript.files import contents
+
+    try:
+        data = contents(Path(path), MOST_BYTES)
+        return data if Path(path).suffix.lower() == ".bin" else data.decode("utf-8-sig")
+    except (OSError, ValueError) as why:
+        said = why.strerror if isinstance(why, OSError) and why.strerror else str(why)
+        values = {"path": printable(str(path), 200), "why": printable(said, 200)}
+        raise UsageError("unreadable", _checked(language), values) from None
+
+
 def program_of(
-    program: Program | str | bytes, robot: str | os.PathLike[str] | Robot | None,
+    program: Program | str | bytes | os.PathLike[str], robot: str | os.PathLike[str] | Robot | None,
     language: Language,
 ) -> Program:  # fmt: skip
     """Return a program for a robot; by default for the program's own robot or the default robot.
@@ -120,6 +144,8 @@ def program_of(
     """
     if isinstance(program, Program) and robot is None:
         return program
+    if isinstance(program, os.PathLike):
+        program = _contents(program, language)
     from tiniscript import robots
 
     if robot is None or isinstance(robot, str | os.PathLike):
@@ -127,6 +153,7 @@ def program_of(
     else:
         profile = robot
     if isinstance(program, str):
+        _refuse_file_name(program, language)
         return _program(program, profile, "", True, language)
     if isinstance(program, Program):
         parsed = _read(program.image, profile, language)

@@ -73,7 +73,7 @@ class Trace(NamedTuple):
 
 
 def run(
-    program: Program | str | bytes,
+    program: Program | str | bytes | os.PathLike[str],
     robot: str | os.PathLike[str] | None = None,
     *,
     sensors: Readings | None = None,
@@ -83,7 +83,8 @@ def run(
     machine: Literal["python", "cpp"] = "python",
     language: Language = "en",
 ) -> Trace:
-    """Run a program (from `compile`, a text, or an image) with a simulated clock, without waiting.
+    """Run a program (from `compile`, a text, an image, or the Path of a file) with a simulated
+    clock, without waiting.
 
     `sensors` has readings by sensor name: each READ takes the next one, and the last one repeats;
     the default is 0 or False. `max_time` is in simulated seconds, `max_steps` in instructions while

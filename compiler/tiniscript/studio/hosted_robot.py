@@ -72,7 +72,7 @@ class HostedRobot:
         try:
             line = opening.connection_to(self.port, VERB, self._open, language=self._language)
         except RobotError as failure:
-            self._end(failure.reason, str(failure))
+            self._end(failure.key, str(failure))
             return
         server = None
         try:

@@ -296,13 +296,13 @@ def opened_connection(
     try:
         return opening.connection_to(port, verb, open_line, asked_baud)
     except RobotError as error:
-        raise CommandError(3, error.reason, **error.values) from None
+        raise CommandError(3, error.key, **error.values) from None
 
 
 def port_failure(port: str, failure: PortError) -> CommandError:
     """Return the sentence for a port that does not open."""
     error = opening.port_error(port, failure)
-    return CommandError(3, error.reason, **error.values)
+    return CommandError(3, error.key, **error.values)
 
 
 def robot_of_kit(kit: int) -> str | None:
