@@ -18,6 +18,7 @@ from pathlib import Path
 import pytest
 
 from tests.firmware.test_uno_robot import FORWARD, NAMES, OFF, states
+from tests.firmware.test_uno_text import OBSTACLE
 from tests.machines.uno import needed
 from tests.support.platformio import firmware, shared
 from tools.bench.link import built
@@ -131,6 +132,21 @@ def test_a_typed_stop_in_every_state(uno_at: tuple[Uno, int], name: str) -> None
     uno.send(b"F(1,80)\n")
     uno.run_ms(200)
     assert states(uno) == OFF and "// It was stopped." in said(uno, before), "it is latched"
+
+
+def test_a_line_in_a_block_belongs_to_the_program(uno_at: tuple[Uno, int]) -> None:
+    """The paper's listing, typed line by line while another program runs: nothing is latched."""
+    uno, _ = uno_at
+    uno.sonar("trigger", "echo", 40)
+    drive(uno)
+    for line in OBSTACLE[:-1]:
+        uno.send(line.encode() + b"\r\n")
+        uno.run_ms(60)
+    assert states(uno) == OFF
+    before = len(uno.sent)
+    uno.send(OBSTACLE[-1].encode() + b"\r\n")
+    uno.run_ms(60)
+    assert states(uno) == FORWARD and said(uno, before) == "// OK\r\n"
 
 
 def random_prefix(draw: random.Random) -> bytes:
