@@ -96,6 +96,38 @@ def test_every_sentence_in_its_language(is_spanish: bool) -> None:
         robot.wait(4000)
 
 
+@pytest.mark.parametrize("end", ["\n", "\r", "\r\n"])
+@pytest.mark.parametrize("pause_ms", [0, 1500])
+@pytest.mark.parametrize(
+    "lines",
+    [
+        ("F(0.2,50", ")"), ("F(0.2", ",50)"), ("F(", "(0.1", "+ 0.1), 50)"), ("F(0.1", "*2,50)"),
+        ("F(0.3", "-0.1,50)"), ("SI|LOOP(1)", ";F(0.2,50)", "; // end", "END_LOOP"),
+        ("F(0.2, // seconds", "50)"), ("F(0.2,", "50", ")"),
+    ],
+)  # fmt: skip
+def test_a_line_that_is_open_goes_on_with_any_sign(
+    lines: tuple[str, ...], pause_ms: int, end: str
+) -> None:
+    """Digits and signs begin frames, too, but not where a line waits for its end."""
+    robot = switched_on()
+    typed(robot, "W(0)\n", 100)
+    *before, last = lines
+    for line in before:
+        assert set(typed(robot, line + end, pause_ms)) <= {
+            "// Waiting for )", "// Waiting for END_LOOP",
+        }  # fmt: skip
+    assert typed(robot, last + end, 400)[-2:] == ["// OK", "// DONE"]
+    assert happened(robot)[1:] == LINE
+
+
+def test_backspace_edits_what_is_typed() -> None:
+    robot = switched_on()
+    assert typed(robot, "SO\b\bSI|G\bFO\x7f(0.2,50)\n", 400) == ["// OK", "// DONE"]
+    assert happened(robot) == LINE
+    assert typed(robot, "F(0.2,50)\b\n", 400) == ["// 10: Sign not known"]
+
+
 @pytest.mark.parametrize("is_spanish", [False, True])
 def test_who_makes_many_mistakes_is_told_that_once(is_spanish: bool) -> None:
     """And is answered again after a pause."""

@@ -330,3 +330,29 @@ def test_an_if_makes_surely_read_what_all_of_its_arms_do() -> None:
     assert readings_of(both.replace("ELSE;", "")) == ["READ_2"] * 3
     assert readings_of("IF(TRUE);DISTANCE;ELSE;S;ENDIF;X=DISTANCE") == ["READ_2"] * 2
     assert readings_of("IF(TRUE);S;ELSE;DISTANCE;ENDIF;X=DISTANCE") == ["READ_2"] * 2
+
+
+# -- backspace ----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("key", ["\b", "\x7f"])
+@pytest.mark.parametrize(
+    ("typed", "meant"),
+    [
+        ("G<F(2,80)", "F(2,80)"), ("FOO<<(2,80)", "F(2,80)"), ("X=1;XY<=2", "X=1;X=2"),
+        ("LOPP<<OP(2);END_LOOP", "LOOP(2);END_LOOP"), ("SX<;S", "S;S"),
+        ("F(2,89<0)", None), ("S;<", None), ("S <", None), ("<S", None),
+        ("S // note<", "S"), (" " * 260 + "SS<", None),
+    ],
+)  # fmt: skip
+def test_backspace_takes_back_what_is_not_done(key: str, typed: str, meant: str | None) -> None:
+    """`<` is the key, and only letters of the word that is typed are not done."""
+    answer = one(typed.replace("<", key))
+    if meant is None:
+        assert answer.problem == "CHARACTER"
+    else:
+        assert answer == one(meant) and answer.is_program
+
+
+def test_columns_behind_a_backspace_are_those_that_are_seen() -> None:
+    assert one("FO\b(2, 80); GO").column == one("F(2, 80); GO").column == 11

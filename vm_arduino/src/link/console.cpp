@@ -61,7 +61,6 @@ bool Console::drop() {
 tini_noinline Console::Act Console::turn(Receiver* receiver, bool is_heard) {
   uint8_t byte;
   is_due_ = false;
-  receiver->keep_line(is_open_ && is_patient());
   for (uint8_t left = kBytesATurn; left != 0; left--) {
     // A stop does not wait until the answers before it are said.
     has_mark_ = receiver->has_mark();

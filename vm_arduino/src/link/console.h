@@ -37,8 +37,9 @@ class Console {
   // Whether a typed stop would belong to the program that is read.
   bool is_in_block() const { return is_open_ && is_waiting_ && awaited_ != ')'; }
 
-  // Whether a line or a program has begun.
+  // Whether a line or a program has begun, and whether it may take its time.
   bool is_open() const { return is_open_; }
+  bool keeps_line() { return is_open_ && is_patient(); }
 
   // The open line and its program are lost: somebody else uses the memory. Returns whether further
   // lines of that program may come; they are ignored.

@@ -11,6 +11,7 @@ namespace tiniscript {
 tini_noinline void Link::talk() {
   Console* const console = near(&console_);
   const Console::Act act = console->turn(receiver_, is_listened_to());
+  receiver_->keep_line(console->keeps_line());
   if (act == Console::Act::kStop) halt(Cause::kText);
   if (act == Console::Act::kEnd) port_end();
   if (act == Console::Act::kStart) console->say(start_text(*console));

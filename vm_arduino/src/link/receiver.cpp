@@ -85,10 +85,11 @@ bool Receiver::is_marked(Place before) {
 }
 
 // Determines the kind of an item from its first byte, as far as possible. A frame after text has a
-// zero before it, so while text waits what follows it is text.
+// zero before it, so while text waits, or a line of it is open, what follows it is text.
 void Receiver::begin(uint8_t byte) {
   if (byte == 0x7f) return skip();
-  const bool goes_on = place_ == Place::kAfterText && (first_ != behind_ || item_[filled()] == Item::kText);
+  const bool goes_on = place_ == Place::kAfterText &&
+                       (is_kept_ || first_ != behind_ || item_[filled()] == Item::kText);
   if (is_letter(byte) || (goes_on && is_printable(byte))) {
     place_ = Place::kText;
     return pass_on(byte);

@@ -178,6 +178,11 @@ void Reader::take(uint8_t letter) {
       add_letter(capital);
       return;
     }
+    if ((letter == '\b' || letter == 0x7f) && column_ != 255) {
+      column_ = static_cast<uint8_t>(column_ - 2);  // this byte, and the letter that it takes back
+      if (--letters_ == 0) place_ = kBetween;
+      return;
+    }
     end_word();
   } else if (place >= kWhole && place <= kPlaces) {
     if (value < 10) {
