@@ -142,7 +142,8 @@ def test_a_package_without_sources_takes_the_file_in_the_language_of_the_robot(
 
 def source_bytes(clone: Path) -> dict[str, bytes]:
     project = clone.parent / "vm_arduino"
-    files = [project / "platformio.ini", *sorted((project / "src").rglob("*"))]
+    found = [project / name for name in (building.SETTINGS, building.PARTITIONS)]
+    files = [*found, *sorted((project / "src").rglob("*"))]
     return {
         path.relative_to(project).as_posix(): path.read_bytes() for path in files if path.is_file()
     }
