@@ -42,7 +42,7 @@ BREAKS = {
     "a frame that is cut keeps its stop": (
         RECEIVER, "may_stop_[filled()] = place_ == Place::kHeld;", "may_stop_[filled()] = false;"),
     "a frame that is too long keeps it": (
-        RECEIVER, "before == Place::kHeld && place_ == Place::kSkip", "false"),
+        RECEIVER, "before != Place::kHeld || place_ != Place::kSkip", "true"),
     "a mark without a place": (
         RECEIVER, "  if (place_ != Place::kAfterText) return false;\n  marks_", "  marks_"),
 }  # fmt: skip
