@@ -13,7 +13,7 @@ from tests.support.command import TSC, process
 from tests.support.pty_robot import PtyRobot
 from tests.support.waiting import HANGS_S
 from tiniscript import robots
-from tiniscript.cli.robot.live_state import Known, Value
+from tiniscript.cli.robot.live_state import Known, Value, open_ends
 
 pty = pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
 pyte = pytest.importorskip("pyte", reason="pyte, a terminal for tests, is not installed")
@@ -93,9 +93,47 @@ def test_a_person_at_the_prompt(pty_robot: PtyRobot) -> None:
     os.write(ours, b"SHOW(SPEED)\n")
     see("SHOW 55")
     see("tini> ", 5)
+    os.write(ours, b"LOOP(2)\n")
+    see("....> ")
+    os.write(ours, b"\x03")  # the block is dropped
+    see("tini> ", 6)
+    os.write(ours, b"LOOP(2)\nSHOW(SPEED + 1)\nEND_LOOP\n")
+    see("SHOW 56", 2)
+    see("tini> ", 7)
     os.write(ours, b"\x04")
     assert command.wait(HANGS_S) == 0
     os.close(ours)
+
+
+@needs_robot
+def test_a_block_goes_on_over_lines(pty_robot: PtyRobot) -> None:
+    """Up to its end, or to the first line with a mistake."""
+    lines = "DEF TELL\n  SHOW(1)\nEND_DEF\nLOOP(2)\n\n  TELL // twice\nEND_LOOP\nSHOW(3)\n"
+    done = process("live", "-", "--port", pty_robot.port, data=lines.encode())
+    assert (done.code, done.err) == (0, "")
+    assert done.out == "TELL: known from now on.\nSHOW 1\nSHOW 1\nSHOW 3\n"
+    lines = "LOOP(2)\nF(2 80)\nEND_LOOP\nSHOW(4)\n"
+    done = process("live", "-", "--port", pty_robot.port, data=lines.encode())
+    assert (done.code, done.out) == (1, "")
+    assert done.err.startswith("line 2:") and "comma" in done.err and "END_LOOP" not in done.err
+    done = process("live", "-", "--port", pty_robot.port, data=b"IF(TRUE)\nSHOW(5)\n")
+    assert (done.code, done.out) == (1, "")
+    assert "ENDIF" in done.err
+
+
+@pytest.mark.parametrize(("text", "ends"), [
+    ("F(1, 80)", ""),
+    ("LOOP(2)", "END_LOOP"),
+    ("si|if(TRUE); F(1, 50)\nELSE", "ENDIF"),
+    ("DEF A; LOOP(2)\nWHILE(TRUE)", "END_WHILE; END_LOOP; END_DEF"),
+    ("DEF A; LOOP(2)\nENDLOOP", "END_DEF"),
+    ("LOOP(2); F(1, 50); END_LOOP", ""),
+    ("LOOP(2); ENDIF", ""),
+    ("END_LOOP; LOOP(2)", ""),
+    ("// LOOP(2)", ""),
+])  # fmt: skip
+def test_which_ends_are_missing(text: str, ends: str) -> None:
+    assert open_ends(text) == ends
 
 
 def _take_terminal() -> None:

@@ -323,9 +323,24 @@ def test_without_a_robot_the_virtual_one_is_named() -> None:
     done = process("upload", "-e", "SI|S")
     assert done.code == 3
     assert "Without a robot:  --virtual" in done.err
-    done = process("monitor", "--virtual")
-    assert done.code == 3
-    assert "tsc robot" in done.err
+
+
+def test_every_verb_that_asks_a_robot_knows_the_virtual_one() -> None:
+    """The one of `tsc robot`; without one they say how to have one."""
+    verbs = ("ping", "info", "trim", "monitor", "doctor", "selftest")
+    for verb in verbs:
+        done = process(verb, "--virtual")
+        assert done.code == 3, verb
+        assert "Start one in another terminal:  tsc robot" in done.err, verb
+        assert "--virtual" in process(verb, "--help").out, verb
+    with robot() as running:
+        for verb in ("ping", "doctor"):
+            done = process(verb, "--virtual")
+            assert done.code == 0, done
+            assert running.port in done.out, done.out
+        done = process("doctor", "--virtual", "--port", running.port)
+        assert done.code == 2
+        assert "--virtual" in done.err
 
 
 @pytest.mark.parametrize(

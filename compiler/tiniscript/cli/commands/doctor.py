@@ -55,6 +55,7 @@ def run(options: Namespace, language: str) -> int:
 
 
 def _question(options: Namespace, language: str, told: dict[str, str]) -> Question:
+    from tiniscript.cli.robot.simulator import running_address
     from tiniscript.doctor.diagnosis import Question
     from tiniscript.doctor.examination import Expected
     from tiniscript.link import known_ports, port_names
@@ -63,6 +64,10 @@ def _question(options: Namespace, language: str, told: dict[str, str]) -> Questi
     robot = inputs.robot(options, language)
     watch_s = whole_number("--watch", options.watch, 0, 0, LONGEST_WATCH_S, language)
     port: str | None = options.port
+    if options.virtual:
+        if port is not None:
+            raise CommandError(2, "virtual_and_port")
+        port = running_address(options)
     if port is not None and (not port.strip() or not port.isprintable()):
         raise CommandError(2, "no_such_port", found=shown(port) or "''")
     last = known_ports.known().last

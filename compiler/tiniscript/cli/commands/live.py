@@ -6,7 +6,7 @@ import contextlib
 import re
 import sys
 from argparse import Namespace
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator
 from typing import TYPE_CHECKING
 
 from tiniscript.cli import inputs, outputs
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from tiniscript.robots.profile import Robot
 
 PROMPT = "tini> "
+MORE = "....> "  # a block is open
 LEAVE, HELP_ME = "leave", "help"
 WISHES = {
     "EXIT": LEAVE,
@@ -132,6 +133,23 @@ class Repl:
                 print(text("live_known", self.language).format(names=names))
         return code
 
+    def whole(self, line: str, more: Callable[[], str | None]) -> str:
+        """Return a line with those that its blocks go on over, up to the first one with a mistake.
+
+        `more` returns the next line, or None if there is none.
+        """
+        from tiniscript.cli.robot.live_state import open_ends
+
+        while ends := open_ends(line):
+            closed = f"{line}\n{ends}"
+            if not self.known.line(closed, 0).compiled.is_right:
+                return closed
+            following = more()
+            if following is None:
+                return line
+            line = f"{line}\n{following}"
+        return line
+
     def _run(self, found: Line, is_last: bool) -> int:
         from tiniscript.codegen import source_map
         from tiniscript.library.compiling import kit_of
@@ -151,15 +169,14 @@ class Repl:
             if simulator is not None:
                 simulator.unwatch()
 
-    def all_of(self, lines: object) -> int:
+    def all_of(self, file: Iterable[str]) -> int:
         """Run lines from a file until one fails."""
-        from typing import TextIO, cast
-
-        for line in cast("TextIO", lines):
+        lines = (line.rstrip("\r\n") for line in file)
+        for line in lines:
             if line.strip():
                 if self._says_time_over():
                     return 0
-                code = self.do(line.rstrip("\r\n"))
+                code = self.do(self.whole(line, lambda: next(lines, None)))
                 if code or self.connection.is_time_over:
                     return code
         return 0
@@ -188,7 +205,7 @@ class Repl:
             while True:
                 self._tell_meanwhile()
                 try:
-                    line = input(PROMPT)
+                    line = self.whole(input(PROMPT), lambda: input(MORE))
                 except EOFError:
                     print()
                     return 0

@@ -21,6 +21,7 @@ from tiniscript.source import Source, Span
 from tiniscript.syntax import ast
 from tiniscript.syntax.lexer import WORD, scan
 from tiniscript.syntax.parser import parse
+from tiniscript.words import ALIASES, BLOCK_ENDS
 
 _HEADER = re.compile(r"[ \t]*(SI|SB|PING)[ \t]*\|", re.IGNORECASE | re.ASCII)
 _UNUSED = (codes.UNUSED_VARIABLE, codes.UNUSED_DEF)
@@ -55,6 +56,19 @@ def header(text: str) -> str:
     """Return the start of a line: SI, SB or PING; the default is SI."""
     found = _HEADER.match(text)
     return found[1].upper() if found else "SI"
+
+
+def open_ends(text: str) -> str:
+    """Return the ends that are missing of the blocks of a text, `END_LOOP; END_DEF`; the text may
+    go on there. Nothing where none is open, or an end is one of no block."""
+    ends: list[str] = []
+    for token in scan(text).tokens:
+        word = ALIASES.get(token.text, token.text) if token.kind is WORD else ""
+        if word in BLOCK_ENDS:
+            ends.append(BLOCK_ENDS[word])
+        elif word in BLOCK_ENDS.values() and (not ends or ends.pop() != word):
+            return ""
+    return "; ".join(reversed(ends))
 
 
 class Known:

@@ -133,8 +133,8 @@ VERBS: dict[str, Verb] = {
     "live": Verb(
         ROBOTS, ('live "F(2, 80)"', 'live "F(2, 80)"'),
         ("run one line now; without a line: a prompt", "ejecuta una línea ahora; sin ella, las pide"),
-        ("Runs one line on the robot now: `tsc live \"F(2, 80)\"`. Without a line there is a prompt. Variables and DEFs are kept until you leave: the DEFs as text, and the values that a line has set once it is done. The program that the robot holds stays what it is. Ctrl-C stops the robot, Ctrl-D leaves.",
-         "Ejecuta una línea en el robot ahora: `tsc live \"F(2, 80)\"`. Sin una línea, tsc las pide una por una. Las variables y los DEF se conservan hasta que sales: los DEF como texto, y los valores que una línea dejó al terminar. El programa que tiene el robot queda como está. Ctrl-C detiene el robot, Ctrl-D sale."),
+        ("Runs one line on the robot now: `tsc live \"F(2, 80)\"`. Without a line there is a prompt, at which a block goes on over lines until its end. Variables and DEFs are kept until you leave: the DEFs as text, and the values that a line has set once it is done. The program that the robot holds stays what it is. Ctrl-C stops the robot, Ctrl-D leaves.",
+         "Ejecuta una línea en el robot ahora: `tsc live \"F(2, 80)\"`. Sin una línea, tsc las pide una por una; un bloque sigue en varias líneas hasta su final. Las variables y los DEF se conservan hasta que sales: los DEF como texto, y los valores que una línea dejó al terminar. El programa que tiene el robot queda como está. Ctrl-C detiene el robot, Ctrl-D sale."),
     ),
     "stop": Verb(
         ROBOTS, ("stop", "stop"), ("stop the robot now", "detiene el robot ahora"),
