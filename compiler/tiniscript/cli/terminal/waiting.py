@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import partial
 from typing import TYPE_CHECKING
 
 from tiniscript.cli.inputs import shown
@@ -22,7 +23,10 @@ class Silence:
     def __init__(self, said: str) -> None:
         self._timer: Timer | None = None
         if sys.stderr.isatty():
-            self._timer = Timer(MOMENT_S, lambda: print(said, file=sys.stderr, flush=True))
+            import threading
+
+            say = partial(print, said, file=sys.stderr, flush=True)
+            self._timer = threading.Timer(MOMENT_S, say)
             self._timer.daemon = True
             self._timer.start()
 
