@@ -53,7 +53,7 @@ def pytest_sessionstart() -> None:
 def pytest_runtest_setup(item: pytest.Item) -> None:
     is_root = hasattr(os, "geteuid") and os.geteuid() == 0
     if item.get_closest_marker("root") and not is_root:
-        pytest.skip("only root can be another user")
+        pytest.skip("only root can be another user, or lay a port over another one")
 
 
 def pytest_sessionfinish(session: pytest.Session) -> None:

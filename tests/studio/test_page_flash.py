@@ -21,6 +21,8 @@ from tiniscript.studio import serving
 if TYPE_CHECKING:
     from playwright.sync_api import Playwright
 
+pytestmark = pytest.mark.root
+
 
 def test_a_new_board_becomes_a_robot(
     playwright: Playwright, tmp_path: Path, tmp_path_factory: pytest.TempPathFactory

@@ -18,6 +18,8 @@ from tiniscript import robots
 if TYPE_CHECKING:
     from playwright.sync_api import BrowserContext, Page, Playwright
 
+pytestmark = pytest.mark.root
+
 
 @pytest.fixture(scope="module")
 def robot() -> Iterator[PtyRobot]:
