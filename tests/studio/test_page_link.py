@@ -268,7 +268,8 @@ def test_the_token_is_not_in_the_address(pages: Pages, server: serving.Server) -
 def test_run_with_a_mistake_stops_what_runs(page: Page, robot: PtyRobot) -> None:
     drives(page, robot)
     write(page, "F(2, 80")
-    page.click("#link_upload")
+    with page.expect_request(lambda asked: '"do":"stop"' in (asked.post_data or "")):
+        page.click("#link_upload")
     robot.until(lambda: not robot.moves, "it stands")
     said(page, "The robot was stopped. First repair the program.")
 
