@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 
 READY_S = 20  # until the robot is at the broker
 LOOK_S = 0.5
+NOT_BEGUN = ("OFF", "RESTS")  # states of the robot's WiFi
 _PEM = r"-----BEGIN CERTIFICATE-----.+?-----END CERTIFICATE-----"
 
 
@@ -152,11 +153,11 @@ def _class_command(options: Namespace) -> str:
 
 
 def _state(told: WifiReply) -> str:
-    """Return SEARCHING for a robot that has not begun, too."""
+    """Return SEARCHING for a robot that has not begun, or whose WiFi rests, too."""
     from tiniscript.link.wifi import STATES
 
     state = STATES[told.state] if told.state < len(STATES) else "OFF"
-    return "SEARCHING" if state == "OFF" else state
+    return "SEARCHING" if state in NOT_BEGUN else state
 
 
 def _told(connection: Connection) -> WifiReply:
