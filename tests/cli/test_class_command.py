@@ -138,9 +138,7 @@ def test_who_only_looks_changes_nothing(room: Class) -> None:
     for robot in room:
         until_ms = robot.robot_ms + 2500
         robot.until(lambda r=robot, t=until_ms: r.robot_ms > t, "it has heard that")  # type: ignore[misc]
-        shows = [line for line in robot.did if line.startswith("MOTORS")]
-        count = len(shows)
-        robot.until(lambda r=robot, n=count: len(r.did) > n + 3, "it drives on")  # type: ignore[misc]
+        assert robot.moves, robot.did
     command.process.kill()
 
 
