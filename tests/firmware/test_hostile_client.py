@@ -15,7 +15,7 @@ import pytest
 from tests.firmware.test_host_firmware import KIT, switched_on
 from tests.machines.host_firmware import missing
 from tiniscript.bytecode.image import HEADER_BYTES, pack
-from tiniscript.link.frames import Frame, decoded, encoded
+from tiniscript.link.frames import Frame, begins_text, decoded, encoded
 from tiniscript.link.messages import (
     BY_NAME,
     BY_NUMBER,
@@ -69,6 +69,8 @@ class Client:
         self.seq = (self.seq + 1) % 256
         self.replies.clear()
         sent = self.epoch if epoch is None else epoch
+        while begins_text(encoded(Frame(number, self.seq, sent, payload))):
+            self.seq = (self.seq + 1) % 256
         self.put(encoded(Frame(number, self.seq, sent, payload)))
         [reply] = [each for each in self.replies if each.seq == self.seq]
         assert reply.number == number and reply.is_reply
