@@ -44,7 +44,7 @@ def environments() -> list[str]:
     """
     config = config_of(PROJECT)
     return [name for name in config.envs() if not name.startswith(NEW_NANO)
-            and config.get(f"env:{name}", "platform") == PLATFORM]  # fmt: skip
+            and config.get(f"env:{name}", "platform").split()[0] == PLATFORM]  # fmt: skip
 
 
 def measured(name: str, project: Path = PROJECT) -> Sketch:
