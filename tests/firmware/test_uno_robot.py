@@ -30,7 +30,7 @@ FORWARD = OFF | {"left": "pwm", "right": "pwm", "left forward": "high", "right f
 AWAY = "SI|F(70, 80)"
 CABLE = 4  # a cause in docs/link.md
 LIVE_CYCLES = 1600  # from the last byte of a frame to the pins: 100 us; most take 90
-LATE_CYCLES = 1800  # one in a hundred times: the work for a millisecond has just begun
+LATE_CYCLES = 1920  # one in a hundred times: 120 us, the work for a millisecond has just begun
 
 
 @pytest.fixture(scope="session")

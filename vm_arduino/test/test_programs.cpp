@@ -11,7 +11,7 @@ using namespace tiniscript;
 
 namespace {
 
-constexpr uint16_t kBudget = 1000;
+constexpr uint8_t kBudget = 250;
 constexpr uint32_t kMostTicks = 100000;
 
 std::string ending(const Machine& machine) {
@@ -34,7 +34,7 @@ std::string trace_of(const std::vector<uint8_t>& code, const cases::ProgramCase&
   machine.start(code.data(), static_cast<uint16_t>(code.size() - kEndBytes), readings, sensors,
                 program.seed, 0);
   for (uint32_t k = 0; k < kMostTicks; k++) {
-    const Status status = machine.tick(robot.now_ms, kBudget);
+    const Status status = machine.tick(static_cast<uint32_t>(robot.now_ms), kBudget);
     if (status == Status::kDone || status == Status::kFault) break;
     if (status == Status::kRunning) continue;
     if (machine.wake_ms() > program.max_ms) {

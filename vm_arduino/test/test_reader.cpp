@@ -85,7 +85,10 @@ TEST_CASE("a problem has a column and a text") {
   CHECK(reading.put("F(2, 800); S\n") == Text::kProblem);
   CHECK(reading.reader.problem() == Problem::kRange);
   CHECK(reading.reader.column() == 6);
-  CHECK(unpacked(text_of(Problem::kRange)) == "Too small or too large");
+  CHECK(reading.reader.value() == 800000);
+  CHECK(reading.reader.limit(0) == 0);
+  CHECK(reading.reader.limit(4) == 100000);
+  CHECK(unpacked(text_of(Problem::kRange)) == " to ");
   CHECK(unpacked(text_of(Problem::kChecksum)) == "Line damaged. Send it again");
   CHECK(unpacked(text_of(Remark::kOk)) == "OK");
   CHECK(unpacked(text_of(Remark::kHelp)) == "");
