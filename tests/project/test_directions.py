@@ -23,6 +23,7 @@ TEXT = {"source", "diagnostics", *SHARED}
 UPSTREAM: dict[str, set[str]] = {
     "source": set(),
     "files": set(),
+    "children": set(),
     "printable": set(),
     "fixed_point": set(),
     "kit": {"fixed_point"},
@@ -39,7 +40,7 @@ UPSTREAM: dict[str, set[str]] = {
     "text": {*TEXT, "bytecode", "syntax", "semantics", "codegen", "robots"},
     "sketch": {*TEXT, "syntax", "semantics", "robots"},  # of the syntax its comments
     "wiring": {"fixed_point", "kit", "robots"},
-    "flash": {"files", "robots"},
+    "flash": {"files", "children", "robots"},
     "link": {"files", "printable", "bytecode"},
     "sharing": {"files", "bytecode", "link"},
     "keys": {"files", "printable", "link"},

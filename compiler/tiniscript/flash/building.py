@@ -11,15 +11,15 @@ import hashlib
 import os
 import re
 import shutil
-import signal
-import subprocess
 import sys
 import tempfile
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from importlib.util import find_spec
 from pathlib import Path
 from typing import NamedTuple
 
+from tiniscript import children
 from tiniscript.flash.ready import is_whole
 from tiniscript.robots import firmware
 from tiniscript.robots.profile import Robot
@@ -33,8 +33,6 @@ MADE_BY = "tsc firmware, from a robot profile."
 
 FETCHING, COMPILING, WRITING = "fetching", "compiling", "writing"
 CORE_FILES = 26  # of Arduino's core, about
-LOG_BYTES = 1 << 20  # of what PlatformIO says; the last ones
-KILLED_AFTER_S = 5.0  # that PlatformIO has to end by itself
 
 # The user's PlatformIO settings that would change the build or its folder.
 _UNWANTED = re.compile(
@@ -111,31 +109,52 @@ def platformio() -> list[str] | None:
     return None
 
 
+class _Project:
+    """A folder with the sources of a firmware and the header of its robot."""
+
+    def __init__(self, made_from: Sources, robot: Robot, folder: Path) -> None:
+        command = platformio()
+        if command is None:
+            raise CannotBuild(CannotBuild.NO_PLATFORMIO)
+        self.folder = folder
+        self.command = [*command, "run", "-d", str(folder), "-e", robot.board.chip]
+        self.made = folder / ".pio" / "build" / robot.board.chip / "firmware.hex"
+        self.files = sum(name.endswith((".cpp", ".S")) for name in made_from.files) + CORE_FILES
+        for name, data in {**made_from.files, HEADER: header(robot).encode()}.items():
+            (folder / name).parent.mkdir(parents=True, exist_ok=True)
+            (folder / name).write_bytes(data)
+
+    def run(self, look: Callable[[Seen], None], *words: str) -> tuple[int, str]:
+        """Run PlatformIO; return its exit code, and what it has said.
+
+        It runs in the folder: Python finds modules where it begins, and not in a pupil's.
+        """
+
+        def look_at(said: str) -> None:
+            if found := seen(said, self.files):
+                look(found)
+
+        return children.run([*self.command, *words], self.folder, look_at, _environment())
+
+    def build(self, look: Callable[[Seen], None], is_hex: bool) -> None:
+        code, log = self.run(look)
+        if too_large := _TOO_LARGE.search(log):
+            raise CannotBuild(CannotBuild.TOO_LARGE, "{} > {}".format(*too_large.groups()), log)
+        if code != 0 or (is_hex and not is_whole(self.made)):
+            has_begun = _COMPILING.search(log) or not _ONLINE.search(log)
+            why = CannotBuild.FAILED if has_begun else CannotBuild.UNREACHABLE
+            raise CannotBuild(why, children.reason(log) or f"exit code {code}", log)
+
+
 def build(made_from: Sources, robot: Robot, look: Callable[[Seen], None]) -> bytes:
     """Return the firmware of a robot for its board, an Intel HEX file. `look` is called often.
 
     Raises CannotBuild, and OSError where there is no room to build.
     """
-    command = platformio()
-    if command is None:
-        raise CannotBuild(CannotBuild.NO_PLATFORMIO)
-    with tempfile.TemporaryDirectory(prefix="tiniscript-", ignore_cleanup_errors=True) as folder:
-        project = Path(folder)
-        for name, data in {**made_from.files, HEADER: header(robot).encode()}.items():
-            (project / name).parent.mkdir(parents=True, exist_ok=True)
-            (project / name).write_bytes(data)
-        environment = robot.board.chip
-        code, log = _run(
-            [*command, "run", "-d", folder, "-e", environment], folder, look, made_from
-        )
-        made = project / ".pio" / "build" / environment / "firmware.hex"
-        if too_large := _TOO_LARGE.search(log):
-            raise CannotBuild(CannotBuild.TOO_LARGE, "{} > {}".format(*too_large.groups()), log)
-        if code != 0 or not is_whole(made):
-            has_begun = _COMPILING.search(log) or not _ONLINE.search(log)
-            why = CannotBuild.FAILED if has_begun else CannotBuild.UNREACHABLE
-            raise CannotBuild(why, _reason(log) or f"exit code {code}", log)
-        return made.read_bytes()
+    with _folder() as folder:
+        project = _Project(made_from, robot, folder)
+        project.build(look, is_hex=True)
+        return project.made.read_bytes()
 
 
 def upload(
@@ -145,78 +164,26 @@ def upload(
 
     PlatformIO brings the program that writes. Raises CannotBuild and OSError.
     """
-    command = platformio()
-    if command is None:
-        raise CannotBuild(CannotBuild.NO_PLATFORMIO)
-    with tempfile.TemporaryDirectory(prefix="tiniscript-", ignore_cleanup_errors=True) as folder:
-        for name, data in {**made_from.files, HEADER: header(robot).encode()}.items():
-            path = Path(folder) / name
-            path.parent.mkdir(parents=True, exist_ok=True)
-            path.write_bytes(data)
-        words = [*command, "run", "-d", folder, "-e", robot.board.chip]
-        code, log = _run(words, folder, look, made_from)
-        if code != 0:
-            has_begun = _COMPILING.search(log) or not _ONLINE.search(log)
-            why = CannotBuild.FAILED if has_begun else CannotBuild.UNREACHABLE
-            raise CannotBuild(why, _reason(log) or f"exit code {code}", log)
+    with _folder() as folder:
+        project = _Project(made_from, robot, folder)
+        project.build(look, is_hex=False)
         if port is None:
             return
-        words += ["-t", "upload", "--upload-port", port]
-        code, log = _run(words, folder, look, made_from)
+        code, log = project.run(look, "-t", "upload", "--upload-port", port)
         if code != 0:
-            raise CannotBuild(CannotBuild.NOT_WRITTEN, _reason(log) or f"exit code {code}", log)
+            why = children.reason(log) or f"exit code {code}"
+            raise CannotBuild(CannotBuild.NOT_WRITTEN, why, log)
 
 
-def _run(
-    command: list[str], folder: str, look: Callable[[Seen], None], made_from: Sources
-) -> tuple[int, str]:
-    """Return the exit code of PlatformIO, and what it has said."""
-    files = sum(name.endswith((".cpp", ".S")) for name in made_from.files) + CORE_FILES
-    running = subprocess.Popen(
-        command,
-        cwd=folder,  # Python finds modules in the folder where it begins: not in a pupil's
-        env=_environment(),
-        stdin=subprocess.DEVNULL,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        start_new_session=True,  # it has children, which end with it
-    )
-    assert running.stdout
-    said = b""
-    try:
-        while data := os.read(running.stdout.fileno(), 1 << 16):
-            said = (said + data)[-LOG_BYTES:]
-            found = seen(said.decode(errors="replace"), files)
-            if found:
-                look(found)
-        code = running.wait()
-    except BaseException:
-        _end(running)
-        raise
-    finally:
-        running.stdout.close()
-    return code, said.decode(errors="replace")
+@contextmanager
+def _folder() -> Iterator[Path]:
+    with tempfile.TemporaryDirectory(prefix="tiniscript-", ignore_cleanup_errors=True) as folder:
+        yield Path(folder)
 
 
 def _environment() -> dict[str, str]:
     own = {name: value for name, value in os.environ.items() if not _UNWANTED.fullmatch(name)}
     return {**own, "PLATFORMIO_SETTING_ENABLE_TELEMETRY": "no"}
-
-
-def _end(running: subprocess.Popen[bytes]) -> None:
-    """End PlatformIO and its children: it may be in the middle of keeping what it has fetched."""
-    for gently in (True, False):
-        try:
-            if sys.platform == "win32":
-                running.kill()
-            else:
-                os.killpg(running.pid, signal.SIGINT if gently else signal.SIGKILL)
-            running.wait(KILLED_AFTER_S)
-        except subprocess.TimeoutExpired:
-            continue
-        except OSError:
-            pass
-        return
 
 
 def seen(said: str, files: int) -> Seen | None:
@@ -232,12 +199,3 @@ def seen(said: str, files: int) -> Seen | None:
         percents = _PERCENT.findall(said, installing[-1].end())
         return Seen(FETCHING, min(100, int(percents[-1])) if percents else 0, installing[-1][1])
     return None
-
-
-def _reason(log: str) -> str:
-    """Return the most useful line of a log: the first error, else the last line."""
-    rows = [row.strip() for row in log.splitlines() if re.search(r"\w", row)]
-    errors = [row for row in rows if re.search(r"\berror\b", row, re.IGNORECASE)]
-    others = [row for row in rows if "Error" in row]
-    chosen = (errors or others or rows[-1:] or [""])[0]
-    return chosen[-200:].rstrip(": ")
