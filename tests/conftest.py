@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.machines.host import USER
 from tests.support.command import PROGRAM, Command, Tsc
 from tests.support.pty_robot import PtyRobot
 from tiniscript import robots
@@ -18,6 +19,10 @@ from tiniscript import robots
 # Hypothesis keeps what it has found, not in the repository.
 os.environ.setdefault(
     "HYPOTHESIS_STORAGE_DIRECTORY", str(Path(tempfile.gettempdir()) / "tiniscript-hypothesis")
+)
+# What PlatformIO has compiled once it takes again for the same source, options and compiler.
+os.environ.setdefault(
+    "PLATFORMIO_BUILD_CACHE_DIR", str(Path(tempfile.gettempdir()) / f"tiniscript-platformio-{USER}")
 )
 UNSEEN = itertools.count()  # folders of tests that have none of their own
 
