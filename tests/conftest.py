@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 from tests.machines.host import USER
+from tests.support import sampling
 from tests.support.command import PROGRAM, Command, Tsc
 from tests.support.pty_robot import PtyRobot
 from tiniscript import robots
@@ -31,6 +32,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption(
         "--accept", action="store_true", help="write what the machine did into the case files"
     )
+    sampling.add_options(parser)
 
 
 def pytest_configure(config: pytest.Config) -> None:
@@ -43,6 +45,17 @@ def pytest_configure(config: pytest.Config) -> None:
             r"DeprecationWarning:(tiniscript|tests|tools)\b",
         ):
             config.addinivalue_line("filterwarnings", f"error::{warned}")
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    sampling.leave_out(config, items)
+
+
+def pytest_terminal_summary(
+    terminalreporter: pytest.TerminalReporter, config: pytest.Config
+) -> None:
+    if sample := sampling.said(config):
+        terminalreporter.write_line(sample)
 
 
 def pytest_sessionstart() -> None:

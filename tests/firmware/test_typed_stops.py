@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import argparse
 import random
+import shutil
 import sys
 import tempfile
 import time
@@ -19,6 +20,7 @@ import pytest
 
 from tests.firmware.test_uno_robot import FORWARD, KIT, NAMES, OFF, image_of, states
 from tests.firmware.test_uno_text import OBSTACLE
+from tests.machines.host import once
 from tests.machines.uno import needed
 from tests.machines.wired import Wired
 from tests.support.platformio import firmware, shared
@@ -73,10 +75,10 @@ def sketch(
 ) -> tuple[Path, int]:
     needed()
     baud: int = request.param
-    folder = tmp_path_factory.mktemp("sketch")
+    folder, run = tmp_path_factory.mktemp("sketch"), shared(tmp_path_factory)
     if baud == BAUDS[0]:
-        return firmware("uno", folder, shared(tmp_path_factory)), baud
-    return built(baud, folder), baud
+        return firmware("uno", folder, run), baud
+    return once(run / f"uno_{baud}.elf", lambda made: shutil.copy(built(baud, folder), made)), baud
 
 
 @pytest.fixture
@@ -124,12 +126,13 @@ def stop_behind(uno: Uno, baud: int, prefix: bytes, spelling: bytes) -> None:
     assert states(uno) == OFF and len(uno.pins.history("left")) == changes, what
 
 
+@pytest.mark.sampled("sketch", "spelling")
+@pytest.mark.parametrize("spelling", SPELLINGS)
 @pytest.mark.parametrize("name", PREFIXES)
-def test_a_typed_stop_in_every_state(uno_at: tuple[Uno, int], name: str) -> None:
+def test_a_typed_stop_in_every_state(uno_at: tuple[Uno, int], name: str, spelling: bytes) -> None:
     uno, baud = uno_at
-    for spelling in SPELLINGS:
-        drive(uno)
-        stop_behind(uno, baud, PREFIXES[name], spelling)
+    drive(uno)
+    stop_behind(uno, baud, PREFIXES[name], spelling)
     uno.run_ms(SILENCE_MS + 100)
     before = len(uno.sent)
     uno.send(b"F(1,80)\n")
