@@ -24,11 +24,13 @@ def run(
     folder: Path,
     look: Callable[[str], None],
     environment: Mapping[str, str] | None = None,
+    may_end: Callable[[str], bool] = lambda said: True,
 ) -> tuple[int, str]:
     """Run a program in a folder; return its exit code, and what it has said.
 
     `look` gets what it has said until now, five times a second. An exception, such as Ctrl-C,
-    ends the program and its children. Raises OSError where it cannot be started.
+    ends the program and its children; where it may not end after what it has said, it is waited for
+    first. Raises OSError where it cannot be started.
     """
     running = subprocess.Popen(
         command,
@@ -56,7 +58,10 @@ def run(
             look(said.decode(errors="replace"))
         code = running.wait()
     except BaseException:
-        _end(running)
+        if may_end(said.decode(errors="replace")):
+            _end(running)
+        else:
+            running.wait()
         raise
     return code, said.decode(errors="replace")
 

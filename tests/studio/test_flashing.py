@@ -16,7 +16,8 @@ from tests.machines.bootloaders import bootloader
 from tests.machines.uno import needed
 from tests.support.command import process
 from tests.support.platformio import firmware, need, shared
-from tools.builds.studio import SOURCES, CannotBuild, found_tools
+from tiniscript.studio.building import SOURCES
+from tools.builds.studio import CannotBuild, found_tools
 
 if sys.platform != "win32":
     import pty

@@ -19,9 +19,10 @@ from tests.support.studio import Pages, image, shown, write
 from tiniscript import check, compile, robots
 from tiniscript.studio.block_form import data_of
 from tiniscript.studio.block_reading import read
+from tiniscript.studio.building import MODULES, SOURCES
 from tiniscript.studio.serving import files
 from tools.builds.blockly_texts import english
-from tools.builds.studio import BLOCKLY, MODULES, SOURCES, stale
+from tools.builds.studio import BLOCKLY, stale
 
 if TYPE_CHECKING:
     from playwright.sync_api import Locator, Page

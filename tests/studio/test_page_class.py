@@ -21,7 +21,7 @@ from tests.support.pty_robot import PtyRobot
 from tests.support.studio import HUNG_MS, Class, Pages, checked, hang, write
 from tiniscript import robots
 from tiniscript.studio.attending import LATCH_S
-from tools.builds.studio import MODULES
+from tiniscript.studio.building import MODULES
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page

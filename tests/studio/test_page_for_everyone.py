@@ -14,7 +14,7 @@ from tests.support.platformio import need
 from tests.support.studio import Pages, checked, image, write
 from tiniscript import compile
 from tiniscript.studio import serving
-from tools.builds.studio import MODULES
+from tiniscript.studio.building import MODULES
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page, Playwright

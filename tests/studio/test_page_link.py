@@ -18,7 +18,7 @@ from tests.support.studio import HUNG_MS, Pages, checked, hang, write
 from tiniscript import compile, robots
 from tiniscript.link import known_ports
 from tiniscript.studio import serving
-from tools.builds.studio import MODULES
+from tiniscript.studio.building import MODULES
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page

@@ -15,8 +15,9 @@ import pytest
 from tests.studio.programs import programs
 from tests.support.studio import Pages, asked, checked, image, noted, write
 from tiniscript import check, compile
+from tiniscript.studio.building import MODULES
 from tiniscript.studio.checking import line
-from tools.builds.studio import MODULES, found_tools
+from tools.builds.studio import found_tools
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page

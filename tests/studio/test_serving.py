@@ -117,15 +117,6 @@ def test_it_listens_on_this_computer_alone(server: serving.Server) -> None:
     assert server.server_address[0] == "127.0.0.1"
 
 
-def test_a_page_that_is_not_built_is_a_sentence(
-    tsc: Tsc, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(serving, "PAGE", tmp_path)
-    done = tsc("studio", "--no-browser", "--lang", "es")
-    assert done.code == 2
-    assert "python -m tools.builds.studio" in done.err and "wheel" in done.err
-
-
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of Windows are other ones")
 def test_it_goes_on_until_it_is_ended(folder: Path) -> None:
     code = (

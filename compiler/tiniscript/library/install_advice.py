@@ -13,16 +13,13 @@ import shlex
 import sys
 import sysconfig
 from importlib import metadata
+from importlib.util import find_spec
 from pathlib import Path
 
 PACKAGE = Path(__file__).resolve().parent.parent
 CLONE = PACKAGE.parent.parent
-VIRTUAL, FIRMWARE, RADIO, BROKER = (
-    "virtual",
-    "firmware",
-    "radio",
-    "broker",
-)  # the extras of pyproject.toml
+# The extras of pyproject.toml.
+VIRTUAL, FIRMWARE, RADIO, BROKER, STUDIO = "virtual", "firmware", "radio", "broker", "studio"
 
 
 def command(extra: str) -> str:
@@ -34,6 +31,17 @@ def command(extra: str) -> str:
         place = quoted(f"{CLONE}[{extra}]")
         return f"pipx install {place}" if is_managed() else f"{_pip()} install -e {place}"
     return f"{_pip()} install {wanted or quoted(f'tiniscript[{extra}]')}"
+
+
+def installing(extra: str) -> list[str] | None:
+    """Return the command with which this Python installs the packages of an extra for itself.
+
+    None where that is not its business: it has no pip, or pipx or the system manages it.
+    """
+    wanted = requirements(extra)
+    if not wanted or is_pipx() or is_managed() or find_spec("pip") is None:
+        return None
+    return [sys.executable, "-m", "pip", "install", "--no-input", *wanted]
 
 
 def is_clone(folder: Path) -> bool:

@@ -63,10 +63,6 @@ class Pupils(Protocol):
         """Return the answer; `address` is that of the asking computer. Raises BadRequest."""
 
 
-class NotBuilt(Exception):
-    """There is no page in this installation."""
-
-
 class File(NamedTuple):
     """`tag` changes with the data; `packed` is the data gzipped, or empty."""
 
@@ -76,11 +72,14 @@ class File(NamedTuple):
     packed: bytes = b""
 
 
+def is_built() -> bool:
+    """Whether this installation has the page."""
+    return (PAGE / FIRST).is_file()
+
+
 def files(folder: Path | None = None) -> dict[str, File]:
-    """Return the files of the page by their names. Raises NotBuilt."""
+    """Return the files of the page, which is built, by their names."""
     folder = folder or PAGE
-    if not (folder / FIRST).is_file():
-        raise NotBuilt
     return {
         path.name: _tagged(path.read_bytes(), TYPES[path.suffix])
         for path in folder.iterdir()

@@ -16,6 +16,7 @@ from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.options import whole_number
 from tiniscript.cli.robot.connect import Connection, baud_of, robot_of_kit
+from tiniscript.cli.terminal.asking import agreed, can_ask
 from tiniscript.cli.terminal.sequences import are_read
 from tiniscript.cli.texts.common import has_text, text
 from tiniscript.doctor import report
@@ -111,12 +112,10 @@ def _doors(options: Namespace, language: str, doing: _Doing) -> Doors:
     def may_open(port: str) -> bool:
         if options.yes:
             return True
-        if options.json or not (sys.stdin.isatty() and sys.stderr.isatty()):
+        if options.json or not can_ask():
             return False
         doing.end()
-        said = text("doctor_yes", language).format(port=shown(port))
-        print(said, end="", file=sys.stderr, flush=True)
-        return sys.stdin.readline().strip().lower() in ("1", "y", "yes", "s", "si", "sí")
+        return agreed(text("doctor_yes", language).format(port=shown(port)))
 
     @contextmanager
     def share(port: str) -> Iterator[LinkConnection]:

@@ -40,10 +40,12 @@ def run(options: Namespace, language: str) -> int:
         classroom = Classroom(hosting, _ports(options.ports), 60 * minutes)
     elif options.address or options.ports or options.turn:
         raise CommandError(2, "studio_needs_class")
+    if not serving.is_built():
+        from tiniscript.cli import page_build
+
+        page_build.build(options, language)
     try:
         server = _server(port, host, hosting, classroom)
-    except serving.NotBuilt:
-        raise CommandError(2, "studio_not_built") from None
     except OSError as why:
         address = f"http://{host}:{port}/"
         reason = why.strerror or str(why)

@@ -241,6 +241,7 @@ _LATER = (
     ("doctor", "DOCTOR_TEXTS"),
     ("selftest", "SELFTEST_TEXTS"),
     ("studio", "STUDIO_TEXTS"),
+    ("fetching", "FETCHING_TEXTS"),
     ("wifi", "WIFI_TEXTS"),
     ("conform", "CONFORM_TEXTS"),
     ("classroom", "CLASS_TEXTS"),

@@ -5,8 +5,15 @@ from __future__ import annotations
 # fmt: off
 STUDIO_TEXTS: dict[str, tuple[str, str]] = {
     # key: (English, Spanish)
-    "studio_not_built": ("tsc: the studio's page is not in this installation. In a clone of the repository build it:  python -m tools.builds.studio   A wheel that is made after that has it: its users need nothing more.",
-                         "tsc: la página del estudio no está en esta instalación. En un clon del repositorio, constrúyela:  python -m tools.builds.studio   Un wheel hecho después la trae: quien lo usa no necesita nada más."),
+    "studio_not_built": ("tsc: the studio's page is not in this installation. In a clone of the repository  tsc studio  builds it; a wheel that is made after that has it, and its users need nothing more.",
+                         "tsc: la página del estudio no está en esta instalación. En un clon del repositorio,  tsc studio  la construye; un wheel hecho después la trae, y quien lo usa no necesita nada más."),
+    "studio_missing": ("The studio's page is not in this clone yet, and can be built here.",
+                       "La página del estudio todavía no está en este clon, y se puede construir aquí."),
+    "studio_no_node": ("tsc: the studio's page is not in this clone yet, and it is built with node.js {oldest} or newer and its npm, which are not on this computer. Install them from nodejs.org, or:  {how}   and do the same again.",
+                       "tsc: la página del estudio todavía no está en este clon, y se construye con node.js {oldest} o más nuevo y su npm, que no están en esta computadora. Instálalos desde nodejs.org, o:  {how}   y haz lo mismo otra vez."),
+    "studio_types": ("checking the page's sources", "revisando las fuentes de la página"),
+    "studio_packing": ("packing Python for the browser", "empaquetando Python para el navegador"),
+    "studio_bundling": ("putting the page together", "armando la página"),
     "studio_taken": ("tsc: the port {port} cannot be used: {why}. Is another tsc studio running? Then open {address}. Or choose another with --listen: what a browser keeps of your work belongs to the port.",
                      "tsc: no se puede usar el puerto {port}: {why}. ¿Hay otro tsc studio? Entonces abre {address}. O elige otro con --listen: lo que un navegador guarda de tu trabajo es de cada puerto."),
     "studio_here": ("TiniScript Studio is at {address}   The line above opens it with your robots, once: another follows then. Ctrl-C ends.",

@@ -1,0 +1,151 @@
+"""Something is missing, and this computer can fetch it: how much that is, a question, the progress.
+
+Knows pip, and how a program that fetches is watched. Does not know what is missing.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import sys
+import tempfile
+from argparse import Namespace
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from time import monotonic
+from typing import NamedTuple
+
+from tiniscript import children, files
+from tiniscript.cli.errors import CommandError
+from tiniscript.cli.inputs import shown
+from tiniscript.cli.terminal.asking import agreed, can_ask
+from tiniscript.cli.terminal.progress import Progress
+from tiniscript.cli.texts.common import text
+from tiniscript.library import install_advice
+
+LOG = "fetch.log"  # what the last program that failed has said, in the folder of the cache
+MEASURED_EVERY_S = 1.0
+PUTTING = "Installing collected packages"  # what pip says when it has fetched everything
+_NO_ROOM = re.compile(r"ENOSPC|No space left", re.IGNORECASE)
+_OFFLINE = re.compile(
+    r"ENOTFOUND|EAI_AGAIN|ECONN|ETIMEDOUT|EHOSTUNREACH|ENETUNREACH|connection|No matching dist"
+)
+
+
+class Part(NamedTuple):
+    """What is fetched: `key` names the words for it, `mb` says how many megabytes it has, about."""
+
+    key: str
+    mb: int
+
+
+class Step(NamedTuple):
+    """What is done now, the key of its words, and how far it is, in percent."""
+
+    key: str
+    percent: int
+
+
+class Growing:
+    """How far a folder has grown, in percent of `mb`; the part is another program's to fill."""
+
+    def __init__(self, folder: Path, mb: int) -> None:
+        self.folder, self.mb = folder, mb
+        self._percent, self._due_s = 0, 0.0
+
+    def percent(self) -> int:
+        if monotonic() >= self._due_s:
+            self._percent = min(99, size_of(self.folder) // (10_000 * self.mb))
+            self._due_s = monotonic() + MEASURED_EVERY_S
+        return self._percent
+
+
+def size_of(folder: Path) -> int:
+    """Return the bytes of a folder's files; those that go away meanwhile do not count."""
+    found = 0
+    for where, _, names in os.walk(folder):
+        for name in names:
+            try:
+                found += os.lstat(os.path.join(where, name)).st_size  # noqa: PTH118, is called often
+            except OSError:
+                continue
+    return found
+
+
+def agree(
+    missing: str, parts: Sequence[Part], minutes: int, options: Namespace, language: str
+) -> None:
+    """Say what is missing and what is fetched, and ask. Raises CommandError without a yes."""
+    named = ", ".join(text(part.key, language).format(mb=part.mb) for part in parts)
+    values = {"mb": str(sum(part.mb for part in parts)), "parts": named, "minutes": str(minutes)}
+    said = f"{missing} {text('fetch_size' if parts else 'fetch_none', language).format(**values)}"
+    if not options.yes and not can_ask():
+        raise CommandError(2, "fetch_unasked", said=said)
+    print(said, file=sys.stderr, flush=True)
+    if not options.yes and not agreed(text("fetch_asks", language)):
+        raise CommandError(2, "fetch_declined")
+
+
+def install(extra: str, part: Part, language: str) -> None:
+    """Install the packages of an extra for this Python, which can. Raises CommandError."""
+    command = install_advice.installing(extra)
+    assert command is not None, extra
+    with tempfile.TemporaryDirectory(prefix="tiniscript-", dir=sys.prefix) as scratch:
+        growing = Growing(Path(scratch), part.mb)
+        # It fetches into the folder for temporary files: this one, which can be measured.
+        variables = {**os.environ, **dict.fromkeys(("TMPDIR", "TEMP", "TMP"), scratch)}
+        run(
+            command,
+            Path(scratch),
+            lambda said: Step(f"{part.key}_now", growing.percent()),
+            language,
+            variables,
+            lambda said: PUTTING not in said,  # half of a package looks whole
+        )
+
+
+def run(
+    command: list[str],
+    folder: Path,
+    seen: Callable[[str], Step],
+    language: str,
+    environment: Mapping[str, str] | None = None,
+    may_end: Callable[[str], bool] = lambda said: True,
+) -> None:
+    """Run a program that fetches or builds, and show how far it is. Raises CommandError."""
+    progress = Progress(language, 100)
+    doing = ""
+
+    def look(said: str) -> None:
+        nonlocal doing
+        step = seen(said)
+        if step.key != doing:
+            doing = step.key
+            progress.end()
+            progress.label = text(doing, language)
+            if not sys.stderr.isatty():
+                print(f"{progress.label} …", file=sys.stderr, flush=True)
+        progress.draw(step.percent)
+
+    try:
+        code, log = children.run(command, folder, look, environment, may_end)
+    except OSError as why:
+        code, log = 1, f"{type(why).__name__}: {why}"
+    finally:
+        progress.end()
+    if code:
+        raise _failure(text(doing, language) if doing else command[0], log)
+
+
+def _failure(doing: str, log: str) -> CommandError:
+    """Return the sentence for a program that has failed, and keep what it has said."""
+    kept = files.cache_folder() / LOG
+    try:
+        kept.parent.mkdir(parents=True, exist_ok=True)
+        files.replace(kept, log.encode("utf-8", "replace"))
+    except OSError:
+        pass  # then the sentence has to do
+    kinds = (("fetch_no_room", _NO_ROOM), ("fetch_offline", _OFFLINE))
+    key = next((key for key, pattern in kinds if pattern.search(log)), "fetch_failed")
+    why = shown(children.reason(log))
+    return CommandError(2, key, doing=doing, why=why, log=shown(str(kept)))

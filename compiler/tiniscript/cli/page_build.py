@@ -1,0 +1,42 @@
+"""The studio's page, built in a clone that does not have it yet, if the person agrees."""
+
+from __future__ import annotations
+
+import sys
+from argparse import Namespace
+
+from tiniscript.cli import fetching
+from tiniscript.cli.errors import CommandError
+from tiniscript.cli.fetching import Part, Step
+from tiniscript.cli.texts.common import text
+from tiniscript.library import install_advice
+from tiniscript.studio import building
+
+NODE, NPM = Part("fetch_node", building.NODE_MB), Part("fetch_npm", building.NPM_MB)
+STEPS = ("fetch_npm_now", "studio_types", "studio_packing", "studio_bundling")
+PERCENT = (0, 0, 40, 95)  # of the whole build, when a step begins
+
+
+def build(options: Namespace, language: str) -> None:
+    """Build the page. Raises CommandError."""
+    if not building.is_possible():
+        raise CommandError(2, "studio_not_built")
+    has_node = building.found_tools() is not None
+    if not has_node and install_advice.installing(install_advice.STUDIO) is None:
+        how = install_advice.command(install_advice.STUDIO)
+        raise CommandError(2, "studio_no_node", oldest=str(building.OLDEST_NODE), how=how)
+    parts = [] if has_node else [NODE]
+    if not building.are_fetched():
+        parts.append(NPM)
+    missing = text("studio_missing", language)
+    fetching.agree(missing, parts, building.MINUTES, options, language)
+    if not has_node:
+        fetching.install(install_advice.STUDIO, NODE, language)
+    growing = fetching.Growing(building.MODULES, building.NODE_MODULES_MB)
+
+    def seen(said: str) -> Step:
+        step = building.step(said)
+        is_fetching = STEPS[step] == "fetch_npm_now"
+        return Step(STEPS[step], growing.percent() if is_fetching else PERCENT[step])
+
+    fetching.run([sys.executable, "-m", building.MODULE], building.CLONE, seen, language)

