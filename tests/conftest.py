@@ -11,6 +11,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.machines.host import USER
+from tests.support import sampling
 from tests.support.command import PROGRAM, Command, Tsc
 from tests.support.pty_robot import PtyRobot
 from tiniscript import robots
@@ -19,6 +21,10 @@ from tiniscript import robots
 os.environ.setdefault(
     "HYPOTHESIS_STORAGE_DIRECTORY", str(Path(tempfile.gettempdir()) / "tiniscript-hypothesis")
 )
+# What PlatformIO has compiled once it takes again for the same source, options and compiler.
+os.environ.setdefault(
+    "PLATFORMIO_BUILD_CACHE_DIR", str(Path(tempfile.gettempdir()) / f"tiniscript-platformio-{USER}")
+)
 UNSEEN = itertools.count()  # folders of tests that have none of their own
 
 
@@ -26,6 +32,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption(
         "--accept", action="store_true", help="write what the machine did into the case files"
     )
+    sampling.add_options(parser)
 
 
 def pytest_configure(config: pytest.Config) -> None:
@@ -38,6 +45,17 @@ def pytest_configure(config: pytest.Config) -> None:
             r"DeprecationWarning:(tiniscript|tests|tools)\b",
         ):
             config.addinivalue_line("filterwarnings", f"error::{warned}")
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    sampling.leave_out(config, items)
+
+
+def pytest_terminal_summary(
+    terminalreporter: pytest.TerminalReporter, config: pytest.Config
+) -> None:
+    if sample := sampling.said(config):
+        terminalreporter.write_line(sample)
 
 
 def pytest_sessionstart() -> None:

@@ -82,7 +82,13 @@ def elf(made: Path, example: str, board: str, folder: Path) -> Path:
     sketch = folder / f"{example}.cpp"
     text = (made / "examples" / example / f"{example}.ino").read_text(encoding="utf-8")
     sketch.write_text(PRELUDE + text, encoding="utf-8")
-    flags = [*sketch_board._flags(board), *sketch_board.CPP, "-Wall", "-Wextra", "-Werror"]
+    flags = [
+        *boards.flags_of(board, sketch_board.FLAGS),
+        *boards.CPP,
+        "-Wall",
+        "-Wextra",
+        "-Werror",
+    ]
     boards.run(
         "avr-g++", *flags, "-Wl,--gc-sections", f"-I{made / 'src'}", sketch, *sources(made),
         sketch_board.core(board), "-o", found,

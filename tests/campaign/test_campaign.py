@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import runpy
 import subprocess
 import sys
+from datetime import datetime, timedelta, timezone
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -85,6 +88,22 @@ def test_a_campaign_that_is_interrupted_keeps_what_was_done(
     assert "goes on from here" in capsys.readouterr().out
 
 
+def test_it_says_for_how_long_a_goal_was_not_run(
+    own_goals: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Also of what another computer has run, which is in the document."""
+    today = datetime.now(timezone.utc).date()
+    old = Result(25, 1.0, 7, 22, (today - timedelta(days=9)).isoformat(), "a" * 10)
+    results.write(own_goals, {"done": old, "bad": old._replace(date=today.isoformat())})
+    campaign.main(["--list"])
+    first, second = capsys.readouterr().out.splitlines()
+    assert "25 in 1 s" in first and first.endswith("; run 9 days ago")
+    assert second.endswith("; run today")
+    results.write(own_goals, {})
+    campaign.main(["--list"])
+    assert "not run yet" in capsys.readouterr().out
+
+
 def test_the_time_ends_it(capsys: pytest.CaptureFixture[str]) -> None:
     assert campaign.main(["done", "--minutes", "0"]) == 0
     assert "The time is over" in capsys.readouterr().out
@@ -136,13 +155,19 @@ def test_an_unknown_goal_is_told_which_there_are(capsys: pytest.CaptureFixture[s
 
 
 @pytest.mark.parametrize("goal", GOALS, ids=lambda goal: goal.name)
-def test_each_goal_has_a_command_that_takes_its_words(goal: Goal) -> None:
+def test_each_goal_has_a_command_that_takes_its_words(
+    goal: Goal, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
     """Only its options are read: `--help` ends it."""
-    words = goal.command.format(count=1, seed=1).split()
-    done = subprocess.run(
-        [sys.executable, "-m", *words, "--help"], cwd=ROOT, capture_output=True, text=True
-    )
-    assert done.returncode == 0, done.stderr
-    options = {word for word in words if word.startswith("--")}
-    assert all(option in done.stdout for option in options)
+    name, *words = goal.command.format(count=1, seed=1).split()
+    monkeypatch.setattr(sys, "argv", [name, *words, "--help"])
+    spec = find_spec(name)
+    if spec is not None and spec.submodule_search_locations:
+        spec = find_spec(f"{name}.__main__")
+    assert spec is not None and spec.origin
+    with pytest.raises(SystemExit) as ended:
+        runpy.run_path(spec.origin, run_name="__main__")
+    assert not ended.value.code
+    printed = capfd.readouterr().out
+    assert all(word in printed for word in words if word.startswith("--"))
     assert 0 < goal.piece <= goal.shall

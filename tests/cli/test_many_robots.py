@@ -13,13 +13,14 @@ from collections.abc import Iterator
 import pytest
 
 from tests.machines.host_firmware import missing
-from tests.support.command import FOREVER, TSC, Done, Tsc, ended, process, running
+from tests.support.command import FOREVER, TSC, Done, Tsc, ended, inside, process, running
 from tests.support.robot_fleet import RobotFleet
 from tests.support.waiting import HANGS_S
 from tiniscript import robots
 from tiniscript.cli.robot.fleet import Fleet, Member, Result
 from tiniscript.cli.robot.targets import Target
 from tiniscript.cli.terminal.fleet_table import FleetTable
+from tiniscript.library import opening
 from tiniscript.link import known_ports, ports
 
 pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
@@ -33,8 +34,9 @@ NOISY = (5, 13, 17, 21)
 
 
 @pytest.fixture
-def class_() -> Iterator[RobotFleet]:
-    """Four robots, whose ports are remembered."""
+def class_(monkeypatch: pytest.MonkeyPatch) -> Iterator[RobotFleet]:
+    """Four robots, whose ports are remembered, and no other port: each would be waited for."""
+    monkeypatch.setattr(ports, "listed", list)
     with RobotFleet([TINIBOT] * 4) as found:
         for pupil in found.pupils:
             known_ports.remember(pupil.port, f"R{pupil.number}", is_used=False)
@@ -90,42 +92,43 @@ def test_one_that_babbles_holds_up_no_other(class_: RobotFleet, babble: bytes) -
     """Another sketch that prints without an end, half frames, and the noise of a wrong speed."""
     *others, last = class_.pupils
     last.babble = babble
-    done = process("upload", "-e", FOREVER, "--all", "--detach", "--json")
+    done = inside("upload", "-e", FOREVER, "--all", "--detach", "--json")
     rows = results(done)
     assert done.code == 3 and len(done.out) < 10_000
     assert {port for port, row in rows.items() if row["is_done"]} == {each.port for each in others}
     assert all(each.moves for each in others)
-    done = process("stop", "--all", "--json")
+    done = inside("stop", "--all", "--json")
     rows = results(done)
     assert {port for port, row in rows.items() if row["is_done"]} >= {each.port for each in others}
     assert not any(each.moves for each in class_.pupils)
 
 
 def test_a_neighbour_that_gets_its_firmware_keeps_no_stop_from_the_others(
-    class_: RobotFleet,
+    class_: RobotFleet, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Another program has its port, as avrdude does: its stop is refused, the others are not."""
+    monkeypatch.setattr(opening, "STOP_BUSY_S", 0.5)
     *others, last = class_.pupils
-    assert process("upload", "-e", FOREVER, "--all", "--detach").code == 0
+    assert inside("upload", "-e", FOREVER, "--all", "--detach").code == 0
     holder = ports.opened(last.port, 115_200)
     try:
         for options in (("--all",), tuple(f"--port={each.port}" for each in class_.pupils)):
-            done = process("stop", *options, "--json")
+            done = inside("stop", *options, "--json")
             rows = results(done)
             assert done.code == 3 and not rows[last.port]["is_done"]
             assert all(rows[each.port]["is_done"] for each in others)
             assert not any(each.moves for each in others)
-            process("start", "--port", others[0].port, "--detach")
+            inside("start", "--port", others[0].port, "--detach")
     finally:
         holder.close()
-    assert process("stop", "--all").code == 0
+    assert inside("stop", "--all").code == 0
     assert not any(each.moves for each in class_.pupils)
 
 
 def test_stop_all_stops_what_another_command_drives(class_: RobotFleet) -> None:
     command = running("upload", "-e", FOREVER, "--all")
     class_.until(lambda: all(pupil.moves for pupil in class_.pupils), "all drive")
-    done = process("stop", "--all", "--json")
+    done = inside("stop", "--all", "--json")
     assert done.code == 0
     assert not any(pupil.moves for pupil in class_.pupils)
     rows = [row for row in results(done).values() if not row["is_absent"]]
@@ -154,15 +157,15 @@ def test_robots_stop_when_the_command_of_all_is_killed(class_: RobotFleet) -> No
 
 
 def test_info_and_ping_have_a_row_for_each(class_: RobotFleet) -> None:
-    assert process("upload", "-e", "SB|S", "--all").code == 0
+    assert inside("upload", "-e", "SB|S", "--all").code == 0
     names = [pupil.port for pupil in class_.pupils]
-    done = process("info", "--all")
+    done = inside("info", "--all")
     assert done.code == 0
     assert sorted(line.split("(")[1].split(")")[0] for line in done.out.splitlines()) == sorted(
         names
     )
     assert done.out.count("nothing runs") == len(names)
-    done = process("ping", "--count", "3", "--json", "--port", names[0], "--port", names[2])
+    done = inside("ping", "--count", "3", "--json", "--port", names[0], "--port", names[2])
     rows = results(done)
     assert set(rows) == {names[0], names[2]}
     assert all(row["round_trips"] == 3 for row in rows.values())
@@ -170,17 +173,17 @@ def test_info_and_ping_have_a_row_for_each(class_: RobotFleet) -> None:
 
 def test_undo_has_a_row_for_each_and_stops_for_none(class_: RobotFleet) -> None:
     first, second = "SB|F(0.1, 50)", "SB|F(0.1, 60)"
-    assert process("upload", "-e", first, "--all").code == 0
+    assert inside("upload", "-e", first, "--all").code == 0
     names = [pupil.port for pupil in class_.pupils]
-    assert process("upload", "-e", second, "--port", names[1], "--port", names[2]).code == 0
-    done = process("undo", "--all", "--json")
+    assert inside("upload", "-e", second, "--port", names[1], "--port", names[2]).code == 0
+    done = inside("undo", "--all", "--json")
     assert done.code == 3
     rows = results(done)
     assert {port for port in names if rows[port]["is_done"]} == {names[1], names[2]}
     assert "no program from before" in str(rows[names[0]]["said"])
     checksums = {rows[names[1]]["checksum"], rows[names[2]]["checksum"]}
     assert len(checksums) == 1
-    done = process("undo", "--port", names[1], "--port", names[2], "--lang", "es")
+    done = inside("undo", "--port", names[1], "--port", names[2], "--lang", "es")
     assert done.code == 0
     assert done.out.count("vuelve a tener el programa anterior") == 2
     assert str(checksums.pop()) not in done.out
@@ -188,10 +191,10 @@ def test_undo_has_a_row_for_each_and_stops_for_none(class_: RobotFleet) -> None:
 
 def test_ports_that_are_named_must_have_robots(class_: RobotFleet) -> None:
     name = class_.pupils[0].port
-    done = process("ping", "--port", name, "--port", "/dev/no-such", "--lang", "es")
+    done = inside("ping", "--port", name, "--port", "/dev/no-such", "--lang", "es")
     assert done.code == 3
     assert "no existe el puerto /dev/no-such" in done.out
-    assert "3" in process("ping", "--count", "3", "--port", name, "--port", name).out
+    assert "3" in inside("ping", "--count", "3", "--port", name, "--port", name).out
 
 
 def test_a_port_that_never_had_a_robot_is_no_failure(
@@ -218,14 +221,14 @@ def test_a_port_that_never_had_a_robot_is_no_failure(
 
 
 def test_a_program_with_mistakes_reaches_nobody(class_: RobotFleet) -> None:
-    assert process("upload", "-e", "F(2 80)", "--all").code == 1
+    assert inside("upload", "-e", "F(2 80)", "--all").code == 1
     assert not any(pupil.heard for pupil in class_.pupils)
-    assert process("upload", "-e", "PING|check_connection", "--all").out.count("10 round") == 4
+    assert inside("upload", "-e", "PING|check_connection", "--all").out.count("10 round") == 4
 
 
 def test_a_fault_is_a_row_of_its_robot(class_: RobotFleet) -> None:
     text = "SI|X = DISTANCE;SHOW(1 / X)"
-    done = process("upload", "-e", text, "--all", "--no-save")
+    done = inside("upload", "-e", text, "--all", "--no-save")
     assert done.code == 3
     assert done.out.count("DIVIDE_BY_ZERO") == 4
     assert done.out.count("line 1") == 4

@@ -11,7 +11,8 @@ from typing import cast
 import pytest
 
 from tests.machines.host_firmware import EMPTY, HostFirmware, missing
-from tests.support.command import TSC, Done, process
+from tests.support import pty_robot as pty_robots
+from tests.support.command import TSC, Done, Tsc
 from tests.support.pty_robot import PtyRobot
 from tests.support.waiting import HANGS_S
 from tiniscript import robots
@@ -30,7 +31,7 @@ KIT = robots.load("tinibot").kit
 
 
 def on(pty_robot: PtyRobot, *arguments: str, data: str = "") -> Done:
-    return process("trim", *arguments, "--port", pty_robot.port, data=data.encode())
+    return pty_robots.on(pty_robot, "trim", *arguments, data=data.encode())
 
 
 def keeps(pty_robot: PtyRobot) -> Trim:
@@ -141,8 +142,8 @@ def test_numbers_are_set_one_by_one_and_reset_at_once(pty_robot: PtyRobot) -> No
 @pytest.mark.parametrize(
     "wrong", [("--balance", "41"), ("--least", "-1"), ("--exchange", "maybe"), ("--least", "x")]
 )
-def test_what_cannot_be_set_is_said_without_a_robot(wrong: tuple[str, str]) -> None:
-    done = process("trim", *wrong, "--port", "/nowhere")
+def test_what_cannot_be_set_is_said_without_a_robot(tsc: Tsc, wrong: tuple[str, str]) -> None:
+    done = tsc("trim", *wrong, "--port", "/nowhere")
     assert done.code == 2 and wrong[0] in done.err
 
 
@@ -152,7 +153,7 @@ ANSWERS = "\n2\n2\n1\n1\n2\n2\n1\n\n2\n9\n3\n1\n"
 
 
 def test_a_person_is_guided_to_a_robot_that_drives_straight(pty_robot: PtyRobot) -> None:
-    assert process("live", "W(0)", "--port", pty_robot.port).code == 0
+    assert pty_robots.on(pty_robot, "live", "W(0)").code == 0
     done = on(pty_robot, data=ANSWERS)
     assert done.code == 0, done.err
     assert keeps(pty_robot) == Trim(True, False, True, -8, 15)

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import argparse
 import random
+import shutil
 import sys
 import tempfile
 import time
@@ -17,10 +18,14 @@ from pathlib import Path
 
 import pytest
 
-from tests.firmware.test_uno_robot import FORWARD, NAMES, OFF, states
+from tests.firmware.test_uno_robot import FORWARD, KIT, NAMES, OFF, image_of, states
 from tests.firmware.test_uno_text import OBSTACLE
+from tests.machines.host import once
 from tests.machines.uno import needed
+from tests.machines.wired import Wired
 from tests.support.platformio import firmware, shared
+from tiniscript.link.requests import OK
+from tiniscript.link.session import Session
 from tools.bench.link import built
 from tools.uno import CYCLES_PER_MS, Uno
 
@@ -70,10 +75,10 @@ def sketch(
 ) -> tuple[Path, int]:
     needed()
     baud: int = request.param
-    folder = tmp_path_factory.mktemp("sketch")
+    folder, run = tmp_path_factory.mktemp("sketch"), shared(tmp_path_factory)
     if baud == BAUDS[0]:
-        return firmware("uno", folder, shared(tmp_path_factory)), baud
-    return built(baud, folder), baud
+        return firmware("uno", folder, run), baud
+    return once(run / f"uno_{baud}.elf", lambda made: shutil.copy(built(baud, folder), made)), baud
 
 
 @pytest.fixture
@@ -121,12 +126,13 @@ def stop_behind(uno: Uno, baud: int, prefix: bytes, spelling: bytes) -> None:
     assert states(uno) == OFF and len(uno.pins.history("left")) == changes, what
 
 
+@pytest.mark.sampled("sketch", "spelling")
+@pytest.mark.parametrize("spelling", SPELLINGS)
 @pytest.mark.parametrize("name", PREFIXES)
-def test_a_typed_stop_in_every_state(uno_at: tuple[Uno, int], name: str) -> None:
+def test_a_typed_stop_in_every_state(uno_at: tuple[Uno, int], name: str, spelling: bytes) -> None:
     uno, baud = uno_at
-    for spelling in SPELLINGS:
-        drive(uno)
-        stop_behind(uno, baud, PREFIXES[name], spelling)
+    drive(uno)
+    stop_behind(uno, baud, PREFIXES[name], spelling)
     uno.run_ms(SILENCE_MS + 100)
     before = len(uno.sent)
     uno.send(b"F(1,80)\n")
@@ -147,6 +153,26 @@ def test_a_line_in_a_block_belongs_to_the_program(uno_at: tuple[Uno, int]) -> No
     uno.send(OBSTACLE[-1].encode() + b"\r\n")
     uno.run_ms(60)
     assert states(uno) == FORWARD and said(uno, before) == "// OK\r\n"
+
+
+@pytest.mark.parametrize("way", ["live", "upload", "long upload"])
+def test_code_that_holds_a_typed_stop_runs(uno_at: tuple[Uno, int], way: str) -> None:
+    """A frame that arrives whole is not stopped by a line of S among its bytes."""
+    uno, baud = uno_at
+    before = "SHOW(1); " * 20 if way == "long upload" else ""
+    image = image_of(f"SI|{before}M(10, 10); W(FOREVER) UNTIL(TIME > 3)")
+    wired = Wired(uno, Session(1, baud, KIT.fingerprint))
+    request = wired.session.live(image.code) if way == "live" else wired.session.upload(image)
+    assert wired.until(request) == OK
+    assert b"\nS\n" in bytes(byte.value for byte in uno.received)
+    begun_ms = wired.now_ms
+    wired.run(SILENCE_MS + HELD_MS)
+    assert states(uno) == FORWARD
+    while states(uno) == FORWARD:
+        wired.run(10)
+    assert 2900 < wired.now_ms - begun_ms < 3200
+    wired.run(50)
+    assert wired.session.events()[-1].name == "DONE"
 
 
 def random_prefix(draw: random.Random) -> bytes:

@@ -10,12 +10,13 @@ import re
 import shutil
 import subprocess
 import tempfile
+from collections.abc import Sequence
 from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tests.machines.chips import ran
-from tests.machines.host import SOURCES, WARNINGS, Ran, run_request
+from tests.machines.host import SOURCES, WARNINGS, Ran, contents, kept, run_request
 from tiniscript.kit import Kit
 
 if TYPE_CHECKING:
@@ -38,16 +39,20 @@ def missing() -> str:
 def program(sources: Path = SOURCES) -> bytes:
     """Return the program of the chip, an ELF file, made from a folder like `vm_arduino`."""
     folders = [sources / name for name in ("src/vm", "extras/chip", "extras/avr")]
-    code = [str(path) for each in folders for path in each.glob("*.[cS]*")]
-    with tempfile.TemporaryDirectory() as folder:
-        made = Path(folder) / "machine.elf"
-        done = subprocess.run(
-            ["avr-g++", *FLAGS, *WARNINGS, *sorted(code), "-o", str(made)],
-            capture_output=True,
-            text=True,
-        )
-        assert done.returncode == 0, f"avr-g++ refuses the C++ machine:\n{done.stderr[:4000]}"
-        return made.read_bytes()
+    made_from = contents(sources / "src", *folders)
+    code = sorted(str(path) for each in folders for path in each.glob("*.[cS]*"))
+    return compiled("the C++ machine", (*FLAGS, *WARNINGS), code, made_from).read_bytes()
+
+
+def compiled(what: str, flags: Sequence[str], code: Sequence[str], made_from: list[bytes]) -> Path:
+    """Return the program of sources; what has not changed is used again."""
+
+    def make(made: Path) -> None:
+        words = ["avr-g++", *flags, *code, "-o", str(made)]
+        done = subprocess.run(words, capture_output=True, text=True)
+        assert done.returncode == 0, f"avr-g++ refuses {what}:\n{done.stderr[:4000]}"
+
+    return kept("avr-g++", flags, made_from, make)
 
 
 built = lru_cache(maxsize=1)(program)

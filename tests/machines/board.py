@@ -16,7 +16,7 @@ from itertools import chain, repeat
 from pathlib import Path
 from typing import NamedTuple
 
-from tests.machines.host import SOURCES
+from tests.machines.host import SOURCES, contents, kept
 from tiniscript import compile_text
 from tiniscript.robots import firmware
 from tiniscript.robots.ports import AVRS, Bit
@@ -55,11 +55,6 @@ def missing() -> str:
     return f"no {' and no '.join(names)} on this computer: no simulated board" if names else ""
 
 
-@lru_cache(maxsize=1)
-def _folder() -> tempfile.TemporaryDirectory[str]:
-    return tempfile.TemporaryDirectory(prefix="tiniscript-board-")
-
-
 def run(*words: object) -> str:
     done = subprocess.run([str(word) for word in words], capture_output=True, text=True)
     assert done.returncode == 0, f"{words[0]}: {done.stderr[:4000]}"
@@ -68,33 +63,42 @@ def run(*words: object) -> str:
 
 @lru_cache(maxsize=1)
 def simulator() -> Path:
-    program = Path(_folder().name) / "simulated_board"
     source = Path(__file__).with_name("simulated_board.c")
-    run("gcc", "-O2", source, "-o", program, "-lsimavr", "-lelf")
-    return program
+    words = ("-O2", str(source), "-lsimavr", "-lelf")
+    made_from = [source.read_bytes(), SIMAVR.read_bytes()]
+    return kept("gcc", words, made_from, lambda made: run("gcc", *words, "-o", made))
 
 
 @lru_cache(maxsize=8)
 def core(board: str) -> Path:
     """Return the library of the Arduino core for a board."""
-    folder = Path(_folder().name) / f"core-{board}"
-    folder.mkdir()
-    sources = sorted((ARDUINO / "cores" / "arduino").glob("wiring*.c"))
-    sources += [ARDUINO / "cores" / "arduino" / name for name in ("main.cpp", "hooks.c")]
-    for source in sources:
-        is_cpp = source.suffix == ".cpp"
-        compiler = ("avr-g++", *CPP) if is_cpp else ("avr-gcc", "-std=gnu11")
-        target = folder / f"{source.name}.o"
-        run(*compiler, *_flags(board), "-w", "-c", source, "-o", target)
-    library = folder / "core.a"
-    run("avr-gcc-ar", "rcs", library, *sorted(folder.glob("*.o")))
-    return library
+    folder = ARDUINO / "cores" / "arduino"
+    sources = [*sorted(folder.glob("wiring*.c")), folder / "main.cpp", folder / "hooks.c"]
+    return library(sources, flags_of(board, FLAGS))
 
 
-def _flags(board: str) -> tuple[str, ...]:
+def library(sources: Sequence[Path], flags: Sequence[str]) -> Path:
+    """Return the library of sources of an Arduino core."""
+
+    def make(made: Path) -> None:
+        with tempfile.TemporaryDirectory() as name:
+            for source in sources:
+                compiler = {
+                    ".cpp": ("avr-g++", *CPP),
+                    ".c": ("avr-gcc", "-std=gnu11"),
+                    ".S": ("avr-gcc", "-x", "assembler-with-cpp"),  # no body for -flto
+                }[source.suffix]
+                target = Path(name) / f"{source.name}.o"
+                run(*compiler, *flags, "-w", "-c", source, "-o", target)
+            run("avr-gcc-ar", "rcs", made, *sorted(Path(name).glob("*.o")))
+
+    return kept("avr-g++", (*flags, *map(str, sources)), contents(ARDUINO / "cores"), make)
+
+
+def flags_of(board: str, flags: Sequence[str]) -> tuple[str, ...]:
     return (
         f"-mmcu={CHIPS[board]}",
-        *FLAGS,
+        *flags,
         f"-I{ARDUINO / 'cores' / 'arduino'}",
         f"-I{ARDUINO / 'variants' / VARIANTS[board]}",
     )
@@ -103,7 +107,18 @@ def _flags(board: str) -> tuple[str, ...]:
 @lru_cache(maxsize=32)
 def built(header: str, board: str, more: str = "") -> bytes:
     """Return the sketch for the robot of a header, an ELF file; `more` is a file beside it."""
-    with tempfile.TemporaryDirectory(dir=_folder().name) as name:
+    main = Path(__file__).with_name("board_main.cpp")
+    flags = (*flags_of(board, FLAGS), *CPP, "-Wall", "-Wextra", "-Werror", "-Wl,--gc-sections")
+    made_from = [header.encode(), more.encode(), main.read_bytes(), bytes(core(board))]
+
+    def make(made: Path) -> None:
+        _build(header, more, (*flags, main, core(board)), made)
+
+    return kept("avr-g++", flags, [*made_from, *contents(SOURCES / "src")], make).read_bytes()
+
+
+def _build(header: str, more: str, words: Sequence[object], made: Path) -> None:
+    with tempfile.TemporaryDirectory() as name:
         source = Path(shutil.copytree(SOURCES / "src", Path(name) / "src"))
         (source / "boards" / "kits" / "own.h").write_text(header, encoding="utf-8")
         (source / "more.cpp").write_text(more, encoding="utf-8")
@@ -119,13 +134,7 @@ def built(header: str, board: str, more: str = "") -> bytes:
             )
             if each.suffix in (".cpp", ".S") and each.name not in LINKED
         ]
-        program = Path(name) / "firmware.elf"
-        run(
-            "avr-g++", *_flags(board), *CPP, "-Wall", "-Wextra", "-Werror", "-Wl,--gc-sections",
-            *code, Path(__file__).with_name("board_main.cpp"), f"-I{source}", core(board),
-            "-o", program,
-        )  # fmt: skip
-        return program.read_bytes()
+        run("avr-g++", *code, f"-I{source}", *words, "-o", made)
 
 
 class Change(NamedTuple):
@@ -213,7 +222,7 @@ class Board:
         for cycle, pin, is_high in sorted(self.events, key=lambda event: event[0]):
             port, bit = self.bit(pin)
             lines.append(f"pin {cycle} {port.upper()} {bit} {int(is_high)}")
-        with tempfile.TemporaryDirectory(dir=_folder().name) as name:
+        with tempfile.TemporaryDirectory() as name:
             program = Path(name) / "firmware.elf"
             program.write_bytes(self.elf)
             done = subprocess.run(

@@ -224,10 +224,7 @@ def made(
     words: list[str],
 ) -> Path:  # fmt: skip
     """Return what the compiler makes of `words`, named after all that it is made from."""
-    key = hashlib.sha256(repr((_version(compiler), tuple(flags))).encode())
-    for part in made_from:
-        key.update(part)
-    made = builds / (key.hexdigest()[:16] + suffix)
+    made = builds / (_key(compiler, flags, made_from) + suffix)
     if not made.exists():
         builds.mkdir(mode=0o700, exist_ok=True)
         own = made.with_suffix(f".{os.getpid()}-{get_ident()}")
@@ -242,6 +239,44 @@ def made(
         own.replace(made)
         own.unlink(missing_ok=True)  # it stays where both are one file already
     return made
+
+
+def once(made: Path, make: Callable[[Path], object]) -> Path:
+    """Return what `make` writes into the place that it is given, which is there as a whole or not.
+
+    Of several workers that need it one makes it, and the others wait.
+    """
+    if not made.exists():
+        import fcntl
+
+        made.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
+        with made.with_name(f"{made.name}.lock").open("w") as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            if not made.exists():
+                own = made.with_name(f"{made.name}.{os.getpid()}")
+                make(own)
+                own.replace(made)
+    return made
+
+
+def kept(
+    compiler: str, flags: Sequence[str], made_from: Iterable[bytes], make: Callable[[Path], object]
+) -> Path:
+    """Return a program that is made `once` from the same by the same compiler, in any run."""
+    return once(BUILDS / f"{_key(compiler, flags, made_from)}.elf", make)
+
+
+def contents(*folders: Path) -> list[bytes]:
+    """Return what is in the sources and headers of folders, each behind its path."""
+    paths = (path for each in folders for path in each.rglob("*.[chS]*"))
+    return [part for path in sorted(paths) for part in (bytes(path), path.read_bytes())]
+
+
+def _key(compiler: str, flags: Sequence[str], made_from: Iterable[bytes]) -> str:
+    key = hashlib.sha256(repr((_version(compiler), tuple(flags))).encode())
+    for part in made_from:
+        key.update(part)
+    return key.hexdigest()[:16]
 
 
 @lru_cache

@@ -7,7 +7,6 @@ begins another one, so that one case that is wrong is one that fails.
 
 from __future__ import annotations
 
-import tempfile
 from collections.abc import Sequence
 from functools import lru_cache
 from io import BytesIO
@@ -17,7 +16,7 @@ from threading import Timer
 from typing import TYPE_CHECKING
 
 from tests.machines.chips import ran
-from tests.machines.host import SOURCES, WARNINGS, Process, Ran, run_request
+from tests.machines.host import SOURCES, WARNINGS, Process, Ran, contents, kept, run_request
 from tests.machines.text_reader import Answer
 from tiniscript.bytecode.image import STARTS
 from tiniscript.kit import Kit
@@ -77,20 +76,18 @@ def _answer(said: BytesIO) -> Answer:
     return Answer(start=STARTS[first], code=said.read(second))
 
 
-def built(name: str, program: Path, sources: Path = SOURCES) -> Path:
-    """Build the program of a chip from `sources`, a folder like `vm_arduino`."""
+@lru_cache(maxsize=2 * len(chips.CHIPS))
+def built(name: str, sources: Path = SOURCES) -> Path:
+    """Return the program of a chip made from `sources`, a folder like `vm_arduino`."""
     folders = [sources / each for each in ("src/vm", "src/text", "extras/chip", "extras/qemu")]
     code = [path for each in folders for path in sorted(each.glob("*.cpp"))]
     code.append(sources / "extras/qemu" / chips.CHIPS[name].start)
-    chips.build(chips.CHIPS[name], code, program, *WARNINGS)
-    return program
-
-
-@lru_cache(maxsize=len(chips.CHIPS))
-def _program(name: str) -> tuple[Path, tempfile.TemporaryDirectory[str]]:
-    """Return a program, and the folder that is there as long as this is kept."""
-    folder = tempfile.TemporaryDirectory()
-    return built(name, Path(folder.name) / "machine.elf"), folder
+    chip = chips.CHIPS[name]
+    made_from = [*contents(sources / "src", *folders), (folders[-1] / "chip.ld").read_bytes()]
+    words = (*chips.USUAL, *WARNINGS, *map(str, chip))
+    return kept(
+        chip.compiler[0], words, made_from, lambda made: chips.build(chip, code, made, *WARNINGS)
+    )
 
 
 _running: dict[str, Emulated] = {}
@@ -101,5 +98,5 @@ def emulated(name: str) -> Emulated:
     if name in _running and _running[name].has_ended():
         _running.pop(name).close()
     if name not in _running:
-        _running[name] = Emulated(name, _program(name)[0])
+        _running[name] = Emulated(name, built(name))
     return _running[name]

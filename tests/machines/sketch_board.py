@@ -13,7 +13,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 from tests.machines import board as boards
-from tests.machines.board import ARDUINO, CONNECTIONS, CONTROLS, HERTZ, MS, PORTS, run
+from tests.machines.board import ARDUINO, CONNECTIONS, CONTROLS, CPP, HERTZ, MS, PORTS, run
+from tests.machines.host import kept
 from tiniscript.robots.boards import CHIPS
 from tiniscript.robots.firmware import BRIDGES
 from tiniscript.robots.ports import AVRS
@@ -21,7 +22,6 @@ from tiniscript.robots.profile import Robot
 
 FLAGS = ("-Os", "-flto", "-ffunction-sections", "-fdata-sections", "-DF_CPU=16000000L",
          "-DARDUINO=10808", "-DDECIMAL_DIG=__DECIMAL_DIG__")  # fmt: skip
-CPP = ("-std=gnu++11", "-fno-exceptions", "-fno-threadsafe-statics")
 TIMER_2 = {"mask": 0x70, "control": 0xB1, "top": 0xB3}
 DIVIDES = (0, 1, 8, 32, 64, 128, 256, 1024)
 SERVO_KEYS = ("left_pin", "right_pin")
@@ -39,46 +39,25 @@ class Ran(NamedTuple):
     sent_ms: list[float]  # when each byte was on its way
 
 
-@lru_cache(maxsize=1)
-def _folder() -> tempfile.TemporaryDirectory[str]:
-    return tempfile.TemporaryDirectory(prefix="tiniscript-sketch-")
-
-
-def _flags(board: str) -> tuple[str, ...]:
-    return (
-        f"-mmcu={boards.CHIPS[board]}",
-        *FLAGS,
-        f"-I{ARDUINO / 'cores' / 'arduino'}",
-        f"-I{ARDUINO / 'variants' / boards.VARIANTS[board]}",
-    )
-
-
 @lru_cache(maxsize=4)
 def core(board: str) -> Path:
     """Return the library of the whole Arduino core for a board."""
-    folder = Path(_folder().name) / board
-    folder.mkdir(exist_ok=True)
-    sources = [*(ARDUINO / "cores" / "arduino").glob("*.[cS]*")]
-    for source in sorted(sources):
-        is_cpp = source.suffix == ".cpp"
-        compiler: tuple[str, ...] = ("avr-g++", *CPP) if is_cpp else ("avr-gcc", "-std=gnu11")
-        if source.suffix == ".S":  # which has no body for -flto
-            compiler = ("avr-gcc", "-x", "assembler-with-cpp")
-        run(*compiler, *_flags(board), "-w", "-c", source, "-o", folder / f"{source.name}.o")
-    library = folder / "core.a"
-    run("avr-gcc-ar", "rcs", library, *sorted(folder.glob("*.o")))
-    return library
+    sources = sorted((ARDUINO / "cores" / "arduino").glob("*.[cS]*"))
+    return boards.library(sources, boards.flags_of(board, FLAGS))
 
 
 def built(sketch: str, board: str) -> Path:
     """Return the ELF file of a sketch, which must compile without a warning."""
-    with tempfile.NamedTemporaryFile(
-        "w", suffix=".cpp", dir=_folder().name, encoding="utf-8", delete=False
-    ) as file:
-        file.write(sketch)
-    elf = Path(file.name).with_suffix(".elf")
-    run("avr-g++", *_flags(board), *CPP, "-Wall", "-Wextra", "-Werror", "-Wl,--gc-sections",
-        file.name, core(board), "-o", elf)  # fmt: skip
+    words = (*boards.flags_of(board, FLAGS), *CPP, "-Wall", "-Wextra", "-Werror",
+             "-Wl,--gc-sections")  # fmt: skip
+
+    def make(made: Path) -> None:
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder) / "sketch.cpp"
+            file.write_text(sketch, encoding="utf-8")
+            run("avr-g++", *words, file, core(board), "-o", made)
+
+    elf = kept("avr-g++", words, [sketch.encode(), bytes(core(board))], make)
     if board != "mega":  # it fits an Uno, with room for the stack
         text, data, zeros = map(int, run("avr-size", elf).splitlines()[1].split()[:3])
         assert text + data <= 32_256 and data + zeros <= 1_700, (text, data, zeros)

@@ -185,7 +185,8 @@ def said_in(language: str) -> dict[str, str]:
         )
     found |= {key: words[language] for key, words in statuses.texts().items()}
     name = f"*.{language}.md"
-    pages = [*ROOT.glob(f"docs/**/{name}"), *ROOT.glob(f"compiler/tiniscript/lessons/*/{name}")]
+    places = (name, f"docs/**/{name}", f"compiler/tiniscript/lessons/*/{name}")
+    pages = [path for place in places for path in ROOT.glob(place)]
     return found | {path.name: path.read_text(encoding="utf-8") for path in pages}
 
 

@@ -96,15 +96,15 @@ def test_ci_of_root_runs_the_tests_as_a_new_user(tmp_path: Path) -> None:
         shutil.rmtree(clone)
 
 
-def test_readme_says_what_stays_in_the_folder_for_temporary_files() -> None:
-    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+def test_contributing_says_what_stays_in_the_folder_for_temporary_files() -> None:
+    document = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
     kept = set()
     for path in [*ROOT.glob("tests/**/*.py"), *ROOT.glob("tools/**/*.py")]:
         text = path.read_text(encoding="utf-8")
         kept |= set(re.findall(r'gettempdir\(\)\) / f"([\w-]+-)\{', text))
     assert kept == {"tiniscript-host-", "tiniscript-uno-"}
     for name in kept:
-        assert f"`{name}…`" in readme
+        assert f"`{name}…`" in document
 
 
 # -- the virtual environment

@@ -16,7 +16,7 @@ from tests.support.virtual_robot import missing
 
 pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")
 
-PAGES = (ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")))
+PAGES = sorted([*ROOT.glob("README*.md"), *(ROOT / "docs").glob("*.md")])
 ANSWER = "// "
 LONGEST_MS = 5000  # until an answer comes
 SILENT_MS = 1500  # after the answers, before the next line: more than a second
@@ -73,4 +73,4 @@ def test_a_robot_answers_as_the_document_shows(language: str, lines: list[str]) 
 
 def test_the_front_door_and_both_guides_show_a_terminal() -> None:
     shown = {page.name for page in PAGES if list(conversations(page))}
-    assert {"README.md", "monday.en.md", "lunes.es.md"} <= shown
+    assert {"README.md", "README.es.md", "monday.en.md", "lunes.es.md"} <= shown

@@ -77,13 +77,13 @@ def test_a_workflow_trusts_nobody(path: Path) -> None:
 
 def test_visitors_commands_are_those_of_readme() -> None:
     runs = [step.get("run", "") for name, step in steps() if name == "checks.yml"]
-    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    texts = [(ROOT / name).read_text(encoding="utf-8") for name in ("README.md", "README.es.md")]
     for line in (r"py tools\try.py", "python3 tools/try.py", "sh tools/try.sh"):
-        assert f"| `{line}` |" in text
+        assert all(f"| `{line}` |" in text for text in texts)
         assert line in runs
-    assert "$ sh tools/test.sh" in text
+    assert all("`sh tools/test.sh`" in text for text in texts)
     assert "env -u CI sh tools/test.sh" in runs
-    assert 'pip install ".[virtual]"' in text
+    assert all('pip install ".[virtual]"' in text for text in texts)
     assert 'python -m pip install ".[virtual]"' in runs
 
 

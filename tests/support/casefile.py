@@ -33,7 +33,7 @@ class Case(NamedTuple):
 def documents() -> list[Path]:
     """Return every file that holds cases. They are found, never listed."""
     found = [*ROOT.glob("tests/cases/**/*.md"), *ROOT.glob("docs/**/*.md")]
-    return sorted([*found, ROOT / "bytecode_spec.md", ROOT / "README.md"])
+    return sorted([*found, ROOT / "bytecode_spec.md", *ROOT.glob("README*.md")])
 
 
 def read(path: Path) -> list[Case]:

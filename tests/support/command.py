@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import io
 import os
 import subprocess
 import sys
+from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
+from unittest import mock
 
 import pytest
 
@@ -40,6 +43,17 @@ class Tsc:
         code = main([str(each) for each in arguments])
         said = self.capsys.readouterr()
         return Done(code, said.out, said.err)
+
+
+def inside(*arguments: str | Path, data: bytes = b"") -> Done:
+    """Run `tsc` in this process."""
+    streams = [io.TextIOWrapper(io.BytesIO(each), encoding="utf-8") for each in (data, b"", b"")]
+    stdin, out, err = streams
+    with mock.patch.object(sys, "stdin", stdin), redirect_stdout(out), redirect_stderr(err):
+        code = main([str(each) for each in arguments])
+        out.flush()
+        err.flush()
+    return Done(code, *(each.buffer.getvalue().decode() for each in (out, err)))
 
 
 def process(*arguments: str | Path, data: bytes = b"") -> Done:

@@ -108,6 +108,7 @@ class Network:
         port = port_of(robot)
         assert port
         self.socket = socket.create_connection(("127.0.0.1", port))
+        self.socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         self.socket.setblocking(False)
 
     def send(self, data: bytes) -> None:

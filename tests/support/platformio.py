@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.machines.host import once
 from tests.support.casefile import ROOT
 
 OFFLINE = ROOT / "tools" / "builds" / "platformio_offline.py"
@@ -84,12 +85,11 @@ def changed(folder: Path, name: str, old: str, new: str, environment: str = "uno
 
 def firmware(board: str, own: Path, shared: Path) -> Path:
     """Return the sketch for a board, an ELF file, built once for all workers of a session."""
-    elf = shared / f"{board}.elf"
-    if not elf.exists():
+
+    def make(made: Path) -> None:
         project = copied(own)
         code, log = pio(project, "run", "-e", board)
         assert code == 0, log
-        mine = shared / f"{board}.{os.getpid()}"
-        shutil.copy(project / ".pio" / "build" / board / "firmware.elf", mine)
-        mine.replace(elf)
-    return elf
+        shutil.copy(project / ".pio" / "build" / board / "firmware.elf", made)
+
+    return once(shared / f"{board}.elf", make)

@@ -1,4 +1,6 @@
-"""Something simulated behind a pseudo-terminal, in real time: what `tsc` opens is `port`.
+"""Something simulated behind a pseudo-terminal: what `tsc` opens is `port`.
+
+Time is that of the wall, or where this process opens the port that of what is there.
 
 A pseudo-terminal has no speed, but it keeps the one that was set: bytes at another speed than that
 of the other end arrive garbled, as on a wire.
@@ -11,7 +13,9 @@ import select
 import termios
 import threading
 import time
+from contextlib import ExitStack
 
+from tests.support.simulated_port import SimulatedPort, simulated
 from tests.support.simulated_wire import OtherEnd, garbled
 
 _SPEEDS = {
@@ -29,6 +33,9 @@ class PtyEnd:
         self.end = end
         self.has_speed = has_speed
         self.heard = b""
+        self.simulated: SimulatedPort | None = None
+        self._in_here = ExitStack()
+        self._lock = threading.Lock()
         self._ours, self._theirs = pty.openpty()
         tty.setraw(self._theirs)
         self.port = os.ttyname(self._theirs)
@@ -37,9 +44,11 @@ class PtyEnd:
         self._thread.start()
 
     def __enter__(self) -> PtyEnd:
+        self._in_here.enter_context(simulated(self))
         return self
 
     def __exit__(self, *_: object) -> None:
+        self._in_here.close()
         self.pull()
 
     def pull(self) -> None:
@@ -57,15 +66,25 @@ class PtyEnd:
             return self.end.baud
         return _SPEEDS.get(termios.tcgetattr(self._ours)[5], 0) or self.end.baud
 
+    def pass_ms(self, milliseconds: int, data: bytes = b"") -> bytes:
+        """Let time pass, at whose beginning bytes arrive at the port; return what it has sent."""
+        said = b""
+        with self._lock:
+            self.heard += data
+            for _ in range(milliseconds):
+                speed = self.end.baud  # an answer has the speed of before the command
+                answer = self.end.step(garbled(data, self._baud(), speed))
+                said += garbled(answer, speed, self._baud())
+                data = b""
+        return said
+
     def _run(self) -> None:
         next_s = time.monotonic()
         while not self._is_over:
             next_s = max(next_s + 0.001, time.monotonic() - BEHIND_S)
             ready, _, _ = select.select([self._ours], [], [], 0)
-            data = os.read(self._ours, 4096) if ready else b""
-            self.heard += data
-            speed = self.end.baud  # an answer has the speed of before the command
-            said = self.end.step(garbled(data, self._baud(), speed))
-            if said:
-                os.write(self._ours, garbled(said, speed, self._baud()))
+            if self.simulated is None:
+                said = self.pass_ms(1, os.read(self._ours, 4096) if ready else b"")
+                if said:
+                    os.write(self._ours, said)
             time.sleep(max(0.0, next_s - time.monotonic()))

@@ -1,7 +1,8 @@
 """A robot behind a pseudo-terminal: the whole firmware in C++, in real time.
 
 What a computer opens as a port is `port`; in between is the terminal driver of this system, as
-with a cable. Time goes by on the robot as on the wall, or slower where this computer is busy.
+with a cable. Time goes by on the robot as on the wall, or slower where this computer is busy. Only
+where this process itself opens the port, in `on`, time is the robot's: nobody waits.
 """
 
 from __future__ import annotations
@@ -15,7 +16,8 @@ from pathlib import Path
 
 from tests.machines.host_firmware import EMPTY, POWER_ON, HostFirmware
 from tests.support import waiting
-from tests.support.command import FOREVER, Command, Done, process
+from tests.support.command import FOREVER, Command, Done, inside
+from tests.support.simulated_port import STRIDE_MS, SimulatedPort, simulated
 from tiniscript.kit import Kit
 
 PUSHED, RELEASED, HELD = 1, 2, 32  # flags of a step
@@ -60,6 +62,8 @@ class PtyRobot:
         self._robot: HostFirmware | None = self._made()
         self._flags: list[int] = []  # what happens to the button, for each of the next steps
         self._passed = 0  # bytes, through the noise
+        self._there, self._back = b"", b""  # bytes on their way
+        self.simulated: SimulatedPort | None = None
         self._is_over = False
         self._thread = threading.Thread(target=self._run, daemon=True)
         self._thread.start()
@@ -161,32 +165,51 @@ class PtyRobot:
             self._robot.close()
         self._robot = None
 
-    def _run(self) -> None:
-        next_s = time.monotonic()
-        there, back = b"", b""  # on their way
-        while not self._is_over:
-            next_s = max(next_s + 0.001, time.monotonic() - BEHIND_MS / 1000)
-            ready, _, _ = select.select([self._ours], [], [], 0)
-            there += os.read(self._ours, 4096) if ready else b""
-            data, there = there[: self.bytes_per_ms], there[self.bytes_per_ms :]
-            data = self._through_noise(data)
-            self.heard += data
-            with self._lock:
+    def pass_ms(self, milliseconds: int, data: bytes = b"") -> bytes:
+        """Let time pass, at whose beginning bytes arrive at the port; return what it has sent."""
+        most = self.bytes_per_ms * milliseconds
+        with self._lock:
+            self._there += data
+            while milliseconds > 0:
+                is_idle = not (self._there or self._flags)
+                stride = milliseconds if is_idle else 1
+                milliseconds -= stride
+                data = self._through_noise(self._there[: self.bytes_per_ms])
+                self._there = self._there[self.bytes_per_ms :]
+                self.heard += data
                 if self.off_after is not None and data:
                     self.off_after -= len(data)
                     if self.off_after <= 0:
                         self._take_power()
                 flags = self._flags.pop(0) if self._flags else 0
-                back += self._robot.step(data, flags) if self._robot else b""
-            sent, back = back[: self.bytes_per_ms], back[self.bytes_per_ms :]
+                if self._robot and is_idle:
+                    self._back += self._robot.wait(stride)
+                elif self._robot:
+                    self._back += self._robot.step(data, flags)
+            sent, self._back = self._back[:most], self._back[most:]
+            return self._through_noise(sent)
+
+    def _run(self) -> None:
+        last_s = time.monotonic()
+        while not self._is_over:
+            is_busy = self._there or self._back or self._flags
+            ready, _, _ = select.select([self._ours], [], [], (1 if is_busy else STRIDE_MS) / 1000)
+            passed_ms = int((time.monotonic() - last_s) * 1000)
+            if self.simulated or not passed_ms:
+                time.sleep(0.001)
+                last_s = time.monotonic() if self.simulated else last_s
+                continue
+            last_s += passed_ms / 1000
+            sent = self.pass_ms(min(passed_ms, BEHIND_MS) - 1)
+            sent += self.pass_ms(1, os.read(self._ours, 4096) if ready else b"")
             if sent:
-                os.write(self._ours, self._through_noise(sent))
-            time.sleep(max(0.0, next_s - time.monotonic()))
+                os.write(self._ours, sent)
 
 
 def on(pty_robot: PtyRobot, *arguments: str | Path, data: bytes = b"") -> Done:
-    """Run `tsc` on the robot's port."""
-    return process(*arguments, "--port", pty_robot.port, data=data)
+    """Run `tsc` on the robot's port, in this process and in the robot's time."""
+    with simulated(pty_robot):
+        return inside(*arguments, "--port", pty_robot.port, data=data)
 
 
 def uploading(pty_robot: PtyRobot, text: str = FOREVER) -> Command:

@@ -11,10 +11,12 @@ import select
 import threading
 import time
 from collections.abc import Callable, Sequence
+from contextlib import ExitStack
 
 from tests.machines.host_firmware import EMPTY, TICKS, HostFirmware
 from tests.support import waiting
 from tests.support.pty_robot import damaged, drives_now
+from tests.support.simulated_port import SimulatedPort, simulated
 from tiniscript.kit import Kit
 
 STEP_MS = 10  # between two steps of a robot for which nothing comes
@@ -37,6 +39,8 @@ class Pupil:
         self.deaf_after: int | None = None  # so many bytes more, and it hears and says nothing
         self.heard = b""
         self._passed = 0
+        self.simulated: SimulatedPort | None = None
+        self._lock = threading.Lock()
 
     @property
     def did(self) -> list[str]:
@@ -46,19 +50,22 @@ class Pupil:
     def moves(self) -> bool:
         return drives_now(self.did)
 
-    def go_on(self, data: bytes, passed_ms: int) -> None:
-        """Let time pass in which bytes arrive."""
+    def pass_ms(self, milliseconds: int, data: bytes = b"") -> bytes:
+        """Let time pass, at whose end bytes arrive; return what it has sent."""
+        with self._lock:
+            return self._pass_ms(milliseconds, data)
+
+    def _pass_ms(self, milliseconds: int, data: bytes) -> bytes:
         self.heard += data
         if self.deaf_after is not None:
             data = data[: self.deaf_after]
             self.deaf_after -= len(data)
         robot = self.robot
-        robot.now_ms += passed_ms - 1
-        sent = robot.step(self._through_noise(data), 0, TICKS * passed_ms)
-        if self.babble and select.select([], [self.ours], [], 0)[1]:
-            os.write(self.ours, self.babble)
-        elif sent and self.deaf_after != 0:
-            os.write(self.ours, self._through_noise(sent))
+        robot.now_ms += milliseconds - 1
+        sent = robot.step(self._through_noise(data), 0, TICKS * milliseconds)
+        if self.babble:
+            return self.babble
+        return b"" if self.deaf_after == 0 else self._through_noise(sent)
 
     def close(self) -> None:
         self.robot.close()
@@ -71,18 +78,21 @@ class Pupil:
 
 
 class RobotFleet:
-    """So many robots; their time is that of the wall."""
+    """So many robots; their time is that of the wall, unless this process has opened the port."""
 
     def __init__(self, kits: Sequence[Kit]) -> None:
         self.pupils = [Pupil(kit, number) for number, kit in enumerate(kits)]
         self._is_over = False
         self._thread = threading.Thread(target=self._run, daemon=True)
         self._thread.start()
+        self._in_here = ExitStack()
 
     def __enter__(self) -> RobotFleet:
+        self._in_here.enter_context(simulated(*self.pupils))
         return self
 
     def __exit__(self, *_: object) -> None:
+        self._in_here.close()
         self._is_over = True
         self._thread.join()
         for pupil in self.pupils:
@@ -102,6 +112,10 @@ class RobotFleet:
                 passed_ms = int((now_s - lasts[end]) * 1000)
                 if passed_ms < (1 if end in ready else STEP_MS):
                     continue
-                data = os.read(end, 4096) if end in ready else b""
                 lasts[end] += passed_ms / 1000
-                pupil.go_on(data, min(passed_ms, 5 * STEP_MS))
+                if pupil.simulated is not None:
+                    continue
+                data = os.read(end, 4096) if end in ready else b""
+                sent = pupil.pass_ms(min(passed_ms, 5 * STEP_MS), data)
+                if sent and select.select([], [end], [], 0)[1]:
+                    os.write(end, sent)

@@ -39,6 +39,7 @@ def texts() -> list[bytes]:
     return [each for each in found if each.strip()]
 
 
+@pytest.mark.sampled("name")
 @pytest.mark.parametrize("name", EACH)
 @pytest.mark.parametrize("room", [200, 374, LARGEST_ROOM])
 def test_the_chip_says_the_same(name: str, room: int) -> None:

@@ -55,6 +55,7 @@ def some_chips(*names: str) -> pytest.MarkDecorator:
 
 each_chip = some_chips(*CHIPS)
 each_emulated = some_chips(*chips.CHIPS)
+one_chip = pytest.mark.sampled("chip")  # of each row; with `--whole` all
 
 
 @pytest.mark.parametrize("chip", CHIPS)
@@ -84,6 +85,7 @@ def same_on_the_chip(chip: str, image: bytes, kit: Kit, senses: Senses) -> str:
     return want.trace.splitlines()[-1]
 
 
+@one_chip
 @each_chip
 @pytest.mark.parametrize("case", having("tiniscript", "robot"))
 def test_robot(case: Case, chip: str) -> None:
@@ -92,6 +94,7 @@ def test_robot(case: Case, chip: str) -> None:
     assert ran.trace == case.parts["robot"], case.id
 
 
+@one_chip
 @each_chip
 @pytest.mark.parametrize("case", listings_alone())
 def test_listing_runs_or_is_refused(case: Case, chip: str) -> None:
@@ -102,6 +105,7 @@ def test_listing_runs_or_is_refused(case: Case, chip: str) -> None:
     assert ("Refused" in ending) == ("refused" in case.parts)
 
 
+@one_chip
 @each_chip
 @pytest.mark.parametrize("seed", range(4))
 def test_random_programs(chip: str, seed: int) -> None:
@@ -114,6 +118,7 @@ def test_random_programs(chip: str, seed: int) -> None:
             same_on_the_chip(chip, image, kit, Senses(readings, 3000, 2000, number + 1))
 
 
+@pytest.mark.sampled("seed")
 @some_chips("avr")
 @pytest.mark.parametrize("seed", range(4))
 def test_some_random_codes(chip: str, seed: int) -> None:
@@ -162,6 +167,7 @@ def test_a_robot_that_is_not_ready_is_asked_again(chip: str) -> None:
         assert ran(avr.answer(avr.built(), request)).trace == want
 
 
+@one_chip
 @each_emulated
 @pytest.mark.parametrize("seed", range(2))
 def test_random_codes(chip: str, seed: int) -> None:
@@ -171,12 +177,14 @@ def test_random_codes(chip: str, seed: int) -> None:
     assert seen["accepted"] > 500
 
 
+@one_chip
 @each_emulated
 def test_images(chip: str) -> None:
     cpp_images.check_images(emulated(chip), 0, 10_000)
     cpp_images.check_whole_images(emulated(chip), 0, 300)
 
 
+@one_chip
 @each_emulated
 @pytest.mark.parametrize("name", cpp_checks.OPERATIONS)
 def test_arithmetic(chip: str, name: str) -> None:

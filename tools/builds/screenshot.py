@@ -1,4 +1,4 @@
-"""Takes the pictures of the studio for README and its pages, in Chromium: `docs/studio.en.png`.
+"""Takes the pictures of the studio for its pages, in Chromium: `docs/studio.en.png`.
 
     python -m tools.builds.screenshot
 

@@ -1,10 +1,10 @@
 """Runs what the project promises, many times: all goals, or those that are named.
 
 `python -m tools.campaign` goes on where the last one ended, until every goal is reached; Ctrl-C
-ends it at once, and all but the piece that was under way is kept. `--list` says what is reached and
-how long the rest takes, `--minutes 30` ends it after a while, `--anew` forgets what was reached,
-`--write` puts the figures into `docs/promises.md`. Calls the campaigns of the tests; has none of
-its own.
+ends it at once, and all but the piece that was under way is kept. `--list` says what is reached,
+when, and how long the rest takes, `--minutes 30` ends it after a while, `--anew` forgets what was
+reached, `--write` puts the figures into `docs/promises.md`. Calls the campaigns of the tests; has
+none of its own.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Sequence
-from datetime import datetime, timezone
+from datetime import date, datetime, timezone
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent.parent
@@ -102,16 +102,21 @@ def piece(goal: Goal, before: Result | None, commit: str) -> Result:
     begun = time.monotonic()
     ended = subprocess.run(words, cwd=ROOT, capture_output=True, text=True, errors="replace")
     seconds = round(before.seconds + time.monotonic() - begun, 1)
-    date = datetime.now(timezone.utc).date().isoformat()
+    day = datetime.now(timezone.utc).date().isoformat()
     if ended.returncode:
         print((ended.stdout + ended.stderr)[-4000:], flush=True)
-        return before._replace(date=date, wrong=f"seed {seed}, `python {' '.join(words[1:])}`")
-    return Result(before.done + count, seconds, before.seed, seed + goal.stride, date, commit)
+        return before._replace(date=day, wrong=f"seed {seed}, `python {' '.join(words[1:])}`")
+    return Result(before.done + count, seconds, before.seed, seed + goal.stride, day, commit)
 
 
 def tell(goals: Sequence[Goal], done: Results) -> None:
-    """Print what is reached, how long that took, and how long the rest takes."""
+    """Print what is reached, how long that took, how long the rest takes, and how old it is.
+
+    What this computer has not run is in the document, or nowhere.
+    """
     commit = results.commit()
+    done = {**results.read(results.WRITTEN), **done}
+    today = datetime.now(timezone.utc).date()
     for goal in goals:
         result = done.get(goal.name)
         said = reached(goal, result)
@@ -120,6 +125,9 @@ def tell(goals: Sequence[Goal], done: Results) -> None:
             said += f" in {result.seconds:,.0f} s; the rest takes {left:,.0f} s"
             if not results.is_same_code(result.commit, commit):
                 said += f"; with the code of {result.commit}, which is another one now"
+        if result is not None and result.date:
+            days = (today - date.fromisoformat(result.date)).days
+            said += f"; run {days} days ago" if days else "; run today"
         print(f"{goal.name:15} {goal.shall:>11,} {goal.unit}: {said}")
 
 

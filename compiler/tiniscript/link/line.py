@@ -46,13 +46,17 @@ class Line:
         lock: IO[bytes] | None = None,
         address: str = "",
     ) -> None:
-        """`lock` is closed after the port. `address` is the port's, where it has a name, too."""
+        """`lock` is closed after the port. `address` is the port's, where it has a name, too.
+
+        A port may have a clock of its own, `now_ms`: that of a simulation.
+        """
         self.session = session
         self.address = address
         session.tells_starts = True  # other clients may share the line
         self.heard = 0  # bytes
         self.is_echoed = False
         self._port = port
+        self._now_ms: Callable[[], int] = getattr(port, "now_ms", now_ms)
         self._lock = lock
         self._news = Condition()
         self._events = Backlog()
@@ -118,7 +122,7 @@ class Line:
     def stop(self) -> None:
         """Stop the robot. The event STOPPED follows when the robot has confirmed."""
         with self._news:
-            self.session.stop(now_ms())
+            self.session.stop(self._now_ms())
         self._wake()
 
     def tell_places(self) -> None:
@@ -128,7 +132,7 @@ class Line:
     def tell(self, event: Event) -> None:
         """Add an event of this process to those that `event` returns."""
         with self._news:
-            self._events.put([(now_ms(), event)])
+            self._events.put([(self._now_ms(), event)])
             self._news.notify_all()
 
     def fail(self, bug: Exception) -> None:
@@ -178,7 +182,7 @@ class Line:
         try:
             while not self._is_closing:
                 with self._news:
-                    data = self.session.poll(now_ms())
+                    data = self.session.poll(self._now_ms())
                     self._tell()
                 if data:
                     self._write(data)
@@ -186,7 +190,7 @@ class Line:
                 if heard:
                     with self._news:
                         self.heard += len(heard)
-                        self.session.receive(heard, now_ms())
+                        self.session.receive(heard, self._now_ms())
                         self._tell()
         except (OSError, TypeError) as why:  # TypeError: from pyserial, if the port is closed
             self._end(str(why))
@@ -214,7 +218,7 @@ class Line:
 
     def _tell(self) -> None:
         """Pass events and outcomes on to the waiting thread and to the listener."""
-        time_ms = now_ms()
+        time_ms = self._now_ms()
         told = [(time_ms, event) for event in self.session.events()]
         over = [request for request in self._under_way if request.outcome is not None]
         if over:

@@ -89,7 +89,7 @@ class Simulator:
         if self.transports.visits != self._visits:
             self._visits = self.transports.visits
             self._heartbeat.forget()
-            self.there.clear()
+            self.there.put(b"\0", self.robot.now_ms)  # ends what the one before has begun
             self.back.clear()
         if data:
             self._traffic_s = wall_s

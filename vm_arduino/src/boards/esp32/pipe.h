@@ -3,13 +3,17 @@
 // Each direction has one writer and one reader, on different cores: the writer publishes what it
 // has written with its index, so neither waits and no lock is needed. That a client has left comes
 // in the row of its bytes, so that none of the next one's is taken for its own. The rings of a
-// transport come from the heap with its first client, and stay.
+// transport come from the heap with its first client, and stay. What finds no room is lost and
+// counted, but no stop is: it reaches the main loop beside the ring.
 
 #ifndef TINISCRIPT_ESP32_PIPE_H_
 #define TINISCRIPT_ESP32_PIPE_H_
 
 #include <stddef.h>
 #include <stdint.h>
+
+#include "../../link/messages.h"
+#include "../../link/typed_stop.h"
 
 namespace tiniscript {
 
@@ -75,20 +79,20 @@ class Pipe {
     return true;
   }
 
-  // A byte of the client. False: it found no room, and is counted.
-  bool put(uint8_t byte) {
+  // A byte of the client.
+  void put(uint8_t byte) {
     has_parted_ = false;
     Rings* const its = rings();
-    if (its != nullptr && its->in.room() > 1 && its->in.put(byte)) return true;  // one for `part`
-    const uint8_t lost = __atomic_load_n(&lost_, __ATOMIC_RELAXED);
-    __atomic_store_n(&lost_, static_cast<uint8_t>(lost + 1), __ATOMIC_RELAXED);
-    return false;
+    const bool has_room =
+        its != nullptr && its->in.room() > 1 && its->in.put(byte);  // one for `part`
+    if (!has_room) count(&lost_);
+    look_for_stop(byte, has_room);
   }
 
   // The client has left.
   void part() {
     __atomic_store_n(&is_connected_, false, __ATOMIC_RELEASE);
-    if (!has_parted_ && rings() != nullptr) rings()->in.put(kParted);
+    if (!has_parted_ && rings() != nullptr) look_for_stop(0, rings()->in.put(kParted));
     has_parted_ = true;  // further ones change nothing until a byte comes
   }
 
@@ -121,6 +125,14 @@ class Pipe {
   // How many bytes were lost. It wraps around to 0.
   uint8_t lost() const { return __atomic_load_n(&lost_, __ATOMIC_RELAXED); }
 
+  // Whether a stop has come since the last call of which bytes were lost.
+  bool take_stop() {
+    const uint8_t stops = __atomic_load_n(&stops_, __ATOMIC_RELAXED);
+    const bool is_new = stops != stops_taken_;
+    stops_taken_ = stops;
+    return is_new;
+  }
+
   static constexpr uint16_t kParted = 0x100;
 
  private:
@@ -135,12 +147,33 @@ class Pipe {
 
   Rings* rings() const { return __atomic_load_n(&rings_, __ATOMIC_ACQUIRE); }
 
+  static void count(uint8_t* one) {
+    const uint8_t before = __atomic_load_n(one, __ATOMIC_RELAXED);
+    __atomic_store_n(one, static_cast<uint8_t>(before + 1), __ATOMIC_RELAXED);
+  }
+
+  // The main loop cannot see a stop whose line or run of zeros has lost a byte, or began behind one.
+  void look_for_stop(uint8_t byte, bool has_room) {
+    if (byte != 0 && has_begun_) is_cut_ = false;
+    if (!has_room) is_cut_ = true;
+    zeros_ = byte == 0 ? static_cast<uint8_t>(zeros_ % kStopRun + 1) : 0;
+    const bool is_stop = typed_.put(byte) || zeros_ == kStopRun;
+    if (is_stop && is_cut_) count(&stops_);
+    has_begun_ = has_room && (byte == 0 || ends_line(byte));
+  }
+
   Rings* rings_;
   uint16_t began_;     // the place of the client's first byte, and above it which turn that is
   uint16_t followed_;  // the reader's: the last one that it has gone to
   bool is_connected_;
   bool has_key_;
   bool has_parted_;  // the radio's: nothing has come since
+  TypedStop typed_;  // in all bytes of the client, with those that were lost
+  uint8_t zeros_;    // the last bytes that are 0, up to kStopRun
+  bool is_cut_;      // a byte was lost since the line began in which the next one is
+  bool has_begun_;   // the last byte has ended a line, and the main loop gets it
+  uint8_t stops_;        // of which bytes were lost
+  uint8_t stops_taken_;  // by the main loop
   uint8_t lost_;
 };
 

@@ -88,6 +88,10 @@ void rest() {
   vTaskDelay(1);
 }
 
+void hear(Transport transport, uint8_t byte) {
+  firmware_on_rx_byte(transport, byte, static_cast<uint16_t>(millis()));
+}
+
 }  // namespace
 
 Pipe& radio_pipe(Transport transport) { return pipes[static_cast<uint8_t>(transport) - kFirst]; }
@@ -104,16 +108,20 @@ void radio_tick() {
   begin(kNetworkRadio);
 }
 
+// A stop of which bytes were lost comes as zeros, before what still waits from before it.
 void radio_attend() {
   for (uint8_t place = kFirst; place < kTransports; place++) {
     const Transport transport = static_cast<Transport>(place);
     Pipe& pipe = radio_pipe(transport);
+    if (pipe.take_stop()) {
+      for (uint8_t zeros = 0; zeros < kStopRun; zeros++) hear(transport, 0);
+    }
     uint16_t item;
     for (uint8_t left = kBytesATurn; left > 0 && pipe.hear(&item); left--) {
       if (item == Pipe::kParted) {
         firmware_on_part(transport);
       } else {
-        firmware_on_rx_byte(transport, static_cast<uint8_t>(item), static_cast<uint16_t>(millis()));
+        hear(transport, static_cast<uint8_t>(item));
       }
     }
   }

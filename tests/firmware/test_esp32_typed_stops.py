@@ -1,0 +1,131 @@
+"""Typed stops of an ESP32: over each transport while another one drives, and where bytes are lost.
+
+A radio's task hands bytes to the main loop by a ring of 1,023 places. A stop that finds no room
+there is a stop all the same.
+"""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.firmware.test_esp32_transports import RADIOS, Ends, Make, booted, ended, uploaded
+from tests.firmware.test_esp32_wifi import joined
+from tests.firmware.test_host_firmware import happened
+from tests.firmware.test_typed_stops import HELD_MS, PREFIXES, SPELLINGS
+from tests.machines.esp32 import Esp32Robot, missing
+from tests.support.esp32_radio import Bytes, End, Network, session, talk
+from tests.support.owners import Keys
+from tiniscript.link.frames import Frame, encoded
+from tiniscript.link.messages import BY_NAME
+from tiniscript.link.session import Session
+
+pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
+
+ROOM = 1022  # bytes; one place is for who leaves
+LATE_MS = 3  # a turn of the radio's task, and what a network of this computer takes
+WHOLE = encoded(Frame(BY_NAME["STATUS"].number, 9, 0))
+
+
+def drives(robot: Esp32Robot, driver: Session, end: End | None = None) -> Ends:
+    """Have a robot drive, by its cable or over a transport."""
+    ends: Ends = [(end, driver)]
+    assert uploaded(robot, ends, driver) == "OK"
+    talk(robot, ends, 10)
+    assert happened(robot)[-1] == "MOTORS 80 80"
+    return ends
+
+
+def stands(robot: Esp32Robot) -> bool:
+    return happened(robot)[-1] == "MOTORS 0 0"
+
+
+def stops(robot: Esp32Robot, end: End | None, ends: Ends, data: bytes, what: str) -> None:
+    """Send bytes that end with a stop. Nothing drives from then on."""
+    typed: Ends = [*ends, (end, Bytes(data))]
+    talk(robot, typed, LATE_MS)
+    if not stands(robot):
+        talk(robot, typed, HELD_MS)  # in what began as a frame
+    assert stands(robot), what
+    talk(robot, [*ends, (end, Bytes(b"SI|F(1,80)\n"))], 50)  # not before a second of silence
+    assert stands(robot), what
+
+
+@pytest.mark.parametrize("make", RADIOS)
+def test_a_typed_stop_over_a_radio_while_the_cable_drives(make: Make) -> None:
+    robot = booted()
+    driver, end = session(1, robot), make(robot)
+    for k, (name, prefix) in enumerate(PREFIXES.items()):
+        ends = drives(robot, driver)
+        stops(robot, end, ends, prefix + SPELLINGS[k % len(SPELLINGS)], name)
+
+
+def test_a_typed_stop_over_a_network() -> None:
+    """Nothing that is typed there drives. A stop is one all the same."""
+    robot, owner = joined(Keys())
+    end = Network(robot)
+    end.send(b"\0\0")
+    for k, (name, prefix) in enumerate(PREFIXES.items()):
+        ends = drives(robot, owner)
+        stops(robot, end, ends, prefix + SPELLINGS[k % len(SPELLINGS)], name)
+    end.leave()
+
+
+def test_a_typed_stop_over_the_cable_while_a_radio_drives() -> None:
+    robot = booted()
+    driver, end = session(1, robot), RADIOS[0](robot)
+    for k, (name, prefix) in enumerate(PREFIXES.items()):
+        ends = drives(robot, driver, end)
+        stops(robot, None, ends, prefix + SPELLINGS[k % len(SPELLINGS)], name)
+
+
+@pytest.mark.parametrize("make", RADIOS)
+def test_who_comes_next_begins_a_line(make: Make) -> None:
+    """What the one before has begun ends with its connection."""
+    robot = booted()
+    driver = session(1, robot)
+    ends = drives(robot, driver)
+    end = make(robot)
+    end.send(b"F(1,")
+    talk(robot, ends, 2)
+    end.leave()
+    talk(robot, ends, 2)
+    make(robot).send(b"S\n")
+    talk(robot, ends, LATE_MS)
+    assert stands(robot)
+
+
+@pytest.mark.parametrize("make", RADIOS)
+@pytest.mark.parametrize("stop", [b"S\n", b" stop ;\r", bytes(4)])
+def test_a_stop_that_finds_no_room_is_seen(make: Make, stop: bytes) -> None:
+    """Wherever the ring ends in it, and where the robot reads before the rest comes."""
+    robot = booted()
+    driver, end = session(1, robot), make(robot)
+    line = b"F(1,80)\n"
+    for left in range(-1, len(stop) + 1):  # bytes of the stop that find room
+        ends = drives(robot, driver)
+        before = (line * ROOM)[: ROOM - left - 1] + b"\n"
+        stops(robot, end, ends, before + stop, f"{left} of {stop!r}")
+    for lost in range(len(stop)):
+        ends = drives(robot, driver)
+        end.send(b"(" * ROOM + b"\n" + stop[:lost])
+        talk(robot, ends, 20)
+        stops(robot, end, ends, stop[lost:], f"the rest behind {lost} of {stop!r}")
+
+
+@pytest.mark.parametrize("make", RADIOS)
+def test_what_is_lost_stops_nobody(make: Make) -> None:
+    """Nor does a frame with a line S in it that arrives whole, behind what was lost."""
+    robot = booted()
+    driver, end = session(1, robot), make(robot)
+    ends = drives(robot, driver)
+    client = session(2, robot)
+    code = b"Z\n\nS\n\xcc\x03"
+    for before in (b"F(1,80)\n" * 400, WHOLE * 400, b"SS\nS S\n\0\0S" * 400):
+        end.send(before)
+        talk(robot, ends, 20)
+        frame = encoded(Frame(BY_NAME["LIVE"].number, 9, 0, b"\1" + code))
+        assert b"\nS\n" in frame
+        end.send(b"\0" + frame)
+        talk(robot, ends, HELD_MS + 20)
+        assert not stands(robot)
+    assert ended(robot, [*ends, (end, client)], client.status()) == "OK"

@@ -1,0 +1,83 @@
+"""Of rows that take a chip long, each commit runs a fair sample, and `--whole` all of them.
+
+A test marked `sampled("chip")` keeps, of the rows that differ in `chip` alone, one that the commit
+draws: every other value is in each run, each chip as often as the others, and every row in some.
+`sampled("chip", keep=2)` keeps two. What is asked for by `-k` or by its name is never left out.
+"""
+
+from __future__ import annotations
+
+import random
+import subprocess
+from collections import defaultdict
+from functools import lru_cache
+
+import pytest
+
+from tests.support.casefile import ROOT
+
+MARK = "sampled"
+
+
+def add_options(parser: pytest.Parser) -> None:
+    parser.addoption("--whole", action="store_true", help="all rows, not the sample of this commit")
+    parser.addoption("--sample", metavar="COMMIT", help="the sample that another commit draws")
+
+
+def leave_out(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Deselect the rows that are not in the sample."""
+    if config.getoption("--whole") or is_narrowed(config):
+        return
+    tests: dict[str, dict[str, list[pytest.Item]]] = defaultdict(lambda: defaultdict(list))
+    for item in items:
+        mark = item.get_closest_marker(MARK)
+        if mark is not None:
+            tests[item.nodeid.partition("[")[0]][_others(item, mark.args)].append(item)
+    left_out: set[pytest.Item] = set()
+    for name, groups in tests.items():
+        draw = random.Random(f"{seed(config)} {name}")
+        turn = draw.randrange(1000)
+        for rows in draw.sample(list(groups.values()), len(groups)):
+            mark = rows[0].get_closest_marker(MARK)
+            assert mark is not None
+            turn += 1
+            kept = {rows[(turn + k) % len(rows)] for k in range(mark.kwargs.get("keep", 1))}
+            left_out |= set(rows) - kept
+    if left_out:
+        items[:] = [item for item in items if item not in left_out]
+        config.hook.pytest_deselected(items=list(left_out))
+
+
+def said(config: pytest.Config) -> str:
+    """Return how the rows of this run are run again, or nothing where it has all."""
+    if config.getoption("--whole") or is_narrowed(config):
+        return ""
+    return f"rows of chips: --sample {seed(config)} draws the same again, --whole takes all"
+
+
+def is_narrowed(config: pytest.Config) -> bool:
+    return bool(config.option.keyword) or any("::" in each for each in config.args)
+
+
+def seed(config: pytest.Config) -> str:
+    """Return what draws the sample: the commit, or `none` where there is no history."""
+    return str(config.getoption("--sample") or _commit())
+
+
+@lru_cache(maxsize=1)
+def _commit() -> str:
+    words = ["git", "-C", str(ROOT), "rev-parse", "--short=10", "HEAD"]
+    try:
+        done = subprocess.run(words, capture_output=True, text=True)
+    except OSError:
+        return "none"
+    return done.stdout.strip() or "none"
+
+
+def _others(item: pytest.Item, names: tuple[str, ...]) -> str:
+    """Return the parameters that all rows have in common that differ in these alone."""
+    assert isinstance(item, pytest.Function)
+    params = dict(item.callspec.params)
+    for name in names:
+        params.pop(name)  # a KeyError: the test has no such parameter
+    return repr(sorted((name, repr(value)) for name, value in params.items()))

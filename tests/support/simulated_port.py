@@ -1,0 +1,101 @@
+"""Ports that keep the time of what is behind them: where this process opens one, nobody waits.
+
+The port itself is real: it is opened, locked and pulled out as any other.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
+from typing import TYPE_CHECKING, Protocol
+from unittest import mock
+
+from tiniscript.cli.robot import recorder, run_monitor
+from tiniscript.link import ports
+
+if TYPE_CHECKING:
+    import serial
+
+STRIDE_MS = 5  # so long nobody looks at a robot for which nothing comes
+
+
+class PortEnd(Protocol):
+    """What is behind a port. While `simulated` is set, its own thread leaves its time alone."""
+
+    port: str
+    simulated: SimulatedPort | None
+
+    def pass_ms(self, milliseconds: int, data: bytes = b"") -> bytes:
+        """Let time pass, at whose beginning bytes arrive; return what it has sent meanwhile."""
+        ...
+
+
+class SimulatedPort:
+    """An open port of pyserial: time goes on behind it while it is read, and at no other time."""
+
+    def __init__(self, end: PortEnd, device: serial.SerialBase) -> None:
+        self._end, self._device = end, device
+        self.timeout: float = device.timeout
+        self._now_ms = int(time.monotonic() * 1000)
+        self._there, self._back = b"", b""
+        end.simulated = self
+
+    def now_ms(self) -> int:
+        return self._now_ms
+
+    def write(self, data: bytes) -> None:
+        self._there += data
+
+    def read(self, size: int = 1) -> bytes:
+        left_ms = int(self.timeout * 1000)
+        self._back += self._device.read(self._device.in_waiting)  # somebody else writes there
+        while not self._back and left_ms > 0:
+            stride = min(left_ms, STRIDE_MS)
+            data, self._there = self._there, b""
+            self._back += self._end.pass_ms(stride, data)
+            self._now_ms += stride
+            left_ms -= stride
+        found, self._back = self._back[:size], self._back[size:]
+        return found
+
+    @property
+    def in_waiting(self) -> int:
+        return len(self._back)
+
+    @property
+    def baudrate(self) -> int:
+        return int(self._device.baudrate)
+
+    @baudrate.setter
+    def baudrate(self, baud: int) -> None:
+        self._device.baudrate = baud
+
+    def reset_input_buffer(self) -> None:
+        self._back = b""
+
+    def close(self) -> None:
+        self._device.close()
+        self._end.simulated = None
+
+
+@contextmanager
+def simulated(*ends: PortEnd) -> Iterator[None]:
+    """Within it, what this process opens keeps the time of its end."""
+    actual = ports._open
+    by_port = {end.port: end for end in ends}
+
+    def opened(port: str, baud: int) -> serial.SerialBase | SimulatedPort:
+        device = actual(port, baud)
+        return SimulatedPort(by_port[port], device) if port in by_port else device
+
+    def now_s() -> float:
+        port = ends[0].simulated
+        return port.now_ms() / 1000 if port else time.monotonic()
+
+    with ExitStack() as stack:
+        stack.enter_context(mock.patch.object(ports, "_open", opened))
+        if len(ends) == 1:
+            for module in (recorder, run_monitor):
+                stack.enter_context(mock.patch.object(module, "monotonic", now_s))
+        yield

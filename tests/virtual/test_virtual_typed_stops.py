@@ -1,0 +1,52 @@
+"""Typed stops of the virtual robot: in every state of its receiver, and by its next client."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.firmware.test_typed_stops import HELD_MS, PREFIXES, RUNS, SILENCE_MS, SPELLINGS
+from tests.support.virtual_robot import missing, robot_in
+from tests.virtual.test_simulator import simulator, until, visit
+from tiniscript.virtual.robot import VirtualRobot
+from tiniscript.virtual.simulator import Simulator
+
+pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")
+
+__all__ = ("simulator",)
+
+ROBOTS = ("tinibot", "grabber", "tinibot32")  # one for each module
+BITS = 10
+
+
+def wait(robot: VirtualRobot, milliseconds: int, data: bytes = b"") -> None:
+    robot.step(robot.now_ms + milliseconds, data)
+
+
+@pytest.mark.parametrize("name", ROBOTS)
+def test_a_typed_stop_in_every_state(name: str) -> None:
+    robot = robot_in(name=name)
+    byte_ms = 1000 * BITS / robot.profile.board.baud
+    for k, (what, prefix) in enumerate(PREFIXES.items()):
+        wait(robot, SILENCE_MS + 50)
+        wait(robot, SILENCE_MS + 100, RUNS)
+        assert robot.is_running, what
+        typed = prefix + SPELLINGS[k % len(SPELLINGS)]
+        wait(robot, round(len(typed) * byte_ms) + 2, typed)
+        if robot.is_running:
+            wait(robot, HELD_MS)  # in what began as a frame
+        assert not robot.is_running, what
+        wait(robot, 300, b"F(1,80)\n")  # not before a second of silence
+        assert not robot.is_running, what
+
+
+def test_the_next_client_begins_a_line(simulator: Simulator) -> None:
+    """What the one before has begun ends with its connection."""
+    with visit(simulator) as client:
+        client.sendall(RUNS)
+        until(simulator, lambda: simulator.robot.is_running)
+        client.sendall(b"F(1,")
+        until(simulator, lambda: bool(simulator.waiting))
+    until(simulator, lambda: not simulator.waiting)
+    with visit(simulator) as client:
+        client.sendall(b"S\n")
+        until(simulator, lambda: not simulator.robot.is_running)
