@@ -1,23 +1,24 @@
 """The page and a robot by Web Bluetooth: the browser's own emulation is the radio.
 
 The emulation has no notifications, so a page of these tests reads what the robot says; whoever
-reads in a browser gets the event of a notification.
+reads in a browser gets the event of a notification. The robot's clock goes on while the page reads,
+and waits for a page that a busy computer keeps from speaking.
 """
 
 from __future__ import annotations
 
 import base64
-import os
-import select
 from collections.abc import Iterator
+from contextlib import closing
 from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from tests.machines.host_firmware import HostFirmware
 from tests.studio.test_page_link import said
 from tests.support import studio
 from tests.support.command import FOREVER
-from tests.support.pty_robot import PtyRobot
+from tests.support.pty_robot import drives_now
 from tests.support.studio import checked, write
 from tiniscript import robots
 
@@ -28,24 +29,34 @@ WITH_BLUETOOTH = "--enable-features=WebBluetooth"  # Chromium for Linux has it o
 ADDRESS = "09:09:09:09:09:09"
 NORDIC = "6e400001-b5a3-f393-e0a9-e50e24dcca9e"
 HM10 = "0000ffe0-0000-1000-8000-00805f9b34fb"
-READ_INSTEAD = """
-BluetoothRemoteGATTCharacteristic.prototype.startNotifications = async function () {
-  const read = () => this.readValue().then(() => setTimeout(read, 30), () => setTimeout(read, 60));
+MOST = 20  # bytes, what every module takes
+READ_MS = 30
+SILENT_MS = 300  # a robot stops when it hears nothing for 500
+READ_INSTEAD = f"""
+BluetoothRemoteGATTCharacteristic.prototype.startNotifications = async function () {{
+  globalThis.isDeaf = false;
+  const read = () => {{
+    if (isDeaf) return;
+    globalThis.reading = this.readValue().then(
+      () => setTimeout(read, {READ_MS}), () => setTimeout(read, {2 * READ_MS}));
+  }};
   read();
   return this;
-};
+}};
 """
 
 
 class Radio:
     """A robot with a Bluetooth module: the browser asks it by CDP."""
 
-    def __init__(self, browser: Browser, page: Page, robot: PtyRobot, service: str) -> None:
+    def __init__(self, browser: Browser, page: Page, service: str) -> None:
         self.writes: list[int] = []  # lengths
+        self.robot = HostFirmware(robots.load("tinibot").kit)
         self._service = service
-        self._made = False
-        self._chosen = self._is_gone = False
-        self._port = os.open(robot.port, os.O_RDWR | os.O_NOCTTY | os.O_NONBLOCK)
+        self._made = self._chosen = False
+        self._there, self._back = b"", b""  # on their way
+        self._silent_ms = 0
+        self._emulated = page
         self._whole = browser.new_browser_cdp_session()
         self._page = page.context.new_cdp_session(page)
         self._ask("enable", state="powered-on", leSupported=True)
@@ -58,10 +69,16 @@ class Radio:
 
     def close(self) -> None:
         self._ask("disable")
-        os.close(self._port)
+        self.robot.close()
+
+    @property
+    def did(self) -> list[str]:
+        """What the robot has done, without the times."""
+        return [line.split(" ", 1)[1] for line in self.robot.did]
 
     def go_away(self) -> None:
-        self._is_gone = True
+        # The emulation never says that a device has gone which has still to answer a read.
+        self._emulated.evaluate("async () => { isDeaf = true; await reading; }")
         self._ask("simulateGATTDisconnection", address=ADDRESS)
 
     def _ask(self, what: str, **fields: Any) -> Any:
@@ -98,58 +115,59 @@ class Radio:
         if asked["type"] == "write":
             data = base64.b64decode(asked["data"])
             self.writes.append(len(data))
-            os.write(self._port, data)
+            self._there += data
             if asked.get("writeType") == "write-without-response":
                 return
         elif asked["type"] == "read":
-            ready = select.select([self._port], [], [], 0)[0]
-            data = os.read(self._port, 20) if ready else b""
+            data = self._heard()
             answer = {"data": base64.b64encode(data).decode()}
-        if self._is_gone:
-            return
         self._ask("simulateCharacteristicOperationResponse",
                   characteristicId=asked["characteristicId"], type=asked["type"], code=0,
                   **answer)  # fmt: skip
 
+    def _heard(self) -> bytes:
+        """Let the robot's time go on, and return what comes of it in one read."""
+        passes_ms = READ_MS if self._there else min(READ_MS, SILENT_MS - self._silent_ms)
+        self._silent_ms = 0 if self._there else self._silent_ms + passes_ms
+        if passes_ms:
+            self._back += self.robot.wait(passes_ms, self._there)
+        self._there = b""
+        heard, self._back = self._back[:MOST], self._back[MOST:]
+        return heard
 
-@pytest.fixture(params=[NORDIC, HM10], ids=["nordic", "hm10"])
-def met(
-    playwright: Playwright, request: pytest.FixtureRequest
-) -> Iterator[tuple[Page, PtyRobot, Radio]]:
-    """A page that has met its robot by Bluetooth."""
-    with (
-        studio.served() as server,
-        studio.browser(playwright, WITH_BLUETOOTH) as browser,
-        PtyRobot(robots.load("tinibot").kit) as robot,
-    ):
+
+@pytest.fixture(scope="module")
+def radio_page(playwright: Playwright) -> Iterator[tuple[Browser, Page]]:
+    with studio.served() as server, studio.browser(playwright, WITH_BLUETOOTH) as browser:
         context = browser.new_context(locale="en-US", service_workers="block")
         context.add_init_script(READ_INSTEAD)
         page = context.new_page()
         page.goto(server.address)
         checked(page)
-        radio = Radio(browser, page, robot, request.param)
         page.click("#side_real")
-        page.click("#link_bluetooth")
-        said(page, "Connected: ")
-        yield page, robot, radio
-        radio.close()
+        yield browser, page
         context.close()
 
 
-def test_a_robot_is_driven_by_bluetooth(met: tuple[Page, PtyRobot, Radio]) -> None:
-    page, robot, radio = met
-    write(page, "SHOW(2.5);\n" + "F(0.1, 80);\n" * 20)
-    page.click("#link_upload")
-    said(page, "Done.")
-    assert page.locator("#link_shown").inner_text() == "2.5"
-    assert robot.did.count("MOTORS 80 80") >= 1
-    assert max(radio.writes) == 20  # what every module takes
-    write(page, FOREVER)
-    page.click("#link_upload")
-    said(page, "The robot has it")
-    while not robot.moves:  # the radio is heard while the page is waited for
-        page.wait_for_timeout(20)
-    page.keyboard.press("Escape")
-    said(page, "Stopped: the robot has confirmed it.")
-    radio.go_away()
-    said(page, "The Bluetooth connection has ended.")
+@pytest.mark.parametrize("service", [NORDIC, HM10], ids=["nordic", "hm10"])
+def test_a_robot_is_driven_by_bluetooth(radio_page: tuple[Browser, Page], service: str) -> None:
+    browser, page = radio_page
+    with closing(Radio(browser, page, service)) as radio:
+        page.click("#link_bluetooth")
+        said(page, "Connected: ")
+        write(page, "SHOW(2.5);\n" + "F(0.1, 80);\n" * 20)
+        page.click("#link_upload")
+        said(page, "Done.")
+        assert page.locator("#link_shown").inner_text() == "2.5"
+        assert radio.did.count("MOTORS 80 80") >= 1
+        assert max(radio.writes) == MOST
+        write(page, FOREVER)
+        page.click("#link_upload")
+        said(page, "The robot has it")
+        while not drives_now(radio.did):  # the radio is heard while the page is waited for
+            page.wait_for_timeout(20)
+        page.keyboard.press("Escape")
+        said(page, "Stopped: the robot has confirmed it.")
+        assert not drives_now(radio.did)
+        radio.go_away()
+        said(page, "The Bluetooth connection has ended.")
