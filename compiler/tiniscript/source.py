@@ -11,6 +11,7 @@ from bisect import bisect_right
 from typing import NamedTuple
 
 LARGEST_SOURCE = 1_000_000  # bytes
+PROGRAM_ENDS = (".ts", ".tini", ".ts.txt", ".tini.txt")  # of a name; editors of Windows add .txt
 
 _LINE_END = re.compile(r"\r\n|\n|\r")
 

@@ -118,7 +118,7 @@ def test_a_folder_without_programs_says_what_a_program_is(folder: Path, tsc: Tsc
     (folder / "empty").mkdir()
     done = tsc("check", "empty")
     assert (done.code, done.out) == (2, "")
-    assert done.err.startswith("tsc: empty has no program in it. Their names end in .ts.")
+    assert done.err.startswith("tsc: empty has no program in it. Their names end in .ts or .tini.")
 
 
 def test_thirty_programs_and_deep_folders(folder: Path, tsc: Tsc) -> None:

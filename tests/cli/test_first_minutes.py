@@ -390,7 +390,14 @@ def test_a_program_without_a_verb(tsc: Tsc, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("real", "said"), [("prog.ts.txt", "prog.ts"), ("prog.ts", "prog"), ("prog.ts.txt", "prog")]
+    ("real", "said"),
+    [
+        ("prog.ts.txt", "prog.ts"),
+        ("prog.ts", "prog"),
+        ("prog.ts.txt", "prog"),
+        ("prog.tini", "prog"),
+        ("prog.tini.txt", "prog.tini"),
+    ],
 )
 def test_a_file_is_found_by_the_name_that_a_folder_shows(
     tsc: Tsc, tmp_path: Path, real: str, said: str

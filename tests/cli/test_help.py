@@ -20,7 +20,7 @@ from tiniscript import robots
 from tiniscript.cli import help
 from tiniscript.cli.texts.options import OPTIONS, Option, of_verb
 from tiniscript.cli.texts.options import PROGRAM as A_PROGRAM
-from tiniscript.cli.texts.verbs import NOTES, VERBS
+from tiniscript.cli.texts.verbs import FIRST, NOTES, VERBS
 from tiniscript.flash.bootloaders import BOARDS
 from tiniscript.robots.ports import AVRS
 from tiniscript.virtual import worlds
@@ -74,7 +74,11 @@ def test_help_shows_which_options_take_a_value(verb: str, language: str) -> None
 @in_both
 @pytest.mark.parametrize("columns", [80, 60, 40])
 def test_help_fits_a_terminal(language: str, columns: int) -> None:
-    for said in (help.overview(language, columns), *(help.of(v, language, columns) for v in VERBS)):
+    for said in (
+        help.overview(language, columns),
+        help.everything(language, columns),
+        *(help.of(v, language, columns) for v in VERBS),
+    ):
         too_long = [line for line in said.splitlines() if len(line) > columns]
         # a word is not broken: a name of a file, or of many fields
         assert [line for line in too_long if " " in line.strip()] == []
@@ -94,9 +98,42 @@ def test_no_backticks_are_printed_and_no_texts_are_lost(language: str) -> None:
         assert words(each.says[k]) in words(said) and words(each.ends[k]) in words(said)
         for option in of_verb(verb):
             assert words(option.help[k]) in words(said), option
-        assert words(each.summary[k]) in words(help.overview(language))
+        assert words(each.summary[k]) in words(help.everything(language))
+        if isinstance(each.group, str):
+            assert re.search(rf"tsc {each.group}\b.*, {verb}\b", help.everything(language))
     for note in NOTES:
-        assert words(note[k]) in words(help.overview(language))
+        assert words(note[k]) in words(help.everything(language))
+
+
+@in_both
+def test_the_first_help_has_the_ten_that_most_people_need(language: str) -> None:
+    said = help.overview(language)
+    assert len(said.splitlines()) <= 30
+    assert [row.split()[1] for row in rows_of(said) if row.startswith("tsc ")] == list(FIRST)
+
+
+@pytest.mark.parametrize(
+    ("asked", "verb"),
+    [
+        ("put firmware on", "firmware"), ("rename robot", "name"), ("list serial ports", "ports"),
+        ("make it drive straight", "trim"), ("read my program back", "fetch"),
+        ("bluetooth pin", "module"), ("dibujar conexiones", "wiring"),
+        ("conectar a la red wifi", "wifi"), ("ir en línea recta", "trim"),
+        ("poner firmware", "firmware"),
+    ],
+)  # fmt: skip
+def test_a_command_is_found_by_what_it_does(tsc: Tsc, asked: str, verb: str) -> None:
+    done = tsc("help", asked)
+    assert done.code == 0
+    assert rows_of(done.out)[0].split()[1] == verb
+    assert tsc("help", *asked.split()).out == done.out
+
+
+def test_a_question_that_no_command_answers(tsc: Tsc) -> None:
+    done = tsc("help", "bake", "a", "cake")
+    assert done.code == 2
+    assert "no command is known to do that: “bake a cake”" in done.err
+    assert tsc("help", "todo", "--lang", "es").out == help.everything("es")
 
 
 def test_every_verb_is_a_module_and_every_module_a_verb() -> None:
@@ -142,7 +179,7 @@ def test_a_program_on_the_command_line_works_in_every_verb_that_takes_one(
 ) -> None:
     """`upload`, which takes one too, needs a robot, `class` some, `lesson` a task: see theirs."""
     takes = [verb for verb in VERBS if any(each.kind is A_PROGRAM for each in of_verb(verb))]
-    assert takes == ["compile", "check", "run", "show", "fmt", "upload", "class", "lesson"]
+    assert takes == ["lesson", "check", "run", "compile", "show", "fmt", "upload", "class"]
     for verb in takes:
         assert "-e" in {flag for each in PARSERS[verb]._actions for flag in each.option_strings}
         if verb not in ("upload", "class", "lesson"):

@@ -16,9 +16,10 @@ PAGES = {"en": "command.en.md", "es": "comandos.es.md"}
 OTHER = {"en": ("es", "Español"), "es": ("en", "English")}
 TITLE = ("The command `tsc`", "El comando `tsc`")
 INTRODUCTION = (
-    "Every verb and every option. `tsc help` and `tsc help VERB` say the same on a terminal.",
-    "Todos los verbos y todas las opciones. `tsc help` y `tsc help VERBO` dicen lo mismo en una"
-    " terminal.",
+    "Every verb and every option. `tsc help all` and `tsc help VERB` say the same on a terminal;"
+    " `tsc --help` has the ten that most people need.",
+    "Todos los verbos y todas las opciones. `tsc help todo` y `tsc help VERBO` dicen lo mismo en"
+    " una terminal; `tsc --help` muestra los diez que más se usan.",
 )
 EACH = ("Every verb has these, too:", "Cada verbo tiene además estas:")
 HEAD = (("option", "does"), ("opción", "hace"))

@@ -1,6 +1,6 @@
-"""The text of `tsc --help` and `tsc help VERB`, made from the tables of verbs and options.
+"""The text of `tsc --help` and `tsc help`, made from the tables of verbs and options.
 
-Only lays the text out; `terminal/pager.py` shows it.
+Only lays the text out; `terminal/pager.py` shows it, and `finding.py` finds a verb by what it does.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from textwrap import wrap
 
 from tiniscript.cli.terminal import pager
 from tiniscript.cli.texts.options import PROGRAM, USAGE, WITH_VIRTUAL, Option, of_verb
-from tiniscript.cli.texts.verbs import NOTES, TITLE, VERBS
+from tiniscript.cli.texts.verbs import FIRST, MORE, NOTES, TITLE, VERBS
 
 WIDTH = 80  # columns, where the terminal has as many
 NARROWEST = 40
@@ -25,8 +25,18 @@ def show_verb(verb: str, language: str) -> None:
     pager.show(of(verb, language, _width()), language)
 
 
-def show_all(language: str) -> None:
+def show_first(language: str) -> None:
     pager.show(overview(language, _width()), language)
+
+
+def show_all(language: str) -> None:
+    pager.show(everything(language, _width()), language)
+
+
+def show_found(verbs: Iterable[str], language: str) -> None:
+    rows = [_row(verb, language) for verb in verbs]
+    left = _left(rows, _width() * 4 // 10)
+    pager.show("\n".join(_columns(rows, left, _width())) + "\n", language)
 
 
 def of(verb: str, language: str, width: int = WIDTH) -> str:
@@ -43,14 +53,26 @@ def of(verb: str, language: str, width: int = WIDTH) -> str:
 
 
 def overview(language: str, width: int = WIDTH) -> str:
-    """Return the help of `tsc`: every verb with an example."""
+    """Return the help of `tsc`: the verbs that most people need, with an example each."""
+    k = language == "es"
+    rows = [_row(verb, language) for verb in FIRST]
+    parts = [
+        _paragraphs(TITLE[k], width),
+        "\n".join(_columns(rows, _left(rows, width * 4 // 10), width)),
+        "\n".join(_options(of_verb("tsc"), language, width)),
+        _paragraphs(MORE[k], width),
+    ]
+    return "\n\n".join(parts) + "\n"
+
+
+def everything(language: str, width: int = WIDTH) -> str:
+    """Return what `tsc help all` says: every verb, in groups."""
     k = language == "es"
     parts = [_paragraphs(TITLE[k], width)]
     commands = groups(language)
     left = _left([row for _, rows in commands for row in rows], width * 4 // 10)
     for heading, rows in commands:
-        if heading:
-            parts.append(_paragraphs(heading, width))
+        parts.append(_paragraphs(heading, width))
         parts.append("\n".join(_columns(rows, left, width)))
     parts.append("\n".join(_options(of_verb("tsc"), language, width)))
     parts.append("\n".join(_paragraphs(note[k], width) for note in NOTES))
@@ -58,14 +80,21 @@ def overview(language: str, width: int = WIDTH) -> str:
 
 
 def groups(language: str) -> list[tuple[str, list[Row]]]:
-    """Return the headings of the overview with the commands below each, and what these do."""
+    """Return the headings of all verbs with the commands below each, and what these do."""
     k = language == "es"
     found: dict[str, list[Row]] = {}
-
-    for each in VERBS.values():
-        for group, example, summary in ((each.group, each.example, each.summary), *each.also):
-            found.setdefault(group[k], []).append((f"tsc {example[k]}", summary[k]))
+    for verb, each in VERBS.items():
+        if isinstance(each.group, tuple):
+            beside = [name for name, other in VERBS.items() if other.group == verb]
+            does = "; ".join(_row(name, language)[1] for name in (verb, *beside))
+            typed = ", ".join([_row(verb, language)[0], *beside])
+            found.setdefault(each.group[k], []).append((typed, does))
     return list(found.items())
+
+
+def _row(verb: str, language: str) -> Row:
+    k = language == "es"
+    return f"tsc {VERBS[verb].example[k]}", VERBS[verb].summary[k].replace("`", "")
 
 
 def usage(verb: str, language: str) -> list[str]:

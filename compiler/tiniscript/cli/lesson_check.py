@@ -22,8 +22,9 @@ from typing import TYPE_CHECKING, NamedTuple
 from tiniscript.cli import inputs, outputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.options import whole_number
-from tiniscript.cli.program_files import ENDS, Found, in_folder, read
+from tiniscript.cli.program_files import Found, in_folder, read
 from tiniscript.cli.texts.common import Said, text
+from tiniscript.source import PROGRAM_ENDS
 
 if TYPE_CHECKING:
     from tiniscript import Compiled
@@ -34,7 +35,7 @@ if TYPE_CHECKING:
 
 PROGRAMS = 200  # of a folder
 LEAST_COLUMNS = 24  # of a sentence beside its program; below that it stands under it
-TEXTS = (*ENDS, ".txt")
+TEXTS = (*PROGRAM_ENDS, ".txt")
 LIKE_NOTES = re.compile(r"(?:read ?me|leeme|notes|notas)(?![^\W\d_])", re.IGNORECASE)  # names
 # A line of a program begins so, also a wrong one: `SI|`, `SI`, `F 2`, `ADELANTE (2)`, `x = 3`.
 LIKE_A_PROGRAM = re.compile(
@@ -212,7 +213,7 @@ def _is_note(found: Found) -> bool:
 
     In doubt it is a program: what a pupil has handed in is marked, however wrong it is.
     """
-    if found.name.lower().endswith(ENDS) or found.problem is not None:
+    if found.name.lower().endswith(PROGRAM_ENDS) or found.problem is not None:
         return False
     letters = unicodedata.normalize("NFD", Path(found.name).name)
     plain = "".join(each for each in letters if not unicodedata.combining(each))

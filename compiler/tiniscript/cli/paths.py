@@ -21,6 +21,7 @@ from typing import NamedTuple
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.texts.common import text
 from tiniscript.cli.texts.options import OPTIONS
+from tiniscript.source import PROGRAM_ENDS
 
 # Inputs by their name in `Namespace`: the sentence that describes the input.
 READS = {each.name: each.kind.reads for each in OPTIONS if each.kind and each.kind.reads}
@@ -68,7 +69,8 @@ def check(options: Namespace, language: str) -> None:
 
 def default_output(program: str) -> str:
     """Return where `tsc compile` puts the image of a program."""
-    name = program[: -len(".txt")] if program.lower().endswith(".ts.txt") else program
+    is_text = program.lower().endswith((".ts.txt", ".tini.txt"))
+    name = program[: -len(".txt")] if is_text else program
     stem, _ = os.path.splitext(name)  # noqa: PTH122 - a Path would change the name
     return f"{stem}.bin"
 
@@ -80,7 +82,7 @@ def real_name(program: str) -> str:
     """
     if os.path.exists(program):  # noqa: PTH110 - a name that no file can have gets no Path
         return program
-    for real in (f"{program}.txt", f"{program}.ts", f"{program}.ts.txt"):
+    for real in (f"{program}.txt", *(program + end for end in PROGRAM_ENDS)):
         if os.path.isfile(real):  # noqa: PTH113
             return real
     return program

@@ -8,21 +8,29 @@ from typing import NoReturn
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.texts.verbs import VERBS
+from tiniscript.source import PROGRAM_ENDS
 from tiniscript.words import nearest
 
-PROGRAMS = (".ts", ".ts.txt", ".bin")
 MEANT = {  # what the same is called elsewhere
     "flash": "firmware", "burn": "firmware", "serial": "monitor", "repl": "live", "shell": "live",
     "simulate": "robot", "simulator": "robot", "sim": "robot", "version": "--version",
+    "rename": "name", "owner": "claim", "diagram": "wiring", "send": "upload", "halt": "stop",
+    "nombre": "name", "dueño": "claim", "conexiones": "wiring", "enviar": "upload",
+    "cargar": "upload", "subir": "upload", "parar": "stop", "detener": "stop",
+    "compilar": "compile", "revisar": "check", "corregir": "check", "ejecutar": "run",
+    "lección": "lesson", "leccion": "lesson", "estudio": "studio", "puertos": "ports",
 }  # fmt: skip
 
 
 def refuse(name: str) -> NoReturn:
     """Raise CommandError where a word stands in place of a verb."""
     refuse_program(name)
-    raise CommandError(
-        2, "no_verb", found=name, near=MEANT.get(name.lower()) or nearest(name, VERBS) or ""
-    )
+    raise CommandError(2, "no_verb", found=name, near=meant(name))
+
+
+def meant(name: str) -> str:
+    """Return the verb that somebody means with a word that is none, or nothing."""
+    return MEANT.get(name.lower()) or nearest(name, VERBS) or ""
 
 
 def refuse_program(name: str) -> None:
@@ -30,7 +38,7 @@ def refuse_program(name: str) -> None:
 
     tsc does not choose a verb: a robot moves only when the user has asked for it.
     """
-    if name.lower().endswith(PROGRAMS) or _is_file(name):
+    if name.lower().endswith((*PROGRAM_ENDS, ".bin")) or _is_file(name):
         raise CommandError(2, "file_without_verb", found=_quoted(name))
     if "(" in name or "|" in name:
         raise CommandError(2, "text_without_verb", found=_quoted(name, always=True))

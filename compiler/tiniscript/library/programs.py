@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from tiniscript.diagnostics.rendering import Message
 from tiniscript.library.errors import ProgramError, UsageError
 from tiniscript.printable import printable
+from tiniscript.source import PROGRAM_ENDS
 
 if TYPE_CHECKING:
     from tiniscript import Compiled
@@ -20,7 +21,7 @@ Language = str  # "en" or "es"
 SHOWN = 200  # characters of a name or a value in a sentence
 REMARK = 60  # characters of a line in a listing
 MOST_BYTES = 1_000_000  # of a file
-FILES = (".ts", ".ts.txt", ".bin")
+FILES = (*PROGRAM_ENDS, ".bin")
 
 
 class Program:

@@ -1,19 +1,33 @@
-"""`tsc help`: what a verb does, and which options it has."""
+"""`tsc help`: what a verb does, and which options it has; or which verb does something."""
 
 from __future__ import annotations
 
 from argparse import Namespace
 
-from tiniscript.cli.help import show_all, show_verb
+from tiniscript.cli.errors import CommandError
+from tiniscript.cli.help import show_all, show_first, show_found, show_verb
+from tiniscript.cli.inputs import shown
 from tiniscript.cli.texts.verbs import VERBS
-from tiniscript.cli.verbless import refuse
+from tiniscript.cli.verbless import meant, refuse
+
+ALL = ("all", "todo", "todos")
 
 
 def run(options: Namespace, language: str) -> int:
-    if options.about is None:
+    about = " ".join(options.about)
+    if not about:
+        show_first(language)
+    elif about in ALL:
         show_all(language)
-        return 0
-    if options.about not in VERBS:
-        refuse(options.about)
-    show_verb(options.about, language)
+    elif about in VERBS:
+        show_verb(about, language)
+    else:
+        from tiniscript.cli.finding import verbs_for
+
+        found = [] if meant(about) else verbs_for(about)
+        if not found and " " in about:
+            raise CommandError(2, "none_does", found=shown(about))
+        if not found:
+            refuse(about)
+        show_found(found, language)
     return 0

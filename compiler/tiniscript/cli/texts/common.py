@@ -26,6 +26,8 @@ TEXTS: dict[str, tuple[str, str]] = {
     "plain": ("tsc: {said}", "tsc: {said}"),
     "no_verb": ("tsc: there is no command {found}. Try:  tsc --help",
                 "tsc: no existe el comando {found}. Prueba:  tsc --help"),
+    "none_does": ("tsc: no command is known to do that: “{found}”. Try other words, or:  tsc help all",
+                  "tsc: no se conoce un comando que haga eso: “{found}”. Prueba otras palabras, o:  tsc help todo"),
     "file_without_verb": ("tsc: what should tsc do with {found}? Try:  tsc upload {found} --virtual   or:  tsc run {found}   or, with a robot:  tsc upload {found}",
                           "tsc: ¿qué hago con {found}? Prueba:  tsc upload {found} --virtual   o:  tsc run {found}   o, con un robot:  tsc upload {found}"),
     "text_without_verb": ("tsc: what should tsc do with this program? Try:  tsc upload -e {found} --virtual   or, with a robot:  tsc live {found}",

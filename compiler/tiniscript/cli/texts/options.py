@@ -116,7 +116,7 @@ OPTIONS: tuple[Option, ...] = (
     Option("name", "name", ("the robot's name: 1 to 16 bytes of UTF-8", "el nombre del robot: de 1 a 16 bytes de UTF-8"), TEXT, ("NEW", "NUEVO")),
     Option("whether", "text", ("on or off", "on u off"), ON_OFF, ("on|off", "on|off")),
     Option("network", "wifi", ("the network that the robot joins; without it tsc says which one it has", "la red a la que se une el robot; sin esto tsc dice cuál tiene"), TEXT, ("NETWORK", "RED")),
-    Option("about", "help", ("the command to say more about", "el comando del que quieres saber más"), VERB, ("COMMAND", "COMANDO")),
+    Option("about", "help", ("the command to say more about, `all` for a list of all, or what you want to do", "el comando del que quieres saber más, `todo` para listarlos todos, o lo que quieres hacer"), VERB, ("COMMAND", "COMANDO"), repeats=True),
     Option("shell", "completion", ("bash, zsh or powershell", "bash, zsh o powershell"), SHELL, ("SHELL", "TERMINAL"), is_needed=True),
     # the program
     Option("-e", "compile check run show fmt upload lesson class", ("the program itself, instead of a file: `-e \"SI|F(2, 80)\"`", "el programa mismo, en vez de un archivo: `-e \"SI|F(2, 80)\"`"), TEXT, A_TEXT, "texts", repeats=True),

@@ -14,42 +14,58 @@ Both = tuple[str, str]  # a text in English and in Spanish
 class Verb(NamedTuple):
     """A verb, which is a module of `cli/commands/`.
 
-    `example` is a command with it and `summary` what that does, under the heading `group`; `also`
-    are more of such lines, each with its group. `says` is what it does, `ends` what else
-    there is to know. Where it is used in several ways, `usage` has a line for each.
+    `example` is a command with it and `summary` what that does, under the heading `group`. Where
+    its example stands beside that of another verb, `group` is that verb's name. `says` is what it
+    does, `ends` what else there is to know. Where it is used in several ways, `usage` has a line
+    for each.
     """
 
-    group: Both
+    group: Both | str
     example: Both
     summary: Both
     says: Both
     usage: Both = ("", "")
     ends: Both = ("", "")
-    also: tuple[tuple[Both, Both, Both], ...] = ()
 
 
 # fmt: off
 TITLE = ("tsc: TiniScript, a language of single lines for robots.",
          "tsc: TiniScript, un lenguaje de una sola línea para robots.")
-PROGRAMS = ("", "")
-ROBOTS = ("With a robot on a port (`--port /dev/rfcomm0`, `COM5`, ...; later the last one):",
-          "Con un robot en un puerto (`--port /dev/rfcomm0`, `COM5`, ...; luego, el último):")
-VIRTUAL = ("Without one:", "Sin robot:")
-ITSELF = ("And:", "Y además:")
+PROGRAMS = ("Programs:", "Programas:")
+ROBOTS = ("A robot on a port (`--port /dev/rfcomm0`, `COM5`, ...; later the last one) or a virtual one (`--virtual`):",
+          "Un robot en un puerto (`--port /dev/rfcomm0`, `COM5`, ...; luego, el último) o uno virtual (`--virtual`):")
+TROUBLE = ("Which robot is it, and what is wrong?", "¿Qué robot es, y qué le pasa?")
+SETTINGS = ("Settings that a robot keeps:", "Ajustes que un robot conserva:")
+BUILDING = ("Building a robot:", "Construir un robot:")
+ITSELF = ("The command itself:", "El comando mismo:")
+FIRST = ("studio", "lesson", "check", "run", "compile", "upload", "live", "stop", "firmware", "doctor")
+MORE = ("`tsc help upload` says more about a command, `tsc help all` lists all of them, and `tsc help \"put firmware on\"` finds the one that does it.",
+        "`tsc help upload` explica un comando, `tsc help todo` los lista todos, y `tsc help \"poner firmware\"` encuentra el que hace eso.")
 NOTES = (
     ("A program is a file, - (standard input) or `-e \"SI|F(2, 80)\"`.",
      "Un programa es un archivo, - (entrada estándar) o `-e \"SI|F(2, 80)\"`."),
-    ("`tsc help COMMAND` says more about a command.", "`tsc help COMANDO` explica ese comando."),
     ("Exit codes: 0 done, 1 the program is wrong, 2 wrong use of tsc, 3 the robot or the link; 141 when the program that read the output has ended, which stops the robot that the command drives.",
      "Códigos de salida: 0 listo, 1 el programa está mal, 2 mal uso de tsc, 3 el robot o la conexión; 141 si el programa que leía la salida terminó, y eso detiene el robot que el comando mueve."),
 )
 
 VERBS: dict[str, Verb] = {
-    "compile": Verb(
-        PROGRAMS, ("compile prog.ts", "compile prog.ts"),
-        ("compile a program into an image for the robot", "compila un programa en una imagen para el robot"),
-        ("Compiles a program into an image for the robot. Says how many bytes it has, how deep its stack gets and, where that can be known, how long it runs. Where the program has mistakes, the file stays as it was. With `--text` it writes the same program as one line of text.",
-         "Compila un programa en una imagen para el robot. Dice cuántos bytes tiene, cuánto usa de la pila y, si se puede saber, cuánto dura. Si el programa tiene errores, el archivo queda como estaba. Con `--text` escribe el mismo programa como una línea de texto."),
+    "studio": Verb(
+        PROGRAMS, ("studio", "studio"),
+        ("write programs in a page of your browser", "escribe programas en una página del navegador"),
+        ("Opens TiniScript Studio, a page for the browser of this computer: an editor that says what is wrong with a program while it is written, with the same compiler as `tsc`, and the virtual robot, which runs it. The page drives the robots of this computer, too: it connects, sends, runs a line, shows values and faults at their line; other commands share the port meanwhile. The robot stops when the page hangs, is hidden or closed. The address with a code reaches the robots, once: the terminal shows the next one when it has been opened; without a code there are the editor and the virtual robot. Nothing leaves this computer, and after the first visit the page works without `tsc`, too. It goes on until Ctrl-C. In a clone the page is built the first time: it says how much it fetches, and asks.\n\n`--class` is for a room: pupils open the address that it shows, write the code of the class and their name, and have the studio with the virtual robot in their own browser. Their programs go to the robots that this computer reaches; who waits sees the place in the queue. The address with a code, which opens once, is the teacher's page: all pupils, their programs and robots, a stop for all, and an end that deletes the pupils' work if you say so. Nothing leaves the room.",
+         "Abre TiniScript Studio, una página para el navegador de esta computadora: un editor que dice qué está mal en un programa mientras se escribe, con el mismo compilador que `tsc`, y el robot virtual, que lo ejecuta. La página también maneja los robots de esta computadora: conecta, envía, ejecuta una línea, muestra valores y las fallas en su línea; mientras tanto otros comandos comparten el puerto. El robot se detiene si la página se cuelga, queda oculta o se cierra. La dirección con un código llega a los robots, una vez: cuando se abre, la terminal muestra la siguiente; sin código hay editor y robot virtual. Nada sale de esta computadora, y después de la primera visita la página también funciona sin `tsc`. Sigue hasta Ctrl-C. En un clon, la primera vez se construye la página: dice cuánto descarga, y pregunta.\n\n`--class` es para un aula: los alumnos abren la dirección que muestra, escriben el código de la clase y su nombre, y tienen el estudio con el robot virtual en su propio navegador. Sus programas van a los robots a los que llega esta computadora; quien espera ve su lugar en la cola. La dirección con un código, que abre una vez, es la página del docente: todos los alumnos, sus programas y robots, una parada para todos, y un final que borra el trabajo de los alumnos si así lo dices. Nada sale del aula."),
+        ends=("Exit code: 0 when it has ended, 2 where the page is not there and was not built, 3 where its port cannot be used.",
+              "Código de salida: 0 cuando terminó, 2 si la página no está y no se construyó, 3 si no se puede usar su puerto."),
+    ),
+    "lesson": Verb(
+        PROGRAMS, ("lesson check 1 prog.ts", "lesson check 1 prog.ts"),
+        ("twelve lessons, whose tasks it checks", "doce lecciones, y revisa sus tareas"),
+        ("Twelve lessons of 45 minutes, from the first line to a robot that follows a line. Without more it lists them; `tsc lesson show 1` prints the pupils' page, `tsc lesson sheet 1 -o sheet.html` makes it a page to print. `tsc lesson check 1 prog.ts` tries the program in the worlds of the task, on the virtual robot, and says what is missing; of a folder it checks every program and prints a table. The same program gets the same verdict on every computer.",
+         "Doce lecciones de 45 minutos, desde la primera línea hasta un robot que sigue una línea. Sin nada más, las lista; `tsc lesson show 1` imprime la página de los alumnos, `tsc lesson sheet 1 -o hoja.html` hace de ella una hoja para imprimir. `tsc lesson check 1 prog.ts` prueba el programa en los mundos de la tarea, con el robot virtual, y dice qué falta; de una carpeta revisa todos los programas e imprime una tabla. El mismo programa recibe el mismo resultado en cualquier computadora."),
+        ("[ACTION [N [PROGRAM]]] [options]\nshow N [--teacher]\ncheck N PROGRAM [options]\nsheet N -o PAGE.html [--teacher]",
+         "[ACCIÓN [N [PROGRAMA]]] [opciones]\nshow N [--teacher]\ncheck N PROGRAMA [opciones]\nsheet N -o PÁGINA.html [--teacher]"),
+        ("With check, `--json` gives a list of `{file, verdict, seed, findings}`. Exit code of check: 0 when every program passes, 1 when one does not.",
+         "Con check, `--json` da una lista de `{file, verdict, seed, findings}`. Código de salida de check: 0 si todos los programas cumplen la tarea, 1 si alguno no."),
     ),
     "check": Verb(
         PROGRAMS, ("check prog.ts", "check prog.ts"),
@@ -66,6 +82,12 @@ VERBS: dict[str, Verb] = {
          "Ejecuta un programa (texto o imagen) sin robot e imprime lo que hace el robot, línea por línea, cada una con los milisegundos desde el inicio. El reloj es simulado: no hay que esperar."),
         ends=("Exit code: 0 when it is done or cut, 1 after a fault or mistakes.",
               "Código de salida: 0 si termina o se corta, 1 después de una falla o con errores."),
+    ),
+    "compile": Verb(
+        PROGRAMS, ("compile prog.ts", "compile prog.ts"),
+        ("compile a program into an image for the robot", "compila un programa en una imagen para el robot"),
+        ("Compiles a program into an image for the robot. Says how many bytes it has, how deep its stack gets and, where that can be known, how long it runs. Where the program has mistakes, the file stays as it was. With `--text` it writes the same program as one line of text.",
+         "Compila un programa en una imagen para el robot. Dice cuántos bytes tiene, cuánto usa de la pila y, si se puede saber, cuánto dura. Si el programa tiene errores, el archivo queda como estaba. Con `--text` escribe el mismo programa como una línea de texto."),
     ),
     "show": Verb(
         PROGRAMS, ("show prog.bin", "show prog.bin"),
@@ -87,48 +109,13 @@ VERBS: dict[str, Verb] = {
         ("Says more about a mistake, with an example. Without a code it lists all.",
          "Explica un error con más detalle y un ejemplo. Sin código los lista todos."),
     ),
-    "wiring": Verb(
-        PROGRAMS, ("wiring", "wiring"),
-        ("how a robot is wired, as a list or as a page", "cómo se conecta un robot, en lista o página"),
-        ("Shows how a robot is wired: which wire goes from which pin to which part.",
-         "Muestra cómo se conecta un robot: qué cable va de qué pin a qué pieza."),
-    ),
-    "board": Verb(
-        PROGRAMS, ("board myrobot.toml", "board mirobot.toml"),
-        ("tell the firmware how a robot is wired", "le dice al firmware cómo está conectado un robot"),
-        ("Writes the header that tells the firmware how a robot is wired. The sketch in vm_arduino is for your robot when the header is its file src/boards/kits/own.h.",
-         "Escribe la cabecera que le dice al firmware cómo está conectado un robot. El sketch de vm_arduino es para tu robot cuando la cabecera es su archivo src/boards/kits/own.h."),
-    ),
-    "firmware": Verb(
-        PROGRAMS, ("firmware --port COM3", "firmware --port COM3"),
-        ("put the firmware of a robot on its board", "pone el firmware de un robot en su placa"),
-        ("Writes the firmware of a robot on its board, over the USB cable, and reads it back. Meanwhile the HC-05, or whatever else is on pins 0 and 1, must be unplugged. Firmware that is not ready yet is built first, with PlatformIO; the first time that needs the internet.",
-         "Escribe el firmware de un robot en su placa, por el cable USB, y comprueba que quedó bien. Mientras tanto, ten desconectado el HC-05, o lo que esté en los pines 0 y 1. Si el firmware todavía no está listo, primero se compila, con PlatformIO; la primera vez hace falta internet."),
-        ("--port P [--robot NAME|FILE] [--board BOARD]\n--build [--robot NAME|FILE] [--board BOARD]\n--list",
-         "--port P [--robot NOMBRE|ARCHIVO] [--board PLACA]\n--build [--robot NOMBRE|ARCHIVO] [--board PLACA]\n--list"),
-        ("It needs avrdude; for an ESP32 PlatformIO alone.", "Necesita avrdude; para un ESP32, solo PlatformIO."),
-    ),
-    "ports": Verb(
-        ROBOTS, ("ports", "ports"),
-        ("list the ports; --ask: which robot answers where", "los puertos; --ask: qué robot responde en cuál"),
-        ("Lists the serial ports of this computer, which robots have answered there before, and which one another tsc has open. Opens none of them: opening a port resets most boards. A robot with Bluetooth LE (an HM-10, say) is no serial port: its port is `ble://NAME` or `ble://ADDRESS`; that of a robot which announces itself in the network is `tcp://NAME`.",
-         "Lista los puertos serie de esta computadora, qué robots respondieron ahí antes, y cuál tiene abierto otro tsc. No abre ninguno: abrir un puerto reinicia la mayoría de las placas. Un robot con Bluetooth LE (un HM-10, por ejemplo) no es un puerto serie: su puerto es `ble://NOMBRE` o `ble://DIRECCIÓN`; el de un robot que se anuncia en la red es `tcp://NOMBRE`."),
-    ),
-    "ping": Verb(
-        ROBOTS, ("ping", "ping"),
-        ("who is there, and how long an answer takes", "quién está ahí, y cuánto tarda una respuesta"),
-        ("Says who answers on the port, and how long a round trip takes: the shortest, the usual and the longest.",
-         "Dice quién responde en el puerto, y cuánto tarda una ida y vuelta: la más corta, la normal y la más larga."),
-    ),
     "upload": Verb(
         ROBOTS, ("upload prog.ts", "upload prog.ts"),
-        ("send a program to the robot, start it, and stay", "envía un programa al robot, lo inicia y se queda"),
+        ("send a program to a robot and start it; --virtual", "envía un programa al robot y lo inicia; --virtual"),
         ("Compiles a program, sends it to the robot and starts it there if it begins with `SI`. Stays until it ends: prints what it shows, and a fault with its line. Ctrl-C stops the robot. A program that begins with `SB` waits for the robot's button.",
          "Compila un programa, lo envía al robot y lo inicia ahí si empieza con `SI`. Se queda hasta que termina: imprime lo que muestra, y una falla con su línea. Ctrl-C detiene el robot. Un programa que empieza con `SB` espera el botón del robot."),
         ends=("Exit code: 0 when it is done, 1 after mistakes or a fault, 2 after Ctrl-C, 3 where the robot or the link has ended it.",
               "Código de salida: 0 si termina, 1 con errores o una falla, 2 después de Ctrl-C, 3 si el robot o la conexión lo terminó."),
-        also=((VIRTUAL, ("upload prog.ts --virtual", "upload prog.ts --virtual"),
-               ("a virtual robot drives here, in its own world", "un robot virtual se mueve aquí, en su mundo")),),
     ),
     "live": Verb(
         ROBOTS, ('live "F(2, 80)"', 'live "F(2, 80)"'),
@@ -141,26 +128,15 @@ VERBS: dict[str, Verb] = {
         ("Stops the robot now, and says when it has confirmed that. Asks nothing before, so it stops a robot of another version or kit, too. The robot stays stopped until it is started again, or its button is pushed. Where no port is named it stops every robot that some tsc is using on this computer, virtual ones too, and the last used one.",
          "Detiene el robot ahora, y dice cuándo lo ha confirmado. No pregunta nada antes, así que también detiene un robot de otra versión o de otro kit. Queda detenido hasta que lo inicies otra vez o pulses su botón. Si no se indica un puerto, detiene todos los robots que algún tsc está usando en esta computadora, también los virtuales, y el último usado."),
     ),
-    "link": Verb(
-        ROBOTS, ("link", "link"),
-        ("hold the port, so that other commands share it", "mantiene abierto el puerto, para compartirlo"),
-        ("Holds the robot's port until Ctrl-C, so that other tsc commands share it: `tsc stop` works while another terminal drives the robot, and an upload does not reset the board. Prints what goes on. Where the robot is lost, it looks for it until it is there again. (live, monitor, and an upload or start that stays share their port, too.)",
-         "Mantiene abierto el puerto del robot hasta Ctrl-C, para que otros comandos de tsc lo compartan: `tsc stop` funciona mientras otra terminal mueve el robot, y un upload no reinicia la placa. Imprime lo que pasa. Si el robot se pierde, lo busca hasta que vuelve. (live, monitor, y un upload o start que se queda también comparten su puerto.)"),
-    ),
     "start": Verb(
         ROBOTS, ("start", "start"), ("start the program that the robot holds", "inicia el programa que tiene el robot"),
         ("Starts the program that the robot holds and stays until it ends, as `tsc upload` does. Ctrl-C stops the robot.",
          "Inicia el programa que tiene el robot y se queda hasta que termina, como `tsc upload`. Ctrl-C detiene el robot."),
     ),
     "undo": Verb(
-        ROBOTS, ("undo", "undo"), ("bring back the program before this one", "vuelve al programa anterior"),
+        "start", ("undo", "undo"), ("bring back the program before this one", "vuelve al programa anterior"),
         ("Brings back the program that the robot held before the last one that it has saved, and keeps that over the next power-on. What runs ends, and nothing is started. A second undo brings the later program back. Where the last program was sent with --no-save, the saved one comes back, and the other is gone.",
          "Vuelve al programa que el robot tenía antes del último que guardó, y lo conserva cuando se apaga. Lo que está en marcha termina, y no se inicia nada. Otro undo vuelve al programa más nuevo. Si el último programa se envió con --no-save, vuelve el guardado, y el otro se pierde."),
-    ),
-    "info": Verb(
-        ROBOTS, ("info", "info"), ("what the robot says about itself", "lo que el robot dice de sí mismo"),
-        ("Prints what the robot says about itself: name, kit, room, program, state, last fault.",
-         "Imprime lo que el robot dice de sí mismo: nombre, kit, espacio, programa, estado, última falla."),
     ),
     "monitor": Verb(
         ROBOTS, ("monitor", "monitor"), ("print what the robot shows", "imprime lo que el robot muestra"),
@@ -172,45 +148,18 @@ VERBS: dict[str, Verb] = {
         ("Reads back the program that the robot holds and lists it, beside its lines where they are known.",
          "Lee el programa que tiene el robot y lo lista, junto a sus líneas si se conocen."),
     ),
-    "name": Verb(
-        ROBOTS, ("name TINI", "name TINI"), ("name the robot", "le pone nombre al robot"),
-        ("Names the robot. It keeps its name when it is switched off.",
-         "Le pone nombre al robot. Lo conserva cuando se apaga."),
-        ("NEW [options]", "NUEVO [opciones]"),
+    "robot": Verb(
+        ROBOTS, ("robot", "robot"),
+        ("a virtual robot with a port, for other terminals", "un robot virtual, para otras terminales"),
+        ("A virtual robot: the firmware of the real one, in a world of walls, lines and lamps. It has a port like any other robot, and another terminal finds it (`tsc upload prog.ts --virtual`). On a terminal it is drawn, and keys push its buttons; elsewhere a line says what it does.",
+         "Un robot virtual: el mismo firmware que uno de verdad, en un mundo de paredes, líneas y lámparas. Tiene un puerto como cualquier robot, y otra terminal lo encuentra (`tsc upload prog.ts --virtual`). En una terminal se dibuja, y hay teclas para sus botones; en otro lugar una línea dice lo que hace."),
+        ends=("Exit code: 0 when it has ended.", "Código de salida: 0 cuando terminó."),
     ),
-    "trim": Verb(
-        ROBOTS, ("trim", "trim"), ("make the robot drive straight", "hace que el robot vaya en línea recta"),
-        ("Makes a robot drive straight: turns its motors, asks what you see, and the robot keeps what follows from it in its own memory, whatever program it runs. No wire is changed and nothing flashed.",
-         "Hace que un robot vaya en línea recta: hace girar sus motores, pregunta qué ves, y el robot guarda lo que resulta en su propia memoria, con cualquier programa. No se cambia ningún cable ni se escribe otro firmware."),
-    ),
-    "identify": Verb(
-        ROBOTS, ("identify", "identify"), ("which robot is it? it blinks and plays", "¿qué robot es? parpadea y toca"),
-        ("The robot blinks for 3 s and plays its own three notes. Anybody may ask for that. While a program runs it plays nothing, since the buzzer is the program's; the light blinks all the same. `--all`: each robot that answers.",
-         "El robot parpadea 3 s y toca sus tres notas. Cualquiera puede pedirlo. Mientras un programa está en marcha no toca nada, porque el zumbador es del programa; la luz parpadea igual. `--all`: cada robot que responde."),
-    ),
-    "claim": Verb(
-        ROBOTS, ("claim", "claim"), ("make the robot yours: only you drive it", "hace tuyo el robot: solo tú lo conduces"),
-        ("Makes the robot yours. Hold its start button down for 2 s while tsc waits. From then on only a computer that has its key drives it; everybody else may look at it, make it blink and stop it. With `--teacher` the robot gets a second key, which may do the same; a robot that it has stopped (`tsc stop --teacher`) goes on only with that key, or with its button. A robot without an owner is free to use.",
-         "Hace tuyo el robot. Mantén pulsado su botón de inicio 2 s mientras tsc espera. Desde entonces solo lo conduce una computadora que tiene su llave; los demás pueden mirarlo, hacerlo parpadear y detenerlo. Con `--teacher` el robot recibe una segunda llave, que puede lo mismo; un robot que se detuvo con ella (`tsc stop --teacher`) solo sigue con esa llave, o con su botón. Un robot sin dueño es libre para todos."),
-        ends=("To make a robot forget its keys: hold its button down, switch it on, and hold it for 10 s more, until it beeps.",
-              "Para que un robot olvide sus llaves: mantén pulsado su botón, enciéndelo, y sigue así 10 s más, hasta que suene."),
-    ),
-    "disown": Verb(
-        ROBOTS, ("disown", "disown"), ("give the robot up: anybody drives it", "suelta el robot: lo conduce cualquiera"),
-        ("Takes the owner's key away from the robot: it is free. That needs the owner's key or the teacher's.",
-         "Le quita al robot la llave del dueño: queda libre. Hace falta la llave del dueño o la de docente."),
-    ),
-    "text": Verb(
-        ROBOTS, ("text on", "text on"), ("let lines of text drive your robot, or not", "deja que líneas de texto lo conduzcan, o no"),
-        ("Lets lines of text, which anybody may type on a phone, drive a robot that has an owner; until it is switched off. So does its button, held down for 2 s. The line S stops a robot always.",
-         "Deja que líneas de texto, que cualquiera puede escribir en un teléfono, conduzcan un robot que tiene dueño; hasta que se apague. Lo mismo hace su botón, pulsado 2 s. La línea S detiene un robot siempre."),
-        ("on|off [options]", "on|off [opciones]"),
-    ),
-    "wifi": Verb(
-        ROBOTS, ("wifi NETWORK", "wifi RED"), ("connect your robot to a WiFi network", "conecta tu robot a una red WiFi"),
-        ("Has a robot with an ESP32 join a network, now and whenever it is switched on; with `--access-point` it opens one itself. tsc asks for the password, without showing it; where nobody types, it is the first line of standard input. It is in no argument and in no file of this computer, goes to the robot so that nobody who listens can read it, and no robot shows it. Only a robot with an owner takes a network, from a computer with its key. Without a network, tsc says which one the robot has. With `--broker` the robot also connects to an MQTT broker in that network, for `tsc class`: by its name, or, where the network does not know that, at the address that it has now.",
-         "Une un robot con ESP32 a una red, ahora y cada vez que se enciende; con `--access-point` la abre él mismo. tsc pide la contraseña sin mostrarla; si nadie escribe, es la primera línea de la entrada estándar. No está en ningún argumento ni en ningún archivo de esta computadora, va al robot sin que quien escuche pueda leerla, y ningún robot la muestra. Solo un robot con dueño acepta una red, desde una computadora con su llave. Sin una red, tsc dice cuál tiene el robot. Con `--broker` el robot se conecta además a un broker MQTT de esa red, para `tsc class`: por su nombre o, si la red no lo conoce, en la dirección que tiene ahora."),
-        ("[NETWORK] [options]", "[RED] [opciones]"),
+    "link": Verb(
+        ROBOTS, ("link", "link"),
+        ("hold the port, so that other commands share it", "mantiene abierto el puerto, para compartirlo"),
+        ("Holds the robot's port until Ctrl-C, so that other tsc commands share it: `tsc stop` works while another terminal drives the robot, and an upload does not reset the board. Prints what goes on. Where the robot is lost, it looks for it until it is there again. (live, monitor, and an upload or start that stays share their port, too.)",
+         "Mantiene abierto el puerto del robot hasta Ctrl-C, para que otros comandos de tsc lo compartan: `tsc stop` funciona mientras otra terminal mueve el robot, y un upload no reinicia la placa. Imprime lo que pasa. Si el robot se pierde, lo busca hasta que vuelve. (live, monitor, y un upload o start que se queda también comparten su puerto.)"),
     ),
     "class": Verb(
         ROBOTS, ("class --broker HOST", "class --broker HOST"), ("a class of robots at an MQTT broker", "una clase de robots en un broker MQTT"),
@@ -221,14 +170,8 @@ VERBS: dict[str, Verb] = {
         ends=("It needs `pip install \".[broker]\"`. Only one tsc at a time has a robot; a second one says so.\nWith `--tls` this computer speaks TLS with the broker; a robot does where `tsc wifi --tls` has said so. Without it, passwords for the broker go through the school's network as they are.",
               "Necesita `pip install \".[broker]\"`. Solo un tsc a la vez tiene un robot; un segundo tsc lo dice.\nCon `--tls` esta computadora habla TLS con el broker; un robot, si se lo pidió `tsc wifi --tls`. Sin eso, las contraseñas para el broker van por la red de la escuela tal cual."),
     ),
-    "keys": Verb(
-        ROBOTS, ("keys", "keys"), ("the robots whose keys this computer has", "los robots cuya llave tiene esta computadora"),
-        ("Lists the robots whose keys this computer has; no key is printed. `--export` writes them to a file that only you can read: a class list for another computer, which takes it with `--import`. Whoever has that file drives those robots. `--forget` takes the keys of one robot out: of one that has forgotten them itself. On Windows such a file has the permissions of its folder: keep it in your own.",
-         "Lista los robots cuyas llaves tiene esta computadora; no se imprime ninguna llave. `--export` las escribe en un archivo que solo tú puedes leer: la lista de la clase para otra computadora, que la toma con `--import`. Quien tiene ese archivo conduce esos robots. `--forget` quita las llaves de un robot: de uno que las olvidó él mismo. En Windows un archivo así tiene los permisos de su carpeta: guárdalo en la tuya."),
-        ("[--export FILE|--import FILE|--forget ROBOT] [--json]", "[--export ARCHIVO|--import ARCHIVO|--forget ROBOT] [--json]"),
-    ),
     "doctor": Verb(
-        ROBOTS, ("doctor", "doctor"),
+        TROUBLE, ("doctor", "doctor"),
         ("find out what is wrong, and what to do", "averigua qué está mal, y qué hacer"),
         ("Finds out what is wrong with a port, a Bluetooth module or a robot: what it saw, how sure it is, and the next step. First it looks at this computer alone and opens no port. The port of a radio, and one that another tsc has, it then uses: it sends HELLO, STATUS and 20 PING. Opening the port of a cable restarts most boards, so it asks before (`--yes` says yes); where no robot answers there it asks at other speeds, sends AT, which a module answers, and the greeting of bootloaders. It never drives a robot, starts or stops nothing, and writes into no memory.",
          "Averigua qué está mal en un puerto, un módulo Bluetooth o un robot: qué vio, qué tan seguro está y el siguiente paso. Primero mira solo esta computadora y no abre ningún puerto. Después usa el puerto de una radio, y el que tiene otro tsc: envía HELLO, STATUS y 20 PING. Abrir el puerto de un cable reinicia la mayoría de las placas, así que antes pregunta (`--yes` dice que sí); si ahí no responde ningún robot, pregunta a otras velocidades, envía AT, que es lo que responde un módulo, y el saludo de los cargadores de arranque. Nunca mueve un robot, no inicia ni detiene nada, y no escribe en ninguna memoria."),
@@ -242,15 +185,99 @@ VERBS: dict[str, Verb] = {
               "Lo que pregunta a Windows y macOS se probó con respuestas escritas de esos sistemas, no en ellos."),
     ),
     "selftest": Verb(
-        ROBOTS, ("selftest", "selftest"),
+        "doctor", ("selftest", "selftest"),
         ("is the robot ready for a lesson?", "¿está listo el robot para la lección?"),
         ("Checks what a computer can check of a robot that should be ready: whether it answers, its kit, its firmware, the connection, its supply as far as the robot knows it, its memory, its trim, each sensor, each motor and the buzzer. Lift the robot so that its wheels turn in the air: the motors turn one after the other, and you say what you see. `--yes` asks nobody and turns no motor. The robot keeps its program.",
          "Revisa lo que una computadora puede revisar de un robot que debería estar listo: si responde, su kit, su firmware, la conexión, su alimentación hasta donde el robot la conoce, su memoria, su ajuste, cada sensor, cada motor y el zumbador. Levanta el robot, con las ruedas en el aire: los motores giran uno tras otro, y tú dices qué ves. `--yes` no pregunta a nadie y no hace girar ningún motor. El robot conserva su programa."),
         ends=("Exit code: 0 if nothing is wrong, 3 if something is. What it cannot see has a question mark.",
               "Código de salida: 0 si nada está mal, 3 si algo lo está. Lo que no puede ver lleva un signo de interrogación."),
     ),
+    "ports": Verb(
+        TROUBLE, ("ports", "ports"),
+        ("list the ports; --ask: which robot answers where", "los puertos; --ask: qué robot responde en cuál"),
+        ("Lists the serial ports of this computer, which robots have answered there before, and which one another tsc has open. Opens none of them: opening a port resets most boards. A robot with Bluetooth LE (an HM-10, say) is no serial port: its port is `ble://NAME` or `ble://ADDRESS`; that of a robot which announces itself in the network is `tcp://NAME`.",
+         "Lista los puertos serie de esta computadora, qué robots respondieron ahí antes, y cuál tiene abierto otro tsc. No abre ninguno: abrir un puerto reinicia la mayoría de las placas. Un robot con Bluetooth LE (un HM-10, por ejemplo) no es un puerto serie: su puerto es `ble://NOMBRE` o `ble://DIRECCIÓN`; el de un robot que se anuncia en la red es `tcp://NOMBRE`."),
+    ),
+    "info": Verb(
+        TROUBLE, ("info", "info"), ("what the robot says about itself", "lo que el robot dice de sí mismo"),
+        ("Prints what the robot says about itself: name, kit, room, program, state, last fault.",
+         "Imprime lo que el robot dice de sí mismo: nombre, kit, espacio, programa, estado, última falla."),
+    ),
+    "ping": Verb(
+        "info", ("ping", "ping"),
+        ("who is there, and how long an answer takes", "quién está ahí, y cuánto tarda una respuesta"),
+        ("Says who answers on the port, and how long a round trip takes: the shortest, the usual and the longest.",
+         "Dice quién responde en el puerto, y cuánto tarda una ida y vuelta: la más corta, la normal y la más larga."),
+    ),
+    "identify": Verb(
+        TROUBLE, ("identify", "identify"), ("which robot is it? it blinks and plays", "¿qué robot es? parpadea y toca"),
+        ("The robot blinks for 3 s and plays its own three notes. Anybody may ask for that. While a program runs it plays nothing, since the buzzer is the program's; the light blinks all the same. `--all`: each robot that answers.",
+         "El robot parpadea 3 s y toca sus tres notas. Cualquiera puede pedirlo. Mientras un programa está en marcha no toca nada, porque el zumbador es del programa; la luz parpadea igual. `--all`: cada robot que responde."),
+    ),
+    "claim": Verb(
+        SETTINGS, ("claim", "claim"), ("make the robot yours: only you drive it", "hace tuyo el robot: solo tú lo conduces"),
+        ("Makes the robot yours. Hold its start button down for 2 s while tsc waits. From then on only a computer that has its key drives it; everybody else may look at it, make it blink and stop it. With `--teacher` the robot gets a second key, which may do the same; a robot that it has stopped (`tsc stop --teacher`) goes on only with that key, or with its button. A robot without an owner is free to use.",
+         "Hace tuyo el robot. Mantén pulsado su botón de inicio 2 s mientras tsc espera. Desde entonces solo lo conduce una computadora que tiene su llave; los demás pueden mirarlo, hacerlo parpadear y detenerlo. Con `--teacher` el robot recibe una segunda llave, que puede lo mismo; un robot que se detuvo con ella (`tsc stop --teacher`) solo sigue con esa llave, o con su botón. Un robot sin dueño es libre para todos."),
+        ends=("To make a robot forget its keys: hold its button down, switch it on, and hold it for 10 s more, until it beeps.",
+              "Para que un robot olvide sus llaves: mantén pulsado su botón, enciéndelo, y sigue así 10 s más, hasta que suene."),
+    ),
+    "disown": Verb(
+        "claim", ("disown", "disown"), ("give the robot up: anybody drives it", "suelta el robot: lo conduce cualquiera"),
+        ("Takes the owner's key away from the robot: it is free. That needs the owner's key or the teacher's.",
+         "Le quita al robot la llave del dueño: queda libre. Hace falta la llave del dueño o la de docente."),
+    ),
+    "keys": Verb(
+        "claim", ("keys", "keys"), ("the robots whose keys this computer has", "los robots cuya llave tiene esta computadora"),
+        ("Lists the robots whose keys this computer has; no key is printed. `--export` writes them to a file that only you can read: a class list for another computer, which takes it with `--import`. Whoever has that file drives those robots. `--forget` takes the keys of one robot out: of one that has forgotten them itself. On Windows such a file has the permissions of its folder: keep it in your own.",
+         "Lista los robots cuyas llaves tiene esta computadora; no se imprime ninguna llave. `--export` las escribe en un archivo que solo tú puedes leer: la lista de la clase para otra computadora, que la toma con `--import`. Quien tiene ese archivo conduce esos robots. `--forget` quita las llaves de un robot: de uno que las olvidó él mismo. En Windows un archivo así tiene los permisos de su carpeta: guárdalo en la tuya."),
+        ("[--export FILE|--import FILE|--forget ROBOT] [--json]", "[--export ARCHIVO|--import ARCHIVO|--forget ROBOT] [--json]"),
+    ),
+    "name": Verb(
+        SETTINGS, ("name TINI", "name TINI"), ("name the robot", "le pone nombre al robot"),
+        ("Names the robot. It keeps its name when it is switched off.",
+         "Le pone nombre al robot. Lo conserva cuando se apaga."),
+        ("NEW [options]", "NUEVO [opciones]"),
+    ),
+    "trim": Verb(
+        SETTINGS, ("trim", "trim"), ("make the robot drive straight", "hace que el robot vaya en línea recta"),
+        ("Makes a robot drive straight: turns its motors, asks what you see, and the robot keeps what follows from it in its own memory, whatever program it runs. No wire is changed and nothing flashed.",
+         "Hace que un robot vaya en línea recta: hace girar sus motores, pregunta qué ves, y el robot guarda lo que resulta en su propia memoria, con cualquier programa. No se cambia ningún cable ni se escribe otro firmware."),
+    ),
+    "text": Verb(
+        SETTINGS, ("text on", "text on"), ("let lines of text drive your robot, or not", "deja que líneas de texto lo conduzcan, o no"),
+        ("Lets lines of text, which anybody may type on a phone, drive a robot that has an owner; until it is switched off. So does its button, held down for 2 s. The line S stops a robot always.",
+         "Deja que líneas de texto, que cualquiera puede escribir en un teléfono, conduzcan un robot que tiene dueño; hasta que se apague. Lo mismo hace su botón, pulsado 2 s. La línea S detiene un robot siempre."),
+        ("on|off [options]", "on|off [opciones]"),
+    ),
+    "wifi": Verb(
+        SETTINGS, ("wifi NETWORK", "wifi RED"), ("connect your robot to a WiFi network", "conecta tu robot a una red WiFi"),
+        ("Has a robot with an ESP32 join a network, now and whenever it is switched on; with `--access-point` it opens one itself. tsc asks for the password, without showing it; where nobody types, it is the first line of standard input. It is in no argument and in no file of this computer, goes to the robot so that nobody who listens can read it, and no robot shows it. Only a robot with an owner takes a network, from a computer with its key. Without a network, tsc says which one the robot has. With `--broker` the robot also connects to an MQTT broker in that network, for `tsc class`: by its name, or, where the network does not know that, at the address that it has now.",
+         "Une un robot con ESP32 a una red, ahora y cada vez que se enciende; con `--access-point` la abre él mismo. tsc pide la contraseña sin mostrarla; si nadie escribe, es la primera línea de la entrada estándar. No está en ningún argumento ni en ningún archivo de esta computadora, va al robot sin que quien escuche pueda leerla, y ningún robot la muestra. Solo un robot con dueño acepta una red, desde una computadora con su llave. Sin una red, tsc dice cuál tiene el robot. Con `--broker` el robot se conecta además a un broker MQTT de esa red, para `tsc class`: por su nombre o, si la red no lo conoce, en la dirección que tiene ahora."),
+        ("[NETWORK] [options]", "[RED] [opciones]"),
+    ),
+    "firmware": Verb(
+        BUILDING, ("firmware --port COM3", "firmware --port COM3"),
+        ("put the firmware of a robot on its board", "pone el firmware de un robot en su placa"),
+        ("Writes the firmware of a robot on its board, over the USB cable, and reads it back. Meanwhile the HC-05, or whatever else is on pins 0 and 1, must be unplugged. Firmware that is not ready yet is built first, with PlatformIO; the first time that needs the internet.",
+         "Escribe el firmware de un robot en su placa, por el cable USB, y comprueba que quedó bien. Mientras tanto, ten desconectado el HC-05, o lo que esté en los pines 0 y 1. Si el firmware todavía no está listo, primero se compila, con PlatformIO; la primera vez hace falta internet."),
+        ("--port P [--robot NAME|FILE] [--board BOARD]\n--build [--robot NAME|FILE] [--board BOARD]\n--list",
+         "--port P [--robot NOMBRE|ARCHIVO] [--board PLACA]\n--build [--robot NOMBRE|ARCHIVO] [--board PLACA]\n--list"),
+        ("It needs avrdude; for an ESP32 PlatformIO alone.", "Necesita avrdude; para un ESP32, solo PlatformIO."),
+    ),
+    "wiring": Verb(
+        BUILDING, ("wiring", "wiring"),
+        ("how a robot is wired, as a list or as a page", "cómo se conecta un robot, en lista o página"),
+        ("Shows how a robot is wired: which wire goes from which pin to which part.",
+         "Muestra cómo se conecta un robot: qué cable va de qué pin a qué pieza."),
+    ),
+    "board": Verb(
+        BUILDING, ("board myrobot.toml", "board mirobot.toml"),
+        ("tell the firmware how a robot is wired", "le dice al firmware cómo está conectado un robot"),
+        ("Writes the header that tells the firmware how a robot is wired. The sketch in vm_arduino is for your robot when the header is its file src/boards/kits/own.h.",
+         "Escribe la cabecera que le dice al firmware cómo está conectado un robot. El sketch de vm_arduino es para tu robot cuando la cabecera es su archivo src/boards/kits/own.h."),
+    ),
     "module": Verb(
-        ROBOTS, ("module --port P", "module --port P"),
+        BUILDING, ("module --port P", "module --port P"),
         ("name, PIN and speed of a Bluetooth module", "nombre, PIN y velocidad de un módulo Bluetooth"),
         ("Sets up an HC-05, HC-06 or HM-10, or one of their clones: finds it at any speed, says which one it is, sets its name, its PIN and its speed, and reads back what the module tells. Without an option for that it only says what it has found. The module is on a USB adapter, or on a board that is held in reset (a wire from RESET to GND). An HC-05 takes these commands if its button was held down when it got power. A set-up that was interrupted is finished by the next one.",
          "Configura un HC-05, HC-06 o HM-10, o una de sus copias: lo encuentra a cualquier velocidad, dice cuál es, le pone su nombre, su PIN y su velocidad, y comprueba lo que el módulo cuenta. Sin una opción para eso solo dice lo que encontró. El módulo está en un adaptador USB, o en una placa que está en reset (un cable de RESET a GND). Un HC-05 acepta estos comandos si su botón estaba pulsado cuando recibió energía. Una configuración interrumpida la termina la siguiente."),
@@ -260,26 +287,8 @@ VERBS: dict[str, Verb] = {
               "Un robot no puede configurar su propio módulo: los dos comparten los cables hacia la computadora, y el módulo solo escucha el lado del robot.\n"
               "Las respuestas de los módulos son las de sus manuales y usuarios; no se probó ningún módulo físico."),
     ),
-    "robot": Verb(
-        VIRTUAL, ("robot", "robot"),
-        ("a virtual robot with a port, for other terminals", "un robot virtual, para otras terminales"),
-        ("A virtual robot: the firmware of the real one, in a world of walls, lines and lamps. It has a port like any other robot, and another terminal finds it (`tsc upload prog.ts --virtual`). On a terminal it is drawn, and keys push its buttons; elsewhere a line says what it does.",
-         "Un robot virtual: el mismo firmware que uno de verdad, en un mundo de paredes, líneas y lámparas. Tiene un puerto como cualquier robot, y otra terminal lo encuentra (`tsc upload prog.ts --virtual`). En una terminal se dibuja, y hay teclas para sus botones; en otro lugar una línea dice lo que hace."),
-        ends=("Exit code: 0 when it has ended.", "Código de salida: 0 cuando terminó."),
-    ),
-    "lesson": Verb(
-        VIRTUAL, ("lesson check 1 prog.ts", "lesson check 1 prog.ts"),
-        ("twelve lessons, whose tasks it checks", "doce lecciones, y revisa sus tareas"),
-        ("Twelve lessons of 45 minutes, from the first line to a robot that follows a line. Without more it lists them; `tsc lesson show 1` prints the pupils' page, `tsc lesson sheet 1 -o sheet.html` makes it a page to print. `tsc lesson check 1 prog.ts` tries the program in the worlds of the task, on the virtual robot, and says what is missing; of a folder it checks every program and prints a table. The same program gets the same verdict on every computer.",
-         "Doce lecciones de 45 minutos, desde la primera línea hasta un robot que sigue una línea. Sin nada más, las lista; `tsc lesson show 1` imprime la página de los alumnos, `tsc lesson sheet 1 -o hoja.html` hace de ella una hoja para imprimir. `tsc lesson check 1 prog.ts` prueba el programa en los mundos de la tarea, con el robot virtual, y dice qué falta; de una carpeta revisa todos los programas e imprime una tabla. El mismo programa recibe el mismo resultado en cualquier computadora."),
-        ("[ACTION [N [PROGRAM]]] [options]\nshow N [--teacher]\ncheck N PROGRAM [options]\nsheet N -o PAGE.html [--teacher]",
-         "[ACCIÓN [N [PROGRAMA]]] [opciones]\nshow N [--teacher]\ncheck N PROGRAMA [opciones]\nsheet N -o PÁGINA.html [--teacher]"),
-        ("With check, `--json` gives a list of `{file, verdict, seed, findings}`. Exit code of check: 0 when every program passes, 1 when one does not.",
-         "Con check, `--json` da una lista de `{file, verdict, seed, findings}`. Código de salida de check: 0 si todos los programas cumplen la tarea, 1 si alguno no."),
-        also=((VIRTUAL, ("lesson", "lesson"), ("list the lessons", "lista las lecciones")),),
-    ),
     "conform": Verb(
-        ITSELF, ("conform --port P", "conform --port P"),
+        BUILDING, ("conform --port P", "conform --port P"),
         ("test a robot or a machine that you have made", "prueba un robot o una máquina que hiciste"),
         ("Tests whether firmware or a machine that somebody has written, in any language, does what the specification says, and prints what differs. With `--port` it speaks with a robot: frames, programs, refusals, stops; no motor turns, nothing is saved, and what the robot holds in memory is another program then. With `--machine` it asks a machine for several hundred runs and compares what it prints line by line. docs/conformance.md says how it is asked.",
          "Prueba si un firmware o una máquina que alguien escribió, en cualquier lenguaje, hace lo que dice la especificación, e imprime lo que es distinto. Con `--port` habla con un robot: mensajes, programas, rechazos, paradas; ningún motor gira, no se guarda nada, y el robot queda con otro programa en memoria. Con `--machine` le pide a una máquina varios cientos de ejecuciones y compara línea por línea lo que imprime. docs/conformance.md dice cómo se le pregunta."),
@@ -287,18 +296,10 @@ VERBS: dict[str, Verb] = {
         ends=("Exit code: 0 if all agrees, 1 if something differs, 2 if the command does not start, 3 if nothing answers on the port or it goes away.",
               "Código de salida: 0 si todo coincide, 1 si algo es distinto, 2 si el comando no arranca, 3 si nada responde en el puerto o el puerto desaparece."),
     ),
-    "studio": Verb(
-        VIRTUAL, ("studio", "studio"),
-        ("write programs in a page of your browser", "escribe programas en una página del navegador"),
-        ("Opens TiniScript Studio, a page for the browser of this computer: an editor that says what is wrong with a program while it is written, with the same compiler as `tsc`, and the virtual robot, which runs it. The page drives the robots of this computer, too: it connects, sends, runs a line, shows values and faults at their line; other commands share the port meanwhile. The robot stops when the page hangs, is hidden or closed. The address with a code reaches the robots, once: the terminal shows the next one when it has been opened; without a code there are the editor and the virtual robot. Nothing leaves this computer, and after the first visit the page works without `tsc`, too. It goes on until Ctrl-C. In a clone the page is built the first time: it says how much it fetches, and asks.\n\n`--class` is for a room: pupils open the address that it shows, write the code of the class and their name, and have the studio with the virtual robot in their own browser. Their programs go to the robots that this computer reaches; who waits sees the place in the queue. The address with a code, which opens once, is the teacher's page: all pupils, their programs and robots, a stop for all, and an end that deletes the pupils' work if you say so. Nothing leaves the room.",
-         "Abre TiniScript Studio, una página para el navegador de esta computadora: un editor que dice qué está mal en un programa mientras se escribe, con el mismo compilador que `tsc`, y el robot virtual, que lo ejecuta. La página también maneja los robots de esta computadora: conecta, envía, ejecuta una línea, muestra valores y las fallas en su línea; mientras tanto otros comandos comparten el puerto. El robot se detiene si la página se cuelga, queda oculta o se cierra. La dirección con un código llega a los robots, una vez: cuando se abre, la terminal muestra la siguiente; sin código hay editor y robot virtual. Nada sale de esta computadora, y después de la primera visita la página también funciona sin `tsc`. Sigue hasta Ctrl-C. En un clon, la primera vez se construye la página: dice cuánto descarga, y pregunta.\n\n`--class` es para un aula: los alumnos abren la dirección que muestra, escriben el código de la clase y su nombre, y tienen el estudio con el robot virtual en su propio navegador. Sus programas van a los robots a los que llega esta computadora; quien espera ve su lugar en la cola. La dirección con un código, que abre una vez, es la página del docente: todos los alumnos, sus programas y robots, una parada para todos, y un final que borra el trabajo de los alumnos si así lo dices. Nada sale del aula."),
-        ends=("Exit code: 0 when it has ended, 2 where the page is not there and was not built, 3 where its port cannot be used.",
-              "Código de salida: 0 cuando terminó, 2 si la página no está y no se construyó, 3 si no se puede usar su puerto."),
-    ),
     "help": Verb(
         ITSELF, ("help upload", "help upload"), ("say more about a command", "explica un comando"),
-        ("Says what a command does and which options it has, as `tsc COMMAND --help` does. Without a command it lists all. `tsc ayuda` is the same.",
-         "Dice qué hace un comando y qué opciones tiene, igual que `tsc COMANDO --help`. Sin comando los lista todos. `tsc ayuda` es lo mismo."),
+        ("Says what a command does and which options it has, as `tsc COMMAND --help` does. Without a command it lists the ten that most people need, with `all` every one. Words that are no command find those that do it: `tsc help \"put firmware on\"`. `tsc ayuda` is the same.",
+         "Dice qué hace un comando y qué opciones tiene, igual que `tsc COMANDO --help`. Sin comando lista los diez que más se usan; con `todo`, los lista todos. Palabras que no son un comando encuentran los que hacen eso: `tsc help \"poner firmware\"`. `tsc ayuda` es lo mismo."),
     ),
     "completion": Verb(
         ITSELF, ("completion bash", "completion bash"),
