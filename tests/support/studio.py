@@ -25,10 +25,11 @@ from tools.builds import studio
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page, Playwright
 
-# No sandbox: root has none, and these pages are our own.
+# No sandbox: root has none, and these pages are our own. WebAssembly is compiled once and not again
+# for speed: Python does little in a page of a test, and each begins it anew.
 OPTIONS = ("--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
            "--disable-background-networking", "--disable-component-update", "--disable-sync",
-           "--disable-dev-shm-usage")  # fmt: skip
+           "--disable-dev-shm-usage", "--js-flags=--liftoff-only")  # fmt: skip
 
 
 def missing() -> str:
