@@ -34,6 +34,7 @@ UPSTREAM: dict[str, set[str]] = {
     "syntax": {*TEXT, "bytecode"},  # of the bytecode its limits and its comparators
     "semantics": {*TEXT, "bytecode", "syntax"},
     "repairs": {*TEXT, "syntax"},
+    "recovery": {*TEXT, "syntax"},
     "codegen": {"source", "files", "fixed_point", "bytecode", "semantics"},
     "vm": {"fixed_point", "kit", "bytecode"},
     "robots": SHARED,
@@ -191,8 +192,8 @@ LED(TRUE); GRIPPER(90); BEEP(1, 440); M(-5, 5); S
 """
 # And what only wrong ones need.
 OF_WRONG = re.compile(
-    r"tiniscript\.(repairs|spelling|semantics\.(wrong_|unknown_|out_of_range|until_examples|joining)"
-    r"|syntax\.(\w*recovery|\w*suggestions|phrases|vocabulary|units|pasted|checksums))"
+    r"tiniscript\.(repairs|recovery|spelling|semantics\.(wrong_|unknown_|out_of_range|until_examples|joining)"
+    r"|syntax\.(\w*recovery|\w*suggestions|phrases|outline|vocabulary|units|pasted|checksums))"
 )
 
 

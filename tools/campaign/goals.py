@@ -100,6 +100,8 @@ GOALS: tuple[Goal, ...] = (
          "messages", 1_000_000, 5_000, "tests.fuzz.test_python messages {count} --seed {seed}"),
     Goal("fuzz-greetings", "Any bytes of a stranger on a shared port are a greeting, or none.",
          "rows of bytes", 1_000_000, 5_000, "tests.fuzz.test_python greetings {count} --seed {seed}"),
+    Goal("shadow", "The new recovery, which is in shadow, reads no fewer of the pupils' programs as meant than before, and repairs no more that it should not.",
+         "right programs with slips, and all pupils' programs for each piece", 10_000, 1_000, "tools.shadow {count} --seed {seed}"),
     Goal("mutation", "A small mistake in the code is noticed by a test of its module.",
          "mutants", 1_500, 150, "tools.mutation {count} --seed {seed}"),
 )

@@ -1,0 +1,293 @@
+"""Blocks: which end belongs to which header, over all lines of a program.
+
+Names bare ends, puts words for braces, and closes what a line or its indentation closes. Knows the
+items of each line, not how they were read.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from tiniscript.recovery.concepts import ENDED, Lexeme, made
+from tiniscript.recovery.rewrites import negated
+from tiniscript.syntax.outline import Item
+from tiniscript.words import BLOCK_ENDS
+
+ANY_END = "?"  # the word of an end that names no block: END, FIN
+BRACES = ("{", "}")
+
+
+class Line(NamedTuple):
+    """A line whose items are known; `items` is None where it cannot be read.
+
+    `is_rewritten`: by a row; `has_body`: by one that begins a body. `is_do`: it begins a block
+    whose question comes at its end.
+    """
+
+    indent: int
+    tokens: list[Lexeme]
+    items: list[Item] | None
+    is_rewritten: bool
+    has_body: bool
+    is_do: bool
+
+
+class Edit(NamedTuple):
+    """From token `at` on, `old` tokens become `new`."""
+
+    at: int
+    old: int
+    new: list[Lexeme]
+
+
+class LineBehind(NamedTuple):
+    """An end that gets a line of its own."""
+
+    indent: int
+    word: str
+
+
+class Matched(NamedTuple):
+    """What each line needs so that all blocks end: edits, ends behind its text, and new lines.
+
+    `is_sure`: no end is a guess.
+    """
+
+    edits: dict[int, list[Edit]]
+    tails: dict[int, list[str]]
+    behind: dict[int, list[LineBehind]]
+    is_sure: bool
+
+
+class _Block:
+    def __init__(self, word: str, line: int, indent: int, has_body: bool, is_do: bool) -> None:
+        self.word = word  # nothing for braces that belong to no header
+        self.line = line
+        self.indent = indent
+        self.body: int | None = None  # its lines' indentation, -1 where that is not deeper
+        self.has_brace = not word
+        self.is_begun = has_body  # a row says that its body begins
+        self.is_do = is_do
+
+    @property
+    def end(self) -> str:
+        return BLOCK_ENDS[self.word]
+
+    @property
+    def has_indented_body(self) -> bool:
+        return self.body is not None and self.body >= 0
+
+
+def matched(lines: Sequence[Line]) -> Matched | None:
+    """Return what is missing for all blocks to end, or None where no reading fits."""
+    return _Matching(lines).run()
+
+
+class _Matching:
+    def __init__(self, lines: Sequence[Line]) -> None:
+        self.lines = lines
+        self.flat = [(k, item) for k, line in enumerate(lines) for item in line.items or ()]
+        self.has_unread = any(line.items is None for line in lines)
+        self.open: list[_Block] = []
+        self.edits: dict[int, list[Edit]] = {}
+        self.tails: dict[int, list[str]] = {}
+        self.behind: dict[int, list[LineBehind]] = {}
+        self.is_sure = True
+
+    def run(self) -> Matched | None:
+        last = -1
+        for place, (k, item) in enumerate(self.flat):
+            if k != last:
+                self.begin_line(place, k, item, last)
+                last = k
+            if not self.read(place, k, item):
+                return None
+            if place + 1 == len(self.flat) or self.flat[place + 1][0] != k:
+                self.end_line(place, k, item)
+        while self.open:
+            block = self.open.pop()
+            if not block.word:
+                return None
+            self.is_sure = self.is_sure and block.has_indented_body and block.is_begun
+            self.close_behind(last, block)
+        return Matched(self.edits, self.tails, self.behind, self.is_sure)
+
+    def edit(self, k: int, item: Item, old: int, *new: str) -> None:
+        self.edits.setdefault(k, []).append(Edit(item.start, old, [made(each) for each in new]))
+
+    def close_behind(self, k: int, block: _Block) -> None:
+        self.behind.setdefault(k, []).append(LineBehind(block.indent, block.end))
+
+    def after(self, place: int) -> Item | None:
+        return self.flat[place + 1][1] if place + 1 < len(self.flat) else None
+
+    # -- the beginning of a line: its indentation may close what is open -----------------------
+
+    def begin_line(self, place: int, k: int, item: Item, last: int) -> None:
+        indent = self.lines[k].indent
+        while self.open and item.kind in ("open", "do"):
+            block = self.open[-1]
+            is_left = block.body is not None and indent < block.body and indent <= block.indent
+            if not is_left or block.has_brace or self.has_end_further_down(place, block):
+                break
+            self.open.pop()
+            self.is_sure = self.is_sure and block.is_begun
+            self.close_behind(last, block)
+        for block in self.open:
+            if block.body is None and block.line < k:
+                block.body = indent if indent > block.indent else -1
+        while self.open and item.kind == "arm":
+            block = self.open[-1]
+            is_left = block.has_indented_body and indent <= block.indent and block.word != "IF"
+            if not is_left or block.has_brace:
+                break
+            self.open.pop()
+            self.close_behind(last, block)
+
+    def has_end_further_down(self, place: int, block: _Block) -> bool:
+        ends = (ANY_END, block.end)
+        return len(self.open) == 1 and any(
+            item.kind == "end" and item.word in ends and self.lines[k].indent <= block.indent
+            for k, item in self.flat[place:]
+        )
+
+    # -- items --------------------------------------------------------------------------------
+
+    def read(self, place: int, k: int, item: Item) -> bool:
+        """Take an item; return whether it has a place among the blocks."""
+        if item.kind == "open":
+            if not self.is_end_of_do(place, k, item):
+                line = self.lines[k]
+                block = _Block(item.word, k, line.indent, line.has_body, line.is_do)
+                self.open.append(block)
+            return True
+        if item.kind == "{":
+            return self.brace(k, item)
+        if item.kind == "}":
+            return self.closing_brace(place, k, item)
+        if item.kind == "arm":
+            while self.open and self.open[-1].word != "IF" and self.open[-1].line == k:
+                self.edit(k, item, 0, self.open.pop().end, ";")
+            return bool(self.open) and self.open[-1].word == "IF"
+        if item.kind == "end":
+            return self.bare_end(place, k, item) if item.word == ANY_END else self.end(k, item)
+        return True
+
+    def is_end_of_do(self, place: int, k: int, item: Item) -> bool:
+        """Whether a WHILE ends the block that a DO has begun: then it leaves that."""
+        if item.word != "WHILE" or not self.open or not self.open[-1].is_do:
+            return False
+        if any(other.kind == "end" for line, other in self.flat[place:] if line > k):
+            return False
+        question = self.lines[k].tokens[item.start + 2 : item.end - 1]
+        new = [made("IF"), made("("), *negated(question), made(")")]
+        new += map(made, (";", "BREAK", ";", "ENDIF", ";", "END_LOOP"))
+        self.edits.setdefault(k, []).append(Edit(item.start, item.end - item.start, new))
+        self.open.pop()
+        return True
+
+    def brace(self, k: int, item: Item) -> bool:
+        if not self.open:
+            self.is_sure = self.is_sure and item.start == 0
+            self.edit(k, item, 1)
+            self.open.append(_Block("", k, self.lines[k].indent, False, False))
+            return True
+        if self.open[-1].has_brace:
+            return False
+        self.open[-1].has_brace = True
+        self.edit(k, item, 1, ";")
+        return True
+
+    def closing_brace(self, place: int, k: int, item: Item) -> bool:
+        if not self.open:
+            return False
+        block, after = self.open[-1], self.after(place)
+        if block.is_do and after and after.word == "WHILE":
+            self.edit(k, item, 1, ";")
+            return True
+        if block.word == "IF" and after and after.kind == "arm":
+            self.edit(k, item, 1, ";")
+            block.has_brace = False
+            return True
+        if block.word and after and after.kind == "end" and after.word == block.end:
+            self.edit(k, item, 1, ";")
+            block.has_brace = False
+            return True
+        if not block.has_brace:
+            return False
+        self.open.pop()
+        self.edit(k, item, 1, *((";", block.end, ";") if block.word else ()))
+        return True
+
+    def bare_end(self, place: int, k: int, item: Item) -> bool:
+        """`FIN` ends the innermost block; one too many is dropped."""
+        after = self.after(place)
+        if not self.open:
+            if self.has_unread:
+                return False
+            is_alone = len(self.lines[k].items or ()) == 1 and len(self.flat) > 1
+            self.is_sure = self.is_sure and is_alone
+            self.edit(k, item, 1)
+        elif self.open[-1].word == "IF" and after and after.kind == "arm":
+            self.edit(k, item, 1)
+        elif self.open[-1].word:
+            self.edit(k, item, 1, self.open.pop().end)
+        else:
+            return False
+        return True
+
+    def end(self, k: int, item: Item) -> bool:
+        want, line = ENDED[item.word], self.lines[k]
+        if self.open and self.open[-1].word not in ("", want):
+            words = [block.word for block in self.open]
+            block = self.open[-1]
+            is_inside = (len(words) > 1 and block.line == k) or block.has_indented_body
+            if want not in words:
+                self.edit(k, item, 1, self.open.pop().end)
+                self.is_sure = line.is_rewritten
+                return True
+            if is_inside:
+                self.open.pop()
+                self.is_sure = self.is_sure and (block.is_begun or block.line == k)
+                self.edit(k, item, 0, block.end, ";")
+        if self.open and self.open[-1].word == want:
+            self.is_sure = self.is_sure and not self.open.pop().has_brace
+            return True
+        if self.open or self.has_unread:
+            return False
+        self.edit(k, item, 1)
+        return line.is_rewritten and len(line.items or ()) == 1
+
+    # -- the end of a line: a body behind its header ends there, unless an end is left for it ----
+
+    def end_line(self, place: int, k: int, item: Item) -> None:
+        while self.open and self.open[-1].line == k and item.kind != "open":
+            block = self.open[-1]
+            if block.has_brace or not block.word:
+                break
+            is_closed, after = self.is_closed_later(place, block), self.after(place)
+            has_outer = len(self.open) > 1
+            is_arm = block.word == "IF" and after is not None and after.kind == "arm"
+            if is_closed and (not has_outer or is_arm):
+                break
+            self.open.pop()
+            items = self.lines[k].items or []
+            count = sum(each.kind == "do" for each in items)
+            is_open_if = block.word in ("IF", "WHILE") and count > 1
+            has_arm = any(each.kind == "arm" for each in items)
+            self.is_sure = self.is_sure and block.is_begun and not (is_open_if and not has_arm)
+            self.tails.setdefault(k, []).append(block.end)
+
+    def is_closed_later(self, place: int, block: _Block) -> bool:
+        depth = 0
+        for _, item in self.flat[place + 1 :]:
+            if item.kind == "open":
+                depth += 1
+            elif item.kind in ("end", "}"):
+                if depth == 0:
+                    return True
+                depth -= 1
+            elif item.kind == "arm" and depth == 0 and block.word == "IF":
+                return True
+        return False

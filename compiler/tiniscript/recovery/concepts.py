@@ -1,0 +1,315 @@
+"""Concept tokens: what each word and sign of a wrong line may mean.
+
+Knows the lexicons, spelling, and the names that a program has. Knows no order of words.
+"""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from collections.abc import Iterable, Sequence
+from functools import cache, lru_cache
+from itertools import pairwise
+from typing import NamedTuple
+
+from tiniscript.kit import Kit
+from tiniscript.recovery import lexicon_en, lexicon_es
+from tiniscript.spelling import Speller
+from tiniscript.syntax.lexer import NUMBER, ODD, WORD
+from tiniscript.syntax.outline import Known
+from tiniscript.words import ALIASES, BLOCK_ENDS, WORDS, nearest
+
+KNOWN, MISSPELT, NEAR = 1, 2, 3  # what a meaning costs: said, written nearly so, a slip away
+STARTS = frozenset(("IF", "LOOP", "WHILE"))
+ENDED = {end: word for word, end in BLOCK_ENDS.items()}
+ENDED |= {alias: ENDED[end] for alias, end in ALIASES.items()}
+CALLED = frozenset(word.text for word in WORDS.values() if word.is_call)
+DONE = CALLED | {"S", "STOP", "BREAK"}
+
+_TOKEN = re.compile(
+    r"(\d+(?:\.\d+)?|\.\d+)|([A-Za-zÀ-ÿ_][\wÀ-ÿ]*)"
+    r"|(<=|>=|<>|==|!=|=!|=>|=<|&&|\|\||->|<-|:=|\+\+|\+=|-=|\*=|\S)"
+)
+_SIGNS = frozenset("-+*(),;=<>%/|") | {"<=", ">=", "<>"}
+_BEFORE_NAME = frozenset(("DEF", "VOID"))
+_LONGEST = 4  # words of a name
+
+
+class Lexeme(NamedTuple):
+    """A word in capitals without accents, a number or a sign.
+
+    `source` is how it was written, None where a repair made it; `space` stands before it, None
+    where the repair's own layout counts.
+    """
+
+    kind: str
+    text: str
+    source: str | None = None
+    space: str | None = None
+
+
+class Meaning(NamedTuple):
+    concept: str
+    cost: int
+
+
+def lexemes(line: str) -> list[Lexeme]:
+    found, end = [], 0
+    for match in _TOKEN.finditer(line):
+        text, kind = match[0], NUMBER if match[1] else WORD if match[2] else ODD
+        if kind is WORD:
+            text = plain(text)
+            if "Ñ" in match[0].upper() and not _lexicon().get(text):
+                text = plain(re.sub("[ñÑ]", "ni", match[0]))
+        elif text in _SIGNS:
+            kind = text
+        found.append(Lexeme(kind, text, match[0], line[end : match.start()]))
+        end = match.end()
+    return found
+
+
+@cache
+def made(text: str) -> Lexeme:
+    """Return a token that a repair writes."""
+    return lexemes(text)[0]._replace(source=None, space=None)
+
+
+def texts(tokens: Iterable[Lexeme]) -> tuple[str, ...]:
+    return tuple(token.text for token in tokens)
+
+
+def plain(text: str) -> str:
+    """Return a text in capitals, without accents."""
+    parts = unicodedata.normalize("NFD", text)
+    return "".join(sign for sign in parts if not unicodedata.combining(sign)).upper()
+
+
+# -- the lexicon ----------------------------------------------------------------------------
+
+
+@cache
+def _lexicon() -> dict[str, list[str]]:
+    """What each word means: all that the tables say of it, in their order."""
+    found: dict[str, list[str]] = {}
+    for table in (lexicon_es.TABLE, lexicon_en.TABLE):
+        for row in table.strip().split("\n"):
+            if not row.startswith("#"):
+                meaning, _, words = row.partition("|")
+                for word in words.split():
+                    found.setdefault(word, []).append(meaning.strip())
+    return found
+
+
+@lru_cache(4000)
+def said_of(word: str, kind: str) -> tuple[str, ...]:
+    """Return what the lexicon says of a word, of one kind: `("s", "1000")` of SEG, `unit`."""
+    for meaning in _lexicon().get(word, ()):
+        first, *rest = meaning.split()
+        if first == kind:
+            return tuple(rest) or (kind,)
+    return ()
+
+
+@cache
+def _speller() -> Speller:
+    return Speller([*WORDS, *_lexicon()])
+
+
+@lru_cache(4000)
+def concepts(word: str) -> tuple[Meaning, ...]:
+    """Return which words of the language a word may mean, the likeliest first."""
+    if word in ALIASES:
+        return (Meaning(ALIASES[word], 0),)
+    if word == "SI":
+        return (Meaning("IF", KNOWN),)
+    found = _concept_of(word)
+    if found:
+        return (Meaning(found, KNOWN),)
+    if word in WORDS or word in _lexicon():
+        return ()
+    alike, near = _speller().alike(word), _speller().near(word)
+    for spelt, cost in ((alike, KNOWN), (near, MISSPELT)):
+        if spelt and (found := _concept_of(spelt)):
+            return (Meaning(found, cost),)
+    in_two = _in_two_words(word)
+    if in_two:
+        return (Meaning(in_two, KNOWN),)
+    close = nearest(word, WORDS) if len(word) > 3 else None
+    if close:
+        return (Meaning(close, NEAR),)
+    if word.startswith(("END_", "FIN_")):
+        return (Meaning("FIN", KNOWN),)
+    return ()
+
+
+def _concept_of(word: str) -> str | None:
+    for meaning in _lexicon().get(word, ()):
+        if meaning.isupper() and " " not in meaning:
+            return meaning
+    return None
+
+
+def _in_two_words(word: str) -> str | None:
+    """Return what `moverAdelante` means: two words that say one command."""
+    for k in range(2, min(len(word), 24) - 1):
+        halves = word[:k].rstrip("_"), word[k:].lstrip("_")
+        said = {half if half == "STOP" else _concept_of(half) or "" for half in halves}
+        beside = [half for half in halves if said_of(half, "turn") or said_of(half, "filler")]
+        is_turn = any(said_of(half, "turn") for half in halves)
+        meant = said - {"", "M", "F"} or said - {"", "M"}
+        rest = [each for each in halves if each not in beside and not _concept_of(each)]
+        is_framed = bool(said & {"F", "M"}) or bool(beside)
+        if len(meant) == 1 and is_framed and not set(rest) - {"STOP"}:
+            only = next(iter(meant))
+            if only in (("L", "R") if is_turn else ("F", "B", "L", "R", "S", "STOP", "BEEP")):
+                return only
+    return None
+
+
+# -- the names of a program -----------------------------------------------------------------
+
+
+class Names:
+    """The names of one program, by a look at its tokens; `label` is what rewrites match."""
+
+    def __init__(self, lines: Sequence[Sequence[Lexeme]], kit: Kit) -> None:
+        self.sensors = frozenset(each.name for each in kit.sensors)
+        self.actuators = {each.name: each for each in kit.actuators}
+        self.variables: set[str] = set()
+        self.defs: set[str] = set()
+        self.in_brackets: set[str] = set()
+        self.rows: set[tuple[str, ...]] = set()  # names that are written as several words
+        for line in lines:
+            self._look_at(line)
+        self.defs -= {row[0] for row in self.rows}
+        self._labels: dict[tuple[str, str], str] = {}
+        self.known = Known(
+            frozenset(self.variables) | self.sensors,
+            frozenset(self.defs) | self.sensors,
+            frozenset(self.actuators),
+        )
+
+    def _look_at(self, line: Sequence[Lexeme]) -> None:
+        head = line[2:] if len(line) > 1 and line[1].text == "|" else line
+        depth = 0
+        for token, after in pairwise([*line, made(";")]):
+            depth += (token.text == "(") - (token.text == ")")
+            if token.kind is not WORD:
+                continue
+            if depth > 0:
+                self.in_brackets.add(token.text)
+            elif after.text in ("=", "++", "+=", "-=", ":=") and token.text not in WORDS:
+                self.variables.add(token.text)
+            is_def = token.text in _BEFORE_NAME or _concept_of(token.text) == "DEF"
+            if is_def and after.kind is WORD and after.text not in WORDS:
+                if after.text not in ("MAIN", "SETUP", "PRINCIPAL"):
+                    self.defs.add(after.text)
+        if len(head) > 2 and (head[0].text == "DEF" or _concept_of(head[0].text) == "DEF"):
+            self._name_in_words(head[1:], self.defs, (";",))
+        else:
+            self._name_in_words(head, self.variables, ("=",))
+
+    def _name_in_words(
+        self, tokens: Sequence[Lexeme], names: set[str], after: tuple[str, ...]
+    ) -> None:
+        """Note a name of several words that ends before `after`: `mi vel = 5`, `DEF paso 1`."""
+        row: list[str] = []
+        for token in tokens[: _LONGEST + 1]:
+            is_own = token.text not in WORDS and not said_of(token.text, "declare")
+            if (token.kind is NUMBER and not row) or token.kind not in (WORD, NUMBER, "-"):
+                break
+            if token.text in STARTS or token.text in CALLED:
+                break
+            if token.kind is WORD and (not is_own or said_of(token.text, "set")) and len(row) != 1:
+                break
+            row.append(token.text)
+        ends = tokens[len(row)].text if len(tokens) > len(row) else ";"
+        if len(row) > 1 and ends in after and row[0] not in WORDS and row[-1] != "-":
+            self.rows.add(tuple(row))
+            names.add(joined(row))
+
+    def is_name(self, word: str) -> bool:
+        return word in self.known.values or word in self.defs or word in self.actuators
+
+    def meanings(self, word: str) -> tuple[Meaning, ...]:
+        """Return what a word that is no name of the program may mean."""
+        if self.is_name(word):
+            return ()
+        found = concepts(word)
+        return tuple(each for each in found if each.concept in WORDS or self._is_kit(each.concept))
+
+    def _is_kit(self, concept: str) -> bool:
+        return concept in self.sensors or concept in self.actuators or concept == "FIN"
+
+    @staticmethod
+    def is_lexical(word: str) -> bool:
+        """Whether the lexicon has this word as a word of the language."""
+        return _concept_of(word) is not None
+
+    def takes(self, word: str) -> bool:
+        """Whether a word is an instruction with values in brackets."""
+        return word in CALLED or word in self.actuators
+
+    def label(self, token: Lexeme) -> str:
+        """Return all classes of a token, as one text that a pattern finds them in."""
+        key = (token.kind, token.text)
+        if key not in self._labels:
+            labels = "|".join(dict.fromkeys(self._classes(token)))
+            self._labels[key] = f"\x01|{labels}|\x02"
+        return self._labels[key]
+
+    def _classes(self, token: Lexeme) -> list[str]:
+        text = token.text
+        if token.kind is NUMBER:
+            return [text, "@num", *_ANY]
+        if token.kind is not WORD:
+            found = [f"s{text}"]
+            found += [name for name, without in _BUT.items() if text not in without]
+            found += ["@close"] if text == ")" else ["@unit"] if text in "%°" else []
+            return found
+        return [text, "@word", *self._classes_of_word(text)]
+
+    def _classes_of_word(self, text: str) -> list[str]:
+        said = [meaning.split()[0] for meaning in _lexicon().get(text, ())]
+        found = [each for each in said if each.islower()]
+        found += ["@unit"] if "unit" in said else []
+        meant = [each.concept for each in self.meanings(text) if each.cost < NEAR]
+        word = text if text in WORDS else meant[0] if meant else ""
+        is_name = self.is_name(text)
+        found += meant
+        found += [each for each in _ANY if not said_of(text, "do") or each not in _NO_DO]
+        if text in self.known.values or word in ("TRUE", "FALSE", "TIME") or word in self.sensors:
+            found.append("@val")
+        if text in self.defs:
+            found += ["@def", "@start", "@startm", "@close"]
+        if (word in DONE or text in self.actuators) and (not is_name or text in self.actuators):
+            found += ["@start", *(["@startm"] if word != "BEEP" else [])]
+            found += ["@callw"] if self.takes(word or text) else ["@close"]
+        if word in STARTS and not is_name:
+            found.append("@start")
+        if "turn" in found and not is_name:
+            found += ["@start", "@startm"]
+        if word in ENDED:
+            found.append("@close")
+        if word in ("ELSE", "ELSEIF", *ENDED) and "@nosep" in found:
+            found.remove("@nosep")
+        if text in self.variables or (text not in WORDS and not meant):
+            found.append("@name")
+            if "turn" not in found and not re.fullmatch("[FBLRWM][0-9]+", text):
+                found += ["@newname", *(["@usedname"] if text in self.in_brackets else [])]
+        return found
+
+
+def joined(row: Iterable[str]) -> str:
+    return "_".join(each for each in row if each != "-")
+
+
+# Classes of pieces: any token but these.
+_BUT: dict[str, tuple[str, ...]] = {
+    "@all": ("{", "}"), "@any": (";", "{", "}"), "@nosep": (";", "{", "}"), "@nob": (";", "{", "}"),
+    "@noclose": (";", "{", "}"), "@cond": (";", ":", "{", "}", "?"),
+    "@argt": (";", "{", "}", "(", ")"),
+    "@nobrace": ("{", "}", "(", ")", "<", ">"), "@noparen": (";", "{", "}", "(", ")"),
+}  # fmt: skip
+_ANY = tuple(_BUT)
+_NO_DO = ("@cond", "@argt", "@noparen")

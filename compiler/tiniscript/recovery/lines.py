@@ -1,0 +1,311 @@
+"""The readings of one line: a best-first search over rewrites, calls from words, and slips.
+
+Tries only what touches the place where the grammar cannot go on. Knows no other line.
+"""
+
+from __future__ import annotations
+
+import heapq
+from collections.abc import Callable, Iterator, Sequence
+from typing import NamedTuple
+
+from tiniscript.recovery import rewrites, rows
+from tiniscript.recovery.blocks import ANY_END, BRACES
+from tiniscript.recovery.concepts import (
+    NEAR,
+    Lexeme,
+    Names,
+    lexemes,
+    made,
+    said_of,
+    texts,
+)
+from tiniscript.recovery.slots import MILLISECONDS_FROM, filled
+from tiniscript.syntax.lexer import NUMBER, WORD
+from tiniscript.syntax.outline import Failure, Item, outline
+from tiniscript.words import WORDS
+
+STATES = 160  # of one line that are looked at
+SLIP_STATES = 30
+FARTHEST = 1.05  # what a rival may cost more than the cheapest reading
+MARGIN = 0.15  # what it has to cost more, for the cheapest to be sure
+SLIP_MARGIN = 0.3
+RIVALS = 4
+LONGEST = 120  # tokens of a line
+LONGEST_WITH_SLIPS = 40
+_FIRST_STEPS = 30
+_SETUP = 2  # tokens: `SI|`
+_AT_END = ("LOOP", "IF", "WHILE", "DEF", "ELSEIF", "UNTIL")
+
+
+class Step(NamedTuple):
+    """A rewrite that was made: what it was for, and the line before and behind it."""
+
+    code: str
+    before: Sequence[Lexeme]
+    after: Sequence[Lexeme]
+
+
+class Reading(NamedTuple):
+    """What a line may mean. `items` is None while it is not right yet, and `failure` says where."""
+
+    cost: float
+    tokens: list[Lexeme]
+    steps: tuple[Step, ...]
+    is_sure: bool
+    is_new_line: bool
+    items: list[Item] | None = None
+    failure: Failure = Failure(0, 0)
+
+    def changed(
+        self, tokens: list[Lexeme], cost: float, code: str, is_sure: bool, is_new_line: bool
+    ) -> Reading:
+        steps = (*self.steps, Step(code, self.tokens, tokens))
+        sure, new = self.is_sure and is_sure, self.is_new_line or is_new_line
+        return Reading(self.cost + cost, tokens, steps, sure, new)
+
+    @property
+    def text(self) -> tuple[str, ...]:
+        return texts(self.tokens)
+
+
+class Readings(NamedTuple):
+    """The readings of a line, the cheapest first, and what was on the way to them."""
+
+    found: list[Reading]
+    tried: list[Reading]
+
+
+def right(tokens: Sequence[Lexeme], names: Names) -> list[Item] | Failure:
+    """Return the items of a line, or where it is wrong. Braces and bare ends are items, too."""
+    found: list[Item] = []
+    start = 0
+    for k in range(len(tokens) + 1):
+        text = tokens[k].text if k < len(tokens) else BRACES[1]
+        is_brace, is_end = text in BRACES, _is_bare_end(tokens, k, names)
+        if not is_brace and not is_end:
+            continue
+        part = outline([(each.kind, each.text) for each in tokens[start:k]], names.known)
+        if isinstance(part, Failure):
+            return Failure(part.start + start, part.at + start)
+        found += [item._replace(start=item.start + start, end=item.end + start) for item in part]
+        if k < len(tokens):
+            found.append(Item("end" if is_end else text, ANY_END if is_end else text, k, k + 1))
+        start = k + 1
+    return found
+
+
+def _is_bare_end(tokens: Sequence[Lexeme], k: int, names: Names) -> bool:
+    if k >= len(tokens) or not said_of(tokens[k].text, "end") or names.is_name(tokens[k].text):
+        return False
+    around = (tokens[each].text if 0 <= each < len(tokens) else ";" for each in (k - 1, k + 1))
+    return all(each in (";", "|", *BRACES) for each in around)
+
+
+def read(tokens: Sequence[Lexeme], names: Names) -> Readings:
+    """Return the cheapest readings of a line."""
+    has_setup = len(tokens) > 1 and tokens[1].text == "|" and tokens[0].text in ("SI", "SB")
+    setup = list(tokens[:_SETUP]) if has_setup else []
+    search = _Search(names)
+    readings = search.read(list(tokens[len(setup) :]))
+    if not setup:
+        return readings
+    found = []
+    for each in readings.found:
+        items = right([*setup, *each.tokens], names)
+        if not isinstance(items, Failure):
+            found.append(each._replace(tokens=[*setup, *each.tokens], items=items))
+    tried = [each._replace(tokens=[*setup, *each.tokens]) for each in readings.tried]
+    return Readings(found, tried)
+
+
+_Successors = Callable[[Reading], Iterator[Reading]]
+
+
+class _Search:
+    def __init__(self, names: Names) -> None:
+        self.names = names
+
+    def read(self, tokens: list[Lexeme]) -> Readings:
+        first = self.at_once(Reading(0, tokens, (), True, False))
+        readings = self.search(first, STATES, self.rewritten)
+        if not readings.found and len(tokens) < LONGEST_WITH_SLIPS:
+            plain = Reading(0, tokens, (), True, False)
+            found = self.search(plain, SLIP_STATES, self.with_slips).found
+            found = [each for each in found if each.cost < found[0].cost + SLIP_MARGIN]
+            found = [each._replace(is_sure=each.is_sure and len(found) == 1) for each in found]
+            readings = Readings(found, readings.tried)
+        return readings
+
+    def search(self, first: Reading, states: int, successors: _Successors) -> Readings:
+        order = 0
+        heap = [(first.cost, order, first)]
+        seen: set[tuple[str, ...]] = set()
+        found: list[Reading] = []
+        tried: list[Reading] = []
+        while heap and len(seen) < states:
+            cost, _, reading = heapq.heappop(heap)
+            if found and (cost > found[0].cost + FARTHEST or len(found) >= RIVALS):
+                break
+            text = reading.text
+            if text in seen:
+                continue
+            seen.add(text)
+            items = right(reading.tokens, self.names)
+            if not isinstance(items, Failure):
+                if not self.says_twice(reading, items, first):
+                    found.append(reading._replace(items=items))
+                continue
+            reading = reading._replace(failure=items)
+            tried.append(reading)
+            for after in successors(reading):
+                if len(after.tokens) < LONGEST:
+                    order += 1
+                    heapq.heappush(heap, (after.cost, order, after))
+        return Readings(found, tried)
+
+    @staticmethod
+    def says_twice(reading: Reading, items: Sequence[Item], first: Reading) -> bool:
+        """Whether one instruction of the line became the same one twice, which nobody wrote."""
+        told = [texts(reading.tokens[item.start : item.end]) for item in items]
+        for one, other, item in zip(told, told[1:], items, strict=False):
+            if item.kind == "do" and one[0] == other[0]:
+                if one == other and one[0] in ("S", "STOP", "SHOW"):
+                    return True
+                if not reading.is_sure and one == other == first.text[: len(one)]:
+                    return True
+        return False
+
+    # -- successors -----------------------------------------------------------------------------
+
+    def at_once(self, reading: Reading) -> Reading:
+        """Make the rewrites that come before all others, and make words one that are one."""
+        for _ in range(_FIRST_STEPS):
+            one = rewrites.one_word(reading.tokens, self.names)
+            if one is not None:
+                tokens, is_name = one
+                cost, code = (1.0, rows.NAME_IN_WORDS) if is_name else (0.5, rows.OTHER_WORD)
+                reading = reading.changed(tokens, cost, code, True, False)
+                continue
+            after = next(self._by_rows(reading, is_first=True), None)
+            if after is None:
+                break
+            reading = after
+        return reading
+
+    def rewritten(self, reading: Reading) -> Iterator[Reading]:
+        for after in self._by_rows(reading, is_first=False):
+            yield self.at_once(after)
+        for after in (*self._by_slots(reading), *self._by_words(reading)):
+            yield self.at_once(after)
+
+    def _by_rows(self, reading: Reading, is_first: bool) -> Iterator[Reading]:
+        line = rewrites.Encoded(reading.tokens, self.names)
+        for row in rewrites.of_tokens():
+            if row.is_first is not is_first:
+                continue
+            for match in line.places(row):
+                start, end = line.span(match)
+                if not is_first and not _touches(reading.failure, start, end):
+                    continue
+                tokens = line.rewritten(row, match)
+                if tokens is not None:
+                    yield reading.changed(
+                        tokens, row.cost, row.code, not row.is_offered, row.is_new_line
+                    )
+                    break
+
+    def _by_slots(self, reading: Reading) -> Iterator[Reading]:
+        tokens = reading.tokens
+        for start, end in _calls(tokens):
+            words = tokens[start:end]
+            if not _touches(reading.failure, start, end) or self._is_right(words):
+                continue
+            has_until = end < len(tokens) and tokens[end].text == "UNTIL"
+            call = filled(words, self.names, has_until)
+            if call is None or texts(call.tokens) == texts(words):
+                continue
+            new = call.tokens
+            if call.times:
+                if len(words) < len(tokens):
+                    continue
+                new = [*lexemes(f"LOOP({call.times});"), *new, *lexemes(";END_LOOP")]
+                new = [each._replace(source=None, space=None) for each in new]
+            is_sure = call.is_sure and not call.times
+            line = [*tokens[:start], *new, *tokens[end:]]
+            yield reading.changed(line, call.cost, rows.OTHER_WORD, is_sure, bool(call.times))
+
+    def _is_right(self, words: list[Lexeme]) -> bool:
+        items = right(words, self.names)
+        return not isinstance(items, Failure) and bool(items)
+
+    def _by_words(self, reading: Reading) -> Iterator[Reading]:
+        """Translate the first word that is none of the language."""
+        tokens = reading.tokens
+        for k, token in enumerate(tokens[: reading.failure.at + 2]):
+            if token.kind is not WORD or (token.text in WORDS and token.text != "SI"):
+                continue
+            meanings = self.names.meanings(token.text)
+            if _is_in_milliseconds(tokens, k, meanings[0].concept if meanings else ""):
+                continue
+            for concept, cost in meanings:
+                cost = NEAR if token.text[-1].isdigit() else cost
+                is_sure = cost < 2 and concept != "TIME"
+                line = [*tokens[:k], made(concept)._replace(space=token.space), *tokens[k + 1 :]]
+                yield reading.changed(line, cost, rows.OTHER_WORD, is_sure, False)
+            if meanings:
+                break
+
+    def with_slips(self, reading: Reading) -> Iterator[Reading]:
+        """One sign wrong, missing, too much or behind its neighbour, where the line fails."""
+        tokens, (start, at) = reading.tokens, reading.failure
+        for k in range(max(0, start - 1), min(len(tokens), at + 2)):
+            token, rest = tokens[k], tokens[k + 1 :]
+            is_sign, is_bracket = token.kind not in (WORD, NUMBER), token.text in ("(", ")")
+            for sign, cost, code in rows.MISSING:
+                line = [*tokens[:k], made(sign), token, *rest]
+                yield reading.changed(line, cost, code, True, False)
+            if is_sign:
+                cost, code = rows.CONFUSED_COST
+                for sign in rows.CONFUSED.get(token.text, ""):
+                    yield reading.changed([*tokens[:k], made(sign), *rest], cost, code, True, False)
+            if is_sign and token.text not in ("-", "<", ">", "="):
+                cost, code = rows.EXTRA_COST
+                yield reading.changed([*tokens[:k], *rest], cost, code, is_bracket, False)
+            if rest and (is_bracket or rest[0].text in ("(", ")")):
+                if not is_sign or rest[0].kind in (WORD, NUMBER):
+                    cost, code = rows.SWAPPED_COST
+                    line = [*tokens[:k], rest[0], token, *rest[1:]]
+                    yield reading.changed(line, cost, code, True, False)
+
+
+def _touches(failure: Failure, start: int, end: int) -> bool:
+    return start <= failure.at + 1 and end >= failure.start - 1
+
+
+def _is_in_milliseconds(tokens: Sequence[Lexeme], k: int, concept: str) -> bool:
+    if said_of(tokens[k].text, "milliseconds"):
+        return True
+    numbers = [each for each in tokens[k + 1 : k + 3] if each.kind is NUMBER]
+    return concept == "W" and bool(numbers) and float(numbers[0].text) >= MILLISECONDS_FROM
+
+
+def _calls(tokens: Sequence[Lexeme]) -> Iterator[tuple[int, int]]:
+    """Give the pieces of a line in which a call may be told: between separators and headers."""
+    start = 0
+    for k, token in enumerate([*tokens, made(";")]):
+        role = WORDS[token.text].role if token.text in WORDS else ""
+        is_edge = role in ("block", "arm", "end", "until") or token.text in (";", *BRACES)
+        if not is_edge:
+            continue
+        if start < k:
+            yield start, k
+        start = max(start, k + 1)
+        if token.text in _AT_END:
+            depth, j = 0, k + 1
+            while j < len(tokens):
+                depth += (tokens[j].text == "(") - (tokens[j].text == ")")
+                if depth <= 0:
+                    break
+                j += 1
+            start = max(start, j + 1)

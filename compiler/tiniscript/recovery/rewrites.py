@@ -1,0 +1,306 @@
+"""Rewrites: the rows of the tables, compiled, and what a line becomes by them.
+
+Knows the language of the patterns, which `rows` explains. Knows no row.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator, Sequence
+from functools import cache
+from itertools import product
+from typing import NamedTuple
+
+from tiniscript.recovery import rows
+from tiniscript.recovery.concepts import ENDED, Lexeme, Names, joined, made, said_of
+from tiniscript.syntax.lexer import WORD
+from tiniscript.syntax.operators import COMPARISONS, OPPOSITES
+from tiniscript.words import BLOCK_ENDS, WORDS
+
+_ATOM = re.compile(r"'[^']*'|@\w+|[a-z]{2,}|[A-Z_0-9]+|\$|[^\w|'@\s$]+")
+_CAPTURE = re.compile(r"([a-z])=(?=.)")
+_PART = re.compile(r"<(\w+)>")
+_HEADER_OF = {"FOREVER": "LOOP", "FOR": "LOOP", "PARA": "LOOP", "ELSEIF": "IF"}
+
+
+class Row(NamedTuple):
+    """A row of the table of tokens. `is_first`: made before anything else is tried."""
+
+    pattern: re.Pattern[str]
+    becomes: tuple[str, ...]
+    cost: float
+    code: str
+    is_first: bool
+    is_offered: bool
+    example: tuple[str, str]
+
+    @property
+    def is_new_line(self) -> bool:
+        """Whether what was one line of instructions becomes several."""
+        return ";" in self.becomes
+
+
+class SignRow(NamedTuple):
+    """A row of the table of signs: a pattern of characters, of which no token is made."""
+
+    pattern: re.Pattern[str]
+    becomes: str
+    cost: float
+    code: str
+    is_offered: bool
+    example: tuple[str, str]
+
+
+def cells(table: str) -> Iterator[list[str]]:
+    for row in table.strip("\n").split("\n"):
+        if row.strip() and not row.startswith("# "):
+            yield [cell.strip() for cell in re.split(r"\s\|(?=\s|$)", row, maxsplit=5)]
+
+
+@cache
+def of_tokens() -> tuple[Row, ...]:
+    found = []
+    for pattern, becomes, cost, code, how, example in cells(rows.TOKENS):
+        compiled = re.compile("".join(map(_atom, _whole(pattern).split())))
+        parts = tuple(_whole(becomes).split())
+        is_first, is_offered = how == "first", how == "offered"
+        found.append(Row(compiled, parts, float(cost), code, is_first, is_offered, _texts(example)))
+    return tuple(found)
+
+
+@cache
+def of_signs() -> tuple[SignRow, ...]:
+    found = []
+    for row in rows.SIGNS.strip("\n").split("\n"):
+        if not row.startswith("# "):
+            pattern, becomes, cost, code, how, example = row.split("  |  ", 5)
+            new = SignRow(re.compile(pattern), becomes.strip("`"), float(cost), code,
+                          how.strip() == "offered", _texts(example))  # fmt: skip
+            found.append(new)
+    return tuple(found)
+
+
+def _texts(example: str) -> tuple[str, str]:
+    """Return the program of an example, and what becomes of it."""
+    wrong, _, right = example.replace("⏎", "\n").rpartition(" => ")
+    return wrong.strip(" "), right
+
+
+def _whole(pattern: str) -> str:
+    """Return a pattern with its `<parts>` written out."""
+    while _PART.search(pattern):
+        pattern = _PART.sub(lambda match: rows.PARTS[match[1]], pattern)
+    return pattern
+
+
+def _atom(atom: str) -> str:
+    """Return the pattern of one token, of labels as `Names.label` writes them."""
+    capture = _CAPTURE.match(atom)
+    name, atom = (capture[1], atom[2:]) if capture and len(atom) > 2 else ("", atom)
+    if atom == "^":
+        return r"\A"
+    if atom == "$":
+        return rf"(?P<{name}>\Z)" if name else r"(?=\Z)"
+    often = ""
+    if len(atom) > 1 and atom[-1] in "?*+" and (atom[-2].isalnum() or atom[-2] in "':,;()"):
+        atom, often = atom[:-1], atom[-1]
+    found = _ATOM.findall(atom)
+    words = [each for each in found if each[0] == "@" or each[0].isalnum() or each[:2] == "_"]
+    labels = [re.escape(each) for each in words if each != "_"]
+    labels += ["s" + re.escape(each.strip("'")) for each in found if each not in (*words, "$")]
+    one = rf"\x01[^\x02]*\|(?:{'|'.join(labels)})\|[^\x02]*\x02"
+    one = rf"(?:{one}|\Z)" if "$" in found else one
+    body = f"(?:{one}){often}{'?' if often in ('+', '*') and often else ''}"
+    return f"(?P<{name}>{body})" if name else body
+
+
+class Encoded:
+    """The labels of a line as one text, and which token ends where in it."""
+
+    def __init__(self, tokens: Sequence[Lexeme], names: Names) -> None:
+        self.tokens = list(tokens)
+        self.names = names
+        parts = [names.label(token) for token in tokens]
+        self.text = "".join(parts)
+        self.index = {0: 0}
+        end = 0
+        for k, part in enumerate(parts):
+            end += len(part)
+            self.index[end] = k + 1
+
+    def places(self, row: Row) -> Iterator[re.Match[str]]:
+        return row.pattern.finditer(self.text)
+
+    def span(self, match: re.Match[str], name: str | int = 0) -> tuple[int, int]:
+        """Return the tokens of a match, or of a part of it that it has captured."""
+        start, end = match.span(name)
+        return (self.index[start], self.index[end]) if start >= 0 else (0, 0)
+
+    def rewritten(self, row: Row, match: re.Match[str]) -> list[Lexeme] | None:
+        """Return the line behind a row, or None where it does not hold here."""
+        new: list[Lexeme] = []
+        for part in row.becomes:
+            made_of = self._made(part, match)
+            if made_of is None:
+                return None
+            new += made_of
+        new = _without_double_brackets(new)
+        start, end = self.span(match)
+        if new and new[-1].text == ";" and end < len(self.tokens) and self.tokens[end].text == ";":
+            new.pop()
+        old = self.tokens[start:end]
+        if [each.text for each in new] == [each.text for each in old]:
+            return None
+        return self.tokens[:start] + new + self.tokens[end:]
+
+    def _made(self, part: str, match: re.Match[str]) -> list[Lexeme] | None:
+        def captured(name: str) -> list[Lexeme]:
+            start, end = self.span(match, name)
+            return self.tokens[start:end]
+
+        if part[0] == "$" and len(part) == 2:
+            return captured(part[1])
+        if part[0] == "&" and len(part) == 2:
+            return [self._translated(each) for each in captured(part[1])]
+        if part[0] != "@":
+            return [made(part.strip("'"))]
+        function, *named = part[1:].split(":")
+        start, end = self.span(match)
+        place = _Place(self, [captured(each) for each in named], self.tokens[start:end], start)
+        return _FUNCTIONS[function](place)
+
+    def _translated(self, token: Lexeme) -> Lexeme:
+        if token.kind is not WORD or (token.text in WORDS and token.text != "SI"):
+            return token
+        meant = self.names.meanings(token.text)
+        return made(meant[0].concept) if meant else token
+
+
+class _Place(NamedTuple):
+    """What a function of the table gets: the line, its captures, and all tokens of the match."""
+
+    line: Encoded
+    captured: list[list[Lexeme]]
+    match: list[Lexeme]
+    start: int
+
+
+_Made = list[Lexeme] | None
+
+
+def _not(place: _Place) -> _Made:
+    return negated(place.captured[0])
+
+
+def negated(question: Sequence[Lexeme]) -> list[Lexeme]:
+    """Return the question that is TRUE where `question` is not."""
+    signs = [k for k, each in enumerate(question) if each.text in COMPARISONS]
+    if len(signs) == 1 and not any(each.text in ("AND", "OR", "NOT") for each in question):
+        k = signs[0]
+        return [*question[:k], made(OPPOSITES[question[k].text]), *question[k + 1 :]]
+    return [made("NOT"), made("("), *question, made(")")]
+
+
+def _end_of(place: _Place) -> _Made:
+    word = place.captured[0][0].text
+    if word not in WORDS or word == "SI":
+        meant = place.line.names.meanings(word)
+        word = meant[0].concept if meant else word
+    word = _HEADER_OF.get(word, word)
+    end = BLOCK_ENDS.get(word, word if word in ENDED else "")
+    return [made(end)] if end else None
+
+
+def _decimal(place: _Place) -> _Made:
+    """`1,5` is 1.5 where nobody takes it for two values."""
+    (whole,), (rest,) = place.captured
+    before = place.line.tokens[place.start - 1].text if place.start else ""
+    longest = 3 if whole.text == "0" else 2 if before == "=" else 1
+    is_list = len(whole.text) > 1 and rest.text not in ("0", "5")
+    has_space = any(each.space for each in place.match[1:])
+    if "." in whole.text + rest.text or is_list or len(rest.text) > longest or has_space:
+        return None
+    text = f"{whole.text}.{rest.text}"
+    return [whole._replace(text=text, source=text)]
+
+
+def _zero_behind(place: _Place) -> _Made:
+    """`8 0` is 80."""
+    (number,) = place.captured[0]
+    is_one = place.match[-1].space == " " and "." not in number.text
+    return [made(number.text + "0")] if is_one else None
+
+
+def _minutes(place: _Place) -> _Made:
+    """`1:30` is 90 seconds."""
+    (minutes,), (seconds,) = place.captured
+    text = seconds.text
+    is_time = "." not in minutes.text + text and len(text) == 2 and int(text) < 60
+    if not is_time or minutes.text == "0":
+        return None
+    return [made(str(int(minutes.text) * 60 + int(text)))]
+
+
+def _times(place: _Place) -> _Made:
+    """`x4` is 4, where no variable is called so."""
+    word = place.captured[0][0].text
+    return None if place.line.names.is_name(word) else [made(word[1:])]
+
+
+def _brace(place: _Place) -> _Made:
+    return [each for each in place.captured[0] if each.text == "{"]
+
+
+def _name(place: _Place) -> _Made:
+    return [made(joined(each.text for part in place.captured for each in part))]
+
+
+def _known_name(place: _Place) -> _Made:
+    name = _name(place)
+    return name if name and place.line.names.is_name(name[0].text) else None
+
+
+_FUNCTIONS: dict[str, Callable[[_Place], _Made]] = {
+    "not": _not, "endof": _end_of, "dec": _decimal, "cat": _zero_behind, "mmss": _minutes,
+    "xn": _times, "brace": _brace, "join": _name, "known": _known_name,
+}  # fmt: skip
+
+
+def _without_double_brackets(tokens: list[Lexeme]) -> list[Lexeme]:
+    """Drop a pair of brackets of a row right around one of the text."""
+    for k in range(len(tokens) - 1):
+        if tokens[k].text == "(" == tokens[k + 1].text and tokens[k].source is None:
+            depth = 0
+            for j in range(k + 1, len(tokens) - 1):
+                depth += (tokens[j].text == "(") - (tokens[j].text == ")")
+                if depth == 0:
+                    if tokens[j + 1].text == ")" and tokens[j + 1].source is None:
+                        return tokens[:k] + tokens[k + 1 : j + 1] + tokens[j + 2 :]
+                    break
+    return tokens
+
+
+def one_word(tokens: Sequence[Lexeme], names: Names) -> tuple[list[Lexeme], bool] | None:
+    """Return a line in which words that are one are one: `FIN SI`, `POR SIEMPRE`, `mi vel`.
+
+    The other value says whether that is a name of the program.
+    """
+    tokens = list(tokens)
+    for row in names.rows:
+        for k in range(len(tokens) - len(row) + 1):
+            if tuple(each.text for each in tokens[k : k + len(row)]) == row:
+                name = made(joined(row))._replace(space=tokens[k].space)
+                return [*tokens[:k], name, *tokens[k + len(row) :]], True
+    for k, count in product(range(len(tokens)), (3, 2)):
+        row = tuple(each.text for each in tokens[k : k + count])
+        if len(row) < count or any(each.kind is not WORD for each in tokens[k : k + count]):
+            continue
+        text = "_".join(row)
+        after = tokens[k + count].text if k + count < len(tokens) else ""
+        if text == "SI_NO" and (said_of(after, "is") or said_of(after, "there")):
+            continue
+        if names.is_lexical(text) or (text in WORDS and row[0] == "END"):
+            meant = names.meanings(text)
+            word = made(meant[0].concept if meant else text)._replace(space=tokens[k].space)
+            return [*tokens[:k], word, *tokens[k + count :]], False
+    return None

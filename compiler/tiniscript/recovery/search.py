@@ -1,0 +1,363 @@
+"""Candidates: whole programs that a wrong one may have been meant to be, and which one counts.
+
+The judge is who asks: the parser and the checker. A candidate has no mistakes, or fewer where a
+part of the text cannot be read; numbers, names and commands change by a row alone.
+"""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from collections.abc import Callable, Iterator, Sequence
+from typing import NamedTuple
+
+from tiniscript.kit import Kit
+from tiniscript.recovery import lines, rewrites, rows
+from tiniscript.recovery.blocks import Edit, Line, Matched, matched
+from tiniscript.recovery.concepts import CALLED, Lexeme, Names, lexemes, made, plain
+from tiniscript.recovery.lines import MARGIN, Reading, Step
+from tiniscript.recovery.writing import as_written, laid_out
+from tiniscript.syntax.outline import Failure
+
+CHECKS = 40  # of candidates of one program
+ALTERNATIVES = 12  # readings of a line that are tried beside the cheapest ones
+PARTS = 6  # readings of a part of a line
+_QUOTES = str.maketrans("“”„‘’", '"""\'\'')
+_QUOTES |= {wide: wide - 0xFEE0 for wide in range(0xFF01, 0xFF5F)}  # of Chinese keyboards
+
+Mistakes = Callable[[str], Sequence[str]]  # the codes of a program's mistakes
+
+
+class Candidate(NamedTuple):
+    """A program that may have been meant. `is_applied`: it may be made without asking.
+
+    `is_whole`: it has no mistakes; else fewer than the text. `steps` are all rewrites, with
+    their lines, from 0. `checks`: how many candidates were compiled.
+    """
+
+    text: str
+    is_applied: bool
+    is_whole: bool
+    steps: tuple[tuple[int, Step], ...]
+    checks: int
+
+
+def candidate(program: str, kit: Kit, mistakes: Mistakes) -> Candidate | None:
+    """Return the program that was meant by a wrong one, or None; a right one has no other."""
+    before = mistakes(program)
+    return _Recovery(program, kit, mistakes, len(before)).run() if before else None
+
+
+class _Text:
+    """A line on its way: what was written, and the readings of it."""
+
+    def __init__(self, source: str) -> None:
+        self.source = source
+        self.body, self.note = _without_note(source)
+        self.steps: list[Step] = []
+        self.is_sure = True
+        self.reading: Reading | None = None
+        self.rivals: list[Reading] = []
+        self.tried: list[Reading] = []
+
+    @property
+    def indent(self) -> int:
+        return len(self.source) - len(self.source.lstrip(" \t"))
+
+    @property
+    def is_rewritten(self) -> bool:
+        return bool(self.reading and self.reading.steps)
+
+
+class _Recovery:
+    def __init__(self, program: str, kit: Kit, mistakes: Mistakes, count: int) -> None:
+        self.program = program
+        self.kit = kit
+        self._mistakes = mistakes
+        self.count = count
+        self.checks = 0
+        self.lines = [_Text(line) for line in program.split("\n")]
+
+    def mistakes(self, text: str) -> Sequence[str]:
+        self.checks += 1
+        return self._mistakes(text)
+
+    def run(self) -> Candidate | None:
+        self.read_signs()
+        self.read_setup()
+        self.join_until()
+        names = Names([lexemes(each.body) for each in self.lines], self.kit)
+        for line in self.lines:
+            self.read_line(line, names)
+        best = self.of_whole()
+        if best is None or not best.is_whole:
+            best = self.of_parts(names, best) or best
+        return best
+
+    # -- lines ----------------------------------------------------------------------------------
+
+    def read_signs(self) -> None:
+        """Make the rewrites of signs, in the lines that have them."""
+        for line in self.lines:
+            body = line.body.translate(_QUOTES)
+            for row in rewrites.of_signs():
+                new = row.pattern.sub(row.becomes, body)
+                if new != body:
+                    line.steps.append(Step(row.code, lexemes(body), lexemes(new)))
+                    line.is_sure = line.is_sure and not row.is_offered
+                    body = new
+            line.body, note = _without_note(body)
+            line.note = note + line.note
+
+    def read_setup(self) -> None:
+        """Read what stands for `SI|` at the beginning."""
+        first = next((each for each in self.lines if each.body.strip() or each.note), None)
+        match = re.match(rows.SETUP, first.body) if first else None
+        if first is None or match is None or re.match(r"\s*S[IB]\s*\|[^|]", first.body):
+            return
+        rest = first.body[match.end() :]
+        begins = re.match(rows.STARTS, rest, re.IGNORECASE)
+        is_shown = bool(match["sep"]) or match["head"].upper() == "SB" or bool(match["gap"])
+        is_shown = is_shown or bool(re.match(r"[FBLRWM]\(", rest))
+        is_alone = not rest and (len(self.lines) > 1 or not match["sep"])
+        if not ((begins and is_shown) or is_alone):
+            return
+        is_if = plain(match["head"]) == "SI" and not match["sep"]
+        if is_if and rest and not re.match(rows.STARTS_OF_IF, rest):
+            word = begins[0].strip().upper() if begins else ""
+            if not begins or not match["gap"] or word == "IF":
+                return
+        new = match["ind"] + _plain(match["head"]) + "|" + match["gap"] + rest
+        first.steps.append(Step(rows.SETUP_CODE, lexemes(first.body), lexemes(new)))
+        first.body = new
+
+    def join_until(self) -> None:
+        """Put an UNTIL on a line of its own behind the instruction before it."""
+        kept: list[_Text] = []
+        for line in self.lines:
+            is_until = re.match(r"\s*(?:UNTIL|HASTA(?: QUE)?)\b", plain(line.body))
+            begun = any(re.match(rows.DO_ALONE, plain(each.body)) for each in kept)
+            before = next((each for each in reversed(kept) if each.body.strip()), None)
+            body = before.body.rstrip().rstrip(";") if before else ""
+            if not is_until or begun or before is None or not body.endswith(")") or before.note:
+                kept.append(line)
+                continue
+            before.body, before.note = f"{body} {line.body.strip()}", line.note
+            before.steps.append(Step(rows.UNTIL_ALONE, lexemes(line.body), lexemes(before.body)))
+        self.lines = kept
+
+    def read_line(self, line: _Text, names: Names) -> None:
+        tokens = lexemes(line.body)
+        items = lines.right(tokens, names)
+        if not isinstance(items, Failure):
+            line.reading = Reading(0, tokens, (), True, False, items)
+            return
+        found, line.tried = lines.read(tokens, names)
+        if not found:
+            return
+        first = found[0]
+        line.rivals = [each for each in found[1:] if each.text != first.text]
+        is_close = any(each.is_sure and each.cost < first.cost + MARGIN for each in line.rivals)
+        line.reading = first._replace(is_sure=first.is_sure and not is_close)
+
+    # -- programs -------------------------------------------------------------------------------
+
+    def of_whole(self) -> Candidate | None:
+        """Return the first sure program without mistakes; else an unsure one; else a part."""
+        best: Candidate | None = None
+        for readings, has_blocks in self.choices():
+            if best is not None and best.is_applied and best.is_whole:
+                break
+            if best is not None and has_blocks and None not in readings:
+                continue
+            made_of = self.written(readings, has_blocks)
+            if made_of is None:
+                continue
+            text, is_sure = made_of
+            left = self.mistakes(text)
+            if left and set(left) <= {rows.CALLED_BEFORE_DEF}:
+                moved = with_defs_first(text)
+                if moved and not self.mistakes(moved):
+                    text, left = moved, []
+            if not left:
+                is_applied = is_sure and bool(text.strip(" ;\n"))
+                if best is None or not best.is_whole or is_applied:
+                    best = self.made(text, is_applied, True, readings)
+            elif len(left) < self.count and self.is_part(readings) and is_sure:
+                if best is None or not best.is_applied:
+                    best = self.made(text, self.are_sure(), False, readings)
+        return best
+
+    def choices(self) -> Iterator[tuple[list[Reading | None], bool]]:
+        """Give what each line may be read as; at last without the blocks of a program."""
+        cheapest = [each.reading for each in self.lines]
+        yield cheapest, True
+        rivals = [(k, rival) for k, each in enumerate(self.lines) for rival in each.rivals]
+        for k, rival in sorted(rivals, key=self.costs_more)[:ALTERNATIVES]:
+            yield [*cheapest[:k], rival, *cheapest[k + 1 :]], True
+        sure = [each if each is None or each.is_sure else None for each in cheapest]
+        if sure != cheapest:
+            yield sure, True
+        yield sure, False
+
+    def costs_more(self, rival: tuple[int, Reading]) -> float:
+        first = self.lines[rival[0]].reading
+        return rival[1].cost - (first.cost if first else 0.0)
+
+    def is_part(self, readings: Sequence[Reading | None]) -> bool:
+        return any(each is None for each in readings)
+
+    def are_sure(self) -> bool:
+        return all(each.is_sure for each in self.lines)
+
+    def made(
+        self, text: str, is_applied: bool, is_whole: bool, readings: Sequence[Reading | None]
+    ) -> Candidate:
+        steps = [
+            (k, step)
+            for k, (line, reading) in enumerate(zip(self.lines, readings, strict=True))
+            for step in (*line.steps, *(reading.steps if reading else ()))
+        ]
+        return Candidate(text, is_applied, is_whole, tuple(steps), self.checks)
+
+    def written(
+        self, readings: Sequence[Reading | None], has_blocks: bool
+    ) -> tuple[str, bool] | None:
+        """Return the program of some readings, and whether it is sure; None where no block fits."""
+        found = Matched({}, {}, {}, True)
+        if has_blocks:
+            blocks = matched([
+                Line(line.indent, reading.tokens if reading else [],
+                     reading.items if reading else None, bool(reading and reading.steps),
+                     bool(reading and reading.is_new_line),
+                     any(step.code == rows.DO_CODE for step in reading.steps) if reading else False)
+                for line, reading in zip(self.lines, readings, strict=True)
+            ])  # fmt: skip
+            if blocks is None:
+                return None
+            found = blocks
+        out = []
+        for k, (line, reading) in enumerate(zip(self.lines, readings, strict=True)):
+            if reading is None:
+                out.append(line.source)
+            else:
+                body = _line(line, reading, found.edits.get(k, []), found.tails.get(k, []))
+                out.append(body + line.note)
+            out += [" " * end.indent + end.word for end in found.behind.get(k, [])]
+        is_sure = all(each.is_sure for each in readings if each) and self.are_sure()
+        return "\n".join(out), is_sure and found.is_sure
+
+    # -- parts ----------------------------------------------------------------------------------
+
+    def of_parts(self, names: Names, best: Candidate | None) -> Candidate | None:
+        """Return the text with the rewrites of lines that leave fewer mistakes, if not none."""
+        is_based = best is not None and best.is_applied
+        text = best.text if best is not None and is_based else self.program
+        count = len(self.mistakes(text)) if text != self.program else self.count
+        steps = list(best.steps) if best is not None and is_based else []
+        out = text.split("\n")
+        is_changed = False
+        for k, line in enumerate(self.lines):
+            if line.reading is not None or line.source not in out:
+                continue
+            at = out.index(line.source)
+            for reading in _likely(line, names):
+                if self.checks > CHECKS:
+                    break
+                new = as_written(reading.tokens).rstrip() + line.note
+                left = len(self.mistakes("\n".join([*out[:at], new, *out[at + 1 :]])))
+                if left < count:
+                    out[at], count, is_changed = new, left, True
+                    steps += [(k, step) for step in (*line.steps, *reading.steps)]
+                    break
+        if not is_changed:
+            return None
+        return Candidate("\n".join(out), self.are_sure(), False, tuple(steps), self.checks)
+
+
+def _likely(line: _Text, names: Names) -> list[Reading]:
+    """Return what a line became on the way to no reading: the more was done, the better."""
+    found = [
+        each
+        for each in line.tried[:40]
+        if each.is_sure and (each.cost or line.steps) and not _has_bare_call(each.tokens, names)
+    ]
+    return sorted(found, key=lambda each: -each.cost if each.cost <= 4 else 99)[:PARTS]
+
+
+def _has_bare_call(tokens: Sequence[Lexeme], names: Names) -> bool:
+    """Whether a word was translated into a call, and its values are still missing."""
+    after = [*(each.text for each in tokens[1:]), ""]
+    return any(
+        one.source is None and one.text in CALLED and sign != "("
+        for one, sign in zip(tokens, after, strict=True)
+    )
+
+
+def _line(line: _Text, reading: Reading, edits: Sequence[Edit], tails: Sequence[str]) -> str:
+    tokens = list(reading.tokens)
+    for edit in sorted(edits, key=lambda each: -each.at):
+        tokens[edit.at : edit.at + edit.old] = edit.new
+    if edits:
+        tokens = _without_empty(tokens)
+    if not reading.steps and not edits and not tails:
+        if all(each.source is None or each.source.isascii() for each in tokens):
+            return line.body
+    for word in tails:
+        is_ended = tokens and tokens[-1].text == ";"
+        tokens += [made(word)] if is_ended else [made(";"), made(word)]
+    if reading.is_new_line or tails or any(len(each.new) > 1 for each in edits):
+        text = line.source[: line.indent] + laid_out(_without_empty(tokens))
+        return text if tails or len(reading.items or ()) > 1 else text.rstrip("; ")
+    text = as_written(tokens)
+    return (text if line.source[:1].isspace() else text.lstrip(" ")).rstrip()
+
+
+def _without_empty(tokens: Sequence[Lexeme]) -> list[Lexeme]:
+    """Drop separators with nothing between them."""
+    kept: list[Lexeme] = []
+    for token in tokens:
+        if token.text != ";" or (kept and kept[-1].text not in (";", "|")):
+            kept.append(token)
+    return kept
+
+
+def _without_note(line: str) -> tuple[str, str]:
+    """Return a line without its comment, and that with the space before it."""
+    note = re.search(r"(?i)(?<!\bSI)(?<!\bSB)//", line)
+    body = line[: note.start()].rstrip() if note else line
+    return body, line[len(body) :]
+
+
+def _plain(text: str) -> str:
+    return "".join(
+        sign for sign in unicodedata.normalize("NFD", text) if not unicodedata.combining(sign)
+    )
+
+
+def with_defs_first(text: str) -> str | None:
+    """Return a program in which each DEF stands before its first call, None where it is so."""
+    out = text.split("\n")
+    setup = re.match(r"\s*S[IB]\s*\|\s*", out[0], re.IGNORECASE)
+    out[0] = out[0][setup.end() :] if setup else out[0]
+    is_moved = False
+    while (move := _def_behind_its_call(out)) is not None:
+        call, start, end = move
+        out = out[:call] + out[start : end + 1] + out[call:start] + out[end + 1 :]
+        is_moved = True
+    return (setup[0] if setup else "") + "\n".join(out) if is_moved else None
+
+
+def _def_behind_its_call(out: Sequence[str]) -> tuple[int, int, int] | None:
+    """Return the line of a call, and the first and the last one of its DEF further down."""
+    for start, line in enumerate(out):
+        match = re.match(r"\s*DEF\s+(\w+)\s*(;.*END_?DEF\s*;?\s*)?$", line, re.IGNORECASE)
+        if match is None:
+            continue
+        ends = (k for k in range(start, len(out)) if re.match(r"(?i)\s*END_?DEF\s*$", out[k]))
+        end = start if match[2] else next(ends, None)
+        called = re.compile(rf"(?i)(?:^|;)\s*{match[1]}\s*(?:;|$)")
+        call = next((k for k in range(start) if called.search(out[k])), None)
+        if end is not None and call is not None:
+            return call, start, end
+    return None

@@ -1,0 +1,331 @@
+"""Slots: a call from the words that say it, each value where its unit, range and order put it.
+
+Every number of the words is in the call, or there is no call. Knows no separators and no blocks.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from tiniscript.recovery.concepts import CALLED, DONE, Lexeme, Names, made, said_of
+from tiniscript.syntax.devices import actuator_word
+from tiniscript.syntax.lexer import NUMBER, WORD
+from tiniscript.words import UNITS, WORDS, Argument
+
+MILLISECONDS_FROM = 100  # no wait is so many seconds
+_SIDES = ("left", "right")
+_MOVES = ("F", "B", "L", "R")
+_LETTERS = {"T": "s", "P": "%", "V": "%"}  # how a value of a move is called, in one letter
+_PASSED = frozenset("(),:=.-_") | {"->", "%"}
+
+
+class Filled(NamedTuple):
+    """A call in tokens; `times` is how often, where words say so. `is_sure`: nothing is guessed."""
+
+    tokens: list[Lexeme]
+    cost: float
+    is_sure: bool
+    times: str | None
+
+
+class _Value(NamedTuple):
+    """A number, or the name of what has one, and its unit where that is said."""
+
+    value: float | str
+    unit: str | None
+
+
+def filled(words: Sequence[Lexeme], names: Names, has_until: bool) -> Filled | None:
+    """Return the call that some words say, or None where one of them has no place in it."""
+    reader = _Reader(words, names)
+    if not reader.read() or reader.command is None or reader.mark:
+        return None
+    if reader.is_turn and reader.command not in ("L", "R"):
+        return None
+    return reader.call(has_until)
+
+
+def told(number: float) -> str:
+    return f"{number:.3f}".rstrip("0").rstrip(".")
+
+
+class _Reader:
+    """Reads the words from left to right."""
+
+    def __init__(self, words: Sequence[Lexeme], names: Names) -> None:
+        self.words = words
+        self.names = names
+        self.command: str | None = None
+        self.values: list[_Value] = []
+        self.mark: str | None = None  # the unit of the next value, by its name: `potencia 80`
+        self.times: float | None = None
+        self.is_turn = False
+        self.is_sure = True
+        self.cost = 1.0
+
+    # -- words ------------------------------------------------------------------------------
+
+    def read(self) -> bool:
+        """Return whether each word has its place."""
+        if not self._has_one_group():
+            return False
+        k = 0
+        while k < len(self.words):
+            after = self._number(k)
+            if after is None:
+                after = self._word(k) if self.words[k].kind is WORD else self._sign(k)
+            if after is None:
+                return False
+            k = after
+        return True
+
+    def _has_one_group(self) -> bool:
+        """Whether nothing follows the brackets of the call; what is odd in them is a guess."""
+        depth = opened = 0
+        for k, token in enumerate(self.words):
+            depth += (token.text == "(") - (token.text == ")")
+            after = self.text(k + 1)
+            rest = self.words[k + 1 :]
+            if token.text == ")" and depth <= 0:
+                if any(each.kind in (WORD, NUMBER) or each.text == "(" for each in rest):
+                    return False
+            if token.text == "," and after in (",", ")"):
+                self.is_sure = False
+            if token.text == "(":
+                self.is_sure = self.is_sure and (not opened or (k == 2 and self.text(1) == "("))
+                opened += 1
+                first = self._meant(self.words[0].text)
+                if first != "M" and self._meant(after) in CALLED:
+                    self.is_sure = False
+        return True
+
+    def text(self, k: int) -> str:
+        return self.words[k].text if 0 <= k < len(self.words) else ""
+
+    def _meant(self, word: str) -> str:
+        if word in WORDS and word != "SI":
+            return word
+        meanings = self.names.meanings(word)
+        return meanings[0].concept if meanings else ""
+
+    def _value_of_words(self, k: int) -> float | None:
+        """Return the number that a word says, where it can be none of its other meanings."""
+        token, after = self.words[k], self.text(k + 1)
+        if token.kind is NUMBER:
+            return float(token.text)
+        if token.kind is not WORD or token.text in self.names.known.values:
+            return None
+        said = said_of(token.text, "number")
+        if said and self.command and (said != ("1",) or after in UNITS):
+            self.is_sure, self.cost = False, self.cost + 0.5
+            return float(said[0])
+        if said_of(token.text, "power") == ("50",) and after in UNITS:  # half a second
+            self.is_sure = False
+            return 0.5
+        return None
+
+    def _number(self, k: int) -> int | None:
+        """Read a number with its unit; return where to read on, None where none is here."""
+        number = self._value_of_words(k)
+        if number is None:
+            return None
+        k += 1
+        if self.text(k) == "Y" and said_of(self.text(k + 1), "power") == ("50",):
+            number, k, self.is_sure = number + 0.5, k + 2, False
+        if self.text(k) == "/" and k + 1 < len(self.words):
+            return None
+        unit, thousandths = self.mark, 1000.0
+        if self.text(k) == "POR" and self.text(k + 1) in ("CIENTO", "CIEN"):
+            unit, k = "%", k + 2
+        elif self.text(k) in UNITS:
+            unit, thousandths = UNITS[self.text(k)]
+            is_stop = self.words[k].source == "S" and bool(self.words[k].space)
+            self.is_sure, k = self.is_sure and not is_stop, k + 1
+        elif self.text(k) in ("DE", "OF") and (marked := said_of(self.text(k + 1), "value")):
+            unit, k = marked[0], k + 2
+        if self.text(k) in ("DE", "OF") and said_of(self.text(k + 1), "value") == ("%",):
+            k += 2
+        if unit == "times":
+            if self.times is not None:
+                return None
+            self.times = number
+            return k
+        if unit in ("cm", "°", "steps", "V", "°C"):
+            return None
+        self.values.append(_Value(number * thousandths / 1000, unit))
+        self.mark = None
+        return k
+
+    def _sign(self, k: int) -> int | None:
+        sign, before = self.text(k), self.text(k - 1)
+        if sign == "-" and self.command == "M" and self.words[k + 1 : k + 2]:
+            after = self.words[k + 1]
+            if after.kind is NUMBER and (before in ("(", ",", "M") or self.values):
+                self.values.append(_Value(-float(after.text), self.mark))
+                self.mark = None
+                return k + 2
+        if sign not in _PASSED or (sign == "=" and not self.mark):
+            return None
+        self.cost += 0.0 if sign in "(),%" else 0.2
+        self.is_sure = self.is_sure and sign not in ("-", ".")
+        return k + 1
+
+    def _word(self, k: int) -> int | None:
+        word, after = self.text(k), self.words[k + 1] if k + 1 < len(self.words) else None
+        names, marked = self.names, said_of(self.text(k), "value")
+        is_name = word in names.known.values
+        own = word if word in DONE and word != "BREAK" else None
+        meant = own or self._command_of(word)
+        is_before_number = after is not None and (after.kind is NUMBER or after.text in "=:")
+        if self.command == "M" and word in ("L", "R"):
+            self.mark = _SIDES[word == "R"]
+        elif self.command in _MOVES and word in _LETTERS and is_before_number:
+            self.mark = _LETTERS[word]
+        elif said_of(word, "turn"):
+            self.is_turn = True
+            self.command = None if self.command == "F" else self.command
+        elif self._is_mark(word, marked):
+            last = self.values[-1] if self.values else None
+            is_behind = after is None or after.text in (",", ")")
+            if last and last.unit is None and is_behind and marked != ("s",):
+                self.values[-1] = _Value(last.value, marked[0])
+            else:
+                self.mark = marked[0]
+        elif is_name and self.command:
+            self._take(word)
+        elif said_of(word, "power") and self.command:
+            self.values.append(_Value(float(said_of(word, "power")[0]), "%"))
+            self.is_sure = False
+        elif meant:
+            return k + 1 if self._take_command(word, meant, is_own=own is not None) else None
+        elif said_of(word, "filler"):
+            self.cost += 0.1
+        else:
+            return k + 1 if self._take_value(word) else None
+        return k + 1
+
+    def _is_mark(self, word: str, marked: tuple[str, ...]) -> bool:
+        is_free = bool(marked) and word not in self.names.known.values
+        is_side = is_free and marked[0] in _SIDES
+        return (
+            is_free and bool(self.command or self.is_turn) and (self.command == "M" or not is_side)
+        )
+
+    def _take(self, value: str) -> None:
+        self.values.append(_Value(value, self.mark))
+        self.mark = None
+
+    def _command_of(self, word: str) -> str | None:
+        if self.names.is_name(word):
+            return word if word in self.names.actuators else None
+        found = [each.concept for each in self.names.meanings(word)]
+        return next((each for each in found if each in CALLED or each == "S"), None)
+
+    def _take_command(self, word: str, meant: str, is_own: bool) -> bool:
+        meanings = self.names.meanings(word)
+        cost = 0 if is_own or not meanings else meanings[0].cost
+        self.is_sure = self.is_sure and cost < 2
+        before = self.command
+        is_way = before == "F" and meant in ("B", "L", "R") and not self.values
+        if before is None or is_way or (self.is_turn and meant in ("L", "R")):
+            self.command = meant
+        elif before == meant and not self.values and meant in _MOVES:
+            pass
+        elif not (meant == "F" and before in _MOVES and said_of(word, "filler")):
+            return False
+        self.cost += cost * 0.3
+        return True
+
+    def _take_value(self, word: str) -> bool:
+        for concept, cost in self.names.meanings(word):
+            self.is_sure = self.is_sure and cost < 2 and not word[-1].isdigit()
+            if self.command and (concept in self.names.sensors or concept in ("TRUE", "FALSE")):
+                self.values.append(_Value(concept, None))
+                return True
+        return False
+
+    # -- the call ---------------------------------------------------------------------------
+
+    def call(self, has_until: bool) -> Filled | None:
+        assert self.command is not None
+        device = self.names.actuators.get(self.command)
+        word = actuator_word(device) if device else WORDS[self.command]
+        times = None if self.times is None else told(self.times)
+        if not word.arguments:
+            is_sure = self.is_sure and times is None
+            return None if self.values else Filled([made(word.text)], self.cost, is_sure, times)
+        values = self._in_seconds(self._with_decimals(len(word.arguments)))
+        slots = values and self._slots(values, word.arguments, has_until)
+        if not slots:
+            return None
+        out = [made(word.text), made("(")]
+        for k, (value, argument) in enumerate(zip(slots, word.arguments, strict=True)):
+            out += [made(",")] if k else []
+            text = argument.sample if value is None else value
+            text = told(text) if isinstance(text, float) else text
+            out += [made("-"), made(text[1:])] if text.startswith("-") else [made(text)]
+        return Filled([*out, made(")")], self.cost, self.is_sure, times)
+
+    def _with_decimals(self, count: int) -> list[_Value] | None:
+        """Join whole numbers that are halves of decimal ones: `F(1,5,80,0)`, `W(0,5)`."""
+        values, numbers = self.values, [each.value for each in self.values]
+        is_double = len(values) == 2 * count and (count == 2 or self.command == "W")
+        if not is_double or not all(
+            isinstance(each, float) and each.is_integer() for each in numbers
+        ):
+            return values
+        if count == 1 and numbers[0] != 0:
+            return None
+        pairs = zip(values[::2], values[1::2], strict=True)
+        return [_Value(float(f"{int(a.value)}.{int(b.value)}"), b.unit) for a, b in pairs]
+
+    def _in_seconds(self, values: list[_Value] | None) -> list[_Value] | None:
+        """Take a plain number behind a command that counts milliseconds for these."""
+        if values is None or not any(isinstance(v, float) and u is None for v, u in values):
+            return values
+        if said_of(self.words[0].text, "milliseconds"):
+            self.is_sure = False
+            return [
+                _Value(v / 1000, "s") if isinstance(v, float) and u is None else _Value(v, u)
+                for v, u in values
+            ]
+        is_long = any(isinstance(v, float) and v >= MILLISECONDS_FROM for v, u in values if not u)
+        return None if self.command == "W" and is_long else values
+
+    def _slots(
+        self, values: list[_Value], arguments: tuple[Argument, ...], has_until: bool
+    ) -> list[float | str | None] | None:
+        """Return the value of each argument: by its unit, by its range, and then in order."""
+        slots: list[float | str | None] = [None] * len(arguments)
+        order: dict[int, int] = {}
+        for k, (value, unit) in enumerate(values):
+            if unit is not None:
+                free = (i for i, a in enumerate(arguments) if slots[i] is None)
+                place = next(
+                    (i for i in free if unit in (arguments[i].unit, arguments[i].name)), None
+                )
+                if place is None:
+                    return None
+                slots[place], order[k] = value, place
+        rest = [k for k in range(len(values)) if k not in order]
+        if has_until and slots[0] is None and arguments[0].unit == "s" and not rest:
+            slots[0] = "FOREVER"
+        for k in rest:
+            value = values[k].value
+            place = next((i for i, slot in enumerate(slots) if slot is None), None)
+            if self.command == "BEEP" and len(values) == 1 and isinstance(value, float):
+                place = 1 if value * 1000 >= arguments[1].low else place
+            if place is None:
+                return None
+            slots[place], order[k] = value, place
+        places = [order[k] for k in sorted(order)]
+        self.is_sure = self.is_sure and places == sorted(places)
+        if None in slots:
+            self.is_sure, self.cost = False, self.cost + 2
+            if self.command == "SHOW":
+                return None
+        for slot, argument in zip(slots, arguments, strict=True):
+            if isinstance(slot, float) and not argument.low <= slot * 1000 <= argument.high:
+                return None
+        return slots

@@ -1,0 +1,54 @@
+"""Text of tokens again: as it was written, with what was changed in it, or laid out anew."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from tiniscript.recovery.concepts import Lexeme, plain
+from tiniscript.syntax.lexer import NUMBER, WORD
+from tiniscript.syntax.operators import COMPARISONS
+from tiniscript.words import WORDS
+
+_CLOSED_UP = frozenset(",);|")  # no space stands before them
+
+
+def laid_out(tokens: Sequence[Lexeme]) -> str:
+    """Return a line as the formatter would write it."""
+    out, before, before_that = "", "", ""
+    for token in tokens:
+        text = token.text
+        is_call = text == "(" and before in WORDS and before not in ("AND", "OR", "NOT")
+        is_sign_of_number = before == "-" and (before_that in ("(", ",", "=", *COMPARISONS))
+        is_closed_up = text in _CLOSED_UP or before in ("", "(", ";", "|")
+        if not (is_closed_up or is_call or is_sign_of_number):
+            out += " "
+        out += text
+        before, before_that = text, before
+    return out
+
+
+def as_written(tokens: Sequence[Lexeme]) -> str:
+    """Return a line as it was written, with its own spaces where nothing was changed."""
+    out, before = "", None
+    for token in tokens:
+        space = token.space
+        if space is None:
+            is_closed_up = before is None or token.text in (",", ")", ";", "(")
+            space = "" if is_closed_up or (before and before.text in ("(", "-", "|")) else " "
+        elif not space and before is not None:
+            are_words = all(each.kind in (WORD, NUMBER) for each in (token, before))
+            space = " " if are_words else ""
+        if before is not None and before.text == "(" and before.source is None:
+            space = ""
+        out += space + _source(token)
+        before = token
+    return out
+
+
+def _source(token: Lexeme) -> str:
+    if token.source is None:
+        return token.text
+    if token.source.isascii() or token.kind is not WORD:
+        return token.source
+    as_it_was = plain(token.source)
+    return token.text if token.source.isupper() or as_it_was != token.text else as_it_was.lower()

@@ -1,0 +1,168 @@
+"""What the grammar reads of one line, and where it cannot go on.
+
+The parser itself, without its recovery: where it would ask for that, reading ends and the place is
+reported. Knows no other line, and so no block: headers, arms and ends are items of their own.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from tiniscript.source import Source, Span
+from tiniscript.syntax.ast import Argument
+from tiniscript.syntax.blocks import ENDS, HEADERS, Block, Blocks
+from tiniscript.syntax.expressions import ExpressionParser
+from tiniscript.syntax.lexer import END, Scan, Token
+from tiniscript.syntax.operators import Postfix
+from tiniscript.syntax.parser import Parser
+from tiniscript.syntax.reporter import Reporter
+from tiniscript.words import WORDS, Word
+
+if TYPE_CHECKING:
+    from typing import NoReturn
+
+    from tiniscript.diagnostics.codes import Code
+
+
+class Known(NamedTuple):
+    """The names of a program: what may stand as a value, as an instruction, and with one value."""
+
+    values: frozenset[str]
+    instructions: frozenset[str]
+    actuators: frozenset[str]
+
+
+class Item(NamedTuple):
+    """An instruction of a line, from token `start` to before `end`.
+
+    `kind` is `open` for a header, `arm`, `end` or `do`; `word` is the instruction's first.
+    """
+
+    kind: str
+    word: str
+    start: int
+    end: int
+
+
+class Failure(NamedTuple):
+    """The instruction that begins at token `start` cannot be read on at token `at`."""
+
+    start: int
+    at: int
+
+
+def outline(words: list[tuple[str, str]], known: Known) -> list[Item] | Failure:
+    """Return the items of a line of tokens (kind, text), or where it is wrong."""
+    tokens = [Token(kind, text, k, k + 1) for k, (kind, text) in enumerate(words)]
+    tokens.append(Token(END, "", len(tokens), len(tokens)))
+    return _Line(tokens, known).items()
+
+
+class _Stuck(Exception):
+    """The grammar has no rule for the next token."""
+
+
+class _NoRecovery:
+    """In the place of a recovery: a number that is rounded is right, all else is not."""
+
+    @staticmethod
+    def literal(token: Token, span: Span, value: int) -> int:
+        return value
+
+    def __getattr__(self, name: str) -> NoReturn:
+        raise _Stuck
+
+
+class _Silent(Reporter):
+    def report(self, code: Code, span: Span, place: Span | None = None, **values: str) -> None:
+        raise _Stuck
+
+
+class _Alone(Blocks):
+    """Each header, arm and end is right for itself."""
+
+    @property
+    def innermost(self) -> Block:
+        return Block("IF", Span(0, 0), None, None)
+
+    def begin(
+        self, word: str, span: Span, head: Argument | None = None, name: Token | None = None
+    ) -> Block:
+        return Block(word, span, head, name)
+
+
+class _Expressions(ExpressionParser):
+    values: frozenset[str] = frozenset()
+    recovery: Any = _NoRecovery()
+
+    def _may_be_more(self) -> bool:
+        return False
+
+    def word(self, token: Token, read: Postfix) -> bool:
+        if token.text not in WORDS and token.text not in self.values:
+            raise _Stuck
+        return super().word(token, read)
+
+
+class _Line(Parser):
+    recovery: Any = _NoRecovery()
+
+    def __init__(self, tokens: list[Token], known: Known) -> None:
+        super().__init__(Source(""), Scan(tokens, [], []), None)
+        self.reporter = _Silent([])
+        self.blocks = _Alone(self.reporter)
+        self.expressions = _Expressions(self.cursor, self.reporter, None)
+        self.expressions.values = known.values
+        self._known = known
+        self._found: list[Item] = []
+
+    def items(self) -> list[Item] | Failure:
+        cursor, start = self.cursor, 0
+        try:
+            if cursor.following.kind == "|":
+                self.setup()
+            while cursor.token.kind is not END:
+                start = cursor.i
+                if cursor.token.kind == ";":
+                    cursor.i += 1
+                else:
+                    self.instruction()
+        except _Stuck:
+            return Failure(start, max(start, cursor.i))
+        return self._found
+
+    def instruction(self) -> None:
+        start, word = self.cursor.i, self.cursor.token.text
+        super().instruction()
+        is_set = self.cursor.tokens[start + 1].kind == "="
+        kind = "do" if is_set else _KINDS.get(word, "do")
+        self._found.append(Item(kind, word, start, self.cursor.i))
+
+    def block_end(self, word: Token) -> None:
+        self.cursor.i += 1
+        self.no_arguments(word)
+
+    def arguments_of(self, word: Token, known: Word | None) -> tuple[Argument, ...] | None:
+        found = super().arguments_of(word, known)
+        count = len(known.arguments) if known else word.text in self._known.actuators
+        if count != len(found or ()):
+            raise _Stuck
+        return found
+
+    def argument_of(self, word: Token, is_reported: bool = False) -> Argument:
+        found = super().argument_of(word, is_reported)
+        if found.is_plain and word.text != "LOOP":
+            raise _Stuck  # a number is no question
+        return found
+
+    def _is_name(self, word: Token, following: Token) -> bool:
+        if following.kind == "(":
+            return word.text in self._known.actuators
+        return word.text in self._known.instructions
+
+
+_KINDS = {
+    **dict.fromkeys((*HEADERS, "DEF"), "open"),
+    **dict.fromkeys(("ELSE", "ELSEIF"), "arm"),
+    **dict.fromkeys(ENDS, "end"),
+}

@@ -1,0 +1,80 @@
+"""The new recovery, in shadow: its rows, right programs, and the score of a sample."""
+
+from __future__ import annotations
+
+import json
+import random
+
+import pytest
+
+from tests.pupils.corpus import entries
+from tests.pupils.test_damage import programs
+from tiniscript.lessons import catalogue
+from tiniscript.recovery import lines, rewrites
+from tiniscript.recovery.concepts import Lexeme, Names, lexemes
+from tiniscript.recovery.explanation import Missing, Needless, OtherWord, explained
+from tiniscript.syntax.outline import Failure
+from tools.shadow import marks
+from tools.shadow.__main__ import SAMPLE, SAMPLE_SEED, SAMPLE_SIZE, SCORES
+
+ROWS = [*rewrites.of_signs(), *rewrites.of_tokens()]
+
+
+@pytest.mark.parametrize("row", ROWS, ids=lambda row: row.example[0][:50])
+def test_the_example_of_a_row_is_read_as_it_says(row: rewrites.Row | rewrites.SignRow) -> None:
+    wrong, right = row.example
+    found = marks.meant(wrong)
+    assert found is not None and found.text == right
+
+
+def right_programs() -> list[str]:
+    folders = catalogue.folders()
+    answers = [answer.program for each in folders for answer in catalogue.answers(each)[0]]
+    kept = [entry.program for entry in entries() if not entry.said]
+    return [each for each in (*programs(), *answers, *kept) if not marks.mistakes(each)]
+
+
+@pytest.mark.parametrize("program", right_programs(), ids=lambda text: text[:40])
+def test_a_right_program_is_read_without_a_rewrite(program: str) -> None:
+    assert marks.meant(program) is None
+    tokens = [lexemes(line.partition("//")[0]) for line in program.split("\n")]
+    names = Names(tokens, marks.KIT)
+    for line in tokens:
+        if all(map(is_whole, tokens)) and program.isascii():
+            assert not isinstance(lines.right(line, names), Failure)
+
+
+def is_whole(line: list[Lexeme]) -> bool:
+    """Whether no bracket of a line is closed on another one, and no `=` compares behind `=`."""
+    signs = [each.text for each in line]
+    return signs.count("(") == signs.count(")") and signs[3:4] != ["="]
+
+
+def test_a_sample_of_the_corpus_reaches_its_score() -> None:
+    repaired = [each for each in entries() if each.mended and not marks.is_aside(each.program)]
+    chosen = random.Random(SAMPLE_SEED).sample(repaired, SAMPLE_SIZE)
+    good = sum(marks.answer(each).mark in (marks.SAME, marks.EQUIVALENT) for each in chosen)
+    assert 100 * good / len(chosen) >= json.loads(SCORES.read_text())[SAMPLE]
+
+
+@pytest.mark.parametrize(
+    ("wrong", "told"),
+    [
+        ("F(2 80)", Missing("TS017", 1, ",", "2")),
+        ("S\navanzar(2, 80)", OtherWord("TS102", 2, "AVANZAR", "F")),
+        ("F(2,, 80)", Needless("TS102", 1, ",")),
+    ],
+)
+def test_an_explanation_has_the_values_of_its_family(wrong: str, told: object) -> None:
+    found = marks.meant(wrong)
+    assert found is not None
+    said = explained(found)
+    assert said == [told]
+
+
+def test_the_parser_says_where_it_cannot_go_on() -> None:
+    names = Names([], marks.KIT)
+    assert lines.right(lexemes("S; F(2 80)"), names) == Failure(2, 5)
+    assert lines.right(lexemes("F(2, 80) B(1, 50)"), names) == Failure(0, 6)
+    assert lines.right(lexemes("F(2)"), names) == Failure(0, 4)
+    assert lines.right(lexemes("FAST"), names) == Failure(0, 0)

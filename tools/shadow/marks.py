@@ -1,0 +1,86 @@
+"""How the new recovery answers beside today's repairs: one mark for each program.
+
+Knows what is pinned in `tests/pupils`, and which programs are put aside. Prints nothing.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from functools import cache
+from typing import NamedTuple
+
+from tests.pupils.corpus import Entry
+from tiniscript import _checked, compile_text, robots
+from tiniscript.recovery.concepts import plain
+from tiniscript.recovery.search import Candidate, candidate
+
+SAME, EQUIVALENT, QUESTION, USAGE, WORSE = "same", "equivalent", "question", "usage", "worse"
+MARKS = (SAME, EQUIVALENT, QUESTION, USAGE, WORSE)
+KIT = robots.load(robots.DEFAULT).kit
+
+
+def is_aside(program: str) -> bool:
+    """Whether a program belongs to the quarter that nobody tunes on."""
+    return hashlib.sha256(program.encode()).digest()[0] % 4 == 0
+
+
+@cache
+def mistakes(program: str) -> tuple[str, ...]:
+    return tuple(each.code.number for each in _checked(program, KIT).diagnostics if each.is_mistake)
+
+
+@cache
+def image(program: str) -> bytes:
+    """Return the bytecode of a program, nothing for a wrong one."""
+    found = compile_text(program, KIT)
+    return found.image if found.is_right else b""
+
+
+def meant(program: str) -> Candidate | None:
+    return candidate(program, KIT, mistakes)
+
+
+class Answer(NamedTuple):
+    """`code` is the first mistake that today's messages name; `seconds` the search took."""
+
+    entry: Entry
+    mark: str
+    found: Candidate | None
+
+    @property
+    def code(self) -> str:
+        return self.entry.said[0].split(" ")[1] if self.entry.said else ""
+
+
+def answer(entry: Entry) -> Answer:
+    """Compare what becomes of a program with what is pinned.
+
+    Where nothing is repaired today, it is the same to repair nothing, and worse to do so.
+    """
+    found = meant(entry.program)
+    return Answer(entry, mark_of(entry, found), found)
+
+
+def mark_of(entry: Entry, found: Candidate | None) -> str:
+    is_applied = found is not None and found.is_applied
+    if entry.mended is None:
+        return WORSE if is_applied else SAME
+    if found is None:
+        return USAGE
+    text = "\n".join(line.rstrip() for line in found.text.split("\n"))
+    if same_tokens(text, entry.mended):
+        return SAME if is_applied else QUESTION
+    if image(text) and image(text) == image(entry.mended):
+        return EQUIVALENT if is_applied else QUESTION
+    return WORSE if is_applied else USAGE
+
+
+def same_tokens(one: str, other: str) -> bool:
+    """Whether two texts differ in spaces, line ends, comments and letter case alone."""
+    return _instructions(one) == _instructions(other)
+
+
+def _instructions(text: str) -> list[str]:
+    bare = re.sub(r"//[^\n]*", "", plain(text))
+    return [each for each in re.split(r"[;\n]", re.sub(r"[ \t]+", "", bare)) if each]
