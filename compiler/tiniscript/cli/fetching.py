@@ -11,6 +11,7 @@ import sys
 import tempfile
 from argparse import Namespace
 from collections.abc import Callable, Mapping, Sequence
+from importlib import invalidate_caches
 from pathlib import Path
 from time import monotonic
 from typing import NamedTuple
@@ -55,7 +56,8 @@ class Growing:
 
     def percent(self) -> int:
         if monotonic() >= self._due_s:
-            self._percent = min(99, size_of(self.folder) // (10_000 * self.mb))
+            grown = size_of(self.folder) // (10_000 * self.mb)
+            self._percent = min(99, max(self._percent, grown))  # what is put away is fetched, too
             self._due_s = monotonic() + MEASURED_EVERY_S
         return self._percent
 
@@ -102,6 +104,7 @@ def install(extra: str, part: Part, language: str) -> None:
             variables,
             lambda said: PUTTING not in said,  # half of a package looks whole
         )
+    invalidate_caches()  # of this process, where the package was not there
 
 
 def run(

@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import sys
+from argparse import Namespace
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 from tiniscript import files, robots
+from tiniscript.cli import fetching
 from tiniscript.cli.errors import CommandError
+from tiniscript.cli.fetching import Part
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.terminal.progress import Progress
 from tiniscript.cli.texts.common import text
 from tiniscript.library import install_advice
-from tiniscript.robots.ports import AVRS
+from tiniscript.robots.ports import AVRS, ESP32S
 
 if TYPE_CHECKING:
     from tiniscript.flash.building import CannotBuild, Seen, Sources
@@ -23,6 +26,10 @@ if TYPE_CHECKING:
 __all__ = ("BOARDS", "firmware", "on_boards", "print_list", "row")
 
 LOG = "build.log"  # the output of the last failed build, in the folder of the ready files
+MINUTES, MINUTES_ESP32 = (
+    3,
+    10,
+)  # of fetching and building, for whoever fetches 10 Mbit a second or more
 
 
 BOARDS = tuple(AVRS)  # that avrdude writes to
@@ -45,7 +52,7 @@ def on_boards(name: str | None, language: str, boards: Sequence[str] = BOARDS) -
     return found
 
 
-def firmware(robot: Robot, language: str) -> Ready:
+def firmware(robot: Robot, options: Namespace, language: str) -> Ready:
     """Return the firmware of a robot on its board. Raises CommandError where it cannot be built."""
     from tiniscript.flash import building, ready
 
@@ -56,6 +63,7 @@ def firmware(robot: Robot, language: str) -> Ready:
     if sources is None:
         raise CommandError(2, "flash_no_sources")
     values = {"robot": robot.name, "board": robot.board.chip}
+    _fetch(robot, options, language)
     try:
         data = _built(robot, sources, language)
         return ready.keep(ready.title_of(robot), robot.board.chip, sources.digest(robot), data)
@@ -87,7 +95,7 @@ def _ready(robot: Robot, sources: Sources | None) -> Ready | None:
     return None
 
 
-def upload(robot: Robot, port: str | None, language: str) -> None:
+def upload(robot: Robot, port: str | None, options: Namespace, language: str) -> None:
     """Build and write the firmware of a robot with an ESP32. Raises CommandError."""
     from tiniscript.flash import building, ready
 
@@ -95,6 +103,7 @@ def upload(robot: Robot, port: str | None, language: str) -> None:
     if sources is None:
         raise CommandError(2, "flash_no_sources")
     values = {"robot": robot.name, "board": robot.board.chip}
+    _fetch(robot, options, language)
     try:
         with _shown(robot, language) as look:
             building.upload(sources, robot, port, look)
@@ -107,6 +116,29 @@ def upload(robot: Robot, port: str | None, language: str) -> None:
         ) from None
 
 
+def _fetch(robot: Robot, options: Namespace, language: str) -> None:
+    """Have what builds the firmware of a robot, if the person agrees. Raises CommandError.
+
+    PlatformIO fetches the compiler itself, when it builds.
+    """
+    from tiniscript.flash import building
+
+    values = {"robot": robot.name, "board": robot.board.chip}
+    has_platformio = building.platformio() is not None
+    if not has_platformio and install_advice.installing(install_advice.FIRMWARE) is None:
+        raise _failure(building.CannotBuild(building.CannotBuild.NO_PLATFORMIO), values)
+    platformio = Part("fetch_platformio", building.PLATFORMIO_MB)
+    compiler = Part("fetch_compiler", building.missing_mb(robot))
+    parts = [*([] if has_platformio else [platformio]), *([compiler] if compiler.mb else [])]
+    if not parts:
+        return
+    minutes = MINUTES_ESP32 if robot.board.chip in ESP32S else MINUTES
+    missing = text("flash_missing", language).format(**values)
+    fetching.agree(missing, parts, minutes, options, language)
+    if not has_platformio:
+        fetching.install(install_advice.FIRMWARE, platformio, language)
+
+
 def _built(robot: Robot, sources: Sources, language: str) -> bytes:
     from tiniscript.flash import building
 
@@ -117,11 +149,8 @@ def _built(robot: Robot, sources: Sources, language: str) -> bytes:
 @contextmanager
 def _shown(robot: Robot, language: str) -> Iterator[Callable[[Seen], None]]:
     """Show the progress of a build."""
-    from tiniscript.flash import building
-
     values = {"robot": robot.name, "board": robot.board.chip}
-    if building.platformio() is not None:
-        print(text("flash_builds", language).format(**values), file=sys.stderr, flush=True)
+    print(text("flash_builds", language).format(**values), file=sys.stderr, flush=True)
     progress = Progress(language, 100)
     fetched = ""
 

@@ -33,6 +33,12 @@ MADE_BY = "tsc firmware, from a robot profile."
 
 FETCHING, COMPILING, WRITING = "fetching", "compiling", "writing"
 CORE_FILES = 26  # of Arduino's core, about
+PLATFORMIO_MB = 4  # what pip fetches, measured
+# What PlatformIO fetches for a board with these chips: its platform, and the megabytes of compiler,
+# core and build tools, about. Those are the archives that Arduino's and Espressif's indexes name
+# for Linux; for Windows they are a third larger.
+_COMPILERS = {"esp32dev": ("espressif32", 350), "esp32c3": ("espressif32", 430)}
+_AVR_COMPILER = ("atmelavr", 50)
 
 # The user's PlatformIO settings that would change the build or its folder.
 _UNWANTED = re.compile(
@@ -107,6 +113,21 @@ def platformio() -> list[str] | None:
         if found:
             return [found]
     return None
+
+
+def missing_mb(robot: Robot) -> int:
+    """Return how many megabytes PlatformIO fetches before it builds for a board, about."""
+    platform, mb = _COMPILERS.get(robot.board.chip, _AVR_COMPILER)
+    core = Path(os.environ.get("PLATFORMIO_CORE_DIR") or _core())
+    platforms = Path(os.environ.get("PLATFORMIO_PLATFORMS_DIR") or core / "platforms")
+    return 0 if any(platforms.glob(f"{platform}*/platform.json")) else mb
+
+
+def _core() -> Path:
+    """Return where PlatformIO keeps what it has fetched; a short folder of Windows comes first."""
+    home = Path.home() / ".platformio"
+    short = Path(home.drive + "\\.platformio")
+    return short if sys.platform == "win32" and short.is_dir() else home
 
 
 class _Project:

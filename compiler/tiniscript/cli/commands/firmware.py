@@ -39,11 +39,13 @@ def run(options: Namespace, language: str) -> int:
         return _esp32(options, language)
     robot, bootloaders = _chosen(options, language)
     if options.build:
-        print(firmware_build.row(robot, firmware_build.firmware(robot, language), language))
+        print(
+            firmware_build.row(robot, firmware_build.firmware(robot, options, language), language)
+        )
         return 0
     command = _avrdude()
     port = _port(options)
-    firmware = firmware_build.firmware(robot, language)
+    firmware = firmware_build.firmware(robot, options, language)
     _write(command, bootloaders, port, firmware, language)
     size = f"{firmware.bytes:,}"
     values = {"robot": robot.name, "board": firmware.board, "bytes": size}
@@ -59,11 +61,11 @@ def _esp32(options: Namespace, language: str) -> int:
     robot = inputs.robot(options, language).speaking(language)
     values = {"robot": robot.name, "board": robot.board.chip}
     if options.build:
-        firmware_build.upload(robot, None, language)
+        firmware_build.upload(robot, None, options, language)
         print(text("flash_built", language).format(**values))
         return 0
     port = _port(options)
-    firmware_build.upload(robot, port, language)
+    firmware_build.upload(robot, port, options, language)
     print(text("flash_written", language).format(**values), flush=True)
     _introduce(port, robot, robot.board.chip, language)
     return 0

@@ -19,6 +19,8 @@ FLASH_TEXTS: dict[str, tuple[str, str]] = {
                           "tsc: el firmware de {robot} está compilado, y no se pudo escribir en la placa {board} en {port} ({why}). ¿Es el puerto de su cable USB (tsc ports)? Mantén pulsado el botón BOOT de la placa mientras empieza la escritura, y haz lo mismo otra vez. Lo que dijo PlatformIO:  {log}"),
     "flash_row": ("{robot} on {board}: ready, {bytes} bytes", "{robot} en la placa {board}: listo, {bytes} bytes"),
     "flash_row_none": ("{robot} on {board}: is built when it is first written", "{robot} en la placa {board}: se compila la primera vez que se escribe"),
+    "flash_missing": ("The firmware of {robot} for the {board} has to be built first, with PlatformIO.",
+                      "El firmware de {robot} para el {board} se tiene que compilar primero, con PlatformIO."),
     "flash_builds": ("PlatformIO builds the firmware of {robot} for the {board}; that is done once.",
                      "PlatformIO compila el firmware de {robot} para el {board}; eso se hace una sola vez."),
     "flash_fetches": ("PlatformIO fetches {what}, which takes some minutes the first time.",

@@ -258,8 +258,8 @@ VERBS: dict[str, Verb] = {
     "firmware": Verb(
         BUILDING, ("firmware --port COM3", "firmware --port COM3"),
         ("put the firmware of a robot on its board", "pone el firmware de un robot en su placa"),
-        ("Writes the firmware of a robot on its board, over the USB cable, and reads it back. Meanwhile the HC-05, or whatever else is on pins 0 and 1, must be unplugged. Firmware that is not ready yet is built first, with PlatformIO; the first time that needs the internet.",
-         "Escribe el firmware de un robot en su placa, por el cable USB, y comprueba que quedó bien. Mientras tanto, ten desconectado el HC-05, o lo que esté en los pines 0 y 1. Si el firmware todavía no está listo, primero se compila, con PlatformIO; la primera vez hace falta internet."),
+        ("Writes the firmware of a robot on its board, over the USB cable, and reads it back. Meanwhile the HC-05, or whatever else is on pins 0 and 1, must be unplugged. Firmware that is not ready yet is built first, with PlatformIO; the first time it says how much is fetched for that, and asks.",
+         "Escribe el firmware de un robot en su placa, por el cable USB, y comprueba que quedó bien. Mientras tanto, ten desconectado el HC-05, o lo que esté en los pines 0 y 1. Si el firmware todavía no está listo, primero se compila, con PlatformIO; la primera vez dice cuánto se descarga para eso, y pregunta."),
         ("--port P [--robot NAME|FILE] [--board BOARD]\n--build [--robot NAME|FILE] [--board BOARD]\n--list",
          "--port P [--robot NOMBRE|ARCHIVO] [--board PLACA]\n--build [--robot NOMBRE|ARCHIVO] [--board PLACA]\n--list"),
         ("It needs avrdude; for an ESP32 PlatformIO alone.", "Necesita avrdude; para un ESP32, solo PlatformIO."),
