@@ -23,8 +23,9 @@ run tools.generate --check
 run tools.builds.studio || [ -z "${CI:-}" ]
 run pytest -n 2 --dist worksteal "$@"
 
-# Every branch of what decides whether a robot may run an image is taken by a test.
+# Every branch of what decides whether a robot may run an image is taken by a test that draws nothing.
 run coverage run --branch --include="compiler/tiniscript/bytecode/verify.py,compiler/tiniscript/bytecode/image.py" \
     -m pytest tests/bytecode/test_image.py tests/bytecode/test_verify.py tests/vm/test_cases.py \
-    -k "not host" -p no:xdist
+    -p no:xdist \
+    -k "test_image or test_verify and not random and not up_to_two or test_listing_runs and python"
 run coverage report --show-missing --fail-under=100

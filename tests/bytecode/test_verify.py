@@ -56,12 +56,14 @@ def runs_safely(code: bytes, seed: int) -> None:
         now_ms = max(now_ms, task.wake_ms)
 
 
-def test_random_and_mutated_code() -> None:
+@pytest.mark.sampled("part", keep=2)
+@pytest.mark.parametrize("part", range(10))
+def test_random_and_mutated_code(part: int) -> None:
     """Whatever the bytes: a verdict; and what is accepted runs. Half of it nearly right code."""
-    rng = random.Random("code")
+    rng = random.Random(part)
     accepted = 0
     codes = [op.code for op in OPS]
-    for number in range(30_000):
+    for number in range(3000):
         kind = number % 3
         if kind == 0:
             code = bytearray(rng.choices(codes + list(range(9)), k=rng.randrange(12)))
@@ -78,7 +80,7 @@ def test_random_and_mutated_code() -> None:
         if refusal(bytes(code)) == "":
             accepted += 1
             runs_safely(bytes(code), number + 1)
-    assert accepted > 3000
+    assert accepted > 300
 
 
 def test_all_code_of_up_to_two_bytes_and_three_around_each_opcode() -> None:

@@ -1,8 +1,8 @@
-"""Of rows that take a chip long, each commit runs a fair sample, and `--whole` all of them.
+"""Of rows that take long, on chips or of random programs, each commit runs a fair sample.
 
 A test marked `sampled("chip")` keeps, of the rows that differ in `chip` alone, one that the commit
 draws: every other value is in each run, each chip as often as the others, and every row in some.
-`sampled("chip", keep=2)` keeps two. What is asked for by `-k` or by its name is never left out.
+`sampled("chip", keep=2)` keeps two. `--whole` runs all, and what `-k` or a name asks for is run.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ def said(config: pytest.Config) -> str:
     """Return how the rows of this run are run again, or nothing where it has all."""
     if config.getoption("--whole") or is_narrowed(config):
         return ""
-    return f"rows of chips: --sample {seed(config)} draws the same again, --whole takes all"
+    return f"rows of a sample: --sample {seed(config)} draws the same again, --whole takes all"
 
 
 def is_narrowed(config: pytest.Config) -> bool:

@@ -60,7 +60,7 @@ GOALS: tuple[Goal, ...] = (
          "prefixes, and a hundred frames of each", 1_000_000, 100_000, "tests.link.test_typed_stops {count} --frames {count}00 --seed {seed}"),
     Goal("typed-stops-chip", "On a simulated Uno, at both rates, a typed stop behind random bytes is at the pins within a millisecond; nothing of before starts.",
          "stops", 10_000, 500, "tests.firmware.test_typed_stops {count} --seed {seed}", 1000),
-    Goal("chips", "What a test says of chips holds of each row: a commit runs a sample of them.",
+    Goal("rows", "Each row holds of tests of which a commit runs a sample: of chips, of random programs and codes.",
          "runs of all rows", 1, 1, "pytest tests -m sampled --whole -n 2 --dist worksteal"),
     Goal("fuzz-machine", f"No image harms the machine: what the verifier accepts runs without BAD_CODE ({FUZZ}).",
          "inputs", 100_000_000, 5_000_000, "tests.fuzz.harnesses machine {count} --seed {seed}"),
