@@ -9,7 +9,7 @@ import time
 import pytest
 
 from tests.machines.host_firmware import missing
-from tests.support.command import TSC, process
+from tests.support.command import TSC, inside
 from tests.support.pty_robot import PtyRobot
 from tests.support.waiting import HANGS_S
 from tiniscript import robots
@@ -24,17 +24,17 @@ needs_robot = pytest.mark.skipif(bool(missing()), reason=missing() or "there is 
 
 @needs_robot
 def test_a_line_is_done_at_once_and_the_program_stays(pty_robot: PtyRobot) -> None:
-    assert process("upload", "-e", "SB|W(1)", "--port", pty_robot.port).code == 0
-    done = process("live", "F(0.2, 80);SHOW(1.5)", "--port", pty_robot.port)
+    assert inside("upload", "-e", "SB|W(1)", "--port", pty_robot.port).code == 0
+    done = inside("live", "F(0.2, 80);SHOW(1.5)", "--port", pty_robot.port)
     assert (done.code, done.out) == (0, "SHOW 1.5\nDone.\n")
     assert pty_robot.did == ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
-    assert "SB" in process("fetch").out
-    assert process("live", "F(2 80)").code == 1
-    assert process("live", "SB|F(2, 80)").code == 1
-    done = process("live", "SHOW(TIME * 1.234);" * 12)
+    assert "SB" in inside("fetch").out
+    assert inside("live", "F(2 80)").code == 1
+    assert inside("live", "SB|F(2, 80)").code == 1
+    done = inside("live", "SHOW(TIME * 1.234);" * 12)
     assert done.code == 1
     assert "room for 55" in done.err
-    assert process("live", "X = 0;SHOW(1 / X)").code == 1
+    assert inside("live", "X = 0;SHOW(1 / X)").code == 1
 
 
 @needs_robot
@@ -49,7 +49,7 @@ def test_variables_and_defs_live_on(pty_robot: PtyRobot) -> None:
         "X = 1 / 0",
         "SHOW(9)",
     )
-    done = process("live", "-", "--port", pty_robot.port, data="\n".join(lines).encode())
+    done = inside("live", "-", "--port", pty_robot.port, data="\n".join(lines).encode())
     assert done.code == 1  # the fault ends it
     assert done.out.splitlines() == [
         "TELL: known from now on.", "SHOW 30.5", "SHOW 31.5", "SHOW 31.5", "SHOW TRUE",
@@ -109,14 +109,14 @@ def test_a_person_at_the_prompt(pty_robot: PtyRobot) -> None:
 def test_a_block_goes_on_over_lines(pty_robot: PtyRobot) -> None:
     """Up to its end, or to the first line with a mistake."""
     lines = "DEF TELL\n  SHOW(1)\nEND_DEF\nLOOP(2)\n\n  TELL // twice\nEND_LOOP\nSHOW(3)\n"
-    done = process("live", "-", "--port", pty_robot.port, data=lines.encode())
+    done = inside("live", "-", "--port", pty_robot.port, data=lines.encode())
     assert (done.code, done.err) == (0, "")
     assert done.out == "TELL: known from now on.\nSHOW 1\nSHOW 1\nSHOW 3\n"
     lines = "LOOP(2)\nF(2 80)\nEND_LOOP\nSHOW(4)\n"
-    done = process("live", "-", "--port", pty_robot.port, data=lines.encode())
+    done = inside("live", "-", "--port", pty_robot.port, data=lines.encode())
     assert (done.code, done.out) == (1, "")
     assert done.err.startswith("line 2:") and "comma" in done.err and "END_LOOP" not in done.err
-    done = process("live", "-", "--port", pty_robot.port, data=b"IF(TRUE)\nSHOW(5)\n")
+    done = inside("live", "-", "--port", pty_robot.port, data=b"IF(TRUE)\nSHOW(5)\n")
     assert (done.code, done.out) == (1, "")
     assert "ENDIF" in done.err
 

@@ -17,7 +17,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.support.command import OBSTACLE, TSC, Done, Tsc, process
+from tests.support.command import OBSTACLE, TSC, Done, Tsc, inside
 from tests.support.virtual_robot import missing
 from tests.support.waiting import HANGS_S
 from tiniscript.cli.commands.robot import ended_by_signal
@@ -83,13 +83,13 @@ def test_another_terminal_finds_it_and_it_says_what_it_does(tmp_path: Path) -> N
     picture = tmp_path / "way.png"
     with robot("--name", "KAT", "--world", "light", "--plot", picture) as found:
         assert found.port.startswith("socket://127.0.0.1:")
-        listed = json.loads(process("ports", "--json").out)
+        listed = json.loads(inside("ports", "--json").out)
         [row] = [each for each in listed if each["port"] == found.port]
         assert row["is_virtual"]
         assert row["description"] == 'KAT: virtual robot tinibot, world "lamps in the dark"'
         in_spanish = 'KAT: robot virtual tinibot, mundo "lámparas en la oscuridad"'
-        assert f"{found.port}   {in_spanish}" in process("ports", "--lang", "es").out
-        done = process("upload", "--virtual", "-e", "SI|F(0.2, 50);SHOW(1.5);BEEP(0.1, 440)")
+        assert f"{found.port}   {in_spanish}" in inside("ports", "--lang", "es").out
+        done = inside("upload", "--virtual", "-e", "SI|F(0.2, 50);SHOW(1.5);BEEP(0.1, 440)")
         assert (done.code, done.err) == (0, "")
         receipt, *rest = done.out.splitlines()
         assert receipt.startswith(f"-e -> KAT ({found.port})")
@@ -99,16 +99,16 @@ def test_another_terminal_finds_it_and_it_says_what_it_does(tmp_path: Path) -> N
         assert lines == ["0 START", "0 MOTORS 50 50", "200 MOTORS 0 0", "SHOW 1.5", "BEEP 440 100",
                          "DONE"]  # fmt: skip
         # where nothing is said it is found, too; and it is no port for another day
-        assert process("start").out.startswith("KAT: started")
-        assert json.loads(process("info", "--virtual", "--json").out)["name"] == "KAT"
+        assert inside("start").out.startswith("KAT: started")
+        assert json.loads(inside("info", "--virtual", "--json").out)["name"] == "KAT"
         for _ in range(3):
-            assert process("stop", "--virtual").code == 0
+            assert inside("stop", "--virtual").code == 0
         ended = found.end()
         assert ended.code == 0
         assert "The virtual robot drove 9 cm" in ended.err
     assert picture.read_bytes().startswith(b"\x89PNG")
     assert directory.running() == []
-    done = process("info")
+    done = inside("info")
     assert done.code == 3
     assert "which port?" in done.err
 
@@ -145,7 +145,7 @@ def test_a_second_computer_is_told_that_the_port_is_taken() -> None:
     with robot() as found, visitor(found.port) as first:
         first.sendall(b"SHOW(1)\n")
         assert first.recv(1000)  # it is heard
-        done = process("info", "--port", found.port)
+        done = inside("info", "--port", found.port)
         assert done.code == 3
         assert f"another program is using the port {found.port}" in done.err
         with visitor(found.port) as third:
@@ -158,30 +158,30 @@ def test_the_next_computer_has_it_alone() -> None:
     with robot() as found:
         with visitor(found.port) as first:
             first.sendall(b"\x05half a frame")
-        done = process("upload", "--port", found.port, "-e", "SI|F(0.1, 50)")
+        done = inside("upload", "--port", found.port, "-e", "SI|F(0.1, 50)")
         assert (done.code, done.err) == (0, "")
 
 
 def test_what_it_keeps_may_be_in_a_file(tmp_path: Path) -> None:
     memory = tmp_path / "kept.bin"
     with robot("--memory", memory) as found:
-        assert process("upload", "--virtual", "-e", "SB|F(0.1, 60)").code == 0
-        assert process("name", "INTI", "--virtual").code == 0
+        assert inside("upload", "--virtual", "-e", "SB|F(0.1, 60)").code == 0
+        assert inside("name", "INTI", "--virtual").code == 0
         found.end(signal.SIGTERM)
     assert len(memory.read_bytes()) == 1024
     with robot("--memory", memory, "--button-at", "0.5", "--hurry", "max", "--for", "3") as found:
         assert found.until("100 DONE")[0] == "0 START"
         assert found.end().code == 0
     with robot("--memory", memory):
-        assert json.loads(process("info", "--virtual", "--json").out)["name"] == "INTI"
+        assert json.loads(inside("info", "--virtual", "--json").out)["name"] == "INTI"
 
 
 def test_what_it_drives_when_its_time_is_over_counts(tmp_path: Path) -> None:
     memory = tmp_path / "kept.bin"
     with robot("--memory", memory):
-        assert process("upload", "--virtual", "-e", "SB|F(30, 60)").code == 0
+        assert inside("upload", "--virtual", "-e", "SB|F(30, 60)").code == 0
     options = ("--memory", str(memory), "--button-at", "0.5", "--hurry", "max", "--for", "3")
-    done = process("robot", *options)
+    done = inside("robot", *options)
     found = re.search(r"drove (\d+) cm in 3.0 s", done.err)
     assert found and int(found[1]) > 50, done.err
 
@@ -191,7 +191,7 @@ def test_it_ends_by_itself_and_chance_begins_with_its_seed(tmp_path: Path) -> No
     memory = tmp_path / "kept.bin"
     with robot("--memory", memory):
         text = OBSTACLE.replace("SI|", "SB|")
-        assert process("upload", "--virtual", "-e", text).code == 0
+        assert inside("upload", "--virtual", "-e", text).code == 0
     options = [
         "--memory",
         str(memory),
@@ -204,7 +204,7 @@ def test_it_ends_by_itself_and_chance_begins_with_its_seed(tmp_path: Path) -> No
         "--noise",
     ]
     first, second, other = (
-        process("robot", *options, "5", "--seed", seed, "--lang", "es") for seed in "112"
+        inside("robot", *options, "5", "--seed", seed, "--lang", "es") for seed in "112"
     )
     assert first.code == 0
     assert first.out.count("READ DISTANCE") > 10
@@ -217,7 +217,7 @@ def test_a_pseudo_terminal_is_a_port_too() -> None:
     with robot("--pty") as found:
         port = found.line()
         assert port.startswith("/dev/")
-        assert process("upload", "--port", port, "-e", "SI|F(0.1, 50)").code == 0
+        assert inside("upload", "--port", port, "-e", "SI|F(0.1, 50)").code == 0
         assert found.until("100 DONE")
 
 
@@ -231,15 +231,15 @@ def test_a_note_of_a_robot_that_is_gone_is_not_believed() -> None:
     for text in ("", "[]", "{}", '{"address": 5}', "[" * 10_000):
         note.write_text(text, encoding="utf-8")
         assert directory.running() == []
-    assert process("stop", "--virtual").code == 3
+    assert inside("stop", "--virtual").code == 3
 
 
 def test_of_several_robots_one_is_named() -> None:
     with robot(), robot() as second:
-        done = process("info", "--virtual")
+        done = inside("info", "--virtual")
         assert done.code == 3
         assert second.port in done.err
-        assert process("info", "--port", second.port).code == 0
+        assert inside("info", "--port", second.port).code == 0
 
 
 # -- a robot for one command ----------------------------------------------------------------------
@@ -269,9 +269,9 @@ def colours(data: bytes) -> dict[str, int]:
 
 def test_upload_drives_a_virtual_robot_and_draws_its_way(tmp_path: Path) -> None:
     still, way = tmp_path / "still.png", tmp_path / "way.png"
-    done = process("upload", "--virtual", "-e", "SI|S", "--plot", still)
+    done = inside("upload", "--virtual", "-e", "SI|S", "--plot", still)
     assert done.code == 0
-    done = process("upload", "--virtual", "-e", OBSTACLE, "--for", "30", "--hurry", "100",
+    done = inside("upload", "--virtual", "-e", OBSTACLE, "--for", "30", "--hurry", "100",
                    "--plot", way)  # fmt: skip
     assert done.code == 0
     assert "The time of --for is over.\nSaved in slot 0.\n" in done.out
@@ -285,18 +285,18 @@ def test_upload_drives_a_virtual_robot_and_draws_its_way(tmp_path: Path) -> None
 
 def test_a_hurried_robot_is_not_lost_and_a_bad_line_only_costs_time() -> None:
     text = "SI|LOOP(20);F(1, 50);B(1, 50);END_LOOP;SHOW(TIME)"
-    done = process("upload", "--virtual", "-e", text, "--hurry", "max", "--faults", "3")
+    done = inside("upload", "--virtual", "-e", text, "--hurry", "max", "--faults", "3")
     assert done.code == 0  # what a radio has written into the line is said, too
     assert done.out.splitlines()[1:3] in (["SHOW 40", "Done."], ["Done.", "Saved in slot 0."])
 
 
 def test_upload_and_live_say_what_they_say_of_any_robot() -> None:
-    done = process("upload", "--virtual", "-e", "SI|X = 0;SHOW(1 / X)", "--json", "--seed", "7")
+    done = inside("upload", "--virtual", "-e", "SI|X = 0;SHOW(1 / X)", "--json", "--seed", "7")
     assert done.code == 1
     events = [json.loads(line)["event"] for line in done.out.splitlines()]
     assert events == ["RECEIPT", "FAULT", "SAVED"]
     assert "The virtual robot drove 0 cm" in done.err
-    done = process("live", "--virtual", "F(0.1, 80);SHOW(BATTERY)", "--robot", "liner",
+    done = inside("live", "--virtual", "F(0.1, 80);SHOW(BATTERY)", "--robot", "liner",
                    "--sensor", "BATTERY=7.4")  # fmt: skip
     assert done.code == 0
     assert done.out.startswith("SHOW 7.4\nDone.\nThe virtual robot drove 5 cm")
@@ -320,7 +320,7 @@ def test_ctrl_c_stops_the_virtual_robot_and_draws_what_there_was(tmp_path: Path)
 
 
 def test_without_a_robot_the_virtual_one_is_named() -> None:
-    done = process("upload", "-e", "SI|S")
+    done = inside("upload", "-e", "SI|S")
     assert done.code == 3
     assert "Without a robot:  --virtual" in done.err
 
@@ -329,16 +329,16 @@ def test_every_verb_that_asks_a_robot_knows_the_virtual_one() -> None:
     """The one of `tsc robot`; without one they say how to have one."""
     verbs = ("ping", "info", "trim", "monitor", "doctor", "selftest")
     for verb in verbs:
-        done = process(verb, "--virtual")
+        done = inside(verb, "--virtual")
         assert done.code == 3, verb
         assert "Start one in another terminal:  tsc robot" in done.err, verb
-        assert "--virtual" in process(verb, "--help").out, verb
+        assert "--virtual" in inside(verb, "--help").out, verb
     with robot() as running:
         for verb in ("ping", "doctor"):
-            done = process(verb, "--virtual")
+            done = inside(verb, "--virtual")
             assert done.code == 0, done
             assert running.port in done.out, done.out
-        done = process("doctor", "--virtual", "--port", running.port)
+        done = inside("doctor", "--virtual", "--port", running.port)
         assert done.code == 2
         assert "--virtual" in done.err
 

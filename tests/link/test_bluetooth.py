@@ -1,4 +1,4 @@
-"""A robot over Bluetooth LE: real `tsc` processes, bleak as it ships, a BlueZ of the test's own."""
+"""A robot over Bluetooth LE: real connections, bleak as it ships, a BlueZ of the test's own."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from tests.support.ble_robot import (
     missing,
     uploading,
 )
-from tests.support.command import LONG, Command, ended, process, running
+from tests.support.command import LONG, Command, ended, inside, running
 from tests.support.fake_bluez import FakeBluez
 from tests.support.pty_robot import PtyRobot
 from tiniscript.link import known_ports
@@ -35,23 +35,30 @@ OTHER = "AA:BB:CC:DD:EE:02"
 LARGEST = 65  # bytes of a frame on the wire
 
 
+@pytest.fixture(autouse=True)
+def without_others(monkeypatch: pytest.MonkeyPatch) -> None:
+    """No cable, and nobody in the network, is waited for."""
+    monkeypatch.setattr("tiniscript.link.ports.listed", list)
+    monkeypatch.setattr("tiniscript.link.ports.announced", list)
+
+
 # -- what is done -------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("port", [NAME, PLACE, "BLE://tini 1", PLACE.lower()])
 def test_a_program_is_uploaded_and_runs(ble: BleRobot, port: str) -> None:
-    done = process("upload", "-e", DRIVE, "--port", port)
+    done = inside("upload", "-e", DRIVE, "--port", port)
     assert (done.code, done.err) == (0, "")
     assert done.out.splitlines()[-2:] == ["Done.", "Saved in slot 0."]
     assert ble.robot.did == DROVE
     assert {kind for kind, _ in ble.written} == {"command"}  # an HM-10 answers no write
     assert max(len(data) for _, data in ble.written) == 20
     assert ble.connections == 1
-    assert process("info").code == 0  # the port is remembered
+    assert inside("info").code == 0  # the port is remembered
 
 
 def test_lines_are_done_at_once(ble: BleRobot) -> None:
-    done = process("live", "-", "--port", PLACE, data=b"F(0.1, 50)\nR(0.1, 40)\n")
+    done = inside("live", "-", "--port", PLACE, data=b"F(0.1, 50)\nR(0.1, 40)\n")
     assert (done.code, done.err) == (0, "")
     assert ble.robot.did[0::3] == ["MOTORS 50 50", "MOTORS 40 -40"]
 
@@ -67,9 +74,9 @@ def test_a_long_program_arrives_whole(
     ble = BleRobot(pty_robot, service=service, mtu=mtu, late_s=late_s)
     bluez.add(ble)
     ours, theirs = tmp_path / "ours.bin", tmp_path / "theirs.bin"
-    process("compile", "-e", LONG, "-o", ours)
-    assert process("upload", ours, "--no-run", "--port", PLACE).code == 0
-    assert process("fetch", "-o", theirs, "--port", PLACE).code == 0
+    inside("compile", "-e", LONG, "-o", ours)
+    assert inside("upload", ours, "--no-run", "--port", PLACE).code == 0
+    assert inside("fetch", "-o", theirs, "--port", PLACE).code == 0
     assert theirs.read_bytes() == ours.read_bytes()
     longest = max(len(data) for _, data in ble.written)
     assert longest == (20 if service == HM10 else min(mtu - 3, LARGEST))
@@ -82,7 +89,7 @@ def test_where_a_module_answers_each_write_it_is_waited_for(
     ble = BleRobot(pty_robot)
     ble.characteristics = [(ble.characteristics[0][0], ["write", "notify"])]
     bluez.add(ble)
-    assert process("upload", "-e", DRIVE, "--port", PLACE).code == 0
+    assert inside("upload", "-e", DRIVE, "--port", PLACE).code == 0
     assert {kind for kind, _ in ble.written} == {"request"}
     assert pty_robot.did == DROVE
 
@@ -95,9 +102,9 @@ def test_commands_share_a_connection_whatever_they_call_it(
     ble: BleRobot, first: str, second: str
 ) -> None:
     command = uploading(ble, first)
-    rows = [row for row in json.loads(process("ports", "--json").out) if row["held_by"]]
+    rows = [row for row in json.loads(inside("ports", "--json").out) if row["held_by"]]
     assert [row["port"] for row in rows] == [first]
-    done = process("stop", "--port", second)
+    done = inside("stop", "--port", second)
     assert done.code == 0
     assert not ble.robot.moves
     assert command.ended().code == 3
@@ -106,7 +113,7 @@ def test_commands_share_a_connection_whatever_they_call_it(
 
 def test_a_stop_without_a_port_stops_it_once(ble: BleRobot) -> None:
     command = uploading(ble, NAME)
-    done = process("stop")
+    done = inside("stop")
     assert (done.code, done.out.count("Stopped")) == (0, 1)
     command.ended()
 
@@ -125,7 +132,7 @@ def test_ctrl_c_stops_the_robot_and_frees_it(ble: BleRobot, bluez: FakeBluez) ->
     assert command.ended().code == 2
     assert not ble.robot.moves
     assert not bluez.devices[ADDRESS].is_connected
-    assert process("ping", "--port", NAME).code == 0
+    assert inside("ping", "--port", NAME).code == 0
 
 
 def test_ctrl_c_ends_a_search(ble: BleRobot, bluez: FakeBluez) -> None:
@@ -146,7 +153,7 @@ def test_a_command_that_is_killed_leaves_a_robot_that_stops_and_can_be_reached(
     ble.robot.until(lambda: not ble.robot.moves, "the tether stops it")
     assert bluez.devices[ADDRESS].is_connected
     for port in (NAME, PLACE):
-        assert process("upload", "-e", DRIVE, "--port", port).code == 0
+        assert inside("upload", "-e", DRIVE, "--port", port).code == 0
     assert ble.robot.did[-3:] == DROVE
 
 
@@ -159,12 +166,12 @@ def test_of_two_with_one_name_none_is_taken(ble: BleRobot, bluez: FakeBluez, lat
     twin = Peripheral("TINI 1", OTHER)
     twin.late = late
     bluez.add(twin)
-    done = process("upload", "-e", DRIVE, "--port", NAME)
+    done = inside("upload", "-e", DRIVE, "--port", NAME)
     assert done.code == 3
     assert f"several robots are called {NAME}" in done.err
     assert f"{PLACE}, ble://{OTHER}" in done.err
     assert ble.connections == 0
-    assert process("upload", "-e", DRIVE, "--port", PLACE).code == 0
+    assert inside("upload", "-e", DRIVE, "--port", PLACE).code == 0
 
 
 @pytest.mark.parametrize(("said", "typed"), [
@@ -177,13 +184,13 @@ def test_of_two_with_one_name_none_is_taken(ble: BleRobot, bluez: FakeBluez, lat
 ])  # fmt: skip
 def test_names_are_text(bluez: FakeBluez, pty_robot: PtyRobot, said: str, typed: str) -> None:
     bluez.add(BleRobot(pty_robot, said))
-    assert process("ping", "--port", f"ble://{typed}").code == 0
+    assert inside("ping", "--port", f"ble://{typed}").code == 0
 
 
 def test_a_name_that_looks_like_an_address_is_none(bluez: FakeBluez, ble: BleRobot) -> None:
     fake = Peripheral(ADDRESS, OTHER)
     bluez.add(fake)
-    assert process("ping", "--port", PLACE).code == 0
+    assert inside("ping", "--port", PLACE).code == 0
     assert (ble.connections, fake.connections) == (1, 0)
 
 
@@ -191,15 +198,15 @@ def test_all_robots_in_reach_are_listed_and_asked(ble: BleRobot, bluez: FakeBlue
     hostile = "\x1b[31mNo\r\ntsc: \u202ename"
     bluez.add(Echo(hostile, OTHER))
     bluez.add(Peripheral("lamp", "AA:BB:CC:DD:EE:03", LAMP))
-    done = process("ports", "--ask")
+    done = inside("ports", "--ask")
     assert done.code == 0
     rows = {line.split("   ")[0]: line.split("   ")[1:] for line in done.out.splitlines()}
     assert rows[PLACE] == ["Tini 1, Bluetooth LE", "robot tinibot (free)"]
     assert [port for port in rows if port.startswith("ble")] == [f"ble://{OTHER}", PLACE]
     assert not any(sign in done.out for sign in "\x1b\r\u202e")
-    assert process("ping", "--port", NAME).code == 0  # from now on it has this name
+    assert inside("ping", "--port", NAME).code == 0  # from now on it has this name
     known_ports.remember("ble://yesterday", "Yesterday")
-    said = {row["port"]: row["said"] for row in json.loads(process("ports", "--ask", "--json").out)}
+    said = {row["port"]: row["said"] for row in json.loads(inside("ports", "--ask", "--json").out)}
     assert (said[NAME], said["ble://yesterday"]) == ("robot tinibot (free)", "out of reach now")
     assert PLACE not in said
 
@@ -209,38 +216,40 @@ def test_several_robots_at_once(ble: BleRobot, bluez: FakeBluez) -> None:
         other = BleRobot(second, "Tini 2", OTHER, NORDIC)
         bluez.add(other)
         ports = ("--port", NAME, "--port", "ble://tini 2")
-        done = process("upload", "-e", DRIVE, *ports)
+        done = inside("upload", "-e", DRIVE, *ports)
         assert (done.code, "Done: 2 of 2." in done.err) == (0, True)
         assert (ble.robot.did, second.did) == (DROVE, DROVE)
-        done = process("stop", *ports)
+        done = inside("stop", *ports)
         assert (done.code, "Done: 2 of 2." in done.err) == (0, True)
 
 
 @pytest.mark.parametrize("verb", ["stop", "upload"])
 def test_all_includes_a_robot_that_is_known(ble: BleRobot, verb: str) -> None:
-    assert process("ping", "--port", NAME).code == 0
+    assert inside("ping", "--port", NAME).code == 0
     words = ["-e", DRIVE] if verb == "upload" else []
-    done = process(verb, "--all", *words)
+    done = inside(verb, "--all", *words)
     assert done.code == 0, done.err
     assert "Done: 1 of 1." in done.err
 
 
-def test_what_is_no_robot_is_said(bluez: FakeBluez) -> None:
+def test_what_is_no_robot_is_said(bluez: FakeBluez, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("tiniscript.library.opening.ANSWER_MS", 1500)
     bluez.add(Peripheral("lamp", OTHER, LAMP))
-    done = process("ping", "--port", "ble://lamp")
+    done = inside("ping", "--port", "ble://lamp")
     assert (done.code, "does not offer what tsc needs" in done.err) == (3, True)
     bluez.add(Echo("echo", ADDRESS))
-    done = process("ping", "--port", "ble://echo")
+    done = inside("ping", "--port", "ble://echo")
     assert (done.code, "comes back" in done.err) == (3, True)
 
 
-def test_nobody_is_in_reach(ble: BleRobot) -> None:
-    done = process("ping", "--port", "ble://nobody")
+def test_nobody_is_in_reach(ble: BleRobot, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("tiniscript.link.bluetooth_search.SEARCH_S", 3.0)
+    done = inside("ping", "--port", "ble://nobody")
     assert done.code == 3
     assert "no ble://nobody is in reach" in done.err
     assert "In reach: Tini 1" in done.err
     ble.is_on = False
-    done = process("ping", "--port", NAME, "--lang", "es")
+    done = inside("ping", "--port", NAME, "--lang", "es")
     assert (done.code, "ni otro robot con Bluetooth LE" in done.err) == (3, True)
 
 

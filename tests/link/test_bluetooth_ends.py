@@ -22,7 +22,7 @@ from tests.support.ble_robot import (
     missing,
     uploading,
 )
-from tests.support.command import LONG, Tsc, process
+from tests.support.command import LONG, Tsc, inside
 from tests.support.fake_bluez import FakeBluez
 from tiniscript.link import ports
 
@@ -41,13 +41,13 @@ def moves_on_its_own(ble: BleRobot) -> None:
 @pytest.mark.parametrize("language", ["en", "es"])
 def test_a_connection_that_is_never_made(ble: BleRobot, stage: str, language: str) -> None:
     ble.fails_at = stage
-    done = process("upload", "-e", DRIVE, "--port", PLACE, "--lang", language)
+    done = inside("upload", "-e", DRIVE, "--port", PLACE, "--lang", language)
     assert (done.code, done.out) == (3, "")
     assert done.err.startswith("tsc: ")
     assert PLACE.upper() in done.err.upper()
     assert ble.robot.did == []
     ble.fails_at = ""
-    assert process("upload", "-e", DRIVE, "--port", PLACE).code == 0
+    assert inside("upload", "-e", DRIVE, "--port", PLACE).code == 0
     assert ble.robot.did == DROVE
 
 
@@ -57,19 +57,19 @@ def test_a_program_that_is_cut_leaves_the_one_before(
 ) -> None:
     """The connection ends within HELLO, or a frame of the program, or before the last answer."""
     before, after = tmp_path / "before.bin", tmp_path / "after.bin"
-    assert process("upload", "-e", "SB|F(1, 10)", "--port", PLACE).code == 0
-    assert process("fetch", "-o", before).code == 0
+    assert inside("upload", "-e", "SB|F(1, 10)", "--port", PLACE).code == 0
+    assert inside("fetch", "-o", before).code == 0
     ble.parts_after = len(ble.heard) + heard
-    done = process("upload", "-e", LONG, "--port", PLACE)
+    done = inside("upload", "-e", LONG, "--port", PLACE)
     assert done.code == 3
     assert f"the Bluetooth connection to {PLACE} has ended" in done.err
     ble.parts_after = None
     moves_on_its_own(ble)
     ours = tmp_path / "ours.bin"
-    process("compile", "-e", LONG, "-o", ours)
-    assert process("fetch", "-o", after, "--port", PLACE).code == 0
+    inside("compile", "-e", LONG, "-o", ours)
+    assert inside("fetch", "-o", after, "--port", PLACE).code == 0
     assert after.read_bytes() in (before.read_bytes(), ours.read_bytes())
-    assert process("upload", "-e", LONG, "--no-run", "--port", PLACE).code == 0
+    assert inside("upload", "-e", LONG, "--no-run", "--port", PLACE).code == 0
 
 
 def test_a_robot_out_of_reach_stops_and_the_command_says_so(
@@ -81,7 +81,7 @@ def test_a_robot_out_of_reach_stops_and_the_command_says_so(
     assert done.code == 3
     assert f"the Bluetooth connection to {PLACE} has ended" in done.err
     moves_on_its_own(ble)
-    assert process("upload", "-e", DRIVE, "--port", NAME).code == 0
+    assert inside("upload", "-e", DRIVE, "--port", NAME).code == 0
 
 
 def test_the_end_of_a_connection_is_heard_by_who_only_reads(
@@ -98,10 +98,10 @@ def test_the_end_of_a_connection_is_heard_by_who_only_reads(
 
 
 def test_a_line_after_a_lost_connection_ends_live(ble: BleRobot, bluez: FakeBluez) -> None:
-    done = process("live", "-", "--port", PLACE, data=b"F(0.1, 50)\n")
+    done = inside("live", "-", "--port", PLACE, data=b"F(0.1, 50)\n")
     assert done.code == 0
     ble.parts_after = len(ble.heard) + 60
-    done = process("live", "-", "--port", PLACE, data=b"F(0.1, 50)\n" * 9)
+    done = inside("live", "-", "--port", PLACE, data=b"F(0.1, 50)\n" * 9)
     assert (done.code, "Bluetooth connection" in done.err) == (3, True)
 
 
@@ -121,12 +121,16 @@ def test_an_adapter_that_is_gone_ends_the_command(
     assert "the Bluetooth connection" in done.err
     assert done.err.count("\n") == 1  # nothing of bleak's
     moves_on_its_own(ble)
-    done = process("stop", "--port", PLACE, "--lang", "es")
+    done = inside("stop", "--port", PLACE, "--lang", "es")
     said = "el servicio de Bluetooth" if what == "vanish" else "el Bluetooth de esta computadora"
     assert (done.code, said in done.err) == (3, True)
 
 
-def test_an_echo_and_a_flood_are_no_robot(bluez: FakeBluez) -> None:
+def test_an_echo_and_a_flood_are_no_robot(
+    bluez: FakeBluez, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("tiniscript.library.opening.ANSWER_MS", 1500)
+
     class Flood(Peripheral):
         def begin(self) -> None:
             self.flood(2000)
@@ -137,7 +141,7 @@ def test_an_echo_and_a_flood_are_no_robot(bluez: FakeBluez) -> None:
                 self.loop.call_soon(self.flood, left - 1)
 
     bluez.add(Flood("flood"))
-    done = process("ping", "--port", PLACE)
+    done = inside("ping", "--port", PLACE)
     assert (done.code, "not TiniScript" in done.err) == (3, True)
 
 
@@ -155,10 +159,12 @@ def test_a_computer_without_bluetooth(
 ) -> None:
     with FakeBluez(has_bluez, has_adapter) as bluez:
         monkeypatch.setenv("DBUS_SYSTEM_BUS_ADDRESS", bluez.address)
+        monkeypatch.setattr(ports, "listed", list)
+        monkeypatch.setattr(ports, "announced", list)
         for language, words in zip(("en", "es"), said, strict=True):
-            done = process("ping", "--port", NAME, "--lang", language)
+            done = inside("ping", "--port", NAME, "--lang", language)
             assert (done.code, words in done.err) == (3, True)
-        done = process("ports", "--ask")
+        done = inside("ports", "--ask")
         assert (done.code, said[0] in done.err) == (0, True)
 
 
