@@ -30,24 +30,52 @@ KIT = robots.load("tinibot").kit
 HOSTILE = "<img src=x onerror=1>"
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def robot() -> Iterator[PtyRobot]:
     with PtyRobot(KIT) as made:
         yield made
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def taught(robot: PtyRobot, browser: Browser) -> Iterator[Class]:
+    """A class that many tests share: Python takes a while to start in each page of it."""
     with studio.taught([robot.port]) as made:
         yield made
 
 
-@pytest.fixture
-def pages(browser: Browser, taught: Class) -> Iterator[Pages]:
+@pytest.fixture(scope="module")
+def shared(browser: Browser, taught: Class) -> Iterator[Pages]:
     found = Pages(browser, taught.server.address)
     yield found
     found.close()
-    assert not found.wrong
+
+
+@pytest.fixture
+def pages(shared: Pages) -> Iterator[Pages]:
+    yield shared
+    wrong, shared.wrong[:] = shared.wrong[:], []
+    assert not wrong
+
+
+@pytest.fixture(scope="module")
+def first(shared: Pages, taught: Class) -> Page:
+    return joined(shared, taught, "Ana")
+
+
+@pytest.fixture(scope="module")
+def teacher(shared: Pages, taught: Class) -> Page:
+    return teaches(shared, taught)
+
+
+@pytest.fixture
+def ana(first: Page, pages: Pages, taught: Class, robot: PtyRobot) -> Iterator[Page]:
+    """The page of a pupil, who has no robot before and after each test."""
+    yield first
+    robot.switch_on()
+    for each in taught.room.teach({"do": "class"})["pupils"]:
+        taught.room.teach({"do": "class_next", "pupil": each["number"]})
+    first.locator("[data-text=class_ask]").wait_for()
+    first.locator("html:not([data-robot=connected])").wait_for(state="attached")
 
 
 def said(page: Page, text: str) -> None:
@@ -85,9 +113,10 @@ def drives(page: Page, robot: PtyRobot) -> None:
     robot.until(lambda: robot.moves, "it drives")
 
 
-def test_three_pupils_share_a_robot(pages: Pages, taught: Class, robot: PtyRobot) -> None:
-    ana, luz, teo = (joined(pages, taught, name) for name in ("Ana", "Luz", "Teo"))
-    teacher = teaches(pages, taught)
+def test_three_pupils_share_a_robot(
+    ana: Page, teacher: Page, pages: Pages, taught: Class, robot: PtyRobot
+) -> None:
+    luz, teo = (joined(pages, taught, name) for name in ("Luz", "Teo"))
     asks(ana)
     said(ana, "It is your turn. Nobody waits.")
     linked(ana, "Connected: ")
@@ -102,13 +131,14 @@ def test_three_pupils_share_a_robot(pages: Pages, taught: Class, robot: PtyRobot
     luz.keyboard.press("Escape")
     time.sleep(0.5)
     assert robot.moves
-    rows = teacher.locator("#class ul").first.locator("li")
-    rows.nth(0).filter(has_text="Ana drives ").wait_for()
-    rows.nth(2).filter(has_text="Teo waits, place 2").wait_for()
+    listed = teacher.locator("#class ul").first.locator("li")
+    rows = [listed.filter(has_text=name) for name in ("Ana", "Luz", "Teo")]
+    rows[0].filter(has_text="Ana drives ").wait_for()
+    rows[2].filter(has_text="Teo waits, place 2").wait_for()
     for action in ("stop", "class_next"):  # nothing of a turn beside who has none
-        visible = [rows.nth(k).locator(f"[data-text={action}]").is_visible() for k in range(3)]
+        visible = [row.locator(f"[data-text={action}]").is_visible() for row in rows]
         assert visible == [True, False, False]
-    rows.nth(0).locator("[data-text=class_see]").click()
+    rows[0].locator("[data-text=class_see]").click()
     teacher.locator("#class pre").filter(has_text=FOREVER.split(";")[0]).wait_for()
     teacher.click("#stop")
     robot.until(lambda: not robot.moves, "the teacher stops it")
@@ -117,11 +147,11 @@ def test_three_pupils_share_a_robot(pages: Pages, taught: Class, robot: PtyRobot
     assert not teacher.locator("#stops .wrong").count()
     time.sleep(LATCH_S)
     drives(ana, robot)
-    rows.nth(0).locator("[data-text=stop]").click()
+    rows[0].locator("[data-text=stop]").click()
     robot.until(lambda: not robot.moves, "the teacher stops this one")
     time.sleep(LATCH_S)
     drives(ana, robot)
-    rows.nth(0).locator("[data-text=class_next]").click()
+    rows[0].locator("[data-text=class_next]").click()
     robot.until(lambda: not robot.moves, "the turn is over")
     linked(ana, "Your turn is over, and the robot was stopped.")
     linked(luz, "Connected: ")
@@ -132,8 +162,7 @@ def test_three_pupils_share_a_robot(pages: Pages, taught: Class, robot: PtyRobot
     robot.until(lambda: not robot.moves, "a page that is closed stops it")
 
 
-def test_a_page_that_hangs_stops_its_robot(pages: Pages, taught: Class, robot: PtyRobot) -> None:
-    ana = joined(pages, taught, "Ana")
+def test_a_page_that_hangs_stops_its_robot(ana: Page, robot: PtyRobot) -> None:
     asks(ana)
     linked(ana, "Connected: ")
     drives(ana, robot)
@@ -142,22 +171,23 @@ def test_a_page_that_hangs_stops_its_robot(pages: Pages, taught: Class, robot: P
     assert robot.stands_after_ms(began_ms) < 0.9 * HUNG_MS
 
 
-def test_what_plain_http_has_not_is_not_offered(pages: Pages, taught: Class) -> None:
-    page = joined(pages, taught, "Ana")
-    if not page.evaluate("isSecureContext"):  # it is where there is no network
+def test_what_plain_http_has_not_is_not_offered(ana: Page) -> None:
+    if not ana.evaluate("isSecureContext"):  # it is where there is no network
         for name in ("serial", "bluetooth", "serviceWorker", "clipboard"):
-            assert not page.evaluate(f"'{name}' in navigator && !!navigator.{name}")
-        page.click("#my_programs")
-        page.click("#share_line")
-        page.locator("#programs[data-shared=done]").wait_for()
-        assert not page.locator("#copy").is_visible()
-        page.click("#programs_close")
+            assert not ana.evaluate(f"'{name}' in navigator && !!navigator.{name}")
+        ana.click("#my_programs")
+        ana.click("#share_line")
+        ana.locator("#programs[data-shared=done]").wait_for()
+        assert not ana.locator("#copy").is_visible()
+        ana.click("#programs_close")
     for name in ("#link_serial", "#link_bluetooth", "#keys_import", "#link_port", "#keys_claim"):
-        assert not page.locator(name).is_visible()
-    assert not page.locator("#side_class").is_visible()
+        assert not ana.locator(name).is_visible()
+    assert not ana.locator("#side_class").is_visible()
 
 
-def test_a_wrong_code_is_said_and_a_pupil_is_removed(pages: Pages, taught: Class) -> None:
+def test_a_wrong_code_is_said_and_a_pupil_is_removed(
+    pages: Pages, taught: Class, teacher: Page
+) -> None:
     page = pages.open(locale="es-AR")
     page.click("#side_real")
     page.locator("#class_pupil input").nth(0).fill("000000")
@@ -171,9 +201,8 @@ def test_a_wrong_code_is_said_and_a_pupil_is_removed(pages: Pages, taught: Class
     checked(page)
     page.click("#side_real")
     said(page, f"Estás en la clase, {HOSTILE}"[:40])
-    teacher = teaches(pages, taught)
-    row = teacher.locator("#class ul").first.locator("li")
-    row.filter(has_text=HOSTILE).wait_for()
+    row = teacher.locator("#class ul").first.locator("li").filter(has_text=HOSTILE)
+    row.wait_for()
     assert teacher.locator("#class img").count() == page.locator("#class_pupil img").count() == 0
     row.locator("[data-text=class_remove]").click()
     said(page, "Ahora no estás en la clase.")
@@ -183,10 +212,8 @@ def test_a_wrong_code_is_said_and_a_pupil_is_removed(pages: Pages, taught: Class
 
 
 def test_a_robot_that_does_not_confirm_a_stop_is_red(
-    pages: Pages, taught: Class, robot: PtyRobot, tmp_path: Path
+    ana: Page, teacher: Page, robot: PtyRobot, tmp_path: Path
 ) -> None:
-    ana = joined(pages, taught, "Ana")
-    teacher = teaches(pages, taught)
     asks(ana)
     linked(ana, "Connected: ")
     drives(ana, robot)
@@ -198,8 +225,55 @@ def test_a_robot_that_does_not_confirm_a_stop_is_red(
     teacher.screenshot(path=str(tmp_path / "red.png"))
 
 
+def test_robots_are_given_and_taken(ana: Page, teacher: Page, robot: PtyRobot) -> None:
+    asks(ana)
+    linked(ana, "Connected: ")
+    teacher.click("[data-text=class_take]")
+    linked(ana, "Your turn is over, and the robot was stopped.")
+    said(ana, "Robots: 0.")
+    teacher.click("#class [data-text=link_look]")
+    teacher.locator("#class select option").first.wait_for(state="attached")
+    assert robot.port in teacher.locator("#class select").inner_text()
+    teacher.locator("#class select").select_option(robot.port)
+    teacher.click("[data-text=class_give]")
+    said(ana, "Robots: 1.")
+
+
+def test_a_robot_that_is_off_is_said(ana: Page, robot: PtyRobot) -> None:
+    robot.switch_off()
+    asks(ana)
+    linked(ana, "Nothing answers.")
+    said(ana, "You are in the class, ")
+
+
+def test_everything_is_seen_and_axe_finds_nothing(
+    ana: Page, teacher: Page, pages: Pages, taught: Class
+) -> None:
+    longest = joined(pages, taught, "A" * 24)
+    asks(longest)
+    linked(longest, "Connected: ")
+    for page in (longest, teacher):
+        for width, height in SCREENS:
+            page.set_viewport_size({"width": width, "height": height})
+            for language in ("en", "es"):
+                page.select_option("#language", language)
+                checked(page)
+                assert page.evaluate(LOOK) == []
+        page.evaluate((MODULES / "axe-core" / "axe.min.js").read_text(encoding="utf-8"))
+        found = page.evaluate("axe.run()")
+        assert [(each["id"], each["nodes"][0]["html"]) for each in found["violations"]] == []
+
+
 @pytest.mark.parametrize("erases", [True, False])
-def test_the_end(pages: Pages, taught: Class, erases: bool) -> None:
+def test_the_end(browser: Browser, erases: bool) -> None:
+    with studio.taught([]) as taught:
+        pages = Pages(browser, taught.server.address)
+        ends(pages, taught, erases)
+        pages.close()
+        assert not pages.wrong
+
+
+def ends(pages: Pages, taught: Class, erases: bool) -> None:
     ana = joined(pages, taught, "Ana")
     write(ana, "F(1, 33)")
     ana.click("#my_programs")
@@ -224,46 +298,6 @@ def test_the_end(pages: Pages, taught: Class, erases: bool) -> None:
         write(ana, "F(1, 44)")  # what is written now is kept nowhere
         assert "tiniscript." not in ana.evaluate(kept)
     assert taught.room.has_ended
-
-
-def test_robots_are_given_and_taken(pages: Pages, taught: Class, robot: PtyRobot) -> None:
-    ana = joined(pages, taught, "Ana")
-    asks(ana)
-    linked(ana, "Connected: ")
-    teacher = teaches(pages, taught)
-    teacher.click("[data-text=class_take]")
-    linked(ana, "Your turn is over, and the robot was stopped.")
-    said(ana, "Robots: 0.")
-    teacher.click("#class [data-text=link_look]")
-    teacher.locator("#class select option").first.wait_for(state="attached")
-    assert robot.port in teacher.locator("#class select").inner_text()
-    teacher.locator("#class select").select_option(robot.port)
-    teacher.click("[data-text=class_give]")
-    said(ana, "Robots: 1.")
-
-
-def test_a_robot_that_is_off_is_said(pages: Pages, taught: Class, robot: PtyRobot) -> None:
-    robot.switch_off()
-    ana = joined(pages, taught, "Ana")
-    asks(ana)
-    linked(ana, "Nothing answers.")
-    said(ana, "You are in the class, ")
-
-
-def test_everything_is_seen_and_axe_finds_nothing(pages: Pages, taught: Class) -> None:
-    ana = joined(pages, taught, "A" * 24)
-    asks(ana)
-    linked(ana, "Connected: ")
-    for page in (ana, teaches(pages, taught)):
-        for width, height in SCREENS:
-            page.set_viewport_size({"width": width, "height": height})
-            for language in ("en", "es"):
-                page.select_option("#language", language)
-                checked(page)
-                assert page.evaluate(LOOK) == []
-        page.evaluate((MODULES / "axe-core" / "axe.min.js").read_text(encoding="utf-8"))
-        found = page.evaluate("axe.run()")
-        assert [(each["id"], each["nodes"][0]["html"]) for each in found["violations"]] == []
 
 
 def has_run(page: Page, shows: str) -> bool:
