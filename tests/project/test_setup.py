@@ -96,6 +96,14 @@ def test_ci_of_root_runs_the_tests_as_a_new_user(tmp_path: Path) -> None:
         shutil.rmtree(clone)
 
 
+def test_a_first_answer_is_of_tests_that_are_there() -> None:
+    script = (ROOT / "tools" / "test.sh").read_text(encoding="utf-8")
+    names = script.partition('QUICK="tests')[2].partition('"')[0].split()
+    assert len(names) > 10
+    for name in ("tests" + names[0], *names[1:]):
+        assert (ROOT / name).exists(), name
+
+
 def test_contributing_says_what_stays_in_the_folder_for_temporary_files() -> None:
     document = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
     kept = set()
