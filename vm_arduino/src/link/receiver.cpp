@@ -198,11 +198,15 @@ bool Receiver::end(Item item) {
   return false;
 }
 
-// Passes a byte of text on. Where there is no room, the rest of its line is skipped.
+// Passes a byte of text on. Where there is no room, the rest of its line is skipped. The last place is
+// for a kLineCut: if that is taken, it tells of what is lost now, too.
 void Receiver::pass_on(uint8_t byte) {
   const uint8_t at = behind_;
   const uint8_t behind = static_cast<uint8_t>((at + 1) % kTextBytes);
-  if (behind == first_) {
+  const uint8_t room = static_cast<uint8_t>(first_ - behind) % kTextBytes;
+  if (byte == kLineCut) {
+    if (room == 0) return;
+  } else if (room < 2) {
     if (place_ != Place::kLost) damaged_ = static_cast<uint8_t>(damaged_ + 1);
     place_ = Place::kLost;
     is_lost_ = true;

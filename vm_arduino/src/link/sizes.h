@@ -18,7 +18,7 @@ namespace tiniscript {
 #ifdef tiniscript_large_frames
 constexpr uint8_t kLargestFrame = kLargeFrame;
 constexpr uint8_t kWindow = kLargeWindow;
-constexpr uint8_t kTextBytes = 255;
+constexpr uint16_t kTextBytes = 256;
 #else
 constexpr uint8_t kLargestFrame = kSmallFrame;
 constexpr uint8_t kWindow = 1;
