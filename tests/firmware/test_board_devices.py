@@ -21,6 +21,7 @@ def shown_as_power(reading: str) -> str:
     return f"SI|M({reading}, 0);W(5)"
 
 
+@pytest.mark.sampled("distance_cm", keep=2)
 @pytest.mark.parametrize("distance_cm", [3, 20, 50, 99])
 @pytest.mark.parametrize("name", ["tinibot", "grabber"])
 def test_an_echo_is_a_distance(name: str, distance_cm: int) -> None:
@@ -33,6 +34,7 @@ def test_an_echo_is_a_distance(name: str, distance_cm: int) -> None:
     assert board.motors(START + 55)[0] == f"pwm {distance_cm * 653 >> 8}"
 
 
+@pytest.mark.sampled("echo", keep=2)
 @pytest.mark.parametrize("echo", ["10", "53", "2", "18", "21"])  # changes of port B; INT
 def test_an_echo_on_other_pins_of_a_mega(echo: str) -> None:
     robot = on_board("tinibot", "mega", ("echo = 3", f"echo = {echo}"), ("= 2 ", "= 4 "),
@@ -45,6 +47,7 @@ def test_an_echo_on_other_pins_of_a_mega(echo: str) -> None:
     assert board.motors(START + 25)[0] == f"pwm {50 * 653 >> 8}"
 
 
+@pytest.mark.sampled("echo", "group", "mask", keep=2)
 @pytest.mark.parametrize(
     ("echo", "group", "mask"), [("14", 1, 2), ("15", 1, 1), ("A8", 2, 0), ("A15", 2, 7)]
 )
@@ -126,6 +129,7 @@ def test_a_level_is_yes_or_no(
 # -- what a robot has besides
 
 
+@pytest.mark.sampled("hertz", keep=3)
 @pytest.mark.parametrize("hertz", [31, 100, 440, 880, 3000, 12345, 19800, 20000])
 @pytest.mark.parametrize("name", ["tinibot", "grabber"])
 def test_a_beep_has_its_frequency_and_its_length(name: str, hertz: int) -> None:

@@ -100,6 +100,7 @@ extern "C" void test_turn() {
 """
 
 
+@pytest.mark.sampled("after_ms", keep=3)
 @pytest.mark.parametrize("after_ms", [0.0, 0.02, 0.04, 0.06, 0.3, 1.0, 5.0, 20.0])
 def test_a_start_forgets_readings_but_not_the_spacing(after_ms: float) -> None:
     """At any time of a measurement: the next reading is one of its own ping, 30 ms later."""
