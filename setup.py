@@ -1,16 +1,21 @@
 """What `pyproject.toml` cannot say.
 
-A wheel brings the firmware's sources, and nothing stale. The links of its description lead to the
-project's address, where `pyproject.toml` has one. With SOURCE_DATE_EPOCH a source package has the
-same bytes whenever and wherever it is made, as setuptools does that for a wheel.
+A wheel brings the firmware's sources, and nothing stale. One without the studio's page or without
+firmware that is ready says so; in a clone, at a terminal, the page is built if somebody wants it.
+The links of its description lead to the project's address, where `pyproject.toml` has one. With
+SOURCE_DATE_EPOCH a source package has the same bytes whenever and wherever it is made, as
+setuptools does that for a wheel.
 """
 
 from __future__ import annotations
 
+import atexit
 import gzip
 import os
 import re
 import shutil
+import subprocess
+import sys
 import tarfile
 from pathlib import Path
 
@@ -21,6 +26,12 @@ from setuptools.command.sdist import sdist
 ROOT = Path(__file__).resolve().parent
 PROJECT = ROOT / "vm_arduino"
 INSIDE = Path("tiniscript") / "flash" / "vm_arduino"  # where tsc firmware looks for them
+# What a wheel should have, and nobody keeps in git: a file of it, and the module that makes it.
+MADE = {
+    "the studio's page": ("tiniscript/studio/page/index.html", "tools.builds.studio"),
+    "firmware that is ready": ("tiniscript/flash/ready/*.hex", "tools.builds.firmware_files"),
+}
+PYTHON = ROOT / ".venv" / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
 
 
 def sources() -> list[Path]:
@@ -30,17 +41,47 @@ def sources() -> list[Path]:
     return [path for path in found if path.is_file() and path.name != "own.h"]
 
 
+def missing(package: Path) -> list[str]:
+    """Return what of MADE is not in a folder."""
+    return [what for what, (file, _) in MADE.items() if not any(package.glob(file))]
+
+
+def build_page() -> None:
+    """Let the clone's tsc build the page, which says how much it fetches, and asks.
+
+    pip gives no terminal: whoever installs from a clone is not asked.
+    """
+    is_asked = sys.stdin is not None and sys.stdin.isatty() and sys.stderr.isatty()
+    if is_asked and PYTHON.is_file() and "the studio's page" in missing(ROOT / "compiler"):
+        subprocess.run([PYTHON, "-m", "tiniscript.cli.page_build"], cwd=ROOT)
+
+
+def tell(lacks: list[str]) -> None:
+    """Say what a wheel is made without, and how to make one that has it."""
+    if lacks:
+        commands = "".join(f"  python -m {MADE[what][1]}\n" for what in lacks)
+        print(
+            f"tiniscript: this wheel is made without {' and without '.join(lacks)}; tsc --version"
+            " says so, too.\nIn a clone a wheel has them after\n"
+            f"{commands}when  python -m build --wheel  makes it (a source package has neither).",
+            file=sys.stderr,
+            flush=True,
+        )
+
+
 class Build(build_py):
     """Fills a folder that is empty: files that are no longer in the repository stay out."""
 
     def run(self) -> None:
         if not self.editable_mode:
             shutil.rmtree(self.build_lib, ignore_errors=True)
+            build_page()
         super().run()
         if not self.editable_mode:
             for path, target in self._copies().items():
                 target.parent.mkdir(parents=True, exist_ok=True)
                 self.copy_file(str(path), str(target))
+            atexit.register(tell, missing(Path(self.build_lib)))  # below all that setuptools says
 
     def _copies(self) -> dict[Path, Path]:
         inside = Path(self.build_lib) / INSIDE

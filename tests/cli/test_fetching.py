@@ -229,6 +229,22 @@ def test_where_nobody_can_be_asked_it_says_how(clone: Clone, words: list[str], s
     assert not clone.page.exists()
 
 
+def test_a_wheel_begins_with_the_same_question(clone: Clone, started: list[Person]) -> None:
+    """By a process of its own: what makes a wheel knows nothing of this package."""
+    clone.has_node()
+    command = [sys.executable, "-m", "tiniscript.cli.page_build"]
+    person = Person(clone, command)
+    started.append(person)
+    person.sees("[y/N]")
+    person.types("n")
+    assert person.ended() == 2 and "nothing was fetched" in person.seen
+    person = Person(clone, command)
+    started.append(person)
+    person.sees("[y/N]")
+    person.types("y")
+    assert person.ended() == 0 and clone.page.exists()
+
+
 def test_node_is_fetched_where_there_is_none(clone: Clone, started: list[Person]) -> None:
     person = Person(clone, clone.studio())
     started.append(person)

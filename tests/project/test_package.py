@@ -10,11 +10,14 @@ import sys
 import zipfile
 from importlib.metadata import version
 from pathlib import Path
+from threading import Thread
 
 import pytest
 
 from tests.support.casefile import ROOT
+from tests.support.command import rest_of
 from tests.support.platformio import need, prepared
+from tests.support.waiting import HANGS_S
 from tools.release import facts
 from tools.release.packing import difference
 
@@ -166,6 +169,67 @@ def test_a_wheel_builds_its_own_firmware(wheel: Path, tmp_path: Path) -> None:
     done = python(*words, folder=tmp_path, PYTHONPATH=str(wheel), **variables)
     assert done.returncode == 0, done.stderr
     assert done.stdout.startswith("liner on nano: ready, ")
+
+
+PAGE_MISSING = "tools.builds.studio"
+FIRMWARE_MISSING = "tools.builds.firmware_files"
+
+
+@pytest.mark.parametrize("has_page", [False, True])
+def test_a_wheel_says_what_it_is_made_without(
+    unpacked: Path, tmp_path: Path, has_page: bool
+) -> None:
+    """Made of a source package, as `python -m build` does, and of one whose page was built."""
+    folder = tmp_path / "sources"
+    shutil.copytree(unpacked, folder)
+    if has_page:
+        page = folder / "compiler" / BUILT
+        page.parent.mkdir()
+        page.touch()
+    done = python("-c", BUILD.format("build_wheel"), str(tmp_path), folder=folder)
+    assert done.returncode == 0, done.stderr
+    assert "made without" in done.stderr and FIRMWARE_MISSING in done.stderr
+    assert (PAGE_MISSING in done.stderr) == (not has_page)
+    with zipfile.ZipFile(tmp_path / done.stdout.split()[-1]) as packed:
+        packed.extractall(tmp_path / "made")
+    version = python("-m", "tiniscript", "--version", "--lang", "en", folder=tmp_path,
+                     PYTHONPATH=str(tmp_path / "made"))  # fmt: skip
+    assert "without ready firmware" in version.stdout
+    assert ("without the page" in version.stdout) == (not has_page)
+
+
+BUILDS_PAGE = """#!/bin/sh
+[ "$*" = "-m tiniscript.cli.page_build" ] || exit 1
+mkdir compiler/tiniscript/studio/page
+touch compiler/tiniscript/studio/page/index.html
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no pseudo-terminals of this kind")
+@pytest.mark.parametrize("is_terminal", [False, True])
+def test_only_who_is_at_a_terminal_is_asked_for_the_page(
+    unpacked: Path, tmp_path: Path, is_terminal: bool
+) -> None:
+    """`python -m build --wheel` is; pip, which gives no terminal, needs no npm."""
+    folder = tmp_path / "clone"
+    shutil.copytree(unpacked, folder)
+    stand_in = folder / ".venv" / "bin" / "python"
+    stand_in.parent.mkdir(parents=True)
+    stand_in.write_text(BUILDS_PAGE)
+    stand_in.chmod(0o755)
+    ours, theirs = os.openpty()
+    reader = Thread(target=lambda: all(iter(lambda: rest_of(ours), b"")), daemon=True)
+    reader.start()
+    end = theirs if is_terminal else subprocess.DEVNULL
+    command = [sys.executable, "-c", BUILD.format("build_wheel"), str(tmp_path)]
+    done = subprocess.run(
+        command, cwd=folder, stdin=end, stderr=end, stdout=subprocess.PIPE, text=True, check=True
+    )
+    os.close(theirs)
+    with zipfile.ZipFile(tmp_path / done.stdout.split()[-1]) as packed:
+        assert (BUILT in packed.namelist()) == is_terminal
+    reader.join(HANGS_S)
+    os.close(ours)
 
 
 # -- the source package

@@ -99,6 +99,21 @@ def _drop_output() -> None:
     os.dup2(nowhere, 2)
 
 
+def _tell_missing(language: str) -> None:
+    """Say which parts that are made before a wheel are not in this installation."""
+    from tiniscript.cli.texts.common import text
+    from tiniscript.flash import ready
+    from tiniscript.studio import serving
+
+    parts = {
+        "version_page": serving.is_built(),
+        "version_firmware": any(ready.FOLDER.glob("*.hex")),
+    }
+    for key, is_there in parts.items():
+        if not is_there:
+            print(text(key, language))
+
+
 def _verb(arguments: list[str], language: str) -> int:
     from tiniscript.cli.errors import CommandError
     from tiniscript.cli.options import Options, bad_choice
@@ -110,6 +125,7 @@ def _verb(arguments: list[str], language: str) -> int:
         from tiniscript import __version__
 
         print(f"tsc (TiniScript) {__version__}")
+        _tell_missing(language)
         return 0
     try:
         name = "help" if arguments[0] == "ayuda" else arguments[0]

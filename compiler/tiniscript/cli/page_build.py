@@ -1,4 +1,7 @@
-"""The studio's page, built in a clone that does not have it yet, if the person agrees."""
+"""The studio's page, built in a clone that does not have it yet, if the person agrees.
+
+Whoever makes a wheel at a terminal of a clone is asked by it, too.
+"""
 
 from __future__ import annotations
 
@@ -8,7 +11,7 @@ from argparse import Namespace
 from tiniscript.cli import fetching
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.fetching import Part, Step
-from tiniscript.cli.texts.common import text
+from tiniscript.cli.texts.common import language_of, text
 from tiniscript.library import install_advice
 from tiniscript.studio import building
 
@@ -35,8 +38,24 @@ def build(options: Namespace, language: str) -> None:
     growing = fetching.Growing(building.MODULES, building.NODE_MODULES_MB)
 
     def seen(said: str) -> Step:
-        step = building.step(said)
+        step = max(building.step(said), 0 if NPM in parts else 1)
         is_fetching = STEPS[step] == "fetch_npm_now"
         return Step(STEPS[step], growing.percent() if is_fetching else PERCENT[step])
 
     fetching.run([sys.executable, "-m", building.MODULE], building.CLONE, seen, language)
+
+
+def main() -> int:
+    language = language_of([])
+    try:
+        build(Namespace(yes=False), language)
+    except CommandError as failure:
+        print(failure.sentence(language), file=sys.stderr)
+        return failure.exit_code
+    except KeyboardInterrupt:
+        return 2
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

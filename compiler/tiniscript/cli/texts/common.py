@@ -21,6 +21,10 @@ TEXTS: dict[str, tuple[str, str]] = {
             "tsc encontró algo para lo que no está hecho. El error es nuestro, no tuyo.\n"
             "Por favor repórtalo con tu programa y esta línea:  {what}\n"
             "(TINISCRIPT_DEBUG=1 muestra más.)"),
+    "version_page": ("without the page of tsc studio, which is built in a clone",
+                     "sin la página de tsc studio, que se construye en un clon"),
+    "version_firmware": ("without ready firmware: tsc firmware builds it when it is first written",
+                         "sin firmware listo: tsc firmware lo compila la primera vez que se escribe"),
     "pager_keys": ("Space: more   q: end", "Espacio: sigue   q: salir"),
     # wrong use
     "plain": ("tsc: {said}", "tsc: {said}"),
