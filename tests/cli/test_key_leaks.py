@@ -9,7 +9,7 @@ import pytest
 
 from tests.cli.test_owner_commands import claimed
 from tests.machines.host_firmware import missing
-from tests.support.command import Command, process
+from tests.support.command import Command, inside
 from tests.support.pty_robot import PtyRobot, on
 from tiniscript.keys import KeyFile
 
@@ -36,17 +36,20 @@ def has_one(secrets: list[bytes], data: bytes) -> bool:
     return any(secret in b"".join(data.split()) for secret in secrets)
 
 
-def test_a_key_is_in_its_file_alone(pty_robot: PtyRobot, tmp_path: Path) -> None:
+def test_a_key_is_in_its_file_alone(
+    pty_robot: PtyRobot, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("tiniscript.link.ports.listed", list)
     assert claimed(pty_robot).code == 0
     assert claimed(pty_robot, "--teacher").code == 0
     secrets = [form for key in KeyFile().all() for form in forms(key.key)]
     assert len(secrets) == 12 and has_one(secrets, KeyFile().path.read_bytes())
     said = ""
     for verb in (*VERBS, ("doctor", "--report", str(tmp_path / "report.txt"))):
-        done = process(*verb) if verb[0] == "ports" else on(pty_robot, *verb)
+        done = inside(*verb) if verb[0] == "ports" else on(pty_robot, *verb)
         assert done.code != 2, done.err
         said += done.out + done.err
-    said += process("keys").out + process("keys", "--json").out
+    said += inside("keys").out + inside("keys", "--json").out
     link = Command("link", "--port", pty_robot.port)
     link.until("Ctrl-C")
     said += on(pty_robot, "upload", "-e", "SI|F(0.1, 80)").out

@@ -6,7 +6,9 @@ The robot is the firmware in C++ behind a pseudo-terminal.
 from __future__ import annotations
 
 import json
+import sys
 from pathlib import Path
+from unittest import mock
 
 import pytest
 
@@ -26,15 +28,16 @@ DRIVES = "SI|F(0.2, 80)"
 
 
 def claimed(pty_robot: PtyRobot, *options: str) -> Done:
-    """Claim the robot, with a hand on its button, which tries again where this computer is slow."""
-    command = Command("claim", "--port", pty_robot.port, *options)
-    assert command.process.stderr
-    assert "2 s" in command.process.stderr.readline().decode()
-    for _ in range(3):
-        pty_robot.hold()
-        if command.ends_within(9):
-            break
-    done = command.ended()
+    """Claim the robot, with a hand on its button."""
+
+    def said(words: str, file: object = None, flush: bool = False) -> None:
+        print(words, file=sys.stdout if file is None else sys.stderr, flush=flush)
+        if file is not None:
+            assert "2 s" in words
+            pty_robot.hold()
+
+    with mock.patch.object(claim, "print", said, create=True):
+        done = on(pty_robot, "claim", *options)
     secrets = [key.key.hex() for key in KeyFile().all()]
     assert not [secret for secret in secrets if secret in done.out + done.err]
     return done

@@ -1,4 +1,7 @@
-"""The command and a robot: real processes, a real port, the whole firmware behind it."""
+"""The command and a robot: a real port, and the whole firmware behind it.
+
+A command is a process where it is interrupted or killed.
+"""
 
 from __future__ import annotations
 
@@ -38,9 +41,12 @@ def hasty(monkeypatch: pytest.MonkeyPatch) -> None:
 # -- endings ------------------------------------------------------------------------------------
 
 
-def test_a_port_that_another_program_uses_is_said(pty_robot: PtyRobot) -> None:
+def test_a_port_that_another_program_uses_is_said(
+    pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch
+) -> None:
     import serial
 
+    monkeypatch.setattr(opening, "STOP_BUSY_S", 0.5)
     with serial.Serial(pty_robot.port, exclusive=True):
         done = on(pty_robot, "stop")
         assert done.code == 3

@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
+import io
 import json
 import os
-import subprocess
+import sys
 from collections.abc import Callable
+from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
+from unittest import mock
 
 import pytest
 
 from tests.machines.host_firmware import EMPTY, HostFirmware, missing
-from tests.support.command import TSC, Tsc
-from tests.support.pty_robot import PtyRobot
+from tests.support.command import Tsc
+from tests.support.pty_robot import PtyRobot, on
+from tests.support.simulated_port import simulated
 from tiniscript import robots
+from tiniscript.cli import main
 from tiniscript.doctor import report
 from tiniscript.link.messages import RESETS
 
@@ -29,7 +34,8 @@ def found_by(
     tsc: Tsc, pty_robot: PtyRobot, *words: str
 ) -> tuple[int, dict[str, dict[str, object]]]:
     """Return the exit code, and each finding by what it is about."""
-    done = tsc("selftest", "--yes", "--json", "--port", pty_robot.port, *words)
+    with simulated(pty_robot):
+        done = tsc("selftest", "--yes", "--json", "--port", pty_robot.port, *words)
     rows = json.loads(done.out)["found"]
     return done.code, {
         f"{each['what']} {each['values'].get('name', '')}".strip(): each for each in rows
@@ -114,7 +120,7 @@ def test_a_line_that_damages_messages(tsc: Tsc, pty_robot: PtyRobot) -> None:
 
 def test_a_robot_that_falls_silent(tsc: Tsc, pty_robot: PtyRobot) -> None:
     """What was found before is said, and the last finding is the end."""
-    pty_robot.off_after = 300
+    pty_robot.off_after = 150
     code, found = found_by(tsc, pty_robot)
     assert code == 3
     assert found["kit"]["verdict"] == "ok"
@@ -126,20 +132,26 @@ def test_a_robot_that_falls_silent(tsc: Tsc, pty_robot: PtyRobot) -> None:
 
 def asked(pty_robot: PtyRobot, answers: Callable[[str], str], *words: str) -> tuple[int, str, str]:
     """Run it with a person: `answers` gets each question and returns what is typed."""
-    command = [*TSC, "selftest", "--port", pty_robot.port, "--lang", "en", *words]
-    with subprocess.Popen(
-        command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE
-    ) as process:
-        assert process.stdin and process.stdout and process.stderr
-        question, said = "", ""
-        while letter := os.read(process.stderr.fileno(), 1):
-            question += letter.decode()
-            if question.endswith(("Enter. ", "more: ")):
-                process.stdin.write(f"{answers(question)}\n".encode())
-                process.stdin.flush()
-                said, question = said + question, ""
-        out = process.stdout.read().decode()
-    return process.returncode, out, said
+    out, err = io.StringIO(), io.StringIO()
+
+    class Keys:
+        read = 0  # characters of `err`
+
+        def isatty(self) -> bool:
+            return False
+
+        def readline(self) -> str:
+            question = err.getvalue()[self.read :]
+            assert question.endswith(("Enter. ", "more: "))
+            self.read += len(question)
+            return f"{answers(question)}\n"
+
+    with (
+        simulated(pty_robot), redirect_stdout(out), redirect_stderr(err),
+        mock.patch.object(sys, "stdin", Keys()),
+    ):  # fmt: skip
+        code = main(["selftest", "--port", pty_robot.port, "--lang", "en", *words])
+    return code, out.getvalue(), err.getvalue()
 
 
 def person(pty_robot: PtyRobot, motors: str = "1", is_noticed: bool = True) -> Callable[[str], str]:
@@ -191,12 +203,9 @@ def test_once_more_turns_the_motor_again(pty_robot: PtyRobot) -> None:
     assert sum("MOTORS 60 0" in line for line in pty_robot.did) == 3
 
 
-def test_a_person_who_leaves_leaves_questions(tsc: Tsc, pty_robot: PtyRobot) -> None:
+def test_a_person_who_leaves_leaves_questions(pty_robot: PtyRobot) -> None:
     pty_robot.ask(lambda robot: robot.sense(*GOOD))
-    done = subprocess.run(
-        [*TSC, "selftest", "--port", pty_robot.port], input=b"", capture_output=True
-    )
-    assert done.returncode == 0
+    assert on(pty_robot, "selftest").code == 0
     assert not any("MOTORS" in line for line in pty_robot.did)
 
 
@@ -204,10 +213,10 @@ def test_a_person_who_leaves_leaves_questions(tsc: Tsc, pty_robot: PtyRobot) -> 
 
 
 def test_a_report_has_no_names(tsc: Tsc, pty_robot: PtyRobot, tmp_path: Path) -> None:
-    assert tsc("name", "LUISITO", "--port", pty_robot.port).code == 0
+    assert on(pty_robot, "name", "LUISITO").code == 0
     file = tmp_path / "report.txt"
     for _ in range(2):  # a report of ours is replaced
-        done = tsc("selftest", "--yes", "--port", pty_robot.port, "--report", file)
+        done = on(pty_robot, "selftest", "--yes", "--report", file)
     assert "LUISITO" in done.out
     said = file.read_text(encoding="utf-8")
     assert said.startswith(report.SELFTEST_MARK + "\n")
@@ -216,7 +225,7 @@ def test_a_report_has_no_names(tsc: Tsc, pty_robot: PtyRobot, tmp_path: Path) ->
     assert "sensor" in said
     mine = tmp_path / "mine.txt"
     mine.write_text("mine")
-    assert tsc("selftest", "--yes", "--port", pty_robot.port, "--report", mine).code == 2
+    assert on(pty_robot, "selftest", "--yes", "--report", mine).code == 2
     assert mine.read_text() == "mine"
 
 
