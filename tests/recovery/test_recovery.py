@@ -78,3 +78,9 @@ def test_the_parser_says_where_it_cannot_go_on() -> None:
     assert lines.right(lexemes("F(2, 80) B(1, 50)"), names) == Failure(0, 6)
     assert lines.right(lexemes("F(2)"), names) == Failure(0, 4)
     assert lines.right(lexemes("FAST"), names) == Failure(0, 0)
+
+
+@pytest.mark.parametrize("wrong", ["X == 6", "X = 3\nX = X = 5", "F(2,80) 5 seg", "F(2, 8 S)"])
+def test_what_may_change_the_meaning_is_only_shown(wrong: str) -> None:
+    found = marks.meant(wrong)
+    assert found is None or not found.is_applied

@@ -1,7 +1,7 @@
 """Runs the new recovery beside today's repairs, and keeps the scores, which may only rise.
 
-`python -m tools.shadow` reads all of `tests/pupils`, the right programs and 400 with slips;
-`5000` puts slips into so many. A quarter of the pupils' programs is put aside: its score is
+`python -m tools.shadow` reads all of `tests/pupils`, and 400 right programs with slips; `5000` puts
+slips into so many. A quarter of the pupils' programs is put aside: its score is
 printed, never a program of it. `--show worse` prints the others that have this mark, `--code
 TS036` those of a code alone; `--keep` writes scores that rose.
 """
@@ -21,7 +21,6 @@ ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
 from tests.pupils.corpus import check, entries
-from tests.pupils.test_damage import damaged
 from tiniscript.recovery.explanation import explained
 from tiniscript.repairs.fixing import fixed
 from tools.shadow import marks
@@ -29,12 +28,19 @@ from tools.shadow.marks import EQUIVALENT, MARKS, QUESTION, SAME, WORSE, Answer
 
 SCORES = Path(__file__).parent / "scores.json"
 SAMPLE, SAMPLE_SIZE, SAMPLE_SEED = "sample as meant", 200, 28  # which a test reads again
+SLIPS = 400
+SHORTEST = 8  # characters of a program that slips are put into
+# What is taken for a sign: its neighbour on a keyboard, or what looks like it.
+NEIGHBOURS = {
+    "(": ")8[", ")": "(0]9", ",": ".;m ", ";": ",:ñ", "|": "1lI!", "=": "-0+", "<": ">,",
+    ".": ",-", "0": "Oo9", "1": "lI2",
+}  # fmt: skip
 Scores = dict[str, float]
 
 
 def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description="Compare the new recovery with today's repairs.")
-    parser.add_argument("slips", nargs="?", type=int, default=400, help="programs with slips")
+    parser.add_argument("slips", nargs="?", type=int, default=SLIPS, help="programs with slips")
     parser.add_argument("--seed", type=int, default=1, help="of the slips")
     parser.add_argument("--show", choices=MARKS, help="print the programs with this mark")
     parser.add_argument("--code", default="", help="print those with this code alone")
@@ -51,7 +57,7 @@ def main(arguments: list[str] | None = None) -> int:
         (aside if marks.is_aside(entry.program) else seen).append(answer)
     scores = {**of_pupils("seen", seen), **of_pupils("aside", aside)}
     scores |= of_sample(sample(seen))
-    of_slips(options.slips, options.seed)
+    scores |= of_slips(options.slips, options.seed) if options.slips else {}
     by_code([*seen, *aside])
     if options.show:
         show(seen, options.show, options.code)
@@ -76,24 +82,48 @@ def of_pupils(name: str, answers: Sequence[Answer]) -> Scores:
     return {f"{name} as meant": meant, f"{name} without a false repair": quiet}
 
 
-def of_slips(count: int, seed: int) -> None:
-    """Put slips into right programs; print how often each engine makes a right one of them."""
+def of_slips(count: int, seed: int) -> Scores:
+    """Return how often the program comes back that one or two slips were put into, in percent.
+
+    Prints what today's repairs do with the same ones. Some of them cannot be read by anybody.
+    """
     chance = random.Random(seed)
-    made: Counter[str] = Counter()
-    tried = 0
-    while tried < count:
-        program = damaged(chance.randrange(1 << 40))
-        if not program.strip() or marks.image(program):
-            continue
-        tried += 1
-        found = marks.meant(program)
-        new = marks.image(found.text) if found and found.is_applied else b""
-        today = marks.image(fixed(program, check).text)
-        made["new"] += bool(new)
-        made["today"] += bool(today)
-        made["other"] += bool(new and today and new != today)
-    told = f"right {made['new']}, today's {made['today']}, both and not the same {made['other']}"
-    print(f"{count} with slips: {told}")
+    programs = right_programs()
+    marks_of = {"new": Counter[str](), "today": Counter[str]()}
+    for _ in range(count):
+        meant, wrong = slipped(chance, programs)
+        found = marks.meant(wrong)
+        texts = {"new": found.text if found and found.is_applied else wrong,
+                 "today": fixed(wrong, check).text}  # fmt: skip
+        for engine, text in texts.items():
+            made = marks.image(text)
+            marks_of[engine]["meant" if made == meant else "another" if made else "none"] += 1
+    for engine, counts in marks_of.items():
+        print(f"{count} with slips, {engine}:", *(f"{name} {n}" for name, n in counts.items()))
+    is_kept = (count, seed) == (SLIPS, 1)
+    return {"slips as meant": 100 * marks_of["new"]["meant"] / count} if is_kept else {}
+
+
+def right_programs() -> list[str]:
+    """Return pupils' repaired programs and their right ones, of all that are not put aside."""
+    known = [each for each in entries() if not marks.is_aside(each.program)]
+    found = {each.mended or each.program for each in known if each.mended or not each.said}
+    return sorted(each for each in found if len(each) > SHORTEST and marks.image(each))
+
+
+def slipped(chance: random.Random, programs: Sequence[str]) -> tuple[bytes, str]:
+    """Return a program's image, and the program with one or two slips that make it wrong."""
+    while True:
+        right = wrong = chance.choice(programs)
+        for _ in range(chance.choice((1, 1, 2))):
+            k = chance.randrange(len(wrong))
+            before, sign, rest = wrong[:k], wrong[k], wrong[k + 1 :]
+            near = chance.choice(NEIGHBOURS.get(sign, "aeoslrn"))
+            kinds = ("", sign * 2, near, f" {sign}", sign.swapcase(), rest[:1] + sign)
+            kind = chance.randrange(len(kinds))
+            wrong = before + kinds[kind] + (rest[1:] if kind == len(kinds) - 1 else rest)
+        if wrong.strip() and not marks.image(wrong):
+            return marks.image(right), wrong
 
 
 def by_code(answers: Iterable[Answer]) -> None:

@@ -60,6 +60,9 @@ class Matched(NamedTuple):
     is_sure: bool
 
 
+_UNREAD = [Item("do", "", 0, 0)]  # what a line that cannot be read is taken for
+
+
 class _Block:
     def __init__(self, word: str, line: int, indent: int, has_body: bool, is_do: bool) -> None:
         self.word = word  # nothing for braces that belong to no header
@@ -87,7 +90,11 @@ def matched(lines: Sequence[Line]) -> Matched | None:
 class _Matching:
     def __init__(self, lines: Sequence[Line]) -> None:
         self.lines = lines
-        self.flat = [(k, item) for k, line in enumerate(lines) for item in line.items or ()]
+        self.flat = [
+            (k, item)
+            for k, line in enumerate(lines)
+            for item in (_UNREAD if line.items is None else line.items)
+        ]
         self.has_unread = any(line.items is None for line in lines)
         self.open: list[_Block] = []
         self.edits: dict[int, list[Edit]] = {}

@@ -17,7 +17,7 @@ from tiniscript.recovery import lexicon_en, lexicon_es
 from tiniscript.spelling import Speller
 from tiniscript.syntax.lexer import NUMBER, ODD, WORD
 from tiniscript.syntax.outline import Known
-from tiniscript.words import ALIASES, BLOCK_ENDS, WORDS, nearest
+from tiniscript.words import ALIASES, BLOCK_ENDS, UNITS, WORDS, nearest
 
 KNOWN, MISSPELT, NEAR = 1, 2, 3  # what a meaning costs: said, written nearly so, a slip away
 STARTS = frozenset(("IF", "LOOP", "WHILE"))
@@ -182,7 +182,7 @@ class Names:
         for line in lines:
             self._look_at(line)
         self.defs -= {row[0] for row in self.rows}
-        self._labels: dict[tuple[str, str], str] = {}
+        self._labels: dict[tuple[str, str, bool], str] = {}
         self.known = Known(
             frozenset(self.variables) | self.sensors,
             frozenset(self.defs) | self.sensors,
@@ -252,9 +252,11 @@ class Names:
 
     def label(self, token: Lexeme) -> str:
         """Return all classes of a token, as one text that a pattern finds them in."""
-        key = (token.kind, token.text)
+        is_unit = token.space == "" and token.text in WORDS and token.text in UNITS  # `5S`
+        key = (token.kind, token.text, is_unit)
         if key not in self._labels:
-            labels = "|".join(dict.fromkeys(self._classes(token)))
+            classes = [*self._classes(token), *(["@unit"] if is_unit else [])]
+            labels = "|".join(dict.fromkeys(classes))
             self._labels[key] = f"\x01|{labels}|\x02"
         return self._labels[key]
 
@@ -272,7 +274,7 @@ class Names:
     def _classes_of_word(self, text: str) -> list[str]:
         said = [meaning.split()[0] for meaning in _lexicon().get(text, ())]
         found = [each for each in said if each.islower()]
-        found += ["@unit"] if "unit" in said else []
+        found += ["@unit"] if "unit" in said and text not in WORDS else []
         meant = [each.concept for each in self.meanings(text) if each.cost < NEAR]
         word = text if text in WORDS else meant[0] if meant else ""
         is_name = self.is_name(text)

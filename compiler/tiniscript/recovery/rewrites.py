@@ -63,7 +63,7 @@ def of_tokens() -> tuple[Row, ...]:
     for pattern, becomes, cost, code, how, example in cells(rows.TOKENS):
         compiled = re.compile("".join(map(_atom, _whole(pattern).split())))
         parts = tuple(_whole(becomes).split())
-        is_first, is_offered = how == "first", how == "offered"
+        is_first, is_offered = "first" in how, "offered" in how
         found.append(Row(compiled, parts, float(cost), code, is_first, is_offered, _texts(example)))
     return tuple(found)
 
@@ -143,6 +143,8 @@ class Encoded:
             made_of = self._made(part, match)
             if made_of is None:
                 return None
+            if new and made_of and new[-1].source is None and made_of[0].space == "":
+                made_of = [made_of[0]._replace(space=None), *made_of[1:]]
             new += made_of
         new = _without_double_brackets(new)
         start, end = self.span(match)
@@ -247,6 +249,12 @@ def _times(place: _Place) -> _Made:
     return None if place.line.names.is_name(word) else [made(word[1:])]
 
 
+def _same(place: _Place) -> _Made:
+    """The second of two numbers, where they are the same."""
+    (one,), (two,) = place.captured
+    return [two] if one.text == two.text else None
+
+
 def _brace(place: _Place) -> _Made:
     return [each for each in place.captured[0] if each.text == "{"]
 
@@ -262,7 +270,7 @@ def _known_name(place: _Place) -> _Made:
 
 _FUNCTIONS: dict[str, Callable[[_Place], _Made]] = {
     "not": _not, "endof": _end_of, "dec": _decimal, "cat": _zero_behind, "mmss": _minutes,
-    "xn": _times, "brace": _brace, "join": _name, "known": _known_name,
+    "xn": _times, "brace": _brace, "same": _same, "join": _name, "known": _known_name,
 }  # fmt: skip
 
 

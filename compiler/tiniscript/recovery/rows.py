@@ -14,10 +14,10 @@ token but separators and braces: @any @cond @argt @noclose @nob @noparen @nosep;
 but brackets: @nobrace.
 
 `becomes` is tokens: `$c` what was captured, `&c` that in words of the language, and functions:
-@not (the opposite question), @endof (the end of a header), @dec (a decimal comma), @cat (a zero
+@not (the opposite question), @same (a number that is another one, too), @endof (the end of a header), @dec (a decimal comma), @cat (a zero
 apart), @mmss, @xn (`x4`), @brace (a brace that was captured), @join and @known (a name of two
 words). `how`: `first` is made before any other is tried, `applied` may be made without asking,
-`offered` is only shown. An example's lines are parted by ⏎.
+`offered` is only shown, as is `first offered`. An example's lines are parted by ⏎.
 
 `SIGNS` is what characters become before there are tokens: `re` patterns and what stands for them,
 in the same columns, which are two spaces wide. Rows are sorted by what they are about.
@@ -138,7 +138,9 @@ SIGNS = r"""
 """
 
 TOKENS = r"""
-# -- signs
+# signs that other languages have
+^ v=@usedname == e=@any+ $ | $v = $e | 0 | TS010 | first | X == 5⏎F(X, 80) => X = 5⏎F(X, 80)
+^ v=@name == e=@any+ $ | $v = $e | 1 | TS050 | first offered | X == 6 => X = 6
 == | = | 0 | TS010 | first | IF(DISTANCE == 10);S;ENDIF => IF(DISTANCE = 10);S;ENDIF
 != | <> | 0 | TS010 | first | SI|IF(DISTANCE!=10);S;ENDIF => SI|IF(DISTANCE <>10);S;ENDIF
 =! | <> | 0 | TS010 | first | IF(DISTANCE =! 10);S;ENDIF => IF(DISTANCE <> 10);S;ENDIF
@@ -153,76 +155,9 @@ TOKENS = r"""
 && | AND | 0 | TS010 | first | SI|IF(DISTANCE<10 && LIGHT_L>50);S;ENDIF => SI|IF(DISTANCE<10 AND LIGHT_L>50);S;ENDIF
 '||' | OR | 0 | TS010 | first | IF(DISTANCE == 10 || DISTANCE == 20);S;ENDIF => IF(DISTANCE = 10 OR DISTANCE = 20);S;ENDIF
 := | = | 0 | TS050 | first | v := 50⏎F(2, v) => v = 50⏎F(2, v)
-x=@callw [ | $x ( | 1 | TS010 | first | F[2,80] => F(2,80)
 ] | ) | 1 | TS010 | applied | F(2, 80] => F(2, 80)
-x=@callw '{' c=@nobrace+ '}' | $x ( $c ) | 1 | TS015 | applied | SI|F{2,80} => SI|F(2,80)
-# -- assignment
-v=@name = a=@num|@val b=@start | $v = $a ; $b | 1 | TS013 | applied | vel = 50 F(2, vel) => VEL = 50;F(2, VEL)
-a=@num POR CIENTO|CIEN | $a % | 1 | TS049 | first | R(1, 50 por ciento) => R(1, 50)
-v=@name = a=@num % $ | $v = $a | 1 | TS049 | applied | X = 50 % => X = 50
-RANDOM a=@num ,? b=@num | RANDOM ( $a , $b ) | 1 | TS015 | applied | X = RANDOM 1 3⏎F(X, 50) => X = RANDOM(1, 3)⏎F(X, 50)
-v=@name ++ | $v = $v + 1 | 1 | TS050 | applied | v = 0⏎v++⏎F(2, v) => v = 0⏎v =v + 1⏎F(2, v)
-v=@name - - $ | $v = $v - 1 | 1 | TS050 | applied | X = 1⏎X-- => X = 1⏎X =X -1
-v=@name += e=@any+ | $v = $v + $e | 1 | TS050 | applied | v = 10⏎v += 5⏎F(2, v) => v = 10⏎v =v + 5⏎F(2, v)
-v=@name -= e=@any+ | $v = $v - $e | 1 | TS050 | applied | X = 1⏎X -= 1 => X = 1⏎X =X - 1
-v=@name *= e=@any+ | $v = $v * $e | 1 | TS050 | applied | X = 1⏎X *= 2 => X = 1⏎X =X * 2
-^ v=@name = w=@name = e=@any+ $ | $v = $e ; $w = $e | 1 | TS137 | offered | X = X = 5 => X = 5;X = 5
-^ v=@name , w=@name = e=@num , f=@num $ | $v = $e ; $w = $f | 1 | TS050 | applied | X, Y = 5, 6⏎F(X, Y) => X = 5;Y = 6⏎F(X, Y)
-^ declare v=@name = | $v = | 1 | TS044 | applied | let v = 50⏎F(2, v) => v = 50⏎F(2, v)
-^ CONST declare v=@name = | $v = | 1 | TS044 | applied | const int potencia = 80;⏎F(2, potencia); => potencia = 80;⏎F(2, potencia);
-^ set|LET v=@name TO|A|EN|COMO|= e=@num $ | $v = $e | 1 | TS050 | applied | set x to 5 => x = 5
-^ v=@newname is|VALE|equal A|IGUAL? A? e=@num $ | $v = $e | 2 | TS050 | applied | velocidad es 60⏎F(2, velocidad) => velocidad = 60⏎F(2, velocidad)
-^ v=@newname : e=@num $ | $v = $e | 2 | TS050 | applied | velocidad: 60⏎F(2, velocidad) => velocidad = 60⏎F(2, velocidad)
-^ v=@usedname e=@num $ | $v = $e | 3 | TS057 | applied | VELOCIDAD 50⏎F(2, VELOCIDAD) => VELOCIDAD = 50⏎F(2, VELOCIDAD)
-^ v=@name <- e=@any+ $ | $v = $e | 1 | TS050 | applied | potencia <- 80⏎F(2, potencia) => potencia = 80⏎F(2, potencia)
-a=@num 0 | @cat:a | 1 | TS008 | applied | F(2, 8 0) => F(2, 80)
-a=@num , b=@num | @dec:a:b | 1 | TS012 | applied | W(2,5) => W(2.5)
-= SI|YES $ | = TRUE | 1 | TS102 | applied | X = si⏎IF(X)⏎S⏎ENDIF => X = TRUE⏎IF(X)⏎S⏎ENDIF
-= no $ | = FALSE | 1 | TS102 | applied | X = NO => X = FALSE
-a=@num|@val s=<|<=|>|>= b=@val t=<|<=|>|>= c=@num|@val | $a $s $b AND $b $t $c | 1 | TS037 | applied | SI|IF(10>DISTANCE>5);S;ENDIF => SI|IF(10>DISTANCE AND DISTANCE>5);S;ENDIF
 ! v=@val|( | NOT $v | 1 | TS010 | first | X = TRUE⏎IF(!X);S;ENDIF => X = TRUE⏎IF(NOT X);S;ENDIF
-a=@num|@val X b=@num|@val | $a * $b | 1 | TS010 | first | SHOW(2 X 3) => SHOW(2 * 3)
-a=@num|@val MOD b=@num|@val | $a % $b | 1 | TS010 | first | X = 7⏎X = X MOD 2 => X = 7⏎X = X % 2
-a=@num|@val MAS b=@num|@val | $a + $b | 1 | TS010 | first | X = 5 mas 3⏎SHOW(X) => X = 5 + 3⏎SHOW(X)
-a=@num % ) | $a ) | 1 | TS049 | first | F(2,80%) => F(2,80)
-a=@num|@close b=@name = | $a ; $b = | 1.5 | TS013 | applied | F(1, 50) X = 2 => F(1, 50);X = 2
-<block> <question> b=@name = | &h ( $c ) ; $b = | 1 | TS014 | applied | X = 5⏎IF(X = 5) X = 6 ELSE X = 7 => X = 5⏎IF(X = 5);X = 6;ELSE;X = 7;ENDIF
-a=@nosep ELSE b=@name = | $a ; ELSE ; $b = | 1 | TS014 | applied | X = 5⏎IF(X = 5) X = 6 ELSE X = 7 => X = 5⏎IF(X = 5);X = 6;ELSE;X = 7;ENDIF
-h=IF|WHILE ( c=@argt+ ) ( d=@argt+ ) | &h ( $c AND $d ) | 1.5 | TS010 | applied | IF(DISTANCE < 10)(LIGHT_R > 50)⏎S⏎ENDIF => IF(DISTANCE < 10 AND LIGHT_R > 50)⏎S⏎ENDIF
-c=IF|WHILE|ELSEIF|UNTIL ( ( a=@argt* b=@num|@word ) e=;|$ | $c ( ( $a $b ) ) $e | 1 | TS016 | applied | IF((DISTANCE < 10)⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
-^ LOOP FOREVER :|,? b=@start|'{' | LOOP ( FOREVER ) ; $b | 1 | TS015 | applied | LOOP FOREVER F(0.5,60) R(0.5,60) => LOOP(FOREVER);F(0.5, 60);R(0.5, 60);END_LOOP
-^ LOOP n=@num ( <body> ) $ | LOOP ( $n ) ; $b $r ; END_LOOP | 1 | TS080 | applied | LOOP 3 (F(1, 50); R(1, 50)) => LOOP(3);F(1, 50);R(1, 50);END_LOOP
-^ LOOP n=@num VECES? [ <body> ] $ | LOOP ( $n ) ; $b $r ; END_LOOP | 1 | TS080 | applied | repite 4 [F(1, 60) R(0.5, 60)] => LOOP(4);F(1, 60);R(0.5, 60);END_LOOP
-h=LOOP|WHILE <question> ( <body> ) e=@start | &h ( $c ) ; $b $r ; @endof:h ; $e | 1 | TS080 | applied | LOOP(3)(S)F(1,50) => LOOP(3);S;END_LOOP;F(1, 50)
-h=IF|ELSEIF <question> ( <body> ) e=ELSEIF|ELSE | &h ( $c ) ; $b $r ; $e | .9 | TS080 | applied | IF(DISTANCE < 10)(S)ELSE(F(1,50)) => IF(DISTANCE < 10);S;ELSE;F(1, 50);ENDIF
-NO l=@val | NOT $l | 1 | TS010 | applied | IF(NO DISTANCE < 10)⏎F(1,50)⏎ENDIF => IF(NOT DISTANCE < 10)⏎F(1,50)⏎ENDIF
-h=IF|WHILE|LOOP|UNTIL|ELSEIF [ | &h ( | 1 | TS010 | applied | IF[DISTANCE < 10]⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
-a=@close '|'|,|. UNTIL ( | $a UNTIL ( | 1 | TS029 | applied | F(5, 60).UNTIL(DISTANCE < 30) => F(5, 60) UNTIL(DISTANCE < 30)
-^ FOREVER ( ) '{' $ | LOOP ( FOREVER ) ; { | 1 | TS102 | applied | void loop() {⏎  F(1, 50);⏎} => LOOP(FOREVER);⏎  F(1, 50);⏎END_LOOP
-^ end @def $ | END_DEF | 1 | TS022 | applied | DEF SALTO⏎F(1, 50)⏎FIN SALTO⏎SALTO => DEF SALTO⏎F(1, 50)⏎END_DEF⏎SALTO
-a=@close h=end $ | $a ; &h | 1 | TS013 | applied | F(2,80) fin => F(2, 80);
-c=@callw ( a=@argt+ ; b=@argt+ e=)|$ | $c ( $a , $b ) | 1 | TS076 | applied | F(2;80 => F(2,80)
-a=@num : b=@num | @mmss:a:b | 1 | TS008 | applied | W(1:30) => W(90)
-^ unless <question> | IF ( @not:c ) ; | 1 | TS102 | applied | unless(DISTANCE < 10)⏎F(2, 70)⏎end => IF(DISTANCE >= 10)⏎F(2, 70)⏎ENDIF
-^ unless QUE? c=@argt+ :|,|; | IF ( @not:c ) ; | 1.2 | TS102 | applied | unless DISTANCE < 5:⏎F(1, 50)⏎ENDIF => IF(DISTANCE >= 5)⏎F(1, 50)⏎ENDIF
-^ unless QUE? c=@argt+ b=@start | IF ( @not:c ) ; $b | 1.3 | TS102 | applied | unless distance < 10 F(1,50) => IF(DISTANCE >= 10);F(1, 50);ENDIF
-^ import @any+ ;? $ |  | 1 | TS072 | applied | import robot⏎F(2,80) => ⏎F(2,80)
-^ @newname : b=@start | $b | 2.5 | TS054 | applied | square: F(1,50); R(1,50) => F(1,50); R(1,50)
-^ <for> each? @word IN|EN|DE n=@num :? $ | LOOP ( $n ) | 1 | TS102 | applied | for each paso in 4⏎F(1, 50)⏎end => LOOP(4)⏎F(1, 50)⏎END_LOOP
-^ set the? v=@word A|TO|EN n=@num $ | $v = $n | 1.5 | TS050 | applied | X = 1⏎sube la X a 5 => X = 1⏎X = 5
-^ keep the? e=@val|@num EN|IN|COMO v=@word $ | $v = $e | 1.5 | TS050 | applied | guardar 80 en potencia⏎F(2, potencia) => potencia = 80⏎F(2, potencia)
-a=@callw b=@num ,? c=@num ,|;|Y? d=@callw | $a ( $b , $c ) ; $d | 1.5 | TS015 | applied | F 2,80,R 1,50 => F(2, 80);R(1, 50)
-l=@val s=<|>|<=|>= a=@num o=AND|OR t=<|>|<=|>= b=@num | $l $s $a &o $l $t $b | 1 | TS018 | offered | IF(DISTANCE < 10 OR < 5);S;ENDIF => IF(DISTANCE < 10 OR DISTANCE < 5);S;ENDIF
-^ a=@callw ( b=@argt+ ) POR|X|*|=|(? X|*? n=@num times? )? $ | LOOP ( $n ) ; $a ( $b ) ; END_LOOP | 3 | TS062 | offered | F(1,50) x 3 => LOOP(3);F(1, 50);END_LOOP
-^ a=@callw ( b=@argt+ ) n=X2|X3|X4|X5|X6 $ | LOOP ( @xn:n ) ; $a ( $b ) ; END_LOOP | 3 | TS062 | offered | F(2, 80) x3 => LOOP(3);F(2, 80);END_LOOP
-^ a=F|B|L|R ( FOREVER|@num|@val , b=@num ) during? n=@num seconds $ | $a ( $n , $b ) | 3 | TS085 | offered | F(2,80) 5 seg => F(5,80)
-^ M ( b=@argt+ ) during|(? n=@num seconds )? $ | M ( $b ) ; W ( $n ) ; S | 3 | TS085 | offered | M(50, 50) 2 segundos => M(50, 50);W(2);S
-^ a=S|STOP during|(? n=@num seconds? )? $ | $a ; W ( $n ) | 2 | TS085 | offered | S(2) => S;W(2)
-^ a=F|B|L|R ( e=@num|@val , f=@num ) A|AL|CON|DE? n=@num %|POTENCIA DE? POTENCIA? $ | $a ( $e , $n ) | 3 | TS085 | offered | F(2,80) 80% => F(2, 80)
-^ a=@callw ( b=@argt+ ) FOREVER $ | LOOP ( FOREVER ) ; $a ( $b ) ; END_LOOP | 3 | TS085 | offered | F(1, 80) siempre => LOOP(FOREVER);F(1, 80);END_LOOP
-= a=@num over POR? b=@num | = $a / $b | 1 | TS010 | applied | x = 10 dividido 2⏎mostrar x => x = 10 / 2⏎SHOW(X)
-^ a=@name = b=@num ,? c=@name = d=@num $ | $a = $b ; $c = $d | 1 | TS013 | applied | x = 5, y = 80⏎F(x, y) => X = 5;Y = 80⏎F(x, y)
-# -- comparisons in words: a row for each sense, a sign each
+# comparisons in words: a row for each sense, and a sign
 no is? less than|A? | >= | 1 | TS010 | first | IF(DISTANCE no es menor que 10)⏎F(1,50)⏎ENDIF => IF(DISTANCE >= 10)⏎F(1,50)⏎ENDIF
 no is? more|MAS than|A? | <= | 1 | TS010 | first | IF(DISTANCE no es mayor que 10);S;ENDIF => IF(DISTANCE <= 10);S;ENDIF
 is? less than? O|OR equal QUE|A|TO? | <= | 1 | TS010 | first | IF(DISTANCE es menor o igual que 10);S;ENDIF => IF(DISTANCE <= 10);S;ENDIF
@@ -238,45 +173,94 @@ no > | <= | 1 | TS010 | first | IF(DISTANCE NOT > 10);S;ENDIF => IF(DISTANCE <= 
 l=@val is|EQUALS|VALE equal? A|TO|QUE? r=@num|@val | $l = $r | 1 | TS010 | first | si distancia es 10 para => IF(DISTANCE = 10);S;ENDIF
 l=@val equal A|TO|QUE? r=@num|@val | $l = $r | 1 | TS010 | first | IF(DISTANCE igual a 10);S;ENDIF => IF(DISTANCE = 10);S;ENDIF
 l=@val is? between a=@num Y|AND b=@num | $l > $a AND $l < $b | 1 | TS010 | first | IF(DISTANCE entre 5 y 10);S;ENDIF => IF(DISTANCE > 5 AND DISTANCE < 10);S;ENDIF
+# questions and sums
+a=@num|@val s=<|<=|>|>= b=@val t=<|<=|>|>= c=@num|@val | $a $s $b AND $b $t $c | 1 | TS037 | applied | SI|IF(10>DISTANCE>5);S;ENDIF => SI|IF(10>DISTANCE AND DISTANCE>5);S;ENDIF
+a=@num|@val X b=@num|@val | $a * $b | 1 | TS010 | first | SHOW(2 X 3) => SHOW(2 * 3)
+a=@num|@val MOD b=@num|@val | $a % $b | 1 | TS010 | first | X = 7⏎X = X MOD 2 => X = 7⏎X = X % 2
+a=@num|@val MAS b=@num|@val | $a + $b | 1 | TS010 | first | X = 5 mas 3⏎SHOW(X) => X = 5 + 3⏎SHOW(X)
+NO l=@val | NOT $l | 1 | TS010 | applied | IF(NO DISTANCE < 10)⏎F(1,50)⏎ENDIF => IF(NOT DISTANCE < 10)⏎F(1,50)⏎ENDIF
+l=@val s=<|>|<=|>= a=@num o=AND|OR t=<|>|<=|>= b=@num | $l $s $a &o $l $t $b | 1 | TS018 | offered | IF(DISTANCE < 10 OR < 5);S;ENDIF => IF(DISTANCE < 10 OR DISTANCE < 5);S;ENDIF
+= a=@num over POR? b=@num | = $a / $b | 1 | TS010 | applied | x = 10 dividido 2⏎mostrar x => x = 10 / 2⏎SHOW(X)
 a=@num|@val then|& b=@val|MENOR|MAYOR|NOT|< | $a AND $b | 1 | TS010 | first | IF(DISTANCE < 10 y LIGHT_L > 100);S;ENDIF => IF(DISTANCE < 10 AND LIGHT_L > 100);S;ENDIF
 a=@num|@val O|U b=@val|NOT|MENOR|MAYOR | $a OR $b | 1 | TS010 | first | IF(DISTANCE < 10 o DISTANCE > 50);S;ENDIF => IF(DISTANCE < 10 OR DISTANCE > 50);S;ENDIF
 o=AND|OR IF | &o | 1 | TS010 | first | IF(DISTANCE > 5 AND IF DISTANCE < 9);S;ENDIF => IF(DISTANCE > 5 AND DISTANCE < 9);S;ENDIF
-s=<|>|<=|>=|=|<> n=@num @unit | $s $n | 1 | TS049 | first | x = 5 cm => x = 5
-the v=@val | $v | 1 | TS102 | first | lee la distancia => DISTANCE
-v=@val CM|EN? CM | $v | 2 | TS049 | applied | SHOW DISTANCE cm => SHOW(DISTANCE)
-v=@val ( ) | $v | 1 | TS028 | first | LIGHT_L() => LIGHT_L
-v=@def ( ) | $v | 1 | TS028 | first | DEF GIRO()⏎R(1, 60)⏎END_DEF⏎GIRO() => DEF GIRO⏎R(1, 60)⏎END_DEF⏎GIRO
-v=S|STOP|BREAK|START|ELSE|ENDIF|END_LOOP ( ) | $v | 1 | TS028 | first | s() => s
-<asks> ( c=@val|@num ) s=<|>|<=|>=|=|<> r=@num|@val | &h ( ( $c ) $s $r ) | 1 | TS015 | applied | IF(DISTANCE) < 9;S;ENDIF => IF((DISTANCE) < 9);S;ENDIF
-<asks> ( c=@any+ ) o=AND|OR ( d=@any+ ) | &h ( ( $c ) &o ( $d ) ) | 1 | TS015 | applied | IF(DISTANCE > 5) AND (LIGHT_R > 9);S;ENDIF => IF((DISTANCE > 5) AND(LIGHT_R > 9));S;ENDIF
 TRUE = c=@any+ ) | $c ) | 1 | TS037 | applied | IF(TRUE = DISTANCE < 10);S;ENDIF => IF( DISTANCE < 10);S;ENDIF
 s=<|> n=@num = TRUE | $s $n | 1 | TS037 | applied | IF(DISTANCE < 10 = TRUE);S;ENDIF => IF(DISTANCE < 10);S;ENDIF
+a=@num|@val '|' b=@val | $a OR $b | 1 | TS010 | applied | IF(DISTANCE<10 | LIGHT_R>50)⏎S⏎ENDIF => IF(DISTANCE<10 OR LIGHT_R>50)⏎S⏎ENDIF
+# numbers, units, values
+a=@num POR CIENTO|CIEN | $a % | 1 | TS049 | first | R(1, 50 por ciento) => R(1, 50)
+v=@name = a=@num % $ | $v = $a | 1 | TS049 | applied | X = 50 % => X = 50
+a=@num 0 | @cat:a | 1 | TS008 | applied | F(2, 8 0) => F(2, 80)
+a=@num , b=@num | @dec:a:b | 1 | TS012 | applied | W(2,5) => W(2.5)
+a=@num % ) | $a ) | 1 | TS049 | first | F(2,80%) => F(2,80)
+a=@num : b=@num | @mmss:a:b | 1 | TS008 | applied | W(1:30) => W(90)
+s=<|>|<=|>=|=|<> n=@num @unit | $s $n | 1 | TS049 | first | x = 5 cm => x = 5
+v=@val CM|EN? CM | $v | 2 | TS049 | applied | SHOW DISTANCE cm => SHOW(DISTANCE)
+v=@name = e=@num @unit $ | $v = $e | 1 | TS049 | applied | X = 2 seg => X = 2
+v=@val seconds|@unit e=,|) | $v $e | 1 | TS049 | applied | SHOW(distancia cm) => SHOW(DISTANCE)
+the v=@val | $v | 1 | TS102 | first | lee la distancia => DISTANCE
+# variables
+v=@name = a=@num|@val b=@start | $v = $a ; $b | 1 | TS013 | applied | vel = 50 F(2, vel) => VEL = 50;F(2, VEL)
+v=@name ++ | $v = $v + 1 | 1 | TS050 | applied | v = 0⏎v++⏎F(2, v) => v = 0⏎v = v + 1⏎F(2, v)
+v=@name - - $ | $v = $v - 1 | 1 | TS050 | applied | X = 1⏎X-- => X = 1⏎X = X -1
+v=@name += e=@any+ | $v = $v + $e | 1 | TS050 | applied | v = 10⏎v += 5⏎F(2, v) => v = 10⏎v = v + 5⏎F(2, v)
+v=@name -= e=@any+ | $v = $v - $e | 1 | TS050 | applied | X = 1⏎X -= 1 => X = 1⏎X = X - 1
+v=@name *= e=@any+ | $v = $v * $e | 1 | TS050 | applied | X = 1⏎X *= 2 => X = 1⏎X = X * 2
+^ v=@name = w=@name = e=@any+ $ | $v = $e ; $w = $e | 1 | TS137 | offered | X = X = 5 => X = 5;X = 5
+^ v=@name , w=@name = e=@num , f=@num $ | $v = $e ; $w = $f | 1 | TS050 | applied | X, Y = 5, 6⏎F(X, Y) => X = 5;Y = 6⏎F(X, Y)
+^ declare v=@name = | $v = | 1 | TS044 | applied | let v = 50⏎F(2, v) => v = 50⏎F(2, v)
+^ CONST declare v=@name = | $v = | 1 | TS044 | applied | const int potencia = 80;⏎F(2, potencia); => potencia = 80;⏎F(2, potencia);
+^ set|LET v=@name TO|A|EN|COMO|= e=@num $ | $v = $e | 1 | TS050 | applied | set x to 5 => x = 5
+^ v=@newname is|VALE|equal A|IGUAL? A? e=@num $ | $v = $e | 2 | TS050 | applied | velocidad es 60⏎F(2, velocidad) => velocidad = 60⏎F(2, velocidad)
+^ v=@newname : e=@num $ | $v = $e | 2 | TS050 | applied | velocidad: 60⏎F(2, velocidad) => velocidad = 60⏎F(2, velocidad)
+^ v=@usedname e=@num $ | $v = $e | 3 | TS057 | applied | VELOCIDAD 50⏎F(2, VELOCIDAD) => VELOCIDAD = 50⏎F(2, VELOCIDAD)
+^ v=@name <- e=@any+ $ | $v = $e | 1 | TS050 | applied | potencia <- 80⏎F(2, potencia) => potencia = 80⏎F(2, potencia)
+= SI|YES $ | = TRUE | 1 | TS102 | applied | X = si⏎IF(X)⏎S⏎ENDIF => X = TRUE⏎IF(X)⏎S⏎ENDIF
+= no $ | = FALSE | 1 | TS102 | applied | X = NO => X = FALSE
+a=@num|@close b=@name = | $a ; $b = | 1.5 | TS013 | applied | F(1, 50) X = 2 => F(1, 50);X = 2
+^ set the? v=@word A|TO|EN n=@num $ | $v = $n | 1.5 | TS050 | applied | X = 1⏎sube la X a 5 => X = 1⏎X = 5
+^ keep the? e=@val|@num EN|IN|COMO v=@word $ | $v = $e | 1.5 | TS050 | applied | guardar 80 en potencia⏎F(2, potencia) => potencia = 80⏎F(2, potencia)
+^ a=@name = b=@num ,? c=@name = d=@num $ | $a = $b ; $c = $d | 1 | TS013 | applied | x = 5, y = 80⏎F(x, y) => X = 5;Y = 80⏎F(x, y)
+^ v=@name = ( a=@num $ | $v = ( $a ) | 1 | TS016 | applied | vel = (50⏎F(1, vel) => vel =(50)⏎F(1, vel)
+a=@word b=@word|@num | @known:a:b | 1 | TS056 | first | MI_BANDERA = TRUE⏎IF(mi bandera)⏎S⏎ENDIF => MI_BANDERA = TRUE⏎IF(MI_BANDERA)⏎S⏎ENDIF
+# calls and their brackets
+x=@callw [ | $x ( | 1 | TS010 | first | F[2,80] => F(2,80)
+x=@callw '{' c=@nobrace+ '}' | $x ( $c ) | 1 | TS015 | applied | SI|F{2,80} => SI|F(2,80)
+RANDOM a=@num ,? b=@num | RANDOM ( $a , $b ) | 1 | TS015 | applied | X = RANDOM 1 3⏎F(X, 50) => X = RANDOM(1, 3)⏎F(X, 50)
+c=@callw ( a=@argt+ ; b=@argt+ e=)|$ | $c ( $a , $b ) | 1 | TS076 | applied | F(2;80 => F(2, 80)
+a=@callw b=@num ,? c=@num ,|;|Y? d=@callw | $a ( $b , $c ) ; $d | 1.5 | TS015 | applied | F 2,80,R 1,50 => F(2, 80);R(1, 50)
+v=@val ( ) | $v | 1 | TS028 | first | LIGHT_L() => LIGHT_L
+RANDOM ( between|than|DESDE? a=@num A|AL|TO|Y|HASTA|AND|- b=@num ) | RANDOM ( $a , $b ) | 1 | TS017 | applied | X = RANDOM(1 al 6) => X = RANDOM(1, 6)
+x=@callw < c=@nobrace+ > | $x ( $c ) | 1 | TS015 | applied | F<2, 80> => F(2, 80)
+c=@callw ( ( a=@nobrace+ ) ) | $c ( $a ) | 1 | TS016 | applied | F((2,80)) => F(2,80)
+c=@callw ( a=@argt+ ) ) e=;|$ | $c ( $a ) $e | 1 | TS041 | applied | F(2,80)) => F(2,80)
+c=@callw ( a=@num b=@num ) | $c ( $a , $b ) | 1 | TS017 | applied | F(2 80);F(3 80);R(1 50) => F(2, 80);F(3, 80);R(1, 50)
+c=@callw ( a=@num /|- b=@num ) | $c ( $a , $b ) | 2 | TS076 | offered | F(2/80) => F(2, 80)
+c=@callw ( a=@num _|.|;|&|<|'|'|Y|> b=@num ) | $c ( $a , $b ) | 1 | TS076 | applied | F(2|80) => F(2, 80)
+SHOW ( a=@val , b=@val ) | SHOW ( $a ) ; SHOW ( $b ) | 2 | TS015 | offered | SHOW(DISTANCE, LIGHT_L) => SHOW(DISTANCE);SHOW(LIGHT_L)
+^ SHOW a=@val ,? b=@val $ | SHOW ( $a ) ; SHOW ( $b ) | 2 | TS015 | applied | SHOW DISTANCE LIGHT_R => SHOW(DISTANCE);SHOW(LIGHT_R)
+c=@callw ( a=@argt* b=@num|@word e=;|$|UNTIL|@start | $c ( $a $b ) $e | 1 | TS016 | applied | F(2,80 => F(2,80)
+# UNTIL
+a=@close '|'|,|. UNTIL ( | $a UNTIL ( | 1 | TS029 | applied | F(5, 60).UNTIL(DISTANCE < 30) => F(5, 60) UNTIL(DISTANCE < 30)
+^ W UNTIL QUE? c=@cond+ $ | W ( FOREVER ) UNTIL ( $c ) | 1 | TS102 | applied | WAIT UNTIL DISTANCE < 10 => W(FOREVER) UNTIL(DISTANCE < 10)
+a=@close UNTIL|HASTA QUE? c=@noparen+ $ | $a UNTIL ( $c ) | 1 | TS015 | applied | F(3, 80) UNTIL DISTANCE < 10 => F(3, 80) UNTIL(DISTANCE < 10)
+a=@close HASTA|UNTIL QUE? ( | $a UNTIL ( | 1 | TS102 | applied | F(2,80) HASTA(DISTANCE<10) => F(2,80) UNTIL(DISTANCE<10)
+a=@close ; UNTIL ( | $a UNTIL ( | 1 | TS029 | applied | F(3, 80);UNTIL(DISTANCE < 10) => F(3, 80) UNTIL(DISTANCE < 10)
+c=@callw ( a=@argt+ UNTIL ( d=@noclose+ ) ) | $c ( $a ) UNTIL ( $d ) | 1 | TS016 | applied | F(5, 60 UNTIL(DISTANCE < 15)) => F(5, 60) UNTIL(DISTANCE < 15)
+# IF and WHILE
+<block> <question> b=@name = | &h ( $c ) ; $b = | 1 | TS014 | applied | X = 5⏎IF(X = 5) X = 6 ELSE X = 7 => X = 5⏎IF(X = 5);X = 6;ELSE;X = 7;ENDIF
+h=IF|WHILE ( c=@argt+ ) ( d=@argt+ ) | &h ( $c AND $d ) | 1.5 | TS010 | applied | IF(DISTANCE < 10)(LIGHT_R > 50)⏎S⏎ENDIF => IF(DISTANCE < 10 AND LIGHT_R > 50)⏎S⏎ENDIF
+c=IF|WHILE|ELSEIF|UNTIL ( ( a=@argt* b=@num|@word ) e=;|$ | $c ( ( $a $b ) ) $e | 1 | TS016 | applied | IF((DISTANCE < 10)⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
+h=IF|WHILE|LOOP|UNTIL|ELSEIF [ | &h ( | 1 | TS010 | applied | IF[DISTANCE < 10]⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
+^ unless <question> | IF ( @not:c ) ; | 1 | TS102 | applied | unless(DISTANCE < 10)⏎F(2, 70)⏎end => IF(DISTANCE >= 10)⏎F(2, 70)⏎ENDIF
+^ unless QUE? c=@argt+ :|,|; | IF ( @not:c ) ; | 1.2 | TS102 | applied | unless DISTANCE < 5:⏎F(1, 50)⏎ENDIF => IF(DISTANCE >= 5)⏎F(1, 50)⏎ENDIF
+^ unless QUE? c=@argt+ b=@start | IF ( @not:c ) ; $b | 1.3 | TS102 | applied | unless distance < 10 F(1,50) => IF(DISTANCE >= 10);F(1, 50);ENDIF
+<asks> ( c=@val|@num ) s=<|>|<=|>=|=|<> r=@num|@val | &h ( ( $c ) $s $r ) | 1 | TS015 | applied | IF(DISTANCE) < 9;S;ENDIF => IF((DISTANCE) < 9);S;ENDIF
+<asks> ( c=@any+ ) o=AND|OR ( d=@any+ ) | &h ( ( $c ) &o ( $d ) ) | 1 | TS015 | applied | IF(DISTANCE > 5) AND (LIGHT_R > 9);S;ENDIF => IF((DISTANCE > 5) AND(LIGHT_R > 9));S;ENDIF
 h=IF|WHILE|LOOP|UNTIL|ELSEIF :|.|->|, ( | &h ( | 1 | TS015 | applied | IF:(DISTANCE < 10)⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
 h=IF|WHILE|ELSEIF|LOOP|UNTIL '{' c=@nob+ '}' | &h ( $c ) | 1 | TS015 | applied | IF{DISTANCE < 10}⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
-^ do n=@num times :? | LOOP ( $n ) ; | 1 | TS102 | applied | hacer 4 veces⏎F(1,50)⏎R(1,50)⏎fin => LOOP(4)⏎F(1,50)⏎R(1,50)⏎END_LOOP
-LOOP n=X1|X2|X3|X4|X5|X6|X8 | LOOP ( @xn:n ) | 1 | TS015 | applied | LOOP x4⏎F(1,60)⏎END_LOOP => LOOP(4)⏎F(1,60)⏎END_LOOP
-read ( v=@val ) | $v | 1 | TS102 | applied | X = leer(DISTANCE)⏎SHOW(X) => X =DISTANCE⏎SHOW(X)
-^ AL|WHEN|CUANDO INICIAR|EMPEZAR|COMENZAR|START|INICIO $ | START | 1 | TS102 | applied | al iniciar⏎F(2,80) => START⏎F(2,80)
-^ PARA|DEJA DE AVANZAR|MOVER|MOVERTE $ | S | .5 | TS102 | first | para de avanzar => S
-^ APAGAR|APAGA|DETENER|PARAR the? engine $ | S | 1 | TS102 | applied | apaga motores => S
-a=@close please|CM|SEG|SEGUNDOS $ | $a | 1 | TS044 | applied | F(1, 80) cm => F(1, 80)
-^ '}'? ;? UNTIL <question> ;? $ | IF ( $c ) ; <end> | 2 | TS064 | applied | repeat⏎F(1, 60)⏎until(DISTANCE < 15) => LOOP(FOREVER)⏎F(1, 60)⏎IF(DISTANCE < 15);BREAK;ENDIF;END_LOOP
-^ LOOP|DO ':'|'{'? $ | LOOP ( FOREVER ) | 3 | TS064 | applied | F(2,80)⏎repite => F(2,80)⏎LOOP(FOREVER)⏎END_LOOP
-RANDOM ( between|than|DESDE? a=@num A|AL|TO|Y|HASTA|AND|- b=@num ) | RANDOM ( $a , $b ) | 1 | TS017 | applied | X = RANDOM(1 al 6) => X = RANDOM(1, 6)
-# -- headers
-LOOP n=@val $ | LOOP ( $n ) | 1 | TS015 | applied | X4 = 3⏎LOOP X4⏎F(1,50)⏎END_LOOP => X4 = 3⏎LOOP(X4)⏎F(1,50)⏎END_LOOP
-h=LOOP|IF|WHILE|ELSEIF <question> [ <body> ] $ | &h ( $c ) ; $b $r ; @endof:h | 1 | TS080 | applied | LOOP(4) [F(1,50); R(0.5,50)] => LOOP(4);F(1, 50);R(0.5, 50);END_LOOP
-^ [ <body> ] $ | $b $r | 1 | TS080 | applied | [F(2,80), R(1,60)] => F(2, 80);R(1, 60)
-^ n=@num b=@def $ | LOOP ( $n ) ; $b ; END_LOOP | 1 | TS062 | applied | DEF SALTO;F(0.2, 60);END_DEF⏎3 SALTO => DEF SALTO;F(0.2, 60);END_DEF⏎LOOP(3);SALTO;END_LOOP
-^ LOOP ;? <body> ;? UNTIL <question> ;? $ | LOOP ( FOREVER ) ; $b $r ; IF ( $c ) ; <end> | 1.5 | TS064 | applied | REPEAT;F(1,50);UNTIL(DISTANCE<10) => LOOP(FOREVER);F(1, 50);IF(DISTANCE < 10);BREAK;ENDIF;END_LOOP
-^ LOOP ;? <body> ;? UNTIL c=@cond+ $ | LOOP ( FOREVER ) ; $b $r ; IF ( $c ) ; <end> | 1.5 | TS064 | applied | repeat F(1,50) until DISTANCE < 10 => LOOP(FOREVER);F(1, 50);IF(DISTANCE < 10);BREAK;ENDIF;END_LOOP
-^ W UNTIL QUE? c=@cond+ $ | W ( FOREVER ) UNTIL ( $c ) | 1 | TS102 | applied | WAIT UNTIL DISTANCE < 10 => W(FOREVER) UNTIL(DISTANCE < 10)
-<asks> ( c=@argt+ b=@start | &h ( $c ) ; $b | 1 | TS016 | offered | si DISTANCE < 10 S si DISTANCE > 10 F(1,50) => IF(DISTANCE < 10);IF(DISTANCE > 10);F(1, 50);ENDIF;ENDIF
-^ DEF ( n=@word ) | DEF $n | 1 | TS039 | offered | DEF(SALUDO)⏎BEEP(1,440)⏎END_DEF⏎SALUDO => DEF SALUDO⏎BEEP(1,440)⏎END_DEF⏎SALUDO
-^ START '|' | SI '|' | 1 | TS034 | offered | start|F(2,80) => SI |F(2,80)
+<asks> ( c=@argt+ b=@start | &h ( $c ) ; $b | 1 | TS016 | offered | si DISTANCE < 10 S si DISTANCE > 10 F(1,50) => IF(DISTANCE < 10);S;IF(DISTANCE > 10);F(1, 50);ENDIF;ENDIF
 h=IF|ELSEIF c=@cond+ do|':'? '{' | &h ( $c ) ; { | 1 | TS047 | applied | SI(DISTANCE < 10){S}SINO{F(1,50)} => IF(DISTANCE < 10);S;ELSE;F(1, 50);ENDIF;
-ELSE IF | ELSEIF | 1 | TS021 | first | IF(DISTANCE < 10);S;ELSE IF(DISTANCE < 30);F(1,50);ENDIF => IF(DISTANCE < 10);S; ELSEIF(DISTANCE < 30);F(1,50);ENDIF
-ELSE , IF | ELSEIF | 1 | TS021 | applied | IF(DISTANCE < 5);S;ELSE, IF(DISTANCE < 9);F(1, 50);ENDIF => IF(DISTANCE < 5);S; ELSEIF(DISTANCE < 9);F(1, 50);ENDIF
 <asks> c=@cond+ t=do|:|,|'|'|'{' | &h ( $c ) ; @brace:t | 1.3 | TS015 | applied | SI DISTANCE < 10 | S => IF(DISTANCE < 10);S;ENDIF
 <asks> c=@cond+ ;|$ | &h ( $c ) ; | 1.3 | TS015 | applied | F(2,80) si DISTANCE > 10 => IF(DISTANCE > 10);F(2, 80);ENDIF
 <asks> c=@cond+ b=@start | &h ( $c ) ; $b | 2 | TS014 | applied | IF DISTANCE < 10 STOP => IF(DISTANCE < 10);STOP;ENDIF
@@ -286,11 +270,32 @@ h=IF|WHILE ( c=@noclose+ , b=@start | &h ( $c ) ; $b | 2 | TS080 | applied | IF(
 <block> <question> b=@start|'{'|SALUDO | &h ( $c ) ; $b | 1 | TS014 | applied | LOOP(3) F(1,50) => LOOP(3);F(1, 50);END_LOOP
 <block> <question> ;? ( <body> ) $ | &h ( $c ) ; $b $r ; @endof:h | 1 | TS080 | applied | LOOP(4)(F(1,60)) => LOOP(4);F(1, 60);END_LOOP
 h=IF <question> ;? ( <body> ) e=;|ELSE | &h ( $c ) ; $b $r ; $e | 1 | TS080 | applied | IF (DISTANCE < 10) THEN (S) ELSE (F(1,50)) => IF(DISTANCE < 10);S;ELSE;F(1, 50);ENDIF
+c=IF|WHILE|ELSEIF|UNTIL|LOOP ( a=@argt* b=@num|@word e=;|$ | $c ( $a $b ) $e | 1 | TS016 | applied | F(2,80)UNTIL(DISTANCE<10 => F(2,80)UNTIL(DISTANCE<10)
+# ELSE and ELSEIF
+a=@nosep ELSE b=@name = | $a ; ELSE ; $b = | 1 | TS014 | applied | X = 5⏎IF(X = 5) X = 6 ELSE X = 7 => X = 5⏎IF(X = 5);X = 6;ELSE;X = 7;ENDIF
+h=IF|ELSEIF <question> ( <body> ) e=ELSEIF|ELSE | &h ( $c ) ; $b $r ; $e | .9 | TS080 | applied | IF(DISTANCE < 10)(S)ELSE(F(1,50)) => IF(DISTANCE < 10);S;ELSE;F(1, 50);ENDIF
+ELSE IF | ELSEIF | 1 | TS021 | first | IF(DISTANCE < 10);S;ELSE IF(DISTANCE < 30);F(1,50);ENDIF => IF(DISTANCE < 10);S; ELSEIF(DISTANCE < 30);F(1,50);ENDIF
+ELSE , IF | ELSEIF | 1 | TS021 | applied | IF(DISTANCE < 5);S;ELSE, IF(DISTANCE < 9);F(1, 50);ENDIF => IF(DISTANCE < 5);S; ELSEIF(DISTANCE < 9);F(1, 50);ENDIF
 IF <question> ; a=@any+ : b=@any+ $ | IF ( $c ) ; $a ; ELSE ; $b ; ENDIF | 1 | TS014 | applied | IF(DISTANCE < 10) ? S : F(1,50) => IF(DISTANCE < 10);S;ELSE;F(1, 50);ENDIF
 ELSE ( <body> ) $ | ELSE ; $b $r | 1 | TS014 | applied | IF(DISTANCE < 10)(S)ELSE(F(1,50)) => IF(DISTANCE < 10);S;ELSE;F(1, 50);ENDIF
 h=ELSE :|,|THEN|=|'|' | &h ; | 1 | TS014 | applied | IF DISTANCE<10: STOP ELSE: F(1,50) => IF(DISTANCE < 10);STOP;ELSE;F(1, 50);ENDIF
 h=ELSE b=@start|'{' | &h ; $b | 1 | TS014 | applied | IF(DISTANCE<10);R(1,60);ELSE F(1,80);ENDIF => IF(DISTANCE < 10);R(1, 60);ELSE;F(1, 80);ENDIF
 a=@nosep h=ELSE|ELSEIF|ENDIF|END_LOOP|END_WHILE|END_DEF | $a ; &h | 1 | TS013 | applied | IF LIGHT_R>100 F(4,70) ENDIF => IF(LIGHT_R > 100);F(4, 70);ENDIF
+'}' ;? h=ELSE|ELSEIF | } ; &h | 0 | TS047 | first | SI(DISTANCE < 10){S}SINO{F(1,50)} => IF(DISTANCE < 10);S;ELSE;F(1, 50);ENDIF;
+# LOOP
+^ LOOP FOREVER :|,? b=@start|'{' | LOOP ( FOREVER ) ; $b | 1 | TS015 | applied | LOOP FOREVER F(0.5,60) R(0.5,60) => LOOP(FOREVER);F(0.5, 60);R(0.5, 60);END_LOOP
+^ LOOP n=@num ( <body> ) $ | LOOP ( $n ) ; $b $r ; END_LOOP | 1 | TS080 | applied | LOOP 3 (F(1, 50); R(1, 50)) => LOOP(3);F(1, 50);R(1, 50);END_LOOP
+^ LOOP n=@num VECES? [ <body> ] $ | LOOP ( $n ) ; $b $r ; END_LOOP | 1 | TS080 | applied | repite 4 [F(1, 60) R(0.5, 60)] => LOOP(4);F(1, 60);R(0.5, 60);END_LOOP
+h=LOOP|WHILE <question> ( <body> ) e=@start | &h ( $c ) ; $b $r ; @endof:h ; $e | 1 | TS080 | applied | LOOP(3)(S)F(1,50) => LOOP(3);S;END_LOOP;F(1, 50)
+^ FOREVER ( ) '{' $ | LOOP ( FOREVER ) ; { | 1 | TS102 | applied | void loop() {⏎  F(1, 50);⏎} => LOOP(FOREVER);⏎  F(1, 50);⏎END_LOOP
+^ <for> each? @word IN|EN|DE n=@num :? $ | LOOP ( $n ) | 1 | TS102 | applied | for each paso in 4⏎F(1, 50)⏎end => LOOP(4)⏎F(1, 50)⏎END_LOOP
+^ do n=@num times :? | LOOP ( $n ) ; | 1 | TS102 | applied | hacer 4 veces⏎F(1,50)⏎R(1,50)⏎fin => LOOP(4)⏎F(1,50)⏎R(1,50)⏎END_LOOP
+LOOP n=X1|X2|X3|X4|X5|X6|X8 | LOOP ( @xn:n ) | 1 | TS015 | applied | LOOP x4⏎F(1,60)⏎END_LOOP => LOOP(4)⏎F(1,60)⏎END_LOOP
+^ LOOP|DO ':'|'{'? $ | LOOP ( FOREVER ) | 3 | TS064 | applied | F(2,80)⏎repite => F(2,80)⏎LOOP(FOREVER)⏎END_LOOP
+LOOP n=@val $ | LOOP ( $n ) | 1 | TS015 | applied | X4 = 3⏎LOOP X4⏎F(1,50)⏎END_LOOP => X4 = 3⏎LOOP(X4)⏎F(1,50)⏎END_LOOP
+h=LOOP|IF|WHILE|ELSEIF <question> [ <body> ] $ | &h ( $c ) ; $b $r ; @endof:h | 1 | TS080 | applied | LOOP(4) [F(1,50); R(0.5,50)] => LOOP(4);F(1, 50);R(0.5, 50);END_LOOP
+^ LOOP ;? <body> ;? UNTIL <question> ;? $ | LOOP ( FOREVER ) ; $b $r ; IF ( $c ) ; <end> | 1.5 | TS064 | applied | REPEAT;F(1,50);UNTIL(DISTANCE<10) => LOOP(FOREVER);F(1, 50);IF(DISTANCE < 10);BREAK;ENDIF;END_LOOP
+^ LOOP ;? <body> ;? UNTIL c=@cond+ $ | LOOP ( FOREVER ) ; $b $r ; IF ( $c ) ; <end> | 1.5 | TS064 | applied | repeat F(1,50) until DISTANCE < 10 => LOOP(FOREVER);F(1, 50);IF(DISTANCE < 10);BREAK;ENDIF;END_LOOP
 LOOP ( n=@num @unit ) | LOOP ( $n ) | 1 | TS049 | applied | LOOP(3 veces);F(1,50);END_LOOP => LOOP(3);F(1,50);END_LOOP
 LOOP -> n=@num | LOOP ( $n ) | 1 | TS015 | applied | LOOP -> 4⏎F(1,50)⏎END_LOOP => LOOP(4)⏎F(1,50)⏎END_LOOP
 LOOP X n=@num | LOOP ( $n ) | 1 | TS015 | applied | LOOP x 3;F(1, 50);END_LOOP => LOOP(3);F(1, 50);END_LOOP
@@ -300,10 +305,6 @@ LOOP POR? n=@num times? $ | LOOP ( $n ) | 1 | TS102 | applied | repetir 4 => LOO
 LOOP n=@val o=*|+|- m=@num $ | LOOP ( $n &o $m ) | 1 | TS015 | applied | X = 2⏎LOOP X * 4⏎F(1,50)⏎END_LOOP => X = 2⏎LOOP(X * 4)⏎F(1,50)⏎END_LOOP
 LOOP ( n=@num , <body> ) | LOOP ( $n ) ; $b $r | 2 | TS080 | applied | LOOP(4, F(1,50))⏎END_LOOP => LOOP(4);F(1, 50)⏎END_LOOP
 LOOP ( n=@num <body> ) $ | LOOP ( $n ) ; $b $r ; END_LOOP | 2 | TS080 | applied | LOOP(3 F(1,50)) => LOOP(3);F(1, 50);END_LOOP
-^ n=@num times|X|* :|,|DE? <body> $ | LOOP ( $n ) ; $b $r ; END_LOOP | 1 | TS062 | applied | 3 * F(1,50) => LOOP(3);F(1, 50);END_LOOP
-^ n=@num *|X|times? ( <body> ) $ | LOOP ( $n ) ; $b $r ; END_LOOP | 1 | TS080 | applied | SI|4*(F(2,80);R(1,50)) => SI|LOOP(4);F(2, 80);R(1, 50);END_LOOP
-^ b=@def *|X? n=@num times? $ | LOOP ( $n ) ; $b ; END_LOOP | 1 | TS062 | applied | DEF SALTO;F(0.2, 60);END_DEF⏎SALTO*3 => DEF SALTO;F(0.2, 60);END_DEF⏎LOOP(3);SALTO;END_LOOP
-^ b=@start r=@any+ *|X? n=@num times $ | LOOP ( $n ) ; $b $r ; END_LOOP | 1 | TS062 | offered | F(1, 80) 2 veces => LOOP(2);F(1, 80);END_LOOP
 <for> @name IN|EN range ( n=@num ) :? | LOOP ( $n ) ; | 1 | TS102 | applied | for i in range(4): F(1,60); R(0.5,60) => LOOP(4);F(1, 60);R(0.5, 60);END_LOOP
 <for> @name IN|EN range ( 0 , n=@num ) :? | LOOP ( $n ) ; | 1 | TS102 | applied | for i in range(0, 4):⏎F(1, 50)⏎END_LOOP => LOOP(4)⏎F(1, 50)⏎END_LOOP
 LOOP|FOR|PARA|DESDE @name =|DESDE|than 1 TO|A|HASTA n=@num do|:? | LOOP ( $n ) ; | 1 | TS102 | offered | para i de 1 a 4⏎F(1,50)⏎fin para => LOOP(4)⏎F(1,50)⏎END_LOOP
@@ -313,34 +314,53 @@ LOOP|FOR|PARA|DESDE @name =|DESDE|than 1 TO|A|HASTA n=@num do|:? | LOOP ( $n ) ;
 ^ LOOP|REPETIR FOREVER|SIEMPRE :? $ | LOOP ( FOREVER ) | 1 | TS102 | applied | repetir siempre⏎F(1, 50)⏎fin repetir => LOOP(FOREVER)⏎F(1, 50)⏎END_LOOP
 ^ FOREVER :|;? b=@start|'{' | LOOP ( FOREVER ) ; $b | 1 | TS032 | applied | forever: F(1,50) => LOOP(FOREVER);F(1, 50);END_LOOP
 ^ FOREVER ( <body> ) $ | LOOP ( FOREVER ) ; $b $r ; END_LOOP | 1 | TS080 | applied | FOREVER(F(1, 80)) => LOOP(FOREVER);F(1, 80);END_LOOP
-^ VOID LOOP ( ) '{'? | LOOP ( FOREVER ) ; { | 1 | TS102 | applied | void loop() {⏎F(1, 50)⏎} => LOOP(FOREVER);⏎F(1, 50)⏎END_LOOP
-^ VOID SETUP ( ) '{' ;? '}'? $ | START | 1 | TS065 | applied | void setup() {}⏎F(1, 50) => START⏎F(1, 50)
 ^ FOREVER QUE c=@cond+ '{' | IF ( $c ) ; { | 1 | TS102 | applied | siempre que DISTANCE < 10 { R(1, 60) } => IF(DISTANCE < 10);R(1, 60);ENDIF;
 ^ LOOP UNTIL <question> ':'|'{'? $ | WHILE ( @not:c ) | 1 | TS102 | applied | F(1, 60)⏎LOOP UNTIL(DISTANCE < 20)⏎F(1, 60)⏎END_LOOP => F(1, 60)⏎WHILE(DISTANCE >= 20)⏎F(1, 60)⏎END_WHILE
 ^ LOOP UNTIL c=@cond+ ':'|'{'? $ | WHILE ( @not:c ) | 1 | TS102 | applied | repetir hasta DISTANCE < 10⏎F(1,50)⏎fin => WHILE(DISTANCE >= 10)⏎F(1,50)⏎END_WHILE
-DEF n=@word :|'|'|=|'->'|'=>' | DEF $n ; | 1 | TS014 | applied | DEF SALUDO = BEEP(1,440)⏎SALUDO => DEF SALUDO;BEEP(1, 440);END_DEF⏎SALUDO
-DEF n=@word b=@start|'{' | DEF $n ; $b | 1 | TS014 | applied | procedure square F(1,50) end => DEF SQUARE;F(1, 50);END_DEF
-DEF n=@word ( ) '{' | DEF $n ; { | 1 | TS047 | applied | DEF PASO() {⏎F(1, 50)⏎}⏎PASO => DEF PASO;⏎F(1, 50)⏎END_DEF⏎PASO
-# -- ends
-end DEL|DE|EL? k=IF|LOOP|WHILE|DEF|FOREVER|FOR|PARA ;|$ | @endof:k | 1 | TS022 | first | definir bailar⏎L(1,50)⏎fin definir⏎bailar => DEF bailar⏎L(1,50)⏎END_DEF⏎bailar
-^ END_DEF @def $ | END_DEF | 1 | TS044 | first | DEF SALTO⏎F(1, 50)⏎END_DEF SALTO⏎SALTO => DEF SALTO⏎F(1, 50)⏎END_DEF⏎SALTO
-; LOOP $ | ; END_LOOP | 4 | TS014 | applied | LOOP(4) F(1,50) R(0.5,50) LOOP => LOOP(4);F(1, 50);R(0.5, 50);END_LOOP
-'}' ;? h=ELSE|ELSEIF | } ; &h | 0 | TS047 | first | SI(DISTANCE < 10){S}SINO{F(1,50)} => IF(DISTANCE < 10);S;ELSE;F(1, 50);ENDIF;
-^ S|STOP|SALIR|ROMPER LOOP|BUCLE|CICLO $ | BREAK | 1 | TS102 | applied | LOOP(FOREVER)⏎F(0.2,50)⏎IF(DISTANCE < 10)⏎STOP LOOP⏎ENDIF⏎END_LOOP => LOOP(FOREVER)⏎F(0.2,50)⏎IF(DISTANCE < 10)⏎BREAK⏎ENDIF⏎END_LOOP
-x=@callw < c=@nobrace+ > | $x ( $c ) | 1 | TS015 | applied | F<2, 80> => F(2, 80)
-^ n=@num LOOP ( <body> ) $ | LOOP ( $n ) ; $b $r ; END_LOOP | 1 | TS080 | applied | 3 LOOP (F(1, 50)) => LOOP(3);F(1, 50);END_LOOP
-^ a=@callw ( b=@argt+ ) IF|CUANDO (? d=@cond+ )? $ | IF ( $d ) ; $a ( $b ) ; ENDIF | .9 | TS071 | offered | F(1, 50) IF(DISTANCE > 10) => IF(DISTANCE > 10);F(1, 50);ENDIF
-^ a=F|B|L|R ( b=@argt+ ) WHILE (? d=@argt+ )? $ | $a ( $b ) UNTIL ( @not:d ) | .9 | TS071 | offered | F(5, 50) WHILE(DISTANCE > 10) => F(5, 50) UNTIL(DISTANCE <= 10)
-v=@name = e=@num @unit $ | $v = $e | 1 | TS049 | applied | X = 2 seg => X = 2
-^ b=@start r=@argt* c=@close when d=@cond+ $ | IF ( $d ) ; $b $r $c ; ENDIF | .9 | TS071 | offered | F(1, 50) si DISTANCE > 10 => IF(DISTANCE > 10);F(1, 50);ENDIF
 ^ UNTIL c=@cond+ $ | IF ( $c ) ; <end> | 2 | TS064 | applied | LOOP⏎F(1, 50)⏎UNTIL DISTANCE < 10 => LOOP(FOREVER)⏎F(1, 50)⏎IF(DISTANCE < 10);BREAK;ENDIF;END_LOOP
 '}' ;? WHILE <question> ;? $ | ; IF ( @not:c ) ; <end> | 2 | TS064 | applied | DO {⏎F(1, 50)⏎} WHILE(DISTANCE > 9) => LOOP(FOREVER)⏎F(1, 50)⏎IF(DISTANCE <= 9);BREAK;ENDIF;END_LOOP
 ^ DO '{' b=@start | LOOP ( FOREVER ) ; $b | 3 | TS064 | applied | DO { F(1, 50)⏎} WHILE(DISTANCE > 9) => LOOP(FOREVER);F(1, 50)⏎IF(DISTANCE <= 9);BREAK;ENDIF;END_LOOP
+^ '}'? ;? UNTIL <question> ;? $ | IF ( $c ) ; <end> | 2 | TS064 | applied | repeat⏎F(1, 60)⏎until(DISTANCE < 15) => LOOP(FOREVER)⏎F(1, 60)⏎IF(DISTANCE < 15);BREAK;ENDIF;END_LOOP
+# how often something is done, said behind it or before it
+^ a=@callw ( b=@argt+ ) POR|X|*|=|(? X|*? n=@num times? )? $ | LOOP ( $n ) ; $a ( $b ) ; END_LOOP | 3 | TS062 | offered | F(1,50) x 3 => LOOP(3);F(1, 50);END_LOOP
+^ a=@callw ( b=@argt+ ) n=X2|X3|X4|X5|X6 $ | LOOP ( @xn:n ) ; $a ( $b ) ; END_LOOP | 3 | TS062 | offered | F(2, 80) x3 => LOOP(3);F(2, 80);END_LOOP
+^ n=@num b=@def $ | LOOP ( $n ) ; $b ; END_LOOP | 1 | TS062 | applied | DEF SALTO;F(0.2, 60);END_DEF⏎3 SALTO => DEF SALTO;F(0.2, 60);END_DEF⏎LOOP(3);SALTO;END_LOOP
+^ n=@num times|X|* :|,|DE? <body> $ | LOOP ( $n ) ; $b $r ; END_LOOP | 1 | TS062 | applied | 3 * F(1,50) => LOOP(3);F(1, 50);END_LOOP
+^ n=@num *|X|times? ( <body> ) $ | LOOP ( $n ) ; $b $r ; END_LOOP | 1 | TS080 | applied | SI|4*(F(2,80);R(1,50)) => SI|LOOP(4);F(2, 80);R(1, 50);END_LOOP
+^ b=@def *|X? n=@num times? $ | LOOP ( $n ) ; $b ; END_LOOP | 1 | TS062 | applied | DEF SALTO;F(0.2, 60);END_DEF⏎SALTO*3 => DEF SALTO;F(0.2, 60);END_DEF⏎LOOP(3);SALTO;END_LOOP
+^ b=@start r=@any+ *|X? n=@num times $ | LOOP ( $n ) ; $b $r ; END_LOOP | 1 | TS062 | offered | F(1, 80) 2 veces => LOOP(2);F(1, 80);END_LOOP
+^ n=@num LOOP ( <body> ) $ | LOOP ( $n ) ; $b $r ; END_LOOP | 1 | TS080 | applied | 3 LOOP (F(1, 50)) => LOOP(3);F(1, 50);END_LOOP
+# words behind a call: shown, not made
+^ a=F|B|L|R ( FOREVER|@num|@val , b=@num ) during? n=@num seconds $ | $a ( $n , $b ) | 3 | TS085 | offered | F(2,80) 5 seg => F(5, 80)
+^ M ( b=@argt+ ) during|(? n=@num seconds )? $ | M ( $b ) ; W ( $n ) ; S | 3 | TS085 | offered | M(50, 50) 2 segundos => M(50, 50);W(2);S
+^ a=S|STOP during|(? n=@num seconds? )? $ | $a ; W ( $n ) | 2 | TS085 | offered | S(2) => S;W(2)
+^ a=F|B|L|R ( e=@num|@val , f=@num ) A|AL|CON|DE? n=@num %|POTENCIA DE? POTENCIA? $ | $a ( $e , $n ) | 3 | TS085 | offered | F(2,80) 80% => F(2, 80)
+^ a=@callw ( b=@argt+ ) FOREVER $ | LOOP ( FOREVER ) ; $a ( $b ) ; END_LOOP | 3 | TS085 | offered | F(1, 80) siempre => LOOP(FOREVER);F(1, 80);END_LOOP
+^ a=@callw ( b=@argt+ ) IF|CUANDO (? d=@cond+ )? $ | IF ( $d ) ; $a ( $b ) ; ENDIF | .9 | TS071 | offered | F(1, 50) IF(DISTANCE > 10) => IF(DISTANCE > 10);F(1, 50);ENDIF
+^ a=F|B|L|R ( b=@argt+ ) WHILE (? d=@argt+ )? $ | $a ( $b ) UNTIL ( @not:d ) | .9 | TS071 | offered | F(5, 50) WHILE(DISTANCE > 10) => F(5, 50) UNTIL(DISTANCE <= 10)
+^ b=@start r=@argt* c=@close when d=@cond+ $ | IF ( $d ) ; $b $r $c ; ENDIF | .9 | TS071 | offered | F(1, 50) si DISTANCE > 10 => IF(DISTANCE > 10);F(1, 50);ENDIF
+# DEF and its calls
+v=@def ( ) | $v | 1 | TS028 | first | DEF GIRO()⏎R(1, 60)⏎END_DEF⏎GIRO() => DEF GIRO⏎R(1, 60)⏎END_DEF⏎GIRO
+^ DEF ( n=@word ) | DEF $n | 1 | TS039 | offered | DEF(SALUDO)⏎BEEP(1,440)⏎END_DEF⏎SALUDO => DEF SALUDO⏎BEEP(1,440)⏎END_DEF⏎SALUDO
+DEF n=@word :|'|'|=|'->'|'=>' | DEF $n ; | 1 | TS014 | applied | DEF SALUDO = BEEP(1,440)⏎SALUDO => DEF SALUDO;BEEP(1, 440);END_DEF⏎SALUDO
+DEF n=@word b=@start|'{' | DEF $n ; $b | 1 | TS014 | applied | procedure square F(1,50) end => DEF SQUARE;F(1, 50);END_DEF
+DEF n=@word ( ) '{' | DEF $n ; { | 1 | TS047 | applied | DEF PASO() {⏎F(1, 50)⏎}⏎PASO => DEF PASO;⏎F(1, 50)⏎END_DEF⏎PASO
 DEF n=@word ( ) : ? | DEF $n ; | 1 | TS028 | applied | DEF PASO():⏎F(1, 50)⏎END_DEF⏎PASO => DEF PASO⏎F(1, 50)⏎END_DEF⏎PASO
 ^ DEF a=@word b=@word|@num $ | DEF @join:a:b | 2 | TS056 | applied | DEF PASO UNO⏎S⏎END_DEF => DEF PASO_UNO⏎S⏎END_DEF
+^ call|do b=@def | $b | 1 | TS044 | applied | DEF SALTO;F(0.2, 60);END_DEF⏎hacer SALTO => DEF SALTO;F(0.2, 60);END_DEF⏎SALTO
+# ends of blocks
+^ end @def $ | END_DEF | 1 | TS022 | applied | DEF SALTO⏎F(1, 50)⏎FIN SALTO⏎SALTO => DEF SALTO⏎F(1, 50)⏎END_DEF⏎SALTO
+a=@close h=end $ | $a ; &h | 1 | TS013 | applied | F(2,80) fin => F(2, 80);
+^ END_DEF @def $ | END_DEF | 1 | TS044 | first | DEF SALTO⏎F(1, 50)⏎END_DEF SALTO⏎SALTO => DEF SALTO⏎F(1, 50)⏎END_DEF⏎SALTO
+; LOOP $ | ; END_LOOP | 4 | TS014 | applied | LOOP(4) F(1,50) R(0.5,50) LOOP => LOOP(4);F(1, 50);R(0.5, 50);END_LOOP
+^ S|STOP|SALIR|ROMPER LOOP|BUCLE|CICLO $ | BREAK | 1 | TS102 | applied | LOOP(FOREVER)⏎F(0.2,50)⏎IF(DISTANCE < 10)⏎STOP LOOP⏎ENDIF⏎END_LOOP => LOOP(FOREVER)⏎F(0.2,50)⏎IF(DISTANCE < 10)⏎BREAK⏎ENDIF⏎END_LOOP
 ^ end program? $ | FIN | 0 | TS044 | first | F(1, 50)⏎fin programa => F(1, 50)⏎
+end DEL|DE|EL? k=IF|LOOP|WHILE|DEF|FOREVER|FOR|PARA ;|$ | @endof:k | 1 | TS022 | first | definir bailar⏎L(1,50)⏎fin definir⏎bailar => DEF bailar⏎L(1,50)⏎END_DEF⏎bailar
+# what joins instructions
+^ @newname : b=@start | $b | 2.5 | TS054 | applied | square: F(1,50); R(1,50) => F(1,50); R(1,50)
+a=@close please|CM|SEG|SEGUNDOS $ | $a | 1 | TS044 | applied | F(1, 80) cm => F(1, 80)
 a=@close soon+ b=@start | $a ; $b | 2 | TS044 | applied | F(2, 80) y por ultimo B(1, 50) => F(2, 80);B(1, 50)
-# -- joining and cutting
+( a=@num , p=@num|@val ) then|&|+|AND BEEP ( b=@num | ( $a , $p ) ; BEEP ( @same:a:b | .9 | TS074 | offered | F(2, 80) AND BEEP(2, 440) => F(2, 80);BEEP(2, 440)
 a=@close ,? then|soon+ b=@start | $a ; $b | 1 | TS044 | applied | F(1,75) y R(1,75) => F(1, 75);R(1, 75)
 a=@close ,|.|->|=>|'|'|/|>|:|>>|_|* b=@start | $a ; $b | 1 | TS013 | applied | F(2,80)/B(2,80) => F(2, 80);B(2, 80)
 a=@close &|+|AND b=@start | $a ; $b | 1 | TS061 | applied | F(2,80)&B(2,80) => F(2, 80);B(2, 80)
@@ -349,25 +369,17 @@ a=@close b=@start | $a ; $b | 1 | TS013 | applied | S STOP => S;STOP
 a=@def b=@def | $a ; $b | 1 | TS013 | applied | DEF PASO;S;END_DEF⏎PASO PASO => DEF PASO;S;END_DEF⏎PASO;PASO
 ^ first ,? b=@start | $b | 1 | TS044 | applied | Primero, avanza 2 segundos⏎Luego gira a la izquierda 1 segundo => F(2, 80)⏎L(1, 80)
 ; first+ ,? b=@start | ; $b | 1 | TS044 | applied | F(2, 80); y despues B(1, 80) => F(2, 80);B(1, 80)
+^ [ <body> ] $ | $b $r | 1 | TS080 | applied | [F(2,80), R(1,60)] => F(2, 80);R(1, 60)
 ^ then ,? $ |  | 1 | TS044 | applied | F(1, 50);⏎luego, => F(1, 50);⏎
-^ call|do b=@def | $b | 1 | TS044 | applied | DEF SALTO;F(0.2, 60);END_DEF⏎hacer SALTO => DEF SALTO;F(0.2, 60);END_DEF⏎SALTO
-a=@close UNTIL|HASTA QUE? c=@noparen+ $ | $a UNTIL ( $c ) | 1 | TS015 | applied | F(3, 80) UNTIL DISTANCE < 10 => F(3, 80) UNTIL(DISTANCE < 10)
-a=@close HASTA|UNTIL QUE? ( | $a UNTIL ( | 1 | TS102 | applied | F(2,80) HASTA(DISTANCE<10) => F(2,80) UNTIL(DISTANCE<10)
-a=@close ; UNTIL ( | $a UNTIL ( | 1 | TS029 | applied | F(3, 80);UNTIL(DISTANCE < 10) => F(3, 80) UNTIL(DISTANCE < 10)
-# -- brackets
-a=@num|@val '|' b=@val | $a OR $b | 1 | TS010 | applied | IF(DISTANCE<10 | LIGHT_R>50)⏎S⏎ENDIF => IF(DISTANCE<10 OR LIGHT_R>50)⏎S⏎ENDIF
-c=@callw ( a=@argt+ UNTIL ( d=@noclose+ ) ) | $c ( $a ) UNTIL ( $d ) | 1 | TS016 | applied | F(5, 60 UNTIL(DISTANCE < 15)) => F(5, 60) UNTIL(DISTANCE < 15)
-v=@val @unit e=,|) | $v $e | 1 | TS049 | applied | SHOW(distancia cm) => SHOW(DISTANCE)
-c=@callw ( ( a=@nobrace+ ) ) | $c ( $a ) | 1 | TS016 | applied | F((2,80)) => F(2,80)
-c=@callw ( a=@argt+ ) ) e=;|$ | $c ( $a ) $e | 1 | TS041 | applied | F(2,80)) => F(2,80)
-c=@callw ( a=@argt* b=@num|@word e=;|$|UNTIL|@start | $c ( $a $b ) $e | 1 | TS016 | applied | F(2,80 => F(2,80)
-c=IF|WHILE|ELSEIF|UNTIL|LOOP ( a=@argt* b=@num|@word e=;|$ | $c ( $a $b ) $e | 1 | TS016 | applied | F(2,80)UNTIL(DISTANCE<10 => F(2,80)UNTIL(DISTANCE<10)
-^ v=@name = ( a=@num $ | $v = ( $a ) | 1 | TS016 | applied | vel = (50⏎F(1, vel) => vel =(50)⏎F(1, vel)
-c=@callw ( a=@num b=@num ) | $c ( $a , $b ) | 1 | TS017 | applied | F(2 80);F(3 80);R(1 50) => F(2, 80);F(3, 80);R(1, 50)
-c=@callw ( a=@num /|- b=@num ) | $c ( $a , $b ) | 2 | TS076 | offered | F(2/80) => F(2,80)
-c=@callw ( a=@num _|.|;|&|<|'|'|Y|> b=@num ) | $c ( $a , $b ) | 1 | TS076 | applied | F(2|80) => F(2,80)
-SHOW ( a=@val , b=@val ) | SHOW ( $a ) ; SHOW ( $b ) | 2 | TS015 | offered | SHOW(DISTANCE, LIGHT_L) => SHOW(DISTANCE);SHOW(LIGHT_L)
-^ SHOW a=@val ,? b=@val $ | SHOW ( $a ) ; SHOW ( $b ) | 2 | TS015 | applied | SHOW DISTANCE LIGHT_R => SHOW(DISTANCE);SHOW(LIGHT_R)
+# words of other languages around a program
+^ import @any+ ;? $ |  | 1 | TS072 | applied | import robot⏎F(2,80) => ⏎F(2,80)
+v=S|STOP|BREAK|START|ELSE|ENDIF|END_LOOP ( ) | $v | 1 | TS028 | first | s() => s
+read ( v=@val ) | $v | 1 | TS102 | applied | X = leer(DISTANCE)⏎SHOW(X) => X =DISTANCE⏎SHOW(X)
+^ AL|WHEN|CUANDO INICIAR|EMPEZAR|COMENZAR|START|INICIO $ | START | 1 | TS102 | applied | al iniciar⏎F(2,80) => START⏎F(2,80)
+^ PARA|DEJA DE AVANZAR|MOVER|MOVERTE $ | S | .5 | TS102 | first | para de avanzar => S
+^ APAGAR|APAGA|DETENER|PARAR the? engine $ | S | 1 | TS102 | applied | apaga motores => S
+^ START '|' | SI '|' | 1 | TS034 | offered | start|F(2,80) => SI |F(2,80)
+^ VOID LOOP ( ) '{'? | LOOP ( FOREVER ) ; { | 1 | TS102 | applied | void loop() {⏎F(1, 50)⏎} => LOOP(FOREVER);⏎F(1, 50)⏎END_LOOP
+^ VOID SETUP ( ) '{' ;? '}'? $ | START | 1 | TS065 | applied | void setup() {}⏎F(1, 50) => START⏎F(1, 50)
 ^ read the? v=@val $ | $v | 1 | TS102 | applied | leer DISTANCE => DISTANCE
-a=@word b=@word|@num | @known:a:b | 1 | TS056 | first | MI_BANDERA = TRUE⏎IF(mi bandera)⏎S⏎ENDIF => MI_BANDERA = TRUE⏎IF(MI_BANDERA)⏎S⏎ENDIF
 """

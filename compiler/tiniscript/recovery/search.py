@@ -156,7 +156,7 @@ class _Recovery:
         if not found:
             return
         first = found[0]
-        line.rivals = [each for each in found[1:] if each.text != first.text]
+        line.rivals = [each for each in found[1:] if _said(each) != _said(first)]
         is_close = any(each.is_sure and each.cost < first.cost + MARGIN for each in line.rivals)
         line.reading = first._replace(is_sure=first.is_sure and not is_close)
 
@@ -275,14 +275,30 @@ class _Recovery:
         return Candidate("\n".join(out), self.are_sure(), False, tuple(steps), self.checks)
 
 
+def _said(reading: Reading) -> list[str]:
+    """Return the tokens of a reading without separators, of which one more changes nothing."""
+    return [each for each in reading.text if each != ";"]
+
+
 def _likely(line: _Text, names: Names) -> list[Reading]:
     """Return what a line became on the way to no reading: the more was done, the better."""
     found = [
         each
         for each in line.tried[:40]
-        if each.is_sure and (each.cost or line.steps) and not _has_bare_call(each.tokens, names)
+        if each.is_sure
+        and (each.cost or line.steps)
+        and not _has_bare_call(each.tokens, names)
+        and _is_before_failure(line.tried[0], each)
     ]
     return sorted(found, key=lambda each: -each.cost if each.cost <= 4 else 99)[:PARTS]
+
+
+def _is_before_failure(first: Reading, reading: Reading) -> bool:
+    """Whether what was rewritten is right now: the instruction that is still wrong comes later."""
+    old, new = first.text[::-1], reading.text[::-1]
+    most = min(len(old), len(new))
+    alike = next((k for k in range(most) if old[k] != new[k]), most)
+    return len(new) - alike <= reading.failure.start
 
 
 def _has_bare_call(tokens: Sequence[Lexeme], names: Names) -> bool:

@@ -188,7 +188,7 @@ class _Reader:
         elif self._is_mark(word, marked):
             last = self.values[-1] if self.values else None
             is_behind = after is None or after.text in (",", ")")
-            if last and last.unit is None and is_behind and marked != ("s",):
+            if last and last.unit in (None, marked[0]) and is_behind and marked != ("s",):
                 self.values[-1] = _Value(last.value, marked[0])
             else:
                 self.mark = marked[0]
