@@ -15,7 +15,8 @@ import pytest
 from tests.firmware.test_uno_command import at_work
 from tests.firmware.test_uno_robot import sketch  # noqa: F401
 from tests.support.command import Tsc
-from tests.support.pty_robot import PtyRobot
+from tests.support.pty_robot import PtyRobot, on
+from tests.support.simulated_port import simulated
 from tiniscript.conformance.comparing import AGREES
 from tiniscript.conformance.link_kit import link_kit
 from tiniscript.conformance.port_checks import all_checks, met, verdicts
@@ -45,11 +46,12 @@ class ChangedWire(SerialWire):
 
 @contextmanager
 def asked(robot: PtyRobot, change: Change) -> Iterator[WireRobot]:
-    wire = ChangedWire(robot.port, change)
-    try:
-        yield WireRobot(wire, 5, 300)
-    finally:
-        wire.close()
+    with simulated(robot):
+        wire = ChangedWire(robot.port, change)
+        try:
+            yield WireRobot(wire, 5, 300)
+        finally:
+            wire.close()
 
 
 def of(name: str) -> int:
@@ -149,8 +151,8 @@ def test_a_robot_that_falls_silent_ends_the_checks(pty_robot: PtyRobot) -> None:
     assert [(each.what, each.detail) for each in found] == [("silent", "PING")] * 3
 
 
-def test_json_names_the_checks(pty_robot: PtyRobot, tsc: Tsc) -> None:
-    done = tsc("conform", "--port", pty_robot.port, "--only", "link: PING", "--json")
+def test_json_names_the_checks(pty_robot: PtyRobot) -> None:
+    done = on(pty_robot, "conform", "--only", "link: PING", "--json")
     assert json.loads(done.out) == {
         "version": "1", "link": "1.2", "isa": "2.0",
         "cases": 1, "agree": 1, "differ": 0, "found": [],
