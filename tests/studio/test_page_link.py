@@ -40,11 +40,24 @@ def pages(browser: Browser, server: serving.Server) -> Iterator[Pages]:
     assert not found.wrong
 
 
-@pytest.fixture
-def robot() -> Iterator[PtyRobot]:
+@pytest.fixture(scope="module")
+def first_robot() -> Iterator[PtyRobot]:
     with PtyRobot(KIT) as made:
-        known_ports.remember(made.port, "TINI")  # so that it is listed, and first
         yield made
+
+
+@pytest.fixture
+def robot(first_robot: PtyRobot) -> PtyRobot:
+    """A robot that many tests share."""
+    known_ports.remember(first_robot.port, "TINI")  # so that it is listed, and first
+    return first_robot
+
+
+@pytest.fixture(scope="module")
+def first(browser: Browser, server: serving.Server) -> Iterator[tuple[Pages, Page]]:
+    found = Pages(browser, server.address, entrance=server.entrance)
+    yield found, found.open()
+    found.close()
 
 
 def said(page: Page, text: str) -> None:
@@ -60,8 +73,25 @@ def connect(page: Page) -> None:
 
 
 @pytest.fixture
-def page(pages: Pages, robot: PtyRobot) -> Page:
-    """A page that has met its robot."""
+def page(first: tuple[Pages, Page], robot: PtyRobot) -> Iterator[Page]:
+    """A page that has met its robot; many tests share it, and each connects."""
+    pages, found = first
+    found.set_viewport_size({"width": 1366, "height": 768})
+    found.select_option("#language", "en")
+    found.evaluate("for (const each of document.querySelectorAll('details')) each.open = false")
+    connect(found)
+    yield found
+    found.click("#side_real")
+    if found.locator("html[data-robot=connected]").count():
+        found.click("#link_leave")
+    found.locator("html:not([data-robot=connected])").wait_for(state="attached")
+    wrong, pages.wrong[:] = pages.wrong[:], []
+    assert not wrong
+
+
+@pytest.fixture
+def own_page(pages: Pages, robot: PtyRobot) -> Page:
+    """The same for one test, which does to the page what it does not outlive."""
     found = pages.open()
     connect(found)
     return found
@@ -77,10 +107,11 @@ def drives(page: Page, robot: PtyRobot) -> None:
 def test_a_program_is_sent_and_runs(page: Page, robot: PtyRobot) -> None:
     text = "SHOW(2.5);\nF(0.2, 80);\nSHOW(1 < 2)"
     write(page, text)
+    before = len(robot.did)
     page.click("#link_upload")
     said(page, "Done.")
     assert page.locator("#link_shown").inner_text() == "2.5\nTRUE"
-    assert "MOTORS 80 80" in robot.did
+    assert "MOTORS 80 80" in robot.did[before:]
     page.click("#link_send")
     said(page, f"program {compile(text).checksum:08x}, ")
 
@@ -130,40 +161,40 @@ def test_a_page_that_hangs_stops_its_robot(page: Page, robot: PtyRobot) -> None:
     said(page, "Stopped")  # and it is told when it is back
 
 
-def test_a_page_that_is_hidden_stops_its_robot(page: Page, robot: PtyRobot) -> None:
-    drives(page, robot)
-    page.evaluate(
+def test_a_page_that_is_hidden_stops_its_robot(own_page: Page, robot: PtyRobot) -> None:
+    drives(own_page, robot)
+    own_page.evaluate(
         "Object.defineProperty(document, 'visibilityState', {value: 'hidden', configurable: true});"
         "document.dispatchEvent(new Event('visibilitychange'))"
     )
     robot.until(lambda: not robot.moves, "it stands")
-    said(page, "this page was hidden")
+    said(own_page, "this page was hidden")
 
 
-def test_a_page_that_is_closed_stops_its_robot(page: Page, robot: PtyRobot) -> None:
-    drives(page, robot)
+def test_a_page_that_is_closed_stops_its_robot(own_page: Page, robot: PtyRobot) -> None:
+    drives(own_page, robot)
     began_ms = robot.robot_ms
-    page.close()
+    own_page.close()
     assert robot.stands_after_ms(began_ms) < 0.9 * HUNG_MS
 
 
 def test_a_page_that_reaches_nothing_stops_its_robot(
-    pages: Pages, page: Page, robot: PtyRobot
+    pages: Pages, own_page: Page, robot: PtyRobot
 ) -> None:
-    drives(page, robot)
-    page.context.new_cdp_session(page).send("Network.emulateNetworkConditions", {
+    drives(own_page, robot)
+    own_page.context.new_cdp_session(own_page).send("Network.emulateNetworkConditions", {
         "offline": True, "latency": 0, "downloadThroughput": 0, "uploadThroughput": 0,
     })  # fmt: skip
     robot.until(lambda: not robot.moves, "it stands")
-    said(page, "tsc studio does not answer any more")
+    said(own_page, "tsc studio does not answer any more")
     assert all("ERR_INTERNET_DISCONNECTED" in each for each in pages.wrong)
     pages.wrong.clear()
 
 
-def test_two_tabs_do_not_fight(pages: Pages, page: Page, robot: PtyRobot) -> None:
+def test_two_tabs_do_not_fight(first: tuple[Pages, Page], page: Page, robot: PtyRobot) -> None:
     other = page.context.new_page()
-    pages.watch(other)
-    other.goto(pages.entrance())
+    first[0].watch(other)
+    other.goto(first[0].entrance())
     checked(other)
     other.click("#side_real")
     other.locator("#link_port option").first.wait_for(state="attached")
@@ -172,6 +203,7 @@ def test_two_tabs_do_not_fight(pages: Pages, page: Page, robot: PtyRobot) -> Non
     drives(page, robot)
     other.click("#stop")  # whoever sees STOP may press it
     robot.until(lambda: not robot.moves, "it stands")
+    other.close()
 
 
 def test_identify_name_and_trim(page: Page, robot: PtyRobot) -> None:
@@ -242,8 +274,13 @@ def test_hostile_names_of_robots_are_text(pages: Pages, robot: PtyRobot) -> None
     assert page.locator("#link img").count() == 0
 
 
-def test_why_there_is_no_connection(pages: Pages, robot: PtyRobot) -> None:
-    page = pages.open(locale="es-AR")
+def test_why_there_is_no_connection(pages: Pages) -> None:
+    with PtyRobot(KIT) as robot:
+        known_ports.remember(robot.port, "TINI")
+        says_why(pages.open(locale="es-AR"), robot)
+
+
+def says_why(page: Page, robot: PtyRobot) -> None:
     robot.switch_off()
     page.click("#side_real")
     page.locator("#link_port option").first.wait_for(state="attached")

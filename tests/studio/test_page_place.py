@@ -5,7 +5,7 @@ from __future__ import annotations
 from time import monotonic
 from typing import TYPE_CHECKING
 
-from tests.studio.test_page_link import page, pages, robot, said, server  # noqa: F401
+from tests.studio.test_page_link import first, first_robot, page, robot, said, server  # noqa: F401
 from tests.support.studio import checked, shown, write
 from tests.support.waiting import HANGS_S
 
