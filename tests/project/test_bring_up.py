@@ -1,7 +1,7 @@
-"""The list for a real board: its steps are those of the report, and what it types works on a robot.
+"""The list for a real board: its steps are those of the report, and what it types works on robots.
 
-The robot is the firmware behind a pseudo-terminal; that the wheels stand is what it tells its
-motors. Bluetooth, WiFi and what hands do are not tried here.
+They are the firmware behind a pseudo-terminal, alone and in an ESP32; that the wheels stand is what
+it tells its motors. Bluetooth, WiFi and what hands do are not tried here.
 """
 
 from __future__ import annotations
@@ -9,6 +9,7 @@ from __future__ import annotations
 import os
 import re
 import shlex
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -18,6 +19,7 @@ pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind"
 from tests.machines.host_firmware import missing
 from tests.support.casefile import ROOT
 from tests.support.command import Command, process
+from tests.support.esp32_pty_robot import Esp32PtyRobot
 from tests.support.pty_robot import PtyRobot, on
 from tests.support.waiting import until
 from tiniscript.cli.options import Options
@@ -26,6 +28,15 @@ from tiniscript.cli.texts.doctor import BLANK, DOCTOR_TEXTS, STEPS
 LISTS = {"en": ROOT / "docs" / "bring-up.md", "es": ROOT / "docs" / "puesta-en-marcha.es.md"}
 needs_robot = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 each_list = pytest.mark.parametrize(("language", "path"), LISTS.items(), ids=list(LISTS))
+
+
+@pytest.fixture(params=["tinibot", "tinibot32"])
+def board(request: pytest.FixtureRequest) -> Iterator[PtyRobot]:
+    if request.param == "tinibot":
+        yield request.getfixturevalue("pty_robot")
+        return
+    with Esp32PtyRobot(request.param) as robot:
+        yield robot
 
 
 def steps(path: Path) -> dict[str, tuple[str, str]]:
@@ -83,53 +94,53 @@ def test_who_does_not_answer_gets_the_form_all_the_same(tmp_path: Path) -> None:
 
 
 @needs_robot
-def test_what_the_list_types_does_what_it_says(pty_robot: PtyRobot) -> None:
+def test_what_the_list_types_does_what_it_says(board: PtyRobot) -> None:
     found = steps(LISTS["en"])
 
     def typed(step: str) -> list[list[str]]:
         text = found[DOCTOR_TEXTS[f"step_{step}"][0]][0]
-        return [[pty_robot.port if word == "PORT" else word for word in each]
+        return [[board.port if word == "PORT" else word for word in each]
                 for each in commands(text)]  # fmt: skip
 
     (ping,) = (process(*words) for words in typed("answers"))
     assert ping.code == 0
-    (trips,) = re.findall(r"`(.+?)`", found["It answers"][1])
+    trips, *_ = re.findall(r"`(.+?)`", found["It answers"][1])
     assert trips in ping.out
     assert "(tinibot)" in ping.out
     drive, *_ = typed("drive")
     assert process(*drive).code == 0
-    assert pty_robot.did[:2] == ["MOTORS 50 50", "MOTORS 0 0"]
+    assert board.did[:2] == ["MOTORS 50 50", "MOTORS 0 0"]
     live, stop = typed("stop")
     driving = Command(*live)
-    pty_robot.until(lambda: pty_robot.moves, "it drives")
+    board.until(lambda: board.moves, "it drives")
     stopped = process(*stop)
     assert stopped.code == 0
     assert "confirmed" in stopped.out + stopped.err
-    assert not pty_robot.moves
+    assert not board.moves
     driving.ended()
     upload, *_ = typed("upload")
     assert process(*upload, "--detach").code == 0
-    pty_robot.switch_off()
-    pty_robot.switch_on()
-    until(lambda: pty_robot.robot_ms > 1000, "it has started")
-    assert not pty_robot.moves
-    pty_robot.push()
-    pty_robot.until(lambda: pty_robot.moves, "the button starts it")
-    pty_robot.until(lambda: not pty_robot.moves, "it ends")
+    board.switch_off()
+    board.switch_on()
+    until(lambda: board.robot_ms > 1000, "it has started")
+    assert not board.moves
+    board.hold(100)
+    board.until(lambda: board.moves, "the button starts it")
+    board.until(lambda: not board.moves, "it ends")
 
 
 @needs_robot
 @pytest.mark.parametrize("before", ["", "(\n"])
-def test_the_typed_stop_of_the_list(pty_robot: PtyRobot, before: str) -> None:
+def test_the_typed_stop_of_the_list(board: PtyRobot, before: str) -> None:
     typed = re.findall(r"`([^`]+)`", steps(LISTS["en"])["Typed stop"][0].replace("\\|", "|"))
     start, stop, bracket, again = typed
     assert (bracket, again) == ("(", stop)
-    port = os.open(pty_robot.port, os.O_RDWR | os.O_NOCTTY)
+    port = os.open(board.port, os.O_RDWR | os.O_NOCTTY)
     try:
         os.write(port, f"{start}\n".encode())
-        pty_robot.until(lambda: pty_robot.moves, "it drives")
+        board.until(lambda: board.moves, "it drives")
         os.write(port, f"{before}{stop}\n".encode())
-        pty_robot.until(lambda: not pty_robot.moves, "it stands")
+        board.until(lambda: not board.moves, "it stands")
         said = b""
         while b"// " not in said:
             said += os.read(port, 4096)
