@@ -35,8 +35,7 @@ FETCHING, COMPILING, WRITING = "fetching", "compiling", "writing"
 CORE_FILES = 26  # of Arduino's core, about
 PLATFORMIO_MB = 4  # what pip fetches, measured
 # What PlatformIO fetches for a board with these chips: its platform, and the megabytes of compiler,
-# core and build tools, about. Those are the archives that Arduino's and Espressif's indexes name
-# for Linux; for Windows they are a third larger.
+# core and build tools, by estimate from what public indexes say of their archives for Linux.
 _COMPILERS = {"esp32dev": ("espressif32", 350), "esp32c3": ("espressif32", 430)}
 _AVR_COMPILER = ("atmelavr", 50)
 

@@ -189,7 +189,7 @@ class _Matching:
             return False
         question = self.lines[k].tokens[item.start + 2 : item.end - 1]
         new = [made("IF"), made("("), *negated(question), made(")")]
-        new += map(made, (";", "BREAK", ";", "ENDIF", ";", "END_LOOP"))
+        new += map(made, (";", "BREAK", ";", BLOCK_ENDS["IF"], ";", BLOCK_ENDS["LOOP"]))
         self.edits.setdefault(k, []).append(Edit(item.start, item.end - item.start, new))
         self.open.pop()
         return True

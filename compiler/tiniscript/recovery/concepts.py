@@ -16,6 +16,7 @@ from tiniscript.kit import Kit
 from tiniscript.recovery import lexicon_en, lexicon_es
 from tiniscript.spelling import Speller
 from tiniscript.syntax.lexer import NUMBER, ODD, WORD
+from tiniscript.syntax.operators import SIGNS
 from tiniscript.syntax.outline import Known
 from tiniscript.words import ALIASES, BLOCK_ENDS, UNITS, WORDS, nearest
 
@@ -30,7 +31,7 @@ _TOKEN = re.compile(
     r"(\d+(?:\.\d+)?|\.\d+)|([A-Za-zÀ-ÿ_][\wÀ-ÿ]*)"
     r"|(<=|>=|<>|==|!=|=!|=>|=<|&&|\|\||->|<-|:=|\+\+|\+=|-=|\*=|\S)"
 )
-_SIGNS = frozenset("-+*(),;=<>%/|") | {"<=", ">=", "<>"}
+_SIGNS = SIGNS | frozenset("(),;|")
 _BEFORE_NAME = frozenset(("DEF", "VOID"))
 _LONGEST = 4  # words of a name
 
