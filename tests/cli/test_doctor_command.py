@@ -132,7 +132,8 @@ def test_a_stop_gets_through_while_a_robot_is_watched(pty_robot: PtyRobot) -> No
     assert on(pty_robot, "stop").code == 0
     assert not pty_robot.moves
     command.signal(signal.SIGINT)
-    assert command.ended().code == 2
+    done = command.ended()
+    assert done.code == 2, done.out + done.err
 
 
 # -- other things -------------------------------------------------------------------------------

@@ -28,16 +28,17 @@ DRIVES = "SI|F(0.2, 80)"
 
 
 def claimed(pty_robot: PtyRobot, *options: str) -> Done:
-    """Claim the robot, with a hand on its button."""
+    """Claim the robot, with a hand on its button: a press before it is asked counts for nothing."""
 
     def said(words: str, file: object = None, flush: bool = False) -> None:
         print(words, file=sys.stdout if file is None else sys.stderr, flush=flush)
         if file is not None:
             assert "2 s" in words
-            pty_robot.hold()
+            pty_robot.hold(after_ms=1000, times=8)
 
     with mock.patch.object(claim, "print", said, create=True):
         done = on(pty_robot, "claim", *options)
+    pty_robot.let_go()
     secrets = [key.key.hex() for key in KeyFile().all()]
     assert not [secret for secret in secrets if secret in done.out + done.err]
     return done

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import re
 import sys
-import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 from struct import pack
@@ -35,15 +34,12 @@ class Counting:
     name: str
 
     def __post_init__(self) -> None:
-        self._folder = tempfile.TemporaryDirectory()
-        program = built(self.name, Path(self._folder.name) / "machine.elf")
-        self._chip = Emulated(self.name, program, COUNTING)
+        self._chip = Emulated(self.name, built(self.name), COUNTING)
         one, two = self._spun(SPIN), self._spun(2 * SPIN)
         self._of_one = (two - one) / (2 * SPIN)
 
     def close(self) -> None:
         self._chip.close()
-        self._folder.cleanup()
 
     def per_iteration(self, work: Work) -> float:
         """Return the instructions of all of `tick`, for each time around a loop.
