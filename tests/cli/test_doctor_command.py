@@ -129,7 +129,7 @@ def test_a_stop_gets_through_while_a_robot_is_watched(pty_robot: PtyRobot) -> No
     command = Command("doctor", "--port", pty_robot.port, "--watch", "60")
     pty_robot.until(lambda: registry.found(pty_robot.port) is not None, "it is watched")
     assert pty_robot.moves
-    assert on(pty_robot, "stop").code == 0
+    assert process("stop", "--port", pty_robot.port).code == 0  # its time is also the doctor's
     assert not pty_robot.moves
     command.signal(signal.SIGINT)
     done = command.ended()
