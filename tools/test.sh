@@ -4,7 +4,7 @@
 # sketch on a simulated Uno, with compilers and simulators from Debian's packages; where those cannot
 # be had, its tests are skipped and say so (with CI=true they fail instead).
 #
-# --quick: a first answer, within a minute on two cores where .venv is there: linters, types, generated
+# --quick: a first answer, one to two minutes on two cores where .venv is there: linters, types, generated
 # files, and the tests that a change in Python breaks most often. Asks apt for nothing, compiles nothing.
 set -eu
 . "$(dirname "$0")/venv.sh"
