@@ -133,7 +133,7 @@ class Clone:
         return [sys.executable, "-c", FIRMWARE, str(self.own), *words]
 
     def unasked(self, command: list[str]) -> Done:
-        """Return what a command does where nobody can be asked."""
+        """Return what a command does where there is no terminal."""
         done = subprocess.run(command, env=self.variables(), capture_output=True,
                               stdin=subprocess.DEVNULL, text=True, timeout=HANGS_S)  # fmt: skip
         return Done(done.returncode, done.stdout, done.stderr)
@@ -219,7 +219,7 @@ def test_nothing_happens_without_a_yes(clone: Clone, started: list[Person], answ
 
 
 @pytest.mark.parametrize(("words", "said"), [
-    ([], "nobody can be asked"), (["--lang", "es"], "no se le puede preguntar"),
+    ([], "no terminal here to ask at"), (["--lang", "es"], "no hay una terminal"),
 ])  # fmt: skip
 def test_where_nobody_can_be_asked_it_says_how(clone: Clone, words: list[str], said: str) -> None:
     clone.has_node()

@@ -132,7 +132,7 @@ def test_a_command_is_found_by_what_it_does(tsc: Tsc, asked: str, verb: str) -> 
 def test_a_question_that_no_command_answers(tsc: Tsc) -> None:
     done = tsc("help", "bake", "a", "cake")
     assert done.code == 2
-    assert "no command is known to do that: “bake a cake”" in done.err
+    assert "found no command for “bake a cake”" in done.err
     assert tsc("help", "todo", "--lang", "es").out == help.everything("es")
 
 
