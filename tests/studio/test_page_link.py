@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -24,6 +25,9 @@ if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
 
 KIT = robots.load("tinibot").kit
+PATIENCE_MS = 90_000
+VOID = "The robot was stopped meanwhile"
+BLINKS = "The robot that blinks and plays its tune is"
 
 
 @pytest.fixture(scope="module")
@@ -60,8 +64,10 @@ def first(browser: Browser, server: serving.Server) -> Iterator[tuple[Pages, Pag
     found.close()
 
 
-def said(page: Page, text: str) -> None:
-    page.locator("#link_said").filter(has_text=text).wait_for()
+def said(page: Page, text: str | re.Pattern[str]) -> None:
+    from playwright.sync_api import expect
+
+    expect(page.locator("#link_said")).to_contain_text(text, ignore_case=True, timeout=PATIENCE_MS)
 
 
 def connect(page: Page) -> None:
@@ -204,11 +210,14 @@ def test_two_tabs_do_not_fight(first: tuple[Pages, Page], page: Page, robot: Pty
     other.click("#stop")  # whoever sees STOP may press it
     robot.until(lambda: not robot.moves, "it stands")
     other.close()
+    while BLINKS not in page.locator("#link_said").inner_text():
+        page.click("#link_identify")  # refused for a moment after a STOP for all
+        said(page, re.compile(f"{VOID}|{BLINKS}"))
 
 
 def test_identify_name_and_trim(page: Page, robot: PtyRobot) -> None:
     page.click("#link_identify")
-    said(page, "The robot that blinks and plays its tune is")
+    said(page, BLINKS)
     page.click("#link_drive summary")
     page.fill("#link_rename_to", "Ñandú")
     page.click("#link_rename")
