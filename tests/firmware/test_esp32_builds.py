@@ -36,7 +36,7 @@ needs_host = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a
 @pytest.mark.parametrize("major", [2, 3])
 @pytest.mark.parametrize("chip", sorted(ESP32S))
 def test_it_compiles_for_both_cores(chip: str, major: int, standard: str) -> None:
-    """The board, file by file: the rooms that know no board are compiled elsewhere."""
+    """The board, file by file: the modules that know no board are compiled elsewhere."""
     for path in CODE:
         command = ["g++", f"-std={standard}", *STRICT, *flags_of(chip, major), str(path)]
         done = subprocess.run(command, capture_output=True, text=True, check=False)

@@ -120,7 +120,7 @@ SOURCES = sorted(
     for path in (ROOT / folder).rglob(f"*.{end}")
     if not {".pio", "node_modules"} & set(path.parts)
 )
-ROOMS = ("compiler", "tests", "tools", "docs", "examples", "vm_arduino")
+FOLDERS = ("compiler", "tests", "tools", "docs", "examples", "vm_arduino")
 # Where a path in a document, a docstring or a comment begins.
 BASES = (ROOT, ROOT / "compiler" / "tiniscript", ROOT / "vm_arduino", ROOT / "vm_arduino" / "src")
 # Names of files that a person has, and of those that a build makes.
@@ -153,7 +153,7 @@ def exists(path: str) -> bool:
     "document", [*DOCUMENTS, ROOT / "tools" / "uno" / "README.md"], ids=lambda path: path.name
 )
 def test_files_that_are_named_exist(document: Path) -> None:
-    """A span with a room of the repository in front is a path; a file's name alone is one's name.
+    """A span with a folder of the repository in front is a path; a file's name alone is one's name.
 
     `NAME.toml` and `tests/*.py` are no names.
     """
@@ -161,7 +161,7 @@ def test_files_that_are_named_exist(document: Path) -> None:
     known |= OTHERS_FILES | {"machine.wasm", "robot.wasm", "robot_mega.wasm", "robot_esp32.wasm"}
     wrong = []
     for span in spans_of(document):
-        is_path = bool(re.fullmatch(PATH, span)) and span.split("/")[0] in ROOMS
+        is_path = bool(re.fullmatch(PATH, span)) and span.split("/")[0] in FOLDERS
         is_path = is_path or bool(re.fullmatch(r"(?:\w+/)+(?:" + FILE_NAME + ")?", span))
         if is_path and "NAME" not in span and not exists(span):
             wrong.append(span)
@@ -190,7 +190,7 @@ def test_paths_in_sources_exist() -> None:
     wrong = []
     for source in SOURCES:
         for span in spans_of(source):
-            is_path = bool(re.fullmatch(PATH, span)) and span.split("/")[0] in ROOMS
+            is_path = bool(re.fullmatch(PATH, span)) and span.split("/")[0] in FOLDERS
             is_wrong = is_path and "NAME" not in span and not exists(span)
             if is_wrong or (re.fullmatch(r"\w+\.py", span) and span not in names):
                 wrong.append(f"{source.relative_to(ROOT)}: {span}")
@@ -221,9 +221,9 @@ def test_examples_have_no_mistakes(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 @pytest.mark.parametrize("base", ["compiler/tiniscript", "vm_arduino/src", "tools"])
-def test_the_house_has_a_row_for_every_folder(base: str) -> None:
-    house = (ROOT / "docs" / "house.md").read_text(encoding="utf-8")
-    places = "".join(re.findall(r"(?m)^\| (`.*?) \|", house))
+def test_the_architecture_has_a_row_for_every_folder(base: str) -> None:
+    architecture = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")
+    places = "".join(re.findall(r"(?m)^\| (`.*?) \|", architecture))
     folders = {path.parent.relative_to(ROOT).as_posix() for path in ROOT.glob(f"{base}/*/*.*")}
     folders = {name for name in folders if not name.endswith("__pycache__")}
     assert len(folders) > 5

@@ -224,7 +224,7 @@ def test_the_line_that_the_tries_wait_for_is_the_commands() -> None:
     assert DROVE.search(done.out + done.err)
 
 
-def test_the_module_is_started_as_readme_of_the_house_says() -> None:
+def test_the_module_is_started_as_contributing_says() -> None:
     import sys
 
     done = subprocess.run([sys.executable, "-m", "tools.release", "--help"], capture_output=True,

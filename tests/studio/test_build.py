@@ -71,11 +71,6 @@ def test_nothing_makes_markup_of_a_text() -> None:
             assert word not in source, f"{path.name}: {word}"
 
 
-def test_no_file_of_its_sources_is_too_full() -> None:
-    for path in (*(SOURCES / "src").glob("*.js"), *SOURCES.glob("*.mjs"), *SOURCES.glob("*.py")):
-        assert len(path.read_text(encoding="utf-8").splitlines()) <= 400, path.name
-
-
 def test_the_page_is_small_enough(page: Path) -> None:
     files = [path for path in page.iterdir() if path.name not in (studio.STAMP, studio.LICENCES)]
     assert sum(len(gzip.compress(path.read_bytes(), 9)) for path in files) <= LARGEST

@@ -120,7 +120,7 @@ def build(
         ])  # fmt: skip
 
 
-def size(chip: Chip, probe: str, *rooms: str) -> tuple[int, int]:
+def size(chip: Chip, probe: str, *modules: str) -> tuple[int, int]:
     """Return flash and RAM of a C++ program with a `main`, linked with what it uses of the machine.
 
     The program includes from `vm_arduino/src`, and may use these folders there too. Flash is text
@@ -129,8 +129,8 @@ def size(chip: Chip, probe: str, *rooms: str) -> tuple[int, int]:
     with tempfile.TemporaryDirectory() as folder:
         source, program = Path(folder) / "probe.cpp", Path(folder) / "probe"
         source.write_text(probe, encoding="utf-8")
-        used = [path for room in ("vm", *rooms)
-                for path in sorted((SOURCES / "src" / room).glob("*.cpp"))]  # fmt: skip
+        used = [path for module in ("vm", *modules)
+                for path in sorted((SOURCES / "src" / module).glob("*.cpp"))]  # fmt: skip
         code = [source, *used, SOURCES / "extras" / "qemu" / "library.cpp"]
         build(chip, code, program, f"-I{SOURCES / 'src'}", entry="main")
         row = _command([chip.measurer, str(program)]).splitlines()[1]

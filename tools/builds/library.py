@@ -26,7 +26,7 @@ from tools.release.facts import PEOPLE, address
 
 SOURCES = ROOT / "vm_arduino" / "src"
 OWN = ROOT / "vm_arduino" / "extras" / "library"
-ROOMS = ("vm", "link", "text")  # the link has the reader of text, which gets no memory here
+MODULES = ("vm", "link", "text")  # the link has the reader of text, which gets no memory here
 SENTENCE = "The machine of TiniScript, a language of single lines for robots."
 PARAGRAPH = (
     "Runs images that tsc compile has made on motors and sensors of your own sketch: verified "
@@ -80,8 +80,8 @@ def make(folder: Path, url: str) -> None:
         shutil.rmtree(folder)
     source = folder / "src"
     shutil.copytree(OWN / "src", source)
-    for room in ROOMS:
-        shutil.copytree(SOURCES / room, source / room)
+    for module in MODULES:
+        shutil.copytree(SOURCES / module, source / module)
     shutil.copyfile(SOURCES / "robot.h", source / "robot.h")
     for path in sorted((OWN / "examples").rglob("*.ino")):
         target = folder / "examples" / path.parent.name / path.name

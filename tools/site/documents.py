@@ -67,7 +67,7 @@ def documents(root: Path) -> list[Document]:
         _both("comparison", "trust", "docs/comparison.en.md", "docs/comparacion.es.md"),
         *_english("trust", "docs/promises.md", "docs/figures.md", "docs/computer.md",
                   "SECURITY.md", "CODE_OF_CONDUCT.md"),
-        *_english("build", "CONTRIBUTING.md", "docs/house.md", "bytecode_spec.md",
+        *_english("build", "CONTRIBUTING.md", "docs/architecture.md", "bytecode_spec.md",
                   "docs/conformance.md", "docs/link.md",
                   "docs/text.md", "docs/store.md", "docs/esp32.md", "docs/versions.md",
                   "CHANGELOG.md"),

@@ -16,7 +16,7 @@ from types import CodeType
 
 ROOT = "tiniscript.studio.worker"
 LESSONS = "tiniscript.studio.page_lessons"  # fetched when it is first needed
-# Rooms that need what no browser has: ports, a terminal, other programs.
+# Folders that need what no browser has: ports, a terminal, other programs.
 LEFT_OUT = ("tiniscript.cli", "tiniscript.doctor", "tiniscript.flash", "tiniscript.modules",
             "tiniscript.sharing", "tiniscript.wiring")  # fmt: skip
 # Imported where there is a port, wasmtime or another system; never in a browser.
@@ -132,12 +132,12 @@ def compiled(files: Files) -> Files:
 
 
 def data_of(package: str, rows: Mapping[str, tuple[str, ...]]) -> Files:
-    """Return the files of rooms that match their patterns."""
+    """Return the files of folders that match their patterns."""
     return {
         path.relative_to(package).as_posix(): path.read_bytes()
-        for room, patterns in rows.items()
+        for folder, patterns in rows.items()
         for pattern in patterns
-        for path in (Path(package) / "tiniscript" / room).glob(pattern)
+        for path in (Path(package) / "tiniscript" / folder).glob(pattern)
     }
 
 
