@@ -60,9 +60,6 @@ def test_console(
     monkeypatch.chdir(tmp_path)
     for example in (tmp_path / "examples").iterdir():
         (tmp_path / example.name).write_bytes(example.read_bytes())
-    # the documents' robot of one's own: a copy of tinibot whose DISTANCE is called EYES
-    profile = (ROOT / "compiler" / "tiniscript" / "robots" / "tinibot.toml").read_text("utf-8")
-    (tmp_path / "mine.toml").write_text(profile.replace("DISTANCE", "EYES"), encoding="utf-8")
     with redirect_stderr(sys.stdout):  # a terminal shows both in the order of their writing
         main(command.words)
     said = capsys.readouterr().out

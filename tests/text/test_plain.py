@@ -183,7 +183,7 @@ def test_random_programs_do_the_same_in_plain_code(first: int) -> None:
 
 def test_programs_of_all_documents_do_the_same_in_plain_code() -> None:
     run = [case for case in CASES if {"tiniscript", "robot"} <= set(case.parts)]
-    assert len(run) > 100 and len(run) == len(having("tiniscript", "robot"))
+    assert len(run) > 80 and len(run) == len(having("tiniscript", "robot"))
     for case in run:
         robot, senses = robot_and_senses(case)
         check_same(compiled(case), robot.kit, senses)
