@@ -322,7 +322,8 @@ def test_what_was_asked_before_a_stop_and_comes_after_it_is_void(
     assert page.until(lambda each: each.get("id") == 50)["failure"] == "stopped_elsewhere"
     assert not robot.moves
     page.beat({"id": 51, "stops": 1, **upload})
-    assert page.until(lambda each: each.get("id") == 51)["ok"]
+    answer = page.until(lambda each: each.get("id") == 51)
+    assert answer.get("ok"), answer
 
 
 def test_a_request_that_comes_twice_is_done_once(page: Page, robot: PtyRobot) -> None:
