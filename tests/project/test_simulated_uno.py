@@ -57,6 +57,26 @@ def test_it_runs_to_a_cycle() -> None:
             uno.run_until("D7", "pwm", limit_ms=1)
 
 
+def test_what_is_done_aside_has_not_happened() -> None:
+    with Uno(built("echo", Baud=115200, Wait=1)) as uno:
+        uno.run_ms(1)
+        before, cycle = list(uno.events), uno.cycle
+        told = []
+        for _ in range(2):
+            with uno.aside():
+                uno.send(b"U")
+                uno.run_ms(2)
+                told.append(uno.events[len(before) + 1 :])
+            assert (uno.events, uno.cycle) == (before, cycle)
+        uno.send(b"U")
+        uno.run_ms(2)
+        assert told[0] == told[1] == uno.events[len(before) :]
+        assert [byte.value for byte in uno.sent] == list(b"U")
+    with pytest.raises(AssertionError), Uno(built("echo", Baud=115200, Wait=1)) as uno, uno.aside():
+        raise AssertionError
+    assert uno._process.returncode == 0
+
+
 def test_an_interrupt_takes_its_four_cycles() -> None:
     """Entering, the jump in the table and what g++ saves: from the time-out to the pin."""
     with Uno(built("watchdog", IsOff=0)) as uno:

@@ -21,7 +21,8 @@ import subprocess
 import tempfile
 import threading
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 
 from tools.uno.build import built, missing
@@ -69,6 +70,7 @@ class Uno:
         self.events: list[Event] = []
         self.pins = Pins(self.events, names or {}, board)
         self.cycle = 0  # where it has paused
+        self._keeps_eeprom = eeprom is not None
         self._news = threading.Condition()
         self._errors = tempfile.TemporaryFile()  # noqa: SIM115
         options = ["--board", board, "--baud", str(baud)]
@@ -139,6 +141,22 @@ class Uno:
     def go(self, speed: float = 1.0) -> None:
         """Run until `pause`; speed 1 is real time, 0 as fast as it goes."""
         self._tell(f"run forever {speed}")
+
+    @contextmanager
+    def aside(self) -> Iterator[None]:
+        """Try something: behind it the chip is where it was, and nothing of it has happened.
+
+        The chip has paused before. It has no `eeprom` file, which would keep what was written.
+        """
+        assert not self._keeps_eeprom
+        mark = len(self.events)
+        self._tell("aside")
+        self._wait_for_pause(mark)
+        yield
+        there = len(self.events)
+        self._tell("back")
+        self._wait_for_pause(there)
+        del self.events[mark:]
 
     def pause(self) -> None:
         mark = len(self.events)

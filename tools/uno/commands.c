@@ -3,6 +3,7 @@
 //     run CYCLE|forever SPEED   goes on; SPEED 1 is real time, 0 as fast as it goes
 //     watch PIN STATE           the next run pauses when a pin is low, high, pwm, input or pullup
 //     pause, quit
+//     aside, back               while it is paused; what is told between has not happened then
 //     pin PIN low|high|none     what is wired to it gives it a level, or leaves it alone
 //     analog PIN COUNT          0 to 1023, as the chip will read it
 //     supply MILLIVOLTS         of the chip, as its converter sees it
@@ -49,6 +50,10 @@ static bool steer(const char* line) {
     pause_run("command");
   } else if (is_word(line, "quit")) {
     quit_run();
+  } else if (is_word(line, "aside") && run_is_paused()) {
+    go_aside();
+  } else if (is_word(line, "back")) {
+    return come_back();
   } else {
     return false;
   }

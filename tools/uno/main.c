@@ -16,22 +16,27 @@
 
 #define _GNU_SOURCE
 #include <poll.h>
+#include <signal.h>
 #include <simavr/sim_elf.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
 
 #include "uno.h"
 
 enum { kSlice = kHertz / 2000 };  // how often the run looks around
+enum { kBack = 42 };              // how who comes back from aside ends
 
 avr_t* avr;
 
 static FILE* out;
 static bool is_paused = true;
 static bool has_ended;
+static bool is_aside;
 static bool tells_sleep = true;
 static Cycle run_until = UINT64_MAX;
 static double run_speed;
@@ -103,6 +108,30 @@ void resume_run(Cycle until, double speed) {
 }
 
 void quit_run(void) { has_ended = true; }
+
+void go_aside(void) {
+  fflush(out);
+  const pid_t aside = fork();
+  if (aside < 0) give_up("there is no process to go aside in");
+  if (aside == 0) {
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    is_aside = true;
+    pause_run("aside");
+    return;
+  }
+  int status;
+  if (waitpid(aside, &status, 0) != aside || !WIFEXITED(status)) _exit(2);
+  if (WEXITSTATUS(status) != kBack) _exit(WEXITSTATUS(status));
+  pause_run("back");
+}
+
+bool come_back(void) {
+  if (!is_aside) return false;
+  fflush(out);
+  _exit(kBack);
+}
+
+bool run_is_paused(void) { return is_paused; }
 
 // Waits until commands or bytes come, for at most so many milliseconds; -1: without an end.
 static void look(int wait_ms) {

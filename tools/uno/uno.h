@@ -31,6 +31,12 @@ void interrupt_run(void);
 void pause_run(const char* why);
 void resume_run(Cycle until, double speed);
 void quit_run(void);
+bool run_is_paused(void);
+
+// Goes on in a copy of this process, while this one waits; `come_back` ends the copy, and all that it
+// did has not happened. False: nobody has gone aside. What a file of the EEPROM has, it keeps.
+void go_aside(void);
+bool come_back(void);
 
 // -- boards.c: the Uno and the Mega --------------------------------------------------------------
 
