@@ -404,8 +404,11 @@ def test_fmt_leaves_what_is_wrong(tsc: Tsc, program: Path) -> None:
     assert tsc("fmt", program.with_suffix(".bin")).code == 2
 
 
-def test_fmt_keeps_a_program_that_it_would_make_too_large(tsc: Tsc, program: Path) -> None:
-    text = "S\n" * 499_999
+def test_fmt_keeps_a_program_that_it_would_make_too_large(
+    tsc: Tsc, program: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("tiniscript.cli.commands.fmt.LARGEST_SOURCE", 1000)
+    text = "S\n" * 499
     program.write_text(text, encoding="utf-8")
     assert tsc("fmt", program).code == 2
     assert program.read_text(encoding="utf-8") == text

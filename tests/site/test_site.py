@@ -12,8 +12,10 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from tests.machines.host import once
 from tests.support import studio
 from tests.support.casefile import ROOT
+from tests.support.platformio import shared
 from tools.builds import site
 from tools.builds import studio as studio_build
 from tools.site import links
@@ -25,11 +27,12 @@ if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    folder = tmp_path_factory.mktemp("site") / "site"
-    site.build(ROOT, folder, has_studio=not studio_build.stale())
-    return folder
+    return once(
+        shared(tmp_path_factory) / "site",
+        lambda made: site.build(ROOT, made, has_studio=not studio_build.stale()),
+    )
 
 
 @pytest.fixture(scope="module")
@@ -112,7 +115,9 @@ def clone(tmp_path: Path) -> Path:
 
 def test_a_link_that_leads_nowhere_ends_the_build(clone: Path, tmp_path: Path) -> None:
     store = clone / "docs" / "store.md"
-    text = store.read_text(encoding="utf-8")
+    text = "# A title\n"
+    for path in clone.rglob("*.md"):
+        path.write_text(text, encoding="utf-8")
     store.write_text(f"{text}\n[no](nowhere.md)\n", encoding="utf-8")
     with pytest.raises(Missing, match=r"^docs/store\.md: nowhere\.md$"):
         site.build(clone, tmp_path / "site", has_studio=False)
