@@ -11,7 +11,7 @@ import subprocess
 import sys
 
 BENCHMARKS = (
-    # in the order of `docs/figures.md`, then what the documents do not quote
+    # in the order of `docs/figures.md`, then what other documents quote
     "compiler",
     "machine",
     "code_size",
@@ -19,16 +19,11 @@ BENCHMARKS = (
     "text",
     "virtual",
     "upload",
-    "bluetooth",
     "large_upload",
     "classroom",
     "studio",
     "firmware_size",
-    "machine_size",
-    "link_size",
-    "text_size",
     "targets",
-    "arithmetic",
 )
 
 

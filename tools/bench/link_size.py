@@ -1,4 +1,4 @@
-"""Prints how much flash and RAM link and reader of text take on an ATmega328P, linked.
+"""Measures how much flash and RAM link and reader of text take on an ATmega328P, linked.
 
 Builds the small program of `machine_size.py` with all of the machine, once with and once without
 the link, and takes the difference: so the verifier and the checksum, which both use, are not
@@ -15,7 +15,7 @@ ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path[:0] = [str(ROOT)]
 
 from tools.bench import avr_bench, machine_size
-from tools.bench.machine_size import AVR, SOURCE, USES, WAYS, Size, done, missing
+from tools.bench.machine_size import SOURCE, USES, Size, done
 
 MUST = 16_000  # bytes of flash, of the link with the reader of text
 
@@ -115,19 +115,3 @@ def built(use: str, flags: tuple[str, ...]) -> Size:
         said = done("avr-size", str(program))
     text, data, bss = (int(word) for word in said.splitlines()[1].split()[:3])
     return Size(text + data, data + bss)
-
-
-def main() -> int:
-    if missing(AVR):
-        print(missing(AVR), file=sys.stderr)
-        return 2
-    print("| flags | flash | RAM |\n| --- | --- | --- |")
-    for name, more in WAYS.items():
-        found = size((*avr_bench.USUAL, *more))
-        print(f"| `{name}` | {found.flash} | {found.ram} |")
-    print(f"\nBytes of flash of the link: must {MUST}.")
-    return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())

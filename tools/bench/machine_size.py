@@ -1,14 +1,13 @@
-"""Prints how much flash and RAM the machine takes on the chips of robots: linked, with libgcc.
+"""Measures how much flash and RAM the machine takes on the chips of robots: linked, with libgcc.
 
 Builds the same small program with and without the machine, and takes the difference. That of the
 store is what it adds to the machine; the memory below it is not counted. Knows the
-the AVR's compiler and its flags; `chips.py` knows those of other chips, which `machine.py`
-prints. `--parts` prints the functions on the AVR too, largest last.
+AVR's compiler and its flags; `chips.py` knows those of other chips. `machine.py` and `targets.py`
+print it.
 """
 
 from __future__ import annotations
 
-import argparse
 import shutil
 import subprocess
 import sys
@@ -26,13 +25,7 @@ from tools.builds import chips
 
 SOURCE = ROOT / "vm_arduino" / "src"
 WASM = ROOT / "compiler" / "tiniscript" / "vm" / "machine.wasm"
-MUST, AIM = 7168, 5120  # bytes of flash on the AVR, machine and verifier
-
-WAYS = {
-    "-Os": (),
-    "-Os -flto": ("-flto",),
-    "-Os -flto -mrelax -mcall-prologues": ("-flto", "-mrelax", "-mcall-prologues"),
-}
+MUST = 7168  # bytes of flash on the AVR, machine and verifier
 
 # A robot that does nothing, and a use of each part that no optimiser can leave out.
 PROBE = """
@@ -150,30 +143,3 @@ def done(*command: str) -> str:
     if ran.returncode != 0:
         raise RuntimeError(f"{command[0]} fails:\n{ran.stderr[:4000]}")
     return ran.stdout
-
-
-def main() -> int:
-    parser = argparse.ArgumentParser(description="Print how large the machine is on an AVR.")
-    parser.add_argument("--parts", action="store_true", help="print its functions too")
-    options = parser.parse_args()
-    if missing(AVR):
-        print(missing(AVR), file=sys.stderr)
-        return 2
-    names = [*USES, "RAM", "store", "its RAM"]
-    print(f"| flags | {' | '.join(names)} |\n|{' --- |' * (len(names) + 1)}")
-    for name, more in WAYS.items():
-        sizes = [size(AVR, use, (*avr_bench.USUAL, *more)) for use in USES]
-        row = " | ".join(str(each.flash) for each in sizes)
-        store = store_size((*avr_bench.USUAL, *more))
-        print(f"| `{name}` | {row} | {sizes[-1].ram} | {store.flash} | {store.ram} |")
-    print(f"\nBytes of flash of machine and verifier: must {MUST}, aim {AIM}.")
-    if options.parts:
-        with tempfile.TemporaryDirectory() as folder:
-            program = Path(folder) / "probe"
-            link(program, PROBE.replace("USE", USES["all"] + STORE), avr_bench.USUAL)
-            print(done("avr-nm", "-CS", "--size-sort", str(program)))
-    return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -2,9 +2,9 @@
 
 One table, of the system's Chromium on this computer. Each time is the least of several, since other
 work makes a browser slower and never faster; `--slower 2` lets the browser's processor be so many
-times slower. What is fetched comes from this computer. Lighthouse (npm, as `lighthouse/` here pins
-it) is fetched at the first time: desktop preset, median of five, of the page gzipped, as static
-hosts send it; `--no-lighthouse` leaves it out.
+times slower. What is fetched comes from this computer. npm fetches Lighthouse at
+the first time: desktop preset, median of five, of the page gzipped, as static hosts send it;
+`--no-lighthouse` leaves it out.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ RATINGS = 5
 RUN_S = 5
 TYPED = 60  # letters
 LINES = 100
-LIGHTHOUSE = Path(__file__).parent / "lighthouse"
+LIGHTHOUSE = "lighthouse@13.5.0"
 RATED = ("performance", "accessibility", "best-practices")
 PAPER = ROOT / "examples" / "obstacle.ts"
 # When the page can be written in, and when the compiler has said something of the program.
@@ -183,18 +183,15 @@ def _packed() -> dict[str, serving.File]:
 def _rated(address: str) -> dict[str, float]:
     """Return the median points of each of Lighthouse's categories."""
     tools = found_tools()
-    if not (LIGHTHOUSE / "node_modules").is_dir():
-        fetched = [*tools.npm, "ci", "--ignore-scripts", "--no-audit", "--no-fund"]
-        subprocess.run(fetched, cwd=LIGHTHOUSE, check=True, capture_output=True)
-    call = [*tools.node, "node_modules/lighthouse/cli/index.js", address, "--preset=desktop",
-            "--quiet", "--output=json", f"--only-categories={','.join(RATED)}",
+    call = [*tools.npm, "exec", "--yes", "--ignore-scripts", LIGHTHOUSE, "--", address,
+            "--preset=desktop", "--quiet", "--output=json", f"--only-categories={','.join(RATED)}",
             f"--chrome-flags=--headless=new {' '.join(studio.OPTIONS)}"]  # fmt: skip
-    settings = {**os.environ, "CHROME_PATH": studio.chromium() or ""}
+    node = str(Path(tools.node[0]).parent)  # npm starts Lighthouse by the first node in PATH
+    settings = {**os.environ, "CHROME_PATH": studio.chromium() or "",
+                "PATH": os.pathsep.join((node, os.environ["PATH"]))}  # fmt: skip
     found: list[dict[str, Any]] = []
     for _ in range(RATINGS):
-        done = subprocess.run(
-            call, cwd=LIGHTHOUSE, env=settings, capture_output=True, text=True, check=True
-        )
+        done = subprocess.run(call, env=settings, capture_output=True, text=True, check=True)
         found.append(json.loads(done.stdout)["categories"])
     return {name: 100 * median(each[name]["score"] for each in found) for name in RATED}
 

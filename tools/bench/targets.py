@@ -27,7 +27,7 @@ from tools.bench import (
 from tools.bench.avr_bench import missing as no_avr
 from tools.bench.compiler import table
 from tools.bench.machine_size import AVR, EMULATED, Size, missing
-from tools.bench.workloads import OTHERS, WORKS
+from tools.bench.workloads import WORKS
 from tools.builds import chips
 
 
@@ -73,7 +73,6 @@ def instructions() -> None:
     if not no_avr():
         found = [round(machine_cycles.per_iteration(work)) for work in WORKS]
         rows.append((AVR, "cycles", *found))
-    rows += [(f"  {name}, on an AVR", "cycles", *map(round, each)) for name, _, each in OTHERS]
     title = "One iteration of A, B and C, all of `tick`"
     table(title, ("", "of", "A", "B", "C"), rows)
 

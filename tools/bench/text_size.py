@@ -1,13 +1,11 @@
-"""Prints how much flash and RAM the reader of text takes on the chips of robots, linked.
+"""Measures how much flash and RAM the reader of text takes on the chips of robots, linked.
 
 Builds a small program once with and once without the reader, and takes the difference. What the
-sketch has anyway (the checksum, a division, a multiplication) is in both. `--parts` prints the
-functions too, largest last.
+sketch has anyway (the checksum, a division, a multiplication) is in both.
 """
 
 from __future__ import annotations
 
-import argparse
 import sys
 import tempfile
 from pathlib import Path
@@ -15,10 +13,10 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path[:0] = [str(ROOT)]
 
-from tools.bench.machine_size import AVR, EMULATED, SOURCE, Size, done, missing
+from tools.bench.machine_size import AVR, EMULATED, SOURCE, Size, done
 from tools.builds import chips
 
-MUST, AIM = 6500, 5000  # bytes of flash, with the words of the language and the answers
+MUST = 6500  # bytes of flash, with the words of the language and the answers
 RAM_MUST = 60
 
 # As PlatformIO builds the sketch: Arduino's flags, and those of platformio.ini.
@@ -75,7 +73,7 @@ def _size(board: str, use: str) -> Size:
     return Size(*chips.size(EMULATED[board], PROBE.replace("USE", use), "text"))
 
 
-def linked(use: str, parts: bool = False) -> Size:
+def linked(use: str) -> Size:
     """Return what the small program takes on an ATmega328P."""
     code = [
         *sorted((SOURCE / "text").glob("*.[cS]*")),
@@ -86,34 +84,5 @@ def linked(use: str, parts: bool = False) -> Size:
         source.write_text(PROBE.replace("USE", use), encoding="utf-8")
         done("avr-g++", *FLAGS, f"-I{SOURCE}", *map(str, (source, *code)), "-o", str(program))
         said = done("avr-size", str(program))
-        if parts:
-            print(done("avr-nm", "-C", "-S", "--size-sort", str(program)))
     text, data, bss = (int(word) for word in said.splitlines()[1].split()[:3])
     return Size(text + data, data + bss)
-
-
-def main() -> int:
-    parser = argparse.ArgumentParser(description="Measure the reader of text.")
-    parser.add_argument("--parts", action="store_true", help="print the functions, too")
-    parts: bool = parser.parse_args().parts
-    if missing(AVR):
-        print(missing(AVR), file=sys.stderr)
-        return 2
-    if parts:
-        linked(READER.replace("ANSWER", ANSWERS["reader and answers"]), parts=True)
-    print("| board | part | flash | RAM |\n| --- | --- | ---: | ---: |")
-    for board in (AVR, *EMULATED):
-        for use in ANSWERS:
-            found = None if missing(board) else size(board, use)
-            print(f"| {board} | {use} |", f"{found.flash} | {found.ram} |" if found else "- | - |")
-        if missing(board):
-            print(missing(board), file=sys.stderr)
-    print(
-        f"\nBytes. Of flash on an ATmega328P: must {MUST}, aim {AIM}. Of RAM there, outside of the "
-        f"buffer: must {RAM_MUST}."
-    )
-    return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -33,12 +33,6 @@ LIMIT_S = 20.0
 CROWDS = (1, 30)
 UPLOAD = ("upload", str(ROOT / "examples" / "obstacle.ts"), "--detach", "--no-save")
 BYTES_PER_MS = 12  # about 115200 baud
-OTHERS = (
-    ("Arduino: compile and upload, warm", "2200 ms", "", "measured elsewhere, modelled board"),
-    ("  the same, cold", "3100 ms", "", "measured elsewhere, modelled board"),
-    ("mpremote run, the computer's half", "50 ms", "", "measured elsewhere, a board without delay"),
-    ("opening an Uno's port, which resets it", "1400 ms", "", "measured elsewhere"),
-)  # fmt: skip
 
 
 class Bench:
@@ -143,7 +137,7 @@ def main() -> int:
     rows.append((f"  must {MUST}x and the wire, with tsc link", "", "", ""))
     rows.append(("python -c pass", f"{nothing_ms:.0f} ms", "1x", ""))
     head = ("to the first motor command", "median", "against pass", "")
-    table(f"A new process, obstacle program, {runs} runs", head, [*rows, *OTHERS])
+    table(f"A new process, obstacle program, {runs} runs", head, rows)
     rows = []
     with tempfile.TemporaryDirectory() as folder:
         for count in CROWDS:

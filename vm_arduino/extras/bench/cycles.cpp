@@ -41,8 +41,6 @@ void run() {
     if (cycles > longest) longest = cycles;
   } while (status == Status::kRunning && longest < counter::kLongest);
   for (uint8_t k = 0; k < shows; k++) simulated::say("SHOW", shown[k]);
-  simulated::say("LEFT", left);
-  simulated::say("RIGHT", right);
   simulated::say("LONGEST", static_cast<int32_t>(longest));
   simulated::say("JUMPS", static_cast<int32_t>(jumps));
   simulated::say("CYCLES", static_cast<int32_t>(total));
