@@ -21,7 +21,8 @@ from tests.support.waiting import HANGS_S
 from tests.support.waiting import until as in_time
 from tiniscript.link import ports, wifi
 from tiniscript.link.broker import ROOT, Access, Broker, Present
-from tiniscript.link.messages import AUTHORITY_MS, STOP_BYTES
+from tiniscript.link.frames import Frame, encoded
+from tiniscript.link.messages import AUTHORITY_MS, BY_NAME, STOP_BYTES
 from tiniscript.link.ports import PortError
 from tiniscript.link.session import Session
 
@@ -251,6 +252,23 @@ def test_a_stranger_stops_and_does_nothing_else(broker: Mosquitto) -> None:
     talk(robot, ends, 200)
     assert motors(robot) == "MOTORS 80 80", "none of these is a stop"
     stranger.publish(f"{ROOT}/aula/{ID}/in/{stranger.peer}", bytes(STOP_BYTES))
+    talk(robot, ends, 100)
+    assert motors(robot) == "MOTORS 0 0"
+    teacher.close()
+    stranger.close()
+
+
+@pytest.mark.parametrize("stop", [b"S\n", b"F(1,80)\r\n ; stop ;\r"])
+def test_a_typed_stop_of_a_stranger_is_one(broker: Mosquitto, stop: bytes) -> None:
+    """In one message, and not where that is a frame: its code may have such a line."""
+    robot, teacher, _, ends = driving(broker)
+    stranger = broker.connected()
+    topic = f"{ROOT}/aula/{ID}/in/{stranger.peer}"
+    for none in (b"SS\n", b"S", encoded(Frame(BY_NAME["LIVE"].number, 9, 0, b"\1Z\nS\n"))):
+        stranger.publish(topic, none)
+        talk(robot, ends, 100)
+    assert motors(robot) == "MOTORS 80 80"
+    stranger.publish(topic, stop)
     talk(robot, ends, 100)
     assert motors(robot) == "MOTORS 0 0"
     teacher.close()

@@ -11,13 +11,14 @@ import pytest
 from tests.firmware.test_esp32_transports import RADIOS, Ends, Make, booted, ended, uploaded
 from tests.firmware.test_esp32_wifi import joined
 from tests.firmware.test_host_firmware import happened
-from tests.firmware.test_typed_stops import HELD_MS, PREFIXES, SPELLINGS
+from tests.firmware.test_typed_stops import HELD_MS, PREFIXES, SILENCE_MS, SPELLINGS
 from tests.machines.esp32 import Esp32Robot, missing
 from tests.support.esp32_radio import Bytes, End, Network, session, talk
 from tests.support.owners import Keys
 from tiniscript.link.frames import Frame, encoded
 from tiniscript.link.messages import BY_NAME
 from tiniscript.link.session import Session
+from tiniscript.virtual.first_bytes import is_for_robot
 
 pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 
@@ -68,6 +69,40 @@ def test_a_typed_stop_over_a_network() -> None:
         ends = drives(robot, owner)
         stops(robot, end, ends, prefix + SPELLINGS[k % len(SPELLINGS)], name)
     end.leave()
+
+
+@pytest.mark.parametrize("word", [b"S", b"\r\n sToP; ", b";s", b"\x1b[A stop"])
+def test_silence_ends_a_typed_stop_of_a_guest(word: bytes) -> None:
+    """Of somebody in a network who may yet be a web page: it lets nobody in."""
+    robot, owner = joined(Keys())
+    end = Network(robot)
+    end.send(word)
+    talk(robot, [(None, owner)], SILENCE_MS + 100)  # while nothing runs it is none
+    ends = drives(robot, owner)
+    talk(robot, ends, SILENCE_MS + 100)
+    assert not stands(robot)
+    other = Network(robot)
+    other.send(word)
+    talk(robot, ends, SILENCE_MS - 50)
+    assert not stands(robot)
+    talk(robot, ends, 50 + LATE_MS)
+    assert stands(robot)
+    page = b"S / HTTP/1.1\r\n"
+    other.send(page)
+    talk(robot, ends, LATE_MS)
+    other.taken()
+    assert other.has_ended == (is_for_robot(word + page) is False)
+    end.leave()
+    other.leave()
+
+
+def test_a_guest_begins_a_line_behind_silence() -> None:
+    robot, owner = joined(Keys())
+    end = Network(robot)
+    end.send(b"S")
+    talk(robot, [(None, owner)], SILENCE_MS + 100)
+    ends = drives(robot, owner)
+    stops(robot, end, ends, b"S\n", "behind an S that has stopped nothing")
 
 
 def test_a_typed_stop_over_the_cable_while_a_radio_drives() -> None:

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from random import Random
+
 import pytest
 
 from tests.firmware.test_typed_stops import HELD_MS, PREFIXES, RUNS, SILENCE_MS, SPELLINGS
 from tests.support.virtual_robot import missing, robot_in
 from tests.virtual.test_simulator import simulator, until, visit
+from tiniscript.link.messages import STOP_BYTES
+from tiniscript.virtual.first_bytes import is_at_stop, is_for_robot
 from tiniscript.virtual.robot import VirtualRobot
 from tiniscript.virtual.simulator import Simulator
 
@@ -50,3 +54,30 @@ def test_the_next_client_begins_a_line(simulator: Simulator) -> None:
     with visit(simulator) as client:
         client.sendall(b"S\n")
         until(simulator, lambda: not simulator.robot.is_running)
+
+
+@pytest.mark.parametrize("word", [b"S", b"\r\nsToP ", b"\tS", b"\x1bS"])
+def test_silence_ends_the_stop_of_who_may_be_a_web_page(simulator: Simulator, word: bytes) -> None:
+    assert is_for_robot(word) is None
+    with visit(simulator) as client:
+        client.sendall(RUNS)
+        until(simulator, lambda: simulator.robot.is_running)
+    with visit(simulator) as guest:
+        guest.sendall(word)
+        until(simulator, lambda: not simulator.robot.is_running)
+        assert simulator.transports.visits == 1, "it lets nobody in"
+
+
+def test_the_host_knows_such_lines_as_a_robot_does() -> None:
+    chance, robot, found = Random(4), robot_in(), set()
+    parts = [b"S", b"sTOP", b"T", b" ", b"\t;", b"\x1b", b"\x1b[", b"O", b"1", b"A", b"\x7f", b"\1"]
+    for _ in range(200):
+        word = b"".join(chance.choices(parts, k=chance.randrange(1, 4))) + b"S"
+        wait(robot, SILENCE_MS + 50)
+        wait(robot, 100, RUNS)
+        assert robot.is_running
+        wait(robot, SILENCE_MS + 100, b"\n" + word)
+        assert robot.is_running is not is_at_stop(word), word
+        found.add(robot.is_running)
+        wait(robot, 10, bytes(STOP_BYTES))
+    assert len(found) == 2

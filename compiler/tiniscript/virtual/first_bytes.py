@@ -23,13 +23,19 @@ _KNOWN = re.compile(
     re.IGNORECASE,
 )
 _LINE_END = re.compile(rb"[\r\n\0]")
+# a typed stop, if its line ended here: `link/typed_stop.h` says where one begins
+_STOP = re.compile(
+    rb"(?:\A|[\0-\x08\n-\x1f\x7f](?:(?<=\x1b)[\[O][0-?]*[@-\x7f])?)[ \t;]*S(?:TOP)?[ \t;]*\Z",
+    re.IGNORECASE,
+)
 _EMPTY_LINES = re.compile(rb"[\r\n]+(?=[A-Za-z]|\Z)")  # servers of HTTP skip them
 
 
 def is_for_robot(data: bytes) -> bool | None:
     """Return whether bytes that begin like this may reach a robot; None: not known yet.
 
-    Waiting costs nothing: a robot acts only when a frame or a line of text has ended.
+    Waiting costs nothing: a robot acts only when a frame or a line of text has ended, and
+    `is_at_stop` finds the typed stop that silence ends.
     """
     rest = data.lstrip(b"\0")
     if len(data) - len(rest) > 1:
@@ -39,6 +45,11 @@ def is_for_robot(data: bytes) -> bool | None:
     if not rest:
         return None
     return _is_frame(rest) if rest[0] < TEXT_FROM else _is_text(rest)
+
+
+def is_at_stop(data: bytes) -> bool:
+    """Return whether bytes end with a line that is a typed stop if nothing more comes."""
+    return _STOP.search(data) is not None
 
 
 def _is_frame(data: bytes) -> bool | None:

@@ -9,6 +9,7 @@ from __future__ import annotations
 from random import Random
 from time import monotonic
 
+from tiniscript.link.messages import STOP_BYTES
 from tiniscript.virtual.heartbeat import Heartbeat
 from tiniscript.virtual.line_faults import BadLine
 from tiniscript.virtual.robot import VirtualRobot
@@ -91,6 +92,8 @@ class Simulator:
             self._heartbeat.forget()
             self.there.put(b"\0", self.robot.now_ms)  # ends what the one before has begun
             self.back.clear()
+        if self.transports.take_stop() and self.robot.is_running:
+            self.there.put(bytes(STOP_BYTES), self.robot.now_ms)
         if data:
             self._traffic_s = wall_s
             self._heartbeat.hear(data, wall_s)

@@ -15,8 +15,9 @@ import socket
 import sys
 from time import monotonic, sleep
 
+from tiniscript.link.messages import SILENCE_MS
 from tiniscript.sharing.peers import is_of_this_user
-from tiniscript.virtual.first_bytes import is_for_robot
+from tiniscript.virtual.first_bytes import is_at_stop, is_for_robot
 
 LOCAL = "127.0.0.1"
 READ_BYTES = 1024
@@ -82,6 +83,11 @@ class Transports:
         data = self._heard()
         first = self._let_in()
         return data if first is None else first
+
+    def take_stop(self) -> bool:
+        """Return whether silence has ended a typed stop of a caller: it stops what runs."""
+        now_s = monotonic()
+        return any(each.ends_with_stop(now_s) for each in self._callers)
 
     def _heard(self) -> bytes:
         if self._client is not None:
@@ -218,6 +224,8 @@ class _Caller:
         self.may_enter = False
         self.is_told = False
         self._limit_s = came_s + SILENT_S
+        self._heard_s = came_s
+        self._line = 0  # where the bytes begin that have come since the last second of silence
 
     @property
     def is_next(self) -> bool:
@@ -246,10 +254,18 @@ class _Caller:
             return bool(data)
         if not self.opening:
             self._limit_s = now_s + OPENING_S
+        self._heard_s = now_s
         self.opening += data
         verdict = is_for_robot(self.opening)
         self.may_enter = verdict is True
         return verdict is not False
+
+    def ends_with_stop(self, now_s: float) -> bool:
+        """Return whether a second of silence ends a typed stop now."""
+        if self.may_enter or self.is_told or now_s < self._heard_s + SILENCE_MS / 1000:
+            return False
+        line, self._line = self.opening[self._line :], len(self.opening)
+        return is_at_stop(line)
 
     def tell(self, now_s: float) -> None:
         if self.is_told or now_s < self.came_s + PATIENT_S:

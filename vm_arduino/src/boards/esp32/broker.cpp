@@ -105,6 +105,18 @@ bool is_stop(const uint8_t* payload, size_t length) {
   return length >= kLeastStop;
 }
 
+// Whether a message is text, where frames have a zero, and a typed stop is in it.
+bool has_typed_stop(const uint8_t* payload, size_t length) {
+  TypedStop typed;
+  typed.begin();
+  bool is_found = false;
+  for (size_t k = 0; k < length; k++) {
+    if (payload[k] == 0) return false;
+    if (typed.put(payload[k])) is_found = true;
+  }
+  return is_found;
+}
+
 void part() {
   if (peer[0] == 0) return;
   peer[0] = 0;
@@ -182,7 +194,7 @@ void pass_on(const uint8_t* bytes, size_t length) {
 void hear_peer(const char* who, const uint8_t* payload, size_t length) {
   const bool is_taken = peer[0] != 0 && !is_same(who, peer) && now_ms() - peer_ms < kPeerMs;
   if (is_taken) {
-    if (is_stop(payload, length)) return pass_on(payload, length);
+    if (is_stop(payload, length) || has_typed_stop(payload, length)) return pipe().stop();
     if (length != 0) __builtin_memcpy(refused, who, sizeof refused);
     return;
   }

@@ -59,6 +59,27 @@ class Ring {
   Item items_[kPlaces];
 };
 
+// How often one has told another something. It wraps around to 0.
+class Tally {
+ public:
+  // The writer's.
+  void add() { __atomic_store_n(&count_, static_cast<uint8_t>(count() + 1), __ATOMIC_RELAXED); }
+
+  uint8_t count() const { return __atomic_load_n(&count_, __ATOMIC_RELAXED); }
+
+  // The reader's: whether it has been told since the last call.
+  bool take() {
+    const uint8_t count = this->count();
+    const bool is_new = count != taken_;
+    taken_ = count;
+    return is_new;
+  }
+
+ private:
+  uint8_t count_;
+  uint8_t taken_;
+};
+
 class Pipe {
  public:
   // The radio's task calls `take`. The three before it are called by that or by one other task, the
@@ -85,7 +106,7 @@ class Pipe {
     Rings* const its = rings();
     const bool has_room =
         its != nullptr && its->in.room() > 1 && its->in.put(byte);  // one for `part`
-    if (!has_room) count(&lost_);
+    if (!has_room) lost_.add();
     look_for_stop(byte, has_room);
   }
 
@@ -95,6 +116,9 @@ class Pipe {
     if (!has_parted_ && rings() != nullptr) look_for_stop(0, rings()->in.put(kParted));
     has_parted_ = true;  // further ones change nothing until a byte comes
   }
+
+  // A stop of which the main loop gets no byte. `only_running`: it stops what runs, if anything does.
+  void stop(bool only_running = false) { (only_running ? silent_stops_ : stops_).add(); }
 
   // The next byte for the client.
   bool take(uint8_t* byte) {
@@ -123,15 +147,11 @@ class Pipe {
   void say(uint8_t byte) { rings()->out.put(byte); }
 
   // How many bytes were lost. It wraps around to 0.
-  uint8_t lost() const { return __atomic_load_n(&lost_, __ATOMIC_RELAXED); }
+  uint8_t lost() const { return lost_.count(); }
 
-  // Whether a stop has come since the last call of which bytes were lost.
-  bool take_stop() {
-    const uint8_t stops = __atomic_load_n(&stops_, __ATOMIC_RELAXED);
-    const bool is_new = stops != stops_taken_;
-    stops_taken_ = stops;
-    return is_new;
-  }
+  // Whether a stop has come since the last call that the main loop does not see in the bytes.
+  bool take_stop() { return stops_.take(); }
+  bool take_silent_stop() { return silent_stops_.take(); }  // one for what runs
 
   static constexpr uint16_t kParted = 0x100;
 
@@ -147,18 +167,13 @@ class Pipe {
 
   Rings* rings() const { return __atomic_load_n(&rings_, __ATOMIC_ACQUIRE); }
 
-  static void count(uint8_t* one) {
-    const uint8_t before = __atomic_load_n(one, __ATOMIC_RELAXED);
-    __atomic_store_n(one, static_cast<uint8_t>(before + 1), __ATOMIC_RELAXED);
-  }
-
   // The main loop cannot see a stop whose line or run of zeros has lost a byte, or began behind one.
   void look_for_stop(uint8_t byte, bool has_room) {
     if (byte != 0 && has_begun_) is_cut_ = false;
     if (!has_room) is_cut_ = true;
     zeros_ = byte == 0 ? static_cast<uint8_t>(zeros_ % kStopRun + 1) : 0;
     const bool is_stop = typed_.put(byte) || zeros_ == kStopRun;
-    if (is_stop && is_cut_) count(&stops_);
+    if (is_stop && is_cut_) stops_.add();
     has_begun_ = has_room && (byte == 0 || ends_line(byte));
   }
 
@@ -172,9 +187,9 @@ class Pipe {
   uint8_t zeros_;    // the last bytes that are 0, up to kStopRun
   bool is_cut_;      // a byte was lost since the line began in which the next one is
   bool has_begun_;   // the last byte has ended a line, and the main loop gets it
-  uint8_t stops_;        // of which bytes were lost
-  uint8_t stops_taken_;  // by the main loop
-  uint8_t lost_;
+  Tally stops_;
+  Tally silent_stops_;
+  Tally lost_;
 };
 
 }  // namespace tiniscript

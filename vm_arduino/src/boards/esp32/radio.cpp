@@ -108,12 +108,14 @@ void radio_tick() {
   begin(kNetworkRadio);
 }
 
-// A stop of which bytes were lost comes as zeros, before what still waits from before it.
+// A stop that is not in the bytes comes as zeros, before what still waits from before it.
 void radio_attend() {
   for (uint8_t place = kFirst; place < kTransports; place++) {
     const Transport transport = static_cast<Transport>(place);
     Pipe& pipe = radio_pipe(transport);
-    if (pipe.take_stop()) {
+    Place running;
+    const bool stops_run = pipe.take_silent_stop() && firmware_runs(&running);
+    if (pipe.take_stop() || stops_run) {
       for (uint8_t zeros = 0; zeros < kStopRun; zeros++) hear(transport, 0);
     }
     uint16_t item;

@@ -32,6 +32,7 @@ struct Client {
 
   bool has_key() const { return is_admitted && radio_pipe(transport).has_key(); }
   size_t first_length;
+  size_t first_line;  // where those begin that have come since the last second of silence
   uint8_t first[kFirstBytes];
   size_t out_length;
   size_t out_sent;
@@ -108,12 +109,23 @@ void accept_next() {
   client->socket = found;
   client->is_admitted = false;
   client->accepted_ms = client->heard_ms = now_ms();
-  client->first_length = client->out_length = client->out_sent = 0;
+  client->first_length = client->first_line = client->out_length = client->out_sent = 0;
 }
 
 void pass_on(Client* client, const uint8_t* bytes, size_t length) {
   Pipe& pipe = radio_pipe(client->transport);
   for (size_t k = 0; k < length; k++) pipe.put(bytes[k]);
+}
+
+// Whether a typed stop is in the first bytes since silence; `ends`: or would be if its line ended.
+bool stops(const Client& client, bool ends) {
+  TypedStop typed;
+  typed.begin();
+  bool is_stop = false;
+  for (size_t k = client.first_line; k < client.first_length; k++) {
+    if (typed.put(client.first[k])) is_stop = true;
+  }
+  return is_stop || (ends && typed.is_whole());
 }
 
 // Looks at the first bytes, and lets the client in or hangs up.
@@ -132,6 +144,14 @@ void look(Client* client, const uint8_t* bytes, size_t length) {
   client->is_admitted = true;
   pass_on(client, client->first, client->first_length);
   pass_on(client, bytes + more, length - more);
+  if (client->first_line != 0 && stops(*client, false)) radio_pipe(client->transport).stop();
+}
+
+// A second of silence ends a typed stop while something runs, and a line begins behind it. It lets
+// nobody in.
+void end_silence(Client* client) {
+  if (stops(*client, true)) radio_pipe(client->transport).stop(true);
+  client->first_line = client->first_length;
 }
 
 void hear(Client* client) {
@@ -145,7 +165,8 @@ void hear(Client* client) {
     if (!client->is_admitted) return look(client, bytes, static_cast<size_t>(length));
     return pass_on(client, bytes, static_cast<size_t>(length));
   }
-  if (length == 0 || !may_come_later()) close_client(client);
+  if (length == 0 || !may_come_later()) return close_client(client);
+  if (!client->is_admitted && now_ms() - client->heard_ms >= kSilenceMs) end_silence(client);
 }
 
 void say(Client* client) {
