@@ -171,7 +171,7 @@ def test_files_that_are_named_exist(document: Path) -> None:
 def test_every_stand_in_for_a_robot_has_its_row() -> None:
     """Whoever writes a test finds all of them in one table, with what each is for."""
     helpers = {"__init__", "child", "chips", "bootloaders", "uno"}  # what several of them share
-    text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    text = (ROOT / "tests" / "README.md").read_text(encoding="utf-8")
     rows = re.findall(r"^\| `([\w/.]+)` \|", text, flags=re.MULTILINE)
     machines = set((ROOT / "tests" / "machines").glob("*.py"))
     robots = set((ROOT / "tests" / "support").glob("*robot*.py"))

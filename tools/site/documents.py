@@ -67,8 +67,8 @@ def documents(root: Path) -> list[Document]:
         _both("comparison", "trust", "docs/comparison.en.md", "docs/comparacion.es.md"),
         *_english("trust", "docs/promises.md", "docs/figures.md", "docs/computer.md",
                   "SECURITY.md", "CODE_OF_CONDUCT.md"),
-        *_english("build", "CONTRIBUTING.md", "docs/architecture.md", "bytecode_spec.md",
-                  "docs/conformance.md", "docs/link.md",
+        *_english("build", "CONTRIBUTING.md", "docs/first-change.md", "docs/architecture.md",
+                  "bytecode_spec.md", "docs/conformance.md", "docs/link.md",
                   "docs/text.md", "docs/store.md", "docs/esp32.md", "docs/versions.md",
                   "CHANGELOG.md"),
     ]  # fmt: skip
