@@ -1,0 +1,120 @@
+"""Prints how large the repository is and how its package hangs together, with the goals beside.
+
+    python tools/measures.py
+
+A module is a folder of the package, or a single file in it; an arrow says that one imports another,
+at the top of a file, inside a function or for types; a circle is a group of files each of which
+imports all others, if only through others. An import that is indented is one inside a function, or
+one for types. Goals, not tests.
+"""
+
+from __future__ import annotations
+
+import ast
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+PACKAGE = ROOT / "compiler" / "tiniscript"
+Graph = dict[str, set[str]]
+Import = ast.Import | ast.ImportFrom
+
+
+def main() -> int:
+    tracked = _tracked()
+    package = [path for path in tracked if PACKAGE in path.parents and path.suffix == ".py"]
+    tests = [path for path in tracked if ROOT / "tests" in path.parents]
+    trees = {_name(path): ast.parse(path.read_bytes()) for path in package}
+    graph = {
+        name: {target for each, _ in _imports(tree) for target in _targets(each, name, trees)}
+        for name, tree in trees.items()
+    }
+    arrows = {
+        (_module(name), _module(target))
+        for name, targets in graph.items()
+        for target in targets
+        if _module(name) != _module(target)
+    }
+    late = sum(is_indented for tree in trees.values() for _, is_indented in _imports(tree))
+    print(f"{'':38}{'now':>9}{'goal':>9}")
+    for what, found, goal in (
+        ("tracked lines", _lines(tracked), 150_000),
+        ("tracked files", len(tracked), 1_050),
+        ("Python of the package, lines", _lines(package), 42_000),
+        ("tests, lines", _lines(tests), 55_000),
+        ("modules of the package", len({_module(name) for name in graph} - {""}), 20),
+        ("arrows between them", len(arrows), 80),
+        ("circles of files", len(circles(graph)), 0),
+        ("imports that are indented", late, 150),
+    ):
+        print(f"{what:38}{found:9,}{goal:9,}")
+    return 0
+
+
+def _tracked() -> list[Path]:
+    """Return the files that git knows, without those that are deleted here."""
+    listed = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, check=True, capture_output=True)
+    paths = (ROOT / name for name in listed.stdout.decode().split("\0") if name)
+    return [path for path in paths if path.is_file()]
+
+
+def _lines(paths: list[Path]) -> int:
+    return sum(path.read_bytes().count(b"\n") for path in paths)
+
+
+def _name(path: Path) -> str:
+    """Return the name of a file as Python imports it, without the package's: `link.frames`."""
+    parts = path.relative_to(PACKAGE).with_suffix("").parts
+    return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
+
+
+def _module(name: str) -> str:
+    return name.partition(".")[0].removeprefix("__main__")
+
+
+def _imports(tree: ast.AST, is_indented: bool = False) -> Iterator[tuple[Import, bool]]:
+    for node in ast.iter_child_nodes(tree):
+        if isinstance(node, Import):
+            yield node, is_indented
+        else:
+            yield from _imports(node, True)
+
+
+def _targets(each: Import, name: str, files: dict[str, ast.Module]) -> Iterator[str]:
+    """Yield the files of the package, other than `name`, that an import names."""
+    if isinstance(each, ast.Import):
+        named = [(alias.name, "") for alias in each.names]
+    else:
+        assert not each.level, f"{name}: a relative import"
+        named = [(each.module or "", alias.name) for alias in each.names]
+    for base, member in named:
+        top, _, inner = base.partition(".")
+        if top == PACKAGE.name:
+            whole = f"{inner}.{member}".strip(".")
+            target = whole if whole in files else inner
+            if target != name:
+                yield target
+
+
+def circles(graph: Graph) -> set[frozenset[str]]:
+    """Return the groups of files that import each other."""
+    reached = {name: _reached(graph, name) for name in graph}
+    groups = (frozenset(other for other in found if name in reached[other])
+              for name, found in reached.items())  # fmt: skip
+    return {group for group in groups if len(group) > 1}
+
+
+def _reached(graph: Graph, start: str) -> set[str]:
+    found: set[str] = set()
+    left = [start]
+    while left:
+        new = graph[left.pop()] - found
+        found |= new
+        left += new
+    return found
+
+
+if __name__ == "__main__":
+    sys.exit(main())
