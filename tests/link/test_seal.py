@@ -1,6 +1,6 @@
 """The seal of a session: both halves against the same bytes, and against what is not theirs.
 
-The bytes are made here anew from what `docs/link.md` says, with SipHash alone.
+The bytes are made here anew from what `docs/owners.md` says, with SipHash alone.
 """
 
 from __future__ import annotations

@@ -6,6 +6,7 @@ Knows the documents of `docs/` with tables of their own. The spec's tables are i
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
+from functools import partial
 from pathlib import Path
 
 from tiniscript.text.levels import CODE_BYTES, LEVELS
@@ -13,12 +14,12 @@ from tiniscript.text.levels import CODE_BYTES, LEVELS
 FOLDER = Path(__file__).resolve().parent.parent.parent / "docs"
 
 
-def link_document() -> str:
-    """Return `docs/link.md` with the tables that it takes from `link/messages.py`."""
+def link_document(document: str) -> str:
+    """Return a document about the link with the tables that it takes from the messages."""
     from tools.generate.link_header import DOCUMENT_TABLES
 
-    text = _text("link.md")
-    for name, made in DOCUMENT_TABLES.items():
+    text = _text(document)
+    for name, made in DOCUMENT_TABLES[document].items():
         text = spliced(text, name, table(*made()))
     return text
 
@@ -69,7 +70,9 @@ def table(head: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
 
 
 DOCUMENTS: dict[str, Callable[[], str]] = {
-    "link.md": link_document,
+    "link.md": partial(link_document, "link.md"),
+    "network.md": partial(link_document, "network.md"),
+    "owners.md": partial(link_document, "owners.md"),
     "text.md": text_document,
     "promises.md": promises_document,
     "lessons.en.md": lessons_document,

@@ -207,8 +207,8 @@ def status_rows() -> Rows:
     for name, number in messages.STATUSES.items():
         words = texts()[name]
         detail = messages.DETAILS.get(name, "")
-        rows.append((number, f"`{name}`", detail, words["en"], words["es"]))
-    return ("number", "status", "detail", "English", "Spanish"), rows
+        rows.append((number, f"`{name}`", detail, words["en"]))
+    return ("number", "status", "detail", "English"), rows
 
 
 def number_rows(table: Sequence[tuple[str, str]]) -> Rows:
@@ -216,32 +216,36 @@ def number_rows(table: Sequence[tuple[str, str]]) -> Rows:
     return ("number", "name", "meaning"), rows
 
 
-DOCUMENT_TABLES: dict[str, Callable[[], Rows]] = {
-    "messages": message_rows,
-    "modes": lambda: (
-        ("bits", "name", "meaning"),
-        [(f"0x{bits:02x}", f"`{name}`", what) for bits, name, what in messages.MODES],
-    ),
-    "wheels": lambda: (
-        ("bit", "name", "meaning"),
-        [(f"0x{bits:02x}", f"`{name}`", what) for bits, name, what in messages.WHEELS],
-    ),
-    "features": lambda: (
-        ("bits", "name", "meaning"),
-        [(f"0x{bits:04x}", f"`{name}`", what) for bits, name, what in messages.FEATURES],
-    ),
-    "text levels": lambda: number_rows(messages.TEXT_LEVELS),
-    "keys": lambda: number_rows(messages.KEYS),
-    "wifi_steps": lambda: number_rows(network_messages.WIFI_STEPS),
-    "wifi_modes": lambda: number_rows(network_messages.WIFI_MODES),
-    "wifi_states": lambda: number_rows(network_messages.WIFI_STATES),
-    "statuses": status_rows,
-    "states": lambda: number_rows(messages.STATES),
-    "saved": lambda: number_rows(messages.SAVED),
-    "causes": lambda: number_rows(messages.CAUSES),
-    "resets": lambda: number_rows(messages.RESETS),
-    "faults": lambda: (
-        ("number", "fault", "when"),
-        [(number, f"`{name}`", what) for number, name, what in messages.LINK_FAULTS],
-    ),
+DOCUMENT_TABLES: dict[str, dict[str, Callable[[], Rows]]] = {
+    "link.md": {
+        "messages": message_rows,
+        "modes": lambda: (
+            ("bits", "name", "meaning"),
+            [(f"0x{bits:02x}", f"`{name}`", what) for bits, name, what in messages.MODES],
+        ),
+        "wheels": lambda: (
+            ("bit", "name", "meaning"),
+            [(f"0x{bits:02x}", f"`{name}`", what) for bits, name, what in messages.WHEELS],
+        ),
+        "features": lambda: (
+            ("bits", "name", "meaning"),
+            [(f"0x{bits:04x}", f"`{name}`", what) for bits, name, what in messages.FEATURES],
+        ),
+        "text levels": lambda: number_rows(messages.TEXT_LEVELS),
+        "statuses": status_rows,
+        "states": lambda: number_rows(messages.STATES),
+        "saved": lambda: number_rows(messages.SAVED),
+        "causes": lambda: number_rows(messages.CAUSES),
+        "resets": lambda: number_rows(messages.RESETS),
+        "faults": lambda: (
+            ("number", "fault", "when"),
+            [(number, f"`{name}`", what) for number, name, what in messages.LINK_FAULTS],
+        ),
+    },
+    "network.md": {
+        "wifi_steps": lambda: number_rows(network_messages.WIFI_STEPS),
+        "wifi_modes": lambda: number_rows(network_messages.WIFI_MODES),
+        "wifi_states": lambda: number_rows(network_messages.WIFI_STATES),
+    },
+    "owners.md": {"keys": lambda: number_rows(messages.KEYS)},
 }

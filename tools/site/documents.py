@@ -68,9 +68,9 @@ def documents(root: Path) -> list[Document]:
         *_english("trust", "docs/promises.md", "docs/figures.md", "docs/computer.md",
                   "SECURITY.md", "CODE_OF_CONDUCT.md"),
         *_english("build", "CONTRIBUTING.md", "docs/first-change.md", "docs/architecture.md",
-                  "bytecode_spec.md", "docs/conformance.md", "docs/link.md",
-                  "docs/text.md", "docs/store.md", "docs/esp32.md", "docs/versions.md",
-                  "CHANGELOG.md"),
+                  "bytecode_spec.md", "docs/conformance.md", "docs/link.md", "docs/owners.md",
+                  "docs/network.md", "docs/text.md", "docs/store.md", "docs/esp32.md",
+                  "docs/versions.md", "CHANGELOG.md"),
     ]  # fmt: skip
 
 

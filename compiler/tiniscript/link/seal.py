@@ -1,6 +1,6 @@
 """The seal of a session: a key that both ends have derived, and a counter for each direction.
 
-Knows the bytes of a sealed frame, and no message. `docs/link.md` says why they are so. The C++
+Knows the bytes of a sealed frame, and no message. `docs/owners.md` says what they protect. The C++
 version is `vm_arduino/src/link/seal.cpp`.
 """
 
