@@ -2,9 +2,8 @@
 
 `python -m tools.campaign` goes on where the last one ended, until every goal is reached; Ctrl-C
 ends it at once, and all but the piece that was under way is kept. `--list` says what is reached,
-when, and how long the rest takes, `--minutes 30` ends it after a while, `--anew` forgets what was
-reached, `--write` puts the figures into `docs/promises.md`. Calls the campaigns of the tests; has
-none of its own.
+when, and how long the rest takes, `--minutes 30` ends it after a while, `--write` puts the figures
+into `docs/promises.md`. Calls the campaigns of the tests; has none of its own.
 """
 
 from __future__ import annotations
@@ -15,6 +14,8 @@ import sys
 import time
 from collections.abc import Sequence
 from datetime import date, datetime, timezone
+from itertools import repeat
+from math import inf
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent.parent
@@ -22,8 +23,7 @@ sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
 from tools.campaign import results
 from tools.campaign.goals import BY_NAME, GOALS, Goal
-from tools.campaign.results import Result, Results
-from tools.campaign.table import reached
+from tools.campaign.results import Result, Results, reached
 
 FIRST_SEED = 100_001  # others than those of the tests
 
@@ -34,7 +34,6 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--list", action="store_true", help="only say what is reached")
     parser.add_argument("--minutes", type=float, help="end after so many minutes")
     parser.add_argument("--pieces", type=int, help="at most so many pieces of each goal")
-    parser.add_argument("--anew", action="store_true", help="begin these goals anew")
     parser.add_argument("--write", action="store_true", help="put it into the document")
     options = parser.parse_args(arguments)
     unknown = [name for name in options.goals if name not in BY_NAME]
@@ -42,9 +41,6 @@ def main(arguments: list[str] | None = None) -> int:
         parser.error(f"no goal is called {', '.join(unknown)}. There are: {', '.join(BY_NAME)}")
     goals = [BY_NAME[name] for name in options.goals] or list(GOALS)
     done = results.read(results.kept())
-    if options.anew:
-        done = {name: each for name, each in done.items() if BY_NAME.get(name) not in goals}
-        results.write(results.kept(), done)
     if options.list:
         tell(goals, done)
         return 0
@@ -57,19 +53,17 @@ def main(arguments: list[str] | None = None) -> int:
 
 def run(goals: Sequence[Goal], done: Results, minutes: float | None, pieces: int | None) -> int:
     """Run pieces of the goals until all are reached or the time is over; return the exit code."""
-    end_s = None if minutes is None else time.monotonic() + 60 * minutes
+    end_s = inf if minutes is None else time.monotonic() + 60 * minutes
     commit = results.commit()
     is_wrong = False
     try:
         for goal in goals:
-            taken = 0
-            while not is_reached(goal, done.get(goal.name), commit):
-                if end_s is not None and time.monotonic() >= end_s:
+            for _ in repeat(None) if pieces is None else range(pieces):
+                if is_reached(goal, done.get(goal.name), commit):
+                    break
+                if time.monotonic() >= end_s:
                     print("The time is over; the next campaign goes on from here.", flush=True)
                     return int(is_wrong)
-                if pieces is not None and taken >= pieces:
-                    break
-                taken += 1
                 done[goal.name] = piece(goal, done.get(goal.name), commit)
                 results.write(results.kept(), done)
                 if done[goal.name].wrong:

@@ -1,5 +1,5 @@
-"""What a campaign has reached: in the cache folder while it runs, in `results.json` for the
-document.
+"""What a campaign has reached: in the cache folder while it runs, in `results.json` for the table
+of `docs/promises.md`.
 
 A result belongs to the code with which it was reached: figures of other code are not added up.
 """
@@ -9,15 +9,15 @@ from __future__ import annotations
 import json
 import subprocess
 from pathlib import Path
-from shutil import which
 from typing import NamedTuple
 
 from tiniscript.files import cache_folder, replace
-from tools.campaign.goals import GOALS
+from tools.campaign.goals import GOALS, Goal
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 WRITTEN = Path(__file__).with_name("results.json")
 CODE = ("compiler", "vm_arduino", "tests")  # what a figure is about
+HEAD = ("goal", "promise", "tested by", "shall", "reached", "seeds", "date", "commit")
 
 
 class Result(NamedTuple):
@@ -51,40 +51,58 @@ def read(path: Path) -> Results:
 
 
 def write(path: Path, results: Results) -> None:
-    ordered = {goal.name: results[goal.name]._asdict() for goal in GOALS if goal.name in results}
+    """Write a line for each result, in the order of the goals."""
+    rows = (f'"{goal.name}": {json.dumps(results[goal.name]._asdict())}'
+            for goal in GOALS if goal.name in results)  # fmt: skip
     path.parent.mkdir(parents=True, exist_ok=True)
-    replace(path, (json.dumps(ordered, indent=2) + "\n").encode())
+    replace(path, ("{\n" + ",\n".join(rows) + "\n}\n").encode())
 
 
 def commit() -> str:
     """Return the commit of the code that is tested; with a `+` where it has changed since."""
-    head = _git("rev-parse", "--short=10", "HEAD")
-    return head + "+" * bool(_git("status", "--porcelain", "--", *CODE))
+    head = git("rev-parse", "--short=10", "HEAD").stdout.strip()
+    return head + "+" * bool(git("status", "--porcelain", "--", *CODE).stdout.strip())
 
 
 def is_in_history(commit: str) -> bool:
     """Whether a commit leads to the one that is checked out: who has this can look at its code."""
-    if "+" in commit:
-        return False
-    words = ["git", "merge-base", "--is-ancestor", commit, "HEAD"]
-    return subprocess.run(words, cwd=ROOT, capture_output=True).returncode == 0
-
-
-def has_history() -> bool:
-    """Whether all commits that led here are on this computer."""
-    return bool(which("git")) and _git("rev-parse", "--is-shallow-repository") == "false"
+    return "+" not in commit and not git("merge-base", "--is-ancestor", commit, "HEAD").returncode
 
 
 def is_same_code(one: str, other: str) -> bool:
     """Whether two commits have the same code; one with a `+` is like no other."""
-    if one == other:
-        return True
-    if "+" in one + other:
-        return False
-    done = subprocess.run(["git", "diff", "--quiet", one, other, "--", *CODE], cwd=ROOT)
-    return done.returncode == 0
+    is_known = "+" not in one + other
+    return one == other or (
+        is_known and not git("diff", "--quiet", one, other, "--", *CODE).returncode
+    )
 
 
-def _git(*words: str) -> str:
-    done = subprocess.run(["git", *words], cwd=ROOT, capture_output=True, text=True)
-    return done.stdout.strip()
+def git(*words: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(["git", *words], cwd=ROOT, capture_output=True, text=True)
+
+
+def reached(goal: Goal, result: Result | None) -> str:
+    """Return the figure, and that it is less than the goal where it is."""
+    if result is None:
+        return "not run yet"
+    if result.wrong:
+        return f"**wrong**: {result.wrong}"
+    return f"{result.done:,}" + ("" if result.done >= goal.shall else ": less")
+
+
+def rows() -> list[tuple[str, ...]]:
+    """Return the table of `docs/promises.md`."""
+    results = read(WRITTEN)
+    found: list[tuple[str, ...]] = []
+    for goal in GOALS:
+        result = results.get(goal.name)
+        words = goal.command.format(count=goal.shall, seed="N")
+        about = ("", "", "")
+        if result is not None:
+            last = max(result.seed, result.next_seed - goal.stride)
+            seeds = f"{result.seed}" if last == result.seed else f"{result.seed} to {last}"
+            about = ("-" if "{seed}" not in goal.command else seeds, result.date, result.commit)
+        shall = f"{goal.shall:,} {goal.unit}"
+        row = (f"`{goal.name}`", goal.promise, f"`python -m {words}`", shall)
+        found.append((*row, reached(goal, result), *about))
+    return found

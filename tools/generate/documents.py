@@ -37,7 +37,7 @@ def text_document() -> str:
 
 def promises_document() -> str:
     """Return `docs/promises.md` with the table of goals and figures."""
-    from tools.campaign.table import HEAD, rows
+    from tools.campaign.results import HEAD, rows
 
     return spliced(_text("promises.md"), "promises", table(HEAD, rows()))
 
