@@ -30,7 +30,7 @@ pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind"
 
 # As the real one: of the clone's folder alone, with a node, and the page is there at once.
 PAGE = f"""
-import os, sys, time
+import json, os, sys, time
 from pathlib import Path
 from tiniscript.studio import building
 assert Path.cwd() == building.CLONE and building.found_tools(), "no node"
@@ -40,6 +40,7 @@ for step in {building.STEPS!r}:
 new = Path("new page")
 new.mkdir()
 (new / "index.html").write_text("<html>")
+(new / building.STAMP).write_text(json.dumps(dict(sources=building.digest())))
 new.rename(building.CLONE / "compiler" / "tiniscript" / "studio" / "page")
 """
 # pip puts packages where this Python finds them, and refuses what no index has.
@@ -205,6 +206,26 @@ def test_a_page_that_is_missing_is_built_after_a_yes(
     assert clone.page.exists()
     person.presses_ctrl_c()
     assert person.ended() == 0
+
+
+@pytest.mark.parametrize(("words", "said"), [
+    ([], "built from other sources"), (["--lang", "es"], "con otras fuentes"),
+])  # fmt: skip
+def test_a_page_of_other_sources_is_told(
+    clone: Clone, started: list[Person], words: list[str], said: str
+) -> None:
+    clone.has_node()
+    build = [sys.executable, str(clone.root / "tools" / "builds" / "studio.py")]
+    subprocess.run(build, env=clone.variables(), cwd=clone.root, check=True)
+    for name in ("tools/studio/src/main.js", "compiler/tiniscript/library/new.py"):
+        for changes in (False, True):
+            if changes:
+                clone.put(name, "")
+            person = Person(clone, clone.studio(*words))
+            started.append(person)
+            seen = person.sees("http://127.0.0.1:")
+            assert (said in seen) is (f" {' '.join(build)}" in seen) is changes, seen
+        clone.root.joinpath(name).unlink()
 
 
 @pytest.mark.parametrize("answer", ["n", "", "what?"])

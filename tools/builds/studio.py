@@ -35,7 +35,7 @@ from tools.builds.blockly_texts import texts
 COMMAND = f"python -m {building.MODULE}"
 PACKAGE = ROOT / "compiler"
 PAGE = PACKAGE / "tiniscript" / "studio" / "page"
-STAMP = "build.json"  # of which sources it is; not a file of the page
+STAMP = building.STAMP
 LICENCES = "licences.txt"
 # What a browser fetches of Pyodide; its archive of Python's library is made anew.
 PYODIDE = ("pyodide.asm.mjs", "pyodide.asm.wasm")
@@ -85,36 +85,16 @@ def main(arguments: list[str] | None = None) -> int:
 
 def stale(page: Path = PAGE) -> str:
     """Return why the page that is there cannot be used, or nothing."""
-    try:
-        stamp = json.loads((page / STAMP).read_text(encoding="utf-8"))
-    except (OSError, ValueError):
+    if not (page / STAMP).is_file():
         return f"the page is not built. Do that with:  {COMMAND}"
-    if stamp.get("sources") != digest():
+    if not building.is_of_sources(page):
         return f"the page was built of other sources. Build it again:  {COMMAND}"
     return ""
 
 
-def digest() -> str:
-    """Return a digest of all that the page is made of."""
-    found = hashlib.sha256(version("cobs").encode())
-    for path in _sources():
-        found.update(f"{path.relative_to(ROOT).as_posix()}\0".encode())
-        found.update(hashlib.sha256(path.read_bytes()).digest())
-    return found.hexdigest()
-
-
-def _sources() -> list[Path]:
-    own = [path for path in SOURCES.rglob("*") if "node_modules" not in path.parts
-           and "made" not in path.relative_to(SOURCES).parts]  # fmt: skip
-    package = [path for path in (PACKAGE / "tiniscript").rglob("*")
-               if path.suffix in (".py", ".toml", ".wasm", ".md")]  # fmt: skip
-    files = [*own, *(path for path in package if PAGE not in path.parents), Path(__file__)]
-    return sorted(path for path in files if path.is_file() and "__pycache__" not in path.parts)
-
-
 def build(page: Path = PAGE) -> None:
     """Build the page into a folder, which has nothing else then."""
-    sources = digest()  # whoever changes one meanwhile builds again
+    sources = building.digest()  # whoever changes one meanwhile builds again
     tools = found_tools()
     say(f"node {tools.version}")
     install(tools)
@@ -159,7 +139,7 @@ def put_own(page: Path) -> None:
 
 def build_again(page: Path) -> None:
     """Build the page's own files anew in a page that is there: for who changes no Python."""
-    sources = digest()
+    sources = building.digest()
     tools = found_tools()
     if not (page / STAMP).is_file():
         raise CannotBuild(stale(page))

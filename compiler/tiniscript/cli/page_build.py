@@ -1,4 +1,4 @@
-"""The studio's page, built in a clone that does not have it yet, if the person agrees.
+"""The studio's page in a clone: built where it is missing, if the person agrees.
 
 Whoever makes a wheel at a terminal of a clone is asked by it, too.
 """
@@ -13,11 +13,20 @@ from tiniscript.cli.errors import CommandError
 from tiniscript.cli.fetching import Part, Step
 from tiniscript.cli.texts.common import language_of, text
 from tiniscript.library import install_advice
-from tiniscript.studio import building
+from tiniscript.studio import building, serving
 
 NODE, NPM = Part("fetch_node", building.NODE_MB), Part("fetch_npm", building.NPM_MB)
 STEPS = ("fetch_npm_now", "studio_types", "studio_packing", "studio_bundling")
 PERCENT = (0, 0, 40, 95)  # of the whole build, when a step begins
+
+
+def prepare(options: Namespace, language: str) -> None:
+    """Build the page where it is missing, and tell where it is stale. Raises CommandError."""
+    if not serving.is_built():
+        build(options, language)
+    elif not building.is_of_sources(serving.PAGE):
+        how = " ".join(map(install_advice.quoted, (sys.executable, str(building.BUILDER))))
+        print(text("studio_stale", language).format(how=how), file=sys.stderr)
 
 
 def build(options: Namespace, language: str) -> None:

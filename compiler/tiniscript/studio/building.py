@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import hashlib
+import json
 import os
 import shutil
 import subprocess
@@ -19,6 +20,8 @@ LOCK = SOURCES / "package-lock.json"  # which packages of npm
 MODULES = SOURCES / "node_modules"
 FETCHED = MODULES / ".tiniscript"  # of which lock file the packages are, once all of them are there
 MODULE = "tools.builds.studio"
+BUILDER = CLONE / "tools" / "builds" / "studio.py"
+STAMP = "build.json"  # of the page: of which sources it is; no file of it
 OLDEST_NODE = 22
 # What it says when it begins with a step, and how far it is then, in percent.
 PACKAGES, TYPES, PACKING, BUNDLING = STEPS = (
@@ -44,6 +47,36 @@ class Tools(NamedTuple):
 def is_possible() -> bool:
     """Whether tsc runs from a clone, which has the page's sources."""
     return LOCK.is_file()
+
+
+def is_of_sources(page: Path) -> bool:
+    """Whether the page in this folder was built of the sources that are there now."""
+    try:
+        stamp = json.loads((page / STAMP).read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return False
+    return bool(stamp.get("sources") == digest())
+
+
+def digest() -> str:
+    """Return a digest of all that the page is made of."""
+    from importlib.metadata import version
+
+    found = hashlib.sha256(version("cobs").encode())
+    for path in _sources():
+        found.update(f"{path.relative_to(CLONE).as_posix()}\0".encode())
+        found.update(hashlib.sha256(path.read_bytes()).digest())
+    return found.hexdigest()
+
+
+def _sources() -> list[Path]:
+    own = [path for path in SOURCES.rglob("*") if "node_modules" not in path.parts
+           and "made" not in path.relative_to(SOURCES).parts]  # fmt: skip
+    made = Path(__file__).with_name("page")
+    package = [path for path in made.parent.parent.rglob("*")
+               if path.suffix in (".py", ".toml", ".wasm", ".md")]  # fmt: skip
+    files = [*own, *(path for path in package if made not in path.parents), BUILDER]
+    return sorted(path for path in files if path.is_file() and "__pycache__" not in path.parts)
 
 
 def found_tools() -> Tools | None:

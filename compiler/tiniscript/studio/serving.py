@@ -26,6 +26,7 @@ from urllib.parse import urlsplit
 
 from tiniscript.flash import ready
 from tiniscript.sharing.protocol import BadMessage, message_of
+from tiniscript.studio import building
 from tiniscript.studio.entrances import Entrances
 from tiniscript.studio.policy import HEADERS, SECURE_ONLY, TYPES
 from tiniscript.studio.robot_link import BadRequest, Json
@@ -33,7 +34,6 @@ from tiniscript.studio.robot_link import BadRequest, Json
 PAGE = Path(__file__).with_name("page")
 FIRST = "index.html"
 FIRMWARE = "firmware.json"  # which files of firmware there are
-BUILD = "build.json"  # of which sources the page is; a browser does not need it
 HOST = "127.0.0.1"
 NAMES = (HOST, "localhost")  # by which a browser here may call it
 HTTP_PORT = 80
@@ -83,7 +83,7 @@ def files(folder: Path | None = None) -> dict[str, File]:
     return {
         path.name: _tagged(path.read_bytes(), TYPES[path.suffix])
         for path in folder.iterdir()
-        if path.suffix in TYPES and path.name != BUILD
+        if path.suffix in TYPES and path.name != building.STAMP
     }
 
 

@@ -15,7 +15,7 @@ from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.options import whole_number
 from tiniscript.cli.texts.common import text
-from tiniscript.studio import serving
+from tiniscript.studio import building, serving
 
 if TYPE_CHECKING:
     from tiniscript.studio.classroom import Classroom
@@ -40,10 +40,10 @@ def run(options: Namespace, language: str) -> int:
         classroom = Classroom(hosting, _ports(options.ports), 60 * minutes)
     elif options.address or options.ports or options.turn:
         raise CommandError(2, "studio_needs_class")
-    if not serving.is_built():
+    if not serving.is_built() or building.is_possible():
         from tiniscript.cli import page_build
 
-        page_build.build(options, language)
+        page_build.prepare(options, language)
     try:
         server = _server(port, host, hosting, classroom)
     except OSError as why:

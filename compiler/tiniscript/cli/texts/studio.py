@@ -9,6 +9,8 @@ STUDIO_TEXTS: dict[str, tuple[str, str]] = {
                          "tsc: la página del estudio no está en esta instalación. En un clon del repositorio,  tsc studio  la construye; un wheel hecho después la trae, y quien lo usa no necesita nada más."),
     "studio_missing": ("The studio's page is not in this clone yet, and can be built here.",
                        "La página del estudio todavía no está en este clon, y se puede construir aquí."),
+    "studio_stale": ("The studio's page was built from other sources than those of this clone. To build it again:  {how}",
+                     "La página del estudio se construyó con otras fuentes que las de este clon. Para construirla de nuevo:  {how}"),
     "studio_no_node": ("tsc: the studio's page is not in this clone yet, and it is built with node.js {oldest} or newer and its npm, which are not on this computer. Install them from nodejs.org, or:  {how}   and do the same again.",
                        "tsc: la página del estudio todavía no está en este clon, y se construye con node.js {oldest} o más nuevo y su npm, que no están en esta computadora. Instálalos desde nodejs.org, o:  {how}   y haz lo mismo otra vez."),
     "studio_types": ("checking the page's sources", "revisando las fuentes de la página"),
