@@ -18,7 +18,7 @@ from tests.support.command import PROGRAM, TSC, Tsc
 from tests.support.verbs import parsers
 from tiniscript import robots
 from tiniscript.cli import help
-from tiniscript.cli.texts.options import OPTIONS, Option, of_verb
+from tiniscript.cli.texts.options import OPTIONS, Option, of_verb, shown_of
 from tiniscript.cli.texts.options import PROGRAM as A_PROGRAM
 from tiniscript.cli.texts.verbs import FIRST, NOTES, VERBS
 from tiniscript.flash.bootloaders import BOARDS
@@ -41,6 +41,15 @@ def rows_of(said: str) -> list[str]:
     return [found.strip() for found in re.findall(r"^  (\S.*?)(?:  |$)", said, re.M)]
 
 
+def flags_in_help(verb: str) -> list[str]:
+    """Return the flags that a verb takes, without those that it takes in silence."""
+    taken = {flag for each in PARSERS[verb]._actions for flag in each.option_strings}
+    silent = [each for each in of_verb(verb) if each not in shown_of(verb)]
+    unsaid = {flag for each in silent for flag in each.flags.split()}
+    assert unsaid <= taken
+    return sorted(taken - unsaid)
+
+
 @in_both
 @of_each
 def test_every_flag_of_a_parser_is_in_help_and_the_other_way_round(
@@ -49,8 +58,7 @@ def test_every_flag_of_a_parser_is_in_help_and_the_other_way_round(
     done = tsc(verb, "--help", "--lang", language)
     assert done.code == 0
     said = [flag for row in rows_of(done.out) for flag in re.findall(FLAG, row)]
-    taken = [flag for each in PARSERS[verb]._actions for flag in each.option_strings]
-    assert sorted(said) == sorted(taken)
+    assert sorted(said) == flags_in_help(verb)
     arguments = [row for row in rows_of(done.out) if not row.startswith("-")]
     assert len(arguments) == sum(not each.option_strings for each in PARSERS[verb]._actions)
     for argument in arguments:
@@ -66,7 +74,7 @@ def test_every_flag_of_a_parser_is_in_help_and_the_other_way_round(
 def test_help_shows_which_options_take_a_value(verb: str, language: str) -> None:
     rows = rows_of(help.of(verb, language))
     for each in PARSERS[verb]._actions:
-        if each.option_strings:
+        if set(each.option_strings) & set(flags_in_help(verb)):
             (row,) = (row for row in rows if each.option_strings[0] in row.split(" ")[0].split(","))
             assert (each.nargs == 0) == (re.fullmatch(rf"{FLAG}(, {FLAG})*", row) is not None), row
 
@@ -96,7 +104,7 @@ def test_no_backticks_are_printed_and_no_texts_are_lost(language: str) -> None:
         said = help.of(verb, language)
         assert "`" not in said
         assert words(each.says[k]) in words(said) and words(each.ends[k]) in words(said)
-        for option in of_verb(verb):
+        for option in shown_of(verb):
             assert words(option.help[k]) in words(said), option
         assert words(each.summary[k]) in words(help.everything(language))
         if isinstance(each.group, str):
@@ -134,6 +142,14 @@ def test_a_question_that_no_command_answers(tsc: Tsc) -> None:
     assert done.code == 2
     assert "found no command for “bake a cake”" in done.err
     assert tsc("help", "todo", "--lang", "es").out == help.everything("es")
+
+
+def test_an_option_that_help_does_not_show_works(tsc: Tsc) -> None:
+    assert "--baud" not in help.of("name", "en")
+    done = tsc("name", "ANA", "--port", "no_port_here", "--baud", "9600", "--robot", "tinibot")
+    assert "no_port_here" in done.err and done.code == 3
+    for option in OPTIONS:
+        assert set(option.silent.split()) <= set(option.verbs.split()), option
 
 
 def test_every_verb_is_a_module_and_every_module_a_verb() -> None:
@@ -201,8 +217,8 @@ def test_the_page_of_the_documents_says_all_of_it_too(verb: str, language: str) 
     common, *sections = page.split("\n## ")
     (section,) = (each for each in sections if each.startswith(f"`tsc {verb}`\n"))
     typed = re.findall(r"^\| `(-.*?)` \|", common + "\n" + section, re.M)
-    taken = [flag for each in PARSERS[verb]._actions for flag in each.option_strings]
-    assert sorted(flag for each in typed for flag in re.findall(FLAG, each)) == sorted(taken)
+    said = [flag for each in typed for flag in re.findall(FLAG, each)]
+    assert sorted(said) == flags_in_help(verb)
 
 
 # -- a page at a time -----------------------------------------------------------------------------

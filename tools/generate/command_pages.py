@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 
 from tiniscript.cli import help
-from tiniscript.cli.texts.options import WITH_VIRTUAL, Option, of_verb
+from tiniscript.cli.texts.options import WITH_VIRTUAL, Option, shown_of
 from tiniscript.cli.texts.verbs import NOTES, VERBS
 
 Table = Callable[[Sequence[str], Sequence[Sequence[object]]], str]
@@ -16,10 +16,11 @@ PAGES = {"en": "command.en.md", "es": "comandos.es.md"}
 OTHER = {"en": ("es", "Español"), "es": ("en", "English")}
 TITLE = ("The command `tsc`", "El comando `tsc`")
 INTRODUCTION = (
-    "Every verb and every option. `tsc help all` and `tsc help VERB` say the same on a terminal;"
-    " `tsc --help` has the ten that most people need.",
-    "Todos los verbos y todas las opciones. `tsc help todo` y `tsc help VERBO` dicen lo mismo en"
-    " una terminal; `tsc --help` muestra los diez que más se usan.",
+    "Every verb, with the options that people combine with it. `tsc help all` and"
+    " `tsc help VERB` say the same on a terminal; `tsc --help` has the ten that most people need.",
+    "Todos los verbos, con las opciones que se combinan con ellos. `tsc help todo` y"
+    " `tsc help VERBO` dicen lo mismo en una terminal; `tsc --help` muestra los diez que más se"
+    " usan.",
 )
 EACH = ("Every verb has these, too:", "Cada verbo tiene además estas:")
 HEAD = (("option", "does"), ("opción", "hace"))
@@ -48,7 +49,7 @@ def _overview(language: str, table: Table) -> Iterator[str]:
         yield table(COMMANDS[k], [(f"`{typed}`", does) for typed, does in rows])
     yield from (note[k] for note in NOTES)
     yield EACH[k]
-    yield _options([option for option in of_verb("tsc") if option.verbs == "*"], language, table)
+    yield _options([option for option in shown_of("tsc") if option.verbs == "*"], language, table)
 
 
 def _verb(verb: str, language: str, table: Table) -> Iterator[str]:
@@ -56,7 +57,7 @@ def _verb(verb: str, language: str, table: Table) -> Iterator[str]:
     yield f"## `tsc {verb}`"
     yield "\\\n".join(f"`{way}`" for way in help.usage(verb, language))
     yield VERBS[verb].says[k]
-    own = [option for option in of_verb(verb) if option.verbs != "*"]
+    own = [option for option in shown_of(verb) if option.verbs != "*"]
     is_apart = any(option.name == "virtual" for option in own)
     yield _options([each for each in own if not (is_apart and each.virtual)], language, table)
     virtual = [each for each in own if is_apart and each.virtual]

@@ -12,7 +12,7 @@ from shutil import get_terminal_size
 from textwrap import wrap
 
 from tiniscript.cli.terminal import pager
-from tiniscript.cli.texts.options import PROGRAM, USAGE, WITH_VIRTUAL, Option, of_verb
+from tiniscript.cli.texts.options import PROGRAM, USAGE, WITH_VIRTUAL, Option, shown_of
 from tiniscript.cli.texts.verbs import FIRST, MORE, NOTES, TITLE, VERBS
 
 WIDTH = 80  # columns, where the terminal has as many
@@ -42,7 +42,7 @@ def show_found(verbs: Iterable[str], language: str) -> None:
 def of(verb: str, language: str, width: int = WIDTH) -> str:
     """Return the help of a verb."""
     found, k = VERBS[verb], language == "es"
-    table = of_verb(verb)
+    table = shown_of(verb)
     parts = [
         _paragraphs("\n".join(usage(verb, language)), width),
         _paragraphs(found.says[k], width),
@@ -59,7 +59,7 @@ def overview(language: str, width: int = WIDTH) -> str:
     parts = [
         _paragraphs(TITLE[k], width),
         "\n".join(_columns(rows, _left(rows, width * 4 // 10), width)),
-        "\n".join(_options(of_verb("tsc"), language, width)),
+        "\n".join(_options(shown_of("tsc"), language, width)),
         _paragraphs(MORE[k], width),
     ]
     return "\n\n".join(parts) + "\n"
@@ -74,7 +74,7 @@ def everything(language: str, width: int = WIDTH) -> str:
     for heading, rows in commands:
         parts.append(_paragraphs(heading, width))
         parts.append("\n".join(_columns(rows, left, width)))
-    parts.append("\n".join(_options(of_verb("tsc"), language, width)))
+    parts.append("\n".join(_options(shown_of("tsc"), language, width)))
     parts.append("\n".join(_paragraphs(note[k], width) for note in NOTES))
     return "\n\n".join(parts) + "\n"
 
@@ -103,7 +103,7 @@ def usage(verb: str, language: str) -> list[str]:
     if VERBS[verb].usage[k]:
         return [f"tsc {verb} {way}" for way in VERBS[verb].usage[k].split("\n")]
     words = [f"tsc {verb}"]
-    for option in of_verb(verb):
+    for option in shown_of(verb):
         if option.is_argument:
             is_there = option.is_needed or option.kind == PROGRAM  # in whose place -e may stand
             label = option.value[k] + (" ..." if option.repeats else "")

@@ -29,7 +29,7 @@ class Option(NamedTuple):
 
     `kind` and `value` (its name in help) describe the option's value; a switch has none. `dest` is
     its name in the code, if it is not the last of its flags. `repeats`: each use adds one value.
-    `virtual`: only for the virtual robot.
+    `virtual`: only for the virtual robot. `silent`: verbs that take it without a row in help.
     """
 
     flags: str
@@ -41,6 +41,7 @@ class Option(NamedTuple):
     repeats: bool = False
     virtual: bool = False
     is_needed: bool = False
+    silent: str = ""
 
     @property
     def is_argument(self) -> bool:
@@ -97,6 +98,9 @@ A_LEVEL = ("|".join(LEVELS),) * 2
 TO_MANY = "ping upload stop info undo identify"  # may work on many robots at once
 TO_ONE = "live link start monitor fetch name trim claim disown text wifi selftest"
 OWN = "upload live robot"  # may bring a virtual robot along
+# Verbs that take an option which hardly anybody combines with them.
+NO_BAUD = f"check {TO_MANY} live start monitor fetch name trim claim disown text wifi selftest"
+NO_ROBOT = "ports ping stop link start monitor fetch name trim undo claim disown text wifi identify"
 
 # fmt: off
 OPTIONS: tuple[Option, ...] = (
@@ -242,39 +246,39 @@ OPTIONS: tuple[Option, ...] = (
     Option("--all", "upload undo", ("every robot that answers, all at once", "todos los robots que responden, todos a la vez")),
     Option("--all", "stop", ("stops every robot that there is, all at once", "detiene todos los robots que hay, todos a la vez")),
     Option("--baud", "doctor", ("the speed that its port should have (the one of the robot's profile)", "la velocidad que su puerto debería tener (la del perfil del robot)"), NUMBER, N),
-    Option("--baud", f"check {TO_ONE} {TO_MANY}", ("the speed of its port (the one of the robot's profile)", "la velocidad de su puerto (la del perfil del robot)"), NUMBER, N),
+    Option("--baud", f"check {TO_ONE} {TO_MANY}", ("the speed of its port (the one of the robot's profile)", "la velocidad de su puerto (la del perfil del robot)"), NUMBER, N, silent=NO_BAUD),
     Option("--baud", "conform", ("with --port: its speed (9600)", "con --port: su velocidad (9600)"), NUMBER, N),
-    Option("--baud", "ports", ("with --ask: their speed (the one of the robot's profile)", "con --ask: su velocidad (la del perfil del robot)"), NUMBER, N),
+    Option("--baud", "ports", ("with --ask: their speed (the one of the robot's profile)", "con --ask: su velocidad (la del perfil del robot)"), NUMBER, N, silent="ports"),
     Option("--baud", "robot", ("how fast its line is (as in its profile); 0 is as fast as possible", "la velocidad de su línea (la de su perfil); 0 es lo más rápido posible"), NUMBER, N),
     Option("--robot", "compile check run show fmt upload live class", ("for which robot: a name (tinibot, ...) or a profile's file", "para qué robot: un nombre (tinibot, ...) o el archivo de un perfil"), ROBOT, A_ROBOT),
-    Option("--robot", "wiring ports ping stop link start info monitor fetch name trim undo claim disown text wifi identify robot", ("which robot: a name (tinibot, ...) or a profile's file", "qué robot: un nombre (tinibot, ...) o el archivo de un perfil"), ROBOT, A_ROBOT),
+    Option("--robot", "wiring ports ping stop link start info monitor fetch name trim undo claim disown text wifi identify robot", ("which robot: a name (tinibot, ...) or a profile's file", "qué robot: un nombre (tinibot, ...) o el archivo de un perfil"), ROBOT, A_ROBOT, silent=NO_ROBOT),
     Option("--robot", "selftest", ("which robot it should be: a name (tinibot, ...) or a profile's file", "qué robot debería ser: un nombre (tinibot, ...) o el archivo de un perfil"), ROBOT, A_ROBOT),
     Option("--robot", "doctor", ("which robot it should be: a name (tinibot, ...) or a profile's file", "qué robot debería ser: un nombre (tinibot, ...) o el archivo de un perfil"), ROBOT, A_ROBOT),
     Option("--robot", "firmware", ("tinibot (if none is named), liner, grabber, or a profile of your own", "tinibot (si no se indica ninguno), liner, grabber, o un perfil propio"), ROBOT, A_ROBOT),
     Option("--virtual", "check", ("for the virtual robot of `tsc robot`, which runs in another terminal", "para el robot virtual de `tsc robot`, que está en marcha en otra terminal")),
-    Option("--virtual", "ping link start info monitor fetch name trim undo claim disown text wifi identify selftest doctor", ("the virtual robot of `tsc robot`, which runs in another terminal", "el robot virtual de `tsc robot`, que está en marcha en otra terminal")),
+    Option("--virtual", "ping link start info monitor fetch name trim undo claim disown text wifi identify selftest doctor", ("the virtual robot of `tsc robot`, which runs in another terminal", "el robot virtual de `tsc robot`, que está en marcha en otra terminal"), silent="link disown text identify"),
     Option("--virtual", "stop", ("virtual robots alone: those of `tsc robot`, and of commands with --virtual", "solo robots virtuales: los de `tsc robot`, y los de comandos con --virtual")),
     Option("--virtual", "upload", ("no robot: a virtual one drives here, until the program ends or Ctrl-C; the one of `tsc robot`, if that runs in another terminal. The key b is the button of one here; where nobody is at a terminal, it is pushed at once",
                                    "sin robot: uno virtual se mueve aquí, hasta que el programa termina o Ctrl-C; el de `tsc robot`, si está en marcha en otra terminal. La tecla b es el botón del de aquí; si no hay nadie en una terminal, se pulsa enseguida")),
     Option("--virtual", "live", ("no robot: a virtual one does it here", "sin robot: lo hace aquí uno virtual")),
     # how it is said
-    Option("--json", "check show lesson ping info ports keys doctor module selftest conform", ("the same as data", "lo mismo como datos")),
+    Option("--json", "check show lesson ping info ports keys doctor module selftest conform", ("the same as data", "lo mismo como datos"), silent="keys module"),
     Option("--json", "upload class", ("prints the receipt and what comes after it as lines of JSON", "imprime lo que se envió y lo que viene después como líneas de JSON")),
-    Option("--json", "undo", ("prints the receipt, and that it is saved, as lines of JSON", "imprime a qué programa volvió, y que está guardado, como líneas de JSON")),
-    Option("--json", "stop identify", ("prints a line of JSON for each robot", "imprime una línea de JSON por cada robot")),
-    Option("--json", "link start monitor", ("prints lines of JSON", "imprime líneas de JSON")),
-    Option("--json", "fetch", ("the listing as data", "la lista como datos")),
-    Option("--json", "trim", ("prints what the robot keeps as data", "imprime lo que guarda el robot como datos")),
+    Option("--json", "undo", ("prints the receipt, and that it is saved, as lines of JSON", "imprime a qué programa volvió, y que está guardado, como líneas de JSON"), silent="undo"),
+    Option("--json", "stop identify", ("prints a line of JSON for each robot", "imprime una línea de JSON por cada robot"), silent="identify"),
+    Option("--json", "link start monitor", ("prints lines of JSON", "imprime líneas de JSON"), silent="link"),
+    Option("--json", "fetch", ("the listing as data", "la lista como datos"), silent="fetch"),
+    Option("--json", "trim", ("prints what the robot keeps as data", "imprime lo que guarda el robot como datos"), silent="trim"),
     # a virtual robot of one's own
     Option("--world", OWN, ("its world: obstacles, line, light, or a file (obstacles)", "su mundo: obstacles, line, light, o un archivo (obstacles)"), WORLD, A_ROBOT, virtual=True),
-    Option("--plot", OWN, ("draws the world and the way when it ends", "dibuja el mundo y el camino cuando termina"), PICTURE, ("F.png", "F.png"), virtual=True),
-    Option("--for", OWN, ("ends after S seconds of the robot's time", "termina después de S segundos del tiempo del robot"), NUMBER, S, virtual=True),
+    Option("--plot", OWN, ("draws the world and the way when it ends", "dibuja el mundo y el camino cuando termina"), PICTURE, ("F.png", "F.png"), virtual=True, silent="live"),
+    Option("--for", OWN, ("ends after S seconds of the robot's time", "termina después de S segundos del tiempo del robot"), NUMBER, S, virtual=True, silent="live"),
     Option("--hurry", OWN, ("a program goes N times as fast; max: as fast as this computer can", "un programa va N veces más rápido; max: lo más rápido que esta computadora pueda"), HURRY, ("N|max", "N|max"), virtual=True),
-    Option("--sensor", OWN, ("what a sensor says, instead of what it notices in the world", "lo que dice un sensor, en vez de lo que nota en el mundo"), SENSOR, READINGS, repeats=True, virtual=True),
-    Option("--noise", OWN, ("sensors and motors are off by about X percent (0)", "los sensores y motores se desvían más o menos X % (0)"), NUMBER, X, virtual=True),
-    Option("--motors", OWN, ("how strong each motor is, left and right, in percent (100,100)", "qué fuerza tiene cada motor, izquierdo y derecho, en porcentaje (100,100)"), NUMBER, ("L,R", "I,D"), virtual=True),
-    Option("--faults", OWN, ("of 1000 bytes on its line, X get lost, change or come late (0)", "de 1000 bytes en su línea, X se pierden, cambian o llegan tarde (0)"), NUMBER, X, virtual=True),
-    Option("--seed", OWN, ("where chance begins: the same number is the same run (1)", "dónde empieza el azar: el mismo número es el mismo recorrido (1)"), NUMBER, N, virtual=True),
+    Option("--sensor", OWN, ("what a sensor says, instead of what it notices in the world", "lo que dice un sensor, en vez de lo que nota en el mundo"), SENSOR, READINGS, repeats=True, virtual=True, silent="live"),
+    Option("--noise", OWN, ("sensors and motors are off by about X percent (0)", "los sensores y motores se desvían más o menos X % (0)"), NUMBER, X, virtual=True, silent="live"),
+    Option("--motors", OWN, ("how strong each motor is, left and right, in percent (100,100)", "qué fuerza tiene cada motor, izquierdo y derecho, en porcentaje (100,100)"), NUMBER, ("L,R", "I,D"), virtual=True, silent="live"),
+    Option("--faults", OWN, ("of 1000 bytes on its line, X get lost, change or come late (0)", "de 1000 bytes en su línea, X se pierden, cambian o llegan tarde (0)"), NUMBER, X, virtual=True, silent="live"),
+    Option("--seed", OWN, ("where chance begins: the same number is the same run (1)", "dónde empieza el azar: el mismo número es el mismo recorrido (1)"), NUMBER, N, virtual=True, silent="live"),
     # every verb
     Option("--lang", "*", ("says everything in English (en) or Spanish (es)", "dice todo en inglés (en) o en español (es)"), LANGUAGE, ("en|es", "en|es")),
     Option("-h --help", "*", ("prints this help", "imprime esta ayuda")),
@@ -289,6 +293,11 @@ USAGE = ("[options]", "[opciones]")
 def of_verb(verb: str) -> list[Option]:
     """Return the options of a verb, or of `tsc` itself, in the order of help."""
     return [option for option in OPTIONS if option.taken_by(verb)]
+
+
+def shown_of(verb: str) -> list[Option]:
+    """Return the options of a verb, or of `tsc` itself, that help and documents show."""
+    return [option for option in of_verb(verb) if verb not in option.silent.split()]
 
 
 def virtual_names() -> list[str]:
