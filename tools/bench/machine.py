@@ -13,7 +13,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
-from tools.bench import avr_bench, machine_cycles, machine_size, sketch_cycles, workloads
+from tools.bench import avr_bench, machine_cycles, machine_size, others, sketch_cycles, workloads
 from tools.bench.compiler import table
 
 
@@ -41,6 +41,7 @@ def cycles() -> None:
     rows = [
         ("all of `tick`", *alone),
         ("in the shipped sketch", *sketch),
+        *others.CYCLES,
     ]
     title = "Cycles of one iteration on a simulated ATmega328P"
     table(title, ("", *(work.name for work in workloads.WORKS)), rows)
@@ -60,7 +61,8 @@ def size() -> None:
         return
     found = machine_size.size(machine_size.AVR, "machine and verifier")
     ram = machine_size.size(machine_size.AVR, "all").ram
-    print(f"\nMachine and verifier: {found.flash:,} bytes of flash; {ram} of RAM.")
+    ours = ("machine and verifier", f"{found.flash:,}", str(ram))
+    table("Bytes on an AVR", ("", "flash", "RAM"), (ours, *others.SIZES))
 
 
 if __name__ == "__main__":
