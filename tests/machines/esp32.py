@@ -65,12 +65,6 @@ class Esp32Robot(HostFirmware):
         head = pack("<BI", reset, seed) + _text(kept.noinit)
         self.ask(b"B", head + pack("<I", len(kept.entries)) + entries)
 
-    def wait(self, milliseconds: int, data: bytes = b"") -> bytes:
-        sent = self.step(data)
-        for _ in range(milliseconds - 1):
-            sent += self.step()
-        return sent
-
     def kept(self) -> Kept:
         answer = self.ask(b"E", b"")
         noinit, answer = _next(answer)

@@ -6,6 +6,7 @@
 
 #include <math.h>
 
+#include <algorithm>
 #include <chrono>
 
 #include "../../src/boards/esp32/first_bytes.h"
@@ -142,6 +143,12 @@ void turns(uint32_t count) {
   }
 }
 
+// A millisecond begins, in which bytes arrive.
+void hear(const Bytes& heard, size_t from, size_t count) {
+  chip.received.append(reinterpret_cast<const char*>(heard.data.get()) + from, count);
+  chip.sending = chip.sending > kBytesPerMs ? chip.sending - kBytesPerMs : 0;
+}
+
 // S: bytes arrive, the button goes down (1) or up (2), so many turns follow. Says what the robot
 // sends and what it does.
 void answer_step(RequestReader* request, Writer* answer) {
@@ -149,8 +156,7 @@ void answer_step(RequestReader* request, Writer* answer) {
   const uint8_t flags = request->u8();
   const uint16_t count = request->u16();
   const Bytes heard = request->bytes();
-  chip.received.append(reinterpret_cast<const char*>(heard.data.get()), heard.length);
-  chip.sending = chip.sending > kBytesPerMs ? chip.sending - kBytesPerMs : 0;
+  hear(heard, 0, heard.length);
   if ((flags & 1) != 0) set_input(kStartButton.number, false);
   if ((flags & 2) != 0) set_input(kStartButton.number, true);
   turns(count);
@@ -160,6 +166,33 @@ void answer_step(RequestReader* request, Writer* answer) {
   answer->u8(motors_are_stopped());
   chip.sent.clear();
   log_of_robot.clear();
+}
+
+// W: so many milliseconds from a time on, so many turns each. Bytes arrive in the first, or one
+// in each. Says what the robot sends, what it does and when, its light, and after each of the
+// milliseconds whether its motors are stopped.
+void answer_wait(RequestReader* request, Writer* answer) {
+  const uint32_t first_ms = request->u32();
+  const uint32_t many = request->u32();
+  const uint16_t count = request->u16();
+  const bool is_spread = request->u8() != 0;
+  const Bytes heard = request->bytes();
+  std::string did;
+  std::string stopped;
+  for (uint32_t k = 0; k < many; k++) {
+    const size_t from = is_spread || k == 0 ? std::min<size_t>(k, heard.length) : heard.length;
+    const size_t left = heard.length - from;
+    hear(heard, from, is_spread ? std::min<size_t>(1, left) : left);
+    turns(count);
+    did += timed(first_ms + k, log_of_robot);
+    log_of_robot.clear();
+    stopped += static_cast<char>(motors_are_stopped());
+  }
+  answer->text(chip.sent);
+  answer->text(did);
+  answer->u8(is_there(kLight) ? output_of(kLight.number) != 0 : 0);
+  answer->text(stopped);
+  chip.sent.clear();
 }
 
 // E: what a reset leaves alone.
@@ -290,6 +323,9 @@ int main() {
         break;
       case 'S':
         answer_step(&request, &said);
+        break;
+      case 'W':
+        answer_wait(&request, &said);
         break;
       case 'E':
         answer_kept(&said);

@@ -1,4 +1,4 @@
-// The tasks of a simulated chip, which have a thread each.
+// The tasks of a simulated chip: in turn on one thread, or on threads of their own.
 
 #ifndef TINISCRIPT_ESP32_SIMULATED_TASKS_H_
 #define TINISCRIPT_ESP32_SIMULATED_TASKS_H_

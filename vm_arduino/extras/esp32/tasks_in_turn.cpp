@@ -1,10 +1,12 @@
-// Tasks that go on in the chip's time, one after the other: each run repeats.
+// Tasks that go on in the chip's time, one after the other: each run repeats. All are on one thread
+// of this computer: to let threads take turns takes eight times as long.
 
 #include <freertos/task.h>
-#include <condition_variable>
+#include <sanitizer/common_interface_defs.h>
+#include <stdlib.h>
+#include <ucontext.h>
+
 #include <memory>
-#include <mutex>
-#include <thread>
 #include <vector>
 
 #include "simulated_chip.h"
@@ -12,30 +14,42 @@
 
 namespace {
 
+constexpr uint32_t kLongestMs = 10000;       // that a task calculates without a pause
+constexpr size_t kStackBytes = 1024 * 1024;  // of this computer, with what its sanitizers add
+
 struct Task {
   TaskFunction_t code;
   void* parameters;
   uint64_t due_us;
+  std::unique_ptr<char[]> memory;
+  ucontext_t context;
+  const void* stack;  // which the sanitizers are told of
+  size_t stack_bytes;
+  void* kept;
 };
 
-constexpr uint32_t kLongestMs = 10000;  // that a task calculates without a pause
-
 std::vector<std::unique_ptr<Task>> tasks;
-std::mutex turn;
-std::condition_variable changed;
-Task* active;  // nullptr: the main loop
-thread_local Task* own;
+Task main_loop;
+Task* active = &main_loop;
+Task* before;
 
-void wait_for(Task* task, std::unique_lock<std::mutex>* lock) {
-  changed.wait(*lock, [task] { return active == task; });
+// Behind a switch, in the task that goes on.
+void arrive() {
+  __sanitizer_finish_switch_fiber(active->kept, &before->stack, &before->stack_bytes);
 }
 
-void live(Task* task) {
-  std::unique_lock<std::mutex> lock(turn);
-  own = task;
-  wait_for(task, &lock);
-  lock.unlock();
-  task->code(task->parameters);
+void go_on_with(Task* task) {
+  before = active;
+  active = task;
+  __sanitizer_start_switch_fiber(&before->kept, task->stack, task->stack_bytes);
+  swapcontext(&before->context, &task->context);
+  arrive();
+}
+
+void live() {
+  arrive();
+  active->code(active->parameters);
+  abort();  // a task of FreeRTOS does not return
 }
 
 uint64_t next_us() {
@@ -48,12 +62,7 @@ uint64_t next_us() {
 
 void run_due() {
   for (size_t k = 0; k < tasks.size(); k++) {
-    Task* const task = tasks[k].get();
-    if (task->due_us > chip.now_us) continue;
-    std::unique_lock<std::mutex> lock(turn);
-    active = task;
-    changed.notify_all();
-    wait_for(nullptr, &lock);
+    if (tasks[k]->due_us <= chip.now_us) go_on_with(tasks[k].get());
   }
 }
 
@@ -68,8 +77,19 @@ BaseType_t xTaskCreatePinnedToCore(TaskFunction_t pvTaskCode, const char* const,
   if (chip.is_heap_full) return 0;
   expect(!chip.watches_idle || chip.restart_ms == 0 || chip.restart_ms >= kLongestMs,
          "a task that calculates for long beside an idle task that is watched");
-  tasks.emplace_back(new Task{pvTaskCode, pvParameters, chip.now_us + 1000});
-  std::thread(live, tasks.back().get()).detach();
+  std::unique_ptr<Task> task(new Task());
+  task->code = pvTaskCode;
+  task->parameters = pvParameters;
+  task->due_us = chip.now_us + 1000;
+  task->memory.reset(new char[kStackBytes]);
+  task->stack = task->memory.get();
+  task->stack_bytes = kStackBytes;
+  getcontext(&task->context);
+  task->context.uc_stack.ss_sp = task->memory.get();
+  task->context.uc_stack.ss_size = kStackBytes;
+  makecontext(&task->context, live, 0);
+  task->context.uc_stack.ss_size = 0;  // else ASan clears its shadow at each switch
+  tasks.push_back(std::move(task));
   next_task_us = next_us;
   run_tasks = run_due;
   return 1;
@@ -77,16 +97,13 @@ BaseType_t xTaskCreatePinnedToCore(TaskFunction_t pvTaskCode, const char* const,
 
 void vTaskDelay(const TickType_t xTicksToDelay) {
   expect_free("vTaskDelay in a critical section");
-  if (own == nullptr) {  // the main loop
+  if (active == &main_loop) {
     chip.rests++;
     chip.slept_us += xTicksToDelay * 1000;
     return pass_us(uint64_t{xTicksToDelay} * 1000);
   }
-  std::unique_lock<std::mutex> lock(turn);
-  own->due_us = chip.now_us + uint64_t{xTicksToDelay} * 1000;
-  active = nullptr;
-  changed.notify_all();
-  wait_for(own, &lock);
+  active->due_us = chip.now_us + uint64_t{xTicksToDelay} * 1000;
+  go_on_with(&main_loop);
 }
 
 }  // extern "C"

@@ -74,6 +74,16 @@ class Writer {
   std::string data_;
 };
 
+// Returns lines, each behind the time of all.
+inline std::string timed(uint32_t ms, const std::string& lines) {
+  std::string found;
+  for (size_t at = 0, end; at < lines.size(); at = end) {
+    end = lines.find('\n', at) + 1;
+    found += std::to_string(ms) + " " + lines.substr(at, end - at);
+  }
+  return found;
+}
+
 // Reads the next request, without its length; false at the end of the input.
 inline bool next_request(std::string* asked) {
   unsigned char head[4];

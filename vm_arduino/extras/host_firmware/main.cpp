@@ -179,12 +179,7 @@ void answer_wait(RequestReader* request, Writer* answer) {
     const size_t length = is_spread ? std::min<size_t>(1, left) : left;
     table.log.clear();
     sent += pass(first_ms + k, ticks, heard.data.get() + begin, length);
-    size_t at = 0;
-    while (at < table.log.size()) {
-      const size_t end = table.log.find('\n', at) + 1;
-      did += std::to_string(first_ms + k) + " " + table.log.substr(at, end - at);
-      at = end;
-    }
+    did += timed(first_ms + k, table.log);
     latched += static_cast<char>(table.is_latched);
   }
   answer->text(sent);
