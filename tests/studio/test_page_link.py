@@ -140,6 +140,18 @@ def test_a_fault_is_shown_at_its_line(page: Page) -> None:
     page.locator(".cm-activeLine").filter(has_text="SHOW").wait_for()
 
 
+def test_a_robot_that_restarts_is_told(page: Page, robot: PtyRobot) -> None:
+    drives(page, robot)
+    robot.switch_off()
+    robot.switch_on()
+    said(page, "The robot was restarted, and that ended its program.")
+    assert not robot.moves
+    page.click("#link_upload")  # the connection goes on
+    said(page, "The robot has it")
+    page.click("#stop")
+    said(page, "Stopped: the robot has confirmed it.")
+
+
 @pytest.mark.parametrize("way", ["button", "escape"])
 def test_stop_stops(page: Page, robot: PtyRobot, way: str) -> None:
     drives(page, robot)
