@@ -120,6 +120,17 @@ def check_text(text: str, kit: Kit, name: str = "") -> Compiled:
     found = _checked(text, kit, name)
     if found.is_right:
         return found
+    from tiniscript.diagnostics.codes import in_order
+    from tiniscript.recovery.findings import findings, moved_back
+    from tiniscript.source import applied
+
+    answered = findings(found.source, found.diagnostics, lambda it: _checked(it, kit).diagnostics)
+    if answered:
+        edits = [edit for each in answered if each.repair for edit in each.repair.edits]
+        rest = check_text(applied(text, edits), kit)
+        if not rest.is_right:  # else its warnings come when it is repaired
+            answered += [moved_back(each, edits) for each in rest.diagnostics]
+        return found._replace(diagnostics=in_order(answered))
     from tiniscript.repairs.def_order import with_moved_defs
     from tiniscript.repairs.everywhere import said_once
     from tiniscript.repairs.vouching import vouched

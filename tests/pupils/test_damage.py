@@ -16,10 +16,9 @@ import pytest
 from tests.pupils.corpus import check
 from tests.pupils.test_pupils import OTHER_NUMBERS, mistakes
 from tiniscript.diagnostics.codes import Diagnostic
-from tiniscript.repairs.edits import applied
 from tiniscript.repairs.fixing import fixed, keeps_numbers
 from tiniscript.repairs.placing import edits_of
-from tiniscript.source import Source
+from tiniscript.source import Source, applied
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 IN_CI = 150

@@ -7,10 +7,9 @@ import pytest
 from tests.pupils.corpus import check
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.rendering import message
-from tiniscript.repairs.edits import applied
 from tiniscript.repairs.fixing import fixed
 from tiniscript.repairs.placing import edits_of
-from tiniscript.source import Source
+from tiniscript.source import Source, applied
 
 
 @pytest.mark.parametrize(

@@ -7,9 +7,8 @@ import pytest
 from tests.pupils.corpus import check
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.rendering import message
-from tiniscript.repairs.edits import applied
 from tiniscript.repairs.placing import edits_of
-from tiniscript.source import Source
+from tiniscript.source import Source, applied
 
 DANCE = "DEF DANCE;S;END_DEF;"
 

@@ -12,11 +12,10 @@ import pytest
 from tests.pupils.corpus import Entry, check, entries, found_in, write
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
-from tiniscript.repairs.edits import Edit, applied
 from tiniscript.repairs.fixing import fixed
 from tiniscript.repairs.placing import edits_of
 from tiniscript.repairs.shifted_keys import shifted_call
-from tiniscript.source import Source
+from tiniscript.source import Edit, Source, applied
 
 ENTRIES = entries()
 # Repairs that write a number in another way: a unit, a letter for a digit, `X++`, `50.`, and how

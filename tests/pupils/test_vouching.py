@@ -12,11 +12,10 @@ from tiniscript.diagnostics.rendering import message
 from tiniscript.kit import Kit
 from tiniscript.repairs import fixing, vouching, whole_calls
 from tiniscript.repairs.accounting import lost, makes_up, makes_up_names
-from tiniscript.repairs.edits import Edit
 from tiniscript.repairs.fixing import fixed
 from tiniscript.repairs.placing import edits_of
 from tiniscript.repairs.vouching import vouched
-from tiniscript.source import Source, Span
+from tiniscript.source import Edit, Source, Span
 from tiniscript.syntax.parser import parse
 
 

@@ -225,7 +225,6 @@ RECOVERIES: dict[str, tuple[list[str], str]] = {
     "S = 5;S": (["TS105 S"], "S «S»"),
     "PING|F(2, 80)": (["TS035 F"], ""),
     # what is clear is read as it is meant
-    "SI:S": (["TS036 SI:"], "S «S»"),
     "GO|S": (["TS034 GO"], "S «S»"),
     "X = (A Y Q)": (["TS010 Y"], "X = [A AND_LEFT Q AND] «X = (A Y Q)»"),
     "IF(A IS LESS THAN 5);ENDIF": (

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from tiniscript.source import Span
+from tiniscript.source import Edit, Span
 
 
 class Code(NamedTuple):
@@ -17,16 +17,25 @@ class Code(NamedTuple):
     is_mistake: bool
 
 
+class Repair(NamedTuple):
+    """The changes that a thing to try asks for; `is_sure`: they may be made without asking."""
+
+    edits: tuple[Edit, ...]
+    is_sure: bool
+
+
 class Diagnostic(NamedTuple):
     """One diagnostic in one place. `values` fill the gaps in its message.
 
-    `place` is what the thing to try stands for, where that is not `span`.
+    `place` is what the thing to try stands for, where that is not `span`. `repair` is what
+    `recovery` found, None where `repairs` looks for it.
     """
 
     code: Code
     span: Span
     values: Mapping[str, str] = {}
     place: Span | None = None
+    repair: Repair | None = None
 
     @property
     def is_mistake(self) -> bool:

@@ -49,15 +49,20 @@ CONFUSED = {
     ",": ";", "'": ",", "|": ";", "!": "|",
 }  # fmt: skip
 
-# What stands for `SI|` and `SB|`, and what begins an instruction behind it.
-SETUP = "^(?P<ind>\\s*)(?P<head>[Ss][IiÍíBb])(?:(?=(?:[FBLRWMfblrwm]|IF|LOOP|WHILE|BEEP|SHOW)\\()|(?=\\W|_|$)|(?=[lI][FBLRWMfblrwm]\\())(?P<sep>\\s*(?:\\|\\||[;:.,'´`¨°\\\\/$¿¡!\\[{¬=\\-_~^*>¦│ǀ→+…(—–\\]\\x22?&@#)}]|//|\\.\\||\\|\\s*\\||,\\||[lI](?=\\s|[FBLRWMfblrwm]\\()|\\|)?)(?P<gap>\\s*)"
-STARTS = "\\s*(?:[FBLRWM]\\s*\\(|BEEP\\s*\\(|LOOP\\b|DEF\\b|IF\\b|WHILE\\b|SHOW\\b|STOP\\b|S\\b|X\\s*=|[A-Z_]+\\s*=|$)"
-STARTS_OF_IF = "\\s*(?:[FBLRWMfblrwm]\\s*\\(|BEEP|LOOP|DEF|IF|WHILE|SHOW)"
+# What stands for `SI|` and `SB|`: signs, a letter that looks like the bar, or nothing.
+SETUP = (
+    r"\s*(?P<head>[Ss][IiÍíBb1Ll])(?P<sep>\s*(?:\|\|+|//|[^\w\s|｜(]{1,3}\|?|[(_]|\||"
+    r"(?!IF\([^)]*[<>=])[lLI1](?=\s+[^\W\d]|(?i:[FBLRWM]|IF|LOOP|WHILE|BEEP)\())?)\s*"
+)
+BARS = (":", "||", "/", "\\", "¦", "!", "¡")  # signs that stand for the bar whatever follows
+NOTES = ("//", "#")  # which stand for it before a call alone
+
 # A line that begins a block whose question comes at its end.
 DO_ALONE = r"\s*(?:REPEAT|REPETIR|REPITE|DO|LOOP|HACER)\b\s*\{?\s*$"
 
 SIGNS = r"""
 (?<=\d)\. (?=\d)  |  `.`  |  1  |  TS008  |  applied  |  F(1. 5, 80) => F(1.5, 80)
+^(\s*S[IB]\s*\|)\s+\|  |  `\1`  |  1  |  TS054  |  applied  |  SI| |F(2, 80) => SI|F(2, 80)
 −  |  `-`  |  0  |  TS010  |  applied  |  M(−50 50) => M(-50, 50)
 &nbsp;  |  ` `  |  1  |  TS072  |  applied  |  F(2, 80);&nbsp;R(1, 50); => F(2, 80); R(1, 50);
 ½  |  `0.5`  |  1  |  TS010  |  applied  |  F(½, 80) => F(0.5, 80)

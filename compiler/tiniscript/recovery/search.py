@@ -7,7 +7,6 @@ part of the text cannot be read; numbers, names and commands change by a row alo
 from __future__ import annotations
 
 import re
-import unicodedata
 from collections.abc import Callable, Iterator, Sequence
 from typing import NamedTuple
 
@@ -16,7 +15,8 @@ from tiniscript.recovery import lines, rewrites, rows
 from tiniscript.recovery.blocks import Edit, Line, Matched, matched
 from tiniscript.recovery.concepts import CALLED, Lexeme, Names, lexemes, made, plain
 from tiniscript.recovery.lines import MARGIN, Reading, Step
-from tiniscript.recovery.writing import as_written, laid_out
+from tiniscript.recovery.setup import setup
+from tiniscript.recovery.writing import as_written, laid_out, without_note
 from tiniscript.syntax.outline import Failure
 
 CHECKS = 40  # of candidates of one program
@@ -53,7 +53,7 @@ class _Text:
 
     def __init__(self, source: str) -> None:
         self.source = source
-        self.body, self.note = _without_note(source)
+        self.body, self.note = without_note(source)
         self.steps: list[Step] = []
         self.is_sure = True
         self.reading: Reading | None = None
@@ -83,8 +83,8 @@ class _Recovery:
         return self._mistakes(text)
 
     def run(self) -> Candidate | None:
-        self.read_signs()
         self.read_setup()
+        self.read_signs()
         self.join_until()
         names = Names([lexemes(each.body) for each in self.lines], self.kit)
         for line in self.lines:
@@ -106,30 +106,20 @@ class _Recovery:
                     line.steps.append(Step(row.code, lexemes(body), lexemes(new)))
                     line.is_sure = line.is_sure and not row.is_offered
                     body = new
-            line.body, note = _without_note(body)
+            line.body, note = without_note(body)
             line.note = note + line.note
 
     def read_setup(self) -> None:
-        """Read what stands for `SI|` at the beginning."""
-        first = next((each for each in self.lines if each.body.strip() or each.note), None)
-        match = re.match(rows.SETUP, first.body) if first else None
-        if first is None or match is None or re.match(r"\s*S[IB]\s*\|[^|]", first.body):
+        """Put the bar behind `SI`, where another sign stands or none."""
+        begun = setup([line.source for line in self.lines])
+        if begun is None:
             return
-        rest = first.body[match.end() :]
-        begins = re.match(rows.STARTS, rest, re.IGNORECASE)
-        is_shown = bool(match["sep"]) or match["head"].upper() == "SB" or bool(match["gap"])
-        is_shown = is_shown or bool(re.match(r"[FBLRWM]\(", rest))
-        is_alone = not rest and (len(self.lines) > 1 or not match["sep"])
-        if not ((begins and is_shown) or is_alone):
-            return
-        is_if = plain(match["head"]) == "SI" and not match["sep"]
-        if is_if and rest and not re.match(rows.STARTS_OF_IF, rest):
-            word = begins[0].strip().upper() if begins else ""
-            if not begins or not match["gap"] or word == "IF":
-                return
-        new = match["ind"] + _plain(match["head"]) + "|" + match["gap"] + rest
-        first.steps.append(Step(rows.SETUP_CODE, lexemes(first.body), lexemes(new)))
-        first.body = new
+        first = self.lines[begun.line]
+        old, close = first.body, begun.close
+        rest = old[begun.end :] if close is None else old[begun.end : close] + old[close + 1 :]
+        first.body = old[: begun.start] + begun.right + rest
+        first.steps.append(Step(rows.SETUP_CODE, lexemes(old), lexemes(first.body)))
+        first.is_sure = begun.is_sure
 
     def join_until(self) -> None:
         """Put an UNTIL on a line of its own behind the instruction before it."""
@@ -336,19 +326,6 @@ def _without_empty(tokens: Sequence[Lexeme]) -> list[Lexeme]:
         if token.text != ";" or (kept and kept[-1].text not in (";", "|")):
             kept.append(token)
     return kept
-
-
-def _without_note(line: str) -> tuple[str, str]:
-    """Return a line without its comment, and that with the space before it."""
-    note = re.search(r"(?i)(?<!\bSI)(?<!\bSB)//", line)
-    body = line[: note.start()].rstrip() if note else line
-    return body, line[len(body) :]
-
-
-def _plain(text: str) -> str:
-    return "".join(
-        sign for sign in unicodedata.normalize("NFD", text) if not unicodedata.combining(sign)
-    )
 
 
 def with_defs_first(text: str) -> str | None:

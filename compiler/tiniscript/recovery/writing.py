@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 
 from tiniscript.recovery.concepts import Lexeme, plain
@@ -52,3 +53,10 @@ def _source(token: Lexeme) -> str:
         return token.source
     as_it_was = plain(token.source)
     return token.text if token.source.isupper() or as_it_was != token.text else as_it_was.lower()
+
+
+def without_note(line: str) -> tuple[str, str]:
+    """Return a line without its comment, and that with the space before it."""
+    note = re.search(r"(?i)(?<!\bSI)(?<!\bSB)//", line)
+    body = line[: note.start()].rstrip() if note else line
+    return body, line[len(body) :]

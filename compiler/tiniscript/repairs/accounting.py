@@ -91,7 +91,7 @@ _REWRITES = frozenset((
 ))  # fmt: skip
 _RENAMES = frozenset((
     codes.PROSE, codes.UNKNOWN_WORD, codes.UNKNOWN_NAME, codes.OTHER_NOTE, codes.SETUP_UNKNOWN,
-    codes.SETUP_NEEDS_BAR, codes.BAD_NAME, codes.PASTED, codes.LINE_NUMBER, codes.BAD_NUMBER,
+    codes.BAD_NAME, codes.PASTED, codes.LINE_NUMBER, codes.BAD_NUMBER,
     codes.QUOTE, codes.LISTS, codes.WANTS_CONDITION, codes.WORDS_SHOWN, codes.MIXED_COMPARE,
     codes.NAMED_ARGUMENT, codes.WORDS_BEHIND, codes.BY_CHANCE,
 ))  # fmt: skip

@@ -7,8 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from tiniscript.repairs.edits import Edit
-from tiniscript.source import Span
+from tiniscript.source import Edit, Span
 from tiniscript.syntax.cursor import AT_END
 from tiniscript.syntax.lexer import NEWLINE, WORD, Token, scan
 from tiniscript.syntax.suggestions import foreign_block

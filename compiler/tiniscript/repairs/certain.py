@@ -11,8 +11,7 @@ from collections.abc import Sequence
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.repairs.accounting import makes_up_names
-from tiniscript.repairs.edits import Edit
-from tiniscript.source import Source, Span
+from tiniscript.source import Edit, Source, Span
 
 # `8O`, `1OO` and `O.5`: in any other place a letter may be one too many.
 _LETTER_FOR_ZERO = re.compile(r"[1-9][Oo]{1,2}|[Oo]\.[0-9]+")

@@ -5,8 +5,7 @@ Knows the pieces that `pasted` finds. Where two instructions would touch, a `;` 
 
 from __future__ import annotations
 
-from tiniscript.repairs.edits import Edit
-from tiniscript.source import Span
+from tiniscript.source import Edit, Span
 from tiniscript.syntax.pasted import pieces
 
 

@@ -13,9 +13,8 @@ from typing import NamedTuple
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.diagnostics.rendering import FIX_CHARACTERS
-from tiniscript.repairs.edits import Edit, applied
 from tiniscript.repairs.whole_blocks import LONGEST, in_one_line
-from tiniscript.source import Source, Span
+from tiniscript.source import Edit, Source, Span, applied
 from tiniscript.syntax.formatter import Piece, pieces_of
 from tiniscript.syntax.lexer import scan
 from tiniscript.words import ALIASES, BLOCK_ENDS

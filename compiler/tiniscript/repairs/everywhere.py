@@ -11,8 +11,7 @@ from collections.abc import Sequence
 
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
-from tiniscript.repairs.edits import Edit
-from tiniscript.source import Source, Span
+from tiniscript.source import Edit, Source, Span
 from tiniscript.words import BLOCK_ENDS
 
 _NAMES = (

@@ -14,9 +14,8 @@ from typing import NamedTuple
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic
 from tiniscript.repairs.certain import is_certain
-from tiniscript.repairs.edits import Edit, applied, overlap
 from tiniscript.repairs.placing import edits_of
-from tiniscript.source import Source
+from tiniscript.source import Edit, Source, applied, overlap
 from tiniscript.words import is_guessed
 
 # Codes whose repair is a guess, also where it keeps every number.
@@ -166,6 +165,10 @@ def _sure(found: list[Diagnostic], text: str) -> list[_Repair]:
     source = Source(text)
     repairs = []
     for diagnostic in found[:MANY]:  # the others come when these are made
+        if diagnostic.repair is not None:
+            made = _Repair(diagnostic.code, [*diagnostic.repair.edits])
+            repairs += [made] if diagnostic.repair.is_sure else []
+            continue
         is_guess = diagnostic.code in _GUESSED and "ends" not in diagnostic.values
         if not diagnostic.is_mistake or is_guess:  # a whole block is none: see `whole_blocks`
             continue

@@ -13,9 +13,8 @@ from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic
 from tiniscript.repairs.braces import without_braces
 from tiniscript.repairs.copied import without_pasted
-from tiniscript.repairs.edits import Edit
 from tiniscript.repairs.everywhere import edits_elsewhere
-from tiniscript.source import Source, Span
+from tiniscript.source import Edit, Source, Span
 
 Edits = list[Edit] | None
 
@@ -27,6 +26,8 @@ _TO_ITS_END = re.compile(r"[^;\r\n{}]*")
 
 def edits_of(diagnostic: Diagnostic, source: Source) -> Edits:
     """Return the changes that the thing to try asks for; None where it is no change of the text."""
+    if diagnostic.repair is not None:
+        return [*diagnostic.repair.edits]
     if diagnostic.place is not None and diagnostic.values.get("block"):
         return [Edit(diagnostic.place, diagnostic.values["block"])]  # see `whole_blocks`
     place = _PLACES.get(diagnostic.code)
@@ -133,11 +134,6 @@ def _close(diagnostic: Diagnostic, source: Source) -> Edits:
 def _written(new: str) -> Callable[[Diagnostic, Source], Edits]:
     """The span becomes this sign."""
     return lambda diagnostic, source: [Edit(diagnostic.span, new)]
-
-
-def _bar(diagnostic: Diagnostic, source: Source) -> Edits:
-    fix = diagnostic.values.get("fix", "")
-    return [Edit(diagnostic.place or diagnostic.span, fix)] if fix else None
 
 
 def _setup(diagnostic: Diagnostic, source: Source) -> Edits:
@@ -258,7 +254,6 @@ _PLACES: dict[Code, Callable[[Diagnostic, Source], Edits]] = {
     codes.EMPTY_BRACKETS: _word,
     codes.UNTIL_ALONE: _assigned,
     codes.SETUP_UNKNOWN: _setup,
-    codes.SETUP_NEEDS_BAR: _bar,
     codes.CHAINED: _assigned,
     codes.NO_BRACKETS_HERE: _assigned,
     codes.NO_VALUE: _assigned,

@@ -14,10 +14,9 @@ from typing import NamedTuple
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.repairs.accounting import lost, makes_up
-from tiniscript.repairs.edits import Edit, applied, overlap
 from tiniscript.repairs.placing import edits_of
 from tiniscript.repairs.whole_calls import with_whole_calls
-from tiniscript.source import Source
+from tiniscript.source import Edit, Source, applied, overlap
 from tiniscript.syntax.call_suggestions import LONG_TIME_S
 from tiniscript.words import usage_of
 

@@ -16,10 +16,9 @@ from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.diagnostics.rendering import FIX_CHARACTERS
 from tiniscript.repairs.accounting import lost, makes_up
-from tiniscript.repairs.edits import applied
 from tiniscript.repairs.fixing import fixed
 from tiniscript.repairs.placing import edits_of
-from tiniscript.source import Source, Span
+from tiniscript.source import Source, Span, applied
 from tiniscript.syntax.formatter import instruction_text, pieces_of
 from tiniscript.syntax.lexer import scan
 from tiniscript.words import ALIASES, BLOCK_ENDS

@@ -13,11 +13,10 @@ from typing import NamedTuple
 
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
-from tiniscript.repairs.edits import Edit, applied
 from tiniscript.repairs.placing import edits_of
 from tiniscript.repairs.said_calls import LONGEST, Said, said_call
 from tiniscript.repairs.shifted_keys import shifted_call
-from tiniscript.source import Source, Span
+from tiniscript.source import Edit, Source, Span, applied
 from tiniscript.syntax.lexer import NEWLINE, scan
 from tiniscript.words import WORDS
 

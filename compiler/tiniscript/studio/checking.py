@@ -13,11 +13,10 @@ from tiniscript import Compiled, robots
 from tiniscript.codegen import source_map
 from tiniscript.diagnostics.rendering import Message, message
 from tiniscript.library.compiling import compiled, text_of
-from tiniscript.repairs.edits import Edit
 from tiniscript.repairs.fixing import offers
 from tiniscript.robots.profile import Robot
 from tiniscript.semantics import ir
-from tiniscript.source import Source
+from tiniscript.source import Edit, Source
 from tiniscript.text.fitting import misfits
 from tiniscript.text.levels import level_of
 from tiniscript.text.line import line_of

@@ -47,8 +47,6 @@ if TYPE_CHECKING:
 
 ENOUGH = 100  # diagnostics after which reading on helps nobody
 
-_SETUPS = frozenset(("SI", "SB", "PING"))
-_MISREAD = frozenset(("S1", "SL", "5I"))  # SI, with a letter or a digit for another one
 _BEGIN_ENDS = ("END", "FIN")  # END_JUMP, FIN
 # What stands alone for the line above, or for what follows.
 _AGAIN = frozenset("IDEM DITTO IGUAL SAME AGAIN NUEVAMENTE ETC ETCETERA".split())  # noqa: SIM905
@@ -118,25 +116,11 @@ class Parser:
         if self._kit and word.text not in WORDS and bar.kind in _IN_TITLE:
             self.recovery.setup.titles()
             word, bar = cursor.token, cursor.following
-        if (
-            self._kit
-            and word.text not in WORDS
-            and (word.kind is not WORD or word.text[:2] in _SETUPS or word.text[:2] == "S1")
-            and bar.kind in ("|", "(")
-        ):
-            misread = self.recovery.setup.misread(word, bar)
-            if misread is not None:
-                return misread
         if word.kind is not WORD:
-            return "SI"
+            return self.recovery.setup.misread(word) if bar.kind == "|" else "SI"
         if bar.kind != "|":
-            is_in_two = word.text == "S" and bar.text == "I"
-            if (
-                word.text in _SETUPS
-                or is_in_two
-                or (self._kit and bar.kind != "=" and self._is_misread(word))
-            ):
-                return self.recovery.setup.without_bar(word) or "SI"
+            if word.text == "S" and bar.text == "I":
+                self.recovery.setup.in_two(word, bar)
             return "SI"
         cursor.i += 2
         if word.text == "PING":
@@ -144,9 +128,6 @@ class Parser:
         elif word.text not in ("SI", "SB"):
             return self.recovery.setup.unknown(word)
         return word.text
-
-    def _is_misread(self, word: Token) -> bool:
-        return word.text in _MISREAD and word.text not in self._devices
 
     def check_connection(self, ping: Token) -> None:
         cursor = self.cursor

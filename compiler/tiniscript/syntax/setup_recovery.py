@@ -5,16 +5,14 @@ Knows what people write in place of `SI|`, and bars that stand elsewhere.
 
 from __future__ import annotations
 
-import re
 from typing import TYPE_CHECKING, NoReturn
 
 from tiniscript.diagnostics import codes
 from tiniscript.source import Span
-from tiniscript.syntax.cursor import AT_END, Cursor
+from tiniscript.syntax.cursor import Cursor
 from tiniscript.syntax.foreign import foreign_header
-from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, ODD, WORD, Token
+from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, WORD, Token
 from tiniscript.syntax.near import near_at
-from tiniscript.syntax.operators import COMPARISONS
 from tiniscript.syntax.phrases import (
     BEFORE_CALL,
     BEFORE_NAME,
@@ -28,7 +26,6 @@ from tiniscript.syntax.phrases import (
 from tiniscript.syntax.reporter import Reporter, Resumed
 from tiniscript.syntax.suggestions import (
     OPERATOR_WORDS,
-    after_bracket,
     head_in,
     inside,
     is_question,
@@ -45,9 +42,6 @@ _SEEING = frozenset(
 )
 
 
-_BARS = (":", "||", "/", "\\", "¦", "!", "¡")  # that stand for the bar whatever follows
-# Signs that mean nothing right behind SI, where an instruction comes after them.
-_FOR_BAR = COMPARISONS | {";", ",", "-", "+", "*", "/", "%", ")", "{"}
 _TITLES = 3  # lines above a program
 # Words of a line that does something in another language.
 _SAYING = (
@@ -56,8 +50,6 @@ _SAYING = (
 )  # fmt: skip
 _SHORT = 3  # letters of names that may be variables
 _IN_INSTRUCTION = frozenset(("(", "=", "|", "{", "}", "<", ">", ";"))
-_SIGNS = 3  # of them in a row
-_NOTE = re.compile(r"[ \t]*(//|#)(?=[ \t]*[A-Za-z]\w*[ \t]*\()")  # `SI//F(2, 80)`
 
 
 class SetupRecovery:
@@ -106,128 +98,24 @@ class SetupRecovery:
         is_long = len(words) > 1 and any(len(each.text) > _SHORT for each in words)
         return is_before_call and not says and is_long
 
-    def without_bar(self, word: Token) -> str | None:
-        """`SI:F(2, 80)`, `SI°F(2, 80)`, `SI F(2, 80)`: return how the program begins, and go on.
-
-        None where another thing than a program may begin here, as a question in Spanish.
-        """
-        cursor, tokens = self.cursor, self.cursor.tokens
-        start = k = cursor.i + 1
-        if word.text == "PING" or (word.text == "S" and not self._is_in_two(word)):
-            return None
-        if word.text == "S":
-            cursor.i += 3
-            return "SI"
-        line = cursor.line_of(word)
-        while self._is_sign(k) and k - start < _SIGNS and cursor.line_of(tokens[k]) == line:
-            k += 1
-        if k > start and tokens[k].kind == "|":  # `SI.|F(2, 80)`
-            k += 1
-        if k == start and tokens[k].kind == "(":
-            return self._in_brackets(word, start)
-        is_letter = tokens[k].text in ("L", "I") or cursor.source[tokens[k].span] == "1"
-        if k == start and is_letter and self._begins(k + 1, line):
-            k += 1
-        note = _NOTE.match(cursor.source.text, word.end)
-        if k == start and note is not None:
-            self.reporter.answer(Token(ODD, "", note.start(1), note.end()))
-            self._bar_missing(word, Span(word.start, note.end()))
-            cursor.i = k
-            return "SB" if word.text == "SB" else "SI"
-        is_bar = k == start + 1 and cursor.source[tokens[start].span] in _BARS
-        is_line = k > start and tokens[k].kind in (NEWLINE, END)
-        if not (is_bar or is_line or self._begins(k, line, k > start)):
-            return None
-        for token in tokens[cursor.i : k]:
-            self.reporter.answer(token)
-        span = Span(word.start, tokens[k - 1].end)
-        self._bar_missing(word, span)
-        cursor.i = k
-        return "SB" if word.text == "SB" else "SI"
-
-    def _is_in_two(self, word: Token) -> bool:
+    def in_two(self, word: Token, letter: Token) -> None:
         """`S I|F(2, 80)`."""
-        letter, bar = self.cursor.tokens[self.cursor.i + 1 : self.cursor.i + 3]
-        if letter.text != "I" or bar.kind != "|":
-            return False
-        span = Span(word.start, letter.end)
-        found = self.cursor.source[span]
-        self.reporter.report(codes.SETUP_UNKNOWN, span, None, found=found, right="SI|")
-        return True
+        if self.cursor.tokens[self.cursor.i + 2].kind == "|":
+            self._unknown(Span(word.start, letter.end), "SI|")
+            self.cursor.i += 3
 
-    def _bar_missing(
-        self, word: Token, span: Span, place: Span | None = None, fix: str = ""
-    ) -> None:
-        sign = self.cursor.source[Span(word.end, span.end)].strip()
-        found = "SB" if word.text == "SB" else "SI"
-        said = {"found": found, "fix": fix or f"{found}|", _kind_of(sign): sign}
-        self.reporter.report(codes.SETUP_NEEDS_BAR, span, place, **said)
-
-    def _in_brackets(self, word: Token, start: int) -> str | None:
-        """`SI(F(2, 80))`: a bracket for the bar, and perhaps its other one."""
-        tokens = self.cursor.tokens
-        if not self._begins(start + 1, self.cursor.line_of(word)):
-            return None
-        end = after_bracket(tokens, start)
-        self.reporter.answer(tokens[start])
-        span = Span(word.start, tokens[start].end)
-        self.cursor.i = start + 1
-        if end is None:
-            self._bar_missing(word, span)
-        else:
-            close = tokens.pop(end - 1)
-            self.reporter.answer(close)
-            inner = self.cursor.source[Span(tokens[start].end, close.start)]
-            self._bar_missing(word, span, Span(word.start, close.end), f"{word.text}|{inner}")
-        return word.text
-
-    def _is_sign(self, k: int) -> bool:
-        """Whether a sign is at `k` that stands for nothing at the beginning of a program."""
-        token = self.cursor.tokens[k]
-        is_bar = self.cursor.source[token.span] in _BARS
-        return is_bar or token.kind is ODD or token.kind in _FOR_BAR
-
-    def _begins(self, k: int, line: int, is_sure: bool = False) -> bool:
-        """Whether an instruction begins at `k`; `is_sure`: it cannot be a question."""
-        tokens = self.cursor.tokens
-        if k >= len(tokens) or self.cursor.line_of(tokens[k]) != line:
-            return False
-        word, after = tokens[k], tokens[min(k + 1, len(tokens) - 1)]
-        known = WORDS.get(word.text) if word.kind is WORD else None
-        if known is not None and known.role not in ("setup", "value", "operator", "function"):
-            return is_sure or after.kind in ("(", *AT_END) or word.text == "DEF" or known.is_call
-        if word.kind is not WORD or not is_sure:
-            return False
-        return after.kind == "=" or (after.kind == "(" and meant_by(word.text) is not None)
-
-    def misread(self, first: Token, bar: Token) -> str | None:
-        """`5I|F(2, 80)` and `SILF(2, 80)`: return how the program begins, None if not so."""
-        cursor = self.cursor
-        text = cursor.source[first.span].upper()
-        if bar.kind == "|" and text in ("5I", "51", "S1", "5B", "S8", "58"):
+    def misread(self, first: Token) -> str:
+        """`5I|F(2, 80)`: return how the program begins."""
+        text = self.cursor.source[first.span].upper()
+        if text in ("5I", "51", "5B", "58"):
             self.reporter.answer(first)
-            right = "SI|" if text in ("5I", "51", "S1") else "SB|"
-            self.reporter.report(codes.SETUP_UNKNOWN, first.span, found=text, right=right)
-            cursor.i += 2
-            return right[:2]
-        rest, length = WORDS.get(text[2:]), 2  # `SIF(2, 80)`
-        if rest is None and text[2:3] in ("L", "I", "1", "_"):
-            rest, length = WORDS.get(text[3:]), 3
-        if text == "SIIF" and not any(
-            each.kind in COMPARISONS for each in inside(cursor.tokens, cursor.i + 1)
-        ):
-            rest, length = WORDS["F"], 3  # an I for the bar
-        begin = "SI" if text[:2] == "S1" else text[:2]
-        is_known = rest is not None and (rest.is_call or rest.role == "block")
-        is_glued = text not in WORDS and begin in ("SI", "SB") and is_known
-        if not is_glued or bar.kind != "(" or rest is None:
-            return None
-        span = Span(first.start, first.start + length)
-        sign = cursor.source[Span(first.start + 2, first.start + length)]
-        said = {"found": begin, "fix": f"{begin}|", _kind_of(sign): sign}
-        self.reporter.report(codes.SETUP_NEEDS_BAR, span, None, **said)
-        cursor.tokens[cursor.i] = Token(WORD, rest.text, first.start + length, first.end)
-        return begin
+            self._unknown(first.span, "SI|" if text in ("5I", "51") else "SB|")
+            self.cursor.i += 2
+        return "SB" if text in ("5B", "58") else "SI"
+
+    def _unknown(self, span: Span, right: str) -> None:
+        found = self.cursor.source[span].upper()
+        self.reporter.report(codes.SETUP_UNKNOWN, span, None, found=found, right=right)
 
     def unknown(self, word: Token) -> str:
         """`START|F(2, 80)`, `GO|F(2, 80)`: go on as after `SI|`."""
@@ -239,7 +127,7 @@ class SetupRecovery:
         right = "SI|"
         if word.text.startswith(("SB", "S8", "BOT", "BUT")) or meant_by(word.text) == "BUTTON":
             right = "SB|"
-        self.reporter.report(codes.SETUP_UNKNOWN, word.span, found=word.text, right=right)
+        self._unknown(word.span, right)
         return "SI"
 
     def not_alone(self, ping: Token, token: Token) -> None:
@@ -326,8 +214,3 @@ class SetupRecovery:
         self.reporter.report(codes.BAR_BETWEEN, bar.span)
         self.cursor.i += 1
         raise Resumed
-
-
-def _kind_of(sign: str) -> str:
-    """`SIlF(2, 80)` has a letter where the bar belongs, which looks like it."""
-    return "letter" if sign.isalpha() else "sign"

@@ -1,0 +1,67 @@
+"""The codes that were handed over to the new recovery: their findings, and what comes behind."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.pupils.corpus import check
+from tiniscript.diagnostics import codes
+from tiniscript.diagnostics.codes import Diagnostic
+from tiniscript.recovery.findings import moved_back
+from tiniscript.recovery.setup import Setup, setup
+from tiniscript.repairs.fixing import fixed
+from tiniscript.source import Edit, Span
+
+
+@pytest.mark.parametrize(
+    ("wrong", "found"),
+    [
+        ("SI:F(2, 80)", Setup(0, 0, 3, "SI", None, True)),
+        ("\n sb F(2, 80)", Setup(1, 1, 3, "SB", None, True)),
+        ("SI(F(2, 80)); S", Setup(0, 0, 3, "SI", 11, True)),
+        ("SIF(2, 80)", Setup(0, 0, 2, "SI", None, True)),
+        ("S1F(2, 80)", Setup(0, 0, 2, "SI", None, False)),
+        ("SI 1 F(2, 80)", Setup(0, 0, 4, "SI", None, False)),
+        ("SI| F(2, 80)", None),
+        ("SI DISTANCE < 10", None),
+        ("si hay una pared para", None),
+        ("", None),
+    ],
+)
+def test_how_a_program_begins(wrong: str, found: Setup | None) -> None:
+    assert setup(wrong.split("\n")) == found
+
+
+def test_a_finding_has_typed_values_and_edits() -> None:
+    (found,) = check("SI{F(2, 80)")
+    assert found.values == {"found": "SI", "sign": "{", "letter": "", "fix": "SI|"}
+    assert found.repair is not None and found.repair.edits == (Edit(Span(0, 3), "SI|"),)
+
+
+def test_what_comes_behind_is_told_where_it_stands() -> None:
+    text = "SIF(2, 80); R(1, 60). S. FAST"
+    found = check(text)
+    assert [(each.code.number, text[slice(*each.span)]) for each in found] == [
+        ("TS036", "SI"), ("TS010", "."), ("TS101", "FAST"),
+    ]  # fmt: skip
+    assert fixed(text, check).text == "SI|F(2, 80); R(1, 60); S; FAST"
+
+
+def test_a_digit_is_never_taken_for_the_bar() -> None:
+    assert fixed("SI1F(2, 80)", check).text == "SI1F(2, 80)"
+
+
+def test_a_line_with_a_checksum_is_left_alone() -> None:
+    assert "TS058" in [each.code.number for each in check("SI:F(2, 80)~B77E7BD9")]
+
+
+@pytest.mark.parametrize(
+    ("span", "before"),
+    [((0, 3), (0, 3)), ((1, 2), (0, 3)), ((3, 5), (3, 5)), ((6, 6), (7, 7)), ((2, 8), (0, 9))],
+)
+def test_a_place_behind_edits_was_elsewhere(span: tuple[int, int], before: object) -> None:
+    found = Diagnostic(codes.ODD_CHARACTER, Span(*span), {"also": f"{span[0]}:{span[1]}"})
+    edits = [Edit(Span(5, 6), ""), Edit(Span(0, 3), "SI|")]
+    moved = moved_back(found, edits)
+    assert moved.span == before
+    assert moved.values["also"] == "{}:{}".format(*moved.span)
