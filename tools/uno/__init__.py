@@ -152,11 +152,13 @@ class Uno:
         mark = len(self.events)
         self._tell("aside")
         self._wait_for_pause(mark)
-        yield
-        there = len(self.events)
-        self._tell("back")
-        self._wait_for_pause(there)
-        del self.events[mark:]
+        try:
+            yield
+        finally:
+            there = len(self.events)
+            self._tell("back")
+            self._wait_for_pause(there)
+            del self.events[mark:]
 
     def pause(self) -> None:
         mark = len(self.events)
