@@ -58,7 +58,7 @@ GOALS: tuple[Goal, ...] = (
          "damaged frames", 10_000_000, 2_000_000, "tests.link.test_damaged_frames {count} --large --seed {seed}"),
     Goal("typed-stops", "A typed stop is seen behind any bytes, and none in a frame that arrives whole.",
          "prefixes, and a hundred frames of each", 1_000_000, 100_000, "tests.link.test_typed_stops {count} --frames {count}00 --seed {seed}"),
-    Goal("typed-stops-chip", "On a simulated Uno, at both rates, a typed stop behind random bytes is at the pins within a millisecond, or 103 ms after the last byte of what began as a frame; nothing of before starts.",
+    Goal("typed-stops-chip", "On a simulated Uno, at both rates, a typed stop behind random bytes is at the pins within a millisecond, or 105 ms after the last byte of what began as a frame; nothing of before starts.",
          "stops", 10_000, 500, "tests.firmware.test_typed_stops {count} --seed {seed}", 1000),
     Goal("rows", "Tests of which a commit runs a sample pass with every row: chips, random programs and codes.",
          "runs of all rows", 1, 1, "pytest tests -m sampled --whole -n 2 --dist worksteal"),
