@@ -9,7 +9,7 @@ TEXTS: dict[str, tuple[str, str]] = {
     "intro": ("The robot's profile says which pin goes where; this page is made from it, for the board {board}. "
               "Nobody has built a robot from this page yet: look at every wire twice before you switch on.",
               "El perfil del robot dice qué pin va a dónde; esta página sale de él, para la placa {board}. "
-              "Nadie ha armado todavía un robot con esta página: mira cada cable dos veces antes de encender."),
+              "Nadie ha armado todavía un robot con esta página: revisa cada cable dos veces antes de encender."),
     "drawing": ("The drawing: the board in the middle, its USB socket at the top, the parts on both sides.",
                 "El dibujo: la placa en el centro, con su conector USB arriba, y las piezas a los lados."),
     "legend_number": ("a wire; its number is in the table", "un cable; su número está en la tabla"),
@@ -212,7 +212,7 @@ TEXTS: dict[str, tuple[str, str]] = {
     "bluetooth_no_state": ("STATE stays free: the profile gives it no pin.", "STATE queda libre: el perfil no le da un pin."),
     "usb": ("USB", "USB"),
     "usb_link": ("This robot speaks over its USB cable, at {baud} baud, and over the board's own Bluetooth. tsc wifi brings it into a network.",
-                 "Este robot habla por su cable USB, a {baud} baudios, y por el Bluetooth propio de la placa. tsc wifi lo une a una red."),
+                 "Este robot habla por su cable USB, a {baud} baudios, y por el Bluetooth propio de la placa. tsc wifi lo conecta a una red."),
     "usb_reset": ("Opening the port may restart the board: the motors stand still until a program is started again.",
                   "Abrir el puerto puede reiniciar la placa: los motores quedan quietos hasta que se inicia otra vez un programa."),
     # before switching on
@@ -227,12 +227,12 @@ TEXTS: dict[str, tuple[str, str]] = {
     "check_echo": ("1 kΩ is in the wire from ECHO of the HC-SR04, and 2 kΩ go from its pin of the board to GND.",
                    "En el cable de ECHO del HC-SR04 hay 1 kΩ, y de su pin de la placa van 2 kΩ a GND."),
     "check_pull_downs": ("The resistors of 10 kΩ are at {ends}.", "Las resistencias de 10 kΩ están en {ends}."),
-    "check_jumpers": ("The jumpers at ENA and ENB are off.", "Los puentes de ENA y ENB no están."),
+    "check_jumpers": ("The jumpers at ENA and ENB are off.", "ENA y ENB están sin sus puentes."),
     "check_divider": ("1 kΩ and 2 kΩ are at RXD of the HC-05.", "1 kΩ y 2 kΩ están en RXD del HC-05."),
     "check_bare": ("No bare wires touch each other.", "Ningún cable pelado toca a otro."),
     "check_unplugged": ("For the firmware: RXD and TXD of the HC-05 are unplugged.", "Para el firmware: RXD y TXD del HC-05 están desconectados."),
     "check_hot": ("After switching on: does anything get hot or smell? Switch off at once and look again.",
-                  "Después de encender: ¿algo se calienta o huele? Apaga en el acto y revisa otra vez."),
+                  "Después de encender: ¿algo se calienta o huele? Apaga de inmediato y revisa otra vez."),
     "check_way": ("A wheel that turns the wrong way, or a robot that drives a curve: leave the wires as they are, tsc trim mends it.",
                   "Una rueda que gira al revés, o un robot que se va hacia un lado: deja los cables como están, tsc trim lo arregla."),
     "made_by": ("Made by TiniScript from the profile of {robot}.", "Hecho por TiniScript a partir del perfil de {robot}."),

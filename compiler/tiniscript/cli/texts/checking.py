@@ -6,7 +6,7 @@ CHECK_TEXTS: dict[str, tuple[str, str]] = {
     # key: (English, Spanish)
     "no_programs": (
         "tsc: {file} has no program in it. Their names end in .ts or .tini. Try:  tsc check prog.ts",
-        "tsc: en {file} no hay ningún programa. Sus nombres terminan en .ts o .tini. Prueba:  tsc check prog.ts",
+        "tsc: en {file} no hay ningún programa. Los nombres de los programas terminan en .ts o .tini. Prueba:  tsc check prog.ts",
     ),
     "checked_right": ("{file}: no mistakes", "{file}: sin errores"),
     "checked_wrong": (

@@ -6,7 +6,7 @@ from __future__ import annotations
 CONFORM_TEXTS: dict[str, tuple[str, str]] = {
     # key: (English, Spanish)
     "conform_which": ("tsc: what should be tested? Name a robot's port with --port, or a machine of your own with --machine 'COMMAND'.",
-                      "tsc: ¿qué hay que probar? Da el puerto de un robot con --port, o una máquina tuya con --machine 'COMANDO'."),
+                      "tsc: ¿qué hay que probar? Indica el puerto de un robot con --port, o una máquina tuya con --machine 'COMANDO'."),
     "conform_both": ("tsc: test one at a time: --port or --machine.",
                      "tsc: prueba uno a la vez: --port o --machine."),
     "conform_no_case": ("tsc: no case has {found} in its name. Without --only all run.",

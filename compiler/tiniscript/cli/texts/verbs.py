@@ -45,7 +45,7 @@ NOTES = (
     ("A program is a file, - (standard input) or `-e \"SI|F(2, 80)\"`.",
      "Un programa es un archivo, - (entrada estándar) o `-e \"SI|F(2, 80)\"`."),
     ("Exit codes: 0 done, 1 the program is wrong, 2 wrong use of tsc, 3 the robot or the link; 141 when the program that read the output has ended, which stops the robot that the command drives.",
-     "Códigos de salida: 0 listo, 1 el programa está mal, 2 mal uso de tsc, 3 el robot o la conexión; 141 si el programa que leía la salida terminó, y eso detiene el robot que el comando mueve."),
+     "Códigos de salida: 0 listo, 1 el programa está mal, 2 mal uso de tsc, 3 el robot o la conexión; 141 si el programa que leía la salida terminó; entonces se detiene el robot que maneja el comando."),
 )
 
 VERBS: dict[str, Verb] = {
@@ -53,15 +53,15 @@ VERBS: dict[str, Verb] = {
         PROGRAMS, ("studio", "studio"),
         ("write programs in a page of your browser", "escribe programas en una página del navegador"),
         ("Opens TiniScript Studio, a page for the browser of this computer: an editor that says what is wrong with a program while it is written, with the same compiler as `tsc`, and the virtual robot, which runs it. The page drives the robots of this computer, too: it connects, sends, runs a line, shows values and faults at their line; other commands share the port meanwhile. The robot stops when the page hangs, is hidden or closed. The address with a code reaches the robots, once: the terminal shows the next one when it has been opened; without a code there are the editor and the virtual robot. Nothing leaves this computer, and after the first visit the page works without `tsc`, too. It goes on until Ctrl-C. In a clone the page is built the first time: it says how much it fetches, and asks.\n\n`--class` is for a room: pupils open the address that it shows, write the code of the class and their name, and have the studio with the virtual robot in their own browser. Their programs go to the robots that this computer reaches; who waits sees the place in the queue. The address with a code, which opens once, is the teacher's page: all pupils, their programs and robots, a stop for all, and an end that deletes the pupils' work if you say so. Nothing leaves the room.",
-         "Abre TiniScript Studio, una página para el navegador de esta computadora: un editor que dice qué está mal en un programa mientras se escribe, con el mismo compilador que `tsc`, y el robot virtual, que lo ejecuta. La página también maneja los robots de esta computadora: conecta, envía, ejecuta una línea, muestra valores y las fallas en su línea; mientras tanto otros comandos comparten el puerto. El robot se detiene si la página se cuelga, queda oculta o se cierra. La dirección con un código llega a los robots, una vez: cuando se abre, la terminal muestra la siguiente; sin código hay editor y robot virtual. Nada sale de esta computadora, y después de la primera visita la página también funciona sin `tsc`. Sigue hasta Ctrl-C. En un clon, la primera vez se construye la página: dice cuánto descarga, y pregunta.\n\n`--class` es para un aula: los alumnos abren la dirección que muestra, escriben el código de la clase y su nombre, y tienen el estudio con el robot virtual en su propio navegador. Sus programas van a los robots a los que llega esta computadora; quien espera ve su lugar en la cola. La dirección con un código, que abre una vez, es la página del docente: todos los alumnos, sus programas y robots, una parada para todos, y un final que borra el trabajo de los alumnos si así lo dices. Nada sale del aula."),
+         "Abre TiniScript Studio, una página para el navegador de esta computadora: un editor que dice qué está mal en un programa mientras se escribe, con el mismo compilador que `tsc`, y el robot virtual, que lo ejecuta. La página también maneja los robots de esta computadora: se conecta, envía, ejecuta una línea, muestra valores y las fallas en su línea; mientras tanto otros comandos comparten el puerto. El robot se detiene si la página se cuelga, queda oculta o se cierra. La dirección con un código da acceso a los robots y se abre una sola vez; después la terminal muestra la siguiente. Sin código hay editor y robot virtual. Nada sale de esta computadora, y después de la primera visita la página también funciona sin `tsc`. Sigue en marcha hasta Ctrl-C. En un clon, la primera vez se construye la página: dice cuánto va a descargar y pide permiso.\n\n`--class` es para un aula: los alumnos abren la dirección que muestra, escriben el código de la clase y su nombre, y tienen el estudio con el robot virtual en su propio navegador. Sus programas van a los robots a los que llega esta computadora; quien espera ve su lugar en la cola. La dirección con un código, que se abre una sola vez, es la página del docente: muestra a todos los alumnos, sus programas y robots, los detiene a todos y, al terminar, borra el trabajo de los alumnos si así lo indicas. Nada sale del aula."),
         ends=("Exit code: 0 when it has ended, 2 where the page is not there and was not built, 3 where its port cannot be used.",
               "Código de salida: 0 cuando terminó, 2 si la página no está y no se construyó, 3 si no se puede usar su puerto."),
     ),
     "lesson": Verb(
         PROGRAMS, ("lesson check 1 prog.ts", "lesson check 1 prog.ts"),
-        ("twelve lessons, whose tasks it checks", "doce lecciones, y revisa sus tareas"),
+        ("twelve lessons, whose tasks it checks", "doce lecciones con tareas que revisa"),
         ("Twelve lessons of 45 minutes, from the first line to a robot that follows a line. Without more it lists them; `tsc lesson show 1` prints the pupils' page, `tsc lesson sheet 1 -o sheet.html` makes it a page to print. `tsc lesson check 1 prog.ts` tries the program in the worlds of the task, on the virtual robot, and says what is missing; of a folder it checks every program and prints a table. The same program gets the same verdict on every computer.",
-         "Doce lecciones de 45 minutos, desde la primera línea hasta un robot que sigue una línea. Sin nada más, las lista; `tsc lesson show 1` imprime la página de los alumnos, `tsc lesson sheet 1 -o hoja.html` hace de ella una hoja para imprimir. `tsc lesson check 1 prog.ts` prueba el programa en los mundos de la tarea, con el robot virtual, y dice qué falta; de una carpeta revisa todos los programas e imprime una tabla. El mismo programa recibe el mismo resultado en cualquier computadora."),
+         "Doce lecciones de 45 minutos, desde la primera línea hasta un robot que sigue una línea. Sin nada más, las lista; `tsc lesson show 1` imprime la página de los alumnos, y `tsc lesson sheet 1 -o hoja.html` la convierte en una hoja para imprimir. `tsc lesson check 1 prog.ts` prueba el programa en los mundos de la tarea, con el robot virtual, y dice qué falta; si le das una carpeta, revisa todos los programas e imprime una tabla. El mismo programa recibe el mismo resultado en cualquier computadora."),
         ("[ACTION [N [PROGRAM]]] [options]\nshow N [--teacher]\ncheck N PROGRAM [options]\nsheet N -o PAGE.html [--teacher]",
          "[ACCIÓN [N [PROGRAMA]]] [opciones]\nshow N [--teacher]\ncheck N PROGRAMA [opciones]\nsheet N -o PÁGINA.html [--teacher]"),
         ("With check, `--json` gives a list of `{file, verdict, seed, findings}`. Exit code of check: 0 when every program passes, 1 when one does not.",
@@ -71,9 +71,9 @@ VERBS: dict[str, Verb] = {
         PROGRAMS, ("check prog.ts", "check prog.ts"),
         ("show all mistakes and warnings; --fix repairs", "muestra errores y avisos; --fix corrige"),
         ("Shows all mistakes and warnings of a program. Of several programs, or of a folder, it shows a line each and a table. `--fix` makes the repairs that are sure: those that drop no number, guess no name and leave fewer mistakes.",
-         "Muestra todos los errores y avisos de un programa. De varios programas, o de una carpeta, muestra una línea por cada uno y una tabla. `--fix` hace las correcciones seguras: las que no quitan ningún número, no adivinan ningún nombre y dejan menos errores."),
+         "Muestra todos los errores y avisos de un programa. Con varios programas, o una carpeta, muestra una línea por cada uno y una tabla. `--fix` hace las correcciones seguras: las que no quitan ningún número, no adivinan ningún nombre y dejan menos errores."),
         ends=("`--json` gives a list of `{code, severity, line, column, end_line, end_column, message, fix}`; lines and columns count from 1, columns in characters, the end is not included. Of several programs it gives a list of `{file, mistakes, warnings, repaired, problem, messages}`. The exit code is 1 if a program has mistakes, 2 if one cannot be read.",
-              "`--json` da una lista de `{code, severity, line, column, end_line, end_column, message, fix}`; líneas y columnas desde 1, columnas en caracteres, el final no se incluye. De varios programas da una lista de `{file, mistakes, warnings, repaired, problem, messages}`. El código de salida es 1 si un programa tiene errores, y 2 si alguno no se puede leer."),
+              "`--json` da una lista de `{code, severity, line, column, end_line, end_column, message, fix}`; líneas y columnas desde 1, columnas en caracteres, el final no se incluye. Con varios programas da una lista de `{file, mistakes, warnings, repaired, problem, messages}`. El código de salida es 1 si un programa tiene errores, y 2 si alguno no se puede leer."),
     ),
     "run": Verb(
         PROGRAMS, ("run prog.ts", "run prog.ts"),
@@ -101,7 +101,7 @@ VERBS: dict[str, Verb] = {
         PROGRAMS, ("fmt prog.ts", "fmt prog.ts"),
         ("lay the text out in the usual way", "ordena el texto de la forma usual"),
         ("Lays the text of a program out in the usual way, in place; comments are kept, and it means the same. From standard input or with -e it prints the result.",
-         "Ordena el texto de un programa de la forma usual, en el mismo archivo; los comentarios quedan y significa lo mismo. Desde la entrada estándar o con -e imprime el resultado."),
+         "Ordena el texto de un programa de la forma usual, en el mismo archivo; los comentarios se conservan y el programa significa lo mismo. Desde la entrada estándar o con -e imprime el resultado."),
     ),
     "explain": Verb(
         PROGRAMS, ("explain TS012", "explain TS012"),
@@ -113,9 +113,9 @@ VERBS: dict[str, Verb] = {
         ROBOTS, ("upload prog.ts", "upload prog.ts"),
         ("send a program to a robot and start it; --virtual", "envía un programa al robot y lo inicia; --virtual"),
         ("Compiles a program, sends it to the robot and starts it there if it begins with `SI`. Stays until it ends: prints what it shows, and a fault with its line. Ctrl-C stops the robot. A program that begins with `SB` waits for the robot's button.",
-         "Compila un programa, lo envía al robot y lo inicia ahí si empieza con `SI`. Se queda hasta que termina: imprime lo que muestra, y una falla con su línea. Ctrl-C detiene el robot. Un programa que empieza con `SB` espera el botón del robot."),
+         "Compila un programa, lo envía al robot y lo inicia ahí si empieza con `SI`. Espera hasta que termine: imprime lo que muestra el programa, y una falla con su línea. Ctrl-C detiene el robot. Un programa que empieza con `SB` espera el botón del robot."),
         ends=("Exit code: 0 when it is done, 1 after mistakes or a fault, 2 after Ctrl-C, 3 where the robot or the link has ended it.",
-              "Código de salida: 0 si termina, 1 con errores o una falla, 2 después de Ctrl-C, 3 si el robot o la conexión lo terminó."),
+              "Código de salida: 0 si termina, 1 con errores o una falla, 2 después de Ctrl-C, 3 si lo terminó el robot o la conexión."),
     ),
     "live": Verb(
         ROBOTS, ('live "F(2, 80)"', 'live "F(2, 80)"'),
@@ -126,22 +126,22 @@ VERBS: dict[str, Verb] = {
     "stop": Verb(
         ROBOTS, ("stop", "stop"), ("stop the robot now", "detiene el robot ahora"),
         ("Stops the robot now, and says when it has confirmed that. Asks nothing before, so it stops a robot of another version or kit, too. The robot stays stopped until it is started again, or its button is pushed. Where no port is named it stops every robot that some tsc is using on this computer, virtual ones too, and the last used one.",
-         "Detiene el robot ahora, y dice cuándo lo ha confirmado. No pregunta nada antes, así que también detiene un robot de otra versión o de otro kit. Queda detenido hasta que lo inicies otra vez o pulses su botón. Si no se indica un puerto, detiene todos los robots que algún tsc está usando en esta computadora, también los virtuales, y el último usado."),
+         "Detiene el robot ahora, y avisa cuando lo ha confirmado. No pregunta nada antes, así que también detiene un robot de otra versión o de otro kit. Queda detenido hasta que lo inicies otra vez o pulses su botón. Si no se indica un puerto, detiene todos los robots que algún tsc está usando en esta computadora, también los virtuales, y el último usado."),
     ),
     "start": Verb(
         ROBOTS, ("start", "start"), ("start the program that the robot holds", "inicia el programa que tiene el robot"),
         ("Starts the program that the robot holds and stays until it ends, as `tsc upload` does. Ctrl-C stops the robot.",
-         "Inicia el programa que tiene el robot y se queda hasta que termina, como `tsc upload`. Ctrl-C detiene el robot."),
+         "Inicia el programa que tiene el robot y espera hasta que termine, como `tsc upload`. Ctrl-C detiene el robot."),
     ),
     "undo": Verb(
         "start", ("undo", "undo"), ("bring back the program before this one", "vuelve al programa anterior"),
         ("Brings back the program that the robot held before the last one that it has saved, and keeps that over the next power-on. What runs ends, and nothing is started. A second undo brings the later program back. Where the last program was sent with --no-save, the saved one comes back, and the other is gone.",
-         "Vuelve al programa que el robot tenía antes del último que guardó, y lo conserva cuando se apaga. Lo que está en marcha termina, y no se inicia nada. Otro undo vuelve al programa más nuevo. Si el último programa se envió con --no-save, vuelve el guardado, y el otro se pierde."),
+         "Vuelve al programa que el robot tenía antes del último que guardó; el robot lo conserva aunque se apague. Lo que está en marcha termina, y no se inicia nada. Otro undo vuelve al programa más nuevo. Si el último programa se envió con --no-save, vuelve el guardado, y el otro se pierde."),
     ),
     "monitor": Verb(
         ROBOTS, ("monitor", "monitor"), ("print what the robot shows", "imprime lo que el robot muestra"),
         ("Prints what the robot tells, each with the milliseconds since the first: values of SHOW, how a program ends, faults with their lines. Starts and stops nothing; Ctrl-C leaves. (Opening the port of an Arduino with a cable resets it: then nothing runs before its button is pressed.)",
-         "Imprime lo que el robot cuenta, cada cosa con los milisegundos desde la primera: valores de SHOW, cómo termina un programa, fallas con sus líneas. No inicia ni detiene nada; Ctrl-C sale. (Abrir el puerto de un Arduino con cable lo reinicia: nada se mueve antes de pulsar su botón.)"),
+         "Imprime lo que informa el robot, cada cosa con los milisegundos desde la primera: valores de SHOW, cómo termina un programa, fallas con sus líneas. No inicia ni detiene nada; Ctrl-C sale. (Abrir el puerto de un Arduino con cable lo reinicia: nada se mueve antes de pulsar su botón.)"),
     ),
     "fetch": Verb(
         ROBOTS, ("fetch", "fetch"), ("read the robot's program back", "lee el programa que tiene el robot"),
@@ -152,37 +152,37 @@ VERBS: dict[str, Verb] = {
         ROBOTS, ("robot", "robot"),
         ("a virtual robot with a port, for other terminals", "un robot virtual, para otras terminales"),
         ("A virtual robot: the firmware of the real one, in a world of walls, lines and lamps. It has a port like any other robot, and another terminal finds it (`tsc upload prog.ts --virtual`). On a terminal it is drawn, and keys push its buttons; elsewhere a line says what it does.",
-         "Un robot virtual: el mismo firmware que uno de verdad, en un mundo de paredes, líneas y lámparas. Tiene un puerto como cualquier robot, y otra terminal lo encuentra (`tsc upload prog.ts --virtual`). En una terminal se dibuja, y hay teclas para sus botones; en otro lugar una línea dice lo que hace."),
+         "Un robot virtual: el mismo firmware que uno de verdad, en un mundo de paredes, líneas y lámparas. Tiene un puerto como cualquier robot, y otra terminal lo encuentra (`tsc upload prog.ts --virtual`). En una terminal se dibuja, y hay teclas para sus botones; si no hay terminal, una línea dice lo que hace."),
         ends=("Exit code: 0 when it has ended.", "Código de salida: 0 cuando terminó."),
     ),
     "link": Verb(
         ROBOTS, ("link", "link"),
         ("hold the port, so that other commands share it", "mantiene abierto el puerto, para compartirlo"),
         ("Holds the robot's port until Ctrl-C, so that other tsc commands share it: `tsc stop` works while another terminal drives the robot, and an upload does not reset the board. Prints what goes on. Where the robot is lost, it looks for it until it is there again. (live, monitor, and an upload or start that stays share their port, too.)",
-         "Mantiene abierto el puerto del robot hasta Ctrl-C, para que otros comandos de tsc lo compartan: `tsc stop` funciona mientras otra terminal mueve el robot, y un upload no reinicia la placa. Imprime lo que pasa. Si el robot se pierde, lo busca hasta que vuelve. (live, monitor, y un upload o start que se queda también comparten su puerto.)"),
+         "Mantiene abierto el puerto del robot hasta Ctrl-C, para que otros comandos de tsc lo compartan: `tsc stop` funciona mientras otra terminal maneja el robot, y un upload no reinicia la placa. Imprime lo que pasa. Si el robot se pierde, lo busca hasta que vuelve. (live, monitor, y un upload o start que espera también comparten su puerto.)"),
     ),
     "class": Verb(
         ROBOTS, ("class --broker HOST", "class --broker HOST"), ("a class of robots at an MQTT broker", "una clase de robots en un broker MQTT"),
         ("Reaches robots with an ESP32 that `tsc wifi --broker` has connected to the MQTT broker of a school: it lists them, sends a program to all of them, stops all of them, or prints what they show. Each of them has an owner, and this computer its key (`tsc keys --import`): what it says is sealed, so a broker, and whoever else is at it, can keep it from arriving, and do nothing else. A stop reaches every robot of the class, whoever drives it.",
-         "Llega a robots con ESP32 que `tsc wifi --broker` conectó al broker MQTT de una escuela: los lista, envía un programa a todos, los detiene a todos, o imprime lo que muestran. Cada uno tiene dueño, y esta computadora su llave (`tsc keys --import`): lo que dice va sellado, así que un broker, y cualquiera que esté en él, puede impedir que llegue y nada más. Una parada llega a todos los robots de la clase, sin importar quién los conduce."),
+         "Llega a robots con ESP32 que `tsc wifi --broker` conectó al broker MQTT de una escuela: los lista, envía un programa a todos, los detiene a todos, o imprime lo que muestran. Cada uno tiene dueño, y esta computadora su llave (`tsc keys --import`): lo que dice va sellado, así que un broker, y cualquiera que esté en él, puede impedir que llegue, y nada más. Una parada llega a todos los robots de la clase, sin importar quién los maneje."),
         ("[ACTION] [PROGRAM] --broker HOST [options]",
          "[ACCIÓN] [PROGRAMA] --broker HOST [opciones]"),
         ends=("It needs `pip install \".[broker]\"`. Only one tsc at a time has a robot; a second one says so.\nWith `--tls` this computer speaks TLS with the broker; a robot does where `tsc wifi --tls` has said so. Without it, passwords for the broker go through the school's network as they are.",
-              "Necesita `pip install \".[broker]\"`. Solo un tsc a la vez tiene un robot; un segundo tsc lo dice.\nCon `--tls` esta computadora habla TLS con el broker; un robot, si se lo pidió `tsc wifi --tls`. Sin eso, las contraseñas para el broker van por la red de la escuela tal cual."),
+              "Necesita `pip install \".[broker]\"`. Un robot lo usa un solo tsc a la vez; un segundo tsc lo avisa.\nCon `--tls` esta computadora habla TLS con el broker; un robot, si se lo pidió `tsc wifi --tls`. Sin eso, las contraseñas para el broker van por la red de la escuela tal cual."),
     ),
     "doctor": Verb(
         TROUBLE, ("doctor", "doctor"),
         ("find out what is wrong, and what to do", "averigua qué está mal, y qué hacer"),
         ("Finds out what is wrong with a port, a Bluetooth module or a robot: what it saw, how sure it is, and the next step. First it looks at this computer alone and opens no port. The port of a radio, and one that another tsc has, it then uses: it sends HELLO, STATUS and 20 PING. Opening the port of a cable restarts most boards, so it asks before (`--yes` says yes); where no robot answers there it asks at other speeds, sends AT, which a module answers, and the greeting of bootloaders. It never drives a robot, starts or stops nothing, and writes into no memory.",
-         "Averigua qué está mal en un puerto, un módulo Bluetooth o un robot: qué vio, qué tan seguro está y el siguiente paso. Primero mira solo esta computadora y no abre ningún puerto. Después usa el puerto de una radio, y el que tiene otro tsc: envía HELLO, STATUS y 20 PING. Abrir el puerto de un cable reinicia la mayoría de las placas, así que antes pregunta (`--yes` dice que sí); si ahí no responde ningún robot, pregunta a otras velocidades, envía AT, que es lo que responde un módulo, y el saludo de los cargadores de arranque. Nunca mueve un robot, no inicia ni detiene nada, y no escribe en ninguna memoria."),
+         "Averigua qué está mal en un puerto, un módulo Bluetooth o un robot: qué vio, qué tan seguro está y el siguiente paso. Primero mira solo esta computadora y no abre ningún puerto. Después usa el puerto de una radio, y el que usa otro tsc: envía HELLO, STATUS y 20 PING. Abrir el puerto de un cable reinicia la mayoría de las placas, así que antes pregunta (`--yes` responde que sí); si ahí no responde ningún robot, pregunta a otras velocidades, envía AT, que es lo que responde un módulo, y el saludo de los cargadores de arranque. Nunca mueve un robot, no inicia ni detiene nada, y no escribe en ninguna memoria."),
         ends=("Exit code: 0 if a robot answers and nothing is wrong, 3 if something is or nobody could be asked.\n"
               "With `--watch 20` it sees a robot that restarts when its motors start: let it drive meanwhile.\n"
               "While it watches it shares the port: `tsc stop` works in another terminal. Before that a stop waits some seconds for it.\n"
               "What it asks of Windows and macOS was tested with written-down answers of these systems, not on them.",
-              "Código de salida: 0 si un robot responde y nada está mal, 3 si algo lo está, o si ningún robot respondió.\n"
+              "Código de salida: 0 si un robot responde y todo está bien, 3 si algo está mal o no respondió ningún robot.\n"
               "Con `--watch 20` ve un robot que se reinicia cuando arrancan sus motores: haz que se mueva mientras tanto.\n"
-              "Mientras lo mira comparte el puerto: `tsc stop` funciona en otra terminal. Antes de eso, un stop lo espera unos segundos.\n"
-              "Lo que pregunta a Windows y macOS se probó con respuestas escritas de esos sistemas, no en ellos."),
+              "Mientras lo observa comparte el puerto: `tsc stop` funciona en otra terminal. Antes de eso, un stop lo espera unos segundos.\n"
+              "Lo que pregunta a Windows y macOS se probó con respuestas grabadas de esos sistemas, no en ellos."),
     ),
     "selftest": Verb(
         "doctor", ("selftest", "selftest"),
@@ -190,7 +190,7 @@ VERBS: dict[str, Verb] = {
         ("Checks what a computer can check of a robot that should be ready: whether it answers, its kit, its firmware, the connection, its supply as far as the robot knows it, its memory, its trim, each sensor, each motor and the buzzer. Lift the robot so that its wheels turn in the air: the motors turn one after the other, and you say what you see. `--yes` asks nobody and turns no motor. The robot keeps its program.",
          "Revisa lo que una computadora puede revisar de un robot que debería estar listo: si responde, su kit, su firmware, la conexión, su alimentación hasta donde el robot la conoce, su memoria, su ajuste, cada sensor, cada motor y el zumbador. Levanta el robot, con las ruedas en el aire: los motores giran uno tras otro, y tú dices qué ves. `--yes` no pregunta a nadie y no hace girar ningún motor. El robot conserva su programa."),
         ends=("Exit code: 0 if nothing is wrong, 3 if something is. What it cannot see has a question mark.",
-              "Código de salida: 0 si nada está mal, 3 si algo lo está. Lo que no puede ver lleva un signo de interrogación."),
+              "Código de salida: 0 si todo está bien, 3 si algo está mal. Lo que no puede ver lleva un signo de interrogación."),
     ),
     "ports": Verb(
         TROUBLE, ("ports", "ports"),
@@ -212,24 +212,24 @@ VERBS: dict[str, Verb] = {
     "identify": Verb(
         TROUBLE, ("identify", "identify"), ("which robot is it? it blinks and plays", "¿qué robot es? parpadea y toca"),
         ("The robot blinks for 3 s and plays its own three notes. Anybody may ask for that. While a program runs it plays nothing, since the buzzer is the program's; the light blinks all the same. `--all`: each robot that answers.",
-         "El robot parpadea 3 s y toca sus tres notas. Cualquiera puede pedirlo. Mientras un programa está en marcha no toca nada, porque el zumbador es del programa; la luz parpadea igual. `--all`: cada robot que responde."),
+         "El robot parpadea 3 s y toca sus tres notas. Cualquiera puede pedirlo. Mientras un programa está en marcha no toca nada, porque el zumbador es del programa; la luz parpadea igual. `--all`: todos los robots que respondan."),
     ),
     "claim": Verb(
-        SETTINGS, ("claim", "claim"), ("make the robot yours: only you drive it", "hace tuyo el robot: solo tú lo conduces"),
+        SETTINGS, ("claim", "claim"), ("make the robot yours: only you drive it", "hace tuyo el robot: solo tú lo manejas"),
         ("Makes the robot yours. Hold its start button down for 2 s while tsc waits. From then on only a computer that has its key drives it; everybody else may look at it, make it blink and stop it. With `--teacher` the robot gets a second key, which may do the same; a robot that it has stopped (`tsc stop --teacher`) goes on only with that key, or with its button. A robot without an owner is free to use.",
-         "Hace tuyo el robot. Mantén pulsado su botón de inicio 2 s mientras tsc espera. Desde entonces solo lo conduce una computadora que tiene su llave; los demás pueden mirarlo, hacerlo parpadear y detenerlo. Con `--teacher` el robot recibe una segunda llave, que puede lo mismo; un robot que se detuvo con ella (`tsc stop --teacher`) solo sigue con esa llave, o con su botón. Un robot sin dueño es libre para todos."),
+         "Hace tuyo el robot. Mantén pulsado su botón de inicio 2 s mientras tsc espera. Desde entonces solo lo maneja una computadora que tiene su llave; los demás pueden consultarlo, hacerlo parpadear y detenerlo. Con `--teacher` el robot recibe una segunda llave, que permite lo mismo; un robot que se detuvo con ella (`tsc stop --teacher`) solo sigue con esa llave, o con su botón. Un robot sin dueño es libre para todos."),
         ends=("To make a robot forget its keys: hold its button down, switch it on, and hold it for 10 s more, until it beeps.",
-              "Para que un robot olvide sus llaves: mantén pulsado su botón, enciéndelo, y sigue así 10 s más, hasta que suene."),
+              "Para que un robot olvide sus llaves: mantén pulsado su botón, enciéndelo y no lo sueltes durante 10 s más, hasta que suene."),
     ),
     "disown": Verb(
-        "claim", ("disown", "disown"), ("give the robot up: anybody drives it", "suelta el robot: lo conduce cualquiera"),
+        "claim", ("disown", "disown"), ("give the robot up: anybody drives it", "libera el robot: lo maneja cualquiera"),
         ("Takes the owner's key away from the robot: it is free. That needs the owner's key or the teacher's.",
-         "Le quita al robot la llave del dueño: queda libre. Hace falta la llave del dueño o la de docente."),
+         "Le quita al robot la llave del dueño: queda libre. Hace falta la llave del dueño o la del docente."),
     ),
     "keys": Verb(
         "claim", ("keys", "keys"), ("the robots whose keys this computer has", "los robots cuya llave tiene esta computadora"),
         ("Lists the robots whose keys this computer has; no key is printed. `--export` writes them to a file that only you can read: a class list for another computer, which takes it with `--import`. Whoever has that file drives those robots. `--forget` takes the keys of one robot out: of one that has forgotten them itself. On Windows such a file has the permissions of its folder: keep it in your own.",
-         "Lista los robots cuyas llaves tiene esta computadora; no se imprime ninguna llave. `--export` las escribe en un archivo que solo tú puedes leer: la lista de la clase para otra computadora, que la toma con `--import`. Quien tiene ese archivo conduce esos robots. `--forget` quita las llaves de un robot: de uno que las olvidó él mismo. En Windows un archivo así tiene los permisos de su carpeta: guárdalo en la tuya."),
+         "Lista los robots cuyas llaves tiene esta computadora; no se imprime ninguna llave. `--export` las escribe en un archivo que solo tú puedes leer: la lista de la clase para otra computadora, que la lee con `--import`. Quien tiene ese archivo maneja esos robots. `--forget` quita las llaves de un robot que ya las olvidó. En Windows un archivo así tiene los permisos de su carpeta: guárdalo en la tuya."),
         ("[--export FILE|--import FILE|--forget ROBOT] [--json]", "[--export ARCHIVO|--import ARCHIVO|--forget ROBOT] [--json]"),
     ),
     "name": Verb(
@@ -241,25 +241,25 @@ VERBS: dict[str, Verb] = {
     "trim": Verb(
         SETTINGS, ("trim", "trim"), ("make the robot drive straight", "hace que el robot vaya en línea recta"),
         ("Makes a robot drive straight: turns its motors, asks what you see, and the robot keeps what follows from it in its own memory, whatever program it runs. No wire is changed and nothing flashed.",
-         "Hace que un robot vaya en línea recta: hace girar sus motores, pregunta qué ves, y el robot guarda lo que resulta en su propia memoria, con cualquier programa. No se cambia ningún cable ni se escribe otro firmware."),
+         "Hace que un robot vaya en línea recta: hace girar sus motores, pregunta qué ves, y el robot guarda el resultado en su memoria, para cualquier programa. No se cambia ningún cable ni se escribe otro firmware."),
     ),
     "text": Verb(
-        SETTINGS, ("text on", "text on"), ("let lines of text drive your robot, or not", "deja que líneas de texto lo conduzcan, o no"),
+        SETTINGS, ("text on", "text on"), ("let lines of text drive your robot, or not", "deja manejarlo con líneas de texto, o no"),
         ("Lets lines of text, which anybody may type on a phone, drive a robot that has an owner; until it is switched off. So does its button, held down for 2 s. The line S stops a robot always.",
-         "Deja que líneas de texto, que cualquiera puede escribir en un teléfono, conduzcan un robot que tiene dueño; hasta que se apague. Lo mismo hace su botón, pulsado 2 s. La línea S detiene un robot siempre."),
+         "Deja que un robot con dueño se maneje con líneas de texto, que cualquiera puede escribir en un teléfono, hasta que se apague. Lo mismo hace su botón, pulsado 2 s. La línea S siempre detiene el robot."),
         ("on|off [options]", "on|off [opciones]"),
     ),
     "wifi": Verb(
         SETTINGS, ("wifi NETWORK", "wifi RED"), ("connect your robot to a WiFi network", "conecta tu robot a una red WiFi"),
         ("Has a robot with an ESP32 join a network, now and whenever it is switched on; with `--access-point` it opens one itself. tsc asks for the password, without showing it; where nobody types, it is the first line of standard input. It is in no argument and in no file of this computer, goes to the robot so that nobody who listens can read it, and no robot shows it. Only a robot with an owner takes a network, from a computer with its key. Without a network, tsc says which one the robot has. With `--broker` the robot also connects to an MQTT broker in that network, for `tsc class`: by its name, or, where the network does not know that, at the address that it has now.",
-         "Une un robot con ESP32 a una red, ahora y cada vez que se enciende; con `--access-point` la abre él mismo. tsc pide la contraseña sin mostrarla; si nadie escribe, es la primera línea de la entrada estándar. No está en ningún argumento ni en ningún archivo de esta computadora, va al robot sin que quien escuche pueda leerla, y ningún robot la muestra. Solo un robot con dueño acepta una red, desde una computadora con su llave. Sin una red, tsc dice cuál tiene el robot. Con `--broker` el robot se conecta además a un broker MQTT de esa red, para `tsc class`: por su nombre o, si la red no lo conoce, en la dirección que tiene ahora."),
+         "Conecta un robot con ESP32 a una red, ahora y cada vez que se encienda; con `--access-point` la abre él mismo. tsc pide la contraseña sin mostrarla; si nadie escribe, es la primera línea de la entrada estándar. No queda en ningún argumento ni archivo de esta computadora, quien escuche no puede leerla mientras va al robot, y ningún robot la muestra. Solo un robot con dueño acepta una red, desde una computadora con su llave. Sin una red, tsc dice cuál tiene el robot. Con `--broker` el robot se conecta además a un broker MQTT de esa red, para `tsc class`: por su nombre o, si la red no lo conoce, en la dirección que tiene ahora."),
         ("[NETWORK] [options]", "[RED] [opciones]"),
     ),
     "firmware": Verb(
         BUILDING, ("firmware --port COM3", "firmware --port COM3"),
         ("put the firmware of a robot on its board", "pone el firmware de un robot en su placa"),
         ("Writes the firmware of a robot on its board, over the USB cable, and reads it back. Meanwhile the HC-05, or whatever else is on pins 0 and 1, must be unplugged. Firmware that is not ready yet is built first, with PlatformIO; the first time it says how much is fetched for that, and asks.",
-         "Escribe el firmware de un robot en su placa, por el cable USB, y comprueba que quedó bien. Mientras tanto, ten desconectado el HC-05, o lo que esté en los pines 0 y 1. Si el firmware todavía no está listo, primero se compila, con PlatformIO; la primera vez dice cuánto se descarga para eso, y pregunta."),
+         "Escribe el firmware de un robot en su placa, por el cable USB, y comprueba que quedó bien. Mientras tanto, ten desconectado el HC-05, o lo que esté en los pines 0 y 1. Si el firmware todavía no está listo, primero se compila, con PlatformIO; la primera vez dice cuánto va a descargar para eso y pide permiso."),
         ("--port P [--robot NAME|FILE] [--board BOARD]\n--build [--robot NAME|FILE] [--board BOARD]\n--list",
          "--port P [--robot NOMBRE|ARCHIVO] [--board PLACA]\n--build [--robot NOMBRE|ARCHIVO] [--board PLACA]\n--list"),
         ("It needs avrdude; for an ESP32 PlatformIO alone.", "Necesita avrdude; para un ESP32, solo PlatformIO."),
@@ -280,7 +280,7 @@ VERBS: dict[str, Verb] = {
         BUILDING, ("module --port P", "module --port P"),
         ("name, PIN and speed of a Bluetooth module", "nombre, PIN y velocidad de un módulo Bluetooth"),
         ("Sets up an HC-05, HC-06 or HM-10, or one of their clones: finds it at any speed, says which one it is, sets its name, its PIN and its speed, and reads back what the module tells. Without an option for that it only says what it has found. The module is on a USB adapter, or on a board that is held in reset (a wire from RESET to GND). An HC-05 takes these commands if its button was held down when it got power. A set-up that was interrupted is finished by the next one.",
-         "Configura un HC-05, HC-06 o HM-10, o una de sus copias: lo encuentra a cualquier velocidad, dice cuál es, le pone su nombre, su PIN y su velocidad, y comprueba lo que el módulo cuenta. Sin una opción para eso solo dice lo que encontró. El módulo está en un adaptador USB, o en una placa que está en reset (un cable de RESET a GND). Un HC-05 acepta estos comandos si su botón estaba pulsado cuando recibió energía. Una configuración interrumpida la termina la siguiente."),
+         "Configura un HC-05, HC-06 o HM-10, o una de sus copias: lo encuentra a cualquier velocidad, dice cuál es, le pone su nombre, su PIN y su velocidad, y comprueba lo que informa el módulo. Sin esas opciones solo dice lo que encontró. El módulo está en un adaptador USB, o en una placa que está en reset (un cable de RESET a GND). Un HC-05 acepta estos comandos si su botón estaba pulsado cuando recibió energía. Si una configuración se interrumpe, la siguiente la termina."),
         ("--port P [options]", "--port P [opciones]"),
         ends=("A robot cannot set up its own module: both share the wires to the computer, and the module listens to the robot's side alone.\n"
               "The answers of modules are those of their papers and users; no physical module was tried.",
@@ -291,7 +291,7 @@ VERBS: dict[str, Verb] = {
         BUILDING, ("conform --port P", "conform --port P"),
         ("test a robot or a machine that you have made", "prueba un robot o una máquina que hiciste"),
         ("Tests whether firmware or a machine that somebody has written, in any language, does what the specification says, and prints what differs. With `--port` it speaks with a robot: frames, programs, refusals, stops; no motor turns, nothing is saved, and what the robot holds in memory is another program then. With `--machine` it asks a machine for several hundred runs and compares what it prints line by line. docs/conformance.md says how it is asked.",
-         "Prueba si un firmware o una máquina que alguien escribió, en cualquier lenguaje, hace lo que dice la especificación, e imprime lo que es distinto. Con `--port` habla con un robot: mensajes, programas, rechazos, paradas; ningún motor gira, no se guarda nada, y el robot queda con otro programa en memoria. Con `--machine` le pide a una máquina varios cientos de ejecuciones y compara línea por línea lo que imprime. docs/conformance.md dice cómo se le pregunta."),
+         "Prueba si un firmware o una máquina, escritos por cualquiera en cualquier lenguaje, hacen lo que dice la especificación, e imprime las diferencias. Con `--port` habla con un robot: mensajes, programas, rechazos, paradas; ningún motor gira, no se guarda nada, y el robot queda con otro programa en memoria. Con `--machine` le pide a una máquina varios cientos de ejecuciones y compara línea por línea lo que imprime. docs/conformance.md dice cómo se le pregunta."),
         ("--port P [--baud N] [options]\n--machine COMMAND [options]", "--port P [--baud N] [opciones]\n--machine COMANDO [opciones]"),
         ends=("Exit code: 0 if all agrees, 1 if something differs, 2 if the command does not start, 3 if nothing answers on the port or it goes away.",
               "Código de salida: 0 si todo coincide, 1 si algo es distinto, 2 si el comando no arranca, 3 si nada responde en el puerto o el puerto desaparece."),
@@ -299,7 +299,7 @@ VERBS: dict[str, Verb] = {
     "help": Verb(
         ITSELF, ("help upload", "help upload"), ("say more about a command", "explica un comando"),
         ("Says what a command does and which options it has, as `tsc COMMAND --help` does. Without a command it lists the ten that most people need, with `all` every one. Words that are no command find those that do it: `tsc help \"put firmware on\"`. `tsc ayuda` is the same.",
-         "Dice qué hace un comando y qué opciones tiene, igual que `tsc COMANDO --help`. Sin comando lista los diez que más se usan; con `todo`, los lista todos. Palabras que no son un comando encuentran los que hacen eso: `tsc help \"poner firmware\"`. `tsc ayuda` es lo mismo."),
+         "Dice qué hace un comando y qué opciones tiene, igual que `tsc COMANDO --help`. Sin comando lista los diez que más se usan; con `todo`, los lista todos. Si escribes otras palabras, busca los comandos que hacen eso: `tsc help \"poner firmware\"`. `tsc ayuda` es lo mismo."),
     ),
     "completion": Verb(
         ITSELF, ("completion bash", "completion bash"),
