@@ -146,7 +146,7 @@ def test_what_is_done_is_kept(pages: Pages) -> None:
     for k, each in enumerate(kept):
         page.evaluate("kept => localStorage.setItem('tiniscript.lessons', kept)", each)
         page.select_option("#language", "es")
-        page.locator("#lesson_said", has_text="lecciones listas").wait_for()
+        page.locator("#lesson_said", has_text="Lecciones terminadas").wait_for()
         page.select_option("#language", "en")
         page.locator("#lesson_said", has_text="lessons done").wait_for()
         assert page.inner_text("#lesson_said") == f"{int(k == 0)} of {len(FOLDERS)} lessons done."

@@ -20,7 +20,7 @@ export const WORLD_TEXTS = {
   world_width_cm: ['Width', 'Ancho'],
   world_height_cm: ['Height', 'Alto'],
   world_length_cm: ['Length', 'Largo'],
-  world_ambient_percent: ['Daylight %', 'Luz de día %'],
+  world_ambient_percent: ['Daylight %', 'Luz ambiente %'],
   world_x_cm: ['x', 'x'],
   world_y_cm: ['y', 'y'],
   world_heading: ['Heading °', 'Rumbo °'],
