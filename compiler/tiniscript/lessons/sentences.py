@@ -158,7 +158,7 @@ SENTENCES: dict[str, tuple[str, str]] = {
     "uses/uncalled": ("The program teaches the word {name} and never calls it. Write {name} on a line of its own.",
                       "El programa enseña la palabra {name} y nunca la llama. Escribe {name} en una línea propia."),
     "uses/idle": ("The LOOP of the program repeats nothing. Put what is there several times between LOOP and END_LOOP.",
-                  "El LOOP del programa no repite nada. Pon entre LOOP y END_LOOP lo que está varias veces."),
+                  "El LOOP del programa no repite nada. Pon entre LOOP y END_LOOP lo que se repite."),
     "uses/unasked": ("The UNTIL of the program asks about nothing that changes. Ask about a sensor: UNTIL({question})",
                      "El UNTIL del programa no pregunta nada que cambie. Pregunta por un sensor: UNTIL({question})"),
     "needs/LOOP": ("The robot does the task just as well when each LOOP is done only once. Let LOOP repeat what the program has several times.",

@@ -49,7 +49,7 @@ PLAN = {
 }
 MOVES = {
     "en": "What is drawn with dashes is in a different place each time.",
-    "es": "Lo dibujado con rayas está cada vez en otro lugar.",
+    "es": "Lo dibujado con rayas cambia de lugar cada vez.",
 }
 MIRRORED = {
     "en": "In half of the worlds left and right are exchanged.",
