@@ -17,7 +17,7 @@ NEEDED = (3, 10)
 SAID = {
     "old": (
         "TiniScript needs Python 3.10 or newer; this is {version}. {get}",
-        "TiniScript necesita Python 3.10 o más nuevo; este es {version}. {get}",
+        "TiniScript necesita Python 3.10 o posterior; este es {version}. {get}",
     ),
     "get_windows": (
         "Get one from python.org (its installer asks for no administrator), then:  py tools\\try.py",

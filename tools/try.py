@@ -27,8 +27,8 @@ SAID = {
         "The warning above: this robot drives for a second at a time without looking.\n"
         "In its virtual room that is enough; examples/obstacle_until.ts looks 50 times\n"
         "a second.",
-        "El aviso de arriba: este robot avanza cada vez un segundo sin mirar. En su\n"
-        "sala virtual alcanza; examples/obstacle_until.ts mira 50 veces por segundo.",
+        "El aviso de arriba: este robot avanza un segundo entero sin mirar. En su mundo\n"
+        "virtual eso basta; examples/obstacle_until.ts mira 50 veces por segundo.",
     ),
     "drawn": (
         "Its way is drawn in way.png, in this folder.",

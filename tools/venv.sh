@@ -90,7 +90,7 @@ find_venv_python() {
     fi
     [ -n "$found" ] || fail \
         "TiniScript needs Python 3.10 or newer, and there is none here. Debian 12 and Ubuntu 22.04 have one." \
-        "TiniScript necesita Python 3.10 o más nuevo, y aquí no hay. Debian 12 y Ubuntu 22.04 lo tienen."
+        "TiniScript necesita Python 3.10 o posterior, y aquí no hay. Debian 12 y Ubuntu 22.04 lo tienen."
     "$found" -c 'import ensurepip' 2>/dev/null || install_venv
 }
 

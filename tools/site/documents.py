@@ -87,8 +87,8 @@ PARTS = {
     "es": {
         "teach": "Enseñar",
         "write": "Escribir programas",
-        "wiring": "Cablear un robot",
-        "pupils": "Lecciones, para estudiantes",
+        "wiring": "Conectar un robot",
+        "pupils": "Lecciones, para alumnos",
         "teachers": "Lecciones, para el docente",
         "trust": "Decidir",
         "build": "Construirlo con nosotros",

@@ -18,7 +18,7 @@ STICK = Path(__file__).resolve().parent
 IS_WINDOWS = os.name == "nt"
 SAID = {
     "old": ("This Python is {version}; tsc needs 3.10 or newer.",
-            "Este Python es {version}; tsc necesita 3.10 o más nuevo."),
+            "Este Python es {version}; tsc necesita 3.10 o posterior."),
     "no_venv": ("This Python cannot make virtual environments. On Debian and Ubuntu:  sudo apt-get install python3-venv",
                 "Este Python no puede crear entornos virtuales. En Debian y Ubuntu:  sudo apt-get install python3-venv"),
     "where": ("Installing into {folder}. This takes a minute.",

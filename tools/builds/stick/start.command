@@ -14,5 +14,5 @@ for name in python3 python3.15 python3.14 python3.13 python3.12 python3.11 pytho
     fi
 done
 echo "Python 3.10 or newer is missing: python.org, or the packages of this system." >&2
-echo "Falta Python 3.10 o más nuevo: python.org, o los paquetes de este sistema." >&2
+echo "Falta Python 3.10 o posterior: python.org, o los paquetes de este sistema." >&2
 exit 2
