@@ -18,11 +18,11 @@ TITLE = ("The command `tsc`", "El comando `tsc`")
 INTRODUCTION = (
     "Every verb, with the options that people combine with it. `tsc help all` and"
     " `tsc help VERB` say the same on a terminal; `tsc --help` has the ten that most people need.",
-    "Todos los verbos, con las opciones que se combinan con ellos. `tsc help todo` y"
-    " `tsc help VERBO` dicen lo mismo en una terminal; `tsc --help` muestra los diez que más se"
+    "Todos los comandos, con las opciones que se combinan con ellos. `tsc help todo` y"
+    " `tsc help COMANDO` dicen lo mismo en una terminal; `tsc --help` muestra los diez que más se"
     " usan.",
 )
-EACH = ("Every verb has these, too:", "Cada verbo tiene además estas:")
+EACH = ("Every verb has these, too:", "Todos los comandos tienen además estas:")
 HEAD = (("option", "does"), ("opción", "hace"))
 COMMANDS = (("command", "does"), ("comando", "hace"))
 
