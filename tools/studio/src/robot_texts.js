@@ -172,7 +172,7 @@ export const ROBOT_TEXTS = {
     'No se eligió ningún robot. ¿Está encendido, cerca, y sin conectar a un teléfono u otra computadora? Prueba otra vez.'],
   why_port_busy: ['Another program or another tab has this port. Close it and try again.', 'Otro programa u otra pestaña tiene este puerto. Ciérralo y prueba otra vez.'],
   why_port_broken: ['This port does not open. Pull its cable out, plug it in again, and try again.',
-    'Este puerto no se abre. Desconecta su cable, conéctalo otra vez y prueba otra vez.'],
+    'Este puerto no se abre. Desconecta su cable, vuelve a conectarlo y prueba otra vez.'],
   why_port_forbidden: ['The browser may not use ports on this page. Ask whoever looks after this computer.',
     'El navegador no tiene permiso para usar puertos en esta página. Pídeselo a quien administra esta computadora.'],
   why_radio_off: ['The Bluetooth of this computer is off, or it has none. Switch it on and try again.',

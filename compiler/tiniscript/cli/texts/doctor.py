@@ -122,7 +122,7 @@ DOCTOR_TEXTS: dict[str, tuple[str, str]] = {
     "next_no_serial_port": ("The ports here:  tsc ports", "Los puertos de aquí:  tsc ports"),
     "doctor_port_broken": ("The system cannot use this port", "El sistema no puede usar este puerto"),
     "seen_port_broken": ("{why}", "{why}"),
-    "next_port_broken": ("Pull the cable out and plug it in again, into another USB port if it stays so.", "Desconecta el cable y conéctalo otra vez, en otro puerto USB si sigue igual."),
+    "next_port_broken": ("Pull the cable out and plug it in again, into another USB port if it stays so.", "Desconecta el cable y vuelve a conectarlo, en otro puerto USB si sigue igual."),
     "doctor_port_gone": ("The port vanished while tsc looked at it", "El puerto desapareció mientras tsc lo revisaba"),
     "seen_port_gone": ("it opened, and then it was gone", "se abrió, y después ya no estaba"),
     "next_port_gone": ("A loose cable or plug, or a supply that breaks down. Try another cable and another USB port.", "Un cable o conector flojo, o una alimentación que falla. Prueba otro cable y otro puerto USB."),

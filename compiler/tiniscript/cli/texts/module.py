@@ -23,7 +23,7 @@ MODULE_TEXTS: dict[str, tuple[str, str]] = {
     "module_silent": ("tsc: no module answers on {port}, at any speed. See that it has power, that its TXD is on RXD of the adapter and its RXD on TXD, that nobody is connected to it by radio (then it blinks), and, for an HC-05, that its button was held down when it got power. On a board that is held in reset the wires are not crossed: TXD on pin 1, RXD on pin 0. Then try again.",
                       "tsc: ningún módulo responde en {port}, a ninguna velocidad. Revisa que tenga energía, que su TXD esté en el RXD del adaptador y su RXD en el TXD, que nadie esté conectado a él por radio (entonces parpadea) y, si es un HC-05, que su botón haya estado pulsado al recibir energía. En una placa en reset los cables no se cruzan: TXD en el pin 1, RXD en el pin 0. Después prueba otra vez."),
     "module_gone": ("tsc: the port {port} has vanished. {left} Plug it in again and try again: tsc module finds the module at any speed.",
-                    "tsc: el puerto {port} ha desaparecido. {left} Conéctalo otra vez y prueba otra vez: tsc module encuentra el módulo a cualquier velocidad."),
+                    "tsc: el puerto {port} ha desaparecido. {left} Vuelve a conectarlo y prueba otra vez: tsc module encuentra el módulo a cualquier velocidad."),
     "module_left": ("It was being set to {baud} baud: it is at that speed or at the one before.",
                     "Se estaba cambiando a {baud} baudios: tiene esa velocidad o la de antes."),
     "module_left_nothing": ("Its speed is what it was.", "Su velocidad es la que tenía."),
