@@ -78,7 +78,7 @@ TEXT_LEVEL, PLACES, OWNERS, OWNED, TEXT_ALLOWED = 0x0003, 0x0008, 0x0010, 0x0020
 YOURS, BY_TEACHER, SEALS, WIFI_RESTS = 0x0080, 0x0100, 0x0200, 0x0400
 FEATURES = (
     (TEXT_LEVEL, "TEXT_LEVEL", "Which level of text the robot reads, a number of the table below."),
-    (PLACES, "PLACES", "It tells where its program is, when PING asks."),
+    (PLACES, "PLACES", "It reports where its program is when PING asks."),
     (OWNERS, "OWNERS", "The robot knows owners."),
     (OWNED, "OWNED", "It has an owner."),
     (TEXT_ALLOWED, "TEXT_ALLOWED", "Lines of text may drive it."),
@@ -87,21 +87,21 @@ FEATURES = (
     (
         SEALS,
         "SEALS",
-        "It seals what is said with a key, and takes nothing else from who has shown one.",
+        "It seals what needs a key, and takes nothing unsealed from a session that has shown one.",
     ),
     (
         WIFI_RESTS,
         "WIFI_RESTS",
-        "Its WiFi is off after three restarts in a row, soon after it began.",
+        "Its WiFi is off, after three restarts in a row soon after WiFi began.",
     ),
 )
 # The keys of a robot: `which` of CLAIM and AUTHENTICATE.
 KEYS = (
     (
         "OWNER",
-        "Who has claimed the robot. Where there is one, nobody drives the robot without a key.",
+        "Whoever has claimed the robot. If somebody has, nobody drives it without a key.",
     ),
-    ("TEACHER", "May do what the owner may. A stop with it: only it or the button lets it go on."),
+    ("TEACHER", "May do what the owner may. After its stop, only it or the button releases the robot."),
 )
 
 # The trim of the motors: their wiring, how much one is weakened, and the least power that moves.
@@ -178,43 +178,43 @@ MESSAGES = (
              + _STATUS + " name:rest=0..16",
              "Begins a session. The same `nonce` again is the same session."),
     _message(2, "PING", False, "asks:rest=0..1", f"state:u8 run:u8 place:rest=0..{PLACE_BYTES}",
-             "Are you there? Also the heartbeat. With a byte, whatever it is: and where is your program?"),
+             "Are you there? Also the heartbeat. With any byte: and where is your program?"),
     _message(3, "STATUS", False, "",
              _STATUS + " damaged:u8 dropped:u8 framing:u8 overrun:u8",
              "What the robot does, its last fault, and how well it hears."),
     _message(4, "FETCH", False, "offset:u16", "length:u16 bytes:rest=0..",
-             "The stored program's image, from `offset` on. `length` is that of all of it."),
-    _message(5, "STOP", False, "", "", "The same as the stop sequence, and answered."),
+             "The stored program's image, from `offset` on. `length` is that of the whole image."),
+    _message(5, "STOP", False, "", "", "The same as the stop sequence, but answered."),
     # these act: they are valid in one epoch only
     _message(6, "CLEAR", True, "", "", "Releases the latch that a stop or a fault has set."),
     _message(7, "START", True, "mode:u8", _RECEIPT, "Starts the program that the robot holds."),
     _message(8, "LIVE", True, "mode:u8 code:rest=0..", _RECEIPT,
-             "Runs code once. The program that the robot holds stays what it is."),
+             "Runs code once. The program that the robot holds does not change."),
     _message(9, "PROGRAM", True, "mode:u8 code:rest=0..", _RECEIPT, "A whole program in one frame."),
     _message(10, "BEGIN", True, "mode:u8 isa_major:u8 isa_minor:u8 start:u8 header_length:u8 devices:u16 code_length:u16",
              "next:u16", "Begins a longer program: what its image's header says before its checksum."),
     _message(11, "DATA", True, "offset:u16 bytes:rest=1..", "next:u16",
-             "What lies behind the checksum, from `offset` on. What does not begin at `next` is not taken."),
+             "What lies behind the checksum, from `offset` on. The robot takes only what begins at `next`."),
     _message(12, "COMMIT", True, "checksum:u32", _RECEIPT, "The program is whole: its image's checksum."),
     _message(13, "ABORT", True, "", "", "Drops the program that was begun."),
-    _message(14, "NAME", True, "name:rest=1..16", "", "Names the robot: UTF-8. OK when it is kept, before that SAVING or LOW_SUPPLY: ask again."),
+    _message(14, "NAME", True, "name:rest=1..16", "", "Names the robot: UTF-8. OK once it is kept; until then SAVING or LOW_SUPPLY: ask again."),
     _message(15, "TRIM", True, f"trim:rest=0..{TRIM_BYTES}", "wheels:u8 balance:i8 least:u8",
-             "Sets the trim of the motors, three bytes like those of the reply, or only tells it. OK as for NAME."),
+             "Sets the motors' trim, three bytes like those of the reply; without them only reports it. OK as for NAME."),
     _message(16, "CLAIM", True, f"which:u8 key:rest=0..{KEY_BYTES}", "",
-             "Gives the robot a key, when its button was held: `which` of KEYS. Without a key: takes that one away. OK as for NAME."),
+             "Gives the robot a key after its button was held: `which` of KEYS. Without a key: takes that key away. OK as for NAME."),
     _message(17, "AUTHENTICATE", True, f"which:u8 tag:rest=0..{TAG_BYTES}", f"features:u16 challenge:rest=0..{CHALLENGE_BYTES}",
              "Without a tag: asks for a challenge. With it: shows a key of the robot."),
     _message(18, "IDENTIFY", True, "", "", "The robot blinks and plays the tune of its id."),
     _message(19, "UNDO", True, "", _RECEIPT,
-             "The robot holds the program before again. What runs ends; nothing starts."),
+             "The robot holds the previous program again. What runs ends; nothing starts."),
     _message(20, "TEXT", True, "is_allowed:u8", "features:u16", "Lets lines of text drive a robot with an owner, or not, until power-off."),
     _message(21, "WIFI", True, f"step:u8 text:rest=0..{WIFI_TEXT_BYTES}", f"mode:u8 state:u8 address:u32 network:rest=0..{NETWORK_BYTES}",
-             "Sets, forgets or tells the robot's WiFi: `step` of WIFI_STEPS. Sealed alone. OK as for NAME."),
+             "Sets, forgets or reports the robot's WiFi: `step` of WIFI_STEPS. Only sealed. OK as for NAME."),
     # events: a robot sends these without being asked
     _message(32, "SHOW", False, "", "value:i32 is_yes_no:u8", "A value that a program shows."),
     _message(33, "FAULT", False, "", "run:u8 fault:u8 at:u16 program:u32",
              "The program has ended with a fault."),
-    _message(34, "STOPPED", False, "", "cause:u8", "The robot was stopped: its epoch is another one. Or again: it still is."),
+    _message(34, "STOPPED", False, "", "cause:u8", "The robot was stopped: it has a new epoch. Repeated: it is still stopped."),
     _message(35, "DONE", False, "", "run:u8", "The program has ended."),
 )
 FIRST_ACTING = 6
@@ -278,9 +278,9 @@ STATES = (
 SAVED = (
     ("NOTHING",    "The robot holds no program."),
     ("MEMORY",     "The program is in RAM only: power off, and it is gone."),
-    ("SAVING",     "It is being saved: it is when the motors have stood for a moment."),
+    ("SAVING",     "It is being saved: that ends when the motors have stood still for a moment."),
     ("STORED",     "It is saved."),
-    ("LOW_SUPPLY", "It is in RAM only: the voltage is too low to save it. It is saved as soon as it is not."),
+    ("LOW_SUPPLY", "It is in RAM only: the voltage is too low to save it. It is saved when the voltage recovers."),
     ("OTHER_VERSION", "The stored program is for another version of the robot's machine: it holds none."),
 )
 CAUSES = (

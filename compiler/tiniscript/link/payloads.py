@@ -132,7 +132,7 @@ class FaultEvent(NamedTuple):
 
 
 class StoppedEvent(NamedTuple):
-    """The robot was stopped: its epoch is another one. Or again: it still is."""
+    """The robot was stopped: it has a new epoch. Repeated: it is still stopped."""
 
     cause: int
     name: Literal["STOPPED"] = "STOPPED"

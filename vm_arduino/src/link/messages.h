@@ -76,29 +76,29 @@ constexpr uint16_t kWifiRests = 1024;
 
 enum class Message : uint8_t {
   kHello = 1,  // Begins a session. The same `nonce` again is the same session.
-  kPing = 2,  // Are you there? Also the heartbeat. With a byte, whatever it is: and where is your program?
+  kPing = 2,  // Are you there? Also the heartbeat. With any byte: and where is your program?
   kStatus = 3,  // What the robot does, its last fault, and how well it hears.
-  kFetch = 4,  // The stored program's image, from `offset` on. `length` is that of all of it.
-  kStop = 5,  // The same as the stop sequence, and answered.
+  kFetch = 4,  // The stored program's image, from `offset` on. `length` is that of the whole image.
+  kStop = 5,  // The same as the stop sequence, but answered.
   kClear = 6,  // Releases the latch that a stop or a fault has set.
   kStart = 7,  // Starts the program that the robot holds.
-  kLive = 8,  // Runs code once. The program that the robot holds stays what it is.
+  kLive = 8,  // Runs code once. The program that the robot holds does not change.
   kProgram = 9,  // A whole program in one frame.
   kBegin = 10,  // Begins a longer program: what its image's header says before its checksum.
-  kData = 11,  // What lies behind the checksum, from `offset` on. What does not begin at `next` is not taken.
+  kData = 11,  // What lies behind the checksum, from `offset` on. The robot takes only what begins at `next`.
   kCommit = 12,  // The program is whole: its image's checksum.
   kAbort = 13,  // Drops the program that was begun.
-  kName = 14,  // Names the robot: UTF-8. OK when it is kept, before that SAVING or LOW_SUPPLY: ask again.
-  kTrim = 15,  // Sets the trim of the motors, three bytes like those of the reply, or only tells it. OK as for NAME.
-  kClaim = 16,  // Gives the robot a key, when its button was held: `which` of KEYS. Without a key: takes that one away. OK as for NAME.
+  kName = 14,  // Names the robot: UTF-8. OK once it is kept; until then SAVING or LOW_SUPPLY: ask again.
+  kTrim = 15,  // Sets the motors' trim, three bytes like those of the reply; without them only reports it. OK as for NAME.
+  kClaim = 16,  // Gives the robot a key after its button was held: `which` of KEYS. Without a key: takes that key away. OK as for NAME.
   kAuthenticate = 17,  // Without a tag: asks for a challenge. With it: shows a key of the robot.
   kIdentify = 18,  // The robot blinks and plays the tune of its id.
-  kUndo = 19,  // The robot holds the program before again. What runs ends; nothing starts.
+  kUndo = 19,  // The robot holds the previous program again. What runs ends; nothing starts.
   kText = 20,  // Lets lines of text drive a robot with an owner, or not, until power-off.
-  kWifi = 21,  // Sets, forgets or tells the robot's WiFi: `step` of WIFI_STEPS. Sealed alone. OK as for NAME.
+  kWifi = 21,  // Sets, forgets or reports the robot's WiFi: `step` of WIFI_STEPS. Only sealed. OK as for NAME.
   kShow = 32,  // A value that a program shows.
   kFault = 33,  // The program has ended with a fault.
-  kStopped = 34,  // The robot was stopped: its epoch is another one. Or again: it still is.
+  kStopped = 34,  // The robot was stopped: it has a new epoch. Repeated: it is still stopped.
   kDone = 35,  // The program has ended.
 };
 
@@ -187,9 +187,9 @@ enum class State : uint8_t {
 enum class Saved : uint8_t {
   kNothing = 0,  // The robot holds no program.
   kMemory = 1,  // The program is in RAM only: power off, and it is gone.
-  kSaving = 2,  // It is being saved: it is when the motors have stood for a moment.
+  kSaving = 2,  // It is being saved: that ends when the motors have stood still for a moment.
   kStored = 3,  // It is saved.
-  kLowSupply = 4,  // It is in RAM only: the voltage is too low to save it. It is saved as soon as it is not.
+  kLowSupply = 4,  // It is in RAM only: the voltage is too low to save it. It is saved when the voltage recovers.
   kOtherVersion = 5,  // The stored program is for another version of the robot's machine: it holds none.
 };
 
@@ -218,24 +218,24 @@ enum class TextLevel : uint8_t {
 };
 
 enum class Key : uint8_t {
-  kOwner = 0,  // Who has claimed the robot. Where there is one, nobody drives the robot without a key.
-  kTeacher = 1,  // May do what the owner may. A stop with it: only it or the button lets it go on.
+  kOwner = 0,  // Whoever has claimed the robot. If somebody has, nobody drives it without a key.
+  kTeacher = 1,  // May do what the owner may. After its stop, only it or the button releases the robot.
 };
 
 enum class WifiStep : uint8_t {
   kTell = 0,  // Changes nothing.
-  kNetwork = 1,  // The name of a network: what came before it is forgotten.
+  kNetwork = 1,  // The name of a network. The robot forgets any earlier step.
   kPassword = 2,  // The next part of its password.
   kJoin = 3,  // The robot joins that network, now and after each reset.
-  kHost = 4,  // The robot is an access point of that name.
-  kForget = 5,  // The robot has no WiFi any more, and no broker.
-  kBroker = 6,  // An MQTT broker: its address, its port (16 bits) and the class. What came before is forgotten. Empty: none.
+  kHost = 4,  // The robot is an access point with that name.
+  kForget = 5,  // The robot uses no WiFi any more, and no broker.
+  kBroker = 6,  // An MQTT broker: its address, its port (16 bits) and the class. The robot forgets any earlier step. Empty: no broker.
   kBrokerUser = 7,  // The robot's name there.
   kBrokerPassword = 8,  // The next part of its password there.
   kUseBroker = 9,  // The robot connects to that broker, now and after each reset, or to none.
-  kTellBroker = 10,  // Changes nothing. The reply is about the broker: `mode` 1 if there is one, its address, and `network` is the class.
-  kBrokerName = 11,  // The next part of the broker's name, which its certificate has. Who is not found by it is at the address.
-  kBrokerTls = 12,  // Speak TLS with the broker. The text is today's date, as 20261121 (32 bits): a certificate that ended before is refused.
+  kTellBroker = 10,  // Changes nothing. The reply is about the broker: `mode` 1 if there is one, its address, and in `network` the class.
+  kBrokerName = 11,  // The next part of the broker's name, as in its certificate. If the name is not found, the address counts.
+  kBrokerTls = 12,  // Speak TLS with the broker. The text is today's date, as 20261121 (32 bits): a certificate that expired earlier is refused.
   kBrokerTrust = 13,  // The next part of the certificate that signs the broker's, in DER.
 };
 
@@ -248,13 +248,13 @@ enum class WifiMode : uint8_t {
 enum class WifiState : uint8_t {
   kOff = 0,  // The robot has no WiFi, or has not begun with it.
   kSearching = 1,  // It does not hear the network, or waits for an answer.
-  kRefused = 2,  // The network has refused it: the password may be another one.
+  kRefused = 2,  // The network has refused it: the password may be wrong.
   kReady = 3,  // It has an address.
   kUntrusted = 4,  // The broker's certificate is not signed by the one that the robot trusts.
-  kOtherName = 5,  // The broker's certificate is for a computer of another name.
-  kExpired = 6,  // The broker's certificate had ended before the robot was told of it.
+  kOtherName = 5,  // The broker's certificate is for a computer with another name.
+  kExpired = 6,  // The broker's certificate had expired before the robot got it.
   kNoTls = 7,  // The broker and the robot agree on no TLS, or the robot has no memory left for it.
-  kRests = 8,  // Off: three times in a row the robot has restarted soon after its start. JOIN, HOST and FORGET end that.
+  kRests = 8,  // Off: three times in a row the robot has restarted soon after WiFi began. JOIN, HOST and FORGET end that.
 };
 
 // Faults that no instruction makes. The others are `Fault`.
