@@ -101,7 +101,7 @@ KEYS = (
         "OWNER",
         "Whoever has claimed the robot. If somebody has, nobody drives it without a key.",
     ),
-    ("TEACHER", "May do what the owner may. After its stop, only it or the button releases the robot."),
+    ("TEACHER", "May do the same. After its stop, only it or the button releases the robot."),
 )
 
 # The trim of the motors: their wiring, how much one is weakened, and the least power that moves.

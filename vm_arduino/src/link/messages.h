@@ -219,7 +219,7 @@ enum class TextLevel : uint8_t {
 
 enum class Key : uint8_t {
   kOwner = 0,  // Whoever has claimed the robot. If somebody has, nobody drives it without a key.
-  kTeacher = 1,  // May do what the owner may. After its stop, only it or the button releases the robot.
+  kTeacher = 1,  // May do the same. After its stop, only it or the button releases the robot.
 };
 
 enum class WifiStep : uint8_t {
