@@ -236,7 +236,7 @@ def test_nothing_happens_without_a_yes(clone: Clone, started: list[Person], answ
     person.sees("[y/N]")
     person.types(answer)
     assert person.ended() == 2
-    assert "nothing was fetched" in person.seen and not clone.page.exists()
+    assert "nothing was downloaded" in person.seen and not clone.page.exists()
 
 
 @pytest.mark.parametrize(("words", "said"), [
@@ -258,7 +258,7 @@ def test_a_wheel_begins_with_the_same_question(clone: Clone, started: list[Perso
     started.append(person)
     person.sees("[y/N]")
     person.types("n")
-    assert person.ended() == 2 and "nothing was fetched" in person.seen
+    assert person.ended() == 2 and "nothing was downloaded" in person.seen
     person = Person(clone, command)
     started.append(person)
     person.sees("[y/N]")
@@ -362,7 +362,7 @@ def test_no_platformio_is_installed_without_a_yes(clone: Clone, started: list[Pe
     started.append(person)
     person.sees("[y/N]")
     person.types("n")
-    assert person.ended() == 2 and "nothing was fetched" in person.seen
+    assert person.ended() == 2 and "nothing was downloaded" in person.seen
     done = clone.unasked(clone.firmware())
     assert done.code == 2 and "--yes" in done.err
     assert not (clone.own / "platformio").exists() and not clone.core.exists()

@@ -154,9 +154,9 @@ def test_a_picture_of_the_way(tsc: Tsc, tmp_path: Path) -> None:
         ),
         (["show", "1", "--json"], "--json does not go with tsc lesson show"),
         (["show", "1", "x.ts"], "x.ts does not go with tsc lesson show"),
-        (["sheet", "1"], "where shall the page go?"),
+        (["sheet", "1"], "where should the page go?"),
         (["sheet", "1", "-o", "no/such/folder.html"], "cannot be written"),
-        (["check", "1", "."], "there is no program"),
+        (["check", "1", "."], "has no programs"),
     ],
 )
 def test_wrong_use_says_the_next_step(
@@ -327,7 +327,7 @@ def test_notes_are_no_programs_and_folders_of_pupils_are(tsc: Tsc, tmp_path: Pat
     assert tsc("lesson", "check", "1", pupils).code == 0  # notes are nobody's failure
     for name in ("Ana", "Beto", "x.ts"):
         (pupils / name / "square.ts").unlink()
-    for language, words in (("en", "there is no program"), ("es", "no hay ningún programa")):
+    for language, words in (("en", "has no programs"), ("es", "no hay ningún programa")):
         done = tsc("lesson", "check", "1", pupils, "--lang", language)
         assert (done.code, done.out) == (2, "")
         assert words in done.err
@@ -350,7 +350,7 @@ def test_a_wrong_program_of_a_pupil_has_a_row(tsc: Tsc, tmp_path: Path, wrong: s
 def test_a_note_of_empty_lines_is_looked_at_once(tsc: Tsc, tmp_path: Path) -> None:
     """With quadratic time this takes minutes."""
     (tmp_path / "README.txt").write_text("\n" * 100_000 + " " * 100_000 + "." + "a" * 100_000)
-    assert "there is no program" in tsc("lesson", "check", "1", tmp_path).err
+    assert "has no programs" in tsc("lesson", "check", "1", tmp_path).err
 
 
 @pytest.mark.skipif(os.name == "nt", reason="Windows has no pipes among its files")

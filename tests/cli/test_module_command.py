@@ -39,8 +39,8 @@ def test_a_module_gets_name_pin_and_speed(tsc: Tsc, module: Simulated) -> None:
     assert (module.name, module.pin, module.baud) == ("ANA", "4711", 57600)
     assert done.out.splitlines() == [
         f"HC-06 3.x on {port_of(module)}, version 3.0-20170609; it listens at 9600 baud.",
-        "name ANA: the module says that it is done; it does not tell what it keeps.",
-        "PIN 4711: the module says that it is done; it does not tell what it keeps.",
+        "name ANA: the module says that it is done, but cannot confirm the value.",
+        "PIN 4711: the module says that it is done, but cannot confirm the value.",
         "57600 baud: done; it answers at this speed.",
         "Now switch it off, connect it to the robot as it was, switch it on and pair it again.",
     ]
@@ -162,7 +162,7 @@ def test_ctrl_c_says_at_which_speeds_the_module_may_be() -> None:
         command.signal(signal.SIGINT)
         done = command.ended()
     assert done.code == 2
-    assert "Its speed is what it was. Try again" in done.err
+    assert "Its speed has not changed. Try again" in done.err
 
 
 def test_ctrl_c_while_the_speed_changes() -> None:
@@ -173,4 +173,4 @@ def test_ctrl_c_while_the_speed_changes() -> None:
         command.signal(signal.SIGINT)
         done = command.ended()
     assert done.code == 2
-    assert "It was being set to 115200 baud: it is at that speed or at the one before." in done.err
+    assert "It was being set to 115200 baud: it has that speed or the old one." in done.err

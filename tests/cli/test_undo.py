@@ -37,7 +37,7 @@ def with_two(pty_robot: PtyRobot) -> list[str]:
 @pytest.mark.parametrize(
     ("language", "said", "saved"),
     [
-        ("en", "it holds the program before again, checksum", "Saved in slot 0."),
+        ("en", "it holds the previous program again, checksum", "Saved in slot 0."),
         ("es", "vuelve a tener el programa anterior, suma", "Guardado en el lugar 0."),
     ],
 )

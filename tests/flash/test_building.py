@@ -230,7 +230,7 @@ def test_a_build_that_fails_has_its_reason(
 
 
 @pytest.mark.parametrize(
-    ("words", "said"), [([], "has no room on"), (["--lang", "es"], "no cabe en")]
+    ("words", "said"), [([], "does not fit on"), (["--lang", "es"], "no cabe en")]
 )
 def test_a_firmware_that_the_board_does_not_hold_is_refused_before_it_is_written(
     words: list[str], said: str, clone: Path, tmp_path: Path

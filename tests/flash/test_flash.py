@@ -187,7 +187,7 @@ def test_a_nano_is_tried_with_both_of_its_bootloaders(
     body = f'{silent}\nopen({str(tmp_path / "bauds")!r}, "a").write(baud + " ")\nsys.exit(1)'
     done = tsc(package, "--port", board.pty, "--board", "nano", **fake(tmp_path, body))
     assert done.code == 3
-    assert "now as an older Nano" in done.err and "Is it a nano" in done.err
+    assert "trying an older Nano" in done.err and "Is it a nano" in done.err
     assert (tmp_path / "bauds").read_text() == "115200 57600 "
 
 

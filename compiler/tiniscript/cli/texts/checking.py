@@ -32,7 +32,7 @@ CHECK_TEXTS: dict[str, tuple[str, str]] = {
         "{file}: se pueden corregir {n} errores. Prueba:  tsc check --fix",
     ),
     "not_repaired": (
-        "What is left is yours to repair, since it can be meant in several ways:",
+        "The rest is yours to repair, since it can mean several things:",
         "Lo que queda lo corriges tú, porque puede querer decir varias cosas:",
     ),
     "nothing_repaired": (

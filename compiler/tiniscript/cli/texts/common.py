@@ -21,7 +21,7 @@ TEXTS: dict[str, tuple[str, str]] = {
             "tsc encontró algo para lo que no está hecho. El error es nuestro, no tuyo.\n"
             "Por favor, repórtalo con tu programa y esta línea:  {what}\n"
             "(TINISCRIPT_DEBUG=1 muestra más.)"),
-    "version_page": ("without the page of tsc studio, which is built in a clone",
+    "version_page": ("without the page of tsc studio, which a clone builds",
                      "sin la página de tsc studio, que se construye en un clon"),
     "version_firmware": ("without ready firmware: tsc firmware builds it when it is first written",
                          "sin firmware listo: tsc firmware lo compila la primera vez que se escribe"),
@@ -80,7 +80,7 @@ TEXTS: dict[str, tuple[str, str]] = {
     "path_memory": ("the memory", "la memoria"),
     "path_port": ("the port", "el puerto"),
     "path_stdin": ("the standard input", "la entrada estándar"),
-    "full": ("tsc: the output cannot be written: {why}. Make space, or send it elsewhere.",
+    "full": ("tsc: the output cannot be written: {why}. Free some space, or send it elsewhere.",
              "tsc: no se puede escribir la salida: {why}. Libera espacio o envíala a otro lugar."),
     "two_texts": ("tsc: one -e at a time. Put the lines into one program, with ; between them.",
                   "tsc: un solo -e a la vez. Pon las líneas en un solo programa, separadas con ;."),
@@ -192,7 +192,7 @@ TEXTS: dict[str, tuple[str, str]] = {
     "would_format": ("{file}: not in the usual layout. Try:  tsc fmt {file}",
                      "{file}: no está ordenado de la forma usual. Prueba:  tsc fmt {file}"),
     "is_formatted": ("{file}: is in the usual layout.", "{file}: ya está ordenado."),
-    "fmt_too_large": ("tsc: laid out, {file} would be larger than 1 MB. Split the program; it is as it was.",
+    "fmt_too_large": ("tsc: laid out, {file} would be larger than 1 MB. Split the program; nothing was changed.",
                       "tsc: ordenado, {file} pasaría de 1 MB. Divide el programa; quedó como estaba."),
     "head": ("{file}: starts {start}, {robot}, {code} bytes of code, {image} bytes in all, checksum {checksum}",
              "{file}: inicia {start}, {robot}, {code} bytes de código, {image} bytes en total, suma {checksum}"),

@@ -5,12 +5,12 @@ from __future__ import annotations
 # fmt: off
 FETCHING_TEXTS: dict[str, tuple[str, str]] = {
     # key: (English, Spanish)
-    "fetch_size": ("That fetches about {mb} MB ({parts}) and takes about {minutes} minutes, once.",
+    "fetch_size": ("That downloads about {mb} MB ({parts}) and takes about {minutes} minutes, once.",
                    "Para eso se descargan unos {mb} MB ({parts}); tarda unos {minutes} minutos, solo la primera vez."),
-    "fetch_none": ("Nothing more has to be fetched; it takes about {minutes} minutes, once.",
+    "fetch_none": ("Nothing more to download; it takes about {minutes} minutes, once.",
                    "Ya no hay que descargar nada; tarda unos {minutes} minutos, solo la primera vez."),
     "fetch_asks": ("Go on? [y/N] ", "¿Sigo? [s/N] "),
-    "fetch_declined": ("tsc: nothing was fetched, and nothing has changed.",
+    "fetch_declined": ("tsc: nothing was downloaded, and nothing has changed.",
                        "tsc: no se descargó nada, y nada cambió."),
     "fetch_unasked": ("tsc: there is no terminal here to ask at. {said} To go ahead, run the same command with --yes.",
                       "tsc: aquí no hay una terminal donde preguntar. {said} Para seguir, ejecuta el mismo comando con --yes."),

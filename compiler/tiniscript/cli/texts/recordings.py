@@ -8,7 +8,7 @@ RECORDING_TEXTS = {
                              "tsc: no se puede escribir {file}: {why}. Libera espacio, o elige otro lugar con --record."),
     "record_follows": ("tsc: --record is for one run that tsc follows: a program that begins with SI, without --detach, --no-run or --all",
                        "tsc: --record es para una ejecución que tsc sigue: un programa que empieza con SI, sin --detach, --no-run ni --all"),
-    "world_without_replay": ("tsc: --world is for --replay: without it nothing is in a world", "tsc: --world es para --replay: sin --replay no hay ningún mundo"),
+    "world_without_replay": ("tsc: --world is for --replay: without it there is no world", "tsc: --world es para --replay: sin --replay no hay ningún mundo"),
     "replay_text": ("tsc: --replay needs the program as text, to say at which line the two part", "tsc: --replay necesita el programa como texto, para decir en qué línea se separan"),
     "replay_robot": ("tsc: --replay is for the robots that tsc brings: {known}", "tsc: --replay es para los robots que trae tsc: {known}"),
     "replay_only": ("tsc: {option} does not go with --replay: the recording and the virtual robot say that. Leave it out.",

@@ -40,7 +40,7 @@ SELFTEST_TEXTS: dict[str, tuple[str, str]] = {
     "self_firmware_old": ("instructions {isa}; tsc has {wanted}", "instrucciones {isa}; tsc tiene {wanted}"),
     "self_line_is": ("{n} answers of {n}, {ms} ms usually, {least} to {most}", "{n} respuestas de {n}, {ms} ms normalmente, de {least} a {most}"),
     "self_line_bad": ("messages damaged or lost: {lost}", "mensajes dañados o perdidos: {lost}"),
-    "self_supply_is": ("no drop of the voltage that the robot has noticed; last started by: {reset}",
+    "self_supply_is": ("the robot has noticed no voltage drop; last started by: {reset}",
                        "el robot no ha notado caídas de voltaje; último arranque por: {reset}"),
     "self_supply_low": ("the voltage was too low: the robot restarted, or cannot save", "el voltaje fue demasiado bajo: el robot se reinició o no puede guardar"),
     "self_hung": ("the robot's own program hung, and the watchdog restarted it", "el firmware del robot se colgó, y el vigilante de su chip lo reinició"),
