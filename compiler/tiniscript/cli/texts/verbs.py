@@ -60,7 +60,7 @@ VERBS: dict[str, Verb] = {
     "lesson": Verb(
         PROGRAMS, ("lesson check 1 prog.ts", "lesson check 1 prog.ts"),
         ("twelve lessons; it checks their tasks", "da doce lecciones y revisa sus tareas"),
-        ("Twelve lessons of 45 minutes, from the first line to a robot that follows a line. Alone it lists them; `tsc lesson show 1` prints the pupils' page, `tsc lesson sheet 1 -o sheet.html` turns it into a page to print. `tsc lesson check 1 prog.ts` tries the program on the virtual robot, in the worlds of the task, and says what is missing; for a folder it checks every program and prints a table. The same program gets the same verdict on every computer.",
+        ("Twelve lessons of 45 minutes, from the first line to a robot that follows a line. Without an action it lists them; `tsc lesson show 1` prints the pupils' page, `tsc lesson sheet 1 -o sheet.html` turns it into a page to print. `tsc lesson check 1 prog.ts` tries the program on the virtual robot, in the worlds of the task, and says what is missing; for a folder it checks every program and prints a table. The same program gets the same verdict on every computer.",
          "Doce lecciones de 45 minutos, desde la primera línea hasta un robot que sigue una línea. Sin nada más, las lista; `tsc lesson show 1` imprime la página de los alumnos, y `tsc lesson sheet 1 -o hoja.html` la convierte en una hoja para imprimir. `tsc lesson check 1 prog.ts` prueba el programa en los mundos de la tarea, con el robot virtual, y dice qué falta; si le das una carpeta, revisa todos los programas e imprime una tabla. El mismo programa recibe el mismo resultado en cualquier computadora."),
         ("[ACTION [N [PROGRAM]]] [options]\nshow N [--teacher]\ncheck N PROGRAM [options]\nsheet N -o PAGE.html [--teacher]",
          "[ACCIÓN [N [PROGRAMA]]] [opciones]\nshow N [--teacher]\ncheck N PROGRAMA [opciones]\nsheet N -o PÁGINA.html [--teacher]"),
@@ -77,7 +77,7 @@ VERBS: dict[str, Verb] = {
     ),
     "run": Verb(
         PROGRAMS, ("run prog.ts", "run prog.ts"),
-        ("run it without a robot; print what it does", "lo ejecuta sin robot e imprime lo que haría"),
+        ("run it without a robot; print what it would do", "lo ejecuta sin robot e imprime lo que haría"),
         ("Runs a program (text or image) without a robot and prints what the robot would do, line by line, each with the milliseconds since the start. The clock is simulated, so this takes no time.",
          "Ejecuta un programa (texto o imagen) sin robot e imprime lo que hace el robot, línea por línea, cada una con los milisegundos desde el inicio. El reloj es simulado: no hay que esperar."),
         ends=("Exit code: 0 if the run is done or cut, 1 after a fault or mistakes.",
@@ -279,7 +279,7 @@ VERBS: dict[str, Verb] = {
     "module": Verb(
         BUILDING, ("module --port P", "module --port P"),
         ("set name, PIN and speed of a Bluetooth module", "nombre, PIN y velocidad de un módulo Bluetooth"),
-        ("Sets up an HC-05, HC-06 or HM-10, or one of their clones: finds it at any speed, says which one it is, sets its name, its PIN and its speed, and reads them back. Without such an option it only says what it has found. Connect the module to a USB adapter, or to a board held in reset (a wire from RESET to GND). An HC-05 takes these commands if its button was held down when it got power. If a set-up is interrupted, run it again to finish it.",
+        ("Sets up an HC-05, HC-06 or HM-10, or one of their clones: finds it at any speed, says which one it is, sets its name, its PIN and its speed, and reads them back. Without such an option it only says what it has found. Connect the module to a USB adapter, or to a board held in reset (a wire from RESET to GND). An HC-05 takes these commands if its button was held down when it got power. If a set-up is interrupted, run the command again to finish it.",
          "Configura un HC-05, HC-06 o HM-10, o una de sus copias: lo encuentra a cualquier velocidad, dice cuál es, le pone su nombre, su PIN y su velocidad, y comprueba lo que informa el módulo. Sin esas opciones solo dice lo que encontró. El módulo está en un adaptador USB, o en una placa que está en reset (un cable de RESET a GND). Un HC-05 acepta estos comandos si su botón estaba pulsado cuando recibió energía. Si una configuración se interrumpe, la siguiente la termina."),
         ("--port P [options]", "--port P [opciones]"),
         ends=("A robot cannot set up its own module: both share the wires to the computer, and the module listens only to the robot's side.\n"
