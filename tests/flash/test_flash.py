@@ -195,7 +195,7 @@ def test_half_a_firmware_is_said(package: Path, board: Uno, tmp_path: Path) -> N
     body = f'{PROGRESS}\nprint("avrdude: programmer is not responding")\nsys.exit(1)'
     done = tsc(package, "--port", board.pty, **fake(tmp_path, body))
     assert done.code == 3
-    assert "half a firmware" in done.err
+    assert "half of its firmware" in done.err
 
 
 def test_ctrl_c_in_the_middle_says_what_is_on_the_board(
@@ -214,7 +214,7 @@ def test_ctrl_c_in_the_middle_says_what_is_on_the_board(
     running.send_signal(signal.SIGINT)
     _, said = running.communicate(timeout=HANGS_S)
     assert running.returncode == 2
-    assert "half a firmware" in said or said.strip() == "Stopped."  # it may not have read that far
+    assert "half of its firmware" in said or said.strip() == "Stopped."  # it may not have read that far
     assert not Path(f"/proc/{told.read_text()}").exists()
 
 

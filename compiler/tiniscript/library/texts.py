@@ -125,7 +125,7 @@ TEXTS: dict[str, tuple[str, str]] = {
                      "Terminó el comando que usaba el puerto {port} ({verb}), y con él un programa iniciado sin detach. Conéctate otra vez."),
     "port_gone": ("The port {port} has vanished. A program that is not detached ends a second after that. Plug the cable in and connect again.",
                   "El puerto {port} desapareció. Un programa iniciado sin detach termina un segundo después. Conecta el cable y vuelve a conectarte."),
-    "broker_unreachable": ("No MQTT broker answers at {port} ({why}). Does it run there, and is this computer in its network?",
+    "broker_unreachable": ("No MQTT broker answers at {port} ({why}). Is it running there, and is this computer in its network?",
                            "Ningún broker MQTT responde en {port} ({why}). ¿Está en marcha ahí, y está esta computadora en su red?"),
     "port_refused": ("The broker of {port} does not let this computer in ({why}). Ask whoever runs the broker for a name and a password.",
                      "El broker de {port} no deja entrar a esta computadora ({why}). Pide un nombre y una contraseña a quien lo administra."),

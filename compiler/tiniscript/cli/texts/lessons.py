@@ -25,7 +25,7 @@ LESSON_TEXTS: dict[str, tuple[str, str]] = {
                      "tsc: en el mundo {seed} de la lección {file} el robot no cabe:\n{reasons}"),
     "lesson_empty": ("tsc: the folder {file} has no programs. Their names end in .ts, or in .txt if a program is inside.",
                      "tsc: en la carpeta {file} no hay ningún programa. Los nombres de los programas terminan en .ts, o en .txt si el archivo tiene un programa."),
-    "lesson_notes": ("Not checked, since they look like notes: {files}. To check one all the same:  tsc lesson check {number} FILE",
+    "lesson_notes": ("Not checked, since they look like notes: {files}. To check one anyway:  tsc lesson check {number} FILE",
                      "Sin revisar, porque parecen apuntes: {files}. Para revisar uno de todos modos:  tsc lesson check {number} ARCHIVO"),
     "lesson_many": ("tsc: the folder {file} has more than {most} programs. Check some of them at a time.",
                     "tsc: la carpeta {file} tiene más de {most} programas. Revísalos por partes."),

@@ -49,7 +49,7 @@ MODULE_TEXTS: dict[str, tuple[str, str]] = {
     "module_refused": ("tsc: {what}: the module refuses this ({said}). This setting has not changed; everything listed above is done. Check whether its firmware has this command, or leave this option out.",
                        "tsc: {what}: el módulo lo rechaza ({said}). En eso quedó como antes; lo de arriba está hecho. Averigua si su firmware tiene este comando, o quita esta opción."),
     "module_no_word": ("it said nothing", "no dijo nada"),
-    "module_lost_midway": ("tsc: {what}: the module does not answer any more. See that its power and wires are tight, and try again: repeating what is done already does no harm.",
+    "module_lost_midway": ("tsc: {what}: the module does not answer any more. Check its power and wires, and try again: repeating what is done already does no harm.",
                            "tsc: {what}: el módulo ya no responde. Revisa que su alimentación y sus cables estén firmes, y prueba otra vez: repetir lo que ya está hecho no hace daño."),
     "module_differs": ("tsc: {what}: the module has taken the command, but reports another value: {said}. Choose a shorter one, or another one, and try again.",
                        "tsc: {what}: el módulo aceptó el comando, pero informa otro valor: {said}. Elige uno más corto, u otro, y prueba otra vez."),
