@@ -9,6 +9,7 @@ import subprocess
 from argparse import Namespace
 from collections import deque
 from collections.abc import Iterator
+from contextlib import closing
 
 import pytest
 
@@ -107,11 +108,11 @@ def test_a_neighbour_that_gets_its_firmware_keeps_no_stop_from_the_others(
     class_: RobotFleet, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Another program has its port, as avrdude does: its stop is refused, the others are not."""
-    monkeypatch.setattr(opening, "STOP_BUSY_S", 0.5)
     *others, last = class_.pupils
     assert inside("upload", "-e", FOREVER, "--all", "--detach").code == 0
     holder = ports.opened(last.port, 115_200)
-    try:
+    with monkeypatch.context() as short, closing(holder):
+        short.setattr(opening, "STOP_BUSY_S", 0.5)
         for options in (("--all",), tuple(f"--port={each.port}" for each in class_.pupils)):
             done = inside("stop", *options, "--json")
             rows = results(done)
@@ -119,9 +120,8 @@ def test_a_neighbour_that_gets_its_firmware_keeps_no_stop_from_the_others(
             assert all(rows[each.port]["is_done"] for each in others)
             assert not any(each.moves for each in others)
             inside("start", "--port", others[0].port, "--detach")
-    finally:
-        holder.close()
-    assert inside("stop", "--all").code == 0
+    done = inside("stop", "--all")
+    assert done.code == 0, done
     assert not any(each.moves for each in class_.pupils)
 
 

@@ -1,7 +1,7 @@
 """Measures how many bytes of code the programs of the documents and of `examples/` take.
 
-The corpus is each program in a fence `tiniscript` of README.md, bytecode_spec.md and docs/ that
-compiles, each text once, and the files of `examples/`; for the robot that its fence `senses` names,
+The corpus is each program in a fence `tiniscript` of README.md, bytecode_spec.md, docs/ and the
+lessons that compiles, each text once, and the files of `examples/`; for the robot that its fence `senses` names,
 else for the first shipped one that it compiles for. A statement is one of the IR: an arm of an IF
 is part of the IF, END_... is none, and a DEF is one. `--opcodes` also says how often each
 instruction occurs.
@@ -25,6 +25,7 @@ from tiniscript.bytecode.disassembly import rows
 from tiniscript.semantics.ir import walk
 
 CASES = ROOT / "tests" / "cases"
+LESSONS = ROOT / "compiler" / "tiniscript" / "lessons"
 BEFORE = 1066  # bytes of the same programs in the instruction set 1.0
 STATEMENTS = 259  # that they had when BEFORE was measured
 
@@ -43,7 +44,7 @@ class Measured(NamedTuple):
 def corpus() -> Iterator[Compiled]:
     """Yield the compiled programs of the documents and examples."""
     found: dict[str, str] = {}  # the robot, or nothing, of each text
-    for path in documents():
+    for path in (*documents(), *sorted(LESSONS.glob("*/*.md"))):
         if CASES not in path.parents:
             for case in read(path):
                 if "tiniscript" in case.parts:
