@@ -116,7 +116,9 @@ def drive(uno: Uno) -> None:
     assert states(uno) == FORWARD, said(uno, 0)[-200:]
 
 
-def stop_behind(uno: Uno, baud: int, prefix: bytes, spelling: bytes, is_busy: bool = False) -> float:
+def stop_behind(
+    uno: Uno, baud: int, prefix: bytes, spelling: bytes, is_busy: bool = False
+) -> float:
     """Type a stop while the robot drives. Its pins are off in time, and nothing starts again.
 
     Returns the ms from the end of the line to the pins.

@@ -1,10 +1,10 @@
 """Measures how many bytes of code the programs of the documents and of `examples/` take.
 
 The corpus is each program in a fence `tiniscript` of README.md, bytecode_spec.md, docs/ and the
-lessons that compiles, each text once, and the files of `examples/`; for the robot that its fence `senses` names,
-else for the first shipped one that it compiles for. A statement is one of the IR: an arm of an IF
-is part of the IF, END_... is none, and a DEF is one. `--opcodes` also says how often each
-instruction occurs.
+lessons that compiles, each text once, and the files of `examples/`; for the robot that its fence
+`senses` names, else for the first shipped one that it compiles for. A statement is one of the IR:
+an arm of an IF is part of the IF, END_... is none, and a DEF is one. `--opcodes` also says how
+often each instruction occurs.
 """
 
 from __future__ import annotations

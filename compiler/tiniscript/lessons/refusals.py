@@ -13,7 +13,7 @@ from tiniscript.virtual import world_refusals
 SENTENCES: dict[str, dict[str, str]] = {
     "no_such_lesson": {
         "en": "There is no lesson {name}. Give a number from 1 to {most}, or a lesson's folder.",
-        "es": "No hay una lección {name}. Indica un número de 1 a {most}, o la carpeta de una lección.",
+        "es": "No hay una lección {name}. Indica un número de 1 a {most}, o la carpeta de una.",
     },
     "no_page": {
         "en": "{file} is missing. Write it, or choose another language with --lang.",
