@@ -51,7 +51,7 @@ def test_upload_into_a_pipe_that_closes_stops_the_robot(
 ) -> None:
     code, said = after_lines(lines, "upload", "-e", SHOWS, "--port", pty_robot.port, *extra)
     assert code == CLOSED
-    assert said.count("\n") == 1 and "was stopped" in said
+    assert said.count("\n") == 1 and "stopped the robot" in said
     pty_robot.until(lambda: not pty_robot.moves, "it stands")
 
 
@@ -60,7 +60,7 @@ def test_what_is_being_saved_is_saved_first(pty_robot: PtyRobot) -> None:
     drives = "".join(f"M({k}, 50);W(0.01);" for k in range(1, 50))
     words = ["upload", "-e", f"SI|LOOP(FOREVER);{drives}SHOW(1);END_LOOP", "--port", pty_robot.port]
     code, said = after_lines(1, *words)
-    assert code == CLOSED and said.count("\n") == 1 and "was stopped" in said
+    assert code == CLOSED and said.count("\n") == 1 and "stopped the robot" in said
     pty_robot.switch_off()
     pty_robot.switch_on()
     fetched = process("fetch", "--port", pty_robot.port)
@@ -74,10 +74,10 @@ def test_start_live_and_both_streams(pty_robot: PtyRobot) -> None:
     )
     pty_robot.until(lambda: not pty_robot.moves, "it stands")
     code, said = after_lines(2, "start", "--port", pty_robot.port)
-    assert code == CLOSED and "was stopped" in said
+    assert code == CLOSED and "stopped the robot" in said
     code, said = after_lines(1, "live", "LOOP(FOREVER);F(0.1, 80);SHOW(1);END_LOOP",
                              "--port", pty_robot.port)  # fmt: skip
-    assert code == CLOSED and "was stopped" in said
+    assert code == CLOSED and "stopped the robot" in said
     pty_robot.until(lambda: not pty_robot.moves, "it stands")
 
 
@@ -141,7 +141,7 @@ def test_a_full_disk_stops_the_robot_too(pty_robot: PtyRobot) -> None:
                               stdout=full, stderr=subprocess.PIPE, timeout=HANGS_S)  # fmt: skip
     assert done.returncode == 2
     said = done.stderr.decode()
-    assert "was stopped" in said and "cannot be written" in said and "Traceback" not in said
+    assert "stopped the robot" in said and "cannot be written" in said and "Traceback" not in said
 
 
 @pytest.mark.parametrize(
