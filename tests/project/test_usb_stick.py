@@ -13,6 +13,7 @@ import subprocess
 import sys
 import zipfile
 from importlib.metadata import Distribution, distribution
+from importlib.util import find_spec
 from pathlib import Path
 from urllib.parse import unquote
 
@@ -80,7 +81,8 @@ def installed(root: str, extras: set[str]) -> dict[str, Distribution]:
 
 def test_it_installs_with_the_network_off(stick: Path, tmp_path: Path) -> None:
     for needed in ("wasmtime", "bleak", "zeroconf", "PIL", "setuptools"):
-        pytest.importorskip(needed)
+        if find_spec(needed) is None:  # an import of setuptools would replace this one's distutils
+            pytest.skip(f"no package {needed}")
     wheels = stick / "wheels"
     wheels.mkdir()
     for each in installed("tiniscript", {"radio", "virtual"}).values():
