@@ -139,7 +139,7 @@ def description() -> str:
     address = found_in("pyproject.toml", r'^Source = "(https://[^"]+)"$').rstrip("/")
     if not address:
         return text
-    version = found_in("compiler/tiniscript/__init__.py", r'^__version__ = "([^"]+)"$')
+    version = found_in("compiler/tiniscript/version.py", r'^__version__ = "([^"]+)"$')
     text = re.sub(r"(!\[[^]]*\]\()(?=[\w.])(?!https?:)", rf"\g<1>{address}/raw/v{version}/", text)
     return re.sub(
         r"((?<!!)\[[^]]*\]\()(?=[\w.])(?!https?:)", rf"\g<1>{address}/blob/v{version}/", text

@@ -23,6 +23,10 @@ def compiled(text: str) -> Compiled:
     return found
 
 
+def mapped(found: Compiled) -> Map:
+    return source_map.made(found.source, found.places)
+
+
 def located(text: str) -> list[tuple[str, str]]:
     """Return each instruction with the piece of the text that it comes from."""
     found = compiled(text)
@@ -105,13 +109,13 @@ def test_places_are_in_order_and_the_first_is_at_the_beginning() -> None:
 
 
 def test_a_map_has_lines_and_columns_from_1_to_the_end() -> None:
-    found = source_map.from_compiled(compiled("S\r\n  F(1,\n 80)"))
+    found = mapped(compiled("S\r\n  F(1,\n 80)"))
     assert found == Map("drive.ts", ("S", "  F(1,", " 80)"),
                         (MapPlace(0, 1, 1, 1, 2), MapPlace(1, 2, 3, 3, 5)))  # fmt: skip
 
 
 def test_an_offset_inside_an_instruction_is_the_instruction_s() -> None:
-    found = source_map.from_compiled(compiled("S; F(1, 80); W(1)"))
+    found = mapped(compiled("S; F(1, 80); W(1)"))
     columns = [None if (place := found.at(offset)) is None else place.column
                for offset in range(-1, 7)]  # fmt: skip
     assert columns == [None, 1, 4, 4, 4, 14, 14, 14]
@@ -119,7 +123,7 @@ def test_an_offset_inside_an_instruction_is_the_instruction_s() -> None:
 
 
 def test_a_map_comes_back_from_json_as_it_was() -> None:
-    found = source_map.from_compiled(compiled("S // ñandú 🤖\nW(1)"))
+    found = mapped(compiled("S // ñandú 🤖\nW(1)"))
     assert source_map.from_json(source_map.as_json(found)) == found
 
 
@@ -143,7 +147,7 @@ def test_a_map_is_written_as_json_writes_it() -> None:
     ],
 )
 def test_what_is_no_map_is_refused(changed: dict[str, object]) -> None:
-    fields = json.loads(source_map.as_json(source_map.from_compiled(compiled("S"))))
+    fields = json.loads(source_map.as_json(mapped(compiled("S"))))
     assert source_map.from_json(json.dumps(fields))
     with pytest.raises(ValueError):
         source_map.from_json(json.dumps({**fields, **changed}))
@@ -154,9 +158,9 @@ def test_what_is_no_map_is_refused(changed: dict[str, object]) -> None:
 
 def test_a_map_is_found_by_its_image_alone() -> None:
     one, other = compiled("S"), compiled("W(1)")
-    source_map.remember(one.image, source_map.from_compiled(one))
+    source_map.remember(one.image, mapped(one))
     recalled = source_map.recall(checksum(one.image))
-    assert recalled == source_map.from_compiled(one)
+    assert recalled == mapped(one)
     assert source_map.recall(checksum(other.image)) is None
 
 
@@ -164,7 +168,7 @@ def test_the_oldest_maps_make_room(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(source_map, "KEPT", 3)
     found = [compiled(f"W({k})") for k in range(1, 6)]
     for k, each in enumerate(found):
-        source_map.remember(each.image, source_map.from_compiled(each))
+        source_map.remember(each.image, mapped(each))
         path = source_map._path(checksum(each.image))
         os.utime(path, (k + 1, k + 1))
     kept = [source_map.recall(checksum(each.image)) is not None for each in found]

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import pytest
 
-import tiniscript
 from tests.pupils.corpus import check
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.diagnostics.rendering import message
 from tiniscript.kit import Kit
+from tiniscript.library import compiling
 from tiniscript.repairs import fixing, vouching, whole_calls
 from tiniscript.repairs.accounting import lost, makes_up, makes_up_names
 from tiniscript.repairs.fixing import fixed
@@ -209,13 +209,13 @@ def test_a_long_hostile_text_takes_few_steps(piece: str, monkeypatch: pytest.Mon
 
 def test_repairs_that_touch_are_tried_in_few_checks(monkeypatch: pytest.MonkeyPatch) -> None:
     checks = []
-    checked = tiniscript._checked
+    checked = compiling.analyzed
 
-    def counted(text: str, kit: Kit, name: str = "") -> tiniscript.Compiled:
+    def counted(text: str, kit: Kit, name: str = "") -> compiling.Compiled:
         checks.append(text)
         return checked(text, kit, name)
 
-    monkeypatch.setattr(tiniscript, "_checked", counted)
+    monkeypatch.setattr(compiling, "analyzed", counted)
     assert check("F(t=2, vel=80)" * 60)[0].values["fix"] == "F(2, 80)"
     assert len(checks) <= 4
 

@@ -11,7 +11,8 @@ from functools import cache
 from typing import NamedTuple
 
 from tests.pupils.corpus import Entry
-from tiniscript import _checked, compile_text, robots
+from tiniscript import compile_text, robots
+from tiniscript.library.compiling import analyzed
 from tiniscript.recovery.concepts import plain
 from tiniscript.recovery.search import Candidate, candidate
 
@@ -27,7 +28,7 @@ def is_aside(program: str) -> bool:
 
 @cache
 def mistakes(program: str) -> tuple[str, ...]:
-    return tuple(each.code.number for each in _checked(program, KIT).diagnostics if each.is_mistake)
+    return tuple(each.code.number for each in analyzed(program, KIT).diagnostics if each.is_mistake)
 
 
 @cache

@@ -122,7 +122,7 @@ def _verb(arguments: list[str], language: str) -> int:
     if not arguments or arguments[0] in ("-h", "--help"):
         arguments = ["help"]
     if arguments[0] in ("-V", "--version"):
-        from tiniscript import __version__
+        from tiniscript.version import __version__
 
         print(f"tsc (TiniScript) {__version__}")
         _tell_missing(language)

@@ -16,8 +16,8 @@ from tiniscript.cli.program_files import Found, programs
 from tiniscript.cli.texts.common import text
 
 if TYPE_CHECKING:
-    from tiniscript import Compiled
     from tiniscript.diagnostics.rendering import Message
+    from tiniscript.library.compiling import Compiled
     from tiniscript.robots.profile import Robot
 
 NAME_COLUMNS = 40  # of a file's name in the table; of a longer one the end is shown

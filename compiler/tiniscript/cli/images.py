@@ -8,9 +8,9 @@ from tiniscript.cli import inputs, outputs
 from tiniscript.cli.errors import CommandError
 
 if TYPE_CHECKING:
-    from tiniscript import Compiled
     from tiniscript.bytecode.image import Image
     from tiniscript.codegen.source_map import Map
+    from tiniscript.library.compiling import Compiled
     from tiniscript.robots.profile import Robot
 
 
@@ -57,7 +57,7 @@ def ready(
     from tiniscript.library.compiling import image_of
 
     image = image_of(compiled, robot)
-    return Ready(image, len(compiled.image), source_map.from_compiled(compiled))
+    return Ready(image, len(compiled.image), source_map.made(compiled.source, compiled.places))
 
 
 def _read(given: inputs.Input) -> Image:

@@ -15,8 +15,8 @@ from tiniscript.printable import printable
 from tiniscript.source import LARGEST_SOURCE
 
 if TYPE_CHECKING:
-    from tiniscript import Compiled
     from tiniscript.kit import Kit
+    from tiniscript.library.compiling import Compiled
     from tiniscript.robots.profile import Robot
 
 
@@ -133,9 +133,8 @@ def for_level(found: Compiled, robot: Robot, name: str | None) -> Compiled:
 
 def parsed(given: Input, kit: Kit) -> Compiled:
     """Return only the syntax mistakes of a program's text."""
-    from tiniscript import Compiled
     from tiniscript.diagnostics.codes import in_order
-    from tiniscript.library.compiling import text_of
+    from tiniscript.library.compiling import Compiled, text_of
     from tiniscript.source import Source
     from tiniscript.syntax.parser import parse
 

@@ -27,10 +27,10 @@ from tiniscript.cli.texts.common import Said, text
 from tiniscript.source import PROGRAM_ENDS
 
 if TYPE_CHECKING:
-    from tiniscript import Compiled
     from tiniscript.lessons.findings import Finding
     from tiniscript.lessons.lesson import Lesson
     from tiniscript.lessons.running import Run
+    from tiniscript.library.compiling import Compiled
     from tiniscript.robots.profile import Robot
 
 PROGRAMS = 200  # of a folder

@@ -10,7 +10,7 @@ from tiniscript.cli.errors import CommandError
 from tiniscript.cli.texts.common import text
 
 if TYPE_CHECKING:
-    from tiniscript import Compiled
+    from tiniscript.library.compiling import Compiled
 
 SHOWN = 20  # diagnostics that are printed; a person mends the first ones first
 

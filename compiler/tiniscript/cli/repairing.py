@@ -14,7 +14,7 @@ from tiniscript.cli.terminal.sequences import has_colors
 from tiniscript.printable import printable
 
 if TYPE_CHECKING:
-    from tiniscript import Compiled
+    from tiniscript.library.compiling import Compiled
     from tiniscript.robots.profile import Robot
 
 _BOM = b"\xef\xbb\xbf"

@@ -16,7 +16,10 @@ from tiniscript.bytecode import image as images
 from tiniscript.files import contents
 
 if TYPE_CHECKING:
-    from tiniscript import Compiled
+    from collections.abc import Iterable
+
+    from tiniscript.codegen.lower import Place
+    from tiniscript.source import Source
 
 VERSION = 1
 FILE_BYTES = 32_000_000
@@ -53,16 +56,15 @@ class Map(NamedTuple):
         return self.lines[number - 1] if 1 <= number <= len(self.lines) else ""
 
 
-def from_compiled(compiled: Compiled) -> Map:
+def made(source: Source, places: Iterable[Place]) -> Map:
     """Return the map of a program that has just been compiled."""
-    source = compiled.source
-    places = tuple(
+    found = tuple(
         MapPlace(place.offset, *source.position(place.span.start), *source.position(place.span.end))
-        for place in compiled.places
+        for place in places
     )
     last = source.position(len(source.text))[0]
     lines = tuple(source.line_text(number) for number in range(1, last + 1))
-    return Map(source.name, lines, places)
+    return Map(source.name, lines, found)
 
 
 def as_json(places: Map) -> str:

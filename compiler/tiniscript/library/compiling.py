@@ -1,18 +1,149 @@
-"""Compiles a program's bytes for one robot, and reads images.
+"""The whole road, a line for each stage: text, tokens, AST, IR, instructions, image.
 
-The command and the functions of the library both use it. Imports no more than the compiler does.
+The command, the page and the functions of the library use it. It prints nothing, opens nothing and
+needs the standard library alone. What only wrong programs need is imported for them.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import gc
+from typing import TYPE_CHECKING, NamedTuple
+
+from tiniscript.bytecode.image import Image, checksum, pack
+from tiniscript.bytecode.opcodes import CODE_BYTES, ISA_MAJOR, ISA_MINOR
+from tiniscript.bytecode.verify import verify
+from tiniscript.codegen.lower import lower
+from tiniscript.diagnostics import codes
+from tiniscript.semantics.checker import check
+from tiniscript.semantics.empty_blocks import empty_blocks
+from tiniscript.semantics.lint import advice
+from tiniscript.semantics.optimizer import optimized
+from tiniscript.source import Source, Span, Unreadable, applied, decode
+from tiniscript.syntax.parser import parse
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from tiniscript import Compiled
-    from tiniscript.bytecode.image import Image
+    from tiniscript.bytecode.verify import Verdict
+    from tiniscript.codegen.lower import Place
+    from tiniscript.kit import Kit
     from tiniscript.robots.profile import Robot
+    from tiniscript.semantics import ir
+
+
+class Compiled(NamedTuple):
+    """What became of a text. Where a diagnostic is a mistake, `image` is empty.
+
+    `program` is the checked program, as written; `places` says where in the text each
+    instruction comes from.
+    """
+
+    source: Source
+    diagnostics: list[codes.Diagnostic]
+    program: ir.Program | None = None
+    code: bytes = b""
+    places: tuple[Place, ...] = ()
+    verdict: Verdict | None = None
+    image: bytes = b""
+
+    @property
+    def is_right(self) -> bool:
+        return not any(diagnostic.is_mistake for diagnostic in self.diagnostics)
+
+
+def check_text(text: str, kit: Kit, name: str = "") -> Compiled:
+    """Return the checked program of a text, and all that is wrong with it."""
+    found = analyzed(text, kit, name)
+    if found.is_right:
+        return found
+    from tiniscript.recovery.findings import findings, moved_back
+
+    answered = findings(found.source, found.diagnostics, lambda it: analyzed(it, kit).diagnostics)
+    if answered:
+        edits = [edit for each in answered if each.repair for edit in each.repair.edits]
+        rest = check_text(applied(text, edits), kit)
+        if not rest.is_right:  # else its warnings come when it is repaired
+            answered += [moved_back(each, edits) for each in rest.diagnostics]
+        return found._replace(diagnostics=codes.in_order(answered))
+    from tiniscript.repairs.def_order import with_moved_defs
+    from tiniscript.repairs.everywhere import said_once
+    from tiniscript.repairs.vouching import vouched
+    from tiniscript.repairs.whole_blocks import with_whole_blocks
+
+    def offered(result: Compiled) -> list[codes.Diagnostic]:
+        kept = vouched(result.diagnostics, result.source, lambda it: analyzed(it, kit).diagnostics)
+        return said_once(kept, result.source)
+
+    def offered_in(text: str) -> list[codes.Diagnostic]:
+        return offered(analyzed(text, kit))
+
+    kept = with_moved_defs(offered(found), found.source, offered_in)
+    kept = with_whole_blocks(kept, found.source, offered_in)
+    return found._replace(diagnostics=kept)
+
+
+def analyzed(text: str, kit: Kit, name: str = "") -> Compiled:
+    """Return the checked program of a text, and what is wrong with it; no repair is vouched for."""
+    source = Source(text, name)
+    parsed = parse(source, kit)
+    checked = check(source, parsed.program, kit)
+    found = [*parsed.diagnostics, *checked.diagnostics]
+    if any(diagnostic.is_mistake for diagnostic in found):
+        from tiniscript.semantics.joining import joined
+
+        found = joined(found, source, parsed.scan.tokens, kit)
+    else:
+        found += advice(checked.program, kit, source)
+        found += empty_blocks(checked.program, source)
+        if parsed.scan.comments:
+            from tiniscript.semantics.notes import in_notes
+
+            found += in_notes(parsed.scan.comments, parsed.scan.tokens, source)
+    return Compiled(source, codes.in_order(found), checked.program)
+
+
+def fitting(compiled: Compiled, robot: Robot, is_mistake: bool) -> Compiled:
+    """Return `compiled` with what there is to say where the robot's memory is too small."""
+    over = len(compiled.code) - robot.board.program_bytes
+    if over <= 0:
+        return compiled
+    code = codes.BOARD_TOO_SMALL if is_mistake else codes.BOARD_MAY_BE_TOO_SMALL
+    values = {"robot": robot.name, "limit": str(robot.board.program_bytes),
+              "code": str(len(compiled.code)), "over": str(over)}  # fmt: skip
+    end = len(compiled.source.text)
+    diagnostic = codes.Diagnostic(code, Span(end, end), values)
+    return compiled._replace(diagnostics=[*compiled.diagnostics, diagnostic])
+
+
+def compile_text(text: str, kit: Kit, name: str = "", optimize: bool = True) -> Compiled:
+    """Return the image of a text for robots with this kit, or all that is wrong with it.
+
+    The garbage collector pauses meanwhile: there are many small values and no cycles among
+    them, and looking for some would make long texts slower than in proportion.
+    """
+    was_enabled = gc.isenabled()
+    gc.disable()
+    try:
+        return _compiled(text, kit, name, optimize)
+    finally:
+        if was_enabled:
+            gc.enable()
+
+
+def _compiled(text: str, kit: Kit, name: str, optimize: bool) -> Compiled:
+    compiled = check_text(text, kit, name)
+    program = compiled.program
+    if program is None or not compiled.is_right:
+        return compiled
+    lowered = lower(optimized(program) if optimize else program)
+    if len(lowered.code) > CODE_BYTES:
+        over = {"limit": str(CODE_BYTES), "over": str(len(lowered.code) - CODE_BYTES)}
+        place = Span(len(text), len(text))
+        diagnostic = codes.Diagnostic(codes.CODE_TOO_LONG, place, over)
+        return compiled._replace(diagnostics=[*compiled.diagnostics, diagnostic])
+    verdict = verify(lowered.code, len(kit.sensors), len(kit.actuators))
+    image = pack(program.start, kit.hash_of_used(verdict.uses), lowered.code)
+    return compiled._replace(code=lowered.code, places=lowered.places, verdict=verdict, image=image)
 
 
 def compiled(
@@ -28,8 +159,6 @@ def compiled(
     `is_strict`: a program that is too large for the robot is a mistake, else a warning.
     `names_robots`: a word of another robot is said to be that; not where no other can be chosen.
     """
-    from tiniscript import compile_text, fitting
-
     text = text_of(data, name)
     if not isinstance(text, str):
         return text
@@ -37,23 +166,23 @@ def compiled(
     if not found.is_right:
         if not names_robots:
             return found
-        from tiniscript.library.known_kits import naming
-
         return naming(found, robot)
     return fitting(found, robot, is_strict)
 
 
+def naming(compiled: Compiled, robot: Robot) -> Compiled:
+    """Return `compiled` with hints to the robots that have a word that this robot lacks."""
+    from tiniscript.library.known_kits import naming_robots
+
+    named = naming_robots(compiled.diagnostics, compiled.source.text, robot)
+    return compiled._replace(diagnostics=named)
+
+
 def text_of(data: bytes, name: str) -> str | Compiled:
     """Return a program's text, or a result with one diagnostic where the bytes are no text."""
-    from tiniscript.source import Unreadable, decode
-
     try:
         return decode(data)
     except Unreadable as unreadable:
-        from tiniscript import Compiled
-        from tiniscript.diagnostics import codes
-        from tiniscript.source import Source, Span
-
         reasons = {"too_large": codes.TOO_LARGE, "binary": codes.BINARY}
         code = reasons.get(unreadable.reason, codes.NOT_UTF8)
         return Compiled(Source("", name), [codes.Diagnostic(code, Span(0, 0))])
@@ -61,9 +190,6 @@ def text_of(data: bytes, name: str) -> str | Compiled:
 
 def image_of(compiled: Compiled, robot: Robot) -> Image:
     """Return the image of a program without mistakes."""
-    from tiniscript.bytecode.image import Image, checksum
-    from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
-
     assert compiled.program is not None and compiled.verdict is not None
     devices = robot.kit.hash_of_used(compiled.verdict.uses)
     return Image(compiled.program.start, devices, compiled.code,
@@ -84,16 +210,3 @@ def kit_of(compiled: Compiled, robot: Robot) -> int:
     """Return the fingerprint of the kit whose words a program uses, or 0 for none."""
     assert compiled.verdict is not None
     return robot.kit.fingerprint if compiled.verdict.uses else 0
-
-
-def fits(image: Image, robot: Robot) -> bool:
-    """Return whether a robot may run an image that `unpack` has read."""
-    from tiniscript.bytecode.image import ImageRefused
-    from tiniscript.bytecode.loading import check
-    from tiniscript.bytecode.verify import Refused
-
-    try:
-        check(image, robot.kit)
-    except (ImageRefused, Refused):
-        return False
-    return True

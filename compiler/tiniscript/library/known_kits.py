@@ -6,24 +6,21 @@ import os
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from tiniscript import Compiled
     from tiniscript.bytecode.image import Image
+    from tiniscript.diagnostics.codes import Diagnostic
     from tiniscript.kit import Kit
     from tiniscript.robots.profile import Robot
 
 SHOWN_CHARACTERS = 60  # of a path in a message: a longer one could not be copied
 
 
-def naming(compiled: Compiled, robot: Robot) -> Compiled:
-    """Return `compiled` with hints to the robots that have a word that this robot lacks."""
+def naming_robots(diagnostics: list[Diagnostic], text: str, robot: Robot) -> list[Diagnostic]:
+    """Return diagnostics with hints to the robots that have a word that `robot` lacks."""
     from tiniscript.semantics import other_kits
 
-    diagnostics = compiled.diagnostics
     if not any(map(other_kits.is_unknown, diagnostics)):
-        return compiled
-    own = robot.name, robot.kit
-    named = other_kits.naming_robots(diagnostics, compiled.source.text, own, _others())
-    return compiled._replace(diagnostics=named)
+        return diagnostics
+    return other_kits.naming_robots(diagnostics, text, (robot.name, robot.kit), _others())
 
 
 def _others() -> dict[str, Kit]:
@@ -70,8 +67,6 @@ def may_run(image: Image, profile: Robot, kit: int) -> bool:
 
     True if this computer does not know the kit: then the robot itself refuses a wrong image.
     """
-    from tiniscript.library.compiling import fits
-
     if not image.devices or kit == profile.kit.fingerprint:
         return True
     found = of_kit(kit)
@@ -84,7 +79,6 @@ def fitting(image: Image, first: Robot) -> Robot | None:
     Returns None if no such robot is known.
     """
     from tiniscript import robots
-    from tiniscript.library.compiling import fits
     from tiniscript.robots import given
 
     if fits(image, first):
@@ -92,3 +86,16 @@ def fitting(image: Image, first: Robot) -> Robot | None:
     shipped = (robots.load(name) for name in robots.names())
     others = (robot for _, robot in given.profiles())
     return next((robot for each in (shipped, others) for robot in each if fits(image, robot)), None)
+
+
+def fits(image: Image, robot: Robot) -> bool:
+    """Return whether a robot may run an image that `unpack` has read."""
+    from tiniscript.bytecode.image import ImageRefused
+    from tiniscript.bytecode.loading import check
+    from tiniscript.bytecode.verify import Refused
+
+    try:
+        check(image, robot.kit)
+    except (ImageRefused, Refused):
+        return False
+    return True

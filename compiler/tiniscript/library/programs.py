@@ -12,9 +12,9 @@ from tiniscript.printable import printable
 from tiniscript.source import PROGRAM_ENDS
 
 if TYPE_CHECKING:
-    from tiniscript import Compiled
     from tiniscript.bytecode.image import Image
     from tiniscript.codegen.source_map import Map
+    from tiniscript.library.compiling import Compiled
     from tiniscript.robots.profile import Robot
 
 Language = str  # "en" or "es"
@@ -226,7 +226,7 @@ def _program(text: str, profile: Robot, name: str, optimize: bool, language: Lan
         error = ProgramError("mistakes", language, said="\n".join(said))
         error.diagnostics = diagnostics
         raise error
-    places = source_map.from_compiled(found)
+    places = source_map.made(found.source, found.places)
     return Program(text, found.image, image_of(found, profile), profile, places, diagnostics)
 
 

@@ -20,7 +20,6 @@ from threading import Thread
 from time import monotonic, sleep
 from typing import Any, NamedTuple
 
-from tiniscript import __version__
 from tiniscript.link import fields
 from tiniscript.link.backlog import Told
 from tiniscript.link.connection import PendingRequest
@@ -33,6 +32,7 @@ from tiniscript.sharing import protocol, registry
 from tiniscript.sharing.protocol import BadMessage, JsonMessage
 from tiniscript.sharing.registry import Registration
 from tiniscript.sharing.requests import asked_for, is_detached
+from tiniscript.version import __version__
 
 GREETING_S = 2.0  # timeout for a new client's greeting
 CLIENTS = 64  # at a time, and as many connections without a greeting

@@ -9,10 +9,10 @@ from __future__ import annotations
 from functools import cache
 from typing import NamedTuple
 
-from tiniscript import Compiled, robots
+from tiniscript import robots
 from tiniscript.codegen import source_map
 from tiniscript.diagnostics.rendering import Message, message
-from tiniscript.library.compiling import compiled, text_of
+from tiniscript.library.compiling import Compiled, compiled, text_of
 from tiniscript.repairs.fixing import offers
 from tiniscript.robots.profile import Robot
 from tiniscript.semantics import ir
@@ -66,7 +66,7 @@ def check(data: bytes, robot: str, language: str) -> Checked:
         return Checked(b"", 0, findings, ())
     kinds = ir.are_yes_no(found.program, profile.kit)
     variables = tuple(map(Variable, found.program.variables, kinds))
-    places = source_map.from_compiled(found).places
+    places = source_map.made(found.source, found.places).places
     return Checked(found.image, len(found.code), findings, places, variables, found.program.start)
 
 

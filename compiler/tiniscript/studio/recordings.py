@@ -16,7 +16,7 @@ from codecs import BOM_UTF16_BE, BOM_UTF16_LE
 from typing import NamedTuple
 
 from tiniscript.bytecode.image import checksum
-from tiniscript.codegen.source_map import from_compiled
+from tiniscript.codegen.source_map import made
 from tiniscript.fixed_point import ONE
 from tiniscript.library.compiling import compiled
 from tiniscript.semantics import ir
@@ -135,7 +135,7 @@ def replay(recording: Recording, text: bytes, robot: str, world: World) -> Parti
     if not recording.events or recording.events[0].event == "LOST":
         return Parting("empty")
     sensors = _shown_sensors(found.program)
-    places = from_compiled(found).places
+    places = made(found.source, found.places).places
     shows = {place.offset: (place.line, sensors[its.span.start]) for its, place in
              zip(found.places, places, strict=True) if its.span.start in sensors}  # fmt: skip
     parts = tuple(place.offset for place in places)

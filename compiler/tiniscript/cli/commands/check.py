@@ -11,8 +11,8 @@ from tiniscript.cli.errors import CommandError
 from tiniscript.cli.texts.common import text
 
 if TYPE_CHECKING:
-    from tiniscript import Compiled
     from tiniscript.cli.inputs import Input
+    from tiniscript.library.compiling import Compiled
     from tiniscript.robots.profile import Robot
 
 

@@ -12,7 +12,7 @@ from tiniscript.cli.errors import CommandError
 from tiniscript.cli.texts.common import text
 
 if TYPE_CHECKING:
-    from tiniscript import Compiled
+    from tiniscript.library.compiling import Compiled
 
 
 def run(options: Namespace, language: str) -> int:
@@ -31,7 +31,7 @@ def run(options: Namespace, language: str) -> int:
         return 1
     from tiniscript.codegen import source_map
 
-    places = source_map.from_compiled(compiled)
+    places = source_map.made(compiled.source, compiled.places)
     if target is None:
         sys.stdout.buffer.write(compiled.image)
         sys.stdout.flush()

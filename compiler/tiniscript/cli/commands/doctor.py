@@ -218,7 +218,7 @@ def _form(told: Mapping[str, str], language: str) -> list[str]:
 
 def _report(diagnosis: Diagnosis, told: Mapping[str, str], language: str) -> list[str]:
     """Return the lines of a report."""
-    from tiniscript import __version__
+    from tiniscript.version import __version__
 
     python = platform.python_version()
     rows = [report.MARK, text("report_about", language), ""]

@@ -58,11 +58,12 @@ def run(options: Namespace, language: str) -> int:
 
 def _may_be_done(line: str, known: Known, robot: Robot, options: Namespace) -> bool:
     """Whether a line has no mistakes, perhaps for the robot that answers; else print them."""
+    from tiniscript.library.compiling import naming
     from tiniscript.link.requests import SHORT_BYTES
 
     language: str = options.language
     if options.robot is None:
-        compiled = own_kit.naming(known.line(line, 0).compiled, robot)
+        compiled = naming(known.line(line, 0).compiled, robot)
         if own_kit.is_other_robots(compiled):
             found = own_kit.of_answering(options, robot, language)
             if found is not None:
@@ -78,11 +79,12 @@ def _compiled(
     Returns None if it has mistakes. Raises CommandError if it is too long.
     """
     from tiniscript.cli.robot.live_state import header
+    from tiniscript.library.compiling import naming
 
     if header(line) == "SB":
         raise CommandError(1, "live_button")
     found = known.line(line, 0 if is_last else room)
-    outputs.print_diagnostics(own_kit.naming(found.compiled, robot), language)
+    outputs.print_diagnostics(naming(found.compiled, robot), language)
     if not found.compiled.is_right:
         return None
     code = len(found.compiled.code)
@@ -154,7 +156,7 @@ class Repl:
         from tiniscript.codegen import source_map
         from tiniscript.library.compiling import kit_of
 
-        places = source_map.from_compiled(found.compiled)
+        places = source_map.made(found.compiled.source, found.compiled.places)
         source_map.remember(found.compiled.image, places)  # tsc info names a fault's line later
         kit = kit_of(found.compiled, self.connection.profile)
         reply = self.connection.ask(lambda session: session.live(found.compiled.code, kit))

@@ -93,7 +93,7 @@ def _said(key: str, values: Mapping[str, str], language: str) -> str:
 
 def _report(found: list[Found], name: str, port: str, language: str) -> list[str]:
     """Return the lines of a report: nothing in it tells whose robot or computer it is."""
-    from tiniscript import __version__
+    from tiniscript.version import __version__
 
     hidden = [(each, report.port(port)) for each in (port, shown(port)) if port]
     hidden += [(name, report.HIDDEN)] if name and not _is_public(name) else []

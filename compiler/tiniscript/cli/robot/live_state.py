@@ -10,12 +10,12 @@ from __future__ import annotations
 import re
 from typing import NamedTuple
 
-from tiniscript import Compiled, compile_text
 from tiniscript.cli.robot.live_mark import MARK
 from tiniscript.codegen.lower import Place
 from tiniscript.diagnostics import codes
 from tiniscript.fixed_point import as_text
 from tiniscript.kit import Kit
+from tiniscript.library.compiling import Compiled, compile_text
 from tiniscript.semantics.ir import Assign, walk
 from tiniscript.source import Source, Span
 from tiniscript.syntax import ast

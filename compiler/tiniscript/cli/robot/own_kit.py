@@ -12,13 +12,11 @@ from typing import TYPE_CHECKING
 
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.texts.common import text
-from tiniscript.library.known_kits import naming, of_kit
-
-__all__ = ("is_other_robots", "naming", "of_answering", "remember", "take")
+from tiniscript.library.known_kits import of_kit
 
 if TYPE_CHECKING:
-    from tiniscript import Compiled
     from tiniscript.cli.robot.connect import Connection
+    from tiniscript.library.compiling import Compiled
     from tiniscript.robots.profile import Robot
 
 

@@ -248,10 +248,10 @@ class SelfTest:
 
     def _shown_by(self, line: str) -> list[int]:
         """Let the robot do a line now; return what it showed. Raises CommandError."""
-        from tiniscript import compile_text
         from tiniscript.bytecode.image import unpack
         from tiniscript.cli.robot.event_printer import EventPrinter
         from tiniscript.cli.robot.run_monitor import RunMonitor
+        from tiniscript.library.compiling import compile_text
 
         code = unpack(compile_text(f"SI|{line}", self.connection.profile.kit).image).code
         values: list[int] = []

@@ -122,9 +122,9 @@ class TrimWizard:
         self.connection.give(lambda session: session.trim(trim.data()))  # kept at the end
 
     def _drive(self, line: str) -> None:
-        from tiniscript import compile_text
         from tiniscript.bytecode.image import unpack
         from tiniscript.cli.robot.event_printer import EventPrinter
+        from tiniscript.library.compiling import compile_text
 
         code = unpack(compile_text(f"SI|{line}", self.connection.profile.kit).image).code
         run = self.connection.ask(lambda session: session.live(code)).values.run
