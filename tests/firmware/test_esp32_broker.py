@@ -258,13 +258,13 @@ def test_a_stranger_stops_and_does_nothing_else(broker: Mosquitto) -> None:
     stranger.close()
 
 
-@pytest.mark.parametrize("stop", [b"S\n", b"F(1,80)\r\n ; stop ;\r"])
+@pytest.mark.parametrize("stop", [b"S\n", b"F(1,80)\r\n ; stop ;\r", b"Stop"])
 def test_a_typed_stop_of_a_stranger_is_one(broker: Mosquitto, stop: bytes) -> None:
-    """In one message, and not where that is a frame: its code may have such a line."""
+    """In one message, which ends a line; not where that is a frame, whose code may hold one."""
     robot, teacher, _, ends = driving(broker)
     stranger = broker.connected()
     topic = f"{ROOT}/aula/{ID}/in/{stranger.peer}"
-    for none in (b"SS\n", b"S", encoded(Frame(BY_NAME["LIVE"].number, 9, 0, b"\1Z\nS\n"))):
+    for none in (b"SS\n", b"SI", encoded(Frame(BY_NAME["LIVE"].number, 9, 0, b"\1Z\nS\n"))):
         stranger.publish(topic, none)
         talk(robot, ends, 100)
     assert motors(robot) == "MOTORS 80 80"

@@ -105,7 +105,7 @@ bool is_stop(const uint8_t* payload, size_t length) {
   return length >= kLeastStop;
 }
 
-// Whether a message is text, where frames have a zero, and a typed stop is in it.
+// Whether a message is text, where frames have a zero, and a typed stop is in it or is how it ends.
 bool has_typed_stop(const uint8_t* payload, size_t length) {
   TypedStop typed;
   typed.begin();
@@ -114,7 +114,7 @@ bool has_typed_stop(const uint8_t* payload, size_t length) {
     if (payload[k] == 0) return false;
     if (typed.put(payload[k])) is_found = true;
   }
-  return is_found;
+  return is_found || typed.is_whole();
 }
 
 void part() {
