@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 # Roles of instructions: these have values in brackets, and STOP does something, too. A new role of a
 # word that does something is a name here.
 CALLS = frozenset(("move", "wait", "motors", "beep", "show"))
-INSTRUCTIONS = CALLS | {"stop"}
+INSTRUCTIONS = CALLS | {"stop", "fixed"}
 
 
 class Argument(NamedTuple):
@@ -33,9 +33,16 @@ class Argument(NamedTuple):
 
 
 class Word(NamedTuple):
+    """A word with the role `fixed` stands for an instruction with its values, `BEEP(0.5, 440)`.
+
+    `says` is what the poster and its block say that it does, in English and Spanish.
+    """
+
     text: str
     role: str
     arguments: tuple[Argument, ...] = ()
+    stands_for: str = ""
+    says: tuple[str, str] = ("", "")
 
     @property
     def is_call(self) -> bool:

@@ -6,7 +6,7 @@ import re
 import zlib
 from typing import NamedTuple
 
-from tests.oracle.words import Mistake
+from tests.oracle.words import FIXED, Mistake
 
 
 class Token(NamedTuple):
@@ -54,7 +54,9 @@ def tokens_of(text: str) -> list[Token]:
             depth = max(0, depth + (1 if word == "(" else -1))
         if word == ";" and depth > 0:
             raise Mistake(f"line {line}: a ; inside parentheses")
-        if kind != "space" and not (kind == "newline" and depth > 0):
+        if word in FIXED:
+            found += (each._replace(line=line) for each in tokens_of(FIXED[word])[:-1])
+        elif kind != "space" and not (kind == "newline" and depth > 0):
             found.append(Token(kind, word, line))
         if kind == "newline":
             line += 1

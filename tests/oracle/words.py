@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+from pathlib import Path
 from typing import NamedTuple
 
 
@@ -70,6 +72,16 @@ RANGES: dict[str, tuple[tuple[int, int], ...]] = {
     "M": (_SIDE, _SIDE),
     "W": (_TIME,),
     "BEEP": (_TIME, (31_000, 20_000_000)),
+}
+
+# Words with fixed values, and the instructions that they stand for, as the reference lists them:
+# "- With fixed values: `HORN` = `BEEP(0.5, 440)`".
+_REFERENCE = Path(__file__).parent.parent.parent / "docs" / "language.en.md"
+FIXED = {
+    word: meaning
+    for line in _REFERENCE.read_text("utf-8").splitlines()
+    if line.startswith("- With fixed values")
+    for word, meaning in re.findall(r"`(\w+)` = `([^`]+)`", line)
 }
 
 RESERVED = frozenset(

@@ -18,6 +18,7 @@ from tests.support.platformio import need
 from tests.support.studio import Pages, image, shown, write
 from tiniscript import check, compile, robots
 from tiniscript.studio.block_form import data_of
+from tiniscript.studio.block_kinds import data
 from tiniscript.studio.block_reading import read
 from tiniscript.studio.building import MODULES, SOURCES
 from tiniscript.studio.serving import files
@@ -422,28 +423,9 @@ def test_blockly_speaks_spanish() -> None:
         assert sorted(re.findall(r"%\d", text)) == sorted(re.findall(r"%\d", ours[name])), name
 
 
-def test_every_word_on_a_block_is_there_in_both_languages() -> None:
-    source = (SOURCES / "src" / "block_texts.js").read_text(encoding="utf-8")
-    rows = re.findall(r"^  (\w+): \[", source, re.MULTILINE)
-    pairs = re.findall(
-        r"^  \w+: \['((?:[^'\\]|\\.)*)',\s+'((?:[^'\\]|\\.)*)'\],$", source, re.MULTILINE
-    )
-    assert len(rows) == len(pairs) > 60
-    for one, other in pairs:
+def test_what_a_block_says_has_the_same_places_in_both_languages() -> None:
+    for one, other in data()["labels"].values():
         assert sorted(re.findall(r"%[\d%]", one)) == sorted(re.findall(r"%[\d%]", other))
-
-
-def test_the_kinds_of_blocks_are_those_of_python() -> None:
-    from tiniscript.studio.block_form import SHAPES
-
-    source = (SOURCES / "src" / "block_shapes.js").read_text(encoding="utf-8")
-    table = source[source.index("export const SHAPES") : source.index("\n};")]
-    for kind, (values, bodies) in SHAPES.items():
-        row = re.search(rf"^  {kind}: \{{(.*)\}},$", table, re.MULTILINE)
-        assert row, kind
-        listed = re.search(r"values: \[(.*?)\]", row[1])
-        assert (len(listed[1].split(",")) if listed else 0) == values, kind
-        assert int((re.search(r"bodies: (\d)", row[1]) or [0, 0])[1]) == bodies, kind
 
 
 def test_no_word_of_the_sources_is_a_picture_of_a_face() -> None:

@@ -25,7 +25,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
-from tiniscript.studio import building
+from tiniscript.studio import block_kinds, building
 from tiniscript.studio.building import MODULES, SOURCES, Tools
 from tiniscript.studio.description import description
 from tiniscript.studio.policy import POLICY
@@ -100,6 +100,7 @@ def build(page: Path = PAGE) -> None:
     install(tools)
     lock = json.loads((MODULES / "pyodide" / "pyodide-lock.json").read_text(encoding="utf-8"))
     make("description.json", description())
+    make("blocks.json", block_kinds.data())
     make("blockly_texts.json", texts(BLOCKLY, SOURCES / "src"))
     make_blockly()
     make("lock.json", {"info": lock["info"], "packages": {}})

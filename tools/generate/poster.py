@@ -106,6 +106,22 @@ GROUPS = (
 # fmt: on
 
 
+def _with_fixed(rows: tuple[Row, ...]) -> list[Row]:
+    """Return rows; below that of a word those of the words which stand for it with fixed values."""
+    return [
+        each
+        for row in rows
+        for each in (
+            row,
+            *(
+                Row(word.text, *word.says)
+                for word in WORDS.values()
+                if word.stands_for and f"{{{word.stands_for.partition('(')[0]}}}" in row.code
+            ),
+        )
+    ]
+
+
 def posters(command: str) -> dict[str, Callable[[], str]]:
     """Return how the files of `docs/poster/` are made, by their names. `command` makes them."""
     return {
@@ -134,7 +150,7 @@ def page(language: str) -> Page:
     for group in GROUPS:
         found.append(Line(LEFT, y + 15, 12, BOLD, BLUE, group.es if k else group.en))
         y += HEAD_PT
-        for number, row in enumerate(group.rows):
+        for number, row in enumerate(_with_fixed(group.rows)):
             wanted = row.code_es if k and row.code_es else row.code
             code = re.sub(r"\{(\w+)\}", lambda match: WORDS[match[1]].example, wanted)
             says = row.es if k else row.en

@@ -347,7 +347,7 @@ def _says_it_again(last: Token, token: Token) -> bool:
 
 
 def _is_command(word: str) -> bool:
-    return word in WORDS and WORDS[word].role in ("move", "wait", "motors", "stop", "beep", "show")
+    return word in WORDS and WORDS[word].is_instruction
 
 
 def _digits(text: str) -> str:

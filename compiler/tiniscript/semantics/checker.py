@@ -21,6 +21,7 @@ from tiniscript.semantics.types import ANY, Kinds, Value
 from tiniscript.source import Source, Span
 from tiniscript.syntax import ast
 from tiniscript.syntax.devices import actuator_word
+from tiniscript.syntax.parser import parse
 from tiniscript.words import WORDS, Argument, Word
 
 if TYPE_CHECKING:
@@ -144,6 +145,9 @@ class _Checker(Scope):
             return
         if word.role == "start":  # it does nothing
             return
+        if word.stands_for:
+            node = _spelled_out(word, node.span)
+            word = WORDS[node.word]
         if word.role == "stop":
             made.append(ir.Stop(node.span))
             return
@@ -348,6 +352,20 @@ class _Checker(Scope):
         if known is None:
             self.names[node.name] = Name("def", len(self.procedures))
         self.procedures.append(ir.Procedure(node.name, body, node.span))
+
+
+def _spelled_out(word: Word, span: Span) -> ast.Command:
+    """Return the instruction that a word with fixed values stands for, at the word's place."""
+    (command,) = parse(Source(word.stands_for)).program.body
+    assert isinstance(command, ast.Command)
+    arguments = tuple(
+        each._replace(
+            expression=tuple(part._replace(start=span[0], end=span[1]) for part in each.expression),
+            span=span,
+        )
+        for each in command.arguments or ()
+    )
+    return command._replace(word_span=span, arguments=arguments, span=span)
 
 
 _CHECKS: dict[type, Callable[..., None]] = {

@@ -14,15 +14,6 @@ Value = tuple[tuple[str, str], ...]
 Place = tuple[int, int, int, int]  # line and column, from 1, and those of the end
 NOWHERE: Place = (0, 0, 0, 0)
 
-# How many values and bodies a kind has; those of `if` are counted by its arms.
-SHAPES = {
-    "move": (2, 0), "move_until": (3, 0), "wait": (1, 0), "wait_until": (2, 0), "motors": (2, 0),
-    "stop": (0, 0), "start": (0, 0), "beep": (2, 0), "show": (1, 0),
-    "read": (0, 0), "set": (1, 0), "call": (0, 0), "assign": (1, 0),
-    "loop": (1, 1), "forever": (0, 1), "while": (1, 1), "break": (0, 0), "def": (0, 1),
-    "comment": (0, 0), "grey": (0, 0),
-}  # fmt: skip
-
 
 class Block(NamedTuple):
     """`word` is the word or name that it has, or the text of a comment and of a grey block.

@@ -11,7 +11,8 @@ import re
 from tiniscript.fixed_point import as_text
 from tiniscript.kit import Kit
 from tiniscript.source import Source, Span
-from tiniscript.studio.block_form import SHAPES, Block, Form, Place, Stack, Value
+from tiniscript.studio.block_form import Block, Form, Place, Stack, Value
+from tiniscript.studio.block_kinds import KINDS
 from tiniscript.syntax.ast import (
     Argument,
     Assign,
@@ -172,7 +173,7 @@ class _Reader:
         if node.until is not None:
             kind += "_until"
             arguments = (*arguments, node.until)
-        if SHAPES.get(kind, (-1, 0))[0] != len(arguments):
+        if kind not in KINDS or len(KINDS[kind].values) != len(arguments):
             return Block("grey", instruction_text(piece.tokens))
         return Block(kind, node.word, tuple(self._value(each) for each in arguments))
 

@@ -14,6 +14,7 @@ from tiniscript.source import Source, Span
 from tiniscript.syntax.lexer import WORD
 from tiniscript.syntax.parser import parse
 from tiniscript.text.levels import CODE_BYTES, LONGEST_WORD, Level
+from tiniscript.text.line import spelled_out
 from tiniscript.text.memory import MOST_BRACKETS, Reader
 from tiniscript.text.plain import PlainCode, plain_code
 
@@ -21,9 +22,10 @@ from tiniscript.text.plain import PlainCode, plain_code
 def misfits(source: Source, program: Program, kit: Kit, level: Level) -> list[Diagnostic]:
     """Return what a robot of this level lacks for a checked program."""
     parsed = parse(source, kit)
+    tokens = list(spelled_out(parsed.scan.tokens))
     found = [
         Diagnostic(codes.LEVEL_WORD, token.span, {"level": level.name, "word": token.text})
-        for token in parsed.scan.tokens
+        for token in tokens
         if token.kind is WORD and (token.text in level.lacks or len(token.text) > LONGEST_WORD)
     ]
     plain = plain_code(program)
@@ -32,7 +34,7 @@ def misfits(source: Source, program: Program, kit: Kit, level: Level) -> list[Di
         place = _first_behind(plain, limit)
         found.append(_too_many(codes.LEVEL_CODE, place, level, plain.length, limit))
         return found
-    reader = Reader(parsed.scan.tokens, kit, level.sensor_bytes)
+    reader = Reader(tokens, kit, level.sensor_bytes)
     reader.program()
     if reader.one_too_many is not None:
         values = {"level": level.name, "limit": str(MOST_BRACKETS)}

@@ -6,7 +6,7 @@ All other limits (variables, blocks, values on the stack, DEFs, calls) are those
 # No `from __future__ import annotations`: typing would compile each field's again, one by one.
 from typing import NamedTuple
 
-from tiniscript.words import ALIASES, BLOCK_ENDS
+from tiniscript.words import ALIASES, BLOCK_ENDS, WORDS
 
 CODE_BYTES = 255  # of a typed program: a jump of one byte reaches over all of it
 LONGEST_WORD = 255  # letters of a word that a reader takes
@@ -47,8 +47,11 @@ LEVELS = {
     )
 }
 
-# Words that no level reads: a robot knows that their names are taken, and no more.
-UNREAD = frozenset.intersection(*(level.lacks for level in LEVELS.values()))
+# Words that no level reads: a robot knows that their names are taken, and no more. `line` writes
+# those with fixed values out.
+UNREAD = frozenset.intersection(*(level.lacks for level in LEVELS.values())).union(
+    word.text for word in WORDS.values() if word.stands_for
+)
 
 
 def level_of(chip: str) -> Level:

@@ -6,12 +6,25 @@ written, and so does the order of everything. It is made for texts in which noth
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
+
 from tiniscript.source import Source
 from tiniscript.syntax.checksums import with_checksum
-from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, WORD, scan
-from tiniscript.words import ALIASES
+from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, WORD, Token, scan
+from tiniscript.words import ALIASES, WORDS
 
 EMPTY = "SI|"  # a program that does nothing: an empty line would be none
+
+
+def spelled_out(tokens: Iterable[Token]) -> Iterator[Token]:
+    """Yield tokens; in place of a word with fixed values those that it stands for."""
+    for token in tokens:
+        word = WORDS.get(token.text)
+        if word is None or not word.stands_for:
+            yield token
+            continue
+        for each in scan(word.stands_for).tokens[:-1]:
+            yield each._replace(start=token.start, end=token.end)
 
 
 def line_of(source: Source) -> str:
@@ -20,7 +33,7 @@ def line_of(source: Source) -> str:
     brackets = 0
     before = ""  # the kind of the last token, or nothing at the beginning
     is_ended = False  # whether an instruction has ended since then
-    for token in scan(source.text).tokens:
+    for token in spelled_out(scan(source.text).tokens):
         kind = token.kind
         if kind is END:
             break

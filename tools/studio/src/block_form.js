@@ -245,7 +245,7 @@ function valueBlock(value, make) {
     const block = make(kind);
     if (block.getField('SIGN')) block.setFieldValue(op, 'SIGN');
     if (block.getField('WORD')) block.setFieldValue(text || op, 'WORD');
-    const count = SHAPES[kind]?.values?.length ?? 0;
+    const count = SHAPES[kind]?.values.length ?? 0;
     for (let index = count - 1; index >= 0; index -= 1) {
       const inner = stack.pop() ?? null;
       const itself = plain.pop() ?? [];

@@ -1,59 +1,20 @@
-// The kinds of blocks: their words, places, colours and fields. The kinds and the order of their
-// values are those of `studio/block_form.py`.
+// How Blockly shows the kinds of blocks: their words, places, colours and fields. The kinds and the
+// order of their values are those of `studio/block_kinds.py`.
 
 import * as Blockly from 'blockly/core';
+import blocks from '../made/blocks.json';
 import { LineField, NameField, NumberField } from './block_fields.js';
 import { rangeOf } from './block_places.js';
 import { BLOCK_TEXTS, TIPS, said } from './block_texts.js';
 import { ROBOTS } from './words.js';
 
 /** @typedef {'number' | 'truth' | 'any'} Place what a value there is */
-/** @typedef {{colour: string, word?: string | string[], values?: Place[], bodies?: number, gives?: Place, name?: boolean, line?: boolean, device?: 'sensor' | 'actuator'}} Shape */
+/** @typedef {{colour: string, words: string[], values: Place[], bodies: number, gives: '' | Place, field: '' | 'name' | 'line' | 'sensor' | 'actuator'}} Shape */
 
 const COMPARED = [['=', 'EQ'], ['≠', 'NE'], ['<', 'LT'], ['≤', 'LE'], ['>', 'GT'], ['≥', 'GE']];
 const RECKONED = [['+', 'ADD'], ['−', 'SUB'], ['×', 'MUL'], ['÷', 'DIV'], ['%', 'MOD']];
-const MOVES = ['F', 'B', 'L', 'R'];
 
-/** @type {Record<string, Shape>} */
-export const SHAPES = {
-  move: { colour: 'move', word: MOVES, values: ['number', 'number'] },
-  move_until: { colour: 'move', word: MOVES, values: ['number', 'number', 'truth'] },
-  wait: { colour: 'time', values: ['number'] },
-  wait_until: { colour: 'time', values: ['number', 'truth'] },
-  motors: { colour: 'move', values: ['number', 'number'] },
-  stop: { colour: 'stop' },
-  start: { colour: 'others' },
-  beep: { colour: 'time', values: ['number', 'number'] },
-  show: { colour: 'time', values: ['any'] },
-  read: { colour: 'sensors', device: 'sensor' },
-  set: { colour: 'sensors', device: 'actuator', values: ['any'] },
-  call: { colour: 'words', name: true },
-  assign: { colour: 'names', name: true, values: ['any'] },
-  if: { colour: 'control' },
-  loop: { colour: 'control', values: ['number'], bodies: 1 },
-  forever: { colour: 'control', bodies: 1 },
-  while: { colour: 'control', values: ['truth'], bodies: 1 },
-  break: { colour: 'control' },
-  def: { colour: 'words', name: true, bodies: 1 },
-  comment: { colour: 'others', line: true },
-  grey: { colour: 'grey', line: true },
-  number: { colour: 'numbers', gives: 'number' },
-  name: { colour: 'names', name: true, gives: 'any' },
-  sensor: { colour: 'sensors', device: 'sensor', gives: 'any' },
-  truth: { colour: 'decide', word: ['TRUE', 'FALSE'], gives: 'truth' },
-  time: { colour: 'time', gives: 'number' },
-  endless: { colour: 'time', gives: 'number' },
-  math: { colour: 'numbers', values: ['number', 'number'], gives: 'number' },
-  compare: { colour: 'decide', values: ['any', 'any'], gives: 'truth' },
-  logic: { colour: 'decide', values: ['truth', 'truth'], gives: 'truth' },
-  not: { colour: 'decide', values: ['truth'], gives: 'truth' },
-  negative: { colour: 'numbers', values: ['number'], gives: 'number' },
-  brackets: { colour: 'numbers', values: ['any'], gives: 'any' },
-  round: { colour: 'numbers', values: ['number', 'number'], gives: 'number' },
-  abs: { colour: 'numbers', values: ['number'], gives: 'number' },
-  extreme: { colour: 'numbers', word: ['MIN', 'MAX'], values: ['number', 'number'], gives: 'number' },
-  random: { colour: 'numbers', values: ['number', 'number'], gives: 'number' },
-};
+export const SHAPES = /** @type {Record<string, Shape>} */ (blocks.kinds);
 
 const CHECKS = { number: 'Number', truth: 'Boolean', any: null };
 /** @type {string} */
@@ -86,10 +47,10 @@ export class Checker extends Blockly.ConnectionChecker {
  * @returns {Blockly.Field | null} what stands before its values
  */
 function firstField(block, shape) {
-  if (shape.word) return options(/** @type {string[]} */ (shape.word).map((word) => [said(BLOCK_TEXTS, word), word]));
-  if (shape.name) return new NameField('X');
-  if (shape.line) return new LineField('');
-  if (shape.device) return new DeviceField(shape.device);
+  if (shape.words.length) return options(shape.words.map((word) => [said(BLOCK_TEXTS, word), word]));
+  if (shape.field === 'name') return new NameField('X');
+  if (shape.field === 'line') return new LineField('');
+  if (shape.field) return new DeviceField(shape.field);
   return block.type === 'number' ? new NumberField(0) : null;
 }
 
@@ -172,8 +133,8 @@ function build(block, kind, shape) {
     if (first && number === 1) return named(first, 'WORD');
     if (sign && number === 2) return named(options(sign), 'SIGN');
     return `V${value++}`;
-  }, (name) => shape.values?.[Number(name.slice(1))] ?? 'any');
-  for (let k = 0; k < (shape.bodies ?? 0); k += 1) block.appendStatementInput(`B${k}`);
+  }, (name) => shape.values[Number(name.slice(1))] ?? 'any');
+  for (let k = 0; k < shape.bodies; k += 1) block.appendStatementInput(`B${k}`);
   block.setInputsInline(true);
   if (shape.gives) block.setOutput(true, CHECKS[shape.gives]);
   else {
@@ -181,7 +142,7 @@ function build(block, kind, shape) {
     block.setNextStatement(true);
   }
   block.setStyle(shape.colour);
-  fill(block, kind, shape.values ?? []);
+  fill(block, kind, shape.values);
 }
 
 /**
@@ -305,7 +266,7 @@ export function defineBlocks() {
       init() {
         build(this, kind, shape);
         if (TIPS[kind]) this.setTooltip(said(TIPS, kind));
-        if (shape.device) this.setTooltip(() => tipOf(this));
+        if (shape.field === 'sensor' || shape.field === 'actuator') this.setTooltip(() => tipOf(this));
       },
     };
   }

@@ -3,6 +3,7 @@
 
 import { devices } from './block_shapes.js';
 import { GROUPS, said } from './block_texts.js';
+import { FIXED } from './words.js';
 
 /** @typedef {'few' | 'usual' | 'all'} Level */
 /** @typedef {{kind: 'block', type: string, fields?: object, inputs?: object, extraState?: object}} Item */
@@ -61,6 +62,7 @@ function groups(used) {
     ]],
     ['few', 'time', [
       ['few', item('wait', [1])], ['few', item('beep', [0.5, 440])], ['usual', item('show', [1])],
+      ...FIXED.map(({ text }) => /** @type {[Level, Item]} */ (['few', item('fixed', [], text)])),
       ['usual', until('wait_until', [5])], ['all', item('time')], ['all', item('endless')],
     ]],
     ['few', 'control', [

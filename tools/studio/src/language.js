@@ -5,7 +5,7 @@ import { HighlightStyle, StreamLanguage, syntaxHighlighting } from '@codemirror/
 import { tags } from '@lezer/highlight';
 import { wordsOf } from './words.js';
 
-const ACTS = new Set(['move', 'wait', 'motors', 'stop', 'start', 'beep', 'show', 'until', 'actuator']);
+const ACTS = new Set(['move', 'wait', 'motors', 'stop', 'start', 'beep', 'show', 'fixed', 'until', 'actuator']);
 const VALUES = new Set(['value', 'function', 'sensor', 'forever']);
 
 /**

@@ -5,6 +5,8 @@ import description from '../made/description.json';
 
 /** @typedef {{text: string, role: string, usage?: string, example: string}} Word */
 
+/** Words that stand for an instruction with its values. */
+export const FIXED = description.words.filter((word) => word.role === 'fixed');
 export const ROBOTS = description.robots;
 export const WORLDS = /** @type {import('./world_parts.js').World[]} */ (description.worlds);
 export const WORLD_LIMITS = description.world_limits;

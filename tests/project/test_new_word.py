@@ -1,0 +1,87 @@
+"""A word with fixed values is a row of `words.py`: every stage takes it from there."""
+
+from __future__ import annotations
+
+import pytest
+
+import tiniscript
+from tests.oracle.interpreter import run as run_by_reference
+from tests.oracle.words import FIXED
+from tests.support.new_word import HORN
+from tiniscript import compile_text, robots
+from tiniscript.diagnostics import codes
+from tiniscript.sketch.writing import sketch_of
+from tiniscript.source import Source
+from tiniscript.studio.block_printing import print_blocks
+from tiniscript.studio.block_reading import read
+from tiniscript.studio.description import description
+from tiniscript.syntax.formatter import formatted
+from tiniscript.text.fitting import misfits
+from tiniscript.text.levels import LEVELS, UNREAD, Level
+from tiniscript.text.line import line_of
+from tiniscript.words import WORDS
+from tools.generate import poster, text_tables
+from tools.generate.paper import Line
+
+ROBOT = robots.load("tinibot")
+KIT = ROBOT.kit
+PROGRAM = "SI|LOOP(2);\n  HORN;\n  W(1);\nEND_LOOP;\n"
+MEANT = PROGRAM.replace(HORN.text, HORN.stands_for)
+
+
+@pytest.fixture(autouse=True)
+def _has_horn(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(WORDS, HORN.text, HORN)
+    monkeypatch.setattr("tools.generate.text_tables.UNREAD", UNREAD | {HORN.text})
+    monkeypatch.setitem(FIXED, HORN.text, HORN.stands_for)
+
+
+def test_it_does_what_it_stands_for() -> None:
+    compiled = compile_text(PROGRAM, KIT)
+    assert not compiled.diagnostics
+    assert compiled.image and compiled.image == compile_text(MEANT, KIT).image
+    assert str(tiniscript.run(PROGRAM)) == run_by_reference(PROGRAM)
+
+
+@pytest.mark.parametrize(
+    ("program", "code"),
+    [
+        ("HORN = 5", codes.RESERVED),
+        ("HORN(2)", codes.NO_BRACKETS_HERE),
+        ("HORM", codes.UNKNOWN_WORD),
+        ("HORN UNTIL(DISTANCE < 10)", codes.UNTIL_NOT_HERE),
+        ("SHOW(HORN)", codes.NO_VALUE),
+    ],
+)
+def test_what_is_wrong_with_it_is_said(program: str, code: codes.Code) -> None:
+    found = compile_text(program, KIT).diagnostics
+    assert [each.code for each in found] == [code]
+
+
+def test_it_is_kept_by_formatter_blocks_and_sketch() -> None:
+    assert formatted(Source(PROGRAM.lower())) == PROGRAM
+    form = read(PROGRAM, KIT)
+    horn = form.body[0].bodies[0][0]
+    assert (horn.kind, horn.word, horn.values) == ("fixed", HORN.text, ())
+    assert print_blocks(form).text == PROGRAM
+    compiled = compile_text(PROGRAM, KIT)
+    assert compiled.program is not None
+    sketch = sketch_of(compiled.source, compiled.program, ROBOT, "en")
+    assert "beep(0.5, 440);" in sketch and "// HORN" in sketch
+    assert HORN.says in [each["says"] for each in description()["words"]]
+
+
+@pytest.mark.parametrize("level", LEVELS.values(), ids=LEVELS.keys())
+def test_a_robot_that_reads_text_gets_what_it_stands_for(level: Level) -> None:
+    compiled = compile_text(PROGRAM, KIT)
+    assert compiled.program is not None
+    assert misfits(compiled.source, compiled.program, KIT, level) == []
+    assert line_of(compiled.source) == line_of(Source(MEANT))
+    packed, rows, _ = text_tables.words_tables("a test").split("tini_progmem = {")[1:]
+    assert "// HORN" in packed and "// HORN" not in rows
+
+
+@pytest.mark.parametrize(("language", "says"), [("en", HORN.says[0]), ("es", HORN.says[1])])
+def test_it_is_on_the_poster(language: str, says: str) -> None:
+    lines = [each.text for each in poster.page(language) if isinstance(each, Line)]
+    assert lines[lines.index(HORN.text) + 1] == says
