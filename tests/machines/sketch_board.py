@@ -16,7 +16,8 @@ from tests.machines import board as boards
 from tests.machines.board import ARDUINO, CONNECTIONS, CONTROLS, CPP, HERTZ, MS, PORTS, run
 from tests.machines.host import kept
 from tiniscript.robots.boards import CHIPS
-from tiniscript.robots.firmware import BRIDGES
+from tiniscript.robots.driver import Bridge
+from tiniscript.robots.drivers import motors_of
 from tiniscript.robots.ports import AVRS
 from tiniscript.robots.profile import Robot
 
@@ -162,7 +163,7 @@ class SketchBoard:
                 continue
             forward = self._level(now, pins[f"{side}_forward"])
             backward = self._level(now, pins[f"{side}_backward"])
-            if driver in BRIDGES:
+            if isinstance(motors_of(self.robot.board.motors), Bridge):
                 level = self._level(now, pins[f"{side}_pwm"])
                 forward, backward = level * (forward > 0), level * (backward > 0)
             powers.append(round((forward - backward) / 2.55))

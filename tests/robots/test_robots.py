@@ -10,7 +10,8 @@ from pathlib import Path
 import pytest
 
 from tiniscript import robots
-from tiniscript.robots.boards import CHIPS, DRIVERS, NEEDS, Chip, drivers_for
+from tiniscript.robots.boards import CHIPS, NEEDS, Chip
+from tiniscript.robots.drivers import DRIVERS, drivers_for
 from tiniscript.robots.profile import LANGUAGES
 from tiniscript.robots.reader import read
 

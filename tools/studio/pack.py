@@ -16,15 +16,15 @@ from types import CodeType
 
 ROOT = "tiniscript.studio.worker"
 LESSONS = "tiniscript.studio.page_lessons"  # fetched when it is first needed
-# Folders that need what no browser has: ports, a terminal, other programs.
+# What needs what no browser has: ports, a terminal, other programs, files of profiles.
 LEFT_OUT = ("tiniscript.cli", "tiniscript.doctor", "tiniscript.flash", "tiniscript.modules",
-            "tiniscript.sharing", "tiniscript.wiring")  # fmt: skip
+            "tiniscript.robots.reader", "tiniscript.sharing", "tiniscript.wiring")  # fmt: skip
 # Imported where there is a port, wasmtime or another system; never in a browser.
 NOT_HERE = {"wasmtime", "serial", "bleak", "zeroconf", "platformdirs", "tomli", "construct",
             "ctypes", "multiprocessing", "urllib.request", "ssl",
             "asyncio.windows_events", "asyncio.windows_utils",
             "pydoc", "doctest", "unittest", "pdb", "argparse"}  # fmt: skip
-DATA = {"diagnostics": ("*.toml",), "link": ("*.toml",), "robots": ("*.toml",),
+DATA = {"diagnostics": ("*.toml",), "link": ("*.toml",),
         "virtual": ("*.wasm",), "virtual/worlds": ("*.toml",)}  # fmt: skip
 DATA_OF_LESSONS = {"lessons": ("*/lesson.toml", "*/world.toml", "*/pupil.*.md")}
 ENCODINGS = ("encodings.latin_1", "encodings.ascii", "encodings.utf_8_sig", "encodings.cp437")

@@ -1,6 +1,7 @@
 """Turns `[board]` of a profile into a Board, and complains about what the chip cannot do.
 
-Knows which pins and timers are in use, and by what. `boards` describes chips and drivers.
+Knows which pins and timers are in use, and by what. `boards` describes chips, and
+`drivers` what is joined to them.
 """
 
 from __future__ import annotations
@@ -9,7 +10,9 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from tiniscript.kit import Device, Kit
-from tiniscript.robots.boards import AT_STOP, BAUDS, CHIPS, DRIVERS, Chip, Setting, drivers_for
+from tiniscript.robots.boards import BAUDS, CHIPS, Chip
+from tiniscript.robots.driver import AT_STOP, Setting
+from tiniscript.robots.drivers import DRIVERS, drivers_for
 from tiniscript.robots.ledc import FREQUENCIES, timers_of
 from tiniscript.robots.profile import LANGUAGES, Board, Wiring
 from tiniscript.robots.refusals import shown
@@ -196,8 +199,9 @@ def _read_wiring(table: Table, used_by: str, pins: Pins) -> Wiring:
     if not name:
         return NOTHING
     driver = DRIVERS[used_by, name]
+    known = {setting.key for setting in driver.settings}
     is_actuator = used_by.startswith("actuators")
-    if is_actuator and name != "servo" and AT_STOP in table.written():
+    if is_actuator and AT_STOP not in known and AT_STOP in table.written():
         table.has(AT_STOP)  # counted as known: one complaint is enough
         table.complain("at_stop_of_no_servo", AT_STOP)
     settings = {setting.key: _read_setting(table, setting) for setting in driver.settings}

@@ -1,6 +1,7 @@
-"""The tables of chips and drivers: what each pin can do, and which pins a driver needs.
+"""The table of chips: what each pin can do.
 
-Knows pins, timers and memory. Does not read profiles: `board_reader` does, and compares.
+Knows pins, timers and memory. Does not read profiles: `board_reader` does, and compares their pins
+with what the drivers need.
 """
 
 from __future__ import annotations
@@ -176,81 +177,3 @@ CHIPS = {
 }
 
 BAUDS = (9600, 19200, 38400, 57600, 115200)
-
-
-class PinKey(NamedTuple):
-    key: str
-    need: str
-    is_optional: bool = False
-
-
-class Setting(NamedTuple):
-    """`kind` is `yes/no`, `whole`, `number` (in thousandths) or `choice`.
-
-    A choice is the index of its word in `words`.
-    """
-
-    key: str
-    kind: str
-    default: int = 0
-    low: int = 0
-    high: int = 1
-    words: tuple[str, ...] = ()
-
-
-class Driver(NamedTuple):
-    """`used_by` is the table of [board] and the kind of the device: `sensors number`."""
-
-    name: str
-    used_by: str
-    pins: tuple[PinKey, ...]
-    settings: tuple[Setting, ...] = ()
-
-
-_SIDES = ("left", "right")
-_PWM_AND_TWO = tuple(
-    PinKey(f"{side}_{key}", need)
-    for side in _SIDES
-    for key, need in (("pwm", "pwm"), ("forward", "output"), ("backward", "output"))
-)
-_TWO_WIRES = tuple(
-    PinKey(f"{side}_{key}", "pwm") for side in _SIDES for key in ("forward", "backward")
-)
-_TWO_SERVOS = tuple(PinKey(f"{side}_pin", "servo") for side in _SIDES)
-_STILL = Setting("left_still_us", "whole", 1500, 1000, 2000)
-
-AT_STOP = "at_stop"  # what a stop does with a servo; it turns other actuators off
-HOLD = 1
-
-# fmt: off
-DRIVERS = {(driver.used_by, driver.name): driver for driver in (
-    Driver("l298n",     "motors",           _PWM_AND_TWO),
-    Driver("l293d",     "motors",           _PWM_AND_TWO),
-    Driver("tb6612",    "motors",           (*_PWM_AND_TWO, PinKey("standby", "output", True))),
-    Driver("two_wire",  "motors",           _TWO_WIRES),
-    Driver("servos",    "motors",           _TWO_SERVOS,
-           (Setting("left_reversed", "yes/no"), Setting("right_reversed", "yes/no", 1),
-            _STILL, _STILL._replace(key="right_still_us"))),
-    Driver("analog",    "sensors number",   (PinKey("pin", "analog"),),
-           # the values at 0 V and at the highest voltage; 0 and 1023 keep the raw reading
-           (Setting("zero", "number", 0, -1_000_000_000, 1_000_000_000),
-            Setting("full", "number", 1_023_000, -1_000_000_000, 1_000_000_000))),
-    Driver("hc_sr04",   "sensors number",   (PinKey("trigger", "output"), PinKey("echo", "echo"))),
-    Driver("digital",   "sensors yes/no",   (PinKey("pin", "input"),),
-           (Setting("pull_up", "yes/no"), Setting("yes_is_low", "yes/no"))),
-    Driver("threshold", "sensors yes/no",   (PinKey("pin", "analog"),),
-           (Setting("threshold", "whole", 512, 1, 1023), Setting("yes_is_low", "yes/no"))),
-    Driver("servo",     "actuators number", (PinKey("pin", "servo"),),
-           (Setting("low_us", "whole", 1000, 500, 2500),
-            Setting("high_us", "whole", 2000, 500, 2500),
-            Setting(AT_STOP, "choice", words=("release", "hold")))),
-    Driver("pwm",       "actuators number", (PinKey("pin", "pwm"),)),
-    Driver("digital",   "actuators yes/no", (PinKey("pin", "output"),),
-           (Setting("yes_is_low", "yes/no"),)),
-)}
-# fmt: on
-
-
-def drivers_for(used_by: str) -> tuple[str, ...]:
-    """Return the names of the drivers that fit, `("analog", "hc_sr04")`."""
-    return tuple(name for use, name in DRIVERS if use == used_by)

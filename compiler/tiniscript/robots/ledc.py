@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from itertools import chain
 
-from tiniscript.robots.boards import DRIVERS
+from tiniscript.robots.drivers import DRIVERS
 from tiniscript.robots.profile import Board, Wiring
 
 PER_TIMER = 2  # channels

@@ -28,7 +28,7 @@ class ProfileRefused(Exception):
 
 
 class Wiring(NamedTuple):
-    """How a device is connected: a driver of `boards`, its pins and its settings.
+    """How a device is connected: a driver of `drivers`, its pins and its settings.
 
     Pins are the numbers of the chip's Arduino core (A0 of an Uno is 14); pins that the profile
     omits are missing. All settings are present: yes/no as 0 and 1, `zero` and `full` as

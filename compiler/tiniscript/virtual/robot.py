@@ -11,7 +11,7 @@ from random import Random
 from typing import NamedTuple
 
 from tiniscript.bytecode.opcodes import FAULTS
-from tiniscript.robots.boards import AT_STOP, HOLD
+from tiniscript.robots.driver import AT_STOP, HOLD
 from tiniscript.robots.kinematics import Pose
 from tiniscript.robots.kit_words import kit_words
 from tiniscript.robots.ports import ESP32S

@@ -9,11 +9,12 @@ import re
 from html import escape
 from unicodedata import east_asian_width
 
+from tiniscript.robots.driver import GROUND
 from tiniscript.wiring import layout as places
 from tiniscript.wiring.headers import ROW_AT_THE_END, SIDES
 from tiniscript.wiring.icons import ICONS
 from tiniscript.wiring.layout import LEFT, RIGHT, STEP, ZONE, Box, Layout, Pin, Route
-from tiniscript.wiring.parts import BOARD_RAILS, GROUND, RAILS
+from tiniscript.wiring.parts import BOARD_RAILS, RAILS
 from tiniscript.wiring.plan import End, Plan, Wire
 from tiniscript.wiring.texts import text
 

@@ -8,8 +8,9 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from tiniscript.robots.driver import GROUND, PULL_DOWN
 from tiniscript.wiring.headers import SIDES
-from tiniscript.wiring.parts import BOARD_RAILS, GROUND, PULL_DOWN
+from tiniscript.wiring.parts import BOARD_RAILS
 from tiniscript.wiring.plan import LAMP_PIN, End, Part, Plan
 from tiniscript.wiring.texts import text
 
@@ -82,8 +83,6 @@ class _Page:
         self.plan = plan
         self.language = plan.language
         self.board = SIDES[plan.chip.name].name
-        motors = plan.parts[0]
-        self.driver = motors.shape.need.removeprefix("need_")
 
     def say(self, key: str, **values: object) -> str:
         return text(key, self.language).format(**values)
@@ -161,8 +160,7 @@ class _Page:
             self.say("power_common"),
             self.say("power_not_5v" if self.plan.has_radio else "power_not_3v3"),
         ]
-        if self.driver != "servos":
-            said.append(self.say(f"power_volts_{self.driver}"))
+        said += [self.say(part.shape.power) for part in self.plan.parts if part.shape.power]
         return said
 
     def _pull_downs(self) -> str:
@@ -202,8 +200,7 @@ class _Page:
         ]
         if self._pull_downs():
             said.append(self.say("check_pull_downs", ends=self._pull_downs()))
-        if self.driver == "l298n":
-            said.append(self.say("check_jumpers"))
+        said += [self.say(key) for part in self.plan.parts for key in part.shape.checks]
         keys: tuple[str, ...] = ("check_bare",)
         if self.plan.has_radio:
             keys = ("check_divider", "check_bare", "check_unplugged")

@@ -10,9 +10,17 @@ from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
 from tiniscript.robots.boards import CHIPS, Chip
+from tiniscript.robots.driver import (
+    FIVE_VOLTS,
+    MOTOR_BATTERY,
+    SERVO_SUPPLY,
+    Shape,
+    Terminal,
+    lamp,
+    switch,
+)
 from tiniscript.robots.profile import Body, Robot, Wiring
 from tiniscript.wiring import parts
-from tiniscript.wiring.parts import MOTOR_BATTERY, SERVO_SUPPLY, Shape
 from tiniscript.wiring.texts import text
 
 RECEIVE_PIN, TRANSMIT_PIN = 0, 1  # of an AVR
@@ -68,7 +76,7 @@ class Plan(NamedTuple):
     @property
     def has_radio(self) -> bool:
         """Whether an HC-05 is joined to it; an ESP32 has its link on USB."""
-        return self.chip.pin_volts == parts.FIVE_VOLTS
+        return self.chip.pin_volts == FIVE_VOLTS
 
     @property
     def wires(self) -> list[Wire]:
@@ -113,7 +121,7 @@ class _Counter:
         ends = [self._end(terminal, pins) for terminal in shape.terminals]
         return Part(title, label, is_device, shape, tuple(ends))
 
-    def _end(self, terminal: parts.Terminal, pins: Mapping[str, int]) -> End:
+    def _end(self, terminal: Terminal, pins: Mapping[str, int]) -> End:
         name, pin_key, *rest = terminal
         pin = pins.get(pin_key)
         wire = None
@@ -149,20 +157,18 @@ def plan_of(robot: Robot, language: str) -> Plan:
             shape = parts.shape_of(
                 f"{used_by} {device.kind}", wiring, device, place, chip.pin_volts
             )
-            if board.motors.driver == "servos":
+            if any(each.rail == SERVO_SUPPLY for each in motors.terminals):
                 shape = _with_servo_supply(shape)
             label = robot.labels[language][device.name]
             label = "" if label == device.name else label
             found.append(counter.part(device.name, label, shape, wiring.pins, is_device=True))
-    found.append(
-        counter.part(named("part_button"), "SB", parts.SWITCH, {"pin": board.start_button})
-    )
+    found.append(counter.part(named("part_button"), "SB", switch(), {"pin": board.start_button}))
     found.append(counter.part(named("part_buzzer"), "BEEP", parts.BUZZER, {"pin": board.buzzer}))
-    has_radio = chip.pin_volts == parts.FIVE_VOLTS
+    has_radio = chip.pin_volts == FIVE_VOLTS
     has_lamp = has_radio and board.status_led == LAMP_PIN
     if board.status_led is not None and not has_lamp:
-        lamp = parts.shape_of("actuators yes/no", Wiring("digital", {}, {}))
-        found.append(counter.part(named("part_lamp"), "", lamp, {"pin": board.status_led}))
+        pin = {"pin": board.status_led}
+        found.append(counter.part(named("part_lamp"), "", lamp(is_on_low=False), pin))
     radio = {"rx": RECEIVE_PIN, "tx": TRANSMIT_PIN}
     if board.bluetooth_state is not None:
         radio["state"] = board.bluetooth_state

@@ -1,6 +1,8 @@
-"""What a wiring page says, in English and Spanish."""
+"""What a wiring page says, in English and Spanish. Drivers bring their own sentences."""
 
 from __future__ import annotations
+
+from tiniscript.robots.drivers import DRIVERS
 
 # fmt: off
 TEXTS: dict[str, tuple[str, str]] = {
@@ -64,22 +66,8 @@ TEXTS: dict[str, tuple[str, str]] = {
     # what is needed
     "need": ("What you need", "Qué necesitas"),
     "need_board": ("1 × {board} with its USB cable", "1 × {board} con su cable USB"),
-    "need_l298n": ("motor driver module L298N, and two motors with gears", "módulo de motores L298N, y dos motorreductores"),
-    "need_l293d": ("motor driver chip L293D, and two motors with gears", "integrado L293D para motores, y dos motorreductores"),
-    "need_tb6612": ("motor driver module TB6612FNG, and two motors with gears", "módulo de motores TB6612FNG, y dos motorreductores"),
-    "need_two_wire": ("motor driver with two wires for each motor (DRV8833, L9110S), and two motors with gears",
-                      "controlador de dos cables por motor (DRV8833, L9110S), y dos motorreductores"),
-    "need_servos": ("pair of servos that turn without end (360°)", "par de servos de giro continuo (360°)"),
     "need_light": ("photoresistor (LDR)", "fotorresistencia (LDR)"),
-    "need_analog": ("sensor with three pins whose output is a voltage from 0 to 5 V",
-                    "sensor de tres pines cuya salida es un voltaje de 0 a 5 V"),
-    "need_analog_3v3": ("sensor with three pins that works at 3.3 V, whose output is a voltage",
-                        "sensor de tres pines que funciona con 3.3 V, cuya salida es un voltaje"),
-    "need_hc_sr04": ("distance sensor HC-SR04", "sensor de distancia HC-SR04"),
-    "need_digital": ("sensor module with a digital output (D0)", "módulo sensor con salida digital (D0)"),
-    "need_threshold": ("sensor module with an analog output (A0)", "módulo sensor con salida analógica (A0)"),
     "need_switch": ("push button", "pulsador"),
-    "need_servo": ("servo (180°)", "servo (180°)"),
     "need_lamp": ("LED", "LED"),
     "need_buzzer": ("passive buzzer (one that needs a tone; not one that beeps by itself)",
                     "zumbador pasivo (uno que necesita un tono; no uno que suena solo)"),
@@ -138,61 +126,16 @@ TEXTS: dict[str, tuple[str, str]] = {
                      "Nunca unas el más de la batería con 5V de la placa."),
     "power_not_3v3": ("Never join the plus of the battery to 5V or 3V3 of the board, nor 5 V to any pin: its pins take 3.3 V.",
                       "Nunca unas el más de la batería con 5V o 3V3 de la placa, ni 5 V con un pin: sus pines aguantan 3.3 V."),
-    "power_volts_l298n": ("The L298N keeps about 2 V for itself: a battery of 7 to 9 V (6 AA cells) suits motors for 6 V.",
-                          "El L298N se queda con unos 2 V: una batería de 7 a 9 V (6 pilas AA) va bien con motores de 6 V."),
-    "power_volts_l293d": ("The L293D keeps about 2 V for itself: a battery of 7 to 9 V (6 AA cells) suits motors for 6 V.",
-                          "El L293D se queda con unos 2 V: una batería de 7 a 9 V (6 pilas AA) va bien con motores de 6 V."),
-    "power_volts_tb6612": ("The TB6612 takes from 4.5 to 13.5 V; a battery with the volts of the motors suits it.",
-                           "El TB6612 acepta de 4.5 a 13.5 V; le va bien una batería con los voltios de los motores."),
-    "power_volts_two_wire": ("Such a driver takes up to about 10 V (look at its page); a battery with the volts of the motors suits it.",
-                             "Un controlador así acepta hasta unos 10 V (mira su hoja); le va bien una batería con los voltios de los motores."),
     # what to mind
     "mind": ("Take care", "Cuidado"),
     "mind_floating": ("The resistors of 10 kΩ at {ends} keep the motors still while the board starts: for about a second after every "
                       "reset no program drives its pins yet, and such a pin may be on or off.",
                       "Las resistencias de 10 kΩ en {ends} mantienen quietos los motores mientras la placa arranca: durante cerca de un segundo "
                       "después de cada reinicio ningún programa maneja todavía sus pines, y un pin así puede estar encendido o apagado."),
-    "mind_l298n_enable": ("L298N: take off the two small jumpers at ENA and ENB. With them the motors have full power always.",
-                          "L298N: quita los dos puentes pequeños de ENA y ENB. Con ellos los motores tienen siempre toda la potencia."),
-    "mind_l298n_5v": ("L298N: leave the jumper beside +12V in its place and its 5V free: the module makes these 5 V for itself. "
-                      "Only with a battery under 7 V: take that jumper off and join 5V of the module to 5V of the board. Over 12 V do the same.",
-                      "L298N: deja en su lugar el puente junto a +12V y libre su 5V: el módulo hace esos 5 V para sí mismo. "
-                      "Solo con una batería de menos de 7 V: quita ese puente y une el 5V del módulo con 5V de la placa. Con más de 12 V haz lo mismo."),
-    "mind_l293d": ("L293D: the number in brackets is the chip's pin. With the notch at the top, pin 1 is the first one on the left, and 16 the first one on the right. All four GND pins go to GND.",
-                   "L293D: el número entre paréntesis es el pin del integrado. Con la muesca arriba, el pin 1 es el primero de la izquierda, y el 16 el primero de la derecha. Los cuatro GND van a GND."),
-    "mind_tb6612_standby": ("TB6612: while STBY is low it drives no motor. The firmware raises it only to drive.",
-                            "TB6612: mientras STBY está en bajo no mueve ningún motor. El firmware lo sube solo para mover los motores."),
-    "mind_tb6612_no_standby": ("TB6612: STBY goes to 5V, or it drives no motor.", "TB6612: STBY va a 5V; si no, no mueve ningún motor."),
-    "mind_tb6612_no_standby_3v3": ("TB6612: STBY goes to 3V3, or it drives no motor.", "TB6612: STBY va a 3V3; si no, no mueve ningún motor."),
-    "mind_tb6612_3v3": ("TB6612: the battery goes to VM. VCC goes to the 3V3 of the board, never to the battery.",
-                        "TB6612: la batería va a VM. VCC va a los 3V3 de la placa, nunca a la batería."),
-    "mind_tb6612": ("TB6612: the battery goes to VM. VCC goes to the 5V of the board, never to the battery.",
-                    "TB6612: la batería va a VM. VCC va a los 5V de la placa, nunca a la batería."),
-    "mind_two_wire": ("Drivers with two wires have other names for their pins: VM may be VCC or +, IN1 to IN4 may be AIN1, AIN2, BIN1, BIN2 or A-1A, A-1B, B-1A, B-1B. "
-                      "If yours has a pin SLP, EEP or nSLEEP, join it to 5V.",
-                      "Los controladores de dos cables usan otros nombres: VM puede ser VCC o +; IN1 a IN4 pueden ser AIN1, AIN2, BIN1, BIN2 o A-1A, A-1B, B-1A, B-1B. "
-                      "Si el tuyo tiene un pin SLP, EEP o nSLEEP, únelo a 5V."),
-    "mind_two_wire_3v3": ("Drivers with two wires have other names for their pins: VM may be VCC or +, IN1 to IN4 may be AIN1, AIN2, BIN1, BIN2 or A-1A, A-1B, B-1A, B-1B. "
-                          "If yours has a pin SLP, EEP or nSLEEP, join it to 3V3.",
-                          "Los controladores de dos cables usan otros nombres: VM puede ser VCC o +; IN1 a IN4 pueden ser AIN1, AIN2, BIN1, BIN2 o A-1A, A-1B, B-1A, B-1B. "
-                          "Si el tuyo tiene un pin SLP, EEP o nSLEEP, únelo a 3V3."),
     "mind_servo_supply": ("Servos need a supply of their own, 5 to 6 V: on the 5V of the board they make it restart. Their minus and GND are joined.",
                           "Los servos necesitan su propia fuente, de 5 a 6 V: con los 5V de la placa hacen que se reinicie. Su menos y GND van unidos."),
-    "mind_servos": ("A servo that creeps when it should stand still: turn its small screw until it stops, or change left_still_us or right_still_us in the profile.",
-                    "Un servo que avanza despacio cuando debería estar quieto: gira su tornillo pequeño hasta que pare, o cambia left_still_us o right_still_us en el perfil."),
     "mind_light": ("A photoresistor has no plus and no minus: either leg is leg 1. More light, higher value.",
                    "Una fotorresistencia no tiene más ni menos: cualquier pata es la pata 1. Más luz, valor más alto."),
-    "mind_analog": ("Sensors with three pins have them in different orders: go by the names printed on yours, or by its data sheet.",
-                    "Los sensores de tres pines los tienen en distinto orden: guíate por los nombres impresos en el tuyo, o por su hoja de datos."),
-    "mind_digital": ("A module with a small screw: turn it until its own lamp changes where it should.",
-                     "Un módulo con un tornillo pequeño: gíralo hasta que su propia luz cambie donde debe."),
-    "mind_voltage": ("The two resistors at {part} let the board measure more than 5 V. Join their middle to the pin, never the battery itself: that destroys the pin.",
-                     "Las dos resistencias de {part} le permiten a la placa medir más de 5 V. Une su punto medio con el pin, nunca la batería misma: eso daña el pin."),
-    "mind_hc_sr04": ("HC-SR04: it needs 5 V. With 3.3 V it measures nonsense.", "HC-SR04: necesita 5 V. Con 3.3 V mide cualquier cosa."),
-    "mind_hc_sr04_3v3": ("HC-SR04: it needs 5 V, and its ECHO answers with 5 V: the resistors of 1 kΩ and 2 kΩ bring that down to 3.3 V. The pin is between the two: 1 kΩ to ECHO, 2 kΩ to GND. Otherwise ECHO destroys it.",
-                         "HC-SR04: necesita 5 V, y su ECHO responde con 5 V: las resistencias de 1 kΩ y 2 kΩ lo bajan a 3.3 V. El pin va entre las dos: 1 kΩ hacia ECHO, 2 kΩ hacia GND. De otro modo, ECHO lo daña."),
-    "mind_voltage_3v3": ("The two resistors at {part} let the board measure more than 3.3 V. Join their middle to the pin, never the battery itself: that destroys the pin.",
-                         "Las dos resistencias de {part} le permiten a la placa medir más de 3.3 V. Une su punto medio con el pin, nunca la batería misma: eso daña el pin."),
     "mind_lamp": ("A pin drives an LED through its resistor. Anything stronger (a lamp, a relay, a fan) needs a module of its own in between.",
                   "Un pin enciende un LED con su resistencia. Algo más fuerte (una lámpara, un relé, un ventilador) necesita un módulo propio en medio."),
     # Bluetooth
@@ -227,7 +170,6 @@ TEXTS: dict[str, tuple[str, str]] = {
     "check_echo": ("1 kΩ is in the wire from ECHO of the HC-SR04, and 2 kΩ go from its pin of the board to GND.",
                    "En el cable de ECHO del HC-SR04 hay 1 kΩ, y de su pin de la placa van 2 kΩ a GND."),
     "check_pull_downs": ("The resistors of 10 kΩ are at {ends}.", "Las resistencias de 10 kΩ están en {ends}."),
-    "check_jumpers": ("The jumpers at ENA and ENB are off.", "ENA y ENB están sin sus puentes."),
     "check_divider": ("1 kΩ and 2 kΩ are at RXD of the HC-05.", "1 kΩ y 2 kΩ están en RXD del HC-05."),
     "check_bare": ("No bare wires touch each other.", "Ningún cable pelado toca a otro."),
     "check_unplugged": ("For the firmware: RXD and TXD of the HC-05 are unplugged.", "Para el firmware: RXD y TXD del HC-05 están desconectados."),
@@ -235,6 +177,7 @@ TEXTS: dict[str, tuple[str, str]] = {
                   "Después de encender: ¿algo se calienta o huele? Apaga de inmediato y revisa otra vez."),
     "check_way": ("A wheel that turns the wrong way, or a robot that drives a curve: leave the wires as they are, tsc trim mends it.",
                   "Una rueda que gira al revés, o un robot que se va hacia un lado: deja los cables como están, tsc trim lo arregla."),
+    **{key: both for driver in DRIVERS.values() for key, both in driver.texts.items()},
     "made_by": ("Made by TiniScript from the profile of {robot}.", "Hecho por TiniScript a partir del perfil de {robot}."),
 }
 # fmt: on

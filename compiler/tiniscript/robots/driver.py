@@ -1,0 +1,236 @@
+"""What a driver says of a part that a robot may have: pins, firmware, sketch, wiring, sentences.
+
+Knows what every driver must say; the drivers themselves are the files of `drivers/`. Knows no
+robot: `board_reader` asks for a driver's pins and settings, `firmware` for its C++, the sketch for
+its lines, and the wiring page for what it looks like.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, ClassVar, NamedTuple
+
+from tiniscript.fixed_point import ONE
+from tiniscript.kit import Device
+from tiniscript.robots.profile import Wiring
+
+if TYPE_CHECKING:
+    from tiniscript.robots.firmware import Part
+    from tiniscript.sketch.wiring import Plan
+
+SIDES = ("left", "right")
+WAYS = ("forward", "backward")
+AT_STOP = "at_stop"  # what a stop does with a servo; it turns other actuators off
+HOLD = 1
+FULL_COUNT = 1023  # reading of the A/D converter at the highest voltage
+
+# Rails: all that is joined to one of them is joined together.
+BOARD_5V, BOARD_3V3, GROUND, MOTOR_BATTERY, SERVO_SUPPLY = "5V", "3V3", "GND", "M+", "S+"
+PULL_DOWN = "10 kΩ"
+FIVE_VOLTS = 5 * ONE
+
+
+class PinKey(NamedTuple):
+    key: str
+    need: str
+    is_optional: bool = False
+
+
+class Setting(NamedTuple):
+    """`kind` is `yes/no`, `whole`, `number` (in thousandths) or `choice`.
+
+    A choice is the index of its word in `words`.
+    """
+
+    key: str
+    kind: str
+    default: int = 0
+    low: int = 0
+    high: int = 1
+    words: tuple[str, ...] = ()
+
+
+class Terminal(NamedTuple):
+    """A terminal of a part: what is printed on it, a rail, or a key of `wiring.texts`.
+
+    It goes to the pin that `pin_key` of the profile names, or to a rail, or it stays free.
+    Between the pin and the terminal may be a resistor `series`, then one `to_ground`, then one
+    `beyond`.
+    """
+
+    name: str
+    pin_key: str = ""
+    rail: str = ""
+    series: str = ""
+    to_ground: str = ""
+    beyond: str = ""
+
+
+class Shape(NamedTuple):
+    """What a part is: its icon, the key of what to buy, its terminals from top to bottom.
+
+    `need` is empty where resistors are all. `model` is printed in its title. `motors` are the
+    terminals of the left and the right motor; `notes` are keys of what to mind, `checks` of what
+    to look at before switching on. `power` is the key of which battery suits it.
+    """
+
+    icon: str
+    need: str
+    terminals: tuple[Terminal, ...]
+    model: str = ""
+    motors: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
+    checks: tuple[str, ...] = ()
+    power: str = ""
+    needs_5v: bool = False
+
+
+class Driver(ABC):
+    """`used_by` is the table of [board] and the kind of the device: `sensors number`.
+
+    `texts` are sentences of the wiring page, in English and Spanish, by the keys that its shape
+    has.
+    """
+
+    name: ClassVar[str]
+    used_by: ClassVar[str]
+    pins: ClassVar[tuple[PinKey, ...]]
+    settings: ClassVar[tuple[Setting, ...]] = ()
+    texts: ClassVar[Mapping[str, tuple[str, str]]] = {}
+
+    @abstractmethod
+    def shape(self, wiring: Wiring, device: Device | None, sees: str, pin_volts: int) -> Shape:
+        """Return what it looks like; a sensor `sees` what its place in the robot's body says."""
+
+
+class MotorDriver(Driver):
+    """Drives both motors. `module` is the firmware's, `drive` the sketch's `$drive_motor`."""
+
+    used_by = "motors"
+    module: ClassVar[str]
+    drive: ClassVar[str]
+
+    @abstractmethod
+    def firmware(self, part: Part, wiring: Wiring) -> list[str]:
+        """Return the constants of both motors in the robot's header."""
+
+    @abstractmethod
+    def sketch(self, plan: Plan, wiring: Wiring) -> list[str]:
+        """Return the lines of a sketch that drive both motors, by `left` and `right`."""
+
+
+class SensorDriver(Driver):
+    @abstractmethod
+    def firmware(self, part: Part, device: Device, wiring: Wiring) -> list[str]:
+        """Return the lines that put a reading into `*value` and return whether there was one."""
+
+    @abstractmethod
+    def sketch(
+        self, plan: Plan, device: Device, wiring: Wiring, name: str, beside: str
+    ) -> list[str]:
+        """Return the lines of a sketch that put a reading into `name`."""
+
+    def is_count(self, device: Device, wiring: Wiring) -> bool:
+        """Whether a reading is what the converter counts."""
+        return False
+
+
+class ActuatorDriver(Driver):
+    @abstractmethod
+    def firmware(self, part: Part, device: Device, wiring: Wiring) -> list[str]:
+        """Return the lines that set it to `value`."""
+
+    @abstractmethod
+    def sketch(self, plan: Plan, device: Device, wiring: Wiring, function: str, beside: str) -> str:
+        """Return the function of a sketch that sets it."""
+
+
+# -- what several drivers share
+
+
+def in_limits(device: Device, low: int, high: int) -> list[str]:
+    """Return the line that keeps values from `low` to `high` in the device's range."""
+    if device.low <= low and high <= device.high:
+        return []
+    return [f"      *value = in_limits(*value, {device.low}, {device.high});"]
+
+
+def module(output: str, need: str, *notes: str) -> Shape:
+    """Return the shape of a sensor on a small board with three pins."""
+    terminals = (
+        Terminal("VCC", rail=BOARD_5V),
+        Terminal(output, "pin"),
+        Terminal("GND", rail=GROUND),
+    )
+    return Shape("module", need, terminals, notes=notes)
+
+
+def photoresistor() -> Shape:
+    terminals = (Terminal("leg_1", rail=BOARD_5V), Terminal("leg_2", "pin", to_ground=PULL_DOWN))
+    return Shape("light", "need_light", terminals, notes=("mind_light",))
+
+
+def switch() -> Shape:
+    return Shape(
+        "switch", "need_switch", (Terminal("leg_1", "pin"), Terminal("leg_2", rail=GROUND))
+    )
+
+
+def lamp(is_on_low: bool) -> Shape:
+    """Return the shape of an LED, which shines while its pin is high, or low."""
+    if is_on_low:
+        terminals = (
+            Terminal("long_leg", rail=BOARD_5V),
+            Terminal("short_leg", "pin", series="220 Ω"),
+        )
+    else:
+        terminals = (
+            Terminal("long_leg", "pin", series="220 Ω"),
+            Terminal("short_leg", rail=GROUND),
+        )
+    return Shape("lamp", "need_lamp", terminals, notes=("mind_lamp",))
+
+
+class Bridge(MotorDriver):
+    """A chip that takes PWM and two directions for each motor."""
+
+    module = "motors_bridge"
+    pins = tuple(
+        PinKey(f"{side}_{key}", need)
+        for side in SIDES
+        for key, need in (("pwm", "pwm"), ("forward", "output"), ("backward", "output"))
+    )
+    drive = """\
+void $drive_motor(int pwmPin, int forwardPin, int backwardPin, int percent) {
+  digitalWrite(forwardPin, percent > 0 ? HIGH : LOW);
+  digitalWrite(backwardPin, percent < 0 ? HIGH : LOW);
+  analogWrite(pwmPin, abs(percent) * 255L / 100);
+}"""
+
+    def firmware(self, part: Part, wiring: Wiring) -> list[str]:
+        lines = []
+        for side in SIDES:
+            pwm = part.pins.pwm(wiring.pins[f"{side}_pwm"])
+            forward, backward = (part.pins.pin(wiring.pins[f"{side}_{way}"]) for way in WAYS)
+            lines.append(f"constexpr Bridge k{side.capitalize()}Motor =")
+            lines.append(f"    {{{pwm}, {forward}, {backward}}};")
+        standby = part.pins.pin(wiring.pins.get("standby"))
+        return [*lines, f"constexpr Pin kStandby = {standby};"]
+
+    def sketch(self, plan: Plan, wiring: Wiring) -> list[str]:
+        lines = [driven_line(plan, wiring, side, ("pwm", *WAYS)) for side in SIDES]
+        if "standby" in wiring.pins:
+            plan.pin("$STANDBY_$PIN", wiring.pins["standby"], "OUTPUT")
+            is_on = "left != 0 || right != 0 ? HIGH : LOW"
+            lines.insert(0, f"  digitalWrite($STANDBY_$PIN, {is_on});")
+        return lines
+
+
+def driven_line(plan: Plan, wiring: Wiring, side: str, keys: tuple[str, ...]) -> str:
+    """Return the line of a sketch that drives one motor by pins with these keys."""
+    names = [
+        plan.pin(f"${side.upper()}_${key.upper()}_$PIN", wiring.pins[f"{side}_{key}"], "OUTPUT")
+        for key in keys
+    ]
+    return f"  $drive_motor({', '.join(names)}, {side});"

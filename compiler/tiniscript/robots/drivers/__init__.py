@@ -1,0 +1,54 @@
+"""The drivers: each file is one, with all that is known of it. `driver` says what that is."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from pkgutil import iter_modules
+
+from tiniscript.robots.driver import ActuatorDriver, Driver, MotorDriver, SensorDriver
+from tiniscript.robots.profile import Wiring
+
+
+def _found() -> dict[tuple[str, str], Driver]:
+    """Return the drivers of this folder, by the table and kind of [board] that uses them."""
+    made: list[Driver] = [
+        import_module(f"{__name__}.{each.name}").DRIVER for each in iter_modules(__path__)
+    ]
+    return {(driver.used_by, driver.name): driver for driver in made}
+
+
+DRIVERS = _found()
+
+
+def drivers_for(used_by: str) -> tuple[str, ...]:
+    """Return the names of the drivers that fit, `("analog", "hc_sr04")`."""
+    return tuple(name for use, name in DRIVERS if use == used_by)
+
+
+def driver_of(used_by: str, wiring: Wiring) -> Driver:
+    """Return the driver of a wiring. Raises LookupError where no file has it."""
+    found = DRIVERS.get((used_by, wiring.driver))
+    if found is None:
+        raise LookupError(f"robots/drivers has no driver {wiring.driver} for {used_by}")
+    return found
+
+
+def motors_of(wiring: Wiring) -> MotorDriver:
+    """Return the driver of a robot's motors. Raises LookupError where no file has it."""
+    found = driver_of("motors", wiring)
+    assert isinstance(found, MotorDriver)
+    return found
+
+
+def sensor_of(kind: str, wiring: Wiring) -> SensorDriver:
+    """Return the driver of a sensor of a kind. Raises LookupError where no file has it."""
+    found = driver_of(f"sensors {kind}", wiring)
+    assert isinstance(found, SensorDriver)
+    return found
+
+
+def actuator_of(kind: str, wiring: Wiring) -> ActuatorDriver:
+    """Return the driver of an actuator of a kind. Raises LookupError where no file has it."""
+    found = driver_of(f"actuators {kind}", wiring)
+    assert isinstance(found, ActuatorDriver)
+    return found

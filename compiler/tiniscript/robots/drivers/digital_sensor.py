@@ -1,0 +1,62 @@
+"""A pin that reads high or low: a switch, or a module with its own threshold."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from tiniscript.kit import Device
+from tiniscript.robots.driver import (
+    PinKey,
+    SensorDriver,
+    Setting,
+    Shape,
+    module,
+    switch,
+)
+from tiniscript.robots.profile import Wiring
+
+if TYPE_CHECKING:
+    from tiniscript.robots.firmware import Part
+    from tiniscript.sketch.wiring import Plan
+
+
+class DigitalSensor(SensorDriver):
+    name = "digital"
+    used_by = "sensors yes/no"
+    pins = (PinKey("pin", "input"),)
+    settings = (Setting("pull_up", "yes/no"), Setting("yes_is_low", "yes/no"))
+    texts = {
+        "need_digital": (
+            "sensor module with a digital output (D0)",
+            "módulo sensor con salida digital (D0)",
+        ),
+        "mind_digital": (
+            "A module with a small screw: turn it until its own lamp changes where it should.",
+            "Un módulo con un tornillo pequeño: gíralo hasta que su propia luz cambie donde debe.",
+        ),
+    }
+
+    def firmware(self, part: Part, device: Device, wiring: Wiring) -> list[str]:
+        pin = part.pins.pin(wiring.pins["pin"])
+        if wiring.settings["pull_up"]:
+            part.begin.append(f"begin_pull_up({pin});")
+        elif part.is_esp32:  # an AVR's pin is an input after a reset
+            part.begin.append(f"begin_input({pin});")
+        low = "!" if wiring.settings["yes_is_low"] else ""
+        return [f"      *value = {low}is_high({pin});", "      return true;"]
+
+    def sketch(
+        self, plan: Plan, device: Device, wiring: Wiring, name: str, beside: str
+    ) -> list[str]:
+        mode = "INPUT_PULLUP" if wiring.settings["pull_up"] else "INPUT"
+        pin = plan.pin(f"{device.name}_$PIN", wiring.pins["pin"], mode, beside)
+        level = "LOW" if wiring.settings["yes_is_low"] else "HIGH"
+        return [f"{name} = digitalRead({pin}) == {level};"]
+
+    def shape(self, wiring: Wiring, device: Device | None, sees: str, pin_volts: int) -> Shape:
+        if wiring.settings["pull_up"]:
+            return switch()
+        return module("D0", "need_digital", "mind_digital")
+
+
+DRIVER = DigitalSensor()

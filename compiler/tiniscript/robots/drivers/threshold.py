@@ -1,0 +1,54 @@
+"""A voltage that is a yes from a threshold on."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from tiniscript.kit import Device
+from tiniscript.robots.driver import (
+    PinKey,
+    SensorDriver,
+    Setting,
+    Shape,
+    module,
+    photoresistor,
+)
+from tiniscript.robots.profile import Wiring
+
+if TYPE_CHECKING:
+    from tiniscript.robots.firmware import Part
+    from tiniscript.sketch.wiring import Plan
+
+
+class Threshold(SensorDriver):
+    name = "threshold"
+    used_by = "sensors yes/no"
+    pins = (PinKey("pin", "analog"),)
+    settings = (
+        Setting("threshold", "whole", 512, 1, 1023),
+        Setting("yes_is_low", "yes/no"),
+    )
+    texts = {
+        "need_threshold": (
+            "sensor module with an analog output (A0)",
+            "módulo sensor con salida analógica (A0)",
+        ),
+    }
+
+    def firmware(self, part: Part, device: Device, wiring: Wiring) -> list[str]:
+        compare = "<" if wiring.settings["yes_is_low"] else ">="
+        settled = f"      *value = *value {compare} {wiring.settings['threshold']};"
+        return [part.analog_read(wiring), settled, "      return true;"]
+
+    def sketch(
+        self, plan: Plan, device: Device, wiring: Wiring, name: str, beside: str
+    ) -> list[str]:
+        pin = plan.pin(f"{device.name}_$PIN", wiring.pins["pin"], "", beside)
+        sign = "<" if wiring.settings["yes_is_low"] else ">="
+        return [f"{name} = analogRead({pin}) {sign} {wiring.settings['threshold']};"]
+
+    def shape(self, wiring: Wiring, device: Device | None, sees: str, pin_volts: int) -> Shape:
+        return photoresistor() if sees == "light" else module("A0", "need_threshold")
+
+
+DRIVER = Threshold()
