@@ -63,8 +63,7 @@ def test_a_new_board_becomes_a_robot(
         found.select_option("#flash_board", "uno")
         # Cancelled in the middle it does nothing, and is whole once it has got its firmware again.
         found.click("#flash_write")
-        while float(found.evaluate("document.querySelector('#flash_progress').value")) < 0.1:
-            found.wait_for_timeout(20)
+        found.wait_for_function("document.querySelector('#flash_progress').value >= 0.1")
         found.click("#flash_cancel")
         said(found, "Cancelled in the middle: ")
         assert found.locator("#flash_cancel, #flash_progress").filter(visible=True).count() == 0
