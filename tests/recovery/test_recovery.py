@@ -10,7 +10,7 @@ import pytest
 from tests.pupils.corpus import entries
 from tests.pupils.test_damage import programs
 from tiniscript.lessons import catalogue
-from tiniscript.recovery import lines, rewrites
+from tiniscript.recovery import lines, rewrites, rows
 from tiniscript.recovery.concepts import Lexeme, Names, lexemes
 from tiniscript.recovery.explanation import Missing, Needless, OtherWord, explained
 from tiniscript.syntax.outline import Failure
@@ -81,7 +81,54 @@ def test_the_parser_says_where_it_cannot_go_on() -> None:
     assert lines.right(lexemes("FAST"), names) == Failure(0, 0)
 
 
-@pytest.mark.parametrize("wrong", ["X == 6", "X = 3\nX = X = 5", "F(2,80) 5 seg", "F(2, 8 S)"])
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        "X == 6",
+        "X = 3\nX = X = 5",
+        "F(2,80) 5 seg",
+        "F(2, 8 S)",
+        "F 80 2",  # 80 s, or a power
+        "F -1 80",
+        "move(50, 50)",
+        "F.1.5",
+        "LOOP(4) {",
+        "S\n,,",
+        "DEF PASO F(1, 60)\nR(1, 60)\nPASO",  # where it ends is not said
+        "LOOP(3)\nS\nUNTIL(DISTANCE < 10)\nEND",
+        "IF(DISTANCE < 15, B(1, 50), F(1, 50))",
+    ],
+)
 def test_what_may_change_the_meaning_is_only_shown(wrong: str) -> None:
     found = marks.meant(wrong)
     assert found is None or not found.is_applied
+
+
+@pytest.mark.parametrize(
+    ("wrong", "right"),
+    [
+        ("guardar distancia en x\nmostrar x", "x = DISTANCE\nSHOW(X)"),
+        ("MIENTRAS(DISTANCE > 20)\nS\nEND_LOOP", "WHILE(DISTANCE > 20)\nS\nEND_WHILE"),
+        ("LOOP(4){F(1, 80); S", "LOOP(4);F(1, 80);S;END_LOOP"),
+        ("IF DISTANCE < 10 S F(1, 50)", "IF(DISTANCE < 10);S;F(1, 50);ENDIF"),
+        ("F(dos segundos, 80)", "F(2, 80)"),
+        ("W(doscientos cinco segundos)", "W(205)"),
+        ("DEF F2\nS\nEND_DEF\nF2 3", "DEF F2\nS\nEND_DEF\nLOOP(3);F2;END_LOOP"),
+        ("stopMotors()", "S"),
+        ("SHOW -2.5", "SHOW(-2.5)"),
+    ],
+)
+def test_what_can_mean_nothing_else_is_made(wrong: str, right: str | None) -> None:
+    found = marks.meant(wrong)
+    assert (found.text if found and found.is_applied else None) == right
+
+
+@pytest.mark.parametrize(("how", "is_made"), [("applied", False), ("offered", True)])
+def test_a_row_that_is_made_without_asking_loses_no_number(
+    monkeypatch: pytest.MonkeyPatch, how: str, is_made: bool
+) -> None:
+    monkeypatch.setattr(rows, "TOKENS", f"^ S @num $ | S | 1 | TS044 | {how} | S 5 => S")
+    (row,) = rewrites.of_tokens.__wrapped__()
+    line = rewrites.Encoded(lexemes("S 5"), Names([], marks.KIT))
+    (match,) = line.places(row)
+    assert (line.rewritten(row, match) is not None) is is_made

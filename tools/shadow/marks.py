@@ -10,13 +10,16 @@ import re
 from functools import cache
 from typing import NamedTuple
 
-from tests.pupils.corpus import Entry
+from tests.pupils.corpus import Entry, check
 from tiniscript import compile_text, robots
 from tiniscript.library.compiling import analyzed
 from tiniscript.recovery.concepts import plain
 from tiniscript.recovery.search import Candidate, candidate
+from tiniscript.repairs.fixing import offers
+from tiniscript.source import applied
 
 SAME, EQUIVALENT, QUESTION, USAGE, WORSE = "same", "equivalent", "question", "usage", "worse"
+OFFERS = 6  # of today's messages that are followed, one after the other
 MARKS = (SAME, EQUIVALENT, QUESTION, USAGE, WORSE)
 KIT = robots.load(robots.DEFAULT).kit
 
@@ -57,7 +60,8 @@ class Answer(NamedTuple):
 def answer(entry: Entry) -> Answer:
     """Compare what becomes of a program with what is pinned.
 
-    Where nothing is repaired today, it is the same to repair nothing, and worse to do so.
+    Where nothing is repaired today, it is the same to repair nothing, equivalent to make what
+    today's messages tell to try, and worse to make anything else.
     """
     found = meant(entry.program)
     return Answer(entry, mark_of(entry, found), found)
@@ -66,7 +70,8 @@ def answer(entry: Entry) -> Answer:
 def mark_of(entry: Entry, found: Candidate | None) -> str:
     is_applied = found is not None and found.is_applied
     if entry.mended is None:
-        return WORSE if is_applied else SAME
+        is_told = is_applied and found is not None and is_offered(entry.program, found.text)
+        return EQUIVALENT if is_told else WORSE if is_applied else SAME
     if found is None:
         return USAGE
     text = "\n".join(line.rstrip() for line in found.text.split("\n"))
@@ -74,7 +79,23 @@ def mark_of(entry: Entry, found: Candidate | None) -> str:
         return SAME if is_applied else QUESTION
     if image(text) and image(text) == image(entry.mended):
         return EQUIVALENT if is_applied else QUESTION
+    if image(text) and not image(entry.mended) and is_offered(entry.mended, text):
+        return EQUIVALENT if is_applied else QUESTION
     return WORSE if is_applied else USAGE
+
+
+def is_offered(program: str, text: str) -> bool:
+    """Whether a right text is what today's messages of a program tell to try, all of them."""
+    meant = image(text)
+    for _ in range(OFFERS):
+        found = check(program)
+        edits = next((each for each in offers(program, found, check) if each), None)
+        if not meant or edits is None:
+            return False
+        program = applied(program, edits)
+        if image(program):
+            return image(program) == meant
+    return False
 
 
 def same_tokens(one: str, other: str) -> bool:

@@ -64,14 +64,17 @@ _UNREAD = [Item("do", "", 0, 0)]  # what a line that cannot be read is taken for
 
 
 class _Block:
-    def __init__(self, word: str, line: int, indent: int, has_body: bool, is_do: bool) -> None:
-        self.word = word  # nothing for braces that belong to no header
-        self.line = line
-        self.indent = indent
+    def __init__(self, item: Item, k: int, line: Line) -> None:
+        is_header = item.kind == "open"
+        self.word = item.word if is_header else ""  # nothing for braces that belong to no header
+        self.line = k
+        self.indent = line.indent
         self.body: int | None = None  # its lines' indentation, -1 where that is not deeper
-        self.has_brace = not word
-        self.is_begun = has_body  # a row says that its body begins
-        self.is_do = is_do
+        self.has_brace = not self.word
+        self.is_begun = is_header and line.has_body  # a row says that its body begins
+        self.is_do = is_header and line.is_do
+        self.is_translated = line.tokens[item.start].source is None
+        self.name = line.tokens[item.start + 1].text if self.word == "DEF" else ""
 
     @property
     def end(self) -> str:
@@ -116,6 +119,10 @@ class _Matching:
             block = self.open.pop()
             if not block.word:
                 return None
+            if block.has_brace and block.line == last:
+                self.tails.setdefault(last, []).append(block.end)
+                self.is_sure = self.is_sure and item.kind != "{"
+                continue
             self.is_sure = self.is_sure and block.has_indented_body and block.is_begun
             self.close_behind(last, block)
         return Matched(self.edits, self.tails, self.behind, self.is_sure)
@@ -165,9 +172,7 @@ class _Matching:
         """Take an item; return whether it has a place among the blocks."""
         if item.kind == "open":
             if not self.is_end_of_do(place, k, item):
-                line = self.lines[k]
-                block = _Block(item.word, k, line.indent, line.has_body, line.is_do)
-                self.open.append(block)
+                self.open.append(_Block(item, k, self.lines[k]))
             return True
         if item.kind == "{":
             return self.brace(k, item)
@@ -198,7 +203,7 @@ class _Matching:
         if not self.open:
             self.is_sure = self.is_sure and item.start == 0
             self.edit(k, item, 1)
-            self.open.append(_Block("", k, self.lines[k].indent, False, False))
+            self.open.append(_Block(item, k, self.lines[k]))
             return True
         if self.open[-1].has_brace:
             return False
@@ -252,14 +257,15 @@ class _Matching:
             is_inside = (len(words) > 1 and block.line == k) or block.has_indented_body
             if want not in words:
                 self.edit(k, item, 1, self.open.pop().end)
-                self.is_sure = line.is_rewritten
+                self.is_sure = self.is_sure and (line.is_rewritten or block.is_translated)
                 return True
             if is_inside:
                 self.open.pop()
                 self.is_sure = self.is_sure and (block.is_begun or block.line == k)
                 self.edit(k, item, 0, block.end, ";")
         if self.open and self.open[-1].word == want:
-            self.is_sure = self.is_sure and not self.open.pop().has_brace
+            block = self.open.pop()
+            self.is_sure = self.is_sure and not block.has_brace and line.is_do <= block.is_do
             return True
         if self.open or self.has_unread:
             return False
@@ -280,11 +286,20 @@ class _Matching:
                 break
             self.open.pop()
             items = self.lines[k].items or []
-            count = sum(each.kind == "do" for each in items)
-            is_open_if = block.word in ("IF", "WHILE") and count > 1
-            has_arm = any(each.kind == "arm" for each in items)
-            self.is_sure = self.is_sure and block.is_begun and not (is_open_if and not has_arm)
+            is_sure = block.is_begun
+            if block.word in ("IF", "WHILE") and not any(each.kind == "arm" for each in items):
+                is_sure = is_sure and not self.is_parted(k, items)
+            elif block.word == "DEF" and after is not None and after.kind == "do":
+                is_sure = is_sure and after.word == block.name
+            self.is_sure = self.is_sure and is_sure
             self.tails.setdefault(k, []).append(block.end)
+
+    def is_parted(self, k: int, items: Sequence[Item]) -> bool:
+        """Whether a block may end before its line: at a `;` of the text, or at another block."""
+        told = [each for each in items if each.kind == "do"]
+        between = self.lines[k].tokens[told[0].end : told[-1].start] if told else []
+        headers = sum(each.kind == "open" and each.word == "IF" for each in items)
+        return headers > 1 or any(each.text == ";" and each.source is not None for each in between)
 
     def is_closed_later(self, place: int, block: _Block) -> bool:
         depth = 0

@@ -5,10 +5,11 @@ Knows the lexicons, spelling, and the names that a program has. Knows no order o
 
 from __future__ import annotations
 
+import copy
 import re
 import unicodedata
 from collections.abc import Iterable, Sequence
-from functools import cache, lru_cache
+from functools import cache, cached_property, lru_cache
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -155,13 +156,18 @@ def _in_two_words(word: str) -> str | None:
     for k in range(2, min(len(word), 24) - 1):
         halves = word[:k].rstrip("_"), word[k:].lstrip("_")
         said = {half if half == "STOP" else _concept_of(half) or "" for half in halves}
-        beside = [half for half in halves if said_of(half, "turn") or said_of(half, "filler")]
+        beside = [half for half in halves if said_of(half, "turn")]
+        with_frame = halves if len(halves[1]) > 3 else halves[:1]  # `irAdelante`, and no GOAL
+        beside += [half for half in with_frame if said_of(half, "filler")]
         is_turn = any(said_of(half, "turn") for half in halves)
+        is_engine = any(said_of(half, "engine") for half in halves)
         meant = said - {"", "M", "F"} or said - {"", "M"}
         rest = [each for each in halves if each not in beside and not _concept_of(each)]
         is_framed = bool(said & {"F", "M"}) or bool(beside)
         if len(meant) == 1 and is_framed and not set(rest) - {"STOP"}:
             only = next(iter(meant))
+            if only == "STOP" and is_engine:
+                return "S"
             if only in (("L", "R") if is_turn else ("F", "B", "L", "R", "S", "STOP", "BEEP")):
                 return only
     return None
@@ -184,11 +190,22 @@ class Names:
             self._look_at(line)
         self.defs -= {row[0] for row in self.rows}
         self._labels: dict[tuple[str, str, bool], str] = {}
-        self.known = Known(
+
+    @cached_property
+    def known(self) -> Known:
+        return Known(
             frozenset(self.variables) | self.sensors,
             frozenset(self.defs) | self.sensors,
             frozenset(self.actuators),
         )
+
+    def joined(self, other: Names) -> Names:
+        """Return the names of two readings of one program."""
+        found = copy.copy(self)
+        found.variables, found.defs = self.variables | other.variables, self.defs | other.defs
+        found.__dict__.pop("known", None)
+        found._labels = {}
+        return found
 
     def _look_at(self, line: Sequence[Lexeme]) -> None:
         head = line[2:] if len(line) > 1 and line[1].text == "|" else line
@@ -274,7 +291,7 @@ class Names:
 
     def _classes_of_word(self, text: str) -> list[str]:
         said = [meaning.split()[0] for meaning in _lexicon().get(text, ())]
-        found = [each for each in said if each.islower()]
+        found = [each for each in said if each.islower() and text not in self.variables]
         found += ["@unit"] if "unit" in said and text not in WORDS else []
         meant = [each.concept for each in self.meanings(text) if each.cost < NEAR]
         word = text if text in WORDS else meant[0] if meant else ""

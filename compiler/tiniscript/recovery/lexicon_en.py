@@ -42,6 +42,9 @@ number 7        | SEVEN
 number 8        | EIGHT
 number 9        | NINE
 number 10       | TEN
+number 11       | ELEVEN
+number 12       | TWELVE
+number 15       | FIFTEEN
 number 20       | TWENTY
 number 30       | THIRTY
 number 40       | FORTY
@@ -99,7 +102,7 @@ different       | DIFFERENT
 between         | BETWEEN
 modulo          | MOD
 during          | FOR
-seconds         | S SECONDS
+seconds         | S SEC SECS SECOND SECONDS
 please          | PLEASE
 unless          | UNLESS
 milliseconds    | DELAY

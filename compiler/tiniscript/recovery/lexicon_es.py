@@ -53,7 +53,11 @@ number 7        | SIETE
 number 8        | OCHO
 number 9        | NUEVE
 number 10       | DIEZ
+number 11       | ONCE
+number 12       | DOCE
+number 15       | QUINCE
 number 20       | VEINTE
+number 25       | VEINTICINCO
 number 30       | TREINTA
 number 40       | CUARENTA
 number 50       | CINCUENTA
@@ -61,7 +65,12 @@ number 60       | SESENTA
 number 70       | SETENTA
 number 80       | OCHENTA
 number 90       | NOVENTA
-number 100      | CIEN
+number 100      | CIEN CIENTO
+number 200      | DOSCIENTOS
+number 300      | TRESCIENTOS
+number 400      | CUATROCIENTOS
+number 500      | QUINIENTOS
+number 1000     | MIL
 power 100       | ALTA MAXIMO MAXIMA RAPIDO RAPIDA RAPIDAMENTE FUERTE TODO TODA
 power 50        | MEDIO MEDIA MITAD
 power 40        | LENTO LENTA DESPACIO DESPACITO LENTAMENTE
@@ -108,7 +117,7 @@ different       | DISTINTO DISTINTA DIFERENTE
 between         | ENTRE
 plus            | MAS
 during          | POR DURANTE
-seconds         | SEG SEGUNDOS
+seconds         | SEG SEGS SEGUNDO SEGUNDOS
 please          | GRACIAS
 unless          | A_MENOS_QUE SALVO EXCEPTO
 until           | HASTA

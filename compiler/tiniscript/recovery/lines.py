@@ -20,7 +20,7 @@ from tiniscript.recovery.concepts import (
     said_of,
     texts,
 )
-from tiniscript.recovery.slots import MILLISECONDS_FROM, filled
+from tiniscript.recovery.slots import LONG_S, MILLISECONDS_FROM, MOVES, filled
 from tiniscript.syntax.lexer import NUMBER, WORD
 from tiniscript.syntax.outline import Failure, Item, outline
 from tiniscript.words import WORDS
@@ -132,7 +132,9 @@ class _Search:
         if not readings.found and len(tokens) < LONGEST_WITH_SLIPS:
             plain = Reading(0, tokens, (), True, False)
             found = self.search(plain, SLIP_STATES, self.with_slips).found
-            found = [each for each in found if each.cost < found[0].cost + SLIP_MARGIN]
+            found = [
+                each for each in found if each.items and each.cost < found[0].cost + SLIP_MARGIN
+            ]
             found = [each._replace(is_sure=each.is_sure and len(found) == 1) for each in found]
             readings = Readings(found, readings.tried)
         return readings
@@ -250,7 +252,7 @@ class _Search:
                 continue
             for concept, cost in meanings:
                 cost = NEAR if token.text[-1].isdigit() else cost
-                is_sure = cost < 2 and concept != "TIME"
+                is_sure = cost < 2 and concept != "TIME" and not _is_long(tokens, k, concept)
                 line = [*tokens[:k], made(concept)._replace(space=token.space), *tokens[k + 1 :]]
                 yield reading.changed(line, cost, rows.OTHER_WORD, is_sure, False)
             if meanings:
@@ -288,6 +290,12 @@ def _is_in_milliseconds(tokens: Sequence[Lexeme], k: int, concept: str) -> bool:
         return True
     numbers = [each for each in tokens[k + 1 : k + 3] if each.kind is NUMBER]
     return concept == "W" and bool(numbers) and float(numbers[0].text) >= MILLISECONDS_FROM
+
+
+def _is_long(tokens: Sequence[Lexeme], k: int, concept: str) -> bool:
+    """Whether a number behind a translated word is rarely meant for seconds: `move(50, 50)`."""
+    first = tokens[k + 2] if k + 2 < len(tokens) and concept in MOVES else None
+    return first is not None and first.kind is NUMBER and float(first.text) >= LONG_S
 
 
 def _calls(tokens: Sequence[Lexeme]) -> Iterator[tuple[int, int]]:

@@ -6,6 +6,7 @@ Knows the language of the patterns, which `rows` explains. Knows no row.
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from functools import cache
 from itertools import product
@@ -13,18 +14,22 @@ from typing import NamedTuple
 
 from tiniscript.recovery import rows
 from tiniscript.recovery.concepts import ENDED, Lexeme, Names, joined, made, said_of
-from tiniscript.syntax.lexer import WORD
+from tiniscript.syntax.lexer import NUMBER, WORD
 from tiniscript.syntax.operators import COMPARISONS, OPPOSITES
 from tiniscript.words import BLOCK_ENDS, WORDS
 
 _ATOM = re.compile(r"'[^']*'|@\w+|[a-z]{2,}|[A-Z_0-9]+|\$|[^\w|'@\s$]+")
 _CAPTURE = re.compile(r"([a-z])=(?=.)")
 _PART = re.compile(r"<(\w+)>")
+_OF_NUMBERS = re.compile(r"@(?:dec|cat|mmss|xn|same)\b|(?<![\w@])\d")
 _HEADER_OF = {"FOREVER": "LOOP", "FOR": "LOOP", "PARA": "LOOP", "ELSEIF": "IF"}
 
 
 class Row(NamedTuple):
-    """A row of the table of tokens. `is_first`: made before anything else is tried."""
+    """A row of the table of tokens. `is_first`: made before anything else is tried.
+
+    `may_lose_numbers`: it is only shown, or says itself what becomes of them.
+    """
 
     pattern: re.Pattern[str]
     becomes: tuple[str, ...]
@@ -32,6 +37,7 @@ class Row(NamedTuple):
     code: str
     is_first: bool
     is_offered: bool
+    may_lose_numbers: bool
     example: tuple[str, str]
 
     @property
@@ -64,7 +70,11 @@ def of_tokens() -> tuple[Row, ...]:
         compiled = re.compile("".join(map(_atom, _whole(pattern).split())))
         parts = tuple(_whole(becomes).split())
         is_first, is_offered = "first" in how, "offered" in how
-        found.append(Row(compiled, parts, float(cost), code, is_first, is_offered, _texts(example)))
+        may_lose = is_offered or bool(_OF_NUMBERS.search(f"{pattern} {becomes}"))
+        found.append(
+            Row(compiled, parts, float(cost), code, is_first, is_offered, may_lose,
+                _texts(example))
+        )  # fmt: skip
     return tuple(found)
 
 
@@ -74,7 +84,7 @@ def of_signs() -> tuple[SignRow, ...]:
     for row in rows.SIGNS.strip("\n").split("\n"):
         if not row.startswith("# "):
             pattern, becomes, cost, code, how, example = row.split("  |  ", 5)
-            new = SignRow(re.compile(pattern), becomes.strip("`"), float(cost), code,
+            new = SignRow(re.compile(pattern, re.IGNORECASE), becomes.strip("`"), float(cost), code,
                           how.strip() == "offered", _texts(example))  # fmt: skip
             found.append(new)
     return tuple(found)
@@ -153,6 +163,8 @@ class Encoded:
         old = self.tokens[start:end]
         if [each.text for each in new] == [each.text for each in old]:
             return None
+        if not row.may_lose_numbers and _numbers(old) - _numbers(new):
+            return None
         return self.tokens[:start] + new + self.tokens[end:]
 
     def _made(self, part: str, match: re.Match[str]) -> list[Lexeme] | None:
@@ -176,6 +188,10 @@ class Encoded:
             return token
         meant = self.names.meanings(token.text)
         return made(meant[0].concept) if meant else token
+
+
+def _numbers(tokens: Sequence[Lexeme]) -> Counter[str]:
+    return Counter(token.text for token in tokens if token.kind is NUMBER)
 
 
 class _Place(NamedTuple):

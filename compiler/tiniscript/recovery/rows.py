@@ -61,6 +61,7 @@ NOTES = ("//", "#")  # which stand for it before a call alone
 DO_ALONE = r"\s*(?:REPEAT|REPETIR|REPITE|DO|LOOP|HACER)\b\s*\{?\s*$"
 
 SIGNS = r"""
+(?<!\) )(["'«»`])([A-Za-z0-9_.,()| <>=]*[A-Za-z0-9)][A-Za-z0-9_.,()| <>=]*)(?:\1|»)  |  `\2`  |  1  |  TS006  |  applied  |  F("2","80") => F(2,80)
 (?<=\d)\. (?=\d)  |  `.`  |  1  |  TS008  |  applied  |  F(1. 5, 80) => F(1.5, 80)
 ^(\s*S[IB]\s*\|)\s+\|  |  `\1`  |  1  |  TS054  |  applied  |  SI| |F(2, 80) => SI|F(2, 80)
 −  |  `-`  |  0  |  TS010  |  applied  |  M(−50 50) => M(-50, 50)
@@ -73,7 +74,7 @@ SIGNS = r"""
 (?<=\d)\)\s*,\s*\((?=\d)  |  `, `  |  1  |  TS076  |  applied  |  F(3),(70) => F(3, 70)
 \\n  |  `;`  |  1  |  TS010  |  applied  |  SI|F(2,80)\nR(1,60) => SI|F(2,80);R(1,60)
 \b([FBLR])/(\d+)[/,](\d+)/?  |  `\1(\2, \3)`  |  1  |  TS015  |  applied  |  F/2/80 => F(2, 80)
-(?<=\))\s+[-/]\s*(?=[a-zñáéíóú]+/?\s*$)  |  ` //`  |  1  |  TS007  |  applied  |  F(1, 80) / adelante => F(1, 80) //adelante
+(?<=\))\s+[-/]\s*(?=(?-i:[a-zñáéíóú]+)/?\s*$)  |  ` //`  |  1  |  TS007  |  applied  |  F(1, 80) / adelante => F(1, 80) //adelante
 ¡=  |  `<>`  |  1  |  TS010  |  applied  |  IF(DISTANCE ¡= 10)⏎S⏎ENDIF => IF(DISTANCE <> 10)⏎S⏎ENDIF
 (?<=\d)\.\.(?=\d)  |  `, `  |  1  |  TS020  |  offered  |  X = RANDOM(1..6) => X = RANDOM(1, 6)
 (?<=\d)\s*([×✕])\s*(?=\d)  |  `*`  |  1  |  TS010  |  applied  |  SHOW(3 × 4) => SHOW(3*4)
@@ -88,7 +89,7 @@ SIGNS = r"""
 </?[a-z]+/?>  |  ``  |  1  |  TS072  |  applied  |  <b>F(2, 80)</b> => F(2, 80)
 ^\s*[$>] tsc\b.*$  |  ``  |  1  |  TS072  |  applied  |  $ tsc run prog.ts⏎F(2, 80) => ⏎F(2, 80)
 ^\s*\.\s*$  |  ``  |  1  |  TS005  |  applied  |  F(2,80)⏎.⏎.⏎. => F(2,80)⏎⏎⏎
-^\s*(?:✅|☑|➤|★|👉)\s*  |  ``  |  1  |  TS054  |  applied  |  ✅ F(2,80)⏎✅ R(1,50) => F(2,80)⏎R(1,50)
+^\s*(?:➤|[\u2600-\u2793\U0001F300-\U0001FAFF])\s*(?=[A-Za-z]+\()  |  ``  |  1  |  TS054  |  applied  |  ✅ F(2,80)⏎🚗 R(1,50) => F(2,80)⏎R(1,50)
 [–—]>  |  `;`  |  1  |  TS061  |  applied  |  F(2, 80) –> R(1, 50) => F(2, 80) ; R(1, 50)
 (?<=\d) 1/2(?!\d)  |  `.5`  |  1  |  TS049  |  applied  |  F(1 1/2, 80) => F(1.5, 80)
 (?<=\b0)\. (?=\d)  |  `.`  |  1  |  TS008  |  applied  |  BEEP(0. 5, 440) => BEEP(0.5, 440)
@@ -97,13 +98,13 @@ SIGNS = r"""
 (?<=\d)[|¿?!"]+(?=\s*\))  |  ``  |  1  |  TS005  |  applied  |  F(2, 80?) => F(2, 80)
 (\(\d\.\d+)\.(\d+)\)  |  `\1, \2)`  |  1  |  TS076  |  applied  |  F(0.5.80) => F(0.5, 80)
 \b([FBLR])(\d),\s*(\d+)\)  |  `\1(\2, \3)`  |  1  |  TS015  |  applied  |  F2,80) => F(2, 80)
-^(\s*[Mm])\s+(-?\d+)\s*[;,]\s*(-?\d+)  |  `\1(\2, \3)`  |  1  |  TS015  |  applied  |  M 50;-50 => M(50, -50)
+^(\s*M)\s+(-?\d+)\s*[;,]\s*(-?\d+)  |  `\1(\2, \3)`  |  1  |  TS015  |  applied  |  M 50;-50 => M(50, -50)
 \(([FBLRWM])(\d)  |  `\1(\2`  |  1  |  TS015  |  applied  |  (F2, 80) => F(2, 80)
 ^\s*```\w*\s*$  |  ``  |  1  |  TS072  |  applied  |  ```tiniscript⏎F(2, 80)⏎R(1, 50)⏎``` => ⏎F(2, 80)⏎R(1, 50)⏎
 ^\s*[•·►▶✔✓*–—]\s+  |  ``  |  1  |  TS054  |  applied  |  * F(2,80) => F(2,80)
 ^\s*-\s+(?=[A-Za-z])  |  ``  |  1  |  TS054  |  applied  |  - F(2, 80)⏎- B(2, 80) => F(2, 80)⏎B(2, 80)
 ^\s*>+\s*  |  ``  |  1  |  TS054  |  applied  |  > F(2, 80) => F(2, 80)
-^\s*(?:[Pp]aso|[Ss]tep|[Ll]inea|[Ll]ine)?\s*\d+\s*[.):-]+\s+(?=[A-Za-z])  |  ``  |  1  |  TS054  |  applied  |  1) F(2,80)⏎2) S => F(2,80)⏎S
+^\s*(?:paso|step|linea|line)?\s*\d+\s*[.):-]+\s+(?=[A-Za-z])  |  ``  |  1  |  TS054  |  applied  |  1) F(2,80)⏎2) S => F(2,80)⏎S
 ^\s*\d+\s*[.)]\s*(?=[A-Za-z])  |  ``  |  1  |  TS054  |  applied  |  1.F(2, 80) => F(2, 80)
 ^\*+(\S.*?)\*+$  |  `\1`  |  1  |  TS054  |  applied  |  *F(2,80)* => F(2,80)
 (?<![\w.])([1-9])[oO]{2}\b  |  `\g<1>00`  |  1  |  TS008  |  applied  |  SI|F(2, 1OO) => SI|F(2, 100)
@@ -115,10 +116,10 @@ SIGNS = r"""
 (?<!\d)1/2(?!\d)(?=\s*(?:s|seg|min|h))  |  `0.5`  |  0  |  TS049  |  applied  |  F(1/2 minuto, 80) => F(30, 80)
 (?<=\d),(?=\d+\s*(?:s|seg|segs|segundos?|sec|seconds?|minutos?)\b)  |  `.`  |  1  |  TS012  |  applied  |  F(2,5s,80) => F(2.5, 80)
 (?<=\d) (?=000\b)  |  ``  |  1  |  TS008  |  applied  |  F(1 000,80) => F(1000,80)
-(?<=[\w)])\s*(?:[¡¿!…?😀🙂🤖$¬^´`¨\\]+|<br>)\s*$  |  ``  |  1  |  TS005  |  applied  |  STOP! => STOP
+(?<=[\w)])\s*(?:[¡¿!…?$¬^´`¨\\\u2600-\u2793\U0001F300-\U0001FAFF]+|<br>)\s*$  |  ``  |  1  |  TS005  |  applied  |  STOP! => STOP
 <br>  |  `;`  |  1  |  TS010  |  applied  |  F(2, 80)<br>R(1, 50) => F(2, 80);R(1, 50)
 (?<=\()¿|\?(?=\))  |  ``  |  1  |  TS005  |  applied  |  F(5, 60) UNTIL(¿DISTANCE < 20?) => F(5, 60) UNTIL(DISTANCE < 20)
-(?:(?<=\|)|(?<=;)|^)(\s*)([FBLRfblr])\s*[_.<=,;" -]?\s*(?!8\d)(\d+)(?:[_,;<=-]+ ?|[ .]+)(?:= ?)?(\d+)\s*[)>"]?\s*(?=;|$)  |  `\1\2(\3, \4)`  |  1  |  TS015  |  applied  |  F2,80 => F(2, 80)
+(?:(?<=\|)|(?<=;)|^)(\s*)([FBLR])(?!\s+-\d)\s*[_.<=,;" -]?\s*([12]?\d)(?:[_,;<=-]+ ?| +|[ .]+(?=\d\d))(?:= ?)?(\d+)\s*[)>"]?\s*(?=;|$)  |  `\1\2(\3, \4)`  |  1  |  TS015  |  applied  |  F2,80 => F(2, 80)
 (?<=\d)\)\((?=\d)  |  `,`  |  1  |  TS076  |  applied  |  F(3)(70) => F(3,70)
 (?<=\d)[_=&<]\s*(?=\d+\))  |  `,`  |  1  |  TS076  |  applied  |  F(2_80) => F(2,80)
 (?:^|(?<=\|))[¡¿]+  |  ``  |  1  |  TS005  |  applied  |  ¡SI|F(2,80) => SI|F(2,80)
@@ -126,19 +127,21 @@ SIGNS = r"""
 (?<=\w)\.(?=\()  |  ``  |  1  |  TS005  |  applied  |  F.(2, 80) => F(2, 80)
 (?<=[\w)])\s*\.\s*$  |  `;`  |  1  |  TS010  |  applied  |  S. => S;
 (?<=\))\s*\.\s+(?=\w)  |  `; `  |  1  |  TS010  |  applied  |  F(2,80). R(1,60). S. => F(2,80); R(1,60); S;
-(?<!\) )["'«»`]([A-Za-z0-9_.,()| ]*[A-Za-z0-9)][A-Za-z0-9_.,()| ]*)["'«»`]  |  `\1`  |  1  |  TS006  |  applied  |  'F(2,80)' => F(2,80)
 /\*\s*(.*?)\s*\*/\s*$  |  `// \1`  |  1  |  TS007  |  applied  |  F(2,80) /* hola */ => F(2,80) // hola
-(?:^|(?<=\s))(?:#+|--+>?|<!--)\s*(?=[^\W\d])  |  `// `  |  1  |  TS007  |  applied  |  F(2, 80) # adelante => F(2, 80) // adelante
-^\s*/\s+(?=[a-z])  |  `// `  |  1  |  TS007  |  applied  |  SI|F(2, 60) // avanza⏎/ gira⏎R(1, 50) => SI|F(2, 60) // avanza⏎// gira⏎R(1, 50)
+(?:^|(?<=\s))(?:#+|--+>?|<!--|^REM\b)\s*(?=[^\W\d])  |  `// `  |  1  |  TS007  |  applied  |  F(2, 80) # adelante => F(2, 80) // adelante
+^\s*/\s*(?=(?-i:[a-z]+)(?! ?\())  |  `// `  |  1  |  TS007  |  applied  |  SI|F(2, 60) // avanza⏎/ gira⏎R(1, 50) => SI|F(2, 60) // avanza⏎// gira⏎R(1, 50)
 \b([A-Za-z]+)\.read\(\)  |  `\1`  |  1  |  TS102  |  applied  |  IF(DISTANCE.read()<10);S;ENDIF => IF(DISTANCE<10);S;ENDIF
-\b(?:time|robot|console|Serial|self|car|motor|System\.out|random|math)\.(?=[A-Za-z])  |  ``  |  1  |  TS102  |  applied  |  time.sleep(0.5) => W(0.5)
-\b(END|FIN|End|Fin|end|fin)[. -](?=(?:LOOP|IF|WHILE|DEF|loop|if|while|def)\b)  |  `END_`  |  1  |  TS022  |  applied  |  IF(DISTANCE < 10);S;END IF => IF(DISTANCE < 10);S;END_IF
-\b(LIGHT|LUZ|Light|Luz|luz|light)[ -](?=[LRlrIiDd]\b)  |  `\1_`  |  1  |  TS056  |  applied  |  SHOW(LIGHT-R) => SHOW(LIGHT_R)
+\b(?:time|robot|console|serial|self|car|motor|System\.out|random|math)\.(?=[A-Za-z]+\s*\()  |  ``  |  1  |  TS102  |  applied  |  time.sleep(0.5) => W(0.5)
+\b(END|FIN)[. -](?=(?:LOOP|IF|WHILE|DEF)\b)  |  `END_`  |  1  |  TS022  |  applied  |  IF(DISTANCE < 10);S;END IF => IF(DISTANCE < 10);S;END_IF
+\b(LIGHT|LUZ)[ -](?=[LRID]\b)  |  `\1_`  |  1  |  TS056  |  applied  |  SHOW(LIGHT-R) => SHOW(LIGHT_R)
+^\s*(\d+)\s*([FBLR])\s*(\d+)\s*$  |  `\2(\1, \3)`  |  1  |  TS015  |  applied  |  2F80 => F(2, 80)
+(?<==)\s*(\d{1,3}),(?=000\b)  |  `\1`  |  1  |  TS008  |  applied  |  X=1,000 => X=1000
+(?<=\))_(?=UNTIL\b)  |  ` `  |  1  |  TS009  |  applied  |  F(5, 60)_UNTIL(DISTANCE < 30) => F(5, 60) UNTIL(DISTANCE < 30)
 \b(END|FIN) _  |  `\1_`  |  1  |  TS022  |  applied  |  IF(DISTANCE < 9)⏎S⏎END _IF => IF(DISTANCE < 9)⏎S⏎END_IF
-^\s*(?:[Pp]aso|[Ss]tep)\s*\d+\s*[:.-]?\s+(?=[A-Za-z])  |  ``  |  1  |  TS054  |  applied  |  Paso 1 F(2, 80) => F(2, 80)
+^\s*(?:paso|step)\s*\d+\s*[:.-]?\s+(?=[A-Za-z])  |  ``  |  1  |  TS054  |  applied  |  Paso 1 F(2, 80) => F(2, 80)
 ^_+(\S.*?)_+$  |  `\1`  |  1  |  TS054  |  applied  |  _F(2, 80)_ => F(2, 80)
 [¿¡](?=\W)  |  ``  |  1  |  TS005  |  applied  |  F(2, 80) ¡ ; => F(2, 80)  ;
-(?<=\))\s+/\s+(?=[a-z])  |  ` // `  |  1  |  TS007  |  applied  |  F(2, 80) / adelante => F(2, 80) //adelante
+(?<=\))\s+/\s+(?=(?-i:[a-z]))  |  ` // `  |  1  |  TS007  |  applied  |  F(2, 80) / adelante => F(2, 80) //adelante
 (?<=[A-Za-z])\((\d+(?:\.\d+)?) ; ?(\d)  |  `(\1, \2`  |  1  |  TS019  |  applied  |  F(2 ; 80) => F(2, 80)
 """
 
@@ -213,6 +216,7 @@ v=@name -= e=@any+ | $v = $v - $e | 1 | TS050 | applied | X = 1⏎X -= 1 => X = 
 v=@name *= e=@any+ | $v = $v * $e | 1 | TS050 | applied | X = 1⏎X *= 2 => X = 1⏎X = X * 2
 ^ v=@name = w=@name = e=@any+ $ | $v = $e ; $w = $e | 1 | TS137 | offered | X = X = 5 => X = 5;X = 5
 ^ v=@name , w=@name = e=@num , f=@num $ | $v = $e ; $w = $f | 1 | TS050 | applied | X, Y = 5, 6⏎F(X, Y) => X = 5;Y = 6⏎F(X, Y)
+^ n=@newname = b=@callw r=@any+ $ | DEF $n ; $b $r | 2 | TS051 | applied | SALUDO = BEEP(1, 440)⏎SALUDO => DEF SALUDO;BEEP(1, 440);END_DEF⏎SALUDO
 ^ declare v=@name = | $v = | 1 | TS044 | applied | let v = 50⏎F(2, v) => v = 50⏎F(2, v)
 ^ CONST declare v=@name = | $v = | 1 | TS044 | applied | const int potencia = 80;⏎F(2, potencia); => potencia = 80;⏎F(2, potencia);
 ^ set|LET v=@name TO|A|EN|COMO|= e=@num $ | $v = $e | 1 | TS050 | applied | set x to 5 => x = 5
@@ -237,16 +241,23 @@ a=@callw b=@num ,? c=@num ,|;|Y? d=@callw | $a ( $b , $c ) ; $d | 1.5 | TS015 | 
 v=@val ( ) | $v | 1 | TS028 | first | LIGHT_L() => LIGHT_L
 RANDOM ( between|than|DESDE? a=@num A|AL|TO|Y|HASTA|AND|- b=@num ) | RANDOM ( $a , $b ) | 1 | TS017 | applied | X = RANDOM(1 al 6) => X = RANDOM(1, 6)
 x=@callw < c=@nobrace+ > | $x ( $c ) | 1 | TS015 | applied | F<2, 80> => F(2, 80)
+c=@callw ( a=@argt+ ( $ | $c ( $a ) | 1 | TS076 | applied | F(2, 80( => F(2, 80)
+^ ( c=@callw a=@num ,? b=@num ) $ | $c ( $a , $b ) | 1 | TS076 | applied | (F 2,80) => F(2, 80)
+^ ( a=@num , b=@num ) c=F|B|L|R $ | $c ( $a , $b ) | 1 | TS015 | applied | (2,80)F => F(2, 80)
+^ c=F|B|L|R - a=@num - b=@num $ | $c ( $a , $b ) | 1 | TS015 | applied | F - 2 - 80 => F(2, 80)
+SHOW ( TIME ) | SHOW ( TIME ) | 1 | TS102 | applied | mostrar(tiempo) => SHOW(TIME)
 c=@callw ( ( a=@nobrace+ ) ) | $c ( $a ) | 1 | TS016 | applied | F((2,80)) => F(2,80)
 c=@callw ( a=@argt+ ) ) e=;|$ | $c ( $a ) $e | 1 | TS041 | applied | F(2,80)) => F(2,80)
 c=@callw ( a=@num b=@num ) | $c ( $a , $b ) | 1 | TS017 | applied | F(2 80);F(3 80);R(1 50) => F(2, 80);F(3, 80);R(1, 50)
 c=@callw ( a=@num /|- b=@num ) | $c ( $a , $b ) | 2 | TS076 | offered | F(2/80) => F(2, 80)
 c=@callw ( a=@num _|.|;|&|<|'|'|Y|> b=@num ) | $c ( $a , $b ) | 1 | TS076 | applied | F(2|80) => F(2, 80)
+^ SHOW v=TRUE|FALSE $ | SHOW ( $v ) | 1 | TS015 | applied | SHOW TRUE => SHOW(TRUE)
 SHOW ( a=@val , b=@val ) | SHOW ( $a ) ; SHOW ( $b ) | 2 | TS015 | offered | SHOW(DISTANCE, LIGHT_L) => SHOW(DISTANCE);SHOW(LIGHT_L)
 ^ SHOW a=@val ,? b=@val $ | SHOW ( $a ) ; SHOW ( $b ) | 2 | TS015 | applied | SHOW DISTANCE LIGHT_R => SHOW(DISTANCE);SHOW(LIGHT_R)
 c=@callw ( a=@argt* b=@num|@word e=;|$|UNTIL|@start | $c ( $a $b ) $e | 1 | TS016 | applied | F(2,80 => F(2,80)
 # UNTIL
 a=@close '|'|,|. UNTIL ( | $a UNTIL ( | 1 | TS029 | applied | F(5, 60).UNTIL(DISTANCE < 30) => F(5, 60) UNTIL(DISTANCE < 30)
+^ W ( c=@val s=<|<=|>|>=|=|<> d=@num|@val ) $ | W ( FOREVER ) UNTIL ( $c $s $d ) | 1 | TS102 | applied | wait(DISTANCE < 10) => W(FOREVER) UNTIL(DISTANCE < 10)
 ^ W UNTIL QUE? c=@cond+ $ | W ( FOREVER ) UNTIL ( $c ) | 1 | TS102 | applied | WAIT UNTIL DISTANCE < 10 => W(FOREVER) UNTIL(DISTANCE < 10)
 a=@close UNTIL|HASTA QUE? c=@noparen+ $ | $a UNTIL ( $c ) | 1 | TS015 | applied | F(3, 80) UNTIL DISTANCE < 10 => F(3, 80) UNTIL(DISTANCE < 10)
 a=@close HASTA|UNTIL QUE? ( | $a UNTIL ( | 1 | TS102 | applied | F(2,80) HASTA(DISTANCE<10) => F(2,80) UNTIL(DISTANCE<10)
@@ -270,6 +281,7 @@ h=IF|ELSEIF c=@cond+ do|':'? '{' | &h ( $c ) ; { | 1 | TS047 | applied | SI(DIST
 <asks> c=@cond+ ;|$ | &h ( $c ) ; | 1.3 | TS015 | applied | F(2,80) si DISTANCE > 10 => IF(DISTANCE > 10);F(2, 80);ENDIF
 <asks> c=@cond+ b=@start | &h ( $c ) ; $b | 2 | TS014 | applied | IF DISTANCE < 10 STOP => IF(DISTANCE < 10);STOP;ENDIF
 h=IF|WHILE|LOOP ( c=@noclose+ , <body> ) $ | &h ( $c ) ; $b $r ; @endof:h | 1 | TS080 | applied | SI|IF(DISTANCE < 10, S) => SI|IF(DISTANCE < 10);S;ENDIF
+^ IF ( c=@noclose+ , <body> , d=@start s=@all* ) $ | IF ( $c ) ; $b $r ; ELSE ; $d $s ; ENDIF | .9 | TS080 | offered | IF(DISTANCE < 15, B(1, 50), F(1, 50)) => IF(DISTANCE < 15);B(1, 50);ELSE;F(1, 50);ENDIF
 h=IF|WHILE ( c=@noclose+ , b=@start | &h ( $c ) ; $b | 2 | TS080 | applied | IF(DISTANCE < 10, S) ELSE F(1, 60) ENDIF => IF(DISTANCE < 10);S;ELSE;F(1, 60);ENDIF
 <block> <question> do|times|:|,|=|?|'|'|- ':'? | &h ( $c ) ; | 1 | TS014 | applied | LOOP(3): F(1,50) => LOOP(3);F(1, 50);END_LOOP
 <block> <question> b=@start|'{'|SALUDO | &h ( $c ) ; $b | 1 | TS014 | applied | LOOP(3) F(1,50) => LOOP(3);F(1, 50);END_LOOP
@@ -281,7 +293,7 @@ a=@nosep ELSE b=@name = | $a ; ELSE ; $b = | 1 | TS014 | applied | X = 5⏎IF(X 
 h=IF|ELSEIF <question> ( <body> ) e=ELSEIF|ELSE | &h ( $c ) ; $b $r ; $e | .9 | TS080 | applied | IF(DISTANCE < 10)(S)ELSE(F(1,50)) => IF(DISTANCE < 10);S;ELSE;F(1, 50);ENDIF
 ELSE IF | ELSEIF | 1 | TS021 | first | IF(DISTANCE < 10);S;ELSE IF(DISTANCE < 30);F(1,50);ENDIF => IF(DISTANCE < 10);S; ELSEIF(DISTANCE < 30);F(1,50);ENDIF
 ELSE , IF | ELSEIF | 1 | TS021 | applied | IF(DISTANCE < 5);S;ELSE, IF(DISTANCE < 9);F(1, 50);ENDIF => IF(DISTANCE < 5);S; ELSEIF(DISTANCE < 9);F(1, 50);ENDIF
-IF <question> ; a=@any+ : b=@any+ $ | IF ( $c ) ; $a ; ELSE ; $b ; ENDIF | 1 | TS014 | applied | IF(DISTANCE < 10) ? S : F(1,50) => IF(DISTANCE < 10);S;ELSE;F(1, 50);ENDIF
+IF <question> ? a=@any+ : b=@any+ $ | IF ( $c ) ; $a ; ELSE ; $b ; ENDIF | 1 | TS014 | applied | IF(DISTANCE < 10) ? S : F(1,50) => IF(DISTANCE < 10);S;ELSE;F(1, 50);ENDIF
 ELSE ( <body> ) $ | ELSE ; $b $r | 1 | TS014 | applied | IF(DISTANCE < 10)(S)ELSE(F(1,50)) => IF(DISTANCE < 10);S;ELSE;F(1, 50);ENDIF
 h=ELSE :|,|THEN|=|'|' | &h ; | 1 | TS014 | applied | IF DISTANCE<10: STOP ELSE: F(1,50) => IF(DISTANCE < 10);STOP;ELSE;F(1, 50);ENDIF
 h=ELSE b=@start|'{' | &h ; $b | 1 | TS014 | applied | IF(DISTANCE<10);R(1,60);ELSE F(1,80);ENDIF => IF(DISTANCE < 10);R(1, 60);ELSE;F(1, 80);ENDIF
@@ -315,10 +327,11 @@ LOOP ( n=@num <body> ) $ | LOOP ( $n ) ; $b $r ; END_LOOP | 2 | TS080 | applied 
 LOOP|FOR|PARA|DESDE @name =|DESDE|than 1 TO|A|HASTA n=@num do|:? | LOOP ( $n ) ; | 1 | TS102 | offered | para i de 1 a 4⏎F(1,50)⏎fin para => LOOP(4)⏎F(1,50)⏎END_LOOP
 <for> ( INT? @name = 0 ; @name < n=@num ; @name ++ ) | LOOP ( $n ) ; | 1 | TS102 | offered | for(i=0;i<3;i++) F(1,50); => LOOP(3);F(1, 50);END_LOOP
 <for> ( INT? @name = 1 ; @name <= n=@num ; @name ++ ) | LOOP ( $n ) ; | 1 | TS102 | offered | for(i=1; i<=3; i++){ F(1,80); } => LOOP(3);F(1, 80);END_LOOP;
-^ FOREVER|SIEMPRE :? $ | LOOP ( FOREVER ) | 1 | TS032 | applied | siempre⏎F(1,50)⏎fin => LOOP(FOREVER)⏎F(1,50)⏎END_LOOP
+^ FOREVER|SIEMPRE : $ | LOOP ( FOREVER ) ; | 1 | TS032 | applied | forever:⏎  F(1,50) => LOOP(FOREVER)⏎  F(1,50)⏎END_LOOP
+^ FOREVER|SIEMPRE $ | LOOP ( FOREVER ) | 1 | TS032 | applied | siempre⏎F(1,50)⏎fin => LOOP(FOREVER)⏎F(1,50)⏎END_LOOP
 ^ LOOP|REPETIR FOREVER|SIEMPRE :? $ | LOOP ( FOREVER ) | 1 | TS102 | applied | repetir siempre⏎F(1, 50)⏎fin repetir => LOOP(FOREVER)⏎F(1, 50)⏎END_LOOP
 ^ FOREVER :|;? b=@start|'{' | LOOP ( FOREVER ) ; $b | 1 | TS032 | applied | forever: F(1,50) => LOOP(FOREVER);F(1, 50);END_LOOP
-^ FOREVER ( <body> ) $ | LOOP ( FOREVER ) ; $b $r ; END_LOOP | 1 | TS080 | applied | FOREVER(F(1, 80)) => LOOP(FOREVER);F(1, 80);END_LOOP
+^ FOREVER ( <body> ) $ | LOOP ( FOREVER ) ; $b $r | 1 | TS080 | applied | FOREVER(F(1, 80)) => LOOP(FOREVER);F(1, 80);END_LOOP
 ^ FOREVER QUE c=@cond+ '{' | IF ( $c ) ; { | 1 | TS102 | applied | siempre que DISTANCE < 10 { R(1, 60) } => IF(DISTANCE < 10);R(1, 60);ENDIF;
 ^ LOOP UNTIL <question> ':'|'{'? $ | WHILE ( @not:c ) | 1 | TS102 | applied | F(1, 60)⏎LOOP UNTIL(DISTANCE < 20)⏎F(1, 60)⏎END_LOOP => F(1, 60)⏎WHILE(DISTANCE >= 20)⏎F(1, 60)⏎END_WHILE
 ^ LOOP UNTIL c=@cond+ ':'|'{'? $ | WHILE ( @not:c ) | 1 | TS102 | applied | repetir hasta DISTANCE < 10⏎F(1,50)⏎fin => WHILE(DISTANCE >= 10)⏎F(1,50)⏎END_WHILE
@@ -363,7 +376,7 @@ a=@close h=end $ | $a ; &h | 1 | TS013 | applied | F(2,80) fin => F(2, 80);
 end DEL|DE|EL? k=IF|LOOP|WHILE|DEF|FOREVER|FOR|PARA ;|$ | @endof:k | 1 | TS022 | first | definir bailar⏎L(1,50)⏎fin definir⏎bailar => DEF bailar⏎L(1,50)⏎END_DEF⏎bailar
 # what joins instructions
 ^ @newname : b=@start | $b | 2.5 | TS054 | applied | square: F(1,50); R(1,50) => F(1,50); R(1,50)
-a=@close please|CM|SEG|SEGUNDOS $ | $a | 1 | TS044 | applied | F(1, 80) cm => F(1, 80)
+a=@close please|CM|CENTIMETROS|SEG|SEGS|SEGUNDO|SEGUNDOS|SECONDS $ | $a | 1 | TS044 | applied | F(1, 80) cm => F(1, 80)
 a=@close soon+ b=@start | $a ; $b | 2 | TS044 | applied | F(2, 80) y por ultimo B(1, 50) => F(2, 80);B(1, 50)
 ( a=@num , p=@num|@val ) then|&|+|AND BEEP ( b=@num | ( $a , $p ) ; BEEP ( @same:a:b | .9 | TS074 | offered | F(2, 80) AND BEEP(2, 440) => F(2, 80);BEEP(2, 440)
 a=@close ,? then|soon+ b=@start | $a ; $b | 1 | TS044 | applied | F(1,75) y R(1,75) => F(1, 75);R(1, 75)
@@ -374,6 +387,7 @@ a=@close b=@start | $a ; $b | 1 | TS013 | applied | S STOP => S;STOP
 a=@def b=@def | $a ; $b | 1 | TS013 | applied | DEF PASO;S;END_DEF⏎PASO PASO => DEF PASO;S;END_DEF⏎PASO;PASO
 ^ first ,? b=@start | $b | 1 | TS044 | applied | Primero, avanza 2 segundos⏎Luego gira a la izquierda 1 segundo => F(2, 80)⏎L(1, 80)
 ; first+ ,? b=@start | ; $b | 1 | TS044 | applied | F(2, 80); y despues B(1, 80) => F(2, 80);B(1, 80)
+^ ( <body> ) $ | $b $r | 1 | TS080 | applied | LOOP(3)⏎(F(1, 50))⏎END_LOOP => LOOP(3)⏎F(1, 50)⏎END_LOOP
 ^ [ <body> ] $ | $b $r | 1 | TS080 | applied | [F(2,80), R(1,60)] => F(2, 80);R(1, 60)
 ^ then ,? $ |  | 1 | TS044 | applied | F(1, 50);⏎luego, => F(1, 50);⏎
 # words of other languages around a program
@@ -381,6 +395,7 @@ a=@def b=@def | $a ; $b | 1 | TS013 | applied | DEF PASO;S;END_DEF⏎PASO PASO =
 v=S|STOP|BREAK|START|ELSE|ENDIF|END_LOOP ( ) | $v | 1 | TS028 | first | s() => s
 read ( v=@val ) | $v | 1 | TS102 | applied | X = leer(DISTANCE)⏎SHOW(X) => X =DISTANCE⏎SHOW(X)
 ^ AL|WHEN|CUANDO INICIAR|EMPEZAR|COMENZAR|START|INICIO $ | START | 1 | TS102 | applied | al iniciar⏎F(2,80) => START⏎F(2,80)
+^ no F|B|L|R|M extra? $ | S | .5 | TS102 | first | no avanzar mas => S
 ^ PARA|DEJA DE AVANZAR|MOVER|MOVERTE $ | S | .5 | TS102 | first | para de avanzar => S
 ^ APAGAR|APAGA|DETENER|PARAR the? engine $ | S | 1 | TS102 | applied | apaga motores => S
 ^ START '|' | SI '|' | 1 | TS034 | offered | start|F(2,80) => SI |F(2,80)

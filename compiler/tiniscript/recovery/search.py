@@ -13,7 +13,7 @@ from typing import NamedTuple
 from tiniscript.kit import Kit
 from tiniscript.recovery import lines, rewrites, rows
 from tiniscript.recovery.blocks import Edit, Line, Matched, matched
-from tiniscript.recovery.concepts import CALLED, Lexeme, Names, lexemes, made, plain
+from tiniscript.recovery.concepts import CALLED, Lexeme, Names, lexemes, made, plain, texts
 from tiniscript.recovery.lines import MARGIN, Reading, Step
 from tiniscript.recovery.setup import setup
 from tiniscript.recovery.writing import as_written, laid_out, without_note
@@ -89,6 +89,12 @@ class _Recovery:
         names = Names([lexemes(each.body) for each in self.lines], self.kit)
         for line in self.lines:
             self.read_line(line, names)
+        told = Names([each.reading.tokens for each in self.lines if each.reading], self.kit)
+        if told.variables | told.defs > names.variables | names.defs:
+            names = names.joined(told)
+            for line in self.lines:
+                if line.reading is None:
+                    self.read_line(line, names)
         best = self.of_whole()
         if best is None or not best.is_whole:
             best = self.of_parts(names, best) or best
@@ -98,11 +104,12 @@ class _Recovery:
 
     def read_signs(self) -> None:
         """Make the rewrites of signs, in the lines that have them."""
+        defs = Names([lexemes(each.body) for each in self.lines], self.kit).defs
         for line in self.lines:
             body = line.body.translate(_QUOTES)
             for row in rewrites.of_signs():
                 new = row.pattern.sub(row.becomes, body)
-                if new != body:
+                if new != body and not (defs and defs & _words(body) - _words(new)):
                     line.steps.append(Step(row.code, lexemes(body), lexemes(new)))
                     line.is_sure = line.is_sure and not row.is_offered
                     body = new
@@ -263,6 +270,10 @@ class _Recovery:
         if not is_changed:
             return None
         return Candidate("\n".join(out), self.are_sure(), False, tuple(steps), self.checks)
+
+
+def _words(text: str) -> set[str]:
+    return {*texts(lexemes(text))}
 
 
 def _said(reading: Reading) -> list[str]:

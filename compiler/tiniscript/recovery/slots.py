@@ -14,8 +14,9 @@ from tiniscript.syntax.lexer import NUMBER, WORD
 from tiniscript.words import UNITS, WORDS, Argument
 
 MILLISECONDS_FROM = 100  # no wait is so many seconds
+LONG_S = 20  # so much without a unit may be a power, degrees or centimeters
 _SIDES = ("left", "right")
-_MOVES = ("F", "B", "L", "R")
+MOVES = ("F", "B", "L", "R")
 _LETTERS = {"T": "s", "P": "%", "V": "%"}  # how a value of a move is called, in one letter
 _PASSED = frozenset("(),:=.-_") | {"->", "%"}
 
@@ -109,29 +110,43 @@ class _Reader:
         meanings = self.names.meanings(word)
         return meanings[0].concept if meanings else ""
 
-    def _value_of_words(self, k: int) -> float | None:
-        """Return the number that a word says, where it can be none of its other meanings."""
+    def _value_of_words(self, k: int) -> tuple[float, int] | None:
+        """Return the number that words say, where they can say nothing else, and what is next."""
         token, after = self.words[k], self.text(k + 1)
         if token.kind is NUMBER:
-            return float(token.text)
+            is_dotted = token.text[0] == "." and self.text(k - 1) not in ("(", ",")
+            self.is_sure = self.is_sure and not is_dotted  # `F.1.5`
+            return float(token.text), k + 1
         if token.kind is not WORD or token.text in self.names.known.values:
             return None
         said = said_of(token.text, "number")
         if said and self.command and (said != ("1",) or after in UNITS):
-            self.is_sure, self.cost = False, self.cost + 0.5
-            return float(said[0])
+            number, k = self._sum(int(said[0]), k + 1)
+            self.is_sure = self.is_sure and said != ("1",)
+            self.cost += 0.5
+            return number, k
         if said_of(token.text, "power") == ("50",) and after in UNITS:  # half a second
             self.is_sure = False
-            return 0.5
+            return 0.5, k + 1
         return None
+
+    def _sum(self, number: int, k: int) -> tuple[float, int]:
+        """Return a number with the smaller ones behind it: `cuatrocientos cuarenta y cinco`."""
+        while number % 10 == 0:
+            place = k + (self.text(k) in ("Y", "AND"))
+            said = said_of(self.text(place), "number")
+            if not said or number % 10 ** len(said[0]):
+                break
+            number, k = number + int(said[0]), place + 1
+        return float(number), k
 
     def _number(self, k: int) -> int | None:
         """Read a number with its unit; return where to read on, None where none is here."""
-        number = self._value_of_words(k)
-        if number is None:
+        found = self._value_of_words(k)
+        if found is None:
             return None
-        k += 1
-        if self.text(k) == "Y" and said_of(self.text(k + 1), "power") == ("50",):
+        number, k = found
+        if self._is_and_a_half(k):
             number, k, self.is_sure = number + 0.5, k + 2, False
         if self.text(k) == "/" and k + 1 < len(self.words):
             return None
@@ -142,6 +157,8 @@ class _Reader:
             unit, thousandths = UNITS[self.text(k)]
             is_stop = self.words[k].source == "S" and bool(self.words[k].space)
             self.is_sure, k = self.is_sure and not is_stop, k + 1
+            if self._is_and_a_half(k):
+                number, k, self.is_sure = number + 0.5, k + 2, False
         elif self.text(k) in ("DE", "OF") and (marked := said_of(self.text(k + 1), "value")):
             unit, k = marked[0], k + 2
         if self.text(k) in ("DE", "OF") and said_of(self.text(k + 1), "value") == ("%",):
@@ -157,11 +174,15 @@ class _Reader:
         self.mark = None
         return k
 
+    def _is_and_a_half(self, k: int) -> bool:
+        return self.text(k) in ("Y", "AND") and said_of(self.text(k + 1), "power") == ("50",)
+
     def _sign(self, k: int) -> int | None:
         sign, before = self.text(k), self.text(k - 1)
-        if sign == "-" and self.command == "M" and self.words[k + 1 : k + 2]:
+        if sign == "-" and self.command in ("M", "SHOW") and self.words[k + 1 : k + 2]:
             after = self.words[k + 1]
-            if after.kind is NUMBER and (before in ("(", ",", "M") or self.values):
+            if after.kind is NUMBER and (before in ("(", ",", self.command) or self.values):
+                self.is_sure = self.is_sure and not (self.values and before != ",")
                 self.values.append(_Value(-float(after.text), self.mark))
                 self.mark = None
                 return k + 2
@@ -177,10 +198,12 @@ class _Reader:
         is_name = word in names.known.values
         own = word if word in DONE and word != "BREAK" else None
         meant = own or self._command_of(word)
+        if k and self.words[k].space == "" and self.words[k - 1].kind is NUMBER:
+            self.is_sure = False  # `1velocidad`
         is_before_number = after is not None and (after.kind is NUMBER or after.text in "=:")
         if self.command == "M" and word in ("L", "R"):
             self.mark = _SIDES[word == "R"]
-        elif self.command in _MOVES and word in _LETTERS and is_before_number:
+        elif self.command in MOVES and word in _LETTERS and is_before_number:
             self.mark = _LETTERS[word]
         elif said_of(word, "turn"):
             self.is_turn = True
@@ -230,9 +253,9 @@ class _Reader:
         is_way = before == "F" and meant in ("B", "L", "R") and not self.values
         if before is None or is_way or (self.is_turn and meant in ("L", "R")):
             self.command = meant
-        elif before == meant and not self.values and meant in _MOVES:
+        elif before == meant and not self.values and meant in MOVES:
             pass
-        elif not (meant == "F" and before in _MOVES and said_of(word, "filler")):
+        elif not (meant == "F" and before in MOVES and said_of(word, "filler")):
             return False
         self.cost += cost * 0.3
         return True
@@ -293,6 +316,10 @@ class _Reader:
         is_long = any(isinstance(v, float) and v >= MILLISECONDS_FROM for v, u in values if not u)
         return None if self.command == "W" and is_long else values
 
+    @staticmethod
+    def _is_tone(value: float | str) -> bool:
+        return isinstance(value, float) and value >= LONG_S
+
     def _slots(
         self, values: list[_Value], arguments: tuple[Argument, ...], has_until: bool
     ) -> list[float | str | None] | None:
@@ -309,6 +336,8 @@ class _Reader:
                     return None
                 slots[place], order[k] = value, place
         rest = [k for k in range(len(values)) if k not in order]
+        if self.command == "BEEP" and len(rest) == 2:
+            rest.sort(key=lambda k: self._is_tone(values[k].value))
         if has_until and slots[0] is None and arguments[0].unit == "s" and not rest:
             slots[0] = "FOREVER"
         for k in rest:
@@ -321,6 +350,10 @@ class _Reader:
             slots[place], order[k] = value, place
         places = [order[k] for k in sorted(order)]
         self.is_sure = self.is_sure and places == sorted(places)
+        for k, place in order.items():
+            value, unit = values[k]
+            if arguments[place].unit == "s" and unit is None and isinstance(value, float):
+                self.is_sure = self.is_sure and (value < LONG_S or len(arguments) == 1)
         if None in slots:
             self.is_sure, self.cost = False, self.cost + 2
             if self.command == "SHOW":
