@@ -7,7 +7,7 @@ TRUE is 1 and FALSE is 0. All mistakes have been reported before.
 
 # No `from __future__ import annotations`: typing would compile each field's again, one by one.
 from collections.abc import Iterator
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from tiniscript.fixed_point import as_text
 from tiniscript.kit import Kit
@@ -192,31 +192,24 @@ def are_yes_no(program: Program, kit: Kit) -> list[bool]:
     return found
 
 
+# The fields of statements that are expressions: whoever adds a statement names them so.
+_VALUES = frozenset(("time", "power", "left", "right", "hertz", "value", "times", "condition"))
+
+
+def values_of(statement: Statement) -> dict[str, Expression]:
+    """Return the fields of a statement that are expressions, by their names, in their order."""
+    fields: dict[str, Any] = statement._asdict()
+    return {name: value for name, value in fields.items() if name in _VALUES and value is not None}
+
+
 def expressions(statement: Statement) -> Iterator[Expression]:
     """Yield the expressions of a statement itself, not those of its blocks' bodies."""
-    if isinstance(statement, Move):
-        if statement.time is not None:
-            yield statement.time
-        if statement.power is not None:
-            yield statement.power
-        if statement.until is not None:
-            yield statement.until.condition
-    elif isinstance(statement, Motors):
-        yield statement.left
-        yield statement.right
-    elif isinstance(statement, Beep):
-        yield statement.time
-        yield statement.hertz
-    elif isinstance(statement, (Show, Set, Assign)):
-        yield statement.value
+    yield from values_of(statement).values()
+    if isinstance(statement, Move) and statement.until is not None:
+        yield statement.until.condition
     elif isinstance(statement, If):
         for arm in statement.arms:
             yield arm.condition
-    elif isinstance(statement, Loop):
-        if statement.times is not None:
-            yield statement.times
-    elif isinstance(statement, While):
-        yield statement.condition
 
 
 def loops_end(body: Body) -> bool:
@@ -264,16 +257,13 @@ def program_text(program: Program) -> str:
     return "\n".join([*lines, *_body_lines(program.body, "")]) + "\n"
 
 
-_EXPRESSIONS = frozenset(("time", "power", "left", "right", "hertz", "value", "times", "condition"))
-
-
 def _body_lines(body: Body, indent: str) -> Iterator[str]:
     for statement in body:
         words = [type(statement).__name__]
         for name, value in statement._asdict().items():
             if value is None and name in ("time", "times"):
                 words.append("FOREVER")
-            elif value is not None and name in _EXPRESSIONS:
+            elif value is not None and name in _VALUES:
                 words.append(expression_text(value))
             elif name in ("direction", "sensor", "actuator", "variable", "procedure", "reads"):
                 words.append(str(value))

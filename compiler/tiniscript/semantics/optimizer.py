@@ -7,30 +7,26 @@ or a fault: what would fault is left to fault, and readings stay where they are.
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 from tiniscript import fixed_point
 from tiniscript.fixed_point import Fault, whole
 from tiniscript.semantics.ir import (
     Arm,
-    Assign,
-    Beep,
     Body,
     Call,
     Expression,
     If,
     Loop,
-    Motors,
     Move,
     Procedure,
     Program,
     Read,
-    Set,
-    Show,
     Statement,
     Term,
-    Until,
     While,
     goes_on,
+    values_of,
     walk,
 )
 
@@ -177,31 +173,16 @@ def _body(body: Body) -> Body:
 
 
 def _statement(statement: Statement) -> tuple[Statement, ...]:
-    if isinstance(statement, Assign):
-        return (statement._replace(value=fold(statement.value)),)
-    if isinstance(statement, Move):
-        return (_move(statement),)
     if isinstance(statement, If):
         return _if(statement)
     if isinstance(statement, Loop):
         return _loop(statement)
     if isinstance(statement, While):
         return _while(statement)
-    if isinstance(statement, Motors):
-        return (statement._replace(left=fold(statement.left), right=fold(statement.right)),)
-    if isinstance(statement, Beep):
-        return (statement._replace(time=fold(statement.time), hertz=fold(statement.hertz)),)
-    if isinstance(statement, (Show, Set)):
-        return (statement._replace(value=fold(statement.value)),)
-    return (statement,)
-
-
-def _move(move: Move) -> Move:
-    return move._replace(
-        time=None if move.time is None else fold(move.time),
-        power=None if move.power is None else fold(move.power),
-        until=None if move.until is None else Until(move.until.reads, fold(move.until.condition)),
-    )
+    folded: dict[str, Any] = {name: fold(value) for name, value in values_of(statement).items()}
+    if isinstance(statement, Move) and statement.until is not None:
+        folded["until"] = statement.until._replace(condition=fold(statement.until.condition))
+    return (statement._replace(**folded) if folded else statement,)
 
 
 def _if(statement: If) -> tuple[Statement, ...]:
