@@ -82,12 +82,13 @@ def test_brackets_are_those_that_cpp_needs() -> None:
     text = sketch(
         "X = 1;X = (X + 2) * 3 - (X - (4 - X));X = 7 / 2;X = --X;X = -(-5);"
         "Y = NOT (X = 1 OR X < 2);"
-        "Y = (X < 1) = (X > 2);Y = X < 1 AND (Y OR X > 3) OR Y;X = 2000 * 20.5"
+        "Y = (X < 1) = (X > 2);Y = X < 1 AND (Y OR X > 3) OR Y;X = 2000 * 20.5;"
+        "X = X * (X / 3) % 7;X = X / (X * 3)"
     )
     for line in (
         "x = (x + 2) * 3 - (x - (4 - x));", "x = Number(7) / 2;", "x = - -x;", "x = -Number(-5);",
         "y = !(x == 1 || x < 2);", "y = (x < 1) == (x > 2);", "y = (x < 1 && (y || x > 3)) || y;",
-        "x = Number(2000) * 20.5;",
+        "x = Number(2000) * 20.5;", "x = x * (x / 3) % 7;", "x = x / (x * 3);",
     ):  # fmt: skip
         assert f"  {line}" in part(text, "void setup()"), line
 
