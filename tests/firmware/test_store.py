@@ -34,7 +34,7 @@ SAMPLES = (("3", "3"), ("24", "9"), ("389", "97"), ("records", "9"))
 CAMPAIGN = (("3", "1"), ("24", "1"), ("64", "2"), ("389", "5"), ("records", "2"))
 MEGA = "-D__AVR_ATmega2560__"
 STORE = SOURCES / "src" / "store" / "store.cpp"
-SEEDS = range(1, 9)  # in which a break must be noticed
+SEEDS = range(1, 3)  # in which a break must be noticed
 CODE_BYTES = 389  # kStoredCodeBytes on an Uno
 SAVED, SAVING = 3, 2  # StoreState
 
