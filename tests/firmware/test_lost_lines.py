@@ -6,13 +6,14 @@ and while it answers it reads none.
 
 from __future__ import annotations
 
-from pathlib import Path
+from collections.abc import Iterator
 
 import pytest
 
 from tests.firmware.test_typed_stops import SILENCE_MS, said, switched_on
 from tests.machines.uno import needed
 from tools.bench.link import built
+from tools.uno import Uno
 
 BAUD = 115_200
 LOST = "// Bytes were lost. Begin again."
@@ -21,30 +22,40 @@ LINES = (
     "S(", "PING|CHECK_CONNECTION", "ñandú", "F(0.1,80);" * 6,
 )  # fmt: skip
 TWENTY = 20
+QUIET_MS = 700  # longer than a program of these lines
 
 
-@pytest.fixture(scope="session")
-def quick_sketch(tmp_path_factory: pytest.TempPathFactory) -> Path:
+@pytest.fixture(scope="module")
+def quick_uno(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Uno]:
+    """A robot that has heard nothing for a second: tests go aside from there."""
     needed()
-    return built(BAUD, tmp_path_factory.mktemp("sketch"))
+    with switched_on(built(BAUD, tmp_path_factory.mktemp("sketch")), BAUD) as uno:
+        uno.run_ms(SILENCE_MS)
+        yield uno
 
 
-@pytest.mark.parametrize("count", [TWENTY // 2, TWENTY])
+def told(uno: Uno, data: bytes) -> list[str]:
+    """Return the lines that the robot says to this, until it is silent and no program runs."""
+    before, seen = len(uno.sent), -1
+    uno.send(data)
+    while seen != len(uno.sent):
+        seen = len(uno.sent)
+        uno.run_ms(QUIET_MS)
+    return said(uno, before).splitlines()
+
+
 @pytest.mark.parametrize("line", LINES, ids=lambda line: line[:20])
-def test_a_pasted_line_that_is_lost_is_told(quick_sketch: Path, line: str, count: int) -> None:
-    with switched_on(quick_sketch, BAUD) as uno:
-        uno.run_ms(SILENCE_MS)
-        uno.send(line.encode() + b"\r\n")
-        uno.run_ms(SILENCE_MS)
-        one = [each for each in said(uno, 0).splitlines() if each not in ("// DONE", "// 1", LOST)]
-        before = len(uno.sent)
-        uno.send((line.encode() + b"\r\n") * count)
-        uno.run_ms(3 * SILENCE_MS)
-        told = said(uno, before).splitlines()
-        answers = sum(each in one for each in told)
-        assert LOST in told or answers == len(one) * count, told
-        assert LOST in told or count < TWENTY, "as twenty lines are, some are lost"
-        before = len(uno.sent)
-        uno.send(b"SI|SHOW(7)\n")
-        uno.run_ms(100)
-        assert said(uno, before).endswith("// 7\r\n// DONE\r\n")
+def test_a_pasted_line_that_is_lost_is_told(quick_uno: Uno, line: str) -> None:
+    uno, data = quick_uno, line.encode() + b"\r\n"
+    with uno.aside():
+        one = [each for each in told(uno, data) if each not in ("// DONE", "// 1", LOST)]
+        for count in (TWENTY // 2, TWENTY):
+            with uno.aside():
+                many = told(uno, data * count)
+                answers = sum(each in one for each in many)
+                assert LOST in many or answers == len(one) * count, many
+                assert LOST in many or count < TWENTY, "as twenty lines are, some are lost"
+                before = len(uno.sent)
+                uno.send(b"SI|SHOW(7)\n")
+                uno.run_ms(100)
+                assert said(uno, before).endswith("// 7\r\n// DONE\r\n")
