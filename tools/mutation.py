@@ -319,6 +319,7 @@ class Copy:
             **os.environ,
             "PYTHONPATH": str(self.folder / "compiler"),
             "PYTHONDONTWRITEBYTECODE": "1",
+            "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1",  # importing them takes longer than most tests
         }
         process = subprocess.Popen(
             [sys.executable, *words], cwd=self.folder, env=environment, stdin=subprocess.DEVNULL,
