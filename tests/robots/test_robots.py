@@ -71,14 +71,6 @@ def test_the_default_is_the_robot_of_the_paper() -> None:
     assert robot.board.sensors[0].pins == {"pin": 14}
 
 
-def test_shipped_py_is_fresh() -> None:
-    command = [sys.executable, "-m", "tools.generate", "--check"]
-    checked = subprocess.run(
-        command, cwd=FOLDER.parents[2], capture_output=True, text=True, check=False
-    )
-    assert checked.returncode == 0, checked.stderr
-
-
 def test_a_shipped_robot_needs_no_toml() -> None:
     program = (
         "import sys; from tiniscript import robots; robots.load(robots.DEFAULT);"
