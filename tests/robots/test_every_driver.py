@@ -9,8 +9,9 @@ import pytest
 from tests.support.casefile import ROOT
 from tests.wiring.test_wiring import DEVICES, MOTORS, robot_with
 from tiniscript import compile_text, robots
+from tiniscript.kit import Device
 from tiniscript.robots import firmware
-from tiniscript.robots.driver import Driver
+from tiniscript.robots.driver import Driver, SensorDriver
 from tiniscript.robots.drivers import DRIVERS
 from tiniscript.robots.profile import Robot, Wiring
 from tiniscript.sketch.wiring import Plan
@@ -94,3 +95,16 @@ def test_shipped_robots_have_drivers_of_the_table() -> None:
     for name in robots.names():
         board = robots.load(name).board
         assert {each.driver for each in (*board.sensors, *board.actuators)} <= known
+
+
+def test_a_driver_without_a_sketch_cannot_be_made() -> None:
+    class Half(SensorDriver):
+        name = "half"
+        used_by = "sensors number"
+        pins = ()
+
+        def firmware(self, part: firmware.Part, device: Device, wiring: Wiring) -> list[str]:
+            return []
+
+    with pytest.raises(TypeError, match=r"Half.*sketch"):
+        Half()  # type: ignore[abstract]

@@ -89,19 +89,20 @@ class Shape(NamedTuple):
 class Driver(ABC):
     """`used_by` is the table of [board] and the kind of the device: `sensors number`.
 
-    `texts` are sentences of the wiring page, in English and Spanish, by the keys that its shape
-    has.
+    `looks` is its shape, where that is always the same. `texts` are sentences of the wiring page,
+    in English and Spanish, by the keys that its shape has.
     """
 
     name: ClassVar[str]
     used_by: ClassVar[str]
     pins: ClassVar[tuple[PinKey, ...]]
     settings: ClassVar[tuple[Setting, ...]] = ()
+    looks: ClassVar[Shape]
     texts: ClassVar[Mapping[str, tuple[str, str]]] = {}
 
-    @abstractmethod
     def shape(self, wiring: Wiring, device: Device | None, sees: str, pin_volts: int) -> Shape:
         """Return what it looks like; a sensor `sees` what its place in the robot's body says."""
+        return self.looks
 
 
 class MotorDriver(Driver):

@@ -5,13 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from tiniscript.kit import Device
-from tiniscript.robots.driver import (
-    ActuatorDriver,
-    PinKey,
-    Setting,
-    Shape,
-    lamp,
-)
+from tiniscript.robots.driver import ActuatorDriver, PinKey, Setting, Shape, lamp
 from tiniscript.robots.profile import Wiring
 
 if TYPE_CHECKING:

@@ -5,14 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from tiniscript.kit import Device
-from tiniscript.robots.driver import (
-    PinKey,
-    SensorDriver,
-    Setting,
-    Shape,
-    module,
-    switch,
-)
+from tiniscript.robots.driver import PinKey, SensorDriver, Setting, Shape, module, switch
 from tiniscript.robots.profile import Wiring
 
 if TYPE_CHECKING:
@@ -25,16 +18,13 @@ class DigitalSensor(SensorDriver):
     used_by = "sensors yes/no"
     pins = (PinKey("pin", "input"),)
     settings = (Setting("pull_up", "yes/no"), Setting("yes_is_low", "yes/no"))
+    # fmt: off
     texts = {
-        "need_digital": (
-            "sensor module with a digital output (D0)",
-            "módulo sensor con salida digital (D0)",
-        ),
-        "mind_digital": (
-            "A module with a small screw: turn it until its own lamp changes where it should.",
-            "Un módulo con un tornillo pequeño: gíralo hasta que su propia luz cambie donde debe.",
-        ),
+        "need_digital": ("sensor module with a digital output (D0)", "módulo sensor con salida digital (D0)"),
+        "mind_digital": ("A module with a small screw: turn it until its own lamp changes where it should.",
+                         "Un módulo con un tornillo pequeño: gíralo hasta que su propia luz cambie donde debe."),
     }
+    # fmt: on
 
     def firmware(self, part: Part, device: Device, wiring: Wiring) -> list[str]:
         pin = part.pins.pin(wiring.pins["pin"])

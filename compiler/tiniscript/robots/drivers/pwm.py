@@ -5,12 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from tiniscript.kit import Device
-from tiniscript.robots.driver import (
-    ActuatorDriver,
-    PinKey,
-    Shape,
-    lamp,
-)
+from tiniscript.robots.driver import ActuatorDriver, PinKey, lamp
 from tiniscript.robots.profile import Wiring
 
 if TYPE_CHECKING:
@@ -22,6 +17,7 @@ class PwmActuator(ActuatorDriver):
     name = "pwm"
     used_by = "actuators number"
     pins = (PinKey("pin", "pwm"),)
+    looks = lamp(is_on_low=False)
 
     def firmware(self, part: Part, device: Device, wiring: Wiring) -> list[str]:
         pin, pwm = part.pins.pin(wiring.pins["pin"]), part.pins.pwm(wiring.pins["pin"])
@@ -36,9 +32,6 @@ class PwmActuator(ActuatorDriver):
         plan.parts.off.append(f"analogWrite({pin}, 0);")
         share = plan.part_of(device, 0, 255)
         return f"void {function}(long value) {{\n  analogWrite({pin}, {share});\n}}"
-
-    def shape(self, wiring: Wiring, device: Device | None, sees: str, pin_volts: int) -> Shape:
-        return lamp(is_on_low=False)
 
 
 DRIVER = PwmActuator()

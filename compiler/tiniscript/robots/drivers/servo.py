@@ -32,9 +32,21 @@ class Servo(ActuatorDriver):
         Setting("high_us", "whole", 2000, 500, 2500),
         Setting(AT_STOP, "choice", words=("release", "hold")),
     )
+    looks = Shape(
+        "servo",
+        "need_servo",
+        (
+            Terminal("signal", "pin"),
+            Terminal("plus", rail=SERVO_SUPPLY),
+            Terminal("minus", rail=GROUND),
+        ),
+        notes=("mind_servo_supply",),
+    )
+    # fmt: off
     texts = {
         "need_servo": ("servo (180°)", "servo (180°)"),
     }
+    # fmt: on
 
     def firmware(self, part: Part, device: Device, wiring: Wiring) -> list[str]:
         part.servos.append(wiring.pins["pin"])
@@ -52,18 +64,6 @@ class Servo(ActuatorDriver):
             plan.parts.off.append(f"$servo_pulse({number}, 0, 0);")
         what = f"$servo_pulse({number}, {plan.part_of(device, first, last)}, 0);"
         return f"void {function}(long value) {{\n  {what}\n}}"
-
-    def shape(self, wiring: Wiring, device: Device | None, sees: str, pin_volts: int) -> Shape:
-        return Shape(
-            "servo",
-            "need_servo",
-            (
-                Terminal("signal", "pin"),
-                Terminal("plus", rail=SERVO_SUPPLY),
-                Terminal("minus", rail=GROUND),
-            ),
-            notes=("mind_servo_supply",),
-        )
 
 
 DRIVER = Servo()

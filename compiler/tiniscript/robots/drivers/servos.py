@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from tiniscript.kit import Device
 from tiniscript.robots.driver import (
     GROUND,
     SERVO_SUPPLY,
@@ -43,16 +42,26 @@ void $drive_motor(byte servo, int percent, unsigned int stillUs) {
     $servo_pulse(servo, stillUs, 50);
   }
 }"""
+    looks = Shape(
+        "servo",
+        "need_servos",
+        (
+            Terminal("left_signal", "left_pin"),
+            Terminal("left_plus", rail=SERVO_SUPPLY),
+            Terminal("left_minus", rail=GROUND),
+            Terminal("right_signal", "right_pin"),
+            Terminal("right_plus", rail=SERVO_SUPPLY),
+            Terminal("right_minus", rail=GROUND),
+        ),
+        notes=("mind_servo_supply", "mind_servos"),
+    )
+    # fmt: off
     texts = {
-        "need_servos": (
-            "pair of servos that turn without end (360°)",
-            "par de servos de giro continuo (360°)",
-        ),
-        "mind_servos": (
-            "A servo that creeps when it should stand still: turn its small screw until it stops, or change left_still_us or right_still_us in the profile.",
-            "Un servo que avanza despacio cuando debería estar quieto: gira su tornillo pequeño hasta que pare, o cambia left_still_us o right_still_us en el perfil.",
-        ),
+        "need_servos": ("pair of servos that turn without end (360°)", "par de servos de giro continuo (360°)"),
+        "mind_servos": ("A servo that creeps when it should stand still: turn its small screw until it stops, or change left_still_us or right_still_us in the profile.",
+                        "Un servo que avanza despacio cuando debería estar quieto: gira su tornillo pequeño hasta que pare, o cambia left_still_us o right_still_us en el perfil."),
     }
+    # fmt: on
 
     def firmware(self, part: Part, wiring: Wiring) -> list[str]:
         lines = []
@@ -71,21 +80,6 @@ void $drive_motor(byte servo, int percent, unsigned int stillUs) {
             still = wiring.settings[f"{side}_still_us"]
             lines.append(f"  $drive_motor({wheel}, {sign}{side}, {still});")
         return lines
-
-    def shape(self, wiring: Wiring, device: Device | None, sees: str, pin_volts: int) -> Shape:
-        return Shape(
-            "servo",
-            "need_servos",
-            (
-                Terminal("left_signal", "left_pin"),
-                Terminal("left_plus", rail=SERVO_SUPPLY),
-                Terminal("left_minus", rail=GROUND),
-                Terminal("right_signal", "right_pin"),
-                Terminal("right_plus", rail=SERVO_SUPPLY),
-                Terminal("right_minus", rail=GROUND),
-            ),
-            notes=("mind_servo_supply", "mind_servos"),
-        )
 
 
 DRIVER = Servos()

@@ -5,14 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from tiniscript.kit import Device
-from tiniscript.robots.driver import (
-    PinKey,
-    SensorDriver,
-    Setting,
-    Shape,
-    module,
-    photoresistor,
-)
+from tiniscript.robots.driver import PinKey, SensorDriver, Setting, Shape, module, photoresistor
 from tiniscript.robots.profile import Wiring
 
 if TYPE_CHECKING:
@@ -28,12 +21,11 @@ class Threshold(SensorDriver):
         Setting("threshold", "whole", 512, 1, 1023),
         Setting("yes_is_low", "yes/no"),
     )
+    # fmt: off
     texts = {
-        "need_threshold": (
-            "sensor module with an analog output (A0)",
-            "módulo sensor con salida analógica (A0)",
-        ),
+        "need_threshold": ("sensor module with an analog output (A0)", "módulo sensor con salida analógica (A0)"),
     }
+    # fmt: on
 
     def firmware(self, part: Part, device: Device, wiring: Wiring) -> list[str]:
         compare = "<" if wiring.settings["yes_is_low"] else ">="
