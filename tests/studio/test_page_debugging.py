@@ -43,7 +43,7 @@ def points(page: Page) -> int:
 
 
 def held(page: Page, line: int) -> None:
-    page.locator("#doing").filter(has_text=f"It stops before line {line}.").wait_for()
+    page.locator("#doing").filter(has_text=f"Stopped before line {line}.").wait_for()
 
 
 def test_it_stops_at_a_breakpoint_each_time_and_shows_the_values(page: Page) -> None:

@@ -59,7 +59,7 @@ def test_a_new_board_becomes_a_robot(
         found.set_input_files("#flash_file", {"name": "<b>.hex", "mimeType": "", "buffer": b":00"})
         said(found, "<b>.hex is next")
         found.click("#flash_write")
-        said(found, "That is no whole HEX file")
+        said(found, "That is not a whole HEX file")
         found.select_option("#flash_board", "uno")
         # Cancelled in the middle it does nothing, and is whole once it has got its firmware again.
         found.click("#flash_write")

@@ -80,7 +80,7 @@ def test_a_check_can_be_ended(page: Page) -> None:
     page.click("#lesson_check")
     page.locator("#lesson_said", has_text="World 1 of 5").wait_for()
     page.click("#lesson_end")
-    assert page.inner_text("#lesson_said") == "The check was ended. Nothing was decided."
+    assert page.inner_text("#lesson_said") == "You ended the check. There is no result."
     assert page.evaluate("document.activeElement.id") == "lesson_check"
     right, _ = catalogue.answers(FOLDERS[8])
     assert check(page, right[0].program) == ("passed", [])  # and not the other one's verdict
@@ -163,7 +163,7 @@ def test_lessons_that_do_not_come_are_told_and_come_later(pages: Pages) -> None:
     page = pages.open()
     page.route("**/lessons.zip", lambda route: route.abort())
     page.click("#side_lessons")
-    page.locator("#lesson_said", has_text="did not come").wait_for()
+    page.locator("#lesson_said", has_text="did not load").wait_for()
     assert page.locator("#lesson_check").is_disabled()
     page.unroute("**/lessons.zip")
     pages.wrong.clear()

@@ -329,7 +329,7 @@ def test_run_with_a_mistake_stops_what_runs(page: Page, robot: PtyRobot) -> None
     with page.expect_request(lambda asked: '"do":"stop"' in (asked.post_data or "")):
         page.click("#link_upload")
     robot.until(lambda: not robot.moves, "it stands")
-    said(page, "The robot was stopped. First repair the program.")
+    said(page, "The robot was stopped. Fix the program first.")
 
 
 def test_an_address_opens_the_robots_once_and_says_so(

@@ -89,7 +89,7 @@ def test_a_breakpoint_keeps_its_mark_while_the_robot_runs(page: Page) -> None:  
     page.locator(".cm-lineNumbers .cm-gutterElement").filter(has_text="1").last.click()
     page.click("#run")
     marked(page, "W(0.1)")
-    page.locator("#doing").filter(has_text="It stops before line 1.").wait_for()
+    page.locator("#doing").filter(has_text="Stopped before line 1.").wait_for()
     page.click("#side_real")
     upload_until_told(page)
     assert page.locator(".cm-running").all_inner_texts() == ["W(0.1)"]

@@ -104,7 +104,7 @@ def test_a_wrong_link_leaves_the_program(page: Page, name: str) -> None:
     before = image(page)
     page.evaluate("document.querySelector('#note').textContent = ''")
     page.evaluate("packed => { location.hash = '#program=' + packed; }", WRONG[name])
-    noted(page, "The link is not whole")
+    noted(page, "The link is incomplete")
     checked(page)
     assert (content(page), image(page)) == ("SI|F(4, 80)", before)
     assert page.evaluate("location.hash") == ""

@@ -138,7 +138,7 @@ def test_a_change_of_the_text_ends_the_mark(page: Page) -> None:
 def test_a_wrong_program_does_not_run(page: Page) -> None:
     write(page, "F(1, ")
     page.click("#run")
-    page.locator("#doing").filter(has_text="First repair the program.").wait_for()
+    page.locator("#doing").filter(has_text="Fix the program first.").wait_for()
     assert page.locator("html[data-phase=running]").count() == 0
 
 
@@ -167,8 +167,8 @@ def test_run_waits_for_the_compiler(page: Page) -> None:
     in_phase(page, "ended")
     assert "SHOW 5" in (page.locator("#trace").text_content() or "")
     said = page.evaluate("() => window.said")
-    assert "The compiler is still at work…" in said
-    assert "First repair the program." not in said
+    assert "The compiler is still working…" in said
+    assert "Fix the program first." not in said
 
 
 def test_stop_ends_the_waiting_for_the_compiler(page: Page) -> None:
@@ -179,7 +179,7 @@ def test_stop_ends_the_waiting_for_the_compiler(page: Page) -> None:
     checked(page)
     page.wait_for_timeout(300)
     assert page.locator("html[data-phase=running]").count() == 0
-    assert page.locator("#doing", has_text="still at work").count() == 0
+    assert page.locator("#doing", has_text="still working").count() == 0
 
 
 def test_a_program_waits_for_its_button(page: Page) -> None:
@@ -229,4 +229,4 @@ def test_run_with_a_mistake_stops_what_runs(page: Page) -> None:
     assert page.locator("html").get_attribute("data-phase") == "running"
     page.click("#run")
     in_phase(page, "ended")
-    page.locator("#doing").filter(has_text="First repair the program.").wait_for()
+    page.locator("#doing").filter(has_text="Fix the program first.").wait_for()
