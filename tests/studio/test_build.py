@@ -5,6 +5,7 @@ from __future__ import annotations
 import gzip
 import json
 import re
+import sys
 from pathlib import Path
 
 import pytest
@@ -37,6 +38,15 @@ def test_the_packages_are_pinned_and_come_from_nowhere_in_particular() -> None:
     for name, package in lock["packages"].items():
         assert "resolved" not in package, name
         assert not name or package["integrity"].startswith("sha512-"), name
+
+
+def test_node_trusts_the_certificates_of_the_system(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Those of a school's proxy, say; whoever runs the build may decide otherwise."""
+    asks = [sys.executable, "-c", "import os; print(os.environ['NODE_USE_SYSTEM_CA'])"]
+    monkeypatch.delenv("NODE_USE_SYSTEM_CA", raising=False)
+    assert studio.run(asks) == "1\n"
+    monkeypatch.setenv("NODE_USE_SYSTEM_CA", "0")
+    assert studio.run(asks) == "0\n"
 
 
 @pytest.mark.parametrize("name", TEXTS)
