@@ -9,6 +9,7 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+from itertools import dropwhile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -18,7 +19,12 @@ from tools import environment
 
 PROGRAM = Path("examples") / "obstacle.ts"
 SAID = {
-    "program": ("The program: {program}", "El programa: {program}"),
+    "program": (
+        "The program {program}: forward until something is within 10 cm, then stop,\n"
+        "turn right and go on.",
+        "El programa {program}: avanzar hasta que haya algo a menos de 10 cm; entonces\n"
+        "parar, girar a la derecha y seguir.",
+    ),
     "watch": (
         "For 30 seconds a virtual robot does it here. Ctrl-C stops it earlier.",
         "Un robot virtual lo hace aquí durante 30 segundos. Ctrl-C lo detiene antes.",
@@ -31,8 +37,8 @@ SAID = {
         "virtual eso basta; examples/obstacle_until.ts mira 50 veces por segundo.",
     ),
     "drawn": (
-        "Its way is drawn in way.png, in this folder.",
-        "Su camino está dibujado en way.png, en esta carpeta.",
+        "way.png, in this folder, shows its path.",
+        "way.png, en esta carpeta, muestra su recorrido.",
     ),
     "now": (
         'Now yours:  {activate}   and   tsc upload -e "SI|F(2, 80)" --virtual',
@@ -55,7 +61,8 @@ def activation(system: str = os.name) -> str:
 def main() -> int:
     python = environment.make("[virtual]")
     _say("program", program=PROGRAM.as_posix())
-    print((ROOT / PROGRAM).read_text(encoding="utf-8"), flush=True)
+    rows = (ROOT / PROGRAM).read_text(encoding="utf-8").splitlines()
+    print("\n".join(dropwhile(lambda row: row.startswith("//"), rows)), end="\n\n", flush=True)
     words = ["upload", str(PROGRAM), "--virtual", "--for", "30"]
     if sys.stdout.isatty() and sys.stderr.isatty() and not os.environ.get("CI"):
         _say("watch")
