@@ -19,7 +19,7 @@ from tests.support.platformio import shared
 from tools.builds import site
 from tools.builds import studio as studio_build
 from tools.site import links
-from tools.site.documents import LANGUAGES, PARTS, documents
+from tools.site.documents import LANGUAGES, MOVED, PARTS, documents
 from tools.site.lexer import TiniScriptLexer
 from tools.site.pages import Missing, page, shelf
 
@@ -227,6 +227,20 @@ def test_each_half_leads_to_the_other(visitor: Page, address: str) -> None:
     visitor.goto(f"{address}en/link.html")  # which is in English only
     visitor.click(".halves a[lang=es]")
     assert visitor.url == f"{address}es/index.html"
+
+
+@pytest.mark.parametrize(("old", "new"), MOVED.items())
+def test_an_old_name_leads_to_where_its_text_is_now(
+    visitor: Page, address: str, old: str, new: str
+) -> None:
+    before, after = (
+        f"{address}en/{name}.html{mark}{place}"
+        for name, mark, place in (each.partition("#") for each in (old, new))
+    )
+    visitor.goto(before)
+    visitor.wait_for_url(after)
+    place = new.partition("#")[2]
+    assert not place or visitor.locator(f"[id='{place}']").count() == 1
 
 
 def test_the_studio_is_on_the_site(visitor: Page, address: str, built: Path) -> None:

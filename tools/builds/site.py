@@ -25,12 +25,21 @@ sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
 from tools.builds import studio
 from tools.site import links
-from tools.site.documents import LANGUAGES, PARTS, Document, documents
+from tools.site.documents import LANGUAGES, MOVED, PARTS, Document, documents
 from tools.site.pages import FILES, Missing, Shelf, page, shelf
 
 SITE = ROOT / "tools" / "site"
 OTHER = {"en": "es", "es": "en"}
 NAMES = {"en": "English", "es": "Español"}
+
+
+LEADS_ON = """\
+<!doctype html>
+<meta charset="utf-8">
+<meta http-equiv="refresh" content="0; url={0}">
+<title>TiniScript</title>
+<a href="{0}">{0}</a>
+"""
 
 
 class CannotBuild(Exception):
@@ -79,6 +88,9 @@ def _build(root: Path, folder: Path, scratch: Path, has_studio: bool) -> None:
         half = scratch / language
         stage(half, found, on, language)
         render(half, folder / language, found, has_studio)
+    for old, new in MOVED.items():
+        if "#" not in old:
+            (folder / "en" / f"{old}.html").write_text(LEADS_ON.format(f"{new}.html"), "utf-8")
     for name in sorted(on.files):
         _copy(root / name, folder / FILES / name)
     link = ""
@@ -116,7 +128,8 @@ def render(half: Path, folder: Path, found: list[Document], has_studio: bool) ->
     language = folder.name
     other = OTHER[language]
     both = [each.name for each in found if set(each.sources) == set(LANGUAGES)]
-    told = {"other": other, "other_name": NAMES[other], "both": both, "has_studio": has_studio}
+    told = {"other": other, "other_name": NAMES[other], "both": both, "has_studio": has_studio,
+            "moved": moved_places() if language == "en" else {}}  # fmt: skip
     (half / "half.json").write_text(json.dumps(told), encoding="utf-8")
     words = [sys.executable, "-m", "sphinx", "-b", "html", "-q", "-j", "2", "-W", "--keep-going",
              "-E", "-D", f"language={language}", "-d", str(half.parent / f"{language}.trees"),
@@ -126,6 +139,17 @@ def render(half: Path, folder: Path, found: list[Document], has_studio: bool) ->
                            env={**os.environ, "PYTHONPATH": paths})  # fmt: skip
     if ended.returncode:
         raise CannotBuild((ended.stdout + ended.stderr).replace(f"{half}{os.sep}", "").strip())
+
+
+def moved_places() -> dict[str, dict[str, str]]:
+    """Return where the places of a page that have moved are now, by page and old name."""
+    found: dict[str, dict[str, str]] = {}
+    for old, new in MOVED.items():
+        page_name, is_place, place = old.partition("#")
+        if is_place:
+            target, mark, there = new.partition("#")
+            found.setdefault(page_name, {})[place] = f"{target}.html{mark}{there}"
+    return found
 
 
 def contents(found: list[Document], language: str) -> str:

@@ -8,25 +8,22 @@ from __future__ import annotations
 
 import re
 from contextlib import redirect_stderr, redirect_stdout
-from functools import cache, partial
+from functools import partial
 from html import escape
 from io import StringIO
 from itertools import dropwhile
 from pathlib import Path
-from typing import NamedTuple
 
-import tiniscript
 from tiniscript.cli import main as tsc
 from tiniscript.robots.profile import LANGUAGES
-from tiniscript.studio.simulation import Simulation
 from tiniscript.virtual import worlds
-from tiniscript.virtual.driving import Hull
 from tiniscript.words import WORDS
+from tools.generate.arena import arena, driven
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 PROGRAM = ROOT / "examples" / "obstacle_until.ts"
 ROBOT, WORLD = "tinibot", "obstacles"
-LASTS_MS, SAMPLE_MS = 30_000, 50
+LASTS_MS = 30_000
 WRONG = {"en": "SI|FORWARD(2, 80); W(1,5)", "es": "SI|ADELANTE(2, 80); W(1,5)"}
 RIGHT = "SI|F(1, 80); BEEP(0.1, 880)"
 WIDTH, HEIGHT = 1240, 508
@@ -38,22 +35,14 @@ SANS = "'DejaVu Sans', Verdana, Arial, sans-serif"
 INK, DIM, PAPER, SCREEN = "#e6edf3", "#9fb0c0", "#12202e", "#0a131b"
 NUMBER, SETUP, GRAMMAR, WORD = "#f5c86a", "#d2a8ff", "#ff9e80", "#7ee0c3"
 GRAMMAR_ROLES = ("block", "arm", "end", "until", "forever", "operator")
-FLOOR, WALL, BOX, WAY, BODY = "#f5f2ea", "#37414b", "#8a97a3", "#1273de", "#e8590c"
 TITLES = {
-    "en": "A program, what tsc says of two mistakes, and the way that the virtual robot drives.",
+    "en": "A program, what tsc says about two mistakes, and the path of the virtual robot.",
     "es": "Un programa, lo que tsc dice de dos errores y el camino que recorre el robot virtual.",
 }
 CAPTIONS = {
     "en": "30 s of the virtual robot: it runs the real one's firmware",
     "es": "30 s del robot virtual: ejecuta el firmware del verdadero",
 }
-
-
-class Way(NamedTuple):
-    """Where a robot has been, and its outline at the end; in cm."""
-
-    points: list[tuple[float, float]]
-    outline: list[tuple[float, float]]
 
 
 def fronts(command: str) -> dict[str, partial[str]]:
@@ -130,46 +119,13 @@ def _said(verb: str, program: str, language: str) -> list[str]:
     return [f'$ tsc {verb} -e "{program}"', *said.getvalue().splitlines()]
 
 
-@cache
-def _way() -> Way:
-    """Drive, and return the way."""
-    program = tiniscript.compile(PROGRAM.read_text(encoding="utf-8"), robot=ROBOT)
-    simulation = Simulation(ROBOT, worlds.load(WORLD), program.image)
-    points = []
-    for _ in range(0, LASTS_MS, SAMPLE_MS):
-        simulation.go(SAMPLE_MS)
-        pose = simulation.robot.pose
-        points.append((pose.x_cm, pose.y_cm))
-    hull = Hull(simulation.robot.profile.body)
-    outline = [(each.x, each.y) for each in hull.outline(pose)]
-    simulation.close()
-    return Way(points, outline)
-
-
 def _arena(language: str) -> list[str]:
     world = worlds.load(WORLD)
     left = PAD + LEFT_WIDTH + 12
     scale = (WIDTH - PAD - left) / world.width_cm
     foot = PAD + world.height_cm * scale + 22
-
-    def row(points: list[tuple[float, float]]) -> str:
-        return " ".join(
-            f"{left + x * scale:.1f},{PAD + (world.height_cm - y) * scale:.1f}" for x, y in points
-        )
-
-    way = _way()
-    corners = [(0.0, 0.0), (world.width_cm, 0.0), (world.width_cm, world.height_cm),
-               (0.0, world.height_cm)]  # fmt: skip
-    parts = [
-        f'<polygon points="{row(corners)}" fill="{FLOOR}" stroke="{WALL}" stroke-width="4"/>',
-        *(
-            f'<polygon points="{row([(each.x, each.y) for each in box])}" fill="{BOX}"/>'
-            for box in world.boxes
-        ),
-        f'<polyline points="{row(way.points)}" fill="none" stroke="{WAY}" stroke-width="3"'
-        ' stroke-linejoin="round"/>',
-        f'<polygon points="{row(way.outline)}" fill="{BODY}"/>',
+    return [
+        *arena(world, driven(PROGRAM, ROBOT, WORLD, LASTS_MS), left, PAD, scale),
         f'<text x="{left:g}" y="{foot:.0f}" font-family="{SANS}" font-size="13" fill="{DIM}">'
         f"{escape(CAPTIONS[language])}</text>",
     ]
-    return parts

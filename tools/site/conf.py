@@ -63,6 +63,7 @@ def lead_to_the_other_half(
     context["other_name"] = HALF["other_name"]
     context["has_studio"] = HALF["has_studio"]
     context["studio_address"] = f"{up}studio/index.html"
+    context["moved"] = HALF["moved"].get(name, {})
 
 
 def find_words_of_the_language() -> None:

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 LANGUAGES = ("en", "es")
+LIST = "docs/README.md"  # of all others, made from here
 
 
 class Document(NamedTuple):
@@ -71,7 +72,23 @@ def documents(root: Path) -> list[Document]:
                   "bytecode_spec.md", "docs/conformance.md", "docs/link.md", "docs/owners.md",
                   "docs/network.md", "docs/text.md", "docs/store.md", "docs/esp32.md",
                   "docs/versions.md", "CHANGELOG.md"),
+        Document("documents", "build", {"en": LIST}),
     ]  # fmt: skip
+
+
+# Pages and places that others may link to under a name of before, in the English half.
+MOVED = {
+    "house": "architecture",
+    "link#at-a-broker": "network#at-a-broker",
+    "link#one-port-many-commands": "network#one-port-many-commands",
+    "link#owners": "owners#owners",
+    "link#ports": "network#ports",
+    "link#sealed-frames": "owners#sealed-frames",
+    "link#several-transports": "network#several-transports",
+    "link#what-is-kept": "link#programs",
+    "monday#three-lessons": "lessons",
+    "text#three-programs-byte-by-byte": "text#a-program-byte-by-byte",
+}
 
 
 PARTS = {

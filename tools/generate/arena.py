@@ -1,0 +1,79 @@
+"""Draws a world from above with the way that the virtual robot drives in it, as parts of an SVG.
+
+Knows the world and how to drive in it, not where on a picture it is. The virtual robot runs the
+firmware of a real one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cache
+from pathlib import Path
+from typing import NamedTuple
+
+import tiniscript
+from tiniscript.studio.simulation import Simulation
+from tiniscript.virtual import worlds
+from tiniscript.virtual.driving import Hull
+from tiniscript.virtual.world import World
+
+SAMPLE_MS = 50
+FLOOR, WALL, BOX, WAY, BODY = "#f5f2ea", "#37414b", "#8a97a3", "#1273de", "#e8590c"
+LINE, LAMP, GLOW = "#202020", "#f5b400", "#fdf3c8"
+Points = Sequence[tuple[float, ...]]
+
+
+class Way(NamedTuple):
+    """Where a robot has been, and its outline at the end; in cm."""
+
+    points: list[tuple[float, float]]
+    outline: list[tuple[float, float]]
+
+
+@cache
+def driven(program: Path, robot: str, world: str, lasts_ms: int) -> Way:
+    """Drive for so many milliseconds of the robot's clock, and return the way."""
+    made = tiniscript.compile(program.read_text(encoding="utf-8"), robot=robot)
+    simulation = Simulation(robot, worlds.load(world), made.image)
+    points = []
+    for _ in range(0, lasts_ms, SAMPLE_MS):
+        simulation.go(SAMPLE_MS)
+        pose = simulation.robot.pose
+        points.append((pose.x_cm, pose.y_cm))
+    hull = Hull(simulation.robot.profile.body)
+    outline = [(each.x, each.y) for each in hull.outline(pose)]
+    simulation.close()
+    return Way(points, outline)
+
+
+def arena(world: World, way: Way, left: float, top: float, scale: float) -> list[str]:
+    """Return the parts of a picture: its upper left corner is there, a cm is `scale` wide."""
+
+    def at(x: float, y: float) -> tuple[float, float]:
+        return left + x * scale, top + (world.height_cm - y) * scale
+
+    def row(points: Points) -> str:
+        return " ".join("{:.1f},{:.1f}".format(*at(*each[:2])) for each in points)
+
+    def line(points: Points, colour: str, width: float) -> str:
+        return (
+            f'<polyline points="{row(points)}" fill="none" stroke="{colour}"'
+            f' stroke-width="{width:.3g}" stroke-linejoin="round"/>'
+        )
+
+    def disc(x: float, y: float, radius_cm: float, colour: str) -> str:
+        x, y = at(x, y)
+        return f'<circle cx="{x:.1f}" cy="{y:.1f}" r="{radius_cm * scale:.1f}" fill="{colour}"/>'
+
+    corners = [(0.0, 0.0), (world.width_cm, 0.0), (world.width_cm, world.height_cm),
+               (0.0, world.height_cm)]  # fmt: skip
+    return [
+        f'<polygon points="{row(corners)}" fill="{FLOOR}" stroke="{WALL}" stroke-width="4"/>',
+        *(disc(*lamp.place[:2], lamp.reach_cm / 4, GLOW) for lamp in world.lamps),
+        *(line(each.points, LINE, each.width_cm * scale) for each in world.lines),
+        *(f'<polygon points="{row(box)}" fill="{BOX}"/>' for box in world.boxes),
+        *(line(wall, WALL, 4) for wall in world.walls),
+        *(disc(*lamp.place[:2], 2.5, LAMP) for lamp in world.lamps),
+        line(way.points, WAY, 3),
+        f'<polygon points="{row(way.outline)}" fill="{BODY}"/>',
+    ]
