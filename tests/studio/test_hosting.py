@@ -234,6 +234,18 @@ def test_a_port_has_one_page(
     other.until(lambda each: "connected" in each)
 
 
+def test_a_page_hears_why_it_is_over_when_another_one_has_its_robot(
+    hosting: Hosting, page: Page, robot: PtyRobot, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(attending, "LEFT_S", 3600.0)
+    hosted = hosting.robot_of(page.name)
+    assert hosted
+    hosted.leave("turn_over")
+    other = Page(hosting, "other")
+    until(lambda: other.connect(robot.port) == {}, "the port is free")
+    assert page.until(lambda each: "over" in each)["over"] == "turn_over"
+
+
 def test_it_shares_a_port_that_a_command_holds(hosting: Hosting) -> None:
     with Shared() as (robot, _):
         page = Page(hosting)

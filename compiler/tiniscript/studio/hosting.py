@@ -93,10 +93,11 @@ class Hosting:
             own = self._by_page.get(page)
             if own is not None and not own.has_ended:
                 return {"failure": "connected"}
-            taken = {same_for_all(each.port) for each in self._by_page.values()}
+            taken = [same_for_all(each.port) for each in self._by_page.values()
+                     if not each.has_ended]  # fmt: skip
             if same_for_all(port) in taken:
                 return {"failure": "other_tab"}
-            if len(self._by_page) >= MOST_ROBOTS:
+            if len(taken) >= MOST_ROBOTS:
                 return {"failure": "too_many"}
             made = HostedRobot(port, str(robot), str(language))
             made.attending.latch(self._latched_until_s, stops=False)
@@ -104,9 +105,11 @@ class Hosting:
         return {}
 
     def _forget_ended(self) -> None:
+        """Forget what has ended, once its page knows why or is not there any more."""
         all_of_them = [*self._by_page.values(), *self._parting]
         self._parting = [each for each in all_of_them if each.is_parting]
-        self._by_page = {name: each for name, each in self._by_page.items() if not each.has_ended}
+        self._by_page = {name: each for name, each in self._by_page.items()
+                         if not (each.has_ended and each.attending.has_left)}  # fmt: skip
 
     def _stop_all(self) -> Json:
         """Stop all robots, and refuse for a while what is on its way to them."""
