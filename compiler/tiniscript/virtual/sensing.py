@@ -121,7 +121,10 @@ class Sensing:
 
     def _is_touched(self, place: Place, pose: Pose) -> bool:
         """Return whether the body touches something on the side where a bumper sits."""
-        contact = self.hull.contact(pose, self.obstacles)
+        # most often everything is far away, and that is quickly known
+        reach_cm = self.hull.reach_cm + TOUCH_CM
+        near = [each for each in self.obstacles if distance(each, *pose[:2]) < reach_cm]
+        contact = self.hull.contact(pose, near)
         if contact is None or contact.gap_cm >= TOUCH_CM:
             return False
         (_, _, heading), point = pose, contact.theirs
