@@ -95,7 +95,6 @@ class Clone:
     def __init__(self, folder: Path) -> None:
         self.root = folder / "clone"
         self.package = copied(self.root)
-        shutil.rmtree(self.package / "tiniscript" / "studio" / "page", ignore_errors=True)
         self.page = self.package / "tiniscript" / "studio" / "page" / serving.FIRST
         self.put("tools/studio/package-lock.json", "{}")
         ignored = shutil.ignore_patterns(".pio", "own.h", "test", "extras")

@@ -58,7 +58,8 @@ def with_platformio(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def copied(folder: Path) -> Path:
-    ignored = shutil.ignore_patterns("__pycache__", "ready")
+    """Return a copy of the package, without what is built for it, in a folder."""
+    ignored = shutil.ignore_patterns("ready", "page")
     return Path(shutil.copytree(ROOT / "compiler", folder / "compiler", ignore=ignored))
 
 

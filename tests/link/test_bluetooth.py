@@ -131,7 +131,7 @@ def test_ctrl_c_stops_the_robot_and_frees_it(ble: BleRobot, bluez: FakeBluez) ->
     command.signal(signal.SIGINT)
     assert command.ended().code == 2
     assert not ble.robot.moves
-    assert not bluez.devices[ADDRESS].is_connected
+    ble.robot.until(lambda: not bluez.devices[ADDRESS].is_connected, "BlueZ has heard it")
     assert inside("ping", "--port", NAME).code == 0
 
 
@@ -140,7 +140,7 @@ def test_ctrl_c_ends_a_search(ble: BleRobot, bluez: FakeBluez) -> None:
     ble.robot.until(lambda: bluez.adapter.is_scanning, "it searches")
     command.signal(signal.SIGINT)
     assert command.ended().code == 2
-    assert not bluez.adapter.is_scanning
+    ble.robot.until(lambda: not bluez.adapter.is_scanning, "BlueZ has heard it")
 
 
 def test_a_command_that_is_killed_leaves_a_robot_that_stops_and_can_be_reached(
