@@ -156,9 +156,9 @@ def test_links_lead_to_pages_and_copies() -> None:
     assert "](wiring/tinibot.md)" in text
     assert '<a href="../files/docs/poster/poster.en.pdf">' in page("docs/materials.en.md", on)
     assert '<a href="../en/command.html' in page("docs/comandos.es.md", on)
-    assert "docs/wiring/tinibot.en.svg" not in on.files | on.pictures
-    assert "![" in page("docs/wiring/tinibot.en.md", on)
-    assert "docs/wiring/tinibot.en.svg" in on.pictures
+    assert "docs/wiring/liner.en.svg" not in on.files | on.pictures
+    assert "![" in page("docs/wiring/liner.en.md", on)
+    assert "docs/wiring/liner.en.svg" in on.pictures
 
 
 def test_code_is_left_as_it_is(clone: Path) -> None:
