@@ -14,7 +14,7 @@ import ast
 import re
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -28,10 +28,7 @@ def main() -> int:
     package = [path for path in tracked if PACKAGE in path.parents and path.suffix == ".py"]
     tests = [path for path in tracked if ROOT / "tests" in path.parents]
     trees = {_name(path): ast.parse(path.read_bytes()) for path in package}
-    graph = {
-        name: {target for each, _ in _imports(tree) for target in _targets(each, name, trees)}
-        for name, tree in trees.items()
-    }
+    graph = _graph(trees)
     arrows = {
         (_module(name), _module(target))
         for name, targets in graph.items()
@@ -53,6 +50,18 @@ def main() -> int:
     ):
         print(f"{what:38}{found:9,}{goal:9,}")
     return 0
+
+
+def imports_of(paths: Iterable[Path]) -> Graph:
+    """Return which of some files of the package each of them imports."""
+    return _graph({_name(path): ast.parse(path.read_bytes()) for path in paths})
+
+
+def _graph(trees: dict[str, ast.Module]) -> Graph:
+    return {
+        name: {target for each, _ in _imports(tree) for target in _targets(each, name, trees)}
+        for name, tree in trees.items()
+    }
 
 
 def _tracked() -> list[Path]:

@@ -24,10 +24,10 @@ from tests.support.pty_robot import on
 from tests.support.waiting import HANGS_S, until
 from tiniscript.cli.robot.classroom import Classroom, Listener
 from tiniscript.cli.robot.connect import Connection
-from tiniscript.cli.robot.fleet import Member
-from tiniscript.link.broker import ROOT, Present
+from tiniscript.cli.robot.member import Member
 from tiniscript.link.line import now_ms
 from tiniscript.link.payloads import ShowEvent
+from tiniscript.link.transports.broker import ROOT, Present
 
 if sys.platform == "win32":
     pytest.skip("there are no pseudo-terminals", allow_module_level=True)

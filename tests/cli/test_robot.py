@@ -19,7 +19,7 @@ from tests.support.pty_robot import PtyRobot, on
 from tiniscript import robots
 from tiniscript.cli.robot import connect
 from tiniscript.library import opening
-from tiniscript.link import known_ports, ports, requests
+from tiniscript.link import errors, known_ports, ports, requests
 from tiniscript.link.payloads import HelloReply
 from tiniscript.link.requests import DeviceInfo
 
@@ -275,7 +275,7 @@ def test_a_port_that_never_opens_is_given_up(
 ) -> None:  # fmt: skip
     hangs = threading.Event()
     monkeypatch.setattr("serial.serial_for_url", lambda *_, **__: hangs.wait(30))
-    with pytest.raises(ports.PortError) as failure:
+    with pytest.raises(errors.PortError) as failure:
         ports.opened("COM5", 9600, limit_s=0.1)
-    assert failure.value.reason == ports.SLOW
+    assert failure.value.reason == errors.SLOW
     hangs.set()

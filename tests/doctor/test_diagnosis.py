@@ -19,11 +19,11 @@ from tiniscript.cli.commands.doctor import _said
 from tiniscript.doctor.diagnosis import Diagnosis, Doors, Question, diagnosed
 from tiniscript.doctor.examination import Expected
 from tiniscript.doctor.findings import CAUSES
-from tiniscript.link import ports
+from tiniscript.link import errors
 from tiniscript.link.connection import LinkConnection
+from tiniscript.link.errors import PortError
 from tiniscript.link.messages import STATUSES
 from tiniscript.link.outcomes import CANCELLED, LOST, Gone
-from tiniscript.link.ports import PortError
 from tiniscript.link.requests import Reply
 from tiniscript.link.wire import Wire
 from tiniscript.sharing.client import OtherVersion
@@ -102,7 +102,7 @@ class Case:
             if self.failure is not None:
                 raise self.failure
             if name == CABLE and name not in self.system.owners:
-                raise PortError(ports.MISSING)
+                raise PortError(errors.MISSING)
             self.wire = SimulatedWire(self.end, baud)
             return self.wire
 
@@ -195,24 +195,24 @@ ROWS: tuple[tuple[str | None, Make, str, bool], ...] = (
     (None, _plugged(*CH340), "driver_missing", True),
     (None, _brltty, "brltty", True),
     (None, _plugged(*CH340, "usbfs"), "brltty", False),
-    (RADIO, _failing(ports.MISSING), "no_bluetooth", True),
-    (RADIO, _paired(ports.MISSING, is_off=True), "bluetooth_off", True),
-    (RADIO, _paired(ports.MISSING, "Telephone"), "not_paired", True),
-    (RADIO, _paired(ports.MISSING, "HC-05"), "no_rfcomm", True),
+    (RADIO, _failing(errors.MISSING), "no_bluetooth", True),
+    (RADIO, _paired(errors.MISSING, is_off=True), "bluetooth_off", True),
+    (RADIO, _paired(errors.MISSING, "Telephone"), "not_paired", True),
+    (RADIO, _paired(errors.MISSING, "HC-05"), "no_rfcomm", True),
     (CABLE, _stranger, "no_permission", True),
     (CABLE, _member, "login_again", True),
     (CABLE, _used("minicom"), "busy", True),
     (CABLE, _used("ModemManager"), "modem_manager", True),
     (CABLE, _other_tsc, "other_tsc", True),
-    (RADIO, _failing(ports.BUSY), "busy", True),
-    (RADIO, _failing(ports.BUSY, os.strerror(errno.EBUSY)), "other_host", False),
-    (RADIO, _paired(ports.UNREACHABLE, "HC-05"), "out_of_reach", False),
-    (RADIO, _paired(ports.UNREACHABLE, "Telephone"), "not_paired", False),
-    (RADIO, _failing(ports.UNREACHABLE, REFUSED), "other_host", False),
-    (RADIO, _paired(ports.SLOW, "HC-05"), "slow_port", False),
-    (RADIO, _failing(ports.NO_PORT), "no_serial_port", True),
-    (RADIO, _failing(ports.BROKEN, "Input/output error"), "port_broken", True),
-    (RADIO, _failing(ports.FORBIDDEN), "no_permission", True),
+    (RADIO, _failing(errors.BUSY), "busy", True),
+    (RADIO, _failing(errors.BUSY, os.strerror(errno.EBUSY)), "other_host", False),
+    (RADIO, _paired(errors.UNREACHABLE, "HC-05"), "out_of_reach", False),
+    (RADIO, _paired(errors.UNREACHABLE, "Telephone"), "not_paired", False),
+    (RADIO, _failing(errors.UNREACHABLE, REFUSED), "other_host", False),
+    (RADIO, _paired(errors.SLOW, "HC-05"), "slow_port", False),
+    (RADIO, _failing(errors.NO_PORT), "no_serial_port", True),
+    (RADIO, _failing(errors.BROKEN, "Input/output error"), "port_broken", True),
+    (RADIO, _failing(errors.FORBIDDEN), "no_permission", True),
     (CABLE, _ports(CABLE), "not_opened", True),
     (RADIO, _ports(), "fine", True),
 )
@@ -334,7 +334,7 @@ def test_a_robot_is_watched_where_nothing_else_is_wrong_and_its_port_is_shared(c
 
 def test_what_was_not_opened_is_not_said_to_have_been(case: Case) -> None:
     assert not case.diagnosis(None).is_opened
-    assert not case.failing(ports.SLOW).diagnosis(RADIO).is_opened
+    assert not case.failing(errors.SLOW).diagnosis(RADIO).is_opened
 
 
 def test_every_cause_has_a_test() -> None:

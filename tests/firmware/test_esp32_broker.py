@@ -19,12 +19,12 @@ from tests.support.mosquitto import AtBroker, Mosquitto, missing
 from tests.support.owners import Keys
 from tests.support.waiting import HANGS_S
 from tests.support.waiting import until as in_time
-from tiniscript.link import ports, wifi
-from tiniscript.link.broker import ROOT, Access, Broker, Present
+from tiniscript.link import errors, wifi
+from tiniscript.link.errors import PortError
 from tiniscript.link.frames import Frame, encoded
 from tiniscript.link.messages import AUTHORITY_MS, BY_NAME, STOP_BYTES
-from tiniscript.link.ports import PortError
 from tiniscript.link.session import Session
+from tiniscript.link.transports.broker import ROOT, Access, Broker, Present
 
 pytestmark = [
     pytest.mark.skipif(bool(no_compiler()), reason=no_compiler() or "there is a compiler"),
@@ -182,7 +182,7 @@ def test_a_name_and_a_password_where_the_broker_asks_for_them(tmp_path: Path) ->
         for access in (Access(), Access("robots", "another one"), Access("who", "x")):
             with pytest.raises(PortError) as failure:
                 own.connected(access)
-            assert failure.value.reason == ports.REFUSED
+            assert failure.value.reason == errors.REFUSED
         own.connected(Access("robots", "a long password: 40 letters and some more")).close()
     finally:
         own.kill()

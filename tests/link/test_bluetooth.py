@@ -243,7 +243,7 @@ def test_what_is_no_robot_is_said(bluez: FakeBluez, monkeypatch: pytest.MonkeyPa
 
 
 def test_nobody_is_in_reach(ble: BleRobot, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("tiniscript.link.bluetooth_search.SEARCH_S", 3.0)
+    monkeypatch.setattr("tiniscript.link.transports.bluetooth_search.SEARCH_S", 3.0)
     done = inside("ping", "--port", "ble://nobody")
     assert done.code == 3
     assert "no ble://nobody is in reach" in done.err

@@ -24,7 +24,7 @@ from tests.support.ble_robot import (
 )
 from tests.support.command import LONG, Tsc, inside
 from tests.support.fake_bluez import FakeBluez
-from tiniscript.link import ports
+from tiniscript.link import errors, ports
 
 pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a bus")
 
@@ -173,18 +173,18 @@ def test_a_bus_that_lets_nobody_in(bluez: FakeBluez, monkeypatch: pytest.MonkeyP
     from bleak.exc import BleakBluetoothNotAvailableReason as Reason
     from bleak.exc import BleakDBusError
 
-    from tiniscript.link import bluetooth_search as search
+    from tiniscript.link.transports import bluetooth_search as search
 
     for reason, name in (
-        (Reason.DENIED_BY_USER, ports.RADIO_FORBIDDEN),
-        (Reason.DENIED_BY_SYSTEM, ports.RADIO_FORBIDDEN),
-        (Reason.POWERED_OFF, ports.RADIO_OFF),
-        (Reason.NO_BLE_CENTRAL_ROLE, ports.RADIO_OFF),
+        (Reason.DENIED_BY_USER, errors.RADIO_FORBIDDEN),
+        (Reason.DENIED_BY_SYSTEM, errors.RADIO_FORBIDDEN),
+        (Reason.POWERED_OFF, errors.RADIO_OFF),
+        (Reason.NO_BLE_CENTRAL_ROLE, errors.RADIO_OFF),
     ):
         assert search.reason_of(NotAvailable("", reason)) == name
     denied = BleakDBusError("org.freedesktop.DBus.Error.AccessDenied", ["Sender is not allowed"])
-    assert search.reason_of(denied) == ports.RADIO_FORBIDDEN
-    assert search.reason_of(RuntimeError("new")) == ports.RADIO_BROKEN
+    assert search.reason_of(denied) == errors.RADIO_FORBIDDEN
+    assert search.reason_of(RuntimeError("new")) == errors.RADIO_BROKEN
 
 
 @pytest.mark.parametrize("language", ["en", "es"])
@@ -194,9 +194,9 @@ def test_without_its_package_the_next_step_is_said(
 ) -> None:
     for name in [each for each in sys.modules if each.partition(".")[0] == package]:
         monkeypatch.setitem(sys.modules, name, None)
-    for name in ("bluetooth", "bluetooth_search", "named_robots"):
-        monkeypatch.delitem(sys.modules, f"tiniscript.link.{name}", raising=False)
-        monkeypatch.delattr(f"tiniscript.link.{name}", raising=False)
+    for name in ("bluetooth", "bluetooth_search", "network"):
+        monkeypatch.delitem(sys.modules, f"tiniscript.link.transports.{name}", raising=False)
+        monkeypatch.delattr(f"tiniscript.link.transports.{name}", raising=False)
     monkeypatch.setitem(sys.modules, package, None)
     port = {"bleak": "ble://Tini", "zeroconf": "tcp://tini"}[package]
     done = tsc("ping", "--port", port, "--lang", language)
@@ -219,7 +219,7 @@ def test_an_hm10_gets_no_more_than_its_uart_passes_on(
     service: str, sizes: list[int], waits: list[float], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """It drops what comes sooner; 20 bytes take it 20.8 ms at 9600 baud."""
-    from tiniscript.link import bluetooth
+    from tiniscript.link.transports import bluetooth
 
     now_s, slept, written = [0.0], [], []
 
@@ -248,7 +248,7 @@ def test_an_hm10_gets_no_more_than_its_uart_passes_on(
 
 
 def test_a_scan_that_fails_after_its_start_is_stopped(monkeypatch: pytest.MonkeyPatch) -> None:
-    from tiniscript.link import bluetooth_search
+    from tiniscript.link.transports import bluetooth_search
 
     did: list[str] = []
 

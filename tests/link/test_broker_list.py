@@ -14,8 +14,8 @@ import pytest
 from tests.support.mosquitto import Mosquitto, missing
 
 paho = pytest.importorskip("paho.mqtt.publish")
-from tiniscript.link import broker  # noqa: E402
-from tiniscript.link.ports import PortError  # noqa: E402
+from tiniscript.link.errors import PortError  # noqa: E402
+from tiniscript.link.transports import broker  # noqa: E402
 
 pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a broker")
 ROBOTS = 30

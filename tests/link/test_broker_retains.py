@@ -9,8 +9,8 @@ import pytest
 
 from tests.support.mosquitto import Mosquitto, missing
 from tests.support.waiting import HANGS_S, until
-from tiniscript.link.broker import Broker
 from tiniscript.link.messages import STOP_BYTES
+from tiniscript.link.transports.broker import Broker
 
 pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a broker")
 

@@ -11,7 +11,7 @@ from tests.support.waiting import HANGS_S, until
 
 pytest.importorskip("paho.mqtt.client")
 
-from tiniscript.link.broker import MESSAGE_BYTES, Access, Broker
+from tiniscript.link.transports.broker import MESSAGE_BYTES, Access, Broker
 
 LET_IN = bytes((0x20, 2, 0, 0))
 PIECE = bytes(65_536)

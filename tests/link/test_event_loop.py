@@ -8,8 +8,8 @@ import threading
 import pytest
 
 from tests.support.command import Command
-from tiniscript.link import event_loop
-from tiniscript.link.event_loop import EventLoop
+from tiniscript.link.transports import event_loop
+from tiniscript.link.transports.event_loop import EventLoop
 
 
 async def fail() -> None:
@@ -66,7 +66,7 @@ def test_ctrl_c_cancels_what_it_interrupts(monkeypatch: pytest.MonkeyPatch) -> N
 def test_the_end_of_a_process_cancels_what_runs() -> None:
     code = (
         "import asyncio, threading\n"
-        "from tiniscript.link.event_loop import shared\n"
+        "from tiniscript.link.transports.event_loop import shared\n"
         "begun = threading.Event()\n"
         "async def work():\n"
         "    begun.set()\n"

@@ -25,7 +25,7 @@ from tiniscript.link import known_ports, ports
 if TYPE_CHECKING:  # without zeroconf there is none
     from zeroconf import ServiceInfo, Zeroconf
 
-    from tiniscript.link.named_robots import Announced
+    from tiniscript.link.transports.network import Announced
 
 WHY = missing() or ("" if find_spec("zeroconf") else "no zeroconf: pip install zeroconf")
 pytestmark = pytest.mark.skipif(bool(WHY), reason=WHY or "there is zeroconf")
@@ -57,7 +57,7 @@ def announced(name: str, address: str, number: int) -> Iterator[None]:
     """Something that says it is a robot."""
     from zeroconf import ServiceInfo, Zeroconf
 
-    from tiniscript.link.named_robots import SERVICE
+    from tiniscript.link.transports.network import SERVICE
 
     with closing(Zeroconf(interfaces=["127.0.0.1"])) as network:
         network.register_service(ServiceInfo(
@@ -82,7 +82,7 @@ def packets(*names: str, number: int, lonely: int = 0) -> Iterator[None]:
         _TYPE_TXT,
     )
 
-    from tiniscript.link.named_robots import SERVICE
+    from tiniscript.link.transports.network import SERVICE
 
     packet = DNSOutgoing(_FLAGS_QR_RESPONSE)
     for whole in (f"{name}.{SERVICE}" for name in names):
@@ -197,12 +197,12 @@ def test_a_robot_announces_itself_only_when_asked(
 
 
 def test_the_announcement_ends_with_the_robot(monkeypatch: pytest.MonkeyPatch) -> None:
-    from tiniscript.link import named_robots
+    from tiniscript.link.transports import network
 
     name = f"short-{HERE}"
     with robot("--announce", "--name", name):
         assert inside("ping", "--port", f"tcp://{name}", "--count", "1").code == 0
-    monkeypatch.setattr(named_robots, "SEARCH_S", 1.0)
+    monkeypatch.setattr(network, "SEARCH_S", 1.0)
     done = inside("ping", "--port", f"tcp://{name}", "--lang", "es")
     assert done.code == 3
     assert f"ningún robot de esta red se anuncia como tcp://{name}" in done.err
@@ -210,9 +210,9 @@ def test_the_announcement_ends_with_the_robot(monkeypatch: pytest.MonkeyPatch) -
 
 @pytest.mark.parametrize("name", ["x" * 64, "Ñ" * 40, "_tcp", ".", "..", "a.b", "a..b", " "])
 def test_names_that_nobody_has(tsc: Tsc, name: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    from tiniscript.link import named_robots
+    from tiniscript.link.transports import network
 
-    monkeypatch.setattr(named_robots, "SEARCH_S", 0.2)
+    monkeypatch.setattr(network, "SEARCH_S", 0.2)
     done = tsc("ping", "--port", f"tcp://{name}")
     assert done.code == 3
     assert "announces itself" in done.err
@@ -235,14 +235,14 @@ def test_an_address_outside_is_not_called(address: str) -> None:
 
 def test_a_packet_may_announce_anything(listing: None, monkeypatch: pytest.MonkeyPatch) -> None:
     """Written by hand: zeroconf refuses to announce some of these, and to believe others."""
-    from tiniscript.link import named_robots
+    from tiniscript.link.transports import network
 
-    monkeypatch.setattr(named_robots, "LISTED_S", 0.5)
+    monkeypatch.setattr(network, "LISTED_S", 0.5)
     heard = ["_tcp", "a.b", "plain", "x" * 63, "\u202ex"]
     found: list[Announced] = []
 
     def all_are_heard() -> bool:
-        found[:] = ours(named_robots.listed(), 7007)
+        found[:] = ours(network.listed(), 7007)
         return len(found) >= len(heard)
 
     with packets("\x1b[31mx", "a\r\nb", *heard, number=7007):
@@ -253,18 +253,18 @@ def test_a_packet_may_announce_anything(listing: None, monkeypatch: pytest.Monke
 def test_names_without_an_address_do_not_hold_up_the_list(
     listing: None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from tiniscript.link import named_robots
+    from tiniscript.link.transports import network
 
-    asked, limits_ms = named_robots.asked, []
+    asked, limits_ms = network.asked, []
 
     def look(network: Zeroconf, name: str, limit_ms: int) -> ServiceInfo | None:
         limits_ms.append(limit_ms)
         return asked(network, name, limit_ms)
 
-    monkeypatch.setattr(named_robots, "ADDRESSES_S", 0.5)
-    monkeypatch.setattr(named_robots, "asked", look)
+    monkeypatch.setattr(network, "ADDRESSES_S", 0.5)
+    monkeypatch.setattr(network, "asked", look)
     with packets("robot", number=7007, lonely=40):
-        names = [each.name for each in ours(named_robots.listed(), 7007)]
+        names = [each.name for each in ours(network.listed(), 7007)]
     assert names == ["robot"]
     assert limits_ms[0] <= 500 and limits_ms.count(1) > 30  # the first one has all the time
 
@@ -299,12 +299,12 @@ def test_whatever_answers_a_name_has_to_be_a_robot() -> None:
 def test_without_multicast_the_address_is_the_next_step(
     tsc: Tsc, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from tiniscript.link import named_robots
+    from tiniscript.link.transports import network
 
     def fail(**_: object) -> None:
         raise OSError(101, "Network is unreachable")
 
-    monkeypatch.setattr(named_robots, "Zeroconf", fail)
+    monkeypatch.setattr(network, "Zeroconf", fail)
     for language, said in (("en", "reaches no network with multicast"),
                            ("es", "no llega a ninguna red con multicast")):  # fmt: skip
         done = tsc("ping", "--port", "tcp://tini", "--lang", language)

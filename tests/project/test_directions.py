@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from tests.machines import wasm
+from tools import measures
 
 PACKAGE = Path(__file__).resolve().parent.parent.parent / "compiler" / "tiniscript"
 
@@ -105,30 +106,9 @@ def test_the_library_does_not_know_the_command(path: Path) -> None:
     assert not [name for name in modules_of(path) if name.startswith("tiniscript.cli")]
 
 
-def test_no_module_imports_itself_by_a_detour() -> None:
-    def name_of(path: Path) -> str:
-        return ".".join(("tiniscript", *path.relative_to(PACKAGE).with_suffix("").parts))
-
-    names = {name_of(path): path for path in FILES}
-    graph = {
-        name: {(each if each in names else each.rpartition(".")[0]) for each in top_level(path)}
-        for name, path in names.items()
-    }
-    done: set[str] = set()
-    while left := {name for name in graph if name not in done}:
-        ready = {name for name in left if not (graph[name] & left) - {name}}
-        assert ready, f"a circle among {sorted(left)}"
-        done |= ready
-
-
-def top_level(path: Path) -> set[str]:
-    """Return what a file imports of this package as it is imported itself."""
-    tree = ast.parse(path.read_text(encoding="utf-8"))
-    found = set()
-    for node in tree.body:
-        if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("tiniscript"):
-            found |= {f"{node.module}.{each.name}" for each in node.names}
-    return found
+def test_no_circle_of_files() -> None:
+    """Whatever the import is for: at the top, inside a function, or for types alone."""
+    assert not measures.circles(measures.imports_of(FILES))
 
 
 def test_only_the_command_prints() -> None:
@@ -239,25 +219,21 @@ def test_the_end_of_a_process_looks_for_no_garbage(arguments: str, is_frozen: bo
     assert done.stdout.splitlines()[-1] == f"{is_frozen} {is_frozen}"
 
 
-def test_only_two_rooms_know_pyserial() -> None:
+def test_only_two_files_know_pyserial() -> None:
     for path in PACKAGE.rglob("*.py"):
         if "import serial" in path.read_text(encoding="utf-8"):
-            assert path.parent.name == "link" and path.stem in ("ports", "line"), path.name
-
-
-AROUND_THE_LINK = (
-    "ports", "line", "bluetooth", "bluetooth_search", "broker", "event_loop", "named_robots",
-    "pushed_port",
-)  # fmt: skip
+            assert path.relative_to(PACKAGE / "link").as_posix() in (
+                "line.py", "transports/serial.py",
+            )  # fmt: skip
 
 
 def test_the_link_has_no_port_and_no_clock() -> None:
     """Bytes and times are arguments: so a second takes no time in a test.
 
-    Around it are real ports and a real clock.
+    Around it are the line, which has a real clock, and real ports in `transports/`.
     """
     for path in sorted((PACKAGE / "link").glob("*.py")):
-        if path.stem in AROUND_THE_LINK:
+        if path.stem == "line":
             continue
         names = set()
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):

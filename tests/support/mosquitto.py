@@ -13,8 +13,9 @@ from pathlib import Path
 
 from tests.machines.esp32 import Esp32Robot
 from tests.support.waiting import until
-from tiniscript.link import broker, wifi
-from tiniscript.link.broker import Access, Broker, BrokerPort
+from tiniscript.link import wifi
+from tiniscript.link.transports import broker
+from tiniscript.link.transports.broker import Access, Broker, BrokerPort
 
 PROGRAM = shutil.which("mosquitto") or next(iter(Path("/usr/sbin").glob("mosquitto")), None)
 LOCAL = bytes((127, 0, 0, 1))

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Protocol
 from unittest import mock
 
 from tiniscript.cli.robot import recorder, run_monitor
-from tiniscript.link import ports
+from tiniscript.link.transports import serial as serial_transport
 
 if TYPE_CHECKING:
     import serial
@@ -82,7 +82,7 @@ class SimulatedPort:
 @contextmanager
 def simulated(*ends: PortEnd) -> Iterator[None]:
     """Within it, what this process opens keeps the time of its end."""
-    actual = ports._open
+    actual = serial_transport._open
     by_port = {end.port: end for end in ends}
 
     def opened(port: str, baud: int) -> serial.SerialBase | SimulatedPort:
@@ -94,7 +94,7 @@ def simulated(*ends: PortEnd) -> Iterator[None]:
         return port.now_ms() / 1000 if port else time.monotonic()
 
     with ExitStack() as stack:
-        stack.enter_context(mock.patch.object(ports, "_open", opened))
+        stack.enter_context(mock.patch.object(serial_transport, "_open", opened))
         if len(ends) == 1:
             for module in (recorder, run_monitor):
                 stack.enter_context(mock.patch.object(module, "monotonic", now_s))

@@ -8,8 +8,9 @@ import pytest
 
 from tests.oracle.interpreter import PAPER_KIT
 from tests.oracle.programs import broken, program
-from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, ODD, WORD, scan
+from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, ODD, WORD
 from tiniscript.syntax.lexer_recovery import scan_with_repairs
+from tiniscript.syntax.parser import scan
 
 SIGNS = ("<=", ">=", "<>", "+", "-", "*", "/", "%", "=", "<", ">", "(", ")", ",", ";", "|")
 

@@ -29,7 +29,7 @@ from tests.machines.host_firmware import TICKS
 from tests.support.esp32_radio import in_reach
 from tests.support.mosquitto import Mosquitto, missing
 from tests.support.owners import Keys
-from tiniscript.link.broker import Broker
+from tiniscript.link.transports.broker import Broker
 
 GROUP = "aula"
 BOOT_MS, STEP_MS, LIMIT_MS = 6000, 10, 200

@@ -47,9 +47,9 @@ def ready(
         return Ready(image, len(given.data), source_map.recall(image.checksum))
     compiled = inputs.compiled(given, robot, is_strict)
     if is_open and not compiled.is_right:
-        from tiniscript.cli.robot.own_kit import is_other_robots
+        from tiniscript.library.known_kits import is_other_robots
 
-        if is_other_robots(compiled):
+        if is_other_robots(compiled.diagnostics):
             raise OtherRobot(compiled)
     outputs.print_diagnostics(compiled, language)
     if not compiled.is_right:

@@ -15,6 +15,9 @@ from tiniscript.cli.texts.options import Option, of_verb
 if TYPE_CHECKING:
     from typing import NoReturn
 
+    from tiniscript.kit import Device
+    from tiniscript.robots.profile import Robot
+
 # The messages of argparse, and what is said instead, in English and Spanish.
 _MESSAGES = (
     (r"the following arguments are required: (.*)", r"\1 is missing", r"falta \1"),
@@ -136,3 +139,59 @@ def decimal(found: str) -> int | None:
         return None
     value, _ = read_literal(digits)
     return -value if found[:1] == "-" else value
+
+
+def thousandths(
+    option: str, found: str | None, default: int, low: int, high: int, language: str
+) -> int:
+    """Return an option's decimal number in thousandths, from `low` to `high`."""
+    if found is None:
+        return default
+    value = decimal(found)
+    if value is None or not low <= value <= high:
+        from tiniscript.cli.inputs import shown
+        from tiniscript.fixed_point import as_text
+
+        allowed = text("range_number", language).format(low=as_text(low), high=as_text(high))
+        raise CommandError(
+            2, "bad_number", option=option, range=allowed, found=shown(found) or "''"
+        )
+    return value
+
+
+def sensor_lists(texts: list[str], robot: Robot, language: str) -> dict[int, list[int]]:
+    """Return the readings that `--sensor NAME=1,2,3` say, by the sensor's number."""
+    sensors = robot.kit.sensors
+    names = [device.name for device in sensors]
+    lists: dict[int, list[int]] = {}
+    for each in texts:
+        name, equals, values = each.partition("=")
+        name = name.strip().upper()
+        if name not in names:
+            from tiniscript.words import nearest
+
+            known = ", ".join(names) or text("no_sensors", language)
+            raise CommandError(2, "no_sensor", robot=robot.name, found=name or each, known=known,
+                          near=nearest(name, names) or "")  # fmt: skip
+        number = names.index(name)
+        device = sensors[number]
+        if not equals or not values.strip():
+            example = f"{name}={device.text(device.low)},{device.text(device.high)}"
+            raise CommandError(2, "sensor_form", example=example)
+        if number in lists:
+            raise CommandError(2, "sensor_twice", name=name)
+        lists[number] = [_reading(device, value.strip(), language) for value in values.split(",")]
+    return lists
+
+
+def _reading(device: Device, found: str, language: str) -> int:
+    if device.is_yes_no:
+        value = {"TRUE": 1, "FALSE": 0, "1": 1, "0": 0}.get(found.upper())
+        allowed = text("range_yes_no", language)
+    else:
+        value = decimal(found)
+        low, high = device.text(device.low), device.text(device.high)
+        allowed = text("range_number", language).format(low=low, high=high)
+    if value is None or not device.low <= value <= device.high:
+        raise CommandError(2, "sensor_value", found=found or "''", name=device.name, range=allowed)
+    return value

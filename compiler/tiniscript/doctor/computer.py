@@ -1,6 +1,6 @@
 """What a computer has: USB adapters with their drivers, Bluetooth, and who uses a port.
 
-The same for all systems; how each one is asked, `linux`, `macos` and `windows` know.
+The same for all systems; `systems` asks each one.
 """
 
 from __future__ import annotations
@@ -9,7 +9,6 @@ import re
 from collections.abc import Iterable
 from typing import NamedTuple
 
-from tiniscript.doctor.system import System
 from tiniscript.link.ports import Found
 
 ON, OFF, NONE, UNKNOWN = "on", "off", "none", "unknown"  # Bluetooth
@@ -72,28 +71,6 @@ class Access(NamedTuple):
 
 
 FREE = Access(True, "", False, ())
-
-
-def looked(system: System) -> Computer:
-    """Look at a computer. Opens no port."""
-    if system.platform == "darwin":
-        from tiniscript.doctor.macos import looked as look
-    elif system.platform == "win32":
-        from tiniscript.doctor.windows import looked as look
-    else:
-        from tiniscript.doctor.linux import looked as look
-    return look(system)
-
-
-def access(system: System, port: str) -> Access:
-    """Return who may use a port and who does. Opens no port."""
-    if system.platform == "win32":
-        return FREE
-    if system.platform == "darwin":
-        from tiniscript.doctor.macos import access as look
-    else:
-        from tiniscript.doctor.linux import access as look
-    return look(system, port)
 
 
 def chip_of(vendor: str, product: str) -> tuple[str, str] | None:

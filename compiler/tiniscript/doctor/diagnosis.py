@@ -12,18 +12,18 @@ from collections.abc import Callable
 from contextlib import AbstractContextManager
 from typing import NamedTuple
 
-from tiniscript.doctor import computer, line
+from tiniscript.doctor import line, systems
 from tiniscript.doctor.computer import NONE, OFF, Computer, looks_wireless, without_driver
 from tiniscript.doctor.examination import Expected, examined
 from tiniscript.doctor.findings import Finding, probably, sure
 from tiniscript.doctor.line import Line
 from tiniscript.doctor.robot import SharedRobot
 from tiniscript.doctor.system import System
-from tiniscript.link import ports
+from tiniscript.link import errors
 from tiniscript.link.connection import LinkConnection
+from tiniscript.link.errors import PortError
 from tiniscript.link.outcomes import Gone
 from tiniscript.link.port_names import is_address, same_for_all
-from tiniscript.link.ports import PortError
 from tiniscript.link.wire import Wire
 from tiniscript.sharing.client import OtherVersion
 
@@ -72,7 +72,7 @@ class Diagnosis(NamedTuple):
 
 def diagnosed(doors: Doors, question: Question) -> Diagnosis:
     doors.tell("computer")
-    found = computer.looked(doors.system)
+    found = systems.looked(doors.system)
     port = question.port or question.last or _only(found)
     if port is None:
         return Diagnosis(None, _without_port(found, question.virtual), found, False)
@@ -164,7 +164,7 @@ def _shared(client: LinkConnection, doors: Doors, question: Question) -> tuple[F
 
 def _held(system: System, found: Computer, port: str) -> Finding | None:
     """Return why this user cannot have the port now, as far as it is known without opening it."""
-    who = computer.access(system, same_for_all(port))
+    who = systems.access(system, same_for_all(port))
     if not who.may_use and who.is_joined:
         return sure("login_again", group=who.group)
     if not who.may_use:
@@ -184,23 +184,23 @@ def _is_listed(system: System, found: Computer, port: str) -> bool:
 
 def _unopened(failure: PortError, found: Computer, port: str, system: System) -> Finding:
     """Return why a port did not open."""
-    if failure.reason == ports.MISSING:
+    if failure.reason == errors.MISSING:
         return _missing(found, port, system)
-    if failure.reason == ports.FORBIDDEN:
+    if failure.reason == errors.FORBIDDEN:
         return sure("no_permission", group="")
-    if failure.reason == ports.BUSY:
+    if failure.reason == errors.BUSY:
         if looks_wireless(port) and failure.why == IN_USE:
             return probably("other_host")
         if "ModemManager" in found.programs:
             return probably("modem_manager")
         return sure("busy", by="")
-    if failure.reason in (ports.UNREACHABLE, ports.SLOW):
+    if failure.reason in (errors.UNREACHABLE, errors.SLOW):
         if failure.why == REFUSED and not is_address(port):
             return probably("other_host")
         if not is_address(port) and found.has_module is False and found.bluetooth != OFF:
             return probably("not_paired")
-        return probably("slow_port" if failure.reason == ports.SLOW else "out_of_reach")
-    if failure.reason == ports.NO_PORT:
+        return probably("slow_port" if failure.reason == errors.SLOW else "out_of_reach")
+    if failure.reason == errors.NO_PORT:
         return sure("no_serial_port")
     return sure("port_broken", why=failure.why)
 

@@ -23,6 +23,20 @@ def naming_robots(diagnostics: list[Diagnostic], text: str, robot: Robot) -> lis
     return other_kits.naming_robots(diagnostics, text, (robot.name, robot.kit), _others())
 
 
+def is_other_robots(diagnostics: list[Diagnostic]) -> bool:
+    """Whether a program has words of another robot: they have been through `naming_robots`."""
+    from tiniscript.diagnostics.codes import OTHER_ROBOT
+    from tiniscript.robots import given
+    from tiniscript.semantics import other_kits
+
+    unknown = [each for each in diagnostics if other_kits.is_unknown(each)]
+    if any(diagnostic.code is OTHER_ROBOT for diagnostic in unknown):
+        return True
+    words = {diagnostic.values.get("found") for diagnostic in unknown}
+    # of profiles with paths that are too long for a message
+    return bool(words) and any(words & other_kits.words(robot.kit) for _, robot in given.profiles())
+
+
 def _others() -> dict[str, Kit]:
     """Return the known kits, by the name or the path of their robots."""
     from tiniscript import robots

@@ -21,10 +21,10 @@ if TYPE_CHECKING:
     from typing import TypeVar
 
     from tiniscript.link.connection import LinkConnection, PendingRequest, Requester
+    from tiniscript.link.errors import PortError
     from tiniscript.link.line import Line
     from tiniscript.link.outcomes import Gone
     from tiniscript.link.payloads import HelloReply
-    from tiniscript.link.ports import PortError
     from tiniscript.link.requests import Reply
     from tiniscript.sharing.client import Client
 
@@ -90,8 +90,9 @@ def opened_line(
     `port` is the port's name in sentences, where it is not `address`.
     """
     from tiniscript.keys import KeyFile
+    from tiniscript.link.errors import PortError
     from tiniscript.link.line import Line
-    from tiniscript.link.ports import PortError, opened
+    from tiniscript.link.ports import opened
     from tiniscript.link.session import Session
 
     try:
@@ -109,23 +110,23 @@ def opened_line(
 
 def port_error(port: str, failure: PortError, language: str = "en") -> RobotError:
     """Return the error for a port that does not open."""
-    from tiniscript.link import ports
+    from tiniscript.link import errors, ports
     from tiniscript.link.port_names import is_at_broker
 
     reason = f"port_{failure.reason}"
     values = {"port": shown(port), "why": shown(failure.why)}
-    if failure.reason == ports.NOT_INSTALLED:
+    if failure.reason == errors.NOT_INSTALLED:
         from tiniscript.library import install_advice
 
         extra = install_advice.BROKER if is_at_broker(port) else install_advice.RADIO
         values["how"] = install_advice.command(extra)
-    if failure.reason == ports.UNREACHABLE and is_at_broker(port):
+    if failure.reason == errors.UNREACHABLE and is_at_broker(port):
         reason = "broker_unreachable"
-    if failure.reason == ports.NOT_FOUND and failure.why:
+    if failure.reason == errors.NOT_FOUND and failure.why:
         reason = "port_not_found_but"
-    if failure.reason == ports.FORBIDDEN and sys.platform.startswith("linux"):
+    if failure.reason == errors.FORBIDDEN and sys.platform.startswith("linux"):
         reason = "port_forbidden_linux"
-    if failure.reason == ports.MISSING:
+    if failure.reason == errors.MISSING:
         known = ", ".join(each.port for each in ports.listed())
         if known:
             reason, values["known"] = "port_missing_but", shown(known)
@@ -179,7 +180,7 @@ def reason_of(line: LinkConnection, reply: Reply[object]) -> str:
 
 def reason_of_end(line: LinkConnection, gone: Gone, port: str) -> str:
     """Return why a connection has ended."""
-    from tiniscript.link import ports
+    from tiniscript.link import errors
     from tiniscript.link.port_names import is_at_broker, is_bluetooth
 
     if gone.is_server:
@@ -187,7 +188,7 @@ def reason_of_end(line: LinkConnection, gone: Gone, port: str) -> str:
     if is_bluetooth(port):
         return "radio_gone"
     if is_at_broker(port):
-        return "port_taken" if str(gone) == ports.TAKEN else "broker_gone"
+        return "port_taken" if str(gone) == errors.TAKEN else "broker_gone"
     if line.heard and line.robot is None:  # it reported busy, and closed
         return "port_busy"
     return "port_gone"
@@ -261,11 +262,11 @@ def _joined(port: str, verb: str, baud: int | None, language: str) -> Client | N
 
 def _resolved(port: str, language: str) -> str:
     """Return the address of a robot that is named. Raises RobotError."""
-    from tiniscript.link import ports
+    from tiniscript.link import errors, ports
 
     try:
         return ports.resolved(port)
-    except ports.PortError as failure:
+    except errors.PortError as failure:
         raise port_error(port, failure, language) from None
 
 

@@ -21,8 +21,7 @@ from tiniscript.link.requests import DeviceInfo, Reply
 from tiniscript.link.session import Session
 
 if TYPE_CHECKING:
-    from tiniscript.link.bluetooth import BluetoothPort
-    from tiniscript.link.broker import BrokerPort
+    from tiniscript.link.transports import Port
 
 T = TypeVar("T")
 
@@ -41,7 +40,7 @@ class Line:
 
     def __init__(
         self,
-        port: serial.SerialBase | BluetoothPort | BrokerPort,
+        port: Port,
         session: Session,
         lock: IO[bytes] | None = None,
         address: str = "",

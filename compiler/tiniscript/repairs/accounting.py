@@ -14,8 +14,9 @@ from typing import NamedTuple
 
 from tiniscript.diagnostics import codes
 from tiniscript.syntax import phrases
-from tiniscript.syntax.lexer import NUMBER, ODD, WORD, Token, scan
+from tiniscript.syntax.lexer import NUMBER, ODD, WORD, Token
 from tiniscript.syntax.operators import COMPARISONS, OPPOSITES
+from tiniscript.syntax.parser import scan
 from tiniscript.syntax.suggestions import OPERATOR_WORDS, counted
 from tiniscript.words import (
     ALIASES,

@@ -9,7 +9,8 @@ from collections.abc import Sequence
 
 from tiniscript.source import Edit, Span
 from tiniscript.syntax.cursor import AT_END
-from tiniscript.syntax.lexer import NEWLINE, WORD, Token, scan
+from tiniscript.syntax.lexer import NEWLINE, WORD, Token
+from tiniscript.syntax.parser import scan
 from tiniscript.syntax.suggestions import foreign_block
 from tiniscript.words import ALIASES, BLOCK_ENDS, WORDS
 

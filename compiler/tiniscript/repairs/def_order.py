@@ -16,7 +16,7 @@ from tiniscript.diagnostics.rendering import FIX_CHARACTERS
 from tiniscript.repairs.whole_blocks import LONGEST, in_one_line
 from tiniscript.source import Edit, Source, Span, applied
 from tiniscript.syntax.formatter import Piece, pieces_of
-from tiniscript.syntax.lexer import scan
+from tiniscript.syntax.parser import scan
 from tiniscript.words import ALIASES, BLOCK_ENDS
 
 Check = Callable[[str], list[Diagnostic]]

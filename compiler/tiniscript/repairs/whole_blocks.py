@@ -20,7 +20,7 @@ from tiniscript.repairs.fixing import fixed
 from tiniscript.repairs.placing import edits_of
 from tiniscript.source import Source, Span, applied
 from tiniscript.syntax.formatter import instruction_text, pieces_of
-from tiniscript.syntax.lexer import scan
+from tiniscript.syntax.parser import scan
 from tiniscript.words import ALIASES, BLOCK_ENDS
 
 Check = Callable[[str], list[Diagnostic]]

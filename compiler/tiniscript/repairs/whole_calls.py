@@ -17,7 +17,8 @@ from tiniscript.repairs.placing import edits_of
 from tiniscript.repairs.said_calls import LONGEST, Said, said_call
 from tiniscript.repairs.shifted_keys import shifted_call
 from tiniscript.source import Edit, Source, Span, applied
-from tiniscript.syntax.lexer import NEWLINE, scan
+from tiniscript.syntax.lexer import NEWLINE
+from tiniscript.syntax.parser import scan
 from tiniscript.words import WORDS
 
 Check = Callable[[str], Sequence[Diagnostic]]

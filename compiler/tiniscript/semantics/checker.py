@@ -16,8 +16,8 @@ from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.kit import Kit
 from tiniscript.semantics import ir
 from tiniscript.semantics.ir import Statement
-from tiniscript.semantics.symbols import Name, Scope
-from tiniscript.semantics.types import ANY, Kinds, Value
+from tiniscript.semantics.symbols import ANY, Name, Scope
+from tiniscript.semantics.types import Kinds, Value
 from tiniscript.source import Source, Span
 from tiniscript.syntax import ast
 from tiniscript.syntax.devices import actuator_word

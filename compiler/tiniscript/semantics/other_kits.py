@@ -10,7 +10,8 @@ from collections.abc import Mapping, Sequence
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.kit import Kit
-from tiniscript.syntax.lexer import WORD, scan
+from tiniscript.syntax.lexer import WORD
+from tiniscript.syntax.parser import scan
 
 _UNKNOWN = (codes.UNKNOWN_NAME, codes.UNKNOWN_WORD)
 _NUMBERS = ("first", "second", "third")

@@ -1,4 +1,4 @@
-"""The symbols of a program: what each name stands for. Also collects the diagnostics.
+"""The symbols of a program: what each name stands for, and types. Also collects the diagnostics.
 
 Knows the names of the kit, and which names the text gives to variables and DEFs anywhere. The
 checker adds names as it reaches them; `types` looks them up.
@@ -15,6 +15,7 @@ from tiniscript.source import Source, Span
 from tiniscript.syntax import ast
 from tiniscript.words import nearest
 
+NUMBER, YES_NO, ANY = "number", "yes_no", "any"  # ANY: a mistake was already reported there
 ENOUGH = 100  # mistakes after which a suggestion helps nobody
 
 
@@ -23,6 +24,15 @@ class Name(NamedTuple):
 
     what: str
     number: int
+
+
+class Operand(NamedTuple):
+    """A value of an expression, where it stands, and how deep the stack gets for it."""
+
+    kind: str
+    depth: int
+    start: int
+    end: int
 
 
 class Scope:

@@ -11,14 +11,12 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from tiniscript.diagnostics import codes
 from tiniscript.semantics.ir import Expression, Term
-from tiniscript.semantics.symbols import Scope
+from tiniscript.semantics.symbols import ANY, NUMBER, YES_NO, Operand, Scope
 from tiniscript.source import Span
 from tiniscript.syntax.ast import Argument, Part
 
 if TYPE_CHECKING:
     from tiniscript.semantics.wrong_values import WrongValues
-
-NUMBER, YES_NO, ANY = "number", "yes_no", "any"  # ANY: a mistake was already reported there
 
 
 class Value(NamedTuple):
@@ -28,13 +26,6 @@ class Value(NamedTuple):
     kind: str
     depth: int
     sensors: tuple[int, ...]  # in order of appearance, perhaps several times
-
-
-class Operand(NamedTuple):
-    kind: str
-    depth: int
-    start: int
-    end: int
 
 
 _ARITHMETIC = frozenset(("ADD", "SUB", "MUL", "DIV", "MOD", "MIN", "MAX", "RANDOM", "ROUND"))

@@ -11,8 +11,7 @@ import re
 from tiniscript.diagnostics import codes
 from tiniscript.semantics.comparisons import ASIDE
 from tiniscript.semantics.named_values import value_of
-from tiniscript.semantics.symbols import ENOUGH, Scope
-from tiniscript.semantics.types import NUMBER, Operand
+from tiniscript.semantics.symbols import ENOUGH, NUMBER, Operand, Scope
 from tiniscript.semantics.unknown_words import asks_of_light, hyphened, meant_value, whole_name
 from tiniscript.source import Span
 from tiniscript.syntax.amounts import is_amount, with_number

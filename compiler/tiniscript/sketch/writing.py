@@ -15,7 +15,7 @@ from tiniscript.sketch.statements import Comment, Named, Statements, harmless
 from tiniscript.sketch.texts import IDENTIFIERS, TEXTS, called, said, with_locals
 from tiniscript.sketch.wiring import Plan
 from tiniscript.source import Source
-from tiniscript.syntax.lexer import scan
+from tiniscript.syntax.parser import scan
 
 WIDEST = 98
 _WORD = re.compile(r"\$(\w+?)(?=_\$|_PIN\b|\b)")

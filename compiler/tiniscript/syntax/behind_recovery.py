@@ -14,7 +14,8 @@ from tiniscript.source import Span
 from tiniscript.syntax.ast import Command
 from tiniscript.syntax.block_recovery import BlockRecovery
 from tiniscript.syntax.cursor import AT_END, Cursor
-from tiniscript.syntax.lexer import NUMBER, ODD, QUOTES, WORD, Token, scan
+from tiniscript.syntax.lexer import NUMBER, ODD, QUOTES, WORD, Token
+from tiniscript.syntax.lexer_recovery import scan_with_repairs
 from tiniscript.syntax.note_recovery import NoteRecovery
 from tiniscript.syntax.operators import COMPARISONS
 from tiniscript.syntax.phrases import BEFORE_POWER, BEFORE_TIME, TIMES
@@ -196,7 +197,7 @@ class BehindRecovery:
         text = self.cursor.source[row[0].span]
         if len(row) == 1 and row[0].kind is ODD and text[:1] in QUOTES:
             shift = row[0].start + 1
-            inside = scan(text.strip(QUOTES)).tokens[:-1]
+            inside = scan_with_repairs(text.strip(QUOTES)).tokens[:-1]
             moved = [
                 each._replace(start=each.start + shift, end=each.end + shift) for each in inside
             ]

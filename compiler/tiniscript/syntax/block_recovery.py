@@ -14,7 +14,7 @@ from tiniscript.diagnostics import codes
 from tiniscript.kit import Kit
 from tiniscript.source import Span
 from tiniscript.syntax.ast import Argument, Assign, Command
-from tiniscript.syntax.blocks import HEADERS, Block, Blocks
+from tiniscript.syntax.blocks import ENDS, HEADERS, Block, Blocks
 from tiniscript.syntax.call_suggestions import ends_value
 from tiniscript.syntax.cursor import AT_END, Cursor
 from tiniscript.syntax.header_recovery import HeaderRecovery
@@ -33,7 +33,6 @@ from tiniscript.syntax.suggestions import (
 )
 from tiniscript.syntax.unended import open_above, where_it_ends
 from tiniscript.syntax.vocabulary import Vocabulary
-from tiniscript.syntax.wrong_ends import is_swapped, is_taken_for_header, told_with_header
 from tiniscript.words import ALIASES, BLOCK_ENDS, TURN_WORDS, WORDS, meant_by, nearest
 
 
@@ -244,7 +243,7 @@ class BlockRecovery:
         found = self.cursor.source[span].upper()
         found = found if found in ALIASES else BLOCK_ENDS[word]
         if block is not None and self._is_open(word):
-            if not is_swapped(self, block, end):
+            if not _is_swapped(self, block, end):
                 self._report_wrong_end(span, found, block)
             self._end_until(word, span)
             self.blocks.end(span)
@@ -258,11 +257,11 @@ class BlockRecovery:
             block.head = None
             self.blocks.end(span)
         elif block is not None:
-            if not told_with_header(self, block):
+            if not _told_with_header(self, block):
                 self._report_wrong_end(span, found, block, fix=BLOCK_ENDS[block.word])
             self._owed += 1
             self.blocks.end(span)
-        elif not self._is_misspelt_header(word) and not is_taken_for_header(self, word):
+        elif not self._is_misspelt_header(word) and not _is_taken_for_header(self, word):
             right = WORDS[word].example if word != "DEF" else "DEF DANCE"
             self.reporter.report(codes.NOT_OPEN, span, found=found, right=right)
 
@@ -396,3 +395,48 @@ class BlockRecovery:
 def _has_a_number(block: Block) -> bool:
     """Whether a number alone is what an IF or WHILE asks: a LOOP was meant."""
     return block.word in ("IF", "WHILE") and block.head is not None and block.head.is_plain
+
+
+def _is_swapped(reader: BlockRecovery, block: Block, end: Token) -> bool:
+    """Whether the end of `block` follows right behind the end of the one around it; say so."""
+    cursor, blocks = reader.cursor, reader.blocks.open
+    k = cursor.i
+    while cursor.tokens[k].kind in (NEWLINE, ";"):
+        k += 1
+    other = cursor.tokens[k]
+    right = BLOCK_ENDS[block.word]
+    if ALIASES.get(other.text, other.text) != right or len(blocks) < 2:
+        return False
+    if blocks[-2].word != ENDS.get(end.text) or block.is_reported:
+        return False
+    between = cursor.source.text[end.end : other.start]
+    reader.reporter.report(
+        codes.WRONG_END, end.span, Span(end.start, other.end), found=end.text, right=right,
+        word=block.word, line=str(cursor.source.position(block.header.start)[0]),
+        swapped=other.text, fix=f"{cursor.source[other.span]}{between}{cursor.source[end.span]}",
+    )  # fmt: skip
+    return True
+
+
+def _told_with_header(reader: BlockRecovery, block: Block) -> bool:
+    """Whether the header is said in another language, so that its message names the end, too."""
+    for k, each in enumerate(reader.reporter.diagnostics):
+        if each.code is codes.OTHER_LANGUAGE and each.span.start == block.header.start:
+            values = {**each.values, "ends": BLOCK_ENDS[block.word]}
+            reader.reporter.change(k, each._replace(values=values))
+            return True
+    return False
+
+
+def _is_taken_for_header(reader: BlockRecovery, word: str) -> bool:
+    """Whether `Loco(4)` stands before, where END_LOOP ends nothing; then say so."""
+    here = reader.blocks.here
+    for each in reversed(here if word == "LOOP" else ()):
+        if not isinstance(each, Command) or each.word in WORDS or len(each.arguments or ()) != 1:
+            continue
+        is_number = each.arguments is not None and each.arguments[0].is_plain
+        if is_number and not reader.known.command(each.word) and not reader.is_name(each.word):
+            reader.reporter.report(codes.UNKNOWN_WORD, each.word_span, found=each.word, near=word)
+            here.remove(each)
+            return True
+    return False

@@ -6,7 +6,7 @@ right word stood there.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NoReturn
+from typing import TYPE_CHECKING, NoReturn, Protocol
 
 from tiniscript.diagnostics import codes
 from tiniscript.source import Span
@@ -27,14 +27,51 @@ from tiniscript.syntax.suggestions import (
 from tiniscript.words import BLOCK_ENDS, WORDS, meant_by
 
 if TYPE_CHECKING:
-    from tiniscript.syntax.parser import Parser
+    from tiniscript.syntax.again_recovery import AgainRecovery
+    from tiniscript.syntax.ast import Argument
+    from tiniscript.syntax.block_recovery import BlockRecovery
+    from tiniscript.syntax.blocks import Blocks
+    from tiniscript.syntax.construct_recovery import ConstructRecovery
+    from tiniscript.syntax.cursor import Cursor
+    from tiniscript.syntax.end_recovery import EndRecovery
+    from tiniscript.syntax.group_recovery import GroupRecovery
+    from tiniscript.syntax.reporter import Reporter
+    from tiniscript.syntax.times_recovery import TimesRecovery
 
 
 _ENDLESS = frozenset(("PARA", "POR", "SIEMPRE", "FOREVER", "INFINITO", "INFINITAMENTE", "INFINITAS",
                       "VECES", "TIMES", "INFINITE", "AND", "EVER"))  # fmt: skip
 
 
-def foreign_word(parser: Parser, word: Token, meant: str) -> None:
+class Recoveries(Protocol):
+    """What goes on with a rule asks of the recovery of other places."""
+
+    again: AgainRecovery
+    construct: ConstructRecovery
+    groups: GroupRecovery
+    in_block: BlockRecovery
+    of_end: EndRecovery
+    times: TimesRecovery
+
+
+class Grammar(Protocol):
+    """The parser, with the rules that recovery goes on with."""
+
+    cursor: Cursor
+    reporter: Reporter
+    blocks: Blocks
+
+    @property
+    def recovery(self) -> Recoveries: ...
+
+    def argument_of(self, word: Token, is_reported: bool = False) -> Argument: ...
+
+    def arm(self, word: Token, is_reported: bool = False) -> None: ...
+
+    def definition(self, word: Token) -> None: ...
+
+
+def foreign_word(parser: Grammar, word: Token, meant: str) -> None:
     """Read `REPEAT(3)`, `SINO`, `FIN` … `meant` is what `foreign_block` gives for the word."""
     if meant == "END":
         parser.recovery.in_block.end_of_any(word)
@@ -83,7 +120,7 @@ def foreign_word(parser: Parser, word: Token, meant: str) -> None:
     parser.recovery.in_block.go_on()
 
 
-def _for_ever(parser: Parser, word: Token) -> None:
+def _for_ever(parser: Grammar, word: Token) -> None:
     """`repetir para siempre`: all of the line says that it has no end."""
     cursor = parser.cursor
     end = cursor.i + 1
@@ -102,7 +139,7 @@ def _for_ever(parser: Parser, word: Token) -> None:
     parser.recovery.in_block.go_on()
 
 
-def _repeat_until(parser: Parser, word: Token) -> None:
+def _repeat_until(parser: Grammar, word: Token) -> None:
     """`repetir hasta DISTANCE < 10`: WHILE asks the opposite."""
     cursor = parser.cursor
     start = cursor.i + 2 + (meant_by("HASTA_" + cursor.tokens[cursor.i + 2].text) == "UNTIL")
@@ -123,7 +160,7 @@ def _repeat_until(parser: Parser, word: Token) -> None:
     parser.recovery.in_block.go_on()
 
 
-def foreign_header(parser: Parser, word: Token, meant: str) -> NoReturn:
+def foreign_header(parser: Grammar, word: Token, meant: str) -> NoReturn:
     """Open the block of a header whose word has a diagnostic already."""
     cursor, reporter = parser.cursor, parser.reporter
     cursor.i += 1
@@ -145,7 +182,7 @@ def foreign_header(parser: Parser, word: Token, meant: str) -> NoReturn:
     parser.recovery.in_block.go_on(word)
 
 
-def forever_alone(parser: Parser, word: Token) -> NoReturn:
+def forever_alone(parser: Grammar, word: Token) -> NoReturn:
     """`FOREVER` alone on its line begins a block elsewhere."""
     is_header = begins_forever(parser)
     parser.cursor.i += 1
@@ -154,13 +191,13 @@ def forever_alone(parser: Parser, word: Token) -> NoReturn:
     parser.recovery.in_block.go_on()
 
 
-def begins_forever(parser: Parser) -> bool:
+def begins_forever(parser: Grammar) -> bool:
     """Whether nothing but a sign of a block stands behind the FOREVER at the cursor."""
     following = parser.cursor.following
     return following.kind in ("{", *AT_END) or following.text == ":"
 
 
-def _end(parser: Parser, word: Token, meant: str) -> NoReturn:
+def _end(parser: Grammar, word: Token, meant: str) -> NoReturn:
     block = parser.blocks.innermost
     if block is not None and block.is_reported:
         parser.recovery.in_block.end_of_any(word)
@@ -176,7 +213,7 @@ def _end(parser: Parser, word: Token, meant: str) -> NoReturn:
     raise Failed
 
 
-def _definition(parser: Parser, word: Token) -> NoReturn:
+def _definition(parser: Grammar, word: Token) -> NoReturn:
     name = parser.cursor.following
     is_named = name.kind is WORD
     cursor = parser.cursor
@@ -195,14 +232,14 @@ def _definition(parser: Parser, word: Token) -> NoReturn:
     parser.recovery.in_block.go_on()
 
 
-def _report(parser: Parser, word: Token, meant: str, fix: str, place: Span | None = None) -> None:
+def _report(parser: Grammar, word: Token, meant: str, fix: str, place: Span | None = None) -> None:
     usage = WORDS[meant].usage if meant in WORDS else meant
     parser.reporter.report(
         codes.OTHER_LANGUAGE, word.span, place, found=word.text, right=meant, fix=fix, usage=usage
     )
 
 
-def _line(parser: Parser) -> list[Token]:
+def _line(parser: Grammar) -> list[Token]:
     """Return the tokens from the cursor to the end of the line, of a long one the first."""
     row = []
     for token in parser.cursor.tokens[parser.cursor.i : parser.cursor.i + LONGEST]:
@@ -212,7 +249,7 @@ def _line(parser: Parser) -> list[Token]:
     return row
 
 
-def _header_fix(parser: Parser, word: Token, meant: str) -> str:
+def _header_fix(parser: Grammar, word: Token, meant: str) -> str:
     values = inside(parser.cursor.tokens, parser.cursor.i + 1)
     counts = word.text in COUNTING or any(token.kind in (";", ",", "=") for token in values)
     if meant == "LOOP" and counts:  # `for (i = 0; i < 3; i++)`
@@ -238,7 +275,7 @@ def _header_fix(parser: Parser, word: Token, meant: str) -> str:
     return head_in(WORDS[meant], values)
 
 
-def _is_value(parser: Parser, token: Token) -> bool:
+def _is_value(parser: Grammar, token: Token) -> bool:
     known = parser.recovery.in_block.known
     text = known.value(token.text)
     return text in WORDS or text.isdecimal() or known.is_own(text)

@@ -1,7 +1,7 @@
 """The lexer: text becomes tokens.
 
 Knows characters. Knows no word of the language and no grammar. A text that it cannot read, or that
-has a checksum, is read by `lexer_recovery`, which right programs never load.
+has a checksum, is for `lexer_recovery`, which right programs never load.
 """
 
 from __future__ import annotations
@@ -57,15 +57,13 @@ _PATTERN = re.compile(
 )
 
 
-def scan(text: str) -> Scan:
-    """Return the tokens of `text`, its comments and what could not be read."""
+def lexed(text: str) -> Scan | None:
+    """Return the tokens of `text` and its comments, or None where something cannot be read."""
     tokens: list[Token] = []
     comments: list[Token] = []
     if "~" not in text and read(_PATTERN, text, tokens, comments):
         return Scan(tokens, comments, [])
-    from tiniscript.syntax.lexer_recovery import scan_with_repairs
-
-    return scan_with_repairs(text)
+    return None
 
 
 def read(

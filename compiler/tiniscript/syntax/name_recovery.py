@@ -7,7 +7,7 @@ is too much.
 from __future__ import annotations
 
 from itertools import takewhile
-from typing import TYPE_CHECKING, NoReturn
+from typing import NoReturn
 
 from tiniscript.diagnostics import codes
 from tiniscript.kit import Kit
@@ -25,7 +25,7 @@ from tiniscript.syntax.call_suggestions import (
 from tiniscript.syntax.clause_recovery import ClauseRecovery
 from tiniscript.syntax.cursor import AT_END, Cursor
 from tiniscript.syntax.devices import actuator_word
-from tiniscript.syntax.foreign import foreign_word
+from tiniscript.syntax.foreign import Grammar, foreign_word
 from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, ODD, WORD, Token
 from tiniscript.syntax.lone_questions import asked_alone
 from tiniscript.syntax.operators import COMPARISONS, SIGNS
@@ -64,9 +64,6 @@ from tiniscript.words import (
     meant_by,
     usage_of,
 )
-
-if TYPE_CHECKING:
-    from tiniscript.syntax.parser import Parser
 
 
 class NameRecovery:
@@ -119,7 +116,7 @@ class NameRecovery:
         if name.text not in WORDS:
             self.blocks.here.append(Assign(name.text, name.span, None, name.span))
 
-    def unknown_word(self, parser: Parser, word: Token, following: Token) -> None:
+    def unknown_word(self, parser: Grammar, word: Token, following: Token) -> None:
         """Report what no name of a program can be; a name alone may be one of its DEFs."""
         kind = following.kind
         is_alone = kind in AT_END

@@ -37,7 +37,7 @@ from tiniscript.syntax.ast import Argument, Assign, Break, Command, Program
 from tiniscript.syntax.blocks import ENDS, HEADERS, Blocks
 from tiniscript.syntax.cursor import AT_END, Cursor
 from tiniscript.syntax.expressions import ExpressionParser
-from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, ODD, WORD, Scan, Token, scan
+from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, ODD, WORD, Scan, Token, lexed
 from tiniscript.syntax.operators import COMPARISONS
 from tiniscript.syntax.reporter import Failed, Reporter, Resumed
 from tiniscript.words import BLOCK_ENDS, WORDS, Word
@@ -58,6 +58,16 @@ class Parsed(NamedTuple):
     program: Program
     scan: Scan
     diagnostics: list[codes.Diagnostic]
+
+
+def scan(text: str) -> Scan:
+    """Return the tokens of `text`, its comments and what could not be read."""
+    scanned = lexed(text)
+    if scanned is None:
+        from tiniscript.syntax.lexer_recovery import scan_with_repairs
+
+        scanned = scan_with_repairs(text)
+    return scanned
 
 
 def parse(source: Source, kit: Kit | None = None) -> Parsed:

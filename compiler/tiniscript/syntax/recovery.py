@@ -6,7 +6,7 @@ meant; methods that go on with a rule of the grammar get the parser.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NoReturn
+from typing import NoReturn
 
 from tiniscript.diagnostics import codes
 from tiniscript.kit import Kit
@@ -20,7 +20,7 @@ from tiniscript.syntax.construct_recovery import ConstructRecovery
 from tiniscript.syntax.cursor import AT_END, Cursor
 from tiniscript.syntax.def_recovery import DefRecovery
 from tiniscript.syntax.end_recovery import EndRecovery
-from tiniscript.syntax.foreign import begins_forever, forever_alone
+from tiniscript.syntax.foreign import Grammar, begins_forever, forever_alone
 from tiniscript.syntax.group_recovery import GroupRecovery
 from tiniscript.syntax.joining_recovery import JoiningRecovery
 from tiniscript.syntax.lexer import NUMBER, ODD, WORD, Token
@@ -35,9 +35,6 @@ from tiniscript.syntax.times_recovery import TimesRecovery
 from tiniscript.syntax.until_recovery import UntilRecovery
 from tiniscript.syntax.value_constructs import ValueConstructs
 from tiniscript.words import NOT_DONE, WORDS, Word, meant_by, said_instead
-
-if TYPE_CHECKING:
-    from tiniscript.syntax.parser import Parser
 
 
 class Recovery:
@@ -143,14 +140,14 @@ class Recovery:
             self.reporter.report(codes.LINE_NUMBER, span, found=found)
             raise Resumed
 
-    def no_command(self, parser: Parser, word: Token, role: str) -> NoReturn:
+    def no_command(self, parser: Grammar, word: Token, role: str) -> NoReturn:
         """A word of the language that is no command begins an instruction."""
         if role == "operator" and self.kit is not None:
             self.again.line()  # `and so on`
         if role == "setup":
             self.setup.in_the_middle(parser, word)
         if role == "until":
-            self.of_until.after_its_move(parser, word)
+            self.of_until.after_its_move(word, parser.argument_of)
         if role == "forever":
             self.groups.forever(word)
             fix = {"fix": "LOOP(FOREVER)", "right": "LOOP"} if begins_forever(parser) else {}

@@ -5,12 +5,12 @@ Knows what people write in place of `SI|`, and bars that stand elsewhere.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NoReturn
+from typing import NoReturn
 
 from tiniscript.diagnostics import codes
 from tiniscript.source import Span
 from tiniscript.syntax.cursor import Cursor
-from tiniscript.syntax.foreign import foreign_header
+from tiniscript.syntax.foreign import Grammar, foreign_header
 from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, WORD, Token
 from tiniscript.syntax.near import near_at
 from tiniscript.syntax.phrases import (
@@ -32,9 +32,6 @@ from tiniscript.syntax.suggestions import (
 )
 from tiniscript.syntax.worded_questions import either_sensor
 from tiniscript.words import TURN_WORDS, WORDS, meant_by
-
-if TYPE_CHECKING:
-    from tiniscript.syntax.parser import Parser
 
 # What comes after the SI of a question: `si hay un obstaculo`, `si toca la pared`.
 _SEEING = frozenset(
@@ -137,7 +134,7 @@ class SetupRecovery:
         self.reporter.report(codes.PING_ALONE, ping.span if at_end else token.span)
         cursor.i = len(cursor.tokens) - 1
 
-    def in_the_middle(self, parser: Parser, word: Token) -> NoReturn:
+    def in_the_middle(self, parser: Grammar, word: Token) -> NoReturn:
         """`SI|SI|F(2, 80)`; but `SI(DISTANCE < 10)` asks a question."""
         cursor = self.cursor
         following = cursor.following
@@ -190,7 +187,7 @@ class SetupRecovery:
             return {**values, "twice": values["here"]}
         return {**values, "instead": begins} if begins else values
 
-    def _near(self, parser: Parser, word: Token) -> None:
+    def _near(self, parser: Grammar, word: Token) -> None:
         """`si hay una pared para`, `si no hay pared`."""
         cursor, in_block = self.cursor, parser.recovery.in_block
         near = near_at(cursor.tokens, cursor.i + 1, in_block.known)

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING, NoReturn
+from collections.abc import Callable, Sequence
+from typing import NoReturn
 
 from tiniscript.diagnostics import codes
 from tiniscript.source import Span
-from tiniscript.syntax.ast import Command
+from tiniscript.syntax.ast import Argument, Command
 from tiniscript.syntax.blocks import ENDS, HEADERS, Blocks
 from tiniscript.syntax.call_suggestions import call_in, starts_value
 from tiniscript.syntax.cursor import AT_END, Cursor
@@ -25,9 +25,6 @@ from tiniscript.syntax.suggestions import (
 )
 from tiniscript.syntax.vocabulary import Vocabulary
 from tiniscript.words import BLOCK_ENDS, WORDS, meant_by, nearest
-
-if TYPE_CHECKING:
-    from tiniscript.syntax.parser import Parser
 
 _TIMED = ("move", "wait")
 _ENDS_OF_UNTIL = ("END_UNTIL", "ENDUNTIL", "FIN_UNTIL")
@@ -148,7 +145,9 @@ class UntilRecovery:
         self.reporter.report(codes.UNKNOWN_WORD, token.span, place, found=found, near=fix, fix=fix)
         return True
 
-    def after_its_move(self, parser: Parser, word: Token) -> NoReturn:
+    def after_its_move(
+        self, word: Token, argument_of: Callable[[Token, bool], Argument]
+    ) -> NoReturn:
         """`F(2, 80);UNTIL(c)`: the move has its UNTIL, only not where it belongs."""
         self._as_block(word, is_strict=True)
         here = self.blocks.here
@@ -160,7 +159,7 @@ class UntilRecovery:
             self.reporter.fail(codes.UNTIL_ALONE, word.span, fix="")
         self._alone(word, self.cursor.source[last.span])
         self.cursor.i += 1
-        here[-1] = last._replace(until=parser.argument_of(word, is_reported=True))
+        here[-1] = last._replace(until=argument_of(word, True))
         raise Failed
 
     def _alone(self, until: Token, before: str) -> None:

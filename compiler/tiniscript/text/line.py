@@ -10,7 +10,8 @@ from collections.abc import Iterable, Iterator
 
 from tiniscript.source import Source
 from tiniscript.syntax.checksums import with_checksum
-from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, WORD, Token, scan
+from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, WORD, Token
+from tiniscript.syntax.parser import scan
 from tiniscript.words import ALIASES, WORDS
 
 EMPTY = "SI|"  # a program that does nothing: an empty line would be none

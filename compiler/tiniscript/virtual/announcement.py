@@ -10,8 +10,8 @@ from ipaddress import ip_address
 
 from zeroconf import Error, NonUniqueNameException, ServiceInfo, Zeroconf
 
-from tiniscript.link.named_robots import LONGEST, SERVICE, asked
 from tiniscript.link.port_names import TCP
+from tiniscript.link.transports.network import LONGEST, SERVICE, asked
 from tiniscript.virtual.transports import LOCAL
 
 ASK_MS = 2500  # timeout for a robot that has the name: for a second it may say nothing twice

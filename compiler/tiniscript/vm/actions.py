@@ -2,16 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from tiniscript.bytecode.opcodes import time8_ms
 from tiniscript.fixed_point import ONE, limited, whole
 from tiniscript.vm.handlers import HANDLERS, STAY, Handler, Step, does
-from tiniscript.vm.state import FOREVER, MOVE, PAUSE
+from tiniscript.vm.state import FOREVER, MOVE, PAUSE, Execution
 from tiniscript.vm.values import COMPARE, Compare
-
-if TYPE_CHECKING:
-    from tiniscript.vm.machine import Machine
 
 Powers = tuple[int, int]  # left and right, in percent
 
@@ -26,16 +21,16 @@ def _percent(power: int, low: int) -> int:
 
 
 @does("SHOW")
-def _show(m: Machine, after: int) -> Step:
+def _show(m: Execution, after: int) -> Step:
     return lambda: _sent(m, after, m.task.stack[-1], False)
 
 
 @does("SHOW_YES_NO")
-def _show_yes_no(m: Machine, after: int) -> Step:
+def _show_yes_no(m: Execution, after: int) -> Step:
     return lambda: _sent(m, after, 1 if m.task.stack[-1] else 0, True)
 
 
-def _sent(m: Machine, after: int, value: int, is_yes_no: bool) -> int:
+def _sent(m: Execution, after: int, value: int, is_yes_no: bool) -> int:
     if not m.robot.show(value, is_yes_no):
         return STAY
     m.task.stack.pop()
@@ -43,7 +38,7 @@ def _sent(m: Machine, after: int, value: int, is_yes_no: bool) -> int:
 
 
 @does("SET")
-def _set(m: Machine, after: int, a: int) -> Step:
+def _set(m: Execution, after: int, a: int) -> Step:
     def step() -> int:
         m.robot.set(a, m.task.stack.pop())
         return after
@@ -57,27 +52,27 @@ def _moves(direction: str, left: int, right: int) -> None:
     def powers(power: int) -> Powers:
         return left * power, right * power
 
-    def popped(m: Machine) -> Powers:
+    def popped(m: Execution) -> Powers:
         return powers(_percent(m.task.stack.pop(), 0))
 
-    def move8(m: Machine, after: int, time: int, power: int) -> Step:
+    def move8(m: Execution, after: int, time: int, power: int) -> Step:
         return lambda: _drive(m, after, time8_ms(time), powers(power))
 
-    def move(m: Machine, after: int) -> Step:
+    def move(m: Execution, after: int) -> Step:
         def step() -> int:
             driven = popped(m)
             return _drive(m, after, _duration(m.task.stack.pop()), driven)
 
         return step
 
-    def watch(m: Machine, after: int) -> Step:
+    def watch(m: Execution, after: int) -> Step:
         def step() -> int:
             driven = popped(m)
             return _prepare(m, after, _duration(m.task.stack.pop()), driven)
 
         return step
 
-    def watch_forever(m: Machine, after: int) -> Step:
+    def watch_forever(m: Execution, after: int) -> Step:
         return lambda: _prepare(m, after, FOREVER, popped(m))
 
     HANDLERS[f"MOVE8_{direction}"] = move8
@@ -86,12 +81,12 @@ def _moves(direction: str, left: int, right: int) -> None:
     HANDLERS[f"WATCH_FOREVER_{direction}"] = watch_forever
 
 
-def _drive(m: Machine, after: int, move_ms: int, powers: Powers) -> int:
+def _drive(m: Execution, after: int, move_ms: int, powers: Powers) -> int:
     m.robot.motors(*powers)
     return m.wait(move_ms, MOVE, after)
 
 
-def _prepare(m: Machine, after: int, move_ms: int, powers: Powers | None) -> int:
+def _prepare(m: Execution, after: int, move_ms: int, powers: Powers | None) -> int:
     """Keep the move or the wait that an UNTIL watches; its check begins behind this instruction."""
     task = m.task
     task.move_ms, task.powers, task.is_watching = move_ms, powers, False
@@ -106,32 +101,32 @@ _moves("R", 1, -1)
 
 
 @does("WAIT")
-def _wait(m: Machine, after: int) -> Step:
+def _wait(m: Execution, after: int) -> Step:
     return lambda: m.wait(_duration(m.task.stack.pop()), PAUSE, after)
 
 
 @does("WAIT8")
-def _wait8(m: Machine, after: int, time: int) -> Step:
+def _wait8(m: Execution, after: int, time: int) -> Step:
     return lambda: m.wait(time8_ms(time), PAUSE, after)
 
 
 @does("WATCH_WAIT")
-def _watch_wait(m: Machine, after: int) -> Step:
+def _watch_wait(m: Execution, after: int) -> Step:
     return lambda: _prepare(m, after, _duration(m.task.stack.pop()), None)
 
 
 @does("WATCH_FOREVER_WAIT")
-def _watch_forever_wait(m: Machine, after: int) -> Step:
+def _watch_forever_wait(m: Execution, after: int) -> Step:
     return lambda: _prepare(m, after, FOREVER, None)
 
 
 @does("UNTIL")
-def _until(m: Machine, after: int) -> Step:
+def _until(m: Execution, after: int) -> Step:
     return lambda: m.until(bool(m.task.stack.pop()), after)
 
 
 def _until_compared(compare: Compare) -> Handler:
-    def handler(m: Machine, after: int, n: int) -> Step:
+    def handler(m: Execution, after: int, n: int) -> Step:
         return lambda: m.until(compare(m.task.stack.pop(), n * ONE), after)
 
     return handler
@@ -142,12 +137,12 @@ for _name, _compare in COMPARE.items():
 
 
 @does("STOP")
-def _stop(m: Machine, after: int) -> Step:
+def _stop(m: Execution, after: int) -> Step:
     return _motors8(m, after, 0, 0)
 
 
 @does("MOTORS")
-def _motors(m: Machine, after: int) -> Step:
+def _motors(m: Execution, after: int) -> Step:
     def step() -> int:
         right, left = m.task.stack.pop(), m.task.stack.pop()
         m.robot.motors(_percent(left, -100), _percent(right, -100))
@@ -157,7 +152,7 @@ def _motors(m: Machine, after: int) -> Step:
 
 
 @does("MOTORS8")
-def _motors8(m: Machine, after: int, left: int, right: int) -> Step:
+def _motors8(m: Execution, after: int, left: int, right: int) -> Step:
     def step() -> int:
         m.robot.motors(left, right)
         return after
@@ -166,7 +161,7 @@ def _motors8(m: Machine, after: int, left: int, right: int) -> Step:
 
 
 @does("BEEP")
-def _beep(m: Machine, after: int) -> Step:
+def _beep(m: Execution, after: int) -> Step:
     def step() -> int:
         hertz, time = m.task.stack.pop(), m.task.stack.pop()
         return _sound(m, after, whole(hertz), _duration(time))
@@ -175,10 +170,10 @@ def _beep(m: Machine, after: int) -> Step:
 
 
 @does("BEEP8")
-def _beep8(m: Machine, after: int, time: int, hertz: int) -> Step:
+def _beep8(m: Execution, after: int, time: int, hertz: int) -> Step:
     return lambda: _sound(m, after, hertz, time8_ms(time))
 
 
-def _sound(m: Machine, after: int, hertz: int, duration_ms: int) -> int:
+def _sound(m: Execution, after: int, hertz: int, duration_ms: int) -> int:
     m.robot.beep(limited(hertz, 31, 20_000), duration_ms)
     return m.wait(duration_ms, PAUSE, after)

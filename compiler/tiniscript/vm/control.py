@@ -2,30 +2,25 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from tiniscript.fixed_point import ONE, whole
 from tiniscript.vm.handlers import HANDLERS, STAY, Handler, Step, does
-from tiniscript.vm.state import DONE
+from tiniscript.vm.state import DONE, Execution
 from tiniscript.vm.values import COMPARE, Compare
-
-if TYPE_CHECKING:
-    from tiniscript.vm.machine import Machine
 
 
 @does("IF", "IF_FAR")
-def _if(m: Machine, after: int, to: int) -> Step:
+def _if(m: Execution, after: int, to: int) -> Step:
     pop = m.task.stack.pop
     return lambda: after if pop() else to
 
 
 @does("IF_NOT", "IF_NOT_FAR")
-def _if_not(m: Machine, after: int, to: int) -> Step:
+def _if_not(m: Execution, after: int, to: int) -> Step:
     return _if(m, to, after)
 
 
 def _if_compared(compare: Compare) -> Handler:
-    def handler(m: Machine, after: int, n: int, to: int) -> Step:
+    def handler(m: Execution, after: int, n: int, to: int) -> Step:
         pop, constant = m.task.stack.pop, n * ONE
         return lambda: after if compare(pop(), constant) else to
 
@@ -33,7 +28,7 @@ def _if_compared(compare: Compare) -> Handler:
 
 
 def _if_var_compared(compare: Compare) -> Handler:
-    def handler(m: Machine, after: int, v: int, n: int, to: int) -> Step:
+    def handler(m: Execution, after: int, v: int, n: int, to: int) -> Step:
         variables, constant = m.task.variables, n * ONE
         return lambda: after if compare(variables[v], constant) else to
 
@@ -46,17 +41,17 @@ for _name, _compare in COMPARE.items():
 
 
 @does("ELSE", "ELSE_FAR", "AGAIN", "AGAIN_FAR", "BREAK", "BREAK_FAR", "DEF", "DEF_FAR")
-def _go(m: Machine, after: int, to: int) -> Step:
+def _go(m: Execution, after: int, to: int) -> Step:
     return lambda: to
 
 
 @does("FOREVER", "WHILE", "WHILE_FAR")
-def _mark(m: Machine, after: int, to: int = 0) -> Step:
+def _mark(m: Execution, after: int, to: int = 0) -> Step:
     return lambda: after
 
 
 @does("LOOP8")
-def _loop8(m: Machine, after: int, n: int) -> Step:
+def _loop8(m: Execution, after: int, n: int) -> Step:
     def step() -> int:
         m.task.counters.append(n)
         return after
@@ -65,7 +60,7 @@ def _loop8(m: Machine, after: int, n: int) -> Step:
 
 
 @does("LOOP", "LOOP_FAR")
-def _loop(m: Machine, after: int, to: int) -> Step:
+def _loop(m: Execution, after: int, to: int) -> Step:
     def step() -> int:
         n = whole(m.task.stack.pop())
         if n < 1:
@@ -77,7 +72,7 @@ def _loop(m: Machine, after: int, to: int) -> Step:
 
 
 @does("NEXT", "NEXT_FAR")
-def _next(m: Machine, after: int, to: int) -> Step:
+def _next(m: Execution, after: int, to: int) -> Step:
     counters = m.task.counters
 
     def step() -> int:
@@ -92,7 +87,7 @@ def _next(m: Machine, after: int, to: int) -> Step:
 
 
 @does("BREAK_LOOP", "BREAK_LOOP_FAR")
-def _break_loop(m: Machine, after: int, to: int) -> Step:
+def _break_loop(m: Execution, after: int, to: int) -> Step:
     def step() -> int:
         m.task.counters.pop()
         return to
@@ -101,7 +96,7 @@ def _break_loop(m: Machine, after: int, to: int) -> Step:
 
 
 @does("CALL", "CALL_FAR")
-def _call(m: Machine, after: int, to: int) -> Step:
+def _call(m: Execution, after: int, to: int) -> Step:
     calls = m.task.calls
 
     def step() -> int:
@@ -112,12 +107,12 @@ def _call(m: Machine, after: int, to: int) -> Step:
 
 
 @does("RETURN")
-def _return(m: Machine, after: int) -> Step:
+def _return(m: Execution, after: int) -> Step:
     return m.task.calls.pop
 
 
 @does("END")
-def _end(m: Machine, after: int) -> Step:
+def _end(m: Execution, after: int) -> Step:
     def step() -> int:
         m.robot.off()
         m.status = DONE

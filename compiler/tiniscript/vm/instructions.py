@@ -6,14 +6,10 @@ short instruction shares the handler of its long form.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from tiniscript.bytecode.opcodes import BY_CODE, OPS, Op, read_operands
 from tiniscript.vm import actions, control, values
 from tiniscript.vm.handlers import HANDLERS, Step
-
-if TYPE_CHECKING:
-    from tiniscript.vm.machine import Machine
+from tiniscript.vm.state import Execution
 
 _FAMILIES = (values, actions, control)  # importing them fills the table
 
@@ -25,7 +21,7 @@ _missing = [op.name for op in OPS if op.name not in HANDLERS]
 assert not _missing, f"no handler for {_missing}"
 
 
-def bound(m: Machine, code: bytes) -> list[Step]:
+def bound(m: Execution, code: bytes) -> list[Step]:
     """Return the step of the instruction at each offset, for this machine. Jumps are offsets.
 
     Behind the code stands END.

@@ -7,38 +7,20 @@ Runs verified code. Time comes in as `now_ms`, which does not wrap around here; 
 
 from __future__ import annotations
 
-from tiniscript.bytecode.opcodes import CHECK_MS
 from tiniscript.fixed_point import Fault
 from tiniscript.vm.handlers import STAY, stopped
 from tiniscript.vm.instructions import bound, instruction
-from tiniscript.vm.state import (
-    CLOCK_MS,
-    DONE,
-    FAULT,
-    FOREVER,
-    MOVE,
-    NOTHING,
-    PAUSE,
-    RUNNING,
-    WAITING,
-    Robot,
-    Task,
-)
-
-LATE_MS = 20  # later than this, a program's own clock no longer catches up
+from tiniscript.vm.state import DONE, FAULT, MOVE, NOTHING, RUNNING, WAITING, Execution, Robot, Task
 
 
-class Machine:
+class Machine(Execution):
     """Runs the code of one image on one robot."""
 
     def __init__(
         self, code: bytes, robot: Robot, sensors: int = 0, seed: int = 1, now_ms: int = 0
     ) -> None:
         """`code` must be verified for a kit with so many sensors; `seed` is 1 to 4294967295."""
-        self.robot = robot
-        self.task = Task(seed, sensors, now_ms)
-        self.now_ms = now_ms
-        self.status = RUNNING
+        super().__init__(robot, Task(seed, sensors, now_ms), now_ms)
         self.fault = ""
         self.at = 0  # where the instruction that runs, or has faulted, begins
         self.steps = 0  # instructions that have run
@@ -75,50 +57,3 @@ class Machine:
         self.at, task.pc = at, pc
         self.steps += budget - left
         return self.status
-
-    @property
-    def wake_ms(self) -> int:
-        """Return the time before which a waiting machine has nothing to do."""
-        return self.task.wake_ms
-
-    def wait(self, duration_ms: int, what: str, after: int) -> int:
-        """Begin a wait at the end of the previous one, or now if that is too long ago.
-
-        Like a step, this and `until` return where the program goes on.
-        """
-        task = self.task
-        self.begin()
-        task.clock_ms += duration_ms
-        task.wake_ms = task.clock_ms
-        task.wait = what
-        self.status = WAITING
-        return stopped(after)
-
-    def begin(self) -> None:
-        """Set the program's clock to the start time of the next wait or move."""
-        if (self.now_ms - self.task.clock_ms) % CLOCK_MS > LATE_MS:
-            self.task.clock_ms = self.now_ms
-
-    def until(self, stop: bool, after: int) -> int:
-        """End the watched move or go on with it, and check again."""
-        task = self.task
-        if stop:
-            if task.is_watching:
-                task.clock_ms = self.now_ms
-                if task.powers is not None:
-                    self.robot.motors(0, 0)
-            return after
-        if not task.is_watching:
-            task.is_watching = True
-            self.begin()
-            task.begun_ms = task.clock_ms
-            if task.powers is not None:
-                self.robot.motors(*task.powers)
-        gone_ms = (self.now_ms - task.begun_ms) % CLOCK_MS
-        next_ms = (gone_ms // CHECK_MS + 1) * CHECK_MS
-        is_last = task.move_ms != FOREVER and next_ms >= task.move_ms
-        due_ms = task.move_ms if is_last else next_ms
-        task.clock_ms = task.wake_ms = self.now_ms - gone_ms + due_ms
-        task.wait = MOVE if is_last and task.powers is not None else PAUSE
-        self.status = WAITING
-        return stopped(after if is_last else task.check)

@@ -1,16 +1,18 @@
 """The state of a running program, and its interface to the robot.
 
-Knows the record `Task`, the robot's seam and the words for what a machine is doing. Does not
-know what instructions do (`instructions`) nor when they run (`machine`).
+Knows the record `Task`, its waits, the robot's seam and the words for what a machine is doing. Does
+not know what instructions do (`instructions`) nor when they run (`machine`).
 """
 
 from __future__ import annotations
 
 from typing import Protocol
 
-from tiniscript.bytecode.opcodes import VARIABLES
+from tiniscript.bytecode.opcodes import CHECK_MS, VARIABLES
+from tiniscript.vm.handlers import stopped
 
 CLOCK_MS = 2**32  # where a machine's clock wraps around
+LATE_MS = 20  # later than this, a program's own clock no longer catches up
 FOREVER = -1  # the time of a move that only its UNTIL ends
 
 # What `tick` returns
@@ -72,3 +74,60 @@ class Task:
         self.check = 0  # where its check begins
         self.is_watching = False  # it has begun,
         self.begun_ms = now_ms  # at this time
+
+
+class Execution:
+    """A program that runs on a robot, as its instructions use it."""
+
+    def __init__(self, robot: Robot, task: Task, now_ms: int) -> None:
+        self.robot = robot
+        self.task = task
+        self.now_ms = now_ms
+        self.status = RUNNING
+
+    @property
+    def wake_ms(self) -> int:
+        """Return the time before which a waiting machine has nothing to do."""
+        return self.task.wake_ms
+
+    def wait(self, duration_ms: int, what: str, after: int) -> int:
+        """Begin a wait at the end of the previous one, or now if that is too long ago.
+
+        Like a step, this and `until` return where the program goes on.
+        """
+        task = self.task
+        self.begin()
+        task.clock_ms += duration_ms
+        task.wake_ms = task.clock_ms
+        task.wait = what
+        self.status = WAITING
+        return stopped(after)
+
+    def begin(self) -> None:
+        """Set the program's clock to the start time of the next wait or move."""
+        if (self.now_ms - self.task.clock_ms) % CLOCK_MS > LATE_MS:
+            self.task.clock_ms = self.now_ms
+
+    def until(self, stop: bool, after: int) -> int:
+        """End the watched move or go on with it, and check again."""
+        task = self.task
+        if stop:
+            if task.is_watching:
+                task.clock_ms = self.now_ms
+                if task.powers is not None:
+                    self.robot.motors(0, 0)
+            return after
+        if not task.is_watching:
+            task.is_watching = True
+            self.begin()
+            task.begun_ms = task.clock_ms
+            if task.powers is not None:
+                self.robot.motors(*task.powers)
+        gone_ms = (self.now_ms - task.begun_ms) % CLOCK_MS
+        next_ms = (gone_ms // CHECK_MS + 1) * CHECK_MS
+        is_last = task.move_ms != FOREVER and next_ms >= task.move_ms
+        due_ms = task.move_ms if is_last else next_ms
+        task.clock_ms = task.wake_ms = self.now_ms - gone_ms + due_ms
+        task.wait = MOVE if is_last and task.powers is not None else PAUSE
+        self.status = WAITING
+        return stopped(after if is_last else task.check)

@@ -4,15 +4,12 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
 from tiniscript import fixed_point
 from tiniscript.bytecode.opcodes import COMPARATORS, PUSHED
 from tiniscript.fixed_point import ONE, in_range, next_random, random_between
 from tiniscript.vm.handlers import HANDLERS, STAY, Handler, Step, does
-
-if TYPE_CHECKING:
-    from tiniscript.vm.machine import Machine
+from tiniscript.vm.state import Execution
 
 Compare = Callable[[int, int], bool]
 
@@ -20,7 +17,7 @@ Compare = Callable[[int, int], bool]
 
 
 @does("PUSH_MILLI", "PUSH32")
-def _push(m: Machine, after: int, n: int) -> Step:
+def _push(m: Execution, after: int, n: int) -> Step:
     push = m.task.stack.append
 
     def step() -> int:
@@ -31,12 +28,12 @@ def _push(m: Machine, after: int, n: int) -> Step:
 
 
 @does("PUSH8", "PUSH16")
-def _push_whole(m: Machine, after: int, n: int) -> Step:
+def _push_whole(m: Execution, after: int, n: int) -> Step:
     return _push(m, after, n * ONE)
 
 
 @does("PUSH_TENTHS")
-def _push_tenths(m: Machine, after: int, n: int) -> Step:
+def _push_tenths(m: Execution, after: int, n: int) -> Step:
     return _push(m, after, n * 100)
 
 
@@ -50,7 +47,7 @@ for _number in PUSHED:
     HANDLERS[f"PUSH_NUM_{_number}"] = _pushing(_number * ONE)
 
 
-def _push_of(m: Machine, after: int, values: list[int], number: int) -> Step:
+def _push_of(m: Execution, after: int, values: list[int], number: int) -> Step:
     push = m.task.stack.append
 
     def step() -> int:
@@ -61,17 +58,17 @@ def _push_of(m: Machine, after: int, values: list[int], number: int) -> Step:
 
 
 @does("PUSH_VAR")
-def _push_var(m: Machine, after: int, v: int) -> Step:
+def _push_var(m: Execution, after: int, v: int) -> Step:
     return _push_of(m, after, m.task.variables, v)
 
 
 @does("PUSH_SENSOR")
-def _push_sensor(m: Machine, after: int, s: int) -> Step:
+def _push_sensor(m: Execution, after: int, s: int) -> Step:
     return _push_of(m, after, m.task.readings, s)
 
 
 @does("READ")
-def _read(m: Machine, after: int, s: int) -> Step:
+def _read(m: Execution, after: int, s: int) -> Step:
     readings = m.task.readings
 
     def step() -> int:
@@ -85,7 +82,7 @@ def _read(m: Machine, after: int, s: int) -> Step:
 
 
 @does("PUSH_READ")
-def _push_read(m: Machine, after: int, s: int) -> Step:
+def _push_read(m: Execution, after: int, s: int) -> Step:
     read, push = _read(m, after, s), _push_sensor(m, after, s)
 
     def step() -> int:
@@ -95,7 +92,7 @@ def _push_read(m: Machine, after: int, s: int) -> Step:
 
 
 @does("TIME")
-def _time(m: Machine, after: int) -> Step:
+def _time(m: Execution, after: int) -> Step:
     task = m.task
 
     def step() -> int:
@@ -106,7 +103,7 @@ def _time(m: Machine, after: int) -> Step:
 
 
 @does("RANDOM")
-def _random(m: Machine, after: int) -> Step:
+def _random(m: Execution, after: int) -> Step:
     task = m.task
 
     def step() -> int:
@@ -119,7 +116,7 @@ def _random(m: Machine, after: int) -> Step:
 
 
 def _binary(calculate: Callable[[int, int], int]) -> Handler:
-    def handler(m: Machine, after: int) -> Step:
+    def handler(m: Execution, after: int) -> Step:
         stack = m.task.stack
 
         def step() -> int:
@@ -133,7 +130,7 @@ def _binary(calculate: Callable[[int, int], int]) -> Handler:
 
 
 def _comparing(compare: Compare) -> Handler:
-    def handler(m: Machine, after: int) -> Step:
+    def handler(m: Execution, after: int) -> Step:
         stack = m.task.stack
 
         def step() -> int:
@@ -147,7 +144,7 @@ def _comparing(compare: Compare) -> Handler:
 
 
 def _unary(calculate: Callable[[int], int]) -> Handler:
-    def handler(m: Machine, after: int) -> Step:
+    def handler(m: Execution, after: int) -> Step:
         stack = m.task.stack
 
         def step() -> int:
@@ -175,7 +172,7 @@ HANDLERS["NOT"] = _unary(lambda a: 0 if a else 1)
 
 
 @does("AND_THEN", "AND_THEN_FAR")
-def _and_then(m: Machine, after: int, to: int) -> Step:
+def _and_then(m: Execution, after: int, to: int) -> Step:
     stack = m.task.stack
 
     def step() -> int:
@@ -188,7 +185,7 @@ def _and_then(m: Machine, after: int, to: int) -> Step:
 
 
 @does("OR_ELSE", "OR_ELSE_FAR")
-def _or_else(m: Machine, after: int, to: int) -> Step:
+def _or_else(m: Execution, after: int, to: int) -> Step:
     stack = m.task.stack
 
     def step() -> int:
@@ -204,7 +201,7 @@ def _or_else(m: Machine, after: int, to: int) -> Step:
 
 
 @does("SET_VAR")
-def _set_var(m: Machine, after: int, v: int) -> Step:
+def _set_var(m: Execution, after: int, v: int) -> Step:
     variables, pop = m.task.variables, m.task.stack.pop
 
     def step() -> int:
@@ -215,7 +212,7 @@ def _set_var(m: Machine, after: int, v: int) -> Step:
 
 
 @does("SET_VAR8")
-def _set_var8(m: Machine, after: int, v: int, n: int) -> Step:
+def _set_var8(m: Execution, after: int, v: int, n: int) -> Step:
     variables, value = m.task.variables, n * ONE
 
     def step() -> int:
@@ -226,7 +223,7 @@ def _set_var8(m: Machine, after: int, v: int, n: int) -> Step:
 
 
 @does("ADD_VAR8")
-def _add_var8(m: Machine, after: int, v: int, n: int) -> Step:
+def _add_var8(m: Execution, after: int, v: int, n: int) -> Step:
     variables, value = m.task.variables, n * ONE
 
     def step() -> int:
@@ -237,17 +234,17 @@ def _add_var8(m: Machine, after: int, v: int, n: int) -> Step:
 
 
 @does("INC_VAR")
-def _inc_var(m: Machine, after: int, v: int) -> Step:
+def _inc_var(m: Execution, after: int, v: int) -> Step:
     return _add_var8(m, after, v, 1)
 
 
 @does("DEC_VAR")
-def _dec_var(m: Machine, after: int, v: int) -> Step:
+def _dec_var(m: Execution, after: int, v: int) -> Step:
     return _add_var8(m, after, v, -1)
 
 
 @does("ADD_VAR")
-def _add_var(m: Machine, after: int, v: int, w: int) -> Step:
+def _add_var(m: Execution, after: int, v: int, w: int) -> Step:
     variables = m.task.variables
 
     def step() -> int:

@@ -61,7 +61,7 @@ def _port(options: Namespace, language: str) -> int:
     from tiniscript.cli.robot.connect import FASTEST_BAUD, SLOWEST_BAUD, port_failure
     from tiniscript.conformance import link_kit, port_checks
     from tiniscript.conformance.wire_robot import Silent, WireRobot
-    from tiniscript.link import ports
+    from tiniscript.link import errors, ports
     from tiniscript.link.messages import MAJOR, MINOR, OWNED
     from tiniscript.link.wire import SerialWire
 
@@ -78,7 +78,7 @@ def _port(options: Namespace, language: str) -> int:
         raise CommandError(2, "conform_no_case", found=shown(options.only))
     try:
         wire = SerialWire(ports.opened(ports.resolved(port), baud))
-    except ports.PortError as failure:
+    except errors.PortError as failure:
         raise port_failure(port, failure) from None
     is_radio = ports.is_radio(port)
     nonce = int.from_bytes(os.urandom(4), "little")

@@ -101,7 +101,7 @@ def _avrdude() -> list[str]:
 def _port(options: Namespace) -> str:
     """Return the port, which can be opened. Never the last used one: it may be that of a radio."""
     from tiniscript.flash.bootloaders import UNO
-    from tiniscript.link import ports
+    from tiniscript.link import errors, ports
     from tiniscript.link.port_names import is_address
 
     port: str | None = options.port
@@ -113,7 +113,7 @@ def _port(options: Namespace) -> str:
         raise CommandError(2, "flash_address", port=shown(port))
     try:
         ports.opened(port, UNO.baud).close()
-    except ports.PortError as failure:
+    except errors.PortError as failure:
         raise port_failure(port, failure) from None
     return port
 

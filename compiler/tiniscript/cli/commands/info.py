@@ -13,7 +13,7 @@ from tiniscript.cli.robot.targets import are_many
 from tiniscript.cli.texts.common import text
 
 if TYPE_CHECKING:
-    from tiniscript.cli.robot.fleet import Member, Result
+    from tiniscript.cli.robot.member import Member, Result
 
 
 def run(options: Namespace, language: str) -> int:
@@ -30,7 +30,7 @@ def run(options: Namespace, language: str) -> int:
 
 
 def one_of_many(connection: Connection, member: Member) -> Result:
-    from tiniscript.cli.robot.fleet import Result
+    from tiniscript.cli.robot.member import Result
 
     member.meet(connection)
     description = Description(connection)

@@ -59,12 +59,13 @@ def run(options: Namespace, language: str) -> int:
 def _may_be_done(line: str, known: Known, robot: Robot, options: Namespace) -> bool:
     """Whether a line has no mistakes, perhaps for the robot that answers; else print them."""
     from tiniscript.library.compiling import naming
+    from tiniscript.library.known_kits import is_other_robots
     from tiniscript.link.requests import SHORT_BYTES
 
     language: str = options.language
     if options.robot is None:
         compiled = naming(known.line(line, 0).compiled, robot)
-        if own_kit.is_other_robots(compiled):
+        if is_other_robots(compiled.diagnostics):
             found = own_kit.of_answering(options, robot, language)
             if found is not None:
                 return True  # it is compiled again for that robot

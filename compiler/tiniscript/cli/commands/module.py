@@ -82,7 +82,7 @@ def _refuse(wanted: Wanted, dialect: Dialect, what: str) -> None:
 
 
 def _wire(options: Namespace) -> Wire:
-    from tiniscript.link import ports
+    from tiniscript.link import errors, ports
     from tiniscript.link.wire import SerialWire
 
     port: str | None = options.port
@@ -94,7 +94,7 @@ def _wire(options: Namespace) -> Wire:
         if ports.is_radio(port):
             raise CommandError(2, "module_by_radio", port=shown(port))
         return SerialWire(ports.opened(port, BAUDS[0]))
-    except ports.PortError as failure:
+    except errors.PortError as failure:
         raise port_failure(port, failure) from None
 
 

@@ -15,7 +15,8 @@ from tiniscript.cli.robot.targets import are_many
 from tiniscript.cli.texts.common import text
 
 if TYPE_CHECKING:
-    from tiniscript.cli.robot.fleet import Member, Result, Work
+    from tiniscript.cli.robot.fleet import Work
+    from tiniscript.cli.robot.member import Member, Result
 
 COUNT = 10
 
@@ -62,7 +63,7 @@ def _measured(connection: Connection, count: int) -> tuple[str, dict[str, object
 
 def one_of_many(count: int) -> Work:
     """Return the function that pings each of many robots."""
-    from tiniscript.cli.robot.fleet import Result
+    from tiniscript.cli.robot.member import Result
 
     def work(connection: Connection, member: Member) -> Result:
         member.meet(connection)

@@ -15,7 +15,7 @@ from tiniscript.cli.robot.targets import are_many
 from tiniscript.cli.texts.common import text
 
 if TYPE_CHECKING:
-    from tiniscript.cli.robot.fleet import Member, Result
+    from tiniscript.cli.robot.member import Member, Result
 
 
 def run(options: Namespace, language: str) -> int:
@@ -66,7 +66,8 @@ def _may_be_opened(connection: Connection) -> bool:
 
 
 def _one_of_many(connection: Connection, member: Member) -> Result:
-    from tiniscript.cli.robot.fleet import Again, Result
+    from tiniscript.cli.robot.fleet import Again
+    from tiniscript.cli.robot.member import Result
 
     member.tell("crew_stopping")
     if confirmed(connection.line):

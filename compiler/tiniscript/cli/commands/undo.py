@@ -16,7 +16,7 @@ from tiniscript.cli.texts.common import text
 from tiniscript.link.messages import SAVED_LOW_SUPPLY, SAVED_SAVING
 
 if TYPE_CHECKING:
-    from tiniscript.cli.robot.fleet import Member, Result
+    from tiniscript.cli.robot.member import Member, Result
     from tiniscript.link.payloads import ReceiptReply
 
 
@@ -55,7 +55,7 @@ def run(options: Namespace, language: str) -> int:
 
 def _one_of_many(connection: Connection, member: Member) -> Result:
     from tiniscript.cli.robot.event_printer import EventPrinter
-    from tiniscript.cli.robot.fleet import Result
+    from tiniscript.cli.robot.member import Result
 
     member.meet(connection)
     receipt = Undone(connection)
@@ -82,7 +82,7 @@ class Undone:
 
     def fields(self) -> dict[str, object]:
         """Return the receipt as data."""
-        from tiniscript.cli.commands.upload import saved_name
+        from tiniscript.cli.robot.program_upload import saved_name
 
         saved = saved_name(self.values)
         return {

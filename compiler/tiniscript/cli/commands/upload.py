@@ -12,17 +12,20 @@ from tiniscript.cli import images, inputs, outputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.robot import own_kit
 from tiniscript.cli.robot.connect import Connection
-from tiniscript.cli.robot.run_monitor import RunMonitor, Saving, stop_and_say
+from tiniscript.cli.robot.program_upload import (
+    follow_run,
+    has_button,
+    is_running,
+    receipt,
+    saved_name,
+    send_program,
+)
+from tiniscript.cli.robot.run_monitor import Saving, stop_and_say
 from tiniscript.cli.robot.targets import are_many
 from tiniscript.cli.texts.common import text
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from tiniscript.cli.robot.event_printer import EventPrinter
-    from tiniscript.link.connection import PendingRequest, Requester
     from tiniscript.link.payloads import ReceiptReply
-    from tiniscript.link.requests import Reply
     from tiniscript.robots.profile import Robot
 
 
@@ -90,7 +93,7 @@ def _upload(
     language = connection.language
     progress = Progress(language, 1 + len(ready.image.later) + len(ready.image.code))
     try:
-        values = brought(connection, ready, options, progress.draw)
+        values = send_program(connection, ready, options, progress.draw)
         began_s = monotonic()  # before anything else is loaded or told
     finally:
         progress.end()
@@ -111,7 +114,7 @@ def _upload(
         else:
             print(_receipt_line(connection, ready, name, values, options), flush=True)
         _keep_map(ready)  # only now, so that the robot starts earlier
-        return looked_after(connection, ready, saving, options, printer)
+        return follow_run(connection, ready, saving, options, printer)
     except KeyboardInterrupt:
         code = stop_and_say(connection)
         try:
@@ -144,102 +147,6 @@ def _keep_map(ready: images.Ready) -> None:
         source_map.remember(pack(image.start, image.devices, image.code), ready.places)
 
 
-def brought(
-    connection: Connection, ready: images.Ready, options: Namespace, draw: Callable[[int], None]
-) -> ReceiptReply:
-    """Send a program to the robot; return its receipt. `draw` gets the number of code bytes that
-    have arrived. Raises CommandError."""
-
-    from tiniscript.library.known_kits import may_run
-    from tiniscript.link.messages import STATUSES
-    from tiniscript.link.requests import Reply
-
-    def make(session: Requester) -> PendingRequest[ReceiptReply]:
-        runs, saves = not options.no_run, not options.no_save
-        kit = connection.profile.kit.fingerprint
-        return session.upload(ready.image, runs, saves, options.detach, kit)
-
-    kit = connection.device_info.kit
-    if not may_run(ready.image, connection.profile, kit):  # refused before any byte is sent
-        raise connection.failure(Reply(STATUSES["WRONG_KIT"], kit))
-    request = connection.do(make)
-    reply = connection.wait(request, lambda: draw(request.done_bytes))
-    if reply.status:
-        raise _failure(connection, reply, ready)
-    return reply.values
-
-
-def looked_after(
-    connection: Connection, ready: images.Ready, saving: Saving, options: Namespace,
-    printer: EventPrinter,
-) -> int:  # fmt: skip
-    """Follow a program until it has ended and is saved; return the exit code.
-
-    Raises CommandError.
-    """
-    code = 0
-    if is_running(ready, options):
-        if options.detach:
-            return 0
-        if connection.simulator is not None:
-            connection.simulator.watch()
-        code = RunMonitor(connection, printer, look=saving.look).follow(saving.run)
-    elif has_button(connection, ready, options):
-        from tiniscript.cli.robot.button_run import follow_button
-
-        code = follow_button(connection, printer, saving)
-    saving.wait()
-    return code
-
-
-def is_running(ready: images.Ready, options: Namespace) -> bool:
-    """Whether a program runs once it has arrived."""
-    return ready.image.start == "SI" and not options.no_run
-
-
-def has_button(connection: Connection, ready: images.Ready, options: Namespace) -> bool:
-    """Whether the program waits for the button of this command's own virtual robot."""
-    return connection.simulator is not None and ready.image.start == "SB" and not options.no_run
-
-
-def _failure(connection: Connection, reply: Reply[object], ready: images.Ready) -> CommandError:
-    from tiniscript.link.messages import STATUSES
-    from tiniscript.link.outcomes import LOST
-
-    port = inputs.shown(connection.port)
-    if reply.status == STATUSES["TOO_LARGE"]:
-        code, room = len(ready.image.code), reply.detail
-        return CommandError(
-            1, "too_large_by", code=str(code), over=str(code - room), room=str(room)
-        )
-    if reply.status == LOST:
-        return CommandError(3, "upload_lost", port=port)
-    return connection.failure(reply)
-
-
-def receipt(
-    connection: Connection, ready: images.Ready, name: str, values: ReceiptReply,
-    options: Namespace,
-) -> dict[str, object]:  # fmt: skip
-    """Return the result of the upload as data."""
-    image, runs, saved = ready.image, is_running(ready, options), saved_name(values)
-    return {
-        "event": "RECEIPT",
-        "robot": connection.device_info.name,
-        "port": connection.port,
-        "program": name,
-        "image_bytes": ready.image_bytes,
-        "code_bytes": len(image.code),
-        "checksum": f"{values.program:08x}",
-        "saved": saved,
-        "slot": values.slot if saved == "STORED" else None,
-        "start": image.start,
-        "is_running": runs,
-        "is_detached": runs and bool(options.detach),
-        "is_pushed": has_button(connection, ready, options),  # JSON output has no keys
-    }
-
-
 def _receipt_line(
     connection: Connection, ready: images.Ready, name: str, values: ReceiptReply,
     options: Namespace,
@@ -262,10 +169,3 @@ def _receipt_line(
         saved=text(f"saved_{saved_name(values)}", language).format(slot=values.slot),
         how=text(how, language).format(start=ready.image.start),
     )
-
-
-def saved_name(values: ReceiptReply) -> str:
-    """Return the place of the robot's program, as named in `link.messages`."""
-    from tiniscript.link.messages import SAVED
-
-    return SAVED[values.saved][0] if values.saved < len(SAVED) else "MEMORY"

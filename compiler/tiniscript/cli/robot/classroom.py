@@ -17,9 +17,9 @@ from tiniscript.cli.texts.common import text
 
 if TYPE_CHECKING:
     from tiniscript.cli.robot.connect import Connection
-    from tiniscript.cli.robot.fleet import Member, Result
+    from tiniscript.cli.robot.member import Member, Result
     from tiniscript.cli.robot.rows import Rows
-    from tiniscript.link.broker import Access, Broker, Present
+    from tiniscript.link.transports.broker import Access, Broker, Present
 
 STOPS = 3  # messages to all, as each may be lost
 WITHOUT: dict[str, object] = {  # what the fleet and its verbs ask of options that this verb has not
@@ -44,11 +44,11 @@ class Classroom:
         self.broker = self._connected(options)
 
     def _connected(self, options: Namespace) -> Broker:
-        from tiniscript.link.ports import NOT_INSTALLED, PortError
+        from tiniscript.link.errors import NOT_INSTALLED, PortError
 
         port = f"mqtt://{self.place}"
         try:
-            from tiniscript.link import broker
+            from tiniscript.link.transports import broker
         except ImportError as missing:
             failure = PortError(NOT_INSTALLED, missing.name or "")
             raise port_failure(port, failure) from None
@@ -59,7 +59,7 @@ class Classroom:
             raise port_failure(port, why) from None
 
     def _access(self, options: Namespace) -> Access:
-        from tiniscript.link.broker import Access
+        from tiniscript.link.transports.broker import Access
 
         user, password = broker_options.user(options, self.language)
         name, word = (each.decode("utf-8", "surrogateescape") for each in (user, password))
@@ -67,7 +67,7 @@ class Classroom:
 
     def present(self) -> list[Present]:
         """Return the robots that the broker knows, those that have gone, too."""
-        from tiniscript.link.ports import PortError
+        from tiniscript.link.errors import PortError
 
         try:
             found = self.broker.present(self.group)
@@ -82,7 +82,7 @@ class Classroom:
 
         Only who has them drive has to attend to them.
         """
-        from tiniscript.link.broker import port_of
+        from tiniscript.link.transports.broker import port_of
 
         ports = [port_of(*self.place, self.group, each.id) for each in found if each.is_here]
         own = Namespace(**{**WITHOUT, **vars(self.options)})
@@ -157,7 +157,7 @@ class Listener:
 
     def listen(self, connection: Connection, member: Member) -> Result:
         from tiniscript.cli.robot.event_printer import Bookkeeping, EventPrinter
-        from tiniscript.cli.robot.fleet import Result
+        from tiniscript.cli.robot.member import Result
         from tiniscript.cli.spreadsheet import no_formula
 
         member.meet(connection)

@@ -16,7 +16,6 @@ from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.options import whole_number
 from tiniscript.cli.robot import shared_port
-from tiniscript.cli.robot.own_kit import remember as remember_profile
 from tiniscript.cli.texts.common import text
 from tiniscript.library import opening
 from tiniscript.library.errors import RobotError
@@ -26,15 +25,16 @@ if TYPE_CHECKING:
     from tiniscript.cli.robot.simulator import CommandSimulator
     from tiniscript.codegen.source_map import Map
     from tiniscript.link.connection import LinkConnection, PendingRequest, Requester
+    from tiniscript.link.errors import PortError
     from tiniscript.link.line import Line
     from tiniscript.link.outcomes import Event, Gone
-    from tiniscript.link.ports import PortError
     from tiniscript.link.requests import DeviceInfo, Reply
     from tiniscript.robots.profile import Robot
 
 T = TypeVar("T")
 
 PATIENCE_MS = 6000  # timeout for a known robot that is silent, or busy with saving
+STOP_S = 1.5  # timeout for a stop when the command ends and may have no reader
 VIRTUAL = ""  # no port: this command starts its own virtual robot
 SLOWEST_BAUD, FASTEST_BAUD = 300, 2_000_000
 
@@ -97,9 +97,7 @@ class Connection:
         if self.server is not None:
             self.server.close()  # until then a client may start a run
             if self.server.may_have_run:  # its client can no longer stop it
-                from tiniscript.cli.robot.run_monitor import STOP_S, confirmed
-
-                confirmed(self.line, STOP_S)
+                opening.confirmed(self.line, STOP_S)
         self.line.close()
         self._end_simulator()
 
@@ -109,9 +107,7 @@ class Connection:
         if self._is_stopped_unseen or not self.drives:
             return False
         self._is_stopped_unseen = True
-        from tiniscript.cli.robot.run_monitor import STOP_S, confirmed
-
-        is_confirmed = confirmed(self.line, STOP_S)
+        is_confirmed = opening.confirmed(self.line, STOP_S)
         key = "output_stopped" if is_confirmed else "not_confirmed"
         with suppress(OSError):
             said = text(key, self.language).format(port=shown(self.port))
@@ -155,7 +151,7 @@ class Connection:
         device_info = self.line.robot
         if reply.status or device_info is None:
             raise self.failure(reply)
-        remember_profile(self.options, self.profile, device_info.kit)
+        _remember_profile(self.options, self.profile, device_info.kit)
         if not self.is_one_of_many:
             self.remember(device_info.name)
             self._tell_stale_key(device_info)
@@ -303,6 +299,18 @@ def port_failure(port: str, failure: PortError) -> CommandError:
     """Return the sentence for a port that does not open."""
     error = opening.port_error(port, failure)
     return CommandError(3, error.key, **error.values)
+
+
+def _remember_profile(options: Namespace, robot: Robot, kit: int) -> None:
+    """Remember the profile of a file for the robots with this kit."""
+    from tiniscript import robots
+
+    name = getattr(options, "robot", None)
+    if name is None or kit != robot.kit.fingerprint or name.lower() in robots.names():
+        return
+    from tiniscript.robots import given
+
+    given.remember(name, kit)
 
 
 def robot_of_kit(kit: int) -> str | None:

@@ -33,7 +33,7 @@ def fault_name(number: int) -> str:
 
 def fault_sentence(number: int, at: int, program: int, places: Map | None, language: str) -> str:
     """Return the meaning of a fault, and its line in the program if the text is known."""
-    from tiniscript.cli.commands.run import fault_text
+    from tiniscript.cli.faults import fault_text
     from tiniscript.cli.texts.common import has_text
     from tiniscript.codegen import source_map
 

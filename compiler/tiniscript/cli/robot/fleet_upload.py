@@ -7,9 +7,10 @@ import sys
 from argparse import Namespace
 from typing import TYPE_CHECKING
 
-from tiniscript.cli.commands import upload
+from tiniscript.cli.robot import program_upload
 from tiniscript.cli.robot.event_printer import EventPrinter
-from tiniscript.cli.robot.fleet import Member, Result, together
+from tiniscript.cli.robot.fleet import together
+from tiniscript.cli.robot.member import Member, Result
 from tiniscript.cli.robot.run_monitor import Saving
 from tiniscript.cli.texts.common import text
 
@@ -48,15 +49,15 @@ class Upload:
             member.tell("crew_sending", percent=100 * done // whole)
 
         draw(0)
-        values = upload.brought(connection, ready, options, draw)
-        receipt = upload.receipt(connection, ready, self.name, values, options)
+        values = program_upload.send_program(connection, ready, options, draw)
+        receipt = program_upload.receipt(connection, ready, self.name, values, options)
         if options.json:
             member.print(json.dumps(receipt))
-        runs = upload.is_running(ready, options)
+        runs = program_upload.is_running(ready, options)
         member.tell("crew_running" if runs and not options.detach else "crew_saving")
         printer = MemberPrinter(connection, ready, member, options.json, self.has_table)
         saving = Saving(connection, printer, values)
-        code = upload.looked_after(connection, ready, saving, options, printer)
+        code = program_upload.follow_run(connection, ready, saving, options, printer)
         if not runs or options.detach:
             key = "how_waits" if not runs else "how_detached"
             printer.end = text(key, language).format(start=ready.image.start)

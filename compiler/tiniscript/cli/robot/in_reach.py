@@ -25,8 +25,8 @@ def found(known: list[str], language: str) -> InReach:
     from concurrent.futures import ThreadPoolExecutor
 
     from tiniscript.cli.robot.connect import port_failure
+    from tiniscript.link.errors import PortError
     from tiniscript.link.port_names import BLE, TCP
-    from tiniscript.link.ports import PortError
 
     whole = InReach({}, [], [], [])
     reasons = set()  # where both packages are missing, one note says it

@@ -19,8 +19,8 @@ from tiniscript.library.compiling import Compiled, compile_text
 from tiniscript.semantics.ir import Assign, walk
 from tiniscript.source import Source, Span
 from tiniscript.syntax import ast
-from tiniscript.syntax.lexer import WORD, scan
-from tiniscript.syntax.parser import parse
+from tiniscript.syntax.lexer import WORD
+from tiniscript.syntax.parser import parse, scan
 from tiniscript.words import ALIASES, BLOCK_ENDS
 
 _HEADER = re.compile(r"[ \t]*(SI|SB|PING)[ \t]*\|", re.IGNORECASE | re.ASCII)

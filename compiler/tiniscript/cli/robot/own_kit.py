@@ -16,36 +16,7 @@ from tiniscript.library.known_kits import of_kit
 
 if TYPE_CHECKING:
     from tiniscript.cli.robot.connect import Connection
-    from tiniscript.library.compiling import Compiled
     from tiniscript.robots.profile import Robot
-
-
-def is_other_robots(compiled: Compiled) -> bool:
-    """Whether a program has words of another robot: its diagnostics have been through `naming`."""
-    from tiniscript.diagnostics.codes import OTHER_ROBOT
-    from tiniscript.robots import given
-    from tiniscript.semantics import other_kits
-
-    unknown = [
-        diagnostic for diagnostic in compiled.diagnostics if other_kits.is_unknown(diagnostic)
-    ]
-    if any(diagnostic.code is OTHER_ROBOT for diagnostic in unknown):
-        return True
-    words = {diagnostic.values.get("found") for diagnostic in unknown}
-    # of profiles with paths that are too long for a message
-    return bool(words) and any(words & other_kits.words(robot.kit) for _, robot in given.profiles())
-
-
-def remember(options: Namespace, robot: Robot, kit: int) -> None:
-    """Remember the profile of a file for the robots with this kit."""
-    from tiniscript import robots
-
-    name = getattr(options, "robot", None)
-    if name is None or kit != robot.kit.fingerprint or name.lower() in robots.names():
-        return
-    from tiniscript.robots import given
-
-    given.remember(name, kit)
 
 
 def take(connection: Connection, options: Namespace) -> bool:

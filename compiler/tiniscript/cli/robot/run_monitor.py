@@ -25,13 +25,12 @@ if TYPE_CHECKING:
     from tiniscript.link.payloads import ReceiptReply, StatusReply
     from tiniscript.link.requests import Reply
 
-STOP_S = 1.5  # timeout for a stop when the command ends and may have no reader
 SAVE_S = 10.0  # timeout for saving a program
 LOW_S = 2.0  # timeout while the voltage is too low for saving: the robot checks every 0.5 s
 ASK_S = 1.0  # between two status requests about saving, while the program runs
 DONE, FAULTY, INTERRUPTED, LOST = 0, 1, 2, 3  # exit codes
 
-__all__ = ("CONFIRM_S", "STOP_S", "RunMonitor", "Saving", "confirmed", "ended", "stop_and_say")
+__all__ = ("CONFIRM_S", "RunMonitor", "Saving", "confirmed", "ended", "stop_and_say")
 
 
 class RunMonitor:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
-from tiniscript.cli.options import decimal, whole_number
+from tiniscript.cli.options import decimal, sensor_lists, thousandths, whole_number
 from tiniscript.cli.texts.common import Said, text
 from tiniscript.cli.texts.options import virtual_names
 
@@ -50,7 +50,6 @@ def made(
     seed = whole_number("--seed", options.seed, 1, 1, 2**32 - 1, language)
     noise = number("--noise", options.noise, 0, 0, MOST_NOISE, language) / 100
     motors = _motors(options.motors, language)
-    from tiniscript.cli.commands.run import sensor_lists
     from tiniscript.virtual.world import WorldRefused
 
     told = sensor_lists(options.sensor, profile, language)
@@ -152,17 +151,7 @@ def number(
     option: str, found: str | None, default: int, low: int, high: int, language: str
 ) -> float:
     """Return an option's decimal number; `default`, `low` and `high` are thousandths."""
-    if found is None:
-        return default / ONE
-    value = decimal(found)
-    if value is None or not low <= value <= high:
-        from tiniscript.fixed_point import as_text
-
-        allowed = text("range_number", language).format(low=as_text(low), high=as_text(high))
-        raise CommandError(
-            2, "bad_number", option=option, range=allowed, found=shown(found) or "''"
-        )
-    return value / ONE
+    return thousandths(option, found, default, low, high, language) / ONE
 
 
 def _motors(found: str | None, language: str) -> tuple[float, float]:

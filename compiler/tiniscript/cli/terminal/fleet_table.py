@@ -15,7 +15,7 @@ from tiniscript.cli.texts.common import text
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from tiniscript.cli.robot.fleet import Member
+    from tiniscript.cli.robot.member import Member
 
 STYLES = {"": "", "ok": "green", "bad": "red", "absent": "dim"}
 

@@ -17,9 +17,9 @@ from bleak.backends.device import BLEDevice
 from bleak.backends.scanner import AdvertisementData
 from bleak.exc import BleakBluetoothNotAvailableError, BleakBluetoothNotAvailableReason
 
-from tiniscript.link import ports
+from tiniscript.link import errors
+from tiniscript.link.errors import PortError
 from tiniscript.link.port_names import canonical, is_device_address
-from tiniscript.link.ports import PortError
 
 NORDIC_UART = "6e400001-b5a3-f393-e0a9-e50e24dcca9e"
 HM10 = "0000ffe0-0000-1000-8000-00805f9b34fb"
@@ -143,9 +143,9 @@ async def found(name: str) -> BLEDevice:
                 await asyncio.wait_for(news.wait(), max(0.0, end_s - loop.time()))
         robots = sorted({seen.name or seen.address for seen in scan.seen.values() if seen.is_robot})
     if not matches:
-        raise PortError(ports.NOT_FOUND, ", ".join(robots[:NEARBY]))
+        raise PortError(errors.NOT_FOUND, ", ".join(robots[:NEARBY]))
     if len(matches) > 1:
-        raise PortError(ports.SEVERAL, ", ".join(f"ble://{each}" for each in sorted(matches)))
+        raise PortError(errors.SEVERAL, ", ".join(f"ble://{each}" for each in sorted(matches)))
     return next(iter(matches.values())).device
 
 
@@ -158,18 +158,18 @@ async def robots() -> list[Seen]:
 
 
 def reason_of(failure: Exception) -> str:
-    """Return why Bluetooth cannot be used, a name of `ports`."""
+    """Return why Bluetooth cannot be used, a name of `errors`."""
     if isinstance(failure, BleakBluetoothNotAvailableError):
         if failure.reason in _FORBIDDEN:
-            return ports.RADIO_FORBIDDEN
-        return ports.RADIO_OFF
+            return errors.RADIO_FORBIDDEN
+        return errors.RADIO_OFF
     said = str(failure)
     if isinstance(failure, PermissionError) or "AccessDenied" in said or "AuthFailed" in said:
-        return ports.RADIO_FORBIDDEN
+        return errors.RADIO_FORBIDDEN
     if "NotReady" in said or "Resource Not Ready" in said:
-        return ports.RADIO_OFF
+        return errors.RADIO_OFF
     if isinstance(failure, (FileNotFoundError, ConnectionError)):
-        return ports.RADIO_SERVICE
+        return errors.RADIO_SERVICE
     if "ServiceUnknown" in said or "NoReply" in said or "NameHasNoOwner" in said:
-        return ports.RADIO_SERVICE
-    return ports.RADIO_BROKEN
+        return errors.RADIO_SERVICE
+    return errors.RADIO_BROKEN

@@ -20,9 +20,10 @@ from zeroconf import (
     Zeroconf,
 )
 
-from tiniscript.link import ports
+from tiniscript.link import errors
+from tiniscript.link.errors import PortError
 from tiniscript.link.port_names import name_in
-from tiniscript.link.ports import PortError
+from tiniscript.link.transports import Port, serial
 
 SERVICE = "_tiniscript._tcp.local."
 SEARCH_S = 5.0  # for one robot
@@ -44,12 +45,18 @@ def resolved(port: str) -> str:
     """Return the address, `socket://…`, of the robot that announces a name. Raises PortError."""
     name = name_in(port).removesuffix(".local")
     if not 0 < len(name.encode()) <= LONGEST:
-        raise PortError(ports.NOT_ANNOUNCED)
+        raise PortError(errors.NOT_ANNOUNCED)
     with _network() as network:
         info = asked(network, f"{name}.{SERVICE}", int(SEARCH_S * 1000))
     if info is None:
-        raise PortError(ports.NOT_ANNOUNCED)
+        raise PortError(errors.NOT_ANNOUNCED)
     return _address(info)
+
+
+def opened(port: str, baud: int, limit_s: float) -> Port:
+    """Open the address of a name, which is searched first. Raises PortError."""
+    found: Port = serial.opened(resolved(port), baud, limit_s)
+    return found
 
 
 def listed() -> list[Announced]:
@@ -101,7 +108,7 @@ def _network() -> Zeroconf:
         return Zeroconf(ip_version=IPVersion.V4Only)
     except (OSError, RuntimeError) as why:  # RuntimeError: without any interface
         reason = why.strerror if isinstance(why, OSError) else None
-        raise PortError(ports.NO_MULTICAST, reason or str(why)) from None
+        raise PortError(errors.NO_MULTICAST, reason or str(why)) from None
 
 
 def _address(info: ServiceInfo) -> str:
@@ -111,4 +118,4 @@ def _address(info: ServiceInfo) -> str:
         is_local = address.is_private or address.is_link_local or address.is_loopback
         if is_local and not address.is_unspecified and info.port:
             return f"socket://{address}:{info.port}"
-    raise PortError(ports.STRANGE, ", ".join(info.parsed_addresses()[:3]))
+    raise PortError(errors.STRANGE, ", ".join(info.parsed_addresses()[:3]))

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from threading import Condition
 
-from tiniscript.link.ports import READ_S
+from tiniscript.link.transports import READ_S
 
 KEPT_BYTES = 65_536  # of somebody who sends more than is read; more is lost
 ENDED = "the connection has ended"

@@ -16,12 +16,13 @@ from bleak.backends.characteristic import BleakGATTCharacteristic
 from bleak.backends.device import BLEDevice
 from bleak.exc import BleakDeviceNotFoundError, BleakError
 
-from tiniscript.link import bluetooth_search as search
-from tiniscript.link import ports
-from tiniscript.link.event_loop import EventLoop, shared
+from tiniscript.link import errors
+from tiniscript.link.errors import PortError
 from tiniscript.link.port_names import BLE, canonical, name_in
-from tiniscript.link.ports import WRITE_S, PortError
-from tiniscript.link.pushed_port import ENDED, PushedPort
+from tiniscript.link.transports import WRITE_S
+from tiniscript.link.transports import bluetooth_search as search
+from tiniscript.link.transports.event_loop import EventLoop, shared
+from tiniscript.link.transports.pushed import ENDED, PushedPort
 
 CONNECT_S = 15.0
 QUEUE_S = 60.0  # and of those that wait for the connections of others
@@ -83,10 +84,10 @@ def listed() -> list[search.Seen]:
     return found
 
 
-def opened(port: str, baud: int) -> BluetoothPort:
+def opened(port: str, baud: int, limit_s: float) -> BluetoothPort:
     """Connect to a device. Raises PortError, at the latest after a search and QUEUE_S.
 
-    `baud` is the speed of the UART behind an HM-10.
+    `baud` is the speed of the UART behind an HM-10. Radios take longer than `limit_s`.
     """
     address = name_in(port)
     if address not in _found:
@@ -150,7 +151,7 @@ class BluetoothPort(PushedPort):
             self._writes, self._is_paced = writes, module.is_paced
             await client.start_notify(notifies, self._hear)
             return
-        raise PortError(ports.NO_ROBOT)
+        raise PortError(errors.NO_ROBOT)
 
     async def _send(self, data: bytes) -> None:
         assert self._client is not None and self._writes is not None
@@ -185,9 +186,9 @@ def _run(loop: EventLoop, work: Coroutine[Any, Any, T], limit_s: float) -> T:
     except PortError:
         raise
     except (TimeoutError, asyncio.TimeoutError):  # two of them, in Python 3.10
-        raise PortError(ports.SLOW) from None
+        raise PortError(errors.SLOW) from None
     except BleakDeviceNotFoundError as failure:
-        raise PortError(ports.UNREACHABLE, str(failure)) from None
+        raise PortError(errors.UNREACHABLE, str(failure)) from None
     except Exception as failure:  # of bleak, of D-Bus, of the system: each has its own
         raise PortError(search.reason_of(failure), str(failure)) from None
 

@@ -20,11 +20,12 @@ from typing import Any, NamedTuple
 import paho.mqtt.client as mqtt
 from paho.mqtt.enums import CallbackAPIVersion
 
-from tiniscript.link import ports
+from tiniscript.link import errors
+from tiniscript.link.errors import PortError
 from tiniscript.link.messages import NAME_BYTES, STOP_BYTES
 from tiniscript.link.port_names import MQTT
-from tiniscript.link.ports import READ_S, PortError
-from tiniscript.link.pushed_port import PushedPort
+from tiniscript.link.transports import READ_S
+from tiniscript.link.transports.pushed import PushedPort
 from tiniscript.link.wifi import is_class
 
 PLAIN_PORT, TLS_PORT = 1883, 8883
@@ -77,11 +78,15 @@ def sign_in(host: str, port: int, access: Access) -> None:
     _accesses[host, port] = access
 
 
-def opened(port: str) -> BrokerPort:
-    """Return the port of a robot. Raises PortError."""
+def resolved(port: str) -> str:
+    return port
+
+
+def opened(port: str, baud: int, limit_s: float) -> BrokerPort:
+    """Return the port of a robot. Raises PortError, after CONNECT_S at the latest."""
     found = _PORT.fullmatch(port)
     if found is None or int(found[2]) >= 1 << 16:
-        raise PortError(ports.NO_PORT, port)
+        raise PortError(errors.NO_PORT, port)
     return connected(found[1], int(found[2])).robot(found[3].lower(), found[4].lower())
 
 
@@ -150,7 +155,7 @@ class Broker:
         port = BrokerPort(self, group, robot)
         with self._news:
             if self.gone:
-                raise PortError(ports.UNREACHABLE, self.gone)
+                raise PortError(errors.UNREACHABLE, self.gone)
             self._ports[group, robot] = port
         self._client.subscribe(f"{ROOT}/{group}/{robot}/out/{self.peer}")
         return port
@@ -176,7 +181,7 @@ class Broker:
             is_whole = asked <= self._acknowledged
             self._acknowledged -= asked
         if not is_whole:
-            raise PortError(ports.UNREACHABLE, self.gone or "no answer of a broker")
+            raise PortError(errors.UNREACHABLE, self.gone or "no answer of a broker")
         self._client.unsubscribe([f"{ROOT}/{group}/+", f"{ROOT}/{group}/+/out/{self.peer}"])
         return sorted(found, key=lambda each: (each.name.casefold(), each.id))
 
@@ -224,9 +229,9 @@ class Broker:
                 self._client.tls_set_context(_trusting(access.trusted))
             self._client.connect(host, port, KEEP_ALIVE_S)
         except ssl.SSLError as why:
-            raise PortError(ports.UNTRUSTED, str(why.reason or why)) from None
+            raise PortError(errors.UNTRUSTED, str(why.reason or why)) from None
         except (OSError, ValueError) as why:
-            raise PortError(ports.UNREACHABLE, _said(why)) from None
+            raise PortError(errors.UNREACHABLE, _said(why)) from None
         self._client.loop_start()
         end_s = monotonic() + CONNECT_S
         with self._news:
@@ -237,8 +242,8 @@ class Broker:
             return
         self.close()
         if reason is None:
-            raise PortError(ports.UNREACHABLE, self.gone or "no answer of a broker")
-        raise PortError(ports.REFUSED, reason)
+            raise PortError(errors.UNREACHABLE, self.gone or "no answer of a broker")
+        raise PortError(errors.REFUSED, reason)
 
     def _on_connect(self, *rest: Any) -> None:
         code = rest[3]
@@ -313,7 +318,7 @@ class BrokerPort(PushedPort):
         """A message of the robot has come; an empty one says that another client has it."""
         if not data:
             if monotonic() > self._patient_until_s:
-                self.end(ports.TAKEN)
+                self.end(errors.TAKEN)
             return
         self._patient_until_s = 0.0
         self.bring(data)

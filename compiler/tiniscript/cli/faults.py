@@ -1,0 +1,31 @@
+"""A fault of a program, for a person: what it means, and its line in the text."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from tiniscript.cli.inputs import shown
+from tiniscript.cli.texts.common import text
+
+if TYPE_CHECKING:
+    from tiniscript.codegen.source_map import Map
+
+
+def fault_text(fault: str, offset: int, places: Map | None, is_image: bool, language: str) -> str:
+    """Return the meaning of a fault, and its line in the text.
+
+    For an image this is the text that was last compiled to it; its name is added.
+    """
+    place = places.at(offset) if places is not None else None
+    if places is None or place is None:
+        where = text("fault_no_line", language).format(offset=f"{offset:04x}")
+    else:
+        line = places.line(place.line)
+        end = place.end_column - 1 if place.end_line == place.line else len(line)
+        piece = line[place.column - 1 : end] if len(line) > 100 else line.strip()
+        piece = piece.replace("\t", " ")
+        key = "fault_line_of" if is_image else "fault_line"
+        name = shown(places.name)
+        where = text(key, language).format(name=name, line=place.line, shown=piece[:100])
+    what = text(f"fault_{fault}", language)
+    return text("fault_at", language).format(fault=fault, what=what, place=where)

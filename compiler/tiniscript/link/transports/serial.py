@@ -1,0 +1,114 @@
+"""Serial ports, those of Bluetooth among them: `/dev/rfcomm0`, `COM5`, `/dev/tty.HC-05`.
+
+Also the addresses `socket://host:port` and `rfc2217://host:port`.
+
+Knows pyserial, and what its exceptions mean. Knows no robot and no sentences.
+"""
+
+from __future__ import annotations
+
+import errno
+from threading import Thread
+
+import serial
+from serial.tools import list_ports
+
+from tiniscript.link.errors import (
+    BROKEN,
+    BUSY,
+    FORBIDDEN,
+    MISSING,
+    NO_PORT,
+    SLOW,
+    UNREACHABLE,
+    PortError,
+)
+from tiniscript.link.transports import READ_S, WRITE_S
+
+_REASONS = {
+    errno.ENOENT: MISSING,
+    errno.ENODEV: MISSING,
+    errno.ENXIO: MISSING,
+    errno.EACCES: FORBIDDEN,
+    errno.EPERM: FORBIDDEN,
+    errno.EBUSY: BUSY,
+    errno.EAGAIN: BUSY,  # the lock of another program
+    errno.ECONNREFUSED: UNREACHABLE,
+    errno.ETIMEDOUT: UNREACHABLE,
+    errno.EHOSTUNREACH: UNREACHABLE,
+    errno.ENETUNREACH: UNREACHABLE,
+    getattr(errno, "EHOSTDOWN", -1): UNREACHABLE,
+    errno.ENOTTY: NO_PORT,
+    errno.EISDIR: NO_PORT,
+    errno.EINVAL: NO_PORT,
+}
+
+
+def listed() -> list[tuple[str, str, str]]:
+    """Return the ports that the system knows: name, description and hardware, empty if unknown."""
+    found = []
+    for each in list_ports.comports():
+        description = each.description if each.description != "n/a" else ""
+        found.append((each.device, description, each.hwid or ""))
+    return found
+
+
+def resolved(port: str) -> str:
+    return port
+
+
+def opened(port: str, baud: int, limit_s: float) -> serial.SerialBase:
+    """Open a port, at the latest after `limit_s`. Raises PortError.
+
+    Some drivers block in `open` for ever, so a daemon thread opens the port.
+    """
+    done: list[serial.SerialBase | BaseException] = []
+
+    def work() -> None:
+        try:
+            done.append(_open(port, baud))
+        except BaseException as failure:
+            done.append(failure)
+
+    thread = Thread(target=work, name="open", daemon=True)
+    thread.start()
+    thread.join(limit_s)
+    if not done:
+        raise PortError(SLOW)
+    if isinstance(done[0], BaseException):
+        raise _failure(done[0]) from None
+    return done[0]
+
+
+def _open(port: str, baud: int) -> serial.SerialBase:
+    settings = {"timeout": READ_S, "write_timeout": WRITE_S, "exclusive": True}
+    if port.startswith("rfc2217://"):
+        del settings["write_timeout"]  # pyserial does not support it here
+    return serial.serial_for_url(port, baudrate=baud, **settings)
+
+
+def _failure(failure: BaseException) -> PortError:
+    """Return the PortError for an exception of pyserial, which differs between systems."""
+    why = str(failure)
+    if isinstance(failure, (ValueError, NotImplementedError)):
+        return PortError(NO_PORT, why)
+    if not isinstance(failure, OSError):
+        raise failure
+    if failure.errno is not None:
+        return PortError(_REASONS.get(failure.errno, BROKEN), failure.strerror or why)
+    for said, reason in (
+        ("FileNotFoundError", MISSING),  # Windows gives the error only in the text
+        ("PermissionError", BUSY),  # and reports a port in use like this
+        ("could not configure port", NO_PORT),
+        ("Could not configure port", NO_PORT),
+        ("expected a string in the form", NO_PORT),
+        ("Connection refused", UNREACHABLE),
+        ("timed out", UNREACHABLE),
+        ("Could not open port", UNREACHABLE),  # of a network
+        ("RFC2217", UNREACHABLE),  # another kind of server listens there
+        ("timeout while waiting for option", UNREACHABLE),
+        ("could not open port", UNREACHABLE),
+    ):
+        if said in why:
+            return PortError(reason, why)
+    return PortError(BROKEN, why)
