@@ -201,7 +201,7 @@ def test_a_robot_that_is_busy_for_too_long_is_not_lost(
         return Reply(STATUSES["BUSY"]) if name in ("PROGRAM", "START") else reply
 
     monkeypatch.setattr("tiniscript.link.session.reply_of", busy)
-    monkeypatch.setattr(connect, "PATIENCE_MS", 600)
+    monkeypatch.setattr("tiniscript.library.client.PATIENCE_MS", 600)
     for language, said in (("en", "still saving"), ("es", "está guardando")):
         for words in (["upload", "-e", PROGRAM], ["start"]):
             done = tsc(*words, "--port", pty_robot.port, "--lang", language)

@@ -17,7 +17,6 @@ from tests.machines.host_firmware import missing
 from tests.support.command import FOREVER, LONG, Tsc, ended, process, running
 from tests.support.pty_robot import PtyRobot, on
 from tiniscript import robots
-from tiniscript.cli.robot import connect
 from tiniscript.library import opening
 from tiniscript.link import errors, known_ports, ports, requests
 from tiniscript.link.payloads import HelloReply
@@ -35,7 +34,7 @@ def hasty(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(opening, "ANSWER_MS", 800)
     monkeypatch.setattr(opening, "CABLE_ANSWER_MS", 800)
     monkeypatch.setattr(opening, "LONG_QUIET_S", 0.1)
-    monkeypatch.setattr(connect, "PATIENCE_MS", 800)
+    monkeypatch.setattr("tiniscript.library.client.PATIENCE_MS", 800)
 
 
 # -- endings ------------------------------------------------------------------------------------

@@ -8,9 +8,9 @@ from typing import cast
 import pytest
 
 from tests.support.link_events import event
-from tiniscript.cli.robot import run_monitor
-from tiniscript.cli.robot.connect import Connection
-from tiniscript.link.connection import PendingRequest
+from tiniscript.library import opening
+from tiniscript.library.client import Client
+from tiniscript.link.connection import LinkConnection, PendingRequest
 from tiniscript.link.line import Line
 from tiniscript.link.payloads import DoneEvent, ReceiptReply
 from tiniscript.link.requests import OK, Reply
@@ -19,6 +19,8 @@ from tiniscript.sharing.server import ConnectedClient, ServedRequest, Server
 
 class FakeLine:
     """A line on which a run goes on, or none."""
+
+    has_ended = False
 
     def __init__(self) -> None:
         self.is_running = True
@@ -58,11 +60,10 @@ def test_a_run_that_begins_while_its_server_leaves_is_stopped(
             self.may_have_run = True  # known only now
 
     stopped: list[object] = []
-    monkeypatch.setattr(run_monitor, "confirmed", lambda line, limit_s: stopped.append(line))
-    connection, line = Connection.__new__(Connection), FakeLine()
-    connection.line, connection.server = cast(Line, line), cast(Server, FakeServer())
-    connection.simulator, connection.drives = None, True
-    connection.__exit__(None)
+    monkeypatch.setattr(opening, "confirmed", lambda line, limit_s: stopped.append(line))
+    client, line = Client.__new__(Client), FakeLine()
+    client.line, client.server = cast(LinkConnection, line), cast(Server, FakeServer())
+    client.close()
     assert stopped == [line]
     assert line.is_closed
 

@@ -6,40 +6,32 @@ process ends without it, the robot's dead-man timer stops the robot within a sec
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from contextlib import suppress
+from collections.abc import Iterator
 from time import monotonic
 from types import TracebackType
 from typing import TYPE_CHECKING, NamedTuple
 
 from tiniscript.library import opening
+from tiniscript.library.client import Client, Saving
 from tiniscript.library.endings import Follower
-from tiniscript.library.errors import ProgramError, RobotError, StopNotConfirmed, UsageError
+from tiniscript.library.errors import RobotError, StopNotConfirmed, UsageError
 from tiniscript.library.events import Ending, Reader, RobotEvent, ending_of
 from tiniscript.library.programs import Language, Program, program_of
 from tiniscript.library.runs import within
-from tiniscript.link.messages import SAVED_LOW_SUPPLY, SAVED_SAVING, SAVED_STORED
+from tiniscript.link.messages import STATE_RUNNING
 from tiniscript.printable import printable
 
 if TYPE_CHECKING:
-    from typing import IO, TypeVar
+    from typing import TypeVar
 
-    from tiniscript.link.connection import LinkConnection, PendingRequest, Requester
-    from tiniscript.link.line import Line
-    from tiniscript.link.outcomes import Event
     from tiniscript.link.payloads import ReceiptReply
-    from tiniscript.link.requests import Reply
     from tiniscript.robots.profile import Robot
-    from tiniscript.sharing.server import Server
 
     Self = TypeVar("Self", bound="RobotConnection")
     T = TypeVar("T")
 
 VERB = "python"  # the name that other commands show for the process that holds the port
-PATIENCE_MS = 6000  # timeout for a known robot that is silent, or busy with saving
 LONGEST_S = 10**9
-SAVE_S = 10.0  # timeout for saving a program while the motors stand
-LOW_S = 2.0  # timeout while the voltage is too low for saving
 LOOK_S = 0.1
 
 
@@ -81,18 +73,10 @@ class RobotConnection:
         self._follower: Follower | None = None
         self._ending: Ending | None = None
         self._is_detached = False
-        self._is_saving = False
+        self._saving: Saving | None = None
         self._is_closed = False
-        speed = profile.board.baud if baud is None else baud
-
-        def open_line(address: str, lock: IO[bytes] | None) -> Line:
-            kit = profile.kit.fingerprint
-            return opening.opened_line(address, speed, kit, lock=lock, language=language, port=port)
-
-        self._line: LinkConnection = opening.connection_to(port, VERB, open_line, baud, language)
-        self._server: Server | None = None
+        self._client = Client(port, VERB, profile, baud, language)
         try:
-            self._server = _shared(self._line, port, speed)
             self._meet(is_named)
         except BaseException:
             self._part()
@@ -110,7 +94,7 @@ class RobotConnection:
     @property
     def info(self) -> RobotInfo:
         """What the robot reports of itself."""
-        device_info = self._line.robot
+        device_info = self._client.line.robot
         assert device_info is not None
         from tiniscript.library.known_kits import of_kit
 
@@ -134,18 +118,11 @@ class RobotConnection:
         ready = self._ready(program)
         if ready.start == "PING":
             raise UsageError("ping_program", self.language)
-        from tiniscript.library.known_kits import may_run
-        from tiniscript.link.messages import STATUSES
-        from tiniscript.link.requests import Reply
-
-        image, kit = ready._image, ready._profile.kit.fingerprint
-        card = self._line.robot
-        assert card is not None
-        if not may_run(image, ready._profile, card.kit):  # refused before any byte is sent
-            raise self._error(Reply(STATUSES["WRONG_KIT"], card.kit))
-        reply = self._ask(lambda session: session.upload(image, run, save, detached, kit))
-        self._is_saving = save
-        return self._begun(reply, run and ready.start == "SI", detached)
+        reply = self._client.send_program(ready._image, ready._profile, run, save, detached)
+        if reply.status:
+            raise self._client.failure(reply)
+        self._saving = Saving(reply.values) if save else None
+        return self._begun(reply.values, run and ready.start == "SI", detached)
 
     def live(self, line: str) -> Receipt:
         """Run a line once, at most 55 bytes of code, or 42 for a robot that seals; the stored
@@ -161,14 +138,16 @@ class RobotConnection:
                 "live_button" if ready.start == "SB" else "ping_program", self.language
             )
         image, kit = ready._image, ready._profile.kit.fingerprint
-        reply = self._ask(lambda session: session.live(image.code, kit if image.devices else 0))
-        return self._begun(reply, True, False)
+        reply = self._client.ask(
+            lambda session: session.live(image.code, kit if image.devices else 0)
+        )
+        return self._begun(reply.values, True, False)
 
     def start(self, *, detached: bool = False) -> Receipt:
         """Start the program that the robot holds."""
         self._check_open()
-        reply = self._ask(lambda session: session.start(detached))
-        return self._begun(reply, True, detached)
+        reply = self._client.ask(lambda session: session.start(detached))
+        return self._begun(reply.values, True, detached)
 
     def undo(self) -> Receipt:
         """Bring back the program that the robot held before the last saved one; a second call
@@ -178,9 +157,9 @@ class RobotConnection:
         that is saved. Raises RobotError, with the reason `NO_PREVIOUS` where there is none.
         """
         self._check_open()
-        reply = self._ask(lambda session: session.undo())
-        self._is_saving = True
-        receipt = self._begun(reply, False, False)
+        reply = self._client.ask(lambda session: session.undo())
+        self._saving = Saving(reply.values)
+        receipt = self._begun(reply.values, False, False)
         self._follower = None
         return receipt
 
@@ -197,7 +176,7 @@ class RobotConnection:
         while self._follower is None or self._ending is None:
             follower = self._follower or anything
             left_s = LOOK_S if end_s is None else min(LOOK_S, end_s - monotonic())
-            found = self._event(max(left_s, 0.0))
+            found = self._client.event(max(left_s, 0.0))
             told = None
             if found is not None and follower.is_about(
                 found[1], opening.shown(self.port), self.language
@@ -254,7 +233,7 @@ class RobotConnection:
             self._part()
 
     def _stop(self) -> None:
-        if not opening.confirmed(self._line):
+        if not opening.confirmed(self._client.line):
             raise StopNotConfirmed(
                 "not_confirmed", self.language, {"port": opening.shown(self.port)}
             )
@@ -264,52 +243,30 @@ class RobotConnection:
 
     def _part(self) -> None:
         """Close the port, and stop the run of a client, which ends with this server."""
-        try:
-            if self._server is not None:
-                has_run = self._server.has_run
-                self._server.close()
-                if has_run:
-                    opening.confirmed(self._line)
-        finally:
-            self._line.close()
+        self._client.close()
 
     def _await_saving(self) -> None:
-        """Wait until the uploaded program is saved, because the next command that opens the port
-        may reset the robot. Raises RobotError if the program is not saved."""
-        from tiniscript.link.messages import STATES
+        """Wait until the uploaded program is saved. Raises RobotError if it is not."""
+        saving, self._saving = self._saving, None
+        if saving is None:
+            return
+        status = self._client.ask(lambda session: session.status()).values
+        if status.state == STATE_RUNNING:  # detached: it saves later
+            self._saving = saving
+            return
 
-        begun_s = monotonic()
-        low_s: float | None = None
-        while self._is_saving:
-            status = self._ask(lambda session: session.status()).values
-            saved = status.saved
-            if STATES[status.state][0] == "RUNNING":  # detached: it saves later
-                return
-            if saved not in (SAVED_SAVING, SAVED_LOW_SUPPLY):
-                self._is_saving = False
-                if saved != SAVED_STORED:
-                    raise RobotError("not_saved", self.language)
-                return
-            low_s = (low_s or monotonic()) if saved == SAVED_LOW_SUPPLY else None
-            if low_s is not None and monotonic() > low_s + LOW_S:
-                self._is_saving = False
-                raise RobotError("low_supply", self.language)
-            if monotonic() > begun_s + SAVE_S:
-                self._is_saving = False
-                raise RobotError("saves_later", self.language)
-            self._event(LOOK_S)
+        def ask() -> None:
+            saving.learn(self._client.ask(lambda session: session.status()).values)
+
+        saving.learn(status)
+        reason = saving.wait(ask, lambda: self._client.event(LOOK_S))
+        if reason:
+            raise RobotError(reason, self.language)
 
     # -- asking -----------------------------------------------------------------------------------
 
     def _meet(self, is_named: bool) -> None:
-        from tiniscript.link.outcomes import CANCELLED
-
-        reply = opening.met(self._line, self.port, self._profile.board.chip, self._wait)
-        while reply.status == CANCELLED:  # a stop came first
-            reply = self._wait(opening.hello(self._line, opening.ANSWER_MS))
-        device_info = self._line.robot
-        if reply.status or device_info is None:
-            raise self._error(reply)
+        device_info = self._client.meet(self._profile.board.chip)
         if not is_named and device_info.kit != self._profile.kit.fingerprint:
             from tiniscript.library.known_kits import of_kit
 
@@ -327,73 +284,12 @@ class RobotConnection:
             self._reader.maps[ready.checksum] = ready._map
         return ready
 
-    def _begun(self, reply: Reply[ReceiptReply], is_running: bool, is_detached: bool) -> Receipt:
+    def _begun(self, receipt: ReceiptReply, is_running: bool, is_detached: bool) -> Receipt:
         from tiniscript.link.messages import SAVED
 
-        receipt = reply.values
         # a program that waits for the button has no run number yet
         self._follower = Follower(receipt.run if is_running else None)
         self._ending = None
         self._is_detached = is_detached and is_running
         name = SAVED[receipt.saved][0] if receipt.saved < len(SAVED) else "MEMORY"
         return Receipt(receipt.program, name, is_running)
-
-    def _ask(self, make: Callable[[Requester], PendingRequest[T]]) -> Reply[T]:
-        with_limit = opening.limited(make, PATIENCE_MS)
-        try:
-            request = self._line.do(with_limit)
-        except Exception as gone:
-            raise self._gone(gone) from None
-        reply = self._wait(request)
-        if reply.status:
-            raise self._error(reply)
-        return reply
-
-    def _wait(self, request: PendingRequest[T]) -> Reply[T]:
-        from tiniscript.link.outcomes import Gone
-
-        try:
-            return self._line.wait(request)
-        except Gone as gone:
-            raise self._gone(gone) from None
-
-    def _event(self, limit_s: float) -> tuple[int, Event] | None:
-        from tiniscript.link.outcomes import Gone
-
-        try:
-            return self._line.event(limit_s)
-        except Gone as gone:
-            raise self._gone(gone) from None
-
-    def _gone(self, gone: Exception) -> BaseException:
-        from tiniscript.link.outcomes import Gone
-
-        if not isinstance(gone, Gone):
-            return gone
-        reason = opening.reason_of_end(self._line, gone, self.port)
-        values = {"port": opening.shown(self.port), "verb": self._line.held_by}
-        return RobotError(reason, self.language, values)
-
-    def _error(self, reply: Reply[object]) -> RobotError | ProgramError:
-        from tiniscript.link.statuses import name_of, sentence
-
-        reason = opening.reason_of(self._line, reply)
-        if reason != "status":
-            return RobotError(reason, self.language, {"port": opening.shown(self.port)})
-        said = " ".join(sentence(reply.status, reply.detail, self.language)).strip()
-        name = name_of(reply.status)
-        kind = ProgramError if name == "TOO_LARGE" else RobotError
-        return kind(name, self.language, said=said)
-
-
-def _shared(line: LinkConnection, port: str, baud: int) -> Server | None:
-    """Share the port with other commands, so that `tsc stop` works meanwhile."""
-    if line.held_by:
-        return None
-    from tiniscript.link.line import Line
-    from tiniscript.sharing.server import Server
-
-    assert isinstance(line, Line)
-    with suppress(OSError):
-        return Server(line, port, baud, VERB)
-    return None

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import os
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from tiniscript.bytecode.image import Image
     from tiniscript.diagnostics.codes import Diagnostic
     from tiniscript.kit import Kit
+    from tiniscript.link.requests import DeviceInfo, Reply
     from tiniscript.robots.profile import Robot
 
 SHOWN_CHARACTERS = 60  # of a path in a message: a longer one could not be copied
@@ -113,3 +114,13 @@ def fits(image: Image, robot: Robot) -> bool:
     except (ImageRefused, Refused):
         return False
     return True
+
+
+def refusal(image: Image, profile: Robot, robot: DeviceInfo) -> Reply[Any] | None:
+    """Return the refusal of a program for another kit, or None where the robot may run it."""
+    from tiniscript.link.messages import STATUSES
+    from tiniscript.link.requests import Reply
+
+    if may_run(image, profile, robot.kit):
+        return None
+    return Reply(STATUSES["WRONG_KIT"], robot.kit)

@@ -9,22 +9,15 @@ Knows no HTTP.
 
 from __future__ import annotations
 
-from contextlib import suppress
 from threading import Thread
-from typing import IO, TYPE_CHECKING
 
 from tiniscript import robots
 from tiniscript.library import opening
-from tiniscript.library.errors import RobotError
+from tiniscript.library.client import Client
+from tiniscript.library.errors import RobotError, TiniScriptError
+from tiniscript.link.messages import STATUSES
 from tiniscript.studio.attending import Attending
 from tiniscript.studio.robot_link import RobotLink, about
-
-if TYPE_CHECKING:
-    from tiniscript.link.connection import LinkConnection, PendingRequest
-    from tiniscript.link.line import Line
-    from tiniscript.link.payloads import HelloReply
-    from tiniscript.link.requests import Reply
-    from tiniscript.sharing.server import Server
 
 VERB = "studio"  # the name that other commands show for the process that holds the port
 
@@ -70,70 +63,53 @@ class HostedRobot:
         from tiniscript.link.outcomes import Gone
 
         try:
-            line = opening.connection_to(self.port, VERB, self._open, language=self._language)
+            client = Client(
+                self.port, VERB, self._profile, language=self._language,
+                is_latched=lambda: self.attending.is_latched,
+                heed=lambda: self.attending.stop_if_wanted(client.line.stop),
+            )  # fmt: skip
         except RobotError as failure:
             self._end(failure.key, str(failure))
             return
-        server = None
         try:
-            self._link = link = RobotLink(line, self._language)
-            server = self._shared(line, link)
-            if self._meet(line):
+            self._link = link = RobotLink(client.line, self._language)
+            self._ping_while_attended(client, link)
+            if self._meet(client):
                 while not self._has_left():
                     self.attending.attend(link)
                 self._end(self._why)
         except Gone as gone:
-            reason = opening.reason_of_end(line, gone, self.port)
-            values = {"port": opening.shown(self.port), "verb": line.held_by}
-            self._end(reason, str(RobotError(reason, self._language, values)))
+            lost = client.gone(gone)
+            self._end(lost.key, str(lost))
+        except RobotError as lost:
+            self._end(lost.key, str(lost))
         except Exception as bug:
             self._end("bug", str(bug))
             raise
         finally:
-            self._part(line, server)
+            self.has_ended = True
+            client.close(has_run=self._link is not None and self._link.has_run)
 
-    def _open(self, address: str, lock: IO[bytes] | None) -> Line:
-        board, kit = self._profile.board, self._profile.kit.fingerprint
-        return opening.opened_line(
-            address, board.baud, kit, lock=lock, language=self._language, port=self.port
-        )
-
-    def _shared(self, line: LinkConnection, link: RobotLink) -> Server | None:
-        """Share the port, so that other commands can stop the robot meanwhile."""
-        if line.held_by:
-            return None
+    def _ping_while_attended(self, client: Client, link: RobotLink) -> None:
+        """What another command has started is for that command to attend to."""
+        if client.line.held_by:
+            return
         from tiniscript.link.line import Line
-        from tiniscript.sharing.server import Server
 
-        assert isinstance(line, Line)
-        session = line.session
-        # What another command has started is for that command to attend to.
+        assert isinstance(client.line, Line)
+        session = client.line.session
         session.may_beat = lambda: self.is_attended or (session.is_running and not link.has_run)
-        with suppress(OSError):
-            is_latched = lambda: self.attending.is_latched  # noqa: E731
-            return Server(line, self.port, self._profile.board.baud, VERB, is_latched)
-        return None
 
-    def _meet(self, line: LinkConnection) -> bool:
+    def _meet(self, client: Client) -> bool:
         """Say hello to the robot; return whether it has answered."""
-        from tiniscript.link.outcomes import CANCELLED
-
-        def wait(request: PendingRequest[HelloReply]) -> Reply[HelloReply]:
-            return line.wait(request, look=lambda: self.attending.stop_if_wanted(line.stop))
-
-        reply = opening.met(line, self.port, self._profile.board.chip, wait)
-        while reply.status == CANCELLED and not self._has_left():  # a stop came first
-            reply = wait(opening.hello(line, opening.ANSWER_MS))
-        robot = line.robot
-        if reply.status or robot is None:
-            reason = opening.reason_of(line, reply)
-            said = ""
-            if reason == "status":
-                from tiniscript.link.statuses import name_of, sentence
-
-                reason = name_of(reply.status)
-                said = " ".join(sentence(reply.status, reply.detail, self._language)).strip()
-            self._end(reason, said)
+        line = client.line
+        try:
+            robot = client.meet(self._profile.board.chip, lambda: not self._has_left())
+        except TiniScriptError as failure:
+            if line.has_ended:
+                raise
+            # for what is no status the page has a sentence of its own
+            self._end(failure.key, str(failure) if failure.key in STATUSES else "")
             return False
         opening.remember(self.port, robot.name)
         self.name = robot.name
@@ -142,19 +118,6 @@ class HostedRobot:
 
     def _has_left(self) -> bool:
         return self._leaves or self.attending.has_left
-
-    def _part(self, line: LinkConnection, server: Server | None) -> None:
-        """Stop what the page, or a command that shares the port, has started; close the port."""
-        self.has_ended = True
-        try:
-            has_run = self._link is not None and self._link.has_run
-            if server is not None:
-                has_run = has_run or server.has_run
-                server.close()
-            if has_run and not line.has_ended:
-                opening.confirmed(line)
-        finally:
-            line.close()
 
     def _end(self, reason: str, said: str = "") -> None:
         self.why_ended = reason

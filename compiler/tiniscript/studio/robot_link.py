@@ -17,7 +17,7 @@ from tiniscript import robots
 from tiniscript.bytecode.image import Image, ImageRefused, unpack
 from tiniscript.bytecode.opcodes import FAULTS
 from tiniscript.fixed_point import as_text
-from tiniscript.library.known_kits import may_run, shipped_of_kit
+from tiniscript.library.known_kits import refusal, shipped_of_kit
 from tiniscript.link.authority import whose
 from tiniscript.link.connection import PendingRequest, Requester
 from tiniscript.link.messages import (
@@ -30,7 +30,6 @@ from tiniscript.link.messages import (
     STATE_FAULTED,
     STATE_IDLE,
     STATE_RUNNING,
-    STATUSES,
 )
 from tiniscript.link.outcomes import Event
 from tiniscript.link.payloads import HelloReply, ReceiptReply, StatusReply, TrimReply
@@ -178,9 +177,9 @@ class RobotLink:
     def _refused(self, request: Json) -> Reply[Any] | None:
         """Return the refusal of a program of another kit, before any byte is sent."""
         robot = self._connection.robot
-        if robot is None or may_run(_image(request), robots.load(_robot(request)), robot.kit):
+        if robot is None:
             return None
-        return Reply(STATUSES["WRONG_KIT"], robot.kit)
+        return refusal(_image(request), robots.load(_robot(request)), robot)
 
     def _answer(self, pending: PendingRequest[Any]) -> Json:
         reply = pending.outcome

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from tiniscript.cli import inputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
-from tiniscript.cli.robot.connect import baud_of, opened_connection, robot_of_kit
+from tiniscript.cli.robot.connect import baud_of, opened_client, robot_of_kit
 from tiniscript.cli.robot.in_reach import InReach, found
 from tiniscript.cli.texts.common import text
 from tiniscript.library import opening
@@ -26,7 +26,7 @@ AT_ONCE = 16  # ports that are asked at the same time
 
 def run(options: Namespace, language: str) -> int:
     robot = inputs.robot(options, language)
-    baud = baud_of(options, robot, language)
+    baud = None if options.baud is None else baud_of(options, robot, language)
     in_reach = InReach({}, [], [], [])
     if options.ask and options.port is None:
         in_reach = _in_reach(language)
@@ -110,7 +110,7 @@ def _virtual(running: Running, language: str) -> str:
     return f"{running.name}: {said}" if running.name else said
 
 
-def _ask(port: str, baud: int, robot: Robot, language: str) -> dict[str, object]:
+def _ask(port: str, baud: int | None, robot: Robot, language: str) -> dict[str, object]:
     """Return the robot that answers on a port, or why none does."""
     from contextlib import closing
 
@@ -119,10 +119,10 @@ def _ask(port: str, baud: int, robot: Robot, language: str) -> dict[str, object]
     from tiniscript.link.requests import OK
 
     try:
-        with closing(opened_connection(port, baud, robot, "ports", OPEN_S)) as line:
+        with closing(opened_client(port, robot, "ports", baud, language, OPEN_S)) as client:
+            line = client.line
             reply = opening.met(line, port, robot.board.chip, line.wait)
-            device_info = line.robot
-            heard = line.heard
+            device_info, heard = line.robot, line.heard
     except CommandError as failure:
         return {"answer": None, "said": failure.sentence(language).removeprefix("tsc: ")}
     except Gone as gone:

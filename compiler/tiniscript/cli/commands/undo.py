@@ -13,7 +13,6 @@ from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.run_monitor import Saving
 from tiniscript.cli.robot.targets import are_many
 from tiniscript.cli.texts.common import text
-from tiniscript.link.messages import SAVED_LOW_SUPPLY, SAVED_SAVING
 
 if TYPE_CHECKING:
     from tiniscript.cli.robot.member import Member, Result
@@ -23,8 +22,8 @@ if TYPE_CHECKING:
 class UndoSaving(Saving):
     """Waits until the robot keeps its choice: what it has undone is not lost before."""
 
-    KEYS: ClassVar = {SAVED_SAVING: "undo_later", SAVED_LOW_SUPPLY: "undo_low_supply"}
-    NOT_SAVED = "undo_not_saved"
+    SAID: ClassVar = {"saves_later": "undo_later", "low_supply": "undo_low_supply",
+                      "not_saved": "undo_not_saved"}  # fmt: skip
 
 
 def run(options: Namespace, language: str) -> int:

@@ -7,18 +7,20 @@ from __future__ import annotations
 
 import sys
 from argparse import Namespace
-from collections.abc import Callable
-from contextlib import AbstractContextManager, nullcontext, suppress
-from typing import IO, TYPE_CHECKING, TypeVar
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, contextmanager, nullcontext, suppress
+from typing import TYPE_CHECKING, TypeVar
 
 from tiniscript.cli import inputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.options import whole_number
-from tiniscript.cli.robot import shared_port
 from tiniscript.cli.texts.common import text
 from tiniscript.library import opening
-from tiniscript.library.errors import RobotError
+from tiniscript.library.client import Client
+from tiniscript.library.errors import TiniScriptError
+from tiniscript.link.messages import STATUSES
+from tiniscript.link.outcomes import LOOK_S
 
 if TYPE_CHECKING:
     from tiniscript.cli.robot.event_printer import EventPrinter
@@ -26,14 +28,14 @@ if TYPE_CHECKING:
     from tiniscript.codegen.source_map import Map
     from tiniscript.link.connection import LinkConnection, PendingRequest, Requester
     from tiniscript.link.errors import PortError
-    from tiniscript.link.line import Line
     from tiniscript.link.outcomes import Event, Gone
     from tiniscript.link.requests import DeviceInfo, Reply
     from tiniscript.robots.profile import Robot
 
 T = TypeVar("T")
 
-PATIENCE_MS = 6000  # timeout for a known robot that is silent, or busy with saving
+# verbs that stay on a port, and share it
+SHARED = ("doctor", "link", "live", "monitor", "start", "upload")
 STOP_S = 1.5  # timeout for a stop when the command ends and may have no reader
 VIRTUAL = ""  # no port: this command starts its own virtual robot
 SLOWEST_BAUD, FASTEST_BAUD = 300, 2_000_000
@@ -82,8 +84,9 @@ class Connection:
         try:
             verb = options.verb
             with self._waiting():
-                self.line = opened_connection(self.port, baud, robot, verb, asked_baud=asked_baud)
-            self.server = shared_port.shared(self.line, self.port, baud, verb)
+                self.client = opened_client(
+                    self.port, robot, verb, asked_baud, language, heed=self._heed
+                )
         except BaseException:
             self._end_simulator()
             raise
@@ -94,11 +97,7 @@ class Connection:
     def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
         if kind is not None and issubclass(kind, OSError) and self.drives:
             self.stop_unseen()
-        if self.server is not None:
-            self.server.close()  # until then a client may start a run
-            if self.server.may_have_run:  # its client can no longer stop it
-                opening.confirmed(self.line, STOP_S)
-        self.line.close()
+        self.client.close(STOP_S)
         self._end_simulator()
 
     def stop_unseen(self) -> bool:
@@ -113,6 +112,10 @@ class Connection:
             said = text(key, self.language).format(port=shown(self.port))
             print(said, file=sys.stderr, flush=True)
         return is_confirmed
+
+    @property
+    def line(self) -> LinkConnection:
+        return self.client.line
 
     @property
     def is_time_over(self) -> bool:
@@ -142,15 +145,9 @@ class Connection:
 
         `board` replaces the board of the profile.
         """
-        from tiniscript.link.outcomes import CANCELLED
-
-        with self._waiting():
-            reply = opening.met(self.line, self.port, board or self.profile.board.chip, self.wait)
-        while reply.status == CANCELLED and self.starts_nothing:  # a stop came first
-            reply = self.wait(opening.hello(self.line, opening.ANSWER_MS))
-        device_info = self.line.robot
-        if reply.status or device_info is None:
-            raise self.failure(reply)
+        with self._waiting(), told():
+            chip = board or self.profile.board.chip
+            device_info = self.client.meet(chip, lambda: self.starts_nothing)
         _remember_profile(self.options, self.profile, device_info.kit)
         if not self.is_one_of_many:
             self.remember(device_info.name)
@@ -216,33 +213,20 @@ class Connection:
 
     def do(self, make: Callable[[Requester], PendingRequest[T]]) -> PendingRequest[T]:
         """Begin a request with a timeout."""
-        return self.line.do(opening.limited(make, PATIENCE_MS))
+        with told():
+            return self.client.do(make)
 
     def wait(self, request: PendingRequest[T], look: Callable[[], None] | None = None) -> Reply[T]:
-        from tiniscript.link.outcomes import Gone
-
-        def watch() -> None:
-            self._heed()
-            if look is not None:
-                look()
-
-        try:
-            return self.line.wait(request, watch)
-        except Gone as gone:
-            raise self.gone(gone) from None
+        with told():
+            return self.client.wait(request, look)
 
     def event(self) -> tuple[int, Event] | None:
         """Return the time (ms) and the next event, or None if none arrives for a moment.
 
         Raises CommandError if the connection has ended.
         """
-        from tiniscript.link.outcomes import Gone
-
-        self._heed()
-        try:
-            return self.line.event()
-        except Gone as gone:
-            raise self.gone(gone) from None
+        with told():
+            return self.client.event(LOOK_S)
 
     def interrupt(self) -> None:
         """Pass a Ctrl-C to the thread that waits here; Python reports it only to the main one."""
@@ -274,25 +258,30 @@ class Connection:
 
     def gone(self, gone: Gone) -> CommandError:
         """Return the sentence for a connection that has ended."""
-        verb = self.line.held_by
-        reason = opening.reason_of_end(self.line, gone, self.port)
-        return CommandError(3, reason, port=shown(self.port), verb=verb)
+        lost = self.client.gone(gone)
+        return CommandError(3, lost.key, **lost.values)
 
 
-def opened_connection(
-    port: str, baud: int, robot: Robot, verb: str, limit_s: float = 20,
-    asked_baud: int | None = None,
-) -> LinkConnection:  # fmt: skip
-    """Connect to a port through its server, or open it. Raises CommandError."""
-
-    def open_line(address: str, lock: IO[bytes] | None) -> Line:
-        kit = robot.kit.fingerprint
-        return opening.opened_line(address, baud, kit, limit_s, lock, port=port)
-
+@contextmanager
+def told() -> Iterator[None]:
+    """Have a RobotError say what the command says of it."""
     try:
-        return opening.connection_to(port, verb, open_line, asked_baud)
-    except RobotError as error:
+        yield
+    except TiniScriptError as error:
+        if error.key in STATUSES:
+            raise CommandError(3, "plain", said=str(error)) from None
         raise CommandError(3, error.key, **error.values) from None
+
+
+def opened_client(
+    port: str, robot: Robot, verb: str, baud: int | None, language: str,
+    limit_s: float = opening.OPEN_S, heed: Callable[[], None] = lambda: None,
+) -> Client:  # fmt: skip
+    """Connect to a port through its server, or open it. Raises CommandError."""
+    with told():
+        return Client(
+            port, verb, robot, baud, language, limit_s, is_shared=verb in SHARED, heed=heed
+        )
 
 
 def port_failure(port: str, failure: PortError) -> CommandError:

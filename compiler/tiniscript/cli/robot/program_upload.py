@@ -7,14 +7,13 @@ from typing import TYPE_CHECKING
 
 from tiniscript.cli import images, inputs
 from tiniscript.cli.errors import CommandError
-from tiniscript.cli.robot.connect import Connection
+from tiniscript.cli.robot.connect import Connection, told
 from tiniscript.cli.robot.run_monitor import RunMonitor, Saving
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from tiniscript.cli.robot.event_printer import EventPrinter
-    from tiniscript.link.connection import PendingRequest, Requester
     from tiniscript.link.payloads import ReceiptReply
     from tiniscript.link.requests import Reply
 
@@ -24,21 +23,11 @@ def send_program(
 ) -> ReceiptReply:
     """Send a program to the robot; return its receipt. `draw` gets the number of code bytes that
     have arrived. Raises CommandError."""
-
-    from tiniscript.library.known_kits import may_run
-    from tiniscript.link.messages import STATUSES
-    from tiniscript.link.requests import Reply
-
-    def make(session: Requester) -> PendingRequest[ReceiptReply]:
-        runs, saves = not options.no_run, not options.no_save
-        kit = connection.profile.kit.fingerprint
-        return session.upload(ready.image, runs, saves, options.detach, kit)
-
-    kit = connection.device_info.kit
-    if not may_run(ready.image, connection.profile, kit):  # refused before any byte is sent
-        raise connection.failure(Reply(STATUSES["WRONG_KIT"], kit))
-    request = connection.do(make)
-    reply = connection.wait(request, lambda: draw(request.done_bytes))
+    with told():
+        reply = connection.client.send_program(
+            ready.image, connection.profile, not options.no_run, not options.no_save,
+            options.detach, draw,
+        )  # fmt: skip
     if reply.status:
         raise _failure(connection, reply, ready)
     return reply.values

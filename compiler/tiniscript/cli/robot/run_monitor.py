@@ -10,10 +10,11 @@ from typing import TYPE_CHECKING, ClassVar
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.texts.common import text
+from tiniscript.library import client
 from tiniscript.library.endings import Follower, end_of
 from tiniscript.library.errors import RobotError
 from tiniscript.library.opening import CONFIRM_S, confirmed
-from tiniscript.link.messages import SAVED_LOW_SUPPLY, SAVED_SAVING, SAVED_STORED
+from tiniscript.link.messages import SAVED_LOW_SUPPLY, SAVED_STORED
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -25,8 +26,6 @@ if TYPE_CHECKING:
     from tiniscript.link.payloads import ReceiptReply, StatusReply
     from tiniscript.link.requests import Reply
 
-SAVE_S = 10.0  # timeout for saving a program
-LOW_S = 2.0  # timeout while the voltage is too low for saving: the robot checks every 0.5 s
 ASK_S = 1.0  # between two status requests about saving, while the program runs
 DONE, FAULTY, INTERRUPTED, LOST = 0, 1, 2, 3  # exit codes
 
@@ -109,57 +108,44 @@ def stop_and_say(connection: Connection) -> int:
 
 
 class Saving:
-    """Waits until the robot has saved the uploaded program, and prints that once.
+    """Waits until the robot has saved the uploaded program, and prints that once."""
 
-    The next command that opens the port may reset the robot, which would end the saving.
-    """
-
-    # what is said where it is not saved: while it is neither, or where its memory is worn out
-    KEYS: ClassVar = {SAVED_SAVING: "saves_later", SAVED_LOW_SUPPLY: "low_supply"}
-    NOT_SAVED = "not_saved"
+    SAID: ClassVar[dict[str, str]] = {}  # in place of what is said for a reason
 
     def __init__(
         self, connection: Connection, printer: EventPrinter, receipt: ReceiptReply
     ) -> None:
         self.connection = connection
         self.printer = printer
-        self.run, self.program, self.saved = receipt.run, receipt.program, receipt.saved
+        self.run, self.program = receipt.run, receipt.program
         self.is_unseen = False
+        self._robots = client.Saving(receipt)
         self._asked: PendingRequest[StatusReply] | None = None
         self._asked_s = monotonic()
-
-    @property
-    def is_over(self) -> bool:
-        return self.saved not in (SAVED_SAVING, SAVED_LOW_SUPPLY)
 
     def look(self) -> None:
         """Request the status every second, without waiting."""
         if self._asked is not None and self._asked.outcome is not None:
             self._learn(self._asked.outcome, is_running=True)
             self._asked = None
-        elif self._asked is None and not self.is_over and monotonic() - self._asked_s > ASK_S:
+        elif (
+            self._asked is None and not self._robots.is_over and monotonic() - self._asked_s > ASK_S
+        ):
             self._asked_s = monotonic()
             self._asked = self.connection.do(lambda session: session.status())
 
     def wait(self) -> None:
         """Wait until it is saved. Raises CommandError where it is not."""
-        if self.is_over:
+        if self._robots.is_over:
             return
-        begun_s = monotonic()
-        low_s: float | None = None
-        while not self.is_over and monotonic() < begun_s + SAVE_S:
+
+        def ask() -> None:
             self._learn(self.connection.ask(lambda session: session.status()), is_running=False)
-            if self.saved == SAVED_LOW_SUPPLY:
-                low_s = low_s or monotonic()
-                if monotonic() > low_s + LOW_S:
-                    break
-            else:
-                low_s = None
-            if not self.is_over:
-                self.connection.event()
-        if self.saved != SAVED_STORED:
-            key = self.KEYS.get(self.saved, self.NOT_SAVED)
-            raise CommandError(3, "plain", said=text(key, self.connection.language))
+
+        reason = self._robots.wait(ask, self.connection.event)
+        if reason:
+            said = text(self.SAID.get(reason, reason), self.connection.language)
+            raise CommandError(3, "plain", said=said)
 
     def wait_unseen(self) -> None:
         """The same when tsc's output has no reader: only failures are printed."""
@@ -171,19 +157,16 @@ class Saving:
                 print(failure.sentence(self.connection.language), file=sys.stderr, flush=True)
 
     def _learn(self, reply: Reply[StatusReply], is_running: bool) -> None:
-        if reply.status or self.is_over:
+        if reply.status or self._robots.is_over:
             return
-        status = reply.values
-        if status.program != self.program:  # another command has sent another one
-            self.saved = SAVED_STORED
-            return
-        was_low, self.saved = self.saved == SAVED_LOW_SUPPLY, status.saved
+        was_low = self._robots.saved == SAVED_LOW_SUPPLY
+        self._robots.learn(reply.values)
         language = self.connection.language
-        if self.is_unseen:
+        if self.is_unseen or reply.values.program != self.program:
             return
-        if self.saved == SAVED_STORED:
-            slot = status.slot
+        if self._robots.saved == SAVED_STORED:
+            slot = reply.values.slot
             said = text("now_saved", language).format(slot=slot)
             self.printer.say(0, "SAVED", str(slot), said, slot=slot)
-        elif self.saved == SAVED_LOW_SUPPLY and not was_low and is_running:
+        elif self._robots.saved == SAVED_LOW_SUPPLY and not was_low and is_running:
             self.printer.say(0, "LOW_SUPPLY", "", text("low_supply", language), is_bad=True)

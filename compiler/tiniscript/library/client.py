@@ -1,0 +1,218 @@
+"""A client of a robot: its port, shared with other commands, and the requests on it.
+
+The command, the connections of the library and the studio all use it. Failures are `RobotError`s:
+the command puts their reason and values into sentences of its own.
+"""
+
+from __future__ import annotations
+
+from contextlib import contextmanager, suppress
+from time import monotonic
+from typing import IO, TYPE_CHECKING
+
+from tiniscript.library import opening
+from tiniscript.library.errors import ProgramError, RobotError
+from tiniscript.link.messages import SAVED_LOW_SUPPLY, SAVED_SAVING, SAVED_STORED
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+    from typing import TypeVar
+
+    from tiniscript.bytecode.image import Image
+    from tiniscript.link.connection import LinkConnection, PendingRequest, Requester
+    from tiniscript.link.line import Line
+    from tiniscript.link.outcomes import Event, Gone
+    from tiniscript.link.payloads import ReceiptReply, StatusReply
+    from tiniscript.link.requests import DeviceInfo, Reply
+    from tiniscript.robots.profile import Robot
+    from tiniscript.sharing.server import Server
+
+    T = TypeVar("T")
+
+PATIENCE_MS = 6000  # timeout for a known robot that is silent, or busy with saving
+SAVE_S = 10.0  # timeout for saving a program while the motors stand
+LOW_S = 2.0  # timeout while the voltage is too low for saving: the robot checks every 0.5 s
+
+
+class Client:
+    """The connection to a port, from the constructor until `close`; one thread uses it.
+
+    `line` is the connection itself; `server` shares it, or is None.
+    """
+
+    def __init__(
+        self, port: str, verb: str, profile: Robot, baud: int | None = None, language: str = "en",
+        limit_s: float = opening.OPEN_S, is_shared: bool = True,
+        is_latched: Callable[[], bool] = lambda: False, heed: Callable[[], None] = lambda: None,
+    ) -> None:  # fmt: skip
+        """Connect to a port through its server, or open it. Raises RobotError.
+
+        `verb` is the name that other commands show for this one. `baud` is the speed that the user
+        has asked for, else that of the profile. While `is_latched` no other command starts a run.
+        `heed` is called repeatedly in every wait.
+        """
+        self._heed = heed
+        self.port = port
+        self.language = language
+        speed = profile.board.baud if baud is None else baud
+
+        def open_line(address: str, lock: IO[bytes] | None) -> Line:
+            kit = profile.kit.fingerprint
+            return opening.opened_line(address, speed, kit, limit_s, lock, language, port)
+
+        self.line: LinkConnection = opening.connection_to(port, verb, open_line, baud, language)
+        self.server: Server | None = None
+        try:
+            if is_shared and not self.line.held_by:
+                self.server = self._shared(speed, verb, is_latched)
+        except BaseException:
+            self.line.close()
+            raise
+
+    def _shared(self, baud: int, verb: str, is_latched: Callable[[], bool]) -> Server | None:
+        """Share the port with other commands, so that `tsc stop` works meanwhile."""
+        from tiniscript.link.line import Line
+        from tiniscript.sharing.server import Server
+
+        assert isinstance(self.line, Line)
+        with suppress(OSError):
+            return Server(self.line, self.port, baud, verb, is_latched)
+        return None
+
+    def close(self, stop_s: float | None = None, has_run: bool = False) -> None:
+        """Close the port. First stop what a client of the server has started, or what may run
+        where `has_run`: wait `stop_s` for that, by default as long as a stop may take."""
+        try:
+            if self.server is not None:
+                self.server.close()  # until then a client may start a run
+                has_run = has_run or self.server.may_have_run  # its client can no longer stop it
+            if has_run and not self.line.has_ended:
+                opening.confirmed(self.line, stop_s)
+        finally:
+            self.line.close()
+
+    # -- requests: all raise RobotError where the connection has ended ----------------------------
+
+    def meet(self, board: str, is_patient: Callable[[], bool] = lambda: True) -> DeviceInfo:
+        """Send HELLO until the robot answers. Raises RobotError if none does.
+
+        While `is_patient` a stop that comes first does not end the search.
+        """
+        from tiniscript.link.outcomes import CANCELLED
+
+        with self._connected():
+            reply = opening.met(self.line, self.port, board, self.wait)
+            while reply.status == CANCELLED and is_patient():
+                reply = self.wait(opening.hello(self.line, opening.ANSWER_MS))
+        robot = self.line.robot
+        if reply.status or robot is None:
+            raise self.failure(reply)
+        return robot
+
+    def do(self, make: Callable[[Requester], PendingRequest[T]]) -> PendingRequest[T]:
+        """Begin a request with a timeout."""
+        with self._connected():
+            return self.line.do(opening.limited(make, PATIENCE_MS))
+
+    def wait(self, request: PendingRequest[T], look: Callable[[], None] | None = None) -> Reply[T]:
+        def watch() -> None:
+            self._heed()
+            if look is not None:
+                look()
+
+        with self._connected():
+            return self.line.wait(request, watch)
+
+    def ask(self, make: Callable[[Requester], PendingRequest[T]]) -> Reply[T]:
+        """Make a request and return its reply, which is OK. Raises RobotError."""
+        reply = self.wait(self.do(make))
+        if reply.status:
+            raise self.failure(reply)
+        return reply
+
+    def event(self, limit_s: float) -> tuple[int, Event] | None:
+        """Return the time (ms) and the next event, or None if none arrives in time."""
+        self._heed()
+        with self._connected():
+            return self.line.event(limit_s)
+
+    def send_program(
+        self, image: Image, profile: Robot, runs: bool, saves: bool, is_detached: bool,
+        draw: Callable[[int], None] = lambda done_bytes: None,
+    ) -> Reply[ReceiptReply]:  # fmt: skip
+        """Send a program to the robot that was verified for `profile`; return the reply.
+
+        It is refused before any byte is sent where the robot has another kit. `draw` gets the
+        number of code bytes that have arrived.
+        """
+        from tiniscript.library.known_kits import refusal
+
+        assert self.line.robot is not None
+        refused = refusal(image, profile, self.line.robot)
+        if refused is not None:
+            return refused
+        kit = profile.kit.fingerprint
+        request = self.do(lambda session: session.upload(image, runs, saves, is_detached, kit))
+        return self.wait(request, lambda: draw(request.done_bytes))
+
+    @contextmanager
+    def _connected(self) -> Iterator[None]:
+        from tiniscript.link.outcomes import Gone
+
+        try:
+            yield
+        except Gone as gone:
+            raise self.gone(gone) from None
+
+    # -- failures ---------------------------------------------------------------------------------
+
+    def gone(self, gone: Gone) -> RobotError:
+        """Return the error for a connection that has ended."""
+        reason = opening.reason_of_end(self.line, gone, self.port)
+        values = {"port": opening.shown(self.port), "verb": self.line.held_by}
+        return RobotError(reason, self.language, values)
+
+    def failure(self, reply: Reply[object]) -> RobotError | ProgramError:
+        """Return the error for a reply that is not OK."""
+        from tiniscript.link.statuses import name_of, sentence
+
+        reason = opening.reason_of(self.line, reply)
+        if reason != "status":
+            return RobotError(reason, self.language, {"port": opening.shown(self.port)})
+        said = " ".join(sentence(reply.status, reply.detail, self.language)).strip()
+        name = name_of(reply.status)
+        kind = ProgramError if name == "TOO_LARGE" else RobotError
+        return kind(name, self.language, said=said)
+
+
+class Saving:
+    """How far the robot is with saving a program: the next command that opens the port may reset
+    the robot, which would end it."""
+
+    def __init__(self, receipt: ReceiptReply) -> None:
+        self.program, self.saved = receipt.program, receipt.saved
+
+    @property
+    def is_over(self) -> bool:
+        return self.saved not in (SAVED_SAVING, SAVED_LOW_SUPPLY)
+
+    def learn(self, status: StatusReply) -> None:
+        """Take what the robot says; of another program: somebody has sent that since."""
+        self.saved = status.saved if status.program == self.program else SAVED_STORED
+
+    def wait(self, ask: Callable[[], None], pause: Callable[[], object]) -> str:
+        """Wait while the motors stand; return the reason where it is not saved, else nothing.
+
+        `ask` has the status learned; `pause` is called between two of them.
+        """
+        begun_s = monotonic()
+        low_s: float | None = None
+        while not self.is_over and monotonic() < begun_s + SAVE_S:
+            ask()
+            low_s = (low_s or monotonic()) if self.saved == SAVED_LOW_SUPPLY else None
+            if low_s is not None and monotonic() > low_s + LOW_S:
+                break
+            if not self.is_over:
+                pause()
+        reasons = {SAVED_STORED: "", SAVED_SAVING: "saves_later", SAVED_LOW_SUPPLY: "low_supply"}
+        return reasons.get(self.saved, "not_saved")  # its memory is worn out
