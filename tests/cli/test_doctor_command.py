@@ -24,7 +24,7 @@ from tiniscript.doctor import report
 from tiniscript.doctor.computer import ON, Adapter, Computer
 from tiniscript.doctor.findings import sure
 from tiniscript.link.ports import Found, opened
-from tiniscript.sharing import registry
+from tiniscript.link.sharing import registry
 
 needs_compiler = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 

@@ -20,8 +20,8 @@ from tests.support.command import PROGRAM, Tsc, process
 from tiniscript import files
 from tiniscript.cli import outputs
 from tiniscript.codegen import source_map
-from tiniscript.sharing import registry
-from tiniscript.sharing.registry import Registration
+from tiniscript.link.sharing import registry
+from tiniscript.link.sharing.registry import Registration
 
 HERE = Path(files.__file__).parent
 unix = pytest.mark.skipif(os.name == "nt", reason="permissions and links of Unix")
@@ -284,7 +284,7 @@ def test_a_lock_goes_with_its_command() -> None:
 
 def test_the_lock_of_a_killed_command_goes() -> None:
     code = (
-        "from tiniscript.sharing import registry; lock = registry.claimed('socket://x:1');"
+        "from tiniscript.link.sharing import registry; lock = registry.claimed('socket://x:1');"
         "print('held', flush=True); input()"
     )
     with subprocess.Popen(
@@ -323,7 +323,7 @@ def test_a_lock_that_was_removed_in_between_locks_nothing(monkeypatch: pytest.Mo
 def test_a_killed_link_leaves_nothing_for_long(cache: Path) -> None:
     """A command that was killed is forgotten by the next one that looks."""
     code = (
-        "import os, signal; from tiniscript.sharing import registry;"
+        "import os, signal; from tiniscript.link.sharing import registry;"
         "lock = registry.claimed('socket://x:1');"
         "registry.write(registry.Registration("
         f"'socket://x:1', {free_number()}, 't', 'a', 'link', 1, 2));"

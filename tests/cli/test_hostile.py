@@ -207,7 +207,7 @@ def test_files_of_the_cache_may_be_anything(kind: str) -> None:
     """No command waits for them, or reads for ever: they say nothing."""
     from tiniscript.codegen import source_map
     from tiniscript.link import known_ports
-    from tiniscript.sharing import registry
+    from tiniscript.link.sharing import registry
     from tiniscript.virtual import directory
 
     port = "socket://127.0.0.1:4000"

@@ -11,7 +11,7 @@ from tests.cli.test_owner_commands import claimed
 from tests.machines.host_firmware import missing
 from tests.support.command import Command, inside
 from tests.support.pty_robot import PtyRobot, on
-from tiniscript.keys import KeyFile
+from tiniscript.link.keys import KeyFile
 
 pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
 pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")

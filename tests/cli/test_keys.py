@@ -12,8 +12,8 @@ import pytest
 
 from tests.support.command import Tsc
 from tiniscript import files
-from tiniscript.keys import MOST, BadKeys, KeyFile, read, written
 from tiniscript.link.authority import RobotKey
+from tiniscript.link.keys import MOST, BadKeys, KeyFile, read, written
 from tiniscript.link.messages import KEY_OWNER, KEY_TEACHER
 
 ONE = RobotKey(0x12345678, KEY_OWNER, bytes(range(16)), "TINI")
@@ -114,7 +114,7 @@ def test_the_keys_of_one_robot_are_forgotten(tsc: Tsc) -> None:
 CLAIMS = """
 import sys
 from pathlib import Path
-from tiniscript.keys import KeyFile
+from tiniscript.link.keys import KeyFile
 ring, first = KeyFile(Path(sys.argv[1])), int(sys.argv[2])
 for robot in range(first, first + 25):
     key = ring.made(robot, 0, "R")

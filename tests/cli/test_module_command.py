@@ -16,7 +16,7 @@ from tests.support.command import Command, Tsc
 from tests.support.pty_end import PtyEnd
 from tests.support.simulated_modules import Bt05, Hc05, Hc06, Hc06New, Hm10
 from tests.support.simulated_modules import SimulatedModule as Simulated
-from tiniscript.modules import talk
+from tiniscript.link.modules import talk
 
 
 @pytest.fixture

@@ -17,9 +17,9 @@ from tests.support.command import FOREVER, Command, Done
 from tests.support.pty_robot import PtyRobot, on
 from tiniscript.cli import main
 from tiniscript.cli.commands import claim
-from tiniscript.keys import KeyFile
+from tiniscript.link.keys import KeyFile
 from tiniscript.link.messages import KEY_OWNER, KEY_TEACHER
-from tiniscript.sharing.requests import ClientRequests
+from tiniscript.link.sharing.requests import ClientRequests
 
 pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
 pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")

@@ -301,7 +301,7 @@ def test_after_ctrl_c_saving_is_no_time_of_the_run(
     monkeypatch.setattr(Connection, "event_printer", printer)
     monkeypatch.setattr(upload, "monotonic", lambda: now_s[0])
     monkeypatch.setattr(recorder, "monotonic", lambda: now_s[0])
-    monkeypatch.setattr(upload, "looked_after", ctrl_c)
+    monkeypatch.setattr(upload, "follow_run", ctrl_c)
     monkeypatch.setattr(Saving, "wait", saves)
     monkeypatch.setattr(CommandSimulator, "told_ms", None)  # as a real robot, it has no clock
     done = tsc("upload", "-e", "SI|F(9, 60)", "--virtual", "--record", file)

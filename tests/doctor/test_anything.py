@@ -14,7 +14,7 @@ from tiniscript.doctor import computer, systems
 from tiniscript.doctor.examination import Expected
 from tiniscript.doctor.findings import CAUSES
 from tiniscript.doctor.line import Line, looked
-from tiniscript.modules.talk import found
+from tiniscript.link.modules.talk import found
 
 WORDS = (
     b"OK",

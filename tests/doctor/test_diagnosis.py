@@ -25,9 +25,9 @@ from tiniscript.link.errors import PortError
 from tiniscript.link.messages import STATUSES
 from tiniscript.link.outcomes import CANCELLED, LOST, Gone
 from tiniscript.link.requests import Reply
+from tiniscript.link.sharing.client import OtherVersion
+from tiniscript.link.sharing.registry import Registration
 from tiniscript.link.wire import Wire
-from tiniscript.sharing.client import OtherVersion
-from tiniscript.sharing.registry import Registration
 
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="the trees have symbolic links")
 

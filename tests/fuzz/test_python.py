@@ -26,11 +26,11 @@ from tiniscript.diagnostics.rendering import as_text, message
 from tiniscript.link.frames import Frame, encoded
 from tiniscript.link.messages import MESSAGES, PAYLOAD_BYTES
 from tiniscript.link.session import Session
+from tiniscript.link.sharing import protocol
+from tiniscript.link.sharing.protocol import BadMessage, MessageReader
+from tiniscript.link.sharing.requests import ClientRequests, asked_for
 from tiniscript.robots.profile import ProfileRefused
 from tiniscript.robots.reader import read as read_profile
-from tiniscript.sharing import protocol
-from tiniscript.sharing.protocol import BadMessage, MessageReader
-from tiniscript.sharing.requests import ClientRequests, asked_for
 from tiniscript.source import Source
 from tiniscript.virtual.world_reader import read as read_world
 

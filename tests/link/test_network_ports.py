@@ -94,8 +94,10 @@ def test_a_robot_is_reached_over_a_network(protocol: str) -> None:
 def test_a_radio_is_known_by_its_port(
     system: str, port: str, is_radio: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    wires = [SimpleNamespace(device="COM3", hwid="USB VID:PID=1A86:7523"),
-             SimpleNamespace(device="COM5", hwid="BTHENUM\\{00001101-0000}")]  # fmt: skip
+    wires = [
+        SimpleNamespace(device="COM3", description="n/a", hwid="USB VID:PID=1A86:7523"),
+        SimpleNamespace(device="COM5", description="n/a", hwid="BTHENUM\\{00001101-0000}"),
+    ]
     monkeypatch.setattr("serial.tools.list_ports.comports", lambda: wires)
     monkeypatch.setattr(ports, "sys", SimpleNamespace(platform=system))
     assert ports.is_radio(port) == is_radio

@@ -23,7 +23,7 @@ from tiniscript.link.outcomes import (
     TextEvent,
 )
 from tiniscript.link.payloads import EVENTS, REPLIES, ReceiptReply, StatusReply
-from tiniscript.sharing import protocol
+from tiniscript.link.sharing import protocol
 
 REPLY_MESSAGES = [each for each in MESSAGES if each.number < FIRST_EVENT]
 EVENT_MESSAGES = [each for each in MESSAGES if each.number >= FIRST_EVENT]

@@ -9,10 +9,10 @@ import pytest
 from tests.support.simulated_modules import KINDS, Bt05, Cc41, Hc05, Hc05New, Hc06, Hm10
 from tests.support.simulated_modules import SimulatedModule as Simulated
 from tests.support.simulated_wire import SimulatedWire
-from tiniscript.modules import set_up
-from tiniscript.modules.dialects import BAUDS, DIALECTS, Dialect
-from tiniscript.modules.set_up import Outcome, Wanted
-from tiniscript.modules.talk import Module, found
+from tiniscript.link.modules import set_up
+from tiniscript.link.modules.dialects import BAUDS, DIALECTS, Dialect
+from tiniscript.link.modules.set_up import Outcome, Wanted
+from tiniscript.link.modules.talk import Module, found
 
 of_each = pytest.mark.parametrize("kind", KINDS)
 

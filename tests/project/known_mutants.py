@@ -27,7 +27,7 @@ KNOWN: tuple[Known, ...] = (
     Known("a stored trim", "vm_arduino/src/firmware/identity.cpp",
           "if (is_sound(found)) change_trim(found);", "change_trim(found);",
           "tests/firmware/test_other_versions.py::test_a_trim_that_other_firmware_has_kept_is_none"),
-    Known("a request of who has left", "compiler/tiniscript/sharing/server.py",
+    Known("a request of who has left", "compiler/tiniscript/link/sharing/server.py",
           "self._detached_requests += client.requests.values()", "pass",
           "tests/sharing/test_shared_port.py::test_a_run_that_begins_after_its_client_has_left_is_stopped"),
     Known("the page that asked last", "compiler/tiniscript/studio/serving.py",

@@ -170,7 +170,7 @@ def said_in(language: str) -> dict[str, str]:
     from tiniscript.library.texts import TEXTS as LIBRARY_TEXTS
     from tiniscript.robots.profile import LANGUAGES
     from tiniscript.robots.toml_table import parse_toml
-    from tiniscript.wiring.texts import TEXTS as WIRING_TEXTS
+    from tiniscript.robots.wiring.texts import TEXTS as WIRING_TEXTS
 
     both_languages = (*tables(), WIRING_TEXTS, LIBRARY_TEXTS, SENTENCES)
     k = LANGUAGES.index(language)

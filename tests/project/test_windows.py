@@ -135,7 +135,7 @@ def encoded(said: str, encoding: str) -> str:
 
 @pytest.mark.parametrize("encoding", ["cp1252", "cp850", "cp437"])
 def test_every_sentence_can_be_read_in_an_encoding_of_windows(encoding: str) -> None:
-    from tiniscript.wiring.texts import TEXTS
+    from tiniscript.robots.wiring.texts import TEXTS
 
     said = [each for table in tables() for both in table.values() for each in both]
     said += [each for both in TEXTS.values() for each in both]

@@ -13,8 +13,8 @@ from tiniscript.flash import bootloaders
 from tiniscript.robots import firmware
 from tiniscript.robots.boards import CHIPS
 from tiniscript.robots.ports import AVRS
+from tiniscript.robots.wiring.headers import SIDES
 from tiniscript.sketch import writing
-from tiniscript.wiring.headers import SIDES
 
 INI = ROOT / "vm_arduino" / "platformio.ini"
 
@@ -22,7 +22,7 @@ INI = ROOT / "vm_arduino" / "platformio.ini"
 @pytest.mark.parametrize("board", firmware.BOARDS)
 def test_a_board_is_drawn_and_built(board: str) -> None:
     assert board in CHIPS, "robots/boards.py says what its pins can do"
-    assert board in SIDES, "wiring/headers.py says where its pins are"
+    assert board in SIDES, "robots/wiring/headers.py says where its pins are"
     environments = re.findall(r"(?m)^\[env:(.+)\]$", INI.read_text(encoding="utf-8"))
     assert board in environments, "vm_arduino/platformio.ini has an environment of its name"
 

@@ -7,9 +7,9 @@ from typing import Any
 
 import pytest
 
+from tiniscript.link.sharing.protocol import BadMessage
+from tiniscript.link.sharing.requests import ClientRequests, asked_for
 from tiniscript.link.wifi import BrokerSettings, Tls
-from tiniscript.sharing.protocol import BadMessage
-from tiniscript.sharing.requests import ClientRequests, asked_for
 
 PLAIN = BrokerSettings(bytes((192, 168, 1, 20)), 8883, "aula", b"robots", b"secret")
 NAMED = PLAIN._replace(name=b"broker.aula", tls=Tls(bytes(range(256)) * 8, 20261121))

@@ -18,8 +18,8 @@ from tests.support.command import FOREVER, process
 from tests.support.virtual_robot import missing as no_wasm
 from tests.support.waiting import HANGS_S
 from tiniscript import files
-from tiniscript.sharing import peers, registry
-from tiniscript.sharing.registry import Registration
+from tiniscript.link.sharing import peers, registry
+from tiniscript.link.sharing.registry import Registration
 from tiniscript.virtual.transports import Transports
 
 linux = pytest.mark.skipif(sys.platform != "linux", reason="only Linux tells the user")

@@ -9,9 +9,9 @@ from unittest.mock import Mock
 import pytest
 
 from tiniscript.bytecode.image import Image
+from tiniscript.link.sharing.protocol import BadMessage, message_of
+from tiniscript.link.sharing.requests import ClientRequest, ClientRequests, asked_for
 from tiniscript.link.wifi import BrokerSettings, Network
-from tiniscript.sharing.protocol import BadMessage, message_of
-from tiniscript.sharing.requests import ClientRequest, ClientRequests, asked_for
 
 HOME = Network(b"Home", b"a password", False)
 BROKER = BrokerSettings(bytes((10, 0, 0, 7)), 1883, "class", b"robot", b"secret")

@@ -14,7 +14,7 @@ from tiniscript.link.connection import LinkConnection, PendingRequest
 from tiniscript.link.line import Line
 from tiniscript.link.payloads import DoneEvent, ReceiptReply
 from tiniscript.link.requests import OK, Reply
-from tiniscript.sharing.server import ConnectedClient, ServedRequest, Server
+from tiniscript.link.sharing.server import ConnectedClient, ServedRequest, Server
 
 
 class FakeLine:

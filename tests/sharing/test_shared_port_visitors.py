@@ -19,9 +19,9 @@ from tests.support.shared_pty_robot import Shared
 from tests.support.waiting import HANGS_S
 from tiniscript import __version__
 from tiniscript.link.payloads import DoneEvent, ShowEvent
-from tiniscript.sharing import protocol, registry
-from tiniscript.sharing.registry import Registration
-from tiniscript.sharing.server import CLIENTS, FULL_BYTES
+from tiniscript.link.sharing import protocol, registry
+from tiniscript.link.sharing.registry import Registration
+from tiniscript.link.sharing.server import CLIENTS, FULL_BYTES
 
 pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
 pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
@@ -46,7 +46,7 @@ def is_let_go(peer: socket.socket) -> bool:
 
 def test_too_many_who_say_nothing_let_the_oldest_go(monkeypatch: pytest.MonkeyPatch) -> None:
     """Long before the time for their greeting is over."""
-    monkeypatch.setattr("tiniscript.sharing.server.GREETING_S", 600.0)
+    monkeypatch.setattr("tiniscript.link.sharing.server.GREETING_S", 600.0)
     with Shared() as (_, registration), ExitStack() as opened:
         silent = [opened.enter_context(visitor(registration)) for _ in range(CLIENTS + 10)]
         assert all(is_let_go(peer) for peer in silent[:10])

@@ -18,8 +18,8 @@ from tests.support.crowd import crowd
 from tests.support.pty_robot import PtyRobot, on, uploading
 from tests.support.waiting import HANGS_S
 from tiniscript import __version__
-from tiniscript.sharing import protocol, registry
-from tiniscript.sharing.registry import Registration
+from tiniscript.link.sharing import protocol, registry
+from tiniscript.link.sharing.registry import Registration
 
 pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
 pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")

@@ -18,7 +18,7 @@ import pytest
 from tests.sharing.test_peers import linux, pair
 from tests.support.page_server import serves
 from tests.support.waiting import HANGS_S, until
-from tiniscript.sharing import peers
+from tiniscript.link.sharing import peers
 from tiniscript.studio import serving
 from tiniscript.studio.entrances import OPENS_S, Entrances
 

@@ -8,7 +8,8 @@ from typing import Any
 import pytest
 
 from tests.support.virtual_robot import robot_in
-from tiniscript import compile, keys, robots
+from tiniscript import compile, robots
+from tiniscript.link import keys
 from tiniscript.link.authority import RobotKey
 from tiniscript.studio import worker
 from tiniscript.studio.page_line import HEARD_MS, PageKeys, PageRobot

@@ -7,8 +7,8 @@ from tiniscript import robots
 from tiniscript.link.line import Line
 from tiniscript.link.ports import opened
 from tiniscript.link.session import Session
-from tiniscript.sharing.registry import Registration
-from tiniscript.sharing.server import Server
+from tiniscript.link.sharing.registry import Registration
+from tiniscript.link.sharing.server import Server
 
 KIT = robots.load("tinibot").kit
 

@@ -22,16 +22,16 @@ from tiniscript.robots.driver import Driver
 from tiniscript.robots.drivers import DRIVERS
 from tiniscript.robots.profile import LANGUAGES, Place, Robot, Wiring
 from tiniscript.robots.reader import read
-from tiniscript.wiring import parts
-from tiniscript.wiring.drawing import drawing_of
-from tiniscript.wiring.finished import _Finished, finished_of
-from tiniscript.wiring.headers import SIDES
-from tiniscript.wiring.html import html_of
-from tiniscript.wiring.icons import ICONS
-from tiniscript.wiring.layout import BOARD_WIDTH, PART_WIDTH, Layout, layout_of
-from tiniscript.wiring.page import page_of, wire_rows
-from tiniscript.wiring.plan import Plan, pins_of, plan_of
-from tiniscript.wiring.texts import TEXTS
+from tiniscript.robots.wiring import parts
+from tiniscript.robots.wiring.drawing import drawing_of
+from tiniscript.robots.wiring.finished import _Finished, finished_of
+from tiniscript.robots.wiring.headers import SIDES
+from tiniscript.robots.wiring.html import html_of
+from tiniscript.robots.wiring.icons import ICONS
+from tiniscript.robots.wiring.layout import BOARD_WIDTH, PART_WIDTH, Layout, layout_of
+from tiniscript.robots.wiring.page import page_of, wire_rows
+from tiniscript.robots.wiring.plan import Plan, pins_of, plan_of
+from tiniscript.robots.wiring.texts import TEXTS
 
 DRIVER_IDS = [f"{used_by} {name}" for used_by, name in DRIVERS]
 SVG = "{http://www.w3.org/2000/svg}"

@@ -20,8 +20,8 @@ from markdown_it.token import Token
 
 from tiniscript import robots
 from tiniscript.lessons import catalogue
-from tiniscript.wiring.html import html_of
-from tiniscript.wiring.plan import plan_of
+from tiniscript.robots.wiring.html import html_of
+from tiniscript.robots.wiring.plan import plan_of
 
 LANGUAGES = ("en", "es")
 STYLE = """\

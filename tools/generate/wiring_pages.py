@@ -1,6 +1,6 @@
 """The pages of `docs/wiring/`: how the shipped robots are wired, in a form that GitHub shows.
 
-Knows Markdown. What is said and drawn, `tiniscript.wiring` knows.
+Knows Markdown. What is said and drawn, `tiniscript.robots.wiring` knows.
 """
 
 from __future__ import annotations
@@ -9,10 +9,10 @@ import re
 
 from tiniscript import robots
 from tiniscript.robots.profile import LANGUAGES
-from tiniscript.wiring.drawing import drawing_of
-from tiniscript.wiring.finished import finished_of
-from tiniscript.wiring.page import Block, page_of
-from tiniscript.wiring.plan import plan_of
+from tiniscript.robots.wiring.drawing import drawing_of
+from tiniscript.robots.wiring.finished import finished_of
+from tiniscript.robots.wiring.page import Block, page_of
+from tiniscript.robots.wiring.plan import plan_of
 
 OTHER_LANGUAGE = {"en": ("es", "Español"), "es": ("en", "English")}
 

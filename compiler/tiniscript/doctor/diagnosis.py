@@ -24,8 +24,8 @@ from tiniscript.link.connection import LinkConnection
 from tiniscript.link.errors import PortError
 from tiniscript.link.outcomes import Gone
 from tiniscript.link.port_names import is_address, same_for_all
+from tiniscript.link.sharing.client import OtherVersion
 from tiniscript.link.wire import Wire
-from tiniscript.sharing.client import OtherVersion
 
 REFUSED, IN_USE = os.strerror(errno.ECONNREFUSED), os.strerror(errno.EBUSY)
 PSEUDO = ("/dev/pts/", "/dev/ttys")  # pseudo-terminals: nothing restarts there

@@ -13,8 +13,8 @@ from tiniscript.doctor import bootloader
 from tiniscript.doctor.examination import Expected, examined
 from tiniscript.doctor.findings import Finding, probably, sure
 from tiniscript.doctor.robot import CABLE_MS, RADIO_MS, WireRobot
+from tiniscript.link.modules import dialects, talk
 from tiniscript.link.wire import Wire
-from tiniscript.modules import dialects, talk
 
 BOOT_MS = 1700  # an Uno takes 1.4 s after its port was opened, and a Mega wants silence until then
 HELLOS = 5  # an old Nano's bootloader takes longer

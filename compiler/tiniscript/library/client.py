@@ -24,8 +24,8 @@ if TYPE_CHECKING:
     from tiniscript.link.outcomes import Event, Gone
     from tiniscript.link.payloads import ReceiptReply, StatusReply
     from tiniscript.link.requests import DeviceInfo, Reply
+    from tiniscript.link.sharing.server import Server
     from tiniscript.robots.profile import Robot
-    from tiniscript.sharing.server import Server
 
     T = TypeVar("T")
 
@@ -72,7 +72,7 @@ class Client:
     def _shared(self, baud: int, verb: str, is_latched: Callable[[], bool]) -> Server | None:
         """Share the port with other commands, so that `tsc stop` works meanwhile."""
         from tiniscript.link.line import Line
-        from tiniscript.sharing.server import Server
+        from tiniscript.link.sharing.server import Server
 
         assert isinstance(self.line, Line)
         with suppress(OSError):

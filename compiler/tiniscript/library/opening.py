@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from tiniscript.link.outcomes import Gone
     from tiniscript.link.payloads import HelloReply
     from tiniscript.link.requests import Reply
-    from tiniscript.sharing.client import Client
+    from tiniscript.link.sharing.client import Client
 
     T = TypeVar("T")
 
@@ -58,7 +58,7 @@ def connection_to(
     name becomes its address, which may be in use under another name.
     """
     from tiniscript.link.port_names import is_name
-    from tiniscript.sharing import registry
+    from tiniscript.link.sharing import registry
 
     address = port
     end_s = monotonic() + (STOP_BUSY_S if verb == "stop" else BUSY_S)
@@ -89,8 +89,8 @@ def opened_line(
 
     `port` is the port's name in sentences, where it is not `address`.
     """
-    from tiniscript.keys import KeyFile
     from tiniscript.link.errors import PortError
+    from tiniscript.link.keys import KeyFile
     from tiniscript.link.line import Line
     from tiniscript.link.ports import opened
     from tiniscript.link.session import Session
@@ -242,7 +242,7 @@ def shown(name: str) -> str:
 
 
 def _joined(port: str, verb: str, baud: int | None, language: str) -> Client | None:
-    from tiniscript.sharing.client import OtherVersion, joined
+    from tiniscript.link.sharing.client import OtherVersion, joined
 
     try:
         client = joined(port, verb)
@@ -276,7 +276,7 @@ def _claimed(port: str, language: str) -> IO[bytes] | None:
 
     if not is_address(port):
         return None
-    from tiniscript.sharing import registry
+    from tiniscript.link.sharing import registry
 
     try:
         lock = registry.claimed(port)

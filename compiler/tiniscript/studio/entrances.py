@@ -14,7 +14,7 @@ from threading import Lock
 from time import monotonic
 from typing import NamedTuple
 
-from tiniscript.sharing import peers
+from tiniscript.link.sharing import peers
 
 TOKEN_BYTES = 16
 OPENS_S = 120.0  # for a browser of this computer to open

@@ -11,10 +11,10 @@ import os
 from collections.abc import Callable
 from typing import TypeVar
 
-from tiniscript.keys import BadKeys, known_seals, read, written
 from tiniscript.link.authority import RobotKey
 from tiniscript.link.backlog import Backlog
 from tiniscript.link.connection import PendingRequest, Requester
+from tiniscript.link.keys import BadKeys, known_seals, read, written
 from tiniscript.link.messages import KEY_BYTES
 from tiniscript.link.outcomes import Event
 from tiniscript.link.requests import DeviceInfo

@@ -25,7 +25,7 @@ from typing import Any, NamedTuple, Protocol, cast
 from urllib.parse import urlsplit
 
 from tiniscript.flash import ready
-from tiniscript.sharing.protocol import BadMessage, message_of
+from tiniscript.link.sharing.protocol import BadMessage, message_of
 from tiniscript.studio import building
 from tiniscript.studio.entrances import Entrances
 from tiniscript.studio.policy import HEADERS, SECURE_ONLY, TYPES

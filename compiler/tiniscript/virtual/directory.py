@@ -13,7 +13,7 @@ from typing import NamedTuple
 from tiniscript import files
 from tiniscript.files import contents
 from tiniscript.link.port_names import same_for_all
-from tiniscript.sharing.registry import is_taken
+from tiniscript.link.sharing.registry import is_taken
 from tiniscript.virtual.transports import LOCAL
 
 FILE_BYTES = 10_000

@@ -16,7 +16,7 @@ import sys
 from time import monotonic, sleep
 
 from tiniscript.link.messages import SILENCE_MS
-from tiniscript.sharing.peers import is_of_this_user
+from tiniscript.link.sharing.peers import is_of_this_user
 from tiniscript.virtual.first_bytes import is_at_stop, is_for_robot
 
 LOCAL = "127.0.0.1"

@@ -1,7 +1,7 @@
 // The keys of robots that this browser keeps: the text of a file of keys, as `tsc keys` writes it.
 // Who uses this browser uses them; the page gives them to no one but the robot's session.
 
-const PLACE = 'tiniscript.keys';
+const PLACE = 'tiniscript.link.keys';
 
 /** @returns {string} */
 export function keptKeys() {

@@ -35,7 +35,7 @@ def _claim(connection: Connection, which: int) -> None:
     print(said, file=sys.stderr, flush=True)
     reply = connection.wait(request)
     if reply.status == UNKEPT:
-        from tiniscript.keys import KeyFile
+        from tiniscript.link.keys import KeyFile
 
         raise CommandError(2, "unkept_key", file=shown(str(KeyFile().path)))
     if reply.status in (STATUSES["SAVING"], STATUSES["LOW_SUPPLY"]):
@@ -49,8 +49,8 @@ def _claim(connection: Connection, which: int) -> None:
 
 def _refuse_at_once(connection: Connection) -> None:
     """Say what no button changes. Raises CommandError."""
-    from tiniscript.keys import KeyFile
     from tiniscript.link.authority import NOT_OWNER, OF_ANOTHER, whose
+    from tiniscript.link.keys import KeyFile
     from tiniscript.link.requests import Reply
 
     device_info = connection.device_info

@@ -94,7 +94,7 @@ def _name_of_kit(kit: int) -> str | None:
 
 
 def _has_key(robot: int) -> bool:
-    from tiniscript.keys import KeyFile
+    from tiniscript.link.keys import KeyFile
 
     return any(not key.is_stale for key in KeyFile().of_robot(robot))
 
@@ -103,8 +103,8 @@ def _doors(options: Namespace, language: str, doing: _Doing) -> Doors:
     from tiniscript.doctor.diagnosis import Doors
     from tiniscript.doctor.system import ThisComputer
     from tiniscript.link import ports
+    from tiniscript.link.sharing.client import joined
     from tiniscript.link.wire import SerialWire
-    from tiniscript.sharing.client import joined
 
     def open_wire(port: str, baud: int) -> Wire:
         return SerialWire(ports.opened(port, baud))

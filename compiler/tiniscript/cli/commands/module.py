@@ -13,10 +13,10 @@ from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot.connect import port_failure
 from tiniscript.cli.terminal.sequences import are_read
 from tiniscript.cli.texts.common import text
-from tiniscript.modules import set_up
-from tiniscript.modules.dialects import BAUDS, DIALECTS, Dialect, value_of
-from tiniscript.modules.set_up import BAUD, DONE, GOOD, NAME, PIN, Outcome, Step, Wanted
-from tiniscript.modules.talk import Module, asked, found
+from tiniscript.link.modules import set_up
+from tiniscript.link.modules.dialects import BAUDS, DIALECTS, Dialect, value_of
+from tiniscript.link.modules.set_up import BAUD, DONE, GOOD, NAME, PIN, Outcome, Step, Wanted
+from tiniscript.link.modules.talk import Module, asked, found
 
 if TYPE_CHECKING:
     from tiniscript.link.wire import Wire

@@ -65,8 +65,8 @@ def _rows(options: Namespace, in_reach: InReach, language: str) -> list[dict[str
     """Return the ports that the system lists, those in reach, and others that had a robot."""
     from tiniscript.link import known_ports, ports
     from tiniscript.link.port_names import is_there, same_for_all
-    from tiniscript.sharing.client import is_alive
-    from tiniscript.sharing.registry import all_found
+    from tiniscript.link.sharing.client import is_alive
+    from tiniscript.link.sharing.registry import all_found
     from tiniscript.virtual import directory
 
     known = known_ports.known()

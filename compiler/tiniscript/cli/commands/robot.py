@@ -301,7 +301,7 @@ def _memory(name: str | None) -> bytes | None:
 def _name(robot: VirtualRobot, name: str) -> None:
     """Name the robot as `tsc name` does, before any client connects."""
     from tiniscript.cli.commands.name import name_bytes
-    from tiniscript.keys import KeyFile
+    from tiniscript.link.keys import KeyFile
     from tiniscript.link.session import Session
 
     data = name_bytes(name)

@@ -24,11 +24,11 @@ def run(options: Namespace, language: str) -> int:
         raise CommandError(
             2, "no_firmware", chip=robot.board.chip, known=", ".join(firmware.BOARDS)
         )
-    from tiniscript.wiring.plan import plan_of
+    from tiniscript.robots.wiring.plan import plan_of
 
     plan = plan_of(robot, language)
     if options.output is None:
-        from tiniscript.wiring.page import rail_rows, wire_rows
+        from tiniscript.robots.wiring.page import rail_rows, wire_rows
 
         _print_rows(wire_rows(plan))
         print()
@@ -36,7 +36,7 @@ def run(options: Namespace, language: str) -> int:
         print()
         print(text("wiring_page", language))
         return 0
-    from tiniscript.wiring.html import html_of
+    from tiniscript.robots.wiring.html import html_of
 
     page = html_of(plan)
     if options.output == "-":

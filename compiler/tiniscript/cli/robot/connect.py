@@ -168,7 +168,7 @@ class Connection:
 
         if device_info.values.features & (OWNED | YOURS) != OWNED:
             return
-        from tiniscript.keys import KeyFile
+        from tiniscript.link.keys import KeyFile
 
         keys = KeyFile().of_robot(device_info.id)
         if any(key.is_stale and not key.is_pending for key in keys):

@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from tiniscript.sharing.registry import Registration
+    from tiniscript.link.sharing.registry import Registration
 
 AT_ONCE = 16  # servers that are checked at the same time
 
@@ -16,7 +16,7 @@ AT_ONCE = 16  # servers that are checked at the same time
 def ports(is_virtual: bool = False) -> list[str]:
     """Return the port of each robot that is in use, once; `is_virtual`: of virtual ones alone."""
     from tiniscript.link.port_names import same_for_all
-    from tiniscript.sharing.registry import all_found
+    from tiniscript.link.sharing.registry import all_found
     from tiniscript.virtual.directory import running
 
     held = _alive(all_found())
@@ -30,7 +30,7 @@ def ports(is_virtual: bool = False) -> list[str]:
 
 def _alive(registrations: list[Registration]) -> list[str]:
     """Return the ports of the servers that still run; a hanging server delays no other check."""
-    from tiniscript.sharing.client import is_alive
+    from tiniscript.link.sharing.client import is_alive
 
     if len(registrations) < 2:  # importing threads takes longer than one answer
         return [registration.port for registration in registrations if is_alive(registration)]

@@ -44,7 +44,7 @@ def targets(options: Namespace) -> list[Target]:
     ports = options.ports
     if options.all:
         from tiniscript.link.ports import listed
-        from tiniscript.sharing.registry import all_found
+        from tiniscript.link.sharing.registry import all_found
         from tiniscript.virtual.directory import is_gone, running
 
         ports = [registration.port for registration in all_found()]

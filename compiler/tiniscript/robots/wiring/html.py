@@ -5,11 +5,11 @@ from __future__ import annotations
 import re
 from html import escape
 
-from tiniscript.wiring.drawing import drawing_of
-from tiniscript.wiring.finished import finished_of
-from tiniscript.wiring.page import Block, page_of
-from tiniscript.wiring.plan import Plan
-from tiniscript.wiring.texts import text
+from tiniscript.robots.wiring.drawing import drawing_of
+from tiniscript.robots.wiring.finished import finished_of
+from tiniscript.robots.wiring.page import Block, page_of
+from tiniscript.robots.wiring.plan import Plan
+from tiniscript.robots.wiring.texts import text
 
 STYLE = """\
 @page { size: A4; margin: 11mm; }

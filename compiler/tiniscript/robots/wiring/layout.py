@@ -9,8 +9,8 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
-from tiniscript.wiring.headers import RECEIVE_PINS, ROW_AT_THE_END, SIDES, Slot
-from tiniscript.wiring.plan import Part, Plan, Wire
+from tiniscript.robots.wiring.headers import RECEIVE_PINS, ROW_AT_THE_END, SIDES, Slot
+from tiniscript.robots.wiring.plan import Part, Plan, Wire
 
 LEFT, RIGHT = 0, 1
 STEP = 22  # from pin to pin

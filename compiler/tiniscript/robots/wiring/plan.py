@@ -20,8 +20,8 @@ from tiniscript.robots.driver import (
     switch,
 )
 from tiniscript.robots.profile import Body, Robot, Wiring
-from tiniscript.wiring import parts
-from tiniscript.wiring.texts import text
+from tiniscript.robots.wiring import parts
+from tiniscript.robots.wiring.texts import text
 
 RECEIVE_PIN, TRANSMIT_PIN = 0, 1  # of an AVR
 LAMP_PIN = 13  # has a lamp on an AVR's boards, called L

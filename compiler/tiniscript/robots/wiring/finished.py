@@ -10,10 +10,10 @@ from html import escape
 from math import cos, radians, sin
 
 from tiniscript.robots.profile import Place
-from tiniscript.wiring.drawing import BOLD, FAINT, FONT, LINE, RAIL_INKS, text_at
-from tiniscript.wiring.headers import SIDES
-from tiniscript.wiring.plan import Part, Plan
-from tiniscript.wiring.texts import text
+from tiniscript.robots.wiring.drawing import BOLD, FAINT, FONT, LINE, RAIL_INKS, text_at
+from tiniscript.robots.wiring.headers import SIDES
+from tiniscript.robots.wiring.plan import Part, Plan
+from tiniscript.robots.wiring.texts import text
 
 LONGEST = 520  # of the longer side of the plate
 MARGIN = 70  # above and below the plate

@@ -8,8 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
-from tiniscript.link.wire import Wire
-from tiniscript.modules.dialects import (
+from tiniscript.link.modules.dialects import (
     ANSWER_MS,
     BAUDS,
     BT05,
@@ -26,6 +25,7 @@ from tiniscript.modules.dialects import (
     is_error,
     is_ok,
 )
+from tiniscript.link.wire import Wire
 
 SHOWN = 60  # characters of a version
 TRIES = 2  # the first command after power-on may meet half a command of before

@@ -28,10 +28,10 @@ from tiniscript.link.outcomes import CANCELLED, Event, JoinedEvent, LeftEvent, M
 from tiniscript.link.payloads import ReceiptReply
 from tiniscript.link.port_names import same_for_all
 from tiniscript.link.requests import OK, Reply
-from tiniscript.sharing import protocol, registry
-from tiniscript.sharing.protocol import BadMessage, JsonMessage
-from tiniscript.sharing.registry import Registration
-from tiniscript.sharing.requests import asked_for, is_detached
+from tiniscript.link.sharing import protocol, registry
+from tiniscript.link.sharing.protocol import BadMessage, JsonMessage
+from tiniscript.link.sharing.registry import Registration
+from tiniscript.link.sharing.requests import asked_for, is_detached
 from tiniscript.version import __version__
 
 GREETING_S = 2.0  # timeout for a new client's greeting

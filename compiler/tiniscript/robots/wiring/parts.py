@@ -18,7 +18,7 @@ from tiniscript.robots.driver import (
 )
 from tiniscript.robots.drivers import driver_of
 from tiniscript.robots.profile import Place, Wiring
-from tiniscript.wiring.texts import TEXTS
+from tiniscript.robots.wiring.texts import TEXTS
 
 BOARD_RAILS = (BOARD_5V, BOARD_3V3, GROUND)
 RAILS = (BOARD_5V, BOARD_3V3, GROUND, MOTOR_BATTERY, SERVO_SUPPLY)

@@ -9,10 +9,10 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from tiniscript.robots.driver import GROUND, PULL_DOWN
-from tiniscript.wiring.headers import SIDES
-from tiniscript.wiring.parts import BOARD_RAILS
-from tiniscript.wiring.plan import LAMP_PIN, End, Part, Plan
-from tiniscript.wiring.texts import text
+from tiniscript.robots.wiring.headers import SIDES
+from tiniscript.robots.wiring.parts import BOARD_RAILS
+from tiniscript.robots.wiring.plan import LAMP_PIN, End, Part, Plan
+from tiniscript.robots.wiring.texts import text
 
 
 class Block(NamedTuple):

@@ -24,9 +24,9 @@ from tiniscript.link.payloads import (
     WifiReply,
 )
 from tiniscript.link.requests import FetchedImage
+from tiniscript.link.sharing import protocol
+from tiniscript.link.sharing.protocol import BadMessage, JsonMessage
 from tiniscript.link.wifi import BrokerSettings, Network, Tls
-from tiniscript.sharing import protocol
-from tiniscript.sharing.protocol import BadMessage, JsonMessage
 
 CODE_BYTES = 0x7FFF  # the most that an image's header can say
 LATER_BYTES = 0xFF - HEADER_BYTES  # the most that it can say

@@ -17,10 +17,10 @@ from tiniscript.link.connection import PendingRequest, Requester
 from tiniscript.link.outcomes import LOOK_S, Event, Gone
 from tiniscript.link.payloads import HelloReply
 from tiniscript.link.requests import OK, DeviceInfo, Reply, described
-from tiniscript.sharing import protocol, registry
-from tiniscript.sharing.protocol import BadMessage, JsonMessage
-from tiniscript.sharing.registry import Registration
-from tiniscript.sharing.requests import ClientRequest, ClientRequests
+from tiniscript.link.sharing import protocol, registry
+from tiniscript.link.sharing.protocol import BadMessage, JsonMessage
+from tiniscript.link.sharing.registry import Registration
+from tiniscript.link.sharing.requests import ClientRequest, ClientRequests
 from tiniscript.version import __version__
 
 ANSWER_S = 2.0  # timeout for the server's greeting

@@ -9,9 +9,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import NamedTuple
 
+from tiniscript.link.modules.dialects import RESTART_MS, Dialect, is_error, is_ok, value_of
+from tiniscript.link.modules.talk import Module, asked, found, is_there
 from tiniscript.link.wire import Wire
-from tiniscript.modules.dialects import RESTART_MS, Dialect, is_error, is_ok, value_of
-from tiniscript.modules.talk import Module, asked, found, is_there
 
 NAME, PIN, BAUD = "name", "pin", "baud"
 # How a step ends. UNSEEN: the module says that it is done, and does not tell the value.
