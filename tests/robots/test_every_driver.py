@@ -11,7 +11,7 @@ from tests.wiring.test_wiring import DEVICES, MOTORS, robot_with
 from tiniscript import compile_text, robots
 from tiniscript.kit import Device
 from tiniscript.robots import firmware
-from tiniscript.robots.driver import Driver, SensorDriver
+from tiniscript.robots.driver import Driver, Part, SensorDriver
 from tiniscript.robots.drivers import DRIVERS
 from tiniscript.robots.profile import Robot, Wiring
 from tiniscript.sketch.wiring import Plan
@@ -103,7 +103,7 @@ def test_a_driver_without_a_sketch_cannot_be_made() -> None:
         used_by = "sensors number"
         pins = ()
 
-        def firmware(self, part: firmware.Part, device: Device, wiring: Wiring) -> list[str]:
+        def firmware(self, part: Part, device: Device, wiring: Wiring) -> list[str]:
             return []
 
     with pytest.raises(TypeError, match=r"Half.*sketch"):

@@ -18,7 +18,8 @@ ROOT = "tiniscript.studio.worker"
 LESSONS = "tiniscript.studio.page_lessons"  # fetched when it is first needed
 # What needs what no browser has: ports, a terminal, other programs, files of profiles.
 LEFT_OUT = ("tiniscript.cli", "tiniscript.doctor", "tiniscript.flash", "tiniscript.link.modules",
-            "tiniscript.robots.reader", "tiniscript.link.sharing", "tiniscript.robots.wiring")  # fmt: skip
+            "tiniscript.link.sharing", "tiniscript.robots.reader",
+            "tiniscript.robots.wiring")  # fmt: skip
 # Imported where there is a port, wasmtime or another system; never in a browser.
 NOT_HERE = {"wasmtime", "serial", "bleak", "zeroconf", "platformdirs", "tomli", "construct",
             "ctypes", "multiprocessing", "urllib.request", "ssl",

@@ -9,15 +9,11 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, ClassVar, NamedTuple
+from typing import ClassVar, NamedTuple, Protocol
 
 from tiniscript.fixed_point import ONE
 from tiniscript.kit import Device
-from tiniscript.robots.profile import Wiring
-
-if TYPE_CHECKING:
-    from tiniscript.robots.firmware import Part
-    from tiniscript.sketch.wiring import Plan
+from tiniscript.robots.profile import Robot, Wiring
 
 SIDES = ("left", "right")
 WAYS = ("forward", "backward")
@@ -84,6 +80,66 @@ class Shape(NamedTuple):
     checks: tuple[str, ...] = ()
     power: str = ""
     needs_5v: bool = False
+
+
+class PinTexts(Protocol):
+    """The pins of one robot; each text stands for an object of C++."""
+
+    vectors: list[str]  # names of interrupts, for the handlers
+
+    def pin(self, pin: int | None) -> str: ...
+
+    def pwm(self, pin: int) -> str: ...
+
+    def servo(self, pin: int) -> str: ...
+
+    def buzzer(self, pin: int) -> str: ...
+
+    def echo(self, pin: int) -> str: ...
+
+
+class Part(Protocol):
+    """What drivers add to the header of a robot: `firmware.Part`."""
+
+    @property
+    def pins(self) -> PinTexts: ...
+
+    servos: list[int]
+    ultrasonics: list[str]
+    off: list[str]  # lines that a stop runs for actuators
+    begin: list[str]
+
+    @property
+    def is_esp32(self) -> bool: ...
+
+    def analog_read(self, wiring: Wiring) -> str: ...
+
+    def part_of_range(self, device: Device, first: int, last: int) -> str: ...
+
+
+class Lines(Protocol):
+    @property
+    def begin(self) -> list[str]: ...
+
+    @property
+    def off(self) -> list[str]: ...
+
+
+class Plan(Protocol):
+    """What drivers add to a sketch: `sketch.wiring.Plan`."""
+
+    robot: Robot
+
+    @property
+    def parts(self) -> Lines: ...
+
+    def pin(self, name: str, number: int, mode: str = "", beside: str = "") -> str: ...
+
+    def servo(self, pin: str) -> int: ...
+
+    def value(self, thousandths: str) -> str: ...
+
+    def part_of(self, device: Device, first: int, last: int) -> str: ...
 
 
 class Driver(ABC):

@@ -5,27 +5,10 @@ Knows `pins.h` and `echo.h` of the families. Does not know what a pin is for.
 
 from __future__ import annotations
 
-from typing import Protocol
-
+from tiniscript.robots.driver import PinTexts
 from tiniscript.robots.ledc import channels_of
 from tiniscript.robots.ports import AVRS, ESP32S
 from tiniscript.robots.profile import Robot
-
-
-class PinTexts(Protocol):
-    """The pins of one robot; each text stands for an object of C++."""
-
-    vectors: list[str]  # names of interrupts, for the handlers
-
-    def pin(self, pin: int | None) -> str: ...
-
-    def pwm(self, pin: int) -> str: ...
-
-    def servo(self, pin: int) -> str: ...
-
-    def buzzer(self, pin: int) -> str: ...
-
-    def echo(self, pin: int) -> str: ...
 
 
 class AvrPins:

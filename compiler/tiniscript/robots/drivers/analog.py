@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from tiniscript.fixed_point import ONE
 from tiniscript.kit import Device
 from tiniscript.robots.driver import (
     FULL_COUNT,
     MOTOR_BATTERY,
     PULL_DOWN,
+    Part,
     PinKey,
+    Plan,
     SensorDriver,
     Setting,
     Shape,
@@ -20,10 +20,6 @@ from tiniscript.robots.driver import (
     photoresistor,
 )
 from tiniscript.robots.profile import Wiring
-
-if TYPE_CHECKING:
-    from tiniscript.robots.firmware import Part
-    from tiniscript.sketch.wiring import Plan
 
 
 class Analog(SensorDriver):

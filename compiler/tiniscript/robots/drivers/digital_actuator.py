@@ -2,15 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from tiniscript.kit import Device
-from tiniscript.robots.driver import ActuatorDriver, PinKey, Setting, Shape, lamp
+from tiniscript.robots.driver import ActuatorDriver, Part, PinKey, Plan, Setting, Shape, lamp
 from tiniscript.robots.profile import Wiring
-
-if TYPE_CHECKING:
-    from tiniscript.robots.firmware import Part
-    from tiniscript.sketch.wiring import Plan
 
 
 class DigitalActuator(ActuatorDriver):

@@ -2,25 +2,20 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from tiniscript.fixed_point import ONE
 from tiniscript.kit import Device
 from tiniscript.robots.driver import (
     BOARD_5V,
     GROUND,
+    Part,
     PinKey,
+    Plan,
     SensorDriver,
     Shape,
     Terminal,
     in_limits,
 )
 from tiniscript.robots.profile import Wiring
-
-if TYPE_CHECKING:
-    from tiniscript.robots.firmware import Part
-    from tiniscript.sketch.wiring import Plan
-
 
 FARTHEST = 400 * ONE  # reading without an echo
 

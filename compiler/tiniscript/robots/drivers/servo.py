@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from tiniscript.kit import Device
 from tiniscript.robots.driver import (
     AT_STOP,
@@ -11,16 +9,14 @@ from tiniscript.robots.driver import (
     HOLD,
     SERVO_SUPPLY,
     ActuatorDriver,
+    Part,
     PinKey,
+    Plan,
     Setting,
     Shape,
     Terminal,
 )
 from tiniscript.robots.profile import Wiring
-
-if TYPE_CHECKING:
-    from tiniscript.robots.firmware import Part
-    from tiniscript.sketch.wiring import Plan
 
 
 class Servo(ActuatorDriver):

@@ -2,24 +2,19 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from tiniscript.robots.driver import (
     GROUND,
     SERVO_SUPPLY,
     SIDES,
     MotorDriver,
+    Part,
     PinKey,
+    Plan,
     Setting,
     Shape,
     Terminal,
 )
 from tiniscript.robots.profile import Wiring
-
-if TYPE_CHECKING:
-    from tiniscript.robots.firmware import Part
-    from tiniscript.sketch.wiring import Plan
-
 
 _STILL = Setting("left_still_us", "whole", 1500, 1000, 2000)
 

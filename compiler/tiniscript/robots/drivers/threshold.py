@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from tiniscript.kit import Device
-from tiniscript.robots.driver import PinKey, SensorDriver, Setting, Shape, module, photoresistor
+from tiniscript.robots.driver import (
+    Part,
+    PinKey,
+    Plan,
+    SensorDriver,
+    Setting,
+    Shape,
+    module,
+    photoresistor,
+)
 from tiniscript.robots.profile import Wiring
-
-if TYPE_CHECKING:
-    from tiniscript.robots.firmware import Part
-    from tiniscript.sketch.wiring import Plan
 
 
 class Threshold(SensorDriver):

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from tiniscript.robots.driver import (
     GROUND,
     MOTOR_BATTERY,
@@ -11,16 +9,14 @@ from tiniscript.robots.driver import (
     SIDES,
     WAYS,
     MotorDriver,
+    Part,
     PinKey,
+    Plan,
     Shape,
     Terminal,
     driven_line,
 )
 from tiniscript.robots.profile import Wiring
-
-if TYPE_CHECKING:
-    from tiniscript.robots.firmware import Part
-    from tiniscript.sketch.wiring import Plan
 
 
 class TwoWire(MotorDriver):
