@@ -37,8 +37,11 @@ def listed() -> list[Found]:
     """Return the ports that the system knows. Opens none of them, because that resets boards."""
     from tiniscript.link.transports import serial
 
-    found = serial.listed()  # a device says its description
-    return sorted(Found(port, printable(description)) for port, description, _ in found)
+    found = []
+    for each in serial.listed():
+        description = each.description if each.description != "n/a" else ""
+        found.append(Found(each.device, printable(description)))  # a device says it
+    return sorted(found)
 
 
 def is_radio(port: str) -> bool:
@@ -51,7 +54,7 @@ def is_radio(port: str) -> bool:
     if sys.platform == "win32":
         from tiniscript.link.transports import serial
 
-        known = {port.lower(): hardware for port, _, hardware in serial.listed()}
+        known = {each.device.lower(): each.hwid or "" for each in serial.listed()}
         return "BTHENUM" in known.get(name, "")
     return False
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import errno
 from threading import Thread
+from typing import Protocol
 
 import serial
 from serial.tools import list_ports
@@ -44,12 +45,16 @@ _REASONS = {
 }
 
 
-def listed() -> list[tuple[str, str, str]]:
-    """Return the ports that the system knows: name, description and hardware, empty if unknown."""
-    found = []
-    for each in list_ports.comports():
-        description = each.description if each.description != "n/a" else ""
-        found.append((each.device, description, each.hwid or ""))
+class Listed(Protocol):
+    """A port that the system knows: its name, what it says of itself, and its hardware."""
+
+    device: str
+    description: str  # "n/a" if unknown
+    hwid: str | None
+
+
+def listed() -> list[Listed]:
+    found: list[Listed] = list_ports.comports()
     return found
 
 
