@@ -58,7 +58,7 @@ def _python(name: str, *tests: str) -> Module:
 
 # fmt: off
 MODULES = (
-    Module("shared", (f"{_PY}/*.py",), ("tests/vm/test_fixed_point.py", "tests/vm/test_cases.py", "tests/robots", "tests/cli/test_keys.py", "tests/project/test_one_home.py")),
+    Module("shared", (f"{_PY}/*.py",), ("tests/vm/test_fixed_point.py", "tests/vm/test_cases.py", "tests/robots", "tests/project/test_one_home.py")),
     _python("syntax", "tests/syntax", "tests/vm/test_cases.py", "tests/pupils"),
     _python("semantics", "tests/semantics", "tests/vm/test_cases.py", "tests/pupils/test_pupils.py"),
     _python("repairs", "tests/pupils"), _python("recovery"),
@@ -67,8 +67,9 @@ MODULES = (
     _python("bytecode", "tests/bytecode", "tests/vm/test_cases.py"),
     _python("vm", "tests/vm/test_cases.py", "tests/vm"),
     _python("text"), _python("sketch"), _python("conformance", "tests/conform"),
-    _python("library"), _python("link"), _python("sharing"), _python("modules"), _python("doctor"),
-    _python("robots"), _python("wiring"), _python("virtual"), _python("lessons"), _python("flash"),
+    _python("library"), _python("doctor"), _python("virtual"),
+    _python("link", "tests/link", "tests/sharing", "tests/modules", "tests/cli/test_keys.py"),
+    _python("robots", "tests/robots", "tests/wiring"), _python("lessons"), _python("flash"),
     _python("studio"), _python("cli"),
     Module("machine", (f"{_CPP}/vm/*.cpp",), ("tests/vm/test_cases.py", "tests/vm/test_cpp_agreement.py", "tests/vm/test_cpp_chips.py")),
     Module("machine-avr", (f"{_CPP}/vm/*.S",), ("tests/vm/test_cases.py", "tests/vm/test_cpp_chips.py", "tests/vm/test_cpp_avr_arithmetic.py")),
