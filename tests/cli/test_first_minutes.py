@@ -25,6 +25,7 @@ from tiniscript.cli.robot.live_state import Known
 from tiniscript.link import known_ports, ports
 from tiniscript.link.outcomes import Event, MissedEvent
 from tiniscript.link.payloads import DoneEvent, ShowEvent
+from tiniscript.recovery.concepts import concept_of
 from tiniscript.robots import given
 from tiniscript.semantics.other_kits import naming_robots
 from tiniscript.virtual import directory
@@ -235,6 +236,9 @@ def test_the_robots_that_have_a_word_are_named(tsc: Tsc) -> None:
     # where one robot has all words, the others are not named
     assert "--robot liner to the command" in tsc("check", "-e", "LED(LINE_L)").err
     assert "--robot grabber to" in tsc("check", "-e", "LED(DISTANCE > 5)").err
+    # a word that says it in another language
+    assert "tinibot has no GRIPPER; the robot grabber" in tsc("check", "-e", "PINZA(90)").err
+    assert "--robot liner to" in tsc("check", "-e", "SHOW(BATERIA)").err
     # a name that no kit has
     assert "write LINE_X = 2 at the beginning" in tsc("check", "-e", "F(LINE_X, 80)").err
     assert "write LINE_X = 0 before it" in tsc("check", "-e", "SHOW(LINE_X)").err
@@ -246,7 +250,7 @@ def test_up_to_three_robots_are_named() -> None:
     own = "tinibot", robots.load("tinibot").kit
     found = compile_text("LED(TRUE)", own[1])
     others = {f"R{k}": kit for k in range(5)}
-    (named,) = naming_robots(found.diagnostics, found.source.text, own, others)
+    (named,) = naming_robots(found.diagnostics, found.source.text, own, others, concept_of)
     assert named.values == {
         "found": "LED", "own": "tinibot", "first": "R0", "second": "R1", "third": "R2",
     }  # fmt: skip

@@ -3,28 +3,37 @@
 from __future__ import annotations
 
 import json
-import random
+from functools import partial
 
 import pytest
 
 from tests.pupils.corpus import entries
 from tests.pupils.test_damage import programs
+from tiniscript import robots
+from tiniscript.kit import Kit
 from tiniscript.lessons import catalogue
+from tiniscript.library.compiling import analyzed
 from tiniscript.recovery import lines, rewrites, rows
 from tiniscript.recovery.concepts import Lexeme, Names, lexemes
 from tiniscript.recovery.explanation import Missing, Needless, OtherWord, explained
+from tiniscript.recovery.search import candidate
 from tiniscript.syntax.outline import Failure
 from tools.shadow import marks
-from tools.shadow.__main__ import SAMPLE, SAMPLE_SEED, SAMPLE_SIZE, SCORES
+from tools.shadow.__main__ import SAMPLE, SCORES, sample
 
+KITS = [robots.load(name).kit for name in ("tinibot", "grabber", "liner")]
 ROWS = [*rewrites.of_signs(), *rewrites.of_tokens()]
 
 
 @pytest.mark.parametrize("row", ROWS, ids=lambda row: row.example[0][:50])
 def test_the_example_of_a_row_is_read_as_it_says(row: rewrites.Row | rewrites.SignRow) -> None:
     wrong, right = row.example
-    found = marks.meant(wrong)
-    assert found is not None and found.text == right
+    found = (candidate(wrong, kit, partial(mistakes, kit)) for kit in KITS)
+    assert any(each is not None and each.text == right for each in found)
+
+
+def mistakes(kit: Kit, text: str) -> list[str]:
+    return [each.code.number for each in analyzed(text, kit).diagnostics if each.is_mistake]
 
 
 def right_programs() -> list[str]:
@@ -52,8 +61,7 @@ def is_whole(line: list[Lexeme]) -> bool:
 
 
 def test_a_sample_of_the_corpus_reaches_its_score() -> None:
-    repaired = [each for each in entries() if each.mended and not marks.is_aside(each.program)]
-    chosen = random.Random(SAMPLE_SEED).sample(repaired, SAMPLE_SIZE)
+    chosen = sample(entries())
     good = sum(marks.answer(each).mark in (marks.SAME, marks.EQUIVALENT) for each in chosen)
     assert 100 * good / len(chosen) >= json.loads(SCORES.read_text())[SAMPLE]
 
@@ -116,11 +124,54 @@ def test_what_may_change_the_meaning_is_only_shown(wrong: str) -> None:
         ("DEF F2\nS\nEND_DEF\nF2 3", "DEF F2\nS\nEND_DEF\nLOOP(3);F2;END_LOOP"),
         ("stopMotors()", "S"),
         ("SHOW -2.5", "SHOW(-2.5)"),
+        ("F(O.S, 6O)", "F(0.5, 60)"),
+        ("M\u00daSICA(1,440)", "BEEP(1,440)"),
     ],
 )
 def test_what_can_mean_nothing_else_is_made(wrong: str, right: str | None) -> None:
     found = marks.meant(wrong)
     assert (found.text if found and found.is_applied else None) == right
+
+
+@pytest.mark.parametrize(
+    ("wrong", "kit", "right"),
+    [
+        ("PINZA(90)", "grabber", "GRIPPER(90)"),
+        ("ABRIR PINZA", "grabber", "GRIPPER(180)"),
+        ("LED(PRENDIDO)", "liner", "LED(TRUE)"),
+        ("LED(ON)", "grabber", "LED(TRUE)"),
+        ("SHOW(BATERIA)", "liner", "SHOW(BATTERY)"),
+        ("IF(TEMPERATURA > 30)\nS\nENDIF", "grabber", "IF(TEMPERATURE > 30)\nS\nENDIF"),
+        ("PINZA(90)", "tinibot", None),
+        ("SHOW(BATERIA)", "grabber", None),
+    ],
+)
+def test_words_of_a_kit_are_read_on_its_robots_alone(
+    wrong: str, kit: str, right: str | None
+) -> None:
+    own = robots.load(kit).kit
+    found = candidate(wrong, own, partial(mistakes, own))
+    assert (found.text if found and found.is_applied else None) == right
+
+
+@pytest.mark.parametrize(
+    ("wrong", "asked"),
+    [
+        ("efe dos coma ochenta", "F(2, 80)"),
+        ("\u2b06\ufe0f 2", "F(2, 80)"),
+        ("X == 6", "X = 6"),
+        ("F(FOREVER, 80) UNTIL(2)", "F(2, 80)"),
+        ("N = 5\ncambiar N por -1", "N = 5\nN = N -1"),
+        ("F(1, 50)\nREPITE", None),  # no empty block is offered
+        ("F(FOREVER, 80); W(2); S", None),
+        ("mi; velocidad = 50", None),
+        ("SHOW Hola", None),
+        ("Y(1, 50)", None),
+    ],
+)
+def test_what_may_be_meant_is_a_question(wrong: str, asked: str | None) -> None:
+    found = marks.meant(wrong)
+    assert (found and found.text, bool(found and found.is_applied)) == (asked, False)
 
 
 @pytest.mark.parametrize(("how", "is_made"), [("applied", False), ("offered", True)])

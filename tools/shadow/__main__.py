@@ -15,19 +15,20 @@ import sys
 import time
 from collections import Counter
 from collections.abc import Iterable, Sequence
+from hashlib import sha256
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
-from tests.pupils.corpus import check, entries
+from tests.pupils.corpus import Entry, check, entries
 from tiniscript.recovery.explanation import explained
 from tiniscript.repairs.fixing import fixed
 from tools.shadow import marks
 from tools.shadow.marks import EQUIVALENT, MARKS, QUESTION, SAME, WORSE, Answer
 
 SCORES = Path(__file__).parent / "scores.json"
-SAMPLE, SAMPLE_SIZE, SAMPLE_SEED = "sample as meant", 200, 28  # which a test reads again
+SAMPLE, SAMPLE_SIZE = "sample as meant", 200  # which a test reads again
 SLIPS = 400
 SHORTEST = 8  # characters of a program that slips are put into
 # What is taken for a sign: its neighbour on a keyboard, or what looks like it.
@@ -56,7 +57,7 @@ def main(arguments: list[str] | None = None) -> int:
         took.append(time.process_time() - start)
         (aside if marks.is_aside(entry.program) else seen).append(answer)
     scores = {**of_pupils("seen", seen), **of_pupils("aside", aside)}
-    scores |= of_sample(sample(seen))
+    scores |= of_sample(seen)
     scores |= of_slips(options.slips, options.seed) if options.slips else {}
     by_code([*seen, *aside])
     if options.show:
@@ -138,13 +139,16 @@ def by_code(answers: Iterable[Answer]) -> None:
 
 def of_sample(answers: Sequence[Answer]) -> Scores:
     """Return the score of programs that a test reads again."""
-    good = sum(each.mark in (SAME, EQUIVALENT) for each in answers)
-    return {SAMPLE: 100 * good / len(answers)}
+    chosen = sample([each.entry for each in answers])
+    good = sum(each.mark in (SAME, EQUIVALENT) for each in answers if each.entry in chosen)
+    return {SAMPLE: 100 * good / len(chosen)}
 
 
-def sample(answers: Sequence[Answer]) -> list[Answer]:
-    repaired = [each for each in answers if each.entry.mended]
-    return random.Random(SAMPLE_SEED).sample(repaired, SAMPLE_SIZE)
+def sample(known: Iterable[Entry]) -> list[Entry]:
+    """Return some of the programs with a repair, by their hash: few change with a new one."""
+    repaired = (each for each in known if each.mended and not marks.is_aside(each.program))
+    by_hash = sorted(repaired, key=lambda each: sha256(each.program.encode()).hexdigest())
+    return by_hash[:SAMPLE_SIZE]
 
 
 def show(answers: Iterable[Answer], mark: str, code: str) -> None:

@@ -17,11 +17,13 @@ SHOWN_CHARACTERS = 60  # of a path in a message: a longer one could not be copie
 
 def naming_robots(diagnostics: list[Diagnostic], text: str, robot: Robot) -> list[Diagnostic]:
     """Return diagnostics with hints to the robots that have a word that `robot` lacks."""
+    from tiniscript.recovery.concepts import concept_of
     from tiniscript.semantics import other_kits
 
     if not any(map(other_kits.is_unknown, diagnostics)):
         return diagnostics
-    return other_kits.naming_robots(diagnostics, text, (robot.name, robot.kit), _others())
+    own = robot.name, robot.kit
+    return other_kits.naming_robots(diagnostics, text, own, _others(), concept_of)
 
 
 def is_other_robots(diagnostics: list[Diagnostic]) -> bool:

@@ -117,11 +117,10 @@ class _Matching:
                 self.end_line(place, k, item)
         while self.open:
             block = self.open.pop()
-            if not block.word:
-                return None
+            if not block.word or item.kind in ("open", "{"):
+                return None  # nothing is in it
             if block.has_brace and block.line == last:
                 self.tails.setdefault(last, []).append(block.end)
-                self.is_sure = self.is_sure and item.kind != "{"
                 continue
             self.is_sure = self.is_sure and block.has_indented_body and block.is_begun
             self.close_behind(last, block)

@@ -124,14 +124,14 @@ def concepts(word: str) -> tuple[Meaning, ...]:
         return (Meaning(ALIASES[word], 0),)
     if word == "SI":
         return (Meaning("IF", KNOWN),)
-    found = _concept_of(word)
+    found = concept_of(word)
     if found:
         return (Meaning(found, KNOWN),)
     if word in WORDS or word in _lexicon():
         return ()
     alike, near = _speller().alike(word), _speller().near(word)
     for spelt, cost in ((alike, KNOWN), (near, MISSPELT)):
-        if spelt and (found := _concept_of(spelt)):
+        if spelt and (found := concept_of(spelt)):
             return (Meaning(found, cost),)
     in_two = _in_two_words(word)
     if in_two:
@@ -144,7 +144,8 @@ def concepts(word: str) -> tuple[Meaning, ...]:
     return ()
 
 
-def _concept_of(word: str) -> str | None:
+def concept_of(word: str) -> str | None:
+    """Return the word of the language or of a kit that the lexicon says a word for."""
     for meaning in _lexicon().get(word, ()):
         if meaning.isupper() and " " not in meaning:
             return meaning
@@ -155,14 +156,14 @@ def _in_two_words(word: str) -> str | None:
     """Return what `moverAdelante` means: two words that say one command."""
     for k in range(2, min(len(word), 24) - 1):
         halves = word[:k].rstrip("_"), word[k:].lstrip("_")
-        said = {half if half == "STOP" else _concept_of(half) or "" for half in halves}
+        said = {half if half == "STOP" else concept_of(half) or "" for half in halves}
         beside = [half for half in halves if said_of(half, "turn")]
         with_frame = halves if len(halves[1]) > 3 else halves[:1]  # `irAdelante`, and no GOAL
         beside += [half for half in with_frame if said_of(half, "filler")]
         is_turn = any(said_of(half, "turn") for half in halves)
         is_engine = any(said_of(half, "engine") for half in halves)
         meant = said - {"", "M", "F"} or said - {"", "M"}
-        rest = [each for each in halves if each not in beside and not _concept_of(each)]
+        rest = [each for each in halves if each not in beside and not concept_of(each)]
         is_framed = bool(said & {"F", "M"}) or bool(beside)
         if len(meant) == 1 and is_framed and not set(rest) - {"STOP"}:
             only = next(iter(meant))
@@ -218,11 +219,11 @@ class Names:
                 self.in_brackets.add(token.text)
             elif after.text in ("=", "++", "+=", "-=", ":=") and token.text not in WORDS:
                 self.variables.add(token.text)
-            is_def = token.text in _BEFORE_NAME or _concept_of(token.text) == "DEF"
+            is_def = token.text in _BEFORE_NAME or concept_of(token.text) == "DEF"
             if is_def and after.kind is WORD and after.text not in WORDS:
                 if after.text not in ("MAIN", "SETUP", "PRINCIPAL"):
                     self.defs.add(after.text)
-        if len(head) > 2 and (head[0].text == "DEF" or _concept_of(head[0].text) == "DEF"):
+        if len(head) > 2 and (head[0].text == "DEF" or concept_of(head[0].text) == "DEF"):
             self._name_in_words(head[1:], self.defs, (";",))
         else:
             self._name_in_words(head, self.variables, ("=",))
@@ -262,7 +263,7 @@ class Names:
     @staticmethod
     def is_lexical(word: str) -> bool:
         """Whether the lexicon has this word as a word of the language."""
-        return _concept_of(word) is not None
+        return concept_of(word) is not None
 
     def takes(self, word: str) -> bool:
         """Whether a word is an instruction with values in brackets."""
@@ -302,9 +303,11 @@ class Names:
             found.append("@val")
         if text in self.defs:
             found += ["@def", "@start", "@startm", "@close"]
-        if (word in DONE or text in self.actuators) and (not is_name or text in self.actuators):
+        is_device = word in self.actuators or text in self.actuators
+        if (word in DONE or is_device) and (not is_name or is_device):
             found += ["@start", *(["@startm"] if word != "BEEP" else [])]
             found += ["@callw"] if self.takes(word or text) else ["@close"]
+            found += ["@device"] if is_device else []
         if word in STARTS and not is_name:
             found.append("@start")
         if "turn" in found and not is_name:

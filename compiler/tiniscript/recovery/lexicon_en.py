@@ -10,7 +10,7 @@ R               | RIGHT RT TURN_RIGHT
 S               | HALT FREEZE BRAKE
 W               | WAIT DELAY SLEEP PAUSE
 M               | MOTOR MOTORS
-BEEP            | TONE BUZZ BUZZER SOUND
+BEEP            | TONE BUZZ BUZZER SOUND MUSIC NOTE
 SHOW            | PRINT PRINTLN PRINTF WRITE SAY DISPLAY ECHO LOG
 START           | BEGIN VOID_SETUP
 ELSEIF          | ELIF ELSIF
@@ -27,8 +27,19 @@ TRUE            | YES
 RANDOM          | RAND RANDINT
 TIME            | MILLIS TIMER
 DISTANCE        | ULTRASONIC
+GRIPPER         | CLAW CLAWS JAW JAWS
+LED             | LAMP BULB
+BATTERY         | BATTERIES
+TEMPERATURE     | THERMOMETER
+LINE_L          | LINE_LEFT
+LINE_R          | LINE_RIGHT
 LIGHT_R         | LIGHT_RIGHT
 LIGHT_L         | LIGHT_LEFT
+# what an actuator of a kit is set to
+lit             | ON LIT
+dark            | OFF
+most            | OPEN OPENED
+least           | CLOSE CLOSED SHUT
 # which way: the word behind says it
 turn            | ROTATE SPIN TURN
 # numbers in words

@@ -175,7 +175,7 @@ class Encoded:
         if part[0] == "$" and len(part) == 2:
             return captured(part[1])
         if part[0] == "&" and len(part) == 2:
-            return [self._translated(each) for each in captured(part[1])]
+            return [self.translated(each) for each in captured(part[1])]
         if part[0] != "@":
             return [made(part.strip("'"))]
         function, *named = part[1:].split(":")
@@ -183,7 +183,7 @@ class Encoded:
         place = _Place(self, [captured(each) for each in named], self.tokens[start:end], start)
         return _FUNCTIONS[function](place)
 
-    def _translated(self, token: Lexeme) -> Lexeme:
+    def translated(self, token: Lexeme) -> Lexeme:
         if token.kind is not WORD or (token.text in WORDS and token.text != "SI"):
             return token
         meant = self.names.meanings(token.text)
@@ -284,9 +284,26 @@ def _known_name(place: _Place) -> _Made:
     return name if name and place.line.names.is_name(name[0].text) else None
 
 
+def _most(place: _Place) -> _Made:
+    return _end_of_range(place, is_high=True)
+
+
+def _least(place: _Place) -> _Made:
+    return _end_of_range(place, is_high=False)
+
+
+def _end_of_range(place: _Place, is_high: bool) -> _Made:
+    (device,) = place.captured[0]
+    known = place.line.names.actuators[place.line.translated(device).text]
+    if known.is_yes_no:
+        return None
+    return [made(f"{(known.high if is_high else known.low) / 1000:g}")]
+
+
 _FUNCTIONS: dict[str, Callable[[_Place], _Made]] = {
     "not": _not, "endof": _end_of, "dec": _decimal, "cat": _zero_behind, "mmss": _minutes,
     "xn": _times, "brace": _brace, "same": _same, "join": _name, "known": _known_name,
+    "most": _most, "least": _least,
 }  # fmt: skip
 
 

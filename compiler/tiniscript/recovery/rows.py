@@ -9,12 +9,13 @@ word of the text (`HASTA`), a part of a sentence of the lexicon (`then`), a sign
 are alternatives, `'|'` is a sign that would be one of the signs here, `?`, `*` and `+` stand behind
 what may be missing or come more often, and `^` and `$` are the ends of a line. `c=` captures, and
 `<part>` is a piece of PARTS. Classes: @num @word @val (a value with a name) @name @newname
-@usedname @def @callw (takes values) @start (begins an instruction) @close (ends one) @unit; any
+@usedname @def @callw (takes values) @device (an actuator) @start (begins an instruction) @close (ends one) @unit; any
 token but separators and braces: @any @cond @argt @noclose @nob @noparen @nosep; but braces: @all;
 but brackets: @nobrace.
 
 `becomes` is tokens: `$c` what was captured, `&c` that in words of the language, and functions:
-@not (the opposite question), @same (a number that is another one, too), @endof (the end of a header), @dec (a decimal comma), @cat (a zero
+@not (the opposite question), @same (a number that is another one, too),
+@most and @least (the range of an actuator), @endof (the end of a header), @dec (a decimal comma), @cat (a zero
 apart), @mmss, @xn (`x4`), @brace (a brace that was captured), @join and @known (a name of two
 words). `how`: `first` is made before any other is tried, `applied` may be made without asking,
 `offered` is only shown, as is `first offered`. An example's lines are parted by ⏎.
@@ -90,6 +91,10 @@ SIGNS = r"""
 ^\s*[$>] tsc\b.*$  |  ``  |  1  |  TS072  |  applied  |  $ tsc run prog.ts⏎F(2, 80) => ⏎F(2, 80)
 ^\s*\.\s*$  |  ``  |  1  |  TS005  |  applied  |  F(2,80)⏎.⏎.⏎. => F(2,80)⏎⏎⏎
 ^\s*(?:➤|[\u2600-\u2793\U0001F300-\U0001FAFF])\s*(?=[A-Za-z]+\()  |  ``  |  1  |  TS054  |  applied  |  ✅ F(2,80)⏎🚗 R(1,50) => F(2,80)⏎R(1,50)
+⬆\ufe0f?  |  `F `  |  1  |  TS005  |  offered  |  ⬆️ 2 => F(2, 80)
+⬇\ufe0f?  |  `B `  |  1  |  TS005  |  offered  |  ⬇️ 2 => B(2, 80)
+⬅\ufe0f?  |  `L `  |  1  |  TS005  |  offered  |  ⬅️ 1 => L(1, 80)
+➡\ufe0f?  |  `R `  |  1  |  TS005  |  offered  |  ➡️ 1 => R(1, 80)
 [–—]>  |  `;`  |  1  |  TS061  |  applied  |  F(2, 80) –> R(1, 50) => F(2, 80) ; R(1, 50)
 (?<=\d) 1/2(?!\d)  |  `.5`  |  1  |  TS049  |  applied  |  F(1 1/2, 80) => F(1.5, 80)
 (?<=\b0)\. (?=\d)  |  `.`  |  1  |  TS008  |  applied  |  BEEP(0. 5, 440) => BEEP(0.5, 440)
@@ -109,6 +114,7 @@ SIGNS = r"""
 ^\*+(\S.*?)\*+$  |  `\1`  |  1  |  TS054  |  applied  |  *F(2,80)* => F(2,80)
 (?<![\w.])([1-9])[oO]{2}\b  |  `\g<1>00`  |  1  |  TS008  |  applied  |  SI|F(2, 1OO) => SI|F(2, 100)
 (?<![\w.])([1-9])[oO]\b  |  `\g<1>0`  |  1  |  TS008  |  applied  |  F(2,8O) => F(2,80)
+\b[O0]\.S\b  |  `0.5`  |  1  |  TS008  |  applied  |  F(O.S, 6O) => F(0.5, 60)
 \b[oO]\.(\d+)  |  `0.\1`  |  1  |  TS008  |  applied  |  F(O.5, 80) => F(0.5, 80)
 \b(\d)[oO](\d)\b  |  `\g<1>0\2`  |  1  |  TS008  |  applied  |  BEEP(1, 4O4) => BEEP(1, 404)
 (?<=\d)\.(?=[,);\s])  |  ``  |  9  |  TS008  |  offered  |  F(2, 80.) => F(2, 80)
@@ -228,6 +234,8 @@ v=@name *= e=@any+ | $v = $v * $e | 1 | TS050 | applied | X = 1⏎X *= 2 => X = 
 = no $ | = FALSE | 1 | TS102 | applied | X = NO => X = FALSE
 a=@num|@close b=@name = | $a ; $b = | 1.5 | TS013 | applied | F(1, 50) X = 2 => F(1, 50);X = 2
 ^ set the? v=@word A|TO|EN n=@num $ | $v = $n | 1.5 | TS050 | applied | X = 1⏎sube la X a 5 => X = 1⏎X = 5
+^ CAMBIAR|CHANGE v=@name POR|BY n=@num $ | $v = $v + $n | 1.5 | TS050 | offered | N = 5⏎cambiar N por 1 => N = 5⏎N = N + 1
+^ CAMBIAR|CHANGE v=@name POR|BY - n=@num $ | $v = $v - $n | 1.5 | TS050 | offered | N = 5⏎cambiar N por -1 => N = 5⏎N = N -1
 ^ keep the? e=@val|@num EN|IN|COMO v=@word $ | $v = $e | 1.5 | TS050 | applied | guardar 80 en potencia⏎F(2, potencia) => potencia = 80⏎F(2, potencia)
 ^ a=@name = b=@num ,? c=@name = d=@num $ | $a = $b ; $c = $d | 1 | TS013 | applied | x = 5, y = 80⏎F(x, y) => X = 5;Y = 80⏎F(x, y)
 ^ v=@name = ( a=@num $ | $v = ( $a ) | 1 | TS016 | applied | vel = (50⏎F(1, vel) => vel =(50)⏎F(1, vel)
@@ -256,8 +264,9 @@ SHOW ( a=@val , b=@val ) | SHOW ( $a ) ; SHOW ( $b ) | 2 | TS015 | offered | SHO
 ^ SHOW a=@val ,? b=@val $ | SHOW ( $a ) ; SHOW ( $b ) | 2 | TS015 | applied | SHOW DISTANCE LIGHT_R => SHOW(DISTANCE);SHOW(LIGHT_R)
 c=@callw ( a=@argt* b=@num|@word e=;|$|UNTIL|@start | $c ( $a $b ) $e | 1 | TS016 | applied | F(2,80 => F(2,80)
 # UNTIL
+a=F|B|L|R ( FOREVER , p=@num|@val ) UNTIL ( n=@num ) | $a ( $n , $p ) | 2 | TS202 | offered | F(FOREVER, 80) UNTIL(2) => F(2, 80)
 a=@close '|'|,|. UNTIL ( | $a UNTIL ( | 1 | TS029 | applied | F(5, 60).UNTIL(DISTANCE < 30) => F(5, 60) UNTIL(DISTANCE < 30)
-^ W ( c=@val s=<|<=|>|>=|=|<> d=@num|@val ) $ | W ( FOREVER ) UNTIL ( $c $s $d ) | 1 | TS102 | applied | wait(DISTANCE < 10) => W(FOREVER) UNTIL(DISTANCE < 10)
+^ W ( c=@val s=<|<=|>|>=|=|<> d=@num|@val ) $ | W ( FOREVER ) UNTIL ( $c $s $d ) | .5 | TS102 | applied | wait(DISTANCE < 10) => W(FOREVER) UNTIL(DISTANCE < 10)
 ^ W UNTIL QUE? c=@cond+ $ | W ( FOREVER ) UNTIL ( $c ) | 1 | TS102 | applied | WAIT UNTIL DISTANCE < 10 => W(FOREVER) UNTIL(DISTANCE < 10)
 a=@close UNTIL|HASTA QUE? c=@noparen+ $ | $a UNTIL ( $c ) | 1 | TS015 | applied | F(3, 80) UNTIL DISTANCE < 10 => F(3, 80) UNTIL(DISTANCE < 10)
 a=@close HASTA|UNTIL QUE? ( | $a UNTIL ( | 1 | TS102 | applied | F(2,80) HASTA(DISTANCE<10) => F(2,80) UNTIL(DISTANCE<10)
@@ -308,7 +317,7 @@ h=LOOP|WHILE <question> ( <body> ) e=@start | &h ( $c ) ; $b $r ; @endof:h ; $e 
 ^ <for> each? @word IN|EN|DE n=@num :? $ | LOOP ( $n ) | 1 | TS102 | applied | for each paso in 4⏎F(1, 50)⏎end => LOOP(4)⏎F(1, 50)⏎END_LOOP
 ^ do n=@num times :? | LOOP ( $n ) ; | 1 | TS102 | applied | hacer 4 veces⏎F(1,50)⏎R(1,50)⏎fin => LOOP(4)⏎F(1,50)⏎R(1,50)⏎END_LOOP
 LOOP n=X1|X2|X3|X4|X5|X6|X8 | LOOP ( @xn:n ) | 1 | TS015 | applied | LOOP x4⏎F(1,60)⏎END_LOOP => LOOP(4)⏎F(1,60)⏎END_LOOP
-^ LOOP|DO ':'|'{'? $ | LOOP ( FOREVER ) | 3 | TS064 | applied | F(2,80)⏎repite => F(2,80)⏎LOOP(FOREVER)⏎END_LOOP
+^ LOOP|DO ':'|'{'? $ | LOOP ( FOREVER ) | 3 | TS064 | applied | repite⏎S⏎fin => LOOP(FOREVER)⏎S⏎END_LOOP
 LOOP n=@val $ | LOOP ( $n ) | 1 | TS015 | applied | X4 = 3⏎LOOP X4⏎F(1,50)⏎END_LOOP => X4 = 3⏎LOOP(X4)⏎F(1,50)⏎END_LOOP
 h=LOOP|IF|WHILE|ELSEIF <question> [ <body> ] $ | &h ( $c ) ; $b $r ; @endof:h | 1 | TS080 | applied | LOOP(4) [F(1,50); R(0.5,50)] => LOOP(4);F(1, 50);R(0.5, 50);END_LOOP
 ^ LOOP ;? <body> ;? UNTIL <question> ;? $ | LOOP ( FOREVER ) ; $b $r ; IF ( $c ) ; <end> | 1.5 | TS064 | applied | REPEAT;F(1,50);UNTIL(DISTANCE<10) => LOOP(FOREVER);F(1, 50);IF(DISTANCE < 10);BREAK;ENDIF;END_LOOP
@@ -318,7 +327,7 @@ LOOP -> n=@num | LOOP ( $n ) | 1 | TS015 | applied | LOOP -> 4⏎F(1,50)⏎END_L
 LOOP X n=@num | LOOP ( $n ) | 1 | TS015 | applied | LOOP x 3;F(1, 50);END_LOOP => LOOP(3);F(1, 50);END_LOOP
 LOOP POR? n=@num times? :|,|do|; | LOOP ( $n ) ; | 1 | TS102 | applied | repite 4: F(1, 60) => LOOP(4);F(1, 60);END_LOOP
 LOOP n=@num times? b=@start|'{' | LOOP ( $n ) ; $b | 1 | TS102 | applied | LOOP 4 F(1,60) => LOOP(4);F(1, 60);END_LOOP
-LOOP POR? n=@num times? $ | LOOP ( $n ) | 1 | TS102 | applied | repetir 4 => LOOP(4)⏎END_LOOP
+LOOP POR? n=@num times? $ | LOOP ( $n ) | 1 | TS102 | applied | repetir 4⏎S⏎fin => LOOP(4)⏎S⏎END_LOOP
 LOOP n=@val o=*|+|- m=@num $ | LOOP ( $n &o $m ) | 1 | TS015 | applied | X = 2⏎LOOP X * 4⏎F(1,50)⏎END_LOOP => X = 2⏎LOOP(X * 4)⏎F(1,50)⏎END_LOOP
 LOOP ( n=@num , <body> ) | LOOP ( $n ) ; $b $r | 2 | TS080 | applied | LOOP(4, F(1,50))⏎END_LOOP => LOOP(4);F(1, 50)⏎END_LOOP
 LOOP ( n=@num <body> ) $ | LOOP ( $n ) ; $b $r ; END_LOOP | 2 | TS080 | applied | LOOP(3 F(1,50)) => LOOP(3);F(1, 50);END_LOOP
@@ -357,6 +366,15 @@ LOOP|FOR|PARA|DESDE @name =|DESDE|than 1 TO|A|HASTA n=@num do|:? | LOOP ( $n ) ;
 ^ a=@callw ( b=@argt+ ) IF|CUANDO (? d=@cond+ )? $ | IF ( $d ) ; $a ( $b ) ; ENDIF | .9 | TS071 | offered | F(1, 50) IF(DISTANCE > 10) => IF(DISTANCE > 10);F(1, 50);ENDIF
 ^ a=F|B|L|R ( b=@argt+ ) WHILE (? d=@argt+ )? $ | $a ( $b ) UNTIL ( @not:d ) | .9 | TS071 | offered | F(5, 50) WHILE(DISTANCE > 10) => F(5, 50) UNTIL(DISTANCE <= 10)
 ^ b=@start r=@argt* c=@close when d=@cond+ $ | IF ( $d ) ; $b $r $c ; ENDIF | .9 | TS071 | offered | F(1, 50) si DISTANCE > 10 => IF(DISTANCE > 10);F(1, 50);ENDIF
+# what the devices of a kit are set to
+d=@device ( v=lit ) | &d ( TRUE ) | 1 | TS102 | applied | LED(PRENDIDO) => LED(TRUE)
+d=@device ( v=dark ) | &d ( FALSE ) | 1 | TS102 | applied | LED(OFF) => LED(FALSE)
+d=@device ( v=most ) | &d ( @most:d ) | 1 | TS102 | applied | PINZA(ABIERTA) => GRIPPER(180)
+d=@device ( v=least ) | &d ( @least:d ) | 1 | TS102 | applied | GRIPPER(CLOSED) => GRIPPER(0)
+^ v=most the? d=@device $ | &d ( @most:d ) | 1 | TS102 | applied | ABRIR PINZA => GRIPPER(180)
+^ v=least the? d=@device $ | &d ( @least:d ) | 1 | TS102 | applied | cerrar la garra => GRIPPER(0)
+^ v=on|lit the? d=@device $ | &d ( TRUE ) | 1 | TS102 | applied | prende el LED => LED(TRUE)
+^ v=off|dark the? d=@device $ | &d ( FALSE ) | 1 | TS102 | applied | apagar el foco => LED(FALSE)
 # DEF and its calls
 v=@def ( ) | $v | 1 | TS028 | first | DEF GIRO()⏎R(1, 60)⏎END_DEF⏎GIRO() => DEF GIRO⏎R(1, 60)⏎END_DEF⏎GIRO
 ^ DEF ( n=@word ) | DEF $n | 1 | TS039 | offered | DEF(SALUDO)⏎BEEP(1,440)⏎END_DEF⏎SALUDO => DEF SALUDO⏎BEEP(1,440)⏎END_DEF⏎SALUDO
@@ -391,6 +409,7 @@ a=@def b=@def | $a ; $b | 1 | TS013 | applied | DEF PASO;S;END_DEF⏎PASO PASO =
 ^ [ <body> ] $ | $b $r | 1 | TS080 | applied | [F(2,80), R(1,60)] => F(2, 80);R(1, 60)
 ^ then ,? $ |  | 1 | TS044 | applied | F(1, 50);⏎luego, => F(1, 50);⏎
 # words of other languages around a program
+EFE | F | 1 | TS102 | first offered | efe dos coma ochenta => F(2, 80)
 ^ import @any+ ;? $ |  | 1 | TS072 | applied | import robot⏎F(2,80) => ⏎F(2,80)
 v=S|STOP|BREAK|START|ELSE|ENDIF|END_LOOP ( ) | $v | 1 | TS028 | first | s() => s
 read ( v=@val ) | $v | 1 | TS102 | applied | X = leer(DISTANCE)⏎SHOW(X) => X =DISTANCE⏎SHOW(X)

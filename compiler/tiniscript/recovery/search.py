@@ -154,7 +154,10 @@ class _Recovery:
             return
         first = found[0]
         line.rivals = [each for each in found[1:] if _said(each) != _said(first)]
-        is_close = any(each.is_sure and each.cost < first.cost + MARGIN for each in line.rivals)
+        is_close = any(
+            each.is_sure and each.cost < first.cost + MARGIN and _kept(each) >= _kept(first)
+            for each in line.rivals
+        )
         line.reading = first._replace(is_sure=first.is_sure and not is_close)
 
     # -- programs -------------------------------------------------------------------------------
@@ -279,6 +282,11 @@ def _words(text: str) -> set[str]:
 def _said(reading: Reading) -> list[str]:
     """Return the tokens of a reading without separators, of which one more changes nothing."""
     return [each for each in reading.text if each != ";"]
+
+
+def _kept(reading: Reading) -> int:
+    """Return how many tokens of the text are in a reading: one with fewer is no equal rival."""
+    return sum(each.source is not None for each in reading.tokens)
 
 
 def _likely(line: _Text, names: Names) -> list[Reading]:

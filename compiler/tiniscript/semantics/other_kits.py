@@ -5,7 +5,7 @@ Knows the diagnostics of a program and the kits of other robots. Opens no profil
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
@@ -23,20 +23,27 @@ def is_unknown(diagnostic: Diagnostic) -> bool:
 
 
 def naming_robots(
-    found: Sequence[Diagnostic], text: str, own: tuple[str, Kit], others: Mapping[str, Kit]
+    found: Sequence[Diagnostic],
+    text: str,
+    own: tuple[str, Kit],
+    others: Mapping[str, Kit],
+    meant: Callable[[str], str | None],
 ) -> list[Diagnostic]:
     """Return diagnostics that name the robots that have an unknown word; at most three of them.
 
-    Where a robot has all kit words of the program, those that lack one are not named.
+    Where a robot has all kit words of the program, those that lack one are not named. `meant` says
+    which word of a kit a word in another language is.
     """
     known = {robot: words(kit) for robot, kit in others.items() if robot != own[0]}
     of_kits = words(own[1]).union(*known.values())
-    used = {token.text for token in scan(text).tokens if token.kind is WORD} & of_kits
+    said = {token.text for token in scan(text).tokens if token.kind is WORD}
+    used = {word if word in of_kits else meant(word) for word in said} & of_kits
     whole = [robot for robot, its in known.items() if used <= its]
     named = []
     for diagnostic in found:
         word = diagnostic.values.get("found", "")
-        having = [robot for robot, its in known.items() if word in its]
+        word = word if word in of_kits else meant(word) or word
+        having = [robot for robot, its in known.items() if word in its - words(own[1])]
         if diagnostic.code in _UNKNOWN and having:
             robots = [robot for robot in having if robot in whole] or having
             numbered = dict(zip(_NUMBERS, robots, strict=False))
