@@ -18,7 +18,7 @@ from tests.studio.test_page_for_everyone import LOOK, SCREENS
 from tests.support import studio
 from tests.support.command import FOREVER
 from tests.support.pty_robot import PtyRobot
-from tests.support.studio import HUNG_MS, Class, Pages, checked, hang, write
+from tests.support.studio import HUNG_MS, Class, Pages, checked, drives, hang, write
 from tiniscript import robots
 from tiniscript.studio.attending import LATCH_S
 from tiniscript.studio.building import MODULES
@@ -104,13 +104,6 @@ def teaches(pages: Pages, taught: Class) -> Page:
     page = pages.visit(taught.server.entrance())
     page.locator("[data-teacher=class_count]").wait_for(state="attached")
     return page
-
-
-def drives(page: Page, robot: PtyRobot) -> None:
-    write(page, FOREVER)
-    page.click("#link_upload")
-    linked(page, "The robot has it")
-    robot.until(lambda: robot.moves, "it drives")
 
 
 def test_three_pupils_share_a_robot(

@@ -13,9 +13,8 @@ import pytest
 
 from tests.studio.test_page_for_everyone import LOOK, SCREENS
 from tests.support import studio
-from tests.support.command import FOREVER
 from tests.support.pty_robot import PtyRobot
-from tests.support.studio import HUNG_MS, Pages, checked, hang, write
+from tests.support.studio import HUNG_MS, Pages, checked, drives, hang, write
 from tiniscript import compile, robots
 from tiniscript.link import known_ports
 from tiniscript.studio import serving
@@ -101,13 +100,6 @@ def own_page(pages: Pages, robot: PtyRobot) -> Page:
     found = pages.open()
     connect(found)
     return found
-
-
-def drives(page: Page, robot: PtyRobot) -> None:
-    write(page, FOREVER)
-    page.click("#link_upload")
-    said(page, "The robot has it")
-    robot.until(lambda: robot.moves, "it drives")
 
 
 def test_a_program_is_sent_and_runs(page: Page, robot: PtyRobot) -> None:

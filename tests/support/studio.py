@@ -6,6 +6,7 @@ A test waits for what the page says of itself (`data-state`), never for a time.
 from __future__ import annotations
 
 import os
+import re
 import shutil
 import socket
 from collections.abc import Callable, Iterator, Sequence
@@ -14,6 +15,7 @@ from importlib.util import find_spec
 from threading import Thread
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from tests.support.command import FOREVER
 from tests.support.platformio import need
 from tiniscript import run
 from tiniscript.studio import serving
@@ -25,11 +27,14 @@ from tools.builds import studio
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page, Playwright
 
+    from tests.support.pty_robot import PtyRobot
+
 # No sandbox: root has none, and these pages are our own. WebAssembly is compiled once and not again
 # for speed: Python does little in a page of a test, and each begins it anew.
 OPTIONS = ("--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
            "--disable-background-networking", "--disable-component-update", "--disable-sync",
            "--disable-dev-shm-usage", "--js-flags=--liftoff-only")  # fmt: skip
+UPLOADS = 10  # after so many stops in a row the computer is not to blame
 
 
 def missing() -> str:
@@ -213,6 +218,23 @@ def shown(page: Page) -> None:
     """Wait until the blocks are those of the text, and the text is compiled."""
     page.locator("#blocks[data-state=shown]").wait_for()
     checked(page)
+
+
+def drives(page: Page, robot: PtyRobot) -> None:
+    """Let a page's robot drive, and wait until it does.
+
+    A busy computer can keep a page silent for so long that its robot is stopped before this thread
+    has seen it drive. Then the page asks again.
+    """
+    write(page, FOREVER)
+    said = page.locator("#link_said")
+    for _ in range(UPLOADS):
+        page.click("#link_upload")
+        said.filter(has_text=re.compile("The robot has it|Stopped: ")).wait_for()
+        robot.until(lambda: robot.moves or "Stopped: " in said.inner_text(), "it drives")
+        if robot.moves:
+            return
+    raise AssertionError(f"stopped {UPLOADS} times")
 
 
 # Longer than any robot goes on without a word, and a second shorter than a page has left after.
