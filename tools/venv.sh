@@ -78,7 +78,7 @@ test_packages() {
     debian_packages g++ gcc-avr avr-libc binutils-avr simavr libsimavr-dev libelf-dev \
         arduino-core-avr arduino-builder avrdude doctest-dev picocom clang-22 libclang-rt-22-dev \
         gcc-xtensa-lx106 gcc-riscv64-unknown-elf qemu-system-misc zsh less dbus-daemon mosquitto \
-        libmbedtls-dev chromium firefox-esr
+        libmbedtls-dev chromium chromium-headless-shell firefox-esr
 }
 
 # Sets found to a Python that can make virtual environments.

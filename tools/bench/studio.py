@@ -97,7 +97,7 @@ def main() -> None:
     with (
         studio.driver() as driver,
         studio.served() as server,
-        studio.browser(driver) as browser,
+        studio.browser(driver, is_whole=True) as browser,
     ):
         for row in _measured(browser, server.address, options.slower):
             print("{:44} {:>14}  {:>12}".format(*row), flush=True)
