@@ -5,13 +5,9 @@ The three in this order, as every machine asks them. Knows no rule of its own.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from tiniscript.bytecode.image import Image, ImageRefused, unpack
 from tiniscript.bytecode.verify import Verdict, verify
-
-if TYPE_CHECKING:
-    from tiniscript.kit import Kit
+from tiniscript.kit import Kit
 
 
 def loaded(data: bytes, kit: Kit) -> Image:

@@ -8,17 +8,17 @@ from __future__ import annotations
 from argparse import Namespace
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from tiniscript.cli import inputs, outputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.program_files import Found, programs
+from tiniscript.cli.repairing import print_difference, repaired
+from tiniscript.cli.spreadsheet import as_csv
 from tiniscript.cli.texts.common import text
-
-if TYPE_CHECKING:
-    from tiniscript.diagnostics.rendering import Message
-    from tiniscript.library.compiling import Compiled
-    from tiniscript.robots.profile import Robot
+from tiniscript.diagnostics.rendering import Message, as_json, message
+from tiniscript.library.compiling import Compiled
+from tiniscript.robots.profile import Robot
 
 NAME_COLUMNS = 40  # of a file's name in the table; of a longer one the end is shown
 
@@ -61,8 +61,6 @@ def check(options: Namespace, robot: Robot, language: str) -> int:
 
 
 def _row(found: Found, options: Namespace, robot: Robot, language: str) -> Row:
-    from tiniscript.diagnostics.rendering import message
-
     if found.problem is not None:
         return Row(found.name, [], 0, found.problem.sentence(language).removeprefix("tsc: "))
     repaired = 0
@@ -83,8 +81,6 @@ def _repaired(
     found: Found, options: Namespace, robot: Robot, language: str
 ) -> tuple[Compiled, int, str]:
     """Make or show the sure repairs of a program; return what is left, how many, and a problem."""
-    from tiniscript.cli.repairing import print_difference, repaired
-
     its = repaired(found.data, robot, found.name)
     if its.repairs and not options.json:
         print_difference(found.data, its.data, found.name)
@@ -145,8 +141,6 @@ def _laid_out(cells: Sequence[str], widths: Sequence[int]) -> str:
 
 
 def _as_data(row: Row) -> dict[str, object]:
-    from tiniscript.diagnostics.rendering import as_json
-
     return {
         "file": inputs.shown(row.name),
         "mistakes": row.mistakes,
@@ -158,8 +152,6 @@ def _as_data(row: Row) -> dict[str, object]:
 
 
 def _as_csv(rows: Sequence[Row], language: str) -> bytes:
-    from tiniscript.cli.spreadsheet import as_csv
-
     def cells(row: Row) -> tuple[object, ...]:
         counts = (inputs.shown(row.name), row.mistakes, row.warnings, row.repaired)
         if not row.mistakes:

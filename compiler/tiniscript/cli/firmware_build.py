@@ -6,7 +6,6 @@ import sys
 from argparse import Namespace
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from typing import TYPE_CHECKING
 
 from tiniscript import files, robots
 from tiniscript.cli import fetching
@@ -15,13 +14,12 @@ from tiniscript.cli.fetching import Part
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.terminal.progress import Progress
 from tiniscript.cli.texts.common import text
+from tiniscript.flash import building, ready
+from tiniscript.flash.building import CannotBuild, Seen, Sources
+from tiniscript.flash.ready import Ready
 from tiniscript.library import install_advice
 from tiniscript.robots.ports import AVRS, ESP32S
-
-if TYPE_CHECKING:
-    from tiniscript.flash.building import CannotBuild, Seen, Sources
-    from tiniscript.flash.ready import Ready
-    from tiniscript.robots.profile import Robot
+from tiniscript.robots.profile import ProfileRefused, Robot
 
 __all__ = ("BOARDS", "firmware", "on_boards", "print_list", "row")
 
@@ -40,8 +38,6 @@ def on_boards(name: str | None, language: str, boards: Sequence[str] = BOARDS) -
 
     It answers text in `language`, if its profile names none.
     """
-    from tiniscript.robots.profile import ProfileRefused
-
     found = []
     for board in boards:
         try:
@@ -54,8 +50,6 @@ def on_boards(name: str | None, language: str, boards: Sequence[str] = BOARDS) -
 
 def firmware(robot: Robot, options: Namespace, language: str) -> Ready:
     """Return the firmware of a robot on its board. Raises CommandError where it cannot be built."""
-    from tiniscript.flash import building, ready
-
     sources = building.sources()
     found = _ready(robot, sources)
     if found is not None:
@@ -82,8 +76,6 @@ def _ready(robot: Robot, sources: Sources | None) -> Ready | None:
     Without sources the shipped file cannot be out of date; one that answers in another language is
     better than none.
     """
-    from tiniscript.flash import ready
-
     if sources is not None:
         return ready.find(ready.title_of(robot), robot.board.chip, sources.digest(robot))
     if robot.name not in robots.names():
@@ -97,8 +89,6 @@ def _ready(robot: Robot, sources: Sources | None) -> Ready | None:
 
 def upload(robot: Robot, port: str | None, options: Namespace, language: str) -> None:
     """Build and write the firmware of a robot with an ESP32. Raises CommandError."""
-    from tiniscript.flash import building, ready
-
     sources = building.sources()
     if sources is None:
         raise CommandError(2, "flash_no_sources")
@@ -121,8 +111,6 @@ def _fetch(robot: Robot, options: Namespace, language: str) -> None:
 
     PlatformIO fetches the compiler itself, when it builds.
     """
-    from tiniscript.flash import building
-
     values = {"robot": robot.name, "board": robot.board.chip}
     has_platformio = building.platformio() is not None
     if not has_platformio and install_advice.installing(install_advice.FIRMWARE) is None:
@@ -140,8 +128,6 @@ def _fetch(robot: Robot, options: Namespace, language: str) -> None:
 
 
 def _built(robot: Robot, sources: Sources, language: str) -> bytes:
-    from tiniscript.flash import building
-
     with _shown(robot, language) as look:
         return building.build(sources, robot, look)
 
@@ -172,8 +158,6 @@ def _shown(robot: Robot, language: str) -> Iterator[Callable[[Seen], None]]:
 
 def _failure(why: CannotBuild, values: dict[str, str]) -> CommandError:
     """Return the sentence for a failed build, and save the build's output."""
-    from tiniscript.flash import ready
-
     log = ready.cache() / LOG
     if why.log:
         try:
@@ -188,8 +172,6 @@ def _failure(why: CannotBuild, values: dict[str, str]) -> CommandError:
 
 def print_list(language: str) -> None:
     """Print each shipped robot on each board that it fits, and whether its firmware is ready."""
-    from tiniscript.flash import building
-
     sources = building.sources()
     for name in robots.names():
         for robot in on_boards(name, language):

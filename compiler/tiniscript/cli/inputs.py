@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.paths import real_name
-from tiniscript.cli.texts.common import Said
+from tiniscript.cli.texts.common import Said, text
 from tiniscript.printable import printable
-from tiniscript.source import LARGEST_SOURCE
+from tiniscript.source import LARGEST_SOURCE, Source
+from tiniscript.text.levels import LEVELS
 
 if TYPE_CHECKING:
     from tiniscript.kit import Kit
@@ -53,8 +54,6 @@ def program(options: Namespace) -> Input:
         return Input("-", sys.stdin.buffer.read(LARGEST_SOURCE + 1), None)
     name = real_name(options.program)
     if name != options.program:
-        from tiniscript.cli.texts.common import text
-
         said = text("file_really", options.language)
         print(said.format(file=options.program, real=name), file=sys.stderr)
     return file(name, options.program)
@@ -125,7 +124,6 @@ def for_level(found: Compiled, robot: Robot, name: str | None) -> Compiled:
         return found
     from tiniscript.diagnostics.codes import in_order
     from tiniscript.text.fitting import misfits
-    from tiniscript.text.levels import LEVELS
 
     lacking = misfits(found.source, found.program, robot.kit, LEVELS[name])
     return found._replace(diagnostics=in_order([*found.diagnostics, *lacking]))
@@ -135,7 +133,6 @@ def parsed(given: Input, kit: Kit) -> Compiled:
     """Return only the syntax mistakes of a program's text."""
     from tiniscript.diagnostics.codes import in_order
     from tiniscript.library.compiling import Compiled, text_of
-    from tiniscript.source import Source
     from tiniscript.syntax.parser import parse
 
     text = text_of(given.data, given.name)

@@ -19,19 +19,26 @@ from pathlib import Path
 from shutil import get_terminal_size
 from typing import TYPE_CHECKING, NamedTuple
 
+from tiniscript import robots
 from tiniscript.cli import inputs, outputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.options import whole_number
 from tiniscript.cli.program_files import Found, in_folder, read
+from tiniscript.cli.robot.simulator_options import check_picture
+from tiniscript.cli.spreadsheet import as_csv
 from tiniscript.cli.texts.common import Said, text
-from tiniscript.source import PROGRAM_ENDS
+from tiniscript.diagnostics.rendering import message
+from tiniscript.lessons.lesson import Lesson
+from tiniscript.library.compiling import Compiled, maker
+from tiniscript.printable import printable
+from tiniscript.robots.profile import Robot
+from tiniscript.source import PROGRAM_ENDS, Unreadable, decode
+from tiniscript.virtual.world import WorldRefused
+from tiniscript.virtual.world_refusals import describe
 
 if TYPE_CHECKING:
     from tiniscript.lessons.findings import Finding
-    from tiniscript.lessons.lesson import Lesson
     from tiniscript.lessons.running import Run
-    from tiniscript.library.compiling import Compiled
-    from tiniscript.robots.profile import Robot
 
 PROGRAMS = 200  # of a folder
 LEAST_COLUMNS = 24  # of a sentence beside its program; below that it stands under it
@@ -65,7 +72,6 @@ def check(options: Namespace, lesson: Lesson, language: str) -> int:
         seeds = [whole_number("--seed", options.seed, 1, 1, 2**32 - 1, language)]
     if options.program is None and not options.texts:
         raise CommandError(2, "lesson_no_program", number=inputs.shown(options.number))
-    from tiniscript import robots
 
     marker = _Marker(lesson, robots.load(lesson.robot), seeds, language)
     if _is_folder(options):
@@ -75,8 +81,6 @@ def check(options: Namespace, lesson: Lesson, language: str) -> int:
         _name_notes(marks, options, language)
     else:
         if options.plot is not None:
-            from tiniscript.cli.robot.simulator_options import check_picture
-
             check_picture(options)
         given = inputs.program(options)
         compiled = marker.compiled(given, "check")
@@ -135,8 +139,6 @@ class _Marker:
             from tiniscript.cli.robot.simulator_options import not_installed
 
             raise not_installed("virtual_needs_wasmtime", why) from None
-        from tiniscript.library.compiling import maker
-        from tiniscript.virtual.world import WorldRefused
 
         made = maker(self.robot)
         marking = Marking(compiled.source.text, made, self.robot, self.lesson, self.seeds)
@@ -152,8 +154,6 @@ class _Marker:
         return tuple((each.kind, sentence(each, self.language)) for each in findings)
 
     def _mistakes(self, compiled: Compiled) -> Iterable[tuple[str, str]]:
-        from tiniscript.diagnostics.rendering import message
-
         for diagnostic in compiled.diagnostics:
             if diagnostic.is_mistake:
                 said = message(diagnostic, compiled.source, self.language)
@@ -162,9 +162,6 @@ class _Marker:
                 yield "", f"{line}   {fix}".strip()
 
     def _blocked(self, refused: Exception, seed: int) -> CommandError:
-        from tiniscript.virtual.world import WorldRefused
-        from tiniscript.virtual.world_refusals import describe
-
         assert isinstance(refused, WorldRefused)
         lines = describe(refused, self.language)
         reasons = Said("\n".join("  " + line for line in lines))
@@ -219,7 +216,6 @@ def _is_note(found: Found) -> bool:
     plain = "".join(each for each in letters if not unicodedata.combining(each))
     if LIKE_NOTES.match(plain) is None:
         return False
-    from tiniscript.source import Unreadable, decode
 
     try:
         note = decode(found.data)
@@ -278,8 +274,6 @@ def _print_table(marks: Sequence[Mark], options: Namespace, language: str) -> No
 
 
 def _first(mark: Mark) -> str:
-    from tiniscript.printable import printable
-
     sentence = printable(mark.said[0][1], 300) if mark.said else ""
     return f"[{mark.seed}] {sentence}" if mark.seed else sentence
 
@@ -291,8 +285,6 @@ def _data(mark: Mark) -> dict[str, object]:
 
 
 def _rows(marks: Sequence[Mark], language: str) -> bytes:
-    from tiniscript.cli.spreadsheet import as_csv
-
     def cells(mark: Mark) -> tuple[object, ...]:
         verdict = mark.verdict if language == "en" else text(f"verdict_{mark.verdict}", language)
         return mark.name, verdict, mark.seed or "", mark.said[0][1] if mark.said else ""

@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.texts.common import text
 from tiniscript.cli.texts.options import Option, of_verb
+from tiniscript.fixed_point import as_text, read_literal
+from tiniscript.words import nearest
 
 if TYPE_CHECKING:
     from typing import NoReturn
@@ -97,7 +99,6 @@ class Options(ArgumentParser):
     def _near(self, found: str) -> str:
         """Return what somebody may have meant with a word that is unknown here, or nothing."""
         from tiniscript import robots
-        from tiniscript.words import nearest
 
         flags = [flag for option in self.table if not option.is_argument
                  for flag in option.flags.split()]  # fmt: skip
@@ -132,8 +133,6 @@ def whole_number(option: str, found: str | None, default: int, low: int, high: i
 
 def decimal(found: str) -> int | None:
     """Return the thousandths of a decimal, rounded; None where it is none or far too large."""
-    from tiniscript.fixed_point import read_literal
-
     digits = found[1:] if found[:1] == "-" else found
     if not re.fullmatch(r"[0-9]+(\.[0-9]+)?|\.[0-9]+", digits, re.ASCII):
         return None
@@ -150,7 +149,6 @@ def thousandths(
     value = decimal(found)
     if value is None or not low <= value <= high:
         from tiniscript.cli.inputs import shown
-        from tiniscript.fixed_point import as_text
 
         allowed = text("range_number", language).format(low=as_text(low), high=as_text(high))
         raise CommandError(
@@ -168,8 +166,6 @@ def sensor_lists(texts: list[str], robot: Robot, language: str) -> dict[int, lis
         name, equals, values = each.partition("=")
         name = name.strip().upper()
         if name not in names:
-            from tiniscript.words import nearest
-
             known = ", ".join(names) or text("no_sensors", language)
             raise CommandError(2, "no_sensor", robot=robot.name, found=name or each, known=known,
                           near=nearest(name, names) or "")  # fmt: skip

@@ -8,14 +8,13 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterator
 from difflib import unified_diff
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from tiniscript.cli.terminal.sequences import has_colors
+from tiniscript.library.compiling import Compiled, compiled, text_of
 from tiniscript.printable import printable
-
-if TYPE_CHECKING:
-    from tiniscript.library.compiling import Compiled
-    from tiniscript.robots.profile import Robot
+from tiniscript.repairs.fixing import fixed
+from tiniscript.robots.profile import Robot
 
 _BOM = b"\xef\xbb\xbf"
 _COLORS = {"+": "\033[32m", "-": "\033[31m", "@": "\033[36m"}
@@ -32,9 +31,6 @@ class Repaired(NamedTuple):
 
 def repaired(data: bytes, robot: Robot, name: str) -> Repaired:
     """Return a program with its sure repairs; bytes that are no program stay as they are."""
-    from tiniscript.library.compiling import compiled, text_of
-    from tiniscript.repairs.fixing import fixed
-
     text = text_of(data, name)
     if not isinstance(text, str):
         return Repaired(data, 0, text)

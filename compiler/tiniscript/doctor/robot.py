@@ -12,6 +12,7 @@ from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
 from tiniscript.link.connection import LinkConnection
 from tiniscript.link.frames import Frame, decoded, encoded
 from tiniscript.link.messages import BY_NAME, MAJOR, MINOR, written
+from tiniscript.link.outcomes import CANCELLED, LOST
 from tiniscript.link.payloads import HelloReply, SentReply, StatusReply
 from tiniscript.link.requests import OK, Reply, reply_of
 from tiniscript.link.wire import Wire
@@ -131,8 +132,6 @@ class SharedRobot:
         self.line.event(wait_ms / 1000)
 
     def _done(self, make: Any) -> Reply[SentReply] | None:
-        from tiniscript.link.outcomes import CANCELLED, LOST
-
         def limited(session: Any) -> Any:
             request = make(session)
             request.limit_ms = SHARED_MS

@@ -11,9 +11,11 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from tiniscript.bytecode.image import Image, checksum, pack
 from tiniscript.bytecode.opcodes import CODE_BYTES, ISA_MAJOR, ISA_MINOR
-from tiniscript.bytecode.verify import verify
-from tiniscript.codegen.lower import lower
+from tiniscript.bytecode.verify import Verdict, verify
+from tiniscript.codegen.lower import Place, lower
 from tiniscript.diagnostics import codes
+from tiniscript.kit import Kit
+from tiniscript.semantics import ir
 from tiniscript.semantics.checker import check
 from tiniscript.semantics.empty_blocks import empty_blocks
 from tiniscript.semantics.lint import advice
@@ -24,11 +26,7 @@ from tiniscript.syntax.parser import parse
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from tiniscript.bytecode.verify import Verdict
-    from tiniscript.codegen.lower import Place
-    from tiniscript.kit import Kit
     from tiniscript.robots.profile import Robot
-    from tiniscript.semantics import ir
 
 
 class Compiled(NamedTuple):

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import os
 
+from tiniscript import robots
 from tiniscript.library import opening
 from tiniscript.library.connection import RobotConnection
 from tiniscript.library.errors import RobotError, UsageError
 from tiniscript.library.programs import Language, profile_of
 from tiniscript.library.runs import whole
+from tiniscript.link import known_ports, port_names, ports
 from tiniscript.printable import printable
 
 SLOWEST_BAUD, FASTEST_BAUD = 300, 2_000_000
@@ -25,8 +27,6 @@ def connect(
     profile of the robot that answers, if this computer knows it. `baud` is 300 to 2000000; its
     default is in the profile. Raises RobotError if the port does not open or no robot answers.
     """
-    from tiniscript import robots
-
     profile = profile_of(robots.DEFAULT if robot is None else robot, language)
     if baud is not None:
         whole("baud", baud, SLOWEST_BAUD, FASTEST_BAUD, language)
@@ -39,7 +39,6 @@ def connect(
 
 def _usual_port(language: Language) -> str:
     """Return the last used port, else that of the only virtual robot. Raises RobotError."""
-    from tiniscript.link import known_ports, port_names, ports
     from tiniscript.virtual import directory
 
     last = known_ports.known().last

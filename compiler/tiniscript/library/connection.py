@@ -16,16 +16,16 @@ from tiniscript.library.client import Client, Saving
 from tiniscript.library.endings import Follower
 from tiniscript.library.errors import RobotError, StopNotConfirmed, UsageError
 from tiniscript.library.events import Ending, Reader, RobotEvent, ending_of
+from tiniscript.library.known_kits import of_kit
 from tiniscript.library.programs import Language, Program, program_of
 from tiniscript.library.runs import within
-from tiniscript.link.messages import STATE_RUNNING
+from tiniscript.link.messages import SAVED, STATE_RUNNING
+from tiniscript.link.payloads import ReceiptReply
 from tiniscript.printable import printable
+from tiniscript.robots.profile import Robot
 
 if TYPE_CHECKING:
     from typing import TypeVar
-
-    from tiniscript.link.payloads import ReceiptReply
-    from tiniscript.robots.profile import Robot
 
     Self = TypeVar("Self", bound="RobotConnection")
     T = TypeVar("T")
@@ -96,7 +96,6 @@ class RobotConnection:
         """What the robot reports of itself."""
         device_info = self._client.line.robot
         assert device_info is not None
-        from tiniscript.library.known_kits import of_kit
 
         profile = of_kit(device_info.kit)
         name = None if profile is None else profile.name
@@ -268,8 +267,6 @@ class RobotConnection:
     def _meet(self, is_named: bool) -> None:
         device_info = self._client.meet(self._profile.board.chip)
         if not is_named and device_info.kit != self._profile.kit.fingerprint:
-            from tiniscript.library.known_kits import of_kit
-
             self._profile = of_kit(device_info.kit) or self._profile
         opening.remember(self.port, device_info.name)
 
@@ -285,8 +282,6 @@ class RobotConnection:
         return ready
 
     def _begun(self, receipt: ReceiptReply, is_running: bool, is_detached: bool) -> Receipt:
-        from tiniscript.link.messages import SAVED
-
         # a program that waits for the button has no run number yet
         self._follower = Follower(receipt.run if is_running else None)
         self._ending = None

@@ -6,16 +6,18 @@ from collections.abc import Mapping
 from time import monotonic
 from typing import TYPE_CHECKING, NamedTuple
 
+from tiniscript.bytecode.opcodes import FAULTS
+from tiniscript.codegen import source_map
+from tiniscript.codegen.source_map import Map
 from tiniscript.library.endings import DONE, FAULT
 from tiniscript.library.runs import Fault, Value, fault_of, value_of
+from tiniscript.link.messages import CAUSES, LINK_FAULTS, STATES
+from tiniscript.link.outcomes import Event
+from tiniscript.link.payloads import StatusReply
 from tiniscript.printable import printable
 
 if TYPE_CHECKING:
     from typing import Literal
-
-    from tiniscript.codegen.source_map import Map
-    from tiniscript.link.outcomes import Event
-    from tiniscript.link.payloads import StatusReply
 
 
 class RobotEvent(NamedTuple):
@@ -64,8 +66,6 @@ class Reader:
         elif event.name == "FAULT":
             found = self._fault(event.fault, event.at, event.program)
         elif event.name == "STOPPED":
-            from tiniscript.link.messages import CAUSES
-
             found = {"cause": CAUSES[event.cause if event.cause < len(CAUSES) else 0][0]}
         elif event.name == "MISSED":
             found = {"count": event.count}
@@ -77,8 +77,6 @@ class Reader:
 
     def _told_end(self, time_ms: int, status: StatusReply) -> RobotEvent:
         """Return the end of a run for which only the robot's state is known."""
-        from tiniscript.link.messages import STATES
-
         state, ms = STATES[status.state][0], time_ms - self._began_ms
         if state == "FAULTED":
             fault = self._fault(status.fault, status.fault_at, status.fault_program)
@@ -88,10 +86,6 @@ class Reader:
         return RobotEvent(ms, "STOPPED", {"cause": "NONE"})
 
     def _fault(self, number: int, offset: int, program: int) -> dict[str, Value]:
-        from tiniscript.bytecode.opcodes import FAULTS
-        from tiniscript.codegen import source_map
-        from tiniscript.link.messages import LINK_FAULTS
-
         names = {each: name for each, name, _ in (*FAULTS, *LINK_FAULTS)}
         places = self.maps.get(program) or source_map.recall(program)
         fault = fault_of(names.get(number, str(number)), offset, places)

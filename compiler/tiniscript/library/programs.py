@@ -6,7 +6,7 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tiniscript.diagnostics.rendering import Message
+from tiniscript.diagnostics.rendering import Message, as_text, message
 from tiniscript.library.errors import ProgramError, UsageError
 from tiniscript.printable import printable
 from tiniscript.source import PROGRAM_ENDS
@@ -189,8 +189,6 @@ def profile_of(robot: str | os.PathLike[str], language: Language) -> Robot:
 
 
 def diagnostics_of(compiled: Compiled, language: Language) -> list[Message]:
-    from tiniscript.diagnostics.rendering import message
-
     return [message(each, compiled.source, language) for each in compiled.diagnostics]
 
 
@@ -219,8 +217,6 @@ def _program(text: str, profile: Robot, name: str, optimize: bool, language: Lan
     found = compiled(_data(text), profile, name, is_strict=True, optimize=optimize)
     diagnostics = tuple(diagnostics_of(found, language))
     if not found.is_right:
-        from tiniscript.diagnostics.rendering import as_text, message
-
         said = [as_text(message(each, found.source, language), found.source, language)
                 for each in found.diagnostics]  # fmt: skip
         error = ProgramError("mistakes", language, said="\n".join(said))

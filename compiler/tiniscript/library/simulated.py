@@ -8,17 +8,17 @@ from __future__ import annotations
 import math
 import os
 from threading import Thread
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
-from tiniscript.library.connection import RobotConnection
+from tiniscript.library.connection import VERB, RobotConnection
 from tiniscript.library.errors import UsageError
 from tiniscript.library.programs import Language, profile_of
 from tiniscript.library.runs import LARGEST_SEED, Readings, thousandths, whole, within
-
-if TYPE_CHECKING:
-    from tiniscript.robots.kinematics import Pose
-    from tiniscript.robots.profile import Robot
-    from tiniscript.virtual.robot import VirtualRobot
+from tiniscript.robots.kinematics import Pose
+from tiniscript.robots.profile import Robot
+from tiniscript.virtual import worlds
+from tiniscript.virtual.robot import Settings, VirtualRobot
+from tiniscript.virtual.world import WorldRefused
 
 MOST_NOISE = 0.5
 SLOWEST_HURRY, FASTEST_HURRY = 0.1, 10_000
@@ -115,7 +115,6 @@ class Simulated:
     """The robot, and the thread that runs its clock until `close`."""
 
     def __init__(self, robot: VirtualRobot, hurry: float) -> None:
-        from tiniscript.library.connection import VERB
         from tiniscript.virtual import directory
         from tiniscript.virtual.simulator import Simulator
         from tiniscript.virtual.transports import Transports
@@ -169,10 +168,6 @@ class Simulated:
 def _made(profile: Robot, world: str, settings: object, language: Language) -> VirtualRobot:
     """Return the robot in its world. Raises UsageError."""
     from typing import cast
-
-    from tiniscript.virtual import worlds
-    from tiniscript.virtual.robot import Settings, VirtualRobot
-    from tiniscript.virtual.world import WorldRefused
 
     try:
         return VirtualRobot(

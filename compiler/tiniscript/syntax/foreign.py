@@ -6,16 +6,22 @@ right word stood there.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NoReturn, Protocol
+from typing import NoReturn, Protocol
 
 from tiniscript.diagnostics import codes
 from tiniscript.source import Span
-from tiniscript.syntax.blocks import ENDS, HEADERS
+from tiniscript.syntax.again_recovery import AgainRecovery
+from tiniscript.syntax.ast import Argument
+from tiniscript.syntax.block_recovery import BlockRecovery
+from tiniscript.syntax.blocks import ENDS, HEADERS, Blocks
 from tiniscript.syntax.call_suggestions import LONGEST
-from tiniscript.syntax.cursor import AT_END
+from tiniscript.syntax.construct_recovery import ConstructRecovery
+from tiniscript.syntax.cursor import AT_END, Cursor
+from tiniscript.syntax.end_recovery import EndRecovery
+from tiniscript.syntax.group_recovery import GroupRecovery
 from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, WORD, Token
 from tiniscript.syntax.phrases import AFTER_HEADER, COUNTING, NEGATED
-from tiniscript.syntax.reporter import Failed, Resumed
+from tiniscript.syntax.reporter import Failed, Reporter, Resumed
 from tiniscript.syntax.suggestions import (
     counted,
     end_of_values,
@@ -24,20 +30,8 @@ from tiniscript.syntax.suggestions import (
     opposite,
     with_signs,
 )
+from tiniscript.syntax.times_recovery import TimesRecovery
 from tiniscript.words import BLOCK_ENDS, WORDS, meant_by
-
-if TYPE_CHECKING:
-    from tiniscript.syntax.again_recovery import AgainRecovery
-    from tiniscript.syntax.ast import Argument
-    from tiniscript.syntax.block_recovery import BlockRecovery
-    from tiniscript.syntax.blocks import Blocks
-    from tiniscript.syntax.construct_recovery import ConstructRecovery
-    from tiniscript.syntax.cursor import Cursor
-    from tiniscript.syntax.end_recovery import EndRecovery
-    from tiniscript.syntax.group_recovery import GroupRecovery
-    from tiniscript.syntax.reporter import Reporter
-    from tiniscript.syntax.times_recovery import TimesRecovery
-
 
 _ENDLESS = frozenset(("PARA", "POR", "SIEMPRE", "FOREVER", "INFINITO", "INFINITAMENTE", "INFINITAS",
                       "VECES", "TIMES", "INFINITE", "AND", "EVER"))  # fmt: skip

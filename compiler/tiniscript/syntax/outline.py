@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from tiniscript.diagnostics.codes import Code
 from tiniscript.source import Source, Span
 from tiniscript.syntax.ast import Argument
 from tiniscript.syntax.blocks import ENDS, HEADERS, Block, Blocks
@@ -20,8 +21,6 @@ from tiniscript.words import WORDS, Word
 
 if TYPE_CHECKING:
     from typing import NoReturn
-
-    from tiniscript.diagnostics.codes import Code
 
 
 class Known(NamedTuple):

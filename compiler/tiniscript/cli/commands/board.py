@@ -10,13 +10,12 @@ from pathlib import Path
 from tiniscript.cli import inputs, outputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.texts.common import text
+from tiniscript.robots import firmware
 
 SKETCH, HOME = Path("vm_arduino"), Path("src/boards/kits/own.h")  # and the place in it
 
 
 def run(options: Namespace, language: str) -> int:
-    from tiniscript.robots import firmware
-
     robot = inputs.robot(options, language).speaking(language)
     if not firmware.fits(robot):
         raise CommandError(

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 
 from tiniscript.cli import inputs, outputs
 from tiniscript.cli.errors import CommandError
+from tiniscript.cli.inputs import Input
 from tiniscript.cli.texts.common import text
 
 if TYPE_CHECKING:
-    from tiniscript.cli.inputs import Input
     from tiniscript.library.compiling import Compiled
     from tiniscript.robots.profile import Robot
 

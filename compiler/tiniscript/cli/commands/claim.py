@@ -9,7 +9,10 @@ from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot.connect import Connection, connected
 from tiniscript.cli.texts.common import text
+from tiniscript.library.opening import limited
 from tiniscript.link.messages import KEY_OWNER, KEY_TEACHER, OWNERS, STATUSES
+from tiniscript.link.outcomes import UNKEPT
+from tiniscript.link.requests import Reply
 
 LIMIT_MS = 45_000  # the robot waits 30 s for the button
 
@@ -24,9 +27,6 @@ def run(options: Namespace, language: str) -> int:
 
 
 def _claim(connection: Connection, which: int) -> None:
-    from tiniscript.library.opening import limited
-    from tiniscript.link.outcomes import UNKEPT
-
     make = limited(lambda session: session.claim(which), LIMIT_MS)
     request = connection.line.do(make)
     # Said once the robot is asked: a press that has lasted 2 s before counts for nothing.
@@ -51,7 +51,6 @@ def _refuse_at_once(connection: Connection) -> None:
     """Say what no button changes. Raises CommandError."""
     from tiniscript.link.authority import NOT_OWNER, OF_ANOTHER, whose
     from tiniscript.link.keys import KeyFile
-    from tiniscript.link.requests import Reply
 
     device_info = connection.device_info
     if not device_info.values.features & OWNERS:

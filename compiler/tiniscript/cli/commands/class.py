@@ -5,11 +5,10 @@ from __future__ import annotations
 from argparse import Namespace
 
 from tiniscript.cli.errors import CommandError
+from tiniscript.cli.robot import classroom
 
 
 def run(options: Namespace, language: str) -> int:
-    from tiniscript.cli.robot import classroom
-
     actions = {
         None: classroom.list_robots,
         "list": classroom.list_robots,

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from tiniscript.cli import inputs, outputs, paths
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.texts.common import text
+from tiniscript.fixed_point import as_text
 
 if TYPE_CHECKING:
     from tiniscript.library.compiling import Compiled
@@ -107,7 +108,6 @@ def _will_fault(compiled: Compiled) -> bool:
 
 
 def _runs(program: object, language: str) -> str:
-    from tiniscript.fixed_point import as_text
     from tiniscript.semantics.duration import duration
     from tiniscript.semantics.ir import Program
     from tiniscript.semantics.optimizer import optimized

@@ -16,18 +16,26 @@ from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.options import whole_number
 from tiniscript.cli.robot.connect import Connection, baud_of, robot_of_kit
+from tiniscript.cli.robot.simulator import running_address
 from tiniscript.cli.terminal.asking import agreed, can_ask
 from tiniscript.cli.terminal.sequences import are_read
 from tiniscript.cli.texts.common import has_text, text
+from tiniscript.cli.texts.doctor import BLANK, STEPS
 from tiniscript.doctor import report
 from tiniscript.doctor.findings import CAUSES, NOTE, Finding
+from tiniscript.doctor.system import ThisComputer
+from tiniscript.library.known_kits import of_kit
+from tiniscript.link import known_ports, port_names, ports
+from tiniscript.link.connection import LinkConnection
+from tiniscript.link.messages import RESETS
+from tiniscript.link.sharing.client import joined
+from tiniscript.link.wire import SerialWire, Wire
+from tiniscript.version import __version__
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from tiniscript.doctor.diagnosis import Diagnosis, Doors, Question
-    from tiniscript.link.connection import LinkConnection
-    from tiniscript.link.wire import Wire
 
 LONGEST_WATCH_S = 600
 
@@ -56,10 +64,8 @@ def run(options: Namespace, language: str) -> int:
 
 
 def _question(options: Namespace, language: str, told: dict[str, str]) -> Question:
-    from tiniscript.cli.robot.simulator import running_address
     from tiniscript.doctor.diagnosis import Question
     from tiniscript.doctor.examination import Expected
-    from tiniscript.link import known_ports, port_names
     from tiniscript.virtual import directory
 
     robot = inputs.robot(options, language)
@@ -87,8 +93,6 @@ def _question(options: Namespace, language: str, told: dict[str, str]) -> Questi
 
 
 def _name_of_kit(kit: int) -> str | None:
-    from tiniscript.library.known_kits import of_kit
-
     found = of_kit(kit)
     return robot_of_kit(kit) or (None if found is None else found.name)
 
@@ -101,10 +105,6 @@ def _has_key(robot: int) -> bool:
 
 def _doors(options: Namespace, language: str, doing: _Doing) -> Doors:
     from tiniscript.doctor.diagnosis import Doors
-    from tiniscript.doctor.system import ThisComputer
-    from tiniscript.link import ports
-    from tiniscript.link.sharing.client import joined
-    from tiniscript.link.wire import SerialWire
 
     def open_wire(port: str, baud: int) -> Wire:
         return SerialWire(ports.opened(port, baud))
@@ -149,8 +149,6 @@ class _Doing:
 
 def _said(finding: Finding, values: Mapping[str, str], language: str) -> tuple[str, str, str]:
     """Return what is wrong, what was seen, and the next step."""
-    from tiniscript.link.messages import RESETS
-
     filled = dict(values)
     if filled.get("reset") in dict(RESETS):
         filled["reset"] = text(f"reset_{filled['reset']}", language)
@@ -199,9 +197,6 @@ def _lines(diagnosis: Diagnosis, language: str) -> list[str]:
 
 def _form(told: Mapping[str, str], language: str) -> list[str]:
     """Return the form of a bring-up, filled as far as a computer can."""
-    from tiniscript.cli.texts.doctor import BLANK, STEPS
-    from tiniscript.link.messages import RESETS
-
     known = dict(told)
     if known.get("reset") in dict(RESETS):
         known["reset"] = text(f"reset_{known['reset']}", language)
@@ -218,8 +213,6 @@ def _form(told: Mapping[str, str], language: str) -> list[str]:
 
 def _report(diagnosis: Diagnosis, told: Mapping[str, str], language: str) -> list[str]:
     """Return the lines of a report."""
-    from tiniscript.version import __version__
-
     python = platform.python_version()
     rows = [report.MARK, text("report_about", language), ""]
     rows += [f"tsc: {__version__}, Python {python}"]

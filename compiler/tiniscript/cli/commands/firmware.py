@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import sys
 from argparse import Namespace
-from typing import TYPE_CHECKING
 
-from tiniscript.cli import inputs
+from tiniscript.cli import firmware_build, inputs
+from tiniscript.cli.commands.info import Description
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.options import bad_choice
@@ -14,13 +14,14 @@ from tiniscript.cli.robot.connect import Connection, port_failure
 from tiniscript.cli.terminal.progress import Progress
 from tiniscript.cli.terminal.waiting import waiting
 from tiniscript.cli.texts.common import text
+from tiniscript.flash import avrdude
+from tiniscript.flash.avrdude import Ended, Seen
+from tiniscript.flash.bootloaders import BOARDS, UNO, Bootloader
+from tiniscript.flash.ready import Ready
+from tiniscript.link import errors, ports
+from tiniscript.link.port_names import is_address
 from tiniscript.robots.ports import ESP32S
-
-if TYPE_CHECKING:
-    from tiniscript.flash.avrdude import Ended, Seen
-    from tiniscript.flash.bootloaders import Bootloader
-    from tiniscript.flash.ready import Ready
-    from tiniscript.robots.profile import Robot
+from tiniscript.robots.profile import Robot
 
 INSTALLS = {
     "win32": "pip install avrdude-windows",
@@ -30,8 +31,6 @@ INSTALLS = {
 
 
 def run(options: Namespace, language: str) -> int:
-    from tiniscript.cli import firmware_build
-
     if options.list:
         firmware_build.print_list(language)
         return 0
@@ -56,8 +55,6 @@ def run(options: Namespace, language: str) -> int:
 
 def _esp32(options: Namespace, language: str) -> int:
     """Build and write the firmware of a robot with an ESP32, by PlatformIO alone."""
-    from tiniscript.cli import firmware_build
-
     robot = inputs.robot(options, language).speaking(language)
     values = {"robot": robot.name, "board": robot.board.chip}
     if options.build:
@@ -73,9 +70,6 @@ def _esp32(options: Namespace, language: str) -> int:
 
 def _chosen(options: Namespace, language: str) -> tuple[Robot, tuple[Bootloader, ...]]:
     """Return the robot of the options, on its board, and the bootloaders that it may have."""
-    from tiniscript.cli import firmware_build
-    from tiniscript.flash.bootloaders import BOARDS
-
     if options.board is not None and options.board not in BOARDS:
         raise bad_choice("--board", list(BOARDS), options.board, language)
     robot = inputs.robot(options, language)
@@ -90,8 +84,6 @@ def _chosen(options: Namespace, language: str) -> tuple[Robot, tuple[Bootloader,
 
 
 def _avrdude() -> list[str]:
-    from tiniscript.flash import avrdude
-
     command = avrdude.found()
     if command is None:
         raise CommandError(2, "flash_no_avrdude", how=INSTALLS.get(sys.platform, INSTALLS["linux"]))
@@ -100,10 +92,6 @@ def _avrdude() -> list[str]:
 
 def _port(options: Namespace) -> str:
     """Return the port, which can be opened. Never the last used one: it may be that of a radio."""
-    from tiniscript.flash.bootloaders import UNO
-    from tiniscript.link import errors, ports
-    from tiniscript.link.port_names import is_address
-
     port: str | None = options.port
     if port is None:
         raise CommandError(2, "flash_no_port")
@@ -126,8 +114,6 @@ def _write(
     language: str,
 ) -> None:
     """Write a firmware with the first bootloader that answers. Raises CommandError."""
-    from tiniscript.flash import avrdude
-
     for bootloader in bootloaders:
         if bootloader is not bootloaders[0]:
             print(text("flash_older", language), file=sys.stderr)
@@ -142,8 +128,6 @@ def _write(
 def _written(
     command: list[str], bootloader: Bootloader, port: str, firmware: Ready, language: str
 ) -> Ended:
-    from tiniscript.flash import avrdude
-
     progress = Progress(language, 100)
     has_begun = False
 
@@ -169,8 +153,6 @@ def _written(
 
 def _introduce(port: str, robot: Robot, board: str, language: str) -> None:
     """Send HELLO to the robot, and print its answer."""
-    from tiniscript.cli.commands.info import Description
-
     try:
         options = Namespace(verb="firmware", port=port, baud=None, virtual=False)
         with Connection(options, robot, language) as connection:

@@ -4,23 +4,19 @@ from __future__ import annotations
 
 import json
 from argparse import Namespace
-from typing import TYPE_CHECKING
 
 from tiniscript.cli import inputs
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot.connect import Connection
+from tiniscript.cli.robot.fleet import together
+from tiniscript.cli.robot.member import Member, Result
 from tiniscript.cli.robot.targets import are_many
 from tiniscript.cli.texts.common import text
-
-if TYPE_CHECKING:
-    from tiniscript.cli.robot.member import Member, Result
 
 
 def run(options: Namespace, language: str) -> int:
     robot = inputs.robot(options, language)
     if are_many(options):
-        from tiniscript.cli.robot.fleet import together
-
         return together(options, robot, language, _one_of_many)
     with Connection(options, robot, language) as connection:
         connection.meet()
@@ -42,8 +38,6 @@ def _fields(connection: Connection) -> dict[str, object]:
 
 
 def _one_of_many(connection: Connection, member: Member) -> Result:
-    from tiniscript.cli.robot.member import Result
-
     member.meet(connection)
     member.tell("crew_identifying")
     return Result(True, _identified(connection), {"id": f"{connection.device_info.id:08x}"})

@@ -4,23 +4,31 @@ from __future__ import annotations
 
 import json
 from argparse import Namespace
-from typing import TYPE_CHECKING
 
 from tiniscript.cli import inputs
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot.connect import Connection, robot_of_kit
+from tiniscript.cli.robot.event_printer import fault_name, fault_sentence
+from tiniscript.cli.robot.fleet import together
+from tiniscript.cli.robot.member import Member, Result
 from tiniscript.cli.robot.targets import are_many
 from tiniscript.cli.texts.common import text
-
-if TYPE_CHECKING:
-    from tiniscript.cli.robot.member import Member, Result
+from tiniscript.codegen import source_map
+from tiniscript.link.messages import (
+    RESETS,
+    SAVED,
+    SAVED_NOTHING,
+    SAVED_OTHER_VERSION,
+    SAVED_STORED,
+    STATES,
+    TEXT_LEVEL,
+    TEXT_LEVELS,
+)
 
 
 def run(options: Namespace, language: str) -> int:
     robot = inputs.robot(options, language)
     if are_many(options):
-        from tiniscript.cli.robot.fleet import together
-
         return together(options, robot, language, one_of_many)
     with Connection(options, robot, language) as connection:
         connection.meet()
@@ -30,8 +38,6 @@ def run(options: Namespace, language: str) -> int:
 
 
 def one_of_many(connection: Connection, member: Member) -> Result:
-    from tiniscript.cli.robot.member import Result
-
     member.meet(connection)
     description = Description(connection)
     return Result(True, description.line(), description.fields())
@@ -48,9 +54,7 @@ class Description:
 
     def fields(self) -> dict[str, object]:
         """Return it as data."""
-        from tiniscript.cli.robot.event_printer import fault_name
         from tiniscript.link.authority import whose
-        from tiniscript.link.messages import RESETS, SAVED, SAVED_STORED, STATES
 
         status = self.status
         has_program = not self._why_no_program()
@@ -90,8 +94,6 @@ class Description:
         return f"{self._program()}; {state}; {owner}"
 
     def _program(self) -> str:
-        from tiniscript.codegen import source_map
-
         language, status, fields = self.connection.language, self.status, self.fields()
         why = self._why_no_program()
         if why:
@@ -106,8 +108,6 @@ class Description:
 
     def _text_level(self) -> str | None:
         """Return the level of text that the robot reads, or None."""
-        from tiniscript.link.messages import TEXT_LEVEL, TEXT_LEVELS
-
         number = self.hello.features & TEXT_LEVEL
         return _name(TEXT_LEVELS, number).lower() if number else None
 
@@ -118,8 +118,6 @@ class Description:
 
     def _why_no_program(self) -> str:
         """Return the reason why the robot holds no program, or an empty text."""
-        from tiniscript.link.messages import SAVED_NOTHING, SAVED_OTHER_VERSION
-
         texts = {SAVED_NOTHING: "info_no_program", SAVED_OTHER_VERSION: "info_other_version"}
         return texts.get(self.status.saved, "")
 
@@ -148,8 +146,6 @@ class Description:
         return "\n".join(lines)
 
     def _fault(self) -> str:
-        from tiniscript.cli.robot.event_printer import fault_sentence
-
         status = self.status
         said = fault_sentence(status.fault, status.fault_at, status.fault_program, None,
                               self.connection.language)  # fmt: skip

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from tiniscript.cli import inputs, outputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.texts.common import Said, text
+from tiniscript.cli.texts.options import of_verb
 
 if TYPE_CHECKING:
     from tiniscript.lessons.lesson import Lesson, LessonRefused
@@ -52,8 +53,6 @@ def run(options: Namespace, language: str) -> int:
 
 def _refuse_others(options: Namespace, action: str) -> None:
     """Refuse what only goes with another action."""
-    from tiniscript.cli.texts.options import of_verb
-
     for option in of_verb("lesson"):
         is_others = any(option.name in taken for taken in ACTIONS.values())
         if is_others and option.name not in ACTIONS.get(action, ()):

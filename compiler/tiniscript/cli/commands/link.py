@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import sys
 from argparse import Namespace
-from typing import TYPE_CHECKING
 
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
@@ -12,12 +11,10 @@ from tiniscript.cli.robot.connect import Connection, connected
 from tiniscript.cli.robot.event_printer import Bookkeeping, EventPrinter
 from tiniscript.cli.texts.common import text
 from tiniscript.library import opening
+from tiniscript.link.connection import PendingRequest
+from tiniscript.link.outcomes import Event, Gone
+from tiniscript.link.payloads import HelloReply
 from tiniscript.link.requests import OK
-
-if TYPE_CHECKING:
-    from tiniscript.link.connection import PendingRequest
-    from tiniscript.link.outcomes import Event
-    from tiniscript.link.payloads import HelloReply
 
 
 def run(options: Namespace, language: str) -> int:
@@ -47,8 +44,6 @@ class _Log:
 
     def keep(self) -> None:
         """Print events until the port is gone."""
-        from tiniscript.link.outcomes import Gone
-
         self._say("LINKED", "linked", robot=self.connection.name, port=shown(self.connection.port))
         try:
             while True:

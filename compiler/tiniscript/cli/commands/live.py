@@ -7,21 +7,25 @@ import re
 import sys
 from argparse import Namespace
 from collections.abc import Callable, Iterable, Iterator
-from typing import TYPE_CHECKING
 
 from tiniscript.cli import inputs, outputs
+from tiniscript.cli.commands.ping import ping
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.robot import own_kit
 from tiniscript.cli.robot.connect import Connection
+from tiniscript.cli.robot.event_printer import Bookkeeping, EventPrinter
+from tiniscript.cli.robot.live_mark import MARK
+from tiniscript.cli.robot.live_state import Known, Line, Value, header, open_ends
 from tiniscript.cli.robot.run_monitor import RunMonitor, stop_and_say
 from tiniscript.cli.texts.common import text
-
-if TYPE_CHECKING:
-    from tiniscript.cli.robot.event_printer import EventPrinter
-    from tiniscript.cli.robot.live_state import Known, Line
-    from tiniscript.link.outcomes import Event
-    from tiniscript.link.payloads import ShowEvent
-    from tiniscript.robots.profile import Robot
+from tiniscript.codegen import source_map
+from tiniscript.library.compiling import kit_of, naming
+from tiniscript.library.known_kits import is_other_robots
+from tiniscript.link.outcomes import Event, Gone
+from tiniscript.link.payloads import ShowEvent
+from tiniscript.link.requests import SHORT_BYTES, short_bytes
+from tiniscript.robots.profile import Robot
+from tiniscript.words import WORDS
 
 PROMPT = "tini> "
 MORE = "....> "  # a block is open
@@ -41,7 +45,6 @@ def run(options: Namespace, language: str) -> int:
         raise CommandError(2, "two_programs")
     line: str | None = options.text if options.line is None else options.line
     robot = inputs.robot(options, language)
-    from tiniscript.cli.robot.live_state import Known
 
     known = Known(robot.kit)
     if line is not None and line != "-" and not _may_be_done(line, known, robot, options):
@@ -58,10 +61,6 @@ def run(options: Namespace, language: str) -> int:
 
 def _may_be_done(line: str, known: Known, robot: Robot, options: Namespace) -> bool:
     """Whether a line has no mistakes, perhaps for the robot that answers; else print them."""
-    from tiniscript.library.compiling import naming
-    from tiniscript.library.known_kits import is_other_robots
-    from tiniscript.link.requests import SHORT_BYTES
-
     language: str = options.language
     if options.robot is None:
         compiled = naming(known.line(line, 0).compiled, robot)
@@ -79,9 +78,6 @@ def _compiled(
 
     Returns None if it has mistakes. Raises CommandError if it is too long.
     """
-    from tiniscript.cli.robot.live_state import header
-    from tiniscript.library.compiling import naming
-
     if header(line) == "SB":
         raise CommandError(1, "live_button")
     found = known.line(line, 0 if is_last else room)
@@ -111,12 +107,7 @@ class Repl:
 
     def do(self, line: str, is_last: bool = False) -> int:
         """Run a line; return the exit code. Ctrl-C stops the robot."""
-        from tiniscript.cli.robot.live_state import header
-        from tiniscript.link.requests import short_bytes
-
         if header(line) == "PING":
-            from tiniscript.cli.commands.ping import ping
-
             return ping(self.connection, is_json=False)
         robot = self.connection.profile
         room = short_bytes(self.connection.device_info)  # less where frames are sealed
@@ -141,8 +132,6 @@ class Repl:
 
         `more` returns the next line, or None if there is none.
         """
-        from tiniscript.cli.robot.live_state import open_ends
-
         while ends := open_ends(line):
             closed = f"{line}\n{ends}"
             if not self.known.line(closed, 0).compiled.is_right:
@@ -154,9 +143,6 @@ class Repl:
         return line
 
     def _run(self, found: Line, is_last: bool) -> int:
-        from tiniscript.codegen import source_map
-        from tiniscript.library.compiling import kit_of
-
         places = source_map.made(found.compiled.source, found.compiled.places)
         source_map.remember(found.compiled.image, places)  # tsc info names a fault's line later
         kit = kit_of(found.compiled, self.connection.profile)
@@ -248,9 +234,6 @@ class Repl:
 
         The next line reports a lost robot, if it is still lost.
         """
-        from tiniscript.cli.robot.event_printer import Bookkeeping, EventPrinter
-        from tiniscript.link.outcomes import Gone
-
         printer, bookkeeping = EventPrinter(self.language), Bookkeeping()
         try:
             while True:
@@ -287,8 +270,6 @@ class Catch:
         self.has_missed = False  # events of this line
 
     def hold(self, event: Event) -> bool:
-        from tiniscript.cli.robot.live_state import Value
-
         if event.name == "SHOW":
             if not self.shown or not (_is_mark(event) or self.held):
                 return False
@@ -323,8 +304,6 @@ class Catch:
 
 
 def _is_mark(event: ShowEvent) -> bool:
-    from tiniscript.cli.robot.live_mark import MARK
-
     return event.value == MARK and not event.is_yes_no
 
 
@@ -340,7 +319,6 @@ def _history(known: Known) -> Iterator[None]:
         yield
         return
     from tiniscript import files
-    from tiniscript.words import WORDS
 
     path = files.cache_folder() / "live_history"
     kit = known.kit

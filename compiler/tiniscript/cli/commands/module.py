@@ -6,20 +6,18 @@ import json
 import re
 import sys
 from argparse import Namespace
-from typing import TYPE_CHECKING
 
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot.connect import port_failure
 from tiniscript.cli.terminal.sequences import are_read
 from tiniscript.cli.texts.common import text
+from tiniscript.link import errors, ports
 from tiniscript.link.modules import set_up
 from tiniscript.link.modules.dialects import BAUDS, DIALECTS, Dialect, value_of
 from tiniscript.link.modules.set_up import BAUD, DONE, GOOD, NAME, PIN, Outcome, Step, Wanted
 from tiniscript.link.modules.talk import Module, asked, found
-
-if TYPE_CHECKING:
-    from tiniscript.link.wire import Wire
+from tiniscript.link.wire import SerialWire, Wire
 
 
 def run(options: Namespace, language: str) -> int:
@@ -82,9 +80,6 @@ def _refuse(wanted: Wanted, dialect: Dialect, what: str) -> None:
 
 
 def _wire(options: Namespace) -> Wire:
-    from tiniscript.link import errors, ports
-    from tiniscript.link.wire import SerialWire
-
     port: str | None = options.port
     if port is None:
         raise CommandError(2, "module_no_port")

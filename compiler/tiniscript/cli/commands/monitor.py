@@ -9,20 +9,20 @@ from typing import TYPE_CHECKING
 
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
+from tiniscript.cli.made import ROWS
 from tiniscript.cli.options import whole_number
 from tiniscript.cli.robot.connect import Connection, connected
+from tiniscript.cli.robot.event_printer import Bookkeeping, EventPrinter
+from tiniscript.cli.robot.rows import Rows
 from tiniscript.cli.texts.common import text
+from tiniscript.link.outcomes import Gone
 
 if TYPE_CHECKING:
-    from tiniscript.cli.robot.event_printer import EventPrinter
     from tiniscript.cli.terminal.plot import Board
 
 
 def run(options: Namespace, language: str) -> int:
     seconds = whole_number("--max-time", options.max_time, 0, 1, 10**6, language)
-    from tiniscript.cli.made import ROWS
-    from tiniscript.cli.robot.event_printer import EventPrinter
-    from tiniscript.cli.robot.rows import Rows
 
     rows: Rows | None = None
     try:
@@ -54,9 +54,6 @@ def run(options: Namespace, language: str) -> int:
 def _watch(
     connection: Connection, printer: EventPrinter, seconds: int, board: Board | None = None
 ) -> None:
-    from tiniscript.cli.robot.event_printer import Bookkeeping
-    from tiniscript.link.outcomes import Gone
-
     bookkeeping = Bookkeeping()
     end_s = monotonic() + seconds if seconds else None
     try:

@@ -8,6 +8,7 @@ from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot.connect import connected
 from tiniscript.cli.texts.common import text
+from tiniscript.link.messages import NAME_BYTES
 
 
 def run(options: Namespace, language: str) -> int:
@@ -28,8 +29,6 @@ def run(options: Namespace, language: str) -> int:
 
 def name_bytes(name: str) -> bytes:
     """Return a name as bytes for the robot. Raises CommandError if it is too long."""
-    from tiniscript.link.messages import NAME_BYTES
-
     data = name.encode("utf-8", "surrogateescape")
     if not 1 <= len(data) <= NAME_BYTES or not name.isprintable() or not name.strip():
         raise CommandError(2, "bad_name", bytes=str(len(data)))

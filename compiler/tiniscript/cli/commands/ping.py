@@ -6,17 +6,15 @@ import json
 from argparse import Namespace
 from statistics import median
 from time import perf_counter
-from typing import TYPE_CHECKING
 
 from tiniscript.cli import inputs
+from tiniscript.cli.commands.info import Description
 from tiniscript.cli.options import whole_number
 from tiniscript.cli.robot.connect import Connection
+from tiniscript.cli.robot.fleet import Work, together
+from tiniscript.cli.robot.member import Member, Result
 from tiniscript.cli.robot.targets import are_many
 from tiniscript.cli.texts.common import text
-
-if TYPE_CHECKING:
-    from tiniscript.cli.robot.fleet import Work
-    from tiniscript.cli.robot.member import Member, Result
 
 COUNT = 10
 
@@ -25,8 +23,6 @@ def run(options: Namespace, language: str) -> int:
     count = whole_number("--count", options.count, COUNT, 1, 10_000, language)
     robot = inputs.robot(options, language)
     if are_many(options):
-        from tiniscript.cli.robot.fleet import together
-
         return together(options, robot, language, one_of_many(count))
     with Connection(options, robot, language) as connection:
         return ping(connection, options.json, count)
@@ -34,8 +30,6 @@ def run(options: Namespace, language: str) -> int:
 
 def ping(connection: Connection, is_json: bool, count: int = COUNT) -> int:
     """Measure round trips and print them, below the robot's description."""
-    from tiniscript.cli.commands.info import Description
-
     connection.meet()
     said, times = _measured(connection, count)
     description = Description(connection)
@@ -63,7 +57,6 @@ def _measured(connection: Connection, count: int) -> tuple[str, dict[str, object
 
 def one_of_many(count: int) -> Work:
     """Return the function that pings each of many robots."""
-    from tiniscript.cli.robot.member import Result
 
     def work(connection: Connection, member: Member) -> Result:
         member.meet(connection)

@@ -15,9 +15,16 @@ from tiniscript.cli.robot.connect import baud_of, opened_client, robot_of_kit
 from tiniscript.cli.robot.in_reach import InReach, found
 from tiniscript.cli.texts.common import text
 from tiniscript.library import opening
+from tiniscript.link import known_ports, ports
+from tiniscript.link.outcomes import Gone
+from tiniscript.link.port_names import is_there, same_for_all
+from tiniscript.link.requests import OK
+from tiniscript.link.sharing.client import is_alive
+from tiniscript.link.sharing.registry import all_found
+from tiniscript.robots.profile import Robot
+from tiniscript.virtual import worlds
 
 if TYPE_CHECKING:
-    from tiniscript.robots.profile import Robot
     from tiniscript.virtual.directory import Running
 
 OPEN_S = 12.0
@@ -53,8 +60,6 @@ def run(options: Namespace, language: str) -> int:
 
 def _in_reach(language: str) -> InReach:
     """Return the robots that are found without a cable, and print what could not be searched."""
-    from tiniscript.link import known_ports
-
     in_reach = found(list(known_ports.known().names), language)
     for note in in_reach.notes:
         print(note, file=sys.stderr, flush=True)
@@ -63,10 +68,6 @@ def _in_reach(language: str) -> InReach:
 
 def _rows(options: Namespace, in_reach: InReach, language: str) -> list[dict[str, object]]:
     """Return the ports that the system lists, those in reach, and others that had a robot."""
-    from tiniscript.link import known_ports, ports
-    from tiniscript.link.port_names import is_there, same_for_all
-    from tiniscript.link.sharing.client import is_alive
-    from tiniscript.link.sharing.registry import all_found
     from tiniscript.virtual import directory
 
     known = known_ports.known()
@@ -101,8 +102,6 @@ def _rows(options: Namespace, in_reach: InReach, language: str) -> list[dict[str
 
 def _virtual(running: Running, language: str) -> str:
     """Return the description of a virtual robot; a shipped world has a name in each language."""
-    from tiniscript.virtual import worlds
-
     world = running.world
     if world in worlds.names():
         world = worlds.load(world).labels[language]
@@ -115,8 +114,6 @@ def _ask(port: str, baud: int | None, robot: Robot, language: str) -> dict[str, 
     from contextlib import closing
 
     from tiniscript.link.authority import whose
-    from tiniscript.link.outcomes import Gone
-    from tiniscript.link.requests import OK
 
     try:
         with closing(opened_client(port, robot, "ports", baud, language, OPEN_S)) as client:

@@ -12,23 +12,25 @@ from time import monotonic
 from typing import TYPE_CHECKING, Any
 
 from tiniscript.cli import inputs, outputs
+from tiniscript.cli.commands.name import name_bytes
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.options import decimal, whole_number
 from tiniscript.cli.robot import simulator_options
 from tiniscript.cli.robot.event_printer import Bookkeeping
 from tiniscript.cli.terminal.keys import Keys, is_in_front
+from tiniscript.cli.terminal.pace import FRAME_S
 from tiniscript.cli.texts.common import text
 from tiniscript.library import install_advice
+from tiniscript.virtual.robot import VirtualRobot
+from tiniscript.vm.trace import Event
 
 if TYPE_CHECKING:
     from tiniscript.cli.terminal.screen import Screen
     from tiniscript.cli.terminal.world_drawing import WorldPicture
     from tiniscript.virtual.announcement import Announcement
-    from tiniscript.virtual.robot import VirtualRobot
     from tiniscript.virtual.simulator import Simulator
     from tiniscript.virtual.transports import Transports
-    from tiniscript.vm.trace import Event
 
 FASTEST_BAUD = 2_000_000
 MEMORY_BYTES = 1024  # of an Uno's EEPROM
@@ -151,7 +153,6 @@ class _Stage:
 
     def _limit_s(self, pushes: list[tuple[int, int]], end_ms: int | None) -> float:
         """Return the time until the next action is due."""
-        from tiniscript.cli.terminal.pace import FRAME_S
         from tiniscript.virtual.simulator import CALM_S
 
         limits = [FRAME_S if self.screen else CALM_S]
@@ -178,8 +179,6 @@ class _Stage:
         self._draw()
 
     def _draw(self) -> None:
-        from tiniscript.cli.terminal.pace import FRAME_S
-
         if self.screen is not None and self.picture is not None:
             if monotonic() >= self._frame_s:
                 self._frame_s = monotonic() + FRAME_S
@@ -300,7 +299,6 @@ def _memory(name: str | None) -> bytes | None:
 
 def _name(robot: VirtualRobot, name: str) -> None:
     """Name the robot as `tsc name` does, before any client connects."""
-    from tiniscript.cli.commands.name import name_bytes
     from tiniscript.link.keys import KeyFile
     from tiniscript.link.session import Session
 

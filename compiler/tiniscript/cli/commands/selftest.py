@@ -8,6 +8,7 @@ from argparse import Namespace
 from collections.abc import Mapping
 from pathlib import Path
 
+from tiniscript import robots
 from tiniscript.cli import inputs, outputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
@@ -16,6 +17,7 @@ from tiniscript.cli.robot.run_monitor import confirmed
 from tiniscript.cli.robot.self_test import OK, OPEN, WRONG, Found, SelfTest
 from tiniscript.cli.texts.common import text
 from tiniscript.doctor import report
+from tiniscript.version import __version__
 
 
 def run(options: Namespace, language: str) -> int:
@@ -93,8 +95,6 @@ def _said(key: str, values: Mapping[str, str], language: str) -> str:
 
 def _report(found: list[Found], name: str, port: str, language: str) -> list[str]:
     """Return the lines of a report: nothing in it tells whose robot or computer it is."""
-    from tiniscript.version import __version__
-
     hidden = [(each, report.port(port)) for each in (port, shown(port)) if port]
     hidden += [(name, report.HIDDEN)] if name and not _is_public(name) else []
 
@@ -112,6 +112,4 @@ def _report(found: list[Found], name: str, port: str, language: str) -> list[str
 
 def _is_public(name: str) -> bool:
     """Whether a name is that of a shipped robot: it says what it is, not whose."""
-    from tiniscript import robots
-
     return name in robots.names()

@@ -5,6 +5,7 @@ from __future__ import annotations
 from argparse import Namespace
 
 from tiniscript.cli.robot.connect import Connection, connected
+from tiniscript.cli.robot.event_printer import EventPrinter
 from tiniscript.cli.robot.run_monitor import RunMonitor, stop_and_say
 from tiniscript.cli.texts.common import text
 
@@ -19,8 +20,6 @@ def run(options: Namespace, language: str) -> int:
 
 
 def _start(connection: Connection, is_detached: bool, is_json: bool) -> int:
-    from tiniscript.cli.robot.event_printer import EventPrinter
-
     reply = connection.ask(lambda session: session.start(is_detached))
     number, run = reply.values.program, reply.values.run
     key = "started_detached" if is_detached else "started"

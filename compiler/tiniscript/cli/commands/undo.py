@@ -4,19 +4,21 @@ from __future__ import annotations
 
 import json
 from argparse import Namespace
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 from tiniscript.cli import inputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot.connect import Connection
+from tiniscript.cli.robot.event_printer import EventPrinter
+from tiniscript.cli.robot.fleet import together
+from tiniscript.cli.robot.member import Member, Result
+from tiniscript.cli.robot.program_upload import saved_name
 from tiniscript.cli.robot.run_monitor import Saving
 from tiniscript.cli.robot.targets import are_many
 from tiniscript.cli.texts.common import text
-
-if TYPE_CHECKING:
-    from tiniscript.cli.robot.member import Member, Result
-    from tiniscript.link.payloads import ReceiptReply
+from tiniscript.codegen import source_map
+from tiniscript.link.payloads import ReceiptReply
 
 
 class UndoSaving(Saving):
@@ -29,8 +31,6 @@ class UndoSaving(Saving):
 def run(options: Namespace, language: str) -> int:
     robot = inputs.robot(options, language)
     if are_many(options):
-        from tiniscript.cli.robot.fleet import together
-
         return together(options, robot, language, _one_of_many)
     with Connection(options, robot, language) as connection:
         connection.meet()
@@ -53,9 +53,6 @@ def run(options: Namespace, language: str) -> int:
 
 
 def _one_of_many(connection: Connection, member: Member) -> Result:
-    from tiniscript.cli.robot.event_printer import EventPrinter
-    from tiniscript.cli.robot.member import Result
-
     member.meet(connection)
     receipt = Undone(connection)
     member.tell("crew_saving")
@@ -68,8 +65,6 @@ class Undone:
     """The receipt of UNDO."""
 
     def __init__(self, connection: Connection) -> None:
-        from tiniscript.codegen import source_map
-
         self.connection = connection
         self.values: ReceiptReply = connection.ask(lambda session: session.undo()).values
         places = source_map.recall(self.values.program)
@@ -81,8 +76,6 @@ class Undone:
 
     def fields(self) -> dict[str, object]:
         """Return the receipt as data."""
-        from tiniscript.cli.robot.program_upload import saved_name
-
         saved = saved_name(self.values)
         return {
             "event": "RECEIPT",

@@ -23,9 +23,9 @@ from tiniscript.cli.robot.program_upload import (
 from tiniscript.cli.robot.run_monitor import Saving, stop_and_say
 from tiniscript.cli.robot.targets import are_many
 from tiniscript.cli.texts.common import text
+from tiniscript.link.payloads import ReceiptReply
 
 if TYPE_CHECKING:
-    from tiniscript.link.payloads import ReceiptReply
     from tiniscript.robots.profile import Robot
 
 

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import time
 from argparse import Namespace
-from typing import TYPE_CHECKING
 
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
@@ -17,11 +16,9 @@ from tiniscript.cli.terminal import password
 from tiniscript.cli.texts.common import text
 from tiniscript.link.messages import OWNED, SEALS, STATUSES
 from tiniscript.link.network_messages import LEAST_PASSWORD, NETWORK_BYTES, PASSWORD_BYTES
-
-if TYPE_CHECKING:
-    from tiniscript.link.payloads import WifiReply
-    from tiniscript.link.requests import Reply
-    from tiniscript.link.wifi import Network
+from tiniscript.link.payloads import WifiReply
+from tiniscript.link.requests import Reply
+from tiniscript.link.wifi import MODES, STATES, Network, address
 
 READY_S = 20  # until the robot is in the network
 LOOK_S = 0.5
@@ -75,8 +72,6 @@ def _refuse_itself(connection: Connection) -> None:
 
 
 def _join(connection: Connection, name: bytes, is_access_point: bool) -> None:
-    from tiniscript.link.wifi import Network
-
     network = Network(name, _password(connection.language), is_access_point)
     _taken(connection, _given(connection, network))
     end_s = time.monotonic() + READY_S
@@ -89,8 +84,6 @@ def _join(connection: Connection, name: bytes, is_access_point: bool) -> None:
 
 def _ends() -> tuple[int, ...]:
     """Return the states from which nothing further follows by itself."""
-    from tiniscript.link.wifi import STATES
-
     return STATES.index("READY"), STATES.index("REFUSED"), STATES.index("RESTS")
 
 
@@ -113,8 +106,6 @@ def _told(connection: Connection) -> WifiReply:
 
 
 def _tell(connection: Connection, told: WifiReply) -> None:
-    from tiniscript.link.wifi import MODES, STATES, address
-
     mode, state = (
         row[number] if number < len(row) else "OFF"
         for row, number in ((MODES, told.mode), (STATES, told.state))

@@ -11,32 +11,30 @@ from textwrap import wrap
 from tiniscript.cli import inputs, outputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.texts.common import text
+from tiniscript.robots import firmware
+from tiniscript.robots.wiring.html import html_of
+from tiniscript.robots.wiring.page import rail_rows, wire_rows
+from tiniscript.robots.wiring.plan import plan_of
 
 GAP = "  "  # between columns
 NARROWEST = 16  # a column on a terminal that is too narrow for the table
 
 
 def run(options: Namespace, language: str) -> int:
-    from tiniscript.robots import firmware
-
     robot = inputs.robot(options, language)
     if not firmware.fits(robot):
         raise CommandError(
             2, "no_firmware", chip=robot.board.chip, known=", ".join(firmware.BOARDS)
         )
-    from tiniscript.robots.wiring.plan import plan_of
 
     plan = plan_of(robot, language)
     if options.output is None:
-        from tiniscript.robots.wiring.page import rail_rows, wire_rows
-
         _print_rows(wire_rows(plan))
         print()
         _print_rows(_by_tag(rail_rows(plan)))
         print()
         print(text("wiring_page", language))
         return 0
-    from tiniscript.robots.wiring.html import html_of
 
     page = html_of(plan)
     if options.output == "-":

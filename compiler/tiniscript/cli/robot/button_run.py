@@ -6,19 +6,15 @@ On a terminal the button is a key. Without a terminal the button is pushed at on
 from __future__ import annotations
 
 import sys
-from typing import TYPE_CHECKING
 
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
-from tiniscript.cli.robot.run_monitor import DONE, RunMonitor, ended
+from tiniscript.cli.robot.connect import Connection
+from tiniscript.cli.robot.event_printer import EventPrinter, cause_name
+from tiniscript.cli.robot.run_monitor import DONE, RunMonitor, Saving, ended
 from tiniscript.cli.terminal.keys import Keys, is_in_front
 from tiniscript.cli.texts.common import text
-
-if TYPE_CHECKING:
-    from tiniscript.cli.robot.connect import Connection
-    from tiniscript.cli.robot.event_printer import EventPrinter
-    from tiniscript.cli.robot.run_monitor import Saving
-    from tiniscript.link.outcomes import Event
+from tiniscript.link.outcomes import Event
 
 PUSH = "bB "  # the keys that `tsc robot` has, too
 QUIT = "qQ\x04"
@@ -72,6 +68,4 @@ def _mind(connection: Connection, event: Event, program: int) -> None:
 
 def _is_push(event: Event) -> bool:
     """Whether the button has stopped the program."""
-    from tiniscript.cli.robot.event_printer import cause_name
-
     return event.name == "STOPPED" and cause_name(event.cause) == "BUTTON"

@@ -8,17 +8,22 @@ from time import monotonic
 from typing import TYPE_CHECKING
 
 from tiniscript.cli import inputs
+from tiniscript.cli.commands.info import one_of_many
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
+from tiniscript.cli.made import CLASS_ROWS
 from tiniscript.cli.options import whole_number
 from tiniscript.cli.robot import broker_options
-from tiniscript.cli.robot.connect import port_failure
+from tiniscript.cli.robot.connect import Connection, port_failure
+from tiniscript.cli.robot.event_printer import Bookkeeping, EventPrinter
+from tiniscript.cli.robot.fleet import together
+from tiniscript.cli.robot.member import Member, Result
+from tiniscript.cli.robot.rows import Rows
+from tiniscript.cli.spreadsheet import no_formula
 from tiniscript.cli.texts.common import text
+from tiniscript.link.errors import NOT_INSTALLED, PortError
 
 if TYPE_CHECKING:
-    from tiniscript.cli.robot.connect import Connection
-    from tiniscript.cli.robot.member import Member, Result
-    from tiniscript.cli.robot.rows import Rows
     from tiniscript.link.transports.broker import Access, Broker, Present
 
 STOPS = 3  # messages to all, as each may be lost
@@ -44,8 +49,6 @@ class Classroom:
         self.broker = self._connected(options)
 
     def _connected(self, options: Namespace) -> Broker:
-        from tiniscript.link.errors import NOT_INSTALLED, PortError
-
         port = f"mqtt://{self.place}"
         try:
             from tiniscript.link.transports import broker
@@ -67,8 +70,6 @@ class Classroom:
 
     def present(self) -> list[Present]:
         """Return the robots that the broker knows, those that have gone, too."""
-        from tiniscript.link.errors import PortError
-
         try:
             found = self.broker.present(self.group)
         except PortError as why:
@@ -93,9 +94,6 @@ class Classroom:
 
 
 def list_robots(room: Classroom) -> int:
-    from tiniscript.cli.commands.info import one_of_many
-    from tiniscript.cli.robot.fleet import together
-
     found = room.present()
     own = room.targets(found)
     code = together(own, inputs.robot(own, room.language), room.language, one_of_many)
@@ -123,10 +121,6 @@ def stop(room: Classroom) -> int:
 
 def show(room: Classroom) -> int:
     """Print what the robots show, until Ctrl-C or for some seconds."""
-    from tiniscript.cli.made import CLASS_ROWS
-    from tiniscript.cli.robot.fleet import together
-    from tiniscript.cli.robot.rows import Rows
-
     options, language = room.options, room.language
     seconds = whole_number("--max-time", options.max_time, 0, 1, 10**6, language)
     own = room.targets(room.present())
@@ -156,10 +150,6 @@ class Listener:
         self.began_ms = now_ms()
 
     def listen(self, connection: Connection, member: Member) -> Result:
-        from tiniscript.cli.robot.event_printer import Bookkeeping, EventPrinter
-        from tiniscript.cli.robot.member import Result
-        from tiniscript.cli.spreadsheet import no_formula
-
         member.meet(connection)
         about = {"port": connection.port, "robot": connection.name}
 

@@ -19,8 +19,8 @@ from tiniscript.cli.texts.common import text
 from tiniscript.library import opening
 from tiniscript.library.client import Client
 from tiniscript.library.errors import TiniScriptError
-from tiniscript.link.messages import STATUSES
-from tiniscript.link.outcomes import LOOK_S
+from tiniscript.link.messages import OWNED, STATUSES, YOURS
+from tiniscript.link.outcomes import LOOK_S, Event, Gone
 
 if TYPE_CHECKING:
     from tiniscript.cli.robot.event_printer import EventPrinter
@@ -28,7 +28,6 @@ if TYPE_CHECKING:
     from tiniscript.codegen.source_map import Map
     from tiniscript.link.connection import LinkConnection, PendingRequest, Requester
     from tiniscript.link.errors import PortError
-    from tiniscript.link.outcomes import Event, Gone
     from tiniscript.link.requests import DeviceInfo, Reply
     from tiniscript.robots.profile import Robot
 
@@ -164,8 +163,6 @@ class Connection:
 
     def _tell_stale_key(self, device_info: DeviceInfo) -> None:
         """Say what to do where the robot has refused a key of this computer."""
-        from tiniscript.link.messages import OWNED, YOURS
-
         if device_info.values.features & (OWNED | YOURS) != OWNED:
             return
         from tiniscript.link.keys import KeyFile

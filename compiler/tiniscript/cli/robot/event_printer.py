@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING
 
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.spreadsheet import no_formula
-from tiniscript.cli.texts.common import text
+from tiniscript.cli.texts.common import has_text, text
+from tiniscript.fixed_point import as_text
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -34,7 +35,6 @@ def fault_name(number: int) -> str:
 def fault_sentence(number: int, at: int, program: int, places: Map | None, language: str) -> str:
     """Return the meaning of a fault, and its line in the program if the text is known."""
     from tiniscript.cli.faults import fault_text
-    from tiniscript.cli.texts.common import has_text
     from tiniscript.codegen import source_map
 
     is_other = places is None
@@ -46,8 +46,6 @@ def fault_sentence(number: int, at: int, program: int, places: Map | None, langu
 
 
 def value_text(value: int, is_yes_no: bool) -> str:
-    from tiniscript.fixed_point import as_text
-
     if is_yes_no:
         return "TRUE" if value else "FALSE"
     return as_text(value)

@@ -23,10 +23,10 @@ from tiniscript.cli.robot.run_monitor import CONFIRM_S, confirmed
 from tiniscript.cli.robot.targets import Target, targets
 from tiniscript.cli.texts.common import text
 from tiniscript.library import opening
+from tiniscript.robots.profile import Robot
 
 if TYPE_CHECKING:
     from tiniscript.cli.terminal.fleet_table import FleetTable
-    from tiniscript.robots.profile import Robot
 
 LOOK_S = 0.1
 STRANGER_S = 4.0  # timeout for a port that the user has not named and that never had a robot

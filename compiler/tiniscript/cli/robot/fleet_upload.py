@@ -5,19 +5,17 @@ from __future__ import annotations
 import json
 import sys
 from argparse import Namespace
-from typing import TYPE_CHECKING
 
+from tiniscript.cli.commands.ping import COUNT, one_of_many
+from tiniscript.cli.images import Ready
 from tiniscript.cli.robot import program_upload
+from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.event_printer import EventPrinter
 from tiniscript.cli.robot.fleet import together
 from tiniscript.cli.robot.member import Member, Result
 from tiniscript.cli.robot.run_monitor import Saving
 from tiniscript.cli.texts.common import text
-
-if TYPE_CHECKING:
-    from tiniscript.cli.images import Ready
-    from tiniscript.cli.robot.connect import Connection
-    from tiniscript.robots.profile import Robot
+from tiniscript.robots.profile import Robot
 
 
 def upload_to_many(
@@ -25,8 +23,6 @@ def upload_to_many(
 ) -> int:  # fmt: skip
     """Send a program to many robots; return the exit code."""
     if ready.image.start == "PING":  # a program that asks who is there
-        from tiniscript.cli.commands.ping import COUNT, one_of_many
-
         return together(options, robot, language, one_of_many(COUNT))
     return together(options, robot, language, Upload(options, ready, name).one_of_many)
 

@@ -7,7 +7,19 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from tiniscript.cli.robot.connect import port_failure
 from tiniscript.cli.texts.common import text
+from tiniscript.link import ports
+from tiniscript.link.errors import PortError
+from tiniscript.link.port_names import (
+    BLE,
+    TCP,
+    canonical,
+    is_bluetooth,
+    is_network_name,
+    name_in,
+    same_for_all,
+)
 
 
 class InReach(NamedTuple):
@@ -23,10 +35,6 @@ class InReach(NamedTuple):
 def found(known: list[str], language: str) -> InReach:
     """Search for some seconds. A robot that is known by a port of `known` keeps it."""
     from concurrent.futures import ThreadPoolExecutor
-
-    from tiniscript.cli.robot.connect import port_failure
-    from tiniscript.link.errors import PortError
-    from tiniscript.link.port_names import BLE, TCP
 
     whole = InReach({}, [], [], [])
     reasons = set()  # where both packages are missing, one note says it
@@ -48,9 +56,6 @@ def found(known: list[str], language: str) -> InReach:
 
 
 def _by_radio(known: list[str], language: str) -> InReach:
-    from tiniscript.link import ports
-    from tiniscript.link.port_names import BLE, canonical, is_bluetooth, name_in
-
     seen = ports.in_reach()
     names = [canonical(each.name) for each in seen]
     rows = []
@@ -64,9 +69,6 @@ def _by_radio(known: list[str], language: str) -> InReach:
 
 
 def _by_name(known: list[str], language: str) -> InReach:
-    from tiniscript.link import ports
-    from tiniscript.link.port_names import TCP, is_network_name, same_for_all
-
     there = ports.announced()
     rows = []
     for each in there:

@@ -5,18 +5,16 @@ Opens no port and connects to no robot.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from tiniscript.link.sharing.registry import Registration
+from tiniscript.link import known_ports
+from tiniscript.link.port_names import is_there, same_for_all
+from tiniscript.link.sharing.client import is_alive
+from tiniscript.link.sharing.registry import Registration, all_found
 
 AT_ONCE = 16  # servers that are checked at the same time
 
 
 def ports(is_virtual: bool = False) -> list[str]:
     """Return the port of each robot that is in use, once; `is_virtual`: of virtual ones alone."""
-    from tiniscript.link.port_names import same_for_all
-    from tiniscript.link.sharing.registry import all_found
     from tiniscript.virtual.directory import running
 
     held = _alive(all_found())
@@ -30,8 +28,6 @@ def ports(is_virtual: bool = False) -> list[str]:
 
 def _alive(registrations: list[Registration]) -> list[str]:
     """Return the ports of the servers that still run; a hanging server delays no other check."""
-    from tiniscript.link.sharing.client import is_alive
-
     if len(registrations) < 2:  # importing threads takes longer than one answer
         return [registration.port for registration in registrations if is_alive(registration)]
     from concurrent.futures import ThreadPoolExecutor
@@ -50,8 +46,6 @@ def to_stop(is_virtual: bool = False) -> list[str]:
 
     They include that of the last used robot, which may drive on without any command.
     """
-    from tiniscript.link import known_ports
-    from tiniscript.link.port_names import is_there, same_for_all
     from tiniscript.virtual.directory import is_gone
 
     found = ports(is_virtual)

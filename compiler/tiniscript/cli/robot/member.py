@@ -5,14 +5,12 @@ from __future__ import annotations
 import json
 from collections import deque
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from tiniscript.cli.inputs import shown
+from tiniscript.cli.robot.connect import Connection
+from tiniscript.cli.robot.targets import Target
 from tiniscript.cli.texts.common import text
-
-if TYPE_CHECKING:
-    from tiniscript.cli.robot.connect import Connection
-    from tiniscript.cli.robot.targets import Target
 
 
 class Result(NamedTuple):

@@ -10,6 +10,7 @@ import sys
 from argparse import Namespace
 from typing import TYPE_CHECKING
 
+from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.texts.common import text
 from tiniscript.library.known_kits import of_kit
@@ -41,7 +42,6 @@ def of_answering(options: Namespace, robot: Robot, language: str) -> Robot | Non
 
     Returns None if no robot answers, its kit is unknown, or it is `robot`.
     """
-    from tiniscript.cli.errors import CommandError
     from tiniscript.cli.robot.connect import Connection
     from tiniscript.cli.robot.simulator import running_address
 

@@ -9,12 +9,14 @@ from tiniscript.cli import images, inputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.robot.connect import Connection, told
 from tiniscript.cli.robot.run_monitor import RunMonitor, Saving
+from tiniscript.link.messages import SAVED, STATUSES
+from tiniscript.link.outcomes import LOST
+from tiniscript.link.payloads import ReceiptReply
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from tiniscript.cli.robot.event_printer import EventPrinter
-    from tiniscript.link.payloads import ReceiptReply
     from tiniscript.link.requests import Reply
 
 
@@ -67,9 +69,6 @@ def has_button(connection: Connection, ready: images.Ready, options: Namespace) 
 
 
 def _failure(connection: Connection, reply: Reply[object], ready: images.Ready) -> CommandError:
-    from tiniscript.link.messages import STATUSES
-    from tiniscript.link.outcomes import LOST
-
     port = inputs.shown(connection.port)
     if reply.status == STATUSES["TOO_LARGE"]:
         code, room = len(ready.image.code), reply.detail
@@ -106,6 +105,4 @@ def receipt(
 
 def saved_name(values: ReceiptReply) -> str:
     """Return the place of the robot's program, as named in `link.messages`."""
-    from tiniscript.link.messages import SAVED
-
     return SAVED[values.saved][0] if values.saved < len(SAVED) else "MEMORY"

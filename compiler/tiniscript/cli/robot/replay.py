@@ -5,9 +5,12 @@ from __future__ import annotations
 from argparse import Namespace
 from typing import TYPE_CHECKING
 
+from tiniscript import robots
 from tiniscript.cli import inputs
 from tiniscript.cli.errors import CommandError
+from tiniscript.cli.robot.simulator_options import not_installed, refused_world, world_of
 from tiniscript.cli.texts.common import text
+from tiniscript.virtual.world import WorldRefused
 
 if TYPE_CHECKING:
     from tiniscript.studio.recordings import Parting, Recorded, Recording
@@ -19,9 +22,6 @@ NOT_TAKEN = ("sensor", "seed", "max_time", "max_steps", "machine", "show", "pace
 
 def replay(options: Namespace, language: str) -> int:
     """Say where a robot and the virtual one part; return the exit code: 1 where they do."""
-    from tiniscript.cli.robot.simulator_options import not_installed, refused_world, world_of
-    from tiniscript.virtual.world import WorldRefused
-
     for name in NOT_TAKEN:
         if getattr(options, name) not in (None, False, []):
             raise CommandError(2, "replay_only", option="--" + name.replace("_", "-"))
@@ -45,8 +45,6 @@ def replay(options: Namespace, language: str) -> int:
 
 def _robot(options: Namespace, recording: Recording) -> str:
     """Return the robot's name: that of the recording, or where it has none, of `--robot`."""
-    from tiniscript import robots
-
     known = robots.names()
     recorded = recording.robot
     name: str = next(name for name in (options.robot, recorded, robots.DEFAULT) if name is not None)

@@ -7,22 +7,19 @@ import socket
 import time
 from argparse import Namespace
 from ipaddress import IPv4Address
-from typing import TYPE_CHECKING
 
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot import broker_options
+from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.texts.common import text
 from tiniscript.library.install_advice import quoted
 from tiniscript.link.messages import STATUSES
 from tiniscript.link.network_messages import BROKER_NAME_BYTES, TRUST_BYTES
+from tiniscript.link.payloads import WifiReply
 from tiniscript.link.port_names import is_at_broker
-
-if TYPE_CHECKING:
-    from tiniscript.cli.robot.connect import Connection
-    from tiniscript.link.payloads import WifiReply
-    from tiniscript.link.requests import Reply
-    from tiniscript.link.wifi import BrokerSettings, Tls
+from tiniscript.link.requests import Reply
+from tiniscript.link.wifi import STATES, BrokerSettings, Tls, address
 
 READY_S = 20  # until the robot is at the broker
 LOOK_S = 0.5
@@ -32,8 +29,6 @@ _PEM = r"-----BEGIN CERTIFICATE-----.+?-----END CERTIFICATE-----"
 
 def settings(options: Namespace, language: str) -> BrokerSettings:
     """Return what the options say; the password is asked for. Raises CommandError."""
-    from tiniscript.link.wifi import BrokerSettings
-
     is_tls = bool(options.tls)
     place, group = broker_options.place(options, is_tls), broker_options.group(options)
     address = _address(place)
@@ -58,8 +53,6 @@ def _address(place: broker_options.Place) -> IPv4Address:
 
 def _tls(options: Namespace, place: broker_options.Place, is_name: bool) -> Tls | None:
     """Return whom the robot trusts, if it is to speak TLS. Raises CommandError."""
-    from tiniscript.link.wifi import Tls
-
     data = broker_options.trust(options)
     if not options.tls:
         return None
@@ -126,8 +119,6 @@ def tell(connection: Connection, told: WifiReply, name: str = "", command: str =
 
     `command` reaches all robots of the class: a robot tells neither port nor certificate.
     """
-    from tiniscript.link.wifi import address
-
     state = _state(told)
     key = f"broker_{state.lower()}" if told.network else "broker_none"
     group = shown(told.network.decode("utf-8", "replace"))
@@ -154,8 +145,6 @@ def _class_command(options: Namespace) -> str:
 
 def _state(told: WifiReply) -> str:
     """Return SEARCHING for a robot that has not begun, or whose WiFi rests, too."""
-    from tiniscript.link.wifi import STATES
-
     state = STATES[told.state] if told.state < len(STATES) else "OFF"
     return "SEARCHING" if state in NOT_BEGUN else state
 

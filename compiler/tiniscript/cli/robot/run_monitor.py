@@ -15,6 +15,8 @@ from tiniscript.library.endings import Follower, end_of
 from tiniscript.library.errors import RobotError
 from tiniscript.library.opening import CONFIRM_S, confirmed
 from tiniscript.link.messages import SAVED_LOW_SUPPLY, SAVED_STORED
+from tiniscript.link.outcomes import Event
+from tiniscript.link.payloads import ReceiptReply, StatusReply
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -22,8 +24,6 @@ if TYPE_CHECKING:
     from tiniscript.cli.robot.connect import Connection
     from tiniscript.cli.robot.event_printer import EventPrinter
     from tiniscript.link.connection import PendingRequest
-    from tiniscript.link.outcomes import Event
-    from tiniscript.link.payloads import ReceiptReply, StatusReply
     from tiniscript.link.requests import Reply
 
 ASK_S = 1.0  # between two status requests about saving, while the program runs

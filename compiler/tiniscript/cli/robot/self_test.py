@@ -12,19 +12,24 @@ from collections.abc import Mapping
 from contextlib import suppress
 from statistics import median
 from time import perf_counter
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
+from tiniscript.bytecode.image import unpack
 from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
+from tiniscript.cli.commands.trim import words
 from tiniscript.cli.errors import CommandError
+from tiniscript.cli.robot.connect import Connection
+from tiniscript.cli.robot.event_printer import EventPrinter
+from tiniscript.cli.robot.run_monitor import RunMonitor
 from tiniscript.cli.texts.common import text
+from tiniscript.kit import Device
+from tiniscript.library.compiling import compile_text
+from tiniscript.library.known_kits import of_kit
 from tiniscript.link.messages import RESETS, SAVED
-
-if TYPE_CHECKING:
-    from tiniscript.cli.robot.connect import Connection
-    from tiniscript.kit import Device
-    from tiniscript.link.outcomes import Event
-    from tiniscript.link.payloads import StatusReply
-    from tiniscript.robots.profile import Robot
+from tiniscript.link.outcomes import Event
+from tiniscript.link.payloads import StatusReply
+from tiniscript.link.trim import told
+from tiniscript.robots.profile import Robot
 
 OK, WRONG, OPEN = "ok", "wrong", "open"
 PINGS = 20
@@ -96,8 +101,6 @@ class SelfTest:
 
     def _kit(self) -> Robot | None:
         """Return the robot that it is, where this computer knows it."""
-        from tiniscript.library.known_kits import of_kit
-
         kit = self.connection.device_info.kit
         wanted = self.connection.profile
         if kit == wanted.kit.fingerprint:
@@ -160,9 +163,6 @@ class SelfTest:
             self._add("store", OPEN, "self_unsaved", "then_upload")
 
     def _trim(self) -> None:
-        from tiniscript.cli.commands.trim import words
-        from tiniscript.link.trim import told
-
         trim = told(self.connection.ask(lambda session: session.trim()).values)
         self._add("trim", OK, "self_trim_is", trim=words(trim, self.language))
 
@@ -248,11 +248,6 @@ class SelfTest:
 
     def _shown_by(self, line: str) -> list[int]:
         """Let the robot do a line now; return what it showed. Raises CommandError."""
-        from tiniscript.bytecode.image import unpack
-        from tiniscript.cli.robot.event_printer import EventPrinter
-        from tiniscript.cli.robot.run_monitor import RunMonitor
-        from tiniscript.library.compiling import compile_text
-
         code = unpack(compile_text(f"SI|{line}", self.connection.profile.kit).image).code
         values: list[int] = []
         said: list[str] = []

@@ -6,17 +6,16 @@ If it ends early, the robot keeps its former trim.
 from __future__ import annotations
 
 import sys
-from typing import TYPE_CHECKING
 
+from tiniscript.bytecode.image import unpack
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.robot.connect import Connection
+from tiniscript.cli.robot.event_printer import EventPrinter
 from tiniscript.cli.robot.run_monitor import RunMonitor, confirmed
 from tiniscript.cli.texts.common import text
+from tiniscript.library.compiling import compile_text
 from tiniscript.link.messages import MOST_BALANCE, MOST_LEAST
 from tiniscript.link.trim import Trim
-
-if TYPE_CHECKING:
-    from tiniscript.cli.robot.event_printer import EventPrinter
 
 TURNING = 60  # percent, while the user looks at a motor
 STRAIGHT = "F(2, 60)"
@@ -122,10 +121,6 @@ class TrimWizard:
         self.connection.give(lambda session: session.trim(trim.data()))  # kept at the end
 
     def _drive(self, line: str) -> None:
-        from tiniscript.bytecode.image import unpack
-        from tiniscript.cli.robot.event_printer import EventPrinter
-        from tiniscript.library.compiling import compile_text
-
         code = unpack(compile_text(f"SI|{line}", self.connection.profile.kit).image).code
         run = self.connection.ask(lambda session: session.live(code)).values.run
         printer: EventPrinter = EventPrinter(self.language)

@@ -9,13 +9,13 @@ from rich.cells import cell_len, set_cell_size
 from rich.text import Text
 
 from tiniscript.cli.inputs import shown
+from tiniscript.cli.robot.member import Member
 from tiniscript.cli.terminal.screen import Screen
 from tiniscript.cli.texts.common import text
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from tiniscript.cli.robot.member import Member
 
 STYLES = {"": "", "ok": "green", "bad": "red", "absent": "dim"}
 

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import time
 from collections import deque
-from typing import TYPE_CHECKING
 
 from rich.text import Text
 
@@ -15,9 +14,7 @@ from tiniscript.cli.terminal.canvas import ACROSS, DOWN, Canvas, layered
 from tiniscript.cli.terminal.pace import FRAME_S
 from tiniscript.cli.terminal.screen import Screen
 from tiniscript.fixed_point import as_text
-
-if TYPE_CHECKING:
-    from tiniscript.link.outcomes import Event
+from tiniscript.link.outcomes import Event
 
 SECONDS = 30  # from the left edge to the right one
 ROWS = 12  # at most
