@@ -65,3 +65,37 @@ def test_a_place_behind_edits_was_elsewhere(span: tuple[int, int], before: objec
     moved = moved_back(found, edits)
     assert moved.span == before
     assert moved.values["also"] == "{}:{}".format(*moved.span)
+
+
+def told(text: str) -> list[tuple[str, str]]:
+    return [(each.code.number, text[slice(*each.span)]) for each in check(text)]
+
+
+def test_each_line_is_told_with_its_repair() -> None:
+    text = "F(2 s, 80%)\r\nLOOP(3 veces)\r\n  R(1, 60)\r\nFIN\r\n"
+    assert [code for code, _ in told(text)] == ["TS049", "TS049"]
+    assert fixed(text, check).text == "F(2, 80)\r\nLOOP(3)\r\n  R(1, 60)\r\nEND_LOOP\r\n"
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        "DEF SALTO\nF(1, 50)\nEND_DEF SALTO",  # a call that would be gone
+        "DEF F2\nS\nEND_DEF\nF2 3\nF(2 80)",
+        "W(0:30)",  # half a minute, and no three tenths
+        "F(2 s, 80)~B77E7BD9",
+        "S|F(1, 80)",
+        "F(2, %0)",
+        "F(2,80)\n,,",
+        "SHOW(DISTANCE) - para",
+        "IF(DISTANCE < 15, B(1,50), F(1,50))",
+    ],
+)
+def test_what_would_lose_something_is_not_told_by_rows(wrong: str) -> None:
+    assert all(each.repair is None for each in check(wrong))
+
+
+def test_a_long_text_is_not_read_as_a_whole() -> None:
+    wrong = "W(2 s)\n"
+    assert all(each.repair is not None for each in check(wrong))
+    assert all(each.repair is None for each in check(wrong * 3000)[:3])

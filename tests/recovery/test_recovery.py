@@ -15,13 +15,15 @@ from tiniscript.lessons import catalogue
 from tiniscript.library.compiling import analyzed
 from tiniscript.recovery import lines, rewrites, rows
 from tiniscript.recovery.concepts import Lexeme, Names, lexemes
-from tiniscript.recovery.explanation import Missing, Needless, OtherWord, explained
+from tiniscript.recovery.explanation import Slip, explained
 from tiniscript.recovery.search import candidate
+from tiniscript.source import Edit, Span
 from tiniscript.syntax.outline import Failure
 from tools.shadow import marks
 from tools.shadow.__main__ import SAMPLE, SCORES, sample
 
 KITS = [robots.load(name).kit for name in ("tinibot", "grabber", "liner")]
+_F = "F(time, power)"
 ROWS = [*rewrites.of_signs(), *rewrites.of_tokens()]
 
 
@@ -67,18 +69,23 @@ def test_a_sample_of_the_corpus_reaches_its_score() -> None:
 
 
 @pytest.mark.parametrize(
-    ("wrong", "told"),
+    ("wrong", "code", "slip", "edit"),
     [
-        ("F(2 80)", Missing("TS017", 1, ",", "2")),
-        ("S\navanzar(2, 80)", OtherWord("TS102", 2, "AVANZAR", "F")),
-        ("F(2,, 80)", Needless("TS102", 1, ",")),
+        ("F(2 80)", "TS017", Slip("F(2 80)", ",", "F(2", "F", _F, "F(2, 80)"),
+         Edit(Span(3, 3), ",")),
+        ("S\navanzar(2, 80)", "TS102", Slip("avanzar", "F", "", "F", _F, "F(2, 80)"),
+         Edit(Span(2, 9), "F")),
+        ("F(2, 80 %)", "TS049", Slip("80 %", "F(2, 80)", "F(2, 80", "F", _F, "F(2, 80)"),
+         Edit(Span(7, 9), "")),
     ],
-)
-def test_an_explanation_has_the_values_of_its_family(wrong: str, told: object) -> None:
+)  # fmt: skip
+def test_an_explanation_has_a_slip_and_its_edits(
+    wrong: str, code: str, slip: Slip, edit: Edit
+) -> None:
     found = marks.meant(wrong)
     assert found is not None
-    said = explained(found)
-    assert said == [told]
+    (said,) = explained(wrong, found)
+    assert (said.code, said.slip, said.edits) == (code, slip, [edit])
 
 
 def test_the_parser_says_where_it_cannot_go_on() -> None:

@@ -158,7 +158,7 @@ def show(answers: Iterable[Answer], mark: str, code: str) -> None:
             print(each.entry.program)
             print("today:", each.entry.mended)
             print("new:", each.found.text if each.found else None,
-                  explained(each.found) if each.found else "")  # fmt: skip
+                  explained(each.entry.program, each.found) if each.found else "")  # fmt: skip
 
 
 def kept(scores: Scores, is_kept: bool) -> int:

@@ -56,7 +56,10 @@ def check_text(text: str, kit: Kit, name: str = "") -> Compiled:
         return found
     from tiniscript.recovery.findings import findings, moved_back
 
-    answered = findings(found.source, found.diagnostics, lambda it: analyzed(it, kit).diagnostics)
+    def mistakes(it: str) -> list[codes.Diagnostic]:
+        return analyzed(it, kit).diagnostics
+
+    answered = findings(found.source, found.diagnostics, mistakes, kit)
     if answered:
         edits = [edit for each in answered if each.repair for edit in each.repair.edits]
         rest = check_text(applied(text, edits), kit)

@@ -6,14 +6,24 @@ if they were made, so that no consequence of a mistake is reported.
 
 from __future__ import annotations
 
+import re
+from collections import Counter
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
+from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import CODES, Diagnostic, Repair
+from tiniscript.kit import Kit
 from tiniscript.recovery import rows
+from tiniscript.recovery.concepts import lexemes
+from tiniscript.recovery.explanation import explained
+from tiniscript.recovery.search import candidate
 from tiniscript.recovery.setup import setup
+from tiniscript.recovery.writing import without_note
 from tiniscript.source import Edit, Source, Span, applied
+from tiniscript.words import WORDS
 
+LONGEST = 20_000  # characters of a text that is read as a whole
 Check = Callable[[str], Sequence[Diagnostic]]
 
 
@@ -26,13 +36,63 @@ class NoBar(NamedTuple):
     fix: str
 
 
-def findings(source: Source, found: Sequence[Diagnostic], check: Check) -> list[Diagnostic]:
+def findings(
+    source: Source, found: Sequence[Diagnostic], check: Check, kit: Kit
+) -> list[Diagnostic]:
     """Return what is wrong with a text by the codes that were handed over.
 
     `found` is what the parser and the checker, which `check` asks, say of the text.
     """
     said = _no_bar(source)
-    return [said] if said and said.repair and _is_better(source, found, said.repair, check) else []
+    if said and said.repair and _is_better(source, found, said.repair, check):
+        return [said]
+    return _meant(source, found, check, kit)
+
+
+def _meant(source: Source, found: Sequence[Diagnostic], check: Check, kit: Kit) -> list[Diagnostic]:
+    """Return what is wrong with a text that is read wholly and surely, else nothing."""
+    text = source.text.replace("\r\n", "\n")
+    said = {text: _mistakes(found)}
+    is_begun_otherwise = codes.SETUP_UNKNOWN.number in said[text]
+    if len(text) > LONGEST or "\r" in text or "~" in text or is_begun_otherwise:
+        return []
+
+    def mistakes(program: str) -> Sequence[str]:
+        if program not in said:
+            said[program] = _mistakes(check(program))
+        return said[program]
+
+    meant = candidate(text, kit, mistakes, is_whole=True)
+    if meant is None or not (meant.is_whole and meant.is_applied):
+        return []
+    told = explained(source.text, meant)
+    said_with = {each.code for each in told}
+    said_with |= {step.code for _, step in meant.steps} - {rows.OTHER_WORD}
+    has_all = all(each.slip.right for each in told) and _keeps(text, meant.text, said_with)
+    if not told or not has_all or said_with - rows.HANDED_OVER:
+        return []
+    return [
+        Diagnostic(CODES[each.code], each.span, each.slip._asdict(), each.place,
+                   Repair(tuple(each.edits), True))
+        for each in told
+    ]  # fmt: skip
+
+
+def _keeps(text: str, new: str, said_with: set[str]) -> bool:
+    """Whether all numbers of a text are used, and all names that it gives to variables and DEFs."""
+    before, after = (Counter(each.text for each in lexemes(_bare(it))) for it in (text, new))
+    names = {each.upper() for each in re.findall(r"(?i)(?<=\bDEF )\w+|\w+(?=\s*=)", new)} - {*WORDS}
+    is_kept = all(after[name] >= before[name] for name in names)
+    old, kept = (sorted(re.findall("[0-9]", _bare(it))) for it in (text, new))
+    return is_kept and (old == kept or bool(said_with & rows.OTHER_NUMBERS))
+
+
+def _bare(text: str) -> str:
+    return "\n".join(without_note(line)[0] for line in text.split("\n"))
+
+
+def _mistakes(found: Sequence[Diagnostic]) -> list[str]:
+    return [each.code.number for each in found if each.is_mistake]
 
 
 def moved_back(found: Diagnostic, edits: Sequence[Edit]) -> Diagnostic:

@@ -23,7 +23,7 @@ from tiniscript.recovery.concepts import (
 from tiniscript.recovery.slots import LONG_S, MILLISECONDS_FROM, MOVES, filled
 from tiniscript.syntax.lexer import NUMBER, WORD
 from tiniscript.syntax.outline import Failure, Item, outline
-from tiniscript.words import WORDS
+from tiniscript.words import UNITS, WORDS
 
 STATES = 160  # of one line that are looked at
 SLIP_STATES = 30
@@ -129,7 +129,8 @@ class _Search:
     def read(self, tokens: list[Lexeme]) -> Readings:
         first = self.at_once(Reading(0, tokens, (), True, False))
         readings = self.search(first, STATES, self.rewritten)
-        if not readings.found and len(tokens) < LONGEST_WITH_SLIPS:
+        has_words = any(each.kind in (WORD, NUMBER) for each in tokens)
+        if not readings.found and has_words and len(tokens) < LONGEST_WITH_SLIPS:
             plain = Reading(0, tokens, (), True, False)
             found = self.search(plain, SLIP_STATES, self.with_slips).found
             found = [
@@ -235,7 +236,8 @@ class _Search:
                 new = [each._replace(source=None, space=None) for each in new]
             is_sure = call.is_sure and not call.times
             line = [*tokens[:start], *new, *tokens[end:]]
-            yield reading.changed(line, call.cost, rows.OTHER_WORD, is_sure, bool(call.times))
+            code = _code_of_call(words)
+            yield reading.changed(line, call.cost, code, is_sure, bool(call.times))
 
     def _is_right(self, words: list[Lexeme]) -> bool:
         items = right(words, self.names)
@@ -279,6 +281,21 @@ class _Search:
                     cost, code = rows.SWAPPED_COST
                     line = [*tokens[:k], rest[0], token, *rest[1:]]
                     yield reading.changed(line, cost, code, True, False)
+
+
+def _code_of_call(words: Sequence[Lexeme]) -> str:
+    """Return with which code it is told that these words are no call as it is written."""
+    signs = texts(words)
+    if signs[0] not in WORDS:
+        return rows.OTHER_WORD
+    if "(" not in signs:
+        return rows.NO_BRACKETS
+    if "=" in signs:
+        return rows.NAMED_VALUE
+    inside = words[signs.index("(") :]
+    if any(each.text in UNITS for each in inside):
+        return rows.WITH_UNIT
+    return rows.OTHER_CALL
 
 
 def _touches(failure: Failure, start: int, end: int) -> bool:

@@ -38,6 +38,14 @@ PARTS = {
 # a line of its own, and the one mistake of a program that has a DEF behind its call.
 NAME_IN_WORDS, OTHER_WORD, SETUP_CODE, UNTIL_ALONE = "TS056", "TS102", "TS036", "TS029"
 DO_CODE, CALLED_BEFORE_DEF = "TS064", "TS112"
+# Codes of calls whose values are told in another way, by what is odd in them.
+NO_BRACKETS, NAMED_VALUE, WITH_UNIT, OTHER_CALL = "TS015", "TS052", "TS049", "TS076"
+
+# Codes that were handed over: what a program has of them alone is told from its rewrites.
+HANDED_OVER = frozenset(("TS037", "TS049", "TS050", "TS052"))
+
+# Those that write a number in another way: `500 ms`, `8O`, `X++`, `1) F(2, 80)`, `tres segundos`.
+OTHER_NUMBERS = frozenset(("TS008", "TS010", "TS049", "TS050", "TS054", "TS102"))
 
 # Slips of one sign, tried where no row reads a line: cost and code of one that is missing, of one
 # that is taken for another, of one too many, and of one behind its neighbour.

@@ -28,11 +28,20 @@ _QUOTES |= {wide: wide - 0xFEE0 for wide in range(0xFF01, 0xFF5F)}  # of Chinese
 Mistakes = Callable[[str], Sequence[str]]  # the codes of a program's mistakes
 
 
+class Change(NamedTuple):
+    """What lines become, `first` to `last`, from 0: `text`; most stay as they are."""
+
+    first: int
+    last: int
+    text: str
+
+
 class Candidate(NamedTuple):
     """A program that may have been meant. `is_applied`: it may be made without asking.
 
     `is_whole`: it has no mistakes; else fewer than the text. `steps` are all rewrites, with
-    their lines, from 0. `checks`: how many candidates were compiled.
+    the change that has them. `changes` are of all lines, none where lines change places.
+    `checks`: how many candidates were compiled.
     """
 
     text: str
@@ -40,19 +49,26 @@ class Candidate(NamedTuple):
     is_whole: bool
     steps: tuple[tuple[int, Step], ...]
     checks: int
+    changes: tuple[Change, ...] = ()
 
 
-def candidate(program: str, kit: Kit, mistakes: Mistakes) -> Candidate | None:
-    """Return the program that was meant by a wrong one, or None; a right one has no other."""
+def candidate(
+    program: str, kit: Kit, mistakes: Mistakes, is_whole: bool = False
+) -> Candidate | None:
+    """Return the program that was meant by a wrong one, or None; a right one has no other.
+
+    `is_whole`: only one in which all can be read.
+    """
     before = mistakes(program)
-    return _Recovery(program, kit, mistakes, len(before)).run() if before else None
+    return _Recovery(program, kit, mistakes, len(before)).run(is_whole) if before else None
 
 
 class _Text:
     """A line on its way: what was written, and the readings of it."""
 
-    def __init__(self, source: str) -> None:
+    def __init__(self, source: str, at: int) -> None:
         self.source = source
+        self.first = self.last = at
         self.body, self.note = without_note(source)
         self.steps: list[Step] = []
         self.is_sure = True
@@ -76,13 +92,13 @@ class _Recovery:
         self._mistakes = mistakes
         self.count = count
         self.checks = 0
-        self.lines = [_Text(line) for line in program.split("\n")]
+        self.lines = [_Text(line, k) for k, line in enumerate(program.split("\n"))]
 
     def mistakes(self, text: str) -> Sequence[str]:
         self.checks += 1
         return self._mistakes(text)
 
-    def run(self) -> Candidate | None:
+    def run(self, is_whole: bool) -> Candidate | None:
         self.read_setup()
         self.read_signs()
         self.join_until()
@@ -95,8 +111,12 @@ class _Recovery:
             for line in self.lines:
                 if line.reading is None:
                     self.read_line(line, names)
+        if is_whole and any(
+            each.reading is None or not each.reading.is_sure for each in self.lines
+        ):
+            return None
         best = self.of_whole()
-        if best is None or not best.is_whole:
+        if not is_whole and (best is None or not best.is_whole):
             best = self.of_parts(names, best) or best
         return best
 
@@ -140,6 +160,7 @@ class _Recovery:
                 kept.append(line)
                 continue
             before.body, before.note = f"{body} {line.body.strip()}", line.note
+            before.last = line.last
             before.steps.append(Step(rows.UNTIL_ALONE, lexemes(line.body), lexemes(before.body)))
         self.lines = kept
 
@@ -173,16 +194,17 @@ class _Recovery:
             made_of = self.written(readings, has_blocks)
             if made_of is None:
                 continue
-            text, is_sure = made_of
+            out, is_sure = made_of
+            text, changes = "\n".join(out), self.changes(out)
             left = self.mistakes(text)
             if left and set(left) <= {rows.CALLED_BEFORE_DEF}:
                 moved = with_defs_first(text)
                 if moved and not self.mistakes(moved):
-                    text, left = moved, []
+                    text, left, changes = moved, [], ()
             if not left:
                 is_applied = is_sure and bool(text.strip(" ;\n"))
                 if best is None or not best.is_whole or is_applied:
-                    best = self.made(text, is_applied, True, readings)
+                    best = self.made(text, is_applied, True, readings, changes)
             elif len(left) < self.count and self.is_part(readings) and is_sure:
                 if best is None or not best.is_applied:
                     best = self.made(text, self.are_sure(), False, readings)
@@ -211,19 +233,29 @@ class _Recovery:
         return all(each.is_sure for each in self.lines)
 
     def made(
-        self, text: str, is_applied: bool, is_whole: bool, readings: Sequence[Reading | None]
+        self,
+        text: str,
+        is_applied: bool,
+        is_whole: bool,
+        readings: Sequence[Reading | None],
+        changes: tuple[Change, ...] = (),
     ) -> Candidate:
         steps = [
             (k, step)
             for k, (line, reading) in enumerate(zip(self.lines, readings, strict=True))
             for step in (*line.steps, *(reading.steps if reading else ()))
         ]
-        return Candidate(text, is_applied, is_whole, tuple(steps), self.checks)
+        return Candidate(text, is_applied, is_whole, tuple(steps), self.checks, changes)
+
+    def changes(self, out: Sequence[str]) -> tuple[Change, ...]:
+        return tuple(
+            Change(line.first, line.last, text) for line, text in zip(self.lines, out, strict=True)
+        )
 
     def written(
         self, readings: Sequence[Reading | None], has_blocks: bool
-    ) -> tuple[str, bool] | None:
-        """Return the program of some readings, and whether it is sure; None where no block fits."""
+    ) -> tuple[list[str], bool] | None:
+        """Return what lines become, and whether it is sure; None where no block fits."""
         found = Matched({}, {}, {}, True)
         if has_blocks:
             blocks = matched([
@@ -238,14 +270,14 @@ class _Recovery:
             found = blocks
         out = []
         for k, (line, reading) in enumerate(zip(self.lines, readings, strict=True)):
-            if reading is None:
-                out.append(line.source)
-            else:
-                body = _line(line, reading, found.edits.get(k, []), found.tails.get(k, []))
-                out.append(body + line.note)
-            out += [" " * end.indent + end.word for end in found.behind.get(k, [])]
+            text = line.source
+            if reading is not None:
+                text = _line(line, reading, found.edits.get(k, []), found.tails.get(k, []))
+                text += line.note
+            ends = [" " * end.indent + end.word for end in found.behind.get(k, [])]
+            out.append("\n".join((text, *ends)))
         is_sure = all(each.is_sure for each in readings if each) and self.are_sure()
-        return "\n".join(out), is_sure and found.is_sure
+        return out, is_sure and found.is_sure
 
     # -- parts ----------------------------------------------------------------------------------
 

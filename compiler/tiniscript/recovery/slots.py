@@ -189,7 +189,9 @@ class _Reader:
         if sign not in _PASSED or (sign == "=" and not self.mark):
             return None
         self.cost += 0.0 if sign in "(),%" else 0.2
-        self.is_sure = self.is_sure and sign not in ("-", ".")
+        is_behind_number = k > 0 and self.words[k - 1].kind is NUMBER
+        is_odd = sign in ("-", ".") or (sign == "%" and not is_behind_number)
+        self.is_sure = self.is_sure and not is_odd
         return k + 1
 
     def _word(self, k: int) -> int | None:

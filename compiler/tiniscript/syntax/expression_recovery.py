@@ -29,7 +29,7 @@ from tiniscript.syntax.operators import COMPARISONS, Operator, Postfix
 from tiniscript.syntax.order_values import order_as_value
 from tiniscript.syntax.phrases import AFTER_HEADER
 from tiniscript.syntax.reporter import Failed, Reporter
-from tiniscript.syntax.suggestions import after_bracket, operator_words, tells, unchained
+from tiniscript.syntax.suggestions import after_bracket, operator_words, tells
 from tiniscript.syntax.until_recovery import before_bracket, in_its_move
 from tiniscript.syntax.value_constructs import ValueConstructs
 from tiniscript.syntax.vocabulary import Vocabulary
@@ -258,14 +258,8 @@ class ExpressionRecovery:
         return True
 
     def chained(self, first: Operator, second: Token) -> NoReturn:
-        """`1 < X < 5`: suggest `1 < X AND X < 5`."""
-        cursor = self.cursor
-        left = cursor.tokens[first.index - 1]
-        middle = cursor.source.text[first.token.end : second.start].strip()
-        right = cursor.following
-        fix = unchained((left.text, first.token.text, middle), (middle, second.text, right.text))
-        span, place = Span(first.token.start, second.end), Span(left.start, right.end)
-        self.reporter.fail(codes.CHAINED, span, place, fix=fix)
+        """`1 < X < 5`, which the new recovery writes as two questions."""
+        self.reporter.fail(codes.CHAINED, Span(first.token.start, second.end))
 
     # -- where a bracket is wanted ------------------------------------------------------------
 

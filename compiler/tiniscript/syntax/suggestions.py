@@ -277,17 +277,6 @@ def between(tokens: Sequence[Token], name: str) -> tuple[str, int] | None:
     return f"{name} > {low.text} AND {name} < {high.text}", high.end
 
 
-def unchained(first: tuple[str, str, str], second: tuple[str, str, str]) -> str:
-    """Return how `1 < X < 5`, which compares three values, is written with two comparisons."""
-    if "FALSE" in (first[0], second[2]):
-        return ""
-    if second[2] == "TRUE":  # `DISTANCE < 10 = TRUE`
-        return " ".join(first)
-    if first[0] == "TRUE":
-        return " ".join(second)
-    return f"{' '.join(first)} AND {' '.join(second)}"
-
-
 def opposite(tokens: Sequence[Token]) -> str:
     """Return the question that is TRUE where `DISTANCE < 10` is not, "" where it is no question."""
     signs = [k for k, token in enumerate(tokens) if token.kind in OPPOSITES]
