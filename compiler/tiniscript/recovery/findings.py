@@ -23,7 +23,7 @@ from tiniscript.recovery.writing import without_note
 from tiniscript.source import Edit, Source, Span, applied
 from tiniscript.words import WORDS
 
-LONGEST = 20_000  # characters of a text that is read as a whole
+LONGEST = 4_000  # characters of a text that is read as a whole
 Check = Callable[[str], Sequence[Diagnostic]]
 
 

@@ -105,16 +105,14 @@ class _Recovery:
         names = Names([lexemes(each.body) for each in self.lines], self.kit)
         for line in self.lines:
             self.read_line(line, names)
+            if is_whole and not (line.reading and line.reading.is_sure):
+                return None  # soon: a line that nobody can read takes longest
         told = Names([each.reading.tokens for each in self.lines if each.reading], self.kit)
         if told.variables | told.defs > names.variables | names.defs:
             names = names.joined(told)
             for line in self.lines:
                 if line.reading is None:
                     self.read_line(line, names)
-        if is_whole and any(
-            each.reading is None or not each.reading.is_sure for each in self.lines
-        ):
-            return None
         best = self.of_whole()
         if not is_whole and (best is None or not best.is_whole):
             best = self.of_parts(names, best) or best
