@@ -208,6 +208,14 @@ def test_a_hostile_machine_is_named(what: str, tsc: Tsc, tmp_path: Path) -> None
     assert [row["what"] for row in rows] == [what] * tried
 
 
+def test_half_an_answer_is_one_of_a_machine_that_crashed(tsc: Tsc, tmp_path: Path) -> None:
+    source = "sys.stdin.readline()\nos.write(1, b'0 SHOW 1\\n')\nsys.exit('half')"
+    done = conform(tsc, machine(tmp_path, source), "--only", "images: no code", "--timeout", "100")
+    assert done.code == 1
+    assert "exit code 1: half" in done.out
+    assert "line 1: 0 SHOW 1" in done.out
+
+
 def test_bytes_that_are_no_text_are_shown_without_harm(tsc: Tsc, tmp_path: Path) -> None:
     source = "os.write(1, bytes(range(256)) + b'\\n\\x1b[2J 0 DONE')"
     done = conform(tsc, machine(tmp_path, source), "--only", "images: whole")
