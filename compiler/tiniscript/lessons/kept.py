@@ -130,8 +130,6 @@ def question(tokens: Sequence[Token], is_turned: bool, ending: str) -> Question 
     before = head = -1  # the words of the statements that an UNTIL may belong to, or to a wait
     for k, token in enumerate(tokens):
         word = ALIASES.get(token.text, token.text)
-        if token.kind != WORD:
-            continue
         if k in moves or word in movers:
             for block in blocks:
                 block.needed = block.needed or ("FALSE" if block.is_else else "TRUE")
