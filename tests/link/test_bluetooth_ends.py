@@ -194,9 +194,13 @@ def test_without_its_package_the_next_step_is_said(
 ) -> None:
     for name in [each for each in sys.modules if each.partition(".")[0] == package]:
         monkeypatch.setitem(sys.modules, name, None)
-    for name in ("bluetooth", "bluetooth_search", "network"):
-        monkeypatch.delitem(sys.modules, f"tiniscript.link.transports.{name}", raising=False)
-        monkeypatch.delattr(f"tiniscript.link.transports.{name}", raising=False)
+    transports = "tiniscript.link.transports"
+    for folder, name in (
+        (transports, "bluetooth"), (transports, "bluetooth_search"), (transports, "network"),
+        ("tiniscript.virtual", "announcement"),
+    ):  # fmt: skip
+        monkeypatch.delitem(sys.modules, f"{folder}.{name}", raising=False)
+        monkeypatch.delattr(f"{folder}.{name}", raising=False)
     monkeypatch.setitem(sys.modules, package, None)
     port = {"bleak": "ble://Tini", "zeroconf": "tcp://tini"}[package]
     done = tsc("ping", "--port", port, "--lang", language)

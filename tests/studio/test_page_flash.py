@@ -16,6 +16,7 @@ from tests.studio.test_page_link import said
 from tests.support import studio_serial
 from tests.support.platformio import firmware, shared
 from tests.support.studio import checked
+from tests.support.waiting import until
 from tiniscript.studio import serving
 
 if TYPE_CHECKING:
@@ -63,7 +64,8 @@ def test_a_new_board_becomes_a_robot(
         found.select_option("#flash_board", "uno")
         # Cancelled in the middle it does nothing, and is whole once it has got its firmware again.
         found.click("#flash_write")
-        found.wait_for_function("document.querySelector('#flash_progress').value >= 0.1")
+        done = "document.querySelector('#flash_progress').value"  # the page evaluates no text
+        until(lambda: float(found.evaluate(done)) >= 0.1, "a tenth is written")
         found.click("#flash_cancel")
         said(found, "Cancelled in the middle: ")
         assert found.locator("#flash_cancel, #flash_progress").filter(visible=True).count() == 0
