@@ -25,8 +25,8 @@ from tiniscript.link.errors import PortError
 from tiniscript.link.messages import STATUSES
 from tiniscript.link.outcomes import CANCELLED, LOST, Gone
 from tiniscript.link.requests import Reply
-from tiniscript.link.sharing.client import OtherVersion
 from tiniscript.link.sharing.registry import Registration
+from tiniscript.link.sharing.shared_line import OtherVersion
 from tiniscript.link.wire import Wire
 
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="the trees have symbolic links")

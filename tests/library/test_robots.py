@@ -270,17 +270,18 @@ def test_a_stop_that_nobody_confirms_is_an_error(
 
 
 class ToldEvents:
-    """A connection on which these events come, and then none."""
+    """A connection that is stopped at 5 ms of its own clock, on which these events come then."""
 
-    def __init__(self, *names: str) -> None:
-        self.events = [event(name) for name in names]
+    def __init__(self, *names: str, time_ms: int = 5) -> None:
+        self.events = [(time_ms, event(name)) for name in names]
         self.stops = 0
 
-    def stop(self) -> None:
+    def stop(self) -> int:
         self.stops += 1
+        return 5
 
     def event(self, limit_s: float = 0) -> tuple[int, Event] | None:
-        return (2**60, self.events.pop(0)) if self.events else None
+        return self.events.pop(0) if self.events else None
 
 
 def test_only_its_own_word_confirms_a_stop() -> None:
@@ -292,6 +293,8 @@ def test_only_its_own_word_confirms_a_stop() -> None:
         line = ToldEvents(*names)
         assert opening.confirmed(cast(LinkConnection, line), 0.01) is is_confirmed
         assert line.stops == 1
+    earlier = ToldEvents("STOPPED", time_ms=4)
+    assert not opening.confirmed(cast(LinkConnection, earlier), 0.01)
 
 
 def test_what_ended_before_a_run_is_not_its_end() -> None:

@@ -15,7 +15,7 @@ from tiniscript.link.connection import LinkConnection
 from tiniscript.link.outcomes import Event, PlaceEvent
 from tiniscript.link.payloads import ShowEvent
 from tiniscript.link.requests import OK
-from tiniscript.link.sharing.client import joined
+from tiniscript.link.sharing.shared_line import joined
 
 pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
 needs_host = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")

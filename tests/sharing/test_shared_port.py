@@ -18,8 +18,8 @@ from tiniscript import __version__, compile_text, robots
 from tiniscript.bytecode.image import unpack
 from tiniscript.link.frames import decoded
 from tiniscript.link.sharing import protocol, registry
-from tiniscript.link.sharing.client import joined
 from tiniscript.link.sharing.registry import Registration
+from tiniscript.link.sharing.shared_line import joined
 
 pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
 pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")

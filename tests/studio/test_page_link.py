@@ -73,7 +73,12 @@ def connect(page: Page) -> None:
     page.click("#side_real")
     page.click("#link_look")
     page.locator("#link_port option").first.wait_for(state="attached")
-    page.click("#link_connect")
+    for _ in range(10):  # a page that was closed may not have said so: it has left after a while
+        page.click("#link_connect")
+        said(page, re.compile("Connected: |Another tab"))
+        if "Connected" in page.locator("#link_said").inner_text():
+            return
+        page.wait_for_timeout(500)
     said(page, "Connected: ")
 
 

@@ -34,6 +34,10 @@ class Done:
         if code:
             assert (err + out).strip(), "an exit code without a word"
 
+    def __repr__(self) -> str:
+        """What a test that fails shows."""
+        return f"exit code {self.code}, out {self.out!r}, err {self.err!r}"
+
 
 class Tsc:
     def __init__(self, capsys: pytest.CaptureFixture[str]) -> None:

@@ -24,7 +24,7 @@ from tiniscript.link.connection import LinkConnection
 from tiniscript.link.errors import PortError
 from tiniscript.link.outcomes import Gone
 from tiniscript.link.port_names import is_address, same_for_all
-from tiniscript.link.sharing.client import OtherVersion
+from tiniscript.link.sharing.shared_line import OtherVersion
 from tiniscript.link.wire import Wire
 
 REFUSED, IN_USE = os.strerror(errno.ECONNREFUSED), os.strerror(errno.EBUSY)

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from tiniscript.link.outcomes import Gone
     from tiniscript.link.payloads import HelloReply
     from tiniscript.link.requests import Reply
-    from tiniscript.link.sharing.client import Client
+    from tiniscript.link.sharing.shared_line import SharedLine
 
     T = TypeVar("T")
 
@@ -201,13 +201,12 @@ def confirmed(line: LinkConnection, limit_s: float | None = None) -> bool:
     """
     from tiniscript.link.outcomes import Gone
 
-    began_s = monotonic()
-    end_s = began_s + (CONFIRM_S if limit_s is None else limit_s)
-    line.stop()
+    end_s = monotonic() + (CONFIRM_S if limit_s is None else limit_s)
+    began_ms = line.stop()
     try:
         while monotonic() < end_s:
             found = line.event()
-            if found is None or found[0] < int(began_s * 1000):
+            if found is None or found[0] < began_ms:
                 continue
             if found[1].name in ("STOPPED", "LOST"):
                 return found[1].name == "STOPPED"
@@ -241,8 +240,8 @@ def shown(name: str) -> str:
     return printable(name, SHOWN)
 
 
-def _joined(port: str, verb: str, baud: int | None, language: str) -> Client | None:
-    from tiniscript.link.sharing.client import OtherVersion, joined
+def _joined(port: str, verb: str, baud: int | None, language: str) -> SharedLine | None:
+    from tiniscript.link.sharing.shared_line import OtherVersion, joined
 
     try:
         client = joined(port, verb)

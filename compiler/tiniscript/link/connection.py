@@ -124,8 +124,9 @@ class LinkConnection(Heard, Protocol):
         """Have PLACE events come from now on, from a robot that tells where its program is."""
         ...
 
-    def stop(self) -> None:
-        """Stop the robot. The event STOPPED follows when the robot has confirmed."""
+    def stop(self) -> int:
+        """Stop the robot; return the time (ms). A later event STOPPED follows when the robot has
+        confirmed."""
         ...
 
     def close(self) -> None: ...

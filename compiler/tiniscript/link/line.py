@@ -118,11 +118,12 @@ class Line:
                 raise self._bug or Gone(self._gone)
         return None
 
-    def stop(self) -> None:
-        """Stop the robot. The event STOPPED follows when the robot has confirmed."""
+    def stop(self) -> int:
         with self._news:
-            self.session.stop(self._now_ms())
+            began_ms = self._now_ms()
+            self.session.stop(began_ms)
         self._wake()
+        return began_ms
 
     def tell_places(self) -> None:
         """Have PLACE events come from now on: where the program is, while one runs."""

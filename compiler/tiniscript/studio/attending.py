@@ -115,7 +115,7 @@ class Attending:
             self._is_silent = True
             link.stop()
 
-    def stop_if_wanted(self, stop: Callable[[], None]) -> None:
+    def stop_if_wanted(self, stop: Callable[[], object]) -> None:
         if self._wants_stop:
             self._wants_stop = False
             stop()

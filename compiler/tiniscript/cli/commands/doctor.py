@@ -28,7 +28,7 @@ from tiniscript.library.known_kits import of_kit
 from tiniscript.link import known_ports, port_names, ports
 from tiniscript.link.connection import LinkConnection
 from tiniscript.link.messages import RESETS
-from tiniscript.link.sharing.client import joined
+from tiniscript.link.sharing.shared_line import joined
 from tiniscript.link.wire import SerialWire, Wire
 from tiniscript.version import __version__
 

@@ -19,8 +19,8 @@ from tiniscript.link import known_ports, ports
 from tiniscript.link.outcomes import Gone
 from tiniscript.link.port_names import is_there, same_for_all
 from tiniscript.link.requests import OK
-from tiniscript.link.sharing.client import is_alive
 from tiniscript.link.sharing.registry import all_found
+from tiniscript.link.sharing.shared_line import is_alive
 from tiniscript.robots.profile import Robot
 from tiniscript.virtual import worlds
 

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from tiniscript.link import known_ports
 from tiniscript.link.port_names import is_there, same_for_all
-from tiniscript.link.sharing.client import is_alive
 from tiniscript.link.sharing.registry import Registration, all_found
+from tiniscript.link.sharing.shared_line import is_alive
 
 AT_ONCE = 16  # servers that are checked at the same time
 

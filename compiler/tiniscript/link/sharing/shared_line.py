@@ -40,7 +40,7 @@ class OtherVersion(Exception):
         self.version = version
 
 
-class Client:
+class SharedLine:
     """The connection through a server that has sent its greeting."""
 
     def __init__(
@@ -93,8 +93,10 @@ class Client:
     def tell_places(self) -> None:
         self._send({"do": "places"})
 
-    def stop(self) -> None:
+    def stop(self) -> int:
+        began_ms = int(monotonic() * 1000)
         self._send({"do": "stop"})
+        return began_ms
 
     def close(self) -> None:
         self._peer.close()
@@ -164,7 +166,7 @@ class Client:
             self.robot = described(self.robot.values._replace(name=name))
 
 
-def joined(port: str, verb: str) -> Client | None:
+def joined(port: str, verb: str) -> SharedLine | None:
     """Return the connection through the command that holds a port; None if no command does.
 
     Raises OtherVersion where the server is another version of tsc; `stop` works there, too.
@@ -184,7 +186,7 @@ def is_alive(registration: Registration) -> bool:
     return client is not None
 
 
-def _joined(registration: Registration, verb: str) -> Client | None:
+def _joined(registration: Registration, verb: str) -> SharedLine | None:
     peer = None
     try:
         peer = socket.create_connection((protocol.HOST, registration.number), ANSWER_S)
@@ -199,7 +201,7 @@ def _joined(registration: Registration, verb: str) -> Client | None:
         version = protocol.word(found[0], "tsc")
         if version != __version__ and verb != "stop":
             raise OtherVersion(registration, version)
-        client = Client(peer, registration, rest)
+        client = SharedLine(peer, registration, rest)
         for message in found[1:]:
             client._take(message)
         return client
