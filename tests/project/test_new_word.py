@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import json
+import subprocess
+import sys
+
 import pytest
 
 import tiniscript
 from tests.oracle.interpreter import run as run_by_reference
 from tests.oracle.words import FIXED
+from tests.support.casefile import ROOT
 from tests.support.new_word import HORN
 from tiniscript import compile_text, robots
 from tiniscript.diagnostics import codes
@@ -17,10 +22,10 @@ from tiniscript.studio.block_reading import read
 from tiniscript.studio.description import description
 from tiniscript.syntax.formatter import formatted
 from tiniscript.text.fitting import misfits
-from tiniscript.text.levels import LEVELS, UNREAD, Level
+from tiniscript.text.levels import LEVELS, Level
 from tiniscript.text.line import line_of
 from tiniscript.words import WORDS
-from tools.generate import poster, text_tables
+from tools.generate import poster
 from tools.generate.paper import Line
 
 ROBOT = robots.load("tinibot")
@@ -32,7 +37,6 @@ MEANT = PROGRAM.replace(HORN.text, HORN.stands_for)
 @pytest.fixture(autouse=True)
 def _has_horn(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(WORDS, HORN.text, HORN)
-    monkeypatch.setattr("tools.generate.text_tables.UNREAD", UNREAD | {HORN.text})
     monkeypatch.setitem(FIXED, HORN.text, HORN.stands_for)
 
 
@@ -77,7 +81,28 @@ def test_a_robot_that_reads_text_gets_what_it_stands_for(level: Level) -> None:
     assert compiled.program is not None
     assert misfits(compiled.source, compiled.program, KIT, level) == []
     assert line_of(compiled.source) == line_of(Source(MEANT))
-    packed, rows, _ = text_tables.words_tables("a test").split("tini_progmem = {")[1:]
+
+
+# Of a process that knows the word before it imports what makes tables of all words.
+FRESH = """
+from tests.support.new_word import HORN
+from tiniscript.words import WORDS
+WORDS[HORN.text] = HORN
+import json
+from tiniscript.studio import block_kinds
+from tools.generate import text_tables
+print(json.dumps([block_kinds.data(), text_tables.words_tables("a test")]))
+"""
+
+
+def test_blocks_and_the_robots_reader_have_it_in_their_tables() -> None:
+    ran = subprocess.run(
+        [sys.executable, "-c", FRESH], cwd=ROOT, check=True, capture_output=True, text=True
+    )
+    blocks, tables = json.loads(ran.stdout)
+    assert HORN.text in blocks["kinds"]["fixed"]["words"]
+    assert blocks["labels"][HORN.text] == [f"{HORN.text} {says}" for says in HORN.says]
+    packed, rows, _ = tables.split("tini_progmem = {")[1:]
     assert "// HORN" in packed and "// HORN" not in rows
 
 

@@ -15,6 +15,7 @@ from tiniscript.source import Source
     ("program", "right"),
     [
         ("DEF a b;R(1, 50);END_DEF;a b", "DEF A_B;R(1, 50);END_DEF;A_B"),
+        ("DEF PASO_UNO;S;END_DEF;PASO UNO", "DEF PASO_UNO;S;END_DEF;PASO_UNO"),
         ("DEF PASO-UNO;S;END_DEF;PASO-UNO", "DEF PASO_UNO;S;END_DEF;PASO_UNO"),
         ("DEF PASO-1;S;END_DEF;PASO-1", "DEF PASO_1;S;END_DEF;PASO_1"),
         ("DEF PARAR S\nEND_DEF;PARAR", "DEF PARAR;S;END_DEF;PARAR"),  # S does something

@@ -133,6 +133,7 @@ def test_what_may_change_the_meaning_is_only_shown(wrong: str) -> None:
         ("SHOW -2.5", "SHOW(-2.5)"),
         ("F(O.S, 6O)", "F(0.5, 60)"),
         ("M\u00daSICA(1,440)", "BEEP(1,440)"),
+        ("SI|V = 50, F(2, V)", "SI|V = 50; F(2, V)"),
     ],
 )
 def test_what_can_mean_nothing_else_is_made(wrong: str, right: str | None) -> None:
@@ -173,6 +174,7 @@ def test_words_of_a_kit_are_read_on_its_robots_alone(
         ("F(FOREVER, 80); W(2); S", None),
         ("mi; velocidad = 50", None),
         ("SHOW Hola", None),
+        ("IF(DISTANCE < 10))\nS\nENDIF", "IF(DISTANCE < 10)\nS\nENDIF"),
         ("Y(1, 50)", None),
     ],
 )

@@ -46,6 +46,12 @@ def test_a_repair_that_is_offered_leaves_fewer_mistakes() -> None:
     assert offered > 100
 
 
+def test_the_first_value_of_a_variable_is_offered_in_place_of_its_declaration() -> None:
+    program = "var vel\nF(2, 80)"
+    (finding,) = checking.check(program.encode(), "tinibot", "en").findings
+    assert changed_by(program, finding.repair) == "VEL = 0\nF(2, 80)"
+
+
 def test_a_line_with_a_checksum_is_not_repaired() -> None:
     found = checking.check(b"SI|F(2, 80~1A2B", "tinibot", "en")
     assert found.findings and not any(each.repair for each in found.findings)

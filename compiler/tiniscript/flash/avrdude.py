@@ -135,9 +135,9 @@ def _watched(running: subprocess.Popen[bytes], look: Callable[[Seen | None], Non
     assert running.stdout
     heard: SimpleQueue[bytes] = SimpleQueue()
     Thread(target=_listen, args=(running.stdout.fileno(), heard), daemon=True).start()
-    said, said_bytes, silent_s, end_s = "", 0, 0.0, monotonic() + WHOLE_S
+    output, said, silent_s, end_s = b"", "", 0.0, monotonic() + WHOLE_S
     while True:
-        if monotonic() >= end_s or said_bytes > MOST_BYTES:
+        if monotonic() >= end_s or len(output) > MOST_BYTES:
             return Ended(ENDLESS)
         try:
             data = heard.get(timeout=LOOK_S)
@@ -154,8 +154,8 @@ def _watched(running: subprocess.Popen[bytes], look: Callable[[Seen | None], Non
             except subprocess.TimeoutExpired:
                 return Ended(ENDLESS)
         silent_s = 0.0
-        said += data.decode(errors="replace")
-        said_bytes += len(data)
+        output += data
+        said = output.decode(errors="replace")
         look(seen(said))
         attempts = [int(number) for number in _ATTEMPT.findall(said)]
         if attempts and attempts[-1] >= MOST_ATTEMPTS and seen(said) is None:

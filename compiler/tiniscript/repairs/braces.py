@@ -9,7 +9,7 @@ from collections.abc import Sequence
 
 from tiniscript.source import Edit, Span
 from tiniscript.syntax.cursor import AT_END
-from tiniscript.syntax.lexer import NEWLINE, WORD, Token
+from tiniscript.syntax.lexer import NEWLINE, Token
 from tiniscript.syntax.parser import scan
 from tiniscript.syntax.suggestions import foreign_block
 from tiniscript.words import ALIASES, BLOCK_ENDS, WORDS
@@ -53,10 +53,8 @@ def _header(tokens: Sequence[Token], brace: int) -> str | None:
         k -= 1
     while k and tokens[k - 1].kind not in (NEWLINE, ";", "{", "}", "|"):
         k -= 1
-    first = tokens[k]
-    if first.kind is not WORD:
-        return None
-    word = first.text if first.text in WORDS else foreign_block(first.text)
+    first = tokens[k].text
+    word = first if first in WORDS else foreign_block(first)
     return word if word in BLOCK_ENDS or word in _ARMS else None
 
 
