@@ -1,12 +1,14 @@
 """Wrong programs as pupils write them, and what is said of each.
 
-They are in the files `*.txt` here. A program has a line for each message, `> 1 TS012 F(1.5, 80)`:
-its line, its code and what to try, in Spanish; then, where `tsc check --fix` changes it, the
-program that it makes, each line behind a `=`, without spaces at its end. A line of `%%` ends it.
+They are in the files `*.txt` here. Below a program stands a line for each message,
+`> 1 TS012 F(1.5, 80)`: its line, its code and what to try, in Spanish; then, where
+`tsc check --fix` changes it, the program that it makes, each line behind a `=`, without spaces at
+its end. A program of which nothing is said has a `>` alone below it.
 """
 
 from __future__ import annotations
 
+import re
 from functools import cache
 from pathlib import Path
 from typing import NamedTuple
@@ -19,6 +21,7 @@ from tiniscript.repairs.fixing import fixed
 from tiniscript.source import Source
 
 FOLDER = Path(__file__).parent
+PART = re.compile(r"((?:(?![>=]).*\n)+)((?:>.*\n)*)((?:=.*\n)*)")
 
 
 class Entry(NamedTuple):
@@ -34,13 +37,12 @@ class Entry(NamedTuple):
 def entries() -> tuple[Entry, ...]:
     found = []
     for file in sorted(FOLDER.glob("*.txt")):
-        for part in file.read_text(encoding="utf-8").split("\n%%\n"):
-            lines = part.removesuffix("\n%%").split("\n")
-            program = "\n".join(line for line in lines if line[:1] not in (">", "="))
-            mended = "\n".join(line[1:].removeprefix(" ") for line in lines if line[:1] == "=")
-            said = tuple(line[2:] for line in lines if line[:1] == ">")
-            found.append(Entry(file.name, program.rstrip("\n"), said, mended or None))
-    return tuple(each for each in found if each.program)
+        for part in PART.findall(file.read_text(encoding="utf-8")):
+            program, said, mended = (each.split("\n")[:-1] for each in part)
+            messages = tuple(line[2:] for line in said if line != ">")
+            kept = "\n".join(line[1:].removeprefix(" ") for line in mended)
+            found.append(Entry(file.name, "\n".join(program), messages, kept or None))
+    return tuple(found)
 
 
 def check(text: str) -> list[Diagnostic]:
@@ -67,5 +69,6 @@ def write(found: list[Entry]) -> None:
             if entry.file == file:
                 mended = entry.mended.split("\n") if entry.mended else []
                 rows += [entry.program, *(f"> {said}" for said in entry.said)]
-                rows += [*(f"= {line}".rstrip() for line in mended), "%%"]
+                rows += [f"= {line}".rstrip() for line in mended]
+                rows += [] if entry.said or mended else [">"]
         (FOLDER / file).write_text("\n".join(rows) + "\n", encoding="utf-8")
