@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import product
 from pathlib import Path
 
@@ -69,12 +69,13 @@ def cases_header(command: str) -> str:
         "\n#include <stdint.h>\n\n#include <string>\n#include <vector>\n"
         '\n#include "../extras/host/traced_robot.h"\n#include "../src/vm/bytecode.h"\n'
         "\n// clang-format off\n"
-        "\nnamespace cases {\n\nusing tiniscript::Fault;\nusing tiniscript::Op;\n"
+        "\nnamespace cases {\n\nusing tiniscript::Op;\n"
         f"using tiniscript::Rule;\n\n{STRUCTS}",
         *(kit(name, each) for name, each in {**kits, "eight": EIGHT}.items()),
         table("RefusedCase", "refused_cases", (refused_row(case) for case in refused)),
         table("ProgramCase", "program_cases", (program_row(case) for case in programs)),
         table("InstructionCase", "instruction_cases", instruction_rows(EIGHT)),
+        table("int32_t", "edges", (str(edge) for edge in EDGES)),
         table("NumberCase", "number_cases", number_rows()),
         f"}}  // namespace cases\n\n#endif  // {GUARD}\n",
     )
@@ -117,18 +118,18 @@ struct InstructionCase {
   std::string state;
 };
 
-// What an instruction makes of one or two values; `result` is 0 where there is a fault.
+// What an operation makes of each of edges(), as its second value where `first` has one: results
+// and faults, with a space behind each.
 struct NumberCase {
   std::string name;
   Op op;
-  std::vector<int32_t> values;
-  int32_t result;
-  Fault fault;
+  std::vector<int32_t> first;
+  std::string results;
 };
 """
 
 
-def table(kind: str, name: str, rows: Iterator[str]) -> str:
+def table(kind: str, name: str, rows: Iterable[str]) -> str:
     """Return a function that returns a vector of `kind`."""
     lines = "".join(f"      {{{row}}},\n" for row in rows)
     return (
@@ -175,7 +176,7 @@ def program_row(case: Case) -> str:
     readings = ", ".join(numbers(senses.readings.get(each.name, ())) for each in robot.kit.sensors)
     return (
         f"{text(case.id)}, {robot.name}(), {{{readings}}}, {senses.max_ms}, {senses.seed},\n"
-        f"       {numbers(image)},\n       {lines_of(case.parts['robot'])}"
+        f"       {numbers(image)},\n       {text(case.parts['robot'])}"
     )
 
 
@@ -295,14 +296,17 @@ CALCULATIONS = ("ADD", "SUB", "MUL", "DIV", "MOD", "NEG", "ABS", "MIN", "MAX", "
 def number_rows() -> Iterator[str]:
     """Return operations on the edges of numbers, with what the machine in Python makes of them."""
     for op in map(BY_NAME.__getitem__, CALCULATIONS):
-        for values in product(EDGES, repeat=op.pops):
-            pushes = [push32(value) for value in values]
-            machine = Machine(b"".join(pushes) + bytes([op.code]), TracedRobot(NO_KIT, int))
-            machine.tick(0, len(pushes) + 1)
-            fault = machine.fault or "NONE"
-            result = 0 if machine.fault else int(machine.task.stack[-1])
-            name = f"{text(op.name)}, Op::{constant(op.name)}"
-            yield f"{name}, {numbers(values)}, {result}, Fault::{constant(fault)}"
+        for first in product(EDGES, repeat=op.pops - 1):
+            results = "".join(f"{calculated(op, (*first, edge))} " for edge in EDGES)
+            yield f"{text(op.name)}, Op::{constant(op.name)}, {numbers(first)}, {text(results)}"
+
+
+def calculated(op: Op, values: Sequence[int]) -> int | str:
+    """Return the result, or the name of the fault."""
+    pushes = [push32(value) for value in values]
+    machine = Machine(b"".join(pushes) + bytes([op.code]), TracedRobot(NO_KIT, int))
+    machine.tick(0, len(pushes) + 1)
+    return machine.fault or int(machine.task.stack[-1])
 
 
 def push32(value: int) -> bytes:
@@ -324,8 +328,3 @@ def numbers(values: Sequence[int]) -> str:
 def text(found: str) -> str:
     """Return `found` as a literal of C++; all of our texts are UTF-8."""
     return json.dumps(found, ensure_ascii=False)
-
-
-def lines_of(found: str) -> str:
-    """Return a text as literals, one for each line."""
-    return "\n       ".join(text(row) for row in found.splitlines(keepends=True))

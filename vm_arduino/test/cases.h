@@ -17,7 +17,6 @@
 
 namespace cases {
 
-using tiniscript::Fault;
 using tiniscript::Op;
 using tiniscript::Rule;
 
@@ -56,13 +55,13 @@ struct InstructionCase {
   std::string state;
 };
 
-// What an instruction makes of one or two values; `result` is 0 where there is a fault.
+// What an operation makes of each of edges(), as its second value where `first` has one: results
+// and faults, with a space behind each.
 struct NumberCase {
   std::string name;
   Op op;
-  std::vector<int32_t> values;
-  int32_t result;
-  Fault fault;
+  std::vector<int32_t> first;
+  std::string results;
 };
 
 inline const Kit& tinibot() {
@@ -235,1088 +234,370 @@ inline const std::vector<ProgramCase>& program_cases() {
   static const std::vector<ProgramCase> found = {
       {"accepted: ELSE after ELSE, where the condition is FALSE", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 17, 0, 113, 180, 212, 5, 0, 5, 96, 5, 1, 1, 57, 100, 5, 1, 2, 57, 100, 3, 1, 3, 57, 88},
-       "0 SHOW 2\n"
-       "0 MOTORS 0 0\n"
-       "0 DONE\n"},
+       "0 SHOW 2\n0 MOTORS 0 0\n0 DONE\n"},
       {"accepted: ELSE after ELSE, where it is TRUE", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 17, 0, 245, 239, 78, 86, 0, 6, 96, 5, 1, 1, 57, 100, 5, 1, 2, 57, 100, 3, 1, 3, 57, 88},
-       "0 SHOW 1\n"
-       "0 SHOW 3\n"
-       "0 MOTORS 0 0\n"
-       "0 DONE\n"},
+       "0 SHOW 1\n0 SHOW 3\n0 MOTORS 0 0\n0 DONE\n"},
       {"accepted: A branch that shares a block takes no room", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 73, 0, 12, 32, 201, 90, 0, 109, 1, 109, 1, 109, 1, 109, 1, 109, 1, 109, 1, 109, 1, 109, 1, 109, 1, 109, 1, 109, 1, 109, 1, 109, 1, 109, 1, 109, 1, 6, 96, 10, 6, 96, 6, 6, 96, 3, 1, 7, 57, 88, 112, 15, 112, 19, 112, 23, 112, 27, 112, 31, 112, 35, 112, 39, 112, 43, 112, 47, 112, 51, 112, 55, 112, 59, 112, 63, 112, 67, 112, 71},
-       "0 SHOW 7\n"
-       "0 MOTORS 0 0\n"
-       "0 DONE\n"},
+       "0 SHOW 7\n0 MOTORS 0 0\n0 DONE\n"},
       {"accepted: A branch leaves a FOREVER whose end a BREAK has told", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 17, 0, 253, 109, 129, 26, 0, 104, 5, 96, 2, 114, 8, 5, 96, 5, 1, 1, 57, 107, 13, 1, 2, 57},
-       "0 SHOW 2\n"
-       "0 DONE\n"},
+       "0 SHOW 2\n0 DONE\n"},
       {"accepted: A loop ends where the branch around it does", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 13, 0, 91, 115, 18, 120, 0, 6, 96, 7, 105, 5, 5, 96, 2, 107, 5, 1, 2, 57},
-       "0 SHOW 2\n"
-       "0 DONE\n"},
+       "0 SHOW 2\n0 DONE\n"},
       {"accepted: A branch of no length", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 6, 0, 135, 52, 74, 54, 0, 5, 96, 0, 1, 1, 57},
-       "0 SHOW 1\n"
-       "0 DONE\n"},
+       "0 SHOW 1\n0 DONE\n"},
       {"accepted: A value under an AND may change on one way alone", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 11, 0, 100, 78, 62, 33, 0, 1, 1, 6, 42, 4, 1, 2, 16, 6, 16, 57},
-       "0 SHOW 3.001\n"
-       "0 DONE\n"},
+       "0 SHOW 3.001\n0 DONE\n"},
       {"accepted: A reading in the check of an UNTIL", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 233, 31, 5, 0, 215, 131, 191, 157, 0, 83, 56, 0, 6, 84},
-       "0 READ LIGHT_R 0\n"
-       "0 DONE\n"},
+       "0 READ LIGHT_R 0\n0 DONE\n"},
       {"accepted: A check that is TRUE at once touches no motors", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 10, 0, 139, 34, 121, 50, 0, 1, 1, 1, 50, 72, 6, 84, 1, 1, 57},
-       "0 SHOW 1\n"
-       "0 DONE\n"},
+       "0 SHOW 1\n0 DONE\n"},
       {"accepted: Every value but 0 is TRUE", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 22, 0, 19, 198, 139, 117, 0, 1, 2, 96, 3, 1, 1, 57, 1, 3, 58, 1, 4, 38, 58, 1, 5, 98, 3, 1, 6, 57, 88},
-       "0 SHOW 1\n"
-       "0 SHOW TRUE\n"
-       "0 SHOW FALSE\n"
-       "0 MOTORS 0 0\n"
-       "0 DONE\n"},
+       "0 SHOW 1\n0 SHOW TRUE\n0 SHOW FALSE\n0 MOTORS 0 0\n0 DONE\n"},
       {"accepted: AND and OR of any values are TRUE or FALSE", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 21, 0, 86, 165, 79, 201, 0, 1, 2, 1, 4, 39, 6, 32, 58, 1, 2, 1, 4, 40, 6, 32, 58, 1, 2, 5, 39, 58},
-       "0 SHOW TRUE\n"
-       "0 SHOW TRUE\n"
-       "0 SHOW FALSE\n"
-       "0 DONE\n"},
+       "0 SHOW TRUE\n0 SHOW TRUE\n0 SHOW FALSE\n0 DONE\n"},
       {"accepted: A count that rounds to less than 1 skips its loop", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 21, 0, 169, 237, 168, 224, 0, 3, 243, 1, 110, 5, 1, 1, 57, 112, 5, 3, 244, 1, 110, 5, 1, 2, 57, 112, 5, 88},
-       "0 SHOW 2\n"
-       "0 MOTORS 0 0\n"
-       "0 DONE\n"},
+       "0 SHOW 2\n0 MOTORS 0 0\n0 DONE\n"},
       {"accepted: A procedure that does nothing", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 10, 0, 163, 135, 224, 15, 0, 120, 1, 122, 123, 3, 123, 5, 1, 1, 57},
-       "0 SHOW 1\n"
-       "0 DONE\n"},
+       "0 SHOW 1\n0 DONE\n"},
       {"accepted: The bounds of RANDOM are rounded first, and may be exchanged", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 24, 0, 41, 59, 160, 204, 0, 3, 99, 25, 3, 244, 1, 11, 57, 3, 244, 1, 3, 99, 25, 11, 57, 3, 12, 254, 3, 37, 250, 11, 57},
-       "0 SHOW 4\n"
-       "0 SHOW 2\n"
-       "0 SHOW -1\n"
-       "0 DONE\n"},
+       "0 SHOW 4\n0 SHOW 2\n0 SHOW -1\n0 DONE\n"},
       {"accepted: RANDOM steps its state where there is only one number, too", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 13, 0, 165, 69, 180, 173, 0, 1, 7, 1, 7, 11, 57, 1, 1, 2, 232, 3, 11, 57},
-       "0 SHOW 7\n"
-       "0 SHOW 690\n"
-       "0 DONE\n"},
+       "0 SHOW 7\n0 SHOW 690\n0 DONE\n"},
       {"accepted: RANDOM may round to a number that is too large", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 12, 0, 115, 133, 205, 24, 0, 4, 108, 255, 255, 127, 4, 255, 255, 255, 127, 11, 57},
        "0 FAULT OVERFLOW\n"},
       {"blocks: IF, ELSEIF and ELSE: the first arm that is true", tinibot(), {{}, {}, {5000, 15000, 25000}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 96, 27, 22, 0, 102, 216, 166, 61, 0, 109, 3, 146, 218, 10, 4, 177, 57, 100, 10, 138, 218, 20, 4, 178, 57, 100, 2, 179, 57, 112, 20},
-       "0 READ DISTANCE 5\n"
-       "0 SHOW 1\n"
-       "0 READ DISTANCE 15\n"
-       "0 SHOW 2\n"
-       "0 READ DISTANCE 25\n"
-       "0 SHOW 3\n"
-       "0 DONE\n"},
+       "0 READ DISTANCE 5\n0 SHOW 1\n0 READ DISTANCE 15\n0 SHOW 2\n0 READ DISTANCE 25\n0 SHOW 3\n0 DONE\n"},
       {"blocks: LOOP evaluates its count once, rounds it, and 0 or less does nothing", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 22, 0, 56, 184, 39, 133, 0, 12, 15, 160, 128, 110, 6, 185, 160, 128, 57, 112, 6, 128, 12, 96, 17, 110, 4, 176, 57, 112, 4},
-       "0 SHOW 9\n"
-       "0 SHOW 9\n"
-       "0 DONE\n"},
+       "0 SHOW 9\n0 SHOW 9\n0 DONE\n"},
       {"blocks: WHILE checks before every turn", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 14, 0, 100, 36, 238, 109, 0, 179, 160, 105, 10, 236, 0, 0, 6, 128, 57, 53, 0, 107, 10},
-       "0 SHOW 3\n"
-       "0 SHOW 2\n"
-       "0 SHOW 1\n"
-       "0 DONE\n"},
+       "0 SHOW 3\n0 SHOW 2\n0 SHOW 1\n0 DONE\n"},
       {"blocks: BREAK leaves the innermost loop", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 30, 0, 144, 203, 65, 55, 0, 109, 2, 176, 160, 104, 52, 0, 232, 0, 2, 2, 114, 4, 128, 57, 107, 12, 109, 5, 116, 2, 112, 4, 104, 114, 2, 107, 4, 112, 28},
-       "0 SHOW 1\n"
-       "0 SHOW 1\n"
-       "0 DONE\n"},
+       "0 SHOW 1\n0 SHOW 1\n0 DONE\n"},
       {"blocks: An arm that ends with BREAK needs no jump over the next one", tinibot(), {{}, {}, {50000, 9000}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 32, 9, 11, 0, 146, 55, 245, 48, 0, 104, 146, 218, 10, 2, 114, 4, 81, 100, 107, 10},
-       "0 READ DISTANCE 50\n"
-       "1000 READ DISTANCE 9\n"
-       "1000 DONE\n"},
+       "0 READ DISTANCE 50\n1000 READ DISTANCE 9\n1000 DONE\n"},
       {"blocks: A DEF runs where it is called, and its definition does nothing", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 23, 0, 16, 204, 224, 141, 0, 120, 4, 68, 10, 50, 122, 120, 9, 109, 2, 123, 10, 81, 10, 112, 6, 122, 81, 100, 123, 13, 123, 21},
-       "1000 MOTORS 50 50\n"
-       "1100 MOTORS 0 0\n"
-       "1200 MOTORS 50 50\n"
-       "1300 MOTORS 0 0\n"
-       "1400 MOTORS 50 50\n"
-       "1500 MOTORS 0 0\n"
-       "1500 DONE\n"},
+       "1000 MOTORS 50 50\n1100 MOTORS 0 0\n1200 MOTORS 50 50\n1300 MOTORS 0 0\n1400 MOTORS 50 50\n1500 MOTORS 0 0\n1500 DONE\n"},
       {"blocks: A DEF shares the program's variables", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 13, 0, 141, 234, 216, 194, 0, 120, 5, 53, 0, 128, 57, 122, 181, 160, 123, 9, 123, 11},
-       "0 SHOW 4\n"
-       "0 SHOW 3\n"
-       "0 DONE\n"},
+       "0 SHOW 4\n0 SHOW 3\n0 DONE\n"},
       {"blocks: A long body takes far jumps", tinibot(), {{}, {}, {10000}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 32, 9, 78, 1, 230, 190, 20, 220, 0, 146, 186, 34, 97, 70, 1, 10, 3, 233, 3, 19, 3, 124, 23, 16, 12, 8, 17, 4, 100, 164, 0, 0, 16, 57, 10, 3, 233, 3, 19, 3, 124, 23, 16, 12, 8, 17, 3, 118, 23, 10, 18, 16, 57, 10, 3, 233, 3, 19, 3, 210, 7, 10, 18, 16, 3, 164, 15, 10, 19, 17, 3, 118, 23, 10, 18, 16, 57, 10, 3, 233, 3, 19, 3, 210, 7, 10, 18, 16, 3, 164, 15, 10, 19, 17, 3, 118, 23, 10, 18, 16, 57, 10, 3, 233, 3, 19, 3, 210, 7, 10, 18, 16, 3, 164, 15, 10, 19, 17, 3, 118, 23, 10, 18, 16, 57, 10, 3, 233, 3, 19, 3, 210, 7, 10, 18, 16, 3, 164, 15, 10, 19, 17, 3, 118, 23, 10, 18, 16, 57, 10, 3, 233, 3, 19, 3, 210, 7, 10, 18, 16, 3, 164, 15, 10, 19, 17, 3, 118, 23, 10, 18, 16, 57, 10, 3, 233, 3, 19, 3, 210, 7, 10, 18, 16, 3, 164, 15, 10, 19, 17, 3, 118, 23, 10, 18, 16, 57, 10, 3, 233, 3, 19, 3, 210, 7, 10, 18, 16, 3, 164, 15, 10, 19, 17, 3, 118, 23, 10, 18, 16, 57, 10, 3, 233, 3, 19, 3, 210, 7, 10, 18, 16, 3, 164, 15, 10, 19, 17, 3, 118, 23, 10, 18, 16, 57, 10, 3, 233, 3, 19, 3, 210, 7, 10, 18, 16, 3, 164, 15, 10, 19, 17, 3, 118, 23, 10, 18, 16, 57, 10, 3, 233, 3, 19, 3, 210, 7, 10, 18, 16, 3, 164, 15, 10, 19, 17, 3, 118, 23, 10, 18, 16, 57, 10, 3, 233, 3, 19, 3, 210, 7, 10, 18, 16, 3, 164, 15, 10, 19, 17, 3, 118, 23, 10, 18, 16, 57, 10, 3, 233, 3, 19, 3, 210, 7, 10, 18, 16, 3, 164, 15, 10, 19, 17, 3, 118, 23, 10, 18, 16, 57, 183, 57},
-       "0 READ DISTANCE 10\n"
-       "0 SHOW 7\n"
-       "0 DONE\n"},
+       "0 READ DISTANCE 10\n0 SHOW 7\n0 DONE\n"},
       {"blocks: Calls go back to where they came from, over more than 256 bytes and 8 deep", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 211, 1, 68, 179, 204, 13, 0, 120, 3, 52, 0, 122, 120, 5, 123, 7, 123, 9, 122, 120, 5, 123, 9, 123, 11, 122, 121, 148, 1, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 128, 12, 5, 16, 160, 124, 155, 1, 122, 120, 7, 124, 153, 1, 124, 164, 1, 122, 120, 5, 123, 11, 123, 13, 122, 120, 6, 123, 9, 124, 191, 1, 122, 120, 5, 123, 10, 123, 12, 122, 176, 160, 109, 2, 123, 11, 128, 57, 112, 6},
-       "0 SHOW 194\n"
-       "0 SHOW 388\n"
-       "0 DONE\n"},
+       "0 SHOW 194\n0 SHOW 388\n0 DONE\n"},
       {"instructions: A comparison with a variable goes on where it is true", tinibot(), {{}, {}, {4000, 499000, 5000, 500000, 6000, 501000}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 96, 27, 102, 0, 87, 82, 203, 63, 0, 109, 3, 9, 2, 48, 3, 232, 3, 5, 3, 1, 1, 57, 233, 3, 5, 3, 1, 2, 57, 234, 3, 5, 3, 1, 3, 57, 235, 3, 5, 3, 1, 4, 57, 236, 3, 5, 3, 1, 5, 57, 237, 3, 5, 3, 1, 6, 57, 9, 2, 48, 3, 240, 3, 244, 1, 3, 1, 7, 57, 241, 3, 244, 1, 3, 1, 8, 57, 242, 3, 244, 1, 3, 1, 9, 57, 243, 3, 244, 1, 3, 1, 10, 57, 244, 3, 244, 1, 3, 1, 11, 57, 245, 3, 244, 1, 3, 1, 12, 57, 112, 100},
-       "0 READ DISTANCE 4\n"
-       "0 SHOW 2\n"
-       "0 SHOW 3\n"
-       "0 SHOW 4\n"
-       "0 READ DISTANCE 499\n"
-       "0 SHOW 8\n"
-       "0 SHOW 9\n"
-       "0 SHOW 10\n"
-       "0 READ DISTANCE 5\n"
-       "0 SHOW 1\n"
-       "0 SHOW 4\n"
-       "0 SHOW 6\n"
-       "0 READ DISTANCE 500\n"
-       "0 SHOW 7\n"
-       "0 SHOW 10\n"
-       "0 SHOW 12\n"
-       "0 READ DISTANCE 6\n"
-       "0 SHOW 2\n"
-       "0 SHOW 5\n"
-       "0 SHOW 6\n"
-       "0 READ DISTANCE 501\n"
-       "0 SHOW 8\n"
-       "0 SHOW 11\n"
-       "0 SHOW 12\n"
-       "0 DONE\n"},
+       "0 READ DISTANCE 4\n0 SHOW 2\n0 SHOW 3\n0 SHOW 4\n0 READ DISTANCE 499\n0 SHOW 8\n0 SHOW 9\n0 SHOW 10\n0 READ DISTANCE 5\n0 SHOW 1\n0 SHOW 4\n0 SHOW 6\n0 READ DISTANCE 500\n0 SHOW 7\n0 SHOW 10\n0 SHOW 12\n0 READ DISTANCE 6\n0 SHOW 2\n0 SHOW 5\n0 SHOW 6\n0 READ DISTANCE 501\n0 SHOW 8\n0 SHOW 11\n0 SHOW 12\n0 DONE\n"},
       {"instructions: A comparison with a kept reading goes on where it is true", tinibot(), {{}, {}, {4000, 499000, 5000, 500000, 6000, 501000}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 227, 200, 98, 0, 84, 41, 54, 197, 0, 109, 3, 56, 2, 138, 216, 5, 3, 1, 1, 57, 138, 217, 5, 3, 1, 2, 57, 138, 218, 5, 3, 1, 3, 57, 138, 219, 5, 3, 1, 4, 57, 138, 220, 5, 3, 1, 5, 57, 138, 221, 5, 3, 1, 6, 57, 56, 2, 138, 224, 244, 1, 3, 1, 7, 57, 138, 225, 244, 1, 3, 1, 8, 57, 138, 226, 244, 1, 3, 1, 9, 57, 138, 227, 244, 1, 3, 1, 10, 57, 138, 228, 244, 1, 3, 1, 11, 57, 138, 229, 244, 1, 3, 1, 12, 57, 112, 96},
-       "0 READ DISTANCE 4\n"
-       "0 SHOW 2\n"
-       "0 SHOW 3\n"
-       "0 SHOW 4\n"
-       "0 READ DISTANCE 499\n"
-       "0 SHOW 8\n"
-       "0 SHOW 9\n"
-       "0 SHOW 10\n"
-       "0 READ DISTANCE 5\n"
-       "0 SHOW 1\n"
-       "0 SHOW 4\n"
-       "0 SHOW 6\n"
-       "0 READ DISTANCE 500\n"
-       "0 SHOW 7\n"
-       "0 SHOW 10\n"
-       "0 SHOW 12\n"
-       "0 READ DISTANCE 6\n"
-       "0 SHOW 2\n"
-       "0 SHOW 5\n"
-       "0 SHOW 6\n"
-       "0 READ DISTANCE 501\n"
-       "0 SHOW 8\n"
-       "0 SHOW 11\n"
-       "0 SHOW 12\n"
-       "0 DONE\n"},
+       "0 READ DISTANCE 4\n0 SHOW 2\n0 SHOW 3\n0 SHOW 4\n0 READ DISTANCE 499\n0 SHOW 8\n0 SHOW 9\n0 SHOW 10\n0 READ DISTANCE 5\n0 SHOW 1\n0 SHOW 4\n0 SHOW 6\n0 READ DISTANCE 500\n0 SHOW 7\n0 SHOW 10\n0 SHOW 12\n0 READ DISTANCE 6\n0 SHOW 2\n0 SHOW 5\n0 SHOW 6\n0 READ DISTANCE 501\n0 SHOW 8\n0 SHOW 11\n0 SHOW 12\n0 DONE\n"},
       {"instructions: A comparison of a fresh reading goes on where it is true", tinibot(), {{}, {}, {4000, 4000, 4000, 4000, 4000, 4000, 499000, 499000, 499000, 499000, 499000, 499000, 5000, 5000, 5000, 5000, 5000, 5000, 500000, 500000, 500000, 500000, 500000, 500000, 6000, 6000, 6000, 6000, 6000, 6000, 501000, 501000, 501000, 501000, 501000, 501000}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 253, 244, 94, 0, 164, 224, 165, 186, 0, 109, 3, 146, 216, 5, 3, 1, 1, 57, 146, 217, 5, 3, 1, 2, 57, 146, 218, 5, 3, 1, 3, 57, 146, 219, 5, 3, 1, 4, 57, 146, 220, 5, 3, 1, 5, 57, 146, 221, 5, 3, 1, 6, 57, 146, 224, 244, 1, 3, 1, 7, 57, 146, 225, 244, 1, 3, 1, 8, 57, 146, 226, 244, 1, 3, 1, 9, 57, 146, 227, 244, 1, 3, 1, 10, 57, 146, 228, 244, 1, 3, 1, 11, 57, 146, 229, 244, 1, 3, 1, 12, 57, 112, 92},
-       "0 READ DISTANCE 4\n"
-       "0 READ DISTANCE 4\n"
-       "0 SHOW 2\n"
-       "0 READ DISTANCE 4\n"
-       "0 SHOW 3\n"
-       "0 READ DISTANCE 4\n"
-       "0 SHOW 4\n"
-       "0 READ DISTANCE 4\n"
-       "0 READ DISTANCE 4\n"
-       "0 READ DISTANCE 499\n"
-       "0 READ DISTANCE 499\n"
-       "0 SHOW 8\n"
-       "0 READ DISTANCE 499\n"
-       "0 SHOW 9\n"
-       "0 READ DISTANCE 499\n"
-       "0 SHOW 10\n"
-       "0 READ DISTANCE 499\n"
-       "0 READ DISTANCE 499\n"
-       "0 READ DISTANCE 5\n"
-       "0 SHOW 1\n"
-       "0 READ DISTANCE 5\n"
-       "0 READ DISTANCE 5\n"
-       "0 READ DISTANCE 5\n"
-       "0 SHOW 4\n"
-       "0 READ DISTANCE 5\n"
-       "0 READ DISTANCE 5\n"
-       "0 SHOW 6\n"
-       "0 READ DISTANCE 500\n"
-       "0 SHOW 7\n"
-       "0 READ DISTANCE 500\n"
-       "0 READ DISTANCE 500\n"
-       "0 READ DISTANCE 500\n"
-       "0 SHOW 10\n"
-       "0 READ DISTANCE 500\n"
-       "0 READ DISTANCE 500\n"
-       "0 SHOW 12\n"
-       "0 READ DISTANCE 6\n"
-       "0 READ DISTANCE 6\n"
-       "0 SHOW 2\n"
-       "0 READ DISTANCE 6\n"
-       "0 READ DISTANCE 6\n"
-       "0 READ DISTANCE 6\n"
-       "0 SHOW 5\n"
-       "0 READ DISTANCE 6\n"
-       "0 SHOW 6\n"
-       "0 READ DISTANCE 501\n"
-       "0 READ DISTANCE 501\n"
-       "0 SHOW 8\n"
-       "0 READ DISTANCE 501\n"
-       "0 READ DISTANCE 501\n"
-       "0 READ DISTANCE 501\n"
-       "0 SHOW 11\n"
-       "0 READ DISTANCE 501\n"
-       "0 SHOW 12\n"
-       "0 DONE\n"},
+       "0 READ DISTANCE 4\n0 READ DISTANCE 4\n0 SHOW 2\n0 READ DISTANCE 4\n0 SHOW 3\n0 READ DISTANCE 4\n0 SHOW 4\n0 READ DISTANCE 4\n0 READ DISTANCE 4\n0 READ DISTANCE 499\n0 READ DISTANCE 499\n0 SHOW 8\n0 READ DISTANCE 499\n0 SHOW 9\n0 READ DISTANCE 499\n0 SHOW 10\n0 READ DISTANCE 499\n0 READ DISTANCE 499\n0 READ DISTANCE 5\n0 SHOW 1\n0 READ DISTANCE 5\n0 READ DISTANCE 5\n0 READ DISTANCE 5\n0 SHOW 4\n0 READ DISTANCE 5\n0 READ DISTANCE 5\n0 SHOW 6\n0 READ DISTANCE 500\n0 SHOW 7\n0 READ DISTANCE 500\n0 READ DISTANCE 500\n0 READ DISTANCE 500\n0 SHOW 10\n0 READ DISTANCE 500\n0 READ DISTANCE 500\n0 SHOW 12\n0 READ DISTANCE 6\n0 READ DISTANCE 6\n0 SHOW 2\n0 READ DISTANCE 6\n0 READ DISTANCE 6\n0 READ DISTANCE 6\n0 SHOW 5\n0 READ DISTANCE 6\n0 SHOW 6\n0 READ DISTANCE 501\n0 READ DISTANCE 501\n0 SHOW 8\n0 READ DISTANCE 501\n0 READ DISTANCE 501\n0 READ DISTANCE 501\n0 SHOW 11\n0 READ DISTANCE 501\n0 SHOW 12\n0 DONE\n"},
       {"instructions: ADD_VAR adds what the other variable holds", tinibot(), {{}, {}, {7250, 12000}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 96, 27, 29, 0, 189, 119, 195, 183, 0, 9, 2, 48, 0, 9, 2, 48, 1, 51, 0, 1, 7, 0, 57, 7, 1, 57, 51, 1, 1, 7, 1, 57, 50, 0, 128, 7, 0, 57},
-       "0 READ DISTANCE 7.25\n"
-       "0 READ DISTANCE 12\n"
-       "0 SHOW 19.25\n"
-       "0 SHOW 12\n"
-       "0 SHOW 24\n"
-       "0 SHOW -108.75\n"
-       "0 DONE\n"},
+       "0 READ DISTANCE 7.25\n0 READ DISTANCE 12\n0 SHOW 19.25\n0 SHOW 12\n0 SHOW 24\n0 SHOW -108.75\n0 DONE\n"},
       {"instructions: Far jumps lead where near ones do", tinibot(), {{}, {}, {20000, 20000, 9000}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 32, 9, 189, 0, 28, 196, 128, 210, 0, 121, 4, 0, 1, 1, 57, 122, 124, 7, 0, 6, 97, 6, 0, 1, 10, 57, 101, 3, 0, 1, 20, 57, 5, 97, 6, 0, 1, 11, 57, 101, 3, 0, 1, 21, 57, 6, 99, 6, 0, 1, 12, 57, 101, 3, 0, 1, 22, 57, 5, 99, 6, 0, 1, 13, 57, 101, 3, 0, 1, 23, 57, 6, 43, 1, 0, 6, 58, 6, 43, 1, 0, 5, 58, 5, 43, 1, 0, 6, 58, 5, 43, 1, 0, 5, 58, 6, 45, 1, 0, 6, 58, 6, 45, 1, 0, 5, 58, 5, 45, 1, 0, 6, 58, 5, 45, 1, 0, 5, 58, 1, 2, 111, 6, 0, 1, 32, 57, 113, 6, 0, 1, 0, 111, 6, 0, 1, 30, 57, 113, 6, 0, 109, 2, 1, 40, 57, 117, 6, 0, 1, 41, 57, 113, 12, 0, 104, 1, 50, 57, 115, 6, 0, 1, 51, 57, 108, 12, 0, 49, 0, 0, 106, 17, 0, 7, 0, 1, 2, 34, 97, 9, 0, 50, 0, 1, 7, 0, 57, 108, 17, 0, 83, 9, 2, 1, 10, 34, 84},
-       "0 SHOW 1\n"
-       "0 SHOW 10\n"
-       "0 SHOW 21\n"
-       "0 SHOW 22\n"
-       "0 SHOW 13\n"
-       "0 SHOW TRUE\n"
-       "0 SHOW FALSE\n"
-       "0 SHOW FALSE\n"
-       "0 SHOW FALSE\n"
-       "0 SHOW TRUE\n"
-       "0 SHOW TRUE\n"
-       "0 SHOW TRUE\n"
-       "0 SHOW FALSE\n"
-       "0 SHOW 32\n"
-       "0 SHOW 32\n"
-       "0 SHOW 40\n"
-       "0 SHOW 50\n"
-       "0 SHOW 1\n"
-       "0 SHOW 2\n"
-       "0 READ DISTANCE 20\n"
-       "20 READ DISTANCE 20\n"
-       "40 READ DISTANCE 9\n"
-       "40 DONE\n"},
+       "0 SHOW 1\n0 SHOW 10\n0 SHOW 21\n0 SHOW 22\n0 SHOW 13\n0 SHOW TRUE\n0 SHOW FALSE\n0 SHOW FALSE\n0 SHOW FALSE\n0 SHOW TRUE\n0 SHOW TRUE\n0 SHOW TRUE\n0 SHOW FALSE\n0 SHOW 32\n0 SHOW 32\n0 SHOW 40\n0 SHOW 50\n0 SHOW 1\n0 SHOW 2\n0 READ DISTANCE 20\n20 READ DISTANCE 20\n40 READ DISTANCE 9\n40 DONE\n"},
       {"instructions: An UNTIL with a constant of 8 bits ends where its comparison is true", tinibot(), {{}, {}, {4000, 6000, 5000, 5000, 6000, 6000, 5000, 4000, 6000, 5000, 4000, 5000, 6000, 4000, 5000}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 205, 192, 36, 0, 200, 138, 176, 33, 0, 178, 190, 72, 146, 200, 5, 178, 190, 72, 146, 201, 5, 178, 190, 72, 146, 202, 5, 178, 190, 72, 146, 203, 5, 178, 190, 72, 146, 204, 5, 178, 190, 72, 146, 205, 5},
-       "0 READ DISTANCE 4\n"
-       "0 MOTORS 50 50\n"
-       "20 READ DISTANCE 6\n"
-       "40 READ DISTANCE 5\n"
-       "40 MOTORS 0 0\n"
-       "40 READ DISTANCE 5\n"
-       "40 MOTORS 50 50\n"
-       "60 READ DISTANCE 6\n"
-       "60 MOTORS 0 0\n"
-       "60 READ DISTANCE 6\n"
-       "60 MOTORS 50 50\n"
-       "80 READ DISTANCE 5\n"
-       "100 READ DISTANCE 4\n"
-       "100 MOTORS 0 0\n"
-       "100 READ DISTANCE 6\n"
-       "100 MOTORS 50 50\n"
-       "120 READ DISTANCE 5\n"
-       "120 MOTORS 0 0\n"
-       "120 READ DISTANCE 4\n"
-       "120 MOTORS 50 50\n"
-       "140 READ DISTANCE 5\n"
-       "160 READ DISTANCE 6\n"
-       "160 MOTORS 0 0\n"
-       "160 READ DISTANCE 4\n"
-       "160 MOTORS 50 50\n"
-       "180 READ DISTANCE 5\n"
-       "180 MOTORS 0 0\n"
-       "180 DONE\n"},
+       "0 READ DISTANCE 4\n0 MOTORS 50 50\n20 READ DISTANCE 6\n40 READ DISTANCE 5\n40 MOTORS 0 0\n40 READ DISTANCE 5\n40 MOTORS 50 50\n60 READ DISTANCE 6\n60 MOTORS 0 0\n60 READ DISTANCE 6\n60 MOTORS 50 50\n80 READ DISTANCE 5\n100 READ DISTANCE 4\n100 MOTORS 0 0\n100 READ DISTANCE 6\n100 MOTORS 50 50\n120 READ DISTANCE 5\n120 MOTORS 0 0\n120 READ DISTANCE 4\n120 MOTORS 50 50\n140 READ DISTANCE 5\n160 READ DISTANCE 6\n160 MOTORS 0 0\n160 READ DISTANCE 4\n160 MOTORS 50 50\n180 READ DISTANCE 5\n180 MOTORS 0 0\n180 DONE\n"},
       {"instructions: An UNTIL with a constant of 16 bits ends where its comparison is true", tinibot(), {{}, {}, {499000, 501000, 500000, 500000, 501000, 501000, 500000, 499000, 501000, 500000, 499000, 500000, 501000, 499000, 500000}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 205, 192, 42, 0, 0, 122, 82, 224, 0, 178, 190, 72, 146, 208, 244, 1, 178, 190, 72, 146, 209, 244, 1, 178, 190, 72, 146, 210, 244, 1, 178, 190, 72, 146, 211, 244, 1, 178, 190, 72, 146, 212, 244, 1, 178, 190, 72, 146, 213, 244, 1},
-       "0 READ DISTANCE 499\n"
-       "0 MOTORS 50 50\n"
-       "20 READ DISTANCE 501\n"
-       "40 READ DISTANCE 500\n"
-       "40 MOTORS 0 0\n"
-       "40 READ DISTANCE 500\n"
-       "40 MOTORS 50 50\n"
-       "60 READ DISTANCE 501\n"
-       "60 MOTORS 0 0\n"
-       "60 READ DISTANCE 501\n"
-       "60 MOTORS 50 50\n"
-       "80 READ DISTANCE 500\n"
-       "100 READ DISTANCE 499\n"
-       "100 MOTORS 0 0\n"
-       "100 READ DISTANCE 501\n"
-       "100 MOTORS 50 50\n"
-       "120 READ DISTANCE 500\n"
-       "120 MOTORS 0 0\n"
-       "120 READ DISTANCE 499\n"
-       "120 MOTORS 50 50\n"
-       "140 READ DISTANCE 500\n"
-       "160 READ DISTANCE 501\n"
-       "160 MOTORS 0 0\n"
-       "160 READ DISTANCE 499\n"
-       "160 MOTORS 50 50\n"
-       "180 READ DISTANCE 500\n"
-       "180 MOTORS 0 0\n"
-       "180 DONE\n"},
+       "0 READ DISTANCE 499\n0 MOTORS 50 50\n20 READ DISTANCE 501\n40 READ DISTANCE 500\n40 MOTORS 0 0\n40 READ DISTANCE 500\n40 MOTORS 50 50\n60 READ DISTANCE 501\n60 MOTORS 0 0\n60 READ DISTANCE 501\n60 MOTORS 50 50\n80 READ DISTANCE 500\n100 READ DISTANCE 499\n100 MOTORS 0 0\n100 READ DISTANCE 501\n100 MOTORS 50 50\n120 READ DISTANCE 500\n120 MOTORS 0 0\n120 READ DISTANCE 499\n120 MOTORS 50 50\n140 READ DISTANCE 500\n160 READ DISTANCE 501\n160 MOTORS 0 0\n160 READ DISTANCE 499\n160 MOTORS 50 50\n180 READ DISTANCE 500\n180 MOTORS 0 0\n180 DONE\n"},
       {"instructions: An UNTIL checks from behind its WATCH again", tinibot(), {{}, {}, {3000, 9400, 9500, 199000, 200000, 200001}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 224, 63, 20, 0, 66, 52, 150, 112, 0, 188, 78, 154, 138, 12, 5, 16, 205, 10, 187, 77, 146, 1, 200, 36, 84, 186, 79, 6, 84},
-       "0 READ DISTANCE 3\n"
-       "0 MOTORS -30 30\n"
-       "20 READ DISTANCE 9.4\n"
-       "40 READ DISTANCE 9.5\n"
-       "40 MOTORS 0 0\n"
-       "40 READ DISTANCE 199\n"
-       "40 MOTORS -20 -20\n"
-       "60 READ DISTANCE 200\n"
-       "80 READ DISTANCE 200.001\n"
-       "80 MOTORS 0 0\n"
-       "80 DONE\n"},
+       "0 READ DISTANCE 3\n0 MOTORS -30 30\n20 READ DISTANCE 9.4\n40 READ DISTANCE 9.5\n40 MOTORS 0 0\n40 READ DISTANCE 199\n40 MOTORS -20 -20\n60 READ DISTANCE 200\n80 READ DISTANCE 200.001\n80 MOTORS 0 0\n80 DONE\n"},
       {"instructions: Times of one byte are hundredths, tenths and whole seconds", tinibot(), {{}, {}, {}}, 200000, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 26, 0, 251, 123, 69, 37, 0, 81, 0, 6, 58, 81, 1, 68, 99, 50, 69, 100, 50, 81, 101, 70, 199, 50, 71, 200, 50, 81, 201, 81, 255, 6, 58},
-       "0 SHOW TRUE\n"
-       "10 MOTORS 50 50\n"
-       "1000 MOTORS 0 0\n"
-       "1000 MOTORS -50 -50\n"
-       "2000 MOTORS 0 0\n"
-       "3100 MOTORS -50 50\n"
-       "14000 MOTORS 0 0\n"
-       "14000 MOTORS 50 -50\n"
-       "25000 MOTORS 0 0\n"
-       "103000 SHOW TRUE\n"
-       "103000 DONE\n"},
+       "0 SHOW TRUE\n10 MOTORS 50 50\n1000 MOTORS 0 0\n1000 MOTORS -50 -50\n2000 MOTORS 0 0\n3100 MOTORS -50 50\n14000 MOTORS 0 0\n14000 MOTORS 50 -50\n25000 MOTORS 0 0\n103000 SHOW TRUE\n103000 DONE\n"},
       {"instructions: BEEP8 has its frequency in two bytes, limited like that of BEEP", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 28, 0, 87, 28, 208, 103, 0, 86, 10, 184, 1, 86, 100, 30, 0, 86, 1, 31, 0, 86, 1, 32, 78, 86, 1, 33, 78, 86, 1, 255, 255, 86, 0, 0, 0},
-       "0 BEEP 440 100\n"
-       "100 BEEP 31 1000\n"
-       "1100 BEEP 31 10\n"
-       "1110 BEEP 20000 10\n"
-       "1120 BEEP 20000 10\n"
-       "1130 BEEP 20000 10\n"
-       "1140 BEEP 31 0\n"
-       "1140 DONE\n"},
+       "0 BEEP 440 100\n100 BEEP 31 1000\n1100 BEEP 31 10\n1110 BEEP 20000 10\n1120 BEEP 20000 10\n1130 BEEP 20000 10\n1140 BEEP 31 0\n1140 DONE\n"},
       {"instructions: A number is pushed by one byte, and tenths by two", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 61, 0, 63, 129, 38, 167, 0, 176, 57, 177, 57, 178, 57, 179, 57, 180, 57, 181, 57, 182, 57, 183, 57, 184, 57, 185, 57, 186, 57, 187, 57, 188, 57, 189, 57, 190, 57, 191, 57, 192, 57, 193, 57, 194, 57, 195, 57, 12, 128, 57, 12, 246, 57, 12, 255, 57, 12, 0, 57, 12, 1, 57, 12, 127, 57, 1, 255, 57},
-       "0 SHOW 0\n"
-       "0 SHOW 1\n"
-       "0 SHOW 2\n"
-       "0 SHOW 3\n"
-       "0 SHOW 4\n"
-       "0 SHOW 5\n"
-       "0 SHOW 6\n"
-       "0 SHOW 7\n"
-       "0 SHOW 8\n"
-       "0 SHOW 9\n"
-       "0 SHOW 10\n"
-       "0 SHOW 20\n"
-       "0 SHOW 30\n"
-       "0 SHOW 40\n"
-       "0 SHOW 50\n"
-       "0 SHOW 60\n"
-       "0 SHOW 70\n"
-       "0 SHOW 80\n"
-       "0 SHOW 90\n"
-       "0 SHOW 100\n"
-       "0 SHOW -12.8\n"
-       "0 SHOW -1\n"
-       "0 SHOW -0.1\n"
-       "0 SHOW 0\n"
-       "0 SHOW 0.1\n"
-       "0 SHOW 12.7\n"
-       "0 SHOW 255\n"
-       "0 DONE\n"},
+       "0 SHOW 0\n0 SHOW 1\n0 SHOW 2\n0 SHOW 3\n0 SHOW 4\n0 SHOW 5\n0 SHOW 6\n0 SHOW 7\n0 SHOW 8\n0 SHOW 9\n0 SHOW 10\n0 SHOW 20\n0 SHOW 30\n0 SHOW 40\n0 SHOW 50\n0 SHOW 60\n0 SHOW 70\n0 SHOW 80\n0 SHOW 90\n0 SHOW 100\n0 SHOW -12.8\n0 SHOW -1\n0 SHOW -0.1\n0 SHOW 0\n0 SHOW 0.1\n0 SHOW 12.7\n0 SHOW 255\n0 DONE\n"},
       {"instructions: Variables 0 to 7 have instructions of one byte", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 35, 0, 19, 102, 19, 211, 0, 177, 160, 178, 161, 179, 162, 180, 163, 181, 164, 182, 165, 183, 166, 184, 167, 128, 57, 129, 57, 130, 57, 131, 57, 132, 57, 133, 57, 134, 57, 135, 57, 7, 7, 57},
-       "0 SHOW 1\n"
-       "0 SHOW 2\n"
-       "0 SHOW 3\n"
-       "0 SHOW 4\n"
-       "0 SHOW 5\n"
-       "0 SHOW 6\n"
-       "0 SHOW 7\n"
-       "0 SHOW 8\n"
-       "0 SHOW 8\n"
-       "0 DONE\n"},
+       "0 SHOW 1\n0 SHOW 2\n0 SHOW 3\n0 SHOW 4\n0 SHOW 5\n0 SHOW 6\n0 SHOW 7\n0 SHOW 8\n0 SHOW 8\n0 DONE\n"},
       {"instructions: INC_VAR and DEC_VAR count by 1", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 12, 0, 16, 220, 218, 69, 0, 52, 31, 52, 31, 53, 30, 7, 31, 57, 7, 30, 57},
-       "0 SHOW 2\n"
-       "0 SHOW -1\n"
-       "0 DONE\n"},
+       "0 SHOW 2\n0 SHOW -1\n0 DONE\n"},
       {"instructions: INC_VAR does not leave the range of numbers", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 10, 0, 160, 146, 225, 1, 0, 4, 120, 253, 255, 127, 163, 6, 58, 52, 3},
-       "0 SHOW TRUE\n"
-       "0 FAULT OVERFLOW\n"},
+       "0 SHOW TRUE\n0 FAULT OVERFLOW\n"},
       {"instructions: DEC_VAR does not leave the range of numbers", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 11, 0, 123, 48, 165, 45, 0, 4, 136, 2, 0, 128, 48, 9, 6, 58, 53, 9},
-       "0 SHOW TRUE\n"
-       "0 FAULT OVERFLOW\n"},
+       "0 SHOW TRUE\n0 FAULT OVERFLOW\n"},
       {"instructions: Sensors and actuators have instructions of one byte", grabber(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 111, 29, 15, 0, 106, 140, 219, 198, 0, 152, 153, 154, 137, 57, 138, 58, 144, 58, 145, 57, 194, 168, 6, 169},
-       "0 READ DISTANCE 0\n"
-       "0 READ TEMPERATURE 0\n"
-       "0 READ BUTTON FALSE\n"
-       "0 SHOW 0\n"
-       "0 SHOW FALSE\n"
-       "0 READ DISTANCE 0\n"
-       "0 SHOW FALSE\n"
-       "0 READ TEMPERATURE 0\n"
-       "0 SHOW 0\n"
-       "0 SET GRIPPER 90\n"
-       "0 SET LED TRUE\n"
-       "0 DONE\n"},
+       "0 READ DISTANCE 0\n0 READ TEMPERATURE 0\n0 READ BUTTON FALSE\n0 SHOW 0\n0 SHOW FALSE\n0 READ DISTANCE 0\n0 SHOW FALSE\n0 READ TEMPERATURE 0\n0 SHOW 0\n0 SET GRIPPER 90\n0 SET LED TRUE\n0 DONE\n"},
       {"instructions: What is not 0 counts as TRUE, and AND, OR and NOT leave 0 or 1", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 150, 0, 247, 64, 92, 75, 0, 5, 5, 39, 57, 5, 5, 40, 57, 5, 6, 39, 57, 5, 6, 40, 57, 5, 177, 39, 57, 5, 177, 40, 57, 5, 178, 39, 57, 5, 178, 40, 57, 6, 5, 39, 57, 6, 5, 40, 57, 6, 6, 39, 57, 6, 6, 40, 57, 6, 177, 39, 57, 6, 177, 40, 57, 6, 178, 39, 57, 6, 178, 40, 57, 177, 5, 39, 57, 177, 5, 40, 57, 177, 6, 39, 57, 177, 6, 40, 57, 177, 177, 39, 57, 177, 177, 40, 57, 177, 178, 39, 57, 177, 178, 40, 57, 178, 5, 39, 57, 178, 5, 40, 57, 178, 6, 39, 57, 178, 6, 40, 57, 178, 177, 39, 57, 178, 177, 40, 57, 178, 178, 39, 57, 178, 178, 40, 57, 5, 38, 57, 5, 58, 6, 38, 57, 6, 58, 177, 38, 57, 177, 58, 12, 255, 38, 57, 12, 255, 58},
-       "0 SHOW 0\n"
-       "0 SHOW 0\n"
-       "0 SHOW 0\n"
-       "0 SHOW 0.001\n"
-       "0 SHOW 0\n"
-       "0 SHOW 0.001\n"
-       "0 SHOW 0\n"
-       "0 SHOW 0.001\n"
-       "0 SHOW 0\n"
-       "0 SHOW 0.001\n"
-       "0 SHOW 0.001\n"
-       "0 SHOW 0.001\n"
-       "0 SHOW 0.001\n"
-       "0 SHOW 0.001\n"
-       "0 SHOW 0.001\n"
-       "0 SHOW 0.001\n"
-       "0 SHOW 0\n"
-       "0 SHOW 0.001\n"
-       "0 SHOW 0.001\n"
-       "0 SHOW 0.001\n"
-       "0 SHOW 0.001\n"
-       "0 SHOW 0.001\n"
-       "0 SHOW 0.001\n"
-       "0 SHOW 0.001\n"
-       "0 SHOW 0\n"
-       "0 SHOW 0.001\n"
-       "0 SHOW 0.001\n"
-       "0 SHOW 0.001\n"
-       "0 SHOW 0.001\n"
-       "0 SHOW 0.001\n"
-       "0 SHOW 0.001\n"
-       "0 SHOW 0.001\n"
-       "0 SHOW 0.001\n"
-       "0 SHOW FALSE\n"
-       "0 SHOW 0\n"
-       "0 SHOW TRUE\n"
-       "0 SHOW 0\n"
-       "0 SHOW TRUE\n"
-       "0 SHOW 0\n"
-       "0 SHOW TRUE\n"
-       "0 DONE\n"},
+       "0 SHOW 0\n0 SHOW 0\n0 SHOW 0\n0 SHOW 0.001\n0 SHOW 0\n0 SHOW 0.001\n0 SHOW 0\n0 SHOW 0.001\n0 SHOW 0\n0 SHOW 0.001\n0 SHOW 0.001\n0 SHOW 0.001\n0 SHOW 0.001\n0 SHOW 0.001\n0 SHOW 0.001\n0 SHOW 0.001\n0 SHOW 0\n0 SHOW 0.001\n0 SHOW 0.001\n0 SHOW 0.001\n0 SHOW 0.001\n0 SHOW 0.001\n0 SHOW 0.001\n0 SHOW 0.001\n0 SHOW 0\n0 SHOW 0.001\n0 SHOW 0.001\n0 SHOW 0.001\n0 SHOW 0.001\n0 SHOW 0.001\n0 SHOW 0.001\n0 SHOW 0.001\n0 SHOW 0.001\n0 SHOW FALSE\n0 SHOW 0\n0 SHOW TRUE\n0 SHOW 0\n0 SHOW TRUE\n0 SHOW 0\n0 SHOW TRUE\n0 DONE\n"},
       {"instructions: A variable that is set again holds the new number alone", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 8, 0, 197, 142, 251, 118, 0, 49, 0, 15, 49, 0, 17, 128, 57},
-       "0 SHOW 17\n"
-       "0 DONE\n"},
+       "0 SHOW 17\n0 DONE\n"},
       {"instructions: A watched turn goes to its own side", tinibot(), {{}, {}, {50000, 9000, 50000, 9000}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 96, 27, 12, 0, 55, 183, 184, 185, 0, 177, 191, 75, 146, 202, 10, 177, 192, 74, 146, 202, 10},
-       "0 READ DISTANCE 50\n"
-       "0 MOTORS 60 -60\n"
-       "20 READ DISTANCE 9\n"
-       "20 MOTORS 0 0\n"
-       "20 READ DISTANCE 50\n"
-       "20 MOTORS -70 70\n"
-       "40 READ DISTANCE 9\n"
-       "40 MOTORS 0 0\n"
-       "40 DONE\n"},
+       "0 READ DISTANCE 50\n0 MOTORS 60 -60\n20 READ DISTANCE 9\n20 MOTORS 0 0\n20 READ DISTANCE 50\n20 MOTORS -70 70\n40 READ DISTANCE 9\n40 MOTORS 0 0\n40 DONE\n"},
       {"instructions: A BREAK far away drops the counter of its own loop", tinibot(), {{}, {}, {9000}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 32, 9, 33, 1, 130, 151, 125, 207, 0, 109, 3, 109, 5, 146, 218, 10, 3, 117, 17, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 90, 1, 1, 113, 24, 1, 10, 57, 113, 31, 1},
-       "0 READ DISTANCE 9\n"
-       "0 SHOW 0\n"
-       "0 READ DISTANCE 9\n"
-       "0 SHOW 0\n"
-       "0 READ DISTANCE 9\n"
-       "0 SHOW 0\n"
-       "0 DONE\n"},
+       "0 READ DISTANCE 9\n0 SHOW 0\n0 READ DISTANCE 9\n0 SHOW 0\n0 READ DISTANCE 9\n0 SHOW 0\n0 DONE\n"},
       {"instructions: Every push leaves what lies below it", tinibot(), {{}, {}, {2000, 3000}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 224, 118, 56, 0, 83, 147, 128, 249, 0, 49, 9, 4, 181, 7, 9, 16, 57, 181, 9, 2, 16, 57, 181, 8, 2, 16, 57, 181, 146, 16, 57, 181, 138, 16, 57, 183, 12, 5, 16, 57, 183, 2, 44, 1, 16, 57, 183, 3, 44, 1, 16, 57, 183, 4, 0, 0, 1, 0, 16, 57, 183, 1, 200, 16, 57},
-       "0 SHOW 9\n"
-       "0 READ DISTANCE 2\n"
-       "0 SHOW 7\n"
-       "0 SHOW 7\n"
-       "0 READ DISTANCE 3\n"
-       "0 SHOW 8\n"
-       "0 SHOW 8\n"
-       "0 SHOW 7.5\n"
-       "0 SHOW 307\n"
-       "0 SHOW 7.3\n"
-       "0 SHOW 72.536\n"
-       "0 SHOW 207\n"
-       "0 DONE\n"},
+       "0 SHOW 9\n0 READ DISTANCE 2\n0 SHOW 7\n0 SHOW 7\n0 READ DISTANCE 3\n0 SHOW 8\n0 SHOW 8\n0 SHOW 7.5\n0 SHOW 307\n0 SHOW 7.3\n0 SHOW 72.536\n0 SHOW 207\n0 DONE\n"},
       {"instructions: ADD_VAR adds a variable that was not the last one to be set", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 16, 0, 138, 228, 139, 129, 0, 177, 160, 178, 161, 192, 162, 51, 0, 1, 128, 57, 51, 2, 0, 130, 57},
-       "0 SHOW 3\n"
-       "0 SHOW 73\n"
-       "0 DONE\n"},
+       "0 SHOW 3\n0 SHOW 73\n0 DONE\n"},
       {"instructions: ADD_VAR8 does not leave the range of numbers", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 15, 0, 240, 201, 64, 102, 0, 4, 120, 253, 255, 127, 160, 177, 161, 129, 57, 50, 0, 100, 128, 57},
-       "0 SHOW 1\n"
-       "0 FAULT OVERFLOW\n"},
+       "0 SHOW 1\n0 FAULT OVERFLOW\n"},
       {"instructions: ADD_VAR does not leave the range of numbers", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 15, 0, 72, 152, 21, 132, 0, 4, 120, 253, 255, 127, 160, 128, 161, 177, 57, 51, 0, 1, 128, 57},
-       "0 SHOW 1\n"
-       "0 FAULT OVERFLOW\n"},
+       "0 SHOW 1\n0 FAULT OVERFLOW\n"},
       {"instructions: Sixteen counted loops are open at once", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 84, 0, 186, 197, 222, 125, 0, 109, 2, 109, 1, 109, 1, 109, 1, 109, 1, 109, 1, 109, 1, 109, 1, 109, 1, 109, 1, 109, 1, 109, 1, 109, 1, 109, 1, 109, 2, 109, 2, 52, 0, 128, 57, 113, 7, 0, 113, 12, 0, 113, 17, 0, 113, 22, 0, 113, 27, 0, 113, 32, 0, 113, 37, 0, 113, 42, 0, 113, 47, 0, 113, 52, 0, 113, 57, 0, 113, 62, 0, 113, 67, 0, 113, 72, 0, 113, 77, 0, 113, 82, 0},
-       "0 SHOW 1\n"
-       "0 SHOW 2\n"
-       "0 SHOW 3\n"
-       "0 SHOW 4\n"
-       "0 SHOW 5\n"
-       "0 SHOW 6\n"
-       "0 SHOW 7\n"
-       "0 SHOW 8\n"
-       "0 DONE\n"},
+       "0 SHOW 1\n0 SHOW 2\n0 SHOW 3\n0 SHOW 4\n0 SHOW 5\n0 SHOW 6\n0 SHOW 7\n0 SHOW 8\n0 DONE\n"},
       {"instructions: ROUND keeps two places, and rounds to millions", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 96, 0, 106, 18, 55, 91, 0, 4, 57, 48, 0, 0, 4, 208, 7, 0, 0, 25, 57, 4, 199, 207, 255, 255, 4, 208, 7, 0, 0, 25, 57, 4, 56, 48, 0, 0, 4, 220, 5, 0, 0, 25, 57, 4, 0, 47, 104, 89, 4, 144, 232, 255, 255, 25, 57, 4, 255, 46, 104, 89, 4, 144, 232, 255, 255, 25, 57, 4, 0, 209, 151, 166, 4, 144, 232, 255, 255, 25, 57, 4, 255, 100, 205, 29, 4, 0, 231, 255, 255, 25, 57, 4, 255, 255, 255, 127, 4, 168, 228, 255, 255, 25, 57},
-       "0 SHOW 12.35\n"
-       "0 SHOW -12.35\n"
-       "0 SHOW 12.34\n"
-       "0 SHOW 2000000\n"
-       "0 SHOW 1000000\n"
-       "0 SHOW -2000000\n"
-       "0 SHOW 0\n"
-       "0 SHOW 0\n"
-       "0 DONE\n"},
+       "0 SHOW 12.35\n0 SHOW -12.35\n0 SHOW 12.34\n0 SHOW 2000000\n0 SHOW 1000000\n0 SHOW -2000000\n0 SHOW 0\n0 SHOW 0\n0 DONE\n"},
       {"instructions: OR_ELSE leaves its value, whatever it is", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 28, 0, 64, 235, 92, 166, 0, 1, 7, 44, 2, 1, 9, 57, 1, 0, 44, 2, 1, 9, 57, 1, 7, 42, 2, 1, 9, 57, 1, 0, 42, 2, 1, 9, 57},
-       "0 SHOW 7\n"
-       "0 SHOW 9\n"
-       "0 SHOW 9\n"
-       "0 SHOW 0\n"
-       "0 DONE\n"},
+       "0 SHOW 7\n0 SHOW 9\n0 SHOW 9\n0 SHOW 0\n0 DONE\n"},
       {"instructions: An actuator gets whole numbers within its range, or yes or no", grabber(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 1, 236, 56, 0, 150, 85, 112, 85, 0, 4, 156, 93, 1, 0, 59, 0, 4, 155, 93, 1, 0, 59, 0, 4, 112, 254, 255, 255, 59, 0, 4, 64, 13, 3, 0, 59, 0, 4, 136, 19, 0, 0, 59, 1, 4, 5, 0, 0, 0, 59, 1, 4, 255, 255, 255, 255, 59, 1, 4, 0, 0, 0, 0, 59, 1},
-       "0 SET GRIPPER 90\n"
-       "0 SET GRIPPER 89\n"
-       "0 SET GRIPPER 0\n"
-       "0 SET GRIPPER 180\n"
-       "0 SET LED TRUE\n"
-       "0 SET LED TRUE\n"
-       "0 SET LED TRUE\n"
-       "0 SET LED FALSE\n"
-       "0 DONE\n"},
+       "0 SET GRIPPER 90\n0 SET GRIPPER 89\n0 SET GRIPPER 0\n0 SET GRIPPER 180\n0 SET LED TRUE\n0 SET LED TRUE\n0 SET LED TRUE\n0 SET LED FALSE\n0 DONE\n"},
       {"instructions: A watched move goes back for its time, or forward for ever; a wait has no motors", tinibot(), {{}, {}, {50000, 50000, 50000, 50000, 9000, 50000}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 224, 63, 28, 0, 123, 237, 124, 44, 0, 4, 45, 0, 0, 0, 193, 73, 146, 202, 10, 191, 76, 146, 202, 10, 4, 30, 0, 0, 0, 82, 146, 202, 10, 191, 76, 6, 84},
-       "0 READ DISTANCE 50\n"
-       "0 MOTORS -80 -80\n"
-       "20 READ DISTANCE 50\n"
-       "40 READ DISTANCE 50\n"
-       "45 MOTORS 0 0\n"
-       "45 READ DISTANCE 50\n"
-       "45 MOTORS 60 60\n"
-       "65 READ DISTANCE 9\n"
-       "65 MOTORS 0 0\n"
-       "65 READ DISTANCE 50\n"
-       "85 READ DISTANCE 50\n"
-       "95 DONE\n"},
+       "0 READ DISTANCE 50\n0 MOTORS -80 -80\n20 READ DISTANCE 50\n40 READ DISTANCE 50\n45 MOTORS 0 0\n45 READ DISTANCE 50\n45 MOTORS 60 60\n65 READ DISTANCE 9\n65 MOTORS 0 0\n65 READ DISTANCE 50\n85 READ DISTANCE 50\n95 DONE\n"},
       {"moves: The four directions", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 12, 0, 248, 254, 48, 168, 0, 68, 100, 10, 69, 100, 20, 70, 100, 30, 71, 100, 40},
-       "0 MOTORS 10 10\n"
-       "1000 MOTORS 0 0\n"
-       "1000 MOTORS -20 -20\n"
-       "2000 MOTORS 0 0\n"
-       "2000 MOTORS -30 30\n"
-       "3000 MOTORS 0 0\n"
-       "3000 MOTORS 40 -40\n"
-       "4000 MOTORS 0 0\n"
-       "4000 DONE\n"},
+       "0 MOTORS 10 10\n1000 MOTORS 0 0\n1000 MOTORS -20 -20\n2000 MOTORS 0 0\n2000 MOTORS -30 30\n3000 MOTORS 0 0\n3000 MOTORS 40 -40\n4000 MOTORS 0 0\n4000 DONE\n"},
       {"moves: A computed power is rounded to a whole percent and limited", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 29, 0, 22, 170, 10, 196, 0, 176, 160, 12, 1, 128, 4, 92, 193, 0, 0, 16, 64, 12, 1, 128, 1, 200, 16, 64, 12, 1, 128, 179, 17, 64, 12, 1, 128, 65},
-       "0 MOTORS 50 50\n"
-       "100 MOTORS 0 0\n"
-       "100 MOTORS 100 100\n"
-       "200 MOTORS 0 0\n"
-       "200 MOTORS 0 0\n"
-       "300 MOTORS 0 0\n"
-       "300 MOTORS 0 0\n"
-       "400 MOTORS 0 0\n"
-       "400 DONE\n"},
+       "0 MOTORS 50 50\n100 MOTORS 0 0\n100 MOTORS 100 100\n200 MOTORS 0 0\n200 MOTORS 0 0\n300 MOTORS 0 0\n300 MOTORS 0 0\n400 MOTORS 0 0\n400 DONE\n"},
       {"moves: A computed time below 0 counts as 0, and a move of no time prints both lines", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 18, 0, 78, 170, 253, 29, 0, 176, 160, 128, 177, 17, 193, 64, 128, 181, 17, 80, 128, 177, 17, 2, 184, 1, 91},
-       "0 MOTORS 80 80\n"
-       "0 MOTORS 0 0\n"
-       "0 BEEP 440 0\n"
-       "0 DONE\n"},
+       "0 MOTORS 80 80\n0 MOTORS 0 0\n0 BEEP 440 0\n0 DONE\n"},
       {"moves: Times are exact to the thousandth", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 18, 0, 137, 78, 224, 126, 0, 3, 1, 0, 80, 3, 210, 4, 181, 64, 2, 232, 3, 110, 4, 81, 1, 112, 4},
-       "1 MOTORS 5 5\n"
-       "1235 MOTORS 0 0\n"
-       "11235 DONE\n"},
+       "1 MOTORS 5 5\n1235 MOTORS 0 0\n11235 DONE\n"},
       {"moves: M sets both motors and goes on at once", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 11, 0, 145, 140, 42, 206, 0, 90, 50, 226, 81, 50, 90, 1, 189, 81, 50, 88},
-       "0 MOTORS 50 -30\n"
-       "500 MOTORS 1 -67\n"
-       "1000 MOTORS 0 0\n"
-       "1000 DONE\n"},
+       "0 MOTORS 50 -30\n500 MOTORS 1 -67\n1000 MOTORS 0 0\n1000 DONE\n"},
       {"moves: W leaves the motors as they are; the final stop is no line", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 5, 0, 231, 246, 200, 30, 0, 90, 20, 20, 81, 120},
-       "0 MOTORS 20 20\n"
-       "3000 DONE\n"},
+       "0 MOTORS 20 20\n3000 DONE\n"},
       {"moves: BEEP waits for its sound; hertz are rounded and limited", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 23, 0, 30, 226, 48, 102, 0, 176, 160, 86, 25, 184, 1, 12, 5, 128, 3, 192, 118, 16, 91, 176, 128, 4, 24, 221, 245, 5, 16, 91},
-       "0 BEEP 440 250\n"
-       "250 BEEP 31 500\n"
-       "750 BEEP 20000 0\n"
-       "750 DONE\n"},
+       "0 BEEP 440 250\n250 BEEP 31 500\n750 BEEP 20000 0\n750 DONE\n"},
       {"moves: SHOW prints numbers without trailing zeros, and yes/no values", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 9, 0, 12, 111, 65, 75, 0, 12, 125, 57, 3, 255, 255, 57, 5, 58},
-       "0 SHOW 12.5\n"
-       "0 SHOW -0.001\n"
-       "0 SHOW FALSE\n"
-       "0 DONE\n"},
+       "0 SHOW 12.5\n0 SHOW -0.001\n0 SHOW FALSE\n0 DONE\n"},
       {"moves: Actuators are rounded and limited to their range", grabber(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 226, 244, 19, 0, 165, 158, 153, 190, 0, 194, 168, 4, 176, 11, 3, 0, 168, 49, 0, 251, 128, 168, 6, 169, 128, 176, 36, 169},
-       "0 SET GRIPPER 90\n"
-       "0 SET GRIPPER 180\n"
-       "0 SET GRIPPER 0\n"
-       "0 SET LED TRUE\n"
-       "0 SET LED FALSE\n"
-       "0 DONE\n"},
+       "0 SET GRIPPER 90\n0 SET GRIPPER 180\n0 SET GRIPPER 0\n0 SET LED TRUE\n0 SET LED FALSE\n0 DONE\n"},
       {"moves: UNTIL ends a move: it is checked before and then every 20 ms", tinibot(), {{}, {}, {50000, 30000, 9000}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 32, 9, 6, 0, 33, 44, 101, 45, 0, 181, 193, 72, 146, 202, 10},
-       "0 READ DISTANCE 50\n"
-       "0 MOTORS 80 80\n"
-       "20 READ DISTANCE 30\n"
-       "40 READ DISTANCE 9\n"
-       "40 MOTORS 0 0\n"
-       "40 DONE\n"},
+       "0 READ DISTANCE 50\n0 MOTORS 80 80\n20 READ DISTANCE 30\n40 READ DISTANCE 9\n40 MOTORS 0 0\n40 DONE\n"},
       {"moves: Where UNTIL is true at once the motors are not touched", tinibot(), {{}, {}, {9000}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 32, 9, 11, 0, 114, 64, 50, 100, 0, 90, 10, 10, 181, 193, 72, 146, 202, 10, 10, 57},
-       "0 MOTORS 10 10\n"
-       "0 READ DISTANCE 9\n"
-       "0 SHOW 0\n"
-       "0 DONE\n"},
+       "0 MOTORS 10 10\n0 READ DISTANCE 9\n0 SHOW 0\n0 DONE\n"},
       {"moves: UNTIL is not checked when no time is left", tinibot(), {{}, {}, {50000}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 224, 63, 22, 0, 109, 255, 192, 220, 0, 3, 40, 0, 193, 72, 146, 202, 10, 3, 50, 0, 192, 72, 146, 202, 10, 176, 191, 72, 146, 202, 10},
-       "0 READ DISTANCE 50\n"
-       "0 MOTORS 80 80\n"
-       "20 READ DISTANCE 50\n"
-       "40 MOTORS 0 0\n"
-       "40 READ DISTANCE 50\n"
-       "40 MOTORS 70 70\n"
-       "60 READ DISTANCE 50\n"
-       "80 READ DISTANCE 50\n"
-       "90 MOTORS 0 0\n"
-       "90 READ DISTANCE 50\n"
-       "90 MOTORS 60 60\n"
-       "90 MOTORS 0 0\n"
-       "90 DONE\n"},
+       "0 READ DISTANCE 50\n0 MOTORS 80 80\n20 READ DISTANCE 50\n40 MOTORS 0 0\n40 READ DISTANCE 50\n40 MOTORS 70 70\n60 READ DISTANCE 50\n80 READ DISTANCE 50\n90 MOTORS 0 0\n90 READ DISTANCE 50\n90 MOTORS 60 60\n90 MOTORS 0 0\n90 DONE\n"},
       {"moves: With UNTIL the time may be FOREVER", tinibot(), {{}, {0, 6000}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 171, 255, 12, 0, 59, 54, 44, 85, 0, 191, 79, 10, 3, 50, 0, 37, 84, 83, 145, 204, 5},
-       "0 MOTORS 60 -60\n"
-       "60 MOTORS 0 0\n"
-       "60 READ LIGHT_L 0\n"
-       "80 READ LIGHT_L 6\n"
-       "80 DONE\n"},
+       "0 MOTORS 60 -60\n60 MOTORS 0 0\n60 READ LIGHT_L 0\n80 READ LIGHT_L 6\n80 DONE\n"},
       {"moves: UNTIL takes its own readings, even of a sensor that is surely read", tinibot(), {{55000}, {}, {40000, 30000, 9000}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 58, 127, 12, 0, 250, 220, 138, 15, 0, 154, 152, 138, 2, 232, 3, 19, 136, 72, 146, 202, 10},
-       "0 READ DISTANCE 40\n"
-       "0 READ LIGHT_R 55\n"
-       "0 READ DISTANCE 30\n"
-       "0 MOTORS 55 55\n"
-       "20 READ DISTANCE 9\n"
-       "20 MOTORS 0 0\n"
-       "20 DONE\n"},
+       "0 READ DISTANCE 40\n0 READ LIGHT_R 55\n0 READ DISTANCE 30\n0 MOTORS 55 55\n20 READ DISTANCE 9\n20 MOTORS 0 0\n20 DONE\n"},
       {"moves: A limit cuts the wait that would pass it", tinibot(), {{}, {}, {}}, 4990, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 9, 0, 41, 53, 29, 115, 0, 81, 120, 178, 190, 72, 5, 84, 81, 180},
-       "3000 MOTORS 50 50\n"
-       "4990 LIMIT\n"},
+       "3000 MOTORS 50 50\n4990 LIMIT\n"},
       {"moves: A wait that ends at the limit is not cut", tinibot(), {{}, {}, {}}, 4000, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 3, 0, 75, 203, 187, 88, 0, 68, 130, 50},
-       "0 MOTORS 50 50\n"
-       "4000 MOTORS 0 0\n"
-       "4000 DONE\n"},
+       "0 MOTORS 50 50\n4000 MOTORS 0 0\n4000 DONE\n"},
       {"paper: PING checks the connection and moves nothing", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 2, 15, 0, 0, 0, 0, 123, 169, 252, 185, 0},
        "0 DONE\n"},
       {"paper: SI starts immediately: forward for 5 seconds with power 80", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 3, 0, 177, 230, 132, 101, 0, 68, 140, 80},
-       "0 MOTORS 80 80\n"
-       "5000 MOTORS 0 0\n"
-       "5000 DONE\n"},
+       "0 MOTORS 80 80\n5000 MOTORS 0 0\n5000 DONE\n"},
       {"paper: SB starts with the button: right for 3 seconds with power 60", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 1, 15, 0, 0, 3, 0, 28, 58, 212, 188, 0, 71, 120, 60},
-       "0 MOTORS 60 -60\n"
-       "3000 MOTORS 0 0\n"
-       "3000 DONE\n"},
+       "0 MOTORS 60 -60\n3000 MOTORS 0 0\n3000 DONE\n"},
       {"paper: An instruction alone has no SETUP and starts immediately", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 3, 0, 223, 119, 204, 9, 0, 68, 110, 80},
-       "0 MOTORS 80 80\n"
-       "2000 MOTORS 0 0\n"
-       "2000 DONE\n"},
+       "0 MOTORS 80 80\n2000 MOTORS 0 0\n2000 DONE\n"},
       {"paper: A sequence is separated by semicolons", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 9, 0, 70, 174, 79, 146, 0, 70, 100, 50, 69, 100, 80, 81, 100, 88},
-       "0 MOTORS -50 50\n"
-       "1000 MOTORS 0 0\n"
-       "1000 MOTORS -80 -80\n"
-       "2000 MOTORS 0 0\n"
-       "3000 MOTORS 0 0\n"
-       "3000 DONE\n"},
+       "0 MOTORS -50 50\n1000 MOTORS 0 0\n1000 MOTORS -80 -80\n2000 MOTORS 0 0\n3000 MOTORS 0 0\n3000 DONE\n"},
       {"paper: A condition looks at the right light sensor: bright", tinibot(), {{101000}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 233, 31, 7, 0, 30, 158, 132, 94, 0, 144, 220, 100, 3, 68, 130, 70},
-       "0 READ LIGHT_R 101\n"
-       "0 MOTORS 70 70\n"
-       "4000 MOTORS 0 0\n"
-       "4000 DONE\n"},
+       "0 READ LIGHT_R 101\n0 MOTORS 70 70\n4000 MOTORS 0 0\n4000 DONE\n"},
       {"paper: A condition looks at the right light sensor: dark", tinibot(), {{100000}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 233, 31, 7, 0, 30, 158, 132, 94, 0, 144, 220, 100, 3, 68, 130, 70},
-       "0 READ LIGHT_R 100\n"
-       "0 DONE\n"},
+       "0 READ LIGHT_R 100\n0 DONE\n"},
       {"paper: A loop repeats 3 times: forward for 2 seconds with power 50", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 7, 0, 164, 229, 217, 193, 0, 109, 3, 68, 110, 50, 112, 5},
-       "0 MOTORS 50 50\n"
-       "2000 MOTORS 0 0\n"
-       "2000 MOTORS 50 50\n"
-       "4000 MOTORS 0 0\n"
-       "4000 MOTORS 50 50\n"
-       "6000 MOTORS 0 0\n"
-       "6000 DONE\n"},
+       "0 MOTORS 50 50\n2000 MOTORS 0 0\n2000 MOTORS 50 50\n4000 MOTORS 0 0\n4000 MOTORS 50 50\n6000 MOTORS 0 0\n6000 DONE\n"},
       {"paper: START names the beginning and does nothing", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 0, 0, 82, 184, 99, 46, 0},
        "0 DONE\n"},
       {"paper: The obstacle program over several lines", tinibot(), {{}, {}, {50000, 9000, 50000}}, 4500, 1,
        {84, 83, 2, 0, 0, 15, 32, 9, 14, 0, 143, 22, 106, 37, 0, 104, 68, 100, 80, 146, 218, 10, 4, 88, 71, 100, 60, 107, 13},
-       "0 MOTORS 80 80\n"
-       "1000 MOTORS 0 0\n"
-       "1000 READ DISTANCE 50\n"
-       "1000 MOTORS 80 80\n"
-       "2000 MOTORS 0 0\n"
-       "2000 READ DISTANCE 9\n"
-       "2000 MOTORS 0 0\n"
-       "2000 MOTORS 60 -60\n"
-       "3000 MOTORS 0 0\n"
-       "3000 MOTORS 80 80\n"
-       "4000 MOTORS 0 0\n"
-       "4000 READ DISTANCE 50\n"
-       "4000 MOTORS 80 80\n"
-       "4500 LIMIT\n"},
+       "0 MOTORS 80 80\n1000 MOTORS 0 0\n1000 READ DISTANCE 50\n1000 MOTORS 80 80\n2000 MOTORS 0 0\n2000 READ DISTANCE 9\n2000 MOTORS 0 0\n2000 MOTORS 60 -60\n3000 MOTORS 0 0\n3000 MOTORS 80 80\n4000 MOTORS 0 0\n4000 READ DISTANCE 50\n4000 MOTORS 80 80\n4500 LIMIT\n"},
       {"paper: The obstacle program in one line", tinibot(), {{}, {}, {50000, 9000, 50000}}, 3000, 1,
        {84, 83, 2, 0, 0, 15, 32, 9, 14, 0, 143, 22, 106, 37, 0, 104, 68, 100, 80, 146, 218, 10, 4, 88, 71, 100, 60, 107, 13},
-       "0 MOTORS 80 80\n"
-       "1000 MOTORS 0 0\n"
-       "1000 READ DISTANCE 50\n"
-       "1000 MOTORS 80 80\n"
-       "2000 MOTORS 0 0\n"
-       "2000 READ DISTANCE 9\n"
-       "2000 MOTORS 0 0\n"
-       "2000 MOTORS 60 -60\n"
-       "3000 MOTORS 0 0\n"
-       "3000 MOTORS 80 80\n"
-       "3000 LIMIT\n"},
+       "0 MOTORS 80 80\n1000 MOTORS 0 0\n1000 READ DISTANCE 50\n1000 MOTORS 80 80\n2000 MOTORS 0 0\n2000 READ DISTANCE 9\n2000 MOTORS 0 0\n2000 MOTORS 60 -60\n3000 MOTORS 0 0\n3000 MOTORS 80 80\n3000 LIMIT\n"},
       {"paper: The sensors are read by their names", tinibot(), {{100000}, {200000}, {12500}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 255, 137, 3, 0, 152, 78, 214, 150, 0, 152, 153, 154},
-       "0 READ LIGHT_R 100\n"
-       "0 READ LIGHT_L 200\n"
-       "0 READ DISTANCE 12.5\n"
-       "0 DONE\n"},
+       "0 READ LIGHT_R 100\n0 READ LIGHT_L 200\n0 READ DISTANCE 12.5\n0 DONE\n"},
       {"paper: Every comparator, operation and yes/no value of the paper", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 41, 0, 126, 78, 133, 48, 0, 49, 0, 11, 128, 57, 3, 68, 12, 57, 128, 1, 11, 32, 58, 128, 1, 11, 34, 58, 128, 1, 11, 36, 58, 128, 1, 11, 35, 58, 128, 1, 11, 37, 58, 128, 1, 11, 33, 58, 6, 58},
-       "0 SHOW 11\n"
-       "0 SHOW 3.14\n"
-       "0 SHOW TRUE\n"
-       "0 SHOW FALSE\n"
-       "0 SHOW FALSE\n"
-       "0 SHOW TRUE\n"
-       "0 SHOW TRUE\n"
-       "0 SHOW FALSE\n"
-       "0 SHOW TRUE\n"
-       "0 DONE\n"},
+       "0 SHOW 11\n0 SHOW 3.14\n0 SHOW TRUE\n0 SHOW FALSE\n0 SHOW FALSE\n0 SHOW TRUE\n0 SHOW TRUE\n0 SHOW FALSE\n0 SHOW TRUE\n0 DONE\n"},
       {"readings: A sensor alone takes a reading and keeps it", tinibot(), {{}, {}, {1000, 2000, 3000}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 96, 27, 4, 0, 5, 5, 108, 50, 0, 146, 57, 138, 57},
-       "0 READ DISTANCE 1\n"
-       "0 SHOW 1\n"
-       "0 SHOW 1\n"
-       "0 DONE\n"},
+       "0 READ DISTANCE 1\n0 SHOW 1\n0 SHOW 1\n0 DONE\n"},
       {"readings: Without that, every instruction takes its own reading, once a sensor, in order", tinibot(), {{}, {10000}, {1000, 2000, 3000}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 141, 115, 10, 0, 222, 82, 114, 130, 0, 154, 153, 138, 137, 16, 138, 16, 57, 146, 57},
-       "0 READ DISTANCE 1\n"
-       "0 READ LIGHT_L 10\n"
-       "0 SHOW 12\n"
-       "0 READ DISTANCE 2\n"
-       "0 SHOW 2\n"
-       "0 DONE\n"},
+       "0 READ DISTANCE 1\n0 READ LIGHT_L 10\n0 SHOW 12\n0 READ DISTANCE 2\n0 SHOW 2\n0 DONE\n"},
       {"readings: Readings come before any part of the instruction, also what AND then skips", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 80, 36, 10, 0, 30, 103, 162, 134, 0, 154, 5, 58, 153, 177, 176, 19, 137, 16, 57},
-       "0 READ DISTANCE 0\n"
-       "0 SHOW FALSE\n"
-       "0 READ LIGHT_L 0\n"
-       "0 FAULT DIVIDE_BY_ZERO\n"},
+       "0 READ DISTANCE 0\n0 SHOW FALSE\n0 READ LIGHT_L 0\n0 FAULT DIVIDE_BY_ZERO\n"},
       {"readings: The reading of a condition is not sure in its body", tinibot(), {{}, {}, {5000, 6000}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 96, 27, 6, 0, 10, 105, 83, 212, 0, 146, 218, 10, 2, 146, 57},
-       "0 READ DISTANCE 5\n"
-       "0 READ DISTANCE 6\n"
-       "0 SHOW 6\n"
-       "0 DONE\n"},
+       "0 READ DISTANCE 5\n0 READ DISTANCE 6\n0 SHOW 6\n0 DONE\n"},
       {"readings: An ELSEIF uses what its chain has taken and takes what is missing", tinibot(), {{6000, 100000}, {7000, 100000}, {5000, 100000}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 115, 223, 26, 0, 190, 221, 63, 235, 0, 146, 218, 1, 2, 100, 20, 152, 138, 136, 16, 218, 2, 2, 100, 11, 153, 136, 138, 16, 137, 16, 220, 3, 2, 6, 58},
-       "0 READ DISTANCE 5\n"
-       "0 READ LIGHT_R 6\n"
-       "0 READ LIGHT_L 7\n"
-       "0 SHOW TRUE\n"
-       "0 DONE\n"},
+       "0 READ DISTANCE 5\n0 READ LIGHT_R 6\n0 READ LIGHT_L 7\n0 SHOW TRUE\n0 DONE\n"},
       {"readings: An IF makes surely read what all of its arms do", tinibot(), {{21000, 22000}, {11000, 12000}, {1000, 2000}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 214, 72, 9, 0, 158, 67, 189, 194, 0, 154, 153, 138, 57, 145, 57, 152, 144, 57},
-       "0 READ DISTANCE 1\n"
-       "0 READ LIGHT_L 11\n"
-       "0 SHOW 1\n"
-       "0 READ LIGHT_L 12\n"
-       "0 SHOW 12\n"
-       "0 READ LIGHT_R 21\n"
-       "0 READ LIGHT_R 22\n"
-       "0 SHOW 22\n"
-       "0 DONE\n"},
+       "0 READ DISTANCE 1\n0 READ LIGHT_L 11\n0 SHOW 1\n0 READ LIGHT_L 12\n0 SHOW 12\n0 READ LIGHT_R 21\n0 READ LIGHT_R 22\n0 SHOW 22\n0 DONE\n"},
       {"readings: What only the last arm reads is not sure either", tinibot(), {{}, {}, {1000, 2000}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 96, 27, 3, 0, 39, 112, 142, 183, 0, 154, 146, 57},
-       "0 READ DISTANCE 1\n"
-       "0 READ DISTANCE 2\n"
-       "0 SHOW 2\n"
-       "0 DONE\n"},
+       "0 READ DISTANCE 1\n0 READ DISTANCE 2\n0 SHOW 2\n0 DONE\n"},
       {"readings: A WHILE looks again before every check", tinibot(), {{}, {}, {30000, 20000, 15000, 10000, 5000}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 224, 63, 14, 0, 197, 98, 226, 49, 0, 154, 105, 9, 146, 220, 10, 5, 68, 50, 50, 107, 9, 138, 57},
-       "0 READ DISTANCE 30\n"
-       "0 READ DISTANCE 20\n"
-       "0 MOTORS 50 50\n"
-       "500 MOTORS 0 0\n"
-       "500 READ DISTANCE 15\n"
-       "500 MOTORS 50 50\n"
-       "1000 MOTORS 0 0\n"
-       "1000 READ DISTANCE 10\n"
-       "1000 SHOW 10\n"
-       "1000 DONE\n"},
+       "0 READ DISTANCE 30\n0 READ DISTANCE 20\n0 MOTORS 50 50\n500 MOTORS 0 0\n500 READ DISTANCE 15\n500 MOTORS 50 50\n1000 MOTORS 0 0\n1000 READ DISTANCE 10\n1000 SHOW 10\n1000 DONE\n"},
       {"readings: The body of a loop begins with nothing surely read; after it is what was before", tinibot(), {{}, {11000, 12000, 13000, 14000}, {1000, 2000, 3000, 4000}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 48, 200, 13, 0, 6, 103, 74, 180, 0, 154, 109, 2, 146, 57, 145, 57, 112, 6, 138, 57, 145, 57},
-       "0 READ DISTANCE 1\n"
-       "0 READ DISTANCE 2\n"
-       "0 SHOW 2\n"
-       "0 READ LIGHT_L 11\n"
-       "0 SHOW 11\n"
-       "0 READ DISTANCE 3\n"
-       "0 SHOW 3\n"
-       "0 READ LIGHT_L 12\n"
-       "0 SHOW 12\n"
-       "0 SHOW 3\n"
-       "0 READ LIGHT_L 13\n"
-       "0 SHOW 13\n"
-       "0 DONE\n"},
+       "0 READ DISTANCE 1\n0 READ DISTANCE 2\n0 SHOW 2\n0 READ LIGHT_L 11\n0 SHOW 11\n0 READ DISTANCE 3\n0 SHOW 3\n0 READ LIGHT_L 12\n0 SHOW 12\n0 SHOW 3\n0 READ LIGHT_L 13\n0 SHOW 13\n0 DONE\n"},
       {"readings: A call adds what its body makes surely read", tinibot(), {{}, {}, {1000, 2000, 3000, 4000}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 224, 118, 11, 0, 150, 70, 0, 63, 0, 120, 4, 146, 57, 154, 122, 154, 123, 7, 138, 57},
-       "0 READ DISTANCE 1\n"
-       "0 READ DISTANCE 2\n"
-       "0 SHOW 2\n"
-       "0 READ DISTANCE 3\n"
-       "0 SHOW 3\n"
-       "0 DONE\n"},
+       "0 READ DISTANCE 1\n0 READ DISTANCE 2\n0 SHOW 2\n0 READ DISTANCE 3\n0 SHOW 3\n0 DONE\n"},
       {"readings: Who wants the old value keeps it", tinibot(), {{}, {}, {7000, 8000}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 32, 9, 8, 0, 104, 172, 43, 15, 0, 146, 160, 109, 2, 128, 57, 112, 4},
-       "0 READ DISTANCE 7\n"
-       "0 SHOW 7\n"
-       "0 SHOW 7\n"
-       "0 DONE\n"},
+       "0 READ DISTANCE 7\n0 SHOW 7\n0 SHOW 7\n0 DONE\n"},
       {"readings: A sensor with no list reads 0 or FALSE, and the last reading repeats", liner(), {{1, 0}, {}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 106, 172, 8, 0, 247, 65, 20, 4, 0, 109, 3, 144, 58, 145, 58, 112, 6},
-       "0 READ LINE_L TRUE\n"
-       "0 SHOW TRUE\n"
-       "0 READ LINE_R FALSE\n"
-       "0 SHOW FALSE\n"
-       "0 READ LINE_L FALSE\n"
-       "0 SHOW FALSE\n"
-       "0 READ LINE_R FALSE\n"
-       "0 SHOW FALSE\n"
-       "0 READ LINE_L FALSE\n"
-       "0 SHOW FALSE\n"
-       "0 READ LINE_R FALSE\n"
-       "0 SHOW FALSE\n"
-       "0 DONE\n"},
+       "0 READ LINE_L TRUE\n0 SHOW TRUE\n0 READ LINE_R FALSE\n0 SHOW FALSE\n0 READ LINE_L FALSE\n0 SHOW FALSE\n0 READ LINE_R FALSE\n0 SHOW FALSE\n0 READ LINE_L FALSE\n0 SHOW FALSE\n0 READ LINE_R FALSE\n0 SHOW FALSE\n0 DONE\n"},
       {"text: Words are read in any case", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 32, 9, 12, 0, 85, 92, 31, 75, 0, 109, 2, 68, 50, 50, 154, 112, 6, 179, 160, 128, 57},
-       "0 MOTORS 50 50\n"
-       "500 MOTORS 0 0\n"
-       "500 READ DISTANCE 0\n"
-       "500 MOTORS 50 50\n"
-       "1000 MOTORS 0 0\n"
-       "1000 READ DISTANCE 0\n"
-       "1000 SHOW 3\n"
-       "1000 DONE\n"},
+       "0 MOTORS 50 50\n500 MOTORS 0 0\n500 READ DISTANCE 0\n500 MOTORS 50 50\n1000 MOTORS 0 0\n1000 READ DISTANCE 0\n1000 SHOW 3\n1000 DONE\n"},
       {"text: The end of a line ends an instruction, and empty instructions are fine", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 4, 0, 84, 141, 129, 216, 0, 81, 100, 81, 110},
        "3000 DONE\n"},
       {"text: Inside brackets the end of a line is white space", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 9, 0, 57, 184, 149, 123, 0, 68, 50, 80, 185, 160, 128, 177, 24, 57},
-       "0 MOTORS 80 80\n"
-       "500 MOTORS 0 0\n"
-       "500 SHOW 9\n"
-       "500 DONE\n"},
+       "0 MOTORS 80 80\n500 MOTORS 0 0\n500 SHOW 9\n500 DONE\n"},
       {"text: A comment runs to the end of its line", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 5, 0, 194, 97, 109, 217, 0, 68, 10, 10, 81, 10},
-       "0 MOTORS 10 10\n"
-       "100 MOTORS 0 0\n"
-       "200 DONE\n"},
+       "0 MOTORS 10 10\n100 MOTORS 0 0\n200 DONE\n"},
       {"text: An empty program does nothing", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 0, 0, 82, 184, 99, 46, 0},
        "0 DONE\n"},
       {"text: The other spellings of block ends", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 24, 0, 127, 158, 137, 138, 0, 120, 4, 68, 10, 50, 122, 109, 1, 123, 8, 112, 4, 177, 160, 105, 8, 236, 0, 0, 4, 53, 0, 107, 8},
-       "0 MOTORS 50 50\n"
-       "100 MOTORS 0 0\n"
-       "100 DONE\n"},
+       "0 MOTORS 50 50\n100 MOTORS 0 0\n100 DONE\n"},
       {"text: The dashes and spaces that phones put in are read", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 5, 0, 44, 7, 46, 235, 0, 12, 206, 57, 181, 57},
-       "0 SHOW -5\n"
-       "0 SHOW 5\n"
-       "0 DONE\n"},
+       "0 SHOW -5\n0 SHOW 5\n0 DONE\n"},
       {"text: A number may begin with its point", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 9, 0, 40, 241, 235, 109, 0, 12, 5, 57, 3, 250, 0, 57, 183, 57},
-       "0 SHOW 0.5\n"
-       "0 SHOW 0.25\n"
-       "0 SHOW 7\n"
-       "0 DONE\n"},
+       "0 SHOW 0.5\n0 SHOW 0.25\n0 SHOW 7\n0 DONE\n"},
       {"text: A number with more than three places is rounded, half away from zero", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 12, 0, 113, 150, 212, 188, 0, 3, 1, 0, 57, 3, 255, 255, 57, 3, 210, 4, 57},
-       "0 SHOW 0.001\n"
-       "0 SHOW -0.001\n"
-       "0 SHOW 1.234\n"
-       "0 DONE\n"},
+       "0 SHOW 0.001\n0 SHOW -0.001\n0 SHOW 1.234\n0 DONE\n"},
       {"text: The largest and the smallest number", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 12, 0, 254, 144, 98, 125, 0, 4, 255, 255, 255, 127, 57, 4, 0, 0, 0, 128, 57},
-       "0 SHOW 2147483.647\n"
-       "0 SHOW -2147483.648\n"
-       "0 DONE\n"},
+       "0 SHOW 2147483.647\n0 SHOW -2147483.648\n0 DONE\n"},
       {"values: Thousandths are exact", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 5, 0, 56, 176, 165, 56, 0, 6, 58, 12, 3, 57},
-       "0 SHOW TRUE\n"
-       "0 SHOW 0.3\n"
-       "0 DONE\n"},
+       "0 SHOW TRUE\n0 SHOW 0.3\n0 DONE\n"},
       {"values: Products and quotients are rounded half away from zero", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 22, 0, 162, 76, 217, 250, 0, 3, 1, 0, 57, 3, 255, 255, 57, 176, 57, 3, 155, 2, 57, 3, 101, 253, 57, 3, 77, 1, 57},
-       "0 SHOW 0.001\n"
-       "0 SHOW -0.001\n"
-       "0 SHOW 0\n"
-       "0 SHOW 0.667\n"
-       "0 SHOW -0.667\n"
-       "0 SHOW 0.333\n"
-       "0 DONE\n"},
+       "0 SHOW 0.001\n0 SHOW -0.001\n0 SHOW 0\n0 SHOW 0.667\n0 SHOW -0.667\n0 SHOW 0.333\n0 DONE\n"},
       {"values: A remainder is exact and takes the sign of the divisor", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 13, 0, 131, 58, 19, 193, 0, 178, 57, 12, 236, 57, 177, 57, 12, 1, 57, 12, 1, 57},
-       "0 SHOW 2\n"
-       "0 SHOW -2\n"
-       "0 SHOW 1\n"
-       "0 SHOW 0.1\n"
-       "0 SHOW 0.1\n"
-       "0 DONE\n"},
+       "0 SHOW 2\n0 SHOW -2\n0 SHOW 1\n0 SHOW 0.1\n0 SHOW 0.1\n0 DONE\n"},
       {"values: ROUND rounds to decimals, which may be negative", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 27, 0, 14, 54, 211, 116, 0, 179, 57, 12, 226, 57, 3, 46, 9, 57, 2, 176, 4, 57, 3, 41, 9, 57, 3, 41, 9, 57, 2, 20, 5, 57, 176, 57},
-       "0 SHOW 3\n"
-       "0 SHOW -3\n"
-       "0 SHOW 2.35\n"
-       "0 SHOW 1200\n"
-       "0 SHOW 2.345\n"
-       "0 SHOW 2.345\n"
-       "0 SHOW 1300\n"
-       "0 SHOW 0\n"
-       "0 DONE\n"},
+       "0 SHOW 3\n0 SHOW -3\n0 SHOW 2.35\n0 SHOW 1200\n0 SHOW 2.345\n0 SHOW 2.345\n0 SHOW 1300\n0 SHOW 0\n0 DONE\n"},
       {"values: ABS, MIN and MAX", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 8, 0, 70, 206, 115, 90, 0, 12, 35, 57, 12, 236, 57, 178, 57},
-       "0 SHOW 3.5\n"
-       "0 SHOW -2\n"
-       "0 SHOW 2\n"
-       "0 DONE\n"},
+       "0 SHOW 3.5\n0 SHOW -2\n0 SHOW 2\n0 DONE\n"},
       {"values: RANDOM gives whole numbers, both ends included", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 20, 0, 13, 95, 160, 2, 0, 177, 182, 11, 57, 182, 177, 11, 57, 12, 6, 12, 64, 11, 57, 12, 246, 12, 246, 11, 57},
-       "0 SHOW 4\n"
-       "0 SHOW 2\n"
-       "0 SHOW 4\n"
-       "0 SHOW -1\n"
-       "0 DONE\n"},
+       "0 SHOW 4\n0 SHOW 2\n0 SHOW 4\n0 SHOW -1\n0 DONE\n"},
       {"values: Another seed, another dice", tinibot(), {{}, {}, {}}, 60000, 4294967295,
        {84, 83, 2, 0, 0, 15, 0, 0, 8, 0, 200, 91, 10, 108, 0, 177, 182, 11, 57, 177, 182, 11, 57},
-       "0 SHOW 4\n"
-       "0 SHOW 6\n"
-       "0 DONE\n"},
+       "0 SHOW 4\n0 SHOW 6\n0 DONE\n"},
       {"values: TIME is the time since the program started", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 6, 0, 124, 0, 158, 36, 0, 10, 57, 81, 105, 10, 57},
-       "0 SHOW 0\n"
-       "1500 SHOW 1.5\n"
-       "1500 DONE\n"},
+       "0 SHOW 0\n1500 SHOW 1.5\n1500 DONE\n"},
       {"values: A result that is too large stops the program", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 16, 0, 148, 28, 148, 99, 0, 4, 255, 255, 255, 127, 160, 177, 57, 128, 3, 1, 0, 16, 160, 178, 57},
-       "0 SHOW 1\n"
-       "0 FAULT OVERFLOW\n"},
+       "0 SHOW 1\n0 FAULT OVERFLOW\n"},
       {"values: Dividing by zero stops the program, and the robot with it", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 11, 0, 233, 181, 227, 233, 0, 90, 50, 50, 176, 160, 81, 100, 177, 128, 20, 57},
-       "0 MOTORS 50 50\n"
-       "1000 FAULT DIVIDE_BY_ZERO\n"},
+       "0 MOTORS 50 50\n1000 FAULT DIVIDE_BY_ZERO\n"},
       {"values: A constant that faults does so where it is reached", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 32, 9, 17, 0, 124, 110, 18, 19, 0, 177, 57, 146, 220, 5, 4, 177, 176, 19, 57, 4, 0, 0, 0, 128, 21, 57},
-       "0 SHOW 1\n"
-       "0 READ DISTANCE 0\n"
-       "0 FAULT OVERFLOW\n"},
+       "0 SHOW 1\n0 READ DISTANCE 0\n0 FAULT OVERFLOW\n"},
       {"values: From loosest to tightest: OR, AND, NOT, comparators, + -, * / %, minus", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 15, 0, 8, 212, 27, 212, 0, 6, 58, 6, 58, 1, 14, 57, 177, 57, 180, 57, 5, 58, 181, 57},
-       "0 SHOW TRUE\n"
-       "0 SHOW TRUE\n"
-       "0 SHOW 14\n"
-       "0 SHOW 1\n"
-       "0 SHOW 4\n"
-       "0 SHOW FALSE\n"
-       "0 SHOW 5\n"
-       "0 DONE\n"},
+       "0 SHOW TRUE\n0 SHOW TRUE\n0 SHOW 14\n0 SHOW 1\n0 SHOW 4\n0 SHOW FALSE\n0 SHOW 5\n0 DONE\n"},
       {"values: AND and OR do not look at the right side when the left decides", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 35, 0, 86, 103, 84, 244, 0, 176, 160, 128, 176, 33, 42, 5, 177, 128, 19, 176, 36, 58, 128, 176, 32, 44, 5, 177, 128, 19, 176, 36, 58, 128, 176, 32, 42, 5, 177, 128, 19, 176, 36, 58},
-       "0 SHOW FALSE\n"
-       "0 SHOW TRUE\n"
-       "0 FAULT DIVIDE_BY_ZERO\n"},
+       "0 SHOW FALSE\n0 SHOW TRUE\n0 FAULT DIVIDE_BY_ZERO\n"},
       {"values: Yes/no values compare with = and <>", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 18, 0, 242, 101, 251, 51, 0, 6, 160, 5, 161, 128, 129, 32, 58, 128, 129, 33, 58, 128, 129, 32, 5, 32, 58},
-       "0 SHOW FALSE\n"
-       "0 SHOW TRUE\n"
-       "0 SHOW TRUE\n"
-       "0 DONE\n"},
+       "0 SHOW FALSE\n0 SHOW TRUE\n0 SHOW TRUE\n0 DONE\n"},
       {"values: A variable whose first assignment is not reached is 0 or FALSE", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 32, 9, 12, 0, 120, 83, 134, 148, 0, 146, 220, 5, 4, 183, 160, 6, 161, 128, 57, 129, 58},
-       "0 READ DISTANCE 0\n"
-       "0 SHOW 0\n"
-       "0 SHOW FALSE\n"
-       "0 DONE\n"},
+       "0 READ DISTANCE 0\n0 SHOW 0\n0 SHOW FALSE\n0 DONE\n"},
       {"values: A comparison looks at all of a number", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 90, 0, 39, 126, 188, 112, 0, 4, 136, 19, 0, 1, 160, 4, 136, 19, 0, 255, 161, 4, 224, 147, 4, 1, 162, 128, 181, 32, 58, 128, 181, 36, 58, 129, 181, 32, 58, 129, 181, 34, 58, 232, 0, 5, 2, 177, 57, 236, 0, 5, 2, 178, 57, 232, 1, 5, 2, 179, 57, 234, 1, 5, 2, 180, 57, 128, 176, 16, 216, 5, 2, 181, 57, 129, 176, 16, 218, 5, 2, 182, 57, 240, 2, 44, 1, 2, 183, 57, 130, 176, 16, 228, 44, 1, 2, 184, 57},
-       "0 SHOW FALSE\n"
-       "0 SHOW TRUE\n"
-       "0 SHOW FALSE\n"
-       "0 SHOW TRUE\n"
-       "0 SHOW 2\n"
-       "0 SHOW 4\n"
-       "0 SHOW 6\n"
-       "0 SHOW 8\n"
-       "0 DONE\n"},
+       "0 SHOW FALSE\n0 SHOW TRUE\n0 SHOW FALSE\n0 SHOW TRUE\n0 SHOW 2\n0 SHOW 4\n0 SHOW 6\n0 SHOW 8\n0 DONE\n"},
       {"values: Whole numbers of 16 bits", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 82, 0, 25, 29, 180, 30, 0, 2, 48, 117, 160, 2, 118, 190, 161, 240, 0, 48, 117, 2, 177, 57, 128, 176, 16, 224, 48, 117, 2, 178, 57, 244, 0, 47, 117, 2, 179, 57, 240, 1, 118, 190, 2, 180, 57, 129, 176, 16, 224, 118, 190, 2, 181, 57, 242, 1, 119, 190, 2, 182, 57, 2, 255, 127, 57, 2, 0, 128, 57, 2, 137, 65, 57, 2, 138, 65, 57, 2, 119, 190, 57, 2, 118, 190, 57, 128, 129, 16, 57},
-       "0 SHOW 1\n"
-       "0 SHOW 2\n"
-       "0 SHOW 3\n"
-       "0 SHOW 4\n"
-       "0 SHOW 5\n"
-       "0 SHOW 6\n"
-       "0 SHOW 32767\n"
-       "0 SHOW -32768\n"
-       "0 SHOW 16777\n"
-       "0 SHOW 16778\n"
-       "0 SHOW -16777\n"
-       "0 SHOW -16778\n"
-       "0 SHOW 13222\n"
-       "0 DONE\n"},
+       "0 SHOW 1\n0 SHOW 2\n0 SHOW 3\n0 SHOW 4\n0 SHOW 5\n0 SHOW 6\n0 SHOW 32767\n0 SHOW -32768\n0 SHOW 16777\n0 SHOW 16778\n0 SHOW -16777\n0 SHOW -16778\n0 SHOW 13222\n0 DONE\n"},
   };
   return found;
 }
@@ -1796,1120 +1077,161 @@ inline const std::vector<InstructionCase>& instruction_cases() {
   return found;
 }
 
+inline const std::vector<int32_t>& edges() {
+  static const std::vector<int32_t> found = {
+      {-2147483648},
+      {-1500500},
+      {-1},
+      {0},
+      {499},
+      {1000},
+      {2500},
+      {2147483647},
+  };
+  return found;
+}
+
 inline const std::vector<NumberCase>& number_cases() {
   static const std::vector<NumberCase> found = {
-      {"ADD", Op::kAdd, {-2147483648, -2147483648}, 0, Fault::kOverflow},
-      {"ADD", Op::kAdd, {-2147483648, -1500500}, 0, Fault::kOverflow},
-      {"ADD", Op::kAdd, {-2147483648, -1}, 0, Fault::kOverflow},
-      {"ADD", Op::kAdd, {-2147483648, 0}, -2147483648, Fault::kNone},
-      {"ADD", Op::kAdd, {-2147483648, 499}, -2147483149, Fault::kNone},
-      {"ADD", Op::kAdd, {-2147483648, 1000}, -2147482648, Fault::kNone},
-      {"ADD", Op::kAdd, {-2147483648, 2500}, -2147481148, Fault::kNone},
-      {"ADD", Op::kAdd, {-2147483648, 2147483647}, -1, Fault::kNone},
-      {"ADD", Op::kAdd, {-1500500, -2147483648}, 0, Fault::kOverflow},
-      {"ADD", Op::kAdd, {-1500500, -1500500}, -3001000, Fault::kNone},
-      {"ADD", Op::kAdd, {-1500500, -1}, -1500501, Fault::kNone},
-      {"ADD", Op::kAdd, {-1500500, 0}, -1500500, Fault::kNone},
-      {"ADD", Op::kAdd, {-1500500, 499}, -1500001, Fault::kNone},
-      {"ADD", Op::kAdd, {-1500500, 1000}, -1499500, Fault::kNone},
-      {"ADD", Op::kAdd, {-1500500, 2500}, -1498000, Fault::kNone},
-      {"ADD", Op::kAdd, {-1500500, 2147483647}, 2145983147, Fault::kNone},
-      {"ADD", Op::kAdd, {-1, -2147483648}, 0, Fault::kOverflow},
-      {"ADD", Op::kAdd, {-1, -1500500}, -1500501, Fault::kNone},
-      {"ADD", Op::kAdd, {-1, -1}, -2, Fault::kNone},
-      {"ADD", Op::kAdd, {-1, 0}, -1, Fault::kNone},
-      {"ADD", Op::kAdd, {-1, 499}, 498, Fault::kNone},
-      {"ADD", Op::kAdd, {-1, 1000}, 999, Fault::kNone},
-      {"ADD", Op::kAdd, {-1, 2500}, 2499, Fault::kNone},
-      {"ADD", Op::kAdd, {-1, 2147483647}, 2147483646, Fault::kNone},
-      {"ADD", Op::kAdd, {0, -2147483648}, -2147483648, Fault::kNone},
-      {"ADD", Op::kAdd, {0, -1500500}, -1500500, Fault::kNone},
-      {"ADD", Op::kAdd, {0, -1}, -1, Fault::kNone},
-      {"ADD", Op::kAdd, {0, 0}, 0, Fault::kNone},
-      {"ADD", Op::kAdd, {0, 499}, 499, Fault::kNone},
-      {"ADD", Op::kAdd, {0, 1000}, 1000, Fault::kNone},
-      {"ADD", Op::kAdd, {0, 2500}, 2500, Fault::kNone},
-      {"ADD", Op::kAdd, {0, 2147483647}, 2147483647, Fault::kNone},
-      {"ADD", Op::kAdd, {499, -2147483648}, -2147483149, Fault::kNone},
-      {"ADD", Op::kAdd, {499, -1500500}, -1500001, Fault::kNone},
-      {"ADD", Op::kAdd, {499, -1}, 498, Fault::kNone},
-      {"ADD", Op::kAdd, {499, 0}, 499, Fault::kNone},
-      {"ADD", Op::kAdd, {499, 499}, 998, Fault::kNone},
-      {"ADD", Op::kAdd, {499, 1000}, 1499, Fault::kNone},
-      {"ADD", Op::kAdd, {499, 2500}, 2999, Fault::kNone},
-      {"ADD", Op::kAdd, {499, 2147483647}, 0, Fault::kOverflow},
-      {"ADD", Op::kAdd, {1000, -2147483648}, -2147482648, Fault::kNone},
-      {"ADD", Op::kAdd, {1000, -1500500}, -1499500, Fault::kNone},
-      {"ADD", Op::kAdd, {1000, -1}, 999, Fault::kNone},
-      {"ADD", Op::kAdd, {1000, 0}, 1000, Fault::kNone},
-      {"ADD", Op::kAdd, {1000, 499}, 1499, Fault::kNone},
-      {"ADD", Op::kAdd, {1000, 1000}, 2000, Fault::kNone},
-      {"ADD", Op::kAdd, {1000, 2500}, 3500, Fault::kNone},
-      {"ADD", Op::kAdd, {1000, 2147483647}, 0, Fault::kOverflow},
-      {"ADD", Op::kAdd, {2500, -2147483648}, -2147481148, Fault::kNone},
-      {"ADD", Op::kAdd, {2500, -1500500}, -1498000, Fault::kNone},
-      {"ADD", Op::kAdd, {2500, -1}, 2499, Fault::kNone},
-      {"ADD", Op::kAdd, {2500, 0}, 2500, Fault::kNone},
-      {"ADD", Op::kAdd, {2500, 499}, 2999, Fault::kNone},
-      {"ADD", Op::kAdd, {2500, 1000}, 3500, Fault::kNone},
-      {"ADD", Op::kAdd, {2500, 2500}, 5000, Fault::kNone},
-      {"ADD", Op::kAdd, {2500, 2147483647}, 0, Fault::kOverflow},
-      {"ADD", Op::kAdd, {2147483647, -2147483648}, -1, Fault::kNone},
-      {"ADD", Op::kAdd, {2147483647, -1500500}, 2145983147, Fault::kNone},
-      {"ADD", Op::kAdd, {2147483647, -1}, 2147483646, Fault::kNone},
-      {"ADD", Op::kAdd, {2147483647, 0}, 2147483647, Fault::kNone},
-      {"ADD", Op::kAdd, {2147483647, 499}, 0, Fault::kOverflow},
-      {"ADD", Op::kAdd, {2147483647, 1000}, 0, Fault::kOverflow},
-      {"ADD", Op::kAdd, {2147483647, 2500}, 0, Fault::kOverflow},
-      {"ADD", Op::kAdd, {2147483647, 2147483647}, 0, Fault::kOverflow},
-      {"SUB", Op::kSub, {-2147483648, -2147483648}, 0, Fault::kNone},
-      {"SUB", Op::kSub, {-2147483648, -1500500}, -2145983148, Fault::kNone},
-      {"SUB", Op::kSub, {-2147483648, -1}, -2147483647, Fault::kNone},
-      {"SUB", Op::kSub, {-2147483648, 0}, -2147483648, Fault::kNone},
-      {"SUB", Op::kSub, {-2147483648, 499}, 0, Fault::kOverflow},
-      {"SUB", Op::kSub, {-2147483648, 1000}, 0, Fault::kOverflow},
-      {"SUB", Op::kSub, {-2147483648, 2500}, 0, Fault::kOverflow},
-      {"SUB", Op::kSub, {-2147483648, 2147483647}, 0, Fault::kOverflow},
-      {"SUB", Op::kSub, {-1500500, -2147483648}, 2145983148, Fault::kNone},
-      {"SUB", Op::kSub, {-1500500, -1500500}, 0, Fault::kNone},
-      {"SUB", Op::kSub, {-1500500, -1}, -1500499, Fault::kNone},
-      {"SUB", Op::kSub, {-1500500, 0}, -1500500, Fault::kNone},
-      {"SUB", Op::kSub, {-1500500, 499}, -1500999, Fault::kNone},
-      {"SUB", Op::kSub, {-1500500, 1000}, -1501500, Fault::kNone},
-      {"SUB", Op::kSub, {-1500500, 2500}, -1503000, Fault::kNone},
-      {"SUB", Op::kSub, {-1500500, 2147483647}, 0, Fault::kOverflow},
-      {"SUB", Op::kSub, {-1, -2147483648}, 2147483647, Fault::kNone},
-      {"SUB", Op::kSub, {-1, -1500500}, 1500499, Fault::kNone},
-      {"SUB", Op::kSub, {-1, -1}, 0, Fault::kNone},
-      {"SUB", Op::kSub, {-1, 0}, -1, Fault::kNone},
-      {"SUB", Op::kSub, {-1, 499}, -500, Fault::kNone},
-      {"SUB", Op::kSub, {-1, 1000}, -1001, Fault::kNone},
-      {"SUB", Op::kSub, {-1, 2500}, -2501, Fault::kNone},
-      {"SUB", Op::kSub, {-1, 2147483647}, -2147483648, Fault::kNone},
-      {"SUB", Op::kSub, {0, -2147483648}, 0, Fault::kOverflow},
-      {"SUB", Op::kSub, {0, -1500500}, 1500500, Fault::kNone},
-      {"SUB", Op::kSub, {0, -1}, 1, Fault::kNone},
-      {"SUB", Op::kSub, {0, 0}, 0, Fault::kNone},
-      {"SUB", Op::kSub, {0, 499}, -499, Fault::kNone},
-      {"SUB", Op::kSub, {0, 1000}, -1000, Fault::kNone},
-      {"SUB", Op::kSub, {0, 2500}, -2500, Fault::kNone},
-      {"SUB", Op::kSub, {0, 2147483647}, -2147483647, Fault::kNone},
-      {"SUB", Op::kSub, {499, -2147483648}, 0, Fault::kOverflow},
-      {"SUB", Op::kSub, {499, -1500500}, 1500999, Fault::kNone},
-      {"SUB", Op::kSub, {499, -1}, 500, Fault::kNone},
-      {"SUB", Op::kSub, {499, 0}, 499, Fault::kNone},
-      {"SUB", Op::kSub, {499, 499}, 0, Fault::kNone},
-      {"SUB", Op::kSub, {499, 1000}, -501, Fault::kNone},
-      {"SUB", Op::kSub, {499, 2500}, -2001, Fault::kNone},
-      {"SUB", Op::kSub, {499, 2147483647}, -2147483148, Fault::kNone},
-      {"SUB", Op::kSub, {1000, -2147483648}, 0, Fault::kOverflow},
-      {"SUB", Op::kSub, {1000, -1500500}, 1501500, Fault::kNone},
-      {"SUB", Op::kSub, {1000, -1}, 1001, Fault::kNone},
-      {"SUB", Op::kSub, {1000, 0}, 1000, Fault::kNone},
-      {"SUB", Op::kSub, {1000, 499}, 501, Fault::kNone},
-      {"SUB", Op::kSub, {1000, 1000}, 0, Fault::kNone},
-      {"SUB", Op::kSub, {1000, 2500}, -1500, Fault::kNone},
-      {"SUB", Op::kSub, {1000, 2147483647}, -2147482647, Fault::kNone},
-      {"SUB", Op::kSub, {2500, -2147483648}, 0, Fault::kOverflow},
-      {"SUB", Op::kSub, {2500, -1500500}, 1503000, Fault::kNone},
-      {"SUB", Op::kSub, {2500, -1}, 2501, Fault::kNone},
-      {"SUB", Op::kSub, {2500, 0}, 2500, Fault::kNone},
-      {"SUB", Op::kSub, {2500, 499}, 2001, Fault::kNone},
-      {"SUB", Op::kSub, {2500, 1000}, 1500, Fault::kNone},
-      {"SUB", Op::kSub, {2500, 2500}, 0, Fault::kNone},
-      {"SUB", Op::kSub, {2500, 2147483647}, -2147481147, Fault::kNone},
-      {"SUB", Op::kSub, {2147483647, -2147483648}, 0, Fault::kOverflow},
-      {"SUB", Op::kSub, {2147483647, -1500500}, 0, Fault::kOverflow},
-      {"SUB", Op::kSub, {2147483647, -1}, 0, Fault::kOverflow},
-      {"SUB", Op::kSub, {2147483647, 0}, 2147483647, Fault::kNone},
-      {"SUB", Op::kSub, {2147483647, 499}, 2147483148, Fault::kNone},
-      {"SUB", Op::kSub, {2147483647, 1000}, 2147482647, Fault::kNone},
-      {"SUB", Op::kSub, {2147483647, 2500}, 2147481147, Fault::kNone},
-      {"SUB", Op::kSub, {2147483647, 2147483647}, 0, Fault::kNone},
-      {"MUL", Op::kMul, {-2147483648, -2147483648}, 0, Fault::kOverflow},
-      {"MUL", Op::kMul, {-2147483648, -1500500}, 0, Fault::kOverflow},
-      {"MUL", Op::kMul, {-2147483648, -1}, 2147484, Fault::kNone},
-      {"MUL", Op::kMul, {-2147483648, 0}, 0, Fault::kNone},
-      {"MUL", Op::kMul, {-2147483648, 499}, -1071594340, Fault::kNone},
-      {"MUL", Op::kMul, {-2147483648, 1000}, -2147483648, Fault::kNone},
-      {"MUL", Op::kMul, {-2147483648, 2500}, 0, Fault::kOverflow},
-      {"MUL", Op::kMul, {-2147483648, 2147483647}, 0, Fault::kOverflow},
-      {"MUL", Op::kMul, {-1500500, -2147483648}, 0, Fault::kOverflow},
-      {"MUL", Op::kMul, {-1500500, -1500500}, 0, Fault::kOverflow},
-      {"MUL", Op::kMul, {-1500500, -1}, 1501, Fault::kNone},
-      {"MUL", Op::kMul, {-1500500, 0}, 0, Fault::kNone},
-      {"MUL", Op::kMul, {-1500500, 499}, -748750, Fault::kNone},
-      {"MUL", Op::kMul, {-1500500, 1000}, -1500500, Fault::kNone},
-      {"MUL", Op::kMul, {-1500500, 2500}, -3751250, Fault::kNone},
-      {"MUL", Op::kMul, {-1500500, 2147483647}, 0, Fault::kOverflow},
-      {"MUL", Op::kMul, {-1, -2147483648}, 2147484, Fault::kNone},
-      {"MUL", Op::kMul, {-1, -1500500}, 1501, Fault::kNone},
-      {"MUL", Op::kMul, {-1, -1}, 0, Fault::kNone},
-      {"MUL", Op::kMul, {-1, 0}, 0, Fault::kNone},
-      {"MUL", Op::kMul, {-1, 499}, 0, Fault::kNone},
-      {"MUL", Op::kMul, {-1, 1000}, -1, Fault::kNone},
-      {"MUL", Op::kMul, {-1, 2500}, -3, Fault::kNone},
-      {"MUL", Op::kMul, {-1, 2147483647}, -2147484, Fault::kNone},
-      {"MUL", Op::kMul, {0, -2147483648}, 0, Fault::kNone},
-      {"MUL", Op::kMul, {0, -1500500}, 0, Fault::kNone},
-      {"MUL", Op::kMul, {0, -1}, 0, Fault::kNone},
-      {"MUL", Op::kMul, {0, 0}, 0, Fault::kNone},
-      {"MUL", Op::kMul, {0, 499}, 0, Fault::kNone},
-      {"MUL", Op::kMul, {0, 1000}, 0, Fault::kNone},
-      {"MUL", Op::kMul, {0, 2500}, 0, Fault::kNone},
-      {"MUL", Op::kMul, {0, 2147483647}, 0, Fault::kNone},
-      {"MUL", Op::kMul, {499, -2147483648}, -1071594340, Fault::kNone},
-      {"MUL", Op::kMul, {499, -1500500}, -748750, Fault::kNone},
-      {"MUL", Op::kMul, {499, -1}, 0, Fault::kNone},
-      {"MUL", Op::kMul, {499, 0}, 0, Fault::kNone},
-      {"MUL", Op::kMul, {499, 499}, 249, Fault::kNone},
-      {"MUL", Op::kMul, {499, 1000}, 499, Fault::kNone},
-      {"MUL", Op::kMul, {499, 2500}, 1248, Fault::kNone},
-      {"MUL", Op::kMul, {499, 2147483647}, 1071594340, Fault::kNone},
-      {"MUL", Op::kMul, {1000, -2147483648}, -2147483648, Fault::kNone},
-      {"MUL", Op::kMul, {1000, -1500500}, -1500500, Fault::kNone},
-      {"MUL", Op::kMul, {1000, -1}, -1, Fault::kNone},
-      {"MUL", Op::kMul, {1000, 0}, 0, Fault::kNone},
-      {"MUL", Op::kMul, {1000, 499}, 499, Fault::kNone},
-      {"MUL", Op::kMul, {1000, 1000}, 1000, Fault::kNone},
-      {"MUL", Op::kMul, {1000, 2500}, 2500, Fault::kNone},
-      {"MUL", Op::kMul, {1000, 2147483647}, 2147483647, Fault::kNone},
-      {"MUL", Op::kMul, {2500, -2147483648}, 0, Fault::kOverflow},
-      {"MUL", Op::kMul, {2500, -1500500}, -3751250, Fault::kNone},
-      {"MUL", Op::kMul, {2500, -1}, -3, Fault::kNone},
-      {"MUL", Op::kMul, {2500, 0}, 0, Fault::kNone},
-      {"MUL", Op::kMul, {2500, 499}, 1248, Fault::kNone},
-      {"MUL", Op::kMul, {2500, 1000}, 2500, Fault::kNone},
-      {"MUL", Op::kMul, {2500, 2500}, 6250, Fault::kNone},
-      {"MUL", Op::kMul, {2500, 2147483647}, 0, Fault::kOverflow},
-      {"MUL", Op::kMul, {2147483647, -2147483648}, 0, Fault::kOverflow},
-      {"MUL", Op::kMul, {2147483647, -1500500}, 0, Fault::kOverflow},
-      {"MUL", Op::kMul, {2147483647, -1}, -2147484, Fault::kNone},
-      {"MUL", Op::kMul, {2147483647, 0}, 0, Fault::kNone},
-      {"MUL", Op::kMul, {2147483647, 499}, 1071594340, Fault::kNone},
-      {"MUL", Op::kMul, {2147483647, 1000}, 2147483647, Fault::kNone},
-      {"MUL", Op::kMul, {2147483647, 2500}, 0, Fault::kOverflow},
-      {"MUL", Op::kMul, {2147483647, 2147483647}, 0, Fault::kOverflow},
-      {"DIV", Op::kDiv, {-2147483648, -2147483648}, 1000, Fault::kNone},
-      {"DIV", Op::kDiv, {-2147483648, -1500500}, 1431179, Fault::kNone},
-      {"DIV", Op::kDiv, {-2147483648, -1}, 0, Fault::kOverflow},
-      {"DIV", Op::kDiv, {-2147483648, 0}, 0, Fault::kDivideByZero},
-      {"DIV", Op::kDiv, {-2147483648, 499}, 0, Fault::kOverflow},
-      {"DIV", Op::kDiv, {-2147483648, 1000}, -2147483648, Fault::kNone},
-      {"DIV", Op::kDiv, {-2147483648, 2500}, -858993459, Fault::kNone},
-      {"DIV", Op::kDiv, {-2147483648, 2147483647}, -1000, Fault::kNone},
-      {"DIV", Op::kDiv, {-1500500, -2147483648}, 1, Fault::kNone},
-      {"DIV", Op::kDiv, {-1500500, -1500500}, 1000, Fault::kNone},
-      {"DIV", Op::kDiv, {-1500500, -1}, 1500500000, Fault::kNone},
-      {"DIV", Op::kDiv, {-1500500, 0}, 0, Fault::kDivideByZero},
-      {"DIV", Op::kDiv, {-1500500, 499}, -3007014, Fault::kNone},
-      {"DIV", Op::kDiv, {-1500500, 1000}, -1500500, Fault::kNone},
-      {"DIV", Op::kDiv, {-1500500, 2500}, -600200, Fault::kNone},
-      {"DIV", Op::kDiv, {-1500500, 2147483647}, -1, Fault::kNone},
-      {"DIV", Op::kDiv, {-1, -2147483648}, 0, Fault::kNone},
-      {"DIV", Op::kDiv, {-1, -1500500}, 0, Fault::kNone},
-      {"DIV", Op::kDiv, {-1, -1}, 1000, Fault::kNone},
-      {"DIV", Op::kDiv, {-1, 0}, 0, Fault::kDivideByZero},
-      {"DIV", Op::kDiv, {-1, 499}, -2, Fault::kNone},
-      {"DIV", Op::kDiv, {-1, 1000}, -1, Fault::kNone},
-      {"DIV", Op::kDiv, {-1, 2500}, 0, Fault::kNone},
-      {"DIV", Op::kDiv, {-1, 2147483647}, 0, Fault::kNone},
-      {"DIV", Op::kDiv, {0, -2147483648}, 0, Fault::kNone},
-      {"DIV", Op::kDiv, {0, -1500500}, 0, Fault::kNone},
-      {"DIV", Op::kDiv, {0, -1}, 0, Fault::kNone},
-      {"DIV", Op::kDiv, {0, 0}, 0, Fault::kDivideByZero},
-      {"DIV", Op::kDiv, {0, 499}, 0, Fault::kNone},
-      {"DIV", Op::kDiv, {0, 1000}, 0, Fault::kNone},
-      {"DIV", Op::kDiv, {0, 2500}, 0, Fault::kNone},
-      {"DIV", Op::kDiv, {0, 2147483647}, 0, Fault::kNone},
-      {"DIV", Op::kDiv, {499, -2147483648}, 0, Fault::kNone},
-      {"DIV", Op::kDiv, {499, -1500500}, 0, Fault::kNone},
-      {"DIV", Op::kDiv, {499, -1}, -499000, Fault::kNone},
-      {"DIV", Op::kDiv, {499, 0}, 0, Fault::kDivideByZero},
-      {"DIV", Op::kDiv, {499, 499}, 1000, Fault::kNone},
-      {"DIV", Op::kDiv, {499, 1000}, 499, Fault::kNone},
-      {"DIV", Op::kDiv, {499, 2500}, 200, Fault::kNone},
-      {"DIV", Op::kDiv, {499, 2147483647}, 0, Fault::kNone},
-      {"DIV", Op::kDiv, {1000, -2147483648}, 0, Fault::kNone},
-      {"DIV", Op::kDiv, {1000, -1500500}, -1, Fault::kNone},
-      {"DIV", Op::kDiv, {1000, -1}, -1000000, Fault::kNone},
-      {"DIV", Op::kDiv, {1000, 0}, 0, Fault::kDivideByZero},
-      {"DIV", Op::kDiv, {1000, 499}, 2004, Fault::kNone},
-      {"DIV", Op::kDiv, {1000, 1000}, 1000, Fault::kNone},
-      {"DIV", Op::kDiv, {1000, 2500}, 400, Fault::kNone},
-      {"DIV", Op::kDiv, {1000, 2147483647}, 0, Fault::kNone},
-      {"DIV", Op::kDiv, {2500, -2147483648}, 0, Fault::kNone},
-      {"DIV", Op::kDiv, {2500, -1500500}, -2, Fault::kNone},
-      {"DIV", Op::kDiv, {2500, -1}, -2500000, Fault::kNone},
-      {"DIV", Op::kDiv, {2500, 0}, 0, Fault::kDivideByZero},
-      {"DIV", Op::kDiv, {2500, 499}, 5010, Fault::kNone},
-      {"DIV", Op::kDiv, {2500, 1000}, 2500, Fault::kNone},
-      {"DIV", Op::kDiv, {2500, 2500}, 1000, Fault::kNone},
-      {"DIV", Op::kDiv, {2500, 2147483647}, 0, Fault::kNone},
-      {"DIV", Op::kDiv, {2147483647, -2147483648}, -1000, Fault::kNone},
-      {"DIV", Op::kDiv, {2147483647, -1500500}, -1431179, Fault::kNone},
-      {"DIV", Op::kDiv, {2147483647, -1}, 0, Fault::kOverflow},
-      {"DIV", Op::kDiv, {2147483647, 0}, 0, Fault::kDivideByZero},
-      {"DIV", Op::kDiv, {2147483647, 499}, 0, Fault::kOverflow},
-      {"DIV", Op::kDiv, {2147483647, 1000}, 2147483647, Fault::kNone},
-      {"DIV", Op::kDiv, {2147483647, 2500}, 858993459, Fault::kNone},
-      {"DIV", Op::kDiv, {2147483647, 2147483647}, 1000, Fault::kNone},
-      {"MOD", Op::kMod, {-2147483648, -2147483648}, 0, Fault::kNone},
-      {"MOD", Op::kMod, {-2147483648, -1500500}, -268148, Fault::kNone},
-      {"MOD", Op::kMod, {-2147483648, -1}, 0, Fault::kNone},
-      {"MOD", Op::kMod, {-2147483648, 0}, 0, Fault::kDivideByZero},
-      {"MOD", Op::kMod, {-2147483648, 499}, 277, Fault::kNone},
-      {"MOD", Op::kMod, {-2147483648, 1000}, 352, Fault::kNone},
-      {"MOD", Op::kMod, {-2147483648, 2500}, 1352, Fault::kNone},
-      {"MOD", Op::kMod, {-2147483648, 2147483647}, 2147483646, Fault::kNone},
-      {"MOD", Op::kMod, {-1500500, -2147483648}, -1500500, Fault::kNone},
-      {"MOD", Op::kMod, {-1500500, -1500500}, 0, Fault::kNone},
-      {"MOD", Op::kMod, {-1500500, -1}, 0, Fault::kNone},
-      {"MOD", Op::kMod, {-1500500, 0}, 0, Fault::kDivideByZero},
-      {"MOD", Op::kMod, {-1500500, 499}, 492, Fault::kNone},
-      {"MOD", Op::kMod, {-1500500, 1000}, 500, Fault::kNone},
-      {"MOD", Op::kMod, {-1500500, 2500}, 2000, Fault::kNone},
-      {"MOD", Op::kMod, {-1500500, 2147483647}, 2145983147, Fault::kNone},
-      {"MOD", Op::kMod, {-1, -2147483648}, -1, Fault::kNone},
-      {"MOD", Op::kMod, {-1, -1500500}, -1, Fault::kNone},
-      {"MOD", Op::kMod, {-1, -1}, 0, Fault::kNone},
-      {"MOD", Op::kMod, {-1, 0}, 0, Fault::kDivideByZero},
-      {"MOD", Op::kMod, {-1, 499}, 498, Fault::kNone},
-      {"MOD", Op::kMod, {-1, 1000}, 999, Fault::kNone},
-      {"MOD", Op::kMod, {-1, 2500}, 2499, Fault::kNone},
-      {"MOD", Op::kMod, {-1, 2147483647}, 2147483646, Fault::kNone},
-      {"MOD", Op::kMod, {0, -2147483648}, 0, Fault::kNone},
-      {"MOD", Op::kMod, {0, -1500500}, 0, Fault::kNone},
-      {"MOD", Op::kMod, {0, -1}, 0, Fault::kNone},
-      {"MOD", Op::kMod, {0, 0}, 0, Fault::kDivideByZero},
-      {"MOD", Op::kMod, {0, 499}, 0, Fault::kNone},
-      {"MOD", Op::kMod, {0, 1000}, 0, Fault::kNone},
-      {"MOD", Op::kMod, {0, 2500}, 0, Fault::kNone},
-      {"MOD", Op::kMod, {0, 2147483647}, 0, Fault::kNone},
-      {"MOD", Op::kMod, {499, -2147483648}, -2147483149, Fault::kNone},
-      {"MOD", Op::kMod, {499, -1500500}, -1500001, Fault::kNone},
-      {"MOD", Op::kMod, {499, -1}, 0, Fault::kNone},
-      {"MOD", Op::kMod, {499, 0}, 0, Fault::kDivideByZero},
-      {"MOD", Op::kMod, {499, 499}, 0, Fault::kNone},
-      {"MOD", Op::kMod, {499, 1000}, 499, Fault::kNone},
-      {"MOD", Op::kMod, {499, 2500}, 499, Fault::kNone},
-      {"MOD", Op::kMod, {499, 2147483647}, 499, Fault::kNone},
-      {"MOD", Op::kMod, {1000, -2147483648}, -2147482648, Fault::kNone},
-      {"MOD", Op::kMod, {1000, -1500500}, -1499500, Fault::kNone},
-      {"MOD", Op::kMod, {1000, -1}, 0, Fault::kNone},
-      {"MOD", Op::kMod, {1000, 0}, 0, Fault::kDivideByZero},
-      {"MOD", Op::kMod, {1000, 499}, 2, Fault::kNone},
-      {"MOD", Op::kMod, {1000, 1000}, 0, Fault::kNone},
-      {"MOD", Op::kMod, {1000, 2500}, 1000, Fault::kNone},
-      {"MOD", Op::kMod, {1000, 2147483647}, 1000, Fault::kNone},
-      {"MOD", Op::kMod, {2500, -2147483648}, -2147481148, Fault::kNone},
-      {"MOD", Op::kMod, {2500, -1500500}, -1498000, Fault::kNone},
-      {"MOD", Op::kMod, {2500, -1}, 0, Fault::kNone},
-      {"MOD", Op::kMod, {2500, 0}, 0, Fault::kDivideByZero},
-      {"MOD", Op::kMod, {2500, 499}, 5, Fault::kNone},
-      {"MOD", Op::kMod, {2500, 1000}, 500, Fault::kNone},
-      {"MOD", Op::kMod, {2500, 2500}, 0, Fault::kNone},
-      {"MOD", Op::kMod, {2500, 2147483647}, 2500, Fault::kNone},
-      {"MOD", Op::kMod, {2147483647, -2147483648}, -1, Fault::kNone},
-      {"MOD", Op::kMod, {2147483647, -1500500}, -1232353, Fault::kNone},
-      {"MOD", Op::kMod, {2147483647, -1}, 0, Fault::kNone},
-      {"MOD", Op::kMod, {2147483647, 0}, 0, Fault::kDivideByZero},
-      {"MOD", Op::kMod, {2147483647, 499}, 221, Fault::kNone},
-      {"MOD", Op::kMod, {2147483647, 1000}, 647, Fault::kNone},
-      {"MOD", Op::kMod, {2147483647, 2500}, 1147, Fault::kNone},
-      {"MOD", Op::kMod, {2147483647, 2147483647}, 0, Fault::kNone},
-      {"NEG", Op::kNeg, {-2147483648}, 0, Fault::kOverflow},
-      {"NEG", Op::kNeg, {-1500500}, 1500500, Fault::kNone},
-      {"NEG", Op::kNeg, {-1}, 1, Fault::kNone},
-      {"NEG", Op::kNeg, {0}, 0, Fault::kNone},
-      {"NEG", Op::kNeg, {499}, -499, Fault::kNone},
-      {"NEG", Op::kNeg, {1000}, -1000, Fault::kNone},
-      {"NEG", Op::kNeg, {2500}, -2500, Fault::kNone},
-      {"NEG", Op::kNeg, {2147483647}, -2147483647, Fault::kNone},
-      {"ABS", Op::kAbs, {-2147483648}, 0, Fault::kOverflow},
-      {"ABS", Op::kAbs, {-1500500}, 1500500, Fault::kNone},
-      {"ABS", Op::kAbs, {-1}, 1, Fault::kNone},
-      {"ABS", Op::kAbs, {0}, 0, Fault::kNone},
-      {"ABS", Op::kAbs, {499}, 499, Fault::kNone},
-      {"ABS", Op::kAbs, {1000}, 1000, Fault::kNone},
-      {"ABS", Op::kAbs, {2500}, 2500, Fault::kNone},
-      {"ABS", Op::kAbs, {2147483647}, 2147483647, Fault::kNone},
-      {"MIN", Op::kMin, {-2147483648, -2147483648}, -2147483648, Fault::kNone},
-      {"MIN", Op::kMin, {-2147483648, -1500500}, -2147483648, Fault::kNone},
-      {"MIN", Op::kMin, {-2147483648, -1}, -2147483648, Fault::kNone},
-      {"MIN", Op::kMin, {-2147483648, 0}, -2147483648, Fault::kNone},
-      {"MIN", Op::kMin, {-2147483648, 499}, -2147483648, Fault::kNone},
-      {"MIN", Op::kMin, {-2147483648, 1000}, -2147483648, Fault::kNone},
-      {"MIN", Op::kMin, {-2147483648, 2500}, -2147483648, Fault::kNone},
-      {"MIN", Op::kMin, {-2147483648, 2147483647}, -2147483648, Fault::kNone},
-      {"MIN", Op::kMin, {-1500500, -2147483648}, -2147483648, Fault::kNone},
-      {"MIN", Op::kMin, {-1500500, -1500500}, -1500500, Fault::kNone},
-      {"MIN", Op::kMin, {-1500500, -1}, -1500500, Fault::kNone},
-      {"MIN", Op::kMin, {-1500500, 0}, -1500500, Fault::kNone},
-      {"MIN", Op::kMin, {-1500500, 499}, -1500500, Fault::kNone},
-      {"MIN", Op::kMin, {-1500500, 1000}, -1500500, Fault::kNone},
-      {"MIN", Op::kMin, {-1500500, 2500}, -1500500, Fault::kNone},
-      {"MIN", Op::kMin, {-1500500, 2147483647}, -1500500, Fault::kNone},
-      {"MIN", Op::kMin, {-1, -2147483648}, -2147483648, Fault::kNone},
-      {"MIN", Op::kMin, {-1, -1500500}, -1500500, Fault::kNone},
-      {"MIN", Op::kMin, {-1, -1}, -1, Fault::kNone},
-      {"MIN", Op::kMin, {-1, 0}, -1, Fault::kNone},
-      {"MIN", Op::kMin, {-1, 499}, -1, Fault::kNone},
-      {"MIN", Op::kMin, {-1, 1000}, -1, Fault::kNone},
-      {"MIN", Op::kMin, {-1, 2500}, -1, Fault::kNone},
-      {"MIN", Op::kMin, {-1, 2147483647}, -1, Fault::kNone},
-      {"MIN", Op::kMin, {0, -2147483648}, -2147483648, Fault::kNone},
-      {"MIN", Op::kMin, {0, -1500500}, -1500500, Fault::kNone},
-      {"MIN", Op::kMin, {0, -1}, -1, Fault::kNone},
-      {"MIN", Op::kMin, {0, 0}, 0, Fault::kNone},
-      {"MIN", Op::kMin, {0, 499}, 0, Fault::kNone},
-      {"MIN", Op::kMin, {0, 1000}, 0, Fault::kNone},
-      {"MIN", Op::kMin, {0, 2500}, 0, Fault::kNone},
-      {"MIN", Op::kMin, {0, 2147483647}, 0, Fault::kNone},
-      {"MIN", Op::kMin, {499, -2147483648}, -2147483648, Fault::kNone},
-      {"MIN", Op::kMin, {499, -1500500}, -1500500, Fault::kNone},
-      {"MIN", Op::kMin, {499, -1}, -1, Fault::kNone},
-      {"MIN", Op::kMin, {499, 0}, 0, Fault::kNone},
-      {"MIN", Op::kMin, {499, 499}, 499, Fault::kNone},
-      {"MIN", Op::kMin, {499, 1000}, 499, Fault::kNone},
-      {"MIN", Op::kMin, {499, 2500}, 499, Fault::kNone},
-      {"MIN", Op::kMin, {499, 2147483647}, 499, Fault::kNone},
-      {"MIN", Op::kMin, {1000, -2147483648}, -2147483648, Fault::kNone},
-      {"MIN", Op::kMin, {1000, -1500500}, -1500500, Fault::kNone},
-      {"MIN", Op::kMin, {1000, -1}, -1, Fault::kNone},
-      {"MIN", Op::kMin, {1000, 0}, 0, Fault::kNone},
-      {"MIN", Op::kMin, {1000, 499}, 499, Fault::kNone},
-      {"MIN", Op::kMin, {1000, 1000}, 1000, Fault::kNone},
-      {"MIN", Op::kMin, {1000, 2500}, 1000, Fault::kNone},
-      {"MIN", Op::kMin, {1000, 2147483647}, 1000, Fault::kNone},
-      {"MIN", Op::kMin, {2500, -2147483648}, -2147483648, Fault::kNone},
-      {"MIN", Op::kMin, {2500, -1500500}, -1500500, Fault::kNone},
-      {"MIN", Op::kMin, {2500, -1}, -1, Fault::kNone},
-      {"MIN", Op::kMin, {2500, 0}, 0, Fault::kNone},
-      {"MIN", Op::kMin, {2500, 499}, 499, Fault::kNone},
-      {"MIN", Op::kMin, {2500, 1000}, 1000, Fault::kNone},
-      {"MIN", Op::kMin, {2500, 2500}, 2500, Fault::kNone},
-      {"MIN", Op::kMin, {2500, 2147483647}, 2500, Fault::kNone},
-      {"MIN", Op::kMin, {2147483647, -2147483648}, -2147483648, Fault::kNone},
-      {"MIN", Op::kMin, {2147483647, -1500500}, -1500500, Fault::kNone},
-      {"MIN", Op::kMin, {2147483647, -1}, -1, Fault::kNone},
-      {"MIN", Op::kMin, {2147483647, 0}, 0, Fault::kNone},
-      {"MIN", Op::kMin, {2147483647, 499}, 499, Fault::kNone},
-      {"MIN", Op::kMin, {2147483647, 1000}, 1000, Fault::kNone},
-      {"MIN", Op::kMin, {2147483647, 2500}, 2500, Fault::kNone},
-      {"MIN", Op::kMin, {2147483647, 2147483647}, 2147483647, Fault::kNone},
-      {"MAX", Op::kMax, {-2147483648, -2147483648}, -2147483648, Fault::kNone},
-      {"MAX", Op::kMax, {-2147483648, -1500500}, -1500500, Fault::kNone},
-      {"MAX", Op::kMax, {-2147483648, -1}, -1, Fault::kNone},
-      {"MAX", Op::kMax, {-2147483648, 0}, 0, Fault::kNone},
-      {"MAX", Op::kMax, {-2147483648, 499}, 499, Fault::kNone},
-      {"MAX", Op::kMax, {-2147483648, 1000}, 1000, Fault::kNone},
-      {"MAX", Op::kMax, {-2147483648, 2500}, 2500, Fault::kNone},
-      {"MAX", Op::kMax, {-2147483648, 2147483647}, 2147483647, Fault::kNone},
-      {"MAX", Op::kMax, {-1500500, -2147483648}, -1500500, Fault::kNone},
-      {"MAX", Op::kMax, {-1500500, -1500500}, -1500500, Fault::kNone},
-      {"MAX", Op::kMax, {-1500500, -1}, -1, Fault::kNone},
-      {"MAX", Op::kMax, {-1500500, 0}, 0, Fault::kNone},
-      {"MAX", Op::kMax, {-1500500, 499}, 499, Fault::kNone},
-      {"MAX", Op::kMax, {-1500500, 1000}, 1000, Fault::kNone},
-      {"MAX", Op::kMax, {-1500500, 2500}, 2500, Fault::kNone},
-      {"MAX", Op::kMax, {-1500500, 2147483647}, 2147483647, Fault::kNone},
-      {"MAX", Op::kMax, {-1, -2147483648}, -1, Fault::kNone},
-      {"MAX", Op::kMax, {-1, -1500500}, -1, Fault::kNone},
-      {"MAX", Op::kMax, {-1, -1}, -1, Fault::kNone},
-      {"MAX", Op::kMax, {-1, 0}, 0, Fault::kNone},
-      {"MAX", Op::kMax, {-1, 499}, 499, Fault::kNone},
-      {"MAX", Op::kMax, {-1, 1000}, 1000, Fault::kNone},
-      {"MAX", Op::kMax, {-1, 2500}, 2500, Fault::kNone},
-      {"MAX", Op::kMax, {-1, 2147483647}, 2147483647, Fault::kNone},
-      {"MAX", Op::kMax, {0, -2147483648}, 0, Fault::kNone},
-      {"MAX", Op::kMax, {0, -1500500}, 0, Fault::kNone},
-      {"MAX", Op::kMax, {0, -1}, 0, Fault::kNone},
-      {"MAX", Op::kMax, {0, 0}, 0, Fault::kNone},
-      {"MAX", Op::kMax, {0, 499}, 499, Fault::kNone},
-      {"MAX", Op::kMax, {0, 1000}, 1000, Fault::kNone},
-      {"MAX", Op::kMax, {0, 2500}, 2500, Fault::kNone},
-      {"MAX", Op::kMax, {0, 2147483647}, 2147483647, Fault::kNone},
-      {"MAX", Op::kMax, {499, -2147483648}, 499, Fault::kNone},
-      {"MAX", Op::kMax, {499, -1500500}, 499, Fault::kNone},
-      {"MAX", Op::kMax, {499, -1}, 499, Fault::kNone},
-      {"MAX", Op::kMax, {499, 0}, 499, Fault::kNone},
-      {"MAX", Op::kMax, {499, 499}, 499, Fault::kNone},
-      {"MAX", Op::kMax, {499, 1000}, 1000, Fault::kNone},
-      {"MAX", Op::kMax, {499, 2500}, 2500, Fault::kNone},
-      {"MAX", Op::kMax, {499, 2147483647}, 2147483647, Fault::kNone},
-      {"MAX", Op::kMax, {1000, -2147483648}, 1000, Fault::kNone},
-      {"MAX", Op::kMax, {1000, -1500500}, 1000, Fault::kNone},
-      {"MAX", Op::kMax, {1000, -1}, 1000, Fault::kNone},
-      {"MAX", Op::kMax, {1000, 0}, 1000, Fault::kNone},
-      {"MAX", Op::kMax, {1000, 499}, 1000, Fault::kNone},
-      {"MAX", Op::kMax, {1000, 1000}, 1000, Fault::kNone},
-      {"MAX", Op::kMax, {1000, 2500}, 2500, Fault::kNone},
-      {"MAX", Op::kMax, {1000, 2147483647}, 2147483647, Fault::kNone},
-      {"MAX", Op::kMax, {2500, -2147483648}, 2500, Fault::kNone},
-      {"MAX", Op::kMax, {2500, -1500500}, 2500, Fault::kNone},
-      {"MAX", Op::kMax, {2500, -1}, 2500, Fault::kNone},
-      {"MAX", Op::kMax, {2500, 0}, 2500, Fault::kNone},
-      {"MAX", Op::kMax, {2500, 499}, 2500, Fault::kNone},
-      {"MAX", Op::kMax, {2500, 1000}, 2500, Fault::kNone},
-      {"MAX", Op::kMax, {2500, 2500}, 2500, Fault::kNone},
-      {"MAX", Op::kMax, {2500, 2147483647}, 2147483647, Fault::kNone},
-      {"MAX", Op::kMax, {2147483647, -2147483648}, 2147483647, Fault::kNone},
-      {"MAX", Op::kMax, {2147483647, -1500500}, 2147483647, Fault::kNone},
-      {"MAX", Op::kMax, {2147483647, -1}, 2147483647, Fault::kNone},
-      {"MAX", Op::kMax, {2147483647, 0}, 2147483647, Fault::kNone},
-      {"MAX", Op::kMax, {2147483647, 499}, 2147483647, Fault::kNone},
-      {"MAX", Op::kMax, {2147483647, 1000}, 2147483647, Fault::kNone},
-      {"MAX", Op::kMax, {2147483647, 2500}, 2147483647, Fault::kNone},
-      {"MAX", Op::kMax, {2147483647, 2147483647}, 2147483647, Fault::kNone},
-      {"ROUND", Op::kRound, {-2147483648, -2147483648}, 0, Fault::kNone},
-      {"ROUND", Op::kRound, {-2147483648, -1500500}, 0, Fault::kNone},
-      {"ROUND", Op::kRound, {-2147483648, -1}, 0, Fault::kOverflow},
-      {"ROUND", Op::kRound, {-2147483648, 0}, 0, Fault::kOverflow},
-      {"ROUND", Op::kRound, {-2147483648, 499}, 0, Fault::kOverflow},
-      {"ROUND", Op::kRound, {-2147483648, 1000}, -2147483600, Fault::kNone},
-      {"ROUND", Op::kRound, {-2147483648, 2500}, -2147483648, Fault::kNone},
-      {"ROUND", Op::kRound, {-2147483648, 2147483647}, -2147483648, Fault::kNone},
-      {"ROUND", Op::kRound, {-1500500, -2147483648}, 0, Fault::kNone},
-      {"ROUND", Op::kRound, {-1500500, -1500500}, 0, Fault::kNone},
-      {"ROUND", Op::kRound, {-1500500, -1}, -1501000, Fault::kNone},
-      {"ROUND", Op::kRound, {-1500500, 0}, -1501000, Fault::kNone},
-      {"ROUND", Op::kRound, {-1500500, 499}, -1501000, Fault::kNone},
-      {"ROUND", Op::kRound, {-1500500, 1000}, -1500500, Fault::kNone},
-      {"ROUND", Op::kRound, {-1500500, 2500}, -1500500, Fault::kNone},
-      {"ROUND", Op::kRound, {-1500500, 2147483647}, -1500500, Fault::kNone},
-      {"ROUND", Op::kRound, {-1, -2147483648}, 0, Fault::kNone},
-      {"ROUND", Op::kRound, {-1, -1500500}, 0, Fault::kNone},
-      {"ROUND", Op::kRound, {-1, -1}, 0, Fault::kNone},
-      {"ROUND", Op::kRound, {-1, 0}, 0, Fault::kNone},
-      {"ROUND", Op::kRound, {-1, 499}, 0, Fault::kNone},
-      {"ROUND", Op::kRound, {-1, 1000}, 0, Fault::kNone},
-      {"ROUND", Op::kRound, {-1, 2500}, -1, Fault::kNone},
-      {"ROUND", Op::kRound, {-1, 2147483647}, -1, Fault::kNone},
-      {"ROUND", Op::kRound, {0, -2147483648}, 0, Fault::kNone},
-      {"ROUND", Op::kRound, {0, -1500500}, 0, Fault::kNone},
-      {"ROUND", Op::kRound, {0, -1}, 0, Fault::kNone},
-      {"ROUND", Op::kRound, {0, 0}, 0, Fault::kNone},
-      {"ROUND", Op::kRound, {0, 499}, 0, Fault::kNone},
-      {"ROUND", Op::kRound, {0, 1000}, 0, Fault::kNone},
-      {"ROUND", Op::kRound, {0, 2500}, 0, Fault::kNone},
-      {"ROUND", Op::kRound, {0, 2147483647}, 0, Fault::kNone},
-      {"ROUND", Op::kRound, {499, -2147483648}, 0, Fault::kNone},
-      {"ROUND", Op::kRound, {499, -1500500}, 0, Fault::kNone},
-      {"ROUND", Op::kRound, {499, -1}, 0, Fault::kNone},
-      {"ROUND", Op::kRound, {499, 0}, 0, Fault::kNone},
-      {"ROUND", Op::kRound, {499, 499}, 0, Fault::kNone},
-      {"ROUND", Op::kRound, {499, 1000}, 500, Fault::kNone},
-      {"ROUND", Op::kRound, {499, 2500}, 499, Fault::kNone},
-      {"ROUND", Op::kRound, {499, 2147483647}, 499, Fault::kNone},
-      {"ROUND", Op::kRound, {1000, -2147483648}, 0, Fault::kNone},
-      {"ROUND", Op::kRound, {1000, -1500500}, 0, Fault::kNone},
-      {"ROUND", Op::kRound, {1000, -1}, 1000, Fault::kNone},
-      {"ROUND", Op::kRound, {1000, 0}, 1000, Fault::kNone},
-      {"ROUND", Op::kRound, {1000, 499}, 1000, Fault::kNone},
-      {"ROUND", Op::kRound, {1000, 1000}, 1000, Fault::kNone},
-      {"ROUND", Op::kRound, {1000, 2500}, 1000, Fault::kNone},
-      {"ROUND", Op::kRound, {1000, 2147483647}, 1000, Fault::kNone},
-      {"ROUND", Op::kRound, {2500, -2147483648}, 0, Fault::kNone},
-      {"ROUND", Op::kRound, {2500, -1500500}, 0, Fault::kNone},
-      {"ROUND", Op::kRound, {2500, -1}, 3000, Fault::kNone},
-      {"ROUND", Op::kRound, {2500, 0}, 3000, Fault::kNone},
-      {"ROUND", Op::kRound, {2500, 499}, 3000, Fault::kNone},
-      {"ROUND", Op::kRound, {2500, 1000}, 2500, Fault::kNone},
-      {"ROUND", Op::kRound, {2500, 2500}, 2500, Fault::kNone},
-      {"ROUND", Op::kRound, {2500, 2147483647}, 2500, Fault::kNone},
-      {"ROUND", Op::kRound, {2147483647, -2147483648}, 0, Fault::kNone},
-      {"ROUND", Op::kRound, {2147483647, -1500500}, 0, Fault::kNone},
-      {"ROUND", Op::kRound, {2147483647, -1}, 0, Fault::kOverflow},
-      {"ROUND", Op::kRound, {2147483647, 0}, 0, Fault::kOverflow},
-      {"ROUND", Op::kRound, {2147483647, 499}, 0, Fault::kOverflow},
-      {"ROUND", Op::kRound, {2147483647, 1000}, 2147483600, Fault::kNone},
-      {"ROUND", Op::kRound, {2147483647, 2500}, 2147483647, Fault::kNone},
-      {"ROUND", Op::kRound, {2147483647, 2147483647}, 2147483647, Fault::kNone},
-      {"RANDOM", Op::kRandom, {-2147483648, -2147483648}, 0, Fault::kOverflow},
-      {"RANDOM", Op::kRandom, {-2147483648, -1500500}, -1877115000, Fault::kNone},
-      {"RANDOM", Op::kRandom, {-2147483648, -1}, -1877115000, Fault::kNone},
-      {"RANDOM", Op::kRandom, {-2147483648, 0}, -1877115000, Fault::kNone},
-      {"RANDOM", Op::kRandom, {-2147483648, 499}, -1877115000, Fault::kNone},
-      {"RANDOM", Op::kRandom, {-2147483648, 1000}, -1877115000, Fault::kNone},
-      {"RANDOM", Op::kRandom, {-2147483648, 2500}, -1877115000, Fault::kNone},
-      {"RANDOM", Op::kRandom, {-2147483648, 2147483647}, -1877115000, Fault::kNone},
-      {"RANDOM", Op::kRandom, {-1500500, -2147483648}, -1877115000, Fault::kNone},
-      {"RANDOM", Op::kRandom, {-1500500, -1500500}, -1501000, Fault::kNone},
-      {"RANDOM", Op::kRandom, {-1500500, -1}, -1492000, Fault::kNone},
-      {"RANDOM", Op::kRandom, {-1500500, 0}, -1492000, Fault::kNone},
-      {"RANDOM", Op::kRandom, {-1500500, 499}, -1492000, Fault::kNone},
-      {"RANDOM", Op::kRandom, {-1500500, 1000}, -169000, Fault::kNone},
-      {"RANDOM", Op::kRandom, {-1500500, 2500}, -527000, Fault::kNone},
-      {"RANDOM", Op::kRandom, {-1500500, 2147483647}, 268868000, Fault::kNone},
-      {"RANDOM", Op::kRandom, {-1, -2147483648}, -1877115000, Fault::kNone},
-      {"RANDOM", Op::kRandom, {-1, -1500500}, -1492000, Fault::kNone},
-      {"RANDOM", Op::kRandom, {-1, -1}, 0, Fault::kNone},
-      {"RANDOM", Op::kRandom, {-1, 0}, 0, Fault::kNone},
-      {"RANDOM", Op::kRandom, {-1, 499}, 0, Fault::kNone},
-      {"RANDOM", Op::kRandom, {-1, 1000}, 1000, Fault::kNone},
-      {"RANDOM", Op::kRandom, {-1, 2500}, 1000, Fault::kNone},
-      {"RANDOM", Op::kRandom, {-1, 2147483647}, 270369000, Fault::kNone},
-      {"RANDOM", Op::kRandom, {0, -2147483648}, -1877115000, Fault::kNone},
-      {"RANDOM", Op::kRandom, {0, -1500500}, -1492000, Fault::kNone},
-      {"RANDOM", Op::kRandom, {0, -1}, 0, Fault::kNone},
-      {"RANDOM", Op::kRandom, {0, 0}, 0, Fault::kNone},
-      {"RANDOM", Op::kRandom, {0, 499}, 0, Fault::kNone},
-      {"RANDOM", Op::kRandom, {0, 1000}, 1000, Fault::kNone},
-      {"RANDOM", Op::kRandom, {0, 2500}, 1000, Fault::kNone},
-      {"RANDOM", Op::kRandom, {0, 2147483647}, 270369000, Fault::kNone},
-      {"RANDOM", Op::kRandom, {499, -2147483648}, -1877115000, Fault::kNone},
-      {"RANDOM", Op::kRandom, {499, -1500500}, -1492000, Fault::kNone},
-      {"RANDOM", Op::kRandom, {499, -1}, 0, Fault::kNone},
-      {"RANDOM", Op::kRandom, {499, 0}, 0, Fault::kNone},
-      {"RANDOM", Op::kRandom, {499, 499}, 0, Fault::kNone},
-      {"RANDOM", Op::kRandom, {499, 1000}, 1000, Fault::kNone},
-      {"RANDOM", Op::kRandom, {499, 2500}, 1000, Fault::kNone},
-      {"RANDOM", Op::kRandom, {499, 2147483647}, 270369000, Fault::kNone},
-      {"RANDOM", Op::kRandom, {1000, -2147483648}, -1877115000, Fault::kNone},
-      {"RANDOM", Op::kRandom, {1000, -1500500}, -169000, Fault::kNone},
-      {"RANDOM", Op::kRandom, {1000, -1}, 1000, Fault::kNone},
-      {"RANDOM", Op::kRandom, {1000, 0}, 1000, Fault::kNone},
-      {"RANDOM", Op::kRandom, {1000, 499}, 1000, Fault::kNone},
-      {"RANDOM", Op::kRandom, {1000, 1000}, 1000, Fault::kNone},
-      {"RANDOM", Op::kRandom, {1000, 2500}, 1000, Fault::kNone},
-      {"RANDOM", Op::kRandom, {1000, 2147483647}, 270370000, Fault::kNone},
-      {"RANDOM", Op::kRandom, {2500, -2147483648}, -1877115000, Fault::kNone},
-      {"RANDOM", Op::kRandom, {2500, -1500500}, -527000, Fault::kNone},
-      {"RANDOM", Op::kRandom, {2500, -1}, 1000, Fault::kNone},
-      {"RANDOM", Op::kRandom, {2500, 0}, 1000, Fault::kNone},
-      {"RANDOM", Op::kRandom, {2500, 499}, 1000, Fault::kNone},
-      {"RANDOM", Op::kRandom, {2500, 1000}, 1000, Fault::kNone},
-      {"RANDOM", Op::kRandom, {2500, 2500}, 3000, Fault::kNone},
-      {"RANDOM", Op::kRandom, {2500, 2147483647}, 270372000, Fault::kNone},
-      {"RANDOM", Op::kRandom, {2147483647, -2147483648}, -1877115000, Fault::kNone},
-      {"RANDOM", Op::kRandom, {2147483647, -1500500}, 268868000, Fault::kNone},
-      {"RANDOM", Op::kRandom, {2147483647, -1}, 270369000, Fault::kNone},
-      {"RANDOM", Op::kRandom, {2147483647, 0}, 270369000, Fault::kNone},
-      {"RANDOM", Op::kRandom, {2147483647, 499}, 270369000, Fault::kNone},
-      {"RANDOM", Op::kRandom, {2147483647, 1000}, 270370000, Fault::kNone},
-      {"RANDOM", Op::kRandom, {2147483647, 2500}, 270372000, Fault::kNone},
-      {"RANDOM", Op::kRandom, {2147483647, 2147483647}, 0, Fault::kOverflow},
-      {"EQ", Op::kEq, {-2147483648, -2147483648}, 1, Fault::kNone},
-      {"EQ", Op::kEq, {-2147483648, -1500500}, 0, Fault::kNone},
-      {"EQ", Op::kEq, {-2147483648, -1}, 0, Fault::kNone},
-      {"EQ", Op::kEq, {-2147483648, 0}, 0, Fault::kNone},
-      {"EQ", Op::kEq, {-2147483648, 499}, 0, Fault::kNone},
-      {"EQ", Op::kEq, {-2147483648, 1000}, 0, Fault::kNone},
-      {"EQ", Op::kEq, {-2147483648, 2500}, 0, Fault::kNone},
-      {"EQ", Op::kEq, {-2147483648, 2147483647}, 0, Fault::kNone},
-      {"EQ", Op::kEq, {-1500500, -2147483648}, 0, Fault::kNone},
-      {"EQ", Op::kEq, {-1500500, -1500500}, 1, Fault::kNone},
-      {"EQ", Op::kEq, {-1500500, -1}, 0, Fault::kNone},
-      {"EQ", Op::kEq, {-1500500, 0}, 0, Fault::kNone},
-      {"EQ", Op::kEq, {-1500500, 499}, 0, Fault::kNone},
-      {"EQ", Op::kEq, {-1500500, 1000}, 0, Fault::kNone},
-      {"EQ", Op::kEq, {-1500500, 2500}, 0, Fault::kNone},
-      {"EQ", Op::kEq, {-1500500, 2147483647}, 0, Fault::kNone},
-      {"EQ", Op::kEq, {-1, -2147483648}, 0, Fault::kNone},
-      {"EQ", Op::kEq, {-1, -1500500}, 0, Fault::kNone},
-      {"EQ", Op::kEq, {-1, -1}, 1, Fault::kNone},
-      {"EQ", Op::kEq, {-1, 0}, 0, Fault::kNone},
-      {"EQ", Op::kEq, {-1, 499}, 0, Fault::kNone},
-      {"EQ", Op::kEq, {-1, 1000}, 0, Fault::kNone},
-      {"EQ", Op::kEq, {-1, 2500}, 0, Fault::kNone},
-      {"EQ", Op::kEq, {-1, 2147483647}, 0, Fault::kNone},
-      {"EQ", Op::kEq, {0, -2147483648}, 0, Fault::kNone},
-      {"EQ", Op::kEq, {0, -1500500}, 0, Fault::kNone},
-      {"EQ", Op::kEq, {0, -1}, 0, Fault::kNone},
-      {"EQ", Op::kEq, {0, 0}, 1, Fault::kNone},
-      {"EQ", Op::kEq, {0, 499}, 0, Fault::kNone},
-      {"EQ", Op::kEq, {0, 1000}, 0, Fault::kNone},
-      {"EQ", Op::kEq, {0, 2500}, 0, Fault::kNone},
-      {"EQ", Op::kEq, {0, 2147483647}, 0, Fault::kNone},
-      {"EQ", Op::kEq, {499, -2147483648}, 0, Fault::kNone},
-      {"EQ", Op::kEq, {499, -1500500}, 0, Fault::kNone},
-      {"EQ", Op::kEq, {499, -1}, 0, Fault::kNone},
-      {"EQ", Op::kEq, {499, 0}, 0, Fault::kNone},
-      {"EQ", Op::kEq, {499, 499}, 1, Fault::kNone},
-      {"EQ", Op::kEq, {499, 1000}, 0, Fault::kNone},
-      {"EQ", Op::kEq, {499, 2500}, 0, Fault::kNone},
-      {"EQ", Op::kEq, {499, 2147483647}, 0, Fault::kNone},
-      {"EQ", Op::kEq, {1000, -2147483648}, 0, Fault::kNone},
-      {"EQ", Op::kEq, {1000, -1500500}, 0, Fault::kNone},
-      {"EQ", Op::kEq, {1000, -1}, 0, Fault::kNone},
-      {"EQ", Op::kEq, {1000, 0}, 0, Fault::kNone},
-      {"EQ", Op::kEq, {1000, 499}, 0, Fault::kNone},
-      {"EQ", Op::kEq, {1000, 1000}, 1, Fault::kNone},
-      {"EQ", Op::kEq, {1000, 2500}, 0, Fault::kNone},
-      {"EQ", Op::kEq, {1000, 2147483647}, 0, Fault::kNone},
-      {"EQ", Op::kEq, {2500, -2147483648}, 0, Fault::kNone},
-      {"EQ", Op::kEq, {2500, -1500500}, 0, Fault::kNone},
-      {"EQ", Op::kEq, {2500, -1}, 0, Fault::kNone},
-      {"EQ", Op::kEq, {2500, 0}, 0, Fault::kNone},
-      {"EQ", Op::kEq, {2500, 499}, 0, Fault::kNone},
-      {"EQ", Op::kEq, {2500, 1000}, 0, Fault::kNone},
-      {"EQ", Op::kEq, {2500, 2500}, 1, Fault::kNone},
-      {"EQ", Op::kEq, {2500, 2147483647}, 0, Fault::kNone},
-      {"EQ", Op::kEq, {2147483647, -2147483648}, 0, Fault::kNone},
-      {"EQ", Op::kEq, {2147483647, -1500500}, 0, Fault::kNone},
-      {"EQ", Op::kEq, {2147483647, -1}, 0, Fault::kNone},
-      {"EQ", Op::kEq, {2147483647, 0}, 0, Fault::kNone},
-      {"EQ", Op::kEq, {2147483647, 499}, 0, Fault::kNone},
-      {"EQ", Op::kEq, {2147483647, 1000}, 0, Fault::kNone},
-      {"EQ", Op::kEq, {2147483647, 2500}, 0, Fault::kNone},
-      {"EQ", Op::kEq, {2147483647, 2147483647}, 1, Fault::kNone},
-      {"NE", Op::kNe, {-2147483648, -2147483648}, 0, Fault::kNone},
-      {"NE", Op::kNe, {-2147483648, -1500500}, 1, Fault::kNone},
-      {"NE", Op::kNe, {-2147483648, -1}, 1, Fault::kNone},
-      {"NE", Op::kNe, {-2147483648, 0}, 1, Fault::kNone},
-      {"NE", Op::kNe, {-2147483648, 499}, 1, Fault::kNone},
-      {"NE", Op::kNe, {-2147483648, 1000}, 1, Fault::kNone},
-      {"NE", Op::kNe, {-2147483648, 2500}, 1, Fault::kNone},
-      {"NE", Op::kNe, {-2147483648, 2147483647}, 1, Fault::kNone},
-      {"NE", Op::kNe, {-1500500, -2147483648}, 1, Fault::kNone},
-      {"NE", Op::kNe, {-1500500, -1500500}, 0, Fault::kNone},
-      {"NE", Op::kNe, {-1500500, -1}, 1, Fault::kNone},
-      {"NE", Op::kNe, {-1500500, 0}, 1, Fault::kNone},
-      {"NE", Op::kNe, {-1500500, 499}, 1, Fault::kNone},
-      {"NE", Op::kNe, {-1500500, 1000}, 1, Fault::kNone},
-      {"NE", Op::kNe, {-1500500, 2500}, 1, Fault::kNone},
-      {"NE", Op::kNe, {-1500500, 2147483647}, 1, Fault::kNone},
-      {"NE", Op::kNe, {-1, -2147483648}, 1, Fault::kNone},
-      {"NE", Op::kNe, {-1, -1500500}, 1, Fault::kNone},
-      {"NE", Op::kNe, {-1, -1}, 0, Fault::kNone},
-      {"NE", Op::kNe, {-1, 0}, 1, Fault::kNone},
-      {"NE", Op::kNe, {-1, 499}, 1, Fault::kNone},
-      {"NE", Op::kNe, {-1, 1000}, 1, Fault::kNone},
-      {"NE", Op::kNe, {-1, 2500}, 1, Fault::kNone},
-      {"NE", Op::kNe, {-1, 2147483647}, 1, Fault::kNone},
-      {"NE", Op::kNe, {0, -2147483648}, 1, Fault::kNone},
-      {"NE", Op::kNe, {0, -1500500}, 1, Fault::kNone},
-      {"NE", Op::kNe, {0, -1}, 1, Fault::kNone},
-      {"NE", Op::kNe, {0, 0}, 0, Fault::kNone},
-      {"NE", Op::kNe, {0, 499}, 1, Fault::kNone},
-      {"NE", Op::kNe, {0, 1000}, 1, Fault::kNone},
-      {"NE", Op::kNe, {0, 2500}, 1, Fault::kNone},
-      {"NE", Op::kNe, {0, 2147483647}, 1, Fault::kNone},
-      {"NE", Op::kNe, {499, -2147483648}, 1, Fault::kNone},
-      {"NE", Op::kNe, {499, -1500500}, 1, Fault::kNone},
-      {"NE", Op::kNe, {499, -1}, 1, Fault::kNone},
-      {"NE", Op::kNe, {499, 0}, 1, Fault::kNone},
-      {"NE", Op::kNe, {499, 499}, 0, Fault::kNone},
-      {"NE", Op::kNe, {499, 1000}, 1, Fault::kNone},
-      {"NE", Op::kNe, {499, 2500}, 1, Fault::kNone},
-      {"NE", Op::kNe, {499, 2147483647}, 1, Fault::kNone},
-      {"NE", Op::kNe, {1000, -2147483648}, 1, Fault::kNone},
-      {"NE", Op::kNe, {1000, -1500500}, 1, Fault::kNone},
-      {"NE", Op::kNe, {1000, -1}, 1, Fault::kNone},
-      {"NE", Op::kNe, {1000, 0}, 1, Fault::kNone},
-      {"NE", Op::kNe, {1000, 499}, 1, Fault::kNone},
-      {"NE", Op::kNe, {1000, 1000}, 0, Fault::kNone},
-      {"NE", Op::kNe, {1000, 2500}, 1, Fault::kNone},
-      {"NE", Op::kNe, {1000, 2147483647}, 1, Fault::kNone},
-      {"NE", Op::kNe, {2500, -2147483648}, 1, Fault::kNone},
-      {"NE", Op::kNe, {2500, -1500500}, 1, Fault::kNone},
-      {"NE", Op::kNe, {2500, -1}, 1, Fault::kNone},
-      {"NE", Op::kNe, {2500, 0}, 1, Fault::kNone},
-      {"NE", Op::kNe, {2500, 499}, 1, Fault::kNone},
-      {"NE", Op::kNe, {2500, 1000}, 1, Fault::kNone},
-      {"NE", Op::kNe, {2500, 2500}, 0, Fault::kNone},
-      {"NE", Op::kNe, {2500, 2147483647}, 1, Fault::kNone},
-      {"NE", Op::kNe, {2147483647, -2147483648}, 1, Fault::kNone},
-      {"NE", Op::kNe, {2147483647, -1500500}, 1, Fault::kNone},
-      {"NE", Op::kNe, {2147483647, -1}, 1, Fault::kNone},
-      {"NE", Op::kNe, {2147483647, 0}, 1, Fault::kNone},
-      {"NE", Op::kNe, {2147483647, 499}, 1, Fault::kNone},
-      {"NE", Op::kNe, {2147483647, 1000}, 1, Fault::kNone},
-      {"NE", Op::kNe, {2147483647, 2500}, 1, Fault::kNone},
-      {"NE", Op::kNe, {2147483647, 2147483647}, 0, Fault::kNone},
-      {"LT", Op::kLt, {-2147483648, -2147483648}, 0, Fault::kNone},
-      {"LT", Op::kLt, {-2147483648, -1500500}, 1, Fault::kNone},
-      {"LT", Op::kLt, {-2147483648, -1}, 1, Fault::kNone},
-      {"LT", Op::kLt, {-2147483648, 0}, 1, Fault::kNone},
-      {"LT", Op::kLt, {-2147483648, 499}, 1, Fault::kNone},
-      {"LT", Op::kLt, {-2147483648, 1000}, 1, Fault::kNone},
-      {"LT", Op::kLt, {-2147483648, 2500}, 1, Fault::kNone},
-      {"LT", Op::kLt, {-2147483648, 2147483647}, 1, Fault::kNone},
-      {"LT", Op::kLt, {-1500500, -2147483648}, 0, Fault::kNone},
-      {"LT", Op::kLt, {-1500500, -1500500}, 0, Fault::kNone},
-      {"LT", Op::kLt, {-1500500, -1}, 1, Fault::kNone},
-      {"LT", Op::kLt, {-1500500, 0}, 1, Fault::kNone},
-      {"LT", Op::kLt, {-1500500, 499}, 1, Fault::kNone},
-      {"LT", Op::kLt, {-1500500, 1000}, 1, Fault::kNone},
-      {"LT", Op::kLt, {-1500500, 2500}, 1, Fault::kNone},
-      {"LT", Op::kLt, {-1500500, 2147483647}, 1, Fault::kNone},
-      {"LT", Op::kLt, {-1, -2147483648}, 0, Fault::kNone},
-      {"LT", Op::kLt, {-1, -1500500}, 0, Fault::kNone},
-      {"LT", Op::kLt, {-1, -1}, 0, Fault::kNone},
-      {"LT", Op::kLt, {-1, 0}, 1, Fault::kNone},
-      {"LT", Op::kLt, {-1, 499}, 1, Fault::kNone},
-      {"LT", Op::kLt, {-1, 1000}, 1, Fault::kNone},
-      {"LT", Op::kLt, {-1, 2500}, 1, Fault::kNone},
-      {"LT", Op::kLt, {-1, 2147483647}, 1, Fault::kNone},
-      {"LT", Op::kLt, {0, -2147483648}, 0, Fault::kNone},
-      {"LT", Op::kLt, {0, -1500500}, 0, Fault::kNone},
-      {"LT", Op::kLt, {0, -1}, 0, Fault::kNone},
-      {"LT", Op::kLt, {0, 0}, 0, Fault::kNone},
-      {"LT", Op::kLt, {0, 499}, 1, Fault::kNone},
-      {"LT", Op::kLt, {0, 1000}, 1, Fault::kNone},
-      {"LT", Op::kLt, {0, 2500}, 1, Fault::kNone},
-      {"LT", Op::kLt, {0, 2147483647}, 1, Fault::kNone},
-      {"LT", Op::kLt, {499, -2147483648}, 0, Fault::kNone},
-      {"LT", Op::kLt, {499, -1500500}, 0, Fault::kNone},
-      {"LT", Op::kLt, {499, -1}, 0, Fault::kNone},
-      {"LT", Op::kLt, {499, 0}, 0, Fault::kNone},
-      {"LT", Op::kLt, {499, 499}, 0, Fault::kNone},
-      {"LT", Op::kLt, {499, 1000}, 1, Fault::kNone},
-      {"LT", Op::kLt, {499, 2500}, 1, Fault::kNone},
-      {"LT", Op::kLt, {499, 2147483647}, 1, Fault::kNone},
-      {"LT", Op::kLt, {1000, -2147483648}, 0, Fault::kNone},
-      {"LT", Op::kLt, {1000, -1500500}, 0, Fault::kNone},
-      {"LT", Op::kLt, {1000, -1}, 0, Fault::kNone},
-      {"LT", Op::kLt, {1000, 0}, 0, Fault::kNone},
-      {"LT", Op::kLt, {1000, 499}, 0, Fault::kNone},
-      {"LT", Op::kLt, {1000, 1000}, 0, Fault::kNone},
-      {"LT", Op::kLt, {1000, 2500}, 1, Fault::kNone},
-      {"LT", Op::kLt, {1000, 2147483647}, 1, Fault::kNone},
-      {"LT", Op::kLt, {2500, -2147483648}, 0, Fault::kNone},
-      {"LT", Op::kLt, {2500, -1500500}, 0, Fault::kNone},
-      {"LT", Op::kLt, {2500, -1}, 0, Fault::kNone},
-      {"LT", Op::kLt, {2500, 0}, 0, Fault::kNone},
-      {"LT", Op::kLt, {2500, 499}, 0, Fault::kNone},
-      {"LT", Op::kLt, {2500, 1000}, 0, Fault::kNone},
-      {"LT", Op::kLt, {2500, 2500}, 0, Fault::kNone},
-      {"LT", Op::kLt, {2500, 2147483647}, 1, Fault::kNone},
-      {"LT", Op::kLt, {2147483647, -2147483648}, 0, Fault::kNone},
-      {"LT", Op::kLt, {2147483647, -1500500}, 0, Fault::kNone},
-      {"LT", Op::kLt, {2147483647, -1}, 0, Fault::kNone},
-      {"LT", Op::kLt, {2147483647, 0}, 0, Fault::kNone},
-      {"LT", Op::kLt, {2147483647, 499}, 0, Fault::kNone},
-      {"LT", Op::kLt, {2147483647, 1000}, 0, Fault::kNone},
-      {"LT", Op::kLt, {2147483647, 2500}, 0, Fault::kNone},
-      {"LT", Op::kLt, {2147483647, 2147483647}, 0, Fault::kNone},
-      {"LE", Op::kLe, {-2147483648, -2147483648}, 1, Fault::kNone},
-      {"LE", Op::kLe, {-2147483648, -1500500}, 1, Fault::kNone},
-      {"LE", Op::kLe, {-2147483648, -1}, 1, Fault::kNone},
-      {"LE", Op::kLe, {-2147483648, 0}, 1, Fault::kNone},
-      {"LE", Op::kLe, {-2147483648, 499}, 1, Fault::kNone},
-      {"LE", Op::kLe, {-2147483648, 1000}, 1, Fault::kNone},
-      {"LE", Op::kLe, {-2147483648, 2500}, 1, Fault::kNone},
-      {"LE", Op::kLe, {-2147483648, 2147483647}, 1, Fault::kNone},
-      {"LE", Op::kLe, {-1500500, -2147483648}, 0, Fault::kNone},
-      {"LE", Op::kLe, {-1500500, -1500500}, 1, Fault::kNone},
-      {"LE", Op::kLe, {-1500500, -1}, 1, Fault::kNone},
-      {"LE", Op::kLe, {-1500500, 0}, 1, Fault::kNone},
-      {"LE", Op::kLe, {-1500500, 499}, 1, Fault::kNone},
-      {"LE", Op::kLe, {-1500500, 1000}, 1, Fault::kNone},
-      {"LE", Op::kLe, {-1500500, 2500}, 1, Fault::kNone},
-      {"LE", Op::kLe, {-1500500, 2147483647}, 1, Fault::kNone},
-      {"LE", Op::kLe, {-1, -2147483648}, 0, Fault::kNone},
-      {"LE", Op::kLe, {-1, -1500500}, 0, Fault::kNone},
-      {"LE", Op::kLe, {-1, -1}, 1, Fault::kNone},
-      {"LE", Op::kLe, {-1, 0}, 1, Fault::kNone},
-      {"LE", Op::kLe, {-1, 499}, 1, Fault::kNone},
-      {"LE", Op::kLe, {-1, 1000}, 1, Fault::kNone},
-      {"LE", Op::kLe, {-1, 2500}, 1, Fault::kNone},
-      {"LE", Op::kLe, {-1, 2147483647}, 1, Fault::kNone},
-      {"LE", Op::kLe, {0, -2147483648}, 0, Fault::kNone},
-      {"LE", Op::kLe, {0, -1500500}, 0, Fault::kNone},
-      {"LE", Op::kLe, {0, -1}, 0, Fault::kNone},
-      {"LE", Op::kLe, {0, 0}, 1, Fault::kNone},
-      {"LE", Op::kLe, {0, 499}, 1, Fault::kNone},
-      {"LE", Op::kLe, {0, 1000}, 1, Fault::kNone},
-      {"LE", Op::kLe, {0, 2500}, 1, Fault::kNone},
-      {"LE", Op::kLe, {0, 2147483647}, 1, Fault::kNone},
-      {"LE", Op::kLe, {499, -2147483648}, 0, Fault::kNone},
-      {"LE", Op::kLe, {499, -1500500}, 0, Fault::kNone},
-      {"LE", Op::kLe, {499, -1}, 0, Fault::kNone},
-      {"LE", Op::kLe, {499, 0}, 0, Fault::kNone},
-      {"LE", Op::kLe, {499, 499}, 1, Fault::kNone},
-      {"LE", Op::kLe, {499, 1000}, 1, Fault::kNone},
-      {"LE", Op::kLe, {499, 2500}, 1, Fault::kNone},
-      {"LE", Op::kLe, {499, 2147483647}, 1, Fault::kNone},
-      {"LE", Op::kLe, {1000, -2147483648}, 0, Fault::kNone},
-      {"LE", Op::kLe, {1000, -1500500}, 0, Fault::kNone},
-      {"LE", Op::kLe, {1000, -1}, 0, Fault::kNone},
-      {"LE", Op::kLe, {1000, 0}, 0, Fault::kNone},
-      {"LE", Op::kLe, {1000, 499}, 0, Fault::kNone},
-      {"LE", Op::kLe, {1000, 1000}, 1, Fault::kNone},
-      {"LE", Op::kLe, {1000, 2500}, 1, Fault::kNone},
-      {"LE", Op::kLe, {1000, 2147483647}, 1, Fault::kNone},
-      {"LE", Op::kLe, {2500, -2147483648}, 0, Fault::kNone},
-      {"LE", Op::kLe, {2500, -1500500}, 0, Fault::kNone},
-      {"LE", Op::kLe, {2500, -1}, 0, Fault::kNone},
-      {"LE", Op::kLe, {2500, 0}, 0, Fault::kNone},
-      {"LE", Op::kLe, {2500, 499}, 0, Fault::kNone},
-      {"LE", Op::kLe, {2500, 1000}, 0, Fault::kNone},
-      {"LE", Op::kLe, {2500, 2500}, 1, Fault::kNone},
-      {"LE", Op::kLe, {2500, 2147483647}, 1, Fault::kNone},
-      {"LE", Op::kLe, {2147483647, -2147483648}, 0, Fault::kNone},
-      {"LE", Op::kLe, {2147483647, -1500500}, 0, Fault::kNone},
-      {"LE", Op::kLe, {2147483647, -1}, 0, Fault::kNone},
-      {"LE", Op::kLe, {2147483647, 0}, 0, Fault::kNone},
-      {"LE", Op::kLe, {2147483647, 499}, 0, Fault::kNone},
-      {"LE", Op::kLe, {2147483647, 1000}, 0, Fault::kNone},
-      {"LE", Op::kLe, {2147483647, 2500}, 0, Fault::kNone},
-      {"LE", Op::kLe, {2147483647, 2147483647}, 1, Fault::kNone},
-      {"GT", Op::kGt, {-2147483648, -2147483648}, 0, Fault::kNone},
-      {"GT", Op::kGt, {-2147483648, -1500500}, 0, Fault::kNone},
-      {"GT", Op::kGt, {-2147483648, -1}, 0, Fault::kNone},
-      {"GT", Op::kGt, {-2147483648, 0}, 0, Fault::kNone},
-      {"GT", Op::kGt, {-2147483648, 499}, 0, Fault::kNone},
-      {"GT", Op::kGt, {-2147483648, 1000}, 0, Fault::kNone},
-      {"GT", Op::kGt, {-2147483648, 2500}, 0, Fault::kNone},
-      {"GT", Op::kGt, {-2147483648, 2147483647}, 0, Fault::kNone},
-      {"GT", Op::kGt, {-1500500, -2147483648}, 1, Fault::kNone},
-      {"GT", Op::kGt, {-1500500, -1500500}, 0, Fault::kNone},
-      {"GT", Op::kGt, {-1500500, -1}, 0, Fault::kNone},
-      {"GT", Op::kGt, {-1500500, 0}, 0, Fault::kNone},
-      {"GT", Op::kGt, {-1500500, 499}, 0, Fault::kNone},
-      {"GT", Op::kGt, {-1500500, 1000}, 0, Fault::kNone},
-      {"GT", Op::kGt, {-1500500, 2500}, 0, Fault::kNone},
-      {"GT", Op::kGt, {-1500500, 2147483647}, 0, Fault::kNone},
-      {"GT", Op::kGt, {-1, -2147483648}, 1, Fault::kNone},
-      {"GT", Op::kGt, {-1, -1500500}, 1, Fault::kNone},
-      {"GT", Op::kGt, {-1, -1}, 0, Fault::kNone},
-      {"GT", Op::kGt, {-1, 0}, 0, Fault::kNone},
-      {"GT", Op::kGt, {-1, 499}, 0, Fault::kNone},
-      {"GT", Op::kGt, {-1, 1000}, 0, Fault::kNone},
-      {"GT", Op::kGt, {-1, 2500}, 0, Fault::kNone},
-      {"GT", Op::kGt, {-1, 2147483647}, 0, Fault::kNone},
-      {"GT", Op::kGt, {0, -2147483648}, 1, Fault::kNone},
-      {"GT", Op::kGt, {0, -1500500}, 1, Fault::kNone},
-      {"GT", Op::kGt, {0, -1}, 1, Fault::kNone},
-      {"GT", Op::kGt, {0, 0}, 0, Fault::kNone},
-      {"GT", Op::kGt, {0, 499}, 0, Fault::kNone},
-      {"GT", Op::kGt, {0, 1000}, 0, Fault::kNone},
-      {"GT", Op::kGt, {0, 2500}, 0, Fault::kNone},
-      {"GT", Op::kGt, {0, 2147483647}, 0, Fault::kNone},
-      {"GT", Op::kGt, {499, -2147483648}, 1, Fault::kNone},
-      {"GT", Op::kGt, {499, -1500500}, 1, Fault::kNone},
-      {"GT", Op::kGt, {499, -1}, 1, Fault::kNone},
-      {"GT", Op::kGt, {499, 0}, 1, Fault::kNone},
-      {"GT", Op::kGt, {499, 499}, 0, Fault::kNone},
-      {"GT", Op::kGt, {499, 1000}, 0, Fault::kNone},
-      {"GT", Op::kGt, {499, 2500}, 0, Fault::kNone},
-      {"GT", Op::kGt, {499, 2147483647}, 0, Fault::kNone},
-      {"GT", Op::kGt, {1000, -2147483648}, 1, Fault::kNone},
-      {"GT", Op::kGt, {1000, -1500500}, 1, Fault::kNone},
-      {"GT", Op::kGt, {1000, -1}, 1, Fault::kNone},
-      {"GT", Op::kGt, {1000, 0}, 1, Fault::kNone},
-      {"GT", Op::kGt, {1000, 499}, 1, Fault::kNone},
-      {"GT", Op::kGt, {1000, 1000}, 0, Fault::kNone},
-      {"GT", Op::kGt, {1000, 2500}, 0, Fault::kNone},
-      {"GT", Op::kGt, {1000, 2147483647}, 0, Fault::kNone},
-      {"GT", Op::kGt, {2500, -2147483648}, 1, Fault::kNone},
-      {"GT", Op::kGt, {2500, -1500500}, 1, Fault::kNone},
-      {"GT", Op::kGt, {2500, -1}, 1, Fault::kNone},
-      {"GT", Op::kGt, {2500, 0}, 1, Fault::kNone},
-      {"GT", Op::kGt, {2500, 499}, 1, Fault::kNone},
-      {"GT", Op::kGt, {2500, 1000}, 1, Fault::kNone},
-      {"GT", Op::kGt, {2500, 2500}, 0, Fault::kNone},
-      {"GT", Op::kGt, {2500, 2147483647}, 0, Fault::kNone},
-      {"GT", Op::kGt, {2147483647, -2147483648}, 1, Fault::kNone},
-      {"GT", Op::kGt, {2147483647, -1500500}, 1, Fault::kNone},
-      {"GT", Op::kGt, {2147483647, -1}, 1, Fault::kNone},
-      {"GT", Op::kGt, {2147483647, 0}, 1, Fault::kNone},
-      {"GT", Op::kGt, {2147483647, 499}, 1, Fault::kNone},
-      {"GT", Op::kGt, {2147483647, 1000}, 1, Fault::kNone},
-      {"GT", Op::kGt, {2147483647, 2500}, 1, Fault::kNone},
-      {"GT", Op::kGt, {2147483647, 2147483647}, 0, Fault::kNone},
-      {"GE", Op::kGe, {-2147483648, -2147483648}, 1, Fault::kNone},
-      {"GE", Op::kGe, {-2147483648, -1500500}, 0, Fault::kNone},
-      {"GE", Op::kGe, {-2147483648, -1}, 0, Fault::kNone},
-      {"GE", Op::kGe, {-2147483648, 0}, 0, Fault::kNone},
-      {"GE", Op::kGe, {-2147483648, 499}, 0, Fault::kNone},
-      {"GE", Op::kGe, {-2147483648, 1000}, 0, Fault::kNone},
-      {"GE", Op::kGe, {-2147483648, 2500}, 0, Fault::kNone},
-      {"GE", Op::kGe, {-2147483648, 2147483647}, 0, Fault::kNone},
-      {"GE", Op::kGe, {-1500500, -2147483648}, 1, Fault::kNone},
-      {"GE", Op::kGe, {-1500500, -1500500}, 1, Fault::kNone},
-      {"GE", Op::kGe, {-1500500, -1}, 0, Fault::kNone},
-      {"GE", Op::kGe, {-1500500, 0}, 0, Fault::kNone},
-      {"GE", Op::kGe, {-1500500, 499}, 0, Fault::kNone},
-      {"GE", Op::kGe, {-1500500, 1000}, 0, Fault::kNone},
-      {"GE", Op::kGe, {-1500500, 2500}, 0, Fault::kNone},
-      {"GE", Op::kGe, {-1500500, 2147483647}, 0, Fault::kNone},
-      {"GE", Op::kGe, {-1, -2147483648}, 1, Fault::kNone},
-      {"GE", Op::kGe, {-1, -1500500}, 1, Fault::kNone},
-      {"GE", Op::kGe, {-1, -1}, 1, Fault::kNone},
-      {"GE", Op::kGe, {-1, 0}, 0, Fault::kNone},
-      {"GE", Op::kGe, {-1, 499}, 0, Fault::kNone},
-      {"GE", Op::kGe, {-1, 1000}, 0, Fault::kNone},
-      {"GE", Op::kGe, {-1, 2500}, 0, Fault::kNone},
-      {"GE", Op::kGe, {-1, 2147483647}, 0, Fault::kNone},
-      {"GE", Op::kGe, {0, -2147483648}, 1, Fault::kNone},
-      {"GE", Op::kGe, {0, -1500500}, 1, Fault::kNone},
-      {"GE", Op::kGe, {0, -1}, 1, Fault::kNone},
-      {"GE", Op::kGe, {0, 0}, 1, Fault::kNone},
-      {"GE", Op::kGe, {0, 499}, 0, Fault::kNone},
-      {"GE", Op::kGe, {0, 1000}, 0, Fault::kNone},
-      {"GE", Op::kGe, {0, 2500}, 0, Fault::kNone},
-      {"GE", Op::kGe, {0, 2147483647}, 0, Fault::kNone},
-      {"GE", Op::kGe, {499, -2147483648}, 1, Fault::kNone},
-      {"GE", Op::kGe, {499, -1500500}, 1, Fault::kNone},
-      {"GE", Op::kGe, {499, -1}, 1, Fault::kNone},
-      {"GE", Op::kGe, {499, 0}, 1, Fault::kNone},
-      {"GE", Op::kGe, {499, 499}, 1, Fault::kNone},
-      {"GE", Op::kGe, {499, 1000}, 0, Fault::kNone},
-      {"GE", Op::kGe, {499, 2500}, 0, Fault::kNone},
-      {"GE", Op::kGe, {499, 2147483647}, 0, Fault::kNone},
-      {"GE", Op::kGe, {1000, -2147483648}, 1, Fault::kNone},
-      {"GE", Op::kGe, {1000, -1500500}, 1, Fault::kNone},
-      {"GE", Op::kGe, {1000, -1}, 1, Fault::kNone},
-      {"GE", Op::kGe, {1000, 0}, 1, Fault::kNone},
-      {"GE", Op::kGe, {1000, 499}, 1, Fault::kNone},
-      {"GE", Op::kGe, {1000, 1000}, 1, Fault::kNone},
-      {"GE", Op::kGe, {1000, 2500}, 0, Fault::kNone},
-      {"GE", Op::kGe, {1000, 2147483647}, 0, Fault::kNone},
-      {"GE", Op::kGe, {2500, -2147483648}, 1, Fault::kNone},
-      {"GE", Op::kGe, {2500, -1500500}, 1, Fault::kNone},
-      {"GE", Op::kGe, {2500, -1}, 1, Fault::kNone},
-      {"GE", Op::kGe, {2500, 0}, 1, Fault::kNone},
-      {"GE", Op::kGe, {2500, 499}, 1, Fault::kNone},
-      {"GE", Op::kGe, {2500, 1000}, 1, Fault::kNone},
-      {"GE", Op::kGe, {2500, 2500}, 1, Fault::kNone},
-      {"GE", Op::kGe, {2500, 2147483647}, 0, Fault::kNone},
-      {"GE", Op::kGe, {2147483647, -2147483648}, 1, Fault::kNone},
-      {"GE", Op::kGe, {2147483647, -1500500}, 1, Fault::kNone},
-      {"GE", Op::kGe, {2147483647, -1}, 1, Fault::kNone},
-      {"GE", Op::kGe, {2147483647, 0}, 1, Fault::kNone},
-      {"GE", Op::kGe, {2147483647, 499}, 1, Fault::kNone},
-      {"GE", Op::kGe, {2147483647, 1000}, 1, Fault::kNone},
-      {"GE", Op::kGe, {2147483647, 2500}, 1, Fault::kNone},
-      {"GE", Op::kGe, {2147483647, 2147483647}, 1, Fault::kNone},
-      {"NOT", Op::kNot, {-2147483648}, 0, Fault::kNone},
-      {"NOT", Op::kNot, {-1500500}, 0, Fault::kNone},
-      {"NOT", Op::kNot, {-1}, 0, Fault::kNone},
-      {"NOT", Op::kNot, {0}, 1, Fault::kNone},
-      {"NOT", Op::kNot, {499}, 0, Fault::kNone},
-      {"NOT", Op::kNot, {1000}, 0, Fault::kNone},
-      {"NOT", Op::kNot, {2500}, 0, Fault::kNone},
-      {"NOT", Op::kNot, {2147483647}, 0, Fault::kNone},
-      {"AND", Op::kAnd, {-2147483648, -2147483648}, 1, Fault::kNone},
-      {"AND", Op::kAnd, {-2147483648, -1500500}, 1, Fault::kNone},
-      {"AND", Op::kAnd, {-2147483648, -1}, 1, Fault::kNone},
-      {"AND", Op::kAnd, {-2147483648, 0}, 0, Fault::kNone},
-      {"AND", Op::kAnd, {-2147483648, 499}, 1, Fault::kNone},
-      {"AND", Op::kAnd, {-2147483648, 1000}, 1, Fault::kNone},
-      {"AND", Op::kAnd, {-2147483648, 2500}, 1, Fault::kNone},
-      {"AND", Op::kAnd, {-2147483648, 2147483647}, 1, Fault::kNone},
-      {"AND", Op::kAnd, {-1500500, -2147483648}, 1, Fault::kNone},
-      {"AND", Op::kAnd, {-1500500, -1500500}, 1, Fault::kNone},
-      {"AND", Op::kAnd, {-1500500, -1}, 1, Fault::kNone},
-      {"AND", Op::kAnd, {-1500500, 0}, 0, Fault::kNone},
-      {"AND", Op::kAnd, {-1500500, 499}, 1, Fault::kNone},
-      {"AND", Op::kAnd, {-1500500, 1000}, 1, Fault::kNone},
-      {"AND", Op::kAnd, {-1500500, 2500}, 1, Fault::kNone},
-      {"AND", Op::kAnd, {-1500500, 2147483647}, 1, Fault::kNone},
-      {"AND", Op::kAnd, {-1, -2147483648}, 1, Fault::kNone},
-      {"AND", Op::kAnd, {-1, -1500500}, 1, Fault::kNone},
-      {"AND", Op::kAnd, {-1, -1}, 1, Fault::kNone},
-      {"AND", Op::kAnd, {-1, 0}, 0, Fault::kNone},
-      {"AND", Op::kAnd, {-1, 499}, 1, Fault::kNone},
-      {"AND", Op::kAnd, {-1, 1000}, 1, Fault::kNone},
-      {"AND", Op::kAnd, {-1, 2500}, 1, Fault::kNone},
-      {"AND", Op::kAnd, {-1, 2147483647}, 1, Fault::kNone},
-      {"AND", Op::kAnd, {0, -2147483648}, 0, Fault::kNone},
-      {"AND", Op::kAnd, {0, -1500500}, 0, Fault::kNone},
-      {"AND", Op::kAnd, {0, -1}, 0, Fault::kNone},
-      {"AND", Op::kAnd, {0, 0}, 0, Fault::kNone},
-      {"AND", Op::kAnd, {0, 499}, 0, Fault::kNone},
-      {"AND", Op::kAnd, {0, 1000}, 0, Fault::kNone},
-      {"AND", Op::kAnd, {0, 2500}, 0, Fault::kNone},
-      {"AND", Op::kAnd, {0, 2147483647}, 0, Fault::kNone},
-      {"AND", Op::kAnd, {499, -2147483648}, 1, Fault::kNone},
-      {"AND", Op::kAnd, {499, -1500500}, 1, Fault::kNone},
-      {"AND", Op::kAnd, {499, -1}, 1, Fault::kNone},
-      {"AND", Op::kAnd, {499, 0}, 0, Fault::kNone},
-      {"AND", Op::kAnd, {499, 499}, 1, Fault::kNone},
-      {"AND", Op::kAnd, {499, 1000}, 1, Fault::kNone},
-      {"AND", Op::kAnd, {499, 2500}, 1, Fault::kNone},
-      {"AND", Op::kAnd, {499, 2147483647}, 1, Fault::kNone},
-      {"AND", Op::kAnd, {1000, -2147483648}, 1, Fault::kNone},
-      {"AND", Op::kAnd, {1000, -1500500}, 1, Fault::kNone},
-      {"AND", Op::kAnd, {1000, -1}, 1, Fault::kNone},
-      {"AND", Op::kAnd, {1000, 0}, 0, Fault::kNone},
-      {"AND", Op::kAnd, {1000, 499}, 1, Fault::kNone},
-      {"AND", Op::kAnd, {1000, 1000}, 1, Fault::kNone},
-      {"AND", Op::kAnd, {1000, 2500}, 1, Fault::kNone},
-      {"AND", Op::kAnd, {1000, 2147483647}, 1, Fault::kNone},
-      {"AND", Op::kAnd, {2500, -2147483648}, 1, Fault::kNone},
-      {"AND", Op::kAnd, {2500, -1500500}, 1, Fault::kNone},
-      {"AND", Op::kAnd, {2500, -1}, 1, Fault::kNone},
-      {"AND", Op::kAnd, {2500, 0}, 0, Fault::kNone},
-      {"AND", Op::kAnd, {2500, 499}, 1, Fault::kNone},
-      {"AND", Op::kAnd, {2500, 1000}, 1, Fault::kNone},
-      {"AND", Op::kAnd, {2500, 2500}, 1, Fault::kNone},
-      {"AND", Op::kAnd, {2500, 2147483647}, 1, Fault::kNone},
-      {"AND", Op::kAnd, {2147483647, -2147483648}, 1, Fault::kNone},
-      {"AND", Op::kAnd, {2147483647, -1500500}, 1, Fault::kNone},
-      {"AND", Op::kAnd, {2147483647, -1}, 1, Fault::kNone},
-      {"AND", Op::kAnd, {2147483647, 0}, 0, Fault::kNone},
-      {"AND", Op::kAnd, {2147483647, 499}, 1, Fault::kNone},
-      {"AND", Op::kAnd, {2147483647, 1000}, 1, Fault::kNone},
-      {"AND", Op::kAnd, {2147483647, 2500}, 1, Fault::kNone},
-      {"AND", Op::kAnd, {2147483647, 2147483647}, 1, Fault::kNone},
-      {"OR", Op::kOr, {-2147483648, -2147483648}, 1, Fault::kNone},
-      {"OR", Op::kOr, {-2147483648, -1500500}, 1, Fault::kNone},
-      {"OR", Op::kOr, {-2147483648, -1}, 1, Fault::kNone},
-      {"OR", Op::kOr, {-2147483648, 0}, 1, Fault::kNone},
-      {"OR", Op::kOr, {-2147483648, 499}, 1, Fault::kNone},
-      {"OR", Op::kOr, {-2147483648, 1000}, 1, Fault::kNone},
-      {"OR", Op::kOr, {-2147483648, 2500}, 1, Fault::kNone},
-      {"OR", Op::kOr, {-2147483648, 2147483647}, 1, Fault::kNone},
-      {"OR", Op::kOr, {-1500500, -2147483648}, 1, Fault::kNone},
-      {"OR", Op::kOr, {-1500500, -1500500}, 1, Fault::kNone},
-      {"OR", Op::kOr, {-1500500, -1}, 1, Fault::kNone},
-      {"OR", Op::kOr, {-1500500, 0}, 1, Fault::kNone},
-      {"OR", Op::kOr, {-1500500, 499}, 1, Fault::kNone},
-      {"OR", Op::kOr, {-1500500, 1000}, 1, Fault::kNone},
-      {"OR", Op::kOr, {-1500500, 2500}, 1, Fault::kNone},
-      {"OR", Op::kOr, {-1500500, 2147483647}, 1, Fault::kNone},
-      {"OR", Op::kOr, {-1, -2147483648}, 1, Fault::kNone},
-      {"OR", Op::kOr, {-1, -1500500}, 1, Fault::kNone},
-      {"OR", Op::kOr, {-1, -1}, 1, Fault::kNone},
-      {"OR", Op::kOr, {-1, 0}, 1, Fault::kNone},
-      {"OR", Op::kOr, {-1, 499}, 1, Fault::kNone},
-      {"OR", Op::kOr, {-1, 1000}, 1, Fault::kNone},
-      {"OR", Op::kOr, {-1, 2500}, 1, Fault::kNone},
-      {"OR", Op::kOr, {-1, 2147483647}, 1, Fault::kNone},
-      {"OR", Op::kOr, {0, -2147483648}, 1, Fault::kNone},
-      {"OR", Op::kOr, {0, -1500500}, 1, Fault::kNone},
-      {"OR", Op::kOr, {0, -1}, 1, Fault::kNone},
-      {"OR", Op::kOr, {0, 0}, 0, Fault::kNone},
-      {"OR", Op::kOr, {0, 499}, 1, Fault::kNone},
-      {"OR", Op::kOr, {0, 1000}, 1, Fault::kNone},
-      {"OR", Op::kOr, {0, 2500}, 1, Fault::kNone},
-      {"OR", Op::kOr, {0, 2147483647}, 1, Fault::kNone},
-      {"OR", Op::kOr, {499, -2147483648}, 1, Fault::kNone},
-      {"OR", Op::kOr, {499, -1500500}, 1, Fault::kNone},
-      {"OR", Op::kOr, {499, -1}, 1, Fault::kNone},
-      {"OR", Op::kOr, {499, 0}, 1, Fault::kNone},
-      {"OR", Op::kOr, {499, 499}, 1, Fault::kNone},
-      {"OR", Op::kOr, {499, 1000}, 1, Fault::kNone},
-      {"OR", Op::kOr, {499, 2500}, 1, Fault::kNone},
-      {"OR", Op::kOr, {499, 2147483647}, 1, Fault::kNone},
-      {"OR", Op::kOr, {1000, -2147483648}, 1, Fault::kNone},
-      {"OR", Op::kOr, {1000, -1500500}, 1, Fault::kNone},
-      {"OR", Op::kOr, {1000, -1}, 1, Fault::kNone},
-      {"OR", Op::kOr, {1000, 0}, 1, Fault::kNone},
-      {"OR", Op::kOr, {1000, 499}, 1, Fault::kNone},
-      {"OR", Op::kOr, {1000, 1000}, 1, Fault::kNone},
-      {"OR", Op::kOr, {1000, 2500}, 1, Fault::kNone},
-      {"OR", Op::kOr, {1000, 2147483647}, 1, Fault::kNone},
-      {"OR", Op::kOr, {2500, -2147483648}, 1, Fault::kNone},
-      {"OR", Op::kOr, {2500, -1500500}, 1, Fault::kNone},
-      {"OR", Op::kOr, {2500, -1}, 1, Fault::kNone},
-      {"OR", Op::kOr, {2500, 0}, 1, Fault::kNone},
-      {"OR", Op::kOr, {2500, 499}, 1, Fault::kNone},
-      {"OR", Op::kOr, {2500, 1000}, 1, Fault::kNone},
-      {"OR", Op::kOr, {2500, 2500}, 1, Fault::kNone},
-      {"OR", Op::kOr, {2500, 2147483647}, 1, Fault::kNone},
-      {"OR", Op::kOr, {2147483647, -2147483648}, 1, Fault::kNone},
-      {"OR", Op::kOr, {2147483647, -1500500}, 1, Fault::kNone},
-      {"OR", Op::kOr, {2147483647, -1}, 1, Fault::kNone},
-      {"OR", Op::kOr, {2147483647, 0}, 1, Fault::kNone},
-      {"OR", Op::kOr, {2147483647, 499}, 1, Fault::kNone},
-      {"OR", Op::kOr, {2147483647, 1000}, 1, Fault::kNone},
-      {"OR", Op::kOr, {2147483647, 2500}, 1, Fault::kNone},
-      {"OR", Op::kOr, {2147483647, 2147483647}, 1, Fault::kNone},
+      {"ADD", Op::kAdd, {-2147483648}, "OVERFLOW OVERFLOW OVERFLOW -2147483648 -2147483149 -2147482648 -2147481148 -1 "},
+      {"ADD", Op::kAdd, {-1500500}, "OVERFLOW -3001000 -1500501 -1500500 -1500001 -1499500 -1498000 2145983147 "},
+      {"ADD", Op::kAdd, {-1}, "OVERFLOW -1500501 -2 -1 498 999 2499 2147483646 "},
+      {"ADD", Op::kAdd, {0}, "-2147483648 -1500500 -1 0 499 1000 2500 2147483647 "},
+      {"ADD", Op::kAdd, {499}, "-2147483149 -1500001 498 499 998 1499 2999 OVERFLOW "},
+      {"ADD", Op::kAdd, {1000}, "-2147482648 -1499500 999 1000 1499 2000 3500 OVERFLOW "},
+      {"ADD", Op::kAdd, {2500}, "-2147481148 -1498000 2499 2500 2999 3500 5000 OVERFLOW "},
+      {"ADD", Op::kAdd, {2147483647}, "-1 2145983147 2147483646 2147483647 OVERFLOW OVERFLOW OVERFLOW OVERFLOW "},
+      {"SUB", Op::kSub, {-2147483648}, "0 -2145983148 -2147483647 -2147483648 OVERFLOW OVERFLOW OVERFLOW OVERFLOW "},
+      {"SUB", Op::kSub, {-1500500}, "2145983148 0 -1500499 -1500500 -1500999 -1501500 -1503000 OVERFLOW "},
+      {"SUB", Op::kSub, {-1}, "2147483647 1500499 0 -1 -500 -1001 -2501 -2147483648 "},
+      {"SUB", Op::kSub, {0}, "OVERFLOW 1500500 1 0 -499 -1000 -2500 -2147483647 "},
+      {"SUB", Op::kSub, {499}, "OVERFLOW 1500999 500 499 0 -501 -2001 -2147483148 "},
+      {"SUB", Op::kSub, {1000}, "OVERFLOW 1501500 1001 1000 501 0 -1500 -2147482647 "},
+      {"SUB", Op::kSub, {2500}, "OVERFLOW 1503000 2501 2500 2001 1500 0 -2147481147 "},
+      {"SUB", Op::kSub, {2147483647}, "OVERFLOW OVERFLOW OVERFLOW 2147483647 2147483148 2147482647 2147481147 0 "},
+      {"MUL", Op::kMul, {-2147483648}, "OVERFLOW OVERFLOW 2147484 0 -1071594340 -2147483648 OVERFLOW OVERFLOW "},
+      {"MUL", Op::kMul, {-1500500}, "OVERFLOW OVERFLOW 1501 0 -748750 -1500500 -3751250 OVERFLOW "},
+      {"MUL", Op::kMul, {-1}, "2147484 1501 0 0 0 -1 -3 -2147484 "},
+      {"MUL", Op::kMul, {0}, "0 0 0 0 0 0 0 0 "},
+      {"MUL", Op::kMul, {499}, "-1071594340 -748750 0 0 249 499 1248 1071594340 "},
+      {"MUL", Op::kMul, {1000}, "-2147483648 -1500500 -1 0 499 1000 2500 2147483647 "},
+      {"MUL", Op::kMul, {2500}, "OVERFLOW -3751250 -3 0 1248 2500 6250 OVERFLOW "},
+      {"MUL", Op::kMul, {2147483647}, "OVERFLOW OVERFLOW -2147484 0 1071594340 2147483647 OVERFLOW OVERFLOW "},
+      {"DIV", Op::kDiv, {-2147483648}, "1000 1431179 OVERFLOW DIVIDE_BY_ZERO OVERFLOW -2147483648 -858993459 -1000 "},
+      {"DIV", Op::kDiv, {-1500500}, "1 1000 1500500000 DIVIDE_BY_ZERO -3007014 -1500500 -600200 -1 "},
+      {"DIV", Op::kDiv, {-1}, "0 0 1000 DIVIDE_BY_ZERO -2 -1 0 0 "},
+      {"DIV", Op::kDiv, {0}, "0 0 0 DIVIDE_BY_ZERO 0 0 0 0 "},
+      {"DIV", Op::kDiv, {499}, "0 0 -499000 DIVIDE_BY_ZERO 1000 499 200 0 "},
+      {"DIV", Op::kDiv, {1000}, "0 -1 -1000000 DIVIDE_BY_ZERO 2004 1000 400 0 "},
+      {"DIV", Op::kDiv, {2500}, "0 -2 -2500000 DIVIDE_BY_ZERO 5010 2500 1000 0 "},
+      {"DIV", Op::kDiv, {2147483647}, "-1000 -1431179 OVERFLOW DIVIDE_BY_ZERO OVERFLOW 2147483647 858993459 1000 "},
+      {"MOD", Op::kMod, {-2147483648}, "0 -268148 0 DIVIDE_BY_ZERO 277 352 1352 2147483646 "},
+      {"MOD", Op::kMod, {-1500500}, "-1500500 0 0 DIVIDE_BY_ZERO 492 500 2000 2145983147 "},
+      {"MOD", Op::kMod, {-1}, "-1 -1 0 DIVIDE_BY_ZERO 498 999 2499 2147483646 "},
+      {"MOD", Op::kMod, {0}, "0 0 0 DIVIDE_BY_ZERO 0 0 0 0 "},
+      {"MOD", Op::kMod, {499}, "-2147483149 -1500001 0 DIVIDE_BY_ZERO 0 499 499 499 "},
+      {"MOD", Op::kMod, {1000}, "-2147482648 -1499500 0 DIVIDE_BY_ZERO 2 0 1000 1000 "},
+      {"MOD", Op::kMod, {2500}, "-2147481148 -1498000 0 DIVIDE_BY_ZERO 5 500 0 2500 "},
+      {"MOD", Op::kMod, {2147483647}, "-1 -1232353 0 DIVIDE_BY_ZERO 221 647 1147 0 "},
+      {"NEG", Op::kNeg, {}, "OVERFLOW 1500500 1 0 -499 -1000 -2500 -2147483647 "},
+      {"ABS", Op::kAbs, {}, "OVERFLOW 1500500 1 0 499 1000 2500 2147483647 "},
+      {"MIN", Op::kMin, {-2147483648}, "-2147483648 -2147483648 -2147483648 -2147483648 -2147483648 -2147483648 -2147483648 -2147483648 "},
+      {"MIN", Op::kMin, {-1500500}, "-2147483648 -1500500 -1500500 -1500500 -1500500 -1500500 -1500500 -1500500 "},
+      {"MIN", Op::kMin, {-1}, "-2147483648 -1500500 -1 -1 -1 -1 -1 -1 "},
+      {"MIN", Op::kMin, {0}, "-2147483648 -1500500 -1 0 0 0 0 0 "},
+      {"MIN", Op::kMin, {499}, "-2147483648 -1500500 -1 0 499 499 499 499 "},
+      {"MIN", Op::kMin, {1000}, "-2147483648 -1500500 -1 0 499 1000 1000 1000 "},
+      {"MIN", Op::kMin, {2500}, "-2147483648 -1500500 -1 0 499 1000 2500 2500 "},
+      {"MIN", Op::kMin, {2147483647}, "-2147483648 -1500500 -1 0 499 1000 2500 2147483647 "},
+      {"MAX", Op::kMax, {-2147483648}, "-2147483648 -1500500 -1 0 499 1000 2500 2147483647 "},
+      {"MAX", Op::kMax, {-1500500}, "-1500500 -1500500 -1 0 499 1000 2500 2147483647 "},
+      {"MAX", Op::kMax, {-1}, "-1 -1 -1 0 499 1000 2500 2147483647 "},
+      {"MAX", Op::kMax, {0}, "0 0 0 0 499 1000 2500 2147483647 "},
+      {"MAX", Op::kMax, {499}, "499 499 499 499 499 1000 2500 2147483647 "},
+      {"MAX", Op::kMax, {1000}, "1000 1000 1000 1000 1000 1000 2500 2147483647 "},
+      {"MAX", Op::kMax, {2500}, "2500 2500 2500 2500 2500 2500 2500 2147483647 "},
+      {"MAX", Op::kMax, {2147483647}, "2147483647 2147483647 2147483647 2147483647 2147483647 2147483647 2147483647 2147483647 "},
+      {"ROUND", Op::kRound, {-2147483648}, "0 0 OVERFLOW OVERFLOW OVERFLOW -2147483600 -2147483648 -2147483648 "},
+      {"ROUND", Op::kRound, {-1500500}, "0 0 -1501000 -1501000 -1501000 -1500500 -1500500 -1500500 "},
+      {"ROUND", Op::kRound, {-1}, "0 0 0 0 0 0 -1 -1 "},
+      {"ROUND", Op::kRound, {0}, "0 0 0 0 0 0 0 0 "},
+      {"ROUND", Op::kRound, {499}, "0 0 0 0 0 500 499 499 "},
+      {"ROUND", Op::kRound, {1000}, "0 0 1000 1000 1000 1000 1000 1000 "},
+      {"ROUND", Op::kRound, {2500}, "0 0 3000 3000 3000 2500 2500 2500 "},
+      {"ROUND", Op::kRound, {2147483647}, "0 0 OVERFLOW OVERFLOW OVERFLOW 2147483600 2147483647 2147483647 "},
+      {"RANDOM", Op::kRandom, {-2147483648}, "OVERFLOW -1877115000 -1877115000 -1877115000 -1877115000 -1877115000 -1877115000 -1877115000 "},
+      {"RANDOM", Op::kRandom, {-1500500}, "-1877115000 -1501000 -1492000 -1492000 -1492000 -169000 -527000 268868000 "},
+      {"RANDOM", Op::kRandom, {-1}, "-1877115000 -1492000 0 0 0 1000 1000 270369000 "},
+      {"RANDOM", Op::kRandom, {0}, "-1877115000 -1492000 0 0 0 1000 1000 270369000 "},
+      {"RANDOM", Op::kRandom, {499}, "-1877115000 -1492000 0 0 0 1000 1000 270369000 "},
+      {"RANDOM", Op::kRandom, {1000}, "-1877115000 -169000 1000 1000 1000 1000 1000 270370000 "},
+      {"RANDOM", Op::kRandom, {2500}, "-1877115000 -527000 1000 1000 1000 1000 3000 270372000 "},
+      {"RANDOM", Op::kRandom, {2147483647}, "-1877115000 268868000 270369000 270369000 270369000 270370000 270372000 OVERFLOW "},
+      {"EQ", Op::kEq, {-2147483648}, "1 0 0 0 0 0 0 0 "},
+      {"EQ", Op::kEq, {-1500500}, "0 1 0 0 0 0 0 0 "},
+      {"EQ", Op::kEq, {-1}, "0 0 1 0 0 0 0 0 "},
+      {"EQ", Op::kEq, {0}, "0 0 0 1 0 0 0 0 "},
+      {"EQ", Op::kEq, {499}, "0 0 0 0 1 0 0 0 "},
+      {"EQ", Op::kEq, {1000}, "0 0 0 0 0 1 0 0 "},
+      {"EQ", Op::kEq, {2500}, "0 0 0 0 0 0 1 0 "},
+      {"EQ", Op::kEq, {2147483647}, "0 0 0 0 0 0 0 1 "},
+      {"NE", Op::kNe, {-2147483648}, "0 1 1 1 1 1 1 1 "},
+      {"NE", Op::kNe, {-1500500}, "1 0 1 1 1 1 1 1 "},
+      {"NE", Op::kNe, {-1}, "1 1 0 1 1 1 1 1 "},
+      {"NE", Op::kNe, {0}, "1 1 1 0 1 1 1 1 "},
+      {"NE", Op::kNe, {499}, "1 1 1 1 0 1 1 1 "},
+      {"NE", Op::kNe, {1000}, "1 1 1 1 1 0 1 1 "},
+      {"NE", Op::kNe, {2500}, "1 1 1 1 1 1 0 1 "},
+      {"NE", Op::kNe, {2147483647}, "1 1 1 1 1 1 1 0 "},
+      {"LT", Op::kLt, {-2147483648}, "0 1 1 1 1 1 1 1 "},
+      {"LT", Op::kLt, {-1500500}, "0 0 1 1 1 1 1 1 "},
+      {"LT", Op::kLt, {-1}, "0 0 0 1 1 1 1 1 "},
+      {"LT", Op::kLt, {0}, "0 0 0 0 1 1 1 1 "},
+      {"LT", Op::kLt, {499}, "0 0 0 0 0 1 1 1 "},
+      {"LT", Op::kLt, {1000}, "0 0 0 0 0 0 1 1 "},
+      {"LT", Op::kLt, {2500}, "0 0 0 0 0 0 0 1 "},
+      {"LT", Op::kLt, {2147483647}, "0 0 0 0 0 0 0 0 "},
+      {"LE", Op::kLe, {-2147483648}, "1 1 1 1 1 1 1 1 "},
+      {"LE", Op::kLe, {-1500500}, "0 1 1 1 1 1 1 1 "},
+      {"LE", Op::kLe, {-1}, "0 0 1 1 1 1 1 1 "},
+      {"LE", Op::kLe, {0}, "0 0 0 1 1 1 1 1 "},
+      {"LE", Op::kLe, {499}, "0 0 0 0 1 1 1 1 "},
+      {"LE", Op::kLe, {1000}, "0 0 0 0 0 1 1 1 "},
+      {"LE", Op::kLe, {2500}, "0 0 0 0 0 0 1 1 "},
+      {"LE", Op::kLe, {2147483647}, "0 0 0 0 0 0 0 1 "},
+      {"GT", Op::kGt, {-2147483648}, "0 0 0 0 0 0 0 0 "},
+      {"GT", Op::kGt, {-1500500}, "1 0 0 0 0 0 0 0 "},
+      {"GT", Op::kGt, {-1}, "1 1 0 0 0 0 0 0 "},
+      {"GT", Op::kGt, {0}, "1 1 1 0 0 0 0 0 "},
+      {"GT", Op::kGt, {499}, "1 1 1 1 0 0 0 0 "},
+      {"GT", Op::kGt, {1000}, "1 1 1 1 1 0 0 0 "},
+      {"GT", Op::kGt, {2500}, "1 1 1 1 1 1 0 0 "},
+      {"GT", Op::kGt, {2147483647}, "1 1 1 1 1 1 1 0 "},
+      {"GE", Op::kGe, {-2147483648}, "1 0 0 0 0 0 0 0 "},
+      {"GE", Op::kGe, {-1500500}, "1 1 0 0 0 0 0 0 "},
+      {"GE", Op::kGe, {-1}, "1 1 1 0 0 0 0 0 "},
+      {"GE", Op::kGe, {0}, "1 1 1 1 0 0 0 0 "},
+      {"GE", Op::kGe, {499}, "1 1 1 1 1 0 0 0 "},
+      {"GE", Op::kGe, {1000}, "1 1 1 1 1 1 0 0 "},
+      {"GE", Op::kGe, {2500}, "1 1 1 1 1 1 1 0 "},
+      {"GE", Op::kGe, {2147483647}, "1 1 1 1 1 1 1 1 "},
+      {"NOT", Op::kNot, {}, "0 0 0 1 0 0 0 0 "},
+      {"AND", Op::kAnd, {-2147483648}, "1 1 1 0 1 1 1 1 "},
+      {"AND", Op::kAnd, {-1500500}, "1 1 1 0 1 1 1 1 "},
+      {"AND", Op::kAnd, {-1}, "1 1 1 0 1 1 1 1 "},
+      {"AND", Op::kAnd, {0}, "0 0 0 0 0 0 0 0 "},
+      {"AND", Op::kAnd, {499}, "1 1 1 0 1 1 1 1 "},
+      {"AND", Op::kAnd, {1000}, "1 1 1 0 1 1 1 1 "},
+      {"AND", Op::kAnd, {2500}, "1 1 1 0 1 1 1 1 "},
+      {"AND", Op::kAnd, {2147483647}, "1 1 1 0 1 1 1 1 "},
+      {"OR", Op::kOr, {-2147483648}, "1 1 1 1 1 1 1 1 "},
+      {"OR", Op::kOr, {-1500500}, "1 1 1 1 1 1 1 1 "},
+      {"OR", Op::kOr, {-1}, "1 1 1 1 1 1 1 1 "},
+      {"OR", Op::kOr, {0}, "1 1 1 0 1 1 1 1 "},
+      {"OR", Op::kOr, {499}, "1 1 1 1 1 1 1 1 "},
+      {"OR", Op::kOr, {1000}, "1 1 1 1 1 1 1 1 "},
+      {"OR", Op::kOr, {2500}, "1 1 1 1 1 1 1 1 "},
+      {"OR", Op::kOr, {2147483647}, "1 1 1 1 1 1 1 1 "},
   };
   return found;
 }
