@@ -8,6 +8,7 @@ from __future__ import annotations
 import json
 import sys
 from pathlib import Path
+from typing import Any
 from unittest import mock
 
 import pytest
@@ -204,7 +205,8 @@ def test_a_shared_port_has_the_authority_and_its_messages_no_key(
     assert on(pty_robot, "upload", "-e", DRIVES).code == 0  # after a stop, too
     link.process.kill()
     link.process.communicate()
-    for request in (ClientRequests().claim(KEY_OWNER), ClientRequests().disown(KEY_OWNER)):
+    client: Any = ClientRequests()
+    for request in (client.claim(KEY_OWNER), client.disown(KEY_OWNER)):
         assert set(request.message) == {"do", "which"}
 
 

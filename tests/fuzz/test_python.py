@@ -154,7 +154,7 @@ ITEMS = st.tuples(
     st.one_of(st.binary(max_size=PAYLOAD_BYTES), st.just(b"\0" + bytes(7))),
     st.booleans(),
 )
-_CLIENT = ClientRequests()
+_CLIENT: Any = ClientRequests()
 RIGHT = [
     _CLIENT.hello().message, _CLIENT.undo().message, _CLIENT.name(b"X").message,
     _CLIENT.trim(b"abc").message, _CLIENT.start().message, _CLIENT.live(b"\x44\x01").message,

@@ -12,6 +12,7 @@ from tiniscript.link.sharing.requests import ClientRequests, asked_for
 from tiniscript.link.wifi import BrokerSettings, Tls
 
 PLAIN = BrokerSettings(bytes((192, 168, 1, 20)), 8883, "aula", b"robots", b"secret")
+CLIENT: Any = ClientRequests()
 NAMED = PLAIN._replace(name=b"broker.aula", tls=Tls(bytes(range(256)) * 8, 20261121))
 
 
@@ -34,7 +35,7 @@ def found(message: dict[str, Any]) -> BrokerSettings | None:
 
 @pytest.mark.parametrize("settings", [PLAIN, PLAIN._replace(name=b"x"), NAMED, None])
 def test_it_comes_as_it_was_asked_for(settings: BrokerSettings | None) -> None:
-    assert found(ClientRequests().use_broker(settings).message) == settings
+    assert found(CLIENT.use_broker(settings).message) == settings
 
 
 @pytest.mark.parametrize("other", [
@@ -43,6 +44,6 @@ def test_it_comes_as_it_was_asked_for(settings: BrokerSettings | None) -> None:
     {"port": 0}, {"address": "7f"}, {"group": "a/b"},
 ])  # fmt: skip
 def test_what_is_no_broker_is_refused(other: dict[str, Any]) -> None:
-    message = dict(ClientRequests().use_broker(NAMED).message)
+    message = dict(CLIENT.use_broker(NAMED).message)
     with pytest.raises(BadMessage):
         found({**message, **other})

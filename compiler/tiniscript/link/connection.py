@@ -1,4 +1,4 @@
-"""The interface of a connection to a robot, as commands use it.
+"""The interface of a connection to a robot, as commands use it, and the requests on it.
 
 Two classes implement it: a `Line` of this process, and a `Client` of another process's line. A
 command works with either.
@@ -26,6 +26,7 @@ from tiniscript.link.requests import FetchedImage, Reply
 from tiniscript.link.wifi import BrokerSettings, Network
 
 DEADLINE_MS = 20_000  # of a request, unless another is given
+CLAIM_LIMIT_MS = 45_000  # the robot waits for a hand on its button
 T = TypeVar("T")
 
 
@@ -43,53 +44,101 @@ class PendingRequest(Generic[T]):
         self.outcome: Reply[T] | None = None
 
 
-class Requester(Protocol):
-    """The requests that can be made; `link.session` carries them out."""
+class Requester:
+    """The requests that can be made of a robot. A session carries them out, and a client of a
+    shared port has its server make them: both have `_ask` alone of their own."""
 
-    def hello(self) -> PendingRequest[HelloReply]: ...
+    def _ask(
+        self, name: str, kind: type[T], starts: bool = False, /, **given: object
+    ) -> PendingRequest[T]:
+        """Make the request of this name, with what it is given; its reply has the type `kind`."""
+        raise NotImplementedError
 
-    def ping(self) -> PendingRequest[PingReply]: ...
+    def hello(self) -> PendingRequest[HelloReply]:
+        return self._ask("hello", HelloReply)
 
-    def status(self) -> PendingRequest[StatusReply]: ...
+    def ping(self) -> PendingRequest[PingReply]:
+        return self._ask("ping", PingReply)
 
-    def clear(self) -> PendingRequest[EmptyReply]: ...
+    def status(self) -> PendingRequest[StatusReply]:
+        return self._ask("status", StatusReply)
 
-    def start(self, is_detached: bool = False) -> PendingRequest[ReceiptReply]: ...
+    def clear(self) -> PendingRequest[EmptyReply]:
+        return self._ask("clear", EmptyReply)
 
-    def live(self, code: bytes, kit: int = 0) -> PendingRequest[ReceiptReply]: ...
+    def start(self, is_detached: bool = False) -> PendingRequest[ReceiptReply]:
+        return self._ask("start", ReceiptReply, True, is_detached=is_detached)
+
+    def live(self, code: bytes, kit: int = 0) -> PendingRequest[ReceiptReply]:
+        """`kit` is the kit whose words the code uses, or 0 for none."""
+        return self._ask("live", ReceiptReply, True, code=code, kit=kit)
 
     def upload(
         self, image: Image, runs: bool = True, saves: bool = True, is_detached: bool = False,
         kit: int | None = None,
-    ) -> PendingRequest[ReceiptReply]: ...  # fmt: skip
+    ) -> PendingRequest[ReceiptReply]:  # fmt: skip
+        """`kit` is the kit that the image was verified for; None means the session's kit."""
+        given = {"runs": runs, "saves": saves, "is_detached": is_detached, "kit": kit}
+        starts = runs and image.start == "SI"
+        return self._ask("upload", ReceiptReply, starts, image=image, **given)
 
-    def undo(self) -> PendingRequest[ReceiptReply]: ...
+    def undo(self) -> PendingRequest[ReceiptReply]:
+        """Have the robot hold the program before again; what runs ends."""
+        return self._ask("undo", ReceiptReply)
 
-    def name(self, name: bytes) -> PendingRequest[EmptyReply]: ...
+    def name(self, name: bytes) -> PendingRequest[EmptyReply]:
+        return self._ask("name", EmptyReply, name=name)
 
-    def trim(self, trim: bytes = b"") -> PendingRequest[TrimReply]: ...
+    def trim(self, trim: bytes = b"") -> PendingRequest[TrimReply]:
+        """Set the trim of the motors, or only read it if `trim` is empty."""
+        return self._ask("trim", TrimReply, trim=trim)
 
-    def fetch(self) -> PendingRequest[FetchedImage]: ...
+    def fetch(self) -> PendingRequest[FetchedImage]:
+        return self._ask("fetch", FetchedImage)
 
-    def identify(self) -> PendingRequest[EmptyReply]: ...
+    def identify(self) -> PendingRequest[EmptyReply]:
+        return self._ask("identify", EmptyReply)
 
-    def claim(self, which: int) -> PendingRequest[EmptyReply]: ...
+    def claim(self, which: int) -> PendingRequest[EmptyReply]:
+        """Claim the robot: `which` is one of KEYS. Waits until its button is held down.
 
-    def disown(self, which: int) -> PendingRequest[EmptyReply]: ...
+        The process with the session makes the key and keeps it: no message between commands has
+        one.
+        """
+        pending = self._ask("claim", EmptyReply, which=which)
+        pending.limit_ms = CLAIM_LIMIT_MS
+        return pending
 
-    def hold_back(self) -> PendingRequest[EmptyReply]: ...
+    def disown(self, which: int) -> PendingRequest[EmptyReply]:
+        return self._ask("disown", EmptyReply, which=which)
 
-    def allow_text(self, is_allowed: bool) -> PendingRequest[TextReply]: ...
+    def hold_back(self) -> PendingRequest[EmptyReply]:
+        return self._ask("hold_back", EmptyReply)
 
-    def wifi(self) -> PendingRequest[WifiReply]: ...
+    def allow_text(self, is_allowed: bool) -> PendingRequest[TextReply]:
+        return self._ask("allow_text", TextReply, is_allowed=is_allowed)
 
-    def join(self, network: Network) -> PendingRequest[WifiReply]: ...
+    def wifi(self) -> PendingRequest[WifiReply]:
+        """Ask what the robot's WiFi is set to."""
+        return self._ask("wifi", WifiReply)
 
-    def forget_wifi(self) -> PendingRequest[WifiReply]: ...
+    def join(self, network: Network) -> PendingRequest[WifiReply]:
+        """Have the robot join a network, or be its access point, now and after each reset.
 
-    def broker(self) -> PendingRequest[WifiReply]: ...
+        The password goes to another process of this user at most, and into no file.
+        """
+        return self._ask("join", WifiReply, network=network)
 
-    def use_broker(self, broker: BrokerSettings | None) -> PendingRequest[WifiReply]: ...
+    def forget_wifi(self) -> PendingRequest[WifiReply]:
+        return self._ask("forget_wifi", WifiReply)
+
+    def broker(self) -> PendingRequest[WifiReply]:
+        """Ask which MQTT broker the robot uses."""
+        return self._ask("broker", WifiReply)
+
+    def use_broker(self, broker: BrokerSettings | None) -> PendingRequest[WifiReply]:
+        """Have the robot use a broker, or none, now and after each reset."""
+        return self._ask("use_broker", WifiReply, broker=broker)
 
 
 class LinkConnection(Heard, Protocol):

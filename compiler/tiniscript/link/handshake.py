@@ -6,10 +6,10 @@ Knows whether the robot has answered. Knows no frame and no time.
 from __future__ import annotations
 
 from collections.abc import Callable, Generator
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from tiniscript.bytecode.image import Image
-from tiniscript.link import authority, requests
+from tiniscript.link import authority, requests, wifi
 from tiniscript.link.authority import NOT_OWNER, KeyRing
 from tiniscript.link.messages import (
     KEY_TEACHER,
@@ -27,10 +27,12 @@ from tiniscript.link.payloads import (
     AuthenticateReply,
     EmptyReply,
     HelloReply,
+    PingReply,
     ReceiptReply,
     SentReply,
     StatusReply,
     TextReply,
+    TrimReply,
 )
 from tiniscript.link.requests import OK, DeviceInfo, Exchange, Reply, Request, refused
 from tiniscript.link.robot_state import RobotState
@@ -159,7 +161,7 @@ class Handshake:
         hello = yield from self.hello()
         if hello.status != OK:
             return refused(hello)
-        reply = yield from requests.single(Request("STATUS"), StatusReply)
+        reply = yield from status()
         if reply.status == OK and self.is_doubted:
             if not (is_sealed() and reply.values.state > STATE_RUNNING):
                 return Reply(UNPROVEN)
@@ -196,14 +198,19 @@ class Handshake:
             self._take_features(reply.values.features)
         return reply
 
+    def start(self, is_detached: bool) -> Exchange[ReceiptReply]:
+        return (yield from requests.start(is_detached, self._state.is_latched))
+
     def live(self, code: bytes, kit: int) -> Exchange[ReceiptReply]:
         robot = yield from self._speak_for(kit)
         return (yield from requests.live(code, self._state.is_latched, kit, robot))
 
-    def upload(self, image: Image, mode: int, kit: int | None) -> Exchange[ReceiptReply]:
-        """`kit` is the kit that the image was verified for; None means this session's kit."""
+    def upload(
+        self, image: Image, runs: bool, saves: bool, is_detached: bool, kit: int | None
+    ) -> Exchange[ReceiptReply]:
         kit = self._kit if kit is None else kit
         robot = yield from self._speak_for(kit if image.devices else 0)
+        mode = requests.mode_of(image, runs, saves, is_detached)
         is_latched = self._state.is_latched
         return (yield from requests.upload(image, mode, robot, self._isa, is_latched, kit))
 
@@ -224,3 +231,38 @@ class Handshake:
             self._kit = kit
             yield from self.hello()
         return self.robot
+
+
+def ping(asks: bytes = b"") -> Exchange[PingReply]:
+    return requests.single(Request("PING", {"asks": asks}), PingReply)
+
+
+def status() -> Exchange[StatusReply]:
+    return requests.single(Request("STATUS"), StatusReply)
+
+
+# The exchange that carries out each request of a `Requester`, by the request's name.
+EXCHANGES: dict[str, Callable[..., Exchange[Any]]] = {
+    "hello": Handshake.hello,
+    "ping": lambda its: ping(),
+    "status": lambda its: status(),
+    "clear": lambda its: requests.clear(),
+    "start": Handshake.start,
+    "live": Handshake.live,
+    "upload": Handshake.upload,
+    "undo": lambda its: requests.patient(Request("UNDO"), ReceiptReply),
+    "name": Handshake.name,
+    "trim": lambda its, trim: requests.kept(Request("TRIM", {"trim": trim}), TrimReply),
+    "fetch": lambda its: requests.fetch(),
+    "identify": lambda its: requests.single(Request("IDENTIFY"), EmptyReply),
+    "claim": Handshake.claim,
+    "disown": Handshake.disown,
+    "hold_back": Handshake.hold_back,
+    "allow_text": Handshake.allow_text,
+    "wifi": lambda its: wifi.tell(),
+    "join": lambda its, network: wifi.give(network),
+    "forget_wifi": lambda its: wifi.forget(),
+    "broker": lambda its: wifi.tell_broker(),
+    "use_broker": lambda its, broker: wifi.use_broker(broker),
+}
+NEED_NO_HELLO = ("ping", "status", "fetch")

@@ -15,8 +15,9 @@ from typing import Any, TypeVar
 
 from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
 from tiniscript.link.authority import NOT_OWNER, KeyRing
-from tiniscript.link.exchanges import Exchanges
+from tiniscript.link.exchanges import Exchanges, Interrupted, PendingExchange
 from tiniscript.link.frames import Frame, begins_text, decoded, encoded
+from tiniscript.link.handshake import status
 from tiniscript.link.messages import (
     BY_NAME,
     BY_NUMBER,
@@ -50,7 +51,6 @@ from tiniscript.link.payloads import (
 from tiniscript.link.receiver import Receiver
 from tiniscript.link.requests import OK, Exchange, Reply, refused, reply_of
 from tiniscript.link.sealing import SEALED_ALONE, UNSEALED, Sealing
-from tiniscript.link.session_requests import Interrupted, PendingExchange
 from tiniscript.link.stop_sequence import StopSequence
 from tiniscript.link.transmission import TRIES, Transmission
 from tiniscript.link.window import Window
@@ -334,7 +334,7 @@ class Session(Exchanges):
             hello = yield from self._handshake.hello()
             if hello.status != OK:
                 return refused(hello)
-        reply = yield from self._status()
+        reply = yield from self._handshake.with_key(status)
         if reply.status == OK and has_ended and self._state.run == run:
             self._tell_end(reply.values)
         return reply

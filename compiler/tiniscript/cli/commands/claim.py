@@ -9,12 +9,9 @@ from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot.connect import Connection, connected
 from tiniscript.cli.texts.common import text
-from tiniscript.library.opening import limited
 from tiniscript.link.messages import KEY_OWNER, KEY_TEACHER, OWNERS, STATUSES
 from tiniscript.link.outcomes import UNKEPT
 from tiniscript.link.requests import Reply
-
-LIMIT_MS = 45_000  # the robot waits 30 s for the button
 
 
 def run(options: Namespace, language: str) -> int:
@@ -27,8 +24,7 @@ def run(options: Namespace, language: str) -> int:
 
 
 def _claim(connection: Connection, which: int) -> None:
-    make = limited(lambda session: session.claim(which), LIMIT_MS)
-    request = connection.line.do(make)
+    request = connection.line.do(lambda session: session.claim(which))
     # Said once the robot is asked: a press that has lasted 2 s before counts for nothing.
     said = text("claim_hold", connection.language)
     said = said.format(robot=connection.name, port=shown(connection.port))
