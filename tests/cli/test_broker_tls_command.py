@@ -19,7 +19,7 @@ from tests.support.command import process
 from tests.support.esp32_pty_robot import Esp32PtyRobot
 from tests.support.mosquitto import Mosquitto, missing
 from tests.support.pty_robot import on
-from tiniscript.link.network_messages import WIFI_STATES
+from tiniscript.link.messages import WIFI_STATES
 
 if sys.platform == "win32":
     pytest.skip("there are no pseudo-terminals", allow_module_level=True)

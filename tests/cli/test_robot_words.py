@@ -12,10 +12,10 @@ from tests.link.test_session import DESCRIPTION
 from tiniscript.cli.robot.event_printer import EventPrinter
 from tiniscript.cli.spreadsheet import no_formula
 from tiniscript.link import known_ports, ports
-from tiniscript.link.fields import filled
 from tiniscript.link.outcomes import TextEvent
 from tiniscript.link.payloads import HelloReply
 from tiniscript.link.requests import described
+from tiniscript.link.sharing.protocol import filled
 
 # the cursor, a title, a new line, a bell, the direction, nothing to see, half a character
 ACTING = ("\x1b[2J", "\x9b2J", "\x1b]0;x\x07", "\r\n", "\b\b", "\u202e", "\u2066", "\u200b",

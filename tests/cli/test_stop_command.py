@@ -15,7 +15,7 @@ from tiniscript.cli.texts.common import text
 from tiniscript.library import opening
 from tiniscript.library.errors import RobotError
 from tiniscript.link.line import Line
-from tiniscript.link.stop_sequence import CONFIRM_MS
+from tiniscript.link.transmission import CONFIRM_MS
 
 pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
 pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")

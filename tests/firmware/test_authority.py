@@ -31,8 +31,8 @@ from tiniscript.link.messages import (
     STATE_STOPPED,
     STATUSES,
 )
+from tiniscript.link.seal import siphash
 from tiniscript.link.session import Session
-from tiniscript.link.siphash import siphash
 
 __all__ = ("robots_of_both_kinds",)  # a fixture
 pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")

@@ -26,7 +26,7 @@ from tests.support.esp32_radio import in_reach, known, talk
 from tests.support.mosquitto import LOCAL, AtBroker, Mosquitto, missing
 from tests.support.owners import Keys
 from tiniscript.link import wifi
-from tiniscript.link.network_messages import BROKER_NAME_BYTES, TRUST_BYTES
+from tiniscript.link.messages import BROKER_NAME_BYTES, TRUST_BYTES
 from tiniscript.link.transports.broker import Access, Broker, Present
 
 NEEDS = no_compiler() or missing() or certificates.missing()

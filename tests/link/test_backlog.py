@@ -5,9 +5,8 @@ from __future__ import annotations
 import threading
 import tracemalloc
 
-from tiniscript.link.backlog import KEPT, Backlog, Told
 from tiniscript.link.line import Line
-from tiniscript.link.outcomes import MissedEvent, StartedEvent
+from tiniscript.link.outcomes import KEPT, Backlog, MissedEvent, StartedEvent, Told
 from tiniscript.link.payloads import DoneEvent, FaultEvent, ShowEvent
 from tiniscript.link.session import Session
 

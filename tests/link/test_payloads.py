@@ -8,7 +8,6 @@ import pytest
 
 from tests.support.link_events import EVENTS as SOME_EVENTS
 from tests.support.link_events import QUIET
-from tiniscript.link.fields import event_of, filled, of_event, of_payload
 from tiniscript.link.messages import FIRST_EVENT, MESSAGES, Field, Malformed, Message
 from tiniscript.link.outcomes import (
     ALL_EVENTS,
@@ -24,6 +23,7 @@ from tiniscript.link.outcomes import (
 )
 from tiniscript.link.payloads import EVENTS, REPLIES, ReceiptReply, StatusReply
 from tiniscript.link.sharing import protocol
+from tiniscript.link.sharing.protocol import event_of, filled, of_event
 
 REPLY_MESSAGES = [each for each in MESSAGES if each.number < FIRST_EVENT]
 EVENT_MESSAGES = [each for each in MESSAGES if each.number >= FIRST_EVENT]
@@ -37,7 +37,7 @@ def value(field: Field) -> int | bytes:
 def test_a_reply_has_the_fields_of_the_table_in_their_order(message: Message) -> None:
     values = {field.name: value(field) for field in message.reply}
     made = filled(REPLIES[message.name], values)
-    assert list(of_payload(made).items()) == list(values.items())
+    assert list(made._asdict().items()) == list(values.items())
 
 
 def test_an_event_has_the_fields_of_the_table_and_its_name() -> None:

@@ -13,8 +13,7 @@ from tests.machines.link import cpp_link, missing
 from tiniscript.link.frames import Frame, encoded
 from tiniscript.link.messages import BY_NAME, SEALED_PAYLOAD_BYTES
 from tiniscript.link.receiver import Receiver
-from tiniscript.link.seal import LAST, Seal, session_key
-from tiniscript.link.siphash import siphash
+from tiniscript.link.seal import LAST, Seal, session_key, siphash
 
 needs_host = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 KEY = bytes(range(16))

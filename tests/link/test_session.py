@@ -24,7 +24,7 @@ from tiniscript.link.outcomes import CANCELLED, LOST, TextEvent
 from tiniscript.link.payloads import ReceiptReply
 from tiniscript.link.requests import SHORT_BYTES
 from tiniscript.link.session import HEARTBEAT_MS, IDLE_HEARTBEAT_MS, Session
-from tiniscript.link.stop_sequence import CONFIRM_MS, STOP_MS
+from tiniscript.link.transmission import CONFIRM_MS, STOP_MS
 
 FORWARD = bytes.fromhex("448c50")  # F(5,80)
 

@@ -7,7 +7,7 @@ import random
 import pytest
 
 from tests.machines.link import cpp_link, missing
-from tiniscript.link.siphash import siphash
+from tiniscript.link.seal import siphash
 
 KEY = bytes(range(16))
 # Of the messages 00, 00 01, 00 01 02 ..., from the empty one to that of 63 bytes.

@@ -10,9 +10,8 @@ from tests.firmware.test_host_firmware import image_of
 from tests.machines.host_firmware import missing
 from tests.support.shared_pty_robot import Shared
 from tests.support.waiting import HANGS_S
-from tiniscript.link.backlog import KEPT, Backlog
 from tiniscript.link.connection import LinkConnection
-from tiniscript.link.outcomes import Event, PlaceEvent
+from tiniscript.link.outcomes import KEPT, Backlog, Event, PlaceEvent
 from tiniscript.link.payloads import ShowEvent
 from tiniscript.link.requests import OK
 from tiniscript.link.sharing.shared_line import joined

@@ -27,7 +27,6 @@ from tests.machines.link import CppLink, Step
 from tests.support.casefile import ROOT
 from tiniscript.bytecode.image import pack, unpack
 from tiniscript.link.connection import PendingRequest
-from tiniscript.link.fields import of_event, of_payload
 from tiniscript.link.frames import Frame, decoded, encoded
 from tiniscript.link.messages import (
     BY_NAME,
@@ -41,6 +40,7 @@ from tiniscript.link.messages import (
 from tiniscript.link.receiver import LARGE_ITEM, SMALL_ITEM, Receiver
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
+from tiniscript.link.sharing.protocol import of_event
 from tiniscript.link.statuses import name_of
 
 STEP_MS = 10
@@ -260,7 +260,7 @@ class SessionSide:
             name = {-1: "LOST", -2: "CANCELLED"}.get(request.outcome.status)
             name = name or name_of(request.outcome.status)
             detail = f" {request.outcome.detail}" if request.outcome.detail else ""
-            values = of_payload(request.outcome.values) if request.outcome.status == OK else {}
+            values = request.outcome.values._asdict() if request.outcome.status == OK else {}
             rows.append(_said(f"outcome {name}{detail}", values))
             self.pending.remove(request)
         return rows

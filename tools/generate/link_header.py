@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from itertools import accumulate
 
-from tiniscript.link import messages, network_messages
+from tiniscript.link import messages
 from tiniscript.link.messages import MESSAGES, Field
 from tiniscript.link.statuses import texts
 from tools.generate.cpp_header import array, camel, constants, enumeration
@@ -66,14 +66,14 @@ def header(command: str) -> str:
             ("kLongMs", messages.LONG_MS),
             ("kClaimMs", messages.CLAIM_MS),
             ("kForgetMs", messages.FORGET_MS),
-            ("kNetworkBytes", network_messages.NETWORK_BYTES),
-            ("kWifiTextBytes", network_messages.WIFI_TEXT_BYTES),
-            ("kPasswordBytes", network_messages.PASSWORD_BYTES),
-            ("kLeastPassword", network_messages.LEAST_PASSWORD),
-            ("kClassBytes", network_messages.CLASS_BYTES),
-            ("kBrokerPlaceBytes", network_messages.BROKER_PLACE_BYTES),
-            ("kBrokerNameBytes", network_messages.BROKER_NAME_BYTES),
-            ("kTrustBytes", network_messages.TRUST_BYTES),
+            ("kNetworkBytes", messages.NETWORK_BYTES),
+            ("kWifiTextBytes", messages.WIFI_TEXT_BYTES),
+            ("kPasswordBytes", messages.PASSWORD_BYTES),
+            ("kLeastPassword", messages.LEAST_PASSWORD),
+            ("kClassBytes", messages.CLASS_BYTES),
+            ("kBrokerPlaceBytes", messages.BROKER_PLACE_BYTES),
+            ("kBrokerNameBytes", messages.BROKER_NAME_BYTES),
+            ("kTrustBytes", messages.TRUST_BYTES),
         ),
         "// How a program starts, in one byte.\n"
         + constants(*((f"k{camel(name)}", bits) for bits, name, _ in messages.MODES)),
@@ -105,9 +105,9 @@ def header(command: str) -> str:
                 ("Reset", messages.RESETS),
                 ("TextLevel", messages.TEXT_LEVELS),
                 ("Key", messages.KEYS),
-                ("WifiStep", network_messages.WIFI_STEPS),
-                ("WifiMode", network_messages.WIFI_MODES),
-                ("WifiState", network_messages.WIFI_STATES),
+                ("WifiStep", messages.WIFI_STEPS),
+                ("WifiMode", messages.WIFI_MODES),
+                ("WifiState", messages.WIFI_STATES),
             )
         ),
         "// Faults that no instruction makes. The others are `Fault`.\n"
@@ -243,9 +243,9 @@ DOCUMENT_TABLES: dict[str, dict[str, Callable[[], Rows]]] = {
         ),
     },
     "network.md": {
-        "wifi_steps": lambda: number_rows(network_messages.WIFI_STEPS),
-        "wifi_modes": lambda: number_rows(network_messages.WIFI_MODES),
-        "wifi_states": lambda: number_rows(network_messages.WIFI_STATES),
+        "wifi_steps": lambda: number_rows(messages.WIFI_STEPS),
+        "wifi_modes": lambda: number_rows(messages.WIFI_MODES),
+        "wifi_states": lambda: number_rows(messages.WIFI_STATES),
     },
     "owners.md": {"keys": lambda: number_rows(messages.KEYS)},
 }

@@ -174,9 +174,10 @@ class Client:
 
     def failure(self, reply: Reply[object]) -> RobotError | ProgramError:
         """Return the error for a reply that is not OK."""
+        from tiniscript.link.connection import reason_of
         from tiniscript.link.statuses import name_of, sentence
 
-        reason = opening.reason_of(self.line, reply)
+        reason = reason_of(self.line, reply)
         if reason != "status":
             return RobotError(reason, self.language, {"port": opening.shown(self.port)})
         said = " ".join(sentence(reply.status, reply.detail, self.language)).strip()

@@ -171,13 +171,6 @@ def limited(
     return asked
 
 
-def reason_of(line: LinkConnection, reply: Reply[object]) -> str:
-    """Return why a reply is not OK; `status`: the robot's status gives the reason."""
-    from tiniscript.link import reasons
-
-    return reasons.reason_of(line, reply)
-
-
 def reason_of_end(line: LinkConnection, gone: Gone, port: str) -> str:
     """Return why a connection has ended."""
     from tiniscript.link import errors

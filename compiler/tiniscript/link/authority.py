@@ -13,8 +13,7 @@ from tiniscript.link.messages import KEY_TEACHER, OWNED, SEALS, STATUSES, YOURS
 from tiniscript.link.outcomes import UNKEPT
 from tiniscript.link.payloads import AuthenticateReply, EmptyReply
 from tiniscript.link.requests import OK, TAKEN, DeviceInfo, Exchange, Reply, Request
-from tiniscript.link.seal import Seal, session_key
-from tiniscript.link.siphash import siphash
+from tiniscript.link.seal import Seal, session_key, siphash
 
 NOT_OWNER, WRONG_KEY, HOLD_BUTTON = (
     STATUSES[name] for name in ("NOT_OWNER", "WRONG_KEY", "HOLD_BUTTON")

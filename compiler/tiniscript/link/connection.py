@@ -10,7 +10,7 @@ from collections.abc import Callable
 from typing import Generic, Protocol, TypeVar
 
 from tiniscript.bytecode.image import Image
-from tiniscript.link.outcomes import Event
+from tiniscript.link.outcomes import CANCELLED, LOST, UNPROVEN, Event
 from tiniscript.link.payloads import (
     EmptyReply,
     HelloReply,
@@ -21,9 +21,42 @@ from tiniscript.link.payloads import (
     TrimReply,
     WifiReply,
 )
-from tiniscript.link.reasons import Heard
-from tiniscript.link.requests import FetchedImage, Reply
+from tiniscript.link.requests import DeviceInfo, FetchedImage, Reply
 from tiniscript.link.wifi import BrokerSettings, Network
+
+STATUS = "status"  # the robot's status says why
+
+
+class Heard(Protocol):
+    """What is known of a connection: whether a robot has answered, and what else came.
+
+    `heard` counts received bytes; `is_echoed`: the line returns what is sent.
+    """
+
+    @property
+    def robot(self) -> DeviceInfo | None: ...
+
+    @property
+    def heard(self) -> int: ...
+
+    @property
+    def is_echoed(self) -> bool: ...
+
+
+def reason_of(line: Heard, reply: Reply[object]) -> str:
+    """Return why a reply is not OK."""
+    if reply.status == CANCELLED:
+        return "stopped_elsewhere"
+    if reply.status == UNPROVEN:
+        return "unproven"
+    if reply.status != LOST:
+        return STATUS
+    if line.robot is not None:
+        return "link_lost"
+    if line.is_echoed:
+        return "link_echo"
+    return "link_other" if line.heard else "link_silent"
+
 
 DEADLINE_MS = 20_000  # of a request, unless another is given
 CLAIM_LIMIT_MS = 45_000  # the robot waits for a hand on its button

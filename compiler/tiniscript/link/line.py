@@ -14,9 +14,8 @@ from typing import IO, TYPE_CHECKING, Any, TypeVar
 
 import serial
 
-from tiniscript.link.backlog import Backlog, Told
 from tiniscript.link.connection import PendingRequest, Requester
-from tiniscript.link.outcomes import LOOK_S, Event, Gone
+from tiniscript.link.outcomes import LOOK_S, Backlog, Event, Gone, Told
 from tiniscript.link.requests import DeviceInfo, Reply
 from tiniscript.link.session import Session
 

@@ -6,6 +6,8 @@ All listeners share these, also those in another process. An event is identified
 
 from __future__ import annotations
 
+from collections import deque
+from collections.abc import Iterable
 from typing import Literal, NamedTuple
 
 from tiniscript.link.payloads import (
@@ -136,3 +138,45 @@ class Gone(Exception):
         super().__init__(why)
         self.why = why
         self.is_server = is_server
+
+
+KEPT = 500  # events
+MAY_MISS = ("SHOW", "TEXT", "ECHO")  # the others say what the robot does
+
+Told = tuple[int, Event]  # arrival time (ms), event
+
+
+class Backlog:
+    """When it is full, the oldest event of MAY_MISS is dropped, else the oldest of all. MISSED
+    comes first and says how many were dropped."""
+
+    def __init__(self) -> None:
+        self._events: deque[Told] = deque()
+        self._missed = 0
+
+    def __len__(self) -> int:
+        return len(self._events) + (self._missed > 0)
+
+    def put(self, told: Iterable[Told]) -> None:
+        for each in told:
+            if each[1].name == "PLACE":  # the newest one says all
+                self._events = deque(one for one in self._events if one[1].name != "PLACE")
+            self._events.append(each)
+            if len(self._events) > KEPT:
+                self._drop()
+
+    def take(self) -> Told:
+        """Return the next event. Raises IndexError if there is none."""
+        if self._missed:
+            event = MissedEvent(self._missed)
+            self._missed = 0
+            return (self._events[0][0] if self._events else 0), event
+        return self._events.popleft()
+
+    def _drop(self) -> None:
+        self._missed += 1
+        for number, (_, event) in enumerate(self._events):
+            if event.name in MAY_MISS:
+                del self._events[number]
+                return
+        self._events.popleft()

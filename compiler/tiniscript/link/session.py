@@ -51,9 +51,7 @@ from tiniscript.link.payloads import (
 from tiniscript.link.receiver import Receiver
 from tiniscript.link.requests import OK, Exchange, Reply, refused, reply_of
 from tiniscript.link.sealing import SEALED_ALONE, UNSEALED, Sealing
-from tiniscript.link.stop_sequence import StopSequence
-from tiniscript.link.transmission import TRIES, Transmission
-from tiniscript.link.window import Window
+from tiniscript.link.transmission import TRIES, StopSequence, Transmission, Window
 
 HEARTBEAT_MS = 200  # between two frames while a program runs
 IDLE_HEARTBEAT_MS = 1000  # between two frames otherwise

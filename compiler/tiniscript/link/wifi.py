@@ -10,7 +10,7 @@ import re
 from typing import NamedTuple
 
 from tiniscript.link import requests
-from tiniscript.link.network_messages import (
+from tiniscript.link.messages import (
     BROKER_NAME_BYTES,
     CLASS_BYTES,
     NETWORK_BYTES,

@@ -12,11 +12,10 @@ from collections.abc import Callable
 from typing import TypeVar
 
 from tiniscript.link.authority import RobotKey
-from tiniscript.link.backlog import Backlog
 from tiniscript.link.connection import PendingRequest, Requester
 from tiniscript.link.keys import BadKeys, known_seals, read, written
 from tiniscript.link.messages import KEY_BYTES
-from tiniscript.link.outcomes import Event
+from tiniscript.link.outcomes import Backlog, Event
 from tiniscript.link.requests import DeviceInfo
 from tiniscript.link.session import Session
 from tiniscript.studio.checking import profile_of

@@ -19,7 +19,7 @@ from tiniscript.bytecode.opcodes import FAULTS
 from tiniscript.fixed_point import as_text
 from tiniscript.library.known_kits import refusal, shipped_of_kit
 from tiniscript.link.authority import whose
-from tiniscript.link.connection import PendingRequest, Requester
+from tiniscript.link.connection import STATUS, Heard, PendingRequest, Requester, reason_of
 from tiniscript.link.messages import (
     CAUSES,
     LINK_FAULTS,
@@ -33,7 +33,6 @@ from tiniscript.link.messages import (
 )
 from tiniscript.link.outcomes import Event
 from tiniscript.link.payloads import HelloReply, ReceiptReply, StatusReply, TrimReply
-from tiniscript.link.reasons import STATUS, Heard, reason_of
 from tiniscript.link.requests import OK, DeviceInfo, Reply
 from tiniscript.link.statuses import name_of, sentence
 from tiniscript.link.trim import Trim, told

@@ -14,8 +14,14 @@ from tiniscript.cli.robot import robot_broker
 from tiniscript.cli.robot.connect import Connection, connected
 from tiniscript.cli.terminal import password
 from tiniscript.cli.texts.common import text
-from tiniscript.link.messages import OWNED, SEALS, STATUSES
-from tiniscript.link.network_messages import LEAST_PASSWORD, NETWORK_BYTES, PASSWORD_BYTES
+from tiniscript.link.messages import (
+    LEAST_PASSWORD,
+    NETWORK_BYTES,
+    OWNED,
+    PASSWORD_BYTES,
+    SEALS,
+    STATUSES,
+)
 from tiniscript.link.payloads import WifiReply
 from tiniscript.link.requests import Reply
 from tiniscript.link.wifi import MODES, STATES, Network, address

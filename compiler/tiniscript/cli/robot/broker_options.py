@@ -11,7 +11,7 @@ from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.terminal import password
 from tiniscript.cli.texts.common import text
-from tiniscript.link.network_messages import NETWORK_BYTES, PASSWORD_BYTES
+from tiniscript.link.messages import NETWORK_BYTES, PASSWORD_BYTES
 from tiniscript.link.wifi import is_class
 
 PLAIN_PORT, TLS_PORT = 1883, 8883

@@ -236,7 +236,9 @@ class Connection:
 
     def failure(self, reply: Reply[object]) -> CommandError:
         """Return the sentence for an outcome that is not OK."""
-        reason = opening.reason_of(self.line, reply)
+        from tiniscript.link.connection import reason_of
+
+        reason = reason_of(self.line, reply)
         if reason == "status":
             return CommandError(3, "plain", said=self.said(reply))
         return CommandError(3, reason, port=shown(self.port))

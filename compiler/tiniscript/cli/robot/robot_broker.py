@@ -14,8 +14,7 @@ from tiniscript.cli.robot import broker_options
 from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.texts.common import text
 from tiniscript.library.install_advice import quoted
-from tiniscript.link.messages import STATUSES
-from tiniscript.link.network_messages import BROKER_NAME_BYTES, TRUST_BYTES
+from tiniscript.link.messages import BROKER_NAME_BYTES, STATUSES, TRUST_BYTES
 from tiniscript.link.payloads import WifiReply
 from tiniscript.link.port_names import is_at_broker
 from tiniscript.link.requests import Reply

@@ -23,12 +23,13 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Mapping
-from typing import NamedTuple, TypeVar
+from collections.abc import Callable, Hashable, Mapping
+from functools import cache
+from typing import NamedTuple, TypeVar, cast, get_type_hints
 
-from tiniscript.link.fields import event_of, filled
 from tiniscript.link.messages import Malformed
-from tiniscript.link.outcomes import Event
+from tiniscript.link.outcomes import ALL_EVENTS, EndedEvent, Event
+from tiniscript.link.payloads import StatusReply
 from tiniscript.link.requests import OK, Reply
 
 HOST = "127.0.0.1"
@@ -164,3 +165,35 @@ def event(message: JsonMessage) -> tuple[int, Event]:
         return number(message, "ms"), event_of(word(message, "event"), values(message))
     except Malformed:
         raise BadMessage from None
+
+
+def of_event(event: Event) -> dict[str, int | bytes]:
+    """Return the fields of an event, without its name."""
+    if isinstance(event, EndedEvent):
+        return event.status._asdict()
+    fields = event._asdict()
+    del fields["name"]
+    return fields
+
+
+def filled(kind: type[T], values: Mapping[str, int | bytes]) -> T:
+    """Return a payload with these values. Raises Malformed if it has other fields."""
+    if {name: type(value) for name, value in values.items()} != _types(cast(Hashable, kind)):
+        raise Malformed
+    make: Callable[..., T] = kind
+    return make(**values)
+
+
+def event_of(name: str, values: Mapping[str, int | bytes]) -> Event:
+    """Return an event. Raises Malformed if no event has this name and these fields."""
+    if name == "ENDED":
+        return EndedEvent(filled(StatusReply, values))
+    if name not in ALL_EVENTS:
+        raise Malformed
+    return filled(ALL_EVENTS[name], values)
+
+
+@cache
+def _types(kind: Hashable) -> dict[str, object]:
+    """Return the type of each field, without an event's name."""
+    return {name: each for name, each in get_type_hints(kind).items() if each in (int, bytes)}

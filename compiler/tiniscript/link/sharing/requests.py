@@ -10,8 +10,14 @@ from typing import Any, TypeVar
 
 from tiniscript.bytecode.image import HEADER_BYTES, STARTS, Image
 from tiniscript.link.connection import PendingRequest, Requester
-from tiniscript.link.messages import KEYS, NAME_BYTES, TRIM_BYTES
-from tiniscript.link.network_messages import LEAST_PASSWORD, NETWORK_BYTES, PASSWORD_BYTES
+from tiniscript.link.messages import (
+    KEYS,
+    LEAST_PASSWORD,
+    NAME_BYTES,
+    NETWORK_BYTES,
+    PASSWORD_BYTES,
+    TRIM_BYTES,
+)
 from tiniscript.link.sharing import protocol
 from tiniscript.link.sharing.protocol import BadMessage, JsonMessage
 from tiniscript.link.wifi import BrokerSettings, Network, Tls

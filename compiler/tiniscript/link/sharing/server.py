@@ -20,11 +20,9 @@ from threading import Thread
 from time import monotonic, sleep
 from typing import Any, NamedTuple
 
-from tiniscript.link import fields
-from tiniscript.link.backlog import Told
 from tiniscript.link.connection import PendingRequest
 from tiniscript.link.line import Line
-from tiniscript.link.outcomes import CANCELLED, Event, JoinedEvent, LeftEvent, MissedEvent
+from tiniscript.link.outcomes import CANCELLED, Event, JoinedEvent, LeftEvent, MissedEvent, Told
 from tiniscript.link.payloads import ReceiptReply
 from tiniscript.link.port_names import same_for_all
 from tiniscript.link.requests import OK, Reply
@@ -296,7 +294,7 @@ class Server:
             self._owner = client, run
 
     def _tell_outcome(self, client: ConnectedClient, number: int, outcome: Reply[Any]) -> None:
-        values = fields.of_payload(outcome.values) if outcome.status == OK else {}
+        values = outcome.values._asdict() if outcome.status == OK else {}
         self._send(client, {
             "id": number,
             "status": outcome.status,
@@ -326,7 +324,7 @@ class Server:
         if client.missed:
             missed, client.missed = client.missed, 0
             self._tell_event(client, time_ms, MissedEvent(missed))
-        values = protocol.plain(fields.of_event(event))
+        values = protocol.plain(protocol.of_event(event))
         message: JsonMessage = {"event": event.name, "ms": time_ms, "values": values}
         self._send(client, message)
 
