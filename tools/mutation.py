@@ -39,6 +39,8 @@ from tiniscript.files import cache_folder
 EQUIVALENT = Path(__file__).with_name("equivalent_mutants.json")
 LIMIT_S = 900  # for the tests of one mutant: an endless loop is noticed, too
 NODE_MODULES = Path("tools/studio/node_modules")
+# What the page is built again from.
+BUILT = ("tools/studio/made", "compiler/tiniscript/studio/page")
 
 _CPP, _PY, _JS = "vm_arduino/src", "compiler/tiniscript", "tools/studio/src"
 _HOST = "tests/firmware/test_host_firmware.py"
@@ -294,6 +296,9 @@ class Copy:
                 shutil.copy(ROOT / name, folder / name)
         if (ROOT / NODE_MODULES).is_dir():
             (folder / NODE_MODULES).symlink_to(ROOT / NODE_MODULES)
+        for name in BUILT:
+            if (ROOT / name).is_dir():
+                shutil.copytree(ROOT / name, folder / name)
 
     def notices(self, mutant: Mutant, tests: Sequence[str]) -> str:
         """Return which test notices a mutant, or nothing."""

@@ -208,6 +208,13 @@ def test_a_hostile_machine_is_named(what: str, tsc: Tsc, tmp_path: Path) -> None
     assert [row["what"] for row in rows] == [what] * tried
 
 
+def test_of_a_machine_that_crashed_without_a_word_the_exit_code_is_told(
+    tsc: Tsc, tmp_path: Path
+) -> None:
+    done = conform(tsc, machine(tmp_path, "sys.exit(3)"), "--only", "images: no code")
+    assert re.search(r"exit code 3\b(?!:)", done.out)
+
+
 def test_half_an_answer_is_one_of_a_machine_that_crashed(tsc: Tsc, tmp_path: Path) -> None:
     source = "sys.stdin.readline()\nos.write(1, b'0 SHOW 1\\n')\nsys.exit('half')"
     done = conform(tsc, machine(tmp_path, source), "--only", "images: no code", "--timeout", "100")

@@ -123,6 +123,8 @@ def test_a_sheet_draws_what_it_says(folder: Path, language: str) -> None:
     assert made.count("stroke-dasharray") == dashed
     assert (MOVES[language] in made) is (dashed > 0)
     assert "__" not in made and made.count('class="blank"') == page.count("____")
+    told = re.search(r"(?:a square is|un cuadrado mide) (\d+) cm", made)
+    assert told and f'<path d="M{told[1]} 0V' in made
 
 
 @each

@@ -133,6 +133,7 @@ def test_what_may_change_the_meaning_is_only_shown(wrong: str) -> None:
         ("SHOW -2.5", "SHOW(-2.5)"),
         ("F(O.S, 6O)", "F(0.5, 60)"),
         ("M\u00daSICA(1,440)", "BEEP(1,440)"),
+        ("motores(50, 50);esperar(1);parar", "M(50, 50);W(1);S"),
         ("SI|V = 50, F(2, V)", "SI|V = 50; F(2, V)"),
     ],
 )

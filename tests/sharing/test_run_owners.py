@@ -2,83 +2,138 @@
 
 from __future__ import annotations
 
-from collections import deque
-from typing import cast
+from collections.abc import Callable, Iterator
+from contextlib import closing
+from typing import Any, cast
 
 import pytest
 
 from tests.support.link_events import event
+from tests.support.waiting import until
+from tiniscript import robots
 from tiniscript.library import opening
 from tiniscript.library.client import Client
-from tiniscript.link.connection import LinkConnection, PendingRequest
+from tiniscript.link.connection import PendingRequest, Requester
 from tiniscript.link.line import Line
+from tiniscript.link.outcomes import Event, Told
 from tiniscript.link.payloads import DoneEvent, ReceiptReply
 from tiniscript.link.requests import OK, Reply
-from tiniscript.link.sharing.server import ConnectedClient, ServedRequest, Server
+from tiniscript.link.sharing.requests import ClientRequests
+from tiniscript.link.sharing.server import Server
+from tiniscript.link.sharing.shared_line import SharedLine, joined
+
+PORT = "/dev/ttyUSB0"
 
 
 class FakeLine:
-    """A line on which a run goes on, or none."""
+    """A line whose robot does what the test says: begins run 7, ends it, and tells events."""
 
-    has_ended = False
+    address, gone, robot, held_by = PORT, None, None, ""
+    heard, is_echoed, boot, has_ended = 0, False, 0, False
 
     def __init__(self) -> None:
-        self.is_running = True
+        self.is_running = False
         self.is_closed = False
+        self.stops = 0
+        self.asked: list[PendingRequest[Any]] = []
+
+    def listen(self, hear: Callable[[list[Told]], None]) -> None:
+        self._hear = hear
+
+    def tell(self, event: Event) -> None:
+        self._hear([(0, event)])
+
+    def do(self, make: Callable[[Requester], PendingRequest[Any]]) -> PendingRequest[Any]:
+        self.asked.append(make(cast(Requester, ClientRequests())))
+        return self.asked[-1]
+
+    def begin(self) -> None:
+        """Let the run begin that was asked for last."""
+        self.is_running = True
+        self.asked[-1].outcome = Reply(OK, 0, ReceiptReply(1, 7, 0, 0))
 
     def runs(self, run: int) -> bool:
         return self.is_running and run == 7
+
+    def stop(self) -> int:
+        self.stops += 1
+        return 0
+
+    def event(self) -> Told:
+        return 0, event("STOPPED")
 
     def close(self) -> None:
         self.is_closed = True
 
 
+@pytest.fixture
+def line() -> FakeLine:
+    return FakeLine()
+
+
+@pytest.fixture
+def server(line: FakeLine) -> Iterator[Server]:
+    with closing(Server(cast(Line, line), PORT, 9600, "monitor")) as found:
+        yield found
+
+
+@pytest.fixture
+def command(server: Server) -> Iterator[SharedLine]:
+    """Another command, which shares the port."""
+    found = joined(PORT, "upload")
+    assert found is not None
+    with closing(found):
+        yield found
+
+
+def heard(command: SharedLine, name: str) -> None:
+    until(lambda: (found := command.event(0.1)) is not None and found[1].name == name, name)
+
+
+def asks(command: SharedLine, line: FakeLine, is_detached: bool = False) -> None:
+    command.do(lambda requests: requests.start(is_detached))
+    until(lambda: bool(line.asked), "the request arrives")
+
+
 @pytest.mark.parametrize("end", ["STOPPED", "ENDED", "DONE"])
-def test_an_end_that_is_told_late_takes_no_owner_from_the_next_run(end: str) -> None:
+def test_an_end_that_is_told_late_takes_no_owner_from_the_next_run(
+    end: str, line: FakeLine, server: Server, command: SharedLine
+) -> None:
     """A stop, and an upload right after it: the server's thread may see both at once."""
-    server, line = Server.__new__(Server), FakeLine()
-    server._line, server._clients = cast(Line, line), []
-    server._owner = cast(ConnectedClient, object()), 7
-    server._told = deque([(0, DoneEvent(6) if end == "DONE" else event(end))])
-    server._pass_on_events()
+    asks(command, line)
+    line.begin()
+    line.tell(DoneEvent(6) if end == "DONE" else event(end))
+    heard(command, end)
     assert server.has_run
     line.is_running = False
-    server._told.append((0, DoneEvent(7) if end == "DONE" else event(end)))
-    server._pass_on_events()
-    assert server._owner is None
+    line.tell(DoneEvent(7) if end == "DONE" else event(end))
+    heard(command, end)
+    line.is_running = True  # the same number again, of somebody else
+    assert not server.has_run
 
 
+@pytest.mark.parametrize(
+    ("asked", "is_stopped"),
+    [("start", True), ("detached", False), ("ping", False), ("over", False), ("begun", True)],
+)
 def test_a_run_that_begins_while_its_server_leaves_is_stopped(
-    monkeypatch: pytest.MonkeyPatch
-) -> None:  # fmt: skip
+    asked: str, is_stopped: bool, line: FakeLine, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Two uploads at once: the first is replaced by its own client, and leaves."""
-
-    class FakeServer:
-        may_have_run = False
-
-        def close(self) -> None:
-            self.may_have_run = True  # known only now
-
-    stopped: list[object] = []
-    monkeypatch.setattr(opening, "confirmed", lambda line, limit_s: stopped.append(line))
-    client, line = Client.__new__(Client), FakeLine()
-    client.line, client.server = cast(LinkConnection, line), cast(Server, FakeServer())
-    client.close()
-    assert stopped == [line]
+    monkeypatch.setattr(opening, "connection_to", lambda *_: line)
+    client = Client(PORT, "monitor", robots.load("tinibot"), is_shared=False)
+    client.server = Server(cast(Line, line), PORT, 9600, "monitor")
+    command = joined(PORT, "upload")
+    assert command is not None
+    with closing(command):
+        if asked == "ping":
+            command.do(lambda requests: requests.ping())
+            until(lambda: bool(line.asked), "the request arrives")
+        else:
+            asks(command, line, asked == "detached")
+        if asked in ("over", "begun"):
+            line.begin()
+            line.is_running = asked == "begun"
+        client.close()
+    assert line.stops == is_stopped
     assert line.is_closed
-
-
-def test_a_run_that_is_about_to_begin_counts_when_its_server_leaves() -> None:
-    server, line = Server.__new__(Server), FakeLine()
-    server._line, server._owner = cast(Line, line), None
-    server._clients, server._detached_requests = [], []
-    assert not server.may_have_run
-    for starts, is_detached, outcome, counts in (
-        (True, False, None, True), (False, False, None, False), (True, True, None, False),
-        (True, False, Reply(OK), False),
-    ):  # fmt: skip
-        asked: PendingRequest[ReceiptReply] = PendingRequest(starts=starts)
-        asked.outcome = outcome
-        server._detached_requests = [ServedRequest(asked, is_detached)]
-        assert server.may_have_run == counts
-        assert not server.has_run

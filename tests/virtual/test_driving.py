@@ -57,6 +57,12 @@ def test_a_cone_sees_the_nearest_point_inside(heading: float, half: float, found
     assert least == pytest.approx(found)
 
 
+@pytest.mark.parametrize("y", [-5, 5])
+def test_what_ends_on_the_border_of_a_cone_is_seen(y: float) -> None:
+    ending = Segment(Point(10, 0), Point(10, y))
+    assert seen([ending], Point(0, 0), 0, 0) == 10
+
+
 # -- driving --------------------------------------------------------------------------------------
 
 

@@ -30,6 +30,7 @@ from tiniscript.robots.wiring.html import html_of
 from tiniscript.robots.wiring.icons import ICONS
 from tiniscript.robots.wiring.layout import BOARD_WIDTH, PART_WIDTH, Layout, layout_of
 from tiniscript.robots.wiring.page import page_of, wire_rows
+from tiniscript.robots.wiring.parts import BOARD_RAILS
 from tiniscript.robots.wiring.plan import Plan, pins_of, plan_of
 from tiniscript.robots.wiring.texts import TEXTS
 
@@ -139,6 +140,17 @@ def test_every_pin_of_the_board_is_in_the_table_and_in_the_drawing(
     assert wires == list(range(1, len(names) + (not plan.has_lamp)))
     for number in wires:
         assert shown.count(str(number)) >= 2, "a wire has its number at both ends"
+
+
+@each_robot
+def test_each_rail_has_one_tag_at_the_board(robot: Robot) -> None:
+    """Beside the first of its pins; the other tags are at parts, of which some have several."""
+    plan = plan_of(robot, "en")
+    left, _, width, _ = layout_of(plan).board
+    beside = (f"{left - 29}", f"{left + width + 29}")
+    words = Tree.fromstring(drawing_of(plan)).iter(f"{SVG}text")
+    tags = [word.text or "" for word in words if word.get("x") in beside]
+    assert sorted(tags) == sorted(set(BOARD_RAILS) & set(plan.rails))
 
 
 @each_robot

@@ -15,7 +15,7 @@ import subprocess
 import sys
 import threading
 import time
-from typing import IO
+from typing import IO, NoReturn
 
 ENDS = ("DONE", "FAULT", "LIMIT", "REFUSED")  # a line with one of them is the last of an answer
 CHUNK_BYTES = 1 << 16
@@ -67,10 +67,8 @@ class MachineProcess:
         try:
             return self._asked(request, most)
         except _Ended as ended:
-            tail = self.close()
-            raise Problem(
-                "crash", f"{ended.code}: {tail}" if tail else str(ended.code), ()
-            ) from None
+            code = ended.code
+        self._fail("crash", str(code), [])
 
     def close(self) -> str:
         """End the process and all that it has started; return the end of its standard error."""
@@ -180,7 +178,7 @@ class MachineProcess:
         except subprocess.TimeoutExpired:
             return None
 
-    def _fail(self, what: str, detail: str, rows: list[str]) -> None:
+    def _fail(self, what: str, detail: str, rows: list[str]) -> NoReturn:
         tail = self.close()
         if what == "crash" and tail:
             detail = f"{detail}: {tail}"

@@ -69,6 +69,7 @@ bool has_modem_sleep = true;
 std::atomic<bool> has_network_stack{false};
 std::atomic<int> sockets{0};
 constexpr int kMostSockets = 16;
+constexpr size_t kTaken = 90;  // of what is sent at once: the rest comes later, as over a poor radio
 std::string near_name;
 std::string near_password;
 uint16_t bound_port;
@@ -475,7 +476,7 @@ struct hostent* lwip_gethostbyname(const char* name) {
 int lwip_listen(int s, int backlog) { return listen(s, backlog); }
 ssize_t lwip_recv(int s, void* mem, size_t len, int flags) { return recv(s, mem, len, flags); }
 ssize_t lwip_send(int s, const void* dataptr, size_t size, int flags) {
-  return send(s, dataptr, size, flags | MSG_NOSIGNAL);
+  return send(s, dataptr, size < kTaken ? size : kTaken, flags | MSG_NOSIGNAL);
 }
 int lwip_setsockopt(int s, int level, int optname, const void* optval, socklen_t optlen) {
   return setsockopt(s, level, optname, optval, optlen);
