@@ -1,4 +1,4 @@
-"""The list for a real board: its steps are those of the report, and what it types works on robots.
+"""The list for a real board: the report has its steps, and what it types works on robots.
 
 They are the firmware behind a pseudo-terminal, alone and in an ESP32; that the wheels stand is what
 it tells its motors. Bluetooth, WiFi and what hands do are not tried here.
@@ -52,10 +52,9 @@ def commands(text: str) -> list[list[str]]:
 
 
 @each_list
-def test_the_form_has_the_steps_of_the_list(language: str, path: Path) -> None:
-    named = [DOCTOR_TEXTS[f"step_{step}"][language == "es"] for step in STEPS]
-    assert list(steps(path)) == named
+def test_the_form_names_its_list(language: str, path: Path) -> None:
     assert path.relative_to(ROOT).as_posix() in DOCTOR_TEXTS["bring_up_about"][language == "es"]
+    assert len(steps(path)) == len(STEPS)
 
 
 def test_both_lists_type_the_same() -> None:
@@ -80,7 +79,10 @@ def test_the_report_is_filled_as_far_as_a_computer_can(pty_robot: PtyRobot, tmp_
     assert "12345678" not in report.read_text("utf-8")
     # a busy computer may be late
     assert re.fullmatch(r"1\. It answers: \d+ of 20 came at once, and 0 arrived damaged", form[3])
-    assert [row.endswith(f": {BLANK}") for row in form[4:]] == [True] * (len(STEPS) - 1)
+    assert [row.endswith(f": {BLANK}") for row in form[6::3]] == [True] * (len(STEPS) - 1)
+    said = [(form[k + 1], form[k + 2]) for k in range(3, len(form), 3)]
+    shown = [(f"   do: {do}", f"   see: {see}") for do, see in steps(LISTS["en"]).values()]
+    assert said == [(do.replace("\\|", "|"), see.replace("\\|", "|")) for do, see in shown]
     on(pty_robot, "doctor", "--yes", "--report", report, "--lang", "es")
     assert "1. Responde: 20 de 20 llegaron de inmediato" in report.read_text("utf-8")
 

@@ -26,8 +26,9 @@ from tiniscript.robots.refusals import describe
 from tools.generate.command_pages import PAGES
 from tools.generate.documents import DOCUMENTS, list_of_documents, spliced, table
 from tools.generate.front import fronts
+from tools.generate.guide_pictures import guide_pictures
 from tools.generate.poster import posters
-from tools.generate.world_pictures import world_pictures
+from tools.generate.world_pictures import world_picture
 from tools.site.documents import LIST
 
 COMMAND = "python -m tools.generate"
@@ -367,7 +368,8 @@ OUTPUTS: list[tuple[Path, Callable[[], str]]] = [
     *((ROOT / "docs" / name, partial(command_page, language)) for language, name in PAGES.items()),
     *((ROOT / "docs" / "poster" / name, make) for name, make in posters(COMMAND).items()),
     *((ROOT / "docs" / name, make) for name, make in fronts(COMMAND).items()),
-    *((ROOT / "docs" / name, make) for name, make in world_pictures(COMMAND).items()),
+    (ROOT / "docs" / "worlds.svg", partial(world_picture, COMMAND)),
+    *((ROOT / "docs" / name, make) for name, make in guide_pictures(COMMAND).items()),
     (ROOT / LIST, partial(list_of_documents, COMMAND)),  # which reads the other documents' titles
     (ROOT / "vm_arduino" / "test" / "cases.h", cpp_cases),
     (CONFORMANCE / "machine.json", machine_kit),

@@ -7,14 +7,12 @@ firmware of a real one.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import cache
-from pathlib import Path
 from typing import NamedTuple
 
 import tiniscript
 from tiniscript.studio.simulation import Simulation
-from tiniscript.virtual import worlds
 from tiniscript.virtual.driving import Hull
+from tiniscript.virtual.geometry import Point, Segment, distance
 from tiniscript.virtual.world import World
 
 SAMPLE_MS = 50
@@ -30,11 +28,10 @@ class Way(NamedTuple):
     outline: list[tuple[float, float]]
 
 
-@cache
-def driven(program: Path, robot: str, world: str, lasts_ms: int) -> Way:
+def driven(program: str, robot: str, world: World, lasts_ms: int) -> Way:
     """Drive for so many milliseconds of the robot's clock, and return the way."""
-    made = tiniscript.compile(program.read_text(encoding="utf-8"), robot=robot)
-    simulation = Simulation(robot, worlds.load(world), made.image)
+    made = tiniscript.compile(program, robot=robot)
+    simulation = Simulation(robot, world, made.image)
     points = []
     for _ in range(0, lasts_ms, SAMPLE_MS):
         simulation.go(SAMPLE_MS)
@@ -43,7 +40,19 @@ def driven(program: Path, robot: str, world: str, lasts_ms: int) -> Way:
     hull = Hull(simulation.robot.profile.body)
     outline = [(each.x, each.y) for each in hull.outline(pose)]
     simulation.close()
-    return Way(points, outline)
+    return Way(bends(points), outline)
+
+
+def bends(points: list[tuple[float, float]]) -> list[tuple[float, float]]:
+    """Return the points between which the others are on a straight way, to 2 mm."""
+    if len(points) < 3:
+        return points
+    chord = Segment(Point(*points[0]), Point(*points[-1]))
+    off = [distance(chord, *each) for each in points[1:-1]]
+    k = off.index(max(off)) + 1
+    if off[k - 1] < 0.2:
+        return [points[0], points[-1]]
+    return [*bends(points[: k + 1])[:-1], *bends(points[k:])]
 
 
 def arena(world: World, way: Way, left: float, top: float, scale: float) -> list[str]:

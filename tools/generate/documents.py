@@ -51,6 +51,20 @@ def lessons_document() -> str:
     return spliced(_text("lessons.en.md"), "criteria", table(*criteria()))
 
 
+def bring_up_document(document: str, language: str) -> str:
+    """Return a list for a real board, with the steps of the form that `tsc doctor` writes."""
+    from tiniscript.cli.texts.common import text
+    from tiniscript.cli.texts.doctor import STEPS
+
+    kinds = ("step", "do", "see")
+    rows = [
+        [number, *(text(f"{kind}_{step}", language) for kind in kinds)]
+        for number, step in enumerate(STEPS, 1)
+    ]
+    head = [text(f"head_{kind}", language) for kind in kinds]
+    return spliced(_text(document), "steps", table(["", *head], rows))
+
+
 def list_of_documents(command: str) -> str:
     """Return `docs/README.md`: the documents' titles, in both languages side by side."""
     parts = [
@@ -104,5 +118,7 @@ DOCUMENTS: dict[str, Callable[[], str]] = {
     "owners.md": partial(link_document, "owners.md"),
     "text.md": text_document,
     "promises.md": promises_document,
+    "bring-up.md": partial(bring_up_document, "bring-up.md", "en"),
+    "puesta-en-marcha.es.md": partial(bring_up_document, "puesta-en-marcha.es.md", "es"),
     "lessons.en.md": lessons_document,
 }

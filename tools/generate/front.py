@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from contextlib import redirect_stderr, redirect_stdout
-from functools import partial
+from functools import cache, partial
 from html import escape
 from io import StringIO
 from itertools import dropwhile
@@ -18,7 +18,7 @@ from tiniscript.cli import main as tsc
 from tiniscript.robots.profile import LANGUAGES
 from tiniscript.virtual import worlds
 from tiniscript.words import WORDS
-from tools.generate.arena import arena, driven
+from tools.generate.arena import Way, arena, driven
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 PROGRAM = ROOT / "examples" / "obstacle_until.ts"
@@ -119,13 +119,18 @@ def _said(verb: str, program: str, language: str) -> list[str]:
     return [f'$ tsc {verb} -e "{program}"', *said.getvalue().splitlines()]
 
 
+@cache
+def _way() -> Way:
+    return driven(PROGRAM.read_text(encoding="utf-8"), ROBOT, worlds.load(WORLD), LASTS_MS)
+
+
 def _arena(language: str) -> list[str]:
     world = worlds.load(WORLD)
     left = PAD + LEFT_WIDTH + 12
     scale = (WIDTH - PAD - left) / world.width_cm
     foot = PAD + world.height_cm * scale + 22
     return [
-        *arena(world, driven(PROGRAM, ROBOT, WORLD, LASTS_MS), left, PAD, scale),
+        *arena(world, _way(), left, PAD, scale),
         f'<text x="{left:g}" y="{foot:.0f}" font-family="{SANS}" font-size="13" fill="{DIM}">'
         f"{escape(CAPTIONS[language])}</text>",
     ]

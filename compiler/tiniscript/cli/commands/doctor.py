@@ -208,6 +208,8 @@ def _form(told: Mapping[str, str], language: str) -> list[str]:
         if step == "answers" and "good" in known:
             seen = text("bring_up_answers", language).format(**known)
         rows.append(f"{number}. {text(f'step_{step}', language)}: {seen}")
+        does, sees = (text(f"{kind}_{step}", language) for kind in ("do", "see"))
+        rows.append(text("bring_up_step", language).format(do=does, see=sees))
     return rows
 
 

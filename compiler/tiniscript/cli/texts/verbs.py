@@ -70,7 +70,7 @@ VERBS: dict[str, Verb] = {
     "check": Verb(
         PROGRAMS, ("check prog.ts", "check prog.ts"),
         ("show all mistakes and warnings; --fix repairs", "muestra errores y avisos; --fix corrige"),
-        ("Shows all mistakes and warnings of a program. For several programs, or a folder, it shows one line each and a table. `--fix` makes the repairs that are sure: they drop no number, guess no name and leave fewer mistakes.",
+        ("Shows all mistakes and warnings of a program. For several programs, or a folder, it shows one line each and a table. `--fix` makes the safe repairs: they drop no number, guess no name and leave fewer mistakes.",
          "Muestra todos los errores y avisos de un programa. Con varios programas, o una carpeta, muestra una línea por cada uno y una tabla. `--fix` hace las correcciones seguras: las que no quitan ningún número, no adivinan ningún nombre y dejan menos errores."),
         ends=("`--json` gives a list of `{code, severity, line, column, end_line, end_column, message, fix}`; lines and columns count from 1, columns in characters, the end is not included. For several programs it gives a list of `{file, mistakes, warnings, repaired, problem, messages}`. The exit code is 1 if a program has mistakes, 2 if one cannot be read.",
               "`--json` da una lista de `{code, severity, line, column, end_line, end_column, message, fix}`; líneas y columnas desde 1, columnas en caracteres, el final no se incluye. Con varios programas da una lista de `{file, mistakes, warnings, repaired, problem, messages}`. El código de salida es 1 si un programa tiene errores, y 2 si alguno no se puede leer."),
@@ -181,7 +181,7 @@ VERBS: dict[str, Verb] = {
               "Its questions to Windows and macOS were tested with recorded answers, not on these systems.",
               "Código de salida: 0 si un robot responde y todo está bien, 3 si algo está mal o no respondió ningún robot.\n"
               "Con `--watch 20` ve un robot que se reinicia cuando arrancan sus motores: haz que se mueva mientras tanto.\n"
-              "Mientras lo observa comparte el puerto: `tsc stop` funciona en otra terminal. Antes de eso, un stop lo espera unos segundos.\n"
+              "Mientras lo observa comparte el puerto: `tsc stop` funciona en otra terminal. Antes de eso, `tsc stop` tiene que esperar unos segundos.\n"
               "Lo que pregunta a Windows y macOS se probó con respuestas grabadas de esos sistemas, no en ellos."),
     ),
     "selftest": Verb(
@@ -235,7 +235,7 @@ VERBS: dict[str, Verb] = {
     "name": Verb(
         SETTINGS, ("name TINI", "name TINI"), ("name the robot", "le pone nombre al robot"),
         ("Names the robot. It keeps its name when it is switched off.",
-         "Le pone nombre al robot. Lo conserva cuando se apaga."),
+         "Le pone nombre al robot, que lo conserva cuando se apaga."),
         ("NEW [options]", "NUEVO [opciones]"),
     ),
     "trim": Verb(

@@ -1,0 +1,159 @@
+"""The pictures of the guides: programs that drive, a phone that talks to a robot, wires, a room.
+
+What a picture shows is taken from where it is said: a program from its guide or its lesson, a
+conversation from its guide. A picture without words is one for both languages.
+"""
+
+from __future__ import annotations
+
+import re
+from functools import partial
+from html import escape
+from pathlib import Path
+
+from tiniscript.lessons import catalogue
+from tiniscript.lessons.variation import varied
+from tiniscript.robots.profile import LANGUAGES
+from tiniscript.virtual import world_reader, worlds
+from tiniscript.virtual.world import World
+from tools.generate.arena import BODY, BOX, FLOOR, WALL, WAY, arena, driven
+
+DOCS = Path(__file__).resolve().parent.parent.parent / "docs"
+GUIDES = {"en": "monday.en.md", "es": "lunes.es.md"}
+SANS = "'DejaVu Sans', Verdana, Arial, sans-serif"
+PAD, PAPER, GROUND, SKY = 10, "#ffffff", "#e9edf0", "#dcebfb"
+
+
+def floor(width: int, height: int, x: int, y: int, heading: int) -> World:
+    """Return a floor with a wall around it, lengths in cm, and where the robot begins."""
+    text = f"""
+        floor = {{ width_cm = {width}, height_cm = {height}, border = true }}
+        start = {{ x_cm = {x}, y_cm = {y}, heading = {heading} }}"""
+    return world_reader.read(text, "floor")
+
+
+OBSTACLES = worlds.load("obstacles")
+DRIVES = {  # the guide, how its program begins, the world, for so many seconds
+    "moves.svg": ("language.en.md", "SPEED = 90", floor(110, 110, 80, 25, 0), 4),
+    "until.svg": ("language.en.md", "F(3, 80) UNTIL", floor(120, 40, 20, 20, 0), 4),
+    "dice.svg": ("language.en.md", "SB|LOOP(FOREVER)\n  F(FOREVER, 70)", OBSTACLES, 20),
+    "course.svg": ("monday.en.md", "SB|LOOP(FOREVER)", OBSTACLES, 20),
+}  # fmt: skip
+
+
+def guide_pictures(command: str) -> dict[str, partial[str]]:
+    """Return how the pictures are made, by their names in `docs/`. `command` makes them."""
+    made = {name: partial(drive, command, *row) for name, row in DRIVES.items()}
+    made |= {f"phone.{each}.svg": partial(phone, command, each) for each in LANGUAGES}
+    wired = {"cable.svg": cable, "adapter.svg": adapter, "room.svg": room, "lesson.svg": lesson}
+    return made | {name: partial(picture, command) for name, picture in wired.items()}
+
+
+def drive(command: str, guide: str, begin: str, world: World, seconds: int) -> str:
+    """Return the way of a guide's program."""
+    fences = re.findall(r"^```tiniscript\n(.*?)^```", _text(guide), re.M | re.S)
+    [program] = [each for each in fences if each.startswith(begin)]
+    way = driven(program.replace("SB|", "SI|"), "tinibot", world, 1000 * seconds)
+    scale = 330 / max(world.width_cm, world.height_cm)
+    parts = arena(world, way, PAD, PAD, scale)
+    return _svg(command, world.width_cm * scale, world.height_cm * scale, parts)
+
+
+def lesson(command: str) -> str:
+    """Return three worlds of lesson 7, with the way of a right program in each."""
+    folder, parts, side = catalogue.folders()[6], [], 250
+    found = catalogue.load(folder)
+    for k in range(3):
+        world = varied(found, k + 1)
+        way = driven(catalogue.answers(folder)[0][0].program, found.robot, world, 8000)
+        scale = (side - PAD) / world.width_cm
+        parts += arena(world, way, PAD + k * side, PAD, scale)
+    return _svg(command, 3 * side - PAD, world.height_cm * scale, parts)
+
+
+def phone(command: str, language: str) -> str:
+    """Return a guide's conversation with a robot on a phone."""
+    [said] = re.findall(r"^```terminal\n(.*?)^```", _text(GUIDES[language]), re.M | re.S)
+    rows = said.splitlines()
+    parts = [f'<rect x="{PAD}" y="{PAD}" width="460" height="{34 * len(rows) + 40}" rx="24"'
+             f' fill="{FLOOR}" stroke="{WALL}" stroke-width="6"/>']  # fmt: skip
+    for k, row in enumerate(rows):
+        is_robots, width = row.startswith("//"), 8.4 * len(row) + 20
+        left, top = 30 if is_robots else 450 - width, 30 + 34 * k
+        parts.append(_box(left, top, width, 28, PAPER if is_robots else SKY))
+        parts.append(_words(left + 10, top + 19, row))
+    return _svg(command, 460, 34 * len(rows) + 40, parts)
+
+
+def cable(command: str) -> str:
+    """Return which wires of an HC-05 are plugged in with a cable, and which without one."""
+    return _svg(command, 760, 190, _module(0, "USB", is_cut=True) + _module(400, "", is_cut=False))
+
+
+def _module(left: float, port: str, *, is_cut: bool) -> list[str]:
+    parts = [_box(left + 10, 30, 110, 150, SKY), _words(left + 30, 20, "Arduino"),
+             _box(left + 280, 30, 80, 150, GROUND), _words(left + 290, 20, "HC-05")]  # fmt: skip
+    for k, (name, other) in enumerate((("5V", "VCC"), ("GND", "GND"), ("0", "TXD"), ("1", "RXD"))):
+        y = 55 + 34 * k
+        parts += [_words(left + 80, y + 5, name), _words(left + 290, y + 5, other)]
+        is_off = is_cut and k > 1
+        parts += _wire(left + 120, y, left + (170 if is_off else 280), y)
+        parts += _wire(left + 230, y, left + 280, y) if is_off else []
+        parts += [_words(left + 193, y + 6, "✕")] if is_off else []
+    if port:
+        parts += [*_wire(left + 10, 105, left - 10, 105), _words(left + 16, 110, port)]
+    return parts
+
+
+def adapter(command: str) -> str:
+    """Return how a module is wired to a USB adapter."""
+    parts = [_box(10, 20, 110, 170, SKY), _words(20, 110, "USB"),
+             _box(460, 20, 90, 170, GROUND), _words(485, 14, "HC-05")]  # fmt: skip
+    for k, (name, other) in enumerate(
+        (("5V", "VCC"), ("RX", "TXD"), ("GND", "GND"), ("TX", "RXD"))
+    ):
+        y = 45 + 40 * k
+        parts += [_words(80, y + 5, name), _words(470, y + 5, other), *_wire(120, y, 460, y)]
+    parts += [_box(200, 155, 50, 20, PAPER), _words(204, 170, "1 kΩ"), *_wire(390, 165, 390, 125)]
+    parts += [_box(365, 135, 50, 20, PAPER), _words(369, 150, "2 kΩ")]
+    return _svg(command, 550, 190, parts)
+
+
+def room(command: str) -> str:
+    """Return a room with eight robots, each on 2 m² of floor, and their groups."""
+    parts = [_box(10, 10, 780, 420, PAPER)]
+    for k in range(8):
+        left, top = 40 + k % 4 * 190, 90 + k // 4 * 180
+        parts += [_box(left, top, 140, 140, FLOOR), _words(left + 4, top + 134, "2 m²"),
+                  _box(left + 55, top + 50, 30, 34, BODY)]  # fmt: skip
+        parts += [f'<circle cx="{left + 25 + 30 * j}" cy="{top - 16}" r="10" fill="{WAY}"/>'
+                  for j in range(4)]  # fmt: skip
+    return _svg(command, 780, 420, [*parts, _box(340, 18, 120, 34, BOX)])
+
+
+def _text(guide: str) -> str:
+    return (DOCS / guide).read_text(encoding="utf-8")
+
+
+def _box(x: float, y: float, width: float, height: float, colour: str) -> str:
+    return (f'<rect x="{x:g}" y="{y:g}" width="{width:g}" height="{height:g}" rx="6"'
+            f' fill="{colour}" stroke="{WALL}"/>')  # fmt: skip
+
+
+def _words(x: float, y: float, words: str) -> str:
+    return (f'<text x="{x:g}" y="{y:g}" font-family="{SANS}" font-size="15" fill="{WALL}">'
+            f"{escape(words)}</text>")  # fmt: skip
+
+
+def _wire(x: float, y: float, to_x: float, to_y: float) -> list[str]:
+    return [f'<path d="M{x:g},{y:g} L{to_x:g},{to_y:g}" stroke="{WAY}" stroke-width="3"/>']
+
+
+def _svg(command: str, width: float, height: float, parts: list[str]) -> str:
+    """Return a picture in a few lines; `width` and `height` are those inside its edge."""
+    width, height = round(width + 2 * PAD), round(height + 2 * PAD)
+    return (
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" role="img">'
+        f"<!-- Generated by {command}. Do not edit. -->\n"
+        f'<rect width="{width}" height="{height}" fill="{PAPER}"/>{"".join(parts)}</svg>\n'
+    )
