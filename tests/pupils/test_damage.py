@@ -6,21 +6,19 @@ python -m tests.pupils.test_damage 10000    so many damaged programs
 from __future__ import annotations
 
 import random
-import re
 import sys
 from functools import cache, partial
-from pathlib import Path
 
 import pytest
 
 from tests.pupils.corpus import check
 from tests.pupils.test_pupils import OTHER_NUMBERS, mistakes
+from tests.support.casefile import ROOT, read
 from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.repairs.fixing import fixed, keeps_numbers
 from tiniscript.repairs.placing import edits_of
 from tiniscript.source import Source, applied
 
-ROOT = Path(__file__).resolve().parent.parent.parent
 IN_CI = 150
 # What is put in, or takes the place of a sign: of phones, of other languages, of Spanish.
 SLIPS = [
@@ -35,7 +33,7 @@ def programs() -> list[str]:
     """Return programs of the examples, and those of cases and documents."""
     found = [path.read_text(encoding="utf-8") for path in sorted(ROOT.glob("examples/**/*.ts"))]
     for page in sorted((*ROOT.glob("tests/cases/*.md"), *ROOT.glob("docs/lang*.md"))):
-        found += re.findall(r"```tiniscript\n(.*?)```", page.read_text(encoding="utf-8"), re.DOTALL)
+        found += [case.parts["tiniscript"] for case in read(page) if "tiniscript" in case.parts]
     return [text for text in found if len(text) < 600 and not mistakes(check(text))]
 
 

@@ -3,22 +3,26 @@
 Each heading `## sentence` that has fences is a case; each fence states one thing about it. The
 language of the fence says which: `tiniscript` (the program), `senses` (readings and limits),
 `robot` (the trace), `bytecode` (the listing), `plain` (that of its plain code), `line` (what a
-robot that reads text gets), `mistake` and `warning` (what is said),
-`refused` (the rule that a listing breaks). Fences of other languages are for people.
+robot that reads text gets), `mistake` and `warning` (what is said; without a program above, the
+line that it shows is the program). The rule that a listing breaks is its last row, behind the word
+`refused`. Fences of other languages are for people.
 """
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import NamedTuple
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 PARTS = ("tiniscript", "senses", "robot", "bytecode", "plain", "line", "mistake", "warning",
-         "refused", "formatted")  # fmt: skip
+         "formatted")  # fmt: skip
+REFUSED = "refused "
+SHOWN = re.compile(r"(?:line|línea) 1:  (.*\n)")
 
 
 class Case(NamedTuple):
-    """`parts` maps a fence's language to its text."""
+    """`parts` maps a fence's language to its text, and `refused` to the rule of a listing."""
 
     path: Path
     line: int
@@ -46,7 +50,12 @@ def read(path: Path) -> list[Case]:
             language = row[3:].strip()
             if fence:
                 if fence in PARTS:
-                    cases[-1].parts[fence] = "".join(line + "\n" for line in lines)
+                    found = cases[-1].parts
+                    if fence == "bytecode" and lines and lines[-1].startswith(REFUSED):
+                        found["refused"] = lines.pop().removeprefix(REFUSED) + "\n"
+                    found[fence] = "".join(line + "\n" for line in lines)
+                    if fence in ("mistake", "warning") and (shown := SHOWN.match(found[fence])):
+                        found.setdefault("tiniscript", shown[1])
                 fence = ""
             else:
                 fence, lines = language or "text", []
@@ -108,8 +117,12 @@ def accept(case: Case, part: str, actual: str) -> None:
     rows = case.path.read_text(encoding="utf-8").splitlines(keepends=True)
     # where the case stands now: what was accepted before may have moved it
     line = next(each.line for each in read(case.path) if each.title == case.title)
-    fence = f"```{part}"
+    fence = "```bytecode" if part == "refused" else f"```{part}"
     start = next(k for k, row in enumerate(rows) if k >= line - 1 and row.rstrip() == fence)
     end = next(k for k in range(start + 1, len(rows)) if rows[k].startswith("```"))
+    if part == "refused":
+        start, actual = end - 2, REFUSED + actual
+    elif part == "bytecode" and "refused" in case.parts:
+        end -= 1
     rows[start + 1 : end] = [actual]
     case.path.write_text("".join(rows), encoding="utf-8")
