@@ -157,6 +157,22 @@ def test_a_stop_needs_nothing_of_ledc(name: str) -> None:
     assert [robot.output(pin) for pin in pins] == [0] * len(pins)
 
 
+def test_a_bluetooth_module_that_nobody_is_connected_to_ends_a_tethered_run() -> None:
+    """Its state pin tells that, beside the chip's own radios."""
+    state = 22
+    text = TEXTS["tinibot32"].replace("[board]\n", f"[board]\nbluetooth_state = {state}\n")
+    robot = Esp32Robot(read(text, "mine"))
+    robot.digital(state, True)
+    switched_on(robot)
+    session = computer()
+    send(robot, session, AWAY)
+    robot.talk(session, 100)
+    robot.digital(state, False)
+    robot.talk(session, 500)
+    assert happened(robot) == ["MOTORS 80 80", "MOTORS 0 0"]
+    assert [event.cause for event in session.events() if event.name == "STOPPED"] == [4]
+
+
 @pytest.mark.parametrize("motors", [SERVOS, TWO_WIRE], ids=["servos", "two_wire"])
 def test_other_motors(motors: str) -> None:
     robot = wired(motors)
