@@ -131,7 +131,9 @@ def test_the_right_example_has_no_diagnostic(code: str) -> None:
 @pytest.mark.parametrize("code", EXAMPLES)
 def test_the_examples_fill_all_gaps_of_their_messages(code: str) -> None:
     found = compile_text(TEXTS[code]["wrong"], KIT)
-    assert gaps(code) <= set(found.diagnostics[0].values)
+    values = found.diagnostics[0].values
+    if found.diagnostics[0].repair is None:  # else what it becomes is told
+        assert gaps(code) <= set(values)
     for lang in LANGUAGES:
         said = message(found.diagnostics[0], found.source, lang)
         assert "{" not in said.message + said.fix
@@ -205,12 +207,12 @@ def test_long_pieces_of_a_program_are_shortened() -> None:
             "SI|F(1,5, 80)",
             [
                 "line 1:  SI|F(1,5, 80)",
-                "            ^^^^^^^^^^",
+                "               ^",
                 "A decimal number has a point, not a comma.   Try:  F(1.5, 80)   [TS012]",
             ],
             [
                 "línea 1:  SI|F(1,5, 80)",
-                "             ^^^^^^^^^^",
+                "                ^",
                 "Los decimales se escriben con punto, no con coma.   Prueba:  F(1.5, 80)   [TS012]",
             ],
         ),
@@ -218,12 +220,12 @@ def test_long_pieces_of_a_program_are_shortened() -> None:
             "SI|\nF 2 80\n",
             [
                 "line 2:  F 2 80",
-                "         ^^^^^^",
+                "          ^^^^^",
                 "After F come brackets: ( )   Try:  F(2, 80)   [TS015]",
             ],
             [
                 "línea 2:  F 2 80",
-                "          ^^^^^^",
+                "           ^^^^^",
                 "Después de F van paréntesis: ( )   Prueba:  F(2, 80)   [TS015]",
             ],
         ),
@@ -248,13 +250,13 @@ def test_long_pieces_of_a_program_are_shortened() -> None:
                 "line 1:  SI|SI(DISTANCE < 10);S;ENDIF",
                 "            ^^",
                 "SI starts a program. To ask a question the word is IF.   "
-                "Try:  IF(DISTANCE < 10);S;ENDIF   [TS045]",
+                "Try:  IF(DISTANCE < 10)   [TS045]",
             ],
             [
                 "línea 1:  SI|SI(DISTANCE < 10);S;ENDIF",
                 "             ^^",
                 "SI sirve para empezar el programa. Para preguntar se usa IF.   "
-                "Prueba:  IF(DISTANCE < 10);S;ENDIF   [TS045]",
+                "Prueba:  IF(DISTANCE < 10)   [TS045]",
             ],
         ),
         (
@@ -303,17 +305,17 @@ def test_colors_change_nothing_but_colors() -> None:
 
 
 def test_as_json() -> None:
-    found = check_text("F(2 80)\nX = 0.0001\nSHOW(X)", KIT)
+    found = check_text("F(2)\nX = 0.0001\nSHOW(X)", KIT)
     said = [message(diagnostic, found.source, "en") for diagnostic in found.diagnostics]
     assert as_json(said) == [
         {
-            "code": "TS017",
+            "code": "TS020",
             "severity": "mistake",
             "line": 1,
-            "column": 3,
+            "column": 1,
             "end_line": 1,
-            "end_column": 7,
-            "message": "Two values in brackets need a comma between them.",
+            "end_column": 5,
+            "message": "F needs 2 values in the brackets, F(time, power), but got 1",
             "fix": said[0].fix,
         },
         {

@@ -47,7 +47,7 @@ def test_check_says_what_tsc_check_says(tsc: Tsc, text: str, language: str) -> N
 def test_a_diagnostic_is_data() -> None:
     [found] = tiniscript.check("SI|W(1)\nF(2 80)")
     assert (found.code, found.severity) == ("TS017", "mistake")
-    assert (found.line, found.column, found.end_line, found.end_column) == (2, 3, 2, 7)
+    assert (found.line, found.column, found.end_line, found.end_column) == (2, 4, 2, 5)
     assert "," in found.fix
 
 

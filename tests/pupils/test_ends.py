@@ -118,9 +118,10 @@ def test_moves_without_values_get_one_message() -> None:
     assert shown == "Con tus números, como en F(2, 80); R(2, 80); F(2, 80)"
 
 
-def test_a_function_of_python_gets_one_message() -> None:
-    (found,) = check("def v():\n  F(1, 50)\n\nv()\nv()")
-    assert found.values["whole"] == "DEF V; F(1, 50); END_DEF; V; V"
+def test_a_function_of_python_is_shown_with_its_end() -> None:
+    brackets, end = check("def v():\n  F(1, 50)\n\nv()\nv()")
+    assert brackets.values["lines"] == "4, 5"
+    assert end.values["whole"] == "DEF V; F(1, 50); END_DEF"
 
 
 def test_dots_around_what_goes_inside_are_no_more_than_a_new_line() -> None:

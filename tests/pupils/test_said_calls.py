@@ -147,7 +147,7 @@ def test_what_was_not_said_is_called_an_example() -> None:
     ("program", "right"),
     [
         ("SI|F 2 s 60 // gira", "SI|F(2, 60) // gira"),
-        ("F(2 s; 60 %);R 1 s 40", "F(2, 60);R(1, 40)"),
+        ("F(2 s; 60 %);R 1 s 40", "F(2, 60); R(1, 40)"),
         ("F 2 s 60 UNTIL(DISTANCE < 10)", "F(2, 60) UNTIL(DISTANCE < 10)"),
         ("F;2;60;R;1;50", "F(2, 60);R(1, 50)"),
         ("F(2|60)", "F(2, 60)"),

@@ -119,7 +119,7 @@ def test_what_does_something_else_is_not_offered(program: str, wrong: str) -> No
 
 
 def test_a_step_that_keeps_all_that_was_said_is_offered() -> None:
-    assert tried("LEFT(1,50) AND FORWARD(2,80)")[0] == "L(1, 50)"
+    assert tried("LEFT(1,50) AND FORWARD(2,80)")[0] == "L(1, 50);F(2, 80)"
     assert tried("repetir 4 veces avanza 1 segundo y luego pita")[0] == "LOOP(4)"
 
 
@@ -178,7 +178,7 @@ def test_a_slip_that_has_two_repairs_is_left_to_its_author(program: str) -> None
         ("F(dos segundos, 80)", "F(2, 80)"),
         ("TIEMPO 2\nF(TIEMPO, 80)", "TIEMPO = 2\nF(TIEMPO, 80)"),
         ("for i in range(3): F(1, 60); S", "LOOP(3);F(1, 60);S;END_LOOP"),
-        ("LOOP(4);(F(1,60);S)", "LOOP(4);F(1,60);S;END_LOOP"),
+        ("LOOP(4);(F(1,60);S)", "LOOP(4);F(1, 60);S;END_LOOP"),
         ("F(power=80, time=2)", "F(power=80, time=2)"),  # in another order: its author looks
         ("IF(DISTANCE no es menor que 10);S;ENDIF", "IF(DISTANCE >= 10);S;ENDIF"),
     ],

@@ -73,7 +73,7 @@ def told(text: str) -> list[tuple[str, str]]:
 
 def test_each_line_is_told_with_its_repair() -> None:
     text = "F(2 s, 80%)\r\nLOOP(3 veces)\r\n  R(1, 60)\r\nFIN\r\n"
-    assert [code for code, _ in told(text)] == ["TS049", "TS049"]
+    assert [code for code, _ in told(text)] == ["TS049", "TS049", "TS023"]
     assert fixed(text, check).text == "F(2, 80)\r\nLOOP(3)\r\n  R(1, 60)\r\nEND_LOOP\r\n"
 
 
@@ -81,7 +81,9 @@ def test_each_line_is_told_with_its_repair() -> None:
     "wrong",
     [
         "DEF SALTO\nF(1, 50)\nEND_DEF SALTO",  # a call that would be gone
-        "DEF F2\nS\nEND_DEF\nF2 3\nF(2 80)",
+        "F(2, 8 0)",  # 80, or two values
+        "SHOW(5 / 3 - 3))",  # SHOW(5 / (3 - 3))
+        "SPEED = 5;:PEED = 6",
         "W(0:30)",  # half a minute, and no three tenths
         "F(2 s, 80)~B77E7BD9",
         "S|F(1, 80)",
@@ -93,6 +95,33 @@ def test_each_line_is_told_with_its_repair() -> None:
 )
 def test_what_would_lose_something_is_not_told_by_rows(wrong: str) -> None:
     assert all(each.repair is None for each in check(wrong))
+
+
+@pytest.mark.parametrize(
+    ("wrong", "slips"),
+    [
+        ("LOOP 2\nS\nFIN", [("TS015", "LOOP(2); S; END_LOOP", "END_LOOP")]),
+        ("while DISTANCE > 9:\n  if DISTANCE > 20:\n    S",
+         [("TS015", "WHILE(DISTANCE > 9); IF(DISTANCE > 20); S; ENDIF; END_WHILE", "END_WHILE"),
+          ("TS015", "IF(DISTANCE > 20); S; ENDIF", "ENDIF")]),
+        ("F(2 80)\nLOOP(2)\nS\nFIN", [("TS017", "", ""), ("TS023", "", "")]),
+        ("LOOP 2\n" + "F(1, 80)\n" * 20 + "FIN", [("TS015", "", ""), ("TS023", "", "")]),
+    ],
+)  # fmt: skip
+def test_a_block_is_told_with_its_end(wrong: str, slips: list[tuple[str, str, str]]) -> None:
+    told = [(each.code.number, each.values) for each in check(wrong)]
+    assert [(code, said["whole"], said["ends"]) for code, said in told] == slips
+
+
+def test_a_block_that_never_ends_is_told_with_its_last_line() -> None:
+    (found,) = check("F(1, 80)\nLOOP(2)\n  R(1, 50)\nS")
+    assert found.code is codes.NEVER_ENDS
+
+
+def test_one_name_is_told_with_all_its_lines() -> None:
+    (found,) = check("año = 3\nF(año, 50)\nF(2, año)")
+    assert (found.values["line"], found.values["lines"]) == ("2", "2, 3")
+    assert fixed("año = 3\nF(año, 50)", check).text == "ANIO = 3\nF(ANIO, 50)"
 
 
 def test_a_long_text_is_not_read_as_a_whole() -> None:

@@ -1,6 +1,6 @@
-"""Reads what was meant by a wrong program. People get the codes that were handed over to it.
+"""Reads what was meant by a wrong program. People are told of one that it reads wholly and surely.
 
 Six concepts, a module each: concept tokens (`concepts`, with a lexicon for each language),
 rewrites (`rewrites`, with the table `rows`), slots, blocks, candidates (`search`), explanations.
-`findings` says what was handed over; all else runs in shadow.
+`findings` says what people are told; of all else the older recovery of `syntax` tells.
 """

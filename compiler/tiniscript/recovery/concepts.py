@@ -237,7 +237,7 @@ class Names:
             is_own = token.text not in WORDS and not said_of(token.text, "declare")
             if (token.kind is NUMBER and not row) or token.kind not in (WORD, NUMBER, "-"):
                 break
-            if token.text in STARTS or token.text in CALLED:
+            if token.text in STARTS or token.text in DONE:
                 break
             if token.kind is WORD and (not is_own or said_of(token.text, "set")) and len(row) != 1:
                 break

@@ -6,38 +6,71 @@ Typed values and edits. Knows no sentence of any language.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections import Counter
+from collections.abc import Sequence
 from difflib import SequenceMatcher
-from itertools import groupby
+from itertools import groupby, pairwise, takewhile
 from typing import NamedTuple
 
 from tiniscript.diagnostics import codes
 from tiniscript.recovery import rows
 from tiniscript.recovery.blocks import BRACES
-from tiniscript.recovery.concepts import Lexeme, lexemes, said_of, texts
+from tiniscript.recovery.concepts import ENDED, Lexeme, lexemes, said_of, texts
 from tiniscript.recovery.lines import Step
-from tiniscript.recovery.search import Candidate
+from tiniscript.recovery.search import Candidate, Change
 from tiniscript.recovery.writing import laid_out, without_note
 from tiniscript.source import Edit, Span
 from tiniscript.syntax.lexer import NUMBER, WORD
 from tiniscript.words import BLOCK_ENDS, WORDS, meant_by
 
-_IF, _WORD_CODE = codes.SPANISH_IF.number, rows.OTHER_WORD
+_WORD_CODE = rows.OTHER_WORD
+_BRACES, _UNENDED = codes.BRACES.number, codes.NEVER_ENDS.number
+_SAID_ONCE = (codes.BAD_NAME.number, codes.EMPTY_BRACKETS.number, codes.NAME_WITH_SPACE.number)
+# Codes of what belongs to the beginning of its block, where something is wrong with that, too.
+_OF_BLOCK = (_UNENDED, codes.END_ALONE.number, codes.END_SPLIT.number, _BRACES,
+             rows.DO_CODE, _WORD_CODE)  # fmt: skip
+_SHOW_WHOLE = frozenset(each.number for each in (
+    codes.MISSING_SEPARATOR, codes.HEADER_SEPARATOR, codes.MISSING_OPEN, codes.MISSING_CLOSE,
+    codes.ELSE_IF, codes.END_SPLIT, codes.END_ALONE, codes.FOREVER_NOT_HERE, codes.SPANISH_IF,
+    codes.BRACES, codes.OTHER_ASSIGNMENT, codes.ASKED_BEHIND, codes.GROUPED, codes.OTHER_LANGUAGE,
+))  # fmt: skip
+_OF_ARM = (_BRACES, _WORD_CODE, codes.HEADER_SEPARATOR.number)
+_WORD = re.compile(r"\w+")
+LONGEST_BLOCK = 160  # characters of one that a message shows
 
 
 class Slip(NamedTuple):
     """`found` is written `right`; all of the instruction, where a sign is missing or too much.
 
     `word`, written as in `usage`, begins the instruction, and `before` stands before the slip;
-    `fix` is what the instruction becomes.
+    `fix` is what the instruction becomes. Where more of its block changes, that becomes `whole`,
+    which ends with `ends`. The same is wrong in `line`, or in `lines`, too, or `times` in its own.
     """
 
     found: str
     right: str
-    before: str
+    before: str = ""
+    word: str = ""
+    usage: str = ""
+    fix: str = ""
+    whole: str = ""
+    ends: str = ""
+    line: str = ""
+    lines: str = ""
+    times: str = ""
+
+
+class Unended(NamedTuple):
+    """A block that begins with `word` lacks its end, `right`, behind line `line`, `last`.
+
+    With it the block is `whole`, nothing where that is long.
+    """
+
     word: str
-    usage: str
-    fix: str
+    right: str
+    line: str = ""
+    last: str = ""
+    whole: str = ""
 
 
 class Explanation(NamedTuple):
@@ -49,49 +82,258 @@ class Explanation(NamedTuple):
     code: str
     span: Span
     place: Span
-    slip: Slip
+    slip: Slip | Unended
     edits: list[Edit]
-
-    def is_same(self, code: str, slip: Slip) -> bool:
-        one, other = ((each.found.upper(), each.word) for each in (self.slip, slip))
-        return self.code == code and one == other
 
 
 def explained(program: str, found: Candidate) -> list[Explanation]:
     """Return what is wrong with each line that a candidate changes, in the order of the text."""
-    out: list[Explanation] = []
-    lines = program.split("\n")
-    starts = [0]
-    for line in lines:
-        starts.append(starts[-1] + len(line) + 1)
-    steps = {k: [step for _, step in own] for k, own in groupby(found.steps, key=lambda it: it[0])}
-    for k, change in enumerate(found.changes):
-        old = "\n".join(lines[change.first : change.last + 1]).rstrip("\r")
-        new = change.text.replace("\n", "\r\n" if "\r" in program else "\n")
-        if new == old:
-            continue
-        edit = _trimmed(starts[change.first], old, new)
-        before, after = lexemes(without_note(old)[0]), lexemes(without_note(new)[0])
-        code = _code(steps.get(k, []), before, after)
-        is_brace = len(before) == 1 or (out and out[-1].code == code)
-        if out and code in _CLOSING and (code != _BRACES or is_brace):
-            out[-1].edits.append(edit)
-        else:
-            slip = _slip(code, before, after)
-            if code == codes.OTHER_NOTE.number:
-                slip = slip._replace(right=change.text.strip())
-            same = [each for each in out if code in _SAID_ONCE and each.is_same(code, slip)]
-            if same:
-                same[0].edits.append(edit)
-                continue
-            place = Span(starts[change.first], starts[change.first] + len(old))
-            out.append(Explanation(code, edit.span, place, slip, [edit]))
-    return out
+    return _Teller(program, found).told()
 
 
-_BRACES = codes.BRACES.number
-_SAID_ONCE = (codes.BAD_NAME.number, codes.EMPTY_BRACKETS.number, codes.NAME_WITH_SPACE.number)
-_CLOSING = (codes.NEVER_ENDS.number, codes.END_ALONE.number, _BRACES)
+class _Told:
+    """An explanation that is not complete yet.
+
+    It begins in change `first`, from 0; `last` is a change, and how many of its lines belong to it.
+    """
+
+    def __init__(
+        self, code: str, place: Span, slip: Slip | Unended, edit: Edit, first: int
+    ) -> None:
+        self.code = code
+        self.place = place
+        self.slip = slip
+        self.edits = [edit]
+        self.first = first
+        self.last = (first, 1)
+        self.lines: list[int] = []
+
+    def is_same(self, code: str, slip: Slip | Unended) -> bool:
+        own = self.slip
+        if not isinstance(own, Slip) or not isinstance(slip, Slip) or self.code != code:
+            return False
+        if code == codes.EMPTY_BRACKETS.number:
+            return own.word == slip.word
+        return (own.found.upper(), own.right) == (slip.found.upper(), slip.right)
+
+
+class _Block:
+    """A block that is open: what is told of its beginning, which is in change `first`."""
+
+    def __init__(self, word: str, first: int) -> None:
+        self.word = word
+        self.first = first
+        self.told: _Told | None = None
+
+
+class _Tokens(NamedTuple):
+    span: Span
+    tokens: list[Lexeme]
+
+
+class _Part(NamedTuple):
+    """An instruction of a line: `span` in it, and what becomes of it by which rewrites."""
+
+    span: Span
+    edit: Edit
+    before: list[Lexeme]
+    after: list[Lexeme]
+    steps: list[Step]
+
+
+def _spans(tokens: Sequence[Lexeme]) -> list[_Tokens]:
+    """Return the instructions of a line of the text, and where in it they stand."""
+    found: list[_Tokens] = []
+    own: list[Lexeme] = []
+    start = end = 0
+    for token in (*tokens, None):
+        if token is None or token.text == ";":
+            found.append(_Tokens(Span(start if own else end, end), own))
+            own = []
+        if token is not None:
+            end += len(token.space or "")
+            if token.text != ";":
+                start = start if own else end
+                own.append(token)
+            end += len(token.source or token.text)
+    return found
+
+
+class _Teller:
+    def __init__(self, program: str, found: Candidate) -> None:
+        self.program = program
+        self.changes = found.changes
+        self.line_end = "\r\n" if "\r" in program else "\n"
+        self.lines = program.split("\n")
+        self.starts = [0]
+        for line in self.lines:
+            self.starts.append(self.starts[-1] + len(line) + 1)
+        self.steps = {
+            k: [step for _, step in own] for k, own in groupby(found.steps, key=lambda it: it[0])
+        }
+        self.out: list[_Told] = []
+        self.open: list[_Block] = []
+
+    def told(self) -> list[Explanation]:
+        for k, change in enumerate(self.changes):
+            self.tell(k, change)
+        return [self.complete(each) for each in self.out]
+
+    def complete(self, told: _Told) -> Explanation:
+        slip = told.slip
+        if isinstance(slip, Slip):
+            whole = self.whole(told.first, told.last) if told.last > (told.first, 1) else ""
+            here = self.changes[told.first].first + 1
+            others = [str(each) for each in told.lines if each != here]
+            several = ", ".join(others) if len(others) > 1 else ""
+            times = slip.times or (str(len(told.lines) + 1) if told.lines and not others else "")
+            slip = slip._replace(whole=whole, line="".join(others[:1]), lines=several, times=times)
+        return Explanation(told.code, self.words(told.edits[0].span), told.place, slip, told.edits)
+
+    def words(self, span: Span) -> Span:
+        """Return a span with all of the words that it begins and ends in."""
+        start, end = span
+        if start < end:
+            for match in _WORD.finditer(self.program, max(0, start - LONGEST_BLOCK)):
+                if match.start() >= end:
+                    break
+                if match.end() > start:
+                    start, end = min(start, match.start()), max(end, match.end())
+        return Span(start, end)
+
+    def whole(self, first: int, last: tuple[int, int]) -> str:
+        """Return what changes become, as one line."""
+        texts_of = [each.text.split("\n") for each in self.changes[first : last[0] + 1]]
+        lines = [each for it in (*texts_of[:-1], texts_of[-1][: last[1]]) for each in it]
+        parts = (laid_out(lexemes(without_note(each)[0])).strip("; ") for each in lines)
+        return "; ".join(each for each in parts if each)
+
+    def tell(self, k: int, change: Change) -> None:
+        old = "\n".join(self.lines[change.first : change.last + 1]).rstrip("\r")
+        own, *ends = change.text.split("\n")
+        around = self.open[-1] if self.open else None
+        before, after = lexemes(without_note(old)[0]), lexemes(without_note(own)[0])
+        closed = self.walk(k, after)
+        parts = [] if closed or "\n" in old else self.parts(k, old, own, before, after)
+        if len(parts) > 1:
+            for part in parts:
+                self.new_part(k, change, part)
+        elif own != old:
+            place = Span(self.starts[change.first], self.starts[change.first] + len(old))
+            edit = _trimmed(place.start, old, own)
+            code, step = _code(self.steps.get(k, []), before, after)
+            is_brace = code == _BRACES and before[0].text in BRACES
+            told = None
+            is_arm = bool(after) and after[0].text in ("ELSE", "ELSEIF")
+            if code in (_OF_ARM if is_arm else _OF_BLOCK) and (closed or is_brace or is_arm):
+                told = self.added(closed or around, edit, (k, 1), after)
+            if told is None:
+                told = self.new(code, place, edit, k, step, before, after)
+            for block in (*self.open, *([around] if around and is_brace else [])):
+                if block.first == k or is_brace:
+                    block.told = block.told or told
+        for count, end in enumerate(ends, 2):
+            self.end((k, count), change, end.strip(), self.line_end + end)
+
+    def parts(
+        self, k: int, old: str, own: str, before: Sequence[Lexeme], after: Sequence[Lexeme]
+    ) -> list[_Part]:
+        """Return the instructions of a line that change, nothing where they are others or more."""
+        was, now = _spans(before), _spans(after)
+        steps: dict[int, list[Step]] = {}
+        for step in self.steps.get(k, []):
+            at = sum(each.text == ";" for each in step.before[: _first_difference(*step[1:])[0]])
+            steps.setdefault(at, []).append(step)
+            is_kept = texts(step.before).count(";") == texts(step.after).count(";")
+            if not is_kept or step.code == rows.DO_CODE:
+                return []
+        notes = (without_note(each)[1] for each in (old, own))
+        if len(was) != len(now) or len({*notes}) > 1 or {*texts(before)} & {*BRACES}:
+            return []
+        found = []
+        for number, (one, other) in enumerate(zip(was, now, strict=True)):
+            text, new = old[slice(*one.span)], own[slice(*other.span)]
+            if text != new:
+                edit = _trimmed(self.starts[self.changes[k].first] + one.span.start, text, new)
+                part = _Part(one.span, edit, one.tokens, other.tokens, steps.get(number, []))
+                found.append(part)
+        return found
+
+    def new_part(self, k: int, change: Change, part: _Part) -> None:
+        code, step = _code(part.steps, part.before, part.after)
+        start = self.starts[change.first]
+        place = Span(start + part.span.start, start + part.span.end)
+        told = self.new(code, place, part.edit, k, step, part.before, part.after)
+        for block in self.open:
+            if block.first == k:
+                block.told = block.told or told
+
+    def walk(self, k: int, tokens: Sequence[Lexeme]) -> _Block | None:
+        """Open and close blocks; return the first one that began in an earlier change."""
+        closed = None
+        for token in tokens:
+            if token.text in BLOCK_ENDS:
+                self.open.append(_Block(token.text, k))
+            elif token.text in ENDED and self.open:
+                block = self.open.pop()
+                closed = closed or (block if block.first < k else None)
+                if block.told and block.told.last > (block.first, 1):
+                    block.told.last = max(block.told.last, (k, 1))
+        return closed
+
+    def added(
+        self, block: _Block | None, edit: Edit, last: tuple[int, int], after: Sequence[Lexeme]
+    ) -> _Told | None:
+        """Make an edit part of what is told of the beginning of its block, None where too long."""
+        told = block.told if block else None
+        is_shown = told is not None and told.code in _SHOW_WHOLE
+        if block is None or told is None or not (is_shown and isinstance(told.slip, Slip)):
+            return None
+        first = min(told.first, block.first)
+        if len(self.whole(first, last)) > LONGEST_BLOCK:
+            return None
+        told.edits.append(edit)
+        told.first, told.last = first, max(told.last, last)
+        ends = next((each.text for each in after if each.text in ENDED), "")
+        told.slip = told.slip._replace(ends=told.slip.ends or ends)
+        return told
+
+    def new(
+        self, code: str, place: Span, edit: Edit, k: int, step: Step | None,
+        before: Sequence[Lexeme], after: Sequence[Lexeme],
+    ) -> _Told:  # fmt: skip
+        slip: Slip | Unended = _slip(code, step, before, after)
+        if code == codes.OTHER_NOTE.number:
+            slip = slip._replace(right=self.changes[k].text.strip())
+        if code == _UNENDED:
+            word = next((each.text for each in after if each.text in BLOCK_ENDS), "")
+            slip = Unended(word, BLOCK_ENDS.get(word, ""), whole=laid_out(after))
+        if code in _SAID_ONCE and isinstance(slip, Slip):
+            count = sum(each.code == code for each in self.steps.get(k, []))
+            slip = slip._replace(times=str(count) if count > 1 else "")
+        for told in self.out if code in _SAID_ONCE else ():
+            if told.is_same(code, slip):
+                told.edits.append(edit)
+                told.lines.append(self.changes[k].first + 1)
+                return told
+        self.out.append(_Told(code, place, slip, edit, k))
+        return self.out[-1]
+
+    def end(self, last: tuple[int, int], change: Change, end: str, text: str) -> None:
+        """Tell of an end that is missing behind a line."""
+        block = self.open.pop() if self.open else None
+        behind = self.starts[change.last] + len(self.lines[change.last].rstrip("\r"))
+        edit = Edit(Span(behind, behind), text)
+        if self.added(block, edit, last, lexemes(end)):
+            return
+        first = block.first if block else last[0]
+        whole = self.whole(first, last)
+        whole = whole if len(whole) <= LONGEST_BLOCK else ""
+        behind_this = laid_out(lexemes(without_note(change.text.split("\n")[0])[0]))
+        place = Span(self.starts[self.changes[first].first], behind)
+        line = str(change.last + 1)
+        slip = Unended(block.word if block else "", end, line, behind_this, whole)
+        self.out.append(_Told(_UNENDED, place, slip, edit, first))
 
 
 def _trimmed(start: int, old: str, new: str) -> Edit:
@@ -103,53 +345,105 @@ def _trimmed(start: int, old: str, new: str) -> Edit:
     return Edit(Span(start + head, start + len(old) - tail), new[head : len(new) - tail])
 
 
-def _code(steps: Sequence[Step], before: Sequence[Lexeme], after: Sequence[Lexeme]) -> str:
-    """Return with which code a line is told."""
+def _code(
+    steps: Sequence[Step], before: Sequence[Lexeme], after: Sequence[Lexeme]
+) -> tuple[str, Step | None]:
+    """Return with which code a line is told, and the rewrite that it is told of."""
     words, new = set(texts(before)), set(texts(after))
-    if "SI" in words - new and "IF" in new - words:
-        return _IF
-    own = [step.code for step in steps if step.code != _WORD_CODE]
-    own.sort(key=lambda each: each == codes.OTHER_SIGN.number)
+    fewer = Counter(texts(before)) - Counter(texts(after))
+    if "SI" in fewer and "IF" in new - words:
+        return codes.SPANISH_IF.number, None
     if steps:
+        own = [step for step in steps if step.code != _WORD_CODE]
+        own.sort(key=lambda each: each.code == codes.OTHER_SIGN.number)
+        do = [step for step in own if step.code == rows.DO_CODE]
+        if do:
+            return rows.DO_CODE, do[0]
+        translated = [step for step in steps if step not in own]
         is_translated = any(
             each.kind is WORD and each.text not in new and meant_by(each.text) in new - words
             for each in before
         )
         has_brackets = "(" in words or "(" not in new
         if not (own or is_translated or has_brackets) and before[0].text in WORDS:
-            return rows.NO_BRACKETS
-        return _WORD_CODE if is_translated or not own else own[0]
+            return rows.NO_BRACKETS, steps[0]
+        if translated and (is_translated or not own):
+            return _WORD_CODE, translated[0]
+        return (_WORD_CODE if is_translated else own[0].code), own[0]
     if words & {*BRACES}:
-        return _BRACES
+        return _BRACES, None
     source = "".join(each.source or "" for each in before)
     if not source.isascii():
         has_word = any(each.kind is WORD and not (each.source or "").isascii() for each in before)
-        return (codes.BAD_NAME if has_word else codes.OTHER_SIGN).number
+        return (codes.BAD_NAME if has_word else codes.OTHER_SIGN).number, None
     ends = [each.text for each in before if said_of(each.text, "end")]
     if ends and ends[-1] not in new:
-        return (codes.END_ALONE if new & {*BLOCK_ENDS.values()} else codes.EXTRA_WORD).number
-    return codes.NEVER_ENDS.number
+        is_end = bool(new & {*BLOCK_ENDS.values()})
+        return (codes.END_ALONE if is_end else codes.EXTRA_WORD).number, None
+    return _UNENDED, None
 
 
-def _slip(code: str, before: Sequence[Lexeme], after: Sequence[Lexeme]) -> Slip:
-    start, found, right = _first_difference(before, after)
-    if code == rows.WITH_UNIT and found and start and before[start - 1].kind is NUMBER:
-        found = [before[start - 1], *found]  # `2 s`
-    told, fix = list(_parted(before)), list(_parted(after))
+def _slip(code: str, step: Step | None, before: Sequence[Lexeme], after: Sequence[Lexeme]) -> Slip:
+    is_note = code == codes.OTHER_NOTE.number
+    old, new = (step.before, step.after) if step and not is_note else (before, after)
+    start, found, right = _first_difference(old, new)
+    if not right and code == _WORD_CODE and start:
+        found, right = [old[start - 1], *found], [old[start - 1]]
+    elif not right and code == codes.BAD_NUMBER.number:
+        found = old[start + len(found) - 1 : start + len(found) + 1]
+    elif code == rows.WITH_UNIT:
+        found = _with_unit(old) or found
+    told, fix = _parted(before), _parted(after)
     head, tail = _alike(told, fix)
     one = [each for part in told[head : len(told) - tail] for each in part]
-    other = fix[head : len(fix) - tail]
-    word = next((each.text for part in other for each in part if each.kind is WORD), "")
-    if code == codes.EMPTY_BRACKETS.number and start:
-        word = before[start - 1].text
-    known = WORDS.get(word)
-    was = _written(found or one)
-    if code == codes.OTHER_NOTE.number:
+    other = [each for part in fix[head : len(fix) - tail] for each in part]
+    shown = ";".join(laid_out(part) for part in fix[head : len(fix) - tail]) or laid_out(after)
+    is_all = code == codes.REPEATED.number or (code == codes.OTHER_SIGN.number and not right)
+    was = _written(one if is_all else found or one)
+    if is_note:
         was = was[: re.match(r"\W*", was).end()].strip()  # type: ignore[union-attr]
-    shown = ";".join(laid_out(part) for part in other)
     now = laid_out(right) or shown
     now = now.partition("(")[0] if code == _WORD_CODE else now
-    return Slip(was, now, _written(one[:start]), word, known.usage if known else "", shown)
+    word = _word(code, old, new, start, other)
+    known = WORDS.get(word)
+    until = len(fix[head]) if len(told) < len(fix) else None  # one instruction became two
+    alike = takewhile(
+        lambda both: both[0].text == both[1].text, zip(one, other[:until], strict=False)
+    )
+    kept = _written([each for each, _ in alike])
+    return Slip(was, now, kept, word, known.usage if known else "", shown)
+
+
+def _word(
+    code: str, old: Sequence[Lexeme], new: Sequence[Lexeme], start: int, part: Sequence[Lexeme]
+) -> str:
+    """Return the word that is told of: the one before its brackets, else the first one."""
+    if code == codes.EMPTY_BRACKETS.number and start:
+        return old[start - 1].text
+    if code == codes.GROUPED.number:
+        return next((each.text for each in new if each.text in ("LOOP", "WHILE", "IF")), "")
+    if code == codes.BAD_NAME.number:
+        is_accent = start < len(old) and not (old[start].source or "").isascii()
+        return old[start].text if is_accent and old[start].text in WORDS else ""
+    if code == codes.NO_VALUE.number:
+        part = old[start:]
+    elif code == rows.NO_BRACKETS:
+        is_made = [each.text == "(" and each.source is None for each in new]
+        made_at = next((k for k in range(1, len(new)) if is_made[k]), 0)
+        if made_at and new[made_at - 1].kind is WORD:
+            return new[made_at - 1].text
+    words = [each.text for each in part if each.kind is WORD]
+    return next((each for each in words if each in WORDS and WORDS[each].usage), "") or (
+        words[0] if words else ""
+    )
+
+
+def _with_unit(tokens: Sequence[Lexeme]) -> list[Lexeme]:
+    """Return the first number with its unit."""
+    for number, unit in pairwise(tokens):
+        if number.kind is NUMBER and (said_of(unit.text, "unit") or unit.text == "%"):
+            return [number, unit]
+    return []
 
 
 def _first_difference(
@@ -168,11 +462,12 @@ def _written(tokens: Sequence[Lexeme]) -> str:
     return "".join((each.space or "") + (each.source or each.text) for each in tokens).strip()
 
 
-def _parted(tokens: Sequence[Lexeme]) -> Iterator[list[Lexeme]]:
-    """Give the instructions of a line."""
-    for is_end, part in groupby(tokens, key=lambda each: each.text in (";", "|")):
-        if not is_end:
-            yield list(part)
+def _parted(tokens: Sequence[Lexeme]) -> list[list[Lexeme]]:
+    """Return the instructions of a line, without `SI|`."""
+    has_setup = len(tokens) > 1 and tokens[1].text == "|" and tokens[0].text in ("SI", "SB")
+    tokens = tokens[2:] if has_setup else tokens
+    parts = groupby(tokens, key=lambda each: each.text == ";")
+    return [list(part) for is_end, part in parts if not is_end]
 
 
 def _alike(one: Sequence[Sequence[Lexeme]], other: Sequence[Sequence[Lexeme]]) -> tuple[int, int]:

@@ -1,4 +1,4 @@
-"""What people are told of the codes that were handed over: typed values and edits.
+"""What people are told of a text that is read wholly and surely: typed values and edits.
 
 Each finding is judged by what is left of the text's mistakes with its edits. All else is read as
 if they were made, so that no consequence of a mistake is reported.
@@ -39,7 +39,7 @@ class NoBar(NamedTuple):
 def findings(
     source: Source, found: Sequence[Diagnostic], check: Check, kit: Kit
 ) -> list[Diagnostic]:
-    """Return what is wrong with a text by the codes that were handed over.
+    """Return what is wrong with a text that can be read, nothing for another one.
 
     `found` is what the parser and the checker, which `check` asks, say of the text.
     """
@@ -66,10 +66,9 @@ def _meant(source: Source, found: Sequence[Diagnostic], check: Check, kit: Kit) 
     if meant is None or not (meant.is_whole and meant.is_applied):
         return []
     told = explained(source.text, meant)
-    said_with = {each.code for each in told}
-    said_with |= {step.code for _, step in meant.steps} - {rows.OTHER_WORD}
+    said_with = {each.code for each in told} | {step.code for _, step in meant.steps}
     has_all = all(each.slip.right for each in told) and _keeps(text, meant.text, said_with)
-    if not told or not has_all or said_with - rows.HANDED_OVER:
+    if not told or not has_all:
         return []
     return [
         Diagnostic(CODES[each.code], each.span, each.slip._asdict(), each.place,

@@ -270,11 +270,13 @@ class _Search:
                 line = [*tokens[:k], made(sign), token, *rest]
                 yield reading.changed(line, cost, code, True, False)
             if is_sign:
-                cost, code = rows.CONFUSED_COST
+                around = {each.text for each in (*tokens[max(0, k - 1) : k], *rest[:1])}
                 for sign in rows.CONFUSED.get(token.text, ""):
-                    yield reading.changed([*tokens[:k], made(sign), *rest], cost, code, True, False)
+                    code = rows.OF_INSTRUCTIONS if sign == ";" else rows.OF_VALUES
+                    line, is_sure = [*tokens[:k], made(sign), *rest], sign not in around
+                    yield reading.changed(line, rows.CONFUSED_COST, code, is_sure, False)
             if is_sign and token.text not in ("-", "<", ">", "="):
-                cost, code = rows.EXTRA_COST
+                cost, code = rows.EXTRA_COST, rows.EXTRA.get(token.text, rows.OF_VALUES)
                 yield reading.changed([*tokens[:k], *rest], cost, code, is_bracket, False)
             if rest and (is_bracket or rest[0].text in ("(", ")")):
                 if not is_sign or rest[0].kind in (WORD, NUMBER):

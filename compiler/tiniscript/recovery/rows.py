@@ -41,17 +41,14 @@ DO_CODE, CALLED_BEFORE_DEF = "TS064", "TS112"
 # Codes of calls whose values are told in another way, by what is odd in them.
 NO_BRACKETS, NAMED_VALUE, WITH_UNIT, OTHER_CALL = "TS015", "TS052", "TS049", "TS076"
 
-# Codes that were handed over: what a program has of them alone is told from its rewrites.
-HANDED_OVER = frozenset(("TS037", "TS049", "TS050", "TS052"))
-
 # Those that write a number in another way: `500 ms`, `8O`, `X++`, `1) F(2, 80)`, `tres segundos`.
 OTHER_NUMBERS = frozenset(("TS008", "TS010", "TS049", "TS050", "TS054", "TS102"))
 
 # Slips of one sign, tried where no row reads a line: cost and code of one that is missing, of one
 # that is taken for another, of one too many, and of one behind its neighbour.
 MISSING = (("(", 1.6, "TS015"), (")", 1.6, "TS016"), (",", 1.6, "TS017"))
-CONFUSED_COST = (1.1, "TS076")
-EXTRA_COST = (1.5, "TS041")
+CONFUSED_COST, OF_VALUES, OF_INSTRUCTIONS = 1.1, "TS076", "TS013"  # `F(2;80)`, `S: F(2, 80)`
+EXTRA_COST, EXTRA = 1.5, {")": "TS041"}  # others as `OF_VALUES`
 SWAPPED_COST = (1.7, "TS015")
 CONFUSED = {
     "(": ")", ")": "(", "[": "(", "]": ")", "{": "(", "}": ")", ".": ",;", ";": ",)", ":": ",;",
@@ -83,7 +80,7 @@ SIGNS = r"""
 (?<=\d)\)\s*,\s*\((?=\d)  |  `, `  |  1  |  TS076  |  applied  |  F(3),(70) => F(3, 70)
 \\n  |  `;`  |  1  |  TS010  |  applied  |  SI|F(2,80)\nR(1,60) => SI|F(2,80);R(1,60)
 \b([FBLR])/(\d+)[/,](\d+)/?  |  `\1(\2, \3)`  |  1  |  TS015  |  applied  |  F/2/80 => F(2, 80)
-(?<=\))\s+[-/]\s*(?=(?-i:[a-zñáéíóú]+)/?\s*$)  |  ` //`  |  1  |  TS007  |  applied  |  F(1, 80) / adelante => F(1, 80) //adelante
+(?<=\))\s+(?:/\s*|-)(?=(?-i:[a-zñáéíóú]+)/?\s*$)  |  ` // `  |  1  |  TS007  |  applied  |  F(1, 80) / adelante => F(1, 80) // adelante
 ¡=  |  `<>`  |  1  |  TS010  |  applied  |  IF(DISTANCE ¡= 10)⏎S⏎ENDIF => IF(DISTANCE <> 10)⏎S⏎ENDIF
 (?<=\d)\.\.(?=\d)  |  `, `  |  1  |  TS020  |  offered  |  X = RANDOM(1..6) => X = RANDOM(1, 6)
 (?<=\d)\s*([×✕])\s*(?=\d)  |  `*`  |  1  |  TS010  |  applied  |  SHOW(3 × 4) => SHOW(3*4)
@@ -155,7 +152,7 @@ SIGNS = r"""
 ^\s*(?:paso|step)\s*\d+\s*[:.-]?\s+(?=[A-Za-z])  |  ``  |  1  |  TS054  |  applied  |  Paso 1 F(2, 80) => F(2, 80)
 ^_+(\S.*?)_+$  |  `\1`  |  1  |  TS054  |  applied  |  _F(2, 80)_ => F(2, 80)
 [¿¡](?=\W)  |  ``  |  1  |  TS005  |  applied  |  F(2, 80) ¡ ; => F(2, 80)  ;
-(?<=\))\s+/\s+(?=(?-i:[a-z]))  |  ` // `  |  1  |  TS007  |  applied  |  F(2, 80) / adelante => F(2, 80) //adelante
+(?<=\))\s+/\s+(?=(?-i:[a-z]))  |  ` // `  |  1  |  TS007  |  applied  |  F(2, 80) / adelante => F(2, 80) // adelante
 (?<=[A-Za-z])\((\d+(?:\.\d+)?) ; ?(\d)  |  `(\1, \2`  |  1  |  TS019  |  applied  |  F(2 ; 80) => F(2, 80)
 """
 
@@ -212,7 +209,7 @@ a=@num|@val '|' b=@val | $a OR $b | 1 | TS010 | applied | IF(DISTANCE<10 | LIGHT
 # numbers, units, values
 a=@num POR CIENTO|CIEN | $a % | 1 | TS049 | first | R(1, 50 por ciento) => R(1, 50)
 v=@name = a=@num % $ | $v = $a | 1 | TS049 | applied | X = 50 % => X = 50
-a=@num 0 | @cat:a | 1 | TS008 | applied | F(2, 8 0) => F(2, 80)
+a=@num 0 | @cat:a | 1 | TS008 | offered | F(2, 8 0) => F(2, 80)
 a=@num , b=@num | @dec:a:b | 1 | TS012 | applied | W(2,5) => W(2.5)
 a=@num % ) | $a ) | 1 | TS049 | first | F(2,80%) => F(2,80)
 a=@num : b=@num | @mmss:a:b | 1 | TS008 | applied | W(1:30) => W(90)
@@ -252,7 +249,7 @@ a=@word b=@word|@num | @known:a:b | 1 | TS056 | first | MI_BANDERA = TRUE⏎IF(m
 x=@callw [ | $x ( | 1 | TS010 | first | F[2,80] => F(2,80)
 x=@callw '{' c=@nobrace+ '}' | $x ( $c ) | 1 | TS015 | applied | SI|F{2,80} => SI|F(2,80)
 RANDOM a=@num ,? b=@num | RANDOM ( $a , $b ) | 1 | TS015 | applied | X = RANDOM 1 3⏎F(X, 50) => X = RANDOM(1, 3)⏎F(X, 50)
-c=@callw ( a=@argt+ ; b=@argt+ e=)|$ | $c ( $a , $b ) | 1 | TS076 | applied | F(2;80 => F(2, 80)
+c=@callw ( a=@argt+ ; b=@argt+ e=)|$ | $c ( $a , $b ) | 1 | TS019 | applied | F(2;80 => F(2, 80)
 a=@callw b=@num ,? c=@num ,|;|Y? d=@callw | $a ( $b , $c ) ; $d | 1.5 | TS015 | applied | F 2,80,R 1,50 => F(2, 80);R(1, 50)
 v=@val ( ) | $v | 1 | TS028 | first | LIGHT_L() => LIGHT_L
 RANDOM ( between|than|DESDE? a=@num A|AL|TO|Y|HASTA|AND|- b=@num ) | RANDOM ( $a , $b ) | 1 | TS017 | applied | X = RANDOM(1 al 6) => X = RANDOM(1, 6)
@@ -263,6 +260,7 @@ c=@callw ( a=@argt+ ( $ | $c ( $a ) | 1 | TS076 | applied | F(2, 80( => F(2, 80)
 ^ c=F|B|L|R - a=@num - b=@num $ | $c ( $a , $b ) | 1 | TS015 | applied | F - 2 - 80 => F(2, 80)
 SHOW ( TIME ) | SHOW ( TIME ) | 1 | TS102 | applied | mostrar(tiempo) => SHOW(TIME)
 c=@callw ( ( a=@nobrace+ ) ) | $c ( $a ) | 1 | TS016 | applied | F((2,80)) => F(2,80)
+c=@callw ( a=@argt+ s=*|/|%|- b=@num|@val t=+|-|*|/|% d=@argt+ ) ) e=;|$ | $c ( $a $s ( $b $t $d ) ) $e | 1 | TS041 | applied | SHOW(5 / 3 - 3)) => SHOW(5 /(3 - 3))
 c=@callw ( a=@argt+ ) ) e=;|$ | $c ( $a ) $e | 1 | TS041 | applied | F(2,80)) => F(2,80)
 c=@callw ( a=@num b=@num ) | $c ( $a , $b ) | 1 | TS017 | applied | F(2 80);F(3 80);R(1 50) => F(2, 80);F(3, 80);R(1, 50)
 c=@callw ( a=@num /|- b=@num ) | $c ( $a , $b ) | 2 | TS076 | offered | F(2/80) => F(2, 80)
@@ -300,7 +298,8 @@ h=IF|ELSEIF c=@cond+ do|':'? '{' | &h ( $c ) ; { | 1 | TS047 | applied | SI(DIST
 h=IF|WHILE|LOOP ( c=@noclose+ , <body> ) $ | &h ( $c ) ; $b $r ; @endof:h | 1 | TS080 | applied | SI|IF(DISTANCE < 10, S) => SI|IF(DISTANCE < 10);S;ENDIF
 ^ IF ( c=@noclose+ , <body> , d=@start s=@all* ) $ | IF ( $c ) ; $b $r ; ELSE ; $d $s ; ENDIF | .9 | TS080 | offered | IF(DISTANCE < 15, B(1, 50), F(1, 50)) => IF(DISTANCE < 15);B(1, 50);ELSE;F(1, 50);ENDIF
 h=IF|WHILE ( c=@noclose+ , b=@start | &h ( $c ) ; $b | 2 | TS080 | applied | IF(DISTANCE < 10, S) ELSE F(1, 60) ENDIF => IF(DISTANCE < 10);S;ELSE;F(1, 60);ENDIF
-<block> <question> do|times|:|,|=|?|'|'|- ':'? | &h ( $c ) ; | 1 | TS014 | applied | LOOP(3): F(1,50) => LOOP(3);F(1, 50);END_LOOP
+<block> <question> do|times ':'? | &h ( $c ) ; | 1 | TS044 | applied | LOOP(3) TIMES⏎F(1,50)⏎END_LOOP => LOOP(3)⏎F(1,50)⏎END_LOOP
+<block> <question> :|,|=|?|'|'|- ':'? | &h ( $c ) ; | 1 | TS014 | applied | LOOP(3): F(1,50) => LOOP(3);F(1, 50);END_LOOP
 <block> <question> b=@start|'{'|SALUDO | &h ( $c ) ; $b | 1 | TS014 | applied | LOOP(3) F(1,50) => LOOP(3);F(1, 50);END_LOOP
 <block> <question> ;? ( <body> ) $ | &h ( $c ) ; $b $r ; @endof:h | 1 | TS080 | applied | LOOP(4)(F(1,60)) => LOOP(4);F(1, 60);END_LOOP
 h=IF <question> ;? ( <body> ) e=;|ELSE | &h ( $c ) ; $b $r ; $e | 1 | TS080 | applied | IF (DISTANCE < 10) THEN (S) ELSE (F(1,50)) => IF(DISTANCE < 10);S;ELSE;F(1, 50);ENDIF
@@ -406,8 +405,10 @@ a=@close please|CM|CENTIMETROS|SEG|SEGS|SEGUNDO|SEGUNDOS|SECONDS $ | $a | 1 | TS
 a=@close soon+ b=@start | $a ; $b | 2 | TS044 | applied | F(2, 80) y por ultimo B(1, 50) => F(2, 80);B(1, 50)
 ( a=@num , p=@num|@val ) then|&|+|AND BEEP ( b=@num | ( $a , $p ) ; BEEP ( @same:a:b | .9 | TS074 | offered | F(2, 80) AND BEEP(2, 440) => F(2, 80);BEEP(2, 440)
 a=@close ,? then|soon+ b=@start | $a ; $b | 1 | TS044 | applied | F(1,75) y R(1,75) => F(1, 75);R(1, 75)
-a=@close ,|.|->|=>|'|'|/|>|:|>>|_|* b=@start | $a ; $b | 1 | TS013 | applied | F(2,80)/B(2,80) => F(2, 80);B(2, 80)
-a=@close &|+|AND b=@start | $a ; $b | 1 | TS061 | applied | F(2,80)&B(2,80) => F(2, 80);B(2, 80)
+a=@close ,|.|: b=@start | $a ; $b | 1 | TS013 | applied | F(2,80), B(2,80) => F(2, 80);B(2, 80)
+a=@close '|' b=@start | $a ; $b | 1 | TS055 | applied | F(2,80)|R(1,60) => F(2, 80);R(1, 60)
+a=@close &|+|AND|->|=>|/|>|>>|_|* b=@start | $a ; $b | 1 | TS061 | applied | F(2,80)&B(2,80) => F(2, 80);B(2, 80)
+a=@close , $ | $a ; | .8 | TS013 | applied | F(2,80),⏎R(1,50), => F(2, 80)⏎R(1, 50)
 a=@close '|' $ | $a ; | 1 | TS055 | applied | F(2,80)|⏎R(1,50)| => F(2, 80)⏎R(1, 50)
 a=@close b=@start | $a ; $b | 1 | TS013 | applied | S STOP => S;STOP
 a=@def b=@def | $a ; $b | 1 | TS013 | applied | DEF PASO;S;END_DEF⏎PASO PASO => DEF PASO;S;END_DEF⏎PASO;PASO

@@ -122,10 +122,12 @@ class _Recovery:
 
     def read_signs(self) -> None:
         """Make the rewrites of signs, in the lines that have them."""
-        defs = Names([lexemes(each.body) for each in self.lines], self.kit).defs
+        names = Names([lexemes(each.body) for each in self.lines], self.kit)
+        defs = names.defs
         for line in self.lines:
             body = line.body.translate(_QUOTES)
-            for row in rewrites.of_signs():
+            is_right = not isinstance(lines.right(lexemes(body), names), Failure)
+            for row in () if is_right and body == line.body else rewrites.of_signs():
                 new = row.pattern.sub(row.becomes, body)
                 if new != body and not (defs and defs & _words(body) - _words(new)):
                     line.steps.append(Step(row.code, lexemes(body), lexemes(new)))
@@ -151,10 +153,14 @@ class _Recovery:
         kept: list[_Text] = []
         for line in self.lines:
             is_until = re.match(r"\s*(?:UNTIL|HASTA(?: QUE)?)\b", plain(line.body))
-            begun = any(re.match(rows.DO_ALONE, plain(each.body)) for each in kept)
             before = next((each for each in reversed(kept) if each.body.strip()), None)
             body = before.body.rstrip().rstrip(";") if before else ""
-            if not is_until or begun or before is None or not body.endswith(")") or before.note:
+            is_behind = before is not None and body.endswith(")") and not before.note
+            if (
+                not (is_until and is_behind)
+                or before is None
+                or any(re.match(rows.DO_ALONE, plain(each.body)) for each in kept)
+            ):
                 kept.append(line)
                 continue
             before.body, before.note = f"{body} {line.body.strip()}", line.note
@@ -364,8 +370,7 @@ def _line(line: _Text, reading: Reading, edits: Sequence[Edit], tails: Sequence[
     if reading.is_new_line or tails or any(len(each.new) > 1 for each in edits):
         text = line.source[: line.indent] + laid_out(_without_empty(tokens))
         return text if tails or len(reading.items or ()) > 1 else text.rstrip("; ")
-    text = as_written(tokens)
-    return (text if line.source[:1].isspace() else text.lstrip(" ")).rstrip()
+    return line.source[: line.indent] + as_written(tokens).strip()
 
 
 def _without_empty(tokens: Sequence[Lexeme]) -> list[Lexeme]:
