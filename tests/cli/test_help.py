@@ -17,7 +17,7 @@ from tests.support.casefile import ROOT
 from tests.support.command import PROGRAM, TSC, Tsc
 from tests.support.verbs import parsers
 from tiniscript import robots
-from tiniscript.cli import help
+from tiniscript.cli import help, main
 from tiniscript.cli.texts.options import OPTIONS, Option, of_verb, shown_of
 from tiniscript.cli.texts.options import PROGRAM as A_PROGRAM
 from tiniscript.cli.texts.verbs import FIRST, NOTES, VERBS
@@ -355,3 +355,11 @@ def test_what_was_meant_stands_before_what_to_try(
 ) -> None:
     assert f". Did you mean {meant}? Try:  tsc " in Tsc(capsys)(*words, "--lang", "en").err
     assert f". ¿Quisiste decir {meant}? Prueba:  tsc " in Tsc(capsys)(*words, "--lang", "es").err
+
+
+def test_ctrl_c_before_tsc_knows_its_language(monkeypatch: pytest.MonkeyPatch) -> None:
+    def interrupt() -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("tiniscript.cli._mend_streams", interrupt)
+    assert main(["check", "-e", "S"]) == 2

@@ -202,7 +202,7 @@ def test_a_person_without_a_port_is_asked_for_one(
     done = tsc("ping")
     assert done.code == 0
     assert f"  2  {pty_robot.port}   a robot\n" in done.err
-    assert done.err.count("1 to 2: ") == 3
+    assert done.err.count("Its number: ") == 3
     assert tsc("info").err == ""  # it is remembered
 
 

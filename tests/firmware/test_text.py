@@ -71,7 +71,7 @@ ANSWERS = (
     ("X=1;X=TRUE", "7: Keep it a number, or yes/no", "7: Que siga numero, o si/no"),
     ("F(FOREVER,80)", "3: Only in LOOP, or with UNTIL", "3: Solo en LOOP, o con UNTIL"),
     ("UNTIL(TRUE)", "1: UNTIL goes after F B L R W", "1: UNTIL va tras F B L R W"),
-    ("ENDIF", "1: There is no such block", "1: No hay tal bloque"),
+    ("ENDIF", "1: First open a block", "1: Antes abre un bloque"),
     ("BREAK", "1: BREAK goes in a loop", "1: BREAK va en un bucle"),
     ("DISTANCE = 5", "1: It is another thing's name", "1: Es nombre de otra cosa"),
     ("LOOP(1);" * 17, "134: Too many, or too deep", "134: Demasiado, o muy adentro"),

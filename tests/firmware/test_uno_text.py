@@ -98,7 +98,7 @@ def test_its_words_are_those_of_its_level(uno: Uno) -> None:
     assert {"F", "LOOP", "END_LOOP", "ROUND", "UNTIL", "DISTANCE"} <= {*words}
     assert not {"DEF", "END_DEF", "ENDDEF", "TASK"} & {*words}
     assert typed(uno, "DEF A\n", 100) == ["// 1: Not read by this robot"]
-    assert typed(uno, "END_DEF\n", 100) == ["// 1: There is no such block"]
+    assert typed(uno, "END_DEF\n", 100) == ["// 1: First open a block"]
 
 
 def test_the_programs_of_the_paper(uno: Uno) -> None:

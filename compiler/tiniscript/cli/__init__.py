@@ -30,6 +30,8 @@ def main(arguments: list[str] | None = None) -> int:
     except BrokenPipeError:
         _drop_output()
         return CLOSED
+    except KeyboardInterrupt:  # before the language is known
+        return 2
     finally:
         if arguments is None:
             gc.freeze()

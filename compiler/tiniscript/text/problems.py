@@ -48,7 +48,7 @@ PROBLEMS = (  # by number, from 1
     Problem("KIND",           "Keep it a number, or yes/no",  "Que siga numero, o si/no"),
     Problem("FOREVER_HERE",   "Only in LOOP, or with UNTIL",  "Solo en LOOP, o con UNTIL"),
     Problem("UNTIL",          "UNTIL goes after F B L R W",   "UNTIL va tras F B L R W"),
-    Problem("BLOCK",          "There is no such block",       "No hay tal bloque"),
+    Problem("BLOCK",          "First open a block",           "Antes abre un bloque"),
     Problem("BREAK",          "BREAK goes in a loop",         "BREAK va en un bucle"),
     Problem("DEF",            "DEF goes outside blocks",      "DEF va fuera de bloques"),
     Problem("TAKEN",          "It is another thing's name",   "Es nombre de otra cosa"),

@@ -37,7 +37,7 @@ export const CLASS_TEXTS = {
   class_pupils: ['Pupils', 'Alumnos'],
   class_robots: ['Robots of the class', 'Robots de la clase'],
   class_give: ['Give to the class', 'Dar a la clase'],
-  class_take: ['Take from the class', 'Quitar a la clase'],
+  class_take: ['Take from the class', 'Quitar de la clase'],
   class_minutes: ['Minutes per turn while others wait', 'Minutos por turno si otros esperan'],
   class_places: ['Pupils at one address', 'Alumnos en una misma dirección'],
   class_see: ['Program', 'Programa'],

@@ -38,7 +38,7 @@ enum class Problem : uint8_t {
   kKind = 21,  // Keep it a number, or yes/no
   kForeverHere = 22,  // Only in LOOP, or with UNTIL
   kUntil = 23,  // UNTIL goes after F B L R W
-  kBlock = 24,  // There is no such block
+  kBlock = 24,  // First open a block
   kBreak = 25,  // BREAK goes in a loop
   kDef = 26,  // DEF goes outside blocks
   kTaken = 27,  // It is another thing's name

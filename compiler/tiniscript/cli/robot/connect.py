@@ -373,8 +373,7 @@ def _asked(language: str, can_bring: bool) -> str:
         choices.append(VIRTUAL)
         print(f"  {len(choices)}  {text('choice_virtual', language)}", file=sys.stderr)
     while True:
-        print(text("choose_number", language).format(high=len(choices)), end="", file=sys.stderr,
-              flush=True)  # fmt: skip
+        print(text("choose_number", language), end="", file=sys.stderr, flush=True)
         answer = sys.stdin.readline()
         if not answer:
             raise CommandError(3, "which_port")

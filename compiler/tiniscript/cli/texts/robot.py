@@ -16,7 +16,7 @@ LINK_TEXTS: dict[str, tuple[str, str]] = {
     "last_port_missing": ("tsc: the last used port, {port}, is not there. Plug the robot in, or choose another with --port; the list:  tsc ports",
                           "tsc: el último puerto usado, {port}, no está. Conecta el robot o elige otro con --port; la lista:  tsc ports"),
     "choose_port": ("On which port is the robot?", "¿En qué puerto está el robot?"),
-    "choose_number": ("1 to {high}: ", "de 1 a {high}: "),
+    "choose_number": ("Its number: ", "Su número: "),
     "own_kit": ("The robot here: {robot}. tsc compiles for it.", "El robot de aquí: {robot}. tsc compila para él."),
     # a port that does not open
     "port_missing": ("tsc: there is no port {port}, nor any other. Plug in the cable, or pair the robot's Bluetooth, and try again.",
