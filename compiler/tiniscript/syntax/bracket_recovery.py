@@ -9,8 +9,8 @@ from tiniscript.source import Span
 from tiniscript.syntax.block_recovery import BlockRecovery
 from tiniscript.syntax.call_suggestions import call_in
 from tiniscript.syntax.clause_recovery import ClauseRecovery
-from tiniscript.syntax.cursor import AT_END, Cursor
-from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, QUOTES, WORD, Token
+from tiniscript.syntax.cursor import Cursor
+from tiniscript.syntax.lexer import QUOTES, WORD, Token
 from tiniscript.syntax.phrases import BEFORE_TIME, TIMES
 from tiniscript.syntax.reporter import Failed, Reporter, Resumed
 from tiniscript.syntax.sentence_recovery import SentenceRecovery
@@ -53,13 +53,9 @@ class BracketRecovery:
             self.sentence.so_often(word.span, known, rest, 0)
         if len(rest) > 1 and rest[0].kind in ("-", "=", "=>") and rest[1].kind == ">":
             rest = rest[2:]  # `F -> 2, 80`
-        if known.role == "motors":
-            rest = self._with_second_motor(rest)
         is_dash = known.role in ("move", "wait", "beep")  # no value of theirs is below 0
         if is_dash and len(rest) > 1 and rest[0].kind == "-" and rest[0].start == word.end:
             rest = rest[1:]  # `F-2, 80`
-        if not rest and cursor.token.kind == "{":
-            self._braces_for_brackets(word, known)
         span = Span(word.start, rest[-1].end if rest else word.end)
         is_def = known.role != "actuator" and self.in_block.is_name(word.text)  # `DEF B` comes
         fix = call_in(known, rest)
@@ -86,18 +82,6 @@ class BracketRecovery:
             raise Resumed
         raise Failed
 
-    def _with_second_motor(self, rest: list[Token]) -> list[Token]:
-        """`M 50;-50`: what stands alone behind the `;` is the other motor's power."""
-        cursor = self.cursor
-        tokens, k = cursor.tokens, cursor.i + 1
-        if len(rest) - (rest[:1] != [] and rest[0].kind == "-") != 1 or cursor.token.kind != ";":
-            return rest
-        end = k + (tokens[k].kind == "-")
-        if tokens[end].kind is not NUMBER or tokens[end + 1].kind not in AT_END:
-            return rest
-        cursor.i = end + 1
-        return [*rest, Token(",", ",", *tokens[k - 1].span), *tokens[k : end + 1]]
-
     def _letter_of_list(self, word: Token) -> None:
         """`b) R(1, 50)`, below `a) F(2, 80)`: what counts the lines."""
         cursor = self.cursor
@@ -107,24 +91,3 @@ class BracketRecovery:
             span = cursor.span_from(word)
             self.reporter.report(codes.LINE_NUMBER, span, found=cursor.source[span])
             raise Resumed
-
-    def _braces_for_brackets(self, word: Token, known: Word) -> NoReturn:
-        """`F{2, 80}`."""
-        cursor = self.cursor
-        start = cursor.i + 1
-        self.reporter.answer(cursor.token)
-        while cursor.token.kind not in ("}", NEWLINE, END):
-            cursor.i += 1
-        values = [
-            each._replace(kind=",") if each.kind == ";" else each
-            for each in cursor.tokens[start : cursor.i]
-        ]
-        fix = call_in(known, values)
-        place = word.span
-        if cursor.token.kind == "}":
-            self.reporter.answer(cursor.token)
-            cursor.i += 1
-            place = cursor.span_from(word)
-        self.reporter.fail(
-            codes.MISSING_OPEN, word.span, place, word=word.text, fix=fix, usage=known.usage
-        )

@@ -277,8 +277,6 @@ class ExpressionRecovery:
                 cursor.i += 1
             cursor.i += 1
             fail(codes.SEMICOLON_INSIDE, token.span)
-        if token.kind == "|":
-            self.questions.bar_for_or(token)
         if token.kind == "|" and self._close_comes() and starts_value(cursor.following):
             self._nothing_between(last, cursor.following, bracket)
         if token.kind == "=":

@@ -81,7 +81,6 @@ def foreign_word(parser: Grammar, word: Token, meant: str) -> None:
         construct.asked_behind(word)
         parser.recovery.in_block.other.around(word)
     if meant == "FOREVER":
-        parser.recovery.groups.forever(word)
         _report(parser, word, "LOOP(FOREVER)", "LOOP(FOREVER)")
         forever_alone(parser, word)
     if meant in ENDS:

@@ -16,7 +16,6 @@ from tiniscript.syntax.block_recovery import BlockRecovery
 from tiniscript.syntax.blocks import ENDS, HEADERS, Block
 from tiniscript.syntax.call_suggestions import written
 from tiniscript.syntax.cursor import AT_END, Cursor
-from tiniscript.syntax.ends import arm_at, comes_later
 from tiniscript.syntax.groups import Group, Groups
 from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, WORD, Token
 from tiniscript.syntax.near import ASKING, near_at
@@ -85,22 +84,6 @@ class GroupRecovery:
     def is_body(self, k: int) -> bool:
         """Whether the bracket at `k` holds instructions: `ELSE(B(1, 50))`."""
         return self.cursor.tokens[k].kind == "(" and self.seen.orders_at(k) is not None
-
-    def is_whole(self, header: Block, k: int) -> bool:
-        """Whether an IF with its body at `k` goes on there with ELSE, and has no end of its own."""
-        group = self.seen.orders_at(k)
-        tokens = self.cursor.tokens
-        if group is None or tokens[group.end].kind is not WORD or not arm_at(tokens, group.end):
-            return False
-        around = [each.word for each in self.in_block.blocks.open[:-1]]
-        return not comes_later(header.word, around, tokens, group.end)
-
-    def forever(self, word: Token) -> None:
-        """`FOREVER(F(1, 60);R(1, 60))`."""
-        group = self.seen.orders_at(self.cursor.i + 1)
-        if group is not None:
-            number = Token(WORD, "FOREVER", *word.span)
-            self._loop(number, group, self.cursor.i, group.end)
 
     def counted(self, number: Token) -> None:
         """`4 LOOP(F(1, 50))`, `4 veces (F(1, 50);S)`, `4(F(1, 50))`: behind `number`."""

@@ -9,7 +9,7 @@ from typing import NoReturn
 
 from tiniscript.diagnostics import codes
 from tiniscript.source import Span
-from tiniscript.syntax.blocks import ENDS, Block, Blocks
+from tiniscript.syntax.blocks import ENDS, Blocks
 from tiniscript.syntax.call_suggestions import written
 from tiniscript.syntax.cursor import AT_END, Cursor
 from tiniscript.syntax.lexer import NUMBER, ODD, WORD, Token
@@ -242,35 +242,6 @@ class HeaderRecovery:
         self.reporter.fail(codes.NOT_AN_INSTRUCTION, row[one].span, place, found="?", fix=fix)
 
     # -- a question in two brackets -----------------------------------------------------------
-
-    def second_question(self, header: Block) -> None:
-        """`IF(A)(B)`: both questions are asked."""
-        cursor, tokens = self.cursor, self.cursor.tokens
-        end = after_bracket(tokens, cursor.i)
-        row = tokens[cursor.i + 1 : end - 1] if end is not None else []
-        if header.word not in ("IF", "WHILE") or not any(t.kind in COMPARISONS for t in row):
-            return
-        if row[0].text in BLOCK_ENDS or (row[0].text in WORDS and WORDS[row[0].text].is_call):
-            return  # `IF(A)(IF(B);S;ENDIF)`
-        span = Span(cursor.last.start, cursor.token.end)
-        header.is_reported, cursor.i = True, end or cursor.i
-        self.reporter.report(codes.OTHER_SIGN, span, found=")(", right=" AND ")
-        self._go_on()
-
-    def question_goes_on(self, first: Token, header: Block) -> NoReturn:
-        """`IF (A) AND (B)`: the brackets go around the whole question."""
-        cursor = self.cursor
-        start = cursor.i
-        while cursor.tokens[start] is not first:
-            start -= 1
-        cursor.i = body_begins(cursor.tokens, cursor.i)
-        known = WORDS[first.text]
-        fix = head_in(known, cursor.tokens[start + 1 : cursor.i])
-        header.is_reported, header.head = True, None
-        span = cursor.span_from(first)
-        values = {"word": first.text, "fix": fix, "usage": known.usage}
-        self.reporter.report(codes.MISSING_OPEN, span, span, **values)
-        self._go_on()
 
     # -- the block that was meant -------------------------------------------------------------
 

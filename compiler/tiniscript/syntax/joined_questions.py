@@ -88,10 +88,3 @@ class JoinedQuestions:
             span = Span(before.start, word.end)
             found = self.cursor.source[span]
             self.reporter.fail(codes.OTHER_SIGN, span, found=found, right=before.text)
-
-    def bar_for_or(self, bar: Token) -> None:
-        """`DISTANCE < 10 | LIGHT_R > 50`: between two questions the sign is OR."""
-        tokens, k = self.cursor.tokens, self.cursor.after_newlines(self.cursor.i)
-        before = tokens[max(0, k - 2)].kind in COMPARISONS
-        if before and tokens[min(k + 2, len(tokens) - 1)].kind in COMPARISONS:
-            self.reporter.fail(codes.OTHER_SIGN, bar.span, found="|", right="OR")

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from tiniscript.diagnostics import codes
 from tiniscript.syntax.block_recovery import BlockRecovery
 from tiniscript.syntax.cursor import Cursor
-from tiniscript.syntax.lexer import WORD, Token
+from tiniscript.syntax.lexer import WORD
 from tiniscript.syntax.phrases import BETWEEN, FINALLY
-from tiniscript.syntax.reporter import Reporter, Resumed
+from tiniscript.syntax.reporter import Reporter
 from tiniscript.words import WORDS
 
 _TOO = frozenset(("TAMBIEN", "ADEMAS", "ALSO"))
@@ -18,20 +17,6 @@ class JoiningRecovery:
         self.cursor = cursor
         self.reporter = reporter
         self.in_block = in_block
-
-    def by_comma(self, comma: Token) -> None:
-        """`F(2, 80), y luego B(1, 80)`: one `;` stands for both."""
-        cursor = self.cursor
-        cursor.i += 1
-        count = self.words()
-        if not count or cursor.tokens[cursor.i + count].kind is not WORD:
-            cursor.i -= 1
-            return
-        cursor.i += count
-        span = cursor.span_from(comma)
-        mixed = cursor.source[span]
-        self.reporter.report(codes.EXTRA_WORD, span, found=mixed, fix="", mixed=mixed)
-        raise Resumed
 
     def _is_call(self, k: int) -> bool:
         return self.cursor.tokens[k].text in WORDS and self.cursor.tokens[k + 1].kind == "("

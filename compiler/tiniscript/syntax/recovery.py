@@ -27,7 +27,7 @@ from tiniscript.syntax.lexer import NUMBER, ODD, WORD, Token
 from tiniscript.syntax.name_recovery import NameRecovery
 from tiniscript.syntax.note_recovery import NoteRecovery
 from tiniscript.syntax.operators import SIGNS
-from tiniscript.syntax.phrases import AFTER_HEADER, AT_ONCE, BESIDE, BETWEEN
+from tiniscript.syntax.phrases import AFTER_HEADER, AT_ONCE, BESIDE
 from tiniscript.syntax.reporter import Failed, Reporter, Resumed
 from tiniscript.syntax.setup_recovery import SetupRecovery
 from tiniscript.syntax.suggestions import after_bracket, shortened
@@ -149,7 +149,6 @@ class Recovery:
         if role == "until":
             self.of_until.after_its_move(word, parser.argument_of)
         if role == "forever":
-            self.groups.forever(word)
             fix = {"fix": "LOOP(FOREVER)", "right": "LOOP"} if begins_forever(parser) else {}
             self.reporter.report(codes.FOREVER_NOT_HERE, word.span, None, **fix)
             if self.cursor.following.kind == "(":
@@ -190,10 +189,7 @@ class Recovery:
         if header is not None and header.word == "DEF" and (kind is WORD or text in ("=", ":")):
             self.groups.line_of_def(header)
         if header is not None and kind == "(":
-            if first.text == "IF" and self.groups.is_whole(header, cursor.i):
-                self._line_of(header, token)  # `IF(c)(S)ELSE(B(1, 50))`
             self.groups.body(header, cursor.i)
-            self.in_block.other.second_question(header)
         if header is None:
             self.of_call.no_more()
         if self.kit is not None and header is None:
@@ -216,8 +212,6 @@ class Recovery:
         is_glued = before.kind is WORD and before.end == token.start and token.end == after.start
         if text == "." and after.kind is WORD and is_glued:  # `motorA.setSpeed(200)`
             self._dotted(first, token)
-        if kind == "," and header is None and after.text in BETWEEN:
-            self.joining.by_comma(token)
         is_colon = kind is ODD and text == ":" and header is not None
         if is_colon or ((kind == "," or text in (".", ":")) and after.kind is WORD):
             if header is None or not header.is_reported:
@@ -238,9 +232,6 @@ class Recovery:
             fail(codes.MISSING_SEPARATOR, token.span, Span(first.start, token.end), fix=fix)
         if header is None:
             self.of_name.note_behind(first, token, after)
-        if header is not None and first.text in WORDS and WORDS[first.text].arguments:
-            if kind in SIGNS or text in ("AND", "OR"):
-                self.in_block.other.question_goes_on(first, header)
         self.times.times_behind(first, token, before)
         if kind == "-" and after.kind == ">":  # `F(2, 80) -> R(1, 50)`
             cursor.tokens[cursor.i : cursor.i + 2] = [Token("→", "->", token.start, after.end)]
