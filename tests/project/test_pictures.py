@@ -1,4 +1,4 @@
-"""The pictures of worlds and guides: robots have driven in them, and nothing is outside."""
+"""Pictures of README's front, of worlds and of guides: robots drive, and nothing is cut off."""
 
 from __future__ import annotations
 
@@ -8,13 +8,49 @@ import pytest
 
 from tests.machines.wasm import missing
 from tests.support.platformio import need
+from tiniscript.robots.profile import LANGUAGES
 from tiniscript.virtual import worlds
-from tools.generate import arena
+from tools.generate import arena, front
 from tools.generate.guide_pictures import DRIVES as DRIVES_OF_GUIDES
 from tools.generate.guide_pictures import guide_pictures
 from tools.generate.world_pictures import DRIVES, world_picture
 
 SVG = "{http://www.w3.org/2000/svg}"
+SIGN = 0.602  # the width of a sign, of its size
+
+
+@pytest.fixture(params=LANGUAGES)
+def drawing(request: pytest.FixtureRequest) -> ElementTree.Element:
+    need(missing())
+    return ElementTree.fromstring(front.front(request.param, "a test"))
+
+
+def test_nothing_is_cut_off(drawing: ElementTree.Element) -> None:
+    right = front.PAD + front.LEFT_WIDTH - 16
+    for text in drawing.iter(f"{SVG}text"):
+        if "Mono" in text.get("font-family", ""):
+            shown = "".join(text.itertext())
+            end = float(text.get("x", "")) + len(shown) * SIGN * float(text.get("font-size", ""))
+            assert end <= right, shown
+        assert float(text.get("y", "")) <= front.HEIGHT - 16
+    for shape in (*drawing.iter(f"{SVG}polygon"), *drawing.iter(f"{SVG}polyline")):
+        for point in shape.get("points", "").split():
+            x, y = (float(each) for each in point.split(","))
+            assert right < x < front.WIDTH
+            assert 0 < y < front.HEIGHT
+
+
+def test_the_robot_drives_around(drawing: ElementTree.Element) -> None:
+    way = next(drawing.iter(f"{SVG}polyline")).get("points", "").split()
+    assert len(set(way)) > 10
+    assert len(list(drawing.iter(f"{SVG}polygon"))) == 14  # the arena, twelve boxes, the robot
+
+
+def test_what_a_program_does_is_printed(drawing: ElementTree.Element) -> None:
+    shown = ["".join(text.itertext()) for text in drawing.iter(f"{SVG}text")]
+    assert "1000 MOTORS 0 0" in shown
+    assert any("[TS102]" in row for row in shown)
+    assert any("[TS012]" in row for row in shown)
 
 
 def test_every_world_and_its_way_are_inside_of_the_picture() -> None:

@@ -1,14 +1,16 @@
-"""Programs that stop in the middle, without a line end behind their last word."""
+"""Programs that stop in the middle, and long rows: each is read to its end, and once."""
 
 from __future__ import annotations
 
 import re
+import time
 
 import pytest
 
 from tests.pupils.corpus import check, entries
 
 WORDS = re.compile(r"\w+|[^\w\s]")
+MOST_S = 4.0  # on a slow machine; where each word reads the whole row, it is far more
 
 
 @pytest.mark.parametrize(
@@ -28,3 +30,21 @@ def test_all_cut_programs_end() -> None:
     assert len(cut) > 200
     for program in cut:
         check(program)
+
+
+@pytest.mark.parametrize(
+    "program",
+    [
+        "SI|" + ";".join(f"foo{k}" for k in range(5000)),
+        "SI|" + "F(1, 80) voy " * 3000,
+        "idem\n" * 8000,
+        "X=Y=5\n" * 4000,
+        "X=5;X=TRUE\n" * 4000,
+        "F(1,50). " * 16000,
+    ],
+    ids=["words", "notes", "again", "equal", "kinds", "stops"],
+)
+def test_a_long_row_is_read_once(program: str) -> None:
+    begin = time.process_time()
+    assert any(each.is_mistake for each in check(program))
+    assert time.process_time() - begin < MOST_S
