@@ -7,7 +7,10 @@ import re
 import signal
 import subprocess
 import sys
+from argparse import Namespace
 from pathlib import Path
+from types import SimpleNamespace
+from typing import cast
 
 import pytest
 
@@ -18,7 +21,8 @@ from tests.support.link_events import event
 from tests.support.virtual_robot import Talk, missing, robot_in
 from tests.support.waiting import HANGS_S
 from tiniscript import compile_text, robots
-from tiniscript.cli.commands.live import HELP_ME, LEAVE, Catch, wished
+from tiniscript.cli.commands.live import HELP_ME, LEAVE, Catch, Repl, wished
+from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.event_printer import Bookkeeping, EventPrinter
 from tiniscript.cli.robot.live_mark import MARK
 from tiniscript.cli.robot.live_state import Known
@@ -312,6 +316,12 @@ def test_whole_lines_at_the_prompt_that_are_for_tsc() -> None:
         assert wished(line, known) == "", line
     known.defs["EXIT"] = "DEF EXIT; S; END_DEF"
     assert wished("exit", known) == ""  # it is the person's own
+
+
+def test_help_at_the_prompt_names_what_the_robot_has() -> None:
+    known, connection = Known(robots.load("tinibot").kit), SimpleNamespace(language="en")
+    told = Repl(cast(Connection, connection), known, Namespace())._help()
+    assert all(sensor.name in told for sensor in known.kit.sensors)
 
 
 def test_a_variable_may_have_the_value_of_the_mark(capsys: pytest.CaptureFixture[str]) -> None:

@@ -214,8 +214,11 @@ def test_a_head_ends_at_16_kilobytes(server: serving.Server, line: bytes) -> Non
     assert post(server)[0] == 200
 
 
-def test_the_page_that_has_asked_last_is_kept(server: serving.Server) -> None:
+def test_the_page_that_has_asked_last_is_kept(
+    server: serving.Server, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Where all have shown the token, the one is closed that has asked nothing for longest."""
+    monkeypatch.setattr(serving._Handler, "timeout", 10 * HANGS_S)  # none is left as silent
     server.most_connections = 2
     own = f"127.0.0.1:{server.server_port}"
     headers = {"Origin": f"http://{own}", serving.TOKEN: server.entrances.token}
