@@ -88,6 +88,15 @@ def test_an_explanation_has_a_slip_and_its_edits(
     assert (said.code, said.slip, said.edits) == (code, slip, [edit])
 
 
+def test_a_line_is_searched_once_for_the_same_names() -> None:
+    line = lexemes("F(2 80)")
+    one, same, other = (Names([lexemes(text)], marks.KIT) for text in ("", "", "X = 1"))
+    found = lines.read(line, one)
+    assert lines.read(line, same) is found
+    assert lines.read(line, other) is not found
+    assert lines.read(line, one.joined(other)) is lines.read(line, other)
+
+
 def test_the_parser_says_where_it_cannot_go_on() -> None:
     names = Names([], marks.KIT)
     assert lines.right(lexemes("S; F(2 80)"), names) == Failure(2, 5)

@@ -200,11 +200,23 @@ class Names:
             frozenset(self.actuators),
         )
 
+    @cached_property
+    def _content(self) -> tuple[object, ...]:
+        words = (frozenset(each) for each in (self.variables, self.defs, self.in_brackets))
+        return (self.sensors, *words, frozenset(self.rows), frozenset(self.actuators.values()))
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Names) and self._content == other._content
+
+    def __hash__(self) -> int:
+        return hash(self._content)
+
     def joined(self, other: Names) -> Names:
         """Return the names of two readings of one program."""
         found = copy.copy(self)
         found.variables, found.defs = self.variables | other.variables, self.defs | other.defs
-        found.__dict__.pop("known", None)
+        for cached in ("known", "_content"):
+            found.__dict__.pop(cached, None)
         found._labels = {}
         return found
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import heapq
 from collections.abc import Callable, Iterator, Sequence
+from functools import lru_cache
 from typing import NamedTuple
 
 from tiniscript.recovery import rewrites, rows
@@ -34,6 +35,7 @@ RIVALS = 4
 LONGEST = 300  # tokens of a line
 LONGEST_WITH_SLIPS = 40
 _FIRST_STEPS = 30
+_REMEMBERED = 128  # lines: a repair that is tried changes one line of a program
 _SETUP = 2  # tokens: `SI|`
 _AT_END = ("LOOP", "IF", "WHILE", "DEF", "ELSEIF", "UNTIL")
 
@@ -103,7 +105,12 @@ def _is_bare_end(tokens: Sequence[Lexeme], k: int, names: Names) -> bool:
 
 
 def read(tokens: Sequence[Lexeme], names: Names) -> Readings:
-    """Return the cheapest readings of a line."""
+    """Return the cheapest readings of a line, which nobody may change: they are kept."""
+    return _read(tuple(tokens), names)
+
+
+@lru_cache(maxsize=_REMEMBERED)
+def _read(tokens: tuple[Lexeme, ...], names: Names) -> Readings:
     has_setup = len(tokens) > 1 and tokens[1].text == "|" and tokens[0].text in ("SI", "SB")
     setup = list(tokens[:_SETUP]) if has_setup else []
     search = _Search(names)
