@@ -106,6 +106,7 @@ BREAKS = [
 ]  # fmt: skip
 
 
+@pytest.mark.sampled("file", "old", "new", "named", keep=10)
 @pytest.mark.parametrize(("file", "old", "new", "named"), BREAKS, ids=[b[1] for b in BREAKS])
 def test_a_broken_machine_is_told(
     file: str, old: str, new: str, named: str, tsc: Tsc, tmp_path: Path

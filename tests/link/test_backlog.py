@@ -11,7 +11,7 @@ from tiniscript.link.payloads import DoneEvent, FaultEvent, ShowEvent
 from tiniscript.link.session import Session
 
 CHATTER = b"debug: the battery has 7.4 V and all is well\r\n" * 20
-PIECES = 2000  # of it, 1.8 MB: three minutes at 115200 baud
+PIECES = 400  # of it, 8,000 lines: half a minute at 115200 baud
 MOST_BYTES = 500_000  # that what is kept of that may take
 
 

@@ -105,6 +105,7 @@ def broken(name: str, tmp_path: Path) -> CppDamage:
 
 
 @needs_host
+@pytest.mark.sampled("name", keep=2)
 @pytest.mark.parametrize("name", BREAKS)
 def test_a_stop_that_is_missed_is_seen(name: str, tmp_path: Path) -> None:
     with pytest.raises(AssertionError, match="prefix"):
@@ -112,6 +113,7 @@ def test_a_stop_that_is_missed_is_seen(name: str, tmp_path: Path) -> None:
 
 
 @needs_host
+@pytest.mark.sampled("name", keep=2)
 @pytest.mark.parametrize("name", FALSE_STOPS)
 def test_a_false_stop_is_seen(name: str, tmp_path: Path) -> None:
     assert false_stops(broken(name, tmp_path), FRAMES // 10, SEED)[1] > 0

@@ -334,13 +334,13 @@ def test_texts_with_other_mistakes_are_formatted_too() -> None:
     """Where the shape is right, names, kinds and ranges may be wrong; and nothing ever raises."""
     rng = random.Random("broken")
     checked = 0
-    for _ in range(3000):
+    for _ in range(1000):
         text = broken(rng, program(rng, WIDE_KIT))
         after(text)
         if not has_mistakes(text):
             check(text)
             checked += 1
-    assert checked > 200
+    assert checked > 60
 
 
 @pytest.mark.parametrize(
