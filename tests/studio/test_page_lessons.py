@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 FOLDERS = catalogue.folders()
 SLOW = "SI|LOOP(FOREVER);SHOW(1);END_LOOP"  # thousands of actions in a second
-PATIENCE_MS = 90_000
+PATIENCE_MS = 240_000  # a busy computer drives through all worlds of a lesson
 
 
 @pytest.fixture
@@ -42,13 +42,21 @@ def check(page: Page, program: str) -> tuple[str, list[str]]:
     return str(verdict), page.locator("#lesson_findings li").all_inner_texts()
 
 
-@pytest.mark.parametrize("number", range(1, len(FOLDERS) + 1))
-def test_a_lesson_gives_the_verdict_of_the_command(page: Page, number: int) -> None:
+def test_each_lesson_says_of_a_wrong_answer_what_the_command_says(page: Page) -> None:
     """What `tsc lesson check` says of each answer is tested with the lessons."""
-    right, wrong = catalogue.answers(FOLDERS[number - 1])
+    for number, folder in enumerate(FOLDERS, 1):
+        _, wrong = catalogue.answers(folder)
+        choose(page, number)
+        said = check(page, wrong[0].program)
+        assert said == ("failed", [wrong[0].said["en"], *rest(page)]), number
+        assert page.inner_text("#lesson_said").startswith("Not yet"), number
+
+
+@pytest.mark.sampled("number", keep=4)
+@pytest.mark.parametrize("number", range(1, len(FOLDERS) + 1))
+def test_a_lesson_is_solved_by_its_answer(page: Page, number: int) -> None:
+    right, _ = catalogue.answers(FOLDERS[number - 1])
     choose(page, number)
-    assert check(page, wrong[0].program) == ("failed", [wrong[0].said["en"], *rest(page)])
-    assert page.inner_text("#lesson_said").startswith("Not yet")
     assert check(page, right[0].program) == ("passed", [])
     lesson = catalogue.load(FOLDERS[number - 1])
     worlds = f", in {lesson.worlds} worlds" if lesson.worlds > 1 else ""
