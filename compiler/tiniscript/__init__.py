@@ -14,8 +14,7 @@ if TYPE_CHECKING:
     from tiniscript.library.compiling import Compiled as Compiled
     from tiniscript.library.compiling import check_text as check_text
     from tiniscript.library.compiling import compile_text as compile_text
-    from tiniscript.library.connecting import connect
-    from tiniscript.library.connection import Receipt, RobotConnection, RobotInfo
+    from tiniscript.library.connection import Receipt, RobotConnection, RobotInfo, connect
     from tiniscript.library.errors import (
         ProgramError,
         RobotError,
@@ -56,8 +55,7 @@ __all__ = (  # what `docs/api.en.md` promises
 _HOMES = {
     "diagnostics.rendering": ("Message",),
     "library.compiling": ("Compiled", "check_text", "compile_text"),
-    "library.connecting": ("connect",),
-    "library.connection": ("Receipt", "RobotConnection", "RobotInfo"),
+    "library.connection": ("Receipt", "RobotConnection", "RobotInfo", "connect"),
     "library.events": ("Ending", "RobotEvent"),
     "library.errors": (
         "ProgramError",

@@ -1,4 +1,4 @@
-"""Source text and places in it.
+"""Source text and places in it; and text of others as a terminal may have it.
 
 Knows how bytes become text and where a line begins. Knows nothing of the language.
 Places are counted in characters from 0; people see lines and columns from 1.
@@ -104,3 +104,17 @@ def decode(data: bytes) -> str:
     if nul >= 0:
         raise Unreadable("binary", len(text[:nul].encode()))
     return text
+
+
+INSTEAD = "?"  # of a character that is not printable
+
+
+def printable(text: str, most: int | None = None) -> str:
+    """Return a text without control characters, line ends and marks of direction.
+
+    What is longer than `most` characters is cut, which the reader can see.
+    """
+    cut = text if most is None else text[:most]
+    if not cut.isprintable():
+        cut = "".join(letter if letter.isprintable() else INSTEAD for letter in cut)
+    return cut + "…" if len(cut) < len(text) else cut

@@ -2,19 +2,17 @@
 
 Knows names, argument counts, ranges and units. Does not know how they are compiled. Ranges
 are thousandths. The words of a kit (its sensors and actuators) come from `kit`, not from here.
+`Speller` finds the word that a misspelt one was meant to be; it knows how Spanish sounds.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import re
+from collections.abc import Iterable, Iterator
 from functools import cache, lru_cache
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from tiniscript.fixed_point import HIGHEST, LOWEST
-
-if TYPE_CHECKING:
-    from tiniscript.spelling import Speller
-
 
 # Roles of instructions: these have values in brackets, and STOP does something, too. A new role of a
 # word that does something is a name here.
@@ -326,7 +324,6 @@ def _meant_in_two(word: str) -> str | None:
 
 @cache
 def _speller() -> Speller:
-    from tiniscript.spelling import Speller  # a right program needs it not
 
     return Speller([*WORDS, *_KNOWN_OTHERWISE, *_meanings()])
 
@@ -377,3 +374,78 @@ def _edits(one: str, other: str) -> int:
             row.append(least)
         before_last, last = last, row
     return last[-1]
+
+
+_ALIKE = 4  # letters that a word needs where only its sound is the same
+_SWAPPED = 5  # … where two neighbours are exchanged
+_SLIPPED = 6  # … where a letter is wrong, missing or too much
+_LONGEST = 24
+
+
+@cache
+def _sounds() -> tuple[tuple[re.Pattern[str], str], ...]:
+    """What sounds the same in Lima: the sign on the right stands for all that is on the left."""
+    return tuple(
+        (re.compile(pattern), sound)
+        for pattern, sound in (
+            ("CH", "9"), ("SH", "9"), ("X", "9"), ("H", ""), ("QU(?=[EI])", "K"),
+            ("C(?=[EI])", "S"), ("[CQ]", "K"), ("Z", "S"), ("V", "B"), ("LL", "Y"),
+            ("G(?=[EI])", "J"), (r"(.)\1", r"\1"),
+        )
+    )  # fmt: skip
+
+
+class Speller:
+    """The words that are looked for. A lookup takes the same time however many they are."""
+
+    def __init__(self, words: Iterable[str]) -> None:
+        self._by_sound: dict[str, str] = {}
+        self._by_rest: dict[str, list[str]] = {}
+        for word in words:
+            if len(word) >= _ALIKE:
+                self._by_sound.setdefault(_sound(word), word)
+            if len(word) >= _SWAPPED:
+                for rest in _rests(word):
+                    self._by_rest.setdefault(rest, []).append(word)
+
+    def alike(self, word: str) -> str | None:
+        """Return the word that sounds like `word`, or None."""
+        if not _ALIKE <= len(word) <= _LONGEST:
+            return None
+        return self._by_sound.get(_sound(word))
+
+    def near(self, word: str) -> str | None:
+        """Return a word that is one slip of the finger away from `word`, or None."""
+        if not _SWAPPED <= len(word) <= _LONGEST or not word.isalpha():
+            return None
+        for rest in _rests(word):
+            for other in self._by_rest.get(rest, ()):
+                if _is_slip(word, other):
+                    return other
+        return None
+
+
+def _sound(word: str) -> str:
+    for pattern, sound in _sounds():
+        word = pattern.sub(sound, word)
+    return word
+
+
+def _rests(word: str) -> Iterator[str]:
+    """Give the word, and what is left of it without one of its letters."""
+    yield word
+    for k in range(len(word)):
+        yield word[:k] + word[k + 1 :]
+
+
+def _is_slip(one: str, other: str) -> bool:
+    """Whether one letter is wrong, missing or too much, or two neighbours are exchanged."""
+    k = 0
+    while k < min(len(one), len(other)) and one[k] == other[k]:
+        k += 1
+    one, other = one[k:], other[k:]
+    if len(one) == len(other) and one[:2] == other[1::-1] and one[2:] == other[2:]:
+        return True
+    if min(len(one), len(other)) + k < _SLIPPED:  # `AVNZA`: a vowel that nobody texts
+        return len(other) + k >= _SLIPPED and other[:1] in tuple("AEIOU") and one == other[1:]
+    return one[1:] in (other, other[1:]) or one == other[1:]

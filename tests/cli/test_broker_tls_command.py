@@ -132,7 +132,7 @@ def test_options_that_make_no_sense(words: list[str], said: str, tmp_path: Path)
 
 def test_every_state_of_a_broker_has_a_sentence() -> None:
     from tiniscript.cli.robot.robot_broker import NOT_BEGUN
-    from tiniscript.cli.texts.classroom import CLASS_TEXTS
+    from tiniscript.cli.texts.network import NETWORK_TEXTS
 
     for state, _ in WIFI_STATES:
-        assert state in NOT_BEGUN or f"broker_{state.lower()}" in CLASS_TEXTS
+        assert state in NOT_BEGUN or f"broker_{state.lower()}" in NETWORK_TEXTS

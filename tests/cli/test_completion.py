@@ -15,7 +15,7 @@ import pytest
 from tests.support.command import Tsc
 from tests.support.verbs import parsers
 from tiniscript import robots
-from tiniscript.cli import completion
+from tiniscript.cli.commands import completion
 from tiniscript.cli.texts.verbs import VERBS
 from tiniscript.diagnostics.codes import CODES
 

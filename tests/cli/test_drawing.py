@@ -17,9 +17,8 @@ import pytest
 
 from tests.support.virtual_robot import missing
 from tiniscript import compile_text, robots
-from tiniscript.cli.terminal import run_drawing, sketch, world_drawing
+from tiniscript.cli.terminal import FRAME_S, run_drawing, sketch, world_drawing
 from tiniscript.cli.terminal import screen as terminal_screen
-from tiniscript.cli.terminal.pace import FRAME_S
 from tiniscript.virtual import worlds
 from tiniscript.virtual.robot import Settings, VirtualRobot
 from tiniscript.vm.trace import Ending, Event, Senses, run

@@ -20,9 +20,9 @@ from tests.support.casefile import ROOT
 from tests.support.command import TSC, Done, Tsc, rest_of
 from tests.support.platformio import need
 from tests.support.waiting import HANGS_S, until
-from tiniscript import children
 from tiniscript.cli import fetching
 from tiniscript.files import cache_folder
+from tiniscript.flash import children
 from tiniscript.library import install_advice
 from tiniscript.studio import building, serving
 

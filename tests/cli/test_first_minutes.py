@@ -23,8 +23,7 @@ from tests.support.waiting import HANGS_S
 from tiniscript import compile_text, robots
 from tiniscript.cli.commands.live import HELP_ME, LEAVE, Catch, Repl, wished
 from tiniscript.cli.robot.connect import Connection
-from tiniscript.cli.robot.event_printer import Bookkeeping, EventPrinter
-from tiniscript.cli.robot.live_mark import MARK
+from tiniscript.cli.robot.event_printer import MARK, Bookkeeping, EventPrinter
 from tiniscript.cli.robot.live_state import Known
 from tiniscript.link import known_ports, ports
 from tiniscript.link.outcomes import Event, MissedEvent
@@ -191,16 +190,16 @@ def test_stop_stops_all_that_are_in_use() -> None:
 def test_the_last_used_port_is_stopped_with_those_that_are_in_use(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    from tiniscript.cli.robot import in_use
+    from tiniscript.cli.robot import in_reach
 
     usb = tmp_path / "usb"
     known_ports.remember(str(usb), "TINI")
     here = [Running("socket://127.0.0.1:5", "tinibot", "light", "", "", "upload")]
     monkeypatch.setattr(directory, "running", lambda: here)
-    assert in_use.to_stop() == ["socket://127.0.0.1:5"]  # the cable is out
+    assert in_reach.to_stop() == ["socket://127.0.0.1:5"]  # the cable is out
     usb.touch()
-    assert in_use.to_stop() == ["socket://127.0.0.1:5", str(usb)]
-    assert in_use.to_stop(is_virtual=True) == ["socket://127.0.0.1:5"]
+    assert in_reach.to_stop() == ["socket://127.0.0.1:5", str(usb)]
+    assert in_reach.to_stop(is_virtual=True) == ["socket://127.0.0.1:5"]
 
 
 @needs_robot

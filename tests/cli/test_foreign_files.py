@@ -11,7 +11,7 @@ from tests.machines.host_firmware import missing
 from tests.support.command import Tsc, process
 from tests.support.pty_robot import PtyRobot, on
 from tiniscript import robots
-from tiniscript.cli.made import is_foreign
+from tiniscript.cli.paths import is_foreign
 
 PROGRAM = "SI|F(0.1, 50)"
 FOREIGN = (

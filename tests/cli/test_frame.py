@@ -10,9 +10,9 @@ from rich.console import Console
 from rich.text import Text
 
 from tiniscript.cli.terminal.fleet_table import FleetTable
-from tiniscript.cli.terminal.frame import BEGIN, END, Frame
 from tiniscript.cli.terminal.plot import ROWS, Plot, scale
 from tiniscript.cli.terminal.run_drawing import Picture
+from tiniscript.cli.terminal.screen import BEGIN, END, Frame
 
 pyte = pytest.importorskip("pyte")
 

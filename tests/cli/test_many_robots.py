@@ -19,8 +19,7 @@ from tests.support.robot_fleet import RobotFleet
 from tests.support.waiting import HANGS_S
 from tiniscript import robots
 from tiniscript.cli.robot.fleet import Fleet
-from tiniscript.cli.robot.member import Member, Result
-from tiniscript.cli.robot.targets import Target
+from tiniscript.cli.robot.member import Member, Result, Target
 from tiniscript.cli.terminal.fleet_table import FleetTable
 from tiniscript.library import opening
 from tiniscript.link import known_ports, ports

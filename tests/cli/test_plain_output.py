@@ -12,7 +12,7 @@ from tests.support.command import PROGRAM, Tsc
 from tests.support.verbs import parsers, values_of
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.texts.common import LONGEST, Said, text
-from tiniscript.printable import printable
+from tiniscript.source import printable
 
 # ESC and a colour, a C1 control, a line of its own, backspaces, and marks that turn the direction
 EVIL = "\x1b[31mx\x9b2J\r\ntsc: done\x08\x7f\u202e\u2066\u200f\u2028"

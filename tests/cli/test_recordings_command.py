@@ -14,14 +14,14 @@ from tests.support.virtual_robot import missing
 from tiniscript import compile
 from tiniscript.cli.commands import upload
 from tiniscript.cli.errors import CommandError
-from tiniscript.cli.made import is_foreign
+from tiniscript.cli.paths import is_foreign
 from tiniscript.cli.robot import recorder
 from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.event_printer import EventPrinter
 from tiniscript.cli.robot.recorder import Recorder
 from tiniscript.cli.robot.run_monitor import Saving
 from tiniscript.cli.robot.simulator import CommandSimulator
-from tiniscript.cli.texts.recordings import RECORDING_TEXTS
+from tiniscript.cli.texts.simulator import VIRTUAL_TEXTS
 from tiniscript.studio import recordings
 from tiniscript.studio.recordings import Recorded, read, replay
 from tiniscript.virtual import worlds
@@ -129,7 +129,7 @@ def test_a_recording_that_another_program_has_saved_is_read(
 )
 def test_the_command_says_what_the_page_says(what: str) -> None:
     page = PAGE_TEXTS.read_text(encoding="utf-8")
-    for said in RECORDING_TEXTS[f"replay_{what}"]:
+    for said in VIRTUAL_TEXTS[f"replay_{what}"]:
         assert f"'{said}'" in page
 
 

@@ -13,7 +13,7 @@ from tests.support.pty_end import PtyEnd
 from tests.support.simulated_ends import Nobody
 from tests.support.waiting import HANGS_S, until
 from tiniscript.cli.commands import firmware
-from tiniscript.cli.terminal import waiting
+from tiniscript.cli.terminal import progress
 from tiniscript.flash import avrdude
 from tiniscript.flash.bootloaders import UNO
 from tiniscript.flash.ready import Ready
@@ -23,7 +23,7 @@ from tiniscript.library import opening
 def looks_on(monkeypatch: pytest.MonkeyPatch) -> None:
     """Let a person look on, for whom everything takes long."""
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
-    monkeypatch.setattr(waiting, "MOMENT_S", 0.0)
+    monkeypatch.setattr(progress, "MOMENT_S", 0.0)
 
 
 @pytest.fixture
@@ -48,7 +48,7 @@ def test_a_moment_is_not_worth_a_word(
     tsc: Tsc, silent: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     looks_on(monkeypatch)
-    monkeypatch.setattr(waiting, "MOMENT_S", HANGS_S)
+    monkeypatch.setattr(progress, "MOMENT_S", HANGS_S)
     assert "Waiting" not in tsc("ping", "--port", silent).err
 
 

@@ -10,7 +10,7 @@ import pytest
 from tests.support.fake_computer import FakeComputer
 from tests.support.simulated_ends import Firmware, Nobody
 from tests.support.simulated_wire import SimulatedWire
-from tiniscript.doctor import computer, systems
+from tiniscript.doctor import computer, diagnosis
 from tiniscript.doctor.examination import Expected
 from tiniscript.doctor.findings import CAUSES
 from tiniscript.doctor.line import Line, looked
@@ -90,6 +90,6 @@ def test_a_computer_that_tells_anything(tmp_path: Path, platform: str, seed: int
     system.write("/etc/group", "".join(chance.choice(("a:x:20:b", ":", "\n")) for _ in range(9)))
     system.write("/sys/class/bluetooth/hci0/x", "")
     system.owners["/dev/x"] = (20, True)
-    told = systems.looked(system)
+    told = diagnosis.looked(system)
     assert told.bluetooth in (computer.ON, computer.OFF, computer.NONE, computer.UNKNOWN)
-    systems.access(system, "/dev/x")
+    diagnosis.access(system, "/dev/x")

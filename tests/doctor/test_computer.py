@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from tests.support.fake_computer import FakeComputer
-from tiniscript.doctor import computer, systems
+from tiniscript.doctor import computer, diagnosis
 from tiniscript.doctor.computer import NONE, OFF, ON, UNKNOWN, Adapter, is_module, looks_wireless
 from tiniscript.doctor.system import ThisComputer
 
@@ -29,13 +29,13 @@ def linux(tmp_path: Path) -> FakeComputer:
 
 def test_a_computer_without_anything(linux: FakeComputer) -> None:
     linux.usb("usb1", "1d6b", "0002")  # its own hub
-    found = systems.looked(linux)
+    found = diagnosis.looked(linux)
     assert (found.adapters, found.bluetooth, found.paired) == ((), NONE, ())
     assert found.has_module is False
 
 
 def test_where_there_is_no_sysfs_nothing_is_known_of_usb(linux: FakeComputer) -> None:
-    assert systems.looked(linux).adapters is None
+    assert diagnosis.looked(linux).adapters is None
 
 
 @pytest.mark.parametrize(
@@ -47,17 +47,17 @@ def test_an_adapter_with_and_without_its_driver(
     linux: FakeComputer, vendor: str, product: str, chip: str
 ) -> None:
     linux.usb("1-1", vendor, product)
-    (adapter,) = systems.looked(linux).adapters or ()
+    (adapter,) = diagnosis.looked(linux).adapters or ()
     assert (adapter.chip, adapter.driver, adapter.has_port) == (chip, "", False)
     linux.usb("1-1", vendor, product, driver="some", tty="ttyUSB0")
-    (adapter,) = systems.looked(linux).adapters or ()
+    (adapter,) = diagnosis.looked(linux).adapters or ()
     assert adapter == Adapter(chip, adapter.wants, "some", True)
 
 
 def test_an_adapter_that_brltty_has_taken(linux: FakeComputer) -> None:
     linux.usb("1-1", "1a86", "7523", driver="usbfs")
     linux.program(77, "brltty")
-    found = systems.looked(linux)
+    found = diagnosis.looked(linux)
     assert found.adapters == (Adapter("CH340", "ch341", "usbfs", False),)
     assert found.programs == {"brltty"}
 
@@ -66,18 +66,18 @@ def test_bluetooth_of_linux(linux: FakeComputer) -> None:
     linux.write("/sys/class/bluetooth/hci0/address", "00:11:22:33:44:55")
     linux.write("/sys/class/rfkill/rfkill1/type", "wlan")
     linux.write("/sys/class/rfkill/rfkill1/soft", "1")
-    found = systems.looked(linux)
+    found = diagnosis.looked(linux)
     assert (found.bluetooth, found.paired, found.has_module) == (ON, None, None)
     linux.outputs["bluetoothctl", "paired-devices"] = "Device 98:D3:31:F5:00:01 HC-05\n"
-    assert systems.looked(linux).has_module is True
+    assert diagnosis.looked(linux).has_module is True
     linux.outputs["bluetoothctl", "devices", "Paired"] = (
         "Device 98:D3:31:F5:00:01 Telephone of Ana\nnonsense\n"
     )
-    found = systems.looked(linux)
+    found = diagnosis.looked(linux)
     assert (found.paired, found.has_module) == (("Telephone of Ana",), False)
     linux.write("/sys/class/rfkill/rfkill0/type", "bluetooth")
     linux.write("/sys/class/rfkill/rfkill0/hard", "1")
-    assert systems.looked(linux).bluetooth == OFF
+    assert diagnosis.looked(linux).bluetooth == OFF
 
 
 def test_who_may_use_a_port_and_who_does(linux: FakeComputer) -> None:
@@ -85,15 +85,15 @@ def test_who_may_use_a_port_and_who_does(linux: FakeComputer) -> None:
     linux.write(port, "")
     linux.write("/etc/group", "root:x:0:\ndialout:x:20:ana\nbroken\n")
     linux.owners[port] = (20, False)
-    assert systems.access(linux, port) == computer.Access(False, "dialout", False, ())
+    assert diagnosis.access(linux, port) == computer.Access(False, "dialout", False, ())
     linux.user_name = "ana"
-    assert systems.access(linux, port).is_joined
+    assert diagnosis.access(linux, port).is_joined
     linux.owners[port] = (20, True)
     linux.group_numbers = {20}
     linux.program(5, "minicom", opens="/dev/ttyUSB1")
-    assert systems.access(linux, port) == computer.Access(True, "dialout", False, ())
+    assert diagnosis.access(linux, port) == computer.Access(True, "dialout", False, ())
     linux.program(6, "ModemManager", opens=port)
-    assert systems.access(linux, port).users == ("ModemManager",)
+    assert diagnosis.access(linux, port).users == ("ModemManager",)
 
 
 def test_a_program_of_another_user_is_known_by_its_lock(linux: FakeComputer) -> None:
@@ -102,14 +102,14 @@ def test_a_program_of_another_user_is_known_by_its_lock(linux: FakeComputer) -> 
     linux.owners[port] = (20, True)
     linux.program(812, "screen")
     linux.write("/run/lock/LCK..ttyUSB0", "       812\n")
-    assert systems.access(linux, port).users == ("screen",)
+    assert diagnosis.access(linux, port).users == ("screen",)
     linux.write("/run/lock/LCK..ttyUSB0", "999")  # it has ended
-    assert systems.access(linux, port).users == ()
+    assert diagnosis.access(linux, port).users == ()
 
 
 def test_an_address_and_a_port_that_is_not_there_are_free(linux: FakeComputer) -> None:
     for port in ("socket://robot:7000", "/dev/ttyUSB9"):
-        assert systems.access(linux, port) == computer.FREE
+        assert diagnosis.access(linux, port) == computer.FREE
 
 
 # -- macOS and Windows --------------------------------------------------------------------------
@@ -128,11 +128,11 @@ def test_macos(tmp_path: Path) -> None:
             "controller_properties": {"controller_state": "attrib_on"},
             "device_not_connected": [{"HC-06": {}}, {"Telephone": {}}]}]}
     )  # fmt: skip
-    found = systems.looked(system)
+    found = diagnosis.looked(system)
     assert found.adapters == (Adapter("CH340", "", "", False),)
     assert (found.bluetooth, found.has_module) == (ON, True)
     system.add_port("/dev/cu.usbserial-1420")
-    (adapter,) = systems.looked(system).adapters or ()
+    (adapter,) = diagnosis.looked(system).adapters or ()
     assert adapter.has_port
 
 
@@ -155,7 +155,7 @@ def test_bluetooth_of_macos(tmp_path: Path, said: str | None, state: str) -> Non
     system = FakeComputer(tmp_path, "darwin")
     if said is not None:
         system.outputs["system_profiler", "SPBluetoothDataType", "-json"] = said
-    found = systems.looked(system)
+    found = diagnosis.looked(system)
     assert (found.bluetooth, found.adapters) == (state, None)
 
 
@@ -165,7 +165,7 @@ def test_who_uses_a_port_of_macos(tmp_path: Path) -> None:
     system.write(port, "")
     system.owners[port] = (0, True)
     system.outputs["lsof", "-F", "c", port] = "p812\ncArduino IDE\nf7\n"
-    assert systems.access(system, port) == computer.Access(True, "", False, ("Arduino IDE",))
+    assert diagnosis.access(system, port) == computer.Access(True, "", False, ("Arduino IDE",))
 
 
 PNPUTIL = ("pnputil", "/enum-devices", "/connected")
@@ -178,19 +178,19 @@ Estado:                     Iniciado
 
 def test_windows_in_any_language(tmp_path: Path) -> None:
     system = FakeComputer(tmp_path, "win32")
-    found = systems.looked(system)
+    found = diagnosis.looked(system)
     assert (found.adapters, found.bluetooth, found.has_module) == (None, UNKNOWN, None)
     system.outputs[PNPUTIL] = CH340_HERE
     system.outputs[(*PNPUTIL, "/class", "Bluetooth")] = (
         "Instance ID: USB\\VID_8087&PID_0A2B\\5\n"
         "Instance ID: BTHENUM\\DEV_98D331F50001\\7&1\nDevice Description: HC-05\n"
     )
-    found = systems.looked(system)
+    found = diagnosis.looked(system)
     assert found.adapters == (Adapter("CH340", "", "", True),)
     assert (found.bluetooth, found.paired, found.has_module) == (ON, ("HC-05",), True)
     system.outputs[(*PNPUTIL, "/problem")] = CH340_HERE
     system.outputs[(*PNPUTIL, "/class", "Bluetooth")] = "No devices were found.\n"
-    found = systems.looked(system)
+    found = diagnosis.looked(system)
     assert found.adapters == (Adapter("CH340", "", "", False),)
     assert found.bluetooth == NONE
 
@@ -209,7 +209,7 @@ def test_names_of_modules() -> None:
 def test_this_computer_can_be_looked_at() -> None:
     """Whatever it has: nothing is raised, and a program that does not exist is None."""
     system = ThisComputer()
-    found = systems.looked(system)
+    found = diagnosis.looked(system)
     assert found.platform == system.platform
     assert system.output("no-such-program-here") is None
     assert system.output("false") is None

@@ -10,7 +10,7 @@ import pytest
 from tests.machines.bootloaders import bootloader
 from tests.machines.uno import built, needed
 from tests.support.simulated_ends import KIT
-from tiniscript.doctor import bootloader as greeting
+from tiniscript.doctor import line as greeting
 from tiniscript.doctor.examination import Expected
 from tiniscript.doctor.line import Line, looked
 from tiniscript.link.ports import opened

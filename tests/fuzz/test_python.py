@@ -32,7 +32,7 @@ from tiniscript.link.sharing.requests import ClientRequests, asked_for
 from tiniscript.robots.profile import ProfileRefused
 from tiniscript.robots.reader import read as read_profile
 from tiniscript.source import Source
-from tiniscript.virtual.world_reader import read as read_world
+from tiniscript.virtual.worlds import read as read_world
 
 EXAMPLES = 150  # in the tests, of each kind
 KIT = robots.load("tinibot").kit

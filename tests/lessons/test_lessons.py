@@ -168,7 +168,7 @@ def test_no_page_tells_the_answer(folder: Path) -> None:
 
 
 def test_every_criterion_is_judged() -> None:
-    from tiniscript.lessons.criteria import KINDS
+    from tiniscript.lessons.lesson import KINDS
 
     assert {*JUDGES, *text_judging.JUDGES} == set(KINDS)
 

@@ -15,9 +15,9 @@ import pytest
 from tests.lessons.test_lessons import findings_of
 from tests.machines.wasm import missing
 from tiniscript.lessons import catalogue
+from tiniscript.lessons.catalogue import NAMED
 from tiniscript.lessons.lesson import Lesson
 from tiniscript.lessons.markdown import blocks
-from tiniscript.lessons.numbers import NAMED
 from tiniscript.lessons.sentences import sentence
 from tiniscript.robots.profile import LANGUAGES
 

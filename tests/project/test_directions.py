@@ -15,19 +15,16 @@ from tools import measures
 
 PACKAGE = Path(__file__).resolve().parent.parent.parent / "compiler" / "tiniscript"
 
-SHARED = {"fixed_point", "kit", "words", "spelling", "files", "printable"}
-TEXT = {"source", "diagnostics", *SHARED}
+SHARED = {"fixed_point", "kit", "words", "files", "source"}
+TEXT = {"diagnostics", *SHARED}
 # Each stage, and each table that stages share: what it may import besides itself.
 UPSTREAM: dict[str, set[str]] = {
     "version": set(),
     "source": set(),
     "files": set(),
-    "children": set(),
-    "printable": set(),
     "fixed_point": set(),
     "kit": {"fixed_point"},
-    "spelling": set(),
-    "words": {"fixed_point", "spelling"},
+    "words": {"fixed_point"},
     "diagnostics": {"source"},
     "bytecode": {"kit"},
     "syntax": {*TEXT, "bytecode"},  # of the bytecode its limits and its comparators
@@ -39,8 +36,8 @@ UPSTREAM: dict[str, set[str]] = {
     "robots": SHARED,
     "text": {*TEXT, "bytecode", "syntax", "semantics", "codegen", "robots"},
     "sketch": {*TEXT, "syntax", "semantics", "robots"},  # of the syntax its comments
-    "flash": {"files", "children", "robots"},
-    "link": {"version", "files", "printable", "bytecode"},
+    "flash": {"files", "robots"},
+    "link": {"version", "files", "source", "bytecode"},
     "conformance": {"bytecode", "link"},
     "doctor": {"files", "bytecode", "flash", "link"},
     "virtual": {*SHARED, "bytecode", "vm", "robots", "link"},
@@ -158,7 +155,7 @@ LED(TRUE); GRIPPER(90); BEEP(1, 440); M(-5, 5); S
 """
 # And what only wrong ones need.
 OF_WRONG = re.compile(
-    r"tiniscript\.(repairs|recovery|spelling|semantics\.(wrong_|unknown_|out_of_range|until_examples|joining)"
+    r"tiniscript\.(repairs|recovery|semantics\.(wrong_|unknown_|joining)"
     r"|syntax\.(\w*recovery|\w*suggestions|phrases|outline|vocabulary|units|pasted|checksums))"
 )
 

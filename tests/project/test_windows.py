@@ -20,8 +20,7 @@ import pytest
 from tests.support.casefile import ROOT
 from tests.support.command import Tsc
 from tiniscript import files
-from tiniscript.cli import CLOSED, encodings
-from tiniscript.cli.terminal import sequences
+from tiniscript.cli import CLOSED, streams
 from tiniscript.cli.texts.common import tables
 from tiniscript.cli.windows_names import has_no_file, is_device
 
@@ -129,8 +128,8 @@ def test_a_program_of_notepad_is_the_same_program(
 
 def encoded(said: str, encoding: str) -> str:
     """Return what is read of a sentence that was written in an encoding."""
-    encodings.register()
-    return said.encode(encoding, encodings.NAME).decode(encoding)
+    streams.register()
+    return said.encode(encoding, streams.NAME).decode(encoding)
 
 
 @pytest.mark.parametrize("encoding", ["cp1252", "cp850", "cp437"])
@@ -311,14 +310,14 @@ def test_colors_are_for_consoles_that_read_them(
     monkeypatch.setattr(ctypes, "windll", SimpleNamespace(kernel32=kernel), raising=False)
     monkeypatch.delenv("NO_COLOR", raising=False)
     console = Console()
-    assert not sequences.are_read(console), "it has no number"
+    assert not streams.are_read(console), "it has no number"
     monkeypatch.setattr(console, "fileno", lambda: 1)
-    assert sequences.are_read(console) is is_read
+    assert streams.are_read(console) is is_read
     assert kernel.mode == after
-    assert sequences.has_colors(console) is is_read
+    assert streams.has_colors(console) is is_read
     monkeypatch.setenv("NO_COLOR", "1")
-    assert not sequences.has_colors(console)
-    assert not sequences.are_read(io.StringIO())
+    assert not streams.has_colors(console)
+    assert not streams.are_read(io.StringIO())
 
 
 LEFT = """\

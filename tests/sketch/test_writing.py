@@ -11,9 +11,8 @@ from tests.machines import board as boards
 from tests.machines.sketch_board import built
 from tests.support.casefile import ROOT
 from tiniscript import compile_text, robots
-from tiniscript.cli.made import is_foreign
-from tiniscript.sketch.names import Names
-from tiniscript.sketch.reserved import RESERVED
+from tiniscript.cli.paths import is_foreign
+from tiniscript.sketch.names import RESERVED, Names
 from tiniscript.sketch.texts import IDENTIFIERS, LOCALS, TEXTS
 from tiniscript.sketch.writing import sketch_of
 

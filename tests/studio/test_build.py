@@ -14,7 +14,7 @@ from tests.support.casefile import ROOT
 from tests.support.platformio import need
 from tiniscript.flash import ready
 from tiniscript.studio import serving
-from tiniscript.studio.policy import POLICY
+from tiniscript.studio.serving import POLICY
 from tools.builds import studio
 
 LARGEST = 6_000_000  # bytes of all files, gzipped

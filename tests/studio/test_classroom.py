@@ -10,9 +10,8 @@ import pytest
 
 from tests.support.waiting import HANGS_S
 from tiniscript.studio import classroom
-from tiniscript.studio import rate as rate_of
-from tiniscript.studio.classroom import Classroom
-from tiniscript.studio.rate import Rate
+from tiniscript.studio import classroom as rate_of
+from tiniscript.studio.classroom import Classroom, Rate
 from tiniscript.studio.robot_link import BadRequest
 
 Json = dict[str, Any]

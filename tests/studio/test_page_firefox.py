@@ -14,7 +14,7 @@ from tests.support import studio
 from tests.support.platformio import need
 from tests.support.studio import Pages, checked, image, runs_like_the_command, shown, write
 from tiniscript import compile
-from tiniscript.virtual.world_reader import read
+from tiniscript.virtual.worlds import read
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page, Playwright

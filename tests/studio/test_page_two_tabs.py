@@ -10,7 +10,7 @@ from tests.studio.test_page_worlds_kept import NO_BORDER, draw_wall
 from tests.support.studio import Pages, checked, image, noted, write
 from tests.support.waiting import HANGS_S
 from tiniscript import compile
-from tiniscript.virtual.world_reader import read
+from tiniscript.virtual.worlds import read
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page

@@ -14,7 +14,7 @@ from tiniscript import compile
 from tiniscript.studio.simulation import Simulation
 from tiniscript.virtual import worlds
 from tiniscript.virtual.world import World
-from tiniscript.virtual.world_reader import read
+from tiniscript.virtual.worlds import read
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

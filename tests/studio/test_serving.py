@@ -15,7 +15,7 @@ from tests.support.command import Command, Tsc
 from tests.support.page_server import serves
 from tests.support.waiting import HANGS_S
 from tiniscript.studio import serving
-from tiniscript.studio.policy import POLICY
+from tiniscript.studio.serving import POLICY
 
 
 @pytest.fixture

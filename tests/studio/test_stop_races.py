@@ -16,7 +16,7 @@ from tiniscript import compile, robots
 from tiniscript.studio.attending import CONFIRMED, LATCH_S, SILENT, Attending
 from tiniscript.studio.page_line import PageKeys, PageLine
 from tiniscript.studio.robot_link import RobotLink
-from tiniscript.virtual.world_reader import read
+from tiniscript.virtual.worlds import read
 
 BEAT_MS = 100
 LOOK_MS = 20  # as often as a thread attends to its robot

@@ -14,7 +14,7 @@ from tiniscript.studio import worker
 from tiniscript.studio.world_form import form_of, limits, toml_of
 from tiniscript.virtual import worlds
 from tiniscript.virtual.world import World
-from tiniscript.virtual.world_reader import read
+from tiniscript.virtual.worlds import read
 
 
 def is_near(one: Any, other: Any) -> bool:

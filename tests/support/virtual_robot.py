@@ -15,7 +15,7 @@ from tiniscript.link.requests import Reply
 from tiniscript.link.session import Session
 from tiniscript.virtual.robot import Settings, VirtualRobot
 from tiniscript.virtual.world import World
-from tiniscript.virtual.world_reader import read
+from tiniscript.virtual.worlds import read
 from tiniscript.vm.trace import Event
 
 __all__ = ("Talk", "floor", "missing", "robot_in", "trace")

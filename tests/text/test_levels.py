@@ -16,8 +16,8 @@ from tiniscript.robots.boards import CHIPS
 from tiniscript.syntax.parser import scan
 from tiniscript.text.fitting import misfits
 from tiniscript.text.levels import CODE_BYTES, LEVELS, UNREAD, Level
+from tiniscript.text.line import plain_code
 from tiniscript.text.memory import Reader
-from tiniscript.text.plain import plain_code
 from tiniscript.words import SECONDS, WORDS, Word
 from tools.generate import text_tables
 

@@ -15,8 +15,7 @@ from tiniscript.diagnostics import codes
 from tiniscript.kit import Kit
 from tiniscript.source import Source
 from tiniscript.syntax.checksums import with_checksum
-from tiniscript.text.line import line_of
-from tiniscript.text.plain import plain_code
+from tiniscript.text.line import line_of, plain_code
 
 
 @pytest.mark.parametrize(

@@ -21,7 +21,7 @@ from tiniscript.bytecode.opcodes import BY_NAME, OPS
 from tiniscript.bytecode.verify import verify
 from tiniscript.kit import Kit
 from tiniscript.text.levels import CODE_BYTES
-from tiniscript.text.plain import PlainCode, plain_code
+from tiniscript.text.line import PlainCode, plain_code
 
 TINIBOT, GRABBER = robots.load("tinibot").kit, robots.load("grabber").kit
 # what is for the optimising compiler alone: `docs/text.md` has none of it

@@ -27,8 +27,8 @@ from tiniscript.kit import Kit
 from tiniscript.source import Unreadable, decode
 from tiniscript.syntax.parser import scan
 from tiniscript.text.levels import CODE_BYTES, LEVELS, LONGEST_WORD, UNREAD
+from tiniscript.text.line import plain_code
 from tiniscript.text.memory import Reader as Model
-from tiniscript.text.plain import plain_code
 from tiniscript.vm.trace import run
 from tiniscript.words import WORDS
 

@@ -12,8 +12,7 @@ from tests.support.virtual_robot import floor, missing, robot_in
 from tiniscript.link.frames import Frame, encoded
 from tiniscript.link.messages import BY_NAME
 from tiniscript.virtual import transports as limits
-from tiniscript.virtual.heartbeat import HEARTBEAT_MS, SILENT_S, Heartbeat
-from tiniscript.virtual.simulator import FULL_BYTES, Simulator
+from tiniscript.virtual.simulator import FULL_BYTES, HEARTBEAT_MS, SILENT_S, Heartbeat, Simulator
 from tiniscript.virtual.transports import Transports
 
 pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")

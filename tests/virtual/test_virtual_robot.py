@@ -224,7 +224,7 @@ def test_another_kit_is_refused_by_the_robot_itself() -> None:
 def test_on_a_bad_line_everything_arrives_or_ends(seed: int) -> None:
     from random import Random
 
-    from tiniscript.virtual.line_faults import BadLine
+    from tiniscript.virtual.transports import BadLine
 
     robot = robot_in(seed=seed)
     chance = Random(seed)
@@ -255,7 +255,7 @@ def test_on_a_bad_line_everything_arrives_or_ends(seed: int) -> None:
 def test_a_bad_line_is_the_same_with_the_same_seed_and_loses_nothing_in_order() -> None:
     from random import Random
 
-    from tiniscript.virtual.line_faults import BadLine
+    from tiniscript.virtual.transports import BadLine
 
     def through(rate: float, seed: int) -> bytes:
         line = BadLine(rate, Random(seed))

@@ -13,10 +13,10 @@ from tests.support.command import Tsc
 from tests.support.virtual_robot import floor, missing, robot_in
 from tiniscript import robots
 from tiniscript.robots.profile import LANGUAGES
-from tiniscript.virtual import world_refusals, worlds
+from tiniscript.virtual import world, worlds
 from tiniscript.virtual.geometry import Point, Segment
 from tiniscript.virtual.world import WorldRefused
-from tiniscript.virtual.world_reader import read
+from tiniscript.virtual.worlds import read
 
 needs_wasmtime = pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")
 RIGHT = "[floor]\nwidth_cm = 200\nheight_cm = 100\n[start]\nx_cm = 50\ny_cm = 50\n"
@@ -26,7 +26,7 @@ def refused(text: str) -> list[str]:
     """Return what is said of a world, in English; it is said in Spanish, too."""
     with pytest.raises(WorldRefused) as found:
         read(text, "some")
-    lines = {language: world_refusals.describe(found.value, language) for language in LANGUAGES}
+    lines = {language: world.describe(found.value, language) for language in LANGUAGES}
     assert len(lines["es"]) == len(lines["en"]) > 0
     assert not set(lines["es"]) & set(lines["en"])
     return lines["en"]
@@ -151,7 +151,7 @@ def test_all_that_is_wrong_is_said_at_once() -> None:
 
 
 def test_sentences_have_the_same_gaps_in_both_languages() -> None:
-    for code, both in world_refusals.SENTENCES.items():
+    for code, both in world.SENTENCES.items():
         gaps = [{name for _, name, _, _ in Formatter().parse(both[lang])} for lang in LANGUAGES]
         assert gaps[0] == gaps[1], code
 
@@ -160,7 +160,7 @@ def test_sentences_have_the_same_gaps_in_both_languages() -> None:
 def test_a_robot_that_does_not_fit_is_refused() -> None:
     with pytest.raises(WorldRefused) as found:
         robot_in(floor(start="x_cm = 5\ny_cm = 50"))
-    [said] = world_refusals.describe(found.value, "en")
+    [said] = world.describe(found.value, "en")
     assert said.startswith("The robot does not fit where it starts, at x_cm = 5, y_cm = 50. Move")
 
 

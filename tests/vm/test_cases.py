@@ -14,8 +14,7 @@ from tiniscript.cli.options import decimal
 from tiniscript.diagnostics.rendering import as_text, message
 from tiniscript.robots.profile import Robot
 from tiniscript.syntax.formatter import formatted
-from tiniscript.text.line import line_of
-from tiniscript.text.plain import plain_code
+from tiniscript.text.line import line_of, plain_code
 
 CASES = all_cases()
 

@@ -29,8 +29,7 @@ sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 from tiniscript.studio import block_kinds, building
 from tiniscript.studio.building import MODULES, SOURCES, Tools
 from tiniscript.studio.description import description
-from tiniscript.studio.policy import POLICY
-from tiniscript.studio.serving import FIRMWARE, with_firmware
+from tiniscript.studio.serving import FIRMWARE, POLICY, with_firmware
 from tools.builds.blockly_texts import texts
 
 COMMAND = f"python -m {building.MODULE}"

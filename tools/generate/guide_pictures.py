@@ -14,7 +14,7 @@ from pathlib import Path
 from tiniscript.lessons import catalogue
 from tiniscript.lessons.variation import varied
 from tiniscript.robots.profile import LANGUAGES
-from tiniscript.virtual import world_reader, worlds
+from tiniscript.virtual import worlds
 from tiniscript.virtual.world import World
 from tools.generate.arena import BODY, BOX, FLOOR, WALL, WAY, arena, driven
 
@@ -29,7 +29,7 @@ def floor(width: int, height: int, x: int, y: int, heading: int) -> World:
     text = f"""
         floor = {{ width_cm = {width}, height_cm = {height}, border = true }}
         start = {{ x_cm = {x}, y_cm = {y}, heading = {heading} }}"""
-    return world_reader.read(text, "floor")
+    return worlds.read(text, "floor")
 
 
 OBSTACLES = worlds.load("obstacles")

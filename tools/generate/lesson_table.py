@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tiniscript.lessons.criteria import AREA, KINDS, Kind
+from tiniscript.lessons.lesson import AREA, KINDS, Kind
 
 
 def criteria() -> tuple[tuple[str, ...], list[tuple[str, ...]]]:

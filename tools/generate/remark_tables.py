@@ -6,8 +6,7 @@ from collections.abc import Sequence
 
 from tiniscript.bytecode.opcodes import FAULTS
 from tiniscript.link.messages import LINK_FAULTS
-from tiniscript.text.problems import PROBLEMS
-from tiniscript.text.remarks import REMARKS
+from tiniscript.text.problems import PROBLEMS, REMARKS
 from tools.generate.cpp_header import camel
 from tools.generate.packed_texts import DEEPEST, END, FIRST_COMMON, FIRST_LETTER, letters_of, packed
 from tools.generate.text_tables import bytes_of_table, file_of

@@ -14,7 +14,7 @@ from pathlib import Path, PurePosixPath
 from typing import NamedTuple
 
 from tiniscript.lessons import catalogue
-from tiniscript.lessons.numbers import filled
+from tiniscript.lessons.catalogue import filled
 from tools.site.documents import Document
 
 _FENCED = re.compile(r"(^ *```.*?^ *```$)", re.DOTALL | re.MULTILINE)

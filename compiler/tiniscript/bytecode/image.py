@@ -11,13 +11,11 @@ import zlib
 from functools import lru_cache
 from struct import pack as struct_pack
 from struct import unpack as struct_unpack
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from tiniscript.bytecode.opcodes import CODE_BYTES, ISA_MAJOR, ISA_MINOR
 
 if TYPE_CHECKING:
-    from typing import Any
-
     from construct import Construct
 
 

@@ -10,7 +10,7 @@ in C++. Same names, same order, same verdict at the same offset: change all thre
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple, NoReturn
 
 from tiniscript.bytecode.opcodes import (
     BY_CODE,
@@ -26,9 +26,6 @@ from tiniscript.bytecode.opcodes import (
     OperandKind,
     read_operands,
 )
-
-if TYPE_CHECKING:
-    from typing import NoReturn
 
 # fmt: off
 RULES = {

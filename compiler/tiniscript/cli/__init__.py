@@ -12,6 +12,7 @@ import gc
 import os
 import stat
 import sys
+from importlib import import_module
 
 from tiniscript.cli.texts.verbs import VERBS
 
@@ -88,10 +89,10 @@ def _mend_streams() -> None:
 
 
 def _plain_errors() -> str:
-    from tiniscript.cli import encodings
+    from tiniscript.cli import streams
 
-    encodings.register()
-    return encodings.NAME
+    streams.register()
+    return streams.NAME
 
 
 def _drop_output() -> None:
@@ -145,8 +146,6 @@ def _verb(arguments: list[str], language: str) -> int:
         options = Options(name, language).read(arguments[1:])
         if options is None:
             return 0
-        from importlib import import_module
-
         return int(import_module(f"tiniscript.cli.commands.{name}").run(options, language))
     except CommandError as failure:
         print(failure.sentence(language), file=sys.stderr)

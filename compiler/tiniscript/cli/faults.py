@@ -2,13 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.texts.common import text
-
-if TYPE_CHECKING:
-    from tiniscript.codegen.source_map import Map
+from tiniscript.codegen.source_map import Map
 
 
 def fault_text(fault: str, offset: int, places: Map | None, is_image: bool, language: str) -> str:

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
+from tiniscript.bytecode.image import Image, ImageRefused, unpack
+from tiniscript.bytecode.loading import check
+from tiniscript.bytecode.verify import Refused
 from tiniscript.cli import inputs, outputs
 from tiniscript.cli.errors import CommandError
-
-if TYPE_CHECKING:
-    from tiniscript.bytecode.image import Image
-    from tiniscript.codegen.source_map import Map
-    from tiniscript.library.compiling import Compiled
-    from tiniscript.robots.profile import Robot
+from tiniscript.codegen import source_map
+from tiniscript.codegen.source_map import Map
+from tiniscript.library.compiling import Compiled, image_of
+from tiniscript.library.known_kits import fitting, is_other_robots
+from tiniscript.robots.profile import Robot
 
 
 class Ready(NamedTuple):
@@ -39,30 +41,22 @@ def ready(
     `is_strict`: a program that is too large for the robot is a mistake. `is_open`: a program for
     another robot raises OtherRobot. Raises CommandError if an image is refused.
     """
-    from tiniscript.codegen import source_map
-
     if given.is_image:
         image = _read(given)
         _check(given, image, robot)
         return Ready(image, len(given.data), source_map.recall(image.checksum))
     compiled = inputs.compiled(given, robot, is_strict)
     if is_open and not compiled.is_right:
-        from tiniscript.library.known_kits import is_other_robots
-
         if is_other_robots(compiled.diagnostics):
             raise OtherRobot(compiled)
     outputs.print_diagnostics(compiled, language)
     if not compiled.is_right:
         return None
-    from tiniscript.library.compiling import image_of
-
     image = image_of(compiled, robot)
     return Ready(image, len(compiled.image), source_map.made(compiled.source, compiled.places))
 
 
 def _read(given: inputs.Input) -> Image:
-    from tiniscript.bytecode.image import ImageRefused, unpack
-
     try:
         return unpack(given.data)
     except ImageRefused as refused:
@@ -72,11 +66,6 @@ def _read(given: inputs.Input) -> Image:
 
 def _check(given: inputs.Input, image: Image, robot: Robot) -> None:
     """Raise CommandError where the robot may not run an image, and say which known one may."""
-    from tiniscript.bytecode.image import ImageRefused
-    from tiniscript.bytecode.loading import check
-    from tiniscript.bytecode.verify import Refused
-    from tiniscript.library.known_kits import fitting
-
     file = inputs.shown(given.name)
     try:
         check(image, robot.kit)
@@ -96,6 +85,4 @@ def _check(given: inputs.Input, image: Image, robot: Robot) -> None:
 
 def robot_for(given: inputs.Input, robot: Robot) -> Robot:
     """Return `robot`, or a known robot that has the devices of an image if `robot` lacks them."""
-    from tiniscript.library.known_kits import fitting
-
     return fitting(_read(given), robot) or robot

@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.paths import real_name
 from tiniscript.cli.texts.common import Said, text
-from tiniscript.printable import printable
-from tiniscript.source import LARGEST_SOURCE, Source
+from tiniscript.source import LARGEST_SOURCE, Source, printable
 from tiniscript.text.levels import LEVELS
 
 if TYPE_CHECKING:

@@ -17,7 +17,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from itertools import islice
 from pathlib import Path
 from shutil import get_terminal_size
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from tiniscript import robots
 from tiniscript.cli import inputs, outputs
@@ -28,17 +28,14 @@ from tiniscript.cli.robot.simulator_options import check_picture
 from tiniscript.cli.spreadsheet import as_csv
 from tiniscript.cli.texts.common import Said, text
 from tiniscript.diagnostics.rendering import message
+from tiniscript.lessons.findings import Finding
 from tiniscript.lessons.lesson import Lesson
+from tiniscript.lessons.running import Run
+from tiniscript.lessons.sentences import sentence
 from tiniscript.library.compiling import Compiled, maker
-from tiniscript.printable import printable
 from tiniscript.robots.profile import Robot
-from tiniscript.source import PROGRAM_ENDS, Unreadable, decode
-from tiniscript.virtual.world import WorldRefused
-from tiniscript.virtual.world_refusals import describe
-
-if TYPE_CHECKING:
-    from tiniscript.lessons.findings import Finding
-    from tiniscript.lessons.running import Run
+from tiniscript.source import PROGRAM_ENDS, Unreadable, decode, printable
+from tiniscript.virtual.world import WorldRefused, describe
 
 PROGRAMS = 200  # of a folder
 LEAST_COLUMNS = 24  # of a sentence beside its program; below that it stands under it
@@ -149,8 +146,6 @@ class _Marker:
         return Mark(given.name, found.verdict, found.seed, self._said(found.findings), found.run)
 
     def _said(self, findings: Iterable[Finding]) -> tuple[tuple[str, str], ...]:
-        from tiniscript.lessons.sentences import sentence
-
         return tuple((each.kind, sentence(each, self.language)) for each in findings)
 
     def _mistakes(self, compiled: Compiled) -> Iterable[tuple[str, str]]:
@@ -254,16 +249,16 @@ def _print_table(marks: Sequence[Mark], options: Namespace, language: str) -> No
     ]
     wide = [max(cell_len(row[k]) for row in rows) for k in (0, 1)]
     columns = get_terminal_size().columns if sys.stdout.isatty() else 0
-    for name, verdict, sentence in rows:
+    for name, verdict, said in rows:
         cells = f"{set_cell_size(name, wide[0])}  {set_cell_size(verdict, wide[1])}  "
         room = columns - cell_len(cells) - 1
-        if not columns or cell_len(sentence) <= room:
-            print(f"{cells}{sentence}".rstrip())
+        if not columns or cell_len(said) <= room:
+            print(f"{cells}{said}".rstrip())
             continue
         if room < LEAST_COLUMNS:  # the sentence has lines of its own
             print(cells.rstrip())
             cells, room = "    ", columns - 5
-        for part in textwrap.wrap(sentence, max(room, LEAST_COLUMNS)):
+        for part in textwrap.wrap(said, max(room, LEAST_COLUMNS)):
             print(f"{cells}{part}")
             cells = " " * cell_len(cells)
     passed = sum(mark.verdict == PASSED for mark in marks)

@@ -6,7 +6,7 @@ import re
 import sys
 from argparse import ArgumentParser, HelpFormatter, Namespace
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NoReturn
 
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.texts.common import text
@@ -15,8 +15,6 @@ from tiniscript.fixed_point import as_text, read_literal
 from tiniscript.words import nearest
 
 if TYPE_CHECKING:
-    from typing import NoReturn
-
     from tiniscript.kit import Device
     from tiniscript.robots.profile import Robot
 

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tiniscript.cli.errors import CommandError
+from tiniscript.cli.inputs import shown
 from tiniscript.cli.texts.common import text
 
 if TYPE_CHECKING:
@@ -22,7 +23,6 @@ def write(path: Path, data: bytes, key: str, mode: int | None = None) -> None:
     is not possible.
     """
     from tiniscript import files
-    from tiniscript.cli.inputs import shown
 
     try:
         files.replace(path, data, mode, is_lasting=True)
@@ -37,7 +37,7 @@ def print_diagnostics(compiled: Compiled, language: str) -> None:
     """Print a program's diagnostics to standard error, the first ones in full."""
     if not compiled.diagnostics:
         return
-    from tiniscript.cli.terminal.sequences import has_colors
+    from tiniscript.cli.streams import has_colors
     from tiniscript.diagnostics.rendering import as_text, message
 
     color = has_colors(sys.stderr)

@@ -11,7 +11,7 @@ import re
 from collections.abc import Iterable, Sequence
 from io import StringIO
 
-from tiniscript.printable import printable
+from tiniscript.source import printable
 
 LONGEST = 2000  # characters of a cell
 SEPARATORS = {"en": ",", "es": ";"}

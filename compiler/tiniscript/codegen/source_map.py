@@ -7,19 +7,16 @@ fault can name its line and a listing can show it. Losing a map loses nothing el
 from __future__ import annotations
 
 import os
+from collections.abc import Iterable
 from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from tiniscript import files
 from tiniscript.bytecode import image as images
+from tiniscript.codegen.lower import Place
 from tiniscript.files import contents
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
-
-    from tiniscript.codegen.lower import Place
-    from tiniscript.source import Source
+from tiniscript.source import Source
 
 VERSION = 1
 FILE_BYTES = 32_000_000

@@ -11,13 +11,11 @@ import re
 import sys
 from collections.abc import Iterable, Mapping
 from functools import cache
-from typing import TYPE_CHECKING, NamedTuple
+from pathlib import Path
+from typing import Any, Literal, NamedTuple
 
 from tiniscript.diagnostics.codes import CODES, Diagnostic
 from tiniscript.source import Source, Span
-
-if TYPE_CHECKING:
-    from typing import Any, Literal
 
 LINE_COLUMNS = 100  # of a program's line; of a longer one a window is shown
 COLUMNS_BEFORE = 40  # of that window, before the place
@@ -168,8 +166,6 @@ def _part(name: str) -> str:
 
 @cache
 def _file() -> str:
-    from pathlib import Path
-
     return Path(__file__).with_name("catalogue.toml").read_text(encoding="utf-8")
 
 

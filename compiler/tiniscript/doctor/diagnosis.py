@@ -12,8 +12,16 @@ from collections.abc import Callable
 from contextlib import AbstractContextManager
 from typing import NamedTuple
 
-from tiniscript.doctor import line, systems
-from tiniscript.doctor.computer import NONE, OFF, Computer, looks_wireless, without_driver
+from tiniscript.doctor import line, linux, macos, windows
+from tiniscript.doctor.computer import (
+    FREE,
+    NONE,
+    OFF,
+    Access,
+    Computer,
+    looks_wireless,
+    without_driver,
+)
 from tiniscript.doctor.examination import Expected, examined
 from tiniscript.doctor.findings import Finding, probably, sure
 from tiniscript.doctor.line import Line
@@ -26,6 +34,23 @@ from tiniscript.link.outcomes import Gone
 from tiniscript.link.port_names import is_address, same_for_all
 from tiniscript.link.sharing.shared_line import OtherVersion
 from tiniscript.link.wire import Wire
+
+
+def looked(system: System) -> Computer:
+    """Look at a computer. Opens no port."""
+    if system.platform == "win32":
+        return windows.looked(system)
+    look = macos.looked if system.platform == "darwin" else linux.looked
+    return look(system)
+
+
+def access(system: System, port: str) -> Access:
+    """Return who may use a port and who does. Opens no port."""
+    if system.platform == "win32":
+        return FREE
+    look = macos.access if system.platform == "darwin" else linux.access
+    return look(system, port)
+
 
 REFUSED, IN_USE = os.strerror(errno.ECONNREFUSED), os.strerror(errno.EBUSY)
 PSEUDO = ("/dev/pts/", "/dev/ttys")  # pseudo-terminals: nothing restarts there
@@ -72,7 +97,7 @@ class Diagnosis(NamedTuple):
 
 def diagnosed(doors: Doors, question: Question) -> Diagnosis:
     doors.tell("computer")
-    found = systems.looked(doors.system)
+    found = looked(doors.system)
     port = question.port or question.last or _only(found)
     if port is None:
         return Diagnosis(None, _without_port(found, question.virtual), found, False)
@@ -164,7 +189,7 @@ def _shared(client: LinkConnection, doors: Doors, question: Question) -> tuple[F
 
 def _held(system: System, found: Computer, port: str) -> Finding | None:
     """Return why this user cannot have the port now, as far as it is known without opening it."""
-    who = systems.access(system, same_for_all(port))
+    who = access(system, same_for_all(port))
     if not who.may_use and who.is_joined:
         return sure("login_again", group=who.group)
     if not who.may_use:

@@ -9,12 +9,47 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import NamedTuple
 
-from tiniscript.doctor import bootloader
 from tiniscript.doctor.examination import Expected, examined
 from tiniscript.doctor.findings import Finding, probably, sure
 from tiniscript.doctor.robot import CABLE_MS, RADIO_MS, WireRobot
+from tiniscript.flash.bootloaders import MEGA, NANO_OLD, UNO, Bootloader
 from tiniscript.link.modules import dialects, talk
 from tiniscript.link.wire import Wire
+
+# For each: what it is greeted with, and how its answer begins.
+GREETINGS: tuple[tuple[Bootloader, bytes, bytes], ...] = (
+    (UNO, b"\x30\x20", b"\x14\x10"),
+    (NANO_OLD, b"\x30\x20", b"\x14\x10"),
+    (MEGA, b"\x1b\x01\x00\x01\x0e\x01\x14", b"\x1b\x01\x00"),
+)
+BLINK_MS = 450  # Optiboot blinks first, and hears no more than two bytes meanwhile
+TRIES = 4
+ANSWER_MS = 200
+OVER_MS = 5000  # a bootloader that has heard nothing for so long has gone on to what is behind it
+
+
+def answers(wire: Wire) -> tuple[Bootloader, bool] | None:
+    """Restart the board and return the bootloader that answers, or None.
+
+    The second value: it answers later on, too; then there is nothing behind it.
+    """
+    for line, greeting, answer in GREETINGS:
+        wire.set_baud(line.baud)
+        wire.restart()
+        wire.heard(BLINK_MS, BLINK_MS)
+        if _greeted(wire, greeting, answer):
+            wire.heard(OVER_MS, OVER_MS)
+            return line, _greeted(wire, greeting, answer)
+    return None
+
+
+def _greeted(wire: Wire, greeting: bytes, answer: bytes) -> bool:
+    for _ in range(TRIES):
+        wire.send(greeting)
+        if answer in wire.heard(ANSWER_MS):
+            return True
+    return False
+
 
 BOOT_MS = 1700  # an Uno takes 1.4 s after its port was opened, and a Mega wants silence until then
 HELLOS = 5  # an old Nano's bootloader takes longer
@@ -117,7 +152,7 @@ def _by_cable(
         cause = "module_set_up" if module.dialect.is_fixed else "module_alone"
         return [sure(cause, baud=str(module.baud), module=module.dialect.name)]
     tell("bootloader")
-    found_bootloader = bootloader.answers(wire)
+    found_bootloader = answers(wire)
     if found_bootloader is not None:
         board, is_alone = found_bootloader
         return [sure("bootloader_only", board=board.name) if is_alone

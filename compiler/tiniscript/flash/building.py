@@ -19,7 +19,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import NamedTuple
 
-from tiniscript import children
+from tiniscript.flash import children
 from tiniscript.flash.ready import is_whole
 from tiniscript.robots import firmware
 from tiniscript.robots.profile import Robot

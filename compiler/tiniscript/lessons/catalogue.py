@@ -1,16 +1,63 @@
-"""Finds lessons: the shipped ones by their numbers, others by their folders; and their files."""
+"""Finds lessons: the shipped ones by their numbers, others by their folders; their files, and the
+numbers that their pages name: `{seconds}`, `{reaches.within_cm}`.
+"""
 
 from __future__ import annotations
 
+import math
+import re
+from collections.abc import Iterator
 from pathlib import Path
 
 from tiniscript import robots
-from tiniscript.lessons.lesson import Answer, Lesson, LessonRefused
-from tiniscript.lessons.numbers import filled
+from tiniscript.lessons.lesson import Answer, Criterion, Lesson, LessonRefused
 from tiniscript.lessons.reader import read, read_answers
+from tiniscript.lessons.variation import point_of
 from tiniscript.robots.profile import ProfileRefused
 from tiniscript.robots.refusals import shown
-from tiniscript.virtual import world_reader
+from tiniscript.virtual import worlds
+
+NAMED = re.compile(r"\{([a-z_]+(?:\.[a-z_]+)?)\}")
+
+
+def filled(page: str, file: str, lesson: Lesson) -> str:
+    """Return a page with its numbers. Raises LessonRefused where the lesson has none of a name."""
+    known = dict(reversed([*_numbers(lesson)]))  # of two criteria of a kind the first one counts
+
+    def number(match: re.Match[str]) -> str:
+        if match[1] not in known:
+            reason = {"file": file, "found": match[0], "known": ", ".join(sorted(known))}
+            raise LessonRefused(("no_such_number", reason))
+        return f"{known[match[1]]:.10g}"
+
+    return NAMED.sub(number, page)
+
+
+def _numbers(lesson: Lesson) -> Iterator[tuple[str, float]]:
+    yield "seconds", lesson.seconds
+    yield "worlds", lesson.worlds
+    yield "noise_percent", round(lesson.noise * 100, 3)
+    for criterion in lesson.criteria:
+        for key, value in _numbers_of(criterion, lesson):
+            yield f"{criterion.kind}.{key}", value
+
+
+def _numbers_of(criterion: Criterion, lesson: Lesson) -> Iterator[tuple[str, float]]:
+    yield from criterion.numbers.items()
+    if criterion.kind == "order":
+        yield "times", criterion.words.count(criterion.words[0])
+    if criterion.area:
+        for key, (low, high) in zip(("x_cm", "y_cm"), criterion.area, strict=True):
+            yield key, high - low
+    if criterion.places:  # where the first of them is, from the start
+        start = lesson.world.start
+        x, y = point_of(criterion.places[0], lesson.world, False)
+        along = math.radians(start.heading)
+        dx, dy = x - start.x_cm, y - start.y_cm
+        yield "way_cm", round(math.hypot(dx, dy))
+        yield "ahead_cm", round(dx * math.cos(along) + dy * math.sin(along))
+        yield "beside_cm", abs(round(dy * math.cos(along) - dx * math.sin(along)))
+
 
 FOLDER = Path(__file__).parent
 PUPIL, TEACHER = "pupil", "teacher"  # who a page is for
@@ -42,7 +89,7 @@ def load(folder: Path) -> Lesson:
         text, world_text = (
             robots.text_of(str(folder / each)) for each in ("lesson.toml", "world.toml")
         )
-        world = world_reader.read(world_text, name)
+        world = worlds.read(world_text, name)
     except ProfileRefused as refused:
         raise LessonRefused(*refused.reasons) from None
     return read(text, world, name)

@@ -12,9 +12,8 @@ from collections.abc import Callable, Mapping, Sequence
 
 from tiniscript.fixed_point import ONE, as_text
 from tiniscript.lessons import place_judging
-from tiniscript.lessons.criteria import ANY_VALUE
 from tiniscript.lessons.findings import STILL_CM, Finding, Task, between, in_cm, in_seconds
-from tiniscript.lessons.lesson import Criterion, Lesson
+from tiniscript.lessons.lesson import ANY_VALUE, Criterion, Lesson
 from tiniscript.lessons.reader import TIME
 from tiniscript.lessons.running import ASKS, BUSY, DONE, FAULT, LIMIT, Run, Shown
 from tiniscript.lessons.variation import is_mirrored

@@ -1,5 +1,7 @@
 """The types of a lesson: its robot, its world, how that varies, and the criteria of its task.
 
+The table of criteria says what each kind takes.
+
 Knows no TOML (`reader`), no files (`catalogue`) and no sentences (`refusals`, `sentences`).
 """
 
@@ -82,3 +84,65 @@ class Answer(NamedTuple):
     program: str
     labels: Mapping[str, str]
     said: Mapping[str, str]
+
+
+MOST = 10_000.0  # of any number
+
+
+class Number(NamedTuple):
+    """A number of a criterion, from `low` to `high`. Without a default it must be there."""
+
+    key: str
+    low: float
+    high: float
+    default: float | None = None
+
+
+class Kind(NamedTuple):
+    """What a criterion takes besides `kind`, and what it means.
+
+    `places` are how many places at least; 0: it has none. `words` is what its words are: "" for
+    none, "word" of the language or a sensor, "event" of EVENTS, "block" of BLOCKS, "value" of a
+    sensor or TIME, "sensor" with a place in the robot's body. `may_be_anywhere`: its places may
+    be left out. `flags` are true or false, and false if they are left out. `has_area`: it may have AREA.
+    """
+
+    meaning: str
+    numbers: tuple[Number, ...] = ()
+    places: int = 0
+    words: str = ""
+    may_be_anywhere: bool = False
+    flags: tuple[str, ...] = ()
+    has_area: bool = False
+
+
+BLOCKS = ("LOOP", "DEF")  # what a program may be tried without
+EVENTS = ("moves", "stops", "beeps", "shows")
+TIMES = Number("times", 1, 100, 1)
+WITHIN = Number("within_cm", 1, 500, 10)
+AREA = ("x_cm", "y_cm")  # from and to, around a place
+
+# fmt: off
+KINDS: dict[str, Kind] = {
+    "ends_in": Kind("the robot stands within so many cm of a place at the end; with an area, all of it is in there", (WITHIN,), places=1, has_area=True),
+    "reaches": Kind("it comes within so many cm of places, in their order (`either_way`: or from the last to the first), in so much time and on so long a way at most; with `what`, as that sensor measures it",
+                    (WITHIN, Number("by_seconds", 0.1, MOST, MOST), Number("by_cm", 1, MOST, MOST)), places=1, words="sensor", flags=("either_way",)),
+    "stays_in": Kind("it never is further than so many cm from a place; with an area, its wheels never leave that", (Number("within_cm", 1, 500, 500),), places=1, has_area=True),
+    "stands_before": Kind("at the end it stands so many cm before what is ahead of it; with `at`, before that", (Number("low_cm", 0, 400), Number("high_cm", 0, 400)), places=1, may_be_anywhere=True),
+    "faces": Kind("at the end it looks where a heading points to", (Number("heading", -360, 360), Number("within_degrees", 1, 180, 15))),
+    "never_touches": Kind("it touches nothing; with `at`, before it has been within so many cm of this place", (WITHIN,), places=1, may_be_anywhere=True),
+    "follows": Kind("its line sensors stay on the black line, for so many cm of it", (Number("within_cm", 1, 500, 6), Number("at_least_cm", 1, MOST))),
+    "drives": Kind("it drives so many cm", (Number("at_least_cm", 0, MOST, 0), Number("at_most_cm", 1, MOST, MOST))),
+    "pauses": Kind("it stands so long between two moves; with `at`, within so many cm of each of these places", (Number("at_least_seconds", 0.1, 600), TIMES, WITHIN), places=1, may_be_anywhere=True),
+    "shows": Kind("it shows a value: any, this one, or that of a sensor or of TIME at that moment",
+                  (TIMES, Number("value", -MOST, MOST, MOST + 1), Number("tolerance", 0, MOST, 0)), words="value"),
+    "beeps": Kind("its buzzer sounds so often, at so many different pitches; with `at`, within so many cm of each of these places", (TIMES, Number("pitches", 1, 100, 1), WITHIN), places=1, may_be_anywhere=True),
+    "order": Kind("these things happen one after the other: moves, stops, beeps, shows", words="event"),
+    "ends": Kind("the program ends by itself"),
+    "uses": Kind("the text has these words, each so often; a DEF counts if it is called, a LOOP if it repeats more than waiting, an UNTIL if it asks for something", (TIMES,), words="word"),
+    "needs": Kind("without these, LOOP or DEF, the robot misses one of the criteria above: with each loop done once, or without the words of DEF", words="block"),
+    "moves": Kind("the text has at most so many moves; with `ahead`, turns do not count", (Number("at_most", 1, 1000),), flags=("ahead",)),
+}
+# fmt: on
+
+ANY_VALUE = MOST + 1  # of `shows`, where no value is asked for

@@ -10,13 +10,19 @@ from collections.abc import Collection
 
 from tiniscript import robots
 from tiniscript.fixed_point import ONE
-from tiniscript.lessons.criteria import ANY_VALUE, AREA, BLOCKS, EVENTS, KINDS, WITHIN, Number
 from tiniscript.lessons.lesson import (
+    ANY_VALUE,
+    AREA,
+    BLOCKS,
+    EVENTS,
+    KINDS,
     PARTS,
+    WITHIN,
     Answer,
     Criterion,
     Lesson,
     LessonRefused,
+    Number,
     Place,
     Variation,
 )

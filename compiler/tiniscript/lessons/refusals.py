@@ -1,6 +1,6 @@
 """The sentences about a refused lesson: a cause and a remedy, in English and Spanish.
 
-`robots.refusals` has the sentences shared with profiles, `virtual.world_refusals` those of the
+`robots.refusals` has the sentences shared with profiles, `virtual.world` those of the
 world of a lesson. Does not know when a code applies.
 """
 
@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from tiniscript.lessons.lesson import LessonRefused
 from tiniscript.robots import refusals
-from tiniscript.virtual import world_refusals
+from tiniscript.virtual import world
 
 SENTENCES: dict[str, dict[str, str]] = {
     "no_such_lesson": {
@@ -84,4 +84,4 @@ SENTENCES: dict[str, dict[str, str]] = {
 
 def describe(refused: LessonRefused, language: str) -> list[str]:
     """Return a sentence for each reason."""
-    return refusals.describe(refused, language, {**world_refusals.SENTENCES, **SENTENCES})
+    return refusals.describe(refused, language, {**world.SENTENCES, **SENTENCES})

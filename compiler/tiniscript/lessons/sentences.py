@@ -6,7 +6,7 @@ Knows every key of `judging`. Does not know when one applies.
 from __future__ import annotations
 
 from tiniscript.lessons.findings import Finding
-from tiniscript.printable import printable
+from tiniscript.source import printable
 from tiniscript.words import WORDS
 
 # fmt: off

@@ -6,26 +6,26 @@ the command puts their reason and values into sentences of its own.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from time import monotonic
-from typing import IO, TYPE_CHECKING
+from typing import IO, TYPE_CHECKING, TypeVar
 
+from tiniscript.bytecode.image import Image
 from tiniscript.library import opening
 from tiniscript.library.errors import ProgramError, RobotError
+from tiniscript.library.known_kits import refusal
+from tiniscript.link.connection import LinkConnection, PendingRequest, Requester, reason_of
 from tiniscript.link.messages import SAVED_LOW_SUPPLY, SAVED_SAVING, SAVED_STORED
+from tiniscript.link.outcomes import CANCELLED, Event, Gone
+from tiniscript.link.payloads import ReceiptReply, StatusReply
+from tiniscript.link.requests import DeviceInfo, Reply
+from tiniscript.link.statuses import name_of, sentence
+from tiniscript.robots.profile import Robot
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-    from typing import TypeVar
-
-    from tiniscript.bytecode.image import Image
-    from tiniscript.link.connection import LinkConnection, PendingRequest, Requester
     from tiniscript.link.line import Line
-    from tiniscript.link.outcomes import Event, Gone
-    from tiniscript.link.payloads import ReceiptReply, StatusReply
-    from tiniscript.link.requests import DeviceInfo, Reply
     from tiniscript.link.sharing.server import Server
-    from tiniscript.robots.profile import Robot
 
     T = TypeVar("T")
 
@@ -98,8 +98,6 @@ class Client:
 
         While `is_patient` a stop that comes first does not end the search.
         """
-        from tiniscript.link.outcomes import CANCELLED
-
         with self._connected():
             reply = opening.met(self.line, self.port, board, self.wait)
             while reply.status == CANCELLED and is_patient():
@@ -145,8 +143,6 @@ class Client:
         It is refused before any byte is sent where the robot has another kit. `draw` gets the
         number of code bytes that have arrived.
         """
-        from tiniscript.library.known_kits import refusal
-
         assert self.line.robot is not None
         refused = refusal(image, profile, self.line.robot)
         if refused is not None:
@@ -157,8 +153,6 @@ class Client:
 
     @contextmanager
     def _connected(self) -> Iterator[None]:
-        from tiniscript.link.outcomes import Gone
-
         try:
             yield
         except Gone as gone:
@@ -174,9 +168,6 @@ class Client:
 
     def failure(self, reply: Reply[object]) -> RobotError | ProgramError:
         """Return the error for a reply that is not OK."""
-        from tiniscript.link.connection import reason_of
-        from tiniscript.link.statuses import name_of, sentence
-
         reason = reason_of(self.line, reply)
         if reason != "status":
             return RobotError(reason, self.language, {"port": opening.shown(self.port)})

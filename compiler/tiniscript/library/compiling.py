@@ -7,7 +7,8 @@ needs the standard library alone. What only wrong programs need is imported for 
 from __future__ import annotations
 
 import gc
-from typing import TYPE_CHECKING, NamedTuple
+from collections.abc import Callable
+from typing import NamedTuple
 
 from tiniscript.bytecode.image import Image, checksum, pack
 from tiniscript.bytecode.opcodes import CODE_BYTES, ISA_MAJOR, ISA_MINOR
@@ -15,6 +16,7 @@ from tiniscript.bytecode.verify import Verdict, verify
 from tiniscript.codegen.lower import Place, lower
 from tiniscript.diagnostics import codes
 from tiniscript.kit import Kit
+from tiniscript.robots.profile import Robot
 from tiniscript.semantics import ir
 from tiniscript.semantics.checker import check
 from tiniscript.semantics.empty_blocks import empty_blocks
@@ -22,11 +24,6 @@ from tiniscript.semantics.lint import advice
 from tiniscript.semantics.optimizer import optimized
 from tiniscript.source import Source, Span, Unreadable, applied, decode
 from tiniscript.syntax.parser import parse
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from tiniscript.robots.profile import Robot
 
 
 class Compiled(NamedTuple):

@@ -1,4 +1,4 @@
-"""A connection to a robot: it sends programs and lines, and receives events.
+"""Connect to the robot on a port: a connection sends programs and lines, and receives events.
 
 Leaving the `with` block stops the robot and waits until the robot has confirmed that. If the
 process ends without it, the robot's dead-man timer stops the robot within a second.
@@ -6,27 +6,28 @@ process ends without it, the robot's dead-man timer stops the robot within a sec
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator
 from time import monotonic
 from types import TracebackType
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
+from tiniscript import robots
 from tiniscript.library import opening
 from tiniscript.library.client import Client, Saving
-from tiniscript.library.endings import Follower
 from tiniscript.library.errors import RobotError, StopNotConfirmed, UsageError
-from tiniscript.library.events import Ending, Reader, RobotEvent, ending_of
+from tiniscript.library.events import Ending, Follower, Reader, RobotEvent, ending_of
 from tiniscript.library.known_kits import of_kit
-from tiniscript.library.programs import Language, Program, program_of
-from tiniscript.library.runs import within
+from tiniscript.library.programs import Language, Program, profile_of, program_of
+from tiniscript.library.runs import whole, within
+from tiniscript.link import known_ports, port_names, ports
 from tiniscript.link.messages import SAVED, STATE_RUNNING
 from tiniscript.link.payloads import ReceiptReply
-from tiniscript.printable import printable
 from tiniscript.robots.profile import Robot
+from tiniscript.source import printable
+from tiniscript.virtual import directory
 
 if TYPE_CHECKING:
-    from typing import TypeVar
-
     Self = TypeVar("Self", bound="RobotConnection")
     T = TypeVar("T")
 
@@ -288,3 +289,43 @@ class RobotConnection:
         self._is_detached = is_detached and is_running
         name = SAVED[receipt.saved][0] if receipt.saved < len(SAVED) else "MEMORY"
         return Receipt(receipt.program, name, is_running)
+
+
+SLOWEST_BAUD, FASTEST_BAUD = 300, 2_000_000
+
+
+def connect(
+    port: str | None = None, *, robot: str | os.PathLike[str] | None = None,
+    baud: int | None = None, language: Language = "en",
+) -> RobotConnection:  # fmt: skip
+    """Connect to the robot on a port: /dev/ttyUSB0, COM5, ble://name, socket://host:port, ...
+
+    The default port is the last used one, else that of the only running virtual robot.
+    `robot` is the name or the path of the profile that texts are compiled for; its default is the
+    profile of the robot that answers, if this computer knows it. `baud` is 300 to 2000000; its
+    default is in the profile. Raises RobotError if the port does not open or no robot answers.
+    """
+    profile = profile_of(robots.DEFAULT if robot is None else robot, language)
+    if baud is not None:
+        whole("baud", baud, SLOWEST_BAUD, FASTEST_BAUD, language)
+    if port is None:
+        port = _usual_port(language)
+    elif not isinstance(port, str) or not port.strip() or not port.isprintable():
+        raise UsageError("bad_port", language, {"port": printable(repr(port), opening.SHOWN)})
+    return RobotConnection(port, profile, robot is not None, baud, language)
+
+
+def _usual_port(language: Language) -> str:
+    """Return the last used port, else that of the only virtual robot. Raises RobotError."""
+    last = known_ports.known().last
+    if last is not None and port_names.is_there(last) and not directory.is_gone(last):
+        return last
+    running = directory.for_all()
+    if len(running) == 1:
+        return running[0].address
+    listed = [each.port for each in ports.listed()]
+    values = {"known": opening.shown(", ".join(listed)) or "-",
+              "example": listed[0] if listed else "/dev/ttyUSB0"}  # fmt: skip
+    if last is not None:
+        raise RobotError("last_port_missing", language, {**values, "port": opening.shown(last)})
+    raise RobotError("which_port", language, values)

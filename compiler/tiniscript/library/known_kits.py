@@ -5,12 +5,15 @@ from __future__ import annotations
 import os
 from typing import TYPE_CHECKING, Any
 
+from tiniscript import robots
+from tiniscript.bytecode.image import Image, ImageRefused
+from tiniscript.bytecode.verify import Refused
+from tiniscript.diagnostics.codes import OTHER_ROBOT, Diagnostic
+from tiniscript.kit import Kit
+from tiniscript.robots.profile import Robot
+
 if TYPE_CHECKING:
-    from tiniscript.bytecode.image import Image
-    from tiniscript.diagnostics.codes import Diagnostic
-    from tiniscript.kit import Kit
     from tiniscript.link.requests import DeviceInfo, Reply
-    from tiniscript.robots.profile import Robot
 
 SHOWN_CHARACTERS = 60  # of a path in a message: a longer one could not be copied
 
@@ -28,7 +31,6 @@ def naming_robots(diagnostics: list[Diagnostic], text: str, robot: Robot) -> lis
 
 def is_other_robots(diagnostics: list[Diagnostic]) -> bool:
     """Whether a program has words of another robot: they have been through `naming_robots`."""
-    from tiniscript.diagnostics.codes import OTHER_ROBOT
     from tiniscript.robots import given
     from tiniscript.semantics import other_kits
 
@@ -42,7 +44,6 @@ def is_other_robots(diagnostics: list[Diagnostic]) -> bool:
 
 def _others() -> dict[str, Kit]:
     """Return the known kits, by the name or the path of their robots."""
-    from tiniscript import robots
     from tiniscript.robots import given
 
     found: dict[str, Kit] = {}
@@ -62,8 +63,6 @@ def _others() -> dict[str, Kit]:
 
 def shipped_of_kit(fingerprint: int) -> str | None:
     """Return the name of the shipped robot that has this kit."""
-    from tiniscript import robots
-
     for name in robots.names():
         if robots.load(name).kit.fingerprint == fingerprint:
             return name
@@ -72,7 +71,6 @@ def shipped_of_kit(fingerprint: int) -> str | None:
 
 def of_kit(fingerprint: int) -> Robot | None:
     """Return the profile that has this kit: a shipped one, or one that a user has given before."""
-    from tiniscript import robots
     from tiniscript.robots import given
 
     name = shipped_of_kit(fingerprint)
@@ -95,7 +93,6 @@ def fitting(image: Image, first: Robot) -> Robot | None:
 
     Returns None if no such robot is known.
     """
-    from tiniscript import robots
     from tiniscript.robots import given
 
     if fits(image, first):
@@ -107,9 +104,7 @@ def fitting(image: Image, first: Robot) -> Robot | None:
 
 def fits(image: Image, robot: Robot) -> bool:
     """Return whether a robot may run an image that `unpack` has read."""
-    from tiniscript.bytecode.image import ImageRefused
     from tiniscript.bytecode.loading import check
-    from tiniscript.bytecode.verify import Refused
 
     try:
         check(image, robot.kit)

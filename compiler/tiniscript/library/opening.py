@@ -10,23 +10,26 @@ from __future__ import annotations
 
 import os
 import sys
+from collections.abc import Callable
 from time import monotonic, sleep
-from typing import IO, TYPE_CHECKING
+from typing import IO, TYPE_CHECKING, TypeVar
 
 from tiniscript.library.errors import RobotError
-from tiniscript.printable import printable
+from tiniscript.link import errors, known_ports, ports
+from tiniscript.link.connection import LinkConnection, PendingRequest, Requester
+from tiniscript.link.errors import PortError
+from tiniscript.link.outcomes import Gone
+from tiniscript.link.payloads import HelloReply
+from tiniscript.link.port_names import is_address, is_at_broker, is_bluetooth, is_name
+from tiniscript.link.ports import opened
+from tiniscript.link.requests import Reply
+from tiniscript.link.sharing import registry
+from tiniscript.link.sharing.shared_line import OtherVersion, SharedLine, joined
+from tiniscript.source import printable
+from tiniscript.virtual import directory
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-    from typing import TypeVar
-
-    from tiniscript.link.connection import LinkConnection, PendingRequest, Requester
-    from tiniscript.link.errors import PortError
     from tiniscript.link.line import Line
-    from tiniscript.link.outcomes import Gone
-    from tiniscript.link.payloads import HelloReply
-    from tiniscript.link.requests import Reply
-    from tiniscript.link.sharing.shared_line import SharedLine
 
     T = TypeVar("T")
 
@@ -57,9 +60,6 @@ def connection_to(
     other commands show for this one. `baud` is the speed that the user has asked for. A robot's
     name becomes its address, which may be in use under another name.
     """
-    from tiniscript.link.port_names import is_name
-    from tiniscript.link.sharing import registry
-
     address = port
     end_s = monotonic() + (STOP_BUSY_S if verb == "stop" else BUSY_S)
     while True:
@@ -89,10 +89,8 @@ def opened_line(
 
     `port` is the port's name in sentences, where it is not `address`.
     """
-    from tiniscript.link.errors import PortError
     from tiniscript.link.keys import KeyFile
     from tiniscript.link.line import Line
-    from tiniscript.link.ports import opened
     from tiniscript.link.session import Session
 
     try:
@@ -110,9 +108,6 @@ def opened_line(
 
 def port_error(port: str, failure: PortError, language: str = "en") -> RobotError:
     """Return the error for a port that does not open."""
-    from tiniscript.link import errors, ports
-    from tiniscript.link.port_names import is_at_broker
-
     reason = f"port_{failure.reason}"
     values = {"port": shown(port), "why": shown(failure.why)}
     if failure.reason == errors.NOT_INSTALLED:
@@ -141,8 +136,6 @@ def met(
 ) -> Reply[HelloReply]:
     """Send HELLO, but not so early that a board stays in its bootloader."""
     if not line.held_by:  # else the port is open already
-        from tiniscript.link import ports
-
         if not ports.is_radio(port):
             sleep(QUIET_S.get(board, 0.0))
             reply = wait(hello(line, CABLE_ANSWER_MS))
@@ -173,9 +166,6 @@ def limited(
 
 def reason_of_end(line: LinkConnection, gone: Gone, port: str) -> str:
     """Return why a connection has ended."""
-    from tiniscript.link import errors
-    from tiniscript.link.port_names import is_at_broker, is_bluetooth
-
     if gone.is_server:
         return "holder_ended"
     if is_bluetooth(port):
@@ -192,8 +182,6 @@ def confirmed(line: LinkConnection, limit_s: float | None = None) -> bool:
 
     The default of `limit_s` is CONFIRM_S. Events from before the call do not count.
     """
-    from tiniscript.link.outcomes import Gone
-
     end_s = monotonic() + (CONFIRM_S if limit_s is None else limit_s)
     began_ms = line.stop()
     try:
@@ -211,20 +199,13 @@ def confirmed(line: LinkConnection, limit_s: float | None = None) -> bool:
 def remember(port: str, name: str, is_used: bool = True) -> None:
     """Remember a port and the name of its robot; not for a virtual robot, whose port is new each
     time."""
-    from tiniscript.link import known_ports
-    from tiniscript.link.port_names import is_at_broker
-
     if not is_at_broker(port) and not _is_virtual(port):
         known_ports.remember(port, name, is_used)
 
 
 def _is_virtual(port: str) -> bool:
-    from tiniscript.link.port_names import is_address
-
     if not is_address(port) and not port.startswith(PSEUDO):
         return False
-    from tiniscript.virtual import directory
-
     return directory.is_virtual(port)
 
 
@@ -234,8 +215,6 @@ def shown(name: str) -> str:
 
 
 def _joined(port: str, verb: str, baud: int | None, language: str) -> SharedLine | None:
-    from tiniscript.link.sharing.shared_line import OtherVersion, joined
-
     try:
         client = joined(port, verb)
     except OtherVersion as other:
@@ -254,8 +233,6 @@ def _joined(port: str, verb: str, baud: int | None, language: str) -> SharedLine
 
 def _resolved(port: str, language: str) -> str:
     """Return the address of a robot that is named. Raises RobotError."""
-    from tiniscript.link import errors, ports
-
     try:
         return ports.resolved(port)
     except errors.PortError as failure:
@@ -264,12 +241,8 @@ def _resolved(port: str, language: str) -> str:
 
 def _claimed(port: str, language: str) -> IO[bytes] | None:
     """Return the lock of an address, or None for other ports and where no file can be locked."""
-    from tiniscript.link.port_names import is_address
-
     if not is_address(port):
         return None
-    from tiniscript.link.sharing import registry
-
     try:
         lock = registry.claimed(port)
     except OSError:

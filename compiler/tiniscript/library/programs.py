@@ -6,16 +6,18 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from tiniscript import robots
+from tiniscript.bytecode.image import Image, ImageRefused, unpack
+from tiniscript.bytecode.verify import Refused
 from tiniscript.diagnostics.rendering import Message, as_text, message
+from tiniscript.library.compiling import Compiled, compiled, image_of
 from tiniscript.library.errors import ProgramError, UsageError
-from tiniscript.printable import printable
-from tiniscript.source import PROGRAM_ENDS
+from tiniscript.library.texts import LANGUAGES, sentence
+from tiniscript.robots.profile import ProfileRefused, Robot
+from tiniscript.source import PROGRAM_ENDS, printable
 
 if TYPE_CHECKING:
-    from tiniscript.bytecode.image import Image
     from tiniscript.codegen.source_map import Map
-    from tiniscript.library.compiling import Compiled
-    from tiniscript.robots.profile import Robot
 
 Language = str  # "en" or "es"
 SHOWN = 200  # characters of a name or a value in a sentence
@@ -99,8 +101,6 @@ def check(
     if not isinstance(text, str):
         raise UsageError("bad_program", _checked(language), {"found": type(text).__name__})
     profile = profile_of(robot, language)
-    from tiniscript.library.compiling import compiled
-
     return diagnostics_of(compiled(_data(text), profile, "", is_strict=False), language)
 
 
@@ -147,8 +147,6 @@ def program_of(
         return program
     if isinstance(program, os.PathLike):
         program = _contents(program, language)
-    from tiniscript import robots
-
     if robot is None or isinstance(robot, str | os.PathLike):
         profile = profile_of(robots.DEFAULT if robot is None else robot, language)
     else:
@@ -173,9 +171,6 @@ def program_of(
 
 def profile_of(robot: str | os.PathLike[str], language: Language) -> Robot:
     """Return a robot's profile. Raises UsageError if it is missing or invalid."""
-    from tiniscript import robots
-    from tiniscript.robots.profile import ProfileRefused
-
     _checked(language)
     if not isinstance(robot, str | os.PathLike):
         raise UsageError("bad_robot", language, {"found": type(robot).__name__})
@@ -194,8 +189,6 @@ def diagnostics_of(compiled: Compiled, language: Language) -> list[Message]:
 
 def remarks(places: Map | None, language: Language) -> dict[int, str]:
     """Return the source line for each instruction that begins one, as remarks in a listing."""
-    from tiniscript.library.texts import sentence
-
     found: dict[int, str] = {}
     if places is None:
         return found
@@ -212,7 +205,6 @@ def remarks(places: Map | None, language: Language) -> dict[int, str]:
 
 def _program(text: str, profile: Robot, name: str, optimize: bool, language: Language) -> Program:
     from tiniscript.codegen import source_map
-    from tiniscript.library.compiling import compiled, image_of
 
     found = compiled(_data(text), profile, name, is_strict=True, optimize=optimize)
     diagnostics = tuple(diagnostics_of(found, language))
@@ -239,9 +231,7 @@ def _robot_for(data: bytes, default: Robot, language: Language) -> Robot:
 
 def _read(data: bytes, profile: Robot, language: Language) -> Image:
     """Return an image, verified for this robot. Raises ProgramError."""
-    from tiniscript.bytecode.image import ImageRefused
     from tiniscript.bytecode.loading import check
-    from tiniscript.bytecode.verify import Refused
 
     image = _unpacked(data, language)
     try:
@@ -249,8 +239,6 @@ def _read(data: bytes, profile: Robot, language: Language) -> Image:
     except Refused as refused:
         if refused.name == "NO_SUCH_DEVICE" and image.devices:  # an image for a larger kit
             raise ProgramError("OTHER_KIT", language, {"robot": profile.name}) from None
-        from tiniscript.library.texts import sentence
-
         values = {"offset": f"{refused.offset:04x}", "rule": refused.name}
         said = sentence("bad_code", language, values)
         raise ProgramError(refused.name, language, values, said) from None
@@ -260,8 +248,6 @@ def _read(data: bytes, profile: Robot, language: Language) -> Image:
 
 
 def _unpacked(data: bytes, language: Language) -> Image:
-    from tiniscript.bytecode.image import ImageRefused, unpack
-
     try:
         return unpack(data)
     except ImageRefused as refused:
@@ -269,8 +255,6 @@ def _unpacked(data: bytes, language: Language) -> Image:
 
 
 def _checked(language: Language) -> Language:
-    from tiniscript.library.texts import LANGUAGES
-
     if language not in LANGUAGES:
         raise UsageError("bad_language", "en", {"found": printable(repr(language), SHOWN)})
     return language

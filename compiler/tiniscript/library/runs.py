@@ -4,20 +4,20 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import Literal, NamedTuple
 
+from tiniscript.bytecode.image import Image, ImageRefused, pack
+from tiniscript.bytecode.verify import Refused
+from tiniscript.codegen.source_map import Map
+from tiniscript.kit import Device, Kit
 from tiniscript.library.errors import UsageError
 from tiniscript.library.programs import Language, Program, program_of
-from tiniscript.printable import printable
-
-if TYPE_CHECKING:
-    from typing import Literal
-
-    from tiniscript.bytecode.image import Image
-    from tiniscript.codegen.source_map import Map
-    from tiniscript.kit import Device, Kit
-    from tiniscript.robots.profile import Robot
-    from tiniscript.vm.trace import Ending, Event, MachineOf
+from tiniscript.library.texts import sentence
+from tiniscript.robots.profile import Robot
+from tiniscript.source import printable
+from tiniscript.vm.machine import Machine
+from tiniscript.vm.trace import Ending, Event, MachineOf, Senses
+from tiniscript.vm.trace import run as run_code
 
 Value = float | bool | str  # an int where a number has no decimals
 Readings = Mapping[str, "float | bool | Sequence[float | bool]"]
@@ -118,10 +118,6 @@ def begun(
     seed: int, machine_of: MachineOf | None = None,
 ) -> Iterator[Event | Ending]:  # fmt: skip
     """Yield the actions of a robot with a verified image. `lists` are readings in thousandths."""
-    from tiniscript.vm.machine import Machine
-    from tiniscript.vm.trace import Senses
-    from tiniscript.vm.trace import run as run_code
-
     senses = Senses(robot.kit, lists)
     return run_code(image.code, robot.kit, senses, max_ms, max_steps, seed, machine_of or Machine)
 
@@ -131,8 +127,6 @@ def cpp_machine(image: Image, robot: Robot) -> MachineOf:
 
     Raises ImportError, OSError or RuntimeError if wasmtime is missing or not for this computer.
     """
-    from tiniscript.bytecode.image import ImageRefused, pack
-    from tiniscript.bytecode.verify import Refused
     from tiniscript.vm.wasm import WasmImage
 
     kit = robot.kit
@@ -151,8 +145,6 @@ def thousandths(sensors: Readings, robot: Robot, language: Language) -> dict[int
     for name, readings in sensors.items():
         number = numbers.get(str(name).upper())
         if number is None:
-            from tiniscript.library.texts import sentence
-
             known = ", ".join(numbers) or sentence("no_sensors", language, {})
             values = {"robot": robot.name, "found": printable(str(name), 60), "known": known}
             raise UsageError("no_sensor", language, values)
@@ -180,8 +172,6 @@ def fault_of(name: str, offset: int, places: Map | None) -> Fault:
 
 
 def _trace(events: Iterator[Event | Ending], kit: Kit, places: Map | None) -> Trace:
-    from tiniscript.vm.trace import Ending
-
     found: list[TraceEvent] = []
     for each in events:
         if not isinstance(each, Ending):
@@ -218,8 +208,6 @@ def _reading(device: Device, found: object, language: Language) -> int:
     elif isinstance(found, int | float) and not isinstance(found, bool) and abs(found) < 1e9:
         value = round(found * 1000)
     if value is None or not device.low <= value <= device.high:
-        from tiniscript.library.texts import sentence
-
         low, high = device.text(device.low), device.text(device.high)
         key = "range_yes_no" if device.is_yes_no else "range"
         allowed = sentence(key, language, {"low": low, "high": high})
@@ -245,8 +233,6 @@ def whole(name: str, found: object, low: int, high: int, language: Language) -> 
 def _bad_number(
     name: str, found: object, low: float, high: float, language: Language
 ) -> UsageError:
-    from tiniscript.library.texts import sentence
-
     allowed = sentence("range", language, {"low": str(low), "high": str(high)})
     values = {"name": name, "found": printable(repr(found), 60), "range": allowed}
     return UsageError("bad_number", language, values)

@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 import os
 from threading import Thread
-from typing import NamedTuple
+from typing import NamedTuple, cast
 
 from tiniscript.library.connection import VERB, RobotConnection
 from tiniscript.library.errors import UsageError
@@ -16,9 +16,11 @@ from tiniscript.library.programs import Language, profile_of
 from tiniscript.library.runs import LARGEST_SEED, Readings, thousandths, whole, within
 from tiniscript.robots.kinematics import Pose
 from tiniscript.robots.profile import Robot
-from tiniscript.virtual import worlds
+from tiniscript.virtual import directory, worlds
 from tiniscript.virtual.robot import Settings, VirtualRobot
-from tiniscript.virtual.world import WorldRefused
+from tiniscript.virtual.simulator import Simulator
+from tiniscript.virtual.transports import Transports
+from tiniscript.virtual.world import WorldRefused, describe
 
 MOST_NOISE = 0.5
 SLOWEST_HURRY, FASTEST_HURRY = 0.1, 10_000
@@ -115,10 +117,6 @@ class Simulated:
     """The robot, and the thread that runs its clock until `close`."""
 
     def __init__(self, robot: VirtualRobot, hurry: float) -> None:
-        from tiniscript.virtual import directory
-        from tiniscript.virtual.simulator import Simulator
-        from tiniscript.virtual.transports import Transports
-
         self._robot = robot
         self._transports = Transports()
         self.address = self._transports.address
@@ -141,8 +139,6 @@ class Simulated:
         self._is_pushed = True
 
     def close(self) -> None:
-        from tiniscript.virtual import directory
-
         directory.withdraw(self._note)
         self._is_over = True
         self._thread.join(JOIN_S)
@@ -167,14 +163,10 @@ class Simulated:
 
 def _made(profile: Robot, world: str, settings: object, language: Language) -> VirtualRobot:
     """Return the robot in its world. Raises UsageError."""
-    from typing import cast
-
     try:
         return VirtualRobot(
             profile.speaking(language), worlds.load(world), cast(Settings, settings)
         )
     except WorldRefused as refused:
-        from tiniscript.virtual.world_refusals import describe
-
         said = {"reasons": "\n".join(describe(refused, language))}
         raise UsageError("world_refused", language, said) from None

@@ -1,4 +1,4 @@
-"""The interface of a connection to a robot, as commands use it, and the requests on it.
+"""The interface of a connection to a robot, as commands use it; the requests on it.
 
 Two classes implement it: a `Line` of this process, and a `Client` of another process's line. A
 command works with either.

@@ -19,7 +19,7 @@ from threading import Lock
 from tiniscript import files
 from tiniscript.link.authority import RobotKey
 from tiniscript.link.messages import KEY_BYTES, KEYS
-from tiniscript.printable import printable
+from tiniscript.source import printable
 
 FILE_BYTES = 1_000_000
 NAME_CHARACTERS = 16

@@ -13,7 +13,7 @@ from typing import NamedTuple
 from tiniscript import files
 from tiniscript.files import contents
 from tiniscript.link.port_names import is_address, same_for_all
-from tiniscript.printable import printable
+from tiniscript.source import printable
 
 FILE_BYTES = 1_000_000
 KEPT = 2000  # ports; the oldest go first

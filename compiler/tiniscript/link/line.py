@@ -10,7 +10,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from threading import Condition, Thread
 from time import monotonic
-from typing import IO, TYPE_CHECKING, Any, TypeVar
+from typing import IO, Any, TypeVar
 
 import serial
 
@@ -18,9 +18,7 @@ from tiniscript.link.connection import PendingRequest, Requester
 from tiniscript.link.outcomes import LOOK_S, Backlog, Event, Gone, Told
 from tiniscript.link.requests import DeviceInfo, Reply
 from tiniscript.link.session import Session
-
-if TYPE_CHECKING:
-    from tiniscript.link.transports import Port
+from tiniscript.link.transports import Port
 
 T = TypeVar("T")
 

@@ -1,4 +1,4 @@
-"""The events of a session, and the outcomes that the session itself produces.
+"""The events of a session, their queue, and the outcomes that the session itself produces.
 
 All listeners share these, also those in another process. An event is identified by its type or its
 `name`.

@@ -3,7 +3,7 @@
 `receive` takes the bytes that have arrived, `poll` returns the bytes to send, `wakes_at` the time
 of the next poll, `events` the new events. One request is in flight at a time; it is repeated until
 it is answered or its exchange times out. Times are milliseconds. Knows which exchange is next, and
-what ends one. `transmission` times retries, `stop_sequence` times stops, `requests` and
+what ends one. `transmission` times retries and stops, `requests` and
 `handshake` know the order of requests, and `robot_state` what the robot does.
 """
 

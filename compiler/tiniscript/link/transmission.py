@@ -1,6 +1,6 @@
-"""A request in flight: one frame, repeated until it is answered. `window` has those of more.
+"""What is sent until it is answered: one frame, the pieces of a program, or a stop.
 
-Derives the timeout from the baud rate. Does not know what an answer means.
+Derives the timeouts from the baud rate. Does not know what an answer means.
 """
 
 from __future__ import annotations

@@ -15,11 +15,10 @@ from typing import NamedTuple
 
 from tiniscript.kit import Kit
 from tiniscript.recovery import lexicon_en, lexicon_es
-from tiniscript.spelling import Speller
 from tiniscript.syntax.lexer import NUMBER, ODD, WORD
 from tiniscript.syntax.operators import SIGNS
 from tiniscript.syntax.outline import Known
-from tiniscript.words import ALIASES, BLOCK_ENDS, UNITS, WORDS, nearest
+from tiniscript.words import ALIASES, BLOCK_ENDS, UNITS, WORDS, Speller, nearest
 
 KNOWN, MISSPELT, NEAR = 1, 2, 3  # what a meaning costs: said, written nearly so, a slip away
 STARTS = frozenset(("IF", "LOOP", "WHILE"))

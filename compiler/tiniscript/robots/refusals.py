@@ -8,8 +8,8 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 
-from tiniscript.printable import printable
 from tiniscript.robots.profile import LANGUAGES, ProfileRefused, Reason
+from tiniscript.source import printable
 
 SHOWN_CHARACTERS = 40
 DEVICE = re.compile(r"board\.(?:sensors|actuators)\.[^.]*")  # the path of its table

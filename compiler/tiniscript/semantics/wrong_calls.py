@@ -14,7 +14,6 @@ from tiniscript.diagnostics import codes
 from tiniscript.fixed_point import HIGHEST, as_text
 from tiniscript.semantics import ir
 from tiniscript.semantics.comparisons import looks_ahead
-from tiniscript.semantics.out_of_range import meant
 from tiniscript.semantics.symbols import Name, Scope
 from tiniscript.semantics.unknown_words import (
     report_named_arguments,
@@ -23,12 +22,11 @@ from tiniscript.semantics.unknown_words import (
     report_unknown,
     report_words_for_numbers,
 )
-from tiniscript.semantics.until_examples import asked_next, ended_by
-from tiniscript.source import Span
+from tiniscript.source import Source, Span
 from tiniscript.syntax import ast
-from tiniscript.syntax.call_suggestions import count_diagnostic
+from tiniscript.syntax.call_suggestions import LONG_TIME_S, LOWEST_HERTZ, count_diagnostic
 from tiniscript.syntax.free_names import numbered
-from tiniscript.words import Argument, Word
+from tiniscript.words import OTHER_WAY, WORDS, Argument, Word
 
 _NEAR = 500  # characters behind a value for a sensor in which its use is looked for
 
@@ -119,3 +117,67 @@ class WrongCalls:
         k = max(0, sum(each.name == name for each in procedures) - 1)  # these got one already
         found += islice(others, max(0, k + 1 - len(found)))
         return found[k]
+
+
+_NEXT_QUESTION = re.compile(r"(?i)[\s;]{0,200}IF[ \t]*\(([^()\r\n;]{0,60}[<>=][^()\r\n;]{1,60})\)")
+
+
+def asked_next(source: Source, span: Span) -> str:
+    """Return the question of an IF that follows what is at `span`; an example where none does."""
+    found = _NEXT_QUESTION.match(source.text, span.end)
+    return found[1].strip() if found else "DISTANCE < 10"
+
+
+def ended_by(
+    source: Source, call: str, asked: str, word: Word | None, made: Sequence[ir.Statement]
+) -> str:
+    """Return how something is ended by a question: `F(5, 60); S UNTIL(c)`, `M(5, 5) UNTIL(c)`.
+
+    `call` is what the UNTIL of `asked` stands behind, `made` what comes before that.
+    """
+    before = made[-1] if made else None
+    if word is not None and word.role == "motors":
+        return f"{call};W(FOREVER) {asked};S"
+    is_stop = word is not None and word.role == "stop"
+    if is_stop and isinstance(before, ir.Move) and before.until is None:
+        return f"{source[before.span]} {asked}"
+    return f"{WORDS['F'].example} {asked}"
+
+
+_LOW_TONE = 150  # hertz: a note that is no round number, as powers are
+_ROUND = 50
+
+
+def meant(source: Source, node: ast.Command, word: Word) -> dict[str, str]:
+    """Return the values of a diagnostic, "" for none: `fix`, or an example."""
+    arguments = node.arguments or ()
+    texts = [source[each.span] for each in arguments]
+    values = {"fix": "", "most": "", "tone": "", "sound": ""}
+    if len(texts) != 2 or not all(each.is_plain for each in arguments):
+        return values
+    first, second = texts
+    is_short = first.replace(".", "", 1).isdecimal() and float(first) < LONG_TIME_S
+    if word.role == "beep":
+        if _is_whole(first) > LOWEST_HERTZ:
+            values["fix"] = f"{word.text}({second}, {first})"
+        elif is_short:
+            values["tone"] = f"{word.text}({first}, {WORDS['BEEP'].arguments[1].sample})"
+    elif word.role == "move" and word.text in OTHER_WAY:
+        if sum(text.startswith("-") for text in texts) == 1:
+            shown = ", ".join(text.lstrip("- ") for text in texts)
+            values["fix"] = f"{OTHER_WAY[word.text]}({shown})"
+        elif word.text == "B" and is_short and _is_note(second):
+            values["sound"] = f"BEEP({first}, {second})"
+        elif is_short:
+            values["most"] = f"{word.text}({first}, {as_text(word.arguments[1].high)})"
+    return values
+
+
+def _is_whole(text: str) -> int:
+    """Return a whole number, 0 for anything else."""
+    return int(text[:9]) if text.isdecimal() else 0
+
+
+def _is_note(text: str) -> bool:
+    """Whether a number is rather a tone than a power: 440, but not 200."""
+    return _is_whole(text) >= _LOW_TONE and _is_whole(text) % _ROUND != 0

@@ -7,8 +7,46 @@ from __future__ import annotations
 
 import re
 
-from tiniscript.sketch.reserved import RESERVED
 from tiniscript.sketch.texts import IDENTIFIERS
+
+RESERVED = frozenset(
+    # a table of words
+    """
+    abort abs acos acosf alignas alignof analogInputToDigitalPin analogRead analogReference
+    analogWrite and arduino asin asinf asm atan atan2 atan2f atanf atexit atof atoi atol
+    attachInterrupt auto bit bitClear bitRead bitSet bitToggle bitWrite bitand bitor bool boolean
+    break bsearch byte calloc case catch cbrt cbrtf ceil ceilf char class clearerr clearerror cli
+    clock clockCyclesPerMicrosecond clockCyclesToMicroseconds compl const constexpr constrain
+    continue copysign copysignf cos cosf cosh coshf decltype default degrees delay
+    delayMicroseconds delete detachInterrupt digitalPinToBitMask digitalPinToInterrupt
+    digitalPinToPort digitalPinToTimer digitalRead digitalWrite div do double dtostre dtostrf else
+    enum exception exit exp expf explicit export extern fabs fabsf false fclose fdevopen fdim
+    fdimf fdopen feof ferror fflush ffs ffsl ffsll fgetc fgetpos fgets fileno final float floor
+    floorf fma fmaf fmax fmaxf fmin fminf fmod fmodf fopen for fprintf fputc fputs fread free
+    freopen frexp frexpf friend fscanf fseek fsetpos ftell fwrite getc getchar getenv gets goto
+    hertz highByte hypot hypotf if index init initVariant inline int interrupts isAlpha
+    isAlphaNumeric isAscii isControl isDigit isGraph isHexadecimalDigit isLowerCase isPrintable
+    isPunct isSpace isUpperCase isWhitespace isalnum isalpha isascii isblank iscntrl isdigit
+    isfinite isfinitef isgraph isinf isinff islower isnan isnanf isprint ispunct isspace isupper
+    isxdigit itoa labs late ldexp ldexpf ldiv left list log log10 log10f logf long loop lowByte
+    lrint lrintf lround lroundf ltoa main makeWord malloc map max memccpy memchr memcmp memcpy
+    memmem memmove memrchr memset micros microsecondsToClockCycles millis min modf modff mutable
+    namespace new noInterrupts noTone noexcept not null nullptr offsetof operator or override
+    percent perror pinMode portInputRegister portModeRegister portOutputRegister pow power powf
+    printf private protected public pulseIn pulseInLong putc putchar puts qsort radians rand
+    random randomSeed read realloc register remove rename reti return rewind right round roundf
+    scanf seconds sei serial serialEventRun setbuf setup setvbuf shiftIn shiftOut short signbit
+    signbitf signed sin sinf sinh sinhf sizeof snprintf sprintf sq sqrt sqrtf square squaref srand
+    srandom sscanf static stderr stdin stdout strcasecmp strcasestr strcat strchr strchrnul strcmp
+    strcoll strcpy strcspn strdup strerror string strlcat strlcpy strlen strlwr strncasecmp
+    strncat strncmp strncpy strnlen strpbrk strrchr strrev strsep strspn strstr strtod strtok
+    strtol strtoul struct strupr strxfrm switch system tan tanf tanh tanhf template this throw
+    time tmpfile tmpnam toAscii toascii tolower tone toupper true trunc truncf try typedef typeid
+    typename u16 u32 u8 ultoa ungetc union unsigned using utoa value vfprintf vfscanf virtual void
+    volatile vprintf vscanf vsnprintf vsprintf while word write xor yield
+    """.split()  # noqa: SIM905
+)
+
 
 _COUNTER = re.compile(r"[ijk][0-9]*|first[0-9]+")  # of a LOOP; of a value that is kept
 _PREFIXES = ("my", "mi")  # in English and in Spanish

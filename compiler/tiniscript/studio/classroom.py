@@ -11,21 +11,84 @@ from __future__ import annotations
 import hmac
 import secrets
 from collections.abc import Callable
+from dataclasses import dataclass, field
 from threading import RLock
 from time import monotonic
 from typing import TYPE_CHECKING
 
 from tiniscript.link.port_names import same_for_all
-from tiniscript.printable import printable
-from tiniscript.studio.class_members import ClassRobot, Pupil
+from tiniscript.source import printable
 from tiniscript.studio.entrances import new_token
+from tiniscript.studio.hosted_robot import HostedRobot
 from tiniscript.studio.hosting import PORT_CHARACTERS, Hosting, listed
-from tiniscript.studio.rate import Rate
 from tiniscript.studio.robot_link import BadRequest, Json
 from tiniscript.studio.serving import REQUEST_BYTES
 
 if TYPE_CHECKING:
     from tiniscript.studio.hosted_robot import HostedRobot
+
+MOST_NAMES = 1000  # who has not been seen for longest is forgotten
+
+
+class Rate:
+    """`burst` at once, `per_s` come back each second; for each name apart."""
+
+    def __init__(self, burst: float, per_s: float) -> None:
+        self._burst = burst
+        self._per_s = per_s
+        self._left: dict[str, tuple[float, float]] = {}  # what was left, and when
+
+    def has(self, name: str, now_s: float) -> bool:
+        """Return whether one is left."""
+        return self._now(name, now_s) >= 1
+
+    def take(self, name: str, now_s: float) -> bool:
+        """Take one; return whether one was left."""
+        left = self._now(name, now_s)
+        is_left = left >= 1
+        self._left.pop(name, None)
+        if len(self._left) >= MOST_NAMES:
+            del self._left[next(iter(self._left))]
+        self._left[name] = (left - 1 if is_left else left, now_s)
+        return is_left
+
+    def _now(self, name: str, now_s: float) -> float:
+        left, when_s = self._left.get(name, (self._burst, now_s))
+        return min(self._burst, left + (now_s - when_s) * self._per_s)
+
+
+@dataclass(eq=False)
+class Pupil:
+    """`waits`: the pupil wants a robot; who has a smaller number is earlier."""
+
+    number: int
+    name: str
+    address: str
+    heard_s: float
+    text: str = ""
+    waits: int | None = None
+    knows_end: bool = False
+    # The page's name for `hosting`: no page of the teacher's has it.
+    page: str = field(default_factory=lambda: f"pupil-{secrets.token_hex(16)}")
+
+
+@dataclass(eq=False)
+class ClassRobot:
+    """`hosted` is the connection of this turn, once the pupil's page has taken it."""
+
+    port: str
+    name: str
+    pupil: Pupil | None = None
+    hosted: HostedRobot | None = None
+    began_s: float = 0.0
+    free_s: float = 0.0
+
+    def begin(self, pupil: Pupil, now_s: float) -> None:
+        self.pupil, self.hosted, self.began_s = pupil, None, now_s
+
+    def end(self) -> None:
+        self.pupil = self.hosted = None
+
 
 LETTERS = "23456789ABCDEFGHJKLMNPQRSTUVWXYZ"  # none looks like another
 CODE_LETTERS = 6  # a thousand million codes

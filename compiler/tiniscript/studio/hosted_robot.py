@@ -15,7 +15,9 @@ from tiniscript import robots
 from tiniscript.library import opening
 from tiniscript.library.client import Client
 from tiniscript.library.errors import RobotError, TiniScriptError
+from tiniscript.link.line import Line
 from tiniscript.link.messages import STATUSES
+from tiniscript.link.outcomes import Gone
 from tiniscript.studio.attending import Attending
 from tiniscript.studio.robot_link import RobotLink, about
 
@@ -60,8 +62,6 @@ class HostedRobot:
     # -- the thread -------------------------------------------------------------------------------
 
     def _run(self) -> None:
-        from tiniscript.link.outcomes import Gone
-
         try:
             client = Client(
                 self.port, VERB, self._profile, language=self._language,
@@ -94,8 +94,6 @@ class HostedRobot:
         """What another command has started is for that command to attend to."""
         if client.line.held_by:
             return
-        from tiniscript.link.line import Line
-
         assert isinstance(client.line, Line)
         session = client.line.session
         session.may_beat = lambda: self.is_attended or (session.is_running and not link.has_run)

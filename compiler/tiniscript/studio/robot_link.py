@@ -36,7 +36,7 @@ from tiniscript.link.payloads import HelloReply, ReceiptReply, StatusReply, Trim
 from tiniscript.link.requests import OK, DeviceInfo, Reply
 from tiniscript.link.statuses import name_of, sentence
 from tiniscript.link.trim import Trim, told
-from tiniscript.printable import printable
+from tiniscript.source import printable
 
 Json = dict[str, Any]
 T = TypeVar("T")

@@ -4,7 +4,8 @@ Knows which requests it answers. All of the page is read before: an update of th
 change a page that is open. What a page asks of robots goes to `hosting`, if it shows the token of
 this run: a page gets it for the code that is in the address which `tsc studio` opens, behind a #,
 which no browser sends (`entrances`). With `--class` the address is one of the room's network, the
-token is the teacher's, and pupils have tokens of their own (`classroom`). Knows no robots.
+token is the teacher's, and pupils have tokens of their own (`classroom`). What the page may do in a
+browser is its Content-Security-Policy. Knows no robots.
 """
 
 from __future__ import annotations
@@ -28,8 +29,46 @@ from tiniscript.flash import ready
 from tiniscript.link.sharing.protocol import BadMessage, message_of
 from tiniscript.studio import building
 from tiniscript.studio.entrances import Entrances
-from tiniscript.studio.policy import HEADERS, SECURE_ONLY, TYPES
 from tiniscript.studio.robot_link import BadRequest, Json
+
+# Nothing comes from elsewhere and nothing goes there. Python is WebAssembly, compiled here.
+_DIRECTIVES = (
+    "default-src 'none'",
+    "script-src 'self' 'wasm-unsafe-eval'",
+    "style-src 'self'",
+    "img-src 'self' blob:",  # a blob is made by the page: its picture of blocks
+    "connect-src 'self'",
+    "worker-src 'self'",
+    "manifest-src 'self'",
+    "base-uri 'none'",
+    "form-action 'none'",
+)
+POLICY = "; ".join(_DIRECTIVES)  # a page can say so of itself
+HEADERS = {
+    "Content-Security-Policy": f"{POLICY}; frame-ancestors 'none'",
+    "Cross-Origin-Opener-Policy": "same-origin",
+    "Cross-Origin-Resource-Policy": "same-origin",
+    "Referrer-Policy": "no-referrer",
+    "X-Content-Type-Options": "nosniff",
+    "Cache-Control": "no-cache",
+}
+# A browser complains of this one at an address that is neither https nor of its own computer.
+SECURE_ONLY = "Cross-Origin-Opener-Policy"
+TYPES = {
+    ".html": "text/html; charset=utf-8",
+    ".js": "text/javascript; charset=utf-8",
+    ".mjs": "text/javascript; charset=utf-8",
+    ".css": "text/css; charset=utf-8",
+    ".svg": "image/svg+xml",
+    ".cur": "image/x-icon",
+    ".wasm": "application/wasm",
+    ".zip": "application/zip",
+    ".txt": "text/plain; charset=utf-8",
+    ".hex": "text/plain; charset=utf-8",
+    ".json": "application/json",
+    ".webmanifest": "application/manifest+json",
+}
+
 
 PAGE = Path(__file__).with_name("page")
 FIRST = "index.html"

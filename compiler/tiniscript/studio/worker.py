@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING, Any
 
 from tiniscript.bytecode.image import checksum
 from tiniscript.diagnostics.rendering import Message
+from tiniscript.robots import decoded
+from tiniscript.robots.profile import ProfileRefused
 from tiniscript.studio import checking
 from tiniscript.studio.block_form import data_of, from_data, size_of
 from tiniscript.studio.block_printing import print_blocks
@@ -84,7 +86,7 @@ def _world(where: Any) -> World:
     """
     from tiniscript.studio.world_form import toml_of
     from tiniscript.virtual import worlds
-    from tiniscript.virtual.world_reader import read as read_world
+    from tiniscript.virtual.worlds import read as read_world
 
     if isinstance(where, str):
         assert where in worlds.names(), where
@@ -101,8 +103,7 @@ def _power_on(fields: Answer, data: bytes) -> Answer:
     With `is_held` it stands in front of the program's first part.
     """
     from tiniscript.studio.simulation import Marks, Simulation
-    from tiniscript.virtual.world import WorldRefused
-    from tiniscript.virtual.world_refusals import describe
+    from tiniscript.virtual.world import WorldRefused, describe
 
     global _simulation
     if _simulation is not None:
@@ -157,12 +158,9 @@ def _push(fields: Answer, data: bytes) -> Answer:
 
 def _open_world(fields: Answer, data: bytes) -> Answer:
     """Return the form of a world's file, `data`, or why it is none."""
-    from tiniscript.robots import decoded
-    from tiniscript.robots.profile import ProfileRefused
     from tiniscript.studio.world_form import form_of
-    from tiniscript.virtual.world import WorldRefused
-    from tiniscript.virtual.world_reader import read as read_world
-    from tiniscript.virtual.world_refusals import describe
+    from tiniscript.virtual.world import WorldRefused, describe
+    from tiniscript.virtual.worlds import read as read_world
 
     name = fields["name"]
     try:
@@ -176,9 +174,8 @@ def _write_world(fields: Answer, data: bytes) -> Answer:
     """Return the text of a form, and whether the robot fits at its start, or why it is no world."""
     from tiniscript.studio.world_form import toml_of
     from tiniscript.virtual.driving import Driving
-    from tiniscript.virtual.world import WorldRefused
-    from tiniscript.virtual.world_reader import read as read_world
-    from tiniscript.virtual.world_refusals import describe
+    from tiniscript.virtual.world import WorldRefused, describe
+    from tiniscript.virtual.worlds import read as read_world
 
     text = toml_of(fields["form"])
     try:
@@ -192,8 +189,7 @@ def _write_world(fields: Answer, data: bytes) -> Answer:
 def _replay(fields: Answer, data: bytes) -> Answer:
     """Compare a recording, `data`, with the same run of the program `text` on a virtual robot."""
     from tiniscript.studio import recordings
-    from tiniscript.virtual.world import WorldRefused
-    from tiniscript.virtual.world_refusals import describe
+    from tiniscript.virtual.world import WorldRefused, describe
 
     try:
         recording = recordings.read(data)

@@ -11,7 +11,7 @@ from typing import Any
 
 from tiniscript.virtual.geometry import Point
 from tiniscript.virtual.world import World
-from tiniscript.virtual.world_reader import PARTS, POINTS
+from tiniscript.virtual.worlds import PARTS, POINTS
 
 DECIMALS = 3  # that a world's file may have
 Form = dict[str, Any]
@@ -43,7 +43,7 @@ def form_of(world: World) -> Form:
 
 
 def toml_of(form: Form) -> str:
-    """Return the text that `world_reader` reads as the world of a form."""
+    """Return the text that `worlds` reads as the world of a form."""
     floor = {"width_cm": form["width_cm"], "height_cm": form["height_cm"],
              "border": form["has_border"]}  # fmt: skip
     labels = form["labels"]

@@ -8,6 +8,7 @@ never load it: see `lexer`, whose tokens are the same wherever that reads a text
 from __future__ import annotations
 
 import re
+from unicodedata import category, normalize
 
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic
@@ -89,8 +90,6 @@ def scan_with_repairs(text: str) -> Scan:
 
 def _calculates(sign: str) -> bool:
     """Whether a sign changes a value, as √ and ¬ do: without it the program does something else."""
-    from unicodedata import category
-
     return sign == "^" or (category(sign) == "Sm" and not "\u2190" <= sign <= "\u21ff")
 
 
@@ -319,8 +318,6 @@ def _number_in(text: str) -> str:
 
 def _plain(text: str) -> str:
     """Return the nearest name in plain letters: `ANIO` for `AÑO`, `PASOS` for `_PASOS`."""
-    from unicodedata import normalize
-
     composed = normalize("NFC", text[:1000])
     composed = re.sub("ñ(?![ií])", "ni", composed).replace("ñ", "n")
     capitals = "NI" if composed[1:].isupper() or len(composed) == 1 else "Ni"

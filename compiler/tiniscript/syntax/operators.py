@@ -6,15 +6,12 @@ tokens itself.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import Final
 
 from tiniscript.bytecode.opcodes import COMPARATORS
 from tiniscript.source import Source, Span
 from tiniscript.syntax.ast import Part
 from tiniscript.syntax.lexer import Token
-
-if TYPE_CHECKING:
-    from typing import Final
 
 # From loosest to tightest. An open bracket holds back all that waits before it.
 OPEN, OR, AND, NOT, COMPARISON, SUM, PRODUCT, MINUS = range(8)

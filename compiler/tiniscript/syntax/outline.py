@@ -6,7 +6,7 @@ reported. Knows no other line, and so no block: headers, arms and ends are items
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple, NoReturn
 
 from tiniscript.diagnostics.codes import Code
 from tiniscript.source import Source, Span
@@ -18,9 +18,6 @@ from tiniscript.syntax.operators import Postfix
 from tiniscript.syntax.parser import Parser
 from tiniscript.syntax.reporter import Reporter
 from tiniscript.words import WORDS, Word
-
-if TYPE_CHECKING:
-    from typing import NoReturn
 
 
 class Known(NamedTuple):

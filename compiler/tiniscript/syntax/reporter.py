@@ -5,14 +5,11 @@ Knows how the parser abandons a rule: it reports why, and raises Failed. Knows n
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import NoReturn
 
 from tiniscript.diagnostics.codes import Code, Diagnostic
 from tiniscript.source import Span
 from tiniscript.syntax.lexer import Token
-
-if TYPE_CHECKING:
-    from typing import NoReturn
 
 
 class Failed(Exception):

@@ -14,9 +14,8 @@ from tiniscript.source import Source, Span
 from tiniscript.syntax.lexer import WORD
 from tiniscript.syntax.parser import parse
 from tiniscript.text.levels import CODE_BYTES, LONGEST_WORD, Level
-from tiniscript.text.line import spelled_out
+from tiniscript.text.line import PlainCode, plain_code, spelled_out
 from tiniscript.text.memory import MOST_BRACKETS, Reader
-from tiniscript.text.plain import PlainCode, plain_code
 
 
 def misfits(source: Source, program: Program, kit: Kit, level: Level) -> list[Diagnostic]:

@@ -1,4 +1,4 @@
-"""A program as one line for a robot that reads text, with a checksum.
+"""A program as one line for a robot that reads text, and the plain code that the robot makes of it.
 
 Knows where a space is needed. Works on tokens, so that numbers and brackets stay as they are
 written, and so does the order of everything. It is made for texts in which nothing is wrong.
@@ -7,8 +7,12 @@ written, and so does the order of everything. It is made for texts in which noth
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from typing import NamedTuple
 
-from tiniscript.source import Source
+from tiniscript.bytecode.opcodes import BY_CODE
+from tiniscript.codegen.lower import lower
+from tiniscript.semantics.ir import Program
+from tiniscript.source import Source, Span
 from tiniscript.syntax.checksums import with_checksum
 from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, WORD, Token
 from tiniscript.syntax.parser import scan
@@ -49,3 +53,41 @@ def line_of(source: Source) -> str:
         brackets += (kind == "(") - (kind == ")")
         before, is_ended = kind, False
     return with_checksum("".join(parts) or EMPTY)
+
+
+class PlainPlace(NamedTuple):
+    """What `span` of the text says makes the code from `offset` on."""
+
+    offset: int
+    span: Span
+
+
+class PlainCode(NamedTuple):
+    """`length` is that with short jumps; it is the code's own where the code fits a level.
+
+    The offsets of `places` count so, too.
+    """
+
+    code: bytes
+    length: int
+    places: tuple[PlainPlace, ...]
+
+
+def plain_code(program: Program) -> PlainCode:
+    """Return the plain code of a checked program, as it is written."""
+    code, its_places = lower(program, plain=True)
+    short = _short_offsets(code)
+    places = tuple(PlainPlace(short[place.offset], place.span) for place in its_places)
+    return PlainCode(code, short[len(code)], places)
+
+
+def _short_offsets(code: bytes) -> dict[int, int]:
+    """Return where each instruction, and the end, would be if no jump were a far one."""
+    found, at, far = {0: 0}, 0, 0
+    while at < len(code):
+        op = BY_CODE[code[at]]
+        assert op is not None
+        at += op.size
+        far += op.name.endswith("_FAR")
+        found[at] = at - far
+    return found

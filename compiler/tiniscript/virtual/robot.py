@@ -11,6 +11,7 @@ from random import Random
 from typing import NamedTuple
 
 from tiniscript.bytecode.opcodes import FAULTS
+from tiniscript.link.messages import LINK_FAULTS, SAVED
 from tiniscript.robots.driver import AT_STOP, HOLD
 from tiniscript.robots.kinematics import Pose
 from tiniscript.robots.kit_words import kit_words
@@ -324,12 +325,8 @@ class VirtualRobot:
     @property
     def held(self) -> str:
         """Return where its program is held: NOTHING, MEMORY, SAVING or STORED."""
-        from tiniscript.link.messages import SAVED
-
         return SAVED[self._firmware.call("saved")][0]
 
 
 def _link_fault(number: int) -> str:
-    from tiniscript.link.messages import LINK_FAULTS
-
     return next((name for code, name, _ in LINK_FAULTS if code == number), str(number))

@@ -1,7 +1,8 @@
 """Runs a virtual robot against the real clock and its clients.
 
 The robot's time follows real time, or runs faster while a program runs; it runs slower if this
-computer is busy. `robot` simulates the robot, `transports` handles its clients.
+computer is busy. A faster robot has its dead-man timer kept alive by heartbeats of this process.
+`robot` simulates the robot, `transports` handles its clients.
 """
 
 from __future__ import annotations
@@ -10,10 +11,42 @@ from random import Random
 from time import monotonic
 
 from tiniscript.link.messages import STOP_BYTES
-from tiniscript.virtual.heartbeat import Heartbeat
-from tiniscript.virtual.line_faults import BadLine
 from tiniscript.virtual.robot import VirtualRobot
-from tiniscript.virtual.transports import Transports
+from tiniscript.virtual.transports import BadLine, Transports
+
+HEARTBEAT_MS = 300  # of the robot's time
+SILENT_S = 1.0
+LONGEST = 100  # bytes of a frame on the wire, and some
+
+
+class Heartbeat:
+    def __init__(self) -> None:
+        self._frame = b""  # the last one
+        self._open = b""  # what has begun
+        self._heard_s = 0.0
+        self._heartbeat_ms = 0
+
+    def hear(self, data: bytes, wall_s: float) -> None:
+        """Take bytes that the computer has sent."""
+        self._heard_s = wall_s
+        *whole, self._open = (self._open + data).split(b"\0")
+        self._open = self._open[:LONGEST]
+        for each in whole:
+            if each and len(each) < LONGEST:
+                self._frame = each + b"\0"
+
+    def forget(self) -> None:
+        """Forget the last frame, because another client connects."""
+        self._frame = self._open = b""
+
+    def due(self, now_ms: int, wall_s: float) -> bytes:
+        """Return the bytes to repeat at the robot's time `now_ms`, usually none."""
+        is_silent = wall_s - self._heard_s > SILENT_S
+        if self._open or is_silent or now_ms < self._heartbeat_ms + HEARTBEAT_MS:
+            return b""
+        self._heartbeat_ms = now_ms
+        return self._frame
+
 
 BEHIND_S = 0.25  # a larger delay slows the robot's clock down
 BUSY_S = 0.002  # between two polls while bytes are in transit,

@@ -1,15 +1,172 @@
-"""The shipped worlds, and how a world is found by name or by file."""
+"""The shipped worlds, how a world is found by name or by file, and how its text is read."""
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 from tiniscript import robots
-from tiniscript.robots.profile import ProfileRefused
+from tiniscript.fixed_point import ONE
+from tiniscript.robots.kinematics import Pose
+from tiniscript.robots.profile import LANGUAGES, ProfileRefused, Reason
 from tiniscript.robots.refusals import shown
-from tiniscript.virtual.world import World, WorldRefused
-from tiniscript.virtual.world_reader import read
+from tiniscript.robots.toml_table import Table, parse_toml
+from tiniscript.virtual.geometry import Point
+from tiniscript.virtual.world import Lamp, Line, World, WorldRefused
 from tiniscript.words import nearest
+
+LARGEST_CM = 2000 * ONE
+PARTS = 100  # walls, and as many boxes, lines and lamps
+POINTS = 200  # of a wall or a line
+LABEL_CHARACTERS = 60
+
+
+def read(text: str, name: str) -> World:
+    """Return the world that a text describes, under `name`. Raises WorldRefused."""
+    found = parse_toml(text)
+    if isinstance(found, tuple):
+        raise WorldRefused(found)
+    reasons: list[Reason] = []
+    try:
+        world = _read(Table(found, "", reasons), shown(name))
+    except ProfileRefused as refused:  # a mistake after which reading cannot go on
+        raise WorldRefused(*refused.reasons) from None
+    if reasons:
+        raise WorldRefused(*reasons)
+    x_cm, y_cm, _ = world.start
+    for key, at_cm, most_cm in (("x_cm", x_cm, world.width_cm), ("y_cm", y_cm, world.height_cm)):
+        if not 0 <= at_cm <= most_cm:
+            values = {"path": f"start.{key}", "found": f"{at_cm:g}", "most": f"{most_cm:g}"}
+            reasons.append(("start_outside", {**values, "line": str(_line_of(text, "start", key))}))
+    if reasons:
+        raise WorldRefused(*reasons)
+    return world
+
+
+def _line_of(text: str, table: str, key: str) -> int:
+    """Return the line of a key in a table of a TOML text, or that of the table."""
+    place, is_inside = 1, False
+    for number, line in enumerate(text.splitlines(), 1):
+        row = line.replace(" ", "").replace("\t", "")
+        if row.startswith("["):
+            is_inside = row.startswith(f"[{table}]")
+        if row.startswith((f"[{table}]", f"{table}=")):
+            place = number
+        is_key = row.startswith((f"{key}=", f'"{key}"=', f"'{key}'="))
+        if row.startswith(f"{table}.{key}=") or (is_inside and is_key):
+            return number
+    return place
+
+
+def _read(root: Table, name: str) -> World:
+    floor = root.table("floor", "[floor]")
+    width_cm, height_cm = (
+        _number(floor, key, ONE, LARGEST_CM, f"{key} = 200") for key in ("width_cm", "height_cm")
+    )
+    has_border = floor.yes_no("border", True)
+    floor.finish()
+    start = root.table("start", "[start]")
+    pose = Pose(*_place(start), _number(start, "heading", -360 * ONE, 360 * ONE))
+    start.finish()
+    light = root.table("light")
+    ambient = _number(light, "ambient_percent", 0, 100 * ONE, default=10) / 100
+    light.finish()
+    world = World(
+        name,
+        _labels(root.table("labels"), name),
+        width_cm,
+        height_cm,
+        has_border,
+        pose,
+        tuple(_points(each) for each in _parts(root, "walls")),
+        tuple(_box(each) for each in _parts(root, "boxes")),
+        tuple(_line(each) for each in _parts(root, "lines")),
+        tuple(_lamp(each) for each in _parts(root, "lamps")),
+        ambient,
+    )
+    root.finish()
+    return world
+
+
+def _parts(root: Table, key: str) -> list[Table]:
+    tables = root.tables(key)
+    if len(tables) > PARTS:
+        root.complain("too_many_parts", key, found=str(len(tables)), most=str(PARTS))
+    return tables[:PARTS]
+
+
+def _number(
+    table: Table, key: str, low: int, high: int, example: str = "", default: float = 0
+) -> float:
+    return table.number(key, low, high, example, int(default * ONE)) / ONE
+
+
+def _place(table: Table) -> Point:
+    return Point(
+        *(_number(table, key, -LARGEST_CM, LARGEST_CM, f"{key} = 50") for key in ("x_cm", "y_cm"))
+    )
+
+
+def _row(table: Table) -> tuple[Point, ...]:
+    example = "points = [[20, 50], [80, 50]]"
+    pairs = table.pairs("points", -LARGEST_CM, LARGEST_CM, example)
+    if pairs is not None and not 2 <= len(pairs) <= POINTS:
+        table.complain("points_count", "points", found=str(len(pairs)), most=str(POINTS))
+    return tuple(Point(x / ONE, y / ONE) for x, y in (pairs or ())[:POINTS])
+
+
+def _points(table: Table) -> tuple[Point, ...]:
+    found = _row(table)
+    table.finish()
+    return found
+
+
+def _line(table: Table) -> Line:
+    line = Line(_row(table), _number(table, "width_cm", ONE // 10, 100 * ONE, default=2))
+    table.finish()
+    return line
+
+
+def _box(table: Table) -> tuple[Point, ...]:
+    """Return the corners of a box that lies around its middle, turned by `heading`."""
+    middle = _place(table)
+    length, width = (
+        _number(table, key, ONE // 10, LARGEST_CM, f"{key} = 20")
+        for key in ("length_cm", "width_cm")
+    )
+    turned = math.radians(_number(table, "heading", -360 * ONE, 360 * ONE))
+    table.finish()
+    cos, sin = math.cos(turned), math.sin(turned)
+    corners = ((1, 1), (-1, 1), (-1, -1), (1, -1))
+    return tuple(
+        Point(
+            middle.x + along * length / 2 * cos - across * width / 2 * sin,
+            middle.y + along * length / 2 * sin + across * width / 2 * cos,
+        )
+        for along, across in corners
+    )
+
+
+def _lamp(table: Table) -> Lamp:
+    lamp = Lamp(_place(table), _number(table, "reach_cm", ONE, LARGEST_CM, default=100))
+    table.finish()
+    return lamp
+
+
+def _labels(table: Table, name: str) -> dict[str, str]:
+    """Return the world's name in each language; one that is missing is the other's, or `name`."""
+    written: dict[str, str] = {}
+    for language in LANGUAGES:
+        label = table.text(language)
+        if label is None:
+            continue
+        if not label.strip() or len(label) > LABEL_CHARACTERS or not label.isprintable():
+            table.complain("label_bad", language, most=str(LABEL_CHARACTERS))
+        written[language] = label
+    table.finish()
+    other = next(iter(written.values()), name)
+    return {language: written.get(language, other) for language in LANGUAGES}
+
 
 DEFAULT = "obstacles"
 FOLDER = Path(__file__).with_name("worlds")

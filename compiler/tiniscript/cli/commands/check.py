@@ -4,21 +4,17 @@ from __future__ import annotations
 
 import sys
 from argparse import Namespace
-from typing import TYPE_CHECKING
 
-from tiniscript.cli import inputs, outputs
+from tiniscript.cli import inputs, outputs, program_files
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import Input
 from tiniscript.cli.texts.common import text
-
-if TYPE_CHECKING:
-    from tiniscript.library.compiling import Compiled
-    from tiniscript.robots.profile import Robot
+from tiniscript.diagnostics.rendering import as_json, message
+from tiniscript.library.compiling import Compiled
+from tiniscript.robots.profile import Robot
 
 
 def run(options: Namespace, language: str) -> int:
-    from tiniscript.cli import program_files
-
     names: list[str] = options.programs
     if program_files.are_several(names) and not options.texts:
         from tiniscript.cli import check_table
@@ -39,8 +35,6 @@ def run(options: Namespace, language: str) -> int:
         is_right = compiled.is_right
     if options.json:
         import json
-
-        from tiniscript.diagnostics.rendering import as_json, message
 
         said = [
             message(diagnostic, compiled.source, language) for diagnostic in compiled.diagnostics

@@ -9,6 +9,8 @@ from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot.connect import Connection, connected
 from tiniscript.cli.texts.common import text
+from tiniscript.link.authority import NOT_OWNER, OF_ANOTHER, whose
+from tiniscript.link.keys import KeyFile
 from tiniscript.link.messages import KEY_OWNER, KEY_TEACHER, OWNERS, STATUSES
 from tiniscript.link.outcomes import UNKEPT
 from tiniscript.link.requests import Reply
@@ -31,8 +33,6 @@ def _claim(connection: Connection, which: int) -> None:
     print(said, file=sys.stderr, flush=True)
     reply = connection.wait(request)
     if reply.status == UNKEPT:
-        from tiniscript.link.keys import KeyFile
-
         raise CommandError(2, "unkept_key", file=shown(str(KeyFile().path)))
     if reply.status in (STATUSES["SAVING"], STATUSES["LOW_SUPPLY"]):
         key = "claim_saving"
@@ -45,9 +45,6 @@ def _claim(connection: Connection, which: int) -> None:
 
 def _refuse_at_once(connection: Connection) -> None:
     """Say what no button changes. Raises CommandError."""
-    from tiniscript.link.authority import NOT_OWNER, OF_ANOTHER, whose
-    from tiniscript.link.keys import KeyFile
-
     device_info = connection.device_info
     if not device_info.values.features & OWNERS:
         raise CommandError(3, "no_owners", robot=connection.name)

@@ -5,15 +5,16 @@ from __future__ import annotations
 import sys
 from argparse import Namespace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
+from tiniscript.bytecode.opcodes import STACK_VALUES
 from tiniscript.cli import inputs, outputs, paths
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.texts.common import text
+from tiniscript.diagnostics.codes import WILL_FAULT
 from tiniscript.fixed_point import as_text
-
-if TYPE_CHECKING:
-    from tiniscript.library.compiling import Compiled
+from tiniscript.library.compiling import Compiled
+from tiniscript.semantics.ir import Program
+from tiniscript.semantics.optimizer import optimized
 
 
 def run(options: Namespace, language: str) -> int:
@@ -65,8 +66,7 @@ def _line(options: Namespace, given: inputs.Input, language: str) -> int:
     outputs.print_diagnostics(compiled, language)
     if not compiled.is_right:
         return 1
-    from tiniscript.text.line import line_of
-    from tiniscript.text.plain import plain_code
+    from tiniscript.text.line import line_of, plain_code
 
     assert compiled.program is not None
     line = (line_of(compiled.source) + "\n").encode()
@@ -96,21 +96,15 @@ def _target(given: inputs.Input, output: str | None) -> Path | None:
 
 
 def _stack_values() -> int:
-    from tiniscript.bytecode.opcodes import STACK_VALUES
-
     return STACK_VALUES
 
 
 def _will_fault(compiled: Compiled) -> bool:
-    from tiniscript.diagnostics.codes import WILL_FAULT
-
     return any(diagnostic.code is WILL_FAULT for diagnostic in compiled.diagnostics)
 
 
 def _runs(program: object, language: str) -> str:
     from tiniscript.semantics.duration import duration
-    from tiniscript.semantics.ir import Program
-    from tiniscript.semantics.optimizer import optimized
 
     assert isinstance(program, Program)
     how = duration(optimized(program))

@@ -7,7 +7,6 @@ import json
 import os
 from argparse import Namespace
 from collections.abc import Iterable
-from typing import TYPE_CHECKING
 
 from tiniscript import robots
 from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
@@ -16,15 +15,14 @@ from tiniscript.cli.inputs import shown
 from tiniscript.cli.options import whole_number
 from tiniscript.cli.robot.connect import FASTEST_BAUD, SLOWEST_BAUD, port_failure
 from tiniscript.cli.texts.common import text
+from tiniscript.conformance import link_kit, port_checks
 from tiniscript.conformance.comparing import AGREES, DIFFERS, Verdict, verdicts
 from tiniscript.conformance.kit import VERSION, machine_cases
 from tiniscript.conformance.machine_process import CannotStart, MachineProcess
+from tiniscript.conformance.wire_robot import Silent, WireRobot
 from tiniscript.link import errors, ports
-from tiniscript.link.messages import STOP_BYTES
+from tiniscript.link.messages import MAJOR, MINOR, OWNED, STOP_BYTES
 from tiniscript.link.wire import SerialWire
-
-if TYPE_CHECKING:
-    from tiniscript.conformance.wire_robot import WireRobot
 
 PATIENCE_S = 10
 MOST_SHOWN = 20
@@ -61,10 +59,6 @@ def _machine(options: Namespace, timeout_s: int, language: str) -> int:
 
 
 def _port(options: Namespace, language: str) -> int:
-    from tiniscript.conformance import link_kit, port_checks
-    from tiniscript.conformance.wire_robot import Silent, WireRobot
-    from tiniscript.link.messages import MAJOR, MINOR, OWNED
-
     if options.timeout is not None:
         raise CommandError(2, "conform_timeout")
     port: str = options.port

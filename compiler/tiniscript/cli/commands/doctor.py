@@ -7,9 +7,9 @@ import os
 import platform
 import sys
 from argparse import Namespace
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from tiniscript.cli import inputs, outputs
 from tiniscript.cli.errors import CommandError
@@ -17,25 +17,24 @@ from tiniscript.cli.inputs import shown
 from tiniscript.cli.options import whole_number
 from tiniscript.cli.robot.connect import Connection, baud_of, robot_of_kit
 from tiniscript.cli.robot.simulator import running_address
+from tiniscript.cli.streams import are_read
 from tiniscript.cli.terminal.asking import agreed, can_ask
-from tiniscript.cli.terminal.sequences import are_read
 from tiniscript.cli.texts.common import has_text, text
 from tiniscript.cli.texts.doctor import BLANK, STEPS
 from tiniscript.doctor import report
+from tiniscript.doctor.diagnosis import Diagnosis, Doors, Question, diagnosed
+from tiniscript.doctor.examination import Expected
 from tiniscript.doctor.findings import CAUSES, NOTE, Finding
 from tiniscript.doctor.system import ThisComputer
 from tiniscript.library.known_kits import of_kit
 from tiniscript.link import known_ports, port_names, ports
 from tiniscript.link.connection import LinkConnection
+from tiniscript.link.keys import KeyFile
 from tiniscript.link.messages import RESETS
 from tiniscript.link.sharing.shared_line import joined
 from tiniscript.link.wire import SerialWire, Wire
 from tiniscript.version import __version__
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
-
-    from tiniscript.doctor.diagnosis import Diagnosis, Doors, Question
+from tiniscript.virtual import directory
 
 LONGEST_WATCH_S = 600
 
@@ -43,8 +42,6 @@ LONGEST_WATCH_S = 600
 def run(options: Namespace, language: str) -> int:
     told: dict[str, str] = {}  # by a robot, of itself
     question = _question(options, language, told)
-    from tiniscript.doctor.diagnosis import diagnosed
-
     doing = _Doing(language, is_shown=not options.json and are_read(sys.stderr))
     try:
         diagnosis = diagnosed(_doors(options, language, doing), question)
@@ -64,10 +61,6 @@ def run(options: Namespace, language: str) -> int:
 
 
 def _question(options: Namespace, language: str, told: dict[str, str]) -> Question:
-    from tiniscript.doctor.diagnosis import Question
-    from tiniscript.doctor.examination import Expected
-    from tiniscript.virtual import directory
-
     robot = inputs.robot(options, language)
     watch_s = whole_number("--watch", options.watch, 0, 0, LONGEST_WATCH_S, language)
     port: str | None = options.port
@@ -98,14 +91,10 @@ def _name_of_kit(kit: int) -> str | None:
 
 
 def _has_key(robot: int) -> bool:
-    from tiniscript.link.keys import KeyFile
-
     return any(not key.is_stale for key in KeyFile().of_robot(robot))
 
 
 def _doors(options: Namespace, language: str, doing: _Doing) -> Doors:
-    from tiniscript.doctor.diagnosis import Doors
-
     def open_wire(port: str, baud: int) -> Wire:
         return SerialWire(ports.opened(port, baud))
 

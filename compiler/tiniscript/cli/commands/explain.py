@@ -5,20 +5,18 @@ from __future__ import annotations
 from argparse import Namespace
 
 from tiniscript.cli.errors import CommandError
+from tiniscript.diagnostics.codes import CODES
+from tiniscript.diagnostics.rendering import explain, titles
+from tiniscript.words import nearest
 
 
 def run(options: Namespace, language: str) -> int:
-    from tiniscript.diagnostics.rendering import explain, titles
-
     if options.code is None:
         for code, title in titles(language):
             print(f"{code}  {title}")
         return 0
     said = explain(options.code, language)
     if said is None:
-        from tiniscript.diagnostics.codes import CODES
-        from tiniscript.words import nearest
-
         near = nearest(options.code.upper(), list(CODES)) or ""
         raise CommandError(2, "no_code", found=options.code, near=near)
     print(said, end="" if said.endswith("\n") else "\n")

@@ -11,8 +11,7 @@ from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.options import bad_choice
 from tiniscript.cli.robot.connect import Connection, port_failure
-from tiniscript.cli.terminal.progress import Progress
-from tiniscript.cli.terminal.waiting import waiting
+from tiniscript.cli.terminal.progress import Progress, waiting
 from tiniscript.cli.texts.common import text
 from tiniscript.flash import avrdude
 from tiniscript.flash.avrdude import Ended, Seen

@@ -9,14 +9,13 @@ from tiniscript.cli import inputs, outputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.texts.common import text
 from tiniscript.source import LARGEST_SOURCE
+from tiniscript.syntax.formatter import formatted
 
 
 def run(options: Namespace, language: str) -> int:
     given = inputs.program(options)
     if given.is_image:
         raise CommandError(2, "needs_text", file=inputs.shown(given.name), verb="fmt")
-    from tiniscript.syntax.formatter import formatted
-
     parsed = inputs.parsed(given, inputs.robot(options, language).kit)
     if not parsed.is_right:
         outputs.print_diagnostics(parsed, language)

@@ -8,7 +8,7 @@ from tiniscript.cli.errors import CommandError
 from tiniscript.cli.help import show_all, show_first, show_found, show_verb
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.texts.verbs import VERBS
-from tiniscript.cli.verbless import meant, refuse
+from tiniscript.cli.verbless import meant, refuse, verbs_for
 
 ALL = ("all", "todo", "todos")
 
@@ -22,8 +22,6 @@ def run(options: Namespace, language: str) -> int:
     elif about in VERBS:
         show_verb(about, language)
     else:
-        from tiniscript.cli.finding import verbs_for
-
         found = [] if meant(about) else verbs_for(about)
         if not found and " " in about:
             raise CommandError(2, "none_does", found=shown(about))

@@ -9,8 +9,7 @@ from tiniscript.cli import inputs
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.fleet import together
-from tiniscript.cli.robot.member import Member, Result
-from tiniscript.cli.robot.targets import are_many
+from tiniscript.cli.robot.member import Member, Result, are_many
 from tiniscript.cli.texts.common import text
 
 

@@ -10,10 +10,10 @@ from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot.connect import Connection, robot_of_kit
 from tiniscript.cli.robot.event_printer import fault_name, fault_sentence
 from tiniscript.cli.robot.fleet import together
-from tiniscript.cli.robot.member import Member, Result
-from tiniscript.cli.robot.targets import are_many
+from tiniscript.cli.robot.member import Member, Result, are_many
 from tiniscript.cli.texts.common import text
 from tiniscript.codegen import source_map
+from tiniscript.link.authority import whose
 from tiniscript.link.messages import (
     RESETS,
     SAVED,
@@ -54,8 +54,6 @@ class Description:
 
     def fields(self) -> dict[str, object]:
         """Return it as data."""
-        from tiniscript.link.authority import whose
-
         status = self.status
         has_program = not self._why_no_program()
         fault = None

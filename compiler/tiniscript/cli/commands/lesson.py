@@ -5,15 +5,13 @@ from __future__ import annotations
 import sys
 from argparse import Namespace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from tiniscript.cli import inputs, outputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.texts.common import Said, text
 from tiniscript.cli.texts.options import of_verb
-
-if TYPE_CHECKING:
-    from tiniscript.lessons.lesson import Lesson, LessonRefused
+from tiniscript.lessons.lesson import Lesson, LessonRefused
+from tiniscript.lessons.refusals import describe
 
 # What each action takes besides the lesson and the language.
 ACTIONS = {
@@ -35,7 +33,6 @@ def run(options: Namespace, language: str) -> int:
     if options.number is None:
         raise CommandError(2, "lesson_which", action=action)
     from tiniscript.lessons import catalogue
-    from tiniscript.lessons.lesson import LessonRefused
 
     try:
         folder = catalogue.folder_of(options.number)
@@ -64,8 +61,6 @@ def _refuse_others(options: Namespace, action: str) -> None:
 
 
 def _refused(name: str, refused: LessonRefused, language: str) -> CommandError:
-    from tiniscript.lessons.refusals import describe
-
     lines = describe(refused, language)
     if refused.reasons[0][0] in ("no_such_lesson", "no_page"):
         return CommandError(2, "plain", said=lines[0])

@@ -8,13 +8,13 @@ import sys
 from argparse import Namespace
 from collections.abc import Callable, Iterable, Iterator
 
+from tiniscript import files
 from tiniscript.cli import inputs, outputs
 from tiniscript.cli.commands.ping import ping
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.robot import own_kit
 from tiniscript.cli.robot.connect import Connection
-from tiniscript.cli.robot.event_printer import Bookkeeping, EventPrinter
-from tiniscript.cli.robot.live_mark import MARK
+from tiniscript.cli.robot.event_printer import MARK, Bookkeeping, EventPrinter
 from tiniscript.cli.robot.live_state import Known, Line, Value, header, open_ends
 from tiniscript.cli.robot.run_monitor import RunMonitor, stop_and_say
 from tiniscript.cli.texts.common import text
@@ -318,8 +318,6 @@ def _history(known: Known) -> Iterator[None]:
     except ImportError:
         yield
         return
-    from tiniscript import files
-
     path = files.cache_folder() / "live_history"
     kit = known.kit
 

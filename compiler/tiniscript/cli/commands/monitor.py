@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
-from tiniscript.cli.made import ROWS
 from tiniscript.cli.options import whole_number
+from tiniscript.cli.paths import ROWS
 from tiniscript.cli.robot.connect import Connection, connected
 from tiniscript.cli.robot.event_printer import Bookkeeping, EventPrinter
-from tiniscript.cli.robot.rows import Rows
+from tiniscript.cli.robot.recorder import Rows
 from tiniscript.cli.texts.common import text
 from tiniscript.link.outcomes import Gone
 

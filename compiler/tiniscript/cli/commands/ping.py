@@ -12,8 +12,7 @@ from tiniscript.cli.commands.info import Description
 from tiniscript.cli.options import whole_number
 from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.fleet import Work, together
-from tiniscript.cli.robot.member import Member, Result
-from tiniscript.cli.robot.targets import are_many
+from tiniscript.cli.robot.member import Member, Result, are_many
 from tiniscript.cli.texts.common import text
 
 COUNT = 10

@@ -6,7 +6,7 @@ import json
 import sys
 from argparse import Namespace
 from concurrent.futures import ThreadPoolExecutor
-from typing import TYPE_CHECKING
+from contextlib import closing
 
 from tiniscript.cli import inputs
 from tiniscript.cli.errors import CommandError
@@ -16,16 +16,15 @@ from tiniscript.cli.robot.in_reach import InReach, found
 from tiniscript.cli.texts.common import text
 from tiniscript.library import opening
 from tiniscript.link import known_ports, ports
+from tiniscript.link.authority import whose
 from tiniscript.link.outcomes import Gone
 from tiniscript.link.port_names import is_there, same_for_all
 from tiniscript.link.requests import OK
 from tiniscript.link.sharing.registry import all_found
 from tiniscript.link.sharing.shared_line import is_alive
 from tiniscript.robots.profile import Robot
-from tiniscript.virtual import worlds
-
-if TYPE_CHECKING:
-    from tiniscript.virtual.directory import Running
+from tiniscript.virtual import directory, worlds
+from tiniscript.virtual.directory import Running
 
 OPEN_S = 12.0
 AT_ONCE = 16  # ports that are asked at the same time
@@ -68,8 +67,6 @@ def _in_reach(language: str) -> InReach:
 
 def _rows(options: Namespace, in_reach: InReach, language: str) -> list[dict[str, object]]:
     """Return the ports that the system lists, those in reach, and others that had a robot."""
-    from tiniscript.virtual import directory
-
     known = known_ports.known()
     virtual = {each.address: each for each in directory.running()}
     about = {each.port: each.description for each in ports.listed()}
@@ -111,10 +108,6 @@ def _virtual(running: Running, language: str) -> str:
 
 def _ask(port: str, baud: int | None, robot: Robot, language: str) -> dict[str, object]:
     """Return the robot that answers on a port, or why none does."""
-    from contextlib import closing
-
-    from tiniscript.link.authority import whose
-
     try:
         with closing(opened_client(port, robot, "ports", baud, language, OPEN_S)) as client:
             line = client.line

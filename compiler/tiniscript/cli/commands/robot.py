@@ -18,19 +18,22 @@ from tiniscript.cli.inputs import shown
 from tiniscript.cli.options import decimal, whole_number
 from tiniscript.cli.robot import simulator_options
 from tiniscript.cli.robot.event_printer import Bookkeeping
+from tiniscript.cli.terminal import FRAME_S
 from tiniscript.cli.terminal.keys import Keys, is_in_front
-from tiniscript.cli.terminal.pace import FRAME_S
 from tiniscript.cli.texts.common import text
 from tiniscript.library import install_advice
+from tiniscript.link.keys import KeyFile
+from tiniscript.link.session import Session
+from tiniscript.virtual import directory
 from tiniscript.virtual.robot import VirtualRobot
+from tiniscript.virtual.simulator import CALM_S, Simulator
+from tiniscript.virtual.transports import Transports, can_have_terminal
 from tiniscript.vm.trace import Event
 
 if TYPE_CHECKING:
     from tiniscript.cli.terminal.screen import Screen
     from tiniscript.cli.terminal.world_drawing import WorldPicture
     from tiniscript.virtual.announcement import Announcement
-    from tiniscript.virtual.simulator import Simulator
-    from tiniscript.virtual.transports import Transports
 
 FASTEST_BAUD = 2_000_000
 MEMORY_BYTES = 1024  # of an Uno's EEPROM
@@ -54,9 +57,6 @@ def run(options: Namespace, language: str) -> int:
     robot = simulator_options.made(options, profile, language, _memory(options.memory), baud)
     if options.name is not None:
         _name(robot, options.name)
-    from tiniscript.virtual import directory
-    from tiniscript.virtual.simulator import Simulator
-
     transports = _transports(port, options.pty)
     note, announcement = None, None
     try:
@@ -153,8 +153,6 @@ class _Stage:
 
     def _limit_s(self, pushes: list[tuple[int, int]], end_ms: int | None) -> float:
         """Return the time until the next action is due."""
-        from tiniscript.virtual.simulator import CALM_S
-
         limits = [FRAME_S if self.screen else CALM_S]
         for due_ms in (
             *(time_ms for time_ms, _ in pushes[:1]),
@@ -244,8 +242,6 @@ def ended_by_signal() -> Iterator[Ended]:
 
 
 def _transports(port: int, has_terminal: bool) -> Transports:
-    from tiniscript.virtual.transports import Transports, can_have_terminal
-
     if has_terminal and not can_have_terminal():
         raise CommandError(2, "no_pty")
     try:
@@ -299,9 +295,6 @@ def _memory(name: str | None) -> bytes | None:
 
 def _name(robot: VirtualRobot, name: str) -> None:
     """Name the robot as `tsc name` does, before any client connects."""
-    from tiniscript.link.keys import KeyFile
-    from tiniscript.link.session import Session
-
     data = name_bytes(name)
     profile = robot.profile
     nonce = robot.chance.getrandbits(32)

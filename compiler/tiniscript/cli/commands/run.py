@@ -4,17 +4,17 @@ from __future__ import annotations
 
 import sys
 from argparse import Namespace
-from typing import TYPE_CHECKING
+from collections.abc import Iterator
+from typing import cast
 
+from tiniscript.bytecode.image import Image
 from tiniscript.cli import images, inputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.faults import fault_text
 from tiniscript.cli.options import sensor_lists, thousandths, whole_number
-
-if TYPE_CHECKING:
-    from tiniscript.bytecode.image import Image
-    from tiniscript.robots.profile import Robot
-    from tiniscript.vm.trace import Ending, MachineOf
+from tiniscript.library.runs import begun, cpp_machine
+from tiniscript.robots.profile import Robot
+from tiniscript.vm.trace import Ending, Event, MachineOf
 
 LONGEST = 10**12  # milliseconds
 STEPS = 10_000_000
@@ -38,8 +38,6 @@ def run(options: Namespace, language: str) -> int:
     if ready is None:
         return 1
     machine_of = _cpp_machine(ready.image, robot) if options.machine == "cpp" else None
-    from tiniscript.library.runs import begun
-
     events = begun(ready.image, robot, lists, max_ms, max_steps, seed, machine_of)
     if options.show and sys.stderr.isatty():
         from tiniscript.cli.terminal.run_drawing import watch
@@ -57,8 +55,6 @@ def run(options: Namespace, language: str) -> int:
 
 def _cpp_machine(image: Image, robot: Robot) -> MachineOf:
     """Return the C++ machine with a verified image."""
-    from tiniscript.library.runs import cpp_machine
-
     try:
         return cpp_machine(image, robot)
     except (ImportError, OSError, RuntimeError) as why:  # missing, or not for this computer
@@ -69,11 +65,6 @@ def _cpp_machine(image: Image, robot: Robot) -> MachineOf:
 
 
 def _print(events: object) -> Ending:
-    from collections.abc import Iterator
-    from typing import cast
-
-    from tiniscript.vm.trace import Ending, Event
-
     write = sys.stdout.write
     for event in cast("Iterator[Event | Ending]", events):
         if isinstance(event, Ending):

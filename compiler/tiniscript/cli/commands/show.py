@@ -5,14 +5,12 @@ from __future__ import annotations
 import sys
 from argparse import Namespace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
+from tiniscript.bytecode.disassembly import listing, rows
 from tiniscript.cli import images, inputs, outputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.texts.common import text
-
-if TYPE_CHECKING:
-    from tiniscript.robots.profile import Robot
+from tiniscript.robots.profile import Robot
 
 
 def run(options: Namespace, language: str) -> int:
@@ -62,7 +60,6 @@ def _sketch(options: Namespace, given: inputs.Input, robot: Robot, language: str
 
 
 def print_listing(ready: images.Ready, robot: Robot, name: str, language: str) -> None:
-    from tiniscript.bytecode.disassembly import listing
     from tiniscript.library.programs import remarks
 
     image = ready.image
@@ -81,8 +78,6 @@ def print_listing(ready: images.Ready, robot: Robot, name: str, language: str) -
 
 def print_json(ready: images.Ready, robot: Robot) -> None:
     import json
-
-    from tiniscript.bytecode.disassembly import rows
 
     image = ready.image
     instructions = []

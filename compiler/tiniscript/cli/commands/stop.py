@@ -4,32 +4,27 @@ from __future__ import annotations
 
 import json
 from argparse import Namespace
-from typing import TYPE_CHECKING
 
 from tiniscript.cli import inputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
+from tiniscript.cli.robot import in_reach
 from tiniscript.cli.robot.connect import Connection
+from tiniscript.cli.robot.fleet import Again, together
+from tiniscript.cli.robot.member import Member, Result, are_many
 from tiniscript.cli.robot.run_monitor import confirmed
-from tiniscript.cli.robot.targets import are_many
 from tiniscript.cli.texts.common import text
-
-if TYPE_CHECKING:
-    from tiniscript.cli.robot.member import Member, Result
+from tiniscript.link.authority import NOT_OWNER, WRONG_KEY
 
 
 def run(options: Namespace, language: str) -> int:
     robot = inputs.robot(options, language)
     is_many = are_many(options)
     if not is_many and options.port is None:
-        from tiniscript.cli.robot import in_use
-
-        options.ports = in_use.to_stop(options.virtual)
+        options.ports = in_reach.to_stop(options.virtual)
         options.virtual = options.virtual and not options.ports
         is_many = are_many(options)
     if is_many:
-        from tiniscript.cli.robot.fleet import together
-
         return together(options, robot, language, _one_of_many)
     while True:
         with Connection(options, robot, language) as connection:
@@ -50,8 +45,6 @@ def run(options: Namespace, language: str) -> int:
 
 def _hold_back(connection: Connection) -> None:
     """Have a robot that was stopped wait for the teacher, or its button. Raises CommandError."""
-    from tiniscript.link.authority import NOT_OWNER, WRONG_KEY
-
     connection.meet()
     reply = connection.wait(connection.do(lambda session: session.hold_back()))
     if reply.status in (NOT_OWNER, WRONG_KEY):
@@ -66,9 +59,6 @@ def _may_be_opened(connection: Connection) -> bool:
 
 
 def _one_of_many(connection: Connection, member: Member) -> Result:
-    from tiniscript.cli.robot.fleet import Again
-    from tiniscript.cli.robot.member import Result
-
     member.tell("crew_stopping")
     if confirmed(connection.line):
         if connection.options.teacher:

@@ -16,10 +16,10 @@ from tiniscript.cli.inputs import shown
 from tiniscript.cli.options import whole_number
 from tiniscript.cli.texts.common import text
 from tiniscript.studio import building, serving
+from tiniscript.studio.hosting import Hosting
 
 if TYPE_CHECKING:
     from tiniscript.studio.classroom import Classroom
-    from tiniscript.studio.hosting import Hosting
 
 PORT = 7070
 TURN_MINUTES = 3
@@ -29,8 +29,6 @@ ELSEWHERE = "198.51.100.1"  # an address of documents, which nobody has
 def run(options: Namespace, language: str) -> int:
     port = whole_number("--listen", options.listen, PORT, 0, 65535, language)
     minutes = whole_number("--turn", options.turn, TURN_MINUTES, 1, 60, language)
-    from tiniscript.studio.hosting import Hosting
-
     hosting, classroom = Hosting(), None
     host = serving.HOST
     if options.is_class:

@@ -12,10 +12,9 @@ from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.event_printer import EventPrinter
 from tiniscript.cli.robot.fleet import together
-from tiniscript.cli.robot.member import Member, Result
+from tiniscript.cli.robot.member import Member, Result, are_many
 from tiniscript.cli.robot.program_upload import saved_name
 from tiniscript.cli.robot.run_monitor import Saving
-from tiniscript.cli.robot.targets import are_many
 from tiniscript.cli.texts.common import text
 from tiniscript.codegen import source_map
 from tiniscript.link.payloads import ReceiptReply

@@ -6,27 +6,29 @@ import json
 import sys
 from argparse import Namespace
 from time import monotonic
-from typing import TYPE_CHECKING
 
+from tiniscript.bytecode.image import pack
 from tiniscript.cli import images, inputs, outputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.robot import own_kit
 from tiniscript.cli.robot.connect import Connection
+from tiniscript.cli.robot.member import are_many
 from tiniscript.cli.robot.program_upload import (
     follow_run,
     has_button,
+    has_keys,
     is_running,
     receipt,
     saved_name,
     send_program,
 )
+from tiniscript.cli.robot.recorder import Recorder
 from tiniscript.cli.robot.run_monitor import Saving, stop_and_say
-from tiniscript.cli.robot.targets import are_many
+from tiniscript.cli.terminal.progress import Progress
 from tiniscript.cli.texts.common import text
+from tiniscript.codegen import source_map
 from tiniscript.link.payloads import ReceiptReply
-
-if TYPE_CHECKING:
-    from tiniscript.robots.profile import Robot
+from tiniscript.robots.profile import Robot
 
 
 def run(options: Namespace, language: str) -> int:
@@ -88,8 +90,6 @@ def _ready(
 def _upload(
     connection: Connection, ready: images.Ready, name: str, options: Namespace
 ) -> int:  # fmt: skip
-    from tiniscript.cli.terminal.progress import Progress
-
     language = connection.language
     progress = Progress(language, 1 + len(ready.image.later) + len(ready.image.code))
     try:
@@ -100,8 +100,6 @@ def _upload(
     printer = connection.event_printer(options.json, ready.places)
     recorder = None
     if options.record is not None:
-        from tiniscript.cli.robot.recorder import Recorder
-
         robot = connection.profile.name
         own = connection.simulator
         robot_ms = None if own is None else own.told_ms
@@ -140,9 +138,6 @@ def _upload(
 def _keep_map(ready: images.Ready) -> None:
     """Save the source map for other commands."""
     if ready.places is not None:
-        from tiniscript.bytecode.image import pack
-        from tiniscript.codegen import source_map
-
         image = ready.image
         source_map.remember(pack(image.start, image.devices, image.code), ready.places)
 
@@ -156,8 +151,6 @@ def _receipt_line(
     if is_running(ready, options):
         how = "how_detached" if options.detach else "how_running"
     elif has_button(connection, ready, options):
-        from tiniscript.cli.robot.button_run import has_keys
-
         how = "how_key" if has_keys(connection) else "how_pushed"
     return text("receipt", language).format(
         program=name,

@@ -12,7 +12,7 @@ from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot import robot_broker
 from tiniscript.cli.robot.connect import Connection, connected
-from tiniscript.cli.terminal import password
+from tiniscript.cli.terminal import asking
 from tiniscript.cli.texts.common import text
 from tiniscript.link.messages import (
     LEAST_PASSWORD,
@@ -135,4 +135,4 @@ def _name_bytes(name: str) -> bytes:
 
 def _password(language: str) -> bytes:
     prompt = text("wifi_password", language)
-    return password.asked(prompt, LEAST_PASSWORD, PASSWORD_BYTES, "wifi_bad_password")
+    return asking.password(prompt, LEAST_PASSWORD, PASSWORD_BYTES, "wifi_bad_password")

@@ -8,6 +8,8 @@ from pathlib import Path
 from shutil import get_terminal_size
 from textwrap import wrap
 
+from rich.cells import cell_len, set_cell_size
+
 from tiniscript.cli import inputs, outputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.texts.common import text
@@ -57,8 +59,6 @@ def _by_tag(rows: list[tuple[str, ...]]) -> list[tuple[str, ...]]:
 
 def _print_rows(rows: list[tuple[str, ...]]) -> None:
     """Print a table; on a terminal its last column is broken where the lines end."""
-    from rich.cells import cell_len, set_cell_size
-
     shown = [[inputs.shown(cell) for cell in row] for row in rows]
     widths = [max(cell_len(row[k]) for row in shown) for k in range(len(shown[0]))]
     indent = sum(widths[:-1]) + len(GAP) * (len(widths) - 1)

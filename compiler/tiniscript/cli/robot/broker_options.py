@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
-from tiniscript.cli.terminal import password
+from tiniscript.cli.terminal import asking
 from tiniscript.cli.texts.common import text
 from tiniscript.link.messages import NETWORK_BYTES, PASSWORD_BYTES
 from tiniscript.link.wifi import is_class
@@ -51,7 +51,7 @@ def user(options: Namespace, language: str) -> tuple[bytes, bytes]:
     if not 1 <= len(name) <= NETWORK_BYTES or not options.user.isprintable():
         raise CommandError(2, "broker_bad_user")
     prompt = text("broker_password", language).format(user=shown(options.user))
-    return name, password.asked(prompt, 1, PASSWORD_BYTES, "broker_bad_password")
+    return name, asking.password(prompt, 1, PASSWORD_BYTES, "broker_bad_password")
 
 
 def trust(options: Namespace) -> bytes | None:

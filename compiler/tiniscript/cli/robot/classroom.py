@@ -8,20 +8,22 @@ from time import monotonic
 from typing import TYPE_CHECKING
 
 from tiniscript.cli import inputs
+from tiniscript.cli.commands import stop as verb
 from tiniscript.cli.commands.info import one_of_many
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
-from tiniscript.cli.made import CLASS_ROWS
 from tiniscript.cli.options import whole_number
+from tiniscript.cli.paths import CLASS_ROWS
 from tiniscript.cli.robot import broker_options
 from tiniscript.cli.robot.connect import Connection, port_failure
 from tiniscript.cli.robot.event_printer import Bookkeeping, EventPrinter
 from tiniscript.cli.robot.fleet import together
 from tiniscript.cli.robot.member import Member, Result
-from tiniscript.cli.robot.rows import Rows
+from tiniscript.cli.robot.recorder import Rows
 from tiniscript.cli.spreadsheet import no_formula
 from tiniscript.cli.texts.common import text
 from tiniscript.link.errors import NOT_INSTALLED, PortError
+from tiniscript.link.line import now_ms
 
 if TYPE_CHECKING:
     from tiniscript.link.transports.broker import Access, Broker, Present
@@ -112,8 +114,6 @@ def upload(room: Classroom) -> int:
 
 def stop(room: Classroom) -> int:
     """Stop all at once, with one message; then ask each of them whether it stands."""
-    from tiniscript.cli.commands import stop as verb
-
     for _ in range(STOPS):
         room.broker.stop(room.group)
     return verb.run(room.targets(room.present(), "stop"), room.language)
@@ -142,8 +142,6 @@ class Listener:
     """
 
     def __init__(self, is_json: bool, end_s: float | None, rows: Rows | None = None) -> None:
-        from tiniscript.link.line import now_ms
-
         self.is_json = is_json
         self.end_s = end_s
         self.rows = rows

@@ -11,25 +11,35 @@ from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext, suppress
 from typing import TYPE_CHECKING, TypeVar
 
+from tiniscript import robots
 from tiniscript.cli import inputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.options import whole_number
+from tiniscript.cli.terminal.progress import waiting
 from tiniscript.cli.texts.common import text
 from tiniscript.library import opening
 from tiniscript.library.client import Client
 from tiniscript.library.errors import TiniScriptError
+from tiniscript.library.known_kits import shipped_of_kit as found
+from tiniscript.link import known_ports, port_names, ports
+from tiniscript.link.connection import LinkConnection, PendingRequest, Requester, reason_of
+from tiniscript.link.errors import PortError
+from tiniscript.link.keys import KeyFile
 from tiniscript.link.messages import OWNED, STATUSES, YOURS
 from tiniscript.link.outcomes import LOOK_S, Event, Gone
+from tiniscript.link.port_names import is_address
+from tiniscript.link.requests import TAKEN, DeviceInfo, Reply
+from tiniscript.link.statuses import sentence
+from tiniscript.robots import given
+from tiniscript.robots.profile import Robot
+from tiniscript.virtual import directory
+from tiniscript.virtual.directory import is_gone
 
 if TYPE_CHECKING:
     from tiniscript.cli.robot.event_printer import EventPrinter
     from tiniscript.cli.robot.simulator import CommandSimulator
     from tiniscript.codegen.source_map import Map
-    from tiniscript.link.connection import LinkConnection, PendingRequest, Requester
-    from tiniscript.link.errors import PortError
-    from tiniscript.link.requests import DeviceInfo, Reply
-    from tiniscript.robots.profile import Robot
 
 T = TypeVar("T")
 
@@ -157,16 +167,12 @@ class Connection:
         """Say what takes so long; a fleet has a table that does."""
         if self.is_one_of_many:
             return nullcontext()
-        from tiniscript.cli.terminal.waiting import waiting
-
         return waiting("waits_for_robot", self.language, self.port)
 
     def _tell_stale_key(self, device_info: DeviceInfo) -> None:
         """Say what to do where the robot has refused a key of this computer."""
         if device_info.values.features & (OWNED | YOURS) != OWNED:
             return
-        from tiniscript.link.keys import KeyFile
-
         keys = KeyFile().of_robot(device_info.id)
         if any(key.is_stale and not key.is_pending for key in keys):
             said = text("key_is_stale", self.language).format(robot=self.name)
@@ -201,8 +207,6 @@ class Connection:
 
         If the reply is not OK, the robot has not saved the data yet.
         """
-        from tiniscript.link.requests import TAKEN
-
         reply = self.wait(self.do(make))
         if reply.status and reply.status not in TAKEN:
             raise self.failure(reply)
@@ -236,8 +240,6 @@ class Connection:
 
     def failure(self, reply: Reply[object]) -> CommandError:
         """Return the sentence for an outcome that is not OK."""
-        from tiniscript.link.connection import reason_of
-
         reason = reason_of(self.line, reply)
         if reason == "status":
             return CommandError(3, "plain", said=self.said(reply))
@@ -245,9 +247,6 @@ class Connection:
 
     def said(self, reply: Reply[object]) -> str:
         """Return the meaning of a robot's refusal, and what to do."""
-        from tiniscript.link.messages import STATUSES
-        from tiniscript.link.statuses import sentence
-
         said, advice = sentence(reply.status, reply.detail, self.language)
         if reply.status == STATUSES["WRONG_KIT"]:
             name = robot_of_kit(reply.detail)
@@ -291,19 +290,13 @@ def port_failure(port: str, failure: PortError) -> CommandError:
 
 def _remember_profile(options: Namespace, robot: Robot, kit: int) -> None:
     """Remember the profile of a file for the robots with this kit."""
-    from tiniscript import robots
-
     name = getattr(options, "robot", None)
     if name is None or kit != robot.kit.fingerprint or name.lower() in robots.names():
         return
-    from tiniscript.robots import given
-
     given.remember(name, kit)
 
 
 def robot_of_kit(kit: int) -> str | None:
-    from tiniscript.library.known_kits import shipped_of_kit as found
-
     return found(kit)
 
 
@@ -329,11 +322,7 @@ def _chosen(options: Namespace, language: str) -> str:
         if not port.strip() or not port.isprintable():
             raise CommandError(2, "no_such_port", found=shown(port) or "''")
         return port
-    from tiniscript.link import known_ports, port_names
-
     last = known_ports.known().last
-    from tiniscript.virtual import directory
-
     if last is not None and port_names.is_there(last) and not directory.is_gone(last):
         return last
     virtual = directory.for_all() if can_bring else directory.running()
@@ -348,10 +337,6 @@ def _chosen(options: Namespace, language: str) -> str:
 
 def _asked(language: str, can_bring: bool) -> str:
     """Let the person choose a port."""
-    from tiniscript.link import known_ports, ports
-    from tiniscript.link.port_names import is_address
-    from tiniscript.virtual.directory import is_gone
-
     names = known_ports.known().names
     found = ports.listed()
     choices = [each.port for each in found]

@@ -7,36 +7,32 @@ from __future__ import annotations
 
 import json
 import sys
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Mapping
 
+from tiniscript.bytecode.opcodes import FAULTS
+from tiniscript.cli.faults import fault_text
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.spreadsheet import no_formula
 from tiniscript.cli.texts.common import has_text, text
+from tiniscript.codegen import source_map
+from tiniscript.codegen.source_map import Map
 from tiniscript.fixed_point import as_text
+from tiniscript.link.messages import CAUSES, LINK_FAULTS, STATE_FAULTED, STATE_IDLE
+from tiniscript.link.outcomes import Event
+from tiniscript.link.payloads import ShowEvent, StatusReply
+from tiniscript.vm.trace import Event as Traced
 
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-
-    from tiniscript.codegen.source_map import Map
-    from tiniscript.link.outcomes import Event
-    from tiniscript.link.payloads import ShowEvent, StatusReply
-    from tiniscript.vm.trace import Event as Traced
+MARK = -(2**31)  # the smallest number there is
 
 
 def fault_name(number: int) -> str:
     """Return the name of a fault: of the machine's, or of the link's."""
-    from tiniscript.bytecode.opcodes import FAULTS
-    from tiniscript.link.messages import LINK_FAULTS
-
     names = {each: name for each, name, _ in (*FAULTS, *LINK_FAULTS)}
     return names.get(number, str(number))
 
 
 def fault_sentence(number: int, at: int, program: int, places: Map | None, language: str) -> str:
     """Return the meaning of a fault, and its line in the program if the text is known."""
-    from tiniscript.cli.faults import fault_text
-    from tiniscript.codegen import source_map
-
     is_other = places is None
     places = source_map.recall(program) if places is None else places
     name = fault_name(number)
@@ -53,8 +49,6 @@ def value_text(value: int, is_yes_no: bool) -> str:
 
 def cause_name(number: int) -> str:
     """Return the name of a cause; NONE for a cause that only newer robots know."""
-    from tiniscript.link.messages import CAUSES
-
     return CAUSES[number][0] if number < len(CAUSES) else CAUSES[0][0]
 
 
@@ -125,8 +119,6 @@ class EventPrinter:
 
     def _tell_end(self, since_ms: int, status: StatusReply) -> None:
         """Print the end of a run for which only the robot's state is known."""
-        from tiniscript.link.messages import STATE_FAULTED, STATE_IDLE
-
         if status.state == STATE_FAULTED:
             self._tell_fault(since_ms, status.fault, status.fault_at, status.fault_program)
             return
@@ -135,8 +127,6 @@ class EventPrinter:
         self.say(since_ms, ended, "", text(key, self.language))
 
     def _tell_fault(self, since_ms: int, number: int, at: int, program: int) -> None:
-        from tiniscript.codegen import source_map
-
         fault = fault_name(number)
         said = fault_sentence(number, at, program, self.places, self.language)
         places = self.places or source_map.recall(program)
@@ -169,8 +159,6 @@ class Bookkeeping:
         self.is_on = False
 
     def hides(self, event: Event) -> bool:
-        from tiniscript.cli.robot.live_mark import MARK
-
         if event.name in ("STARTED", "DONE", "FAULT", "STOPPED", "ENDED", "RESTARTED"):
             self.is_on = False
         elif event.name != "SHOW":
@@ -181,8 +169,6 @@ class Bookkeeping:
 
     def hides_trace(self, event: Traced) -> bool:
         """The same for an action in the trace of a virtual robot."""
-        from tiniscript.cli.robot.live_mark import MARK
-
         if event.what in ("START", "DONE", "FAULT", "STOP", "OFF"):
             self.is_on = False
         elif event.what == "SHOW" and event.values == (MARK,):

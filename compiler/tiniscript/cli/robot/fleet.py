@@ -18,15 +18,15 @@ from typing import TYPE_CHECKING
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot.connect import Connection
-from tiniscript.cli.robot.member import Member, Result
+from tiniscript.cli.robot.member import Member, Result, Target, targets
 from tiniscript.cli.robot.run_monitor import CONFIRM_S, confirmed
-from tiniscript.cli.robot.targets import Target, targets
 from tiniscript.cli.texts.common import text
 from tiniscript.library import opening
 from tiniscript.robots.profile import Robot
 
 if TYPE_CHECKING:
     from tiniscript.cli.terminal.fleet_table import FleetTable
+
 
 LOOK_S = 0.1
 STRANGER_S = 4.0  # timeout for a port that the user has not named and that never had a robot

@@ -1,15 +1,17 @@
-"""Robots that no system lists: in reach of Bluetooth LE, or announced in the network.
+"""Robots that no system lists: in reach of Bluetooth LE, announced in the network, or in use.
 
-Connects to none of them. Where a search is impossible, says why.
+In use are those on a port that a command holds, and virtual ones. Connects to none of them. Where a
+search is impossible, says why.
 """
 
 from __future__ import annotations
 
+from concurrent.futures import ThreadPoolExecutor
 from typing import NamedTuple
 
 from tiniscript.cli.robot.connect import port_failure
 from tiniscript.cli.texts.common import text
-from tiniscript.link import ports
+from tiniscript.link import known_ports, ports
 from tiniscript.link.errors import PortError
 from tiniscript.link.port_names import (
     BLE,
@@ -17,9 +19,13 @@ from tiniscript.link.port_names import (
     canonical,
     is_bluetooth,
     is_network_name,
+    is_there,
     name_in,
     same_for_all,
 )
+from tiniscript.link.sharing.registry import Registration, all_found
+from tiniscript.link.sharing.shared_line import is_alive
+from tiniscript.virtual import directory
 
 
 class InReach(NamedTuple):
@@ -34,8 +40,6 @@ class InReach(NamedTuple):
 
 def found(known: list[str], language: str) -> InReach:
     """Search for some seconds. A robot that is known by a port of `known` keeps it."""
-    from concurrent.futures import ThreadPoolExecutor
-
     whole = InReach({}, [], [], [])
     reasons = set()  # where both packages are missing, one note says it
     with ThreadPoolExecutor(2) as pool:
@@ -92,3 +96,44 @@ def _rows(rows: list[tuple[str, set[str], str]], ours: dict[str, str]) -> InReac
         for each in known:
             found.absent.remove(each)
     return found
+
+
+AT_ONCE = 16  # servers that are checked at the same time
+
+
+def in_use(is_virtual: bool = False) -> list[str]:
+    """Return the port of each robot that is in use, once; `is_virtual`: of virtual ones alone."""
+    held = _alive(all_found())
+    found = [] if is_virtual else held[:]
+    for robot in directory.running():
+        names = [robot.address, *([robot.terminal] if robot.terminal else [])]
+        through = [port for port in names if same_for_all(port) in held]
+        found.append(through[0] if through else robot.address)  # one robot, one port
+    return list({same_for_all(port): port for port in found}.values())
+
+
+def _alive(registrations: list[Registration]) -> list[str]:
+    """Return the ports of the servers that still run; a hanging server delays no other check."""
+    if len(registrations) < 2:  # importing threads takes longer than one answer
+        return [registration.port for registration in registrations if is_alive(registration)]
+    from concurrent.futures import ThreadPoolExecutor
+
+    with ThreadPoolExecutor(AT_ONCE) as pool:
+        alive = list(pool.map(is_alive, registrations))
+    return [
+        registration.port
+        for registration, is_there in zip(registrations, alive, strict=True)
+        if is_there
+    ]
+
+
+def to_stop(is_virtual: bool = False) -> list[str]:
+    """Return the ports for `tsc stop` without `--port`.
+
+    They include that of the last used robot, which may drive on without any command.
+    """
+    found = in_use(is_virtual)
+    last = known_ports.known().last
+    if not is_virtual and last is not None and is_there(last) and not directory.is_gone(last):
+        found.append(last)
+    return list({same_for_all(port): port for port in found}.values())

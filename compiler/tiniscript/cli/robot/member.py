@@ -1,16 +1,67 @@
-"""One robot of many: what it does now, and its result. Its thread writes, all others read."""
+"""The robots of a verb that works on many: their ports, what each does now, and its result.
+
+The ports come from `--all`, or several `--port`. The thread of a robot writes, all others read.
+"""
 
 from __future__ import annotations
 
 import json
+from argparse import Namespace
 from collections import deque
 from collections.abc import Mapping
 from typing import NamedTuple
 
+from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot.connect import Connection
-from tiniscript.cli.robot.targets import Target
 from tiniscript.cli.texts.common import text
+from tiniscript.link import known_ports, ports
+from tiniscript.link.port_names import is_there, same_for_all
+from tiniscript.link.sharing.registry import all_found
+from tiniscript.virtual import directory
+
+
+class Target(NamedTuple):
+    """A port and the last known name of its robot. `is_named`: the user has named the port;
+    `is_known`: a robot has answered there before."""
+
+    port: str
+    name: str
+    is_named: bool
+    is_known: bool
+
+
+def are_many(options: Namespace) -> bool:
+    """Whether the options name many robots; if not, `port` becomes the only port."""
+    options.port = options.ports[0] if options.ports else None
+    if options.virtual and (options.all or options.ports):
+        raise CommandError(2, "virtual_and_port")
+    if options.all and options.ports:
+        raise CommandError(2, "all_or_ports", verb=options.verb)
+    return bool(options.all) or len(options.ports) > 1 or options.verb == "class"
+
+
+def targets(options: Namespace) -> list[Target]:
+    """Return each port once: the named ones, else all that may have a robot.
+
+    Ports in use come first, then ports of known robots. Opens none.
+    """
+    known = known_ports.known().names
+    for port in options.ports:
+        if not port.strip() or not port.isprintable():
+            raise CommandError(2, "no_such_port", found=shown(port) or "''")
+    wanted = options.ports
+    if options.all:
+        wanted = [registration.port for registration in all_found()]
+        wanted += [port for port in known if is_there(port) and not directory.is_gone(port)]
+        wanted += [found.port for found in ports.listed()]
+        wanted += [robot.address for robot in directory.running()]
+    names = {same_for_all(port): name for port, name in reversed(known.items())}
+    chosen = {same_for_all(port): port for port in reversed(wanted)}
+    return [
+        Target(port, names.get(same, ""), not options.all, same in names)
+        for same, port in reversed(chosen.items())
+    ]
 
 
 class Result(NamedTuple):

@@ -14,10 +14,10 @@ from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.texts.common import text
 from tiniscript.library.known_kits import of_kit
+from tiniscript.robots.profile import Robot
 
 if TYPE_CHECKING:
     from tiniscript.cli.robot.connect import Connection
-    from tiniscript.robots.profile import Robot
 
 
 def take(connection: Connection, options: Namespace) -> bool:

@@ -1,23 +1,27 @@
-"""A program on its way to a robot: sends it, follows its run, and says what became of it."""
+"""A program on its way to a robot: sends it, follows its run, and says what became of it.
+
+The virtual robot of one command has its button on a key; without a terminal the button is pushed
+at once.
+"""
 
 from __future__ import annotations
 
+import sys
 from argparse import Namespace
-from typing import TYPE_CHECKING
+from collections.abc import Callable
 
 from tiniscript.cli import images, inputs
 from tiniscript.cli.errors import CommandError
+from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot.connect import Connection, told
-from tiniscript.cli.robot.run_monitor import RunMonitor, Saving
+from tiniscript.cli.robot.event_printer import EventPrinter, cause_name
+from tiniscript.cli.robot.run_monitor import DONE, RunMonitor, Saving, ended
+from tiniscript.cli.terminal.keys import Keys, is_in_front
+from tiniscript.cli.texts.common import text
 from tiniscript.link.messages import SAVED, STATUSES
-from tiniscript.link.outcomes import LOST
+from tiniscript.link.outcomes import LOST, Event
 from tiniscript.link.payloads import ReceiptReply
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from tiniscript.cli.robot.event_printer import EventPrinter
-    from tiniscript.link.requests import Reply
+from tiniscript.link.requests import Reply
 
 
 def send_program(
@@ -51,8 +55,6 @@ def follow_run(
             connection.simulator.watch()
         code = RunMonitor(connection, printer, look=saving.look).follow(saving.run)
     elif has_button(connection, ready, options):
-        from tiniscript.cli.robot.button_run import follow_button
-
         code = follow_button(connection, printer, saving)
     saving.wait()
     return code
@@ -106,3 +108,58 @@ def receipt(
 def saved_name(values: ReceiptReply) -> str:
     """Return the place of the robot's program, as named in `link.messages`."""
     return SAVED[values.saved][0] if values.saved < len(SAVED) else "MEMORY"
+
+
+PUSH = "bB "  # the keys that `tsc robot` has, too
+QUIT = "qQ\x04"
+
+
+def has_keys(connection: Connection) -> bool:
+    """Whether the robot is drawn on a terminal with keys."""
+    simulator = connection.simulator
+    return simulator is not None and simulator.is_drawn and sys.stdin.isatty() and is_in_front()
+
+
+def follow_button(connection: Connection, printer: EventPrinter, saving: Saving) -> int:
+    """Stay until a program has ended by itself; return the exit code.
+
+    The button also stops the program and starts it again. Raises CommandError if the link ends.
+    """
+    simulator = connection.simulator
+    assert simulator is not None
+    is_person = has_keys(connection)
+    simulator.watch(text("button_keys", connection.language) if is_person else "")
+    if not is_person:
+        simulator.push()
+    with Keys() as keys:
+        while True:
+            for key in keys.pressed() if is_person else "":
+                if key in QUIT:
+                    return DONE
+                if key in PUSH:
+                    simulator.push()
+            found = connection.event()
+            saving.look()
+            if connection.is_time_over:
+                return RunMonitor(connection, printer).stop_in_time()
+            if found is None:
+                continue
+            _mind(connection, found[1], saving.program)
+            if found[1].name != "STARTED":
+                printer.tell(*found)
+            code = ended(found[1], None)
+            if code is not None and not (is_person and _is_push(found[1])):
+                return code
+
+
+def _mind(connection: Connection, event: Event, program: int) -> None:
+    """Raise CommandError if the robot is lost or has another program."""
+    if event.name == "LOST":
+        raise CommandError(3, "link_lost", port=shown(connection.port))
+    if event.name == "STARTED" and event.program != program:
+        raise CommandError(3, "replaced", port=shown(connection.port))
+
+
+def _is_push(event: Event) -> bool:
+    """Whether the button has stopped the program."""
+    return event.name == "STOPPED" and cause_name(event.cause) == "BUTTON"

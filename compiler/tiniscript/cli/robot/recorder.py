@@ -1,16 +1,71 @@
-"""Writes what a robot tells of a run into a file: what `tsc upload --record` leaves.
+"""Writes what a robot tells of a run into a file: `tsc upload --record`, and rows of CSV.
 
-The form of the file is that of `studio/recordings.py`, which reads it. Each line is flushed
+The form of a recording is that of `studio/recordings.py`, which reads it. Each line is flushed
 before the next one comes.
 """
 
 from __future__ import annotations
 
+import csv
 import json
 from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
+from threading import Lock
 from time import monotonic
 
-from tiniscript.cli.robot.rows import Rows
+from tiniscript import files
+from tiniscript.cli.errors import CommandError
+from tiniscript.cli.inputs import shown
+
+
+class Rows:
+    """A file that begins with the row `first`; until that is there, the old file stays.
+
+    Threads may add rows at once. All raise CommandError where the file cannot be written, with
+    the sentence `failure`.
+    """
+
+    def __init__(self, name: str, first: bytes, failure: str = "unwritable_rows") -> None:
+        self._name = name
+        self._key = failure
+        self._lock = Lock()
+        try:
+            path = Path(name)
+            if path.is_file() or not path.exists():
+                files.replace(path, first)
+                self._file = path.open("a", encoding="utf-8", newline="\n")
+                return
+            self._file = path.open("w", encoding="utf-8", newline="\n")  # a device or a pipe
+            self._file.write(first.decode())
+            self._file.flush()
+        except (OSError, ValueError) as why:
+            raise self._failure(why) from None
+
+    def add(self, *cells: object) -> None:
+        try:
+            with self._lock:
+                csv.writer(self._file, lineterminator="\n").writerow(cells)
+                self._file.flush()
+        except (OSError, ValueError) as why:
+            raise self._failure(why) from None
+
+    def line(self, whole: str) -> None:
+        try:
+            with self._lock:
+                self._file.write(whole + "\n")
+                self._file.flush()
+        except (OSError, ValueError) as why:
+            raise self._failure(why) from None
+
+    def close(self) -> None:
+        with suppress(OSError):  # a write failure was told already
+            self._file.close()
+
+    def _failure(self, why: Exception) -> CommandError:
+        reason = why.strerror if isinstance(why, OSError) and why.strerror else str(why)
+        return CommandError(2, self._key, file=shown(self._name), why=reason)
+
 
 MOST = 10_000  # events; then it is over
 ENDS = ("DONE", "FAULT", "STOPPED", "MISSED")

@@ -3,28 +3,25 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable
 from contextlib import suppress
 from time import monotonic
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
+from tiniscript.cli.robot.connect import Connection
+from tiniscript.cli.robot.event_printer import EventPrinter
 from tiniscript.cli.texts.common import text
 from tiniscript.library import client
-from tiniscript.library.endings import Follower, end_of
 from tiniscript.library.errors import RobotError
+from tiniscript.library.events import Follower, end_of
 from tiniscript.library.opening import CONFIRM_S, confirmed
+from tiniscript.link.connection import PendingRequest
 from tiniscript.link.messages import SAVED_LOW_SUPPLY, SAVED_STORED
 from tiniscript.link.outcomes import Event
 from tiniscript.link.payloads import ReceiptReply, StatusReply
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from tiniscript.cli.robot.connect import Connection
-    from tiniscript.cli.robot.event_printer import EventPrinter
-    from tiniscript.link.connection import PendingRequest
-    from tiniscript.link.requests import Reply
+from tiniscript.link.requests import Reply
 
 ASK_S = 1.0  # between two status requests about saving, while the program runs
 DONE, FAULTY, INTERRUPTED, LOST = 0, 1, 2, 3  # exit codes

@@ -16,13 +16,17 @@ from typing import TYPE_CHECKING
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.robot import simulator_options
 from tiniscript.cli.robot.event_printer import Bookkeeping
+from tiniscript.cli.terminal import FRAME_S
 from tiniscript.cli.texts.common import text
+from tiniscript.robots.profile import Robot
+from tiniscript.virtual import directory
+from tiniscript.virtual.simulator import Simulator
+from tiniscript.virtual.transports import Transports
+from tiniscript.vm.trace import Event
 
 if TYPE_CHECKING:
     from tiniscript.cli.terminal.screen import Screen
     from tiniscript.cli.terminal.world_drawing import WorldPicture
-    from tiniscript.robots.profile import Robot
-    from tiniscript.vm.trace import Event
 
 JOIN_S = 5.0
 ROUND_S = 1.0  # the longest round; a robot draws at least 15 pictures per second
@@ -35,8 +39,6 @@ def running_address(options: Namespace) -> str | None:
 
     Raises CommandError if several run, or if none runs and the verb cannot start one.
     """
-    from tiniscript.virtual import directory
-
     can_bring = hasattr(options, "world")
     if can_bring and simulator_options.wants_own(options):
         return None
@@ -58,10 +60,6 @@ class CommandSimulator:
         self.options = options
         self.language = language
         self.robot = simulator_options.made(options, profile, language)
-        from tiniscript.virtual import directory
-        from tiniscript.virtual.simulator import Simulator
-        from tiniscript.virtual.transports import Transports
-
         self.transports = Transports()
         self.port = self.transports.address
         self.simulator = Simulator(self.robot, self.transports, hurry, faults)
@@ -170,8 +168,6 @@ class CommandSimulator:
 
     def close(self) -> None:
         """End the robot; print a summary, and draw the file of `--plot`."""
-        from tiniscript.virtual import directory
-
         directory.withdraw(self._note)
         self._is_over = True
         self._thread.join(JOIN_S)
@@ -195,8 +191,6 @@ class CommandSimulator:
         return (self.robot.now_ms if ended_ms is None else ended_ms) - began_ms
 
     def _live(self) -> None:
-        from tiniscript.cli.terminal.pace import FRAME_S
-
         try:
             while True:
                 is_over = self._is_over

@@ -4,18 +4,17 @@ from __future__ import annotations
 
 from argparse import Namespace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
+from tiniscript.cli import outputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.options import decimal, sensor_lists, thousandths, whole_number
 from tiniscript.cli.texts.common import Said, text
 from tiniscript.cli.texts.options import virtual_names
-
-if TYPE_CHECKING:
-    from tiniscript.robots.profile import Robot
-    from tiniscript.virtual.robot import VirtualRobot
-    from tiniscript.virtual.world import World
+from tiniscript.robots.profile import Robot
+from tiniscript.virtual import worlds
+from tiniscript.virtual.robot import VirtualRobot
+from tiniscript.virtual.world import World, WorldRefused, describe
 
 ONE = 1000  # thousandths
 MOST_NOISE = 50 * ONE  # percent
@@ -50,8 +49,6 @@ def made(
     seed = whole_number("--seed", options.seed, 1, 1, 2**32 - 1, language)
     noise = number("--noise", options.noise, 0, 0, MOST_NOISE, language) / 100
     motors = _motors(options.motors, language)
-    from tiniscript.virtual.world import WorldRefused
-
     told = sensor_lists(options.sensor, profile, language)
     try:
         from tiniscript.virtual.robot import Settings, VirtualRobot
@@ -66,9 +63,6 @@ def made(
 
 def world_of(options: Namespace, language: str) -> World:
     """Return the world that `--world` names, or the default one."""
-    from tiniscript.virtual import worlds
-    from tiniscript.virtual.world import WorldRefused
-
     name = worlds.DEFAULT if options.world is None else options.world
     try:
         return worlds.load(name)
@@ -78,9 +72,6 @@ def world_of(options: Namespace, language: str) -> World:
 
 def refused_world(name: str, refused: Exception, language: str) -> CommandError:
     """Return why the robot or a file of a world is refused."""
-    from tiniscript.virtual.world import WorldRefused
-    from tiniscript.virtual.world_refusals import describe
-
     assert isinstance(refused, WorldRefused)
     lines = describe(refused, language)
     if len(lines) == 1 and refused.reasons[0][0].startswith(("file_", "no_such_world")):
@@ -122,7 +113,6 @@ def check_picture(options: Namespace) -> None:
 
 def draw_picture(options: Namespace, robot: VirtualRobot, language: str) -> None:
     """Write the world and the way into the file of `--plot`."""
-    from tiniscript.cli import outputs
     from tiniscript.virtual.picture import png
 
     driving = robot.driving

@@ -1,8 +1,13 @@
-"""Asking the person at the terminal for a yes."""
+"""Asking the person at the terminal: for a yes, or for a password.
+
+A password is in no argument, so no list of processes and no history has it.
+"""
 
 from __future__ import annotations
 
 import sys
+
+from tiniscript.cli.errors import CommandError
 
 YES = ("1", "y", "yes", "s", "si", "sí")
 
@@ -16,3 +21,27 @@ def agreed(question: str) -> bool:
     """Ask, and return whether the answer is a yes: an empty one is none."""
     print(question, end="", file=sys.stderr, flush=True)
     return sys.stdin.readline().strip().lower() in YES
+
+
+LONGEST_LINE = 1024  # bytes of standard input that may be a password
+
+
+def password(prompt: str, least: int, most: int, complaint: str) -> bytes:
+    """Ask without an echo, or take the first line of standard input, if nobody types there.
+
+    Raises CommandError `complaint` if it has fewer or more bytes, or some that nobody types.
+    """
+    if sys.stdin is not None and sys.stdin.isatty():
+        from getpass import getpass
+
+        try:
+            data = getpass(prompt).encode("utf-8", "surrogateescape")
+        except EOFError:
+            data = b""
+    else:
+        data = b"" if sys.stdin is None else sys.stdin.buffer.readline(LONGEST_LINE)
+        data = data.rstrip(b"\r\n")
+    is_plain = all(byte >= ord(" ") and byte != 0x7F for byte in data)
+    if not least <= len(data) <= most or not is_plain:
+        raise CommandError(2, complaint)
+    return data

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Sequence
 
 from rich.cells import cell_len, set_cell_size
 from rich.text import Text
@@ -12,10 +12,6 @@ from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot.member import Member
 from tiniscript.cli.terminal.screen import Screen
 from tiniscript.cli.texts.common import text
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
-
 
 STYLES = {"": "", "ok": "green", "bad": "red", "absent": "dim"}
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import select
 import sys
 
 INTERRUPT = "\x03"
@@ -37,8 +38,6 @@ class Keys:
             return _pressed_on_windows()
         if self._file < 0:
             return ""
-        import select
-
         if not select.select([self._file], [], [], 0)[0]:
             return ""
         return os.read(self._file, 100).decode("utf-8", "replace")

@@ -10,8 +10,8 @@ from collections import deque
 
 from rich.text import Text
 
+from tiniscript.cli.terminal import FRAME_S
 from tiniscript.cli.terminal.canvas import ACROSS, DOWN, Canvas, layered
-from tiniscript.cli.terminal.pace import FRAME_S
 from tiniscript.cli.terminal.screen import Screen
 from tiniscript.fixed_point import as_text
 from tiniscript.link.outcomes import Event

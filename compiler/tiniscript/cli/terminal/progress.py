@@ -1,10 +1,16 @@
-"""A progress bar on the terminal for tasks that take longer than a moment."""
+"""What the terminal shows while something takes longer than a moment: a bar, or what is awaited."""
 
 from __future__ import annotations
 
 import sys
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from functools import partial
+from threading import Timer
 from time import monotonic
 
+from tiniscript.cli.inputs import shown
 from tiniscript.cli.texts.common import text
 
 BLINK_S = 0.3
@@ -37,3 +43,32 @@ class Progress:
         if self._drawn:
             print("\r" + " " * len(self._drawn) + "\r", end="", file=sys.stderr, flush=True)
             self._drawn = ""
+
+
+MOMENT_S = 2.0
+
+
+class Silence:
+    """Somebody waits, and has been told nothing yet. Where nobody looks on, nothing is imported."""
+
+    def __init__(self, said: str) -> None:
+        self._timer: Timer | None = None
+        if sys.stderr.isatty():
+            say = partial(print, said, file=sys.stderr, flush=True)
+            self._timer = threading.Timer(MOMENT_S, say)
+            self._timer.daemon = True
+            self._timer.start()
+
+    def cancel(self) -> None:
+        if self._timer is not None:
+            self._timer.cancel()
+
+
+@contextmanager
+def waiting(key: str, language: str, port: str) -> Iterator[Silence]:
+    """Say the sentence `key` if this has not ended, nor been cancelled, in a moment."""
+    silence = Silence(text(key, language).format(port=shown(port)))
+    try:
+        yield silence
+    finally:
+        silence.cancel()

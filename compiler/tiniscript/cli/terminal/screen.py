@@ -9,15 +9,139 @@ from __future__ import annotations
 import os
 import sys
 import time
+from collections.abc import Sequence
 from typing import Protocol
 
+from rich.cells import cell_len
 from rich.console import Console
 from rich.text import Text
 
-from tiniscript.cli.encodings import DRAWN
-from tiniscript.cli.terminal.frame import Frame
-from tiniscript.cli.terminal.pace import FRAME_S
-from tiniscript.cli.terminal.sequences import are_read
+from tiniscript.cli.streams import DRAWN, are_read
+from tiniscript.cli.terminal import FRAME_S
+
+BEGIN, END = "\x1b[?2026h", "\x1b[?2026l"  # of a synchronized update
+HIDE, SHOW = "\x1b[?25l", "\x1b[?25h"  # the cursor
+TO_LINE_END, TO_SCREEN_END = "\x1b[K", "\x1b[J"  # erase
+
+
+class Frame:
+    def __init__(self, console: Console) -> None:
+        self.console = console
+        self.lines: list[Text] = []  # as the terminal has them
+        self._width = 0  # of the terminal, when they were written
+
+    def begin(self) -> None:
+        self._write(HIDE)
+
+    def end(self) -> None:
+        """Leave the picture, and go on below it."""
+        self._write(("\n" if self.lines else "") + SHOW)
+        self.lines = []
+
+    def draw(self, lines: Sequence[Text], above: str = "") -> None:
+        """Show these lines in place of the last ones, and print `above` over them, to stay."""
+        width, height = self.console.size
+        rows = above.split("\n") if above else []
+        is_narrow = any(cell_len(row) >= width for row in rows)  # then it wraps
+        is_full = len(rows) + max(len(self.lines), len(lines)) >= height
+        if width != self._width or not self.lines or not lines or is_narrow or is_full:
+            written = self._whole(lines, above)
+        else:
+            written = self._inserted(rows) + self._changes(lines)
+        self.lines = [line.copy() for line in lines]
+        self._width = width
+        if written:
+            self._write(BEGIN + written + END)
+
+    def _whole(self, lines: Sequence[Text], above: str) -> str:
+        """Return what writes all of it, from the first line of the last picture on."""
+        width = self.console.size.width
+        # a terminal that has become narrower has wrapped the last picture
+        rows = max(0, len(self.lines) - 1)
+        if width != self._width:
+            rows += sum(max(0, line.cell_len - 1) // width for line in self.lines)
+        parts = [*(f"{line}{TO_LINE_END}\n" for line in above.split("\n"))] if above else []
+        parts.append(f"{TO_LINE_END}\n".join(map(self._styled, lines)))
+        erased = TO_SCREEN_END if width != self._width else ""
+        return f"\r{_up(rows)}{erased}{''.join(parts)}{TO_SCREEN_END}"
+
+    def _inserted(self, rows: Sequence[str]) -> str:
+        """Return what writes rows over the picture, which is moved down and not written again."""
+        if not rows:
+            return ""
+        count, before = len(rows), len(self.lines)
+        room = "\n" * count + _up(count + before - 1) + f"\x1b[{count}L"  # insert lines
+        said = "".join(f"{row}\r\n" for row in rows)
+        return f"\r{room}{said}{_up(1 - before)}{_right(self.lines[-1].cell_len)}"
+
+    def _changes(self, lines: Sequence[Text]) -> str:
+        """Return what writes the lines that are not as they were."""
+        before = len(self.lines)
+        at = before - 1  # the row of the cursor
+        parts = []
+        for row, line in enumerate(lines):
+            if row < before and line == self.lines[row] and line.style == self.lines[row].style:
+                continue
+            if row < before:
+                parts.append("\r" + _up(at - row) + self._change(self.lines[row], line))
+            else:
+                parts.append(_up(at - row + 1) + "\r\n" + self._styled(line) + TO_LINE_END)
+            at = row
+        if len(lines) < before:
+            parts.append(f"\r{_up(at - len(lines))}{TO_SCREEN_END}")
+            at = len(lines)
+        if not parts:
+            return ""
+        last = lines[-1].cell_len
+        return f"{''.join(parts)}\r{_up(at - len(lines) + 1)}{_right(last)}"
+
+    def _change(self, old: Text, new: Text) -> str:
+        """Return what makes a line of another one: what is between the same begin and end."""
+        before, after = _signs(old), _signs(new)
+        begin = 0
+        for begin, (was, now) in enumerate(zip(before, after, strict=False)):  # noqa: B007
+            if was != now:
+                break
+        else:
+            begin = min(len(before), len(after))
+        end = len(after)
+        if new.cell_len >= old.cell_len:
+            if len(before) == len(after) and new.cell_len == old.cell_len:
+                while end > begin and before[end - 1] == after[end - 1]:
+                    end -= 1
+            rest = ""
+        else:
+            rest = TO_LINE_END
+        changed = self._styled(new[begin:end]) if end > begin else ""
+        return _right(new[:begin].cell_len) + changed + rest
+
+    def _styled(self, line: Text) -> str:
+        with self.console.capture() as capture:
+            self.console.print(line, end="", no_wrap=True, overflow="ignore", crop=False)
+        return capture.get()
+
+    def _write(self, text: str) -> None:
+        self.console.file.write(text)
+        self.console.file.flush()
+
+
+def _signs(line: Text) -> list[tuple[str, tuple[str, ...]]]:
+    """Return each sign of a line with its styles."""
+    styles: list[tuple[str, ...]] = [(str(line.style),)] * len(line.plain)
+    for begin, end, style in line.spans:
+        for k in range(max(0, begin), min(end, len(styles))):
+            styles[k] = (*styles[k], str(style))
+    return list(zip(line.plain, styles, strict=True))
+
+
+def _right(columns: int) -> str:
+    return f"\x1b[{columns}C" if columns else ""
+
+
+def _up(rows: int) -> str:
+    """Return what moves the cursor so many rows up; down, if there are less than none."""
+    return f"\x1b[{abs(rows)}{'A' if rows > 0 else 'B'}" if rows else ""
+
 
 SLOWEST_S = 0.2  # a frame that took longer (a long computation, Ctrl-Z) does not skip a move
 

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import os
+import sys
 from collections.abc import Iterator, Mapping, Sequence
 from importlib import import_module
 
-from tiniscript.printable import printable
+from tiniscript.source import printable
 
 LONGEST = 2000  # characters of what is put into a sentence
 
@@ -238,19 +239,11 @@ def _plain(value: object) -> object:
 _LATER = (
     ("checking", "CHECK_TEXTS"),
     ("robot", "LINK_TEXTS"),
-    ("recordings", "RECORDING_TEXTS"),
     ("simulator", "VIRTUAL_TEXTS"),
-    ("owners", "OWNER_TEXTS"),
     ("firmware", "FLASH_TEXTS"),
-    ("lessons", "LESSON_TEXTS"),
-    ("module", "MODULE_TEXTS"),
     ("doctor", "DOCTOR_TEXTS"),
     ("selftest", "SELFTEST_TEXTS"),
-    ("studio", "STUDIO_TEXTS"),
-    ("fetching", "FETCHING_TEXTS"),
-    ("wifi", "WIFI_TEXTS"),
-    ("conform", "CONFORM_TEXTS"),
-    ("classroom", "CLASS_TEXTS"),
+    ("network", "NETWORK_TEXTS"),
 )
 
 
@@ -290,8 +283,6 @@ def language_of(arguments: Sequence[str], environ: Mapping[str, str] = os.enviro
 
 def _system_language() -> str:
     """Return the language of Windows' own settings, which no variable names."""
-    import sys
-
     if sys.platform != "win32":
         return ""
     import locale

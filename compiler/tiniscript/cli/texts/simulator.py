@@ -1,4 +1,4 @@
-"""The sentences of `tsc` about the virtual robot, in English and Spanish."""
+"""The sentences of `tsc` about the virtual robot and recordings of a run, in English and Spanish."""
 
 from __future__ import annotations
 
@@ -78,5 +78,42 @@ VIRTUAL_TEXTS: dict[str, tuple[str, str]] = {
                            "tsc: el robot virtual de este comando termina con él. Quita --detach, o inicia uno en otra terminal:  tsc robot"),
     "only_virtual": ("tsc: {option} is for the virtual robot alone. Add --virtual, or leave {option} out.",
                      "tsc: {option} es solo para el robot virtual. Agrega --virtual, o quita {option}."),
+    # recordings
+    "path_recording": ("the recording", "la grabación"),
+    "unwritable_recording": ("tsc: {file} cannot be written: {why}. Make room, or choose another place with --record.",
+                             "tsc: no se puede escribir {file}: {why}. Libera espacio, o elige otro lugar con --record."),
+    "record_follows": ("tsc: --record is for one run that tsc follows: a program that begins with SI, without --detach, --no-run or --all",
+                       "tsc: --record es para una ejecución que tsc sigue: un programa que empieza con SI, sin --detach, --no-run ni --all"),
+    "world_without_replay": ("tsc: --world is for --replay: without it there is no world", "tsc: --world es para --replay: sin --replay no hay ningún mundo"),
+    "replay_text": ("tsc: --replay needs the program as text, to say at which line the two part", "tsc: --replay necesita el programa como texto, para decir en qué línea se separan"),
+    "replay_robot": ("tsc: --replay is for the robots that tsc brings: {known}", "tsc: --replay es para los robots que trae tsc: {known}"),
+    "replay_only": ("tsc: {option} does not go with --replay: the recording and the virtual robot say that. Leave it out.",
+                    "tsc: {option} no va con --replay: eso lo dicen la grabación y el robot virtual. Quítalo."),
+    "replay_other_robot": ("tsc: {file} is of the robot {of}, and --robot says {robot}. Leave --robot out.",
+                           "tsc: {file} es del robot {of}, y --robot dice {robot}. Quita --robot."),
+    "recording_unreadable": ("tsc: {file} is damaged, or no recording (line {line}). Choose one that tsc upload --record or the studio has saved.",
+                             "tsc: {file} está dañado o no es una grabación (línea {line}). Elige una que haya guardado tsc upload --record o el estudio."),
+    "recording_other_version": ("tsc: {file} comes from a newer tsc. Install that one, then compare again.",
+                                "tsc: {file} viene de un tsc más nuevo. Instálalo y compara otra vez."),
+    "recording_too_long": ("tsc: {file} is too long (line {line}): ten minutes at most", "tsc: {file} es demasiado largo (línea {line}): diez minutos como máximo"),
+    "replay_same": ("Both did the same. Comparisons: {count}.",
+                    "Los dos hicieron lo mismo. Comparaciones: {count}."),
+    "replay_missed": ("Then values of the robot did not arrive, so nothing after that is compared. Comparisons that agreed before: {count}.",
+                      "Después no llegaron valores del robot, y desde ahí no se compara. Comparaciones iguales hasta ahí: {count}."),
+    "replay_empty": ("The recording ends before the robot said anything, so there is nothing to compare. Record the run again.",
+                     "La grabación termina antes de que el robot dijera algo: no hay nada que comparar. Graba la ejecución otra vez."),
+    "replay_value": ("{place}: the robot says {robot}, the virtual one {virtual}. Comparisons that agreed before: {count}.",
+                     "{place}: el robot dice {robot}; el virtual, {virtual}. Comparaciones iguales hasta ahí: {count}."),
+    "replay_time": ("{place}: the robot got there at another time. The robot says {robot}, the virtual one {virtual}.",
+                    "{place}: el robot llegó ahí en otro momento. El robot dice {robot}; el virtual, {virtual}."),
+    "replay_robot_more": ("{place}: the robot says {robot}, the virtual one nothing more. Comparisons that agreed before: {count}.",
+                          "{place}: el robot dice {robot}; el virtual, nada más. Comparaciones iguales hasta ahí: {count}."),
+    "replay_virtual_more": ("{place}: the virtual robot says {virtual}, the real one nothing more. Comparisons that agreed before: {count}.",
+                            "{place}: el robot virtual dice {virtual}; el de verdad, nada más. Comparaciones iguales hasta ahí: {count}."),
+    "replay_other_program": ("The recording is of another program. Name the program that ran then, for the same robot.",
+                             "La grabación es de otro programa. Indica el programa que se ejecutó entonces, para el mismo robot."),
+    "replay_line": ("Line {line}", "Línea {line}"),
+    "replay_end": ("The end", "El final"),
+    "replay_at": ("{what} after {seconds} s", "{what} a los {seconds} s"),
 }
 # fmt: on

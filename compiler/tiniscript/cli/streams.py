@@ -1,0 +1,76 @@
+"""What an output can show: which characters, and whether colors and a moving cursor.
+
+A window of Windows shows each character, but what goes from there into a file or a pipe is in
+cp1252, cp850 or another of its code pages, without Ω, arrows and dots. A sign that has a plain
+counterpart becomes it; any other character becomes its number, as `\\u03c0`.
+
+Terminals of Unix read sequences. A console of Windows 10 or newer does when it is asked to:
+PowerShell and the Windows Terminal ask for the commands they start, cmd only for itself, and then a
+command that does not ask prints `←[1;31m`.
+"""
+
+from __future__ import annotations
+
+import codecs
+import os
+import sys
+from typing import TextIO
+
+NAME = "tiniscript_plain"  # of the handler of errors
+# for drawings: as wide as what they stand for
+_SAME_WIDTH = ("│─├┤█▌▐♪↑↖←↙↓↘→↗", "|-||#==~^\\</v\\>/")
+DRAWN = str.maketrans(_SAME_WIDTH[0] + "…", _SAME_WIDTH[1] + ".")
+_WORDS = {
+    "Ω": "ohm", "−": "-", "–": "-", "—": "-", "…": "...", "‘": "'", "’": "'", "“": '"',
+    "”": '"', "×": "x", "\N{REPLACEMENT CHARACTER}": "?",
+}  # fmt: skip
+PLAIN = {**dict(zip(*_SAME_WIDTH, strict=True)), **_WORDS}
+
+
+def register() -> None:
+    """Make the handler known to Python's streams."""
+    codecs.register_error(NAME, _plain)
+
+
+def _plain(error: UnicodeError) -> tuple[str | bytes, int]:
+    if isinstance(error, UnicodeEncodeError):
+        end = error.start + 1
+        found = PLAIN.get(error.object[error.start : end])
+        if found is not None:
+            return found, end
+        error.end = end
+    return codecs.backslashreplace_errors(error)
+
+
+# of SetConsoleMode
+PROCESSED_OUTPUT = 0x0001
+VIRTUAL_TERMINAL_PROCESSING = 0x0004
+
+
+def are_read(stream: TextIO) -> bool:
+    """Return whether sequences that are written to a stream are read. Asks the console to."""
+    if not stream.isatty():
+        return False
+    if sys.platform != "win32":
+        return True
+    import ctypes
+    import msvcrt
+    from ctypes import wintypes
+
+    console = ctypes.windll.kernel32
+    mode = wintypes.DWORD()
+    try:
+        handle = wintypes.HANDLE(msvcrt.get_osfhandle(stream.fileno()))
+    except (OSError, ValueError):  # no file of the system
+        return False
+    if not console.GetConsoleMode(handle, ctypes.byref(mode)):  # a device such as NUL
+        return False
+    if mode.value & VIRTUAL_TERMINAL_PROCESSING:
+        return True
+    wanted = mode.value | PROCESSED_OUTPUT | VIRTUAL_TERMINAL_PROCESSING
+    return bool(console.SetConsoleMode(handle, wintypes.DWORD(wanted)))
+
+
+def has_colors(stream: TextIO) -> bool:
+    """Return whether a stream shows colors, and the person has not declined them."""
+    return not os.environ.get("NO_COLOR") and are_read(stream)
