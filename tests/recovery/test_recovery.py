@@ -200,5 +200,5 @@ def test_a_row_that_is_made_without_asking_loses_no_number(
     monkeypatch.setattr(rows, "TOKENS", f"^ S @num $ | S | 1 | TS044 | {how} | S 5 => S")
     (row,) = rewrites.of_tokens.__wrapped__()
     line = rewrites.Encoded(lexemes("S 5"), Names([], marks.KIT))
-    (match,) = line.places(row)
+    (match,) = line.matches(row.pattern)
     assert (line.rewritten(row, match) is not None) is is_made

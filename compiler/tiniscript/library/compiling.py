@@ -57,12 +57,12 @@ def check_text(text: str, kit: Kit, name: str = "") -> Compiled:
         return analyzed(it, kit).diagnostics
 
     answered = findings(found.source, found.diagnostics, mistakes, kit)
-    if answered:
-        edits = [edit for each in answered if each.repair for edit in each.repair.edits]
+    if answered.told:
+        edits = answered.edits
         rest = check_text(applied(text, edits), kit)
-        if not rest.is_right:  # else its warnings come when it is repaired
-            answered += [moved_back(each, edits) for each in rest.diagnostics]
-        return found._replace(diagnostics=codes.in_order(answered))
+        # The warnings of what is left come when it is repaired.
+        left = [] if rest.is_right else [moved_back(each, edits) for each in rest.diagnostics]
+        return found._replace(diagnostics=codes.in_order([*answered.told, *left]))
     from tiniscript.repairs.def_order import with_moved_defs
     from tiniscript.repairs.everywhere import said_once
     from tiniscript.repairs.vouching import vouched

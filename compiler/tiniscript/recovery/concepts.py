@@ -346,4 +346,5 @@ _BUT: dict[str, tuple[str, ...]] = {
     "@nobrace": ("{", "}", "(", ")", "<", ">"), "@noparen": (";", "{", "}", "(", ")"),
 }  # fmt: skip
 _ANY = tuple(_BUT)
+ANY = frozenset(_BUT)
 _NO_DO = ("@cond", "@argt", "@noparen")

@@ -15,12 +15,13 @@ from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import CODES, Diagnostic, Repair
 from tiniscript.kit import Kit
 from tiniscript.recovery import rows
+from tiniscript.recovery.advice import advised
 from tiniscript.recovery.concepts import lexemes
 from tiniscript.recovery.explanation import explained
 from tiniscript.recovery.search import candidate
 from tiniscript.recovery.setup import setup
 from tiniscript.recovery.writing import without_note
-from tiniscript.source import Edit, Source, Span, applied
+from tiniscript.source import Edit, Source, Span, applied, overlap
 from tiniscript.words import WORDS
 
 LONGEST = 4_000  # characters of a text that is read as a whole
@@ -36,17 +37,27 @@ class NoBar(NamedTuple):
     fix: str
 
 
-def findings(
-    source: Source, found: Sequence[Diagnostic], check: Check, kit: Kit
-) -> list[Diagnostic]:
-    """Return what is wrong with a text that can be read, nothing for another one.
+class Findings(NamedTuple):
+    """What is told of a text, and the edits with which the rest of it is read."""
+
+    told: list[Diagnostic]
+    edits: list[Edit]
+
+
+def findings(source: Source, found: Sequence[Diagnostic], check: Check, kit: Kit) -> Findings:
+    """Return what is wrong with a text that can be read, or with words behind its instructions.
 
     `found` is what the parser and the checker, which `check` asks, say of the text.
     """
     said = _no_bar(source)
     if said and said.repair and _is_better(source, found, said.repair, check):
-        return [said]
-    return _meant(source, found, check, kit)
+        return Findings([said], [*said.repair.edits])
+    repaired = _meant(source, found, check, kit)
+    if repaired:
+        edits = [edit for each in repaired if each.repair for edit in each.repair.edits]
+        return Findings(repaired, edits)
+    told = advised(source.text, kit)
+    return Findings([each.diagnostic for each in told], [each.passed for each in told])
 
 
 def _meant(source: Source, found: Sequence[Diagnostic], check: Check, kit: Kit) -> list[Diagnostic]:
@@ -105,7 +116,8 @@ def moved_back(found: Diagnostic, edits: Sequence[Edit]) -> Diagnostic:
     repair = found.repair
     if repair is not None:
         own = tuple(Edit(_before(each.span, edits), each.text) for each in repair.edits)
-        repair = repair._replace(edits=own)
+        passed = [each for each in edits if each.text.isspace()]  # words that nothing may drop
+        repair = Repair((), False) if overlap(own, passed) else repair._replace(edits=own)
     return Diagnostic(found.code, _before(found.span, edits), values, place, repair)
 
 

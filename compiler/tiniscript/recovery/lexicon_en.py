@@ -68,7 +68,7 @@ number 100      | HUNDRED
 power 100       | MAX FULL HIGH FAST
 power 80        | NORMAL
 power 50        | HALF MEDIUM
-power 40        | SLOW
+power 40        | SLOW SLOWLY
 # units: which one, and how many thousandths of it
 unit s 1000     | S SEC SECS SECOND SECONDS
 unit s 1        | MS MILLISECOND MILLISECONDS
@@ -124,6 +124,13 @@ read            | READ
 set             | SET LET
 declare         | LET VAR INT FLOAT CONST GLOBAL DIM BOOL BYTE LONG DOUBLE UNSIGNED
 keep            | STORE SAVE
+beside          | WITH WHILE
+idle            | SECONDS THE CAR PLEASE
+act             | RETURN DANCE GRAB AVOID DODGE
+small           | FOR DO NEXT
+often 2         | TWICE
+often 3         | THRICE
+pace            | FASTER SLOWER
 end             | END DONE
 program         | PROGRAM
 count           | FOR

@@ -28,6 +28,7 @@ from tiniscript.words import UNITS, WORDS
 
 STATES = 160  # of one line that are looked at
 SLIP_STATES = 30
+QUICK_STATES = 8
 FARTHEST = 1.05  # what a rival may cost more than the cheapest reading
 MARGIN = 0.15  # what it has to cost more, for the cheapest to be sure
 SLIP_MARGIN = 0.3
@@ -104,17 +105,20 @@ def _is_bare_end(tokens: Sequence[Lexeme], k: int, names: Names) -> bool:
     return all(each in (";", "|", *BRACES) for each in around)
 
 
-def read(tokens: Sequence[Lexeme], names: Names) -> Readings:
-    """Return the cheapest readings of a line, which nobody may change: they are kept."""
-    return _read(tuple(tokens), names)
+def read(tokens: Sequence[Lexeme], names: Names, is_quick: bool = False) -> Readings:
+    """Return the cheapest readings of a line, which nobody may change: they are kept.
+
+    `is_quick`: those that few rows lead to.
+    """
+    return _read(tuple(tokens), names, is_quick)
 
 
 @lru_cache(maxsize=_REMEMBERED)
-def _read(tokens: tuple[Lexeme, ...], names: Names) -> Readings:
+def _read(tokens: tuple[Lexeme, ...], names: Names, is_quick: bool) -> Readings:
     has_setup = len(tokens) > 1 and tokens[1].text == "|" and tokens[0].text in ("SI", "SB")
     setup = list(tokens[:_SETUP]) if has_setup else []
     search = _Search(names)
-    readings = search.read(list(tokens[len(setup) :]))
+    readings = search.read(list(tokens[len(setup) :]), is_quick)
     if not setup:
         return readings
     found = []
@@ -133,11 +137,11 @@ class _Search:
     def __init__(self, names: Names) -> None:
         self.names = names
 
-    def read(self, tokens: list[Lexeme]) -> Readings:
+    def read(self, tokens: list[Lexeme], is_quick: bool) -> Readings:
         first = self.at_once(Reading(0, tokens, (), True, False))
-        readings = self.search(first, STATES, self.rewritten)
+        readings = self.search(first, QUICK_STATES if is_quick else STATES, self.rewritten)
         has_words = any(each.kind in (WORD, NUMBER) for each in tokens)
-        if not readings.found and has_words and len(tokens) < LONGEST_WITH_SLIPS:
+        if not is_quick and not readings.found and has_words and len(tokens) < LONGEST_WITH_SLIPS:
             plain = Reading(0, tokens, (), True, False)
             found = self.search(plain, SLIP_STATES, self.with_slips).found
             found = [
@@ -214,7 +218,7 @@ class _Search:
         for row in rewrites.of_tokens():
             if row.is_first is not is_first:
                 continue
-            for match in line.places(row):
+            for match in line.matches(row.pattern):
                 start, end = line.span(match)
                 if not is_first and not _touches(reading.failure, start, end):
                     continue

@@ -7,13 +7,13 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cache
 from itertools import product
 from typing import NamedTuple
 
 from tiniscript.recovery import rows
-from tiniscript.recovery.concepts import ENDED, Lexeme, Names, joined, made, said_of
+from tiniscript.recovery.concepts import ANY, ENDED, Lexeme, Names, joined, made, said_of
 from tiniscript.syntax.lexer import NUMBER, WORD
 from tiniscript.syntax.operators import COMPARISONS, OPPOSITES
 from tiniscript.words import BLOCK_ENDS, WORDS
@@ -28,12 +28,10 @@ _HEADER_OF = {"FOREVER": "LOOP", "FOR": "LOOP", "PARA": "LOOP", "ELSEIF": "IF"}
 class Row(NamedTuple):
     """A row of the table of tokens. `is_first`: made before anything else is tried.
 
-    `may_lose_numbers`: it is only shown, or says itself what becomes of them. `needed` are labels
-    without which no line matches: to look for them takes a tenth of the time.
+    `may_lose_numbers`: it is only shown, or says itself what becomes of them.
     """
 
-    pattern: re.Pattern[str]
-    needed: tuple[str, ...]
+    pattern: Pattern
     becomes: tuple[str, ...]
     cost: float
     code: str
@@ -69,15 +67,12 @@ def cells(table: str) -> Iterator[list[str]]:
 def of_tokens() -> tuple[Row, ...]:
     found = []
     for pattern, becomes, cost, code, how, example in cells(rows.TOKENS):
-        atoms = [_parsed(each) for each in _whole(pattern).split()]
-        compiled = re.compile("".join(map(_pattern, atoms)))
-        needed = tuple(f"|{each.labels[0]}|" for each in atoms if each.is_needed)
-        parts = tuple(_whole(becomes).split())
+        parts = tuple(_whole(becomes, rows.PARTS).split())
         is_first, is_offered = "first" in how, "offered" in how
         may_lose = is_offered or bool(_OF_NUMBERS.search(f"{pattern} {becomes}"))
         found.append(
-            Row(compiled, needed, parts, float(cost), code, is_first, is_offered, may_lose,
-                _texts(example))
+            Row(compiled(pattern, rows.PARTS), parts, float(cost), code, is_first, is_offered,
+                may_lose, _texts(example))
         )  # fmt: skip
     return tuple(found)
 
@@ -100,31 +95,52 @@ def _texts(example: str) -> tuple[str, str]:
     return wrong.strip(" "), right
 
 
-def _whole(pattern: str) -> str:
+class Pattern(NamedTuple):
+    """A row's pattern as one of labels, as `Names.label` writes them.
+
+    No line matches that has none of each of `needed`, which is fast to see.
+    """
+
+    of_labels: re.Pattern[str]
+    needed: tuple[frozenset[str], ...]
+
+
+def compiled(pattern: str, pieces: Mapping[str, str]) -> Pattern:
+    """Return a row's pattern, in which `pieces` stand for its `<parts>`."""
+    atoms = [_parsed(atom) for atom in _whole(pattern, pieces).split()]
+    needed = (
+        frozenset(atom.labels)
+        for atom in atoms
+        if atom.labels
+        and atom.often != "?"
+        and atom.often != "*"
+        and not atom.is_end
+        and not {*atom.labels} & {*ANY, "s|"}
+    )
+    return Pattern(re.compile("".join(map(_of_labels, atoms))), tuple(needed))
+
+
+def _whole(pattern: str, pieces: Mapping[str, str]) -> str:
     """Return a pattern with its `<parts>` written out."""
     while _PART.search(pattern):
-        pattern = _PART.sub(lambda match: rows.PARTS[match[1]], pattern)
+        pattern = _PART.sub(lambda match: pieces[match[1]], pattern)
     return pattern
 
 
 class _Atom(NamedTuple):
-    """A token of a pattern: one of its labels, so often, or an edge of the line, `^` or `$`."""
+    """One token of a pattern: what captures it, and its labels; none is a `^` or only a `$`."""
 
     name: str
-    labels: list[str]
+    labels: tuple[str, ...]
     often: str
-    edge: str
-
-    @property
-    def is_needed(self) -> bool:
-        return len(self.labels) == 1 and self.often in ("", "+") and not self.edge
+    is_end: bool
 
 
 def _parsed(atom: str) -> _Atom:
     capture = _CAPTURE.match(atom)
     name, atom = (capture[1], atom[2:]) if capture and len(atom) > 2 else ("", atom)
     if atom in ("^", "$"):
-        return _Atom(name, [], "", atom)
+        return _Atom(name, (), "", atom == "$")
     often = ""
     if len(atom) > 1 and atom[-1] in "?*+" and (atom[-2].isalnum() or atom[-2] in "':,;()"):
         atom, often = atom[:-1], atom[-1]
@@ -132,37 +148,42 @@ def _parsed(atom: str) -> _Atom:
     words = [each for each in found if each[0] == "@" or each[0].isalnum() or each[:2] == "_"]
     labels = [each for each in words if each != "_"]
     labels += ["s" + each.strip("'") for each in found if each not in (*words, "$")]
-    return _Atom(name, labels, often, "$" if "$" in found else "")
+    return _Atom(name, tuple(labels), often, "$" in found)
 
 
-def _pattern(atom: _Atom) -> str:
-    """Return the pattern of one token, of labels as `Names.label` writes them."""
-    name, labels, often, edge = atom
+def _of_labels(atom: _Atom) -> str:
+    """Return the pattern of one token."""
+    name, labels, often, is_end = atom
     if not labels:
-        return r"\A" if edge == "^" else rf"(?P<{name}>\Z)" if name else r"(?=\Z)"
+        return r"\A" if not is_end else rf"(?P<{name}>\Z)" if name else r"(?=\Z)"
     one = rf"\x01[^\x02]*\|(?:{'|'.join(map(re.escape, labels))})\|[^\x02]*\x02"
-    one = rf"(?:{one}|\Z)" if edge else one
-    body = f"(?:{one}){often}{'?' if often in ('+', '*') else ''}"
+    one = rf"(?:{one}|\Z)" if is_end else one
+    body = f"(?:{one}){often}{'?' if often in ('+', '*') and often else ''}"
     return f"(?P<{name}>{body})" if name else body
 
 
 class Encoded:
     """The labels of a line as one text, and which token ends where in it."""
 
-    def __init__(self, tokens: Sequence[Lexeme], names: Names) -> None:
+    def __init__(
+        self, tokens: Sequence[Lexeme], names: Names, labels: Sequence[str] | None = None
+    ) -> None:
         self.tokens = list(tokens)
         self.names = names
-        parts = [names.label(token) for token in tokens]
+        parts = labels or [names.label(token) for token in tokens]
         self.text = "".join(parts)
+        self._labels = frozenset(self.text.split("|"))
         self.index = {0: 0}
         end = 0
         for k, part in enumerate(parts):
             end += len(part)
             self.index[end] = k + 1
 
-    def places(self, row: Row) -> Iterator[re.Match[str]]:
-        if all(each in self.text for each in row.needed):
-            yield from row.pattern.finditer(self.text)
+    def matches(self, pattern: Pattern) -> Iterator[re.Match[str]]:
+        for labels in pattern.needed:
+            if self._labels.isdisjoint(labels):
+                return iter(())
+        return pattern.of_labels.finditer(self.text)
 
     def span(self, match: re.Match[str], name: str | int = 0) -> tuple[int, int]:
         """Return the tokens of a match, or of a part of it that it has captured."""

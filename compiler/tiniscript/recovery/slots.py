@@ -37,14 +37,19 @@ class _Value(NamedTuple):
     unit: str | None
 
 
-def filled(words: Sequence[Lexeme], names: Names, has_until: bool) -> Filled | None:
-    """Return the call that some words say, or None where one of them has no place in it."""
+def filled(
+    words: Sequence[Lexeme], names: Names, has_until: bool, is_order: bool = False
+) -> Filled | None:
+    """Return the call that some words say, or None where one of them has no place in it.
+
+    `is_order`: it may have no value of its own.
+    """
     reader = _Reader(words, names)
     if not reader.read() or reader.command is None or reader.mark:
         return None
     if reader.is_turn and reader.command not in ("L", "R"):
         return None
-    return reader.call(has_until)
+    return reader.call(has_until, is_order)
 
 
 def told(number: float) -> str:
@@ -272,7 +277,7 @@ class _Reader:
 
     # -- the call ---------------------------------------------------------------------------
 
-    def call(self, has_until: bool) -> Filled | None:
+    def call(self, has_until: bool, is_order: bool) -> Filled | None:
         assert self.command is not None
         device = self.names.actuators.get(self.command)
         word = actuator_word(device) if device else WORDS[self.command]
@@ -281,7 +286,8 @@ class _Reader:
             is_sure = self.is_sure and times is None
             return None if self.values else Filled([made(word.text)], self.cost, is_sure, times)
         values = self._in_seconds(self._with_decimals(len(word.arguments)))
-        slots = values and self._slots(values, word.arguments, has_until)
+        is_said = bool(values) or (is_order and values is not None)
+        slots = self._slots(values or [], word.arguments, has_until) if is_said else None
         if not slots:
             return None
         out = [made(word.text), made("(")]

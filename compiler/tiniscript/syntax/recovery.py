@@ -13,7 +13,6 @@ from tiniscript.kit import Kit
 from tiniscript.source import Span
 from tiniscript.syntax.again_recovery import AgainRecovery
 from tiniscript.syntax.ast import Assign, Command
-from tiniscript.syntax.behind_recovery import BehindRecovery
 from tiniscript.syntax.block_recovery import BlockRecovery
 from tiniscript.syntax.blocks import Block, Blocks
 from tiniscript.syntax.construct_recovery import ConstructRecovery
@@ -25,12 +24,11 @@ from tiniscript.syntax.group_recovery import GroupRecovery
 from tiniscript.syntax.joining_recovery import JoiningRecovery
 from tiniscript.syntax.lexer import NUMBER, ODD, WORD, Token
 from tiniscript.syntax.name_recovery import NameRecovery
-from tiniscript.syntax.note_recovery import NoteRecovery
 from tiniscript.syntax.operators import SIGNS
-from tiniscript.syntax.phrases import AFTER_HEADER, AT_ONCE, BESIDE
+from tiniscript.syntax.phrases import AFTER_HEADER
 from tiniscript.syntax.reporter import Failed, Reporter, Resumed
 from tiniscript.syntax.setup_recovery import SetupRecovery
-from tiniscript.syntax.suggestions import after_bracket, shortened
+from tiniscript.syntax.suggestions import shortened
 from tiniscript.syntax.times_recovery import TimesRecovery
 from tiniscript.syntax.until_recovery import UntilRecovery
 from tiniscript.syntax.value_constructs import ValueConstructs
@@ -60,8 +58,6 @@ class Recovery:
         self.times = TimesRecovery(cursor, reporter, self.in_block)
         self.construct = ConstructRecovery(cursor, reporter, self.in_block)
         self.groups = GroupRecovery(cursor, reporter, self.in_block)
-        self.of_note = NoteRecovery(cursor, reporter, self.in_block)
-        self.of_call = BehindRecovery(cursor, reporter, self.in_block, self.of_note, self.times)
         self.again = AgainRecovery(cursor, reporter, self.in_block)
         self.joining = JoiningRecovery(cursor, reporter, self.in_block)
 
@@ -73,7 +69,6 @@ class Recovery:
         block = self.blocks.innermost
         if self.kit is not None and (block is None or block.here):
             self.again.line()
-            self.of_call.framed(token)
         cursor.i += 1
         if token.kind == "}":
             self.in_block.close_brace(token)
@@ -190,15 +185,8 @@ class Recovery:
             self.groups.line_of_def(header)
         if header is not None and kind == "(":
             self.groups.body(header, cursor.i)
-        if header is None:
-            self.of_call.no_more()
         if self.kit is not None and header is None:
             self.again.behind()
-            self.of_call.call(first, before)
-        if self.kit is not None and (header is None or not goes_on):
-            self.of_note.behind(first, before, header)
-        if first.text in ("S", "STOP", "BREAK"):
-            self.of_call.stop_of_loop(first)
         if header is not None and header.word != "DEF" and first.text != "ELSE" and not goes_on:
             self._line_of(header, token)
         if kind in ("{", "}"):
@@ -226,24 +214,16 @@ class Recovery:
             fail(codes.EXTRA_CLOSE, token.span, found=")")
         if kind == "|":
             self.setup.bar_between(first, token)
-        if kind is NUMBER and before is first and self._is_stop(first) and after.kind in AT_END:
-            cursor.i += 1
-            fix = f"{first.text};W({text})"  # `S 2`
-            fail(codes.MISSING_SEPARATOR, token.span, Span(first.start, token.end), fix=fix)
         if header is None:
             self.of_name.note_behind(first, token, after)
-        self.times.times_behind(first, token, before)
         if kind == "-" and after.kind == ">":  # `F(2, 80) -> R(1, 50)`
             cursor.tokens[cursor.i : cursor.i + 2] = [Token("→", "->", token.start, after.end)]
             token, after = cursor.token, cursor.following
             kind, text = token.kind, token.text
-        both = self._at_once(first, after) if text in AT_ONCE else ""
-        if both or (text in ("+", "/", "&", "-", "→", "->", ">") and self._is_command(after)):
+        if text in ("+", "/", "&", "-", "→", "->", ">") and self._is_command(after):
             self.reporter.answer(token)
             shown = shortened(cursor.source.text[first.start : before.end])
-            self.reporter.report(
-                codes.SIGN_BETWEEN, token.span, found=text, before=shown, both=both
-            )
+            self.reporter.report(codes.SIGN_BETWEEN, token.span, found=text, before=shown)
             cursor.i += 1
             raise Resumed
         if kind in SIGNS:
@@ -259,8 +239,6 @@ class Recovery:
         is_joining = header is None and kind is WORD and self.joining.words() > 0
         if is_joining or (kind is WORD and header is not None and text in AFTER_HEADER):
             if header is not None or (after.kind is WORD and not self.in_block.is_name(text)):
-                if header is None and self.kit is not None:
-                    self.of_call.words(first, before, self.joining.words())
                 cursor.i += 1 if header is not None else self.joining.words()
                 span = cursor.span_from(token)
                 shown = cursor.source[span].upper()
@@ -268,30 +246,9 @@ class Recovery:
                 self.reporter.report(codes.EXTRA_WORD, span, found=shown, fix="", joining=joining)
                 self.in_block.go_on()
         if header is not None or not self._is_no_instruction(first):
-            if header is None and self.kit is not None:
-                self.of_call.words(first, before)
             self._separator_missing(first, token, before, header)
         if kind is not WORD:
             raise Failed
-
-    def _at_once(self, first: Token, after: Token) -> str:
-        """`F(2, 80) + BEEP(2, 440)`: return the program for both at once, or nothing."""
-        tokens, cursor = self.cursor.tokens, self.cursor
-        move = [each.text for each in tokens[max(0, cursor.i - 6) : cursor.i]]
-        is_beep = after.text == "BEEP" and tokens[cursor.i + 2].kind == "("
-        end = after_bracket(tokens, cursor.i + 2) if is_beep else None
-        if first.text not in ("F", "B") or end is None or len(move) < 6 or move[0] != first.text:
-            return ""
-        times = (move[2], tokens[cursor.i + 3].text)
-        if not all(each.replace(".", "", 1).isdecimal() for each in times):
-            return ""
-        longer = round(float(times[0]) - float(times[1]), 3)
-        if longer < 0 or (longer and cursor.token.text not in BESIDE):
-            return ""
-        power = move[4] if first.text == "F" else f"-{move[4]}"
-        beep = cursor.source[Span(after.start, tokens[end - 1].end)]
-        rest = f"W({longer:g});" if longer else ""
-        return f"M({power}, {power});{beep};{rest}S"
 
     def meant(self, word: Token) -> Word | None:
         """Return the command that a word of another language means."""
@@ -301,9 +258,6 @@ class Recovery:
     def _is_command(self, token: Token) -> bool:
         known = WORDS.get(token.text) if token.kind is WORD else None
         return known is not None and known.is_instruction
-
-    def _is_stop(self, token: Token) -> bool:
-        return token.text in WORDS and WORDS[token.text].role == "stop"
 
     def _is_no_instruction(self, first: Token) -> bool:
         """Whether an instruction begins with a word that nobody knows: that is said of it."""

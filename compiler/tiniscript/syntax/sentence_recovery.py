@@ -26,7 +26,6 @@ from tiniscript.syntax.phrases import (
     READING,
     TIMES,
 )
-from tiniscript.syntax.question_recovery import QuestionRecovery
 from tiniscript.syntax.reporter import Failed, Reporter, Resumed
 from tiniscript.syntax.suggestions import (
     body_begins,
@@ -65,7 +64,6 @@ class SentenceRecovery:
         self.reporter = reporter
         self.blocks = in_block.blocks
         self.in_block = in_block
-        self.questions = QuestionRecovery(cursor, reporter, in_block)
 
     def two_words(self, word: Token, following: Token) -> None:
         """`TURN LEFT`; and of `hello world` only the first word is a mistake."""
@@ -233,9 +231,6 @@ class SentenceRecovery:
         self, span: Span, found: str, meant: Word, values: list[Token], end: int = 0
     ) -> NoReturn:
         """`end` is where the values end in the text, if not with the last of them."""
-        behind = self.questions.behind(span, values, end)
-        if behind is not None:
-            values = [each for each in values if each.start < behind.start]
         values = with_numbers(values)
         self.so_often(span, meant, values, end)
         last = values[-1:]
@@ -257,8 +252,6 @@ class SentenceRecovery:
         is_far = any(UNITS.get(each.text, ("",))[0] == "cm" for each in values)
         far = meant.text if is_far and not fix and meant.role == "move" else ""
         place = Span(span.start, max(span.end, end, *(each.end for each in values)))
-        if behind is not None:
-            self.questions.asked(span, behind, fix or meant.example, meant)
         self.reporter.fail(
             codes.OTHER_LANGUAGE, span, place, found=found, right=meant.text, fix=fix,
             usage=meant.usage, far=far,

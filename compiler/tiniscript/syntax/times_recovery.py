@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Sequence
 from typing import NoReturn
 
 from tiniscript.diagnostics import codes
@@ -15,11 +13,9 @@ from tiniscript.syntax.lexer import NUMBER, WORD, Token
 from tiniscript.syntax.phrases import TIMES
 from tiniscript.syntax.reporter import Reporter
 from tiniscript.syntax.suggestions import after_bracket, shortened
-from tiniscript.words import BLOCK_ENDS, NUMBER_WORDS, WORDS
+from tiniscript.words import BLOCK_ENDS, WORDS
 
-_WORDS = re.compile(r"\W")
 _NOT_OFTEN = ("0", "1")
-OFTEN = ("POR", "X", "*")  # before how often
 MOST_ON_A_LINE = 8  # instructions before the one that says how often
 _OF_BLOCKS = frozenset((*BLOCK_ENDS, *BLOCK_ENDS.values(), "ELSE", "ELSEIF"))
 
@@ -90,37 +86,6 @@ class TimesRecovery:
         above = source.line_text(line - 1) if line > 1 else ""
         return number.text == "1" or above.lstrip()[:1].isdecimal()
 
-    def times_behind(self, first: Token, token: Token, before: Token) -> None:
-        """`F(1, 50) * 3`, `F(1, 50) x 3`, `F(1, 50) 3 veces`."""
-        cursor = self.cursor
-        is_sign = token.kind == "*" or token.text in ("X", "POR")
-        row = list(cursor.tokens[cursor.i + is_sign : cursor.i + is_sign + 3])
-        if token.kind is WORD and token.text[:1] == "X" and token.text[1:].isdecimal():
-            row, is_sign = [token._replace(kind=NUMBER, text=token.text[1:]), *row[1:]], True
-        if token.text in ("TWICE", "THRICE"):
-            times = "2" if token.text == "TWICE" else "3"
-            row, is_sign = [token._replace(kind=NUMBER, text=times), *row[1:]], True
-        if len(row) > 1 and row[0].text in NUMBER_WORDS:  # `F(1, 50) cuatro veces`
-            row[0] = row[0]._replace(kind=NUMBER, text=NUMBER_WORDS[row[0].text])
-        if len(row) > 1 and row[1].text in TIMES:
-            is_sign = True
-            del row[1]
-        is_called = self.in_block.known.is_def(first.text)
-        is_sign = is_sign or (is_called and row[0].kind is NUMBER)  # `DANCE 3`
-        if not is_sign or len(row) < 2 or row[0].kind is not NUMBER or row[1].kind not in AT_END:
-            return
-        if _is_command(first) or is_called:
-            self.repeated(row[0], first, before)
-
-    def repeated(self, number: Token, first: Token, before: Token) -> NoReturn:
-        """Report how often the call from `first` to `before` is done, and go past it."""
-        cursor = self.cursor
-        cursor.skip_instruction()
-        body = Span(first.start, before.end)
-        if not self.in_block.known.is_def(first.text):
-            self._all_or_last(number, body, cursor.span_from(first))
-        self._loop_of(number, body, cursor.span_from(first))
-
     def all_before(self, word: Token) -> None:
         """`F(1, 50); R(1, 50); repetir 4 veces`, at the end: what is repeated stands before."""
         cursor, blocks = self.cursor, self.in_block.blocks
@@ -143,25 +108,6 @@ class TimesRecovery:
             values["all"] = ";".join((f"LOOP({numbers[0]})", *rows, BLOCK_ENDS["LOOP"]))
         self.reporter.fail(codes.REPEATED, span, None, **values)
 
-    def _all_or_last(self, number: Token, body: Span, place: Span) -> None:
-        """`F(1, 60); L(1, 60) x4`: how much of the line is done so often is not said."""
-        source = self.cursor.source
-        start = source.text.rfind("\n", 0, body.start) + 1
-        start = max(start, source.text.find("|", start, body.start) + 1)
-        row = [each.strip() for each in source.text[start : body.start].split(";")]
-        row = [each for each in row if each and each.upper() != "START"]
-        is_of_block = any(_WORDS.split(each)[0].upper() in _OF_BLOCKS for each in row)
-        is_often = number.text not in _NOT_OFTEN
-        if is_of_block or not is_often or not 0 < len(row) <= MOST_ON_A_LINE:
-            return
-        head, end = f"LOOP({number.text})", BLOCK_ENDS["LOOP"]
-        values = {
-            "found": shortened(source[place]), "fix": "",
-            "last": f"{head};{source[body]};{end}",
-            "all": ";".join((head, *row, source[body], end)),
-        }  # fmt: skip
-        self.reporter.fail(codes.REPEATED, place, None, **values)
-
     def _loop_of(self, number: Token, body: Span, place: Span) -> NoReturn:
         found = shortened(self.cursor.source[place])
         if number.text in _NOT_OFTEN:  # nothing is repeated
@@ -174,14 +120,3 @@ class TimesRecovery:
 def _is_command(token: Token) -> bool:
     known = WORDS.get(token.text) if token.kind is WORD else None
     return known is not None and known.is_instruction
-
-
-def says_how_often(row: Sequence[Token]) -> bool:
-    """`3 veces`, `por 3`, `x3`, `twice`."""
-    texts = [token.text for token in row]
-    if texts[0] in ("TWICE", "THRICE") or re.fullmatch("X[0-9]+", texts[0]):
-        return True
-    if texts[0] in OFTEN and len(row) == 2 and row[1].kind is NUMBER:
-        return True
-    numbers = [k for k, each in enumerate(row) if each.kind is NUMBER or each.text in NUMBER_WORDS]
-    return any(k + 1 < len(row) and texts[k + 1] in TIMES and texts[k] != "UNA" for k in numbers)

@@ -12,20 +12,14 @@ from itertools import pairwise
 
 from tiniscript.diagnostics import codes
 from tiniscript.source import Span
-from tiniscript.syntax.blocks import ENDS
 from tiniscript.syntax.call_suggestions import LONGEST, call_in, starts_value, written
 from tiniscript.syntax.cursor import AT_END, Cursor
 from tiniscript.syntax.lexer import NUMBER, ODD, QUOTES, WORD, Token
-from tiniscript.syntax.operators import COMPARISONS
 from tiniscript.syntax.order_values import one_or_other
-from tiniscript.syntax.phrases import FILLERS, NEGATED, READING
+from tiniscript.syntax.phrases import FILLERS, READING
 from tiniscript.syntax.reporter import Reporter
 from tiniscript.syntax.suggestions import (
     after_bracket,
-    end_of_values,
-    foreign_block,
-    inside,
-    opposite,
     with_signs,
 )
 from tiniscript.syntax.vocabulary import Vocabulary
@@ -297,7 +291,6 @@ class ValueConstructs:
         if command is not None and (command.is_instruction or command.role == "actuator"):
             one_or_other(cursor, self.reporter, self.known, k)
             self._brackets_behind(first, k, command)
-            self._question_behind(first, command)
 
     def _brackets_behind(self, first: Token, k: int, word: Word) -> None:
         """`F(2)(80)`: each value in brackets of its own."""
@@ -315,53 +308,6 @@ class ValueConstructs:
             cursor.i = end
             span = Span(first.start, tokens[end - 1].end)
             self.reporter.fail(codes.MISSING_COMMA, span, span, fix=fix, usage=word.usage)
-
-    def _question_behind(self, first: Token, word: Word) -> None:
-        """`F(2, 80) si DISTANCE > 10`, `F(2, 80) while DISTANCE > 10`."""
-        cursor = self.cursor
-        token = cursor.token
-        meant = "IF" if token.text in ("SI", "WHEN") else meant_by(token.text) or token.text
-        if meant not in ("IF", "WHILE") or token.kind is not WORD or self._has_body(meant):
-            return
-        values = inside(cursor.tokens, cursor.i + 1)
-        row = with_signs(values)
-        if not any(each.kind in COMPARISONS for each in row) or len(row) > LONGEST:
-            return
-        end = end_of_values(cursor.tokens, cursor.i + 1, values)
-        call = cursor.source[Span(first.start, cursor.last.end)]
-        if first.text not in WORDS:  # `avanza si …`
-            call = word.example
-        start = cursor.i
-        while cursor.token.start < end:
-            cursor.i += 1
-        if cursor.token.kind not in AT_END:
-            cursor.i = start
-            return
-        asked, contrary = (self.known.translated(each) for each in (written(row), opposite(row)))
-        block_end = _ENDIF if meant == "IF" else BLOCK_ENDS["WHILE"]
-        fix = f"{meant}({asked});{call};{block_end}"
-        if token.text in NEGATED:
-            fix = f"IF({contrary});{call};{_ENDIF}" if contrary else ""
-        elif meant == "WHILE" and word.role in ("move", "wait"):
-            fix = f"{call} UNTIL({contrary})" if contrary else ""
-        until = ""
-        if token.text == "IF" and first.text == "F" and any(each.kind == "<" for each in row):
-            fix, until = "", f"{call} UNTIL({asked})"  # up to it, rather than only if it is near
-        self.reporter.fail(codes.QUESTION_BEHIND, token.span, Span(first.start, end),
-                           found=token.text, until=until, fix=fix)  # fmt: skip
-
-    def _has_body(self, block: str) -> bool:
-        """Whether an end of this block comes that no header behind the cursor's begins."""
-        depth = 0
-        for token in self.cursor.tokens[self.cursor.i + 1 : self.cursor.i + _FARTHEST]:
-            if token.kind is WORD:
-                said = token.text if token.text in WORDS else foreign_block(token.text)
-                said = ENDS.get(said or "", said)
-                is_end = token.text in ENDS or foreign_block(token.text) in (*ENDS, "END")
-                if is_end and not depth:
-                    return said in (block, "END")
-                depth += -1 if is_end else said in BLOCK_ENDS
-        return False
 
     # -- values in front of their word --------------------------------------------------------
 

@@ -1,0 +1,374 @@
+"""Advice: what is told of words behind an instruction, where no repair is sure.
+
+Reads each instruction of a line with the words behind it by the rows of `advice_rows`. Knows no row
+and no sentence of any language.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator, Sequence
+from functools import cache
+from typing import NamedTuple
+
+from tiniscript.diagnostics import codes
+from tiniscript.diagnostics.codes import CODES, Diagnostic
+from tiniscript.kit import Kit
+from tiniscript.recovery import advice_rows, lines, rewrites
+from tiniscript.recovery.behind import Behind, Placed, whole
+from tiniscript.recovery.concepts import ENDED, Lexeme, Names, lexemes, made, said_of
+from tiniscript.recovery.slots import filled
+from tiniscript.recovery.writing import laid_out, without_note
+from tiniscript.source import Edit, Span
+from tiniscript.syntax.lexer import NUMBER, WORD
+from tiniscript.syntax.operators import COMPARISONS
+from tiniscript.syntax.suggestions import shortened
+from tiniscript.words import BLOCK_ENDS, OTHER_WAY, WORDS
+
+LONGEST = 24  # words behind an instruction that are read
+_ASIDE = (
+    codes.REPEATED.number,
+    codes.WORDS_BEHIND.number,
+)  # codes of words that a repair may read better
+_MOST_TIMES, _DEGREES = 50, 20  # a number behind a turn that is rather an angle
+_BODY = 2_000  # characters in which the end of a block is looked for
+_MOST_BEFORE = 8  # instructions on a line that an example repeats
+_BARE = ".:,\\* \"'`´“”‘’«»"  # signs that a note needs not
+
+
+class Row(NamedTuple):
+    pattern: rewrites.Pattern
+    code: str
+    values: tuple[tuple[str, str], ...]
+    example: tuple[str, str]
+
+
+class Advice(NamedTuple):
+    """What is told, and the words that are passed over so that the rest can be read."""
+
+    diagnostic: Diagnostic
+    passed: Edit
+
+
+@cache
+def rows() -> tuple[Row, ...]:
+    found = []
+    for pattern, code, values, example in rewrites.cells(advice_rows.ADVICE):
+        told = (each.partition("=") for each in values.split("; ") if each)
+        compiled = rewrites.compiled(pattern, advice_rows.PARTS)
+        wrong, _, right = example.rpartition(" => ")
+        named = tuple((name, text) for name, _, text in told)
+        found.append(Row(compiled, code, named, (wrong, right)))
+    return tuple(found)
+
+
+def advised(text: str, kit: Kit) -> list[Advice]:
+    """Return what is told of the words behind each instruction of a text."""
+    bodies = [without_note(line)[0] for line in text.split("\n")]
+    names = Names([lexemes(body) for body in bodies], kit)
+    found: list[Advice] = []
+    start = depth = 0
+    for body, line in zip(bodies, text.split("\n"), strict=True):
+        if "~" not in body:
+            parts = _parts(body, start, text, names, depth)
+            found += (each for part in parts if (each := _told(part)))
+        words = [each.text for each in lexemes(body)]
+        depth += sum(word in BLOCK_ENDS for word in words) - sum(word in ENDED for word in words)
+        start += len(line) + 1
+    return found
+
+
+def _parts(body: str, start: int, text: str, names: Names, depth: int) -> Iterator[Behind]:
+    """Give each instruction of a line that has words behind it."""
+    placed: list[Placed] = []
+    for token in lexemes(body):
+        start += len(token.space or "")
+        placed.append(Placed(token, Span(start, start + len(token.source or ""))))
+        start = placed[-1].span.end
+    begin = 0
+    before: list[str] | None = []
+    for k in range(len(placed) + 1):
+        if k < len(placed) and placed[k].token.text not in (";", "{", "}", "|"):
+            continue
+        part = placed[begin:k]
+        if k < len(placed) and placed[k].token.text == "|":
+            begin = k + 1
+            continue
+        while part:
+            size = whole([each.token for each in part], names)
+            rest = part[size:]
+            if not size and (found := _said_call([each.token for each in part], names)):
+                k, call = found
+                yield Behind(part[:k], part[k:], before, text, names, depth, call)
+            if not size or not rest:
+                break
+            after = whole([each.token for each in rest], names)
+            is_asked = rest[0].token.text in ("IF", "WHILE") and after == len(rest)
+            if not after or (
+                is_asked and not _has_body(rest[0].token.text, text[rest[-1].span.end :])
+            ):
+                yield Behind(part[:size], rest, before, text, names, depth)
+                break
+            depth += part[0].token.text in BLOCK_ENDS
+            part = rest
+        if part and before is not None:
+            is_block = part[0].token.text in (*BLOCK_ENDS, *ENDED, "ELSE", "ELSEIF")
+            source = text[part[0].span.start : part[-1].span.end]
+            before = None if is_block else [*before, source]
+        begin = k + 1
+
+
+def _told(part: Behind) -> Advice | None:
+    has_words = any(each.kind in (WORD, NUMBER) for each in part.row)
+    is_aside = any(each.kind is WORD for each in part.row) or (
+        part.is_right() and (has_words or part.words == "()")
+    )
+    if len(part.row) > LONGEST or not is_aside:
+        return None
+    line = rewrites.Encoded([made(";"), *part.row], part.names, part.labels())
+    for row in rows():
+        match = next(line.matches(row.pattern), None)
+        if match is None:
+            continue
+        try:
+            found = _advice(row, _Gaps(part, line, match))
+        except _NoGap:
+            continue
+        return None if row.code in _ASIDE and _is_read_surely(part) else found
+    return None
+
+
+def _is_read_surely(part: Behind) -> bool:
+    """Whether a repair of the whole instruction can mean nothing else."""
+    if part.own == "DEF" and re.search(
+        rf"(?im)(?:^|;)\s*{part.tokens[-1].text}\s*(?:;|$)", part.text
+    ):  # fmt: skip
+        return False  # it is called by its first word
+    found = lines.read([*part.tokens, *part.row], part.names, is_quick=True).found
+    is_alone = len(found) == 1 or (found and found[1].cost >= found[0].cost + lines.MARGIN)
+    return bool(is_alone) and found[0].is_sure and len(found[0].items or ()) == 1
+
+
+def _advice(row: Row, gaps: _Gaps) -> Advice:
+    part = gaps.part
+    values = {"before": shortened(part.call), "words": shortened(part.words), "fix": ""}
+    values |= {name: template.format_map(gaps) for name, template in row.values}
+    place = part.place if values["fix"] else None
+    if place and not part.is_right() and values["fix"].startswith(part.call):
+        place = part.behind  # of a call with a mistake of its own
+        values["fix"] = values["fix"][len(part.call) :].lstrip(" ")
+    start, end = gaps.span("s") if "s" in row.pattern.of_labels.groupindex else (1, len(part.spans))
+    span = Span(part.spans[start].start, part.spans[end - 1].end)
+    found = Diagnostic(CODES[row.code], span, values, place)
+    if part.is_said:
+        return Advice(found, Edit(part.place, values["fix"] or part.call))
+    return Advice(found, Edit(part.behind, " " * (part.behind.end - part.behind.start)))
+
+
+def _said_call(tokens: Sequence[Lexeme], names: Names) -> tuple[int, str] | None:
+    """Return the call that words before a question say, and how many they are."""
+    for k, token in enumerate(tokens):
+        meant = [each.concept for each in names.meanings(token.text)] or [token.text]
+        if k and meant[0] in ("IF", "WHILE"):
+            call = filled(tokens[:k], names, has_until=meant[0] == "WHILE", is_order=True)
+            return (k, laid_out(call.tokens)) if call and not call.times else None
+    return None
+
+
+def _has_body(block: str, text: str) -> bool:
+    """Whether an end of such a block comes that no header of a text begins."""
+    depth = 0
+    for token in lexemes(text[:_BODY]):
+        is_end = token.text in ENDED or bool(said_of(token.text, "end"))
+        if is_end and not depth:
+            return ENDED.get(token.text, block) == block
+        depth += (token.text in BLOCK_ENDS) - is_end
+    return False
+
+
+class _NoGap(Exception):
+    """A gap of a row cannot be filled."""
+
+
+class _Gaps(dict[str, str]):
+    """Fills the gaps of a row: captures, and the functions of `_GAPS`."""
+
+    def __init__(self, part: Behind, line: rewrites.Encoded, match: re.Match[str]) -> None:
+        self.part = part
+        self._line = line
+        self._match = match
+
+    def __missing__(self, name: str) -> str:
+        found = _GAPS[name](self) if name in _GAPS else self.captured(name)
+        if not found and name[-1] != "?":
+            raise _NoGap
+        return found
+
+    def span(self, name: str) -> tuple[int, int]:
+        """Return where a capture stands: from which token on, and before which."""
+        return self._line.span(self._match, name)
+
+    def captured(self, name: str) -> str:
+        start, end = self.span(name)
+        if start == end:
+            return ""
+        if start == 0:
+            return self.part.call
+        if name == "n":
+            return self.number(start - 1)
+        spans = self.part.spans
+        return self.part.text[spans[start].start : spans[end - 1].end]
+
+    def number(self, k: int) -> str:
+        """Return the number at a place in the unit of an instruction: `0.5` for `500 ms`."""
+        number = self.part.number(k) or ""
+        said = said_of(self.part.row[k + 1].text, "unit") if k + 1 < len(self.part.row) else ()
+        if said[:1] == ("s",) and said[1] != "1000":
+            return f"{float(number) * int(said[1]) / 1000:g}"
+        return number
+
+
+def _few(gaps: _Gaps) -> str:
+    """A number that may say how often, and is no angle."""
+    number = gaps["n"]
+    is_angle = gaps.part.own in ("L", "R") and number.isdecimal() and int(number) >= _DEGREES
+    is_few = number.isdecimal() and 1 < int(number[:9]) <= _MOST_TIMES
+    return number if is_few and not is_angle else ""
+
+
+def _loop(gaps: _Gaps) -> str:
+    number = gaps["n"]
+    return "" if number in ("0", "1") else f"LOOP({number});{gaps.part.call};{BLOCK_ENDS['LOOP']}"
+
+
+def _line(gaps: _Gaps) -> str:
+    before = [each for each in gaps.part.before or () if each.upper() != "START"]
+    if not 0 < len(before) <= _MOST_BEFORE or gaps["n"] in ("0", "1"):
+        return ""
+    return ";".join((f"LOOP({gaps['n']})", *before, gaps.part.call, BLOCK_ENDS["LOOP"]))
+
+
+def _with_value(gaps: _Gaps, place: int) -> str:
+    """The call with another number, where it has one that differs."""
+    call, values, number = gaps.part.call, gaps.part.values, gaps["n"]
+    if not values or (gaps.part.is_asked and place == 0):
+        return ""
+    start, end = values[place]
+    is_power = place < 0
+    is_sensible = not is_power or (call[start:end].isdecimal() and 9 < float(number) <= 100)
+    is_same = call[start:end] == number
+    return "" if is_same or not is_sensible else f"{call[:start]}{number}{call[end:]}"
+
+
+def _both(gaps: _Gaps) -> str:
+    """A move and a sound at once, where the sound does not end later."""
+    part = gaps.part
+    if len(part.values) != 2:
+        return ""
+    time, power = (part.call[slice(*each)] for each in part.values)
+    if not re.fullmatch(r"[\d.]+", time):
+        return ""
+    longer = round(float(time) - float(gaps["n"]), 3)
+    if longer < 0 or (longer and not said_of(gaps["s"].upper(), "beside")):
+        return ""
+    power = power if part.own == "F" else f"-{power}"
+    rest = f"W({longer:g});" if longer else ""
+    beep = part.words[part.words.upper().index("BEEP") :]
+    return f"M({power}, {power});{beep};{rest}S"
+
+
+def _paused(gaps: _Gaps) -> str:
+    return f"{gaps.part.call};W({gaps['n']})" + ";S" * (gaps.part.own == "M")
+
+
+def _other(gaps: _Gaps) -> str:
+    return OTHER_WAY[gaps.part.own] + gaps.part.call[len(gaps.part.tokens[0].text) :]
+
+
+def _asked(gaps: _Gaps) -> list[Lexeme]:
+    """The question that words ask, in words of the language; nothing where they ask none."""
+    start, end = gaps.span("q")
+    words = gaps.part.row[start - 1 : end - 1]
+    found = lines.read(
+        [made("IF"), made("("), *words, made(")")], gaps.part.names, is_quick=True
+    ).found
+    tokens = found[0].tokens if found and not gaps.part.is_asked else []
+    asked = tokens[
+        2 : next((k for k, each in enumerate(tokens) if each.text == ";"), len(tokens)) - 1
+    ]
+    return asked if any(each.text in COMPARISONS for each in asked) else []
+
+
+def _contrary(gaps: _Gaps) -> str:
+    asked = _asked(gaps)
+    return laid_out(rewrites.negated(asked)) if asked else ""
+
+
+def _near(gaps: _Gaps) -> str:
+    """A question for something near: up to there, rather than only if it is."""
+    asked = _asked(gaps)
+    return laid_out(asked) if any(each.text == "<" for each in asked) else ""
+
+
+def _rest(gaps: _Gaps, name: str) -> str:
+    """The words from a capture on."""
+    start, end = gaps.span(name)
+    return gaps.part.text[gaps.part.spans[start].start : gaps.part.place.end] if start < end else ""
+
+
+def _example(gaps: _Gaps) -> str:
+    """What the orders have that nobody said."""
+    said = {each.text for each in gaps.part.row}
+    found = set()
+    for order in _calls(gaps.part):
+        values = [each.text for each in order if each.kind is NUMBER]
+        for value, argument in zip(values, WORDS[order[0].text].arguments, strict=False):
+            found |= set() if value in said else {f"{value} {argument.unit}"}
+    return ", ".join(sorted(found))
+
+
+def _calls(part: Behind) -> list[list[Lexeme]]:
+    """The calls that the words say, nothing where one of them says none."""
+    found: list[list[Lexeme]] = []
+    words: list[Lexeme] = []
+    for token in [*part.row, made(",")]:
+        if not (token.text == "," or said_of(token.text, "then")):
+            words.append(token)
+            continue
+        order = filled(words, part.names, has_until=False, is_order=True) if words else None
+        if words and (order is None or order.times):
+            return []
+        found += [order.tokens] if order else []
+        words = []
+    return found
+
+
+def _orders(gaps: _Gaps) -> str:
+    """The instruction, and those that the words behind it say."""
+    orders = [laid_out(each) for each in _calls(gaps.part)]
+    return ";".join((gaps.part.call, *orders)) if orders else ""
+
+
+def _distance(gaps: _Gaps) -> str:
+    return "DISTANCE" if "DISTANCE" in gaps.part.names.sensors else ""
+
+
+def _note(gaps: _Gaps) -> str:
+    part = gaps.part
+    after = part.text[part.place.end :].split("\n")[0].lstrip(" \t;\r")
+    is_last = not after or after.startswith("//")
+    return f"{part.call} // {part.words.strip(_BARE)}" if is_last else ""
+
+
+_GAPS: dict[str, Callable[[_Gaps], str]] = {
+    "text": lambda gaps: shortened(gaps.part.text[slice(*gaps.part.place)]),
+    "words": lambda gaps: shortened(gaps.part.words),
+    "both": _both, "loop": _loop, "line": _line, "few": _few, "paused": _paused,
+    "other": _other, "note": _note,
+    "once": lambda gaps: gaps.part.call if gaps["n"] == "1" else "",
+    "longer": lambda gaps: _with_value(gaps, 0), "paced": lambda gaps: _with_value(gaps, -1),
+    "question": lambda gaps: laid_out(_asked(gaps)), "contrary": _contrary, "near": _near,
+    "example?": _example,
+    "until?": lambda gaps: f" {_rest(gaps, 't')}".rstrip(),
+    "behind": lambda gaps: _rest(gaps, "w"), "distance": _distance, "orders": _orders,
+}  # fmt: skip

@@ -1,0 +1,82 @@
+"""The rows of advice: what is told of words behind an instruction, where no repair is sure.
+
+`ADVICE` has these columns, and the first row that holds is told:
+
+    pattern | code | values | example => one of the values
+
+A pattern is one of `rows`. Its first token is a whole instruction, with its brackets and its UNTIL;
+the others are the words behind it. Classes of the instruction, beside its word: @cmd (of the
+language), @did (a DEF), @arm (a header, ELSE or an end), @more (others stand before it on its
+line), @outer (in no block), @move, @clock (its first value is its time) and @asked (has its UNTIL). Classes of the words:
+@number (in words, too), @often (a number that says how often), @percent (one that says a power),
+@in_s (a unit of time), @other (the other way), @paced (another pace than its power), @told (says
+nothing that the instruction does not) and @no_order (a word that begins no instruction). What `s` captures is pointed at.
+
+Values are texts with gaps. A gap is a capture, or a function in `advice`; a row with a gap that
+cannot be filled does not hold. Rows are sorted by what is asked for.
+"""
+
+# Pieces of patterns that several rows have.
+PARTS = {
+    "lead": """[|,|=|:|"|(?""",
+    "close": """]|"|)?""",
+    "does": "c=@cmd|@did",
+    "often": "*|LOOP|POR|X? n=@often times?",
+}
+
+ADVICE = """
+# words for nothing, and those that are no words behind it
+^ c=@any s=idle+ $ | TS044 | found={s} | SHOW(DISTANCE) cm => found=cm
+^ c=S|STOP s=LOOP $ | TS102 | found={text}; right=BREAK; fix=BREAK; usage=BREAK | STOP LOOP => fix=BREAK
+^ c=@move|W s=UN u=TIL q=@any+ $ | TS102 | found={s} {u}; right=UNTIL; usage=UNTIL{q} | F(5, 60) UN TIL(DISTANCE < 30) => usage=UNTIL(DISTANCE < 30)
+# how often
+^ c=@more <lead> <often> <close> $ | TS062 | found={text}; last={loop}; all={line} | F(1, 60); L(1, 60) x4 => last=LOOP(4);L(1, 60);END_LOOP
+^ <does> <lead> <often> <close> $ | TS062 | found={text}; fix={loop} | F(2, 80) 3 veces => fix=LOOP(3);F(2, 80);END_LOOP
+^ <does> <lead> <often> <close> $ | TS062 | found={text}; once={once} | F(1, 80) x1 => once=F(1, 80)
+^ <does> <lead> <often> <close> $ | TS062 | found={text} | F(1, 80) x0 => found=F(1, 80) x0
+^ c=@did n=@num $ | TS062 | found={text}; fix={loop} | DEF SALTO;S;END_DEF;SALTO 3 => fix=LOOP(3);SALTO;END_LOOP
+^ c=@cmd n=@often times @any+ $ | TS085 | times={n}; often={loop} | F(1,50) 3 veces mas => times=3
+^ c=M , n=@num $ | TS085 | seconds={n}; waiting={c};W({n});S | M(50,50), 2 => waiting=M(50,50);W(2);S
+^ c=S|STOP n=@num $ | TS013 | fix={paused} | STOP 2 => fix=STOP;W(2)
+^ c=@cmd (? n=@num )? $ | TS085 | times={few}; often={loop} | F(2,80)(3) => often=LOOP(3);F(2,80);END_LOOP
+^ <does> @any* OTRA|DE|ONCE|VEZ VEZ|NUEVO|MORE|MAS @any* $ | TS085 | again=LOOP(2);{c};END_LOOP | F(1, 80) otra vez => again=LOOP(2);F(1, 80);END_LOOP
+^ <does> @any* AGAIN|NUEVAMENTE|REPITO|REPETIDO @any* $ | TS085 | again=LOOP(2);{c};END_LOOP | F(1, 80) again => again=LOOP(2);F(1, 80);END_LOOP
+^ c=@move|W|M PARA? FOREVER|ETERNAMENTE $ | TS085 | endless=LOOP(FOREVER);{c};END_LOOP | F(1, 80) siempre => endless=LOOP(FOREVER);F(1, 80);END_LOOP
+^ c=@move|W|M @any* SIN|TODO|ALL PARAR|FIN|DETENERSE|DETENER|STOPPING|EL|THE @any* $ | TS085 | endless=LOOP(FOREVER);{c};END_LOOP | F(1, 80) sin parar => endless=LOOP(FOREVER);F(1, 80);END_LOOP
+# how long
+^ c=M|S|STOP (? during|FOR? n=@number u=@in_s )? $ | TS085 | fix={paused} | S 2 segundos => fix=S;W(2)
+^ c=@clock <lead> during|to|then|EN|X? n=@number u=@in_s <close> t=UNTIL? q=@any* $ | TS085 | time={n} s; longer={longer}{until?} | F(2,80) por 5 segundos => longer=F(5,80)
+# how fast
+^ c=@move <lead> @told* n=@percent @told* <close> $ | TS085 | power={paced} | F(2,80) al 50% => power=F(2,50)
+^ c=@move A n=@num $ | TS085 | power={paced} | F(1, 80) a 50 => power=F(1, 50)
+^ c=@move @word? @word? @paced $ | TS085 | power={c} | F(2, 80) despacio => power=F(2, 80)
+# until when
+^ c=@move|W ( q=@cond+ ) $ | TS071 | found={words}; until={c} UNTIL({question}) | F(5, 60) (DISTANCE < 30) => until=F(5, 60) UNTIL(DISTANCE < 30)
+^ c=@cmd s=SI|CUANDO|WHEN (? q=@cond+ )? $ | TS071 | found={s}; fix=IF({question});{c};ENDIF | F(2, 80) si DISTANCE > 10 => fix=IF(DISTANCE > 10);F(2, 80);ENDIF
+^ c=F s=IF (? q=@cond+ )? $ | TS071 | found={s}; until={c} UNTIL({near}) | F(5, 60) IF(DISTANCE < 20) => until=F(5, 60) UNTIL(DISTANCE < 20)
+^ c=@cmd s=unless (? q=@cond+ )? $ | TS071 | found={s}; fix=IF({contrary});{c};ENDIF | F(2, 80) unless DISTANCE < 10 => fix=IF(DISTANCE >= 10);F(2, 80);ENDIF
+^ c=@cmd s=IF (? q=@cond+ )? $ | TS071 | found={s}; fix=IF({question});{c};ENDIF | B(2, 80) IF(DISTANCE < 10) => fix=IF(DISTANCE < 10);B(2, 80);ENDIF
+^ c=@move|W s=WHILE (? q=@cond+ )? $ | TS071 | found={s}; fix={c} UNTIL({contrary}) | F(2, 80) while DISTANCE > 10 => fix=F(2, 80) UNTIL(DISTANCE <= 10)
+^ c=@cmd s=WHILE (? q=@cond+ )? $ | TS071 | found={s}; fix=WHILE({question});{c};END_WHILE | BEEP(1, 440) WHILE(DISTANCE < 10) => fix=WHILE(DISTANCE < 10);BEEP(1, 440);END_WHILE
+^ c=@move s=WHILE @word* no @word* wall $ | TS071 | found={s}; fix={c} UNTIL({distance} < 10) | F(2, 80) mientras no haya pared => fix=F(2, 80) UNTIL(DISTANCE < 10)
+^ c=@cmd s=when @word* no @word* wall $ | TS071 | found={s}; fix=IF({distance} > 10);{c};ENDIF | F(2, 80) cuando no hay pared => fix=IF(DISTANCE > 10);F(2, 80);ENDIF
+^ c=@cmd s=when @word* wall $ | TS071 | found={s}; fix=IF({distance} < 10);{c};ENDIF | S si hay una pared => fix=IF(DISTANCE < 10);S;ENDIF
+# which way, and what comes next
+^ c=@move AL REVES $ | TS085 | other={other} | F(1, 80) al reves => other=B(1, 80)
+^ c=F|B s=+|&|then|beside BEEP ( n=@num , @num ) $ | TS061 | found={s}; both={both} | F(2, 80) con BEEP(1, 440) => both=M(80, 80);BEEP(1, 440);W(1);S
+^ c=@cmd then @word+ $ | TS074 | fix={orders}; example={example?} | F(1, 80) y luego retrocede => fix=F(1, 80);B(2, 80)
+^ c=@move <lead> @told* @other @told* <close> $ | TS085 | other={other} | F(1, 80) atras => other=B(1, 80)
+^ c=@cmd act|most|least w=@told* $ | TS085 | order={words} | F(1, 80) abre la pinza => order=abre la pinza
+^ c=@cmd CON|WITH w=@start|act @any* $ | TS085 | order={behind} | F(2,80) con SHOW(1) => order=SHOW(1)
+^ c=@asked O|OR|U w=@start @any* $ | TS085 | order={behind} | F(1,50) UNTIL(DISTANCE<10) o L(1,60) => order=L(1,60)
+# notes
+^ c=@cmd ( ) $ | TS085 | extra={words} | F(2,80)() => extra=()
+^ c=@any w=@told+ $ | TS085 | fix={note} | F(1, 80) voy a la bodega => fix=F(1, 80) // voy a la bodega
+^ c=@any w=@told+ $ | TS085 |  | F(1, 80) voy a la bodega; S => before=F(1, 80)
+^ c=@cmd|@set (|,? @num @any* $ | TS085 | extra={words} | F(2,80) (2,80) => extra=(2,80)
+^ c=@outer LOOP $ | TS085 | again=LOOP(2);{c};END_LOOP | F(1, 80) repite => again=LOOP(2);F(1, 80);END_LOOP
+^ c=@cmd @word|@number+ $ | TS074 | fix={orders}; example={example?} | F(2, 80) gira a la derecha => fix=F(2, 80);R(2, 80)
+^ c=@cmd " w=@noparen+ " $ | TS085 | order={w} | F(1, 80) "para" => order=para
+^ c=@cmd ( w=@any+ ) $ | TS085 | order={w} | F(2, 80) (y gira) => order=y gira
+^ c=@cmd @no_order @noparen+ $ | TS085 | order={words} | F(2,80) y luego la vuelta => order=y luego la vuelta
+"""

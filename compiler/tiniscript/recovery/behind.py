@@ -1,0 +1,280 @@
+"""What words behind an instruction say, beside what the instruction says itself.
+
+Knows which words begin an order, and which numbers and words only repeat. Knows no row.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from tiniscript.recovery import lines
+from tiniscript.recovery.concepts import ENDED, KNOWN, NEAR, Lexeme, Names, lexemes, said_of
+from tiniscript.recovery.slots import MOVES
+from tiniscript.source import Span
+from tiniscript.syntax.lexer import NUMBER, ODD, WORD
+from tiniscript.syntax.operators import COMPARISONS
+from tiniscript.syntax.outline import Failure
+from tiniscript.words import NOTE_WORDS, OTHER_WAY, WORDS, nearest
+
+_HALF = 60  # a power that is neither fast nor slow
+_BEFORE_NOTE = frozenset(("=", ">", "<", "*", ":", ",", "(", *COMPARISONS))
+_IN_NO_NOTE = frozenset((*COMPARISONS, "*", "+", "==", "!=", "{", "}"))
+_LONG_WORDS = tuple(word for word in WORDS if len(word) > 2)
+
+
+class Placed(NamedTuple):
+    token: Lexeme
+    span: Span
+
+
+def whole(tokens: Sequence[Lexeme], names: Names) -> int:
+    """Return how many tokens begin a line as a whole instruction."""
+    first, signs = tokens[0].text, [*(each.text for each in tokens[1:]), ";"]
+    word = first if first in WORDS else _meant_call(tokens[0], names)
+    if first in names.defs or (signs[0] == "=" and first not in WORDS):
+        if signs[0] != "=":
+            return 0 if signs[0] == "(" else 1
+        found = lines.right(tokens, names)
+        size = found.at if isinstance(found, Failure) and not found.start else 0
+        is_right = size and not isinstance(lines.right(tokens[:size], names), Failure)
+        return size if is_right and tokens[size].space else 0
+    known = WORDS.get(word)
+    if known is None and not names.takes(word):
+        return 0
+    if first == "DEF":
+        return 2 if tokens[1:] and tokens[1].kind is WORD else 0
+    if known is not None and not known.arguments:
+        is_done = known.role in ("stop", "start", "break", "end", "arm")
+        return int(is_done and signs[0] not in ("(", "="))
+    end = _closed(tokens, 1)
+    if end and end < len(tokens) and tokens[end].text == "UNTIL":
+        return _closed(tokens, end + 1) or end
+    return end
+
+
+def _meant_call(token: Lexeme, names: Names) -> str:
+    """Return which instruction with values a word of another language means, "" for none."""
+    meant = names.meanings(token.text) if token.kind is WORD else ()
+    return next((each.concept for each in meant if names.takes(each.concept)), "")
+
+
+def _closed(tokens: Sequence[Lexeme], start: int) -> int:
+    """Return where the brackets end that begin at a token, 0 where they do not."""
+    depth = 0
+    for k in range(start, len(tokens)):
+        depth += (tokens[k].text == "(") - (tokens[k].text == ")")
+        if depth <= 0:
+            return k + 1 if k > start else 0
+    return 0
+
+
+def _values(call: Sequence[Placed]) -> list[Span]:
+    """Return where the values of a call stand in its text."""
+    found, depth, start = [], 0, 0
+    for k, each in enumerate(call[: _closed([each.token for each in call], 1)]):
+        sign = each.token.text
+        depth -= sign == ")"
+        if depth <= (sign != ")") and sign in (",", ")") and start < k:
+            found.append(Span(call[start].span.start, call[k - 1].span.end))
+        depth += sign == "("
+        if depth == 1 and sign in ("(", ","):
+            start = k + 1
+    begin = call[0].span.start
+    return [Span(each.start - begin, each.end - begin) for each in found]
+
+
+class Behind:
+    """An instruction and the words behind it.
+
+    `before` are the other instructions of its line, None where a block is among them. `own` is the
+    word of the language that it begins with, "" for none. `said` is the call where words say it.
+    """
+
+    def __init__(
+        self, call: Sequence[Placed], row: Sequence[Placed], before: Sequence[str] | None,
+        text: str, names: Names, depth: int, said: str = "",
+    ) -> None:  # fmt: skip
+        self.is_said = bool(said)
+        self.tokens = lexemes(said) if said else [each.token for each in call]
+        self.row = [each.token for each in row]
+        self.before = before
+        self.names = names
+        self.is_in_block = depth > 0
+        self.place = Span(call[0].span.start, row[-1].span.end)
+        self.behind = Span(row[0].span.start, row[-1].span.end)
+        self.call = said or text[call[0].span.start : call[-1].span.end]
+        self.words = text[slice(*self.behind)]
+        self.spans = [Span(self.place.start, call[-1].span.end), *(each.span for each in row)]
+        self.text = text
+        first = self.tokens[0].text
+        meant = first if first in WORDS else _meant_call(self.tokens[0], names)
+        known = WORDS.get(meant)
+        self.is_arm = known is not None and known.role in ("block", "arm", "end")
+        self.own = ENDED.get(meant, meant)
+        self.is_asked = any(each.text == "UNTIL" for each in self.tokens)
+        self.values = [] if said else _values(call)
+        self.numbers = {each.text for each in self.tokens if each.kind is NUMBER}
+
+    def is_right(self) -> bool:
+        """Whether the instruction is, without the words behind it."""
+        return not isinstance(lines.right(self.tokens, self.names), Failure)
+
+    def labels(self) -> list[str]:
+        """Return the classes of the instruction and of each word, as patterns match them."""
+        return [self._label_of_call(), *(self._label(k) for k in range(len(self.row)))]
+
+    def _label_of_call(self) -> str:
+        own = self.own
+        known = WORDS.get(own)
+        found = [own]
+        if known is not None and not self.is_arm and known.role != "start":
+            found.append("@cmd")
+        found += ["@did"] if self.tokens[0].text in self.names.defs else []
+        found += ["@set"] if self.tokens[1:] and self.tokens[1].text == "=" else []
+        found += ["@arm"] if self.is_arm else []
+        is_clock = own in (*MOVES, "W", "BEEP") and not self.is_asked
+        found += ["@move"] if own in MOVES else []
+        found += ["@clock"] if is_clock else []
+        found += ["@asked"] if self.is_asked else []
+        found += [] if self.is_in_block else ["@outer"]
+        found += ["@more"] if self.before and "@cmd" in found else []
+        return f"\x01|{'|'.join([*found, '@any'])}|\x02"
+
+    def _label(self, k: int) -> str:
+        token = self.row[k]
+        text = token.text
+        before, after = self._text(k - 1), self._text(k + 1)
+        found = []
+        number = self.number(k)
+        if number is not None:
+            found.append("@number")
+            is_counted = said_of(after, "times") or said_of(text, "often") or text[0] == "X"
+            is_often = is_counted or before in ("POR", "X", "*") or self._means(before) == "LOOP"
+            unit = said_of(after, "unit")
+            is_power = any(said_of(each.text, "value")[:1] == ("%",) or each.text in (
+                "%", "CIENTO", "PERCENT", "PORCIENTO") for each in self.row)  # fmt: skip
+            found += ["@often"] if is_often and (is_counted or not unit) else []
+            found += ["@percent"] if is_power else []
+        unit_of = said_of(text, "unit")
+        found += ["@in_s"] if unit_of and unit_of[0] == "s" else []
+        if token.kind is WORD:
+            is_other = text not in WORDS and self._means(text) == OTHER_WAY.get(self.own)
+            found += ["@other"] if is_other else []
+            found += ["@paced"] if self._is_paced(k) else []
+            found += ["@no_order"] if not k and self._begins_no_order(k) else []
+        found += ["@told"] if self._is_told(k) else []
+        return "|".join((self.names.label(token)[:-2], *found, "\x02"))
+
+    def _text(self, k: int) -> str:
+        return self.row[k].text if 0 <= k < len(self.row) else ""
+
+    def _means(self, word: str) -> str:
+        """Return the word of the language that is said, "" where none is."""
+        if word in WORDS and word != "SI":
+            return ENDED.get(word, word)
+        meant = self.names.meanings(word)
+        return meant[0].concept if meant and meant[0].cost < NEAR else ""
+
+    def number(self, k: int) -> str | None:
+        """Return the number at a place in digits, None where there is none."""
+        token = self.row[k]
+        if token.kind is NUMBER:
+            return token.text
+        if token.text in self.names.known.values:
+            return None
+        said = said_of(token.text, "number") or said_of(token.text, "often")
+        if said:
+            return said[0]
+        return token.text[1:] if re.fullmatch("X[0-9]+", token.text) else None
+
+    def _is_paced(self, k: int) -> bool:
+        text = self.row[k].text
+        power = self.call[slice(*self.values[-1])] if self.values else ""
+        if not re.fullmatch("[0-9]{1,3}", power):
+            return False
+        said = said_of(text, "power")
+        is_fast = said[:1] == ("100",)
+        is_changed = self.row[k - 1].text in ("MAS", "MORE") if k else False
+        is_other = (int(power) >= _HALF) is not is_fast
+        return said_of(text, "pace") != () or bool(said and (is_changed or is_other))
+
+    def _begins_no_order(self, k: int) -> bool:
+        text = self._text(k)
+        if said_of(text, "then"):
+            return k + 1 < len(self.row) and self._begins_no_order(k + 1)
+        is_known = self._means(text) or self.names.is_name(text) or text in WORDS
+        is_asked_for = any(said_of(text, each) for each in ("turn", "on", "off"))
+        return not (is_known or is_asked_for or nearest(text, _LONG_WORDS))
+
+    def _is_told(self, k: int) -> bool:
+        """Whether a token says nothing that the instruction does not."""
+        token, text = self.row[k], self.row[k].text
+        is_first = not any(each.kind in (WORD, NUMBER) for each in self.row[:k])
+        if self.is_arm and not k and any(said_of(text, each) for each in ("do", "times", "make")):
+            return False
+        if token.kind is WORD and self.number(k) is None:
+            return not self._is_order(k) and not (is_first and self._is_alone(k))
+        if self.number(k) is not None:
+            unit = said_of(self._text(k + 1), "unit")
+            if self.number(k) in self.numbers or (unit and unit[0] in ("cm", "°", "steps")):
+                return True
+            return token.kind is WORD and unit[:1] != ("s",) if is_first or unit else True
+        is_number = self._text(k + 1)[:1].isdigit() and not self._is_told(k + 1)
+        is_bracket = text == "(" and (is_number or (bool(k) and self.row[k - 1].kind is WORD))
+        if not k:
+            is_sign = text in _BEFORE_NOTE or (token.kind is ODD and text != "#")
+            return is_sign and not is_bracket and not self.is_arm
+        is_list = text == "," and self.row[k - 1].kind is NUMBER
+        return not is_bracket and not is_list and (is_first or text not in _IN_NO_NOTE)
+
+    def _is_alone(self, k: int) -> bool:
+        """Whether a single word is rather a misspelt one, or the name of a DEF."""
+        token = self.row[k]
+        words = [each for each in self.row if each.kind is WORD]
+        if self.names.is_name(token.text):
+            return len(words) == 1 or token.text in self.names.defs
+        if len(words) == 1 and token.text in WORDS and token.text not in NOTE_WORDS:
+            return True
+        if len(words) > 1 or self._means(token.text) or said_of(token.text, "power"):
+            return False
+        if self.own == "START":
+            return False
+        source = token.source or ""
+        is_name = len(source) > 1 and source.isupper()
+        return is_name or nearest(token.text, _LONG_WORDS) is not None
+
+    def _is_order(self, k: int) -> bool:
+        """Whether the word at a place says what the instruction does not."""
+        text, own = self.row[k].text, self.own
+        if own == "BEEP" and text in NOTE_WORDS:
+            return False
+        is_last = not any(each.kind in (WORD, NUMBER) for each in self.row[k + 1 :])
+        if said_of(text, "small") and not is_last and (k or text in ("A", "E", "PARA")):
+            return False
+        if text in self.names.defs:
+            before = self._text(k - 1)
+            return not said_of(before, "filler") or bool(said_of(before, "then"))
+        if said_of(text, "turn") or text in ("VUELTA", "VUELTAS"):
+            return own not in ("L", "R", "M", *("B" * (text[0] == "V")))
+        if any(said_of(text, each) for each in ("on", "off", "act")):
+            return True
+        if said_of(text, "end") or text in ENDED:
+            return self.is_in_block and not self.is_arm
+        if said_of(text, "so_on"):
+            return True
+        if text in ("HASTA", "UNTIL"):
+            return own != "SHOW" and self.row[0].text != "(" and not self.is_asked
+        meant = self._means(text)
+        is_sure = text in WORDS or not meant or self.names.meanings(text)[0].cost <= KNOWN
+        if not (is_sure or is_last or self.row[k + 1].kind is NUMBER):
+            return False
+        if meant in ("IF", "WHILE", "ELSE"):
+            return own not in ("IF", "WHILE")
+        known = WORDS.get(meant)
+        if known is None or known.role in ("value", "operator", "function", "start"):
+            return False
+        if meant == own or (meant == "S" and self.is_asked):
+            return False
+        return own not in ("LOOP", "DEF", "S", "STOP") or meant not in ("S", "LOOP", "DEF")

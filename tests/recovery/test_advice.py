@@ -1,0 +1,83 @@
+"""The rows of advice: what is told of words behind an instruction, and what is read then."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.pupils.corpus import check
+from tiniscript import robots
+from tiniscript.recovery.advice import Row, advised, rows
+from tiniscript.repairs.fixing import fixed
+
+KIT = robots.load(robots.DEFAULT).kit
+
+
+@pytest.mark.parametrize("row", rows(), ids=lambda row: row.example[0])
+def test_the_example_of_a_row_is_told_as_it_says(row: Row) -> None:
+    wrong, told = row.example
+    name, _, value = told.partition("=")
+    (found,) = advised(wrong, KIT)
+    assert (found.diagnostic.code.number, found.diagnostic.values[name]) == (row.code, value)
+    assert {each for each, _ in row.values} <= {*found.diagnostic.values}
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        "F(2, 80) gracias; F(1, 50)",  # no note: TS044
+        "F(2, 80) R(1, 60)",  # two instructions
+        "F(1, 80) MISPELT",  # rather the name of a DEF
+        "F(1, 80) SHWO",  # rather a misspelt word
+        "X = 5 + 3",
+        "F(2, 80) AND",
+        "LOOP(4) ... S ... END_LOOP",
+        "B(1, 60) IF(DISTANCE < 10)\nS\nENDIF",  # a block, without its separator
+        "LOOP(3)\nF(1, 80) fin",  # the end of the block
+        "F(2, 80) hola~B77E7BD9",
+        "F(1, 80) " + "la " * 30,
+    ],
+)
+def test_what_is_no_note_is_left_to_others(wrong: str) -> None:
+    found = {each.diagnostic.code.number for each in advised(wrong, KIT)}
+    assert not found & {"TS071", "TS085"}
+
+
+def test_what_is_wrong_beside_the_words_is_told_too() -> None:
+    found = check("F(2 80) hola\nW(2) espero; AVANZA(1, 80)")
+    assert [(each.code.number, each.values["fix"]) for each in found] == [
+        ("TS017", "F(2, 80)"),
+        ("TS085", "// hola"),  # its instruction has a repair of its own
+        ("TS085", ""),  # something else follows on the line
+        ("TS102", "F(1, 80)"),
+    ]
+
+
+def test_words_are_never_dropped_without_asking() -> None:
+    for wrong in ("F(1, 80) hola", "F(2, 80) 3 veces", "F(2, 80) y retrocede", "F(2, 80) al 50%"):
+        assert fixed(wrong, check).text == wrong
+
+
+def test_a_repair_beside_words_does_not_drop_them() -> None:
+    assert "hola" in fixed("F(1, 80) B(1, 80) hola", check).text
+
+
+def test_a_number_of_another_unit_is_converted() -> None:
+    (found,) = check("S 500 ms")
+    assert found.values["fix"] == "S;W(0.5)"
+
+
+@pytest.mark.parametrize(
+    ("wrong", "values"),
+    [
+        ("F(1, 80); L(1, 60) x4", {"all": "LOOP(4);F(1, 80);L(1, 60);END_LOOP"}),
+        ("F(2, 80) luego espera", {"fix": "F(2, 80);W(1)", "example": "1 s"}),
+        ("F(5,80) UNTIL(DISTANCE<10) al 50%", {"power": "F(5,50) UNTIL(DISTANCE<10)"}),
+        ("F(2, 80) mientras DISTANCE > 10", {"fix": "F(2, 80) UNTIL(DISTANCE <= 10)"}),
+        ("avanza 2 segundos si la distancia es mayor que 10",
+         {"fix": "IF(DISTANCE > 10);F(2, 80);ENDIF"}),
+        ("L(1,60) (45)", {"extra": "(45)"}),  # rather degrees than how often
+    ],
+)  # fmt: skip
+def test_values_of_a_row_are_filled(wrong: str, values: dict[str, str]) -> None:
+    (found,) = check(wrong)
+    assert values.items() <= found.values.items()
