@@ -45,6 +45,7 @@ class Slip(NamedTuple):
     `word`, written as in `usage`, begins the instruction, and `before` stands before the slip;
     `fix` is what the instruction becomes. Where more of its block changes, that becomes `whole`,
     which ends with `ends`. The same is wrong in `line`, or in `lines`, too, or `times` in its own.
+    `letter` stands in a number in the place of a digit.
     """
 
     found: str
@@ -58,6 +59,7 @@ class Slip(NamedTuple):
     line: str = ""
     lines: str = ""
     times: str = ""
+    letter: str = ""
 
 
 class Unended(NamedTuple):
@@ -369,6 +371,10 @@ def _code(
             return rows.NO_BRACKETS, steps[0]
         if translated and (is_translated or not own):
             return _WORD_CODE, translated[0]
+        if own[0].code == codes.OTHER_CALL.number and not is_translated:
+            right = _first_difference(own[0].before, own[0].after)[2]
+            if texts(right) == (",",):
+                return codes.MISSING_COMMA.number, own[0]
         return (_WORD_CODE if is_translated else own[0].code), own[0]
     if words & {*BRACES}:
         return _BRACES, None
@@ -397,11 +403,13 @@ def _slip(code: str, step: Step | None, before: Sequence[Lexeme], after: Sequenc
     head, tail = _alike(told, fix)
     one = [each for part in told[head : len(told) - tail] for each in part]
     other = [each for part in fix[head : len(fix) - tail] for each in part]
-    shown = ";".join(laid_out(part) for part in fix[head : len(fix) - tail]) or laid_out(after)
+    has_end = bool(head) and any(each.text in ENDED for each in other)
+    shown = ";".join(laid_out(part) for part in fix[0 if has_end else head : len(fix) - tail])
+    shown = shown or laid_out(after)
     is_all = code == codes.REPEATED.number or (code == codes.OTHER_SIGN.number and not right)
     was = _written(one if is_all else found or one)
     if is_note:
-        was = was[: re.match(r"\W*", was).end()].strip()  # type: ignore[union-attr]
+        was = re.match(r"\w+|\W+", was).group().strip()  # type: ignore[union-attr]
     now = laid_out(right) or shown
     now = now.partition("(")[0] if code == _WORD_CODE else now
     word = _word(code, old, new, start, other)
@@ -411,7 +419,14 @@ def _slip(code: str, step: Step | None, before: Sequence[Lexeme], after: Sequenc
         lambda both: both[0].text == both[1].text, zip(one, other[:until], strict=False)
     )
     kept = _written([each for each, _ in alike])
-    return Slip(was, now, kept, word, known.usage if known else "", shown)
+    letter = _letter(was, now) if code == codes.BAD_NUMBER.number else ""
+    return Slip(was, now, kept, word, known.usage if known else "", shown, letter=letter)
+
+
+def _letter(found: str, right: str) -> str:
+    """Return the letter that stands for a digit of a number, nothing where there is another."""
+    letters = {one for one, other in zip(found, right) if one != other and one.isalpha()}  # noqa: B905
+    return letters.pop() if len(found) == len(right) and len(letters) == 1 else ""
 
 
 def _word(
@@ -421,6 +436,8 @@ def _word(
     if code == codes.EMPTY_BRACKETS.number and start:
         return old[start - 1].text
     if code == codes.GROUPED.number:
+        if start and old[start - 1].text == ";":
+            return ""
         return next((each.text for each in new if each.text in ("LOOP", "WHILE", "IF")), "")
     if code == codes.BAD_NAME.number:
         is_accent = start < len(old) and not (old[start].source or "").isascii()
