@@ -1,6 +1,6 @@
 """The text of `tsc --help` and `tsc help`, made from the tables of verbs and options.
 
-Only lays the text out; `terminal/pager.py` shows it, and `finding.py` finds a verb by what it does.
+Lays the text out, and finds a verb by what it does; `terminal/pager.py` shows it.
 """
 
 from __future__ import annotations
