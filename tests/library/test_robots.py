@@ -20,7 +20,7 @@ from tests.support.command import FOREVER, OBSTACLE, Command, process
 from tests.support.link_events import event
 from tests.support.pty_robot import PtyRobot
 from tiniscript.library import opening
-from tiniscript.library.events import End, Follower
+from tiniscript.library.endings import End, Follower
 from tiniscript.link.connection import LinkConnection
 from tiniscript.link.outcomes import Event, LostEvent, RestartedEvent, StartedEvent
 from tiniscript.link.payloads import DoneEvent

@@ -15,8 +15,9 @@ from typing import TYPE_CHECKING, NamedTuple, TypeVar
 from tiniscript import robots
 from tiniscript.library import opening
 from tiniscript.library.client import Client, Saving
+from tiniscript.library.endings import Follower
 from tiniscript.library.errors import RobotError, StopNotConfirmed, UsageError
-from tiniscript.library.events import Ending, Follower, Reader, RobotEvent, ending_of
+from tiniscript.library.events import Ending, Reader, RobotEvent, ending_of
 from tiniscript.library.known_kits import of_kit
 from tiniscript.library.programs import Language, Program, profile_of, program_of
 from tiniscript.library.runs import whole, within

@@ -1,4 +1,4 @@
-"""Turns the events of the link into data for users of the library, and says how a run ends."""
+"""Turns the events of the link into data for users of the library."""
 
 from __future__ import annotations
 
@@ -9,73 +9,12 @@ from typing import Literal, NamedTuple
 from tiniscript.bytecode.opcodes import FAULTS
 from tiniscript.codegen import source_map
 from tiniscript.codegen.source_map import Map
-from tiniscript.library.errors import RobotError
+from tiniscript.library.endings import DONE, FAULT
 from tiniscript.library.runs import Fault, Value, fault_of, value_of
-from tiniscript.link.messages import (
-    CAUSES,
-    FIRST_LINK_FAULT,
-    LINK_FAULTS,
-    STATE_FAULTED,
-    STATE_IDLE,
-    STATES,
-)
+from tiniscript.link.messages import CAUSES, LINK_FAULTS, STATES
 from tiniscript.link.outcomes import Event
-from tiniscript.link.payloads import DoneEvent, FaultEvent, StatusReply
+from tiniscript.link.payloads import StatusReply
 from tiniscript.source import printable
-
-DONE, FAULT, STOPPED = "DONE", "FAULT", "STOPPED"
-
-
-class End(NamedTuple):
-    """`name` is DONE, FAULT or STOPPED; `fault` is the number of a fault."""
-
-    name: str
-    fault: int | None = None
-
-    @property
-    def is_the_programs(self) -> bool:
-        """Whether the program has ended by itself, by a fault of its own too."""
-        return self.name == DONE or (self.fault is not None and self.fault < FIRST_LINK_FAULT)
-
-
-class Follower:
-    """Finds the end of a run among events. `run` None matches any run."""
-
-    def __init__(self, run: int | None) -> None:
-        self.run = run
-        self.has_begun = run is None  # earlier events are of another run
-
-    def is_about(self, event: Event, port: str, language: str = "en") -> bool:
-        """Whether an event may be about the run. Raises RobotError if the robot is lost or has
-        another program."""
-        if event.name == "LOST":
-            raise RobotError("link_lost", language, {"port": port})
-        if event.name == "RESTARTED":
-            raise RobotError("restarted", language, {"port": port})
-        if event.name == "STARTED" and self.run is not None:
-            is_it = event.run == self.run
-            if self.has_begun and not is_it:
-                raise RobotError("replaced", language, {"port": port})
-            self.has_begun = self.has_begun or is_it
-        return self.has_begun or event.name not in ("STOPPED", "ENDED")
-
-    def end(self, event: Event) -> End | None:
-        return end_of(event, self.run)
-
-
-def end_of(event: Event, run: int | None) -> End | None:
-    """Return the end of a run if an event is its end, else None. `run` None matches any run."""
-    if isinstance(event, DoneEvent) and run in (None, event.run):
-        return End(DONE)
-    if isinstance(event, FaultEvent) and run in (None, event.run):
-        return End(FAULT, event.fault)
-    if event.name == "STOPPED":
-        return End(STOPPED)
-    if event.name == "ENDED":
-        if event.status.state == STATE_FAULTED:
-            return End(FAULT, event.status.fault)
-        return End(DONE if event.status.state == STATE_IDLE else STOPPED)
-    return None
 
 
 class RobotEvent(NamedTuple):

@@ -15,13 +15,12 @@ from time import monotonic, sleep
 from typing import IO, TYPE_CHECKING, TypeVar
 
 from tiniscript.library.errors import RobotError
-from tiniscript.link import errors, known_ports, ports
+from tiniscript.link import errors, known_ports
 from tiniscript.link.connection import LinkConnection, PendingRequest, Requester
 from tiniscript.link.errors import PortError
 from tiniscript.link.outcomes import Gone
 from tiniscript.link.payloads import HelloReply
 from tiniscript.link.port_names import is_address, is_at_broker, is_bluetooth, is_name
-from tiniscript.link.ports import opened
 from tiniscript.link.requests import Reply
 from tiniscript.link.sharing import registry
 from tiniscript.link.sharing.shared_line import OtherVersion, SharedLine, joined
@@ -91,6 +90,7 @@ def opened_line(
     """
     from tiniscript.link.keys import KeyFile
     from tiniscript.link.line import Line
+    from tiniscript.link.ports import opened
     from tiniscript.link.session import Session
 
     try:
@@ -122,6 +122,8 @@ def port_error(port: str, failure: PortError, language: str = "en") -> RobotErro
     if failure.reason == errors.FORBIDDEN and sys.platform.startswith("linux"):
         reason = "port_forbidden_linux"
     if failure.reason == errors.MISSING:
+        from tiniscript.link import ports
+
         known = ", ".join(each.port for each in ports.listed())
         if known:
             reason, values["known"] = "port_missing_but", shown(known)
@@ -136,6 +138,8 @@ def met(
 ) -> Reply[HelloReply]:
     """Send HELLO, but not so early that a board stays in its bootloader."""
     if not line.held_by:  # else the port is open already
+        from tiniscript.link import ports
+
         if not ports.is_radio(port):
             sleep(QUIET_S.get(board, 0.0))
             reply = wait(hello(line, CABLE_ANSWER_MS))
@@ -233,6 +237,8 @@ def _joined(port: str, verb: str, baud: int | None, language: str) -> SharedLine
 
 def _resolved(port: str, language: str) -> str:
     """Return the address of a robot that is named. Raises RobotError."""
+    from tiniscript.link import ports
+
     try:
         return ports.resolved(port)
     except errors.PortError as failure:

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, NamedTuple, cast
 
 from tiniscript.link.errors import NOT_INSTALLED, PortError
 from tiniscript.link.port_names import is_address, is_at_broker, is_bluetooth, is_network_name
-from tiniscript.link.transports import Port, Transport, serial
+from tiniscript.link.transports import Port, Transport
 from tiniscript.source import printable
 
 if TYPE_CHECKING:
@@ -35,6 +35,8 @@ class Found(NamedTuple):
 
 def listed() -> list[Found]:
     """Return the ports that the system knows. Opens none of them, because that resets boards."""
+    from tiniscript.link.transports import serial
+
     found = []
     for each in serial.listed():
         description = each.description if each.description != "n/a" else ""

@@ -22,7 +22,6 @@ from tiniscript.cli.robot.program_upload import (
     saved_name,
     send_program,
 )
-from tiniscript.cli.robot.recorder import Recorder
 from tiniscript.cli.robot.run_monitor import Saving, stop_and_say
 from tiniscript.cli.terminal.progress import Progress
 from tiniscript.cli.texts.common import text
@@ -100,6 +99,8 @@ def _upload(
     printer = connection.event_printer(options.json, ready.places)
     recorder = None
     if options.record is not None:
+        from tiniscript.cli.robot.recorder import Recorder
+
         robot = connection.profile.name
         own = connection.simulator
         robot_ms = None if own is None else own.told_ms

@@ -22,10 +22,9 @@ from tiniscript.library import opening
 from tiniscript.library.client import Client
 from tiniscript.library.errors import TiniScriptError
 from tiniscript.library.known_kits import shipped_of_kit as found
-from tiniscript.link import known_ports, port_names, ports
+from tiniscript.link import known_ports, port_names
 from tiniscript.link.connection import LinkConnection, PendingRequest, Requester, reason_of
 from tiniscript.link.errors import PortError
-from tiniscript.link.keys import KeyFile
 from tiniscript.link.messages import OWNED, STATUSES, YOURS
 from tiniscript.link.outcomes import LOOK_S, Event, Gone
 from tiniscript.link.port_names import is_address
@@ -173,6 +172,8 @@ class Connection:
         """Say what to do where the robot has refused a key of this computer."""
         if device_info.values.features & (OWNED | YOURS) != OWNED:
             return
+        from tiniscript.link.keys import KeyFile
+
         keys = KeyFile().of_robot(device_info.id)
         if any(key.is_stale and not key.is_pending for key in keys):
             said = text("key_is_stale", self.language).format(robot=self.name)
@@ -338,6 +339,8 @@ def _chosen(options: Namespace, language: str) -> str:
 def _asked(language: str, can_bring: bool) -> str:
     """Let the person choose a port."""
     names = known_ports.known().names
+    from tiniscript.link import ports
+
     found = ports.listed()
     choices = [each.port for each in found]
     choices += [port for port in names if port not in choices and is_address(port)

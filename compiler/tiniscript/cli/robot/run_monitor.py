@@ -14,8 +14,8 @@ from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.event_printer import EventPrinter
 from tiniscript.cli.texts.common import text
 from tiniscript.library import client
+from tiniscript.library.endings import Follower, end_of
 from tiniscript.library.errors import RobotError
-from tiniscript.library.events import Follower, end_of
 from tiniscript.library.opening import CONFIRM_S, confirmed
 from tiniscript.link.connection import PendingRequest
 from tiniscript.link.messages import SAVED_LOW_SUPPLY, SAVED_STORED

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import sys
-import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import partial
-from threading import Timer
 from time import monotonic
+from typing import TYPE_CHECKING
 
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.texts.common import text
+
+if TYPE_CHECKING:
+    from threading import Timer
 
 BLINK_S = 0.3
 COLUMNS = 30
@@ -54,6 +56,8 @@ class Silence:
     def __init__(self, said: str) -> None:
         self._timer: Timer | None = None
         if sys.stderr.isatty():
+            import threading
+
             say = partial(print, said, file=sys.stderr, flush=True)
             self._timer = threading.Timer(MOMENT_S, say)
             self._timer.daemon = True
