@@ -38,7 +38,7 @@ if [ -n "$QUICK" ]; then
 fi
 # The page of tsc studio, of packages from npm; without it its tests are skipped and say so.
 run tools.builds.studio || [ -z "${CI:-}" ]
-run pytest -n 2 --dist worksteal "$@"
+run pytest -n 3 --dist worksteal "$@"
 
 # Every branch of what decides whether a robot may run an image is taken by a test that draws nothing.
 run coverage run --branch --include="compiler/tiniscript/bytecode/verify.py,compiler/tiniscript/bytecode/image.py" \

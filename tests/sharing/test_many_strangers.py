@@ -94,6 +94,14 @@ def visitors(port: int, kind: str, count: int) -> Iterator[None]:
             there.communicate()
 
 
+def settled(pid: int, files: int) -> Had:
+    """Wait until a process has no more files than this; return what it has, more where it hangs."""
+    end_s = time.monotonic() + HANGS_S
+    while (found := had(pid)).files > files and time.monotonic() < end_s:
+        time.sleep(0.1)
+    return found
+
+
 def attack(kind: str, count: int) -> list[tuple[str, Had, Had, Had]]:
     """Come to a virtual robot and to the command that drives it. Return what each process had.
 
@@ -116,10 +124,7 @@ def attack(kind: str, count: int) -> list[tuple[str, Had, Had, Had]]:
                     meanwhile = had(pid)
                     state = json.loads(process("info", "--port", port, "--json").out)["state"]
                     assert state == "RUNNING"
-                end_s = time.monotonic() + HANGS_S
-                while had(pid).files > before.files + 3 and time.monotonic() < end_s:
-                    time.sleep(0.1)
-                found.append((name, before, meanwhile, had(pid)))
+                found.append((name, before, meanwhile, settled(pid, before.files + 3)))
             with visitors(places[0][2], kind, count), visitors(places[1][2], kind, count):
                 assert process("stop", "--port", port).code == 0
             assert command.wait(timeout=HANGS_S) == 3
@@ -168,14 +173,11 @@ def attack_studio(kind: str, count: int) -> tuple[str, Had, Had, Had]:
         assert page(port) == b"<!doctype html>"
         before = had(pid)
         with visitors(port, kind, count):
-            meanwhile = had(pid)
             assert page(port) == b"<!doctype html>"
-            meanwhile = max(meanwhile, had(pid))
-        end_s = time.monotonic() + HANGS_S
-        while had(pid).files > before.files + 3 and time.monotonic() < end_s:
-            time.sleep(0.1)
+            meanwhile = settled(pid, before.files + CONNECTIONS + 3)
+        after = settled(pid, before.files + 3)
         assert page(port) == b"<!doctype html>"
-        return "studio", before, meanwhile, had(pid)
+        return "studio", before, meanwhile, after
 
 
 @pytest.mark.parametrize("kind", KINDS)
