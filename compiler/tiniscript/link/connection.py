@@ -1,6 +1,6 @@
 """The interface of a connection to a robot, as commands use it; the requests on it.
 
-Two classes implement it: a `Line` of this process, and a `Client` of another process's line. A
+Two classes implement it: a `Line` of this process, and a `SharedLine` of another process. A
 command works with either.
 """
 

@@ -26,10 +26,8 @@ from tiniscript.syntax.suggestions import shortened
 from tiniscript.words import BLOCK_ENDS, OTHER_WAY, WORDS
 
 LONGEST = 24  # words behind an instruction that are read
-_ASIDE = (
-    codes.REPEATED.number,
-    codes.WORDS_BEHIND.number,
-)  # codes of words that a repair may read better
+# Codes of words that a repair may read better.
+_ASIDE = (codes.REPEATED.number, codes.WORDS_BEHIND.number)
 _MOST_TIMES, _DEGREES = 50, 20  # a number behind a turn that is rather an angle
 _BODY = 2_000  # characters in which the end of a block is looked for
 _MOST_BEFORE = 8  # instructions on a line that an example repeats
