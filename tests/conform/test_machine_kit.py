@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import json
+import os
 import re
 import shlex
 import shutil
 import sys
+import time
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -20,6 +22,7 @@ from tiniscript.bytecode.loading import loaded
 from tiniscript.bytecode.opcodes import OPS
 from tiniscript.conformance.kit import MachineCase, machine_cases
 from tiniscript.conformance.link_kit import link_kit
+from tiniscript.conformance.machine_process import MachineProcess, Problem
 from tiniscript.conformance.port_checks import all_checks
 from tiniscript.kit import Device, Kit
 from tiniscript.vm.machine import Machine
@@ -207,6 +210,24 @@ def test_a_hostile_machine_is_named(what: str, tsc: Tsc, tmp_path: Path) -> None
     assert "too many had no answer" in done.out
     rows = found_by(tsc, command, "--timeout", timeout_s)
     assert [row["what"] for row in rows] == [what] * tried
+
+
+def test_a_slow_reader_takes_nothing_of_the_next_process(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A number of a file that is closed is the next pipe's."""
+    read = os.read
+
+    def slow(number: int, count: int) -> bytes:
+        time.sleep(0.1)
+        return read(number, count)
+
+    monkeypatch.setattr(os, "read", slow)
+    process = MachineProcess(machine(tmp_path, HOSTILE["more"][0]), 100)
+    for _ in range(3):
+        with pytest.raises(Problem) as problem:
+            process.ask("run\n", 0)
+        assert problem.value.what == "more"
 
 
 def test_of_a_machine_that_crashed_without_a_word_the_exit_code_is_told(

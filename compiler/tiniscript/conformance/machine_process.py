@@ -80,11 +80,12 @@ class MachineProcess:
                 os.killpg(process.pid, signal.SIGKILL)
         process.kill()
         process.wait()
+        self._requests.put(b"")
+        leaves_by = time.monotonic() + LEAVE_S
+        while self._reader.is_alive() and time.monotonic() < leaves_by:
+            with contextlib.suppress(queue.Empty):  # it waits where the queue is full
+                self._chunks.get(timeout=0.01)
         self._errors.join(LEAVE_S)
-        for pipe in (process.stdin, process.stdout, process.stderr):
-            with contextlib.suppress(OSError):
-                assert pipe is not None
-                pipe.close()
         lines = bytes(self._tail).decode("utf-8", "replace").strip().splitlines()
         return lines[-1] if lines else ""
 
@@ -109,34 +110,39 @@ class MachineProcess:
         self._tail = bytearray()
         self._rest = b""
         self._errors = _thread(self._keep_tail, process.stderr)
-        _thread(self._read, process.stdout, self._chunks)
+        self._reader = _thread(self._read, process.stdout, self._chunks)
         self._requests: queue.Queue[bytes] = queue.Queue()
         _thread(self._write, process.stdin, self._requests)
         return process
 
     @staticmethod
     def _read(pipe: IO[bytes], chunks: queue.Queue[bytes]) -> None:
-        """Pass on what comes; nothing is the end."""
+        """Pass on what comes; nothing is the end.
+
+        A thread closes its pipe itself: closed by another between `fileno` and `read`, the number
+        may be the next process's pipe already, whose answer would be read here.
+        """
         data = b"?"
-        while data:
-            try:
-                data = os.read(pipe.fileno(), CHUNK_BYTES)
-            except (OSError, ValueError):
-                data = b""
-            chunks.put(data)
+        with pipe:
+            while data:
+                try:
+                    data = os.read(pipe.fileno(), CHUNK_BYTES)
+                except OSError:
+                    data = b""
+                chunks.put(data)
 
     def _keep_tail(self, pipe: IO[bytes]) -> None:
         tail = self._tail
-        with contextlib.suppress(OSError, ValueError):
+        with contextlib.suppress(OSError), pipe:
             while data := os.read(pipe.fileno(), CHUNK_BYTES):
                 tail += data
                 del tail[:-TAIL_BYTES]
 
     @staticmethod
     def _write(pipe: IO[bytes], requests: queue.Queue[bytes]) -> None:
-        with contextlib.suppress(OSError, ValueError):
-            while True:
-                pipe.write(requests.get())
+        with contextlib.suppress(OSError), pipe:
+            while request := requests.get():
+                pipe.write(request)
                 pipe.flush()
 
     def _asked(self, request: str, most: int) -> tuple[str, ...]:
