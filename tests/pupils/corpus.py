@@ -1,9 +1,10 @@
 """Wrong programs as pupils write them, and what is said of each.
 
-They are in the files `*.txt` here. Below a program stands a line for each message,
-`> 1 TS012 F(1.5, 80)`: its line, its code and what to try, in Spanish; then, where
-`tsc check --fix` changes it, the program that it makes, each line behind a `=`, without spaces at
-its end. A program of which nothing is said has a `>` alone below it.
+They are in the files `*.txt` here. Below a program stands a row for each message,
+`> 1 TS012 F(1.5, 80)`: its line, its code and what to try, in Spanish. Behind `>=` that is what
+`tsc check --fix` makes of the line. `=3 F(1, 80)` is another line that it changes; where it
+changes how many lines there are, all that it makes stands there, each line behind a `=`. None has
+spaces at its end. A program of which nothing is said has a `>` alone below it.
 """
 
 from __future__ import annotations
@@ -38,11 +39,30 @@ def entries() -> tuple[Entry, ...]:
     found = []
     for file in sorted(FOLDER.glob("*.txt")):
         for part in PART.findall(file.read_text(encoding="utf-8")):
-            program, said, mended = (each.split("\n")[:-1] for each in part)
-            messages = tuple(line[2:] for line in said if line != ">")
-            kept = "\n".join(line[1:].removeprefix(" ") for line in mended)
-            found.append(Entry(file.name, "\n".join(program), messages, kept or None))
+            program, said, changed = (each.split("\n")[:-1] for each in part)
+            messages = tuple(row.partition(" ")[2] for row in said if row != ">")
+            mended = _mended(program, said, changed)
+            found.append(Entry(file.name, "\n".join(program), messages, mended))
     return tuple(found)
+
+
+def _mended(program: list[str], said: list[str], changed: list[str]) -> str | None:
+    """Return the program that the rows below it say, or None where they change nothing."""
+    if changed and not changed[0][1:2].isdigit():
+        return "\n".join(row[1:].removeprefix(" ") for row in changed)
+    lines = [line.rstrip() for line in program]
+    rows = [row[1:].split(" ", 1) for row in changed]
+    for row in said:
+        if row.startswith(">="):
+            number, _, fix = row[3:].split(" ", 2)
+            rows.append([number, _indent(program[int(number) - 1]) + fix])
+    for number, *text in rows:
+        lines[int(number) - 1] = "".join(text)
+    return "\n".join(lines) if rows else None
+
+
+def _indent(line: str) -> str:
+    return line[: len(line) - len(line.lstrip())]
 
 
 def check(text: str) -> list[Diagnostic]:
@@ -64,11 +84,25 @@ def found_in(entry: Entry) -> Entry:
 
 def write(found: list[Entry]) -> None:
     for file in {entry.file for entry in found}:
-        rows = []
-        for entry in found:
-            if entry.file == file:
-                mended = entry.mended.split("\n") if entry.mended else []
-                rows += [entry.program, *(f"> {said}" for said in entry.said)]
-                rows += [f"= {line}".rstrip() for line in mended]
-                rows += [] if entry.said or mended else [">"]
+        rows = [row for entry in found if entry.file == file for row in _rows(entry)]
         (FOLDER / file).write_text("\n".join(rows) + "\n", encoding="utf-8")
+
+
+def _rows(entry: Entry) -> list[str]:
+    """Return a program and what is said of it, as the file has them."""
+    said = [f"> {each}" for each in entry.said]
+    if entry.mended is None:
+        return [entry.program, *(said or [">"])]
+    program, mended = entry.program.split("\n"), entry.mended.split("\n")
+    pairs = enumerate(zip(program, mended, strict=False), 1)
+    changed = {number: new for number, (old, new) in pairs if old.rstrip() != new}
+    marked = list(said)
+    for k, each in enumerate(entry.said):
+        number, _, fix = (*each.split(" ", 2), "")[:3]
+        if fix and changed.get(int(number)) == _indent(program[int(number) - 1]) + fix:
+            marked[k] = f">= {each}"
+            del changed[int(number)]
+    rows = [f"={number} {line}".rstrip() for number, line in changed.items()]
+    if _mended(program, marked, rows) == entry.mended:
+        return [entry.program, *marked, *rows]
+    return [entry.program, *said, *(f"= {line}".rstrip() for line in mended)]
