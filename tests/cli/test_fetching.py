@@ -400,7 +400,7 @@ def test_what_must_not_end_in_the_middle_is_waited_for(tmp_path: Path, said: str
 import time
 from pathlib import Path
 print({said!r}, flush=True)
-time.sleep(1)
+time.sleep({1 if said == fetching.PUTTING else 600})
 Path("whole").touch()
 """
 

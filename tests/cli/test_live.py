@@ -100,6 +100,10 @@ def test_a_person_at_the_prompt(pty_robot: PtyRobot) -> None:
     os.write(ours, b"LOOP(2)\nSHOW(SPEED + 1)\nEND_LOOP\n")
     see("SHOW 56", 2)
     see("tini> ", 7)
+    screen.reset()
+    os.write(ours, b"help\n")
+    see("LIGHT_R, LIGHT_L, DISTANCE")
+    see("tini> ")
     os.write(ours, b"\x04")
     assert command.wait(HANGS_S) == 0
     os.close(ours)

@@ -87,6 +87,13 @@ def test_states_of_the_motor_pins(name: str) -> None:
     assert board.motors(START - 1) == states[-1]
 
 
+@pytest.mark.parametrize(("powers", "pin"), [("80, 0", 0), ("0, 80", 3)])
+def test_one_motor_drives_alone(powers: str, pin: int) -> None:
+    board = started(driven("tb6612"), f"SI|M({powers});W(1)").ran(START + 60)
+    state = board.motors(START + 50)
+    assert (state[pin], state[-1]) == ("pwm 204", "high")
+
+
 def on_board(name: str, chip: str, *changes: tuple[str, str]) -> Robot:
     """A shipped robot on another board, or wired in another way."""
     text = re.sub(r'^chip *= *"\w+"', f'chip = "{chip}"', TEXTS[name], flags=re.M)

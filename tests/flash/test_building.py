@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import re
 import shutil
@@ -298,6 +299,18 @@ open(os.path.join(made, "firmware.hex"), "w").write(":00000001FF\\n")
     code, _, err = built(clone, pretending(tmp_path, body))
     assert code == 2
     assert "make room there" in err and str(tmp_path / "cache") in err
+
+
+def test_a_file_that_cannot_be_removed_yet_fails_no_build(monkeypatch: pytest.MonkeyPatch) -> None:
+    """On Windows a virus scanner may still hold it."""
+
+    def held(path: object, **_: object) -> None:
+        raise OSError(errno.EBUSY, "held", path)
+
+    with building._folder() as folder:
+        monkeypatch.setattr(os, "rmdir", held)
+    monkeypatch.undo()
+    folder.rmdir()
 
 
 def test_ctrl_c_ends_platformio_and_its_children(clone: Path, tmp_path: Path) -> None:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from pathlib import Path
+from socket import socketpair
 from time import sleep as sleep_s
 
 import pytest
@@ -55,6 +57,29 @@ def test_one_that_has_said_all_and_stays(tmp_path: Path, monkeypatch: pytest.Mon
     monkeypatch.setattr(avrdude, "LEAVE_S", 0.1)
     body = "import os, time\nos.close(1); os.close(2); time.sleep(600)\n"
     assert ended(tmp_path, body)[0].how == avrdude.ENDLESS
+
+
+def test_a_slow_reader_takes_nothing_of_the_file_that_is_opened_next(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A number of a file that is closed is the next one's: that is the port."""
+    read = os.read
+
+    def slow(number: int, count: int) -> bytes:
+        sleep_s(0.1)
+        return read(number, count)
+
+    monkeypatch.setattr(os, "read", slow)
+    body = "import time\nprint('attempt 1 of 10, attempt 2 of 10', flush=True)\ntime.sleep(600)\n"
+    assert ended(tmp_path, body)[0].how == avrdude.NOBODY
+    next_ones = [end for _ in range(4) for end in socketpair()]
+    for end in next_ones:
+        end.setblocking(False)
+        end.send(b"?")
+    sleep_s(0.2)
+    assert [end.recv(2) for end in next_ones] == [b"?"] * 8
+    for end in next_ones:
+        end.close()
 
 
 @pytest.mark.skipif(not Path("/proc/self").exists(), reason="looks at processes as Linux has them")

@@ -17,6 +17,7 @@ import serial
 
 from tests.machines.uno import built, needed
 from tests.support.casefile import ROOT
+from tests.support.waiting import until
 from tools.uno import CYCLES_PER_MS, HERTZ, Uno
 
 BIT = HERTZ / 115_200  # of the computer
@@ -103,8 +104,8 @@ def test_it_tells_how_long_interrupts_are_off() -> None:
 
 def test_real_time_is_real() -> None:
     with Uno(built("echo", Baud=115200, Wait=1)) as uno:
-        uno.go(speed=1.0)
         begin = time.monotonic()
+        uno.go(speed=1.0)
         time.sleep(0.2)
         uno.pause()
         assert uno.cycle / HERTZ < time.monotonic() - begin + 0.1
@@ -128,10 +129,7 @@ def test_it_ends_with_who_started_it() -> None:
     parent.send_signal(signal.SIGKILL)
     parent.wait()
     parent.stdout.close()
-    end = time.monotonic() + 10
-    while child.exists() and "Z" not in (child / "stat").read_text().split()[2]:
-        assert time.monotonic() < end
-        time.sleep(0.01)
+    until(lambda: not child.exists() or "Z" in (child / "stat").read_text().split()[2], "it ends")
 
 
 def test_what_is_wrong_is_said(tmp_path: Path) -> None:

@@ -71,6 +71,12 @@ def test_whoever_has_hung_up_can_have_been_anybody() -> None:
 
 
 @linux
+def test_of_an_end_that_is_nobody_s_the_kernel_says_so() -> None:
+    with pytest.raises(FileNotFoundError):
+        peers._other_end(("127.0.0.1", 1), ("127.0.0.1", 2))
+
+
+@linux
 @pytest.mark.parametrize(("own", "user", "inode", "is_let_in"), [
     (1234, 1234, 5, True),
     (1234, 1234, 0, False),

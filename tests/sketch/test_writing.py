@@ -117,9 +117,12 @@ def test_a_comment_stays_a_comment(comment: str) -> None:
     built(text, "uno")
 
 
-def test_a_long_comment_is_broken() -> None:
-    text = sketch("SI|// " + "x" * 500 + "\nS")
-    assert max(map(len, text.splitlines())) <= 100
+@pytest.mark.parametrize("block", ["", "LOOP(2)\n"])
+def test_a_long_comment_is_broken_where_the_line_ends(block: str) -> None:
+    end = "\nEND_LOOP" if block else ""
+    text = sketch(f"SI|{block}// " + "x" * 500 + f"\nS{end}")
+    assert max(map(len, text.splitlines())) == 100
+    assert sum(len(row) == 100 for row in text.splitlines()) >= 5
 
 
 # -- names

@@ -133,8 +133,8 @@ def test_a_fault_says_where(page: Page) -> None:
 def test_a_page_that_falls_silent_stops_its_robot(page: Page, robot: PtyRobot) -> None:
     page.upload(FOREVER)
     robot.until(lambda: robot.moves, "it drives")
-    page.beat()
     began_s, began_ms = time.monotonic(), robot.robot_ms
+    page.beat()
     passed_ms = robot.stands_after_ms(began_ms)
     assert time.monotonic() - began_s >= attending.HEARD_S
     assert passed_ms < 950  # before the robot's own dead-man timer, which ends a run after a second
@@ -213,6 +213,7 @@ def test_a_port_has_one_page(
     hosting: Hosting, page: Page, robot: PtyRobot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(attending, "LATCH_S", 3600.0)
+    monkeypatch.setattr(attending, "LEFT_S", 3600.0)  # the page is silent while the command begins
     other = Page(hosting, "other")
     assert other.connect(robot.port) == {"failure": "other_tab"}
     assert page.connect(robot.port) == {"failure": "connected"}

@@ -150,6 +150,15 @@ def test_the_reader_and_the_compiler_count_the_same_code(first: int) -> None:
         assert reader.used == sum(1 + len(name) for name in names), found.source.text
 
 
+@pytest.mark.parametrize("end", ["ENDIF", "ELSE;DISTANCE;ENDIF"])
+def test_what_each_arm_has_read_is_not_read_again(end: str) -> None:
+    found = compile_text(f"IF(TRUE);DISTANCE;{end};SHOW(DISTANCE)", TINIBOT)
+    assert found.program is not None
+    reader = Reader(scan(found.source.text).tokens, TINIBOT, 2)
+    reader.program()
+    assert reader.length == plain_code(found.program).length
+
+
 def test_names_take_room_too() -> None:
     long = "".join(f"{chr(65 + k)}{'X' * 49}=0;" for k in range(7))
     before = 6 * (2 + 51)

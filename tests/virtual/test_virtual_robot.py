@@ -38,6 +38,7 @@ def test_it_does_what_tsc_run_says(name: str) -> None:
     talk = Talk(robot)
     assert talk.upload(PROGRAMS[name]).status == 0
     talk.wait(20_000)
+    assert robot.at is None  # nothing runs
     events = robot.take_events()
     said = trace(events)
     readings: dict[int, list[int]] = {}

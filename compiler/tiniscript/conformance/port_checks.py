@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from typing import NamedTuple
 
-from tiniscript.bytecode.image import HEADER_BYTES, pack
+from tiniscript.bytecode.image import pack
 from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
 from tiniscript.bytecode.verify import RULES
 from tiniscript.conformance.comparing import Verdict, compared
@@ -120,14 +120,18 @@ def patient(robot: WireRobot, name: str, values: Mapping[str, int | bytes]) -> A
     return answer
 
 
-def sent(robot: WireRobot, image: bytes, mode: int) -> Answer:
-    """Bring an image in pieces, as it is; return the first answer that is not OK, or the last."""
-    rest = image[HEADER + 4 :]
-    answer = patient(robot, "BEGIN", {
+def announced(robot: WireRobot, image: bytes, mode: int) -> Answer:
+    return patient(robot, "BEGIN", {
         "mode": mode, "isa_major": image[2], "isa_minor": image[3], "start": image[4],
         "header_length": image[5], "devices": int.from_bytes(image[6:8], "little"),
         "code_length": int.from_bytes(image[8:10], "little"),
     })  # fmt: skip
+
+
+def sent(robot: WireRobot, image: bytes, mode: int) -> Answer:
+    """Bring an image in pieces, as it is; return the first answer that is not OK, or the last."""
+    rest = image[HEADER + 4 :]
+    answer = announced(robot, image, mode)
     most = PAYLOAD_BYTES - 2
     for offset in range(0, len(rest), most):
         if answer.status:
@@ -272,7 +276,6 @@ LINK_CHECKS = (
 # -- images ---------------------------------------------------------------------------------------
 
 LONG = pack("SI", 0, bytes.fromhex("310001") * 40)
-WHOLE = len(LONG) - HEADER - 4
 
 
 def _changed(at: int, value: int) -> bytes:
@@ -299,9 +302,7 @@ def _fetched(robot: WireRobot) -> tuple[str, ...]:
 
 
 def _incomplete(robot: WireRobot) -> tuple[str, ...]:
-    head = {"mode": 0, "isa_major": ISA_MAJOR, "isa_minor": ISA_MINOR, "start": 0,
-            "header_length": HEADER_BYTES, "devices": 0, "code_length": WHOLE - 1}  # fmt: skip
-    robot.ask("BEGIN", head)
+    announced(robot, LONG, 0)
     robot.ask("DATA", {"offset": 0, "bytes": LONG[HEADER + 4 : HEADER + 24]})
     gap = robot.ask("DATA", {"offset": 30, "bytes": b"?"})
     return (f"next {gap.number('next')}", said(robot.ask("COMMIT", {"checksum": 0})))

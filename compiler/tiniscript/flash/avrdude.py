@@ -17,7 +17,7 @@ from pathlib import Path
 from queue import Empty, SimpleQueue
 from threading import Thread
 from time import monotonic
-from typing import NamedTuple
+from typing import IO, NamedTuple
 
 from tiniscript.flash.bootloaders import Bootloader
 
@@ -134,7 +134,7 @@ def _kill(running: subprocess.Popen[bytes]) -> None:
 def _watched(running: subprocess.Popen[bytes], look: Callable[[Seen | None], None]) -> Ended:
     assert running.stdout
     heard: SimpleQueue[bytes] = SimpleQueue()
-    Thread(target=_listen, args=(running.stdout.fileno(), heard), daemon=True).start()
+    Thread(target=_listen, args=(running.stdout, heard), daemon=True).start()
     output, said, silent_s, end_s = b"", "", 0.0, monotonic() + WHOLE_S
     while True:
         if monotonic() >= end_s or len(output) > MOST_BYTES:
@@ -162,21 +162,20 @@ def _watched(running: subprocess.Popen[bytes], look: Callable[[Seen | None], Non
             return Ended(NOBODY)
 
 
-def _listen(file: int, heard: SimpleQueue[bytes]) -> None:
+def _listen(pipe: IO[bytes], heard: SimpleQueue[bytes]) -> None:
     """Pass its output on in pieces; an empty piece marks the end.
 
-    Stops after MOST_BYTES: the rest is not read, so that avrdude blocks until it is killed.
+    Stops after MOST_BYTES: the rest is not read. Closes the pipe itself: closed by another thread,
+    its number may be that of the port that is opened next, whose bytes would be read here.
     """
     said_bytes = 0
-    while said_bytes <= MOST_BYTES:
-        try:
-            data = os.read(file, 4096)
-        except OSError:
-            data = b""
-        heard.put(data)
-        said_bytes += len(data)
-        if not data:
-            return
+    with pipe:
+        while said_bytes <= MOST_BYTES:
+            data = os.read(pipe.fileno(), 4096)
+            heard.put(data)
+            said_bytes += len(data)
+            if not data:
+                return
 
 
 def seen(said: str) -> Seen | None:
