@@ -15,7 +15,7 @@ from tests.machines.esp32 import HAS_TLS
 from tests.machines.esp32 import missing as no_compiler
 from tests.support import certificates
 from tests.support.certificates import Authority, der
-from tests.support.command import process
+from tests.support.command import inside, process
 from tests.support.esp32_pty_robot import Esp32PtyRobot
 from tests.support.mosquitto import Mosquitto, missing
 from tests.support.pty_robot import on
@@ -87,12 +87,12 @@ def test_what_is_no_certificate_is_said_before_the_robot_is_asked(tmp_path: Path
         (tmp_path / name).write_bytes(data)
         words = ("wifi", "--broker", NAME, "--tls", "--trust", str(tmp_path / name))
         for language, said in (("en", "is not a file with one"), ("es", "no es un archivo con un")):
-            done = process(*words, "--port", "/none", "--lang", language)
+            done = inside(*words, "--port", "/none", "--lang", language)
             assert done.code == 2 and said in done.err and done.err.count("\n") == 1, name
     for form in (authority.der, b"Certificate:\n  x\n" + text):
         (tmp_path / "good").write_bytes(form)
         words = ("wifi", "--broker", NAME, "--tls", "--trust", str(tmp_path / "good"))
-        assert process(*words, "--port", "/none").code == 3, "there is no such port"
+        assert inside(*words, "--port", "/none").code == 3, "there is no such port"
 
 
 def test_a_computer_trusts_the_brokers_own_certificate_whoever_signed_it(tmp_path: Path) -> None:
@@ -126,7 +126,7 @@ def test_a_computer_trusts_the_brokers_own_certificate_whoever_signed_it(tmp_pat
 def test_options_that_make_no_sense(words: list[str], said: str, tmp_path: Path) -> None:
     file = str(Authority(tmp_path).file)
     words = [file if word == "CA" else word for word in words]
-    done = process("wifi", *words, "--port", "/none")
+    done = inside("wifi", *words, "--port", "/none")
     assert done.code == 2 and said in done.err and not done.out
 
 

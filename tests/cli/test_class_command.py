@@ -17,7 +17,7 @@ import pytest
 
 from tests.cli.test_esp32_radio import DRIVES, DROVE, NETWORK, PASSWORD, drove, files_with, near
 from tests.machines.esp32 import missing as no_compiler
-from tests.support.command import FOREVER, Command, process
+from tests.support.command import FOREVER, Command, inside, process
 from tests.support.esp32_pty_robot import Esp32PtyRobot
 from tests.support.mosquitto import Mosquitto, missing
 from tests.support.pty_robot import on
@@ -243,7 +243,7 @@ def test_what_a_stranger_retains_reaches_no_terminal_raw(tmp_path: Path) -> None
 ])  # fmt: skip
 def test_words_that_make_no_sense_are_said_before_anything_is_reached(words: list[str]) -> None:
     for language in ("en", "es"):
-        done = process("class", *words, "--lang", language)
+        done = inside("class", *words, "--lang", language)
         assert done.code == 2 and done.err.startswith("tsc: ") and not done.out
 
 
@@ -252,7 +252,7 @@ def test_words_that_make_no_sense_are_said_before_anything_is_reached(words: lis
     ["--user", "x"], ["--class", "x"], ["--broker", "no.such.host.invalid"],
 ])  # fmt: skip
 def test_a_robots_broker_is_told_in_words_that_make_sense(words: list[str]) -> None:
-    done = process("wifi", *words, "--port", "/none", data=PASSWORD)
+    done = inside("wifi", *words, "--port", "/none", data=PASSWORD)
     assert done.code == 2 and done.err.startswith("tsc: ")
 
 
@@ -278,14 +278,14 @@ def test_tls_as_the_broker_offers_it(tmp_path: Path) -> None:
 
 
 def test_nobody_at_the_broker(tmp_path: Path) -> None:
-    done = process("class", "--broker", "127.0.0.1:1")
+    done = inside("class", "--broker", "127.0.0.1:1")
     assert done.code == 3 and "no MQTT broker answers" in done.err
     broker = Mosquitto(tmp_path)
     try:
         for words in ([], ["stop"], ["upload", "-e", DRIVES], ["show"]):
-            done = process("class", *words, "--broker", f"127.0.0.1:{broker.port}")
+            done = inside("class", *words, "--broker", f"127.0.0.1:{broker.port}")
             assert done.code == 3 and "no robot of the class class" in done.err
-        done = process("class", "--tls", "--broker", f"127.0.0.1:{broker.port}")
+        done = inside("class", "--tls", "--broker", f"127.0.0.1:{broker.port}")
         assert done.code == 3
     finally:
         broker.kill()

@@ -79,6 +79,7 @@ def started(robot: Robot, text: str, more: str = "") -> Board:
     return board
 
 
+@pytest.mark.sampled("name", keep=2)
 @pytest.mark.parametrize("name", sorted(DRIVERS))
 def test_states_of_the_motor_pins(name: str) -> None:
     board = started(driven(name), MOVES).ran(START + OFF + 50)
@@ -103,6 +104,7 @@ def on_board(name: str, chip: str, *changes: tuple[str, str]) -> Robot:
     return read(text, name)
 
 
+@pytest.mark.sampled("chip")
 @pytest.mark.parametrize(("name", "chip"), [
     ("tinibot", "uno"), ("tinibot", "nano"), ("tinibot", "mega"),
     ("liner", "nano"), ("liner", "mega"), ("grabber", "mega"),
@@ -115,6 +117,7 @@ def test_shipped_robots_drive(name: str, chip: str) -> None:
         assert board.motors(START + ms) == (*state, *last)
 
 
+@pytest.mark.sampled("name", keep=2)
 @pytest.mark.parametrize("name", ["servos", *sorted(DRIVERS)])
 def test_nothing_moves_before_the_button(name: str) -> None:
     """Motor pins are low within a few cycles of the reset, and stay it; a press alone is not it."""
@@ -235,6 +238,7 @@ STOPPING = "SI|LOOP(FOREVER);M(80, 80);M(-80, 80);LAMP(TRUE);LAMP(FALSE);END_LOO
 LAMP = '[[kit.actuators]]\nname = "LAMP"\nkind = "yes/no"\n\n[board]\n'
 
 
+@pytest.mark.sampled("chip", "lamp", "stop_pin", "group")
 @pytest.mark.parametrize(("chip", "lamp", "stop_pin", "group"), [
     ("uno", "12", 19, 1),
     ("mega", "16", 53, 0),  # on the port of three motor pins, which no single instruction changes

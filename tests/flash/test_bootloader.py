@@ -65,6 +65,7 @@ def avrdude(uno: Uno, of: Bootloader, file: Path) -> str:
     return done.stdout
 
 
+@pytest.mark.sampled("board", "builder")
 @pytest.mark.parametrize(
     ("board", "builder"), [("uno", "PlatformIO"), ("nano", "PlatformIO"), ("uno", "Arduino IDE")]
 )

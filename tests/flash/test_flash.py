@@ -93,6 +93,7 @@ def new_board(of: Bootloader) -> Uno:
 # -- onto a board
 
 
+@pytest.mark.sampled("board", "robot", "option")
 @pytest.mark.parametrize(
     ("board", "robot", "option", "bytes_least"),
     [("uno", "tinibot", "uno", 10_000), ("nano", "tinibot", "nano-old", 10_000),

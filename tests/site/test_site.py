@@ -174,11 +174,13 @@ def test_programs_have_colours() -> None:
                      "Comment.Single"]  # fmt: skip
 
 
-def test_nothing_is_wider_than_a_phone(visitor: Page, address: str) -> None:
+@pytest.mark.sampled("part")
+@pytest.mark.parametrize("part", range(4))
+def test_nothing_is_wider_than_a_phone(visitor: Page, address: str, part: int) -> None:
     visitor.set_viewport_size({"width": 390, "height": 844})
     visitor.goto(address)
     wide = [address] if _is_too_wide(visitor) else []
-    for each in documents(ROOT):
+    for each in documents(ROOT)[part::4]:
         for language in each.sources:
             visitor.goto(f"{address}{language}/{each.name}.html", wait_until="domcontentloaded")
             if _is_too_wide(visitor):

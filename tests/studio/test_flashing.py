@@ -57,9 +57,10 @@ def hex_file(folder: Path, data: bytes) -> Path:
 # -- onto simulated boards
 
 
-@pytest.mark.parametrize(("board", "of"), [("uno", "uno"), ("nano", "nano")])
+@pytest.mark.sampled("board")
+@pytest.mark.parametrize("board", ["uno", "nano"])
 def test_a_new_board_becomes_a_robot(
-    board: str, of: str, tmp_path: Path, tmp_path_factory: pytest.TempPathFactory
+    board: str, tmp_path: Path, tmp_path_factory: pytest.TempPathFactory
 ) -> None:
     """An old Nano is found at the second speed, as by `tsc firmware`; an Uno that was left without
     firmware by somebody who cancelled is no worse than a new one."""
@@ -68,7 +69,7 @@ def test_a_new_board_becomes_a_robot(
 
     elf = firmware(board, tmp_path, shared(tmp_path_factory))
     to_hex(elf, tmp_path / "firmware.hex")
-    with new_board(bootloader(of)) as uno:
+    with new_board(bootloader(board)) as uno:
         if board == "uno":
             assert flashed(uno.pty, board, tmp_path / "firmware.hex", "0.25") == "flash_cancelled"
         assert flashed(uno.pty, board, tmp_path / "firmware.hex") == "done"

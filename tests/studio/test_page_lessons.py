@@ -52,7 +52,7 @@ def test_each_lesson_says_of_a_wrong_answer_what_the_command_says(page: Page) ->
         assert page.inner_text("#lesson_said").startswith("Not yet"), number
 
 
-@pytest.mark.sampled("number", keep=4)
+@pytest.mark.sampled("number", keep=2)
 @pytest.mark.parametrize("number", range(1, len(FOLDERS) + 1))
 def test_a_lesson_is_solved_by_its_answer(page: Page, number: int) -> None:
     right, _ = catalogue.answers(FOLDERS[number - 1])
