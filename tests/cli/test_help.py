@@ -127,7 +127,10 @@ def test_the_first_help_has_the_ten_that_most_people_need(language: str) -> None
         ("make it drive straight", "trim"), ("read my program back", "fetch"),
         ("bluetooth pin", "module"), ("dibujar conexiones", "wiring"),
         ("conectar a la red wifi", "wifi"), ("ir en línea recta", "trim"),
-        ("poner firmware", "firmware"),
+        ("poner firmware", "firmware"), ("which port", "ports"), ("give it a name", "name"),
+        ("print a worksheet", "lesson"), ("lock the robot", "claim"), ("use blocks", "studio"),
+        ("robot does not answer", "doctor"), ("no responde", "doctor"),
+        ("ver los sensores", "live"), ("programar con bloques", "studio"),
     ],
 )  # fmt: skip
 def test_a_command_is_found_by_what_it_does(tsc: Tsc, asked: str, verb: str) -> None:

@@ -78,7 +78,7 @@ def test_who_claims_a_robot_drives_it_and_nobody_else(
     assert "(yours)" in on(pty_robot, "ports", "--ask").out
     assert "The robot has an owner" not in on(pty_robot, "doctor").out
     as_another(monkeypatch, tmp_path)
-    assert ", of another owner" in on(pty_robot, "info").out
+    assert ", owned by somebody else" in on(pty_robot, "info").out
     assert "(de otro dueño)" in on(pty_robot, "ports", "--ask", "--lang", "es").out
     refused = on(pty_robot, "upload", "-e", DRIVES)
     assert refused.code == 3 and "10 s" in refused.err
@@ -125,7 +125,7 @@ def test_a_robot_is_given_up_and_free(pty_robot: PtyRobot) -> None:
 
 
 def test_a_live_line_has_the_room_that_sealed_frames_have(pty_robot: PtyRobot) -> None:
-    """Variables that there is no room to show are forgotten, and a longer line is told so."""
+    """Variables without room to be shown are forgotten; a longer line gets a message about it."""
     most = "W(0.01);" * 10 + "W(0.123);" * 4 + "X = 1"  # 38 bytes, and 46 with what tells X
     done = on(pty_robot, "live", "-", data=f"{most}\nSHOW(X)\n".encode())
     assert done.code == 0 and done.out.count("SHOW 1\n") == 1

@@ -1,4 +1,4 @@
-"""Whoever waits for a robot or a board is told so, at a terminal."""
+"""A command that waits for a robot or a board says so at a terminal."""
 
 from __future__ import annotations
 

@@ -96,9 +96,9 @@ PROGRAMS: dict[int, dict[str, dict[str, str]]] = {
             "DEF WAY; F(2.78, 80); END_DEF; WAY; W(2); B(2.78, 80)": "",
         },
         "rote": {
-            "SI|F(1, 80); B(1, 80)": "The robot came no nearer to the shop than 64 cm; the task asks for 10 cm or less",
-            "F(1, 80); W(1); B(1, 80)": "The robot came no nearer to the shop than 64 cm; the task asks for 10 cm or less",
-            "F(1, 80); W(2); B(1, 80)": "The robot came no nearer to the shop than 64 cm; the task asks for 10 cm or less",
+            "SI|F(1, 80); B(1, 80)": "The closest the robot came to the shop was 64 cm; the task asks for 10 cm or less",
+            "F(1, 80); W(1); B(1, 80)": "The closest the robot came to the shop was 64 cm; the task asks for 10 cm or less",
+            "F(1, 80); W(2); B(1, 80)": "The closest the robot came to the shop was 64 cm; the task asks for 10 cm or less",
         },
         "wrong": {
             "F(2.78, 80); B(2.78, 80)": "The robot did not wait between its moves. Put W(2) between two moves.",
@@ -290,15 +290,15 @@ PROGRAMS: dict[int, dict[str, dict[str, str]]] = {
         },
         "rote": {
             "SI|LOOP(100); DIFFERENCE = (LIGHT_L - LIGHT_R) / 10; M(35 - DIFFERENCE, 35 + DIFFERENCE); W(0.05); END_LOOP": "The program ended when the lamp was still 53 cm away",
-            "SHOW(LIGHT_L); SHOW(LIGHT_R); F(4.8, 60)": "The robot came no nearer to the lamp than 35 cm; the task asks for 20 cm or less",
+            "SHOW(LIGHT_L); SHOW(LIGHT_R); F(4.8, 60)": "The closest the robot came to the lamp was 35 cm; the task asks for 20 cm or less",
             "SI|LOOP(20); SHOW(LIGHT_L); SHOW(LIGHT_R); W(0.5); END_LOOP": "The robot did not move. Give it a move with time and power: F(2, 80)",
-            "SHOW(LIGHT_L); SHOW(LIGHT_R); F(5, 60); L(0.39, 60); F(2, 60); R(0.785, 60); F(4, 60)": "The robot came no nearer to the lamp than 33 cm; the task asks for 20 cm or less",
+            "SHOW(LIGHT_L); SHOW(LIGHT_R); F(5, 60); L(0.39, 60); F(2, 60); R(0.785, 60); F(4, 60)": "The closest the robot came to the lamp was 33 cm; the task asks for 20 cm or less",
         },
         "wrong": {
             "LOOP(FOREVER); DIFFERENCE = (LIGHT_L - LIGHT_R) / 10; M(35 + DIFFERENCE, 35 - DIFFERENCE); W(0.05); END_LOOP": "The robot touched the edge of the floor after 6.5 s",
             "DIFFERENCE = (LIGHT_L - LIGHT_R) / 10; M(35 - DIFFERENCE, 35 + DIFFERENCE)": "here it ended before the robot could move",
             "LOOP(FOREVER); M(35, 35 + LIGHT_L / 10); W(0.05); END_LOOP": "The robot touched the edge of the floor after 6.2 s",
-            "D = (LIGHT_L - LIGHT_R) / 10; LOOP(FOREVER); M(35 - D, 35 + D); W(0.05); END_LOOP": "The robot came no nearer to the lamp than 115 cm; the task asks for 20 cm or less",
+            "D = (LIGHT_L - LIGHT_R) / 10; LOOP(FOREVER); M(35 - D, 35 + D); W(0.05); END_LOOP": "The closest the robot came to the lamp was 115 cm; the task asks for 20 cm or less",
             "LOOP(FOREVER); D = (LIGHT_L - LIGHT_R) / 10; M(8 - D, 8 + D); W(0.05); END_LOOP": "After 25.0 s the time was over, and the robot was still on its way, 43 cm from the lamp",
         },
     },

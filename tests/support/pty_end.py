@@ -1,6 +1,6 @@
 """Something simulated behind a pseudo-terminal: what `tsc` opens is `port`.
 
-Time is that of the wall, or where this process opens the port that of what is there.
+Time is the wall's, or, if this process opens the port, that of the simulation behind it.
 
 A pseudo-terminal has no speed, but it keeps the one that was set: bytes at another speed than that
 of the other end arrive garbled, as on a wire.

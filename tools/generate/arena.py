@@ -22,25 +22,26 @@ Points = Sequence[tuple[float, ...]]
 
 
 class Way(NamedTuple):
-    """Where a robot has been, and its outline at the end; in cm."""
+    """Where a robot has been, and its outline there at the beginning and at the end; in cm."""
 
     points: list[tuple[float, float]]
-    outline: list[tuple[float, float]]
+    begin: list[tuple[float, float]]
+    end: list[tuple[float, float]]
 
 
 def driven(program: str, robot: str, world: World, lasts_ms: int) -> Way:
     """Drive for so many milliseconds of the robot's clock, and return the way."""
     made = tiniscript.compile(program, robot=robot)
     simulation = Simulation(robot, world, made.image)
-    points = []
+    hull = Hull(simulation.robot.profile.body)
+    poses = [simulation.robot.pose]
     for _ in range(0, lasts_ms, SAMPLE_MS):
         simulation.go(SAMPLE_MS)
-        pose = simulation.robot.pose
-        points.append((pose.x_cm, pose.y_cm))
-    hull = Hull(simulation.robot.profile.body)
-    outline = [(each.x, each.y) for each in hull.outline(pose)]
+        poses.append(simulation.robot.pose)
+    points = [(each.x_cm, each.y_cm) for each in poses]
+    begin, end = ([(each.x, each.y) for each in hull.outline(poses[k])] for k in (0, -1))
     simulation.close()
-    return Way(bends(points), outline)
+    return Way(bends(points), begin, end)
 
 
 def bends(points: list[tuple[float, float]]) -> list[tuple[float, float]]:
@@ -83,6 +84,7 @@ def arena(world: World, way: Way, left: float, top: float, scale: float) -> list
         *(f'<polygon points="{row(box)}" fill="{BOX}"/>' for box in world.boxes),
         *(line(wall, WALL, 4) for wall in world.walls),
         *(disc(*lamp.place[:2], 2.5, LAMP) for lamp in world.lamps),
+        f'<polygon points="{row(way.begin)}" fill="none" stroke="{BODY}" stroke-dasharray="4"/>',
         line(way.points, WAY, 3),
-        f'<polygon points="{row(way.outline)}" fill="{BODY}"/>',
+        f'<polygon points="{row(way.end)}" fill="{BODY}"/>',
     ]

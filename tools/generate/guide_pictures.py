@@ -32,12 +32,23 @@ def floor(width: int, height: int, x: int, y: int, heading: int) -> World:
     return worlds.read(text, "floor")
 
 
+def before(wall: int) -> World:
+    """Return a floor with a robot so many cm before its right wall."""
+    return floor(110, 50, 110 - wall - FRONT, 25, 0)
+
+
+FRONT = 9  # cm from the middle of a robot to its distance sensor
 OBSTACLES = worlds.load("obstacles")
-DRIVES = {  # the guide, how its program begins, the world, for so many seconds
-    "moves.svg": ("language.en.md", "SPEED = 90", floor(110, 110, 80, 25, 0), 4),
-    "until.svg": ("language.en.md", "F(3, 80) UNTIL", floor(120, 40, 20, 20, 0), 4),
-    "dice.svg": ("language.en.md", "SB|LOOP(FOREVER)\n  F(FOREVER, 70)", OBSTACLES, 20),
-    "course.svg": ("monday.en.md", "SB|LOOP(FOREVER)", OBSTACLES, 20),
+LANE = floor(125, 30, 15, 15, 0)
+DRIVES = {  # the guide, how its program begins, and worlds, each for so many milliseconds
+    "moves.svg": ("language.en.md", "SPEED = 90", (floor(110, 110, 80, 25, 0), 4000)),
+    "until.svg": ("language.en.md", "F(3, 80) UNTIL", (floor(120, 40, 20, 20, 0), 4000)),
+    "faster.svg": ("language.en.md", "SPEED = 40", (LANE, 1000), (LANE, 2000), (LANE, 3000)),
+    "if.svg": ("language.en.md", "SI|IF(DISTANCE < 10)",
+               (before(8), 2000), (before(20), 2000), (before(60), 2000)),
+    "def.svg": ("language.en.md", "SIZE = 0", (floor(75, 85, 18, 68, 0), 5000)),
+    "dice.svg": ("language.en.md", "SB|LOOP(FOREVER)\n  F(FOREVER, 70)", (OBSTACLES, 20_000)),
+    "course.svg": ("monday.en.md", "SB|LOOP(FOREVER)", (OBSTACLES, 20_000)),
 }  # fmt: skip
 
 
@@ -49,26 +60,31 @@ def guide_pictures(command: str) -> dict[str, partial[str]]:
     return made | {name: partial(picture, command) for name, picture in wired.items()}
 
 
-def drive(command: str, guide: str, begin: str, world: World, seconds: int) -> str:
-    """Return the way of a guide's program."""
+def drive(command: str, guide: str, begin: str, *drives: tuple[World, int]) -> str:
+    """Return the way of a guide's program in each world."""
     fences = re.findall(r"^```tiniscript\n(.*?)^```", _text(guide), re.M | re.S)
     [program] = [each for each in fences if each.startswith(begin)]
-    way = driven(program.replace("SB|", "SI|"), "tinibot", world, 1000 * seconds)
-    scale = 330 / max(world.width_cm, world.height_cm)
-    parts = arena(world, way, PAD, PAD, scale)
-    return _svg(command, world.width_cm * scale, world.height_cm * scale, parts)
+    runs = ((world, program.replace("SB|", "SI|"), lasts_ms) for world, lasts_ms in drives)
+    return _ways(command, "tinibot", *runs)
 
 
 def lesson(command: str) -> str:
     """Return three worlds of lesson 7, with the way of a right program in each."""
-    folder, parts, side = catalogue.folders()[6], [], 250
-    found = catalogue.load(folder)
-    for k in range(3):
-        world = varied(found, k + 1)
-        way = driven(catalogue.answers(folder)[0][0].program, found.robot, world, 8000)
-        scale = (side - PAD) / world.width_cm
-        parts += arena(world, way, PAD + k * side, PAD, scale)
-    return _svg(command, 3 * side - PAD, world.height_cm * scale, parts)
+    folder = catalogue.folders()[6]
+    found, program = catalogue.load(folder), catalogue.answers(folder)[0][0].program
+    runs = ((varied(found, k), program, 8000) for k in (1, 2, 3))
+    return _ways(command, found.robot, *runs)
+
+
+def _ways(command: str, robot: str, *runs: tuple[World, str, int]) -> str:
+    """Return the ways in some worlds of one size, side by side: each a program and milliseconds."""
+    side, parts = 330 if len(runs) == 1 else 240, []
+    scale = side / max(runs[0][0].width_cm, runs[0][0].height_cm)
+    for k, (world, program, lasts_ms) in enumerate(runs):
+        way = driven(program, robot, world, lasts_ms)
+        parts += arena(world, way, PAD + k * (side + PAD), PAD, scale)
+    width = (len(runs) - 1) * (side + PAD) + world.width_cm * scale
+    return _svg(command, width, world.height_cm * scale, parts)
 
 
 def phone(command: str, language: str) -> str:

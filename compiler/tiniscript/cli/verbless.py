@@ -21,10 +21,14 @@ MEANT = {  # what the same is called elsewhere
     "flash": "firmware", "burn": "firmware", "serial": "monitor", "repl": "live", "shell": "live",
     "simulate": "robot", "simulator": "robot", "sim": "robot", "version": "--version",
     "rename": "name", "owner": "claim", "diagram": "wiring", "send": "upload", "halt": "stop",
+    "blocks": "studio", "worksheet": "lesson", "lock": "claim", "answer": "doctor",
+    "problem": "doctor", "sensors": "live",
     "nombre": "name", "dueño": "claim", "conexiones": "wiring", "enviar": "upload",
     "cargar": "upload", "subir": "upload", "parar": "stop", "detener": "stop",
     "compilar": "compile", "revisar": "check", "corregir": "check", "ejecutar": "run",
     "lección": "lesson", "leccion": "lesson", "estudio": "studio", "puertos": "ports",
+    "bloques": "studio", "hoja": "lesson", "candado": "claim", "responde": "doctor",
+    "problema": "doctor", "sensores": "live",
 }  # fmt: skip
 
 
@@ -68,7 +72,8 @@ SHORTEST = 3  # letters of a word that says something
 STEM = 5  # letters in which forms of a word agree: connect, connected; conecta, conectar
 # Words that say nothing of what a command does.
 IDLE = re.compile(
-    "the|and|for|how|who|make|can|does|with|from|that|this|what|which|its|into|are|you|your|want"
+    "the|and|for|give|how|who|make|can|does|with|from|that|this|what|which|its|into|are|you|your"
+    "|want"
     "|quien|una|uno|los|las|del|que|por|para|con|como|cual|sin|mas|puedo|quiero|hacer"
 )
 
@@ -99,7 +104,8 @@ def _weights(verb: str) -> dict[str, int]:
     weights = dict.fromkeys(_stems(" ".join((*each.ends, options))), 1)
     weights |= dict.fromkeys(_stems(" ".join(each.says)), 2)
     weights |= dict.fromkeys(_stems(" ".join(each.summary)), 4)
-    return weights | dict.fromkeys(_stems(f"{verb} {elsewhere}"), 6)
+    weights |= dict.fromkeys(_stems(elsewhere), 6)
+    return weights | dict.fromkeys(_stems(verb), 12)
 
 
 def _stems(text: str) -> set[str]:
@@ -107,4 +113,5 @@ def _stems(text: str) -> set[str]:
 
     plain = unicodedata.normalize("NFD", text.casefold())
     words = re.findall("[a-z]+", re.sub("[\u0300-\u036f]", "", plain))
-    return {word[:STEM] for word in words if len(word) >= SHORTEST and not IDLE.fullmatch(word)}
+    said = (word for word in words if len(word) >= SHORTEST and not IDLE.fullmatch(word))
+    return {word.removesuffix("s")[:STEM] for word in said}  # port and ports are one

@@ -75,7 +75,7 @@ class Lesson(NamedTuple):
 
 
 class Answer(NamedTuple):
-    """A program for a task, and what there is to say of it in each language.
+    """A program for a task, and the remarks on it in each language.
 
     `said[language]` is the first sentence of the checker where the program is wrong; a right one
     has none.
@@ -124,24 +124,24 @@ AREA = ("x_cm", "y_cm")  # from and to, around a place
 
 # fmt: off
 KINDS: dict[str, Kind] = {
-    "ends_in": Kind("the robot stands within so many cm of a place at the end; with an area, all of it is in there", (WITHIN,), places=1, has_area=True),
-    "reaches": Kind("it comes within so many cm of places, in their order (`either_way`: or from the last to the first), in so much time and on so long a way at most; with `what`, as that sensor measures it",
+    "ends_in": Kind("at the end the robot is within `within_cm` of a place, or completely inside an area", (WITHIN,), places=1, has_area=True),
+    "reaches": Kind("it comes within `within_cm` of places, in their order (`either_way`: or from the last to the first), in at most `by_seconds` and on a path of at most `by_cm`; with `what`, as that sensor measures it",
                     (WITHIN, Number("by_seconds", 0.1, MOST, MOST), Number("by_cm", 1, MOST, MOST)), places=1, words="sensor", flags=("either_way",)),
-    "stays_in": Kind("it never is further than so many cm from a place; with an area, its wheels never leave that", (Number("within_cm", 1, 500, 500),), places=1, has_area=True),
-    "stands_before": Kind("at the end it stands so many cm before what is ahead of it; with `at`, before that", (Number("low_cm", 0, 400), Number("high_cm", 0, 400)), places=1, may_be_anywhere=True),
-    "faces": Kind("at the end it looks where a heading points to", (Number("heading", -360, 360), Number("within_degrees", 1, 180, 15))),
-    "never_touches": Kind("it touches nothing; with `at`, before it has been within so many cm of this place", (WITHIN,), places=1, may_be_anywhere=True),
-    "follows": Kind("its line sensors stay on the black line, for so many cm of it", (Number("within_cm", 1, 500, 6), Number("at_least_cm", 1, MOST))),
-    "drives": Kind("it drives so many cm", (Number("at_least_cm", 0, MOST, 0), Number("at_most_cm", 1, MOST, MOST))),
-    "pauses": Kind("it stands so long between two moves; with `at`, within so many cm of each of these places", (Number("at_least_seconds", 0.1, 600), TIMES, WITHIN), places=1, may_be_anywhere=True),
-    "shows": Kind("it shows a value: any, this one, or that of a sensor or of TIME at that moment",
+    "stays_in": Kind("it is never more than `within_cm` from a place, or its wheels never leave an area", (Number("within_cm", 1, 500, 500),), places=1, has_area=True),
+    "stands_before": Kind("at the end it stands `low_cm` to `high_cm` before whatever is ahead of it; with `at`, before that place", (Number("low_cm", 0, 400), Number("high_cm", 0, 400)), places=1, may_be_anywhere=True),
+    "faces": Kind("at the end it faces `heading`", (Number("heading", -360, 360), Number("within_degrees", 1, 180, 15))),
+    "never_touches": Kind("it touches nothing; with `at`, until it has been within `within_cm` of this place", (WITHIN,), places=1, may_be_anywhere=True),
+    "follows": Kind("its line sensors stay on the black line for at least `at_least_cm`", (Number("within_cm", 1, 500, 6), Number("at_least_cm", 1, MOST))),
+    "drives": Kind("it drives `at_least_cm` to `at_most_cm`", (Number("at_least_cm", 0, MOST, 0), Number("at_most_cm", 1, MOST, MOST))),
+    "pauses": Kind("it waits `at_least_seconds` between two moves; with `at`, within `within_cm` of each of these places", (Number("at_least_seconds", 0.1, 600), TIMES, WITHIN), places=1, may_be_anywhere=True),
+    "shows": Kind("it shows a value: any, this `value`, or that of a sensor or of TIME at that moment",
                   (TIMES, Number("value", -MOST, MOST, MOST + 1), Number("tolerance", 0, MOST, 0)), words="value"),
-    "beeps": Kind("its buzzer sounds so often, at so many different pitches; with `at`, within so many cm of each of these places", (TIMES, Number("pitches", 1, 100, 1), WITHIN), places=1, may_be_anywhere=True),
+    "beeps": Kind("its buzzer sounds `times` times, at `pitches` different pitches; with `at`, within `within_cm` of each of these places", (TIMES, Number("pitches", 1, 100, 1), WITHIN), places=1, may_be_anywhere=True),
     "order": Kind("these things happen one after the other: moves, stops, beeps, shows", words="event"),
     "ends": Kind("the program ends by itself"),
-    "uses": Kind("the text has these words, each so often; a DEF counts if it is called, a LOOP if it repeats more than waiting, an UNTIL if it asks for something", (TIMES,), words="word"),
+    "uses": Kind("the text has each of these words `times` times; a DEF counts if it is called, a LOOP if it repeats more than waiting, an UNTIL if it asks for something", (TIMES,), words="word"),
     "needs": Kind("without these, LOOP or DEF, the robot misses one of the criteria above: with each loop done once, or without the words of DEF", words="block"),
-    "moves": Kind("the text has at most so many moves; with `ahead`, turns do not count", (Number("at_most", 1, 1000),), flags=("ahead",)),
+    "moves": Kind("the text has at most `at_most` moves; with `ahead`, turns do not count", (Number("at_most", 1, 1000),), flags=("ahead",)),
 }
 # fmt: on
 

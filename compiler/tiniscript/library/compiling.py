@@ -101,7 +101,7 @@ def analyzed(text: str, kit: Kit, name: str = "") -> Compiled:
 
 
 def fitting(compiled: Compiled, robot: Robot, is_mistake: bool) -> Compiled:
-    """Return `compiled` with what there is to say where the robot's memory is too small."""
+    """Return `compiled` with a message if the robot's memory is too small."""
     over = len(compiled.code) - robot.board.program_bytes
     if over <= 0:
         return compiled

@@ -35,7 +35,7 @@ LITTLE_POWER = 10_000  # thousandths of a percent
 
 
 def of_move(move: Move, kit: Kit, source: Source) -> list[Diagnostic]:
-    """Return what there is to say of the numbers of a move or a wait without UNTIL.
+    """Return the warnings about the numbers of a move or a wait without UNTIL.
 
     It is one thing at most, and for `R(03, 2)` what is said of its power, too.
     """
@@ -65,7 +65,7 @@ def of_move(move: Move, kit: Kit, source: Source) -> list[Diagnostic]:
 
 
 def of_ended_move(move: Move, source: Source) -> list[Diagnostic]:
-    """Return what there is to say of the numbers of a move or a wait with UNTIL: one at most."""
+    """Return the warnings about the numbers of a move or a wait with UNTIL: one at most."""
     time, power = _number(move.time), _number(move.power)
     if time is None or not _is_swapped(time, power):
         return of_power(move)
@@ -101,7 +101,7 @@ def _measured(move: Move, kit: Kit, source: Source) -> list[Diagnostic]:
 
 
 def of_power(move: Move) -> list[Diagnostic]:
-    """Return what there is to say of a power that moves no robot, or that is too much."""
+    """Return the warning about a power that moves no robot, or that is too much."""
     time, power = _number(move.time), _number(move.power)
     found = [] if move.power is None else _cut(move.power, POWER, move.span, move.direction)
     if power is not None and 0 <= power < LITTLE_POWER and (time is None or time < LONG_TIME):
@@ -142,7 +142,7 @@ def _is_milliseconds(time: int) -> bool:
 
 
 def of_beep(beep: Beep) -> list[Diagnostic]:
-    """Return what there is to say of a sound that lasts longer than anybody can bear."""
+    """Return the warning about a sound that lasts longer than anybody can bear."""
     time, hertz = _number(beep.time), _number(beep.hertz)
     found = _cut(beep.hertz, HERTZ, beep.span, "BEEP")
     if time is not None and time <= 0:

@@ -2,7 +2,7 @@
 
 A pupil joins with the code of the class and gets a token. Whoever wants a robot stands in one
 queue; a turn ends when the pupil leaves the robot or is not heard, and after a time if somebody
-waits. A pupil reaches the robot of the own turn alone: the page of a request is never one that a
+waits. A pupil reaches only the robot of their own turn: the page of a request is never one that a
 pupil names. Everything is forgotten when the process ends. Knows no HTTP and no clock of its own.
 """
 

@@ -69,7 +69,7 @@ class Cursor:
             pairs = list(pairwise(each.text for each in self.tokens))
             right = other_name(word)
             if not {(word, "="), (word, ":"), ("DEF", word)}.isdisjoint(pairs):
-                from tiniscript.syntax.free_names import in_place_of  # a right program needs it not
+                from tiniscript.syntax.free_names import in_place_of  # only wrong ones need it
 
                 right = in_place_of(self.source.text, word)
             self._free[word] = right

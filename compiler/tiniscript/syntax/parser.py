@@ -231,7 +231,7 @@ class Parser:
             return False
         if word.text in self._devices or word.text in self.blocks.defs:
             return True
-        from tiniscript.syntax.suggestions import foreign_block  # a right program needs it not
+        from tiniscript.syntax.suggestions import foreign_block  # a right program never needs it
 
         return foreign_block(word.text) is None and word.text not in _AGAIN
 
@@ -242,7 +242,7 @@ class Parser:
         arguments = self.expressions.arguments()
         meant = known or (self.recovery.meant(word) if self.reporter.diagnostics else None)
         if meant is not None and self.reporter.diagnostics:
-            from tiniscript.syntax.unit_recovery import fit_units  # a right program needs it not
+            from tiniscript.syntax.unit_recovery import fit_units  # a right program never needs it
 
             fit_units(self.reporter, meant, arguments)
         if arguments or known is not None or self.recovery.of_name.is_said_elsewhere(word):

@@ -1,6 +1,6 @@
 """The transports of a virtual robot: TCP from this computer and user, or a pseudo-terminal.
 
-There is one client at a time, as on a cable: a second one is told so and disconnected. A caller
+There is one client at a time, as on a cable: a second one is refused with a message. A caller
 becomes the client when its first bytes may be meant for a robot; a browser's never are. The
 number and the time of callers are limited, so idle connections cannot block a new client. Does
 not know what the bytes mean. A line can be bad on purpose: bytes get lost or change, or come late.

@@ -1,6 +1,6 @@
 """What `tsc check` and `tsc lesson` say of programs, in English and Spanish.
 
-What there is to say of a run of a lesson: `lessons/sentences.py`.
+The sentences about a run of a lesson are in `lessons/sentences.py`.
 """
 
 from __future__ import annotations
@@ -36,11 +36,11 @@ CHECK_TEXTS: dict[str, tuple[str, str]] = {
         "{file}: se pueden corregir {n} errores. Prueba:  tsc check --fix",
     ),
     "not_repaired": (
-        "The rest is yours to repair, since it can mean several things:",
+        "The rest you have to fix yourself, since it can mean several things:",
         "Lo que queda lo corriges tú, porque puede querer decir varias cosas:",
     ),
     "nothing_repaired": (
-        "{file}: nothing is sure enough to be repaired here.",
+        "{file}: there is nothing here that tsc can safely repair.",
         "{file}: aquí no hay nada seguro que corregir.",
     ),
     "no_table": (

@@ -9,7 +9,7 @@ TEXTS: dict[str, tuple[str, str]] = {
     # key: (English, Spanish)
     "title": ("How to wire {robot}", "Cómo conectar {robot}"),
     "intro": ("The robot's profile says which pin goes where; this page is made from it, for the board {board}. "
-              "Nobody has built a robot from this page yet: look at every wire twice before you switch on.",
+              "Nobody has built a robot from this page yet: check every wire twice before you switch on.",
               "El perfil del robot dice qué pin va a dónde; esta página sale de él, para la placa {board}. "
               "Nadie ha armado todavía un robot con esta página: revisa cada cable dos veces antes de encender."),
     "drawing": ("The drawing: the board in the middle, its USB socket at the top, the parts on both sides.",
@@ -20,9 +20,9 @@ TEXTS: dict[str, tuple[str, str]] = {
     "legend_GND": ("ground, the minus of everything", "tierra, el menos de todo"),
     "legend_M+": ("plus of the motors' battery", "más de la batería de los motores"),
     "legend_S+": ("plus of the servos' supply", "más de la fuente de los servos"),
-    "legend_same": ("Tags with the same text are joined to each other: a rail of a breadboard does that.",
+    "legend_same": ("Tags with the same text are connected to each other: a rail of a breadboard does that.",
                     "Las etiquetas con el mismo texto van unidas entre sí: para eso sirve una línea del protoboard."),
-    "legend_dot": ("A dot joins wires. Where there is none, they only cross.",
+    "legend_dot": ("A dot connects wires. Without one, they only cross.",
                    "Un punto une cables. Donde no hay punto, solo se cruzan."),
     "lamp_on_board": ("lamp L", "luz L"),
     "left_motor": ("left motor", "motor izquierdo"),
@@ -83,7 +83,7 @@ TEXTS: dict[str, tuple[str, str]] = {
     "slide": ("Slide the drawing sideways to see all of it.", "Desliza el dibujo hacia los lados para verlo entero."),
     # the finished robot
     "finished": ("{robot}, finished", "{robot}, terminado"),
-    "finished_drawing": ("From above, the front at the top. Dashed: under the plate. Wheels and sensors are where the profile says; the other parts may lie otherwise, the heavy ones low and near the wheels.",
+    "finished_drawing": ("From above, the front at the top. Dashed: under the plate. Wheels and sensors are where the profile says; the other parts may go elsewhere, the heavy ones low and near the wheels.",
                          "Desde arriba, con el frente arriba. A rayas: debajo del chasis. Ruedas y sensores van donde dice el perfil; las otras piezas pueden ir de otro modo, las pesadas abajo y cerca de las ruedas."),
     "front": ("front", "frente"),
     "caster": ("ball or free wheel", "rueda loca"),
@@ -107,12 +107,12 @@ TEXTS: dict[str, tuple[str, str]] = {
     "beyond": ("{value} in the wire", "{value} en el cable"),
     "on_board": ("on the board: no wire", "en la placa: sin cable"),
     "rails": ("Power", "Alimentación"),
-    "rails_intro": ("All that is joined to one tag is joined together.", "Todo lo que va a una etiqueta va unido."),
+    "rails_intro": ("Everything with the same tag is connected.", "Todo lo que va a una etiqueta va unido."),
     "head_tag": ("tag", "etiqueta"),
     "head_colour": ("colour", "color"),
-    "head_joined": ("what is joined to it", "qué se une a ella"),
+    "head_joined": ("connect to it", "une a ella"),
     "the_board": ("board: {pin}", "placa: {pin}"),
-    "free": ("Stay free: {ends}.", "Quedan libres: {ends}."),
+    "free": ("Leave free: {ends}.", "Quedan libres: {ends}."),
     "motor_wires": ("The motors: {ends}.", "Los motores: {ends}."),
     "motors_join": ("{motor} to {terminals}", "{motor} a {terminals}"),
     # power
@@ -120,19 +120,18 @@ TEXTS: dict[str, tuple[str, str]] = {
                   "shares it switches itself off. The board gets its power through the USB socket, from the computer or a power bank.",
                   "Los motores tienen su propia batería. Gastan tanto, y tan de repente, que una placa que la comparte "
                   "se apaga sola. La placa recibe energía por el conector USB, de la computadora o de una batería portátil."),
-    "power_common": ("The minus of the battery and GND of the board are joined. Without that the signals mean nothing.",
+    "power_common": ("The minus of the battery is connected to GND of the board. Without that the signals mean nothing.",
                      "El menos de la batería y GND de la placa van unidos. Sin eso las señales no significan nada."),
-    "power_not_5v": ("Never join the plus of the battery to 5V of the board.",
+    "power_not_5v": ("Never connect the plus of the battery to 5V of the board.",
                      "Nunca unas el más de la batería con 5V de la placa."),
-    "power_not_3v3": ("Never join the plus of the battery to 5V or 3V3 of the board, nor 5 V to any pin: its pins take 3.3 V.",
+    "power_not_3v3": ("Never connect the plus of the battery to 5V or 3V3 of the board, nor 5 V to any pin: its pins take 3.3 V.",
                       "Nunca unas el más de la batería con 5V o 3V3 de la placa, ni 5 V con un pin: sus pines aguantan 3.3 V."),
     # what to mind
     "mind": ("Take care", "Cuidado"),
-    "mind_floating": ("The resistors of 10 kΩ at {ends} keep the motors still while the board starts: for about a second after every "
-                      "reset no program drives its pins yet, and such a pin may be on or off.",
+    "mind_floating": ("The resistors of 10 kΩ at {ends} keep the motors still while the board starts: for about a second after every " "reset no program controls its pins, which may be on or off.",
                       "Las resistencias de 10 kΩ en {ends} mantienen quietos los motores mientras la placa arranca: durante cerca de un segundo "
                       "después de cada reinicio ningún programa maneja todavía sus pines, y un pin así puede estar encendido o apagado."),
-    "mind_servo_supply": ("Servos need a supply of their own, 5 to 6 V: on the 5V of the board they make it restart. Their minus and GND are joined.",
+    "mind_servo_supply": ("Servos need a supply of their own, 5 to 6 V: on the 5V of the board they make it restart. Connect their minus to GND.",
                           "Los servos necesitan su propia fuente, de 5 a 6 V: con los 5V de la placa hacen que se reinicie. Su menos y GND van unidos."),
     "mind_light": ("A photoresistor has no plus and no minus: either leg is leg 1. More light, higher value.",
                    "Una fotorresistencia no tiene más ni menos: cualquier pata es la pata 1. Más luz, valor más alto."),
@@ -140,8 +139,8 @@ TEXTS: dict[str, tuple[str, str]] = {
                   "Un pin enciende un LED con su resistencia. Algo más fuerte (una lámpara, un relé, un ventilador) necesita un módulo propio en medio."),
     # Bluetooth
     "bluetooth": ("Bluetooth", "Bluetooth"),
-    "bluetooth_divider": ("RXD of the HC-05 is made for 3.3 V, and pin 1 gives 5 V: the resistors of 1 kΩ and 2 kΩ bring that down to 3.3 V. (2.2 kΩ, or two of 1 kΩ in a row, will do for the 2 kΩ.)",
-                          "RXD del HC-05 es para 3.3 V, y el pin 1 da 5 V: las resistencias de 1 kΩ y 2 kΩ lo bajan a 3.3 V. (En vez de 2 kΩ sirve 2.2 kΩ, o dos de 1 kΩ seguidas.)"),
+    "bluetooth_divider": ("RXD of the HC-05 is made for 3.3 V, and pin 1 gives 5 V: the resistors of 1 kΩ and 2 kΩ bring that down to 3.3 V. (2.2 kΩ, or two of 1 kΩ in series, will do for the 2 kΩ.)",
+                          "RXD del HC-05 es para 3.3 V, y el pin 1 da 5 V: las resistencias de 1 kΩ y 2 kΩ lo bajan a 3.3 V. (En vez de 2 kΩ sirve 2.2 kΩ, o dos de 1 kΩ en serie.)"),
     "bluetooth_flash": ("**Unplug the HC-05 from pins 0 and 1 to put the firmware on the board, and whenever you use the USB cable.** Both use the same two pins. "
                         "Without its two wires the USB cable works; with them Bluetooth does.",
                         "**Desconecta el HC-05 de los pines 0 y 1 para poner el firmware en la placa, y siempre que uses el cable USB.** Los dos usan los mismos pines. "
@@ -150,7 +149,7 @@ TEXTS: dict[str, tuple[str, str]] = {
                         "Este robot habla a {baud} baudios, la velocidad con que suele venir un HC-05."),
     "bluetooth_other_speed": ("This robot speaks at {baud} baud; an HC-05 usually comes with 9600. It is set once, in its set-up mode (hold its small button down while you switch it on): tsc module --port P --baud {baud}",
                               "Este robot habla a {baud} baudios; un HC-05 suele venir con 9600. Se cambia una vez, en su modo de configuración (mantén pulsado su botón pequeño mientras lo enciendes): tsc module --port P --baud {baud}"),
-    "bluetooth_state": ("STATE tells the robot when nobody is connected any more: then a program that a computer has started without --detach stops.",
+    "bluetooth_state": ("STATE tells the robot when nobody is connected any more: then a program that a computer started without --detach stops.",
                         "STATE le avisa al robot cuando ya no hay nadie conectado: entonces se detiene el programa que una computadora inició sin --detach."),
     "bluetooth_no_state": ("STATE stays free: the profile gives it no pin.", "STATE queda libre: el perfil no le da un pin."),
     "usb": ("USB", "USB"),
@@ -161,10 +160,10 @@ TEXTS: dict[str, tuple[str, str]] = {
     # before switching on
     "check": ("Before you switch on", "Antes de encender"),
     "check_wheels": ("The wheels are in the air: the robot stands on a box.", "Las ruedas están en el aire: el robot está sobre una caja."),
-    "check_polarity": ("Plus and minus of every battery are where they belong. Exchanged, they destroy parts in a second.",
+    "check_polarity": ("Plus and minus of every battery are where they belong. Swapped, they destroy parts in a second.",
                        "El más y el menos de cada batería están donde deben. Al revés dañan piezas en un segundo."),
-    "check_ground": ("Every GND is joined: board, {parts}.", "Todos los GND están unidos: placa, {parts}."),
-    "check_5v": ("Nothing but the 5V of the board is at the 5V tag.", "En la etiqueta 5V no hay más que los 5V de la placa."),
+    "check_ground": ("Every GND is connected: board, {parts}.", "Todos los GND están unidos: placa, {parts}."),
+    "check_5v": ("Only the 5V of the board feeds the 5V tag.", "En la etiqueta 5V no hay más que los 5V de la placa."),
     "check_3v3": ("Only what the drawing says is at the 5V tag; the rest has 3V3.",
                   "En la etiqueta 5V está solo lo que dice el dibujo; lo demás tiene 3V3."),
     "check_echo": ("1 kΩ is in the wire from ECHO of the HC-SR04, and 2 kΩ go from its pin of the board to GND.",
@@ -175,8 +174,8 @@ TEXTS: dict[str, tuple[str, str]] = {
     "check_unplugged": ("For the firmware: RXD and TXD of the HC-05 are unplugged.", "Para el firmware: RXD y TXD del HC-05 están desconectados."),
     "check_hot": ("After switching on: does anything get hot or smell? Switch off at once and look again.",
                   "Después de encender: ¿algo se calienta o huele? Apaga de inmediato y revisa otra vez."),
-    "check_way": ("A wheel that turns the wrong way, or a robot that drives a curve: leave the wires as they are, tsc trim mends it.",
-                  "Una rueda que gira al revés, o un robot que se va hacia un lado: deja los cables como están, tsc trim lo arregla."),
+    "check_way": ("A wheel turns the wrong way, or the robot pulls to one side? Leave the wires as they are: tsc trim fixes it.",
+                  "¿Una rueda gira al revés, o el robot se va hacia un lado? Deja los cables como están: tsc trim lo arregla."),
     **{key: both for driver in DRIVERS.values() for key, both in driver.texts.items()},
     "made_by": ("Made by TiniScript from the profile of {robot}.", "Hecho por TiniScript a partir del perfil de {robot}."),
 }
