@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import http.server
+import re
 import shutil
 from collections.abc import Iterator
 from pathlib import Path
@@ -229,6 +230,20 @@ def test_each_half_leads_to_the_other(visitor: Page, address: str) -> None:
     visitor.goto(f"{address}en/link.html")  # which is in English only
     visitor.click(".halves a[lang=es]")
     assert visitor.url == f"{address}es/index.html"
+
+
+@pytest.mark.parametrize("name", ["class", "index", "search", "lessons/01_first_line_pupil"])
+def test_what_is_around_a_spanish_page_is_spanish(built: Path, name: str) -> None:
+    english, spanish = (_around(built / each / f"{name}.html") for each in LANGUAGES)
+    assert len(english) > 15
+    assert english & spanish <= {"TiniScript", "Furo", "tsc"}
+
+
+def _around(path: Path) -> set[str]:
+    """Return the texts and labels of a page that are not in its article."""
+    text = re.sub(r"(?s)<(script|style|article).*?</\1>", "", path.read_text(encoding="utf-8"))
+    labels = re.findall(r'(?:aria-label|title|placeholder)="([^"]+)"', text)
+    return {" ".join(each.split()) for each in (*re.findall(r">([^<>]+)<", text), *labels)} - {""}
 
 
 @pytest.mark.parametrize(("old", "new"), MOVED.items())

@@ -24,7 +24,7 @@ ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
 from tools.builds import studio
-from tools.site import links
+from tools.site import links, theme
 from tools.site.documents import LANGUAGES, MOVED, PARTS, Document, documents
 from tools.site.pages import FILES, Missing, Shelf, page, shelf
 
@@ -139,6 +139,8 @@ def render(half: Path, folder: Path, found: list[Document], has_studio: bool) ->
                            env={**os.environ, "PYTHONPATH": paths})  # fmt: skip
     if ended.returncode:
         raise CannotBuild((ended.stdout + ended.stderr).replace(f"{half}{os.sep}", "").strip())
+    if language == "es":
+        theme.translate(folder)
 
 
 def moved_places() -> dict[str, dict[str, str]]:
