@@ -40,15 +40,16 @@ def before(wall: int) -> World:
 FRONT = 9  # cm from the middle of a robot to its distance sensor
 OBSTACLES = worlds.load("obstacles")
 LANE = floor(125, 30, 15, 15, 0)
-DRIVES = {  # the guide, how its program begins, and worlds, each for so many milliseconds
-    "moves.svg": ("language.en.md", "SPEED = 90", (floor(110, 110, 80, 25, 0), 4000)),
-    "until.svg": ("language.en.md", "F(3, 80) UNTIL", (floor(120, 40, 20, 20, 0), 4000)),
-    "faster.svg": ("language.en.md", "SPEED = 40", (LANE, 1000), (LANE, 2000), (LANE, 3000)),
+Drives = tuple[tuple[World, int], ...]  # worlds, each for so many milliseconds
+DRIVES: dict[str, tuple[str, str, Drives]] = {  # the guide, how its program begins
+    "moves.svg": ("language.en.md", "SPEED = 90", ((floor(110, 110, 80, 25, 0), 4000),)),
+    "until.svg": ("language.en.md", "F(3, 80) UNTIL", ((floor(120, 40, 20, 20, 0), 4000),)),
+    "faster.svg": ("language.en.md", "SPEED = 40", ((LANE, 1000), (LANE, 2000), (LANE, 3000))),
     "if.svg": ("language.en.md", "SI|IF(DISTANCE < 10)",
-               (before(8), 2000), (before(20), 2000), (before(60), 2000)),
-    "def.svg": ("language.en.md", "SIZE = 0", (floor(75, 85, 18, 68, 0), 5000)),
-    "dice.svg": ("language.en.md", "SB|LOOP(FOREVER)\n  F(FOREVER, 70)", (OBSTACLES, 20_000)),
-    "course.svg": ("monday.en.md", "SB|LOOP(FOREVER)", (OBSTACLES, 20_000)),
+               ((before(8), 2000), (before(20), 2000), (before(60), 2000))),
+    "def.svg": ("language.en.md", "SIZE = 0", ((floor(75, 85, 18, 68, 0), 5000),)),
+    "dice.svg": ("language.en.md", "SB|LOOP(FOREVER)\n  F(FOREVER, 70)", ((OBSTACLES, 20_000),)),
+    "course.svg": ("monday.en.md", "SB|LOOP(FOREVER)", ((OBSTACLES, 20_000),)),
 }  # fmt: skip
 
 
@@ -60,7 +61,7 @@ def guide_pictures(command: str) -> dict[str, partial[str]]:
     return made | {name: partial(picture, command) for name, picture in wired.items()}
 
 
-def drive(command: str, guide: str, begin: str, *drives: tuple[World, int]) -> str:
+def drive(command: str, guide: str, begin: str, drives: Drives) -> str:
     """Return the way of a guide's program in each world."""
     fences = re.findall(r"^```tiniscript\n(.*?)^```", _text(guide), re.M | re.S)
     [program] = [each for each in fences if each.startswith(begin)]
