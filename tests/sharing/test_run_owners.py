@@ -18,6 +18,7 @@ from tiniscript.link.line import Line
 from tiniscript.link.outcomes import Event, Told
 from tiniscript.link.payloads import DoneEvent, ReceiptReply
 from tiniscript.link.requests import OK, Reply
+from tiniscript.link.sharing import registry
 from tiniscript.link.sharing.requests import ClientRequests
 from tiniscript.link.sharing.server import Server
 from tiniscript.link.sharing.shared_line import SharedLine, joined
@@ -93,6 +94,15 @@ def heard(command: SharedLine, name: str) -> None:
 def asks(command: SharedLine, line: FakeLine, is_detached: bool = False) -> None:
     command.do(lambda requests: requests.start(is_detached))
     until(lambda: bool(line.asked), "the request arrives")
+
+
+def test_a_port_with_two_names_is_listed_once(line: FakeLine) -> None:
+    line.address = "socket://127.0.0.1:7007"
+    with closing(Server(cast(Line, line), PORT, 9600, "link")) as server:
+        own = server.registration
+        assert [each for each in registry.all_found() if each.token == own.token] == [own]
+        other = registry.found(line.address)
+        assert other is not None and other.token == own.token
 
 
 @pytest.mark.parametrize("end", ["STOPPED", "ENDED", "DONE"])
