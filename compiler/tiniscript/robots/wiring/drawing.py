@@ -6,7 +6,9 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 from html import escape
+from itertools import groupby
 from unicodedata import east_asian_width
 
 from tiniscript.robots.driver import GROUND
@@ -53,9 +55,11 @@ def drawing_of(plan: Plan) -> str:
         f'<rect width="{layout.width}" height="{height}" fill="#ffffff"/>',
         *_board(plan, layout),
         *(_wire(route) for route in layout.routes),
+        *_squares(layout, plan),
         *(line for pin in layout.pins for line in _pin(pin, layout, plan)),
         *(line for route in layout.routes for line in _numbers(route)),
         *(line for box in layout.boxes for line in _box(box, plan.language)),
+        *_circles(layout),
         *legend,
         "</svg>",
     ]
@@ -116,16 +120,37 @@ def _board(plan: Plan, layout: Layout) -> list[str]:
     return lines
 
 
-def _pin(pin: Pin, layout: Layout, plan: Plan) -> list[str]:
+def _edge(pin: Pin, layout: Layout) -> int:
     left, _, width, _ = layout.board
-    edge = left if pin.side == LEFT else left + width
-    inward = 1 if pin.side == LEFT else -1
-    is_used = pin.wire is not None or pin.name in set(BOARD_RAILS) & set(plan.rails)
-    fill = "#ffffff" if is_used else "#cccccc"
-    lines = [
-        f'<rect x="{edge - 5}" y="{pin.y - 5}" width="10" height="10" fill="{fill}" '
-        f'stroke="{LINE}"/>'
+    return left if pin.side == LEFT else left + width
+
+
+def _is_used(pin: Pin, plan: Plan) -> bool:
+    return pin.wire is not None or pin.name in set(BOARD_RAILS) & set(plan.rails)
+
+
+def _marks(outlines: Iterable[tuple[bool, str]], style: str = "") -> list[str]:
+    """Return the marks of pins or terminals: those that are used, and those that stay free."""
+    found = sorted(outlines, reverse=True)
+    return [
+        f'<path d="{"".join(each for _, each in same)}" '
+        f'fill="{"#ffffff" if is_used else "#cccccc"}" stroke="{LINE}"{style}/>'
+        for is_used, same in groupby(found, key=lambda each: each[0])
     ]
+
+
+def _squares(layout: Layout, plan: Plan) -> list[str]:
+    return _marks(
+        (_is_used(pin, plan), f"M{_edge(pin, layout) - 5},{pin.y - 5}h10v10h-10z")
+        for pin in layout.pins
+    )
+
+
+def _pin(pin: Pin, layout: Layout, plan: Plan) -> list[str]:
+    edge = _edge(pin, layout)
+    inward = 1 if pin.side == LEFT else -1
+    is_used = _is_used(pin, plan)
+    lines = []
     shown = pin.name
     if pin.number == 13 and plan.has_lamp:
         shown = f"13 {text('lamp_on_board', plan.language)}"
@@ -266,16 +291,24 @@ def _end(end: End, y: int, box: Box) -> list[str]:
     elif end.rail:
         lines.append(_line(at(AT_TAG), y, at(0), y, RAIL_INKS[end.rail]))
         lines.append(_tag(end.rail, at(AT_TAG), y))
-    fill = "#ffffff" if end.wire or end.rail else "#cccccc"
-    lines.append(
-        f'<circle cx="{edge}" cy="{y}" r="5" fill="{fill}" stroke="{LINE}" stroke-width="1.5"/>'
-    )
     if end.name in RAILS and end.wire:
         lines.append(_tag(end.name, at(-28), y))
     else:
         style = "" if end.wire or end.rail else FAINT
         lines.append(text_at(end.name, at(-10), y + 4.5, 90, anchor, 13, style))
     return lines
+
+
+def _circles(layout: Layout) -> list[str]:
+    """Return the terminals of all parts, on the ends of their wires."""
+    return _marks(
+        (
+            (bool(end.wire or end.rail), f"M{box.edge - 5},{y}a5,5 0 1 0 10,0a5,5 0 1 0 -10,0z")
+            for box in layout.boxes
+            for end, y in zip(box.part.ends, box.rows, strict=True)
+        ),
+        ' stroke-width="1.5"',
+    )
 
 
 def _motors(box: Box, language: str) -> list[str]:
