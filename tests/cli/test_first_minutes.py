@@ -35,7 +35,6 @@ from tiniscript.virtual import directory
 from tiniscript.virtual.directory import Running
 from tiniscript.virtual.simulator import Simulator
 from tiniscript.virtual.transports import Transports
-from tiniscript.vm.trace import Event as Traced
 
 needs_robot = pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")
 FOREVER = "SI|LOOP(FOREVER);L(1, 30);END_LOOP"
@@ -357,7 +356,7 @@ def test_the_mark_of_live_reaches_nobody(capsys: pytest.CaptureFixture[str]) -> 
     # nor the picture or the lines of a virtual robot
     bookkeeping = Bookkeeping()
     hidden = [
-        bookkeeping.hides_trace(Traced(0, what, values, ""))
+        bookkeeping.hides_trace(what, values)
         for what, values in (
             ("START", ()), ("SHOW", (1,)), ("SHOW", (MARK,)), ("SHOW", (5000,)), ("MOTORS", (0, 0)),
             ("DONE", ()), ("START", ()), ("SHOW", (5000,)),

@@ -17,7 +17,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.support.command import OBSTACLE, TSC, Done, Tsc, inside
+from tests.support.command import OBSTACLE, TSC, Command, Done, Tsc, inside
 from tests.support.virtual_robot import missing
 from tests.support.waiting import HANGS_S
 from tiniscript.cli.commands.robot import ended_by_signal
@@ -387,15 +387,17 @@ def test_a_port_that_is_taken_and_a_memory_that_is_none(tsc: Tsc, tmp_path: Path
     assert "that has 1024 bytes" in done.err
 
 
-@pytest.mark.parametrize("name", ["wasmtime", "PIL"])
-def test_what_is_not_installed_is_said(
-    tsc: Tsc, name: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
-    for module in [each for each in sys.modules if each.split(".")[0] == name]:
-        monkeypatch.delitem(sys.modules, module)
-    for module in ("vm.wasm_store", "virtual.robot", "virtual.module", "virtual.picture"):
-        monkeypatch.delitem(sys.modules, f"tiniscript.{module}", raising=False)
-    monkeypatch.setitem(sys.modules, name, None)
-    done = tsc("upload", "--virtual", "-e", "SI|S", "--plot", tmp_path / "way.png")
+@pytest.mark.parametrize(
+    ("name", "arguments"),
+    [
+        ("wasmtime", "upload --virtual -e SI|S"),
+        ("wasmtime", "robot --for 1"),
+        ("wasmtime", "lesson check 1 -e SI|S"),
+        ("PIL", "upload --virtual -e SI|S --plot way.png"),
+    ],
+)
+def test_what_is_not_installed_is_said(name: str, arguments: str) -> None:
+    code = f"import sys; sys.modules[{name!r}] = None; from tiniscript.cli import main; "
+    done = Command(*arguments.split(), code=f"{code} sys.exit(main())").ended()
     assert done.code == 2
     assert install_advice.command("virtual") in done.err

@@ -183,6 +183,16 @@ def test_programs_need_no_link(use: str) -> None:
     assert not unwanted & modules
 
 
+def test_every_verb_is_there_without_the_extras() -> None:
+    """A real robot needs nothing of a virtual one, and who has no radio installed has a cable."""
+    verbs = [path.stem for path in (PACKAGE / "cli" / "commands").glob("*.py")]
+    imported_by(
+        "sys.modules.update(dict.fromkeys(('bleak', 'paho', 'PIL', 'wasmtime', 'zeroconf'))); "
+        "from importlib import import_module; "
+        f"[import_module('tiniscript.cli.commands.' + each) for each in {verbs}]"
+    )
+
+
 def test_compile_imports_no_other_verb(tmp_path: Path) -> None:
     program = tmp_path / "drive.ts"
     program.write_text("SI|F(5,80)")

@@ -165,19 +165,43 @@ def test_monitor_shows_what_live_does_and_not_its_bookkeeping(
     assert monitor.ended().out == ""
 
 
-def test_an_upload_through_a_server_imports_no_more_than_it_needs() -> None:
-    """So the robot moves before a person has let go of the key."""
-    code = (
-        "import sys; from tiniscript.cli import main; assert main(sys.argv[1:]) == 0; "
-        "print(' '.join(sys.modules))"
-    )
+IMPORTS = (
+    "import sys; from tiniscript.cli import main; assert main(sys.argv[1:]) == 0; "
+    "print(' '.join(sys.modules))"
+)
+# Commands for whose robot a person waits, and what each must not import.
+AT_ONCE = [
+    pytest.param(("upload", "-e", "SI|F(0.1, 30)"), set[str](), id="upload"),
+    pytest.param(("stop",), {"csv", "tiniscript.codegen", "tiniscript.semantics"}, id="stop"),
+]
+NEVER = {"construct", "tomllib", "tomli", "rich", "ssl", "asyncio", "bleak", "zeroconf", "wasmtime",
+         "concurrent.futures", "tiniscript.cli.robot.fleet", "tiniscript.cli.robot.in_reach",
+         "tiniscript.cli.robot.simulator", "tiniscript.diagnostics.rendering",
+         "tiniscript.virtual.transports", "tiniscript.vm.machine"}  # fmt: skip
+OF_A_PORT = {"serial", "cobs", "threading", "tiniscript.link.session", "tiniscript.link.ports"}
+
+
+def imported_by(port: str, arguments: tuple[str, ...]) -> set[str]:
+    done = Command(*arguments, "--port", port, code=IMPORTS).ended()
+    return set(done.out.splitlines()[-1].split())
+
+
+@pytest.mark.parametrize(("arguments", "unwanted"), AT_ONCE)
+def test_through_a_server_a_command_imports_no_more_than_it_needs(
+    arguments: tuple[str, ...], unwanted: set[str]
+) -> None:
     with Shared() as (pty_robot, _):
-        command = Command("upload", "-e", "SI|F(0.1, 30)", "--port", pty_robot.port, code=code)
-        modules = set(command.ended().out.splitlines()[-1].split())
-    unwanted = {"serial", "cobs", "construct", "tomllib", "tomli", "rich", "threading",
-                "tiniscript.link.session", "tiniscript.link.ports", "tiniscript.cli.robot.fleet",
-                "tiniscript.diagnostics.rendering"}  # fmt: skip
-    assert sorted(unwanted & modules) == []
+        found = imported_by(pty_robot.port, arguments)
+    assert sorted((NEVER | OF_A_PORT | unwanted) & found) == []
+
+
+@pytest.mark.parametrize(("arguments", "unwanted"), AT_ONCE)
+def test_a_command_that_opens_the_port_imports_no_more_than_it_needs(
+    pty_robot: PtyRobot, arguments: tuple[str, ...], unwanted: set[str]
+) -> None:
+    found = imported_by(pty_robot.port, arguments)
+    assert sorted((NEVER | unwanted) & found) == []
+    assert found >= OF_A_PORT
 
 
 # -- whose run it is ------------------------------------------------------------------------------

@@ -24,17 +24,19 @@ from tiniscript.cli import inputs, outputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.options import whole_number
 from tiniscript.cli.program_files import Found, in_folder, read
-from tiniscript.cli.robot.simulator_options import check_picture
+from tiniscript.cli.robot.simulator_options import check_picture, not_installed
 from tiniscript.cli.spreadsheet import as_csv
 from tiniscript.cli.texts.common import Said, text
 from tiniscript.diagnostics.rendering import message
 from tiniscript.lessons.findings import Finding
 from tiniscript.lessons.lesson import Lesson
+from tiniscript.lessons.marking import Marking
 from tiniscript.lessons.running import Run
 from tiniscript.lessons.sentences import sentence
 from tiniscript.library.compiling import Compiled, maker
 from tiniscript.robots.profile import Robot
 from tiniscript.source import PROGRAM_ENDS, Unreadable, decode, printable
+from tiniscript.virtual.module import NoWebAssembly
 from tiniscript.virtual.world import WorldRefused, describe
 
 PROGRAMS = 200  # of a folder
@@ -130,19 +132,14 @@ class _Marker:
     def mark(self, given: inputs.Input, compiled: Compiled) -> Mark:
         if not compiled.is_right:
             return Mark(given.name, MISTAKES, 0, tuple(self._mistakes(compiled)))
-        try:
-            from tiniscript.lessons.marking import Marking
-        except (ImportError, OSError, RuntimeError) as why:  # missing, or not for this computer
-            from tiniscript.cli.robot.simulator_options import not_installed
-
-            raise not_installed("virtual_needs_wasmtime", why) from None
-
         made = maker(self.robot)
         marking = Marking(compiled.source.text, made, self.robot, self.lesson, self.seeds)
         try:
             found = marking.whole()
         except WorldRefused as refused:
             raise self._blocked(refused, marking.seed) from None
+        except NoWebAssembly as why:
+            raise not_installed("virtual_needs_wasmtime", why) from None
         return Mark(given.name, found.verdict, found.seed, self._said(found.findings), found.run)
 
     def _said(self, findings: Iterable[Finding]) -> tuple[tuple[str, str], ...]:

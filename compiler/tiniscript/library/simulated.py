@@ -8,8 +8,9 @@ from __future__ import annotations
 import math
 import os
 from threading import Thread
-from typing import NamedTuple, cast
+from typing import NamedTuple
 
+from tiniscript.library import install_advice
 from tiniscript.library.connection import VERB, RobotConnection
 from tiniscript.library.errors import UsageError
 from tiniscript.library.programs import Language, profile_of
@@ -17,6 +18,7 @@ from tiniscript.library.runs import LARGEST_SEED, Readings, thousandths, whole, 
 from tiniscript.robots.kinematics import Pose
 from tiniscript.robots.profile import Robot
 from tiniscript.virtual import directory, worlds
+from tiniscript.virtual.module import NoWebAssembly
 from tiniscript.virtual.robot import Settings, VirtualRobot
 from tiniscript.virtual.simulator import Simulator
 from tiniscript.virtual.transports import Transports
@@ -57,13 +59,6 @@ def virtual_robot(
     for motor in (left, right):
         within("motors", motor, LEAST_MOTOR, MOST_MOTOR, language)
     told = thousandths(sensors or {}, profile, language)
-    try:
-        from tiniscript.virtual.robot import Settings
-    except (ImportError, OSError, RuntimeError) as why:  # missing, or not for this computer
-        from tiniscript.library import install_advice
-
-        how = install_advice.command(install_advice.VIRTUAL)
-        raise UsageError("no_wasmtime", language, {"why": str(why), "how": how}) from None
     settings = Settings(seed=seed, noise=noise, motors=(left, right), told=told)
     simulated = Simulated(
         _made(profile, os.fspath(world), settings, language), 0.0 if hurry == math.inf else hurry
@@ -161,12 +156,13 @@ class Simulated:
             self._transports.close()
 
 
-def _made(profile: Robot, world: str, settings: object, language: Language) -> VirtualRobot:
+def _made(profile: Robot, world: str, settings: Settings, language: Language) -> VirtualRobot:
     """Return the robot in its world. Raises UsageError."""
     try:
-        return VirtualRobot(
-            profile.speaking(language), worlds.load(world), cast(Settings, settings)
-        )
+        return VirtualRobot(profile.speaking(language), worlds.load(world), settings)
+    except NoWebAssembly as why:
+        how = install_advice.command(install_advice.VIRTUAL)
+        raise UsageError("no_wasmtime", language, {"why": str(why), "how": how}) from None
     except WorldRefused as refused:
         said = {"reasons": "\n".join(describe(refused, language))}
         raise UsageError("world_refused", language, said) from None

@@ -12,7 +12,7 @@ from zeroconf import Error, NonUniqueNameException, ServiceInfo, Zeroconf
 
 from tiniscript.link.port_names import TCP
 from tiniscript.link.transports.network import LONGEST, SERVICE, asked
-from tiniscript.virtual.transports import LOCAL
+from tiniscript.virtual.directory import LOCAL
 
 ASK_MS = 2500  # timeout for a robot that has the name: for a second it may say nothing twice
 

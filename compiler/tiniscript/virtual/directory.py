@@ -14,9 +14,9 @@ from tiniscript import files
 from tiniscript.files import contents
 from tiniscript.link.port_names import same_for_all
 from tiniscript.link.sharing.registry import is_taken
-from tiniscript.virtual.transports import LOCAL
 
 FILE_BYTES = 10_000
+LOCAL = "127.0.0.1"
 PREFIX = f"socket://{LOCAL}:"
 
 

@@ -4,8 +4,7 @@
 of a Mega and of an ESP32.
 
 Knows how to call the module (`vm_arduino/extras/wasm/robot.cpp` is the other side). Does not know
-what a robot does in its world: a `Board` is told. Importing this fails where `wasmtime` is not
-installed, or cannot run on this computer.
+what a robot does in its world: a `Board` is told.
 """
 
 from __future__ import annotations
@@ -16,20 +15,16 @@ from struct import pack
 from typing import NamedTuple, Protocol
 from weakref import WeakMethod
 
-if sys.platform == "emscripten":  # in a page
-    from tiniscript.vm import page_wasm as wasm_store
-    from tiniscript.vm.page_wasm import Func, FuncType, Instance, Memory
-else:
-    from wasmtime import Func, FuncType, Instance, Memory
-
-    from tiniscript.vm import wasm_store
-
 PATH = Path(__file__).with_name("robot.wasm")
 PATH_MEGA = Path(__file__).with_name("robot_mega.wasm")
 PATH_ESP32 = Path(__file__).with_name("robot_esp32.wasm")
 
 POWER_ON, RESET_BUTTON = 1, 2  # why it begins
 NOWHERE = (1 << 32) - 1
+
+
+class NoWebAssembly(Exception):
+    """`wasmtime` is not installed, or cannot run on this computer; the text says why."""
 
 
 class Board(Protocol):
@@ -88,6 +83,17 @@ class Firmware:
     def __init__(
         self, board: Board, what: Circumstances, memory: bytes | None = None, path: Path = PATH
     ) -> None:
+        """Raises NoWebAssembly."""
+        try:
+            if sys.platform == "emscripten":  # in a page
+                from tiniscript.vm import page_wasm as wasm_store
+                from tiniscript.vm.page_wasm import Func, FuncType, Instance, Memory
+            else:
+                from wasmtime import Func, FuncType, Instance, Memory
+
+                from tiniscript.vm import wasm_store
+        except (ImportError, OSError, RuntimeError) as why:
+            raise NoWebAssembly(str(why)) from None
         self._store = wasm_store.store()
         module = wasm_store.module(path)
         looks = WeakMethod(self._look)  # `wasm_store` says why

@@ -66,7 +66,7 @@ FLASH_US = 10  # of an ESP32, whose NVS writes a whole program at once
 class VirtualRobot:
     """A robot that is switched on, and stands at the start of its world.
 
-    Raises WorldRefused where it does not fit there.
+    Raises WorldRefused where it does not fit there, and NoWebAssembly.
     """
 
     def __init__(

@@ -164,7 +164,7 @@ class _Stage:
     def _tell(self, events: list[Event]) -> None:
         is_plain = self.screen is None or not sys.stdout.isatty()
         for event in events:
-            if self._bookkeeping.hides_trace(event):
+            if self._bookkeeping.hides_trace(event.what, event.values):
                 continue
             if event.what == "START":
                 self.began_ms = event.time_ms

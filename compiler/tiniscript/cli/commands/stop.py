@@ -10,8 +10,8 @@ from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.member import Member, Result, are_many
-from tiniscript.cli.robot.run_monitor import confirmed
 from tiniscript.cli.texts.common import text
+from tiniscript.library.opening import confirmed
 
 
 def run(options: Namespace, language: str) -> int:

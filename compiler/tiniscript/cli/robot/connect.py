@@ -18,6 +18,7 @@ from tiniscript.cli.inputs import shown
 from tiniscript.cli.options import whole_number
 from tiniscript.cli.terminal.progress import waiting
 from tiniscript.cli.texts.common import text
+from tiniscript.cli.texts.options import virtual_names
 from tiniscript.library import opening
 from tiniscript.library.client import Client
 from tiniscript.library.errors import TiniScriptError
@@ -315,10 +316,9 @@ def _chosen(options: Namespace, language: str) -> str:
         from tiniscript.cli.robot.simulator import running_address
 
         return running_address(options) or VIRTUAL
-    if can_bring:
-        from tiniscript.cli.robot.simulator_options import refuse_real
-
-        refuse_real(options)
+    for name in virtual_names() if can_bring else ():
+        if getattr(options, name):
+            raise CommandError(2, "only_virtual", option=f"--{name}")
     if port is not None:
         if not port.strip() or not port.isprintable():
             raise CommandError(2, "no_such_port", found=shown(port) or "''")

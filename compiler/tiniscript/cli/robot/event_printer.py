@@ -20,7 +20,6 @@ from tiniscript.fixed_point import as_text
 from tiniscript.link.messages import CAUSES, LINK_FAULTS, STATE_FAULTED, STATE_IDLE
 from tiniscript.link.outcomes import Event
 from tiniscript.link.payloads import ShowEvent, StatusReply
-from tiniscript.vm.trace import Event as Traced
 
 MARK = -(2**31)  # the smallest number there is
 
@@ -167,13 +166,13 @@ class Bookkeeping:
             self.is_on = True
         return self.is_on
 
-    def hides_trace(self, event: Traced) -> bool:
+    def hides_trace(self, what: str, values: tuple[int, ...]) -> bool:
         """The same for an action in the trace of a virtual robot."""
-        if event.what in ("START", "DONE", "FAULT", "STOP", "OFF"):
+        if what in ("START", "DONE", "FAULT", "STOP", "OFF"):
             self.is_on = False
-        elif event.what == "SHOW" and event.values == (MARK,):
+        elif what == "SHOW" and values == (MARK,):
             self.is_on = True
-        return self.is_on and event.what == "SHOW"
+        return self.is_on and what == "SHOW"
 
 
 def json_value(event: ShowEvent) -> object:

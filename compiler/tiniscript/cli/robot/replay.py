@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 from argparse import Namespace
-from typing import TYPE_CHECKING
 
 from tiniscript import robots
 from tiniscript.cli import inputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.robot.simulator_options import not_installed, refused_world, world_of
 from tiniscript.cli.texts.common import text
+from tiniscript.studio import recordings
+from tiniscript.studio.recordings import BadRecording, Parting, Recorded, Recording, read
+from tiniscript.virtual.module import NoWebAssembly
 from tiniscript.virtual.world import WorldRefused
-
-if TYPE_CHECKING:
-    from tiniscript.studio.recordings import Parting, Recorded, Recording
 
 SAME = ("same", "missed")
 # options of `tsc run` that say what the recording says, or the virtual robot
@@ -32,12 +31,10 @@ def replay(options: Namespace, language: str) -> int:
     robot = _robot(options, recording)
     world = world_of(options, language)
     try:
-        from tiniscript.studio import recordings
-
         found = recordings.replay(recording, given.data, robot, world)
     except WorldRefused as refused:
         raise refused_world(world.name, refused, language) from None
-    except (ImportError, OSError, RuntimeError) as why:  # missing, or not for this computer
+    except NoWebAssembly as why:
         raise not_installed("virtual_needs_wasmtime", why) from None
     print(sentence(found, language))
     return int(found.what not in SAME)
@@ -57,8 +54,6 @@ def _robot(options: Namespace, recording: Recording) -> str:
 
 
 def _read(name: str) -> Recording:
-    from tiniscript.studio.recordings import BadRecording, read
-
     try:
         return read(inputs.file(name).data)
     except BadRecording as bad:

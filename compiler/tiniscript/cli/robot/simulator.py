@@ -207,7 +207,7 @@ class CommandSimulator:
                     self._undrawn.extend(events)
                     while self._picture is not None and self._undrawn:
                         event = self._undrawn.popleft()
-                        if not self._bookkeeping.hides_trace(event):
+                        if not self._bookkeeping.hides_trace(event.what, event.values):
                             self._picture.take(event)
                     if self.screen is not None and monotonic() >= self._frame_s:
                         self._frame_s = monotonic() + FRAME_S

@@ -13,7 +13,8 @@ from tiniscript.cli.texts.common import Said, text
 from tiniscript.cli.texts.options import virtual_names
 from tiniscript.robots.profile import Robot
 from tiniscript.virtual import worlds
-from tiniscript.virtual.robot import VirtualRobot
+from tiniscript.virtual.module import NoWebAssembly
+from tiniscript.virtual.robot import Settings, VirtualRobot
 from tiniscript.virtual.world import World, WorldRefused, describe
 
 ONE = 1000  # thousandths
@@ -27,13 +28,6 @@ MOTOR_LOW, MOTOR_HIGH = 10 * ONE, 200 * ONE  # percent
 def wants_own(options: Namespace) -> bool:
     """Whether an option needs a virtual robot of this command."""
     return any(getattr(options, name, None) not in (None, []) for name in virtual_names())
-
-
-def refuse_real(options: Namespace) -> None:
-    """Refuse the options that a real robot does not support."""
-    for name in virtual_names():
-        if getattr(options, name):
-            raise CommandError(2, "only_virtual", option=f"--{name}")
 
 
 def made(
@@ -50,13 +44,11 @@ def made(
     noise = number("--noise", options.noise, 0, 0, MOST_NOISE, language) / 100
     motors = _motors(options.motors, language)
     told = sensor_lists(options.sensor, profile, language)
-    try:
-        from tiniscript.virtual.robot import Settings, VirtualRobot
-    except (ImportError, OSError, RuntimeError) as why:  # missing, or not for this computer
-        raise not_installed("virtual_needs_wasmtime", why) from None
     settings = Settings(seed=seed, noise=noise, motors=motors, told=told, baud=baud)
     try:
         return VirtualRobot(profile.speaking(language), world, settings, memory)
+    except NoWebAssembly as why:
+        raise not_installed("virtual_needs_wasmtime", why) from None
     except WorldRefused as refused:
         raise refused_world(world.name, refused, language) from None
 
