@@ -45,7 +45,7 @@ def saved(page: Page) -> bytes:
 @pytest.fixture(scope="module")
 def visited(firefox: Browser, address: str) -> Iterator[tuple[Pages, Page]]:
     pages = Pages(firefox, address)
-    page = pages.open("blocks")
+    page = pages.open("blocks", is_alone=True)
     page.evaluate(KEEP)
     yield pages, page
     pages.close()

@@ -245,6 +245,7 @@ def test_identify_name_and_trim(page: Page, robot: PtyRobot) -> None:
     assert page.input_value("#trim_balance") == "-7"
 
 
+@pytest.mark.sampled("language")
 @pytest.mark.parametrize("language", ["en", "es"])
 @pytest.mark.parametrize("screen", SCREENS, ids=lambda screen: "x".join(map(str, screen)))
 def test_everything_is_seen(

@@ -40,6 +40,7 @@ def large_again(page: Page) -> object:
     page.click("#view_text")
 
 
+@pytest.mark.sampled("language")
 @pytest.mark.parametrize("language", ["en", "es"])
 def test_everything_is_reached_on_a_low_screen(page: Page, language: str) -> None:
     page.select_option("#language", language)

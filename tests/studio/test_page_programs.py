@@ -390,6 +390,7 @@ LOOK = """() => {
 }"""
 
 
+@pytest.mark.sampled("language")
 @pytest.mark.parametrize("language", ["en", "es"])
 @pytest.mark.parametrize("screen", [(1366, 768), (1024, 600), (390, 844)])
 def test_everything_is_seen(page: Page, screen: tuple[int, int], language: str) -> None:

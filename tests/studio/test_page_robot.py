@@ -39,6 +39,7 @@ def at_rest(page: Page) -> None:
     page.select_option("#world", "obstacles")
 
 
+@pytest.mark.sampled("name", "robot", "world", keep=2)
 @pytest.mark.parametrize(
     ("name", "robot", "world"),
     [

@@ -14,6 +14,7 @@ from contextlib import contextmanager
 from importlib.util import find_spec
 from threading import Thread
 from typing import TYPE_CHECKING, Any, NamedTuple
+from weakref import WeakKeyDictionary
 
 from tests.support.command import FOREVER
 from tests.support.platformio import need
@@ -25,15 +26,17 @@ from tiniscript.studio.hosting import Hosting
 from tools.builds import studio
 
 if TYPE_CHECKING:
-    from playwright.sync_api import Browser, Page, Playwright
+    from playwright.sync_api import Browser, BrowserContext, Page, Playwright, Request
 
     from tests.support.pty_robot import PtyRobot
 
 # No sandbox: root has none, and these pages are our own. WebAssembly is compiled once and not again
-# for speed: Python does little in a page of a test, and each begins it anew.
+# for speed: Python does little in a page of a test. The tabs of a context share a renderer and what
+# it has compiled.
 OPTIONS = ("--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
            "--disable-background-networking", "--disable-component-update", "--disable-sync",
-           "--disable-dev-shm-usage", "--js-flags=--liftoff-only")  # fmt: skip
+           "--disable-dev-shm-usage", "--js-flags=--liftoff-only",
+           "--process-per-site")  # fmt: skip
 UPLOADS = 10  # after so many stops in a row the computer is not to blame
 
 
@@ -155,8 +158,21 @@ def browser(playwright: Playwright, *more: str, is_whole: bool = False) -> Itera
         opened.close()
 
 
+# A tab that stays in a context keeps its renderer, and the WebAssembly of Python compiled in it.
+STILL = "licences.txt"
+HOLD = """async () => {
+  window.held = await WebAssembly.compileStreaming(fetch('./pyodide.asm.wasm'));
+}"""
+_LEFT: WeakKeyDictionary[Browser, list[BrowserContext]] = WeakKeyDictionary()
+
+
 class Pages:
-    """Pages of one server; each must have said no error, and asked nobody else, at the end."""
+    """Pages of one server; each must have said no error, and asked nobody else, at the end.
+
+    Most visitors get a context that an earlier one has left, in which no tab is open and nothing is
+    kept. What a test changes of a whole context (scripts that begin each page, permissions) stays:
+    it asks for one that is alone.
+    """
 
     def __init__(
         self, opened: Browser, address: str, patience_s: int = 90,
@@ -168,27 +184,28 @@ class Pages:
         self.entrance = entrance or (lambda: address)
         self.wrong: list[str] = []
         self._browser = opened
-        self._contexts: list[Any] = []
+        self._contexts: list[BrowserContext] = []
+        self._to_leave: list[BrowserContext] = []
 
     def open(self, view: str = "text", **options: Any) -> Page:
         """Open a page of a new visitor, and wait until its program is compiled.
 
-        `view` is `blocks`, which a new visitor sees, or `text`, which most tests write.
+        `view` is `blocks`, which a new visitor sees, or `text`, which most tests write; the others
+        are those of `visit`.
         """
         return self.visit(self.entrance(), view, **options)
 
-    def visit(self, address: str, view: str = "text", **options: Any) -> Page:
-        """Open an address of the page, for a new visitor."""
-        settings = {
-            "viewport": {"width": 1366, "height": 768},
-            "locale": "en-US",
-            "service_workers": "block",  # each would fetch everything a second time
-            **options,
-        }
-        context = self._browser.new_context(**settings)
+    def visit(
+        self, address: str, view: str = "text", *, is_alone: bool = False, **options: Any
+    ) -> Page:
+        """Open an address of the page, for a new visitor.
+
+        With `is_alone`, or options of Playwright's, in a context that no other visitor gets.
+        """
+        context = self._own(options) if is_alone or options else self._lent()
         context.set_default_timeout(1000 * self.patience_s)
-        self._contexts.append(context)
-        page: Page = context.new_page()
+        context.on("request", self._asked)
+        page = context.new_page()
         self.watch(page)
         page.goto(address)
         checked(page)
@@ -198,22 +215,55 @@ class Pages:
             shown(page)
         return page
 
+    def _own(self, options: dict[str, Any]) -> BrowserContext:
+        settings = {
+            "viewport": {"width": 1366, "height": 768},
+            "locale": "en-US",
+            "service_workers": "block",  # each would fetch everything a second time
+            **options,
+        }
+        self._contexts.append(self._browser.new_context(**settings))
+        return self._contexts[-1]
+
+    def _lent(self) -> BrowserContext:
+        left = _LEFT.setdefault(self._browser, [])
+        if left:
+            context = left.pop()
+        else:
+            context = self._own({})
+            self._contexts.remove(context)
+            still = context.new_page()
+            still.goto(self.address + STILL)
+            still.evaluate(HOLD)
+        self._to_leave.append(context)
+        return context
+
     def watch(self, page: Page) -> None:
         page.on("pageerror", lambda error: self.wrong.append(str(error)))
         page.on("console", lambda said: self._said(said.type, said.text))
-        page.context.on("request", lambda request: self._asked(request.url))
 
     def close(self) -> None:
+        """Close the pages; what visitors have left in their browsers is forgotten."""
         for context in self._contexts:
             context.close()
+        for context in self._to_leave:
+            context.remove_listener("request", self._asked)
+            still, *others = context.pages
+            for page in others:
+                page.close()
+            session = context.new_cdp_session(still)
+            whole = {"origin": self.address.rstrip("/"), "storageTypes": "all"}
+            session.send("Storage.clearDataForOrigin", whole)
+            session.detach()
+            _LEFT[self._browser].append(context)
 
     def _said(self, kind: str, text: str) -> None:
         if kind in ("error", "warning") and "blocked by Playwright" not in text:
             self.wrong.append(text)
 
-    def _asked(self, address: str) -> None:
-        if not address.startswith((self.address, "data:", "blob:")):
-            self.wrong.append(address)
+    def _asked(self, request: Request) -> None:
+        if not request.url.startswith((self.address, "data:", "blob:")):
+            self.wrong.append(request.url)
 
 
 def checked(page: Page) -> None:
