@@ -96,6 +96,7 @@ def elf(made: Path, example: str, board: str, folder: Path) -> Path:
     return found
 
 
+@pytest.mark.sampled("board")
 @pytest.mark.parametrize("board", ["uno", "mega"])
 @pytest.mark.parametrize("example", EXAMPLES)
 def test_an_example_builds_and_fits(

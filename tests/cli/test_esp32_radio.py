@@ -11,7 +11,7 @@ import pytest
 from tests.machines.esp32 import Esp32Robot, missing
 from tests.machines.host_firmware import HostFirmware
 from tests.support.bad_network import BadNetwork
-from tests.support.command import FOREVER, LONG, Command, process
+from tests.support.command import FOREVER, LONG, Command, inside, process
 from tests.support.pty_robot import on
 
 if sys.platform == "win32":
@@ -112,7 +112,7 @@ def test_words_that_make_no_sense_are_said_before_any_port_is_opened(
     words: tuple[str, ...],
 ) -> None:
     for language in ("en", "es"):
-        done = process(*words, "--port", "/none", "--lang", language, data=PASSWORD)
+        done = inside(*words, "--port", "/none", "--lang", language, data=PASSWORD)
         assert done.code == 2 and done.err.startswith("tsc: ")
 
 

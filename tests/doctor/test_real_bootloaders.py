@@ -44,6 +44,7 @@ def needs_a_chip() -> None:
     needed()
 
 
+@pytest.mark.sampled("board", "name")
 @pytest.mark.parametrize(
     ("board", "name"), [("uno", "uno"), ("nano", "nano-old"), ("mega", "mega")]
 )
