@@ -7,25 +7,17 @@ from __future__ import annotations
 
 import json
 import signal
-from collections.abc import Iterator
 
 import pytest
 
 from tests.machines.host_firmware import missing
 from tests.support.command import Command, Done
 from tests.support.pty_robot import PtyRobot, on, uploading
-from tiniscript import robots
 
 pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
 pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 
 WAITS = "SI|LOOP(FOREVER);W(1);END_LOOP"
-
-
-@pytest.fixture
-def pty_robot() -> Iterator[PtyRobot]:
-    with PtyRobot(robots.load("tinibot").kit) as found:
-        yield found
 
 
 def held(pty_robot: PtyRobot, text: str) -> Command:

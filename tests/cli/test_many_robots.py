@@ -14,7 +14,7 @@ from contextlib import closing
 import pytest
 
 from tests.machines.host_firmware import missing
-from tests.support.command import FOREVER, TSC, Done, Tsc, ended, inside, process, running
+from tests.support.command import FOREVER, TSC, Done, Tsc, ended, inside, process, rest_of, running
 from tests.support.robot_fleet import RobotFleet
 from tests.support.waiting import HANGS_S
 from tiniscript import robots
@@ -256,7 +256,7 @@ def test_the_table_shows_every_robot_and_leaves_plain_rows(class_: RobotFleet) -
     screen = pyte.Screen(100, 24)
     stream = pyte.ByteStream(screen)
     seen = set()
-    while part := _rest(ours):
+    while part := rest_of(ours):
         stream.feed(part)
         text = "\n".join(screen.display)
         if text.count("running   SHOW 7") == 4:
@@ -289,13 +289,6 @@ def test_every_table_fits_its_terminal(count: int) -> None:
                 shown = "".join(line.plain for line in lines[1:-1])
                 assert "fine" not in shown or shown.count("\n") >= count // 3
                 assert lines[-1].plain.startswith("…")
-
-
-def _rest(terminal: int) -> bytes:
-    try:
-        return os.read(terminal, 65536)
-    except OSError:  # Linux: the other end is closed
-        return b""
 
 
 @pytest.mark.parametrize("when", ["_print", "_print_lines", "_news"])

@@ -6,25 +6,17 @@ The robot is the firmware in C++, `tsc` a process of its own.
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
 
 import pytest
 
 from tests.machines.host_firmware import missing
 from tests.support.command import process
 from tests.support.pty_robot import PtyRobot, on, uploading
-from tiniscript import robots
 
 pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
 pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 
 FIRST, SECOND = "SB|F(0.1, 50)", "SB|F(0.1, 60)"
-
-
-@pytest.fixture
-def pty_robot() -> Iterator[PtyRobot]:
-    with PtyRobot(robots.load("tinibot").kit) as found:
-        yield found
 
 
 def with_two(pty_robot: PtyRobot) -> list[str]:

@@ -16,8 +16,7 @@ from tests.machines import Senses
 from tests.machines.python import run_python
 from tests.oracle import machine, programs
 from tests.oracle.interpreter import Kit
-from tests.oracle.test_verifier import python as verdict
-from tests.support.cpp_checks import check_round, run_late
+from tests.support.cpp_checks import check_round, python_verdict, run_late
 from tests.support.images import image_for
 from tests.support.kits import KITS
 from tests.support.random_codes import random_codes
@@ -59,7 +58,7 @@ def codes(seed: int, count: int) -> Iterator[tuple[bytes, int, dict[str, list[in
         if rng.random() < 0.5:
             code = compile_text(programs.program(rng, theirs), kit).code
         else:
-            code = next(each for each in damaged if verdict(each, *sizes) == (0, 0))
+            code = next(each for each in damaged if python_verdict(each, *sizes) == (0, 0))
         yield code, which, dict(programs.senses(rng, theirs)), rng.randrange(1, 2**32)
 
 

@@ -22,22 +22,15 @@ import pytest
 from tests.machines.host import host, missing
 from tests.oracle import spec_tables, verifier
 from tests.support.casefile import ROOT, Case, all_cases
+from tests.support.cpp_checks import python_verdict
 from tests.support.random_codes import random_codes
 from tiniscript import compile_text
 from tiniscript.bytecode.disassembly import read_listing
 from tiniscript.bytecode.opcodes import ROLES
-from tiniscript.bytecode.verify import RULES, Refused, verify
+from tiniscript.bytecode.verify import RULES
 from tiniscript.robots import DEFAULT, load
 
 SENSORS, ACTUATORS = 3, 2
-
-
-def python(code: bytes, sensors: int = SENSORS, actuators: int = ACTUATORS) -> verifier.Verdict:
-    try:
-        verify(code, sensors, actuators)
-    except Refused as refused:
-        return refused.number, refused.offset
-    return 0, 0
 
 
 def compare(codes: Iterable[bytes], sensors: int = SENSORS, actuators: int = ACTUATORS) -> set[int]:
@@ -45,7 +38,7 @@ def compare(codes: Iterable[bytes], sensors: int = SENSORS, actuators: int = ACT
     codes = list(codes)
     said = [verifier.verdict(code, sensors, actuators) for code in codes]
     for code, verdict in zip(codes, said, strict=True):
-        ours = python(code, sensors, actuators)
+        ours = python_verdict(code, sensors, actuators)
         assert ours == verdict, f"{code.hex(' ')}: Python says {ours}, the page {verdict}"
         ours = verdict_of_the_program(code, sensors, actuators)
         assert ours == verdict, f"{code.hex(' ')}: the page's program says {ours}, not {verdict}"

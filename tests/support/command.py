@@ -104,14 +104,6 @@ class Command:
     def signal(self, number: int) -> None:
         self.process.send_signal(number)
 
-    def ends_within(self, limit_s: float) -> bool:
-        """Whether it ends in a while. What it prints fits into a pipe."""
-        try:
-            self.process.wait(limit_s)
-        except subprocess.TimeoutExpired:
-            return False
-        return True
-
     def ended(self) -> Done:
         out, err = self.process.communicate(timeout=HANGS_S)
         return Done(self.process.returncode, out.decode(), err.decode())

@@ -10,6 +10,7 @@ from tiniscript.bytecode.image import Image, ImageRefused
 from tiniscript.bytecode.verify import Refused
 from tiniscript.diagnostics.codes import OTHER_ROBOT, Diagnostic
 from tiniscript.kit import Kit
+from tiniscript.robots import given
 from tiniscript.robots.profile import Robot
 
 if TYPE_CHECKING:
@@ -31,7 +32,6 @@ def naming_robots(diagnostics: list[Diagnostic], text: str, robot: Robot) -> lis
 
 def is_other_robots(diagnostics: list[Diagnostic]) -> bool:
     """Whether a program has words of another robot: they have been through `naming_robots`."""
-    from tiniscript.robots import given
     from tiniscript.semantics import other_kits
 
     unknown = [each for each in diagnostics if other_kits.is_unknown(each)]
@@ -44,8 +44,6 @@ def is_other_robots(diagnostics: list[Diagnostic]) -> bool:
 
 def _others() -> dict[str, Kit]:
     """Return the known kits, by the name or the path of their robots."""
-    from tiniscript.robots import given
-
     found: dict[str, Kit] = {}
     for name in robots.names():
         kit = robots.load(name).kit
@@ -71,8 +69,6 @@ def shipped_of_kit(fingerprint: int) -> str | None:
 
 def of_kit(fingerprint: int) -> Robot | None:
     """Return the profile that has this kit: a shipped one, or one that a user has given before."""
-    from tiniscript.robots import given
-
     name = shipped_of_kit(fingerprint)
     return given.recall(fingerprint) if name is None else robots.load(name)
 
@@ -93,8 +89,6 @@ def fitting(image: Image, first: Robot) -> Robot | None:
 
     Returns None if no such robot is known.
     """
-    from tiniscript.robots import given
-
     if fits(image, first):
         return first
     shipped = (robots.load(name) for name in robots.names())

@@ -14,7 +14,6 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from threading import RLock
 from time import monotonic
-from typing import TYPE_CHECKING
 
 from tiniscript.link.port_names import same_for_all
 from tiniscript.source import printable
@@ -23,9 +22,6 @@ from tiniscript.studio.hosted_robot import HostedRobot
 from tiniscript.studio.hosting import PORT_CHARACTERS, Hosting, listed
 from tiniscript.studio.robot_link import BadRequest, Json
 from tiniscript.studio.serving import REQUEST_BYTES
-
-if TYPE_CHECKING:
-    from tiniscript.studio.hosted_robot import HostedRobot
 
 MOST_NAMES = 1000  # who has not been seen for longest is forgotten
 

@@ -10,6 +10,7 @@ from tiniscript.cli import inputs, outputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.texts.common import Said, text
 from tiniscript.cli.texts.options import of_verb
+from tiniscript.lessons import catalogue
 from tiniscript.lessons.lesson import Lesson, LessonRefused
 from tiniscript.lessons.refusals import describe
 
@@ -32,8 +33,6 @@ def run(options: Namespace, language: str) -> int:
         return _list(language)
     if options.number is None:
         raise CommandError(2, "lesson_which", action=action)
-    from tiniscript.lessons import catalogue
-
     try:
         folder = catalogue.folder_of(options.number)
         lesson = catalogue.load(folder)
@@ -69,8 +68,6 @@ def _refused(name: str, refused: LessonRefused, language: str) -> CommandError:
 
 
 def _list(language: str) -> int:
-    from tiniscript.lessons import catalogue
-
     for number, folder in enumerate(catalogue.folders(), 1):
         lesson = catalogue.load(folder)
         said = text("lesson_title", language)
@@ -81,8 +78,6 @@ def _list(language: str) -> int:
 
 def _page(folder: Path, is_teachers: bool, language: str) -> str:
     """Return the Markdown of a page; that of a teacher has the answers behind it."""
-    from tiniscript.lessons import catalogue
-
     page = catalogue.page(folder, catalogue.TEACHER if is_teachers else catalogue.PUPIL, language)
     if not is_teachers:
         return page

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import sys
 from argparse import Namespace
 from pathlib import Path
@@ -77,8 +78,6 @@ def print_listing(ready: images.Ready, robot: Robot, name: str, language: str) -
 
 
 def print_json(ready: images.Ready, robot: Robot) -> None:
-    import json
-
     image = ready.image
     instructions = []
     for row in rows(image.code):
