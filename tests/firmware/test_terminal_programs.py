@@ -202,7 +202,7 @@ def test_a_terminal_that_echoes_all_starts_no_conversation(pty_robot: PtyRobot) 
         thread.join()
         os.close(port)
     answers = [row.rpartition(": ")[2] for row in bytes(said).decode().splitlines()]
-    assert answers[:4] == ["Word not known", "Word not known", "// OK", "// DONE"]
+    assert answers[:4] == ["Unknown word", "Unknown word", "// OK", "// DONE"]
     assert bytes(said).count(b"//") == 4
 
 

@@ -45,15 +45,15 @@ def typed(robot: HostFirmware, text: str | bytes, milliseconds: int = 30) -> lis
 # What a person types at a robot that stands, and what it answers in English and in Spanish.
 ANSWERS = (
     ("S~00000000", "1: Line damaged. Send it again", "1: Linea danada. Enviala de nuevo"),
-    ("F(2,80)#", "8: Sign not known", "8: Signo desconocido"),
+    ("F(2,80)#", "8: Unknown sign", "8: Signo desconocido"),
     ("W(5.)", "3: Write it like 5 or 0.5", "3: Escribelo como 5 o 0.5"),
-    ("X = 2147483.648", "5: Most is 2147483.647", "5: Lo maximo es 2147483.647"),
+    ("X = 2147483.648", "5: Max is 2147483.647", "5: Lo maximo es 2147483.647"),
     ("SI F(1,50)", "4: SI| or SB| goes first", "4: SI| o SB| va al principio"),
     ("PING|S", "6: PING|CHECK_CONNECTION alone", "6: PING|CHECK_CONNECTION solo"),
     ("X=1; X + 1", "6: Begin with a word like F", "6: Empieza con algo como F"),
-    ("SI|FOO(1)", "4: Word not known", "4: Palabra desconocida"),
+    ("SI|FOO(1)", "4: Unknown word", "4: Palabra desconocida"),
     ("X = X + 1", "5: No value yet. Write X = 0", "5: Sin valor. Escribe X = 0"),
-    ("TASK", "1: This word is not for here", "1: Esta palabra no va aqui"),
+    ("TASK", "1: This word cannot go here", "1: Esta palabra no va aqui"),
     ("F(1,50) R(1,50)", "9: Put ; before this", "9: Pon ; antes de esto"),
     ("F 2, 80", "3: Put ( before this", "3: Pon ( antes de esto"),
     ("F(2 80)", "5: Put , before this", "5: Pon , antes de esto"),
@@ -73,7 +73,7 @@ ANSWERS = (
     ("UNTIL(TRUE)", "1: UNTIL goes after F B L R W", "1: UNTIL va tras F B L R W"),
     ("ENDIF", "1: First open a block", "1: Antes abre un bloque"),
     ("BREAK", "1: BREAK goes in a loop", "1: BREAK va en un bucle"),
-    ("DISTANCE = 5", "1: It is another thing's name", "1: Es nombre de otra cosa"),
+    ("DISTANCE = 5", "1: This name is taken", "1: Es nombre de otra cosa"),
     ("LOOP(1);" * 17, "134: Too many, or too deep", "134: Demasiado, o muy adentro"),
     ("A" * 300, "1: Too long. Make it shorter", "1: Muy largo. Hazlo mas corto"),
     ("SI|W(0)", "OK", "OK"),
@@ -125,7 +125,7 @@ def test_backspace_edits_what_is_typed() -> None:
     robot = switched_on()
     assert typed(robot, "SO\b\bSI|G\bFO\x7f(0.2,50)\n", 400) == ["// OK", "// DONE"]
     assert happened(robot) == LINE
-    assert typed(robot, "F(0.2,50)\b\n", 400) == ["// 10: Sign not known"]
+    assert typed(robot, "F(0.2,50)\b\n", 400) == ["// 10: Unknown sign"]
 
 
 @pytest.mark.parametrize("is_spanish", [False, True])

@@ -97,7 +97,7 @@ def test_its_words_are_those_of_its_level(uno: Uno) -> None:
     words = " ".join(typed(uno, "HELP\n", 600)).replace("// ", "").split()
     assert {"F", "LOOP", "END_LOOP", "ROUND", "UNTIL", "DISTANCE"} <= {*words}
     assert not {"DEF", "END_DEF", "ENDDEF", "TASK"} & {*words}
-    assert typed(uno, "DEF A\n", 100) == ["// 1: Not read by this robot"]
+    assert typed(uno, "DEF A\n", 100) == ["// 1: This robot cannot read it"]
     assert typed(uno, "END_DEF\n", 100) == ["// 1: First open a block"]
 
 

@@ -38,7 +38,7 @@ def test_lines_are_answered_and_the_robot_drives() -> None:
         assert heard(client, "DONE") == ["// OK", "// 1.5", "// DONE"]
         assert found.until("DONE")[1:3] == ["0 MOTORS 50 50", "200 MOTORS 0 0"]
         client.sendall(b"SI|FOO(1)\n")
-        assert heard(client, "known") == ["// 4: Word not known"]
+        assert heard(client, "word") == ["// 4: Unknown word"]
         for line in FOREVER.replace(";", ";\n").encode().splitlines(keepends=True):
             client.sendall(line)
         client.sendall(b"\n")

@@ -26,15 +26,15 @@ class Problem(NamedTuple):
 # fmt: off
 PROBLEMS = (  # by number, from 1
     Problem("CHECKSUM",       "Line damaged. Send it again",  "Linea danada. Enviala de nuevo"),
-    Problem("CHARACTER",      "Sign not known",               "Signo desconocido"),
+    Problem("CHARACTER",      "Unknown sign",                 "Signo desconocido"),
     Problem("NUMBER",         "Write it like 5 or 0.5",       "Escribelo como 5 o 0.5"),
-    Problem("TOO_BIG",        "Most is 2147483.647",          "Lo maximo es 2147483.647"),
+    Problem("TOO_BIG",        "Max is 2147483.647",           "Lo maximo es 2147483.647"),
     Problem("SETUP",          "SI| or SB| goes first",        "SI| o SB| va al principio"),
     Problem("PING",           "PING|CHECK_CONNECTION alone",  "PING|CHECK_CONNECTION solo"),
     Problem("INSTRUCTION",    "Begin with a word like F",     "Empieza con algo como F"),
-    Problem("UNKNOWN_WORD",   "Word not known",               "Palabra desconocida"),
+    Problem("UNKNOWN_WORD",   "Unknown word",                 "Palabra desconocida"),
     Problem("UNKNOWN_VALUE",  "No value yet. Write X = 0",    "Sin valor. Escribe X = 0"),
-    Problem("RESERVED",       "This word is not for here",    "Esta palabra no va aqui"),
+    Problem("RESERVED",       "This word cannot go here",     "Esta palabra no va aqui"),
     Problem("SEPARATOR",      "Put ; before this",            "Pon ; antes de esto"),
     Problem("OPEN",           "Put ( before this",            "Pon ( antes de esto"),
     Problem("CLOSE",          "Check the ( and )",            "Revisa los ( y )"),
@@ -51,10 +51,10 @@ PROBLEMS = (  # by number, from 1
     Problem("BLOCK",          "First open a block",           "Antes abre un bloque"),
     Problem("BREAK",          "BREAK goes in a loop",         "BREAK va en un bucle"),
     Problem("DEF",            "DEF goes outside blocks",      "DEF va fuera de bloques"),
-    Problem("TAKEN",          "It is another thing's name",   "Es nombre de otra cosa"),
+    Problem("TAKEN",          "This name is taken",           "Es nombre de otra cosa"),
     Problem("LIMIT",          "Too many, or too deep",        "Demasiado, o muy adentro"),
     Problem("FULL",           "Too long. Make it shorter",    "Muy largo. Hazlo mas corto"),
-    Problem("LACKS",          "Not read by this robot",       "Este robot no lo lee"),
+    Problem("LACKS",          "This robot cannot read it",    "Este robot no lo lee"),
     Problem("COMMA",          "Put , before this",            "Pon , antes de esto"),
 )
 # fmt: on

@@ -16,15 +16,15 @@ namespace tiniscript {
 enum class Problem : uint8_t {
   kNone = 0,
   kChecksum = 1,  // Line damaged. Send it again
-  kCharacter = 2,  // Sign not known
+  kCharacter = 2,  // Unknown sign
   kNumber = 3,  // Write it like 5 or 0.5
-  kTooBig = 4,  // Most is 2147483.647
+  kTooBig = 4,  // Max is 2147483.647
   kSetup = 5,  // SI| or SB| goes first
   kPing = 6,  // PING|CHECK_CONNECTION alone
   kInstruction = 7,  // Begin with a word like F
-  kUnknownWord = 8,  // Word not known
+  kUnknownWord = 8,  // Unknown word
   kUnknownValue = 9,  // No value yet. Write X = 0
-  kReserved = 10,  // This word is not for here
+  kReserved = 10,  // This word cannot go here
   kSeparator = 11,  // Put ; before this
   kOpen = 12,  // Put ( before this
   kClose = 13,  // Check the ( and )
@@ -41,10 +41,10 @@ enum class Problem : uint8_t {
   kBlock = 24,  // First open a block
   kBreak = 25,  // BREAK goes in a loop
   kDef = 26,  // DEF goes outside blocks
-  kTaken = 27,  // It is another thing's name
+  kTaken = 27,  // This name is taken
   kLimit = 28,  // Too many, or too deep
   kFull = 29,  // Too long. Make it shorter
-  kLacks = 30,  // Not read by this robot
+  kLacks = 30,  // This robot cannot read it
   kComma = 31,  // Put , before this
 };
 
