@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from threading import Thread
 from typing import TYPE_CHECKING
+from urllib.parse import quote
 
 import pytest
 
@@ -246,12 +247,14 @@ def _around(path: Path) -> set[str]:
     return {" ".join(each.split()) for each in (*re.findall(r">([^<>]+)<", text), *labels)} - {""}
 
 
-@pytest.mark.parametrize(("old", "new"), MOVED.items())
+@pytest.mark.parametrize(
+    ("half", "old", "new"), [(half, *row) for half in LANGUAGES for row in MOVED[half].items()]
+)
 def test_an_old_name_leads_to_where_its_text_is_now(
-    visitor: Page, address: str, old: str, new: str
+    visitor: Page, address: str, half: str, old: str, new: str
 ) -> None:
     before, after = (
-        f"{address}en/{name}.html{mark}{place}"
+        f"{address}{half}/{name}.html{mark}{quote(place)}"
         for name, mark, place in (each.partition("#") for each in (old, new))
     )
     visitor.goto(before)

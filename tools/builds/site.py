@@ -88,9 +88,11 @@ def _build(root: Path, folder: Path, scratch: Path, has_studio: bool) -> None:
         half = scratch / language
         stage(half, found, on, language)
         render(half, folder / language, found, has_studio)
-    for old, new in MOVED.items():
-        if "#" not in old:
-            (folder / "en" / f"{old}.html").write_text(LEADS_ON.format(f"{new}.html"), "utf-8")
+        for old, new in MOVED[language].items():
+            if "#" not in old:
+                (folder / language / f"{old}.html").write_text(
+                    LEADS_ON.format(f"{new}.html"), "utf-8"
+                )
     for name in sorted(on.files):
         _copy(root / name, folder / FILES / name)
     link = ""
@@ -129,7 +131,7 @@ def render(half: Path, folder: Path, found: list[Document], has_studio: bool) ->
     other = OTHER[language]
     both = [each.name for each in found if set(each.sources) == set(LANGUAGES)]
     told = {"other": other, "other_name": NAMES[other], "both": both, "has_studio": has_studio,
-            "moved": moved_places() if language == "en" else {}}  # fmt: skip
+            "moved": moved_places(language)}  # fmt: skip
     (half / "half.json").write_text(json.dumps(told), encoding="utf-8")
     words = [sys.executable, "-m", "sphinx", "-b", "html", "-q", "-j", "2", "-W", "--keep-going",
              "-E", "-D", f"language={language}", "-d", str(half.parent / f"{language}.trees"),
@@ -143,10 +145,10 @@ def render(half: Path, folder: Path, found: list[Document], has_studio: bool) ->
         theme.translate(folder)
 
 
-def moved_places() -> dict[str, dict[str, str]]:
-    """Return where the places of a page that have moved are now, by page and old name."""
+def moved_places(language: str) -> dict[str, dict[str, str]]:
+    """Return where the places that have moved in one half are now, by page and old name."""
     found: dict[str, dict[str, str]] = {}
-    for old, new in MOVED.items():
+    for old, new in MOVED[language].items():
         page_name, is_place, place = old.partition("#")
         if is_place:
             target, mark, there = new.partition("#")

@@ -26,6 +26,7 @@ SPANISH = {
         "Para buscar, activa JavaScript.",
     "Previous": "Anterior",
     "Skip to content": "Saltar al contenido",
+    "Studio": "Estudio",
     "Toggle Light / Dark / Auto color theme": COLORS,
     "Toggle site navigation sidebar": "Mostrar u ocultar la navegación",
     "Toggle table of contents sidebar": "Mostrar u ocultar el contenido de la página",
