@@ -26,34 +26,38 @@ def is_right(text: str, kit: Kit = NO_KIT) -> bool:
     return not [diagnostic.code.number for diagnostic in found.diagnostics if diagnostic.is_mistake]
 
 
-@pytest.mark.parametrize("name", NAMES)
-def test_a_variable_may_be_called_so(name: str) -> None:
-    assert is_right(f"{name} = 2;IF({name} > 1 AND {name} < 5);{name} = {name} + 1;ENDIF")
-    assert is_right(f"{name} = TRUE\nWHILE({name});{name} = NOT {name};END_WHILE")
-    assert is_right(f"{name} = 50;F({name} / 100, {name});SHOW({name}) ; M({name}, -{name})")
-    assert is_right(f"Q=3\n{name}=4;LOOP({name});Q={name};END_LOOP;SHOW(Q)")
+def test_a_variable_may_be_called_so() -> None:
+    for name in NAMES:
+        count = f"{name} = 2;IF({name} > 1 AND {name} < 5);{name} = {name} + 1;ENDIF"
+        assert is_right(count), name
+        assert is_right(f"{name} = TRUE\nWHILE({name});{name} = NOT {name};END_WHILE"), name
+        used = f"{name} = 50;F({name} / 100, {name});SHOW({name}) ; M({name}, -{name})"
+        assert is_right(used), name
+        assert is_right(f"Q=3\n{name}=4;LOOP({name});Q={name};END_LOOP;SHOW(Q)"), name
 
 
-@pytest.mark.parametrize("name", NAMES)
-def test_a_def_may_be_called_so(name: str) -> None:
-    assert is_right(f"DEF {name};S;END_DEF;{name};LOOP(2);{name};END_LOOP")
-    assert is_right(f"DEF {name}\nS\nEND_DEF\n{name}\nIF(TRUE)\n{name}\nENDIF")
+def test_a_def_may_be_called_so() -> None:
+    for name in NAMES:
+        assert is_right(f"DEF {name};S;END_DEF;{name};LOOP(2);{name};END_LOOP"), name
+        assert is_right(f"DEF {name}\nS\nEND_DEF\n{name}\nIF(TRUE)\n{name}\nENDIF"), name
 
 
-@pytest.mark.parametrize("name", NAMES)
 @pytest.mark.parametrize("kind", [NUMBER, YES_NO])
-def test_a_sensor_may_be_called_so(name: str, kind: str) -> None:
-    kit = Kit((Device(name, kind, "", 0, 1 if kind == YES_NO else 1000),), ())
-    condition = name if kind == YES_NO else f"{name} > 0"
-    assert is_right(f"{name};IF({condition});W(1) UNTIL({condition});ENDIF;SHOW({name})", kit)
+def test_a_sensor_may_be_called_so(kind: str) -> None:
+    for name in NAMES:
+        kit = Kit((Device(name, kind, "", 0, 1 if kind == YES_NO else 1000),), ())
+        condition = name if kind == YES_NO else f"{name} > 0"
+        text = f"{name};IF({condition});W(1) UNTIL({condition});ENDIF;SHOW({name})"
+        assert is_right(text, kit), name
 
 
-@pytest.mark.parametrize("name", NAMES)
 @pytest.mark.parametrize("kind", [NUMBER, YES_NO])
-def test_an_actuator_may_be_called_so(name: str, kind: str) -> None:
-    kit = Kit((), (Device(name, kind, "", 0, 1 if kind == YES_NO else 180_000),))
+def test_an_actuator_may_be_called_so(kind: str) -> None:
     value = "TRUE" if kind == YES_NO else "90"
-    assert is_right(f"{name}({value});IF(TRUE);{name}({value});ENDIF;W(1)\n{name}({value})", kit)
+    for name in NAMES:
+        kit = Kit((), (Device(name, kind, "", 0, 1 if kind == YES_NO else 180_000),))
+        text = f"{name}({value});IF(TRUE);{name}({value});ENDIF;W(1)\n{name}({value})"
+        assert is_right(text, kit), name
 
 
 def test_a_word_has_one_meaning_in_one_table() -> None:
