@@ -5,7 +5,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable
 from html import escape
 from itertools import groupby
@@ -349,8 +348,3 @@ def _legend(plan: Plan, top: int) -> list[str]:
         y = top + 8 + LEGEND_STEP * len(lines)
         lines.append(text_at(text(key, plan.language), 10, y + 5, 900))
     return lines
-
-
-def texts_in(svg: str) -> list[str]:
-    """Return the texts of a drawing, still escaped."""
-    return re.findall(r"<text[^>]*>([^<]*)</text>", svg)
