@@ -16,9 +16,11 @@ PAGES = {"en": "command.en.md", "es": "comandos.es.md"}
 OTHER = {"en": ("es", "Español"), "es": ("en", "English")}
 TITLE = ("The command `tsc`", "El comando `tsc`")
 INTRODUCTION = (
-    "Every verb, with the options that people combine with it. `tsc help all` and"
+    "For anyone who uses `tsc`: look up every verb, with the options that people combine with it."
+    " `tsc help all` and"
     " `tsc help VERB` say the same on a terminal; `tsc --help` has the ten that most people need.",
-    "Todos los comandos, con las opciones que se combinan con ellos. `tsc help todo` y"
+    "Para quienes usan `tsc`: aquí están todos los comandos, con las opciones que se combinan con"
+    " ellos. `tsc help todo` y"
     " `tsc help COMANDO` dicen lo mismo en una terminal; `tsc --help` muestra los diez que más se"
     " usan.",
 )
