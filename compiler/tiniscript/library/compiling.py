@@ -52,6 +52,7 @@ def check_text(text: str, kit: Kit, name: str = "") -> Compiled:
     if found.is_right:
         return found
     from tiniscript.recovery.findings import findings, moved_back
+    from tiniscript.repairs.everywhere import said_once
 
     def mistakes(it: str) -> list[codes.Diagnostic]:
         return analyzed(it, kit).diagnostics
@@ -62,9 +63,9 @@ def check_text(text: str, kit: Kit, name: str = "") -> Compiled:
         rest = check_text(applied(text, edits), kit)
         # The warnings of what is left come when it is repaired.
         left = [] if rest.is_right else [moved_back(each, edits) for each in rest.diagnostics]
-        return found._replace(diagnostics=codes.in_order([*answered.told, *left]))
+        told = said_once([*answered.told, *left], found.source)
+        return found._replace(diagnostics=codes.in_order(told))
     from tiniscript.repairs.def_order import with_moved_defs
-    from tiniscript.repairs.everywhere import said_once
     from tiniscript.repairs.vouching import vouched
     from tiniscript.repairs.whole_blocks import with_whole_blocks
 

@@ -1,7 +1,7 @@
-"""Advice: what is told of words behind an instruction, where no repair is sure.
+"""Advice: what is told of words that no repair reads surely.
 
-Reads each instruction of a line with the words behind it by the rows of `advice_rows`. Knows no row
-and no sentence of any language.
+Reads each instruction of a line with the words behind it, and words without one, by the rows of
+`advice_rows`. Knows no row and no sentence of any language.
 """
 
 from __future__ import annotations
@@ -15,13 +15,14 @@ from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import CODES, Diagnostic
 from tiniscript.kit import Kit
 from tiniscript.recovery import advice_rows, lines, rewrites
-from tiniscript.recovery.behind import Behind, Placed, whole
+from tiniscript.recovery.behind import Above, Behind, Placed, whole
 from tiniscript.recovery.concepts import ENDED, Lexeme, Names, lexemes, made, said_of
 from tiniscript.recovery.slots import filled
 from tiniscript.recovery.writing import laid_out, without_note
 from tiniscript.source import Edit, Span
-from tiniscript.syntax.lexer import NUMBER, WORD
+from tiniscript.syntax.lexer import NUMBER
 from tiniscript.syntax.operators import COMPARISONS
+from tiniscript.syntax.outline import Failure
 from tiniscript.syntax.suggestions import shortened
 from tiniscript.words import BLOCK_ENDS, OTHER_WAY, WORDS
 
@@ -30,7 +31,10 @@ LONGEST = 24  # words behind an instruction that are read
 _ASIDE = (codes.REPEATED.number, codes.WORDS_BEHIND.number)
 _MOST_TIMES, _DEGREES = 50, 20  # a number behind a turn that is rather an angle
 _BODY = 2_000  # characters in which the end of a block is looked for
-_MOST_BEFORE = 8  # instructions on a line that an example repeats
+_MOST_BEFORE = 8  # instructions that an example repeats
+_FARTHEST = 40  # instructions of a text that are looked at for what is done again
+_ONE_IN_LOOP = 2  # separators of a loop of one instruction
+_BEGIN_BODY = (*BLOCK_ENDS, "ELSE", "ELSEIF")
 _BARE = ".:,\\* \"'`´“”‘’«»"  # signs that a note needs not
 
 
@@ -56,28 +60,50 @@ def rows() -> tuple[Row, ...]:
         compiled = rewrites.compiled(pattern, advice_rows.PARTS)
         wrong, _, right = example.rpartition(" => ")
         named = tuple((name, text) for name, _, text in told)
-        found.append(Row(compiled, code, named, (wrong, right)))
+        found.append(Row(compiled, code, named, (wrong.replace("⏎", "\n"), right)))
     return tuple(found)
 
 
 def advised(text: str, kit: Kit) -> list[Advice]:
-    """Return what is told of the words behind each instruction of a text."""
+    """Return what is told of words behind each instruction of a text, or in place of one."""
     bodies = [without_note(line)[0] for line in text.split("\n")]
     names = Names([lexemes(body) for body in bodies], kit)
     found: list[Advice] = []
+    above = Above([], None)
     start = depth = 0
     for body, line in zip(bodies, text.split("\n"), strict=True):
+        told: list[Advice] = []
         if "~" not in body:
-            parts = _parts(body, start, text, names, depth)
-            found += (each for part in parts if (each := _told(part)))
+            parts = _parts(body, start, text, names, depth, above)
+            told = [each for part in parts if (each := _told(part))]
+        found += told
+        if body.strip() and not any(each.diagnostic.code is codes.SAME_AGAIN for each in told):
+            above = _below(above, body.partition("|")[2] or body, names)
         words = [each.text for each in lexemes(body)]
         depth += sum(word in BLOCK_ENDS for word in words) - sum(word in ENDED for word in words)
         start += len(line) + 1
     return found
 
 
-def _parts(body: str, start: int, text: str, names: Names, depth: int) -> Iterator[Behind]:
-    """Give each instruction of a line that has words behind it."""
+def _below(above: Above, line: str, names: Names) -> Above:
+    """Return what stands above the line that follows."""
+    parts = [each for each in map(lexemes, line.split(";")) if each]
+    words = {each.text for part in parts for each in part}
+    is_right = not any(isinstance(lines.right(part, names), Failure) for part in parts)
+    if parts and parts[-1][0].text in _BEGIN_BODY:
+        return Above(None, None)
+    if words & {*_BEGIN_BODY, *ENDED} or not is_right:
+        return Above(None, "")
+    shown = [each.strip() for each in line.split(";") if each.strip().upper() not in ("", "START")]
+    is_long = above.orders is None or len(above.orders) > _FARTHEST
+    orders = None if is_long else [*(above.orders or ()), *shown]
+    return Above(orders, line.strip().rstrip(" ;") if words & {*WORDS} else "")
+
+
+def _parts(
+    body: str, start: int, text: str, names: Names, depth: int, above: Above
+) -> Iterator[Behind]:
+    """Give each instruction of a line that has words behind it, and words without one."""
     placed: list[Placed] = []
     for token in lexemes(body):
         start += len(token.space or "")
@@ -85,6 +111,10 @@ def _parts(body: str, start: int, text: str, names: Names, depth: int) -> Iterat
         start = placed[-1].span.end
     begin = 0
     before: list[str] | None = []
+
+    def behind(call: Sequence[Placed], row: Sequence[Placed], said: str = "") -> Behind:
+        return Behind(call, row, before, above, text, names, depth, said)
+
     for k in range(len(placed) + 1):
         if k < len(placed) and placed[k].token.text not in (";", "{", "}", "|"):
             continue
@@ -97,31 +127,29 @@ def _parts(body: str, start: int, text: str, names: Names, depth: int) -> Iterat
             rest = part[size:]
             if not size and (found := _said_call([each.token for each in part], names)):
                 k, call = found
-                yield Behind(part[:k], part[k:], before, text, names, depth, call)
+                yield behind(part[:k], part[k:], call)
+                break
             if not size or not rest:
+                yield behind([], part)
                 break
             after = whole([each.token for each in rest], names)
             is_asked = rest[0].token.text in ("IF", "WHILE") and after == len(rest)
             if not after or (
                 is_asked and not _has_body(rest[0].token.text, text[rest[-1].span.end :])
             ):
-                yield Behind(part[:size], rest, before, text, names, depth)
+                yield behind(part[:size], rest)
                 break
             depth += part[0].token.text in BLOCK_ENDS
             part = rest
         if part and before is not None:
-            is_block = part[0].token.text in (*BLOCK_ENDS, *ENDED, "ELSE", "ELSEIF")
+            is_block = part[0].token.text in (*_BEGIN_BODY, *ENDED)
             source = text[part[0].span.start : part[-1].span.end]
             before = None if is_block else [*before, source]
         begin = k + 1
 
 
 def _told(part: Behind) -> Advice | None:
-    has_words = any(each.kind in (WORD, NUMBER) for each in part.row)
-    is_aside = any(each.kind is WORD for each in part.row) or (
-        part.is_right() and (has_words or part.words == "()")
-    )
-    if len(part.row) > LONGEST or not is_aside:
+    if len(part.row) > LONGEST or not part.is_aside():
         return None
     line = rewrites.Encoded([made(";"), *part.row], part.names, part.labels())
     for row in rows():
@@ -132,7 +160,8 @@ def _told(part: Behind) -> Advice | None:
             found = _advice(row, _Gaps(part, line, match))
         except _NoGap:
             continue
-        return None if row.code in _ASIDE and _is_read_surely(part) else found
+        is_aside = row.code in _ASIDE and bool(part.tokens) and _is_read_surely(part)
+        return None if is_aside else found
     return None
 
 
@@ -232,6 +261,32 @@ def _few(gaps: _Gaps) -> str:
     is_angle = gaps.part.own in ("L", "R") and number.isdecimal() and int(number) >= _DEGREES
     is_few = number.isdecimal() and 1 < int(number[:9]) <= _MOST_TIMES
     return number if is_few and not is_angle else ""
+
+
+def _all(gaps: _Gaps, times: str) -> str:
+    """The loop that does so often all that stands before, nothing where that is long."""
+    part = gaps.part
+    if part.before is None or part.above.orders is None or part.is_in_block or times in ("0", "1"):
+        return ""
+    orders = _once([*part.above.orders, *part.before, *([part.call] if part.call else [])])
+    if not 0 < len(orders) <= _MOST_BEFORE:
+        return ""
+    return ";".join((f"LOOP({times})", *orders, BLOCK_ENDS["LOOP"]))
+
+
+def _once(orders: list[str]) -> list[str]:
+    """Return the orders that the others repeat: F and L of `F; L; F; L`."""
+    said = ["".join(each.split()).upper() for each in orders]
+    for size in range(1, len(orders) // 2 + 1):
+        if len(orders) % size == 0 and said == said[:size] * (len(orders) // size):
+            return orders[:size]
+    return orders
+
+
+def _twice(gaps: _Gaps) -> str:
+    """All that stands before, twice, where that is more than one instruction."""
+    found = _all(gaps, "2")
+    return found if found.count(";") > _ONE_IN_LOOP else ""
 
 
 def _loop(gaps: _Gaps) -> str:
@@ -359,6 +414,10 @@ def _note(gaps: _Gaps) -> str:
 
 
 _GAPS: dict[str, Callable[[_Gaps], str]] = {
+    "above?": lambda gaps: [gaps.part.above.line or "", *(gaps.part.before or ())][-1],
+    "all": lambda gaps: _all(gaps, gaps["n"]), "often?": lambda gaps: _all(gaps, "4"),
+    "more": lambda gaps: _all(gaps, str(int(gaps["n"]) + 1)), "twice": _twice,
+    "said": lambda gaps: gaps.part.words.strip(" ,:"),
     "text": lambda gaps: shortened(gaps.part.text[slice(*gaps.part.place)]),
     "words": lambda gaps: shortened(gaps.part.words),
     "both": _both, "loop": _loop, "line": _line, "few": _few, "paused": _paused,

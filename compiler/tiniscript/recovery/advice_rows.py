@@ -1,4 +1,4 @@
-"""The rows of advice: what is told of words behind an instruction, where no repair is sure.
+"""The rows of advice: what is told of words that no repair reads surely.
 
 `ADVICE` has these columns, and the first row that holds is told:
 
@@ -7,10 +7,13 @@
 A pattern is one of `rows`. Its first token is a whole instruction, with its brackets and its UNTIL;
 the others are the words behind it. Classes of the instruction, beside its word: @cmd (of the
 language), @did (a DEF), @arm (a header, ELSE or an end), @more (others stand before it on its
-line), @outer (in no block), @move, @clock (its first value is its time) and @asked (has its UNTIL). Classes of the words:
-@number (in words, too), @often (a number that says how often), @percent (one that says a power),
-@in_s (a unit of time), @other (the other way), @paced (another pace than its power), @told (says
-nothing that the instruction does not) and @no_order (a word that begins no instruction). What `s` captures is pointed at.
+line), @later (others stand before it), @outer (in no block), @move, @clock (its first value is its
+time) and @asked (has its UNTIL). Words without an instruction have @none there, also @after where
+one stands before them, and @last where they end the text, too. Classes of the words: @number (in
+words, too), @often (a number that says how often), @percent (one that says a power), @in_s (a unit
+of time), @other (the other way), @paced (another pace than its power), @told (says nothing that the
+instruction does not), @no_order (a word that begins no instruction), @quote, @mark (what is written
+below a line that is meant again) and @dots. What `s` captures is pointed at.
 
 Values are texts with gaps. A gap is a capture, or a function in `advice`; a row with a gap that
 cannot be filled does not hold. Rows are sorted by what is asked for.
@@ -21,10 +24,30 @@ PARTS = {
     "lead": """[|,|=|:|"|(?""",
     "close": """]|"|)?""",
     "does": "c=@cmd|@did",
+    "again": "then|filler* same then|filler|same|above*",
+    "rest": ",? then*",
+    "loop": "REPETIR|REPITE|REPITES|REPEAT|BUCLE|CICLO",
     "often": "*|LOOP|POR|X? n=@often times?",
 }
 
 ADVICE = """
+# what stands for what is above it, and for what follows
+^ @after @mark* @quote @mark* $ | TS130 | right={above?} | F(2, 80)⏎" => right=F(2, 80)
+^ @after , ,+ $ | TS130 | right={above?} | F(2, 80); ,, => right=F(2, 80)
+^ @after <again> $ | TS130 | right=; last={above?}; all={twice} | F(2, 80)⏎R(1, 60)⏎y lo mismo => last=R(1, 60)
+^ @after <again> $ | TS130 | right={above?} | F(2, 80)⏎igual que arriba => right=F(2, 80)
+^ @after <again> POR? n=@often times $ | TS130 | right=; often={all} | F(2, 80)⏎lo mismo 3 veces => often=LOOP(3);F(2, 80);END_LOOP
+^ @after <again> POR? n=@often times extra $ | TS130 | right=; often={more} | F(2, 80)⏎otra vez 2 veces mas => often=LOOP(3);F(2, 80);END_LOOP
+^ @after|@later <rest> etc @any* $ | TS131 | found={said}; all={often?} | F(2, 80); R(1, 60), etc. => all=LOOP(4);F(2, 80);R(1, 60);END_LOOP
+^ @after|@later <rest> ASI|SO SUCESIVAMENTE|ON|FORTH|SIEMPRE|HASTA|VARIAS|MUCHAS|TODO @any* $ | TS131 | found={said}; all={often?} | F(2, 80)⏎y asi siempre => all=LOOP(4);F(2, 80);END_LOOP
+^ @after|@later ,? Y|E ASI @any* $ | TS131 | found={said}; all={often?} | F(2, 80)⏎y asi hasta el final => found=y asi hasta el final
+^ @after|@later ,? Y|E SIGUE|MAS|TODO ASI|ESO? $ | TS131 | found={said}; all={often?} | F(2, 80)⏎y todo eso => found=y todo eso
+^ @after|@later ,? @dots+ $ | TS131 | found={said}; all={often?} | F(2, 80)⏎R(1, 60) ... => all=LOOP(4);F(2, 80);R(1, 60);END_LOOP
+# how often, before what is repeated, and a loop behind it
+^ @none 1|UNA|ONE times :? $ | TS062 | found={words}; line={said} | 1 vez:⏎S => line=1 vez
+^ @none n=@number times :? $ | TS062 | found={words}; fix=LOOP({n}) | 4 veces:⏎S => fix=LOOP(4)
+^ @last <loop> (? n=@num )? times? $ | TS062 | found={words}; all={all} | F(1, 50)⏎repetir 3 => all=LOOP(3);F(1, 50);END_LOOP
+^ @last <loop> (? @num? )? times? $ | TS062 | found={words} | F(1, 50)⏎repetir => found=repetir
 # words for nothing, and those that are no words behind it
 ^ c=@any s=idle+ $ | TS044 | found={s} | SHOW(DISTANCE) cm => found=cm
 ^ c=S|STOP s=LOOP $ | TS102 | found={text}; right=BREAK; fix=BREAK; usage=BREAK | STOP LOOP => fix=BREAK

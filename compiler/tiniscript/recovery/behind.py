@@ -13,11 +13,14 @@ from tiniscript.recovery import lines
 from tiniscript.recovery.concepts import ENDED, KNOWN, NEAR, Lexeme, Names, lexemes, said_of
 from tiniscript.recovery.slots import MOVES
 from tiniscript.source import Span
-from tiniscript.syntax.lexer import NUMBER, ODD, WORD
+from tiniscript.syntax.lexer import NUMBER, ODD, QUOTES, WORD
 from tiniscript.syntax.operators import COMPARISONS
 from tiniscript.syntax.outline import Failure
 from tiniscript.words import NOTE_WORDS, OTHER_WAY, WORDS, nearest
 
+DOTS = ".…"
+_NOTHING = re.compile(r"\s*\Z")
+MARKS = f"{QUOTES}-–—_,"  # below a line that is meant again
 _HALF = 60  # a power that is neither fast nor slow
 _BEFORE_NOTE = frozenset(("=", ">", "<", "*", ":", ",", "(", *COMPARISONS))
 _IN_NO_NOTE = frozenset((*COMPARISONS, "*", "+", "==", "!=", "{", "}"))
@@ -85,8 +88,19 @@ def _values(call: Sequence[Placed]) -> list[Span]:
     return [Span(each.start - begin, each.end - begin) for each in found]
 
 
+class Above(NamedTuple):
+    """What stands above a line: the orders of the text, None where anything else is among them.
+
+    `line` is the last one that says more than that it is done again, "" where that is no row of
+    orders; None where there is none.
+    """
+
+    orders: Sequence[str] | None
+    line: str | None
+
+
 class Behind:
-    """An instruction and the words behind it.
+    """An instruction and the words behind it; or words without one, where `call` is empty.
 
     `before` are the other instructions of its line, None where a block is among them. `own` is the
     word of the language that it begins with, "" for none. `said` is the call where words say it.
@@ -94,28 +108,41 @@ class Behind:
 
     def __init__(
         self, call: Sequence[Placed], row: Sequence[Placed], before: Sequence[str] | None,
-        text: str, names: Names, depth: int, said: str = "",
+        above: Above, text: str, names: Names, depth: int, said: str = "",
     ) -> None:  # fmt: skip
         self.is_said = bool(said)
         self.tokens = lexemes(said) if said else [each.token for each in call]
         self.row = [each.token for each in row]
         self.before = before
+        self.above = above
+        self.is_later = bool(before) or above.line is not None
         self.names = names
         self.is_in_block = depth > 0
-        self.place = Span(call[0].span.start, row[-1].span.end)
+        begin = (*call, *row)[0].span.start
+        self.place = Span(begin, row[-1].span.end)
         self.behind = Span(row[0].span.start, row[-1].span.end)
-        self.call = said or text[call[0].span.start : call[-1].span.end]
+        end = call[-1].span.end if call else begin
+        self.call = said or text[begin:end]
         self.words = text[slice(*self.behind)]
-        self.spans = [Span(self.place.start, call[-1].span.end), *(each.span for each in row)]
+        self.spans = [Span(begin, end), *(each.span for each in row)]
         self.text = text
-        first = self.tokens[0].text
-        meant = first if first in WORDS else _meant_call(self.tokens[0], names)
+        first = self.tokens[0].text if call else ""
+        meant = first if first in WORDS or not call else _meant_call(self.tokens[0], names)
         known = WORDS.get(meant)
         self.is_arm = known is not None and known.role in ("block", "arm", "end")
         self.own = ENDED.get(meant, meant)
         self.is_asked = any(each.text == "UNTIL" for each in self.tokens)
-        self.values = [] if said else _values(call)
+        self.values = [] if said or not call else _values(call)
         self.numbers = {each.text for each in self.tokens if each.kind is NUMBER}
+
+    def is_aside(self) -> bool:
+        """Whether the words may say something: of no instruction, where they are none."""
+        if not self.tokens:
+            return isinstance(lines.right(self.row, self.names), Failure)
+        has_dots = self.is_later and all(each.text in DOTS for each in self.row)
+        has_number = any(each.kind is NUMBER for each in self.row)
+        has_word = any(each.kind is WORD for each in self.row)
+        return has_word or (self.is_right() and (has_number or has_dots or self.words == "()"))
 
     def is_right(self) -> bool:
         """Whether the instruction is, without the words behind it."""
@@ -128,6 +155,11 @@ class Behind:
     def _label_of_call(self) -> str:
         own = self.own
         known = WORDS.get(own)
+        if not self.tokens:
+            is_end = bool(_NOTHING.match(self.text, self.place.end)) and not self.is_in_block
+            found = ["@none"]
+            found += ["@after", *["@last"] * is_end] if self.is_later else []
+            return f"\x01|{'|'.join(found)}|\x02"
         found = [own]
         if known is not None and not self.is_arm and known.role != "start":
             found.append("@cmd")
@@ -140,6 +172,7 @@ class Behind:
         found += ["@asked"] if self.is_asked else []
         found += [] if self.is_in_block else ["@outer"]
         found += ["@more"] if self.before and "@cmd" in found else []
+        found += ["@later"] if self.is_later and not self.is_arm else []
         return f"\x01|{'|'.join([*found, '@any'])}|\x02"
 
     def _label(self, k: int) -> str:
@@ -164,7 +197,10 @@ class Behind:
             found += ["@other"] if is_other else []
             found += ["@paced"] if self._is_paced(k) else []
             found += ["@no_order"] if not k and self._begins_no_order(k) else []
-        found += ["@told"] if self._is_told(k) else []
+        found += ["@told"] if self.tokens and self._is_told(k) else []
+        found += ["@quote"] if text in QUOTES and text != "`" else []
+        found += ["@mark"] if text in MARKS else []
+        found += ["@dots"] if text == "…" or (text == "." and "." in (before, after)) else []
         return "|".join((self.names.label(token)[:-2], *found, "\x02"))
 
     def _text(self, k: int) -> str:
@@ -262,7 +298,7 @@ class Behind:
             return True
         if said_of(text, "end") or text in ENDED:
             return self.is_in_block and not self.is_arm
-        if said_of(text, "so_on"):
+        if said_of(text, "etc"):
             return True
         if text in ("HASTA", "UNTIL"):
             return own != "SHOW" and self.row[0].text != "(" and not self.is_asked

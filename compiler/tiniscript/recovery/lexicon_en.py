@@ -140,6 +140,8 @@ pins            | DIGITALWRITE ANALOGWRITE PINMODE DIGITALREAD ANALOGREAD PIN
 on              | TURN_ON SWITCH_ON
 off             | TURN_OFF SWITCH_OFF
 over            | OVER
+same            | DITTO SAME AGAIN ONCE
+above           | ABOVE BEFORE THING MORE
 again           | CONTINUE
 every           | EVERY
 range           | RANGE

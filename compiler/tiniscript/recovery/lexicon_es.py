@@ -138,7 +138,7 @@ read            | LEER LEE MEDIR MIDE
 set             | PON PONER FIJAR FIJA ASIGNAR ASIGNA SUBE BAJA CAMBIA
 keep            | GUARDAR GUARDA
 beside          | CON MIENTRAS
-so_on           | ETC ETCETERA
+etc             | ETC ETCETERA
 idle            | CM SEG SEGUNDOS EL AL ROBOT CARRO CARRITO GRACIAS
 act             | VUELVE VOLVER BAILA BAILAR ACELERA CANTA ESQUIVA EVITA AGARRA COGE SUELTA
 small           | PARA DI OTRO MOTOR MOTORES A E
@@ -150,6 +150,8 @@ jump            | SALTA SALTAR IRA IR_A
 on              | PRENDER PRENDE ENCENDER ENCIENDE
 off             | APAGAR APAGA
 over            | ENTRE DIVIDIDO
+same            | IDEM IGUAL MISMO MISMA OTRA NUEVO NUEVAMENTE
+above           | ARRIBA ANTES ANTERIOR VEZ
 again           | CONTINUA CONTINUAR
 sensor          | LUZ LINEA
 range           | RANGO

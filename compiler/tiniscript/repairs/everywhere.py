@@ -42,7 +42,7 @@ def said_once(found: Sequence[Diagnostic], source: Source) -> list[Diagnostic]:
     groups: dict[tuple[str, str], list[int]] = {}
     for k, each in enumerate(found):
         right = each.values.get("right") or each.values.get("word", "")
-        if each.code in _NAMES and right and each.values.get("fix") is None:
+        if each.code in _NAMES and right and not each.values.get("fix"):
             groups.setdefault((each.code.number, right), []).append(k)
     kept: list[Diagnostic | None] = list(found)
     for places in groups.values():
@@ -85,7 +85,10 @@ def _full_stops(kept: list[Diagnostic | None], source: Source) -> None:
     stops = [
         k
         for k, each in enumerate(kept)
-        if each is not None and each.code in _SIGNS and each.values.get("found") == "."
+        if each is not None
+        and not each.repair
+        and each.code in _SIGNS
+        and each.values.get("found") == "."
     ]
     if not stops:
         return

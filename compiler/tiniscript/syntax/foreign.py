@@ -10,7 +10,6 @@ from typing import NoReturn, Protocol
 
 from tiniscript.diagnostics import codes
 from tiniscript.source import Span
-from tiniscript.syntax.again_recovery import AgainRecovery
 from tiniscript.syntax.ast import Argument
 from tiniscript.syntax.block_recovery import BlockRecovery
 from tiniscript.syntax.blocks import ENDS, HEADERS, Blocks
@@ -30,7 +29,6 @@ from tiniscript.syntax.suggestions import (
     opposite,
     with_signs,
 )
-from tiniscript.syntax.times_recovery import TimesRecovery
 from tiniscript.words import BLOCK_ENDS, WORDS, meant_by
 
 _ENDLESS = frozenset(("PARA", "POR", "SIEMPRE", "FOREVER", "INFINITO", "INFINITAMENTE", "INFINITAS",
@@ -40,12 +38,10 @@ _ENDLESS = frozenset(("PARA", "POR", "SIEMPRE", "FOREVER", "INFINITO", "INFINITA
 class Recoveries(Protocol):
     """What goes on with a rule asks of the recovery of other places."""
 
-    again: AgainRecovery
     construct: ConstructRecovery
     groups: GroupRecovery
     in_block: BlockRecovery
     of_end: EndRecovery
-    times: TimesRecovery
 
 
 class Grammar(Protocol):
@@ -91,8 +87,6 @@ def foreign_word(parser: Grammar, word: Token, meant: str) -> None:
         _repeat_until(parser, word)
     if meant == "LOOP":
         _for_ever(parser, word)
-    if meant == "LOOP":
-        parser.recovery.times.all_before(word)
     if meant in HEADERS:
         in_block = parser.recovery.in_block
         line = None if word.text in NEGATED else in_block.whole_line(word, meant)

@@ -136,7 +136,6 @@ class NameRecovery:
             self.reporter.fail(codes.EXTRA_WORD, span, found=word.text, label=shown)
         self.talk.label(word, following, after)
         if self.kit is not None:
-            parser.recovery.again.line()
             self.clauses.several(self.cursor.i)
         if word.text in AFTER_HEADER:
             self.in_block.other.around(word)  # `hacer F(1, 50) 3 veces`

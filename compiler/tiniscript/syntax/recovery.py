@@ -11,7 +11,6 @@ from typing import NoReturn
 from tiniscript.diagnostics import codes
 from tiniscript.kit import Kit
 from tiniscript.source import Span
-from tiniscript.syntax.again_recovery import AgainRecovery
 from tiniscript.syntax.ast import Assign, Command
 from tiniscript.syntax.block_recovery import BlockRecovery
 from tiniscript.syntax.blocks import Block, Blocks
@@ -29,7 +28,6 @@ from tiniscript.syntax.phrases import AFTER_HEADER
 from tiniscript.syntax.reporter import Failed, Reporter, Resumed
 from tiniscript.syntax.setup_recovery import SetupRecovery
 from tiniscript.syntax.suggestions import shortened
-from tiniscript.syntax.times_recovery import TimesRecovery
 from tiniscript.syntax.until_recovery import UntilRecovery
 from tiniscript.syntax.value_constructs import ValueConstructs
 from tiniscript.words import NOT_DONE, WORDS, Word, meant_by, said_instead
@@ -55,10 +53,8 @@ class Recovery:
         self.of_def = DefRecovery(cursor, reporter, self.in_block)
         self.of_end = EndRecovery(cursor, reporter, self.in_block)
         self.of_until = UntilRecovery(cursor, reporter, blocks, self.in_block.known)
-        self.times = TimesRecovery(cursor, reporter, self.in_block)
         self.construct = ConstructRecovery(cursor, reporter, self.in_block)
         self.groups = GroupRecovery(cursor, reporter, self.in_block)
-        self.again = AgainRecovery(cursor, reporter, self.in_block)
         self.joining = JoiningRecovery(cursor, reporter, self.in_block)
 
     # -- what is no instruction ---------------------------------------------------------------
@@ -67,8 +63,6 @@ class Recovery:
         """An instruction begins with a sign or a number."""
         cursor = self.cursor
         block = self.blocks.innermost
-        if self.kit is not None and (block is None or block.here):
-            self.again.line()
         cursor.i += 1
         if token.kind == "}":
             self.in_block.close_brace(token)
@@ -90,12 +84,9 @@ class Recovery:
             self.groups.alone(cursor.i - 1)
         if token.kind is NUMBER:
             self.groups.counted(token)
-        if token.kind is NUMBER and cursor.token.kind is WORD:
-            self.times.so_many_times(token)
         if token.kind is NUMBER or token.kind == "(":
             self.constructs.values_in_front(token)
         if token.kind is NUMBER:
-            self.times.times_before(token)
             self._line_number(token)
         if token.kind in ("-", "*", "|") and cursor.token.kind is WORD:
             self.reporter.report(codes.LINE_NUMBER, token.span, found=token.text, dash=token.text)
@@ -137,8 +128,6 @@ class Recovery:
 
     def no_command(self, parser: Grammar, word: Token, role: str) -> NoReturn:
         """A word of the language that is no command begins an instruction."""
-        if role == "operator" and self.kit is not None:
-            self.again.line()  # `and so on`
         if role == "setup":
             self.setup.in_the_middle(parser, word)
         if role == "until":
@@ -185,8 +174,6 @@ class Recovery:
             self.groups.line_of_def(header)
         if header is not None and kind == "(":
             self.groups.body(header, cursor.i)
-        if self.kit is not None and header is None:
-            self.again.behind()
         if header is not None and header.word != "DEF" and first.text != "ELSE" and not goes_on:
             self._line_of(header, token)
         if kind in ("{", "}"):
