@@ -9,24 +9,27 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterator, Sequence
 from functools import cache
+from itertools import islice
 from typing import NamedTuple
 
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import CODES, Diagnostic
 from tiniscript.kit import Kit
 from tiniscript.recovery import advice_rows, lines, rewrites
-from tiniscript.recovery.behind import Above, Behind, Placed, whole
-from tiniscript.recovery.concepts import ENDED, Lexeme, Names, lexemes, made, said_of
+from tiniscript.recovery.behind import ASKING, Above, Behind, Placed, whole
+from tiniscript.recovery.concepts import ENDED, Lexeme, Names, lexemes, made, plain, said_of
 from tiniscript.recovery.slots import filled
+from tiniscript.recovery.worded import Worded, sensors_of, worded
 from tiniscript.recovery.writing import laid_out, without_note
 from tiniscript.source import Edit, Span
-from tiniscript.syntax.lexer import NUMBER
+from tiniscript.syntax.lexer import NUMBER, WORD
 from tiniscript.syntax.operators import COMPARISONS
 from tiniscript.syntax.outline import Failure
 from tiniscript.syntax.suggestions import shortened
 from tiniscript.words import BLOCK_ENDS, OTHER_WAY, WORDS
 
 LONGEST = 24  # words behind an instruction that are read
+MOST = 1_000  # of them in a text
 # Codes of words that a repair may read better.
 _ASIDE = (codes.REPEATED.number, codes.WORDS_BEHIND.number)
 _MOST_TIMES, _DEGREES = 50, 20  # a number behind a turn that is rather an angle
@@ -71,11 +74,14 @@ def advised(text: str, kit: Kit) -> list[Advice]:
     found: list[Advice] = []
     above = Above([], None)
     start = depth = 0
+    left = MOST
     for body, line in zip(bodies, text.split("\n"), strict=True):
         told: list[Advice] = []
         if "~" not in body:
-            parts = _parts(body, start, text, names, depth, above)
-            told = [each for part in parts if (each := _told(part))]
+            parts = filter(_is_read, _parts(body, start, text, names, depth, above))
+            read = list(islice(parts, left))
+            told = [each for part in read if (each := _told(part))]
+            left -= len(read)
         found += told
         if body.strip() and not any(each.diagnostic.code is codes.SAME_AGAIN for each in told):
             above = _below(above, body.partition("|")[2] or body, names)
@@ -132,6 +138,8 @@ def _parts(
             if not size or not rest:
                 yield behind([], part)
                 break
+            if any(each.token.text in ASKING for each in part[:size]):
+                yield behind([], part[:size])
             after = whole([each.token for each in rest], names)
             is_asked = rest[0].token.text in ("IF", "WHILE") and after == len(rest)
             if not after or (
@@ -148,9 +156,11 @@ def _parts(
         begin = k + 1
 
 
+def _is_read(part: Behind) -> bool:
+    return len(part.row) <= LONGEST and part.is_aside()
+
+
 def _told(part: Behind) -> Advice | None:
-    if len(part.row) > LONGEST or not part.is_aside():
-        return None
     line = rewrites.Encoded([made(";"), *part.row], part.names, part.labels())
     for row in rows():
         match = next(line.matches(row.pattern), None)
@@ -187,9 +197,16 @@ def _advice(row: Row, gaps: _Gaps) -> Advice:
     start, end = gaps.span("s") if "s" in row.pattern.of_labels.groupindex else (1, len(part.spans))
     span = Span(part.spans[start].start, part.spans[end - 1].end)
     found = Diagnostic(CODES[row.code], span, values, place)
+    if "h" in row.pattern.of_labels.groupindex:
+        place = Span(part.spans[gaps.span("h")[0]].start, part.behind.end)
+        question = values.get("asked") or values.get("question") or "TRUE"
+        return Advice(found, Edit(place, f"{gaps['head']}({question})"))
     if part.is_said:
         return Advice(found, Edit(part.place, values["fix"] or part.call))
-    return Advice(found, Edit(part.behind, " " * (part.behind.end - part.behind.start)))
+    fix = "" if part.tokens else values["fix"]
+    is_right = not isinstance(lines.right(lexemes(fix), part.names), Failure)
+    nothing = " " * (part.behind.end - part.behind.start)
+    return Advice(found, Edit(part.behind, fix if fix and is_right else nothing))
 
 
 def _said_call(tokens: Sequence[Lexeme], names: Names) -> tuple[int, str] | None:
@@ -289,6 +306,71 @@ def _twice(gaps: _Gaps) -> str:
     return found if found.count(";") > _ONE_IN_LOOP else ""
 
 
+def _worded(gaps: _Gaps, is_not: bool = False) -> Worded:
+    """What the words of a question ask, or the opposite."""
+    start, end = gaps.span("s")
+    row = gaps.part.row[start - 1 : end - 1]
+    names = gaps.part.names
+    is_bare = gaps.part.row[end - 1 : end] == [] or gaps.part.row[end - 1].text != ")"
+    is_order = is_bare and any("|@start|" in names.label(each) for each in row)
+    is_read = is_order or bool(_asked(gaps, "s"))
+    found = None if is_read else worded([*[made("NOT")] * is_not, *row], names)
+    if found is None:
+        raise _NoGap
+    return found
+
+
+def _questions(
+    k: int, has_number: bool = False, is_asking: bool = True, is_not: bool = False
+) -> Callable[[_Gaps], str]:
+    """Return the gap for the question at a place among those that may be meant."""
+
+    def question(gaps: _Gaps) -> str:
+        found = _worded(gaps, is_not)
+        is_so = (found.has_number, found.is_asking) == (has_number, is_asking)
+        return found.questions[k] if is_so and k < len(found.questions) else ""
+
+    return question
+
+
+def _head(gaps: _Gaps) -> str:
+    token = gaps.part.row[gaps.span("h")[0] - 1]
+    return gaps.part.means(token.text)
+
+
+def _sensor(k: int) -> Callable[[_Gaps], str]:
+    """Return the gap for one of the sensors that a word may mean."""
+
+    def sensor(gaps: _Gaps) -> str:
+        found = sensors_of(plain(gaps["l"]), gaps.part.names)
+        return found[k] if k < len(found) else ""
+
+    return sensor
+
+
+def _alone(gaps: _Gaps) -> str:
+    """A question that stands alone, and sets nothing."""
+    start, end = gaps.span("s")
+    signs = {each.text for each in gaps.part.row[start - 1 : end - 1]}
+    return laid_out(_asked(gaps, "s")) if signs & {*COMPARISONS} - {"="} else ""
+
+
+def _then(gaps: _Gaps) -> str:
+    """The instruction that a row captures, where it is right."""
+    start = gaps.span("w")[0]
+    found = lines.right(gaps.part.row[start - 1 :], gaps.part.names)
+    return "" if isinstance(found, Failure) else _rest(gaps, "w")
+
+
+def _free(gaps: _Gaps) -> str:
+    """A name that may get the value before it, which is no other name."""
+    names, name = gaps.part.names, plain(gaps["x"])
+    start, end = gaps.span("v")
+    is_name = all(each.kind is WORD for each in gaps.part.row[start - 1 : end - 1])
+    is_taken = name in names.sensors or name in names.defs or name in names.actuators
+    return "" if is_name or is_taken else name
+
+
 def _loop(gaps: _Gaps) -> str:
     number = gaps["n"]
     return "" if number in ("0", "1") else f"LOOP({number});{gaps.part.call};{BLOCK_ENDS['LOOP']}"
@@ -338,9 +420,9 @@ def _other(gaps: _Gaps) -> str:
     return OTHER_WAY[gaps.part.own] + gaps.part.call[len(gaps.part.tokens[0].text) :]
 
 
-def _asked(gaps: _Gaps) -> list[Lexeme]:
+def _asked(gaps: _Gaps, name: str = "q") -> list[Lexeme]:
     """The question that words ask, in words of the language; nothing where they ask none."""
-    start, end = gaps.span("q")
+    start, end = gaps.span(name)
     words = gaps.part.row[start - 1 : end - 1]
     found = lines.read(
         [made("IF"), made("("), *words, made(")")], gaps.part.names, is_quick=True
@@ -418,6 +500,12 @@ _GAPS: dict[str, Callable[[_Gaps], str]] = {
     "all": lambda gaps: _all(gaps, gaps["n"]), "often?": lambda gaps: _all(gaps, "4"),
     "more": lambda gaps: _all(gaps, str(int(gaps["n"]) + 1)), "twice": _twice,
     "said": lambda gaps: gaps.part.words.strip(" ,:"),
+    "joint": lambda gaps: _worded(gaps).joint, "head": _head,
+    "asked": _questions(0, has_number=True), "also?": _questions(1, has_number=True),
+    "nothing": _questions(0, is_asking=False),
+    "like": _questions(0), "orlike?": _questions(1),
+    "one": _sensor(0), "two": _sensor(1), "alone": _alone, "then": _then, "free": _free,
+    "unlike": _questions(0, is_not=True), "orunlike?": _questions(1, is_not=True),
     "text": lambda gaps: shortened(gaps.part.text[slice(*gaps.part.place)]),
     "words": lambda gaps: shortened(gaps.part.words),
     "both": _both, "loop": _loop, "line": _line, "few": _few, "paused": _paused,

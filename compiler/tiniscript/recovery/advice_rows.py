@@ -13,7 +13,9 @@ one stands before them, and @last where they end the text, too. Classes of the w
 words, too), @often (a number that says how often), @percent (one that says a power), @in_s (a unit
 of time), @other (the other way), @paced (another pace than its power), @told (says nothing that the
 instruction does not), @no_order (a word that begins no instruction), @quote, @mark (what is written
-below a line that is meant again) and @dots. What `s` captures is pointed at.
+below a line that is meant again), @dots, @ask (a word of the language that asks) and @noBUTTON (a
+word for BUTTON, which the kit lacks). What `s` captures is pointed at. `h` is a header: the rest is
+read with what is asked as its question, else with TRUE.
 
 Values are texts with gaps. A gap is a capture, or a function in `advice`; a row with a gap that
 cannot be filled does not hold. Rows are sorted by what is asked for.
@@ -27,6 +29,9 @@ PARTS = {
     "again": "then|filler* same then|filler|same|above*",
     "rest": ",? then*",
     "loop": "REPETIR|REPITE|REPITES|REPEAT|BUCLE|CICLO",
+    "either": "(? l=light|ahead r=<|>|<=|>= n=@num )?",
+    "asks": "h=@ask",
+    "body": "ENTONCES|THEN|DO|HACER|:?",
     "often": "*|LOOP|POR|X? n=@often times?",
 }
 
@@ -48,6 +53,22 @@ ADVICE = """
 ^ @none n=@number times :? $ | TS062 | found={words}; fix=LOOP({n}) | 4 veces:⏎S => fix=LOOP(4)
 ^ @last <loop> (? n=@num )? times? $ | TS062 | found={words}; all={all} | F(1, 50)⏎repetir 3 => all=LOOP(3);F(1, 50);END_LOOP
 ^ @last <loop> (? @num? )? times? $ | TS062 | found={words} | F(1, 50)⏎repetir => found=repetir
+# questions in words
+^ @none @any* <asks> (? @any* s=@noBUTTON @any* )? <body> $ | TS120 | | IF(boton presionado)⏎S⏎ENDIF => before=
+^ @none @any* <asks> (? s=@word|@num+ )? <body> $ | TS135 | joint={joint} | IF(hay luz y pared)⏎S⏎ENDIF => joint=AND
+^ @none @any* <asks> (? s=@word|@num+ )? <body> $ | TS135 | word={head}; asked={asked}; also={also?} | IF(pared a 1 metro)⏎S⏎ENDIF => asked=DISTANCE < 100
+^ @none @any* <asks> (? s=@word|@num+ )? <body> $ | TS135 | word={head}; example={nothing} | IF(esta listo)⏎S⏎ENDIF => example=DISTANCE < 10
+^ @none @any* <asks> (? s=@word|@num+ )? <body> $ | TS135 | word={head}; question={like}; another={orlike?} | F(5, 60) UNTIL(luz mucha) => question=LIGHT_L > 500
+^ @none @any* <asks> ( s=light = TRUE|1 ) $ | TS135 | word={head}; question={like}; another={orlike?} | IF(oscuro = TRUE)⏎S⏎ENDIF => question=LIGHT_L < 500
+^ @none @any* <asks> ( s=light = FALSE|0 ) $ | TS135 | word={head}; question={unlike}; another={orunlike?} | IF(oscuro = FALSE)⏎S⏎ENDIF => question=LIGHT_L > 500
+# what asks or calculates, alone
+^ @none h=SI <either> <body> $ | TS045 | one=IF({one} {r} {n}); two=IF({two} {r} {n}) | si luz > 50⏎S⏎fin => two=IF(LIGHT_R > 50)
+^ @none <either> @any* $ | TS042 | found={l}; asked={l} {r} {n}; one=IF({one} {r} {n}); another=IF({two} {r} {n}) | luz > 50: F(2, 80) => one=IF(LIGHT_L > 50)
+^ @none <either> @any* $ | TS042 | found={l}; asked={l} {r} {n}; one=IF({one} {r} {n}) | pared < 10⏎S => one=IF(DISTANCE < 10)
+^ @none s=@cond+ :? w=@start @any* $ | TS042 | found={s}; asked={s}; fix=IF({alone});{then};ENDIF | DISTANCE < 10: S => fix=IF(DISTANCE < 10);S;ENDIF
+^ @none s=@cond+ $ | TS042 | found={s}; asked={s}; fix=IF({alone}) | DISTANCE < 20 => fix=IF(DISTANCE < 20)
+^ @none s=@cond+ ¿|¡ @any* $ | TS042 | found={s}; asked={s}; one=IF({alone}) | DISTANCE < 20 ¿si? S => one=IF(DISTANCE < 20)
+^ @none v=@word|@num|+|-|*|/|%|(|)+ = x=@name $ | TS042 | found={x}; turned={x}; fix={free} = {v} | DISTANCE - 5 = FALTA => fix=FALTA = DISTANCE - 5
 # words for nothing, and those that are no words behind it
 ^ c=@any s=idle+ $ | TS044 | found={s} | SHOW(DISTANCE) cm => found=cm
 ^ c=S|STOP s=LOOP $ | TS102 | found={text}; right=BREAK; fix=BREAK; usage=BREAK | STOP LOOP => fix=BREAK

@@ -10,7 +10,16 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from tiniscript.recovery import lines
-from tiniscript.recovery.concepts import ENDED, KNOWN, NEAR, Lexeme, Names, lexemes, said_of
+from tiniscript.recovery.concepts import (
+    ENDED,
+    KNOWN,
+    NEAR,
+    Lexeme,
+    Names,
+    concept_of,
+    lexemes,
+    said_of,
+)
 from tiniscript.recovery.slots import MOVES
 from tiniscript.source import Span
 from tiniscript.syntax.lexer import NUMBER, ODD, QUOTES, WORD
@@ -19,6 +28,7 @@ from tiniscript.syntax.outline import Failure
 from tiniscript.words import NOTE_WORDS, OTHER_WAY, WORDS, nearest
 
 DOTS = ".…"
+ASKING = ("IF", "ELSEIF", "WHILE", "UNTIL")
 _NOTHING = re.compile(r"\s*\Z")
 MARKS = f"{QUOTES}-–—_,"  # below a line that is meant again
 _HALF = 60  # a power that is neither fast nor slow
@@ -184,7 +194,7 @@ class Behind:
         if number is not None:
             found.append("@number")
             is_counted = said_of(after, "times") or said_of(text, "often") or text[0] == "X"
-            is_often = is_counted or before in ("POR", "X", "*") or self._means(before) == "LOOP"
+            is_often = is_counted or before in ("POR", "X", "*") or self.means(before) == "LOOP"
             unit = said_of(after, "unit")
             is_power = any(said_of(each.text, "value")[:1] == ("%",) or each.text in (
                 "%", "CIENTO", "PERCENT", "PORCIENTO") for each in self.row)  # fmt: skip
@@ -193,11 +203,15 @@ class Behind:
         unit_of = said_of(text, "unit")
         found += ["@in_s"] if unit_of and unit_of[0] == "s" else []
         if token.kind is WORD:
-            is_other = text not in WORDS and self._means(text) == OTHER_WAY.get(self.own)
+            is_other = text not in WORDS and self.means(text) == OTHER_WAY.get(self.own)
             found += ["@other"] if is_other else []
             found += ["@paced"] if self._is_paced(k) else []
-            found += ["@no_order"] if not k and self._begins_no_order(k) else []
+            found += ["@no_order"] if self.tokens and not k and self._begins_no_order(k) else []
         found += ["@told"] if self.tokens and self._is_told(k) else []
+        concept = concept_of(text) if token.kind is WORD and not self.names.is_name(text) else None
+        is_of_kit = concept is None or concept in WORDS or self.names.has(concept)
+        found += [] if is_of_kit else [f"@no{concept}"]
+        found += ["@ask"] if text in ASKING else []
         found += ["@quote"] if text in QUOTES and text != "`" else []
         found += ["@mark"] if text in MARKS else []
         found += ["@dots"] if text == "…" or (text == "." and "." in (before, after)) else []
@@ -206,7 +220,7 @@ class Behind:
     def _text(self, k: int) -> str:
         return self.row[k].text if 0 <= k < len(self.row) else ""
 
-    def _means(self, word: str) -> str:
+    def means(self, word: str) -> str:
         """Return the word of the language that is said, "" where none is."""
         if word in WORDS and word != "SI":
             return ENDED.get(word, word)
@@ -240,7 +254,7 @@ class Behind:
         text = self._text(k)
         if said_of(text, "then"):
             return k + 1 < len(self.row) and self._begins_no_order(k + 1)
-        is_known = self._means(text) or self.names.is_name(text) or text in WORDS
+        is_known = self.means(text) or self.names.is_name(text) or text in WORDS
         is_asked_for = any(said_of(text, each) for each in ("turn", "on", "off"))
         return not (is_known or is_asked_for or nearest(text, _LONG_WORDS))
 
@@ -273,7 +287,7 @@ class Behind:
             return len(words) == 1 or token.text in self.names.defs
         if len(words) == 1 and token.text in WORDS and token.text not in NOTE_WORDS:
             return True
-        if len(words) > 1 or self._means(token.text) or said_of(token.text, "power"):
+        if len(words) > 1 or self.means(token.text) or said_of(token.text, "power"):
             return False
         if self.own == "START":
             return False
@@ -302,7 +316,7 @@ class Behind:
             return True
         if text in ("HASTA", "UNTIL"):
             return own != "SHOW" and self.row[0].text != "(" and not self.is_asked
-        meant = self._means(text)
+        meant = self.means(text)
         is_sure = text in WORDS or not meant or self.names.meanings(text)[0].cost <= KNOWN
         if not (is_sure or is_last or self.row[k + 1].kind is NUMBER):
             return False

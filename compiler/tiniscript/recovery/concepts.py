@@ -181,6 +181,7 @@ class Names:
 
     def __init__(self, lines: Sequence[Sequence[Lexeme]], kit: Kit) -> None:
         self.sensors = frozenset(each.name for each in kit.sensors)
+        self.asked = {each.name: each for each in kit.sensors if not each.is_yes_no}
         self.actuators = {each.name: each for each in kit.actuators}
         self.variables: set[str] = set()
         self.defs: set[str] = set()
@@ -266,9 +267,10 @@ class Names:
         if self.is_name(word):
             return ()
         found = concepts(word)
-        return tuple(each for each in found if each.concept in WORDS or self._is_kit(each.concept))
+        return tuple(each for each in found if each.concept in WORDS or self.has(each.concept))
 
-    def _is_kit(self, concept: str) -> bool:
+    def has(self, concept: str) -> bool:
+        """Whether a concept is a device of the kit, or the end of any block."""
         return concept in self.sensors or concept in self.actuators or concept == "FIN"
 
     @staticmethod

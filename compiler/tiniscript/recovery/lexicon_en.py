@@ -92,6 +92,16 @@ value s         | TIME SECONDS
 value Hz        | HZ
 value left      | LEFT
 value right     | RIGHT
+# what a question in words asks
+little          | LITTLE LOW SMALL SHORT LESS SMALLER CLOSE DARK BLACK LINE
+much            | MUCH HIGH BIG LARGE LONG MORE BIGGER FAR STRONG FREE CLEAR BRIGHT LOT WHITE PATH WAY
+light           | LIGHT LIGHTS DARK BRIGHT LINE BLACK WHITE FLOOR
+ahead           | DISTANCE CLOSE FAR SOMETHING PATH WAY FREE CLEAR TOUCH TOUCHES BOX HAND OBSTACLE WALL OBJECT NEAR BLOCKED
+none            | NOTHING NOBODY
+without         | WITHOUT
+half            | HALF
+left            | LEFT
+right           | RIGHT
 # what stands beside a command and changes nothing
 filler          | AND AT CAR DRIVES FOR GO GOES HELLO I IN IR MOVES MUST MY OF PLEASE ROBOT SECOND SHOULD THE TO WANT WILL WITH
 # other words of a sentence

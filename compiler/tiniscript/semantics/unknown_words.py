@@ -17,7 +17,6 @@ from tiniscript.source import Span
 from tiniscript.syntax import ast
 from tiniscript.syntax.call_suggestions import LONG_TIME_S, call_of, glued_call
 from tiniscript.syntax.units import converted
-from tiniscript.syntax.worded_questions import example_of, is_asked_alone
 from tiniscript.words import (
     BLOCK_ENDS,
     IN_MILLISECONDS,
@@ -284,19 +283,6 @@ def whole_name(scope: Scope, part: str, names: AbstractSet[str]) -> str:
     return found[0] if len(found) == 1 else ""
 
 
-def asks_of_light(scope: Scope, span: Span, name: str) -> bool:
-    """Whether IF or WHILE asks only a name that means light or none: `IF(NOT oscuro = TRUE)`."""
-    text = scope.source.text
-    header = _HEADER.search(text[: span.start][-60:])
-    behind = _ANSWERED.match(text, span.end)
-    if header is None or behind is None or not is_asked_alone(name) or name in scope.set_somewhere:
-        return False
-    is_no = bool(header[2]) != ((behind[1] or "").upper() in ("FALSE", "0"))
-    values = example_of(["NOT"] * is_no + [name], scope.kit)
-    scope.report(codes.IN_WORDS, span, None, word=header[1].upper(), **values)
-    return True
-
-
 def meant_value(scope: Scope, span: Span, name: str, is_assigned: bool) -> str:
     """Return what `IF(obstaculo)` asks, or the number that `v = rapido` gives, else nothing."""
     text = scope.source.text
@@ -307,7 +293,6 @@ def meant_value(scope: Scope, span: Span, name: str, is_assigned: bool) -> str:
 
 
 _HEADER = re.compile(r"(?i)\b(IF|ELSEIF|UNTIL|WHILE)\s*\(\s*(NOT\s+)?$")
-_ANSWERED = re.compile(r"(?i)[ \t]*(?:=[ \t]*(TRUE|FALSE|1|0)[ \t]*)?\)")
 
 
 def report_not_callable(scope: Scope, node: ast.Command) -> None:

@@ -12,7 +12,7 @@ from tiniscript.diagnostics import codes
 from tiniscript.semantics.comparisons import ASIDE
 from tiniscript.semantics.named_values import value_of
 from tiniscript.semantics.symbols import ENOUGH, NUMBER, Operand, Scope
-from tiniscript.semantics.unknown_words import asks_of_light, hyphened, meant_value, whole_name
+from tiniscript.semantics.unknown_words import hyphened, meant_value, whole_name
 from tiniscript.source import Span
 from tiniscript.syntax.amounts import is_amount, with_number
 from tiniscript.syntax.ast import Part
@@ -54,7 +54,7 @@ class WrongValues:
         if meant == "BUTTON" or name == "BUTTON":
             scope.report(codes.NO_BUTTON, span)
             return
-        if hyphened(scope, span, name) or asks_of_light(scope, span, name):
+        if hyphened(scope, span, name):
             return
         is_free = name != target and name not in scope.set_somewhere
         amount = self._amount(span, name) if is_free else {}

@@ -122,8 +122,7 @@ class ExpressionParser:
             known is None
             and self._may_be_more()
             and (
-                self.recovery.questions.worded(token)
-                or self.recovery.constructs.is_said_with_more(token)
+                self.recovery.constructs.is_said_with_more(token)
                 or self.recovery.questions.is_sign_alone(token)
                 or self.recovery.questions.is_in_words(token)
             )

@@ -13,7 +13,7 @@ from tiniscript.syntax.blocks import ENDS, Blocks
 from tiniscript.syntax.call_suggestions import written
 from tiniscript.syntax.cursor import AT_END, Cursor
 from tiniscript.syntax.lexer import NUMBER, ODD, WORD, Token
-from tiniscript.syntax.near import ASKING, near_at
+from tiniscript.syntax.near import near_at
 from tiniscript.syntax.operators import COMPARISONS
 from tiniscript.syntax.phrases import AFTER_HEADER, TIMES
 from tiniscript.syntax.reporter import Failed, Reporter, Resumed
@@ -29,7 +29,6 @@ from tiniscript.syntax.suggestions import (
     with_signs,
 )
 from tiniscript.syntax.vocabulary import Vocabulary
-from tiniscript.syntax.worded_questions import report_words
 from tiniscript.words import BLOCK_ENDS, WORDS, meant_by
 
 _BESIDE_TIMES = frozenset(("X", "POR", "BY", "*", "=", "->", ">", *AFTER_HEADER))
@@ -80,19 +79,6 @@ class HeaderRecovery:
             self._loop_until(word, start)
         if word.text == "LOOP":
             self._loop_times(word, start)
-        elif word.text in ASKING:
-            self._worded(word, start)
-
-    def _worded(self, word: Token, start: int) -> None:
-        """`IF luz mucha`."""
-        tokens, end = self.cursor.tokens, start
-        while tokens[end].kind is WORD and tokens[end].text not in AFTER_HEADER:
-            end += 1
-        is_colon = tokens[end].kind is ODD and tokens[end].text == ":"
-        if tokens[end].kind in AT_END or is_colon or tokens[end].text in AFTER_HEADER:
-            here, self.cursor.i = self.cursor.i, end
-            report_words(word.text, tokens[start:end], self.reporter, self.known)
-            self.cursor.i = here
 
     def _loop_until(self, word: Token, start: int) -> None:
         """`LOOP UNTIL(DISTANCE < 10)`: WHILE asks the opposite."""

@@ -8,13 +8,11 @@ from __future__ import annotations
 from tiniscript.diagnostics import codes
 from tiniscript.source import Span
 from tiniscript.syntax.cursor import Cursor
-from tiniscript.syntax.lexer import NUMBER, WORD, Token
-from tiniscript.syntax.near import ASKING
+from tiniscript.syntax.lexer import Token
 from tiniscript.syntax.operators import COMPARISONS
 from tiniscript.syntax.reporter import Reporter
-from tiniscript.syntax.suggestions import after_bracket, operator_words
+from tiniscript.syntax.suggestions import operator_words
 from tiniscript.syntax.vocabulary import Vocabulary
-from tiniscript.syntax.worded_questions import report_words
 from tiniscript.words import NEAR_WORDS
 
 _TOWARDS = frozenset(["A", "AL", "LA", "EL", "DE", "DEL", "UN", "UNA", "TO", "THE", "OF", "FROM"])
@@ -25,18 +23,6 @@ class JoinedQuestions:
         self.cursor = cursor
         self.reporter = reporter
         self.known = known
-
-    def worded(self, word: Token) -> bool:
-        """`IF(luz mucha)`: report a question in words, whose first one is at the cursor."""
-        tokens, k = self.cursor.tokens, self.cursor.i
-        if self.cursor.following.kind not in (WORD, NUMBER) or k < 2 or tokens[k - 1].kind != "(":
-            return False
-        owner = tokens[k - 2].text
-        end = after_bracket(tokens, k - 1) if owner in ASKING else None
-        row = tokens[k : end - 1] if end is not None else []
-        if row:
-            report_words(owner, row, self.reporter, self.known)
-        return False
 
     def is_sign_alone(self, word: Token) -> bool:
         """`DISTANCE > 10 y menor 20`: read on with what is compared."""

@@ -27,7 +27,6 @@ from tiniscript.syntax.cursor import AT_END, Cursor
 from tiniscript.syntax.devices import actuator_word
 from tiniscript.syntax.foreign import Grammar, foreign_word
 from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, ODD, WORD, Token
-from tiniscript.syntax.lone_questions import asked_alone
 from tiniscript.syntax.operators import COMPARISONS, SIGNS
 from tiniscript.syntax.order_values import at_random
 from tiniscript.syntax.phrases import (
@@ -353,8 +352,6 @@ class NameRecovery:
         if first.text == "TIME" and [token.kind for token in tokens[1:]] == ["(", NUMBER, ")"]:
             whole, fix = Span(first.start, tokens[-1].end), f"W({tokens[2].text})"
             self.reporter.fail(codes.NOT_AN_INSTRUCTION, first.span, whole, found="TIME", fix=fix)
-        if asks:
-            asked_alone(self.cursor, self.reporter, self.in_block, tokens)
         self.reporter.fail(codes.NOT_AN_INSTRUCTION, first.span, found=first.text, fix="")
 
     def note_behind(self, first: Token, token: Token, after: Token) -> None:

@@ -30,7 +30,6 @@ from tiniscript.syntax.suggestions import (
     inside,
     is_question,
 )
-from tiniscript.syntax.worded_questions import either_sensor
 from tiniscript.words import TURN_WORDS, WORDS, meant_by
 
 # What comes after the SI of a question: `si hay un obstaculo`, `si toca la pared`.
@@ -161,8 +160,8 @@ class SetupRecovery:
                     self.reporter.report(codes.SPANISH_IF, word.span, place, fix=line)
                     raise Resumed
                 row = inside(cursor.tokens, cursor.i + 1)
-                said = either_sensor(row, known) or {"fix": head_in(WORDS["IF"], row)}
-                self.reporter.report(codes.SPANISH_IF, word.span, None, **said)
+                fix = head_in(WORDS["IF"], row)
+                self.reporter.report(codes.SPANISH_IF, word.span, None, fix=fix)
                 foreign_header(parser, word, "IF")
         row = cursor.tokens[cursor.i + 1 : cursor.i + 5]
         if word.text == "SI" and any(meant_by(each.text) == "BUTTON" for each in row):

@@ -1,0 +1,163 @@
+"""A question in words: `luz mucha`, `hay una pared`, `pared a medio metro`. Knows no row.
+
+Finds which sensor and which sign they mean, as far as they say it. Where the number is not in them
+it is an example.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import pairwise
+from typing import NamedTuple
+
+from tiniscript.fixed_point import ONE
+from tiniscript.kit import Device
+from tiniscript.recovery.concepts import Lexeme, Names, concept_of, said_of
+from tiniscript.syntax.lexer import NUMBER, WORD
+from tiniscript.words import WORDS
+
+_KINDS = ("little", "much", "light", "ahead", "none", "no", "without", "left", "right")
+_ASKING = frozenset(("little", "much", "light", "ahead", "none"))
+_JOINED = {"Y": "AND", "E": "AND", "O": "OR", "U": "OR"}
+_TOWARDS = ("A", "DE", "QUE")
+_FAR = 10  # centimetres, as in every example
+_MANY = 50  # of what a variable holds
+_EVEN = 100  # above it an example is a round number
+
+
+class Worded(NamedTuple):
+    """`questions` are two where either sensor may be meant, and none where `joint` joins several.
+
+    `has_number`: the number is no example. `is_asking`: a word says what is asked.
+    """
+
+    questions: list[str]
+    has_number: bool = False
+    is_asking: bool = True
+    joint: str = ""
+
+
+def worded(row: Sequence[Lexeme], names: Names) -> Worded | None:
+    """Return what a question in words asks, None where it is none or cannot be understood."""
+    texts = [each.text for each in row]
+    is_done = any(_is_done(texts, k) for k in range(len(texts)))
+    if is_done or any(each.kind not in (WORD, NUMBER) for each in row):
+        return None
+    joint = _joint(texts, names)
+    if joint:
+        return Worded([], joint=joint)
+    texts, number = _measured(row, names)
+    said = _said(texts, names)
+    numbers = [text for text in texts if text[0].isdigit() or text[0] == "."]
+    own = [text for text in texts if names.is_name(text) and text != number]
+    is_known = all(names.is_name(text) or said_of(text, "number") for text in texts)
+    is_alone = len(texts) == 1 and not (said & {"light"} and not said_of(texts[0], "sensor"))
+    if is_alone or is_known or len(numbers) > 1 or names.is_name("_".join(texts)):
+        return None
+    has_subject = said & {"ahead", "none"} or ("light" in said and said & {"little", "much"})
+    is_button = any(concept_of(text) == "BUTTON" for text in texts)
+    if (numbers and not has_subject and not _is_no_sign(texts)) or is_button:
+        return None
+    asked = [
+        f"{name} {_sign(name, texts, said)} {number or _example(names.asked.get(name), name)}"
+        for name in _subjects(own, texts, said, names)
+    ]
+    return Worded(asked, bool(number), bool(own or said & _ASKING))
+
+
+def sensors_of(word: str, names: Names) -> list[str]:
+    """Return the sensors that a word may mean: both lights for `luz`."""
+    if names.is_name(word):
+        return []
+    found = [_meant(word, names)]
+    if said_of(word, "light"):
+        found = _lights(names)
+    elif said_of(word, "ahead"):
+        found = ["DISTANCE"]
+    return [name for name in found if name in names.asked]
+
+
+def _said(texts: Sequence[str], names: Names) -> set[str]:
+    own = {text for text in texts if names.is_name(text)}
+    return {kind for kind in _KINDS for text in texts if text not in own and said_of(text, kind)}
+
+
+def _meant(word: str, names: Names) -> str:
+    return word if word in names.sensors else next((m.concept for m in names.meanings(word)), "")
+
+
+def _is_done(texts: Sequence[str], k: int) -> bool:
+    """Whether a word is an instruction, and no unit behind its number."""
+    word = WORDS.get(texts[k])
+    if word is None or (k and said_of(texts[k], "unit") and said_of(texts[k], "unit")[0] == "cm"):
+        return False
+    return word.is_instruction or word.role not in ("operator", "value")
+
+
+def _joint(texts: Sequence[str], names: Names) -> str:
+    """Return AND or OR, if two questions are joined and each is in words."""
+    places = [k for k, text in enumerate(texts) if text in _JOINED and not names.is_name(text)]
+    pieces = [texts[a + 1 : b] for a, b in pairwise((-1, *places, len(texts)))]
+    are_asking = all(_said(piece, names) & {"ahead", "light", "none"} for piece in pieces)
+    return _JOINED[texts[places[0]]] if places and are_asking else ""
+
+
+def _measured(row: Sequence[Lexeme], names: Names) -> tuple[list[str], str]:
+    """Return the words without units, and their number in centimetres or of light, "" for none."""
+    texts = [each.text for each in row]
+    is_near = bool(_said(texts, names) & {"ahead", "none"})
+    for k, text in enumerate(texts):
+        unit = said_of(texts[k + 1], "unit") if k + 1 < len(texts) else ()
+        without = [*texts[: k + 1], *texts[k + 2 :]] if unit else texts
+        if row[k].kind is NUMBER:
+            fits = not unit or unit[0] == "cm"
+            return without, _in_centimetres(text, unit) if fits else ""
+        if unit[:1] == ("cm",) and is_near:
+            said = said_of(text, "number") or (("0.5",) if said_of(text, "half") else ())
+            if said:
+                return [*texts[:k], *texts[k + 2 :]], _in_centimetres(said[0], unit)
+        is_last = k == len(texts) - 1 and k > 1 and texts[k - 1] in _TOWARDS
+        if is_near and text in names.variables and (is_last or unit == ("cm", "1000")):
+            return without, text
+    return texts, ""
+
+
+def _in_centimetres(number: str, unit: Sequence[str]) -> str:
+    return f"{float(number) * int(unit[1]) / ONE:g}" if unit else number
+
+
+def _subjects(own: Sequence[str], texts: Sequence[str], said: set[str], names: Names) -> list[str]:
+    """Return the sensors that are asked, or the variable."""
+    pairs = ["_".join(pair) for pair in pairwise(texts)]  # `luz derecha`
+    named = [
+        name for text in (*own, *pairs, *texts) if (name := _meant(text, names)) in names.asked
+    ]
+    found = named[:1] or list(own[:1])
+    if not found and "light" in said and "ahead" not in said:
+        found = _lights(names)[:2]
+        turned = [f"LIGHT_{way[0].upper()}" for way in ("left", "right") if way in said]
+        found = [name for name in turned if name in found and len(turned) == 1] or found
+    return found or [*(name for name in names.asked if name == "DISTANCE"), *names.asked, "X"][:1]
+
+
+def _lights(names: Names) -> list[str]:
+    return sorted(name for name in names.asked if name.partition("_")[0] in ("LIGHT", "LINE"))
+
+
+def _sign(name: str, texts: Sequence[str], said: set[str]) -> str:
+    is_below = "little" in said or (name == "DISTANCE" and "much" not in said)
+    sign = "<" if is_below != bool(said & {"no", "without", "none"}) else ">"
+    return sign + "=" * _is_no_sign(texts)
+
+
+def _is_no_sign(texts: Sequence[str]) -> bool:
+    """`distancia no menor 20`."""
+    return any(said_of(a, "no") and (said_of(b, "less") or said_of(b, "more"))
+               for a, b in pairwise(texts))  # fmt: skip
+
+
+def _example(device: Device | None, name: str) -> int:
+    if device is None:
+        return _MANY
+    middle = (device.low + device.high) // (2 * ONE)
+    return _FAR if name == "DISTANCE" else round(middle, -2) if middle > _EVEN else middle
