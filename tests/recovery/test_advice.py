@@ -52,6 +52,30 @@ def test_what_is_wrong_beside_the_words_is_told_too() -> None:
     ]
 
 
+@pytest.mark.parametrize(
+    ("wrong", "told"),
+    [
+        ("F(2, 80)\nS\nF(2, 80)\nS\netc", {"all": "LOOP(4);F(2, 80);S;END_LOOP"}),
+        ("LOOP(2)\nF(2, 80)\nidem\nEND_LOOP", {"right": "F(2, 80)"}),  # no loop of a part
+        ('F(2, 80)\n"\nR(1, 60)\n"\n"', {"right": "R(1, 60)", "line": "5"}),
+    ],
+)  # fmt: skip
+def test_what_stands_above_is_meant_again(wrong: str, told: dict[str, str]) -> None:
+    assert told.items() <= check(wrong)[-1].values.items()
+
+
+@pytest.mark.parametrize("wrong", ["LOOP(2)\n...\nEND_LOOP", "idem", '"\nF(2, 80)', "F(2, 80)."])
+def test_nothing_stands_above_that_could_be_meant(wrong: str) -> None:
+    assert not {each.code.number for each in check(wrong)} & {"TS130", "TS131"}
+
+
+def test_what_follows_a_question_in_words_is_told_with_it() -> None:
+    asked, end = check("IF(mucha luz) S ENDIF")
+    assert (asked.values["question"], asked.values["another"]) == ("LIGHT_L > 500", "LIGHT_R > 500")
+    assert end.values["fix"] == "IF(LIGHT_L > 500);S;ENDIF"
+    assert fixed("IF(mucha luz) S ENDIF", check).text == "IF(mucha luz);S;ENDIF"
+
+
 def test_words_are_never_dropped_without_asking() -> None:
     for wrong in ("F(1, 80) hola", "F(2, 80) 3 veces", "F(2, 80) y retrocede", "F(2, 80) al 50%"):
         assert fixed(wrong, check).text == wrong

@@ -71,6 +71,18 @@ def told(text: str) -> list[tuple[str, str]]:
     return [(each.code.number, text[slice(*each.span)]) for each in check(text)]
 
 
+def test_a_finding_does_not_reach_into_the_words_behind_it() -> None:
+    text = "F(2, 80 %) de potencia"
+    assert told(text) == [("TS049", " %"), ("TS085", "de potencia")]
+    assert fixed(text, check).text == "F(2, 80) de potencia"
+
+
+def test_a_sign_is_told_at_each_of_its_places() -> None:
+    text = "*F(2,80)*; *S*"
+    assert told(text) == [("TS054", "*F(2,80)*"), ("TS054", "*S*")]
+    assert fixed(text, check).text == "F(2,80); S"
+
+
 def test_each_line_is_told_with_its_repair() -> None:
     text = "F(2 s, 80%)\r\nLOOP(3 veces)\r\n  R(1, 60)\r\nFIN\r\n"
     assert [code for code, _ in told(text)] == ["TS049", "TS049", "TS023"]

@@ -14,6 +14,7 @@ from tests.pupils.corpus import Entry, check
 from tiniscript import compile_text, robots
 from tiniscript.library.compiling import analyzed
 from tiniscript.recovery.concepts import plain
+from tiniscript.recovery.findings import sure
 from tiniscript.recovery.search import Candidate, candidate
 from tiniscript.repairs.fixing import offers
 from tiniscript.source import applied
@@ -60,10 +61,13 @@ class Answer(NamedTuple):
 def answer(entry: Entry) -> Answer:
     """Compare what becomes of a program with what is pinned.
 
-    Where nothing is repaired today, it is the same to repair nothing, equivalent to make what
-    today's messages tell to try, and worse to make anything else.
+    Where nothing is repaired, it is the same to repair nothing, equivalent to make what the
+    messages tell to try, and worse to make anything else: of a reading that is made, as only one of
+    the whole text is. One of a part is shown at most.
     """
     found = meant(entry.program)
+    if found and entry.mended is None and sure(entry.program, KIT, mistakes) is None:
+        found = found._replace(is_applied=False)
     return Answer(entry, mark_of(entry, found), found)
 
 

@@ -18,7 +18,7 @@ from tiniscript.recovery import rows
 from tiniscript.recovery.advice import advised
 from tiniscript.recovery.concepts import lexemes
 from tiniscript.recovery.explanation import explained
-from tiniscript.recovery.search import candidate
+from tiniscript.recovery.search import Candidate, Mistakes, candidate
 from tiniscript.recovery.setup import setup
 from tiniscript.recovery.writing import without_note
 from tiniscript.source import Edit, Source, Span, applied, overlap
@@ -64,28 +64,35 @@ def _meant(source: Source, found: Sequence[Diagnostic], check: Check, kit: Kit) 
     """Return what is wrong with a text that is read wholly and surely, else nothing."""
     text = source.text.replace("\r\n", "\n")
     said = {text: _mistakes(found)}
-    is_begun_otherwise = codes.SETUP_UNKNOWN.number in said[text]
-    if len(text) > LONGEST or "\r" in text or "~" in text or is_begun_otherwise:
-        return []
 
     def mistakes(program: str) -> Sequence[str]:
         if program not in said:
             said[program] = _mistakes(check(program))
         return said[program]
 
-    meant = candidate(text, kit, mistakes, is_whole=True)
-    if meant is None or not (meant.is_whole and meant.is_applied):
-        return []
-    told = explained(source.text, meant)
-    said_with = {each.code for each in told} | {step.code for _, step in meant.steps}
-    has_all = all(each.slip.right for each in told) and _keeps(text, meant.text, said_with)
-    if not told or not has_all:
-        return []
-    return [
+    meant = sure(text, kit, mistakes)
+    return [] if meant is None else [
         Diagnostic(CODES[each.code], each.span, each.slip._asdict(), each.place,
                    Repair(tuple(each.edits), True))
-        for each in told
+        for each in explained(source.text, meant)
     ]  # fmt: skip
+
+
+def sure(text: str, kit: Kit, mistakes: Mistakes) -> Candidate | None:
+    """Return the program that a text means wholly and surely, where all of its rewrites are told.
+
+    Lines of the text end with a newline alone.
+    """
+    is_begun_otherwise = codes.SETUP_UNKNOWN.number in mistakes(text)
+    if len(text) > LONGEST or "\r" in text or "~" in text or is_begun_otherwise:
+        return None
+    meant = candidate(text, kit, mistakes, is_whole=True)
+    if meant is None or not (meant.is_whole and meant.is_applied):
+        return None
+    told = explained(text, meant)
+    said_with = {each.code for each in told} | {step.code for _, step in meant.steps}
+    has_all = all(each.slip.right for each in told) and _keeps(text, meant.text, said_with)
+    return meant if told and has_all else None
 
 
 def _keeps(text: str, new: str, said_with: set[str]) -> bool:

@@ -128,11 +128,12 @@ class _Recovery:
             body = line.body.translate(_QUOTES)
             is_right = not isinstance(lines.right(lexemes(body), names), Failure)
             for row in () if is_right and body == line.body else rewrites.of_signs():
-                new = row.pattern.sub(row.becomes, body)
-                if new != body and not (defs and defs & _words(body) - _words(new)):
-                    line.steps.append(Step(row.code, lexemes(body), lexemes(new)))
-                    line.is_sure = line.is_sure and not row.is_offered
-                    body = new
+                for _ in row.pattern.findall(body):  # a step each, which is told at its place
+                    new = row.pattern.sub(row.becomes, body, count=1)
+                    if new != body and not (defs and defs & _words(body) - _words(new)):
+                        line.steps.append(Step(row.code, lexemes(body), lexemes(new)))
+                        line.is_sure = line.is_sure and not row.is_offered
+                        body = new
             line.body, note = without_note(body)
             line.note = note + line.note
 
@@ -155,7 +156,7 @@ class _Recovery:
             is_until = re.match(r"\s*(?:UNTIL|HASTA(?: QUE)?)\b", plain(line.body))
             before = next((each for each in reversed(kept) if each.body.strip()), None)
             body = before.body.rstrip().rstrip(";") if before else ""
-            is_behind = before is not None and body.endswith(")") and not before.note
+            is_behind = before is not None and body.endswith(")") and not before.note.strip()
             if (
                 not (is_until and is_behind)
                 or before is None

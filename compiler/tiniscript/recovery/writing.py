@@ -56,7 +56,7 @@ def _source(token: Lexeme) -> str:
 
 
 def without_note(line: str) -> tuple[str, str]:
-    """Return a line without its comment, and that with the space before it."""
+    """Return a line without its comment, and that with the space at the end of the line."""
     note = re.search(r"(?i)(?<!\bSI)(?<!\bSB)//", line)
-    body = line[: note.start()].rstrip() if note else line
+    body = line[: note.start() if note else None].rstrip(" \t")
     return body, line[len(body) :]
