@@ -219,7 +219,7 @@ RECOVERIES: dict[str, tuple[list[str], str]] = {
     "F 2 80;S": (["TS015 F 2 80"], "S «S»"),
     "F(2, 80));S": (["TS041 )"], "F [2]! [80]! «F(2, 80)»\nS «S»"),
     "* 5;S": (["TS042 *"], "S «S»"),
-    "DISTANCE < 10;S": (["TS042 DISTANCE < 10"], "S «S»"),
+    "DISTANCE < 10;S": (["TS042 DISTANCE"], "S «S»"),
     "X = 1 < 2 < 3;S": (["TS037 < 2 <"], "X = ? «X»\nS «S»"),
     "X += 1;S": (["TS050 X"], "X = ? «X»\nS «S»"),
     "S = 5;S": (["TS105 S"], "S «S»"),

@@ -13,10 +13,11 @@ from typing import NamedTuple
 from tests.pupils.corpus import Entry, check
 from tiniscript import compile_text, robots
 from tiniscript.library.compiling import analyzed
+from tiniscript.recovery.advice import advised
 from tiniscript.recovery.concepts import plain
 from tiniscript.recovery.findings import sure
 from tiniscript.recovery.search import Candidate, candidate
-from tiniscript.repairs.fixing import offers
+from tiniscript.repairs.fixing import fixed, offers
 from tiniscript.source import applied
 
 SAME, EQUIVALENT, QUESTION, USAGE, WORSE = "same", "equivalent", "question", "usage", "worse"
@@ -61,13 +62,17 @@ class Answer(NamedTuple):
 def answer(entry: Entry) -> Answer:
     """Compare what becomes of a program with what is pinned.
 
-    Where nothing is repaired, it is the same to repair nothing, equivalent to make what the
-    messages tell to try, and worse to make anything else: of a reading that is made, as only one of
-    the whole text is. One of a part is shown at most.
+    Where words are told beside it, that is what `--fix` makes. Where nothing is repaired, it is the
+    same to repair nothing, equivalent to make what the messages tell to try, and worse to make
+    anything else: of a reading of the whole text, since one of a part is not made.
     """
     found = meant(entry.program)
-    if found and entry.mended is None and sure(entry.program, KIT, mistakes) is None:
-        found = found._replace(is_applied=False)
+    if sure(entry.program, KIT, mistakes) is None:
+        if advised(entry.program, KIT):
+            text = fixed(entry.program, check).text
+            found = Candidate(text, True, False, (), 0) if text != entry.program else None
+        elif found and entry.mended is None:
+            found = found._replace(is_applied=False)
     return Answer(entry, mark_of(entry, found), found)
 
 

@@ -23,7 +23,7 @@ from tiniscript.semantics.empty_blocks import empty_blocks
 from tiniscript.semantics.lint import advice
 from tiniscript.semantics.optimizer import optimized
 from tiniscript.source import Source, Span, Unreadable, applied, decode
-from tiniscript.syntax.parser import parse
+from tiniscript.syntax.parser import ENOUGH, parse
 
 
 class Compiled(NamedTuple):
@@ -60,6 +60,8 @@ def check_text(text: str, kit: Kit, name: str = "") -> Compiled:
     answered = findings(found.source, found.diagnostics, mistakes, kit)
     if answered.told:
         edits = answered.edits
+        if len(answered.told) > ENOUGH:
+            return found._replace(diagnostics=codes.in_order(answered.told))
         rest = check_text(applied(text, edits), kit)
         # The warnings of what is left come when it is repaired.
         left = [] if rest.is_right else [moved_back(each, edits) for each in rest.diagnostics]

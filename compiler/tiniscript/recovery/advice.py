@@ -22,6 +22,7 @@ from tiniscript.recovery.slots import filled
 from tiniscript.recovery.worded import Worded, sensors_of, worded
 from tiniscript.recovery.writing import laid_out, without_note
 from tiniscript.source import Edit, Span
+from tiniscript.syntax.free_names import for_a_number
 from tiniscript.syntax.lexer import NUMBER, WORD
 from tiniscript.syntax.operators import COMPARISONS
 from tiniscript.syntax.outline import Failure
@@ -38,6 +39,7 @@ _MOST_BEFORE = 8  # instructions that an example repeats
 _FARTHEST = 40  # instructions of a text that are looked at for what is done again
 _ONE_IN_LOOP = 2  # separators of a loop of one instruction
 _BEGIN_BODY = (*BLOCK_ENDS, "ELSE", "ELSEIF")
+_IN_CALL = frozenset("0123456789.,() ")
 _BARE = ".:,\\* \"'`´“”‘’«»"  # signs that a note needs not
 
 
@@ -312,7 +314,8 @@ def _worded(gaps: _Gaps, is_not: bool = False) -> Worded:
     row = gaps.part.row[start - 1 : end - 1]
     names = gaps.part.names
     is_bare = gaps.part.row[end - 1 : end] == [] or gaps.part.row[end - 1].text != ")"
-    is_order = is_bare and any("|@start|" in names.label(each) for each in row)
+    is_order = is_bare and gaps["head"] == "UNTIL"
+    is_order |= is_bare and any("|@start|" in names.label(each) for each in row)
     is_read = is_order or bool(_asked(gaps, "s"))
     found = None if is_read else worded([*[made("NOT")] * is_not, *row], names)
     if found is None:
@@ -369,6 +372,56 @@ def _free(gaps: _Gaps) -> str:
     is_name = all(each.kind is WORD for each in gaps.part.row[start - 1 : end - 1])
     is_taken = name in names.sensors or name in names.defs or name in names.actuators
     return "" if is_name or is_taken else name
+
+
+def _choices(gaps: _Gaps) -> list[str]:
+    """The orders of which one is done, where the words say two or more."""
+    part, found = gaps.part, [gaps.part.call] if gaps.part.call else []
+    start, end = gaps.span("l")
+    words: list[int] = []
+    depth = 0
+    for k in range(start, end + 1):
+        text = part.row[k - 1].text if k < end else ","
+        depth += (text == "(") - (text == ")")
+        if depth or text != ",":
+            words.append(k)
+            continue
+        order = part.means(part.row[words[0] - 1].text) if words else ""
+        if order not in WORDS or not WORDS[order].is_instruction:
+            return []
+        behind = [part.row[each - 1].text for each in words[1:]]
+        if behind and (behind[0] != "(" or not all(set(each) <= _IN_CALL for each in behind)):
+            return []
+        values = Span(part.spans[words[0]].end, part.spans[words[-1]].end)
+        found.append(order + part.text[slice(*values)].strip())
+        words = []
+    return found if len(found) > 1 else []
+
+
+def _choice(gaps: _Gaps, separator: str = "; ") -> str:
+    """An IF that asks RANDOM which of the orders is done."""
+    orders = [each if "(" in each else WORDS[each].example for each in _choices(gaps)]
+    if not orders:
+        return ""
+    name = for_a_number(gaps.part.text)
+    lines_of = ["IF(RANDOM(1, 2) = 1)", orders[0]]
+    if len(orders) > _ONE_IN_LOOP:
+        lines_of = [f"{name} = RANDOM(1, {len(orders)})", f"IF({name} = 1)", orders[0]]
+    for number, order in enumerate(orders[1:-1], 2):
+        lines_of += [f"ELSEIF({name} = {number})", order]
+    return separator.join([*lines_of, "ELSE", orders[-1], BLOCK_ENDS["IF"]])
+
+
+def _apart(gaps: _Gaps) -> str:
+    """A call without the order among its values, and that order."""
+    owner, order = (WORDS[plain(gaps[name])] for name in ("w", "s"))
+    values = [each.strip() for each in gaps["v"].split(",")]
+    if len(values) != len(owner.arguments):
+        return ""
+    fits = order.arguments == owner.arguments
+    behind = f"{order.text}({', '.join(values)})" if fits else order.example
+    behind = order.text if order.role == "stop" else behind
+    return f"{owner.text}({', '.join(values)}); {behind}"
 
 
 def _loop(gaps: _Gaps) -> str:
@@ -504,6 +557,10 @@ _GAPS: dict[str, Callable[[_Gaps], str]] = {
     "asked": _questions(0, has_number=True), "also?": _questions(1, has_number=True),
     "nothing": _questions(0, is_asking=False),
     "like": _questions(0), "orlike?": _questions(1),
+    "choice": lambda gaps: _choice(gaps, ";") if all(
+        "(" in each or each == "S" for each in _choices(gaps)) else "",
+    "choices": _choice, "apart": _apart, "number": lambda gaps: for_a_number(gaps.part.text),
+    "example": lambda gaps: WORDS[plain(gaps["w"])].example,
     "one": _sensor(0), "two": _sensor(1), "alone": _alone, "then": _then, "free": _free,
     "unlike": _questions(0, is_not=True), "orunlike?": _questions(1, is_not=True),
     "text": lambda gaps: shortened(gaps.part.text[slice(*gaps.part.place)]),

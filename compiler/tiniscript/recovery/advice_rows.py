@@ -14,7 +14,7 @@ words, too), @often (a number that says how often), @percent (one that says a po
 of time), @other (the other way), @paced (another pace than its power), @told (says nothing that the
 instruction does not), @no_order (a word that begins no instruction), @quote, @mark (what is written
 below a line that is meant again), @dots, @ask (a word of the language that asks) and @noBUTTON (a
-word for BUTTON, which the kit lacks). What `s` captures is pointed at. `h` is a header: the rest is
+word for BUTTON, which the kit lacks), @call and @order (of the language: with values, or without). What `s` captures is pointed at. `h` is a header: the rest is
 read with what is asked as its question, else with TRUE.
 
 Values are texts with gaps. A gap is a capture, or a function in `advice`; a row with a gap that
@@ -55,9 +55,9 @@ ADVICE = """
 ^ @last <loop> (? @num? )? times? $ | TS062 | found={words} | F(1, 50)⏎repetir => found=repetir
 # questions in words
 ^ @none @any* <asks> (? @any* s=@noBUTTON @any* )? <body> $ | TS120 | | IF(boton presionado)⏎S⏎ENDIF => before=
-^ @none @any* <asks> (? s=@word|@num+ )? <body> $ | TS135 | joint={joint} | IF(hay luz y pared)⏎S⏎ENDIF => joint=AND
-^ @none @any* <asks> (? s=@word|@num+ )? <body> $ | TS135 | word={head}; asked={asked}; also={also?} | IF(pared a 1 metro)⏎S⏎ENDIF => asked=DISTANCE < 100
-^ @none @any* <asks> (? s=@word|@num+ )? <body> $ | TS135 | word={head}; example={nothing} | IF(esta listo)⏎S⏎ENDIF => example=DISTANCE < 10
+^ @none @any* <asks> (? s=@word|@num+ )? <body> $ | TS135 | word={head}; question=; joint={joint} | IF(hay luz y pared)⏎S⏎ENDIF => joint=AND
+^ @none @any* <asks> (? s=@word|@num+ )? <body> $ | TS135 | word={head}; question=; asked={asked}; also={also?} | IF(pared a 1 metro)⏎S⏎ENDIF => asked=DISTANCE < 100
+^ @none @any* <asks> (? s=@word|@num+ )? <body> $ | TS135 | word={head}; question=; example={nothing} | IF(esta listo)⏎S⏎ENDIF => example=DISTANCE < 10
 ^ @none @any* <asks> (? s=@word|@num+ )? <body> $ | TS135 | word={head}; question={like}; another={orlike?} | F(5, 60) UNTIL(luz mucha) => question=LIGHT_L > 500
 ^ @none @any* <asks> ( s=light = TRUE|1 ) $ | TS135 | word={head}; question={like}; another={orlike?} | IF(oscuro = TRUE)⏎S⏎ENDIF => question=LIGHT_L < 500
 ^ @none @any* <asks> ( s=light = FALSE|0 ) $ | TS135 | word={head}; question={unlike}; another={orunlike?} | IF(oscuro = FALSE)⏎S⏎ENDIF => question=LIGHT_L > 500
@@ -69,6 +69,13 @@ ADVICE = """
 ^ @none s=@cond+ $ | TS042 | found={s}; asked={s}; fix=IF({alone}) | DISTANCE < 20 => fix=IF(DISTANCE < 20)
 ^ @none s=@cond+ ¿|¡ @any* $ | TS042 | found={s}; asked={s}; one=IF({alone}) | DISTANCE < 20 ¿si? S => one=IF(DISTANCE < 20)
 ^ @none v=@word|@num|+|-|*|/|%|(|)+ = x=@name $ | TS042 | found={x}; turned={x}; fix={free} = {v} | DISTANCE - 5 = FALTA => fix=FALTA = DISTANCE - 5
+# an order that is chosen, or stands for a value
+^ @none RANDOM ( l=@any+ ) $ | TS136 | fix={choice}; example={choices} | RANDOM(L(1, 60), S) => fix=IF(RANDOM(1, 2) = 1);L(1, 60);ELSE;S;ENDIF
+^ @none @any* RANDOM ( l=@any+ ) $ | TS136 | example={choices} | giro = RANDOM(L, R) => example=IF(RANDOM(1, 2) = 1); L(2, 80); ELSE; R(2, 80); ENDIF
+^ @none RANDOM ( n=@num to|,|A|TO m=@num ) $ | TS042 | found=RANDOM; given={words}; number={number} = RANDOM({n}, {m}) | RANDOM(440 a 880) => number=N = RANDOM(440, 880)
+^ @none w=@call ( v=@noparen+ , s=@order ) $ | TS051 | word={s}; apart={apart} | F(1, 60, R) => apart=F(1, 60); R(1, 60)
+^ @none w=@call @any* (|, s=@order ) $ | TS051 | word={s}; example={example} | F(2, R) => example=F(2, 80)
+^ @none <asks> ( s=@order @any* ) $ | TS105 | word={s}; right= | IF(L > 5)⏎S⏎ENDIF => word=L
 # words for nothing, and those that are no words behind it
 ^ c=@any s=idle+ $ | TS044 | found={s} | SHOW(DISTANCE) cm => found=cm
 ^ c=S|STOP s=LOOP $ | TS102 | found={text}; right=BREAK; fix=BREAK; usage=BREAK | STOP LOOP => fix=BREAK
@@ -113,6 +120,7 @@ ADVICE = """
 ^ c=@cmd act|most|least w=@told* $ | TS085 | order={words} | F(1, 80) abre la pinza => order=abre la pinza
 ^ c=@cmd CON|WITH w=@start|act @any* $ | TS085 | order={behind} | F(2,80) con SHOW(1) => order=SHOW(1)
 ^ c=@asked O|OR|U w=@start @any* $ | TS085 | order={behind} | F(1,50) UNTIL(DISTANCE<10) o L(1,60) => order=L(1,60)
+^ c=@cmd O|OR|U l=@any+ $ | TS136 | fix={choice}; example={choices} | L(1, 60) o R(2, 60) => fix=IF(RANDOM(1, 2) = 1);L(1, 60);ELSE;R(2, 60);ENDIF
 # notes
 ^ c=@cmd ( ) $ | TS085 | extra={words} | F(2,80)() => extra=()
 ^ c=@any w=@told+ $ | TS085 | fix={note} | F(1, 80) voy a la bodega => fix=F(1, 80) // voy a la bodega

@@ -211,6 +211,10 @@ class Behind:
         concept = concept_of(text) if token.kind is WORD and not self.names.is_name(text) else None
         is_of_kit = concept is None or concept in WORDS or self.names.has(concept)
         found += [] if is_of_kit else [f"@no{concept}"]
+        known = None if token.source == "l" else WORDS.get(text)
+        is_set = rf"(?i)\b{text}\s*="  # a variable that is told at its own line
+        if known is not None and known.is_instruction and not re.search(is_set, self.text):
+            found += ["@call", "@order"] if known.is_call else ["@order"]
         found += ["@ask"] if text in ASKING else []
         found += ["@quote"] if text in QUOTES and text != "`" else []
         found += ["@mark"] if text in MARKS else []

@@ -40,7 +40,7 @@ class Worded(NamedTuple):
 def worded(row: Sequence[Lexeme], names: Names) -> Worded | None:
     """Return what a question in words asks, None where it is none or cannot be understood."""
     texts = [each.text for each in row]
-    is_done = any(_is_done(texts, k) for k in range(len(texts)))
+    is_done = {*texts} & {"AND", "OR"} or any(_is_done(texts, k) for k in range(len(texts)))
     if is_done or any(each.kind not in (WORD, NUMBER) for each in row):
         return None
     joint = _joint(texts, names)
@@ -51,6 +51,8 @@ def worded(row: Sequence[Lexeme], names: Names) -> Worded | None:
     numbers = [text for text in texts if text[0].isdigit() or text[0] == "."]
     own = [text for text in texts if names.is_name(text) and text != number]
     is_known = all(names.is_name(text) or said_of(text, "number") for text in texts)
+    if not said & _ASKING and (len(texts) == 1 or said_of(texts[0], "no")):
+        return None  # `NOT READY`
     is_alone = len(texts) == 1 and not (said & {"light"} and not said_of(texts[0], "sensor"))
     if is_alone or is_known or len(numbers) > 1 or names.is_name("_".join(texts)):
         return None

@@ -26,7 +26,6 @@ from tiniscript.syntax.joined_questions import JoinedQuestions
 from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, ODD, WORD, Token
 from tiniscript.syntax.number_recovery import NumberRecovery
 from tiniscript.syntax.operators import COMPARISONS, Operator, Postfix
-from tiniscript.syntax.order_values import order_as_value
 from tiniscript.syntax.phrases import AFTER_HEADER
 from tiniscript.syntax.reporter import Failed, Reporter
 from tiniscript.syntax.suggestions import after_bracket, operator_words, tells
@@ -129,7 +128,6 @@ class ExpressionRecovery:
         place = self.cursor.before(self.cursor.i)
         if self.cursor.tokens[place].kind == "-" and place:
             self._sensor_in_two(self.cursor.tokens[place - 1], token)
-        order_as_value(self.cursor, self.reporter, self.constructs.known, token)
         fail(codes.RESERVED, token.span, word=word.text, right=self.cursor.free_name(word.text))
 
     def literal(self, number: Token, span: Span, value: int) -> int:

@@ -28,7 +28,6 @@ from tiniscript.syntax.devices import actuator_word
 from tiniscript.syntax.foreign import Grammar, foreign_word
 from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, ODD, WORD, Token
 from tiniscript.syntax.operators import COMPARISONS, SIGNS
-from tiniscript.syntax.order_values import at_random
 from tiniscript.syntax.phrases import (
     AFTER_HEADER,
     BEFORE_CALL,
@@ -345,7 +344,6 @@ class NameRecovery:
         is_variable = self.in_block.known.is_own(first.text) or meant_by(first.text) is None
         if is_variable and first.text not in WORDS and not self.in_block.is_name(first.text):
             self.of_value.changed(first, tokens)
-        at_random(self.cursor, self.reporter, self.in_block.known, first)
         asks = any(token.kind in COMPARISONS or token.text == "NOT" for token in tokens)
         if asks:
             self.in_block.other.choice(first)

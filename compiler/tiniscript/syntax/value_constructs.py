@@ -15,7 +15,6 @@ from tiniscript.source import Span
 from tiniscript.syntax.call_suggestions import LONGEST, call_in, starts_value, written
 from tiniscript.syntax.cursor import AT_END, Cursor
 from tiniscript.syntax.lexer import NUMBER, ODD, QUOTES, WORD, Token
-from tiniscript.syntax.order_values import one_or_other
 from tiniscript.syntax.phrases import FILLERS, READING
 from tiniscript.syntax.reporter import Reporter
 from tiniscript.syntax.suggestions import (
@@ -289,7 +288,6 @@ class ValueConstructs:
             self.unread_value(first, k + 2, len(self.reporter.diagnostics))
         command = self.known.command(first.text)
         if command is not None and (command.is_instruction or command.role == "actuator"):
-            one_or_other(cursor, self.reporter, self.known, k)
             self._brackets_behind(first, k, command)
 
     def _brackets_behind(self, first: Token, k: int, word: Word) -> None:
