@@ -22,6 +22,7 @@ from tests.support.virtual_robot import missing
 from tests.support.waiting import HANGS_S
 from tiniscript.cli.commands.robot import ended_by_signal
 from tiniscript.library import install_advice
+from tiniscript.link import ports
 from tiniscript.virtual import directory
 
 pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")
@@ -239,7 +240,23 @@ def test_of_several_robots_one_is_named() -> None:
         done = inside("info", "--virtual")
         assert done.code == 3
         assert second.port in done.err
+        asked = inside("info")  # without --virtual and without a terminal
+        assert (asked.code, asked.err) == (3, done.err)
         assert inside("info", "--port", second.port).code == 0
+
+
+def test_a_person_chooses_among_virtual_robots(tsc: Tsc, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(ports, "listed", list)
+    with robot() as first, robot("--world", "line") as second:
+        places = sorted([(first.port, "obstacles"), (second.port, "a line to follow")])
+        monkeypatch.setattr("sys.stdin.isatty", lambda: True)
+        monkeypatch.setattr("sys.stdin.readline", lambda: "2\n")
+        monkeypatch.setattr("sys.stderr.isatty", lambda: True)
+        done = tsc("info")
+        assert done.code == 0
+        for number, (port, world) in enumerate(places, 1):
+            assert f'  {number}  {port}   virtual robot tinibot, world "{world}"\n' in done.err
+        assert places[1][0] in done.out
 
 
 # -- a robot for one command ----------------------------------------------------------------------

@@ -11,7 +11,7 @@ from contextlib import closing
 from tiniscript.cli import inputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
-from tiniscript.cli.robot.connect import baud_of, opened_client, robot_of_kit
+from tiniscript.cli.robot.connect import about_virtual, baud_of, opened_client, robot_of_kit
 from tiniscript.cli.robot.in_reach import InReach, found
 from tiniscript.cli.texts.common import text
 from tiniscript.library import opening
@@ -23,8 +23,7 @@ from tiniscript.link.requests import OK
 from tiniscript.link.sharing.registry import all_found
 from tiniscript.link.sharing.shared_line import is_alive
 from tiniscript.robots.profile import Robot
-from tiniscript.virtual import directory, worlds
-from tiniscript.virtual.directory import Running
+from tiniscript.virtual import directory
 
 OPEN_S = 12.0
 AT_ONCE = 16  # ports that are asked at the same time
@@ -83,7 +82,7 @@ def _rows(options: Namespace, in_reach: InReach, language: str) -> list[dict[str
         names += [port for port in virtual if port not in (*names, *in_reach.others)]
         listed = {same_for_all(port) for port in names}
         names += [port for port in held if port not in listed]
-    about |= {port: _virtual(each, language) for port, each in virtual.items()}
+    about |= {port: about_virtual(each, language) for port, each in virtual.items()}
     return [
         {
             "port": port,
@@ -95,15 +94,6 @@ def _rows(options: Namespace, in_reach: InReach, language: str) -> list[dict[str
         }
         for port in names
     ]
-
-
-def _virtual(running: Running, language: str) -> str:
-    """Return the description of a virtual robot; a shipped world has a name in each language."""
-    world = running.world
-    if world in worlds.names():
-        world = worlds.load(world).labels[language]
-    said = text("virtual_port", language).format(robot=running.robot, world=world)
-    return f"{running.name}: {said}" if running.name else said
 
 
 def _ask(port: str, baud: int | None, robot: Robot, language: str) -> dict[str, object]:

@@ -332,12 +332,27 @@ def _chosen(options: Namespace, language: str) -> str:
     if not (sys.stdin.isatty() and sys.stderr.isatty()) or getattr(options, "asks_nothing", False):
         if last is not None:
             raise CommandError(3, "last_port_missing", port=shown(last))
+        if virtual:
+            raise CommandError(
+                3, "which_virtual", known=", ".join(each.address for each in virtual)
+            )
         raise CommandError(3, "which_port_or_virtual" if can_bring else "which_port")
-    return _asked(language, can_bring)
+    return _asked(language, can_bring, virtual)
 
 
-def _asked(language: str, can_bring: bool) -> str:
-    """Let the person choose a port."""
+def about_virtual(running: directory.Running, language: str) -> str:
+    """Return the description of a virtual robot; a shipped world has a name in each language."""
+    from tiniscript.virtual import worlds
+
+    world = running.world
+    if world in worlds.names():
+        world = worlds.load(world).labels[language]
+    said = text("virtual_port", language).format(robot=running.robot, world=world)
+    return f"{running.name}: {said}" if running.name else said
+
+
+def _asked(language: str, can_bring: bool, virtual: list[directory.Running]) -> str:
+    """Let the person choose a port, or one of the virtual robots."""
     names = known_ports.known().names
     from tiniscript.link import ports
 
@@ -345,6 +360,7 @@ def _asked(language: str, can_bring: bool) -> str:
     choices = [each.port for each in found]
     choices += [port for port in names if port not in choices and is_address(port)
                 and not is_gone(port)]  # fmt: skip
+    choices += [each.address for each in virtual if each.address not in choices]
     if not choices:
         if can_bring:
             from tiniscript.cli.robot.simulator import offered
@@ -353,6 +369,7 @@ def _asked(language: str, can_bring: bool) -> str:
                 return VIRTUAL
         raise CommandError(3, "no_ports")
     about = {each.port: each.description for each in found}
+    about |= {each.address: about_virtual(each, language) for each in virtual}
     print(text("choose_port", language), file=sys.stderr)
     for number, port in enumerate(choices, 1):
         more = "   ".join(filter(None, (names.get(port), about.get(port))))
