@@ -106,7 +106,7 @@ def test_a_robot_that_another_one_has_claimed_says_so_and_what_to_do(
     for _ in range(7):  # more often than wrong keys are listened to
         done = on(pty_robot, "info")
         assert done.code == 0 and "claimed it again" in done.err and "10 s" in done.err
-    assert "lo reclamó" in on(pty_robot, "ping", "--count", "1", "--lang", "es").err
+    assert "lo hizo suyo" in on(pty_robot, "ping", "--count", "1", "--lang", "es").err
     assert [key.is_stale for key in KeyFile().all()] == [True]
     refused = on(pty_robot, "upload", "-e", DRIVES)
     assert refused.code == 3 and "another key" in refused.err

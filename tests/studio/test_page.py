@@ -64,7 +64,7 @@ def test_a_mistake_of_ours_is_told_with_its_name(page: Page) -> None:
 def test_what_is_typed_is_compiled(page: Page) -> None:
     write(page, "SI|F(3, 70);\nS")
     assert image(page) == compile("SI|F(3, 70);\nS").image
-    assert page.inner_text("#status") == "The program is right: 4 bytes."
+    assert page.inner_text("#status") == "The program is correct: 4 bytes."
     write(page, "")
     assert image(page) == compile("").image
 

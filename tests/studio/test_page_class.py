@@ -111,7 +111,7 @@ def test_three_pupils_share_a_robot(
 ) -> None:
     luz, teo = (joined(pages, taught, name) for name in ("Luz", "Teo"))
     asks(ana)
-    said(ana, "It is your turn. Nobody waits.")
+    said(ana, "It is your turn. Nobody is waiting.")
     linked(ana, "Connected: ")
     asks(luz)
     said(luz, "Your place in the queue: 1 of 1.")

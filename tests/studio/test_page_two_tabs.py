@@ -157,7 +157,7 @@ def test_a_program_that_is_too_long_to_be_kept_says_so(page: Page) -> None:
             assert page.inner_text("#note") == ""
             page.click("#my_programs")
             page.click("#programs_close")
-        noted(page, "The browser keeps no program as long as this one")
+        noted(page, "This program is too long for the browser to keep")
         kept = page.evaluate("JSON.parse(localStorage['tiniscript.work']).text.length")
         assert (kept > 400_000) == (count == 30_000)
     write(page, "S")

@@ -14,7 +14,7 @@ export const CLASS_TEXTS = {
   class_nameless: ['Write your name, too.', 'Escribe también tu nombre.'],
   class_slow: ['Too many wrong codes from this place. Wait a minute, and look at the code again.',
     'Hubo demasiados códigos equivocados desde aquí. Espera un minuto y mira el código otra vez.'],
-  class_crowded: ['This device has its places in the class already. Close its other pages, wait a moment, or tell your teacher.',
+  class_crowded: ['This device already has all its places in the class. Close its other pages, wait a moment, or tell your teacher.',
     'Este dispositivo ya ocupa todos sus lugares en la clase. Cierra sus otras páginas, espera un momento, o avisa a tu docente.'],
   class_full: ['The class is full. Tell your teacher.', 'La clase está llena. Avisa a tu docente.'],
   class_gone: ['You are not in the class now. Write the code that your teacher shows, and join again.',
@@ -27,7 +27,7 @@ export const CLASS_TEXTS = {
   class_in: ['You are in the class, {name}. Robots: {robots}. Waiting: {waiting}.', 'Estás en la clase, {name}. Robots: {robots}. En la cola: {waiting}.'],
   class_place: ['Your place in the queue: {place} of {waiting}. Robots: {robots}.', 'Tu lugar en la cola: {place} de {waiting}. Robots: {robots}.'],
   class_turn: ['It is your turn. Time left: {time}. Waiting: {waiting}.', 'Es tu turno. Tiempo que queda: {time}. En la cola: {waiting}.'],
-  class_turn_alone: ['It is your turn. Nobody waits.', 'Es tu turno. Nadie espera.'],
+  class_turn_alone: ['It is your turn. Nobody is waiting.', 'Es tu turno. Nadie espera.'],
   why_turn_over: ['Your turn is over, and the robot was stopped.', 'Tu turno terminó y el robot se detuvo.'],
   why_turn_none: ['It is not your turn now. Ask for a robot, and wait for your place.', 'Ahora no es tu turno. Pide un robot y espera tu lugar.'],
 

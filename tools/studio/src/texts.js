@@ -65,7 +65,7 @@ export const TEXTS = {
     'Este programa es muy largo para bloques. Escríbelo como texto.'],
   messages: ['What the compiler says', 'Lo que dice el compilador'],
   starting: ['The compiler is starting…', 'El compilador está arrancando…'],
-  right: ['The program is right: {bytes} bytes.', 'El programa está bien: {bytes} bytes.'],
+  right: ['The program is correct: {bytes} bytes.', 'El programa está bien: {bytes} bytes.'],
   one_mistake: ['1 mistake', '1 error'],
   mistakes: ['{count} mistakes', '{count} errores'],
   one_warning: ['1 warning', '1 aviso'],
@@ -85,7 +85,7 @@ export const TEXTS = {
   push: ['Its button', 'Su botón'],
   stop: ['STOP', 'PARAR'],
   speed: ['Speed', 'Velocidad'],
-  values: ['What the robot notices', 'Lo que percibe el robot'],
+  values: ['What the robot senses', 'Lo que percibe el robot'],
   trace: ['What it has done', 'Lo que ha hecho'],
   seen: ['See', 'Ver'],
   seen_arena: ['From above', 'Desde arriba'],
@@ -119,12 +119,12 @@ export const TEXTS = {
     'El navegador no lo puede leer. Cópialo a otra carpeta y prueba otra vez.'],
   not_kept: ['This browser keeps nothing for this page: save your program before you leave.',
     'Este navegador no guarda nada para esta página: guarda tu programa antes de salir.'],
-  kept_too_long: ['The browser keeps no program as long as this one: save it before you leave.',
+  kept_too_long: ['This program is too long for the browser to keep: save it before you leave.',
     'El navegador no guarda un programa tan largo: guárdalo tú antes de salir.'],
   no_compiler: ['The compiler did not start. Reload the page; your program is kept.',
     'El compilador no arrancó. Recarga la página; tu programa queda guardado.'],
-  bug: ['The studio met something it was not made for. That is our mistake, not yours. Reload the page; your program is kept. ({why})',
-    'El estudio encontró algo para lo que no está hecho. El error es nuestro, no tuyo. Recarga la página; tu programa queda guardado. ({why})'],
+  bug: ['Something went wrong in the studio. That is our mistake, not yours. Reload the page; your program is kept. ({why})',
+    'Algo salió mal en el estudio. El error es nuestro, no tuyo. Recarga la página; tu programa queda guardado. ({why})'],
 };
 
 // The texts of the editor itself, as CodeMirror names them.

@@ -107,7 +107,7 @@ TEXTS: dict[str, tuple[str, str]] = {
     "beyond": ("{value} in the wire", "{value} en el cable"),
     "on_board": ("on the board: no wire", "en la placa: sin cable"),
     "rails": ("Power", "Alimentación"),
-    "rails_intro": ("Everything with the same tag is connected.", "Todo lo que va a una etiqueta va unido."),
+    "rails_intro": ("Everything with the same tag is connected.", "Todo lo que lleva la misma etiqueta va unido."),
     "head_tag": ("tag", "etiqueta"),
     "head_colour": ("colour", "color"),
     "head_joined": ("connect to it", "une a ella"),
@@ -128,7 +128,8 @@ TEXTS: dict[str, tuple[str, str]] = {
                       "Nunca unas el más de la batería con 5V o 3V3 de la placa, ni 5 V con un pin: sus pines aguantan 3.3 V."),
     # what to mind
     "mind": ("Take care", "Cuidado"),
-    "mind_floating": ("The resistors of 10 kΩ at {ends} keep the motors still while the board starts: for about a second after every " "reset no program controls its pins, which may be on or off.",
+    "mind_floating": ("The resistors of 10 kΩ at {ends} keep the motors still while the board starts: for about a second after every reset "
+                      "no program controls its pins, which may be on or off.",
                       "Las resistencias de 10 kΩ en {ends} mantienen quietos los motores mientras la placa arranca: durante cerca de un segundo "
                       "después de cada reinicio ningún programa maneja todavía sus pines, y un pin así puede estar encendido o apagado."),
     "mind_servo_supply": ("Servos need a supply of their own, 5 to 6 V: on the 5V of the board they make it restart. Connect their minus to GND.",
