@@ -152,7 +152,8 @@ def moved_places(language: str) -> dict[str, dict[str, str]]:
         page_name, is_place, place = old.partition("#")
         if is_place:
             target, mark, there = new.partition("#")
-            found.setdefault(page_name, {})[place] = f"{target}.html{mark}{there}"
+            up = "../" * page_name.count("/")
+            found.setdefault(page_name, {})[place] = f"{up}{target}.html{mark}{there}"
     return found
 
 
