@@ -80,7 +80,9 @@ def test_a_picture_of_a_guide_has_all_of_its_parts_inside(name: str) -> None:
         assert 0 <= x <= width - float(each.get("width", 0))
         assert 0 <= y <= height - float(each.get("height", 0))
     ways = [each for each in drawing.iter(f"{SVG}polyline") if each.get("stroke") == arena.WAY]
-    drives = {"lesson.svg": 3} | {key: len(row[2]) for key, row in DRIVES_OF_GUIDES.items()}
+    drives = {"lesson.svg": 3, "hand.svg": 1} | {
+        key: len(row[2]) for key, row in DRIVES_OF_GUIDES.items()
+    }
     assert len(ways) == drives.get(name, 0)
 
 

@@ -14,6 +14,7 @@ import json
 import re
 import sys
 from io import BytesIO
+from itertools import product
 from pathlib import Path
 
 from PIL import Image
@@ -33,6 +34,16 @@ SI|LOOP(6)
   R(0.5, 60)
 END_LOOP
 """
+COUNTED = """\
+SI|TURNS = 0
+LOOP(6)
+  F(FOREVER, 80) UNTIL(DISTANCE < 15)
+  TURNS = TURNS + 1
+  R(0.5, 60)
+END_LOOP
+"""
+SCENES = {"": PROGRAM, ".held": COUNTED}  # as blocks after its run; at a breakpoint, with values
+HOLDS = 5  # the line of the breakpoint
 SIZE = {"width": 1280, "height": 760}
 COLOURS = 128  # of a picture: its bytes are halved, and nobody sees it
 KEPT = "words"  # the text of the picture that has them
@@ -40,8 +51,8 @@ SEEN = "button, label, h1, h2, .blocklyToolboxCategoryLabel"
 TEXTS = sorted((ROOT / "tools" / "studio" / "src").glob("*texts.js"))
 
 
-def picture(language: str) -> Path:
-    return ROOT / "docs" / f"studio.{language}.png"
+def picture(language: str, scene: str = "") -> Path:
+    return ROOT / "docs" / f"studio{scene}.{language}.png"
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -53,18 +64,18 @@ def main(arguments: list[str] | None = None) -> int:
         if why:
             print(f"screenshot: {why}", file=sys.stderr)
             return 2
-        for language in LANGUAGES:
-            take(language, picture(language))
-            print(f"wrote {picture(language).relative_to(ROOT)}")
+        for language, scene in product(LANGUAGES, SCENES):
+            take(language, scene, picture(language, scene))
+            print(f"wrote {picture(language, scene).relative_to(ROOT)}")
         return 0
-    wrong = [why for language in LANGUAGES if (why := stale(language))]
+    wrong = [why for each in product(LANGUAGES, SCENES) if (why := stale(*each))]
     for why in wrong:
         print(f"screenshot: {why}", file=sys.stderr)
     return 1 if wrong else 0
 
 
-def take(language: str, target: Path) -> None:
-    """Write the picture of the page in a language, with the words that are in it."""
+def take(language: str, scene: str, target: Path) -> None:
+    """Write the picture of a scene of the page in a language, with the words that are in it."""
     with (
         studio.served() as server,
         studio.driver() as driver,
@@ -73,13 +84,19 @@ def take(language: str, target: Path) -> None:
         pages = studio.Pages(opened, server.address, patience_s=120)
         page = pages.open("text", viewport=SIZE, device_scale_factor=1)
         page.select_option("#language", language)
-        studio.write(page, PROGRAM)
+        studio.write(page, SCENES[scene])
         page.select_option("#speed", "20")
+        if scene:
+            page.click("#view_text")
+            numbers = page.locator(".cm-lineNumbers .cm-gutterElement")
+            numbers.filter(has_text=str(HOLDS)).last.click()
         page.click("#run")
-        page.locator("[data-phase=ended]").first.wait_for(state="attached")
+        phase = "paused" if scene else "ended"
+        page.locator(f"[data-phase={phase}]").first.wait_for(state="attached")
         page.select_option("#speed", "1")
-        page.click("#view_blocks")
-        studio.shown(page)
+        if not scene:
+            page.click("#view_blocks")
+            studio.shown(page)
         words = page.eval_on_selector_all(
             SEEN, "all => all.filter(one => one.checkVisibility()).map(one => one.innerText)"
         )
@@ -99,9 +116,9 @@ def is_said(words: str) -> bool:
     return any(f"'{words}'" in text for text in _sources())
 
 
-def stale(language: str) -> str:
+def stale(language: str, scene: str = "") -> str:
     """Return why a picture is not one of this page, or nothing."""
-    path = picture(language)
+    path = picture(language, scene)
     if not path.is_file():
         return f"there is no {path.name}. Take it:  {COMMAND}"
     with Image.open(path) as image:

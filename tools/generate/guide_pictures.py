@@ -16,7 +16,7 @@ from tiniscript.lessons.variation import varied
 from tiniscript.robots.profile import LANGUAGES
 from tiniscript.virtual import worlds
 from tiniscript.virtual.world import World
-from tools.generate.arena import BODY, BOX, FLOOR, WALL, WAY, arena, driven
+from tools.generate.arena import BODY, BOX, FLOOR, LAMP, WALL, WAY, arena, driven
 
 DOCS = Path(__file__).resolve().parent.parent.parent / "docs"
 GUIDES = {"en": "monday.en.md", "es": "lunes.es.md"}
@@ -57,7 +57,8 @@ def guide_pictures(command: str) -> dict[str, partial[str]]:
     """Return how the pictures are made, by their names in `docs/`. `command` makes them."""
     made = {name: partial(drive, command, *row) for name, row in DRIVES.items()}
     made |= {f"phone.{each}.svg": partial(phone, command, each) for each in LANGUAGES}
-    wired = {"cable.svg": cable, "adapter.svg": adapter, "room.svg": room, "lesson.svg": lesson}
+    wired = {"cable.svg": cable, "adapter.svg": adapter, "room.svg": room, "lesson.svg": lesson,
+             "blinks.svg": blinks, "hand.svg": hand, "port.svg": port}  # fmt: skip
     return made | {name: partial(picture, command) for name, picture in wired.items()}
 
 
@@ -134,6 +135,43 @@ def adapter(command: str) -> str:
     parts += [_box(200, 155, 50, 20, PAPER), _words(204, 170, "1 kΩ"), *_wire(390, 165, 390, 125)]
     parts += [_box(365, 135, 50, 20, PAPER), _words(369, 150, "2 kΩ")]
     return _svg(command, 550, 190, parts)
+
+
+def blinks(command: str) -> str:
+    """Return how the lamp of an HC-05 blinks alone, and while a computer is connected."""
+    parts = []
+    for k, lit in enumerate((range(0, 24, 2), (0, 2, 12, 14))):
+        y = 20 + 70 * k
+        parts += [_box(150, y, 80, 40, GROUND), _words(163, y + 26, "HC-05")]
+        parts += [_box(10, y, 80, 40, SKY), _words(38, y + 25, "tsc"),
+                  *_wire(95, y + 20, 145, y + 20)] if k else []  # fmt: skip
+        parts += [f'<rect x="{270 + 20 * j}" y="{y + 8}" width="20" height="24" fill="{LAMP}"/>'
+                  for j in lit]  # fmt: skip
+        parts += _wire(270, y + 32, 750, y + 32)
+    return _svg(command, 760, 140, parts)
+
+
+def hand(command: str) -> str:
+    """Return what a robot before something shows when a guide asks it for the distance."""
+    [line, said] = re.findall(r'tsc live "(SHOW\(.*?\))"\n(SHOW \d+)', _text(GUIDES["en"]))[0]
+    world, scale = before(int(said.split()[1])), 4.0
+    way = driven(f"SI|{line}", "tinibot", world, 200)
+    front, wall = (PAD + x * scale for x in (way.points[0][0] + FRONT, world.width_cm))
+    y = PAD + world.height_cm / 2 * scale
+    parts = [*arena(world, way, PAD, PAD, scale), *_wire(front, y, wall, y)]
+    parts.append(_words((front + wall) / 2 - 32, y - 10, said))
+    return _svg(command, world.width_cm * scale, world.height_cm * scale, parts)
+
+
+def port(command: str) -> str:
+    """Return two commands on one computer that reach one robot through one port."""
+    parts = [_box(10, 10, 330, 160, PAPER)]
+    for k, typed in enumerate(("$ tsc upload prog.ts", "$ tsc stop")):
+        y = 25 + 70 * k
+        parts += [_box(25, y, 200, 60, SKY), _words(37, y + 35, typed)]
+        parts += _wire(225, y + 30, 265, 90)
+    parts += [_box(265, 70, 65, 40, GROUND), _words(272, 95, "COM5"), *_wire(330, 90, 440, 90)]
+    return _svg(command, 560, 170, [*parts, _box(440, 60, 90, 60, BODY)])
 
 
 def room(command: str) -> str:
