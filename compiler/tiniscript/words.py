@@ -93,19 +93,28 @@ WORDS = {word.text: word for word in (
     Word("WHILE", "block", (Argument("c", "", sample="DISTANCE > 10"),)), Word("END_WHILE", "end"),
     Word("BREAK", "break"),
     Word("DEF", "block"), Word("END_DEF", "end"),
+    Word("TASK", "block"), Word("END_TASK", "end"),
+    Word("WHEN", "block", (Argument("c", "", sample="DISTANCE < 15"),)), Word("END_WHEN", "end"),
     Word("TRUE", "value"), Word("FALSE", "value"), Word("TIME", "value"),
     Word("AND", "operator"), Word("OR", "operator"), Word("NOT", "operator"),
     Word("ROUND", "function", (VALUE, Argument("decimals", ""))),
     Word("ABS", "function", (A,)), Word("MIN", "function", (A, B)), Word("MAX", "function", (A, B)),
     Word("RANDOM", "function", (LOW, HIGH)),
     Word("END_IF", "alias"), Word("ENDLOOP", "alias"), Word("ENDWHILE", "alias"), Word("ENDDEF", "alias"),
-    Word("TASK", "later"), Word("END_TASK", "later"), Word("WHEN", "later"), Word("END_WHEN", "later"),
+    Word("ENDTASK", "alias"), Word("ENDWHEN", "alias"),
     Word("SEND", "later"),
 )}
 
 FUNCTIONS = tuple(word.text for word in WORDS.values() if word.role == "function")
-ALIASES = {"END_IF": "ENDIF", "ENDLOOP": "END_LOOP", "ENDWHILE": "END_WHILE", "ENDDEF": "END_DEF"}
-BLOCK_ENDS = {"IF": "ENDIF", "LOOP": "END_LOOP", "WHILE": "END_WHILE", "DEF": "END_DEF"}
+ALIASES = {
+    "END_IF": "ENDIF", "ENDLOOP": "END_LOOP", "ENDWHILE": "END_WHILE", "ENDDEF": "END_DEF",
+    "ENDTASK": "END_TASK", "ENDWHEN": "END_WHEN",
+}
+BLOCK_ENDS = {
+    "IF": "ENDIF", "LOOP": "END_LOOP", "WHILE": "END_WHILE", "DEF": "END_DEF",
+    "TASK": "END_TASK", "WHEN": "END_WHEN",
+}
+TASKS = ("TASK", "WHEN")  # blocks that run beside the rest of the program
 
 # How other languages, and Spanish, say it. Used for messages alone: none of them is read.
 OTHER_WORDS = {
@@ -124,6 +133,7 @@ OTHER_WORDS = {
     "ELSEIF": "ELIF ELSIF SINO_SI",
     "ELSE": "SINO SI_NO OTHERWISE OTRO DE_LO_CONTRARIO",
     "ENDIF": "FI FIN_SI FINSI FIN_IF FINIF IF_END",
+    "END_WHEN": "FIN_CUANDO FINCUANDO",
     "LOOP": "REPEAT FOR DO TIMES REPETIR REPITE BUCLE CICLO PARA_CADA VECES",
     "END_LOOP": "FIN_BUCLE FIN_LOOP FINLOOP FIN_REPETIR FINREPETIR FIN_REPITE FIN_CICLO FIN_PARA FINPARA"
                 " END_REPEAT ENDREPEAT END_FOR ENDFOR LOOP_END NEXT SIGUIENTE END_FOREVER ENDFOREVER FIN_FOREVER FIN_SIEMPRE"

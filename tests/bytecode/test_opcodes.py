@@ -23,6 +23,7 @@ from tiniscript.bytecode.opcodes import (
 )
 from tiniscript.bytecode.verify import RULES
 from tiniscript.vm.machine import Machine
+from tiniscript.vm.tasks import TaskMachine
 from tools.generate import __main__ as generate
 
 
@@ -50,10 +51,15 @@ def code_with(op: Op, value: int) -> bytes:
     return pushes + bytes([op.code]) + operands
 
 
+def machine_for(op: Op, code: bytes) -> Machine:
+    """Return a machine that has the instruction `op`: those of tasks have a scheduler."""
+    return (TaskMachine if op.minor else Machine)(code, Nothing(), sensors=SHORTS)
+
+
 def left_by(op: Op, value: int) -> tuple[int, str]:
     """Push what an instruction takes, and run it: how many values it leaves, and its fault."""
     code = code_with(op, value)
-    machine = Machine(code, Nothing(), sensors=SHORTS)
+    machine = machine_for(op, code)
     task = machine.task
     if op.role == "next" or op.role == "drop":
         task.counters.append(2)
@@ -85,7 +91,7 @@ def faults_of(op: Op) -> set[str]:
     found = set()
     for first in EDGES:
         for second in EDGES:
-            machine = Machine(code, Nothing(), sensors=8)
+            machine = machine_for(op, code)
             task = machine.task
             task.stack[:] = [first, second][: op.pops]
             task.variables[:] = [first] * VARIABLES

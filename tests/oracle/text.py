@@ -23,7 +23,9 @@ from tests.oracle.tree import (
     Loop,
     Program,
     Statement,
+    Task,
     While,
+    sensors_in,
 )
 from tests.oracle.words import (
     ALIASES,
@@ -31,11 +33,13 @@ from tests.oracle.words import (
     MAX_CALLS,
     MAX_DEFS,
     MAX_NESTING,
+    MAX_TASKS,
     MAX_VARIABLES,
     MOVES,
     RANGES,
     RESERVED,
     SETUPS,
+    TASK_WORDS,
 )
 
 
@@ -60,8 +64,15 @@ class Parser(ExpressionParser):
         facts: dict[str, Facts] = {}
         for name, body in self.defs.items():  # in the order of the text: calls only look back
             facts[name] = self.settle(body, facts)
-        self.settle(main, facts)
-        return Program(main, self.defs, self.variables)
+        together = [self.settle(main, facts)]
+        for task in self.tasks:
+            task.reads = sensors_in((task.condition,))
+            together.append(self.settle(task.body, facts))
+        if sum(each.nesting for each in together) > MAX_NESTING:
+            self.fail("blocks nested too deep in all tasks together")
+        if sum(each.calling for each in together) > MAX_CALLS:
+            self.fail("DEFs called too deep in all tasks together")
+        return Program(main, self.defs, self.variables, self.tasks)
 
     def settle(self, body: list[Statement], defs: Mapping[str, Facts]) -> Facts:
         """Settles the readings of the program or of a DEF and checks its depths."""
@@ -118,6 +129,9 @@ class Parser(ExpressionParser):
         if word == "DEF":
             self.definition()
             return None
+        if word in TASK_WORDS:
+            self.task(word)
+            return None
         if word == "IF":
             return self.choice()
         if word in ("LOOP", "WHILE"):
@@ -139,7 +153,7 @@ class Parser(ExpressionParser):
 
     def definition(self) -> None:
         """DEF NAME … END_DEF: at the top level only; its name is callable after END_DEF."""
-        if self.blocks > 0 or self.open_def:
+        if self.blocks > 0 or self.open_def or self.in_task:
             self.fail("a DEF inside a block")
         name = self.token.text
         if self.token.kind != "word" or name in RESERVED:
@@ -154,6 +168,19 @@ class Parser(ExpressionParser):
         self.at += 1
         self.open_def = ""
         self.defs[name] = body
+
+    def task(self, word: str) -> None:
+        """TASK … END_TASK and WHEN(c) … END_WHEN: at the top level only."""
+        if self.blocks > 0 or self.open_def or self.in_task:
+            self.fail(f"a {word} inside a block")
+        condition = self.condition() if word == "WHEN" else None
+        self.in_task = True
+        body = self.inner_block(f"END_{word}")
+        self.at += 1
+        self.in_task = False
+        self.tasks.append(Task(condition, body))
+        if len(self.tasks) > MAX_TASKS:
+            self.fail("too many tasks")
 
     def choice(self) -> If:
         """IF … ELSEIF … ELSE … ENDIF."""
@@ -198,7 +225,8 @@ class Parser(ExpressionParser):
         until: Expression | None = None
         if may_until and self.accept("UNTIL"):
             until = self.condition()
-        if arguments[0] is None and until is None:
+        has_tasks = any(token.text in TASK_WORDS for token in self.tokens)
+        if arguments[0] is None and until is None and not has_tasks:
             self.fail("FOREVER needs UNTIL")
         return self.checked(Do(word, arguments=arguments, until=until))
 

@@ -6,7 +6,7 @@ Numbers are Python integers that count thousandths; yes/no values are bools.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 Value = int | bool
@@ -83,12 +83,22 @@ Statement = Do | If | Loop | While
 
 
 @dataclass
+class Task:
+    """A TASK, or a WHEN with its condition and the readings before each look."""
+
+    condition: Expression | None
+    body: list[Statement]
+    reads: tuple[str, ...] = ()
+
+
+@dataclass
 class Program:
-    """A program that has passed every check."""
+    """A program that has passed every check. `tasks` are in the order of the text."""
 
     main: list[Statement]
     defs: dict[str, list[Statement]]
     variables: dict[str, bool]  # name: is it a yes/no value
+    tasks: list[Task] = field(default_factory=list)
 
 
 class Facts(NamedTuple):

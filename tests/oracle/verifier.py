@@ -14,9 +14,11 @@ from tests.oracle.spec_tables import Instruction, instructions, rule_numbers
 
 Verdict = tuple[int, int]  # the number of the rule that is broken, or 0, and the offset
 
-STACK, JOINS, WORDS, PROCEDURES, COUNTERS, CALLS = 16, 16, 32, 16, 16, 8
+STACK, JOINS, WORDS, PROCEDURES, COUNTERS, CALLS, TASKS = 16, 16, 32, 16, 16, 8, 4
 MOST_BYTES = 32767
 UNKNOWN = None
+OF_TASKS = ("TASK", "WHEN", "LOOK", "END_TASK", "END_WHEN")
+ENDED_BY = {"return": "def", "end_task": "task", "end_when": "when"}
 
 
 @dataclass(frozen=True)
@@ -34,11 +36,12 @@ class Block:
 
 
 @dataclass(frozen=True)
-class Procedure:
-    """Where it begins and ends, and what is open in it at once at most."""
+class Routine:
+    """A DEF, a TASK or a WHEN: where it begins and ends, what is open in it at once at most."""
 
-    start: int
-    end: int
+    kind: str
+    start: int = 0
+    end: int = 0
     counters: int = 0
     calls: int = 0
 
@@ -54,10 +57,13 @@ class Known:
     depth: int = 0
     joins: tuple[tuple[int, int], ...] = ()
     blocks: tuple[Block, ...] = ()
-    is_checking: bool = False
+    check: str = ""  # the role that will close it
     counters: int = 0
-    routine: Procedure | None = None
-    closed: tuple[Procedure, ...] = ()
+    routine: Routine | None = None
+    closed: tuple[Routine, ...] = ()
+    main: Routine = Routine("main")
+    tasks: tuple[Routine, ...] = ()  # that have ended
+    reads_inside: bool = False
 
     @property
     def innermost(self) -> Block | None:
@@ -68,13 +74,16 @@ class Known:
 Next = Known | str
 
 
-def verdict(code: bytes, sensors: int, actuators: int) -> Verdict:
-    """Whether a machine with so many sensors and actuators may run the code."""
+def verdict(code: bytes, sensors: int, actuators: int, has_tasks: bool = True) -> Verdict:
+    """Whether a machine with so many sensors and actuators may run the code.
+
+    `has_tasks`: it comes with bit 0 of `needs`.
+    """
     if len(code) > MOST_BYTES:
         return rule_numbers()["CODE_LENGTH"], 0
     known = Known(len(code))
     while known.at < known.length:
-        came = one_instruction(known, code, sensors, actuators)
+        came = one_instruction(known, code, sensors, actuators, has_tasks)
         if isinstance(came, str):
             return rule_numbers()[came], known.at
         known = replace(came, at=came.after)
@@ -87,13 +96,15 @@ def then(came: Next, step: Callable[[Known], Next]) -> Next:
     return came if isinstance(came, str) else step(came)
 
 
-def one_instruction(known: Known, code: bytes, sensors: int, actuators: int) -> Next:
+def one_instruction(
+    known: Known, code: bytes, sensors: int, actuators: int, has_tasks: bool
+) -> Next:
     """Steps 1 to 6."""
     came = arrive(known)
     if isinstance(came, str):
         return came
     row = instructions().get(code[came.at])
-    if row is None:
+    if row is None or (row.name in OF_TASKS and not has_tasks):
         return "UNKNOWN_OPCODE"
     came = replace(came, after=came.at + row.size)
     if came.after > came.length:
@@ -129,7 +140,7 @@ def arrive(known: Known) -> Next:
         joins = joins[:-1]
     while blocks and blocks[-1].kind == "IF" and (blocks[-1].end or 0) <= known.at:
         is_here = blocks[-1].end == known.at
-        if not is_here or known.depth != 0 or joins or known.is_checking:
+        if not is_here or known.depth != 0 or joins or known.check:
             return "MISSED_TARGET"
         blocks = blocks[:-1]
     if known.routine is not None and known.routine.end <= known.at:
@@ -139,11 +150,17 @@ def arrive(known: Known) -> Next:
 
 def place(known: Known, row: Instruction) -> Next:
     """Step 5: whether such an instruction may stand here."""
+    if row.stem == "PUSH_READ" and (known.depth > 1 or known.joins):
+        if known.tasks or (known.routine is not None and known.routine.kind != "def"):
+            return "STACK_NOT_EMPTY"
+        known = replace(known, reads_inside=True)
     if row.role in ("end", "value", "join"):
         return known
     if known.depth != 0 or known.joins:
         return "STACK_NOT_EMPTY"
-    if row.role not in ("read", "until") and known.is_checking:
+    if row.role in ("task", "when") and known.reads_inside:
+        return "STACK_NOT_EMPTY"
+    if row.role not in ("read", "until", "look") and known.check:
         return "INSIDE_CHECK"
     return known
 
@@ -152,7 +169,7 @@ def finish(known: Known) -> Next:
     """The end of the code."""
     if known.depth != 0 or known.joins:
         return "STACK_NOT_EMPTY"
-    if known.is_checking:
+    if known.check:
         return "INSIDE_CHECK"
     return "STILL_OPEN" if known.blocks or known.routine is not None else known
 
@@ -167,12 +184,10 @@ def role(known: Known, row: Instruction) -> Next:
             return known
         case "join":
             return join(known)
-        case "until":
-            if not known.is_checking:
-                return "NOT_OPEN"
-            return replace(known, is_checking=False)
+        case "until" | "look":
+            return replace(known, check="") if known.check == row.role else "NOT_OPEN"
         case "watch":
-            return replace(known, is_checking=True)
+            return replace(known, check="until")
         case "if":
             around = known.innermost
             if around and around.kind == "REPEAT" and around.end == known.target:
@@ -191,10 +206,10 @@ def role(known: Known, row: Instruction) -> Next:
             return closed(known, kind)
         case "break" | "drop":
             return left(known, kind)
-        case "def":
-            return defined(known)
-        case "return":
-            return returned(known)
+        case "def" | "task" | "when":
+            return begun(known, row.role)
+        case "return" | "end_task" | "end_when":
+            return ended_routine(known, ENDED_BY[row.role])
         case "call":
             return called(known)
     raise AssertionError(f"the page says nothing of the role {row.role}")
@@ -261,36 +276,43 @@ def left(known: Known, kind: str) -> Next:
 
 def needs(known: Known, counters: int, calls: int) -> Next:
     """**needs**"""
-    if counters > COUNTERS or calls > CALLS:
-        return "TOO_DEEP"
-    if known.routine is None:
-        return known
+    routine = known.routine or known.main
     most = replace(
-        known.routine,
-        counters=max(counters, known.routine.counters),
-        calls=max(calls, known.routine.calls),
+        routine, counters=max(counters, routine.counters), calls=max(calls, routine.calls)
     )
-    return replace(known, routine=most)
+    if known.routine is None:
+        known, beside = replace(known, main=most), known.tasks
+    else:
+        known = replace(known, routine=most)
+        beside = () if most.kind == "def" else (known.main, *known.tasks)
+    if most.counters + sum(each.counters for each in beside) > COUNTERS:
+        return "TOO_DEEP"
+    return "TOO_DEEP" if most.calls + sum(each.calls for each in beside) > CALLS else known
 
 
-def defined(known: Known) -> Next:
-    """DEF"""
+def begun(known: Known, kind: str) -> Next:
+    """DEF, TASK and WHEN"""
     if known.blocks or known.routine is not None:
         return "BAD_DEF"
-    if len(known.closed) == PROCEDURES:
+    if kind == "def" and len(known.closed) == PROCEDURES:
         return "TOO_MANY_DEFS"
-    return replace(known, routine=Procedure(known.after, known.target))
+    if kind != "def" and len(known.tasks) == TASKS:
+        return "TOO_MANY_TASKS"
+    check = "look" if kind == "when" else ""
+    return replace(known, routine=Routine(kind, known.after, known.target), check=check)
 
 
-def returned(known: Known) -> Next:
-    """RETURN"""
-    if known.routine is None:
+def ended_routine(known: Known, kind: str) -> Next:
+    """RETURN, END_TASK and END_WHEN"""
+    if known.routine is None or known.routine.kind != kind:
         return "NOT_OPEN"
     if known.blocks:
         return "STILL_OPEN"
     if known.routine.end != known.after:
         return "BAD_DEF"
-    return replace(known, routine=None, closed=(*known.closed, known.routine))
+    if kind == "def":
+        return replace(known, routine=None, closed=(*known.closed, known.routine))
+    return replace(known, routine=None, tasks=(*known.tasks, known.routine))
 
 
 def called(known: Known) -> Next:

@@ -44,6 +44,7 @@ MAX_NESTING = 16
 MAX_STACK = 16
 MAX_DEFS = 16
 MAX_CALLS = 8
+MAX_TASKS = 4
 
 SETUPS = ("PING", "SI", "SB")
 COMPARATORS = ("=", "<>", "<", ">", "<=", ">=")
@@ -56,9 +57,14 @@ ALIASES = {
     "ENDLOOP": "END_LOOP",
     "ENDWHILE": "END_WHILE",
     "ENDDEF": "END_DEF",
+    "ENDTASK": "END_TASK",
+    "ENDWHEN": "END_WHEN",
 }
-BLOCK_WORDS = ("ELSEIF", "ELSE", "ENDIF", "END_LOOP", "END_WHILE", "END_DEF")
-LATER_WORDS = ("TASK", "END_TASK", "WHEN", "END_WHEN", "SEND")
+BLOCK_WORDS = (
+    "ELSEIF", "ELSE", "ENDIF", "END_LOOP", "END_WHILE", "END_DEF", "END_TASK", "END_WHEN"
+)  # fmt: skip
+TASK_WORDS = ("TASK", "WHEN")
+LATER_WORDS = ("SEND",)
 
 # Instructions with arguments in parentheses, and the range of each argument.
 _TIME = (0, HIGHEST)
@@ -86,7 +92,7 @@ FIXED = {
 
 RESERVED = frozenset(
     (
-        *SETUPS, *MOVES, *FUNCTIONS, *ALIASES, *BLOCK_WORDS, *LATER_WORDS,
+        *SETUPS, *MOVES, *FUNCTIONS, *ALIASES, *BLOCK_WORDS, *TASK_WORDS, *LATER_WORDS,
         "M", "S", "STOP", "W", "UNTIL", "FOREVER", "BEEP", "SHOW", "IF", "LOOP", "WHILE",
         "BREAK", "DEF", "START", "TRUE", "FALSE", "AND", "OR", "NOT", "TIME",
     )

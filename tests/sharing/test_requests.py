@@ -40,6 +40,7 @@ ASKED = (
     Asked("join", (Network(b"N", b"p" * 8, False),)),
     Asked("use_broker", (BROKER,)), Asked("use_broker", (None,)),
     Asked("upload", (IMAGE, False, True, True, 7)),
+    Asked("upload", (IMAGE._replace(isa=(2, 1), needs=255), True, True, False, 7)),
 )  # fmt: skip
 
 
@@ -73,6 +74,7 @@ BAD: tuple[dict[str, Any], ...] = (
     of("upload", IMAGE, checksum=1 << 32), of("upload", IMAGE, code="00" * 0x8000),
     of("upload", IMAGE, later="00" * 242), of("upload", IMAGE, runs=1),
     of("upload", IMAGE, kit=1 << 16), of("upload", IMAGE, kit=-1),
+    of("upload", IMAGE, needs=1 << 8), of("upload", IMAGE, needs=-1),
 )  # fmt: skip
 
 
@@ -80,3 +82,11 @@ BAD: tuple[dict[str, Any], ...] = (
 def test_what_no_session_may_be_asked_is_refused(message: dict[str, Any]) -> None:
     with pytest.raises(BadMessage):
         asked_for(message, 700)
+
+
+def test_a_client_of_2_0_names_no_needs() -> None:
+    message = of("upload", IMAGE)
+    del message["needs"]
+    session = Mock()
+    asked_for(message, 700)(session)
+    assert session.upload.call_args.args[0] == IMAGE

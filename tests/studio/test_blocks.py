@@ -118,6 +118,7 @@ NODES = {
     ast.While: ("WHILE(TRUE);END_WHILE", "while"),
     ast.Break: ("BREAK", "break"),
     ast.Def: ("DEF HOP;END_DEF", "def"),
+    ast.Task: ("TASK;END_TASK", "task"),
 }
 # A program for each role of words; the words of a role are put in.
 ROLES = {
@@ -125,12 +126,15 @@ ROLES = {
               "SI": "SI|S", "SB": "SB|S"},
     "until": {"UNTIL": "{}"}, "forever": {"FOREVER": "LOOP(FOREVER);W(1);END_LOOP"},
     "block": {"DEF": "DEF X;END_DEF", "IF": "IF(TRUE);ENDIF", "LOOP": "LOOP(1);END_LOOP",
-              "WHILE": "WHILE(FALSE);END_WHILE"},
+              "WHILE": "WHILE(FALSE);END_WHILE", "TASK": "TASK;END_TASK",
+              "WHEN": "WHEN(FALSE);END_WHEN"},
     "arm": {"ELSE": "IF(TRUE);ELSE;ENDIF", "ELSEIF": "IF(TRUE);ELSEIF(TRUE);ENDIF"},
     "end": {"ENDIF": "IF(TRUE);ENDIF", "END_LOOP": "LOOP(1);END_LOOP",
-            "END_WHILE": "WHILE(FALSE);END_WHILE", "END_DEF": "DEF X;END_DEF"},
+            "END_WHILE": "WHILE(FALSE);END_WHILE", "END_DEF": "DEF X;END_DEF",
+            "END_TASK": "TASK;END_TASK", "END_WHEN": "WHEN(FALSE);END_WHEN"},
     "alias": {"END_IF": "IF(TRUE);END_IF", "ENDLOOP": "LOOP(1);ENDLOOP",
-              "ENDWHILE": "WHILE(FALSE);ENDWHILE", "ENDDEF": "DEF X;ENDDEF"},
+              "ENDWHILE": "WHILE(FALSE);ENDWHILE", "ENDDEF": "DEF X;ENDDEF",
+              "ENDTASK": "TASK;ENDTASK", "ENDWHEN": "WHEN(FALSE);ENDWHEN"},
     "break": {"BREAK": "LOOP(1);BREAK;END_LOOP"},
     "operator": {"AND": "SHOW(TRUE AND FALSE)", "OR": "SHOW(TRUE OR FALSE)",
                  "NOT": "SHOW(NOT TRUE)"},
@@ -181,7 +185,8 @@ def test_every_word_of_a_kit_is_in_blocks() -> None:
 
 def test_the_shape_of_each_kind_is_what_is_read(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(WORDS, HORN.text, HORN)
-    text = ";".join(of_word(word) for word in WORDS if WORDS[word].role not in ("later", "setup"))
+    left_out = ("later", "setup", "alias")
+    text = ";".join(of_word(word) for word in WORDS if WORDS[word].role not in left_out)
     text += ";F(1, 2) UNTIL(TRUE);X = 1;HOP;LED(TRUE);DISTANCE;LOOP(FOREVER);END_LOOP\n// note\nF("
     found = in_order(read(text, TINIBOT).body)
     assert {block.kind for block in found} == {

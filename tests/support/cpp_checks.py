@@ -51,9 +51,12 @@ SIZES = len(WIDE.sensors), len(WIDE.actuators)
 MAX_MS, MAX_STEPS = 3000, 300  # of the random codes that are accepted
 
 
-def python_verdict(code: bytes, sensors: int, actuators: int) -> tuple[int, int]:
+def python_verdict(
+    code: bytes, sensors: int, actuators: int, has_tasks: bool = False
+) -> tuple[int, int]:
+    """Return what Python says of code; without tasks, as in images of the firmware's version."""
     try:
-        verify(code, sensors, actuators)
+        verify(code, sensors, actuators, has_tasks)
     except Refused as refused:
         return refused.number, refused.offset
     return 0, 0

@@ -15,7 +15,7 @@ from tests.oracle import programs
 from tests.support.kits import KITS
 from tiniscript import compile_text
 from tiniscript.bytecode.image import HEADER_BYTES, pack, sealed
-from tiniscript.bytecode.opcodes import BY_NAME, OPS, Op
+from tiniscript.bytecode.opcodes import BY_NAME, FIRMWARE_OPS, TASKS, Op
 from tiniscript.kit import Kit
 
 _NEAR = (0, 1, 2, 3, 5, 499, 500, 501, 999, 1000, 1001, 1499, 1500, 1501, 2500, 46_340, 46_341,
@@ -56,9 +56,9 @@ def likely_code(rng: random.Random) -> bytes:
     """Return instructions in a row whose stack fits: the structure is left to chance."""
     code = b""
     depth = 0
-    few = rng.sample(OPS, rng.randint(3, 12))
+    few = rng.sample(FIRMWARE_OPS, rng.randint(3, 12))
     for _ in range(rng.randrange(1, 14)):
-        op = rng.choice(few if rng.random() < 0.8 else OPS)
+        op = rng.choice(few if rng.random() < 0.8 else FIRMWARE_OPS)
         while depth < op.pops:
             if rng.random() < 0.8:
                 code += bytes((BY_NAME["PUSH8"].code, rng.randrange(256)))
@@ -170,10 +170,45 @@ def deep_code(rng: random.Random) -> bytes:
     return code
 
 
+def task_codes(seed: int, count: int) -> Iterator[bytes]:
+    """Yield code with tasks, mostly right: up to one more than there may be, DEFs and loops."""
+    rng = random.Random(seed)
+    for _ in range(count):
+        code = nested_code(rng, 1) if rng.random() < 0.3 else b""
+        for _ in range(rng.choice((1, 1, 2, 3, TASKS, TASKS, TASKS + 1))):
+            code += task_code(rng)
+            if rng.random() < 0.4:
+                code += nested_code(rng, 1) if rng.random() < 0.5 else likely_code(rng)
+        yield code
+
+
+def task_code(rng: random.Random) -> bytes:
+    """Return a TASK or a WHEN, perhaps with a slip."""
+    inner = b""
+    for _ in range(rng.choice((0, 0, 1, 2, 4, 5))):
+        inner = loop(inner, 1)
+    if rng.random() < 0.3:
+        inner += nested_code(rng, 1)
+    look = simple("PUSH_TRUE") + simple("LOOK")
+    if rng.random() < 0.2:
+        look = b"\x05" + simple("PUSH_READ") + b"\x00" + simple("LT") + simple("LOOK")
+        look = simple("PUSH8") + look if rng.random() < 0.7 else look
+    kind = rng.choice(("TASK", "WHEN"))
+    body = (look if kind == "WHEN" else b"") + inner + simple(f"END_{kind}")
+    if rng.random() < 0.15:
+        body = rng.choice((
+            inner + simple("END_TASK"), look + inner + simple("END_WHEN"), look + inner,
+            inner + simple("RETURN"), look + look + simple("END_WHEN"), simple("UNTIL") + body,
+        ))  # fmt: skip
+    slip = rng.choice((0, 0, 0, 0, 0, 0, 0, 1, -1, 65_000))
+    far = (len(body) + slip) % 65_536
+    return bytes([BY_NAME[kind].code]) + far.to_bytes(2, "little") + body
+
+
 def expression(rng: random.Random) -> bytes:
     """Return code that shows a value calculated from numbers of all sizes."""
     code, depth = b"", 0
-    ops = [op for op in OPS if op.role == "value" and (op.pops or op.name == "TIME")]
+    ops = [op for op in FIRMWARE_OPS if op.role == "value" and (op.pops or op.name == "TIME")]
     for _ in range(rng.randrange(1, 12)):
         op = rng.choice(ops)
         while depth < op.pops:
@@ -189,7 +224,7 @@ def branches(rng: random.Random) -> bytes:
     code = b""
     body = simple("STOP")
     for _ in range(6):
-        op = rng.choice([op for op in OPS if op.role == "if"])
+        op = rng.choice([op for op in FIRMWARE_OPS if op.role == "if"])
         near = rng.choice((0, 1, 2, 9, 200))
         code += simple("PUSH16") + near.to_bytes(2, "little") + simple("SET_VAR") + b"\x01"
         *variable, compared, _ = [None, None, *(each.kind for each in op.operands)][-3:]
@@ -232,7 +267,7 @@ def mutated(rng: random.Random, code: bytes, other: bytes) -> bytes:
             data[at:] = other[rng.randrange(len(other) + 1) :]
         elif at < len(data):
             delta = rng.choice((1, 255, 2, 254))
-            choices = (rng.randrange(256), rng.choice(OPS).code, (data[at] + delta) % 256)
+            choices = (rng.randrange(256), rng.choice(FIRMWARE_OPS).code, (data[at] + delta) % 256)
             data[at] = rng.choice(choices)
     return bytes(data)
 

@@ -65,6 +65,9 @@ def rows(body: tuple[ast.Instruction, ...], text: str, depth: int = 0) -> Iterat
             yield from rows(node.body, text, depth + 1)
         elif isinstance(node, ast.Break):
             yield row("break", node.span)
+        elif isinstance(node, ast.Task):
+            yield row(f"when {value(node.condition)}" if node.is_when else "task", node.span)
+            yield from rows(node.body, text, depth + 1)
         else:
             yield row(f"def {node.name}", node.span)
             yield from rows(node.body, text, depth + 1)
@@ -121,6 +124,11 @@ CONSTRUCTS = {
         def DANCE «DEF DANCE;L(1, 50);END_DEF»
           L [1]! [50]! «L(1, 50)»
         DANCE «DANCE»""",
+    "WHEN(DISTANCE < 9);B(1, 50);END_WHEN;TASK;S;ENDTASK": """\
+        when [DISTANCE 9 LT] «WHEN(DISTANCE < 9);B(1, 50);END_WHEN»
+          B [1]! [50]! «B(1, 50)»
+        task «TASK;S;ENDTASK»
+          S «S»""",
 }
 
 

@@ -17,11 +17,12 @@ ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
 from tests.support.casefile import Case, read
+from tests.support.images import has_tasks
 from tests.vm.test_cases import compiled, robot_and_senses
 from tiniscript import fixed_point, robots
 from tiniscript.bytecode.disassembly import read_listing
 from tiniscript.bytecode.image import pack
-from tiniscript.bytecode.opcodes import BY_NAME, OPS, SHORTS, Op
+from tiniscript.bytecode.opcodes import BY_NAME, FIRMWARE_OPS, SHORTS, Op
 from tiniscript.bytecode.verify import verify
 from tiniscript.kit import NUMBER, Device, Kit
 from tiniscript.vm.machine import Machine
@@ -57,7 +58,9 @@ EDGES = (-MAX_LONG - 1, -1_500_500, -1, 0, 499, 1000, 2500, MAX_LONG)
 
 def cases_header(command: str) -> str:
     """Return the text of `cases.h`."""
-    found = [case for path in sorted(CASES.glob("*.md")) for case in read(path)]
+    found = [
+        case for path in sorted(CASES.glob("*.md")) for case in read(path) if runs_in_cpp(case)
+    ]
     kits = {name: robots.load(name).kit for name in robots.names()}
     refused = [case for case in found if "refused" in case.parts]
     programs = [case for case in found if "robot" in case.parts]
@@ -80,6 +83,13 @@ def cases_header(command: str) -> str:
         f"}}  // namespace cases\n\n#endif  // {GUARD}\n",
     )
     return "\n".join(parts)
+
+
+def runs_in_cpp(case: Case) -> bool:
+    """Return whether the machine in C++ has all that the code of a case needs."""
+    if "tiniscript" in case.parts:
+        return not has_tasks(compiled(case).code)
+    return "bytecode" not in case.parts or not has_tasks(read_listing(case.parts["bytecode"]))
 
 
 STRUCTS = """\
@@ -185,7 +195,7 @@ def program_row(case: Case) -> str:
 
 def instruction_rows(kit: Kit) -> Iterator[str]:
     """Return each instruction with the values that show what it does."""
-    for op in OPS:
+    for op in FIRMWARE_OPS:
         for pushed, near in tries(op):
             parts = [*before(op, near), *pushed]
             code = b"".join(parts) + tried(op) + bytes([BY_NAME["STOP"].code]) * 3

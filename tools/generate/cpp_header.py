@@ -47,7 +47,7 @@ def header(command: str) -> str:
         "\n"
         "namespace tiniscript {\n",
         "// A machine runs images of its own major version, and of its own minor version or less.\n"
-        + constants(("kIsaMajor", opcodes.ISA_MAJOR), ("kIsaMinor", opcodes.ISA_MINOR)),
+        + constants(("kIsaMajor", opcodes.ISA_MAJOR), ("kIsaMinor", opcodes.FIRMWARE_MINOR)),
         "// Limits, the same on every machine.\n"
         + constants(
             ("kCodeBytes", opcodes.CODE_BYTES),
@@ -68,12 +68,12 @@ def header(command: str) -> str:
         + constants(
             *fields,
             ("kHeaderBytes", image.HEADER_BYTES),
-            ("kNeeds", image.NEEDS),
+            ("kNeeds", image.FIRMWARE_NEEDS),
             ("kDevicesPolynomial", DEVICES_POLYNOMIAL),
             ("kStarts", len(image.STARTS)),
             ("kStartPing", image.STARTS.index("PING")),
         ),
-        enumeration("Op", [(op.name, op.code, op.picture) for op in opcodes.OPS]),
+        enumeration("Op", [(op.name, op.code, op.picture) for op in opcodes.FIRMWARE_OPS]),
         "// Why bytes are no image for this machine.\n"
         + enumeration("Refusal", [("NONE", 0, "It is one."), *refusals]),
         "// Which rule code breaks.\n"
@@ -85,7 +85,7 @@ def header(command: str) -> str:
             "Role",
             [
                 ("none", 0, "a byte that begins no instruction"),
-                *((role, k, what) for k, (role, what) in enumerate(opcodes.ROLES.items(), 1)),
+                *((role, k, what) for k, (role, what) in enumerate(firmware_roles().items(), 1)),
             ],
         ),
         "// What a byte of operands is.\n"
@@ -157,9 +157,15 @@ def shape_of(op: opcodes.Op) -> Shape:
 def shapes() -> dict[Shape, list[opcodes.Op]]:
     """Return the opcodes of each shape; the first one is that of what is no opcode."""
     rows: dict[Shape, list[opcodes.Op]] = {NONE: []}
-    for op in opcodes.OPS:
+    for op in opcodes.FIRMWARE_OPS:
         rows.setdefault(shape_of(op), []).append(op)
     return rows
+
+
+def firmware_roles() -> dict[str, str]:
+    """Return the roles of the instructions that the machine in C++ runs."""
+    used = {op.role for op in opcodes.FIRMWARE_OPS}
+    return {role: what for role, what in opcodes.ROLES.items() if role in used}
 
 
 def families() -> list[str]:
@@ -170,7 +176,7 @@ def form_numbers() -> str:
     """Return the families and what is declared of the tables, for the header."""
     named = []
     for number, family in enumerate(families()):
-        same = [op for op in opcodes.OPS if op.family == family]
+        same = [op for op in opcodes.FIRMWARE_OPS if op.family == family]
         named.append((family, number, names(same) if len(same) > 1 else ""))
     return "\n".join(
         (
@@ -244,7 +250,7 @@ def names(same: Sequence[opcodes.Op]) -> str:
 
 
 def packed(shape: Shape) -> str:
-    roles = ("none", *opcodes.ROLES)
+    roles = ("none", *firmware_roles())
     assert shape.size < 8 and shape.pops < 4 and shape.pushes < 2 and roles.index(shape.role) < 32
     effects = shape.pops << 6 | shape.pushes << 5 | roles.index(shape.role)
     size = shape.size | FAR_BIT * shape.is_far | BACK_BIT * shape.is_back

@@ -13,7 +13,7 @@ from tiniscript.fixed_point import HIGHEST, LOWEST
 from tiniscript.robots.kit_words import packed, packed_range
 from tiniscript.text.levels import UNREAD
 from tiniscript.text.problems import PROBLEMS
-from tiniscript.words import WORDS, Word
+from tiniscript.words import ALIASES, WORDS, Word
 from tools.generate.cpp_header import camel
 
 FIRST_WORD = 0x40  # the token of the first word; those of signs lie below and above
@@ -67,7 +67,8 @@ def words_in_order() -> list[Word]:
         role = ROLES.index(role_of(word))
         return role, number if role_of(word) in ("setup", "value", "function") else 0
 
-    return sorted(WORDS.values(), key=place)
+    read = [word for word in WORDS.values() if ALIASES.get(word.text) not in UNREAD]
+    return sorted(read, key=place)
 
 
 def ranges() -> list[tuple[int, int]]:

@@ -2,7 +2,8 @@
 
 FIELDS is the one declaration of the header. `pack` and `unpack` need the standard library alone;
 documents and tests use the `construct` format that is made from the same table.
-Knows nothing of what the code does: `verify` does, and `loading` asks both.
+Knows nothing of what the code does: `verify` does, and `loading` asks both. What code needs is told
+to `pack`: an image says the smallest minor version that has it.
 """
 
 from __future__ import annotations
@@ -29,7 +30,9 @@ class Field(NamedTuple):
 
 
 MAGIC = b"TS"
-NEEDS = 0  # that this version can be asked for
+TASKS = 0x01  # a bit of `needs`: the code has tasks
+NEEDS = TASKS  # all that this machine has,
+FIRMWARE_NEEDS = 0  # and all that the machine in C++ has
 STARTS = ("SI", "SB", "PING")
 
 # The first fields lie where they lay in version 1, so that whoever finds a stored program of any
@@ -44,7 +47,7 @@ FIELDS = (
     Field("devices",       "H",  2, "A [hash](#devices) of those that the code uses; 0 for none."),
     Field("code_length",   "H",  2, "Bytes of code that follow the header, 0 to 32767."),
     Field("checksum",      "I",  4, "CRC-32 (zlib) of all bytes before and behind it."),
-    Field("needs",         "B",  1, "What the machine must be able to do beyond this version: 0."),
+    Field("needs",         "B",  1, "What the machine must have, a bit for each: 1 for tasks."),
 )
 HEADER_BYTES = sum(field.size for field in FIELDS)
 
@@ -82,6 +85,12 @@ class Image(NamedTuple):
     checksum: int
     isa: tuple[int, int]
     later: bytes = b""
+    needs: int = 0
+
+    @property
+    def has_tasks(self) -> bool:
+        """Whether its code may have tasks."""
+        return bool(self.needs & TASKS)
 
 
 class ImageRefused(Exception):
@@ -94,15 +103,21 @@ class ImageRefused(Exception):
         self.values = values
 
 
-def pack(start: str, devices: int, code: bytes, later: bytes = b"") -> bytes:
+def pack(start: str, devices: int, code: bytes, later: bytes = b"", needs: int = 0) -> bytes:
     """Return the image of `code` (0 to 32767 bytes); `devices` is the hash of those it uses.
 
-    `later` (0 to 240 bytes) are fields that this version does not know.
+    `later` (0 to 240 bytes) are fields that this version does not know; `needs` is TASKS for code
+    with tasks, else 0.
     """
     assert len(code) <= CODE_BYTES
-    values = (MAGIC, ISA_MAJOR, ISA_MINOR, STARTS.index(start), HEADER_BYTES + len(later),
-              devices, len(code), 0, NEEDS)  # fmt: skip
+    values = (MAGIC, *isa_of(needs), STARTS.index(start), HEADER_BYTES + len(later),
+              devices, len(code), 0, needs)  # fmt: skip
     return sealed(struct_pack(_LAYOUT, *values) + later + code)
+
+
+def isa_of(needs: int) -> tuple[int, int]:
+    """Return the smallest version of the instruction set that has what code needs."""
+    return ISA_MAJOR, 1 if needs & TASKS else 0
 
 
 def sealed(image: bytes) -> bytes:
@@ -156,11 +171,11 @@ def unpack(data: bytes) -> Image:
         raise ImageRefused("TRAILING")
     if checksum(sealed(data)) != found:
         raise ImageRefused("DAMAGED")
-    if needs != NEEDS:
+    if needs & ~NEEDS:
         raise ImageRefused("UNKNOWN_NEEDS", found=f"{needs:02x}")
     if start >= len(STARTS):
         raise ImageRefused("UNKNOWN_START", found=str(start))
     if STARTS[start] == "PING" and code_length:
         raise ImageRefused("PING_WITH_CODE")
     later, code = data[HEADER_BYTES:header_length], data[header_length:]
-    return Image(STARTS[start], devices, code, found, isa, later)
+    return Image(STARTS[start], devices, code, found, isa, later, needs)

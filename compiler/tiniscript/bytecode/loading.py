@@ -19,7 +19,7 @@ def loaded(data: bytes, kit: Kit) -> Image:
 
 def check(image: Image, kit: Kit) -> Verdict:
     """Return what the code of an image needs. Raises verify.Refused, or ImageRefused."""
-    verdict = verify(image.code, len(kit.sensors), len(kit.actuators))
+    verdict = verify(image.code, len(kit.sensors), len(kit.actuators), image.has_tasks)
     ours = kit.hash_of_used(verdict.uses)
     if image.devices != ours:
         raise ImageRefused("OTHER_KIT", theirs=f"{image.devices:04x}", ours=f"{ours:04x}")

@@ -16,7 +16,8 @@ from struct import Struct
 from typing import NamedTuple
 
 ISA_MAJOR = 2  # a machine runs images of its own major version,
-ISA_MINOR = 0  # and of its own minor version or an earlier one
+ISA_MINOR = 1  # and of its own minor version or an earlier one
+FIRMWARE_MINOR = 0  # that of the machine in C++, which runs no tasks yet
 ESCAPE = 0xFF  # kept for instructions of two bytes in a later minor version; none begins with it
 SHORTS = 8  # variables, sensors and actuators that instructions of one byte name
 
@@ -57,6 +58,7 @@ class Op(NamedTuple):
     pops: int
     pushes: int
     implied: Implied | None = None
+    minor: int = 0  # the minor version that brought it
 
     @property
     def family(self) -> str:
@@ -117,6 +119,11 @@ ROLES = {
     "def":       "opens a procedure that ends at `to`",
     "return":    "closes a procedure",
     "call":      "calls a procedure that lies before it",
+    "task":      "opens a task that ends at `to`",
+    "when":      "opens a WHEN that ends at `to`, and its check",
+    "look":      "ends the check of a WHEN",
+    "end_task":  "closes a task",
+    "end_when":  "closes a WHEN",
 }
 
 
@@ -242,6 +249,14 @@ OPS = (
     _op(0x7A, "RETURN",          "",                    "--",              "return", "Go back behind the call."),
     _op(0x7B, "CALL",            "to:back8",            "--",              "call",  "Call the procedure whose first instruction is at `to`."),
     _op(0x7C, "CALL_FAR",        "to:back16",           "--",              "call",  "The same, further."),
+    # tasks
+    *(each._replace(minor=1) for each in (
+        _op(0x55, "LOOK",        "",                    "yes --",          "look",  "Go on if `yes`; else look again after 20 ms."),
+        _op(0x76, "END_TASK",    "",                    "--",              "end_task", "The task is finished."),
+        _op(0x77, "END_WHEN",    "",                    "--",              "end_when", "Look again after 20 ms."),
+        _op(0x7D, "TASK",        "to:fwd16",            "--",              "task",  "A task begins here; go to `to`, its end."),
+        _op(0x7E, "WHEN",        "to:fwd16",            "--",              "when",  "A WHEN begins here; go to `to`, its end."),
+    )),
     # in one byte
     *_shorts(0x80, "PUSH_VAR",    "variable", "-- value",   "value", "Push what variable {} holds."),
     *_shorts(0x88, "PUSH_SENSOR", "sensor",   "-- reading", "value", "Push the kept reading of sensor {}."),
@@ -281,10 +296,12 @@ VARIABLES = 32
 COUNTERS = 16  # counted loops open at once, those around a call included
 CALLS = 8
 DEFS = 16
+TASKS = 4  # beside the main one
 NEST_WORDS = 32  # what a verifier remembers of open blocks: a word for an IF, two for a loop
 JOINS = 16  # AND_THEN and OR_ELSE open at once
 CHECK_MS = 20  # between two checks of an UNTIL
 
+FIRMWARE_OPS = tuple(op for op in OPS if op.minor <= FIRMWARE_MINOR)
 BY_NAME = {op.name: op for op in OPS}
 BY_CODE: list[Op | None] = [None] * 256
 for _each in OPS:

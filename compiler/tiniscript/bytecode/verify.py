@@ -22,6 +22,7 @@ from tiniscript.bytecode.opcodes import (
     NEST_WORDS,
     ROLES,
     STACK_VALUES,
+    TASKS,
     Op,
     OperandKind,
     read_operands,
@@ -42,14 +43,15 @@ RULES = {
     "MISSED_TARGET":   (29, "No instruction begins where a jump leads, or one that may not be reached so."),
     "BAD_LOOP_START":  (30, "A jump back does not lead to the beginning of its loop."),
     "BAD_LOOP_END":    (31, "A BREAK or a loop's head names an end that is not behind the loop."),
-    "NOT_OPEN":        (32, "ELSE, AGAIN, NEXT, BREAK, UNTIL or RETURN without what it belongs to."),
+    "NOT_OPEN":        (32, "ELSE, AGAIN, NEXT, BREAK, UNTIL, LOOK, RETURN or the end of a task without what it belongs to."),
     "STILL_OPEN":      (33, "A loop, a procedure or the code ends while a block or a procedure in it is open."),
     "TOO_DEEP":        (34, "Blocks, counters, joins or calls deeper than a machine remembers."),
-    "BAD_DEF":         (35, "A DEF that is not at the top level, or does not end with its RETURN."),
+    "BAD_DEF":         (35, "A DEF or a task that is not at the top level, or does not end with its own end."),
     "TOO_MANY_DEFS":   (36, "More than 16 DEFs."),
     "BAD_CALL":        (37, "A CALL that does not lead to the beginning of a DEF before it."),
-    "INSIDE_CHECK":    (38, "Between WATCH and UNTIL stands more than readings and a condition."),
+    "INSIDE_CHECK":    (38, "Between WATCH and UNTIL, or WHEN and LOOK, stands more than readings and a condition."),
     "BAD_END":         (39, "END: it stands behind the code, not in it."),
+    "TOO_MANY_TASKS":  (40, "More than 4 tasks beside the main one."),
 }
 # fmt: on
 
@@ -65,25 +67,28 @@ class Refused(Exception):
 
 
 class Verdict(NamedTuple):
-    """What accepted code needs: values on the stack, counters and calls open at once.
+    """What accepted code needs: values on the stack, counters and calls open at once in all tasks.
 
     `uses` are its sensors and actuators, "sensor" or "actuator" and the number, in its order.
+    `tasks` are those beside the main one.
     """
 
     stack_values: int
     counters: int
     calls: int
     uses: tuple[tuple[str, int], ...]
+    tasks: int = 0
 
 
-def verify(code: bytes, sensors: int, actuators: int) -> Verdict:
+def verify(code: bytes, sensors: int, actuators: int, has_tasks: bool = True) -> Verdict:
     """Return what `code` needs on a machine with so many sensors and actuators.
 
-    Raises Refused where a machine must not run it.
+    `has_tasks`: its image says that it may have tasks. Raises Refused where a machine must not run
+    it.
     """
     if len(code) > CODE_BYTES:
         raise Refused("CODE_LENGTH", 0)
-    return _Verifier(code, sensors, actuators).run()
+    return _Verifier(code, sensors, actuators, has_tasks).run()
 
 
 class _Join(NamedTuple):
@@ -108,21 +113,30 @@ class _Block:
         self.end = end
 
 
+_DEF, _TASK, _WHEN = "def", "task", "when"  # what a routine is
+_UNTIL = "until"  # whose check is open, or _WHEN
+
+
 class _Routine:
-    """A procedure, or the code outside of all; and what is open at once in it, its calls too."""
+    """A DEF, a task or a WHEN; and what is open at once in it, its calls too.
 
-    __slots__ = ("calls", "counters", "end", "start")
+    The main task is one that is no other's routine: the code outside of all others.
+    """
 
-    def __init__(self, start: int, end: int) -> None:
+    __slots__ = ("calls", "counters", "end", "kind", "start")
+
+    def __init__(self, kind: str, start: int, end: int) -> None:
+        self.kind = kind
         self.start = start
-        self.end = end  # 0: the code outside of all procedures
+        self.end = end  # 0: the main task
         self.counters = 0
         self.calls = 0
 
 
 class _Verifier:
-    def __init__(self, code: bytes, sensors: int, actuators: int) -> None:
+    def __init__(self, code: bytes, sensors: int, actuators: int, has_tasks: bool) -> None:
         self.code = code
+        self.has_tasks = has_tasks
         self.devices = {"sensor": sensors, "actuator": actuators}
         self.at = 0  # where the instruction that is looked at begins
         self.after = 0  # where the next one begins
@@ -130,10 +144,13 @@ class _Verifier:
         self.depth = 0  # values on the stack
         self.joins: list[_Join] = []  # that are open, the innermost last
         self.blocks: list[_Block] = []  # that are open, the innermost last
-        self.is_checking = False  # the check of an UNTIL is open
+        self.check = ""  # whose check is open: that of an UNTIL or of a WHEN
         self.counters = 0  # counted loops that are open in this routine
-        self.routine = _Routine(0, 0)  # that is looked at
+        self.main = _Routine(_TASK, 0, 0)
+        self.routine = self.main  # that is looked at
         self.closed: list[_Routine] = []  # the procedures that have ended
+        self.tasks: list[_Routine] = [self.main]  # and all tasks that have begun
+        self.reads_inside = False  # a PUSH_READ has been met with values below it, or in a join
         # what the whole code needs
         self.stack_values = 0
         self.most_counters = 0
@@ -151,7 +168,8 @@ class _Verifier:
             self.at = self.after
         self.arrive()
         self.finish()
-        return Verdict(self.stack_values, self.most_counters, self.most_calls, tuple(self.uses))
+        uses, tasks = tuple(self.uses), len(self.tasks) - 1
+        return Verdict(self.stack_values, self.most_counters, self.most_calls, uses, tasks)
 
     def refuse(self, name: str) -> NoReturn:
         raise Refused(name, self.at)
@@ -167,7 +185,7 @@ class _Verifier:
                 self.refuse("STACK_NOT_EMPTY")
             self.joins.pop()
         while self.innermost == _IF and self.blocks[-1].end <= self.at:
-            if self.blocks[-1].end != self.at or self.depth or self.joins or self.is_checking:
+            if self.blocks[-1].end != self.at or self.depth or self.joins or self.check:
                 self.refuse("MISSED_TARGET")
             self.blocks.pop()
         if self.routine.end and self.routine.end <= self.at:
@@ -175,7 +193,7 @@ class _Verifier:
 
     def opcode(self) -> Op:
         op = BY_CODE[self.code[self.at]]
-        if op is None:
+        if op is None or (op.minor and not self.has_tasks):
             self.refuse("UNKNOWN_OPCODE")
         self.after = self.at + op.size
         if self.after > len(self.code):
@@ -211,17 +229,21 @@ class _Verifier:
     def place(self, op: Op) -> None:
         """Whether it may stand here: what is no part of an expression leaves an empty stack."""
         if op.role in _IN_EXPRESSIONS:
+            if op.family == "PUSH_READ" and (self.depth > 1 or self.joins):
+                self.reads_inside = True
+                if len(self.tasks) > 1:  # it would end a turn with values on the stack
+                    self.refuse("STACK_NOT_EMPTY")
             return
-        if self.depth or self.joins:
+        if self.depth or self.joins or (op.role in (_TASK, _WHEN) and self.reads_inside):
             self.refuse("STACK_NOT_EMPTY")
-        if self.is_checking and op.role not in _IN_CHECKS:
+        if self.check and op.role not in _IN_CHECKS:
             self.refuse("INSIDE_CHECK")
 
     def finish(self) -> None:
         """The end of the code."""
         if self.depth or self.joins:
             self.refuse("STACK_NOT_EMPTY")
-        if self.is_checking:
+        if self.check:
             self.refuse("INSIDE_CHECK")
         if self.blocks or self.routine.end:
             self.refuse("STILL_OPEN")
@@ -278,13 +300,17 @@ class _Verifier:
         loop.end = self.target
 
     def needs(self, counters: int, calls: int) -> None:
-        """Note what is open at once, and refuse what is too deep."""
-        if counters > COUNTERS or calls > CALLS:
+        """Note what is open at once, and refuse what is too deep, in all tasks together."""
+        routine = self.routine
+        routine.counters = max(routine.counters, counters)
+        routine.calls = max(routine.calls, calls)
+        running = [routine] if routine.kind == _DEF else self.tasks
+        most_counters = sum(each.counters for each in running)
+        most_calls = sum(each.calls for each in running)
+        if most_counters > COUNTERS or most_calls > CALLS:
             self.refuse("TOO_DEEP")
-        self.routine.counters = max(self.routine.counters, counters)
-        self.routine.calls = max(self.routine.calls, calls)
-        self.most_counters = max(self.most_counters, counters)
-        self.most_calls = max(self.most_calls, calls)
+        self.most_counters = max(self.most_counters, most_counters)
+        self.most_calls = max(self.most_calls, most_calls)
 
     # -- a step for each role -----------------------------------------------------------------
 
@@ -307,15 +333,21 @@ class _Verifier:
         pass
 
     def until(self) -> None:
-        if not self.is_checking:
+        self.end_check(_UNTIL)
+
+    def look(self) -> None:
+        self.end_check(_WHEN)
+
+    def end_check(self, whose: str) -> None:
+        if self.check != whose:
             self.refuse("NOT_OPEN")
-        self.is_checking = False
+        self.check = ""
 
     def plain(self) -> None:
         pass
 
     def watch(self) -> None:
-        self.is_checking = True
+        self.check = _UNTIL
 
     def if_(self) -> None:
         if self.innermost == _REPEAT and self.target == self.blocks[-1].end:
@@ -353,21 +385,44 @@ class _Verifier:
         self.leave(_COUNT)
 
     def def_(self) -> None:
+        self.begin(_DEF, len(self.closed) == DEFS, "TOO_MANY_DEFS")
+
+    def task(self) -> None:
+        self.begin(_TASK, len(self.tasks) > TASKS, "TOO_MANY_TASKS")
+        self.tasks.append(self.routine)
+
+    def when(self) -> None:
+        self.begin(_WHEN, len(self.tasks) > TASKS, "TOO_MANY_TASKS")
+        self.tasks.append(self.routine)
+        self.check = _WHEN
+
+    def begin(self, kind: str, is_one_too_many: bool, rule: str) -> None:
+        """Open a routine."""
         if self.blocks or self.routine.end:
             self.refuse("BAD_DEF")
-        if len(self.closed) == DEFS:
-            self.refuse("TOO_MANY_DEFS")
-        self.routine = _Routine(self.after, self.target)
+        if is_one_too_many:
+            self.refuse(rule)
+        self.routine = _Routine(kind, self.after, self.target)
 
     def return_(self) -> None:
-        if not self.routine.end:
+        self.closed.append(self.ended(_DEF))
+
+    def end_task(self) -> None:
+        self.ended(_TASK)
+
+    def end_when(self) -> None:
+        self.ended(_WHEN)
+
+    def ended(self, kind: str) -> _Routine:
+        """Close the open routine, and return it."""
+        routine, self.routine = self.routine, self.main
+        if not routine.end or routine.kind != kind:
             self.refuse("NOT_OPEN")
         if self.blocks:
             self.refuse("STILL_OPEN")
-        if self.routine.end != self.after:
+        if routine.end != self.after:
             self.refuse("BAD_DEF")
-        self.closed.append(self.routine)
-        self.routine = _Routine(0, 0)
+        return routine
 
     def call(self) -> None:
         called = next((each for each in self.closed if each.start == self.target), None)
@@ -377,7 +432,7 @@ class _Verifier:
 
 
 _IN_EXPRESSIONS = ("end", "value", "join")
-_IN_CHECKS = ("read", "until")
+_IN_CHECKS = ("read", "until", "look")
 _STEP_OF = {
     role: getattr(_Verifier, role, None) or getattr(_Verifier, role + "_") for role in ROLES
 }

@@ -11,8 +11,8 @@ from tiniscript.cli import inputs, outputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.codegen import source_map
 from tiniscript.codegen.source_map import Map
-from tiniscript.library.compiling import Compiled, image_of
-from tiniscript.library.known_kits import fitting, is_other_robots
+from tiniscript.library.compiling import Compiled, for_robot, image_of
+from tiniscript.library.known_kits import fitting, is_other_robots, lacks
 from tiniscript.robots.profile import Robot
 
 
@@ -38,17 +38,22 @@ def ready(
 ) -> Ready | None:  # fmt: skip
     """Return the program of an input, or None if it has mistakes, which are printed.
 
-    `is_strict`: a program that is too large for the robot is a mistake. `is_open`: a program for
-    another robot raises OtherRobot. Raises CommandError if an image is refused.
+    `is_strict`: a program that is too large for the robot, or has tasks where the robot has none,
+    is a mistake. `is_open`: a program for another robot raises OtherRobot. Raises CommandError if
+    an image is refused.
     """
     if given.is_image:
         image = _read(given)
         _check(given, image, robot)
+        if is_strict and lacks(image.needs, robot):
+            raise CommandError(1, "no_tasks", robot=robot.name, file=inputs.shown(given.name))
         return Ready(image, len(given.data), source_map.recall(image.checksum))
     compiled = inputs.compiled(given, robot, is_strict)
     if is_open and not compiled.is_right:
         if is_other_robots(compiled.diagnostics):
             raise OtherRobot(compiled)
+    if is_strict:
+        compiled = for_robot(compiled, robot)
     outputs.print_diagnostics(compiled, language)
     if not compiled.is_right:
         return None

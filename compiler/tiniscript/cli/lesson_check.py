@@ -33,7 +33,7 @@ from tiniscript.lessons.lesson import Lesson
 from tiniscript.lessons.marking import Marking
 from tiniscript.lessons.running import Run
 from tiniscript.lessons.sentences import sentence
-from tiniscript.library.compiling import Compiled, maker
+from tiniscript.library.compiling import Compiled, for_robot, maker
 from tiniscript.robots.profile import Robot
 from tiniscript.source import PROGRAM_ENDS, Unreadable, decode, printable
 from tiniscript.virtual.module import NoWebAssembly
@@ -127,7 +127,8 @@ class _Marker:
         if given.is_image:
             file = inputs.shown(given.name)
             raise CommandError(2, "needs_text", file=file, verb=f"lesson {verb}")
-        return inputs.compiled(given, self.robot, is_strict=True, names_robots=False)
+        found = inputs.compiled(given, self.robot, is_strict=True, names_robots=False)
+        return for_robot(found, self.robot)
 
     def mark(self, given: inputs.Input, compiled: Compiled) -> Mark:
         if not compiled.is_right:

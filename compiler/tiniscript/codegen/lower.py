@@ -39,6 +39,9 @@ from tiniscript.semantics.ir import (
     Show,
     Statement,
     Stop,
+    Task,
+    Term,
+    Until,
     While,
     goes_on,
 )
@@ -66,13 +69,16 @@ def lower(program: Program, plain: bool = False) -> Lowered:
     `plain` code is made from a program as it is written, not from an optimised one.
     """
     lowering = _Lowering(plain)
-    waiting = list(reversed(program.procedures))
+    waiting: list[Procedure | Task] = [*program.procedures, *program.tasks]
+    if plain:
+        waiting.sort(key=lambda each: each.span)
+    waiting.reverse()
     for statement in program.body:
         while waiting and (not plain or waiting[-1].span < statement.span):
-            lowering.procedure(waiting.pop())
+            lowering.routine(waiting.pop())
         lowering.statement(statement)
     while waiting:
-        lowering.procedure(waiting.pop())
+        lowering.routine(waiting.pop())
     return _assembled(lowering.out)
 
 
@@ -88,15 +94,30 @@ class _Lowering:
         self.entries: list[int] = []  # the label of each DEF's first instruction
         self.loops: list[_LoopEnd] = []
 
-    def procedure(self, procedure: Procedure) -> None:
+    def routine(self, routine: Procedure | Task) -> None:
         out = self.out
-        out.span = procedure.span
+        out.span = routine.span
         end = out.new_label()
-        out.add("DEF", to=end)
-        self.entries.append(out.mark_here())
-        self.body(procedure.body)
-        out.add("RETURN")
+        if isinstance(routine, Procedure):
+            out.add("DEF", to=end)
+            self.entries.append(out.mark_here())
+            last = "RETURN"
+        elif routine.look is None:
+            out.add("TASK", to=end)
+            last = "END_TASK"
+        else:
+            out.add("WHEN", to=end)
+            self.reads(routine.look.reads)
+            add_value(out, routine.look.condition)
+            out.add("LOOK")
+            last = "END_WHEN"
+        self.body(routine.body)
+        out.add(last)
         out.mark(end)
+
+    def reads(self, sensors: tuple[int, ...]) -> None:
+        for sensor in sensors:
+            self.out.add("READ", sensor)
 
     def body(self, body: Body) -> None:
         for statement in body:
@@ -142,8 +163,10 @@ class _Lowering:
         time = None if move.time is None else self.at_least_0(move.time)
         power = None if move.power is None else self.percentage(move.power, 0)
         name = "WAIT" if power is None else move.direction
-        if move.until is None:
-            assert time is not None
+        until = move.until
+        if until is None and time is None:  # a move for ever, beside other tasks
+            until = Until((), (Term("YES_NO", 0),))
+        if until is None and time is not None:
             time_ms = self.fixed(time)
             byte = None if time_ms is None else time8(time_ms)
             value = None if power is None else self.fixed(power)
@@ -155,13 +178,12 @@ class _Lowering:
             add_value(out, time)
         if power is not None:
             add_value(out, power)
-        if move.until is None:
+        if until is None:
             out.add("WAIT" if power is None else f"MOVE_{name}")
             return
         out.add(f"WATCH{'_FOREVER' if time is None else ''}_{name}")
-        for sensor in move.until.reads:
-            out.add("READ", sensor)
-        stops(out, move.until.condition)
+        self.reads(until.reads)
+        stops(out, until.condition)
 
     def beep(self, beep: Beep) -> None:
         time_ms, hertz = self.fixed(self.at_least_0(beep.time)), self.fixed(beep.hertz)
@@ -230,8 +252,7 @@ class _Lowering:
             is_last = k == len(statement.arms) - 1 and not has_else
             following = end if is_last else out.new_label()
             out.span = arm.span
-            for sensor in arm.reads:
-                out.add("READ", sensor)
+            self.reads(arm.reads)
             tests(out, arm.condition, following)
             self.body(arm.body)
             if not is_last:
@@ -261,8 +282,7 @@ class _Lowering:
         end = out.new_label()
         out.add("WHILE", to=end)
         start = out.mark_here()
-        for sensor in loop.reads:
-            out.add("READ", sensor)
+        self.reads(loop.reads)
         tests(out, loop.condition, end)
         self.repeated(loop.body, end, False, loop.span, start)
 

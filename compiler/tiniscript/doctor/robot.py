@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Any, Protocol
 
-from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
+from tiniscript.bytecode.image import isa_of
 from tiniscript.link.connection import LinkConnection
 from tiniscript.link.frames import Frame, decoded, encoded
 from tiniscript.link.messages import BY_NAME, MAJOR, MINOR, written
@@ -53,8 +53,9 @@ class WireRobot:
         self.heard = self.spoken = b""
         self._seq = 0
         self._epoch = 0
-        self._hello = {"major": MAJOR, "minor": MINOR, "isa_major": ISA_MAJOR,
-                       "isa_minor": ISA_MINOR, "kit": kit, "nonce": nonce}  # fmt: skip
+        isa = isa_of(0)
+        self._hello = {"major": MAJOR, "minor": MINOR, "isa_major": isa[0],
+                       "isa_minor": isa[1], "kit": kit, "nonce": nonce}  # fmt: skip
 
     def hello(self, tries: int = TRIES) -> Reply[SentReply] | None:
         return self._ask("HELLO", self._hello, tries)

@@ -10,8 +10,8 @@ import gc
 from collections.abc import Callable
 from typing import NamedTuple
 
-from tiniscript.bytecode.image import Image, checksum, pack
-from tiniscript.bytecode.opcodes import CODE_BYTES, ISA_MAJOR, ISA_MINOR
+from tiniscript.bytecode.image import TASKS, Image, checksum, isa_of, pack
+from tiniscript.bytecode.opcodes import CODE_BYTES
 from tiniscript.bytecode.verify import Verdict, verify
 from tiniscript.codegen.lower import Place, lower
 from tiniscript.diagnostics import codes
@@ -116,6 +116,24 @@ def fitting(compiled: Compiled, robot: Robot, is_mistake: bool) -> Compiled:
     return compiled._replace(diagnostics=[*compiled.diagnostics, diagnostic])
 
 
+def for_robot(compiled: Compiled, robot: Robot) -> Compiled:
+    """Return `compiled`, with a mistake and no image where the robot has no tasks and it has one.
+
+    For what is about to be sent to a robot, a virtual one too.
+    """
+    program = compiled.program
+    if program is None or not program.tasks or not compiled.is_right:
+        return compiled
+    from tiniscript.library.known_kits import lacks
+
+    if not lacks(TASKS, robot):
+        return compiled
+    lacking = codes.Diagnostic(codes.NO_TASKS, program.tasks[0].word, {"robot": robot.name})
+    return compiled._replace(
+        diagnostics=codes.in_order([*compiled.diagnostics, lacking]), image=b""
+    )
+
+
 def compile_text(text: str, kit: Kit, name: str = "", optimize: bool = True) -> Compiled:
     """Return the image of a text for robots with this kit, or all that is wrong with it.
 
@@ -143,7 +161,8 @@ def _compiled(text: str, kit: Kit, name: str, optimize: bool) -> Compiled:
         diagnostic = codes.Diagnostic(codes.CODE_TOO_LONG, place, over)
         return compiled._replace(diagnostics=[*compiled.diagnostics, diagnostic])
     verdict = verify(lowered.code, len(kit.sensors), len(kit.actuators))
-    image = pack(program.start, kit.hash_of_used(verdict.uses), lowered.code)
+    devices = kit.hash_of_used(verdict.uses)
+    image = pack(program.start, devices, lowered.code, needs=needs_of(verdict))
     return compiled._replace(code=lowered.code, places=lowered.places, verdict=verdict, image=image)
 
 
@@ -192,9 +211,14 @@ def text_of(data: bytes, name: str) -> str | Compiled:
 def image_of(compiled: Compiled, robot: Robot) -> Image:
     """Return the image of a program without mistakes."""
     assert compiled.program is not None and compiled.verdict is not None
-    devices = robot.kit.hash_of_used(compiled.verdict.uses)
+    devices, needs = robot.kit.hash_of_used(compiled.verdict.uses), needs_of(compiled.verdict)
     return Image(compiled.program.start, devices, compiled.code,
-                 checksum(compiled.image), (ISA_MAJOR, ISA_MINOR))  # fmt: skip
+                 checksum(compiled.image), isa_of(needs), needs=needs)  # fmt: skip
+
+
+def needs_of(verdict: Verdict) -> int:
+    """Return the field `needs` of an image with verified code."""
+    return TASKS if verdict.tasks else 0
 
 
 def maker(robot: Robot) -> Callable[[str], Image | None]:

@@ -18,7 +18,7 @@ from tiniscript.library.client import Client, Saving
 from tiniscript.library.endings import Follower
 from tiniscript.library.errors import RobotError, StopNotConfirmed, UsageError
 from tiniscript.library.events import Ending, Reader, RobotEvent, ending_of
-from tiniscript.library.known_kits import of_kit
+from tiniscript.library.known_kits import of_kit, refusal
 from tiniscript.library.programs import Language, Program, profile_of, program_of
 from tiniscript.library.runs import whole, within
 from tiniscript.link import known_ports, port_names, ports
@@ -139,6 +139,10 @@ class RobotConnection:
                 "live_button" if ready.start == "SB" else "ping_program", self.language
             )
         image, kit = ready._image, ready._profile.kit.fingerprint
+        assert self._client.line.robot is not None
+        refused = refusal(image, ready._profile, self._client.line.robot)
+        if refused is not None:
+            raise self._client.failure(refused)
         reply = self._client.ask(
             lambda session: session.live(image.code, kit if image.devices else 0)
         )

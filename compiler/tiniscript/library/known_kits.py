@@ -107,11 +107,24 @@ def fits(image: Image, robot: Robot) -> bool:
     return True
 
 
+def lacks(needs: int, robot: Robot) -> bool:
+    """Return whether the robot's firmware lacks something of `needs` in an image."""
+    if not needs:
+        return False
+    from tiniscript.robots.boards import CHIPS
+
+    return bool(needs & ~CHIPS[robot.board.chip].has)
+
+
 def refusal(image: Image, profile: Robot, robot: DeviceInfo) -> Reply[Any] | None:
-    """Return the refusal of a program for another kit, or None where the robot may run it."""
+    """Return the refusal of a program for another kit, or with tasks, or None where the robot may
+    run it."""
+    from tiniscript.bytecode.image import REFUSALS
     from tiniscript.link.messages import STATUSES
     from tiniscript.link.requests import Reply
 
+    if lacks(image.needs, profile):
+        return Reply(REFUSALS["UNKNOWN_NEEDS"][0])
     if may_run(image, profile, robot.kit):
         return None
     return Reply(STATUSES["WRONG_KIT"], robot.kit)

@@ -15,7 +15,7 @@ from tiniscript.library.programs import Language, Program, program_of
 from tiniscript.library.texts import sentence
 from tiniscript.robots.profile import Robot
 from tiniscript.source import printable
-from tiniscript.vm.machine import Machine
+from tiniscript.vm.machine import machine_of as python_machine
 from tiniscript.vm.trace import Ending, Event, MachineOf, Senses
 from tiniscript.vm.trace import run as run_code
 
@@ -100,6 +100,8 @@ def run(
     if machine not in ("python", "cpp"):
         raise UsageError("bad_choice", language, {"found": printable(repr(machine))})
     machine_of: MachineOf | None = None
+    if machine == "cpp" and image.has_tasks:
+        raise UsageError("cpp_no_tasks", language)
     if machine == "cpp":
         try:
             machine_of = cpp_machine(image, profile)
@@ -119,7 +121,9 @@ def begun(
 ) -> Iterator[Event | Ending]:  # fmt: skip
     """Yield the actions of a robot with a verified image. `lists` are readings in thousandths."""
     senses = Senses(robot.kit, lists)
-    return run_code(image.code, robot.kit, senses, max_ms, max_steps, seed, machine_of or Machine)
+    return run_code(
+        image.code, robot.kit, senses, max_ms, max_steps, seed, machine_of or python_machine
+    )
 
 
 def cpp_machine(image: Image, robot: Robot) -> MachineOf:
@@ -130,7 +134,7 @@ def cpp_machine(image: Image, robot: Robot) -> MachineOf:
     from tiniscript.vm.wasm import WasmImage
 
     kit = robot.kit
-    data = pack(image.start, image.devices, image.code, image.later)
+    data = pack(image.start, image.devices, image.code, image.later, image.needs)
     try:
         return WasmImage(data, kit).machine
     except (ImageRefused, Refused) as refused:

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Generator, Mapping
 from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
 
-from tiniscript.bytecode.image import HEADER_BYTES, NEEDS, STARTS, Image
+from tiniscript.bytecode.image import HEADER_BYTES, STARTS, Image
 from tiniscript.bytecode.verify import RULES
 from tiniscript.link.messages import (
     BY_NAME,
@@ -249,7 +249,7 @@ def _in_pieces(image: Image, mode: int, robot: DeviceInfo) -> Exchange[ReceiptRe
         "code_length": len(image.code),
     }
     reply = yield from patient(Request("BEGIN", header), NextReply)
-    rest = bytes([NEEDS]) + image.later + image.code  # the bytes after the checksum
+    rest = bytes([image.needs]) + image.later + image.code  # the bytes after the checksum
     if reply.status == OK and robot.values.window > 1:
         pieces = Pieces(rest, most, robot.values.window)
         reply = yield from single(Request("DATA", pieces=pieces), NextReply)

@@ -13,7 +13,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any, TypeVar
 
-from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
+from tiniscript.bytecode.image import isa_of
 from tiniscript.link.authority import NOT_OWNER, KeyRing
 from tiniscript.link.exchanges import Exchanges, Interrupted, PendingExchange
 from tiniscript.link.frames import Frame, begins_text, decoded, encoded
@@ -67,7 +67,7 @@ class Session(Exchanges):
         nonce: int,
         baud: int = 9600,
         kit: int = 0,
-        isa: tuple[int, int] = (ISA_MAJOR, ISA_MINOR),
+        isa: tuple[int, int] = isa_of(0),
         keys: KeyRing | None = None,
     ) -> None:
         """`nonce` is a random number of 32 bits; `kit` and `isa` are those of our programs; `keys`

@@ -22,7 +22,7 @@ class Line(NamedTuple):
     """A line whose items are known; `items` is None where it cannot be read.
 
     `is_rewritten`: by a row; `has_body`: by one that begins a body. `is_do`: it begins a block
-    whose question comes at its end.
+    whose question comes at its end; `is_when`: it begins with a word for both IF and WHEN.
     """
 
     indent: int
@@ -31,6 +31,7 @@ class Line(NamedTuple):
     is_rewritten: bool
     has_body: bool
     is_do: bool
+    is_when: bool
 
 
 class Edit(NamedTuple):
@@ -171,6 +172,9 @@ class _Matching:
         """Take an item; return whether it has a place among the blocks."""
         if item.kind == "open":
             if not self.is_end_of_do(place, k, item):
+                if self.is_when(place, k, item):
+                    self.edit(k, item, 1, "WHEN")
+                    item = item._replace(word="WHEN")
                 self.open.append(_Block(item, k, self.lines[k]))
             return True
         if item.kind == "{":
@@ -184,6 +188,23 @@ class _Matching:
         if item.kind == "end":
             return self.bare_end(place, k, item) if item.word == ANY_END else self.end(k, item)
         return True
+
+    def is_when(self, place: int, k: int, item: Item) -> bool:
+        """Whether an IF is meant as a WHEN: at the top level, with lines and an end of its own."""
+        if self.open or not self.lines[k].is_when or item.word != "IF":
+            return False
+        depth = 0
+        for line, inner in self.flat[place + 1 :]:
+            if inner.kind == "open":
+                depth += 1
+            elif inner.kind == "end" and depth == 0:
+                ended = ENDED.get(inner.word)
+                return ended == "WHEN" or (line != k and ended != "IF")
+            elif inner.kind in ("end", "}"):
+                depth -= 1
+            elif inner.kind == "arm" and depth == 0:
+                return False
+        return False
 
     def is_end_of_do(self, place: int, k: int, item: Item) -> bool:
         """Whether a WHILE ends the block that a DO has begun: then it leaves that."""

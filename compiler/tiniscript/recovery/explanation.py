@@ -392,6 +392,8 @@ def _code(
 def _slip(code: str, step: Step | None, before: Sequence[Lexeme], after: Sequence[Lexeme]) -> Slip:
     is_note = code == codes.OTHER_NOTE.number
     old, new = (step.before, step.after) if step and not is_note else (before, after)
+    if "WHEN" in texts(after):  # what the steps took for an IF
+        old, new = _with_when(old), _with_when(new)
     start, found, right = _first_difference(old, new)
     if not right and code == _WORD_CODE and start:
         found, right = [old[start - 1], *found], [old[start - 1]]
@@ -421,6 +423,10 @@ def _slip(code: str, step: Step | None, before: Sequence[Lexeme], after: Sequenc
     kept = _written([each for each, _ in alike])
     letter = _letter(was, now) if code == codes.BAD_NUMBER.number else ""
     return Slip(was, now, kept, word, known.usage if known else "", shown, letter=letter)
+
+
+def _with_when(tokens: Sequence[Lexeme]) -> list[Lexeme]:
+    return [each._replace(text="WHEN") if each.text == "IF" else each for each in tokens]
 
 
 def _letter(found: str, right: str) -> str:

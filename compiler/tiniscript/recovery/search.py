@@ -22,6 +22,7 @@ from tiniscript.syntax.outline import Failure
 CHECKS = 40  # of candidates of one program
 ALTERNATIVES = 12  # readings of a line that are tried beside the cheapest ones
 PARTS = 6  # readings of a part of a line
+_WHEN = re.compile(r"\s*(S[IB]\s*\|)?\s*CUANDO\b")
 _QUOTES = str.maketrans("“”„‘’", '"""\'\'')
 _QUOTES |= {wide: wide - 0xFEE0 for wide in range(0xFF01, 0xFF5F)}  # of Chinese keyboards
 
@@ -267,7 +268,8 @@ class _Recovery:
                 Line(line.indent, reading.tokens if reading else [],
                      reading.items if reading else None, bool(reading and reading.steps),
                      bool(reading and reading.is_new_line),
-                     any(step.code == rows.DO_CODE for step in reading.steps) if reading else False)
+                     any(step.code == rows.DO_CODE for step in reading.steps) if reading else False,
+                     _WHEN.match(line.source.upper()) is not None)
                 for line, reading in zip(self.lines, readings, strict=True)
             ])  # fmt: skip
             if blocks is None:

@@ -39,6 +39,7 @@ class Chip(NamedTuple):
     reset_pin: int | None = None
     pwm_timers: int = 0
     pin_volts: int = 5 * ONE  # in thousandths: what its pins give, and the most that they take
+    has: int = 0  # what its firmware has of `needs` in an image
 
     def can(self, pin: int, need: str) -> bool:
         """Return whether `pin` has the ability `need`, one of NEEDS."""

@@ -39,7 +39,8 @@ def check(source: Source, parsed: ast.Program, kit: Kit) -> Checked:
     """Return the IR of a program for a robot with this kit, and all its diagnostics."""
     checker = _Checker(source, kit, parsed)
     body = checker.body(parsed.body)
-    meaning = ir.Program(parsed.start, tuple(checker.variables), tuple(checker.procedures), body)
+    variables, procedures = tuple(checker.variables), tuple(checker.procedures)
+    meaning = ir.Program(parsed.start, variables, procedures, body, tuple(checker.tasks))
     return Checked(meaning, checker.diagnostics)
 
 
@@ -58,6 +59,10 @@ class _Checker(Scope):
         self.variables: list[str] = []
         self.procedures: list[ir.Procedure] = []
         self.facts: list[_Procedure] = []
+        self.tasks: list[ir.Task] = []
+        self.has_tasks = any(isinstance(each, ast.Task) for each in parsed.body)
+        self.beside_blocks = 0  # open at once in the other tasks, all of them together,
+        self.beside_calls = 0  # and their calls
         self.inside: str | None = None  # the DEF whose body is being checked
         self.surely_read = 0  # a bit for each sensor
         self.loops = 0
@@ -157,7 +162,7 @@ class _Checker(Scope):
             self.wrong.count(word, arguments, span)
             return
         forever = word.role in ("move", "wait") and arguments[0].expression[0].op == "FOREVER"
-        if forever and node.until is None:
+        if forever and node.until is None and not self.has_tasks:
             self.wrong.forever(arguments[0].span, word, span)
         said = len(self.diagnostics)
         values = [
@@ -204,8 +209,9 @@ class _Checker(Scope):
             self.wrong.no_number(argument.span, word)
         return value
 
-    def until(self, argument: ast.Argument) -> ir.Until:
-        value = self.condition(argument, "UNTIL")
+    def until(self, argument: ast.Argument, word: str = "UNTIL") -> ir.Until:
+        """Return the check of an UNTIL or a WHEN."""
+        value = self.condition(argument, word)
         return ir.Until(self.missing([value], 0), value.terms)
 
     def condition(self, argument: ast.Argument, word: str) -> Value:
@@ -264,21 +270,24 @@ class _Checker(Scope):
 
     def call(self, node: ast.Command, number: int, made: list[Statement]) -> None:
         facts = self.facts[number]
-        if facts.calls + 1 > CALLS:
+        if facts.calls + 1 + self.beside_calls > CALLS:
             self.report(codes.CALLS_TOO_DEEP, node.span, name=node.word, limit=str(CALLS))
-        if self.depth + facts.blocks > BLOCKS:
-            self.report(codes.BLOCKS_TOO_DEEP, node.span, limit=str(BLOCKS))
         self.calls = max(self.calls, facts.calls + 1)
-        self.deepest = max(self.deepest, self.depth + facts.blocks)
+        depth = self.depth + facts.blocks
+        if depth + self.beside_blocks > BLOCKS:
+            self.report(codes.BLOCKS_TOO_DEEP, node.span, limit=str(BLOCKS))
+        self.deepest = max(self.deepest, depth)
         self.surely_read |= facts.surely_read
         made.append(ir.Call(number, node.span))
 
     # -- blocks -------------------------------------------------------------------------------
 
-    def deeper(self, instructions: Sequence[ast.Instruction], is_loop: bool) -> ir.Body:
+    def deeper(self, instructions: Sequence[ast.Instruction], is_loop: bool, span: Span) -> ir.Body:
         self.depth += 1
         self.loops += is_loop
         self.deepest = max(self.deepest, self.depth)
+        if self.depth + self.beside_blocks == BLOCKS + 1:  # what is alone too deep is not here
+            self.report(codes.BLOCKS_TOO_DEEP, span, limit=str(BLOCKS))
         made = self.body(instructions)
         self.depth -= 1
         self.loops -= is_loop
@@ -299,11 +308,11 @@ class _Checker(Scope):
                     chain |= 1 << sensor
             else:
                 chain = self.take([value], arm.span, made)
-            body = self.deeper(arm.body, False)
+            body = self.deeper(arm.body, False, arm.span)
             after &= self.surely_read
             self.surely_read = before
             arms.append(ir.Arm(reads, value.terms, body, arm.span))
-        otherwise = self.deeper(node.otherwise, False)
+        otherwise = self.deeper(node.otherwise, False, node.span)
         self.surely_read &= after
         made.append(ir.If(tuple(arms), otherwise, node.span, node.has_else))
 
@@ -315,7 +324,7 @@ class _Checker(Scope):
             self.take([value], node.span, made)
             count = value.terms
         before, self.surely_read = self.surely_read, 0
-        body = self.deeper(node.body, True)
+        body = self.deeper(node.body, True, node.span)
         self.surely_read = before
         made.append(ir.Loop(count, body, node.span))
 
@@ -324,7 +333,7 @@ class _Checker(Scope):
         if node.condition is not None:
             value = self.condition(node.condition, "WHILE")
         before, self.surely_read = self.surely_read, 0
-        body = self.deeper(node.body, True)
+        body = self.deeper(node.body, True, node.span)
         self.surely_read = before
         reads = self.missing([value], 0)
         made.append(ir.While(reads, value.terms, body, node.span))
@@ -342,16 +351,41 @@ class _Checker(Scope):
             self.report(code, node.name_span, name=node.name, other=other)
         if len(self.procedures) == DEFS:
             self.report(codes.TOO_MANY_DEFS, node.name_span, limit=str(DEFS))
-        outside = self.surely_read, self.deepest, self.calls
-        self.surely_read = self.deepest = self.calls = 0
+        outside = self.apart()
+        self.beside_blocks = self.beside_calls = 0
         self.inside = node.name
         body = self.body(node.body)
         self.inside = None
         self.facts.append(_Procedure(self.surely_read, self.deepest, self.calls))
-        self.surely_read, self.deepest, self.calls = outside
+        self.back_in(outside)
         if known is None:
             self.names[node.name] = Name("def", len(self.procedures))
         self.procedures.append(ir.Procedure(node.name, body, node.span))
+
+    def task(self, node: ast.Task, made: list[Statement]) -> None:
+        outside = self.apart()
+        _, main_blocks, main_calls, *_ = outside
+        self.beside_blocks += main_blocks
+        self.beside_calls += main_calls
+        look = None
+        if node.is_when:
+            nothing = ir.Until((), self.kinds.nothing.terms)
+            look = nothing if node.condition is None else self.until(node.condition, "WHEN")
+        body = self.body(node.body)
+        blocks, calls = self.deepest, self.calls
+        self.back_in(outside)
+        self.beside_blocks += blocks
+        self.beside_calls += calls
+        self.tasks.append(ir.Task(look, body, node.span))
+
+    def apart(self) -> tuple[int, ...]:
+        """Begin a DEF or a task, in which nothing is surely read or open; return what was."""
+        was = self.surely_read, self.deepest, self.calls, self.beside_blocks, self.beside_calls
+        self.surely_read = self.deepest = self.calls = 0
+        return was
+
+    def back_in(self, was: tuple[int, ...]) -> None:
+        self.surely_read, self.deepest, self.calls, self.beside_blocks, self.beside_calls = was
 
 
 def _spelled_out(word: Word, span: Span) -> ast.Command:
@@ -376,4 +410,5 @@ _CHECKS: dict[type, Callable[..., None]] = {
     ast.While: _Checker.while_,
     ast.Break: _Checker.break_,
     ast.Def: _Checker.def_,
+    ast.Task: _Checker.task,
 }

@@ -19,9 +19,11 @@ from tiniscript.semantics.ir import (
     Move,
     Program,
     Statement,
+    Stop,
     While,
     bodies,
     loops_end,
+    walk,
 )
 from tiniscript.semantics.optimizer import constant, fold
 
@@ -42,59 +44,93 @@ _UNKNOWN = Duration(0, None)
 
 
 def duration(program: Program) -> Duration:
-    """Return how long `program`, best an optimised one, runs."""
-    known: list[Duration] = []
-    for procedure in program.procedures:
-        known.append(_body(procedure.body, known))
-    return _body(program.body, known)
+    """Return how long `program`, best an optimised one, runs.
+
+    Of several tasks it is known how long they run where no more than one moves: a move waits for
+    the motors, and S ends one.
+    """
+    made = _Durations(program)
+    bodies = (program.body, *(task.body for task in program.tasks))
+    each = [made.of(body) for body in bodies]
+    least = max(one.least for one in each)
+    if any(task.look is not None for task in program.tasks):
+        return Duration(least, None, True)
+    if sum(made.drives(body) for body in bodies) > 1:
+        return Duration(0, None)
+    bounds = [one.most for one in each if one.most is not None]
+    most = max(bounds) if len(bounds) == len(each) else None
+    return Duration(least, most, any(one.never_ends for one in each))
 
 
-def _body(body: Body, known: list[Duration]) -> Duration:
-    least, most = 0, 0
-    for statement in body:
-        this = _statement(statement, known)
-        least += this.least
-        if this.never_ends:
-            return Duration(least, None, True)
-        if this.most is None:
-            most = -1
-        elif most >= 0:
-            most += this.most
-    return Duration(least, None if most < 0 else most)
+class _Durations:
+    """Those of the bodies of one program."""
 
+    def __init__(self, program: Program) -> None:
+        self.turn_ms = 1 if program.tasks else 0  # what a turn of a loop takes that has no wait
+        self.known: list[Duration] = []
+        self.procedures = program.procedures
+        for procedure in program.procedures:
+            self.known.append(self.of(procedure.body))
 
-def _statement(statement: Statement, known: list[Duration]) -> Duration:
-    if isinstance(statement, Move):
-        longest = _time(statement.time)
-        return longest if statement.until is None else Duration(0, longest.most)
-    if isinstance(statement, Beep):
-        return _time(statement.time)
-    if isinstance(statement, Call):
-        return known[statement.procedure]
-    if isinstance(statement, If):
-        arms = [_body(body, known) for body in bodies(statement)]
-        bounds = [arm.most for arm in arms if arm.most is not None]
-        most = max(bounds) if len(bounds) == len(arms) else None
-        return Duration(min(arm.least for arm in arms), most, all(arm.never_ends for arm in arms))
-    if isinstance(statement, (Loop, While)):
-        return _loop(statement, known)
-    return _NONE
+    def drives(self, body: Body) -> bool:
+        """Whether a body has a move or an S, or calls something that has one."""
+        return any(
+            isinstance(each, Stop)
+            or (isinstance(each, Move) and each.power is not None)
+            or (isinstance(each, Call) and self.drives(self.procedures[each.procedure].body))
+            for each in walk(body)
+        )
+
+    def of(self, body: Body) -> Duration:
+        least, most = 0, 0
+        for statement in body:
+            this = self.statement(statement)
+            least += this.least
+            if this.never_ends:
+                return Duration(least, None, True)
+            if this.most is None:
+                most = -1
+            elif most >= 0:
+                most += this.most
+        return Duration(least, None if most < 0 else most)
+
+    def statement(self, statement: Statement) -> Duration:
+        if isinstance(statement, Move):
+            if statement.time is None and statement.until is None:
+                return Duration(0, None, True)
+            longest = _time(statement.time)
+            return longest if statement.until is None else Duration(0, longest.most)
+        if isinstance(statement, Beep):
+            return _time(statement.time)
+        if isinstance(statement, Call):
+            return self.known[statement.procedure]
+        if isinstance(statement, If):
+            arms = [self.of(body) for body in bodies(statement)]
+            bounds = [arm.most for arm in arms if arm.most is not None]
+            most = max(bounds) if len(bounds) == len(arms) else None
+            never_ends = all(arm.never_ends for arm in arms)
+            return Duration(min(arm.least for arm in arms), most, never_ends)
+        if isinstance(statement, (Loop, While)):
+            return self.loop(statement)
+        return _NONE
+
+    def loop(self, loop: Loop | While) -> Duration:
+        body = self.of(loop.body)
+        if isinstance(loop, Loop) and loop.times is None:
+            return _UNKNOWN if loops_end(loop.body) else Duration(0, None, True)
+        value = None if isinstance(loop, While) or loop.times is None else fold(loop.times)
+        count = None if value is None else constant(value)
+        if body.least == 0 and body.most is not None:
+            body = body._replace(most=body.most + self.turn_ms)
+        if count is None:
+            return _UNKNOWN if isinstance(loop, While) or body.most != 0 else _NONE
+        times = max(whole(count), 0)
+        if body.never_ends and times and not loops_end(loop.body):
+            return Duration(body.least, None, True)
+        most = None if body.most is None else times * body.most
+        return Duration(0 if loops_end(loop.body) else times * body.least, most)
 
 
 def _time(time: Expression | None) -> Duration:
     value = None if time is None else constant(fold(time))
     return _UNKNOWN if value is None else Duration(max(value, 0), max(value, 0))
-
-
-def _loop(loop: Loop | While, known: list[Duration]) -> Duration:
-    body = _body(loop.body, known)
-    if isinstance(loop, Loop) and loop.times is None:
-        return _UNKNOWN if loops_end(loop.body) else Duration(0, None, True)
-    count = None if isinstance(loop, While) or loop.times is None else constant(fold(loop.times))
-    if count is None:
-        return _UNKNOWN if isinstance(loop, While) or body.most != 0 else _NONE
-    times = max(whole(count), 0)
-    if body.never_ends and times and not loops_end(loop.body):
-        return Duration(body.least, None, True)
-    most = None if body.most is None else times * body.most
-    return Duration(0 if loops_end(loop.body) else times * body.least, most)

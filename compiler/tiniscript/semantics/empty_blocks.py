@@ -13,7 +13,18 @@ from itertools import takewhile
 
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
-from tiniscript.semantics.ir import Body, Break, If, Loop, Program, Read, Statement, While, bodies
+from tiniscript.semantics.ir import (
+    Body,
+    Break,
+    If,
+    Loop,
+    Program,
+    Read,
+    Statement,
+    While,
+    bodies,
+    routines,
+)
 from tiniscript.source import Source, Span
 from tiniscript.words import BLOCK_ENDS
 
@@ -23,7 +34,7 @@ MANY = 12  # instructions that an example has
 
 def empty_blocks(program: Program, source: Source) -> list[Diagnostic]:
     """Return the warnings for a program that has no mistakes."""
-    rest = [program.body, *(each.body for each in program.procedures)]
+    rest = list(reversed(routines(program)))
     found: list[Diagnostic] = []
     while rest:
         body = rest.pop()

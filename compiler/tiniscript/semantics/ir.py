@@ -134,13 +134,30 @@ class Procedure(NamedTuple):
     span: Span
 
 
+class Task(NamedTuple):
+    """TASK, or a WHEN with the check `look`, beside the main task."""
+
+    look: Until | None
+    body: Body
+    span: Span
+
+    @property
+    def word(self) -> Span:
+        """Where TASK or WHEN stands."""
+        return Span(self.span.start, self.span.start + len("TASK"))
+
+
 class Program(NamedTuple):
-    """`variables` are names in the order of their numbers; `start` is SI, SB or PING."""
+    """`variables` are names in the order of their numbers; `start` is SI, SB or PING.
+
+    `body` is the main task; `tasks` are the others in the order of the text.
+    """
 
     start: str
     variables: tuple[str, ...]
     procedures: tuple[Procedure, ...]
     body: Body
+    tasks: tuple[Task, ...] = ()
 
 
 def bodies(statement: Statement) -> tuple[Body, ...]:
@@ -161,10 +178,15 @@ def walk(body: Body) -> Iterator[Statement]:
 
 
 def every(program: Program) -> Iterator[Statement]:
-    """Yield every statement of a program, those of its DEFs first."""
-    for procedure in program.procedures:
-        yield from walk(procedure.body)
-    yield from walk(program.body)
+    """Yield every statement of a program, those of its DEFs first, then those of its tasks."""
+    for body in routines(program):
+        yield from walk(body)
+
+
+def routines(program: Program) -> tuple[Body, ...]:
+    """Return the bodies of the DEFs, those of the tasks, and the main task."""
+    procedures = (each.body for each in program.procedures)
+    return (*procedures, *(each.body for each in program.tasks), program.body)
 
 
 _YES_NO = frozenset(("YES_NO", "NOT", "AND", "OR", "LT", "LE", "GT", "GE", "EQ", "NE"))
@@ -202,8 +224,12 @@ def values_of(statement: Statement) -> dict[str, Expression]:
     return {name: value for name, value in fields.items() if name in _VALUES and value is not None}
 
 
-def expressions(statement: Statement) -> Iterator[Expression]:
-    """Yield the expressions of a statement itself, not those of its blocks' bodies."""
+def expressions(statement: Statement | Task) -> Iterator[Expression]:
+    """Yield the expressions of a statement or a WHEN itself, not those of its blocks' bodies."""
+    if isinstance(statement, Task):
+        if statement.look is not None:
+            yield statement.look.condition
+        return
     yield from values_of(statement).values()
     if isinstance(statement, Move) and statement.until is not None:
         yield statement.until.condition
@@ -254,6 +280,11 @@ def program_text(program: Program) -> str:
     lines = [program.start]
     for procedure in program.procedures:
         lines += [f"DEF {procedure.name}", *_body_lines(procedure.body, "  ")]
+    for task in program.tasks:
+        look = "TASK"
+        if task.look is not None:
+            look = f"WHEN {task.look.reads} {expression_text(task.look.condition)}"
+        lines += [look, *_body_lines(task.body, "  ")]
     return "\n".join([*lines, *_body_lines(program.body, "")]) + "\n"
 
 

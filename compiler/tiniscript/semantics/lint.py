@@ -26,8 +26,10 @@ from tiniscript.semantics.ir import (
     Program,
     Read,
     Statement,
+    Task,
     While,
     bodies,
+    every,
     expressions,
     goes_on,
     loops_end,
@@ -79,12 +81,14 @@ def advice(program: Program, kit: Kit, source: Source) -> list[Diagnostic]:
     for procedure in program.procedures:
         look.found += swapped_names(procedure.body, program)
         _look_at(procedure.body, look, _Around(is_repeated=True))
+    for task in program.tasks:
+        _expressions(task, look.found)
+        look.found += swapped_names(task.body, program)
+        _look_at(task.body, look, _Around(is_repeated=task.look is not None))
     look.found += swapped_names(program.body, program)
     _look_at(program.body, look, _Around(is_last=True))
     found = look.all_found
-    routines = [*(procedure.body for procedure in program.procedures), program.body]
-    statements = [statement for body in routines for statement in walk(body)]
-    found += _unused(program, kit, statements)
+    found += _unused(program, kit, [*every(program), *program.tasks])
     return found
 
 
@@ -102,7 +106,8 @@ def _look_at(body: Body, look: _Look, around: _Around) -> None:
             break
     for statement in body:
         _expressions(statement, found)
-        look.frozen.look_at(statement, around.is_repeated, around.asked, around.outermost)
+        if not program.tasks:  # what one asks another may change
+            look.frozen.look_at(statement, around.is_repeated, around.asked, around.outermost)
         if isinstance(statement, Move):
             if statement.until is None:
                 found += of_move(statement, look.kit, look.source)
@@ -120,7 +125,9 @@ def _look_at(body: Body, look: _Look, around: _Around) -> None:
             inside = inside._replace(loop=statement, is_repeated=True, outermost=outermost)
             _odd_times(statement, found)
             if _is_forever(statement) and not (
-                loops_end(statement.body) or _takes_time(statement.body, program)
+                program.tasks  # there each turn of a loop takes time
+                or loops_end(statement.body)
+                or _takes_time(statement.body, program)
             ):
                 word = "LOOP(FOREVER)" if isinstance(statement, Loop) else "WHILE"
                 head = Span(statement.span.start, statement.span.start + len(word))
@@ -146,7 +153,7 @@ def _never_reached(before: Statement, after: Statement, look: _Look) -> None:
     look.found.append(Diagnostic(codes.NEVER_REACHED, after.span, values))
 
 
-def _expressions(statement: Statement, found: list[Diagnostic]) -> None:
+def _expressions(statement: Statement | Task, found: list[Diagnostic]) -> None:
     for expression in expressions(statement):
         fault = sure_fault(fold(expression))
         if fault:
@@ -182,7 +189,7 @@ def _takes_time(body: Body, program: Program) -> bool:
     return False
 
 
-def _named(op: str, statements: Sequence[Statement]) -> frozenset[int]:
+def _named(op: str, statements: Sequence[Statement | Task]) -> frozenset[int]:
     """Return the numbers of the variables or sensors that an expression of these has."""
     return frozenset(
         term.value
@@ -193,7 +200,9 @@ def _named(op: str, statements: Sequence[Statement]) -> frozenset[int]:
     )
 
 
-def _unused(program: Program, kit: Kit, statements: list[Statement]) -> Iterator[Diagnostic]:
+def _unused(
+    program: Program, kit: Kit, statements: Sequence[Statement | Task]
+) -> Iterator[Diagnostic]:
     used = set(_named("VARIABLE", statements))
     for statement in statements:
         if isinstance(statement, Assign) and statement.variable not in used:
@@ -210,7 +219,7 @@ def _unused(program: Program, kit: Kit, statements: list[Statement]) -> Iterator
             yield Diagnostic(codes.UNUSED_DEF, span, {"name": procedure.name})
 
 
-def _unused_readings(kit: Kit, statements: list[Statement]) -> Iterator[Diagnostic]:
+def _unused_readings(kit: Kit, statements: Sequence[Statement | Task]) -> Iterator[Diagnostic]:
     """`SI|DISTANCE`, where nothing asks for the distance: it is measured, and nobody sees it."""
     asked = set(_named("SENSOR", statements))
     for statement in statements:

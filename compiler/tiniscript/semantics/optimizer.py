@@ -23,6 +23,7 @@ from tiniscript.semantics.ir import (
     Program,
     Read,
     Statement,
+    Task,
     Term,
     While,
     goes_on,
@@ -58,7 +59,9 @@ def optimized(program: Program) -> Program:
     procedures = [
         procedure._replace(body=_body(procedure.body)) for procedure in program.procedures
     ]
-    return _without_unused(program._replace(procedures=tuple(procedures), body=_body(program.body)))
+    tasks = tuple(_task(task) for task in program.tasks)
+    made = program._replace(procedures=tuple(procedures), tasks=tasks, body=_body(program.body))
+    return _without_unused(made)
 
 
 def fold(expression: Expression) -> Expression:
@@ -172,6 +175,13 @@ def _body(body: Body) -> Body:
     return tuple(made)
 
 
+def _task(task: Task) -> Task:
+    look = task.look
+    if look is not None:
+        look = look._replace(condition=fold(look.condition))
+    return task._replace(look=look, body=_body(task.body))
+
+
 def _statement(statement: Statement) -> tuple[Statement, ...]:
     if isinstance(statement, If):
         return _if(statement)
@@ -237,7 +247,7 @@ def _while(loop: While) -> tuple[Statement, ...]:
 def _without_unused(program: Program) -> Program:
     """Drop the DEFs that are never called, and number the others again."""
     called: set[int] = set()
-    waiting = [program.body]
+    waiting = [program.body, *(task.body for task in program.tasks)]
     while waiting:
         for statement in walk(waiting.pop()):
             if isinstance(statement, Call) and statement.procedure not in called:
@@ -252,7 +262,8 @@ def _without_unused(program: Program) -> Program:
         if number in called
     )
     body = _renumbered(program.body, numbers)
-    return program._replace(procedures=procedures, body=body)
+    tasks = tuple(each._replace(body=_renumbered(each.body, numbers)) for each in program.tasks)
+    return program._replace(procedures=procedures, body=body, tasks=tasks)
 
 
 def _renumbered(body: Body, numbers: dict[int, int]) -> Body:

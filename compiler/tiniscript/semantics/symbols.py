@@ -89,6 +89,6 @@ def _assignments(body: Sequence[ast.Instruction]) -> list[ast.Assign]:
             for arm in node.arms:
                 found += _assignments(arm.body)
             found += _assignments(node.otherwise)
-        elif isinstance(node, (ast.Loop, ast.While, ast.Def)):
+        elif isinstance(node, (ast.Loop, ast.While, ast.Def, ast.Task)):
             found += _assignments(node.body)
     return found

@@ -12,7 +12,7 @@ from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic
 from tiniscript.fixed_point import ONE, as_text
 from tiniscript.kit import Kit
-from tiniscript.semantics.ir import Assign, Beep, Body, Expression, Move, Program, walk
+from tiniscript.semantics.ir import Assign, Beep, Body, Expression, Move, Program, every, walk
 from tiniscript.semantics.named_values import is_power, is_time
 from tiniscript.semantics.optimizer import constant, fold
 from tiniscript.source import Source, Span
@@ -164,9 +164,8 @@ def of_beep(beep: Beep) -> list[Diagnostic]:
 def swapped_names(body: Body, program: Program) -> list[Diagnostic]:
     """`F(SPEED, TIME_S)`: variables that are set once, in the wrong order by name and number."""
     found: list[Diagnostic] = []
-    routines = [*(procedure.body for procedure in program.procedures), program.body]
     set_to: dict[int, list[int | None]] = {}
-    for statement in (each for routine in routines for each in walk(routine)):
+    for statement in every(program):
         if isinstance(statement, Assign):
             set_to.setdefault(statement.variable, []).append(constant(fold(statement.value)))
     for move in (each for each in walk(body) if isinstance(each, Move)):

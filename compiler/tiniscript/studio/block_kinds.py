@@ -60,6 +60,8 @@ KINDS = {kind.name: kind for kind in (
     Kind("while", "control", ("WHILE repeat while %1", "WHILE repite mientras %1"), ("truth",), bodies=1, tip=("Does what is inside as long as this is true.", "Hace lo que está adentro mientras esto se cumpla.")),
     Kind("break", "control", ("BREAK leave the loop", "BREAK sal de la repetición"), tip=("Leaves the innermost loop.", "Sale de la repetición más cercana.")),
     Kind("def", "words", ("DEF new word %1", "DEF palabra nueva %1"), bodies=1, field="name", tip=("A word of your own: put in what it does, and use it below.", "Una palabra tuya: pon adentro lo que hace, y úsala más abajo.")),
+    Kind("task", "control", ("TASK beside the rest", "TASK al lado del resto"), bodies=1, tip=("Does what is inside beside the rest of the program.", "Hace lo que está adentro al lado del resto del programa.")),
+    Kind("when", "control", ("WHEN each time that %1", "WHEN cada vez que %1"), ("truth",), bodies=1, tip=("Looks again and again beside the rest of the program, and does what is inside each time that this is true.", "Mira una y otra vez al lado del resto del programa, y hace lo que está adentro cada vez que esto se cumple.")),
     Kind("comment", "others", ("// %1", "// %1"), field="line", tip=("A note for people; the robot does not read it.", "Una nota para las personas; el robot no la lee.")),
     Kind("grey", "grey", BARE, field="line", tip=("The compiler does not understand this line. Change it here or in the text.", "El compilador no entiende esta línea. Cámbiala aquí o en el texto.")),
     Kind("number", "numbers", BARE, gives="number"),

@@ -95,6 +95,8 @@ def _add_bodies(
     heads += [("ELSEIF", f"ELSEIF({value})") for value in values[1:]]
     if word == "DEF":
         heads = [(word, f"DEF {_one_line(block.word)}")]
+    elif word == "TASK":
+        heads = [(word, word)]
     elif block.kind == "forever":
         heads = [(word, "LOOP(FOREVER)")]
     elif len(block.bodies) > len(values):

@@ -23,6 +23,7 @@ from tiniscript.syntax.ast import (
     Instruction,
     Loop,
     Part,
+    Task,
     While,
 )
 from tiniscript.syntax.formatter import Piece, instruction_text, is_one_line, pieces_of
@@ -129,6 +130,8 @@ class _Reader:
         else:
             bodies, values = self._arms(node)
             kind = "forever" if isinstance(node, Loop) and not values else type(node).__name__
+            if isinstance(node, Task) and node.is_when:
+                kind = "when"
             word = node.name if isinstance(node, Def) else ""
             block = Block(kind.lower(), word, values, bodies)
         last = self._pieces[self._next - 1]
@@ -139,7 +142,7 @@ class _Reader:
         return [block, Block("comment", behind, place=block.place)] if behind else [block]
 
     def _arms(
-        self, node: If | Loop | While | Def
+        self, node: If | Loop | While | Def | Task
     ) -> tuple[tuple[tuple[Block, ...], ...], tuple[Value, ...]]:
         """Read bodies and what ends them: ELSEIF, ELSE or the end of the block."""
         heads: list[Argument | None] = []
@@ -149,7 +152,7 @@ class _Reader:
             inner = [arm.body for arm in node.arms] + [node.otherwise] * node.has_else
         else:
             inner = [node.body]
-            if isinstance(node, While):
+            if isinstance(node, While) or (isinstance(node, Task) and node.is_when):
                 heads = [node.condition]
             elif isinstance(node, Loop) and node.times is not None:
                 heads = [node.times]

@@ -12,7 +12,7 @@ from typing import NamedTuple
 from tiniscript import robots
 from tiniscript.codegen import source_map
 from tiniscript.diagnostics.rendering import Message, message
-from tiniscript.library.compiling import Compiled, compiled, text_of
+from tiniscript.library.compiling import Compiled, compiled, for_robot, text_of
 from tiniscript.repairs.fixing import offers
 from tiniscript.robots.profile import Robot
 from tiniscript.semantics import ir
@@ -58,9 +58,9 @@ class Checked(NamedTuple):
 
 
 def check(data: bytes, robot: str, language: str) -> Checked:
-    """Compile a program's text for a shipped robot, as `tsc compile` does."""
+    """Compile a program's text for a shipped robot, as `tsc upload` does."""
     profile = profile_of(robot)
-    found = compiled(data, profile, "", is_strict=True)
+    found = for_robot(compiled(data, profile, "", is_strict=True), profile)
     findings = _findings(data, found, profile, language)
     if not found.is_right or found.program is None:
         return Checked(b"", 0, findings, ())

@@ -16,7 +16,7 @@ from tiniscript.lessons.markdown import Block, blocks
 from tiniscript.lessons.marking import Marking, Outcome
 from tiniscript.lessons.sentences import sentence
 from tiniscript.lessons.variation import varied
-from tiniscript.library.compiling import compiled, maker
+from tiniscript.library.compiling import compiled, for_robot, maker
 from tiniscript.studio.checking import profile_of
 from tiniscript.studio.world_form import Form, form_of
 from tiniscript.virtual.world import World
@@ -58,7 +58,7 @@ class Check:
         self._worlds = lesson.worlds
         self._marking: Marking | None = None
         profile = profile_of(lesson.robot)
-        found = compiled(data, profile, "", is_strict=True)
+        found = for_robot(compiled(data, profile, "", is_strict=True), profile)
         if found.is_right:
             seeds = range(1, lesson.worlds + 1)
             text = found.source.text

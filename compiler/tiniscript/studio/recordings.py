@@ -18,7 +18,7 @@ from typing import NamedTuple
 from tiniscript.bytecode.image import checksum
 from tiniscript.codegen.source_map import made
 from tiniscript.fixed_point import ONE
-from tiniscript.library.compiling import compiled
+from tiniscript.library.compiling import compiled, for_robot
 from tiniscript.semantics import ir
 from tiniscript.studio.checking import profile_of
 from tiniscript.studio.simulation import Marks, Simulation
@@ -129,7 +129,7 @@ def replay(recording: Recording, text: bytes, robot: str, world: World) -> Parti
     Raises WorldRefused.
     """
     profile = profile_of(robot)
-    found = compiled(text, profile, "", is_strict=True)
+    found = for_robot(compiled(text, profile, "", is_strict=True), profile)
     if found.program is None or not found.image or checksum(found.image) != recording.program:
         return Parting("other_program")
     if not recording.events or recording.events[0].event == "LOST":

@@ -92,7 +92,16 @@ class Def(NamedTuple):
     span: Span
 
 
-Instruction = Command | Assign | If | Loop | While | Break | Def
+class Task(NamedTuple):
+    """TASK or WHEN. `condition` is None in a TASK, or where it could not be read."""
+
+    is_when: bool
+    condition: Argument | None
+    body: "tuple[Instruction, ...]"
+    span: Span
+
+
+Instruction = Command | Assign | If | Loop | While | Break | Def | Task
 
 
 class Program(NamedTuple):

@@ -7,16 +7,18 @@ from __future__ import annotations
 
 import re
 
-from tiniscript.bytecode.opcodes import BLOCKS
+from tiniscript.bytecode.opcodes import BLOCKS, TASKS
 from tiniscript.diagnostics import codes
 from tiniscript.source import Source, Span
-from tiniscript.syntax.ast import Argument, Arm, Def, If, Instruction, Loop, While
+from tiniscript.syntax.ast import Argument, Arm, Def, If, Instruction, Loop, Task, While
 from tiniscript.syntax.lexer import Token
 from tiniscript.syntax.operators import SIGN_OF
 from tiniscript.syntax.reporter import Reporter
 from tiniscript.words import ALIASES, BLOCK_ENDS
+from tiniscript.words import TASKS as TASK_WORDS
 
-HEADERS = frozenset(BLOCK_ENDS) - {"DEF"}  # IF, LOOP, WHILE
+HEADERS = frozenset(BLOCK_ENDS) - {"DEF", "TASK"}  # with brackets: IF, LOOP, WHILE, WHEN
+_AT_TOP = frozenset(("DEF", *TASK_WORDS))  # they stand in no other block, and do not count as one
 ENDS = {end: word for word, end in BLOCK_ENDS.items()}  # ENDIF: IF …
 ENDS |= {alias: ENDS[end] for alias, end in ALIASES.items()}
 _COMPARED = re.compile(r"\s*([A-Za-z_]\w*)\s*(<>|[<>]=?|=)\s*([\w.]+)\s*")
@@ -28,7 +30,7 @@ class Block:
     __slots__ = ("arms", "body", "head", "is_reported", "name", "otherwise", "span", "word")
 
     def __init__(self, word: str, span: Span, head: Argument | None, name: Token | None) -> None:
-        self.word = word  # IF, LOOP, WHILE or DEF
+        self.word = word  # IF, LOOP, WHILE, DEF, TASK or WHEN
         self.span = span  # of the header: where a block that never ends is reported
         self.head = head  # the condition or the count of the arm that is being read
         self.name = name  # of a DEF
@@ -60,7 +62,8 @@ class Blocks:
         self.program: list[Instruction] = []
         self.open: list[Block] = []
         self.defs: set[str] = set()  # the names of those that have ended
-        self._depth = 0  # open blocks, DEF not counted
+        self.tasks = 0  # TASKs and WHENs that have begun at the top level
+        self._depth = 0  # open blocks, those that stand at the top level alone not counted
 
     @property
     def innermost(self) -> Block | None:
@@ -74,7 +77,9 @@ class Blocks:
     def begin(
         self, word: str, span: Span, head: Argument | None = None, name: Token | None = None
     ) -> Block:
-        if word == "DEF":
+        if word in TASK_WORDS:
+            self._begin_task(word, span)
+        elif word == "DEF":
             if self.open:
                 self._reporter.report(codes.DEF_NOT_TOP, span)
         else:
@@ -83,6 +88,15 @@ class Blocks:
                 self._reporter.report(codes.BLOCKS_TOO_DEEP, span, limit=str(BLOCKS))
         self.open.append(Block(word, span, head, name))
         return self.open[-1]
+
+    def _begin_task(self, word: str, span: Span) -> None:
+        if self.open:
+            around = self.open[-1].word
+            self._reporter.report(codes.TASK_NOT_TOP, span, word=word, around=around)
+            return
+        self.tasks += 1
+        if self.tasks == TASKS + 1:
+            self._reporter.report(codes.TOO_MANY_TASKS, span, limit=str(TASKS))
 
     def is_rest(self, asked: str, source: Source) -> bool:
         """Whether a question is TRUE where the only one of the innermost block is not.
@@ -99,17 +113,18 @@ class Blocks:
 
     def forget(self) -> None:
         """Drop the innermost block, which has just begun, because its line is read anew."""
-        self._depth -= self.open.pop().word != "DEF"
+        self._depth -= self.open.pop().word not in _AT_TOP
 
     def reopen(self, block: Block) -> None:
         """Put a block back that was forgotten."""
-        self._depth += block.word != "DEF"
+        self._depth += block.word not in _AT_TOP
         self.open.append(block)
 
     def end(self, end: Span) -> None:
         """Close the innermost block. It becomes an instruction of the one around it.
 
-        A DEF inside a block and blocks nested too deep are left out, because they are reported.
+        A DEF or a task inside a block and blocks nested too deep are left out, because they are
+        reported.
         """
         block = self.open.pop()
         span = Span(block.span.start, end.end)
@@ -118,6 +133,11 @@ class Blocks:
                 name = block.name
                 self.defs.add(name.text)
                 self.program.append(Def(name.text, name.span, tuple(block.body), span))
+            return
+        if block.word in TASK_WORDS:
+            if not self.open:
+                is_when = block.word == "WHEN"
+                self.program.append(Task(is_when, block.head, tuple(block.body), span))
             return
         is_too_deep = self._depth > BLOCKS
         self._depth -= 1

@@ -3,14 +3,14 @@
     program     = [ ("SI" | "SB") "|" ] { [ instruction ] separator }
                 | "PING" "|" "CHECK_CONNECTION"
     separator   = ";" | end of line
-    instruction = assignment | command | "BREAK" | definition | header | arm | block end
+    instruction = assignment | command | "BREAK" | definition | "TASK" | header | arm | block end
     assignment  = NAME "=" expression
     command     = (WORD | NAME) [ arguments ] [ until ]
     until       = "UNTIL" "(" argument ")"
     definition  = "DEF" NAME
-    header      = ("IF" | "LOOP" | "WHILE") "(" argument ")"
+    header      = ("IF" | "LOOP" | "WHILE" | "WHEN") "(" argument ")"
     arm         = "ELSEIF" "(" argument ")" | "ELSE"
-    block end   = "ENDIF" | "END_LOOP" | "END_WHILE" | "END_DEF"
+    block end   = "ENDIF" | "END_LOOP" | "END_WHILE" | "END_DEF" | "END_TASK" | "END_WHEN"
     arguments   = "(" [ argument { "," argument } ] ")"
     argument    = "FOREVER" | expression
     expression  = operand { operator operand }
@@ -164,6 +164,8 @@ class Parser:
             self.header(token)
         elif text == "DEF":
             self.definition(token)
+        elif text == "TASK":
+            self.task(token)
         elif text in ("ELSE", "ELSEIF"):
             self.arm(token)
         elif text in ENDS:
@@ -265,6 +267,8 @@ class Parser:
     def header(self, word: Token) -> None:
         """Open the block even if its header is wrong, so that its end is not a second mistake."""
         cursor = self.cursor
+        if word.text == "WHEN" and cursor.following.kind is WORD:
+            self.recovery.of_name.sentence.event(word)
         cursor.i += 1
         if cursor.token.kind in AT_END:
             self.recovery.in_block.other.bare_header(word)
@@ -302,6 +306,16 @@ class Parser:
             self.recovery.of_def.def_with_values(word, name, self.expressions.arguments())
             block.span = cursor.span_from(word)
             self.recovery.of_def.body_of_def(block)
+
+    def task(self, word: Token) -> None:
+        cursor = self.cursor
+        cursor.i += 1
+        self.no_arguments(word, "WHEN")
+        name = cursor.token
+        if name.kind is WORD:
+            cursor.i += 1
+            self.reporter.report(codes.TASK_HAS_NAME, name.span, found=name.text)
+        self.blocks.begin("TASK", word.span)
 
     def arm(self, word: Token, is_reported: bool = False) -> None:
         """`is_reported`: `word` has a diagnostic already, and may lack its brackets."""

@@ -192,7 +192,8 @@ class SentenceRecovery:
         if len(row) < 2 or cursor.tokens[end].kind not in AT_END or cursor.line_of(word) > 2:
             return
         span = Span(word.start, row[-1].end)
-        if any(meant_by(text) == "BUTTON" or text == "BUTTON" for text in texts):
+        is_button = any("BUTTON" in (text, meant_by(text)) for text in texts)
+        if is_button and not any(map(self.in_block.known.is_own, texts)):
             cursor.i = end
             self.reporter.fail(codes.NO_BUTTON, span)
         if texts & EVENTS:

@@ -20,6 +20,8 @@ from tiniscript.text.memory import MOST_BRACKETS, Reader
 
 def misfits(source: Source, program: Program, kit: Kit, level: Level) -> list[Diagnostic]:
     """Return what a robot of this level lacks for a checked program."""
+    if program.tasks and "TASK" in level.lacks:
+        return [Diagnostic(codes.NO_TASKS, program.tasks[0].word, {"robot": level.name})]
     parsed = parse(source, kit)
     tokens = list(spelled_out(parsed.scan.tokens))
     found = [

@@ -6,14 +6,21 @@ All other limits (variables, blocks, values on the stack, DEFs, calls) are those
 # No `from __future__ import annotations`: typing would compile each field's again, one by one.
 from typing import NamedTuple
 
-from tiniscript.words import ALIASES, BLOCK_ENDS, WORDS
+from tiniscript.words import ALIASES, BLOCK_ENDS, TASKS, WORDS
 
 CODE_BYTES = 255  # of a typed program: a jump of one byte reaches over all of it
 LONGEST_WORD = 255  # letters of a word that a reader takes
 
 
+def _block_words(*blocks: str) -> frozenset[str]:
+    """Return the words of blocks, and those that end them."""
+    ends = {BLOCK_ENDS[each] for each in blocks}
+    return frozenset((*blocks, *ends, *(each for each, end in ALIASES.items() if end in ends)))
+
+
 DEF_END = BLOCK_ENDS["DEF"]
-NO_DEFS = frozenset(("DEF", DEF_END, *(each for each, word in ALIASES.items() if word == DEF_END)))
+NO_TASKS = _block_words(*TASKS)
+NO_DEFS_OR_TASKS = _block_words("DEF") | NO_TASKS
 
 
 class Level(NamedTuple):
@@ -41,9 +48,9 @@ class Level(NamedTuple):
 LEVELS = {
     level.name: level
     for level in (
-        Level("uno", "uno", 2, NO_DEFS),
-        Level("mega", "mega", 4),
-        Level("esp32", "esp32dev", 4),
+        Level("uno", "uno", 2, NO_DEFS_OR_TASKS),
+        Level("mega", "mega", 4, NO_TASKS),
+        Level("esp32", "esp32dev", 4, NO_TASKS),
     )
 }
 

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from tiniscript.bytecode.opcodes import time8_ms
 from tiniscript.fixed_point import ONE, limited, whole
-from tiniscript.vm.handlers import HANDLERS, STAY, Handler, Step, does
-from tiniscript.vm.state import FOREVER, MOVE, PAUSE, Execution
+from tiniscript.vm.handlers import HANDLERS, Handler, Step, does
+from tiniscript.vm.state import FOREVER, PAUSE, Execution, Powers
 from tiniscript.vm.values import COMPARE, Compare
-
-Powers = tuple[int, int]  # left and right, in percent
 
 
 def _duration(time: int) -> int:
@@ -22,19 +20,12 @@ def _percent(power: int, low: int) -> int:
 
 @does("SHOW")
 def _show(m: Execution, after: int) -> Step:
-    return lambda: _sent(m, after, m.task.stack[-1], False)
+    return lambda: m.show(m.task.stack[-1], False, after)
 
 
 @does("SHOW_YES_NO")
 def _show_yes_no(m: Execution, after: int) -> Step:
-    return lambda: _sent(m, after, 1 if m.task.stack[-1] else 0, True)
-
-
-def _sent(m: Execution, after: int, value: int, is_yes_no: bool) -> int:
-    if not m.robot.show(value, is_yes_no):
-        return STAY
-    m.task.stack.pop()
-    return after
+    return lambda: m.show(1 if m.task.stack[-1] else 0, True, after)
 
 
 @does("SET")
@@ -56,42 +47,29 @@ def _moves(direction: str, left: int, right: int) -> None:
         return powers(_percent(m.task.stack.pop(), 0))
 
     def move8(m: Execution, after: int, time: int, power: int) -> Step:
-        return lambda: _drive(m, after, time8_ms(time), powers(power))
+        return lambda: m.drive(time8_ms(time), powers(power), after)
 
     def move(m: Execution, after: int) -> Step:
         def step() -> int:
             driven = popped(m)
-            return _drive(m, after, _duration(m.task.stack.pop()), driven)
+            return m.drive(_duration(m.task.stack.pop()), driven, after)
 
         return step
 
     def watch(m: Execution, after: int) -> Step:
         def step() -> int:
             driven = popped(m)
-            return _prepare(m, after, _duration(m.task.stack.pop()), driven)
+            return m.prepare(_duration(m.task.stack.pop()), driven, after)
 
         return step
 
     def watch_forever(m: Execution, after: int) -> Step:
-        return lambda: _prepare(m, after, FOREVER, popped(m))
+        return lambda: m.prepare(FOREVER, popped(m), after)
 
     HANDLERS[f"MOVE8_{direction}"] = move8
     HANDLERS[f"MOVE_{direction}"] = move
     HANDLERS[f"WATCH_{direction}"] = watch
     HANDLERS[f"WATCH_FOREVER_{direction}"] = watch_forever
-
-
-def _drive(m: Execution, after: int, move_ms: int, powers: Powers) -> int:
-    m.robot.motors(*powers)
-    return m.wait(move_ms, MOVE, after)
-
-
-def _prepare(m: Execution, after: int, move_ms: int, powers: Powers | None) -> int:
-    """Keep the move or the wait that an UNTIL watches; its check begins behind this instruction."""
-    task = m.task
-    task.move_ms, task.powers, task.is_watching = move_ms, powers, False
-    task.check = after
-    return after
 
 
 _moves("F", 1, 1)
@@ -112,12 +90,12 @@ def _wait8(m: Execution, after: int, time: int) -> Step:
 
 @does("WATCH_WAIT")
 def _watch_wait(m: Execution, after: int) -> Step:
-    return lambda: _prepare(m, after, _duration(m.task.stack.pop()), None)
+    return lambda: m.prepare(_duration(m.task.stack.pop()), None, after)
 
 
 @does("WATCH_FOREVER_WAIT")
 def _watch_forever_wait(m: Execution, after: int) -> Step:
-    return lambda: _prepare(m, after, FOREVER, None)
+    return lambda: m.prepare(FOREVER, None, after)
 
 
 @does("UNTIL")
@@ -138,14 +116,18 @@ for _name, _compare in COMPARE.items():
 
 @does("STOP")
 def _stop(m: Execution, after: int) -> Step:
-    return _motors8(m, after, 0, 0)
+    def step() -> int:
+        m.stop()
+        return after
+
+    return step
 
 
 @does("MOTORS")
 def _motors(m: Execution, after: int) -> Step:
     def step() -> int:
         right, left = m.task.stack.pop(), m.task.stack.pop()
-        m.robot.motors(_percent(left, -100), _percent(right, -100))
+        m.motors(_percent(left, -100), _percent(right, -100))
         return after
 
     return step
@@ -154,7 +136,7 @@ def _motors(m: Execution, after: int) -> Step:
 @does("MOTORS8")
 def _motors8(m: Execution, after: int, left: int, right: int) -> Step:
     def step() -> int:
-        m.robot.motors(left, right)
+        m.motors(left, right)
         return after
 
     return step

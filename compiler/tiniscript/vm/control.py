@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from tiniscript.fixed_point import ONE, whole
-from tiniscript.vm.handlers import HANDLERS, STAY, Handler, Step, does
-from tiniscript.vm.state import DONE, Execution
+from tiniscript.vm.handlers import HANDLERS, Handler, Step, does
+from tiniscript.vm.state import Execution
 from tiniscript.vm.values import COMPARE, Compare
 
 
@@ -40,9 +40,14 @@ for _name, _compare in COMPARE.items():
     HANDLERS[f"IF_VAR8_{_name}"] = HANDLERS[f"IF_VAR16_{_name}"] = _if_var_compared(_compare)
 
 
-@does("ELSE", "ELSE_FAR", "AGAIN", "AGAIN_FAR", "BREAK", "BREAK_FAR", "DEF", "DEF_FAR")
-def _go(m: Execution, after: int, to: int) -> Step:
+@does("ELSE", "ELSE_FAR", "BREAK", "BREAK_FAR", "DEF", "DEF_FAR")
+def go(m: Execution, after: int, to: int) -> Step:
     return lambda: to
+
+
+@does("AGAIN", "AGAIN_FAR")
+def _again(m: Execution, after: int, to: int) -> Step:
+    return m.back_to(to)
 
 
 @does("FOREVER", "WHILE", "WHILE_FAR")
@@ -73,13 +78,13 @@ def _loop(m: Execution, after: int, to: int) -> Step:
 
 @does("NEXT", "NEXT_FAR")
 def _next(m: Execution, after: int, to: int) -> Step:
-    counters = m.task.counters
+    counters, back = m.task.counters, m.back_to(to)
 
     def step() -> int:
         left = counters[-1] - 1
         if left:
             counters[-1] = left
-            return to
+            return back()
         counters.pop()
         return after
 
@@ -113,9 +118,4 @@ def _return(m: Execution, after: int) -> Step:
 
 @does("END")
 def _end(m: Execution, after: int) -> Step:
-    def step() -> int:
-        m.robot.off()
-        m.status = DONE
-        return STAY
-
-    return step
+    return m.end

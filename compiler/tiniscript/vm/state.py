@@ -9,11 +9,13 @@ from __future__ import annotations
 from typing import Protocol
 
 from tiniscript.bytecode.opcodes import CHECK_MS, VARIABLES
-from tiniscript.vm.handlers import stopped
+from tiniscript.vm.handlers import STAY, Step, stopped
 
 CLOCK_MS = 2**32  # where a machine's clock wraps around
 LATE_MS = 20  # later than this, a program's own clock no longer catches up
 FOREVER = -1  # the time of a move that only its UNTIL ends
+
+Powers = tuple[int, int]  # left and right, in percent
 
 # What `tick` returns
 RUNNING = "running"  # there is more to do now
@@ -69,7 +71,7 @@ class Task:
         self.wait = NOTHING
         self.wake_ms = now_ms
         # the move that an UNTIL watches
-        self.powers: tuple[int, int] | None = None  # None: a wait, the motors stay as they are
+        self.powers: Powers | None = None  # None: a wait, the motors stay as they are
         self.move_ms = 0  # how long it may last, or FOREVER
         self.check = 0  # where its check begins
         self.is_watching = False  # it has begun,
@@ -89,6 +91,42 @@ class Execution:
     def wake_ms(self) -> int:
         """Return the time before which a waiting machine has nothing to do."""
         return self.task.wake_ms
+
+    def motors(self, left: int, right: int) -> None:
+        """Set the motors, and go on at once."""
+        self.robot.motors(left, right)
+
+    def stop(self) -> None:
+        self.robot.motors(0, 0)
+
+    def drive(self, move_ms: int, powers: Powers, after: int) -> int:
+        """Begin a move, and return where the program goes on, like a step."""
+        self.robot.motors(*powers)
+        return self.wait(move_ms, MOVE, after)
+
+    def prepare(self, move_ms: int, powers: Powers | None, after: int) -> int:
+        """Keep the move or the wait that an UNTIL watches; its check begins at `after`."""
+        task = self.task
+        task.move_ms, task.powers, task.is_watching = move_ms, powers, False
+        task.check = after
+        return after
+
+    def show(self, value: int, is_yes_no: bool, after: int) -> int:
+        """Send the value that is on the stack."""
+        if not self.robot.show(value, is_yes_no):
+            return STAY
+        self.task.stack.pop()
+        return after
+
+    def back_to(self, to: int) -> Step:
+        """Return the step that goes back to the start of a loop."""
+        return lambda: to
+
+    def end(self) -> int:
+        """Finish the program."""
+        self.robot.off()
+        self.status = DONE
+        return STAY
 
     def wait(self, duration_ms: int, what: str, after: int) -> int:
         """Begin a wait at the end of the previous one, or now if that is too long ago.

@@ -11,7 +11,7 @@ from typing import NamedTuple, Protocol
 
 from tiniscript.fixed_point import as_text, limited, whole
 from tiniscript.kit import Kit
-from tiniscript.vm.machine import Machine
+from tiniscript.vm.machine import machine_of as python_machine
 from tiniscript.vm.state import DONE, FAULT, WAITING, Robot
 
 SLICE = 10_000  # instructions between two looks at the limit
@@ -124,7 +124,7 @@ def run(
     max_ms: int = 60_000,
     max_steps: int = 10_000_000,
     seed: int = 1,
-    machine_of: MachineOf = Machine,
+    machine_of: MachineOf = python_machine,
 ) -> Iterator[Event | Ending]:
     """Yield what a robot with this kit does with verified `code`; the last one is its Ending.
 

@@ -283,14 +283,15 @@ enum class Rule : uint8_t {
   kMissedTarget = 29,  // No instruction begins where a jump leads, or one that may not be reached so.
   kBadLoopStart = 30,  // A jump back does not lead to the beginning of its loop.
   kBadLoopEnd = 31,  // A BREAK or a loop's head names an end that is not behind the loop.
-  kNotOpen = 32,  // ELSE, AGAIN, NEXT, BREAK, UNTIL or RETURN without what it belongs to.
+  kNotOpen = 32,  // ELSE, AGAIN, NEXT, BREAK, UNTIL, LOOK, RETURN or the end of a task without what it belongs to.
   kStillOpen = 33,  // A loop, a procedure or the code ends while a block or a procedure in it is open.
   kTooDeep = 34,  // Blocks, counters, joins or calls deeper than a machine remembers.
-  kBadDef = 35,  // A DEF that is not at the top level, or does not end with its RETURN.
+  kBadDef = 35,  // A DEF or a task that is not at the top level, or does not end with its own end.
   kTooManyDefs = 36,  // More than 16 DEFs.
   kBadCall = 37,  // A CALL that does not lead to the beginning of a DEF before it.
-  kInsideCheck = 38,  // Between WATCH and UNTIL stands more than readings and a condition.
+  kInsideCheck = 38,  // Between WATCH and UNTIL, or WHEN and LOOK, stands more than readings and a condition.
   kBadEnd = 39,  // END: it stands behind the code, not in it.
+  kTooManyTasks = 40,  // More than 4 tasks beside the main one.
 };
 
 // What stops a running program.

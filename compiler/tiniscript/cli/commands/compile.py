@@ -12,7 +12,7 @@ from tiniscript.cli.errors import CommandError
 from tiniscript.cli.texts.common import text
 from tiniscript.diagnostics.codes import WILL_FAULT
 from tiniscript.fixed_point import as_text
-from tiniscript.library.compiling import Compiled
+from tiniscript.library.compiling import Compiled, for_robot
 from tiniscript.semantics.ir import Program
 from tiniscript.semantics.optimizer import optimized
 
@@ -61,7 +61,7 @@ def _line(options: Namespace, given: inputs.Input, language: str) -> int:
     if options.map is not None:
         raise CommandError(2, "text_has_no_map")
     robot = inputs.robot(options, language)
-    compiled = inputs.compiled(given, robot, is_strict=True)
+    compiled = for_robot(inputs.compiled(given, robot, is_strict=True), robot)
     compiled = inputs.for_level(compiled, robot, options.text_level)
     outputs.print_diagnostics(compiled, language)
     if not compiled.is_right:

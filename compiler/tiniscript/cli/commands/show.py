@@ -48,6 +48,8 @@ def _sketch(options: Namespace, given: inputs.Input, robot: Robot, language: str
     if not compiled.is_right:
         return 1
     assert compiled.program is not None
+    if compiled.program.tasks:
+        raise CommandError(2, "sketch_no_tasks", file=inputs.shown(given.name))
     sketch = sketch_of(compiled.source, compiled.program, robot, language).encode()
     if options.output in (None, "-"):
         sys.stdout.buffer.write(sketch)

@@ -140,7 +140,9 @@ def _keep_map(ready: images.Ready) -> None:
     """Save the source map for other commands."""
     if ready.places is not None:
         image = ready.image
-        source_map.remember(pack(image.start, image.devices, image.code), ready.places)
+        source_map.remember(
+            pack(image.start, image.devices, image.code, needs=image.needs), ready.places
+        )
 
 
 def _receipt_line(

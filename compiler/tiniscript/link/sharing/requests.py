@@ -144,7 +144,10 @@ def _image(message: JsonMessage) -> Image:
         raise BadMessage
     if not 0 <= devices < 1 << 16 or not 0 <= checksum < 1 << 32:
         raise BadMessage
-    return Image(start, devices, code, checksum, (isa[0], isa[1]), later)
+    needs = protocol.number(message, "needs") if "needs" in message else 0  # else it is of 2.0
+    if not 0 <= needs < 1 << 8:
+        raise BadMessage
+    return Image(start, devices, code, checksum, (isa[0], isa[1]), later, needs)
 
 
 def _upload(message: JsonMessage) -> tuple[object, ...]:

@@ -1,0 +1,424 @@
+"""The machine with a scheduler, for programs with TASK and WHEN.
+
+Knows when each task has its turn, and which one has the motors. What an instruction does is where
+it is for all programs: here is what it does in a task. `bytecode_spec.md` has the same in words.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from tiniscript.bytecode.opcodes import CHECK_MS
+from tiniscript.fixed_point import Fault
+from tiniscript.vm.control import go
+from tiniscript.vm.handlers import STAY, Step, does, stopped
+from tiniscript.vm.instructions import instruction
+from tiniscript.vm.machine import Machine
+from tiniscript.vm.state import (
+    DONE,
+    FAULT,
+    FOREVER,
+    LATE_MS,
+    PAUSE,
+    RUNNING,
+    WAITING,
+    Powers,
+    Robot,
+)
+
+NEVER_MS = 2**31 - 1  # from now: nothing happens by itself
+OFF = 0, 0
+
+
+class TaskRecord:
+    """What one task has for itself.
+
+    A move of its own **drives**, or it is **blocked**: it waits for the motors, or stands still
+    since a higher task has taken them.
+    """
+
+    __slots__ = ("after", "begun_ms", "calls", "check", "clock_ms", "counters", "drives",
+                 "has_begun", "has_ended", "has_set", "has_waited", "is_blocked", "is_moving",
+                 "is_when", "keeps", "move_ms", "pc", "powers", "rank", "set_to", "start",
+                 "to_its_end", "unsent")  # fmt: skip
+
+    def __init__(self, pc: int, is_when: bool, rank: int, now_ms: int) -> None:
+        self.start = pc  # where it begins; a WHEN with its check
+        self.pc = pc  # where its next turn begins
+        self.is_when = is_when
+        self.rank = rank  # 0 is the highest
+        self.counters: list[int] = []
+        self.calls: list[int] = []
+        self.clock_ms = now_ms  # its own clock; its next turn is due then
+        self.has_ended = False
+        self.has_waited = False  # since it last went back to the start of a loop
+        self.unsent: tuple[int, bool] | None = None  # the value of a SHOW that found no room
+        # its move, or the wait that an UNTIL watches
+        self.powers: Powers | None = None  # None: a wait, the motors stay as they are
+        self.move_ms = 0  # how long it may last from its beginning, or FOREVER
+        self.has_begun = False
+        self.begun_ms = now_ms  # then
+        self.check = 0  # where that of its UNTIL begins, or where it goes on behind it
+        self.after = 0  # behind the move
+        self.is_moving = False  # its move drives or is blocked
+        self.is_blocked = False
+        self.drives = False
+        self.to_its_end = False  # the clock is the end of the move
+        # what it has of the motors beside its move
+        self.set_to = OFF  # by its M,
+        self.has_set = False  # which is in force
+        self.keeps = False  # a WHEN has wanted the motors, and has not found FALSE since
+
+    @property
+    def wants_motors(self) -> bool:
+        return self.is_moving or self.has_set or self.keeps
+
+    def end_move(self) -> None:
+        """Its move is over, and so is its M. It goes on behind the move."""
+        self.is_moving = self.is_blocked = self.drives = self.to_its_end = False
+        self.forget_set()
+        self.pc = self.after
+
+    def stand_still(self, now_ms: int) -> None:
+        """Its move that drives loses the motors."""
+        if self.move_ms != FOREVER:
+            left_ms = self.begun_ms + self.move_ms - now_ms
+            if left_ms <= 0:
+                self.end_move()
+                return
+            self.move_ms = left_ms
+        self.is_blocked = True
+        self.drives = self.has_begun = self.to_its_end = False
+        self.pc = self.check
+
+    def forget_set(self) -> None:
+        self.set_to, self.has_set = OFF, False
+
+
+class TaskMachine(Machine):
+    """Runs the code of one image with tasks on one robot."""
+
+    def __init__(
+        self, code: bytes, robot: Robot, sensors: int = 0, seed: int = 1, now_ms: int = 0
+    ) -> None:
+        """`code` must be verified for a kit with so many sensors; `seed` is 1 to 4294967295."""
+        super().__init__(code, robot, sensors, seed, now_ms)
+        starts = [*sorted(tasks_in(code), key=lambda task: not task.is_when), Start(0, False)]
+        # in the order of rank, the main task last
+        self.tasks = [TaskRecord(*start, rank, now_ms) for rank, start in enumerate(starts)]
+        self.me = self.tasks[-1]  # whose turn it is, or was last
+        self.in_turn = True  # a turn has begun and is not over
+        self.is_first = True  # it is the first one of the main task, before all others
+        self.is_first_round = True  # the main task has had its turn in it
+        self.next_rank = 0  # in this round
+        self.holder: TaskRecord | None = None  # who has the motors
+        self.powers = OFF  # that the motors were set to last
+
+    # -- turns --------------------------------------------------------------------------------
+
+    @property
+    def wake_ms(self) -> int:
+        waiting = (each.clock_ms for each in self.tasks if self._waits_for_clock(each))
+        return min(waiting, default=self.now_ms + NEVER_MS)
+
+    def tick(self, now_ms: int, budget: int) -> str:
+        """Run at most `budget` instructions of one round of turns; return the status."""
+        if self.status in (DONE, FAULT):
+            return self.status
+        self.now_ms = now_ms
+        self.status = RUNNING
+        at, left = self.at, budget
+        try:
+            while left and self._finds_turn():
+                run, pc = self._steps, self.me.pc
+                while left:
+                    left -= 1
+                    at = pc
+                    pc = run[at]()
+                    if pc < 0:
+                        break
+                self.me.pc = at if pc == STAY else stopped(pc) if pc < 0 else pc
+                if self.status == DONE:
+                    break
+                if pc < 0 and not (pc == STAY and self.is_first):
+                    self._end_turn()
+                elif pc < 0:  # before all others it waits for a reading, too
+                    break
+        except Fault as fault:
+            self.robot.off()
+            self.status, self.fault = FAULT, fault.name
+            self.me.pc = instruction(self._code, at)[1]
+        self.at = at
+        self.steps += budget - left
+        return self.status
+
+    def _finds_turn(self) -> bool:
+        """Go on with a turn, or begin the next one of the round; FALSE: the round is over."""
+        while not self.in_turn:
+            if self.next_rank == len(self.tasks):
+                self.next_rank = 0
+                self.is_first_round = False
+                self.status = RUNNING if self.wake_ms <= self.now_ms else WAITING
+                return False
+            task = self.tasks[self.next_rank]
+            self.next_rank += 1
+            if self._is_due(task):
+                self._begin_turn(task)
+        return True
+
+    def _waits_for_clock(self, task: TaskRecord) -> bool:
+        return self.holder is task if task.is_blocked else not task.has_ended
+
+    def _is_due(self, task: TaskRecord) -> bool:
+        return self._waits_for_clock(task) and task.clock_ms <= self.now_ms
+
+    def _begin_turn(self, task: TaskRecord) -> None:
+        self.me, self.in_turn = task, True
+        self.task.counters[:], self.task.calls[:] = task.counters, task.calls
+        if task.unsent is not None:
+            if not self.robot.show(*task.unsent):
+                self._end_turn()
+                return
+            task.unsent = None
+        if task.is_blocked:
+            task.is_blocked = False
+            task.clock_ms = self.now_ms
+            if task.check == task.after:
+                self._go_on(self._begin_move())
+        elif task.to_its_end:
+            self._end_move()
+
+    def _go_on(self, pc: int) -> None:
+        """Go on where a step says."""
+        self.me.pc = stopped(pc) if pc < 0 else pc
+        if pc < 0:
+            self._end_turn()
+
+    def _end_turn(self) -> None:
+        me, self.in_turn = self.me, False
+        me.counters[:], me.calls[:] = self.task.counters, self.task.calls
+        if self.is_first:
+            self.is_first = False
+            for task in self.tasks[:-1]:
+                task.clock_ms = self.now_ms
+        self._pass_on()
+
+    def end(self) -> int:
+        """Finish this task, and the program with the last one."""
+        self.me.has_ended = True
+        self.me.forget_set()
+        if all(task.has_ended for task in self.tasks):
+            return super().end()
+        return stopped(self.me.pc)
+
+    # -- time ---------------------------------------------------------------------------------
+
+    def begin(self) -> None:
+        if self.now_ms - self.me.clock_ms > LATE_MS:
+            self.me.clock_ms = self.now_ms
+
+    def wait(self, duration_ms: int, what: str, after: int) -> int:
+        self.begin()
+        self.me.clock_ms += duration_ms
+        if not duration_ms:
+            return after
+        self.me.has_waited = True
+        return stopped(after)
+
+    def back_to(self, to: int) -> Step:
+        def step() -> int:
+            me = self.me
+            if not me.has_waited:
+                self.begin()
+                me.clock_ms += 1
+                return stopped(to)
+            me.has_waited = False
+            return to
+
+        return step
+
+    def look(self, is_true: bool, after: int) -> int:
+        """Go on in a WHEN, or look once more."""
+        if is_true:
+            return after
+        self.me.keeps = False
+        self.me.forget_set()
+        return self.look_again()
+
+    def look_again(self) -> int:
+        return self.wait(CHECK_MS, PAUSE, self.me.start)
+
+    def show(self, value: int, is_yes_no: bool, after: int) -> int:
+        self.task.stack.pop()
+        if self.robot.show(value, is_yes_no):
+            return after
+        self.me.unsent = value, is_yes_no
+        return stopped(after)
+
+    # -- moves --------------------------------------------------------------------------------
+
+    def drive(self, move_ms: int, powers: Powers, after: int) -> int:
+        self._keep(move_ms, powers, after)
+        self.me.after = after
+        return self._block() if self._is_below() else self._begin_move()
+
+    def prepare(self, move_ms: int, powers: Powers | None, after: int) -> int:
+        self._keep(move_ms, powers, after)
+        self.me.after = -1  # behind its UNTIL
+        return self._block() if powers is not None and self._is_below() else after
+
+    def _keep(self, move_ms: int, powers: Powers | None, check: int) -> None:
+        me = self.me
+        me.move_ms, me.powers, me.check, me.has_begun = move_ms, powers, check, False
+
+    def until(self, stop: bool, after: int) -> int:
+        me = self.me
+        me.after = after
+        if stop:
+            if me.has_begun:
+                me.clock_ms = self.now_ms
+            if me.drives:
+                self._end_move()
+            elif me.is_moving:  # it waited for the motors, or stood still
+                me.end_move()
+            return after
+        if not me.has_begun:
+            if me.powers is not None and self._is_below():
+                return self._block()
+            self._begin_watched()
+        gone_ms = self.now_ms - me.begun_ms
+        next_ms = (gone_ms // CHECK_MS + 1) * CHECK_MS
+        is_last = me.move_ms != FOREVER and next_ms >= me.move_ms
+        me.clock_ms = me.begun_ms + (me.move_ms if is_last else next_ms)
+        return self._drive_on(after if is_last else me.check, is_last)
+
+    def _begin_move(self) -> int:
+        """Begin a move that no UNTIL watches."""
+        me = self.me
+        self._begin_watched()
+        me.clock_ms += me.move_ms
+        return self._drive_on(me.after, True)
+
+    def _begin_watched(self) -> None:
+        me = self.me
+        if me.powers is not None:
+            self._take()
+            me.forget_set()
+            me.is_moving = me.drives = True
+            self._set(me.powers)
+        me.has_begun = True
+        self.begin()
+        me.begun_ms = me.clock_ms
+
+    def _drive_on(self, pc: int, is_last: bool) -> int:
+        """Wait for the clock, and go on at `pc`; `is_last`: the clock is the end of the move."""
+        me = self.me
+        me.to_its_end = is_last and me.drives
+        if is_last and me.move_ms == 0:
+            if me.drives:
+                self._end_move()
+            return pc
+        me.has_waited = True
+        return stopped(pc)
+
+    def _end_move(self) -> None:
+        self.me.end_move()
+        self._set(OFF)
+
+    def _block(self) -> int:
+        """Wait for the motors."""
+        me = self.me
+        me.forget_set()
+        me.is_moving = me.is_blocked = me.has_waited = True
+        me.drives = False
+        me.keeps = me.is_when
+        return stopped(me.check)
+
+    # -- the motors ---------------------------------------------------------------------------
+
+    def motors(self, left: int, right: int) -> None:
+        me = self.me
+        me.set_to, me.has_set, me.keeps = (left, right), True, me.is_when
+        if not self._is_below():
+            self._take()
+            self._set(me.set_to)
+
+    def stop(self) -> None:
+        me, holder = self.me, self.holder
+        me.forget_set()
+        me.keeps = me.is_when
+        if self._is_below():
+            return
+        self._set(OFF)
+        if holder is not None:
+            holder.forget_set()
+            if holder.drives:
+                holder.end_move()
+                holder.clock_ms = self.now_ms
+        if me.keeps:
+            self._take()
+
+    def _is_below(self) -> bool:
+        """Whether a higher task has the motors."""
+        return self.holder is not None and self.holder.rank < self.me.rank
+
+    def _take(self) -> None:
+        """Give the motors to the task whose turn it is; no higher one has them."""
+        if self.holder is not None and self.holder is not self.me and self.holder.drives:
+            self.holder.stand_still(self.now_ms)
+        self.holder = self.me
+        self.me.keeps = self.me.is_when
+
+    def _pass_on(self) -> None:
+        """Behind a turn: give the motors to the highest task that wants them, if it is another."""
+        highest = next((task for task in self.tasks if task.wants_motors), None)
+        if highest is not self.holder:
+            self.holder = highest
+            if highest is not None and highest.is_blocked:
+                highest.clock_ms = self.now_ms + self.is_first_round
+            powers = OFF if highest is None else highest.set_to
+            if powers != self.powers:
+                self._set(powers)
+
+    def _set(self, powers: Powers) -> None:
+        self.powers = powers
+        self.robot.motors(*powers)
+
+
+# -- the code ------------------------------------------------------------------------------------
+
+
+class Start(NamedTuple):
+    """Where a task begins."""
+
+    pc: int
+    is_when: bool
+
+
+def tasks_in(code: bytes) -> list[Start]:
+    """Return the tasks of verified code in their order, without the main one."""
+    found = []
+    at = 0
+    while at < len(code):
+        op, at = instruction(code, at)
+        if op.name in ("TASK", "WHEN"):
+            found.append(Start(at, op.name == "WHEN"))
+    return found
+
+
+does("TASK", "WHEN")(go)
+
+
+@does("END_TASK")
+def _end_task(m: TaskMachine, after: int) -> Step:
+    return m.end
+
+
+@does("LOOK")
+def _look(m: TaskMachine, after: int) -> Step:
+    return lambda: m.look(bool(m.task.stack.pop()), after)
+
+
+@does("END_WHEN")
+def _end_when(m: TaskMachine, after: int) -> Step:
+    return m.look_again

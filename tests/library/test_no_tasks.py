@@ -1,0 +1,124 @@
+"""Programs with tasks that leave for a robot that has none: refused in words, and not sent."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any, cast
+
+import pytest
+
+import tiniscript
+from tests.machines.wasm import missing
+from tests.support.command import Done, inside
+from tiniscript import robots
+from tiniscript.bytecode import image
+from tiniscript.robots.boards import CHIPS
+from tiniscript.studio import checking, page_lessons, recordings, robot_link
+from tiniscript.virtual import worlds
+
+needs_wasmtime = pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")
+TEXT = "SHOW(1)\nWHEN(DISTANCE < 15)\n  S\nEND_WHEN\n"
+WORDS = {"en": "has no TASK and no WHEN yet", "es": "todavía no tiene TASK ni WHEN"}
+
+
+@pytest.fixture
+def program(tmp_path: Path) -> Path:
+    path = tmp_path / "two.ts"
+    path.write_text(TEXT, encoding="utf-8")
+    return path
+
+
+def says_so(done: Done, language: str = "en") -> bool:
+    said = done.out + done.err
+    return done.code == 1 and WORDS[language] in said and "tsc run" in said
+
+
+def test_the_machine_in_c_has_what_some_chip_has() -> None:
+    union = 0
+    for chip in CHIPS.values():
+        union |= chip.has
+    assert union == image.FIRMWARE_NEEDS
+
+
+@pytest.mark.parametrize("language", ["en", "es"])
+@pytest.mark.parametrize(
+    "verb",
+    [
+        ("upload",),
+        ("lesson", "check", "1"),
+        ("compile", "--text"),
+        ("compile", "--text", "--text-level", "uno"),
+        ("check", "--text-level", "mega"),
+        ("check", "--text-level", "esp32"),
+    ],
+)
+def test_a_text_is_refused_at_its_task(program: Path, verb: tuple[str, ...], language: str) -> None:
+    done = inside(*verb, program, "--lang", language)
+    said = done.out + done.err
+    assert WORDS[language] in said and "tsc run" in said and done.code == 1
+    assert ("line 2:" if language == "en" else "línea 2:") in said
+
+
+@pytest.mark.parametrize("language", ["en", "es"])
+def test_an_image_and_a_live_line_are_refused(program: Path, language: str) -> None:
+    compiled = program.with_suffix(".bin")
+    assert inside("compile", program, "-o", compiled).code == 0
+    assert says_so(inside("upload", compiled, "--lang", language), language)
+    assert says_so(inside("live", "TASK;S;END_TASK", "--lang", language), language)
+
+
+def test_what_sends_nothing_takes_them(program: Path) -> None:
+    for verb in (("check",), ("fmt",), ("show",), ("run", "--max-time", "0.01")):
+        done = inside(*verb, program)
+        assert (done.code, WORDS["en"] in done.err) == (0, False)
+
+
+@needs_wasmtime
+def test_the_library_sends_none() -> None:
+    program = tiniscript.compile(TEXT)
+    with tiniscript.virtual_robot(hurry=math.inf) as robot:
+        for send in (robot.upload, robot.live):
+            for each in (program, TEXT, program.image):
+                if send == robot.upload or isinstance(each, str):
+                    with pytest.raises(tiniscript.RobotError) as refused:
+                        send(cast("str", each))
+                    assert refused.value.reason == "UNKNOWN_NEEDS"
+                    assert "tsc run" in str(refused.value)
+        robot.upload("SHOW(2)")  # nothing has come of the others
+        assert [each.values for each in robot.events() if each.name == "SHOW"] == [{"value": 2}]
+
+
+@pytest.mark.parametrize("language", ["en", "es"])
+def test_the_studio_neither_sends_nor_simulates(language: str) -> None:
+    found = checking.check(TEXT.encode(), "tinibot", language)
+    assert found.image == b""
+    message = found.findings[-1].message
+    assert WORDS[language] in message.message and (message.code, message.line) == ("TS313", 2)
+    line = checking.line(TEXT.encode(), "tinibot", language)
+    assert not isinstance(line, str) and line.code == "TS313"
+    check = page_lessons.Check(1, TEXT.encode(), language)
+    assert check.go(1000)["verdict"] == page_lessons.MISTAKES
+
+
+@pytest.mark.parametrize("do", ["upload", "live"])
+def test_a_page_that_sends_an_image_all_the_same_is_refused(do: str) -> None:
+    kit = robots.load("tinibot").kit.fingerprint
+    robot = SimpleNamespace(kit=kit)
+    connection: Any = SimpleNamespace(
+        robot=robot, boot=0, held_by="", tell_places=lambda: None, event=lambda limit_s=0: None
+    )
+    link = robot_link.RobotLink(connection, "en")
+    data = tiniscript.compile(TEXT).image.hex()
+    link.ask({"id": 1, "do": do, "robot": "tinibot", "image": data})
+    assert [each["failure"] for each in link.news()] == ["UNKNOWN_NEEDS"]
+
+
+def test_a_recording_is_of_another_program() -> None:
+    """No robot has run it."""
+    checksum = tiniscript.compile(TEXT).checksum
+    head = f'{{"tiniscript_recording": 1, "program": "{checksum:08x}"}}\n'
+    recording = recordings.read((head + '{"ms": 1, "event": "DONE"}\n').encode())
+    found = recordings.replay(recording, TEXT.encode(), "tinibot", worlds.load("obstacles"))
+    assert found.what == "other_program"

@@ -1,0 +1,143 @@
+"""Writes random programs with TASK and WHEN, in which much comes together in one millisecond."""
+
+from __future__ import annotations
+
+import random
+
+TIMES = ("0", "0.001", "0.005", "0.01", "0.02", "0.03", "0.04", "0.05", "0.1", "0.12", "0.3")
+POWERS = ("0", "10", "20", "50", "60", "100")
+SIDES = ("-50", "0", "20", "40")
+SENSORS = ("DISTANCE", "LIGHT_L")
+VARIABLES = ("A", "N")
+MOST_TASKS = 4
+DEPTH = 3  # blocks of one task
+
+
+class TaskAuthor:
+    """Writes one program."""
+
+    def __init__(self, rng: random.Random) -> None:
+        self.rng = rng
+        self.lines: list[str] = ["A = 0;N = 0"]
+        self.defs: list[str] = []
+        self.loops = 0
+
+    def program(self) -> str:
+        """The main task, with DEFs and 1 to 4 tasks among its instructions."""
+        rng = self.rng
+        for number in range(rng.choice((0, 0, 1, 2))):
+            self.lines.append(f"DEF D{number}")
+            self.body(rng.randint(1, 2), DEPTH - 1)
+            self.lines.append("END_DEF")
+            self.defs.append(f"D{number}")
+        tasks = rng.randint(1, MOST_TASKS)
+        before = sorted(rng.randint(0, 3) for _ in range(tasks))
+        for place in range(4):
+            for _ in range(before.count(place)):
+                self.task()
+            if place < 3:
+                self.body(rng.randint(0, 2), 0)
+        return ";".join(self.lines)
+
+    def task(self) -> None:
+        """A TASK or a WHEN."""
+        if self.rng.random() < 0.5:
+            self.lines.append("TASK")
+            self.body(self.rng.randint(0, 4), 0)
+            self.lines.append(self.rng.choice(("END_TASK", "ENDTASK")))
+        else:
+            self.lines.append(f"WHEN({self.condition()})")
+            self.body(self.rng.randint(0, 3), 0)
+            self.lines.append(self.rng.choice(("END_WHEN", "ENDWHEN")))
+
+    def body(self, count: int, depth: int) -> None:
+        for _ in range(count):
+            self.instruction(depth)
+
+    def instruction(self, depth: int) -> None:
+        rng = self.rng
+        kind = rng.random()
+        if kind < 0.34:
+            self.move()
+        elif kind < 0.44:
+            self.lines.append(f"W({rng.choice(TIMES)})" + self.until(0.2))
+        elif kind < 0.52:
+            self.lines.append("S")
+        elif kind < 0.62:
+            self.lines.append(f"M({rng.choice(SIDES)}, {rng.choice(SIDES)})")
+        elif kind < 0.66:
+            self.lines.append(f"BEEP({rng.choice(TIMES)}, {rng.randint(31, 900)})")
+        elif kind < 0.74:
+            self.lines.append(f"SHOW({self.number()})")
+        elif kind < 0.80:
+            self.lines.append(f"{rng.choice(VARIABLES)} = {self.number()}")
+        elif kind < 0.83:
+            self.lines.append(rng.choice(SENSORS))
+        elif kind < 0.86 and self.defs:
+            self.lines.append(rng.choice(self.defs))
+        elif kind < 0.88 and self.loops:
+            self.lines.append("BREAK")
+        elif depth < DEPTH:
+            self.block(depth)
+
+    def move(self) -> None:
+        rng = self.rng
+        time = rng.choice(TIMES)
+        until = self.until(0.3)
+        if rng.random() < 0.12:
+            time = "FOREVER"
+        self.lines.append(f"{rng.choice('FBLR')}({time}, {rng.choice(POWERS)}){until}")
+
+    def until(self, chance: float) -> str:
+        return f" UNTIL({self.condition()})" if self.rng.random() < chance else ""
+
+    def block(self, depth: int) -> None:
+        rng = self.rng
+        word = rng.choice(("IF", "LOOP", "LOOP", "WHILE"))
+        if word == "IF":
+            self.lines.append(f"IF({self.condition()})")
+            self.body(rng.randint(0, 2), depth + 1)
+            if rng.random() < 0.3:
+                self.lines.append("ELSE")
+                self.body(rng.randint(0, 2), depth + 1)
+            self.lines.append("ENDIF")
+            return
+        head = f"WHILE({self.condition()})"
+        if word == "LOOP":
+            head = f"LOOP({rng.choice(('0', '1', '2', '3', 'N', 'FOREVER'))})"
+        self.lines.append(head)
+        self.loops += 1
+        self.body(rng.randint(0, 3), depth + 1)
+        self.loops -= 1
+        self.lines.append(f"END_{word}")
+
+    def number(self) -> str:
+        rng = self.rng
+        return rng.choice(
+            ("TIME", "A", "N", "A + 1", "N - 1", "DISTANCE", "RANDOM(0, 3)", str(rng.randint(0, 9)))
+        )
+
+    def condition(self) -> str:
+        rng = self.rng
+        begin = rng.choice((0, 0.02, 0.05, 0.1, 0.2))
+        return rng.choice(
+            (
+                "TRUE",
+                "FALSE",
+                f"TIME >= {begin}",
+                f"TIME >= {begin} AND TIME < {begin + 0.06:.2f}",
+                f"TIME >= {begin} AND TIME < {begin + 0.06:.2f}",
+                "DISTANCE < 15",
+                "DISTANCE < 15 OR LIGHT_L > 500",
+                "N > 1",
+                "A = N",
+            )
+        )
+
+
+def task_program(rng: random.Random) -> tuple[str, dict[str, list[int]]]:
+    """A program, and the readings of its sensors in thousandths."""
+    text = TaskAuthor(rng).program()
+    distances = [1000 * rng.choice((5, 9, 50)) for _ in range(rng.randint(0, 6))]
+    lights = [1000 * rng.choice((0, 600)) for _ in range(rng.randint(0, 4))]
+    return text, {"DISTANCE": distances, "LIGHT_L": lights}

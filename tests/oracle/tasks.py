@@ -1,0 +1,334 @@
+"""Runs a program with TASK and WHEN straight from its text.
+
+Written from the language reference, section "Tasks", and from nothing of the compiler or the
+machine: there a task is a record, here it is a generator that gives its place away whenever it has
+to wait.
+"""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Generator
+from dataclasses import dataclass, field
+
+from tests.oracle.interpreter import Break, Ending, Robot, limited, whole
+from tests.oracle.tree import Do, If, Loop, Statement, Task, Value, While
+from tests.oracle.words import MOVES
+
+Turns = Generator[None, None, None]  # it gives its place away with `yield`
+Powers = tuple[int, int]
+SIDES = {"F": (1, 1), "B": (-1, -1), "L": (-1, 1), "R": (1, -1)}
+
+
+@dataclass(eq=False)
+class Runner:
+    """One task that runs. `due` is when its next turn is, None while it waits for the motors."""
+
+    rank: int
+    is_when: bool
+    clock: int = 0
+    due: int | None = 0
+    turns: Turns | None = None
+    waited: bool = False  # since it last went back to the start of a loop
+    # what it has to do with the motors
+    m: Powers | None = None
+    moving: bool = False
+    driving_until: int | None = None  # its move drives, to this time
+    driving_forever: bool = False
+    insists: bool = False  # a WHEN, until a look finds FALSE
+    robbed_at: int | None = None  # a higher task has taken the motors then
+    was_stopped: bool = False  # an S has ended its move
+
+    @property
+    def wants(self) -> bool:
+        """Whether it wants the motors."""
+        return self.moving or self.m is not None or self.insists
+
+    @property
+    def drives(self) -> bool:
+        """Whether its move turns the wheels."""
+        return self.driving_forever or self.driving_until is not None
+
+
+@dataclass
+class TaskRobot(Robot):
+    """A robot that does several things at once."""
+
+    crew: list[Runner] = field(default_factory=list)
+    who: Runner = field(default_factory=lambda: Runner(0, False))  # has its turn
+    owner: Runner | None = None  # of the motors
+    wheels: Powers = (0, 0)
+    is_first_round: bool = True  # behind the main task's first turn
+
+    def run(self) -> None:
+        """Runs the program to its end."""
+        for name, is_yes_no in self.program.variables.items():
+            self.variables[name] = False if is_yes_no else 0
+        whens = [task for task in self.program.tasks if task.condition is not None]
+        others = [task for task in self.program.tasks if task.condition is None]
+        for rank, task in enumerate([*whens, *others]):
+            runner = Runner(rank, task.condition is not None)
+            runner.turns = self.watching(task) if runner.is_when else self.body(task.body)
+            self.crew.append(runner)
+        main = Runner(len(self.crew), False)
+        main.turns = self.body(self.program.main)
+        self.crew.append(main)
+        try:
+            self.turn(main)
+            while any(runner.turns is not None for runner in self.crew):
+                self.round()
+            self.note("DONE")
+        except Ending as ending:
+            self.note(str(ending))
+
+    def round(self) -> None:
+        """Goes to the next time at which something is due, and gives each its turn."""
+        due = [each.due for each in self.crew if each.turns is not None and each.due is not None]
+        next_time = min(due, default=self.max_time + 1)
+        if next_time > self.max_time:
+            self.now = self.max_time
+            raise Ending("LIMIT")
+        if next_time > self.now:
+            self.steps = 0
+        self.now = max(self.now, next_time)
+        for runner in self.crew:
+            if runner.turns is not None and runner.due is not None and runner.due <= self.now:
+                self.turn(runner)
+        self.is_first_round = False
+
+    def turn(self, runner: Runner) -> None:
+        """Lets one task go on until it has to wait, and then looks whose the motors are."""
+        self.who = runner
+        assert runner.turns is not None
+        try:
+            next(runner.turns)
+        except StopIteration:
+            runner.turns = None
+            runner.m = None
+        if all(each.turns is None for each in self.crew):
+            return
+        owner = next((each for each in self.crew if each.wants), None)
+        if owner is not self.owner:
+            self.owner = owner
+            powers = (0, 0) if owner is None else owner.m or (0, 0)
+            if powers != self.wheels:
+                self.motors(*powers)
+            if owner is not None and owner.due is None:
+                owner.due = self.now + self.is_first_round  # the main task has had its turn
+
+    # -- waiting ------------------------------------------------------------------------------
+
+    def until_clock(self, duration: int) -> Turns:
+        """Waits on the task's own clock."""
+        me = self.who
+        me.clock += duration
+        if duration > 0:
+            me.due = me.clock
+            me.waited = True
+            yield
+
+    def back_to_start(self) -> Turns:
+        """What going back to the start of a loop takes."""
+        me = self.who
+        self.step()
+        if not me.waited:
+            me.clock += 1
+            me.due = me.clock
+            yield
+        me.waited = False
+
+    # -- the motors ---------------------------------------------------------------------------
+
+    def motors(self, left: int, right: int) -> None:
+        """Sets both motors."""
+        self.wheels = left, right
+        super().motors(left, right)
+
+    @property
+    def is_outranked(self) -> bool:
+        """Whether a higher task has the motors."""
+        return self.owner is not None and self.owner.rank < self.who.rank
+
+    def seize(self) -> None:
+        """Takes the motors for the task whose turn it is."""
+        loser = self.owner
+        if loser is not None and loser is not self.who and loser.drives:
+            if loser.driving_until is not None and loser.driving_until <= self.now:
+                loser.moving = False  # it is over
+                loser.m = None
+            else:
+                loser.due = None
+            loser.robbed_at = self.now
+            loser.driving_until, loser.driving_forever = None, False  # it stands still
+        elif loser is not None and loser is not self.who and loser.moving:
+            loser.due = None  # it had got them in this millisecond, and did not have its turn yet
+        self.owner = self.who
+
+    # -- statements ---------------------------------------------------------------------------
+
+    def watching(self, task: Task) -> Turns:
+        """A WHEN: looks for ever."""
+        assert task.condition is not None
+        me = self.who
+        while True:
+            self.step()
+            self.read(task.reads)
+            if self.value(task.condition):
+                yield from self.body(task.body)
+            else:
+                me.m, me.insists = None, False
+            yield from self.until_clock(20)
+
+    def body(self, body: list[Statement]) -> Turns:
+        """Does instructions one after the other."""
+        for statement in body:
+            self.step()
+            if isinstance(statement, If):
+                for arm in statement.arms:
+                    self.read(arm.reads)
+                    if arm.condition is None or self.value(arm.condition):
+                        yield from self.body(arm.body)
+                        break
+            elif isinstance(statement, Do):
+                yield from self.doing(statement)
+            else:
+                with contextlib.suppress(Break):
+                    yield from self.repeating(statement)
+
+    def repeating(self, statement: Loop | While) -> Turns:
+        """LOOP and WHILE."""
+        if isinstance(statement, While):
+            self.read(statement.reads)
+            while self.value(statement.condition):
+                yield from self.body(statement.body)
+                yield from self.back_to_start()
+                self.read(statement.reads)
+            return
+        self.read(statement.reads)
+        turns = None if statement.count is None else whole(self.value(statement.count))
+        while turns is None or turns > 0:
+            yield from self.body(statement.body)
+            turns = None if turns is None else turns - 1
+            if turns != 0:
+                yield from self.back_to_start()
+
+    def doing(self, statement: Do) -> Turns:
+        """An instruction without a body."""
+        word, me = statement.word, self.who
+        if word == "CALL":
+            yield from self.body(self.program.defs[statement.name])
+        elif word in (*MOVES, "W", "BEEP", "M", "S"):
+            self.read(statement.reads)
+            values = [None if each is None else self.value(each) for each in statement.arguments]
+            if word in MOVES:
+                yield from self.moving(statement, values)
+            elif word == "W":
+                yield from self.waiting(statement, values[0])
+            elif word == "BEEP":
+                duration = max(0, values[0] or 0)
+                self.note(f"BEEP {limited(whole(values[1] or 0), 31, 20_000)} {duration}")
+                yield from self.until_clock(duration)
+            elif word == "M":
+                left, right = (limited(whole(each or 0), -100, 100) for each in values)
+                me.m, me.insists = (left, right), me.is_when
+                if not self.is_outranked:
+                    self.seize()
+                    self.motors(left, right)
+            else:
+                self.stopping()
+        else:
+            super().do(statement)
+
+    def stopping(self) -> None:
+        """S."""
+        me, owner = self.who, self.owner
+        me.m, me.insists = None, me.is_when
+        if self.is_outranked:
+            return
+        self.motors(0, 0)
+        if owner is not None:
+            owner.m = None
+            if owner.drives:
+                owner.moving = False
+                owner.was_stopped = True
+                owner.due = self.now
+                # it drives no more, so nobody can take the motors from it
+                owner.driving_until, owner.driving_forever = None, False
+        if me.is_when:
+            self.seize()
+
+    def waiting(self, statement: Do, time: Value | None) -> Turns:
+        """W."""
+        left = None if time is None else max(0, time)
+        if statement.until is None:
+            if left is None:
+                left = self.max_time + 1
+            yield from self.until_clock(left)
+            return
+        while not self.may_end(statement):
+            pause = 20 if left is None else min(20, left)
+            yield from self.until_clock(pause)
+            left = None if left is None else left - pause
+            if left == 0:
+                return
+
+    def moving(self, statement: Do, values: list[Value | None]) -> Turns:
+        """F B L R."""
+        me = self.who
+        left = None if values[0] is None else max(0, values[0])
+        power = limited(whole(values[1] or 0), 0, 100)
+        side = SIDES[statement.word]
+        powers = side[0] * power, side[1] * power
+        if self.is_outranked:
+            me.m = None
+            yield from self.standing()
+        while True:
+            if self.may_end(statement):
+                me.moving = False
+                return
+            me.m, me.moving, me.insists = None, True, me.is_when
+            self.seize()
+            self.motors(*powers)
+            started = me.clock
+            yield from self.driving(statement, left)
+            if me.was_stopped:
+                me.was_stopped = False
+                me.clock = self.now
+                return
+            if me.robbed_at is None or not me.moving:
+                me.robbed_at = None
+                return
+            if left is not None:
+                left -= me.robbed_at - started
+            me.robbed_at = None
+            yield from self.standing()
+
+    def standing(self) -> Turns:
+        """Waits for the motors; when it has them, its clock is now."""
+        me = self.who
+        me.moving, me.insists, me.waited = True, me.is_when, True
+        if self.owner is not me:
+            me.due = None
+            yield
+        me.clock = self.now
+
+    def driving(self, statement: Do, left: int | None) -> Turns:
+        """Drives until the time is over, UNTIL ends it, S ends it or the motors are taken."""
+        me = self.who
+        me.driving_forever = left is None
+        me.driving_until = None if left is None else me.clock + left
+        while left is None or left > 0:
+            if statement.until is None:
+                pause = self.max_time + 1 if left is None else left
+            else:
+                pause = 20 if left is None else min(20, left)
+            yield from self.until_clock(pause)
+            if me.was_stopped or me.robbed_at is not None:
+                break
+            left = None if left is None else left - pause
+            if left != 0 and self.may_end(statement):
+                break
+        me.driving_until, me.driving_forever = None, False
+        if not me.was_stopped and me.robbed_at is None:
+            me.moving = False
+            self.motors(0, 0)
