@@ -3,8 +3,8 @@
 The corpus is each program in a fence `tiniscript` of README.md, bytecode_spec.md, docs/ and the
 lessons that compiles, each text once, and the files of `examples/`; for the robot that its fence
 `senses` names, else for the first shipped one that it compiles for. A statement is one of the IR:
-an arm of an IF is part of the IF, END_... is none, and a DEF is one. `--opcodes` also says how
-often each instruction occurs.
+an arm of an IF is part of the IF, END_... is none, and a DEF, a TASK and a WHEN are one each.
+`--opcodes` also says how often each instruction occurs.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 from tests.support.casefile import documents, read
 from tiniscript import Compiled, compile_text, robots
 from tiniscript.bytecode.disassembly import rows
-from tiniscript.semantics.ir import walk
+from tiniscript.semantics.ir import every
 
 CASES = ROOT / "tests" / "cases"
 LESSONS = ROOT / "compiler" / "tiniscript" / "lessons"
@@ -72,10 +72,9 @@ def measured() -> Measured:
     opcodes: Counter[str] = Counter()
     for compiled in corpus():
         assert compiled.program is not None
-        procedures = [each.body for each in compiled.program.procedures]
         programs += 1
-        statements += len(procedures)
-        statements += sum(1 for body in (compiled.program.body, *procedures) for _ in walk(body))
+        statements += len(compiled.program.procedures) + len(compiled.program.tasks)
+        statements += sum(1 for _ in every(compiled.program))
         code_bytes += len(compiled.code)
         opcodes.update(row.op.name for row in rows(compiled.code) if row.op)
     return Measured(programs, statements, code_bytes, opcodes)

@@ -18,7 +18,7 @@ from tools.generate.paper import BOLD, MONO, SANS, Box, Line, Page
 
 LEFT, RIGHT = 36.0, 559.0
 CODE_X, SAYS_X = 44.0, 252.0
-HEAD_PT, ROW_PT = 20.5, 16.0
+HEAD_PT, ROW_PT = 20.5, 15.8
 CODE_SIZE, SAYS_SIZE = 9.8, 10.0
 CODE_SIGNS, SAYS_SIGNS = 34, 60  # that fit
 NOT_SHOWN = ("alias", "later")  # roles: other spellings, and words that do nothing yet
@@ -82,8 +82,8 @@ GROUPS = (
         Row("BREAK", "leaves the loop", "sale del bucle"),
     )),
     Group("Several things at once", "Varias cosas a la vez", (
-        Row("{WHEN} ... END_WHEN", "each time that the answer is yes, beside the rest", "cada vez que la respuesta es sí, al lado del resto"),
-        Row("TASK ... END_TASK", "goes on beside the rest", "se hace al lado del resto"),
+        Row("{WHEN} ... END_WHEN", "each time the answer is yes, while the rest goes on", "cada vez que la respuesta es sí, mientras lo demás sigue"),
+        Row("TASK ... END_TASK", "runs at the same time as the rest", "se hace al mismo tiempo que lo demás"),
     )),
     Group("Words of your own", "Palabras tuyas", (
         Row("DEF STEP ... END_DEF", "teaches a new word: STEP", "enseña una palabra nueva: PASO", "DEF PASO ... END_DEF"),

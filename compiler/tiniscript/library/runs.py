@@ -15,7 +15,7 @@ from tiniscript.library.programs import Language, Program, program_of
 from tiniscript.library.texts import sentence
 from tiniscript.robots.profile import Robot
 from tiniscript.source import printable
-from tiniscript.vm.machine import machine_of as python_machine
+from tiniscript.vm.tasks import machine_of as python_machine
 from tiniscript.vm.trace import Ending, Event, MachineOf, Senses
 from tiniscript.vm.trace import run as run_code
 

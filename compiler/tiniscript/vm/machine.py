@@ -7,25 +7,10 @@ Runs verified code. Time comes in as `now_ms`, which does not wrap around here; 
 
 from __future__ import annotations
 
-from tiniscript.bytecode.opcodes import BY_NAME
 from tiniscript.fixed_point import Fault
 from tiniscript.vm.handlers import STAY, stopped
 from tiniscript.vm.instructions import bound, instruction
 from tiniscript.vm.state import DONE, FAULT, MOVE, NOTHING, RUNNING, WAITING, Execution, Robot, Task
-
-_BEGIN_TASKS = BY_NAME["TASK"].code, BY_NAME["WHEN"].code
-
-
-def machine_of(
-    code: bytes, robot: Robot, sensors: int = 0, seed: int = 1, now_ms: int = 0
-) -> Machine:
-    """Return the machine for `code`, which is verified: one with a scheduler where it has tasks."""
-    if not any(byte in code for byte in _BEGIN_TASKS):
-        return Machine(code, robot, sensors, seed, now_ms)
-    from tiniscript.vm.tasks import TaskMachine, tasks_in  # most programs have none
-
-    machine = TaskMachine if tasks_in(code) else Machine
-    return machine(code, robot, sensors, seed, now_ms)
 
 
 class Machine(Execution):

@@ -385,6 +385,14 @@ class TaskMachine(Machine):
         self.robot.motors(*powers)
 
 
+def machine_of(
+    code: bytes, robot: Robot, sensors: int = 0, seed: int = 1, now_ms: int = 0
+) -> Machine:
+    """Return the machine for `code`, which is verified: one with a scheduler where it has tasks."""
+    machine = TaskMachine if tasks_in(code) else Machine
+    return machine(code, robot, sensors, seed, now_ms)
+
+
 # -- the code ------------------------------------------------------------------------------------
 
 

@@ -11,8 +11,8 @@ from typing import NamedTuple, Protocol
 
 from tiniscript.fixed_point import as_text, limited, whole
 from tiniscript.kit import Kit
-from tiniscript.vm.machine import machine_of as python_machine
 from tiniscript.vm.state import DONE, FAULT, WAITING, Robot
+from tiniscript.vm.tasks import machine_of as python_machine
 
 SLICE = 10_000  # instructions between two looks at the limit
 
