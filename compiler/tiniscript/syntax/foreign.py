@@ -24,13 +24,12 @@ from tiniscript.syntax.reporter import Failed, Reporter, Resumed
 from tiniscript.syntax.suggestions import (
     counted,
     end_of_values,
-    foreign_block,
     head_in,
     inside,
     opposite,
     with_signs,
 )
-from tiniscript.words import ALIASES, BLOCK_ENDS, WORDS, meant_by
+from tiniscript.words import BLOCK_ENDS, WORDS, meant_by
 
 _ENDLESS = frozenset(("PARA", "POR", "SIEMPRE", "FOREVER", "INFINITO", "INFINITAMENTE", "INFINITAS",
                       "VECES", "TIMES", "INFINITE", "AND", "EVER"))  # fmt: skip
@@ -94,8 +93,6 @@ def foreign_word(parser: Grammar, word: Token, meant: str) -> None:
         if line is not None:
             _report(parser, word, meant, line, parser.cursor.span_from(word))
             raise Resumed
-        if word.text == "CUANDO" and _is_watched(parser):
-            meant = "WHEN"
         _report(parser, word, meant, _header_fix(parser, word, meant))
         foreign_header(parser, word, meant)
     if meant == "DEF":
@@ -108,19 +105,6 @@ def foreign_word(parser: Grammar, word: Token, meant: str) -> None:
         _report(parser, word, meant, head_in(WORDS[meant], values), place)
     parser.arm(Token(WORD, meant, *word.span), is_reported=True)
     parser.recovery.in_block.go_on()
-
-
-def _is_watched(parser: Grammar) -> bool:
-    """Whether a `CUANDO` stands where WHEN may, and its block is not that of an IF."""
-    if parser.blocks.open:
-        return False
-    for token in parser.cursor.tokens[parser.cursor.i + 1 :]:
-        said = foreign_block(token.text) or ALIASES.get(token.text, token.text)
-        if said in ("IF", "ELSE", "ELSEIF", BLOCK_ENDS["IF"]):
-            return False
-        if said in ENDS or said == "END":
-            break
-    return True
 
 
 def _for_ever(parser: Grammar, word: Token) -> None:
