@@ -39,7 +39,7 @@ def test_the_machine_in_c_has_what_some_chip_has() -> None:
     union = 0
     for chip in CHIPS.values():
         union |= chip.has
-    assert union == image.FIRMWARE_NEEDS
+    assert union == image.FIRMWARE.needs
 
 
 @pytest.mark.parametrize("language", ["en", "es"])

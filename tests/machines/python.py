@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from tests.machines.host import Ran
+from tiniscript.bytecode.image import PYTHON, Version
 from tiniscript.bytecode.loading import loaded
 from tiniscript.kit import Kit
 from tiniscript.vm.trace import Ending, run
@@ -14,9 +15,9 @@ if TYPE_CHECKING:
     from tests.machines import Senses
 
 
-def ran_python(image: bytes, kit: Kit, senses: Senses) -> Ran:
-    """Run an image, which is read and verified as a machine does it."""
-    code = loaded(image, kit).code
+def ran_python(image: bytes, kit: Kit, senses: Senses, machine: Version = PYTHON) -> Ran:
+    """Run an image, which is read and verified as a machine of that version does it."""
+    code = loaded(image, kit, machine).code
     events = run(code, kit, lists_of(kit, senses), senses.max_ms, senses.max_steps, senses.seed)
     *lines, ending = events
     assert isinstance(ending, Ending)

@@ -172,7 +172,8 @@ def check_codes(machine: Process, seed: int, count: int) -> Counter[str]:
 def check_a_batch(machine: Host, seed: int, count: int) -> None:
     """A batch of random codes breaks every rule and comes to every ending."""
     seen = check_codes(machine, seed, count)
-    rules = {str(number) for name, (number, _) in RULES.items() if name != "CODE_LENGTH"}
+    others = ("CODE_LENGTH", "TOO_MANY_TASKS")  # the machine in C++ has no tasks
+    rules = {str(number) for name, (number, _) in RULES.items() if name not in others}
     assert rules <= set(seen), sorted(rules - set(seen))
     assert {"DONE", "LIMIT", "OVERFLOW", "DIVIDE_BY_ZERO"} <= set(seen), seen
     assert "BAD_CODE" not in seen, seen

@@ -10,6 +10,7 @@ from tests.machines import Senses
 from tests.machines.host import Process
 from tests.support.random_codes import changed_kit, images_of_programs, random_images
 from tiniscript.bytecode.image import (
+    FIRMWARE,
     HEADER_BYTES,
     REFUSALS,
     ImageRefused,
@@ -24,7 +25,7 @@ from tiniscript.bytecode.verify import Refused
 
 def python_refusal(data: bytes) -> int:
     try:
-        unpack(data)
+        unpack(data, FIRMWARE)
     except ImageRefused as refused:
         return refused.number
     return 0
@@ -79,7 +80,7 @@ def check_whole_images(machine: Process, seed: int, count: int) -> None:
     seen = set()
     for image, kit in images_of_programs(seed, count):
         for robot in (kit, changed_kit(rng, kit)):
-            ours = refusal_of(lambda data=image, kit=robot: loaded(data, kit))  # type: ignore[misc]
+            ours = refusal_of(lambda data=image, kit=robot: loaded(data, kit, FIRMWARE))  # type: ignore[misc]
             theirs = refusal_of(lambda data=image, kit=robot: machine.run(data, kit, senses))  # type: ignore[misc]
             assert ours == theirs, f"{image.hex(' ')}: {ours!r}, not {theirs!r}"
             seen.add(ours.partition(" ")[2].partition(" ")[0])

@@ -30,7 +30,7 @@ from tests.support.random_codes import random_codes, simple
 from tests.vm.test_cases import compiled, having, listings_alone, robot_and_senses
 from tiniscript import compile_text
 from tiniscript.bytecode.disassembly import read_listing
-from tiniscript.bytecode.image import ImageRefused
+from tiniscript.bytecode.image import FIRMWARE, ImageRefused
 from tiniscript.bytecode.verify import Refused
 from tiniscript.kit import Kit
 from tools.builds import chips
@@ -71,7 +71,7 @@ def same_on_the_chip(chip: str, image: bytes, kit: Kit, senses: Senses) -> str:
     want: Ran | str
     got: Ran | str
     try:
-        want = ran_python(image, kit, senses)
+        want = ran_python(image, kit, senses, FIRMWARE)
     except (Refused, ImageRefused) as refused:
         want = repr(refused)
     try:

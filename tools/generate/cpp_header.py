@@ -68,7 +68,7 @@ def header(command: str) -> str:
         + constants(
             *fields,
             ("kHeaderBytes", image.HEADER_BYTES),
-            ("kNeeds", image.FIRMWARE_NEEDS),
+            ("kNeeds", image.FIRMWARE.needs),
             ("kDevicesPolynomial", DEVICES_POLYNOMIAL),
             ("kStarts", len(image.STARTS)),
             ("kStartPing", image.STARTS.index("PING")),

@@ -14,10 +14,17 @@ from struct import pack as struct_pack
 from struct import unpack as struct_unpack
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from tiniscript.bytecode.opcodes import CODE_BYTES, ISA_MAJOR, ISA_MINOR
+from tiniscript.bytecode.opcodes import CODE_BYTES, FIRMWARE_MINOR, ISA_MAJOR, ISA_MINOR
 
 if TYPE_CHECKING:
     from construct import Construct
+
+
+class Version(NamedTuple):
+    """What a machine runs: images up to this minor version, whose `needs` are among its own."""
+
+    isa_minor: int
+    needs: int
 
 
 class Field(NamedTuple):
@@ -31,8 +38,8 @@ class Field(NamedTuple):
 
 MAGIC = b"TS"
 TASKS = 0x01  # a bit of `needs`: the code has tasks
-NEEDS = TASKS  # all that this machine has,
-FIRMWARE_NEEDS = 0  # and all that the machine in C++ has
+PYTHON = Version(ISA_MINOR, TASKS)
+FIRMWARE = Version(FIRMWARE_MINOR, 0)  # the machine in C++
 STARTS = ("SI", "SB", "PING")
 
 # The first fields lie where they lay in version 1, so that whoever finds a stored program of any
@@ -146,8 +153,8 @@ def image_format() -> Construct[Any, Any]:
     )
 
 
-def unpack(data: bytes) -> Image:
-    """Return the image in `data`. Its code and its devices are not verified yet.
+def unpack(data: bytes, machine: Version = PYTHON) -> Image:
+    """Return the image in `data`, for a machine. Its code and its devices are not verified yet.
 
     Raises ImageRefused with the name of the reason.
     """
@@ -156,8 +163,8 @@ def unpack(data: bytes) -> Image:
     if len(data) < _VERSION_BYTES:
         raise ImageRefused("TRUNCATED")
     isa = data[2], data[3]
-    if isa[0] != ISA_MAJOR or isa[1] > ISA_MINOR:
-        theirs, ours = f"{isa[0]}.{isa[1]}", f"{ISA_MAJOR}.{ISA_MINOR}"
+    if isa[0] != ISA_MAJOR or isa[1] > machine.isa_minor:
+        theirs, ours = f"{isa[0]}.{isa[1]}", f"{ISA_MAJOR}.{machine.isa_minor}"
         raise ImageRefused("OTHER_VERSION", theirs=theirs, ours=ours)
     if len(data) < HEADER_BYTES:
         raise ImageRefused("TRUNCATED")
@@ -171,7 +178,7 @@ def unpack(data: bytes) -> Image:
         raise ImageRefused("TRAILING")
     if checksum(sealed(data)) != found:
         raise ImageRefused("DAMAGED")
-    if needs & ~NEEDS:
+    if needs & ~machine.needs:
         raise ImageRefused("UNKNOWN_NEEDS", found=f"{needs:02x}")
     if start >= len(STARTS):
         raise ImageRefused("UNKNOWN_START", found=str(start))

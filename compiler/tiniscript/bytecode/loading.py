@@ -5,14 +5,14 @@ The three in this order, as every machine asks them. Knows no rule of its own.
 
 from __future__ import annotations
 
-from tiniscript.bytecode.image import Image, ImageRefused, unpack
+from tiniscript.bytecode.image import PYTHON, Image, ImageRefused, Version, unpack
 from tiniscript.bytecode.verify import Verdict, verify
 from tiniscript.kit import Kit
 
 
-def loaded(data: bytes, kit: Kit) -> Image:
-    """Return the image in `data`. Raises ImageRefused, or verify.Refused."""
-    image = unpack(data)
+def loaded(data: bytes, kit: Kit, machine: Version = PYTHON) -> Image:
+    """Return the image in `data`, for a machine. Raises ImageRefused, or verify.Refused."""
+    image = unpack(data, machine)
     check(image, kit)
     return image
 
