@@ -98,7 +98,7 @@ def test_the_page_knows_every_robot_and_its_words() -> None:
         assert names == [device.name for device in (*kit.sensors, *kit.actuators)]
         assert set(each["labels"]) == {"en", "es"}
     words = {each["text"] for each in found["words"]}
-    assert {"F", "IF", "END_LOOP", "UNTIL"} <= words and not words & {"TASK", "ENDLOOP"}
+    assert {"F", "IF", "END_LOOP", "UNTIL"} <= words and not words & {"SEND", "ENDLOOP"}
     assert found["worlds"][0]["name"] == "obstacles"
 
 
