@@ -117,8 +117,7 @@ def lacks(needs: int, robot: Robot) -> bool:
 
 
 def refusal(image: Image, profile: Robot, robot: DeviceInfo) -> Reply[Any] | None:
-    """Return the refusal of a program for another kit, or with tasks, or None where the robot may
-    run it."""
+    """Return the refusal of a program for another kit or with tasks; None where it may run."""
     from tiniscript.bytecode.image import REFUSALS
     from tiniscript.link.messages import STATUSES
     from tiniscript.link.requests import Reply
