@@ -212,6 +212,7 @@ EMPTY_BLOCK = _warning("TS828")
 ROUNDED_TIMES = _warning("TS829")
 LATE_ARM = _warning("TS830")
 ZERO_BEFORE = _warning("TS831")
+NO_MOTORS = _warning("TS832")
 UNUSED_READING = _warning("TS840")
 CUT_VALUE = _warning("TS841")
 

@@ -35,6 +35,7 @@ from tiniscript.semantics.ir import (
     loops_end,
     walk,
 )
+from tiniscript.semantics.kept_motors import kept_motors
 from tiniscript.semantics.late_questions import LateQuestions
 from tiniscript.semantics.named_values import use_of
 from tiniscript.semantics.optimizer import constant, fold, sure_fault
@@ -87,7 +88,7 @@ def advice(program: Program, kit: Kit, source: Source) -> list[Diagnostic]:
         _look_at(task.body, look, _Around(is_repeated=task.look is not None))
     look.found += swapped_names(program.body, program)
     _look_at(program.body, look, _Around(is_last=True))
-    found = look.all_found
+    found = [*look.all_found, *kept_motors(program, source)]
     found += _unused(program, kit, [*every(program), *program.tasks])
     return found
 

@@ -1,0 +1,121 @@
+"""Warns where two tasks drive for ever: the lower one never gets the motors.
+
+Is silent where a task lets the motors go now and then, as far as that can be seen. Knows the IR,
+before it is optimised.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from tiniscript.diagnostics import codes
+from tiniscript.diagnostics.codes import Diagnostic
+from tiniscript.semantics.ir import (
+    Beep,
+    Body,
+    Break,
+    Call,
+    If,
+    Loop,
+    Motors,
+    Move,
+    Program,
+    Statement,
+    Stop,
+    While,
+    bodies,
+    loops_end,
+    walk,
+)
+from tiniscript.semantics.optimizer import constant, fold
+from tiniscript.source import Source
+
+
+def kept_motors(program: Program, source: Source) -> list[Diagnostic]:
+    """Return a warning for each task that never drives again once a higher TASK does."""
+    motors = _Motors(program)
+    higher = [each.body for each in program.tasks if each.look is not None]
+    tasks = [each for each in program.tasks if each.look is None]
+    lower = [*(each.body for each in tasks), program.body]
+    for task in tasks:
+        del lower[0]
+        is_stopped = any(isinstance(each, Stop) for body in higher for each in motors.all_of(body))
+        if not is_stopped and motors.are_kept(task.body):
+            line = str(source.position(task.span.start)[0])
+            waiting = [next(filter(_drives, motors.all_of(_endless(body))), None) for body in lower]
+            return [Diagnostic(codes.NO_MOTORS, each.span, {"line": line})
+                    for each in waiting if each is not None]  # fmt: skip
+        higher.append(task.body)
+    return []
+
+
+class _Motors:
+    def __init__(self, program: Program) -> None:
+        self._procedures = program.procedures
+
+    def all_of(self, body: Body) -> Iterator[Statement]:
+        """Yield every statement of a body, those of its calls too."""
+        for each in walk(body):
+            yield each
+            if isinstance(each, Call):
+                yield from self.all_of(self._procedures[each.procedure].body)
+
+    def are_kept(self, body: Body) -> bool:
+        """Whether a task surely drives for ever at its end, and never lets the motors go there."""
+        rest = _endless(body)
+        if not any(isinstance(each, Motors) or (_drives(each) and _lasts(each)) for each in rest):
+            return False
+        return self._repeated(rest, False) is not None or self._repeated(rest, True) is True
+
+    def _after(self, body: Body, wants: bool) -> bool | None:
+        """Return whether the motors are wanted behind a body, None where it may let them go."""
+        found: bool | None = wants
+        for each in body:
+            if found is None or isinstance(each, Break):
+                return None
+            if isinstance(each, Motors):
+                found = True
+            elif isinstance(each, Stop) or _drives(each):
+                found = False
+            elif isinstance(each, (Move, Beep)):
+                found = found or None
+            elif isinstance(each, Call):
+                found = self._after(self._procedures[each.procedure].body, found)
+            elif isinstance(each, If):
+                arms = [self._after(arm, found) for arm in bodies(each)]
+                found = None if None in arms else all(arms)
+            elif isinstance(each, (Loop, While)):
+                found = self._repeated(each.body, found)
+        return found
+
+    def _repeated(self, body: Body, wants: bool) -> bool | None:
+        once = self._after(body, wants)
+        if once is None or self._after(body, once) is None:
+            return None
+        takes_time = once or any(map(_lasts, body))  # else a turn of it waits for 1 ms
+        return wants and once if takes_time else None
+
+
+def _endless(body: Body) -> Body:
+    """Return what a body does for ever at its end: a move, or what a loop repeats."""
+    last = body[-1] if body else None
+    if isinstance(last, Loop) and last.times is None and not loops_end(last.body):
+        return last.body
+    is_move = isinstance(last, Move) and last.time is None and last.until is None
+    return body[-1:] if is_move else ()
+
+
+def _drives(statement: Statement) -> bool:
+    return isinstance(statement, Motors) or (
+        isinstance(statement, Move) and statement.power is not None
+    )
+
+
+def _lasts(statement: Statement) -> bool:
+    """Whether a statement surely takes time."""
+    if not isinstance(statement, (Move, Beep)):
+        return False
+    if isinstance(statement, Move) and (statement.time is None or statement.until is not None):
+        return statement.until is None
+    assert statement.time is not None
+    return (constant(fold(statement.time)) or 0) > 0
