@@ -24,7 +24,6 @@ from tiniscript.semantics.ir import (
     Stop,
     While,
     bodies,
-    loops_end,
     walk,
 )
 from tiniscript.semantics.optimizer import constant, fold
@@ -99,7 +98,7 @@ class _Motors:
 def _endless(body: Body) -> Body:
     """Return what a body does for ever at its end: a move, or what a loop repeats."""
     last = body[-1] if body else None
-    if isinstance(last, Loop) and last.times is None and not loops_end(last.body):
+    if isinstance(last, Loop) and last.times is None:
         return last.body
     is_move = isinstance(last, Move) and last.time is None and last.until is None
     return body[-1:] if is_move else ()
