@@ -91,7 +91,7 @@ def test_a_large_frame_has_a_zero_behind_its_head(is_sealed: bool) -> None:
 
 
 def test_each_status_has_its_sentences() -> None:
-    assert set(statuses.texts()) == {*STATUSES, "IMAGE", "RULE", "OTHER_VERSION"}
+    assert set(statuses.texts()) == {*STATUSES, "IMAGE", "RULE", "OTHER_VERSION", "UNKNOWN_NEEDS"}
     for name, words in statuses.texts().items():
         assert {"en", "es"} <= set(words) <= {"en", "es", "en_try", "es_try"}, name
         assert ("en_try" in words) == ("es_try" in words) == (name != "OK"), name
