@@ -29,16 +29,23 @@ run() {
 
 run ruff check .
 run ruff format --check .
-run mypy
-[ -n "$QUICK" ] || run mypy --platform win32 --cache-dir .mypy_cache/win32 compiler/tiniscript
+# Types take one core; beside them runs what needs another one.
+types() {
+    run mypy
+    [ -n "$QUICK" ] || run mypy --platform win32 --cache-dir .mypy_cache/win32 compiler/tiniscript
+}
+types &
+TYPES=$!
 run tools.generate --check
 if [ -n "$QUICK" ]; then
     # shellcheck disable=SC2086 # names of files
     run pytest -n 2 --dist worksteal -k "not host and not keeps_to_its_size" $QUICK "$@"
+    wait "$TYPES"
     exit
 fi
 # The page of tsc studio, of packages from npm; without it its tests are skipped and say so.
 run tools.builds.studio || [ -z "${CI:-}" ]
+wait "$TYPES"
 run pytest -n 3 --dist worksteal "$@"
 
 # Every branch of what decides whether a robot may run an image is taken by a test that draws nothing.

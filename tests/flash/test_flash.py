@@ -67,8 +67,13 @@ def to_hex(elf: Path, file: Path) -> None:
     subprocess.run(["avr-objcopy", "-O", "ihex", "-R", ".eeprom", elf, file], check=True)
 
 
+# An avrdude has a session of its own: killed tests leave it behind, reading for ever from a port
+# that is gone. So each process gets so many seconds of a processor.
+LIMITED = ("/bin/sh", "-c", 'ulimit -t 60; exec "$@"', "sh")
+
+
 def command(*words: str) -> list[str]:
-    return [sys.executable, "-m", "tiniscript", "firmware", "--yes", *words]
+    return [*LIMITED, sys.executable, "-m", "tiniscript", "firmware", "--yes", *words]
 
 
 def tsc(package: Path, *words: str, **variables: str) -> Done:

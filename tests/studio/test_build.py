@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import gzip
 import json
 import re
 import sys
@@ -83,8 +82,8 @@ def test_nothing_makes_markup_of_a_text() -> None:
 
 def test_the_page_is_small_enough(page: Path) -> None:
     files = [path for path in page.iterdir() if path.name not in (studio.STAMP, studio.LICENCES)]
-    assert sum(len(gzip.compress(path.read_bytes(), 9)) for path in files) <= LARGEST
-    assert len(studio.size_rows(page)) == len(files) + 2
+    *rows, whole = studio.size_rows(page)
+    assert len(rows) == len(files) + 1 and int(whole.split()[1].replace(",", "")) <= LARGEST
 
 
 def test_the_page_has_its_policy_and_no_code_of_its_own(page: Path) -> None:
@@ -112,7 +111,10 @@ def test_no_address_of_the_building_computer_is_in_it(page: Path) -> None:
         assert str(ROOT).encode() not in path.read_bytes(), path.name
 
 
-def test_the_same_sources_give_the_same_page(page: Path, tmp_path: Path) -> None:
+def test_the_same_sources_give_the_same_page(
+    page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(studio, "check_types", lambda tools: None)  # done when that one was built
     again = tmp_path / "page"
     studio.build(again)
     assert {path.name for path in again.iterdir()} == {path.name for path in page.iterdir()}

@@ -62,7 +62,8 @@ def inside(*arguments: str | Path, data: bytes = b"") -> Done:
 
 def process(*arguments: str | Path, data: bytes = b"") -> Done:
     """Run `tsc` as a process of its own."""
-    done = subprocess.run([*TSC, *map(str, arguments)], input=data, capture_output=True)
+    words = [*TSC, *map(str, arguments)]
+    done = subprocess.run(words, input=data, capture_output=True, timeout=HANGS_S)
     return Done(done.returncode, done.stdout.decode(), done.stderr.decode())
 
 

@@ -104,8 +104,7 @@ def build(page: Path = PAGE) -> None:
     make("blockly_texts.json", texts(BLOCKLY, SOURCES / "src"))
     make_blockly()
     make("lock.json", {"info": lock["info"], "packages": {}})
-    say(building.TYPES)
-    run(tools.node, "node_modules/typescript/bin/tsc", "-p", ".")
+    check_types(tools)
     page.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(dir=page.parent, prefix=".page") as scratch:
         new = Path(scratch) / "page"
@@ -144,7 +143,7 @@ def build_again(page: Path) -> None:
     tools = found_tools()
     if not (page / STAMP).is_file():
         raise CannotBuild(stale(page))
-    run(tools.node, "node_modules/typescript/bin/tsc", "-p", ".")
+    check_types(tools)
     for old in page.glob("*.js"):
         old.unlink()
     bundle(tools, page)
@@ -164,6 +163,11 @@ def bring_firmware(page: Path) -> None:
         )
     for name, file in with_firmware({}).items():
         (page / name).write_bytes(file.data)
+
+
+def check_types(tools: Tools) -> None:
+    say(building.TYPES)
+    run(tools.node, "node_modules/typescript/bin/tsc", "-p", ".")
 
 
 def make(name: str, content: object) -> None:
