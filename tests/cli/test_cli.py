@@ -329,7 +329,7 @@ def test_an_image_of_0_1_0_says_what_to_do(tsc: Tsc, tmp_path: Path, verb: str) 
     done = tsc(verb, target)
     assert (done.code, done.out) == (1, "")
     assert done.err.strip() == (
-        f"refused: {target} is for version 1.0 of the machine, this is 2.0. "
+        f"refused: {target} is for version 1.0 of the machine, this is 2.1. "
         "Compile the program again."
     )
 
