@@ -15,6 +15,7 @@ import pytest
 
 from tests.support.casefile import ROOT
 from tests.support.command import PROGRAM, TSC, Tsc
+from tests.support.rows import each_row
 from tests.support.verbs import parsers
 from tiniscript import robots
 from tiniscript.cli import help, main
@@ -33,7 +34,7 @@ PARSERS = parsers()
 FLAG = r"(?<![\w-])--?[a-zA-Z][a-z-]*"
 
 in_both = pytest.mark.parametrize("language", ["en", "es"])
-of_each = pytest.mark.parametrize("verb", VERBS)
+of_each = each_row("verb", VERBS)
 
 
 def rows_of(said: str) -> list[str]:
@@ -160,7 +161,7 @@ def test_every_verb_is_a_module_and_every_module_a_verb() -> None:
     assert {path.stem for path in folder.glob("*.py")} - {"__init__"} == set(VERBS)
 
 
-@pytest.mark.parametrize("option", OPTIONS, ids=lambda each: f"{each.flags} {each.verbs}")
+@each_row("option", OPTIONS)
 def test_every_row_of_the_table_is_for_a_verb_and_says_something_in_both(option: Option) -> None:
     assert option.verbs in ("*", "tsc") or set(option.verbs.split()) <= set(VERBS)
     english, spanish = option.help

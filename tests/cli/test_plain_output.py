@@ -9,6 +9,7 @@ import pytest
 
 from tests.cli.test_outputs import PROFILE, WORLD
 from tests.support.command import PROGRAM, Tsc
+from tests.support.rows import each_row
 from tests.support.verbs import parsers, values_of
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.texts.common import LONGEST, Said, text
@@ -45,7 +46,7 @@ def alone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.parametrize("language", ["en", "es"])
-@pytest.mark.parametrize(("verb", "dest"), CASES)
+@each_row("verb, dest", CASES)
 def test_no_argument_of_any_verb_reaches_the_terminal_raw(
     tsc: Tsc, verb: str, dest: str, language: str
 ) -> None:

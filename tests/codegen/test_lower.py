@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import pytest
 
+from tests.support.rows import each_row
 from tiniscript import Compiled, compile_text, robots
 from tiniscript.bytecode.disassembly import rows
 from tiniscript.bytecode.opcodes import CODE_BYTES
@@ -24,8 +25,8 @@ def instructions(text: str) -> list[str]:
     return [row.text for row in rows(compiled(text).code)]
 
 
-@pytest.mark.parametrize(
-    ("text", "expected"),
+@each_row(
+    "text, expected",
     [
         # a listing has numbers as they are in the code: whole ones, thousandths, tenths.
         # A pushed number: 0 to 10 and tens up to 100 in the opcode; 8 bits; tenths in 8 bits;
@@ -228,7 +229,7 @@ def test_a_jump_is_short_as_long_as_it_reaches(text: str, most: int, name: str) 
 
 
 @pytest.mark.parametrize("count", [0, 249, 250, 252, 253, 254, 255, 256, 300, 5000])
-@pytest.mark.parametrize("text", sorted({text for text, _, _ in JUMPS}))
+@each_row("text", sorted({text for text, _, _ in JUMPS}))
 def test_jumps_go_to_the_beginning_of_an_instruction(text: str, count: int) -> None:
     """Whatever has become longer in between; and each far jump is one that had to be."""
     code = compiled(text.format("S;" * count)).code

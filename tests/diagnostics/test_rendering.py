@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 
+from tests.support.rows import each_row
 from tiniscript import check_text, compile_text
 from tiniscript.diagnostics import codes, rendering
 from tiniscript.diagnostics.codes import CODES, Diagnostic
@@ -101,7 +102,7 @@ def test_a_text_with_an_escape_is_read_by_tomllib(monkeypatch: pytest.MonkeyPatc
     assert rendering._said("TS999") == said
 
 
-@pytest.mark.parametrize("code", sorted(TEXTS))
+@each_row("code", sorted(TEXTS))
 def test_each_code_has_all_texts_in_both_languages(code: str) -> None:
     texts = TEXTS[code]
     wanted = {lang + end for lang in LANGUAGES for end in ("", "_title", "_try", "_more")}
@@ -118,18 +119,18 @@ def test_each_term_and_label_is_in_both_languages() -> None:
             assert set(term) == set(LANGUAGES), name
 
 
-@pytest.mark.parametrize("code", EXAMPLES)
+@each_row("code", EXAMPLES)
 def test_the_wrong_example_has_its_diagnostic_first(code: str) -> None:
     found = compile_text(TEXTS[code]["wrong"], KIT).diagnostics
     assert [diagnostic.code.number for diagnostic in found][:1] == [code]
 
 
-@pytest.mark.parametrize("code", EXAMPLES)
+@each_row("code", EXAMPLES)
 def test_the_right_example_has_no_diagnostic(code: str) -> None:
     assert compile_text(TEXTS[code]["right"], KIT).diagnostics == []
 
 
-@pytest.mark.parametrize("code", EXAMPLES)
+@each_row("code", EXAMPLES)
 def test_the_examples_fill_all_gaps_of_their_messages(code: str) -> None:
     found = compile_text(TEXTS[code]["wrong"], KIT)
     values = found.diagnostics[0].values
@@ -335,8 +336,8 @@ def test_as_json() -> None:
 # -- explanations and languages -------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("code", sorted(TEXTS))
 @pytest.mark.parametrize("lang", LANGUAGES)
+@each_row("code", sorted(TEXTS))
 def test_each_code_is_explained(code: str, lang: str) -> None:
     text = explain(code, lang)
     assert text is not None

@@ -112,6 +112,7 @@ def run(robot: Esp32Robot, text: str) -> None:
     assert robot.until(session, session.upload(unpack(compiled.image))) == OK
 
 
+@pytest.mark.sampled("name", "major", keep=2)
 @pytest.mark.parametrize("major", [2, 3])
 @pytest.mark.parametrize("name", KITS)
 def test_a_program_drives(name: str, major: int) -> None:

@@ -58,6 +58,7 @@ def test_no_two_cores_touch_the_same_at_once() -> None:
     assert done.returncode == 0, (done.stdout + done.stderr)[-4000:]
 
 
+@pytest.mark.sampled("file", "old", "new", keep=2)
 @pytest.mark.parametrize(("file", "old", "new"), [
     (PIPE, "__atomic_store_n(&behind_, behind, __ATOMIC_RELEASE);", "behind_ = behind;"),
     (PIPE, "__atomic_load_n(&behind_, __ATOMIC_ACQUIRE)", "behind_"),

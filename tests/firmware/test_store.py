@@ -188,6 +188,7 @@ def test_what_breaks_are_noticed_by_finds_nothing(objects: list[str], tmp_path: 
 
 
 @needs_host
+@pytest.mark.sampled("name", keep=6)
 @pytest.mark.parametrize("name", BREAKS)
 def test_a_break_is_noticed(name: str, objects: list[str], tmp_path: Path) -> None:
     source = tmp_path / "store.cpp"

@@ -9,6 +9,7 @@ import re
 import pytest
 from cobs import cobs
 
+from tests.support.rows import each_row
 from tiniscript.bytecode.image import REFUSALS
 from tiniscript.bytecode.verify import RULES
 from tiniscript.link import messages, statuses
@@ -69,7 +70,7 @@ def test_every_payload_fits_a_frame() -> None:
     assert (large - MODE_BYTES, large - OFFSET_BYTES) == (241, 240)
 
 
-@pytest.mark.parametrize("length", range(PAYLOAD_BYTES - 2, payload_bytes(LARGE_FRAME) + 1))
+@each_row("length", range(PAYLOAD_BYTES - 2, payload_bytes(LARGE_FRAME) + 1))
 def test_no_frame_begins_like_text(length: int) -> None:
     for seq in range(256):
         frame = Frame(1, seq, 1, b"\1" * length)

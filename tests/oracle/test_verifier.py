@@ -24,6 +24,7 @@ from tests.oracle import spec_tables, verifier
 from tests.support.casefile import ROOT, Case, all_cases
 from tests.support.cpp_checks import python_verdict
 from tests.support.random_codes import random_codes, task_codes
+from tests.support.rows import each_row
 from tiniscript import compile_text
 from tiniscript.bytecode.disassembly import read_listing
 from tiniscript.bytecode.opcodes import ROLES
@@ -138,7 +139,7 @@ def listings() -> list[pytest.ParameterSet]:
     return [pytest.param(case, id=case.id) for case in found if "senses" not in case.parts]
 
 
-@pytest.mark.parametrize("case", listings())
+@each_row("case", listings())
 def test_listing_and_its_beginnings(case: Case) -> None:
     code = read_listing(case.parts["bytecode"])
     for actuators in (0, ACTUATORS):

@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from tests.machines.host import SOURCES, WARNINGS, missing
+from tests.support.rows import each_row
 
 MACHINE = SOURCES / "src" / "vm"
 EXTRAS = SOURCES / "extras"
@@ -52,7 +53,7 @@ def shouting(path: Path) -> set[str]:
     return found - {guard.group(1) if guard else "", CHIP_OF_THE_CORE} - arduinos
 
 
-@pytest.mark.parametrize("path", FILES, ids=lambda path: path.name)
+@each_row("path", FILES)
 def test_nothing_shouts(path: Path) -> None:
     """Arduino.h defines 1,480 macros in capitals: F, B0, INPUT. No name of ours may meet one."""
     assert not shouting(path)
@@ -64,7 +65,7 @@ def test_the_check_of_capitals_can_fail(tmp_path: Path) -> None:
     assert shouting(path) == {"F", "LIMIT"}
 
 
-@pytest.mark.parametrize("path", PORTABLE, ids=lambda path: path.name)
+@each_row("path", PORTABLE)
 def test_the_machine_asks_nothing_of_a_board(path: Path) -> None:
     text = path.read_text(encoding="utf-8")
     included = re.findall(r"#include (<[^>]+>)", text)
@@ -73,16 +74,14 @@ def test_the_machine_asks_nothing_of_a_board(path: Path) -> None:
     assert not words & set(FORBIDDEN)
 
 
-@pytest.mark.parametrize(
-    "path", [each for each in (*FILES, *BOARDS) if each.suffix == ".h"], ids=lambda p: p.name
-)
+@each_row("path", [path for path in (*FILES, *BOARDS) if path.suffix == ".h"])
 def test_guard_is_named_after_its_file(path: Path) -> None:
     folder = path.parent.name.replace("src", "")
     name = "_".join(filter(None, ("tiniscript", folder, path.stem, "h_"))).upper()
     assert f"#ifndef {name}\n#define {name}\n" in path.read_text(encoding="utf-8")
 
 
-@pytest.mark.parametrize("path", BOARDS, ids=lambda path: path.name)
+@each_row("path", BOARDS)
 def test_nothing_on_a_board_waits(path: Path) -> None:
     """Nor asks the core for what is done here by registers; it defines the clock alone."""
     waiting = {"delay", "delayMicroseconds", "pulseIn", "_delay_ms", "_delay_us", "Serial", "tone",

@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from tests.machines import wasm
+from tests.support.rows import each_row
 from tools import measures
 
 PACKAGE = Path(__file__).resolve().parent.parent.parent / "compiler" / "tiniscript"
@@ -72,7 +73,7 @@ FILES = sorted(PACKAGE.rglob("*.py"))
 STAGES = [path for path in FILES if stage_of(path) not in WHOLE]
 
 
-@pytest.mark.parametrize("path", STAGES, ids=lambda path: str(path.relative_to(PACKAGE)))
+@each_row("path", STAGES)
 def test_stage_looks_upstream_only(path: Path) -> None:
     stage = stage_of(path)
     found = {name.split(".")[1] for name in modules_of(path)} - {stage}

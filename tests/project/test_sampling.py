@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 from collections import Counter
 from collections.abc import Callable
 from pathlib import Path
@@ -9,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from tests.support import sampling
+from tests.support.rows import each_row
 
 ROWS = """
 import pytest
@@ -99,3 +101,24 @@ def test_what_is_asked_for_has_all_its_rows(
 ) -> None:
     found, said = collected(*words, of=of)
     assert len([name for name, _ in found if name == "test_case"]) == 60 and said == ""
+
+
+def test_all_rows_of_one_test_run_and_each_that_fails_is_named() -> None:
+    seen = []
+
+    @each_row("name, number", [("a", 1), ("b", 2), pytest.param("c", 3, id="third"), ("d", 4)])
+    def test(number: int, name: str, lang: str) -> None:
+        seen.append(name + lang)
+        assert number != 2, "two"
+        if name == "c":
+            raise KeyError(name)
+
+    assert list(inspect.signature(test).parameters) == ["lang"]
+    with pytest.raises(AssertionError) as why:
+        test(lang="en")
+    assert seen == ["aen", "ben", "cen", "den"]
+    first, second = str(why.value).split("\n\n")
+    assert first.startswith("('b', 2): AssertionError: two")
+    assert second == "third: KeyError: 'c'"
+    with pytest.raises(AssertionError, match="no rows"):
+        each_row("name", [])

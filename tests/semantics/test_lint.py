@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import pytest
-
+from tests.support.rows import each_row
 from tiniscript import check_text, robots
 from tiniscript.semantics.lint import advice
 
@@ -120,14 +119,14 @@ ADVISED = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize(("text", "code"), ADVISED)
+@each_row("text, code", ADVISED)
 def test_advice(text: str, code: str) -> None:
     found = check_text(text, KIT)
     assert found.is_right
     assert [diagnostic.code.number for diagnostic in found.diagnostics] == [code]
 
 
-@pytest.mark.parametrize(
+@each_row(
     "text",
     [
         "LOOP(FOREVER);W(1);IF(DISTANCE < 5);BREAK;ENDIF;END_LOOP;S",

@@ -13,6 +13,7 @@ from tests.pupils import corpus
 from tests.studio.programs import Program, programs
 from tests.support.kits import KITS
 from tests.support.new_word import HORN
+from tests.support.rows import each_row
 from tiniscript import compile_text, robots
 from tiniscript.kit import Kit
 from tiniscript.source import Source
@@ -71,7 +72,7 @@ def check(text: str, kit: Kit) -> None:
             assert block.place == place, (block, place, printed.text)
 
 
-@pytest.mark.parametrize("program", programs(), ids=lambda each: each.name)
+@each_row("program", programs())
 def test_every_program_is_the_same_from_its_blocks(program: Program) -> None:
     """Those of the paper, of all documents and cases, and the examples."""
     kit = robots.load(program.robot).kit
@@ -157,7 +158,7 @@ def test_every_node_of_the_grammar_has_a_block() -> None:
         assert kinds(text)[0] == kind
 
 
-@pytest.mark.parametrize("word", [name for name, each in WORDS.items() if each.role != "later"])
+@each_row("word", [name for name, word in WORDS.items() if word.role != "later"])
 def test_every_word_of_the_language_is_in_blocks(word: str) -> None:
     text = of_word(word)
     check(text, TINIBOT)

@@ -62,6 +62,7 @@ def check_line(text: str, kit: Kit) -> None:
     assert line_of(Source(line)) == line
 
 
+@pytest.mark.sampled("first")
 @pytest.mark.parametrize("first", range(0, 2000, 500))
 def test_the_line_of_a_random_program_is_the_same_program(first: int) -> None:
     for seed in range(first, first + 500):

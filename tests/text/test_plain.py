@@ -171,6 +171,7 @@ def check_same(found: Compiled, kit: Kit, senses: Senses) -> None:
     assert same(run_python(found.image, kit, senses), trace), found.source.text
 
 
+@pytest.mark.sampled("first")
 @pytest.mark.parametrize("first", range(0, ENOUGH, 500))
 def test_random_programs_do_the_same_in_plain_code(first: int) -> None:
     for seed in range(first, first + 500):

@@ -21,6 +21,7 @@ from tests.machines.text_reader import LARGEST_ROOM, Answer, TextReader
 from tests.oracle import programs
 from tests.support.casefile import Case, all_cases
 from tests.support.kits import KITS
+from tests.support.rows import each_row
 from tiniscript import check_text, compile_text, robots
 from tiniscript.bytecode.verify import verify
 from tiniscript.kit import Kit
@@ -170,7 +171,7 @@ def soup(seed: int) -> tuple[Kit, bytes]:
 CASES = [case for case in all_cases() if "tiniscript" in case.parts]
 
 
-@pytest.mark.parametrize("case", CASES, ids=lambda case: case.id)
+@each_row("case", CASES)
 def test_case(case: Case) -> None:
     parts = case.parts
     found = re.search(r"^robot *= *(\w+)", parts.get("senses", ""), re.MULTILINE)
@@ -199,7 +200,7 @@ def test_random_tokens(first: int) -> None:
         assert check_bytes(data, kit) is not None
 
 
-@pytest.mark.sampled("text", keep=3)
+@pytest.mark.sampled("text")
 @pytest.mark.parametrize(
     "text", [b"S // %b\n", b"S//%b", b"X%b=1", b"X=1%b", b"X=1.%b", b"F(1%b,2)", b"%bS", b"AN%bD=1"]
 )
@@ -220,7 +221,7 @@ def test_characters_of_unicode(point: int) -> None:
         check_bytes((text % chr(point)).encode(), KITS[1][1])
 
 
-@pytest.mark.sampled("room", keep=2)
+@pytest.mark.sampled("room")
 @pytest.mark.parametrize("room", [8, 40, 100, SHORT_BUFFER])
 def test_little_room_is_full_and_nothing_else(room: int) -> None:
     for seed in range(200):

@@ -7,6 +7,7 @@ import pytest
 from tests.machines import MACHINES, Machine, Senses
 from tests.support.casefile import Case, accept, all_cases
 from tests.support.images import has_tasks, image_for
+from tests.support.rows import each_row
 from tiniscript import Compiled, compile_text, robots
 from tiniscript.bytecode.disassembly import listing, read_listing
 from tiniscript.bytecode.image import ImageRefused
@@ -69,7 +70,7 @@ def having(*parts: str) -> list[pytest.ParameterSet]:
     return [pytest.param(each, id=each.id) for each in CASES if all(p in each.parts for p in parts)]
 
 
-@pytest.mark.parametrize("case", having("tiniscript"))
+@each_row("case", having("tiniscript"))
 def test_program_compiles_or_its_mistake_is_stated(case: Case) -> None:
     """A program without a `mistake` fence has none; nothing in a document is wrong by accident."""
     found = compiled(case)

@@ -17,6 +17,7 @@ from tests.machines import MACHINES
 from tests.machines.host import host, missing
 from tests.support import cpp_checks, cpp_edges, cpp_images
 from tests.support.casefile import Case
+from tests.support.rows import each_row
 from tests.vm.test_cases import listings_alone
 from tiniscript.bytecode.opcodes import BY_NAME, CODE_BYTES
 
@@ -37,7 +38,7 @@ def test_the_host_machine_is_there() -> None:
 
 
 @needs_host
-@pytest.mark.parametrize("case", listings_alone())
+@each_row("case", listings_alone())
 def test_listing_has_the_same_verdict(case: Case) -> None:
     cpp_checks.check_listing(host(), case)
 
@@ -82,10 +83,10 @@ def test_codes_of_three_bytes_that_begin_alike(name: str) -> None:
 
 
 @needs_host
-@pytest.mark.sampled("seed", keep=10)
+@pytest.mark.sampled("seed", keep=2)
 @pytest.mark.parametrize("seed", range(BATCHES))
 def test_random_codes(seed: int) -> None:
-    """A million in all, a quarter of it on a commit."""
+    """A million in all, a twentieth of it on a commit."""
     cpp_checks.check_a_batch(host(), seed, BATCH)
 
 

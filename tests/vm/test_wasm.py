@@ -19,6 +19,7 @@ from tests.support.command import Tsc
 from tests.support.cpp_checks import check_round, run_late
 from tests.support.images import has_tasks, image_for
 from tests.support.kits import KITS
+from tests.support.rows import each_row
 from tests.vm.test_cases import compiled, having, listings_alone, robot_and_senses
 from tiniscript import compile_text, robots
 from tiniscript.bytecode.disassembly import read_listing
@@ -64,7 +65,8 @@ def test_the_module_is_made_from_these_sources(tmp_path: Path) -> None:
 def test_another_machine_is_another_module(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    modules = wasm.MODULES
+    modules = wasm.MODULES[:1]
+    monkeypatch.setattr(wasm, "MODULES", modules)
     for module in modules:
         stale = tmp_path / module.path
         stale.parent.mkdir(parents=True, exist_ok=True)
@@ -79,7 +81,7 @@ def test_another_machine_is_another_module(
     monkeypatch.setattr(wasm, "built", built)
     assert wasm.main(["--check"]) == 1
     said = capsys.readouterr().err
-    assert said.count("stale. Run: python -m tools.builds.wasm") == len(modules) == 4
+    assert said.count("stale. Run: python -m tools.builds.wasm") == len(modules)
     assert wasm.main([]) == 0
     assert wasm.main(["--check"]) == 0
     for module in modules:
@@ -217,7 +219,7 @@ def test_python_runs_without_wasmtime() -> None:
 
 
 @needs_wasmtime
-@pytest.mark.parametrize("case", listings_alone(has_tasks_too=False))
+@each_row("case", listings_alone(has_tasks_too=False))
 def test_verdict_of_a_listing(case: Case) -> None:
     from tiniscript.vm.wasm import WasmImage
 
