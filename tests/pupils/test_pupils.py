@@ -10,6 +10,7 @@ import re
 import pytest
 
 from tests.pupils.corpus import Entry, check, entries, found_in, write
+from tests.support.rows import each_row
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.repairs.fixing import fixed
@@ -67,7 +68,7 @@ def test_the_corpus_is_as_it_was(request: pytest.FixtureRequest) -> None:
     assert not changed, f"{len(changed)} of {len(found)}, the first: {changed[0]}"
 
 
-@pytest.mark.parametrize("entry", ENTRIES, ids=lambda each: each.program[:40])
+@each_row("entry", ENTRIES)
 def test_each_repair_helps_and_keeps_the_numbers(entry: Entry) -> None:
     found, source = check(entry.program), Source(entry.program)
     for diagnostic in found:
@@ -89,7 +90,7 @@ def test_each_repair_helps_and_keeps_the_numbers(entry: Entry) -> None:
             assert not loses_a_number(entry.program, edits), fix
 
 
-@pytest.mark.parametrize("entry", ENTRIES, ids=lambda each: each.program[:40])
+@each_row("entry", ENTRIES)
 def test_what_is_repaired_is_repaired_once(entry: Entry) -> None:
     if entry.mended is not None:
         assert fixed(entry.mended, check).text == entry.mended
