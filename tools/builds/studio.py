@@ -224,7 +224,8 @@ def bundle(tools: Tools, target: Path) -> None:
               "--chunk-names=[name]-[hash]", "--splitting", f"--outdir={target}",
               "--alias:blockly/core=./made/blockly/blockly.mjs",
               f"--metafile={SOURCES / 'made' / INPUTS}")  # fmt: skip
-    run(tools.node, "node_modules/esbuild/bin/esbuild", "src/main.js", "src/worker.js", *common)
+    esbuild = "node_modules/esbuild-wasm/bin/esbuild"
+    run(tools.node, esbuild, "src/main.js", "src/worker.js", *common)
 
 
 def offline(target: Path) -> None:
