@@ -11,13 +11,11 @@ import pytest
 
 from tiniscript import compile_text, robots
 from tiniscript.bytecode.image import (
-    FIELDS,
     HEADER_BYTES,
     REFUSALS,
     Image,
     ImageRefused,
     checksum,
-    image_format,
     pack,
     sealed,
     unpack,
@@ -59,17 +57,6 @@ def test_what_is_packed_is_read_back(start: str, code: bytes, later: bytes) -> N
     assert unpack(data) == Image(start, 0x1234, code, checksum(data), (2, 0), later)
     assert checksum(data) == zlib.crc32(data[:10] + data[14:])
     assert len(data) == data[5] + len(code) == HEADER_BYTES + len(later) + len(code)
-
-
-def test_the_table_and_the_format_agree() -> None:
-    """`pack` and `construct` are made from the same fields."""
-    for image in (IMAGE, pack("SB", 3, CODE, LATER)):
-        parsed = image_format().parse(image)
-        for field in FIELDS:
-            assert field.name in parsed
-        assert image_format().build(parsed) == image
-        assert parsed.checksum == checksum(image)
-        assert (parsed.later, parsed.code) == (unpack(image).later, CODE)
 
 
 @pytest.mark.parametrize("image", [IMAGE, pack("SI", 0, CODE, LATER)], ids=["", "later"])

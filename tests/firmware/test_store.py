@@ -22,7 +22,7 @@ import pytest
 
 from tests.machines.host import FLAGS, ROOT, SOURCES, WARNINGS, compiled, missing
 from tiniscript.bytecode.image import HEADER_BYTES, pack
-from tools.bench import avr_bench, machine_size
+from tools.bench import avr_bench
 
 needs_host = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 needs_chip = pytest.mark.skipif(
@@ -254,13 +254,6 @@ def test_on_a_chip(size: int, ticks: int) -> None:
     ]
     assert int(start.split()[1]) < 16_000 * 8  # cycles: 8 ms, the checksum of a program
     assert int(save.split()[1]) < 16 * 25  # 25 microseconds
-
-
-@needs_chip
-def test_size() -> None:
-    size = machine_size.store_size()
-    assert size.flash <= machine_size.STORE_MUST
-    assert size.ram <= 24
 
 
 # -- the campaign -------------------------------------------------------------------------------

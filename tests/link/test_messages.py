@@ -36,7 +36,6 @@ from tiniscript.link.messages import (
 )
 from tiniscript.link.requests import MODE_BYTES, OFFSET_BYTES, SHORT_BYTES
 from tiniscript.text.levels import LEVELS
-from tools.bench import link_size, machine_size
 
 
 def test_numbers_are_used_once_and_leave_the_bits_alone() -> None:
@@ -120,13 +119,3 @@ def test_some_sentences() -> None:
     assert "0100" not in statuses.sentence(69, 256, "es").said
     assert "1.0" in statuses.sentence(69, 256, "es").said
     assert statuses.sentence(200, 0, "en") == statuses.sentence(64, 0, "en")
-
-
-@pytest.mark.skipif(
-    bool(machine_size.missing(machine_size.AVR)), reason=machine_size.missing(machine_size.AVR)
-)
-def test_the_link_keeps_to_its_size() -> None:
-    """What it takes beside the machine on an ATmega328P, with the flags of Arduino."""
-    found = link_size.size()
-    assert 2000 < found.flash <= link_size.MUST
-    assert 150 < found.ram <= 400

@@ -37,10 +37,10 @@ def missing(name: str) -> str:
 
 
 class Emulated(Process):
-    """One emulator. `program` is what `built` returns, `more` what QEMU is told besides."""
+    """One emulator. `program` is what `built` returns."""
 
-    def __init__(self, name: str, program: Path, more: tuple[str, ...] = ()) -> None:
-        words = [*chips.CHIPS[name].emulator, *QUIET, *more]
+    def __init__(self, name: str, program: Path) -> None:
+        words = [*chips.CHIPS[name].emulator, *QUIET]
         load = ("-device", f"loader,file={program},cpu-num=0")
         super().__init__([*words, *load], chips.CHIPS[name].board)
 

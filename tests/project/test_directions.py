@@ -130,7 +130,7 @@ def test_the_road_needs_the_standard_library_alone() -> None:
         "from tiniscript import compile_text, robots; "
         "assert compile_text('SI|F(5,80)', robots.load('tinibot').kit).image"
     )
-    unwanted = {"construct", "tomllib", "tomli", "rich", "platformdirs", "serial", "dataclasses",
+    unwanted = {"tomllib", "tomli", "rich", "platformdirs", "serial", "dataclasses",
                 "argparse", "json", "difflib",
                 "tiniscript.diagnostics.rendering", "tiniscript.vm.machine",
                 "tiniscript.syntax.recovery",
@@ -200,7 +200,7 @@ def test_compile_imports_no_other_verb(tmp_path: Path) -> None:
     modules = imported_by(
         f"from tiniscript.cli import main; assert main(['compile', {str(program)!r}]) == 0"
     )
-    unwanted = {"cobs", "serial", "construct", "tomllib", "tomli", "rich", "dataclasses",
+    unwanted = {"cobs", "serial", "tomllib", "tomli", "rich", "dataclasses",
                 "tiniscript.link", "tiniscript.cli.texts.robot",
                 "tiniscript.vm.machine", "tiniscript.vm.trace", "tiniscript.bytecode.disassembly",
                 "tiniscript.syntax.formatter"}  # fmt: skip

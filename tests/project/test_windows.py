@@ -170,7 +170,7 @@ def test_a_wiring_list_goes_through_a_pipe_of_windows(encoding: str) -> None:
 WITHOUT_UNIX = r"""
 import argparse, asyncio, json, os, platform, select, shlex, shutil, signal, socket, ssl, subprocess
 import sys, tempfile, threading, uuid, webbrowser
-import cobs.cobs, construct, platformdirs, rich.console, rich.live
+import cobs.cobs, platformdirs, rich.console, rich.live
 import serial.tools.list_ports, wasmtime, PIL.Image, bleak, zeroconf, rich.logging
 gone = ("termios", "tty", "pty", "fcntl", "readline", "pwd", "grp", "resource", "syslog")
 class Missing:

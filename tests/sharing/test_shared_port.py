@@ -174,7 +174,7 @@ AT_ONCE = [
     pytest.param(("upload", "-e", "SI|F(0.1, 30)"), set[str](), id="upload"),
     pytest.param(("stop",), {"csv", "tiniscript.codegen", "tiniscript.semantics"}, id="stop"),
 ]
-NEVER = {"construct", "tomllib", "tomli", "rich", "ssl", "asyncio", "bleak", "zeroconf", "wasmtime",
+NEVER = {"tomllib", "tomli", "rich", "ssl", "asyncio", "bleak", "zeroconf", "wasmtime",
          "concurrent.futures", "tiniscript.cli.robot.fleet", "tiniscript.cli.robot.in_reach",
          "tiniscript.cli.robot.simulator", "tiniscript.diagnostics.rendering",
          "tiniscript.virtual.transports", "tiniscript.vm.machine"}  # fmt: skip

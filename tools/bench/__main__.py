@@ -20,10 +20,9 @@ BENCHMARKS = (
     "virtual",
     "upload",
     "large_upload",
-    "classroom",
     "studio",
     "firmware_size",
-    "targets",
+    "sizes",
 )
 
 

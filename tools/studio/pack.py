@@ -21,7 +21,7 @@ LEFT_OUT = ("tiniscript.cli", "tiniscript.doctor", "tiniscript.flash", "tiniscri
             "tiniscript.link.sharing", "tiniscript.robots.reader",
             "tiniscript.robots.wiring")  # fmt: skip
 # Imported where there is a port, wasmtime or another system; never in a browser.
-NOT_HERE = {"wasmtime", "serial", "bleak", "zeroconf", "platformdirs", "tomli", "construct",
+NOT_HERE = {"wasmtime", "serial", "bleak", "zeroconf", "platformdirs", "tomli",
             "ctypes", "multiprocessing", "urllib.request", "ssl",
             "asyncio.windows_events", "asyncio.windows_utils",
             "pydoc", "doctest", "unittest", "pdb", "argparse"}  # fmt: skip

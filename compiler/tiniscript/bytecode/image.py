@@ -1,7 +1,6 @@
 """An image: code with the header that tells a robot whether it may run it.
 
-FIELDS is the one declaration of the header. `pack` and `unpack` need the standard library alone;
-documents and tests use the `construct` format that is made from the same table.
+FIELDS is the one declaration of the header.
 Knows nothing of what the code does: `verify` does, and `loading` asks both. What code needs is told
 to `pack`: an image says the smallest minor version that has it.
 """
@@ -9,15 +8,11 @@ to `pack`: an image says the smallest minor version that has it.
 from __future__ import annotations
 
 import zlib
-from functools import lru_cache
 from struct import pack as struct_pack
 from struct import unpack as struct_unpack
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import NamedTuple
 
 from tiniscript.bytecode.opcodes import CODE_BYTES, FIRMWARE_MINOR, ISA_MAJOR, ISA_MINOR
-
-if TYPE_CHECKING:
-    from construct import Construct
 
 
 class Version(NamedTuple):
@@ -136,21 +131,6 @@ def sealed(image: bytes) -> bytes:
 def checksum(image: bytes) -> int:
     """Return the checksum in the header of a whole image."""
     return int.from_bytes(image[_CHECKSUM_AT:_BEHIND_CHECKSUM], "little")
-
-
-@lru_cache(maxsize=1)
-def image_format() -> Construct[Any, Any]:
-    """Return the `construct` format of an image, made from FIELDS."""
-    import construct as c
-
-    kinds = {"B": c.Int8ul, "H": c.Int16ul, "I": c.Int32ul, "2s": c.Bytes(2)}
-    fields = [field.name / kinds[field.layout] for field in FIELDS]
-    return c.Struct(
-        *fields,
-        "later" / c.Bytes(c.this.header_length - HEADER_BYTES),
-        "code" / c.Bytes(c.this.code_length),
-        "rest" / c.GreedyBytes,
-    )
 
 
 def unpack(data: bytes, machine: Version = PYTHON) -> Image:

@@ -13,11 +13,6 @@ extern "C" {
 uint32_t host_read(uint8_t* data, uint32_t length);
 uint32_t host_write(const uint8_t* data, uint32_t length);
 
-// The emulator's clock, which goes on with the instructions where it counts them; and so many times
-// two instructions.
-uint32_t host_clock();
-void host_spin(uint32_t times);
-
 // The program: answers requests until there are no more.
 void serve();
 }

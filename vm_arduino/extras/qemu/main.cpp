@@ -63,13 +63,6 @@ bool answer_one() {
     case 'A':
       answer_arithmetic(request, asked_length);
       break;
-    case 'C': {  // the clock, after so many turns of two instructions
-      const uint32_t times = request.u32();
-      if (times != 0) host_spin(times);
-      const uint32_t now = host_clock();
-      for (uint8_t k = 0; k < 4; k++) put(static_cast<char>(now >> (8 * k)));
-      break;
-    }
     case 'T':
       answer_texts(request, asked_length);
       break;

@@ -63,16 +63,6 @@ transfer:  // the answer is how many bytes are left
     addi sp, sp, 32
     ret
 
-    .global host_clock
-host_clock:
-    csrr a0, mcycle
-    ret
-    .global host_spin
-host_spin:
-    addi a0, a0, -1
-    bnez a0, host_spin
-    ret
-
     .data
 in_name:
     .word in_path, 0, 10  // to read

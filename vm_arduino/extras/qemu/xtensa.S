@@ -196,19 +196,3 @@ host_write:
     movi a2, 4
     ask_qemu
     end_call
-
-    .balign 4
-    .global host_clock
-host_clock:
-    begin_call
-    rsr a2, ccount
-    end_call
-
-    .balign 4
-    .global host_spin
-host_spin:
-    begin_call
-1:
-    addi a2, a2, -1
-    bnez a2, 1b
-    end_call

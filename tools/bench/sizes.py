@@ -1,0 +1,267 @@
+"""Prints how much flash and RAM each part of the firmware takes, on each chip of a robot.
+
+Links a small program once with and once without a use of the part, and takes the difference: what
+other parts use too is in both, and the robot below is counted by neither. Knows the AVR's compiler
+and its flags; `chips.py` knows those of the other chips.
+"""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+import sys
+import tempfile
+from functools import lru_cache
+from pathlib import Path
+from typing import NamedTuple
+
+ROOT = Path(__file__).resolve().parent.parent.parent
+sys.path[:0] = [str(ROOT)]
+
+from tools.bench import avr_bench
+from tools.builds import chips
+
+SOURCE = ROOT / "vm_arduino" / "src"
+AVR = "ATmega328P (AVR)"
+EMULATED = {f"{chip.board}": chip for chip in chips.CHIPS.values()}
+# As PlatformIO builds the sketch: Arduino's flags, and those of platformio.ini.
+SKETCH_FLAGS = (
+    *avr_bench.FLAGS, "-std=gnu++11", "-fno-threadsafe-statics", "-Wl,--relax", "-mstrict-X",
+    "-fno-gcse", "-fno-move-loop-invariants",
+)  # fmt: skip
+
+# A robot that does nothing, and a use of each part that no optimiser can leave out.
+MACHINE = """
+#include "robot.h"
+#include "store/nvm.h"
+#include "store/store.h"
+#include "vm/image.h"
+#include "vm/verify.h"
+#include "vm/vm.h"
+using namespace tiniscript;
+volatile uint8_t sink;
+namespace tiniscript {
+void robot_motors(int8_t left, int8_t right) { sink = left; sink = right; }
+void robot_off() { sink = 0; }
+bool robot_read(uint8_t sensor, int32_t* value) { *value = sensor; return sink; }
+void robot_beep(uint16_t hertz, uint32_t) { sink = hertz; }
+bool robot_show(int32_t value, bool) { sink = value; return sink; }
+void robot_set(uint8_t actuator, int32_t value) { sink = actuator; sink = value; }
+uint16_t robot_device_hash(uint16_t device) { sink = device; return sink; }
+#define once __attribute__((noinline))
+once bool nvm_is_ready() { return sink; }
+once uint8_t nvm_read(uint16_t place) { sink = place; return sink; }
+once void nvm_write(uint16_t place, uint8_t value) { sink = place; sink = value; }
+once void nvm_clear(uint16_t place) { sink = place; }
+}
+uint8_t bytes[64];  // not of the machine, but here with and without it
+PORT
+int main() {
+  int32_t value;
+  robot_motors(sink, sink); robot_off(); robot_read(sink, &value); robot_beep(sink, sink);
+  robot_show(value, sink); robot_set(sink, value);
+  sink = nvm_is_ready(); sink = nvm_read(sink); nvm_write(sink, sink); nvm_clear(sink);
+  bytes[sink] = sink; sink = bytes[sink];
+  USE
+}
+"""
+IMAGE = """{ Image image;
+        sink = (uint8_t)unpack(bytes, sink, &image); sink = image.start; }"""
+VERIFY_AND_RUN = """{ uint16_t devices;
+        Verdict verdict = verify(bytes, sink, sink, sink, &devices);
+        sink = (uint8_t)verdict.rule; sink = verdict.offset; sink = devices; }
+      { static Machine machine; static int32_t readings[8];
+        machine.start(bytes, sink, readings, sink, sink, sink);
+        sink = (uint8_t)machine.tick(sink, sink); }"""
+STORE = """{ static Store store; const Area area = (Area)sink;
+        store.boot(); store.tick(sink); sink = (uint8_t)store.state(); sink = store.is_busy();
+        sink = store.begin_save(bytes); sink = store.begin_keep(area, bytes);
+        sink = store.used(area); store.refuse();
+        sink = store.fetch(area, sink, bytes); }"""
+PORT = """
+#include "link/link.h"
+#include "link/port.h"
+namespace tiniscript {
+Identity identity; RobotStatus robot_status; DeviceInfo device_info; Receiver receiver;
+Identity& port_identity() { return identity; }
+const RobotStatus& port_status() { return robot_status; }
+Trim trim;
+const Trim& port_trim() { return trim; }
+Answer port_set_trim(const Trim& other) { trim = other; return (Answer)sink; }
+const DeviceInfo& port_device_info() { return device_info; }
+LineErrors port_line_errors() { return {0, 0}; }
+uint16_t port_room() { return sink; }
+Answer port_undo() { return (Answer)sink; }
+Answer port_make_way(bool) { return (Answer)sink; }
+bool port_may_prepare() { return sink; }
+uint8_t* port_memory(uint16_t length, bool) { return length > 400 ? nullptr : (uint8_t*)0x200; }
+void port_forget() { sink = 0; }
+void port_take(uint8_t mode, bool) { sink = mode; }
+void port_seal(const uint8_t* image) { sink = *image; }
+void port_start(bool is_live) { sink = is_live; }
+void port_stop(uint8_t fault) { sink = fault; }
+void port_release() { sink = 0; }
+uint16_t port_image_length() { return sink; }
+uint16_t port_run_at() { return sink; }
+const uint8_t* port_run_image() { return bytes; }
+Answer port_image_byte(uint16_t offset, uint8_t* byte) { *byte = offset; return (Answer)sink; }
+uint8_t* port_text_memory(uint16_t*, bool* has_room) { *has_room = sink; return bytes; }
+uint8_t* port_text_room(uint16_t* room) { *room = sink; return (uint8_t*)0x300; }
+bool port_text_is_beside(bool) { return false; }
+bool port_may_make_way(bool) { return sink; }
+void port_take_text(uint8_t* image, bool) { sink = *image; }
+void port_end() { sink = 0; }
+const uint8_t words[] tini_progmem = {0};
+const uint8_t* robot_words() { return words; }
+bool robot_speaks_spanish() { return false; }
+Answer port_rename(const uint8_t* name, uint8_t at) { sink = name[at]; return (Answer)sink; }
+Answer port_key(uint8_t which, uint8_t* key) { key[which] = sink; return (Answer)sink; }
+Answer port_keep_key(uint8_t at, const uint8_t* key) { sink = key[at]; return (Answer)sink; }
+void port_identify() { sink = 1; }
+}
+"""
+PORT_USED = """port_identity(); port_status(); port_device_info(); sink = port_room();
+  sink = port_line_errors().framing;
+  port_set_trim(port_trim());
+  port_may_prepare(); port_make_way(sink); port_memory(sink, 0); port_forget(); port_take(sink, 0);
+  port_undo();
+  port_seal(bytes); port_start(sink); port_stop(sink);
+  port_release(); sink = port_image_length(); port_image_byte(sink, bytes); port_rename(bytes, 1);
+  port_key(1, bytes); port_keep_key(1, bytes); port_identify();
+"""
+LINK = """{ static Link link;
+        link.begin(&receiver, sink); sink = receiver.put(sink, sink);
+        link.pass_time(sink); link.tick(); sink = link.has_tx_byte();
+        link.tell(); link.seal();
+        uint8_t byte; while (link.next_tx_byte(&byte)) sink = byte;
+        link.done(); link.faulted(); link.stopped(Cause::kButton);
+        link.lapse(); sink = link.confirm_claim(); sink = link.show(sink, sink); }"""
+READER = """
+#include "text/kit_words.h"
+#include "text/reader.h"
+#include "text/texts.h"
+#include "vm/crc32.h"
+using namespace tiniscript;
+volatile uint8_t sink;
+const uint8_t words[] tini_progmem = {0};
+const uint8_t* tiniscript::robot_words() { return words; }
+bool tiniscript::robot_speaks_spanish() { return false; }
+uint8_t buffer[389];
+Reader reader;
+int main() {
+  uint8_t byte = sink;
+  sink = (uint8_t)crc32(sink, &byte, sink);
+  uint32_t value = sink;
+  sink = (uint8_t)(value / 1000 + value * sink);
+  buffer[sink] = sink; sink = buffer[sink];
+  USE
+}
+"""
+READ = """Reader* const its = near(&reader);
+  its->begin(buffer, sizeof buffer);
+  for (;;) {
+    sink = (uint8_t)its->put(sink);
+    sink = its->start(); sink = its->length(); sink = its->column();
+    sink = ANSWER;
+  }"""
+ALL = IMAGE + VERIFY_AND_RUN
+
+
+class Size(NamedTuple):
+    flash: int
+    ram: int
+
+
+class Part(NamedTuple):
+    """What is built for it: a program, what of it is always used, and what uses the part."""
+
+    program: str
+    always: str
+    use: str
+    folders: tuple[str, ...]  # of the sources that are linked, besides the machine
+    flags: tuple[str, ...]  # for the AVR
+
+
+MACHINE_ALONE = MACHINE.replace("PORT", "")
+PARTS = {
+    "machine and verifier": Part(
+        MACHINE_ALONE, "", VERIFY_AND_RUN, ("store",), avr_bench.FLAGS
+    ),
+    "machine, with images": Part(MACHINE_ALONE, "", ALL, ("store",), avr_bench.FLAGS),
+    "store": Part(MACHINE_ALONE, ALL, STORE, ("store",), avr_bench.FLAGS),
+    "link, with text": Part(
+        MACHINE.replace("PORT", PORT), PORT_USED + ALL, LINK, ("link", "text"),
+        avr_bench.FLAGS,
+    ),
+    "reader of text alone": Part(
+        READER, "", READ.replace("ANSWER", "(uint8_t)its->problem()"), ("text",), SKETCH_FLAGS
+    ),
+    "reader of text, with answers": Part(
+        READER, "", READ.replace("ANSWER", "flash_byte(packed_texts() + text_of(its->problem()))"),
+        ("text",), SKETCH_FLAGS,
+    ),
+}  # fmt: skip
+SHOWN = ("machine and verifier", "link, with text", "reader of text alone")
+# Bytes of flash and of RAM on the AVR, at most.
+MUST = {
+    "machine and verifier": Size(7168, 400),
+    "store": Size(1600, 24),
+    "link, with text": Size(16_000, 400),
+    "reader of text, with answers": Size(6500, 60),
+}
+
+
+def missing(chip: str) -> str:
+    """Return why a chip cannot be measured here, or nothing."""
+    if chip != AVR:
+        return chips.missing(EMULATED[chip])
+    return "" if shutil.which("avr-g++") else f"no avr-g++ ({avr_bench.PACKAGES}): no {AVR}"
+
+
+def size(name: str, chip: str = AVR) -> Size:
+    """Return what a part adds to its small program. Raises RuntimeError with the compiler's words.
+
+    On the AVR the stack comes on top.
+    """
+    part = PARTS[name]
+    with_it, without = (_built(part, part.always + use, chip) for use in (part.use, ""))
+    return Size(with_it.flash - without.flash, with_it.ram - without.ram)
+
+
+@lru_cache
+def _built(part: Part, use: str, chip: str) -> Size:
+    program = part.program.replace("USE", use)
+    if chip != AVR:
+        return Size(*chips.size(EMULATED[chip], program, *part.folders))
+    folders = sorted(("vm", *part.folders))
+    code = [path for each in folders for path in sorted((SOURCE / each).glob("*.[cS]*"))]
+    with tempfile.TemporaryDirectory() as folder:
+        source, made = Path(folder) / "probe.cpp", Path(folder) / "probe"
+        source.write_text(program, encoding="utf-8")
+        _done("avr-g++", *part.flags, f"-I{SOURCE}", str(source), *map(str, code), "-o", str(made))
+        said = _done("avr-size", str(made))
+    text, data, bss = (int(word) for word in said.splitlines()[1].split()[:3])
+    return Size(text + data, data + bss)
+
+
+def _done(*command: str) -> str:
+    ran = subprocess.run(command, capture_output=True, text=True)
+    if ran.returncode != 0:
+        raise RuntimeError(f"{command[0]} fails:\n{ran.stderr[:4000]}")
+    return ran.stdout
+
+
+def main() -> int:
+    print("| chip |", " | ".join(f"{part}: flash | RAM" for part in SHOWN), "|")
+    print("| --- |", " | ".join("---: | ---:" for _ in SHOWN), "|")
+    for chip in (AVR, *EMULATED):
+        if missing(chip):
+            print(missing(chip), file=sys.stderr)
+            continue
+        found = [size(part, chip) for part in SHOWN]
+        print(f"| {chip} |", " | ".join(f"{each.flash:,} | {each.ram}" for each in found), "|")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
