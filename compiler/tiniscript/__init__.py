@@ -10,7 +10,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from tiniscript.diagnostics.rendering import Message
     from tiniscript.library.compiling import Compiled as Compiled
     from tiniscript.library.compiling import check_text as check_text
     from tiniscript.library.compiling import compile_text as compile_text
@@ -23,7 +22,7 @@ if TYPE_CHECKING:
         UsageError,
     )
     from tiniscript.library.events import Ending, RobotEvent
-    from tiniscript.library.programs import Program, check, compile, show
+    from tiniscript.library.programs import Message, Program, check, compile, show
     from tiniscript.library.runs import Fault, Trace, TraceEvent, run
     from tiniscript.library.simulated import VirtualRobotConnection, virtual_robot
     from tiniscript.version import __version__ as __version__
@@ -53,7 +52,6 @@ __all__ = (  # what `docs/api.en.md` promises
     "virtual_robot",
 )
 _HOMES = {
-    "diagnostics.rendering": ("Message",),
     "library.compiling": ("Compiled", "check_text", "compile_text"),
     "library.connection": ("Receipt", "RobotConnection", "RobotInfo", "connect"),
     "library.events": ("Ending", "RobotEvent"),
@@ -64,7 +62,7 @@ _HOMES = {
         "TiniScriptError",
         "UsageError",
     ),
-    "library.programs": ("Program", "check", "compile", "show"),
+    "library.programs": ("Message", "Program", "check", "compile", "show"),
     "library.runs": ("Fault", "Trace", "TraceEvent", "run"),
     "library.simulated": ("VirtualRobotConnection", "virtual_robot"),
     "version": ("__version__",),

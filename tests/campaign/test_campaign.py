@@ -5,7 +5,6 @@ from __future__ import annotations
 import runpy
 import subprocess
 import sys
-from datetime import datetime, timedelta, timezone
 from importlib.util import find_spec
 from pathlib import Path
 from shutil import which
@@ -70,46 +69,6 @@ def test_what_other_code_has_reached_does_not_count(monkeypatch: pytest.MonkeyPa
     assert (kept("done").done, kept("done").commit) == (10, "b" * 10)
 
 
-def test_a_campaign_that_is_interrupted_keeps_what_was_done(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    run = subprocess.run
-    calls = []
-
-    def interrupted(*words: object, **how: object) -> object:
-        calls.append(words)
-        if len(calls) == 2:
-            raise KeyboardInterrupt
-        return run(*words, **how)  # type: ignore[call-overload]
-
-    monkeypatch.setattr(subprocess, "run", interrupted)
-    assert campaign.main(["done"]) == 2
-    assert kept("done").done == 10
-    assert "goes on from here" in capsys.readouterr().out
-
-
-def test_it_says_for_how_long_a_goal_was_not_run(
-    own_goals: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    """Also of what another computer has run, which is in the document."""
-    today = datetime.now(timezone.utc).date()
-    old = Result(25, 1.0, 7, 22, (today - timedelta(days=9)).isoformat(), "a" * 10)
-    results.write(own_goals, {"done": old, "bad": old._replace(date=today.isoformat())})
-    campaign.main(["--list"])
-    first, second = capsys.readouterr().out.splitlines()
-    assert "25 in 1 s" in first and first.endswith("; run 9 days ago")
-    assert second.endswith("; run today")
-    results.write(own_goals, {})
-    campaign.main(["--list"])
-    assert "not run yet" in capsys.readouterr().out
-
-
-def test_the_time_ends_it(capsys: pytest.CaptureFixture[str]) -> None:
-    assert campaign.main(["done", "--minutes", "0"]) == 0
-    assert "The time is over" in capsys.readouterr().out
-    assert results.read(results.kept()) == {}
-
-
 def test_the_table_says_what_was_not_run_and_what_is_less(
     own_goals: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -146,13 +105,6 @@ def test_each_figure_is_of_a_commit_that_led_here() -> None:
     lost = {name: each.commit for name, each in figures.items()
             if not results.is_in_history(each.commit)}  # fmt: skip
     assert lost == {}, "run these again: python -m tools.campaign NAME, and then --write"
-
-
-def test_an_unknown_goal_is_told_which_there_are(capsys: pytest.CaptureFixture[str]) -> None:
-    with pytest.raises(SystemExit) as ended:
-        campaign.main(["everything"])
-    assert ended.value.code == 2
-    assert "There are: done, bad" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("goal", GOALS, ids=lambda goal: goal.name)

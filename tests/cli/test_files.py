@@ -19,7 +19,7 @@ from platformdirs import user_cache_path
 from tests.support.command import PROGRAM, Tsc, process
 from tiniscript import files
 from tiniscript.cli import outputs
-from tiniscript.codegen import source_map
+from tiniscript.library import source_map
 from tiniscript.link.sharing import registry
 from tiniscript.link.sharing.registry import Registration
 

@@ -206,7 +206,7 @@ def test_input_that_is_no_text() -> None:
 @pytest.mark.parametrize("kind", ["pipe", "folder", "device", "circle", "huge"])
 def test_files_of_the_cache_may_be_anything(kind: str) -> None:
     """No command waits for them, or reads for ever: they say nothing."""
-    from tiniscript.codegen import source_map
+    from tiniscript.library import source_map
     from tiniscript.link import known_ports
     from tiniscript.link.sharing import registry
     from tiniscript.virtual import directory
@@ -253,7 +253,7 @@ def test_a_cache_that_cannot_be_written_is_no_trouble(
 
 
 def test_a_damaged_cache_is_no_trouble(tsc: Tsc, program: Path) -> None:
-    from tiniscript.codegen import source_map
+    from tiniscript.library import source_map
 
     tsc("compile", program)
     path = source_map._path(unpack(program.with_suffix(".bin").read_bytes()).checksum)
@@ -276,7 +276,7 @@ def test_a_damaged_cache_is_no_trouble(tsc: Tsc, program: Path) -> None:
 def test_the_cache_keeps_a_thousand_maps(
     tsc: Tsc, program: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from tiniscript.codegen import source_map
+    from tiniscript.library import source_map
 
     monkeypatch.setattr(source_map, "KEPT", 3)
     for seconds in range(1, 7):

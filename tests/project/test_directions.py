@@ -32,7 +32,7 @@ UPSTREAM: dict[str, set[str]] = {
     "semantics": {*TEXT, "bytecode", "syntax"},
     "repairs": {*TEXT, "syntax"},
     "recovery": {*TEXT, "syntax"},
-    "codegen": {"source", "files", "fixed_point", "bytecode", "semantics"},
+    "codegen": {"source", "fixed_point", "bytecode", "semantics"},
     "vm": {"fixed_point", "kit", "bytecode"},
     "robots": SHARED,
     "text": {*TEXT, "bytecode", "syntax", "semantics", "codegen", "robots"},

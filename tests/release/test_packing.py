@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import os
-import tarfile
 import zipfile
 from pathlib import Path
 
 from tools.builds import library
-from tools.release.packing import OLDEST, difference, pack, sha256, unpack
+from tools.release.packing import difference, pack, sha256, unpack
 
 EPOCH = 1_700_000_000
 
@@ -44,13 +43,6 @@ def test_what_may_be_started_may_be_started_when_unpacked(tmp_path: Path) -> Non
     assert (inside / "a.txt").stat().st_mode & 0o777 == 0o644
 
 
-def test_a_time_before_zip_files_is_the_oldest_that_they_know(tmp_path: Path) -> None:
-    made = pack(folder(tmp_path / "one", ["a.txt"], EPOCH), tmp_path / "x.zip", 0)
-    with zipfile.ZipFile(made) as packed:
-        assert packed.infolist()[0].date_time == (1980, 1, 1, 0, 0, 0)
-    assert OLDEST > 0
-
-
 def test_a_difference_names_the_files(tmp_path: Path) -> None:
     one = pack(folder(tmp_path / "one", ["a", "b", "c"], EPOCH), tmp_path / "x.zip", EPOCH)
     (tmp_path / "one" / "b").write_text("other")
@@ -61,27 +53,6 @@ def test_a_difference_names_the_files(tmp_path: Path) -> None:
     (tmp_path / "3").mkdir()
     later = pack(tmp_path / "one", tmp_path / "3" / "x.zip", EPOCH + 10)
     assert difference(other, later) == "x.zip: times, rights or the order of its files"
-
-
-def test_a_difference_of_source_packages_names_the_files(tmp_path: Path) -> None:
-    found = []
-    for name in ("1", "2"):
-        place = folder(tmp_path / name, ["a", "b"], EPOCH)
-        (place / "b").write_text(name)
-        made = tmp_path / f"{name}.tar.gz"
-        with tarfile.open(made, "w:gz") as archive:
-            archive.add(place, "x")
-        found.append(made)
-    assert difference(*found) == "1.tar.gz: x/b"
-
-
-def test_many_differences_are_counted(tmp_path: Path) -> None:
-    names = [f"{k}" for k in range(9)]
-    one = pack(folder(tmp_path / "one", names, EPOCH), tmp_path / "x.zip", EPOCH)
-    (tmp_path / "x").mkdir()
-    (tmp_path / "2").mkdir()
-    other = pack(tmp_path / "x", tmp_path / "2" / "x.zip", EPOCH)
-    assert difference(one, other).endswith("x/4 and 4 more")
 
 
 def test_the_library_is_the_same_twice(tmp_path: Path) -> None:

@@ -50,6 +50,15 @@ DEBIAN = {
     ARDUINO: "arduino-core-avr",
     DOCTEST: "doctest-dev",
 }
+# Of the platform atmelavr: name, chip, variant and macro, and the bytes of flash and RAM.
+BOARDS = {
+    "uno": ("Arduino Uno", "atmega328p", "standard", "UNO", 32_256, 2048),
+    "nanoatmega328": ("Arduino Nano", "atmega328p", "eightanaloginputs", "NANO", 30_720, 2048),
+    "nanoatmega328new": (
+        "Arduino Nano (new bootloader)", "atmega328p", "eightanaloginputs", "NANO", 30_720, 2048,
+    ),
+    "megaatmega2560": ("Arduino Mega 2560", "atmega2560", "mega", "MEGA2560", 253_952, 8192),
+}  # fmt: skip
 
 
 class CannotStandIn(Exception):
@@ -276,6 +285,7 @@ def stand_ins() -> Path:
         for source in sorted(STAND_INS.iterdir()):
             platform = shutil.copytree(source, new / "platforms" / source.name)
             describe(platform, "", "platform", source.name, version_of(source))
+        add_boards(new / "platforms" / "atmelavr" / "boards")
         package = new / "packages" / "tool-scons"
         package.mkdir(parents=True)
         (package / "scons.py").write_text(
@@ -300,6 +310,18 @@ def stand_ins() -> Path:
     if not folder.exists():
         make(folder, fill)
     return folder
+
+
+def add_boards(folder: Path) -> None:
+    """Write what PlatformIO knows of each board."""
+    folder.mkdir()
+    for each, (name, chip, variant, macro, flash, ram) in BOARDS.items():
+        build = {"mcu": chip, "f_cpu": "16000000L", "core": "arduino", "variant": variant,
+                 "extra_flags": f"-DARDUINO_AVR_{macro}"}  # fmt: skip
+        about = {"name": name, "vendor": "Arduino", "url": "https://docs.arduino.cc/hardware",
+                 "frameworks": ["arduino"], "build": build,
+                 "upload": {"maximum_size": flash, "maximum_ram_size": ram}}  # fmt: skip
+        (folder / f"{each}.json").write_text(json.dumps(about), encoding="utf-8")
 
 
 def install_scons(version: str, folder: Path) -> None:

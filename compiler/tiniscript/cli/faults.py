@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.texts.common import text
-from tiniscript.codegen.source_map import Map
+from tiniscript.library.source_map import Map
 
 
 def fault_text(fault: str, offset: int, places: Map | None, is_image: bool, language: str) -> str:

@@ -9,10 +9,10 @@ from tiniscript.bytecode.loading import check
 from tiniscript.bytecode.verify import Refused
 from tiniscript.cli import inputs, outputs
 from tiniscript.cli.errors import CommandError
-from tiniscript.codegen import source_map
-from tiniscript.codegen.source_map import Map
+from tiniscript.library import source_map
 from tiniscript.library.compiling import Compiled, for_robot, image_of
 from tiniscript.library.known_kits import fitting, is_other_robots, lacks
+from tiniscript.library.source_map import Map
 from tiniscript.robots.profile import Robot
 
 

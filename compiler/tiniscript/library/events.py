@@ -7,10 +7,10 @@ from time import monotonic
 from typing import Literal, NamedTuple
 
 from tiniscript.bytecode.opcodes import FAULTS
-from tiniscript.codegen import source_map
-from tiniscript.codegen.source_map import Map
+from tiniscript.library import source_map
 from tiniscript.library.endings import DONE, FAULT
 from tiniscript.library.runs import Fault, Value, fault_of, value_of
+from tiniscript.library.source_map import Map
 from tiniscript.link.messages import CAUSES, LINK_FAULTS, STATES
 from tiniscript.link.outcomes import Event
 from tiniscript.link.payloads import StatusReply

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 from tiniscript import robots
 from tiniscript.bytecode.image import Image, ImageRefused, unpack
 from tiniscript.bytecode.verify import Refused
-from tiniscript.diagnostics.rendering import Message, as_text, message
+from tiniscript.diagnostics.rendering import Message as Message
+from tiniscript.diagnostics.rendering import as_text, message
 from tiniscript.library.compiling import Compiled, compiled, image_of
 from tiniscript.library.errors import ProgramError, UsageError
 from tiniscript.library.texts import LANGUAGES, sentence
@@ -17,7 +18,7 @@ from tiniscript.robots.profile import ProfileRefused, Robot
 from tiniscript.source import PROGRAM_ENDS, printable
 
 if TYPE_CHECKING:
-    from tiniscript.codegen.source_map import Map
+    from tiniscript.library.source_map import Map
 
 Language = str  # "en" or "es"
 SHOWN = 200  # characters of a name or a value in a sentence
@@ -164,7 +165,7 @@ def program_of(
     if robot is None:
         profile = _robot_for(data, profile, language)
     parsed = _read(data, profile, language)
-    from tiniscript.codegen import source_map
+    from tiniscript.library import source_map
 
     return Program(None, data, parsed, profile, source_map.recall(parsed.checksum), ())
 
@@ -204,7 +205,7 @@ def remarks(places: Map | None, language: Language) -> dict[int, str]:
 
 
 def _program(text: str, profile: Robot, name: str, optimize: bool, language: Language) -> Program:
-    from tiniscript.codegen import source_map
+    from tiniscript.library import source_map
 
     found = compiled(_data(text), profile, name, is_strict=True, optimize=optimize)
     diagnostics = tuple(diagnostics_of(found, language))

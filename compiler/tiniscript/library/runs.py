@@ -8,10 +8,10 @@ from typing import Literal, NamedTuple
 
 from tiniscript.bytecode.image import Image, ImageRefused, pack
 from tiniscript.bytecode.verify import Refused
-from tiniscript.codegen.source_map import Map
 from tiniscript.kit import Device, Kit
 from tiniscript.library.errors import UsageError
 from tiniscript.library.programs import Language, Program, program_of
+from tiniscript.library.source_map import Map
 from tiniscript.library.texts import sentence
 from tiniscript.robots.profile import Robot
 from tiniscript.source import printable

@@ -10,8 +10,8 @@ from functools import cache
 from typing import NamedTuple
 
 from tiniscript import robots
-from tiniscript.codegen import source_map
 from tiniscript.diagnostics.rendering import Message, message
+from tiniscript.library import source_map
 from tiniscript.library.compiling import Compiled, compiled, for_robot, text_of
 from tiniscript.repairs.fixing import offers
 from tiniscript.robots.profile import Robot

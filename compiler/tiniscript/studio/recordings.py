@@ -16,9 +16,9 @@ from codecs import BOM_UTF16_BE, BOM_UTF16_LE
 from typing import NamedTuple
 
 from tiniscript.bytecode.image import checksum
-from tiniscript.codegen.source_map import made
 from tiniscript.fixed_point import ONE
 from tiniscript.library.compiling import compiled, for_robot
+from tiniscript.library.source_map import made
 from tiniscript.semantics import ir
 from tiniscript.studio.checking import profile_of
 from tiniscript.studio.simulation import Marks, Simulation

@@ -31,7 +31,7 @@ def run(options: Namespace, language: str) -> int:
     outputs.print_diagnostics(compiled, language)
     if not compiled.is_right:
         return 1
-    from tiniscript.codegen import source_map
+    from tiniscript.library import source_map
 
     places = source_map.made(compiled.source, compiled.places)
     if target is None:

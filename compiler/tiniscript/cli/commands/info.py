@@ -12,7 +12,7 @@ from tiniscript.cli.robot.event_printer import fault_name, fault_sentence
 from tiniscript.cli.robot.fleet import together
 from tiniscript.cli.robot.member import Member, Result, are_many
 from tiniscript.cli.texts.common import text
-from tiniscript.codegen import source_map
+from tiniscript.library import source_map
 from tiniscript.link.authority import whose
 from tiniscript.link.messages import (
     RESETS,

@@ -19,7 +19,7 @@ from tiniscript.cli.robot.event_printer import MARK, Bookkeeping, EventPrinter
 from tiniscript.cli.robot.live_state import Known, Line, Value, header, open_ends
 from tiniscript.cli.robot.run_monitor import RunMonitor, stop_and_say
 from tiniscript.cli.texts.common import text
-from tiniscript.codegen import source_map
+from tiniscript.library import source_map
 from tiniscript.library.compiling import kit_of, naming
 from tiniscript.library.known_kits import is_other_robots, lacks
 from tiniscript.link.outcomes import Event, Gone

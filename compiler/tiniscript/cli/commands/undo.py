@@ -16,7 +16,7 @@ from tiniscript.cli.robot.member import Member, Result, are_many
 from tiniscript.cli.robot.program_upload import saved_name
 from tiniscript.cli.robot.run_monitor import Saving
 from tiniscript.cli.texts.common import text
-from tiniscript.codegen import source_map
+from tiniscript.library import source_map
 from tiniscript.link.payloads import ReceiptReply
 
 

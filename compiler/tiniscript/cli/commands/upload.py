@@ -25,7 +25,7 @@ from tiniscript.cli.robot.program_upload import (
 from tiniscript.cli.robot.run_monitor import Saving, stop_and_say
 from tiniscript.cli.terminal.progress import Progress
 from tiniscript.cli.texts.common import text
-from tiniscript.codegen import source_map
+from tiniscript.library import source_map
 from tiniscript.link.payloads import ReceiptReply
 from tiniscript.robots.profile import Robot
 

@@ -39,7 +39,7 @@ from tiniscript.virtual.directory import is_gone
 if TYPE_CHECKING:
     from tiniscript.cli.robot.event_printer import EventPrinter
     from tiniscript.cli.robot.simulator import CommandSimulator
-    from tiniscript.codegen.source_map import Map
+    from tiniscript.library.source_map import Map
 
 T = TypeVar("T")
 

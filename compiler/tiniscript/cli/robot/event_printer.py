@@ -14,9 +14,9 @@ from tiniscript.cli.faults import fault_text
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.spreadsheet import no_formula
 from tiniscript.cli.texts.common import has_text, text
-from tiniscript.codegen import source_map
-from tiniscript.codegen.source_map import Map
 from tiniscript.fixed_point import as_text
+from tiniscript.library import source_map
+from tiniscript.library.source_map import Map
 from tiniscript.link.messages import CAUSES, LINK_FAULTS, STATE_FAULTED, STATE_IDLE
 from tiniscript.link.outcomes import Event
 from tiniscript.link.payloads import ShowEvent, StatusReply

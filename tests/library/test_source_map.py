@@ -11,8 +11,8 @@ import pytest
 from tiniscript import Compiled, compile_text, robots
 from tiniscript.bytecode.disassembly import rows
 from tiniscript.bytecode.image import checksum
-from tiniscript.codegen import source_map
-from tiniscript.codegen.source_map import Map, MapPlace
+from tiniscript.library import source_map
+from tiniscript.library.source_map import Map, MapPlace
 
 KIT = robots.load("tinibot").kit
 
