@@ -1,0 +1,169 @@
+"""What the page asks of its virtual robot, of worlds and of lessons; the worker loads it then."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from importlib import import_module
+from typing import Any
+
+from tiniscript.robots import decoded
+from tiniscript.robots.profile import ProfileRefused
+from tiniscript.studio import checking, recordings
+from tiniscript.studio.simulation import Marks, Simulation
+from tiniscript.studio.world_form import form_of, toml_of
+from tiniscript.virtual import worlds
+from tiniscript.virtual.driving import Driving
+from tiniscript.virtual.world import World, WorldRefused, describe
+from tiniscript.virtual.worlds import read as read_world
+
+Answer = dict[str, Any]
+
+_simulation: Simulation | None = None  # a page has one robot
+
+
+def _world(where: Any) -> World:
+    """Return a world: a shipped one's name, a form, or the number and the seed of one of a lesson.
+
+    Raises WorldRefused.
+    """
+    if isinstance(where, str):
+        assert where in worlds.names(), where
+        return worlds.load(where)
+    if "form" in where:
+        return read_world(toml_of(where["form"]), "")
+    found: World = _lessons().world(where["lesson"], where["seed"])
+    return found
+
+
+def _power_on(fields: Answer, data: bytes) -> Answer:
+    """Switch the virtual robot on in `world`: a shipped one's name, a form, or one of a lesson.
+
+    With `is_held` it stands in front of the program's first part.
+    """
+    global _simulation
+    if _simulation is not None:
+        _simulation.close()
+        _simulation = None
+    try:
+        world = _world(fields["world"])
+        marks = Marks(tuple(fields.get("parts", ())), tuple(fields.get("breakpoints", ())),
+                      fields.get("variables", 0), fields.get("is_held", False))  # fmt: skip
+        _simulation = Simulation(fields["robot"], world, data, marks)
+    except WorldRefused as refused:
+        return {"refused": describe(refused, fields["language"])}
+    return _simulation.state()
+
+
+def _go(fields: Answer, data: bytes) -> Answer:
+    assert _simulation is not None, "nothing is switched on"
+    _simulation.go(fields["duration_ms"])
+    return _simulation.state()
+
+
+def _step(fields: Answer, data: bytes) -> Answer:
+    assert _simulation is not None, "nothing is switched on"
+    _simulation.step(fields["limit_ms"])
+    return _simulation.state()
+
+
+def _go_on(fields: Answer, data: bytes) -> Answer:
+    """Let a held program go on, as soon as time does."""
+    assert _simulation is not None, "nothing is switched on"
+    _simulation.go_on()
+    return _simulation.state()
+
+
+def _breakpoints(fields: Answer, data: bytes) -> Answer:
+    assert _simulation is not None, "nothing is switched on"
+    _simulation.set_breakpoints(fields["breakpoints"])
+    return _simulation.state()
+
+
+def _stop(fields: Answer, data: bytes) -> Answer:
+    assert _simulation is not None, "nothing is switched on"
+    _simulation.stop()
+    return _simulation.state()
+
+
+def _push(fields: Answer, data: bytes) -> Answer:
+    assert _simulation is not None, "nothing is switched on"
+    _simulation.push()
+    return _simulation.state()
+
+
+def _open_world(fields: Answer, data: bytes) -> Answer:
+    """Return the form of a world's file, `data`, or why it is none."""
+    name = fields["name"]
+    try:
+        world = read_world(decoded(data, name), name.removesuffix(".toml"))
+        return {"world": form_of(world)}
+    except ProfileRefused as refused:
+        return {"refused": describe(WorldRefused(*refused.reasons), fields["language"])}
+
+
+def _write_world(fields: Answer, data: bytes) -> Answer:
+    """Return the text of a form, and whether the robot fits at its start, or why it is no world."""
+    text = toml_of(fields["form"])
+    try:
+        world = read_world(text, "")
+    except WorldRefused as refused:
+        return {"refused": describe(refused, fields["language"])}
+    body = checking.profile_of(fields["robot"]).body
+    return {"text": text, "is_blocked": Driving(body, world.obstacles(), world.start).is_blocked()}
+
+
+def _replay(fields: Answer, data: bytes) -> Answer:
+    """Compare a recording, `data`, with the same run of the program `text` on a virtual robot."""
+    try:
+        recording = recordings.read(data)
+        found = recordings.replay(
+            recording, fields["text"].encode(), fields["robot"], _world(fields["world"])
+        )
+    except recordings.BadRecording as bad:
+        return {"what": bad.reason, "line": bad.line}
+    except WorldRefused as refused:
+        return {"what": "refused", "said": " ".join(describe(refused, fields["language"]))}
+    robot, virtual = (each and each._asdict() for each in (found.robot, found.virtual))
+    return {**found._asdict(), "robot": robot, "virtual": virtual}
+
+
+_check_of_lesson: Any = None  # the one that goes on
+
+
+def _lessons() -> Any:
+    """Return the lessons, which the page has fetched meanwhile; its first archive lacks them."""
+    sys.path_importer_cache.clear()
+    return import_module("tiniscript.studio.page_lessons")
+
+
+def _lesson_titles(fields: Answer, data: bytes) -> Answer:
+    return {"lessons": _lessons().titles(fields["language"])}
+
+
+def _lesson_page(fields: Answer, data: bytes) -> Answer:
+    return {"blocks": _lessons().page(fields["number"], fields["language"])}
+
+
+def _lesson_world(fields: Answer, data: bytes) -> Answer:
+    return {"world": _lessons().world_form(fields["number"], fields["seed"])}
+
+
+def _lesson_check(fields: Answer, data: bytes) -> Answer:
+    global _check_of_lesson
+    _check_of_lesson = _lessons().Check(fields["number"], data, fields["language"])
+    return {}
+
+
+def _lesson_go(fields: Answer, data: bytes) -> Answer:
+    found: Answer = _check_of_lesson.go(fields["most_ms"])
+    return found
+
+
+ASKED: dict[str, Callable[[Answer, bytes], Answer]] = {
+    "power_on": _power_on, "go": _go, "step": _step, "go_on": _go_on, "breakpoints": _breakpoints,
+    "stop": _stop, "push": _push, "open_world": _open_world, "write_world": _write_world,
+    "replay": _replay,
+    "lesson_titles": _lesson_titles, "lesson_page": _lesson_page, "lesson_world": _lesson_world,
+    "lesson_check": _lesson_check, "lesson_go": _lesson_go,
+}  # fmt: skip

@@ -1,1 +1,0 @@
-"""The library for sketches of others: it builds, runs and keeps the rules of the registries."""

@@ -1,1 +1,0 @@
-"""A second, independent TiniScript: a slow and plain interpreter that judges the fast one."""

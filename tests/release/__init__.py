@@ -1,1 +1,0 @@
-"""The rehearsal of a release: what it finds wrong, and that what is made is the same twice."""
