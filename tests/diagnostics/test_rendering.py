@@ -307,7 +307,7 @@ def test_colors_change_nothing_but_colors() -> None:
 
 
 def test_as_json() -> None:
-    found = check_text("F(2)\nX = 0.0001\nSHOW(X)", KIT)
+    found = check_text("F()\nX = 0.0001\nSHOW(X)", KIT)
     said = [message(diagnostic, found.source, "en") for diagnostic in found.diagnostics]
     assert as_json(said) == [
         {
@@ -316,8 +316,8 @@ def test_as_json() -> None:
             "line": 1,
             "column": 1,
             "end_line": 1,
-            "end_column": 5,
-            "message": "F needs 2 values in the brackets, F(time, power), but got 1",
+            "end_column": 4,
+            "message": "F needs 2 values in the brackets, F(time, power), but got 0",
             "fix": said[0].fix,
         },
         {

@@ -133,8 +133,7 @@ def test_the_road_needs_the_standard_library_alone() -> None:
     unwanted = {"tomllib", "tomli", "rich", "platformdirs", "serial", "dataclasses",
                 "argparse", "json", "difflib",
                 "tiniscript.diagnostics.rendering", "tiniscript.vm.machine",
-                "tiniscript.syntax.recovery",
-                "tiniscript.syntax.expression_recovery"}  # fmt: skip
+                "tiniscript.recovery", "tiniscript.repairs"}  # fmt: skip
     assert not unwanted & modules
 
 

@@ -19,13 +19,13 @@ from tiniscript.source import Source, applied
             "SI|DEF V\n  F(1, 50)\nV\nV\nEND_DEF",
             "SI|DEF V\n  F(1, 50)\nEND_DEF\nV\nV",
         ),
-        ("DEF V;F(1, 50);V;END_DEF", "DEF V;F(1, 50);END_DEF; V;"),
+        ("DEF V;F(1, 50);V;END_DEF", "DEF V;F(1, 50);END_DEF;V"),
         (
             "DEF V\nS\nLOOP(3)\nV\nEND_LOOP\nEND_DEF",
             "DEF V\nS\nEND_DEF\nLOOP(3)\nV\nEND_LOOP",
         ),
         ("SI|V\nDEF V\nS // p\nEND_DEF", "SI|DEF V\nS // p\nEND_DEF\nV"),
-        ("V;V;DEF V;S;END_DEF", "DEF V;S;END_DEF; V;V;"),
+        ("V;V;DEF V;S;END_DEF", "DEF V;S;END_DEF;V;V"),
         ("LOOP(3)\nDEF V\nS\nEND_DEF\nV\nEND_LOOP", "DEF V\nS\nEND_DEF\nLOOP(3)\nV\nEND_LOOP"),
     ],
 )

@@ -98,7 +98,7 @@ def test_an_unknown_word_with_a_number_is_the_loop_that_ends_below() -> None:
     (found,) = check("Loco(4)\nF(1, 60)\nEnd_loop")
     assert (found.code, found.values["near"]) == (codes.UNKNOWN_WORD, "LOOP")
     assert len(check("Loco(4)\nF(1, 60)")) == 1
-    assert check("Loco(4)\nF(1, 60)")[0].values["near"] == ""
+    assert not check("Loco(4)\nF(1, 60)")[0].values.get("near")
 
 
 def test_how_much_of_a_line_is_repeated_is_asked() -> None:

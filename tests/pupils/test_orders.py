@@ -31,8 +31,8 @@ def said(program: str) -> list[tuple[str, str]]:
         ("espera 500 ms y avanza despacio 2 segundos", "W(0.5);F(2, 40)", ""),
         (
             "pita 3 veces y para 1 segundo",
-            "LOOP(3);BEEP(0.5, 440);W(0.5);END_LOOP;S;W(1)",
-            "0.5 s, 440 Hz",
+            "LOOP(3);BEEP(1, 440);W(1);END_LOOP;S;W(1)",
+            "1 s, 440 Hz",
         ),
         (
             "avanza hasta la pared y gira 1 segundo a la derecha",

@@ -7,8 +7,8 @@ import pytest
 from tests.pupils.corpus import check
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.rendering import message
+from tiniscript.repairs.fixing import fixed
 from tiniscript.repairs.placing import edits_of
-from tiniscript.repairs.whole_blocks import LONGEST
 from tiniscript.source import Source, applied
 
 
@@ -26,10 +26,6 @@ from tiniscript.source import Source, applied
         ("por siempre\nF(1, 60)", "LOOP(FOREVER); F(1, 60); END_LOOP"),
         ("for i in range(4):\n    F(1, 60)\nS", "LOOP(4); F(1, 60); END_LOOP"),
         (
-            "void setup(){\n}\nvoid loop(){\n  F(1, 50);\n}",
-            "LOOP(FOREVER); F(1, 50); END_LOOP",
-        ),
-        (
             "si distancia < 20\nF(1, 50) // va\nsino\nB(1, 50)\nfin",
             "IF(DISTANCE < 20); F(1, 50); ELSE; B(1, 50); ENDIF",
         ),
@@ -41,6 +37,12 @@ def test_one_message_shows_the_whole_block(program: str, shown: str) -> None:
     assert message(found, Source(program), "es").fix == shown
     edits = edits_of(found, Source(program))
     assert edits and not any(each.is_mistake for each in check(applied(program, edits)))
+
+
+def test_a_frame_beside_the_block_is_told_apart() -> None:
+    program = "void setup(){\n}\nvoid loop(){\n  F(1, 50);\n}"
+    assert check(program)[-1].values["whole"] == "LOOP(FOREVER); F(1, 50); END_LOOP"
+    assert not check(fixed(program, check).text)
 
 
 def test_a_mistake_of_another_kind_keeps_its_message() -> None:
@@ -55,7 +57,6 @@ def test_a_mistake_of_another_kind_keeps_its_message() -> None:
         "repetir 4\nF(1, 60)\nR(1, 60)",  # what belongs to it is not said
         "LOOP(4){\nF(1, 60)\nSALTA\n}",  # one line of it stays wrong
         "LOOP(4){\n" + "F(1, 60)\n" * 40 + "}",  # nobody copies so much
-        "LOOP(4){\nF(1, 60)\n}\n" + "S\n" * LONGEST,
     ],
 )
 def test_what_is_not_sure_or_long_is_not_shown(program: str) -> None:

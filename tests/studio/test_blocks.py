@@ -31,7 +31,8 @@ from tiniscript.studio.block_reading import read
 from tiniscript.studio.worker import MOST_BLOCKS, answer
 from tiniscript.syntax import ast
 from tiniscript.syntax.formatter import formatted
-from tiniscript.syntax.parser import parse, scan
+from tiniscript.syntax.lexer import scan
+from tiniscript.syntax.parser import parse
 from tiniscript.words import ALIASES, WORDS
 
 TINIBOT = robots.load("tinibot").kit

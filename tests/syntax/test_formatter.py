@@ -18,8 +18,8 @@ from tiniscript import Compiled, compile_text, kit
 from tiniscript.diagnostics import codes
 from tiniscript.source import Source
 from tiniscript.syntax.formatter import formatted
-from tiniscript.syntax.lexer import END, NEWLINE
-from tiniscript.syntax.parser import parse, scan
+from tiniscript.syntax.lexer import END, NEWLINE, scan
+from tiniscript.syntax.parser import parse
 from tiniscript.words import ALIASES
 
 CHUNKS = 16

@@ -13,7 +13,7 @@ from tests.support.kits import KITS
 from tiniscript import compile_text, robots
 from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.robots.boards import CHIPS
-from tiniscript.syntax.parser import scan
+from tiniscript.syntax.lexer import scan
 from tiniscript.text.fitting import misfits
 from tiniscript.text.levels import CODE_BYTES, LEVELS, UNREAD, Level
 from tiniscript.text.line import plain_code

@@ -26,7 +26,7 @@ from tiniscript import check_text, compile_text, robots
 from tiniscript.bytecode.verify import verify
 from tiniscript.kit import Kit
 from tiniscript.source import Unreadable, decode
-from tiniscript.syntax.parser import scan
+from tiniscript.syntax.lexer import scan
 from tiniscript.text.levels import CODE_BYTES, LEVELS, LONGEST_WORD, UNREAD
 from tiniscript.text.line import plain_code
 from tiniscript.text.memory import Reader as Model

@@ -138,4 +138,4 @@ def parsed(given: Input, kit: Kit) -> Compiled:
     if not isinstance(text, str):
         return text
     source = Source(text, given.name)
-    return Compiled(source, in_order(parse(source, kit).diagnostics))
+    return Compiled(source, in_order(parse(source).diagnostics))

@@ -14,8 +14,7 @@ from tiniscript.lessons import kept
 from tiniscript.lessons.findings import Finding
 from tiniscript.lessons.kept import MOVES
 from tiniscript.lessons.lesson import Criterion, Lesson
-from tiniscript.syntax.lexer import NUMBER, WORD, Token
-from tiniscript.syntax.parser import scan
+from tiniscript.syntax.lexer import NUMBER, WORD, Token, scan
 from tiniscript.words import ALIASES, BLOCK_ENDS
 
 # What a run lacked altogether, by the sentence for it, and the word that does it.

@@ -46,54 +46,41 @@ class Compiled(NamedTuple):
         return not any(diagnostic.is_mistake for diagnostic in self.diagnostics)
 
 
-def check_text(text: str, kit: Kit, name: str = "") -> Compiled:
+ROUNDS = 20  # of reading what follows a mistake from the repaired text
+
+
+def check_text(text: str, kit: Kit, name: str = "", rounds: int = ROUNDS) -> Compiled:
     """Return the checked program of a text, and all that is wrong with it."""
     found = analyzed(text, kit, name)
     if found.is_right:
         return found
     from tiniscript.recovery.findings import findings, moved_back
-    from tiniscript.repairs.everywhere import said_once
+    from tiniscript.recovery.once import said_once
+    from tiniscript.recovery.usage import with_usage
 
     def mistakes(it: str) -> list[codes.Diagnostic]:
         return analyzed(it, kit).diagnostics
 
-    answered = findings(found.source, found.diagnostics, mistakes, kit)
-    if answered.told:
-        edits = answered.edits
-        if len(answered.told) > ENOUGH:
-            return found._replace(diagnostics=codes.in_order(answered.told))
-        rest = check_text(applied(text, edits), kit)
+    answered = findings(found.source, found.diagnostics, mistakes, kit) if rounds else None
+    if answered is None or not answered.told:
+        told = with_usage(found.diagnostics, found.source, kit)
+        return found._replace(diagnostics=said_once(told, found.source))
+    told, edits = answered.told, answered.edits
+    if len(told) <= ENOUGH:
+        rest = check_text(applied(text, edits), kit, name, rounds - 1)
         # The warnings of what is left come when it is repaired.
-        left = [] if rest.is_right else [moved_back(each, edits) for each in rest.diagnostics]
-        told = said_once([*answered.told, *left], found.source)
-        return found._replace(diagnostics=codes.in_order(told))
-    from tiniscript.repairs.def_order import with_moved_defs
-    from tiniscript.repairs.vouching import vouched
-    from tiniscript.repairs.whole_blocks import with_whole_blocks
-
-    def offered(result: Compiled) -> list[codes.Diagnostic]:
-        kept = vouched(result.diagnostics, result.source, lambda it: analyzed(it, kit).diagnostics)
-        return said_once(kept, result.source)
-
-    def offered_in(text: str) -> list[codes.Diagnostic]:
-        return offered(analyzed(text, kit))
-
-    kept = with_moved_defs(offered(found), found.source, offered_in)
-    kept = with_whole_blocks(kept, found.source, offered_in)
-    return found._replace(diagnostics=kept)
+        left = [] if rest.is_right else rest.diagnostics
+        told = [*told, *(moved_back(each, edits) for each in left)]
+    return found._replace(diagnostics=said_once(told, found.source))
 
 
 def analyzed(text: str, kit: Kit, name: str = "") -> Compiled:
     """Return the checked program of a text, and what is wrong with it; no repair is vouched for."""
     source = Source(text, name)
-    parsed = parse(source, kit)
+    parsed = parse(source)
     checked = check(source, parsed.program, kit)
     found = [*parsed.diagnostics, *checked.diagnostics]
-    if any(diagnostic.is_mistake for diagnostic in found):
-        from tiniscript.semantics.joining import joined
-
-        found = joined(found, source, parsed.scan.tokens, kit)
-    else:
+    if not any(diagnostic.is_mistake for diagnostic in found):
         found += advice(checked.program, kit, source)
         found += empty_blocks(checked.program, source)
         if parsed.scan.comments:

@@ -18,15 +18,15 @@ from tiniscript.kit import Kit
 from tiniscript.recovery import advice_rows, lines, rewrites
 from tiniscript.recovery.behind import ASKING, Above, Behind, Placed, whole
 from tiniscript.recovery.concepts import ENDED, Lexeme, Names, lexemes, made, plain, said_of
+from tiniscript.recovery.orders import Order, made_up, orders, question_in, written
 from tiniscript.recovery.slots import filled
 from tiniscript.recovery.worded import Worded, sensors_of, worded
-from tiniscript.recovery.writing import laid_out, without_note
+from tiniscript.recovery.writing import laid_out, shortened, without_note
 from tiniscript.source import Edit, Span
 from tiniscript.syntax.free_names import for_a_number
-from tiniscript.syntax.lexer import NUMBER, WORD
+from tiniscript.syntax.lexer import WORD
 from tiniscript.syntax.operators import COMPARISONS
 from tiniscript.syntax.outline import Failure
-from tiniscript.syntax.suggestions import shortened
 from tiniscript.words import BLOCK_ENDS, OTHER_WAY, WORDS
 
 LONGEST = 24  # words behind an instruction that are read
@@ -477,14 +477,7 @@ def _asked(gaps: _Gaps, name: str = "q") -> list[Lexeme]:
     """The question that words ask, in words of the language; nothing where they ask none."""
     start, end = gaps.span(name)
     words = gaps.part.row[start - 1 : end - 1]
-    found = lines.read(
-        [made("IF"), made("("), *words, made(")")], gaps.part.names, is_quick=True
-    ).found
-    tokens = found[0].tokens if found and not gaps.part.is_asked else []
-    asked = tokens[
-        2 : next((k for k, each in enumerate(tokens) if each.text == ";"), len(tokens)) - 1
-    ]
-    return asked if any(each.text in COMPARISONS for each in asked) else []
+    return [] if gaps.part.is_asked else question_in(words, gaps.part.names)
 
 
 def _contrary(gaps: _Gaps) -> str:
@@ -505,36 +498,19 @@ def _rest(gaps: _Gaps, name: str) -> str:
 
 
 def _example(gaps: _Gaps) -> str:
-    """What the orders have that nobody said."""
-    said = {each.text for each in gaps.part.row}
-    found = set()
-    for order in _calls(gaps.part):
-        values = [each.text for each in order if each.kind is NUMBER]
-        for value, argument in zip(values, WORDS[order[0].text].arguments, strict=False):
-            found |= set() if value in said else {f"{value} {argument.unit}"}
-    return ", ".join(sorted(found))
+    return made_up(_calls(gaps.part))
 
 
-def _calls(part: Behind) -> list[list[Lexeme]]:
-    """The calls that the words say, nothing where one of them says none."""
-    found: list[list[Lexeme]] = []
-    words: list[Lexeme] = []
-    for token in [*part.row, made(",")]:
-        if not (token.text == "," or said_of(token.text, "then")):
-            words.append(token)
-            continue
-        order = filled(words, part.names, has_until=False, is_order=True) if words else None
-        if words and (order is None or order.times):
-            return []
-        found += [order.tokens] if order else []
-        words = []
-    return found
+def _calls(part: Behind) -> list[Order]:
+    """The orders that the words say, nothing where a turn of them says no way."""
+    found = orders(part.row, part.names)
+    return [] if any(each.is_side_free or each.is_repeated for each in found) else found
 
 
 def _orders(gaps: _Gaps) -> str:
     """The instruction, and those that the words behind it say."""
-    orders = [laid_out(each) for each in _calls(gaps.part)]
-    return ";".join((gaps.part.call, *orders)) if orders else ""
+    found = _calls(gaps.part)
+    return f"{gaps.part.call};{written(found)}" if found else ""
 
 
 def _distance(gaps: _Gaps) -> str:

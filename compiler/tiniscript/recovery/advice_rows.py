@@ -8,7 +8,7 @@ A pattern is one of `rows`. Its first token is a whole instruction, with its bra
 the others are the words behind it. Classes of the instruction, beside its word: @cmd (of the
 language), @did (a DEF), @arm (a header, ELSE or an end), @more (others stand before it on its
 line), @later (others stand before it), @outer (in no block), @move, @clock (its first value is its
-time) and @asked (has its UNTIL). Words without an instruction have @none there, also @after where
+time), @asked (has its UNTIL) and @unasked (may get one). Words without an instruction have @none there, also @after where
 one stands before them, and @last where they end the text, too. Classes of the words: @number (in
 words, too), @often (a number that says how often), @percent (one that says a power), @in_s (a unit
 of time), @other (the other way), @paced (another pace than its power), @told (says nothing that the
@@ -112,6 +112,8 @@ ADVICE = """
 ^ c=@move s=WHILE @word* no @word* wall $ | TS071 | found={s}; fix={c} UNTIL({distance} < 10) | F(2, 80) mientras no haya pared => fix=F(2, 80) UNTIL(DISTANCE < 10)
 ^ c=@cmd s=when @word* no @word* wall $ | TS071 | found={s}; fix=IF({distance} > 10);{c};ENDIF | F(2, 80) cuando no hay pared => fix=IF(DISTANCE > 10);F(2, 80);ENDIF
 ^ c=@cmd s=when @word* wall $ | TS071 | found={s}; fix=IF({distance} < 10);{c};ENDIF | S si hay una pared => fix=IF(DISTANCE < 10);S;ENDIF
+^ c=@unasked s=HASTA|UNTIL @word* n=@num CM|CENTIMETROS? $ | TS102 | found={s}; right=UNTIL; usage={c} UNTIL({distance} < {n}) | F(2, 80) hasta 30 cm => usage=F(2, 80) UNTIL(DISTANCE < 30)
+^ c=@unasked s=HASTA|UNTIL @word+ $ | TS102 | found={s}; right=UNTIL; usage={c} UNTIL({distance} < 10) | F(1, 80) hasta la pared => usage=F(1, 80) UNTIL(DISTANCE < 10)
 # which way, and what comes next
 ^ c=@move AL REVES $ | TS085 | other={other} | F(1, 80) al reves => other=B(1, 80)
 ^ c=F|B s=+|&|then|beside BEEP ( n=@num , @num ) $ | TS061 | found={s}; both={both} | F(2, 80) con BEEP(1, 440) => both=M(80, 80);BEEP(1, 440);W(1);S

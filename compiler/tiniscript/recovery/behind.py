@@ -179,7 +179,7 @@ class Behind:
         is_clock = own in (*MOVES, "W", "BEEP") and not self.is_asked
         found += ["@move"] if own in MOVES else []
         found += ["@clock"] if is_clock else []
-        found += ["@asked"] if self.is_asked else []
+        found += ["@asked"] if self.is_asked else ["@unasked"] if own in (*MOVES, "W") else []
         found += [] if self.is_in_block else ["@outer"]
         found += ["@more"] if self.before and "@cmd" in found else []
         found += ["@later"] if self.is_later and not self.is_arm else []

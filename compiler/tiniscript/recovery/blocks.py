@@ -221,7 +221,8 @@ class _Matching:
 
     def brace(self, k: int, item: Item) -> bool:
         if not self.open:
-            self.is_sure = self.is_sure and item.start == 0
+            is_first = item.start == 0 or self.lines[k].tokens[0].text == "START"
+            self.is_sure = self.is_sure and is_first
             self.edit(k, item, 1)
             self.open.append(_Block(item, k, self.lines[k]))
             return True
@@ -258,8 +259,10 @@ class _Matching:
         if not self.open:
             if self.has_unread:
                 return False
-            is_alone = len(self.lines[k].items or ()) == 1 and len(self.flat) > 1
-            self.is_sure = self.is_sure and is_alone
+            before = self.lines[k].tokens[item.start - 1]
+            is_behind = after is None and before.text == ";" and before.source is not None
+            is_alone = len(self.lines[k].items or ()) == 1 or is_behind
+            self.is_sure = self.is_sure and is_alone and len(self.flat) > 1
             self.edit(k, item, 1)
         elif self.open[-1].word == "IF" and after and after.kind == "arm":
             self.edit(k, item, 1)

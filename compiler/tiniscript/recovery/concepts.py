@@ -247,9 +247,14 @@ class Names:
         row: list[str] = []
         for token in tokens[: _LONGEST + 1]:
             is_own = token.text not in WORDS and not said_of(token.text, "declare")
-            if (token.kind is NUMBER and not row) or token.kind not in (WORD, NUMBER, "-"):
+            is_first_number = token.kind is NUMBER and not row
+            if is_first_number and not (";" in after and _is_glued(tokens)):
+                break
+            if token.kind not in (WORD, NUMBER, "-"):
                 break
             if token.text in STARTS or token.text in DONE:
+                break
+            if not row and said_of(token.text, "count"):
                 break
             if token.kind is WORD and (not is_own or said_of(token.text, "set")) and len(row) != 1:
                 break
@@ -336,8 +341,16 @@ class Names:
         return found
 
 
+def _is_glued(tokens: Sequence[Lexeme]) -> bool:
+    """Whether a word follows the first number without a space: `2PASOS`."""
+    return len(tokens) > 1 and tokens[1].kind is WORD and tokens[1].space == ""
+
+
 def joined(row: Iterable[str]) -> str:
-    return "_".join(each for each in row if each != "-")
+    parts = [each for each in row if each != "-"]
+    if parts[0][0].isdecimal():  # `2PASOS`
+        return "".join((*parts[1:], parts[0]))
+    return "_".join(parts)
 
 
 # Classes of pieces: any token but these.

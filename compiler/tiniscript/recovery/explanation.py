@@ -6,6 +6,7 @@ Typed values and edits. Knows no sentence of any language.
 from __future__ import annotations
 
 import re
+from bisect import bisect_right
 from collections import Counter
 from collections.abc import Sequence
 from difflib import SequenceMatcher
@@ -35,6 +36,7 @@ _SHOW_WHOLE = frozenset(each.number for each in (
     codes.BRACES, codes.OTHER_ASSIGNMENT, codes.ASKED_BEHIND, codes.GROUPED, codes.OTHER_LANGUAGE,
 ))  # fmt: skip
 _OF_ARM = (_BRACES, _WORD_CODE, codes.HEADER_SEPARATOR.number)
+_OF_BLOCKS = frozenset((*BLOCK_ENDS, *ENDED, "ELSE", "ELSEIF", *BRACES))
 _WORD = re.compile(r"\w+")
 LONGEST_BLOCK = 160  # characters of one that a message shows
 
@@ -65,7 +67,7 @@ class Slip(NamedTuple):
 class Unended(NamedTuple):
     """A block that begins with `word` lacks its end, `right`, behind line `line`, `last`.
 
-    With it the block is `whole`, nothing where that is long.
+    With it the block is `whole`, nothing where that is long. On its own line it ends with `behind`.
     """
 
     word: str
@@ -73,6 +75,7 @@ class Unended(NamedTuple):
     line: str = ""
     last: str = ""
     whole: str = ""
+    behind: str = ""
 
 
 class Explanation(NamedTuple):
@@ -86,6 +89,7 @@ class Explanation(NamedTuple):
     place: Span
     slip: Slip | Unended
     edits: list[Edit]
+    is_sure: bool = True
 
 
 def explained(program: str, found: Candidate) -> list[Explanation]:
@@ -109,6 +113,7 @@ class _Told:
         self.first = first
         self.last = (first, 1)
         self.lines: list[int] = []
+        self.opened: set[int] = set()  # changes in which blocks begin that it ends
 
     def is_same(self, code: str, slip: Slip | Unended) -> bool:
         own = self.slip
@@ -164,7 +169,9 @@ def _spans(tokens: Sequence[Lexeme]) -> list[_Tokens]:
 class _Teller:
     def __init__(self, program: str, found: Candidate) -> None:
         self.program = program
+        self.found = found
         self.changes = found.changes
+        self.is_whole = found.is_whole
         self.line_end = "\r\n" if "\r" in program else "\n"
         self.lines = program.split("\n")
         self.starts = [0]
@@ -184,13 +191,35 @@ class _Teller:
     def complete(self, told: _Told) -> Explanation:
         slip = told.slip
         if isinstance(slip, Slip):
-            whole = self.whole(told.first, told.last) if told.last > (told.first, 1) else ""
+            is_shown = self.is_whole and told.last > (told.first, 1)
+            whole = self.whole(told.first, told.last) if is_shown else ""
             here = self.changes[told.first].first + 1
             others = [str(each) for each in told.lines if each != here]
             several = ", ".join(others) if len(others) > 1 else ""
             times = slip.times or (str(len(told.lines) + 1) if told.lines and not others else "")
-            slip = slip._replace(whole=whole, line="".join(others[:1]), lines=several, times=times)
-        return Explanation(told.code, self.words(told.edits[0].span), told.place, slip, told.edits)
+            line = slip.line or "".join(others[:1])
+            slip = slip._replace(whole=whole, line=line, lines=several, times=times)
+        start, end = self.words(told.edits[0].span)
+        while start < end and self.program[start] in "\r\n":
+            start += 1
+        start -= self.program[max(0, start - 1) : start + 1] == "\r\n"
+        span = Span(start, end)
+        return Explanation(told.code, span, told.place, slip, told.edits, self.is_sure(told))
+
+    def is_sure(self, told: _Told) -> bool:
+        """Whether nothing that an explanation changes is a guess."""
+        places = [place for each in told.edits for place in each.span]
+        touched = {told.first, *told.opened, *map(self.change_at, places)}
+        if not self.found.has_sure_blocks:
+            texts_of = [self.changes[k].text + self.lines[self.changes[k].first] for k in touched]
+            words = {word for each in texts_of for word in re.findall(r"\w+|[{}]", each.upper())}
+            if words & _OF_BLOCKS:
+                return False
+        return not touched & self.found.unsure
+
+    def change_at(self, place: int) -> int:
+        line = bisect_right(self.starts, place) - 1
+        return next((k for k, each in enumerate(self.changes) if each.last >= line), 0)
 
     def words(self, span: Span) -> Span:
         """Return a span with all of the words that it begins and ends in."""
@@ -222,7 +251,7 @@ class _Teller:
                 self.new_part(k, change, part)
         elif own != old:
             place = Span(self.starts[change.first], self.starts[change.first] + len(old))
-            edit = _trimmed(place.start, old, own)
+            edit = trimmed(place.start, old, own)
             code, step = _code(self.steps.get(k, []), before, after)
             is_brace = code == _BRACES and before[0].text in BRACES
             told = None
@@ -231,6 +260,11 @@ class _Teller:
                 told = self.added(closed or around, edit, (k, 1), after)
             if told is None:
                 told = self.new(code, place, edit, k, step, before, after)
+            told.opened |= {closed.first} if closed else set()
+            if code == codes.WRONG_END.number and isinstance(told.slip, Slip):
+                line = str(self.changes[closed.first if closed else k].first + 1)
+                word = ENDED.get(told.slip.right, "")
+                told.slip = told.slip._replace(word=word, line=line, fix=told.slip.right)
             for block in (*self.open, *([around] if around and is_brace else [])):
                 if block.first == k or is_brace:
                     block.told = block.told or told
@@ -256,10 +290,10 @@ class _Teller:
         for number, (one, other) in enumerate(zip(was, now, strict=True)):
             text, new = old[slice(*one.span)], own[slice(*other.span)]
             if text != new:
-                edit = _trimmed(self.starts[self.changes[k].first] + one.span.start, text, new)
+                edit = trimmed(self.starts[self.changes[k].first] + one.span.start, text, new)
                 part = _Part(one.span, edit, one.tokens, other.tokens, steps.get(number, []))
                 found.append(part)
-        return found
+        return found if all(each.steps for each in found) else []
 
     def new_part(self, k: int, change: Change, part: _Part) -> None:
         code, step = _code(part.steps, part.before, part.after)
@@ -309,7 +343,11 @@ class _Teller:
             slip = slip._replace(right=self.changes[k].text.strip())
         if code == _UNENDED:
             word = next((each.text for each in after if each.text in BLOCK_ENDS), "")
-            slip = Unended(word, BLOCK_ENDS.get(word, ""), whole=laid_out(after))
+            added = [each.text for each in after if each.text not in texts(before)]
+            end = BLOCK_ENDS.get(word) or next((each for each in added if each in ENDED), "")
+            whole = laid_out(after) if word else ""
+            last = laid_out(_parted(before)[-1]) if word and _parted(before) else ""
+            slip = Unended(word or ENDED.get(end, ""), end, whole=whole, behind=last)
         if code in _SAID_ONCE and isinstance(slip, Slip):
             count = sum(each.code == code for each in self.steps.get(k, []))
             slip = slip._replace(times=str(count) if count > 1 else "")
@@ -338,7 +376,7 @@ class _Teller:
         self.out.append(_Told(_UNENDED, place, slip, edit, first))
 
 
-def _trimmed(start: int, old: str, new: str) -> Edit:
+def trimmed(start: int, old: str, new: str) -> Edit:
     """Return the edit of what differs."""
     most = min(len(old), len(new))
     head = next((k for k in range(most) if old[k] != new[k]), most)
@@ -367,10 +405,11 @@ def _code(
             for each in before
         )
         has_brackets = "(" in words or "(" not in new
-        if not (own or is_translated or has_brackets) and before[0].text in WORDS:
+        if not (own or is_translated or has_brackets) and before[0].text in {*WORDS} & new:
             return rows.NO_BRACKETS, steps[0]
         if translated and (is_translated or not own):
-            return _WORD_CODE, translated[0]
+            is_said = is_translated or has_brackets or before[0].text not in new
+            return _WORD_CODE if is_said else rows.NO_BRACKETS, translated[0]
         if own[0].code == codes.OTHER_CALL.number and not is_translated:
             right = _first_difference(own[0].before, own[0].after)[2]
             if texts(right) == (",",):
@@ -382,6 +421,9 @@ def _code(
     if not source.isascii():
         has_word = any(each.kind is WORD and not (each.source or "").isascii() for each in before)
         return (codes.BAD_NAME if has_word else codes.OTHER_SIGN).number, None
+    _, found, right = _first_difference(before, after)
+    if len(found) == len(right) == 1 and {*texts(found), *texts(right)} <= {*ENDED}:
+        return codes.WRONG_END.number, None
     ends = [each.text for each in before if said_of(each.text, "end")]
     if ends and ends[-1] not in new:
         is_end = bool(new & {*BLOCK_ENDS.values()})
@@ -413,6 +455,7 @@ def _slip(code: str, step: Step | None, before: Sequence[Lexeme], after: Sequenc
     if is_note:
         was = re.match(r"\w+|\W+", was).group().strip()  # type: ignore[union-attr]
     now = laid_out(right) or shown
+    now = shown if now == "FIN" and shown in ENDED else now  # of a block, whose end is known
     now = now.partition("(")[0] if code == _WORD_CODE else now
     word = _word(code, old, new, start, other)
     known = WORDS.get(word)

@@ -14,17 +14,22 @@ from typing import NamedTuple
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import CODES, Diagnostic, Repair
 from tiniscript.kit import Kit
-from tiniscript.recovery import rows
+from tiniscript.recovery import lines, rows
 from tiniscript.recovery.advice import advised
-from tiniscript.recovery.concepts import lexemes
-from tiniscript.recovery.explanation import explained
+from tiniscript.recovery.concepts import Names, lexemes
+from tiniscript.recovery.explanation import LONGEST_BLOCK, Explanation, explained, trimmed
 from tiniscript.recovery.search import Candidate, Mistakes, candidate
 from tiniscript.recovery.setup import setup
-from tiniscript.recovery.writing import without_note
+from tiniscript.recovery.writing import laid_out, without_note
 from tiniscript.source import Edit, Source, Span, applied, overlap
-from tiniscript.words import WORDS
+from tiniscript.syntax.outline import Failure
+from tiniscript.words import WORDS, nearest
 
 LONGEST = 4_000  # characters of a text that is read as a whole
+# Codes whose sentence names what is right.
+_WITH_RIGHT = (codes.OTHER_LANGUAGE, codes.OTHER_SIGN, codes.END_ALONE, codes.OTHER_ASSIGNMENT)
+_FIRST_NUMBERS = (1, 10, 100)
+_NUMBER = re.compile(r"(?im)^[ \t]*([0-9]{1,4})[ \t]+(?=[A-Z])(?!veces|times|x\b|vez)")
 Check = Callable[[str], Sequence[Diagnostic]]
 
 
@@ -52,56 +57,173 @@ def findings(source: Source, found: Sequence[Diagnostic], check: Check, kit: Kit
     said = _no_bar(source)
     if said and said.repair and _is_better(source, found, said.repair, check):
         return Findings([said], [*said.repair.edits])
+    if aside := _titles(source, kit) or _numbers(source):
+        edits = [edit for each in aside if each.repair for edit in each.repair.edits]
+        return Findings(aside, edits)
     repaired = _meant(source, found, check, kit)
     if repaired:
         edits = [edit for each in repaired if each.repair for edit in each.repair.edits]
         return Findings(repaired, edits)
     told = advised(source.text, kit)
-    return Findings([each.diagnostic for each in told], [each.passed for each in told])
+    if told:
+        return Findings([each.diagnostic for each in told], [each.passed for each in told])
+    repaired = _meant(source, found, check, kit, is_sure=False)
+    edits = [edit for each in repaired if each.repair for edit in each.repair.edits]
+    return Findings(repaired, edits)
 
 
-def _meant(source: Source, found: Sequence[Diagnostic], check: Check, kit: Kit) -> list[Diagnostic]:
-    """Return what is wrong with a text that is read wholly and surely, else nothing."""
+def _titles(source: Source, kit: Kit) -> list[Diagnostic]:
+    """Return lines before `SI|` that are none of a program: its title, who wrote it."""
+    rows_ = source.text.split("\n")
+    begun = next((k for k, row in enumerate(rows_) if re.match(r"\s*S[IB]\s*\|", row, re.I)), 0)
+    names = Names([], kit)
+    told: list[Diagnostic] = []
+    start = 0
+    for row in rows_[:begun]:
+        title = without_note(row)[0].strip()
+        at = start + len(row) - len(row.lstrip())
+        start += len(row) + 1
+        if not title:
+            continue
+        words = lexemes(title)
+        if not isinstance(lines.right(words, names), Failure) or "(" in title or "{" in title:
+            return []
+        span, fix = Span(at, at + len(title)), f"// {title}"
+        is_command = words[0].text == "TSC"
+        values = {"command": title} if is_command else {"fix": fix}
+        told.append(Diagnostic(codes.PROSE, span, values, span, Repair((Edit(span, fix),), False)))
+    return told
+
+
+def _numbers(source: Source) -> list[Diagnostic]:
+    """Return numbers that count the lines: `1 F(1, 50)`, `2 S`."""
+    numbers = [*_NUMBER.finditer(source.text)]
+    counted = [int(each[1]) for each in numbers]
+    is_counting = len(counted) > 1 and counted[0] in _FIRST_NUMBERS
+    if not is_counting or counted != [*range(counted[0], counted[-1] + 1, counted[0])]:
+        return []
+    spans = [Span(*each.span()) for each in numbers]
+    return [
+        Diagnostic(codes.LINE_NUMBER, Span(*number.span(1)), {"found": number[1]}, None,
+                   Repair((Edit(span, ""),), True))
+        for number, span in zip(numbers, spans, strict=True)
+    ]  # fmt: skip
+
+
+def _meant(
+    source: Source, found: Sequence[Diagnostic], check: Check, kit: Kit, is_sure: bool = True
+) -> list[Diagnostic]:
+    """Return what is wrong with a text that is read wholly and surely, else nothing.
+
+    `is_sure`: else what is wrong with the lines that are read, and what may be meant.
+    """
     text = source.text.replace("\r\n", "\n")
     said = {text: _mistakes(found)}
+    first = lexemes(text[:LONGEST])[:1]
+    is_setup = bool(first) and first[0].text in ("SI", "SB")
+    is_begun_otherwise = codes.SETUP_UNKNOWN.number in said[text] and not is_setup
+    if len(text) > LONGEST or "~" in text or is_begun_otherwise:
+        return []
+    if "\r" in text:  # each line ends with one alone
+        shown = Source(text.replace("\r", "\n"), source.name)
+        read = _meant(shown, found, check, kit, is_sure)
+        return [_with_line_ends(each, source.text) for each in read]
 
     def mistakes(program: str) -> Sequence[str]:
         if program not in said:
             said[program] = _mistakes(check(program))
         return said[program]
 
-    meant = sure(text, kit, mistakes)
-    return [] if meant is None else [
-        Diagnostic(CODES[each.code], each.span, each.slip._asdict(), each.place,
-                   Repair(tuple(each.edits), True))
-        for each in explained(source.text, meant)
-    ]  # fmt: skip
+    meant = sure(text, kit, mistakes) if is_sure else candidate(text, kit, mistakes)
+    if meant is None:
+        return []
+    told = explained(source.text, meant)
+    if not told and meant.is_whole:
+        misplaced = [each for each in found if each.code.number in rows.MISPLACED]
+        said_of_it = misplaced or [each for each in found if each.is_mistake]
+        return [_moved(each, source.text, meant) for each in said_of_it][:1]
+    said_with = {each.code for each in told} | {step.code for _, step in meant.steps}
+    if not told or not _keeps(text, meant.text, said_with, is_sure):
+        return []
+    is_exact = is_sure or _keeps(text, meant.text, said_with, is_sure=True)
+    are_sure = (is_exact and _is_sure(each, meant) for each in told)
+    return [
+        _diagnostic(each, is_sure, meant.has_sure_blocks, found)
+        for each, is_sure in zip(told, are_sure, strict=True)
+    ]
 
 
 def sure(text: str, kit: Kit, mistakes: Mistakes) -> Candidate | None:
-    """Return the program that a text means wholly and surely, where all of its rewrites are told.
-
-    Lines of the text end with a newline alone.
-    """
-    is_begun_otherwise = codes.SETUP_UNKNOWN.number in mistakes(text)
-    if len(text) > LONGEST or "\r" in text or "~" in text or is_begun_otherwise:
-        return None
+    """Return the program that a text means wholly and surely. Its lines end with `\n`."""
     meant = candidate(text, kit, mistakes, is_whole=True)
-    if meant is None or not (meant.is_whole and meant.is_applied):
-        return None
-    told = explained(text, meant)
-    said_with = {each.code for each in told} | {step.code for _, step in meant.steps}
-    has_all = all(each.slip.right for each in told) and _keeps(text, meant.text, said_with)
-    return meant if told and has_all else None
+    return meant if meant and meant.is_whole and meant.is_applied else None
 
 
-def _keeps(text: str, new: str, said_with: set[str]) -> bool:
-    """Whether all numbers of a text are used, and all names that it gives to variables and DEFs."""
+def _is_sure(told: Explanation, meant: Candidate) -> bool:
+    return meant.is_applied or (meant.is_whole and told.is_sure)
+
+
+def _diagnostic(
+    told: Explanation, is_sure: bool, has_sure_blocks: bool, found: Sequence[Diagnostic]
+) -> Diagnostic:
+    code, values = CODES[told.code], told.slip._asdict()
+    if not has_sure_blocks and "FOREVER" not in values.get("fix", ""):
+        values |= {"whole": ""}  # where it ends is a guess
+    if code in _WITH_RIGHT and not values["right"]:
+        has_bracket = "(" in values.get("before", "") + values["found"]
+        code = codes.OTHER_CALL if has_bracket else codes.MISSING_OPEN
+    repair = Repair(tuple(told.edits), is_sure)
+    was, right = values.get("found", ""), values.get("right", "")
+    if code is codes.OTHER_LANGUAGE and nearest(was.upper(), [right]):
+        code, values = codes.UNKNOWN_WORD, {**values, "found": was.upper(), "near": right}
+    counted = (each for each in found if each.code is codes.ARGUMENT_COUNT)
+    for each in counted if code in (codes.OTHER_CALL, codes.ARGUMENT_COUNT) else ():
+        if told.place.start <= each.span.start < told.place.end:
+            code, values = each.code, {**each.values, "fix": values.get("fix", "")}
+            return Diagnostic(code, each.span, values, told.place, repair)
+    return Diagnostic(code, told.span, values, told.place, repair)
+
+
+def _with_line_ends(told: Diagnostic, text: str) -> Diagnostic:
+    """Return what is told of a text that has `\\r` for the end of a line."""
+    start, end = told.span
+    start -= text[max(0, start - 1) : start + 1] == "\r\n"
+    edits = told.repair.edits if told.repair else ()
+    edits = tuple(each._replace(text=each.text.replace("\n", "\r")) for each in edits)
+    span = Span(start, end)
+    return told._replace(span=span, repair=told.repair and told.repair._replace(edits=edits))
+
+
+def _moved(found: Diagnostic, text: str, meant: Candidate) -> Diagnostic:
+    """Return a mistake that goes when lines change their places."""
+    lines_ = (
+        laid_out(lexemes(without_note(each)[0])).strip("; ") for each in meant.text.split("\n")
+    )
+    whole = "; ".join(each for each in lines_ if each)
+    values = {**found.values, "whole": whole if len(whole) <= LONGEST_BLOCK else ""}
+    if found.code is codes.WRONG_END:
+        values["swapped"] = found.values["right"]
+    elif (move := meant.move) is not None:
+        values |= {"name": move.name, "line": str(move.before), "last": str(move.last)}
+        is_one_line = move.first == move.last and not move.is_end
+        values |= {"row": values.pop("last")} if is_one_line else {"first": str(move.first)}
+    repair = Repair((trimmed(0, text, meant.text),), meant.is_applied)
+    return found._replace(values=values, repair=repair)
+
+
+def _keeps(text: str, new: str, said_with: set[str], is_sure: bool) -> bool:
+    """Whether all numbers of a text are used, and all names that it gives to variables and DEFs.
+
+    `is_sure`: and no others.
+    """
     before, after = (Counter(each.text for each in lexemes(_bare(it))) for it in (text, new))
     names = {each.upper() for each in re.findall(r"(?i)(?<=\bDEF )\w+|\w+(?=\s*=)", new)} - {*WORDS}
+    closed = Counter(re.findall(r"\bEND_?DEF +(\w+)|\bFIN +(\w+)", _bare(text).upper()))
+    before -= Counter({name: n for pair, n in closed.items() for name in pair if after[name] > 1})
     is_kept = all(after[name] >= before[name] for name in names)
-    old, kept = (sorted(re.findall("[0-9]", _bare(it))) for it in (text, new))
-    return is_kept and (old == kept or bool(said_with & rows.OTHER_NUMBERS))
+    old, kept = (Counter(re.findall("[0-9]", _bare(it))) for it in (text, new))
+    has_all = old == kept if is_sure else not old - kept
+    return is_kept and (has_all or bool(said_with & rows.OTHER_NUMBERS))
 
 
 def _bare(text: str) -> str:

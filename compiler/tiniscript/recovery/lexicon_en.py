@@ -21,7 +21,7 @@ END_LOOP        | END_REPEAT ENDREPEAT END_FOR ENDFOR LOOP_END NEXT END_FOREVER 
 END_WHILE       | WHILE_END WEND
 FOREVER         | VOID_LOOP
 BREAK           | EXIT LEAVE
-DEF             | DEFINE FUNCTION PROCEDURE SUB
+DEF             | DEFINE FUNCTION PROCEDURE SUB VOID
 END_DEF         | END_FUNCTION DEF_END END_SUB
 TRUE            | YES
 RANDOM          | RAND RANDINT
@@ -156,7 +156,7 @@ again           | CONTINUE
 every           | EVERY
 range           | RANGE
 import          | IMPORT FROM INCLUDE USING REQUIRE
-wall            | WALL
+wall            | WALL OBSTACLE OBSTACLES
 engine          | MOTORS
 leave           | STOP S
 no              | NOT

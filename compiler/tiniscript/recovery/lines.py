@@ -9,10 +9,12 @@ import heapq
 from collections.abc import Callable, Iterator, Sequence
 from functools import lru_cache
 from typing import NamedTuple
+from unicodedata import category
 
 from tiniscript.recovery import rewrites, rows
 from tiniscript.recovery.blocks import ANY_END, BRACES
 from tiniscript.recovery.concepts import (
+    CALLED,
     NEAR,
     Lexeme,
     Names,
@@ -23,6 +25,7 @@ from tiniscript.recovery.concepts import (
 )
 from tiniscript.recovery.slots import LONG_S, MILLISECONDS_FROM, MOVES, filled
 from tiniscript.syntax.lexer import NUMBER, WORD
+from tiniscript.syntax.operators import SIGNS
 from tiniscript.syntax.outline import Failure, Item, outline
 from tiniscript.words import UNITS, WORDS
 
@@ -37,6 +40,7 @@ LONGEST = 300  # tokens of a line
 LONGEST_WITH_SLIPS = 40
 _FIRST_STEPS = 30
 _REMEMBERED = 128  # lines: a repair that is tried changes one line of a program
+_CALCULATES = SIGNS | {"°"}  # without it another number would be meant
 _SETUP = 2  # tokens: `SI|`
 _AT_END = ("LOOP", "IF", "WHILE", "DEF", "ELSEIF", "UNTIL")
 
@@ -265,7 +269,9 @@ class _Search:
                 continue
             for concept, cost in meanings:
                 cost = NEAR if token.text[-1].isdigit() else cost
-                is_sure = cost < 2 and concept != "TIME" and not _is_long(tokens, k, concept)
+                if _is_long(tokens, k, concept) or _is_duration(tokens, k, concept):
+                    continue
+                is_sure = cost < 2 and concept != "TIME"
                 line = [*tokens[:k], made(concept)._replace(space=token.space), *tokens[k + 1 :]]
                 yield reading.changed(line, cost, rows.OTHER_WORD, is_sure, False)
             if meanings:
@@ -286,7 +292,7 @@ class _Search:
                     code = rows.OF_INSTRUCTIONS if sign == ";" else rows.OF_VALUES
                     line, is_sure = [*tokens[:k], made(sign), *rest], sign not in around
                     yield reading.changed(line, rows.CONFUSED_COST, code, is_sure, False)
-            if is_sign and token.text not in ("-", "<", ">", "="):
+            if is_sign and token.text not in _CALCULATES and category(token.text[0]) != "Sm":
                 cost, code = rows.EXTRA_COST, rows.EXTRA.get(token.text, rows.OF_VALUES)
                 yield reading.changed([*tokens[:k], *rest], cost, code, is_bracket, False)
             if rest and (is_bracket or rest[0].text in ("(", ")")):
@@ -320,6 +326,12 @@ def _is_in_milliseconds(tokens: Sequence[Lexeme], k: int, concept: str) -> bool:
         return True
     numbers = [each for each in tokens[k + 1 : k + 3] if each.kind is NUMBER]
     return concept == "W" and bool(numbers) and float(numbers[0].text) >= MILLISECONDS_FROM
+
+
+def _is_duration(tokens: Sequence[Lexeme], k: int, concept: str) -> bool:
+    """Whether a word for the time stands for the first value of a call: `F(tiempo, 80)`."""
+    before = [each.text for each in tokens[max(0, k - 2) : k]]
+    return concept == "TIME" and len(before) > 1 and before[0] in CALLED and before[1] == "("
 
 
 def _is_long(tokens: Sequence[Lexeme], k: int, concept: str) -> bool:

@@ -37,12 +37,13 @@ PARTS = {
 # Codes of what no row says: a name of several words, a word of another language, `SI|`, an UNTIL on
 # a line of its own, and the one mistake of a program that has a DEF behind its call.
 NAME_IN_WORDS, OTHER_WORD, SETUP_CODE, UNTIL_ALONE = "TS056", "TS102", "TS036", "TS029"
-DO_CODE, CALLED_BEFORE_DEF = "TS064", "TS112"
+DO_CODE = "TS064"
+MISPLACED = frozenset(("TS112", "TS113", "TS114", "TS026"))  # of a DEF or an end
 # Codes of calls whose values are told in another way, by what is odd in them.
 NO_BRACKETS, NAMED_VALUE, WITH_UNIT, OTHER_CALL = "TS015", "TS052", "TS049", "TS076"
 
 # Those that write a number in another way: `500 ms`, `8O`, `X++`, `1) F(2, 80)`, `tres segundos`.
-OTHER_NUMBERS = frozenset(("TS008", "TS010", "TS049", "TS050", "TS054", "TS102"))
+OTHER_NUMBERS = frozenset(("TS008", "TS065", "TS010", "TS049", "TS050", "TS054", "TS102", "TS137"))
 
 # Slips of one sign, tried where no row reads a line: cost and code of one that is missing, of one
 # that is taken for another, of one too many, and of one behind its neighbour.
@@ -68,6 +69,22 @@ DO_ALONE = r"\s*(?:REPEAT|REPETIR|REPITE|DO|LOOP|HACER)\b\s*\{?\s*$"
 
 SIGNS = r"""
 (?<!\) )(["'«»`])([A-Za-z0-9_.,()| <>=]*[A-Za-z0-9)][A-Za-z0-9_.,()| <>=]*)(?:\1|»)  |  `\2`  |  1  |  TS006  |  applied  |  F("2","80") => F(2,80)
+(?<=\(\d)\. (?=\d\d\s*\))  |  `, `  |  1  |  TS017  |  applied  |  F(2. 80) => F(2, 80)
+(?<=W\()0:(\d\d)(?=\))  |  `\1`  |  1  |  TS008  |  applied  |  W(0:30) => W(30)
+(?<=\(\d)\)\s+\((?=\d+\))  |  `, `  |  1  |  TS017  |  applied  |  F (2) (80) => F (2, 80)
+(?<=\))\s*[✓✔]\s*(?=\w)  |  `; `  |  1  |  TS005  |  applied  |  F(2, 80) ✓ R(1, 50) => F(2, 80); R(1, 50)
+\b([A-Za-z_]\w*)\s*=\+\s+(?=\d)  |  `\1 = \1 + `  |  1  |  TS050  |  applied  |  V = 5⏎V =+ 10⏎F(2, V) => V = 5⏎V = V + 10⏎F(2, V)
+(?<![^;])\s*([*/+=-]+)([A-Za-z](?:[^;]*[\w)])?)\1\s*(?![^;])  |  `\2`  |  1  |  TS054  |  applied  |  **F(2, 80)** => F(2, 80)
+^\s*-(?=[A-Z]\w*\()  |  ``  |  1  |  TS054  |  applied  |  -F(2,80) => F(2,80)
+^"(S[IB]\|[^"]*)"$  |  `\1`  |  1  |  TS006  |  applied  |  "SI|F(2,80);R(1,50)" => SI|F(2,80);R(1,50)
+\b([FBLR])\((\d)\.([1-9]0|100)\)  |  `\1(\2, \3)`  |  1  |  TS020  |  offered  |  F(2.80) => F(2, 80)
+(?<=\d)=(?=\s*\))  |  `0`  |  1  |  TS076  |  offered  |  F(2, 8=) => F(2, 80)
+(?<=[(,])(\s*)!(?=\s*[,)])  |  `\g<1>1`  |  1  |  TS076  |  offered  |  F(!, 80) => F(1, 80)
+(?<=[(,])(\s*)"(?=\s*[,)])  |  `\g<1>2`  |  1  |  TS076  |  offered  |  F(", 80) => F(2, 80)
+(?<=[(,])(\s*)\$(?=\s*[,)])  |  `\g<1>4`  |  1  |  TS076  |  offered  |  F($, 80) => F(4, 80)
+(?<=[(,])(\s*)%(?=\d)  |  `\g<1>5`  |  1  |  TS076  |  offered  |  F(2, %0) => F(2, 50)
+(?<=[(,])(\s*)/(?=\d)  |  `\g<1>7`  |  1  |  TS076  |  offered  |  F(2, /0) => F(2, 70)
+(?<=\()l(?=\s*,)  |  `1`  |  1  |  TS008  |  offered  |  F(l, 80) => F(1, 80)
 (?<=\d)\. (?=\d)  |  `.`  |  1  |  TS008  |  applied  |  F(1. 5, 80) => F(1.5, 80)
 ^(\s*S[IB]\s*\|)\s+\|  |  `\1`  |  1  |  TS054  |  applied  |  SI| |F(2, 80) => SI|F(2, 80)
 −  |  `-`  |  0  |  TS010  |  applied  |  M(−50 50) => M(-50, 50)
@@ -111,7 +128,6 @@ SIGNS = r"""
 ^(\s*M)\s+(-?\d+)\s*[;,]\s*(-?\d+)  |  `\1(\2, \3)`  |  1  |  TS015  |  applied  |  M 50;-50 => M(50, -50)
 \(([FBLRWM])(\d)  |  `\1(\2`  |  1  |  TS015  |  applied  |  (F2, 80) => F(2, 80)
 ^\s*```\w*\s*$  |  ``  |  1  |  TS072  |  applied  |  ```tiniscript⏎F(2, 80)⏎R(1, 50)⏎``` => ⏎F(2, 80)⏎R(1, 50)⏎
-(?<![^;])\s*([*/+=-]+)([A-Za-z](?:[^;]*[\w)])?)\1\s*(?![^;])  |  `\2`  |  1  |  TS054  |  applied  |  **F(2, 80)** => F(2, 80)
 ^\s*[•·►▶✔✓*–—]\s+  |  ``  |  1  |  TS054  |  applied  |  * F(2,80) => F(2,80)
 ^\s*-\s+(?=[A-Za-z])  |  ``  |  1  |  TS054  |  applied  |  - F(2, 80)⏎- B(2, 80) => F(2, 80)⏎B(2, 80)
 ^\s*>+\s*  |  ``  |  1  |  TS054  |  applied  |  > F(2, 80) => F(2, 80)
@@ -277,6 +293,9 @@ a=@close '|'|,|. UNTIL ( | $a UNTIL ( | 1 | TS029 | applied | F(5, 60).UNTIL(DIS
 ^ W UNTIL QUE? c=@cond+ $ | W ( FOREVER ) UNTIL ( $c ) | 1 | TS102 | applied | WAIT UNTIL DISTANCE < 10 => W(FOREVER) UNTIL(DISTANCE < 10)
 a=@close UNTIL|HASTA QUE? c=@noparen+ $ | $a UNTIL ( $c ) | 1 | TS015 | applied | F(3, 80) UNTIL DISTANCE < 10 => F(3, 80) UNTIL(DISTANCE < 10)
 a=@close HASTA|UNTIL QUE? ( | $a UNTIL ( | 1 | TS102 | applied | F(2,80) HASTA(DISTANCE<10) => F(2,80) UNTIL(DISTANCE<10)
+^ UNTIL <question> ':'|'{'? $ | WHILE ( @not:c ) | 3 | TS029 | offered | UNTIL(DISTANCE < 10)⏎F(1, 60)⏎END_WHILE => WHILE(DISTANCE >= 10)⏎F(1, 60)⏎END_WHILE
+^ a=F|B|L|R ( UNTIL <question> , b=@num ) $ | $a ( FOREVER , $b ) UNTIL ( $c ) | 2 | TS029 | offered | F(UNTIL(DISTANCE < 20), 60) => F(FOREVER, 60) UNTIL(DISTANCE < 20)
+^ UNTIL <question> a=F|B|L|R|W ( b=@argt+ ) $ | $a ( $b ) UNTIL ( $c ) | 2 | TS029 | offered | UNTIL(DISTANCE < 10) F(2, 60) => F(2, 60) UNTIL(DISTANCE < 10)
 a=@close ; UNTIL ( | $a UNTIL ( | 1 | TS029 | applied | F(3, 80);UNTIL(DISTANCE < 10) => F(3, 80) UNTIL(DISTANCE < 10)
 c=@callw ( a=@argt+ UNTIL ( d=@noclose+ ) ) | $c ( $a ) UNTIL ( $d ) | 1 | TS016 | applied | F(5, 60 UNTIL(DISTANCE < 15)) => F(5, 60) UNTIL(DISTANCE < 15)
 # IF and WHILE
@@ -314,14 +333,14 @@ IF <question> ? a=@any+ : b=@any+ $ | IF ( $c ) ; $a ; ELSE ; $b ; ENDIF | 1 | T
 ELSE ( <body> ) $ | ELSE ; $b $r | 1 | TS014 | applied | IF(DISTANCE < 10)(S)ELSE(F(1,50)) => IF(DISTANCE < 10);S;ELSE;F(1, 50);ENDIF
 h=ELSE :|,|THEN|=|'|' | &h ; | 1 | TS014 | applied | IF DISTANCE<10: STOP ELSE: F(1,50) => IF(DISTANCE < 10);STOP;ELSE;F(1, 50);ENDIF
 h=ELSE b=@start|'{' | &h ; $b | 1 | TS014 | applied | IF(DISTANCE<10);R(1,60);ELSE F(1,80);ENDIF => IF(DISTANCE < 10);R(1, 60);ELSE;F(1, 80);ENDIF
-a=@nosep h=ELSE|ELSEIF|ENDIF|END_LOOP|END_WHILE|END_DEF | $a ; &h | 1 | TS013 | applied | IF LIGHT_R>100 F(4,70) ENDIF => IF(LIGHT_R > 100);F(4, 70);ENDIF
+a=@nosep|@close h=ELSE|ELSEIF|ENDIF|END_LOOP|END_WHILE|END_DEF | $a ; &h | 1 | TS013 | applied | IF LIGHT_R>100 F(4,70) ENDIF => IF(LIGHT_R > 100);F(4, 70);ENDIF
 '}' ;? h=ELSE|ELSEIF | } ; &h | 0 | TS047 | first | SI(DISTANCE < 10){S}SINO{F(1,50)} => IF(DISTANCE < 10);S;ELSE;F(1, 50);ENDIF;
 # LOOP
 ^ LOOP FOREVER :|,? b=@start|'{' | LOOP ( FOREVER ) ; $b | 1 | TS015 | applied | LOOP FOREVER F(0.5,60) R(0.5,60) => LOOP(FOREVER);F(0.5, 60);R(0.5, 60);END_LOOP
 ^ LOOP n=@num ( <body> ) $ | LOOP ( $n ) ; $b $r ; END_LOOP | 1 | TS080 | applied | LOOP 3 (F(1, 50); R(1, 50)) => LOOP(3);F(1, 50);R(1, 50);END_LOOP
 ^ LOOP n=@num VECES? [ <body> ] $ | LOOP ( $n ) ; $b $r ; END_LOOP | 1 | TS080 | applied | repite 4 [F(1, 60) R(0.5, 60)] => LOOP(4);F(1, 60);R(0.5, 60);END_LOOP
 h=LOOP|WHILE <question> ( <body> ) e=@start | &h ( $c ) ; $b $r ; @endof:h ; $e | 1 | TS080 | applied | LOOP(3)(S)F(1,50) => LOOP(3);S;END_LOOP;F(1, 50)
-^ FOREVER ( ) '{' $ | LOOP ( FOREVER ) ; { | 1 | TS102 | applied | void loop() {⏎  F(1, 50);⏎} => LOOP(FOREVER);⏎  F(1, 50);⏎END_LOOP
+^ FOREVER ( ) '{' | LOOP ( FOREVER ) ; { | 1 | TS102 | applied | void loop() {⏎  F(1, 50);⏎} => LOOP(FOREVER);⏎  F(1, 50);⏎END_LOOP
 ^ <for> each? @word IN|EN|DE n=@num :? $ | LOOP ( $n ) | 1 | TS102 | applied | for each paso in 4⏎F(1, 50)⏎end => LOOP(4)⏎F(1, 50)⏎END_LOOP
 ^ do n=@num times :? | LOOP ( $n ) ; | 1 | TS102 | applied | hacer 4 veces⏎F(1,50)⏎R(1,50)⏎fin => LOOP(4)⏎F(1,50)⏎R(1,50)⏎END_LOOP
 LOOP n=X1|X2|X3|X4|X5|X6|X8 | LOOP ( @xn:n ) | 1 | TS015 | applied | LOOP x4⏎F(1,60)⏎END_LOOP => LOOP(4)⏎F(1,60)⏎END_LOOP
@@ -337,11 +356,24 @@ LOOP POR? n=@num times? :|,|do|; | LOOP ( $n ) ; | 1 | TS102 | applied | repite 
 LOOP n=@num times? b=@start|'{' | LOOP ( $n ) ; $b | 1 | TS102 | applied | LOOP 4 F(1,60) => LOOP(4);F(1, 60);END_LOOP
 LOOP POR? n=@num times? $ | LOOP ( $n ) | 1 | TS102 | applied | repetir 4⏎S⏎fin => LOOP(4)⏎S⏎END_LOOP
 LOOP n=@val o=*|+|- m=@num $ | LOOP ( $n &o $m ) | 1 | TS015 | applied | X = 2⏎LOOP X * 4⏎F(1,50)⏎END_LOOP => X = 2⏎LOOP(X * 4)⏎F(1,50)⏎END_LOOP
+RANDOM ( n=@num ) | RANDOM ( 1 , @whole:n ) | 2 | TS020 | offered | X = RANDOM(6)⏎F(X, 50) => X = RANDOM(1, 6)⏎F(X, 50)
+ROUND ( n=@num ) | ROUND ( $n , 0 ) | 2 | TS020 | offered | X = ROUND(3.7)⏎SHOW(X) => X = ROUND(3.7, 0)⏎SHOW(X)
+^ M ( a=@num , b=@num , n=@num ) $ | M ( @power:a , @power:b ) ; W ( @time:n ) ; S | 2 | TS020 | offered | M(50, 50, 2) => M(50, 50);W(2);S
+^ M ( n=@num , a=@num , b=@num ) $ | M ( @power:a , @power:b ) ; W ( @time:n ) ; S | 2 | TS020 | offered | M(2, 50, 80) => M(50, 80);W(2);S
+^ BEEP ( n=@num , a=@num , b=@num ) $ | BEEP ( @time:n , $a ) ; BEEP ( $n , $b ) | 2 | TS020 | offered | BEEP(0.2, 440, 660) => BEEP(0.2, 440);BEEP(0.2, 660)
+^ BEEP ( n=@num , a=@num , b=@num , c=@num ) $ | BEEP ( @time:n , $a ) ; BEEP ( $n , $b ) ; BEEP ( $n , $c ) | 2 | TS020 | offered | BEEP(0.2, 440, 660, 880) => BEEP(0.2, 440);BEEP(0.2, 660);BEEP(0.2, 880)
+^ a=F|B|L|R ( b=@num , c=@num , d=@val e=<|> f=@num ) $ | $a ( $b , $c ) UNTIL ( $d $e $f ) | 2 | TS020 | offered | F(3, 80, DISTANCE < 10) => F(3, 80) UNTIL(DISTANCE < 10)
+h=IF|WHILE ( a=@val s=<|> b=@num , c=@val t=<|> d=@num ) | &h ( $a $s $b AND $c $t $d ) | 2 | TS020 | offered | IF(DISTANCE < 10, LIGHT_R > 50)⏎S⏎ENDIF => IF(DISTANCE < 10 AND LIGHT_R > 50)⏎S⏎ENDIF
+^ h=IF|WHILE ( c=@argt+ , b=@start r=@argt* ) $ | &h ( $c ) ; $b $r | 2 | TS080 | applied | IF(DISTANCE < 10, S)⏎ELSE⏎F(1,50)⏎ENDIF => IF(DISTANCE < 10);S⏎ELSE⏎F(1,50)⏎ENDIF
 LOOP ( n=@num , <body> ) | LOOP ( $n ) ; $b $r | 2 | TS080 | applied | LOOP(4, F(1,50))⏎END_LOOP => LOOP(4);F(1, 50)⏎END_LOOP
 LOOP ( n=@num <body> ) $ | LOOP ( $n ) ; $b $r ; END_LOOP | 2 | TS080 | applied | LOOP(3 F(1,50)) => LOOP(3);F(1, 50);END_LOOP
 <for> @name IN|EN range ( n=@num ) :? | LOOP ( $n ) ; | 1 | TS102 | applied | for i in range(4): F(1,60); R(0.5,60) => LOOP(4);F(1, 60);R(0.5, 60);END_LOOP
 <for> @name IN|EN range ( 0 , n=@num ) :? | LOOP ( $n ) ; | 1 | TS102 | applied | for i in range(0, 4):⏎F(1, 50)⏎END_LOOP => LOOP(4)⏎F(1, 50)⏎END_LOOP
 LOOP|FOR|PARA|DESDE @name =|DESDE|than 1 TO|A|HASTA n=@num do|:? | LOOP ( $n ) ; | 1 | TS102 | offered | para i de 1 a 4⏎F(1,50)⏎fin para => LOOP(4)⏎F(1,50)⏎END_LOOP
+LOOP ( INT? @name = 0 ; @name < n=@num ; @name ++ ) | LOOP ( $n ) | 1 | TS063 | offered | LOOP(I = 0; I < 4; I++);F(1, 50);END_LOOP => LOOP(4);F(1, 50);END_LOOP
+^ v=@name = c=@cond+ ? a=@num|@val : b=@num|@val $ | IF ( $c ) ; $v = $a ; ELSE ; $v = $b ; ENDIF | 1 | TS069 | applied | V = DISTANCE > 20 ? 80 : 30⏎F(1, V) => IF(DISTANCE > 20);V = 80;ELSE;V = 30;ENDIF⏎F(1, V)
+^ n=@num = v=@name $ | $v = $n | 1 | TS042 | offered | 50 = v⏎F(2, v) => v = 50⏎F(2, v)
+^ q=@val s=<|>|<=|>= n=@num|@val :|do? b=@start r=@all* | IF ( $q $s $n ) ; $b $r | 1 | TS042 | offered | DISTANCE < 10: S => IF(DISTANCE < 10);S;ENDIF
 <for> ( INT? @name = 0 ; @name < n=@num ; @name ++ ) | LOOP ( $n ) ; | 1 | TS102 | offered | for(i=0;i<3;i++) F(1,50); => LOOP(3);F(1, 50);END_LOOP
 <for> ( INT? @name = 1 ; @name <= n=@num ; @name ++ ) | LOOP ( $n ) ; | 1 | TS102 | offered | for(i=1; i<=3; i++){ F(1,80); } => LOOP(3);F(1, 80);END_LOOP;
 ^ FOREVER|SIEMPRE : $ | LOOP ( FOREVER ) ; | 1 | TS032 | applied | forever:⏎  F(1,50) => LOOP(FOREVER)⏎  F(1,50)⏎END_LOOP
@@ -362,8 +394,10 @@ LOOP|FOR|PARA|DESDE @name =|DESDE|than 1 TO|A|HASTA n=@num do|:? | LOOP ( $n ) ;
 ^ n=@num b=@def $ | LOOP ( $n ) ; $b ; END_LOOP | 1 | TS062 | applied | DEF SALTO;F(0.2, 60);END_DEF⏎3 SALTO => DEF SALTO;F(0.2, 60);END_DEF⏎LOOP(3);SALTO;END_LOOP
 ^ n=@num times|X|* :|,|DE? <body> $ | LOOP ( $n ) ; $b $r ; END_LOOP | 1 | TS062 | applied | 3 * F(1,50) => LOOP(3);F(1, 50);END_LOOP
 ^ n=@num *|X|times? ( <body> ) $ | LOOP ( $n ) ; $b $r ; END_LOOP | 1 | TS080 | applied | SI|4*(F(2,80);R(1,50)) => SI|LOOP(4);F(2, 80);R(1, 50);END_LOOP
+^ b=@def n=X2|X3|X4|X5|X6 $ | LOOP ( @xn:n ) ; $b ; END_LOOP | 1 | TS062 | applied | DEF SALTO;F(0.2, 60);END_DEF⏎SALTO x3 => DEF SALTO;F(0.2, 60);END_DEF⏎LOOP(3);SALTO;END_LOOP
 ^ b=@def *|X? n=@num times? $ | LOOP ( $n ) ; $b ; END_LOOP | 1 | TS062 | applied | DEF SALTO;F(0.2, 60);END_DEF⏎SALTO*3 => DEF SALTO;F(0.2, 60);END_DEF⏎LOOP(3);SALTO;END_LOOP
 ^ b=@start r=@any+ *|X? n=@num times $ | LOOP ( $n ) ; $b $r ; END_LOOP | 1 | TS062 | offered | F(1, 80) 2 veces => LOOP(2);F(1, 80);END_LOOP
+^ do|make b=@start r=@any* n=@num times $ | LOOP ( $n ) ; $b $r ; END_LOOP | 1 | TS062 | offered | hacer F(1,50) 3 veces => LOOP(3);F(1, 50);END_LOOP
 ^ n=@num LOOP ( <body> ) $ | LOOP ( $n ) ; $b $r ; END_LOOP | 1 | TS080 | applied | 3 LOOP (F(1, 50)) => LOOP(3);F(1, 50);END_LOOP
 # words behind a call: shown, not made
 ^ a=F|B|L|R ( FOREVER|@num|@val , b=@num ) during? n=@num seconds $ | $a ( $n , $b ) | 3 | TS085 | offered | F(2,80) 5 seg => F(5, 80)
@@ -385,6 +419,13 @@ d=@device ( v=least ) | &d ( @least:d ) | 1 | TS102 | applied | GRIPPER(CLOSED) 
 ^ v=off|dark the? d=@device $ | &d ( FALSE ) | 1 | TS102 | applied | apagar el foco => LED(FALSE)
 # DEF and its calls
 v=@def ( ) | $v | 1 | TS028 | first | DEF GIRO()⏎R(1, 60)⏎END_DEF⏎GIRO() => DEF GIRO⏎R(1, 60)⏎END_DEF⏎GIRO
+^ DEF n=@word ( <body> ) $ | DEF $n ; $b $r ; END_DEF | 1 | TS080 | applied | DEF SALUDO(BEEP(1,440))⏎SALUDO => DEF SALUDO;BEEP(1, 440);END_DEF⏎SALUDO
+^ ( a=@callw ( c=@argt+ ) ) ( <body> ) $ | $a ( $c ) ; $b $r | 1 | TS080 | applied | (F(2,80))(R(1,60)) => F(2, 80);R(1, 60)
+v=@val A|TO the? wall | &v | 1 | TS102 | first | IF(distancia a la pared < 10)⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
+LOOP = n=@num | LOOP ( $n ) | 1 | TS015 | applied | LOOP=4;F(2,80);END_LOOP => LOOP(4);F(2,80);END_LOOP
+^ v=TIEMPO n=@num $ | $v = $n | 1 | TS057 | applied | tiempo 2⏎F(tiempo,80) => tiempo = 2⏎F(tiempo,80)
+<block> <question> '|' b=@start | &h ( $c ) ; $b | 1 | TS014 | applied | LOOP(2)|F(1, 80)|END_LOOP => LOOP(2);F(1, 80);END_LOOP
+a=@close '|' h=END_LOOP|ENDIF|END_WHILE|END_DEF | $a ; &h | 1 | TS055 | applied | LOOP(2);F(1, 80)|END_LOOP => LOOP(2);F(1, 80);END_LOOP
 ^ DEF ( n=@word ) | DEF $n | 1 | TS039 | offered | DEF(SALUDO)⏎BEEP(1,440)⏎END_DEF⏎SALUDO => DEF SALUDO⏎BEEP(1,440)⏎END_DEF⏎SALUDO
 DEF n=@word :|'|'|=|'->'|'=>' | DEF $n ; | 1 | TS014 | applied | DEF SALUDO = BEEP(1,440)⏎SALUDO => DEF SALUDO;BEEP(1, 440);END_DEF⏎SALUDO
 DEF n=@word b=@start|'{' | DEF $n ; $b | 1 | TS014 | applied | procedure square F(1,50) end => DEF SQUARE;F(1, 50);END_DEF
@@ -398,8 +439,10 @@ a=@close h=end $ | $a ; &h | 1 | TS013 | applied | F(2,80) fin => F(2, 80);
 ^ END_DEF @def $ | END_DEF | 1 | TS044 | first | DEF SALTO⏎F(1, 50)⏎END_DEF SALTO⏎SALTO => DEF SALTO⏎F(1, 50)⏎END_DEF⏎SALTO
 ; LOOP $ | ; END_LOOP | 4 | TS014 | applied | LOOP(4) F(1,50) R(0.5,50) LOOP => LOOP(4);F(1, 50);R(0.5, 50);END_LOOP
 ^ S|STOP|SALIR|ROMPER LOOP|BUCLE|CICLO $ | BREAK | 1 | TS102 | applied | LOOP(FOREVER)⏎F(0.2,50)⏎IF(DISTANCE < 10)⏎STOP LOOP⏎ENDIF⏎END_LOOP => LOOP(FOREVER)⏎F(0.2,50)⏎IF(DISTANCE < 10)⏎BREAK⏎ENDIF⏎END_LOOP
+^ program @word $ |  | 1 | TS044 | applied | programa baile⏎F(1, 50) => ⏎F(1, 50)
+^ RETURN 0 ;? $ |  | 1 | TS065 | applied | F(1, 50)⏎return 0; => F(1, 50)⏎
 ^ end program? $ | FIN | 0 | TS044 | first | F(1, 50)⏎fin programa => F(1, 50)⏎
-end DEL|DE|EL? k=IF|LOOP|WHILE|DEF|FOREVER|FOR|PARA ;|$ | @endof:k | 1 | TS022 | first | definir bailar⏎L(1,50)⏎fin definir⏎bailar => DEF bailar⏎L(1,50)⏎END_DEF⏎bailar
+end -|.|DEL|DE|EL? k=IF|LOOP|WHILE|DEF|FOREVER|FOR|PARA ;|$ | @endof:k | 1 | TS022 | first | definir bailar⏎L(1,50)⏎fin definir⏎bailar => DEF bailar⏎L(1,50)⏎END_DEF⏎bailar
 # what joins instructions
 ^ @newname : b=@start | $b | 2.5 | TS054 | applied | square: F(1,50); R(1,50) => F(1,50); R(1,50)
 a=@close please|CM|CENTIMETROS|SEG|SEGS|SEGUNDO|SEGUNDOS|SECONDS $ | $a | 1 | TS044 | applied | F(1, 80) cm => F(1, 80)
@@ -412,8 +455,10 @@ a=@close &|+|AND|->|=>|/|>|>>|_|* b=@start | $a ; $b | 1 | TS061 | applied | F(2
 a=@close , $ | $a ; | .8 | TS013 | applied | F(2,80),⏎R(1,50), => F(2, 80)⏎R(1, 50)
 a=@close '|' $ | $a ; | 1 | TS055 | applied | F(2,80)|⏎R(1,50)| => F(2, 80)⏎R(1, 50)
 a=@close b=@start | $a ; $b | 1 | TS013 | applied | S STOP => S;STOP
+call b=@def n=@num | LOOP ( $n ) ; $b ; END_LOOP | 1 | TS062 | applied | DEF SALTO;F(0.2, 60);END_DEF⏎CALL SALTO 3 => DEF SALTO;F(0.2, 60);END_DEF⏎LOOP(3);SALTO;END_LOOP
 a=@def b=@def | $a ; $b | 1 | TS013 | applied | DEF PASO;S;END_DEF⏎PASO PASO => DEF PASO;S;END_DEF⏎PASO;PASO
 ^ first ,? b=@start | $b | 1 | TS044 | applied | Primero, avanza 2 segundos⏎Luego gira a la izquierda 1 segundo => F(2, 80)⏎L(1, 80)
+; ( b=@start r=@all* e=@close ) ; | ; $b $r $e ; | 1 | TS080 | applied | LOOP(4);(F(1, 60);R(1, 50));END_LOOP => LOOP(4);F(1, 60);R(1, 50);END_LOOP
 ; first+ ,? b=@start | ; $b | 1 | TS044 | applied | F(2, 80); y despues B(1, 80) => F(2, 80);B(1, 80)
 ^ ( <body> ) $ | $b $r | 1 | TS080 | applied | LOOP(3)⏎(F(1, 50))⏎END_LOOP => LOOP(3)⏎F(1, 50)⏎END_LOOP
 ^ [ <body> ] $ | $b $r | 1 | TS080 | applied | [F(2,80), R(1,60)] => F(2, 80);R(1, 60)
@@ -428,7 +473,9 @@ read ( v=@val ) | $v | 1 | TS102 | applied | X = leer(DISTANCE)⏎SHOW(X) => X =
 ^ PARA|DEJA DE AVANZAR|MOVER|MOVERTE $ | S | .5 | TS102 | first | para de avanzar => S
 ^ APAGAR|APAGA|DETENER|PARAR the? engine $ | S | 1 | TS102 | applied | apaga motores => S
 ^ START '|' | SI '|' | 1 | TS034 | offered | start|F(2,80) => SI |F(2,80)
+IF <question> BREAK ;|$ | IF ( $c ) ; BREAK ; ENDIF ; | 1 | TS014 | applied | LOOP(FOREVER)⏎F(1, 50)⏎if (DISTANCE < 10) break;⏎END_LOOP => LOOP(FOREVER)⏎F(1, 50)⏎IF(DISTANCE < 10);BREAK;ENDIF⏎END_LOOP
 ^ VOID LOOP ( ) '{'? | LOOP ( FOREVER ) ; { | 1 | TS102 | applied | void loop() {⏎F(1, 50)⏎} => LOOP(FOREVER);⏎F(1, 50)⏎END_LOOP
+^ INT|VOID? MAIN|PRINCIPAL ( ) '{' | START ; { | 1 | TS065 | applied | main() {⏎F(3, 70);⏎} => START;⏎F(3, 70);⏎
 ^ VOID SETUP ( ) '{' ;? '}'? $ | START | 1 | TS065 | applied | void setup() {}⏎F(1, 50) => START⏎F(1, 50)
 ^ read the? v=@val $ | $v | 1 | TS102 | applied | leer DISTANCE => DISTANCE
 """

@@ -15,6 +15,7 @@ from tiniscript.recovery import lines, rewrites, rows
 from tiniscript.recovery.blocks import Edit, Line, Matched, matched
 from tiniscript.recovery.concepts import CALLED, Lexeme, Names, lexemes, made, plain, texts
 from tiniscript.recovery.lines import MARGIN, Reading, Step
+from tiniscript.recovery.order import Moved, ordered
 from tiniscript.recovery.setup import setup
 from tiniscript.recovery.writing import as_written, laid_out, without_note
 from tiniscript.syntax.outline import Failure
@@ -41,7 +42,7 @@ class Candidate(NamedTuple):
     """A program that may have been meant. `is_applied`: it may be made without asking.
 
     `is_whole`: it has no mistakes; else fewer than the text. `steps` are all rewrites, with
-    the change that has them. `changes` are of all lines, none where lines change places.
+    the change that has them. `changes` are of all lines, none where a DEF is moved: `move`.
     `checks`: how many candidates were compiled.
     """
 
@@ -51,6 +52,9 @@ class Candidate(NamedTuple):
     steps: tuple[tuple[int, Step], ...]
     checks: int
     changes: tuple[Change, ...] = ()
+    unsure: frozenset[int] = frozenset()  # changes that are a guess
+    has_sure_blocks: bool = True
+    move: Moved | None = None
 
 
 def candidate(
@@ -153,6 +157,8 @@ class _Recovery:
     def join_until(self) -> None:
         """Put an UNTIL on a line of its own behind the instruction before it."""
         kept: list[_Text] = []
+        if re.search(r"(?i)\b(?:END|FIN)[ _]?(?:UNTIL|HASTA)\b", self.program):
+            return  # it is taken for a block
         for line in self.lines:
             is_until = re.match(r"\s*(?:UNTIL|HASTA(?: QUE)?)\b", plain(line.body))
             before = next((each for each in reversed(kept) if each.body.strip()), None)
@@ -200,20 +206,22 @@ class _Recovery:
             made_of = self.written(readings, has_blocks)
             if made_of is None:
                 continue
-            out, is_sure = made_of
-            text, changes = "\n".join(out), self.changes(out)
+            out, unsure, has_sure_blocks = made_of
+            is_sure = not unsure and has_sure_blocks
+            text, changes, move = "\n".join(out), self.changes(out), None
             left = self.mistakes(text)
-            if left and set(left) <= {rows.CALLED_BEFORE_DEF}:
-                moved = with_defs_first(text)
-                if moved and not self.mistakes(moved):
-                    text, left, changes = moved, [], ()
+            if left and set(left) & rows.MISPLACED:
+                for moved in ordered(text):
+                    if left and not self.mistakes(moved.text):
+                        text, left, changes, move = moved.text, [], (), moved
             if not left:
-                is_applied = is_sure and bool(text.strip(" ;\n"))
+                is_applied = is_sure and bool(text.strip(" ;\n")) and not (move and move.is_guess)
                 if best is None or not best.is_whole or is_applied:
                     best = self.made(text, is_applied, True, readings, changes)
-            elif len(left) < self.count and self.is_part(readings) and is_sure:
-                if best is None or not best.is_applied:
-                    best = self.made(text, self.are_sure(), False, readings)
+                    best = best._replace(unsure=unsure, has_sure_blocks=has_sure_blocks, move=move)
+            elif len(left) < self.count and is_sure:
+                if best is None or not (best.is_applied or best.is_whole):
+                    best = self.made(text, self.are_sure(), False, readings, changes)
         return best
 
     def choices(self) -> Iterator[tuple[list[Reading | None], bool]]:
@@ -227,13 +235,13 @@ class _Recovery:
         if sure != cheapest:
             yield sure, True
         yield sure, False
+        alone = [each if each is not None and _is_alone(each) else None for each in sure]
+        if alone != sure:
+            yield alone, False
 
     def costs_more(self, rival: tuple[int, Reading]) -> float:
         first = self.lines[rival[0]].reading
         return rival[1].cost - (first.cost if first else 0.0)
-
-    def is_part(self, readings: Sequence[Reading | None]) -> bool:
-        return any(each is None for each in readings)
 
     def are_sure(self) -> bool:
         return all(each.is_sure for each in self.lines)
@@ -260,8 +268,11 @@ class _Recovery:
 
     def written(
         self, readings: Sequence[Reading | None], has_blocks: bool
-    ) -> tuple[list[str], bool] | None:
-        """Return what lines become, and whether it is sure; None where no block fits."""
+    ) -> tuple[list[str], frozenset[int], bool] | None:
+        """Return what lines become, which are a guess, and whether the blocks are none.
+
+        None where no block fits.
+        """
         found = Matched({}, {}, {}, True)
         if has_blocks:
             blocks = matched([
@@ -283,35 +294,44 @@ class _Recovery:
                 text += line.note
             ends = [" " * end.indent + end.word for end in found.behind.get(k, [])]
             out.append("\n".join((text, *ends)))
-        is_sure = all(each.is_sure for each in readings if each) and self.are_sure()
-        return out, is_sure and found.is_sure
+        unsure = frozenset(
+            k
+            for k, (line, reading) in enumerate(zip(self.lines, readings, strict=True))
+            if not line.is_sure or (reading is not None and not reading.is_sure)
+        )
+        return out, unsure, found.is_sure
 
     # -- parts ----------------------------------------------------------------------------------
 
     def of_parts(self, names: Names, best: Candidate | None) -> Candidate | None:
         """Return the text with the rewrites of lines that leave fewer mistakes, if not none."""
-        is_based = best is not None and best.is_applied
-        text = best.text if best is not None and is_based else self.program
-        count = len(self.mistakes(text)) if text != self.program else self.count
-        steps = list(best.steps) if best is not None and is_based else []
-        out = text.split("\n")
+        is_based = best is not None and best.is_applied and bool(best.changes)
+        out = [each.text for each in best.changes] if best and is_based else []
+        out = out or [each.source for each in self.lines]
+        count = len(self.mistakes("\n".join(out))) if is_based else self.count
+        steps = list(best.steps) if best and is_based else []
         is_changed = False
         for k, line in enumerate(self.lines):
-            if line.reading is not None or line.source not in out:
+            if line.reading is not None or line.source != out[k]:
                 continue
-            at = out.index(line.source)
             for reading in _likely(line, names):
                 if self.checks > CHECKS:
                     break
                 new = as_written(reading.tokens).rstrip() + line.note
-                left = len(self.mistakes("\n".join([*out[:at], new, *out[at + 1 :]])))
+                left = len(self.mistakes("\n".join([*out[:k], new, *out[k + 1 :]])))
                 if left < count:
-                    out[at], count, is_changed = new, left, True
+                    out[k], count, is_changed = new, left, True
                     steps += [(k, step) for step in (*line.steps, *reading.steps)]
                     break
         if not is_changed:
             return None
-        return Candidate("\n".join(out), self.are_sure(), False, tuple(steps), self.checks)
+        text, changes = "\n".join(out), self.changes(out)
+        return Candidate(text, self.are_sure(), False, tuple(steps), self.checks, changes)
+
+
+def _is_alone(reading: Reading) -> bool:
+    """Whether a line has no part of a block."""
+    return all(each.kind == "do" for each in reading.items or ())
 
 
 def _words(text: str) -> set[str]:
@@ -383,31 +403,3 @@ def _without_empty(tokens: Sequence[Lexeme]) -> list[Lexeme]:
         if token.text != ";" or (kept and kept[-1].text not in (";", "|")):
             kept.append(token)
     return kept
-
-
-def with_defs_first(text: str) -> str | None:
-    """Return a program in which each DEF stands before its first call, None where it is so."""
-    out = text.split("\n")
-    setup = re.match(r"\s*S[IB]\s*\|\s*", out[0], re.IGNORECASE)
-    out[0] = out[0][setup.end() :] if setup else out[0]
-    is_moved = False
-    while (move := _def_behind_its_call(out)) is not None:
-        call, start, end = move
-        out = out[:call] + out[start : end + 1] + out[call:start] + out[end + 1 :]
-        is_moved = True
-    return (setup[0] if setup else "") + "\n".join(out) if is_moved else None
-
-
-def _def_behind_its_call(out: Sequence[str]) -> tuple[int, int, int] | None:
-    """Return the line of a call, and the first and the last one of its DEF further down."""
-    for start, line in enumerate(out):
-        match = re.match(r"\s*DEF\s+(\w+)\s*(;.*END_?DEF\s*;?\s*)?$", line, re.IGNORECASE)
-        if match is None:
-            continue
-        ends = (k for k in range(start, len(out)) if re.match(r"(?i)\s*END_?DEF\s*$", out[k]))
-        end = start if match[2] else next(ends, None)
-        called = re.compile(rf"(?i)(?:^|;)\s*{match[1]}\s*(?:;|$)")
-        call = next((k for k in range(start) if called.search(out[k])), None)
-        if end is not None and call is not None:
-            return call, start, end
-    return None

@@ -11,10 +11,11 @@ from typing import NamedTuple
 from tiniscript.recovery.concepts import CALLED, DONE, Lexeme, Names, made, said_of
 from tiniscript.syntax.devices import actuator_word
 from tiniscript.syntax.lexer import NUMBER, WORD
-from tiniscript.words import UNITS, WORDS, Argument
+from tiniscript.words import NOTE_WORDS, UNITS, WORDS, Argument
 
+LONG_S = 20  # so much without a unit may be a power, degrees or centimetres
+LONG_S = 20  # so much without a unit may be a power, degrees or centimetres
 MILLISECONDS_FROM = 100  # no wait is so many seconds
-LONG_S = 20  # so much without a unit may be a power, degrees or centimeters
 _SIDES = ("left", "right")
 MOVES = ("F", "B", "L", "R")
 _LETTERS = {"T": "s", "P": "%", "V": "%"}  # how a value of a move is called, in one letter
@@ -22,12 +23,16 @@ _PASSED = frozenset("(),:=.-_") | {"->", "%"}
 
 
 class Filled(NamedTuple):
-    """A call in tokens; `times` is how often, where words say so. `is_sure`: nothing is guessed."""
+    """A call in tokens; `times` is how often, where words say so. `is_sure`: nothing is guessed.
+
+    `samples` are the values that no word says, with their units: `80 %`.
+    """
 
     tokens: list[Lexeme]
     cost: float
     is_sure: bool
     times: str | None
+    samples: tuple[str, ...] = ()
 
 
 class _Value(NamedTuple):
@@ -125,14 +130,21 @@ class _Reader:
         if token.kind is not WORD or token.text in self.names.known.values:
             return None
         said = said_of(token.text, "number")
-        if said and self.command and (said != ("1",) or after in UNITS):
+        is_one = (
+            said == ("1",) and after not in (*UNITS, ",", ")") and not self._is_and_a_half(k + 1)
+        )
+        if said and self.command and not is_one:
             number, k = self._sum(int(said[0]), k + 1)
             self.is_sure = self.is_sure and said != ("1",)
             self.cost += 0.5
             return number, k
-        if said_of(token.text, "power") == ("50",) and after in UNITS:  # half a second
+        is_first = self.text(k - 1) == "(" and after == "," and self.command != "M"
+        if said_of(token.text, "power") == ("50",) and (after in UNITS or is_first):
             self.is_sure = False
-            return 0.5, k + 1
+            return 0.5, k + 1  # half a second
+        if said_of(token.text, "power") == ("50",) and after == "A" and self.text(k + 2) in UNITS:
+            self.is_sure = False
+            return 0.5, k + 2
         return None
 
     def _sum(self, number: int, k: int) -> tuple[float, int]:
@@ -193,6 +205,8 @@ class _Reader:
                 return k + 2
         if sign not in _PASSED or (sign == "=" and not self.mark):
             return None
+        if sign == "," and self.mark and before != ",":
+            return None  # a value that is only named
         self.cost += 0.0 if sign in "(),%" else 0.2
         is_behind_number = k > 0 and self.words[k - 1].kind is NUMBER
         is_odd = sign in ("-", ".") or (sign == "%" and not is_behind_number)
@@ -213,17 +227,22 @@ class _Reader:
         elif self.command in MOVES and word in _LETTERS and is_before_number:
             self.mark = _LETTERS[word]
         elif said_of(word, "turn"):
+            if self.command == "F" and self.values:
+                return None  # another order
             self.is_turn = True
             self.command = None if self.command == "F" else self.command
         elif self._is_mark(word, marked):
             last = self.values[-1] if self.values else None
-            is_behind = after is None or after.text in (",", ")")
+            is_behind = (after is None or after.text in (",", ")")) and self.text(k - 1) != ","
             if last and last.unit in (None, marked[0]) and is_behind and marked != ("s",):
                 self.values[-1] = _Value(last.value, marked[0])
             else:
                 self.mark = marked[0]
         elif is_name and self.command:
+            self.mark = marked[0] if marked else self.mark
             self._take(word)
+        elif self.command == "BEEP" and word in NOTE_WORDS:
+            self.values.append(_Value(float(NOTE_WORDS[word]), "Hz"))
         elif said_of(word, "power") and self.command:
             self.values.append(_Value(float(said_of(word, "power")[0]), "%"))
             self.is_sure = False
@@ -258,7 +277,8 @@ class _Reader:
         self.is_sure = self.is_sure and cost < 2
         before = self.command
         is_way = before == "F" and meant in ("B", "L", "R") and not self.values
-        if before is None or is_way or (self.is_turn and meant in ("L", "R")):
+        is_side = self.is_turn and meant in ("L", "R") and before not in ("L", "R")
+        if before is None or is_way or is_side:
             self.command = meant
         elif before == meant and not self.values and meant in MOVES:
             pass
@@ -290,13 +310,24 @@ class _Reader:
         slots = self._slots(values or [], word.arguments, has_until) if is_said else None
         if not slots:
             return None
+        is_pair = word.role == "motors" and len(values or ()) == 1  # both motors alike
+        if is_pair and not (isinstance(slots[0], float) and slots[0] >= 0):
+            return None
         out = [made(word.text), made("(")]
         for k, (value, argument) in enumerate(zip(slots, word.arguments, strict=True)):
             out += [made(",")] if k else []
-            text = argument.sample if value is None else value
+            sample = (
+                next(each for each in slots if each is not None) if is_pair else argument.sample
+            )
+            text = sample if value is None else value
             text = told(text) if isinstance(text, float) else text
             out += [made("-"), made(text[1:])] if text.startswith("-") else [made(text)]
-        return Filled([*out, made(")")], self.cost, self.is_sure, times)
+        samples = tuple(
+            f"{each.sample} {each.unit}"
+            for value, each in zip(slots, word.arguments, strict=True)
+            if value is None
+        )
+        return Filled([*out, made(")")], self.cost, self.is_sure, times, samples)
 
     def _with_decimals(self, count: int) -> list[_Value] | None:
         """Join whole numbers that are halves of decimal ones: `F(1,5,80,0)`, `W(0,5)`."""
@@ -361,7 +392,13 @@ class _Reader:
         for k, place in order.items():
             value, unit = values[k]
             if arguments[place].unit == "s" and unit is None and isinstance(value, float):
-                self.is_sure = self.is_sure and (value < LONG_S or len(arguments) == 1)
+                if value >= LONG_S and len(arguments) > 1:
+                    if self.words[0].text not in WORDS:
+                        return None  # of another language: rarely seconds, as in `move(50, 50)`
+                    self.is_sure = False
+        is_alone = None in slots and rest == [0] and isinstance(values[0].value, float)
+        if is_alone and self.command in MOVES and float(values[0].value) >= LONG_S:
+            return None  # a power, degrees or centimetres
         if None in slots:
             self.is_sure, self.cost = False, self.cost + 2
             if self.command == "SHOW":

@@ -60,3 +60,9 @@ def without_note(line: str) -> tuple[str, str]:
     note = re.search(r"(?i)(?<!\bSI)(?<!\bSB)//", line)
     body = line[: note.start() if note else None].rstrip(" \t")
     return body, line[len(body) :]
+
+
+def shortened(text: str) -> str:
+    """Return text that fits into a message."""
+    text = " ".join(text.split())
+    return text if len(text) <= 40 else text[:37] + "..."

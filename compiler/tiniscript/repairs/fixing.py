@@ -13,28 +13,14 @@ from typing import NamedTuple
 
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic
-from tiniscript.repairs.certain import is_certain
 from tiniscript.repairs.placing import edits_of
 from tiniscript.source import Edit, Source, applied, overlap
-from tiniscript.words import is_guessed
 
-# Codes whose repair is a guess, also where it keeps every number.
-_GUESSED = frozenset((
-    codes.UNKNOWN_WORD, codes.UNKNOWN_NAME, codes.NEVER_ENDS, codes.OUT_OF_RANGE,
-    codes.WANTS_CONDITION, codes.MIXED_COMPARE, codes.SETUP_UNKNOWN, codes.NO_BRACKETS_HERE,
-    codes.WRONG_END, codes.NOT_AN_INSTRUCTION, codes.MISSING_VALUE, codes.ARGUMENT_COUNT,
-    codes.PROSE, codes.LISTS, codes.WORDS_SHOWN, codes.QUESTION_BEHIND,
-    codes.WORDS_BEHIND, codes.SAME_AGAIN,
-    codes.NOT_CALLABLE, codes.CALLS_ITSELF, codes.DEF_NOT_TOP,
-))  # fmt: skip
 # Codes of headers: how a block ends is not looked at before its header is right.
 _HEADERS = frozenset((
     codes.SPANISH_IF, codes.OTHER_LANGUAGE, codes.MISSING_OPEN, codes.HEADER_SEPARATOR,
     codes.BRACES, codes.ASKED_BEHIND, codes.NEEDLESS_FRAME, codes.CASES, codes.PASTED,
 ))  # fmt: skip
-# Codes whose repair writes a number in another way: `500 ms` is 0.5, `8O` is 80, `X++` adds 1, and
-# the number of a line goes.
-_REWRITTEN = frozenset((codes.UNIT, codes.BAD_NUMBER, codes.OTHER_ASSIGNMENT, codes.LINE_NUMBER))
 MANY = 100  # diagnostics after which a program is not read on
 CHECKS = 400  # of one program, fewer of a long one
 CHECKED_CHARACTERS = 600_000
@@ -162,28 +148,11 @@ def is_better(
 
 
 def _sure(found: list[Diagnostic], text: str) -> list[_Repair]:
-    source = Source(text)
-    repairs = []
-    for diagnostic in found[:MANY]:  # the others come when these are made
-        if diagnostic.repair is not None:
-            made = _Repair(diagnostic.code, [*diagnostic.repair.edits])
-            repairs += [made] if diagnostic.repair.is_sure else []
-            continue
-        is_guess = diagnostic.code in _GUESSED and "ends" not in diagnostic.values
-        if not diagnostic.is_mistake or is_guess:  # a whole block is none: see `whole_blocks`
-            continue
-        if diagnostic.code is codes.OTHER_LANGUAGE and any(
-            is_guessed(word) for word in diagnostic.values.get("found", "").upper().split()
-        ):
-            continue
-        edits = edits_of(diagnostic, source)
-        if not edits or not is_certain(diagnostic, edits, source):
-            continue
-        if any(_is_sealed(edit, source) for edit in edits):
-            continue
-        if diagnostic.code in _REWRITTEN or keeps_numbers(text, edits):
-            repairs.append(_Repair(diagnostic.code, edits))
-    return repairs
+    return [
+        _Repair(each.code, [*each.repair.edits])
+        for each in found[:MANY]  # the others come when these are made
+        if each.repair is not None and each.repair.is_sure
+    ]
 
 
 def _is_sealed(edit: Edit, source: Source) -> bool:

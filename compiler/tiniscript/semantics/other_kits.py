@@ -10,8 +10,7 @@ from collections.abc import Callable, Mapping, Sequence
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.kit import Kit
-from tiniscript.syntax.lexer import WORD
-from tiniscript.syntax.parser import scan
+from tiniscript.syntax.lexer import WORD, scan
 
 _UNKNOWN = (codes.UNKNOWN_NAME, codes.UNKNOWN_WORD)
 _NUMBERS = ("first", "second", "third")

@@ -11,12 +11,11 @@ from collections.abc import Set as AbstractSet
 from itertools import chain, takewhile
 
 from tiniscript.diagnostics import codes
+from tiniscript.semantics.counts import LONG_TIME_S
 from tiniscript.semantics.named_values import value_of
 from tiniscript.semantics.symbols import ENOUGH, Scope
 from tiniscript.source import Span
 from tiniscript.syntax import ast
-from tiniscript.syntax.call_suggestions import LONG_TIME_S, call_of, glued_call
-from tiniscript.syntax.units import converted
 from tiniscript.words import (
     BLOCK_ENDS,
     IN_MILLISECONDS,
@@ -32,7 +31,6 @@ from tiniscript.words import (
     meant_by,
     names_of,
     said_instead,
-    usage_of,
 )
 
 _DIGITS = "0123456789"
@@ -47,15 +45,6 @@ _SHORT = {
 }  # fmt: skip
 _KEYS = re.compile("(?!FOR$)[FBLR]{2,8}")  # as the keys of another robot: `FFLFF`
 _CURVES = frozenset(("FL", "LF", "FR", "RF"))  # both at once
-# What phones make of a word of the language.
-_MENDED = {
-    "BEBE": "BEEP",
-    "BEBER": "BEEP",
-    "BEBES": "BEEP",
-    "BIPE": "BEEP",
-    "VIP": "BEEP",
-    "UTIL": "UNTIL",
-}
 
 
 def report_unknown(scope: Scope, node: ast.Command, inside: str | None) -> None:
@@ -100,14 +89,9 @@ def _report_unknown_word(scope: Scope, node: ast.Command) -> None:
         fix = f"{switched}({SWITCH_WORDS[word]})" if switched else ""
         scope.report(codes.SWITCH_WHAT, span, found=word if fix else "", fix=fix)
         return
-    glued = glued_call(word)
-    if glued is not None and node.arguments is None:
-        name = word.rstrip("0123456789")
-        scope.report(codes.MISSING_OPEN, span, word=name, fix=glued, usage=usage_of(name))
-        return
     commands = [each.text for each in WORDS.values() if each.role not in
                 ("setup", "later", "value", "operator", "function", "forever")]  # fmt: skip
-    near = _MENDED.get(word) or scope.near(word, chain(commands, scope.names, scope.def_names))
+    near = scope.near(word, chain(commands, scope.names, scope.def_names))
     is_own = near in scope.set_somewhere or near in scope.def_names
     if is_own and near.rstrip(_DIGITS) == word.rstrip(_DIGITS):
         near = ""  # `PASO2`, where there is a DEF PASO1
@@ -156,19 +140,10 @@ def _both_ways(scope: Scope, node: ast.Command) -> dict[str, str]:
 
 def _report_foreign(scope: Scope, node: ast.Command, meant: str) -> None:
     """`ADELANTE(5)`, `delay(1000)`, `DISTANCIA`: the same in a word of the language or the kit."""
-    fix = usage = meant
     said = {"milli": node.word} if node.word in IN_MILLISECONDS else {}
-    if meant in WORDS:
-        spans = [each.span for each in node.arguments or ()]
-        usage = WORDS[meant].usage
-        fix = call_of(scope.source, WORDS[meant], spans)
-        if meant == "W" and len(spans) == 1 and re.search("[<>=]", scope.source[spans[0]]):
-            fix = f"W(FOREVER) UNTIL({scope.source[spans[0]]})"  # `wait(DISTANCE < 10)`
-        if node.word in IN_MILLISECONDS and len(spans) == 1:
-            number = scope.source[spans[0]]
-            fix = f"W({converted(number, 'MS')})" if number.isdecimal() else ""
+    usage = WORDS[meant].usage if meant in WORDS else meant
     scope.report(codes.OTHER_LANGUAGE, node.word_span, node.span, found=node.word, right=meant,
-                 fix=fix, usage=usage, **said)  # fmt: skip
+                 usage=usage, **said)  # fmt: skip
 
 
 def _report_way(scope: Scope, node: ast.Command) -> bool:
@@ -178,15 +153,13 @@ def _report_way(scope: Scope, node: ast.Command) -> bool:
     meant = WORDS.get(meant_by(texts[0].upper()) or "") if texts else None
     if meant is None or meant.role != "move":
         return False
-    spans = [each.span for each in arguments[1:]]
-    fix = call_of(scope.source, meant, spans) if spans else ""
-    if meant.text in ("L", "R") and not fix:
+    if meant.text in ("L", "R"):
         way = "left" if meant.text == "L" else "right"
         scope.report(codes.WHICH_WAY, node.word_span, word=meant.text, way=way, usage=meant.usage)
         return True
     found = f"{node.word}({texts[0]})"
     scope.report(codes.OTHER_LANGUAGE, node.word_span, node.span, found=found, right=meant.text,
-                 fix=fix, usage=meant.usage)  # fmt: skip
+                 usage=meant.usage)  # fmt: skip
     return True
 
 

@@ -14,6 +14,7 @@ from tiniscript.diagnostics import codes
 from tiniscript.fixed_point import HIGHEST, as_text
 from tiniscript.semantics import ir
 from tiniscript.semantics.comparisons import looks_ahead
+from tiniscript.semantics.counts import LONG_TIME_S, LOWEST_HERTZ, count_diagnostic
 from tiniscript.semantics.symbols import Name, Scope
 from tiniscript.semantics.unknown_words import (
     report_named_arguments,
@@ -24,7 +25,6 @@ from tiniscript.semantics.unknown_words import (
 )
 from tiniscript.source import Source, Span
 from tiniscript.syntax import ast
-from tiniscript.syntax.call_suggestions import LONG_TIME_S, LOWEST_HERTZ, count_diagnostic
 from tiniscript.syntax.free_names import numbered
 from tiniscript.words import OTHER_WAY, WORDS, Argument, Word
 

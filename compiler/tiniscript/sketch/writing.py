@@ -19,7 +19,7 @@ from tiniscript.sketch.statements import Comment, Named, Statements, harmless
 from tiniscript.sketch.texts import IDENTIFIERS, TEXTS, called, said, with_locals
 from tiniscript.sketch.wiring import Plan, is_count, is_small
 from tiniscript.source import Source
-from tiniscript.syntax.parser import scan
+from tiniscript.syntax.lexer import scan
 
 
 def needs_numbers(program: ir.Program, robot: Robot) -> bool:

@@ -5,14 +5,11 @@ Knows which instructions belong to which block. Knows no tokens but the names of
 
 from __future__ import annotations
 
-import re
-
 from tiniscript.bytecode.opcodes import BLOCKS, TASKS
 from tiniscript.diagnostics import codes
-from tiniscript.source import Source, Span
+from tiniscript.source import Span
 from tiniscript.syntax.ast import Argument, Arm, Def, If, Instruction, Loop, Task, While
 from tiniscript.syntax.lexer import Token
-from tiniscript.syntax.operators import SIGN_OF
 from tiniscript.syntax.reporter import Reporter
 from tiniscript.words import ALIASES, BLOCK_ENDS
 from tiniscript.words import TASKS as TASK_WORDS
@@ -21,13 +18,12 @@ HEADERS = frozenset(BLOCK_ENDS) - {"DEF", "TASK"}  # with brackets: IF, LOOP, WH
 _AT_TOP = frozenset(("DEF", *TASK_WORDS))  # they stand in no other block, and do not count as one
 ENDS = {end: word for word, end in BLOCK_ENDS.items()}  # ENDIF: IF …
 ENDS |= {alias: ENDS[end] for alias, end in ALIASES.items()}
-_COMPARED = re.compile(r"\s*([A-Za-z_]\w*)\s*(<>|[<>]=?|=)\s*([\w.]+)\s*")
 
 
 class Block:
     """A block whose end has not come yet."""
 
-    __slots__ = ("arms", "body", "head", "is_reported", "name", "otherwise", "span", "word")
+    __slots__ = ("arms", "body", "head", "name", "otherwise", "span", "word")
 
     def __init__(self, word: str, span: Span, head: Argument | None, name: Token | None) -> None:
         self.word = word  # IF, LOOP, WHILE, DEF, TASK or WHEN
@@ -37,7 +33,6 @@ class Block:
         self.body: list[Instruction] = []
         self.arms: list[Arm] = []
         self.otherwise: list[Instruction] | None = None  # what follows ELSE, once it has come
-        self.is_reported = False  # its header has a diagnostic: how it ends needs no other
 
     @property
     def header(self) -> Span:
@@ -97,28 +92,6 @@ class Blocks:
         self.tasks += 1
         if self.tasks == TASKS + 1:
             self._reporter.report(codes.TOO_MANY_TASKS, span, limit=str(TASKS))
-
-    def is_rest(self, asked: str, source: Source) -> bool:
-        """Whether a question is TRUE where the only one of the innermost block is not.
-
-        `DISTANCE > 30` is taken for it beside `DISTANCE < 30`: of 30 itself nobody thinks.
-        """
-        block = self.innermost
-        if block is None or block.word != "IF" or block.arms or block.head is None:
-            return False
-        one, other = (_COMPARED.fullmatch(each) for each in (asked, source[block.head.span]))
-        if one is None or other is None or one.group(1, 3) != other.group(1, 3):
-            return False
-        return {one[2][0], other[2][0]} == {"<", ">"} and SIGN_OF["NE"] not in (one[2], other[2])
-
-    def forget(self) -> None:
-        """Drop the innermost block, which has just begun, because its line is read anew."""
-        self._depth -= self.open.pop().word not in _AT_TOP
-
-    def reopen(self, block: Block) -> None:
-        """Put a block back that was forgotten."""
-        self._depth += block.word not in _AT_TOP
-        self.open.append(block)
 
     def end(self, end: Span) -> None:
         """Close the innermost block. It becomes an instruction of the one around it.

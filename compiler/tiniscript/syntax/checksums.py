@@ -11,10 +11,8 @@ from zlib import crc32
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.source import Span
+from tiniscript.syntax.lexer import SPACES
 
-SPACES = (
-    r" \t\f\v\u00a0\u2000-\u200b\u202f\u3000\ufeff"  # as a set of a regular expression has them
-)
 _BYTE_ORDER_MARK = "\ufeff"
 
 # a line, and the checksum at its first ~

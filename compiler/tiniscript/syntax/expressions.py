@@ -6,12 +6,10 @@ own (`operators`), so that no depth of brackets exhausts Python's. Knows no inst
 
 from __future__ import annotations
 
-from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import NoReturn
 
 from tiniscript.diagnostics import codes
-from tiniscript.fixed_point import HIGHEST, LOWEST, read_literal
-from tiniscript.kit import Kit
+from tiniscript.fixed_point import HIGHEST, LOWEST, as_text, read_literal
 from tiniscript.source import Span
 from tiniscript.syntax.ast import Argument, Part
 from tiniscript.syntax.cursor import AFTER_VALUE, Cursor
@@ -20,31 +18,17 @@ from tiniscript.syntax.operators import AND, BINARY, COMPARISON, MINUS, NOT, OPE
 from tiniscript.syntax.reporter import Reporter
 from tiniscript.words import WORDS, Word
 
-if TYPE_CHECKING:
-    from tiniscript.syntax.expression_recovery import ExpressionRecovery
-
-_BESIDE = frozenset((WORD, NUMBER, ODD))
-_OPERANDS = frozenset(("-", "("))  # what begins one
-
 
 class ExpressionParser:
-    def __init__(self, cursor: Cursor, reporter: Reporter, kit: Kit | None) -> None:
+    def __init__(self, cursor: Cursor, reporter: Reporter) -> None:
         self.cursor = cursor
         self.reporter = reporter
-        self._kit = kit
-
-    @cached_property
-    def recovery(self) -> ExpressionRecovery:
-        """The recovery of wrong expressions. A correct program never loads it."""
-        from tiniscript.syntax.expression_recovery import ExpressionRecovery
-
-        return ExpressionRecovery(self.cursor, self.reporter, self._kit)
 
     # -- arguments --------------------------------------------------------------------------
 
     def arguments(self) -> tuple[Argument, ...]:
         cursor = self.cursor
-        bracket = cursor.i
+        bracket = cursor.tokens[cursor.i]
         cursor.i += 1
         if cursor.take_inner(")"):
             return ()
@@ -52,7 +36,7 @@ class ExpressionParser:
         while cursor.take_inner(","):
             arguments.append(self.argument())
         if not cursor.take_inner(")"):
-            self.recovery.no_close(bracket)
+            self.no_close(bracket)
         return tuple(arguments)
 
     def argument(self) -> Argument:
@@ -97,7 +81,7 @@ class ExpressionParser:
             read.wait(OPEN, "(", token, cursor.i)
             read.brackets += 1
         else:
-            self.recovery.no_value(token)
+            self.no_value(token)
         cursor.i += 1
         return False
 
@@ -112,26 +96,26 @@ class ExpressionParser:
         value, is_exact = read_literal(token.text)
         value = value if first is token else -value
         if not (is_exact and LOWEST <= value <= HIGHEST):
-            value = self.recovery.literal(token, Span(first.start, token.end), value)
+            value = self.literal(token, Span(first.start, token.end), value)
         return Part("NUMBER", value, first.start, token.end)
+
+    def literal(self, number: Token, span: Span, value: int) -> int:
+        """Report a number that is out of range or too exact, and return what is read for it."""
+        if LOWEST <= value <= HIGHEST:
+            values = {"found": number.text[:20], "right": as_text(value)}
+            self.reporter.report(codes.ROUNDED, span, **values)
+            return value
+        limit = as_text(HIGHEST if value > 0 else LOWEST)
+        self.reporter.report(codes.NUMBER_TOO_BIG, span, limit=limit)
+        return 0
 
     def word(self, token: Token, read: Postfix) -> bool:
         cursor = self.cursor
         known = WORDS.get(token.text)
-        if (
-            known is None
-            and self._may_be_more()
-            and (
-                self.recovery.constructs.is_said_with_more(token)
-                or self.recovery.questions.is_sign_alone(token)
-                or self.recovery.questions.is_in_words(token)
-            )
-        ):
-            return False
         if known is None or known.role == "value":
             cursor.i += 1
             if cursor.tokens[cursor.i].kind == "(":
-                self.recovery.called(token)
+                self.reporter.fail(codes.NO_FUNCTION, token.span, found=token.text)
             if known is None:
                 read.parts.append(Part("NAME", token.text, token.start, token.end))
             else:
@@ -145,16 +129,8 @@ class ExpressionParser:
         elif known.role == "function":
             self.begin_call(token, known, read)
         else:
-            self.recovery.no_value(token)
+            self.no_value(token)
         return False
-
-    def _may_be_more(self) -> bool:
-        """Whether what stands beside a name lets it mean more than itself: `DISTANCE cm`."""
-        cursor = self.cursor
-        after = cursor.following
-        if after.kind in _BESIDE:
-            return after.kind is ODD or after.text not in BINARY
-        return after.kind in _OPERANDS and cursor.last.text in ("AND", "OR")
 
     def begin_call(self, name: Token, function: Word, read: Postfix) -> None:
         cursor = self.cursor
@@ -162,12 +138,14 @@ class ExpressionParser:
         if read.brackets:
             cursor.to_inner()
         if cursor.token.kind != "(":
-            self.recovery.no_bracket(name, function)
+            self.reporter.fail(
+                codes.MISSING_OPEN, name.span, word=function.text, usage=function.usage
+            )
         read.wait(OPEN, name.text, name, cursor.i)
         read.brackets += 1
         cursor.i += 1
         if cursor.take_inner(")"):
-            self.recovery.wrong_count(function, [], cursor.span_from(name))
+            self.wrong_count(function, 0, cursor.span_from(name))
 
     def operator(self, read: Postfix) -> bool:
         """Read what may follow an operand; return whether another operand is wanted then."""
@@ -175,18 +153,14 @@ class ExpressionParser:
         tokens = cursor.tokens
         while True:
             token = cursor.inner() if read.brackets else tokens[cursor.i]
-            if token.kind not in AFTER_VALUE:
-                binary = BINARY.get(token.text) if token.kind is not ODD else None
+            if token.kind not in AFTER_VALUE and token.kind is not ODD:
+                binary = BINARY.get(token.text)
                 if binary is not None:
                     if read.brackets:
                         cursor.to_inner()
                     self.binary(token, *binary, read)
                     cursor.i += 1
                     return True
-                if self.recovery.is_repaired(token, read):
-                    if cursor.token.text == "NOT":  # the operand was none
-                        return True
-                    continue
             bracket = read.reduce() if read.waiting else None
             if bracket is None:
                 return False
@@ -198,26 +172,74 @@ class ExpressionParser:
                     self.end_call(bracket, read)
                 continue
             if token.kind == "," and bracket.name != "(":
-                bracket.end_argument(cursor.source, tokens[bracket.index], cursor.last)
+                bracket.arguments += 1
                 cursor.take_inner(",")
                 return True
-            self.recovery.no_close(bracket.index)
+            self.no_close(tokens[bracket.index])
 
     def binary(self, token: Token, precedence: int, name: str, read: Postfix) -> None:
         waiting = read.waiting
         while waiting and waiting[-1].precedence >= precedence:
             if precedence == COMPARISON == waiting[-1].precedence:
-                self.recovery.chained(waiting[-1], token)
+                self.reporter.fail(codes.CHAINED, token.span)
             read.apply()
         if precedence <= AND:  # AND and OR: the left side may decide
             read.parts.append(Part(name + "_LEFT", 0, token.start, token.end))
         read.wait(precedence, name, token, self.cursor.i)
 
     def end_call(self, call: Operator, read: Postfix) -> None:
-        cursor = self.cursor
-        tokens = cursor.tokens
-        call.end_argument(cursor.source, tokens[call.index], tokens[cursor.i - 2])
-        span = cursor.span_from(call.token)
-        if len(call.arguments) != len(WORDS[call.name].arguments):
-            self.recovery.wrong_count(WORDS[call.name], call.arguments, span)
+        span = self.cursor.span_from(call.token)
+        function = WORDS[call.name]
+        if call.arguments + 1 != len(function.arguments):
+            self.wrong_count(function, call.arguments + 1, span)
         read.parts.append(Part(call.name, 0, *span))
+
+    # -- what is wrong ------------------------------------------------------------------------
+
+    def wrong_count(self, word: Word, count: int, span: Span) -> NoReturn:
+        example = "" if count else word.example
+        example = "" if count else word.example
+        self.reporter.fail(codes.ARGUMENT_COUNT, span, word=word.text, usage=word.usage,
+                           example=example, wanted=str(len(word.arguments)),
+                           found=str(count))  # fmt: skip
+
+    def no_value(self, token: Token) -> NoReturn:
+        """A value is expected, and this token begins none."""
+        known = WORDS.get(token.text) if token.kind is WORD else None
+        if token.kind is ODD:
+            self.reporter.fail(*odd(token), found=token.text)
+        if known is not None:
+            if known.role == "forever":
+                self.reporter.fail(codes.FOREVER_NOT_HERE, token.span)
+            if known.role == "until":
+                self.reporter.fail(codes.UNTIL_ALONE, token.span)
+            if known.is_instruction:
+                self.reporter.fail(codes.NO_VALUE, token.span, word=token.text)
+            self.reporter.fail(codes.RESERVED, token.span, word=token.text)
+        before = self.cursor.tokens[self.cursor.before(self.cursor.i)] if self.cursor.i else token
+        shown = {} if before.kind is ODD else {"before": before.text}
+        self.reporter.fail(codes.MISSING_VALUE, token.span or before.span, **shown)
+
+    def no_close(self, bracket: Token) -> NoReturn:
+        """In brackets a comma or their end is expected."""
+        token, before = self.cursor.inner(), self.cursor.last
+        if token.kind is ODD:
+            self.reporter.fail(*odd(token), found=token.text)
+        if token.kind in (NUMBER, WORD, "("):
+            word = self.cursor.source[Span(0, bracket.start)].rpartition("\n")[2].split("(")[-1]
+            word = word.split(";")[-1].split("|")[-1].strip().upper()
+            usage = WORDS[word].usage if word in WORDS else ""
+            self.reporter.fail(codes.MISSING_COMMA, token.span, usage=usage)
+        self.reporter.fail(codes.MISSING_CLOSE, bracket.span, last=before.text)
+
+
+def odd(token: Token) -> tuple[codes.Code, Span]:
+    """Return what is wrong with a token that the language does not have."""
+    first = token.text[0]
+    if first.isdigit() or (first == "." and len(token.text) > 1):
+        return codes.BAD_NUMBER, token.span
+    if not token.text.strip("_"):
+        return codes.BAD_NUMBER, token.span  # a gap to fill
+    if first == "~":
+        return codes.CHECKSUM_FORM, token.span
+    return codes.BAD_NAME if first.isalnum() or first == "_" else codes.ODD_CHARACTER, token.span

@@ -10,9 +10,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from tiniscript.source import Source
-from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, WORD, Scan, Token
+from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, WORD, Scan, Token, scan
 from tiniscript.syntax.operators import SIGNS
-from tiniscript.syntax.parser import scan
 from tiniscript.words import ALIASES, BLOCK_ENDS
 
 INDENT = "  "

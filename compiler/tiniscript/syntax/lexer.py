@@ -1,13 +1,13 @@
 """The lexer: text becomes tokens.
 
-Knows characters. Knows no word of the language and no grammar. A text that it cannot read, or that
-has a checksum, is for `lexer_recovery`, which right programs never load.
+Knows characters. Knows no word of the language and no grammar. What the language does not have is
+an odd token, which no rule of the grammar takes.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Sequence
 from typing import NamedTuple
 
 from tiniscript.diagnostics.codes import Diagnostic
@@ -17,7 +17,13 @@ WORD = "word"
 NUMBER = "number"
 NEWLINE = "newline"
 END = "end"
-ODD = "odd"  # reported already; the parser passes it over in silence
+ODD = "odd"
+
+QUOTES = "\"'`´‘’‚‛“”„‟«»"  # of all keyboards: none is a sign of the language
+
+SPACES = (
+    r" \t\f\v\u00a0\u2000-\u200b\u202f\u3000\ufeff"  # as a set of a regular expression has them
+)
 
 
 class Token(NamedTuple):
@@ -34,52 +40,40 @@ class Token(NamedTuple):
 
 
 class Scan(NamedTuple):
+    """`diagnostics` are of the checksums of lines."""
+
     tokens: list[Token]  # the last one is END
     comments: list[Token]
-    diagnostics: list[Diagnostic]
+    diagnostics: Sequence[Diagnostic]
 
 
-QUOTES = "\"'`´‘’‚‛“”„‟«»"
-
-# What right programs are made of. `lexer_recovery` gets what it may read in another way: signs that
-# become one with their neighbours, `50%` as a value, `1 000`, tags of HTML.
 _PATTERN = re.compile(
-    r"""(?P<space>[ \t]+)
-      | (?P<word>[A-Za-z][A-Za-z0-9_]*)(?![\w.])
-      | (?P<sign>[-+*(),;] | (?:[<>]=|<>|=)(?![ ]*[<>=)]) | <(?![ ]*[<>=/]|[A-Za-z][^<>\r\n]*>)
-            | >(?![ ]*[<>=]) | %(?![ ]*[,)]) | /(?![*/]) | \|(?!\|))
-      | (?P<number>(?:[0-9]+(?:\.[0-9]+)?|\.[0-9]+)(?![\w.]|[ ][0-9.]))
-      | (?P<newline>\r\n|\n|\r)
+    rf"(?P<space>[{SPACES}]+)"
+    r"""
+      | (?P<word>[A-Za-z][A-Za-z0-9_]*)(?!\w)
       | (?P<comment>//[^\r\n]*)
-      | (?P<other>.)
+      | (?P<sign><=|>=|<>|[-+*/%=<>(),;|])
+      | (?P<number>(?:[0-9]+(?:\.[0-9]+)?|\.[0-9]+)(?![\w.]))
+      | (?P<newline>\r\n|\n|\r)
+      | (?P<dash>[\u2010-\u2015\u2212])
+      | (?P<odd>\.?[0-9][\w.]*|\w+|~[0-9A-Fa-f]*|.)
     """,
     re.VERBOSE | re.DOTALL,
 )
 
 
-def lexed(text: str) -> Scan | None:
-    """Return the tokens of `text` and its comments, or None where something cannot be read."""
+def scan(text: str) -> Scan:
+    """Return the tokens of a text, its comments, and its checksums that do not fit."""
     tokens: list[Token] = []
     comments: list[Token] = []
-    if "~" not in text and read(_PATTERN, text, tokens, comments):
-        return Scan(tokens, comments, [])
-    return None
+    wrong: Sequence[Diagnostic] = ()
+    if "~" in text:
+        from tiniscript.syntax.checksums import without_checksums  # few texts have any
 
-
-def read(
-    pattern: re.Pattern[str],
-    text: str,
-    tokens: list[Token],
-    comments: list[Token],
-    repair: Callable[[re.Match[str], list[Token]], None] | None = None,
-) -> bool:
-    """Add the tokens and comments of `text`; `repair` adds those of what cannot be read.
-
-    Without it reading ends there, and the answer is no.
-    """
+        text, wrong = without_checksums(text)
     add = tokens.append
     new = tuple.__new__  # in half the time of Token()
-    for match in pattern.finditer(text):
+    for match in _PATTERN.finditer(text):
         group = match.lastgroup
         if group == "space":
             continue
@@ -95,9 +89,9 @@ def read(
             add(new(Token, (NEWLINE, "\n", start, end)))
         elif group == "comment":
             comments.append(Token("comment", match.group(), start, end))
-        elif repair is None:
-            return False
+        elif group == "dash":
+            add(Token("-", "-", start, end))
         else:
-            repair(match, tokens)
+            add(Token(ODD, match.group(), start, end))
     add(Token(END, "", len(text), len(text)))
-    return True
+    return Scan(tokens, comments, wrong)

@@ -9,7 +9,6 @@ from __future__ import annotations
 from typing import Final
 
 from tiniscript.bytecode.opcodes import COMPARATORS
-from tiniscript.source import Source, Span
 from tiniscript.syntax.ast import Part
 from tiniscript.syntax.lexer import Token
 
@@ -43,13 +42,7 @@ class Operator:
         self.name = name
         self.token = token
         self.index = index  # its place among the tokens; of a call, that of its bracket
-        self.arguments: list[Span] = []  # of a function call, for messages
-
-    def end_argument(self, source: Source, bracket: Token, last: Token) -> None:
-        """Note where an argument of this call stands: it ends with the token `last`."""
-        begin = self.arguments[-1].end + 1 if self.arguments else bracket.end
-        text = source.text[begin : last.end]
-        self.arguments.append(Span(begin + len(text) - len(text.lstrip()), last.end))
+        self.arguments = 0  # of a function call, that have ended
 
 
 class Postfix:

@@ -1,22 +1,22 @@
 """What the grammar reads of one line, and where it cannot go on.
 
-The parser itself, without its recovery: where it would ask for that, reading ends and the place is
-reported. Knows no other line, and so no block: headers, arms and ends are items of their own.
+The parser itself: where it would report a mistake, reading ends. Knows no other line, and so no
+block: headers, arms and ends are items of their own.
 """
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple, NoReturn
+from typing import NamedTuple
 
-from tiniscript.diagnostics.codes import Code
+from tiniscript.diagnostics import codes
 from tiniscript.source import Source, Span
 from tiniscript.syntax.ast import Argument
 from tiniscript.syntax.blocks import ENDS, HEADERS, Block, Blocks
 from tiniscript.syntax.expressions import ExpressionParser
-from tiniscript.syntax.lexer import END, Scan, Token
+from tiniscript.syntax.lexer import END, WORD, Scan, Token
 from tiniscript.syntax.operators import Postfix
 from tiniscript.syntax.parser import Parser
-from tiniscript.syntax.reporter import Reporter
+from tiniscript.syntax.reporter import Failed, Reporter
 from tiniscript.words import WORDS, Word
 
 
@@ -54,24 +54,10 @@ def outline(words: list[tuple[str, str]], known: Known) -> list[Item] | Failure:
     return _Line(tokens, known).items()
 
 
-class _Stuck(Exception):
-    """The grammar has no rule for the next token."""
-
-
-class _NoRecovery:
-    """In the place of a recovery: a number that is rounded is right, all else is not."""
-
-    @staticmethod
-    def literal(token: Token, span: Span, value: int) -> int:
-        return value
-
-    def __getattr__(self, name: str) -> NoReturn:
-        raise _Stuck
-
-
 class _Silent(Reporter):
-    def report(self, code: Code, span: Span, place: Span | None = None, **values: str) -> None:
-        raise _Stuck
+    def report(self, code: codes.Code, span: Span, **values: str) -> None:
+        if code.is_mistake and code is not codes.NUMBER_TOO_BIG:
+            raise Failed
 
 
 class _Alone(Blocks):
@@ -89,25 +75,19 @@ class _Alone(Blocks):
 
 class _Expressions(ExpressionParser):
     values: frozenset[str] = frozenset()
-    recovery: Any = _NoRecovery()
-
-    def _may_be_more(self) -> bool:
-        return False
 
     def word(self, token: Token, read: Postfix) -> bool:
         if token.text not in WORDS and token.text not in self.values:
-            raise _Stuck
+            raise Failed
         return super().word(token, read)
 
 
 class _Line(Parser):
-    recovery: Any = _NoRecovery()
-
     def __init__(self, tokens: list[Token], known: Known) -> None:
-        super().__init__(Source(""), Scan(tokens, [], []), None)
+        super().__init__(Source(""), Scan(tokens, [], []))
         self.reporter = _Silent([])
         self.blocks = _Alone(self.reporter)
-        self.expressions = _Expressions(self.cursor, self.reporter, None)
+        self.expressions = _Expressions(self.cursor, self.reporter)
         self.expressions.values = known.values
         self._known = known
         self._found: list[Item] = []
@@ -123,7 +103,7 @@ class _Line(Parser):
                     cursor.i += 1
                 else:
                     self.instruction()
-        except _Stuck:
+        except Failed:
             return Failure(start, max(start, cursor.i))
         return self._found
 
@@ -134,6 +114,12 @@ class _Line(Parser):
         kind = "do" if is_set else _KINDS.get(word, "do")
         self._found.append(Item(kind, word, start, self.cursor.i))
 
+    def assignment(self, name: Token) -> None:
+        tokens, k = self.cursor.tokens, self.cursor.i + 2
+        if tokens[k].kind is WORD and tokens[k + 1].kind == "=":
+            raise Failed  # `X = Y = 5` is rather two of them than a question
+        super().assignment(name)
+
     def block_end(self, word: Token) -> None:
         self.cursor.i += 1
         self.no_arguments(word)
@@ -142,19 +128,19 @@ class _Line(Parser):
         found = super().arguments_of(word, known)
         count = len(known.arguments) if known else word.text in self._known.actuators
         if count != len(found or ()):
-            raise _Stuck
+            raise Failed
         return found
 
-    def argument_of(self, word: Token, is_reported: bool = False) -> Argument:
-        found = super().argument_of(word, is_reported)
+    def argument_of(self, word: Token) -> Argument:
+        found = super().argument_of(word)
         if found.is_plain and word.text != "LOOP":
-            raise _Stuck  # a number is no question
+            raise Failed  # a number is no question
         return found
 
-    def _is_name(self, word: Token, following: Token) -> bool:
-        if following.kind == "(":
-            return word.text in self._known.actuators
-        return word.text in self._known.instructions
+    def own_name(self, word: Token, following: Token) -> None:
+        names = self._known.actuators if following.kind == "(" else self._known.instructions
+        if word.text not in names:
+            raise Failed
 
 
 _KINDS = {

@@ -22,7 +22,7 @@ def misfits(source: Source, program: Program, kit: Kit, level: Level) -> list[Di
     """Return what a robot of this level lacks for a checked program."""
     if program.tasks and "TASK" in level.lacks:
         return [Diagnostic(codes.NO_TASKS, program.tasks[0].word, {"robot": level.name})]
-    parsed = parse(source, kit)
+    parsed = parse(source)
     tokens = list(spelled_out(parsed.scan.tokens))
     found = [
         Diagnostic(codes.LEVEL_WORD, token.span, {"level": level.name, "word": token.text})

@@ -14,8 +14,7 @@ from tiniscript.codegen.lower import lower
 from tiniscript.semantics.ir import Program
 from tiniscript.source import Source, Span
 from tiniscript.syntax.checksums import with_checksum
-from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, WORD, Token
-from tiniscript.syntax.parser import scan
+from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, WORD, Token, scan
 from tiniscript.words import ALIASES, WORDS
 
 EMPTY = "SI|"  # a program that does nothing: an empty line would be none

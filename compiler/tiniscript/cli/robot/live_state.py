@@ -19,8 +19,8 @@ from tiniscript.library.compiling import Compiled, compile_text
 from tiniscript.semantics.ir import Assign, walk
 from tiniscript.source import Source, Span
 from tiniscript.syntax import ast
-from tiniscript.syntax.lexer import WORD
-from tiniscript.syntax.parser import parse, scan
+from tiniscript.syntax.lexer import WORD, scan
+from tiniscript.syntax.parser import parse
 from tiniscript.words import ALIASES, BLOCK_ENDS
 
 _HEADER = re.compile(r"[ \t]*(SI|SB|PING)[ \t]*\|", re.IGNORECASE | re.ASCII)
@@ -86,7 +86,7 @@ class Known:
         """Compile a line after the known DEFs and variables into at most `room` bytes of code."""
         found = _HEADER.match(text)
         body = " " * found.end() + text[found.end() :] if found else text
-        parsed = parse(Source(body), self.kit).program.body
+        parsed = parse(Source(body)).program.body
         own = {node.name: body[node.span.start : node.span.end] for node in parsed
                if isinstance(node, ast.Def)}  # fmt: skip
         values, defs = self._before(body, own)

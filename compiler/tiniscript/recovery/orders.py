@@ -1,0 +1,181 @@
+"""Orders: the instructions that one sentence says, all of them or none, and the block they are in.
+
+Knows no separators of programs and no row. A sentence with a word that has no place says none.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import groupby
+from typing import NamedTuple
+
+from tiniscript.recovery import lines
+from tiniscript.recovery.concepts import CALLED, NEAR, Lexeme, Names, made, said_of
+from tiniscript.recovery.slots import Filled, filled
+from tiniscript.recovery.writing import laid_out
+from tiniscript.syntax.lexer import NUMBER
+from tiniscript.syntax.operators import COMPARISONS
+from tiniscript.words import BLOCK_ENDS, WORDS
+
+LONGEST = 40  # words of a sentence
+_NEAR_CM = "10"
+_ASIDE = ("L", "R", "B")  # DISTANCE looks ahead
+_SIDES = _ASIDE[:2]
+_ANDS = ("Y", "E", "AND", ",")
+
+
+class Order(NamedTuple):
+    """An instruction as it is written; `samples` are the values that no word says: `2 s`.
+
+    `is_side_free`: which way it turns is not said.
+    """
+
+    word: str
+    text: str
+    samples: tuple[str, ...]
+    is_side_free: bool = False
+    is_repeated: bool = False
+
+
+def written(orders: Sequence[Order]) -> str:
+    return ";".join(each.text for each in orders)
+
+
+def made_up(orders: Sequence[Order]) -> str:
+    """Return what no word says: `2 s, 80 %`."""
+    return ", ".join(sorted({sample for each in orders for sample in each.samples}))
+
+
+def orders(words: Sequence[Lexeme], names: Names) -> list[Order]:
+    """Return the orders of a sentence, in turn."""
+    found: list[Order] = []
+    if len(words) > LONGEST:
+        return []
+    groups = groupby(words, key=lambda each: each.text in ",." or bool(said_of(each.text, "then")))
+    for is_between, group in groups:
+        part = list(group)
+        if is_between or (not found and all(said_of(each.text, "filler") for each in part)):
+            continue  # `Hola robot, …`
+        own = _orders(part, names)
+        if not own or any(each.is_repeated for each in own[bool(not found) :]):
+            return []  # nobody knows how much of it is done so often
+        found += own
+    return found
+
+
+def _orders(words: list[Lexeme], names: Names) -> list[Order]:
+    """Return the orders between two words that join, of which each begins with its own."""
+    if whole := _order(words, names):
+        return [whole]
+    for k in range(2, len(words) - 1):
+        begins = said_of(words[k].text, "turn") or command(words[k].text, names) in (*CALLED, "S")
+        first = _order(words[:k], names) if begins else None
+        rest = _orders(words[k:], names) if first and len(first.samples) < 2 else []
+        if first and rest:
+            return [first, *rest]
+    return []
+
+
+def _order(words: list[Lexeme], names: Names) -> Order | None:
+    if to_wall := _until(words, names):
+        return to_wall
+    first = command(words[0].text, names)
+    if first in ("S", "STOP") and any(each.kind is NUMBER for each in words):
+        pause = filled([made("W"), *words[1:]], names, has_until=False)
+        return Order("S", f"{first};{laid_out(pause.tokens)}", ()) if pause else None
+    is_free = False
+    call = filled(words, names, has_until=False, is_order=True)
+    rest = [each for each in words if not said_of(each.text, "turn")]
+    if call is None and len(rest) < len(words):
+        call = filled([made("R"), *rest], names, has_until=False, is_order=True)
+        is_free = True
+    if call is None:
+        return None
+    text, word = laid_out(call.tokens), call.tokens[0].text
+    if call.times:
+        pause_s = f"W({call.tokens[2].text});" if word == "BEEP" else ""
+        text = f"LOOP({call.times});{text};{pause_s}END_LOOP"
+    return Order(word, text, call.samples, is_free, bool(call.times))
+
+
+def _until(words: Sequence[Lexeme], names: Names) -> Order | None:
+    """Return the move that words say up to a question."""
+    k = next((k for k, each in enumerate(words) if command(each.text, names) == "UNTIL"), 0)
+    call: Filled | None = filled(words[:k], names, has_until=True, is_order=True) if k else None
+    if call is None or call.times or "DISTANCE" not in names.sensors:
+        return None
+    rest = [each for each in words[k + 1 :] if each.text not in ("(", ")")]
+    question, samples = laid_out(question_in(rest, names)), call.samples
+    if not question and call.tokens[0].text == "F":
+        question, sample = _near(rest, names, "<")
+        samples += sample
+    text = f"{laid_out(call.tokens)} UNTIL({question})"
+    return Order(call.tokens[0].text, text, samples) if question else None
+
+
+def _near(words: Sequence[Lexeme], names: Names, sign: str) -> tuple[str, tuple[str, ...]]:
+    """Return the question for something near that words ask, and what they do not say of it."""
+    numbers = [each.text for each in words if each.kind is NUMBER]
+    is_wall = any(said_of(each.text, "wall") for each in words)
+    is_ahead = not any(command(each.text, names) in _ASIDE for each in words)
+    if not (numbers or is_wall) or not is_ahead or len(numbers) > 1:
+        return "", ()
+    far = numbers[0] if numbers else _NEAR_CM
+    return f"DISTANCE {sign} {far}", () if numbers else (f"{far} cm",)
+
+
+def block(tokens: Sequence[Lexeme], names: Names, is_open: bool) -> str:
+    """Return the block that one sentence says: its header, what is done, and its end.
+
+    `is_open`: it goes on further down.
+    """
+    first = tokens[0].text
+    word = "IF" if first == "SI" else command(first, names)
+    if word not in ("IF", "WHILE", "LOOP") or len(tokens) > LONGEST:
+        return ""
+    texts = [each.text for each in tokens]
+    arm = next((k for k in range(1, len(texts)) if texts[k] in ("ELSE", "SINO")
+                or texts[k : k + 2] == ["SI", "NO"]), len(texts))  # fmt: skip
+    other = orders(tokens[arm + 1 + (texts[arm : arm + 1] == ["SI"]) :], names)
+    for k in range(2, arm):
+        header = _head(word, tokens[1:k], names)
+        body = orders(tokens[k:arm], names) if header else []
+        if not body or any(each.is_side_free for each in (*body, *other)):
+            continue
+        if word != "LOOP" and command(texts[k], names) in _SIDES:
+            return ""  # where the wall is, or where to go
+        is_mixed = any(said_of(each, "then") and each not in _ANDS for each in texts[k:])
+        if (word == "LOOP" and is_mixed) or (arm < len(texts) and not other):
+            return ""
+        parts = [header, written(body), *(["ELSE", written(other)] if other else [])]
+        return ";".join(parts if is_open else [*parts, BLOCK_ENDS[word]])
+    return ""
+
+
+def _head(word: str, words: Sequence[Lexeme], names: Names) -> str:
+    """Return the header that words say: how often, or what is asked."""
+    if word == "LOOP":
+        number = next((each.text for each in words if each.kind is NUMBER), "")
+        return f"LOOP({number})" if number and said_of(words[-1].text, "times") else ""
+    asked = laid_out(question_in(words, names))
+    if not asked and "DISTANCE" in names.sensors:
+        is_not = any(said_of(each.text, "no") for each in words)
+        asked = _near(words, names, ">" if is_not else "<")[0]
+    return f"{word}({asked})" if asked else ""
+
+
+def question_in(words: Sequence[Lexeme], names: Names) -> list[Lexeme]:
+    """Return the comparison that words ask, in words of the language; nothing for none."""
+    found = lines.read([made("IF"), made("("), *words, made(")")], names, is_quick=True).found
+    tokens = found[0].tokens if found else []
+    end = next((k for k, each in enumerate(tokens) if each.text == ";"), len(tokens)) - 1
+    asked = tokens[2:end]
+    return asked if any(each.text in COMPARISONS for each in asked) else []
+
+
+def command(word: str, names: Names) -> str:
+    """Return the word of the language that a word surely means, "" for none."""
+    if word in WORDS and word != "SI":
+        return word
+    meant = names.meanings(word)
+    return meant[0].concept if meant and meant[0].cost < NEAR else ""

@@ -1,0 +1,518 @@
+"""Usage: how the instruction is written that nobody can read, where no row says more.
+
+Takes what the grammar expected at a place, and adds what its words are about: the command that one
+of them means, a sentence, a question in words. A function for each code. Knows no row.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Sequence
+from functools import cached_property
+from itertools import pairwise
+
+from tiniscript.diagnostics import codes
+from tiniscript.diagnostics.codes import Code, Diagnostic, Repair
+from tiniscript.kit import Kit
+from tiniscript.recovery.concepts import CALLED, ENDED, Lexeme, Names, lexemes, plain, said_of
+from tiniscript.recovery.orders import block, command, made_up, orders, written
+from tiniscript.recovery.writing import without_note
+from tiniscript.source import Edit, Source, Span
+from tiniscript.syntax.amounts import is_amount, with_number
+from tiniscript.syntax.free_names import in_place_of
+from tiniscript.syntax.lexer import NUMBER, QUOTES, WORD
+from tiniscript.syntax.operators import COMPARISONS
+from tiniscript.words import BLOCK_ENDS, UNITS, WORDS, said_instead
+
+_ASKING = ("IF", "ELSEIF", "WHILE", "UNTIL")
+_LAST_HEAD = re.compile(r"(?is)\b(IF|ELSEIF|WHILE|UNTIL)[ \t]*\((?!.*\b(?:IF|WHILE|UNTIL)\()")
+_DOTS = re.compile(r"(?:\.[ \t]*){2,}|\u2026")
+_BEFORE_DOTS = re.compile(r"(?i)\b((IF|LOOP|WHILE)[ \t]*\([^()\n]*\)|(DEF)[ \t]+(\w+))[\s;]*$")
+_BEHIND_DOTS = re.compile(r"(?i)[ \t]*\n?[ \t]*(END_?\w+|ELSE\w*)?")
+_WORD = re.compile(r"\w")
+_MEMBER = re.compile(r"[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)+(?=[ \t]*\()")
+_SEPARATOR = re.compile(r"[;|{}]")
+_IS_BLOCK = re.compile(rf"(?i)(?:{'|'.join((*BLOCK_ENDS, 'END', 'ELSE'))})\b|END_")
+_MOST_TIMES = 20  # that a DEF is done
+_MANY_BELOW = 6  # instructions that an example takes into a block
+_LONGEST = 120  # characters of a sentence that a message shows
+_MANY = 30  # diagnostics of which more is said
+_PAUSE = "W(2)"
+_OF_ENDS = (codes.NEVER_ENDS, codes.NOT_OPEN, codes.CALLS_ITSELF)
+_TAUGHT = ("SALTO", "PASO", "BAILE", "JUMP", "STEP", "DANCE")  # by the poster and the lessons
+_NO_NAMES = ("RETURN", "CONTINUE", "CONTINUA", "HOLA", "HELLO", "IDEM", "ETC", "NULL")
+_NO_ORDER = ("value", "operator", "function", "setup", "forever")
+_BUTTON = ("BUTTON", "BOTON")
+_INPUT = frozenset(("INPUT", "READ", "SCAN", "SCANF", "PROMPT", "LEER", "PREGUNTAR"))
+
+
+def with_usage(found: Sequence[Diagnostic], source: Source, kit: Kit) -> list[Diagnostic]:
+    """Return what is wrong with a text, in words that say how it is written."""
+    ends = [each.values["right"] for each in found if each.code is codes.NOT_OPEN]
+    teller = _Usage(source, kit, ends[0] if len(ends) == 1 and ends[0] == "LOOP" else "")
+    told = [teller.told(each) for each in found[:_MANY]]
+    near = {it.values.get("near", "").partition("(")[0] for it in told}
+    is_near = bool(teller.unopened) and teller.unopened in near
+    late = [each for each in told if each.code is codes.NOT_OPEN and each.values.get("line")]
+    has_no_ends = is_near or late or any(it.code in (codes.BRACES, codes.DOTS) for it in told)
+    kept = [*told, *found[_MANY:]]
+    return [each for each in kept if each in late or not (has_no_ends and each.code in _OF_ENDS)]
+
+
+class _Usage:
+    def __init__(self, source: Source, kit: Kit, unopened: str) -> None:
+        self.source = source
+        self.kit = kit
+        self.unopened = unopened  # a header that an end is left for
+
+    @cached_property
+    def lines(self) -> list[str]:
+        return self.source.text.splitlines() or [""]
+
+    @cached_property
+    def names(self) -> Names:
+        bodies = (without_note(line)[0] for line in self.source.text.split("\n"))
+        return Names([lexemes(body) for body in bodies], self.kit)
+
+    def told(self, found: Diagnostic) -> Diagnostic:
+        say = _SAYS.get(found.code)
+        said = say(self, found) if say and found.repair is None else None
+        return said or found
+
+    def piece(self, span: Span) -> Span:
+        """Return the instruction around a place: between the separators of its line."""
+        text = self.source.text
+        start = max(text.rfind("\n", 0, span.start), text.rfind("\r", 0, span.start)) + 1
+        ends = [k for k in (text.find("\n", span.start), text.find("\r", span.start)) if k >= 0]
+        line = text[start : min(ends, default=len(text))]
+        body = without_note(line)[0]
+        signs = [match.start() + start for match in _SEPARATOR.finditer(body)]
+        begin = max((k + 1 for k in signs if k < span.start), default=start)
+        end = min((k for k in signs if k >= span.start), default=start + len(body))
+        begin += len(text[begin:end]) - len(text[begin:end].lstrip())
+        return Span(begin, begin + len(text[begin:end].rstrip()))
+
+    def tokens(self, span: Span) -> list[Lexeme]:
+        return lexemes(self.source[span])
+
+    def command(self, word: str) -> str:
+        return command(word, self.names)
+
+    def block(self, piece: Span) -> str:
+        below = self.source.text[piece.end :].lstrip("; \t\r\n").upper()
+        is_open = bool(re.match(r"SI ?NO\b|ELSE", below))
+        return block(self.tokens(piece), self.names, is_open)
+
+    # -- words that are none of the language ----------------------------------------------------
+
+    def unknown(self, found: Diagnostic) -> Diagnostic | None:
+        """A word that nobody knows, or that an instruction is said with."""
+        piece = self.piece(found.span)
+        tokens = self.tokens(piece)
+        if found.span.start != piece.start or found.values.get("near") or not tokens:
+            return None
+        words = [each.text for each in tokens if each.kind is WORD]
+        first = tokens[0].text
+        if (tokens[1:] and tokens[1].text == "[") or first in ("SWITCH", "CASE", "SEGUN", "CASO"):
+            code, first_ = (codes.CASES, "IF(X = 1)")
+            return Diagnostic(code, found.span, {"found": first, "first": first_})
+        if parts := _MEMBER.match(self.source.text, found.span.start):  # `Serial.begin`
+            return found._replace(span=Span(*parts.span()), values={"found": parts[0]})
+        if instead := said_instead(first):
+            return found._replace(values={**found.values, **instead})
+        is_name = not (self.command(first) or said_of(first, "turn"))
+        if len(tokens) == 2 and tokens[1].kind is NUMBER and is_name:
+            return self.offered(codes.MISSING_EQUALS, piece, f"{first} = {tokens[1].text}")
+        if tokens[1:] and tokens[1].text in ("++", "--", "+", "-") and is_name:
+            by = next((each.text for each in tokens[2:] if each.kind is NUMBER), "1")
+            fix = f"{first} = {first} {tokens[1].text[0]} {by}"
+            return self.offered(codes.OTHER_ASSIGNMENT, piece, fix)
+        if self.is_value(tokens[0]) and any(each.text in COMPARISONS for each in tokens[1:2]):
+            asked = self.source[piece]
+            values = {"found": first, "asked": asked, "one": f"IF({asked})"}
+            return Diagnostic(codes.NOT_AN_INSTRUCTION, piece, values)
+        return self.sentence(found, piece, tokens, words) or self.own_word(found, tokens)
+
+    def sentence(
+        self, found: Diagnostic, piece: Span, tokens: list[Lexeme], words: list[str]
+    ) -> Diagnostic | None:
+        """Words that say an instruction, or several, or none."""
+        meant = next((each for each in words if self._is_order(each)), "")
+        if said := self.orders(found, piece, meant):
+            return said
+        if any(said_of(each, "on") or said_of(each, "off") for each in words):
+            return Diagnostic(codes.SWITCH_WHAT, found.span)
+        if any(map(self.is_button, words)):
+            return Diagnostic(codes.NO_BUTTON, found.span)
+        endless = next((each for each in words if self.command(each) == "FOREVER"), "")
+        if endless and not meant:
+            values = {"found": endless, "right": "LOOP", "fix": "LOOP(FOREVER)"}
+            values["usage"] = _usage("LOOP")
+            return Diagnostic(codes.OTHER_LANGUAGE, found.span, values, piece)
+        if any(said_of(each, "turn") or each in ("VUELTA", "VUELTAS") for each in words):
+            way = next(
+                (self.command(each) for each in words if self.command(each) in ("L", "R")), ""
+            )
+            values = {"word": way, "way": "left" if way == "L" else "right", "usage": _usage(way)}
+            return Diagnostic(codes.WHICH_WAY, found.span, values if way else {})
+        concept = self.command(words[0] if words else "") or (self.command(meant) if meant else "")
+        is_order = concept in WORDS and WORDS[concept].role not in _NO_ORDER
+        if is_order and concept not in words[:1]:
+            named = words[0] if self.command(words[0]) else meant or words[0]
+            values = {"found": named, "right": concept, "usage": _usage(concept)}
+            values["far"] = _far(concept, tokens)
+            return Diagnostic(codes.OTHER_LANGUAGE, found.span, values)
+        signs = {each.text for each in tokens}
+        if (
+            len(words) < 2
+            or signs & {*COMPARISONS, "(", "="}
+            or len(piece_ := self.source[piece]) > _LONGEST
+        ):
+            return None
+        if words[0] == "TSC":
+            return Diagnostic(codes.PROSE, piece, {"command": piece_})
+        return self.offered(codes.PROSE, piece, f"// {piece_}")
+
+    def other(self, found: Diagnostic) -> Diagnostic | None:
+        """A word of another language whose instruction the checker has read."""
+        piece = self.piece(found.span)
+        tokens, right = self.tokens(piece), found.values.get("right", "")
+        if found.span.start != piece.start or "fix" in found.values:
+            return None
+        if said := self.orders(found, piece, found.values["found"]):
+            return said
+        if far := _far(right, tokens):
+            return found._replace(values={**found.values, "far": far})
+        if len(tokens) == 1 and right in WORDS and not WORDS[right].arguments:
+            values = {**found.values, "fix": right}
+            repair = Repair((Edit(piece, right),), False)
+            return found._replace(values=values, place=piece, repair=repair)
+        return None
+
+    def orders(self, found: Diagnostic, piece: Span, meant: str) -> Diagnostic | None:
+        """Words that say a block, or orders, of which `meant` is a word; offered, never made."""
+        tokens = self.tokens(piece)
+        if text := self.block(piece):
+            return self.translated(found.span, piece, meant or tokens[0].text, text)
+        said = orders(tokens, self.names) if meant else []
+        if len(said) == 1 and not said[0].is_side_free:
+            return self.translated(found.span, piece, meant, said[0].text)
+        if not said or len(said) == 1:
+            return None
+        told = self.offered(codes.SEVERAL_ORDERS, piece, written(said))
+        values = {**told.values, "example": made_up(said)}
+        if any(each.is_side_free for each in said):
+            values |= {"right": values["fix"], "fix": ""}
+            return told._replace(values=values, place=None, repair=None)
+        return told._replace(values=values)
+
+    def translated(self, span: Span, piece: Span, found: str, fix: str) -> Diagnostic:
+        right = fix.partition("(")[0].partition(";")[0]
+        values = {"found": found, "right": right, "fix": fix, "usage": _usage(right)}
+        repair = Repair((Edit(piece, fix),), False)
+        return Diagnostic(codes.OTHER_LANGUAGE, span, values, piece, repair)
+
+    def offered(self, code: Code, piece: Span, fix: str) -> Diagnostic:
+        repair = Repair((Edit(piece, fix),), False)
+        found = (self.tokens(piece)[1:2] or self.tokens(piece))[0].text
+        return Diagnostic(code, piece, {"found": found, "fix": fix}, piece, repair)
+
+    def own_word(self, found: Diagnostic, tokens: list[Lexeme]) -> Diagnostic | None:
+        """A word of the program's own that nothing teaches."""
+        name, signs = tokens[0].text, [each.text for each in tokens[1:]]
+        if [each.kind is NUMBER for each in tokens[1:]] == [False, True, False] and self.unopened:
+            return found._replace(values={**found.values, "near": self.unopened})
+        if len(name) < 3 or self.command(name) or (signs and signs[0] != "("):
+            return None
+        lone = re.findall(rf"(?im)(?:^|[;|])[ \t]*{name}[ \t]*(?=;|\r?$)", self.source.text)
+        is_counted = len(signs) == 3 and signs[1].isdecimal() and len(signs[1]) < 4
+        times = signs[1] if is_counted else str(len(lone))
+        if signs not in ([], ["(", ")"]) and not (is_counted and 1 < int(times) <= _MOST_TIMES):
+            return None  # a function of another language
+        if signs or len(lone) > 1 or self.names.defs or name in _TAUGHT:
+            often = f"LOOP({times});{name};END_LOOP" if int(times) > 1 else ""
+            return Diagnostic(codes.UNTAUGHT, found.span, {"name": name, "often": often})
+        is_name = name not in _NO_NAMES and name[:3] not in ("END", "FIN")
+        return found._replace(values={**found.values, "own": name if is_name else ""})
+
+    def is_button(self, word: str) -> bool:
+        is_missing = "BUTTON" not in self.names.sensors
+        return is_missing and (self.command(word) == "BUTTON" or word in _BUTTON)
+
+    def is_value(self, token: Lexeme) -> bool:
+        text = token.text
+        if text in self.names.known.values or said_of(text, "sensor") or said_of(text, "wall"):
+            return True
+        return self.command(text) in self.names.sensors
+
+    def _is_order(self, word: str) -> bool:
+        known = WORDS.get(self.command(word))
+        return known is not None and known.is_instruction and word not in WORDS
+
+    def brackets(self, found: Diagnostic) -> Diagnostic:
+        """A word without its values; alone it gets an example of them."""
+        piece, word = self.piece(found.span), found.values["word"]
+        said = self.orders(found, piece, word) if found.span.start == piece.start else None
+        if said and said.code is codes.SEVERAL_ORDERS:
+            return said
+        if said:
+            values = {**found.values, "fix": said.values["fix"], "example": ""}
+            return found._replace(values=values, place=piece, repair=said.repair)
+        known = WORDS.get(word)
+        is_alone = len(self.tokens(piece)) == 1 and known is not None and bool(known.arguments)
+        example = known.example if known and is_alone else ""
+        return found._replace(values={**found.values, "example": example})
+
+    def question(self, found: Diagnostic) -> Diagnostic | None:
+        """A question in words, in the brackets of a header."""
+        text = self.source.text
+        tokens = self.tokens(self.piece(found.span))
+        if (said := self.amount(found) or self.unit(found, tokens)) is not None:
+            return said
+        before = self.source[Span(self.piece(found.span).start, found.span.end)]
+        head = _LAST_HEAD.search(before)
+        end = text.find(")", found.span.start)
+        if tokens and self.command(tokens[0].text) == "SHOW":
+            return Diagnostic(codes.WORDS_SHOWN, found.span)
+        if head is None or head[1].upper() not in _ASKING:
+            return None
+        start = self.piece(found.span).start + head.end()
+        inner = self.tokens(Span(start, max(start, end)))
+        if len(inner) == 2 and self.is_value(inner[0]) and inner[1].kind is NUMBER:
+            values = {"before": inner[0].text, "found": inner[1].text}
+            return Diagnostic(codes.MISSING_SIGN, found.span, values)
+        words = [each for each in inner if each.kind is WORD and each.text not in WORDS]
+        if all(self.is_value(each) for each in words):
+            return None
+        word = head[1].upper()
+        values = {"word": word, "question": WORDS[word].arguments[0].sample}
+        return Diagnostic(codes.IN_WORDS, found.span, values)
+
+    def unit(self, found: Diagnostic, tokens: list[Lexeme]) -> Diagnostic | None:
+        """A move that is said in degrees, steps or centimetres: it takes a time."""
+        word = WORDS.get(self.command(tokens[0].text)) if tokens else None
+        signs = [each.text for each in tokens]
+        own = tokens[: signs.index(")") if ")" in signs else len(tokens)]
+        for number, unit in pairwise(own):
+            said = UNITS.get(unit.text, ("",))[0] if number.kind is NUMBER else ""
+            if word is None or word.role not in ("move", "wait", "beep") or not said:
+                continue
+            if said not in [each.unit for each in word.arguments]:
+                its = word.arguments[0]
+                values = {"word": word.text, "name": its.name, "wanted": its.unit, "unit": said}
+                values |= {"wanted": "seconds", "usage": word.usage}
+                return Diagnostic(codes.OTHER_UNIT, found.span, values)
+        return None
+
+    def begins(self, found: Diagnostic) -> Diagnostic:
+        """`SI` in the midst of a program begins a question, or the program once more."""
+        text, (_, end) = self.source.text, found.span
+        word = self.source[found.span].upper()
+        if word == "PING":
+            return Diagnostic(codes.SETUP_NEEDS_BAR, found.span, {"found": word, "fix": "PING|"})
+        piece = self.piece(found.span)
+        if word == "SI" and any(self.is_button(each.text) for each in self.tokens(piece)):
+            return Diagnostic(codes.NO_BUTTON, found.span)
+        if word == "SI" and found.span.start == piece.start:
+            if text_ := self.block(piece):
+                told = self.offered(codes.SPANISH_IF, piece, text_)
+                return told._replace(span=found.span)
+        if text[end : end + 9].lstrip()[:1] not in ("|", "", "\n", "\r", ";"):
+            if word == "SI":
+                return Diagnostic(codes.SPANISH_IF, found.span)
+        first = re.match(r"\s*(S[IB])\s*\|", text, re.IGNORECASE)
+        values = {"found": word}
+        if word == "SB":
+            here = "SB|" if text[end : end + 9].lstrip()[:1] == "|" else "SB"
+            values |= {"button": "SB", "pause": _PAUSE}
+            is_twice = first is not None and first[1].upper() == "SB"
+            values |= {"twice": here} if is_twice else {"here": here}
+            values |= {"instead": "SI"} if first and not is_twice else {}
+        return found._replace(values=values)
+
+    # -- blocks, signs and names ------------------------------------------------------------------
+
+    def unended(self, found: Diagnostic) -> Diagnostic:
+        """A block without its end: where its indentation, or its line, says that it ends."""
+        k = self.source.position(found.span.start)[0] - 1
+        header = self.lines[k]
+        behind = without_note(self.source[Span(found.span.end, found.span.end + len(header))])[0]
+        rest = [each.strip() for each in behind.split("\n")[0].split(";") if _WORD.search(each)]
+        depth = len(header) - len(header.lstrip())
+        below = [n for n in range(k + 1, len(self.lines)) if self.lines[n].strip()]
+        values = dict(found.values)
+        part = (
+            "ELSE" if self.source[found.span].upper().startswith("ELSE") else found.values["word"]
+        )
+        if rest and k + 1 == len(self.lines):
+            values |= {"behind": rest[-1]}
+        elif rest:
+            only = rest[0] if len(rest) == 1 else ""
+            values |= {"only": only, "all": "; ".join(rest), "part": part}
+        elif not below:
+            values |= {"head": self.source[found.span]}
+        else:
+            inside = []
+            for n in below:
+                if len(self.lines[n]) - len(self.lines[n].lstrip()) <= depth:
+                    break
+                inside.append(n)
+            if inside:
+                last = without_note(self.lines[inside[-1]])[0].strip(" \t;")
+                values |= {"line": str(inside[-1] + 1), "last": last}
+        return found._replace(values=values)
+
+    def unopened_part(self, found: Diagnostic) -> Diagnostic | None:
+        """An ELSE behind the end of its block."""
+        if not self.source[found.span].upper().startswith("ELSE"):
+            return None
+        ends = [*re.finditer(r"(?i)\bENDIF\b", self.source.text[: found.span.start])]
+        line = str(self.source.position(ends[-1].start())[0]) if ends else ""
+        return found._replace(values={**found.values, "line": line})
+
+    def sign(self, found: Diagnostic) -> Diagnostic | None:
+        sign, piece = self.source[found.span], self.piece(found.span)
+        tokens = self.tokens(piece)
+        if sign in "\u00a1\u00bf" and sum(each.kind is WORD for each in tokens) > 1:
+            return self.offered(codes.PROSE, piece, f"// {self.source[piece]}")
+        if (said := self.unit(found, tokens)) is not None:
+            return said
+        if sign in ".\u2026" and (said := self.dots(found)) is not None:
+            return said
+        if sign == "[" and [each.text for each in tokens[1:3]] == ["=", "["]:
+            return Diagnostic(codes.LISTS, found.span, {"found": tokens[0].text})
+        if sign == "!" and self.source.text[found.span.end :][:1] not in ("", "\n", " "):
+            return Diagnostic(codes.OTHER_SIGN, found.span, {"found": "!", "right": "NOT"})
+        around = self.source.text[found.span.start - 1 : found.span.end + 1]
+        if re.fullmatch("[0-9]:[0-9]", around):
+            return Diagnostic(codes.BAD_NUMBER, found.span, {"found": around})
+        if sign in ("{", "}"):
+            return found._replace(code=codes.BRACES, values={"found": sign})
+        if sign in QUOTES:
+            end = self.source.text.find(sign, found.span.end)
+            line_end = self.source.text.find("\n", found.span.end)
+            is_closed = end >= 0 and (line_end < 0 or end < line_end)
+            span = Span(found.span.start, end + 1) if is_closed else found.span
+            if self.command(tokens[0].text) == "SHOW":
+                return Diagnostic(codes.WORDS_SHOWN, span)
+            return Diagnostic(codes.QUOTE, span, {"found": sign})
+        return None
+
+    def dots(self, found: Diagnostic) -> Diagnostic | None:
+        """Dots for what goes inside a block, as the poster has them."""
+        text = self.source.text
+        dots = _DOTS.match(text, found.span.start)
+        head = _BEFORE_DOTS.search(text, 0, found.span.start)
+        if dots is None or head is None:
+            return None
+        right = BLOCK_ENDS[(head[2] or head[3]).upper()]
+        behind = _BEHIND_DOTS.match(text, dots.end())
+        end = behind[1].upper() if behind and behind[1] else ""
+        values = {"head": head[1], "right": right}
+        if not end:
+            values["out"] = dots[0].strip()
+        elif end == right and behind:
+            below = [without_note(each)[0].strip("; ") for each in text[behind.end() :].split("\n")]
+            below = [each for each in below if each]
+            calls = [each for each in below if each.upper() == (head[4] or "").upper()]
+            inside = [each for each in below if each not in calls]
+            if 0 < len(inside) <= _MANY_BELOW and not any(_IS_BLOCK.match(each) for each in inside):
+                values["example"] = "; ".join((head[1], *inside, right, *calls))
+        return Diagnostic(codes.DOTS, Span(dots.start(), dots.end()), values)
+
+    def name(self, found: Diagnostic) -> Diagnostic:
+        """A word of the language as a name: another one for it."""
+        word = found.values["word"]
+        text = self.source.text
+        is_set = re.match(r"\s*=", text[found.span.end :]) or re.search(
+            r"(?i)\bDEF\s+$", text[max(0, found.span.start - 9) : found.span.start]
+        )
+        right = in_place_of(text, word) if is_set else ""
+        return found._replace(values={**found.values, "right": right})
+
+    def no_order(self, found: Diagnostic) -> Diagnostic | None:
+        """A value where an instruction is expected."""
+        piece, sign = self.piece(found.span), found.values.get("found", "")
+        word, tokens = WORDS.get(sign), self.tokens(piece)
+        if self.source.text.startswith("/*", found.span.start):
+            return Diagnostic(codes.OTHER_NOTE, found.span, {"found": "/*"})
+        if sign.isdecimal() and len(tokens) > 2 and tokens[1].text in WORDS:
+            return Diagnostic(codes.LINE_NUMBER, found.span, {"found": sign})
+        if word is not None and word.role == "function":
+            given = self.source[piece]
+            if any(self.command(each.text) in CALLED for each in tokens):
+                example = "X = RANDOM(1, 2);IF(X = 1);L(1, 60);ELSE;R(1, 60);ENDIF"
+                return Diagnostic(codes.BY_CHANCE, piece, {"example": example})
+            return found._replace(values={**found.values, "given": given, "number": f"N = {given}"})
+        return None
+
+    def function(self, found: Diagnostic) -> Diagnostic | None:
+        name = found.values["found"]
+        if name in self.names.sensors:
+            return Diagnostic(codes.NO_BRACKETS_HERE, found.span, {"word": name})
+        return Diagnostic(codes.NO_INPUT, found.span) if name in _INPUT else None
+
+    def number(self, found: Diagnostic) -> Diagnostic | None:
+        return self.unit(found, self.tokens(self.piece(found.span)))
+
+    def amount(self, found: Diagnostic) -> Diagnostic | None:
+        """Words that say how much, in the place of a number."""
+        piece = self.piece(found.span)
+        text = self.source.text
+        start = 1 + max(text.rfind(sign, piece.start, found.span.start) for sign in "(,")
+        ends = (text.find(sign, found.span.start, piece.end) for sign in ",)")
+        end = min((each for each in ends if each >= 0), default=0)
+        value = Span(start + text[start:end].startswith(" "), end)
+        if not piece.start < start <= end or not is_amount(*self.source[value].split()):
+            return None
+        values = with_number(text, value)
+        return Diagnostic(codes.UNKNOWN_NAME, value, values) if values else None
+
+    def letters(self, found: Diagnostic) -> Diagnostic | None:
+        """A name with letters that a name has not."""
+        if (said := self.amount(found)) is not None:
+            return said
+        is_order = self.piece(found.span).start == found.span.start
+        if is_order and self.source.text[found.span.end :].lstrip(" ").startswith("("):
+            word = self.source[found.span].upper()
+            if not self.command(plain(word)):
+                return Diagnostic(codes.UNKNOWN_WORD, found.span, {"found": word, "near": ""})
+        right = re.sub(r"^[^A-Za-z]+|\W", "", plain(self.source[found.span]))
+        concept = self.command(right)
+        if concept in WORDS and concept != right:
+            values = {"found": right, "right": concept, "usage": _usage(concept)}
+            return Diagnostic(codes.OTHER_LANGUAGE, found.span, values)
+        values = {"right": right if self.source[found.span].isupper() else right.capitalize()}
+        if right in WORDS:
+            values = {"word": right, "right": right}
+        return found._replace(values=values) if right else None
+
+
+def _far(word: str, tokens: Sequence[Lexeme]) -> str:
+    """Return a move of one second in place of one that is said by its distance."""
+    is_far = any(UNITS.get(each.text, ("",))[0] == "cm" for each in tokens)
+    return f"{word}(1, 80)" if is_far and word in WORDS and WORDS[word].role == "move" else ""
+
+
+def _usage(word: str) -> str:
+    word = BLOCK_ENDS.get(ENDED.get(word, ""), word) if word in ENDED else word
+    return WORDS[word].usage if word in WORDS else word
+
+
+_SAYS: dict[Code, Callable[[_Usage, Diagnostic], Diagnostic | None]] = {
+    codes.UNKNOWN_WORD: _Usage.unknown,
+    codes.OTHER_LANGUAGE: _Usage.other,
+    codes.MISSING_OPEN: _Usage.brackets,
+    codes.MISSING_COMMA: _Usage.question,
+    codes.MISSING_CLOSE: _Usage.question,
+    codes.MISSING_VALUE: _Usage.question,
+    codes.SETUP_TWICE: _Usage.begins,
+    codes.NEVER_ENDS: _Usage.unended,
+    codes.NOT_OPEN: _Usage.unopened_part,
+    codes.ODD_CHARACTER: _Usage.sign,
+    codes.RESERVED: _Usage.name,
+    codes.NOT_AN_INSTRUCTION: _Usage.no_order,
+    codes.NO_FUNCTION: _Usage.function,
+    codes.BAD_NUMBER: _Usage.number,
+    codes.BAD_NAME: _Usage.letters,
+}
