@@ -304,6 +304,12 @@ class _Usage:
                 return Diagnostic(codes.OTHER_UNIT, found.span, values)
         return None
 
+    def setup(self, found: Diagnostic) -> Diagnostic | None:
+        """Another word before the bar: one that says the button, or looks like it."""
+        word = found.values["found"]
+        is_button = word in ("S8", "B") or word in _BUTTON or self.command(word) == "BUTTON"
+        return found._replace(values={**found.values, "right": "SB|"}) if is_button else None
+
     def begins(self, found: Diagnostic) -> Diagnostic:
         """`SI` in the midst of a program begins a question, or the program once more."""
         text, (_, end) = self.source.text, found.span
@@ -506,6 +512,7 @@ _SAYS: dict[Code, Callable[[_Usage, Diagnostic], Diagnostic | None]] = {
     codes.MISSING_COMMA: _Usage.question,
     codes.MISSING_CLOSE: _Usage.question,
     codes.MISSING_VALUE: _Usage.question,
+    codes.SETUP_UNKNOWN: _Usage.setup,
     codes.SETUP_TWICE: _Usage.begins,
     codes.NEVER_ENDS: _Usage.unended,
     codes.NOT_OPEN: _Usage.unopened_part,
