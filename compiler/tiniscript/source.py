@@ -13,6 +13,8 @@ from typing import NamedTuple
 
 LARGEST_SOURCE = 1_000_000  # bytes
 PROGRAM_ENDS = (".ts", ".tini", ".ts.txt", ".tini.txt")  # of a name; editors of Windows add .txt
+# of all keyboards and phones, as a set of a regular expression has them
+SPACES = r" \t\f\v\u00a0\u2000-\u200b\u202f\u3000\ufeff"
 
 _LINE_END = re.compile(r"\r\n|\n|\r")
 

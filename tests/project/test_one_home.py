@@ -86,10 +86,10 @@ def test_names_of_states_are_rows_of_their_tables() -> None:
 def test_signs_of_operators_have_one_home() -> None:
     """Comparisons are in the table of opcodes, the others in that of operators.
 
-    The lexer knows which signs are one token, and what other languages write in their place.
+    The lexer knows which signs are one token.
     """
     found = homes(lambda node: is_text(node, "<>|<="))
-    assert found == {"bytecode/opcodes.py", "syntax/lexer_recovery.py"}
+    assert found == {"bytecode/opcodes.py"}
     assert homes(lambda node: is_text(node, "%")) >= {"syntax/operators.py"}
     assert {"+", "-", "*", "/", "%", "=", "<", ">", "<=", ">=", "<>"} == operators.SIGNS
     assert operators.SIGN_OF["MOD"] == "%"

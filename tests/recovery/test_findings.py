@@ -1,4 +1,4 @@
-"""The codes that were handed over to the new recovery: their findings, and what comes behind."""
+"""The findings of wrong programs, and what comes behind them."""
 
 from __future__ import annotations
 

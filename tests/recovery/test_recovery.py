@@ -1,4 +1,4 @@
-"""The new recovery, in shadow: its rows, right programs, and the score of a sample."""
+"""Recovery: its rows, right programs, and the score of a sample."""
 
 from __future__ import annotations
 
@@ -144,6 +144,8 @@ def test_what_may_change_the_meaning_is_only_shown(wrong: str) -> None:
         ("M\u00daSICA(1,440)", "BEEP(1,440)"),
         ("motores(50, 50);esperar(1);parar", "M(50, 50);W(1);S"),
         ("SI|V = 50, F(2, V)", "SI|V = 50; F(2, V)"),
+        ("IF(DISTANCE < 10))\nS\nENDIF", "IF(DISTANCE < 10)\nS\nENDIF"),
+        ("SHOW(ABSS(-3))", "SHOW(ABS(-3))"),  # no other word has brackets in a value
     ],
 )
 def test_what_can_mean_nothing_else_is_made(wrong: str, right: str | None) -> None:
@@ -184,7 +186,6 @@ def test_words_of_a_kit_are_read_on_its_robots_alone(
         ("F(FOREVER, 80); W(2); S", None),
         ("mi; velocidad = 50", None),
         ("SHOW Hola", None),
-        ("IF(DISTANCE < 10))\nS\nENDIF", "IF(DISTANCE < 10)\nS\nENDIF"),
         ("Y(1, 50)", None),
     ],
 )

@@ -1,4 +1,4 @@
-"""Runs the new recovery beside today's repairs, and keeps the scores, which may only rise.
+"""Compares repairs with what `tests/pupils` pins, and keeps the scores, which may only rise.
 
 `python -m tools.shadow` reads all of `tests/pupils`, and 400 right programs with slips, `5000` so
 many. A quarter of the pupils' programs is put aside: its score is printed, never a program of it.
@@ -6,7 +6,8 @@ many. A quarter of the pupils' programs is put aside: its score is printed, neve
 writes scores that rose.
 
 `slips as meant` was begun anew: its sample was drawn from pins, and fell from 16.8 to 12.0 as they
-changed. It is drawn from right programs now, and says what `--fix` makes of them.
+changed. It is drawn from right programs now, and says what `--fix` makes of them. `aside without a
+false repair` fell from 100.0 to 99.5, two programs of 437, when the old repairs went.
 """
 
 from __future__ import annotations
@@ -45,7 +46,7 @@ Scores = dict[str, float]
 
 
 def main(arguments: list[str] | None = None) -> int:
-    parser = argparse.ArgumentParser(description="Compare the new recovery with today's repairs.")
+    parser = argparse.ArgumentParser(description="Compare repairs with the pinned ones.")
     parser.add_argument(
         "slips", nargs="?", type=int, default=SLIPS, help="slips of each right program"
     )

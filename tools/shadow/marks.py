@@ -1,4 +1,4 @@
-"""How the new recovery answers beside today's repairs: one mark for each program.
+"""How recovery answers beside what is pinned: one mark for each program.
 
 Knows what is pinned in `tests/pupils`, and which programs are put aside. Prints nothing.
 """

@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 from tiniscript.kit import Kit
 from tiniscript.recovery import lexicon_en, lexicon_es
-from tiniscript.syntax.lexer import NUMBER, ODD, WORD
+from tiniscript.syntax.lexer import DASHES, NUMBER, ODD, WORD
 from tiniscript.syntax.operators import SIGNS
 from tiniscript.syntax.outline import Known
 from tiniscript.words import ALIASES, BLOCK_ENDS, UNITS, WORDS, Speller, nearest
@@ -62,8 +62,8 @@ def lexemes(line: str) -> list[Lexeme]:
             text = plain(text)
             if "Ñ" in match[0].upper() and not _lexicon().get(text):
                 text = plain(re.sub("[ñÑ]", "ni", match[0]))
-        elif text in _SIGNS:
-            kind = text
+        elif text in _SIGNS or text in DASHES:
+            kind = text = "-" if text in DASHES else text
         found.append(Lexeme(kind, text, match[0], line[end : match.start()]))
         end = match.end()
     return found

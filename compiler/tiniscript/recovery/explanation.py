@@ -275,14 +275,17 @@ class _Teller:
         self, k: int, old: str, own: str, before: Sequence[Lexeme], after: Sequence[Lexeme]
     ) -> list[_Part]:
         """Return the instructions of a line that change, nothing where they are others or more."""
-        was, now = _spans(before), _spans(after)
         steps: dict[int, list[Step]] = {}
         for step in self.steps.get(k, []):
-            at = sum(each.text == ";" for each in step.before[: _first_difference(*step[1:])[0]])
-            steps.setdefault(at, []).append(step)
+            pairs = enumerate(zip(step.before, step.after, strict=False))
+            first = next((at for at, (one, other) in pairs if one.text != other.text), None)
+            number = sum(each.text == ";" for each in step.before[:first])
             is_kept = texts(step.before).count(";") == texts(step.after).count(";")
             if not is_kept or step.code == rows.DO_CODE:
                 return []
+            own_steps = steps.setdefault(number, [])
+            own_steps.append(Step(step.code, *(_instruction(each, number) for each in step[1:])))
+        was, now = _spans(before), _spans(after)
         notes = (without_note(each)[1] for each in (old, own))
         if len(was) != len(now) or len({*notes}) > 1 or {*texts(before)} & {*BRACES}:
             return []
@@ -293,7 +296,8 @@ class _Teller:
                 edit = trimmed(self.starts[self.changes[k].first] + one.span.start, text, new)
                 part = _Part(one.span, edit, one.tokens, other.tokens, steps.get(number, []))
                 found.append(part)
-        return found if all(each.steps for each in found) else []
+        are_told = (each.steps or not old[slice(*each.span)].isascii() for each in found)
+        return found if all(are_told) else []
 
     def new_part(self, k: int, change: Change, part: _Part) -> None:
         code, step = _code(part.steps, part.before, part.after)
@@ -464,6 +468,8 @@ def _slip(code: str, step: Step | None, before: Sequence[Lexeme], after: Sequenc
         lambda both: both[0].text == both[1].text, zip(one, other[:until], strict=False)
     )
     kept = _written([each for each, _ in alike])
+    if code == codes.MISSING_VALUE.number and not found and start:
+        was, kept = _written(old[start : start + 1]), _written(old[start - 1 : start])
     letter = _letter(was, now) if code == codes.BAD_NUMBER.number else ""
     return Slip(was, now, kept, word, known.usage if known else "", shown, letter=letter)
 
@@ -526,6 +532,13 @@ def _first_difference(
 
 def _written(tokens: Sequence[Lexeme]) -> str:
     return "".join((each.space or "") + (each.source or each.text) for each in tokens).strip()
+
+
+def _instruction(tokens: Sequence[Lexeme], number: int) -> list[Lexeme]:
+    """Return the tokens behind so many separators, up to the next one."""
+    for _ in range(number):
+        tokens = tokens[texts(tokens).index(";") + 1 :]
+    return [*takewhile(lambda each: each.text != ";", tokens)]
 
 
 def _parted(tokens: Sequence[Lexeme]) -> list[list[Lexeme]]:

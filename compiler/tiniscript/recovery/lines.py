@@ -6,6 +6,7 @@ Tries only what touches the place where the grammar cannot go on. Knows no other
 from __future__ import annotations
 
 import heapq
+import re
 from collections.abc import Callable, Iterator, Sequence
 from functools import lru_cache
 from typing import NamedTuple
@@ -27,20 +28,21 @@ from tiniscript.recovery.slots import LONG_S, MILLISECONDS_FROM, MOVES, filled
 from tiniscript.syntax.lexer import NUMBER, WORD
 from tiniscript.syntax.operators import SIGNS
 from tiniscript.syntax.outline import Failure, Item, outline
-from tiniscript.words import UNITS, WORDS
+from tiniscript.words import FUNCTIONS, UNITS, WORDS, nearest
 
-STATES = 160  # of one line that are looked at
-SLIP_STATES = 30
+STATES = 80  # of one line that are looked at
+SLIP_STATES = 40
 QUICK_STATES = 8
 FARTHEST = 1.05  # what a rival may cost more than the cheapest reading
 MARGIN = 0.15  # what it has to cost more, for the cheapest to be sure
 SLIP_MARGIN = 0.3
 RIVALS = 4
 LONGEST = 300  # tokens of a line
-LONGEST_WITH_SLIPS = 40
+LONGEST_WITH_SLIPS = 80
 _FIRST_STEPS = 30
 _REMEMBERED = 128  # lines: a repair that is tried changes one line of a program
 _CALCULATES = SIGNS | {"°"}  # without it another number would be meant
+_NEEDLESS = re.compile(r"(?<=[(,=<>+*/-] )\( ([^() ]+) \)|\( (\( [^()]* \)) \)")
 _SETUP = 2  # tokens: `SI|`
 _AT_END = ("LOOP", "IF", "WHILE", "DEF", "ELSEIF", "UNTIL")
 
@@ -74,6 +76,14 @@ class Reading(NamedTuple):
     @property
     def text(self) -> tuple[str, ...]:
         return texts(self.tokens)
+
+    @property
+    def said(self) -> str:
+        """The tokens without those that change nothing: separators, brackets around one value."""
+        text = " ".join(each for each in self.text if each != ";")
+        while (bare := _NEEDLESS.sub(r"\1\2", text)) != text:
+            text = bare
+        return text
 
 
 class Readings(NamedTuple):
@@ -146,12 +156,12 @@ class _Search:
         readings = self.search(first, QUICK_STATES if is_quick else STATES, self.rewritten)
         has_words = any(each.kind in (WORD, NUMBER) for each in tokens)
         if not is_quick and not readings.found and has_words and len(tokens) < LONGEST_WITH_SLIPS:
-            plain = Reading(0, tokens, (), True, False)
-            found = self.search(plain, SLIP_STATES, self.with_slips).found
+            found = self.search(first, SLIP_STATES, self.with_slips).found
             found = [
                 each for each in found if each.items and each.cost < found[0].cost + SLIP_MARGIN
             ]
-            found = [each._replace(is_sure=each.is_sure and len(found) == 1) for each in found]
+            is_alone = len({each.said for each in found}) == 1
+            found = [each._replace(is_sure=each.is_sure and is_alone) for each in found]
             readings = Readings(found, readings.tried)
         return readings
 
@@ -189,7 +199,7 @@ class _Search:
         for one, other, item in zip(told, told[1:], items, strict=False):
             if item.kind == "do" and one[0] == other[0]:
                 if one == other and one[0] in ("S", "STOP", "SHOW"):
-                    return True
+                    return first.text.count(one[0]) < told.count(one)
                 if not reading.is_sure and one == other == first.text[: len(one)]:
                     return True
         return False
@@ -205,7 +215,7 @@ class _Search:
                 cost, code = (1.0, rows.NAME_IN_WORDS) if is_name else (0.5, rows.OTHER_WORD)
                 reading = reading.changed(tokens, cost, code, True, False)
                 continue
-            after = next(self._by_rows(reading, is_first=True), None)
+            after = next(self._by_rows(reading, is_first=True), self._with_function(reading))
             if after is None:
                 break
             reading = after
@@ -216,6 +226,18 @@ class _Search:
             yield self.at_once(after)
         for after in (*self._by_slots(reading), *self._by_words(reading)):
             yield self.at_once(after)
+
+    def _with_function(self, reading: Reading) -> Reading | None:
+        """Mend the first word before a bracket in the place of a value: it can be no other."""
+        around = ("", *reading.text, "")
+        for k, token in enumerate(reading.tokens):
+            is_value = around[k] in ("(", ",", *SIGNS) and around[k + 2] == "("
+            near = nearest(token.text, FUNCTIONS) if is_value and token.kind is WORD else None
+            if near and token.text not in WORDS and not self.names.is_lexical(token.text):
+                line = [*reading.tokens]
+                line[k] = made(near)._replace(space=token.space)
+                return reading.changed(line, 1.0, rows.OTHER_WORD, True, False)
+        return None
 
     def _by_rows(self, reading: Reading, is_first: bool) -> Iterator[Reading]:
         line = rewrites.Encoded(reading.tokens, self.names)
@@ -280,17 +302,20 @@ class _Search:
     def with_slips(self, reading: Reading) -> Iterator[Reading]:
         """One sign wrong, missing, too much or behind its neighbour, where the line fails."""
         tokens, (start, at) = reading.tokens, reading.failure
-        for k in range(max(0, start - 1), min(len(tokens), at + 2)):
+        for k in reversed(range(max(0, start - 1), min(len(tokens) + 1, at + 2))):
+            for sign, cost, code in rows.MISSING:
+                line = [*tokens[:k], made(sign), *tokens[k:]]
+                yield reading.changed(line, cost, code, True, False)
+            if k == len(tokens):
+                continue
             token, rest = tokens[k], tokens[k + 1 :]
             is_sign, is_bracket = token.kind not in (WORD, NUMBER), token.text in ("(", ")")
-            for sign, cost, code in rows.MISSING:
-                line = [*tokens[:k], made(sign), token, *rest]
-                yield reading.changed(line, cost, code, True, False)
             if is_sign:
                 around = {each.text for each in (*tokens[max(0, k - 1) : k], *rest[:1])}
                 for sign in rows.CONFUSED.get(token.text, ""):
                     code = rows.OF_INSTRUCTIONS if sign == ";" else rows.OF_VALUES
-                    line, is_sure = [*tokens[:k], made(sign), *rest], sign not in around
+                    line = [*tokens[:k], made(sign), *rest]
+                    is_sure = sign not in around
                     yield reading.changed(line, rows.CONFUSED_COST, code, is_sure, False)
             if is_sign and token.text not in _CALCULATES and category(token.text[0]) != "Sm":
                 cost, code = rows.EXTRA_COST, rows.EXTRA.get(token.text, rows.OF_VALUES)

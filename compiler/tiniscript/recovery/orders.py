@@ -94,7 +94,7 @@ def _order(words: list[Lexeme], names: Names) -> Order | None:
     text, word = laid_out(call.tokens), call.tokens[0].text
     if call.times:
         pause_s = f"W({call.tokens[2].text});" if word == "BEEP" else ""
-        text = f"LOOP({call.times});{text};{pause_s}END_LOOP"
+        text = f"LOOP({call.times});{text};{pause_s}{BLOCK_ENDS['LOOP']}"
     return Order(word, text, call.samples, is_free, bool(call.times))
 
 

@@ -79,12 +79,15 @@ SIGNS = r"""
 ^"(S[IB]\|[^"]*)"$  |  `\1`  |  1  |  TS006  |  applied  |  "SI|F(2,80);R(1,50)" => SI|F(2,80);R(1,50)
 \b([FBLR])\((\d)\.([1-9]0|100)\)  |  `\1(\2, \3)`  |  1  |  TS020  |  offered  |  F(2.80) => F(2, 80)
 (?<=\d)=(?=\s*\))  |  `0`  |  1  |  TS076  |  offered  |  F(2, 8=) => F(2, 80)
+(?<=\()=(?=\.\d)  |  `0`  |  1  |  TS076  |  offered  |  L(=.39, 60) => L(0.39, 60)
+(?<==)\s*(\d+)x(\d+)\b  |  ` \1 * \2`  |  1  |  TS008  |  offered  |  X = 3x2 => X = 3 * 2
 (?<=[(,])(\s*)!(?=\s*[,)])  |  `\g<1>1`  |  1  |  TS076  |  offered  |  F(!, 80) => F(1, 80)
 (?<=[(,])(\s*)"(?=\s*[,)])  |  `\g<1>2`  |  1  |  TS076  |  offered  |  F(", 80) => F(2, 80)
 (?<=[(,])(\s*)\$(?=\s*[,)])  |  `\g<1>4`  |  1  |  TS076  |  offered  |  F($, 80) => F(4, 80)
 (?<=[(,])(\s*)%(?=\d)  |  `\g<1>5`  |  1  |  TS076  |  offered  |  F(2, %0) => F(2, 50)
 (?<=[(,])(\s*)/(?=\d)  |  `\g<1>7`  |  1  |  TS076  |  offered  |  F(2, /0) => F(2, 70)
 (?<=\()l(?=\s*,)  |  `1`  |  1  |  TS008  |  offered  |  F(l, 80) => F(1, 80)
+\((\d)\.,(\d+) +(\d+)\)  |  `(\1.\2, \3)`  |  1  |  TS008  |  applied  |  F(0.,5 60) => F(0.5, 60)
 (?<=\d)\. (?=\d)  |  `.`  |  1  |  TS008  |  applied  |  F(1. 5, 80) => F(1.5, 80)
 ^(\s*S[IB]\s*\|)\s+\|  |  `\1`  |  1  |  TS054  |  applied  |  SI| |F(2, 80) => SI|F(2, 80)
 −  |  `-`  |  0  |  TS010  |  applied  |  M(−50 50) => M(-50, 50)
@@ -124,9 +127,11 @@ SIGNS = r"""
 (?<=\d)['·](?=\d+\))  |  `,`  |  1  |  TS076  |  applied  |  F(2'80) => F(2,80)
 (?<=\d)[|¿?!"]+(?=\s*\))  |  ``  |  1  |  TS005  |  applied  |  F(2, 80?) => F(2, 80)
 (\(\d\.\d+)\.(\d+)\)  |  `\1, \2)`  |  1  |  TS076  |  applied  |  F(0.5.80) => F(0.5, 80)
-\b([FBLR])(\d),\s*(\d+)\)  |  `\1(\2, \3)`  |  1  |  TS015  |  applied  |  F2,80) => F(2, 80)
-^(\s*M)\s+(-?\d+)\s*[;,]\s*(-?\d+)  |  `\1(\2, \3)`  |  1  |  TS015  |  applied  |  M 50;-50 => M(50, -50)
 \(([FBLRWM])(\d)  |  `\1(\2`  |  1  |  TS015  |  applied  |  (F2, 80) => F(2, 80)
+\b([FBLR])(\d(?:\.\d+)?),\s*(\d+)\)  |  `\1(\2, \3)`  |  1  |  TS015  |  applied  |  F2,80) => F(2, 80)
+\bW([1-7](?:\.\d+)?)(?:\(\)|\))  |  `W(\1)`  |  1  |  TS015  |  applied  |  S; W2.5) => S; W(2.5)
+(?<=;)\s*[:.,]\s*(?=;)  |  ``  |  1  |  TS005  |  applied  |  S;:; F(2, 80) => S;; F(2, 80)
+^(\s*M)\s+(-?\d+)\s*[;,]\s*(-?\d+)  |  `\1(\2, \3)`  |  1  |  TS015  |  applied  |  M 50;-50 => M(50, -50)
 ^\s*```\w*\s*$  |  ``  |  1  |  TS072  |  applied  |  ```tiniscript⏎F(2, 80)⏎R(1, 50)⏎``` => ⏎F(2, 80)⏎R(1, 50)⏎
 ^\s*[•·►▶✔✓*–—]\s+  |  ``  |  1  |  TS054  |  applied  |  * F(2,80) => F(2,80)
 ^\s*-\s+(?=[A-Za-z])  |  ``  |  1  |  TS054  |  applied  |  - F(2, 80)⏎- B(2, 80) => F(2, 80)⏎B(2, 80)
@@ -139,7 +144,7 @@ SIGNS = r"""
 \b[O0]\.S\b  |  `0.5`  |  1  |  TS008  |  applied  |  F(O.S, 6O) => F(0.5, 60)
 \b[oO]\.(\d+)  |  `0.\1`  |  1  |  TS008  |  applied  |  F(O.5, 80) => F(0.5, 80)
 \b(\d)[oO](\d)\b  |  `\g<1>0\2`  |  1  |  TS008  |  applied  |  BEEP(1, 4O4) => BEEP(1, 404)
-(?<=\d)\.(?=[,);\s])  |  ``  |  9  |  TS008  |  offered  |  F(2, 80.) => F(2, 80)
+(?<=\d)\.(?=\s*[,);])  |  ``  |  9  |  TS008  |  offered  |  F(2, 80.) => F(2, 80)
 (?<=[(,])\s*\+(?=\d)  |  ``  |  1  |  TS008  |  applied  |  F(+2, 80) => F(2, 80)
 (?<!\d)1/2(?!\d)(?=\s*(?:s|seg|min|h))  |  `0.5`  |  0  |  TS049  |  applied  |  F(1/2 minuto, 80) => F(30, 80)
 (?<=\d),(?=\d+\s*(?:s|seg|segs|segundos?|sec|seconds?|minutos?)\b)  |  `.`  |  1  |  TS012  |  applied  |  F(2,5s,80) => F(2.5, 80)
@@ -177,6 +182,7 @@ TOKENS = r"""
 # signs that other languages have
 ^ v=@usedname == e=@any+ $ | $v = $e | 0 | TS010 | first | X == 5⏎F(X, 80) => X = 5⏎F(X, 80)
 ^ v=@name == e=@any+ $ | $v = $e | 1 | TS050 | first offered | X == 6 => X = 6
+; v=@usedname == e=@nosep+ f=;|$ | ; $v = $e $f | 0 | TS010 | first | SI|X = 1;X == 5;F(X, 80) => SI|X = 1;X = 5;F(X, 80)
 == | = | 0 | TS010 | first | IF(DISTANCE == 10);S;ENDIF => IF(DISTANCE = 10);S;ENDIF
 != | <> | 0 | TS010 | first | SI|IF(DISTANCE!=10);S;ENDIF => SI|IF(DISTANCE <>10);S;ENDIF
 =! | <> | 0 | TS010 | first | IF(DISTANCE =! 10);S;ENDIF => IF(DISTANCE <> 10);S;ENDIF
@@ -237,6 +243,7 @@ v=@val seconds|@unit e=,|) | $v $e | 1 | TS049 | applied | SHOW(distancia cm) =>
 the v=@val | $v | 1 | TS102 | first | lee la distancia => DISTANCE
 # variables
 v=@name = a=@num|@val b=@start | $v = $a ; $b | 1 | TS013 | applied | vel = 50 F(2, vel) => VEL = 50;F(2, VEL)
+v=@name = a=@val s=<|>|<=|>= n=@num b=@start | $v = $a $s $n ; $b | 1 | TS013 | applied | X = DISTANCE > 30 IF(X);S;ENDIF => X = DISTANCE > 30;IF(X);S;ENDIF
 v=@name ++ | $v = $v + 1 | 1 | TS050 | applied | v = 0⏎v++⏎F(2, v) => v = 0⏎v = v + 1⏎F(2, v)
 v=@name - - $ | $v = $v - 1 | 1 | TS050 | applied | X = 1⏎X-- => X = 1⏎X = X -1
 v=@name += e=@any+ | $v = $v + $e | 1 | TS050 | applied | v = 10⏎v += 5⏎F(2, v) => v = 10⏎v = v + 5⏎F(2, v)
@@ -245,12 +252,14 @@ v=@name *= e=@any+ | $v = $v * $e | 1 | TS050 | applied | X = 1⏎X *= 2 => X = 
 ^ v=@name = w=@name = e=@any+ $ | $v = $e ; $w = $e | 1 | TS137 | offered | X = X = 5 => X = 5;X = 5
 ^ v=@name , w=@name = e=@num , f=@num $ | $v = $e ; $w = $f | 1 | TS050 | applied | X, Y = 5, 6⏎F(X, Y) => X = 5;Y = 6⏎F(X, Y)
 ^ n=@newname = b=@callw r=@any+ $ | DEF $n ; $b $r | 2 | TS051 | applied | SALUDO = BEEP(1, 440)⏎SALUDO => DEF SALUDO;BEEP(1, 440);END_DEF⏎SALUDO
+^ declare v=@newname ;? $ | $v = 0 | 1 | TS044 | offered | var vel⏎F(2, vel) => vel = 0⏎F(2, vel)
 ^ declare v=@name = | $v = | 1 | TS044 | applied | let v = 50⏎F(2, v) => v = 50⏎F(2, v)
 ^ CONST declare v=@name = | $v = | 1 | TS044 | applied | const int potencia = 80;⏎F(2, potencia); => potencia = 80;⏎F(2, potencia);
 ^ set|LET v=@name TO|A|EN|COMO|= e=@num $ | $v = $e | 1 | TS050 | applied | set x to 5 => x = 5
 ^ v=@newname is|VALE|equal A|IGUAL? A? e=@num $ | $v = $e | 2 | TS050 | applied | velocidad es 60⏎F(2, velocidad) => velocidad = 60⏎F(2, velocidad)
 ^ v=@newname : e=@num $ | $v = $e | 2 | TS050 | applied | velocidad: 60⏎F(2, velocidad) => velocidad = 60⏎F(2, velocidad)
 ^ v=@usedname e=@num $ | $v = $e | 3 | TS057 | applied | VELOCIDAD 50⏎F(2, VELOCIDAD) => VELOCIDAD = 50⏎F(2, VELOCIDAD)
+; v=@usedname e=@num f=;|$ | ; $v = $e $f | 3 | TS057 | applied | X = 15;X  17;SHOW(X) => X = 15;X = 17;SHOW(X)
 ^ v=@name <- e=@any+ $ | $v = $e | 1 | TS050 | applied | potencia <- 80⏎F(2, potencia) => potencia = 80⏎F(2, potencia)
 = SI|YES $ | = TRUE | 1 | TS102 | applied | X = si⏎IF(X)⏎S⏎ENDIF => X = TRUE⏎IF(X)⏎S⏎ENDIF
 = no $ | = FALSE | 1 | TS102 | applied | X = NO => X = FALSE
@@ -271,7 +280,7 @@ a=@callw b=@num ,? c=@num ,|;|Y? d=@callw | $a ( $b , $c ) ; $d | 1.5 | TS015 | 
 v=@val ( ) | $v | 1 | TS028 | first | LIGHT_L() => LIGHT_L
 RANDOM ( between|than|DESDE? a=@num A|AL|TO|Y|HASTA|AND|- b=@num ) | RANDOM ( $a , $b ) | 1 | TS017 | applied | X = RANDOM(1 al 6) => X = RANDOM(1, 6)
 x=@callw < c=@nobrace+ > | $x ( $c ) | 1 | TS015 | applied | F<2, 80> => F(2, 80)
-c=@callw ( a=@argt+ ( $ | $c ( $a ) | 1 | TS076 | applied | F(2, 80( => F(2, 80)
+c=@callw ( a=@argt+ ( e=;|$ | $c ( $a ) $e | 1 | TS076 | applied | F(2, 80( => F(2, 80)
 ^ ( c=@callw a=@num ,? b=@num ) $ | $c ( $a , $b ) | 1 | TS076 | applied | (F 2,80) => F(2, 80)
 ^ ( a=@num , b=@num ) c=F|B|L|R $ | $c ( $a , $b ) | 1 | TS015 | applied | (2,80)F => F(2, 80)
 ^ c=F|B|L|R - a=@num - b=@num $ | $c ( $a , $b ) | 1 | TS015 | applied | F - 2 - 80 => F(2, 80)
@@ -366,6 +375,7 @@ ROUND ( n=@num ) | ROUND ( $n , 0 ) | 2 | TS020 | offered | X = ROUND(3.7)⏎SHO
 h=IF|WHILE ( a=@val s=<|> b=@num , c=@val t=<|> d=@num ) | &h ( $a $s $b AND $c $t $d ) | 2 | TS020 | offered | IF(DISTANCE < 10, LIGHT_R > 50)⏎S⏎ENDIF => IF(DISTANCE < 10 AND LIGHT_R > 50)⏎S⏎ENDIF
 ^ h=IF|WHILE ( c=@argt+ , b=@start r=@argt* ) $ | &h ( $c ) ; $b $r | 2 | TS080 | applied | IF(DISTANCE < 10, S)⏎ELSE⏎F(1,50)⏎ENDIF => IF(DISTANCE < 10);S⏎ELSE⏎F(1,50)⏎ENDIF
 LOOP ( n=@num , <body> ) | LOOP ( $n ) ; $b $r | 2 | TS080 | applied | LOOP(4, F(1,50))⏎END_LOOP => LOOP(4);F(1, 50)⏎END_LOOP
+LOOP ( <body> , n=@num ) $ | LOOP ( $n ) ; $b $r ; END_LOOP | 2 | TS080 | applied | LOOP(F(1,50), 4) => LOOP(4);F(1, 50);END_LOOP
 LOOP ( n=@num <body> ) $ | LOOP ( $n ) ; $b $r ; END_LOOP | 2 | TS080 | applied | LOOP(3 F(1,50)) => LOOP(3);F(1, 50);END_LOOP
 <for> @name IN|EN range ( n=@num ) :? | LOOP ( $n ) ; | 1 | TS102 | applied | for i in range(4): F(1,60); R(0.5,60) => LOOP(4);F(1, 60);R(0.5, 60);END_LOOP
 <for> @name IN|EN range ( 0 , n=@num ) :? | LOOP ( $n ) ; | 1 | TS102 | applied | for i in range(0, 4):⏎F(1, 50)⏎END_LOOP => LOOP(4)⏎F(1, 50)⏎END_LOOP
@@ -422,7 +432,7 @@ v=@def ( ) | $v | 1 | TS028 | first | DEF GIRO()⏎R(1, 60)⏎END_DEF⏎GIRO() =
 ^ DEF n=@word ( <body> ) $ | DEF $n ; $b $r ; END_DEF | 1 | TS080 | applied | DEF SALUDO(BEEP(1,440))⏎SALUDO => DEF SALUDO;BEEP(1, 440);END_DEF⏎SALUDO
 ^ ( a=@callw ( c=@argt+ ) ) ( <body> ) $ | $a ( $c ) ; $b $r | 1 | TS080 | applied | (F(2,80))(R(1,60)) => F(2, 80);R(1, 60)
 v=@val A|TO the? wall | &v | 1 | TS102 | first | IF(distancia a la pared < 10)⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
-LOOP = n=@num | LOOP ( $n ) | 1 | TS015 | applied | LOOP=4;F(2,80);END_LOOP => LOOP(4);F(2,80);END_LOOP
+LOOP =|- n=@num | LOOP ( $n ) | 1 | TS015 | applied | LOOP=4;F(2,80);END_LOOP => LOOP(4);F(2,80);END_LOOP
 ^ v=TIEMPO n=@num $ | $v = $n | 1 | TS057 | applied | tiempo 2⏎F(tiempo,80) => tiempo = 2⏎F(tiempo,80)
 <block> <question> '|' b=@start | &h ( $c ) ; $b | 1 | TS014 | applied | LOOP(2)|F(1, 80)|END_LOOP => LOOP(2);F(1, 80);END_LOOP
 a=@close '|' h=END_LOOP|ENDIF|END_WHILE|END_DEF | $a ; &h | 1 | TS055 | applied | LOOP(2);F(1, 80)|END_LOOP => LOOP(2);F(1, 80);END_LOOP

@@ -20,6 +20,7 @@ from tiniscript.recovery.setup import setup
 from tiniscript.recovery.writing import as_written, laid_out, without_note
 from tiniscript.syntax.outline import Failure
 
+UNREAD = 5  # lines that nobody can read, after which others are read quickly
 CHECKS = 40  # of candidates of one program
 ALTERNATIVES = 12  # readings of a line that are tried beside the cheapest ones
 PARTS = 6  # readings of a part of a line
@@ -97,6 +98,7 @@ class _Recovery:
         self._mistakes = mistakes
         self.count = count
         self.checks = 0
+        self.unread = 0
         self.lines = [_Text(line, k) for k, line in enumerate(program.split("\n"))]
 
     def mistakes(self, text: str) -> Sequence[str]:
@@ -182,11 +184,12 @@ class _Recovery:
         if not isinstance(items, Failure):
             line.reading = Reading(0, tokens, (), True, False, items)
             return
-        found, line.tried = lines.read(tokens, names)
+        found, line.tried = lines.read(tokens, names, is_quick=self.unread > UNREAD)
         if not found:
+            self.unread += 1
             return
         first = found[0]
-        line.rivals = [each for each in found[1:] if _said(each) != _said(first)]
+        line.rivals = [each for each in found[1:] if each.said != first.said]
         is_close = any(
             each.is_sure and each.cost < first.cost + MARGIN and _kept(each) >= _kept(first)
             for each in line.rivals
@@ -336,11 +339,6 @@ def _is_alone(reading: Reading) -> bool:
 
 def _words(text: str) -> set[str]:
     return {*texts(lexemes(text))}
-
-
-def _said(reading: Reading) -> list[str]:
-    """Return the tokens of a reading without separators, of which one more changes nothing."""
-    return [each for each in reading.text if each != ";"]
 
 
 def _kept(reading: Reading) -> int:

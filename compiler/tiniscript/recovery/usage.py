@@ -142,7 +142,7 @@ class _Usage:
             return said
         if any(said_of(each, "on") or said_of(each, "off") for each in words):
             return Diagnostic(codes.SWITCH_WHAT, found.span)
-        if any(map(self.is_button, words)):
+        if any(map(self.is_button, words)) and [each.text for each in tokens[1:2]] != ["("]:
             return Diagnostic(codes.NO_BUTTON, found.span)
         endless = next((each for each in words if self.command(each) == "FOREVER"), "")
         if endless and not meant:

@@ -10,8 +10,7 @@ from zlib import crc32
 
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
-from tiniscript.source import Span
-from tiniscript.syntax.lexer import SPACES
+from tiniscript.source import SPACES, Span
 
 _BYTE_ORDER_MARK = "\ufeff"
 

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from tiniscript.diagnostics.codes import Diagnostic
-from tiniscript.source import Span
+from tiniscript.source import SPACES, Span
 
 WORD = "word"
 NUMBER = "number"
@@ -19,11 +19,8 @@ NEWLINE = "newline"
 END = "end"
 ODD = "odd"
 
+DASHES = "\u2010\u2011\u2012\u2013\u2014\u2015\u2212"
 QUOTES = "\"'`´‘’‚‛“”„‟«»"  # of all keyboards: none is a sign of the language
-
-SPACES = (
-    r" \t\f\v\u00a0\u2000-\u200b\u202f\u3000\ufeff"  # as a set of a regular expression has them
-)
 
 
 class Token(NamedTuple):
@@ -48,14 +45,13 @@ class Scan(NamedTuple):
 
 
 _PATTERN = re.compile(
-    rf"(?P<space>[{SPACES}]+)"
+    rf"(?P<space>[{SPACES}]+) | (?P<dash>[{DASHES}])"
     r"""
       | (?P<word>[A-Za-z][A-Za-z0-9_]*)(?!\w)
       | (?P<comment>//[^\r\n]*)
       | (?P<sign><=|>=|<>|[-+*/%=<>(),;|])
       | (?P<number>(?:[0-9]+(?:\.[0-9]+)?|\.[0-9]+)(?![\w.]))
       | (?P<newline>\r\n|\n|\r)
-      | (?P<dash>[\u2010-\u2015\u2212])
       | (?P<odd>\.?[0-9][\w.]*|\w+|~[0-9A-Fa-f]*|.)
     """,
     re.VERBOSE | re.DOTALL,
