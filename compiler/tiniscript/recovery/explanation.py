@@ -497,7 +497,7 @@ def _word(
     if code == codes.BAD_NAME.number:
         is_accent = start < len(old) and not (old[start].source or "").isascii()
         return old[start].text if is_accent and old[start].text in WORDS else ""
-    if code == codes.NO_VALUE.number:
+    if code in (codes.NO_VALUE.number, codes.NO_BRACKETS_HERE.number):
         part = old[start:]
     elif code == rows.NO_BRACKETS:
         is_made = [each.text == "(" and each.source is None for each in new]

@@ -22,7 +22,7 @@ from tiniscript.words import BLOCK_ENDS, WORDS
 _ATOM = re.compile(r"'[^']*'|@\w+|[a-z]{2,}|[A-Z_0-9]+|\$|[^\w|'@\s$]+")
 _CAPTURE = re.compile(r"([a-z])=(?=.)")
 _PART = re.compile(r"<(\w+)>")
-_OF_NUMBERS = re.compile(r"@(?:dec|cat|mmss|xn|same)\b|(?<![\w@])\d")
+_OF_NUMBERS = re.compile(r"@(?:dec|cat|cm|mmss|xn|same)\b|(?<![\w@])\d")
 _MOST_POWER = 100
 _HEADER_OF = {"FOREVER": "LOOP", "FOR": "LOOP", "PARA": "LOOP", "ELSEIF": "IF"}
 
@@ -347,6 +347,12 @@ def _end_of_range(place: _Place, is_high: bool) -> _Made:
     return [made(f"{(known.high if is_high else known.low) / 1000:g}")]
 
 
+def _centimetres(place: _Place) -> _Made:
+    """`1 m` is 100."""
+    (metres,) = place.captured[0]
+    return [made(f"{100 * float(metres.text):g}")]
+
+
 def _number_if(is_so: Callable[[float], bool]) -> Callable[[_Place], _Made]:
     """Return the function for a number that has a property."""
 
@@ -360,7 +366,7 @@ def _number_if(is_so: Callable[[float], bool]) -> Callable[[_Place], _Made]:
 _FUNCTIONS: dict[str, Callable[[_Place], _Made]] = {
     "not": _not, "endof": _end_of, "dec": _decimal, "cat": _zero_behind, "mmss": _minutes,
     "xn": _times, "brace": _brace, "same": _same, "join": _name, "known": _known_name,
-    "most": _most, "least": _least,
+    "most": _most, "least": _least, "cm": _centimetres,
     "power": _number_if(lambda it: LONG_S <= it <= _MOST_POWER),
     "time": _number_if(lambda it: it < LONG_S),
     "whole": _number_if(float.is_integer),

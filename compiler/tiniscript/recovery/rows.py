@@ -16,7 +16,7 @@ but brackets: @nobrace.
 `becomes` is tokens: `$c` what was captured, `&c` that in words of the language, and functions:
 @not (the opposite question), @same (a number that is another one, too),
 @most and @least (the range of an actuator), @endof (the end of a header), @dec (a decimal comma), @cat (a zero
-apart), @mmss, @xn (`x4`), @brace (a brace that was captured), @join and @known (a name of two
+apart), @mmss, @cm (of metres), @xn (`x4`), @brace (a brace that was captured), @join and @known (a name of two
 words). `how`: `first` is made before any other is tried, `applied` may be made without asking,
 `offered` is only shown, as is `first offered`. An example's lines are parted by ⏎.
 
@@ -27,8 +27,8 @@ in the same columns, which are two spaces wide. Rows are sorted by what they are
 # Pieces of patterns that several rows have.
 PARTS = {
     "body": "b=@start r=@all*",
-    "block": "h=IF|WHILE|ELSEIF|LOOP",
-    "asks": "h=IF|WHILE|ELSEIF",
+    "block": "h=IF|WHILE|ELSEIF|LOOP|WHEN",
+    "asks": "h=IF|WHILE|ELSEIF|WHEN",
     "question": "( c=@noclose+ )",
     "for": "LOOP|FOR|PARA",
     "end": "BREAK ; ENDIF ; END_LOOP",
@@ -129,7 +129,7 @@ SIGNS = r"""
 (\(\d\.\d+)\.(\d+)\)  |  `\1, \2)`  |  1  |  TS076  |  applied  |  F(0.5.80) => F(0.5, 80)
 \(([FBLRWM])(\d)  |  `\1(\2`  |  1  |  TS015  |  applied  |  (F2, 80) => F(2, 80)
 \b([FBLR])(\d(?:\.\d+)?),\s*(\d+)\)  |  `\1(\2, \3)`  |  1  |  TS015  |  applied  |  F2,80) => F(2, 80)
-\bW([1-7](?:\.\d+)?)(?:\(\)|\))  |  `W(\1)`  |  1  |  TS015  |  applied  |  S; W2.5) => S; W(2.5)
+\bW([1-7](?:\.\d+)?)(?:\(\)|\)|(?=\s*(?:;|$)))  |  `W(\1)`  |  1  |  TS015  |  applied  |  S; W2.5) => S; W(2.5)
 (?<=;)\s*[:.,]\s*(?=;)  |  ``  |  1  |  TS005  |  applied  |  S;:; F(2, 80) => S;; F(2, 80)
 ^(\s*M)\s+(-?\d+)\s*[;,]\s*(-?\d+)  |  `\1(\2, \3)`  |  1  |  TS015  |  applied  |  M 50;-50 => M(50, -50)
 ^\s*```\w*\s*$  |  ``  |  1  |  TS072  |  applied  |  ```tiniscript⏎F(2, 80)⏎R(1, 50)⏎``` => ⏎F(2, 80)⏎R(1, 50)⏎
@@ -236,6 +236,7 @@ a=@num 0 | @cat:a | 1 | TS008 | offered | F(2, 8 0) => F(2, 80)
 a=@num , b=@num | @dec:a:b | 1 | TS012 | applied | W(2,5) => W(2.5)
 a=@num % ) | $a ) | 1 | TS049 | first | F(2,80%) => F(2,80)
 a=@num : b=@num | @mmss:a:b | 1 | TS008 | applied | W(1:30) => W(90)
+s=<|>|<=|>= n=@num M|METRO|METROS|METERS|METER e=) | $s @cm:n $e | 1 | TS049 | applied | IF(DISTANCE < 1 m);S;ENDIF => IF(DISTANCE < 100);S;ENDIF
 s=<|>|<=|>=|=|<> n=@num @unit | $s $n | 1 | TS049 | first | x = 5 cm => x = 5
 v=@val CM|EN? CM | $v | 2 | TS049 | applied | SHOW DISTANCE cm => SHOW(DISTANCE)
 v=@name = e=@num @unit $ | $v = $e | 1 | TS049 | applied | X = 2 seg => X = 2
@@ -308,6 +309,7 @@ a=@close HASTA|UNTIL QUE? ( | $a UNTIL ( | 1 | TS102 | applied | F(2,80) HASTA(D
 a=@close ; UNTIL ( | $a UNTIL ( | 1 | TS029 | applied | F(3, 80);UNTIL(DISTANCE < 10) => F(3, 80) UNTIL(DISTANCE < 10)
 c=@callw ( a=@argt+ UNTIL ( d=@noclose+ ) ) | $c ( $a ) UNTIL ( $d ) | 1 | TS016 | applied | F(5, 60 UNTIL(DISTANCE < 15)) => F(5, 60) UNTIL(DISTANCE < 15)
 # IF and WHILE
+ELSE ( a=@val s=<|<=|>|>= b=@num|@val ) | ELSEIF ( $a $s $b ) | 1 | TS039 | offered | IF(DISTANCE < 10)⏎S⏎ELSE(DISTANCE < 30)⏎B(1, 50)⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ELSEIF(DISTANCE < 30)⏎B(1, 50)⏎ENDIF
 <block> <question> b=@name = | &h ( $c ) ; $b = | 1 | TS014 | applied | X = 5⏎IF(X = 5) X = 6 ELSE X = 7 => X = 5⏎IF(X = 5);X = 6;ELSE;X = 7;ENDIF
 h=IF|WHILE ( c=@argt+ ) ( d=@argt+ ) | &h ( $c AND $d ) | 1.5 | TS010 | applied | IF(DISTANCE < 10)(LIGHT_R > 50)⏎S⏎ENDIF => IF(DISTANCE < 10 AND LIGHT_R > 50)⏎S⏎ENDIF
 c=IF|WHILE|ELSEIF|UNTIL ( ( a=@argt* b=@num|@word ) e=;|$ | $c ( ( $a $b ) ) $e | 1 | TS016 | applied | IF((DISTANCE < 10)⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
@@ -419,6 +421,8 @@ LOOP ( INT? @name = 0 ; @name < n=@num ; @name ++ ) | LOOP ( $n ) | 1 | TS063 | 
 ^ a=F|B|L|R ( b=@argt+ ) WHILE (? d=@argt+ )? $ | $a ( $b ) UNTIL ( @not:d ) | .9 | TS071 | offered | F(5, 50) WHILE(DISTANCE > 10) => F(5, 50) UNTIL(DISTANCE <= 10)
 ^ b=@start r=@argt* c=@close when d=@cond+ $ | IF ( $d ) ; $b $r $c ; ENDIF | .9 | TS071 | offered | F(1, 50) si DISTANCE > 10 => IF(DISTANCE > 10);F(1, 50);ENDIF
 # what the devices of a kit are set to
+d=@device v=lit|on e=;|$ | &d ( TRUE ) $e | 1 | TS015 | applied | LED ON => LED(TRUE)
+d=@device v=dark|off e=;|$ | &d ( FALSE ) $e | 1 | TS015 | applied | LED OFF => LED(FALSE)
 d=@device ( v=lit ) | &d ( TRUE ) | 1 | TS102 | applied | LED(PRENDIDO) => LED(TRUE)
 d=@device ( v=dark ) | &d ( FALSE ) | 1 | TS102 | applied | LED(OFF) => LED(FALSE)
 d=@device ( v=most ) | &d ( @most:d ) | 1 | TS102 | applied | PINZA(ABIERTA) => GRIPPER(180)
@@ -442,6 +446,7 @@ DEF n=@word b=@start|'{' | DEF $n ; $b | 1 | TS014 | applied | procedure square 
 DEF n=@word ( ) '{' | DEF $n ; { | 1 | TS047 | applied | DEF PASO() {⏎F(1, 50)⏎}⏎PASO => DEF PASO;⏎F(1, 50)⏎END_DEF⏎PASO
 DEF n=@word ( ) : ? | DEF $n ; | 1 | TS028 | applied | DEF PASO():⏎F(1, 50)⏎END_DEF⏎PASO => DEF PASO⏎F(1, 50)⏎END_DEF⏎PASO
 ^ DEF a=@word b=@word|@num $ | DEF @join:a:b | 2 | TS056 | applied | DEF PASO UNO⏎S⏎END_DEF => DEF PASO_UNO⏎S⏎END_DEF
+; call b=@def | ; $b | 1 | TS044 | applied | DEF SALTO;F(0.2, 60);END_DEF;CALL SALTO => DEF SALTO;F(0.2, 60);END_DEF;SALTO
 ^ call|do b=@def | $b | 1 | TS044 | applied | DEF SALTO;F(0.2, 60);END_DEF⏎hacer SALTO => DEF SALTO;F(0.2, 60);END_DEF⏎SALTO
 # ends of blocks
 ^ end @def $ | END_DEF | 1 | TS022 | applied | DEF SALTO⏎F(1, 50)⏎FIN SALTO⏎SALTO => DEF SALTO⏎F(1, 50)⏎END_DEF⏎SALTO

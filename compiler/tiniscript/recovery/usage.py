@@ -38,6 +38,7 @@ _MANY_BELOW = 6  # instructions that an example takes into a block
 _LONGEST = 120  # characters of a sentence that a message shows
 _MANY = 30  # diagnostics of which more is said
 _PAUSE = "W(2)"
+_UNIT_NAMES = {"s": "seconds", "%": "percent", "Hz": "hertz", "cm": "centimetres"}
 _OF_ENDS = (codes.NEVER_ENDS, codes.NOT_OPEN, codes.CALLS_ITSELF)
 _TAUGHT = ("SALTO", "PASO", "BAILE", "JUMP", "STEP", "DANCE")  # by the poster and the lessons
 _NO_NAMES = ("RETURN", "CONTINUE", "CONTINUA", "HOLA", "HELLO", "IDEM", "ETC", "NULL")
@@ -55,7 +56,12 @@ def with_usage(found: Sequence[Diagnostic], source: Source, kit: Kit) -> list[Di
     is_near = bool(teller.unopened) and teller.unopened in near
     late = [each for each in told if each.code is codes.NOT_OPEN and each.values.get("line")]
     has_no_ends = is_near or late or any(it.code in (codes.BRACES, codes.DOTS) for it in told)
-    kept = [*told, *found[_MANY:]]
+    reserved = {each.values["word"] for each in told if each.code is codes.RESERVED}
+    kept = [
+        each
+        for each in (*told, *found[_MANY:])
+        if each.code is not codes.NO_VALUE or each.values.get("word") not in reserved
+    ]
     return [each for each in kept if each in late or not (has_no_ends and each.code in _OF_ENDS)]
 
 
@@ -252,6 +258,8 @@ class _Usage:
     def brackets(self, found: Diagnostic) -> Diagnostic:
         """A word without its values; alone it gets an example of them."""
         piece, word = self.piece(found.span), found.values["word"]
+        if word == "WHEN" and any(self.is_button(each.text) for each in self.tokens(piece)):
+            return Diagnostic(codes.NO_BUTTON, found.span)
         said = self.orders(found, piece, word) if found.span.start == piece.start else None
         if said and said.code is codes.SEVERAL_ORDERS:
             return said
@@ -293,14 +301,14 @@ class _Usage:
         word = WORDS.get(self.command(tokens[0].text)) if tokens else None
         signs = [each.text for each in tokens]
         own = tokens[: signs.index(")") if ")" in signs else len(tokens)]
-        for number, unit in pairwise(own):
+        for k, (number, unit) in enumerate(pairwise(own)):
             said = UNITS.get(unit.text, ("",))[0] if number.kind is NUMBER else ""
             if word is None or word.role not in ("move", "wait", "beep") or not said:
                 continue
             if said not in [each.unit for each in word.arguments]:
-                its = word.arguments[0]
-                values = {"word": word.text, "name": its.name, "wanted": its.unit, "unit": said}
-                values |= {"wanted": "seconds", "usage": word.usage}
+                its = word.arguments[min(signs[:k].count(","), len(word.arguments) - 1)]
+                values = {"word": word.text, "name": its.name, "usage": word.usage}
+                values |= {"wanted": _UNIT_NAMES[its.unit], "unit": _UNIT_NAMES.get(said, said)}
                 return Diagnostic(codes.OTHER_UNIT, found.span, values)
         return None
 
@@ -314,6 +322,8 @@ class _Usage:
         """`SI` in the midst of a program begins a question, or the program once more."""
         text, (_, end) = self.source.text, found.span
         word = self.source[found.span].upper()
+        if word == "CHECK_CONNECTION":
+            return Diagnostic(codes.PING_ALONE, found.span)
         if word == "PING":
             return Diagnostic(codes.SETUP_NEEDS_BAR, found.span, {"found": word, "fix": "PING|"})
         piece = self.piece(found.span)

@@ -8,7 +8,6 @@ from collections.abc import Sequence
 from tiniscript.recovery.concepts import Lexeme, plain
 from tiniscript.syntax.lexer import NUMBER, WORD
 from tiniscript.syntax.operators import COMPARISONS
-from tiniscript.words import WORDS
 
 _CLOSED_UP = frozenset(",);|")  # no space stands before them
 
@@ -18,7 +17,7 @@ def laid_out(tokens: Sequence[Lexeme]) -> str:
     out, before, before_that = "", "", ""
     for token in tokens:
         text = token.text
-        is_call = text == "(" and before in WORDS and before not in ("AND", "OR", "NOT")
+        is_call = text == "(" and before[:1].isalpha() and before not in ("AND", "OR", "NOT")
         is_sign_of_number = before == "-" and (before_that in ("(", ",", "=", *COMPARISONS))
         is_closed_up = text in _CLOSED_UP or before in ("", "(", ";", "|")
         if not (is_closed_up or is_call or is_sign_of_number):
