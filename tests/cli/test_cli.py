@@ -159,7 +159,7 @@ def test_check_json(tsc: Tsc) -> None:
                           "message", "fix"}  # fmt: skip
     place = {key: first[key] for key in ("line", "column", "end_line", "end_column")}
     assert place == {"line": 2, "column": 3, "end_line": 2, "end_column": 4}
-    assert (second["line"], second["column"], second["severity"]) == (2, 10, "mistake")
+    assert (second["line"], second["column"], second["severity"]) == (2, 13, "mistake")
     assert "1.5, 80" in second["fix"]
     assert json.loads(tsc("check", "--json", "-e", PROGRAM).out) == []
 

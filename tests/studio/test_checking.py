@@ -49,7 +49,7 @@ def test_a_program_that_is_too_large_for_the_robot_is_wrong() -> None:
 def test_the_first_value_of_a_variable_is_offered_in_place_of_its_declaration() -> None:
     program = "var vel\nF(2, 80)"
     (finding,) = checking.check(program.encode(), "tinibot", "en").findings
-    assert changed_by(program, finding.repair) == "VEL = 0\nF(2, 80)"
+    assert changed_by(program, finding.repair) == "vel = 0\nF(2, 80)"
 
 
 def test_a_line_with_a_checksum_is_not_repaired() -> None:

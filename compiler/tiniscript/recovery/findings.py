@@ -125,7 +125,7 @@ def _meant(
     if len(text) > LONGEST or "~" in text or is_begun_otherwise:
         return []
     if "\r" in text:  # each line ends with one alone
-        shown = Source(text.replace("\r", "\n"), source.name)
+        shown = Source(source.text.replace("\r", "\n"), source.name)
         read = _meant(shown, found, check, kit, is_sure)
         return [_with_line_ends(each, source.text) for each in read]
 

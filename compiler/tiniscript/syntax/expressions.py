@@ -230,7 +230,7 @@ class ExpressionParser:
             word = word.split(";")[-1].split("|")[-1].strip().upper()
             usage = WORDS[word].usage if word in WORDS else ""
             self.reporter.fail(codes.MISSING_COMMA, token.span, usage=usage)
-        self.reporter.fail(codes.MISSING_CLOSE, bracket.span, last=before.text)
+        self.reporter.fail(codes.MISSING_CLOSE, bracket.span, before=before.text)
 
 
 def odd(token: Token) -> tuple[codes.Code, Span]:
