@@ -19,7 +19,7 @@ from tests.support.casefile import ROOT
 from tests.support.command import Done, Tsc
 from tests.support.waiting import until
 from tiniscript.bytecode.loading import loaded
-from tiniscript.bytecode.opcodes import FIRMWARE_OPS
+from tiniscript.bytecode.opcodes import AVR_OPS
 from tiniscript.conformance.kit import MachineCase, machine_cases
 from tiniscript.conformance.link_kit import link_kit
 from tiniscript.conformance.machine_process import MachineProcess, Problem
@@ -63,7 +63,7 @@ def test_the_machine_in_javascript_passes_all(tsc: Tsc) -> None:
     assert done.code == 0, done.out
     count = len(machine_cases())
     assert count > 500
-    assert done.out == f"{count} of {count} cases agree. Kit 2, bytecode 2.0.\n"
+    assert done.out == f"{count} of {count} cases agree. Kit 2, bytecode 2.1.\n"
 
 
 # A file, what it says, what it says then, and a case that must be named.
@@ -139,7 +139,7 @@ def test_each_instruction_runs() -> None:
             robot.now_ms = max(runs.wake_ms, robot.now_ms)
             if status in (DONE, FAULT) or robot.now_ms > case.until_ms:
                 break
-    assert [op.name for op in FIRMWARE_OPS if op.code not in seen] == []
+    assert [op.name for op in AVR_OPS if op.code not in seen] == []
 
 
 def kit_of(case: MachineCase) -> Kit:
@@ -174,7 +174,7 @@ def test_names_are_unique_and_each_refusal_is_there() -> None:
     cases = machine_cases()
     assert len({case.name for case in cases}) == len(cases)
     refused = {case.answer[-1].split()[1] for case in cases if "REFUSED" in case.answer[-1]}
-    # an image says the first one as BAD_HEADER, and the kit is of 2.0, which has no tasks
+    # an image says the first one as BAD_HEADER, and no case of the kit has tasks
     assert refused == {*REFUSALS, *RULES} - {"CODE_LENGTH", "TOO_MANY_TASKS"}
 
 

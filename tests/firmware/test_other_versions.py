@@ -91,7 +91,7 @@ def test_one_of_this_version_before_it_counts() -> None:
     mine = bytes_of("SB|F(0.1, 60)")
     robot, session = met(kept((FIRST, 3, mine), (SECOND, 4, OLD)))
     assert saved(robot, session) == "STORED"
-    later = sealed(mine[:3] + b"\1" + mine[4:])  # of a later minor version
+    later = sealed(mine[:3] + b"\2" + mine[4:])  # of a later minor version
     robot, session = met(kept((FIRST, 3, later), (SECOND, 2, OLD)))
     assert saved(robot, session) == "OTHER_VERSION"
 

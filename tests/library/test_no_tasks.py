@@ -1,4 +1,4 @@
-"""Programs with tasks that leave for a robot that has none: refused in words, and not sent."""
+"""Programs with tasks that leave for a robot: one that has none refuses them in words."""
 
 from __future__ import annotations
 
@@ -35,11 +35,14 @@ def says_so(done: Done, language: str = "en") -> bool:
     return done.code == 1 and WORDS[language] in said and "tsc run" in said
 
 
-def test_the_machine_in_c_has_what_some_chip_has() -> None:
-    union = 0
-    for chip in CHIPS.values():
-        union |= chip.has
-    assert union == image.FIRMWARE.needs
+def test_the_chips_without_tasks_are_those_of_the_machine_in_assembly() -> None:
+    assert {name: chip.has for name, chip in CHIPS.items()} == {
+        "uno": 0,
+        "nano": 0,
+        "mega": 0,
+        "esp32dev": image.TASKS,
+        "esp32c3": image.TASKS,
+    }
 
 
 @pytest.mark.parametrize("language", ["en", "es"])
@@ -88,6 +91,25 @@ def test_the_library_sends_none() -> None:
                     assert "tsc run" in str(refused.value)
         robot.upload("SHOW(2)")  # nothing has come of the others
         assert [each.values for each in robot.events() if each.name == "SHOW"] == [{"value": 2}]
+
+
+@needs_wasmtime
+@pytest.mark.parametrize("sent", ["upload", "live"])
+def test_an_esp32_runs_them(sent: str) -> None:
+    """A stop ends all tasks; and the robot has the image that the compiler makes."""
+    text = "SHOW(7);TASK;SHOW(8);F(FOREVER, 60);END_TASK;WHEN(FALSE);END_WHEN"
+    with tiniscript.virtual_robot("tinibot32", hurry=math.inf) as robot:
+        receipt = getattr(robot, sent)(text)
+        assert receipt.checksum == tiniscript.compile(text, "tinibot32").checksum
+        shown = []
+        for each in robot.events(timeout=60):
+            shown += [each.values["value"]] if each.name == "SHOW" else []
+            if shown == [7, 8]:
+                robot.stop()
+        assert (shown, robot.wait().name) == ([7, 8], "STOPPED")
+        getattr(robot, sent)("W(0.1);SHOW(1 / (TIME - TIME));WHEN(TRUE);S;END_WHEN")
+        fault = robot.wait().fault
+        assert fault is not None and (fault.name, fault.column) == ("DIVIDE_BY_ZERO", 8)
 
 
 @pytest.mark.parametrize("language", ["en", "es"])

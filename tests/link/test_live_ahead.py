@@ -14,7 +14,7 @@ from tests.link.test_link_channel import damaged
 from tests.machines.link import CppLink, cpp_link, missing
 from tiniscript import compile_text, robots
 from tiniscript.bytecode.image import unpack
-from tiniscript.bytecode.opcodes import FIRMWARE_MINOR, ISA_MAJOR
+from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
 from tiniscript.link import messages
 from tiniscript.link.frames import Frame, encoded
 
@@ -35,9 +35,7 @@ def greeted(epoch: int = EPOCH) -> CppLink:
     """Return a robot in a session."""
     robot = cpp_link()
     robot.begin(epoch=epoch)
-    payload = struct.pack(
-        "<BBBBHI", messages.MAJOR, 0, ISA_MAJOR, FIRMWARE_MINOR, KIT.fingerprint, 7
-    )
+    payload = struct.pack("<BBBBHI", messages.MAJOR, 0, ISA_MAJOR, ISA_MINOR, KIT.fingerprint, 7)
     assert robot.step(0, encoded(Frame(HELLO, 1, 0, payload))).sent
     return robot
 

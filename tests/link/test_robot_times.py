@@ -8,7 +8,7 @@ import pytest
 
 from tests.machines.link import CppLink, cpp_link, missing
 from tests.support.link_cases import KIT, items_of
-from tiniscript.bytecode.opcodes import FIRMWARE_MINOR, ISA_MAJOR
+from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
 from tiniscript.link import messages
 from tiniscript.link.frames import Frame, decoded, encoded
 from tiniscript.link.messages import (
@@ -30,7 +30,7 @@ def cpp_items(stream: list[tuple[int, int]]) -> list[str]:
 def robot_with_session() -> CppLink:
     cpp = cpp_link()
     cpp.begin(kit=KIT)
-    hello = {"major": 1, "minor": 0, "isa_major": ISA_MAJOR, "isa_minor": FIRMWARE_MINOR,
+    hello = {"major": 1, "minor": 0, "isa_major": ISA_MAJOR, "isa_minor": ISA_MINOR,
              "kit": KIT, "nonce": 3}  # fmt: skip
     cpp.step(0, encoded(Frame(1, 1, 0, messages.written(BY_NAME["HELLO"].request, hello))))
     return cpp

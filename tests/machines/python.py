@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from tests.machines.host import Ran
-from tiniscript.bytecode.image import PYTHON, Version
+from tiniscript.bytecode.image import TASKS
 from tiniscript.bytecode.loading import loaded
 from tiniscript.kit import Kit
 from tiniscript.vm.trace import Ending, run
@@ -15,9 +15,9 @@ if TYPE_CHECKING:
     from tests.machines import Senses
 
 
-def ran_python(image: bytes, kit: Kit, senses: Senses, machine: Version = PYTHON) -> Ran:
-    """Run an image, which is read and verified as a machine of that version does it."""
-    code = loaded(image, kit, machine).code
+def ran_python(image: bytes, kit: Kit, senses: Senses, has: int = TASKS) -> Ran:
+    """Run an image, which is read and verified as a machine that has so much of `needs` does it."""
+    code = loaded(image, kit, has).code
     events = run(code, kit, lists_of(kit, senses), senses.max_ms, senses.max_steps, senses.seed)
     *lines, ending = events
     assert isinstance(ending, Ending)

@@ -26,12 +26,14 @@ def lines(simulation: Simulation) -> list[str]:
     return trace(events)
 
 
-def begun(text: str, at: Iterable[int] = (), is_held: bool = False) -> Simulation:
+def begun(
+    text: str, at: Iterable[int] = (), is_held: bool = False, robot: str = "tinibot"
+) -> Simulation:
     """Return a simulation of a program with breakpoints in front of those parts of its text."""
-    found = check(text.encode(), "tinibot", "en")
+    found = check(text.encode(), robot, "en")
     parts = tuple(place.offset for place in found.places)
     marks = Marks(parts, tuple(parts[k] for k in at), len(found.variables), is_held)
-    return Simulation("tinibot", worlds.load("obstacles"), found.image, marks)
+    return Simulation(robot, worlds.load("obstacles"), found.image, marks)
 
 
 def test_a_run_is_that_of_the_command() -> None:
@@ -72,6 +74,34 @@ def test_it_is_told_which_part_of_the_text_runs() -> None:
     simulation.step(5000)
     simulation.step(5000)
     assert simulation.state()["at"] is None and not simulation.state()["is_running"]
+
+
+TASKS = """\
+F(FOREVER, 60)
+WHEN(TIME > 0.2 AND TIME < 0.25)
+  B(0.1, 60)
+END_WHEN
+TASK
+  LOOP(3)
+    SHOW(TIME)
+    W(0.15)
+  END_LOOP
+END_TASK
+"""
+
+
+@pytest.mark.parametrize("parts", [range(8), (2,), (4, 5)])
+def test_tasks_that_are_held_do_the_same_as_others(parts: Iterable[int]) -> None:
+    free, simulation = (begun(TASKS, at, robot="tinibot32") for at in ((), parts))
+    free.go(600)
+    held: set[int | None] = set()
+    while simulation.robot.now_ms < free.robot.now_ms:
+        held.add(simulation.held_at)
+        simulation.go_on()
+        simulation.go(1)
+    assert lines(simulation) == lines(free)
+    places = [place.offset for place in check(TASKS.encode(), "tinibot32", "en").places]
+    assert {places[k] for k in parts} <= held
 
 
 def test_a_stop_is_confirmed_and_the_motors_are_off() -> None:

@@ -13,7 +13,7 @@ from tests.support.cpp_edges import changed_code, kit_of
 from tests.support.kits import KITS
 from tests.support.random_codes import jump, simple
 from tiniscript import compile_text
-from tiniscript.bytecode.image import FIRMWARE, ImageRefused
+from tiniscript.bytecode.image import ImageRefused
 from tiniscript.bytecode.verify import Refused
 from tiniscript.kit import Kit
 
@@ -75,7 +75,7 @@ def _question(name: str, image: bytes, kit: Kit, senses: Senses) -> Iterator[Que
     if len(image) > MOST_BYTES:
         return
     try:
-        want = ran_python(image, kit, senses, FIRMWARE)
+        want = ran_python(image, kit, senses, has=0)
     except (Refused, ImageRefused):
         return  # what is refused does not run
     yield Question(name, b"R" + run_request(image, kit, senses), want, senses.max_ms)

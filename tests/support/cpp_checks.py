@@ -54,7 +54,7 @@ MAX_MS, MAX_STEPS = 3000, 300  # of the random codes that are accepted
 def python_verdict(
     code: bytes, sensors: int, actuators: int, has_tasks: bool = False
 ) -> tuple[int, int]:
-    """Return what Python says of code; without tasks, as in images of the firmware's version."""
+    """Return what Python says of code, in an image that may have tasks or has none."""
     try:
         verify(code, sensors, actuators, has_tasks)
     except Refused as refused:
@@ -63,13 +63,13 @@ def python_verdict(
 
 
 def compare_verdicts(
-    machine: Process, codes: Sequence[bytes], sensors: int, actuators: int
+    machine: Process, codes: Sequence[bytes], sensors: int, actuators: int, has_tasks: bool = False
 ) -> list[bytes]:
     """Assert that both machines say the same of each code; return those that are accepted."""
-    theirs = machine.verdicts(codes, sensors, actuators)
+    theirs = machine.verdicts(codes, sensors, actuators, has_tasks)
     accepted = []
     for code, (rule, offset) in zip(codes, theirs, strict=True):
-        ours = python_verdict(code, sensors, actuators)
+        ours = python_verdict(code, sensors, actuators, has_tasks)
         # the offset of what is accepted is its length
         said = (rule, offset if rule else 0)
         assert ours == said, f"{code.hex(' ')} for {sensors}, {actuators}: {ours}, not {said}"
@@ -99,7 +99,8 @@ def check_listing(machine: Host, case: Case) -> None:
     kit = robot_and_senses(case)[0].kit
     code = read_listing(case.parts["bytecode"])
     beginnings = [code[:length] for length in range(len(code) + 1)]
-    compare_verdicts(machine, beginnings, len(kit.sensors), len(kit.actuators))
+    for has_tasks in (False, True):
+        compare_verdicts(machine, beginnings, len(kit.sensors), len(kit.actuators), has_tasks)
 
 
 def check_length(machine: Host, length: int) -> None:
@@ -172,7 +173,7 @@ def check_codes(machine: Process, seed: int, count: int) -> Counter[str]:
 def check_a_batch(machine: Host, seed: int, count: int) -> None:
     """A batch of random codes breaks every rule and comes to every ending."""
     seen = check_codes(machine, seed, count)
-    others = ("CODE_LENGTH", "TOO_MANY_TASKS")  # the machine in C++ has no tasks
+    others = ("CODE_LENGTH", "TOO_MANY_TASKS")  # these codes have no tasks
     rules = {str(number) for name, (number, _) in RULES.items() if name not in others}
     assert rules <= set(seen), sorted(rules - set(seen))
     assert {"DONE", "LIMIT", "OVERFLOW", "DIVIDE_BY_ZERO"} <= set(seen), seen

@@ -110,7 +110,7 @@ class Firmware(Nobody):
     def __init__(self, baud: int = 9600, **values: int | bytes) -> None:
         super().__init__(baud)
         self.hello: dict[str, int | bytes] = {
-            "major": MAJOR, "minor": MINOR, "isa_major": 2, "isa_minor": 0, "largest": 63,
+            "major": MAJOR, "minor": MINOR, "isa_major": 2, "isa_minor": 1, "largest": 63,
             "window": 1, "kit": KIT, "id": 0x12347F3A, "nonce": 100, "features": 0,
             "reset": reset("POWER"), "room": 389, "state": state("IDLE"), "run": 0, "program": 0,
             "length": 0, "slot": 0, "saved": 0, "fault": 0, "fault_at": 0, "fault_program": 0,

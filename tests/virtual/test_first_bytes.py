@@ -14,7 +14,7 @@ from tests.support.virtual_robot import floor, missing, robot_in
 from tests.virtual.test_simulator import PING, until, visit
 from tiniscript import compile_text, robots
 from tiniscript.bytecode.image import unpack
-from tiniscript.bytecode.opcodes import FIRMWARE_MINOR, ISA_MAJOR
+from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
 from tiniscript.link.frames import Frame, decoded, encoded
 from tiniscript.link.messages import BY_NAME, MAJOR, MINOR, PAYLOAD_BYTES, RUN, written
 from tiniscript.link.session import Session
@@ -51,7 +51,7 @@ def program() -> bytes:
     A page has to guess the epoch that a robot will have; this one knows it.
     """
     kit = robots.load("tinibot").kit
-    versions = {"major": MAJOR, "minor": MINOR, "isa_major": ISA_MAJOR, "isa_minor": FIRMWARE_MINOR}
+    versions = {"major": MAJOR, "minor": MINOR, "isa_major": ISA_MAJOR, "isa_minor": ISA_MINOR}
     hello = b"\0" + frame("HELLO", **versions, kit=kit.fingerprint, nonce=9)
     said = robot_in(floor()).step(500, hello)
     epochs = {each.epoch for each in map(decoded, said.split(b"\0")) if each is not None}

@@ -6,11 +6,10 @@ import pytest
 
 from tests.machines import MACHINES, Machine, Senses
 from tests.support.casefile import Case, accept, all_cases
-from tests.support.images import has_tasks, image_for
+from tests.support.images import image_for
 from tests.support.rows import each_row
 from tiniscript import Compiled, compile_text, robots
 from tiniscript.bytecode.disassembly import listing, read_listing
-from tiniscript.bytecode.image import ImageRefused
 from tiniscript.bytecode.verify import Refused, verify
 from tiniscript.cli.options import decimal
 from tiniscript.diagnostics.rendering import as_text, message
@@ -19,7 +18,6 @@ from tiniscript.syntax.formatter import formatted
 from tiniscript.text.line import line_of, plain_code
 
 CASES = all_cases()
-WITH_TASKS = ("python",)  # the machines that have tasks; the others are of 2.0
 
 
 def robot_and_senses(case: Case) -> tuple[Robot, Senses]:
@@ -80,10 +78,6 @@ def test_program_compiles_or_its_mistake_is_stated(case: Case) -> None:
 @pytest.mark.parametrize("machine", MACHINES)
 @pytest.mark.parametrize("case", having("tiniscript", "robot"))
 def test_robot(case: Case, machine: str, request: pytest.FixtureRequest) -> None:
-    if machine not in WITH_TASKS and has_tasks(compiled(case).code):
-        with pytest.raises(ImageRefused, match="OTHER_VERSION"):
-            trace_of(case, MACHINES[machine])
-        return
     expect(case, "robot", trace_of(case, MACHINES[machine]), request)
 
 
@@ -126,11 +120,9 @@ def test_formatted(case: Case, request: pytest.FixtureRequest) -> None:
     expect(case, "formatted", formatted(compiled(case).source), request)
 
 
-def listings_alone(has_tasks_too: bool = True) -> list[pytest.ParameterSet]:
-    """Return the listings of no program; the machine in C++ has none with tasks."""
+def listings_alone() -> list[pytest.ParameterSet]:
+    """Return the listings of no program."""
     alone = [case for case in CASES if "tiniscript" not in case.parts and "bytecode" in case.parts]
-    if not has_tasks_too:
-        alone = [case for case in alone if not has_tasks(read_listing(case.parts["bytecode"]))]
     return [pytest.param(case, id=case.id) for case in alone]
 
 

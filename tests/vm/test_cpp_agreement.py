@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import argparse
 import os
+import random
 import time
 from collections import Counter
 
@@ -15,7 +16,7 @@ import pytest
 
 from tests.machines import MACHINES
 from tests.machines.host import host, missing
-from tests.support import cpp_checks, cpp_edges, cpp_images
+from tests.support import cpp_checks, cpp_edges, cpp_images, cpp_tasks
 from tests.support.casefile import Case
 from tests.support.rows import each_row
 from tests.vm.test_cases import listings_alone
@@ -158,6 +159,48 @@ def test_weeks_may_pass_between_two_ticks() -> None:
 @needs_host
 def test_a_robot_that_is_not_ready_is_asked_again() -> None:
     cpp_checks.check_not_ready(host())
+
+
+# -- tasks --------------------------------------------------------------------------------------
+
+
+@needs_host
+@pytest.mark.parametrize("seed", range(2))
+def test_random_codes_with_tasks(seed: int) -> None:
+    cpp_tasks.check_task_codes(host(), seed, 5000)
+
+
+@needs_host
+@pytest.mark.sampled("first", keep=3)
+@pytest.mark.parametrize("first", range(0, 2000, 250))
+def test_random_programs_with_tasks(first: int) -> None:
+    cpp_tasks.check_task_programs(host(), first, 250)
+
+
+@needs_host
+@pytest.mark.parametrize("begin_ms", [2**31 - 100, 2**32 - 100])
+def test_the_clock_of_tasks_may_wrap_around(begin_ms: int) -> None:
+    cpp_tasks.check_task_clock(host(), begin_ms)
+
+
+@needs_host
+@pytest.mark.parametrize("late_ms", [1, 20, 21, 100])
+def test_turns_may_come_late(late_ms: int) -> None:
+    cpp_tasks.check_late_tasks(host(), lambda rng: [rng.randint(0, late_ms) for _ in range(80)])
+
+
+@needs_host
+def test_weeks_may_pass_between_two_turns() -> None:
+    def late(rng: random.Random) -> list[int]:
+        return [rng.choice((0, 7, 30, rng.randrange(2**31 - 10**6))) for _ in range(80)]
+
+    cpp_tasks.check_late_tasks(host(), late)
+
+
+@needs_host
+@pytest.mark.parametrize("not_ready", [2, 3])
+def test_a_task_whose_reading_is_not_ready_lets_the_others_go_on(not_ready: int) -> None:
+    cpp_tasks.check_slow_tasks(host(), not_ready)
 
 
 # -- images and arithmetic ----------------------------------------------------------------------

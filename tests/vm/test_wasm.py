@@ -17,14 +17,14 @@ from tests.project.test_directions import imported_by
 from tests.support.casefile import ROOT, Case
 from tests.support.command import Tsc
 from tests.support.cpp_checks import check_round, run_late
-from tests.support.images import has_tasks, image_for
+from tests.support.images import image_for
 from tests.support.kits import KITS
 from tests.support.rows import each_row
-from tests.vm.test_cases import compiled, having, listings_alone, robot_and_senses
+from tests.vm.test_cases import having, listings_alone, robot_and_senses
 from tiniscript import compile_text, robots
 from tiniscript.bytecode.disassembly import read_listing
 from tiniscript.bytecode.image import Image, ImageRefused, unpack
-from tiniscript.bytecode.opcodes import FIRMWARE_MINOR, ISA_MAJOR
+from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
 from tiniscript.bytecode.verify import Refused, verify
 from tiniscript.cli.commands import run
 from tiniscript.kit import Kit
@@ -135,12 +135,7 @@ def test_run_says_the_same(case: Case, tsc: Tsc) -> None:
             options += [f"--{name}", values]
         elif name != "robot":
             options += ["--sensor", f"{name}={values}"]
-    text = case.parts["tiniscript"].removesuffix("\n")
-    if has_tasks(compiled(case).code):
-        refused = tsc("run", "--machine", "cpp", "-e", text, *options)
-        assert (refused.code, refused.out, "TASK" in refused.err) == (2, "", True)
-        return
-    code, out, _ = both(tsc, "-e", text, *options)
+    code, out, _ = both(tsc, "-e", case.parts["tiniscript"].removesuffix("\n"), *options)
     assert out == case.parts["robot"]
     assert code == (" FAULT " in out)
 
@@ -219,7 +214,7 @@ def test_python_runs_without_wasmtime() -> None:
 
 
 @needs_wasmtime
-@each_row("case", listings_alone(has_tasks_too=False))
+@each_row("case", listings_alone())
 def test_verdict_of_a_listing(case: Case) -> None:
     from tiniscript.vm.wasm import WasmImage
 
@@ -260,7 +255,7 @@ def test_refused_images() -> None:
 
 @needs_wasmtime
 def test_two_verdicts_are_our_mistake() -> None:
-    bad = Image("SI", 0, b"\xff", 0, (ISA_MAJOR, FIRMWARE_MINOR))
+    bad = Image("SI", 0, b"\xff", 0, (ISA_MAJOR, ISA_MINOR))
     with pytest.raises(AssertionError, match="refuses what Python accepts: UNKNOWN_OPCODE"):
         run._cpp_machine(bad, robots.load("tinibot"))
 

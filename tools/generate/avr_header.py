@@ -46,7 +46,7 @@ def handler(code: int) -> str:
     comparator, of a way to drive, of a number in the code.
     """
     op = opcodes.BY_CODE[code]
-    if op is None or op not in opcodes.FIRMWARE_OPS:
+    if op is None or op not in opcodes.AVR_OPS:
         return "op_none"
     base, _, last = op.name.rpartition("_")
     if op.implied is not None:
@@ -64,7 +64,7 @@ def note(code: int) -> str:
 def comparator_bits() -> int:
     """Return the mask of the comparator in the code of an instruction that compares."""
     bits = 7
-    for op in opcodes.FIRMWARE_OPS:
+    for op in opcodes.AVR_OPS:
         base, _, last = op.name.rpartition("_")
         assert not base or comparators().get(last, op.code & bits) == op.code & bits, op.name
     return bits

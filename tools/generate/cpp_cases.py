@@ -22,7 +22,7 @@ from tests.vm.test_cases import compiled, robot_and_senses
 from tiniscript import fixed_point, robots
 from tiniscript.bytecode.disassembly import read_listing
 from tiniscript.bytecode.image import pack
-from tiniscript.bytecode.opcodes import BY_NAME, FIRMWARE_OPS, SHORTS, Op
+from tiniscript.bytecode.opcodes import AVR_OPS, BY_NAME, SHORTS, Op
 from tiniscript.bytecode.verify import verify
 from tiniscript.kit import NUMBER, Device, Kit
 from tiniscript.vm.machine import Machine
@@ -195,7 +195,7 @@ def program_row(case: Case) -> str:
 
 def instruction_rows(kit: Kit) -> Iterator[str]:
     """Return each instruction with the values that show what it does."""
-    for op in FIRMWARE_OPS:
+    for op in AVR_OPS:
         for pushed, near in tries(op):
             parts = [*before(op, near), *pushed]
             code = b"".join(parts) + tried(op) + bytes([BY_NAME["STOP"].code]) * 3

@@ -14,6 +14,8 @@ from tiniscript.bytecode import image, opcodes, verify
 from tiniscript.kit import DEVICES, DEVICES_POLYNOMIAL
 
 HEADER_GUARD = "TINISCRIPT_VM_BYTECODE_H_"
+HAS_TASKS = "tiniscript_has_tasks"
+TASK_OPS = tuple(op for op in opcodes.OPS if op not in opcodes.AVR_OPS)
 
 # What a verifier distinguishes in the first two bytes of operands; devices come last.
 BYTES = ("any", "power", "percent", "variable", "count", "sensor", "actuator")
@@ -43,11 +45,16 @@ def header(command: str) -> str:
         "\n"
         '#include "flash.h"\n'
         "\n"
+        "// The machine in assembly has no tasks, nor have virtual robots like one.\n"
+        "#if !defined(__AVR__) && !defined(tiniscript_no_tasks)\n"
+        f"#define {HAS_TASKS}\n"
+        "#endif\n"
+        "\n"
         "// clang-format off\n"
         "\n"
         "namespace tiniscript {\n",
         "// A machine runs images of its own major version, and of its own minor version or less.\n"
-        + constants(("kIsaMajor", opcodes.ISA_MAJOR), ("kIsaMinor", opcodes.FIRMWARE_MINOR)),
+        + constants(("kIsaMajor", opcodes.ISA_MAJOR), ("kIsaMinor", opcodes.ISA_MINOR)),
         "// Limits, the same on every machine.\n"
         + constants(
             ("kCodeBytes", opcodes.CODE_BYTES),
@@ -56,6 +63,7 @@ def header(command: str) -> str:
             ("kCounters", opcodes.COUNTERS),
             ("kCalls", opcodes.CALLS),
             ("kDefs", opcodes.DEFS),
+            ("kTasks", opcodes.TASKS),
             ("kNestWords", opcodes.NEST_WORDS),
             ("kJoins", opcodes.JOINS),
             ("kDevices", DEVICES),
@@ -68,12 +76,14 @@ def header(command: str) -> str:
         + constants(
             *fields,
             ("kHeaderBytes", image.HEADER_BYTES),
-            ("kNeeds", image.FIRMWARE.needs),
             ("kDevicesPolynomial", DEVICES_POLYNOMIAL),
             ("kStarts", len(image.STARTS)),
             ("kStartPing", image.STARTS.index("PING")),
         ),
-        enumeration("Op", [(op.name, op.code, op.picture) for op in opcodes.FIRMWARE_OPS]),
+        "// What this machine has of what an image needs.\n"
+        + only_with_tasks(constants(("kNeeds", image.TASKS)), constants(("kNeeds", 0)))
+        + "constexpr bool kHasTasks = kNeeds != 0;\n",
+        enumeration("Op", [(op.name, op.code, op.picture) for op in in_order()]),
         "// Why bytes are no image for this machine.\n"
         + enumeration("Refusal", [("NONE", 0, "It is one."), *refusals]),
         "// Which rule code breaks.\n"
@@ -85,7 +95,7 @@ def header(command: str) -> str:
             "Role",
             [
                 ("none", 0, "a byte that begins no instruction"),
-                *((role, k, what) for k, (role, what) in enumerate(firmware_roles().items(), 1)),
+                *((role, k, what) for k, (role, what) in enumerate(opcodes.ROLES.items(), 1)),
             ],
         ),
         "// What a byte of operands is.\n"
@@ -115,6 +125,11 @@ def enumeration(name: str, rows: Sequence[tuple[str, int, str]]) -> str:
         comment = f"  // {what}" if what else ""
         lines.append(f"  k{camel(label)} = {number},{comment}".rstrip() + "\n")
     return f"enum class {name} : uint8_t {{\n{''.join(lines)}}};\n"
+
+
+def only_with_tasks(text: str, other: str = "") -> str:
+    otherwise = f"#else\n{other}" if other else ""
+    return f"#ifdef {HAS_TASKS}\n{text}{otherwise}#endif\n"
 
 
 class Shape(NamedTuple):
@@ -157,15 +172,14 @@ def shape_of(op: opcodes.Op) -> Shape:
 def shapes() -> dict[Shape, list[opcodes.Op]]:
     """Return the opcodes of each shape; the first one is that of what is no opcode."""
     rows: dict[Shape, list[opcodes.Op]] = {NONE: []}
-    for op in opcodes.FIRMWARE_OPS:
+    for op in in_order():
         rows.setdefault(shape_of(op), []).append(op)
     return rows
 
 
-def firmware_roles() -> dict[str, str]:
-    """Return the roles of the instructions that the machine in C++ runs."""
-    used = {op.role for op in opcodes.FIRMWARE_OPS}
-    return {role: what for role, what in opcodes.ROLES.items() if role in used}
+def in_order() -> tuple[opcodes.Op, ...]:
+    """Return all instructions, those of tasks last: some machines do without them."""
+    return opcodes.AVR_OPS + TASK_OPS
 
 
 def families() -> list[str]:
@@ -176,7 +190,7 @@ def form_numbers() -> str:
     """Return the families and what is declared of the tables, for the header."""
     named = []
     for number, family in enumerate(families()):
-        same = [op for op in opcodes.FIRMWARE_OPS if op.family == family]
+        same = [op for op in opcodes.OPS if op.family == family]
         named.append((family, number, names(same) if len(same) > 1 else ""))
     return "\n".join(
         (
@@ -203,7 +217,12 @@ def tables(command: str) -> str:
     numbers = {op.code: number for number, same in enumerate(rows.values()) for op in same}
     numbered = [numbers.get(code, 0) for code in range(256)]
     assert numbered[FIRST_TWIN::2] == numbered[FIRST_TWIN + 1 :: 2]
-    entries = numbered[:FIRST_TWIN] + numbered[FIRST_TWIN::2]
+    entries = [f"0x{each:02x}" for each in numbered[:FIRST_TWIN] + numbered[FIRST_TWIN::2]]
+    for op in TASK_OPS:
+        assert op.code < FIRST_TWIN
+        entries[op.code] = f"tini_task({entries[op.code]})"
+    with_tasks = {shape_of(op) for op in TASK_OPS}
+    assert list(rows)[-len(with_tasks) :] == [each for each in rows if each in with_tasks]
     kinds = {byte_of(kind): kind for kind in opcodes.OPERAND_KINDS.values() if kind.size == 1}
     ranges = [(0, 255) if name == "any" else (kinds[name].low, kinds[name].high) for name in BYTES]
     return "\n".join(
@@ -211,18 +230,23 @@ def tables(command: str) -> str:
             f"// Generated by {command} from the tables in compiler/tiniscript. Do not edit.\n",
             '#include "bytecode.h"\n',
             "// clang-format off\n",
+            only_with_tasks("#define tini_task(shape) shape\n", "#define tini_task(shape) 0\n"),
             "namespace tiniscript {\n",
             array(
                 "kShapeOf[]",
                 (
                     (
-                        ", ".join(f"0x{each:02x}" for each in entries[at : at + 16]),
+                        ", ".join(entries[at : at + 16]),
                         f"{at if at < FIRST_TWIN else 2 * at - FIRST_TWIN:02x}",
                     )
                     for at in range(0, len(entries), 16)
                 ),
             ),
-            array("kShapes[][3]", ((packed(shape), names(same)) for shape, same in rows.items())),
+            array(
+                "kShapes[][3]",
+                ((packed(shape), names(same)) for shape, same in rows.items()),
+                tasks=len(with_tasks),
+            ),
             array(
                 "kOperands[]",
                 ((f"0x{number:02x}", ", ".join(kinds)) for number, kinds in operands().items()),
@@ -239,10 +263,12 @@ def tables(command: str) -> str:
     )
 
 
-def array(name: str, rows: Iterable[tuple[str, str]]) -> str:
-    """Return a table; the second of each row is a comment."""
-    lines = "".join(f"    {row},  // {comment or '--'}\n" for row, comment in rows)
-    return f"const uint8_t {name} tini_progmem = {{\n{lines}}};\n"
+def array(name: str, rows: Iterable[tuple[str, str]], tasks: int = 0) -> str:
+    """Return a table; the second of each row is a comment. The last `tasks` rows are for tasks."""
+    lines = [f"    {row},  // {comment or '--'}\n" for row, comment in rows]
+    if tasks:
+        lines[-tasks:] = [only_with_tasks("".join(lines[-tasks:]))]
+    return f"const uint8_t {name} tini_progmem = {{\n{''.join(lines)}}};\n"
 
 
 def names(same: Sequence[opcodes.Op]) -> str:
@@ -250,7 +276,7 @@ def names(same: Sequence[opcodes.Op]) -> str:
 
 
 def packed(shape: Shape) -> str:
-    roles = ("none", *firmware_roles())
+    roles = ("none", *opcodes.ROLES)
     assert shape.size < 8 and shape.pops < 4 and shape.pushes < 2 and roles.index(shape.role) < 32
     effects = shape.pops << 6 | shape.pushes << 5 | roles.index(shape.role)
     size = shape.size | FAR_BIT * shape.is_far | BACK_BIT * shape.is_back

@@ -22,7 +22,7 @@ from tiniscript import robots
 from tiniscript.bytecode.disassembly import read_listing
 from tiniscript.bytecode.image import ImageRefused, pack, sealed
 from tiniscript.bytecode.loading import loaded
-from tiniscript.bytecode.opcodes import BY_NAME, FIRMWARE_MINOR, ISA_MAJOR, ISA_MINOR, SHORTS, Op
+from tiniscript.bytecode.opcodes import BY_NAME, ISA_MAJOR, ISA_MINOR, SHORTS, Op
 from tiniscript.bytecode.verify import Refused
 from tiniscript.conformance.kit import FORM, VERSION
 from tiniscript.kit import DEVICES, NUMBER, YES_NO, Device, Kit
@@ -72,7 +72,7 @@ def machine_kit(command: str) -> str:
         "form": FORM,
         "version": VERSION,
         "made_by": command,
-        "isa": [ISA_MAJOR, FIRMWARE_MINOR],
+        "isa": [ISA_MAJOR, ISA_MINOR],
         "kits": [[line.removesuffix("\n") for line in kit.lines()] for kit in kits],
     }
     start = json.dumps(head, ensure_ascii=False, indent=1).removesuffix("\n}")

@@ -104,7 +104,7 @@ TEST_CASE("an image is refused with the first reason that applies") {
         Refusal::kOtherVersion);
   CHECK(refusal(image_with([](Bytes* image) { (*image)[kStartAt] = kStarts; })) ==
         Refusal::kUnknownStart);
-  CHECK(refusal(image_with([](Bytes* image) { (*image)[kNeedsAt] = 1; })) ==
+  CHECK(refusal(image_with([](Bytes* image) { (*image)[kNeedsAt] = 2; })) ==
         Refusal::kUnknownNeeds);
   CHECK(refusal(image_with([](Bytes* image) { (*image)[kHeaderLengthAt]--; })) ==
         Refusal::kBadHeader);

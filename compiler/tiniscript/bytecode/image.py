@@ -12,14 +12,7 @@ from struct import pack as struct_pack
 from struct import unpack as struct_unpack
 from typing import NamedTuple
 
-from tiniscript.bytecode.opcodes import CODE_BYTES, FIRMWARE_MINOR, ISA_MAJOR, ISA_MINOR
-
-
-class Version(NamedTuple):
-    """What a machine runs: images up to this minor version, whose `needs` are among its own."""
-
-    isa_minor: int
-    needs: int
+from tiniscript.bytecode.opcodes import CODE_BYTES, ISA_MAJOR, ISA_MINOR
 
 
 class Field(NamedTuple):
@@ -33,8 +26,6 @@ class Field(NamedTuple):
 
 MAGIC = b"TS"
 TASKS = 0x01  # a bit of `needs`: the code has tasks
-PYTHON = Version(ISA_MINOR, TASKS)
-FIRMWARE = Version(FIRMWARE_MINOR, 0)  # the machine in C++
 STARTS = ("SI", "SB", "PING")
 
 # The first fields lie where they lay in version 1, so that whoever finds a stored program of any
@@ -133,18 +124,18 @@ def checksum(image: bytes) -> int:
     return int.from_bytes(image[_CHECKSUM_AT:_BEHIND_CHECKSUM], "little")
 
 
-def unpack(data: bytes, machine: Version = PYTHON) -> Image:
-    """Return the image in `data`, for a machine. Its code and its devices are not verified yet.
+def unpack(data: bytes, has: int = TASKS) -> Image:
+    """Return the image in `data`, whose code and devices are not verified yet.
 
-    Raises ImageRefused with the name of the reason.
+    `has` is what the machine has of `needs`. Raises ImageRefused with the name of the reason.
     """
     if data[: len(MAGIC)] != MAGIC[: len(data)] or not data:
         raise ImageRefused("NOT_AN_IMAGE")
     if len(data) < _VERSION_BYTES:
         raise ImageRefused("TRUNCATED")
     isa = data[2], data[3]
-    if isa[0] != ISA_MAJOR or isa[1] > machine.isa_minor:
-        theirs, ours = f"{isa[0]}.{isa[1]}", f"{ISA_MAJOR}.{machine.isa_minor}"
+    if isa[0] != ISA_MAJOR or isa[1] > ISA_MINOR:
+        theirs, ours = f"{isa[0]}.{isa[1]}", f"{ISA_MAJOR}.{ISA_MINOR}"
         raise ImageRefused("OTHER_VERSION", theirs=theirs, ours=ours)
     if len(data) < HEADER_BYTES:
         raise ImageRefused("TRUNCATED")
@@ -158,7 +149,7 @@ def unpack(data: bytes, machine: Version = PYTHON) -> Image:
         raise ImageRefused("TRAILING")
     if checksum(sealed(data)) != found:
         raise ImageRefused("DAMAGED")
-    if needs & ~machine.needs:
+    if needs & ~has:
         raise ImageRefused("UNKNOWN_NEEDS", found=f"{needs:02x}")
     if start >= len(STARTS):
         raise ImageRefused("UNKNOWN_START", found=str(start))

@@ -5,14 +5,17 @@ The three in this order, as every machine asks them. Knows no rule of its own.
 
 from __future__ import annotations
 
-from tiniscript.bytecode.image import PYTHON, Image, ImageRefused, Version, unpack
+from tiniscript.bytecode.image import TASKS, Image, ImageRefused, unpack
 from tiniscript.bytecode.verify import Verdict, verify
 from tiniscript.kit import Kit
 
 
-def loaded(data: bytes, kit: Kit, machine: Version = PYTHON) -> Image:
-    """Return the image in `data`, for a machine. Raises ImageRefused, or verify.Refused."""
-    image = unpack(data, machine)
+def loaded(data: bytes, kit: Kit, has: int = TASKS) -> Image:
+    """Return the image in `data`, for a machine that has so much of `needs`.
+
+    Raises ImageRefused, or verify.Refused.
+    """
+    image = unpack(data, has)
     check(image, kit)
     return image
 

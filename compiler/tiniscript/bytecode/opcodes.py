@@ -17,7 +17,6 @@ from typing import NamedTuple
 
 ISA_MAJOR = 2  # a machine runs images of its own major version,
 ISA_MINOR = 1  # and of its own minor version or an earlier one
-FIRMWARE_MINOR = 0  # that of the machine in C++, which runs no tasks yet
 ESCAPE = 0xFF  # kept for instructions of two bytes in a later minor version; none begins with it
 SHORTS = 8  # variables, sensors and actuators that instructions of one byte name
 
@@ -301,7 +300,7 @@ NEST_WORDS = 32  # what a verifier remembers of open blocks: a word for an IF, t
 JOINS = 16  # AND_THEN and OR_ELSE open at once
 CHECK_MS = 20  # between two checks of an UNTIL
 
-FIRMWARE_OPS = tuple(op for op in OPS if op.minor <= FIRMWARE_MINOR)
+AVR_OPS = tuple(op for op in OPS if not op.minor)  # the machine in assembly has no tasks
 BY_NAME = {op.name: op for op in OPS}
 BY_CODE: list[Op | None] = [None] * 256
 for _each in OPS:

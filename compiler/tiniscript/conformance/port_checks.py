@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import NamedTuple
 
 from tiniscript.bytecode.image import pack
-from tiniscript.bytecode.opcodes import FIRMWARE_MINOR, ISA_MAJOR
+from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
 from tiniscript.bytecode.verify import RULES
 from tiniscript.conformance.comparing import Verdict, compared
 from tiniscript.conformance.link_kit import LinkKit, LinkProgram
@@ -256,7 +256,7 @@ def _rest(answer: Answer, name: str) -> bytes:
 
 
 LINK_CHECKS = (
-    Check("link: HELLO", (f"link {MAJOR}", f"isa {ISA_MAJOR}.{FIRMWARE_MINOR}",
+    Check("link: HELLO", (f"link {MAJOR}", f"isa {ISA_MAJOR}.{ISA_MINOR}",
                           "frames of 63 bytes", "the same nonce again: the same session"), _hello),
     Check("link: PING", ("OK",), lambda robot: (said(robot.ask("PING")),)),
     Check("link: where a program is", _WHERE, _where),
@@ -310,10 +310,10 @@ def _incomplete(robot: WireRobot) -> tuple[str, ...]:
 
 IMAGE_CHECKS = (
     Check("images: FETCH brings back what was sent", ("the same image",), _fetched),
-    Check("images: another major version", (f"OTHER_MACHINE {ISA_MAJOR << 8 | FIRMWARE_MINOR}",),
+    Check("images: another major version", (f"OTHER_MACHINE {ISA_MAJOR << 8 | ISA_MINOR}",),
           _sent(_changed(2, ISA_MAJOR + 1))),
-    Check("images: a later minor version", (f"OTHER_MACHINE {ISA_MAJOR << 8 | FIRMWARE_MINOR}",),
-          _sent(_changed(3, FIRMWARE_MINOR + 1))),
+    Check("images: a later minor version", (f"OTHER_MACHINE {ISA_MAJOR << 8 | ISA_MINOR}",),
+          _sent(_changed(3, ISA_MINOR + 1))),
     Check("images: another checksum", ("DAMAGED",), _sent(_changed(HEADER, LONG[HEADER] ^ 1))),
     Check("images: a piece is missing", ("next 20", "INCOMPLETE 20"), _incomplete),
 )  # fmt: skip

@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from time import monotonic
 from typing import NamedTuple
 
-from tiniscript.bytecode.opcodes import FIRMWARE_MINOR, ISA_MAJOR
+from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
 from tiniscript.link.frames import Frame, decoded, encoded
 from tiniscript.link.messages import (
     BY_NAME,
@@ -79,7 +79,7 @@ class WireRobot:
 
     def hello(self, tries: int = TRIES) -> Answer:
         values = {"major": MAJOR, "minor": MINOR, "isa_major": ISA_MAJOR,
-                  "isa_minor": FIRMWARE_MINOR, "kit": 0, "nonce": self.nonce}  # fmt: skip
+                  "isa_minor": ISA_MINOR, "kit": 0, "nonce": self.nonce}  # fmt: skip
         return self.ask("HELLO", values, tries)
 
     def ask(

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
-from tiniscript.bytecode.opcodes import FIRMWARE_MINOR, ISA_MAJOR
+from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
 from tiniscript.doctor.findings import Finding, probably, sure
 from tiniscript.doctor.robot import Robot, values_of
 from tiniscript.link.messages import (
@@ -126,7 +126,7 @@ def _other_link(reply: Reply[SentReply]) -> Finding:
 
 def _versions(hello: HelloReply) -> list[Finding]:
     """Compare versions: what a newer robot has more does no harm."""
-    theirs, ours = (hello.isa_major, hello.isa_minor), (ISA_MAJOR, FIRMWARE_MINOR)
+    theirs, ours = (hello.isa_major, hello.isa_minor), (ISA_MAJOR, ISA_MINOR)
     is_newer = hello.isa_major > ISA_MAJOR or hello.major > MAJOR
     if not is_newer and theirs >= ours and (hello.major, hello.minor) >= (MAJOR, MINOR):
         return []

@@ -100,8 +100,6 @@ def run(
     if machine not in ("python", "cpp"):
         raise UsageError("bad_choice", language, {"found": printable(repr(machine))})
     machine_of: MachineOf | None = None
-    if machine == "cpp" and image.has_tasks:
-        raise UsageError("cpp_no_tasks", language)
     if machine == "cpp":
         try:
             machine_of = cpp_machine(image, profile)

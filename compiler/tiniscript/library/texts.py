@@ -59,8 +59,6 @@ TEXTS: dict[str, tuple[str, str]] = {
     "bad_choice": ("machine is python or cpp, not {found}.", "machine es python o cpp, no {found}."),
     "no_wasmtime": ("The C++ machine and the virtual robot need wasmtime:  {how}  ({why})",
                     "La máquina en C++ y el robot virtual necesitan wasmtime:  {how}  ({why})"),
-    "cpp_no_tasks": ("The C++ machine has no TASK and no WHEN yet. Leave out machine=\"cpp\" (--machine cpp): the one in Python runs them.",
-                     "La máquina en C++ todavía no tiene TASK ni WHEN. Quita machine=\"cpp\" (--machine cpp): la de Python los ejecuta."),
     "live_button": ("SB waits for the button, and a live line starts right away. Leave SB| out, or send it as a program, with upload.",
                     "SB espera el botón, y una línea en vivo empieza de inmediato. Quita SB|, o envíala como programa, con upload."),
     "ping_program": ("PING has no program to start. Ask with status().",

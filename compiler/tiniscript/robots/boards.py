@@ -97,6 +97,7 @@ _PWM_2560 = {
 # reset; 18 and 19 are its own USB, and 19 is pulled up until the firmware runs. So is 6, for JTAG.
 _ESP32 = _pins(0, 2, 4, 5, range(12, 20), 21, 22, 23, 25, 26, 27, 32, 33)
 _ESP32C3 = _pins(range(11), 18, 19)
+_TASKS = 1  # the bit of `needs`; the machine in assembly, that of an AVR, has none
 
 CHIPS = {
     chip.name: chip
@@ -156,6 +157,7 @@ CHIPS = {
             reset_pin=0,
             pwm_timers=8,
             pin_volts=3_300,
+            has=_TASKS,
         ),
         Chip(
             "esp32c3",
@@ -173,6 +175,7 @@ CHIPS = {
             reset_pin=9,
             pwm_timers=3,
             pin_volts=3_300,
+            has=_TASKS,
         ),
     )
 }

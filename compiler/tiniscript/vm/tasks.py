@@ -249,6 +249,8 @@ class TaskMachine(Machine):
         return self.wait(CHECK_MS, PAUSE, self.me.start)
 
     def show(self, value: int, is_yes_no: bool, after: int) -> int:
+        if self.is_first:  # before all others it waits for room
+            return super().show(value, is_yes_no, after)
         self.task.stack.pop()
         if self.robot.show(value, is_yes_no):
             return after

@@ -97,7 +97,8 @@ void answer_run(Request request, bool is_verified) {
     if (refusal != Refusal::kNone) return end("REFUSED", static_cast<uint8_t>(refusal), 0);
     uint16_t devices;
     const Verdict verdict =
-        verify(image.code, image.code_length, robot.sensor_count, robot.actuator_count, &devices);
+        verify(image.code, image.code_length, robot.sensor_count, robot.actuator_count, &devices,
+               image.has_tasks);
     if (verdict.rule != Rule::kNone) {
       return end("BREAKS", static_cast<uint8_t>(verdict.rule), verdict.offset);
     }

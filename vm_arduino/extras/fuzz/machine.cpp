@@ -82,7 +82,8 @@ int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   uint16_t devices;
   Image found;
   if (unpack(exact.data(), length, &found) != Refusal::kNone) return 0;
-  if (verify(found.code, found.code_length, sensors, actuators, &devices).rule != Rule::kNone) {
+  if (verify(found.code, found.code_length, sensors, actuators, &devices, found.has_tasks).rule !=
+      Rule::kNone) {
     return 0;
   }
   const bool is_its_kit = check_devices(found, devices) == Refusal::kNone;

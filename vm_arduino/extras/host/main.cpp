@@ -51,6 +51,7 @@ void run(const uint8_t* code, uint16_t length, const Limits& limits, Writer* ans
   const uint8_t sensors = static_cast<uint8_t>(robot.sensors.size());
   int32_t readings[kDevices] = {};
   machine.start(code, length, readings, sensors, limits.seed, limits.begin_ms);
+  robot.has_tasks = machine.has_tasks();
   uint32_t steps = 0;
   uint32_t before = 0;  // instructions that ran before the clock last moved
   std::string ending;
@@ -131,7 +132,7 @@ void answer_run(RequestReader* request, bool is_verified, Writer* answer) {
     uint16_t devices;
     const Verdict verdict =
         verify(image.code, image.code_length, static_cast<uint8_t>(robot.sensors.size()),
-               static_cast<uint8_t>(robot.actuators.size()), &devices);
+               static_cast<uint8_t>(robot.actuators.size()), &devices, image.has_tasks);
     answer->u8(static_cast<uint8_t>(verdict.rule));
     answer->u16(verdict.offset);
     if (verdict.rule != Rule::kNone) return;

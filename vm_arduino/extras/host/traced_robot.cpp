@@ -29,7 +29,7 @@ void TracedRobot::say(const std::string& text) {
 }
 
 bool TracedRobot::is_ready() {
-  if (must_wait) say("ASKED AGAIN AT ONCE");
+  if (must_wait && !has_tasks) say("ASKED AGAIN AT ONCE");
   must_wait = not_ready != 0 && ++asked % not_ready == 0;
   return !must_wait;
 }

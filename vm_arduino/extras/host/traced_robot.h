@@ -27,6 +27,7 @@ struct TracedRobot {
   std::vector<size_t> taken;                   // how many, of each sensor
   uint64_t now_ms = 0;  // does not wrap around
   std::string trace;
+  bool has_tasks = false;  // each of them asks by itself
   uint32_t not_ready = 0;  // every so many questions the robot is not ready; 0: always ready
   uint32_t asked = 0;
   bool must_wait = false;  // it was not ready, and this tick should be over

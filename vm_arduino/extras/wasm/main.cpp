@@ -102,7 +102,7 @@ tini_exported("unpack") uint32_t module_unpack(uint32_t length) {
 // Verifies the code of the image; returns the number of the rule that it breaks, or 0.
 tini_exported("verify") uint32_t module_verify(uint32_t sensors, uint32_t actuators) {
   verdict = verify(image.code, image.code_length, static_cast<uint8_t>(sensors),
-                   static_cast<uint8_t>(actuators), &devices);
+                   static_cast<uint8_t>(actuators), &devices, image.has_tasks);
   return static_cast<uint32_t>(verdict.rule);
 }
 

@@ -46,7 +46,7 @@ Remark Link::start_text(const Console& console) {
   }
   uint8_t* const image = made_;
   image[kIsaMajorAt] = kIsaMajor;
-  image[kIsaMinorAt] = kIsaMinor;
+  image[kIsaMinorAt] = 0;
   port_take_text(image, start != 0);
   put_checksum(image);
   port_seal(image);

@@ -10,13 +10,18 @@
 
 #include "flash.h"
 
+// The machine in assembly has no tasks, nor have virtual robots like one.
+#if !defined(__AVR__) && !defined(tiniscript_no_tasks)
+#define tiniscript_has_tasks
+#endif
+
 // clang-format off
 
 namespace tiniscript {
 
 // A machine runs images of its own major version, and of its own minor version or less.
 constexpr uint8_t kIsaMajor = 2;
-constexpr uint8_t kIsaMinor = 0;
+constexpr uint8_t kIsaMinor = 1;
 
 // Limits, the same on every machine.
 constexpr uint16_t kCodeBytes = 32767;
@@ -25,6 +30,7 @@ constexpr uint8_t kVariables = 32;
 constexpr uint8_t kCounters = 16;
 constexpr uint8_t kCalls = 8;
 constexpr uint8_t kDefs = 16;
+constexpr uint8_t kTasks = 4;
 constexpr uint8_t kNestWords = 32;
 constexpr uint8_t kJoins = 16;
 constexpr uint8_t kDevices = 32;
@@ -44,10 +50,17 @@ constexpr uint8_t kCodeLengthAt = 8;
 constexpr uint8_t kChecksumAt = 10;
 constexpr uint8_t kNeedsAt = 14;
 constexpr uint8_t kHeaderBytes = 15;
-constexpr uint8_t kNeeds = 0;
 constexpr uint8_t kDevicesPolynomial = 45;
 constexpr uint8_t kStarts = 3;
 constexpr uint8_t kStartPing = 2;
+
+// What this machine has of what an image needs.
+#ifdef tiniscript_has_tasks
+constexpr uint8_t kNeeds = 1;
+#else
+constexpr uint8_t kNeeds = 0;
+#endif
+constexpr bool kHasTasks = kNeeds != 0;
 
 enum class Op : uint8_t {
   kEnd = 0x00,  // --
@@ -251,6 +264,11 @@ enum class Op : uint8_t {
   kIfVar16Le = 0xf3,  // --
   kIfVar16Gt = 0xf4,  // --
   kIfVar16Ge = 0xf5,  // --
+  kLook = 0x55,  // yes --
+  kEndTask = 0x76,  // --
+  kEndWhen = 0x77,  // --
+  kTask = 0x7d,  // --
+  kWhen = 0x7e,  // --
 };
 
 // Why bytes are no image for this machine.
@@ -325,6 +343,11 @@ enum class Role : uint8_t {
   kDef = 18,  // opens a procedure that ends at `to`
   kReturn = 19,  // closes a procedure
   kCall = 20,  // calls a procedure that lies before it
+  kTask = 21,  // opens a task that ends at `to`
+  kWhen = 22,  // opens a WHEN that ends at `to`, and its check
+  kLook = 23,  // ends the check of a WHEN
+  kEndTask = 24,  // closes a task
+  kEndWhen = 25,  // closes a WHEN
 };
 
 // What a byte of operands is.
@@ -402,6 +425,11 @@ enum class Family : uint8_t {
   kIf16 = 59,  // IF16_EQ, IF16_NE, IF16_LT, IF16_LE ...
   kIfVar8 = 60,  // IF_VAR8_EQ, IF_VAR8_NE, IF_VAR8_LT, IF_VAR8_LE ...
   kIfVar16 = 61,  // IF_VAR16_EQ, IF_VAR16_NE, IF_VAR16_LT, IF_VAR16_LE ...
+  kLook = 62,
+  kEndTask = 63,
+  kEndWhen = 64,
+  kTask = 65,
+  kWhen = 66,
 };
 
 // Bits of the size of a shape.

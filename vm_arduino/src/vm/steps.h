@@ -58,6 +58,12 @@ tini_always_inline bool Machine::jump_back(Running* run, uint16_t distance) {
   return true;
 }
 
+// Goes back to the start of a loop.
+tini_always_inline bool Machine::again(Running* run, uint16_t distance) {
+  run->next -= distance;
+  return !has_tasks() || goes_back();
+}
+
 // Goes on with the next instruction if a condition holds, else jumps.
 tini_always_inline bool Machine::unless(Running* run, bool holds, uint16_t distance) {
   return holds || jump(run, distance);
@@ -130,7 +136,7 @@ tini_always_inline bool Machine::loop(Running* run, uint16_t distance) {
 
 tini_always_inline bool Machine::next(Running* run, uint16_t distance) {
   if (task_.looped == 0) return halt(Fault::kBadCode);
-  if (--task_.counters[task_.looped - 1] != 0) return jump_back(run, distance);
+  if (--task_.counters[task_.looped - 1] != 0) return again(run, distance);
   task_.looped--;
   return true;
 }

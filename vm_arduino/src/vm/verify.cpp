@@ -33,10 +33,10 @@ struct Join {
   uint8_t depth;  // values there
 };
 
-// A routine, and the most that is open in it at once, including its calls.
+// A DEF or a task, and the most that is open in it at once, including its calls.
 struct Def {
   uint16_t start;
-  uint16_t end;  // 0: it is the code outside of all DEFs
+  uint16_t end;  // 0: it is the code outside of all others
   uint8_t counters;
   uint8_t calls;
 };
@@ -46,6 +46,30 @@ struct Memory {
   Join joins[kJoins + 1];        // the first one ends behind any code
   Def defs[kDefs + 1];           // behind the closed ones: the one that is looked at
   Block blocks[kNestWords + 1];  // the first one is the code itself
+#ifdef tiniscript_has_tasks
+  Def tasks[kTasks + 1];  // the first one is the main task
+  bool may_have_tasks;
+
+  Def* outermost() { return tasks; }
+  void allow(bool has_tasks) { may_have_tasks = has_tasks; }
+  bool lacks(Role role) const { return !may_have_tasks && role >= Role::kTask; }
+
+  // Whether more is open in all tasks together than a machine remembers.
+  bool is_too_deep(uint8_t begun) const {
+    uint16_t counters = 0;
+    uint16_t calls = 0;
+    for (uint8_t k = 0; k <= begun; k++) {
+      counters = static_cast<uint16_t>(counters + tasks[k].counters);
+      calls = static_cast<uint16_t>(calls + tasks[k].calls);
+    }
+    return counters > kCounters || calls > kCalls;
+  }
+#else
+  Def* outermost() { return defs; }
+  void allow(bool) {}
+  bool lacks(Role) const { return false; }
+  bool is_too_deep(uint8_t) const { return false; }
+#endif
 };
 
 void open(Def* routine) {
@@ -78,14 +102,18 @@ __attribute__((noinline)) Verdict pass(const uint8_t* code, uint16_t length, uin
                                        uint8_t actuators, Memory* memory) {
   uint16_t at = 0;              // where the instruction that is looked at begins
   uint16_t after = 0;           // where the next one begins
-  bool is_checking = false;     // the check of an UNTIL is open
+  bool is_checking = false;     // the check of an UNTIL or of a WHEN is open
   uint8_t depth = 0;            // values on the stack
   uint8_t joins = 0;            // that are open
   uint8_t defs = 0;             // that are closed
   uint8_t counters = 0;         // counted loops that are open in this routine
   Join* join = memory->joins;   // the one that ends first
-  Def* routine = memory->defs;  // that is looked at
+  Def* routine = memory->outermost();  // that is looked at
   Block* top = memory->blocks;  // the innermost block that is open
+  uint8_t tasks = 0;            // that have begun beside the main one
+  bool is_looking = false;      // the check is that of a WHEN
+  Role opener = Role::kNone;    // of the routine
+  bool reads_inside = false;    // a reading was pushed above other values, or in an open join
   join->target = kFarAway;
   open(routine);
   top->end = 0;
@@ -108,6 +136,7 @@ __attribute__((noinline)) Verdict pass(const uint8_t* code, uint16_t length, uin
 
     // opcode: an invalid one has one byte, and its role refuses it
     const Shape shape = shape_of(code[at]);
+    if (kHasTasks && memory->lacks(shape.role())) return {Rule::kUnknownOpcode, at};
     after = static_cast<uint16_t>(at + shape.size());
     if (after > length) return {Rule::kCutOperand, at};
 
@@ -141,13 +170,44 @@ __attribute__((noinline)) Verdict pass(const uint8_t* code, uint16_t length, uin
     if (shape.jumps_back()) target = static_cast<uint16_t>(after - distance);
 
     // place
+    if (kHasTasks && shape.family == Family::kPushRead && (depth > 1 || joins != 0)) {
+      // there it would end a turn with values on the stack
+      if (tasks != 0) return {Rule::kStackNotEmpty, at};
+      reads_inside = true;
+    }
     const Role role = shape.role();
     if (role >= Role::kRead) {
       if (depth != 0 || joins != 0) return {Rule::kStackNotEmpty, at};
-      if (role >= Role::kPlain && is_checking) return {Rule::kInsideCheck, at};
+      const bool is_task = kHasTasks && (role == Role::kTask || role == Role::kWhen);
+      if (is_task && reads_inside) return {Rule::kStackNotEmpty, at};
+      if (role >= Role::kPlain && is_checking && !(kHasTasks && role == Role::kLook)) {
+        return {Rule::kInsideCheck, at};
+      }
     }
 
-    // a step for each role
+    // a step for each role, those of tasks first
+    if (kHasTasks && role == Role::kLook) {
+      if (!is_looking) return {Rule::kNotOpen, at};
+      is_checking = is_looking = false;
+      continue;
+    }
+    if (kHasTasks && role >= Role::kEndTask) {
+      const Role begin = role == Role::kEndTask ? Role::kTask : Role::kWhen;
+      if (routine->end == 0 || opener != begin) return {Rule::kNotOpen, at};
+      if (top->kind() != Kind::kCode) return {Rule::kStillOpen, at};
+      if (routine->end != after) return {Rule::kBadDef, at};
+      routine = memory->outermost();
+      continue;
+    }
+    if (kHasTasks && role >= Role::kTask) {
+      if (top->kind() != Kind::kCode || routine->end != 0) return {Rule::kBadDef, at};
+      if (tasks == kTasks) return {Rule::kTooManyTasks, at};
+      opener = role;
+      routine = memory->outermost() + ++tasks;
+      *routine = {after, target, 0, 0};
+      if (role == Role::kWhen) is_checking = is_looking = true;
+      continue;
+    }
     Kind kind = loop_of(role);
     switch (role) {
       case Role::kNone:
@@ -170,7 +230,7 @@ __attribute__((noinline)) Verdict pass(const uint8_t* code, uint16_t length, uin
         is_checking = true;
         continue;
       case Role::kUntil:
-        if (!is_checking) return {Rule::kNotOpen, at};
+        if (!is_checking || (kHasTasks && is_looking)) return {Rule::kNotOpen, at};
         is_checking = false;
         continue;
 
@@ -216,17 +276,23 @@ __attribute__((noinline)) Verdict pass(const uint8_t* code, uint16_t length, uin
       case Role::kDef:
         if (top->kind() != Kind::kCode || routine->end != 0) return {Rule::kBadDef, at};
         if (defs == kDefs) return {Rule::kTooManyDefs, at};
+        opener = role;
+        if (kHasTasks) routine = memory->defs + defs;
         *routine = {after, target, 0, 0};
         continue;
       case Role::kReturn:
-        if (routine->end == 0) return {Rule::kNotOpen, at};
+        if (routine->end == 0 || (kHasTasks && opener != Role::kDef)) return {Rule::kNotOpen, at};
         if (top->kind() != Kind::kCode) return {Rule::kStillOpen, at};
         if (routine->end != after) return {Rule::kBadDef, at};
-        open(++routine);
+        if (kHasTasks) {
+          routine = memory->outermost();
+        } else {
+          open(++routine);
+        }
         defs++;
         continue;
       case Role::kCall: {
-        const Def* called = routine;
+        const Def* called = kHasTasks ? memory->defs + defs : routine;
         uint8_t left = defs;
         do {
           if (left-- == 0) return {Rule::kBadCall, at};
@@ -237,8 +303,11 @@ __attribute__((noinline)) Verdict pass(const uint8_t* code, uint16_t length, uin
         if (most_counters > kCounters || most_calls > kCalls) return {Rule::kTooDeep, at};
         if (routine->counters < most_counters) routine->counters = most_counters;
         if (routine->calls < most_calls) routine->calls = most_calls;
+        if (memory->is_too_deep(tasks)) return {Rule::kTooDeep, at};
         continue;
       }
+      default:  // those of tasks are above
+        __builtin_unreachable();
     }
 
     // open: a block that ends at the target; an IF shares the one around it that ends there too
@@ -256,6 +325,7 @@ __attribute__((noinline)) Verdict pass(const uint8_t* code, uint16_t length, uin
       static_assert(kNestWords / 2 <= kCounters, "no more loops are open at once");
       counters++;
       if (routine->counters < counters) routine->counters = counters;
+      if (memory->is_too_deep(tasks)) return {Rule::kTooDeep, at};
     }
   }
 
@@ -268,10 +338,17 @@ __attribute__((noinline)) Verdict pass(const uint8_t* code, uint16_t length, uin
 
 }  // namespace
 
+#ifdef tiniscript_has_tasks
+Verdict verify(const uint8_t* code, size_t length, uint8_t sensors, uint8_t actuators,
+               uint16_t* devices, bool may_have_tasks) {
+#else
 Verdict verify(const uint8_t* code, size_t length, uint8_t sensors, uint8_t actuators,
                uint16_t* devices) {
+  constexpr bool may_have_tasks = false;
+#endif
   if (length > kCodeBytes) return {Rule::kCodeLength, 0};
   Memory memory;  // not cleared, which takes longer than most code: it is written before it is read
+  memory.allow(may_have_tasks);
   const Verdict verdict = pass(code, static_cast<uint16_t>(length), sensors, actuators, &memory);
   *devices = memory.devices;
   return verdict;

@@ -22,14 +22,26 @@ struct Verdict {
   uint16_t offset;
 };
 
-// Whether a machine with this many sensors and actuators (0 to 255) may run `code`. Puts the hash
-// of the used devices into `*devices`, which is undefined if the code is refused.
+// Whether a machine with this many sensors and actuators (0 to 255) may run `code`. Its image says
+// whether it may have tasks. Puts the hash of the used devices into `*devices`, which is undefined
+// if the code is refused.
+#ifdef tiniscript_has_tasks
+Verdict verify(const uint8_t* code, size_t length, uint8_t sensors, uint8_t actuators,
+               uint16_t* devices, bool may_have_tasks = false);
+#else
 Verdict verify(const uint8_t* code, size_t length, uint8_t sensors, uint8_t actuators,
                uint16_t* devices);
 
-inline Verdict verify(const uint8_t* code, size_t length, uint8_t sensors, uint8_t actuators) {
+inline Verdict verify(const uint8_t* code, size_t length, uint8_t sensors, uint8_t actuators,
+                      uint16_t* devices, bool) {
+  return verify(code, length, sensors, actuators, devices);
+}
+#endif
+
+inline Verdict verify(const uint8_t* code, size_t length, uint8_t sensors, uint8_t actuators,
+                      bool may_have_tasks = false) {
   uint16_t devices;
-  return verify(code, length, sensors, actuators, &devices);
+  return verify(code, length, sensors, actuators, &devices, may_have_tasks);
 }
 
 }  // namespace tiniscript

@@ -35,21 +35,32 @@ void Machine::start_prepared(const uint8_t* code, uint16_t length, int32_t* read
   task_.random = seed;
   task_.started_ms = now_ms;
   task_.clock_ms = now_ms;
+  if (kHasTasks) find_tasks();
+}
+
+// Ends a wait. False: it goes on.
+bool Machine::may_go_on(uint32_t now_ms) {
+  now_ms_ = now_ms;
+  // No wait is longer than that, so no tick skips the whole second half of the clock.
+  if (static_cast<int32_t>(now_ms - task_.started_ms) < 0) task_.is_late = true;
+  if (task_.wait != Wait::kNothing) {
+    if (static_cast<int32_t>(now_ms - task_.clock_ms) < 0) return false;
+    if (task_.wait == Wait::kMove) robot_motors(0, 0);
+    task_.wait = Wait::kNothing;
+  }
+  status_ = Status::kRunning;
+  return true;
 }
 
 Status Machine::tick(uint32_t now_ms, uint8_t budget) {
   left_ = budget;
   if (status_ >= Status::kDone || budget == 0) return status_;
-  now_ms_ = now_ms;
-  // No wait is longer than that, so no tick skips the whole second half of the clock.
-  if (static_cast<int32_t>(now_ms - task_.started_ms) < 0) task_.is_late = true;
-  if (task_.wait != Wait::kNothing) {
-    if (static_cast<int32_t>(now_ms - task_.clock_ms) < 0) return Status::kWaiting;
-    if (task_.wait == Wait::kMove) robot_motors(0, 0);
-    task_.wait = Wait::kNothing;
+  if (!may_go_on(now_ms)) return Status::kWaiting;
+  if (has_tasks()) {
+    run_round();
+  } else {
+    execute(budget);
   }
-  status_ = Status::kRunning;
-  execute(budget);
   if (fault_ != Fault::kNone) {
     robot_off();
     status_ = Status::kFault;
@@ -57,15 +68,20 @@ Status Machine::tick(uint32_t now_ms, uint8_t budget) {
   return status_;
 }
 
-// Begins a wait at the end of the one before, or now if that is too long ago.
+// Begins a wait at the end of the one before, or now if that is too long ago. One of 0 ms ends no
+// turn of a task.
 tini_noinline bool Machine::wait(uint32_t duration_ms, Wait what) {
   begin();
+  if (has_tasks() && duration_ms == 0) return true;
   return sleep(task_.clock_ms + duration_ms, what);
 }
 
 tini_noinline bool Machine::sleep(uint32_t wake_ms, Wait what) {
   task_.clock_ms = wake_ms;
   task_.wait = what;
+#ifdef tiniscript_has_tasks
+  tasks_.records[tasks_.me].has_waited = true;
+#endif
   status_ = Status::kWaiting;
   return false;
 }
@@ -78,6 +94,7 @@ tini_noinline void Machine::begin() {
 // Begins, continues or ends the watched move, or waits for its next check. Returns whether the next
 // instruction may run now.
 bool Machine::until(bool stop) {
+  if (has_tasks()) return until_in_task(stop);
   if (stop) {
     if (!task_.is_watching) return true;
     task_.clock_ms = now_ms_;

@@ -49,6 +49,7 @@ class Machine {
   Status tick(uint32_t now_ms, uint8_t budget);
 
   const Task& task() const { return task_; }
+  bool has_tasks() const;
   Status status() const { return status_; }
   Fault fault() const { return fault_; }
 
@@ -57,6 +58,9 @@ class Machine {
 
   // When the machine has work again, while the program waits.
   uint32_t wake_ms() const { return task_.clock_ms; }
+
+  // Goes on to where the next instruction begins, in a program with tasks. False: none may run now.
+  bool arrive(uint32_t now_ms);
 
   // What is left of the last budget: instructions, or jumps on the AVR.
   uint8_t left() const { return left_; }
@@ -80,7 +84,11 @@ class Machine {
 
   // The inner loop, in `vm_instructions.cpp`; for the AVR it is in `execute_avr.S`, which knows
   // where members lie.
+#ifdef __AVR__
   void execute(uint8_t budget);
+#else
+  bool execute(uint8_t budget);  // returns whether the next instruction may run now
+#endif
 
   // What it is made of, in `steps.h`, but for the AVR.
   bool step(Running* run);
@@ -91,6 +99,7 @@ class Machine {
   bool leave(Running* run, Fault fault);
   bool jump(Running* run, uint16_t distance);
   bool jump_back(Running* run, uint16_t distance);
+  bool again(Running* run, uint16_t distance);
   bool unless(Running* run, bool holds, uint16_t distance);
   bool join(Running* run, bool decisive, uint16_t distance);
   bool stay(Running* run);
@@ -113,11 +122,46 @@ class Machine {
   bool until(bool stop) tini_called_by_assembly;
   bool sense(uint8_t number) tini_called_by_assembly;
   void powers(uint8_t code, int8_t power);
+  void motors(int8_t left, int8_t right);
   bool watch(uint32_t move_ms, bool drives);
 
+  bool may_go_on(uint32_t now_ms);
   bool goes_on(Fault fault);
   bool fail();
   bool stay();
+
+  // the turns of tasks, in `vm_tasks.cpp`
+  void find_tasks();
+  void run_round();
+  bool finds_turn();
+  bool waits_for_clock(uint8_t rank) const;
+  uint32_t next_wake_ms() const;
+  void begin_turn(uint8_t rank);
+  void end_turn();
+  bool pause();
+  bool sends();
+  bool is_kept(int32_t value, bool is_yes_no);
+  bool goes_back();
+  bool look(bool holds);
+  bool look_again();
+  bool ends_program();
+
+  // their moves and motors
+  void keep_move(uint32_t move_ms, bool has_powers);
+  bool drive_in_task(uint32_t move_ms);
+  bool watch_in_task(uint32_t move_ms, bool has_powers);
+  bool until_in_task(bool stop);
+  bool begin_move();
+  void begin_watched();
+  bool drive_on(uint32_t step_ms, bool is_last);
+  void end_move();
+  bool block();
+  void motors_in_task(int8_t left, int8_t right);
+  void stop_in_task();
+  bool is_below() const;
+  void take();
+  void pass_on();
+  void set_motors(int8_t left, int8_t right);
 
   // waits
   bool wait(uint32_t duration_ms, Wait what);
@@ -134,7 +178,16 @@ class Machine {
   int32_t* readings_;
   uint32_t now_ms_;
   Task task_;
+#ifdef tiniscript_has_tasks
+  Tasks tasks_;
+#endif
 };
+
+#ifdef tiniscript_has_tasks
+inline bool Machine::has_tasks() const { return tasks_.count != 0; }
+#else
+inline bool Machine::has_tasks() const { return false; }
+#endif
 
 }  // namespace tiniscript
 

@@ -157,7 +157,7 @@ tini_always_inline bool Machine::step(Running* run) {
     case Op::kShow:
     case Op::kShowYesNo:
       if (act(run, code)) return true;
-      run->top++;
+      if (run->next == run->at) run->top++;
       return false;
     case Op::kSet:
     case Op::kMoveF:
@@ -186,6 +186,9 @@ tini_always_inline bool Machine::step(Running* run) {
     case Op::kMotors8:
     case Op::kBeep:
     case Op::kEnd:
+    case Op::kLook:
+    case Op::kEndTask:
+    case Op::kEndWhen:
       tini_each_short(kSet) : return act(run, code);
     case Op::kUntil:
       return pop(run, 1) && until(run, *run->top != 0);
@@ -206,6 +209,8 @@ tini_always_inline bool Machine::step(Running* run) {
     case Op::kElseFar:
     case Op::kBreakFar:
     case Op::kDefFar:
+    case Op::kTask:
+    case Op::kWhen:
       return jump(run, run->u16());
     case Op::kForever:
       return true;
@@ -216,9 +221,9 @@ tini_always_inline bool Machine::step(Running* run) {
       run->next += 2;
       return true;
     case Op::kAgain:
-      return jump_back(run, run->u8());
+      return again(run, run->u8());
     case Op::kAgainFar:
-      return jump_back(run, run->u16());
+      return again(run, run->u16());
     case Op::kLoop8:
       return loop(run->u8());
     case Op::kLoop:
@@ -300,16 +305,19 @@ tini_always_inline bool Machine::step(Running* run) {
 }
 
 // Runs instructions until the program must wait or ends, or the budget, which is not 0, is used up.
-void Machine::execute(uint8_t budget) {
+bool Machine::execute(uint8_t budget) {
   const uint8_t* const begin = code_ + task_.pc;
   Running run = {begin, begin, task_.stack + task_.depth};
+  bool goes_on;
   do {
     budget--;
-  } while (step(&run) && budget != 0);
+    goes_on = step(&run);
+  } while (goes_on && budget != 0);
   at_ = offset(run.at);
   left_ = budget;
   task_.pc = offset(run.next);
   task_.depth = static_cast<uint8_t>(run.top - task_.stack);
+  return goes_on;
 }
 
 }  // namespace tiniscript

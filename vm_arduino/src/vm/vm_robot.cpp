@@ -52,12 +52,47 @@ tini_noinline void Machine::powers(uint8_t code, int8_t power) {
 
 // Keeps the move or wait that an UNTIL watches; its check begins after this instruction.
 tini_noinline bool Machine::watch(uint32_t move_ms, bool drives) {
+  if (has_tasks()) return watch_in_task(move_ms, drives);
   task_.move_ms = move_ms;
   task_.drives = drives;
   task_.is_watching = false;
   task_.check = task_.pc;
   return true;
 }
+
+inline void Machine::motors(int8_t left, int8_t right) {
+  if (has_tasks()) {
+    motors_in_task(left, right);
+  } else {
+    robot_motors(left, right);
+  }
+}
+
+#ifdef tiniscript_has_tasks
+
+// Keeps the value of a SHOW that has found no room, and ends the turn: nothing stays on the stack.
+// Before all others the main task waits for room, as a program without tasks does.
+bool Machine::is_kept(int32_t value, bool is_yes_no) {
+  if (!has_tasks() || tasks_.is_first) return stay();
+  TaskRecord* const me = tasks_.records + tasks_.me;
+  me->has_unsent = true;
+  me->unsent = value;
+  me->is_unsent_yes_no = is_yes_no;
+  return pause();
+}
+
+// Sends that value in a later turn. Returns whether there was room.
+bool Machine::sends() {
+  TaskRecord* const me = tasks_.records + tasks_.me;
+  me->has_unsent = !robot_show(me->unsent, me->is_unsent_yes_no);
+  return !me->has_unsent;
+}
+
+#else
+
+inline bool Machine::is_kept(int32_t, bool) { return stay(); }
+
+#endif
 
 // Executes the instruction `code` at `bytes`, which lies before `task_.pc`; `top` points to the top
 // of the stack. Returns whether the next instruction may run now.
@@ -76,6 +111,11 @@ bool Machine::act(uint8_t code, const uint8_t* bytes, int32_t* top) {
     task_.random = next_random(task_.random);
     return goes_on(random_between(top - 1, task_.random));
   }
+  if (kHasTasks && family >= Family::kLook) {
+    if (!has_tasks()) return fail();
+    if (family == Family::kLook) return look(*top != 0);
+    if (family == Family::kEndWhen) return look_again();
+  }
   const bool takes = shape.pops() != 0;
   const uint8_t first = shape.size() == 1 ? static_cast<uint8_t>(code % kShorts) : bytes[1];
   const int8_t low = family == Family::kMotors ? -100 : 0;
@@ -83,24 +123,29 @@ bool Machine::act(uint8_t code, const uint8_t* bytes, int32_t* top) {
   uint32_t time_ms = takes ? duration(shape.pops() == 1 ? *top : top[-1]) : time8(first);
   switch (family) {
     case Family::kShow:
-      return robot_show(*top, false) || stay();
+      return robot_show(*top, false) || is_kept(*top, false);
     case Family::kShowYesNo:
-      return robot_show(*top != 0 ? 1 : 0, true) || stay();
+      return robot_show(*top != 0 ? 1 : 0, true) || is_kept(*top != 0 ? 1 : 0, true);
     case Family::kSet:
       robot_set(first, *top);
       return true;
     case Family::kStop:
-      robot_motors(0, 0);
+      if (has_tasks()) {
+        stop_in_task();
+      } else {
+        robot_motors(0, 0);
+      }
       return true;
     case Family::kMotors:
-      robot_motors(percent(top[-1], low), power);
+      motors(percent(top[-1], low), power);
       return true;
     case Family::kMotors8:
-      robot_motors(signed8(first), power);
+      motors(signed8(first), power);
       return true;
     case Family::kMove:
     case Family::kMove8:
       powers(code, power);
+      if (has_tasks()) return drive_in_task(time_ms);
       robot_motors(task_.left, task_.right);
       return wait(time_ms, Wait::kMove);
     case Family::kWatchForever:
@@ -123,7 +168,8 @@ bool Machine::act(uint8_t code, const uint8_t* bytes, int32_t* top) {
     case Family::kWait:
     case Family::kWait8:
       return wait(time_ms, Wait::kPause);
-    default:  // kEnd: the others are in the inner loop
+    default:  // kEnd or kEndTask: the others are in the inner loop
+      if (has_tasks() && !ends_program()) return false;
       robot_off();
       status_ = Status::kDone;
       return stay();

@@ -9,7 +9,7 @@ from argparse import Namespace
 from collections.abc import Iterable
 
 from tiniscript import robots
-from tiniscript.bytecode.opcodes import FIRMWARE_MINOR, ISA_MAJOR
+from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.options import whole_number
@@ -28,7 +28,7 @@ PATIENCE_S = 10
 MOST_SHOWN = 20
 CABLE_MS, RADIO_MS = 300, 700  # for one try of an answer
 BOOT_MS = 1700  # an Uno takes 1.4 s after its port was opened, and a Mega wants silence until then
-ISA = f"{ISA_MAJOR}.{FIRMWARE_MINOR}"
+ISA = f"{ISA_MAJOR}.{ISA_MINOR}"
 
 
 def run(options: Namespace, language: str) -> int:

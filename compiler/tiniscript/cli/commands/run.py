@@ -55,8 +55,6 @@ def run(options: Namespace, language: str) -> int:
 
 def _cpp_machine(image: Image, robot: Robot) -> MachineOf:
     """Return the C++ machine with a verified image."""
-    if image.has_tasks:
-        raise CommandError(2, "cpp_no_tasks")
     try:
         return cpp_machine(image, robot)
     except (ImportError, OSError, RuntimeError) as why:  # missing, or not for this computer

@@ -15,7 +15,7 @@ from time import perf_counter
 from typing import NamedTuple
 
 from tiniscript.bytecode.image import unpack
-from tiniscript.bytecode.opcodes import FIRMWARE_MINOR, ISA_MAJOR
+from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
 from tiniscript.cli.commands.trim import words
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.robot.connect import Connection
@@ -118,11 +118,11 @@ class SelfTest:
 
     def _firmware(self, robot: Robot | None) -> None:
         major, minor = self.connection.device_info.isa
-        said = {"isa": f"{major}.{minor}", "wanted": f"{ISA_MAJOR}.{FIRMWARE_MINOR}"}
+        said = {"isa": f"{major}.{minor}", "wanted": f"{ISA_MAJOR}.{ISA_MINOR}"}
         said["robot"] = robot.name if robot is not None else "my.toml"
         hello = self.connection.device_info.values
         said |= {name: str(getattr(hello, name)) for name in ("room", "largest", "window")}
-        if (major, minor) == (ISA_MAJOR, FIRMWARE_MINOR):
+        if (major, minor) == (ISA_MAJOR, ISA_MINOR):
             self._add("firmware", OK, "self_firmware_is", **said)
         else:
             self._add("firmware", WRONG, "self_firmware_old", "then_firmware", **said)

@@ -129,8 +129,6 @@ TEXTS: dict[str, tuple[str, str]] = {
                         "tsc: todavía no hay sketches para la placa {chip}. Hay para: {known}. El mismo programa para un Uno:  tsc show --arduino --robot tinibot"),
     "sketch_no_tasks": ("tsc: a sketch does one thing after the other, so it has no TASK and no WHEN. Without a robot:  tsc run {file}",
                         "tsc: un sketch hace una cosa después de otra; por eso no tiene TASK ni WHEN. Sin robot:  tsc run {file}"),
-    "cpp_no_tasks": ("tsc: the C++ machine has no TASK and no WHEN yet. Leave out --machine cpp: the one in Python runs them.",
-                     "tsc: la máquina en C++ todavía no tiene TASK ni WHEN. Quita --machine cpp: la de Python los ejecuta."),
     "output_needs_arduino": ("tsc: -o is where a sketch goes. Try:  tsc show --arduino prog.ts -o {file}",
                              "tsc: -o dice a dónde va un sketch. Prueba:  tsc show --arduino prog.ts -o {file}"),
     # images

@@ -64,7 +64,8 @@ uint8_t TiniPlayer::check(uint16_t length) {
   if (refusal != Refusal::kNone) return static_cast<uint8_t>(refusal);
   uint16_t devices = 0;
   const Verdict verdict =
-      verify(image_.code, image_.code_length, kit_->sensors, kit_->actuators, &devices);
+      verify(image_.code, image_.code_length, kit_->sensors, kit_->actuators, &devices,
+             image_.has_tasks);
   if (verdict.rule != Rule::kNone) return static_cast<uint8_t>(verdict.rule);
   const Refusal kit = check_devices(image_, devices);
   if (kit != Refusal::kNone) return static_cast<uint8_t>(kit);

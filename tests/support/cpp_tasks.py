@@ -1,0 +1,108 @@
+"""What holds of programs with TASK and WHEN in C++: each check compares with Python."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Callable, Iterator, Sequence
+
+from tests.machines import Senses
+from tests.machines.host import Host, Process
+from tests.machines.python import ran_python
+from tests.oracle.task_programs import task_program
+from tests.support.cpp_checks import LATE_BUDGET, SIZES, compare_verdicts, run_late
+from tests.support.kits import KITS
+from tests.support.random_codes import mutated, task_codes
+from tiniscript import compile_text
+from tiniscript.bytecode.image import unpack
+from tiniscript.vm.state import DONE, FAULT, WAITING
+from tiniscript.vm.tasks import machine_of
+from tiniscript.vm.trace import Senses as Lists
+from tiniscript.vm.trace import TracedRobot
+
+KIT = KITS[0][1]
+MAX_MS = 600
+Program = tuple[bytes, Senses]
+
+
+def some_task_programs(first: int, count: int) -> Iterator[Program]:
+    """Yield images of random programs with tasks, and what their sensors read."""
+    for seed in range(first, first + count):
+        text, readings = task_program(random.Random(seed))
+        yield compile_text(text, KIT).image, Senses(readings, MAX_MS, seed=seed + 1)
+
+
+def check_task_codes(machine: Process, seed: int, count: int) -> None:
+    """Code with tasks has the same verdict, in images that may have some and in others."""
+    rng = random.Random(seed)
+    codes = list(task_codes(seed, count))
+    codes += [mutated(rng, code, rng.choice(codes)) for code in codes]
+    rules = set()
+    for has_tasks in (False, True):
+        accepted = compare_verdicts(machine, codes, *SIZES, has_tasks)
+        assert bool(accepted) == has_tasks or len(accepted) < len(codes) / 4
+        rules |= {rule for rule, _ in machine.verdicts(codes, *SIZES, has_tasks)}
+    # accepted, UNKNOWN_OPCODE, STACK_NOT_EMPTY, NOT_OPEN, STILL_OPEN, BAD_DEF, INSIDE_CHECK,
+    # TOO_MANY_TASKS
+    assert {0, 21, 27, 32, 33, 35, 38, 40} <= rules, rules
+
+
+def check_task_programs(machine: Process, first: int, count: int) -> None:
+    for image, senses in some_task_programs(first, count):
+        assert machine.run(image, KIT, senses) == ran_python(image, KIT, senses), first
+
+
+def check_task_clock(machine: Host, begin_ms: int) -> None:
+    """The clock of the machine may begin anywhere, and wrap around."""
+    for image, senses in some_task_programs(0, 200):
+        ran = machine.run(image, KIT, senses)
+        assert machine.run(image, KIT, senses, begin_ms=begin_ms) == ran, ran.trace
+
+
+def check_late_tasks(machine: Host, late_of: Callable[[random.Random], Sequence[int]]) -> None:
+    """Each task's own clock catches up with a delay of up to 20 ms, and not with more."""
+    for number, (image, senses) in enumerate(some_task_programs(0, 200)):
+        late_ms = late_of(random.Random(number))
+        theirs = machine.run_late(image, KIT, senses, late_ms)
+        assert theirs == run_late(image, KIT, senses, late_ms, machine_of), theirs
+
+
+def check_slow_tasks(machine: Host, not_ready: int) -> None:
+    """A reading or a SHOW that is not ready ends the turn of its task alone."""
+    for image, senses in some_task_programs(0, 200):
+        ran = machine.run(image, KIT, senses, not_ready=not_ready)
+        assert ran.trace == slow_run(image, senses, not_ready), ran.trace
+
+
+class SlowRobot(TracedRobot):
+    """A robot that is not ready each `not_ready`th time that it is asked."""
+
+    asked = 0
+    not_ready = 0
+
+    def is_ready(self) -> bool:
+        self.asked += 1
+        return self.asked % self.not_ready != 0
+
+    def read(self, sensor: int) -> int | None:
+        return super().read(sensor) if self.is_ready() else None
+
+    def show(self, value: int, is_yes_no: bool) -> bool:
+        return self.is_ready() and super().show(value, is_yes_no)
+
+
+def slow_run(image: bytes, senses: Senses, not_ready: int) -> str:
+    """Return the trace of Python's machine on a robot that is not always ready."""
+    lists = {k: senses.readings.get(each.name, ()) for k, each in enumerate(KIT.sensors)}
+    robot = SlowRobot(KIT, Lists(KIT, lists))
+    robot.not_ready = not_ready
+    machine = machine_of(unpack(image).code, robot, len(KIT.sensors), senses.seed)
+    end = ""
+    while not end:
+        status = machine.tick(robot.now_ms, LATE_BUDGET)
+        if status in (DONE, FAULT):
+            end = f"{robot.now_ms} {status.upper()} {machine.fault}".strip()
+        elif status == WAITING and machine.wake_ms > senses.max_ms:
+            end = f"{senses.max_ms} LIMIT"
+        elif status == WAITING:
+            robot.now_ms = machine.wake_ms
+    return "".join(f"{event}\n" for event in robot.events) + end + "\n"
