@@ -101,7 +101,7 @@ def test_blocks_and_the_robots_reader_have_it_in_their_tables() -> None:
     )
     blocks, tables = json.loads(ran.stdout)
     assert HORN.text in blocks["kinds"]["fixed"]["words"]
-    assert blocks["labels"][HORN.text] == [f"{HORN.text} {says}" for says in HORN.says]
+    assert blocks["labels"][HORN.text] == [f"{{{HORN.text}}} {says}" for says in HORN.says]
     packed, rows, _ = tables.split("tini_progmem = {")[1:]
     assert "// HORN" in packed and "// HORN" not in rows
 

@@ -41,6 +41,16 @@ def test_messages_are_those_of_the_command_and_repairs_help(first: int, part: in
     assert offered > 100
 
 
+@pytest.mark.parametrize(
+    ("text", "loose"),
+    [("SI|S\n/// W(1)\n", 1), ("SI|S\n/// LOOP(2)\n///   W(1)\n/// END_LOOP\n///\n/// = 5 < 6", 3),
+     ("SI|S // /// W(1)\n/// not a program", 0), ("F(-2, 80)\n/// W(1)", 1)],
+)  # fmt: skip
+def test_what_hangs_on_nothing_is_counted(text: str, loose: int) -> None:
+    asked = '{"do": "check", "robot": "tinibot", "language": "en"}'
+    assert json.loads(worker.answer(asked, text.encode()))["loose"] == loose
+
+
 def test_a_program_that_is_too_large_for_the_robot_is_wrong() -> None:
     found = checking.check(b"SI|" + b"F(1, 80);" * 500, "tinibot", "en")
     assert not found.image and found.findings[-1].message.severity == "mistake"

@@ -134,9 +134,12 @@ def test_work_is_kept(pages: Pages) -> None:
     page = pages.open()
     page.select_option("#robot", "grabber")
     page.select_option("#language", "es")
+    page.click("#words")
     write(page, "GRIPPER(90)")
     page.reload()
     checked(page)
+    assert page.locator("#words[aria-pressed=true]").count() == 1
+    assert "DISTANCE sensor de distancia" in page.inner_text("#values")
     assert page.locator(".cm-content").inner_text() == "GRIPPER(90)"
     assert (page.input_value("#robot"), page.input_value("#language")) == ("grabber", "es")
     other = page.context.new_page()  # a new tab begins with it

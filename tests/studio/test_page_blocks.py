@@ -37,11 +37,16 @@ ROUND = """async ({name, forms}) => {
   const place = document.createElement('div');
   place.hidden = true;  // nothing is measured
   document.body.append(place);
-  const blocks = new Blocks(place, 'tinibot', 'all', {changed() {}, undo() {}, redo() {}});
+  const blocks = new Blocks(place, 'tinibot', 'all', {changed() {}});
   const found = forms.map((form) => { blocks.show(form); return blocks.read().form; });
   place.remove();
   return found;
 }"""
+
+
+# Whether a field of text keeps the key of undo.
+KEPT_KEY = """field => field.dispatchEvent(new KeyboardEvent('keydown',
+  {key: 'z', ctrlKey: true, bubbles: true, cancelable: true, composed: true}))"""
 
 
 @pytest.fixture
@@ -85,18 +90,24 @@ def becomes(page: Page, text: str) -> None:
 
 def block(page: Page, words: str) -> Locator:
     """Return the innermost block with these words on it."""
-    found = page.locator(f"{PROGRAM} .blocklyDraggable")
+    found = page.locator(f"{PROGRAM} .blocklyBlock")
     return found.filter(has_text=words).last
 
 
 def box_of(block: Locator) -> Any:
     """Return the box of a block without those that hang below it, as the page has it: what
     Playwright says of a path is beside it."""
-    return block.locator("> .blocklyPath").evaluate("e => e.getBoundingClientRect().toJSON()")
+    return path_of(block).evaluate("e => e.getBoundingClientRect().toJSON()")
 
 
-def drag(page: Page, group: str, words: str, target: Locator) -> None:
-    """Drag a block out of a group of the toolbox, below another one."""
+def path_of(block: Locator) -> Locator:
+    return block.locator("> .blocklyPath:not(.blocklyPathSelected)")
+
+
+def drag(
+    page: Page, group: str, words: str, target: Locator, off: tuple[int, int] = (0, 0)
+) -> None:
+    """Drag a block out of a group of the toolbox, below another one, or so many pixels off."""
     page.locator(".blocklyToolboxCategory", has_text=group).click()
     source = page.locator(FLYOUT).filter(has_text=words).first
     source.wait_for()
@@ -105,7 +116,7 @@ def drag(page: Page, group: str, words: str, target: Locator) -> None:
     page.mouse.down()
     page.mouse.move(700, 400, steps=8)
     b = box_of(target)  # once the toolbox is no longer over it
-    page.mouse.move(b["x"] + 10, b["y"] + b["height"] + 8, steps=8)
+    page.mouse.move(b["x"] + 10 + off[0], b["y"] + b["height"] + 8 + off[1], steps=8)
     page.mouse.up()
     page.locator("#blocks[data-state=shown]").wait_for()
 
@@ -139,7 +150,7 @@ def test_blocks_of_the_page_are_those_of_python(pages: Pages, part: int) -> None
 def test_a_program_is_seen_from_its_beginning(pages: Pages) -> None:
     page = pages.open("text")
     start(page, "SI|LOOP(6)\n  F(FOREVER, 80) UNTIL(DISTANCE < 15)\n  BEEP(0.1, 880)\nEND_LOOP\n")
-    first = box_of(block(page, "SI: start at once"))
+    first = box_of(block(page, "when it starts"))
     pane, words = (page.locator(one).bounding_box() for one in ("#blocks", ".blocklyToolbox"))
     assert pane is not None and words is not None
     assert first["x"] > words["x"] + words["width"] and first["y"] > pane["y"]
@@ -148,8 +159,8 @@ def test_a_program_is_seen_from_its_beginning(pages: Pages) -> None:
 def test_a_child_makes_a_program_and_lets_it_drive(pages: Pages) -> None:
     page = pages.open(view="blocks", locale="es-PE")
     page.locator("#level").wait_for()
-    assert block(page, "SI: empieza enseguida").count() == 1
-    drag(page, "Moverse", "F adelante", block(page, "R gira a la derecha"))
+    assert block(page, "al empezar").count() == 1
+    drag(page, "Moverse", "avanza", block(page, "gira a la derecha"))
     becomes(page, "SI|F(2, 80);\nR(0.5, 60);\nF(2, 80);\nF(1, 80);\n")
     number = page.locator(f"{PROGRAM} .blocklyNumberField").nth(5)
     number.click()
@@ -166,20 +177,30 @@ def test_a_child_makes_a_program_and_lets_it_drive(pages: Pages) -> None:
 
 
 def test_undo_is_one_for_blocks_and_text(page: Page) -> None:
-    drag(page, "Move", "B back", block(page, "F forward"))
+    drag(page, "Move", "back", block(page, "forward"))
     after = text_of(page)
     assert after == "SI|F(2, 80);\nB(2, 80);\nS;\n"
+    page.mouse.move(600, 300)
+    page.mouse.wheel(40, 30)
+    before = box_of(block(page, "forward"))
     page.click("#undo")
     becomes(page, "SI|F(2, 80);\nS;\n")
-    assert block(page, "B back").count() == 0
+    assert block(page, "back").count() == 0
     page.click("#redo")
     becomes(page, after)
-    assert block(page, "B back").count() == 1
-    block(page, "S stop").click(position={"x": 6, "y": 6})
+    assert block(page, "back").count() == 1
+    assert box_of(block(page, "forward")) == pytest.approx(before, abs=1)
+    page.locator("#speed").focus()  # wherever the focus is
+    page.keyboard.press("Control+z")
+    becomes(page, "SI|F(2, 80);\nS;\n")
+    page.keyboard.press("Control+Shift+z")
+    becomes(page, after)
+    assert page.locator("#link_line").evaluate(KEPT_KEY)  # but in a field of text
+    block(page, "stop").click(position={"x": 6, "y": 6})
     page.keyboard.press("Delete")
     becomes(page, "SI|F(2, 80);\nB(2, 80);\n")
     page.keyboard.press("Control+z")
-    block(page, "S stop").wait_for()
+    block(page, "stop").wait_for()
     becomes(page, after)
     page.click("#view_text")
     page.locator(".cm-content").focus()
@@ -188,19 +209,24 @@ def test_undo_is_one_for_blocks_and_text(page: Page) -> None:
     becomes(page, "SI|F(2, 80);\nS;\n")
 
 
+def test_a_block_that_is_dropped_near_its_place_is_joined(page: Page) -> None:
+    drag(page, "Move", "back", block(page, "stop"), off=(20, 24))
+    becomes(page, "SI|F(2, 80);\nS;\nB(2, 80);\n")
+
+
 def test_looking_at_blocks_changes_no_text(page: Page) -> None:
     text = "// mine\nsi|f( 2,80 )\n\n\n  s // stop"
     start(page, text)
     page.click("#view_text")
     page.click("#view_blocks")
     becomes(page, text)
-    block(page, "F forward").click(position={"x": 6, "y": 6})
+    block(page, "forward").click(position={"x": 6, "y": 6})
     becomes(page, text)
 
 
 def test_an_undo_while_a_block_is_dragged_does_nothing(page: Page) -> None:
     """Blocks of the text before would take the place of the one that is in the hand."""
-    place = box_of(block(page, "S stop"))
+    place = box_of(block(page, "stop"))
     page.mouse.move(place["x"] + 8, place["y"] + 12)
     page.mouse.down()
     page.mouse.move(500, 400, steps=6)
@@ -225,15 +251,28 @@ def test_a_block_that_hangs_on_nothing_is_kept(page: Page) -> None:
     page.locator("#blocks[data-state=shown]").wait_for()
     becomes(page, "SI|F(2, 80);\nS;\n\n/// F(2, 80)\n")
     assert image(page) == compile("SI|F(2, 80);S").image
+    assert page.inner_text("#status") == "1 loose block does not run"
+    loose = block(page, "forward")
+    path = path_of(loose)
+    grey = path.evaluate("e => getComputedStyle(e).fill")
+    place = box_of(loose)
+    page.click("#undo")
+    becomes(page, "SI|F(2, 80);\nS;\n")
+    assert page.inner_text("#status").startswith("The program is correct")
+    assert path.evaluate("e => getComputedStyle(e).fill") != grey
+    page.click("#redo")
+    becomes(page, "SI|F(2, 80);\nS;\n\n/// F(2, 80)\n")
+    assert path.evaluate("e => getComputedStyle(e).fill") == grey
+    assert box_of(loose) == pytest.approx(place, abs=1)
     page.click("#view_text")
     page.click("#view_blocks")
-    assert page.locator("#blocks .blocklyDraggable", has_text="F forward").count() >= 2
+    assert page.locator("#blocks .blocklyDraggable", has_text="forward").count() >= 2
 
 
 def test_a_line_that_does_not_parse_is_grey_and_not_lost(page: Page) -> None:
     start(page, "SI|F(2, 80)\nF(1; 80) // hm\nS\n")
     assert block(page, "F(1; 80)").count() == 1
-    drag(page, "Move", "R turn right", block(page, "S stop"))
+    drag(page, "Move", "turn right", block(page, "stop"))
     becomes(page, "SI|F(2, 80);\nF(1; 80) // hm\nS;\nR(0.5, 60);\n")
 
 
@@ -243,7 +282,7 @@ def test_blocks_wait_while_a_text_is_being_typed(page: Page) -> None:
     page.keyboard.type("F(1")
     page.locator("#blocks[data-state=stale]").wait_for()
     page.locator("#blocks_note", has_text="wait").wait_for()
-    assert block(page, "S stop").count() == 1
+    assert block(page, "stop").count() == 1
     page.keyboard.type(", 50)")
     page.locator("#blocks[data-state=shown]").wait_for()
     assert page.inner_text("#blocks_note") == ""
@@ -260,9 +299,17 @@ def test_what_the_compiler_says_is_at_the_block(page: Page) -> None:
     start(page, "SI|S;\nLOOP(2);\n  F(-2, 80);\nEND_LOOP;\n")
     icons = page.locator("#blocks .blocklyWarningIcon, #blocks .blockly-icon-warning")
     assert icons.count() == 1
-    icons.first.click()
+    assert "forward" in str(page.locator(f"{PROGRAM} .wrong").text_content())
     said = check("F(-2, 80)")[0]
     bubble = page.locator("#blocks .blocklyBubble")
+    bubble.wait_for()
+    icons.first.click()  # puts it away
+    bubble.wait_for(state="detached")
+    page.click("#view_text")
+    page.click("#view_blocks")
+    shown(page)
+    assert bubble.count() == 0
+    icons.first.click()
     bubble.wait_for()
     whole = "".join((bubble.text_content() or "").split())
     assert "".join(said.message.split()) in whole and "".join(said.fix.split()) in whole
@@ -288,7 +335,9 @@ def test_the_block_that_runs_is_marked(page: Page) -> None:
 def flyout(page: Page, group: str) -> str:
     page.locator(".blocklyToolboxCategory", has_text=group).click()
     page.locator(".blocklyFlyout:visible .blocklyDraggable").first.wait_for()
-    return page.locator(".blocklyFlyout:visible").text_content() or ""
+    behind = page.locator(".blocklyFlyout:visible .blocklyFlyoutBackground")
+    assert behind.evaluate("e => getComputedStyle(e).fillOpacity") == "1"
+    return (page.locator(".blocklyFlyout:visible").text_content() or "").replace("\xa0", " ")
 
 
 def test_the_words_of_the_robot_are_blocks(page: Page) -> None:
@@ -296,10 +345,37 @@ def test_the_words_of_the_robot_are_blocks(page: Page) -> None:
         page.select_option("#robot", name)
         shown(page)
         said = flyout(page, "Robot")
-        kit = robots.load(name).kit
-        for device in (*kit.sensors, *kit.actuators):
-            assert device.name in said
+        profile = robots.load(name)
+        for device in (*profile.kit.sensors, *profile.kit.actuators):
+            assert profile.labels["en"][device.name] in said
         page.keyboard.press("Escape")
+
+
+def said_by(page: Page) -> set[str]:
+    """Return what stands on blocks, but for numbers."""
+    texts = page.locator(f"{PROGRAM} .blocklyText").all_text_contents()
+    return {" ".join(text.split()) for text in texts if not text.isdigit()}
+
+
+def test_the_words_of_the_text_come_to_the_blocks_of_who_wants_them(page: Page) -> None:
+    start(page, "SI|LOOP(3)\n  IF(DISTANCE < 20)\n    S\n  ELSE\n    F(1, 80)\n  ENDIF\nEND_LOOP\n")
+    assert said_by(page) == {
+        "when it starts", "repeat", "times", "if", "distance sensor", "<", "stop", "else",
+        "forward", "s at", "%",
+    }  # fmt: skip
+    page.select_option("#language", "es")
+    shown(page)
+    assert {"al empezar", "repite", "veces", "si", "si no"} <= said_by(page)
+    page.click("#words")
+    shown(page)
+    assert {"SI al empezar", "LOOP repite", "IF si", "ELSE si no", "F avanza"} <= said_by(page)
+    page.select_option("#language", "en")
+    shown(page)
+    worded = said_by(page)
+    assert {"SI when it starts", "IF", "DISTANCE sensor", "S stop", "ELSE"} <= worded
+    page.click("#words")
+    shown(page)
+    assert "stop" in said_by(page)
 
 
 def test_the_names_of_the_program_are_blocks(page: Page) -> None:
@@ -404,7 +480,7 @@ def test_a_finger_drags_a_block(pages: Pages) -> None:
     page.locator(".blocklyToolboxCategory", has_text="Move").tap()
     source = page.locator(FLYOUT).nth(1)
     source.wait_for()
-    a, b = box_of(source), box_of(block(page, "R turn right"))
+    a, b = box_of(source), box_of(block(page, "turn right"))
     session = page.context.new_cdp_session(page)
 
     def touch(kind: str, x: float, y: float) -> None:
@@ -451,7 +527,7 @@ def test_a_fault_is_said_at_its_block(page: Page) -> None:
     page.click("#run")
     fault = page.locator(f"{PROGRAM} .blocklyDraggable.fault")
     fault.wait_for()
-    assert fault.count() == 1 and "SHOW" in str(fault.text_content())
+    assert fault.count() == 1 and "show" in str(fault.text_content())
     assert fault.locator(".blocklyIconGroup").count() == 1
     page.select_option("#language", "es")
     page.locator("#doing", has_text="Línea 2: algo se divide entre 0.").wait_for()

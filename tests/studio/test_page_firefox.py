@@ -65,7 +65,7 @@ def test_blocks_and_text_are_the_same_program(page: Page) -> None:
     assert image(page) == compile(PROGRAM).image
     page.click("#view_blocks")
     shown(page)
-    assert page.locator("#blocks .blocklyDraggable").count() >= 4
+    assert page.locator("#blocks .blocklyBlock").count() >= 4
     page.click("#undo")
     shown(page)
     assert image(page) == compile("SI|F(2, 80);R(0.5, 60);F(1, 80)").image

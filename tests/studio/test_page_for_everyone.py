@@ -91,7 +91,7 @@ def test_the_keyboard_alone_is_enough(page: Page) -> None:
         page.keyboard.press("Tab")
     assert visited == [
         "robot", "language", "open", "save", "my_programs", "stop", "view_blocks", "view_text",
-        "undo", "redo", "editor", "place", "repair",
+        "words", "undo", "redo", "editor", "place", "repair",
     ]  # fmt: skip
     page.keyboard.press("Enter")
     checked(page)

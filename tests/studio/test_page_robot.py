@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from tests.studio.test_page_for_everyone import SCREENS
 from tests.studio.test_simulation import DANCE
 from tests.support.casefile import ROOT
 from tests.support.studio import asked, checked, runs_like_the_command, write
@@ -189,7 +191,36 @@ def test_a_program_waits_for_its_button(page: Page) -> None:
     page.click("#run")
     page.locator("#push").click()
     in_phase(page, "ended")
+    assert re.fullmatch(r"[\d.]+ cm", value(page, "distance sensor"))
+    assert re.fullmatch(r"\d+ of 1023", value(page, "right light sensor"))
     assert (page.locator("#trace").text_content() or "").split("\n")[-1] == "1000 DONE"
+
+
+# Where everything of the run is.
+PLACES = """() => 'arena run pause step speed world doing values'.split(' ').map((id) => {
+  const { x, y, width, height } = document.getElementById(id).getBoundingClientRect();
+  return [id, x, y, width, height];
+})"""
+
+
+@pytest.mark.parametrize("screen", SCREENS, ids=lambda screen: "x".join(map(str, screen)))
+def test_nothing_jumps_when_a_run_begins(page: Page, screen: tuple[int, int]) -> None:
+    page.set_viewport_size({"width": screen[0], "height": screen[1]})
+    page.select_option("#language", "es")
+    page.select_option("#world", "obstacles")  # nothing has run in it
+    write(page, f"SB|X = 1\n{FOREVER}")
+    before = page.evaluate(PLACES)
+    page.click("#run")
+    page.locator("#push").wait_for()
+    assert page.evaluate(PLACES) == before
+    page.click("#push")
+    page.locator(".cm-running").first.wait_for()
+    page.locator("#values").get_by_text("X", exact=True).wait_for()
+    assert page.evaluate(PLACES) == before
+    page.click("#stop")
+    in_phase(page, "ended")
+    assert page.evaluate(PLACES) == before
+    page.set_viewport_size({"width": 1366, "height": 768})
 
 
 def test_a_fault_is_named_where_it_is(page: Page) -> None:
@@ -212,7 +243,7 @@ def test_another_world_or_robot_begins_again(page: Page) -> None:
     page.locator(".cm-running").first.wait_for()
     page.select_option("#robot", "liner")
     checked(page)
-    assert page.locator("#values").get_by_text("LINE_L").count() == 1
+    assert value(page, "left line sensor") == "–"
     colors = page.evaluate(
         "() => { const c = document.querySelector('#arena'); const d = c.getContext('2d')"
         ".getImageData(0, 0, c.width, c.height).data; const found = new Set();"

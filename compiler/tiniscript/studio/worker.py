@@ -12,9 +12,9 @@ from typing import Any
 from tiniscript.bytecode.image import checksum
 from tiniscript.diagnostics.rendering import Message
 from tiniscript.studio import checking
-from tiniscript.studio.block_form import data_of, from_data, size_of
+from tiniscript.studio.block_form import data_of, from_data, in_order, size_of
 from tiniscript.studio.block_printing import print_blocks
-from tiniscript.studio.block_reading import read
+from tiniscript.studio.block_reading import LOOSE, read
 
 Answer = dict[str, Any]
 MOST_BLOCKS = 1500  # that a page can move about
@@ -39,7 +39,14 @@ def _check(fields: Answer, data: bytes) -> Answer:
         "places": found.places,
         "variables": [each._asdict() for each in found.variables],
         "start": found.start,
+        "loose": _loose(fields, data) if LOOSE.encode() in data else 0,
     }
+
+
+def _loose(fields: Answer, data: bytes) -> int:
+    """Return how many instructions and values of a program hang on nothing."""
+    stacks = read(data.decode(), checking.profile_of(fields["robot"]).kit).loose
+    return sum(len(in_order(stack.body)) or 1 for stack in stacks)
 
 
 def _open(fields: Answer, data: bytes) -> Answer:

@@ -27,7 +27,8 @@ const KIND_OF = { ...SIGNS, NEG: 'negative', NOT: 'not', BRACKETS: 'brackets', R
   MAX: 'extreme', RANDOM: 'random', TRUE: 'truth', FALSE: 'truth', TIME: 'time', FOREVER: 'endless',
   NUMBER: 'number', NAME: 'name', SENSOR: 'sensor' };
 const PART_OF = { negative: 'NEG', not: 'NOT', brackets: 'BRACKETS', round: 'ROUND', abs: 'ABS', random: 'RANDOM', time: 'TIME', endless: 'FOREVER' };
-const DISTANCE = 32; // between stacks that hang on nothing
+const CORNER = 32; // where the program begins
+const DISTANCE = 64; // between stacks: Blockly pushes what is nearer than it would join
 
 // -- blocks to their form --------------------------------------------------------------------------
 
@@ -48,11 +49,28 @@ export function formOf(workspace) {
       note: program?.getCommentText() ?? '',
       is_one_line: Boolean(kept.isOneLine),
       body: bodyOf(program?.getNextBlock() ?? null, ids),
-      loose: tops.filter((block) => block !== program).map((block) =>
-        block.outputConnection ? { body: [], value: valueOf(block) } : { body: bodyOf(block, []), value: [] }),
+      loose: tops.filter((block) => block !== program).map(stackOf),
     },
     ids,
   };
+}
+
+/** @param {Blockly.Block} top @returns {Form['loose'][number]} */
+function stackOf(top) {
+  return top.outputConnection ? { body: [], value: valueOf(top) } : { body: bodyOf(top, []), value: [] };
+}
+
+/** @typedef {Map<string, Blockly.utils.Coordinate[]>} Stood where loose stacks stand, or stood last */
+
+/**
+ * Keeps where each loose stack stands, for when it is made anew.
+ * @param {Blockly.WorkspaceSvg} workspace
+ * @param {Stood} stood
+ */
+export function keepPlaces(workspace, stood) {
+  const tops = workspace.getTopBlocks(true).filter((top) => top.type !== 'program');
+  for (const top of tops) stood.set(JSON.stringify(stackOf(top)), []);
+  for (const top of tops) stood.get(JSON.stringify(stackOf(top)))?.push(top.getRelativeToSurfaceXY());
 }
 
 /** @param {Blockly.Block | undefined} block @returns {any} */
@@ -123,11 +141,10 @@ function partOf(block) {
  * Replaces all blocks.
  * @param {Blockly.WorkspaceSvg} workspace
  * @param {Form} form
+ * @param {Stood} stood where stacks are put that are known; others are put below the program
  * @returns {string[]} the ids of the blocks of the body, in the order of the text
  */
-export function showForm(workspace, form) {
-  const { scrollX, scrollY } = workspace;
-  const hadBlocks = workspace.getTopBlocks(false).length > 0;
+export function showForm(workspace, form, stood) {
   /** @type {string[]} */
   const ids = [];
   /** @type {Blockly.BlockSvg[]} */
@@ -150,18 +167,21 @@ export function showForm(workspace, form) {
     for (const block of made) block.initSvg();
     for (const block of made.reverse()) block.queueRender();
     Blockly.renderManagement.triggerQueuedRenders(workspace);
-    let y = program.getHeightWidth().height + 2 * DISTANCE;
-    program.moveBy(DISTANCE, DISTANCE);
+    const left = new Map([...stood].map(([name, places]) => [name, [...places]]));
+    const { Coordinate } = Blockly.utils; // while they were drawn, blocks pushed each other
+    program.moveTo(new Coordinate(CORNER, CORNER));
+    let y = CORNER + program.getHeightWidth().height + DISTANCE;
     for (const block of loose) {
-      block?.moveBy(DISTANCE, y);
-      y += (block?.getHeightWidth().height ?? 0) + DISTANCE;
+      if (!block) continue;
+      const known = left.get(JSON.stringify(stackOf(block)))?.shift();
+      block.moveTo(known ?? new Coordinate(CORNER, y));
+      if (!known) y += block.getHeightWidth().height + DISTANCE;
     }
   } finally {
     Checker.isLenient = false;
     Blockly.Events.enable();
   }
   workspace.resizeContents();
-  if (hadBlocks) workspace.scroll(scrollX, scrollY);
   return ids;
 }
 

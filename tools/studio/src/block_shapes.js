@@ -6,7 +6,7 @@ import blocks from '../made/blocks.json';
 import { LineField, NameField, NumberField } from './block_fields.js';
 import { rangeOf } from './block_places.js';
 import { BLOCK_TEXTS, TIPS, said } from './block_texts.js';
-import { ROBOTS } from './words.js';
+import { nameOf, ROBOTS } from './words.js';
 
 /** @typedef {'number' | 'truth' | 'any'} Place what a value there is */
 /** @typedef {{colour: string, words: string[], values: Place[], bodies: number, gives: '' | Place, field: '' | 'name' | 'line' | 'sensor' | 'actuator'}} Shape */
@@ -65,10 +65,10 @@ class DeviceField extends Blockly.FieldDropdown {
   constructor(role) {
     /** @this {any} */
     super(function () {
-      const names = devices(role).map((device) => device.text);
+      const rows = devices(role).map((device) => /** @type {[string, string]} */ ([nameOf(device), device.text]));
       const kept = /** @type {any} */ (this).kept;
-      if (kept && !names.includes(kept)) names.push(kept);
-      return (names.length ? names : ['?']).map((name) => /** @type {[string, string]} */ ([name, name]));
+      if (kept && !rows.some(([, name]) => name === kept)) rows.push([kept, kept]);
+      return rows.length ? rows : [['?', '?']];
     });
   }
 
@@ -256,6 +256,7 @@ export function defineBlocks() {
       this.appendDummyInput().appendField(options(['SI', 'SB', 'PING'].map((word) => [said(BLOCK_TEXTS, word), word])), 'WORD');
       this.setNextStatement(true);
       this.setDeletable(false);
+      this.setMovable(false); // what is dragged is all that is seen
       this.setStyle('program');
       this.setTooltip(said(TIPS, 'program'));
     },

@@ -2,6 +2,7 @@
 
 import blocks from '../made/blocks.json';
 import { currentLanguage } from './texts.js';
+import { labelled } from './words.js';
 
 /** `%1` and so on are where values go. */
 export const BLOCK_TEXTS = /** @type {Record<string, string[]>} */ (blocks.labels);
@@ -31,5 +32,5 @@ export const GROUPS = {
 export function said(table, key) {
   const found = table[key];
   if (!found) throw new Error(`no text ${key}`);
-  return found[currentLanguage() === 'en' ? 0 : 1] ?? '';
+  return labelled(found[currentLanguage() === 'en' ? 0 : 1] ?? '');
 }

@@ -4,7 +4,7 @@
 
 import * as Blockly from 'blockly/core';
 import texts from '../made/blockly_texts.json';
-import { formOf, showForm } from './block_form.js';
+import { formOf, keepPlaces, showForm } from './block_form.js';
 import { setActuators } from './block_places.js';
 import { Checker, defineBlocks, setRobot } from './block_shapes.js';
 import { pictureOf } from './block_picture.js';
@@ -16,10 +16,15 @@ import { currentLanguage, text } from './texts.js';
 /** @typedef {import('./block_form.js').Range} Range */
 /** @typedef {import('./block_toolbox.js').Level} Level */
 /** @typedef {import('./python.js').Finding} Finding */
-/** @typedef {{changed: () => void, undo: () => void, redo: () => void, toggle: (place: {line: number, column: number}) => void}} Told */
+/** @typedef {{changed: () => void, toggle: (place: {line: number, column: number}) => void}} Told */
 
 const NARROW = 700; // pixels of width, below which blocks are smaller
 const LONGEST_TIP = 42; // characters in a line of a message at a block
+const SNAPS = 48; // units of a workspace: how far off a block may be dropped
+const STAYS = 68; // the same while it is shown where it would go
+const BESIDE = 24; // units between a block and its message
+const LOW = 240; // pixels of height: in less, a message is seen when somebody asks
+const MOST_STOOD = 200; // stacks whose places are known
 
 export class Blocks {
   #place;
@@ -34,6 +39,13 @@ export class Blocks {
   /** Ids of the blocks, and where each is in the text. @type {[string, Range][]} */
   #places = [];
   #isTouched = false; // by somebody, who may have scrolled
+  /** @type {import('./block_form.js').Stood} */
+  #stood = new Map();
+  /** @type {Blockly.BlockSvg[]} */
+  #loose = []; // the first blocks of what is not joined
+  /** @type {Blockly.icons.WarningIcon | null} */
+  #opening = null;
+  #closed = ''; // the message that somebody has put away
   #running = '';
   #fault = { id: '', said: '' };
   /** @type {Finding[]} */
@@ -50,7 +62,8 @@ export class Blocks {
     this.#told = told;
     this.#level = level;
     Blockly.registry.register(Blockly.registry.Type.CONNECTION_CHECKER, 'tiniscript', Checker, true);
-    this.#takeUndo();
+    Object.assign(Blockly.config, { snapRadius: SNAPS, connectingSnapRadius: STAYS });
+    this.#leaveOut();
     this.#offerBreakpoints();
     setRobot(robot);
     setActuators(robot);
@@ -60,24 +73,13 @@ export class Blocks {
     }
   }
 
-  /** Undo and redo are those of the text, which is what changes. */
-  #takeUndo() {
+  /** Undo and redo are those of the text, which is what changes: the page has their keys. */
+  #leaveOut() {
     for (const name of ['undoWorkspace', 'redoWorkspace', 'blockDisable', 'blockInline', 'blockCollapseExpand', 'collapseWorkspace', 'expandWorkspace', 'blockHelp']) {
       if (Blockly.ContextMenuRegistry.registry.getItem(name)) Blockly.ContextMenuRegistry.registry.unregister(name);
     }
     const { registry } = Blockly.ShortcutRegistry;
-    for (const [name, act] of /** @type {[string, () => void][]} */ ([['undo', () => this.#told.undo()], ['redo', () => this.#told.redo()]])) {
-      const before = registry.getRegistry()[name];
-      const keys = registry.getKeyCodesByShortcutName(name);
-      if (!before) continue;
-      registry.unregister(name);
-      registry.register({ ...before, preconditionFn: () => true, callback: (_, event) => {
-        event.preventDefault();
-        act();
-        return true;
-      } });
-      for (const key of keys) registry.addKeyMapping(key, name, true);
-    }
+    for (const name of ['undo', 'redo']) if (registry.getRegistry()[name]) registry.unregister(name);
   }
 
   /** In the menu of a block, and by F9. */
@@ -128,6 +130,7 @@ export class Blocks {
     workspace.MAX_UNDO = 0;
     hideMeasure();
     workspace.addChangeListener((event) => {
+      if (event instanceof Blockly.Events.BubbleOpen && !event.isOpen) this.#closed = this.#saidAt(event.blockId);
       if (event.isUiEvent || event.type === Blockly.Events.FINISHED_LOADING) return;
       this.#told.changed();
     });
@@ -143,12 +146,15 @@ export class Blocks {
     return this.#place.contains(document.activeElement);
   }
 
+  /** The language of the page is another one, or whether words of the text are shown. */
   setLanguage() {
     const { form } = formOf(this.#workspace);
     const places = this.#places.map(([, place]) => place);
+    const { scrollX, scrollY } = this.#workspace;
     this.#workspace.dispose();
     this.#workspace = this.#begin();
     this.show(form);
+    if (this.#isTouched) this.#workspace.scroll(scrollX, scrollY);
     this.placed(this.#places.map(([id]) => id), places);
   }
 
@@ -171,33 +177,62 @@ export class Blocks {
   }
 
   resize() {
+    if (!this.#place.clientWidth) return; // hidden: Blockly would forget what was seen
     Blockly.svgResize(this.#workspace);
     this.#seeBeginning();
   }
 
   /** Until somebody scrolls: Blockly keeps the place of its scrollbars, not that of the blocks. */
   #seeBeginning() {
-    if (!this.#isTouched && this.#place.clientWidth) this.#workspace.scroll(0, 0);
+    if (!this.#isTouched) this.#workspace.scroll(0, 0);
   }
 
-  /** Replaces the blocks. @param {Form} form */
+  /** The next blocks are of another program, which is seen from its beginning. */
+  begin() {
+    this.#isTouched = false;
+    this.#stood.clear();
+  }
+
+  /** Replaces the blocks: what stays the same stays in its place, and the focus, too. @param {Form} form */
   show(form) {
-    const hadFocus = this.hasFocus;
+    const { scrollX, scrollY } = this.#workspace;
+    const focus = this.hasFocus ? this.#focused() : null;
     Blockly.hideChaff();
     this.#running = '';
     this.#fault = { id: '', said: '' };
-    const ids = showForm(this.#workspace, form);
+    const ids = showForm(this.#workspace, form, this.#stood);
     this.placed(ids, inOrder(form.body).map((block) => block.place ?? [0, 0, 0, 0]));
     this.#use(form);
+    this.#greyLoose();
+    const block = focus === null ? null : this.#workspace.getBlockById(ids[Math.min(focus, ids.length - 1)] ?? '');
+    if (block) Blockly.getFocusManager().focusNode(block);
+    else if (focus !== null) Blockly.getFocusManager().focusTree(this.#workspace);
+    this.#workspace.scroll(scrollX, scrollY);
     this.#seeBeginning();
-    if (hadFocus) Blockly.getFocusManager().focusTree(this.#workspace);
+  }
+
+  /** @returns {number} which block of the text has the focus; -1 where none has */
+  #focused() {
+    const node = /** @type {any} */ (Blockly.getFocusManager().getFocusedNode());
+    const id = (node?.getSourceBlock?.() ?? node)?.id;
+    return this.#places.findIndex(([each]) => each === id);
   }
 
   /** @returns {{form: Form, ids: string[]}} */
   read() {
     const found = formOf(this.#workspace);
     this.#use(found.form);
+    this.#greyLoose();
     return found;
+  }
+
+  /** What is not joined to the program looks it, and is found where it is now. */
+  #greyLoose() {
+    for (const block of this.#loose) block.removeClass('loose');
+    this.#loose = this.#workspace.getTopBlocks(false).filter((block) => block.type !== 'program');
+    for (const block of this.#loose) block.addClass('loose');
+    if (this.#stood.size > MOST_STOOD) this.#stood.clear();
+    keepPlaces(this.#workspace, this.#stood);
   }
 
   /**
@@ -223,22 +258,56 @@ export class Blocks {
     this.#findings = findings;
     /** @type {Map<string, string[]>} */
     const said = new Map();
+    /** @type {Set<string>} */
+    const wrong = new Set();
     if (this.#fault.id) said.set(this.#fault.id, [this.#fault.said]);
     for (const finding of findings) {
       const id = this.#blockAt(finding.line, finding.column) ?? '';
       const whole = [finding.message, finding.fix && `${text('try')} ${finding.fix}`].filter(Boolean).join('\n');
       said.set(id, [...(said.get(id) ?? []), whole]);
+      if (finding.severity === 'mistake') wrong.add(id);
     }
     Blockly.Events.disable();
     try {
       for (const block of this.#workspace.getAllBlocks(false)) {
         if (block.isShadow()) continue;
-        const messages = said.get(block.type === 'program' ? '' : block.id);
-        block.setWarningText(messages ? messages.map(folded).join('\n\n') : null);
+        const id = block.type === 'program' ? '' : block.id;
+        block.setWarningText(said.get(id)?.map(folded).join('\n\n') ?? null);
+        if (wrong.has(id)) block.addClass('wrong');
+        else block.removeClass('wrong');
       }
     } finally {
       Blockly.Events.enable();
     }
+    const [first] = wrong;
+    if (first && this.#saidAt(first) !== this.#closed) this.#open(first);
+  }
+
+  /** @param {string | undefined} id @returns {Blockly.icons.WarningIcon | null} */
+  #badgeOf(id) {
+    return this.#workspace.getBlockById(id ?? '')?.getIcon(Blockly.icons.WarningIcon.TYPE) ?? null;
+  }
+
+  /** @param {string | undefined} id @returns {string} */
+  #saidAt(id) {
+    return this.#badgeOf(id)?.getText() ?? '';
+  }
+
+  /** Shows the message of a block beside it, where there is room: over others it stands as Blockly has it. @param {string} id */
+  async #open(id) {
+    const badge = this.#badgeOf(id);
+    if (!badge || badge === this.#opening || this.#place.clientHeight < LOW) return;
+    this.#opening = badge; // asked twice, Blockly would show it twice
+    await badge.setBubbleVisible(true);
+    this.#opening = null;
+    const bubble = badge.getBubble();
+    if (badge !== this.#badgeOf(id)) return bubble?.dispose(); // that block is gone
+    const block = this.#workspace.getBlockById(id);
+    if (!bubble || !block) return;
+    const { right, top } = block.getBoundingRectangleWithoutChildren();
+    const { left, width } = this.#workspace.getMetricsManager().getViewMetrics(true);
+    const isRoom = right + BESIDE + bubble.getBoundingRectangle().getWidth() <= left + width;
+    if (isRoom) bubble.moveDuringDrag(new Blockly.utils.Coordinate(right + BESIDE, top));
   }
 
   /** Marks the block that runs now, or none. @param {{line: number, column: number} | null} range */
@@ -281,6 +350,7 @@ export class Blocks {
     this.#isTouched = true;
     this.#workspace.centerOnBlock(block.id);
     Blockly.getFocusManager().focusNode(block);
+    this.#open(block.id);
   }
 
   /**

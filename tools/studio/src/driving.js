@@ -1,6 +1,7 @@
 // The part of the page with the virtual robot: its buttons, its picture and what is told of it.
 
 import { Arena } from './arena.js';
+import { BLOCK_TEXTS, said } from './block_texts.js';
 import { element } from './elements.js';
 import { faultSaid } from './faults.js';
 import { download } from './files.js';
@@ -8,7 +9,7 @@ import { offsetsOf, rangeAt } from './parts.js';
 import { Plot } from './plot.js';
 import { Simulator } from './simulator.js';
 import { text } from './texts.js';
-import { ROBOTS } from './words.js';
+import { nameOf, ROBOTS } from './words.js';
 import { OWN_WORLD } from './work.js';
 import { WorldChoice } from './world_choice.js';
 import { WorldDrawing } from './world_drawing.js';
@@ -17,6 +18,7 @@ import { WorldDrawing } from './world_drawing.js';
 /** @typedef {import('./work.js').Work} Work */
 
 const SHOWN = 200; // lines of the trace
+const SHORT = 12; // characters of a name whose value stands beside another one
 const SEEN = { arena: 'seen_arena', plot: 'seen_plot', trace: 'seen_trace' };
 
 export class Driving {
@@ -277,7 +279,7 @@ export class Driving {
 
   #show() {
     const { phase, state, trace } = this.#simulator;
-    this.#pause.hidden = !this.#isDriving;
+    this.#pause.disabled = !this.#isDriving;
     this.#pause.textContent = text(phase === 'paused' ? 'go_on' : 'pause');
     this.#push.hidden = !state?.is_waiting || phase !== 'running';
     element('doing', HTMLElement).textContent = this.#note || this.#drawing.said || this.#doing();
@@ -339,12 +341,13 @@ export class Driving {
       [text('time'), state ? `${seconds} s` : '–'],
       [text('motors'), state ? state.motors.join('  ') : '–'],
       [text('bumps'), state ? String(state.bumps) : '–'],
-      ...this.#sensors().map((device, k) => [device.text, state ? `${state.readings[k]?.text} ${device.unit}` : '–']),
+      ...this.#sensors().map((device, k) => [nameOf(device), state ? measured(device, state.readings[k]?.text ?? '') : '–']),
       ...this.#variables.map(({ name, is_yes_no }, k) => [name, written(state?.variables[k], is_yes_no)]),
     ];
     element('values', HTMLElement).replaceChildren(
       ...rows.map(([name = '', value = '']) => {
         const row = document.createElement('div');
+        row.className = name.length > SHORT ? 'wide' : '';
         const term = document.createElement('dt');
         const found = document.createElement('dd');
         term.textContent = name;
@@ -354,6 +357,16 @@ export class Driving {
       }),
     );
   }
+}
+
+/**
+ * A reading with its unit, or with the most that it can be.
+ * @param {typeof ROBOTS[number]['devices'][number]} device
+ * @param {string} value
+ */
+function measured({ unit, arguments: [range] }, value) {
+  if (value in BLOCK_TEXTS) return said(BLOCK_TEXTS, value); // TRUE or FALSE
+  return unit || !range ? `${value} ${unit}` : text('of', { value, most: range.high });
 }
 
 /**

@@ -16,7 +16,7 @@ import { RobotPanel } from './robot_panel.js';
 import { RobotPlace } from './robot_place.js';
 import { chooseSide, showSide } from './robot_side.js';
 import { Views } from './views.js';
-import { ROBOTS } from './words.js';
+import { ROBOTS, showWords } from './words.js';
 import { keep, keptWork, LONGEST } from './work.js';
 
 /** @typedef {import('./python.js').Checked} Checked */
@@ -27,6 +27,7 @@ const FIRST_PROGRAM = 'SI|F(2, 80);\nR(0.5, 60);\nF(1, 80);\n';
 
 const robots = element('robot', HTMLSelectElement);
 const languages = element('language', HTMLSelectElement);
+const words = element('words', HTMLButtonElement);
 const file = element('file', HTMLInputElement);
 const status = element('status', HTMLElement);
 const note = element('note', HTMLElement);
@@ -41,9 +42,12 @@ const work = kept ?? {
   name: '',
   view: /** @type {const} */ ('blocks'),
   level: /** @type {const} */ ('few'),
+  words: false,
 };
 setLanguage(work.language);
 languages.value = work.language;
+showWords(work.words);
+words.setAttribute('aria-pressed', String(work.words));
 
 const python = new Python();
 const editor = new Editor(element('editor', HTMLElement), work.robot, changed, () => driving.breakpointsChanged(), (line) => {
@@ -178,8 +182,8 @@ function show(answer) {
   place.programChanged();
   views.showFindings(answer.findings);
   showMessages(list, answer.findings, (finding) => views.goTo(finding), repair);
-  status.textContent = summary(answer.findings, answer.bytes);
-  status.className = answer.image ? 'right' : 'wrong';
+  status.textContent = summary(answer);
+  status.className = answer.image ? (answer.loose ? 'loose' : 'right') : 'wrong';
   document.documentElement.dataset['state'] = 'checked';
   document.documentElement.dataset['image'] = answer.image;
 }
@@ -218,6 +222,7 @@ function putProgram(program) {
   note.textContent = '';
   if (program.robot !== work.robot) setRobot(program.robot);
   work.name = program.name;
+  views.begin();
   editor.replace(program.text);
   remember();
 }
@@ -236,6 +241,15 @@ languages.addEventListener('change', () => {
   if (!isReady) status.textContent = text('starting');
   remember();
   check();
+});
+
+words.addEventListener('click', () => {
+  work.words = !work.words;
+  showWords(work.words);
+  words.setAttribute('aria-pressed', String(work.words));
+  views.setLanguage();
+  driving.setLanguage();
+  remember();
 });
 
 element('open', HTMLButtonElement).addEventListener('click', () => file.click());
@@ -275,8 +289,18 @@ addEventListener('keydown', (event) => {
   } else if (event.key === 'o') {
     event.preventDefault();
     file.click();
+  } else if ('zZyY'.includes(event.key) && !event.defaultPrevented && !hasItsOwnUndo(event.composedPath()[0])) {
+    event.preventDefault();
+    const isRedo = event.shiftKey || event.key === 'y';
+    const place = 'drawing' in document.documentElement.dataset ? 'world_' : '';
+    element(`${place}${isRedo ? 'redo' : 'undo'}`, HTMLButtonElement).click();
   }
 });
+
+/** Whether a key was pressed in a field of text, or in front of the page. @param {EventTarget | undefined} target */
+function hasItsOwnUndo(target) {
+  return target instanceof Element && target.closest('input:not([type=checkbox]), textarea, [contenteditable=true], dialog') !== null;
+}
 
 whenOffline();
 programs.openLink();

@@ -3,6 +3,7 @@
 
 import { text } from './texts.js';
 
+/** @typedef {import('./python.js').Checked} Checked */
 /** @typedef {import('./python.js').Finding} Finding */
 
 const MOST = 50; // messages that are shown at once
@@ -44,19 +45,16 @@ export function showMessages(list, findings, goTo, repair) {
   list.replaceChildren(...rows);
 }
 
-/**
- * @param {Finding[]} findings
- * @param {number} bytes
- * @returns {string}
- */
-export function summary(findings, bytes) {
+/** @param {Checked} checked @returns {string} */
+export function summary({ findings, bytes, loose }) {
   const mistakes = findings.filter((each) => each.severity === 'mistake').length;
   const warnings = findings.length - mistakes;
   const parts = [];
   if (mistakes) parts.push(mistakes === 1 ? text('one_mistake') : text('mistakes', { count: mistakes }));
-  else parts.push(text('right', { bytes }));
+  else if (!loose) parts.push(text('right', { bytes }));
+  if (loose) parts.push(loose === 1 ? text('one_loose') : text('loose', { count: loose }));
   if (warnings) parts.push(warnings === 1 ? text('one_warning') : text('warnings', { count: warnings }));
-  return parts.join(mistakes ? ', ' : ' ');
+  return parts.join(mistakes || loose ? ', ' : ' ');
 }
 
 /**

@@ -31,6 +31,7 @@
  * @property {[number, number, number, number, number][]} places offset, line, column and the end
  * @property {{name: string, is_yes_no: boolean}[]} variables
  * @property {string} start SI, SB or PING; empty where there are mistakes
+ * @property {number} loose instructions and values that are joined to nothing
  */
 
 /**

@@ -56,6 +56,7 @@ export const TEXTS = {
   level_few: ['To begin', 'Para empezar'],
   level_usual: ['More blocks', 'Más bloques'],
   level_all: ['All blocks', 'Todos los bloques'],
+  words: ['Show the words of the text', 'Mostrar las palabras del texto'],
   undo: ['Undo', 'Deshacer'],
   redo: ['Redo', 'Rehacer'],
   blocks: ['The program as blocks', 'El programa en bloques'],
@@ -66,6 +67,8 @@ export const TEXTS = {
   messages: ['What the compiler says', 'Lo que dice el compilador'],
   starting: ['The compiler is starting…', 'El compilador está arrancando…'],
   right: ['The program is correct: {bytes} bytes.', 'El programa está bien: {bytes} bytes.'],
+  one_loose: ['1 loose block does not run', '1 bloque suelto no se ejecuta'],
+  loose: ['{count} loose blocks do not run', '{count} bloques sueltos no se ejecutan'],
   one_mistake: ['1 mistake', '1 error'],
   mistakes: ['{count} mistakes', '{count} errores'],
   one_warning: ['1 warning', '1 aviso'],
@@ -94,10 +97,11 @@ export const TEXTS = {
   plot: ['Its values over time', 'Sus valores en el tiempo'],
   save_trace: ['Save this list', 'Guardar esta lista'],
   trace_name: ['trace.txt', 'traza.txt'],
+  of: ['{value} of {most}', '{value} de {most}'],
   time: ['Time', 'Tiempo'],
   motors: ['Motors', 'Motores'],
   bumps: ['Collisions', 'Choques'],
-  robot_off: ['Press Run: the virtual robot drives here.', 'Pulsa Probar: aquí se mueve el robot virtual.'],
+  robot_off: ['Press Run: the robot drives here.', 'Pulsa Probar y el robot se mueve.'],
   robot_running: ['It is running.', 'Está en marcha.'],
   robot_waiting: ['It waits for its button.', 'Espera su botón.'],
   robot_paused: ['Paused.', 'En pausa.'],
@@ -155,7 +159,9 @@ export function setLanguage(chosen) {
     element.textContent = text(String(element.getAttribute('data-text')));
   }
   for (const element of document.querySelectorAll('[data-label]')) {
-    element.setAttribute('aria-label', text(String(element.getAttribute('data-label'))));
+    const label = text(String(element.getAttribute('data-label')));
+    element.setAttribute('aria-label', label);
+    if (element instanceof HTMLButtonElement) element.title = label;
   }
 }
 

@@ -93,7 +93,7 @@ export class Views {
     this.#level.replaceChildren(...LEVELS.map(([level, name]) => new Option(text(name), level)));
     this.#level.value = this.#work.level;
     this.#blocks?.setLanguage();
-    this.#blocks?.showFindings(this.#findings);
+    if (!this.#isStale()) this.#showAll();
     if (this.#blocks) this.#refresh(true);
   }
 
@@ -103,8 +103,14 @@ export class Views {
     if (this.#isOn) this.#refresh(true);
   }
 
+  /** Another program comes. */
+  begin() {
+    this.#blocks?.begin();
+  }
+
   /** The text has changed, by whoever did it. */
   textChanged() {
+    this.#findings = []; // those are of the text before
     if (!this.#blocks || !this.#isStale()) return;
     this.#showState();
     clearTimeout(this.#typing);
@@ -206,8 +212,6 @@ export class Views {
     const { Blocks: Kind } = await import('./blocks.js');
     this.#blocks = new Kind(this.#pane, this.#work.robot, this.#work.level, {
       changed: () => this.#blocksChanged(),
-      undo: () => this.#again(() => this.#editor.undo()),
-      redo: () => this.#again(() => this.#editor.redo()),
       toggle: (place) => {
         if (!this.#isStale()) this.#editor.toggleBreakpoint(place);
       },
@@ -295,10 +299,7 @@ export class Views {
         this.#changes = 0;
         this.#blocks.show(form);
         this.#form = JSON.stringify(this.#blocks.read().form);
-        this.#blocks.showFindings(this.#findings);
-        this.#blocks.showFault(...this.#fault);
-        this.#blocks.showRunning(this.#running);
-        this.showBreakpoints();
+        this.#showAll();
       }
       this.#showState();
     } catch (why) {
@@ -307,6 +308,14 @@ export class Views {
       this.#isRefreshing = false;
       this.#isWanted = false;
     }
+  }
+
+  /** Blocks that are new have nothing at them yet. */
+  #showAll() {
+    this.#blocks?.showFindings(this.#findings);
+    this.#blocks?.showFault(...this.#fault);
+    this.#blocks?.showRunning(this.#running);
+    this.showBreakpoints();
   }
 
   /** @param {unknown} why */

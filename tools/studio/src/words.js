@@ -2,6 +2,7 @@
 // `description.json`, which is made from the compiler's own.
 
 import description from '../made/description.json';
+import { currentLanguage } from './texts.js';
 
 /** @typedef {{text: string, role: string, usage?: string, example: string}} Word */
 
@@ -21,6 +22,23 @@ const WORDS = new Map(
     ),
   ]),
 );
+
+let areShown = false;
+
+/** Whether the words of the text stand on blocks and at readings. @param {boolean} chosen */
+export function showWords(chosen) {
+  areShown = chosen;
+}
+
+/** @param {string} label with a word of the text: of `{IF} if %1` the rest, or `IF %1` @returns {string} */
+export function labelled(label) {
+  return areShown ? label.replace(/\{(\S+)\} (\1\b ?)?/i, '$1 ').trim() : label.replace(/\{\S+\} /, '');
+}
+
+/** @param {typeof ROBOTS[number]['devices'][number]} device @returns {string} */
+export function nameOf(device) {
+  return labelled(`{${device.text}} ${device.labels[currentLanguage()]}`);
+}
 
 /**
  * @param {string} robot

@@ -4,7 +4,7 @@
 
 import { isRobot, WORLDS } from './words.js';
 
-/** @typedef {{text: string, robot: string, world: string, language: 'en' | 'es', name: string, view: 'blocks' | 'text', level: 'few' | 'usual' | 'all'}} Work */
+/** @typedef {{text: string, robot: string, world: string, language: 'en' | 'es', name: string, view: 'blocks' | 'text', level: 'few' | 'usual' | 'all', words: boolean}} Work */
 
 const PLACE = 'tiniscript.work';
 const WORLD_PLACE = 'tiniscript.world'; // the text of the newest world that was drawn here
@@ -140,5 +140,6 @@ function checked(found) {
     name: typeof found.name === 'string' ? found.name.slice(0, 200) : '',
     view: found.view === 'text' ? 'text' : 'blocks',
     level: found.level === 'all' || found.level === 'usual' ? found.level : 'few',
+    words: found.words === true,
   };
 }
