@@ -5,6 +5,7 @@ from __future__ import annotations
 import runpy
 import subprocess
 import sys
+from datetime import datetime, timedelta, timezone
 from importlib.util import find_spec
 from pathlib import Path
 from shutil import which
@@ -67,6 +68,40 @@ def test_what_other_code_has_reached_does_not_count(monkeypatch: pytest.MonkeyPa
     monkeypatch.setattr(results, "commit", lambda: "b" * 10)
     campaign.main(["done", "--pieces", "1"])
     assert (kept("done").done, kept("done").commit) == (10, "b" * 10)
+
+
+def test_a_campaign_that_is_interrupted_keeps_what_was_done(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    run = subprocess.run
+    calls = []
+
+    def interrupted(*words: object, **how: object) -> object:
+        calls.append(words)
+        if len(calls) == 2:
+            raise KeyboardInterrupt
+        return run(*words, **how)  # type: ignore[call-overload]
+
+    monkeypatch.setattr(subprocess, "run", interrupted)
+    assert campaign.main(["done"]) == 2
+    assert kept("done").done == 10
+    assert "goes on from here" in capsys.readouterr().out
+
+
+def test_it_says_for_how_long_a_goal_was_not_run(
+    own_goals: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Also of what another computer has run, which is in the document."""
+    today = datetime.now(timezone.utc).date()
+    old = Result(25, 1.0, 7, 22, (today - timedelta(days=9)).isoformat(), "a" * 10)
+    results.write(own_goals, {"done": old, "bad": old._replace(date=today.isoformat())})
+    campaign.main(["--list"])
+    first, second = capsys.readouterr().out.splitlines()
+    assert "25 in 1 s" in first and first.endswith("; run 9 days ago")
+    assert second.endswith("; run today")
+    results.write(own_goals, {})
+    campaign.main(["--list"])
+    assert "not run yet" in capsys.readouterr().out
 
 
 def test_the_table_says_what_was_not_run_and_what_is_less(
