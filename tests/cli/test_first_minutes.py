@@ -224,17 +224,17 @@ def test_a_virtual_robot_that_is_gone_is_no_port(monkeypatch: pytest.MonkeyPatch
 def test_the_robots_that_have_a_word_are_named(tsc: Tsc) -> None:
     done = tsc("check", LINE)
     assert done.code == 1
-    assert "tinibot has no LINE_L; the robot liner has it.   Try:  Add --robot liner" in done.err
+    assert "tinibot has no LINE_L; the robot liner has it.\nTry:  Choose liner" in done.err
     assert "LINE_L = 0" not in done.err
     for verb in (["run"], ["compile", "-o", "-"], ["upload", "--virtual"], ["upload"]):
         assert "the robot liner has it" in tsc(*verb, LINE).err, verb
     done = tsc("check", LINE, "--lang", "es")
     assert "tinibot no tiene LINE_L; lo tiene el robot liner." in done.err
-    assert "Agrega --robot liner al comando" in done.err
+    assert "Elige liner arriba en el estudio, o agrega --robot liner al comando" in done.err
     done = tsc("check", "-e", "LED(BUTTON)", "--json")
     (found,) = [each for each in json.loads(done.out) if each["column"] == 1]
     assert found["code"] == "TS119"
-    assert found["fix"] == "Add --robot grabber or --robot liner to the command"
+    assert found["fix"].startswith("Choose grabber or liner at the top of the studio, or add")
     # where one robot has all words, the others are not named
     assert "--robot liner to the command" in tsc("check", "-e", "LED(LINE_L)").err
     assert "--robot grabber to" in tsc("check", "-e", "LED(DISTANCE > 5)").err
