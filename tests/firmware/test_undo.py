@@ -29,6 +29,7 @@ from tests.firmware.test_keeping import (
 from tests.firmware.test_other_versions import OLD, kept
 from tests.machines.host_firmware import HostFirmware, drives, missing
 from tiniscript.bytecode.image import sealed
+from tiniscript.bytecode.opcodes import ISA_MINOR
 from tiniscript.link.frames import decoded
 from tiniscript.link.messages import SAVED, STATUSES
 from tiniscript.link.requests import OK
@@ -135,7 +136,7 @@ def of_another_kit() -> bytes:
 
 def of_another_minor() -> bytes:
     image = bytearray(bytes_of(A))
-    image[3] += 1
+    image[3] = ISA_MINOR + 1
     return sealed(bytes(image))
 
 

@@ -85,7 +85,7 @@ def test_missing_rule_fails(project: Path) -> None:
         with verifier.open("a", encoding="utf-8") as more:
             more.write(
                 "namespace tiniscript {\n"
-                "Verdict verify(const uint8_t*, size_t, uint8_t, uint8_t, uint16_t*) {\n"
+                "Verdict verify(const uint8_t*, size_t, uint8_t, uint8_t, uint16_t*, bool) {\n"
                 "  return {Rule::kNone, 0};\n}\n}\n"
             )
         code, log = pio(project, "test", "-e", "native")

@@ -15,7 +15,7 @@ from tests.machines.esp32 import Esp32Robot
 from tests.machines.link import CppLink, cpp_link
 from tests.support.link_cases import KIT, items_of
 from tiniscript import robots
-from tiniscript.bytecode.image import HEADER_BYTES, pack, unpack
+from tiniscript.bytecode.image import HEADER_BYTES, isa_of, pack, unpack
 from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
 from tiniscript.link.connection import PendingRequest
 from tiniscript.link.frames import Frame, checksum, decoded, encoded
@@ -57,7 +57,7 @@ def begun(minor: int = LARGE_MINOR, is_large: bool = True, epoch: int = EPOCH) -
     """Return a robot in a session with a computer of this minor version."""
     robot = cpp_link(is_large)
     robot.begin(room=8192, kit=KIT, epoch=epoch)
-    payload = struct.pack("<BBBBHI", MAJOR, minor, ISA_MAJOR, ISA_MINOR, KIT, 7)
+    payload = struct.pack("<BBBBHI", MAJOR, minor, *isa_of(0), KIT, 7)
     frames = [decoded(each) for each in sent_by(robot, Frame(HELLO, 1, 0, payload))]
     (reply,) = [frame for frame in frames if frame]
     found = read(BY_NAME["HELLO"].reply, reply.payload[1:])
@@ -152,7 +152,7 @@ def test_a_computer_gets_the_image_in_frames_that_it_takes(
 ) -> None:
     robot = begun(is_large=is_large)
     put_program(robot)
-    hello = struct.pack("<BBBBHI", MAJOR, minor, ISA_MAJOR, ISA_MINOR, KIT, 8)
+    hello = struct.pack("<BBBBHI", MAJOR, minor, *isa_of(0), KIT, 8)
     answers(robot, Frame(HELLO, 1, 0, hello))
     image = b""
     whole = len(pack("SI", 0, CODE))
