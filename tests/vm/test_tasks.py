@@ -18,6 +18,18 @@ from tiniscript.vm.trace import TracedRobot
 KIT = robots.load("tinibot").kit
 MAX_MS = 300
 
+# Each has a task that faults when LIGHT_L has more than 500.
+STATES = {
+    state: f"N = 0;{text};TASK;W(FOREVER) UNTIL(LIGHT_L > 500);SHOW(1 / N);END_TASK"
+    for state, text in {
+        "the main task moves": "WHEN(FALSE);END_WHEN;F(600, 80)",
+        "a task waits": "TASK;W(1.5);F(600, 80);END_TASK",
+        "the body of a WHEN moves": "WHEN(TRUE);B(600, 40);END_WHEN;F(600, 80)",
+        "a SHOW finds no room": "TASK;LOOP(FOREVER);SHOW(1);SHOW(2);END_LOOP;END_TASK;F(600, 80)",
+        "an echo is slow": "WHEN(DISTANCE < 5);S;END_WHEN;F(600, 80)",
+    }.items()
+}
+
 
 class SlowRobot(TracedRobot):
     """Each reading is not there `asks` times, and there is no room for a SHOW `shows` times."""
@@ -141,3 +153,27 @@ def test_the_others_begin_when_the_first_turn_of_the_main_task_is_over() -> None
         robot.now_ms = now_ms
         machine.tick(now_ms, 1000)
     assert [str(event) for event in robot.events] == ["12 READ DISTANCE 0", "27 SHOW 1"]
+
+
+class DeafRobot(TracedRobot):
+    """No echo comes back, and there is no room for a SHOW."""
+
+    def read(self, sensor: int) -> int | None:
+        return None if KIT.sensors[sensor].name == "DISTANCE" else super().read(sensor)
+
+    def show(self, value: int, is_yes_no: bool) -> bool:
+        return False
+
+    def off(self) -> None:
+        self.say("OFF", (), "OFF")
+
+
+@pytest.mark.parametrize("state", STATES)
+def test_a_fault_of_one_task_ends_all_of_them(state: str) -> None:
+    senses = Senses({"LIGHT_L": [0, 0, 1_000_000]}, 100)
+    robot = DeafRobot(KIT, lists_of(KIT, senses))
+    machine = machine_for(STATES[state], robot, senses)
+    for robot.now_ms in range(2000):
+        machine.tick(robot.now_ms, 1000)
+    assert (machine.status, machine.fault) == (FAULT, "DIVIDE_BY_ZERO")
+    assert str(robot.events[-1]) == "40 OFF"

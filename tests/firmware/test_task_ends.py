@@ -1,0 +1,78 @@
+"""What ends a program ends all of its tasks, whatever each of them does: on a simulated ESP32."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pytest
+
+from tests.firmware.test_host_firmware import happened, outcome
+from tests.machines.esp32 import Esp32Robot, missing
+from tests.robots.test_robots import TEXTS
+from tests.vm.test_tasks import STATES
+from tiniscript import compile_text
+from tiniscript.bytecode.image import unpack
+from tiniscript.link.messages import STATE_FAULTED, STATE_STOPPED
+from tiniscript.link.requests import OK
+from tiniscript.link.session import Session
+from tiniscript.robots.reader import read
+
+pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
+
+LIGHT_L = 35  # its pin
+MAX_RUN = TEXTS["tinibot32"].replace("max_run_seconds = 600", "max_run_seconds = 1")
+# What ends a run, and the fault that the robot keeps of it.
+ENDS: dict[str, tuple[Callable[[Esp32Robot, Session], object], int]] = {
+    "a stop": (lambda robot, session: robot.step(bytes(4)), 0),
+    "the button": (lambda robot, session: robot.talk(session, 50, flags=1), 0),
+    "a lost link": (lambda robot, session: robot.wait(1100), 64),
+    "max_run": (lambda robot, session: robot.talk(session, 1000), 65),
+    "a stall": (lambda robot, session: robot.hang(150), 66),
+    "a fault": (lambda robot, session: robot.analog(LIGHT_L, 4095), 2),
+}
+
+
+def shows(session: Session) -> int:
+    """Return how many the robot has sent since this was asked last."""
+    return sum(event.name == "SHOW" for event in session.events())
+
+
+@pytest.mark.parametrize("end", ENDS)
+@pytest.mark.parametrize("state", STATES)
+def test_all_tasks_end(state: str, end: str) -> None:
+    """None goes on afterwards, nor in the tasks of the next program."""
+    robot = Esp32Robot(read(MAX_RUN, "mine"))
+    robot.wait(200)
+    session = Session(1, 9600, robot.robot.kit.fingerprint)
+
+    def send(state: str) -> None:
+        image = unpack(compile_text(STATES[state], robot.robot.kit).image)
+        request = session.upload(image, is_detached=end == "max_run")
+        assert robot.until(session, request) == OK
+        robot.talk(session, 200)
+
+    send(state)
+    driven = {"a task waits": [], "the body of a WHEN moves": ["MOTORS -40 -40"]}
+    begun = driven.get(state, ["MOTORS 80 80"])
+    assert happened(robot) == begun
+    assert (0 < shows(session) < 300) == (state == "a SHOW finds no room")  # of 400
+    robot.did.clear()
+
+    ended, fault = ENDS[end]
+    ended(robot, session)
+    robot.talk(session, 100)
+    assert robot.is_latched
+    shows(session)
+    robot.talk(session, 2000)
+    moves = [each for each in happened(robot) if each.startswith("MOTORS")]
+    assert moves == ["MOTORS 0 0"] * len(begun)
+    assert shows(session) == 0
+    status = session.status()
+    assert robot.until(session, status) == OK
+    values = outcome(status).values
+    assert (values.state, values.fault) == (STATE_FAULTED if fault else STATE_STOPPED, fault)
+
+    robot.analog(LIGHT_L, 0)
+    robot.did.clear()
+    send("the main task moves")
+    assert happened(robot) == ["MOTORS 80 80"] and not robot.is_latched
