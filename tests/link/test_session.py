@@ -329,6 +329,23 @@ def test_a_program_of_an_older_instruction_set_says_so() -> None:
     assert frame and frame.number == BY_NAME["BEGIN"].number
 
 
+@pytest.mark.parametrize(
+    ("minor", "said"),
+    [
+        (ISA_MINOR - 1, (STATUSES["OTHER_MACHINE"], ISA - 1)),
+        (ISA_MINOR, (RULES["UNKNOWN_OPCODE"][0], 0)),
+    ],
+)
+def test_a_line_that_an_older_machine_does_not_know(minor: int, said: tuple[int, int]) -> None:
+    """LIVE names no version: the robot says only that it has no such instruction."""
+    session = Session(1, kit=KIT)
+    session.hello()
+    session.receive(answer(session.poll(0), {**DESCRIPTION, "isa_minor": minor}), 0)
+    request = session.live(compile_text("TASK;END_TASK", robots.load("tinibot32").kit).code)
+    session.receive(answer(session.poll(0), {}, RULES["UNKNOWN_OPCODE"][0]), 5)
+    assert request.outcome and (request.outcome.status, request.outcome.detail) == said
+
+
 def test_a_busy_robot_is_asked_again_but_not_for_ever() -> None:
     session = greeted()
     request = session.upload(unpack(pack("SI", 0, FORWARD)))

@@ -11,6 +11,7 @@ from collections.abc import Generator, Mapping
 from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
 
 from tiniscript.bytecode.image import HEADER_BYTES, STARTS, Image
+from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
 from tiniscript.bytecode.verify import RULES
 from tiniscript.link.messages import (
     BY_NAME,
@@ -184,7 +185,15 @@ def live(code: bytes, is_latched: bool, kit: int, robot: DeviceInfo) -> Exchange
         if cleared.status != OK:
             return refused(cleared)
     request = Request("LIVE", {"mode": RUN, "code": code})
-    return (yield from patient(request, ReceiptReply))
+    reply = yield from patient(request, ReceiptReply)
+    is_older = robot.isa < (ISA_MAJOR, ISA_MINOR)
+    if is_older and reply.status == RULES["UNKNOWN_OPCODE"][0]:  # LIVE names no version
+        return _other_machine(robot)
+    return reply
+
+
+def _other_machine(robot: DeviceInfo) -> Reply[Any]:
+    return Reply(STATUSES["OTHER_MACHINE"], robot.isa[0] << 8 | robot.isa[1])
 
 
 def clear() -> Exchange[EmptyReply]:
@@ -217,7 +226,7 @@ def upload(
     """
     is_its_kit = kit == robot.kit or not image.devices
     if image.isa[0] != robot.isa[0] or image.isa[1] > robot.isa[1]:
-        return Reply(STATUSES["OTHER_MACHINE"], robot.isa[0] << 8 | robot.isa[1])
+        return _other_machine(robot)
     if len(image.later) + len(image.code) > robot.room:
         return Reply(STATUSES["TOO_LARGE"], robot.room)
     if is_latched:
