@@ -69,6 +69,11 @@ def rows() -> tuple[Row, ...]:
     return tuple(found)
 
 
+@cache
+def _places() -> rewrites.Places:
+    return rewrites.places({k: row.pattern for k, row in enumerate(rows())})
+
+
 def advised(text: str, kit: Kit) -> list[Advice]:
     """Return what is told of words behind each instruction of a text, or in place of one."""
     bodies = [without_note(line)[0] for line in text.split("\n")]
@@ -164,7 +169,8 @@ def _is_read(part: Behind) -> bool:
 
 def _told(part: Behind) -> Advice | None:
     line = rewrites.Encoded([made(";"), *part.row], part.names, part.labels())
-    for row in rows():
+    for k in line.tried(_places()):
+        row = rows()[k]
         match = next(line.matches(row.pattern), None)
         if match is None:
             continue

@@ -27,7 +27,7 @@ class Line(NamedTuple):
 
     indent: int
     tokens: list[Lexeme]
-    items: list[Item] | None
+    items: Sequence[Item] | None
     is_rewritten: bool
     has_body: bool
     is_do: bool

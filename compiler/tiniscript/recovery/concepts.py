@@ -34,6 +34,7 @@ _TOKEN = re.compile(
 _SIGNS = SIGNS | frozenset("(),;|")
 _BEFORE_NAME = frozenset(("DEF", "VOID"))
 _LONGEST = 4  # words of a name
+REMEMBERED = 500  # lines: each is asked for often while one program is read
 
 
 class Lexeme(NamedTuple):
@@ -55,6 +56,11 @@ class Meaning(NamedTuple):
 
 
 def lexemes(line: str) -> list[Lexeme]:
+    return [*_lexemes(line)]
+
+
+@lru_cache(REMEMBERED)
+def _lexemes(line: str) -> tuple[Lexeme, ...]:
     found, end = [], 0
     for match in _TOKEN.finditer(line):
         text, kind = match[0], NUMBER if match[1] else WORD if match[2] else ODD
@@ -66,7 +72,7 @@ def lexemes(line: str) -> list[Lexeme]:
             kind = text = "-" if text in DASHES else text
         found.append(Lexeme(kind, text, match[0], line[end : match.start()]))
         end = match.end()
-    return found
+    return tuple(found)
 
 
 @cache

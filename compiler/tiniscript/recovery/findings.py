@@ -119,7 +119,7 @@ def _meant(
     """
     text = source.text.replace("\r\n", "\n")
     said = {text: _mistakes(found)}
-    first = lexemes(text[:LONGEST])[:1]
+    first = lexemes(text[:LONGEST].lstrip().partition("\n")[0])[:1]
     is_setup = bool(first) and first[0].text in ("SI", "SB")
     is_begun_otherwise = codes.SETUP_UNKNOWN.number in said[text] and not is_setup
     if len(text) > LONGEST or "~" in text or is_begun_otherwise:
@@ -216,7 +216,8 @@ def _keeps(text: str, new: str, said_with: set[str], is_sure: bool) -> bool:
 
     `is_sure`: and no others.
     """
-    before, after = (Counter(each.text for each in lexemes(_bare(it))) for it in (text, new))
+    bodies = ([without_note(line)[0] for line in it.split("\n")] for it in (text, new))
+    before, after = (Counter(each.text for it in of for each in lexemes(it)) for of in bodies)
     names = {each.upper() for each in re.findall(r"(?i)(?<=\bDEF )\w+|\w+(?=\s*=)", new)} - {*WORDS}
     closed = Counter(re.findall(r"\bEND_?DEF +(\w+)|\bFIN +(\w+)", _bare(text).upper()))
     before -= Counter({name: n for pair, n in closed.items() for name in pair if after[name] > 1})

@@ -17,6 +17,7 @@ from tiniscript.recovery.blocks import ANY_END, BRACES
 from tiniscript.recovery.concepts import (
     CALLED,
     NEAR,
+    REMEMBERED,
     Lexeme,
     Names,
     lexemes,
@@ -63,7 +64,7 @@ class Reading(NamedTuple):
     steps: tuple[Step, ...]
     is_sure: bool
     is_new_line: bool
-    items: list[Item] | None = None
+    items: Sequence[Item] | None = None
     failure: Failure = Failure(0, 0)
 
     def changed(
@@ -93,8 +94,12 @@ class Readings(NamedTuple):
     tried: list[Reading]
 
 
-def right(tokens: Sequence[Lexeme], names: Names) -> list[Item] | Failure:
+def right(tokens: Sequence[Lexeme], names: Names) -> Sequence[Item] | Failure:
     """Return the items of a line, or where it is wrong. Braces and bare ends are items, too."""
+    return _remembered(tuple(tokens), names)
+
+
+def _right(tokens: Sequence[Lexeme], names: Names) -> Sequence[Item] | Failure:
     found: list[Item] = []
     start = 0
     for k in range(len(tokens) + 1):
@@ -110,6 +115,9 @@ def right(tokens: Sequence[Lexeme], names: Names) -> list[Item] | Failure:
             found.append(Item("end" if is_end else text, ANY_END if is_end else text, k, k + 1))
         start = k + 1
     return found
+
+
+_remembered = lru_cache(REMEMBERED)(_right)
 
 
 def _is_bare_end(tokens: Sequence[Lexeme], k: int, names: Names) -> bool:
@@ -179,7 +187,7 @@ class _Search:
             if text in seen:
                 continue
             seen.add(text)
-            items = right(reading.tokens, self.names)
+            items = _right(reading.tokens, self.names)  # a state comes once
             if not isinstance(items, Failure):
                 if not self.says_twice(reading, items, first):
                     found.append(reading._replace(items=items))
@@ -241,9 +249,7 @@ class _Search:
 
     def _by_rows(self, reading: Reading, is_first: bool) -> Iterator[Reading]:
         line = rewrites.Encoded(reading.tokens, self.names)
-        for row in rewrites.of_tokens():
-            if row.is_first is not is_first:
-                continue
+        for row in rewrites.tried(line, is_first):
             for match in line.matches(row.pattern):
                 start, end = line.span(match)
                 if not is_first and not _touches(reading.failure, start, end):

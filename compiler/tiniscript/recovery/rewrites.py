@@ -9,7 +9,7 @@ import re
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cache
-from itertools import product
+from itertools import chain, product
 from typing import NamedTuple
 
 from tiniscript.recovery import rows
@@ -77,6 +77,17 @@ def of_tokens() -> tuple[Row, ...]:
                 may_lose, _texts(example))
         )  # fmt: skip
     return tuple(found)
+
+
+@cache
+def _places(is_first: bool) -> Places:
+    rows_ = enumerate(of_tokens())
+    return places({k: row.pattern for k, row in rows_ if row.is_first is is_first})
+
+
+def tried(line: Encoded, is_first: bool) -> Iterator[Row]:
+    """Give the rows that may match a line, in the order of the table."""
+    return (of_tokens()[k] for k in line.tried(_places(is_first)))
 
 
 @cache
@@ -164,6 +175,23 @@ def _of_labels(atom: _Atom) -> str:
     return f"(?P<{name}>{body})" if name else body
 
 
+Places = Mapping[str, Sequence[int]]
+
+
+def places(patterns: Mapping[int, Pattern]) -> Places:
+    """Return where the patterns of a table stand that only lines with a label match.
+
+    It is the label that the fewest patterns need, "" for one that any line may match.
+    """
+    many = Counter(label for it in patterns.values() for label in chain(*it.needed))
+    found: dict[str, list[int]] = {}
+    for k, pattern in patterns.items():
+        rarest = min(pattern.needed, key=lambda it: sum(many[each] for each in it), default=("",))
+        for label in rarest:
+            found.setdefault(label, []).append(k)
+    return found
+
+
 class Encoded:
     """The labels of a line as one text, and which token ends where in it."""
 
@@ -174,7 +202,7 @@ class Encoded:
         self.names = names
         parts = labels or [names.label(token) for token in tokens]
         self.text = "".join(parts)
-        self._labels = frozenset(self.text.split("|"))
+        self._labels = frozenset(("", *self.text.split("|")))
         self.index = {0: 0}
         end = 0
         for k, part in enumerate(parts):
@@ -186,6 +214,10 @@ class Encoded:
             if self._labels.isdisjoint(labels):
                 return iter(())
         return pattern.of_labels.finditer(self.text)
+
+    def tried(self, table: Places) -> list[int]:
+        """Return where the patterns of a table stand that the line may match, in their order."""
+        return sorted({k for label in self._labels & table.keys() for k in table[label]})
 
     def span(self, match: re.Match[str], name: str | int = 0) -> tuple[int, int]:
         """Return the tokens of a match, or of a part of it that it has captured."""
