@@ -59,7 +59,7 @@ void to_the_end(Value* values, uint8_t at, uint8_t count, uint8_t all) {
 
 // Makes a record for each task in the order of rank, if there is one beside the main task.
 void Machine::find_tasks() {
-  tasks_.count = 0;
+  tasks_.count = tasks_.me = 0;
   if (!has_task(code_, length_)) return;
   tasks_ = Tasks();
   const Role kinds[] = {Role::kWhen, Role::kTask};
