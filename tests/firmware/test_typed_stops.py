@@ -183,6 +183,20 @@ def test_a_line_in_a_block_belongs_to_the_program(uno_at: tuple[Uno, int]) -> No
     assert states(uno) == FORWARD and said(uno, before) == "// OK\r\n"
 
 
+def test_a_mistake_that_waits_to_be_said_is_forgotten_by_the_next_line(
+    uno_at: tuple[Uno, int],
+) -> None:
+    """A stop behind them is looked for before the wire is free; here it belongs to a block."""
+    uno, _ = uno_at
+    uno.run_ms(SILENCE_MS + 50)
+    before = len(uno.sent)
+    uno.send(b"FOO\nFOO\nIF(TRUE)\nS\n")
+    uno.run_ms(SILENCE_MS + 500)
+    first, *others = said(uno, before).splitlines()
+    assert first == "// 1: Unknown word"
+    assert set(others) <= {first, "// Waiting for ENDIF"} and others[-1] != first
+
+
 @pytest.mark.parametrize("way", ["live", "upload", "long upload"])
 def test_code_that_holds_a_typed_stop_runs(uno_at: tuple[Uno, int], way: str) -> None:
     """A frame that arrives whole is not stopped by a line of S among its bytes."""

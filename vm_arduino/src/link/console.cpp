@@ -129,6 +129,8 @@ bool Console::begin(uint8_t byte) {
     return false;
   }
   reader_.begin(image_ + kHeaderBytes, room);
+  // It no longer knows the mistake of the line before, which a stop behind has kept from being said.
+  if (remark_ == Remark::kMistake) remark_ = Remark::kNone;
   is_open_ = true;
   has_lost_ = is_waiting_ = false;
   length_ = 0;

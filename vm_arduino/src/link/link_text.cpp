@@ -15,6 +15,7 @@ tini_noinline void Link::talk() {
   if (act == Console::Act::kStop) halt(Cause::kText);
   if (act == Console::Act::kEnd) port_end();
   if (act == Console::Act::kStart) console->say(start_text(*console));
+  due_ &= static_cast<uint8_t>(~kDueText);
   if (console->has_answer()) due_ |= kDueText;
 }
 
