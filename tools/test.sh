@@ -46,7 +46,17 @@ fi
 # The page of tsc studio, of packages from npm; without it its tests are skipped and say so.
 run tools.builds.studio || [ -z "${CI:-}" ]
 wait "$TYPES"
-run pytest -n 3 --dist worksteal "$@"
+# A test that fails beside others runs once more, alone: one that passes there depends on the load. It is
+# named, so that somebody mends it. Where more than three fail, none of them runs again.
+run pytest -n 3 --dist worksteal "$@" || {
+    code=$?
+    failed=$("$PYTHON" -c 'import json; print(*json.load(open(".pytest_cache/v/cache/lastfailed")), sep="\n")') || exit
+    [ "$code" = 1 ] && [ -n "$failed" ] && [ "$(printf '%s\n' "$failed" | wc -l)" -le 3 ] || exit "$code"
+    run pytest --last-failed --last-failed-no-failures none "$@" || exit
+    say "Failed beside other tests and passed alone:
+$failed" "Fallaron junto a otras pruebas y pasaron solas:
+$failed"
+}
 
 # Every branch of what decides whether a robot may run an image is taken by a test that draws nothing.
 run coverage run --branch --include="compiler/tiniscript/bytecode/verify.py,compiler/tiniscript/bytecode/image.py" \
