@@ -237,18 +237,13 @@ def _mistakes(found: Sequence[Diagnostic]) -> list[str]:
 
 def moved_back(found: Diagnostic, edits: Sequence[Edit]) -> Diagnostic:
     """Return a diagnostic of the text with these edits, as one of the text without them."""
-    values = dict(found.values)
-    if values.get("also"):
-        spans = (each.split(":") for each in values["also"].split())
-        moved = (_before(Span(int(start), int(end)), edits) for start, end in spans)
-        values["also"] = " ".join(f"{start}:{end}" for start, end in moved)
     place = found.place and _before(found.place, edits)
     repair = found.repair
     if repair is not None:
         own = tuple(Edit(_before(each.span, edits), each.text) for each in repair.edits)
         passed = [each for each in edits if each.text.isspace()]  # words that nothing may drop
         repair = Repair((), False) if overlap(own, passed) else repair._replace(edits=own)
-    return Diagnostic(found.code, _before(found.span, edits), values, place, repair)
+    return Diagnostic(found.code, _before(found.span, edits), found.values, place, repair)
 
 
 def _before(span: Span, edits: Sequence[Edit]) -> Span:
