@@ -332,6 +332,19 @@ def test_the_block_that_runs_is_marked(page: Page) -> None:
     page.locator("html[data-phase=ended]").wait_for(state="attached")
 
 
+def test_a_block_of_each_task_is_marked(page: Page) -> None:
+    page.select_option("#robot", "tinibot32")
+    text = "SI|W(FOREVER) UNTIL(FALSE);\nTASK;\n  LOOP(FOREVER);\n    W(9);\n  END_LOOP;\nEND_TASK;\n"
+    start(page, text, "all")
+    page.click("#run")
+    page.locator("#blocks .wait.running").wait_for()
+    running = page.locator("#blocks .blocklyDraggable.running")
+    assert running.count() == 2
+    page.click("#stop")
+    page.locator("html[data-phase=ended]").wait_for(state="attached")
+    assert running.count() == 0
+
+
 def flyout(page: Page, group: str) -> str:
     page.locator(".blocklyToolboxCategory", has_text=group).click()
     page.locator(".blocklyFlyout:visible .blocklyDraggable").first.wait_for()

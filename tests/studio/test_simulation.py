@@ -90,6 +90,30 @@ END_TASK
 """
 
 
+def test_it_is_told_where_each_task_is() -> None:
+    """The parts that wait; a task that has ended is nowhere."""
+    simulation = begun(TASKS, robot="tinibot32")
+    places = check(TASKS.encode(), "tinibot32", "en").places
+
+    def lit() -> set[int]:
+        """The lines of the text that are marked."""
+        found = simulation.state()["places"]
+        return {max((each for each in places if each.offset <= at), key=lambda each: each.offset).line
+                for at in found}  # fmt: skip
+
+    simulation.go(100)
+    assert lit() == {1, 2, 8}
+    simulation.go(130)
+    assert lit() == {1, 3, 8}
+    simulation.go(500)
+    assert lit() == {1, 2}
+    simulation.stop()
+    assert simulation.state()["places"] == []
+    plain = begun("W(1)")
+    plain.go(500)
+    assert plain.state()["places"] == [plain.state()["at"]]
+
+
 @pytest.mark.parametrize("parts", [range(8), (2,), (4, 5)])
 def test_tasks_that_are_held_do_the_same_as_others(parts: Iterable[int]) -> None:
     free, simulation = (begun(TASKS, at, robot="tinibot32") for at in ((), parts))

@@ -167,6 +167,7 @@ class Simulation:
             "fault_at": self.fault_at if robot.fault else None,
             "bumps": robot.driving.bumps,
             "at": robot.at if self.held_at is None else self.held_at,
+            "places": robot.places,
             "is_held": self.held_at is not None,
             "variables": [value / ONE for value in robot.watched.variables(self.marks.variables)],
             "readings": [{"value": value / ONE, "text": device.text(value)}

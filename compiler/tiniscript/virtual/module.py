@@ -182,6 +182,12 @@ class Firmware:
         self.call("go_on")
         self._look()
 
+    def tasks(self) -> list[int]:
+        """Return where the program's tasks are that have not ended; none of one without tasks."""
+        start = self.call("tasks") // 4
+        count = int(self._numbers[start])
+        return [int(each) for each in self._numbers[start + 1 : start + 1 + count]]
+
     def variables(self, count: int) -> list[int]:
         """Return the first variables of the program that runs or has run, in thousandths."""
         start = self.call("variables") // 4

@@ -313,6 +313,12 @@ class VirtualRobot:
         return None if found == NOWHERE else found
 
     @property
+    def places(self) -> list[int]:
+        """Return the offsets of what the program does now, one for each of its tasks."""
+        found = self._firmware.tasks()
+        return found or ([] if self.at is None else [self.at])
+
+    @property
     def watched(self) -> Firmware:
         """The firmware, for who holds its program and looks at it."""
         return self._firmware

@@ -46,7 +46,8 @@ export class Blocks {
   /** @type {Blockly.icons.WarningIcon | null} */
   #opening = null;
   #closed = ''; // the message that somebody has put away
-  #running = '';
+  /** @type {Set<string>} */
+  #running = new Set();
   #fault = { id: '', said: '' };
   /** @type {Finding[]} */
   #findings = [];
@@ -198,7 +199,7 @@ export class Blocks {
     const { scrollX, scrollY } = this.#workspace;
     const focus = this.hasFocus ? this.#focused() : null;
     Blockly.hideChaff();
-    this.#running = '';
+    this.#running = new Set();
     this.#fault = { id: '', said: '' };
     const ids = showForm(this.#workspace, form, this.#stood);
     this.placed(ids, inOrder(form.body).map((block) => block.place ?? [0, 0, 0, 0]));
@@ -310,13 +311,12 @@ export class Blocks {
     if (isRoom) bubble.moveDuringDrag(new Blockly.utils.Coordinate(right + BESIDE, top));
   }
 
-  /** Marks the block that runs now, or none. @param {{line: number, column: number} | null} range */
-  showRunning(range) {
-    const id = range ? this.#blockAt(range.line, range.column) ?? '' : '';
-    if (id === this.#running) return;
-    this.#workspace.getBlockById(this.#running)?.removeClass('running');
-    this.#workspace.getBlockById(id)?.addClass('running');
-    this.#running = id;
+  /** Marks the blocks that run now, one in each task. @param {{line: number, column: number}[]} ranges */
+  showRunning(ranges) {
+    const ids = new Set(ranges.map(({ line, column }) => this.#blockAt(line, column) ?? ''));
+    for (const id of this.#running) if (!ids.has(id)) this.#workspace.getBlockById(id)?.removeClass('running');
+    for (const id of ids) if (!this.#running.has(id)) this.#workspace.getBlockById(id)?.addClass('running');
+    this.#running = ids;
   }
 
   /** @param {{line: number, column: number}[]} breakpoints */

@@ -288,7 +288,9 @@ export class Driving {
     this.#plot.draw();
     this.#arena.draw(state);
     const range = this.#place();
-    this.#editor.showRunning(range, Boolean(state?.is_held));
+    const isAlone = !state || state.fault || state.is_held;
+    const ranges = isAlone ? [range] : state.places.map((at) => rangeAt(this.#places, at));
+    this.#editor.showRunning(ranges.filter((each) => each !== null), Boolean(state?.is_held));
     this.#editor.showFault(state?.fault ? range : null, state?.fault ? faultSaid(state.fault) : '');
     document.documentElement.dataset['phase'] = phase;
   }

@@ -18,7 +18,7 @@ import { EDITOR_PHRASES_ES, currentLanguage, text } from './texts.js';
 /** @typedef {import('./python.js').Change} Change */
 /** @typedef {{line: number, column: number, end_line: number, end_column: number}} Range */
 
-/** @type {import('@codemirror/state').StateEffectType<{from: number, to: number} | null>} */
+/** @type {import('@codemirror/state').StateEffectType<{from: number, to: number}[]>} */
 const setRunning = StateEffect.define();
 const running = StateField.define({
   create: () => Decoration.none,
@@ -26,9 +26,8 @@ const running = StateField.define({
     let found = transaction.docChanged ? Decoration.none : marks;
     for (const effect of transaction.effects) {
       if (!effect.is(setRunning)) continue;
-      found = effect.value && effect.value.from < effect.value.to
-        ? Decoration.set([Decoration.mark({ class: 'cm-running' }).range(effect.value.from, effect.value.to)])
-        : Decoration.none;
+      const marks = effect.value.filter(({ from, to }) => from < to);
+      found = Decoration.set(marks.map(({ from, to }) => Decoration.mark({ class: 'cm-running' }).range(from, to)), true);
     }
     return found;
   },
@@ -236,14 +235,15 @@ export class Editor {
   }
 
   /**
-   * Marks what runs now, or nothing.
-   * @param {Range | null} range
-   * @param {boolean} isHeld there: it is scrolled to
+   * Marks what runs now, in each task.
+   * @param {Range[]} ranges
+   * @param {boolean} isHeld at the first of them: it is scrolled to
    */
-  showRunning(range, isHeld = false) {
-    const offsets = range && this.#offsets(range);
+  showRunning(ranges, isHeld = false) {
+    const all = ranges.map((each) => this.#offsets(each));
+    const [offsets] = all;
     /** @type {StateEffect<unknown>[]} */
-    const effects = [setRunning.of(offsets)];
+    const effects = [setRunning.of(all)];
     if (offsets && isHeld && offsets.from !== this.#held) effects.push(EditorView.scrollIntoView(offsets.from, { y: 'nearest', yMargin: 24 }));
     this.#held = offsets && isHeld ? offsets.from : -1;
     this.#view.dispatch({ effects });

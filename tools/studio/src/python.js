@@ -45,6 +45,7 @@
  * @property {string} fault
  * @property {number} bumps
  * @property {number | null} at where the program is, or what it does next where it is held
+ * @property {number[]} places where each of its tasks is
  * @property {boolean} is_held
  * @property {number[]} variables
  * @property {number | null} fault_at

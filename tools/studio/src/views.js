@@ -36,10 +36,10 @@ export class Views {
   #findings = [];
   /** @type {[import('./editor.js').Range | null, string]} */
   #fault = [null, ''];
-  /** @type {import('./editor.js').Range | null} */
-  #running = null;
-  /** The same on the virtual robot, and on a real one. @type {[import('./editor.js').Range | null, import('./editor.js').Range | null]} */
-  #run = [null, null];
+  /** @type {import('./editor.js').Range[]} */
+  #running = [];
+  /** The same on the virtual robot, and on a real one. @type {[import('./editor.js').Range[], import('./editor.js').Range[]]} */
+  #run = [[], []];
   #isHeld = false; // the virtual robot, at a breakpoint or after a step
   #pane = element('blocks', HTMLElement);
   #note = element('blocks_note', HTMLElement);
@@ -133,27 +133,26 @@ export class Views {
   }
 
   /**
-   * @param {import('./editor.js').Range | null} range
+   * @param {import('./editor.js').Range[]} ranges one for each task
    * @param {boolean} isHeld there, so somebody wants to see it
    */
-  showRunning(range, isHeld) {
-    this.#run[0] = range;
+  showRunning(ranges, isHeld) {
+    this.#run[0] = ranges;
     this.#isHeld = isHeld;
     this.#mark();
   }
 
   /** Where both robots run, this is what is seen of them, but where the virtual one is held. @param {import('./editor.js').Range | null} range */
   showRunningThere(range) {
-    this.#run[1] = range;
+    this.#run[1] = range ? [range] : [];
     this.#mark();
   }
 
   #mark() {
     const [virtual, real] = this.#run;
-    const range = this.#isHeld ? virtual : real ?? virtual;
-    this.#running = range;
-    this.#editor.showRunning(range, this.#isHeld);
-    if (!this.#isStale()) this.#blocks?.showRunning(range);
+    this.#running = this.#isHeld || !real.length ? virtual : real;
+    this.#editor.showRunning(this.#running, this.#isHeld);
+    if (!this.#isStale()) this.#blocks?.showRunning(this.#running);
   }
 
   /**

@@ -291,6 +291,8 @@ tini_exported("at") uint32_t module_at() {
   return firmware_runs(&place) ? place.at : 0xffffffff;
 }
 
+tini_exported("tasks") const int32_t* module_tasks() { return watched_tasks(); }
+
 // Marks for each offset of a program's code: where it is held, before it runs what is there.
 tini_exported("marks") uint8_t* module_marks() { return watched_marks(); }
 tini_exported("marks_bytes") uint32_t module_marks_bytes() { return watched_marks_bytes(); }

@@ -103,6 +103,22 @@ void watched_go_on() {
   if (is_running()) go_on();
 }
 
+const int32_t* watched_tasks() {
+  static int32_t found[1 + kTasks + 1];
+  found[0] = 0;
+#ifdef tiniscript_has_tasks
+  if (!is_running()) return found;
+  const Tasks& tasks = machine.tasks();
+  for (uint8_t k = 0; k < tasks.count; k++) {
+    const TaskRecord& task = tasks.records[k];
+    const bool is_in_turn = tasks.is_in_turn && k == tasks.me;
+    const uint16_t at = is_in_turn ? machine.task().pc : task.pc;
+    if (!task.has_ended && at != 0) found[++found[0]] = at - 1;
+  }
+#endif
+  return found;
+}
+
 const int32_t* watched_variables() { return is_reset ? left_over : machine.task().variables; }
 
 }  // namespace tiniscript

@@ -23,6 +23,10 @@ bool watched_has_held();
 uint32_t watched_held_at();
 void watched_go_on();
 
+// Where the program's tasks are that have not ended: how many, and for each the last byte of what it
+// waits in. Of a program without tasks, or while none runs: none.
+const int32_t* watched_tasks();
+
 // The kVariables variables of the program that runs or has run, in thousandths.
 const int32_t* watched_variables();
 

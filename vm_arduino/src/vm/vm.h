@@ -50,6 +50,9 @@ class Machine {
 
   const Task& task() const { return task_; }
   bool has_tasks() const;
+#ifdef tiniscript_has_tasks
+  const Tasks& tasks() const { return tasks_; }
+#endif
   Status status() const { return status_; }
   Fault fault() const { return fault_; }
 
