@@ -8,7 +8,9 @@ import subprocess
 import sys
 from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
+from typing import ClassVar
 from unittest import mock
+from weakref import WeakSet
 
 import pytest
 
@@ -83,12 +85,15 @@ def ended(command: subprocess.Popen[bytes]) -> Done:
 class Command:
     """A `tsc` that stays."""
 
+    begun: ClassVar[WeakSet[Command]] = WeakSet()
+
     def __init__(self, *arguments: str, code: str = "", data: bytes = b"") -> None:
         words = [sys.executable, "-c", code] if code else TSC
         self.process = subprocess.Popen(
             [*words, *arguments], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
         )  # fmt: skip
+        Command.begun.add(self)
         if data:
             assert self.process.stdin
             self.process.stdin.write(data)
@@ -101,6 +106,11 @@ class Command:
             if said in line.decode():
                 return
         raise AssertionError(f"never printed: {said}. {self.ended().err}")
+
+    @classmethod
+    def is_any_there(cls) -> bool:
+        """Whether one goes on, which has no time but that of the wall."""
+        return any(each.process.poll() is None for each in cls.begun)
 
     def signal(self, number: int) -> None:
         self.process.send_signal(number)
