@@ -50,9 +50,9 @@ def uno(sketch: Path, memory: Path) -> Iterator[Uno]:
         yield found
 
 
-def switched_on(sketch: Path, memory: Path) -> Uno:
+def switched_on(sketch: Path, memory: Path, board: str = "uno") -> Uno:
     # Nobody opens its port here, and whoever does by mistake does not reset it.
-    uno = Uno(sketch, names=NAMES, eeprom=memory, baud=BAUD, resets_on_open=False)
+    uno = Uno(sketch, names=NAMES, board=board, eeprom=memory, baud=BAUD, resets_on_open=False)
     uno.run_ms(300)
     assert states(uno) == OFF
     return uno

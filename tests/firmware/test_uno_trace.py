@@ -80,6 +80,10 @@ def told(trace: str) -> tuple[list[Setting], list[float]]:
 
 def lasting(settings: list[Setting]) -> list[Setting]:
     """Return the settings that are different from the one before, and last; the last one does."""
+    settings = [
+        each for before, each in pairwise([Setting(-1.0, 101, 0), *settings])
+        if before[1:] != each[1:]
+    ]  # fmt: skip
     ends = [each.ms for each in settings[1:]] + [float("inf")]
     found = [Setting(-1.0, 0, 0)]
     for each, end_ms in zip(settings, ends[: len(settings)], strict=True):
@@ -90,6 +94,11 @@ def lasting(settings: list[Setting]) -> list[Setting]:
 
 @pytest.mark.parametrize("case", [*PAPER, *map(program, OTHERS)], ids=lambda case: case.title)
 def test_the_pins_follow_the_trace(case: Case, sketch: Path, tmp_path: Path) -> None:  # noqa: F811
+    with switched_on(sketch, tmp_path / "eeprom") as uno:
+        check_pins(case, uno)
+
+
+def check_pins(case: Case, uno: Uno) -> None:
     robot, senses = robot_and_senses(case)
     image = unpack(compiled(case).image)
     trace = MACHINES["python"](compiled(case).image, robot.kit, senses)
@@ -97,33 +106,32 @@ def test_the_pins_follow_the_trace(case: Case, sketch: Path, tmp_path: Path) -> 
     end_ms = float(trace.splitlines()[-1].split()[0])
     is_over = not trace.endswith("LIMIT\n")
     distances = [each / 1000 for each in senses.readings.get("DISTANCE", [0])]
-    with switched_on(sketch, tmp_path / "eeprom") as uno:
-        for pin, name in (("A0", "LIGHT_R"), ("A1", "LIGHT_L")):
-            uno.analog(pin, senses.readings.get(name, [0])[0] // 1000)
-        uno.sonar("trigger", "echo", distances[0])
-        wired = computer(uno)
-        if image.start == "PING":
-            assert wired.until(wired.session.hello()) == OK
-            assert seen(uno, 0) == []
-            return
-        heard = len(uno.received)
-        assert wired.until(wired.session.upload(image, is_detached=True)) == OK
-        began = last_zero(uno, heard)
-        if image.start == "SB":
-            wired.run(300)
-            assert seen(uno, began) == []
-            uno.press("button", 60)
-            began = uno.run_until("left forward", "high", limit_ms=500).cycle - 1
-        triggers = 0
-        while (uno.cycle - began) / CYCLES_PER_MS < end_ms + READING_MS * len(reads) + TELLING_MS:
-            wired.run(2)
-            pulses = [each for each in uno.pins.history("trigger") if each.state == "high"]
-            if len(pulses) > triggers:
-                triggers = len(pulses)
-                wired.run(READING_MS)
-                uno.sonar("trigger", "echo", distances[min(triggers, len(distances) - 1)])
-        found = seen(uno, began)
-        events = wired.session.events()
+    for pin, name in (("A0", "LIGHT_R"), ("A1", "LIGHT_L")):
+        uno.analog(pin, senses.readings.get(name, [0])[0] // 1000)
+    uno.sonar("trigger", "echo", distances[0])
+    wired = computer(uno)
+    if image.start == "PING":
+        assert wired.until(wired.session.hello()) == OK
+        assert seen(uno, 0) == []
+        return
+    heard = len(uno.received)
+    assert wired.until(wired.session.upload(image, is_detached=True)) == OK
+    began = last_zero(uno, heard)
+    if image.start == "SB":
+        wired.run(300)
+        assert seen(uno, began) == []
+        uno.press("button", 60)
+        began = uno.run_until("left forward", "high", limit_ms=500).cycle - 1
+    triggers = 0
+    while (uno.cycle - began) / CYCLES_PER_MS < end_ms + READING_MS * len(reads) + TELLING_MS:
+        wired.run(2)
+        pulses = [each for each in uno.pins.history("trigger") if each.state == "high"]
+        if len(pulses) > triggers:
+            triggers = len(pulses)
+            wired.run(READING_MS)
+            uno.sonar("trigger", "echo", distances[min(triggers, len(distances) - 1)])
+    found = seen(uno, began)
+    events = wired.session.events()
     if not is_over:
         found = [each for each in found if each.ms < end_ms]
         expected = [each for each in expected if each.ms < end_ms]

@@ -16,7 +16,7 @@ from tiniscript import compile_text, robots
 from tiniscript.bytecode.image import unpack
 from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
 from tiniscript.link import messages
-from tiniscript.link.frames import Frame, encoded
+from tiniscript.link.frames import Frame, decoded, encoded
 
 pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a host machine")
 
@@ -71,6 +71,16 @@ def test_it_does_not_run_before_its_frame_ends(code: bytes) -> None:
     data = live(code)
     assert not robot.step(10, data[:-1]).did
     assert STARTED in robot.step(20, data[-1:]).did
+
+
+@pytest.mark.parametrize("text", [*TEXTS, "SI|TASK;SHOW(1);END_TASK"])
+def test_a_robot_makes_the_image_of_the_compiler(text: str) -> None:
+    """Without tasks it is one of 2.0, in a session of 2.1 too."""
+    image = compile_text(text, KIT).image
+    sent = greeted().step(10, live(unpack(image).code)).sent
+    replies = [frame for frame in map(decoded, sent.split(b"\0")) if frame is not None]
+    checksum = unpack(image).checksum.to_bytes(4, "little")
+    assert [checksum in reply.payload for reply in replies] == [True]
 
 
 @pytest.mark.parametrize("at", [2, 3, 7, 9, 10, 11])

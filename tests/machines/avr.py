@@ -1,4 +1,4 @@
-"""The machine in C++ on a simulated ATmega328P.
+"""The machine in C++ on a simulated ATmega328P or ATmega2560.
 
 Builds `vm_arduino/extras/avr` with avr-g++ once, writes each request into the built program where
 its flash waits for it, and lets `simavr` run that. What comes out of the UART is the answer.
@@ -22,8 +22,8 @@ from tiniscript.kit import Kit
 if TYPE_CHECKING:
     from tests.machines import Senses
 
-CHIP = "atmega328p"
-FLAGS = (f"-mmcu={CHIP}", "-std=c++11", "-Os", "-flto", "-fno-exceptions", "-fno-rtti")
+UNO, MEGA = "atmega328p", "atmega2560"
+FLAGS = ("-std=c++11", "-Os", "-flto", "-fno-exceptions", "-fno-rtti")
 MARK = b"TiniScript: here is the request"
 REQUEST_BYTES = 8192
 
@@ -31,17 +31,17 @@ REQUEST_BYTES = 8192
 def missing() -> str:
     """Return why there is no simulated chip, or nothing."""
     wanted = [name for name in ("avr-g++", "simavr") if not shutil.which(name)]
-    return (
-        f"no {' and no '.join(wanted)} on this computer: no simulated ATmega328P" if wanted else ""
-    )
+    return f"no {' and no '.join(wanted)} on this computer: no simulated ATmega" if wanted else ""
 
 
-def program(sources: Path = SOURCES) -> bytes:
-    """Return the program of the chip, an ELF file, made from a folder like `vm_arduino`."""
-    folders = [sources / name for name in ("src/vm", "extras/chip", "extras/avr")]
-    made_from = contents(sources / "src", *folders)
+@lru_cache(maxsize=2)
+def program(chip: str) -> bytes:
+    """Return the program of a chip, an ELF file."""
+    folders = [SOURCES / name for name in ("src/vm", "extras/chip", "extras/avr")]
+    made_from = contents(SOURCES / "src", *folders)
     code = sorted(str(path) for each in folders for path in each.glob("*.[cS]*"))
-    return compiled("the C++ machine", (*FLAGS, *WARNINGS), code, made_from).read_bytes()
+    flags = (f"-mmcu={chip}", *FLAGS, *WARNINGS)
+    return compiled("the C++ machine", flags, code, made_from).read_bytes()
 
 
 def compiled(what: str, flags: Sequence[str], code: Sequence[str], made_from: list[bytes]) -> Path:
@@ -55,23 +55,21 @@ def compiled(what: str, flags: Sequence[str], code: Sequence[str], made_from: li
     return kept("avr-g++", flags, made_from, make)
 
 
-built = lru_cache(maxsize=1)(program)
-
-
-def ran_on_avr(image: bytes, kit: Kit, senses: Senses) -> Ran:
+def ran_on(chip: str, image: bytes, kit: Kit, senses: Senses, not_ready: int = 0) -> Ran:
     """Run an image, which is read and verified by the simulated chip."""
-    return ran(answer(built(), b"R" + run_request(image, kit, senses)))
+    return ran(answer(chip, b"R" + run_request(image, kit, senses, not_ready)))
 
 
-def answer(elf: bytes, request: bytes, most_seconds: int = 120) -> str:
-    """Return what a program says about a request. Raises TimeoutExpired."""
+def answer(chip: str, request: bytes, most_seconds: int = 120) -> str:
+    """Return what the program says about a request. Raises TimeoutExpired."""
+    elf = program(chip)
     at = elf.index(MARK)
     assert len(request) <= REQUEST_BYTES
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "machine.elf"
         path.write_bytes(elf[:at] + request + elf[at + len(request) :])
         done = subprocess.run(
-            ["simavr", "-m", CHIP, "-f", "16000000", str(path)],
+            ["simavr", "-m", chip, "-f", "16000000", str(path)],
             capture_output=True,
             timeout=most_seconds,
         )

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from tiniscript.bytecode.disassembly import rows
 from tiniscript.bytecode.image import TASKS, pack
-from tiniscript.bytecode.opcodes import AVR_OPS
+from tiniscript.bytecode.opcodes import UNO_OPS
 from tiniscript.bytecode.verify import Refused, verify
 from tiniscript.kit import Kit
 
 
 def has_tasks(code: bytes) -> bool:
     """Whether there is an instruction that not every machine has: one of a task."""
-    return any(row.op is not None and row.op not in AVR_OPS for row in rows(code))
+    return any(row.op is not None and row.op not in UNO_OPS for row in rows(code))
 
 
 def image_for(code: bytes, kit: Kit, start: str = "SI") -> bytes:

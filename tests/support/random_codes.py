@@ -15,7 +15,7 @@ from tests.oracle import programs
 from tests.support.kits import KITS
 from tiniscript import compile_text
 from tiniscript.bytecode.image import HEADER_BYTES, pack, sealed
-from tiniscript.bytecode.opcodes import AVR_OPS, BY_NAME, TASKS, Op
+from tiniscript.bytecode.opcodes import BY_NAME, TASKS, UNO_OPS, Op
 from tiniscript.kit import Kit
 
 _NEAR = (0, 1, 2, 3, 5, 499, 500, 501, 999, 1000, 1001, 1499, 1500, 1501, 2500, 46_340, 46_341,
@@ -56,9 +56,9 @@ def likely_code(rng: random.Random) -> bytes:
     """Return instructions in a row whose stack fits: the structure is left to chance."""
     code = b""
     depth = 0
-    few = rng.sample(AVR_OPS, rng.randint(3, 12))
+    few = rng.sample(UNO_OPS, rng.randint(3, 12))
     for _ in range(rng.randrange(1, 14)):
-        op = rng.choice(few if rng.random() < 0.8 else AVR_OPS)
+        op = rng.choice(few if rng.random() < 0.8 else UNO_OPS)
         while depth < op.pops:
             if rng.random() < 0.8:
                 code += bytes((BY_NAME["PUSH8"].code, rng.randrange(256)))
@@ -208,7 +208,7 @@ def task_code(rng: random.Random) -> bytes:
 def expression(rng: random.Random) -> bytes:
     """Return code that shows a value calculated from numbers of all sizes."""
     code, depth = b"", 0
-    ops = [op for op in AVR_OPS if op.role == "value" and (op.pops or op.name == "TIME")]
+    ops = [op for op in UNO_OPS if op.role == "value" and (op.pops or op.name == "TIME")]
     for _ in range(rng.randrange(1, 12)):
         op = rng.choice(ops)
         while depth < op.pops:
@@ -224,7 +224,7 @@ def branches(rng: random.Random) -> bytes:
     code = b""
     body = simple("STOP")
     for _ in range(6):
-        op = rng.choice([op for op in AVR_OPS if op.role == "if"])
+        op = rng.choice([op for op in UNO_OPS if op.role == "if"])
         near = rng.choice((0, 1, 2, 9, 200))
         code += simple("PUSH16") + near.to_bytes(2, "little") + simple("SET_VAR") + b"\x01"
         *variable, compared, _ = [None, None, *(each.kind for each in op.operands)][-3:]
@@ -267,7 +267,7 @@ def mutated(rng: random.Random, code: bytes, other: bytes) -> bytes:
             data[at:] = other[rng.randrange(len(other) + 1) :]
         elif at < len(data):
             delta = rng.choice((1, 255, 2, 254))
-            choices = (rng.randrange(256), rng.choice(AVR_OPS).code, (data[at] + delta) % 256)
+            choices = (rng.randrange(256), rng.choice(UNO_OPS).code, (data[at] + delta) % 256)
             data[at] = rng.choice(choices)
     return bytes(data)
 

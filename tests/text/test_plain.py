@@ -17,7 +17,7 @@ from tests.vm.test_agreement import MAX_MS, MAX_STEPS, same
 from tests.vm.test_cases import CASES, compiled, having, robot_and_senses
 from tiniscript import Compiled, compile_text, robots
 from tiniscript.bytecode.disassembly import listing
-from tiniscript.bytecode.opcodes import AVR_OPS, BY_NAME, OPS
+from tiniscript.bytecode.opcodes import BY_NAME, OPS, UNO_OPS
 from tiniscript.bytecode.verify import verify
 from tiniscript.kit import Kit
 from tiniscript.text.levels import CODE_BYTES
@@ -29,7 +29,7 @@ FUSED = re.compile(
     r"PUSH_READ|(SET_VAR|ADD_VAR|WAIT|BEEP|MOTORS|LOOP|UNTIL|IF|IF_VAR)(8|16)|MOVE8|IF_NOT|INC_|DEC_"
     r"|ADD_VAR|AND$|OR$|END$|\w+_FAR$"
 )
-PLAIN = {op.name for op in AVR_OPS if not FUSED.match(op.name)}
+PLAIN = {op.name for op in UNO_OPS if not FUSED.match(op.name)}
 ENOUGH = 4 * 500  # random programs
 
 

@@ -1,6 +1,7 @@
 """The cases, and samples of random programs, codes, images and numbers, on simulated chips.
 
-The ATmega328P (`avr`) is started for each image: it runs 400 programs and some 2,000 codes. The
+The ATmega328P (`avr`) and the ATmega2560 (`mega`), which alone has tasks, are started for each
+image: each runs 400 programs, and the first one some 2,000 codes. The
 chips of ESP boards (`lx6`, `lx106`, `rv32imc`) run in emulators that answer nearly as quickly as
 the host's process: each also judges 16,000 codes and runs those that are accepted, judges 10,000
 images, and does 210,000 operations.
@@ -15,8 +16,8 @@ from functools import partial
 import pytest
 
 from tests.machines import Senses, avr
-from tests.machines.chips import Chip, ran
-from tests.machines.host import Ran, run_request
+from tests.machines.chips import Chip
+from tests.machines.host import Ran
 from tests.machines.python import ran_python
 from tests.machines.qemu import emulated
 from tests.machines.qemu import missing as emulator_missing
@@ -40,7 +41,10 @@ def _run_emulated(name: str, image: bytes, kit: Kit, senses: Senses) -> Ran:
     return emulated(name).run(image, kit, senses)
 
 
-CHIPS = {"avr": Chip(avr.missing(), avr.ran_on_avr, 700, counts_jumps=True)}
+CHIPS = {
+    name: Chip(avr.missing(), partial(avr.ran_on, chip), 700, counts_jumps=True)
+    for name, chip in (("avr", avr.UNO), ("mega", avr.MEGA))
+}
 CHIPS |= {name: Chip(emulator_missing(name), partial(_run_emulated, name)) for name in chips.CHIPS}
 
 
@@ -67,7 +71,7 @@ def test_the_simulated_chip_is_there(chip: str) -> None:
 
 
 def has(chip: str) -> int:
-    """Return what a chip has of `needs`: the machine in assembly has no tasks."""
+    """Return what a chip has of `needs`: an Uno has no tasks."""
     return 0 if chip == "avr" else TASKS
 
 
@@ -147,7 +151,7 @@ def test_code_that_changed_after_it_was_verified(chip: str) -> None:
     """It ends in BAD_CODE at each edge, and not too early."""
     endings = set()
     for question in of_changed_code():
-        said = avr.answer(avr.built(), question.request)
+        said = avr.answer(avr.UNO, question.request)
         assert question.is_answered_by(said), f"{question.name}: {said}"
         endings.add(question.want)
     assert endings == {"DONE", "BAD_CODE"}
@@ -157,7 +161,7 @@ def test_code_that_changed_after_it_was_verified(chip: str) -> None:
 def test_loops_count_beyond_65535(chip: str) -> None:
     """A counter has 24 bits, in registers and in memory."""
     for question in of_long_loops():
-        assert question.is_answered_by(avr.answer(avr.built(), question.request)), question.name
+        assert question.is_answered_by(avr.answer(avr.UNO, question.request)), question.name
 
 
 @some_chips("avr")
@@ -172,8 +176,7 @@ def test_a_robot_that_is_not_ready_is_asked_again(chip: str) -> None:
     readings = {"DISTANCE": [1000, 2500, -3000]}
     want = ran_python(image, kit, Senses(readings)).trace
     for not_ready in (2, 3):
-        request = b"R" + run_request(image, kit, Senses(readings), not_ready)
-        assert ran(avr.answer(avr.built(), request)).trace == want
+        assert avr.ran_on(avr.UNO, image, kit, Senses(readings), not_ready).trace == want
 
 
 @one_chip
@@ -191,6 +194,14 @@ def test_random_codes(chip: str, seed: int) -> None:
 def test_programs_with_tasks(chip: str) -> None:
     cpp_tasks.check_task_codes(emulated(chip), 4, 2000)
     cpp_tasks.check_task_programs(emulated(chip), 2000, 100)
+
+
+@some_chips("mega")
+def test_programs_with_tasks_in_assembly(chip: str) -> None:
+    for number, (image, senses) in enumerate(cpp_tasks.some_task_programs(3000, 60)):
+        same_on_the_chip(chip, image, cpp_tasks.KIT, senses)
+        ran = avr.ran_on(avr.MEGA, image, cpp_tasks.KIT, senses, 2 + number % 3)
+        assert ran.trace == cpp_tasks.slow_run(image, senses, 2 + number % 3), ran.trace
 
 
 @one_chip

@@ -55,7 +55,7 @@ ROBOT_ESP32 = ROBOT._replace(
 )
 ROBOT_MEGA = ROBOT._replace(
     path="compiler/tiniscript/virtual/robot_mega.wasm",
-    flags=("-Dtiniscript_like_mega", "-Dtiniscript_no_tasks"),
+    flags=("-Dtiniscript_like_mega",),
 )
 MODULES = (MACHINE, ROBOT, ROBOT_MEGA, ROBOT_ESP32)
 

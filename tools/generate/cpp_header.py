@@ -15,7 +15,7 @@ from tiniscript.kit import DEVICES, DEVICES_POLYNOMIAL
 
 HEADER_GUARD = "TINISCRIPT_VM_BYTECODE_H_"
 HAS_TASKS = "tiniscript_has_tasks"
-TASK_OPS = tuple(op for op in opcodes.OPS if op not in opcodes.AVR_OPS)
+TASK_OPS = tuple(op for op in opcodes.OPS if op not in opcodes.UNO_OPS)
 
 # What a verifier distinguishes in the first two bytes of operands; devices come last.
 BYTES = ("any", "power", "percent", "variable", "count", "sensor", "actuator")
@@ -44,11 +44,7 @@ def header(command: str) -> str:
         "#include <stdint.h>\n"
         "\n"
         '#include "flash.h"\n'
-        "\n"
-        "// The machine in assembly has no tasks, nor have virtual robots like one.\n"
-        "#if !defined(__AVR__) && !defined(tiniscript_no_tasks)\n"
-        f"#define {HAS_TASKS}\n"
-        "#endif\n"
+        '#include "has_tasks.h"\n'
         "\n"
         "// clang-format off\n"
         "\n"
@@ -179,7 +175,7 @@ def shapes() -> dict[Shape, list[opcodes.Op]]:
 
 def in_order() -> tuple[opcodes.Op, ...]:
     """Return all instructions, those of tasks last: some machines do without them."""
-    return opcodes.AVR_OPS + TASK_OPS
+    return opcodes.UNO_OPS + TASK_OPS
 
 
 def families() -> list[str]:

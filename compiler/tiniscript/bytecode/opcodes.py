@@ -300,7 +300,7 @@ NEST_WORDS = 32  # what a verifier remembers of open blocks: a word for an IF, t
 JOINS = 16  # AND_THEN and OR_ELSE open at once
 CHECK_MS = 20  # between two checks of an UNTIL
 
-AVR_OPS = tuple(op for op in OPS if not op.minor)  # the machine in assembly has no tasks
+UNO_OPS = tuple(op for op in OPS if not op.minor)  # an Uno has no tasks
 BY_NAME = {op.name: op for op in OPS}
 BY_CODE: list[Op | None] = [None] * 256
 for _each in OPS:

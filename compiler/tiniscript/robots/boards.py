@@ -140,6 +140,7 @@ CHIPS = {
             first_analog=54,
             servo_timer=1,
             tone_timer=2,
+            has=_TASKS,
         ),
         Chip(
             "esp32dev",

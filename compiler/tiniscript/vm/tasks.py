@@ -357,8 +357,6 @@ class TaskMachine(Machine):
             if holder.drives:
                 holder.end_move()
                 holder.clock_ms = self.now_ms
-        if me.keeps:
-            self._take()
 
     def _is_below(self) -> bool:
         """Whether a higher task has the motors."""

@@ -124,8 +124,8 @@ tini_noinline uint8_t Link::make(Use use, uint8_t start, const uint8_t* code, ui
   const uint8_t found = make_room(use, static_cast<uint16_t>(kHeaderBytes + length));
   if (found != kIsFine) return found;
   uint8_t* const image = made_;
-  image[kIsaMajorAt] = isa_[0];
-  image[kIsaMinorAt] = has_tasks ? kIsaMinor : isa_[1];
+  image[kIsaMajorAt] = kIsaMajor;
+  image[kIsaMinorAt] = has_tasks;  // as the compiler: 2.0 without
   image[kStartAt] = start;
   image[kHeaderLengthAt] = kHeaderBytes;
   image[kDevicesAt] = static_cast<uint8_t>(devices);

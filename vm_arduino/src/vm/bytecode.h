@@ -9,11 +9,7 @@
 #include <stdint.h>
 
 #include "flash.h"
-
-// The machine in assembly has no tasks, nor have virtual robots like one.
-#if !defined(__AVR__) && !defined(tiniscript_no_tasks)
-#define tiniscript_has_tasks
-#endif
+#include "has_tasks.h"
 
 // clang-format off
 

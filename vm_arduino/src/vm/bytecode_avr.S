@@ -5,6 +5,8 @@
 #ifndef tini_bytecode_avr
 #define tini_bytecode_avr
 
+#include "has_tasks.h"
+
 #define tini_fault_overflow 1
 #define tini_fault_divide_by_zero 2
 #define tini_fault_bad_code 255
@@ -20,6 +22,15 @@
 #define tini_comparator_le 3
 #define tini_comparator_gt 4
 #define tini_comparator_ge 5
+
+// What a machine without tasks does about theirs.
+#ifndef tiniscript_has_tasks
+#define op_look op_none
+#define op_end_task op_none
+#define op_end_when op_none
+#define op_task op_none
+#define op_when op_none
+#endif
 
 // The low bits of an instruction that compares are its comparator.
 #define tini_comparator_bits 7
@@ -110,7 +121,7 @@
     rjmp op_watch_wait
     rjmp op_watch_forever_wait
     rjmp op_until
-    rjmp op_none
+    rjmp op_look
     rjmp op_beep8
     rjmp op_none
     rjmp op_stop
@@ -143,15 +154,15 @@
     rjmp op_break_far
     rjmp op_break_loop
     rjmp op_break_loop_far
-    rjmp op_none
-    rjmp op_none
+    rjmp op_end_task
+    rjmp op_end_when
     rjmp op_def
     rjmp op_def_far
     rjmp op_return
     rjmp op_call
     rjmp op_call_far
-    rjmp op_none
-    rjmp op_none
+    rjmp op_task
+    rjmp op_when
     rjmp op_none
     rjmp op_push_var_short  ; 80
     rjmp op_push_var_short

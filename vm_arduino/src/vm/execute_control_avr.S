@@ -54,6 +54,10 @@ op_if_not_far:
 op_else_far:
 op_break_far:
 op_def_far:
+#ifdef tiniscript_has_tasks
+op_task:
+op_when:
+#endif
     set
     rcall distance
 jump:

@@ -119,6 +119,11 @@ op_wait8:
     adiw r26, 1
     rjmp 3f
 op_end:
+#ifdef tiniscript_has_tasks
+op_look:
+op_end_task:
+op_end_when:
+#endif
 op_set_short:
 op_move:
 op_watch:
@@ -138,13 +143,18 @@ statement_end:
     rjmp leave
 4:  rjmp next_one
 
-; A value that could not be sent stays on the stack.
+; A value that could not be sent stays on the stack, but a task has kept it, and goes on behind it.
 op_show:
 op_show_yes_no:
     movw at, r26
     rcall perform
     tst r18
     brne statement_end
+#ifdef tiniscript_has_tasks
+    cp r26, at
+    cpc r27, at1
+    breq statement_end
+#endif
     rjmp leave
 
 op_until:

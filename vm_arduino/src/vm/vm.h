@@ -136,6 +136,7 @@ class Machine {
   // the turns of tasks, in `vm_tasks.cpp`
   void find_tasks();
   void run_round();
+  bool run_turn();
   bool finds_turn();
   bool waits_for_clock(uint8_t rank) const;
   uint32_t next_wake_ms() const;

@@ -7,6 +7,7 @@
 
 #ifdef tiniscript_has_tasks
 
+#include "flags.h"
 #include "shape.h"
 #include "vm.h"
 
@@ -53,6 +54,10 @@ void to_the_end(Value* values, uint8_t at, uint8_t count, uint8_t all) {
   }
 }
 
+void move_down(uint8_t* place, uint8_t behind, uint8_t by) {
+  if (*place > behind) *place = static_cast<uint8_t>(*place - by);
+}
+
 }  // namespace
 
 // -- turns ----------------------------------------------------------------------------------------
@@ -87,12 +92,31 @@ bool Machine::arrive(uint32_t now_ms) {
 // Runs turns until the round is over or the budget is used up.
 void Machine::run_round() {
   while (left_ != 0 && fault_ == Fault::kNone && finds_turn()) {
-    const bool is_cut = execute(left_);
-    if (is_cut || fault_ != Fault::kNone || status_ == Status::kDone) return;
+    if (run_turn() || fault_ != Fault::kNone || status_ == Status::kDone) return;
     // before all others the main task waits for a reading, too
     if (tasks_.is_first && task_.wait == Wait::kNothing) return;
     end_turn();
   }
+}
+
+// Returns whether the budget ends it, and not the turn.
+bool Machine::run_turn() {
+#ifdef __AVR__
+  // The inner loop leaves at each jump back, where a loop may wait.
+  uint8_t left = left_;
+  bool goes_on;
+  do {
+    execute(1);
+    goes_on = left_ == 0 && fault_ == Fault::kNone;
+    if (!goes_on) break;
+    left--;
+    goes_on = shape_of(code_[at_]).role() == Role::kCall || goes_back();
+  } while (goes_on && left != 0 && !Flag<Bit::kAttention>());
+  left_ = left;
+  return goes_on;
+#else
+  return execute(left_);
+#endif
 }
 
 // Goes on with a turn, or begins the next one of the round. False: the round is over.
@@ -137,8 +161,8 @@ void Machine::begin_turn(uint8_t rank) {
   to_the_end(task_.calls, me->called_at, me->called, task_.called);
   for (uint8_t k = 0; k < tasks_.count; k++) {
     TaskRecord* const other = tasks_.records + k;
-    if (other->looped_at > me->looped_at) other->looped_at -= me->looped;
-    if (other->called_at > me->called_at) other->called_at -= me->called;
+    move_down(&other->looped_at, me->looped_at, me->looped);
+    move_down(&other->called_at, me->called_at, me->called);
   }
   me->looped_at = static_cast<uint8_t>(task_.looped - me->looped);
   me->called_at = static_cast<uint8_t>(task_.called - me->called);
@@ -211,6 +235,7 @@ bool Machine::ends_program() {
   TaskRecord* const me = tasks_.records + tasks_.me;
   me->has_ended = true;
   forget_set(me);
+  stay();  // behind the last END lies nothing
   for (uint8_t rank = 0; rank < tasks_.count; rank++) {
     if (!tasks_.records[rank].has_ended) return pause();
   }
@@ -335,7 +360,6 @@ void Machine::stop_in_task() {
       holder->clock_ms = now_ms_;
     }
   }
-  if (me->keeps) take();
 }
 
 // Whether a higher task has the motors.
