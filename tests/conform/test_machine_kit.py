@@ -19,14 +19,15 @@ from tests.support.casefile import ROOT
 from tests.support.command import Done, Tsc
 from tests.support.waiting import until
 from tiniscript.bytecode.loading import loaded
-from tiniscript.bytecode.opcodes import AVR_OPS
+from tiniscript.bytecode.opcodes import OPS
+from tiniscript.conformance.comparing import AGREES, DIFFERS, LACKS, verdicts
 from tiniscript.conformance.kit import MachineCase, machine_cases
 from tiniscript.conformance.link_kit import link_kit
 from tiniscript.conformance.machine_process import MachineProcess, Problem
 from tiniscript.conformance.port_checks import all_checks
 from tiniscript.kit import Device, Kit
-from tiniscript.vm.machine import Machine
 from tiniscript.vm.state import DONE, FAULT
+from tiniscript.vm.tasks import machine_of
 from tiniscript.vm.trace import Senses as Lists
 from tiniscript.vm.trace import TracedRobot
 from tools.builds.studio import found_tools
@@ -61,9 +62,30 @@ def found_by(tsc: Tsc, command: str, *more: str) -> list[dict[str, object]]:
 def test_the_machine_in_javascript_passes_all(tsc: Tsc) -> None:
     done = conform(tsc, node())
     assert done.code == 0, done.out
-    count = len(machine_cases())
-    assert count > 500
-    assert done.out == f"{count} of {count} cases agree. Kit 2, bytecode 2.1.\n"
+    needing = sum(bool(case.needs) for case in machine_cases())
+    count = len(machine_cases()) - needing
+    assert count > 500 and needing > 100
+    assert done.out == (
+        f"{needing} cases with TASK or WHEN were left out: this machine has none.\n"
+        f"{count} of {count} cases agree. Kit 3, bytecode 2.1.\n"
+    )
+    assert json.loads(conform(tsc, node(), "--json").out)["left_out"] == needing
+    spanish = conform(tsc, node(), "--only", "tasks: ", "--lang", "es").out
+    assert "casos con TASK o WHEN se dejaron fuera" in spanish
+
+
+@pytest.mark.parametrize("refusal", ["UNKNOWN_NEEDS", "OTHER_VERSION"])
+def test_a_machine_lacks_tasks_only_if_it_refuses_the_first_image_with_some(refusal: str) -> None:
+    cases = [case for case in machine_cases() if case.needs][:4]
+    answers = iter([f"REFUSED {refusal}"])
+    found = list(verdicts(cases, lambda request, most: [next(answers)]))
+    assert [each.what for each in found] == [LACKS] * 4
+    last = iter([*(case.answer for case in cases[:3]), [f"REFUSED {refusal}"]])
+    found = list(verdicts(cases, lambda request, most: next(last)))
+    assert [each.what for each in found] == [AGREES] * 3 + [DIFFERS]
+    other = iter([["REFUSED DAMAGED"], *(case.answer for case in cases[1:])])
+    found = list(verdicts(cases, lambda request, most: next(other)))
+    assert [each.what for each in found] == [DIFFERS] + [AGREES] * 3
 
 
 # A file, what it says, what it says then, and a case that must be named.
@@ -132,14 +154,14 @@ def test_each_instruction_runs() -> None:
         kit = kit_of(case)
         code = loaded(case.image, kit).code
         robot = TracedRobot(kit, Lists(kit, case.readings))
-        runs = Machine(code, robot, len(kit.sensors), case.seed)
+        runs = machine_of(code, robot, len(kit.sensors), case.seed)
         for _ in range(10_000):
-            seen.add([*code, 0][runs.task.pc])
             status = runs.tick(robot.now_ms, 1)
+            seen.add([*code, 0][runs.at])
             robot.now_ms = max(runs.wake_ms, robot.now_ms)
             if status in (DONE, FAULT) or robot.now_ms > case.until_ms:
                 break
-    assert [op.name for op in AVR_OPS if op.code not in seen] == []
+    assert [op.name for op in OPS if op.code not in seen] == []
 
 
 def kit_of(case: MachineCase) -> Kit:
@@ -174,8 +196,7 @@ def test_names_are_unique_and_each_refusal_is_there() -> None:
     cases = machine_cases()
     assert len({case.name for case in cases}) == len(cases)
     refused = {case.answer[-1].split()[1] for case in cases if "REFUSED" in case.answer[-1]}
-    # an image says the first one as BAD_HEADER, and no case of the kit has tasks
-    assert refused == {*REFUSALS, *RULES} - {"CODE_LENGTH", "TOO_MANY_TASKS"}
+    assert refused == {*REFUSALS, *RULES} - {"CODE_LENGTH"}  # an image says it as BAD_HEADER
 
 
 # -- machines that are no machines ------------------------------------------------------------
@@ -315,7 +336,9 @@ def test_the_page_shows_a_run_as_it_is_asked_for_and_answered() -> None:
 
 def test_the_page_says_how_many(tsc: Tsc) -> None:
     count = len(machine_cases())
+    needing = sum(bool(case.needs) for case in machine_cases())
     text = PAGE.read_text(encoding="utf-8")
     assert f"some {round(count, -1)} runs" in text
     assert f"some {round(len(all_checks(link_kit())), -1)} checks" in text
-    assert f"{count - 1} of {count} cases agree" in text
+    assert f"{needing} cases with TASK or WHEN" in text
+    assert f"{count - needing - 1} of {count - needing} cases agree" in text

@@ -17,13 +17,11 @@ ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
 from tests.support.casefile import Case, read
-from tests.support.images import has_tasks
+from tests.support.images import has_tasks, image_for
 from tests.vm.test_cases import compiled, robot_and_senses
 from tiniscript import fixed_point, robots
 from tiniscript.bytecode.disassembly import read_listing
-from tiniscript.bytecode.image import pack
-from tiniscript.bytecode.opcodes import AVR_OPS, BY_NAME, SHORTS, Op
-from tiniscript.bytecode.verify import verify
+from tiniscript.bytecode.opcodes import BY_NAME, SHORTS, UNO_OPS, Op
 from tiniscript.kit import NUMBER, Device, Kit
 from tiniscript.vm.machine import Machine
 from tiniscript.vm.state import FOREVER
@@ -58,9 +56,7 @@ EDGES = (-MAX_LONG - 1, -1_500_500, -1, 0, 499, 1000, 2500, MAX_LONG)
 
 def cases_header(command: str) -> str:
     """Return the text of `cases.h`."""
-    found = [
-        case for path in sorted(CASES.glob("*.md")) for case in read(path) if runs_in_cpp(case)
-    ]
+    found = [case for path in sorted(CASES.glob("*.md")) for case in read(path)]
     kits = {name: robots.load(name).kit for name in robots.names()}
     refused = [case for case in found if "refused" in case.parts]
     programs = [case for case in found if "robot" in case.parts]
@@ -85,13 +81,6 @@ def cases_header(command: str) -> str:
     return "\n".join(parts)
 
 
-def runs_in_cpp(case: Case) -> bool:
-    """Return whether the machine in C++ has all that the code of a case needs."""
-    if "tiniscript" in case.parts:
-        return not has_tasks(compiled(case).code)
-    return "bytecode" not in case.parts or not has_tasks(read_listing(case.parts["bytecode"]))
-
-
 STRUCTS = """\
 struct Kit {
   std::vector<Device> sensors;
@@ -102,6 +91,7 @@ struct Kit {
 struct RefusedCase {
   std::string title;
   std::vector<uint8_t> code;
+  bool may_have_tasks;
   Rule rule;
   uint16_t offset;
 };
@@ -172,7 +162,8 @@ def refused_row(case: Case) -> str:
     assert robot_and_senses(case)[0].name == robots.DEFAULT, case.id
     rule = f"Rule::{constant(name)}"
     title = f"{case.title}: {case.parts['refused'].strip()}"
-    return f"{text(title)}, {numbers(code)}, {rule}, 0x{offset}"
+    may_have_tasks = str(has_tasks(code)).lower()
+    return f"{text(title)}, {numbers(code)}, {may_have_tasks}, {rule}, 0x{offset}"
 
 
 def program_row(case: Case) -> str:
@@ -180,9 +171,7 @@ def program_row(case: Case) -> str:
     if "tiniscript" in case.parts:
         image = compiled(case).image
     else:
-        code = read_listing(case.parts["bytecode"])
-        verdict = verify(code, len(robot.kit.sensors), len(robot.kit.actuators))
-        image = pack("SI", robot.kit.hash_of_used(verdict.uses), code)
+        image = image_for(read_listing(case.parts["bytecode"]), robot.kit)
     readings = ", ".join(numbers(senses.readings.get(each.name, ())) for each in robot.kit.sensors)
     return (
         f"{text(case.id)}, {robot.name}(), {{{readings}}}, {senses.max_ms}, {senses.seed},\n"
@@ -195,7 +184,7 @@ def program_row(case: Case) -> str:
 
 def instruction_rows(kit: Kit) -> Iterator[str]:
     """Return each instruction with the values that show what it does."""
-    for op in AVR_OPS:
+    for op in UNO_OPS:
         for pushed, near in tries(op):
             parts = [*before(op, near), *pushed]
             code = b"".join(parts) + tried(op) + bytes([BY_NAME["STOP"].code]) * 3

@@ -34,7 +34,7 @@ BYTES = re.compile(r"((?:[0-9a-f]{2} ?)+)(?:   (.*))?$")
 
 def link_kit(command: str) -> str:
     """Return the text of the file: a line for each case."""
-    runs = [run for run in documented() if run.when == USUAL]
+    runs = [run for run in documented() if run.when == USUAL and not run.needs]
     runs += [run for run in arithmetic() if answers_fault(run)]
     parts = {
         "programs": list(programs(runs)),

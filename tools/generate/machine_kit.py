@@ -8,32 +8,36 @@ is expected is what the machine in Python answers; the tests compare it with the
 from __future__ import annotations
 
 import json
+import random
 from collections.abc import Iterator
 from itertools import chain, product, repeat
 from typing import NamedTuple
 
 from tests.machines import Senses
 from tests.machines.python import lists_of
+from tests.oracle.task_programs import task_program
 from tests.support.casefile import ROOT, Case, read
 from tests.support.images import image_for
 from tests.vm.test_agreement import random_program
 from tests.vm.test_cases import compiled, robot_and_senses
 from tiniscript import robots
 from tiniscript.bytecode.disassembly import read_listing
-from tiniscript.bytecode.image import ImageRefused, pack, sealed
+from tiniscript.bytecode.image import ImageRefused, pack, sealed, unpack
 from tiniscript.bytecode.loading import loaded
 from tiniscript.bytecode.opcodes import BY_NAME, ISA_MAJOR, ISA_MINOR, SHORTS, Op
 from tiniscript.bytecode.verify import Refused
 from tiniscript.conformance.kit import FORM, VERSION
 from tiniscript.kit import DEVICES, NUMBER, YES_NO, Device, Kit
-from tiniscript.vm.machine import Machine
 from tiniscript.vm.state import DONE, FAULT, WAITING
+from tiniscript.vm.tasks import machine_of
 from tiniscript.vm.trace import TracedRobot
-from tools.generate.cpp_cases import CALCULATIONS, EDGES, push32, runs_in_cpp
+from tools.generate.cpp_cases import CALCULATIONS, EDGES, push32
 
 TINIBOT = robots.load("tinibot").kit
 STEPS = 100_000  # a case that runs more without a wait says nothing about its end: it is left out
 RANDOM_PROGRAMS = range(1000, 1030)
+TASK_PROGRAMS = range(1000, 1010)
+TASK_MS = 600
 When = tuple[int, tuple[int, ...]]
 
 # When a run begins, and how often its machine is called: for the first wait, for the next, and the
@@ -56,12 +60,23 @@ class Run(NamedTuple):
     senses: Senses = Senses()
     when: When = USUAL
 
+    @property
+    def needs(self) -> int:
+        """What a machine may lack, and refuse the image for."""
+        try:
+            return unpack(self.image).needs
+        except ImageRefused:
+            return 0
+
 
 def machine_kit(command: str) -> str:
     """Return the text of the file: a line for each case."""
     kits: list[Kit] = []
     rows = []
-    for run in [*documented(), *times(), *devices(), *images(), *arithmetic(), *random_programs()]:
+    for run in [
+        *documented(), *times(), *devices(), *images(), *arithmetic(), *random_programs(),
+        *task_programs(),
+    ]:  # fmt: skip
         answer = answer_of(run)
         if answer is None:
             continue
@@ -92,6 +107,7 @@ def case_of(run: Run, kit: int, answer: list[str]) -> dict[str, object]:
         "begin": begin,
         "every": list(every_ms),
         "until": run.senses.max_ms,
+        **({"needs": run.needs} if run.needs else {}),
         "answer": answer,
     }
 
@@ -107,7 +123,7 @@ def answer_of(run: Run) -> list[str] | None:
     begin, every_ms = run.when
     every = chain(every_ms, repeat(every_ms[-1]))
     robot = TracedRobot(run.kit, lists_of(run.kit, run.senses))
-    machine = Machine(code, robot, len(run.kit.sensors), run.senses.seed, begin)
+    machine = machine_of(code, robot, len(run.kit.sensors), run.senses.seed, begin)
     while True:
         status = machine.tick(begin + robot.now_ms, STEPS)
         if status == DONE:
@@ -136,8 +152,6 @@ def documented() -> Iterator[Run]:
     paths = [*sorted(ROOT.glob("tests/cases/*.md")), ROOT / "bytecode_spec.md"]
     for case in (case for path in paths for case in read(path)):
         if not case.parts.keys() & {"robot", "refused"} and not stands_alone(case):
-            continue
-        if not runs_in_cpp(case):
             continue
         robot, senses = robot_and_senses(case)
         run = Run(case.id, robot.kit, image_of(case, robot.kit), senses)
@@ -298,3 +312,12 @@ def random_programs() -> Iterator[Run]:
         yield run
         if takes_time(run):
             yield run._replace(name=f"{run.name} (called every 7 ms)", when=SELDOM)
+
+
+def task_programs() -> Iterator[Run]:
+    """Return programs with tasks at random, at the usual times and at others."""
+    for seed in TASK_PROGRAMS:
+        text, readings = task_program(random.Random(seed))
+        run = Run(f"tasks: {seed}", TINIBOT, compile_image(text), Senses(readings, TASK_MS))
+        yield run
+        yield run._replace(name=f"{run.name} (called every 7 ms)", when=SELDOM)

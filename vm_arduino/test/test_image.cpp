@@ -59,7 +59,7 @@ TEST_CASE("every image of a program is read") {
     uint16_t devices = 0;
     const Verdict verdict =
         verify(image.code, image.code_length, static_cast<uint8_t>(robot.sensors.size()),
-               static_cast<uint8_t>(robot.actuators.size()), &devices);
+               static_cast<uint8_t>(robot.actuators.size()), &devices, image.has_tasks);
     CHECK(verdict.rule == Rule::kNone);
     CHECK(devices == image.devices);
   }

@@ -11,14 +11,15 @@ from typing import NamedTuple
 from tiniscript.conformance.kit import MachineCase
 from tiniscript.conformance.machine_process import Problem
 
-AGREES, DIFFERS = "agrees", "differs"  # or what a Problem says
+AGREES, DIFFERS, LACKS = "agrees", "differs", "lacks"  # or what a Problem says
+LACKING = ["REFUSED UNKNOWN_NEEDS"], ["REFUSED OTHER_VERSION"]  # the second of a machine of 2.0
 MOST_ENDLESS = 3  # answers that hang or flood; then nobody waits for more of them,
 MOST_SILENT = 20  # nor for a machine whose first so many runs gave no answer
 
 
 class Verdict(NamedTuple):
-    """`what` is AGREES, DIFFERS, hang, crash, flood or more. `line` counts from 1; `want` and `got`
-    are that line of the two answers, None behind their ends."""
+    """`what` is AGREES, DIFFERS, LACKS, hang, crash, flood or more. `line` counts from 1; `want`
+    and `got` are that line of the two answers, None behind their ends."""
 
     name: str
     what: str
@@ -41,9 +42,16 @@ Ask = Callable[[str, int], Sequence[str]]
 
 
 def verdicts(cases: Iterable[MachineCase], ask: Ask) -> Iterator[Verdict]:
-    """Yield the verdict of each case, up to where nobody waits for more."""
+    """Yield the verdict of each case, up to where nobody waits for more.
+
+    A machine that refuses the first case that needs something lacks it, and is asked for no other.
+    """
     endless = silent = answers = 0
+    lacks: bool | None = None
     for case in cases:
+        if case.needs and lacks:
+            yield Verdict(case.name, LACKS)
+            continue
         try:
             got = ask(case.request(), sum(len(row) + 2 for row in case.answer))
         except Problem as problem:
@@ -55,4 +63,9 @@ def verdicts(cases: Iterable[MachineCase], ask: Ask) -> Iterator[Verdict]:
                 return
         else:
             answers += 1
+            if case.needs and lacks is None:
+                lacks = list(got) in LACKING and list(got) != list(case.answer)
+                if lacks:
+                    yield Verdict(case.name, LACKS)
+                    continue
             yield compared(case.name, case.answer, got)

@@ -11,13 +11,13 @@ from importlib import resources
 from typing import NamedTuple
 
 FORM = "tiniscript-machine-kit"
-VERSION = 2  # of the form; grows when a reader of the file, or a machine, must know more
+VERSION = 3  # of the form; grows when a reader of the file, or a machine, must know more
 
 
 class MachineCase(NamedTuple):
     """One run. `devices` are the kit's lines, as the specification hashes them; `readings` are
     thousandths by the number of the sensor; times are milliseconds. `every_ms` has one for each
-    wait, the last for all that follow."""
+    wait, the last for all that follow. A machine may lack what a case `needs`, as images say it."""
 
     name: str
     devices: tuple[str, ...]
@@ -27,6 +27,7 @@ class MachineCase(NamedTuple):
     begin_ms: int
     every_ms: tuple[int, ...]
     until_ms: int
+    needs: int
     answer: tuple[str, ...]
 
     def request(self) -> str:
@@ -69,6 +70,7 @@ def cases_of(text: str) -> list[MachineCase]:
             row["begin"],
             tuple(row["every"]),
             row["until"],
+            row.get("needs", 0),
             tuple(row["answer"]),
         )
         for row in found["cases"]

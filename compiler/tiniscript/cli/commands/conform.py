@@ -16,7 +16,7 @@ from tiniscript.cli.options import whole_number
 from tiniscript.cli.robot.connect import FASTEST_BAUD, SLOWEST_BAUD, port_failure
 from tiniscript.cli.texts.common import text
 from tiniscript.conformance import link_kit, port_checks
-from tiniscript.conformance.comparing import AGREES, DIFFERS, Verdict, verdicts
+from tiniscript.conformance.comparing import AGREES, DIFFERS, LACKS, Verdict, verdicts
 from tiniscript.conformance.kit import VERSION, machine_cases
 from tiniscript.conformance.machine_process import CannotStart, MachineProcess
 from tiniscript.conformance.wire_robot import Silent, WireRobot
@@ -113,11 +113,16 @@ def report(
 ) -> int:
     """Print what differs, and the sum; return the exit code."""
     found = list(found)
+    lacking = sum(each.what == LACKS for each in found)
+    found = [each for each in found if each.what != LACKS]
+    count -= lacking
     differing = [each for each in found if each.what != AGREES]
     good = len(found) - len(differing)
     if options.json:
         rows = [each._asdict() for each in differing]
-        sums = {**facts, "cases": count, "agree": good, "differ": len(differing), "found": rows}
+        sums = {**facts, "cases": count, "agree": good, "differ": len(differing)}
+        sums |= {"left_out": lacking} if lacking else {}
+        sums["found"] = rows
         print(json.dumps(sums, indent=2, ensure_ascii=False))
         return int(bool(differing))
     for each in differing[:MOST_SHOWN]:
@@ -126,6 +131,8 @@ def report(
         print(text("conform_others", language).format(n=len(differing) - MOST_SHOWN))
     if len(found) < count:
         print(text("conform_given_up", language))
+    if lacking:
+        print(text("conform_left_out", language).format(n=lacking))
     print(text(end, language).format(good=good, all=count, **facts))
     return int(bool(differing))
 

@@ -108,6 +108,8 @@ SELFTEST_TEXTS: dict[str, tuple[str, str]] = {
     "conform_more": ("  went on writing after the end of its answer: {detail}", "  siguió escribiendo después del final de su respuesta: {detail}"),
     "conform_others": ("... and {n} more; --json lists all of them.", "... y {n} más; --json los lista todos."),
     "conform_given_up": ("The other cases were not tried: too many had no answer.", "Los otros casos no se probaron: demasiados quedaron sin respuesta."),
+    "conform_left_out": ("{n} cases with TASK or WHEN were left out: this machine has none.",
+                         "{n} casos con TASK o WHEN se dejaron fuera: esta máquina no los tiene."),
     "conform_machine_end": ("{good} of {all} cases agree. Kit {version}, bytecode {isa}.",
                             "{good} de {all} casos coinciden. Kit {version}, bytecode {isa}."),
     "conform_port_end": ("{good} of {all} checks agree. Kit {version}, link {link}, bytecode {isa}.",
