@@ -1,6 +1,7 @@
 """Programs with TASK and WHEN: the compiler and the machine agree with the oracle.
 
-`python -m tests.oracle.test_tasks 100000` compares more programs than the tests.
+`python -m tests.oracle.test_tasks 100000` compares more programs than the tests, and the machine in
+C++ as well.
 """
 
 from __future__ import annotations
@@ -8,10 +9,11 @@ from __future__ import annotations
 import argparse
 import random
 from collections import Counter
+from collections.abc import Sequence
 
 import pytest
 
-from tests.machines import Senses
+from tests.machines import MACHINES, Machine, Senses
 from tests.machines.python import run_python
 from tests.oracle.interpreter import PAPER_KIT, Mistake, run
 from tests.oracle.task_programs import task_program
@@ -24,15 +26,16 @@ MAX_MS = 600
 BATCH = 50
 
 
-def check_program(seed: int) -> str:
-    """Compare the traces of one random program; return how it ended."""
+def check_program(seed: int, machines: Sequence[Machine] = (run_python,)) -> str:
+    """Compare the traces of one random program on some machines; return how it ended."""
     text, senses = task_program(random.Random(seed))
     want = run(text, PAPER_KIT, senses, MAX_MS)
     for optimize in (True, False):
         compiled = compile_text(text, KIT, optimize=optimize)
         assert compiled.is_right, f"seed {seed}:\n{text}"
-        got = run_python(compiled.image, KIT, Senses(senses, MAX_MS))
-        assert got == want, f"seed {seed}, optimize {optimize}:\n{text}"
+        for machine in machines:
+            got = machine(compiled.image, KIT, Senses(senses, MAX_MS))
+            assert got == want, f"seed {seed}, optimize {optimize}:\n{text}"
     laid_out = formatted(Source(text))
     assert compile_text(laid_out, KIT).image == compile_text(text, KIT).image, f"seed {seed}"
     assert formatted(Source(laid_out)) == laid_out, f"seed {seed}"
@@ -112,9 +115,11 @@ def test_programs_without_tasks_say_the_version_without_them() -> None:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("count", type=int)
-    parser.add_argument("--first", type=int, default=0)
+    parser.add_argument("--seed", type=int, default=0, help="of the first program")
     given = parser.parse_args()
-    ends = Counter(check_program(seed) for seed in range(given.first, given.first + given.count))
+    machines = [MACHINES[name] for name in ("python", "host")]
+    seeds = range(given.seed, given.seed + given.count)
+    ends = Counter(check_program(seed, machines) for seed in seeds)
     print(f"{given.count} programs agree: {dict(ends)}")
 
 
