@@ -22,6 +22,16 @@ def fault_text(fault: str, offset: int, places: Map | None, is_image: bool, lang
         piece = piece.replace("\t", " ")
         key = "fault_line_of" if is_image else "fault_line"
         name = shown(places.name)
-        where = text(key, language).format(name=name, line=place.line, shown=piece[:100])
+        task = _task_text(places.task_of(place), language)
+        where = text(key, language).format(name=name, line=place.line, task=task, shown=piece[:100])
     what = text(f"fault_{fault}", language)
     return text("fault_at", language).format(fault=fault, what=what, place=where)
+
+
+def _task_text(task: tuple[str, int] | None, language: str) -> str:
+    """Return which task it was, with a comma before it; nothing where that is not known."""
+    if task is None:
+        return ""
+    word, line = task
+    key = "fault_in_task" if word else "fault_in_main"
+    return text(key, language).format(word=word, line=line)

@@ -150,7 +150,8 @@ class _Marker:
         for diagnostic in compiled.diagnostics:
             if diagnostic.is_mistake:
                 said = message(diagnostic, compiled.source, self.language)
-                line = text("fault_line", self.language).format(line=said.line, shown=said.message)
+                values = {"line": said.line, "task": "", "shown": said.message}
+                line = text("fault_line", self.language).format(**values)
                 fix = text("lesson_try", self.language).format(fix=said.fix) if said.fix else ""
                 yield "", f"{line}   {fix}".strip()
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable
 from contextlib import suppress
+from itertools import takewhile
 from pathlib import Path
 from typing import NamedTuple
 
@@ -17,6 +18,7 @@ from tiniscript.bytecode import image as images
 from tiniscript.codegen.lower import Place
 from tiniscript.files import contents
 from tiniscript.source import Source
+from tiniscript.words import TASKS
 
 VERSION = 1
 FILE_BYTES = 32_000_000
@@ -48,6 +50,24 @@ class Map(NamedTuple):
                 break
             found = place
         return found
+
+    def task_of(self, place: MapPlace) -> tuple[str, int] | None:
+        """Return the word and the line of the TASK or WHEN around a place; "" and 0 outside.
+
+        Returns None where there are no tasks, and in a DEF, which any of them may have called.
+        """
+        blocks = [(self._word(each), each) for each in self.places]
+        if not any(word in TASKS for word, _ in blocks):
+            return None
+        for word, each in blocks:
+            is_around = each[1:3] <= place[1:3] and place[3:] <= each[3:]
+            if is_around and word in (*TASKS, "DEF"):
+                return None if word == "DEF" else (word, each.line)
+        return "", 0
+
+    def _word(self, place: MapPlace) -> str:
+        rest = self.line(place.line)[place.column - 1 :]
+        return "".join(takewhile(lambda sign: sign.isalnum() or sign == "_", rest)).upper()
 
     def line(self, number: int) -> str:
         return self.lines[number - 1] if 1 <= number <= len(self.lines) else ""

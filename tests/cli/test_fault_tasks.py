@@ -1,0 +1,63 @@
+"""A fault says which task of a program it has ended: in both languages, from any robot."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.machines.wasm import missing
+from tests.support.command import inside
+
+DEF, WHEN, TASK = (
+    f"{head}\n  W(0.05); {{}}\n{end}\n"
+    for head, end in (("def A", "END_DEF"), ("WHEN(TRUE)", "END_WHEN"), ("Task", "ENDTASK"))
+)
+FAULT = "SHOW(1 / N)"
+
+
+def program(where: str) -> str:
+    blocks = (("DEF", DEF), ("WHEN", WHEN), ("TASK", TASK))
+    inner = {"DEF": "A", where: FAULT}
+    inner["DEF"] = FAULT if where == "DEF" else "S"
+    text = "N = 0; TASKS = 1\n" + "".join(block.format(inner.get(k, "A")) for k, block in blocks)
+    return text + (f"W(0.01); {FAULT}\n" if where == "main" else "")
+
+
+@pytest.fixture
+def path(tmp_path: Path) -> Path:
+    return tmp_path / "tasks.ts"
+
+
+@pytest.mark.parametrize(
+    ("where", "english", "spanish"),
+    [
+        ("WHEN", "line 6, in the WHEN of line 5:  ", "línea 6, en el WHEN de la línea 5:  "),
+        ("TASK", "line 9, in the TASK of line 8:  ", "línea 9, en el TASK de la línea 8:  "),
+        ("main", "line 11, in the main task:  ", "línea 11, en la tarea principal:  "),
+        ("DEF", "line 3:  ", "línea 3:  "),  # both tasks call it
+    ],
+)
+def test_its_line_and_its_task(where: str, english: str, spanish: str, path: Path) -> None:
+    path.write_text(program(where), encoding="utf-8")
+    for language, said in (("en", english), ("es", spanish)):
+        done = inside("run", path, "--lang", language)
+        assert done.code == 1 and done.out.endswith("FAULT DIVIDE_BY_ZERO\n")
+        line = done.err.splitlines()[-1]
+        assert line.startswith(said) and line.endswith(FAULT), line
+
+
+def test_a_program_without_tasks_has_none(path: Path) -> None:
+    path.write_text("N = 0\nTASKS = 1 / N\n", encoding="utf-8")
+    assert inside("run", path).err.endswith("line 2:  TASKS = 1 / N\n")
+
+
+@pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")
+@pytest.mark.parametrize("robot", ["grabber", "tinibot32"])
+def test_from_a_robot(robot: str, path: Path) -> None:
+    path.write_text(program("WHEN"), encoding="utf-8")
+    done = inside("upload", path, "--virtual", "--robot", robot)
+    assert (done.code, "line 6, in the WHEN of line 5:  " in done.err) == (1, True), done.err
+    text = "N = 0; WHEN(TRUE); SHOW(1 / N); END_WHEN"
+    done = inside("live", text, "--virtual", "--robot", robot)
+    assert (done.code, "line 1, in the WHEN of line 1:  " in done.err) == (1, True), done.err
