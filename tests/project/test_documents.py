@@ -15,7 +15,7 @@ import pytest
 import tiniscript
 from tests.machines import host
 from tests.machines.wasm import missing
-from tests.support.casefile import ROOT, Example, examples
+from tests.support.casefile import ROOT, Example, example_robot, examples
 from tiniscript.cli import main
 
 DOCUMENTS = sorted([*ROOT.glob("*.md"), *ROOT.glob("docs/**/*.md")])
@@ -210,7 +210,7 @@ def test_examples_have_no_mistakes(capsys: pytest.CaptureFixture[str]) -> None:
     examples = sorted((ROOT / "examples").glob("*.ts"))
     assert len(examples) >= 5
     for example in examples:
-        robot = "liner" if "--robot liner" in example.read_text(encoding="utf-8") else "tinibot"
+        robot = example_robot(example)
         assert main(["check", str(example), "--robot", robot]) == 0
         assert main(["fmt", "--check", str(example)]) == 0
         assert main(["run", str(example), "--robot", robot, "--max-time", "5"]) == 0

@@ -27,7 +27,7 @@ from tests.sketch.agreement import (
     wanted,
     with_wide_kit,
 )
-from tests.support.casefile import ROOT
+from tests.support.casefile import example_robot, sketch_examples
 from tiniscript import compile_text, robots
 from tiniscript.fixed_point import ONE
 from tiniscript.lessons import catalogue
@@ -36,7 +36,7 @@ from tiniscript.sketch.writing import sketch_of
 
 pytestmark = pytest.mark.skipif(bool(boards.missing()), reason=boards.missing() or "there is one")
 
-EXAMPLES = sorted((ROOT / "examples").glob("*.ts"))
+EXAMPLES = sketch_examples()
 ANSWERS = [
     (f"{folder.name} {number}", answer.program)
     for folder in catalogue.folders()
@@ -92,7 +92,7 @@ def agrees(text: str, robot: Robot, echo_us: float, counts: int, seconds: float)
 @pytest.mark.parametrize("echo_us", [FAR, NEAR], ids=["far", "near"])
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
 def test_examples(path: Path, echo_us: float) -> None:
-    robot = robots.load("liner" if path.stem == "line" else "tinibot")
+    robot = robots.load(example_robot(path))
     agrees(path.read_text(encoding="utf-8"), robot, echo_us, 300, 2)
 
 

@@ -9,7 +9,7 @@ import pytest
 
 from tests.machines import board as boards
 from tests.machines.sketch_board import built
-from tests.support.casefile import ROOT
+from tests.support.casefile import ROOT, example_robot, sketch_examples
 from tiniscript import compile_text, robots
 from tiniscript.cli.paths import is_foreign
 from tiniscript.sketch.names import RESERVED, Names
@@ -216,15 +216,12 @@ def test_texts_are_there_in_both_languages() -> None:
         assert len(set(names)) == len(names)
 
 
-@pytest.mark.parametrize(
-    "path", sorted((ROOT / "examples").glob("*.ts")), ids=lambda path: path.stem
-)
+@pytest.mark.parametrize("path", sketch_examples(), ids=lambda path: path.stem)
 @pytest.mark.parametrize("language", ["en", "es"])
 def test_no_line_is_too_long_and_no_gap_stays_open(
     path: Path, language: str, tmp_path: Path
 ) -> None:
-    robot = "liner" if path.stem == "line" else "tinibot"
-    text = sketch(path.read_text(encoding="utf-8"), language, robot)
+    text = sketch(path.read_text(encoding="utf-8"), language, example_robot(path))
     assert "$" not in text
     assert max(map(len, text.splitlines())) <= 110
     made = tmp_path / "a.ino"

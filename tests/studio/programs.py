@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import NamedTuple
 
-from tests.support.casefile import ROOT, all_cases
+from tests.support.casefile import ROOT, all_cases, example_robot
 from tiniscript import ProgramError, compile, robots
 from tiniscript.diagnostics.rendering import Message
 
@@ -26,8 +26,7 @@ def programs() -> list[Program]:
             robot = named[1] if named and named[1] in robots.names() else "tinibot"
             found.append(Program(case.id, case.parts["tiniscript"], robot))
     for path in sorted((ROOT / "examples").glob("*.ts")):
-        robot = "liner" if path.stem == "line" else "tinibot"
-        found.append(Program(path.name, path.read_text(encoding="utf-8"), robot))
+        found.append(Program(path.name, path.read_text(encoding="utf-8"), example_robot(path)))
     return found
 
 

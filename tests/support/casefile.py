@@ -112,6 +112,19 @@ def all_cases() -> list[Case]:
     return [case for path in documents() for case in read(path)]
 
 
+def example_robot(path: Path) -> str:
+    """Return the robot that a program of `examples/` is for."""
+    named = re.search(r"--robot (\w+)", path.read_text(encoding="utf-8"))
+    return named[1] if named else "tinibot"
+
+
+def sketch_examples() -> list[Path]:
+    """Return the programs of `examples/` that a sketch can do: it has no tasks."""
+    paths = sorted((ROOT / "examples").glob("*.ts"))
+    return [path for path in paths if "END_WHEN" not in (text := path.read_text(encoding="utf-8"))
+            and "END_TASK" not in text]  # fmt: skip
+
+
 def accept(case: Case, part: str, actual: str) -> None:
     """Write `actual` where the case says something else; git shows what changed."""
     rows = case.path.read_text(encoding="utf-8").splitlines(keepends=True)

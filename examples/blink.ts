@@ -1,0 +1,14 @@
+// Blinks while it drives: the TASK has its own time.
+// tsc upload examples/blink.ts --robot grabber --virtual
+SI|LOOP(FOREVER);
+  F(2, 60);
+  R(0.6, 60);
+END_LOOP;
+TASK;
+  LOOP(FOREVER);
+    LED(TRUE);
+    W(0.5);
+    LED(FALSE);
+    W(0.5);
+  END_LOOP;
+END_TASK;
