@@ -40,7 +40,7 @@ def test_the_lessons_are_listed(tsc: Tsc) -> None:
     done = tsc("lesson", "--lang", "es")
     assert done.code == 0
     rows = done.out.splitlines()
-    assert len(rows) == 12
+    assert len(rows) == 14
     assert rows[0] == " 1  La primera línea   (tinibot)"
 
 
@@ -139,7 +139,7 @@ def test_a_picture_of_the_way(tsc: Tsc, tmp_path: Path) -> None:
         (["jump"], "lesson takes show, check or sheet, not jump"),
         (["--json"], "--json does not go with tsc lesson."),
         (["show"], "which lesson?"),
-        (["show", "13"], "There is no lesson 13. Give a number from 1 to 12"),
+        (["show", "15"], "There is no lesson 15. Give a number from 1 to 14"),
         (["show", "0"], "There is no lesson 0."),
         (["show", "²"], "There is no lesson ²."),
         (["show", "9" * 5000], "There is no lesson 999"),
@@ -197,7 +197,7 @@ def test_a_lesson_of_ones_own(tsc: Tsc, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("language", LANGUAGES)
-@pytest.mark.parametrize("number", range(1, 13))
+@pytest.mark.parametrize("number", range(1, 15))
 def test_sheets_are_whole_pages(tsc: Tsc, number: int, language: str, tmp_path: Path) -> None:
     """One file: nothing is fetched, every element is closed, the drawing is inside."""
     for more in ([], ["--teacher"]):

@@ -186,6 +186,46 @@ def test_a_line_is_followed_or_left(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
+    ("more", "sentence"),
+    [
+        ("M(50, 50);LED(TRUE);W(1);LED(FALSE);W(0.1);LED(TRUE);W(0.1);S", ""),
+        ("M(50, 50);LED(TRUE);W(1);LED(TRUE);W(0.1);S", "LED went on 1 of 2 times"),
+        ("LOOP(2);LED(TRUE);W(0.1);LED(FALSE);W(0.1);END_LOOP;F(1, 50)", "LED went on 0 of 2 times"),
+        ("M(50, 50);LED(FALSE);W(1);S", "LED never went on. Switch it on and off: LED(TRUE)"),
+    ],
+)
+def test_a_lamp_blinks_on_the_way(tmp_path: Path, more: str, sentence: str) -> None:
+    """What goes on again without having been off has not blinked."""
+    lamp = '[[criteria]]\nkind = "blinks"\nwhat = "LED"\ntimes = 2\n'
+    found = said(lesson_of(tmp_path, lamp, "liner"), more)
+    assert [sentence in each for each in found] == ([True] if sentence else [])
+
+
+@pytest.mark.parametrize(
+    ("word", "task"),
+    [
+        ("TASK", "TASK;BEEP(0.1, 440);ENDTASK"),
+        ("WHEN", "WHEN(TRUE);BEEP(0.1, 440);W(FOREVER) UNTIL(FALSE);END_WHEN"),
+    ],
+)
+def test_a_task_is_needed_or_not(tmp_path: Path, word: str, task: str) -> None:
+    needs = f'[[criteria]]\nkind = "beeps"\n[[criteria]]\nkind = "needs"\nwords = ["{word}"]\n'
+    lesson = lesson_of(tmp_path, needs, "tinibot32")
+    assert said(lesson, f"F(1, 50)\n{task}\nW(0.1)") == []
+    (found,) = said(lesson, f"F(1, 50)\n{task}\nBEEP(0.1, 440)")
+    assert f"just as well without the {word}" in found
+    (found,) = said(lesson, "BEEP(0.1, 440)")
+    assert f"does not use {word}. It helps here: {word}" in found
+
+
+def test_a_question_of_when_keeps_the_robot(tmp_path: Path) -> None:
+    reaches = '[[criteria]]\nkind = "ends_in"\nat = [140, 100]\n'
+    lesson = lesson_of(tmp_path, reaches, "tinibot32")
+    (found,) = said(lesson, "WHEN(DISTANCE < 4);F(1, 89);END_WHEN")
+    assert "Does the question of WHEN ever become TRUE? See what the robot reads" in found
+
+
+@pytest.mark.parametrize(
     ("text", "sentence"),
     [
         ("PING|check_connection", "begins with PING"),

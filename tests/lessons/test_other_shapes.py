@@ -343,6 +343,42 @@ PROGRAMS: dict[int, dict[str, dict[str, str]]] = {
             "DEF WIG; L(0.05, 20); R(0.05, 20); END_DEF; LOOP(FOREVER); WIG; END_LOOP": "In 60.0 s the robot followed only 10 cm of the black line; the task asks for 240 cm",
         },
     },
+    13: {
+        "right": {
+            "SI|F(FOREVER, 60)\nWHEN(DISTANCE < 30); B(0.3, 60); L(0.4, 60); END_WHEN": "",
+            "SI|LOOP(FOREVER); M(50, 40); W(1); M(40, 50); W(1); END_LOOP\nWHEN(DISTANCE < 35); M(-50, 50); W(0.3); END_WHEN": "",
+            "SI|LOOP(FOREVER); M(60, 60); W(0.5); END_LOOP\nWHEN(DISTANCE < 35); R(0.2, 60); END_WHEN\nTASK; LOOP(FOREVER); BEEP(0.1, 440); W(2); END_LOOP; END_TASK": "",
+        },
+        "rote": {
+            "SI|LOOP(FOREVER)\n  F(2, 60)\n  IF(DISTANCE < 30); B(0.4, 60); ENDIF\n  L(0.2, 60)\nEND_LOOP": "The robot touched the wall after 3.3 s. Look at what it does just before.",
+            "SI|LOOP(3); F(1, 50); L(0.2, 50); END_LOOP\nWHEN(DISTANCE < 30)\n  S\nEND_WHEN": "The robot drove 42 cm; the task asks for at least 450 cm. Make it drive more.",
+            "SI|LOOP(FOREVER); L(4, 60); END_LOOP\nWHEN(DISTANCE < 30); S; END_WHEN": "The robot drove 4 cm; the task asks for at least 450 cm. Make it drive more.",
+            "SI|LOOP(FOREVER); M(60, 30); W(1); END_LOOP\nWHEN(FALSE); S; END_WHEN": "The robot does the task just as well without the WHEN. Let WHEN do a part of the task.",
+        },
+        "wrong": {
+            "SI|F(FOREVER, 60)\nWHEN(DISTANCE < 30); SHOW(DISTANCE); END_WHEN": "The robot touched the wall after 3.8 s. Look at what it does just before.",
+            "SI|W(1)\nWHEN(DISTANCE < 30); B(0.4, 60); R(0.5, 60); END_WHEN": "The robot did not move. Does the question of WHEN ever become TRUE? See what the robot reads: SHOW(DISTANCE)",
+            "SI|F(FOREVER, 60)\nWHEN(DISTANCE < 30); F(0.4, 60); END_WHEN": "The robot touched the wall after 3.9 s. Look at what it does just before.",
+            "SI|F(4, 60)\nWHEN(DISTANCE < 30); B(0.4, 60); R(0.5, 60); END_WHEN": "The robot drove 118 cm; the task asks for at least 450 cm. Make it drive more.",
+        },
+    },
+    14: {
+        "right": {
+            "SI|F(3, 100); L(0.31, 100); F(2, 100)\nTASK; LOOP(FOREVER); LED(TRUE); W(0.1); LED(FALSE); W(0.1); END_LOOP; END_TASK": "",
+            "SI|TASK\nLOOP(20); LED(TRUE); W(0.25); LED(FALSE); W(0.25); END_LOOP\nEND_TASK\nM(60, 60); W(5); L(0.51, 60); M(60, 60); W(3.33); S": "",
+            "SI|DEF BLINK; LED(TRUE); W(0.2); LED(FALSE); W(0.2); END_DEF\nTASK; LOOP(22); BLINK; END_LOOP; END_TASK\nF(5, 60); L(0.51, 60); F(3.33, 60)": "",
+        },
+        "rote": {
+            "SI|LOOP(3)\n  LED(TRUE); W(0.3)\n  LED(FALSE); W(0.3)\nEND_LOOP\nF(1, 60)": "The robot stopped 125 cm before the middle of the hospital. Make it go further.",
+            "SI|F(2, 60)\nTASK\n  LOOP(3); BEEP(0.2, 440); W(0.2); END_LOOP\nEND_TASK": "At the end the robot was 108 cm from the hospital. Look at which way it went, and change one thing only.",
+            "SI|LOOP(13); LED(TRUE); M(60, 60); W(0.2); LED(FALSE); W(0.19); END_LOOP; S; L(0.51, 60); LOOP(9); LED(TRUE); M(60, 60); W(0.2); LED(FALSE); W(0.17); END_LOOP; S\nTASK; BEEP(0.1, 440); END_TASK": "The robot does the task just as well without the TASK. Let TASK do a part of the task.",
+        },
+        "wrong": {
+            "SI|F(5, 60); L(0.51, 60); F(3.33, 60)\nTASK; W(9); LOOP(12); LED(TRUE); W(0.1); LED(FALSE); W(0.1); END_LOOP; END_TASK": "LED went on 0 of 10 times while the robot moved. Let a TASK blink: it goes on beside the moves.",
+            "SI|F(5, 60); L(0.51, 60); F(3.33, 60)\nTASK; LOOP(12); LED(TRUE); W(0.2); END_LOOP; END_TASK": "LED went on 1 of 10 times while the robot moved. Let a TASK blink: it goes on beside the moves.",
+            "SI|F(4, 60); L(0.51, 60); F(2, 60)\nTASK; LOOP(12); LED(TRUE); W(0.2); LED(FALSE); W(0.2); END_LOOP; END_TASK": "The robot stopped 40 cm before the middle of the hospital. Make it go further.",
+        },
+    },
 }  # fmt: skip
 GROUPS = ("right", "rote", "wrong")
 EACH = [

@@ -47,6 +47,8 @@ CASES = [
     (HEAD + '[[criteria]]\nkind = "stands_before"\nlow_cm = 9\nhigh_cm = 5\n', "is larger than criteria[1].high_cm"),
     (HEAD + '[[criteria]]\nkind = "ends_in"\nat = "start"\nx_cm = [5, -5]\n', "the first number is not the smaller one"),
     (HEAD + '[[criteria]]\nkind = "reaches"\nat = "start"\nwhat = "TIME"\n', "Write one of these: LIGHT_R"),
+    (HEAD + '[[criteria]]\nkind = "blinks"\n', 'what = "LED"'),
+    (HEAD + '[[criteria]]\nkind = "blinks"\nwhat = "LED"\n', "Write one of these: -"),
     (HEAD + '[[criteria]]\nkind = "needs"\nwords = ["IF"]\n', "IF, which is not a known word"),
     (HEAD + '[[criteria]]\nkind = "moves"\nat_most = 1\nahead = 3\n', "criteria[1].ahead"),
     (HEAD + TOUCH + '[[varies]]\npart = "walls[1]"\n', "world.toml has 0 of them"),

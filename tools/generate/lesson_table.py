@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tiniscript.lessons.lesson import AREA, KINDS, Kind
+from tiniscript.lessons.lesson import AREA, KINDS, WHATS, Kind
 
 
 def criteria() -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
@@ -17,7 +17,7 @@ def _takes(kind: Kind) -> list[str]:
     """Return the keys, with their defaults where these say something."""
     found = ["`at`"] if kind.places else []
     if kind.words:
-        found.append("`what`" if kind.words in ("sensor", "value") else "`words`")
+        found.append("`what`" if kind.words in WHATS else "`words`")
     for each in kind.numbers:
         is_said = each.default is not None and each.default < each.high
         found.append(f"`{each.key}`" + (f" ({each.default:g})" if is_said else ""))

@@ -307,6 +307,17 @@ def _beeps(criterion: Criterion, task: Task) -> Finding | None:
     return _nowhere(criterion, task, [each.pose for each in beeps], values, seconds)
 
 
+def _blinks(criterion: Criterion, task: Task) -> Finding | None:
+    run, (what,), times = task.run, criterion.words, int(criterion.numbers["times"])
+    names = [device.name for device in run.robot.profile.kit.actuators]
+    found = [each for each in run.switched if names[each.actuator] == what]
+    moving = sum(each.is_moving for each in found)
+    values = {"what": what, "times": str(times), "found": str(moving)}
+    if moving >= times:
+        return None
+    return Finding("blinks", "blinks/few" if found else "blinks/none", values)
+
+
 JUDGES: dict[str, Callable[[Criterion, Task], Finding | None]] = {
     **place_judging.JUDGES,
     "never_touches": _never_touches,
@@ -315,6 +326,7 @@ JUDGES: dict[str, Callable[[Criterion, Task], Finding | None]] = {
     "pauses": _pauses,
     "shows": _shows,
     "beeps": _beeps,
+    "blinks": _blinks,
     "order": _order,
     "ends": _ends,
 }

@@ -45,9 +45,9 @@ class _Block:
         """Return its question, if a robot that does not move may be kept by it."""
         if self.word == "WHILE" and not self.needed:  # it waits
             return Question(self.start, self.word, "FALSE", True, self.inside)
-        if self.word in ("LOOP", "DEF") or not self.needed:
+        if self.word in ("LOOP", "DEF", "TASK") or not self.needed:
             return None
-        is_ever = self.is_repeated and self.word == "IF"
+        is_ever = self.word == "WHEN" or (self.is_repeated and self.word == "IF")
         other = "FALSE" if self.needed == "TRUE" else "TRUE"
         return Question(
             self.start, self.word, self.needed if is_ever else other, is_ever, self.inside

@@ -102,8 +102,9 @@ class Kind(NamedTuple):
     """What a criterion takes besides `kind`, and what it means.
 
     `places` are how many places at least; 0: it has none. `words` is what its words are: "" for
-    none, "word" of the language or a sensor, "event" of EVENTS, "block" of BLOCKS, "value" of a
-    sensor or TIME, "sensor" with a place in the robot's body. `may_be_anywhere`: its places may
+    none, "word" of the language or a sensor, "event" of EVENTS, "block" of BLOCKS; or, as its
+    `what`, "value" of a sensor or TIME, "sensor" with a place in the robot's body, "switch": an
+    actuator that is on or off. `may_be_anywhere`: its places may
     be left out. `flags` are true or false, and false if they are left out. `has_area`: it may have AREA.
     """
 
@@ -116,7 +117,8 @@ class Kind(NamedTuple):
     has_area: bool = False
 
 
-BLOCKS = ("LOOP", "DEF")  # what a program may be tried without
+WHATS = ("value", "sensor", "switch")  # of `Kind.words`, whose key is `what`
+BLOCKS = ("LOOP", "DEF", "WHEN", "TASK")  # what a program may be tried without
 EVENTS = ("moves", "stops", "beeps", "shows")
 TIMES = Number("times", 1, 100, 1)
 WITHIN = Number("within_cm", 1, 500, 10)
@@ -137,10 +139,11 @@ KINDS: dict[str, Kind] = {
     "shows": Kind("it shows a value: any, this `value`, or that of a sensor or of TIME at that moment",
                   (TIMES, Number("value", -MOST, MOST, MOST + 1), Number("tolerance", 0, MOST, 0)), words="value"),
     "beeps": Kind("its buzzer sounds `times` times, at `pitches` different pitches; with `at`, within `within_cm` of each of these places", (TIMES, Number("pitches", 1, 100, 1), WITHIN), places=1, may_be_anywhere=True),
+    "blinks": Kind("it switches `what` on `times` times while it moves", (TIMES,), words="switch"),
     "order": Kind("these things happen one after the other: moves, stops, beeps, shows", words="event"),
     "ends": Kind("the program ends by itself"),
     "uses": Kind("the text has each of these words `times` times; a DEF counts if it is called, a LOOP if it repeats more than waiting, an UNTIL if it asks for something", (TIMES,), words="word"),
-    "needs": Kind("without these, LOOP or DEF, the robot misses one of the criteria above: with each loop done once, or without the words of DEF", words="block"),
+    "needs": Kind("without these, LOOP, DEF, WHEN or TASK, the robot misses one of the criteria above: with each loop done once, without the words of DEF, or without the other tasks", words="block"),
     "moves": Kind("the text has at most `at_most` moves; with `ahead`, turns do not count", (Number("at_most", 1, 1000),), flags=("ahead",)),
 }
 # fmt: on

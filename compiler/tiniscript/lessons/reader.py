@@ -6,7 +6,7 @@ Opens no files.
 from __future__ import annotations
 
 import re
-from collections.abc import Collection
+from collections.abc import Mapping
 
 from tiniscript import robots
 from tiniscript.fixed_point import ONE
@@ -17,6 +17,7 @@ from tiniscript.lessons.lesson import (
     EVENTS,
     KINDS,
     PARTS,
+    WHATS,
     WITHIN,
     Answer,
     Criterion,
@@ -26,7 +27,7 @@ from tiniscript.lessons.lesson import (
     Place,
     Variation,
 )
-from tiniscript.robots.profile import LANGUAGES, Reason
+from tiniscript.robots.profile import LANGUAGES, Reason, Robot
 from tiniscript.robots.refusals import shown
 from tiniscript.robots.toml_table import Table, parse_toml
 from tiniscript.virtual.world import World
@@ -49,12 +50,7 @@ def read(text: str, world: World, name: str) -> Lesson:
     titles = _labels(title)
     title.finish()
     robot = root.choice("robot", robots.names())
-    sensors: tuple[str, ...] = ()
-    eyes: Collection[str] = ()
-    if robot:
-        profile = robots.load(robot)
-        sensors = tuple(device.name for device in profile.kit.sensors)
-        eyes = profile.body.places.keys()
+    known = _known(robots.load(robot or robots.names()[0]))
     lesson = Lesson(
         shown(name),
         robot,
@@ -65,7 +61,7 @@ def read(text: str, world: World, name: str) -> Lesson:
         root.yes_no("mirror", False),
         world,
         tuple(_variation(each, world) for each in _rows(root, "varies")),
-        tuple(_criterion(each, world, sensors, eyes) for each in _rows(root, "criteria")),
+        tuple(_criterion(each, world, known) for each in _rows(root, "criteria")),
     )
     if not lesson.criteria and not reasons:
         root.complain("no_criteria", "criteria")
@@ -151,17 +147,29 @@ def _span(table: Table, key: str, most: int) -> tuple[float, float]:
     return low / ONE, high / ONE
 
 
-def _criterion(
-    table: Table, world: World, sensors: tuple[str, ...], eyes: Collection[str]
-) -> Criterion:
-    """Return a row. `eyes` are the sensors that have a place in the robot's body."""
+def _known(robot: Robot) -> dict[str, tuple[str, ...]]:
+    """Return what a criterion may name, by `Kind.words`."""
+    sensors = tuple(device.name for device in robot.kit.sensors)
+    return {
+        "word": (*WORDS, *sensors),
+        "event": EVENTS,
+        "block": BLOCKS,
+        "value": (*sensors, TIME),
+        "sensor": tuple(each for each in sensors if each in robot.body.places),
+        "switch": tuple(device.name for device in robot.kit.actuators if device.is_yes_no),
+    }
+
+
+def _criterion(table: Table, world: World, known: Mapping[str, tuple[str, ...]]) -> Criterion:
+    """Return a row. `known` has what it may name, by `Kind.words`."""
     name = table.text("kind", 'kind = "never_touches"')
     kind = KINDS.get(name or "")
     if name is None or kind is None:
         if name is not None:
             near = nearest(name, list(KINDS)) or ""
-            known = ", ".join(KINDS)
-            table.complain("unknown_criterion", "kind", found=shown(name), near=near, known=known)
+            table.complain(
+                "unknown_criterion", "kind", found=shown(name), near=near, known=", ".join(KINDS)
+            )
         return Criterion("", {}, (), (), NO_LABELS)
     has_places = bool(kind.places) and not (kind.may_be_anywhere and not table.has("at"))
     asked = [each for each in kind.numbers if has_places or each is not WITHIN]
@@ -179,13 +187,11 @@ def _criterion(
     if has_places and any(table.has(language) for language in LANGUAGES):
         labels = _labels(table)
     words: tuple[str, ...] = ()
-    if kind.words == "value":
-        words = _sensor(table, (*sensors, TIME))
-    elif kind.words == "sensor":
-        words = _sensor(table, tuple(each for each in sensors if each in eyes))
+    if kind.words in WHATS:
+        if kind.words == "switch" or table.has("what"):
+            words = _what(table, known[kind.words])
     elif kind.words:
-        others = (*WORDS, *sensors)
-        words = _words(table, {"event": EVENTS, "block": BLOCKS}.get(kind.words, others))
+        words = _words(table, known[kind.words])
     table.finish()
     return Criterion(name, numbers, words, places, labels, area)
 
@@ -197,14 +203,12 @@ def _number(table: Table, what: Number) -> float:
     return table.number(what.key, low, high, f"{what.key} = {what.low:g}") / ONE
 
 
-def _sensor(table: Table, sensors: tuple[str, ...]) -> tuple[str, ...]:
-    """Return whose value a criterion asks for, if it does."""
-    if not table.has("what"):
-        return ()
-    found = table.text("what")
-    if found is None or found in sensors:
+def _what(table: Table, names: tuple[str, ...]) -> tuple[str, ...]:
+    """Return the device that a criterion asks for."""
+    found = table.text("what", 'what = "LED"')
+    if found is None or found in names:
         return () if found is None else (found,)
-    table.complain("not_one_of", "what", found=shown(found), choices=", ".join(sensors))
+    table.complain("not_one_of", "what", found=shown(found), choices=", ".join(names) or "-")
     return ()
 
 

@@ -61,6 +61,14 @@ class Beep(NamedTuple):
     pose: Pose
 
 
+class Switched(NamedTuple):
+    """An actuator that went on, by its number."""
+
+    ms: int
+    actuator: int
+    is_moving: bool
+
+
 class Run(NamedTuple):
     """What a program did. `ending` is DONE, FAULT, LIMIT, BUSY (it took no time) or ASKS (PING).
 
@@ -76,6 +84,7 @@ class Run(NamedTuple):
     touches: tuple[Touch, ...]
     shown: tuple[Shown, ...]
     beeps: tuple[Beep, ...]
+    switched: tuple[Switched, ...]
     motors: tuple[tuple[int, int, int], ...]
     happened: tuple[str, ...]
     driven_cm: float
@@ -171,6 +180,8 @@ class _Witness:
         self._touches: list[Touch] = []
         self._shown: list[Shown] = []
         self._beeps: list[Beep] = []
+        self._switched: list[Switched] = []
+        self._on: dict[int, int] = {}
         self._motors: list[tuple[int, int, int]] = []
         self._happened: list[str] = []
         self._is_moving = False
@@ -207,6 +218,11 @@ class _Witness:
         elif event.what == "BEEP":
             self._beeps.append(Beep(ms, event.values[0], pose))
             self._happened.append("beeps")
+        elif event.what == "SET":
+            actuator, value = event.values
+            if value and not self._on.get(actuator):
+                self._switched.append(Switched(ms, actuator, self._is_moving))
+            self._on[actuator] = value
         elif event.what == "SHOW":
             self._happened.append("shows")
             is_yes_no = event.text.endswith(("TRUE", "FALSE"))
@@ -247,6 +263,6 @@ class _Witness:
         return Run(
             self.seed, ending, robot.fault, end_ms,
             tuple(self._track) or (Sample(0, robot.world.start),),
-            tuple(self._touches), tuple(self._shown), tuple(self._beeps), tuple(self._motors),
-            tuple(self._happened), robot.driving.driven_cm, robot,
+            tuple(self._touches), tuple(self._shown), tuple(self._beeps), tuple(self._switched),
+            tuple(self._motors), tuple(self._happened), robot.driving.driven_cm, robot,
         )  # fmt: skip

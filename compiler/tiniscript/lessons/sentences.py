@@ -150,6 +150,10 @@ SENTENCES: dict[str, tuple[str, str]] = {
                     "El robot sonó a {cm} cm {of_place}; tiene que ser a {within} cm o menos. Pon BEEP después del movimiento que termina ahí."),
     "beeps/places": ("The robot did not beep at {place} {number}: its nearest beep was {cm} cm away; {within} cm or less is right. Put BEEP after the move that ends there.",
                      "El robot no sonó en {place} {number}: lo más cerca que sonó fue a {cm} cm; tiene que ser a {within} cm o menos. Pon BEEP después del movimiento que termina ahí."),
+    "blinks/none": ("{what} never went on. Switch it on and off: {what}(TRUE); W(0.2); {what}(FALSE); W(0.2)",
+                    "{what} nunca se encendió. Enciéndelo y apágalo: {what}(TRUE); W(0.2); {what}(FALSE); W(0.2)"),
+    "blinks/few": ("{what} went on {found} of {times} times while the robot moved. Let a TASK blink: it goes on beside the moves.",
+                   "{what} se encendió {found} de {times} veces mientras el robot se movía. Haz que parpadee un TASK: sigue a la vez que los movimientos."),
     # the text
     "uses/none": ("The program does not use {word}. It helps here: {example}",
                   "El programa no usa {word}. Aquí ayuda: {example}"),
@@ -165,6 +169,10 @@ SENTENCES: dict[str, tuple[str, str]] = {
                    "El robot cumple la tarea igual de bien si cada LOOP se hace una sola vez. Haz que LOOP repita lo que el programa tiene varias veces."),
     "needs/DEF": ("The robot does the task just as well without the word {name}. Let your own word do a part of the task.",
                   "El robot cumple la tarea igual de bien sin la palabra {name}. Haz que tu palabra haga una parte de la tarea."),
+    "needs/WHEN": ("The robot does the task just as well without the WHEN. Let WHEN do a part of the task.",
+                   "El robot cumple la tarea igual de bien sin el WHEN. Haz que WHEN haga una parte de la tarea."),
+    "needs/TASK": ("The robot does the task just as well without the TASK. Let TASK do a part of the task.",
+                   "El robot cumple la tarea igual de bien sin el TASK. Haz que TASK haga una parte de la tarea."),
     "moves/ahead": ("The program has {found} moves that go ahead or back; {most} will do. Write that stretch once, and let LOOP repeat it.",
                     "El programa tiene {found} movimientos hacia adelante o atrás; con {most} alcanza. Escribe el tramo una vez y haz que LOOP lo repita."),
     "moves": ("The program has {found} moves; {most} will do. Use a LOOP or a DEF for what you wrote twice.",
@@ -182,6 +190,7 @@ EXAMPLES = {
     "UNTIL": "F(FOREVER, 60) UNTIL({question})", "IF": "IF({question}) ... ENDIF",
     "WHILE": "WHILE({question}) ... END_WHILE", "LOOP": "LOOP(3) ... END_LOOP",
     "ELSE": "IF({question}) ... ELSE ... ENDIF", "DEF": "DEF STEP ... END_DEF",
+    "WHEN": "WHEN({question}) ... END_WHEN", "TASK": "TASK ... END_TASK",
 }
 # fmt: on
 

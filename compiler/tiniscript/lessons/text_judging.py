@@ -23,6 +23,7 @@ MISSING = {
     "ends_in/turned": "move", "reaches/turned": "move",
     "shows/nothing": "SHOW", "order//shows": "SHOW", "beeps/none": "BEEP", "order//beeps": "BEEP",
 }  # fmt: skip
+TASKS = ("WHEN", "TASK")  # no block stands around them, and none of them in another one
 ACTS = MOVES | {"S", "BEEP", "SHOW"}  # waiting alone is nothing to repeat
 
 
@@ -184,7 +185,7 @@ def _moves(criterion: Criterion, tokens: Sequence[Token]) -> Finding | None:
 
 
 def without(word: str, text: str) -> str:
-    """Return a program whose loops are done once (LOOP), or without its own words (DEF)."""
+    """Return a program whose loops are done once (LOOP), without its own words (DEF) or tasks."""
     tokens = scan(text).tokens
     own = _own_words(_words(tokens))
     parts, end = [], 0
@@ -194,14 +195,22 @@ def without(word: str, text: str) -> str:
             new = "LOOP(1)", kept.end_of_values(tokens, k)
         elif word == "DEF" and token.text in own and tokens[k - 1].text != "DEF":
             new = "W(0)", token.end
+        elif word in TASKS and token.text == word:
+            new = "W(0)", _end_of_block(tokens, k)
         if new is not None and token.kind == WORD:
             parts += [text[end : token.start], new[0]]
             end = new[1]
     return "".join([*parts, text[end:]])
 
 
+def _end_of_block(tokens: Sequence[Token], at: int) -> int:
+    ends = (each.end for each in tokens[at:]
+            if ALIASES.get(each.text, each.text) == BLOCK_ENDS[tokens[at].text])  # fmt: skip
+    return next(ends, tokens[-1].end)
+
+
 def idle(word: str, text: str) -> Finding:
-    """Return what is missing where the task is done without LOOP or DEF, too."""
+    """Return what is missing where the task is done without a word of BLOCKS, too."""
     own = _own_words(_words(scan(text).tokens))
     return Finding("needs", f"needs/{word}", {"name": own[0] if own else ""})
 
