@@ -190,7 +190,10 @@ def test_a_line_is_followed_or_left(tmp_path: Path) -> None:
     [
         ("M(50, 50);LED(TRUE);W(1);LED(FALSE);W(0.1);LED(TRUE);W(0.1);S", ""),
         ("M(50, 50);LED(TRUE);W(1);LED(TRUE);W(0.1);S", "LED went on 1 of 2 times"),
-        ("LOOP(2);LED(TRUE);W(0.1);LED(FALSE);W(0.1);END_LOOP;F(1, 50)", "LED went on 0 of 2 times"),
+        (
+            "LOOP(2);LED(TRUE);W(0.1);LED(FALSE);W(0.1);END_LOOP;F(1, 50)",
+            "LED went on 0 of 2 times",
+        ),
         ("M(50, 50);LED(FALSE);W(1);S", "LED never went on. Switch it on and off: LED(TRUE)"),
     ],
 )

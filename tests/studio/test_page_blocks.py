@@ -334,10 +334,9 @@ def test_the_block_that_runs_is_marked(page: Page) -> None:
 
 def test_a_block_of_each_task_is_marked(page: Page) -> None:
     page.select_option("#robot", "tinibot32")
-    text = "SI|W(FOREVER) UNTIL(FALSE);\nTASK;\n  LOOP(FOREVER);\n    W(9);\n  END_LOOP;\nEND_TASK;\n"
-    start(page, text, "all")
+    start(page, "SI|W(9);\nTASK;\n  LOOP(9);\n    W(9);\n  END_LOOP;\nEND_TASK;\n", "all")
     page.click("#run")
-    page.locator("#blocks .wait.running").wait_for()
+    page.locator("#blocks .running").first.wait_for()
     running = page.locator("#blocks .blocklyDraggable.running")
     assert running.count() == 2
     page.click("#stop")

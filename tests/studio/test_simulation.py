@@ -97,9 +97,10 @@ def test_it_is_told_where_each_task_is() -> None:
 
     def lit() -> set[int]:
         """The lines of the text that are marked."""
-        found = simulation.state()["places"]
-        return {max((each for each in places if each.offset <= at), key=lambda each: each.offset).line
-                for at in found}  # fmt: skip
+        found = set()
+        for at in simulation.state()["places"]:
+            found.add(next(each for each in reversed(places) if each.offset <= at).line)
+        return found
 
     simulation.go(100)
     assert lit() == {1, 2, 8}

@@ -34,8 +34,8 @@ class Outcome(NamedTuple):
 class Marking:
     """A program on its way through the worlds of `seeds`, at least one.
 
-    Where a lesson says that it needs a LOOP, a DEF, a WHEN or a TASK, the program that has done what
-    it asks for goes through them again without that, until it misses something.
+    Where a lesson says that it needs a LOOP, a DEF, a WHEN or a TASK, the program that has done its
+    task goes through them again without that, until it misses something.
     """
 
     def __init__(
