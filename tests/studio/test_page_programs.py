@@ -50,6 +50,7 @@ def test_a_link_brings_the_program_and_runs_nothing(pages: Pages) -> None:
     wanted = image(page)
     link = share(page)
     assert link.startswith(pages.address + "#program=")
+    assert "opens on this computer only" in page.inner_text("#shared_told")
     other = pages.open()
     write(other, "SI|F(9, 90)")
     other.goto(link)  # in an open tab: only the part behind # changes

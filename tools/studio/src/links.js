@@ -29,6 +29,15 @@ export async function linkOf({ text, robot }, page) {
 }
 
 /**
+ * Returns whether an address opens on this computer alone.
+ * @param {string} page the page's address
+ */
+export function isHere(page) {
+  const { hostname } = new URL(page);
+  return /^(.*\.)?localhost$|^127\.|^\[::1\]$/.test(hostname);
+}
+
+/**
  * Returns the program of an address: null if it has none. Rejects where it is no whole one.
  * @param {string} hash the part of the address from `#` on
  * @returns {Promise<Shared | null>}

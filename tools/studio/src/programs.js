@@ -4,7 +4,7 @@
 import { correction, generate } from 'lean-qr';
 import { element } from './elements.js';
 import { downloadFile } from './files.js';
-import { linkOf, sharedIn } from './links.js';
+import { isHere, linkOf, sharedIn } from './links.js';
 import { currentLanguage, text } from './texts.js';
 import { keepVersion, MOST_CHARACTERS, versions } from './versions.js';
 import { ROBOTS } from './words.js';
@@ -112,7 +112,8 @@ export class Programs {
     } catch (why) {
       given = { wrong: text('bug', { why: String(why).split('\n').filter(Boolean).at(-1) ?? '' }) };
     }
-    if (asked === this.#asked) this.#show(given, text(how === 'link' ? 'share_link_told' : 'share_line_told'));
+    const told = how === 'line' ? 'share_line_told' : isHere(location.href) ? 'share_link_here' : 'share_link_told';
+    if (asked === this.#asked) this.#show(given, text(told));
   }
 
   /** @returns {Promise<Given>} */

@@ -30,6 +30,8 @@ export const TEXTS = {
     'No hay imagen de estos bloques: el programa está vacío o es muy largo para bloques.'],
   share_link_told: ['Whoever opens it sees the program in this page, at this address. It does not run by itself.',
     'Quien lo abra verá el programa en esta misma página. No se ejecuta solo.'],
+  share_link_here: ['This link opens on this computer only. For elsewhere, send the line of text, or share from a page with an address of its own.',
+    'Este enlace se abre solo en esta computadora. Para otro lugar, envía la línea de texto, o comparte desde una página con dirección propia.'],
   share_line_told: ['A phone with a Bluetooth terminal sends this line to the robot. The sign ~ and what follows let the robot check it.',
     'Un teléfono con una terminal Bluetooth envía esta línea al robot. Con el signo ~ y lo que sigue, el robot la comprueba.'],
   shared: ['What you share', 'Lo que compartes'],
