@@ -13,8 +13,8 @@ from pathlib import Path
 from time import time
 from typing import IO
 
+import platformdirs
 import pytest
-from platformdirs import user_cache_path
 
 from tests.support.command import PROGRAM, Tsc, process
 from tiniscript import files
@@ -35,16 +35,32 @@ def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 @pytest.mark.parametrize("chosen", [None, "", "part", "/elsewhere", "/elsewhere/", "~/cache"])
 @pytest.mark.parametrize("home", [None, "", "part", "/home/ada", "/"])
-def test_the_cache_is_where_platformdirs_has_it(
+def test_the_folders_are_where_platformdirs_has_them(
     chosen: str | None, home: str | None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Though on Linux it is found without that."""
-    for name, value in (("XDG_CACHE_HOME", chosen), ("HOME", home)):
+    """Though on Linux they are found without that."""
+    for name, value in (("XDG_CACHE_HOME", chosen), ("XDG_CONFIG_HOME", chosen), ("HOME", home)):
         if value is None:
             monkeypatch.delenv(name, raising=False)
         else:
             monkeypatch.setenv(name, value)
-    assert files.cache_folder() == user_cache_path("tiniscript", appauthor=False)
+    assert files.cache_folder() == platformdirs.user_cache_path("tiniscript", appauthor=False)
+    assert files.settings_folder() == platformdirs.user_config_path("tiniscript", appauthor=False)
+
+
+def test_no_folder_on_windows_is_in_one_of_an_author(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Who is asked for one names the author there like the program: tiniscript\\tiniscript."""
+    asked: list[tuple[str, object]] = []
+
+    def path(name: str, appauthor: object = None) -> Path:
+        asked.append((name, appauthor))
+        return Path(name)
+
+    monkeypatch.setattr(files, "_linux_folder", lambda variable, usual: None)
+    monkeypatch.setattr(platformdirs, "user_cache_path", path)
+    monkeypatch.setattr(platformdirs, "user_config_path", path)
+    assert files.cache_folder() == files.settings_folder() == Path("tiniscript")
+    assert asked == [("tiniscript", False)] * 2
 
 
 def mode_of(path: Path) -> int:
@@ -69,6 +85,23 @@ def test_a_file_that_is_replaced_keeps_its_mode(tmp_path: Path, mode: int) -> No
     (tmp_path / "x").chmod(mode)
     files.replace(tmp_path / "x", b"2")
     assert mode_of(tmp_path / "x") == mode and (tmp_path / "x").read_bytes() == b"2"
+
+
+@unix
+def test_another_hard_link_keeps_the_old_content_and_a_pipe_stays_one(tmp_path: Path) -> None:
+    """A file is never written in its place; what has no old content is."""
+    (tmp_path / "x").write_bytes(b"1")
+    os.link(tmp_path / "x", tmp_path / "y")
+    files.replace(tmp_path / "x", b"2")
+    assert ((tmp_path / "x").read_bytes(), (tmp_path / "y").read_bytes()) == (b"2", b"1")
+    os.mkfifo(tmp_path / "pipe")
+    reader = os.open(tmp_path / "pipe", os.O_RDONLY | os.O_NONBLOCK)
+    try:
+        files.replace(tmp_path / "pipe", b"3")
+        assert os.read(reader, 9) == b"3"
+    finally:
+        os.close(reader)
+    assert stat.S_ISFIFO((tmp_path / "pipe").stat().st_mode)
 
 
 @unix

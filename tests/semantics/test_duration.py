@@ -53,6 +53,20 @@ def lasting(text: str, is_optimized: bool = True) -> Duration:
         ("DEF A;W(2);END_DEF;A;A", 4000, 4000),
         ("DEF A;W(2);END_DEF;DEF C;A;W(1);END_DEF;LOOP(2);C;END_LOOP", 6000, 6000),
         ("DEF A;W(DISTANCE);END_DEF;W(1);A", 1000, None),
+        # several tasks: the longest counts, and a turn that waits for nothing lasts a millisecond
+        ("W(1);TASK;W(3);END_TASK", 3000, 3000),
+        ("W(3);TASK;W(DISTANCE);END_TASK", 3000, None),
+        ("TASK;LOOP(3);SHOW(1);END_LOOP;END_TASK", 0, 3),
+        ("LOOP(3);W(2);END_LOOP;TASK;W(1);END_TASK", 6000, 6000),
+        ("LOOP(3);IF(DISTANCE < 9);W(1);ENDIF;END_LOOP;TASK;W(0.1);END_TASK", 100, 3003),
+        ("LOOP(3);W(DISTANCE);END_LOOP;TASK;W(0.1);END_TASK", 100, None),
+        ("LOOP(DISTANCE);SHOW(1);END_LOOP;TASK;W(1);END_TASK", 1000, None),
+        # one of them may move; where two do, one waits for the motors or is ended by an S
+        ("F(2, 80);TASK;W(3);END_TASK", 3000, 3000),
+        ("F(2, 80);TASK;W(3);F(1, 60);END_TASK", 0, None),
+        ("F(2, 80);TASK;W(3);S;END_TASK", 0, None),
+        ("DEF A;S;END_DEF;F(2, 80);TASK;W(3);A;END_TASK", 0, None),
+        ("DEF A;SHOW(1);END_DEF;F(2, 80);TASK;W(3);A;END_TASK", 3000, 3000),
     ],
 )
 @pytest.mark.parametrize("is_optimized", [True, False])
@@ -71,6 +85,8 @@ def test_a_program_that_ends(text: str, least: int, most: int | None, is_optimiz
         ),
         ("DEF A;W(1);LOOP(FOREVER);W(1);END_LOOP;END_DEF;A", 1000),
         ("LOOP(3);W(1);LOOP(FOREVER);S;END_LOOP;END_LOOP", 1000),
+        ("W(1);TASK;LOOP(FOREVER);W(1);END_LOOP;END_TASK", 1000),
+        ("W(1);WHEN(DISTANCE < 9);SHOW(1);END_WHEN", 1000),  # it looks for ever
     ],
 )
 def test_a_program_that_never_ends(text: str, least: int) -> None:
