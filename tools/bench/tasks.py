@@ -1,0 +1,80 @@
+"""How late a WHEN looks while other tasks count: `python -m tools.bench.tasks`.
+
+A simulated Mega with the firmware that ships has up to four tasks beside the main one: a WHEN that
+looks at a light sensor every 20 ms, and others that count and never wait by themselves. The light
+goes on at moments that fit no 20 ms, and each time the WHEN turns the motors on. Its looks lie on a
+grid of 20 ms; what is printed is how far they lie apart on it. The clock of an AVR goes on every
+1.024 ms, so a millisecond is what a single task has, too.
+"""
+
+from __future__ import annotations
+
+import sys
+import tempfile
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent.parent
+sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
+
+from tests.machines.wired import Wired
+from tiniscript import compile_text, robots
+from tiniscript.bytecode.image import unpack
+from tiniscript.link.session import Session
+from tools import uno
+from tools.bench import firmware_size
+from tools.bench.sketch_cycles import pin_of_sensor
+from tools.builds.platformio_offline import CannotStandIn
+from tools.uno import CYCLES_PER_MS, Uno
+
+ROBOT = robots.load(robots.DEFAULT)
+LOOK_MS = 20
+LOOKS = 40
+BOOT_MS = 300
+COUNTING = "TASK; {0} = 0; LOOP(FOREVER); {0} = {0} + 1; END_LOOP; END_TASK;"
+WATCH = "WHEN(LIGHT_L > 500); M(50, 50); W(0.04); M(0, 0); W(0.06); END_WHEN;"
+
+
+def main() -> int:
+    if why := uno.missing():
+        print(why, file=sys.stderr)
+        return 2
+    try:
+        firmware = firmware_size.measured("mega").firmware
+    except (RuntimeError, CannotStandIn) as failed:
+        print(failed, file=sys.stderr)
+        return 2
+    print("tasks that count   latest look behind the earliest one")
+    for others in range(4):
+        spread_ms = jitter_ms(firmware, others)
+        print(f"{others:16} {spread_ms * 1000:37.0f} us")
+    return 0
+
+
+def jitter_ms(firmware: Path, others: int) -> float:
+    """Return how far apart the looks of a WHEN are on their grid of 20 ms."""
+    text = "SI|W(3600);" + WATCH + "".join(COUNTING.format(name) for name in "XYZ"[:others])
+    names = {"left": f"D{ROBOT.board.motors.pins['left_pwm']}"}
+    with tempfile.TemporaryDirectory() as folder, Uno(
+        firmware, names=names, board="mega", eeprom=Path(folder) / "eeprom",
+        baud=ROBOT.board.baud, resets_on_open=False,
+    ) as board:  # fmt: skip
+        board.run_ms(BOOT_MS)
+        wired = Wired(board, Session(1, ROBOT.board.baud, ROBOT.kit.fingerprint))
+        image = unpack(compile_text(text, ROBOT.kit).image)
+        if status := wired.until(wired.session.upload(image, saves=False, is_detached=True)):
+            raise RuntimeError(f"the robot has answered {status}")
+        at_ms: list[float] = []
+        for number in range(LOOKS):
+            board.run_ms(LOOK_MS * number / LOOKS + 0.3)
+            board.analog(pin_of_sensor(), 900)
+            seen = board.run_until("left", "pwm", 3 * LOOK_MS)
+            at_ms.append(seen.cycle / CYCLES_PER_MS)
+            board.analog(pin_of_sensor(), 100)
+            board.run_ms(120)
+        first = at_ms[0]
+        late = [(each - first + LOOK_MS / 2) % LOOK_MS for each in at_ms]
+        return max(late) - min(late)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
