@@ -198,6 +198,7 @@ TOKENS = r"""
 '||' | OR | 0 | TS010 | first | IF(DISTANCE == 10 || DISTANCE == 20);S;ENDIF => IF(DISTANCE = 10 OR DISTANCE = 20);S;ENDIF
 := | = | 0 | TS050 | first | v := 50⏎F(2, v) => v = 50⏎F(2, v)
 ] | ) | 1 | TS010 | applied | F(2, 80] => F(2, 80)
+v=@val [ n=@num ) | $v < $n ) | 1 | TS010 | offered | IF(DISTANCE[30)⏎S⏎ENDIF => IF(DISTANCE < 30)⏎S⏎ENDIF
 ! v=@val|( | NOT $v | 1 | TS010 | first | X = TRUE⏎IF(!X);S;ENDIF => X = TRUE⏎IF(NOT X);S;ENDIF
 # comparisons in words: a row for each sense, and a sign
 no is? less than|A? | >= | 1 | TS010 | first | IF(DISTANCE no es menor que 10)⏎F(1,50)⏎ENDIF => IF(DISTANCE >= 10)⏎F(1,50)⏎ENDIF
@@ -239,6 +240,7 @@ a=@num : b=@num | @mmss:a:b | 1 | TS008 | applied | W(1:30) => W(90)
 s=<|>|<=|>= n=@num M|METRO|METROS|METERS|METER e=) | $s @cm:n $e | 1 | TS049 | applied | IF(DISTANCE < 1 m);S;ENDIF => IF(DISTANCE < 100);S;ENDIF
 s=<|>|<=|>=|=|<> n=@num @unit | $s $n | 1 | TS049 | first | x = 5 cm => x = 5
 v=@val CM|EN? CM | $v | 2 | TS049 | applied | SHOW DISTANCE cm => SHOW(DISTANCE)
+SHOW ( n=@num M|METRO|METROS|METERS|METER|@unit ) | SHOW ( $n ) | 1 | TS049 | applied | SHOW(2 M) => SHOW(2)
 v=@name = e=@num @unit $ | $v = $e | 1 | TS049 | applied | X = 2 seg => X = 2
 v=@val seconds|@unit e=,|) | $v $e | 1 | TS049 | applied | SHOW(distancia cm) => SHOW(DISTANCE)
 the v=@val | $v | 1 | TS102 | first | lee la distancia => DISTANCE
@@ -285,6 +287,9 @@ c=@callw ( a=@argt+ ( e=;|$ | $c ( $a ) $e | 1 | TS076 | applied | F(2, 80( => F
 ^ ( c=@callw a=@num ,? b=@num ) $ | $c ( $a , $b ) | 1 | TS076 | applied | (F 2,80) => F(2, 80)
 ^ ( a=@num , b=@num ) c=F|B|L|R $ | $c ( $a , $b ) | 1 | TS015 | applied | (2,80)F => F(2, 80)
 ^ c=F|B|L|R - a=@num - b=@num $ | $c ( $a , $b ) | 1 | TS015 | applied | F - 2 - 80 => F(2, 80)
+F - a=@num ,? b=@num e=;|$ | B ( $a , $b ) $e | 1 | TS102 | offered | F -1 80 => B(1, 80)
+B - a=@num ,? b=@num e=;|$ | F ( $a , $b ) $e | 1 | TS102 | offered | B -1, 80 => F(1, 80)
+F ( - a=@num b=@num )|;|$ | B ( $a , $b ) | .5 | TS017 | offered | F(-1 80) => B(1, 80)
 SHOW ( TIME ) | SHOW ( TIME ) | 1 | TS102 | applied | mostrar(tiempo) => SHOW(TIME)
 c=@callw ( ( a=@nobrace+ ) ) | $c ( $a ) | 1 | TS016 | applied | F((2,80)) => F(2,80)
 c=@callw ( a=@argt+ s=*|/|%|- b=@num|@val t=+|-|*|/|% d=@argt+ ) ) e=;|$ | $c ( $a $s ( $b $t $d ) ) $e | 1 | TS041 | applied | SHOW(5 / 3 - 3)) => SHOW(5 /(3 - 3))
