@@ -61,5 +61,11 @@ KNOWN: tuple[Known, ...] = (
     Known("a second name of a port", "compiler/tiniscript/link/sharing/server.py",
           "port=address, is_alias=True", "port=address, is_alias=False",
           "tests/sharing/test_run_owners.py::test_a_port_with_two_names_is_listed_once"),
+    Known("a turn of a task's loop", "compiler/tiniscript/semantics/duration.py",
+          "if body.least == 0 and body.most is not None:", "if False:",
+          "tests/semantics/test_duration.py::test_a_program_that_ends"),
+    Known("a file that is not replaced but written", "compiler/tiniscript/files.py",
+          "if found is not None and not stat.S_ISREG", "if found is not None and stat.S_ISREG",
+          "tests/cli/test_files.py::test_another_hard_link_keeps_the_old_content_and_a_pipe_stays_one"),
 )
 # fmt: on
