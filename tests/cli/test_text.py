@@ -14,11 +14,6 @@ LONG = "S\n" * 260
 
 
 @pytest.fixture
-def tsc(capsys: pytest.CaptureFixture[str]) -> Tsc:
-    return Tsc(capsys)
-
-
-@pytest.fixture
 def program(tmp_path: Path) -> Path:
     path = tmp_path / "go.ts"
     path.write_text(PROGRAM, encoding="utf-8")

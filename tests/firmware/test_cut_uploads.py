@@ -10,9 +10,8 @@ import argparse
 
 import pytest
 
-from tests.firmware.test_host_firmware import KIT, computer, happened, outcome, send, stored
+from tests.firmware.test_host_firmware import KIT, computer, happened, held, image_of, send, stored
 from tests.machines.host_firmware import HostFirmware, missing
-from tiniscript import compile_text
 from tiniscript.bytecode.image import Image, pack, unpack
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
@@ -24,10 +23,6 @@ ROOM = 389
 STRIDE = 29  # of the bytes in the tests
 STOP = bytes(8)
 CUT, STOPPED, STOPPED_TWICE = KINDS = ("cut", "stopped", "stopped twice")
-
-
-def image_of(text: str) -> Image:
-    return unpack(compile_text(text, KIT).image)
 
 
 def largest() -> Image:
@@ -52,12 +47,6 @@ def with_old() -> bytes:
     send(robot, session, OLD)
     stored(robot, session)
     return robot.memory()
-
-
-def held(robot: HostFirmware, session: Session) -> bytes:
-    request = session.fetch()
-    assert robot.until(session, request) == OK
-    return outcome(request).values.image
 
 
 def sent_until(robot: HostFirmware, session: Session, count: int) -> bytes:

@@ -53,6 +53,12 @@ def outcome(request: PendingRequest[T]) -> Reply[T]:
     return request.outcome
 
 
+def held(robot: HostFirmware, session: Session) -> bytes:
+    request = session.fetch()
+    assert robot.until(session, request) == OK
+    return outcome(request).values.image
+
+
 def stored(robot: HostFirmware, session: Session, limit_ms: int = 10_000) -> int:
     """Wait until the robot says that its program is saved; return how long that took."""
     begun_ms = robot.now_ms

@@ -11,6 +11,7 @@ from tests.firmware.test_host_firmware import (
     KIT,
     computer,
     happened,
+    held,
     image_of,
     outcome,
     send,
@@ -52,12 +53,6 @@ def with_two(first: str = A, second: str = B) -> tuple[HostFirmware, Session]:
 
 def undo(robot: HostFirmware, session: Session) -> int:
     return robot.until(session, session.undo())
-
-
-def held(robot: HostFirmware, session: Session) -> bytes:
-    request = session.fetch()
-    assert robot.until(session, request) == OK
-    return outcome(request).values.image
 
 
 def test_the_program_before_comes_back_and_the_later_one_after_it() -> None:

@@ -9,9 +9,17 @@ from __future__ import annotations
 import pytest
 
 from tests.firmware.test_button_states import OTHER, SAVED, STATES, SmallRobot, Table
-from tests.firmware.test_host_firmware import KIT, computer, happened, outcome, stored, switched_on
+from tests.firmware.test_host_firmware import (
+    KIT,
+    computer,
+    happened,
+    held,
+    outcome,
+    stored,
+    switched_on,
+)
 from tests.firmware.test_keeping import bytes_of
-from tests.firmware.test_undo import held, undo
+from tests.firmware.test_undo import undo
 from tests.machines.host_firmware import missing
 from tiniscript.link.messages import STATUSES
 from tiniscript.link.requests import OK

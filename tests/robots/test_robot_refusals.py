@@ -12,21 +12,13 @@ from string import Formatter
 
 import pytest
 
+from tests.robots.test_robots import TEXTS, edited
 from tiniscript import robots
 from tiniscript.robots.boards import NEEDS
 from tiniscript.robots.profile import LANGUAGES, ProfileRefused, Robot
 from tiniscript.robots.reader import read
 from tiniscript.robots.refusals import SENTENCES, WORDS_FOR, describe, shown
 from tiniscript.words import WORDS
-
-FOLDER = Path(robots.__file__).parent
-TEXTS = {path.stem: path.read_text(encoding="utf-8") for path in FOLDER.glob("*.toml")}
-
-
-def edited(name: str, old: str, new: str) -> str:
-    """The text of a shipped profile with its first `old` replaced."""
-    assert old in TEXTS[name]
-    return TEXTS[name].replace(old, new, 1)
 
 
 def refusal(text: str) -> ProfileRefused:
