@@ -53,8 +53,7 @@ def test_the_chips_without_tasks_are_those_with_little_memory() -> None:
         ("lesson", "check", "1"),
         ("compile", "--text"),
         ("compile", "--text", "--text-level", "uno"),
-        ("check", "--text-level", "mega"),
-        ("check", "--text-level", "esp32"),
+        ("check", "--text-level", "uno"),
     ],
 )
 def test_a_text_is_refused_at_its_task(program: Path, verb: tuple[str, ...], language: str) -> None:
@@ -62,6 +61,16 @@ def test_a_text_is_refused_at_its_task(program: Path, verb: tuple[str, ...], lan
     said = done.out + done.err
     assert WORDS[language] in said and "tsc run" in said and done.code == 1
     assert ("line 2:" if language == "en" else "línea 2:") in said
+
+
+@pytest.mark.parametrize("level", ["mega", "esp32"])
+def test_a_reader_that_lacks_them_is_told_from_a_robot_that_does(program: Path, level: str) -> None:
+    """A Mega and an ESP32 run what is sent compiled."""
+    done = inside("check", "--text-level", level, program)
+    said = done.out + done.err
+    assert (done.code, "TS313" in said, said.count("[TS308]")) == (1, False, 2)
+    assert "line 2:" in said and "line 4:" in said and "tsc upload" in said
+    assert inside("check", program, "--robot", "grabber").code == 0
 
 
 @pytest.mark.parametrize("language", ["en", "es"])
@@ -119,8 +128,9 @@ def test_the_studio_neither_sends_nor_simulates(language: str) -> None:
     assert found.image == b""
     message = found.findings[-1].message
     assert WORDS[language] in message.message and (message.code, message.line) == ("TS313", 2)
-    line = checking.line(TEXT.encode(), "tinibot", language)
-    assert not isinstance(line, str) and line.code == "TS313"
+    for robot, code in (("tinibot", "TS313"), ("grabber", "TS308"), ("tinibot32", "TS308")):
+        line = checking.line(TEXT.encode(), robot, language)
+        assert not isinstance(line, str) and (line.code, line.line) == (code, 2)
     check = page_lessons.Check(1, TEXT.encode(), language)
     assert check.go(1000)["verdict"] == page_lessons.MISTAKES
 

@@ -6,9 +6,11 @@ those have been reported.
 
 from __future__ import annotations
 
+from tiniscript.bytecode.image import TASKS
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.kit import Kit
+from tiniscript.robots.boards import CHIPS
 from tiniscript.semantics.ir import Program
 from tiniscript.source import Source, Span
 from tiniscript.syntax.lexer import WORD
@@ -20,7 +22,7 @@ from tiniscript.text.memory import MOST_BRACKETS, Reader
 
 def misfits(source: Source, program: Program, kit: Kit, level: Level) -> list[Diagnostic]:
     """Return what a robot of this level lacks for a checked program."""
-    if program.tasks and "TASK" in level.lacks:
+    if program.tasks and not CHIPS[level.board].has & TASKS:  # nor does it run them compiled
         return [Diagnostic(codes.NO_TASKS, program.tasks[0].word, {"robot": level.name})]
     parsed = parse(source)
     tokens = list(spelled_out(parsed.scan.tokens))
@@ -29,6 +31,8 @@ def misfits(source: Source, program: Program, kit: Kit, level: Level) -> list[Di
         for token in tokens
         if token.kind is WORD and (token.text in level.lacks or len(token.text) > LONGEST_WORD)
     ]
+    if found and program.tasks:  # they have no plain code
+        return found
     plain = plain_code(program)
     limit = min(CODE_BYTES, level.room)
     if plain.length > limit:
