@@ -154,6 +154,7 @@ class Simulation:
         """Return what is to be seen, and what has happened since the last time."""
         robot = self.robot
         x_cm, y_cm, heading = robot.pose
+        touched = robot.driving.touched(robot.pose)
         kit = robot.profile.kit
         readings = [robot.sensing.look(number, robot.pose) for number in range(len(kit.sensors))]
         return {
@@ -166,6 +167,9 @@ class Simulation:
             "fault": robot.fault,
             "fault_at": self.fault_at if robot.fault else None,
             "bumps": robot.driving.bumps,
+            "touches": touched and list(touched),
+            "actuators": [None if (value := robot.actuators.get(k)) is None else value / ONE
+                          for k in range(len(kit.actuators))],
             "at": robot.at if self.held_at is None else self.held_at,
             "places": robot.places,
             "is_held": self.held_at is not None,

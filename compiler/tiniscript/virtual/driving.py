@@ -120,8 +120,12 @@ class Driving:
         return found is not None and found.gap_cm < 0
 
     def is_touching(self, pose: Pose) -> bool:
+        return self.touched(pose) is not None
+
+    def touched(self, pose: Pose) -> Point | None:
+        """Return the place where a robot at `pose` touches an obstacle, or None."""
         found = self._contact(pose)
-        return found is not None and found.gap_cm < TOUCH_CM
+        return found.theirs if found is not None and found.gap_cm < TOUCH_CM else None
 
     def _contact(self, pose: Pose) -> Contact | None:
         """Return the nearest obstacle, or None where each is further away than NEAR_CM."""

@@ -1,5 +1,7 @@
 // Draws a world and the robot in it. Knows shapes; what a robot does, the firmware decides.
 
+import { drawRobot } from './robot_drawing.js';
+import { dot, path } from './shapes.js';
 import { ROBOTS, WORLDS } from './words.js';
 import { cornersOf } from './world_parts.js';
 
@@ -8,17 +10,22 @@ import { cornersOf } from './world_parts.js';
 /** @typedef {import('./world_parts.js').Place} Place */
 
 const MARGIN_CM = 4;
-const CONE = (15 * Math.PI) / 180; // of an ultrasonic sensor, to both sides
 const FINGER = 22; // pixels that a finger may miss
-const MOST_POINTS = 5000; // of the way
+const MOST_POINTS = 5000; // of a way
+const MOST_WAYS = 4; // of runs before, which are pale
+const SHAKE_MS = 240;
 
 export class Arena {
   #canvas;
   #context;
   #world = WORLDS[0];
   #robot = ROBOTS[0];
-  /** @type {[number, number][]} */
-  #way = [];
+  /** What its pen has drawn, the newest run last. @type {[number, number][][]} */
+  #ways = [[]];
+  /** How far each wheel has turned, in cm. @type {[number, number]} */
+  #rolled = [0, 0];
+  #seen_ms = 0; // of the robot's time
+  #beeps_until_ms = 0;
   #scale = 1; // pixels of the canvas for a centimetre
   /** What is chosen to be changed. @type {{points: Place[], point: number} | null} */
   #mark = null;
@@ -32,14 +39,51 @@ export class Arena {
   }
 
   /**
-   * Begins again: another world or robot, and no way yet.
+   * Begins again. What its pen has drawn in this world stays there.
    * @param {World} world
    * @param {string} robot
    */
   begin(world, robot) {
+    if (world !== this.#world || robot !== this.#robot?.name) this.#ways = [];
     this.#world = world;
     this.#robot = ROBOTS.find((each) => each.name === robot) ?? ROBOTS[0];
-    this.#way = [];
+    this.#ways = [...this.#ways.filter((way) => way.length > 1), []].slice(-1 - MOST_WAYS);
+    this.#rolled = [0, 0];
+    this.#seen_ms = this.#beeps_until_ms = 0;
+  }
+
+  /** Takes what its pen has drawn off the floor. */
+  eraseWays() {
+    this.#ways = [[]];
+  }
+
+  /**
+   * Goes on to a newer state.
+   * @param {RobotState} state
+   */
+  follow(state) {
+    const [x, y] = state.pose;
+    const way = this.#ways.at(-1) ?? [];
+    const last = way.at(-1);
+    if (!last || Math.hypot(last[0] - x, last[1] - y) > 0.5) way.push([x, y]);
+    if (way.length > MOST_POINTS) way.splice(0, MOST_POINTS / 2);
+    const passed_s = Math.max(0, state.now_ms - this.#seen_ms) / 1000;
+    const full = (this.#robot?.speed_cm_s ?? 0) / 100;
+    this.#seen_ms = state.now_ms;
+    this.#rolled[0] += state.motors[0] * full * passed_s;
+    this.#rolled[1] += state.motors[1] * full * passed_s;
+  }
+
+  /** @param {number} until_ms of the robot's time */
+  showBeep(until_ms) {
+    this.#beeps_until_ms = until_ms;
+  }
+
+  /** Shakes the picture, unless this person wants nothing to move. */
+  shake() {
+    if (matchMedia('(prefers-reduced-motion: reduce)').matches || this.#canvas.getAnimations().length) return;
+    const ways = ['0 0', '5px 2px', '-5px -2px', '3px -1px', '0 0'];
+    this.#canvas.animate(ways.map((translate) => ({ translate })), SHAKE_MS);
   }
 
   /** @param {{points: Place[], point: number} | null} mark the points that can be taken, and which one is */
@@ -86,8 +130,12 @@ export class Arena {
       (height + world.height_cm * scale) / 2,
     );
     this.#drawWorld(world);
-    if (state) this.#drawRobot(state);
-    else this.#drawBody(world.start.x_cm, world.start.y_cm, world.start.heading, null);
+    this.#ways.forEach((way, k) => {
+      path(pen, way, k === this.#ways.length - 1 ? '#2f74c0' : '#bcd2ea', 1);
+    });
+    const { start } = world;
+    const [x, y, heading] = state?.pose ?? [start.x_cm, start.y_cm, start.heading];
+    this.#drawBody(x, y, heading, state);
     this.#drawMark();
   }
 
@@ -97,32 +145,22 @@ export class Arena {
     pen.fillStyle = '#fffdf6';
     pen.fillRect(0, 0, world.width_cm, world.height_cm);
     pen.lineCap = pen.lineJoin = 'round';
-    for (const line of world.lines) this.#path(line.points, '#20242a', line.width_cm);
+    for (const line of world.lines) path(pen, line.points, '#20242a', line.width_cm);
     for (const { x_cm: x, y_cm: y } of world.lamps) {
-      this.#dot(x, y, 9, '#ffe9a3');
-      this.#dot(x, y, 3, '#e08a1e');
+      dot(pen, x, y, 9, '#ffe9a3');
+      dot(pen, x, y, 3, '#e08a1e');
     }
     for (const box of world.boxes) {
-      this.#path(cornersOf(box), '#6b4a2f', 1, true);
+      path(pen, cornersOf(box), '#6b4a2f', 1, true);
       pen.fillStyle = '#c79a6b';
       pen.fill();
     }
-    for (const wall of world.walls) this.#path(wall.points, '#6b4a2f', 2);
+    for (const wall of world.walls) path(pen, wall.points, '#6b4a2f', 2);
     if (world.has_border) {
       pen.strokeStyle = '#6b4a2f';
       pen.lineWidth = 2;
       pen.strokeRect(0, 0, world.width_cm, world.height_cm);
     }
-  }
-
-  /** @param {RobotState} state */
-  #drawRobot(state) {
-    const [x, y, heading] = state.pose;
-    const last = this.#way.at(-1);
-    if (!last || Math.hypot(last[0] - x, last[1] - y) > 0.5) this.#way.push([x, y]);
-    if (this.#way.length > MOST_POINTS) this.#way.splice(0, MOST_POINTS / 2);
-    this.#path(this.#way, '#5d94d1', 0.8);
-    this.#drawBody(x, y, heading, state);
   }
 
   /**
@@ -138,81 +176,32 @@ export class Arena {
     pen.save();
     pen.translate(x, y);
     pen.rotate((heading * Math.PI) / 180);
-    if (state) this.#drawRays(state);
-    this.#path(robot.outline, '#0d4f38', 0.8, true);
-    pen.fillStyle = state?.fault ? '#c8372a' : '#2a9d6f';
-    pen.fill();
-    this.#path([[6, 0], [-3, 3], [-3, -3]], '#fff', 0.4, true);
-    pen.fillStyle = '#fff';
-    pen.fill();
+    const isBeeping = state !== null && state.is_running && state.now_ms < this.#beeps_until_ms;
+    drawRobot(pen, robot, state, { rolled: this.#rolled, isBeeping });
     pen.restore();
+    if (state?.touches) this.#drawStar(...state.touches);
+  }
+
+  /** Where it touches something. @param {number} x @param {number} y */
+  #drawStar(x, y) {
+    const points = Array.from({ length: 16 }, (_, k) => {
+      const angle = (k * Math.PI) / 8, far = k % 2 ? 2.4 : 6;
+      return [x + far * Math.cos(angle), y + far * Math.sin(angle)];
+    });
+    path(this.#context, points, '#a8200f', 0.6, true);
+    this.#context.fillStyle = '#ffd84d';
+    this.#context.fill();
   }
 
   #drawMark() {
     const mark = this.#mark;
     if (!mark) return;
-    this.#path(mark.points, '#b0186b', 0.6);
+    const pen = this.#context;
+    path(pen, mark.points, '#b0186b', 0.6);
     const radius = (7 * (window.devicePixelRatio || 1)) / this.#scale;
     mark.points.forEach(([x, y], k) => {
-      this.#dot(x, y, radius, '#fff');
-      this.#dot(x, y, radius * 0.75, mark.point < 0 || k === mark.point ? '#b0186b' : '#7c8894');
+      dot(pen, x, y, radius, '#fff');
+      dot(pen, x, y, radius * 0.75, mark.point < 0 || k === mark.point ? '#b0186b' : '#7c8894');
     });
-  }
-
-  /** The sensors, and how far one of distance looks. @param {RobotState} state */
-  #drawRays(state) {
-    const robot = this.#robot;
-    if (!robot) return;
-    /** @type {Record<string, {x_cm: number, y_cm: number, heading: number, sees: string} | undefined>} */
-    const places = robot.places;
-    const sensors = robot.devices.filter((device) => device.role === 'sensor');
-    sensors.forEach((device, k) => {
-      const place = places[device.text];
-      const reading = state.readings[k];
-      if (!place || !reading) return;
-      const pen = this.#context;
-      const along = (place.heading * Math.PI) / 180;
-      if (place.sees === 'distance') {
-        pen.fillStyle = '#e0452f33';
-        pen.beginPath();
-        pen.moveTo(place.x_cm, place.y_cm);
-        pen.arc(place.x_cm, place.y_cm, reading.value, along - CONE, along + CONE);
-        pen.fill();
-      } else if (place.sees === 'light') {
-        this.#path([[place.x_cm, place.y_cm], [place.x_cm + 8 * Math.cos(along), place.y_cm + 8 * Math.sin(along)]], '#e08a1e', 0.8);
-      } else {
-        this.#dot(place.x_cm, place.y_cm, 1.4, reading.value ? '#c8372a' : '#7c8894');
-      }
-    });
-  }
-
-  /**
-   * @param {number[][]} points
-   * @param {string} color
-   * @param {number} width
-   * @param {boolean} [isClosed]
-   */
-  #path(points, color, width, isClosed = false) {
-    const pen = this.#context;
-    pen.beginPath();
-    points.forEach(([x = 0, y = 0], k) => (k ? pen.lineTo(x, y) : pen.moveTo(x, y)));
-    if (isClosed) pen.closePath();
-    pen.strokeStyle = color;
-    pen.lineWidth = width;
-    pen.stroke();
-  }
-
-  /**
-   * @param {number} x
-   * @param {number} y
-   * @param {number} radius
-   * @param {string} color
-   */
-  #dot(x, y, radius, color) {
-    const pen = this.#context;
-    pen.beginPath();
-    pen.arc(x, y, radius, 0, 2 * Math.PI);
-    pen.fillStyle = color;
-    pen.fill();
   }
 }

@@ -8,6 +8,7 @@ import { download } from './files.js';
 import { offsetsOf, rangeAt } from './parts.js';
 import { Plot } from './plot.js';
 import { Simulator } from './simulator.js';
+import { Sounds } from './sounds.js';
 import { text } from './texts.js';
 import { nameOf, ROBOTS } from './words.js';
 import { OWN_WORLD } from './work.js';
@@ -32,6 +33,8 @@ export class Driving {
   #simulator;
   #arena = new Arena(element('arena', HTMLCanvasElement));
   #plot = new Plot(element('plot', HTMLCanvasElement));
+  #sounds = new Sounds();
+  #bumps = 0; // that were seen
   #shown = ''; // what SHOW has shown last
   #seen = element('seen', HTMLSelectElement);
   #wasStopped = false;
@@ -102,10 +105,10 @@ export class Driving {
     this.#run.addEventListener('click', () => this.#start(false));
     this.#pause.addEventListener('click', () => {
       if (this.#simulator.phase === 'paused') this.#simulator.goOn();
-      else this.#simulator.pause();
+      else this.#pauseIt();
     });
     element('step', HTMLButtonElement).addEventListener('click', () => {
-      if (this.#simulator.phase === 'running') this.#simulator.pause();
+      if (this.#simulator.phase === 'running') this.#pauseIt();
       else if (this.#simulator.phase === 'paused') this.#simulator.step();
       else this.#start(true);
     });
@@ -122,6 +125,21 @@ export class Driving {
       download(text('trace_name'), this.#simulator.trace.map((line) => `${line}\n`).join(''));
     });
     this.#seen.addEventListener('change', () => this.#choose());
+    const sound = element('sound', HTMLButtonElement);
+    const hear = () => {
+      this.#sounds.mute(!work.sound);
+      sound.setAttribute('aria-pressed', String(work.sound));
+    };
+    sound.addEventListener('click', () => {
+      work.sound = !work.sound;
+      hear();
+      remember();
+    });
+    hear();
+    element('erase_ways', HTMLButtonElement).addEventListener('click', () => {
+      this.#arena.eraseWays();
+      this.#show();
+    });
     new ResizeObserver(() => this.#plot.draw()).observe(element('plot_place', HTMLElement));
     new ResizeObserver(() => this.#arena.draw(this.#simulator.state)).observe(element('arena', HTMLCanvasElement));
     this.setLanguage();
@@ -185,6 +203,11 @@ export class Driving {
     this.#preview = null;
     this.#rest();
     this.#drawing.forget();
+  }
+
+  #pauseIt() {
+    this.#sounds.silence();
+    this.#simulator.pause();
   }
 
   /** Stops, and switches off. */
@@ -256,6 +279,7 @@ export class Driving {
     await this.#simulator.stop(); // also before a program with mistakes: what runs is not what is seen
     if (start !== this.#starts || !program?.image) return;
     this.#wasStopped = false;
+    this.#bumps = 0;
     this.#arena.begin(this.#world.shapes, this.#work.robot);
     this.#plot.begin();
     this.#shown = '';
@@ -272,6 +296,7 @@ export class Driving {
       this.#note = '';
       this.#show();
     }
+    this.#sounds.silence();
     if (!this.#isDriving) return;
     this.#wasStopped = true;
     this.#simulator.stop();
@@ -301,8 +326,20 @@ export class Driving {
     return rangeAt(this.#places, state?.fault ? state.fault_at : state?.at);
   }
 
-  /** Keeps for the curves what is to be seen. @param {import('./python.js').RobotState} state */
+  /** Keeps what is to be seen, and lets be heard what is. @param {import('./python.js').RobotState} state */
   #keep(state) {
+    this.#arena.follow(state);
+    if (state.bumps > this.#bumps) {
+      this.#arena.shake();
+      this.#sounds.crash();
+    }
+    this.#bumps = state.bumps;
+    for (const [at_ms, what] of state.events) {
+      const [word, hertz, lasts_ms] = what.split(' ');
+      if (word !== 'BEEP') continue;
+      this.#arena.showBeep(at_ms + Number(lasts_ms));
+      this.#sounds.beep(Number(hertz), Number(lasts_ms) / 1000 / this.#simulator.speed);
+    }
     if (state.began_ms === null) return;
     const shown = state.events.findLast(([, what]) => what.startsWith('SHOW '));
     if (shown) this.#shown = shown[1].slice('SHOW '.length);

