@@ -27,7 +27,7 @@ from tests.sketch.agreement import (
     wanted,
     with_wide_kit,
 )
-from tests.support.casefile import example_robot, sketch_examples
+from tests.support.casefile import example_robot, has_tasks, sketch_examples
 from tiniscript import compile_text, robots
 from tiniscript.fixed_point import ONE
 from tiniscript.lessons import catalogue
@@ -41,6 +41,7 @@ ANSWERS = [
     (f"{folder.name} {number}", answer.program)
     for folder in catalogue.folders()
     for number, answer in enumerate(catalogue.answers(folder)[0])
+    if not has_tasks(answer.program)  # a sketch has none
 ]
 START_MS = 0.5
 FAR, NEAR = 0.0, 8 * 2 / 0.0343  # echoes: none, and that of 8 cm

@@ -118,11 +118,14 @@ def example_robot(path: Path) -> str:
     return named[1] if named else "tinibot"
 
 
+def has_tasks(text: str) -> bool:
+    return "END_WHEN" in text or "END_TASK" in text
+
+
 def sketch_examples() -> list[Path]:
     """Return the programs of `examples/` that a sketch can do: it has no tasks."""
     paths = sorted((ROOT / "examples").glob("*.ts"))
-    return [path for path in paths if "END_WHEN" not in (text := path.read_text(encoding="utf-8"))
-            and "END_TASK" not in text]  # fmt: skip
+    return [path for path in paths if not has_tasks(path.read_text(encoding="utf-8"))]
 
 
 def accept(case: Case, part: str, actual: str) -> None:
