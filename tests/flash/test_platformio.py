@@ -60,15 +60,6 @@ def test_tests_pass(project: Path) -> None:
     assert says_what_it_is(log)
 
 
-def test_wrong_opcode_fails(project: Path) -> None:
-    numbers = project / "src" / "vm" / "bytecode.h"
-    with changed(numbers, ("kAdd = 0x10,", "kAdd = 0x11,"), ("kSub = 0x11,", "kSub = 0x10,")):
-        code, log = pio(project, "test", "-e", "native")
-    assert code == 1, log
-    assert "every instruction leaves what the machine in Python leaves\t[FAILED]" in log
-    assert "logged: ADD" in log
-
-
 def test_wrong_rule_fails(project: Path) -> None:
     verifier = project / "src" / "vm" / "verify.cpp"
     with changed(verifier, ("Rule::kStackUnderflow", "Rule::kStackOverflow")):
@@ -76,22 +67,6 @@ def test_wrong_rule_fails(project: Path) -> None:
     assert code == 1, log
     assert "what breaks a rule is refused with the rule and the offset\t[FAILED]" in log
     assert "logged: An addition with one value: 25 STACK_UNDERFLOW at 0002" in log
-
-
-def test_missing_rule_fails(project: Path) -> None:
-    """A verifier that accepts everything."""
-    verifier = project / "src" / "vm" / "verify.cpp"
-    with changed(verifier, ("\nVerdict verify(", "\n[[gnu::unused]] static Verdict strict(")):
-        with verifier.open("a", encoding="utf-8") as more:
-            more.write(
-                "namespace tiniscript {\n"
-                "Verdict verify(const uint8_t*, size_t, uint8_t, uint8_t, uint16_t*, bool) {\n"
-                "  return {Rule::kNone, 0};\n}\n}\n"
-            )
-        code, log = pio(project, "test", "-e", "native")
-    assert code == 1, log
-    assert "what breaks a rule is refused with the rule and the offset\t[FAILED]" in log
-    assert "logged: A byte that begins no instruction: 21 UNKNOWN_OPCODE at 0000" in log
 
 
 def test_no_test_case_fails(project: Path) -> None:

@@ -31,7 +31,6 @@ from tiniscript.kit import DEVICES, NUMBER, YES_NO, Device, Kit
 from tiniscript.vm.state import DONE, FAULT, WAITING
 from tiniscript.vm.tasks import machine_of
 from tiniscript.vm.trace import TracedRobot
-from tools.generate.cpp_cases import CALCULATIONS, EDGES, push32
 
 TINIBOT = robots.load("tinibot").kit
 STEPS = 100_000  # a case that runs more without a wait says nothing about its end: it is left out
@@ -48,6 +47,10 @@ SELDOM: When = (2**31 - 30, (7,))
 LATE: When = (0, (45,))
 ROUND_MS = 2**31 - 8  # a multiple of the 20 ms of UNTIL; twice this is 16 ms before 2^32
 FAR = Senses({"DISTANCE": [50_000]})
+MAX_LONG = 2**31 - 1
+EDGES = (-MAX_LONG - 1, -1_500_500, -1, 0, 499, 1000, 2500, MAX_LONG)
+CALCULATIONS = ("ADD", "SUB", "MUL", "DIV", "MOD", "NEG", "ABS", "MIN", "MAX", "ROUND", "RANDOM",
+                "EQ", "NE", "LT", "LE", "GT", "GE", "NOT", "AND", "OR")  # fmt: skip
 NOTHING = bytes([BY_NAME["SET_VAR8"].code, 0, 0])
 
 
@@ -298,6 +301,10 @@ def arithmetic() -> Iterator[Run]:
             else:
                 yield run
         yield Run(f"arithmetic: {op.name}", TINIBOT, pack("SI", 0, together))
+
+
+def push32(value: int) -> bytes:
+    return bytes([BY_NAME["PUSH32"].code]) + value.to_bytes(4, "little", signed=True)
 
 
 def title(op: Op, values: tuple[int, ...]) -> str:
