@@ -81,7 +81,7 @@ MODULES = (
     Module("firmware", (f"{_CPP}/firmware/*.cpp",), (_HOST, *(f"tests/firmware/test_{name}.py" for name in ("keeping", "undo", "stops", "button", "owners", "trim", "text", "other_versions", "actuator_stops", "random_numbers", "replaced_runs", "stop_states")))),
     Module("avr-boards", (f"{_CPP}/boards/*.cpp", f"{_CPP}/boards/avr/*.cpp"), tuple(f"tests/firmware/test_{name}.py" for name in ("boards", "board_devices", "board_sonar", "board_stops", "uno_robot", "uno_line", "uno_watchdog", "uno_supply", "uno_stops"))),
     Module("esp32-boards", (f"{_CPP}/boards/esp32/*.cpp",), tuple(f"tests/firmware/test_esp32_{name}.py" for name in ("robot", "store", "transports", "wifi", "broker", "guests"))),
-    Module("page", (f"{_JS}/*.js",), ("tests/studio",)),
+    Module("page", (f"{_JS}/**/*.js",), ("tests/studio",)),
 )
 # fmt: on
 BY_NAME = {module.name: module for module in MODULES}

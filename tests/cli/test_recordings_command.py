@@ -28,7 +28,7 @@ from tiniscript.virtual import worlds
 
 pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")
 TEXT = "SI|W(0.2); SHOW(5);\nX = 0; W(0.2);\nSHOW(1 / X)"
-PAGE_TEXTS = ROOT / "tools/studio/src/robot_texts.js"
+PAGE_TEXTS = ROOT / "tools/studio/src/robot/robot_texts.js"
 CHECKSUM = compile(TEXT).checksum
 
 

@@ -118,7 +118,7 @@ def test_each_module_has_mutants_and_tests(module: Module) -> None:
 
 
 def test_every_source_is_of_one_module() -> None:
-    sources = [*ROOT.glob("compiler/tiniscript/**/*.py"), *ROOT.glob("tools/studio/src/*.js")]
+    sources = [*ROOT.glob("compiler/tiniscript/**/*.py"), *ROOT.glob("tools/studio/src/**/*.js")]
     for suffix in ("cpp", "S"):
         sources += ROOT.glob(f"vm_arduino/src/*/**/*.{suffix}")
     found = [path for each in MODULES for pattern in each.files for path in ROOT.glob(pattern)]

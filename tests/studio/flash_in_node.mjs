@@ -10,7 +10,7 @@ import tty from 'node:tty';
 const [sources, path, board, file, part = 'never'] = process.argv.slice(2);
 const cancelling = new AbortController();
 if (part < 0) cancelling.abort();
-const of = (name) => import(pathToFileURL(`${sources}/${name}`).href);
+const of = (name) => import(pathToFileURL(`${sources}/robot/${name}`).href);
 const { BOARDS, flash } = await of('stk500.js');
 const { BadHex, readHex } = await of('intel_hex.js');
 

@@ -18,7 +18,13 @@ from tools.builds import studio
 
 LARGEST = 6_000_000  # bytes of all files, gzipped
 SOURCES = ROOT / "tools" / "studio"
-TEXTS = ("texts.js", "robot_texts.js", "class_texts.js", "lesson_texts.js", "world_texts.js")
+TEXTS = (
+    "texts.js",
+    "robot/robot_texts.js",
+    "class/class_texts.js",
+    "lesson_texts.js",
+    "world_texts.js",
+)
 # whose names stand in the sources; those of the others are made of what a robot or a class says
 NAMED_TEXTS = ("texts.js", "lesson_texts.js")
 
@@ -66,14 +72,14 @@ def test_every_sentence_is_said_somewhere(name: str) -> None:
     names = re.findall(r"^  (\w+): \[", source, re.MULTILINE)
     said = "".join(
         path.read_text(encoding="utf-8")
-        for path in (SOURCES / "src").iterdir()
+        for path in (SOURCES / "src").rglob("*")
         if path.suffix in (".js", ".html") and path.name != name
     )
     assert [name for name in names if not re.search(rf"['\"]{name}['\"]", said)] == []
 
 
 def test_nothing_makes_markup_of_a_text() -> None:
-    for path in (SOURCES / "src").glob("*.js"):
+    for path in (SOURCES / "src").rglob("*.js"):
         source = path.read_text(encoding="utf-8")
         for word in ("innerHTML", "outerHTML", "insertAdjacentHTML", "document.write", "eval(",
                      "new Function"):  # fmt: skip

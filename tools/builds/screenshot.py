@@ -48,7 +48,7 @@ SIZE = {"width": 1280, "height": 760}
 COLOURS = 128  # of a picture: its bytes are halved, and nobody sees it
 KEPT = "words"  # the text of the picture that has them
 SEEN = "button, label, h1, h2, .blocklyToolboxCategoryLabel"
-TEXTS = sorted((ROOT / "tools" / "studio" / "src").glob("*texts.js"))
+TEXTS = sorted((ROOT / "tools" / "studio" / "src").rglob("*texts.js"))
 
 
 def picture(language: str, scene: str = "") -> Path:

@@ -11,9 +11,9 @@ import { Python } from './python.js';
 import { currentLanguage, setLanguage, text } from './texts.js';
 import { Driving } from './driving.js';
 import { Recorder } from './recorder.js';
-import { whyOutside } from './robot_host.js';
-import { RobotPanel } from './robot_panel.js';
-import { RobotPlace } from './robot_place.js';
+import { whyOutside } from './robot/host.js';
+import { RobotPanel } from './robot/panel.js';
+import { RobotPlace } from './robot/place.js';
 import { chooseSide, showSide } from './robot_side.js';
 import { Views } from './views.js';
 import { ROBOTS, showWords } from './words.js';
@@ -91,7 +91,7 @@ const lessons = new Lessons({
 });
 chooseSide();
 if ('class' in document.documentElement.dataset) {
-  import('./classroom.js').then(({ beginClass }) => beginClass(panel, work, () => editor.replace('')));
+  import('./class/classroom.js').then(({ beginClass }) => beginClass(panel, work, () => editor.replace('')));
 }
 
 /** The newest answer, and what it is about. @type {{key: string, answer: Checked | null}} */

@@ -6,7 +6,7 @@ import { element } from './elements.js';
 import { bytesOf, download } from './files.js';
 import { currentLanguage, text } from './texts.js';
 
-/** @typedef {import('./robot_way.js').RobotEvent} RobotEvent */
+/** @typedef {import('./robot/way.js').RobotEvent} RobotEvent */
 /** @typedef {{ms: number, event: string}} Recorded */
 
 const VERSION = 1;

@@ -1,9 +1,9 @@
 // Every sentence of the page, in English and Spanish. What is said of programs comes from the
 // compiler.
 
-import { CLASS_TEXTS } from './class_texts.js';
+import { CLASS_TEXTS } from './class/class_texts.js';
 import { LESSON_TEXTS } from './lesson_texts.js';
-import { ROBOT_TEXTS } from './robot_texts.js';
+import { ROBOT_TEXTS } from './robot/robot_texts.js';
 import { WORLD_TEXTS } from './world_texts.js';
 
 /** @typedef {'en' | 'es'} Language */

@@ -1,10 +1,10 @@
 // What the panel of a real robot says, and what the robot shows: as text, never as markup.
 
-import { element } from './elements.js';
-import { shown } from './robot_said.js';
-import { hasText, text } from './texts.js';
+import { element } from '../elements.js';
+import { shown } from './said.js';
+import { hasText, text } from '../texts.js';
 
-/** @typedef {import('./robot_way.js').Failed} Failed */
+/** @typedef {import('./way.js').Failed} Failed */
 
 const SHOWN = 200; // lines of what the robot shows
 const SAID_CHARACTERS = 1000;

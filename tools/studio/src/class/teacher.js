@@ -1,11 +1,11 @@
 // The teacher's page of a class: its code, all pupils and robots, and what a teacher may do with them.
 // Everything that pupils and robots have written is put there as text, never as markup.
 
-import { button, labelled, made } from './class_made.js';
-import { element } from './elements.js';
-import { hostPorts, post } from './robot_host.js';
-import { shown } from './robot_said.js';
-import { text } from './texts.js';
+import { button, labelled, made } from './made.js';
+import { element } from '../elements.js';
+import { hostPorts, post } from '../robot/host.js';
+import { shown } from '../robot/said.js';
+import { text } from '../texts.js';
 
 /** @typedef {{number: number, name: string, silent_s: number, place: number, robot: string, characters: number}} PupilRow */
 /** @typedef {{port: string, name: string, pupil: string, left_s: number}} RobotRow */

@@ -1,12 +1,12 @@
 // A class: the page of a pupil, or of the teacher. Fetched only where `tsc studio --class` gives the page.
 
-import { Pupil } from './class_pupil.js';
-import { Teacher } from './class_teacher.js';
-import { isTeacher } from './robot_host.js';
+import { Pupil } from './pupil.js';
+import { Teacher } from './teacher.js';
+import { isTeacher } from '../robot/host.js';
 
 /**
- * @param {import('./robot_panel.js').RobotPanel} panel
- * @param {import('./work.js').Work} work
+ * @param {import('../robot/panel.js').RobotPanel} panel
+ * @param {import('../work.js').Work} work
  * @param {() => void} empty takes the program off the page
  */
 export function beginClass(panel, work, empty) {

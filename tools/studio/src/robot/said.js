@@ -1,8 +1,8 @@
 // What a robot or a host has said, as a person may read it: as text alone, and with what to try.
 
-import { hasText, text } from './texts.js';
+import { hasText, text } from '../texts.js';
 
-/** @typedef {import('./robot_way.js').Answer} Answer */
+/** @typedef {import('./way.js').Answer} Answer */
 
 const SHOWN_CHARACTERS = 200; // of a name or a text
 

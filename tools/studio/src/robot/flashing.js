@@ -1,14 +1,14 @@
 // The part of the page that puts a firmware on a board: which file, how far it is, and its end.
 
-import { element } from './elements.js';
-import { chosenPort } from './robot_serial.js';
-import { shown } from './robot_said.js';
-import { Failed } from './robot_way.js';
-import { currentLanguage } from './texts.js';
+import { element } from '../elements.js';
+import { chosenPort } from './serial.js';
+import { shown } from './said.js';
+import { Failed } from './way.js';
+import { currentLanguage } from '../texts.js';
 
 /**
  * @typedef {object} Panel what is used of the part with a robot
- * @property {import('./robot_speech.js').Speech} speech
+ * @property {import('./speech.js').Speech} speech
  * @property {() => string} robot whose firmware is wanted
  * @property {() => any} port the known one that is chosen, if one is
  * @property {() => boolean} isFree
@@ -46,7 +46,7 @@ export class Flashing {
     speech.say('say_flashing');
     setBusy(true);
     try {
-      const { flashBoard } = await import('./robot_flash.js');
+      const { flashBoard } = await import('./flash.js');
       const port = await chosen;
       this.#bar.hidden = this.#cancel.hidden = false;
       const board = element('flash_board', HTMLSelectElement).value;

@@ -1,39 +1,39 @@
 // The part of the page with a real robot: how it is reached, what it is told, and what it says.
 // Everything that a robot says is put there as text, never as markup.
 
-import { element } from './elements.js';
-import { faultSaid } from './faults.js';
-import { bytesOf } from './files.js';
-import { chosenDevice, BluetoothPort, hasBluetooth } from './robot_bluetooth.js';
-import { DirectRobot } from './robot_direct.js';
-import { hasHost, hostPorts, HostRobot, isPupil, isTeacher } from './robot_host.js';
-import { keepKeys, keptKeys } from './robot_keys.js';
-import { Flashing } from './robot_flashing.js';
-import { readTrim, showTrim } from './robot_trim.js';
-import { chosenPort, hasSerial, knownPorts, SerialPort } from './robot_serial.js';
-import { refusal, shown } from './robot_said.js';
-import { stopAll } from './robot_stops.js';
-import { Speech } from './robot_speech.js';
-import { Failed } from './robot_way.js';
-import { currentLanguage, text } from './texts.js';
-import { LINK, ROBOTS } from './words.js';
+import { element } from '../elements.js';
+import { faultSaid } from '../faults.js';
+import { bytesOf } from '../files.js';
+import { chosenDevice, BluetoothPort, hasBluetooth } from './bluetooth.js';
+import { DirectRobot } from './direct.js';
+import { hasHost, hostPorts, HostRobot, isPupil, isTeacher } from './host.js';
+import { keepKeys, keptKeys } from './keys.js';
+import { Flashing } from './flashing.js';
+import { readTrim, showTrim } from './trim.js';
+import { chosenPort, hasSerial, knownPorts, SerialPort } from './serial.js';
+import { refusal, shown } from './said.js';
+import { stopAll } from './stops.js';
+import { Speech } from './speech.js';
+import { Failed } from './way.js';
+import { currentLanguage, text } from '../texts.js';
+import { LINK, ROBOTS } from '../words.js';
 
-/** @typedef {import('./python.js').Checked} Checked */
-/** @typedef {import('./robot_way.js').About} About */
-/** @typedef {import('./robot_way.js').Answer} Answer */
-/** @typedef {import('./robot_way.js').RobotEvent} RobotEvent */
-/** @typedef {import('./robot_way.js').Way} Way */
+/** @typedef {import('../python.js').Checked} Checked */
+/** @typedef {import('./way.js').About} About */
+/** @typedef {import('./way.js').Answer} Answer */
+/** @typedef {import('./way.js').RobotEvent} RobotEvent */
+/** @typedef {import('./way.js').Way} Way */
 /** @typedef {{label: string, connect: () => Promise<void>, serial?: any}} Choice */
 
 /**
  * @typedef {object} Page what the panel uses of the page
- * @property {import('./python.js').Python} python
+ * @property {import('../python.js').Python} python
  * @property {() => Checked | null} program what the compiler says of the newest text
  * @property {() => string} robot for which it compiles
  * @property {(name: string) => void} setRobot
- * @property {(place: import('./editor.js').Range) => void} goTo
- * @property {import('./recorder.js').Recorder} recorder of what the robot tells
- * @property {import('./robot_place.js').RobotPlace} place where its program is
+ * @property {(place: import('../editor.js').Range) => void} goTo
+ * @property {import('../recorder.js').Recorder} recorder of what the robot tells
+ * @property {import('./place.js').RobotPlace} place where its program is
  */
 
 export class RobotPanel {
@@ -184,13 +184,13 @@ export class RobotPanel {
     return ROBOTS.find((each) => each.name === this.#page.robot())?.baud ?? 9600;
   }
 
-  /** @param {import('./robot_direct.js').Port} port @param {import('./robot_way.js').Heard} heard */
+  /** @param {import('./direct.js').Port} port @param {import('./way.js').Heard} heard */
   #direct(port, heard) {
     const way = new DirectRobot(this.#page.python, port, heard, keepKeys);
     return { way, met: way.connect(this.#page.robot(), currentLanguage(), keptKeys()) };
   }
 
-  /** @param {(heard: import('./robot_way.js').Heard) => Promise<{way: Way, met: Promise<About>}>} open */
+  /** @param {(heard: import('./way.js').Heard) => Promise<{way: Way, met: Promise<About>}>} open */
   async #connect(open) {
     if (this.#isBusy || this.#way) return;
     this.#isBusy = true;

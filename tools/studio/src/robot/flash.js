@@ -3,8 +3,8 @@
 // The files are beside the page, as `tsc studio` gives them, or a person opens one.
 
 import { BadHex, readHex } from './intel_hex.js';
-import { SerialPort } from './robot_serial.js';
-import { Failed } from './robot_way.js';
+import { SerialPort } from './serial.js';
+import { Failed } from './way.js';
 import { BOARDS, flash } from './stk500.js';
 
 /** @typedef {{title: string, board: string, file: string}} Firmware */

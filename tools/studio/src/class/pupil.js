@@ -3,13 +3,13 @@
 //
 // The page asks once a second for its place. That keeps no robot going: only a page that drives does.
 
-import { button, labelled, made } from './class_made.js';
-import { element } from './elements.js';
-import { askAs, post } from './robot_host.js';
-import { shown } from './robot_said.js';
-import { Failed } from './robot_way.js';
-import { text } from './texts.js';
-import { forgetAll } from './work.js';
+import { button, labelled, made } from './made.js';
+import { element } from '../elements.js';
+import { askAs, post } from '../robot/host.js';
+import { shown } from '../robot/said.js';
+import { Failed } from '../robot/way.js';
+import { text } from '../texts.js';
+import { forgetAll } from '../work.js';
 
 const PLACE = 'tiniscript.pupil';
 const LOOK_MS = 1000;
@@ -35,8 +35,8 @@ export class Pupil {
   #timer = 0;
 
   /**
-   * @param {import('./robot_panel.js').RobotPanel} panel
-   * @param {import('./work.js').Work} work
+   * @param {import('../robot/panel.js').RobotPanel} panel
+   * @param {import('../work.js').Work} work
    * @param {() => void} empty
    */
   constructor(panel, work, empty) {

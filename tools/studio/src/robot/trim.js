@@ -1,8 +1,8 @@
 // The fields of a robot's trim.
 
-import { element } from './elements.js';
+import { element } from '../elements.js';
 
-/** @typedef {import('./robot_way.js').Trim} Trim */
+/** @typedef {import('./way.js').Trim} Trim */
 
 const balance = element('trim_balance', HTMLInputElement);
 const least = element('trim_least', HTMLInputElement);

@@ -1,6 +1,6 @@
 // Elements that the class's parts of the page make, with texts that change with the language.
 
-import { text } from './texts.js';
+import { text } from '../texts.js';
 
 /**
  * @template {keyof HTMLElementTagNameMap} K

@@ -1,8 +1,8 @@
 // The line that a real robot runs now, where it tells that and runs the program of the page.
 
-import { rangeAt } from './parts.js';
+import { rangeAt } from '../parts.js';
 
-/** @typedef {import('./robot_way.js').RobotEvent} RobotEvent */
+/** @typedef {import('./way.js').RobotEvent} RobotEvent */
 
 const ENDS = ['STARTED', 'DONE', 'FAULT', 'STOPPED', 'RESTARTED', 'LOST'];
 
@@ -13,8 +13,8 @@ export class RobotPlace {
 
   /**
    * @param {{
-   *   program: () => import('./python.js').Checked | null,
-   *   show: (range: import('./editor.js').Range | null) => void,
+   *   program: () => import('../python.js').Checked | null,
+   *   show: (range: import('../editor.js').Range | null) => void,
    * }} page `program` is what the compiler says of the newest text
    */
   constructor(page) {

@@ -4,12 +4,12 @@
 // The main thread owns the port and asks the session for every byte: when it hangs or the page
 // sleeps, nothing is sent, and the robot stops by itself.
 
-import { Failed, pause } from './robot_way.js';
-import { LINK, ROBOTS } from './words.js';
+import { Failed, pause } from './way.js';
+import { LINK, ROBOTS } from '../words.js';
 
-/** @typedef {import('./robot_way.js').Heard} Heard */
-/** @typedef {import('./robot_way.js').Answer} Answer */
-/** @typedef {import('./robot_way.js').About} About */
+/** @typedef {import('./way.js').Heard} Heard */
+/** @typedef {import('./way.js').Answer} Answer */
+/** @typedef {import('./way.js').About} About */
 
 /**
  * What carries bytes. `write` keeps the order; `gone` comes once, when nothing is carried any more.
@@ -45,7 +45,7 @@ export class DirectRobot {
   #keepKeys;
 
   /**
-   * @param {import('./python.js').Python} python
+   * @param {import('../python.js').Python} python
    * @param {Port} port
    * @param {Heard} heard
    * @param {(keys: string) => void} keepKeys
