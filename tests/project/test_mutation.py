@@ -163,7 +163,7 @@ def test_what_a_test_notices_is_told_from_what_none_does(two_files: Copy) -> Non
 
 
 def test_what_does_not_end_is_noticed(two_files: Copy, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(mutation, "LIMIT_S", 10)
+    monkeypatch.setattr(mutation, "LIMIT_S", 3)
     text = LOW.replace("    return", "    while x: pass\n    return")
     mutant = Mutant("where.py", 2, "", "", text)
     assert two_files.notices(mutant, ["test_where.py"]) == "it does not end"

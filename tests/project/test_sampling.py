@@ -91,6 +91,8 @@ def test_each_value_is_in_each_sample_and_each_row_in_one(
         seen.update((row["case"], row["chip"]) for row in cases)
     assert len(seen) > 55
     assert collected("--sample", "7") == collected("--sample", "7")
+    asked, said = collected("--sample", "7", "-k", "not usual")  # which asks for none
+    assert len([name for name, _ in asked if name == "test_case"]) == 20 and said
 
 
 @pytest.mark.parametrize(

@@ -56,7 +56,8 @@ def said(config: pytest.Config) -> str:
 
 
 def is_narrowed(config: pytest.Config) -> bool:
-    return bool(config.option.keyword) or any("::" in each for each in config.args)
+    asked = config.option.keyword  # "not this one" asks for none
+    return (asked and not asked.startswith("not ")) or any("::" in each for each in config.args)
 
 
 def seed(config: pytest.Config) -> str:

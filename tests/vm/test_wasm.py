@@ -6,7 +6,7 @@ import os
 import shutil
 import sys
 from collections.abc import Sequence
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 
 import pytest
@@ -208,6 +208,49 @@ def test_python_runs_without_wasmtime() -> None:
     )
     assert "tiniscript.vm.machine" in modules
     assert not {"wasmtime", "tiniscript.vm.wasm"} & modules
+
+
+WAT = """(module (import "" "look" (func $look)) (export "look" (func $look))
+  (func (export "sum") (param i64 i32) (result i64)
+    (i64.add (local.get 0) (i64.extend_i32_s (local.get 1))))
+  (func (export "negative") (param i32) (result i32) (i32.sub (i32.const 0) (local.get 0)))
+  (func (export "trap") unreachable))"""
+
+
+@needs_wasmtime
+@pytest.mark.parametrize("is_known", [True, False])
+def test_functions_are_called_alike_where_wasmtime_is_known_inside_or_not(
+    is_known: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from wasmtime import Func, FuncType, Instance, Trap, _ffi
+
+    from tiniscript.vm import wasm_store
+
+    def look() -> None:
+        raise KeyError("seen")
+
+    if not is_known:
+        monkeypatch.delattr(_ffi, "wasmtime_func_call_unchecked")
+    (tmp_path / "module.wat").write_text(WAT, encoding="utf-8")
+    store = wasm_store.store()
+    imports = [Func(store, FuncType([], []), look)]
+    made = Instance(store, wasm_store.module(tmp_path / "module.wat"), imports).exports(store)
+    calls = {}
+    for name in ("sum", "negative", "look", "trap"):
+        function = made[name]
+        assert isinstance(function, Func)
+        calls[name] = wasm_store.called(store, function)
+    assert isinstance(calls["sum"], partial) != is_known
+    assert calls["sum"](1 << 40, -1) == (1 << 40) - 1
+    assert calls["negative"](1) == -1 and calls["negative"](-(1 << 31)) == -(1 << 31)
+    with pytest.raises(KeyError, match="seen"):
+        calls["look"]()
+    with pytest.raises(Trap, match="unreachable"):
+        calls["trap"]()
+    assert calls["sum"](-2, -3) == -5
+    store.close()
+    with pytest.raises(ValueError, match="closed"):
+        calls["negative"](1)
 
 
 # -- what it refuses ----------------------------------------------------------------------------

@@ -10,6 +10,7 @@ what a robot does in its world: a `Board` is told.
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from struct import pack
 from typing import NamedTuple, Protocol
@@ -105,11 +106,11 @@ class Firmware:
 
         look = Func(self._store, FuncType([], []), look_now)
         exports = Instance(self._store, module, [look]).exports(self._store)
-        self._functions: dict[str, Func] = {}
+        self._functions: dict[str, Callable[..., int | None]] = {}
         for each in module.exports:
             found = exports[each.name]
             if isinstance(found, Func):
-                self._functions[each.name] = found
+                self._functions[each.name] = wasm_store.called(self._store, found)
         found = exports["memory"]
         assert isinstance(found, Memory)
         self._memory = found
@@ -145,12 +146,15 @@ class Firmware:
                 del self._waiting[: self._room]
                 self._memory.write(self._store, part, self._inbox)
                 self.call("put", len(part))
-            count = self.call("run", until_us, int(bool(self._waiting)))
+            has_more = bool(self._waiting)
+            count = self.call("run", until_us, int(has_more))
             self._look()
             if count:
                 sent += self._memory.read(self._store, self._outbox, self._outbox + count)
-            if self.call("now_us") >= until_us or self.held_at is not None:
-                return bytes(sent)
+            if self.is_watched or has_more or count == self._room:  # it may have ended earlier
+                if self.call("now_us") < until_us and self.held_at is None:
+                    continue
+            return bytes(sent)
 
     # -- to look at its program -------------------------------------------------------------------
 
@@ -203,7 +207,7 @@ class Firmware:
         return bytes(self._memory.read(self._store, self._eeprom, end))
 
     def call(self, name: str, *values: int) -> int:
-        return int(self._functions[name](self._store, *values) or 0)
+        return int(self._functions[name](*values) or 0)
 
     def close(self) -> None:
         """Switch it off, and free its memory. It cannot run again."""

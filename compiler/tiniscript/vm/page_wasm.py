@@ -7,7 +7,7 @@ Pyodide. Does not know what is in a module.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import lru_cache
+from functools import lru_cache, partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -130,6 +130,11 @@ def store() -> Store:
 @lru_cache(maxsize=8)
 def module(path: Path) -> Module:
     return Module(path.read_bytes())
+
+
+def called(store: Store, function: Func) -> Any:
+    """Return a function of a module, to call without its store."""
+    return partial(function, store)
 
 
 def numbers(store: Store, memory: Memory) -> Numbers:

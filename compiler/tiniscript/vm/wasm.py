@@ -120,7 +120,7 @@ class WasmImage:
         """Return an exported function, ready to call."""
         function = self._exports[name]
         assert isinstance(function, Func)
-        return lambda *values: function(self._store, *values)
+        return wasm_store.called(self._store, function)
 
     def _robot_functions(self) -> dict[str, Func]:
         """Return what the module imports: `robot.h`, under the names of `state.Robot`."""
