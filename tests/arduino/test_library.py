@@ -13,7 +13,8 @@ import pytest
 from tests.machines import board as boards
 from tests.machines import sketch_board
 from tests.support.command import process
-from tests.support.platformio import need, shared
+from tests.support.needs import need
+from tests.support.platformio import shared
 from tools.builds import chips, library
 from tools.builds.library_rules import complaints
 from tools.uno import Uno

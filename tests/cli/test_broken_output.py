@@ -12,7 +12,6 @@ from typing import TypeVar
 
 import pytest
 
-from tests.machines.host_firmware import missing
 from tests.support.command import FOREVER, PROGRAM, TSC, Tsc, process
 from tests.support.pty_robot import PtyRobot
 from tests.support.robot_fleet import RobotFleet
@@ -24,8 +23,6 @@ from tiniscript.link.connection import PendingRequest, Requester
 from tiniscript.link.messages import STOP_RUN
 
 T = TypeVar("T")
-pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
-pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 
 KIT = robots.load("tinibot").kit
 SHOWS = "SI|LOOP(FOREVER);F(0.1, 80);SHOW(1);END_LOOP"

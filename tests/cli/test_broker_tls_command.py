@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import shlex
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
@@ -11,24 +10,16 @@ from typing import NamedTuple
 import pytest
 
 from tests.cli.test_esp32_radio import NETWORK, PASSWORD, near
+from tests.cli.test_owner_commands import claimed
 from tests.machines.esp32 import HAS_TLS
-from tests.machines.esp32 import missing as no_compiler
-from tests.support import certificates
 from tests.support.certificates import Authority, der
 from tests.support.command import inside, process
 from tests.support.esp32_pty_robot import Esp32PtyRobot
-from tests.support.mosquitto import Mosquitto, missing
+from tests.support.mosquitto import Mosquitto
 from tests.support.pty_robot import on
 from tiniscript.link.messages import WIFI_STATES
 
-if sys.platform == "win32":
-    pytest.skip("there are no pseudo-terminals", allow_module_level=True)
-
-from tests.cli.test_owner_commands import claimed
-
-NEEDS = no_compiler() or missing() or certificates.missing()
-NEEDS = NEEDS or ("" if HAS_TLS else "needs libmbedtls-dev")
-pytestmark = pytest.mark.skipif(bool(NEEDS), reason=NEEDS or "there is mbedTLS")
+pytestmark = pytest.mark.skipif(not HAS_TLS, reason="needs libmbedtls-dev")
 NAME = "localhost"
 
 

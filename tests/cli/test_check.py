@@ -5,7 +5,6 @@ from __future__ import annotations
 import csv
 import json
 import os
-import sys
 from io import StringIO
 from pathlib import Path
 
@@ -96,7 +95,6 @@ def test_one_that_cannot_be_read_has_its_row_and_gives_two(folder: Path, tsc: Ts
     assert "b.ts: line 1" in done.out
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such names")
 def test_what_lies_in_a_folder_does_no_harm(folder: Path, tsc: Tsc) -> None:
     (folder / "x\n\x1b[31m.ts").write_text(RIGHT, encoding="utf-8")
     (folder / "bytes.ts").write_bytes(b"\0\xff")

@@ -7,7 +7,6 @@ import json
 import shutil
 import signal
 import subprocess
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 from types import SimpleNamespace
@@ -16,10 +15,10 @@ from typing import cast
 import pytest
 
 from tests.cli.test_esp32_radio import DRIVES, DROVE, NETWORK, PASSWORD, drove, files_with, near
-from tests.machines.esp32 import missing as no_compiler
+from tests.cli.test_owner_commands import as_another, claimed
 from tests.support.command import FOREVER, Command, inside, process
 from tests.support.esp32_pty_robot import Esp32PtyRobot
-from tests.support.mosquitto import Mosquitto, missing
+from tests.support.mosquitto import Mosquitto
 from tests.support.pty_robot import on
 from tests.support.waiting import HANGS_S, until
 from tiniscript.cli.robot.classroom import Classroom, Listener
@@ -29,15 +28,6 @@ from tiniscript.link.line import now_ms
 from tiniscript.link.payloads import ShowEvent
 from tiniscript.link.transports.broker import ROOT, Present
 
-if sys.platform == "win32":
-    pytest.skip("there are no pseudo-terminals", allow_module_level=True)
-
-from tests.cli.test_owner_commands import as_another, claimed
-
-pytestmark = [
-    pytest.mark.skipif(bool(no_compiler()), reason=no_compiler() or "there is a compiler"),
-    pytest.mark.skipif(bool(missing()), reason=missing() or "there is a broker"),
-]
 SECRET = b"the password of all robots"
 SEEDS = (0x12345678, 0x0BADCAFE)
 

@@ -21,8 +21,8 @@ from tiniscript.diagnostics.codes import CODES
 
 BASH = shutil.which("bash") or ""
 ZSH = shutil.which("zsh") or ""
-needs_bash = pytest.mark.skipif(not BASH or os.name == "nt", reason="there is no bash")
-needs_zsh = pytest.mark.skipif(not ZSH or os.name == "nt", reason="there is no zsh")
+needs_bash = pytest.mark.skipif(not BASH, reason="there is no bash")
+needs_zsh = pytest.mark.skipif(not ZSH, reason="there is no zsh")
 
 ASKS = """
 source "$1"; shift

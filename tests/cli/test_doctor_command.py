@@ -13,9 +13,6 @@ from pathlib import Path
 
 import pytest
 
-pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
-
-from tests.machines.host_firmware import missing
 from tests.support.command import FOREVER, Command, Tsc, process
 from tests.support.pty_end import PtyEnd
 from tests.support.pty_robot import PtyRobot, on, uploading
@@ -26,8 +23,6 @@ from tiniscript.doctor.findings import sure
 from tiniscript.link.ports import Found, opened
 from tiniscript.link.sharing import registry
 
-needs_compiler = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
-
 
 def causes(done_out: str) -> list[str]:
     return [each["cause"] for each in json.loads(done_out)["findings"]]
@@ -36,7 +31,6 @@ def causes(done_out: str) -> list[str]:
 # -- the whole firmware -------------------------------------------------------------------------
 
 
-@needs_compiler
 def test_a_robot_that_is_fine(pty_robot: PtyRobot) -> None:
     before: list[bytes] = []
     pty_robot.until(lambda: pty_robot.robot_ms > 500, "a new robot has kept its id")
@@ -54,7 +48,6 @@ def test_a_robot_that_is_fine(pty_robot: PtyRobot) -> None:
     assert before[0] == before[1]
 
 
-@needs_compiler
 def test_a_run_goes_on(pty_robot: PtyRobot) -> None:
     assert on(pty_robot, "upload", "-e", FOREVER, "--detach", "--no-save").code == 0
     pty_robot.until(lambda: pty_robot.moves, "it drives")
@@ -64,7 +57,6 @@ def test_a_run_goes_on(pty_robot: PtyRobot) -> None:
     assert "FINISHED" not in pty_robot.did
 
 
-@needs_compiler
 def test_a_run_of_another_tsc_goes_on(pty_robot: PtyRobot) -> None:
     command = uploading(pty_robot)
     done = on(pty_robot, "doctor", "--json")
@@ -74,7 +66,6 @@ def test_a_run_of_another_tsc_goes_on(pty_robot: PtyRobot) -> None:
     command.process.communicate()
 
 
-@needs_compiler
 def test_through_the_command_that_has_the_port(link: Command, pty_robot: PtyRobot) -> None:
     done = on(pty_robot, "doctor", "--lang", "es")
     assert done.code == 0
@@ -82,7 +73,6 @@ def test_through_the_command_that_has_the_port(link: Command, pty_robot: PtyRobo
     assert on(pty_robot, "ping").code == 0
 
 
-@needs_compiler
 def test_batteries_that_are_too_weak(pty_robot: PtyRobot) -> None:
     pty_robot.ask(lambda robot: robot.supply(True))
     on(pty_robot, "upload", "-e", "SB|F(1, 50)")
@@ -90,7 +80,6 @@ def test_batteries_that_are_too_weak(pty_robot: PtyRobot) -> None:
     assert (done.code, causes(done.out)) == (3, ["low_supply"])
 
 
-@needs_compiler
 def test_a_bad_line(pty_robot: PtyRobot) -> None:
     pty_robot.damages = 97
     done = on(pty_robot, "doctor", "--json")
@@ -98,7 +87,6 @@ def test_a_bad_line(pty_robot: PtyRobot) -> None:
     assert "lossy" in causes(done.out)
 
 
-@needs_compiler
 def test_another_robot_than_the_one_that_was_named(pty_robot: PtyRobot) -> None:
     done = on(pty_robot, "doctor", "--robot", "liner")
     assert done.code == 3
@@ -106,7 +94,6 @@ def test_another_robot_than_the_one_that_was_named(pty_robot: PtyRobot) -> None:
     assert "--robot tinibot" in done.out
 
 
-@needs_compiler
 def test_a_robot_that_restarts_while_it_drives(pty_robot: PtyRobot) -> None:
     """Its power goes away when its motors are on; this chip says only that power came."""
     on(pty_robot, "upload", "-e", FOREVER, "--detach", "--no-save")
@@ -123,7 +110,6 @@ def test_a_robot_that_restarts_while_it_drives(pty_robot: PtyRobot) -> None:
     assert finding["values"]["reset"] == "POWER"
 
 
-@needs_compiler
 def test_a_stop_gets_through_while_a_robot_is_watched(pty_robot: PtyRobot) -> None:
     on(pty_robot, "upload", "-e", FOREVER, "--detach", "--no-save")
     command = Command("doctor", "--port", pty_robot.port, "--watch", "60")

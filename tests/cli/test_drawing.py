@@ -5,29 +5,26 @@
 
 from __future__ import annotations
 
+import fcntl
 import os
+import pty
 import signal
 import struct
 import subprocess
 import sys
+import termios
 from pathlib import Path
 from types import SimpleNamespace
 
+import pyte
 import pytest
 
-from tests.support.virtual_robot import missing
 from tiniscript import compile_text, robots
 from tiniscript.cli.terminal import FRAME_S, run_drawing, sketch, world_drawing
 from tiniscript.cli.terminal import screen as terminal_screen
 from tiniscript.virtual import worlds
 from tiniscript.virtual.robot import Settings, VirtualRobot
 from tiniscript.vm.trace import Ending, Event, Senses, run
-
-NO_PTY = "Windows has no pseudo-terminals of this kind"
-pty = pytest.importorskip("pty", reason=NO_PTY)
-fcntl = pytest.importorskip("fcntl", reason=NO_PTY)
-termios = pytest.importorskip("termios", reason=NO_PTY)
-pyte = pytest.importorskip("pyte", reason="pyte, a terminal for tests, is not installed")
 
 OBSTACLES = (
     "SI|START;LOOP(FOREVER);F(1, 80) UNTIL(DISTANCE < 10);IF(DISTANCE < 10);STOP;R(1, 60);"
@@ -272,7 +269,6 @@ def test_every_picture_fits_its_terminal(language: str) -> None:
                 assert all(line.cell_len <= width for line in lines)
 
 
-@pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")
 def test_values_stand_beside_the_floor_on_a_wide_terminal() -> None:
     """As far from it on 200 columns as on 100, and at one place while the robot drives."""
     robot = VirtualRobot(robots.load("tinibot"), worlds.load("obstacles"), Settings())

@@ -2,23 +2,17 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterator
 from signal import SIGINT
 
 import pytest
 
-from tests.machines.esp32 import Esp32Robot, missing
+from tests.machines.esp32 import Esp32Robot
 from tests.machines.host_firmware import HostFirmware
+from tests.support.esp32_pty_robot import Esp32PtyRobot
 from tests.support.pty_robot import on, uploading
 
-if sys.platform == "win32":
-    pytest.skip("there are no pseudo-terminals", allow_module_level=True)
-
-from tests.support.esp32_pty_robot import Esp32PtyRobot
-
 SAVED = "saved in slot"
-pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 
 
 @pytest.fixture(params=["tinibot32", "tinibotc3"])

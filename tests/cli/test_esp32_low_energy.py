@@ -2,27 +2,19 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterator
 from struct import pack
 
 import pytest
 
-from tests.machines.esp32 import Esp32Robot, missing
+from tests.machines.esp32 import Esp32Robot
 from tests.machines.host_firmware import HostFirmware
 from tests.support.ble_robot import NORDIC, PLACE, Peripheral
 from tests.support.command import FOREVER, LONG, Command, process
+from tests.support.esp32_pty_robot import Esp32PtyRobot
 from tests.support.fake_bluez import FakeBluez
-from tests.support.fake_bluez import missing as no_bus
 from tests.support.pty_robot import on
 
-if sys.platform == "win32":
-    pytest.skip("there are no pseudo-terminals", allow_module_level=True)
-
-from tests.support.esp32_pty_robot import Esp32PtyRobot
-
-WHY = missing() or no_bus()
-pytestmark = pytest.mark.skipif(bool(WHY), reason=WHY or "there is a bus")
 LOOK_S = 0.005
 DRIVES = "SI|F(0.2, 80)"
 

@@ -2,24 +2,12 @@
 
 from __future__ import annotations
 
-import sys
-from importlib.util import find_spec
-
-import pytest
-
-from tests.machines.esp32 import missing
-from tests.support.command import FOREVER, Command, process
-from tests.support.pty_robot import on
-
-if sys.platform == "win32":
-    pytest.skip("there are no pseudo-terminals", allow_module_level=True)
-
 from tests.cli.test_esp32_radio import asked, joined, robot
+from tests.support.command import FOREVER, Command, process
 from tests.support.esp32_announced import Announced
 from tests.support.esp32_pty_robot import Esp32PtyRobot
+from tests.support.pty_robot import on
 
-WHY = missing() or ("" if find_spec("zeroconf") else "no zeroconf: pip install zeroconf")
-pytestmark = pytest.mark.skipif(bool(WHY), reason=WHY or "there is zeroconf")
 PLACE = "tcp://tini-5678"
 
 __all__ = ("joined", "robot")

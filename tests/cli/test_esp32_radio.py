@@ -2,26 +2,20 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
-from tests.machines.esp32 import Esp32Robot, missing
+from tests.cli.test_owner_commands import as_another, claimed
+from tests.machines.esp32 import Esp32Robot
 from tests.machines.host_firmware import HostFirmware
 from tests.support.bad_network import BadNetwork
 from tests.support.command import FOREVER, LONG, Command, inside, process
-from tests.support.pty_robot import on
-
-if sys.platform == "win32":
-    pytest.skip("there are no pseudo-terminals", allow_module_level=True)
-
-from tests.cli.test_owner_commands import as_another, claimed
 from tests.support.esp32_pty_robot import Esp32PtyRobot
 from tests.support.esp32_radio import in_reach, port_of, radios
+from tests.support.pty_robot import on
 
-pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 NETWORK, PASSWORD = "Aula 3", b"a secret of the school"
 DRIVES = "SI|F(0.2, 80)"
 DROVE = ["MOTORS 80 80", "MOTORS 0 0"]

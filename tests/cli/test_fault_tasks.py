@@ -6,7 +6,6 @@ from pathlib import Path
 
 import pytest
 
-from tests.machines.wasm import missing
 from tests.support.command import inside
 
 DEF, WHEN, TASK = (
@@ -52,7 +51,6 @@ def test_a_program_without_tasks_has_none(path: Path) -> None:
     assert inside("run", path).err.endswith("line 2:  TASKS = 1 / N\n")
 
 
-@pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")
 @pytest.mark.parametrize("robot", ["grabber", "tinibot32"])
 def test_from_a_robot(robot: str, path: Path) -> None:
     path.write_text(program("WHEN"), encoding="utf-8")

@@ -18,15 +18,13 @@ import pytest
 from tests.flash.test_flash import copied
 from tests.support.casefile import ROOT
 from tests.support.command import TSC, Done, Tsc, rest_of
-from tests.support.platformio import need
+from tests.support.needs import need
 from tests.support.waiting import HANGS_S, until
 from tiniscript.cli import fetching
 from tiniscript.files import cache_folder
 from tiniscript.flash import children
 from tiniscript.library import install_advice
 from tiniscript.studio import building, serving
-
-pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
 
 # As the real one: of the clone's folder alone, with a node, and the page is there at once.
 PAGE = f"""

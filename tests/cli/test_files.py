@@ -24,7 +24,6 @@ from tiniscript.link.sharing import registry
 from tiniscript.link.sharing.registry import Registration
 
 HERE = Path(files.__file__).parent
-unix = pytest.mark.skipif(os.name == "nt", reason="permissions and links of Unix")
 
 
 @pytest.fixture(autouse=True)
@@ -67,7 +66,6 @@ def mode_of(path: Path) -> int:
     return stat.S_IMODE(path.stat().st_mode)
 
 
-@unix
 @pytest.mark.parametrize("umask", [0o022, 0o077, 0o002])
 def test_a_new_file_has_the_mode_of_the_umask(tmp_path: Path, umask: int) -> None:
     before = os.umask(umask)
@@ -78,7 +76,6 @@ def test_a_new_file_has_the_mode_of_the_umask(tmp_path: Path, umask: int) -> Non
     assert mode_of(tmp_path / "x") == 0o666 & ~umask
 
 
-@unix
 @pytest.mark.parametrize("mode", [0o600, 0o644, 0o755, 0o666])
 def test_a_file_that_is_replaced_keeps_its_mode(tmp_path: Path, mode: int) -> None:
     (tmp_path / "x").write_bytes(b"1")
@@ -87,7 +84,6 @@ def test_a_file_that_is_replaced_keeps_its_mode(tmp_path: Path, mode: int) -> No
     assert mode_of(tmp_path / "x") == mode and (tmp_path / "x").read_bytes() == b"2"
 
 
-@unix
 def test_another_hard_link_keeps_the_old_content_and_a_pipe_stays_one(tmp_path: Path) -> None:
     """A file is never written in its place; what has no old content is."""
     (tmp_path / "x").write_bytes(b"1")
@@ -104,7 +100,6 @@ def test_another_hard_link_keeps_the_old_content_and_a_pipe_stays_one(tmp_path: 
     assert stat.S_ISFIFO((tmp_path / "pipe").stat().st_mode)
 
 
-@unix
 def test_a_private_file_is_never_open_to_others(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -122,7 +117,6 @@ def test_a_private_file_is_never_open_to_others(
     assert seen == [0o600]
 
 
-@unix
 def test_a_link_that_was_laid_for_the_new_file_is_not_followed(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -154,7 +148,6 @@ def test_the_name_of_a_new_file_is_another_each_time(
     assert not any(str(os.getpid()) == part for name in names for part in name.split("."))
 
 
-@unix
 def test_a_link_stays_a_link(tmp_path: Path) -> None:
     (tmp_path / "folder").mkdir()
     target, link = tmp_path / "folder" / "x", tmp_path / "link"
@@ -200,7 +193,6 @@ def test_an_output_is_on_the_disk_before_it_replaces_the_old_one(
     assert old.read_bytes() == b"TS\2new"
 
 
-@unix
 def test_a_full_disk_leaves_nothing(tmp_path: Path) -> None:
     """A limit of the size of files is the disk that is full."""
     program = tmp_path / "a.ts"
@@ -331,7 +323,6 @@ def test_the_lock_of_a_killed_command_goes() -> None:
     assert names() == set()
 
 
-@unix
 def test_a_lock_that_was_removed_in_between_locks_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     """Whoever had it left between our opening and our locking its file; another one came."""
     first = registry.claimed("socket://x:1")
@@ -352,7 +343,6 @@ def test_a_lock_that_was_removed_in_between_locks_nothing(monkeypatch: pytest.Mo
     others[1].close()
 
 
-@unix
 def test_a_killed_link_leaves_nothing_for_long(cache: Path) -> None:
     """A command that was killed is forgotten by the next one that looks."""
     code = (
@@ -368,7 +358,6 @@ def test_a_killed_link_leaves_nothing_for_long(cache: Path) -> None:
     assert names() == set()
 
 
-@unix
 @pytest.mark.parametrize("is_of_folder", [False, True], ids=["the link itself", "of a folder"])
 def test_another_user_s_link_in_a_shared_folder_leads_nowhere(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, is_of_folder: bool
@@ -406,7 +395,6 @@ def test_another_user_s_link_in_a_shared_folder_leads_nowhere(
         link.unlink()
 
 
-@unix
 def test_links_that_lead_in_a_circle_end(tmp_path: Path) -> None:
     (tmp_path / "a").symlink_to("b")
     (tmp_path / "b").symlink_to("a")

@@ -18,7 +18,7 @@ from tests.cli.test_virtual_command import Robot, robot
 from tests.support.casefile import ROOT
 from tests.support.command import OBSTACLE, TSC, Tsc, inside
 from tests.support.link_events import event
-from tests.support.virtual_robot import Talk, missing, robot_in
+from tests.support.virtual_robot import Talk, robot_in
 from tests.support.waiting import HANGS_S
 from tiniscript import compile_text, robots
 from tiniscript.cli.commands.live import HELP_ME, LEAVE, Catch, Repl, wished
@@ -36,7 +36,6 @@ from tiniscript.virtual.directory import Running
 from tiniscript.virtual.simulator import Simulator
 from tiniscript.virtual.transports import Transports
 
-needs_robot = pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")
 FOREVER = "SI|LOOP(FOREVER);L(1, 30);END_LOOP"
 LINE = ROOT / "examples" / "line.ts"
 
@@ -44,7 +43,6 @@ LINE = ROOT / "examples" / "line.ts"
 # -- a program that a button starts ---------------------------------------------------------------
 
 
-@needs_robot
 def test_without_a_terminal_the_button_is_pushed_at_once(tmp_path: Path) -> None:
     picture = tmp_path / "way.png"
     done = inside("upload", "--virtual", "-e", "SB|F(1, 80);SHOW(1.5)", "--plot", picture)
@@ -60,7 +58,6 @@ def test_without_a_terminal_the_button_is_pushed_at_once(tmp_path: Path) -> None
     assert "DIVIDE_BY_ZERO" in done.err
 
 
-@needs_robot
 def test_a_program_with_a_button_ends_when_it_is_told() -> None:
     """By the time of `--for`, to the millisecond, and by Ctrl-C."""
     text = FOREVER.replace("SI", "SB")
@@ -80,7 +77,6 @@ def test_a_program_with_a_button_ends_when_it_is_told() -> None:
     assert up.returncode == 2
 
 
-@needs_robot
 def test_what_only_brings_a_program_pushes_no_button(tsc: Tsc) -> None:
     done = inside("upload", "--virtual", "--no-run", "-e", "SB|F(1, 80)")
     assert (done.code, done.err) == (0, "")
@@ -90,7 +86,6 @@ def test_what_only_brings_a_program_pushes_no_button(tsc: Tsc) -> None:
     assert "Leave --detach out" in done.err
 
 
-@needs_robot
 @pytest.mark.parametrize("hurry", ["1", "50", "max"])
 def test_the_time_of_for_is_that_of_the_program(hurry: str) -> None:
     done = inside("upload", "--virtual", "-e", OBSTACLE, "--for", "2.5", "--hurry", hurry)
@@ -102,7 +97,6 @@ def test_the_time_of_for_is_that_of_the_program(hurry: str) -> None:
     ]  # fmt: skip
 
 
-@needs_robot
 def test_a_live_session_ends_with_the_robots_time() -> None:
     lines = b"F(0.1, 50)\nSHOW(1)\nLOOP(FOREVER);F(1, 50);END_LOOP\nSHOW(2)\n"
     done = inside("live", "-", "--virtual", "--for", "5", "--hurry", "50", data=lines)
@@ -111,7 +105,6 @@ def test_a_live_session_ends_with_the_robots_time() -> None:
     assert "SHOW 2" not in done.out
 
 
-@needs_robot
 @pytest.mark.parametrize("hurry", [1.0, 20.0, 0.0])
 def test_time_ends_to_the_millisecond(hurry: float) -> None:
     """The robot stands then, whatever its firmware still does, and says nothing more."""
@@ -150,7 +143,6 @@ class Upload(Robot):
         self.port = re.search(r"\((socket://.*?)\)", receipt)[1]  # type: ignore[index]
 
 
-@needs_robot
 @pytest.mark.parametrize("options", [[], ["--virtual"]])
 def test_stop_finds_the_one_robot_that_is_in_use(options: list[str]) -> None:
     upload = Upload()
@@ -170,7 +162,6 @@ def test_stop_finds_the_one_robot_that_is_in_use(options: list[str]) -> None:
     assert directory.running() == []
 
 
-@needs_robot
 def test_stop_stops_all_that_are_in_use() -> None:
     """Rather one too many than one too few; the last used one, too, where it is there."""
     with robot() as found:
@@ -201,7 +192,6 @@ def test_the_last_used_port_is_stopped_with_those_that_are_in_use(
     assert in_reach.to_stop(is_virtual=True) == ["socket://127.0.0.1:5"]
 
 
-@needs_robot
 def test_a_virtual_robot_that_is_gone_is_no_port(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(ports, "listed", list)
     with robot("--name", "KAT") as found:
@@ -258,7 +248,6 @@ def test_up_to_three_robots_are_named() -> None:
     }  # fmt: skip
 
 
-@needs_robot
 def test_the_robot_that_answers_says_which_kit_it_has() -> None:
     with robot("--robot", "liner", "--world", "line") as found:
         here = "The robot here: liner. tsc compiles for it.\n"
@@ -282,7 +271,6 @@ def test_the_robot_that_answers_says_which_kit_it_has() -> None:
         assert "grabber has no LINE_L" in done.err
 
 
-@needs_robot
 def test_a_profile_that_was_given_before_is_known_again(tmp_path: Path) -> None:
     shipped = ROOT / "compiler" / "tiniscript" / "robots" / "tinibot.toml"
     profile = tmp_path / "own.toml"
@@ -365,7 +353,6 @@ def test_the_mark_of_live_reaches_nobody(capsys: pytest.CaptureFixture[str]) -> 
     assert hidden == [False, False, True, True, False, False, False, False]
 
 
-@needs_robot
 def test_a_virtual_robot_does_not_print_what_live_keeps() -> None:
     with robot() as found:
         done = inside("live", "-", "--port", found.port, data=b"X = 5;SHOW(X)\nS\n")

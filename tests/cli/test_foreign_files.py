@@ -7,7 +7,6 @@ from pathlib import Path
 
 import pytest
 
-from tests.machines.host_firmware import missing
 from tests.support.command import Tsc, process
 from tests.support.pty_robot import PtyRobot, on
 from tiniscript import robots
@@ -94,17 +93,13 @@ def test_a_link_leads_to_a_foreign_file_and_a_pipe_is_none(tsc: Tsc, tmp_path: P
 
 
 def test_a_picture_and_rows(tmp_path: Path) -> None:
-    pytest.importorskip("wasmtime")
-    pytest.importorskip("PIL")
     picture = tmp_path / "way.png"
     for _ in range(2):
         assert process("robot", "--for", "0.1", "--hurry", "max", "--plot", picture).code == 0
         assert not is_foreign(picture)
 
 
-@pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 def test_rows_of_a_monitor(tmp_path: Path) -> None:
-    pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
     rows, letter = tmp_path / "rows.csv", tmp_path / "letter.csv"
     letter.write_bytes(b"a;b\n1;2\n")
     with PtyRobot(robots.load("tinibot").kit) as found:

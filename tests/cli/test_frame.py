@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import random
 
+import pyte
 import pytest
 from rich.console import Console
 from rich.text import Text
@@ -13,8 +14,6 @@ from tiniscript.cli.terminal.fleet_table import FleetTable
 from tiniscript.cli.terminal.plot import ROWS, Plot, scale
 from tiniscript.cli.terminal.run_drawing import Picture
 from tiniscript.cli.terminal.screen import BEGIN, END, Frame
-
-pyte = pytest.importorskip("pyte")
 
 COLUMNS, LINES = 40, 12
 SIGNS = ["a", "b", "─", "⣿", " ", "ñ", "漢"]

@@ -227,8 +227,6 @@ def test_the_page_of_the_documents_says_all_of_it_too(verb: str, language: str) 
 
 # -- a page at a time -----------------------------------------------------------------------------
 
-PTY = pytest.mark.skipif(os.name == "nt", reason="Windows has no pseudo-terminals of this kind")
-
 
 def on_terminal(rows: int, words: str, **environ: str) -> Shell:
     from tests.support.shell import Shell
@@ -243,7 +241,6 @@ def printed(said: str) -> str:
     return said.replace("\r\n", "\n")
 
 
-@PTY
 @pytest.mark.skipif(not shutil.which("less"), reason="there is no less")
 @pytest.mark.parametrize(
     ("language", "keys"), [("en", "Space: more   q: end"), ("es", "Espacio: sigue   q: salir")]
@@ -259,7 +256,6 @@ def test_long_help_is_shown_a_page_at_a_time(language: str, keys: str) -> None:
     assert shell.end() == 0
 
 
-@PTY
 @pytest.mark.parametrize(
     ("rows", "environ"),
     [
@@ -300,7 +296,6 @@ time.sleep(1000)
 """
 
 
-@PTY
 @pytest.mark.parametrize(
     ("how", "said"), [("dies", ""), ("waits", "caught\nleft\n")], ids=["dies", "waits"]
 )
@@ -317,7 +312,6 @@ def test_ctrl_c_is_the_pager_s_and_tsc_waits_and_says_nothing(
     assert printed(shell.written).replace("^C", "") == said
 
 
-@PTY
 def test_help_is_narrow_on_a_narrow_terminal() -> None:
     from tests.support import shell as support
 

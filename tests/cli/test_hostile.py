@@ -142,7 +142,6 @@ def test_a_closed_pipe_ends_the_command_as_any_other() -> None:
     assert (running.returncode, said) == (CLOSED, "")
 
 
-@pytest.mark.skipif(os.name == "nt", reason="a shell of Unix closes streams")
 @pytest.mark.parametrize("closed", ["2>&-", "<&-", ">&-", ">/dev/full"])
 def test_closed_and_full_streams(closed: str) -> None:
     """With nowhere to write there is still an exit code, and the trace stays the trace."""
@@ -162,14 +161,12 @@ def test_closed_and_full_streams(closed: str) -> None:
             assert done.stdout == ("0 MOTORS 0 0\n" * 3 + "0 DONE\n" if code == 0 else "")
 
 
-@pytest.mark.skipif(os.name == "nt", reason="Windows has no such pipes")
 def test_an_image_goes_into_a_pipe(program: Path) -> None:
     command = f"{shlex.join(TSC)} compile {shlex.quote(str(program))} -o /dev/stdout | cat"
     done = subprocess.run(command, shell=True, capture_output=True)
     assert done.stdout.startswith(b"TS\x02")
 
 
-@pytest.mark.skipif(os.name == "nt", reason="Windows sends Ctrl-C to whole consoles")
 def test_ctrl_c_is_said() -> None:
     command = [*TSC, "run", "-e", "LOOP(FOREVER);SHOW(1);END_LOOP", "--max-steps", "1000000000"]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as running:

@@ -10,12 +10,8 @@ import signal
 
 import pytest
 
-from tests.machines.host_firmware import missing
 from tests.support.command import Command, Done
 from tests.support.pty_robot import PtyRobot, on, uploading
-
-pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
-pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 
 WAITS = "SI|LOOP(FOREVER);W(1);END_LOOP"
 

@@ -8,13 +8,9 @@ from pathlib import Path
 import pytest
 
 from tests.cli.test_owner_commands import claimed
-from tests.machines.host_firmware import missing
 from tests.support.command import Command, inside
 from tests.support.pty_robot import PtyRobot, on
 from tiniscript.link.keys import KeyFile
-
-pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
-pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 
 VERBS = (
     ("info",), ("info", "--json"), ("ping", "--count", "1", "--json"), ("ports", "--ask", "--json"),

@@ -42,7 +42,6 @@ def test_a_claim_that_the_robot_takes_replaces_the_key_before(own: KeyFile) -> N
     assert own.of_robot(2) == []
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="permissions there are those of the folder")
 def test_only_this_person_reads_the_file(own: KeyFile) -> None:
     own.made(1, KEY_OWNER, "A")
     assert stat.S_IMODE(own.path.stat().st_mode) == 0o600
@@ -135,7 +134,6 @@ def test_many_claims_at_once_lose_no_key(own: KeyFile) -> None:
     assert [key.is_stale for key in found] == [key.id % 5 == 0 for key in found]
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="a lock there belongs to the process")
 def test_a_command_that_stands_still_keeps_no_other_one_waiting_for_ever(
     own: KeyFile, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -189,8 +187,7 @@ def test_a_class_list_goes_out_and_in(
     listed = tmp_path / "class.json"
     said = tsc("keys", "--export", str(listed)).out
     assert "class.json: 1." in said and f"tsc keys --import {listed}" in said
-    if sys.platform != "win32":
-        assert stat.S_IMODE(listed.stat().st_mode) == 0o600
+    assert stat.S_IMODE(listed.stat().st_mode) == 0o600
     again = tsc("keys", "--export", str(listed))
     assert again.code == 2 and "is there already. Take another name" in again.err
     monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path / "two"))
@@ -228,7 +225,6 @@ def test_a_broken_file_is_told_and_kept(tsc: Tsc) -> None:
     assert path.read_text() == "broken"
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="permissions there are those of the folder")
 def test_a_file_that_others_may_read_is_told(tsc: Tsc) -> None:
     KeyFile().add([ONE])
     KeyFile().path.chmod(0o644)

@@ -13,13 +13,11 @@ from pathlib import Path
 
 import pytest
 
-from tests.machines.wasm import missing
 from tests.support.command import Tsc
 from tiniscript.cli import lesson_check
 from tiniscript.lessons import catalogue
 from tiniscript.robots.profile import LANGUAGES
 
-needs_wasm = pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")
 RIGHT, SHORT, WRONG = "SI|F(2.5, 80)", "SI|F(2, 80)", "SI|F(2 80)"
 
 
@@ -44,7 +42,6 @@ def test_the_lessons_are_listed(tsc: Tsc) -> None:
     assert rows[0] == " 1  La primera línea   (tinibot)"
 
 
-@needs_wasm
 def test_one_program(tsc: Tsc, folder: Path) -> None:
     done = tsc("lesson", "check", "1", folder / "ana.ts")
     assert done.code == 0
@@ -60,7 +57,6 @@ def test_one_program(tsc: Tsc, folder: Path) -> None:
     assert "repair the mistakes first" in done.out
 
 
-@needs_wasm
 def test_the_world_of_a_failure_can_be_repeated(tsc: Tsc, tmp_path: Path) -> None:
     path = tmp_path / "left.ts"
     path.write_text("SI|F(2.6, 60);L(0.39, 60);IF(TRUE);F(2.4, 60);ENDIF", encoding="utf-8")
@@ -75,7 +71,6 @@ def test_the_world_of_a_failure_can_be_repeated(tsc: Tsc, tmp_path: Path) -> Non
     assert tsc("lesson", "check", "8", path, "--seed", "1").code == 0
 
 
-@needs_wasm
 def test_a_folder_gets_a_table(tsc: Tsc, folder: Path, tmp_path: Path) -> None:
     rows = tmp_path / "marks.csv"
     done = tsc("lesson", "check", "1", folder, "--csv", rows)
@@ -95,7 +90,6 @@ def test_a_folder_gets_a_table(tsc: Tsc, folder: Path, tmp_path: Path) -> None:
     assert {row[1] for row in cells[1:]} == {"passed", "failed", "mistakes"}
 
 
-@needs_wasm
 def test_the_table_of_a_teacher_in_lima_is_spanish_and_may_be_written_again(
     tsc: Tsc, folder: Path, tmp_path: Path
 ) -> None:
@@ -114,7 +108,6 @@ def test_the_table_of_a_teacher_in_lima_is_spanish_and_may_be_written_again(
     assert rows.read_text("utf-8-sig").startswith("file,verdict,seed,sentence\n")
 
 
-@needs_wasm
 def test_json_is_a_list(tsc: Tsc, folder: Path) -> None:
     found = json.loads(tsc("lesson", "check", "1", folder, "--json").out)
     assert [each["verdict"] for each in found] == [
@@ -125,9 +118,7 @@ def test_json_is_a_list(tsc: Tsc, folder: Path) -> None:
     assert one == {"file": "-e", "verdict": "passed", "seed": None, "findings": []}
 
 
-@needs_wasm
 def test_a_picture_of_the_way(tsc: Tsc, tmp_path: Path) -> None:
-    pytest.importorskip("PIL")
     picture = tmp_path / "way.png"
     assert tsc("lesson", "check", "1", "-e", SHORT, "--plot", picture).code == 1
     assert picture.read_bytes().startswith(b"\x89PNG")
@@ -169,7 +160,6 @@ def test_wrong_use_says_the_next_step(
     assert tsc("lesson", *arguments, "--lang", "es").err != done.err
 
 
-@needs_wasm
 def test_images_and_odd_files_are_refused(tsc: Tsc, tmp_path: Path) -> None:
     (tmp_path / "a.bin").write_bytes(b"TS\x02")
     assert "its text" in tsc("lesson", "check", "1", tmp_path / "a.bin").err
@@ -179,7 +169,6 @@ def test_images_and_odd_files_are_refused(tsc: Tsc, tmp_path: Path) -> None:
     assert "image.ts  unreadable" in done.out
 
 
-@needs_wasm
 def test_a_lesson_of_ones_own(tsc: Tsc, tmp_path: Path) -> None:
     shipped = catalogue.folders()[0]
     for name in ("lesson.toml", "world.toml"):
@@ -252,7 +241,6 @@ def test_a_word_of_another_robot_gets_no_option_that_lesson_lacks(tsc: Tsc) -> N
     assert "--robot liner" in tsc("check", "-e", "SI|F(1,60) UNTIL(LINE_L)").err
 
 
-@needs_wasm
 def test_a_folder_of_thirty_has_anything_in_it(tsc: Tsc, tmp_path: Path) -> None:
     """Broken, empty, huge, binary and wrongly stored files have a row each, and no one is lost."""
     pupils = tmp_path / "class"
@@ -284,7 +272,6 @@ def test_a_folder_of_thirty_has_anything_in_it(tsc: Tsc, tmp_path: Path) -> None
         assert found[name.replace("\x1b", "?")] == verdicts[verdict], name
 
 
-@needs_wasm
 def test_notes_are_no_programs_and_folders_of_pupils_are(tsc: Tsc, tmp_path: Path) -> None:
     pupils = tmp_path / "año 3 ñandú"
     for name in ("Ana", "Beto", "x.ts"):
@@ -353,8 +340,6 @@ def test_a_note_of_empty_lines_is_looked_at_once(tsc: Tsc, tmp_path: Path) -> No
     assert "has no programs" in tsc("lesson", "check", "1", tmp_path).err
 
 
-@pytest.mark.skipif(os.name == "nt", reason="Windows has no pipes among its files")
-@needs_wasm
 def test_what_is_no_file_has_a_row(tsc: Tsc, folder: Path) -> None:
     """A link in a circle, a link to nothing and a pipe: nobody waits, and nobody is left out."""
     (folder / "circle.ts").symlink_to("circle.ts")

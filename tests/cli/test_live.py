@@ -3,26 +3,22 @@
 from __future__ import annotations
 
 import os
+import pty
 import subprocess
 import time
 
+import pyte
 import pytest
 
-from tests.machines.host_firmware import missing
 from tests.support.command import TSC, inside
 from tests.support.pty_robot import PtyRobot
 from tests.support.waiting import HANGS_S
 from tiniscript import robots
 from tiniscript.cli.robot.live_state import Known, Value, open_ends
 
-pty = pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
-pyte = pytest.importorskip("pyte", reason="pyte, a terminal for tests, is not installed")
-
 KIT = robots.load("tinibot").kit
-needs_robot = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 
 
-@needs_robot
 def test_a_line_is_done_at_once_and_the_program_stays(pty_robot: PtyRobot) -> None:
     assert inside("upload", "-e", "SB|W(1)", "--port", pty_robot.port).code == 0
     done = inside("live", "F(0.2, 80);SHOW(1.5)", "--port", pty_robot.port)
@@ -37,7 +33,6 @@ def test_a_line_is_done_at_once_and_the_program_stays(pty_robot: PtyRobot) -> No
     assert inside("live", "X = 0;SHOW(1 / X)").code == 1
 
 
-@needs_robot
 def test_variables_and_defs_live_on(pty_robot: PtyRobot) -> None:
     pty_robot.ask(lambda robot: robot.sense(0, 0, 30_000))
     lines = (
@@ -58,7 +53,6 @@ def test_variables_and_defs_live_on(pty_robot: PtyRobot) -> None:
     assert "DIVIDE_BY_ZERO" in done.err
 
 
-@needs_robot
 def test_a_person_at_the_prompt(pty_robot: PtyRobot) -> None:
     """Types lines, makes a mistake, presses Ctrl-C while it drives, and leaves with Ctrl-D."""
     ours, theirs = pty.openpty()
@@ -109,7 +103,6 @@ def test_a_person_at_the_prompt(pty_robot: PtyRobot) -> None:
     os.close(ours)
 
 
-@needs_robot
 def test_a_block_goes_on_over_lines(pty_robot: PtyRobot) -> None:
     """Up to its end, or to the first line with a mistake."""
     lines = "DEF TELL\n  SHOW(1)\nEND_DEF\nLOOP(2)\n\n  TELL // twice\nEND_LOOP\nSHOW(3)\n"

@@ -13,7 +13,6 @@ from contextlib import closing
 
 import pytest
 
-from tests.machines.host_firmware import missing
 from tests.support.command import FOREVER, TSC, Done, Tsc, ended, inside, process, rest_of, running
 from tests.support.robot_fleet import RobotFleet
 from tests.support.waiting import HANGS_S
@@ -23,9 +22,6 @@ from tiniscript.cli.robot.member import Member, Result, Target
 from tiniscript.cli.terminal.fleet_table import FleetTable
 from tiniscript.library import opening
 from tiniscript.link import known_ports, ports
-
-pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
-pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 
 TINIBOT, LINER = robots.load("tinibot").kit, robots.load("liner").kit
 SHORT = "SI|F(0.3, 80);SHOW(DISTANCE)"
@@ -200,7 +196,8 @@ def test_ports_that_are_named_must_have_robots(class_: RobotFleet) -> None:
 def test_a_port_that_never_had_a_robot_is_no_failure(
     tsc: Tsc, class_: RobotFleet, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    pty = pytest.importorskip("pty")
+    import pty
+
     ends = [end for _ in range(2) for end in pty.openpty()]
     port, known = os.ttyname(ends[1]), os.ttyname(ends[3])
     monkeypatch.setattr("tiniscript.link.ports.listed", lambda: [ports.Found(port, "")])
@@ -245,7 +242,10 @@ def test_nobody_and_wrong_use(tsc: Tsc, monkeypatch: pytest.MonkeyPatch) -> None
 
 
 def test_the_table_shows_every_robot_and_leaves_plain_rows(class_: RobotFleet) -> None:
-    pty, pyte = pytest.importorskip("pty"), pytest.importorskip("pyte")
+    import pty
+
+    import pyte
+
     ours, theirs = pty.openpty()
     environ = {**os.environ, "TERM": "xterm", "COLUMNS": "100", "LINES": "24"}
     command = subprocess.Popen(

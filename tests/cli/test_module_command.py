@@ -8,14 +8,11 @@ from collections.abc import Iterator
 
 import pytest
 
-from tests.support.waiting import until
-
-pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
-
 from tests.support.command import Command, Tsc
 from tests.support.pty_end import PtyEnd
 from tests.support.simulated_modules import Bt05, Hc05, Hc06, Hc06New, Hm10
 from tests.support.simulated_modules import SimulatedModule as Simulated
+from tests.support.waiting import until
 from tiniscript.link.modules import talk
 
 

@@ -10,13 +10,9 @@ from pathlib import Path
 
 import pytest
 
-from tests.machines.host_firmware import missing
 from tests.support.command import TSC, ended, process, rest_of, running
 from tests.support.pty_robot import PtyRobot, on
 from tests.support.waiting import HANGS_S
-
-pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
-pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 
 
 def test_monitor_writes_what_the_robot_shows(pty_robot: PtyRobot, tmp_path: Path) -> None:
@@ -51,7 +47,10 @@ def test_monitor_keeps_the_last_rows_where_no_robot_answers(tmp_path: Path) -> N
 
 def test_monitor_draws_a_curve(pty_robot: PtyRobot) -> None:
     """What is written is read as a terminal reads it: of the title only the value changes."""
-    pty, pyte = pytest.importorskip("pty"), pytest.importorskip("pyte")
+    import pty
+
+    import pyte
+
     screen = pyte.Screen(80, 24)
     stream = pyte.ByteStream(screen)
     assert on(pty_robot, "upload", "-e", "SB|SHOW(-2.5);W(0.3);SHOW(7);W(0.3);SHOW(TRUE)").code == 0

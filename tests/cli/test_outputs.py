@@ -33,7 +33,6 @@ PAIRS = [
 ]
 # What a verb is told to do, before its files.
 ACTIONS = {"lesson": ("check", "1"), "class": ("upload",)}
-needs_links = pytest.mark.skipif(os.name == "nt", reason="Windows wants a right for links")
 
 
 def arguments(verb: str, files: dict[str, Path]) -> list[str]:
@@ -107,8 +106,6 @@ def test_no_output_is_another_file_of_its_command(
     precious.write_text(text, encoding="utf-8")
     path = {"same": precious, "dot": Path("./precious.ts")}.get(how, tmp_path / "other name")
     if how == "link":
-        if os.name == "nt":
-            pytest.skip("Windows wants a right for links")
         path.symlink_to(precious)
     elif how == "hard":
         os.link(precious, path)
@@ -158,7 +155,6 @@ def test_two_outputs_that_are_not_there_yet_are_told_apart(
     assert tsc("compile", "-e", PROGRAM, "-o", "x", "--map", "y").code == 0  # there they are
 
 
-@needs_links
 def test_links_to_what_is_not_there_yet(
     tsc: Tsc, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -174,7 +170,6 @@ def run(command: str, folder: Path) -> Done:
     return Done(done.returncode, done.stdout.decode(errors="replace"), done.stderr.decode())
 
 
-@pytest.mark.skipif(os.name == "nt", reason="a shell of Unix")
 @pytest.mark.parametrize("words", [
     "compile - -o a.ts < a.ts", "compile /dev/stdin -o a.ts < a.ts",
     "compile a.ts -o /dev/stdout >> a.ts", "compile a.ts -o /dev/fd/3 3>> a.ts",
@@ -187,7 +182,6 @@ def test_a_file_behind_a_standard_stream_is_a_file(tmp_path: Path, words: str) -
     assert (tmp_path / "a.ts").read_text() == PROGRAM
 
 
-@pytest.mark.skipif(os.name == "nt", reason="devices of Unix")
 def test_devices_and_pipes_may_be_written(tmp_path: Path) -> None:
     (tmp_path / "a.ts").write_text(PROGRAM)
     tsc = " ".join(TSC)

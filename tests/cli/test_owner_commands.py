@@ -13,7 +13,6 @@ from unittest import mock
 
 import pytest
 
-from tests.machines.host_firmware import missing
 from tests.support.command import FOREVER, Command, Done
 from tests.support.pty_robot import PtyRobot, on
 from tiniscript.cli import main
@@ -21,9 +20,6 @@ from tiniscript.cli.commands import claim
 from tiniscript.link.keys import KeyFile
 from tiniscript.link.messages import KEY_OWNER, KEY_TEACHER
 from tiniscript.link.sharing.requests import ClientRequests
-
-pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
-pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 
 DRIVES = "SI|F(0.2, 80)"
 

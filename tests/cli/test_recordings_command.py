@@ -10,7 +10,6 @@ import pytest
 
 from tests.support.casefile import ROOT
 from tests.support.command import Done, Tsc, process
-from tests.support.virtual_robot import missing
 from tiniscript import compile
 from tiniscript.cli.commands import upload
 from tiniscript.cli.errors import CommandError
@@ -26,7 +25,6 @@ from tiniscript.studio import recordings
 from tiniscript.studio.recordings import Recorded, read, replay
 from tiniscript.virtual import worlds
 
-pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")
 TEXT = "SI|W(0.2); SHOW(5);\nX = 0; W(0.2);\nSHOW(1 / X)"
 PAGE_TEXTS = ROOT / "tools/studio/src/robot/robot_texts.js"
 CHECKSUM = compile(TEXT).checksum

@@ -13,7 +13,6 @@ from pathlib import Path
 
 import pytest
 
-from tests.machines.host_firmware import missing
 from tests.support.command import FOREVER, LONG, Tsc, ended, process, running
 from tests.support.pty_robot import PtyRobot, on
 from tiniscript import robots
@@ -21,9 +20,6 @@ from tiniscript.library import opening
 from tiniscript.link import errors, known_ports, ports, requests
 from tiniscript.link.payloads import HelloReply
 from tiniscript.link.requests import DeviceInfo
-
-pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
-pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 
 KIT = robots.load("tinibot").kit
 

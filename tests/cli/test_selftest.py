@@ -13,7 +13,7 @@ from unittest import mock
 
 import pytest
 
-from tests.machines.host_firmware import EMPTY, HostFirmware, missing
+from tests.machines.host_firmware import EMPTY, HostFirmware
 from tests.support.command import Tsc
 from tests.support.pty_robot import PtyRobot, on
 from tests.support.simulated_port import simulated
@@ -21,9 +21,6 @@ from tiniscript import robots
 from tiniscript.cli import main
 from tiniscript.doctor import report
 from tiniscript.link.messages import RESETS
-
-pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
-pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 
 LIGHT, DISTANCE = 500_000, 42_000  # thousandths
 GOOD = (LIGHT, LIGHT, DISTANCE)

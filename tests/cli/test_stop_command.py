@@ -8,7 +8,6 @@ from typing import cast
 
 import pytest
 
-from tests.machines.host_firmware import missing
 from tests.support.command import Command
 from tests.support.pty_robot import PtyRobot, on, uploading
 from tiniscript.cli.texts.common import text
@@ -16,9 +15,6 @@ from tiniscript.library import opening
 from tiniscript.library.errors import RobotError
 from tiniscript.link.line import Line
 from tiniscript.link.transmission import CONFIRM_MS
-
-pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
-pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 
 
 def passed_ms(pty_robot: PtyRobot, *arguments: str) -> tuple[int, int]:

@@ -10,7 +10,7 @@ from typing import cast
 
 import pytest
 
-from tests.machines.host_firmware import EMPTY, HostFirmware, missing
+from tests.machines.host_firmware import EMPTY, HostFirmware
 from tests.support import pty_robot as pty_robots
 from tests.support.command import TSC, Done, Tsc
 from tests.support.pty_robot import PtyRobot
@@ -23,9 +23,6 @@ from tiniscript.link.messages import STATUSES
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
 from tiniscript.link.trim import Trim, told
-
-pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
-pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 
 KIT = robots.load("tinibot").kit
 

@@ -9,12 +9,8 @@ import json
 
 import pytest
 
-from tests.machines.host_firmware import missing
 from tests.support.command import process
 from tests.support.pty_robot import PtyRobot, on, uploading
-
-pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
-pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 
 FIRST, SECOND = "SB|F(0.1, 50)", "SB|F(0.1, 60)"
 

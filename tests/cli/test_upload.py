@@ -9,14 +9,10 @@ from pathlib import Path
 
 import pytest
 
-from tests.machines.host_firmware import missing
 from tests.support.command import LONG, OBSTACLE, TSC, Command, process, rest_of
 from tests.support.pty_robot import PtyRobot, on
 from tests.support.waiting import HANGS_S
 from tiniscript import compile_text, robots
-
-pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
-pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 
 KIT = robots.load("tinibot").kit
 
@@ -151,7 +147,10 @@ def test_what_does_not_fit_is_said_with_numbers(pty_robot: PtyRobot, tmp_path: P
 
 
 def test_a_long_way_has_a_bar_that_is_gone_at_the_end() -> None:
-    pty, pyte = pytest.importorskip("pty"), pytest.importorskip("pyte")
+    import pty
+
+    import pyte
+
     with PtyRobot(KIT, bytes_per_ms=1) as pty_robot:
         ours, theirs = pty.openpty()
         command = subprocess.Popen(

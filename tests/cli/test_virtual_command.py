@@ -18,17 +18,13 @@ from pathlib import Path
 import pytest
 
 from tests.support.command import OBSTACLE, TSC, Command, Done, Tsc, inside
-from tests.support.virtual_robot import missing
 from tests.support.waiting import HANGS_S
 from tiniscript.cli.commands.robot import ended_by_signal
 from tiniscript.library import install_advice
 from tiniscript.link import ports
 from tiniscript.virtual import directory
 
-pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")
-
 FOREVER = "SI|LOOP(FOREVER);L(1, 30);END_LOOP"
-NO_PTY = "Windows has no pseudo-terminals of this kind"
 
 
 class Robot:
@@ -214,7 +210,6 @@ def test_it_ends_by_itself_and_chance_begins_with_its_seed(tmp_path: Path) -> No
 
 
 def test_a_pseudo_terminal_is_a_port_too() -> None:
-    pytest.importorskip("pty", reason=NO_PTY)
     with robot("--pty") as found:
         port = found.line()
         assert port.startswith("/dev/")
@@ -319,7 +314,6 @@ def test_upload_and_live_say_what_they_say_of_any_robot() -> None:
     assert done.out.startswith("SHOW 7.4\nDone.\nThe virtual robot drove 5 cm")
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="Windows sends no Ctrl-C to one process")
 def test_ctrl_c_stops_the_virtual_robot_and_draws_what_there_was(tmp_path: Path) -> None:
     picture = tmp_path / "way.png"
     command = [*TSC, "upload", "--virtual", "-e", "SI|LOOP(FOREVER);F(0.1, 30);SHOW(1);END_LOOP",

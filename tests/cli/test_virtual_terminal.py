@@ -5,26 +5,21 @@
 
 from __future__ import annotations
 
+import fcntl
 import os
+import pty
 import re
 import signal
 import struct
 import subprocess
 import sys
+import termios
 from pathlib import Path
 from queue import Queue
 from threading import Thread
 
+import pyte
 import pytest
-
-from tests.support.virtual_robot import missing
-
-NO_PTY = "Windows has no pseudo-terminals of this kind"
-pty = pytest.importorskip("pty", reason=NO_PTY)
-fcntl = pytest.importorskip("fcntl", reason=NO_PTY)
-termios = pytest.importorskip("termios", reason=NO_PTY)
-pyte = pytest.importorskip("pyte", reason="pyte, a terminal for tests, is not installed")
-pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")
 
 COLUMNS, ROWS = 90, 30
 GLANCE = 1000  # bytes

@@ -6,7 +6,6 @@ Those of macOS and Windows were written after their papers, not recorded on such
 from __future__ import annotations
 
 import json
-import os
 from pathlib import Path
 
 import pytest
@@ -15,8 +14,6 @@ from tests.support.fake_computer import FakeComputer
 from tiniscript.doctor import computer, diagnosis
 from tiniscript.doctor.computer import NONE, OFF, ON, UNKNOWN, Adapter, is_module, looks_wireless
 from tiniscript.doctor.system import ThisComputer
-
-pytestmark = pytest.mark.skipif(os.name == "nt", reason="the trees have symbolic links")
 
 
 @pytest.fixture

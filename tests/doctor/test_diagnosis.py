@@ -29,8 +29,6 @@ from tiniscript.link.sharing.registry import Registration
 from tiniscript.link.sharing.shared_line import OtherVersion
 from tiniscript.link.wire import Wire
 
-pytestmark = pytest.mark.skipif(os.name == "nt", reason="the trees have symbolic links")
-
 CABLE, RADIO = "/dev/ttyUSB0", "/dev/rfcomm0"
 
 

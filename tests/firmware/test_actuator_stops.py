@@ -7,9 +7,8 @@ from collections.abc import Callable
 import pytest
 
 from tests.machines.host_firmware import HostFirmware
-from tests.machines.host_firmware import missing as no_compiler
 from tests.robots.test_robots import TEXTS
-from tests.support.virtual_robot import Talk, missing
+from tests.support.virtual_robot import Talk
 from tiniscript import compile_text, robots
 from tiniscript.bytecode.image import Image, unpack
 from tiniscript.cli.terminal.run_drawing import Picture
@@ -63,7 +62,6 @@ ENDS: dict[str, Callable[[HostFirmware, Session], object]] = {
 }
 
 
-@pytest.mark.skipif(bool(no_compiler()), reason=no_compiler() or "there is a compiler")
 @pytest.mark.parametrize("end", ENDS)
 def test_what_does_not_come_to_its_own_end_lets_go(end: str) -> None:
     robot, session = started(WAITS)
@@ -73,7 +71,6 @@ def test_what_does_not_come_to_its_own_end_lets_go(end: str) -> None:
     assert [line for line in did if "SET" in line or "ACT" in line] == [*SET, "ACTUATORS OFF"]
 
 
-@pytest.mark.skipif(bool(no_compiler()), reason=no_compiler() or "there is a compiler")
 @pytest.mark.parametrize(("text", "lets_go"), [
     ("SI|LED(TRUE);GRIPPER(90);W(0.1)", False),
     ("SI|LED(TRUE);GRIPPER(90);X = 0;SHOW(1 / X)", True),
@@ -92,7 +89,6 @@ def test_its_own_end_leaves_them_and_a_fault_does_not(text: str, lets_go: bool) 
 HOLDS = read(TEXTS["grabber"].replace('at_stop = "release"', 'at_stop = "hold"'), "holds")
 
 
-@pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")
 @pytest.mark.parametrize(("robot_name", "said", "drawn"), [
     ("grabber", ["RELEASE GRIPPER", "SET LED FALSE"], {1: 0}),
     ("holds", ["SET LED FALSE"], {0: 90000, 1: 0}),

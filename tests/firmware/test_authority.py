@@ -8,7 +8,6 @@ from typing import Any
 
 import pytest
 
-from tests.machines.host_firmware import missing
 from tests.support.owners import (
     FOREVER,
     WITHOUT_SEALS,
@@ -35,7 +34,6 @@ from tiniscript.link.seal import siphash
 from tiniscript.link.session import Session
 
 __all__ = ("robots_of_both_kinds",)  # a fixture
-pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 
 DISCONNECTED = 8  # the STATE pin of a module
 OPEN_TO_ALL = {"HELLO", "PING", "STATUS", "STOP", "IDENTIFY"}

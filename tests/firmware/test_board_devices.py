@@ -7,11 +7,8 @@ from itertools import pairwise
 import pytest
 
 from tests.firmware.test_boards import LAMP, START, on_board, pulses, started
-from tests.machines import board as boards
 from tests.machines.board import HERTZ, MS
 from tiniscript import robots
-
-pytestmark = pytest.mark.skipif(bool(boards.missing()), reason=boards.missing() or "there is one")
 
 # -- sensors
 

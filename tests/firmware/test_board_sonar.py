@@ -7,12 +7,9 @@ from itertools import pairwise
 import pytest
 
 from tests.firmware.test_boards import START, on_board, started
-from tests.machines import board as boards
 from tests.machines.board import MS, Board
 from tiniscript import robots
 from tiniscript.robots.profile import Robot
-
-pytestmark = pytest.mark.skipif(bool(boards.missing()), reason=boards.missing() or "there is one")
 
 SPACING_MS, FRESH_MS = 30.0, 60.0
 DELAY_US = 460  # from the trigger to the echo

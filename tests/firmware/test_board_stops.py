@@ -6,12 +6,9 @@ import pytest
 
 from tests.firmware.test_board_devices import WORKSHOP
 from tests.firmware.test_boards import START, STEADY, STOPS, on_board, pulses, started
-from tests.machines import board as boards
 from tests.machines.board import MS, Board
 from tiniscript.robots.ports import AVRS
 from tiniscript.robots.profile import Robot
-
-pytestmark = pytest.mark.skipif(bool(boards.missing()), reason=boards.missing() or "there is one")
 
 GRIPPER, LED = 11, 30  # pins of grabber
 HOLD = ('at_stop = "release"', 'at_stop = "hold"')

@@ -7,15 +7,12 @@ from itertools import pairwise
 
 import pytest
 
-from tests.machines import board as boards
 from tests.machines.board import HERTZ, MS, Board
 from tests.robots.test_robots import TEXTS
 from tiniscript import robots
 from tiniscript.robots.ports import AVRS
 from tiniscript.robots.profile import Robot
 from tiniscript.robots.reader import read
-
-pytestmark = pytest.mark.skipif(bool(boards.missing()), reason=boards.missing() or "there is one")
 
 STEADY = 29.8  # ms after its release a button is surely up
 PRESS, START = 100.0, 200.0  # ms: when the button goes down, and when it is surely up again

@@ -9,13 +9,12 @@ from collections.abc import Iterable, Sequence
 import pytest
 
 from tests.firmware.test_uno_robot import AWAY, OFF, computer, memory, send, sketch, states, uno
-from tests.machines.host import FLAGS, SOURCES, compiled, missing
+from tests.machines.host import FLAGS, SOURCES, compiled
 from tests.machines.uno import needed
 from tests.support.casefile import ROOT
 from tools.uno import CYCLES_PER_MS, Uno
 
 __all__ = ("memory", "sketch", "uno")  # fixtures
-pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 
 Told = list[tuple[int, str]]  # when in us, and P, H or R
 SPIKE_US = 150

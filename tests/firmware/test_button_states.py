@@ -13,14 +13,12 @@ import pytest
 from tests.firmware.test_button import told
 from tests.firmware.test_host_firmware import computer, image_of, send, stored, switched_on
 from tests.firmware.test_text import typed
-from tests.machines.host_firmware import HostFirmware, missing
+from tests.machines.host_firmware import HostFirmware
 from tests.support.casefile import ROOT
 from tests.support.owners import HELD, KIT, PRESSED, RELEASED, Keys
 from tiniscript.link.messages import KEY_OWNER, OWNED, TEXT_ALLOWED
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
-
-pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 
 SAVED, OTHER, MEMORY, TYPED, LINE = 80, 70, 60, 40, 30  # powers: which program it is that drives
 FLAGS = {"P": PRESSED, "H": HELD, "R": RELEASED}

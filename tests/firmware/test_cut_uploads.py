@@ -11,12 +11,10 @@ import argparse
 import pytest
 
 from tests.firmware.test_host_firmware import KIT, computer, happened, held, image_of, send, stored
-from tests.machines.host_firmware import HostFirmware, missing
+from tests.machines.host_firmware import HostFirmware
 from tiniscript.bytecode.image import Image, pack, unpack
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
-
-pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 
 OLD = "SB|F(0.1, 50)"
 ROOM = 389

@@ -16,8 +16,6 @@ from typing import Any, Protocol
 
 import pytest
 
-from tests.machines.host_firmware import missing
-from tests.machines.wasm import missing as missing_wasm
 from tests.support.owners import FOREVER, KIT, Keys, Owned, image_of
 from tests.support.virtual_robot import Talk, robot_in
 from tiniscript.link.connection import PendingRequest
@@ -244,12 +242,7 @@ def trials(end: End, seed: int, count: int) -> Counter[str]:
     return Counter(one_trial(end, each) for each in range(seed, seed + count))
 
 
-ENDS = [
-    pytest.param(HostEnd, marks=pytest.mark.skipif(bool(missing()), reason=missing() or "host")),
-    pytest.param(
-        VirtualEnd, marks=pytest.mark.skipif(bool(missing_wasm()), reason=missing_wasm() or "wasm")
-    ),
-]
+ENDS = [HostEnd, VirtualEnd]
 
 
 @pytest.mark.parametrize("end_of", ENDS)

@@ -13,9 +13,8 @@ from tests.firmware.test_esp32_transports import AWAY, Ends, ended, uploaded
 from tests.firmware.test_esp32_wifi import joined, remote
 from tests.firmware.test_host_firmware import happened, image_of
 from tests.machines.esp32 import Esp32Robot
-from tests.machines.esp32 import missing as no_compiler
 from tests.support.esp32_radio import in_reach, talk
-from tests.support.mosquitto import AtBroker, Mosquitto, missing
+from tests.support.mosquitto import AtBroker, Mosquitto
 from tests.support.owners import Keys
 from tests.support.waiting import HANGS_S
 from tests.support.waiting import until as in_time
@@ -25,11 +24,6 @@ from tiniscript.link.frames import Frame, encoded
 from tiniscript.link.messages import AUTHORITY_MS, BY_NAME, STOP_BYTES
 from tiniscript.link.session import Session
 from tiniscript.link.transports.broker import ROOT, Access, Broker, Present
-
-pytestmark = [
-    pytest.mark.skipif(bool(no_compiler()), reason=no_compiler() or "there is a compiler"),
-    pytest.mark.skipif(bool(missing()), reason=missing() or "there is a broker"),
-]
 
 ID = "12345678"
 TETHER_MS = 1050

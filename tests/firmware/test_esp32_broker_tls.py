@@ -18,20 +18,16 @@ from tests.firmware.test_esp32_broker import ID, TETHER_MS, at, motors, present,
 from tests.firmware.test_esp32_transports import Ends, ended, uploaded
 from tests.firmware.test_esp32_wifi import joined, remote
 from tests.machines.esp32 import HAS_TLS, Esp32Robot
-from tests.machines.esp32 import missing as no_compiler
-from tests.support import certificates
 from tests.support.certificates import Authority, der
 from tests.support.cutting_network import CuttingNetwork
 from tests.support.esp32_radio import in_reach, known, talk
-from tests.support.mosquitto import LOCAL, AtBroker, Mosquitto, missing
+from tests.support.mosquitto import LOCAL, AtBroker, Mosquitto
 from tests.support.owners import Keys
 from tiniscript.link import wifi
 from tiniscript.link.messages import BROKER_NAME_BYTES, TRUST_BYTES
 from tiniscript.link.transports.broker import Access, Broker, Present
 
-NEEDS = no_compiler() or missing() or certificates.missing()
-NEEDS = NEEDS or ("" if HAS_TLS else "needs libmbedtls-dev")
-pytestmark = pytest.mark.skipif(bool(NEEDS), reason=NEEDS or "there is mbedTLS")
+pytestmark = pytest.mark.skipif(not HAS_TLS, reason="needs libmbedtls-dev")
 
 NAME = "broker.aula"
 NOBODY = bytes((127, 0, 0, 9))

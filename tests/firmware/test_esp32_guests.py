@@ -7,14 +7,12 @@ from random import Random
 import pytest
 
 from tests.firmware.test_esp32_wifi import joined
-from tests.machines.esp32 import Esp32Robot, missing
+from tests.machines.esp32 import Esp32Robot
 from tests.support.esp32_radio import Network
 from tests.support.owners import Keys
 from tests.virtual.test_first_bytes import NOT_FOR_ROBOTS
 from tiniscript.link.messages import STOP_BYTES
 from tiniscript.virtual.first_bytes import is_for_robot
-
-pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 
 
 @pytest.fixture(scope="module")

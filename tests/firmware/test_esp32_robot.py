@@ -15,7 +15,6 @@ from tests.machines.esp32 import (
     TASK_WATCHDOG,
     Esp32Robot,
     Kept,
-    missing,
 )
 from tests.robots.test_robots import TEXTS
 from tiniscript import compile_text, robots
@@ -24,8 +23,6 @@ from tiniscript.link.frames import Frame, encoded
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
 from tiniscript.robots.reader import read
-
-pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 
 STALL = 66  # the fault
 AWAY = "SI|F(60, 80)"

@@ -15,9 +15,7 @@ import pytest
 
 from tests.firmware.test_store import STORE, break_of
 from tests.machines.esp32 import STAND_INS, flags_of
-from tests.machines.host import BUILDS, FLAGS, SOURCES, WARNINGS, made, missing
-
-pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
+from tests.machines.host import BUILDS, FLAGS, SOURCES, WARNINGS, made
 
 NVS = SOURCES / "src" / "boards" / "esp32" / "nvs.cpp"
 OTHERS = [

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from tests.firmware.test_host_firmware import happened, image_of
-from tests.machines.esp32 import Esp32Robot, missing
+from tests.machines.esp32 import Esp32Robot
 from tests.support.esp32_radio import (
     LEAST_MTU,
     Bytes,
@@ -26,8 +26,6 @@ from tiniscript.link.connection import PendingRequest
 from tiniscript.link.frames import Frame, decoded, encoded
 from tiniscript.link.messages import AUTHORITY_MS, BY_NAME, STATUS_NAMES, STOP_BYTES
 from tiniscript.link.session import Session
-
-pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 
 AWAY = "SI|F(60, 80)"
 Make = Callable[[Esp32Robot], End]

@@ -12,15 +12,13 @@ from tests.firmware.test_esp32_transports import RADIOS, Ends, Make, booted, end
 from tests.firmware.test_esp32_wifi import joined
 from tests.firmware.test_host_firmware import happened
 from tests.firmware.test_typed_stops import HELD_MS, PREFIXES, SILENCE_MS, SPELLINGS
-from tests.machines.esp32 import Esp32Robot, missing
+from tests.machines.esp32 import Esp32Robot
 from tests.support.esp32_radio import Bytes, End, Network, session, talk
 from tests.support.owners import Keys
 from tiniscript.link.frames import Frame, encoded
 from tiniscript.link.messages import BY_NAME
 from tiniscript.link.session import Session
 from tiniscript.virtual.first_bytes import is_for_robot
-
-pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 
 ROOM = 1022  # bytes; one place is for who leaves
 LATE_MS = 3  # a turn of the radio's task, and what a network of this computer takes

@@ -15,7 +15,6 @@ from tests.machines.esp32 import (
     TASK_WATCHDOG,
     Esp32Robot,
     Kept,
-    missing,
 )
 from tests.support.esp32_radio import (
     Bytes,
@@ -34,8 +33,6 @@ from tiniscript.link.frames import Frame, decoded, encoded
 from tiniscript.link.messages import AUTHORITY_MS, BY_NAME, WIFI_RESTS, written
 from tiniscript.link.payloads import WifiReply
 from tiniscript.link.session import Session
-
-pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 
 SCHOOL = wifi.Network("Aula 3 ñ".encode(), b"correct horse battery staple, and forty more")
 HOTSPOT = wifi.Network(b"Tini", b"12345678", True)

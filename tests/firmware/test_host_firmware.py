@@ -7,15 +7,13 @@ from typing import TypeVar
 
 import pytest
 
-from tests.machines.host_firmware import EMPTY, HostFirmware, missing
+from tests.machines.host_firmware import EMPTY, HostFirmware
 from tiniscript import compile_text, robots
 from tiniscript.bytecode.image import Image, unpack
 from tiniscript.link.connection import PendingRequest
 from tiniscript.link.messages import SAVED_SAVING, SAVED_STORED, STATUSES
 from tiniscript.link.requests import OK, Reply
 from tiniscript.link.session import Session
-
-pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 
 KIT = robots.load("tinibot").kit
 LONG = "SI|" + "F(0.1, 80); B(0.1, 60); SHOW(1); " * 20

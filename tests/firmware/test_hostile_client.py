@@ -13,7 +13,6 @@ import random
 import pytest
 
 from tests.firmware.test_host_firmware import KIT, switched_on
-from tests.machines.host_firmware import missing
 from tiniscript.bytecode.image import HEADER_BYTES, pack
 from tiniscript.link.frames import Frame, begins_text, decoded, encoded
 from tiniscript.link.messages import (
@@ -24,8 +23,6 @@ from tiniscript.link.messages import (
     payload_bytes,
     sizes,
 )
-
-pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 
 SEEDS = 12  # in the tests; a campaign runs more
 TURNS = 120

@@ -15,14 +15,12 @@ from tests.firmware.test_host_firmware import (
     stored,
     switched_on,
 )
-from tests.machines.host_firmware import EMPTY, HostFirmware, missing
+from tests.machines.host_firmware import EMPTY, HostFirmware
 from tiniscript.bytecode.image import pack
 from tiniscript.link.messages import SAVED, STATUSES
 from tiniscript.link.payloads import EmptyReply, FetchReply
 from tiniscript.link.requests import OK, Request, single
 from tiniscript.link.session import Session
-
-pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 
 WAITS = "SI|LOOP(FOREVER);W(1);END_LOOP"
 DRIVES = "SI|LOOP(FOREVER);F(1, 80);END_LOOP"

@@ -10,15 +10,13 @@ import pytest
 
 from tests.firmware.test_host_firmware import KIT, computer, image_of, outcome, switched_on
 from tests.firmware.test_keeping import EACH, FIRST, SECOND, saved
-from tests.machines.host_firmware import EMPTY, HostFirmware, missing
+from tests.machines.host_firmware import EMPTY, HostFirmware
 from tests.support.owners import Keys
 from tiniscript.bytecode.image import REFUSALS, sealed
 from tiniscript.link.authority import FREE, OF_ANOTHER, RobotKey, whose
 from tiniscript.link.messages import KEY_OWNER
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
-
-pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 
 OTHER_VERSION = REFUSALS["OTHER_VERSION"][0]
 # `F(5, 80)`, as version 0.1.0 has compiled it.

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import pytest
 
-from tests.machines.host_firmware import missing
 from tests.support.owners import (
     FOREVER,
     HELD,
@@ -31,7 +30,6 @@ from tiniscript.link.messages import (
 from tiniscript.link.outcomes import UNKEPT, UNPROVEN
 
 __all__ = ("robots_of_both_kinds",)  # a fixture
-pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 
 
 # -- claiming -------------------------------------------------------------------------------------

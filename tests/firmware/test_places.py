@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import pytest
 
 from tests.firmware.test_host_firmware import KIT, computer, image_of, switched_on
-from tests.machines.host_firmware import HostFirmware, missing
+from tests.machines.host_firmware import HostFirmware
 from tests.support.owners import Keys, Owned, owner_of
 from tiniscript.bytecode.image import Image
 from tiniscript.link.authority import YOUR_OWN
@@ -18,8 +18,6 @@ from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
 from tiniscript.vm.machine import Machine
 from tiniscript.vm.trace import TracedRobot
-
-pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 
 PROGRAMS = [
     "SI|F(1, 80);R(0.6, 60);F(1, 80)",

@@ -5,10 +5,8 @@ from __future__ import annotations
 import pytest
 
 from tests.firmware.test_host_firmware import KIT, computer, image_of
-from tests.machines.host_firmware import HostFirmware, missing
+from tests.machines.host_firmware import HostFirmware
 from tiniscript.link.payloads import ShowEvent
-
-pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 
 
 @pytest.mark.parametrize("noise", [0, 0xFFFF0000, 0x12345678])

@@ -5,13 +5,11 @@ from __future__ import annotations
 import pytest
 
 from tests.firmware.test_host_firmware import computer, happened, image_of, send, switched_on
-from tests.machines.host_firmware import HostFirmware, missing
+from tests.machines.host_firmware import HostFirmware
 from tiniscript.link.frames import Frame, encoded
 from tiniscript.link.messages import BY_NAME, RUN
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
-
-pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 
 RUNS = "SI|X = 3; W(0.02); X = 4; LOOP(FOREVER); F(0.2, 40); SHOW(X); END_LOOP"
 

@@ -13,7 +13,6 @@ from collections import Counter
 import pytest
 
 from tests.firmware.test_authority import is_accepted
-from tests.machines.host_firmware import missing
 from tests.support.owners import FOREVER, PRESSED, Keys, Owned, image_of, owner_of, state_of
 from tests.support.thief import Thief, wire_of
 from tiniscript.link.authority import OF_ANOTHER, YOUR_OWN, whose
@@ -35,8 +34,6 @@ from tiniscript.link.payloads import HelloReply
 from tiniscript.link.requests import Reply
 from tiniscript.link.seal import LAST, Seal
 from tiniscript.link.session import Session
-
-pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 
 SHORT = "SI|F(0.1, 80)"
 

@@ -11,12 +11,10 @@ import pytest
 
 from tests.firmware.test_button_states import STATES, Table, keeps_trim, saves
 from tests.firmware.test_host_firmware import KIT, computer, happened
-from tests.machines.host_firmware import HostFirmware, missing
+from tests.machines.host_firmware import HostFirmware
 from tiniscript.link.frames import Frame, encoded
 from tiniscript.link.messages import BY_NAME
 from tiniscript.link.requests import OK
-
-pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 
 ZEROS = bytes(4)
 MESSAGE = b"\0" + encoded(Frame(BY_NAME["STOP"].number, 99, 0))

@@ -7,13 +7,11 @@ from collections.abc import Callable
 import pytest
 
 from tests.firmware.test_host_firmware import AWAY, computer, happened, image_of, send, switched_on
-from tests.machines.host_firmware import HostFirmware, missing
+from tests.machines.host_firmware import HostFirmware
 from tiniscript.link.frames import Frame, decoded, encoded
 from tiniscript.link.messages import BY_NAME
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
-
-pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 
 
 def waiting(robot: HostFirmware, session: Session) -> None:

@@ -20,11 +20,10 @@ from zlib import crc32
 
 import pytest
 
-from tests.machines.host import FLAGS, ROOT, SOURCES, WARNINGS, compiled, missing
+from tests.machines.host import FLAGS, ROOT, SOURCES, WARNINGS, compiled
 from tiniscript.bytecode.image import HEADER_BYTES, pack
 from tools.bench import avr_bench
 
-needs_host = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 needs_chip = pytest.mark.skipif(
     bool(avr_bench.missing()), reason=avr_bench.missing() or "there is a simulated chip"
 )
@@ -69,18 +68,15 @@ def run(program: Path, seed: int, sample: tuple[str, ...]) -> Found:
 # -- the plug -----------------------------------------------------------------------------------
 
 
-@needs_host
 @pytest.mark.parametrize("sample", SAMPLES)
 def test_old_or_new(sample: tuple[str, ...]) -> None:
     assert run(compiled(parts(SOURCES), FLAGS), 1, sample).cases > 10_000
 
 
-@needs_host
 def test_with_the_plug_in() -> None:
     assert run(compiled(parts(SOURCES), FLAGS), 1, ()).cases == 0
 
 
-@needs_host
 def test_no_byte_is_erased_twice_by_a_save() -> None:
     """Each of the image once, the generation and three marks; that these go away takes no erase."""
     found = run(compiled(parts(SOURCES), FLAGS), 2, (str(CODE_BYTES), "400"))
@@ -89,7 +85,6 @@ def test_no_byte_is_erased_twice_by_a_save() -> None:
     assert found.most_writes == CODE_BYTES + HEADER_BYTES + 1 + 3 + 3
 
 
-@needs_host
 def test_the_layout_of_a_mega() -> None:
     assert run(compiled(parts(SOURCES), (*FLAGS, MEGA)), 1, ("3", "9")).cases > 10_000
 
@@ -180,14 +175,12 @@ def quick(source: Path, objects: list[str], folder: Path) -> Path:
     return program
 
 
-@needs_host
 def test_what_breaks_are_noticed_by_finds_nothing(objects: list[str], tmp_path: Path) -> None:
     program = quick(STORE, objects, tmp_path)
     for seed in SEEDS:
         assert run(program, seed, ("3",)).cases > 10_000
 
 
-@needs_host
 @pytest.mark.sampled("name", keep=6)
 @pytest.mark.parametrize("name", BREAKS)
 def test_a_break_is_noticed(name: str, objects: list[str], tmp_path: Path) -> None:
@@ -206,7 +199,6 @@ def test_a_break_is_noticed(name: str, objects: list[str], tmp_path: Path) -> No
 # -- the document -------------------------------------------------------------------------------
 
 
-@needs_host
 @pytest.mark.parametrize(("column", "flags"), [(1, ()), (2, (MEGA,))])
 def test_the_document_says_where_everything_lies(column: int, flags: tuple[str, ...]) -> None:
     text = (ROOT / "docs" / "store.md").read_text(encoding="utf-8")

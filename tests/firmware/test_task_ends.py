@@ -7,7 +7,7 @@ from collections.abc import Callable
 import pytest
 
 from tests.firmware.test_host_firmware import happened, outcome
-from tests.machines.esp32 import Esp32Robot, missing
+from tests.machines.esp32 import Esp32Robot
 from tests.robots.test_robots import TEXTS
 from tests.vm.test_tasks import STATES
 from tiniscript import compile_text
@@ -16,8 +16,6 @@ from tiniscript.link.messages import STATE_FAULTED, STATE_STOPPED
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
 from tiniscript.robots.reader import read
-
-pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 
 LIGHT_L = 35  # its pin
 MAX_RUN = TEXTS["tinibot32"].replace("max_run_seconds = 600", "max_run_seconds = 1")

@@ -9,6 +9,7 @@ from __future__ import annotations
 import os
 import shutil
 import sys
+import termios
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -19,10 +20,9 @@ import pytest
 
 from tests.firmware.test_mega_text import sketch
 from tests.firmware.test_uno_robot import FORWARD, NAMES, states
-from tests.machines.host_firmware import missing
 from tests.support.casefile import Case, all_cases
 from tests.support.pty_robot import PtyRobot
-from tests.support.shell import Shell, termios
+from tests.support.shell import Shell
 from tests.support.waiting import until
 from tiniscript import robots
 from tools.uno import Uno
@@ -89,8 +89,6 @@ class Terminal(Shell):
 
 @pytest.fixture
 def pty_robot() -> Iterator[PtyRobot]:
-    if missing():
-        pytest.skip(missing())
     with PtyRobot(KIT, bytes_per_ms=1) as found:
         rest(found, 1000)  # a new robot saves who it is
         yield found

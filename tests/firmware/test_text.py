@@ -19,15 +19,13 @@ from tests.firmware.test_host_firmware import (
     stored,
     switched_on,
 )
-from tests.machines.host_firmware import HostFirmware, missing
+from tests.machines.host_firmware import HostFirmware
 from tiniscript import robots
 from tiniscript.link.frames import Frame, encoded
 from tiniscript.link.messages import BY_NAME, SAVED_STORED, STATUSES
 from tiniscript.link.payloads import StatusReply
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
-
-pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 
 SAVED_BACK = ["MOTORS -60 -60", "MOTORS 0 0", "FINISHED"]  # what `holding` holds
 LINE = ["MOTORS 50 50", "MOTORS 0 0", "FINISHED"]

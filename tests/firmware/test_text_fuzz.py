@@ -14,10 +14,8 @@ import pytest
 
 from tests.firmware.test_host_firmware import computer, image_of, switched_on
 from tests.firmware.test_text import holding
-from tests.machines.host_firmware import HostFirmware, missing
+from tests.machines.host_firmware import HostFirmware
 from tiniscript.words import WORDS
-
-pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 
 SEEDS = 24  # in the tests; a campaign runs more
 TURNS = 25

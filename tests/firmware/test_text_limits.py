@@ -6,12 +6,10 @@ import pytest
 
 from tests.firmware.test_host_firmware import KIT, computer, happened, switched_on
 from tests.firmware.test_text import LINE, done_after, holding, typed
-from tests.machines.host_firmware import EMPTY, HostFirmware, missing
+from tests.machines.host_firmware import EMPTY, HostFirmware
 from tests.support.command import OBSTACLE
 from tiniscript.kit import NUMBER, Device, Kit
 from tiniscript.link.requests import OK
-
-pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 
 LINE_LETTERS = 63  # of an answer, without its end
 

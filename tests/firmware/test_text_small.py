@@ -28,11 +28,9 @@ from tests.firmware.test_text import (
     status,
     typed,
 )
-from tests.machines.host_firmware import HostFirmware, missing
+from tests.machines.host_firmware import HostFirmware
 from tiniscript.link.messages import SAVED_STORED, STATE_STOPPED
 from tiniscript.link.requests import OK
-
-pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 
 LOST = "// OK. The old program is lost."
 OTHERWISE = {  # tests of robots that have room for two programs

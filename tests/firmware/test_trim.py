@@ -6,11 +6,9 @@ from itertools import product
 
 import pytest
 
-from tests.machines.host_firmware import HostFirmware, missing
+from tests.machines.host_firmware import HostFirmware
 from tiniscript import robots
 from tiniscript.link.messages import EXCHANGED, LEFT_REVERSED, RIGHT_REVERSED
-
-pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 
 MOST = 40  # percent, of the balance and of what a wheel needs to move
 POWERS = range(-128, 128)

@@ -28,15 +28,13 @@ from tests.firmware.test_keeping import (
     saved,
 )
 from tests.firmware.test_other_versions import OLD, kept
-from tests.machines.host_firmware import HostFirmware, drives, missing
+from tests.machines.host_firmware import HostFirmware, drives
 from tiniscript.bytecode.image import sealed
 from tiniscript.bytecode.opcodes import ISA_MINOR
 from tiniscript.link.frames import decoded
 from tiniscript.link.messages import SAVED, STATUSES
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
-
-pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 
 A, B, C = "SB|F(0.1, 50)", LONG.replace("SI", "SB"), "SI|F(0.1, 70)"
 NO_PREVIOUS = STATUSES["NO_PREVIOUS"]

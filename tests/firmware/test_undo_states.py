@@ -20,12 +20,9 @@ from tests.firmware.test_host_firmware import (
 )
 from tests.firmware.test_keeping import bytes_of
 from tests.firmware.test_undo import undo
-from tests.machines.host_firmware import missing
 from tiniscript.link.messages import STATUSES
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
-
-pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 
 EARLIER = 21  # the power of the program that was saved first
 IN_MEMORY = {

@@ -12,14 +12,12 @@ from itertools import cycle
 import pytest
 
 from tests.firmware.test_host_firmware import KIT, computer, happened, image_of
-from tests.machines.host_firmware import HostFirmware, missing
+from tests.machines.host_firmware import HostFirmware
 from tiniscript import compile_text
 from tiniscript.bytecode.image import HEADER_BYTES
 from tiniscript.link.frames import Frame, decoded, encoded
 from tiniscript.link.messages import BY_NAME, RUN, SAVE
 from tiniscript.link.requests import OK
-
-pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 
 TRIALS = 1000  # in the tests; a campaign runs more
 LIVES = 100  # trials of one robot

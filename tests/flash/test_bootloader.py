@@ -34,7 +34,8 @@ from tests.machines.uno import built as nothing_but
 from tests.machines.uno import needed
 from tests.support import arduino_builder
 from tests.support.command import process
-from tests.support.platformio import firmware, need, shared
+from tests.support.needs import need
+from tests.support.platformio import firmware, shared
 from tiniscript.link.requests import OK
 from tools.uno import CYCLES_PER_MS, Uno
 

@@ -20,7 +20,8 @@ from tests.machines.uno import needed
 from tests.robots.test_robots import TEXTS
 from tests.support.casefile import ROOT
 from tests.support.command import Tsc, process
-from tests.support.platformio import need, prepared
+from tests.support.needs import need
+from tests.support.platformio import prepared
 from tests.support.waiting import HANGS_S
 from tiniscript import robots
 from tiniscript.cli import firmware_build
@@ -28,8 +29,6 @@ from tiniscript.cli.errors import CommandError
 from tiniscript.flash import building, ready
 from tiniscript.flash.building import COMPILING, FETCHING, Seen
 from tiniscript.library import install_advice
-
-pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
 
 
 @pytest.fixture

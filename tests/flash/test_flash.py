@@ -17,7 +17,8 @@ from tests.machines.bootloaders import FOLDER, Bootloader, bootloader, optiboot
 from tests.machines.uno import built, needed
 from tests.support.casefile import ROOT
 from tests.support.command import Done
-from tests.support.platformio import firmware, need, prepared, shared
+from tests.support.needs import need
+from tests.support.platformio import firmware, prepared, shared
 from tests.support.waiting import HANGS_S
 from tiniscript import robots
 from tiniscript.cli.commands import firmware as firmware_command
@@ -29,7 +30,6 @@ from tools.bench import firmware_size
 from tools.builds import firmware_files
 from tools.uno import Uno
 
-pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
 FILES = {"tinibot-uno": "uno", "tinibot-nano": "nano", "grabber-mega": "mega_grabber"}
 
 

@@ -6,7 +6,6 @@ from pathlib import Path
 
 import pytest
 
-from tests.machines.wasm import missing
 from tiniscript import robots
 from tiniscript.lessons import catalogue, running
 from tiniscript.lessons.findings import Finding
@@ -16,8 +15,6 @@ from tiniscript.lessons.sentences import SENTENCES
 from tiniscript.lessons.sentences import sentence as words_for
 from tiniscript.lessons.variation import point_of, varied
 from tiniscript.library.compiling import compiled, image_of, maker
-
-pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")
 
 HEAD = 'robot = "{robot}"\nseconds = 10\n{more}\n[title]\nen = "A"\nes = "B"\n'
 WORLD = """\

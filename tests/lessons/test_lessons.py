@@ -7,7 +7,6 @@ from pathlib import Path
 
 import pytest
 
-from tests.machines.wasm import missing
 from tiniscript import robots
 from tiniscript.lessons import catalogue, text_judging
 from tiniscript.lessons.findings import Finding
@@ -51,7 +50,6 @@ def test_they_are_numbered_without_a_gap() -> None:
     assert len(FOLDERS) >= 12
 
 
-@pytest.mark.skipif(bool(missing()), reason=str(missing()))
 @pytest.mark.parametrize(("folder", "answer"), answers_of(True), ids=name_of)
 def test_a_right_answer_is_right(folder: Path, answer: Answer) -> None:
     """In the worlds of the task, and in others."""
@@ -60,7 +58,6 @@ def test_a_right_answer_is_right(folder: Path, answer: Answer) -> None:
     assert findings_of(answer.program, lesson, OTHER_SEEDS) == []
 
 
-@pytest.mark.skipif(bool(missing()), reason=str(missing()))
 @pytest.mark.parametrize(("folder", "answer"), answers_of(False), ids=name_of)
 def test_a_wrong_answer_is_told_what_helps(folder: Path, answer: Answer) -> None:
     lesson = catalogue.load(folder)
@@ -158,8 +155,6 @@ def test_pages_of_both_languages_have_the_same_parts(folder: Path) -> None:
 @each
 def test_no_page_tells_the_answer(folder: Path) -> None:
     """A program on a pupil's page is an example: it does not solve the task."""
-    if missing():
-        pytest.skip(str(missing()))
     lesson = catalogue.load(folder)
     for language in LANGUAGES:
         for block in blocks(catalogue.page(folder, catalogue.PUPIL, language)):

@@ -13,15 +13,12 @@ from pathlib import Path
 import pytest
 
 from tests.lessons.test_lessons import findings_of
-from tests.machines.wasm import missing
 from tiniscript.lessons import catalogue
 from tiniscript.lessons.catalogue import NAMED
 from tiniscript.lessons.lesson import Lesson
 from tiniscript.lessons.markdown import blocks
 from tiniscript.lessons.sentences import sentence
 from tiniscript.robots.profile import LANGUAGES
-
-needs_wasm = pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")
 
 FOLLOW = (
     "IF(LINE_L); M(5,40); ELSEIF(LINE_R); M(40,5); ELSE; M(35,35); ENDIF; W(0.02) UNTIL(BUTTON)"
@@ -403,7 +400,6 @@ def test_every_lesson_has_three_of_each() -> None:
         assert all(len(groups[group]) >= 3 for group in GROUPS), number
 
 
-@needs_wasm
 @pytest.mark.parametrize(("number", "program", "what"), EACH)
 def test_what_a_pupil_wrote_is_marked_fairly(number: int, program: str, what: str) -> None:
     """In all worlds of the task: nothing is said of a right one, and the cause of another one."""
@@ -414,13 +410,11 @@ def test_what_a_pupil_wrote_is_marked_fairly(number: int, program: str, what: st
         assert what in sentence(found[0], "en")
 
 
-@needs_wasm
 @pytest.mark.parametrize(("number", "seed", "program"), RIGHT)
 def test_a_right_program_of_another_shape_passes(number: int, seed: int, program: str) -> None:
     assert is_right(number, seed, program)
 
 
-@needs_wasm
 @pytest.mark.parametrize(("number", "seed", "program"), BY_HEART)
 def test_a_program_by_heart_does_not(number: int, seed: int, program: str) -> None:
     assert not is_right(number, seed, program)

@@ -10,7 +10,6 @@ from typing import Any, cast
 import pytest
 
 import tiniscript
-from tests.machines.wasm import missing
 from tests.support.command import Done, inside
 from tiniscript import robots
 from tiniscript.bytecode import image
@@ -18,7 +17,6 @@ from tiniscript.robots.boards import CHIPS
 from tiniscript.studio import checking, page_lessons, recordings, robot_link
 from tiniscript.virtual import worlds
 
-needs_wasmtime = pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")
 TEXT = "SHOW(1)\nWHEN(DISTANCE < 15)\n  S\nEND_WHEN\n"
 WORDS = {"en": "has no TASK and no WHEN", "es": "no tiene TASK ni WHEN"}
 
@@ -87,7 +85,6 @@ def test_what_sends_nothing_takes_them(program: Path) -> None:
         assert (done.code, WORDS["en"] in done.err) == (0, False)
 
 
-@needs_wasmtime
 def test_the_library_sends_none() -> None:
     program = tiniscript.compile(TEXT)
     with tiniscript.virtual_robot(hurry=math.inf) as robot:
@@ -102,7 +99,6 @@ def test_the_library_sends_none() -> None:
         assert [each.values for each in robot.events() if each.name == "SHOW"] == [{"value": 2}]
 
 
-@needs_wasmtime
 @pytest.mark.parametrize("robot_name", ["grabber", "tinibot32"])
 @pytest.mark.parametrize("sent", ["upload", "live"])
 def test_a_mega_and_an_esp32_run_them(sent: str, robot_name: str) -> None:

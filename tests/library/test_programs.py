@@ -13,14 +13,11 @@ from typing import Any, Literal
 import pytest
 
 import tiniscript
-from tests.machines.wasm import missing
 from tests.support.command import OBSTACLE, Tsc
 from tiniscript.bytecode.image import REFUSALS, pack
 from tiniscript.bytecode.verify import RULES
 from tiniscript.library import install_advice
 from tiniscript.library.texts import TEXTS
-
-needs_wasmtime = pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")
 
 # -- compile, check, show --------------------------------------------------------------------------
 
@@ -88,7 +85,7 @@ def test_a_text_of_half_a_character_is_a_mistake() -> None:
 PROGRAM = "SI|F(1, 80);SHOW(DISTANCE);SHOW(DISTANCE > 10);BEEP(0.1, 440);SHOW(1.5)"
 
 
-@pytest.mark.parametrize("machine", ["python", pytest.param("cpp", marks=needs_wasmtime)])
+@pytest.mark.parametrize("machine", ["python", "cpp"])
 def test_a_trace_is_that_of_tsc_run(tsc: Tsc, machine: Any) -> None:
     trace = tiniscript.run(PROGRAM, sensors={"DISTANCE": [50, 9]}, machine=machine)
     assert str(trace) == tsc("run", "-e", PROGRAM, "--sensor", "DISTANCE=50,9").out

@@ -15,7 +15,6 @@ from typing import cast
 import pytest
 
 import tiniscript
-from tests.machines import host, wasm
 from tests.support.command import FOREVER, OBSTACLE, Command, process
 from tests.support.link_events import event
 from tests.support.pty_robot import PtyRobot
@@ -26,11 +25,6 @@ from tiniscript.link.outcomes import Event, LostEvent, RestartedEvent, StartedEv
 from tiniscript.link.payloads import DoneEvent
 from tiniscript.virtual import directory
 
-needs_wasmtime = pytest.mark.skipif(bool(wasm.missing()), reason=wasm.missing() or "it is there")
-needs_pty = pytest.mark.skipif(
-    bool(host.missing()) or sys.platform == "win32", reason=host.missing() or "no pseudo-terminals"
-)
-
 # -- a virtual robot -------------------------------------------------------------------------------
 
 
@@ -40,7 +34,6 @@ def virtual() -> Iterator[tiniscript.VirtualRobotConnection]:
         yield robot
 
 
-@needs_wasmtime
 def test_a_program_runs_there_and_tells_what_it_shows(
     virtual: tiniscript.VirtualRobotConnection,
 ) -> None:
@@ -62,7 +55,6 @@ def test_a_program_runs_there_and_tells_what_it_shows(
     assert (virtual.pose[2], virtual.bumps) == (0, 0)
 
 
-@needs_wasmtime
 def test_a_fault_has_the_line_of_the_program(virtual: tiniscript.VirtualRobotConnection) -> None:
     virtual.upload("SI|X = 0\nSHOW(1 / X)", save=False)
     ending = virtual.wait()
@@ -71,7 +63,6 @@ def test_a_fault_has_the_line_of_the_program(virtual: tiniscript.VirtualRobotCon
     assert (ending.fault.name, ending.fault.line) == ("DIVIDE_BY_ZERO", 2)
 
 
-@needs_wasmtime
 def test_a_line_is_done_at_once_and_the_program_stays(
     virtual: tiniscript.VirtualRobotConnection,
 ) -> None:
@@ -84,7 +75,6 @@ def test_a_line_is_done_at_once_and_the_program_stays(
     assert [each.values for each in virtual.events() if each.name == "SHOW"] == [{"value": 7}]
 
 
-@needs_wasmtime
 def test_a_line_after_a_stop_runs(virtual: tiniscript.VirtualRobotConnection) -> None:
     virtual.upload(FOREVER, save=False)
     virtual.stop()
@@ -93,14 +83,12 @@ def test_a_line_after_a_stop_runs(virtual: tiniscript.VirtualRobotConnection) ->
     assert virtual.wait().name == "DONE"
 
 
-@needs_wasmtime
 def test_a_program_may_wait_for_the_button(virtual: tiniscript.VirtualRobotConnection) -> None:
     assert not virtual.upload("SB|SHOW(3)").is_running
     virtual.push_button()
     assert [each.values for each in virtual.events() if each.name == "SHOW"] == [{"value": 3}]
 
 
-@needs_wasmtime
 def test_a_program_that_goes_on_is_no_ending(virtual: tiniscript.VirtualRobotConnection) -> None:
     virtual.upload(FOREVER, save=False)
     with pytest.raises(tiniscript.RobotError) as raised:
@@ -109,7 +97,6 @@ def test_a_program_that_goes_on_is_no_ending(virtual: tiniscript.VirtualRobotCon
     assert list(virtual.events(0)) == []
 
 
-@needs_wasmtime
 def test_a_time_limit_ends_a_stream_without_end(
     virtual: tiniscript.VirtualRobotConnection,
 ) -> None:
@@ -120,7 +107,6 @@ def test_a_time_limit_ends_a_stream_without_end(
     assert raised.value.reason == "still_running"
 
 
-@needs_wasmtime
 def test_its_world_and_its_readings_can_be_chosen() -> None:
     sensors = {"DISTANCE": [100, 5]}
     with tiniscript.virtual_robot(world="light", sensors=sensors, hurry=50) as robot:
@@ -130,7 +116,6 @@ def test_its_world_and_its_readings_can_be_chosen() -> None:
         assert shown[-1] == 5
 
 
-@needs_wasmtime
 @pytest.mark.parametrize(
     ("reason", "arguments"),
     [("world_refused", {"world": "moon"}), ("bad_number", {"hurry": 0}),
@@ -146,7 +131,6 @@ def test_a_virtual_robot_refuses_what_it_cannot_be(
     assert directory.running() == []
 
 
-@needs_wasmtime
 def test_wrong_use_of_a_connection_is_an_error(
     virtual: tiniscript.VirtualRobotConnection,
 ) -> None:
@@ -171,7 +155,6 @@ def test_wrong_use_of_a_connection_is_an_error(
     assert raised.value.reason == "closed"
 
 
-@needs_wasmtime
 def test_a_virtual_robot_is_gone_when_it_is_left() -> None:
     before = threading.active_count()
     with tiniscript.virtual_robot() as robot:
@@ -180,7 +163,6 @@ def test_a_virtual_robot_is_gone_when_it_is_left() -> None:
     assert threading.active_count() == before
 
 
-@needs_wasmtime
 def test_without_a_port_the_virtual_robot_of_another_process_is_found() -> None:
     command = subprocess.Popen(
         [sys.executable, "-m", "tiniscript", "robot", "--robot", "liner"],
@@ -205,7 +187,6 @@ def test_without_a_port_the_virtual_robot_of_another_process_is_found() -> None:
 # -- a robot on a port -----------------------------------------------------------------------------
 
 
-@needs_pty
 def test_leaving_stops_the_robot(pty_robot: PtyRobot) -> None:
     with tiniscript.connect(pty_robot.port) as robot:
         robot.upload(FOREVER)
@@ -213,7 +194,6 @@ def test_leaving_stops_the_robot(pty_robot: PtyRobot) -> None:
     assert not pty_robot.moves
 
 
-@needs_pty
 def test_an_exception_stops_the_robot_and_goes_on(pty_robot: PtyRobot) -> None:
     with pytest.raises(ZeroDivisionError), tiniscript.connect(pty_robot.port) as robot:
         robot.upload(FOREVER, detached=True)
@@ -222,7 +202,6 @@ def test_an_exception_stops_the_robot_and_goes_on(pty_robot: PtyRobot) -> None:
     assert not pty_robot.moves
 
 
-@needs_pty
 def test_ctrl_c_stops_the_robot(pty_robot: PtyRobot, tmp_path: Path) -> None:
     program = tmp_path / "drive.py"
     program.write_text(
@@ -245,7 +224,6 @@ def test_ctrl_c_stops_the_robot(pty_robot: PtyRobot, tmp_path: Path) -> None:
     assert err.rstrip().endswith("KeyboardInterrupt")  # no other error came after it
 
 
-@needs_pty
 def test_a_detached_program_goes_on(pty_robot: PtyRobot) -> None:
     with tiniscript.connect(pty_robot.port) as robot:
         robot.upload(FOREVER, save=False, detached=True)
@@ -256,7 +234,6 @@ def test_a_detached_program_goes_on(pty_robot: PtyRobot) -> None:
     assert not pty_robot.moves
 
 
-@needs_pty
 def test_a_stop_that_nobody_confirms_is_an_error(
     pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -316,7 +293,6 @@ def test_what_ended_before_a_run_is_not_its_end() -> None:
         assert raised.value.reason == reason
 
 
-@needs_pty
 def test_a_reset_during_a_run_is_no_end_of_the_program(pty_robot: PtyRobot) -> None:
     with tiniscript.connect(pty_robot.port) as robot:
         robot.upload("SI|F(200, 80)", save=False)
@@ -330,7 +306,6 @@ def test_a_reset_during_a_run_is_no_end_of_the_program(pty_robot: PtyRobot) -> N
         assert robot.wait().name == "DONE"
 
 
-@needs_pty
 def test_a_reset_of_a_robot_that_stands_is_noticed_by_nobody(pty_robot: PtyRobot) -> None:
     with tiniscript.connect(pty_robot.port) as robot:
         for _ in range(2):
@@ -340,7 +315,6 @@ def test_a_reset_of_a_robot_that_stands_is_noticed_by_nobody(pty_robot: PtyRobot
             pty_robot.switch_on()
 
 
-@needs_pty
 def test_an_uploaded_program_is_saved_when_waiting_is_over(pty_robot: PtyRobot) -> None:
     with tiniscript.connect(pty_robot.port) as robot:
         receipt = robot.upload("SI|" + "SHOW(1);" * 120)
@@ -350,7 +324,6 @@ def test_an_uploaded_program_is_saved_when_waiting_is_over(pty_robot: PtyRobot) 
         assert robot.start().saved == "STORED"
 
 
-@needs_pty
 def test_a_program_is_saved_when_its_connection_is_left(pty_robot: PtyRobot) -> None:
     with tiniscript.connect(pty_robot.port) as robot:
         program = robot.upload("SB|" + "SHOW(1);" * 120)
@@ -360,7 +333,6 @@ def test_a_program_is_saved_when_its_connection_is_left(pty_robot: PtyRobot) -> 
         assert robot.start().checksum == program.checksum
 
 
-@needs_pty
 def test_the_program_before_comes_back(pty_robot: PtyRobot) -> None:
     with tiniscript.connect(pty_robot.port) as robot:
         programs = []
@@ -380,7 +352,6 @@ def test_the_program_before_comes_back(pty_robot: PtyRobot) -> None:
         assert robot.undo().checksum == programs[1].checksum
 
 
-@needs_pty
 def test_a_program_that_is_the_first_one_has_none_before(pty_robot: PtyRobot) -> None:
     with tiniscript.connect(pty_robot.port) as robot:
         robot.upload("SI|SHOW(1)")
@@ -391,7 +362,6 @@ def test_a_program_that_is_the_first_one_has_none_before(pty_robot: PtyRobot) ->
         assert "tsc upload" in str(raised.value)
 
 
-@needs_pty
 def test_a_way_through_another_command_is_a_way(pty_robot: PtyRobot, link: Command) -> None:
     with tiniscript.connect(pty_robot.port) as robot:
         robot.upload("SI|SHOW(4)")
@@ -403,7 +373,6 @@ def test_a_way_through_another_command_is_a_way(pty_robot: PtyRobot, link: Comma
     link.process.communicate()
 
 
-@needs_pty
 def test_a_cable_that_is_pulled_is_told_twice(pty_robot: PtyRobot) -> None:
     robot = tiniscript.connect(pty_robot.port)
     with pytest.raises(tiniscript.StopNotConfirmed) as raised, robot:
@@ -415,7 +384,6 @@ def test_a_cable_that_is_pulled_is_told_twice(pty_robot: PtyRobot) -> None:
     assert before.reason == "port_gone"
 
 
-@needs_pty
 def test_tsc_stop_gets_through(pty_robot: PtyRobot) -> None:
     with tiniscript.connect(pty_robot.port) as robot:
         robot.upload(FOREVER)
@@ -425,7 +393,6 @@ def test_tsc_stop_gets_through(pty_robot: PtyRobot) -> None:
         assert robot.wait() == tiniscript.Ending("STOPPED", cause="SEQUENCE")
 
 
-@needs_pty
 def test_a_button_ends_a_program(pty_robot: PtyRobot) -> None:
     with tiniscript.connect(pty_robot.port) as robot:
         robot.upload(FOREVER)
@@ -434,7 +401,6 @@ def test_a_button_ends_a_program(pty_robot: PtyRobot) -> None:
         assert robot.wait() == tiniscript.Ending("STOPPED", cause="BUTTON")
 
 
-@needs_pty
 def test_a_program_of_another_kit_is_refused(pty_robot: PtyRobot) -> None:
     with tiniscript.connect(pty_robot.port) as robot:
         with pytest.raises(tiniscript.RobotError) as raised:
@@ -442,7 +408,6 @@ def test_a_program_of_another_kit_is_refused(pty_robot: PtyRobot) -> None:
         assert raised.value.reason == "WRONG_KIT"
 
 
-@needs_pty
 def test_nobody_answers(pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(opening, "CABLE_ANSWER_MS", 300)
     monkeypatch.setattr(opening, "LONG_QUIET_S", 0.0)

@@ -21,15 +21,12 @@ from tests.support.ble_robot import (
     BleRobot,
     Echo,
     Peripheral,
-    missing,
     uploading,
 )
 from tests.support.command import LONG, Command, ended, inside, running
 from tests.support.fake_bluez import FakeBluez
 from tests.support.pty_robot import PtyRobot
 from tiniscript.link import known_ports
-
-pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a bus")
 
 OTHER = "AA:BB:CC:DD:EE:02"
 LARGEST = 65  # bytes of a frame on the wire

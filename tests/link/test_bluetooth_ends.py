@@ -19,14 +19,11 @@ from tests.support.ble_robot import (
     PLACE,
     BleRobot,
     Peripheral,
-    missing,
     uploading,
 )
 from tests.support.command import LONG, Tsc, inside
 from tests.support.fake_bluez import FakeBluez
 from tiniscript.link import errors, ports
-
-pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a bus")
 
 
 def moves_on_its_own(ble: BleRobot) -> None:

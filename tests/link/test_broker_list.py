@@ -11,13 +11,12 @@ from pathlib import Path
 
 import pytest
 
-from tests.support.mosquitto import Mosquitto, missing
+from tests.support.mosquitto import Mosquitto
 
 paho = pytest.importorskip("paho.mqtt.publish")
 from tiniscript.link.errors import PortError  # noqa: E402
 from tiniscript.link.transports import broker  # noqa: E402
 
-pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a broker")
 ROBOTS = 30
 
 

@@ -5,15 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-import pytest
-
-from tests.support.mosquitto import Mosquitto, missing
+from tests.support.mosquitto import Mosquitto
 from tests.support.waiting import HANGS_S, until
 from tiniscript.link.messages import STOP_BYTES
 from tiniscript.link.transports.broker import Broker
-
-pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a broker")
-
 
 LAST = "tests/last"
 

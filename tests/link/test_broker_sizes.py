@@ -8,9 +8,6 @@ from threading import Thread
 import pytest
 
 from tests.support.waiting import HANGS_S, until
-
-pytest.importorskip("paho.mqtt.client")
-
 from tiniscript.link.transports.broker import MESSAGE_BYTES, Access, Broker
 
 LET_IN = bytes((0x20, 2, 0, 0))

@@ -19,12 +19,11 @@ import pytest
 
 from tests.machines.damage import CppDamage, DamagedLine, cpp_damage
 from tests.machines.host import SOURCES
-from tests.machines.link import cpp_link, missing
+from tests.machines.link import cpp_link
 from tests.support.link_cases import items_of
 from tiniscript.link.frames import Frame, decoded, encoded
 from tiniscript.link.messages import CRC_BYTES, HEAD_BYTES, SMALL_FRAME
 
-needs_host = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a host machine")
 FRAMES = 1_000_000  # damaged ones, in the tests
 LARGE_FRAMES = 200_000
 LINES = 200  # that are judged at a time; a line has about 500 damaged frames
@@ -114,21 +113,18 @@ def damage_frames(cpp: CppDamage, count: int, seed: int) -> tuple[int, int]:
     return done, lines
 
 
-@needs_host
 @pytest.mark.parametrize("is_large", [False, True])
 def test_no_wrong_frame_of_many_damaged_ones(is_large: bool) -> None:
     count = LARGE_FRAMES if is_large else FRAMES
     assert damage_frames(cpp_damage(is_large), count, SEED)[0] >= count
 
 
-@needs_host
 @pytest.mark.parametrize("is_large", [False, True])
 def test_python_finds_the_same_in_them(is_large: bool) -> None:
     for number in range(LARGE_SAMPLED if is_large else SAMPLED):
         judge_in_python(cpp_damage(is_large).line(SEED, number), is_large)
 
 
-@needs_host
 @pytest.mark.parametrize("name", BREAKS)
 def test_a_broken_receiver_is_seen(name: str, tmp_path: Path) -> None:
     file, old, new = BREAKS[name]

@@ -10,7 +10,6 @@ from typing import Any
 import pytest
 from cobs import cobs
 
-from tests.link.test_link_channel import needs_host
 from tests.machines.esp32 import Esp32Robot
 from tests.machines.link import CppLink, cpp_link
 from tests.support.link_cases import KIT, items_of
@@ -87,7 +86,6 @@ def put_program(robot: CppLink) -> None:
     assert asked.outcome and asked.outcome.status == OK and robot.held() == pack("SI", 0, CODE)
 
 
-@needs_host
 def test_frames_wait_until_the_robot_looks_and_one_more_is_dropped() -> None:
     """A robot with a window of 4 answers four that came at once, one with 1 the first."""
     for is_large, window in ((True, LARGE_WINDOW), (False, 1)):
@@ -107,7 +105,6 @@ def test_frames_wait_until_the_robot_looks_and_one_more_is_dropped() -> None:
         assert (told["dropped"], told["damaged"]) == (2, 0)
 
 
-@needs_host
 def test_live_code_of_a_large_frame_runs() -> None:
     most = payload_bytes(LARGE_FRAME) - 1
     for length in (54, 55, 56, 57, 58, most):
@@ -120,7 +117,6 @@ def test_live_code_of_a_large_frame_runs() -> None:
             assert sum(row.startswith("START") for row in step.did) == 1
 
 
-@needs_host
 def test_a_large_frame_without_its_zero_is_damaged() -> None:
     """Whether it is looked at while it arrives or behind its end; nothing of it runs.
 
@@ -142,7 +138,6 @@ def with_checksum(body: bytes) -> bytes:
     return wire
 
 
-@needs_host
 @pytest.mark.parametrize(
     ("minor", "is_large", "most"),
     [(LARGE_MINOR, True, 239), (LARGE_MINOR - 1, True, 53), (0, True, 53), (9, False, 53)],
@@ -167,7 +162,6 @@ def test_a_computer_gets_the_image_in_frames_that_it_takes(
     assert image == pack("SI", 0, CODE)
 
 
-@needs_host
 def test_both_receivers_find_the_same_where_frames_wait() -> None:
     """Frames, noise and silence, while some of them are not taken yet."""
     draw = random.Random(3)
@@ -381,7 +375,6 @@ def test_a_stop_ends_the_pieces() -> None:
 # -- both -----------------------------------------------------------------------------------------
 
 
-@needs_host
 def test_the_largest_program_takes_little_more_than_the_wire() -> None:
     """8,192 bytes at 115200 baud over a round trip of 40 ms, to the sketch of an ESP32."""
     profile = robots.load("tinibot32")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.machines.link import cpp_link, missing
+from tests.machines.link import cpp_link
 from tests.support.link_cases import (
     CppSide,
     LinkCase,
@@ -20,7 +20,6 @@ from tests.support.link_cases import (
     with_found,
 )
 
-needs_host = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a host machine")
 TALKS = link_cases("link")
 SESSIONS = [case for case in TALKS if has_session(case)]
 ITEMS = link_cases("items")
@@ -34,7 +33,6 @@ def test_the_computer(case: LinkCase, request: pytest.FixtureRequest) -> None:
     assert play(case.rows, SessionSide(), Written(case.rows)) == case.rows
 
 
-@needs_host
 @pytest.mark.parametrize("case", TALKS, ids=lambda case: case.id)
 def test_the_robot(case: LinkCase, request: pytest.FixtureRequest) -> None:
     if request.config.getoption("--accept"):
@@ -55,7 +53,6 @@ def test_the_receiver(case: LinkCase, request: pytest.FixtureRequest) -> None:
     assert found == case.rows
 
 
-@needs_host
 @pytest.mark.parametrize("case", [*ITEMS, *ROBOTS], ids=lambda case: case.id)
 def test_the_receiver_in_cpp(case: LinkCase, request: pytest.FixtureRequest) -> None:
     found = with_found(case, cpp_link().items(*stream_of(case)))

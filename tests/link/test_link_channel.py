@@ -15,9 +15,7 @@ from collections import Counter, deque
 from collections.abc import Callable
 from typing import Any
 
-import pytest
-
-from tests.machines.link import CppLink, cpp_link, link_library, missing
+from tests.machines.link import CppLink, cpp_link, link_library
 from tests.support.link_cases import KIT
 from tiniscript.bytecode.image import pack, unpack
 from tiniscript.bytecode.opcodes import BY_NAME
@@ -26,7 +24,6 @@ from tiniscript.link.outcomes import CANCELLED, LOST
 from tiniscript.link.session import Session
 from tiniscript.link.statuses import name_of
 
-needs_host = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a host machine")
 UPLOADS = 300
 LARGE_UPLOADS = 200
 UNDOS = 100
@@ -242,14 +239,12 @@ def one_upload(cpp: CppLink, seed: int, world_of: type[World] = World) -> str:
     return "done" if is_done else OUTCOMES.get(status) or name_of(status)
 
 
-@needs_host
 def test_uploads_over_a_bad_radio() -> None:
     """No upload says done that is not, and nothing is done twice."""
     found = Counter(one_upload(cpp_link(), seed) for seed in range(UPLOADS))
     assert found["done"] > UPLOADS * 0.9, found
 
 
-@needs_host
 def test_large_uploads_over_a_bad_radio() -> None:
     """The same with large frames, several under way; some come twice or in another order."""
     cpp = cpp_link(is_large=True)
@@ -286,7 +281,6 @@ def one_undo(cpp: CppLink, seed: int) -> str:
     return f"{confirmed} confirmed"
 
 
-@needs_host
 def test_undos_over_a_bad_radio() -> None:
     """No undo is done twice, however often its answer is lost."""
     found = Counter(one_undo(cpp_link(), seed) for seed in range(UNDOS))

@@ -11,14 +11,12 @@ import struct
 import pytest
 
 from tests.link.test_link_channel import damaged
-from tests.machines.link import CppLink, cpp_link, missing
+from tests.machines.link import CppLink, cpp_link
 from tiniscript import compile_text, robots
 from tiniscript.bytecode.image import unpack
 from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
 from tiniscript.link import messages
 from tiniscript.link.frames import Frame, decoded, encoded
-
-pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a host machine")
 
 LIVE, HELLO = (messages.BY_NAME[name].number for name in ("LIVE", "HELLO"))
 RUN = 16

@@ -11,7 +11,7 @@ import sys
 import time
 from collections import Counter
 
-from tests.link.test_link_channel import OUTCOMES, World, needs_host
+from tests.link.test_link_channel import OUTCOMES, World
 from tests.machines.link import CppLink, cpp_link, link_library
 from tiniscript.bytecode.image import pack, unpack
 from tiniscript.bytecode.opcodes import BY_NAME as OPCODES
@@ -70,7 +70,6 @@ def line_of(number: int) -> bytes:
     return b"".join(bytes((move, 1, digit)) for digit in digits)
 
 
-@needs_host
 def test_live_lines_over_a_bad_radio() -> None:
     """None is done twice, however often its answer is lost."""
     found = lives(cpp_link(), LIVES, SEED)

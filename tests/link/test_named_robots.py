@@ -9,7 +9,6 @@ import threading
 import time
 from collections.abc import Iterator
 from contextlib import ExitStack, closing, contextmanager, suppress
-from importlib.util import find_spec
 from ipaddress import ip_address
 from typing import TYPE_CHECKING
 
@@ -17,7 +16,6 @@ import pytest
 
 from tests.cli.test_virtual_command import FOREVER, Robot, robot
 from tests.support.command import LONG, Command, Tsc, inside, process
-from tests.support.virtual_robot import missing
 from tests.support.waiting import HANGS_S, until
 from tiniscript import files
 from tiniscript.link import known_ports, ports
@@ -27,8 +25,6 @@ if TYPE_CHECKING:  # without zeroconf there is none
 
     from tiniscript.link.transports.network import Announced
 
-WHY = missing() or ("" if find_spec("zeroconf") else "no zeroconf: pip install zeroconf")
-pytestmark = pytest.mark.skipif(bool(WHY), reason=WHY or "there is zeroconf")
 
 # Every announcement is heard by all tests of this computer: names are of one test process, and
 # those that list what is announced, or fill the list, run one at a time.

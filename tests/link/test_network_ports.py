@@ -11,14 +11,10 @@ import pytest
 import serial
 from serial.rfc2217 import PortManager
 
-from tests.machines.host_firmware import missing
 from tests.support.command import process
 from tests.support.pty_robot import PtyRobot
 from tiniscript import robots
 from tiniscript.link import ports
-
-pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
-pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 
 
 class Modemless(serial.Serial):  # type: ignore[misc]

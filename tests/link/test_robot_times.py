@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import pytest
 
-from tests.machines.link import CppLink, cpp_link, missing
+from tests.machines.link import CppLink, cpp_link
 from tests.support.link_cases import KIT, items_of
 from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
 from tiniscript.link import messages
@@ -18,7 +18,6 @@ from tiniscript.link.messages import (
     TETHER_MS,
 )
 
-needs_host = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a host machine")
 FORWARD = bytes.fromhex("448c50")  # F(5,80)
 ANSWERS = 17  # to mistakes, without a pause of five seconds: the last one says that these are all
 
@@ -44,7 +43,6 @@ def ends_at(cpp: CppLink, from_ms: int, until_ms: int) -> int | None:
     return None
 
 
-@needs_host
 @pytest.mark.parametrize("start", [0, 0xFFFFFFFF - 2000])
 def test_a_tethered_program_ends_a_second_after_the_last_valid_frame(start: int) -> None:
     cpp = robot_with_session()
@@ -55,7 +53,6 @@ def test_a_tethered_program_ends_a_second_after_the_last_valid_frame(start: int)
     assert ends_at(cpp, start + 900, start + 2000) == start + 700 + TETHER_MS
 
 
-@needs_host
 @pytest.mark.parametrize("name", ["PROGRAM", "START"])
 def test_a_detached_program_goes_on(name: str) -> None:
     cpp = robot_with_session()
@@ -69,7 +66,6 @@ def test_a_detached_program_goes_on(name: str) -> None:
     assert ends_at(cpp, 20, 5000) is None
 
 
-@needs_host
 def test_a_long_silence_is_no_short_one() -> None:
     """Times are 16 bits: after a minute a robot still knows that it has heard nothing."""
     cpp = robot_with_session()
@@ -78,7 +74,6 @@ def test_a_long_silence_is_no_short_one() -> None:
         assert cpp.happens("s", 1) and (not sent or now_ms < LISTEN_MS + 1000), now_ms
 
 
-@needs_host
 def test_what_the_button_has_started_is_not_tethered() -> None:
     cpp = robot_with_session()
     live = messages.written(BY_NAME["LIVE"].request, {"mode": 0x10, "code": FORWARD})
@@ -89,14 +84,13 @@ def test_what_the_button_has_started_is_not_tethered() -> None:
     assert ends_at(cpp, 30, 5000) is None
 
 
-@pytest.mark.parametrize("find", [items_of, pytest.param(cpp_items, marks=needs_host)])
+@pytest.mark.parametrize("find", [items_of, cpp_items])
 def test_what_is_counted_does_not_wrap(find: Callable[[list[tuple[int, int]]], list[str]]) -> None:
     """A line that is broken for long stops a robot all the time; a long text is no short one."""
     assert find([(0, 0)] * 1402) == [*["stop"] * 350, "damaged 0, dropped 0"]
     assert find([(0, byte) for byte in b"A" * 300 + b"\n"])[0].startswith("text 255 41 41")
 
 
-@needs_host
 def test_a_line_that_is_held_low_neither_runs_the_epoch_round_nor_fills_the_line_back() -> None:
     cpp = robot_with_session()
     sent = b"".join(cpp.step(now_ms, b"\0").sent for now_ms in range(10, 70_010))
@@ -106,14 +100,12 @@ def test_a_line_that_is_held_low_neither_runs_the_epoch_round_nor_fills_the_line
     assert 1000 < len(told) <= 70_000 // AGAIN_MS + 1, len(told)
 
 
-@needs_host
 def test_many_stops_that_nobody_has_looked_at_are_not_none() -> None:
     cpp = robot_with_session()
     for count in (1, 255, 256, 257, 512):
         assert "STOP" in cpp.step(10, bytes(4 * count), is_late=True).did
 
 
-@needs_host
 @pytest.mark.parametrize("late_ms", [0, 300, 1500, 2900, 4000])
 @pytest.mark.parametrize(("piece_bytes", "gap_ms"), [(99, 0), (10, 0), (7, 1100), (45, 1100)])
 @pytest.mark.parametrize("before", [b"", b"> "], ids=["plain", "prompt"])
@@ -137,7 +129,6 @@ def test_an_echo_of_everything_starts_no_endless_conversation(
     assert 1 <= len(answers) <= ANSWERS, answers
 
 
-@needs_host
 @pytest.mark.parametrize("line", [b"ERROR:(0)\r\n", b"What?\r\n"])
 def test_a_module_that_answers_each_line_gets_few_answers(line: bytes) -> None:
     cpp = cpp_link()
@@ -150,7 +141,6 @@ def test_a_module_that_answers_each_line_gets_few_answers(line: bytes) -> None:
     assert cpp.step(66_000, b"BAD\r\n").sent
 
 
-@needs_host
 def test_a_slow_line_back_costs_no_answer() -> None:
     """What comes before the last answer could be sent waits."""
     cpp = robot_with_session()
@@ -160,7 +150,6 @@ def test_a_slow_line_back_costs_no_answer() -> None:
     assert [frame.seq for frame in frames if frame] == [2, 3, 4]
 
 
-@needs_host
 def test_a_robot_tells_only_who_listens() -> None:
     cpp = cpp_link()
     cpp.begin(kit=KIT)

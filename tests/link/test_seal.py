@@ -9,13 +9,12 @@ import random
 
 import pytest
 
-from tests.machines.link import cpp_link, missing
+from tests.machines.link import cpp_link
 from tiniscript.link.frames import Frame, encoded
 from tiniscript.link.messages import BY_NAME, SEALED_PAYLOAD_BYTES
 from tiniscript.link.receiver import Receiver
 from tiniscript.link.seal import LAST, Seal, session_key, siphash
 
-needs_host = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 KEY = bytes(range(16))
 CHALLENGE = bytes.fromhex("a1a2a3a4a5a6a7a8")
 NONCE, ROBOT_NONCE, EPOCH, WHICH = 0x01020304, 0x08070605, 10, 0
@@ -75,7 +74,6 @@ def test_the_computer_opens_what_is_written_and_new() -> None:
         assert seal(heard=counter).opened(sent) is None
 
 
-@needs_host
 def test_the_robot_seals_as_written() -> None:
     chance = random.Random(3)
     for _ in range(300):
@@ -85,7 +83,6 @@ def test_the_robot_seals_as_written() -> None:
         assert found == by_hand(frame, counter)
 
 
-@needs_host
 def test_the_robot_opens_what_is_written_and_new() -> None:
     chance = random.Random(4)
     for _ in range(300):
@@ -95,7 +92,6 @@ def test_the_robot_opens_what_is_written_and_new() -> None:
         assert not cpp_link().opens(KEY, ORIGIN, counter, sent)
 
 
-@needs_host
 def test_each_bit_and_each_length_counts() -> None:
     frame = Frame(8, 3, 10, bytes.fromhex("10448c50"))
     to_robot, to_computer = by_hand(frame, 7), by_hand(frame._replace(is_reply=True), 7)
@@ -113,7 +109,6 @@ def test_each_bit_and_each_length_counts() -> None:
         assert not cpp_link().opens(KEY, ORIGIN, 0, to_robot[:length])
 
 
-@needs_host
 def test_another_origin_is_another_key() -> None:
     sent = by_hand(Frame(7, 1, 10, b"\0"), 1)
     assert cpp_link().opens(KEY, ORIGIN, 0, sent)
@@ -127,7 +122,6 @@ def test_another_origin_is_another_key() -> None:
     assert len(keys) == len(ORIGIN) + 1
 
 
-@needs_host
 def test_a_counter_at_its_end_seals_nothing_more() -> None:
     mine = seal(sent=LAST - 1)
     assert not mine.is_spent

@@ -17,7 +17,6 @@ from collections import Counter
 from tests.link.test_link_channel import (
     World,
     damaged,
-    needs_host,
     one_upload,
     program,
 )
@@ -133,34 +132,29 @@ class QuietWorld(SealedWorld):
     def disturb(self) -> None: ...
 
 
-@needs_host
 def test_sealed_uploads_over_a_bad_radio() -> None:
     found = Counter(one_upload(cpp_link(), seed, QuietWorld) for seed in range(UPLOADS))
     assert found["done"] > UPLOADS * 0.9, found
 
 
-@needs_host
 def test_sealed_uploads_beside_a_stranger() -> None:
     """The stranger may end sessions; nothing wrong is done or believed, and much is still done."""
     found = Counter(one_upload(cpp_link(), seed, SealedWorld) for seed in range(UPLOADS))
     assert found["done"] > UPLOADS * 0.4, found
 
 
-@needs_host
 def test_large_sealed_uploads_over_a_bad_radio() -> None:
     cpp = cpp_link(is_large=True)
     found = Counter(one_upload(cpp, seed, QuietWorld) for seed in range(UPLOADS))
     assert found["done"] > UPLOADS * 0.85, found
 
 
-@needs_host
 def test_large_sealed_uploads_beside_a_stranger() -> None:
     cpp = cpp_link(is_large=True)
     found = Counter(one_upload(cpp, seed, SealedWorld) for seed in range(UPLOADS))
     assert found["done"] > UPLOADS * 0.3, found
 
 
-@needs_host
 def test_the_frames_of_a_session_are_sealed() -> None:
     world = QuietWorld(cpp_link(), random.Random(1), 0, 0)
     request = world.session.live(program(world.draw)[: world.line])
@@ -170,7 +164,6 @@ def test_the_frames_of_a_session_are_sealed() -> None:
     assert [(each.number, each.is_sealed) for each in frames if each] == [(8, True), (8, True)]
 
 
-@needs_host
 def test_a_stop_works_whatever_is_wrong_with_its_seal() -> None:
     world = QuietWorld(cpp_link(), random.Random(2), 0, 0)
     stop = BY_NAME["STOP"].number

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.machines.host_firmware import HostFirmware, missing
+from tests.machines.host_firmware import HostFirmware
 from tiniscript import compile_text, robots
 from tiniscript.link.messages import STATUSES
 from tiniscript.link.outcomes import StartedEvent
@@ -12,7 +12,6 @@ from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
 
 KIT = robots.load("tinibot").kit
-pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 
 
 def test_a_reset_robot_runs_its_first_program_with_a_heartbeat() -> None:

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import random
 
-import pytest
-
-from tests.machines.link import cpp_link, missing
+from tests.machines.link import cpp_link
 from tiniscript.link.seal import siphash
 
 KEY = bytes(range(16))
@@ -83,13 +81,11 @@ def test_the_vectors_of_the_authors_in_python() -> None:
     assert [siphash(KEY, bytes(range(n))).hex() for n in range(64)] == VECTORS
 
 
-@pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 def test_the_vectors_of_the_authors_in_the_robot() -> None:
     found = [cpp_link().siphash(KEY, bytes(range(n))).hex() for n in range(64)]
     assert found == VECTORS
 
 
-@pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 def test_any_key_and_message() -> None:
     chance = random.Random(1)
     for _ in range(500):

@@ -17,11 +17,9 @@ import pytest
 
 from tests.machines.damage import CppDamage, cpp_damage
 from tests.machines.host import SOURCES
-from tests.machines.link import missing
 from tiniscript.link.frames import begins_text
 from tiniscript.link.session import Session
 
-needs_host = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a host machine")
 PREFIXES = 100_000  # in the tests
 FRAMES = 1_000_000
 LINES = 200  # asked for at a time; a line has 1,024 frames
@@ -63,13 +61,11 @@ def false_stops(
     return frames, stops
 
 
-@needs_host
 @pytest.mark.parametrize("is_large", [False, True])
 def test_a_stop_is_seen_behind_any_prefix(is_large: bool) -> None:
     cpp_damage(is_large).type_behind(SEED, 0, PREFIXES)
 
 
-@needs_host
 @pytest.mark.parametrize("is_large", [False, True])
 def test_no_frame_that_is_whole_stops(is_large: bool) -> None:
     count = FRAMES if not is_large else FRAMES // 10
@@ -77,7 +73,6 @@ def test_no_frame_that_is_whole_stops(is_large: bool) -> None:
     assert frames >= count and stops == 0
 
 
-@needs_host
 def test_few_damaged_frames_stop() -> None:
     """One with any bytes in it has to have a line S among them, and to be damaged."""
     frames, stops = false_stops(cpp_damage(), FRAMES // 5, SEED, is_damaged=True, is_odd=False)
@@ -104,7 +99,6 @@ def broken(name: str, tmp_path: Path) -> CppDamage:
     return CppDamage(tmp_path)
 
 
-@needs_host
 @pytest.mark.sampled("name", keep=2)
 @pytest.mark.parametrize("name", BREAKS)
 def test_a_stop_that_is_missed_is_seen(name: str, tmp_path: Path) -> None:
@@ -112,7 +106,6 @@ def test_a_stop_that_is_missed_is_seen(name: str, tmp_path: Path) -> None:
         broken(name, tmp_path).type_behind(SEED, 0, PREFIXES)
 
 
-@needs_host
 @pytest.mark.sampled("name", keep=2)
 @pytest.mark.parametrize("name", FALSE_STOPS)
 def test_a_false_stop_is_seen(name: str, tmp_path: Path) -> None:

@@ -22,11 +22,9 @@ class Senses(NamedTuple):
 Machine = Callable[[bytes, Kit, Senses], str]
 
 # Those that are quick enough for every case; `test_cpp_chips` runs the chips.
-MACHINES: dict[str, Machine] = {"python": run_python}
+MACHINES: dict[str, Machine] = {"python": run_python, "wasm": wasm.run_wasm}
 if not host.missing():
     MACHINES["host"] = host.run_host
-if not wasm.missing():
-    MACHINES["wasm"] = wasm.run_wasm
 
 # Of the random programs, a machine that is slow to call runs one in so many.
 ONE_IN = {"wasm": 5}

@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from tests.machines.host import SOURCES, contents, kept
+from tests.support.needs import need
 from tiniscript import compile_text
 from tiniscript.robots import firmware
 from tiniscript.robots.ports import AVRS, Bit
@@ -147,6 +148,7 @@ class Board:
     """A robot's sketch and what comes to it from outside; `ran` runs it."""
 
     def __init__(self, robot: Robot, text: str = BUILT_IN, more: str = "") -> None:
+        need(missing())
         self.robot = robot
         self.board = robot.board.chip
         self.avr = AVRS[self.board]

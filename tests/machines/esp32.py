@@ -14,14 +14,14 @@ from pathlib import Path
 from struct import pack
 from typing import NamedTuple
 
-from tests.machines.host import BUILDS, FLAGS, SOURCES, WARNINGS, Process, made, missing, objects_of
+from tests.machines.host import BUILDS, FLAGS, SOURCES, WARNINGS, Process, made, objects_of
 from tests.machines.host_firmware import TICKS, HostFirmware
 from tiniscript import robots
 from tiniscript.robots import firmware
 from tiniscript.robots.ports import ESP32S
 from tiniscript.robots.profile import Robot
 
-__all__ = ("EMPTY", "Esp32Robot", "Kept", "flags_of", "missing")
+__all__ = ("EMPTY", "Esp32Robot", "Kept", "flags_of")
 
 STAND_INS = SOURCES / "extras" / "esp32"
 SIMULATED = (

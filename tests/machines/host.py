@@ -21,6 +21,7 @@ from threading import get_ident
 from typing import TYPE_CHECKING, NamedTuple
 
 from tests.machines.child import Child
+from tests.support.needs import need
 from tiniscript.bytecode.image import REFUSALS, ImageRefused
 from tiniscript.bytecode.verify import RULES, Refused
 from tiniscript.kit import Device, Kit
@@ -282,6 +283,7 @@ def _key(compiler: str, flags: Sequence[str], made_from: Iterable[bytes]) -> str
 @lru_cache
 def _version(compiler: str) -> bytes:
     """Return what a compiler says that it is: another one makes other objects."""
+    need("" if shutil.which(compiler) else f"no {compiler} on this computer")
     return _compiled(compiler, ["--version"])
 
 

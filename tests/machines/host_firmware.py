@@ -12,13 +12,13 @@ from pathlib import Path
 from struct import iter_unpack, pack
 from typing import Any, NamedTuple
 
-from tests.machines.host import FLAGS, SOURCES, Process, compiled, missing
+from tests.machines.host import FLAGS, SOURCES, Process, compiled
 from tiniscript.kit import Kit
 from tiniscript.link.connection import PendingRequest
 from tiniscript.link.session import Session
 from tiniscript.robots.kit_words import kit_words
 
-__all__ = ("EMPTY", "HostFirmware", "Seen", "missing")
+__all__ = ("EMPTY", "HostFirmware", "Seen")
 
 EMPTY = bytes(1024).replace(b"\0", b"\xff")  # what a new EEPROM holds
 TICKS = 20  # in a millisecond

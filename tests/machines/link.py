@@ -13,11 +13,11 @@ from pathlib import Path
 from struct import pack
 from typing import NamedTuple
 
-from tests.machines.host import FLAGS, SOURCES, Process, compiled, missing
+from tests.machines.host import FLAGS, SOURCES, Process, compiled
 from tiniscript import robots
 from tiniscript.robots.kit_words import kit_words
 
-__all__ = ("CppLink", "Step", "built", "cpp_link", "link_library", "missing")
+__all__ = ("CppLink", "Step", "built", "cpp_link", "link_library")
 
 LIBRARY = ("-std=c++11", "-O1", "-shared", "-fPIC")
 

@@ -15,6 +15,7 @@ from typing import NamedTuple
 from tests.machines import board as boards
 from tests.machines.board import ARDUINO, CONNECTIONS, CONTROLS, CPP, HERTZ, MS, PORTS, run
 from tests.machines.host import kept
+from tests.support.needs import need
 from tiniscript.robots.boards import CHIPS
 from tiniscript.robots.driver import Bridge
 from tiniscript.robots.drivers import motors_of
@@ -69,6 +70,7 @@ class SketchBoard:
     """A sketch on the board of a robot, and what comes to it from outside; `ran` runs it."""
 
     def __init__(self, robot: Robot, sketch: str) -> None:
+        need(boards.missing())
         self.robot = robot
         self.board = robot.board.chip
         self.avr = AVRS[self.board]

@@ -8,7 +8,7 @@ from pathlib import Path
 from tests.machines.avr import FLAGS, UNO, compiled
 from tests.machines.avr import missing as no_compiler
 from tests.machines.host import WARNINGS
-from tests.support.platformio import need
+from tests.support.needs import need
 from tools import uno
 
 SOURCES = Path(__file__).resolve().parent.parent / "uno"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from importlib.util import find_spec
 from typing import TYPE_CHECKING
 
 from tests.machines.python import lists_of
@@ -12,11 +11,6 @@ from tiniscript.vm.trace import Ending, run
 
 if TYPE_CHECKING:
     from tests.machines import Senses
-
-
-def missing() -> str:
-    """Return why this machine cannot run, or nothing."""
-    return "" if find_spec("wasmtime") else "no wasmtime: the WebAssembly machine does not run"
 
 
 def run_wasm(image: bytes, kit: Kit, senses: Senses) -> str:

@@ -14,9 +14,6 @@ from pathlib import Path
 
 import pytest
 
-pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
-
-from tests.machines.host_firmware import missing
 from tests.support.casefile import ROOT
 from tests.support.command import Command, process
 from tests.support.esp32_pty_robot import Esp32PtyRobot
@@ -26,7 +23,6 @@ from tiniscript.cli.options import Options
 from tiniscript.cli.texts.doctor import BLANK, DOCTOR_TEXTS, STEPS
 
 LISTS = {"en": ROOT / "docs" / "bring-up.md", "es": ROOT / "docs" / "puesta-en-marcha.es.md"}
-needs_robot = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 each_list = pytest.mark.parametrize(("language", "path"), LISTS.items(), ids=list(LISTS))
 
 
@@ -67,7 +63,6 @@ def test_both_lists_type_the_same() -> None:
     assert len(english) > 15
 
 
-@needs_robot
 def test_the_report_is_filled_as_far_as_a_computer_can(pty_robot: PtyRobot, tmp_path: Path) -> None:
     """Whose robot it is stays out of it."""
     report = tmp_path / "bring-up.txt"
@@ -87,7 +82,6 @@ def test_the_report_is_filled_as_far_as_a_computer_can(pty_robot: PtyRobot, tmp_
     assert "1. Responde: 20 de 20 llegaron de inmediato" in report.read_text("utf-8")
 
 
-@needs_robot
 def test_who_does_not_answer_gets_the_form_all_the_same(tmp_path: Path) -> None:
     report = tmp_path / "bring-up.txt"
     assert process("doctor", "--port", "/dev/ttyUSB99", "--report", report).code == 3
@@ -95,7 +89,6 @@ def test_who_does_not_answer_gets_the_form_all_the_same(tmp_path: Path) -> None:
     assert form[2:4] == ["robot: none has answered", f"1. It answers: {BLANK}"]
 
 
-@needs_robot
 def test_what_the_list_types_does_what_it_says(board: PtyRobot) -> None:
     found = steps(LISTS["en"])
 
@@ -131,7 +124,6 @@ def test_what_the_list_types_does_what_it_says(board: PtyRobot) -> None:
     board.until(lambda: not board.moves, "it ends")
 
 
-@needs_robot
 @pytest.mark.parametrize("before", ["", "(\n"])
 def test_the_typed_stop_of_the_list(board: PtyRobot, before: str) -> None:
     typed = re.findall(r"`([^`]+)`", steps(LISTS["en"])["Typed stop"][0].replace("\\|", "|"))

@@ -10,7 +10,6 @@ from pathlib import Path
 
 import pytest
 
-from tests.machines import wasm
 from tests.support.rows import each_row
 from tools import measures
 
@@ -247,7 +246,6 @@ def test_the_link_has_no_port_and_no_clock() -> None:
         assert not names & {"serial", "socket", "time", "threading", "asyncio", "select"}, path.name
 
 
-@pytest.mark.skipif(bool(wasm.missing()), reason=wasm.missing() or "there is wasmtime")
 def test_a_virtual_robot_without_a_terminal_loads_no_drawing() -> None:
     """It moves when its thread has begun, and that would wait for it."""
     modules = imported_by(

@@ -13,8 +13,6 @@ from typing import NamedTuple
 import pytest
 
 import tiniscript
-from tests.machines import host
-from tests.machines.wasm import missing
 from tests.support.casefile import ROOT, Example, example_robot, examples
 from tiniscript.cli import main
 
@@ -78,10 +76,6 @@ def test_python(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
 ) -> None:  # fmt: skip
     """The Python of a document runs, and prints what the document shows."""
-    if "virtual_robot" in example.code and missing():
-        pytest.skip(missing())
-    if example.has_robot and host.missing():
-        pytest.skip(host.missing())
     code = example.code
     if example.has_robot:
         code = code.replace("/dev/ttyUSB0", request.getfixturevalue("pty_robot").port)

@@ -18,7 +18,6 @@ from typing import NamedTuple
 
 import pytest
 
-from tests.machines.host_firmware import missing
 from tests.support.casefile import ROOT
 from tests.support.pty_robot import PtyRobot
 from tiniscript import robots
@@ -88,9 +87,6 @@ def masked(said: str) -> str:
 
 @pytest.fixture
 def pty_robot(monkeypatch: pytest.MonkeyPatch) -> Iterator[PtyRobot]:
-    pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
-    if missing():
-        pytest.skip(missing())
     with PtyRobot(robots.load("tinibot").kit, bytes_per_ms=1) as found:
         found.ask(lambda robot: robot.sense(LIGHT, LIGHT, DISTANCE))
         yield found

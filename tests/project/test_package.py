@@ -16,7 +16,8 @@ import pytest
 
 from tests.support.casefile import ROOT
 from tests.support.command import rest_of
-from tests.support.platformio import need, prepared
+from tests.support.needs import need
+from tests.support.platformio import prepared
 from tests.support.waiting import HANGS_S
 from tools.release import facts
 from tools.release.packing import difference
@@ -182,7 +183,6 @@ touch compiler/tiniscript/studio/page/index.html
 """
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="no pseudo-terminals of this kind")
 @pytest.mark.parametrize("page", ["none", "built", "asked for"])
 def test_a_wheel_says_what_it_is_made_without(unpacked: Path, tmp_path: Path, page: str) -> None:
     """Only who is at a terminal is asked for the page, as with `python -m build --wheel`; pip,

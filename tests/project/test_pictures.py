@@ -6,8 +6,6 @@ from xml.etree import ElementTree
 
 import pytest
 
-from tests.machines.wasm import missing
-from tests.support.platformio import need
 from tiniscript.robots.profile import LANGUAGES
 from tiniscript.virtual import worlds
 from tools.generate import arena, front
@@ -21,7 +19,6 @@ SIGN = 0.602  # the width of a sign, of its size
 
 @pytest.fixture(params=LANGUAGES)
 def drawing(request: pytest.FixtureRequest) -> ElementTree.Element:
-    need(missing())
     return ElementTree.fromstring(front.front(request.param, "a test"))
 
 
@@ -55,7 +52,6 @@ def test_what_a_program_does_is_printed(drawing: ElementTree.Element) -> None:
 
 
 def test_every_world_and_its_way_are_inside_of_the_picture() -> None:
-    need(missing())
     drawing = ElementTree.fromstring(world_picture("a test"))
     _, _, width, height = map(int, drawing.get("viewBox", "").split())
     assert {name for name, *_ in DRIVES} == set(worlds.names())
@@ -72,7 +68,6 @@ def test_every_world_and_its_way_are_inside_of_the_picture() -> None:
 
 @pytest.mark.parametrize("name", guide_pictures(""))
 def test_a_picture_of_a_guide_has_all_of_its_parts_inside(name: str) -> None:
-    need(missing())
     drawing = ElementTree.fromstring(guide_pictures("a test")[name]())
     _, _, width, height = map(int, drawing.get("viewBox", "").split())
     for each in drawing.iter():

@@ -12,9 +12,6 @@ from pathlib import Path
 import pytest
 
 from tests.support.casefile import ROOT
-from tests.support.virtual_robot import missing
-
-pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")
 
 PAGES = sorted([*ROOT.glob("README*.md"), *(ROOT / "docs").glob("*.md")])
 ANSWER = "// "

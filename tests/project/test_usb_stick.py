@@ -24,8 +24,6 @@ from tests.support.casefile import ROOT
 from tools.builds import stick_wheels, usb_stick
 from tools.builds.stick_wheels import PYTHONS, SYSTEMS
 
-pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="it starts the script of Unix")
-
 CUT_OFF = ["unshare", "--map-root-user", "--net"]  # a process without a network
 
 

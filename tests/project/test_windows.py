@@ -238,7 +238,6 @@ sys.exit(main(["upload", "-e", "SI|F(1, 80)", "--virtual", "--hurry", "10", "--l
 
 def test_a_clock_that_goes_in_steps_of_16_ms_is_enough(tmp_path: Path) -> None:
     """That of Windows, until Python 3.13; a sleep ends at such a step, too."""
-    pytest.importorskip("wasmtime")
     done = subprocess.run(
         [sys.executable, "-c", COARSE.format(step_s=1 / 64)], cwd=tmp_path, capture_output=True,
         text=True, env={"PYTHONPATH": str(ROOT / "compiler"), "HOME": str(tmp_path)},

@@ -10,12 +10,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+import yaml
 
 from tests.support.casefile import ROOT
 from tests.support.command import process
 from tools.release.__main__ import main as release
-
-yaml = pytest.importorskip("yaml")
 
 FOLDER = ROOT / ".github" / "workflows"
 FILES = sorted(FOLDER.glob("*.yml"))

@@ -23,14 +23,12 @@ import pytest
 
 from tests.sharing.test_strangers import few, registration_of
 from tests.support.command import FOREVER, process
-from tests.support.virtual_robot import missing
 from tests.support.waiting import HANGS_S
 from tiniscript.studio.serving import CONNECTIONS
 
-pytestmark = [
-    pytest.mark.skipif(sys.platform != "linux", reason="only Linux tells of a process what it has"),
-    pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime"),
-]
+pytestmark = pytest.mark.skipif(
+    sys.platform != "linux", reason="only Linux tells of a process what it has"
+)
 
 TESTED = 400  # connections of a test
 FILES = 140  # that a listener may have open more than before: those who have not said anything yet

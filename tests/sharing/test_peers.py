@@ -15,7 +15,6 @@ import pytest
 from tests.cli.test_virtual_command import robot, visitor
 from tests.sharing.test_strangers import few, registration_of
 from tests.support.command import FOREVER, process
-from tests.support.virtual_robot import missing as no_wasm
 from tests.support.waiting import HANGS_S
 from tiniscript import files
 from tiniscript.link.sharing import peers, registry
@@ -117,7 +116,6 @@ def test_a_system_that_does_not_tell_lets_in(monkeypatch: pytest.MonkeyPatch) ->
 
 @linux
 @pytest.mark.root
-@pytest.mark.skipif(bool(no_wasm()), reason=no_wasm() or "there is wasmtime")
 @pytest.mark.parametrize("how", ["stays", "leaves", "reset"])
 def test_another_user_moves_nothing(how: str) -> None:
     with robot("--listen", "0") as found:
@@ -165,7 +163,6 @@ def test_a_pseudo_terminal_is_for_its_user_alone(monkeypatch: pytest.MonkeyPatch
 
 
 @linux
-@pytest.mark.skipif(bool(no_wasm()), reason=no_wasm() or "there is wasmtime")
 def test_the_token_is_in_one_private_file() -> None:
     """In no command line, no environment, no output and no other file."""
     with few("robot") as virtual:
@@ -235,7 +232,6 @@ def test_a_port_whose_server_has_just_gone_is_free() -> None:
     assert not registry.is_taken(number)
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such modes")
 @pytest.mark.parametrize("has_third", [False, True])
 def test_a_file_that_is_replaced_while_it_is_removed_stays(tmp_path: Path, has_third: bool) -> None:
     """A server writes its own between our look and our hands; a third one may come meanwhile."""

@@ -4,10 +4,7 @@ from __future__ import annotations
 
 from time import monotonic
 
-import pytest
-
 from tests.firmware.test_host_firmware import image_of
-from tests.machines.host_firmware import missing
 from tests.support.shared_pty_robot import Shared
 from tests.support.waiting import HANGS_S
 from tiniscript.link.connection import LinkConnection
@@ -15,9 +12,6 @@ from tiniscript.link.outcomes import KEPT, Backlog, Event, PlaceEvent
 from tiniscript.link.payloads import ShowEvent
 from tiniscript.link.requests import OK
 from tiniscript.link.sharing.shared_line import joined
-
-pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
-needs_host = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 
 
 def until_done(connection: LinkConnection) -> list[Event]:
@@ -33,7 +27,6 @@ def until_done(connection: LinkConnection) -> list[Event]:
     raise AssertionError(found)
 
 
-@needs_host
 def test_a_client_that_asks_hears_places_and_others_hear_none() -> None:
     image = image_of("SI|F(2, 80);R(2, 60)")  # each is asked for often, on a busy computer too
     shared = Shared()

@@ -10,7 +10,6 @@ from pathlib import Path
 
 import pytest
 
-from tests.machines.host_firmware import missing
 from tests.support.command import FOREVER, LONG, Command, process
 from tests.support.pty_robot import PtyRobot, on, uploading
 from tests.support.shared_pty_robot import Shared
@@ -20,10 +19,6 @@ from tiniscript.link.frames import decoded
 from tiniscript.link.sharing import protocol, registry
 from tiniscript.link.sharing.registry import Registration
 from tiniscript.link.sharing.shared_line import joined
-
-pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
-pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
-
 
 TRIES = 8  # of a command that is told that another one has left
 # On a busy computer it takes whoever has opened a port a while to share it.

@@ -12,7 +12,6 @@ from typing import Any, cast
 
 import pytest
 
-from tests.machines.host_firmware import missing
 from tests.support.command import Command, Tsc
 from tests.support.pty_robot import PtyRobot, on, uploading
 from tests.support.shared_pty_robot import Shared
@@ -22,9 +21,6 @@ from tiniscript.link.payloads import DoneEvent, ShowEvent
 from tiniscript.link.sharing import protocol, registry
 from tiniscript.link.sharing.registry import Registration
 from tiniscript.link.sharing.server import CLIENTS, FULL_BYTES
-
-pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
-pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 
 
 def greeting(registration: Registration, **other: object) -> bytes:

@@ -12,7 +12,6 @@ from random import Random
 
 import pytest
 
-from tests.machines.host_firmware import missing
 from tests.support.command import FOREVER, TSC, Command, process
 from tests.support.crowd import crowd
 from tests.support.pty_robot import PtyRobot, on, uploading
@@ -20,9 +19,6 @@ from tests.support.waiting import HANGS_S
 from tiniscript import __version__
 from tiniscript.link.sharing import protocol, registry
 from tiniscript.link.sharing.registry import Registration
-
-pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
-pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 
 OURS = __version__.encode()
 GREETING = b'{"tsc":"%s","token":"%s","verb":"link"}\n' % (OURS, b"0" * 32)

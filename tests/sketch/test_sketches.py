@@ -12,7 +12,6 @@ import pytest
 
 from tests.firmware.test_boards import BRIDGE_STATES, DRIVERS, SERVOS, driven, robot_with
 from tests.machines import MACHINES, Senses
-from tests.machines import board as boards
 from tests.machines.sketch_board import Ran, SketchBoard, built
 from tests.sketch.agreement import (
     PRESS_MS,
@@ -33,8 +32,6 @@ from tiniscript.fixed_point import ONE
 from tiniscript.lessons import catalogue
 from tiniscript.robots.profile import Robot
 from tiniscript.sketch.writing import sketch_of
-
-pytestmark = pytest.mark.skipif(bool(boards.missing()), reason=boards.missing() or "there is one")
 
 EXAMPLES = sketch_examples()
 ANSWERS = [

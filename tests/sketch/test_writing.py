@@ -7,7 +7,6 @@ from pathlib import Path
 
 import pytest
 
-from tests.machines import board as boards
 from tests.machines.sketch_board import built
 from tests.support.casefile import ROOT, example_robot, sketch_examples
 from tiniscript import compile_text, robots
@@ -15,8 +14,6 @@ from tiniscript.cli.paths import is_foreign
 from tiniscript.sketch.names import RESERVED, Names
 from tiniscript.sketch.texts import IDENTIFIERS, LOCALS, TEXTS
 from tiniscript.sketch.writing import sketch_of
-
-AVR = pytest.mark.skipif(bool(boards.missing()), reason=boards.missing() or "there is one")
 
 
 def sketch(text: str, language: str = "en", robot: str = "tinibot") -> str:
@@ -109,7 +106,6 @@ def test_comments_stay_where_they_were() -> None:
     assert rows[at[2] + 1].startswith("stopMotors();")
 
 
-@AVR
 @pytest.mark.parametrize("comment", ["ends in \\", "??/", "*/ /* */", "ñandú ¿qué? \t x", "\\"])
 def test_a_comment_stays_a_comment(comment: str) -> None:
     text = sketch(f"SI|F(1, 50) // {comment}\nS // {comment}")
@@ -153,7 +149,6 @@ def test_no_helper_has_a_reserved_name() -> None:
         assert not RESERVED & set(both) - {"read", "leer", "time", "value"}
 
 
-@AVR
 @pytest.mark.parametrize("first", [0, 1, 2, 3, 4, 5])
 def test_names_of_cpp_and_of_the_core_can_be_variables(first: int) -> None:
     """Each sixth reserved name, and what looks like a macro of the core."""

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from tests.support.casefile import ROOT
-from tests.support.platformio import need
+from tests.support.needs import need
 from tiniscript.flash import ready
 from tiniscript.studio import serving
 from tiniscript.studio.serving import POLICY

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import os
+import pty
 import subprocess
-import sys
 import threading
+import tty
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -15,15 +16,11 @@ import pytest
 from tests.machines.bootloaders import bootloader
 from tests.machines.uno import needed
 from tests.support.command import process
-from tests.support.platformio import firmware, need, shared
+from tests.support.needs import need
+from tests.support.platformio import firmware, shared
 from tiniscript.studio.building import SOURCES
 from tools.builds.studio import CannotBuild, found_tools
 
-if sys.platform != "win32":
-    import pty
-    import tty
-
-pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
 SCRIPT = Path(__file__).with_name("flash_in_node.mjs")
 PAGE = 128
 IN_SYNC, OK, END = b"\x14", b"\x10", 0x20

@@ -8,13 +8,11 @@ import pytest
 
 from tests.studio.test_simulation import begun, lines
 from tests.support.casefile import ROOT
-from tests.support.virtual_robot import missing
 from tiniscript import run
 from tiniscript.studio.checking import check
 from tiniscript.studio.simulation import Marks, Simulation
 from tiniscript.virtual import worlds
 
-pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")
 COUNT = "X = 3;\nLOOP(2);\n  X = X + 1;\n  SHOW(X);\nEND_LOOP;\nIS = X > 4;\nF(0.5, 80)"
 STEPS = ["X = 3", "LOOP(2);", "X = X + 1", "SHOW(X)", "LOOP(2);", "X = X + 1", "SHOW(X)",
          "LOOP(2);", "IS = X > 4", "F(0.5, 80)"]  # fmt: skip

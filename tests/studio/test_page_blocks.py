@@ -14,7 +14,7 @@ from tests.studio.programs import programs
 from tests.studio.test_page_for_everyone import LOOK, SCREENS
 from tests.support.casefile import ROOT
 from tests.support.kits import KITS
-from tests.support.platformio import need
+from tests.support.needs import need
 from tests.support.studio import Pages, image, shown, write
 from tiniscript import check, compile, robots
 from tiniscript.studio.block_form import data_of

@@ -11,7 +11,7 @@ import pytest
 from tests.studio.test_page_programs import MOVE, colours, content, opened, share
 from tests.studio.test_simulation import DANCE
 from tests.support import studio
-from tests.support.platformio import need
+from tests.support.needs import need
 from tests.support.studio import Pages, checked, image, runs_like_the_command, shown, write
 from tiniscript import compile
 from tiniscript.virtual.worlds import read

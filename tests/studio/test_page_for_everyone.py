@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from tests.support import studio
-from tests.support.platformio import need
+from tests.support.needs import need
 from tests.support.studio import Pages, checked, image, write
 from tiniscript import compile
 from tiniscript.studio import serving

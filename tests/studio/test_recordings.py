@@ -6,14 +6,12 @@ import json
 
 import pytest
 
-from tests.support.virtual_robot import missing
 from tiniscript import compile
 from tiniscript.studio import recordings, worker
 from tiniscript.studio.recordings import BadRecording, Parting, read, replay
 from tiniscript.studio.simulation import Simulation
 from tiniscript.virtual import worlds
 
-pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")
 LOOKS = "LOOP(2);\n  W(1);\n  SHOW(DISTANCE);\n  X = DISTANCE * 2;\n  SHOW(X);\nEND_LOOP"
 LINES = ((1000, "SHOW 17.5"), (1020, "SHOW 35"), (2040, "SHOW 4"), (2060, "SHOW 8"), (2061, "DONE"))
 

@@ -9,8 +9,7 @@ from typing import Any
 
 import pytest
 
-from tests.support.platformio import need
-from tests.support.virtual_robot import missing
+from tests.support.needs import need
 from tiniscript import compile
 from tiniscript.studio.building import SOURCES, found_tools
 from tiniscript.studio.description import description
@@ -40,7 +39,6 @@ def pictures(*wanted: tuple[str, dict[str, Any] | None, dict[str, Any]]) -> list
 
 def after(text: str, robot: str, ms: int) -> dict[str, Any]:
     """Return the state of a robot some time after its program has begun."""
-    need(missing())
     simulation = Simulation(robot, worlds.load("obstacles"), compile(text, robot).image)
     simulation.go(ms)
     return json.loads(json.dumps(simulation.state()))  # type: ignore[no-any-return]

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import signal
 import socket
-import sys
 from collections.abc import Iterator
 from http.client import HTTPConnection, HTTPResponse
 from pathlib import Path
@@ -117,7 +116,6 @@ def test_it_listens_on_this_computer_alone(server: serving.Server) -> None:
     assert server.server_address[0] == "127.0.0.1"
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="signals of Windows are other ones")
 def test_it_goes_on_until_it_is_ended(folder: Path) -> None:
     code = (
         "import sys; from pathlib import Path; from tiniscript.studio import serving; "

@@ -8,7 +8,7 @@ from collections.abc import Iterable
 import pytest
 
 from tests.support.casefile import ROOT
-from tests.support.virtual_robot import Talk, missing, trace
+from tests.support.virtual_robot import Talk, trace
 from tiniscript import compile, run
 from tiniscript.robots import load
 from tiniscript.studio import worker
@@ -17,7 +17,6 @@ from tiniscript.studio.simulation import Marks, Simulation
 from tiniscript.virtual import worlds
 from tiniscript.virtual.robot import VirtualRobot
 
-pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")
 DANCE = "F(1, 80);R(0.5, 60);BEEP(0.1, 440);SHOW(5);B(0.2, 50)"
 
 

@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from tests.support.virtual_robot import missing, robot_in
+from tests.support.virtual_robot import robot_in
 from tiniscript import compile, robots
 from tiniscript.studio.attending import CONFIRMED, LATCH_S, SILENT, Attending
 from tiniscript.studio.page_line import PageKeys, PageLine
@@ -21,8 +21,6 @@ from tiniscript.virtual.worlds import read
 BEAT_MS = 100
 LOOK_MS = 20  # as often as a thread attends to its robot
 PROGRAMS = [compile(f"SI|LOOP(FOREVER);{'R(0.1, 40);' * k}END_LOOP").image.hex() for k in (1, 40)]
-
-pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")
 
 
 class Meeting:

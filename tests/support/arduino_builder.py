@@ -9,7 +9,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 from tests.machines import board as boards
-from tests.support.platformio import SKETCH, need
+from tests.support.needs import need
+from tests.support.platformio import SKETCH
 
 BUILDER = Path("/usr/share/arduino-builder")
 BOARDS = {"uno": "uno", "mega": "mega:cpu=atmega2560"}

@@ -10,8 +10,6 @@ import os
 from collections.abc import Callable
 from contextlib import suppress
 
-from tests.machines import host_firmware
-from tests.support import fake_bluez
 from tests.support.command import FOREVER, Command
 from tests.support.pty_robot import PtyRobot
 
@@ -134,11 +132,6 @@ class BleRobot(Peripheral):
             self.loop.call_later(self.late_s, self.tell, data)
         else:
             self.tell(data)
-
-
-def missing() -> str:
-    """Return why there is no such robot here, or nothing."""
-    return fake_bluez.missing() or host_firmware.missing()
 
 
 def uploading(ble: BleRobot, port: str = PLACE) -> Command:

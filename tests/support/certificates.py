@@ -7,12 +7,10 @@ import ssl
 import subprocess
 from pathlib import Path
 
+from tests.support.needs import need
+
 _COMMON = ("openssl", "req", "-x509", "-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:P-256",
            "-nodes", "-days", "2")  # fmt: skip
-
-
-def missing() -> str:
-    return "" if shutil.which("openssl") else "needs openssl"
 
 
 def der(file: Path) -> bytes:
@@ -25,6 +23,7 @@ class Authority:
     """Who signs certificates: `file` has its own, `der` the same as bytes."""
 
     def __init__(self, folder: Path, name: str = "Aula") -> None:
+        need("" if shutil.which("openssl") else "needs openssl")
         self._folder, self._key = folder, folder / f"{name}.key"
         self.file = folder / f"{name}.pem"
         _run(*_COMMON, "-keyout", self._key, "-out", self.file, "-subj", f"/CN={name}")

@@ -9,7 +9,6 @@ from __future__ import annotations
 import asyncio
 import shutil
 import subprocess
-import sys
 import threading
 from collections.abc import Callable
 from importlib.util import find_spec
@@ -34,6 +33,8 @@ from dbus_fast.annotations import (
 )
 from dbus_fast.service import ServiceInterface, dbus_method, dbus_property
 
+from tests.support.needs import need
+
 if TYPE_CHECKING:
     from tests.support.ble_robot import Peripheral
 
@@ -43,16 +44,6 @@ STEP_S = 10.0  # timeout of a step in the bus's thread
 _READ = PropertyAccess.READ
 _Nothing = Annotated[None, DBusSignature("")]
 _Strings = Annotated[list[str], DBusSignature("as")]
-
-
-def missing() -> str:
-    """Return why there is no such bus here, or nothing."""
-    if sys.platform != "linux":
-        return "BlueZ is Linux's"
-    for name in ("bleak", "zeroconf"):
-        if find_spec(name) is None:
-            return f"no {name}: pip install {name}"
-    return "" if shutil.which("dbus-daemon") else "no dbus-daemon: apt-get install dbus-daemon"
 
 
 class Adapter(ServiceInterface):
@@ -290,6 +281,7 @@ class FakeBluez:
     has_ended = False
 
     def __init__(self, has_bluez: bool = True, has_adapter: bool = True) -> None:
+        need("" if shutil.which("dbus-daemon") else "no dbus-daemon: apt-get install dbus-daemon")
         self._daemon = subprocess.Popen(
             ["dbus-daemon", "--session", "--nofork", "--nosyslog", "--print-address"],
             stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True,

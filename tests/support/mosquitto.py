@@ -12,6 +12,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from tests.machines.esp32 import Esp32Robot
+from tests.support.needs import need
 from tests.support.waiting import until
 from tiniscript.link import wifi
 from tiniscript.link.transports import broker
@@ -22,14 +23,11 @@ LOCAL = bytes((127, 0, 0, 1))
 STEP_S = 0.0005  # for a millisecond of the chip: the broker lives in this computer's time
 
 
-def missing() -> str:
-    return "" if PROGRAM else "needs the broker mosquitto"
-
-
 class Mosquitto:
     """A broker. With `password` it lets in nobody but `user`."""
 
     def __init__(self, folder: Path, user: str = "", password: str = "", more: str = "") -> None:
+        need("" if PROGRAM else "needs the broker mosquitto")
         assert PROGRAM
         lines = ["persistence false", f"user {_me()}", more]
         if user:

@@ -15,10 +15,10 @@ import pytest
 
 from tests.machines.host import once
 from tests.support.casefile import ROOT
+from tests.support.needs import IS_CI, need
 
 OFFLINE = ROOT / "tools" / "builds" / "platformio_offline.py"
 SKETCH = ROOT / "vm_arduino"
-IS_CI = bool(os.environ.get("CI"))
 
 
 @lru_cache(maxsize=1)
@@ -35,13 +35,6 @@ def prepared() -> tuple[dict[str, str], str]:
     )
     exports = (shlex.split(row)[1].partition("=")[::2] for row in done.stdout.splitlines())
     return dict(exports), done.stderr if done.returncode else ""
-
-
-def need(why: str) -> None:
-    """Skip a test where something is missing; in CI that is a failure."""
-    if why:
-        assert not IS_CI, why
-        pytest.skip(why.strip().replace("\n", "; "))
 
 
 def copied(folder: Path) -> Path:

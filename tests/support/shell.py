@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
+import fcntl
 import os
+import pty
 import re
 import select
 import struct
+import termios
 from collections.abc import Mapping
 
-import pytest
-
 from tests.support.waiting import HANGS_S
-
-NO_PTY = "Windows has no pseudo-terminals of this kind"
-pty = pytest.importorskip("pty", reason=NO_PTY)
-fcntl = pytest.importorskip("fcntl", reason=NO_PTY)
-termios = pytest.importorskip("termios", reason=NO_PTY)
 
 CONTROL = re.compile(r"\x1b\[[0-9;?]*[A-Za-z]|\x00|\x07")  # colors, the cursor, padding
 COLUMNS = 80

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from weakref import WeakKeyDictionary
 
 from tests.support.command import FOREVER
-from tests.support.platformio import need
+from tests.support.needs import need
 from tiniscript import run
 from tiniscript.studio import serving
 from tiniscript.studio.attending import LEFT_S

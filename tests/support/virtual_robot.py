@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TypeVar
 
-from tests.machines.wasm import missing
 from tiniscript import compile_text, robots
 from tiniscript.bytecode.image import unpack
 from tiniscript.link.authority import KeyRing
@@ -18,7 +17,6 @@ from tiniscript.virtual.world import World
 from tiniscript.virtual.worlds import read
 from tiniscript.vm.trace import Event
 
-__all__ = ("Talk", "floor", "missing", "robot_in", "trace")
 T = TypeVar("T")
 
 

@@ -6,15 +6,12 @@ from zlib import crc32
 
 import pytest
 
-from tests.machines.host import missing
 from tests.machines.text_reader import NO_DEFS, Answer, TextReader, read_lines
 from tests.support.casefile import all_cases
 from tests.support.kits import KITS
 from tiniscript import robots
 from tiniscript.bytecode.disassembly import listing
 from tiniscript.text.problems import LONGEST, PROBLEMS
-
-pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 
 KIT = robots.load("tinibot").kit
 WIDE = KITS[1][1]

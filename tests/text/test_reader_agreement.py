@@ -15,7 +15,6 @@ from functools import lru_cache
 import pytest
 
 from tests.machines import Senses
-from tests.machines.host import missing
 from tests.machines.python import lists_of
 from tests.machines.text_reader import LARGEST_ROOM, Answer, TextReader
 from tests.oracle import programs
@@ -32,8 +31,6 @@ from tiniscript.text.line import plain_code
 from tiniscript.text.memory import Reader as Model
 from tiniscript.vm.trace import run
 from tiniscript.words import WORDS
-
-pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 
 MAX_MS, MAX_STEPS = 5_000, 5_000
 SHORT_BUFFER = 389 - 15

@@ -9,7 +9,6 @@ import random
 
 import pytest
 
-from tests.machines.host import missing as missing_host
 from tests.machines.qemu import emulated, missing
 from tests.machines.text_reader import LARGEST_ROOM, TextReader
 from tests.oracle import programs
@@ -22,7 +21,7 @@ ORACLE_KIT, KIT = KITS[1]
 EACH = [
     pytest.param(name, marks=pytest.mark.skipif(bool(why), reason=why or "there is a chip"))
     for name in chips.CHIPS
-    for why in [missing(name) or missing_host()]
+    for why in [missing(name)]
 ]
 
 

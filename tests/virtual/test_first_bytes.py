@@ -10,7 +10,7 @@ from random import Random
 
 import pytest
 
-from tests.support.virtual_robot import floor, missing, robot_in
+from tests.support.virtual_robot import floor, robot_in
 from tests.virtual.test_simulator import PING, until, visit
 from tiniscript import compile_text, robots
 from tiniscript.bytecode.image import unpack
@@ -22,8 +22,6 @@ from tiniscript.virtual import transports as limits
 from tiniscript.virtual.first_bytes import LONGEST, is_for_robot
 from tiniscript.virtual.simulator import Simulator
 from tiniscript.virtual.transports import CALLERS, Transports
-
-pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")
 
 
 def verdicts(data: bytes) -> list[bool | None]:

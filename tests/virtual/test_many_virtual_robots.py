@@ -7,17 +7,12 @@ import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-import pytest
-
 from tests.support.command import process
-from tests.support.virtual_robot import missing
 from tiniscript import robots
 from tiniscript.virtual import directory, worlds
 from tiniscript.virtual.robot import Settings, VirtualRobot
 from tiniscript.virtual.simulator import Simulator
 from tiniscript.virtual.transports import Transports
-
-pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")
 
 ROBOTS = 30
 BAD = (4, 9, 22)  # whose links lose and change bytes

@@ -8,14 +8,12 @@ from collections.abc import Callable, Iterator
 
 import pytest
 
-from tests.support.virtual_robot import floor, missing, robot_in
+from tests.support.virtual_robot import floor, robot_in
 from tiniscript.link.frames import Frame, encoded
 from tiniscript.link.messages import BY_NAME
 from tiniscript.virtual import transports as limits
 from tiniscript.virtual.simulator import FULL_BYTES, HEARTBEAT_MS, SILENT_S, Heartbeat, Simulator
 from tiniscript.virtual.transports import Transports
-
-pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")
 
 PING = encoded(Frame(BY_NAME["PING"].number, 1, 0))
 TURNS = 3000  # far more than anything here takes

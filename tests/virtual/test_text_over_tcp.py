@@ -10,10 +10,7 @@ import pytest
 
 from tests.cli.test_virtual_command import FOREVER, robot, visitor
 from tests.robots.test_robots import TEXTS
-from tests.support.virtual_robot import missing
 from tests.support.waiting import HANGS_S
-
-pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")
 
 SILENT_S = 3  # longer than the second that a robot waits for, whose clock may go slower
 

@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from tests.support.virtual_robot import Talk, missing, robot_in
+from tests.support.virtual_robot import Talk, robot_in
 from tiniscript.bytecode.image import pack, unpack
 from tiniscript.link.messages import LARGE_FRAME, LARGE_WINDOW, SAVED_STORED, SMALL_FRAME, STATUSES
 from tools.bench import large_upload
-
-pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")
 
 OK = STATUSES["OK"]
 

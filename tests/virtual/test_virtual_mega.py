@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-import pytest
-
-from tests.support.virtual_robot import Talk, missing, robot_in
+from tests.support.virtual_robot import Talk, robot_in
 from tiniscript import robots
 from tiniscript.bytecode.image import pack, unpack
 from tiniscript.link.messages import SAVED_STORED, SMALL_FRAME, STATUSES
 from tiniscript.text.levels import LEVELS
 from tools.bench import large_upload
-
-pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")
 
 OK, TOO_LARGE = STATUSES["OK"], STATUSES["TOO_LARGE"]
 NAME = "grabber"

@@ -7,13 +7,11 @@ import itertools
 import pytest
 
 from tests.support.owners import Keys
-from tests.support.virtual_robot import Talk, missing, robot_in
+from tests.support.virtual_robot import Talk, robot_in
 from tiniscript.link.authority import OF_ANOTHER, YOUR_OWN, whose
 from tiniscript.link.messages import KEY_OWNER, STATUSES
 from tiniscript.virtual.simulator import HOLD_MS, PUSH_MS, Simulator
 from tiniscript.virtual.transports import Transports
-
-pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a machine")
 
 
 def owner_of(talk: Talk) -> str:

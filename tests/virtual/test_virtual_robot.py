@@ -6,15 +6,13 @@ import pytest
 
 from tests.support.casefile import ROOT
 from tests.support.command import OBSTACLE
-from tests.support.virtual_robot import Talk, floor, missing, robot_in, trace
+from tests.support.virtual_robot import Talk, floor, robot_in, trace
 from tiniscript import compile_text, robots
 from tiniscript.bytecode.image import unpack
 from tiniscript.link.messages import STATUSES
 from tiniscript.link.trim import Trim
 from tiniscript.virtual import worlds
 from tiniscript.vm.trace import Ending, Senses, run
-
-pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")
 
 KIT = robots.load("tinibot").kit
 PROGRAMS = {

@@ -7,14 +7,12 @@ from random import Random
 import pytest
 
 from tests.firmware.test_typed_stops import HELD_MS, PREFIXES, RUNS, SILENCE_MS, SPELLINGS
-from tests.support.virtual_robot import missing, robot_in
+from tests.support.virtual_robot import robot_in
 from tests.virtual.test_simulator import simulator, until, visit
 from tiniscript.link.messages import STOP_BYTES
 from tiniscript.virtual.first_bytes import is_at_stop, is_for_robot
 from tiniscript.virtual.robot import VirtualRobot
 from tiniscript.virtual.simulator import Simulator
-
-pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")
 
 __all__ = ("simulator",)
 

@@ -10,7 +10,7 @@ import pytest
 
 from tests.support.casefile import ROOT
 from tests.support.command import Tsc
-from tests.support.virtual_robot import floor, missing, robot_in
+from tests.support.virtual_robot import floor, robot_in
 from tiniscript import robots
 from tiniscript.robots.profile import LANGUAGES
 from tiniscript.virtual import world, worlds
@@ -18,7 +18,6 @@ from tiniscript.virtual.geometry import Point, Segment
 from tiniscript.virtual.world import WorldRefused
 from tiniscript.virtual.worlds import read
 
-needs_wasmtime = pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")
 RIGHT = "[floor]\nwidth_cm = 200\nheight_cm = 100\n[start]\nx_cm = 50\ny_cm = 50\n"
 
 
@@ -41,7 +40,6 @@ def test_three_worlds_are_shipped_and_have_names_in_both_languages() -> None:
         assert world.labels["en"] != world.labels["es"]
 
 
-@needs_wasmtime
 @pytest.mark.parametrize("world", worlds.names())
 @pytest.mark.parametrize("robot", robots.names())
 def test_every_robot_fits_into_every_world(world: str, robot: str) -> None:
@@ -156,7 +154,6 @@ def test_sentences_have_the_same_gaps_in_both_languages() -> None:
         assert gaps[0] == gaps[1], code
 
 
-@needs_wasmtime
 def test_a_robot_that_does_not_fit_is_refused() -> None:
     with pytest.raises(WorldRefused) as found:
         robot_in(floor(start="x_cm = 5\ny_cm = 50"))
@@ -164,7 +161,6 @@ def test_a_robot_that_does_not_fit_is_refused() -> None:
     assert said.startswith("The robot does not fit where it starts, at x_cm = 5, y_cm = 50. Move")
 
 
-@needs_wasmtime
 @pytest.mark.parametrize("verb", [["robot"], ["upload", "--virtual", "-e", "SI|S"]])
 def test_files_that_are_no_worlds(tsc: Tsc, tmp_path: Path, verb: list[str]) -> None:
     binary, large, wrong = tmp_path / "b.toml", tmp_path / "l.toml", tmp_path / "w.toml"

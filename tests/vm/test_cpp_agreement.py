@@ -7,73 +7,55 @@
 from __future__ import annotations
 
 import argparse
-import os
 import random
 import time
 from collections import Counter
 
 import pytest
 
-from tests.machines import MACHINES
-from tests.machines.host import host, missing
+from tests.machines.host import host
 from tests.support import cpp_checks, cpp_edges, cpp_images, cpp_tasks
 from tests.support.casefile import Case
 from tests.support.rows import each_row
 from tests.vm.test_cases import listings_alone
 from tiniscript.bytecode.opcodes import BY_NAME, CODE_BYTES
 
-needs_host = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a host machine")
 BATCH = 25_000
 BATCHES = 40  # in the tests
-
-
-def test_the_host_machine_is_there() -> None:
-    """Without a compiler this leg is left out, and says so; in CI that is a failure."""
-    if missing():
-        assert not os.environ.get("CI"), missing()
-        pytest.skip(missing())
-    assert "host" in MACHINES
 
 
 # -- code ---------------------------------------------------------------------------------------
 
 
-@needs_host
 @each_row("case", listings_alone())
 def test_listing_has_the_same_verdict(case: Case) -> None:
     cpp_checks.check_listing(host(), case)
 
 
-@needs_host
 @pytest.mark.parametrize("length", [0, 1, CODE_BYTES - 1, CODE_BYTES, CODE_BYTES + 1, 100_000])
 def test_length_of_code(length: int) -> None:
     cpp_checks.check_length(host(), length)
 
 
-@needs_host
 @pytest.mark.parametrize("devices", [0, 1, 32, 33, 255])
 def test_number_of_devices(devices: int) -> None:
     cpp_checks.check_devices(host(), devices)
 
 
-@needs_host
 def test_all_codes_of_up_to_two_bytes() -> None:
     cpp_checks.check_short_codes(host())
 
 
-@needs_host
 @pytest.mark.parametrize("few_at", [1, 2])
 def test_codes_of_three_bytes_with_two_opcodes(few_at: int) -> None:
     cpp_checks.check_pairs(host(), few_at)
 
 
-@needs_host
 @pytest.mark.parametrize("first", range(0, 256, 16), ids=lambda first: f"from {first:02x}")
 def test_all_codes_of_three_bytes_run_safely(first: int) -> None:
     cpp_checks.check_runs_safely(host(), first)
 
 
-@needs_host
 @pytest.mark.parametrize(
     "name",
     ["PUSH_TRUE", "PUSH_VAR", "ADD_VAR", "READ", "MOVE8_F", "MOTORS8", "STOP", "FOREVER", "DEF"],
@@ -83,7 +65,6 @@ def test_codes_of_three_bytes_that_begin_alike(name: str) -> None:
     assert cpp_checks.check_three(host(), BY_NAME[name].code) > 0
 
 
-@needs_host
 @pytest.mark.sampled("seed", keep=2)
 @pytest.mark.parametrize("seed", range(BATCHES))
 def test_random_codes(seed: int) -> None:
@@ -91,42 +72,34 @@ def test_random_codes(seed: int) -> None:
     cpp_checks.check_a_batch(host(), seed, BATCH)
 
 
-@needs_host
 def test_many_defs() -> None:
     cpp_edges.check_many_defs(host())
 
 
-@needs_host
 def test_what_is_closed_takes_no_room() -> None:
     cpp_edges.check_what_is_closed(host())
 
 
-@needs_host
 def test_a_procedure_needs_what_it_calls_needs() -> None:
     cpp_edges.check_needs(host())
 
 
-@needs_host
 def test_everything_has_a_place_of_its_own() -> None:
     cpp_edges.check_places(host())
 
 
-@needs_host
 def test_an_instruction_of_one_byte_means_what_is_in_its_code() -> None:
     cpp_edges.check_shorts(host())
 
 
-@needs_host
 def test_a_program_may_run_for_24_days() -> None:
     cpp_edges.check_long_time(host())
 
 
-@needs_host
 def test_whatever_the_code_the_machine_keeps_to_its_memory() -> None:
     cpp_checks.check_memory(host())
 
 
-@needs_host
 def test_code_that_changed_after_it_was_verified() -> None:
     cpp_edges.check_run_time_checks(host())
 
@@ -134,29 +107,24 @@ def test_code_that_changed_after_it_was_verified() -> None:
 # -- time and a robot that is not ready ---------------------------------------------------------
 
 
-@needs_host
 @pytest.mark.parametrize("begin_ms", [1, 2**31 - 500, 2**31, 2**32 - 1, 2**32 - 1500])
 def test_the_clock_may_wrap_around(begin_ms: int) -> None:
     cpp_checks.check_clock(host(), begin_ms)
 
 
-@needs_host
 @pytest.mark.parametrize("late_ms", [0, 1, 19, 20, 21, 25, 100, 3000])
 def test_ticks_may_come_late(late_ms: int) -> None:
     cpp_checks.check_late(host(), late_ms)
 
 
-@needs_host
 def test_a_watched_move_may_last_longer_than_the_clock() -> None:
     cpp_checks.check_round(host().run_late)
 
 
-@needs_host
 def test_weeks_may_pass_between_two_ticks() -> None:
     cpp_checks.check_weeks(host())
 
 
-@needs_host
 def test_a_robot_that_is_not_ready_is_asked_again() -> None:
     cpp_checks.check_not_ready(host())
 
@@ -164,32 +132,27 @@ def test_a_robot_that_is_not_ready_is_asked_again() -> None:
 # -- tasks --------------------------------------------------------------------------------------
 
 
-@needs_host
 @pytest.mark.parametrize("seed", range(2))
 def test_random_codes_with_tasks(seed: int) -> None:
     cpp_tasks.check_task_codes(host(), seed, 5000)
 
 
-@needs_host
 @pytest.mark.sampled("first", keep=3)
 @pytest.mark.parametrize("first", range(0, 2000, 250))
 def test_random_programs_with_tasks(first: int) -> None:
     cpp_tasks.check_task_programs(host(), first, 250)
 
 
-@needs_host
 @pytest.mark.parametrize("begin_ms", [2**31 - 100, 2**32 - 100])
 def test_the_clock_of_tasks_may_wrap_around(begin_ms: int) -> None:
     cpp_tasks.check_task_clock(host(), begin_ms)
 
 
-@needs_host
 @pytest.mark.parametrize("late_ms", [1, 20, 21, 100])
 def test_turns_may_come_late(late_ms: int) -> None:
     cpp_tasks.check_late_tasks(host(), lambda rng: [rng.randint(0, late_ms) for _ in range(80)])
 
 
-@needs_host
 def test_weeks_may_pass_between_two_turns() -> None:
     def late(rng: random.Random) -> list[int]:
         return [rng.choice((0, 7, 30, rng.randrange(2**31 - 10**6))) for _ in range(80)]
@@ -197,7 +160,6 @@ def test_weeks_may_pass_between_two_turns() -> None:
     cpp_tasks.check_late_tasks(host(), late)
 
 
-@needs_host
 @pytest.mark.parametrize("not_ready", [2, 3])
 def test_a_task_whose_reading_is_not_ready_lets_the_others_go_on(not_ready: int) -> None:
     cpp_tasks.check_slow_tasks(host(), not_ready)
@@ -206,25 +168,21 @@ def test_a_task_whose_reading_is_not_ready_lets_the_others_go_on(not_ready: int)
 # -- images and arithmetic ----------------------------------------------------------------------
 
 
-@needs_host
 @pytest.mark.parametrize("seed", range(4))
 def test_images(seed: int) -> None:
     cpp_images.check_images(host(), seed, BATCH)
 
 
-@needs_host
 @pytest.mark.parametrize("seed", range(2))
 def test_images_of_programs(seed: int) -> None:
     """Header, code and devices, in this order, for robots of which some have other devices."""
     cpp_images.check_whole_images(host(), seed, 2000)
 
 
-@needs_host
 def test_long_images() -> None:
     cpp_images.check_long_images(host())
 
 
-@needs_host
 @pytest.mark.parametrize("name", cpp_checks.OPERATIONS)
 def test_arithmetic(name: str) -> None:
     """Two million operations in all."""

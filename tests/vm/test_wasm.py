@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import shutil
 import sys
 from collections.abc import Sequence
@@ -11,8 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.machines import MACHINES, Senses
-from tests.machines.wasm import missing
+from tests.machines import Senses
 from tests.project.test_directions import imported_by
 from tests.support.casefile import ROOT, Case
 from tests.support.command import Tsc
@@ -34,18 +32,8 @@ from tiniscript.vm.state import WAITING
 from tiniscript.vm.trace import AnyMachine
 from tools.builds import wasm
 
-needs_wasmtime = pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")
 needs_zig = pytest.mark.skipif(bool(wasm.missing()), reason=wasm.missing() or "there is a compiler")
 KIT = robots.load("tinibot").kit
-
-
-def test_the_wasm_machine_and_its_compiler_are_there() -> None:
-    """Without them this leg is left out, and says so; in CI that is a failure."""
-    reason = missing() or wasm.missing()
-    if reason:
-        assert not os.environ.get("CI"), reason
-        pytest.skip(reason)
-    assert "wasm" in MACHINES
 
 
 # -- the module ---------------------------------------------------------------------------------
@@ -98,7 +86,6 @@ def test_another_compiler_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
         wasm.main([])
 
 
-@needs_wasmtime
 def test_the_module_imports_the_robot_alone() -> None:
     """No heap, no system, and no path of the computer that made it."""
     from wasmtime import Engine, Module
@@ -124,7 +111,6 @@ def both(tsc: Tsc, *arguments: str) -> tuple[int, str, str]:
     return theirs.code, theirs.out, theirs.err
 
 
-@needs_wasmtime
 @pytest.mark.parametrize("case", having("tiniscript", "robot"))
 def test_run_says_the_same(case: Case, tsc: Tsc) -> None:
     robot, _ = robot_and_senses(case)
@@ -140,7 +126,6 @@ def test_run_says_the_same(case: Case, tsc: Tsc) -> None:
     assert code == (" FAULT " in out)
 
 
-@needs_wasmtime
 @pytest.mark.parametrize("program", ["SB|F(1, 50)", "SI|F(1, 50)", "PING|check_connection"])
 def test_every_way_to_start(program: str, tsc: Tsc, tmp_path: Path) -> None:
     both(tsc, "-e", program)
@@ -149,7 +134,6 @@ def test_every_way_to_start(program: str, tsc: Tsc, tmp_path: Path) -> None:
     assert both(tsc, str(image))[1].endswith(" DONE\n")
 
 
-@needs_wasmtime
 @pytest.mark.parametrize("language", ["en", "es"])
 def test_a_fault_has_its_line(language: str, tsc: Tsc) -> None:
     code, out, err = both(tsc, "-e", "F(1, 50)\nA = 0\nSHOW(5 / A)", "--lang", language)
@@ -159,7 +143,6 @@ def test_a_fault_has_its_line(language: str, tsc: Tsc) -> None:
     assert "3" in err
 
 
-@needs_wasmtime
 @pytest.mark.parametrize(
     ("waits", "at_ms"),
     [("W(2147483.647);W(0.001)", 2**31), ("W(2147483.647);W(2147483.647);W(3)", 2**32 + 2998)],
@@ -170,7 +153,6 @@ def test_time_is_over_for_good(waits: str, at_ms: int, tsc: Tsc) -> None:
     assert out == f"{at_ms} FAULT OVERFLOW\n"
 
 
-@needs_wasmtime
 @pytest.mark.parametrize(
     "arguments",
     [
@@ -256,7 +238,6 @@ def test_functions_are_called_alike_where_wasmtime_is_known_inside_or_not(
 # -- what it refuses ----------------------------------------------------------------------------
 
 
-@needs_wasmtime
 @each_row("case", listings_alone())
 def test_verdict_of_a_listing(case: Case) -> None:
     from tiniscript.vm.wasm import WasmImage
@@ -277,7 +258,6 @@ def test_verdict_of_a_listing(case: Case) -> None:
     assert bool(said[0]) == ("refused" in case.parts)
 
 
-@needs_wasmtime
 def test_refused_images() -> None:
     from tiniscript.vm.wasm import WasmImage
 
@@ -296,7 +276,6 @@ def test_refused_images() -> None:
         WasmImage(good, changed_kit)
 
 
-@needs_wasmtime
 def test_two_verdicts_are_our_mistake() -> None:
     bad = Image("SI", 0, b"\xff", 0, (ISA_MAJOR, ISA_MINOR))
     with pytest.raises(AssertionError, match="refuses what Python accepts: UNKNOWN_OPCODE"):
@@ -342,7 +321,6 @@ class Slow:
 PROGRAM = "B(0.3, 80); BEEP(0.2, 440); GRIPPER(90); SHOW(DISTANCE); SHOW(DISTANCE < 0); F(1, 50)"
 
 
-@needs_wasmtime
 @pytest.mark.parametrize("begin_ms", [0, 5, 2**31 - 100, 2**32 - 500])
 @pytest.mark.parametrize("budget", [1, 3, 100_000])
 def test_a_slow_robot_and_any_beginning(begin_ms: int, budget: int) -> None:
@@ -369,7 +347,6 @@ def test_a_slow_robot_and_any_beginning(begin_ms: int, budget: int) -> None:
     assert found[0][1][-1] == "off"
 
 
-@needs_wasmtime
 def test_a_watched_move_may_last_longer_than_the_clock() -> None:
     from tiniscript.vm.wasm import WasmImage
 
@@ -379,7 +356,6 @@ def test_a_watched_move_may_last_longer_than_the_clock() -> None:
     check_round(run)
 
 
-@needs_wasmtime
 def test_what_a_robot_raises_comes_out() -> None:
     from tiniscript.vm.wasm import WasmImage
 

@@ -7,11 +7,6 @@ import sys
 
 import pytest
 
-from tests.machines.wasm import missing
-
-pytest.importorskip("resource", reason="Windows has no limit for an address space")
-pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")
-
 LIMIT_BYTES = 1 << 30  # of addresses: less than wasmtime by itself takes for one memory
 MACHINES = """
 from tiniscript import compile_text, robots

@@ -14,7 +14,8 @@ from typing import NamedTuple
 ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
-from tests.machines.esp32 import Esp32Robot, missing
+from tests.machines.esp32 import Esp32Robot
+from tests.machines.host import missing
 from tests.machines.host_firmware import HostFirmware
 from tiniscript import robots
 from tiniscript.bytecode.image import Image, pack, unpack

@@ -1,0 +1,16 @@
+"""What a test needs on this computer: the stand-in that needs it asks for it."""
+
+from __future__ import annotations
+
+import os
+
+import pytest
+
+IS_CI = bool(os.environ.get("CI"))
+
+
+def need(why: str) -> None:
+    """Skip a test where something is missing; in CI that is a failure."""
+    if why:
+        assert not IS_CI, why
+        pytest.skip(why.strip().replace("\n", "; "))
