@@ -199,7 +199,6 @@ WAT = """(module (import "" "look" (func $look)) (export "look" (func $look))
   (func (export "trap") unreachable))"""
 
 
-@needs_wasmtime
 @pytest.mark.parametrize("is_known", [True, False])
 def test_functions_are_called_alike_where_wasmtime_is_known_inside_or_not(
     is_known: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
