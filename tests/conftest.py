@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from tests.machines.host import USER
-from tests.support import sampling
+from tests.support import order, sampling
 from tests.support.command import PROGRAM, Command, Tsc
 from tests.support.pty_robot import PtyRobot
 from tiniscript import robots
@@ -49,6 +49,7 @@ def pytest_configure(config: pytest.Config) -> None:
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     sampling.leave_out(config, items)
+    order.spread(items)
 
 
 def pytest_terminal_summary(

@@ -29,26 +29,36 @@ run() {
 
 run ruff check .
 run ruff format --check .
-# Types take one core; beside them runs what needs another one.
-types() {
+# Beside the tests, on what they leave of two cores; waited for at the end.
+beside() {
     run mypy
     [ -n "$QUICK" ] || run mypy --platform win32 --cache-dir .mypy_cache/win32 compiler/tiniscript
+    run tools.generate --check
+    [ -z "$QUICK" ] || return 0
+    # Every branch of what decides whether a robot may run an image is taken by a test that draws nothing.
+    run coverage run --branch --include="compiler/tiniscript/bytecode/verify.py,compiler/tiniscript/bytecode/image.py" \
+        -m pytest tests/bytecode/test_image.py tests/bytecode/test_verify.py tests/vm/test_cases.py \
+        -p no:xdist -p no:cacheprovider \
+        -k "test_image or test_verify and not random and not up_to_two or test_listing_runs and python"
+    run coverage report --show-missing --fail-under=100
 }
-types &
-TYPES=$!
-run tools.generate --check
+beside &
+BESIDE=$!
+finish() {
+    wait "$BESIDE" || fail "Types, generated files or branches: see above." \
+        "Tipos, archivos generados o ramas: mira arriba."
+}
 if [ -n "$QUICK" ]; then
     # shellcheck disable=SC2086 # names of files
     run pytest -n 2 --dist worksteal -k "not host and not keeps_to_its_size" $QUICK "$@"
-    wait "$TYPES"
+    finish
     exit
 fi
 # The page of tsc studio, of packages from npm; without it its tests are skipped and say so.
 run tools.builds.studio || [ -z "${CI:-}" ]
-wait "$TYPES"
 # A test that fails beside others runs once more, alone: one that passes there depends on the load. It is
 # named, so that somebody mends it. Where more than three fail, none of them runs again.
-run pytest -n 3 --dist worksteal "$@" || {
+run pytest -n 4 --dist worksteal "$@" || {
     code=$?
     failed=$("$PYTHON" -c 'import json; print(*json.load(open(".pytest_cache/v/cache/lastfailed")), sep="\n")') || exit
     [ "$code" = 1 ] && [ -n "$failed" ] && [ "$(printf '%s\n' "$failed" | wc -l)" -le 3 ] || exit "$code"
@@ -57,10 +67,4 @@ run pytest -n 3 --dist worksteal "$@" || {
 $failed" "Fallaron junto a otras pruebas y pasaron solas:
 $failed"
 }
-
-# Every branch of what decides whether a robot may run an image is taken by a test that draws nothing.
-run coverage run --branch --include="compiler/tiniscript/bytecode/verify.py,compiler/tiniscript/bytecode/image.py" \
-    -m pytest tests/bytecode/test_image.py tests/bytecode/test_verify.py tests/vm/test_cases.py \
-    -p no:xdist \
-    -k "test_image or test_verify and not random and not up_to_two or test_listing_runs and python"
-run coverage report --show-missing --fail-under=100
+finish

@@ -138,6 +138,7 @@ def test_every_robot_has_a_sketch_for_its_board() -> None:
         assert (board if name == robots.DEFAULT else f"{board}_{name}") in SKETCHES
 
 
+@pytest.mark.sampled("name", keep=3)
 @pytest.mark.parametrize("name", SKETCHES)
 def test_sketch_builds(project: Path, name: str) -> None:
     code, log = pio(project, "run", "-e", name)
@@ -160,6 +161,7 @@ def test_a_sketch_that_the_board_does_not_hold_is_refused(project: Path) -> None
     assert "is greater than maximum allowed (20000 bytes)" in log
 
 
+@pytest.mark.sampled("new", "old")
 @pytest.mark.parametrize(("new", "old"), NEW_NANOS.items())
 def test_a_nano_with_a_new_bootloader_gets_the_same_sketch(
     project: Path, new: str, old: str

@@ -53,6 +53,7 @@ class Sensing:
         self.hull = Hull(robot.body)
         self._chance = chance or Random(1)
         self._told = {number: list(values) for number, values in (told or {}).items()}
+        self._near: tuple[Pose, list[Segment]] | None = None  # what a robot might touch there
 
     def read(self, number: int, pose: Pose) -> int:
         """Return the reading of a sensor at `pose`."""
@@ -121,10 +122,12 @@ class Sensing:
 
     def _is_touched(self, place: Place, pose: Pose) -> bool:
         """Return whether the body touches something on the side where a bumper sits."""
-        # most often everything is far away, and that is quickly known
-        reach_cm = self.hull.reach_cm + TOUCH_CM
-        near = [each for each in self.obstacles if distance(each, *pose[:2]) < reach_cm]
-        contact = self.hull.contact(pose, near)
+        # most often everything is far away: that is quickly known, and asked many times in a tick
+        if self._near is None or self._near[0] != pose:
+            reach_cm = self.hull.reach_cm + TOUCH_CM
+            near = [each for each in self.obstacles if distance(each, *pose[:2]) < reach_cm]
+            self._near = pose, near
+        contact = self.hull.contact(pose, self._near[1]) if self._near[1] else None
         if contact is None or contact.gap_cm >= TOUCH_CM:
             return False
         (_, _, heading), point = pose, contact.theirs
