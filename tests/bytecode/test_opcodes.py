@@ -7,8 +7,10 @@ from pathlib import Path
 import pytest
 
 from tests.support.casefile import ROOT, read
+from tiniscript import compile_text, robots
 from tiniscript.bytecode import opcodes
 from tiniscript.bytecode.disassembly import listing, read_listing, rows
+from tiniscript.bytecode.image import unpack
 from tiniscript.bytecode.opcodes import (
     BY_NAME,
     ESCAPE,
@@ -174,6 +176,15 @@ def test_listing_of_every_instruction_reads_back() -> None:
 def test_listing_of_anything_reads_back() -> None:
     code = bytes(range(256)) + b"\x44"
     assert read_listing(listing(code)) == code
+
+
+def test_a_listing_names_the_devices_that_the_kit_has() -> None:
+    kit = robots.load("tinibot").kit
+    names = [sensor.name for sensor in kit.sensors]
+    code = unpack(compile_text("; ".join(f"SHOW({name})" for name in names), kit).image).code
+    remarks = (line.partition(" ; ")[2] for line in listing(code, kit=kit).splitlines())
+    assert [each for each in remarks if each] == names
+    assert ";" not in listing(code)
 
 
 @pytest.mark.parametrize("text", ["0001  58", "0000  5", "zzzz  58", "0000 58", "nonsense"])

@@ -11,7 +11,7 @@ from tests.machines.sketch_board import built
 from tests.support.casefile import ROOT, example_robot, sketch_examples
 from tiniscript import compile_text, robots
 from tiniscript.cli.paths import is_foreign
-from tiniscript.sketch.names import RESERVED, Names
+from tiniscript.sketch.names import RESERVED, Names, counter
 from tiniscript.sketch.texts import IDENTIFIERS, LOCALS, TEXTS
 from tiniscript.sketch.writing import sketch_of
 
@@ -230,3 +230,7 @@ def test_the_sketch_on_the_page_is_what_tsc_writes(name: str, language: str) -> 
     before, _, after = page.partition("```cpp\n")
     program = before.rpartition("```tiniscript\n")[2].partition("```")[0]
     assert "\n" + after.partition("```")[0] in sketch(program, language)
+
+
+def test_each_loop_inside_others_has_a_counter_of_its_own() -> None:
+    assert [counter(depth) for depth in range(6)] == ["i", "j", "k", "i4", "i5", "i6"]

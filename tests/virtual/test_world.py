@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import re
+from io import BytesIO
 from pathlib import Path
 from string import Formatter
 
 import pytest
+from PIL import Image
 
 from tests.support.casefile import ROOT
 from tests.support.command import Tsc
@@ -14,7 +16,9 @@ from tests.support.virtual_robot import floor, robot_in
 from tiniscript import robots
 from tiniscript.robots.profile import LANGUAGES
 from tiniscript.virtual import world, worlds
+from tiniscript.virtual.driving import Hull
 from tiniscript.virtual.geometry import Point, Segment
+from tiniscript.virtual.picture import LARGEST, png
 from tiniscript.virtual.world import WorldRefused
 from tiniscript.virtual.worlds import read
 
@@ -182,3 +186,12 @@ def test_files_that_are_no_worlds(tsc: Tsc, tmp_path: Path, verb: list[str]) -> 
             done = tsc(*verb, "--world", name, "--lang", language)
             assert done.code == 2
             assert (said in done.err) == (language == "en"), done.err
+
+
+def test_a_picture_has_the_longer_side_that_it_may_have() -> None:
+    text = """
+        floor = { width_cm = 130, height_cm = 70, border = true }
+        start = { x_cm = 20, y_cm = 20, heading = 0 }"""
+    room, hull = read(text, "room"), Hull(robots.load("tinibot").body)
+    made = Image.open(BytesIO(png(room, hull, [room.start], room.start, "a room")))
+    assert made.size == (LARGEST, 716)
