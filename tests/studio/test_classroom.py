@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import dataclasses
+import json
+from collections.abc import Callable
+from pathlib import Path
 from threading import Thread
 from typing import Any
 
 import pytest
 
 from tests.support.waiting import HANGS_S
-from tiniscript.studio import classroom
+from tiniscript.cli.commands import studio as command
+from tiniscript.studio import class_keeping, classroom
 from tiniscript.studio import classroom as rate_of
 from tiniscript.studio.classroom import Classroom, Rate
 from tiniscript.studio.robot_link import BadRequest
@@ -26,6 +30,8 @@ class FakeRobot:
     name: str = "TINI"
     left: str = ""
     stopped: int = 0
+    was_left: bool = False
+    silent_s: float = 0.0
 
     def leave(self, why: str) -> None:
         self.left = why
@@ -111,6 +117,7 @@ def test_a_turn_ends_after_its_time_only_if_somebody_waits() -> None:
     room.now_s += 500
     assert room.here(ana) | {"name": ""} == {
         "name": "", "place": 0, "waiting": 0, "robots": 1, "robot": "", "left_s": 0,
+        "hand": False,
     }  # fmt: skip
     room.here(luz, True)
     assert robot.left == "turn_over"
@@ -137,9 +144,49 @@ def test_a_page_that_does_not_take_its_turn_loses_it() -> None:
     ana, luz = room.joins("Ana"), room.joins("Luz")
     room.here(ana, True)
     room.here(luz, True)
-    room.now_s += 11
+    for _ in range(10):
+        room.now_s += 1.01
+        room.here(ana)  # is there, and does not connect
     assert room.here(luz)["place"] == 0
     assert room.here(ana)["place"] == -1
+
+
+def test_who_leaves_in_whatever_way_is_followed_within_three_seconds() -> None:
+    """A page that was closed gets no turn and keeps none; who was passed over keeps the place. A
+    robot that a page has left before it answered is as good as before."""
+    asleep: list[FakeRobot] = []
+
+    def waited(leaves: Callable[[Room, str], None]) -> float:
+        room = Room()
+        ana, luz = room.joins("Ana"), room.joins("Luz")
+        room.here(ana, True)
+        room.here(luz, True)
+        leaves(room, ana)
+        began_s = room.now_s
+        while room.here(luz)["place"] != 0:
+            room.now_s += 0.3  # as often as the next one's page asks
+            for robot in asleep:
+                robot.silent_s += 0.3
+        return room.now_s - began_s
+
+    def leaves_before(room: Room, ana: str) -> None:
+        room.now_s += 1  # its last word
+
+    def leaves_while_it_connects(room: Room, ana: str) -> None:
+        robot = room.connects(ana)
+        robot.name, robot.was_left, robot.has_ended = "", True, True
+
+    def sleeps(room: Room, ana: str) -> None:
+        asleep.append(room.connects(ana))
+
+    for way in (leaves_before, leaves_while_it_connects, sleeps):
+        assert waited(way) < 2.5, way.__name__
+    room = Room()
+    ana, luz = room.joins("Ana"), room.joins("Luz")
+    room.here(ana, True)
+    room.now_s += 2.5
+    assert room.here(luz, True)["place"] == 0
+    assert room.here(ana)["place"] == 1
 
 
 def test_a_page_that_is_gone_is_passed_over_and_waits_no_more() -> None:
@@ -202,8 +249,10 @@ def test_another_turn_is_reached_by_no_name() -> None:
 
 
 @pytest.mark.parametrize(
-    "do", ["ports", "class", "class_over", "class_text", "fly", None, ["stop"]]
-)
+    "do",
+    ["ports", "class", "class_over", "class_text", "class_work", "class_bring", "class_give_back",
+     "class_forget", "class_anew", "class_hand", "fly", None, ["stop"]],
+)  # fmt: skip
 def test_what_only_the_teacher_may_ask(do: object) -> None:
     room = Room()
     eve = room.joins("Eve")
@@ -283,14 +332,14 @@ def test_a_full_class_gives_away_the_places_of_who_has_gone() -> None:
     room.here(first, True)
     room.connects(first)
     room.now_s += 1
-    for k in range(1, classroom.MOST_PUPILS):
+    for k in range(1, class_keeping.MOST_PUPILS):
         room.joins(f"p{k}", f"198.51.100.{k}")
     more = {"do": "join", "code": room.made.code, "name": "more"}
     room.now_s += 30
     assert room.made.answer("", HERE, more) == {"failure": "class_full"}
     room.now_s += 31
     assert "token" in room.made.answer("", HERE, more)
-    assert len(room.teaches("class")["pupils"]) == classroom.MOST_PUPILS
+    assert len(room.teaches("class")["pupils"]) == class_keeping.MOST_PUPILS
     assert room.made.most_bytes(first) > 0  # it is her turn
 
 
@@ -313,7 +362,118 @@ def test_a_huge_program_is_cut() -> None:
     with pytest.raises(BadRequest):
         room.here(eve, text=["x"])
     number = room.number("Eve")
-    assert len(room.teaches("class_text", pupil=number)["text"]) == classroom.TEXT_CHARACTERS
+    assert len(room.teaches("class_text", pupil=number)["text"]) == class_keeping.TEXT_CHARACTERS
+
+
+def test_what_a_page_tells_of_its_work_is_small_and_plain() -> None:
+    room = Room()
+    eve = room.joins("Eve")
+    room.here(eve, lessons=["01_first_line"] * 1000, robot="liner", is_right=False, hand=True)
+    pupil = room.teaches("class")["pupils"][0]
+    assert len(pupil["lessons"]) == class_keeping.MOST_LESSONS
+    assert (pupil["is_right"], pupil["hand"] > 0) == (False, True)
+    for wrong in (
+        {"lessons": "01"}, {"lessons": ["<b>"]}, {"lessons": ["x" * 61]}, {"lessons": [5]},
+        {"robot": "x"}, {"robot": ["liner"]}, {"text": 5},
+    ):  # fmt: skip
+        with pytest.raises(BadRequest):
+            room.here(eve, **wrong)
+    assert room.here(eve, is_right="x", hand="x")["hand"]
+    assert not room.here(eve, hand=False)["hand"]
+    room.here(eve, hand=True)
+    room.teaches("class_hand", pupil=room.number("Eve"))
+    assert not room.here(eve)["hand"]
+
+
+def test_a_name_gets_its_work_from_the_teacher_alone() -> None:
+    room = Room()
+    work = {"name": "Ana", "text": "F(1, 50)", "robot": "tinibot", "lessons": ["01_first_line"]}
+    room.teaches("class_bring", **work)
+    eve = room.joins("Ana")  # whoever that is
+    assert "given" not in room.here(eve)
+    assert room.teaches("class")["kept"] == [{"name": "Ana", "lessons": ("01_first_line",)}]
+    room.teaches("class_give_back")
+    given = {"text": "F(1, 50)", "robot": "tinibot", "lessons": ("01_first_line",)}
+    for _ in range(2):  # an answer may be lost
+        assert room.here(eve)["given"] == given
+    assert "given" not in room.here(eve, took=True)
+    assert room.teaches("class")["kept"] == []
+    for wrong in ({"name": " "}, {"name": 5}, {"text": None}, {"robot": "x"}, {"lessons": [1]}):
+        with pytest.raises(BadRequest):
+            room.teaches("class_bring", **{**work, **wrong})
+    for k in range(class_keeping.MOST_PUPILS):
+        room.teaches("class_bring", **{**work, "name": f"p{k}"})
+    with pytest.raises(BadRequest):
+        room.teaches("class_bring", **{**work, "name": "more"})
+
+
+def test_who_was_removed_finds_the_work_again() -> None:
+    room = Room()
+    ana = room.joins("Ana")
+    room.here(ana, text="F(1, 50)", robot="tinibot")
+    room.teaches("class_remove", pupil=room.number("Ana"))
+    assert [each["name"] for each in room.teaches("class_work")["pupils"]] == ["Ana"]
+    again = room.joins("Ana")
+    room.teaches("class_give_back")
+    assert room.here(again)["given"]["text"] == "F(1, 50)"
+    room.teaches("class_anew")
+    assert room.teaches("class_work") == {"pupils": []}
+    with pytest.raises(BadRequest):
+        room.here(again)
+
+
+def test_a_crash_ends_no_class(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The next `tsc studio --class` has the same pupils, with their tokens, and their work."""
+    file = tmp_path / "class.json"
+    monkeypatch.setattr(class_keeping, "path", lambda: file)
+    room = Room()
+    ana, luz = room.joins("Ana"), room.joins("Luz")
+    room.here(ana, text="F(1, 50)", robot="tinibot", lessons=["01_first_line"])
+    room.teaches("class_remove", pupil=room.number("Luz"))
+    newest = command._keep(room.made, "")
+    assert file.stat().st_mode & 0o077 == 0  # it has tokens
+    when_s = file.stat().st_mtime_ns
+    assert command._keep(room.made, newest) == newest and file.stat().st_mtime_ns == when_s
+    after = Room(0)
+    assert command._go_on(after.made) == 1
+    state = after.teaches("class")
+    assert (state["code"], state["goes_on"]) == (room.made.code, True)
+    assert [each["port"] for each in state["robots"]] == ["port0"]
+    assert after.here(ana)["name"] == "Ana"
+    assert after.teaches("class_work") == room.teaches("class_work")
+    with pytest.raises(BadRequest):
+        after.here(luz)
+    assert not after.teaches("class_anew")["goes_on"]
+    room.teaches("class_over")
+    assert command._keep(room.made, newest) == "" and not file.exists()
+    assert command._go_on(Room().made) == 0
+
+
+def test_a_damaged_class_goes_on_with_what_is_whole(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    file = tmp_path / "class.json"
+    monkeypatch.setattr(class_keeping, "path", lambda: file)
+    room = Room()
+    token = room.joins("Ana")
+    room.here(token, text="F(1, 50)", robot="tinibot")
+    command._keep(room.made, "")
+    whole = json.loads(file.read_text())
+    for data in ("", "{", "[" * 100_000, "[]", json.dumps({**whole, "form": 2}),
+                 json.dumps({**whole, "kept_s": whole["kept_s"] - 3700})):  # fmt: skip
+        file.write_text(data)
+        assert command._go_on(Room().made) == 0
+    row = whole["pupils"][0]
+    bad = [5, {**row, "token": "x"}, {**row, "name": " "}, {**row, "address": 5}, {"name": "Eve"}]
+    damaged = {**whole, "pupils": [*bad, row], "kept": [5, {"name": "Eve"}], "robots": [5, ""]}
+    file.write_text(json.dumps({**damaged, "code": "<b>"}))
+    after = Room(0)
+    assert command._go_on(after.made) == 1
+    assert after.here(token)["name"] == "Ana" and after.made.code != room.made.code
+    file.write_text(
+        json.dumps({**whole, "pupils": [{**row, "token": f"{k:032x}"} for k in range(99)]})
+    )
+    assert command._go_on(Room().made) == class_keeping.MOST_PUPILS
 
 
 # -- the teacher
@@ -331,7 +491,7 @@ def test_the_teacher_sees_stops_and_takes_back() -> None:
     ]  # fmt: skip
     assert state["robots"] == [{"port": "port0", "name": "", "pupil": "Ana", "left_s": 60}]
     number = room.number("Ana")
-    assert room.teaches("class_text", pupil=number) == {"text": "F(1, 50)"}
+    assert room.teaches("class_text", pupil=number)["text"] == "F(1, 50)"
     room.teaches("class_stop", pupil=number)
     assert robot.stopped == 1 and not robot.has_ended
     room.teaches("class_next", pupil=number)
@@ -447,7 +607,7 @@ def test_an_address_has_three_places_at_once_unless_the_teacher_allows_more() ->
     tokens = [room.joins(f"p{k}") for k in range(classroom.PLACES)]
     assert enters("more") == {"failure": "class_crowded"}
     assert "token" in enters("other", "192.0.2.10")
-    room.now_s += classroom.HERE_S + 1  # the first one's page was closed, and is opened again
+    room.now_s += classroom.PLACE_S + 1  # the first one's page was closed, and is opened again
     for token in tokens[1:]:
         room.here(token)
     assert "token" in enters("again")

@@ -5,26 +5,28 @@
 
 from __future__ import annotations
 
+import json
 import sys
 import time
 from collections.abc import Iterator
 from contextlib import ExitStack
+from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.studio.test_page_for_everyone import LOOK, SCREENS
+from tests.studio.test_page_for_everyone import LOOK, SCREENS, axe
 from tests.support import studio
 from tests.support.command import FOREVER
 from tests.support.pty_robot import PtyRobot
-from tests.support.studio import HUNG_MS, Class, Pages, checked, drives, hang, write
-from tiniscript import robots
+from tests.support.studio import HUNG_MS, Class, Pages, checked, drives, hang, image, write
+from tests.support.waiting import until
+from tiniscript import compile, robots
 from tiniscript.studio.attending import LATCH_S
-from tiniscript.studio.building import MODULES
 
 if TYPE_CHECKING:
-    from playwright.sync_api import Browser, Page
+    from playwright.sync_api import Browser, Locator, Page
 
 KIT = robots.load("tinibot").kit
 HOSTILE = "<img src=x onerror=1>"
@@ -96,12 +98,16 @@ def joined(pages: Pages, taught: Class, name: str) -> Page:
     return page
 
 
+def tile(teacher: Page, name: str) -> Locator:
+    return teacher.locator("#wall li").filter(has_text=name)
+
+
 def asks(page: Page) -> None:
     page.click("[data-text=class_ask]")
 
 
 def teaches(pages: Pages, taught: Class) -> Page:
-    page = pages.visit(taught.server.entrance())
+    page = pages.visit(taught.server.entrance(), "wall")
     page.locator("[data-teacher=class_count]").wait_for(state="attached")
     return page
 
@@ -110,6 +116,7 @@ def test_three_pupils_share_a_robot(
     ana: Page, teacher: Page, pages: Pages, taught: Class, robot: PtyRobot
 ) -> None:
     luz, teo = (joined(pages, taught, name) for name in ("Luz", "Teo"))
+    big = teacher.locator("#big_pupil")
     asks(ana)
     said(ana, "It is your turn. Nobody is waiting.")
     linked(ana, "Connected: ")
@@ -124,28 +131,31 @@ def test_three_pupils_share_a_robot(
     luz.keyboard.press("Escape")
     time.sleep(0.5)
     assert robot.moves
-    listed = teacher.locator("#class ul").first.locator("li")
-    rows = [listed.filter(has_text=name) for name in ("Ana", "Luz", "Teo")]
-    rows[0].filter(has_text="Ana drives ").wait_for()
-    rows[2].filter(has_text="Teo waits, place 2").wait_for()
-    for action in ("stop", "class_next"):  # nothing of a turn beside who has none
-        visible = [row.locator(f"[data-text={action}]").is_visible() for row in rows]
-        assert visible == [True, False, False]
-    rows[0].locator("[data-text=class_see]").click()
-    teacher.locator("#class pre").filter(has_text=FOREVER.split(";")[0]).wait_for()
-    teacher.click("#stop")
+    tile(teacher, "Ana").locator(".badge.drives").wait_for()
+    tile(teacher, "Teo").filter(has_text="place 2").wait_for()
+    for name, is_driving in (("Teo", False), ("Ana", True)):  # no turn of who has none is ended
+        tile(teacher, name).locator(".see").click()
+        assert big.locator("h2").inner_text() == name
+        for action in ("stop", "class_next"):
+            assert big.locator(f"[data-text={action}]").is_visible() is is_driving
+        if name == "Teo":
+            big.locator("[data-text=close]").click()
+    big.locator("pre").filter(has_text=FOREVER.split(";")[0]).wait_for()
+    big.locator("img[src^=blob]").wait_for()
+    big.locator("[data-text=class_stop_all]").click()
     robot.until(lambda: not robot.moves, "the teacher stops it")
     linked(ana, "Stopped: the robot has confirmed it.")
     teacher.locator("#stops").filter(has_text="STOP: 1 of 1 robots have confirmed it.").wait_for()
     assert not teacher.locator("#stops .wrong").count()
     time.sleep(LATCH_S)
     drives(ana, robot)
-    rows[0].locator("[data-text=stop]").click()
+    big.locator("[data-text=stop]").click()
     robot.until(lambda: not robot.moves, "the teacher stops this one")
     time.sleep(LATCH_S)
     drives(ana, robot)
-    rows[0].locator("[data-text=class_next]").click()
+    big.locator("[data-text=class_next]").click()
     robot.until(lambda: not robot.moves, "the turn is over")
+    big.locator("[data-text=close]").click()
     linked(ana, "Your turn is over, and the robot was stopped.")
     linked(luz, "Connected: ")
     luz.click("#link_leave")
@@ -194,11 +204,18 @@ def test_a_wrong_code_is_said_and_a_pupil_is_removed(
     checked(page)
     page.click("#side_real")
     said(page, f"Estás en la clase, {HOSTILE}"[:40])
-    row = teacher.locator("#class ul").first.locator("li").filter(has_text=HOSTILE)
+    row = tile(teacher, HOSTILE)
     row.wait_for()
-    assert teacher.locator("#class img").count() == page.locator("#class_pupil img").count() == 0
-    row.locator("[data-text=class_remove]").click()
+    assert (
+        teacher.locator("#class img[src=x]").count()
+        == page.locator("#class_pupil img").count()
+        == 0
+    )
+    row.hover()
+    row.locator(".out").click()
     said(page, "Ahora no estás en la clase.")
+    row.locator(".see").and_(teacher.locator("[aria-label*='not here']")).wait_for()
+    row.locator(".out").click()  # nor is the work kept then
     row.wait_for(state="detached")
     assert [each for each in pages.wrong if "403" not in each] == []
     pages.wrong.clear()
@@ -221,14 +238,16 @@ def test_a_robot_that_does_not_confirm_a_stop_is_red(
 def test_robots_are_given_and_taken(ana: Page, teacher: Page, robot: PtyRobot) -> None:
     asks(ana)
     linked(ana, "Connected: ")
+    teacher.click("#class_settings")
     teacher.click("[data-text=class_take]")
     linked(ana, "Your turn is over, and the robot was stopped.")
     said(ana, "Robots: 0.")
-    teacher.click("#class [data-text=link_look]")
-    teacher.locator(f"#class select option[value='{robot.port}']").wait_for(state="attached")
-    teacher.locator("#class select").select_option(robot.port)
+    teacher.click("#class_window [data-text=link_look]")
+    teacher.locator(f"#class_window select option[value='{robot.port}']").wait_for(state="attached")
+    teacher.locator("#class_window select").select_option(robot.port)
     teacher.click("[data-text=class_give]")
     said(ana, "Robots: 1.")
+    teacher.click("#class_window [data-text=close]")
 
 
 def test_a_robot_that_is_off_is_said(ana: Page, robot: PtyRobot) -> None:
@@ -244,6 +263,8 @@ def test_everything_is_seen_and_axe_finds_nothing(
     longest = joined(pages, taught, "A" * 24)
     asks(longest)
     linked(longest, "Connected: ")
+    longest.click("#class_hand")
+    tile(teacher, "A" * 24).locator(".hand").wait_for()
     for page in (longest, teacher):
         for width, height in SCREENS:
             page.set_viewport_size({"width": width, "height": height})
@@ -251,9 +272,81 @@ def test_everything_is_seen_and_axe_finds_nothing(
                 page.select_option("#language", language)
                 checked(page)
                 assert page.evaluate(LOOK) == []
-        page.evaluate((MODULES / "axe-core" / "axe.min.js").read_text(encoding="utf-8"))
-        found = page.evaluate("axe.run()")
-        assert [(each["id"], each["nodes"][0]["html"]) for each in found["violations"]] == []
+        assert axe(page) == []
+    for opens, closes in (
+        ("#class_come", "#big_code [data-text=close]"),
+        ("#wall .see >> nth=0", "#big_pupil [data-text=close]"),
+        ("#class_settings", "#class_window [data-text=close]"),
+    ):
+        teacher.click(opens)
+        for theme in ("light", "dark"):
+            teacher.emulate_media(color_scheme=theme)
+            assert axe(teacher) == [], opens
+        teacher.click(closes)
+    assert axe(teacher) == []  # the wall, in the dark
+    teacher.emulate_media(color_scheme="light")
+    teacher.select_option("#language", "en")
+    tile(teacher, "A" * 24).locator(".hand").click()
+    longest.locator("#class_hand[aria-pressed=false]").wait_for()
+
+
+def test_thirty_tiles_are_seen_without_scrolling(teacher: Page, taught: Class) -> None:
+    """Their pictures are made of the pupils' texts."""
+    room = taught.room
+    room.teach({"do": "class_places", "places": 60})
+    tokens = []
+    for k in range(30 - teacher.locator("#wall li").count()):
+        asked = {"do": "join", "code": room.code, "name": f"Pupil {k + 1}"}
+        tokens.append(room.answer("", "192.0.2.7", asked)["token"])
+        text = "SI|F(1, 50);" * (k % 3 + 1)
+        here = {"do": "here", "text": text, "robot": "tinibot", "lessons": ["01_first_line"]}
+        room.answer(tokens[k], "192.0.2.7", here)
+    for language, (width, height) in product(("en", "es"), ((1366, 768), (1024, 600))):
+        teacher.set_viewport_size({"width": width, "height": height})
+        teacher.select_option("#language", language)
+        teacher.locator("#wall li").nth(29).wait_for()
+        assert teacher.evaluate(LOOK) == []
+        sizes = "e => [e.scrollHeight - e.clientHeight, e.scrollWidth - e.clientWidth]"
+        assert teacher.locator("#wall").evaluate(sizes) == [0, 0]
+    tile(teacher, "Pupil 7").locator("img[src^=blob]").wait_for()
+    assert tile(teacher, "Pupil 7").locator("i.done").count() == 1
+    teacher.select_option("#language", "en")
+    for pupil in room.teach({"do": "class"})["pupils"]:
+        if pupil["name"].startswith("Pupil "):
+            room.teach({"do": "class_remove", "pupil": pupil["number"]})
+    for kept in room.teach({"do": "class"})["kept"]:
+        room.teach({"do": "class_forget", "name": kept["name"]})
+
+
+def test_the_work_of_a_class_is_saved_opened_and_given_back(
+    ana: Page, teacher: Page, taught: Class, tmp_path: Path
+) -> None:
+    """By a teacher's press alone: whoever takes a name gets nothing by it."""
+    write(ana, "F(1, 77)")
+    until(lambda: "F(1, 77)" in str(taught.room.work()), "the class has it")
+    teacher.click("#class_settings")
+    with teacher.expect_download() as saving:
+        teacher.click("[data-text=class_save]")
+    file = tmp_path / "class.json"
+    saving.value.save_as(file)
+    found = {each["name"]: each["text"] for each in json.loads(file.read_text())["pupils"]}
+    assert found["Ana"] == "F(1, 77)"
+    write(ana, "F(1, 33)")
+    for name, says in (("bad.json", "bad.json is no saved work"), ("class.json", "Opened: ")):
+        (tmp_path / "bad.json").write_text('{"tiniscript_class": 1, "pupils": [{"name": 5}]}')
+        teacher.click("#class_settings")
+        teacher.set_input_files("#class_window input[type=file]", tmp_path / name)
+        teacher.locator("#class_said").filter(has_text=says).wait_for()
+    assert image(ana) == compile("F(1, 33)").image
+    teacher.click("#class_bar [data-text=class_give_back]")
+    ana.locator("#note").filter(has_text="Your teacher gave you back your work.").wait_for()
+    checked(ana)
+    assert image(ana) == compile("F(1, 77)").image
+    teacher.locator("#class_bar [data-text=class_give_back]").wait_for(state="hidden")
+    pupils = [each["name"] for each in taught.room.teach({"do": "class"})["pupils"]]
+    for kept in taught.room.teach({"do": "class"})["kept"]:
+        taught.room.teach({"do": "class_forget", "name": kept["name"]})
+    assert "Ana" in pupils
 
 
 @pytest.mark.parametrize("erases", [True, False])
@@ -272,9 +365,10 @@ def ends(pages: Pages, taught: Class, erases: bool) -> None:
     ana.click("#new")
     teacher = teaches(pages, taught)
     assert taught.server.entrances.token not in teacher.evaluate("location.href")
+    teacher.click("#class_settings")
     if erases:
-        teacher.check("#class input[type=checkbox]")
-    teacher.click("[data-text=class_end]")
+        teacher.check("#class_window input[type=checkbox]")
+    teacher.click("button[data-text=class_end]")
     teacher.click("[data-text=class_end_sure]")
     teacher.locator("[data-teacher=class_over]").wait_for(state="attached")
     assert teacher.locator("#class").inner_text().strip() == "The class is over."

@@ -198,7 +198,7 @@ class Pages:
     def visit(
         self, address: str, view: str = "text", *, is_alone: bool = False, **options: Any
     ) -> Page:
-        """Open an address of the page, for a new visitor.
+        """Open an address of the page, for a new visitor; the teacher's has the view `wall`.
 
         With `is_alone`, or options of Playwright's, in a context that no other visitor gets.
         """
@@ -211,7 +211,7 @@ class Pages:
         checked(page)
         if view == "text":
             page.click("#view_text")
-        else:
+        elif view == "blocks":
             shown(page)
         return page
 

@@ -39,7 +39,8 @@ STAMP = building.STAMP
 LICENCES = "licences.txt"
 # What a browser fetches of Pyodide; its archive of Python's library is made anew.
 PYODIDE = ("pyodide.asm.mjs", "pyodide.asm.wasm")
-COPIED = ("style.css", "manifest.webmanifest", "icon.svg", "more.svg", "less.svg")
+COPIED = ("style.css", "class/class.css", "manifest.webmanifest", "icon.svg", "more.svg",
+          "less.svg")  # fmt: skip
 # Pictures of Blockly: of its bin, its buttons, and the hand over a block.
 BLOCKLY = MODULES / "blockly"
 PICTURES = ("sprites.svg", "handopen.cur", "handclosed.cur", "handdelete.cur", "delete-icon.svg",
@@ -132,7 +133,7 @@ def build(page: Path = PAGE) -> None:
 def put_own(page: Path) -> None:
     """Put the page's own files into a folder, but for its modules."""
     for name in COPIED:
-        shutil.copyfile(SOURCES / "src" / name, page / name)
+        shutil.copyfile(SOURCES / "src" / name, page / Path(name).name)
     html = (SOURCES / "src" / "index.html").read_text(encoding="utf-8")
     (page / "index.html").write_text(html.replace("POLICY", POLICY), encoding="utf-8")
 

@@ -79,11 +79,16 @@ class Attending:
 
     @property
     def is_attended(self) -> bool:
-        return self._clock() - self._heard_s <= HEARD_S
+        return self.silent_s <= HEARD_S
+
+    @property
+    def silent_s(self) -> float:
+        """For how long the page has not been heard."""
+        return self._clock() - self._heard_s
 
     @property
     def has_left(self) -> bool:
-        return self._clock() - self._heard_s > LEFT_S
+        return self.silent_s > LEFT_S
 
     def tell(self, news: list[Json]) -> None:
         with self._lock:

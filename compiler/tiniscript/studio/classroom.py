@@ -3,7 +3,9 @@
 A pupil joins with the code of the class and gets a token. Whoever wants a robot stands in one
 queue; a turn ends when the pupil leaves the robot or is not heard, and after a time if somebody
 waits. A pupil reaches only the robot of their own turn: the page of a request is never one that a
-pupil names. Everything is forgotten when the process ends. Knows no HTTP and no clock of its own.
+pupil names. A pupil's page tells of its work, and whether a hand is up; who joins again gets the
+work of that name back only from the teacher. Knows no HTTP, no file (`class_keeping`) and no clock
+of its own.
 """
 
 from __future__ import annotations
@@ -11,12 +13,24 @@ from __future__ import annotations
 import hmac
 import secrets
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass, field
 from threading import RLock
 from time import monotonic
 
+from tiniscript import robots
+from tiniscript.lessons import catalogue
 from tiniscript.link.port_names import same_for_all
-from tiniscript.source import printable
+from tiniscript.studio.class_keeping import (
+    MOST_LESSONS,
+    MOST_PUPILS,
+    NOTHING,
+    TEXT_CHARACTERS,
+    Work,
+    is_lesson,
+    is_token,
+    plain_name,
+)
 from tiniscript.studio.entrances import new_token
 from tiniscript.studio.hosted_robot import HostedRobot
 from tiniscript.studio.hosting import PORT_CHARACTERS, Hosting, listed
@@ -55,14 +69,21 @@ class Rate:
 
 @dataclass(eq=False)
 class Pupil:
-    """`waits`: the pupil wants a robot; who has a smaller number is earlier."""
+    """`waits` and `hand`: the pupil wants a robot, or help; who has a smaller number is earlier.
+
+    `given` is work that the teacher has given back and the page has not got yet.
+    """
 
     number: int
     name: str
     address: str
     heard_s: float
-    text: str = ""
+    work: Work = NOTHING
+    version: int = 0  # of the work
+    is_right: bool = True  # a program without mistakes
     waits: int | None = None
+    hand: int | None = None
+    given: Work | None = None
     knows_end: bool = False
     # The page's name for `hosting`: no page of the teacher's has it.
     page: str = field(default_factory=lambda: f"pupil-{secrets.token_hex(16)}")
@@ -70,17 +91,20 @@ class Pupil:
 
 @dataclass(eq=False)
 class ClassRobot:
-    """`hosted` is the connection of this turn, once the pupil's page has taken it."""
+    """`hosted` is the connection of this turn, once the pupil's page has taken it; `waited` is the
+    place in the queue that the pupil had."""
 
     port: str
     name: str
     pupil: Pupil | None = None
     hosted: HostedRobot | None = None
+    waited: int | None = None
     began_s: float = 0.0
     free_s: float = 0.0
 
     def begin(self, pupil: Pupil, now_s: float) -> None:
         self.pupil, self.hosted, self.began_s = pupil, None, now_s
+        self.waited, pupil.waits = pupil.waits, None
 
     def end(self) -> None:
         self.pupil = self.hosted = None
@@ -89,16 +113,16 @@ class ClassRobot:
 LETTERS = "23456789ABCDEFGHJKLMNPQRSTUVWXYZ"  # none looks like another
 CODE_LETTERS = 6  # a thousand million codes
 JOIN_BYTES = 1000
-NAME_CHARACTERS = 24
-TEXT_CHARACTERS = 20_000  # of a program, for the teacher
-MOST_PUPILS = 60
 PLACES = 3  # of one address; the teacher may allow more
 MOST_ROBOTS = 40
 TURN_S = 180
 SHORTEST_S, LONGEST_S = 10, 3600
 CONNECT_S = 10.0  # for a page to take its turn
 QUEUE_S = 20.0  # a page that is silent for longer waits no more
-HERE_S = 5.0  # a page that was heard since then may get a turn
+# A page that was heard since then may get a turn, and keeps one while others wait. It asks once a
+# second. With the time of a look the next one has waited less than 3 s.
+HERE_S = 2.0
+PLACE_S = 5.0  # a page that is silent for longer gives its place at a full address away
 REST_S = 10.0  # of a robot with which a turn has failed
 SILENT_S = 60.0  # after which a place in a full class is given away
 OVER_S = 6.0  # for pages to hear that the class is over
@@ -127,7 +151,9 @@ class Classroom:
         self._places = PLACES
         self._wrong = Rate(*WRONG)
         self._requests = Rate(*REQUESTS)
-        self._count = 0  # of pupils, and of places in the queue
+        self._count = 0  # of pupils, of places in the queue, of hands and of what is given back
+        self._kept: dict[str, Work] = {}  # of who is not here, by name
+        self._goes_on = False  # after a crash, and the teacher has not said otherwise
         self._over = ""  # or whether pupils' work is kept
         self._over_s = 0.0
 
@@ -174,11 +200,11 @@ class Classroom:
             return {"failure": "class_wrong"}
         if self._over:
             return {"failure": "class_over"}
-        plain = printable(" ".join(name.split()), NAME_CHARACTERS)
+        plain = plain_name(name)
         if not plain:
             return {"failure": "class_nameless"}
         same = [token for token, each in self._pupils.items() if each.address == address]
-        if len(same) >= self._places and not self._give_place_away(now_s, HERE_S, same):
+        if len(same) >= self._places and not self._give_place_away(now_s, PLACE_S, same):
             return {"failure": "class_crowded"}
         if len(self._pupils) >= MOST_PUPILS and not self._give_place_away(
             now_s, SILENT_S, list(self._pupils)
@@ -198,21 +224,35 @@ class Classroom:
         silent = [(each.heard_s, token) for token, each in of.items()
                   if now_s - each.heard_s > silent_s and self._turn(each) is None]  # fmt: skip
         if silent:
-            del self._pupils[min(silent)[1]]
+            self._forget(min(silent)[1])
         return bool(silent)
+
+    def _forget(self, token: str) -> None:
+        """A pupil is here no more; the work stays, for who comes back."""
+        gone = self._pupils.pop(token)
+        if gone.work.text:
+            self._keep(gone.name, gone.work)
+
+    def _keep(self, name: str, work: Work) -> None:
+        self._kept.pop(name, None)
+        self._kept[name] = work
+        while len(self._kept) > MOST_PUPILS:
+            del self._kept[next(iter(self._kept))]
 
     def _here(self, pupil: Pupil, request: Json) -> Json:
         """A page tells of its program, and hears its place: 0 is a turn, -1 none."""
-        text, wants = request.get("text"), request.get("wants")
-        if text is not None:
-            if not isinstance(text, str):
-                raise BadRequest
-            pupil.text = text[:TEXT_CHARACTERS]
+        self._hear_work(pupil, request)
+        wants, hand = request.get("wants"), request.get("hand")
         if wants is False:
             pupil.waits = None
         elif wants is True and pupil.waits is None and self._turn(pupil) is None:
             self._count += 1
             pupil.waits = self._count
+        if hand is False:
+            pupil.hand = None
+        elif hand is True and pupil.hand is None:
+            self._count += 1
+            pupil.hand = self._count
         self._tend()
         if self._over:
             pupil.knows_end = True
@@ -221,6 +261,7 @@ class Classroom:
         place = -1 if turn is None else 0
         if pupil in waiting:
             place = waiting.index(pupil) + 1
+        given = {} if pupil.given is None else {"given": pupil.given._asdict()}
         return {
             "name": pupil.name,
             "place": place,
@@ -228,7 +269,34 @@ class Classroom:
             "robots": len(self._robots),
             "robot": turn.name if turn else "",
             "left_s": self._left_s(turn) if turn else 0,
+            "hand": pupil.hand is not None,
+            **given,
         }
+
+    def _hear_work(self, pupil: Pupil, request: Json) -> None:
+        """Take what a page tells of its work; what it does not tell stays. Raises BadRequest."""
+        text, lessons = request.get("text"), request.get("lessons")
+        robot, is_right = request.get("robot"), request.get("is_right")
+        work = pupil.work
+        if text is not None:
+            if not isinstance(text, str):
+                raise BadRequest
+            work = work._replace(text=text[:TEXT_CHARACTERS])
+        if lessons is not None:
+            if not isinstance(lessons, list) or not all(is_lesson(each) for each in lessons):
+                raise BadRequest
+            work = work._replace(lessons=tuple(lessons[:MOST_LESSONS]))
+        if robot is not None:
+            if robot not in robots.names():
+                raise BadRequest
+            work = work._replace(robot=str(robot))
+        if work != pupil.work:
+            pupil.work = work
+            pupil.version += 1
+        if isinstance(is_right, bool):
+            pupil.is_right = is_right
+        if request.get("took") is True:
+            pupil.given = None
 
     def _connect(self, pupil: Pupil, request: Json) -> Json:
         self._tend()
@@ -273,24 +341,28 @@ class Classroom:
 
     def _look_at(self, robot: ClassRobot, now_s: float) -> None:
         """End a turn that has to end."""
-        hosted = robot.hosted
+        hosted, pupil = robot.hosted, robot.pupil
+        assert pupil is not None
         if hosted is None:
-            if now_s - robot.began_s > CONNECT_S:
+            if now_s - pupil.heard_s > HERE_S:  # it was closed: who comes back keeps the place
+                pupil.waits = robot.waited
+                robot.end()
+            elif now_s - robot.began_s > CONNECT_S:
                 robot.end()
         elif hosted.has_ended:
-            if hosted.name:
-                robot.name = hosted.name
-            else:  # nobody has answered: another robot is better
+            robot.name = hosted.name or robot.name
+            if not hosted.name and not hosted.was_left:  # another robot is better
                 robot.free_s = now_s + REST_S
             robot.end()
-        elif now_s - robot.began_s >= self._turn_s and self._waiting():
+        elif self._waiting() and (
+            now_s - robot.began_s >= self._turn_s or hosted.attending.silent_s > HERE_S
+        ):
             hosted.leave("turn_over")
             robot.end()
 
     def _begin_turn(self, robot: ClassRobot, now_s: float) -> None:
         here = [each for each in self._waiting() if now_s - each.heard_s <= HERE_S]
         if here and self._hosting.is_free(robot.port):
-            here[0].waits = None
             robot.begin(here[0], now_s)
 
     def _waiting(self) -> list[Pupil]:
@@ -323,11 +395,23 @@ class Classroom:
                 self.code = _new_code()
             elif do == "class_over":
                 self._end(request.get("erases") is True)
-            elif do in ("class_stop", "class_next", "class_remove", "class_text"):
-                token, pupil = self._pupil(request)
+            elif do in ("class_stop", "class_next", "class_remove", "class_text", "class_hand"):
+                found = self._pupil(request)  # who may have gone a moment ago
                 if do == "class_text":
-                    return {"text": pupil.text}
-                self._teach(do, token, pupil)
+                    work = found[1].work if found else NOTHING
+                    return {"version": found[1].version if found else 0, **work._asdict()}
+                if found:
+                    self._teach(do, *found)
+            elif do == "class_work":
+                return {"pupils": self.work()}
+            elif do == "class_bring":
+                self._bring(request)
+            elif do == "class_forget":
+                self._kept.pop(str(request.get("name")), None)
+            elif do == "class_give_back":
+                self._give_back()
+            elif do == "class_anew":
+                self._begin_anew()
             elif do != "class":
                 raise BadRequest
             self._tend()
@@ -340,9 +424,93 @@ class Classroom:
             if hosted is not None:
                 hosted.attending.latch()
             return
+        if do == "class_hand":
+            pupil.hand = None
+            return
         self._take_back(robot, hosted)
         if do == "class_remove":
-            del self._pupils[token]
+            self._forget(token)
+
+    # -- what is kept -----------------------------------------------------------------------------
+
+    def work(self) -> list[Json]:
+        """Return the work of all pupils, of those who are not here, too."""
+        with self._lock:
+            own = {each.name: each.work for each in self._pupils.values()}
+            found = {**self._kept, **{name: each for name, each in own.items() if each.text}}
+        return [{"name": name, **each._asdict()} for name, each in found.items()]
+
+    def _bring(self, request: Json) -> None:
+        """Keep work of a name that comes from a file. Raises BadRequest."""
+        name, work = request.get("name"), Work.of(request)
+        plain = plain_name(name) if isinstance(name, str) else ""
+        if not plain or work is None or len(self._kept) >= MOST_PUPILS:
+            raise BadRequest
+        self._keep(plain, work)
+
+    def _give_back(self) -> None:
+        """Give each pupil the kept work of that name: their page puts it into the editor."""
+        for pupil in self._pupils.values():
+            work = self._kept.pop(pupil.name, None)
+            if work is not None:
+                pupil.given = work
+
+    def _begin_anew(self) -> None:
+        """Begin another class: nobody is in it, and nothing is kept of the one before."""
+        for each in self._robots:
+            self._take_back(each, each.hosted)
+        self._pupils.clear()
+        self._kept.clear()
+        self.code = _new_code()
+        self._goes_on = False
+
+    def state_to_keep(self) -> Json | None:
+        """Return all that a class goes on with after a crash; None once it is over."""
+        with self._lock:
+            if self._over:
+                return None
+            return {
+                "code": self.code,
+                "turn_s": self._turn_s,
+                "places": self._places,
+                "robots": [each.port for each in self._robots],
+                "kept": [{"name": name, **each._asdict()} for name, each in self._kept.items()],
+                "pupils": [
+                    {
+                        "token": token,
+                        "name": each.name,
+                        "address": each.address,
+                        **each.work._asdict(),
+                    }
+                    for token, each in self._pupils.items()
+                ],
+            }
+
+    def go_on(self, kept: Json) -> int:
+        """Go on with a class from before a crash; return how many pupils it has. What is damaged
+        of it is left out."""
+        with self._lock:
+            now_s = self._clock()
+            for each in _rows(kept, "kept"):
+                with suppress(BadRequest):
+                    self._bring(each)
+            for each in _rows(kept, "pupils")[:MOST_PUPILS]:
+                token, name, address = each.get("token"), each.get("name"), each.get("address")
+                work = Work.of(each) or NOTHING
+                if not is_token(token) or not isinstance(name, str) or not isinstance(address, str):
+                    continue
+                self._count += 1
+                pupil = Pupil(self._count, plain_name(name), address, now_s, work)
+                if pupil.name:
+                    self._pupils[str(token)] = pupil
+            for port in kept["robots"] if isinstance(kept.get("robots"), list) else []:
+                with suppress(BadRequest):
+                    self._give(_given({"port": port, "gives": True}), True)
+            code = kept.get("code")
+            if isinstance(code, str) and len(code) == CODE_LETTERS and set(code) <= set(LETTERS):
+                self.code = code
+            self._goes_on = bool(self._pupils or self._kept)
+            return len(self._pupils)
 
     def _take_back(self, robot: ClassRobot | None, hosted: HostedRobot | None) -> None:
         if hosted is not None:
@@ -385,6 +553,9 @@ class Classroom:
             "turn_s": self._turn_s,
             "places": self._places,
             "over": self._over,
+            "goes_on": self._goes_on,
+            "lessons": len(catalogue.folders()),
+            "kept": [{"name": name, "lessons": each.lessons} for name, each in self._kept.items()],
             "pupils": [
                 {
                     "number": each.number,
@@ -392,7 +563,11 @@ class Classroom:
                     "silent_s": round(now_s - each.heard_s),
                     "place": waiting.index(each) + 1 if each in waiting else 0,
                     "robot": turn.name or turn.port if (turn := self._turn(each)) else "",
-                    "characters": len(each.text),
+                    "left_s": self._left_s(turn) if turn else 0,
+                    "version": each.version,
+                    "is_right": each.is_right,
+                    "hand": each.hand or 0,
+                    "lessons": each.work.lessons,
                 }
                 for each in self._pupils.values()
             ],
@@ -407,11 +582,11 @@ class Classroom:
             ],
         }
 
-    def _pupil(self, request: Json) -> tuple[str, Pupil]:
+    def _pupil(self, request: Json) -> tuple[str, Pupil] | None:
         for token, each in self._pupils.items():
             if each.number == request.get("pupil"):
                 return token, each
-        raise BadRequest
+        return None
 
 
 def _may(asked: object) -> bool:
@@ -429,6 +604,11 @@ def _given(request: Json) -> ClassRobot:
     if len(port) > PORT_CHARACTERS:
         raise BadRequest
     return ClassRobot(port.strip(), _name_of(port) if request.get("gives") is True else "")
+
+
+def _rows(kept: Json, name: str) -> list[Json]:
+    found = kept.get(name)
+    return [each for each in found if isinstance(each, dict)] if isinstance(found, list) else []
 
 
 def _whole(request: Json, name: str, low: int, high: int) -> int:

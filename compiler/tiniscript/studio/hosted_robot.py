@@ -52,6 +52,11 @@ class HostedRobot:
         """Whether a stop is still to be confirmed, or the port to be closed."""
         return self.has_ended and self._thread.is_alive()
 
+    @property
+    def was_left(self) -> bool:
+        """Whether the page has left it, whatever the robot does."""
+        return self._leaves or self.attending.has_left
+
     def join(self, limit_s: float) -> None:
         self._thread.join(limit_s)
 
@@ -75,7 +80,7 @@ class HostedRobot:
             self._link = link = RobotLink(client.line, self._language)
             self._ping_while_attended(client, link)
             if self._meet(client):
-                while not self._has_left():
+                while not self.was_left:
                     self.attending.attend(link)
                 self._end(self._why)
         except Gone as gone:
@@ -102,7 +107,7 @@ class HostedRobot:
         """Say hello to the robot; return whether it has answered."""
         line = client.line
         try:
-            robot = client.meet(self._profile.board.chip, lambda: not self._has_left())
+            robot = client.meet(self._profile.board.chip, lambda: not self.was_left)
         except TiniScriptError as failure:
             if line.has_ended:
                 raise
@@ -113,9 +118,6 @@ class HostedRobot:
         self.name = robot.name
         self.attending.tell([{"connected": about(robot), "held_by": line.held_by}])
         return True
-
-    def _has_left(self) -> bool:
-        return self._leaves or self.attending.has_left
 
     def _end(self, reason: str, said: str = "") -> None:
         self.why_ended = reason

@@ -91,7 +91,9 @@ const lessons = new Lessons({
 });
 chooseSide();
 if ('class' in document.documentElement.dataset) {
-  import('./class/classroom.js').then(({ beginClass }) => beginClass(panel, work, () => editor.replace('')));
+  import('./class/classroom.js').then(({ beginClass }) => beginClass({
+    panel, work, python, empty: () => editor.replace(''), put: (program) => programs.replace({ ...program, name: '' }),
+  }));
 }
 
 /** The newest answer, and what it is about. @type {{key: string, answer: Checked | null}} */

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import hashlib
+import json
 import socket
 import sys
 import webbrowser
 from argparse import Namespace
+from contextlib import suppress
 from ipaddress import IPv4Address
 from threading import Thread
 from typing import TYPE_CHECKING
@@ -29,13 +32,14 @@ ELSEWHERE = "198.51.100.1"  # an address of documents, which nobody has
 def run(options: Namespace, language: str) -> int:
     port = whole_number("--listen", options.listen, PORT, 0, 65535, language)
     minutes = whole_number("--turn", options.turn, TURN_MINUTES, 1, 60, language)
-    hosting, classroom = Hosting(), None
+    hosting, classroom, went_on, newest = Hosting(), None, 0, ""
     host = serving.HOST
     if options.is_class:
         from tiniscript.studio.classroom import Classroom
 
         host = _given(options.address) if options.address else _address()
         classroom = Classroom(hosting, _ports(options.ports), 60 * minutes)
+        went_on = _go_on(classroom)
     elif options.address or options.ports or options.turn:
         raise CommandError(2, "studio_needs_class")
     if not serving.is_built() or building.is_possible():
@@ -60,6 +64,9 @@ def run(options: Namespace, language: str) -> int:
             key = "studio_class" if classroom else "studio_here"
             values = {"address": server.address, "code": classroom.code if classroom else ""}
             print(text(key, language).format(**values), file=sys.stderr, flush=True)
+            if went_on:
+                said = text("studio_goes_on", language).format(pupils=went_on)
+                print(said, file=sys.stderr, flush=True)
             if not options.no_browser:
                 webbrowser.open(server.entrance(is_for_here=True))
             while thread.is_alive():
@@ -70,6 +77,7 @@ def run(options: Namespace, language: str) -> int:
                     print(entrance, flush=True)
                 if classroom is not None:
                     classroom.tend()
+                    newest = _keep(classroom, newest)
                     if classroom.has_ended:
                         break
     except KeyboardInterrupt:
@@ -79,6 +87,29 @@ def run(options: Namespace, language: str) -> int:
         hosting.close()
         server.server_close()
     return 0
+
+
+def _go_on(classroom: Classroom) -> int:
+    """Go on with a class that a crash has ended; return how many pupils it has."""
+    from tiniscript.studio import class_keeping
+
+    kept = class_keeping.kept()
+    return classroom.go_on(kept) if kept is not None else 0
+
+
+def _keep(classroom: Classroom, newest: str) -> str:
+    """Keep a class if it is another than the newest that was kept; return what is kept now."""
+    from tiniscript.studio import class_keeping
+
+    found = classroom.state_to_keep()
+    if found is None:
+        class_keeping.forget()
+        return ""
+    digest = hashlib.sha256(json.dumps(found).encode()).hexdigest()
+    if digest != newest:
+        with suppress(OSError):  # a full disk ends no lesson
+            class_keeping.keep(found)
+    return digest
 
 
 def _server(port: int, host: str, hosting: Hosting, classroom: Classroom | None) -> serving.Server:

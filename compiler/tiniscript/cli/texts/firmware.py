@@ -115,6 +115,8 @@ FLASH_TEXTS: dict[str, tuple[str, str]] = {
                       "Esa dirección ya se abrió. Para abrir otra vez el estudio con tus robots:"),
     "studio_class": ("The class is at {address}   Code: {code}   Pupils open that address and type the code. The line above is only for you, and opens once: with it you see and stop everything. Ctrl-C ends.",
                      "La clase está en {address}   Código: {code}   Los alumnos abren esa dirección y escriben el código. La línea de arriba es solo para ti y se abre una sola vez: con ella ves y detienes todo. Ctrl-C termina."),
+    "studio_goes_on": ("The class from before goes on. Pupils in it: {pupils}. For another class press Another class on your page.",
+                       "La clase de antes continúa. Alumnos en ella: {pupils}. Para otra clase pulsa Otra clase en tu página."),
     "studio_no_network": ("tsc: this computer is in no network that pupils could reach. Join the WiFi of the room, or name this computer's address with --address.",
                           "tsc: esta computadora no está en ninguna red a la que lleguen los alumnos. Conéctala al WiFi del aula, o indica su dirección con --address."),
     "studio_no_address": ("tsc: the class cannot be at {address}: {why}. Is another tsc studio running? Otherwise choose another port with --listen, or an address that this computer has with --address.",

@@ -5,11 +5,23 @@ import { Teacher } from './teacher.js';
 import { isTeacher } from '../robot/host.js';
 
 /**
- * @param {import('../robot/panel.js').RobotPanel} panel
- * @param {import('../work.js').Work} work
- * @param {() => void} empty takes the program off the page
+ * @typedef {object} Page what a class uses of the page
+ * @property {import('../robot/panel.js').RobotPanel} panel
+ * @property {import('../work.js').Work} work
+ * @property {import('../python.js').Python} python
+ * @property {() => void} empty takes the program off the page
+ * @property {(program: {text: string, robot: string}) => void} put another program into the editor
  */
-export function beginClass(panel, work, empty) {
-  if (isTeacher) new Teacher();
-  else new Pupil(panel, work, empty);
+
+/** @param {Page} page */
+export async function beginClass(page) {
+  const looks = document.createElement('link');
+  Object.assign(looks, { rel: 'stylesheet', href: 'class.css' });
+  const isThere = new Promise((resolve) => {
+    looks.onload = looks.onerror = resolve;
+  });
+  document.head.append(looks);
+  await isThere;
+  if (isTeacher) new Teacher(page.python);
+  else new Pupil(page);
 }

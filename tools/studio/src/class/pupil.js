@@ -6,21 +6,28 @@
 import { button, labelled, made } from './made.js';
 import { element } from '../elements.js';
 import { askAs, post } from '../robot/host.js';
+import { keepDone, lessonsDone } from '../progress.js';
 import { shown } from '../robot/said.js';
 import { Failed } from '../robot/way.js';
+import { sign } from './signs.js';
+import { clock } from './wall.js';
 import { text } from '../texts.js';
+import { isRobot } from '../words.js';
 import { forgetAll } from '../work.js';
 
 const PLACE = 'tiniscript.pupil';
 const LOOK_MS = 1000;
+const SOON_MS = 300; // while the next turn may be one's own
+const MOST_LESSONS = 40;
 const TEXT_CHARACTERS = 20_000; // what the teacher sees of a program
 
-/** @typedef {{place: number, waiting: number, robots: number, robot: string, left_s: number, name: string, over?: string}} Here */
+/** @typedef {{text: string, robot: string, lessons: string[]}} Given */
+/** @typedef {{place: number, waiting: number, robots: number, robot: string, left_s: number, name: string, hand: boolean, given?: Given, over?: string}} Here */
 
 export class Pupil {
   #panel;
   #work;
-  #empty;
+  #page;
   #box = element('class_pupil', HTMLElement);
   #code = made('input');
   #name = made('input');
@@ -30,19 +37,30 @@ export class Pupil {
   #quit = button('class_quit', () => this.#want(false));
   /** What is told at the next look. @type {boolean | null} */
   #wants = null;
-  #told = '';
+  #hands = made('button', '', sign('hand', 26));
+  /** Whether help is wanted, told at the next look. @type {boolean | null} */
+  #hand = null;
+  #isUp = false;
+  /** What the teacher's page knows. @type {Record<string, string>} */
+  #told = {};
+  #took = false;
   #place = -1;
   #timer = 0;
 
-  /**
-   * @param {import('../robot/panel.js').RobotPanel} panel
-   * @param {import('../work.js').Work} work
-   * @param {() => void} empty
-   */
-  constructor(panel, work, empty) {
-    this.#panel = panel;
-    this.#work = work;
-    this.#empty = empty;
+  /** @param {import('./classroom.js').Page} page */
+  constructor(page) {
+    this.#page = page;
+    this.#panel = page.panel;
+    this.#work = page.work;
+    this.#hands.type = 'button';
+    this.#hands.id = 'class_hand';
+    this.#hands.hidden = true;
+    this.#hands.addEventListener('click', () => {
+      this.#hand = !this.#isUp;
+      this.#look();
+    });
+    element('stop', HTMLButtonElement).before(this.#hands);
+    this.#showHand(false);
     for (const field of [this.#code, this.#name]) {
       field.autocomplete = 'off';
       field.required = true;
@@ -78,8 +96,9 @@ export class Pupil {
   #begin(token) {
     askAs(token);
     keepToken(token);
-    this.#told = '';
+    this.#told = {};
     this.#join.hidden = true;
+    this.#hands.hidden = false;
     this.#look();
   }
 
@@ -89,7 +108,7 @@ export class Pupil {
     askAs('');
     keepToken('');
     this.#join.hidden = false;
-    this.#ask.hidden = this.#quit.hidden = true;
+    this.#ask.hidden = this.#quit.hidden = this.#hands.hidden = true;
     this.#say(why);
   }
 
@@ -101,21 +120,26 @@ export class Pupil {
 
   async #look() {
     clearTimeout(this.#timer);
-    const wants = this.#wants;
-    const program = this.#work.text.slice(0, TEXT_CHARACTERS);
+    const wants = this.#wants, hand = this.#hand, took = this.#took;
+    const now = this.#now();
     /** @type {Record<string, unknown>} */
-    const request = { do: 'here' };
+    const request = { do: 'here', took };
     if (wants !== null) request['wants'] = wants;
-    if (program !== this.#told) request['text'] = program;
+    if (hand !== null) request['hand'] = hand;
+    for (const [name, value] of Object.entries(now)) if (this.#told[name] !== value) request[name] = JSON.parse(value);
+    let wait_ms = LOOK_MS;
     try {
       const answer = /** @type {Here} */ (await post(request));
       if (this.#wants === wants) this.#wants = null;
-      this.#told = program;
+      if (this.#hand === hand) this.#hand = null;
+      this.#told = now;
       if (answer.over) {
         this.#end(answer.over === 'erased');
         return;
       }
       this.#show(answer);
+      this.#take(answer.given, took);
+      if (answer.place > 0 && answer.place <= answer.robots) wait_ms = SOON_MS;
     } catch (why) {
       if (why instanceof Failed && why.reason === 'host_other') {
         this.#leave('class_gone');
@@ -124,16 +148,49 @@ export class Pupil {
       this.#say('class_silent');
     }
     clearTimeout(this.#timer);
-    this.#timer = window.setTimeout(() => this.#look(), LOOK_MS);
+    this.#timer = window.setTimeout(() => this.#look(), wait_ms);
+  }
+
+  /** What the teacher sees of this page, each as JSON. @returns {Record<string, string>} */
+  #now() {
+    const { state, image } = document.documentElement.dataset;
+    return {
+      text: JSON.stringify(this.#work.text.slice(0, TEXT_CHARACTERS)),
+      robot: JSON.stringify(this.#work.robot),
+      lessons: JSON.stringify([...lessonsDone()].slice(0, MOST_LESSONS)),
+      ...(state === 'checked' && { is_right: JSON.stringify(Boolean(image) || !this.#work.text.trim()) }),
+    };
+  }
+
+  /** Takes work that the teacher gives back, once. @param {Given | undefined} given @param {boolean} took */
+  #take(given, took) {
+    if (!given || took) {
+      this.#took = false;
+      return;
+    }
+    this.#took = true;
+    for (const name of given.lessons) keepDone(name);
+    this.#page.put({ text: given.text, robot: isRobot(given.robot) ? given.robot : this.#work.robot });
+    element('note', HTMLElement).textContent = text('class_given');
+  }
+
+  /** @param {boolean} isUp */
+  #showHand(isUp) {
+    this.#isUp = isUp;
+    this.#hands.setAttribute('aria-pressed', String(isUp));
+    this.#hands.dataset['label'] = isUp ? 'class_hand_down' : 'class_hand';
+    this.#hands.title = text(this.#hands.dataset['label']);
+    this.#hands.setAttribute('aria-label', this.#hands.title);
   }
 
   /** @param {Here} here */
-  #show({ place, waiting, robots, robot, left_s, name }) {
+  #show({ place, waiting, robots, robot, left_s, name, hand }) {
+    this.#showHand(hand);
     const isNew = place === 0 && this.#place !== 0;
     this.#place = place;
     this.#ask.hidden = place >= 0;
     this.#quit.hidden = place <= 0;
-    const time = `${Math.floor(left_s / 60)}:${String(left_s % 60).padStart(2, '0')}`;
+    const time = clock(left_s);
     const key = place > 0 ? 'class_place' : place < 0 ? 'class_in' : waiting ? 'class_turn' : 'class_turn_alone';
     this.#say(key, { place, waiting, robots, time, name: shown(name), robot: shown(robot) });
     if (isNew && this.#panel.isFree) {
@@ -148,7 +205,7 @@ export class Pupil {
     this.#join.hidden = true;
     if (!isErased) return;
     forgetAll();
-    this.#empty();
+    this.#page.empty();
   }
 
   /** @param {string} key @param {Record<string, string | number>} values */

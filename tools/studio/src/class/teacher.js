@@ -1,67 +1,153 @@
-// The teacher's page of a class: its code, all pupils and robots, and what a teacher may do with them.
+// The teacher's page of a class: the wall of its pupils, and what a teacher may do with them. The
+// program and the virtual robot are behind the wall, for who wants to show something.
 // Everything that pupils and robots have written is put there as text, never as markup.
 
+import { BigCode, BigPupil } from './big.js';
+import { openWork, saveWork, workOfAll } from './keeping.js';
 import { button, labelled, made } from './made.js';
+import { Pictures } from './pictures.js';
+import { sign } from './signs.js';
+import { clock, put, Wall } from './wall.js';
 import { element } from '../elements.js';
 import { hostPorts, post } from '../robot/host.js';
 import { shown } from '../robot/said.js';
 import { text } from '../texts.js';
 
-/** @typedef {{number: number, name: string, silent_s: number, place: number, robot: string, characters: number}} PupilRow */
+/** @typedef {{number: number, name: string, silent_s: number, place: number, robot: string, left_s: number, version: number, is_right: boolean, hand: number, lessons: string[]}} PupilRow */
 /** @typedef {{port: string, name: string, pupil: string, left_s: number}} RobotRow */
-/** @typedef {{code: string, turn_s: number, places: number, over: string, pupils: PupilRow[], robots: RobotRow[]}} State */
-/** @typedef {{item: HTMLElement, said: HTMLElement, name: HTMLElement}} Row */
+/** @typedef {{name: string, lessons: string[]}} KeptRow */
+/** @typedef {{code: string, turn_s: number, places: number, over: string, goes_on: boolean, lessons: number, kept: KeptRow[], pupils: PupilRow[], robots: RobotRow[]}} State */
+/** @typedef {{text: string, robot: string, version: number, picture: string}} Known what is known of a program */
 
 const LOOK_MS = 1000;
 const SURE_MS = 5000;
-const SILENT_S = 5;
-const OF_A_TURN = '[data-text=stop], [data-text=class_next]'; // what a pupil without a robot needs not
+const MOST_NAMED = 4; // hands that are named above the wall
 
 export class Teacher {
+  #wall = new Wall({ see: (key) => this.#see(key), remove: (key) => this.#remove(key), lower: (key) => this.#ofPupil('class_hand', key) });
+  #pictures;
+  #big = new BigPupil({
+    step: (by) => this.#step(by),
+    stop: (key) => this.#ofPupil('class_stop', key),
+    next: (key) => this.#ofPupil('class_next', key),
+    remove: (key) => {
+      this.#remove(key);
+      this.#big.window.close();
+    },
+    lower: (key) => this.#ofPupil('class_hand', key),
+    closed: () => {},
+  });
+  #bigCode = new BigCode();
   #code = made('strong');
   #said = made('p');
-  #pupils = made('ul');
+  #chips = made('ul');
   #robots = made('ul');
-  #program = made('pre');
+  #empty = made('div', '', made('h2', 'class_nobody'), made('p', 'class_nobody_told'));
   #ports = made('select');
-  #minutes = made('input');
-  #places = made('input');
+  #minutes = number('1', '60');
+  #places = number('1', '60');
   #erases = made('input');
-  #end = button('class_end', () => this.#finish());
-  /** @type {Map<string, Row>} */
-  #rows = new Map();
-  #isSure = false;
+  #settings = made('dialog');
+  #file = made('input');
+  #end = pressedTwice('class_end', () => this.#ask({ do: 'class_over', erases: this.#erases.checked }));
+  #giveBack = button('class_give_back', () => this.#ask({ do: 'class_give_back' }));
+  #anew = pressedTwice('class_anew', () => this.#ask({ do: 'class_anew' }));
+  /** @type {State | null} */
+  #state = null;
+  /** @type {Map<string, Known>} */
+  #known = new Map();
+  /** @type {Map<string, number>} the version that is being fetched */
+  #fetching = new Map();
+  #told = ''; // of a file, until the next one
   #timer = 0;
 
-  constructor() {
+  /** @param {import('../python.js').Python} python */
+  constructor(python) {
+    this.#pictures = new Pictures(python);
     const side = element('side_class', HTMLButtonElement);
     side.hidden = false;
+    side.addEventListener('click', () => this.#showWall(true));
     this.#said.setAttribute('role', 'status');
-    this.#program.tabIndex = 0;
-    this.#program.hidden = true;
-    this.#minutes.type = 'number';
-    this.#minutes.min = '1';
-    this.#minutes.max = '60';
-    this.#minutes.addEventListener('change', () => this.#ask({ do: 'class_turn', seconds: 60 * Math.min(60, Math.max(1, Math.round(Number(this.#minutes.value)) || 1)) }));
-    this.#places.type = 'number';
-    this.#places.min = '1';
-    this.#places.max = '60';
-    this.#places.addEventListener('change', () => this.#ask({ do: 'class_places', places: Math.min(60, Math.max(1, Math.round(Number(this.#places.value)) || 1)) }));
-    this.#erases.type = 'checkbox';
-    element('class', HTMLElement).append(made('div', '',
-      made('p', '', made('span', 'class_address'), ' ', made('strong', '', location.origin), ' ', made('span', 'class_code'), ' ', this.#code, ' ',
-        button('class_new_code', () => this.#ask({ do: 'class_code' }))),
-      this.#said,
-      made('h2', 'class_pupils'), this.#pupils, this.#program,
-      made('h2', 'class_robots'), this.#robots,
-      made('p', '', labelled('link_port', this.#ports), button('class_give', () => this.#give()), button('link_look', () => this.#lookForPorts())),
-      made('p', '', labelled('class_minutes', this.#minutes)),
-      made('p', '', labelled('class_places', this.#places)),
-      made('p', '', made('label', '', this.#erases, made('span', 'class_erases')), this.#end),
-    ));
+    this.#said.id = 'class_said';
+    this.#chips.id = 'class_chips';
+    this.#chips.tabIndex = 0; // it may be scrolled
+    this.#empty.id = 'class_empty';
+    this.#minutes.addEventListener('change', () => this.#ask({ do: 'class_turn', seconds: 60 * whole(this.#minutes) }));
+    this.#places.addEventListener('change', () => this.#ask({ do: 'class_places', places: whole(this.#places) }));
+    this.#putTop();
+    this.#putSettings();
+    this.#giveBack.hidden = this.#anew.hidden = true;
+    const gear = button('class_settings', () => this.#openSettings());
+    gear.id = 'class_settings';
+    const bar = made('div', '', this.#said, this.#chips, this.#giveBack, this.#anew, gear);
+    bar.id = 'class_bar';
+    element('class', HTMLElement).append(bar, this.#wall.element, this.#empty);
+    new MutationObserver(() => this.#setLanguage()).observe(document.documentElement, { attributeFilter: ['lang'] });
     this.#lookForPorts();
     this.#ask({ do: 'class' });
     side.click();
+  }
+
+  /** Into the page's head: how pupils come in, and STOP for all, with its answer beside it. */
+  #putTop() {
+    const head = /** @type {HTMLElement} */ (document.querySelector('body > header'));
+    const stop = element('stop', HTMLButtonElement);
+    stop.dataset['text'] = 'class_stop_all';
+    stop.textContent = text('class_stop_all');
+    const come = made('button', '', made('span', 'class_address'), made('strong', '', location.origin), made('span', 'class_code'), this.#code);
+    come.type = 'button';
+    come.id = 'class_come';
+    come.addEventListener('click', () => this.#bigCode.show(this.#code.textContent ?? ''));
+    const studio = button('class_studio', () => {
+      this.#showWall(false);
+      element('side_virtual', HTMLButtonElement).click();
+    });
+    studio.id = 'class_studio';
+    stop.before(studio, come, element('stops', HTMLElement));
+    head.append(stop);
+  }
+
+  #putSettings() {
+    const close = button('close', () => this.#settings.close());
+    const stop = button('class_stop_all', () => element('stop', HTMLButtonElement).click());
+    stop.className = 'stop';
+    this.#settings.id = 'class_window';
+    this.#settings.setAttribute('aria-labelledby', 'class_window_title');
+    const title = made('h2', 'class_settings');
+    title.id = 'class_window_title';
+    this.#erases.type = 'checkbox';
+    this.#file.type = 'file';
+    this.#file.accept = '.json,application/json';
+    this.#file.hidden = true;
+    this.#file.addEventListener('change', () => this.#open());
+    this.#settings.append(made('header', '', title, close, stop),
+      made('section', '', made('h3', 'class_robots'), this.#robots,
+        made('p', '', labelled('link_port', this.#ports), button('class_give', () => this.#give()), button('link_look', () => this.#lookForPorts())),
+        made('p', '', labelled('class_minutes', this.#minutes)), made('p', '', labelled('class_places', this.#places))),
+      made('section', '', made('h3', 'class_work'), made('p', 'class_work_told'),
+        made('p', '', button('class_save', () => this.#save()), button('class_open', () => this.#file.click()), this.#file)),
+      made('section', '', made('h3', 'class_code'),
+        made('p', '', button('class_new_code', () => this.#ask({ do: 'class_code' })), pressedTwice('class_anew', () => this.#ask({ do: 'class_anew' })))),
+      made('section', '', made('h3', 'class_end'), made('p', '', made('label', '', this.#erases, made('span', 'class_erases')), this.#end)));
+    document.body.append(this.#settings);
+  }
+
+  #openSettings() {
+    this.#lookForPorts();
+    this.#settings.showModal();
+  }
+
+  /** @param {boolean} isWall else the program and the virtual robot */
+  #showWall(isWall) {
+    if (isWall) document.documentElement.dataset['wall'] = '';
+    else delete document.documentElement.dataset['wall'];
+    dispatchEvent(new Event('resize'));
+  }
+
+  async #setLanguage() {
+    await this.#pictures.setLanguage();
+    for (const known of this.#known.values()) known.version = -1; // the words of the pictures are others
+    if (this.#state) this.#show(this.#state);
   }
 
   /** @param {Record<string, unknown>} request */
@@ -78,6 +164,23 @@ export class Teacher {
     this.#timer = window.setTimeout(() => this.#ask({ do: 'class' }), LOOK_MS);
   }
 
+  /** @param {string} what @param {string} key */
+  #ofPupil(what, key) {
+    const pupil = this.#pupil(key);
+    if (pupil) this.#ask({ do: what, pupil: pupil.number });
+  }
+
+  /** @param {string} key */
+  #remove(key) {
+    if (this.#pupil(key)) this.#ofPupil('class_remove', key);
+    else this.#ask({ do: 'class_forget', name: nameOf(key) });
+  }
+
+  /** @param {string} key */
+  #pupil(key) {
+    return this.#state?.pupils.find(({ number }) => keyOf(number) === key) ?? null;
+  }
+
   async #lookForPorts() {
     try {
       const found = await hostPorts();
@@ -91,99 +194,188 @@ export class Teacher {
     if (this.#ports.value) this.#ask({ do: 'class_robot', port: this.#ports.value, gives: true });
   }
 
-  /** Ends the class at the second press. */
-  #finish() {
-    if (this.#isSure) this.#ask({ do: 'class_over', erases: this.#erases.checked });
-    this.#sure(!this.#isSure);
+  async #save() {
+    this.#told = await saveWork().then((count) => text('class_saved', { count }), () => text('why_host_gone'));
+    this.#settings.close();
+    if (this.#state) this.#show(this.#state);
   }
 
-  /** @param {boolean} isSure */
-  #sure(isSure) {
-    this.#isSure = isSure;
-    this.#end.dataset['text'] = isSure ? 'class_end_sure' : 'class_end';
-    this.#end.textContent = text(String(this.#end.dataset['text']));
-    if (isSure) setTimeout(() => this.#sure(false), SURE_MS);
+  async #open() {
+    const file = this.#file.files?.[0];
+    this.#file.value = '';
+    if (!file) return;
+    const count = await openWork(file);
+    this.#told = count ? text('class_opened', { count }) : text('class_not_opened', { name: shown(file.name) });
+    this.#known.forEach((known, key) => {
+      if (!this.#pupil(key)) known.version = -1;
+    });
+    this.#settings.close();
+    this.#ask({ do: 'class' });
   }
+
+  // -- what is seen -------------------------------------------------------------------------------
 
   /** @param {State} state */
-  #show({ code, turn_s, places, over, pupils, robots }) {
-    this.#code.textContent = code;
+  #show(state) {
+    const { code, turn_s, places, over, goes_on, lessons, kept, pupils, robots } = this.#state = state;
+    put(this.#code, code);
+    this.#bigCode.put(code);
     if (document.activeElement !== this.#minutes) this.#minutes.value = String(Math.round(turn_s / 60));
     if (document.activeElement !== this.#places) this.#places.value = String(places);
     if (over) {
       this.#say('class_over');
+      this.#settings.close();
+      this.#big.window.close();
       element('class', HTMLElement).replaceChildren(this.#said); // nobody is left to do the rest
       return;
     }
-    this.#say('class_count', { pupils: pupils.length, robots: robots.length, waiting: pupils.filter(({ place }) => place).length });
-    const old = this.#rows;
-    this.#rows = new Map();
-    for (const each of pupils) this.#showPupil(each, old);
-    for (const each of robots) this.#showRobot(each, old);
-    for (const [key, row] of old) if (!this.#rows.has(key)) row.item.remove();
-  }
-
-  /** @param {PupilRow} pupil @param {Map<string, Row>} old */
-  #showPupil({ number, name, silent_s, place, robot }, old) {
-    const row = this.#row(`pupil ${number}`, old, this.#pupils, () => [
-      button('class_see', () => this.#see(number)),
-      button('stop', () => this.#ask({ do: 'class_stop', pupil: number })),
-      button('class_next', () => this.#ask({ do: 'class_next', pupil: number })),
-      button('class_remove', () => this.#ask({ do: 'class_remove', pupil: number })),
-    ]);
-    const key = robot ? 'class_drives' : place ? 'class_waits' : silent_s > SILENT_S ? 'class_away' : 'class_writes';
-    for (const each of row.item.querySelectorAll(OF_A_TURN)) /** @type {HTMLElement} */ (each).hidden = !robot;
-    put(row.name, shown(name));
-    put(row.said, text(key, { robot: shown(robot), place }));
-  }
-
-  /** @param {RobotRow} robot @param {Map<string, Row>} old */
-  #showRobot({ port, name, pupil, left_s }, old) {
-    const row = this.#row(`robot ${port}`, old, this.#robots, () => [
-      button('class_take', () => this.#ask({ do: 'class_robot', port, gives: false })),
-    ]);
-    put(row.name, shown([name, port].filter(Boolean).join(' · ')));
-    put(row.said, pupil ? text('class_held', { name: shown(pupil), seconds: left_s }) : text('class_free'));
-  }
-
-  /**
-   * Returns the row that was there, so that a button keeps its focus, or a new one.
-   * @param {string} key
-   * @param {Map<string, Row>} old
-   * @param {HTMLElement} list
-   * @param {() => HTMLElement[]} buttons
-   */
-  #row(key, old, list, buttons) {
-    let row = old.get(key);
-    if (!row) {
-      const name = made('strong');
-      const said = made('span');
-      row = { name, said, item: made('li', '', name, ' ', said, ' ', ...buttons()) };
-      list.append(row.item);
+    const hands = pupils.filter(({ hand }) => hand).sort((one, other) => one.hand - other.hand);
+    const named = hands.slice(0, MOST_NAMED).map(({ name }) => shown(name)).join(', ') + (hands.length > MOST_NAMED ? '…' : '');
+    const count = text('class_count', { pupils: pupils.length, robots: robots.length, waiting: pupils.filter(({ place }) => place).length });
+    put(this.#said, [count, hands.length ? text('class_hands', { names: named }) : '', this.#told || (goes_on ? text('class_goes_on') : '')].filter(Boolean).join(' '));
+    document.documentElement.dataset['teacher'] = 'class_count';
+    const back = kept.filter(({ name }) => pupils.some((each) => each.name === name)).length;
+    this.#giveBack.hidden = !back;
+    this.#anew.hidden = !goes_on;
+    this.#showRobots(robots);
+    const tiles = this.#tiles();
+    this.#empty.hidden = tiles.length > 0;
+    this.#wall.element.hidden = !tiles.length;
+    this.#wall.show(tiles, lessons);
+    for (const { key, pupil } of tiles) this.#look(key, pupil ? pupil.version : 0);
+    for (const key of [...this.#known.keys()]) {
+      if (tiles.some((each) => each.key === key)) continue;
+      this.#known.delete(key);
+      this.#pictures.forget(key);
     }
-    this.#rows.set(key, row);
-    return row;
+    if (this.#big.key) this.#showBig(this.#big.key);
   }
 
-  /** Shows a pupil's program. @param {number} pupil */
-  async #see(pupil) {
+  /** Who is here and who is not, by name. */
+  #tiles() {
+    const { pupils = [], kept = [] } = this.#state ?? {};
+    const tiles = pupils.map((pupil) => ({ key: keyOf(pupil.number), name: pupil.name, lessons: pupil.lessons, pupil: /** @type {PupilRow | null} */ (pupil) }));
+    for (const { name, lessons } of kept) {
+      if (!pupils.some((each) => each.name === name)) tiles.push({ key: `kept ${name}`, name, lessons, pupil: null });
+    }
+    return tiles.sort((one, other) => one.name.localeCompare(other.name, undefined, { numeric: true }) || (one.key < other.key ? -1 : 1));
+  }
+
+  /** @param {RobotRow[]} robots */
+  #showRobots(robots) {
+    const rows = robots.map((each) => ({ ...each, title: shown(each.name || each.port), said: each.pupil ? text('class_held', { name: shown(each.pupil), time: clock(each.left_s) }) : text('class_free') }));
+    const seen = JSON.stringify(rows.map(({ title, pupil }) => [title, Boolean(pupil)]));
+    if (this.#chips.dataset['seen'] !== seen) {
+      this.#chips.dataset['seen'] = seen;
+      this.#chips.replaceChildren(...rows.map(({ title, pupil }) => {
+        const chip = made('li', '', sign('robot', 20), made('strong', '', title), made('span'));
+        chip.classList.toggle('held', Boolean(pupil));
+        return chip;
+      }));
+      this.#chips.hidden = !rows.length;
+    }
+    rows.forEach(({ said }, k) => put(/** @type {HTMLElement} */ (this.#chips.children[k]?.lastElementChild), said));
+    const ports = JSON.stringify(robots.map(({ port, name }) => [port, name]));
+    if (this.#robots.dataset['seen'] === ports) return;
+    this.#robots.dataset['seen'] = ports;
+    this.#robots.replaceChildren(...robots.map(({ port, name }) => made('li', '', made('strong', '', shown([name, port].filter(Boolean).join(' · '))), ' ',
+      button('class_take', () => this.#ask({ do: 'class_robot', port, gives: false })))));
+  }
+
+  /** Fetches a program that is another one now, and wants its picture. @param {string} key @param {number} version */
+  async #look(key, version) {
+    if (this.#known.get(key)?.version === version || this.#fetching.get(key) === version) return;
+    this.#fetching.set(key, version);
     try {
-      const answer = await post({ do: 'class_text', pupil });
-      this.#program.hidden = false;
-      this.#program.textContent = answer.text;
+      const pupil = this.#pupil(key);
+      const found = pupil ? await post({ do: 'class_text', pupil: pupil.number })
+        : (await workOfAll()).find(({ name }) => name === nameOf(key)) ?? { text: '', robot: '' };
+      const known = { text: String(found.text), robot: String(found.robot || 'tinibot'), version: pupil ? Number(found.version) : 0, picture: this.#known.get(key)?.picture ?? '' };
+      this.#known.set(key, known);
+      this.#pictures.want(key, known, (address) => {
+        known.picture = address;
+        if (!this.#wall.picture(key, address)) URL.revokeObjectURL(address);
+        if (this.#big.key === key) this.#showBig(key);
+      });
+      if (this.#big.key === key) this.#showBig(key);
     } catch {
-      this.#say('why_host_gone');
+      // it is asked for again, or the pupil has gone
+    } finally {
+      this.#fetching.delete(key);
     }
   }
 
-  /** @param {string} key @param {Record<string, string | number>} values */
-  #say(key, values = {}) {
-    put(this.#said, text(key, values));
+  /** @param {string} key */
+  #see(key) {
+    this.#showBig(key);
+  }
+
+  /** @param {string} key */
+  #showBig(key) {
+    const tile = this.#tiles().find((each) => each.key === key);
+    if (!tile) {
+      this.#big.window.close();
+      return;
+    }
+    const { pupil } = tile;
+    const known = this.#known.get(key);
+    const drives = pupil?.robot ? text('class_drives', { robot: shown(pupil.robot) }) : '';
+    const done = text('class_lessons', { done: tile.lessons.length, all: this.#state?.lessons ?? 0 });
+    this.#big.show({
+      key, title: shown(tile.name), said: [drives, done].filter(Boolean).join(', '), picture: known?.picture ?? '', text: known?.text || text('class_empty'),
+      drives: Boolean(drives), hand: Boolean(pupil?.hand), here: true,
+    });
+  }
+
+  /** @param {number} by */
+  #step(by) {
+    const tiles = this.#tiles();
+    const at = tiles.findIndex(({ key }) => key === this.#big.key);
+    const next = tiles.at((at + by) % tiles.length);
+    if (next) this.#showBig(next.key);
+  }
+
+  /** @param {string} key */
+  #say(key) {
+    put(this.#said, text(key));
     document.documentElement.dataset['teacher'] = key;
   }
 }
 
-/** @param {HTMLElement} place @param {string} said */
-function put(place, said) {
-  if (place.textContent !== said) place.textContent = said;
+/** A button of what cannot be taken back: it acts at the second press. @param {string} key @param {() => void} act */
+function pressedTwice(key, act) {
+  let isSure = false;
+  const found = button(key, () => {
+    if (isSure) act();
+    sure(!isSure);
+  });
+  const sure = (/** @type {boolean} */ now) => {
+    isSure = now;
+    found.dataset['text'] = now ? `${key}_sure` : key;
+    found.textContent = text(found.dataset['text']);
+    if (now) setTimeout(() => sure(false), SURE_MS);
+  };
+  return found;
+}
+
+/** @param {number} pupil */
+function keyOf(pupil) {
+  return `pupil ${pupil}`;
+}
+
+/** @param {string} key of who is not here */
+function nameOf(key) {
+  return key.replace(/^kept /, '');
+}
+
+/** @param {string} least @param {string} most */
+function number(least, most) {
+  const field = made('input');
+  Object.assign(field, { type: 'number', min: least, max: most });
+  return field;
+}
+
+/** A whole number within the field's limits. @param {HTMLInputElement} field */
+function whole(field) {
+  return Math.min(Number(field.max), Math.max(Number(field.min), Math.round(Number(field.value)) || 1));
 }

@@ -158,6 +158,7 @@ export const ROBOT_TEXTS = {
   why_host_other: ['tsc studio was started again meanwhile, or its address was opened twice. Open the newest address that it shows in the terminal.',
     'tsc studio se inició otra vez mientras tanto, o su dirección se abrió dos veces. Abre la última dirección que muestra en la terminal.'],
   stops_confirmed: ['STOP: {confirmed} of {count} robots have confirmed it.', 'PARAR: {confirmed} de {count} robots lo confirmaron.'],
+  stops_none: ['STOP: no robot is connected.', 'PARAR: no hay ningún robot conectado.'],
   stops_silent: ['Not confirmed: {names}. If one moves, lift it, and take its batteries or its plug out.',
     'Sin confirmar: {names}. Si uno se mueve, levántalo y quítale las pilas o el cable.'],
   stops_gone: ['STOP has not reached tsc studio. If a robot moves, lift it, and take its batteries or its plug out.',

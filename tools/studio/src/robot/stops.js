@@ -2,7 +2,7 @@
 
 import { made } from '../class/made.js';
 import { element } from '../elements.js';
-import { post } from './host.js';
+import { isTeacher, post } from './host.js';
 import { shown } from './said.js';
 import { text } from '../texts.js';
 import { LINK } from '../words.js';
@@ -58,11 +58,12 @@ function show(robots, isLate) {
   const late = robots?.filter(({ stop }) => stop === 'silent' || (isLate && stop === 'asked')) ?? [];
   const confirmed = robots?.filter(({ stop }) => stop === 'confirmed').length ?? 0;
   const silent = robots ? late.length && text('stops_silent', { names: late.map(({ name }) => shown(name)).join(', ') }) : text('stops_gone');
-  place.hidden = robots?.length === 0;
+  const isNone = robots?.length === 0;
+  place.hidden = isNone && !isTeacher;
   place.dataset['confirmed'] = `${confirmed}`;
   const red = made('span');
   red.className = 'wrong';
   red.textContent = silent || '';
-  const said = robots ? text('stops_confirmed', { confirmed, count: robots.length }) : '';
+  const said = isNone ? text('stops_none') : robots ? text('stops_confirmed', { confirmed, count: robots.length }) : '';
   place.replaceChildren(said, ...(silent ? [' ', red] : []));
 }

@@ -1,0 +1,135 @@
+// What is shown on the big screen: a pupil's program, or how to come into the class.
+
+import { correction, generate } from 'lean-qr';
+import { button, made } from './made.js';
+import { put } from './wall.js';
+import { sign } from './signs.js';
+import { element } from '../elements.js';
+import { text } from '../texts.js';
+
+const QUIET = 4; // white modules around a QR code
+
+/** A window over the whole page. STOP is in it, too: what is behind cannot be pressed. */
+class Big {
+  window = made('dialog');
+  title = made('h2');
+  head = made('header', '', this.title);
+  body = made('div');
+
+  /** @param {string} id */
+  constructor(id) {
+    this.window.id = id;
+    this.window.className = 'big';
+    this.title.id = `${id}_title`;
+    this.window.setAttribute('aria-labelledby', this.title.id);
+    this.body.tabIndex = 0; // it may be scrolled
+    this.body.setAttribute('role', 'group');
+    this.body.setAttribute('aria-labelledby', this.title.id);
+    this.window.append(this.head, this.body);
+    document.body.append(this.window);
+  }
+
+  finish() {
+    const stop = button('class_stop_all', () => element('stop', HTMLButtonElement).click());
+    stop.className = 'stop';
+    this.head.append(button('close', () => this.window.close()), stop);
+  }
+}
+
+/** @typedef {{key: string, title: string, said: string, picture: string, text: string, drives: boolean, hand: boolean, here: boolean}} Shown */
+/** @typedef {{step: (by: number) => void, stop: (key: string) => void, next: (key: string) => void, remove: (key: string) => void, lower: (key: string) => void, closed: () => void}} Told */
+
+export class BigPupil extends Big {
+  key = '';
+  #said = made('p');
+  #picture = made('img');
+  #text = made('pre');
+  #stop; #next; #lower; #remove;
+
+  /** @param {Told} told */
+  constructor(told) {
+    super('big_pupil');
+    const act = (/** @type {string} */ key, /** @type {(key: string) => void} */ what) => button(key, () => what(this.key));
+    this.#lower = act('class_lower_hand', told.lower);
+    this.#stop = act('stop', told.stop);
+    this.#next = act('class_next', told.next);
+    this.#remove = act('class_remove', told.remove);
+    const step = (/** @type {string} */ name, /** @type {number} */ by) => {
+      const found = made('button', '', sign(name));
+      found.type = 'button';
+      found.dataset['label'] = `class_${name}`;
+      found.setAttribute('aria-label', text(`class_${name}`));
+      found.addEventListener('click', () => told.step(by));
+      return found;
+    };
+    this.#said.setAttribute('role', 'status');
+    this.#text.tabIndex = 0;
+    this.#text.setAttribute('translate', 'no');
+    this.title.before(step('left', -1));
+    this.head.append(step('right', 1), this.#said, this.#lower, this.#stop, this.#next, this.#remove);
+    this.finish();
+    this.#picture.alt = '';
+    const paper = made('div', '', this.#picture);
+    paper.className = 'paper';
+    this.body.append(paper, this.#text);
+    this.window.addEventListener('keydown', ({ key, target }) => {
+      if (target === this.#text) return;
+      if (key === 'ArrowLeft') told.step(-1);
+      if (key === 'ArrowRight') told.step(1);
+    });
+    this.window.addEventListener('close', () => {
+      this.key = '';
+      told.closed();
+    });
+  }
+
+  /** @param {Shown} shown */
+  show({ key, title, said, picture, text: program, drives, hand, here }) {
+    this.key = key;
+    put(this.title, title);
+    put(this.#said, said);
+    put(this.#text, program);
+    this.#text.setAttribute('aria-label', text('class_program_of', { name: title }));
+    const paper = /** @type {HTMLElement} */ (this.#picture.parentElement);
+    paper.hidden = !picture;
+    if (picture && this.#picture.src !== picture) this.#picture.src = picture;
+    this.#lower.hidden = !hand;
+    this.#stop.hidden = this.#next.hidden = !drives;
+    this.#remove.hidden = !here;
+    if (!this.window.open) this.window.showModal();
+  }
+}
+
+export class BigCode extends Big {
+  #code = made('strong');
+  #address = made('strong', '', location.origin);
+  #picture = made('canvas');
+
+  constructor() {
+    super('big_code');
+    this.head.append(made('span'));
+    this.finish();
+    this.title.dataset['text'] = 'class_come';
+    put(this.title, text('class_come'));
+    this.#picture.setAttribute('role', 'img');
+    this.#picture.dataset['label'] = 'class_picture';
+    this.#picture.setAttribute('aria-label', text('class_picture'));
+    generate(location.origin, { minCorrectionLevel: correction.M })
+      .toCanvas(this.#picture, { padX: QUIET, padY: QUIET, on: [0, 0, 0, 255], off: [255, 255, 255, 255] });
+    this.body.append(this.#picture, made('ol', '',
+      made('li', '', made('span', 'class_step_wifi')),
+      made('li', '', made('span', 'class_step_open'), this.#address),
+      made('li', '', made('span', 'class_step_code'), this.#code)));
+  }
+
+  /** @param {string} code */
+  show(code) {
+    this.put(code);
+    this.window.showModal();
+  }
+
+  /** @param {string} code */
+  put(code) {
+    put(this.#code, code);
+  }
+}

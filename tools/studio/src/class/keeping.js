@@ -1,0 +1,47 @@
+// The work of a class as one file: saved by the teacher, and opened again another day. What is in a
+// file is somebody else's: `tsc studio` checks all of it.
+
+import { downloadFile } from '../files.js';
+import { post } from '../robot/host.js';
+import { text } from '../texts.js';
+
+/** @typedef {{name: string, text: string, robot: string, lessons: string[]}} WorkOfOne */
+
+const FORM = 1;
+const MOST_BYTES = 12_000_000;
+const MOST = 60;
+
+/** @returns {Promise<WorkOfOne[]>} */
+export async function workOfAll() {
+  return (await post({ do: 'class_work' })).pupils;
+}
+
+/** Saves the work of all; returns of how many. */
+export async function saveWork() {
+  const pupils = await workOfAll();
+  const now = new Date();
+  const day = [now.getFullYear(), now.getMonth() + 1, now.getDate()].map((part) => String(part).padStart(2, '0')).join('-');
+  const whole = JSON.stringify({ tiniscript_class: FORM, day, pupils }, null, 1);
+  downloadFile(`${text('class_file')}-${day}.json`, new Blob([whole], { type: 'application/json' }));
+  return pupils.length;
+}
+
+/** Opens a file; returns the work of how many was in it, or null where it is no such file. @param {File} file */
+export async function openWork(file) {
+  let found;
+  try {
+    if (file.size > MOST_BYTES) return null;
+    found = JSON.parse(await file.text());
+  } catch {
+    return null;
+  }
+  if (found?.tiniscript_class !== FORM || !Array.isArray(found.pupils)) return null;
+  let count = 0;
+  for (const each of found.pupils.slice(0, MOST)) {
+    const { name, text: program, robot, lessons } = each ?? {};
+    if (![name, program, robot].every((part) => typeof part === 'string') || !Array.isArray(lessons)) continue;
+    const isTaken = await post({ do: 'class_bring', name, text: program, robot, lessons }).then(() => true, () => false);
+    if (isTaken) count += 1;
+  }
+  return count || null;
+}

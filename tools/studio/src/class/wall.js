@@ -1,0 +1,156 @@
+// The wall of a class: a tile for each pupil with a picture of the blocks, the lessons that are done, a
+// hand that is up, and the robot or the place in the queue. All tiles are as large as fits the window.
+// Names and robots are put there as text, never as markup.
+
+import { made } from './made.js';
+import { sign } from './signs.js';
+import { shown } from '../robot/said.js';
+import { text } from '../texts.js';
+
+/** @typedef {import('./teacher.js').PupilRow} PupilRow */
+/**
+ * @typedef {object} Seen of a tile
+ * @property {string} key
+ * @property {string} name
+ * @property {string[]} lessons
+ * @property {PupilRow | null} pupil null of who is not here
+ */
+/** @typedef {{see: (key: string) => void, remove: (key: string) => void, lower: (key: string) => void}} Told */
+/** @typedef {{item: HTMLElement, see: HTMLButtonElement, name: HTMLElement, hand: HTMLButtonElement, out: HTMLButtonElement, picture: HTMLImageElement, empty: HTMLElement, badge: HTMLElement, pips: HTMLElement, said: HTMLElement}} Tile */
+
+const SILENT_S = 5;
+const WIDE = 1.75; // of a tile's picture: what suits most programs
+const LEAST = 132; // pixels of width, below which the wall is scrolled
+const LOW = 84; // and of height
+const HIGHEST = 260;
+const GAP = 6;
+
+export class Wall {
+  element = made('ul');
+  #told;
+  /** @type {Map<string, Tile>} */
+  #tiles = new Map();
+
+  /** @param {Told} told */
+  constructor(told) {
+    this.#told = told;
+    this.element.id = 'wall';
+    new ResizeObserver(() => this.#fit()).observe(this.element);
+  }
+
+  /** @param {Seen[]} all in their order @param {number} lessons how many there are */
+  show(all, lessons) {
+    const old = this.#tiles;
+    this.#tiles = new Map();
+    all.forEach((each, k) => {
+      const tile = old.get(each.key) ?? this.#made(each);
+      this.#tiles.set(each.key, tile);
+      if (this.element.children[k] !== tile.item) this.element.insertBefore(tile.item, this.element.children[k] ?? null);
+      this.#fill(tile, each, lessons);
+    });
+    for (const [key, tile] of old) if (!this.#tiles.has(key)) tile.item.remove();
+    if (old.size !== this.#tiles.size) this.#fit();
+  }
+
+  /** @param {string} key @param {string} address of a picture, or nothing */
+  picture(key, address) {
+    const tile = this.#tiles.get(key);
+    if (!tile) return false;
+    if (tile.picture.src.startsWith('blob:')) URL.revokeObjectURL(tile.picture.src);
+    tile.picture.hidden = !address;
+    tile.empty.hidden = Boolean(address);
+    if (address) tile.picture.src = address;
+    else tile.picture.removeAttribute('src');
+    return true;
+  }
+
+  /** @param {Seen} of @returns {Tile} */
+  #made({ key }) {
+    const button = (/** @type {string} */ name, /** @type {(key: string) => void} */ act, /** @type {Node[]} */ ...inside) => {
+      const found = made('button', '', ...inside);
+      found.type = 'button';
+      found.className = name;
+      found.addEventListener('click', () => act(key));
+      return found;
+    };
+    const see = button('see', this.#told.see);
+    const hand = button('hand', this.#told.lower, sign('hand', 26));
+    const out = button('out', this.#told.remove, sign('out', 20));
+    const name = made('strong'), picture = made('img'), empty = made('span', 'class_empty');
+    const badge = made('span'), pips = made('span'), said = made('span');
+    picture.alt = '';
+    picture.hidden = true;
+    badge.className = 'badge';
+    pips.className = 'pips';
+    said.className = 'said';
+    empty.className = 'empty';
+    const item = made('li', '', name, made('div', '', picture, empty), made('p', '', pips, said), badge, see, hand, out);
+    return { item, see, name, hand, out, picture, empty, badge, pips, said };
+  }
+
+  /** @param {Tile} tile @param {Seen} seen @param {number} lessons */
+  #fill(tile, { name, lessons: done, pupil }, lessons) {
+    const plain = shown(name);
+    const state = !pupil ? 'gone' : pupil.silent_s > SILENT_S ? 'away' : pupil.is_right ? 'right' : 'wrong';
+    const drives = pupil?.robot ? shown(pupil.robot) : '';
+    if (tile.item.dataset['state'] !== state) tile.item.dataset['state'] = state;
+    put(tile.name, plain);
+    put(tile.said, state === 'right' ? '✓' : text(`class_is_${state}`));
+    tile.hand.hidden = !pupil?.hand;
+    const badge = drives ? `${drives} ${clock(pupil?.left_s ?? 0)}` : pupil?.place ? text('class_place_short', { place: pupil.place }) : '';
+    tile.badge.hidden = !badge;
+    if (tile.badge.dataset['said'] !== badge) {
+      tile.badge.dataset['said'] = badge;
+      tile.badge.replaceChildren(sign(drives ? 'robot' : 'queue', 18), made('span', '', badge));
+      tile.badge.classList.toggle('drives', Boolean(drives));
+    }
+    const marks = Array.from({ length: lessons }, (_, k) => (done.some((each) => Number.parseInt(each, 10) === k + 1) ? '●' : '○')).join('');
+    if (tile.pips.dataset['marks'] !== marks) {
+      tile.pips.dataset['marks'] = marks;
+      tile.pips.replaceChildren(...[...marks].map((mark) => {
+        const pip = made('i');
+        if (mark === '●') pip.className = 'done';
+        return pip;
+      }));
+    }
+    const more = [text(`class_is_${state}`), pupil?.hand ? text('class_hand_up') : '', drives && text('class_drives', { robot: drives }),
+      pupil?.place ? text('class_waits', { place: pupil.place }) : '', text('class_lessons', { done: done.length, all: lessons })];
+    label(tile.see, `${text('class_see_of', { name: plain })} ${more.filter(Boolean).join(', ')}`);
+    label(tile.hand, text('class_lower', { name: plain }));
+    label(tile.out, text('class_remove_of', { name: plain }));
+  }
+
+  /** Chooses the columns with which tiles are largest. */
+  #fit() {
+    const { clientWidth: width, clientHeight: height } = this.element;
+    const count = this.#tiles.size;
+    if (!count || !width || !height) return;
+    let best = { columns: 1, size: 0 };
+    for (let columns = 1; columns <= count && (width + GAP) / columns - GAP >= LEAST; columns += 1) {
+      const wide = (width + GAP) / columns - GAP;
+      const high = Math.min(HIGHEST, (height + GAP) / Math.ceil(count / columns) - GAP);
+      const size = Math.min(wide / WIDE, high);
+      if (size > best.size) best = { columns, size };
+    }
+    if (best.size < LOW) best.columns = Math.max(1, Math.floor((width + GAP) / (LEAST + 30 + GAP)));
+    const rows = Math.ceil(count / best.columns);
+    const high = Math.max(LOW, Math.min(HIGHEST, Math.floor((height + GAP) / rows - GAP)));
+    this.element.style.setProperty('--columns', String(best.columns));
+    this.element.style.setProperty('--high', `${high}px`);
+  }
+}
+
+/** @param {number} seconds */
+export function clock(seconds) {
+  return `${Math.floor(seconds / 60)}:${String(seconds % 60).padStart(2, '0')}`;
+}
+
+/** @param {HTMLElement} place @param {string} said */
+export function put(place, said) {
+  if (place.textContent !== said) place.textContent = said;
+}
+
+/** @param {HTMLElement} place @param {string} said */
+function label(place, said) {
+  if (place.getAttribute('aria-label') !== said) place.setAttribute('aria-label', said);
+}
