@@ -17,7 +17,7 @@ from tiniscript.link.ports import opened
 from tiniscript.link.wire import SerialWire
 from tools.uno import Uno
 
-TRIES = 8  # a simulated board waits for its bootloader as long as a real one, however late it is
+TRIES = 20  # a simulated board waits for its bootloader as long as a real one, however late it is
 CLOSED_S = 0.05  # a pseudo-terminal has no DTR: opening it restarts the board
 
 

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 ROOT = Path(__file__).resolve().parent.parent.parent
 SOURCES = ROOT / "vm_arduino"
 WARNINGS = ("-Wall", "-Wextra", "-Wconversion", "-Wshadow", "-Werror")
-FLAGS = ("-std=c++11", "-O1", "-g", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
+FLAGS = ("-std=c++11", "-O1", "-g1", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
 
 FOLDER = re.compile(rb'^(# \d+ ")[^"\n]*/', re.M)  # of a line that says where the next are from
 USER = os.getuid() if hasattr(os, "getuid") else ""

@@ -23,7 +23,7 @@ from tiniscript.studio.serving import files
 if TYPE_CHECKING:
     from playwright.sync_api import Page
 
-SAMPLE = 40
+SAMPLE = 15
 
 
 def wanted(text: str) -> str:
