@@ -5,6 +5,8 @@ from __future__ import annotations
 import threading
 import tracemalloc
 
+import pytest
+
 from tiniscript.link.line import Line
 from tiniscript.link.outcomes import KEPT, Backlog, MissedEvent, StartedEvent, Told
 from tiniscript.link.payloads import DoneEvent, FaultEvent, ShowEvent
@@ -20,11 +22,12 @@ class Chatterbox:
 
     def __init__(self) -> None:
         self.pieces = PIECES
+        self.rest = b""
         self.is_over = threading.Event()
 
     @property
     def in_waiting(self) -> int:
-        return len(CHATTER) - 1
+        return len(self.rest)
 
     def read(self, count: int) -> bytes:
         if count == 1:
@@ -33,8 +36,10 @@ class Chatterbox:
                 self.is_over.set()
                 self.is_over.wait(0.01)
                 return b""
+            self.rest = CHATTER[1:]
             return CHATTER[:1]
-        return CHATTER[1:]
+        found, self.rest = self.rest, b""
+        return found
 
     def write(self, data: bytes) -> int:
         return len(data)
@@ -61,6 +66,36 @@ def test_a_line_that_nobody_looks_at_keeps_little() -> None:
     assert len(found) <= KEPT + 1
     assert found[0].name == "MISSED"
     assert found[0].count + len(found) - 1 == 20 * PIECES
+
+
+class Socket(Chatterbox):
+    """Tells of one byte that waits, as a socket of pyserial does."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.left = CHATTER
+
+    @property
+    def in_waiting(self) -> int:
+        return len(self.left[:1])
+
+    def read(self, count: int) -> bytes:
+        found, self.left = self.left[:count], self.left[count:]
+        if not found:
+            self.is_over.set()
+        return found
+
+
+def test_what_a_socket_has_is_heard_in_one_piece(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A byte for each turn of the line left a stop waiting for seconds behind what was shown."""
+    pieces: list[bytes] = []
+    session = Session(1)
+    monkeypatch.setattr(session, "receive", lambda data, now_ms: pieces.append(data))
+    port = Socket()
+    line = Line(port, session)
+    assert port.is_over.wait(120)
+    line.close()
+    assert pieces == [CHATTER]
 
 
 def shown(number: int) -> Told:

@@ -22,6 +22,8 @@ from tiniscript.link.transports import Port
 
 T = TypeVar("T")
 
+READ_BYTES = 1024  # that are read before the session hears them
+
 
 def now_ms() -> int:
     return int(monotonic() * 1000)
@@ -202,11 +204,10 @@ class Line:
                 self._listener([])
 
     def _read(self) -> bytes:
+        """Wait for a byte and return it with those behind it: a socket of pyserial tells of one."""
         found = bytes(self._port.read(1))
-        if found:
-            more = self._port.in_waiting
-            if more:
-                found += self._port.read(more)
+        while 0 < len(found) < READ_BYTES and (more := self._port.in_waiting):
+            found += self._port.read(more)
         return found
 
     def _write(self, data: bytes) -> None:
