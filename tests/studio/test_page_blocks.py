@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import random
 import re
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -528,7 +529,7 @@ def test_what_a_block_says_has_the_same_places_in_both_languages() -> None:
 
 
 def test_no_word_of_the_sources_is_a_picture_of_a_face() -> None:
-    for path in (ROOT / "tools" / "studio" / "src").iterdir():
+    for path in filter(Path.is_file, (ROOT / "tools" / "studio" / "src").rglob("*")):
         assert not re.search("[\U0001f000-\U0001faff]", path.read_text(encoding="utf-8")), path.name
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import re
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 
 KIT = robots.load("tinibot").kit
 PATIENCE_MS = 90_000
+RUNS = 5
 VOID = "The robot was stopped meanwhile"
 BLINKS = "The robot that blinks and plays its tune is"
 
@@ -381,15 +382,30 @@ def test_a_program_of_the_button_is_recorded_from_its_first_event(
     page: Page, robot: PtyRobot
 ) -> None:
     write(page, "SB|SHOW(5);\nW(0.5);\nSHOW(6)")
-    page.click("#link_upload")
-    said(page, "The robot has it")
-    page.wait_for_timeout(700)
-    robot.push()
-    said(page, "Done.")
-    page.click("#record summary")
-    page.click("#record_compare")
-    page.locator("#record_said").filter(has_text="Both did the same. Comparisons: 3.").wait_for()
+
+    def run() -> None:
+        page.click("#link_upload")
+        said(page, "The robot has it")
+        page.wait_for_timeout(700)
+        robot.push()
+        said(page, "Done.")
+
+    agrees(page, run)
     assert events(page) == ["SHOW 5", "SHOW 6", "DONE"]
+
+
+def agrees(page: Page, run: Callable[[], None]) -> None:
+    """Record runs until one agrees with the virtual robot: a busy computer hears of some late."""
+    told = page.locator("#record_said")
+    for _ in range(RUNS):
+        run()
+        if not page.locator("#record_compare").is_visible():
+            page.click("#record summary")
+        page.click("#record_compare")
+        told.filter(has_text=re.compile("Comparisons|another time")).wait_for()
+        if "another time" not in told.inner_text():
+            break
+    assert told.inner_text() == "Both did the same. Comparisons: 3."
 
 
 def events(page: Page) -> list[str]:
@@ -401,12 +417,13 @@ def events(page: Page) -> list[str]:
 
 def test_a_run_is_recorded_and_compared_with_the_virtual_robot(page: Page, tmp_path: Path) -> None:
     write(page, "SHOW(DISTANCE);\nF(0.2, 80);\nSHOW(5);\nW(0.1)")
-    page.click("#link_upload")
-    said(page, "Done.")
-    page.click("#record summary")
-    page.click("#record_compare")
+
+    def run() -> None:
+        page.click("#link_upload")
+        said(page, "Done.")
+
+    agrees(page, run)
     told = page.locator("#record_said")
-    told.filter(has_text="Both did the same. Comparisons: 3.").wait_for()
     with page.expect_download() as saved:
         page.click("#record_save")
     lines = saved.value.path().read_text().splitlines()

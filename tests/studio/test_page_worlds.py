@@ -48,6 +48,7 @@ def said(page: Page, text: str) -> None:
     page.locator("#doing").filter(has_text=text).wait_for()
 
 
+KEPT = "() => localStorage.getItem('tiniscript.world')"
 DRAWN = "() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))"
 
 
@@ -267,8 +268,10 @@ def test_a_finger_draws_and_drags_on_a_small_screen(pages: Pages) -> None:
     assert len(found.lines) == 1 and abs(found.lines[0].points[-1].x - 160) < 1
     page.tap("#world_done")
     assert page.locator("#world option:checked").inner_text() == "mi mundo"
+    kept = page.evaluate(KEPT)
     finger(page, [(60, 110), (60, 100)])  # outside of the drawing, too
-    page.reload()  # and it is kept
+    page.wait_for_function(f"before => ({KEPT})() !== before", arg=kept)
+    page.reload()
     checked(page)
     assert page.locator("#world option:checked").inner_text() == "mi mundo"
     page.tap("#world_draw")
