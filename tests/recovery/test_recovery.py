@@ -16,7 +16,7 @@ from tiniscript.library.compiling import analyzed
 from tiniscript.recovery import lines, rewrites, rows
 from tiniscript.recovery.concepts import Lexeme, Names, lexemes
 from tiniscript.recovery.explanation import Slip, explained
-from tiniscript.recovery.search import candidate
+from tiniscript.recovery.search import Recovery
 from tiniscript.source import Edit, Span
 from tiniscript.syntax.outline import Failure
 from tools.shadow import marks
@@ -30,7 +30,7 @@ ROWS = [*rewrites.of_signs(), *rewrites.of_tokens()]
 @pytest.mark.parametrize("row", ROWS, ids=lambda row: row.example[0][:50])
 def test_the_example_of_a_row_is_read_as_it_says(row: rewrites.Row | rewrites.SignRow) -> None:
     wrong, right = row.example
-    found = (candidate(wrong, kit, partial(mistakes, kit)) for kit in KITS)
+    found = (Recovery(wrong, kit, partial(mistakes, kit)).best() for kit in KITS)
     assert any(each is not None and each.text == right for each in found)
 
 
@@ -170,7 +170,7 @@ def test_words_of_a_kit_are_read_on_its_robots_alone(
     wrong: str, kit: str, right: str | None
 ) -> None:
     own = robots.load(kit).kit
-    found = candidate(wrong, own, partial(mistakes, own))
+    found = Recovery(wrong, own, partial(mistakes, own)).best()
     assert (found.text if found and found.is_applied else None) == right
 
 

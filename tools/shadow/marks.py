@@ -15,8 +15,7 @@ from tiniscript import compile_text, robots
 from tiniscript.library.compiling import analyzed
 from tiniscript.recovery.advice import advised
 from tiniscript.recovery.concepts import plain
-from tiniscript.recovery.findings import sure
-from tiniscript.recovery.search import Candidate, candidate
+from tiniscript.recovery.search import Candidate, Recovery
 from tiniscript.repairs.fixing import fixed, offers
 from tiniscript.source import applied
 
@@ -44,7 +43,7 @@ def image(program: str) -> bytes:
 
 
 def meant(program: str) -> Candidate | None:
-    return candidate(program, KIT, mistakes)
+    return Recovery(program, KIT, mistakes).best()
 
 
 class Answer(NamedTuple):
@@ -67,7 +66,7 @@ def answer(entry: Entry) -> Answer:
     anything else: of a reading of the whole text, since one of a part is not made.
     """
     found = meant(entry.program)
-    if sure(entry.program, KIT, mistakes) is None:
+    if Recovery(entry.program, KIT, mistakes).sure() is None:
         if advised(entry.program, KIT):
             text = fixed(entry.program, check).text
             found = Candidate(text, True, False, (), 0) if text != entry.program else None

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import gc
 from collections.abc import Callable
+from functools import cache
 from typing import NamedTuple
 
 from tiniscript.bytecode.image import TASKS, Image, checksum, isa_of, pack
@@ -49,29 +50,34 @@ class Compiled(NamedTuple):
 ROUNDS = 20  # of reading what follows a mistake from the repaired text
 
 
-def check_text(text: str, kit: Kit, name: str = "", rounds: int = ROUNDS) -> Compiled:
+def check_text(text: str, kit: Kit, name: str = "") -> Compiled:
     """Return the checked program of a text, and all that is wrong with it."""
     found = analyzed(text, kit, name)
-    if found.is_right:
-        return found
+    return found if found.is_right else _with_findings(found, kit)
+
+
+def _with_findings(found: Compiled, kit: Kit) -> Compiled:
+    """Return a wrong program with what is told of it."""
     from tiniscript.recovery.findings import findings, moved_back
     from tiniscript.recovery.once import said_once
     from tiniscript.recovery.usage import with_usage
 
-    def mistakes(it: str) -> list[codes.Diagnostic]:
-        return analyzed(it, kit).diagnostics
+    read = cache(lambda text: analyzed(text, kit))  # a repair that was tried is read on
 
-    answered = findings(found.source, found.diagnostics, mistakes, kit) if rounds else None
-    if answered is None or not answered.told:
-        told = with_usage(found.diagnostics, found.source, kit)
-        return found._replace(diagnostics=said_once(told, found.source))
-    told, edits = answered.told, answered.edits
-    if len(told) <= ENOUGH:
-        rest = check_text(applied(text, edits), kit, name, rounds - 1)
-        # The warnings of what is left come when it is repaired.
-        left = [] if rest.is_right else rest.diagnostics
-        told = [*told, *(moved_back(each, edits) for each in left)]
-    return found._replace(diagnostics=said_once(told, found.source))
+    def told_of(it: Compiled, rounds: int) -> Compiled:
+        told: list[codes.Diagnostic] = []
+        if rounds:
+            told, edits = findings(it.source, it.diagnostics, lambda to: read(to).diagnostics, kit)
+        if not told:
+            told = with_usage(it.diagnostics, it.source, kit)
+        elif len(told) <= ENOUGH:
+            rest = read(applied(it.source.text, edits))
+            # The warnings of what is left come when it is repaired.
+            left = [] if rest.is_right else told_of(rest, rounds - 1).diagnostics
+            told = [*told, *(moved_back(each, edits) for each in left)]
+        return it._replace(diagnostics=said_once(told, it.source))
+
+    return told_of(found, ROUNDS)
 
 
 def analyzed(text: str, kit: Kit, name: str = "") -> Compiled:

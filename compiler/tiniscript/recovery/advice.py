@@ -84,25 +84,25 @@ def advised(text: str, kit: Kit) -> list[Advice]:
     left = MOST
     for body, line in zip(bodies, text.split("\n"), strict=True):
         told: list[Advice] = []
-        if "~" not in body:
+        words = lexemes(body)
+        is_right = not isinstance(lines.right(words, names), Failure)
+        if "~" not in body and not is_right:
             parts = filter(_is_read, _parts(body, start, text, names, depth, above))
             read = list(islice(parts, left))
             told = [each for part in read if (each := _told(part))]
             left -= len(read)
         found += told
         if body.strip() and not any(each.diagnostic.code is codes.SAME_AGAIN for each in told):
-            above = _below(above, body.partition("|")[2] or body, names)
-        words = [each.text for each in lexemes(body)]
-        depth += sum(word in BLOCK_ENDS for word in words) - sum(word in ENDED for word in words)
+            above = _below(above, body.partition("|")[2] or body, is_right)
+        depth += sum((each.text in BLOCK_ENDS) - (each.text in ENDED) for each in words)
         start += len(line) + 1
     return found
 
 
-def _below(above: Above, line: str, names: Names) -> Above:
-    """Return what stands above the line that follows."""
+def _below(above: Above, line: str, is_right: bool) -> Above:
+    """Return what stands above the line that follows one."""
     parts = [each for each in map(lexemes, line.split(";")) if each]
     words = {each.text for part in parts for each in part}
-    is_right = not any(isinstance(lines.right(part, names), Failure) for part in parts)
     if parts and parts[-1][0].text in _BEGIN_BODY:
         return Above(None, None)
     if words & {*_BEGIN_BODY, *ENDED} or not is_right:

@@ -182,6 +182,64 @@ def _in_two_words(word: str) -> str | None:
 # -- the names of a program -----------------------------------------------------------------
 
 
+class _OfLine(NamedTuple):
+    """The names of one line; `rows` are those that are written as several words."""
+
+    variables: set[str]
+    defs: set[str]
+    in_brackets: set[str]
+    rows: set[tuple[str, ...]]
+
+
+@lru_cache(REMEMBERED)
+def _names_of(line: tuple[Lexeme, ...]) -> _OfLine:
+    found = _OfLine(set(), set(), set(), set())
+    head = line[2:] if len(line) > 1 and line[1].text == "|" else line
+    depth = 0
+    for token, after in pairwise([*line, made(";")]):
+        depth += (token.text == "(") - (token.text == ")")
+        if token.kind is not WORD:
+            continue
+        if depth > 0:
+            found.in_brackets.add(token.text)
+        elif after.text in ("=", "++", "+=", "-=", ":=") and token.text not in WORDS:
+            found.variables.add(token.text)
+        is_def = token.text in _BEFORE_NAME or concept_of(token.text) == "DEF"
+        if is_def and after.kind is WORD and after.text not in WORDS:
+            if after.text not in ("MAIN", "SETUP", "PRINCIPAL"):
+                found.defs.add(after.text)
+    if len(head) > 2 and (head[0].text == "DEF" or concept_of(head[0].text) == "DEF"):
+        row, names = _name_in_words(head[1:], ";"), found.defs
+    else:
+        row, names = _name_in_words(head, "="), found.variables
+    if row:
+        found.rows.add(row)
+        names.add(joined(row))
+    return found
+
+
+def _name_in_words(tokens: Sequence[Lexeme], after: str) -> tuple[str, ...]:
+    """Return a name of several words that ends before `after`: `mi vel = 5`, `DEF paso 1`."""
+    row: list[str] = []
+    for token in tokens[: _LONGEST + 1]:
+        is_own = token.text not in WORDS and not said_of(token.text, "declare")
+        is_first_number = token.kind is NUMBER and not row
+        if is_first_number and not (after == ";" and _is_glued(tokens)):
+            break
+        if token.kind not in (WORD, NUMBER, "-"):
+            break
+        if token.text in STARTS or token.text in DONE:
+            break
+        if not row and said_of(token.text, "count"):
+            break
+        if token.kind is WORD and (not is_own or said_of(token.text, "set")) and len(row) != 1:
+            break
+        row.append(token.text)
+    ends = tokens[len(row)].text if len(tokens) > len(row) else ";"
+    is_name = len(row) > 1 and ends == after and row[0] not in WORDS and row[-1] != "-"
+    return tuple(row) if is_name else ()
+
+
 class Names:
     """The names of one program, by a look at its tokens; `label` is what rewrites match."""
 
@@ -189,13 +247,11 @@ class Names:
         self.sensors = frozenset(each.name for each in kit.sensors)
         self.asked = {each.name: each for each in kit.sensors if not each.is_yes_no}
         self.actuators = {each.name: each for each in kit.actuators}
-        self.variables: set[str] = set()
-        self.defs: set[str] = set()
-        self.in_brackets: set[str] = set()
-        self.rows: set[tuple[str, ...]] = set()  # names that are written as several words
-        for line in lines:
-            self._look_at(line)
-        self.defs -= {row[0] for row in self.rows}
+        told = [_names_of(tuple(line)) for line in lines]
+        self.variables = {name for each in told for name in each.variables}
+        self.in_brackets = {name for each in told for name in each.in_brackets}
+        self.rows = {row for each in told for row in each.rows}
+        self.defs = {name for each in told for name in each.defs} - {row[0] for row in self.rows}
         self._labels: dict[tuple[str, str, bool], str] = {}
 
     @cached_property
@@ -225,50 +281,6 @@ class Names:
             found.__dict__.pop(cached, None)
         found._labels = {}
         return found
-
-    def _look_at(self, line: Sequence[Lexeme]) -> None:
-        head = line[2:] if len(line) > 1 and line[1].text == "|" else line
-        depth = 0
-        for token, after in pairwise([*line, made(";")]):
-            depth += (token.text == "(") - (token.text == ")")
-            if token.kind is not WORD:
-                continue
-            if depth > 0:
-                self.in_brackets.add(token.text)
-            elif after.text in ("=", "++", "+=", "-=", ":=") and token.text not in WORDS:
-                self.variables.add(token.text)
-            is_def = token.text in _BEFORE_NAME or concept_of(token.text) == "DEF"
-            if is_def and after.kind is WORD and after.text not in WORDS:
-                if after.text not in ("MAIN", "SETUP", "PRINCIPAL"):
-                    self.defs.add(after.text)
-        if len(head) > 2 and (head[0].text == "DEF" or concept_of(head[0].text) == "DEF"):
-            self._name_in_words(head[1:], self.defs, (";",))
-        else:
-            self._name_in_words(head, self.variables, ("=",))
-
-    def _name_in_words(
-        self, tokens: Sequence[Lexeme], names: set[str], after: tuple[str, ...]
-    ) -> None:
-        """Note a name of several words that ends before `after`: `mi vel = 5`, `DEF paso 1`."""
-        row: list[str] = []
-        for token in tokens[: _LONGEST + 1]:
-            is_own = token.text not in WORDS and not said_of(token.text, "declare")
-            is_first_number = token.kind is NUMBER and not row
-            if is_first_number and not (";" in after and _is_glued(tokens)):
-                break
-            if token.kind not in (WORD, NUMBER, "-"):
-                break
-            if token.text in STARTS or token.text in DONE:
-                break
-            if not row and said_of(token.text, "count"):
-                break
-            if token.kind is WORD and (not is_own or said_of(token.text, "set")) and len(row) != 1:
-                break
-            row.append(token.text)
-        ends = tokens[len(row)].text if len(tokens) > len(row) else ";"
-        if len(row) > 1 and ends in after and row[0] not in WORDS and row[-1] != "-":
-            self.rows.add(tuple(row))
-            names.add(joined(row))
 
     def is_name(self, word: str) -> bool:
         return word in self.known.values or word in self.defs or word in self.actuators

@@ -18,7 +18,7 @@ from tiniscript.recovery import lines, rows
 from tiniscript.recovery.advice import advised
 from tiniscript.recovery.concepts import Names, lexemes
 from tiniscript.recovery.explanation import LONGEST_BLOCK, Explanation, explained, trimmed
-from tiniscript.recovery.search import Candidate, Mistakes, candidate
+from tiniscript.recovery.search import Candidate, Recovery
 from tiniscript.recovery.setup import setup
 from tiniscript.recovery.writing import laid_out, without_note
 from tiniscript.source import Edit, Source, Span, applied, overlap
@@ -60,16 +60,17 @@ def findings(source: Source, found: Sequence[Diagnostic], check: Check, kit: Kit
     if aside := _titles(source, kit) or _numbers(source):
         edits = [edit for each in aside if each.repair for edit in each.repair.edits]
         return Findings(aside, edits)
-    repaired = _meant(source, found, check, kit)
-    if repaired:
-        edits = [edit for each in repaired if each.repair for edit in each.repair.edits]
-        return Findings(repaired, edits)
+    recovery = _recovery(source, found, check, kit)
+    if recovery and (repaired := _meant(source, found, recovery.sure(), is_sure=True)):
+        return _with_edits(repaired)
     told = advised(source.text, kit)
     if told:
         return Findings([each.diagnostic for each in told], [each.passed for each in told])
-    repaired = _meant(source, found, check, kit, is_sure=False)
-    edits = [edit for each in repaired if each.repair for edit in each.repair.edits]
-    return Findings(repaired, edits)
+    return _with_edits(_meant(source, found, recovery.best() if recovery else None, is_sure=False))
+
+
+def _with_edits(told: list[Diagnostic]) -> Findings:
+    return Findings(told, [edit for each in told if each.repair for edit in each.repair.edits])
 
 
 def _titles(source: Source, kit: Kit) -> list[Diagnostic]:
@@ -110,38 +111,47 @@ def _numbers(source: Source) -> list[Diagnostic]:
     ]  # fmt: skip
 
 
-def _meant(
-    source: Source, found: Sequence[Diagnostic], check: Check, kit: Kit, is_sure: bool = True
-) -> list[Diagnostic]:
-    """Return what is wrong with a text that is read wholly and surely, else nothing.
-
-    `is_sure`: else what is wrong with the lines that are read, and what may be meant.
-    """
+def _recovery(
+    source: Source, found: Sequence[Diagnostic], check: Check, kit: Kit
+) -> Recovery | None:
+    """Return what reads a text, unless it is long, has a checksum, or begins as none of ours."""
     text = source.text.replace("\r\n", "\n")
+    if "\r" in text:  # each line ends with one alone
+        text = source.text.replace("\r", "\n")
     said = {text: _mistakes(found)}
     first = lexemes(text[:LONGEST].lstrip().partition("\n")[0])[:1]
     is_setup = bool(first) and first[0].text in ("SI", "SB")
     is_begun_otherwise = codes.SETUP_UNKNOWN.number in said[text] and not is_setup
     if len(text) > LONGEST or "~" in text or is_begun_otherwise:
-        return []
-    if "\r" in text:  # each line ends with one alone
-        shown = Source(source.text.replace("\r", "\n"), source.name)
-        read = _meant(shown, found, check, kit, is_sure)
-        return [_with_line_ends(each, source.text) for each in read]
+        return None
 
     def mistakes(program: str) -> Sequence[str]:
         if program not in said:
             said[program] = _mistakes(check(program))
         return said[program]
 
-    meant = sure(text, kit, mistakes) if is_sure else candidate(text, kit, mistakes)
+    return Recovery(text, kit, mistakes)
+
+
+def _meant(
+    source: Source, found: Sequence[Diagnostic], meant: Candidate | None, is_sure: bool
+) -> list[Diagnostic]:
+    """Return what is wrong with a text where it is known what is meant by it.
+
+    `is_sure`: by all of it surely; else by the lines that are read.
+    """
     if meant is None:
         return []
+    if "\r" in source.text.replace("\r\n", ""):
+        shown = Source(source.text.replace("\r", "\n"), source.name)
+        read = _meant(shown, found, meant, is_sure)
+        return [_with_line_ends(each, source.text) for each in read]
     told = explained(source.text, meant)
     if not told and meant.is_whole:
         misplaced = [each for each in found if each.code.number in rows.MISPLACED]
         said_of_it = misplaced or [each for each in found if each.is_mistake]
         return [_moved(each, source.text, meant) for each in said_of_it][:1]
+    text = source.text.replace("\r\n", "\n")
     said_with = {each.code for each in told} | {step.code for _, step in meant.steps}
     if not told or not _keeps(text, meant.text, said_with, is_sure):
         return []
@@ -151,12 +161,6 @@ def _meant(
         _diagnostic(each, is_sure, meant.has_sure_blocks, found)
         for each, is_sure in zip(told, are_sure, strict=True)
     ]
-
-
-def sure(text: str, kit: Kit, mistakes: Mistakes) -> Candidate | None:
-    """Return the program that a text means wholly and surely. Its lines end with `\n`."""
-    meant = candidate(text, kit, mistakes, is_whole=True)
-    return meant if meant and meant.is_whole and meant.is_applied else None
 
 
 def _is_sure(told: Explanation, meant: Candidate) -> bool:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator, Sequence
+from functools import cached_property
 from typing import NamedTuple
 
 from tiniscript.kit import Kit
@@ -58,17 +59,6 @@ class Candidate(NamedTuple):
     move: Moved | None = None
 
 
-def candidate(
-    program: str, kit: Kit, mistakes: Mistakes, is_whole: bool = False
-) -> Candidate | None:
-    """Return the program that was meant by a wrong one, or None; a right one has no other.
-
-    `is_whole`: only one in which all can be read.
-    """
-    before = mistakes(program)
-    return _Recovery(program, kit, mistakes, len(before)).run(is_whole) if before else None
-
-
 class _Text:
     """A line on its way: what was written, and the readings of it."""
 
@@ -91,39 +81,57 @@ class _Text:
         return bool(self.reading and self.reading.steps)
 
 
-class _Recovery:
-    def __init__(self, program: str, kit: Kit, mistakes: Mistakes, count: int) -> None:
+class Recovery:
+    """What may have been meant by a wrong program; each line of it is read once."""
+
+    def __init__(self, program: str, kit: Kit, mistakes: Mistakes) -> None:
         self.program = program
         self.kit = kit
         self._mistakes = mistakes
-        self.count = count
+        self.count = len(mistakes(program))
         self.checks = 0
         self.unread = 0
         self.lines = [_Text(line, k) for k, line in enumerate(program.split("\n"))]
+        self.read_setup()
+        self.read_signs()
+        self.join_until()
+        self.names = Names([lexemes(each.body) for each in self.lines], kit)
+        self._reading = self._read_lines()
 
     def mistakes(self, text: str) -> Sequence[str]:
         self.checks += 1
         return self._mistakes(text)
 
-    def run(self, is_whole: bool) -> Candidate | None:
-        self.read_setup()
-        self.read_signs()
-        self.join_until()
-        names = Names([lexemes(each.body) for each in self.lines], self.kit)
+    def sure(self) -> Candidate | None:
+        """Return the program that is meant wholly and surely: soon, where a line is not read so."""
+        if not self.count or not all(self._reading):
+            return None
+        meant = self.whole
+        return meant if meant and meant.is_whole and meant.is_applied else None
+
+    def best(self) -> Candidate | None:
+        """Return the program that was meant, or None; a right one has no other."""
+        if not self.count:
+            return None
+        for _ in self._reading:
+            pass
+        best = self.whole
+        if best is None or not best.is_whole:
+            best = self.of_parts(self.names, best) or best
+        return best
+
+    def _read_lines(self) -> Iterator[bool]:
+        """Read each line, and give whether it is read surely."""
+        names = self.names
         for line in self.lines:
             self.read_line(line, names)
-            if is_whole and not (line.reading and line.reading.is_sure):
-                return None  # soon: a line that nobody can read takes longest
+            yield bool(line.reading and line.reading.is_sure)
         told = Names([each.reading.tokens for each in self.lines if each.reading], self.kit)
         if told.variables | told.defs > names.variables | names.defs:
-            names = names.joined(told)
+            self.names = names.joined(told)
             for line in self.lines:
                 if line.reading is None:
-                    self.read_line(line, names)
-        best = self.of_whole()
-        if not is_whole and (best is None or not best.is_whole):
-            best = self.of_parts(names, best) or best
-        return best
+                    self.read_line(line, self.names)
 
     # -- lines ----------------------------------------------------------------------------------
 
@@ -134,7 +142,9 @@ class _Recovery:
         for line in self.lines:
             body = line.body.translate(_QUOTES)
             is_right = not isinstance(lines.right(lexemes(body), names), Failure)
-            for row in () if is_right and body == line.body else rewrites.of_signs():
+            if is_right and body == line.body:
+                continue
+            for row in rewrites.of_signs():
                 for _ in row.pattern.findall(body):  # a step each, which is told at its place
                     new = row.pattern.sub(row.becomes, body, count=1)
                     if new != body and not (defs and defs & _words(body) - _words(new)):
@@ -159,10 +169,12 @@ class _Recovery:
     def join_until(self) -> None:
         """Put an UNTIL on a line of its own behind the instruction before it."""
         kept: list[_Text] = []
-        if re.search(r"(?i)\b(?:END|FIN)[ _]?(?:UNTIL|HASTA)\b", self.program):
-            return  # it is taken for a block
+        until = re.compile(r"^\s*(?:UNTIL|HASTA)\b", re.MULTILINE)
+        text = plain(self.program)
+        if not until.search(text) or re.search(r"\b(?:END|FIN)[ _]?(?:UNTIL|HASTA)\b", text):
+            return  # there is none, or it is taken for a block
         for line in self.lines:
-            is_until = re.match(r"\s*(?:UNTIL|HASTA(?: QUE)?)\b", plain(line.body))
+            is_until = until.match(plain(line.body))
             before = next((each for each in reversed(kept) if each.body.strip()), None)
             body = before.body.rstrip().rstrip(";") if before else ""
             is_behind = before is not None and body.endswith(")") and not before.note.strip()
@@ -198,7 +210,8 @@ class _Recovery:
 
     # -- programs -------------------------------------------------------------------------------
 
-    def of_whole(self) -> Candidate | None:
+    @cached_property
+    def whole(self) -> Candidate | None:
         """Return the first sure program without mistakes; else an unsure one; else a part."""
         best: Candidate | None = None
         for readings, has_blocks in self.choices():
@@ -382,9 +395,8 @@ def _line(line: _Text, reading: Reading, edits: Sequence[Edit], tails: Sequence[
         tokens[edit.at : edit.at + edit.old] = edit.new
     if edits:
         tokens = _without_empty(tokens)
-    if not reading.steps and not edits and not tails:
-        if all(each.source is None or each.source.isascii() for each in tokens):
-            return line.body
+    if not reading.steps and not edits and not tails and line.body.isascii():
+        return line.body
     for word in tails:
         is_ended = tokens and tokens[-1].text == ";"
         tokens += [made(word)] if is_ended else [made(";"), made(word)]

@@ -9,6 +9,7 @@ from tiniscript.recovery.concepts import Lexeme, plain
 from tiniscript.syntax.lexer import NUMBER, WORD
 from tiniscript.syntax.operators import COMPARISONS
 
+_NOTE = re.compile(r"(?i)(?<!\bSI)(?<!\bSB)//")
 _CLOSED_UP = frozenset(",);|")  # no space stands before them
 
 
@@ -56,7 +57,7 @@ def _source(token: Lexeme) -> str:
 
 def without_note(line: str) -> tuple[str, str]:
     """Return a line without its comment, and that with the space at the end of the line."""
-    note = re.search(r"(?i)(?<!\bSI)(?<!\bSB)//", line)
+    note = _NOTE.search(line) if "//" in line else None
     body = line[: note.start() if note else None].rstrip(" \t")
     return body, line[len(body) :]
 
