@@ -11,7 +11,7 @@ import pytest
 from tests.pupils import corpus
 from tests.studio.programs import image as image_of
 from tests.studio.programs import programs, said
-from tests.support.studio import Pages, asked, checked, image, noted, write
+from tests.support.studio import Pages, asked, checked, enter, image, noted, write
 from tiniscript import check, compile, robots
 from tiniscript.bytecode.image import unpack
 from tiniscript.library.known_kits import lacks
@@ -146,8 +146,7 @@ def test_work_is_kept(pages: Pages) -> None:
     assert (page.input_value("#robot"), page.input_value("#language")) == ("grabber", "es")
     other = page.context.new_page()  # a new tab begins with it
     pages.watch(other)
-    other.goto(pages.address)
-    checked(other)
+    enter(other, pages.address)
     assert other.locator(".cm-content").inner_text() == "GRIPPER(90)"
     write(other, "S")
     page.reload()  # and each tab keeps its own

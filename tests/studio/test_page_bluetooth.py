@@ -19,7 +19,7 @@ from tests.studio.test_page_link import said
 from tests.support import studio
 from tests.support.command import FOREVER
 from tests.support.pty_robot import drives_now
-from tests.support.studio import checked, write
+from tests.support.studio import enter, write
 from tiniscript import robots
 
 if TYPE_CHECKING:
@@ -142,8 +142,7 @@ def radio_page(playwright: Playwright) -> Iterator[tuple[Browser, Page]]:
         context = browser.new_context(locale="en-US", service_workers="block")
         context.add_init_script(READ_INSTEAD)
         page = context.new_page()
-        page.goto(server.address)
-        checked(page)
+        enter(page, server.address)
         page.click("#side_real")
         yield browser, page
         context.close()

@@ -12,7 +12,7 @@ from tests.studio.test_page_programs import MOVE, colours, content, opened, shar
 from tests.studio.test_simulation import DANCE
 from tests.support import studio
 from tests.support.needs import need
-from tests.support.studio import Pages, checked, image, runs_like_the_command, shown, write
+from tests.support.studio import Pages, checked, enter, image, runs_like_the_command, shown, write
 from tiniscript import compile
 from tiniscript.virtual.worlds import read
 
@@ -120,11 +120,10 @@ def test_it_works_without_its_server(firefox: Browser) -> None:
     context = firefox.new_context()
     page = context.new_page()
     with studio.served() as server:
-        page.goto(server.address)
+        enter(page, server.address)
         page.evaluate("navigator.serviceWorker.ready.then(() => 1)")
-        checked(page)
         address = server.address
-    page.goto(address)
+    enter(page, address)
     page.click("#view_text")
     write(page, PROGRAM)
     assert image(page) == compile(PROGRAM).image

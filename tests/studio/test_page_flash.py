@@ -15,7 +15,7 @@ from tests.machines.uno import needed
 from tests.studio.test_page_link import said
 from tests.support import studio_serial
 from tests.support.platformio import firmware, shared
-from tests.support.studio import checked
+from tests.support.studio import enter
 from tests.support.waiting import until
 from tiniscript.studio import serving
 
@@ -48,8 +48,7 @@ def test_a_new_board_becomes_a_robot(
     ):
         found = context.pages[0]
         found.set_default_timeout(120_000)
-        found.goto(server.address)
-        checked(found)
+        enter(found, server.address)
         found.click("#side_real")
         found.locator("#link_port option").first.wait_for(state="attached")
         found.click("#flash summary")

@@ -11,7 +11,7 @@ import pytest
 
 from tests.support import studio
 from tests.support.needs import need
-from tests.support.studio import Pages, checked, image, write
+from tests.support.studio import Pages, checked, enter, image, write
 from tiniscript import compile
 from tiniscript.studio import serving
 from tiniscript.studio.building import MODULES
@@ -148,8 +148,7 @@ def test_it_works_without_its_server(playwright: Playwright, tmp_path: Path) -> 
         )
         try:
             page = context.new_page()
-            page.goto(address)
-            checked(page)
+            enter(page, address)
             page.click("#view_text")
             page.evaluate("navigator.serviceWorker.ready.then(() => 1)")
             before = image(page)
@@ -171,9 +170,8 @@ def test_an_open_page_is_left_by_its_update(browser: Browser) -> None:
     context = browser.new_context()
     with studio.served(page=page) as server:
         tab = context.new_page()
-        tab.goto(server.address)
+        enter(tab, server.address)
         tab.evaluate("navigator.serviceWorker.ready.then(() => 1)")
-        checked(tab)
         tab.click("#view_text")
         for name, old, new in (
             ("index.html", b"<html ", b'<html data-build="2" '),
@@ -191,8 +189,7 @@ def test_an_open_page_is_left_by_its_update(browser: Browser) -> None:
         for _ in range(10):  # a busy browser ends a closed tab late
             tab.close()
             tab = context.new_page()
-            tab.goto(server.address)
-            checked(tab)
+            enter(tab, server.address)
             if found := tab.locator("html[data-build]").count():
                 break
         assert found == 1

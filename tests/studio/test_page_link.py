@@ -14,7 +14,7 @@ import pytest
 from tests.studio.test_page_for_everyone import LOOK, SCREENS
 from tests.support import studio
 from tests.support.pty_robot import PtyRobot
-from tests.support.studio import HUNG_MS, Pages, checked, drives, hang, write
+from tests.support.studio import HUNG_MS, Pages, checked, drives, enter, hang, write
 from tiniscript import compile, robots
 from tiniscript.link import known_ports
 from tiniscript.studio import serving
@@ -210,8 +210,7 @@ def test_a_page_that_reaches_nothing_stops_its_robot(
 def test_two_tabs_do_not_fight(first: tuple[Pages, Page], page: Page, robot: PtyRobot) -> None:
     other = page.context.new_page()
     first[0].watch(other)
-    other.goto(first[0].entrance())
-    checked(other)
+    enter(other, first[0].entrance())
     other.click("#side_real")
     other.locator("#link_port option").first.wait_for(state="attached")
     other.click("#link_connect")
@@ -315,7 +314,7 @@ def says_why(page: Page, robot: PtyRobot) -> None:
 
 def test_the_token_is_not_in_the_address(pages: Pages, server: serving.Server) -> None:
     page = pages.open()
-    assert page.evaluate("location.href") == server.address
+    assert page.evaluate("location.href") == server.address + "#editor"
     page.reload()
     checked(page)
     page.click("#side_real")
@@ -347,8 +346,7 @@ def test_an_address_opens_the_robots_once_and_says_so(
 def test_another_run_of_tsc_studio_is_said(pages: Pages, server: serving.Server) -> None:
     page = pages.open()
     page.evaluate("sessionStorage.setItem('tiniscript.token', '0'.repeat(32))")
-    page.goto(server.address)
-    checked(page)
+    enter(page, server.address)
     page.click("#side_real")
     said(page, "tsc studio was started again meanwhile,")
     assert [each for each in pages.wrong if "403" not in each] == []

@@ -59,7 +59,7 @@ def test_a_link_brings_the_program_and_runs_nothing(pages: Pages) -> None:
     assert content(other).rstrip() == TEXT.rstrip()
     assert (other.input_value("#robot"), image(other)) == ("grabber", wanted)
     assert other.evaluate("document.documentElement.dataset.phase") == "off"
-    assert other.evaluate("location.hash") == ""
+    assert other.evaluate("location.hash") == "#editor"
     other.click("#my_programs")
     assert "SI|F(9, 90)" in opened(other)
     visitor = pages.visit(link)  # in a new tab
@@ -108,7 +108,7 @@ def test_a_wrong_link_leaves_the_program(page: Page, name: str) -> None:
     noted(page, "The link is incomplete")
     checked(page)
     assert (content(page), image(page)) == ("SI|F(4, 80)", before)
-    assert page.evaluate("location.hash") == ""
+    assert page.evaluate("location.hash") == "#editor"
     assert page.locator("img").count() == 0
 
 
@@ -346,6 +346,7 @@ def test_hostile_names_are_only_text(page: Page) -> None:
 
 def test_a_browser_that_keeps_nothing_says_so(pages: Pages) -> None:
     page = pages.open()
+    write(page, "SI|F(1, 10)")  # a program that the page has brought is not kept
     page.evaluate(
         "() => { Storage.prototype.setItem = () => { throw new DOMException('full'); }; }"
     )

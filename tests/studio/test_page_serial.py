@@ -12,7 +12,7 @@ from tests.studio.test_page_link import said
 from tests.support import studio, studio_serial
 from tests.support.command import FOREVER
 from tests.support.pty_robot import PtyRobot
-from tests.support.studio import HUNG_MS, checked, hang, write
+from tests.support.studio import HUNG_MS, enter, hang, write
 from tiniscript import robots
 
 if TYPE_CHECKING:
@@ -41,8 +41,7 @@ def context(
         studio_serial.context(playwright, folder, robot.port, server.address) as opened,
     ):
         first = opened.pages[0]
-        first.goto(server.address)
-        checked(first)
+        enter(first, server.address)
         yield opened
 
 
@@ -96,8 +95,7 @@ def test_a_page_that_hangs_stops_its_robot(page: Page, robot: PtyRobot) -> None:
 
 def test_two_tabs_do_not_fight(context: BrowserContext, page: Page, robot: PtyRobot) -> None:
     other = context.new_page()
-    other.goto(page.url)
-    checked(other)
+    enter(other, page.url)
     other.click("#side_real")
     other.locator("#link_port option").first.wait_for(state="attached")
     other.click("#link_connect")
@@ -115,8 +113,7 @@ def test_a_page_that_is_closed_stops_its_robot(
     address = page.url
     page.goto("about:blank")
     robot.until(lambda: not robot.moves, "it stands")
-    page.goto(address)
-    checked(page)
+    enter(page, address)
 
 
 def test_what_a_reload_has_left_is_met_again(page: Page) -> None:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from tests.studio.test_page_worlds import drag, put, said, saved
 from tests.studio.test_page_worlds_kept import NO_BORDER, draw_wall
-from tests.support.studio import Pages, checked, image, noted, write
+from tests.support.studio import Pages, checked, enter, image, noted, write
 from tests.support.waiting import HANGS_S
 from tiniscript import compile
 from tiniscript.virtual.worlds import read
@@ -41,8 +41,7 @@ def second(pages: Pages, page: Page) -> Page:
     """Open another tab of the same person."""
     other: Page = page.context.new_page()
     pages.watch(other)
-    other.goto(pages.address)
-    checked(other)
+    enter(other, pages.address)
     return other
 
 

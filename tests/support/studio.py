@@ -190,8 +190,8 @@ class Pages:
     def open(self, view: str = "text", **options: Any) -> Page:
         """Open a page of a new visitor, and wait until its program is compiled.
 
-        `view` is `blocks`, which a new visitor sees, or `text`, which most tests write; the others
-        are those of `visit`.
+        `view` is `start`, which a new visitor sees, `blocks` behind it, or `text`, which most tests
+        write; the others are those of `visit`.
         """
         return self.visit(self.entrance(), view, **options)
 
@@ -207,8 +207,10 @@ class Pages:
         context.on("request", self._asked)
         page = context.new_page()
         self.watch(page)
-        page.goto(address)
-        checked(page)
+        if view == "start":
+            page.goto(address)
+        else:
+            enter(page, address)
         if view == "text":
             page.click("#view_text")
         elif view == "blocks":
@@ -264,6 +266,14 @@ class Pages:
     def _asked(self, request: Request) -> None:
         if not request.url.startswith((self.address, "data:", "blob:")):
             self.wrong.append(request.url)
+
+
+def enter(page: Page, address: str) -> None:
+    """Open an address, leave the start screen, and wait until the program is compiled."""
+    page.goto(address)
+    checked(page)
+    if page.locator("html[data-screen=start]").count():
+        page.click("#start_write")
 
 
 def checked(page: Page) -> None:

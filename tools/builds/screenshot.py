@@ -42,7 +42,8 @@ LOOP(6)
   R(0.5, 60)
 END_LOOP
 """
-SCENES = {"": PROGRAM, ".held": COUNTED}  # as blocks after its run; at a breakpoint, with values
+# As blocks after its run; at a breakpoint, with values; on the start screen, where both are kept.
+SCENES = {"": PROGRAM, ".held": COUNTED, ".start": COUNTED}
 HOLDS = 5  # the line of the breakpoint
 SIZE = {"width": 1280, "height": 760}
 COLOURS = 128  # of a picture: its bytes are halved, and nobody sees it
@@ -84,16 +85,21 @@ def take(language: str, scene: str, target: Path) -> None:
         pages = studio.Pages(opened, server.address, patience_s=120)
         page = pages.open("text", viewport=SIZE, device_scale_factor=1)
         page.select_option("#language", language)
+        studio.write(page, PROGRAM)
+        if scene == ".start":
+            page.click("#home")
+            page.click("#start_write")
         studio.write(page, SCENES[scene])
         page.select_option("#speed", "20")
-        if scene:
+        if scene == ".held":
             page.click("#view_text")
             numbers = page.locator(".cm-lineNumbers .cm-gutterElement")
             numbers.filter(has_text=str(HOLDS)).last.click()
-        page.click("#run")
-        phase = "paused" if scene else "ended"
+        page.click("#home" if scene == ".start" else "#run")
+        phase = {"": "ended", ".held": "paused", ".start": "off"}[scene]
         page.locator(f"[data-phase={phase}]").first.wait_for(state="attached")
-        page.select_option("#speed", "1")
+        if scene != ".start":
+            page.select_option("#speed", "1")
         if not scene:
             page.click("#view_blocks")
             studio.shown(page)

@@ -151,6 +151,17 @@ export class Driving {
     return this.#preview ?? this.#world.shapes;
   }
 
+  /** Runs the program in a shipped world; resolves once the robot is on. @param {string} world */
+  async run(world) {
+    this.#world.choose(world);
+    this.#enter();
+    await this.#start(false);
+  }
+
+  stop() {
+    this.#stop();
+  }
+
   get #isDriving() {
     const { phase } = this.#simulator;
     return phase === 'running' || phase === 'paused';

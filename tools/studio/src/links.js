@@ -37,13 +37,18 @@ export function isHere(page) {
   return /^(.*\.)?localhost$|^127\.|^\[::1\]$/.test(hostname);
 }
 
+/** Whether an address brings a program. @param {string} hash the part of the address from `#` on */
+export function bringsProgram(hash) {
+  return hash.startsWith(MARK);
+}
+
 /**
  * Returns the program of an address: null if it has none. Rejects where it is no whole one.
  * @param {string} hash the part of the address from `#` on
  * @returns {Promise<Shared | null>}
  */
 export async function sharedIn(hash) {
-  if (!hash.startsWith(MARK)) return null;
+  if (!bringsProgram(hash)) return null;
   const packed = hash.slice(MARK.length);
   if (packed.length > MOST_READ || !/^[\w-]+$/.test(packed)) throw new Error('not a program');
   const letters = atob(packed.replaceAll('-', '+').replaceAll('_', '/'));

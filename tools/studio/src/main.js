@@ -8,6 +8,7 @@ import { showMessages, summary } from './messages.js';
 import { whenOffline } from './offline.js';
 import { Programs } from './programs.js';
 import { Python } from './python.js';
+import { bringsProgram } from './links.js';
 import { currentLanguage, setLanguage, text } from './texts.js';
 import { Driving } from './driving.js';
 import { Recorder } from './recorder.js';
@@ -15,6 +16,9 @@ import { whyOutside } from './robot/host.js';
 import { RobotPanel } from './robot/panel.js';
 import { RobotPlace } from './robot/place.js';
 import { chooseSide, showSide } from './robot_side.js';
+import { FIRST_PROGRAM } from './start/beginnings.js';
+import { beginScreens, isStart, show as showScreen } from './start/screens.js';
+import { Start } from './start/start.js';
 import { Views } from './views.js';
 import { ROBOTS, showWords } from './words.js';
 import { keep, keptWork, LONGEST } from './work.js';
@@ -23,7 +27,6 @@ import { keep, keptWork, LONGEST } from './work.js';
 /** @typedef {import('./python.js').Finding} Finding */
 
 const TYPING_MS = 150; // of silence before a text is compiled
-const FIRST_PROGRAM = 'SI|F(2, 80);\nR(0.5, 60);\nF(1, 80);\n';
 
 const robots = element('robot', HTMLSelectElement);
 const languages = element('language', HTMLSelectElement);
@@ -90,6 +93,18 @@ const lessons = new Lessons({
   },
 });
 chooseSide();
+beginScreens(whyOutside !== '' || bringsProgram(location.hash), !('class' in document.documentElement.dataset));
+if (kept) programs.keep();
+const start = new Start({
+  put: (program) => programs.replace(program),
+  run: (world) => driving.run(world),
+  see: () => views.wake(),
+  showSide,
+  leave: () => {
+    driving.stop();
+    programs.keep();
+  },
+});
 if ('class' in document.documentElement.dataset) {
   import('./class/classroom.js').then(({ beginClass }) => beginClass({
     panel, work, python, empty: () => editor.replace(''), put: (program) => programs.replace({ ...program, name: '' }),
@@ -113,6 +128,7 @@ python.ready.then(
     isReady = true;
     check();
     views.ready();
+    if (isStart()) views.fetchAhead();
   },
   () => {
     status.textContent = text('no_compiler');
@@ -223,6 +239,7 @@ function setRobot(name) {
 /** @param {{text: string, robot: string, name: string}} program */
 function putProgram(program) {
   note.textContent = '';
+  showScreen('program');
   if (program.robot !== work.robot) setRobot(program.robot);
   work.name = program.name;
   views.begin();
@@ -240,6 +257,7 @@ languages.addEventListener('change', () => {
   panel.setLanguage();
   recorder.setLanguage();
   lessons.setLanguage();
+  start.showPrograms();
   note.textContent = '';
   if (!isReady) status.textContent = text('starting');
   remember();

@@ -5,6 +5,8 @@ import { correction, generate } from 'lean-qr';
 import { element } from './elements.js';
 import { downloadFile } from './files.js';
 import { isHere, linkOf, sharedIn } from './links.js';
+import { isGiven } from './start/beginnings.js';
+import { showInstead } from './start/screens.js';
 import { currentLanguage, text } from './texts.js';
 import { keepVersion, MOST_CHARACTERS, versions } from './versions.js';
 import { ROBOTS } from './words.js';
@@ -64,8 +66,9 @@ export class Programs {
     addEventListener('hashchange', () => this.openLink());
   }
 
-  /** Keeps what is in the editor among the earlier programs. */
+  /** Keeps what is in the editor among the earlier programs, unless the page has brought it. */
   keep() {
+    if (isGiven(this.#work.text)) return;
     if (!keepVersion(this.#work)) this.#tell(text(this.#work.text.length > MOST_CHARACTERS ? 'kept_too_long' : 'not_kept'));
   }
 
@@ -87,7 +90,7 @@ export class Programs {
       this.#tell(text('link_wrong'));
     }
     if (found === null) return;
-    history.replaceState(null, '', location.pathname + location.search);
+    showInstead();
     if (!found) return;
     this.replace({ ...found, name: '' });
     this.#tell(text('link_opened'));

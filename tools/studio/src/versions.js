@@ -45,6 +45,11 @@ export function keepVersion({ text, robot, name }, at_ms = Date.now()) {
   return false;
 }
 
+/** Its name, or else how it begins. @param {Version} version @returns {string} */
+export function titleOf({ name, text }) {
+  return name.replace(/\.\w+$/, '') || text.trim().split('\n', 3).join(' ').slice(0, 60);
+}
+
 /**
  * @param {any} found
  * @returns {found is Version}

@@ -25,6 +25,7 @@ export class Views {
   /** The text that the blocks show. @type {string | null} */
   #shown = null;
   #isReady = false;
+  #isAwake = false; // blocks may be fetched
   #isRefreshing = false;
   #isSending = false;
   #isWanted = false; // blocks of a text that does not parse, too
@@ -87,6 +88,17 @@ export class Views {
   ready() {
     this.#isReady = true;
     if (this.#isOn) this.#refresh(true);
+  }
+
+  /** The program is seen from now on. */
+  wake() {
+    this.#isAwake = true;
+    this.#lay();
+  }
+
+  /** Has the file of the blocks fetched before they are seen. */
+  fetchAhead() {
+    if (this.#isOn) import('./blocks.js');
   }
 
   setLanguage() {
@@ -204,7 +216,7 @@ export class Views {
       element(`view_${each}`, HTMLButtonElement).setAttribute('aria-pressed', String(each === view));
     }
     this.#level.hidden = view !== 'blocks';
-    if (view === 'blocks') this.#fetching ??= this.#fetch();
+    if (view === 'blocks' && this.#isAwake) this.#fetching ??= this.#fetch();
   }
 
   async #fetch() {

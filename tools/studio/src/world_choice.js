@@ -53,9 +53,7 @@ export class WorldChoice {
         this.keepOwn();
       }
       if (value !== BROUGHT) {
-        this.#work.world = value.startsWith(BEFORE) ? OWN_WORLD : value;
-        this.#brought = null;
-        this.setLanguage();
+        this.choose(value.startsWith(BEFORE) ? OWN_WORLD : value);
       }
       changed();
     });
@@ -78,6 +76,13 @@ export class WorldChoice {
   get request() {
     if (this.isOwn) return { form: this.#own.newest };
     return this.#brought?.request ?? this.shapes.name;
+  }
+
+  /** @param {string} name of a shipped world, or `OWN_WORLD` */
+  choose(name) {
+    this.#work.world = name;
+    this.#brought = null;
+    this.setLanguage();
   }
 
   /** @param {Brought} brought is chosen, until another one is */

@@ -1,0 +1,161 @@
+"""The start screen: one click to a robot that moves, earlier programs, and ways onward."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+import pytest
+
+from tests.studio.test_page_for_everyone import LOOK, SCREENS, axe
+from tests.studio.test_page_programs import GOOD
+from tests.support.studio import Pages, checked, image, noted, shown, write
+from tiniscript import compile
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Page
+
+PICTURES = ("dance", "square", "obstacle", "line", "light", "music")
+START = "html[data-screen=start]"
+
+
+@pytest.fixture
+def start(pages: Pages) -> Page:
+    """The page as somebody finds it who has never been here."""
+    page = pages.open("start")
+    assert screen(page) == "start"
+    checked(page)
+    return page
+
+
+def screen(page: Page) -> str:
+    return str(page.evaluate("document.documentElement.dataset.screen"))
+
+
+def test_one_click_moves_the_robot(start: Page) -> None:
+    assert start.locator("[data-begin]").count() == len(PICTURES)
+    for name in PICTURES:
+        start.click(f"[data-begin={name}]")
+        start.locator("html[data-phase=running]").wait_for(state="attached")
+        motors = start.locator("#values div").filter(has_text="Motors")
+        motors.filter(has_text=re.compile("[1-9]")).wait_for()
+        assert start.inner_text("#status").startswith("The program is correct"), name
+        assert start.locator("#arena").is_visible()
+        start.click("#home")
+        start.locator("html[data-phase=ended]").wait_for(state="attached")
+    assert start.locator("#start_programs li").count() == 0  # the page has brought all of them
+
+
+def test_the_robot_moves_before_the_blocks_are_fetched(pages: Pages) -> None:
+    page = pages.open("start", is_alone=True).context.new_page()
+    pages.watch(page)
+    fetched: list[str] = []
+    page.on("request", lambda request: fetched.append(request.url))
+    held = []
+    page.route("**/tiniscript.zip", lambda route: held.append(route))
+    page.goto(pages.address)
+    page.click("[data-begin=dance]")
+    page.locator("#doing", has_text="The compiler is still working").wait_for()
+    while not held:
+        page.wait_for_timeout(20)
+    assert not any("/blocks-" in each for each in fetched)
+    held[0].continue_()
+    page.locator("html[data-phase=running]").wait_for(state="attached")
+    shown(page)
+    assert any("/blocks-" in each for each in fetched)
+
+
+def test_the_address_says_which_screen_is_seen(pages: Pages, start: Page) -> None:
+    start.click("#start_write")
+    assert (screen(start), start.evaluate("location.hash")) == ("program", "#editor")
+    start.reload()
+    assert screen(start) == "program"
+    start.go_back()
+    start.locator(START).wait_for(state="attached")
+    start.go_forward()
+    start.locator("html[data-screen=program]").wait_for(state="attached")
+    start.click("#home")
+    assert screen(start) == "start"
+    start.click("#start_lessons")
+    assert start.locator("#lessons").is_visible()
+    start.click("#home")
+    start.click("#start_robot")
+    assert start.locator("#link").is_visible()
+
+
+def test_a_link_opens_its_program_and_not_the_start(pages: Pages, start: Page) -> None:
+    start.goto(f"{pages.address}#program={GOOD}")
+    noted(start, "This program came with a link")
+    assert screen(start) == "program"
+    checked(start)
+    assert image(start) == compile("SI|F(9, 90)").image
+    other = pages.visit(f"{pages.address}#program={GOOD[:-8]}")
+    noted(other, "The link is incomplete")
+    assert screen(other) == "program"
+
+
+def test_a_class_has_no_start(pages: Pages) -> None:
+    page = pages.open()
+    assert page.locator("#home").is_visible()
+    page.evaluate("document.documentElement.dataset.class = 'pupil'")
+    assert not page.locator("#home").is_visible()
+
+
+def test_earlier_programs_are_there_with_a_picture(start: Page) -> None:
+    start.click("[data-begin=dance]")
+    start.click("#view_text")
+    write(start, "SI|LOOP(2)\n  F(1, 80)\n  BEEP(0.1, 440)\nEND_LOOP")
+    start.click("#home")
+    rows = start.locator("#start_programs button")
+    assert rows.locator("strong").all_inner_texts() == ["dance"]
+    bars = rows.locator("rect").evaluate_all(
+        "all => all.map(e => [e.getAttribute('fill'), +e.getAttribute('x')])"
+    )
+    assert bars == [["#8a3c00", 3], ["#0b4f9e", 10], ["#00607a", 10]]
+    start.click("[data-begin=square]")
+    start.click("#home")
+    rows.click()
+    checked(start)
+    assert screen(start) == "program"
+    assert start.evaluate("document.documentElement.dataset.phase") != "running"
+    assert image(start) == compile("SI|LOOP(2)\nF(1, 80)\nBEEP(0.1, 440)\nEND_LOOP").image
+
+
+def test_hostile_programs_are_only_text(start: Page) -> None:
+    start.click("#start_write")
+    start.click("#view_text")
+    write(start, "<img src=x onerror=alert(1)>")
+    start.click("#home")
+    assert start.locator("#start_programs strong").inner_text() == "<img src=x onerror=alert(1)>"
+    assert start.locator("img").count() == 0
+
+
+@pytest.mark.sampled("language")
+@pytest.mark.parametrize("language", ["en", "es"])
+def test_everything_is_seen(start: Page, language: str) -> None:
+    start.select_option("#language", language)
+    for k in range(2):
+        for width, height in SCREENS:
+            start.set_viewport_size({"width": width, "height": height})
+            assert start.evaluate(LOOK) == [], (width, k)
+            assert start.locator("#stop").is_visible()
+        assert axe(start) == []
+        start.click("#start_write")
+        start.click("#view_text")
+        write(start, "SI|F(1, 80)\n" * 9)
+        start.click("#home")
+
+
+def test_the_keyboard_alone_is_enough(start: Page) -> None:
+    start.locator("#language").focus()
+    visited = []
+    for _ in range(5 + len(PICTURES)):
+        start.keyboard.press("Tab")
+        visited.append(start.evaluate("(e => e.dataset.begin ?? e.id)(document.activeElement)"))
+    assert visited == ["open", "stop", *PICTURES, "start_write", "start_lessons", "start_robot"]
+    start.locator("[data-begin=square]").focus()
+    start.keyboard.press("Enter")
+    start.locator("html[data-phase=running]").wait_for(state="attached")
+    assert start.evaluate("document.activeElement.id") == "stop"
+    start.keyboard.press("Space")
+    start.locator("html[data-phase=ended]").wait_for(state="attached")

@@ -1,0 +1,83 @@
+// The start screen: pictures that begin with a robot that moves, earlier programs, and ways onward.
+
+import { element } from '../elements.js';
+import { currentLanguage, text } from '../texts.js';
+import { titleOf, versions } from '../versions.js';
+import { BEGINNINGS } from './beginnings.js';
+import { isStart, show, whenScreen } from './screens.js';
+import { thumbnail } from './thumbnail.js';
+
+/**
+ * @typedef {object} Page what the start needs of the page
+ * @property {(program: {text: string, robot: string, name: string}) => void} put another program into the editor
+ * @property {(world: string) => Promise<void>} run the program in a world
+ * @property {() => void} see the program, which is seen from now on
+ * @property {(side: string) => void} showSide
+ * @property {() => void} leave the program
+ */
+
+const MOST = 6; // earlier programs; all are in their window
+
+export class Start {
+  #page;
+  #isBeginning = false; // a robot is to move before anything else
+
+  /** @param {Page} page */
+  constructor(page) {
+    this.#page = page;
+    for (const button of document.querySelectorAll('[data-begin]')) {
+      button.addEventListener('click', () => this.#begin(String(button.getAttribute('data-begin'))));
+    }
+    element('home', HTMLButtonElement).addEventListener('click', () => show('start'));
+    for (const [way, side] of [['write', 'side_virtual'], ['lessons', 'side_lessons'], ['robot', 'side_real']]) {
+      element(`start_${way}`, HTMLButtonElement).addEventListener('click', () => {
+        show('program');
+        element(String(side), HTMLButtonElement).click();
+      });
+    }
+    whenScreen((screen) => {
+      if (screen === 'start') this.#page.leave();
+      else if (!this.#isBeginning) this.#page.see();
+      this.showPrograms();
+      element(screen === 'start' ? 'start' : 'home', HTMLElement).focus({ preventScroll: true });
+    });
+    if (isStart()) this.showPrograms();
+    else page.see();
+  }
+
+  /** @param {string} name */
+  async #begin(name) {
+    const { text: program, robot, world } = BEGINNINGS[name] ?? { text: '', robot: '', world: '' };
+    this.#isBeginning = true;
+    this.#page.put({ text: program, robot, name: `${text(`begin_${name}`).toLowerCase()}.ts` });
+    this.#page.showSide('side_virtual');
+    element('stop', HTMLButtonElement).focus();
+    try {
+      await this.#page.run(world);
+    } finally {
+      this.#isBeginning = false;
+      this.#page.see();
+    }
+  }
+
+  /** Shows the earlier programs as they are now, in the page's language. */
+  showPrograms() {
+    if (!isStart()) return;
+    const time = new Intl.DateTimeFormat(currentLanguage(), { dateStyle: 'short', timeStyle: 'short' });
+    const rows = versions().slice(0, MOST).map((version) => {
+      const row = document.createElement('li');
+      const open = document.createElement('button');
+      const title = document.createElement('strong');
+      const when = document.createElement('time');
+      open.type = 'button';
+      title.textContent = titleOf(version);
+      when.textContent = time.format(new Date(version.at_ms));
+      open.append(thumbnail(version.text, version.robot), title, when);
+      open.addEventListener('click', () => this.#page.put(version));
+      row.append(open);
+      return row;
+    });
+    element('start_programs_title', HTMLElement).hidden = !rows.length;
+    element('start_programs', HTMLElement).replaceChildren(...rows);
+  }
+}

@@ -1,0 +1,46 @@
+// A program as a small picture: a bar for each instruction, in the colour of its block. Made of the
+// text alone, so that it costs nothing and shows nothing that somebody else has written.
+
+import { COLOURS } from '../block_colours.js';
+import { wordsOf } from '../words.js';
+
+const SVG = 'http://www.w3.org/2000/svg';
+const MOST = 7; // bars
+const ROW = 9, HIGH = 7, STEP = 7, WIDEST = 60;
+const OPENS = /^(LOOP|REPEAT|WHILE|IF|DEF|TASK|WHEN)\b/i, TURNS = /^ELSE/i, CLOSES = /^END/i;
+/** @type {Record<string, string>} */
+const GROUPS = { move: 'move', motors: 'move', stop: 'move', beep: 'time', wait: 'time', show: 'time', sensor: 'sensors', actuator: 'sensors' };
+
+/**
+ * @param {string} program
+ * @param {string} robot
+ * @returns {SVGElement}
+ */
+export function thumbnail(program, robot) {
+  const words = wordsOf(robot);
+  const picture = document.createElementNS(SVG, 'svg');
+  picture.setAttribute('viewBox', `0 0 96 ${MOST * ROW + 3}`);
+  picture.setAttribute('aria-hidden', 'true');
+  let depth = 0, row = 0;
+  for (const part of program.replace(/\/\/.*$/gm, '').replace(/^\s*\w+\s*\|/, '').split(/[;\n]/)) {
+    const line = part.trim();
+    if (!line) continue;
+    if (CLOSES.test(line) || TURNS.test(line)) depth = Math.max(0, depth - 1);
+    if (!CLOSES.test(line)) {
+      const role = words.get(/^\w*/.exec(line)?.[0].toUpperCase() ?? '')?.role ?? '';
+      const colour = OPENS.test(line) || TURNS.test(line) ? COLOURS['control'] : COLOURS[GROUPS[role] ?? 'names'];
+      picture.append(bar(3 + depth * STEP, 3 + row * ROW, Math.min(WIDEST, 14 + 3 * line.length), colour ?? ''));
+      row += 1;
+    }
+    if (OPENS.test(line) || TURNS.test(line)) depth = Math.min(3, depth + 1);
+    if (row === MOST) break;
+  }
+  return picture;
+}
+
+/** @param {number} x @param {number} y @param {number} width @param {string} fill */
+function bar(x, y, width, fill) {
+  const found = document.createElementNS(SVG, 'rect');
+  for (const [name, value] of Object.entries({ x, y, width, height: HIGH, rx: 2, fill })) found.setAttribute(name, String(value));
+  return found;
+}
