@@ -36,7 +36,8 @@ MOST_BYTES = 700  # of an input
 DONE = re.compile(r"Done (\d+) runs")
 
 VM = ("crc32.cpp", "image.cpp", "verify.cpp", "bytecode.cpp", "shape.cpp")
-MACHINE = ("vm.cpp", "vm_instructions.cpp", "vm_robot.cpp", "vm_tasks.cpp", "number.cpp")
+VM_PARTS = ("instructions", "robot", "moves", "tasks")
+MACHINE = ("vm.cpp", *(f"vm_{part}.cpp" for part in VM_PARTS), "number.cpp")
 PARTS = {
     "machine": [f"src/vm/{name}" for name in (*VM, *MACHINE)],
     "link": [*(f"src/vm/{name}" for name in VM), "src/link/*.cpp", "src/text/*.cpp",

@@ -138,8 +138,8 @@ def built(sources: Path, is_large: bool = False, flags: Sequence[str] = FLAGS) -
     inputs.append(sources / "extras/host" / "wire.h")
     # the machine is not asked here, only its verifier and its checksum
     flags = (*flags, "-Dtiniscript_like_esp32") if is_large else flags
-    left_out = ("vm.cpp", "vm_instructions.cpp", "vm_robot.cpp", "vm_tasks.cpp", "number.cpp")
-    return compiled([each for each in inputs if each.name not in left_out], flags)
+    asked = [each for each in inputs if not each.name.startswith(("vm", "number"))]
+    return compiled(asked, flags)
 
 
 @lru_cache(maxsize=2)

@@ -15,6 +15,7 @@ from tiniscript.vm.handlers import STAY, Step, does, stopped
 from tiniscript.vm.instructions import instruction
 from tiniscript.vm.machine import Machine
 from tiniscript.vm.state import (
+    CLOCK_MS,
     DONE,
     FAULT,
     FOREVER,
@@ -288,10 +289,10 @@ class TaskMachine(Machine):
             if me.powers is not None and self._is_below():
                 return self._block()
             self._begin_watched()
-        gone_ms = self.now_ms - me.begun_ms
+        gone_ms = (self.now_ms - me.begun_ms) % CLOCK_MS
         next_ms = (gone_ms // CHECK_MS + 1) * CHECK_MS
         is_last = me.move_ms != FOREVER and next_ms >= me.move_ms
-        me.clock_ms = me.begun_ms + (me.move_ms if is_last else next_ms)
+        me.clock_ms = self.now_ms - gone_ms + (me.move_ms if is_last else next_ms)
         return self._drive_on(after if is_last else me.check, is_last)
 
     def _begin_move(self) -> int:

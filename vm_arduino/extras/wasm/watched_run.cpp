@@ -63,7 +63,7 @@ class HeldMachine : public Machine {
  private:
   // Whether the program waits for a later time.
   bool is_early(uint32_t now_ms) const {
-    return task().wait != Wait::kNothing && static_cast<int32_t>(now_ms - task().clock_ms) < 0;
+    return task().has_paused && static_cast<int32_t>(now_ms - task().clock_ms) < 0;
   }
 
   bool is_marked(uint32_t now_ms) const {
@@ -107,13 +107,11 @@ const int32_t* watched_tasks() {
   static int32_t found[1 + kTasks + 1];
   found[0] = 0;
 #ifdef tiniscript_has_tasks
-  if (!is_running()) return found;
-  const Tasks& tasks = machine.tasks();
-  for (uint8_t k = 0; k < tasks.count; k++) {
-    const TaskRecord& task = tasks.records[k];
-    const bool is_in_turn = tasks.is_in_turn && k == tasks.me;
-    const uint16_t at = is_in_turn ? machine.task().pc : task.pc;
-    if (!task.has_ended && at != 0) found[++found[0]] = at - 1;
+  if (!is_running() || !machine.has_tasks()) return found;
+  const Task& task = machine.task();
+  for (const TaskRecord* each = task.records; each != task.end; each++) {
+    const uint16_t at = task.is_in_turn && each == task.me ? task.pc : each->pc;
+    if ((each->more & kHasEnded) == 0 && at != 0) found[++found[0]] = at - 1;
   }
 #endif
   return found;

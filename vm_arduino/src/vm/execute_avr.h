@@ -3,6 +3,8 @@
 #ifndef TINISCRIPT_VM_EXECUTE_AVR_H_
 #define TINISCRIPT_VM_EXECUTE_AVR_H_
 
+#include "has_tasks.h"
+
 // The bit of GPIOR0 that interrupts set: `boards/avr/attention.h`.
 #define tini_attention_bit 0
 
@@ -18,9 +20,13 @@
 #define tini_depth_at 18
 #define tini_looped_at 19
 #define tini_called_at 20
-#define tini_variables_at 49
-#define tini_stack_at 177
-#define tini_counters_at 245
-#define tini_calls_at 309
+#ifdef tiniscript_has_tasks
+#define tini_variables_at 50
+#else
+#define tini_variables_at 63
+#endif
+#define tini_stack_at (tini_variables_at + 128)
+#define tini_counters_at (tini_variables_at + 196)
+#define tini_calls_at (tini_variables_at + 260)
 
 #endif  // TINISCRIPT_VM_EXECUTE_AVR_H_

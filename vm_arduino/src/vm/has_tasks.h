@@ -1,6 +1,6 @@
 // Which machines have TASK and WHEN, in one place for C++ and assembly.
 //
-// Tasks take about 4,100 bytes of flash and 214 of RAM: an Uno and a Nano have not that much left,
+// Tasks take about 2,750 bytes of flash and 130 of RAM: an Uno and a Nano have not that much left,
 // nor have virtual robots like an Uno (`tiniscript_no_tasks`).
 
 #ifndef TINISCRIPT_VM_HAS_TASKS_H_

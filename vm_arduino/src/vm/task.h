@@ -22,88 +22,83 @@ enum class Status : uint8_t {
   kFault,
 };
 
-// What a task waits for.
-enum class Wait : uint8_t {
-  kNothing,
-  kPause,  // the end of a wait or a beep, or the next check of an UNTIL
-  kMove,   // the end of a move: then motors off
+// Powers of both wheels in percent, the left one in the low byte.
+using Powers = uint16_t;
+
+constexpr Powers powers_of(int8_t left, int8_t right) {
+  return static_cast<uint16_t>(static_cast<uint8_t>(left) | static_cast<uint8_t>(right) << 8);
+}
+
+// What one task has for itself; a program without TASK and WHEN has one, the main task. A move of
+// its own **drives**, or it is **blocked**: it waits for the motors, or stands still since a higher
+// task has taken them.
+struct TaskRecord {
+  uint8_t state;      // bits, see below
+  uint8_t more;       // bits, see below
+  uint16_t pc;        // where its next turn begins
+  uint16_t start;     // of a WHEN, its check; of others 0
+  uint16_t check;     // where that of its UNTIL begins, or where it goes on behind its move
+  uint16_t after;     // behind the move; 0: behind its UNTIL
+  uint32_t clock_ms;  // its own clock; its next turn is due then
+  uint32_t begun_ms;  // when its move began,
+  uint32_t rest_ms;   // and how long it may last then, or kForever; or the value of `kUnsent`
+  Powers powers;      // of its move; kNoPowers: a wait, the motors stay as they are
+  Powers set;         // by its M; 0 where none is in force
+  uint8_t looped;     // how many counters it has,
+  uint8_t called;     // and calls
+
+  bool is(uint8_t bits) const { return (state & bits) != 0; }
 };
+
+constexpr Powers kNoPowers = 0x8080;
+
+// Bits of `state`.
+constexpr uint8_t kIsMoving = 1;  // its move drives or is blocked
+constexpr uint8_t kIsBlocked = 2;
+constexpr uint8_t kDrives = 4;
+constexpr uint8_t kToItsEnd = 8;     // the clock is the end of the move
+constexpr uint8_t kHasBegun = 16;    // its move
+constexpr uint8_t kHasSet = 32;      // its M is in force
+constexpr uint8_t kKeeps = 64;       // a WHEN has wanted the motors, and has not found FALSE since
+constexpr uint8_t kHasWaited = 128;  // since it last went back to the start of a loop
+constexpr uint8_t kWantsMotors = kIsMoving | kHasSet | kKeeps;
+// Bits of `more`.
+constexpr uint8_t kYesNo = 1;   // the value of `kUnsent` is one
+constexpr uint8_t kUnsent = 2;  // a SHOW found no room
+constexpr uint8_t kHasEnded = 4;
 
 struct Task {
   uint16_t pc;
-  uint8_t depth;   // values on `stack`
-  uint8_t looped;  // of `counters`
-  uint8_t called;  // of `calls`
-  Wait wait;
+  uint8_t depth;    // values on `stack`
+  uint8_t looped;   // of `counters`
+  uint8_t called;   // of `calls`
+  bool has_paused;  // the turn is over, and goes on behind the last instruction
   uint32_t random;
   uint32_t started_ms;
-  uint32_t clock_ms;  // the program's own clock: where its last wait ended
-  // the move that an UNTIL watches
-  uint32_t move_ms;   // how long it may last, or kForever
-  uint32_t begun_ms;  // when it began,
-  uint16_t check;     // where its check begins
-  bool is_watching;   // if it has
-  bool drives;        // false: a wait, the motors stay as they are
-  int8_t left;
-  int8_t right;
-  bool is_late;  // 2^31 ms have passed since the start: TIME can no longer express it
+  uint32_t clock_ms;  // that of the task whose turn it is; between rounds, when the next one begins
+  bool is_late;       // 2^31 ms have passed since the start: TIME can no longer express it
+#ifdef tiniscript_has_tasks
+  bool is_in_turn;       // a turn has begun and is not over
+  bool is_first;         // it is the first one of the main task, before all others
+  bool is_first_round;   // the main task has had its turn in it
+  uint8_t looped_below;  // counters of the others, which lie below those of this task,
+  uint8_t called_below;  // and calls
+  TaskRecord* me;        // whose turn it is, or was last
+  TaskRecord* next;      // in this round
+  TaskRecord* end;       // behind the main task
+  TaskRecord* holder;    // who has the motors; `end`: nobody
+  Powers powers;         // that the motors were set to last
+#else
+  TaskRecord me[1];
+#endif
   int32_t variables[kVariables];
   // Everything from here on is written before it is read.
   int32_t stack[kStackValues + 1];  // the last one only lies after the values
   int32_t counters[kCounters];
   uint16_t calls[kCalls];  // where each open call continues
-};
-
-// What one task of a program with TASK and WHEN has for itself. A move of its own **drives**, or it
-// is **blocked**: it waits for the motors, or stands still since a higher task has taken them.
-struct TaskRecord {
-  uint16_t pc;        // where its next turn begins
-  uint16_t start;     // where it begins; a WHEN with its check
-  uint16_t check;     // where that of its UNTIL begins, or where it goes on behind its move
-  uint16_t after;     // behind the move; 0: behind its UNTIL
-  uint32_t clock_ms;  // its own clock; its next turn is due then
-  uint32_t rest_ms;   // of its move, behind `clock_ms`; or kForever
-  int32_t unsent;     // the value of a SHOW that found no room
-  int8_t left;        // of its move
-  int8_t right;
-  int8_t set_left;  // by its M
-  int8_t set_right;
-  uint8_t looped_at;  // where its counters begin, and how many there are
-  uint8_t looped;
-  uint8_t called_at;  // and its calls
-  uint8_t called;
-  bool is_when;
-  bool has_ended;
-  bool has_waited;  // since it last went back to the start of a loop
-  bool has_unsent;
-  bool is_unsent_yes_no;
-  bool has_powers;  // its move has; false: a wait, the motors stay as they are
-  bool has_begun;   // its move
-  bool is_moving;   // its move drives or is blocked
-  bool is_blocked;
-  bool drives;
-  bool to_its_end;  // the clock is the end of the move
-  bool has_set;     // its M is in force
-  bool keeps;       // a WHEN has wanted the motors, and has not found FALSE since
-
-  bool wants_motors() const { return is_moving || has_set || keeps; }
-};
-
-constexpr uint8_t kNobody = 0xff;
-
-// The tasks in the order of rank, the main task last. Where the one is whose turn it is, its clock
-// and what is open of it are in Task.
-struct Tasks {
-  TaskRecord records[kTasks + 1];
-  uint8_t count;  // 0: the program has none
-  uint8_t me;     // whose turn it is, or was last
-  uint8_t next;   // the next one of this round
-  uint8_t holder;  // who has the motors, or kNobody
-  int8_t left;    // what they were set to last
-  int8_t right;
-  bool is_in_turn;      // a turn has begun and is not over
-  bool is_first;        // it is the first one of the main task, before all others
-  bool is_first_round;  // the main task has had its turn in it
+#ifdef tiniscript_has_tasks
+  TaskRecord records[kTasks + 1];  // in the order of rank, the main task last
+#endif
 };
 
 }  // namespace tiniscript

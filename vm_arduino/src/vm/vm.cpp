@@ -9,12 +9,6 @@
 
 namespace tiniscript {
 
-namespace {
-
-constexpr uint8_t kLateMs = 20;  // when later than this, a program's own clock no longer catches up
-
-}  // namespace
-
 void Machine::start(const uint8_t* code, uint16_t length, int32_t* readings, uint8_t sensors,
                     uint32_t seed, uint32_t now_ms) {
   prepare();
@@ -35,7 +29,9 @@ void Machine::start_prepared(const uint8_t* code, uint16_t length, int32_t* read
   task_.random = seed;
   task_.started_ms = now_ms;
   task_.clock_ms = now_ms;
-  if (kHasTasks) find_tasks();
+#ifdef tiniscript_has_tasks
+  find_tasks();
+#endif
 }
 
 // Ends a wait. False: it goes on.
@@ -43,10 +39,10 @@ bool Machine::may_go_on(uint32_t now_ms) {
   now_ms_ = now_ms;
   // No wait is longer than that, so no tick skips the whole second half of the clock.
   if (static_cast<int32_t>(now_ms - task_.started_ms) < 0) task_.is_late = true;
-  if (task_.wait != Wait::kNothing) {
+  if (task_.has_paused) {
     if (static_cast<int32_t>(now_ms - task_.clock_ms) < 0) return false;
-    if (task_.wait == Wait::kMove) robot_motors(0, 0);
-    task_.wait = Wait::kNothing;
+    task_.has_paused = false;
+    if (!has_tasks() && task_.me->is(kToItsEnd)) end_move();
   }
   status_ = Status::kRunning;
   return true;
@@ -68,55 +64,11 @@ Status Machine::tick(uint32_t now_ms, uint8_t budget) {
   return status_;
 }
 
-// Begins a wait at the end of the one before, or now if that is too long ago. One of 0 ms ends no
-// turn of a task.
-tini_noinline bool Machine::wait(uint32_t duration_ms, Wait what) {
-  begin();
-  if (has_tasks() && duration_ms == 0) return true;
-  return sleep(task_.clock_ms + duration_ms, what);
-}
-
-tini_noinline bool Machine::sleep(uint32_t wake_ms, Wait what) {
-  task_.clock_ms = wake_ms;
-  task_.wait = what;
-#ifdef tiniscript_has_tasks
-  tasks_.records[tasks_.me].has_waited = true;
-#endif
+// Ends the turn, and in a program without tasks the tick.
+bool Machine::pause() {
+  task_.has_paused = true;
   status_ = Status::kWaiting;
   return false;
-}
-
-// Sets the program's clock to the begin of the next wait or move.
-tini_noinline void Machine::begin() {
-  if (now_ms_ - task_.clock_ms > kLateMs) task_.clock_ms = now_ms_;
-}
-
-// Begins, continues or ends the watched move, or waits for its next check. Returns whether the next
-// instruction may run now.
-bool Machine::until(bool stop) {
-  if (has_tasks()) return until_in_task(stop);
-  if (stop) {
-    if (!task_.is_watching) return true;
-    task_.clock_ms = now_ms_;
-    if (task_.drives) robot_motors(0, 0);
-    return true;
-  }
-  if (!task_.is_watching) {
-    task_.is_watching = true;
-    begin();
-    task_.begun_ms = task_.clock_ms;
-    if (task_.drives) robot_motors(task_.left, task_.right);
-  }
-  const uint32_t gone_ms = now_ms_ - task_.begun_ms;
-  // Never kForever. After 2^32 ms it wraps around, and a new row of checks begins.
-  uint32_t next_ms = gone_ms - gone_ms % kCheckMs + kCheckMs;
-  const bool is_checked = next_ms < task_.move_ms;
-  if (is_checked) {
-    task_.pc = task_.check;
-  } else {
-    next_ms = task_.move_ms;
-  }
-  return sleep(task_.begun_ms + next_ms, is_checked || !task_.drives ? Wait::kPause : Wait::kMove);
 }
 
 tini_noinline bool Machine::goes_on(Fault fault) {

@@ -50,9 +50,6 @@ class Machine {
 
   const Task& task() const { return task_; }
   bool has_tasks() const;
-#ifdef tiniscript_has_tasks
-  const Tasks& tasks() const { return tasks_; }
-#endif
   Status status() const { return status_; }
   Fault fault() const { return fault_; }
 
@@ -62,7 +59,7 @@ class Machine {
   // When the machine has work again, while the program waits.
   uint32_t wake_ms() const { return task_.clock_ms; }
 
-  // Goes on to where the next instruction begins, in a program with tasks. False: none may run now.
+  // Goes on to where the next instruction begins. False: none may run now.
   bool arrive(uint32_t now_ms);
 
   // What is left of the last budget: instructions, or jumps on the AVR.
@@ -125,8 +122,8 @@ class Machine {
   bool until(bool stop) tini_called_by_assembly;
   bool sense(uint8_t number) tini_called_by_assembly;
   void powers(uint8_t code, int8_t power);
-  void motors(int8_t left, int8_t right);
-  bool watch(uint32_t move_ms, bool drives);
+  bool show(int32_t value, bool is_yes_no);
+  bool sends();
 
   bool may_go_on(uint32_t now_ms);
   bool goes_on(Fault fault);
@@ -138,39 +135,32 @@ class Machine {
   void run_round();
   bool run_turn();
   bool finds_turn();
-  bool waits_for_clock(uint8_t rank) const;
-  uint32_t next_wake_ms() const;
-  void begin_turn(uint8_t rank);
+  void begin_turn(TaskRecord* me);
   void end_turn();
+  bool waits_for_clock(const TaskRecord* task) const;
+  uint32_t next_wake_ms() const;
   bool pause();
-  bool sends();
-  bool is_kept(int32_t value, bool is_yes_no);
   bool goes_back();
   bool look(bool holds);
   bool look_again();
   bool ends_program();
 
-  // their moves and motors
-  void keep_move(uint32_t move_ms, bool has_powers);
-  bool drive_in_task(uint32_t move_ms);
-  bool watch_in_task(uint32_t move_ms, bool has_powers);
-  bool until_in_task(bool stop);
-  bool begin_move();
-  void begin_watched();
-  bool drive_on(uint32_t step_ms, bool is_last);
+  // their moves and motors, in `vm_moves.cpp`
+  bool wait(uint32_t duration_ms);
+  bool drive(uint32_t move_ms);
+  bool watch(uint32_t move_ms);
+  void keep_move(uint32_t move_ms);
+  void begin();
+  bool go_on(bool is_watched);
   void end_move();
   bool block();
-  void motors_in_task(int8_t left, int8_t right);
-  void stop_in_task();
-  bool is_below() const;
+  void motors(Powers powers);
+  void stop_motors();
+  bool is_below() const;  // whether a higher task has the motors
+  void want();
   void take();
   void pass_on();
-  void set_motors(int8_t left, int8_t right);
-
-  // waits
-  bool wait(uint32_t duration_ms, Wait what);
-  bool sleep(uint32_t wake_ms, Wait what);
-  void begin();
+  void set_motors(Powers powers);
 
   Status status_;
   Fault fault_;
@@ -182,15 +172,14 @@ class Machine {
   int32_t* readings_;
   uint32_t now_ms_;
   Task task_;
-#ifdef tiniscript_has_tasks
-  Tasks tasks_;
-#endif
 };
 
 #ifdef tiniscript_has_tasks
-inline bool Machine::has_tasks() const { return tasks_.count != 0; }
+inline bool Machine::has_tasks() const { return task_.end != task_.records + 1; }
+inline bool Machine::is_below() const { return task_.holder < task_.me; }
 #else
 inline bool Machine::has_tasks() const { return false; }
+inline bool Machine::is_below() const { return false; }
 #endif
 
 }  // namespace tiniscript

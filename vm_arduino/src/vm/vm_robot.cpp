@@ -46,53 +46,22 @@ bool Machine::sense(uint8_t number) {
 tini_noinline void Machine::powers(uint8_t code, int8_t power) {
   const uint8_t way = code & 3;
   const int8_t reversed = static_cast<int8_t>(-power);
-  task_.left = way == 1 || way == 2 ? reversed : power;
-  task_.right = way == 1 || way == 3 ? reversed : power;
+  task_.me->powers =
+      powers_of(way == 1 || way == 2 ? reversed : power, way == 1 || way == 3 ? reversed : power);
 }
 
-// Keeps the move or wait that an UNTIL watches; its check begins after this instruction.
-tini_noinline bool Machine::watch(uint32_t move_ms, bool drives) {
-  if (has_tasks()) return watch_in_task(move_ms, drives);
-  task_.move_ms = move_ms;
-  task_.drives = drives;
-  task_.is_watching = false;
-  task_.check = task_.pc;
-  return true;
-}
-
-inline void Machine::motors(int8_t left, int8_t right) {
-  if (has_tasks()) {
-    motors_in_task(left, right);
-  } else {
-    robot_motors(left, right);
-  }
-}
-
+// Shows a value. Where there is no room a task keeps it and ends its turn, so that nothing stays on
+// the stack; a program without tasks waits for room, and so does the main task before all others.
+inline bool Machine::show(int32_t value, bool is_yes_no) {
 #ifdef tiniscript_has_tasks
-
-// Keeps the value of a SHOW that has found no room, and ends the turn: nothing stays on the stack.
-// Before all others the main task waits for room, as a program without tasks does.
-bool Machine::is_kept(int32_t value, bool is_yes_no) {
-  if (!has_tasks() || tasks_.is_first) return stay();
-  TaskRecord* const me = tasks_.records + tasks_.me;
-  me->has_unsent = true;
-  me->unsent = value;
-  me->is_unsent_yes_no = is_yes_no;
-  return pause();
-}
-
-// Sends that value in a later turn. Returns whether there was room.
-bool Machine::sends() {
-  TaskRecord* const me = tasks_.records + tasks_.me;
-  me->has_unsent = !robot_show(me->unsent, me->is_unsent_yes_no);
-  return !me->has_unsent;
-}
-
-#else
-
-inline bool Machine::is_kept(int32_t, bool) { return stay(); }
-
+  if (has_tasks() && !task_.is_first) {
+    task_.me->rest_ms = static_cast<uint32_t>(value);
+    task_.me->more = static_cast<uint8_t>(kUnsent | is_yes_no);
+    return sends() || pause();
+  }
 #endif
+  return robot_show(value, is_yes_no) || stay();
+}
 
 // Executes the instruction `code` at `bytes`, which lies before `task_.pc`; `top` points to the top
 // of the stack. Returns whether the next instruction may run now.
@@ -112,7 +81,6 @@ bool Machine::act(uint8_t code, const uint8_t* bytes, int32_t* top) {
     return goes_on(random_between(top - 1, task_.random));
   }
   if (kHasTasks && family >= Family::kLook) {
-    if (!has_tasks()) return fail();
     if (family == Family::kLook) return look(*top != 0);
     if (family == Family::kEndWhen) return look_again();
   }
@@ -123,42 +91,37 @@ bool Machine::act(uint8_t code, const uint8_t* bytes, int32_t* top) {
   uint32_t time_ms = takes ? duration(shape.pops() == 1 ? *top : top[-1]) : time8(first);
   switch (family) {
     case Family::kShow:
-      return robot_show(*top, false) || is_kept(*top, false);
+      return show(*top, false);
     case Family::kShowYesNo:
-      return robot_show(*top != 0 ? 1 : 0, true) || is_kept(*top != 0 ? 1 : 0, true);
+      return show(*top != 0 ? 1 : 0, true);
     case Family::kSet:
       robot_set(first, *top);
       return true;
     case Family::kStop:
-      if (has_tasks()) {
-        stop_in_task();
-      } else {
-        robot_motors(0, 0);
-      }
+      stop_motors();
       return true;
     case Family::kMotors:
-      motors(percent(top[-1], low), power);
+      motors(powers_of(percent(top[-1], low), power));
       return true;
     case Family::kMotors8:
-      motors(signed8(first), power);
+      motors(powers_of(signed8(first), power));
       return true;
     case Family::kMove:
     case Family::kMove8:
       powers(code, power);
-      if (has_tasks()) return drive_in_task(time_ms);
-      robot_motors(task_.left, task_.right);
-      return wait(time_ms, Wait::kMove);
+      return drive(time_ms);
     case Family::kWatchForever:
       time_ms = kForever;
       // fallthrough
     case Family::kWatch:
       powers(code, power);
-      return watch(time_ms, true);
+      return watch(time_ms);
     case Family::kWatchForeverWait:
       time_ms = kForever;
       // fallthrough
     case Family::kWatchWait:
-      return watch(time_ms, false);
+      task_.me->powers = kNoPowers;
+      return watch(time_ms);
     case Family::kBeep:
     case Family::kBeep8: {
       const int32_t hertz = takes ? whole(*top) : static_cast<uint16_t>(bytes[2] | bytes[3] << 8);
@@ -167,7 +130,7 @@ bool Machine::act(uint8_t code, const uint8_t* bytes, int32_t* top) {
       // fallthrough
     case Family::kWait:
     case Family::kWait8:
-      return wait(time_ms, Wait::kPause);
+      return wait(time_ms);
     default:  // kEnd or kEndTask: the others are in the inner loop
       if (has_tasks() && !ends_program()) return false;
       robot_off();

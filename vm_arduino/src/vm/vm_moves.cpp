@@ -1,0 +1,261 @@
+// Waits and moves, and who has the motors.
+//
+// Matches `tasks.py` method by method. Where a machine has no tasks, nobody takes the motors away,
+// and much less is needed: see the end.
+
+#include "../robot.h"
+#include "small.h"
+#include "vm.h"
+
+namespace tiniscript {
+
+namespace {
+
+constexpr Powers kOff = 0;
+
+}  // namespace
+
+// Sets the clock to the begin of the next wait or move, or to now if that is too long ago.
+tini_noinline void Machine::begin() {
+  constexpr uint8_t kLateMs = 20;
+  if (now_ms_ - task_.clock_ms > kLateMs) task_.clock_ms = now_ms_;
+}
+
+// Keeps the move or wait that an UNTIL watches; its check begins after this instruction.
+tini_noinline void Machine::keep_move(uint32_t move_ms) {
+  TaskRecord* const me = task_.me;
+  me->rest_ms = move_ms;
+  me->check = task_.pc;
+  me->state &= static_cast<uint8_t>(~kHasBegun);
+}
+
+#ifdef tiniscript_has_tasks
+
+namespace {
+
+void forget_set(TaskRecord* task) {
+  task->set = kOff;
+  task->state &= static_cast<uint8_t>(~kHasSet);
+}
+
+// Its move is over, and so is its M. It goes on behind the move.
+tini_noinline void end_move_of(TaskRecord* task) {
+  forget_set(task);
+  task->state &= static_cast<uint8_t>(~(kIsMoving | kIsBlocked | kDrives | kToItsEnd));
+  task->pc = task->after;
+}
+
+// Its move that drives loses the motors.
+void stand_still(TaskRecord* task, uint32_t now_ms) {
+  if (task->rest_ms != kForever) {
+    const uint32_t left_ms = task->begun_ms + task->rest_ms - now_ms;
+    if (static_cast<int32_t>(left_ms) <= 0) return end_move_of(task);
+    task->rest_ms = left_ms;
+  }
+  task->state &= static_cast<uint8_t>(~(kDrives | kHasBegun | kToItsEnd));
+  task->state |= kIsBlocked;
+  task->pc = task->check;
+}
+
+}  // namespace
+
+// A wait is a move that leaves the motors as they are. One of 0 ms ends no turn.
+tini_noinline bool Machine::wait(uint32_t duration_ms) {
+  task_.me->powers = kNoPowers;
+  return drive(duration_ms);
+}
+
+tini_noinline bool Machine::drive(uint32_t move_ms) {
+  keep_move(move_ms);
+  task_.me->after = task_.pc;
+  return go_on(false);
+}
+
+// Begins to watch a move or a wait.
+bool Machine::watch(uint32_t move_ms) {
+  keep_move(move_ms);
+  task_.me->after = 0;
+  return task_.me->powers == kNoPowers || !is_below() || block();
+}
+
+// Continues or ends the watched move, as its UNTIL says.
+bool Machine::until(bool stop) {
+  TaskRecord* const me = task_.me;
+  me->after = task_.pc;
+  if (!stop) return go_on(true);
+  if (me->is(kHasBegun)) task_.clock_ms = now_ms_;
+  if (me->is(kIsMoving)) end_move();
+  return true;
+}
+
+// Begins a move where it has not begun, and waits for its end, or for the next check of its UNTIL.
+// Returns whether the next instruction may run now.
+tini_noinline bool Machine::go_on(bool is_watched) {
+  TaskRecord* const me = task_.me;
+  if (!me->is(kHasBegun)) {
+    if (me->powers != kNoPowers) {
+      if (is_below()) return block();
+      take();
+      me->state |= kIsMoving | kDrives;
+      set_motors(me->powers);
+    }
+    me->state |= kHasBegun;
+    begin();
+    me->begun_ms = task_.clock_ms;
+  }
+  uint32_t due_ms = me->rest_ms;
+  bool is_last = true;
+  if (is_watched) {
+    const uint32_t gone_ms = now_ms_ - me->begun_ms;
+    // Never kForever. After 2^32 ms it wraps around, and a new row of checks begins.
+    const uint32_t next_ms = gone_ms - gone_ms % kCheckMs + kCheckMs;
+    is_last = next_ms >= due_ms;
+    if (!is_last) {
+      due_ms = next_ms;
+      task_.pc = me->check;
+    }
+  }
+  if (is_last && me->is(kDrives)) {
+    me->state |= kToItsEnd;
+    if (due_ms == 0) end_move();
+  }
+  task_.clock_ms = me->begun_ms + due_ms;
+  if (due_ms == 0) return true;
+  me->state |= kHasWaited;
+  return pause();
+}
+
+// Ends the move of the task whose turn it is: it drives, or it waited for the motors or stood
+// still.
+tini_noinline void Machine::end_move() {
+  const bool drove = task_.me->is(kDrives);
+  end_move_of(task_.me);
+  if (drove) set_motors(kOff);
+}
+
+// Waits for the motors.
+tini_noinline bool Machine::block() {
+  want();
+  task_.me->state |= kIsMoving | kIsBlocked | kHasWaited;
+  task_.pc = task_.me->check;
+  return pause();
+}
+
+void Machine::motors(Powers powers) {
+  const bool is_mine = !is_below();
+  if (is_mine) take();
+  want();
+  task_.me->set = powers;
+  task_.me->state |= kHasSet;
+  if (is_mine) set_motors(powers);
+}
+
+void Machine::stop_motors() {
+  want();
+  if (is_below()) return;
+  set_motors(kOff);
+  TaskRecord* const holder = task_.holder;
+  if (holder == task_.end) return;
+  forget_set(holder);
+  if (!holder->is(kDrives)) return;
+  end_move_of(holder);
+  holder->clock_ms = now_ms_;
+}
+
+// The M of this task is over; a WHEN goes on wanting the motors.
+tini_noinline void Machine::want() {
+  forget_set(task_.me);
+  if (task_.me->start != 0) task_.me->state |= kKeeps;
+}
+
+// Gives the motors to the task whose turn it is; no higher one has them.
+tini_noinline void Machine::take() {
+  want();
+  TaskRecord* const holder = task_.holder;
+  task_.holder = task_.me;
+  if (holder > task_.me && holder != task_.end && holder->is(kDrives)) {
+    stand_still(holder, now_ms_);
+  }
+}
+
+// Behind a turn: gives the motors to the highest task that wants them, if it is another.
+void Machine::pass_on() {
+  TaskRecord* highest = task_.records;
+  while (highest != task_.end && !highest->is(kWantsMotors)) highest++;
+  if (highest == task_.holder) return;
+  task_.holder = highest;
+  Powers powers = kOff;
+  if (highest != task_.end) {
+    if (highest->is(kIsBlocked)) highest->clock_ms = now_ms_ + task_.is_first_round;
+    powers = highest->set;
+  }
+  if (powers != task_.powers) set_motors(powers);
+}
+
+tini_noinline void Machine::set_motors(Powers powers) {
+  task_.powers = powers;
+  robot_motors(static_cast<int8_t>(powers), static_cast<int8_t>(powers >> 8));
+}
+
+#else
+
+tini_noinline bool Machine::wait(uint32_t duration_ms) {
+  begin();
+  task_.clock_ms += duration_ms;
+  return pause();
+}
+
+bool Machine::drive(uint32_t move_ms) {
+  set_motors(task_.me->powers);
+  task_.me->state = kToItsEnd;
+  return wait(move_ms);
+}
+
+bool Machine::watch(uint32_t move_ms) {
+  keep_move(move_ms);
+  return true;
+}
+
+bool Machine::until(bool stop) {
+  TaskRecord* const me = task_.me;
+  const bool drives = me->powers != kNoPowers;
+  if (stop) {
+    if (!me->is(kHasBegun)) return true;
+    task_.clock_ms = now_ms_;
+    if (drives) set_motors(kOff);
+    return true;
+  }
+  if (!me->is(kHasBegun)) {
+    me->state = kHasBegun;
+    begin();
+    me->begun_ms = task_.clock_ms;
+    if (drives) set_motors(me->powers);
+  }
+  const uint32_t gone_ms = now_ms_ - me->begun_ms;
+  // Never kForever. After 2^32 ms it wraps around, and a new row of checks begins.
+  uint32_t next_ms = gone_ms - gone_ms % kCheckMs + kCheckMs;
+  if (next_ms < me->rest_ms) {
+    task_.pc = me->check;
+  } else {
+    next_ms = me->rest_ms;
+    if (drives) me->state = kToItsEnd;
+  }
+  task_.clock_ms = me->begun_ms + next_ms;
+  return pause();
+}
+
+void Machine::end_move() {
+  task_.me->state = 0;
+  set_motors(kOff);
+}
+
+void Machine::motors(Powers powers) { set_motors(powers); }
+void Machine::stop_motors() { set_motors(kOff); }
+
+void Machine::set_motors(Powers powers) {
+  robot_motors(static_cast<int8_t>(powers), static_cast<int8_t>(powers >> 8));
+}
+
+#endif
+
+}  // namespace tiniscript
