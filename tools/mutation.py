@@ -27,6 +27,7 @@ import tempfile
 import time
 import tokenize
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
 from itertools import accumulate, zip_longest
 from pathlib import Path
 from typing import NamedTuple
@@ -292,10 +293,12 @@ class Copy:
         names = subprocess.run(
             ["git", "ls-files", "-z"], cwd=ROOT, check=True, capture_output=True, text=True
         ).stdout.split("\0")
-        for name in filter(None, names):
-            if (ROOT / name).is_file():
-                (folder / name).parent.mkdir(parents=True, exist_ok=True)
-                shutil.copy(ROOT / name, folder / name)
+        # What Python has compiled is of these files still, and is not compiled for each mutant.
+        made = (path for top in ("compiler", "tests") for path in (ROOT / top).rglob("*.pyc"))
+        for name in filter(None, (*names, *(str(path.relative_to(ROOT)) for path in made))):
+            (folder / name).parent.mkdir(parents=True, exist_ok=True)
+            with suppress(FileNotFoundError):  # removed, or replaced meanwhile
+                shutil.copy2(ROOT / name, folder / name)
         if (ROOT / NODE_MODULES).is_dir():
             (folder / NODE_MODULES).symlink_to(ROOT / NODE_MODULES)
         for name in BUILT:
@@ -305,12 +308,14 @@ class Copy:
     def notices(self, mutant: Mutant, tests: Sequence[str]) -> str:
         """Return which test notices a mutant, or nothing."""
         path = self.folder / mutant.file
-        right = path.read_bytes()
+        right, status = path.read_bytes(), path.stat()
         path.write_text(mutant.text, encoding="utf-8")
+        os.utime(path, (status.st_atime, status.st_mtime + 2))  # Python looks at whole seconds
         try:
             return self.failing(tests, is_page=path.suffix == ".js")
         finally:
             path.write_bytes(right)
+            os.utime(path, ns=(status.st_atime_ns, status.st_mtime_ns))
 
     def failing(self, tests: Sequence[str], *, is_page: bool = False) -> str:
         """Return what fails first of the tests, or nothing."""
@@ -377,10 +382,8 @@ def main(arguments: list[str] | None = None) -> int:
                 results[each.name] = by
                 kept.write_text(json.dumps(results, indent=1), encoding="utf-8")
             by = results[each.name] or "**nothing**"
-            print(
-                f"{number}/{len(chosen)} {each.name}: {by} ({time.monotonic() - begun:.0f} s)",
-                flush=True,
-            )
+            took = f"({time.monotonic() - begun:.0f} s)"
+            print(f"{number}/{len(chosen)} {each.name}: {by} {took}", flush=True)
     survivors = [each.name for each in chosen if not results.get(each.name)]
     print(f"\n{len(chosen)} mutants, {len(survivors)} survived:", *survivors, sep="\n  ")
     return int(bool(survivors))
