@@ -138,7 +138,7 @@ def test_every_robot_has_a_sketch_for_its_board() -> None:
         assert (board if name == robots.DEFAULT else f"{board}_{name}") in SKETCHES
 
 
-@pytest.mark.sampled("name", keep=3)
+@pytest.mark.sampled("name", keep=2)
 @pytest.mark.parametrize("name", SKETCHES)
 def test_sketch_builds(project: Path, name: str) -> None:
     code, log = pio(project, "run", "-e", name)

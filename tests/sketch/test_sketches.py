@@ -94,7 +94,7 @@ def test_examples(path: Path, echo_us: float) -> None:
     agrees(path.read_text(encoding="utf-8"), robot, echo_us, 300, 2)
 
 
-@pytest.mark.sampled("number", keep=len(ANSWERS) // 3)
+@pytest.mark.sampled("number", keep=len(ANSWERS) // 6)
 @pytest.mark.parametrize("number", range(len(ANSWERS)), ids=lambda n: ANSWERS[n][0])
 def test_answers_of_lessons(number: int) -> None:
     text = ANSWERS[number][1]
@@ -107,7 +107,7 @@ def test_answers_of_lessons(number: int) -> None:
 ROBOT = robots.load("tinibot")
 
 
-@pytest.mark.sampled("seeds", keep=2)
+@pytest.mark.sampled("seeds")
 @pytest.mark.parametrize("seeds", [range(k, k + 4) for k in range(0, 24, 4)], ids=str)
 def test_random_programs(seeds: range) -> None:
     robot = with_wide_kit()

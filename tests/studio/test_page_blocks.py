@@ -16,12 +16,12 @@ from tests.studio.test_page_for_everyone import LOOK, SCREENS
 from tests.support.casefile import ROOT
 from tests.support.kits import KITS
 from tests.support.needs import need
-from tests.support.studio import Pages, image, shown, write
+from tests.support.studio import Pages, axe, image, shown, write
 from tiniscript import check, compile, robots
 from tiniscript.studio.block_form import data_of
 from tiniscript.studio.block_kinds import data
 from tiniscript.studio.block_reading import read
-from tiniscript.studio.building import MODULES, SOURCES
+from tiniscript.studio.building import SOURCES
 from tiniscript.studio.serving import files
 from tools.builds.blockly_texts import english
 from tools.builds.studio import BLOCKLY, stale
@@ -131,14 +131,14 @@ def without_places(form: Any) -> Any:
 
 
 @pytest.mark.sampled("part")
-@pytest.mark.parametrize("part", range(5))
+@pytest.mark.parametrize("part", range(10))
 def test_blocks_of_the_page_are_those_of_python(pages: Pages, part: int) -> None:
-    """Every fifth program of the documents and 60 random ones: what is shown is what is read.
+    """Every tenth program of the documents and 30 random ones: what is shown is what is read.
 
     In a page of its own: what it makes there takes the keys of undo from the page's blocks.
     """
-    forms = [read(each.text, robots.load(each.robot).kit) for each in programs()[part::5]]
-    for seed in range(part, 300, 5):
+    forms = [read(each.text, robots.load(each.robot).kit) for each in programs()[part::10]]
+    for seed in range(part, 300, 10):
         theirs, kit = KITS[seed % len(KITS)]
         forms.append(read(oracle_programs.program(random.Random(seed), theirs), kit))
     data = json.loads(json.dumps([without_places(data_of(form)) for form in forms]))
@@ -468,9 +468,7 @@ def test_blocks_are_seen(page: Page, screen: tuple[int, int], language: str) -> 
 
 def test_axe_finds_nothing_with_blocks(page: Page) -> None:
     start(page, "SI|F(-2, 80);\nIF(DISTANCE < 10);\n  S;\nENDIF;\n")
-    page.evaluate((MODULES / "axe-core" / "axe.min.js").read_text(encoding="utf-8"))
-    found: dict[str, Any] = page.evaluate("axe.run()")
-    assert [(each["id"], each["nodes"][0]["html"]) for each in found["violations"]] == []
+    assert axe(page) == []
 
 
 def test_keys_alone_add_a_block(page: Page) -> None:

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.studio.test_page_for_everyone import LOOK, SCREENS, axe
+from tests.studio.test_page_for_everyone import LOOK, SCREENS
 from tests.studio.test_page_robot import in_phase, running, value
-from tests.support.studio import checked, noted, shown, write
+from tests.support.studio import axe, checked, noted, shown, write
 from tiniscript import run
 
 if TYPE_CHECKING:

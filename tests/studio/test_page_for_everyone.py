@@ -11,10 +11,9 @@ import pytest
 
 from tests.support import studio
 from tests.support.needs import need
-from tests.support.studio import Pages, checked, enter, image, write
+from tests.support.studio import Pages, axe, checked, enter, image, write
 from tiniscript import compile
 from tiniscript.studio import serving
-from tiniscript.studio.building import MODULES
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page, Playwright
@@ -68,13 +67,6 @@ def test_everything_is_seen(page: Page, screen: tuple[int, int], language: str) 
 def test_axe_finds_nothing(page: Page, text: str) -> None:
     write(page, text)
     assert axe(page) == []
-
-
-def axe(page: Page) -> list[tuple[str, str]]:
-    """Return what axe finds in a page: the rule, and the first element."""
-    page.evaluate((MODULES / "axe-core" / "axe.min.js").read_text(encoding="utf-8"))
-    found: dict[str, Any] = page.evaluate("axe.run()")
-    return [(each["id"], each["nodes"][0]["html"]) for each in found["violations"]]
 
 
 def test_the_keyboard_alone_is_enough(page: Page) -> None:

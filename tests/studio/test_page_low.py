@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.studio.test_page_for_everyone import LOOK, axe
-from tests.support.studio import shown, write
+from tests.studio.test_page_for_everyone import LOOK
+from tests.support.studio import axe, shown, write
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page

@@ -23,7 +23,7 @@ from tiniscript.studio.serving import files
 if TYPE_CHECKING:
     from playwright.sync_api import Page
 
-SAMPLE = 15
+SAMPLE = 8
 
 
 def wanted(text: str) -> str:

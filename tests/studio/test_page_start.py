@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.studio.test_page_for_everyone import LOOK, SCREENS, axe
+from tests.studio.test_page_for_everyone import LOOK, SCREENS
 from tests.studio.test_page_programs import GOOD
-from tests.support.studio import Pages, checked, image, noted, shown, write
+from tests.support.studio import Pages, axe, checked, image, noted, shown, write
 from tiniscript import compile
 
 if TYPE_CHECKING:

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.studio.test_page_for_everyone import LOOK, SCREENS, axe
+from tests.studio.test_page_for_everyone import LOOK, SCREENS
 from tests.studio.test_page_robot import in_phase
-from tests.support.studio import Pages, checked, write
+from tests.support.studio import Pages, axe, checked, write
 from tiniscript import compile
 from tiniscript.studio.simulation import Simulation
 from tiniscript.virtual import worlds

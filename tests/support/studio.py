@@ -21,6 +21,7 @@ from tests.support.needs import need
 from tiniscript import run
 from tiniscript.studio import serving
 from tiniscript.studio.attending import LEFT_S
+from tiniscript.studio.building import MODULES
 from tiniscript.studio.classroom import Classroom
 from tiniscript.studio.hosting import Hosting
 from tools.builds import studio
@@ -331,6 +332,16 @@ def write(page: Page, text: str) -> None:
     if text:
         page.keyboard.insert_text(text)
     checked(page)
+
+
+def axe(page: Page, *rules: str) -> list[tuple[str, str]]:
+    """Return what axe finds in a page, of these rules or of all: the rule, the first element."""
+    if not page.evaluate("'axe' in window"):
+        page.evaluate((MODULES / "axe-core" / "axe.min.js").read_text(encoding="utf-8"))
+    found: dict[str, Any] = page.evaluate(
+        "(rules) => axe.run(rules.length ? {runOnly: rules} : {})", list(rules)
+    )
+    return [(each["id"], each["nodes"][0]["html"]) for each in found["violations"]]
 
 
 def image(page: Page) -> bytes:
