@@ -13,8 +13,7 @@ from tests.machines.host import SOURCES
 
 pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is libFuzzer")
 
-RUNS = {"machine": 60_000, "link": 12_000, "large_link": 6_000, "store": 3_000,
-        "mqtt": 15_000}  # fmt: skip
+RUNS = {"machine": 30_000, "link": 6_000, "large_link": 3_000, "store": 1_500, "mqtt": 7_500}
 SEED = 1
 
 # Inputs in which something was wrong: they stay right. Those of a harness, as hexadecimal digits.
@@ -73,5 +72,5 @@ def test_a_break_is_found(name: str, tmp_path: Path) -> None:
     text = (copy / file).read_text(encoding="utf-8")
     assert old in text, "the sources were rewritten: BREAKS"
     (copy / file).write_text(text.replace(old, new), encoding="utf-8")
-    found = fuzz(harness(name, copy), first_inputs(name, tmp_path), 20 * RUNS[name], SEED)
+    found = fuzz(harness(name, copy), first_inputs(name, tmp_path), 40 * RUNS[name], SEED)
     assert found.wrong and found.input

@@ -24,11 +24,11 @@ from tests.support.link_cases import items_of
 from tiniscript.link.frames import Frame, decoded, encoded
 from tiniscript.link.messages import CRC_BYTES, HEAD_BYTES, SMALL_FRAME
 
-FRAMES = 1_000_000  # damaged ones, in the tests
-LARGE_FRAMES = 200_000
+FRAMES = 500_000  # damaged ones, in the tests
+LARGE_FRAMES = 100_000
 LINES = 200  # that are judged at a time; a line has about 500 damaged frames
-SAMPLED = 20  # lines in the tests
-LARGE_SAMPLED = 4
+SAMPLED = 10  # lines in the tests
+LARGE_SAMPLED = 2
 SAMPLED_OF = 1000  # one line of so many, in a campaign
 SEED = 4
 
@@ -134,7 +134,7 @@ def test_a_broken_receiver_is_seen(name: str, tmp_path: Path) -> None:
     assert text.count(old) == 1, "the sources were rewritten: BREAKS"
     (tmp_path / file).write_text(text.replace(old, new), encoding="utf-8")
     with pytest.raises(AssertionError, match=r"accepted|lost without damage|came twice"):
-        damage_frames(CppDamage(tmp_path), FRAMES, SEED)
+        damage_frames(CppDamage(tmp_path), 2 * FRAMES, SEED)
 
 
 def test_a_wrong_frame_would_be_seen() -> None:

@@ -25,7 +25,7 @@ from tiniscript.link.session import Session
 from tiniscript.link.statuses import name_of
 
 UPLOADS = 300
-LARGE_UPLOADS = 200
+LARGE_UPLOADS = 100
 UNDOS = 100
 LARGE_COUNTS = (80, 81, 160, 400, 1000, 2700)  # of moves, for a robot that is large
 OUTCOMES = {LOST: "lost", CANCELLED: "cancelled"}

@@ -40,7 +40,7 @@ from tiniscript.link.messages import (
 )
 from tiniscript.link.session import Session
 
-UPLOADS = 60
+UPLOADS = 40
 HEARD = 400  # frames that the stranger keeps
 
 

@@ -10,7 +10,7 @@ spaces at its end. A program of which nothing is said has a `>` alone below it.
 from __future__ import annotations
 
 import re
-from functools import cache
+from functools import cache, lru_cache
 from pathlib import Path
 from typing import NamedTuple
 
@@ -65,7 +65,9 @@ def _indent(line: str) -> str:
     return line[: len(line) - len(line.lstrip())]
 
 
+@lru_cache(maxsize=10_000)
 def check(text: str) -> list[Diagnostic]:
+    """Return what is said of a program: nobody changes the list, which all get."""
     robot = robots.load(robots.DEFAULT)
     return compiled(text.encode(), robot, "prog.ts", is_strict=False).diagnostics
 

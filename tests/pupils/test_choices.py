@@ -73,4 +73,4 @@ def test_a_long_hostile_text_takes_few_steps(piece: str, monkeypatch: pytest.Mon
 
     monkeypatch.setattr(compiling, "analyzed", counted)
     assert check(text)
-    assert len(checks) <= 40
+    assert 0 < len(checks) <= 40

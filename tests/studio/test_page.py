@@ -243,7 +243,7 @@ def test_the_address_brings_nothing_into_the_page(pages: Pages) -> None:
 
 
 def test_a_long_program_is_compiled_while_it_is_typed(page: Page) -> None:
-    text = "SI|" + "F(1, 80);\n" * 100 + "// a long program\n" * 900
+    text = "SI|" + "F(1, 80);\n" * 50 + "// a long program\n" * 450
     write(page, text)
     assert image(page) == compile(text).image
     for _ in range(2):
