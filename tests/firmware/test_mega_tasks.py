@@ -8,9 +8,18 @@ from pathlib import Path
 import pytest
 
 from tests.firmware.test_mega_text import sketch  # noqa: F401
-from tests.firmware.test_uno_robot import FORWARD, OFF, computer, send, states, switched_on
+from tests.firmware.test_uno_robot import (
+    FORWARD,
+    MOTORS,
+    OFF,
+    computer,
+    send,
+    states,
+    switched_on,
+)
 from tests.firmware.test_uno_trace import check_pins, program
 from tests.support.casefile import ROOT, Case, read
+from tests.vm.test_tasks import STATES
 from tools.uno import CYCLES_PER_MS, Uno
 
 BUSY = "F(FOREVER, 60);" + "TASK;X = 0;LOOP(FOREVER);X = X + 1;END_LOOP;END_TASK;" * 4
@@ -58,3 +67,22 @@ def test_a_stop_in_the_middle_of_busy_tasks(mega: Uno) -> None:
     wired.run(300)
     assert states(mega) == OFF
     assert wired.session.events()[-1].name == "STOPPED"
+
+
+@pytest.mark.parametrize("state", STATES)
+def test_a_stop_ends_all_tasks(state: str, mega: Uno) -> None:
+    """None goes on afterwards, nor in the next program."""
+    wired = computer(mega)
+    send(wired, STATES[state], is_detached=True)
+    wired.run(300)
+    assert (states(mega) == OFF) == (state == "a task waits")
+    mega.send(STOP)
+    mega.run_ms(20)
+    assert states(mega) == OFF
+    stopped = mega.cycle
+    wired.run(2000)
+    assert not [name for name in MOTORS if mega.pins.history(name)[-1].cycle > stopped]
+    assert wired.session.events()[-1].name == "STOPPED"
+    send(wired, "F(600, 80)", is_detached=True)
+    wired.run(100)
+    assert states(mega) == FORWARD
