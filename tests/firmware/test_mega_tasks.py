@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.firmware.test_host_firmware import outcome
 from tests.firmware.test_mega_text import sketch  # noqa: F401
 from tests.firmware.test_uno_robot import (
     FORWARD,
@@ -20,6 +21,8 @@ from tests.firmware.test_uno_robot import (
 from tests.firmware.test_uno_trace import check_pins, program
 from tests.support.casefile import ROOT, Case, read
 from tests.vm.test_tasks import STATES
+from tiniscript.link.messages import STATE_STOPPED
+from tiniscript.link.requests import OK
 from tools.uno import CYCLES_PER_MS, Uno
 
 BUSY = "F(FOREVER, 60);" + "TASK;X = 0;LOOP(FOREVER);X = X + 1;END_LOOP;END_TASK;" * 4
@@ -82,7 +85,9 @@ def test_a_stop_ends_all_tasks(state: str, mega: Uno) -> None:
     stopped = mega.cycle
     wired.run(2000)
     assert not [name for name in MOTORS if mega.pins.history(name)[-1].cycle > stopped]
-    assert wired.session.events()[-1].name == "STOPPED"
+    status = wired.session.status()
+    assert wired.until(status) == OK
+    assert outcome(status).values.state == STATE_STOPPED
     send(wired, "F(600, 80)", is_detached=True)
     wired.run(100)
     assert states(mega) == FORWARD
