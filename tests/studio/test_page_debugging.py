@@ -9,7 +9,7 @@ import pytest
 
 from tests.studio.test_page_for_everyone import LOOK, SCREENS
 from tests.studio.test_page_robot import in_phase, running, value
-from tests.support.studio import axe, checked, noted, shown, write
+from tests.support.studio import axe, checked, noted, shown, turn, write
 from tiniscript import run
 
 if TYPE_CHECKING:
@@ -219,6 +219,7 @@ def test_everything_is_seen_of_values_and_lists(page: Page, seen: str) -> None:
         page.select_option("#seen", seen)
         for width, height in SCREENS:
             page.set_viewport_size({"width": width, "height": height})
+            turn(page, "robot")
             assert page.evaluate(LOOK) == [], (width, language)
             box = page.locator(f"#{seen}_place").bounding_box()
             assert box is not None and box["height"] >= 60 and box["width"] > 300

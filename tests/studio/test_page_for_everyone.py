@@ -11,7 +11,7 @@ import pytest
 
 from tests.support import studio
 from tests.support.needs import need
-from tests.support.studio import Pages, axe, checked, enter, image, write
+from tests.support.studio import Pages, axe, checked, enter, image, turn, write
 from tiniscript import compile
 from tiniscript.studio import serving
 
@@ -55,10 +55,13 @@ def test_everything_is_seen(page: Page, screen: tuple[int, int], language: str) 
     page.select_option("#language", language)
     for text in ("SI|F(2, 80)", WRONG):
         write(page, text)
+        assert page.evaluate(LOOK) == []
+        turn(page, "robot")
         for side in ("lessons", "virtual"):
             page.click(f"#side_{side}")
             page.locator("#lesson_check:enabled").wait_for(state="attached")
             assert page.evaluate(LOOK) == [], side
+        turn(page, "program")
     page.locator("#messages li").last.scroll_into_view_if_needed()
     assert page.locator("#editor").bounding_box()["height"] >= 96  # type: ignore[index]
 
@@ -71,6 +74,7 @@ def test_axe_finds_nothing(page: Page, text: str) -> None:
 
 def test_the_keyboard_alone_is_enough(page: Page) -> None:
     """From the robot's choice to the button of a repair, and out of the editor."""
+    page.set_viewport_size({"width": 1366, "height": 768})
     write(page, "F(-2, 80)")
     page.locator("#robot").focus()
     visited = []

@@ -14,7 +14,7 @@ import pytest
 from tests.studio.test_page_for_everyone import LOOK, SCREENS
 from tests.support import studio
 from tests.support.pty_robot import PtyRobot
-from tests.support.studio import HUNG_MS, Pages, axe, checked, drives, enter, hang, write
+from tests.support.studio import HUNG_MS, Pages, axe, checked, drives, enter, hang, turn, write
 from tiniscript import compile, robots
 from tiniscript.link import known_ports
 from tiniscript.studio import serving
@@ -253,6 +253,7 @@ def test_everything_is_seen(
     page.set_viewport_size({"width": screen[0], "height": screen[1]})
     page.select_option("#language", language)
     checked(page)
+    turn(page, "robot")
     page.screenshot(path=tmp_path / "connected.png")
     assert page.evaluate(LOOK) == []
     page.click("#link_leave")

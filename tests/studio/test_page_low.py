@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from tests.studio.test_page_for_everyone import LOOK
-from tests.support.studio import axe, shown, write
+from tests.support.studio import axe, shown, turn, write
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
@@ -48,8 +48,11 @@ def test_everything_is_reached_on_a_low_screen(page: Page, language: str) -> Non
     for width, height in LOW if language == "es" else LOW[:1]:
         page.set_viewport_size({"width": width, "height": height})
         for view, end in (("blocks", 0), ("text", 10_000)):
+            turn(page, "program")
             page.evaluate("(end) => scrollTo(0, end)", end)
             page.click(f"#view_{view}")
+            assert page.evaluate(SCROLLED) == [], (width, height, view)
+            turn(page, "robot")
             for side in ("real", "lessons", "virtual"):
                 page.click(f"#side_{side}")
                 assert page.evaluate(SCROLLED) == [], (width, height, view, side)

@@ -10,7 +10,7 @@ import pytest
 from tests.studio.test_page_for_everyone import SCREENS
 from tests.studio.test_simulation import DANCE
 from tests.support.casefile import ROOT
-from tests.support.studio import asked, checked, runs_like_the_command, write
+from tests.support.studio import asked, checked, runs_like_the_command, turn, write
 from tiniscript import compile
 from tiniscript.studio.simulation import Simulation
 from tiniscript.virtual import worlds
@@ -207,6 +207,7 @@ PLACES = """() => 'arena run pause step speed world doing values'.split(' ').map
 def test_nothing_jumps_when_a_run_begins(page: Page, screen: tuple[int, int]) -> None:
     page.set_viewport_size({"width": screen[0], "height": screen[1]})
     page.select_option("#language", "es")
+    turn(page, "robot")
     page.select_option("#world", "obstacles")  # nothing has run in it
     write(page, f"SB|X = 1\n{FOREVER}")
     before = page.evaluate(PLACES)
@@ -214,7 +215,7 @@ def test_nothing_jumps_when_a_run_begins(page: Page, screen: tuple[int, int]) ->
     page.locator("#push").wait_for()
     assert page.evaluate(PLACES) == before
     page.click("#push")
-    page.locator(".cm-running").first.wait_for()
+    page.locator(".cm-running").first.wait_for(state="attached")
     page.locator("#values").get_by_text("X", exact=True).wait_for()
     assert page.evaluate(PLACES) == before
     page.click("#stop")

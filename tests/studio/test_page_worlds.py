@@ -9,7 +9,7 @@ import pytest
 
 from tests.studio.test_page_for_everyone import LOOK, SCREENS
 from tests.studio.test_page_robot import in_phase
-from tests.support.studio import Pages, axe, checked, write
+from tests.support.studio import Pages, axe, checked, turn, write
 from tiniscript import compile
 from tiniscript.studio.simulation import Simulation
 from tiniscript.virtual import worlds
@@ -257,6 +257,7 @@ def finger(page: Page, way: Sequence[Place]) -> None:
 
 def test_a_finger_draws_and_drags_on_a_small_screen(pages: Pages) -> None:
     page = pages.open(viewport={"width": 390, "height": 844}, has_touch=True, locale="es-ES")
+    turn(page, "robot")
     page.tap("#world_draw")
     page.tap("#world_add_lines")
     finger(page, [(60, 40), (100, 40), (150, 60), (160, 80)])
@@ -274,6 +275,7 @@ def test_a_finger_draws_and_drags_on_a_small_screen(pages: Pages) -> None:
     page.reload()
     checked(page)
     assert page.locator("#world option:checked").inner_text() == "mi mundo"
+    turn(page, "robot")
     page.tap("#world_draw")
     again = saved(page)
     assert abs(again.start.y_cm - 100) <= 1 and again.lines == found.lines
@@ -393,6 +395,7 @@ def test_everything_is_seen(floor: Page, language: str) -> None:
     parts = floor.locator("#world_part option")
     for screen in SCREENS:
         floor.set_viewport_size({"width": screen[0], "height": screen[1]})
+        turn(floor, "robot")
         for name in (*parts.all_inner_texts()[:3], line):
             floor.select_option("#world_part", label=name)
             assert floor.evaluate(LOOK) == [], (screen, name)

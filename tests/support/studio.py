@@ -277,6 +277,17 @@ def enter(page: Page, address: str) -> None:
         page.click("#start_write")
 
 
+# Once a new size of the screen has been heard of, and drawn.
+SETTLED = "new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))"
+
+
+def turn(page: Page, half: str) -> None:
+    """See the `program` or the `robot`, where the page shows one of them at a time."""
+    page.evaluate(SETTLED)
+    if page.locator(f"html[data-phone]:not([data-half={half}])").count():
+        page.click("#other")
+
+
 def checked(page: Page) -> None:
     """Wait until what is in the editor is compiled; the page's policy forbids waiting functions."""
     page.locator("html[data-state=checked]").wait_for(state="attached")

@@ -6,6 +6,7 @@ import { bytesOf, download } from './files.js';
 import { Lessons } from './lessons.js';
 import { showMessages, summary } from './messages.js';
 import { whenOffline } from './offline.js';
+import { Phone } from './phone.js';
 import { Programs } from './programs.js';
 import { Python } from './python.js';
 import { bringsProgram } from './links.js';
@@ -93,13 +94,20 @@ const lessons = new Lessons({
   },
 });
 chooseSide();
+const phone = new Phone();
 beginScreens(whyOutside !== '' || bringsProgram(location.hash), !('class' in document.documentElement.dataset));
 if (kept) programs.keep();
 const start = new Start({
   put: (program) => programs.replace(program),
-  run: (world) => driving.run(world),
+  run: (world) => {
+    phone.show('robot');
+    return driving.run(world);
+  },
   see: () => views.wake(),
-  showSide,
+  side: (id) => {
+    element(id, HTMLButtonElement).click();
+    phone.show(id === 'side_virtual' ? 'program' : 'robot');
+  },
   leave: () => {
     driving.stop();
     programs.keep();
@@ -200,6 +208,7 @@ function show(answer) {
   editor.setPlaces(answer.places);
   place.programChanged();
   views.showFindings(answer.findings);
+  phone.said(answer.findings.length);
   showMessages(list, answer.findings, (finding) => views.goTo(finding), repair);
   status.textContent = summary(answer);
   status.className = answer.image ? (answer.loose ? 'loose' : 'right') : 'wrong';
@@ -240,6 +249,7 @@ function setRobot(name) {
 function putProgram(program) {
   note.textContent = '';
   showScreen('program');
+  phone.show('program');
   if (program.robot !== work.robot) setRobot(program.robot);
   work.name = program.name;
   views.begin();
@@ -258,6 +268,7 @@ languages.addEventListener('change', () => {
   recorder.setLanguage();
   lessons.setLanguage();
   start.showPrograms();
+  phone.setLanguage();
   note.textContent = '';
   if (!isReady) status.textContent = text('starting');
   remember();

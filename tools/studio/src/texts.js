@@ -23,6 +23,8 @@ export const TEXTS = {
   begin_line: ['Line', 'Línea'],
   begin_light: ['Light', 'Luz'],
   begin_music: ['Music', 'Música'],
+  half_robot: ['Robot', 'Robot'],
+  bar: ['Run and stop', 'Probar y parar'],
   start_write: ['Write a program', 'Escribir un programa'],
   start_lessons: ['Lessons', 'Lecciones'],
   start_robot: ['Connect a robot', 'Conectar un robot'],

@@ -12,7 +12,7 @@ import { thumbnail } from './thumbnail.js';
  * @property {(program: {text: string, robot: string, name: string}) => void} put another program into the editor
  * @property {(world: string) => Promise<void>} run the program in a world
  * @property {() => void} see the program, which is seen from now on
- * @property {(side: string) => void} showSide
+ * @property {(button: string) => void} side shows what its button does
  * @property {() => void} leave the program
  */
 
@@ -32,7 +32,7 @@ export class Start {
     for (const [way, side] of [['write', 'side_virtual'], ['lessons', 'side_lessons'], ['robot', 'side_real']]) {
       element(`start_${way}`, HTMLButtonElement).addEventListener('click', () => {
         show('program');
-        element(String(side), HTMLButtonElement).click();
+        this.#page.side(String(side));
       });
     }
     whenScreen((screen) => {
@@ -50,7 +50,7 @@ export class Start {
     const { text: program, robot, world } = BEGINNINGS[name] ?? { text: '', robot: '', world: '' };
     this.#isBeginning = true;
     this.#page.put({ text: program, robot, name: `${text(`begin_${name}`).toLowerCase()}.ts` });
-    this.#page.showSide('side_virtual');
+    this.#page.side('side_virtual');
     element('stop', HTMLButtonElement).focus();
     try {
       await this.#page.run(world);

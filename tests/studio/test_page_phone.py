@@ -1,0 +1,112 @@
+"""A phone: the program and the robot are a screen each, over one bar with Run and STOP."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+
+from tests.support.studio import Pages, axe, shown, turn, write
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Page
+
+NINE = """SI|LOOP(3)
+  F(1, 80)
+  BEEP(0.1, 440)
+  R(0.5, 60)
+END_LOOP
+F(-2, 80)
+B(1, 80)
+L(1, 80)"""
+# How many blocks are seen whole above what the compiler says.
+SEEN = """() => {
+  const sheet = document.querySelector('#messages').getBoundingClientRect();
+  const { top, bottom } = document.querySelector('#blocks').getBoundingClientRect();
+  const low = sheet.height ? sheet.top : bottom;
+  return [...document.querySelectorAll('#blocks .blocklyBlockCanvas .blocklyDraggable')]
+    .filter((block) => !block.parentElement.closest('.blocklyDraggable.blocklyShadow')
+      && !block.classList.contains('blocklyShadow'))
+    .map((block) => block.querySelector(':scope > .blocklyPath').getBoundingClientRect())
+    .filter((box) => box.top >= top && box.bottom <= low).length;
+}"""
+
+
+@pytest.fixture
+def phone(page: Page) -> object:
+    page.set_viewport_size({"width": 390, "height": 844})
+    page.locator("html[data-phone]").wait_for(state="attached")
+    turn(page, "program")
+    yield page
+    page.keyboard.press("Escape")
+    page.set_viewport_size({"width": 1366, "height": 768})
+    page.locator("html:not([data-phone])").wait_for(state="attached")
+    page.click("#view_text")
+
+
+def half(page: Page) -> str:
+    return str(page.evaluate("document.documentElement.dataset.half"))
+
+
+def test_six_blocks_are_seen_while_one_is_wrong(phone: Page) -> None:
+    write(phone, NINE)
+    phone.click("#view_blocks")
+    shown(phone)
+    assert phone.locator("#messages li").is_visible()
+    assert phone.evaluate(SEEN) >= 6
+    assert axe(phone) == []
+
+
+def test_the_messages_can_be_put_away(phone: Page) -> None:
+    for wrong in ("F(-2, 80)", "F(-3, 80)"):
+        write(phone, wrong)
+        assert phone.locator("#messages li").is_visible() == (wrong == "F(-2, 80)")
+        if phone.get_attribute("#sheet", "aria-expanded") == "true":
+            phone.click("#sheet")
+        assert not phone.locator("#messages li").is_visible()
+    phone.click("#run")  # says why not
+    assert half(phone) == "program"
+    assert phone.locator("#messages li").is_visible()
+    phone.click("#sheet")
+    write(phone, "S")  # once it is right, the next mistake is told
+    assert not phone.locator("#sheet").is_visible()
+    write(phone, "F(-2, 80)")
+    assert phone.locator("#messages li").is_visible()
+
+
+@pytest.mark.parametrize("size", [(390, 844), (844, 390)], ids=["upright", "lying"])
+def test_run_and_stop_are_on_both_screens(phone: Page, size: tuple[int, int]) -> None:
+    write(phone, "SI|LOOP(FOREVER); F(1, 80); END_LOOP")
+    phone.set_viewport_size({"width": size[0], "height": size[1]})
+    for where in ("program", "robot"):
+        turn(phone, "program")
+        phone.click("#run")
+        phone.locator("html[data-phase=running]").wait_for(state="attached")
+        assert half(phone) == "robot"
+        assert phone.locator("#arena").is_visible() and not phone.locator("#writing").is_visible()
+        turn(phone, where)
+        phone.click("#stop")
+        phone.locator("html[data-phase=ended]").wait_for(state="attached")
+        assert half(phone) == where
+
+
+def test_run_shows_the_virtual_robot(phone: Page) -> None:
+    write(phone, "SI|F(0.2, 80)")
+    turn(phone, "robot")
+    phone.click("#side_lessons")
+    phone.click("#run")
+    assert phone.locator("#arena").is_visible()
+
+
+def test_a_phone_begins_with_the_pictures(pages: Pages) -> None:
+    page = pages.open("start", viewport={"width": 390, "height": 844}, has_touch=True)
+    assert page.locator("#bar button:visible").evaluate_all("all => all.map(e => e.id)") == ["stop"]
+    page.tap("[data-begin=dance]")
+    page.locator("html[data-phase=running]").wait_for(state="attached")
+    assert half(page) == "robot" and page.locator("#arena").is_visible()
+    page.tap("#home")
+    page.tap("#start_lessons")
+    assert page.locator("#lesson_page").is_visible()
+    page.tap("#home")
+    page.tap("#start_write")
+    assert half(page) == "program" and page.locator("#writing").is_visible()
