@@ -27,7 +27,7 @@ from tiniscript.syntax.free_names import for_a_number
 from tiniscript.syntax.lexer import WORD
 from tiniscript.syntax.operators import COMPARISONS
 from tiniscript.syntax.outline import Failure
-from tiniscript.words import BLOCK_ENDS, OTHER_WAY, WORDS
+from tiniscript.words import BLOCK_ENDS, OTHER_WAY, WORDS, nearest
 
 LONGEST = 24  # words behind an instruction that are read
 MOST = 1_000  # of them in a text
@@ -40,6 +40,7 @@ _FARTHEST = 40  # instructions of a text that are looked at for what is done aga
 _ONE_IN_LOOP = 2  # separators of a loop of one instruction
 _BEGIN_BODY = (*BLOCK_ENDS, "ELSE", "ELSEIF")
 _IN_CALL = frozenset("0123456789.,() ")
+_SHORTEST_WORD = 3  # letters: X is rather a variable
 _BARE = ".:,\\* \"'`´“”‘’«»"  # signs that a note needs not
 
 
@@ -486,6 +487,13 @@ def _asked(gaps: _Gaps, name: str = "q") -> list[Lexeme]:
     return [] if gaps.part.is_asked else question_in(words, gaps.part.names)
 
 
+def _shown(gaps: _Gaps) -> str:
+    """A word to show, which is no letter and like no name of the program."""
+    word = gaps["s"]
+    is_name = len(word) < _SHORTEST_WORD or nearest(plain(word), gaps.part.names.known.values)
+    return "" if is_name else word
+
+
 def _contrary(gaps: _Gaps) -> str:
     asked = _asked(gaps)
     return laid_out(rewrites.negated(asked)) if asked else ""
@@ -548,6 +556,7 @@ _GAPS: dict[str, Callable[[_Gaps], str]] = {
     "text": lambda gaps: shortened(gaps.part.text[slice(*gaps.part.place)]),
     "words": lambda gaps: shortened(gaps.part.words),
     "both": _both, "loop": _loop, "line": _line, "few": _few, "paused": _paused,
+    "always": lambda gaps: laid_out(_asked(gaps, "c")), "shown": _shown,
     "other": _other, "note": _note,
     "once": lambda gaps: gaps.part.call if gaps["n"] == "1" else "",
     "longer": lambda gaps: _with_value(gaps, 0), "paced": lambda gaps: _with_value(gaps, -1),

@@ -62,6 +62,7 @@ ADVICE = """
 ^ @none @any* <asks> (? s=@word|@num+ )? <body> $ | TS135 | word={head}; question={like}; another={orlike?} | F(5, 60) UNTIL(luz mucha) => question=LIGHT_L > 500
 ^ @none @any* <asks> ( s=light = TRUE|1 ) $ | TS135 | word={head}; question={like}; another={orlike?} | IF(oscuro = TRUE)⏎S⏎ENDIF => question=LIGHT_L < 500
 ^ @none @any* <asks> ( s=light = FALSE|0 ) $ | TS135 | word={head}; question={unlike}; another={orunlike?} | IF(oscuro = FALSE)⏎S⏎ENDIF => question=LIGHT_L > 500
+^ @none s=FOREVER q=QUE c=@cond+ w=@startm $ | TS102 | found={s} {q}; right=WHILE; usage=WHILE({always}) | siempre que distancia > 20 avanza => usage=WHILE(DISTANCE > 20)
 # what asks or calculates, alone
 ^ @none h=SI <either> <body> $ | TS045 | one=IF({one} {r} {n}); two=IF({two} {r} {n}) | si luz > 50⏎S⏎fin => two=IF(LIGHT_R > 50)
 ^ @none <either> @any* $ | TS042 | found={l}; asked={l} {r} {n}; one=IF({one} {r} {n}); another=IF({two} {r} {n}) | luz > 50: F(2, 80) => one=IF(LIGHT_L > 50)
@@ -125,6 +126,7 @@ ADVICE = """
 ^ c=@asked O|OR|U w=@start @any* $ | TS085 | order={behind} | F(1,50) UNTIL(DISTANCE<10) o L(1,60) => order=L(1,60)
 ^ c=@cmd O|OR|U l=@any+ $ | TS136 | fix={choice}; example={choices} | L(1, 60) o R(2, 60) => fix=IF(RANDOM(1, 2) = 1);L(1, 60);ELSE;R(2, 60);ENDIF
 # notes
+^ @none SHOW s=@newname @word* $ | TS070 | words={shown} | SHOW Hola => words=Hola
 ^ c=@cmd ( ) $ | TS085 | extra={words} | F(2,80)() => extra=()
 ^ c=@any w=@told+ $ | TS085 | fix={note} | F(1, 80) voy a la bodega => fix=F(1, 80) // voy a la bodega
 ^ c=@any w=@told+ $ | TS085 |  | F(1, 80) voy a la bodega; S => before=F(1, 80)

@@ -21,7 +21,7 @@ from tiniscript.syntax.outline import Known
 from tiniscript.words import ALIASES, BLOCK_ENDS, UNITS, WORDS, Speller, nearest
 
 KNOWN, MISSPELT, NEAR = 1, 2, 3  # what a meaning costs: said, written nearly so, a slip away
-STARTS = frozenset(("IF", "LOOP", "WHILE"))
+STARTS = frozenset(("IF", "LOOP", "WHILE", "WHEN", "TASK"))
 ENDED = {end: word for word, end in BLOCK_ENDS.items()}
 ENDED |= {alias: ENDED[end] for alias, end in ALIASES.items()}
 CALLED = frozenset(word.text for word in WORDS.values() if word.is_call)

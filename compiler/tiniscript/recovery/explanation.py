@@ -470,6 +470,8 @@ def _slip(code: str, step: Step | None, before: Sequence[Lexeme], after: Sequenc
     kept = _written([each for each, _ in alike])
     if code == codes.MISSING_VALUE.number and not found and start:
         was, kept = _written(old[start : start + 1]), _written(old[start - 1 : start])
+    if code == codes.HEADER_SEPARATOR.number and not kept:
+        kept = other[0].text  # `CADA VEZ QUE DISTANCE < 15 S`
     letter = _letter(was, now) if code == codes.BAD_NUMBER.number else ""
     return Slip(was, now, kept, word, known.usage if known else "", shown, letter=letter)
 

@@ -28,6 +28,7 @@ from tiniscript.words import WORDS, nearest
 LONGEST = 4_000  # characters of a text that is read as a whole
 # Codes whose sentence names what is right.
 _WITH_RIGHT = (codes.OTHER_LANGUAGE, codes.OTHER_SIGN, codes.END_ALONE, codes.OTHER_ASSIGNMENT)
+_AS_CHECKED = (codes.ARGUMENT_COUNT, codes.WANTS_CONDITION, codes.NO_BRACKETS_HERE)
 _FIRST_NUMBERS = (1, 10, 100)
 _NUMBER = re.compile(r"(?im)^[ \t]*([0-9]{1,4})[ \t]+(?=[A-Z])(?!veces|times|x\b|vez)")
 Check = Callable[[str], Sequence[Diagnostic]]
@@ -180,8 +181,9 @@ def _diagnostic(
     was, right = values.get("found", ""), values.get("right", "")
     if code is codes.OTHER_LANGUAGE and nearest(was.upper(), [right]):
         code, values = codes.UNKNOWN_WORD, {**values, "found": was.upper(), "near": right}
-    counted = (each for each in found if each.code is codes.ARGUMENT_COUNT)
-    for each in counted if code in (codes.OTHER_CALL, codes.ARGUMENT_COUNT) else ():
+    asked = codes.ARGUMENT_COUNT if code is codes.OTHER_CALL else code
+    counted = (each for each in found if each.code is asked)
+    for each in counted if asked in _AS_CHECKED else ():
         if told.place.start <= each.span.start < told.place.end:
             code, values = each.code, {**each.values, "fix": values.get("fix", "")}
             return Diagnostic(code, each.span, values, told.place, repair)

@@ -42,8 +42,11 @@ MISPLACED = frozenset(("TS112", "TS113", "TS114", "TS026"))  # of a DEF or an en
 # Codes of calls whose values are told in another way, by what is odd in them.
 NO_BRACKETS, NAMED_VALUE, WITH_UNIT, OTHER_CALL = "TS015", "TS052", "TS049", "TS076"
 
-# Those that write a number in another way: `500 ms`, `8O`, `X++`, `1) F(2, 80)`, `tres segundos`.
-OTHER_NUMBERS = frozenset(("TS008", "TS065", "TS010", "TS049", "TS050", "TS054", "TS102", "TS137"))
+# Those that write a number in another way: `500 ms`, `8O`, `X++`, `1) F(2, 80)`, `tres segundos`,
+# or drop one: `TASK(1)`.
+OTHER_NUMBERS = frozenset(
+    ("TS008", "TS065", "TS010", "TS049", "TS050", "TS054", "TS102", "TS137", "TS039")
+)
 
 # Slips of one sign, tried where no row reads a line: cost and code of one that is missing, of one
 # that is taken for another, of one too many, and of one behind its neighbour.
@@ -78,6 +81,8 @@ SIGNS = r"""
 ^\s*-(?=[A-Z]\w*\()  |  ``  |  1  |  TS054  |  applied  |  -F(2,80) => F(2,80)
 ^"(S[IB]\|[^"]*)"$  |  `\1`  |  1  |  TS006  |  applied  |  "SI|F(2,80);R(1,50)" => SI|F(2,80);R(1,50)
 \b([FBLR])\((\d)\.([1-9]0|100)\)  |  `\1(\2, \3)`  |  1  |  TS020  |  offered  |  F(2.80) => F(2, 80)
+\bM\((-?[1-9]0|100)\.(-?[1-9]0|100)\)  |  `M(\1, \2)`  |  1  |  TS020  |  offered  |  M(-50.50) => M(-50, 50)
+\bBEEP\(([1-9])\.(\d{3,4})\)  |  `BEEP(\1, \2)`  |  1  |  TS020  |  offered  |  BEEP(1.440) => BEEP(1, 440)
 (?<=\d)=(?=\s*\))  |  `0`  |  1  |  TS076  |  offered  |  F(2, 8=) => F(2, 80)
 (?<=\()=(?=\.\d)  |  `0`  |  1  |  TS076  |  offered  |  L(=.39, 60) => L(0.39, 60)
 (?<==)\s*(\d+)x(\d+)\b  |  ` \1 * \2`  |  1  |  TS008  |  offered  |  X = 3x2 => X = 3 * 2
@@ -291,14 +296,14 @@ F - a=@num ,? b=@num e=;|$ | B ( $a , $b ) $e | 1 | TS102 | offered | F -1 80 =>
 B - a=@num ,? b=@num e=;|$ | F ( $a , $b ) $e | 1 | TS102 | offered | B -1, 80 => F(1, 80)
 F ( - a=@num b=@num )|;|$ | B ( $a , $b ) | .5 | TS017 | offered | F(-1 80) => B(1, 80)
 SHOW ( TIME ) | SHOW ( TIME ) | 1 | TS102 | applied | mostrar(tiempo) => SHOW(TIME)
-c=@callw ( ( a=@nobrace+ ) ) | $c ( $a ) | 1 | TS016 | applied | F((2,80)) => F(2,80)
+c=@callw ( ( a=@nobrace+ ) ) | $c ( $a ) | 1 | TS076 | applied | F((2,80)) => F(2,80)
 c=@callw ( a=@argt+ s=*|/|%|- b=@num|@val t=+|-|*|/|% d=@argt+ ) ) e=;|$ | $c ( $a $s ( $b $t $d ) ) $e | 1 | TS041 | applied | SHOW(5 / 3 - 3)) => SHOW(5 /(3 - 3))
 c=@callw ( a=@argt+ ) ) e=;|$ | $c ( $a ) $e | 1 | TS041 | applied | F(2,80)) => F(2,80)
 c=@callw ( a=@num b=@num ) | $c ( $a , $b ) | 1 | TS017 | applied | F(2 80);F(3 80);R(1 50) => F(2, 80);F(3, 80);R(1, 50)
 c=@callw ( a=@num /|- b=@num ) | $c ( $a , $b ) | 2 | TS076 | offered | F(2/80) => F(2, 80)
 c=@callw ( a=@num _|.|;|&|<|'|'|Y|> b=@num ) | $c ( $a , $b ) | 1 | TS076 | applied | F(2|80) => F(2, 80)
 ^ SHOW v=TRUE|FALSE $ | SHOW ( $v ) | 1 | TS015 | applied | SHOW TRUE => SHOW(TRUE)
-SHOW ( a=@val , b=@val ) | SHOW ( $a ) ; SHOW ( $b ) | 2 | TS015 | offered | SHOW(DISTANCE, LIGHT_L) => SHOW(DISTANCE);SHOW(LIGHT_L)
+SHOW ( a=@val , b=@val ) | SHOW ( $a ) ; SHOW ( $b ) | 2 | TS020 | offered | SHOW(DISTANCE, LIGHT_L) => SHOW(DISTANCE);SHOW(LIGHT_L)
 ^ SHOW a=@val ,? b=@val $ | SHOW ( $a ) ; SHOW ( $b ) | 2 | TS015 | applied | SHOW DISTANCE LIGHT_R => SHOW(DISTANCE);SHOW(LIGHT_R)
 c=@callw ( a=@argt* b=@num|@word e=;|$|UNTIL|@start | $c ( $a $b ) $e | 1 | TS016 | applied | F(2,80 => F(2,80)
 # UNTIL
@@ -349,7 +354,7 @@ IF <question> ? a=@any+ : b=@any+ $ | IF ( $c ) ; $a ; ELSE ; $b ; ENDIF | 1 | T
 ELSE ( <body> ) $ | ELSE ; $b $r | 1 | TS014 | applied | IF(DISTANCE < 10)(S)ELSE(F(1,50)) => IF(DISTANCE < 10);S;ELSE;F(1, 50);ENDIF
 h=ELSE :|,|THEN|=|'|' | &h ; | 1 | TS014 | applied | IF DISTANCE<10: STOP ELSE: F(1,50) => IF(DISTANCE < 10);STOP;ELSE;F(1, 50);ENDIF
 h=ELSE b=@start|'{' | &h ; $b | 1 | TS014 | applied | IF(DISTANCE<10);R(1,60);ELSE F(1,80);ENDIF => IF(DISTANCE < 10);R(1, 60);ELSE;F(1, 80);ENDIF
-a=@nosep|@close h=ELSE|ELSEIF|ENDIF|END_LOOP|END_WHILE|END_DEF | $a ; &h | 1 | TS013 | applied | IF LIGHT_R>100 F(4,70) ENDIF => IF(LIGHT_R > 100);F(4, 70);ENDIF
+a=@nosep|@close h=ELSE|ELSEIF|ENDIF|END_LOOP|END_WHILE|END_DEF|END_WHEN|END_TASK | $a ; &h | 1 | TS013 | applied | IF LIGHT_R>100 F(4,70) ENDIF => IF(LIGHT_R > 100);F(4, 70);ENDIF
 '}' ;? h=ELSE|ELSEIF | } ; &h | 0 | TS047 | first | SI(DISTANCE < 10){S}SINO{F(1,50)} => IF(DISTANCE < 10);S;ELSE;F(1, 50);ENDIF;
 # LOOP
 ^ LOOP FOREVER :|,? b=@start|'{' | LOOP ( FOREVER ) ; $b | 1 | TS015 | applied | LOOP FOREVER F(0.5,60) R(0.5,60) => LOOP(FOREVER);F(0.5, 60);R(0.5, 60);END_LOOP
@@ -372,8 +377,9 @@ LOOP POR? n=@num times? :|,|do|; | LOOP ( $n ) ; | 1 | TS102 | applied | repite 
 LOOP n=@num times? b=@start|'{' | LOOP ( $n ) ; $b | 1 | TS102 | applied | LOOP 4 F(1,60) => LOOP(4);F(1, 60);END_LOOP
 LOOP POR? n=@num times? $ | LOOP ( $n ) | 1 | TS102 | applied | repetir 4⏎S⏎fin => LOOP(4)⏎S⏎END_LOOP
 LOOP n=@val o=*|+|- m=@num $ | LOOP ( $n &o $m ) | 1 | TS015 | applied | X = 2⏎LOOP X * 4⏎F(1,50)⏎END_LOOP => X = 2⏎LOOP(X * 4)⏎F(1,50)⏎END_LOOP
+^ START b=@start | START ; $b | 1 | TS013 | applied | START F(2,80) => START;F(2, 80)
 RANDOM ( n=@num ) | RANDOM ( 1 , @whole:n ) | 2 | TS020 | offered | X = RANDOM(6)⏎F(X, 50) => X = RANDOM(1, 6)⏎F(X, 50)
-ROUND ( n=@num ) | ROUND ( $n , 0 ) | 2 | TS020 | offered | X = ROUND(3.7)⏎SHOW(X) => X = ROUND(3.7, 0)⏎SHOW(X)
+ROUND ( n=@num|@val ) | ROUND ( $n , 0 ) | 2 | TS020 | offered | X = ROUND(3.7)⏎SHOW(X) => X = ROUND(3.7, 0)⏎SHOW(X)
 ^ M ( a=@num , b=@num , n=@num ) $ | M ( @power:a , @power:b ) ; W ( @time:n ) ; S | 2 | TS020 | offered | M(50, 50, 2) => M(50, 50);W(2);S
 ^ M ( n=@num , a=@num , b=@num ) $ | M ( @power:a , @power:b ) ; W ( @time:n ) ; S | 2 | TS020 | offered | M(2, 50, 80) => M(50, 80);W(2);S
 ^ BEEP ( n=@num , a=@num , b=@num ) $ | BEEP ( @time:n , $a ) ; BEEP ( $n , $b ) | 2 | TS020 | offered | BEEP(0.2, 440, 660) => BEEP(0.2, 440);BEEP(0.2, 660)
@@ -398,7 +404,11 @@ LOOP ( INT? @name = 0 ; @name < n=@num ; @name ++ ) | LOOP ( $n ) | 1 | TS063 | 
 ^ LOOP|REPETIR FOREVER|SIEMPRE :? $ | LOOP ( FOREVER ) | 1 | TS102 | applied | repetir siempre⏎F(1, 50)⏎fin repetir => LOOP(FOREVER)⏎F(1, 50)⏎END_LOOP
 ^ FOREVER :|;? b=@start|'{' | LOOP ( FOREVER ) ; $b | 1 | TS032 | applied | forever: F(1,50) => LOOP(FOREVER);F(1, 50);END_LOOP
 ^ FOREVER ( <body> ) $ | LOOP ( FOREVER ) ; $b $r | 1 | TS080 | applied | FOREVER(F(1, 80)) => LOOP(FOREVER);F(1, 80);END_LOOP
-^ FOREVER QUE c=@cond+ '{' | IF ( $c ) ; { | 1 | TS102 | applied | siempre que DISTANCE < 10 { R(1, 60) } => IF(DISTANCE < 10);R(1, 60);ENDIF;
+^ FOREVER QUE c=@cond+ b=@start|'{' | WHILE ( $c ) ; $b | 1 | TS102 | offered | siempre que DISTANCE > 10 F(1, 50) => WHILE(DISTANCE > 10);F(1, 50);END_WHILE
+^ FOREVER QUE c=@cond+ ':'? $ | WHILE ( $c ) | 1 | TS102 | offered | siempre que DISTANCE > 10⏎F(1, 50)⏎fin => WHILE(DISTANCE > 10)⏎F(1, 50)⏎END_WHILE
+h=TASK :|,|-|'|' | &h ; | 1 | TS014 | applied | TASK:⏎BEEP(1, 440)⏎END_TASK => TASK⏎BEEP(1, 440)⏎END_TASK
+h=TASK b=@start|'{' | &h ; $b | 1 | TS014 | applied | TASK BEEP(1, 440) END_TASK => TASK;BEEP(1, 440);END_TASK
+TASK ( @num|@word? ) | TASK | 1 | TS039 | offered | TASK(1)⏎BEEP(1, 440)⏎END_TASK => TASK⏎BEEP(1, 440)⏎END_TASK
 ^ LOOP UNTIL <question> ':'|'{'? $ | WHILE ( @not:c ) | 1 | TS102 | applied | F(1, 60)⏎LOOP UNTIL(DISTANCE < 20)⏎F(1, 60)⏎END_LOOP => F(1, 60)⏎WHILE(DISTANCE >= 20)⏎F(1, 60)⏎END_WHILE
 ^ LOOP UNTIL c=@cond+ ':'|'{'? $ | WHILE ( @not:c ) | 1 | TS102 | applied | repetir hasta DISTANCE < 10⏎F(1,50)⏎fin => WHILE(DISTANCE >= 10)⏎F(1,50)⏎END_WHILE
 ^ UNTIL c=@cond+ $ | IF ( $c ) ; <end> | 2 | TS064 | applied | LOOP⏎F(1, 50)⏎UNTIL DISTANCE < 10 => LOOP(FOREVER)⏎F(1, 50)⏎IF(DISTANCE < 10);BREAK;ENDIF;END_LOOP
@@ -444,7 +454,7 @@ v=@val A|TO the? wall | &v | 1 | TS102 | first | IF(distancia a la pared < 10)�
 LOOP =|- n=@num | LOOP ( $n ) | 1 | TS015 | applied | LOOP=4;F(2,80);END_LOOP => LOOP(4);F(2,80);END_LOOP
 ^ v=TIEMPO n=@num $ | $v = $n | 1 | TS057 | applied | tiempo 2⏎F(tiempo,80) => tiempo = 2⏎F(tiempo,80)
 <block> <question> '|' b=@start | &h ( $c ) ; $b | 1 | TS014 | applied | LOOP(2)|F(1, 80)|END_LOOP => LOOP(2);F(1, 80);END_LOOP
-a=@close '|' h=END_LOOP|ENDIF|END_WHILE|END_DEF | $a ; &h | 1 | TS055 | applied | LOOP(2);F(1, 80)|END_LOOP => LOOP(2);F(1, 80);END_LOOP
+a=@close '|' h=END_LOOP|ENDIF|END_WHILE|END_DEF|END_WHEN|END_TASK | $a ; &h | 1 | TS055 | applied | LOOP(2);F(1, 80)|END_LOOP => LOOP(2);F(1, 80);END_LOOP
 ^ DEF ( n=@word ) | DEF $n | 1 | TS039 | offered | DEF(SALUDO)⏎BEEP(1,440)⏎END_DEF⏎SALUDO => DEF SALUDO⏎BEEP(1,440)⏎END_DEF⏎SALUDO
 DEF n=@word :|'|'|=|'->'|'=>' | DEF $n ; | 1 | TS014 | applied | DEF SALUDO = BEEP(1,440)⏎SALUDO => DEF SALUDO;BEEP(1, 440);END_DEF⏎SALUDO
 DEF n=@word b=@start|'{' | DEF $n ; $b | 1 | TS014 | applied | procedure square F(1,50) end => DEF SQUARE;F(1, 50);END_DEF

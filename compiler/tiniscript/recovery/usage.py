@@ -249,7 +249,7 @@ class _Usage:
         text = token.text
         if text in self.names.known.values or said_of(text, "sensor") or said_of(text, "wall"):
             return True
-        return self.command(text) in self.names.sensors
+        return text == "TIME" or self.command(text) in self.names.sensors
 
     def _is_order(self, word: str) -> bool:
         known = WORDS.get(self.command(word))

@@ -64,6 +64,8 @@ class WrongValues:
             return
         names = scope.names.items() if len(scope.diagnostics) < ENOUGH else ()
         known = [each for each, its in names if its.what in ("sensor", "variable")]
+        is_forever = _TIME_BEFORE.search(before) or _TIMES_BEFORE.search(before)
+        known += ["FOREVER"] if is_forever else []
         near = NUMBER_WORDS.get(name) or scope.near(name, known) or meant_value(
             scope, span, name, is_assigned=target is not None
         )  # fmt: skip
@@ -157,7 +159,8 @@ class WrongValues:
         if other is not None and other.end - other.start <= 80:
             asked = self.scope.source[Span(other.start, other.end)]
             before, behind = _COMPARED.match(asked), _COMPARES.fullmatch(asked)
-            if other.start < operand.start and before:
+            is_sensor = found.upper() in (each.name for each in self.scope.kit.sensors)
+            if other.start < operand.start and before and not is_sensor:
                 values = {"fix": f"{before[0]} {found}"}
             elif behind and found.isidentifier():
                 values = {"fix": f"{found} {behind[1]}"}

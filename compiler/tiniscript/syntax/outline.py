@@ -11,13 +11,13 @@ from typing import NamedTuple
 from tiniscript.diagnostics import codes
 from tiniscript.source import Source, Span
 from tiniscript.syntax.ast import Argument
-from tiniscript.syntax.blocks import ENDS, HEADERS, Block, Blocks
+from tiniscript.syntax.blocks import ENDS, Block, Blocks
 from tiniscript.syntax.expressions import ExpressionParser
 from tiniscript.syntax.lexer import END, WORD, Scan, Token
 from tiniscript.syntax.operators import Postfix
 from tiniscript.syntax.parser import Parser
 from tiniscript.syntax.reporter import Failed, Reporter
-from tiniscript.words import WORDS, Word
+from tiniscript.words import BLOCK_ENDS, WORDS, Word
 
 
 class Known(NamedTuple):
@@ -144,7 +144,7 @@ class _Line(Parser):
 
 
 _KINDS = {
-    **dict.fromkeys((*HEADERS, "DEF"), "open"),
+    **dict.fromkeys(BLOCK_ENDS, "open"),
     **dict.fromkeys(("ELSE", "ELSEIF"), "arm"),
     **dict.fromkeys(ENDS, "end"),
 }
