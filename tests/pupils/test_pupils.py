@@ -31,6 +31,7 @@ OTHER_NUMBERS = (
     codes.NEEDLESS_FRAME,  # with its `return 0`
     codes.LISTS,  # `V[0]` is V_1
     codes.PASTED,  # `[20:14] Luis:`
+    codes.NO_BRACKETS_HERE,  # `TASK(1)`
 )
 SHIFTED = re.compile(r"[=!\"$%/]")  # signs on the keys of digits
 CONVERTED = re.compile(r"(?i)[0-9] *(min|ms|mili|hora|hour)|delay")

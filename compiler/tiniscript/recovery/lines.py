@@ -44,6 +44,7 @@ _FIRST_STEPS = 30
 _REMEMBERED = 128  # lines: a repair that is tried changes one line of a program
 _CALCULATES = SIGNS | {"°"}  # without it another number would be meant
 _NEEDLESS = re.compile(r"(?<=[(,=<>+*/-] )\( ([^() ]+) \)|\( (\( [^()]* \)) \)")
+_PLAIN_DIGITS = 4
 _SETUP = 2  # tokens: `SI|`
 _AT_END = ("LOOP", "IF", "WHILE", "DEF", "ELSEIF", "UNTIL")
 
@@ -96,18 +97,26 @@ class Readings(NamedTuple):
 
 def right(tokens: Sequence[Lexeme], names: Names) -> Sequence[Item] | Failure:
     """Return the items of a line, or where it is wrong. Braces and bare ends are items, too."""
-    return _remembered(tuple(tokens), names)
+    return _right(tuple((each.kind, _alike(each)) for each in tokens), names)
 
 
-def _right(tokens: Sequence[Lexeme], names: Names) -> Sequence[Item] | Failure:
+def _alike(token: Lexeme) -> str:
+    """Return the text of a token, and one for all numbers that any instruction reads alike."""
+    text = token.text
+    is_plain = text.isdecimal() and text[0] != "0" and len(text) <= _PLAIN_DIGITS
+    return "1" if is_plain else text
+
+
+@lru_cache(REMEMBERED)
+def _right(tokens: tuple[tuple[str, str], ...], names: Names) -> Sequence[Item] | Failure:
     found: list[Item] = []
     start = 0
     for k in range(len(tokens) + 1):
-        text = tokens[k].text if k < len(tokens) else BRACES[1]
+        text = tokens[k][1] if k < len(tokens) else BRACES[1]
         is_brace, is_end = text in BRACES, _is_bare_end(tokens, k, names)
         if not is_brace and not is_end:
             continue
-        part = outline([(each.kind, each.text) for each in tokens[start:k]], names.known)
+        part = outline(tokens[start:k], names.known)
         if isinstance(part, Failure):
             return Failure(part.start + start, part.at + start)
         found += [item._replace(start=item.start + start, end=item.end + start) for item in part]
@@ -117,13 +126,10 @@ def _right(tokens: Sequence[Lexeme], names: Names) -> Sequence[Item] | Failure:
     return found
 
 
-_remembered = lru_cache(REMEMBERED)(_right)
-
-
-def _is_bare_end(tokens: Sequence[Lexeme], k: int, names: Names) -> bool:
-    if k >= len(tokens) or not said_of(tokens[k].text, "end") or names.is_name(tokens[k].text):
+def _is_bare_end(tokens: Sequence[tuple[str, str]], k: int, names: Names) -> bool:
+    if k >= len(tokens) or not said_of(tokens[k][1], "end") or names.is_name(tokens[k][1]):
         return False
-    around = (tokens[each].text if 0 <= each < len(tokens) else ";" for each in (k - 1, k + 1))
+    around = (tokens[each][1] if 0 <= each < len(tokens) else ";" for each in (k - 1, k + 1))
     return all(each in (";", "|", *BRACES) for each in around)
 
 
@@ -187,7 +193,7 @@ class _Search:
             if text in seen:
                 continue
             seen.add(text)
-            items = _right(reading.tokens, self.names)  # a state comes once
+            items = right(reading.tokens, self.names)
             if not isinstance(items, Failure):
                 if not self.says_twice(reading, items, first):
                     found.append(reading._replace(items=items))

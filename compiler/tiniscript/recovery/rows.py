@@ -187,7 +187,6 @@ TOKENS = r"""
 # signs that other languages have
 ^ v=@usedname == e=@any+ $ | $v = $e | 0 | TS010 | first | X == 5⏎F(X, 80) => X = 5⏎F(X, 80)
 ^ v=@name == e=@any+ $ | $v = $e | 1 | TS050 | first offered | X == 6 => X = 6
-; v=@usedname == e=@nosep+ f=;|$ | ; $v = $e $f | 0 | TS010 | first | SI|X = 1;X == 5;F(X, 80) => SI|X = 1;X = 5;F(X, 80)
 == | = | 0 | TS010 | first | IF(DISTANCE == 10);S;ENDIF => IF(DISTANCE = 10);S;ENDIF
 != | <> | 0 | TS010 | first | SI|IF(DISTANCE!=10);S;ENDIF => SI|IF(DISTANCE <>10);S;ENDIF
 =! | <> | 0 | TS010 | first | IF(DISTANCE =! 10);S;ENDIF => IF(DISTANCE <> 10);S;ENDIF
@@ -200,16 +199,12 @@ TOKENS = r"""
 ! < | >= | 0 | TS010 | first | IF(DISTANCE !< 10)⏎S⏎ENDIF => IF(DISTANCE >= 10)⏎S⏎ENDIF
 ! > | <= | 0 | TS010 | first | IF(DISTANCE !> 10);S;ENDIF => IF(DISTANCE <= 10);S;ENDIF
 && | AND | 0 | TS010 | first | SI|IF(DISTANCE<10 && LIGHT_L>50);S;ENDIF => SI|IF(DISTANCE<10 AND LIGHT_L>50);S;ENDIF
-'||' | OR | 0 | TS010 | first | IF(DISTANCE == 10 || DISTANCE == 20);S;ENDIF => IF(DISTANCE = 10 OR DISTANCE = 20);S;ENDIF
 := | = | 0 | TS050 | first | v := 50⏎F(2, v) => v = 50⏎F(2, v)
 ] | ) | 1 | TS010 | applied | F(2, 80] => F(2, 80)
 v=@val [ n=@num ) | $v < $n ) | 1 | TS010 | offered | IF(DISTANCE[30)⏎S⏎ENDIF => IF(DISTANCE < 30)⏎S⏎ENDIF
 ! v=@val|( | NOT $v | 1 | TS010 | first | X = TRUE⏎IF(!X);S;ENDIF => X = TRUE⏎IF(NOT X);S;ENDIF
 # comparisons in words: a row for each sense, and a sign
-no is? less than|A? | >= | 1 | TS010 | first | IF(DISTANCE no es menor que 10)⏎F(1,50)⏎ENDIF => IF(DISTANCE >= 10)⏎F(1,50)⏎ENDIF
-no is? more|MAS than|A? | <= | 1 | TS010 | first | IF(DISTANCE no es mayor que 10);S;ENDIF => IF(DISTANCE <= 10);S;ENDIF
 is? less than? O|OR equal QUE|A|TO? | <= | 1 | TS010 | first | IF(DISTANCE es menor o igual que 10);S;ENDIF => IF(DISTANCE <= 10);S;ENDIF
-is? more than? O|OR equal QUE|A|TO? | >= | 1 | TS010 | first | IF(DISTANCE mayor o igual que 10);F(1,50);ENDIF => IF(DISTANCE >= 10);F(1,50);ENDIF
 more O|OR? equal QUE|A|TO? | >= | 1 | TS010 | first | IF(DISTANCE mayor igual 10);F(1,50);ENDIF => IF(DISTANCE >= 10);F(1,50);ENDIF
 is? A? less than|A? | < | 1 | TS010 | first | SI|IF(DISTANCE menor 10);S;ENDIF => SI|IF(DISTANCE < 10);S;ENDIF
 is? A? more than|A? | > | 1 | TS010 | first | IF DISTANCE IS BIGGER THAN 20 F(1,50) ENDIF => IF(DISTANCE > 20);F(1, 50);ENDIF
@@ -237,7 +232,6 @@ s=<|> n=@num = TRUE | $s $n | 1 | TS037 | applied | IF(DISTANCE < 10 = TRUE);S;E
 a=@num|@val '|' b=@val | $a OR $b | 1 | TS010 | applied | IF(DISTANCE<10 | LIGHT_R>50)⏎S⏎ENDIF => IF(DISTANCE<10 OR LIGHT_R>50)⏎S⏎ENDIF
 # numbers, units, values
 a=@num POR CIENTO|CIEN | $a % | 1 | TS049 | first | R(1, 50 por ciento) => R(1, 50)
-v=@name = a=@num % $ | $v = $a | 1 | TS049 | applied | X = 50 % => X = 50
 a=@num 0 | @cat:a | 1 | TS008 | offered | F(2, 8 0) => F(2, 80)
 a=@num , b=@num | @dec:a:b | 1 | TS012 | applied | W(2,5) => W(2.5)
 a=@num % ) | $a ) | 1 | TS049 | first | F(2,80%) => F(2,80)
@@ -246,7 +240,6 @@ s=<|>|<=|>= n=@num M|METRO|METROS|METERS|METER e=) | $s @cm:n $e | 1 | TS049 | a
 s=<|>|<=|>=|=|<> n=@num @unit | $s $n | 1 | TS049 | first | x = 5 cm => x = 5
 v=@val CM|EN? CM | $v | 2 | TS049 | applied | SHOW DISTANCE cm => SHOW(DISTANCE)
 SHOW ( n=@num M|METRO|METROS|METERS|METER|@unit ) | SHOW ( $n ) | 1 | TS049 | applied | SHOW(2 M) => SHOW(2)
-v=@name = e=@num @unit $ | $v = $e | 1 | TS049 | applied | X = 2 seg => X = 2
 v=@val seconds|@unit e=,|) | $v $e | 1 | TS049 | applied | SHOW(distancia cm) => SHOW(DISTANCE)
 the v=@val | $v | 1 | TS102 | first | lee la distancia => DISTANCE
 # variables
@@ -270,7 +263,6 @@ v=@name *= e=@any+ | $v = $v * $e | 1 | TS050 | applied | X = 1⏎X *= 2 => X = 
 ; v=@usedname e=@num f=;|$ | ; $v = $e $f | 3 | TS057 | applied | X = 15;X  17;SHOW(X) => X = 15;X = 17;SHOW(X)
 ^ v=@name <- e=@any+ $ | $v = $e | 1 | TS050 | applied | potencia <- 80⏎F(2, potencia) => potencia = 80⏎F(2, potencia)
 = SI|YES $ | = TRUE | 1 | TS102 | applied | X = si⏎IF(X)⏎S⏎ENDIF => X = TRUE⏎IF(X)⏎S⏎ENDIF
-= no $ | = FALSE | 1 | TS102 | applied | X = NO => X = FALSE
 a=@num|@close b=@name = | $a ; $b = | 1.5 | TS013 | applied | F(1, 50) X = 2 => F(1, 50);X = 2
 ^ set the? v=@word A|TO|EN n=@num $ | $v = $n | 1.5 | TS050 | applied | X = 1⏎sube la X a 5 => X = 1⏎X = 5
 ^ CAMBIAR|CHANGE v=@name POR|BY n=@num $ | $v = $v + $n | 1.5 | TS050 | offered | N = 5⏎cambiar N por 1 => N = 5⏎N = N + 1
@@ -287,7 +279,6 @@ c=@callw ( a=@argt+ ; b=@argt+ e=)|$ | $c ( $a , $b ) | 1 | TS019 | applied | F(
 a=@callw b=@num ,? c=@num ,|;|Y? d=@callw | $a ( $b , $c ) ; $d | 1.5 | TS015 | applied | F 2,80,R 1,50 => F(2, 80);R(1, 50)
 v=@val ( ) | $v | 1 | TS028 | first | LIGHT_L() => LIGHT_L
 RANDOM ( between|than|DESDE? a=@num A|AL|TO|Y|HASTA|AND|- b=@num ) | RANDOM ( $a , $b ) | 1 | TS017 | applied | X = RANDOM(1 al 6) => X = RANDOM(1, 6)
-x=@callw < c=@nobrace+ > | $x ( $c ) | 1 | TS015 | applied | F<2, 80> => F(2, 80)
 c=@callw ( a=@argt+ ( e=;|$ | $c ( $a ) $e | 1 | TS076 | applied | F(2, 80( => F(2, 80)
 ^ ( c=@callw a=@num ,? b=@num ) $ | $c ( $a , $b ) | 1 | TS076 | applied | (F 2,80) => F(2, 80)
 ^ ( a=@num , b=@num ) c=F|B|L|R $ | $c ( $a , $b ) | 1 | TS015 | applied | (2,80)F => F(2, 80)
@@ -302,7 +293,6 @@ c=@callw ( a=@argt+ ) ) e=;|$ | $c ( $a ) $e | 1 | TS041 | applied | F(2,80)) =>
 c=@callw ( a=@num b=@num ) | $c ( $a , $b ) | 1 | TS017 | applied | F(2 80);F(3 80);R(1 50) => F(2, 80);F(3, 80);R(1, 50)
 c=@callw ( a=@num /|- b=@num ) | $c ( $a , $b ) | 2 | TS076 | offered | F(2/80) => F(2, 80)
 c=@callw ( a=@num _|.|;|&|<|'|'|Y|> b=@num ) | $c ( $a , $b ) | 1 | TS076 | applied | F(2|80) => F(2, 80)
-^ SHOW v=TRUE|FALSE $ | SHOW ( $v ) | 1 | TS015 | applied | SHOW TRUE => SHOW(TRUE)
 SHOW ( a=@val , b=@val ) | SHOW ( $a ) ; SHOW ( $b ) | 2 | TS020 | offered | SHOW(DISTANCE, LIGHT_L) => SHOW(DISTANCE);SHOW(LIGHT_L)
 ^ SHOW a=@val ,? b=@val $ | SHOW ( $a ) ; SHOW ( $b ) | 2 | TS015 | applied | SHOW DISTANCE LIGHT_R => SHOW(DISTANCE);SHOW(LIGHT_R)
 c=@callw ( a=@argt* b=@num|@word e=;|$|UNTIL|@start | $c ( $a $b ) $e | 1 | TS016 | applied | F(2,80 => F(2,80)
@@ -327,12 +317,10 @@ h=IF|WHILE|LOOP|UNTIL|ELSEIF [ | &h ( | 1 | TS010 | applied | IF[DISTANCE < 10]�
 ^ unless <question> | IF ( @not:c ) ; | 1 | TS102 | applied | unless(DISTANCE < 10)⏎F(2, 70)⏎end => IF(DISTANCE >= 10)⏎F(2, 70)⏎ENDIF
 ^ unless QUE? c=@argt+ :|,|; | IF ( @not:c ) ; | 1.2 | TS102 | applied | unless DISTANCE < 5:⏎F(1, 50)⏎ENDIF => IF(DISTANCE >= 5)⏎F(1, 50)⏎ENDIF
 ^ unless QUE? c=@argt+ b=@start | IF ( @not:c ) ; $b | 1.3 | TS102 | applied | unless distance < 10 F(1,50) => IF(DISTANCE >= 10);F(1, 50);ENDIF
-<asks> ( c=@val|@num ) s=<|>|<=|>=|=|<> r=@num|@val | &h ( ( $c ) $s $r ) | 1 | TS015 | applied | IF(DISTANCE) < 9;S;ENDIF => IF((DISTANCE) < 9);S;ENDIF
 <asks> ( c=@any+ ) o=AND|OR ( d=@any+ ) | &h ( ( $c ) &o ( $d ) ) | 1 | TS015 | applied | IF(DISTANCE > 5) AND (LIGHT_R > 9);S;ENDIF => IF((DISTANCE > 5) AND(LIGHT_R > 9));S;ENDIF
 h=IF|WHILE|LOOP|UNTIL|ELSEIF :|.|->|, ( | &h ( | 1 | TS015 | applied | IF:(DISTANCE < 10)⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
 h=IF|WHILE|ELSEIF|LOOP|UNTIL '{' c=@nob+ '}' | &h ( $c ) | 1 | TS015 | applied | IF{DISTANCE < 10}⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
 <asks> ( c=@argt+ b=@start | &h ( $c ) ; $b | 1 | TS016 | offered | si DISTANCE < 10 S si DISTANCE > 10 F(1,50) => IF(DISTANCE < 10);S;IF(DISTANCE > 10);F(1, 50);ENDIF;ENDIF
-h=IF|ELSEIF c=@cond+ do|':'? '{' | &h ( $c ) ; { | 1 | TS047 | applied | SI(DISTANCE < 10){S}SINO{F(1,50)} => IF(DISTANCE < 10);S;ELSE;F(1, 50);ENDIF;
 <asks> c=@cond+ t=do|:|,|'|'|'{' | &h ( $c ) ; @brace:t | 1.3 | TS015 | applied | SI DISTANCE < 10 | S => IF(DISTANCE < 10);S;ENDIF
 <asks> c=@cond+ ;|$ | &h ( $c ) ; | 1.3 | TS015 | applied | F(2,80) si DISTANCE > 10 => IF(DISTANCE > 10);F(2, 80);ENDIF
 <asks> c=@cond+ b=@start | &h ( $c ) ; $b | 2 | TS014 | applied | IF DISTANCE < 10 STOP => IF(DISTANCE < 10);STOP;ENDIF
@@ -343,7 +331,6 @@ h=IF|WHILE ( c=@noclose+ , b=@start | &h ( $c ) ; $b | 2 | TS080 | applied | IF(
 <block> <question> :|,|=|?|'|'|- ':'? | &h ( $c ) ; | 1 | TS014 | applied | LOOP(3): F(1,50) => LOOP(3);F(1, 50);END_LOOP
 <block> <question> b=@start|'{'|SALUDO | &h ( $c ) ; $b | 1 | TS014 | applied | LOOP(3) F(1,50) => LOOP(3);F(1, 50);END_LOOP
 <block> <question> ;? ( <body> ) $ | &h ( $c ) ; $b $r ; @endof:h | 1 | TS080 | applied | LOOP(4)(F(1,60)) => LOOP(4);F(1, 60);END_LOOP
-h=IF <question> ;? ( <body> ) e=;|ELSE | &h ( $c ) ; $b $r ; $e | 1 | TS080 | applied | IF (DISTANCE < 10) THEN (S) ELSE (F(1,50)) => IF(DISTANCE < 10);S;ELSE;F(1, 50);ENDIF
 c=IF|WHILE|ELSEIF|UNTIL|LOOP ( a=@argt* b=@num|@word e=;|$ | $c ( $a $b ) $e | 1 | TS016 | applied | F(2,80)UNTIL(DISTANCE<10 => F(2,80)UNTIL(DISTANCE<10)
 # ELSE and ELSEIF
 a=@nosep ELSE b=@name = | $a ; ELSE ; $b = | 1 | TS014 | applied | X = 5⏎IF(X = 5) X = 6 ELSE X = 7 => X = 5⏎IF(X = 5);X = 6;ELSE;X = 7;ENDIF
@@ -355,7 +342,6 @@ ELSE ( <body> ) $ | ELSE ; $b $r | 1 | TS014 | applied | IF(DISTANCE < 10)(S)ELS
 h=ELSE :|,|THEN|=|'|' | &h ; | 1 | TS014 | applied | IF DISTANCE<10: STOP ELSE: F(1,50) => IF(DISTANCE < 10);STOP;ELSE;F(1, 50);ENDIF
 h=ELSE b=@start|'{' | &h ; $b | 1 | TS014 | applied | IF(DISTANCE<10);R(1,60);ELSE F(1,80);ENDIF => IF(DISTANCE < 10);R(1, 60);ELSE;F(1, 80);ENDIF
 a=@nosep|@close h=ELSE|ELSEIF|ENDIF|END_LOOP|END_WHILE|END_DEF|END_WHEN|END_TASK | $a ; &h | 1 | TS013 | applied | IF LIGHT_R>100 F(4,70) ENDIF => IF(LIGHT_R > 100);F(4, 70);ENDIF
-'}' ;? h=ELSE|ELSEIF | } ; &h | 0 | TS047 | first | SI(DISTANCE < 10){S}SINO{F(1,50)} => IF(DISTANCE < 10);S;ELSE;F(1, 50);ENDIF;
 # LOOP
 ^ LOOP FOREVER :|,? b=@start|'{' | LOOP ( FOREVER ) ; $b | 1 | TS015 | applied | LOOP FOREVER F(0.5,60) R(0.5,60) => LOOP(FOREVER);F(0.5, 60);R(0.5, 60);END_LOOP
 ^ LOOP n=@num ( <body> ) $ | LOOP ( $n ) ; $b $r ; END_LOOP | 1 | TS080 | applied | LOOP 3 (F(1, 50); R(1, 50)) => LOOP(3);F(1, 50);R(1, 50);END_LOOP
@@ -368,7 +354,6 @@ LOOP n=X1|X2|X3|X4|X5|X6|X8 | LOOP ( @xn:n ) | 1 | TS015 | applied | LOOP x4⏎F
 ^ LOOP|DO ':'|'{'? $ | LOOP ( FOREVER ) | 3 | TS064 | applied | repite⏎S⏎fin => LOOP(FOREVER)⏎S⏎END_LOOP
 LOOP n=@val $ | LOOP ( $n ) | 1 | TS015 | applied | X4 = 3⏎LOOP X4⏎F(1,50)⏎END_LOOP => X4 = 3⏎LOOP(X4)⏎F(1,50)⏎END_LOOP
 h=LOOP|IF|WHILE|ELSEIF <question> [ <body> ] $ | &h ( $c ) ; $b $r ; @endof:h | 1 | TS080 | applied | LOOP(4) [F(1,50); R(0.5,50)] => LOOP(4);F(1, 50);R(0.5, 50);END_LOOP
-^ LOOP ;? <body> ;? UNTIL <question> ;? $ | LOOP ( FOREVER ) ; $b $r ; IF ( $c ) ; <end> | 1.5 | TS064 | applied | REPEAT;F(1,50);UNTIL(DISTANCE<10) => LOOP(FOREVER);F(1, 50);IF(DISTANCE < 10);BREAK;ENDIF;END_LOOP
 ^ LOOP ;? <body> ;? UNTIL c=@cond+ $ | LOOP ( FOREVER ) ; $b $r ; IF ( $c ) ; <end> | 1.5 | TS064 | applied | repeat F(1,50) until DISTANCE < 10 => LOOP(FOREVER);F(1, 50);IF(DISTANCE < 10);BREAK;ENDIF;END_LOOP
 LOOP ( n=@num @unit ) | LOOP ( $n ) | 1 | TS049 | applied | LOOP(3 veces);F(1,50);END_LOOP => LOOP(3);F(1,50);END_LOOP
 LOOP -> n=@num | LOOP ( $n ) | 1 | TS015 | applied | LOOP -> 4⏎F(1,50)⏎END_LOOP => LOOP(4)⏎F(1,50)⏎END_LOOP
@@ -397,7 +382,6 @@ LOOP ( INT? @name = 0 ; @name < n=@num ; @name ++ ) | LOOP ( $n ) | 1 | TS063 | 
 ^ v=@name = c=@cond+ ? a=@num|@val : b=@num|@val $ | IF ( $c ) ; $v = $a ; ELSE ; $v = $b ; ENDIF | 1 | TS069 | applied | V = DISTANCE > 20 ? 80 : 30⏎F(1, V) => IF(DISTANCE > 20);V = 80;ELSE;V = 30;ENDIF⏎F(1, V)
 ^ n=@num = v=@name $ | $v = $n | 1 | TS042 | offered | 50 = v⏎F(2, v) => v = 50⏎F(2, v)
 ^ q=@val s=<|>|<=|>= n=@num|@val :|do? b=@start r=@all* | IF ( $q $s $n ) ; $b $r | 1 | TS042 | offered | DISTANCE < 10: S => IF(DISTANCE < 10);S;ENDIF
-<for> ( INT? @name = 0 ; @name < n=@num ; @name ++ ) | LOOP ( $n ) ; | 1 | TS102 | offered | for(i=0;i<3;i++) F(1,50); => LOOP(3);F(1, 50);END_LOOP
 <for> ( INT? @name = 1 ; @name <= n=@num ; @name ++ ) | LOOP ( $n ) ; | 1 | TS102 | offered | for(i=1; i<=3; i++){ F(1,80); } => LOOP(3);F(1, 80);END_LOOP;
 ^ FOREVER|SIEMPRE : $ | LOOP ( FOREVER ) ; | 1 | TS032 | applied | forever:⏎  F(1,50) => LOOP(FOREVER)⏎  F(1,50)⏎END_LOOP
 ^ FOREVER|SIEMPRE $ | LOOP ( FOREVER ) | 1 | TS032 | applied | siempre⏎F(1,50)⏎fin => LOOP(FOREVER)⏎F(1,50)⏎END_LOOP
@@ -409,12 +393,9 @@ LOOP ( INT? @name = 0 ; @name < n=@num ; @name ++ ) | LOOP ( $n ) | 1 | TS063 | 
 h=TASK :|,|-|'|' | &h ; | 1 | TS014 | applied | TASK:⏎BEEP(1, 440)⏎END_TASK => TASK⏎BEEP(1, 440)⏎END_TASK
 h=TASK b=@start|'{' | &h ; $b | 1 | TS014 | applied | TASK BEEP(1, 440) END_TASK => TASK;BEEP(1, 440);END_TASK
 TASK ( @num|@word? ) | TASK | 1 | TS039 | offered | TASK(1)⏎BEEP(1, 440)⏎END_TASK => TASK⏎BEEP(1, 440)⏎END_TASK
-^ LOOP UNTIL <question> ':'|'{'? $ | WHILE ( @not:c ) | 1 | TS102 | applied | F(1, 60)⏎LOOP UNTIL(DISTANCE < 20)⏎F(1, 60)⏎END_LOOP => F(1, 60)⏎WHILE(DISTANCE >= 20)⏎F(1, 60)⏎END_WHILE
 ^ LOOP UNTIL c=@cond+ ':'|'{'? $ | WHILE ( @not:c ) | 1 | TS102 | applied | repetir hasta DISTANCE < 10⏎F(1,50)⏎fin => WHILE(DISTANCE >= 10)⏎F(1,50)⏎END_WHILE
 ^ UNTIL c=@cond+ $ | IF ( $c ) ; <end> | 2 | TS064 | applied | LOOP⏎F(1, 50)⏎UNTIL DISTANCE < 10 => LOOP(FOREVER)⏎F(1, 50)⏎IF(DISTANCE < 10);BREAK;ENDIF;END_LOOP
-'}' ;? WHILE <question> ;? $ | ; IF ( @not:c ) ; <end> | 2 | TS064 | applied | DO {⏎F(1, 50)⏎} WHILE(DISTANCE > 9) => LOOP(FOREVER)⏎F(1, 50)⏎IF(DISTANCE <= 9);BREAK;ENDIF;END_LOOP
 ^ DO '{' b=@start | LOOP ( FOREVER ) ; $b | 3 | TS064 | applied | DO { F(1, 50)⏎} WHILE(DISTANCE > 9) => LOOP(FOREVER);F(1, 50)⏎IF(DISTANCE <= 9);BREAK;ENDIF;END_LOOP
-^ '}'? ;? UNTIL <question> ;? $ | IF ( $c ) ; <end> | 2 | TS064 | applied | repeat⏎F(1, 60)⏎until(DISTANCE < 15) => LOOP(FOREVER)⏎F(1, 60)⏎IF(DISTANCE < 15);BREAK;ENDIF;END_LOOP
 # how often something is done, said behind it or before it
 ^ a=@callw ( b=@argt+ ) POR|X|*|=|(? X|*? n=@num times? )? $ | LOOP ( $n ) ; $a ( $b ) ; END_LOOP | 3 | TS062 | offered | F(1,50) x 3 => LOOP(3);F(1, 50);END_LOOP
 ^ a=@callw ( b=@argt+ ) n=X2|X3|X4|X5|X6 $ | LOOP ( @xn:n ) ; $a ( $b ) ; END_LOOP | 3 | TS062 | offered | F(2, 80) x3 => LOOP(3);F(2, 80);END_LOOP
@@ -434,7 +415,6 @@ TASK ( @num|@word? ) | TASK | 1 | TS039 | offered | TASK(1)⏎BEEP(1, 440)⏎END
 ^ a=@callw ( b=@argt+ ) FOREVER $ | LOOP ( FOREVER ) ; $a ( $b ) ; END_LOOP | 3 | TS085 | offered | F(1, 80) siempre => LOOP(FOREVER);F(1, 80);END_LOOP
 ^ a=@callw ( b=@argt+ ) IF|CUANDO (? d=@cond+ )? $ | IF ( $d ) ; $a ( $b ) ; ENDIF | .9 | TS071 | offered | F(1, 50) IF(DISTANCE > 10) => IF(DISTANCE > 10);F(1, 50);ENDIF
 ^ a=F|B|L|R ( b=@argt+ ) WHILE (? d=@argt+ )? $ | $a ( $b ) UNTIL ( @not:d ) | .9 | TS071 | offered | F(5, 50) WHILE(DISTANCE > 10) => F(5, 50) UNTIL(DISTANCE <= 10)
-^ b=@start r=@argt* c=@close when d=@cond+ $ | IF ( $d ) ; $b $r $c ; ENDIF | .9 | TS071 | offered | F(1, 50) si DISTANCE > 10 => IF(DISTANCE > 10);F(1, 50);ENDIF
 # what the devices of a kit are set to
 d=@device v=lit|on e=;|$ | &d ( TRUE ) $e | 1 | TS015 | applied | LED ON => LED(TRUE)
 d=@device v=dark|off e=;|$ | &d ( FALSE ) $e | 1 | TS015 | applied | LED OFF => LED(FALSE)
@@ -453,14 +433,10 @@ v=@def ( ) | $v | 1 | TS028 | first | DEF GIRO()⏎R(1, 60)⏎END_DEF⏎GIRO() =
 v=@val A|TO the? wall | &v | 1 | TS102 | first | IF(distancia a la pared < 10)⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
 LOOP =|- n=@num | LOOP ( $n ) | 1 | TS015 | applied | LOOP=4;F(2,80);END_LOOP => LOOP(4);F(2,80);END_LOOP
 ^ v=TIEMPO n=@num $ | $v = $n | 1 | TS057 | applied | tiempo 2⏎F(tiempo,80) => tiempo = 2⏎F(tiempo,80)
-<block> <question> '|' b=@start | &h ( $c ) ; $b | 1 | TS014 | applied | LOOP(2)|F(1, 80)|END_LOOP => LOOP(2);F(1, 80);END_LOOP
 a=@close '|' h=END_LOOP|ENDIF|END_WHILE|END_DEF|END_WHEN|END_TASK | $a ; &h | 1 | TS055 | applied | LOOP(2);F(1, 80)|END_LOOP => LOOP(2);F(1, 80);END_LOOP
 ^ DEF ( n=@word ) | DEF $n | 1 | TS039 | offered | DEF(SALUDO)⏎BEEP(1,440)⏎END_DEF⏎SALUDO => DEF SALUDO⏎BEEP(1,440)⏎END_DEF⏎SALUDO
 DEF n=@word :|'|'|=|'->'|'=>' | DEF $n ; | 1 | TS014 | applied | DEF SALUDO = BEEP(1,440)⏎SALUDO => DEF SALUDO;BEEP(1, 440);END_DEF⏎SALUDO
 DEF n=@word b=@start|'{' | DEF $n ; $b | 1 | TS014 | applied | procedure square F(1,50) end => DEF SQUARE;F(1, 50);END_DEF
-DEF n=@word ( ) '{' | DEF $n ; { | 1 | TS047 | applied | DEF PASO() {⏎F(1, 50)⏎}⏎PASO => DEF PASO;⏎F(1, 50)⏎END_DEF⏎PASO
-DEF n=@word ( ) : ? | DEF $n ; | 1 | TS028 | applied | DEF PASO():⏎F(1, 50)⏎END_DEF⏎PASO => DEF PASO⏎F(1, 50)⏎END_DEF⏎PASO
-^ DEF a=@word b=@word|@num $ | DEF @join:a:b | 2 | TS056 | applied | DEF PASO UNO⏎S⏎END_DEF => DEF PASO_UNO⏎S⏎END_DEF
 ; call b=@def | ; $b | 1 | TS044 | applied | DEF SALTO;F(0.2, 60);END_DEF;CALL SALTO => DEF SALTO;F(0.2, 60);END_DEF;SALTO
 ^ call|do b=@def | $b | 1 | TS044 | applied | DEF SALTO;F(0.2, 60);END_DEF⏎hacer SALTO => DEF SALTO;F(0.2, 60);END_DEF⏎SALTO
 # ends of blocks
@@ -472,7 +448,6 @@ a=@close h=end $ | $a ; &h | 1 | TS013 | applied | F(2,80) fin => F(2, 80);
 ^ program @word $ |  | 1 | TS044 | applied | programa baile⏎F(1, 50) => ⏎F(1, 50)
 ^ RETURN 0 ;? $ |  | 1 | TS065 | applied | F(1, 50)⏎return 0; => F(1, 50)⏎
 ^ end program? $ | FIN | 0 | TS044 | first | F(1, 50)⏎fin programa => F(1, 50)⏎
-end -|.|DEL|DE|EL? k=IF|LOOP|WHILE|DEF|FOREVER|FOR|PARA ;|$ | @endof:k | 1 | TS022 | first | definir bailar⏎L(1,50)⏎fin definir⏎bailar => DEF bailar⏎L(1,50)⏎END_DEF⏎bailar
 # what joins instructions
 ^ @newname : b=@start | $b | 2.5 | TS054 | applied | square: F(1,50); R(1,50) => F(1,50); R(1,50)
 a=@close please|CM|CENTIMETROS|SEG|SEGS|SEGUNDO|SEGUNDOS|SECONDS $ | $a | 1 | TS044 | applied | F(1, 80) cm => F(1, 80)
@@ -486,7 +461,6 @@ a=@close , $ | $a ; | .8 | TS013 | applied | F(2,80),⏎R(1,50), => F(2, 80)⏎R
 a=@close '|' $ | $a ; | 1 | TS055 | applied | F(2,80)|⏎R(1,50)| => F(2, 80)⏎R(1, 50)
 a=@close b=@start | $a ; $b | 1 | TS013 | applied | S STOP => S;STOP
 call b=@def n=@num | LOOP ( $n ) ; $b ; END_LOOP | 1 | TS062 | applied | DEF SALTO;F(0.2, 60);END_DEF⏎CALL SALTO 3 => DEF SALTO;F(0.2, 60);END_DEF⏎LOOP(3);SALTO;END_LOOP
-a=@def b=@def | $a ; $b | 1 | TS013 | applied | DEF PASO;S;END_DEF⏎PASO PASO => DEF PASO;S;END_DEF⏎PASO;PASO
 ^ first ,? b=@start | $b | 1 | TS044 | applied | Primero, avanza 2 segundos⏎Luego gira a la izquierda 1 segundo => F(2, 80)⏎L(1, 80)
 ; ( b=@start r=@all* e=@close ) ; | ; $b $r $e ; | 1 | TS080 | applied | LOOP(4);(F(1, 60);R(1, 50));END_LOOP => LOOP(4);F(1, 60);R(1, 50);END_LOOP
 ; first+ ,? b=@start | ; $b | 1 | TS044 | applied | F(2, 80); y despues B(1, 80) => F(2, 80);B(1, 80)
@@ -504,8 +478,6 @@ read ( v=@val ) | $v | 1 | TS102 | applied | X = leer(DISTANCE)⏎SHOW(X) => X =
 ^ APAGAR|APAGA|DETENER|PARAR the? engine $ | S | 1 | TS102 | applied | apaga motores => S
 ^ START '|' | SI '|' | 1 | TS034 | offered | start|F(2,80) => SI |F(2,80)
 IF <question> BREAK ;|$ | IF ( $c ) ; BREAK ; ENDIF ; | 1 | TS014 | applied | LOOP(FOREVER)⏎F(1, 50)⏎if (DISTANCE < 10) break;⏎END_LOOP => LOOP(FOREVER)⏎F(1, 50)⏎IF(DISTANCE < 10);BREAK;ENDIF⏎END_LOOP
-^ VOID LOOP ( ) '{'? | LOOP ( FOREVER ) ; { | 1 | TS102 | applied | void loop() {⏎F(1, 50)⏎} => LOOP(FOREVER);⏎F(1, 50)⏎END_LOOP
 ^ INT|VOID? MAIN|PRINCIPAL ( ) '{' | START ; { | 1 | TS065 | applied | main() {⏎F(3, 70);⏎} => START;⏎F(3, 70);⏎
-^ VOID SETUP ( ) '{' ;? '}'? $ | START | 1 | TS065 | applied | void setup() {}⏎F(1, 50) => START⏎F(1, 50)
 ^ read the? v=@val $ | $v | 1 | TS102 | applied | leer DISTANCE => DISTANCE
 """

@@ -6,6 +6,7 @@ block: headers, arms and ends are items of their own.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 from tiniscript.diagnostics import codes
@@ -47,7 +48,7 @@ class Failure(NamedTuple):
     at: int
 
 
-def outline(words: list[tuple[str, str]], known: Known) -> list[Item] | Failure:
+def outline(words: Sequence[tuple[str, str]], known: Known) -> list[Item] | Failure:
     """Return the items of a line of tokens (kind, text), or where it is wrong."""
     tokens = [Token(kind, text, k, k + 1) for k, (kind, text) in enumerate(words)]
     tokens.append(Token(END, "", len(tokens), len(tokens)))
