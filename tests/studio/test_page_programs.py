@@ -72,6 +72,29 @@ def test_a_link_brings_the_program_and_runs_nothing(pages: Pages) -> None:
     assert image(visitor) == wanted
 
 
+REACHES = {
+    "here": "http://127.0.0.1:7070/ http://localhost:7070/ http://[::1]:7070/ http://a.localhost/",
+    "network": "http://192.168.1.7:7070/ http://10.0.0.2/ http://172.16.9.1/ http://172.31.0.1/"
+    " http://169.254.3.4/ http://teacher.local:7070/ http://teacher/ http://[fe80::1]/",
+    "anywhere": "https://studio.example/ https://192.0.2.7/ http://172.32.0.1/ http://[2001:db8::1]/"
+    " https://localhost.example/ https://10.example/ https://127.example/",
+}
+
+
+def test_a_link_says_from_where_it_opens() -> None:
+    addresses = [each for row in REACHES.values() for each in row.split()]
+    code = f"import {{ reachOf }} from './src/reach.js';\n{json.dumps(addresses)}"
+    done = subprocess.run(
+        [*found_tools().node, "--input-type=module", "-e",
+         f"{code}.forEach((each) => console.log(reachOf(each)));"],
+        cwd=MODULES.parent, capture_output=True, text=True, check=True,
+    )  # fmt: skip
+    wanted = [name for name, row in REACHES.items() for _ in row.split()]
+    assert dict(zip(addresses, done.stdout.split(), strict=True)) == dict(
+        zip(addresses, wanted, strict=True)
+    )
+
+
 def packed(content: bytes) -> str:
     made = zlib.compressobj(9, zlib.DEFLATED, -15)
     whole = made.compress(content) + made.flush()

@@ -28,15 +28,6 @@ export async function linkOf({ text, robot }, page) {
   return link.length <= MOST_MADE ? link : null;
 }
 
-/**
- * Returns whether an address opens on this computer alone.
- * @param {string} page the page's address
- */
-export function isHere(page) {
-  const { hostname } = new URL(page);
-  return /^(.*\.)?localhost$|^127\.|^\[::1\]$/.test(hostname);
-}
-
 /** Whether an address brings a program. @param {string} hash the part of the address from `#` on */
 export function bringsProgram(hash) {
   return hash.startsWith(MARK);

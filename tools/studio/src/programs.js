@@ -4,7 +4,8 @@
 import { correction, generate } from 'lean-qr';
 import { element } from './elements.js';
 import { downloadFile } from './files.js';
-import { isHere, linkOf, sharedIn } from './links.js';
+import { linkOf, sharedIn } from './links.js';
+import { reachOf } from './reach.js';
 import { isGiven } from './start/beginnings.js';
 import { showInstead } from './start/screens.js';
 import { currentLanguage, text } from './texts.js';
@@ -115,7 +116,7 @@ export class Programs {
     } catch (why) {
       given = { wrong: text('bug', { why: String(why).split('\n').filter(Boolean).at(-1) ?? '' }) };
     }
-    const told = how === 'line' ? 'share_line_told' : isHere(location.href) ? 'share_link_here' : 'share_link_told';
+    const told = how === 'line' ? 'share_line_told' : `share_link_${reachOf(location.href)}`;
     if (asked === this.#asked) this.#show(given, text(told));
   }
 
