@@ -59,7 +59,7 @@ void stand_still(TaskRecord* task, uint32_t now_ms) {
 
 }  // namespace
 
-// A wait is a move that leaves the motors as they are. One of 0 ms ends no turn.
+// A wait is a move that leaves the motors as they are. One of 0 ms ends no turn of a task.
 tini_noinline bool Machine::wait(uint32_t duration_ms) {
   task_.me->powers = kNoPowers;
   return drive(duration_ms);
@@ -115,12 +115,13 @@ tini_noinline bool Machine::go_on(bool is_watched) {
       task_.pc = me->check;
     }
   }
+  const bool is_over = due_ms == 0 && has_tasks();
   if (is_last && me->is(kDrives)) {
     me->state |= kToItsEnd;
-    if (due_ms == 0) end_move();
+    if (is_over) end_move();
   }
   task_.clock_ms = me->begun_ms + due_ms;
-  if (due_ms == 0) return true;
+  if (is_over) return true;
   me->state |= kHasWaited;
   return pause();
 }
