@@ -172,6 +172,12 @@ def test_a_criterion_is_met_or_missed(
     assert "{" not in found + spanish
 
 
+def test_what_stands_behind_a_loop_is_not_in_it(tmp_path: Path) -> None:
+    lesson = lesson_of(tmp_path, '[[criteria]]\nkind = "uses"\nwords = ["LOOP"]\n')
+    (found,) = said(lesson, "LOOP(2);W(0.1);END_LOOP;BEEP(0.1, 440)")
+    assert "repeats nothing" in found
+
+
 def test_a_line_is_followed_or_left(tmp_path: Path) -> None:
     line = '[[criteria]]\nkind = "follows"\nwithin_cm = 9\nat_least_cm = 60\n'
     lesson = lesson_of(tmp_path, line, "liner")
