@@ -211,7 +211,8 @@ class _Teller:
         places = [place for each in told.edits for place in each.span]
         touched = {told.first, *told.opened, *map(self.change_at, places)}
         if not self.found.has_sure_blocks:
-            texts_of = [self.changes[k].text + self.lines[self.changes[k].first] for k in touched]
+            changes = [self.changes[k] for k in touched]
+            texts_of = [text for each in changes for text in (each.text, self.lines[each.first])]
             words = {word for each in texts_of for word in re.findall(r"\w+|[{}]", each.upper())}
             if words & _OF_BLOCKS:
                 return False
