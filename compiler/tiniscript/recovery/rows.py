@@ -448,6 +448,7 @@ a=@close h=end $ | $a ; &h | 1 | TS013 | applied | F(2,80) fin => F(2, 80);
 ^ program @word $ |  | 1 | TS044 | applied | programa baile⏎F(1, 50) => ⏎F(1, 50)
 ^ RETURN 0 ;? $ |  | 1 | TS065 | applied | F(1, 50)⏎return 0; => F(1, 50)⏎
 ^ end program? $ | FIN | 0 | TS044 | first | F(1, 50)⏎fin programa => F(1, 50)⏎
+end -|.|DEL|DE|EL? k=IF|LOOP|WHILE|DEF|FOREVER|FOR|PARA ;|$ | @endof:k | 1 | TS022 | first | definir bailar⏎L(1,50)⏎fin definir⏎bailar => DEF bailar⏎L(1,50)⏎END_DEF⏎bailar
 # what joins instructions
 ^ @newname : b=@start | $b | 2.5 | TS054 | applied | square: F(1,50); R(1,50) => F(1,50); R(1,50)
 a=@close please|CM|CENTIMETROS|SEG|SEGS|SEGUNDO|SEGUNDOS|SECONDS $ | $a | 1 | TS044 | applied | F(1, 80) cm => F(1, 80)
