@@ -7,6 +7,7 @@ import tracemalloc
 
 import pytest
 
+from tests.support.waiting import until
 from tiniscript.link.line import Line
 from tiniscript.link.outcomes import KEPT, Backlog, MissedEvent, StartedEvent, Told
 from tiniscript.link.payloads import DoneEvent, FaultEvent, ShowEvent
@@ -69,7 +70,7 @@ def test_a_line_that_nobody_looks_at_keeps_little() -> None:
 
 
 class Socket(Chatterbox):
-    """Tells of one byte that waits, as a socket of pyserial does."""
+    """Tells of one byte that waits, or of its end, as a socket of pyserial does."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -77,25 +78,24 @@ class Socket(Chatterbox):
 
     @property
     def in_waiting(self) -> int:
-        return len(self.left[:1])
+        return 1
 
     def read(self, count: int) -> bytes:
         found, self.left = self.left[:count], self.left[count:]
         if not found:
-            self.is_over.set()
+            raise OSError("socket disconnected")
         return found
 
 
 def test_what_a_socket_has_is_heard_in_one_piece(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A byte for each turn of the line left a stop waiting for seconds behind what was shown."""
+    """Two bytes a turn of the line left a stop waiting for seconds behind what was shown. Whoever
+    closes the port may have said why before."""
     pieces: list[bytes] = []
     session = Session(1)
     monkeypatch.setattr(session, "receive", lambda data, now_ms: pieces.append(data))
-    port = Socket()
-    line = Line(port, session)
-    assert port.is_over.wait(120)
-    line.close()
-    assert pieces == [CHATTER]
+    with Line(Socket(), session) as line:
+        until(lambda: line.has_ended, "the socket is at its end")
+    assert (pieces, line.gone) == ([CHATTER], "socket disconnected")
 
 
 def shown(number: int) -> Told:
