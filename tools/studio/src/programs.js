@@ -19,6 +19,8 @@ import { ROBOTS } from './words.js';
 const MOST_PICTURED = 900; // bytes: a camera reads no picture with more from a screen
 const MARGIN = 4; // modules that must stay white around a code
 
+const LINK_TOLD = { anywhere: 'share_link_anywhere', network: 'share_link_network', here: 'share_link_here' };
+
 export class Programs {
   #window = element('programs', HTMLDialogElement);
   #shared = element('shared', HTMLTextAreaElement);
@@ -116,7 +118,7 @@ export class Programs {
     } catch (why) {
       given = { wrong: text('bug', { why: String(why).split('\n').filter(Boolean).at(-1) ?? '' }) };
     }
-    const told = how === 'line' ? 'share_line_told' : `share_link_${reachOf(location.href)}`;
+    const told = how === 'line' ? 'share_line_told' : LINK_TOLD[reachOf(location.href)];
     if (asked === this.#asked) this.#show(given, text(told));
   }
 
