@@ -222,6 +222,35 @@ def test_a_wrong_code_is_said_and_a_pupil_is_removed(
     pages.wrong.clear()
 
 
+def test_thirty_tiles_are_seen_without_scrolling(teacher: Page, taught: Class) -> None:
+    """Their pictures are made of the pupils' texts. A stop that failed takes the place of a row."""
+    room = taught.room
+    room.teach({"do": "class_places", "places": 60})
+    tokens = []
+    found = room.teach({"do": "class"})
+    there = {each["name"] for each in (*found["pupils"], *found["kept"])}
+    for k in range(30 - len(there)):
+        asked = {"do": "join", "code": room.code, "name": f"Pupil {k + 1}"}
+        tokens.append(room.answer("", "192.0.2.7", asked)["token"])
+        text = "SI|F(1, 50);" * (k % 3 + 1)
+        here = {"do": "here", "text": text, "robot": "tinibot", "lessons": ["01_first_line"]}
+        room.answer(tokens[k], "192.0.2.7", here)
+    for language, (width, height) in product(("en", "es"), ((1366, 768), (1024, 600))):
+        teacher.set_viewport_size({"width": width, "height": height})
+        teacher.select_option("#language", language)
+        teacher.locator("#wall li").nth(29).wait_for()
+        teacher.wait_for_function(WHOLE)  # a wall fits its tiles once it knows its size
+        assert teacher.evaluate(LOOK) == []
+    tile(teacher, "Pupil 7").locator("img[src^=blob]").wait_for()
+    assert tile(teacher, "Pupil 7").locator("i.done").count() == 1
+    teacher.select_option("#language", "en")
+    for pupil in room.teach({"do": "class"})["pupils"]:
+        if pupil["name"].startswith("Pupil "):
+            room.teach({"do": "class_remove", "pupil": pupil["number"]})
+    for kept in room.teach({"do": "class"})["kept"]:
+        room.teach({"do": "class_forget", "name": kept["name"]})
+
+
 def test_a_robot_that_does_not_confirm_a_stop_is_red(
     ana: Page, teacher: Page, robot: PtyRobot, tmp_path: Path
 ) -> None:
@@ -290,35 +319,6 @@ def test_everything_is_seen_and_axe_finds_nothing(
     teacher.select_option("#language", "en")
     tile(teacher, "A" * 24).locator(".hand").click()
     longest.locator("#class_hand[aria-pressed=false]").wait_for()
-
-
-def test_thirty_tiles_are_seen_without_scrolling(teacher: Page, taught: Class) -> None:
-    """Their pictures are made of the pupils' texts."""
-    room = taught.room
-    room.teach({"do": "class_places", "places": 60})
-    tokens = []
-    found = room.teach({"do": "class"})
-    there = {each["name"] for each in (*found["pupils"], *found["kept"])}
-    for k in range(30 - len(there)):
-        asked = {"do": "join", "code": room.code, "name": f"Pupil {k + 1}"}
-        tokens.append(room.answer("", "192.0.2.7", asked)["token"])
-        text = "SI|F(1, 50);" * (k % 3 + 1)
-        here = {"do": "here", "text": text, "robot": "tinibot", "lessons": ["01_first_line"]}
-        room.answer(tokens[k], "192.0.2.7", here)
-    for language, (width, height) in product(("en", "es"), ((1366, 768), (1024, 600))):
-        teacher.set_viewport_size({"width": width, "height": height})
-        teacher.select_option("#language", language)
-        teacher.locator("#wall li").nth(29).wait_for()
-        teacher.wait_for_function(WHOLE)  # a wall fits its tiles once it knows its size
-        assert teacher.evaluate(LOOK) == []
-    tile(teacher, "Pupil 7").locator("img[src^=blob]").wait_for()
-    assert tile(teacher, "Pupil 7").locator("i.done").count() == 1
-    teacher.select_option("#language", "en")
-    for pupil in room.teach({"do": "class"})["pupils"]:
-        if pupil["name"].startswith("Pupil "):
-            room.teach({"do": "class_remove", "pupil": pupil["number"]})
-    for kept in room.teach({"do": "class"})["kept"]:
-        room.teach({"do": "class_forget", "name": kept["name"]})
 
 
 def test_the_work_of_a_class_is_saved_opened_and_given_back(
