@@ -230,7 +230,7 @@ def test_the_interrupt_turns_the_pins_off_and_nothing_turns_them_on(name: str) -
     assert board.moved()[-1] > 800 * MS  # the button releases the latch
 
 
-SWEPT_CYCLES = 3400
+SWEPT_CYCLES = 3700
 STOPPING = "SI|LOOP(FOREVER);M(80, 80);M(-80, 80);LAMP(TRUE);LAMP(FALSE);END_LOOP"
 LAMP = '[[kit.actuators]]\nname = "LAMP"\nkind = "yes/no"\n\n[board]\n'
 
