@@ -9,6 +9,8 @@ import pytest
 from tests.support.studio import Pages, axe, shown, turn, write
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from playwright.sync_api import Page
 
 NINE = """SI|LOOP(3)
@@ -33,7 +35,7 @@ SEEN = """() => {
 
 
 @pytest.fixture
-def phone(page: Page) -> object:
+def phone(page: Page) -> Iterator[Page]:
     page.set_viewport_size({"width": 390, "height": 844})
     page.locator("html[data-phone]").wait_for(state="attached")
     turn(page, "program")

@@ -37,7 +37,7 @@ SI|LOOP(FOREVER);
     M(60, 10);
   ELSE;
     M(50, 50);
-  END_IF;
+  ENDIF;
   W(0.02);
 END_LOOP;
 ` },
@@ -47,7 +47,7 @@ SI|LOOP(FOREVER);
     M(30, 60);
   ELSE;
     M(60, 30);
-  END_IF;
+  ENDIF;
   W(0.05);
 END_LOOP;
 ` },
