@@ -14,6 +14,7 @@ import gzip
 import hashlib
 import json
 import socket
+import sys
 from collections import Counter
 from collections.abc import Callable
 from contextlib import suppress
@@ -171,8 +172,9 @@ class Server(ThreadingHTTPServer):
     """
 
     daemon_threads = True
-    # Two studios on one port would share it on some systems.
-    allow_reuse_address = False
+    # On Windows two studios on one port would share it. Elsewhere the port would stay taken for a
+    # minute after a studio that ended before its page.
+    allow_reuse_address = sys.platform != "win32"
     request_queue_size = 128
 
     def __init__(
