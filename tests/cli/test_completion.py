@@ -6,7 +6,6 @@ import os
 import re
 import shlex
 import shutil
-import subprocess
 import sys
 from pathlib import Path
 
@@ -24,55 +23,43 @@ ZSH = shutil.which("zsh") or ""
 needs_bash = pytest.mark.skipif(not BASH, reason="there is no bash")
 needs_zsh = pytest.mark.skipif(not ZSH, reason="there is no zsh")
 
-ASKS = """
-source "$1"; shift
-COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1))
-_tsc
-printf '%s\\n' "${COMPREPLY[@]}"
-"""
+
+def offered(tsc: Tsc, *words: str) -> set[str]:
+    """Return what is offered for the last of these words."""
+    done = tsc("completion", "bash", "--", *words[:-1], f".{words[-1]}")
+    assert (done.code, done.err) == (0, "")
+    return {line.partition("\t")[0] for line in done.out.splitlines()[1:]}
 
 
-def offered(tmp_path: Path, *words: str) -> set[str]:
-    """Return what bash offers for the last of these words."""
-    script = tmp_path / "tsc.bash"
-    script.write_text(completion.bash("en"), encoding="utf-8")
-    done = subprocess.run(
-        [BASH, "-uc", ASKS, "bash", str(script), "tsc", *words], capture_output=True, text=True
-    )
-    assert (done.returncode, done.stderr) == (0, ""), done.stderr
-    return set(done.stdout.split())
+def test_verbs_options_and_values(tsc: Tsc) -> None:
+    assert offered(tsc, "") == set(VERBS)
+    assert offered(tsc, "st") == {"start", "stop", "studio"}
+    assert offered(tsc, "--lang", "es", "up") == {"upload"}
+    assert offered(tsc, "--lang", "=", "es", "up") == {"upload"}
+    assert offered(tsc, "--l") == {"--lang"}
+    assert offered(tsc, "--lang", "") == {"en", "es"}
+    assert offered(tsc, "upload", "--no-") == {"--no-run", "--no-save"}
+    assert offered(tsc, "upload", "a.ts", "--virtual", "--world", "l") == {"light", "line"}
+    assert offered(tsc, "check", "--robot", "") == set(robots.names())
+    assert offered(tsc, "check", "--robot", "=") == set(robots.names())
+    assert offered(tsc, "check", "--robot", "=", "lin") == {"liner"}
+    assert offered(tsc, "check", "--robot=lin") == {"--robot=liner"}
+    assert offered(tsc, "run", "--machine", "") == {"python", "cpp"}
+    assert offered(tsc, "trim", "--exchange", "") == {"yes", "no"}
+    assert offered(tsc, "firmware", "--board", "nano") == {"nano", "nano-old"}
+    assert offered(tsc, "explain", "TS") == set(CODES)
+    assert offered(tsc, "help", "fe") == offered(tsc, "ayuda", "fe") == {"fetch"}
+    assert offered(tsc, "completion", "") == {"bash", "zsh", "powershell"}
+    assert offered(tsc, "stop", "") >= {"--port", "--all"}  # it has no argument
+    assert offered(tsc, "compile", "-o", "") == set()  # a file, which bash itself finds
+    assert offered(tsc, "ping", "--count", "") == set()
+    assert offered(tsc, "nonsense", "") == set()
 
 
-@needs_bash
-def test_bash_offers_verbs_options_and_values(tmp_path: Path) -> None:
-    assert offered(tmp_path, "") == set(VERBS)
-    assert offered(tmp_path, "st") == {"start", "stop", "studio"}
-    assert offered(tmp_path, "--lang", "es", "up") == {"upload"}
-    assert offered(tmp_path, "--lang", "=", "es", "up") == {"upload"}
-    assert offered(tmp_path, "--l") == {"--lang"}
-    assert offered(tmp_path, "--lang", "") == {"en", "es"}
-    assert offered(tmp_path, "upload", "--no-") == {"--no-run", "--no-save"}
-    assert offered(tmp_path, "upload", "a.ts", "--virtual", "--world", "l") == {"light", "line"}
-    assert offered(tmp_path, "check", "--robot", "") == set(robots.names())
-    assert offered(tmp_path, "check", "--robot", "=") == set(robots.names())
-    assert offered(tmp_path, "check", "--robot", "=", "lin") == {"liner"}
-    assert offered(tmp_path, "run", "--machine", "") == {"python", "cpp"}
-    assert offered(tmp_path, "trim", "--exchange", "") == {"yes", "no"}
-    assert offered(tmp_path, "firmware", "--board", "nano") == {"nano", "nano-old"}
-    assert offered(tmp_path, "explain", "TS") == set(CODES)
-    assert offered(tmp_path, "help", "fe") == offered(tmp_path, "ayuda", "fe") == {"fetch"}
-    assert offered(tmp_path, "completion", "") == {"bash", "zsh", "powershell"}
-    assert offered(tmp_path, "stop", "") >= {"--port", "--all"}  # it has no argument
-    assert offered(tmp_path, "compile", "-o", "") == set()  # a file, which bash itself finds
-    assert offered(tmp_path, "ping", "--count", "") == set()
-    assert offered(tmp_path, "nonsense", "") == set()
-
-
-@needs_bash
-def test_bash_offers_every_option_of_every_verb(tmp_path: Path) -> None:
+def test_every_option_of_every_verb(tsc: Tsc) -> None:
     for verb, parser in parsers().items():
         flags = {flag for each in parser._actions for flag in each.option_strings}
-        assert offered(tmp_path, verb, "-") == flags, verb
+        assert offered(tsc, verb, "-") == flags, verb
 
 
 def words(tmp_path: Path) -> dict[str, str]:
@@ -134,35 +121,9 @@ def test_tab_in_zsh(tmp_path: Path) -> None:
     assert shell.end() == 0
 
 
-@pytest.mark.parametrize("shell", ["bash", "zsh", "powershell"])
-@pytest.mark.parametrize("language", ["en", "es"])
-def test_scripts_name_every_verb_and_option(tsc: Tsc, shell: str, language: str) -> None:
-    done = tsc("completion", shell, "--lang", language)
-    assert done.code == 0
-    for verb, parser in parsers().items():
-        branch = branch_of(done.out, shell, verb)
-        found = set(re.findall(r"(?<![\w-])-{1,2}[a-z][a-z-]*", branch))
-        flags = {flag for each in parser._actions for flag in each.option_strings}
-        assert flags <= found, verb
-        assert found - flags <= {"--ask", "--show", "--virtual", "-e"}, verb  # named in texts
-
-
-def branch_of(script: str, shell: str, verb: str) -> str:
-    """Return the part of a script that is about a verb."""
-    begin, end = {
-        "bash": (rf"^        {verb}(?:\|\w+)?\)$", r"esac ;;$"),
-        "zsh": (rf"^    {verb}(?:\|\w+)?\)$", r"^      ;;$"),
-        "powershell": (rf"^        '{verb}' = \[ordered\]@{{$", r"^        }$"),
-    }[shell]
-    found = re.search(f"{begin}(.*?){end}", script, re.M | re.S)
-    assert found, verb
-    return found[1]
-
-
-@pytest.mark.parametrize("language", ["en", "es"])
-def test_brackets_and_quotes_of_powershell_close(language: str) -> None:
+def test_brackets_and_quotes_of_powershell_close() -> None:
     """There is no PowerShell here to read the script. A quote of print would close a text, too."""
-    script = completion.powershell(language)
+    script = completion.SCRIPTS["powershell"]
     assert not set("‘’‚‛“”„") & set(script)
     code = [re.sub(r"'(?:[^']|'')*'", "''", line) for line in script.splitlines()]
     code = [line for line in code if not line.startswith("#")]

@@ -62,7 +62,8 @@ class Options(ArgumentParser):
 
     def read(self, arguments: list[str]) -> Namespace | None:
         """Return the options, or None after printing the help that the user has asked for."""
-        if "-h" in arguments or "--help" in arguments:
+        own = arguments[: arguments.index("--")] if "--" in arguments else arguments
+        if "-h" in own or "--help" in own:
             from tiniscript.cli.help import show_verb
 
             show_verb(self.verb, self.language)

@@ -122,6 +122,7 @@ OPTIONS: tuple[Option, ...] = (
     Option("network", "wifi", ("the network that the robot joins; without it tsc says which one it has", "la red a la que se conecta el robot; sin esto tsc dice cuál tiene"), TEXT, ("NETWORK", "RED")),
     Option("about", "help", ("the command to say more about, `all` for a list of all, or what you want to do", "el comando del que quieres saber más, `todo` para listarlos todos, o lo que quieres hacer"), VERB, ("COMMAND", "COMANDO"), repeats=True),
     Option("shell", "completion", ("bash, zsh or powershell", "bash, zsh o powershell"), SHELL, ("SHELL", "TERMINAL"), is_needed=True),
+    Option("words", "completion", ("what is typed so far: a shell asks what fits", "lo escrito hasta ahora: la terminal pregunta qué sigue"), TEXT, A_TEXT, repeats=True, silent="completion"),
     # the program
     Option("-e", "compile check run show fmt upload lesson class", ("the program itself, instead of a file: `-e \"SI|F(2, 80)\"`", "el programa mismo, en vez de un archivo: `-e \"SI|F(2, 80)\"`"), TEXT, A_TEXT, "texts", repeats=True),
     Option("-e", "live", ("the line, too", "también la línea"), TEXT, A_TEXT, "text"),
