@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import re
+from itertools import product
+
 import pytest
 
 from tests.pupils.corpus import check
@@ -105,6 +108,24 @@ def test_each_line_is_told_with_its_repair() -> None:
 )
 def test_what_would_lose_something_is_never_repaired_without_asking(wrong: str) -> None:
     assert fixed(wrong, check).text == wrong
+
+
+FORMS = ("{}{}", "{} {}", "{}: {}", "{}({}", "{}[{}]", "{}( {} )", "{} {})", "{} {}]")
+BETWEEN = (", ", " ", ";", "; ", " y ", ".")
+
+
+@pytest.mark.parametrize("word", ["R", "derecha", "M", "motores"])
+def test_no_repair_loses_a_sign_or_a_point(word: str) -> None:
+    """`R .5 60` is not `R(5, 60)`, nor `M: -50 50` `M(50, 50)`."""
+    pairs = (["0.5", "60"], [".5", "60"], ["1.25", "70"], ["-50", "50"], ["50", "-50"])
+    changed = []
+    for values, form, between in product(pairs, FORMS, BETWEEN):
+        wrong = form.format(word, between.join(values))
+        made = fixed(wrong, check).text
+        numbers = [float(each) for each in re.findall(r"-?[0-9]*\.?[0-9]+", made)]
+        if made != wrong and numbers != [float(each) for each in values]:
+            changed.append((wrong, made))
+    assert all(re.match(r"[RM]\.[0-9]+\.", wrong) for wrong, _ in changed)  # `F.2.80` is F(2, 80)
 
 
 @pytest.mark.parametrize(

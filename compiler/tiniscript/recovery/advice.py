@@ -556,6 +556,7 @@ _GAPS: dict[str, Callable[[_Gaps], str]] = {
     "text": lambda gaps: shortened(gaps.part.text[slice(*gaps.part.place)]),
     "words": lambda gaps: shortened(gaps.part.words),
     "both": _both, "loop": _loop, "line": _line, "few": _few, "paused": _paused,
+    "end": lambda gaps: "" if _asked(gaps, "s") else BLOCK_ENDS[plain(gaps["g"])],
     "always": lambda gaps: laid_out(_asked(gaps, "c")), "shown": _shown,
     "other": _other, "note": _note,
     "once": lambda gaps: gaps.part.call if gaps["n"] == "1" else "",

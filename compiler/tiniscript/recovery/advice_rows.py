@@ -60,6 +60,7 @@ ADVICE = """
 ^ @none @any* <asks> (? s=@word|@num+ )? <body> $ | TS135 | word={head}; question=; asked={asked}; also={also?} | IF(pared a 1 metro)⏎S⏎ENDIF => asked=DISTANCE < 100
 ^ @none @any* <asks> (? s=@word|@num+ )? <body> $ | TS135 | word={head}; question=; example={nothing} | IF(esta listo)⏎S⏎ENDIF => example=DISTANCE < 10
 ^ @none @any* <asks> (? s=@word|@num+ )? <body> $ | TS135 | word={head}; question={like}; another={orlike?} | F(5, 60) UNTIL(luz mucha) => question=LIGHT_L > 500
+^ @none g=IF|WHILE ( s=@any+ , w=@start @any* ) $ | TS080 | word={g}; head={g}({s}); right={end} | IF(distancia < poca, S) => head=IF(distancia < poca)
 ^ @none @any* <asks> ( s=light = TRUE|1 ) $ | TS135 | word={head}; question={like}; another={orlike?} | IF(oscuro = TRUE)⏎S⏎ENDIF => question=LIGHT_L < 500
 ^ @none @any* <asks> ( s=light = FALSE|0 ) $ | TS135 | word={head}; question={unlike}; another={orunlike?} | IF(oscuro = FALSE)⏎S⏎ENDIF => question=LIGHT_L > 500
 ^ @none s=FOREVER q=QUE c=@cond+ w=@startm $ | TS102 | found={s} {q}; right=WHILE; usage=WHILE({always}) | siempre que distancia > 20 avanza => usage=WHILE(DISTANCE > 20)

@@ -28,7 +28,7 @@ CALLED = frozenset(word.text for word in WORDS.values() if word.is_call)
 DONE = CALLED | {"S", "STOP", "BREAK"}
 
 _TOKEN = re.compile(
-    r"(\d+(?:\.\d+)?|\.\d+)|([A-Za-zÀ-ÿ_][\wÀ-ÿ]*)"
+    r"(\d+(?:\.\d+)?|(?<!\d)\.\d+)|([A-Za-zÀ-ÿ_][\wÀ-ÿ]*)"
     r"|(<=|>=|<>|==|!=|=!|=>|=<|&&|\|\||->|<-|:=|\+\+|\+=|-=|\*=|\S)"
 )
 _SIGNS = SIGNS | frozenset("(),;|")

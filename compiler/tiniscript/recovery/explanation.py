@@ -405,10 +405,12 @@ def _code(
         if do:
             return rows.DO_CODE, do[0]
         translated = [step for step in steps if step not in own]
-        is_translated = any(
-            each.kind is WORD and each.text not in new and meant_by(each.text) in new - words
-            for each in before
-        )
+        foreign = next(
+            (each.text for each in before
+             if each.kind is WORD and each.text not in new and meant_by(each.text) in new - words),
+            "",
+        )  # fmt: skip
+        is_translated = bool(foreign)
         has_brackets = "(" in words or "(" not in new
         if not (own or is_translated or has_brackets) and before[0].text in {*WORDS} & new:
             return rows.NO_BRACKETS, steps[0]
@@ -419,7 +421,12 @@ def _code(
             right = _first_difference(own[0].before, own[0].after)[2]
             if texts(right) == (",",):
                 return codes.MISSING_COMMA.number, own[0]
-        return (_WORD_CODE if is_translated else own[0].code), own[0]
+        if is_translated:
+            changed = (
+                it for it in own if foreign in texts(it.before) and foreign not in texts(it.after)
+            )
+            return _WORD_CODE, next(changed, own[0])
+        return own[0].code, own[0]
     if words & {*BRACES}:
         return _BRACES, None
     source = "".join(each.source or "" for each in before)

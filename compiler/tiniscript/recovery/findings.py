@@ -187,6 +187,7 @@ def _diagnostic(
         if told.place.start <= each.span.start < told.place.end:
             code, values = each.code, {**each.values, "fix": values.get("fix", "")}
             return Diagnostic(code, each.span, values, told.place, repair)
+    code = codes.OTHER_CALL if code in _AS_CHECKED[:2] else code  # its values are not counted
     return Diagnostic(code, told.span, values, told.place, repair)
 
 

@@ -329,7 +329,8 @@ class _Search:
                     line = [*tokens[:k], made(sign), *rest]
                     is_sure = sign not in around
                     yield reading.changed(line, rows.CONFUSED_COST, code, is_sure, False)
-            if is_sign and token.text not in _CALCULATES and category(token.text[0]) != "Sm":
+            is_kept = token.text in _CALCULATES or (rest and rest[0].text in _CALCULATES)
+            if is_sign and not is_kept and category(token.text[0]) != "Sm":
                 cost, code = rows.EXTRA_COST, rows.EXTRA.get(token.text, rows.OF_VALUES)
                 yield reading.changed([*tokens[:k], *rest], cost, code, is_bracket, False)
             if rest and (is_bracket or rest[0].text in ("(", ")")):

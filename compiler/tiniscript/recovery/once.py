@@ -11,11 +11,15 @@ from tiniscript.source import Source
 MANY = 6  # calls that an example has
 # One message has the lines of the others, and their repairs.
 _WITH_LINES = (codes.RESERVED, codes.SAME_AGAIN)
-_DROPPED = (codes.BRACES, codes.DOTS, codes.UNTAUGHT, codes.CALLS_ITSELF, codes.UNKNOWN_NAME)
+_DROPPED = (codes.BRACES, codes.DOTS, codes.UNTAUGHT, codes.CALLS_ITSELF, codes.UNKNOWN_NAME,
+            codes.CASES)  # fmt: skip
+_OF_CASES = (codes.BRACES, codes.BREAK_OUTSIDE)  # which go with them
 
 
 def said_once(found: Sequence[Diagnostic], source: Source) -> list[Diagnostic]:
     """Return diagnostics without those that say the same as one before."""
+    if any(each.code is codes.CASES for each in found):
+        found = [each for each in found if each.code not in _OF_CASES]
     groups: dict[tuple[Code, tuple[tuple[str, str], ...]], list[Diagnostic]] = {}
     bare = [each for each in found if each.code is codes.MISSING_OPEN and _is_bare(each, source)]
     meant = {
@@ -24,7 +28,8 @@ def said_once(found: Sequence[Diagnostic], source: Source) -> list[Diagnostic]:
     for each in found:
         is_meant = each.code is codes.UNKNOWN_NAME and each.values.get("found") in meant
         is_one = each.code in (*_WITH_LINES, *_DROPPED) and not is_meant
-        kind = () if each.code is codes.BRACES else tuple(sorted(each.values.items()))
+        is_any = each.code in (codes.BRACES, codes.CASES)
+        kind = () if is_any else tuple(sorted(each.values.items()))
         key = (each.code, kind if is_one else (("at", str(each.span)),))
         groups.setdefault(key, []).append(each)
     kept = [

@@ -131,12 +131,10 @@ SIGNS = r"""
 (?<=\d)'(?=\d+\s*,)  |  `.`  |  1  |  TS012  |  applied  |  F(1'5, 80) => F(1.5, 80)
 (?<=\d)['·](?=\d+\))  |  `,`  |  1  |  TS076  |  applied  |  F(2'80) => F(2,80)
 (?<=\d)[|¿?!"]+(?=\s*\))  |  ``  |  1  |  TS005  |  applied  |  F(2, 80?) => F(2, 80)
-(\(\d\.\d+)\.(\d+)\)  |  `\1, \2)`  |  1  |  TS076  |  applied  |  F(0.5.80) => F(0.5, 80)
 \(([FBLRWM])(\d)  |  `\1(\2`  |  1  |  TS015  |  applied  |  (F2, 80) => F(2, 80)
 \b([FBLR])(\d(?:\.\d+)?),\s*(\d+)\)  |  `\1(\2, \3)`  |  1  |  TS015  |  applied  |  F2,80) => F(2, 80)
 \bW([1-7](?:\.\d+)?)(?:\(\)|\)|(?=\s*(?:;|$)))  |  `W(\1)`  |  1  |  TS015  |  applied  |  S; W2.5) => S; W(2.5)
 (?<=;)\s*[:.,]\s*(?=;)  |  ``  |  1  |  TS005  |  applied  |  S;:; F(2, 80) => S;; F(2, 80)
-^(\s*M)\s+(-?\d+)\s*[;,]\s*(-?\d+)  |  `\1(\2, \3)`  |  1  |  TS015  |  applied  |  M 50;-50 => M(50, -50)
 ^\s*```\w*\s*$  |  ``  |  1  |  TS072  |  applied  |  ```tiniscript⏎F(2, 80)⏎R(1, 50)⏎``` => ⏎F(2, 80)⏎R(1, 50)⏎
 ^\s*[•·►▶✔✓*–—]\s+  |  ``  |  1  |  TS054  |  applied  |  * F(2,80) => F(2,80)
 ^\s*-\s+(?=[A-Za-z])  |  ``  |  1  |  TS054  |  applied  |  - F(2, 80)⏎- B(2, 80) => F(2, 80)⏎B(2, 80)
@@ -157,7 +155,8 @@ SIGNS = r"""
 (?<=[\w)])\s*(?:[¡¿!…?$¬^´`¨\\\u2600-\u2793\U0001F300-\U0001FAFF]+|<br>)\s*$  |  ``  |  1  |  TS005  |  applied  |  STOP! => STOP
 <br>  |  `;`  |  1  |  TS010  |  applied  |  F(2, 80)<br>R(1, 50) => F(2, 80);R(1, 50)
 (?<=\()¿|\?(?=\))  |  ``  |  1  |  TS005  |  applied  |  F(5, 60) UNTIL(¿DISTANCE < 20?) => F(5, 60) UNTIL(DISTANCE < 20)
-(?:(?<=\|)|(?<=;)|^)(\s*)([FBLR])(?!\s+-\d)\s*[_.<=,;" -]?\s*([12]?\d)(?:[_,;<=-]+ ?| +|[ .]+(?=\d\d))(?:= ?)?(\d+)\s*[)>"]?\s*(?=;|$)  |  `\1\2(\3, \4)`  |  1  |  TS015  |  applied  |  F2,80 => F(2, 80)
+(?:(?<=\|)|(?<=;)|^)(\s*)([FBLR])(?!\s+-\d|\s+\.\d|\.\d+(?![\d.]))\s*[_.<=,;" -]?\s*([12]?\d(?:\.\d+)?)(?:[_,;<=-]+ ?| +|[ .]+(?=[1-9]0\b|100\b))(?:= ?)?(\d+)\s*[])>"]?\s*(?=;|$)  |  `\1\2(\3, \4)`  |  1  |  TS015  |  applied  |  F2,80 => F(2, 80)
+(?:^|(?<=[;|]))(\s*)M(-?\d+)[\s,;]+(-?\d+)\s*\)?\s*(?=;|$)  |  `\1M(\2, \3)`  |  1  |  TS015  |  applied  |  M50 -50 => M(50, -50)
 (?<=\d)\)\((?=\d)  |  `,`  |  1  |  TS076  |  applied  |  F(3)(70) => F(3,70)
 (?<=\d)[_=&<]\s*(?=\d+\))  |  `,`  |  1  |  TS076  |  applied  |  F(2_80) => F(2,80)
 (?:^|(?<=\|))[¡¿]+  |  ``  |  1  |  TS005  |  applied  |  ¡SI|F(2,80) => SI|F(2,80)
@@ -170,7 +169,7 @@ SIGNS = r"""
 ^\s*/\s*(?=(?-i:[a-z]+)(?! ?\())  |  `// `  |  1  |  TS007  |  applied  |  SI|F(2, 60) // avanza⏎/ gira⏎R(1, 50) => SI|F(2, 60) // avanza⏎// gira⏎R(1, 50)
 \b([A-Za-z]+)\.read\(\)  |  `\1`  |  1  |  TS102  |  applied  |  IF(DISTANCE.read()<10);S;ENDIF => IF(DISTANCE<10);S;ENDIF
 \b(?:time|robot|console|serial|self|car|motor|System\.out|random|math)\.(?=[A-Za-z]+\s*\()  |  ``  |  1  |  TS102  |  applied  |  time.sleep(0.5) => W(0.5)
-\b(END|FIN)[. -](?=(?:LOOP|IF|WHILE|DEF)\b)  |  `END_`  |  1  |  TS022  |  applied  |  IF(DISTANCE < 10);S;END IF => IF(DISTANCE < 10);S;END_IF
+\b(END|FIN)[. -](?=(?:LOOP|IF|WHILE|DEF|TASK|WHEN)\b)  |  `END_`  |  1  |  TS022  |  applied  |  IF(DISTANCE < 10);S;END IF => IF(DISTANCE < 10);S;END_IF
 \b(LIGHT|LUZ)[ -](?=[LRID]\b)  |  `\1_`  |  1  |  TS056  |  applied  |  SHOW(LIGHT-R) => SHOW(LIGHT_R)
 ^\s*(\d+)\s*([FBLR])\s*(\d+)\s*$  |  `\2(\1, \3)`  |  1  |  TS015  |  applied  |  2F80 => F(2, 80)
 (?<==)\s*(\d{1,3}),(?=000\b)  |  `\1`  |  1  |  TS008  |  applied  |  X=1,000 => X=1000
@@ -281,6 +280,7 @@ v=@val ( ) | $v | 1 | TS028 | first | LIGHT_L() => LIGHT_L
 RANDOM ( between|than|DESDE? a=@num A|AL|TO|Y|HASTA|AND|- b=@num ) | RANDOM ( $a , $b ) | 1 | TS017 | applied | X = RANDOM(1 al 6) => X = RANDOM(1, 6)
 c=@callw ( a=@argt+ ( e=;|$ | $c ( $a ) $e | 1 | TS076 | applied | F(2, 80( => F(2, 80)
 ^ ( c=@callw a=@num ,? b=@num ) $ | $c ( $a , $b ) | 1 | TS076 | applied | (F 2,80) => F(2, 80)
+^ c=@callw :? a='-'? b=@num ; d='-'? e=@num )|]|$ | $c ( $a $b , $d $e ) | 1 | TS015 | applied | R 0.5; 60 => R(0.5, 60)
 ^ ( a=@num , b=@num ) c=F|B|L|R $ | $c ( $a , $b ) | 1 | TS015 | applied | (2,80)F => F(2, 80)
 ^ c=F|B|L|R - a=@num - b=@num $ | $c ( $a , $b ) | 1 | TS015 | applied | F - 2 - 80 => F(2, 80)
 F - a=@num ,? b=@num e=;|$ | B ( $a , $b ) $e | 1 | TS102 | offered | F -1 80 => B(1, 80)
@@ -297,15 +297,17 @@ SHOW ( a=@val , b=@val ) | SHOW ( $a ) ; SHOW ( $b ) | 2 | TS020 | offered | SHO
 ^ SHOW a=@val ,? b=@val $ | SHOW ( $a ) ; SHOW ( $b ) | 2 | TS015 | applied | SHOW DISTANCE LIGHT_R => SHOW(DISTANCE);SHOW(LIGHT_R)
 c=@callw ( a=@argt* b=@num|@word e=;|$|UNTIL|@start | $c ( $a $b ) $e | 1 | TS016 | applied | F(2,80 => F(2,80)
 # UNTIL
+^ WHILE <question> ;|:? a=F|B|L|R ( FOREVER , p=@num|@val ) $ | $a ( FOREVER , $p ) UNTIL ( @not:c ) | .9 | TS031 | offered | WHILE(DISTANCE > 20) F(FOREVER, 50) => F(FOREVER, 50) UNTIL(DISTANCE <= 20)
 a=F|B|L|R ( FOREVER , p=@num|@val ) UNTIL ( n=@num ) | $a ( $n , $p ) | 2 | TS202 | offered | F(FOREVER, 80) UNTIL(2) => F(2, 80)
 a=@close '|'|,|. UNTIL ( | $a UNTIL ( | 1 | TS029 | applied | F(5, 60).UNTIL(DISTANCE < 30) => F(5, 60) UNTIL(DISTANCE < 30)
 ^ W ( c=@val s=<|<=|>|>=|=|<> d=@num|@val ) $ | W ( FOREVER ) UNTIL ( $c $s $d ) | .5 | TS102 | applied | wait(DISTANCE < 10) => W(FOREVER) UNTIL(DISTANCE < 10)
 ^ W UNTIL QUE? c=@cond+ $ | W ( FOREVER ) UNTIL ( $c ) | 1 | TS102 | applied | WAIT UNTIL DISTANCE < 10 => W(FOREVER) UNTIL(DISTANCE < 10)
+a=@close UNTIL|HASTA QUE? c=@cond+ then+ ,? b=@start | $a UNTIL ( $c ) ; $b | 1 | TS015 | applied | F(2, 80) hasta DISTANCE < 10 luego S => F(2, 80) UNTIL(DISTANCE < 10);S
 a=@close UNTIL|HASTA QUE? c=@noparen+ $ | $a UNTIL ( $c ) | 1 | TS015 | applied | F(3, 80) UNTIL DISTANCE < 10 => F(3, 80) UNTIL(DISTANCE < 10)
 a=@close HASTA|UNTIL QUE? ( | $a UNTIL ( | 1 | TS102 | applied | F(2,80) HASTA(DISTANCE<10) => F(2,80) UNTIL(DISTANCE<10)
 ^ UNTIL <question> ':'|'{'? $ | WHILE ( @not:c ) | 3 | TS029 | offered | UNTIL(DISTANCE < 10)⏎F(1, 60)⏎END_WHILE => WHILE(DISTANCE >= 10)⏎F(1, 60)⏎END_WHILE
 ^ a=F|B|L|R ( UNTIL <question> , b=@num ) $ | $a ( FOREVER , $b ) UNTIL ( $c ) | 2 | TS029 | offered | F(UNTIL(DISTANCE < 20), 60) => F(FOREVER, 60) UNTIL(DISTANCE < 20)
-^ UNTIL <question> a=F|B|L|R|W ( b=@argt+ ) $ | $a ( $b ) UNTIL ( $c ) | 2 | TS029 | offered | UNTIL(DISTANCE < 10) F(2, 60) => F(2, 60) UNTIL(DISTANCE < 10)
+^ UNTIL (? c=@cond+ )? a=F|B|L|R|W ( b=@argt+ ) $ | $a ( $b ) UNTIL ( $c ) | 2 | TS029 | offered | UNTIL DISTANCE < 10 F(2, 60) => F(2, 60) UNTIL(DISTANCE < 10)
 a=@close ; UNTIL ( | $a UNTIL ( | 1 | TS029 | applied | F(3, 80);UNTIL(DISTANCE < 10) => F(3, 80) UNTIL(DISTANCE < 10)
 c=@callw ( a=@argt+ UNTIL ( d=@noclose+ ) ) | $c ( $a ) UNTIL ( $d ) | 1 | TS016 | applied | F(5, 60 UNTIL(DISTANCE < 15)) => F(5, 60) UNTIL(DISTANCE < 15)
 # IF and WHILE
@@ -347,6 +349,7 @@ a=@nosep|@close h=ELSE|ELSEIF|ENDIF|END_LOOP|END_WHILE|END_DEF|END_WHEN|END_TASK
 ^ LOOP n=@num ( <body> ) $ | LOOP ( $n ) ; $b $r ; END_LOOP | 1 | TS080 | applied | LOOP 3 (F(1, 50); R(1, 50)) => LOOP(3);F(1, 50);R(1, 50);END_LOOP
 ^ LOOP n=@num VECES? [ <body> ] $ | LOOP ( $n ) ; $b $r ; END_LOOP | 1 | TS080 | applied | repite 4 [F(1, 60) R(0.5, 60)] => LOOP(4);F(1, 60);R(0.5, 60);END_LOOP
 h=LOOP|WHILE <question> ( <body> ) e=@start | &h ( $c ) ; $b $r ; @endof:h ; $e | 1 | TS080 | applied | LOOP(3)(S)F(1,50) => LOOP(3);S;END_LOOP;F(1, 50)
+LOOP ( ) b=':'|'{' | LOOP ( FOREVER ) ; @brace:b | 2 | TS064 | offered | LOOP() {⏎F(1, 80)⏎} => LOOP(FOREVER);⏎F(1, 80)⏎END_LOOP
 ^ FOREVER ( ) '{' | LOOP ( FOREVER ) ; { | 1 | TS102 | applied | void loop() {⏎  F(1, 50);⏎} => LOOP(FOREVER);⏎  F(1, 50);⏎END_LOOP
 ^ <for> each? @word IN|EN|DE n=@num :? $ | LOOP ( $n ) | 1 | TS102 | applied | for each paso in 4⏎F(1, 50)⏎end => LOOP(4)⏎F(1, 50)⏎END_LOOP
 ^ do n=@num times :? | LOOP ( $n ) ; | 1 | TS102 | applied | hacer 4 veces⏎F(1,50)⏎R(1,50)⏎fin => LOOP(4)⏎F(1,50)⏎R(1,50)⏎END_LOOP
@@ -354,6 +357,7 @@ LOOP n=X1|X2|X3|X4|X5|X6|X8 | LOOP ( @xn:n ) | 1 | TS015 | applied | LOOP x4⏎F
 ^ LOOP|DO ':'|'{'? $ | LOOP ( FOREVER ) | 3 | TS064 | applied | repite⏎S⏎fin => LOOP(FOREVER)⏎S⏎END_LOOP
 LOOP n=@val $ | LOOP ( $n ) | 1 | TS015 | applied | X4 = 3⏎LOOP X4⏎F(1,50)⏎END_LOOP => X4 = 3⏎LOOP(X4)⏎F(1,50)⏎END_LOOP
 h=LOOP|IF|WHILE|ELSEIF <question> [ <body> ] $ | &h ( $c ) ; $b $r ; @endof:h | 1 | TS080 | applied | LOOP(4) [F(1,50); R(0.5,50)] => LOOP(4);F(1, 50);R(0.5, 50);END_LOOP
+^ LOOP <body> n=@num times $ | LOOP ( $n ) ; $b $r ; END_LOOP | 1.5 | TS102 | applied | repeat F(1,60) R(1,60) 4 times => LOOP(4);F(1, 60);R(1, 60);END_LOOP
 ^ LOOP ;? <body> ;? UNTIL c=@cond+ $ | LOOP ( FOREVER ) ; $b $r ; IF ( $c ) ; <end> | 1.5 | TS064 | applied | repeat F(1,50) until DISTANCE < 10 => LOOP(FOREVER);F(1, 50);IF(DISTANCE < 10);BREAK;ENDIF;END_LOOP
 LOOP ( n=@num @unit ) | LOOP ( $n ) | 1 | TS049 | applied | LOOP(3 veces);F(1,50);END_LOOP => LOOP(3);F(1,50);END_LOOP
 LOOP -> n=@num | LOOP ( $n ) | 1 | TS015 | applied | LOOP -> 4⏎F(1,50)⏎END_LOOP => LOOP(4)⏎F(1,50)⏎END_LOOP
@@ -365,8 +369,8 @@ LOOP n=@val o=*|+|- m=@num $ | LOOP ( $n &o $m ) | 1 | TS015 | applied | X = 2�
 ^ START b=@start | START ; $b | 1 | TS013 | applied | START F(2,80) => START;F(2, 80)
 RANDOM ( n=@num ) | RANDOM ( 1 , @whole:n ) | 2 | TS020 | offered | X = RANDOM(6)⏎F(X, 50) => X = RANDOM(1, 6)⏎F(X, 50)
 ROUND ( n=@num|@val ) | ROUND ( $n , 0 ) | 2 | TS020 | offered | X = ROUND(3.7)⏎SHOW(X) => X = ROUND(3.7, 0)⏎SHOW(X)
-^ M ( a=@num , b=@num , n=@num ) $ | M ( @power:a , @power:b ) ; W ( @time:n ) ; S | 2 | TS020 | offered | M(50, 50, 2) => M(50, 50);W(2);S
-^ M ( n=@num , a=@num , b=@num ) $ | M ( @power:a , @power:b ) ; W ( @time:n ) ; S | 2 | TS020 | offered | M(2, 50, 80) => M(50, 80);W(2);S
+^ M ( s='-'? a=@num , t='-'? b=@num , n=@num ) $ | M ( $s @power:a , $t @power:b ) ; W ( @time:n ) ; S | 2 | TS020 | offered | M(50, -50, 2) => M(50, -50);W(2);S
+^ M ( n=@num , s='-'? a=@num , t='-'? b=@num ) $ | M ( $s @power:a , $t @power:b ) ; W ( @time:n ) ; S | 2 | TS020 | offered | M(2, 50, -80) => M(50, -80);W(2);S
 ^ BEEP ( n=@num , a=@num , b=@num ) $ | BEEP ( @time:n , $a ) ; BEEP ( $n , $b ) | 2 | TS020 | offered | BEEP(0.2, 440, 660) => BEEP(0.2, 440);BEEP(0.2, 660)
 ^ BEEP ( n=@num , a=@num , b=@num , c=@num ) $ | BEEP ( @time:n , $a ) ; BEEP ( $n , $b ) ; BEEP ( $n , $c ) | 2 | TS020 | offered | BEEP(0.2, 440, 660, 880) => BEEP(0.2, 440);BEEP(0.2, 660);BEEP(0.2, 880)
 ^ a=F|B|L|R ( b=@num , c=@num , d=@val e=<|> f=@num ) $ | $a ( $b , $c ) UNTIL ( $d $e $f ) | 2 | TS020 | offered | F(3, 80, DISTANCE < 10) => F(3, 80) UNTIL(DISTANCE < 10)

@@ -14,7 +14,6 @@ from tiniscript.syntax.lexer import NUMBER, WORD
 from tiniscript.words import NOTE_WORDS, UNITS, WORDS, Argument
 
 LONG_S = 20  # so much without a unit may be a power, degrees or centimetres
-LONG_S = 20  # so much without a unit may be a power, degrees or centimetres
 MILLISECONDS_FROM = 100  # no wait is so many seconds
 _SIDES = ("left", "right")
 MOVES = ("F", "B", "L", "R")
@@ -196,13 +195,14 @@ class _Reader:
 
     def _sign(self, k: int) -> int | None:
         sign, before = self.text(k), self.text(k - 1)
-        if sign == "-" and self.command in ("M", "SHOW") and self.words[k + 1 : k + 2]:
-            after = self.words[k + 1]
-            if after.kind is NUMBER and (before in ("(", ",", self.command) or self.values):
-                self.is_sure = self.is_sure and not (self.values and before != ",")
-                self.values.append(_Value(-float(after.text), self.mark))
-                self.mark = None
-                return k + 2
+        is_minus = sign == "-" and [each.kind for each in self.words[k + 1 : k + 2]] == [NUMBER]
+        if is_minus and self.command in ("M", "SHOW"):
+            self.is_sure = self.is_sure and not (self.values and before != ",")
+            self.values.append(_Value(-float(self.text(k + 1)), self.mark))
+            self.mark = None
+            return k + 2
+        if is_minus and self.words[k].space and self.words[k + 1].space == "":
+            return None  # `R -1 50`: nobody drops a sign
         if sign not in _PASSED or (sign == "=" and not self.mark):
             return None
         if sign == "," and self.mark and before != ",":

@@ -120,10 +120,16 @@ class _Usage:
         words = [each.text for each in tokens if each.kind is WORD]
         first = tokens[0].text
         if (tokens[1:] and tokens[1].text == "[") or first in ("SWITCH", "CASE", "SEGUN", "CASO"):
-            code, first_ = (codes.CASES, "IF(X = 1)")
-            return Diagnostic(code, found.span, {"found": first, "first": first_})
+            value = "".join(each.text for each in tokens[2:3] if first == "SWITCH") or "X"
+            values = {"found": first, "first": f"IF({value} = 1)"}
+            values |= {"second": f"ELSEIF({value} = 2)"} if first == "SWITCH" else {}
+            return Diagnostic(codes.CASES, found.span, values)
         if parts := _MEMBER.match(self.source.text, found.span.start):  # `Serial.begin`
-            return found._replace(span=Span(*parts.span()), values={"found": parts[0]})
+            right = self.command(plain(parts[0].rpartition(".")[2]))
+            told = found._replace(span=Span(*parts.span()), values={"found": parts[0]})
+            values = {**told.values, "right": right, "usage": _usage(right)}
+            is_said = right in CALLED
+            return told._replace(code=codes.OTHER_LANGUAGE, values=values) if is_said else told
         if instead := said_instead(first):
             return found._replace(values={**found.values, **instead})
         is_name = not (self.command(first) or said_of(first, "turn"))

@@ -220,7 +220,7 @@ class Parser:
         cursor.i += 1
         self.blocks.begin("DEF", Span(word.start, name.end), name=name)
         if name.text in WORDS:
-            self.reporter.report(codes.RESERVED, name.span, word=name.text)
+            self.reporter.fail(codes.RESERVED, name.span, word=name.text)
         self.no_arguments(name)
 
     def task(self, word: Token) -> None:
