@@ -1,17 +1,16 @@
-"""Rehearses a release: makes all that is published, twice, compares, installs and drives it.
+"""Rehearses a release: makes all that is published, twice, and compares.
 
     python -m tools.release FOLDER
 
 takes the commit that is checked out into two clean folders, makes firmware, studio, wheel, source
 package, library, site and USB stick in both, and says what is not the same byte for byte; looks at
-the packages as a registry does; installs each into a fresh environment and drives the virtual robot
-with it. FOLDER then has the files and SHA256SUMS. Nothing is uploaded. It takes twenty minutes.
+the packages as a registry does. FOLDER then has the files and SHA256SUMS. Nothing is uploaded. It
+takes twenty minutes. That what is made installs and works is tested with each commit.
 
 `--url https://…` rehearses with an address that pyproject.toml does not have yet; `--as-is` goes on
-where something keeps the commit from being released; `--part NAME` makes only some; `--once`
-compares nothing; `--whole-stick` makes the stick for every system, not for this one alone.
-The exit code is 0 if it can be released, 1 if not or if something could not be tried, and 2 where
-the rehearsal cannot begin.
+where something keeps the commit from being released; `--part NAME` makes only some;
+`--whole-stick` makes the stick for every system, not for this one alone.
+The exit code is 0 if it can be released, 1 if not, and 2 where the rehearsal cannot begin.
 """
 
 from __future__ import annotations
@@ -25,7 +24,6 @@ import time
 from collections.abc import Sequence
 from importlib.util import find_spec
 from pathlib import Path
-from typing import NamedTuple
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
@@ -34,21 +32,11 @@ from tools.builds.studio import CannotBuild, found_tools
 from tools.release import facts
 from tools.release.packing import difference, sha256
 from tools.release.parts import PARTS, CannotMake, Clone, chosen
-from tools.release.trying import TRIES, Made, NotTried, TryFailed
 
 SUMS = "SHA256SUMS"
 # Two folders of other depths and names: what has a path in it differs.
 PLACES = ("one/tiniscript", "two/somewhere else/tiniscript-ñ")
 NEEDED = {"setuptools": "release", "twine": "release", "sphinx": "site", "platformio": "firmware"}
-
-
-class Row(NamedTuple):
-    """A line of the table: a file, and what was seen of it."""
-
-    part: str
-    file: Path
-    same: str
-    tried: str
 
 
 def main(words: Sequence[str] | None = None) -> int:
@@ -61,7 +49,6 @@ def main(words: Sequence[str] | None = None) -> int:
     reader.add_argument("--url", default="", help="an address instead of pyproject.toml's")
     reader.add_argument("--as-is", action="store_true", help="go on with what cannot be released")
     reader.add_argument("--part", action="append", default=[], choices=PARTS, help="only this one")
-    reader.add_argument("--once", action="store_true", help="make it once, compare nothing")
     reader.add_argument("--whole-stick", action="store_true", help="for every system and Python")
     options = reader.parse_args(words)
     folder: Path = options.folder.absolute()
@@ -84,7 +71,7 @@ def rehearse(folder: Path, parts: Sequence[str], options: argparse.Namespace) ->
     """Make parts, look at them and put them into a folder; return the exit code."""
     with tempfile.TemporaryDirectory(prefix="tiniscript-release-") as scratch:
         try:
-            clones = _clones(Path(scratch), options.url, 1 if options.once else 2, options)
+            clones = _clones(Path(scratch), options.url, options.whole_stick)
         except CannotMake as why:
             return _fail(str(why))
         wrong = list(facts.complaints(clones[0].root))
@@ -100,17 +87,16 @@ def rehearse(folder: Path, parts: Sequence[str], options: argparse.Namespace) ->
                 clones[0].python("-m", "twine", "check", "--strict", str(file))
         except CannotMake as why:
             return _fail(str(why))
-        rows, failed = _looked_at(made, clones, Path(scratch))
+        files = [file for each in made[0].values() for file in each]
+        failed = [what for file in files if (what := difference(file, clones[1].parts / file.name))]
         shutil.copytree(clones[0].parts, folder, dirs_exist_ok=True)
-    (folder / SUMS).write_text(
-        "".join(f"{sha256(folder / row.file.name)}  {row.file.name}\n" for row in rows),
-        encoding="utf-8", newline="\n",
-    )  # fmt: skip
-    print("\n".join(table(folder, rows)))
+    sums = "".join(f"{sha256(folder / file.name)}  {file.name}\n" for file in files)
+    (folder / SUMS).write_text(sums, encoding="utf-8", newline="\n")
+    print(sums, end="")
     if options.url and facts.address(ROOT) != options.url.rstrip("/"):
         _say(f"pyproject.toml does not have {options.url}: what is published is made with it there")
     for each in failed:
-        print(each, file=sys.stderr)
+        print(f"made twice, it is not the same: {each}", file=sys.stderr)
     return 1 if wrong or failed else 0
 
 
@@ -127,10 +113,10 @@ def lacks(parts: Sequence[str]) -> str:
     return ""
 
 
-def _clones(scratch: Path, url: str, count: int, options: argparse.Namespace) -> list[Clone]:
+def _clones(scratch: Path, url: str, whole_stick: bool) -> list[Clone]:
     """Take the commit into clean folders, whose times, rights and address are the release's."""
     found = []
-    for number, place in enumerate(PLACES[:count], 1):
+    for number, place in enumerate(PLACES, 1):
         root, parts = scratch / place, scratch / f"parts{number}"
         parts.mkdir()
         words = ["git", "clone", "--quiet", "--no-hardlinks", str(ROOT), str(root)]
@@ -144,7 +130,7 @@ def _clones(scratch: Path, url: str, count: int, options: argparse.Namespace) ->
             about.write_text(facts.with_address(text, url), encoding="utf-8")
             _commit(root)
         found.append(Clone(root, parts, facts.version(root), facts.address(root),
-                           facts.epoch(ROOT), number, options.whole_stick))  # fmt: skip
+                           facts.epoch(ROOT), number, whole_stick))  # fmt: skip
     return found
 
 
@@ -170,48 +156,6 @@ def _make(clone: Clone, parts: Sequence[str]) -> dict[str, list[Path]]:
         begun = time.monotonic()
         found[name] = PARTS[name].make(clone)
         _say(f"{name}: {time.monotonic() - begun:.0f} s")
-    return found
-
-
-def _looked_at(
-    made: Sequence[dict[str, list[Path]]], clones: Sequence[Clone], scratch: Path
-) -> tuple[list[Row], list[str]]:
-    """Compare and try what was made; return the table's rows, and what is wrong."""
-    rows, failed = [], []
-    tries = Made(clones[0].parts, scratch / "tries", clones[0].version, facts.meets(ROOT),
-                 facts.firmware())  # fmt: skip
-    tries.scratch.mkdir()
-    for name, files in made[0].items():
-        tried = ""
-        if name in TRIES:
-            _say(f"trying: {name}")
-            try:
-                tried = TRIES[name](tries)
-            except NotTried as why:
-                tried = "not tried"
-                failed.append(f"{name} was not tried: {why}")
-            except (TryFailed, OSError, ValueError, KeyError) as why:  # what was made is in the way
-                tried = "FAILED"
-                failed.append(f"{name}: {why}")
-        for file in files:
-            same = ""
-            if len(made) > 1:
-                what = difference(file, clones[1].parts / file.name)
-                same = "no" if what else "yes"
-                failed += [f"made twice, it is not the same: {what}"] if what else []
-            rows.append(Row(name, file, same, tried))
-    return rows, failed
-
-
-def table(folder: Path, rows: Sequence[Row]) -> list[str]:
-    """Return the lines of the table, in Markdown."""
-    found = ["| part | file | bytes | SHA-256 | same twice | tried |", "|---|---|---|---|---|---|"]
-    for row in rows:
-        file = folder / row.file.name
-        found.append(
-            f"| {row.part} | {file.name} | {file.stat().st_size:,} | {sha256(file)[:16]}… "
-            f"| {row.same or '-'} | {row.tried or '-'} |"
-        )
     return found
 
 

@@ -36,13 +36,6 @@ def address(root: Path) -> str:
     return _first(root / "pyproject.toml", r'(?m)^Source = "(https://[^"]+)"$').rstrip("/")
 
 
-def meets(root: Path) -> dict[str, str]:
-    """Return the versions by which a robot meets others, of `docs/versions.md`: isa and link."""
-    page = root / "docs" / "versions.md"
-    names = {"isa": "bytecode", "link": "link"}
-    return {each: _first(page, rf"\| the {name} \| ([\d.]+) \|") for each, name in names.items()}
-
-
 def with_address(text: str, url: str) -> str:
     """Return `pyproject.toml` with another address."""
     without = re.sub(r"(?m)^\[project\.urls\]\n(?:\w+ = .*\n)*\n?", "", text)
@@ -76,15 +69,6 @@ def complaints(root: Path) -> Iterator[str]:
             "pyproject.toml does not say where it is published. Add there:  [project.urls]  and "
             'Source = "https://…". To rehearse with an address:  --url https://…'
         )
-
-
-def firmware() -> frozenset[str]:
-    """Return how the files of the shipped robots' firmware begin: a robot's name and its chip."""
-    from tiniscript.flash.ready import name_of, title_of
-    from tools.builds.firmware_files import shipped
-
-    names = (name_of(title_of(robot), robot.board.chip, "") for robot in shipped())
-    return frozenset(name.removesuffix(".hex") for name in names)
 
 
 def _about_tags(root: Path, ours: str) -> Iterator[str]:

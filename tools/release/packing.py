@@ -33,15 +33,6 @@ def pack(folder: Path, target: Path, epoch: int) -> Path:
     return target
 
 
-def unpack(archive: Path, folder: Path) -> Path:
-    """Unpack a ZIP file that `pack` has made; return the folder of its files."""
-    with zipfile.ZipFile(archive) as packed:
-        for row in packed.infolist():
-            path = Path(packed.extract(row, folder))
-            path.chmod((row.external_attr >> 16) & 0o777)
-    return folder / archive.name.removesuffix(".zip")
-
-
 def sha256(path: Path) -> str:
     return hashlib.sha256(path.read_bytes()).hexdigest()
 
