@@ -17,7 +17,7 @@ from tiniscript.library.errors import ProgramError, RobotError
 from tiniscript.library.known_kits import refusal
 from tiniscript.link.connection import LinkConnection, PendingRequest, Requester, reason_of
 from tiniscript.link.messages import SAVED_LOW_SUPPLY, SAVED_SAVING, SAVED_STORED
-from tiniscript.link.outcomes import CANCELLED, Event, Gone
+from tiniscript.link.outcomes import CANCELLED, LOOK_S, Event, Gone
 from tiniscript.link.payloads import ReceiptReply, StatusReply
 from tiniscript.link.requests import DeviceInfo, Reply
 from tiniscript.link.statuses import name_of, sentence
@@ -53,6 +53,7 @@ class Client:
         """
         self._heed = heed
         self.port = port
+        self.profile = profile
         self.language = language
         speed = profile.board.baud if baud is None else baud
 
@@ -93,13 +94,15 @@ class Client:
 
     # -- requests: all raise RobotError where the connection has ended ----------------------------
 
-    def meet(self, board: str, is_patient: Callable[[], bool] = lambda: True) -> DeviceInfo:
+    def meet(self, board: str = "", is_patient: Callable[[], bool] = lambda: True) -> DeviceInfo:
         """Send HELLO until the robot answers. Raises RobotError if none does.
 
-        While `is_patient` a stop that comes first does not end the search.
+        `board` replaces the board of the profile. While `is_patient` a stop that comes first does
+        not end the search.
         """
         with self._connected():
-            reply = opening.met(self.line, self.port, board, self.wait)
+            chip = board or self.profile.board.chip
+            reply = opening.met(self.line, self.port, chip, self.wait)
             while reply.status == CANCELLED and is_patient():
                 reply = self.wait(opening.hello(self.line, opening.ANSWER_MS))
         robot = self.line.robot
@@ -128,22 +131,24 @@ class Client:
             raise self.failure(reply)
         return reply
 
-    def event(self, limit_s: float) -> tuple[int, Event] | None:
+    def event(self, limit_s: float = LOOK_S) -> tuple[int, Event] | None:
         """Return the time (ms) and the next event, or None if none arrives in time."""
         self._heed()
         with self._connected():
             return self.line.event(limit_s)
 
     def send_program(
-        self, image: Image, profile: Robot, runs: bool, saves: bool, is_detached: bool,
-        draw: Callable[[int], None] = lambda done_bytes: None,
+        self, image: Image, runs: bool, saves: bool, is_detached: bool,
+        draw: Callable[[int], None] = lambda done_bytes: None, profile: Robot | None = None,
     ) -> Reply[ReceiptReply]:  # fmt: skip
-        """Send a program to the robot that was verified for `profile`; return the reply.
+        """Send a program to the robot that was verified for `profile`, by default that of the
+        client; return the reply.
 
         It is refused before any byte is sent where the robot has another kit. `draw` gets the
         number of code bytes that have arrived.
         """
         assert self.line.robot is not None
+        profile = profile or self.profile
         refused = refusal(image, profile, self.line.robot)
         if refused is not None:
             return refused
@@ -160,13 +165,16 @@ class Client:
 
     # -- failures ---------------------------------------------------------------------------------
 
-    def gone(self, gone: Gone) -> RobotError:
+    def gone(self, gone: Gone) -> Exception:
         """Return the error for a connection that has ended."""
+        return self.lost(gone)
+
+    def lost(self, gone: Gone) -> RobotError:
         reason = opening.reason_of_end(self.line, gone, self.port)
         values = {"port": opening.shown(self.port), "verb": self.line.held_by}
         return RobotError(reason, self.language, values)
 
-    def failure(self, reply: Reply[object]) -> RobotError | ProgramError:
+    def failure(self, reply: Reply[object]) -> Exception:
         """Return the error for a reply that is not OK."""
         reason = reason_of(self.line, reply)
         if reason != "status":

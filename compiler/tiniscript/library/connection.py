@@ -119,7 +119,7 @@ class RobotConnection:
         ready = self._ready(program)
         if ready.start == "PING":
             raise UsageError("ping_program", self.language)
-        reply = self._client.send_program(ready._image, ready._profile, run, save, detached)
+        reply = self._client.send_program(ready._image, run, save, detached, profile=ready._profile)
         if reply.status:
             raise self._client.failure(reply)
         self._saving = Saving(reply.values) if save else None
@@ -271,7 +271,7 @@ class RobotConnection:
     # -- asking -----------------------------------------------------------------------------------
 
     def _meet(self, is_named: bool) -> None:
-        device_info = self._client.meet(self._profile.board.chip)
+        device_info = self._client.meet()
         if not is_named and device_info.kit != self._profile.kit.fingerprint:
             self._profile = of_kit(device_info.kit) or self._profile
         opening.remember(self.port, device_info.name)

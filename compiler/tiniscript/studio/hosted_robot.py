@@ -84,7 +84,7 @@ class HostedRobot:
                     self.attending.attend(link)
                 self._end(self._why)
         except Gone as gone:
-            lost = client.gone(gone)
+            lost = client.lost(gone)
             self._end(lost.key, str(lost))
         except RobotError as lost:
             self._end(lost.key, str(lost))
@@ -107,7 +107,7 @@ class HostedRobot:
         """Say hello to the robot; return whether it has answered."""
         line = client.line
         try:
-            robot = client.meet(self._profile.board.chip, lambda: not self.was_left)
+            robot = client.meet(is_patient=lambda: not self.was_left)
         except TiniScriptError as failure:
             if line.has_ended:
                 raise

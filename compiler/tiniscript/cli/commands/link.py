@@ -23,7 +23,7 @@ def run(options: Namespace, language: str) -> int:
             if connection.line.held_by:
                 values = {"port": shown(connection.port), "verb": connection.line.held_by}
                 raise CommandError(3, "held_already", **values)
-            if connection.client.server is None:
+            if connection.server is None:
                 raise CommandError(3, "cannot_share", port=shown(connection.port))
             connection.meet()
             _Log(connection, options.json).keep()

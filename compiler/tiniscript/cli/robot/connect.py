@@ -24,10 +24,10 @@ from tiniscript.library.client import Client
 from tiniscript.library.errors import TiniScriptError
 from tiniscript.library.known_kits import shipped_of_kit as found
 from tiniscript.link import known_ports, port_names
-from tiniscript.link.connection import LinkConnection, PendingRequest, Requester, reason_of
+from tiniscript.link.connection import PendingRequest, Requester, reason_of
 from tiniscript.link.errors import PortError
 from tiniscript.link.messages import OWNED, STATUSES, YOURS
-from tiniscript.link.outcomes import LOOK_S, Event, Gone
+from tiniscript.link.outcomes import Gone
 from tiniscript.link.port_names import is_address
 from tiniscript.link.requests import TAKEN, DeviceInfo, Reply
 from tiniscript.link.statuses import sentence
@@ -59,8 +59,11 @@ def baud_of(options: Namespace, robot: Robot, language: str) -> int:
     return whole_number("--baud", options.baud, default, SLOWEST_BAUD, FASTEST_BAUD, language)
 
 
-class Connection:
-    """The connection to a port, and the robot on it once it has said who it is."""
+class Connection(Client):
+    """The client of a command: its port, and the robot there once it has said who it is.
+
+    Where a Client raises a RobotError, this raises a CommandError.
+    """
 
     def __init__(
         self, options: Namespace, robot: Robot, language: str, is_one_of_many: bool = False
@@ -79,8 +82,6 @@ class Connection:
             options.verb in ("upload", "start", "live", "trim", "selftest") and not is_detached
         )
         baud = baud_of(options, robot, language)
-        self.language = language
-        self.profile = robot
         self.simulator: CommandSimulator | None = None  # a virtual robot for this command alone
         found = _chosen(options, language)
         if found == VIRTUAL:
@@ -88,14 +89,15 @@ class Connection:
 
             self.simulator = CommandSimulator(options, robot, language)
             found = self.simulator.port
-        self.port = found
+        self.port, self.language = found, language
         asked_baud = None if options.baud is None else baud
         try:
             verb = options.verb
-            with self._waiting():
-                self.client = opened_client(
-                    self.port, robot, verb, asked_baud, language, heed=self._heed
-                )
+            with self._waiting(), told():
+                super().__init__(
+                    found, verb, robot, asked_baud, language, is_shared=verb in SHARED,
+                    heed=self._pass_interrupt,
+                )  # fmt: skip
         except BaseException:
             self._end_simulator()
             raise
@@ -106,7 +108,7 @@ class Connection:
     def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
         if kind is not None and issubclass(kind, OSError) and self.drives:
             self.stop_unseen()
-        self.client.close(STOP_S)
+        self.close(STOP_S)
         self._end_simulator()
 
     def stop_unseen(self) -> bool:
@@ -121,10 +123,6 @@ class Connection:
             said = text(key, self.language).format(port=shown(self.port))
             print(said, file=sys.stderr, flush=True)
         return is_confirmed
-
-    @property
-    def line(self) -> LinkConnection:
-        return self.client.line
 
     @property
     def is_time_over(self) -> bool:
@@ -149,14 +147,12 @@ class Connection:
         if self.simulator is not None:
             self.simulator.close()
 
-    def meet(self, board: str | None = None) -> DeviceInfo:
-        """Send HELLO until the robot answers. Raises CommandError if none does.
-
-        `board` replaces the board of the profile.
-        """
-        with self._waiting(), told():
-            chip = board or self.profile.board.chip
-            device_info = self.client.meet(chip, lambda: self.starts_nothing)
+    def meet(
+        self, board: str = "", is_patient: Callable[[], bool] | None = None
+    ) -> DeviceInfo:  # fmt: skip
+        """Send HELLO until the robot answers, and remember it. Raises CommandError if none does."""
+        with self._waiting():
+            device_info = super().meet(board, is_patient or (lambda: self.starts_nothing))
         _remember_profile(self.options, self.profile, device_info.kit)
         if not self.is_one_of_many:
             self.remember(device_info.name)
@@ -197,13 +193,6 @@ class Connection:
             return shown(self.device_info.name)
         return robot_of_kit(self.device_info.kit) or text("robot", self.language)
 
-    def ask(self, make: Callable[[Requester], PendingRequest[T]]) -> Reply[T]:
-        """Make a request and return its reply; raise CommandError if it fails."""
-        reply = self.wait(self.do(make))
-        if reply.status:
-            raise self.failure(reply)
-        return reply
-
     def give(self, make: Callable[[Requester], PendingRequest[T]]) -> Reply[T]:
         """Send data for the robot to keep; raise CommandError if it refuses.
 
@@ -214,28 +203,11 @@ class Connection:
             raise self.failure(reply)
         return reply
 
-    def do(self, make: Callable[[Requester], PendingRequest[T]]) -> PendingRequest[T]:
-        """Begin a request with a timeout."""
-        with told():
-            return self.client.do(make)
-
-    def wait(self, request: PendingRequest[T], look: Callable[[], None] | None = None) -> Reply[T]:
-        with told():
-            return self.client.wait(request, look)
-
-    def event(self) -> tuple[int, Event] | None:
-        """Return the time (ms) and the next event, or None if none arrives for a moment.
-
-        Raises CommandError if the connection has ended.
-        """
-        with told():
-            return self.client.event(LOOK_S)
-
     def interrupt(self) -> None:
         """Pass a Ctrl-C to the thread that waits here; Python reports it only to the main one."""
         self.is_interrupted = True
 
-    def _heed(self) -> None:
+    def _pass_interrupt(self) -> None:
         if self.is_interrupted:
             self.is_interrupted = False
             raise KeyboardInterrupt
@@ -258,7 +230,7 @@ class Connection:
 
     def gone(self, gone: Gone) -> CommandError:
         """Return the sentence for a connection that has ended."""
-        lost = self.client.gone(gone)
+        lost = self.lost(gone)
         return CommandError(3, lost.key, **lost.values)
 
 

@@ -13,7 +13,7 @@ from collections.abc import Callable
 from tiniscript.cli import images, inputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
-from tiniscript.cli.robot.connect import Connection, told
+from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.event_printer import EventPrinter, cause_name
 from tiniscript.cli.robot.run_monitor import DONE, RunMonitor, Saving, ended
 from tiniscript.cli.terminal.keys import Keys, is_in_front
@@ -29,11 +29,9 @@ def send_program(
 ) -> ReceiptReply:
     """Send a program to the robot; return its receipt. `draw` gets the number of code bytes that
     have arrived. Raises CommandError."""
-    with told():
-        reply = connection.client.send_program(
-            ready.image, connection.profile, not options.no_run, not options.no_save,
-            options.detach, draw,
-        )  # fmt: skip
+    reply = connection.send_program(
+        ready.image, not options.no_run, not options.no_save, options.detach, draw
+    )
     if reply.status:
         raise _failure(connection, reply, ready)
     return reply.values
