@@ -22,8 +22,9 @@ from tests.support.virtual_robot import Talk, robot_in
 from tests.support.waiting import HANGS_S
 from tiniscript import compile_text, robots
 from tiniscript.cli.commands.live import HELP_ME, LEAVE, Catch, Repl, wished
+from tiniscript.cli.robot.bookkeeping import MARK, Bookkeeping
 from tiniscript.cli.robot.connect import Connection
-from tiniscript.cli.robot.event_printer import MARK, Bookkeeping, EventPrinter
+from tiniscript.cli.robot.event_printer import EventPrinter
 from tiniscript.cli.robot.live_state import Known
 from tiniscript.link import known_ports, ports
 from tiniscript.link.outcomes import Event, MissedEvent

@@ -14,8 +14,7 @@ from tiniscript import compile
 from tiniscript.cli.commands import upload
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.paths import is_foreign
-from tiniscript.cli.robot import recorder
-from tiniscript.cli.robot.connect import Connection
+from tiniscript.cli.robot import event_printer, recorder
 from tiniscript.cli.robot.event_printer import EventPrinter
 from tiniscript.cli.robot.recorder import Recorder
 from tiniscript.cli.robot.run_monitor import Saving
@@ -295,8 +294,8 @@ def test_after_ctrl_c_saving_is_no_time_of_the_run(
         now_s[0] += 3  # the robot runs while this is loaded, and its time counts from before
         return made(*given)  # type: ignore[arg-type]
 
-    made = Connection.event_printer
-    monkeypatch.setattr(Connection, "event_printer", printer)
+    made = event_printer.printer_of
+    monkeypatch.setattr(upload, "printer_of", printer)
     monkeypatch.setattr(upload, "monotonic", lambda: now_s[0])
     monkeypatch.setattr(recorder, "monotonic", lambda: now_s[0])
     monkeypatch.setattr(upload, "follow_run", ctrl_c)

@@ -14,6 +14,9 @@ import stat
 import sys
 from importlib import import_module
 
+from tiniscript.cli.errors import CommandError
+from tiniscript.cli.texts.common import language_of, text
+from tiniscript.cli.texts.options import LANGUAGE
 from tiniscript.cli.texts.verbs import VERBS
 
 CLOSED = 141  # 128 and the number of SIGPIPE
@@ -40,8 +43,6 @@ def main(arguments: list[str] | None = None) -> int:
 
 def _main(arguments: list[str]) -> int:
     _mend_streams()
-    from tiniscript.cli.texts.common import language_of, text
-
     language = language_of(arguments)
     try:
         code = _verb(arguments, language)
@@ -104,7 +105,6 @@ def _drop_output() -> None:
 
 def _tell_missing(language: str) -> None:
     """Say which parts that are made before a wheel are not in this installation."""
-    from tiniscript.cli.texts.common import text
     from tiniscript.flash import ready
     from tiniscript.studio import serving
 
@@ -118,9 +118,7 @@ def _tell_missing(language: str) -> None:
 
 
 def _verb(arguments: list[str], language: str) -> int:
-    from tiniscript.cli.errors import CommandError
     from tiniscript.cli.options import Options, bad_choice
-    from tiniscript.cli.texts.options import LANGUAGE
 
     if not arguments or arguments[0] in ("-h", "--help"):
         arguments = ["help"]
@@ -153,8 +151,6 @@ def _verb(arguments: list[str], language: str) -> int:
 
 
 def _explain_bug(bug: Exception, language: str) -> int:
-    from tiniscript.cli.texts.common import text
-
     if os.environ.get("TINISCRIPT_DEBUG"):
         raise bug
     what = " ".join(f"{type(bug).__name__}: {bug}".split())

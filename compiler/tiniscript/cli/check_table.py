@@ -5,12 +5,13 @@ Knows rows and how they are printed. A program that cannot be read has a row, to
 
 from __future__ import annotations
 
+import json
 from argparse import Namespace
 from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from tiniscript.cli import inputs, outputs
+from tiniscript.cli import compiling, inputs, outputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.program_files import Found, programs
 from tiniscript.cli.repairing import print_difference, repaired
@@ -48,8 +49,6 @@ def check(options: Namespace, robot: Robot, language: str) -> int:
         if not options.json:
             print(_line(rows[-1], language), flush=True)
     if options.json:
-        import json
-
         print(json.dumps([_as_data(row) for row in rows], indent=2))
     else:
         print("\n" + "\n".join(_table(rows, language)))
@@ -70,8 +69,8 @@ def _row(found: Found, options: Namespace, robot: Robot, language: str) -> Row:
             return Row(found.name, [], 0, problem)
     else:
         given = inputs.Input(found.name, found.data, Path(found.name))
-        compiled = inputs.compiled(given, robot, is_strict=False)
-    compiled = inputs.for_level(compiled, robot, options.text_level)
+        compiled = compiling.compiled(given, robot, is_strict=False)
+    compiled = compiling.for_level(compiled, robot, options.text_level)
     said = [message(each, compiled.source, language) for each in compiled.diagnostics]
     said.sort(key=lambda each: each.severity != "mistake")
     return Row(found.name, said, repaired, "")
@@ -86,7 +85,7 @@ def _repaired(
         print_difference(found.data, its.data, found.name)
     if options.diff:
         given = inputs.Input(found.name, found.data, Path(found.name))
-        return inputs.compiled(given, robot, is_strict=False), its.repairs, ""
+        return compiling.compiled(given, robot, is_strict=False), its.repairs, ""
     if its.repairs:
         try:
             outputs.write(Path(found.name), its.data, "unwritable_source")

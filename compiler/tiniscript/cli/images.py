@@ -7,11 +7,12 @@ from typing import NamedTuple
 from tiniscript.bytecode.image import Image, ImageRefused, unpack
 from tiniscript.bytecode.loading import check
 from tiniscript.bytecode.verify import Refused
-from tiniscript.cli import inputs, outputs
+from tiniscript.cli import compiling, inputs, outputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.library import source_map
 from tiniscript.library.compiling import Compiled, for_robot, image_of
-from tiniscript.library.known_kits import fitting, is_other_robots, lacks
+from tiniscript.library.known_kits import fitting, lacks
+from tiniscript.library.other_robots import is_other_robots
 from tiniscript.library.source_map import Map
 from tiniscript.robots.profile import Robot
 
@@ -48,7 +49,7 @@ def ready(
         if is_strict and lacks(image.needs, robot):
             raise CommandError(1, "no_tasks", robot=robot.name, file=inputs.shown(given.name))
         return Ready(image, len(given.data), source_map.recall(image.checksum))
-    compiled = inputs.compiled(given, robot, is_strict)
+    compiled = compiling.compiled(given, robot, is_strict)
     if is_open and not compiled.is_right:
         if is_other_robots(compiled.diagnostics):
             raise OtherRobot(compiled)

@@ -6,19 +6,14 @@ import os
 import sys
 from argparse import Namespace
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
+from tiniscript import robots
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.paths import real_name
 from tiniscript.cli.texts.common import Said, text
-from tiniscript.source import LARGEST_SOURCE, Source, printable
-from tiniscript.text.levels import LEVELS
-
-if TYPE_CHECKING:
-    from tiniscript.kit import Kit
-    from tiniscript.library.compiling import Compiled
-    from tiniscript.robots.profile import Robot
-
+from tiniscript.robots.profile import ProfileRefused, Robot
+from tiniscript.source import LARGEST_SOURCE, printable
 
 SHOWN = 200  # characters of a file's name
 
@@ -88,9 +83,6 @@ def shown(name: str) -> str:
 
 def robot(options: Namespace, language: str) -> Robot:
     """Return the robot that `--robot` names, or the default one."""
-    from tiniscript import robots
-    from tiniscript.robots.profile import ProfileRefused
-
     try:
         return robots.load(robots.DEFAULT if options.robot is None else options.robot)
     except ProfileRefused as refused:
@@ -104,38 +96,3 @@ def robot(options: Namespace, language: str) -> Robot:
         raise CommandError(
             2, "profile_refused", file=shown(options.robot), reasons=reasons
         ) from None
-
-
-def compiled(given: Input, robot: Robot, is_strict: bool, names_robots: bool = True) -> Compiled:
-    """Return the result of compiling a program's text.
-
-    `is_strict`: a program that is too large for the robot is a mistake, else a warning.
-    `names_robots`: the command has `--robot`.
-    """
-    from tiniscript.library.compiling import compiled as compiled_data
-
-    return compiled_data(given.data, robot, given.name, is_strict, names_robots=names_robots)
-
-
-def for_level(found: Compiled, robot: Robot, name: str | None) -> Compiled:
-    """Return `found` with what a robot of the level `name` lacks to read the program as text."""
-    if name is None or found.program is None or not found.is_right:
-        return found
-    from tiniscript.diagnostics.codes import in_order
-    from tiniscript.text.fitting import misfits
-
-    lacking = misfits(found.source, found.program, robot.kit, LEVELS[name])
-    return found._replace(diagnostics=in_order([*found.diagnostics, *lacking]))
-
-
-def parsed(given: Input, kit: Kit) -> Compiled:
-    """Return only the syntax mistakes of a program's text."""
-    from tiniscript.diagnostics.codes import in_order
-    from tiniscript.library.compiling import Compiled, text_of
-    from tiniscript.syntax.parser import parse
-
-    text = text_of(given.data, given.name)
-    if not isinstance(text, str):
-        return text
-    source = Source(text, given.name)
-    return Compiled(source, in_order(parse(source).diagnostics))

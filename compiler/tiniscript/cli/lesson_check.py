@@ -19,8 +19,10 @@ from pathlib import Path
 from shutil import get_terminal_size
 from typing import NamedTuple
 
+from rich.cells import cell_len, set_cell_size
+
 from tiniscript import robots
-from tiniscript.cli import inputs, outputs
+from tiniscript.cli import compiling, inputs, outputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.options import whole_number
 from tiniscript.cli.program_files import Found, in_folder, read
@@ -127,7 +129,7 @@ class _Marker:
         if given.is_image:
             file = inputs.shown(given.name)
             raise CommandError(2, "needs_text", file=file, verb=f"lesson {verb}")
-        found = inputs.compiled(given, self.robot, is_strict=True, names_robots=False)
+        found = compiling.compiled(given, self.robot, is_strict=True, names_robots=False)
         return for_robot(found, self.robot)
 
     def mark(self, given: inputs.Input, compiled: Compiled) -> Mark:
@@ -240,8 +242,6 @@ def _print_one(mark: Mark, seeds: Sequence[int], options: Namespace, language: s
 
 def _print_table(marks: Sequence[Mark], options: Namespace, language: str) -> None:
     """Print a row for each program: its name, the verdict, and the first sentence."""
-    from rich.cells import cell_len, set_cell_size
-
     rows = [
         (inputs.shown(mark.name), text(f"verdict_{mark.verdict}", language), _first(mark))
         for mark in marks

@@ -8,7 +8,10 @@ from argparse import ArgumentParser, HelpFormatter, Namespace
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, NoReturn
 
+from tiniscript import robots
+from tiniscript.cli import paths
 from tiniscript.cli.errors import CommandError
+from tiniscript.cli.inputs import shown
 from tiniscript.cli.texts.common import text
 from tiniscript.cli.texts.options import Option, of_verb
 from tiniscript.fixed_point import as_text, read_literal
@@ -77,8 +80,6 @@ class Options(ArgumentParser):
             options.programs = [
                 each for name in options.programs for each in matching(name) or [name]
             ]
-        from tiniscript.cli import paths
-
         paths.check(options, self.language)
         return options
 
@@ -97,8 +98,6 @@ class Options(ArgumentParser):
 
     def _near(self, found: str) -> str:
         """Return what somebody may have meant with a word that is unknown here, or nothing."""
-        from tiniscript import robots
-
         flags = [flag for option in self.table if not option.is_argument
                  for flag in option.flags.split()]  # fmt: skip
         if "--robot" in flags and found.lower() in robots.names():
@@ -108,8 +107,6 @@ class Options(ArgumentParser):
 
 def bad_choice(option: str, known: Sequence[str], found: str, language: str) -> CommandError:
     """Return the error for a value that is not among an option's choices."""
-    from tiniscript.cli.inputs import shown
-
     allowed = f"{', '.join(known[:-1])} {text('or', language)} {known[-1]}"
     return CommandError(2, "bad_choice", option=option, known=allowed, found=shown(found) or "''")
 
@@ -147,8 +144,6 @@ def thousandths(
         return default
     value = decimal(found)
     if value is None or not low <= value <= high:
-        from tiniscript.cli.inputs import shown
-
         allowed = text("range_number", language).format(low=as_text(low), high=as_text(high))
         raise CommandError(
             2, "bad_number", option=option, range=allowed, found=shown(found) or "''"

@@ -22,6 +22,8 @@ from contextlib import suppress
 from pathlib import Path
 from typing import NamedTuple
 
+from tiniscript import robots
+from tiniscript.bytecode.image import MAGIC
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.texts.common import text
 from tiniscript.cli.texts.options import OPTIONS
@@ -132,8 +134,6 @@ def _read(options: Namespace, language: str) -> Iterator[Named]:
 def _is_shipped(dest: str, name: str) -> bool:
     """Whether a name is that of a robot or a world that comes with tsc."""
     if dest == "robot":
-        from tiniscript import robots
-
         return name.lower() in robots.names()
     if dest == "world":
         from tiniscript.virtual import worlds
@@ -231,8 +231,6 @@ def is_foreign(path: Path) -> bool:
 
 
 def _is_ours(head: bytes) -> bool:
-    from tiniscript.bytecode.image import MAGIC
-
     is_image = head.startswith(MAGIC) and len(head) > len(MAGIC) and head[len(MAGIC)] < 0x20
     begins = head.startswith((HEADER, ROWS, CLASS_ROWS, RECORDING)) or _PAGE in head
     return is_image or begins or _is_report(head) or _is_table(head) or any(

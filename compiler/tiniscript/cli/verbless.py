@@ -6,6 +6,7 @@ A question may have words of both languages: the tables of verbs and options hav
 from __future__ import annotations
 
 import re
+import unicodedata
 from math import log
 from pathlib import Path
 from typing import NoReturn
@@ -109,8 +110,6 @@ def _weights(verb: str) -> dict[str, int]:
 
 
 def _stems(text: str) -> set[str]:
-    import unicodedata
-
     plain = unicodedata.normalize("NFD", text.casefold())
     words = re.findall("[a-z]+", re.sub("[\u0300-\u036f]", "", plain))
     said = (word for word in words if len(word) >= SHORTEST and not IDLE.fullmatch(word))

@@ -14,7 +14,7 @@ from typing import IO, TYPE_CHECKING, TypeVar
 from tiniscript.bytecode.image import Image
 from tiniscript.library import opening
 from tiniscript.library.errors import ProgramError, RobotError
-from tiniscript.library.known_kits import refusal
+from tiniscript.library.refusing import refusal
 from tiniscript.link.connection import LinkConnection, PendingRequest, Requester, reason_of
 from tiniscript.link.messages import SAVED_LOW_SUPPLY, SAVED_SAVING, SAVED_STORED
 from tiniscript.link.outcomes import CANCELLED, LOOK_S, Event, Gone

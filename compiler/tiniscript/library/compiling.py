@@ -185,7 +185,7 @@ def compiled(
 
 def naming(compiled: Compiled, robot: Robot) -> Compiled:
     """Return `compiled` with hints to the robots that have a word that this robot lacks."""
-    from tiniscript.library.known_kits import naming_robots
+    from tiniscript.library.other_robots import naming_robots
 
     named = naming_robots(compiled.diagnostics, compiled.source.text, robot)
     return compiled._replace(diagnostics=named)

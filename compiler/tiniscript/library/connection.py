@@ -18,8 +18,9 @@ from tiniscript.library.client import Client, Saving
 from tiniscript.library.endings import Follower
 from tiniscript.library.errors import RobotError, StopNotConfirmed, UsageError
 from tiniscript.library.events import Ending, Reader, RobotEvent, ending_of
-from tiniscript.library.known_kits import of_kit, refusal
+from tiniscript.library.known_kits import of_kit
 from tiniscript.library.programs import Language, Program, profile_of, program_of
+from tiniscript.library.refusing import refusal
 from tiniscript.library.runs import whole, within
 from tiniscript.link import known_ports, port_names, ports
 from tiniscript.link.messages import SAVED, STATE_RUNNING

@@ -4,21 +4,24 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from tiniscript import robots
+from tiniscript.bytecode import loading
+from tiniscript.bytecode.disassembly import listing
 from tiniscript.bytecode.image import Image, ImageRefused, unpack
 from tiniscript.bytecode.verify import Refused
 from tiniscript.diagnostics.rendering import Message as Message
 from tiniscript.diagnostics.rendering import as_text, message
+from tiniscript.files import contents
+from tiniscript.library import source_map
 from tiniscript.library.compiling import Compiled, compiled, image_of
 from tiniscript.library.errors import ProgramError, UsageError
+from tiniscript.library.known_kits import fitting
+from tiniscript.library.source_map import Map
 from tiniscript.library.texts import LANGUAGES, sentence
 from tiniscript.robots.profile import ProfileRefused, Robot
+from tiniscript.robots.refusals import describe
 from tiniscript.source import PROGRAM_ENDS, printable
-
-if TYPE_CHECKING:
-    from tiniscript.library.source_map import Map
 
 Language = str  # "en" or "es"
 SHOWN = 200  # characters of a name or a value in a sentence
@@ -68,8 +71,6 @@ class Program:
     def listing(self, language: Language = "en") -> str:
         """Return one line per instruction: offset, bytes, name, and the source line that it comes
         from."""
-        from tiniscript.bytecode.disassembly import listing
-
         kit = self._profile.kit if self._image.devices else None
         return listing(self.code, remarks(self._map, _checked(language)), kit)
 
@@ -125,8 +126,6 @@ def _refuse_file_name(text: str, language: Language) -> None:
 
 def _contents(path: os.PathLike[str], language: Language) -> str | bytes:
     """Return the text of a program's file, or the bytes of an image. Raises UsageError."""
-    from tiniscript.files import contents
-
     try:
         data = contents(Path(path), MOST_BYTES)
         return data if Path(path).suffix.lower() == ".bin" else data.decode("utf-8-sig")
@@ -165,8 +164,6 @@ def program_of(
     if robot is None:
         profile = _robot_for(data, profile, language)
     parsed = _read(data, profile, language)
-    from tiniscript.library import source_map
-
     return Program(None, data, parsed, profile, source_map.recall(parsed.checksum), ())
 
 
@@ -178,8 +175,6 @@ def profile_of(robot: str | os.PathLike[str], language: Language) -> Robot:
     try:
         return robots.load(os.fspath(robot))
     except ProfileRefused as refused:
-        from tiniscript.robots.refusals import describe
-
         said = {"reasons": "\n".join(describe(refused, language))}
         raise UsageError("profile_refused", language, said) from None
 
@@ -205,8 +200,6 @@ def remarks(places: Map | None, language: Language) -> dict[int, str]:
 
 
 def _program(text: str, profile: Robot, name: str, optimize: bool, language: Language) -> Program:
-    from tiniscript.library import source_map
-
     found = compiled(_data(text), profile, name, is_strict=True, optimize=optimize)
     diagnostics = tuple(diagnostics_of(found, language))
     if not found.is_right:
@@ -225,18 +218,14 @@ def _data(text: str) -> bytes:
 
 def _robot_for(data: bytes, default: Robot, language: Language) -> Robot:
     """Return a known robot that has the devices of an image, else `default`."""
-    from tiniscript.library.known_kits import fitting
-
     return fitting(_unpacked(data, language), default) or default
 
 
 def _read(data: bytes, profile: Robot, language: Language) -> Image:
     """Return an image, verified for this robot. Raises ProgramError."""
-    from tiniscript.bytecode.loading import check
-
     image = _unpacked(data, language)
     try:
-        check(image, profile.kit)
+        loading.check(image, profile.kit)
     except Refused as refused:
         if refused.name == "NO_SUCH_DEVICE" and image.devices:  # an image for a larger kit
             raise ProgramError("OTHER_KIT", language, {"robot": profile.name}) from None

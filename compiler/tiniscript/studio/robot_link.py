@@ -17,7 +17,8 @@ from tiniscript import robots
 from tiniscript.bytecode.image import Image, ImageRefused, unpack
 from tiniscript.bytecode.opcodes import FAULTS
 from tiniscript.fixed_point import as_text
-from tiniscript.library.known_kits import refusal, shipped_of_kit
+from tiniscript.library.known_kits import shipped_of_kit
+from tiniscript.library.refusing import refusal
 from tiniscript.link.authority import whose
 from tiniscript.link.connection import STATUS, Heard, PendingRequest, Requester, reason_of
 from tiniscript.link.messages import (

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import json
 import sys
 from argparse import Namespace
 
-from tiniscript.cli import inputs, outputs, program_files
+from tiniscript.cli import compiling, inputs, outputs, program_files
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import Input
 from tiniscript.cli.texts.common import text
@@ -30,12 +31,10 @@ def run(options: Namespace, language: str) -> int:
     if options.fix or options.diff:
         compiled, is_right = _repaired(options, given, robot, language)
     else:
-        compiled = inputs.compiled(given, robot, is_strict=False)
-        compiled = inputs.for_level(compiled, robot, options.text_level)
+        compiled = compiling.compiled(given, robot, is_strict=False)
+        compiled = compiling.for_level(compiled, robot, options.text_level)
         is_right = compiled.is_right
     if options.json:
-        import json
-
         said = [
             message(diagnostic, compiled.source, language) for diagnostic in compiled.diagnostics
         ]
@@ -77,7 +76,7 @@ def _repaired(
     if says and not found.compiled.is_right:
         key = "not_repaired" if found.repairs else "nothing_repaired"
         print(text(key, language).format(file=name) + "\n", file=sys.stderr)
-    compiled = inputs.for_level(found.compiled, robot, options.text_level)
+    compiled = compiling.for_level(found.compiled, robot, options.text_level)
     return compiled, compiled.is_right
 
 

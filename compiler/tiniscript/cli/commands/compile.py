@@ -7,7 +7,7 @@ from argparse import Namespace
 from pathlib import Path
 
 from tiniscript.bytecode.opcodes import STACK_VALUES
-from tiniscript.cli import inputs, outputs, paths
+from tiniscript.cli import compiling, inputs, outputs, paths
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.texts.common import text
 from tiniscript.diagnostics.codes import WILL_FAULT
@@ -27,7 +27,7 @@ def run(options: Namespace, language: str) -> int:
     if options.map == "-":
         raise CommandError(2, "over_map", file="-")
     robot = inputs.robot(options, language)
-    compiled = inputs.compiled(given, robot, is_strict=True)
+    compiled = compiling.compiled(given, robot, is_strict=True)
     outputs.print_diagnostics(compiled, language)
     if not compiled.is_right:
         return 1
@@ -61,8 +61,8 @@ def _line(options: Namespace, given: inputs.Input, language: str) -> int:
     if options.map is not None:
         raise CommandError(2, "text_has_no_map")
     robot = inputs.robot(options, language)
-    compiled = for_robot(inputs.compiled(given, robot, is_strict=True), robot)
-    compiled = inputs.for_level(compiled, robot, options.text_level)
+    compiled = for_robot(compiling.compiled(given, robot, is_strict=True), robot)
+    compiled = compiling.for_level(compiled, robot, options.text_level)
     outputs.print_diagnostics(compiled, language)
     if not compiled.is_right:
         return 1

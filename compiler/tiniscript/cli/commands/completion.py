@@ -12,8 +12,7 @@ import sys
 from argparse import Namespace
 
 from tiniscript import robots
-from tiniscript.cli.commands.lesson import ACTIONS
-from tiniscript.cli.texts.options import VERB, Kind, of_verb
+from tiniscript.cli.texts.options import LESSON_ACTIONS, VERB, Kind, of_verb
 from tiniscript.cli.texts.verbs import VERBS
 from tiniscript.diagnostics.codes import CODES
 from tiniscript.flash.bootloaders import BOARDS
@@ -122,7 +121,7 @@ def _words_of(kind: Kind, is_spanish: bool) -> list[tuple[str, str]]:
     if kind.name == "port":
         return [(each.port, each.description) for each in ports.listed()]
     named = {"robot": robots.names(), "world": worlds.names(), "board": BOARDS, "code": CODES,
-             "action": ACTIONS, "hurry": ("max",)}  # fmt: skip
+             "action": LESSON_ACTIONS, "hurry": ("max",)}  # fmt: skip
     return [(word, "") for word in named.get(kind.name, kind.choices)]
 
 

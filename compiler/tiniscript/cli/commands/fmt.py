@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from argparse import Namespace
 
-from tiniscript.cli import inputs, outputs
+from tiniscript.cli import compiling, inputs, outputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.texts.common import text
 from tiniscript.source import LARGEST_SOURCE
@@ -16,7 +16,7 @@ def run(options: Namespace, language: str) -> int:
     given = inputs.program(options)
     if given.is_image:
         raise CommandError(2, "needs_text", file=inputs.shown(given.name), verb="fmt")
-    parsed = inputs.parsed(given, inputs.robot(options, language).kit)
+    parsed = compiling.parsed(given, inputs.robot(options, language).kit)
     if not parsed.is_right:
         outputs.print_diagnostics(parsed, language)
         return 1

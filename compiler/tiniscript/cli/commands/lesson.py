@@ -8,18 +8,17 @@ from pathlib import Path
 
 from tiniscript.cli import inputs, outputs
 from tiniscript.cli.errors import CommandError
+from tiniscript.cli.lesson_check import check
+from tiniscript.cli.terminal import pager
 from tiniscript.cli.texts.common import Said, text
+from tiniscript.cli.texts.options import LESSON_ACTIONS as ACTIONS
 from tiniscript.cli.texts.options import of_verb
 from tiniscript.lessons import catalogue
 from tiniscript.lessons.lesson import Lesson, LessonRefused
+from tiniscript.lessons.markdown import as_text
 from tiniscript.lessons.refusals import describe
+from tiniscript.lessons.sheet import sheet
 
-# What each action takes besides the lesson and the language.
-ACTIONS = {
-    "show": ("teacher",),
-    "check": ("program", "texts", "seed", "csv", "plot", "json"),
-    "sheet": ("teacher", "output"),
-}
 LIST = "list"
 
 
@@ -37,8 +36,6 @@ def run(options: Namespace, language: str) -> int:
         folder = catalogue.folder_of(options.number)
         lesson = catalogue.load(folder)
         if action == "check":
-            from tiniscript.cli.lesson_check import check
-
             return check(options, lesson, language)
         if action == "show":
             return _show(folder, options.teacher, language)
@@ -96,9 +93,6 @@ def _fence(program: str) -> str:
 
 
 def _show(folder: Path, is_teachers: bool, language: str) -> int:
-    from tiniscript.cli.terminal import pager
-    from tiniscript.lessons.markdown import as_text
-
     pager.show(as_text(_page(folder, is_teachers, language)), language)
     return 0
 
@@ -106,8 +100,6 @@ def _show(folder: Path, is_teachers: bool, language: str) -> int:
 def _sheet(folder: Path, lesson: Lesson, options: Namespace, language: str) -> int:
     if options.output is None:
         raise CommandError(2, "lesson_where", number=inputs.shown(options.number))
-    from tiniscript.lessons.sheet import sheet
-
     page = sheet(_page(folder, options.teacher, language), lesson, options.teacher, language)
     if options.output == "-":
         sys.stdout.write(page)

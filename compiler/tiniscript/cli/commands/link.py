@@ -7,8 +7,9 @@ from argparse import Namespace
 
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
+from tiniscript.cli.robot.bookkeeping import Bookkeeping
 from tiniscript.cli.robot.connect import Connection, connected
-from tiniscript.cli.robot.event_printer import Bookkeeping, EventPrinter
+from tiniscript.cli.robot.event_printer import EventPrinter
 from tiniscript.cli.texts.common import text
 from tiniscript.library import opening
 from tiniscript.link.connection import PendingRequest

@@ -14,14 +14,16 @@ from tiniscript.cli import inputs, outputs
 from tiniscript.cli.commands.ping import ping
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.robot import own_kit
+from tiniscript.cli.robot.bookkeeping import MARK, Bookkeeping
 from tiniscript.cli.robot.connect import Connection
-from tiniscript.cli.robot.event_printer import MARK, Bookkeeping, EventPrinter
+from tiniscript.cli.robot.event_printer import EventPrinter, printer_of
 from tiniscript.cli.robot.live_state import Known, Line, Value, header, open_ends
 from tiniscript.cli.robot.run_monitor import RunMonitor, stop_and_say
 from tiniscript.cli.texts.common import text
 from tiniscript.library import source_map
 from tiniscript.library.compiling import kit_of, naming
-from tiniscript.library.known_kits import is_other_robots, lacks
+from tiniscript.library.known_kits import lacks
+from tiniscript.library.other_robots import is_other_robots
 from tiniscript.link.outcomes import Event, Gone
 from tiniscript.link.payloads import ShowEvent
 from tiniscript.link.requests import SHORT_BYTES, short_bytes
@@ -151,7 +153,7 @@ class Repl:
         source_map.remember(found.compiled.image, places)  # tsc info names a fault's line later
         kit = kit_of(found.compiled, self.connection.profile)
         reply = self.connection.ask(lambda session: session.live(found.compiled.code, kit))
-        printer = self.connection.event_printer(places=places)
+        printer = printer_of(self.connection, places=places)
         catch = Catch(found.shown, self.known, printer, is_last)
         simulator = self.connection.simulator
         if simulator is not None:

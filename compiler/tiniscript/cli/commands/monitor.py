@@ -5,20 +5,18 @@ from __future__ import annotations
 import sys
 from argparse import Namespace
 from time import monotonic
-from typing import TYPE_CHECKING
 
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.options import whole_number
 from tiniscript.cli.paths import ROWS
+from tiniscript.cli.robot.bookkeeping import Bookkeeping
 from tiniscript.cli.robot.connect import Connection, connected
-from tiniscript.cli.robot.event_printer import Bookkeeping, EventPrinter
+from tiniscript.cli.robot.event_printer import EventPrinter
 from tiniscript.cli.robot.recorder import Rows
+from tiniscript.cli.terminal.plot import Board
 from tiniscript.cli.texts.common import text
 from tiniscript.link.outcomes import Gone
-
-if TYPE_CHECKING:
-    from tiniscript.cli.terminal.plot import Board
 
 
 def run(options: Namespace, language: str) -> int:
@@ -34,8 +32,6 @@ def run(options: Namespace, language: str) -> int:
             said = {"robot": connection.name, "port": shown(connection.port)}
             print(text("watching", language).format(**said), file=sys.stderr)
             if options.plot and sys.stderr.isatty():
-                from tiniscript.cli.terminal.plot import Board
-
                 with Board(text("plot_waiting", language)) as board:
                     printer = EventPrinter(language, options.json, has_times=True, rows=add,
                                     out=board.say, err=board.warn)  # fmt: skip

@@ -17,9 +17,11 @@ from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.options import decimal, whole_number
 from tiniscript.cli.robot import simulator_options
-from tiniscript.cli.robot.event_printer import Bookkeeping
+from tiniscript.cli.robot.bookkeeping import Bookkeeping
 from tiniscript.cli.terminal import FRAME_S
 from tiniscript.cli.terminal.keys import Keys, is_in_front
+from tiniscript.cli.terminal.screen import Screen
+from tiniscript.cli.terminal.world_drawing import WorldPicture
 from tiniscript.cli.texts.common import text
 from tiniscript.library import install_advice
 from tiniscript.link.keys import KeyFile
@@ -31,8 +33,6 @@ from tiniscript.virtual.transports import Transports, can_have_terminal
 from tiniscript.vm.trace import Event
 
 if TYPE_CHECKING:
-    from tiniscript.cli.terminal.screen import Screen
-    from tiniscript.cli.terminal.world_drawing import WorldPicture
     from tiniscript.virtual.announcement import Announcement
 
 FASTEST_BAUD = 2_000_000
@@ -143,9 +143,6 @@ class _Stage:
     def _begin(self) -> None:
         if not (sys.stderr.isatty() and is_in_front()):
             return
-        from tiniscript.cli.terminal.screen import Screen
-        from tiniscript.cli.terminal.world_drawing import WorldPicture
-
         keys = text("robot_keys", self.language) if sys.stdin.isatty() else ""
         self.screen = Screen()
         self.picture = WorldPicture(self.simulator.robot, self.language, keys)

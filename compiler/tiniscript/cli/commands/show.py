@@ -8,10 +8,12 @@ from argparse import Namespace
 from pathlib import Path
 
 from tiniscript.bytecode.disassembly import listing, rows
-from tiniscript.cli import images, inputs, outputs
+from tiniscript.cli import compiling, images, inputs, outputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.texts.common import text
+from tiniscript.library.programs import remarks
 from tiniscript.robots.profile import Robot
+from tiniscript.sketch.writing import BOARDS, sketch_of
 
 
 def run(options: Namespace, language: str) -> int:
@@ -34,8 +36,6 @@ def run(options: Namespace, language: str) -> int:
 
 
 def _sketch(options: Namespace, given: inputs.Input, robot: Robot, language: str) -> int:
-    from tiniscript.sketch.writing import BOARDS, sketch_of
-
     if options.json:
         raise CommandError(2, "sketch_or_json")
     if given.is_image:
@@ -43,7 +43,7 @@ def _sketch(options: Namespace, given: inputs.Input, robot: Robot, language: str
     if robot.board.chip not in BOARDS:
         known = ", ".join(BOARDS)
         raise CommandError(2, "sketch_no_board", chip=robot.board.chip, known=known)
-    compiled = inputs.compiled(given, robot, is_strict=False)
+    compiled = compiling.compiled(given, robot, is_strict=False)
     outputs.print_diagnostics(compiled, language)
     if not compiled.is_right:
         return 1
@@ -63,8 +63,6 @@ def _sketch(options: Namespace, given: inputs.Input, robot: Robot, language: str
 
 
 def print_listing(ready: images.Ready, robot: Robot, name: str, language: str) -> None:
-    from tiniscript.library.programs import remarks
-
     image = ready.image
     key = "for_robot" if image.devices else "any_robot"
     print(text("head", language).format(

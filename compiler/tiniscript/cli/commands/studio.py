@@ -11,18 +11,16 @@ from argparse import Namespace
 from contextlib import suppress
 from ipaddress import IPv4Address
 from threading import Thread
-from typing import TYPE_CHECKING
 
+from tiniscript.cli import page_build
 from tiniscript.cli.commands.robot import ended_by_signal
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.options import whole_number
 from tiniscript.cli.texts.common import text
-from tiniscript.studio import building, serving
+from tiniscript.studio import building, class_keeping, serving
+from tiniscript.studio.classroom import Classroom
 from tiniscript.studio.hosting import Hosting
-
-if TYPE_CHECKING:
-    from tiniscript.studio.classroom import Classroom
 
 PORT = 7070
 TURN_MINUTES = 3
@@ -35,16 +33,12 @@ def run(options: Namespace, language: str) -> int:
     hosting, classroom, went_on, newest = Hosting(), None, 0, ""
     host = serving.HOST
     if options.is_class:
-        from tiniscript.studio.classroom import Classroom
-
         host = _given(options.address) if options.address else _address()
         classroom = Classroom(hosting, _ports(options.ports), 60 * minutes)
         went_on = _go_on(classroom)
     elif options.address or options.ports or options.turn:
         raise CommandError(2, "studio_needs_class")
     if not serving.is_built() or building.is_possible():
-        from tiniscript.cli import page_build
-
         page_build.prepare(options, language)
     try:
         server = _server(port, host, hosting, classroom)
@@ -91,16 +85,12 @@ def run(options: Namespace, language: str) -> int:
 
 def _go_on(classroom: Classroom) -> int:
     """Go on with a class that a crash has ended; return how many pupils it has."""
-    from tiniscript.studio import class_keeping
-
     kept = class_keeping.kept()
     return classroom.go_on(kept) if kept is not None else 0
 
 
 def _keep(classroom: Classroom, newest: str) -> str:
     """Keep a class if it is another than the newest that was kept; return what is kept now."""
-    from tiniscript.studio import class_keeping
-
     found = classroom.state_to_keep()
     if found is None:
         class_keeping.forget()

@@ -9,6 +9,7 @@ from typing import Any
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.options import whole_number
 from tiniscript.cli.robot.connect import Connection, connected
+from tiniscript.cli.robot.trim_wizard import guided
 from tiniscript.cli.texts.common import text
 from tiniscript.link.messages import MOST_BALANCE, MOST_LEAST
 from tiniscript.link.trim import Trim, told
@@ -25,8 +26,6 @@ def run(options: Namespace, language: str) -> int:
         if options.reset or given:
             trim = (Trim() if options.reset else before)._replace(**given)
         else:
-            from tiniscript.cli.robot.trim_wizard import guided
-
             trim = guided(connection, before)
         # This trim may be set already; the status OK means that it is saved.
         connection.ask(lambda session: session.trim(trim.data()))

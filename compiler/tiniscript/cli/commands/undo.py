@@ -10,7 +10,7 @@ from tiniscript.cli import inputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot.connect import Connection
-from tiniscript.cli.robot.event_printer import EventPrinter
+from tiniscript.cli.robot.event_printer import EventPrinter, printer_of
 from tiniscript.cli.robot.fleet import together
 from tiniscript.cli.robot.member import Member, Result, are_many
 from tiniscript.cli.robot.program_upload import saved_name
@@ -36,7 +36,7 @@ def run(options: Namespace, language: str) -> int:
         receipt = Undone(connection)
         print(json.dumps(receipt.fields()) if options.json else receipt.text(), flush=True)
         try:
-            UndoSaving(connection, connection.event_printer(options.json), receipt.values).wait()
+            UndoSaving(connection, printer_of(connection, options.json), receipt.values).wait()
             return 0
         except CommandError as failure:
             if failure.key == "plain":
@@ -47,7 +47,7 @@ def run(options: Namespace, language: str) -> int:
         status = connection.ask(lambda session: session.status()).values
         if status.program != receipt.values.program:
             raise CommandError(3, "undo_lost", port=shown(connection.port))
-        UndoSaving(connection, connection.event_printer(options.json), receipt.values).wait()
+        UndoSaving(connection, printer_of(connection, options.json), receipt.values).wait()
     return 0
 
 

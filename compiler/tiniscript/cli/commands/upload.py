@@ -12,6 +12,7 @@ from tiniscript.cli import images, inputs, outputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.robot import own_kit
 from tiniscript.cli.robot.connect import Connection
+from tiniscript.cli.robot.event_printer import printer_of
 from tiniscript.cli.robot.member import are_many
 from tiniscript.cli.robot.program_upload import (
     follow_run,
@@ -96,7 +97,7 @@ def _upload(
         began_s = monotonic()  # before anything else is loaded or told
     finally:
         progress.end()
-    printer = connection.event_printer(options.json, ready.places)
+    printer = printer_of(connection, options.json, ready.places)
     recorder = None
     if options.record is not None:
         from tiniscript.cli.robot.recorder import Recorder

@@ -15,8 +15,9 @@ from tiniscript.cli.inputs import shown
 from tiniscript.cli.options import whole_number
 from tiniscript.cli.paths import CLASS_ROWS
 from tiniscript.cli.robot import broker_options
+from tiniscript.cli.robot.bookkeeping import Bookkeeping
 from tiniscript.cli.robot.connect import Connection, port_failure
-from tiniscript.cli.robot.event_printer import Bookkeeping, EventPrinter
+from tiniscript.cli.robot.event_printer import EventPrinter
 from tiniscript.cli.robot.fleet import together
 from tiniscript.cli.robot.member import Member, Result
 from tiniscript.cli.robot.recorder import Rows

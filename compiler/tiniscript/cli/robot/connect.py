@@ -37,9 +37,7 @@ from tiniscript.virtual import directory
 from tiniscript.virtual.directory import is_gone
 
 if TYPE_CHECKING:
-    from tiniscript.cli.robot.event_printer import EventPrinter
     from tiniscript.cli.robot.simulator import CommandSimulator
-    from tiniscript.library.source_map import Map
 
 T = TypeVar("T")
 
@@ -128,20 +126,6 @@ class Connection(Client):
     def is_time_over(self) -> bool:
         """Whether the time limit of the command is over."""
         return self.simulator is not None and self.simulator.is_time_over
-
-    def event_printer(self, is_json: bool = False, places: Map | None = None) -> EventPrinter:
-        """Return the printer of events; it prints above the picture of a virtual robot."""
-        from tiniscript.cli.robot.event_printer import EventPrinter
-
-        if self.simulator is None:
-            return EventPrinter(self.language, is_json, places=places)
-        return EventPrinter(
-            self.language,
-            is_json,
-            places=places,
-            out=self.simulator.say,
-            err=self.simulator.complain,
-        )
 
     def _end_simulator(self) -> None:
         if self.simulator is not None:

@@ -12,6 +12,7 @@ from collections.abc import Callable, Mapping
 from tiniscript.bytecode.opcodes import FAULTS
 from tiniscript.cli.faults import fault_text
 from tiniscript.cli.inputs import shown
+from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.spreadsheet import no_formula
 from tiniscript.cli.texts.common import has_text, text
 from tiniscript.fixed_point import as_text
@@ -20,8 +21,6 @@ from tiniscript.library.source_map import Map
 from tiniscript.link.messages import CAUSES, LINK_FAULTS, STATE_FAULTED, STATE_IDLE
 from tiniscript.link.outcomes import Event
 from tiniscript.link.payloads import ShowEvent, StatusReply
-
-MARK = -(2**31)  # the smallest number there is
 
 
 def fault_name(number: int) -> str:
@@ -151,28 +150,15 @@ class EventPrinter:
             self.out(time + (said or f"{name} {what}"))
 
 
-class Bookkeeping:
-    """Recognizes the values in a run that `tsc live` uses to keep its variables."""
-
-    def __init__(self) -> None:
-        self.is_on = False
-
-    def hides(self, event: Event) -> bool:
-        if event.name in ("STARTED", "DONE", "FAULT", "STOPPED", "ENDED", "RESTARTED"):
-            self.is_on = False
-        elif event.name != "SHOW":
-            return False
-        elif event.value == MARK and not event.is_yes_no:
-            self.is_on = True
-        return self.is_on
-
-    def hides_trace(self, what: str, values: tuple[int, ...]) -> bool:
-        """The same for an action in the trace of a virtual robot."""
-        if what in ("START", "DONE", "FAULT", "STOP", "OFF"):
-            self.is_on = False
-        elif what == "SHOW" and values == (MARK,):
-            self.is_on = True
-        return self.is_on and what == "SHOW"
+def printer_of(
+    connection: Connection, is_json: bool = False, places: Map | None = None
+) -> EventPrinter:
+    """Return the printer of a connection's events, above the picture of its virtual robot."""
+    simulator = connection.simulator
+    if simulator is None:
+        return EventPrinter(connection.language, is_json, places=places)
+    out, err = simulator.say, simulator.complain
+    return EventPrinter(connection.language, is_json, places=places, out=out, err=err)
 
 
 def json_value(event: ShowEvent) -> object:

@@ -116,8 +116,6 @@ def _alive(registrations: list[Registration]) -> list[str]:
     """Return the ports of the servers that still run; a hanging server delays no other check."""
     if len(registrations) < 2:  # importing threads takes longer than one answer
         return [registration.port for registration in registrations if is_alive(registration)]
-    from concurrent.futures import ThreadPoolExecutor
-
     with ThreadPoolExecutor(AT_ONCE) as pool:
         alive = list(pool.map(is_alive, registrations))
     return [

@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 from typing import NamedTuple
 
-from tiniscript.cli.robot.event_printer import MARK
+from tiniscript.cli.robot.bookkeeping import MARK
 from tiniscript.codegen.lower import Place
 from tiniscript.diagnostics import codes
 from tiniscript.fixed_point import as_text

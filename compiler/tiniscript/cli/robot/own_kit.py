@@ -8,16 +8,13 @@ from __future__ import annotations
 
 import sys
 from argparse import Namespace
-from typing import TYPE_CHECKING
 
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
+from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.texts.common import text
 from tiniscript.library.known_kits import of_kit
 from tiniscript.robots.profile import Robot
-
-if TYPE_CHECKING:
-    from tiniscript.cli.robot.connect import Connection
 
 
 def take(connection: Connection, options: Namespace) -> bool:
@@ -42,7 +39,6 @@ def of_answering(options: Namespace, robot: Robot, language: str) -> Robot | Non
 
     Returns None if no robot answers, its kit is unknown, or it is `robot`.
     """
-    from tiniscript.cli.robot.connect import Connection
     from tiniscript.cli.robot.simulator import running_address
 
     own = Namespace(**{**vars(options), "verb": "check", "asks_nothing": True})

@@ -17,6 +17,7 @@ from time import monotonic
 from tiniscript import files
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
+from tiniscript.studio.recordings import MOST_MS, VERSION
 
 
 class Rows:
@@ -87,8 +88,6 @@ class Recorder:
         began_s: float | None,
         robot_ms: Callable[[str], int] | None = None,
     ) -> None:
-        from tiniscript.studio.recordings import VERSION
-
         head = {"tiniscript_recording": VERSION, "program": f"{program:08x}", "robot": robot}
         self._began_s = began_s
         self._robot_ms = robot_ms
@@ -100,8 +99,6 @@ class Recorder:
         """Add an event as `EventPrinter` tells it, at the time at which it came here."""
         if self._is_over or name not in ("SHOW", *ENDS):
             return
-        from tiniscript.studio.recordings import MOST_MS
-
         event = f"{name} {what}" if name in ("SHOW", "FAULT") else name
         if self._began_s is None:
             self._began_s = monotonic()
@@ -132,8 +129,6 @@ class Recorder:
         return 0 if self._began_s is None else round((monotonic() - self._began_s) * 1000)
 
     def _end(self, ms: int, event: str) -> None:
-        from tiniscript.studio.recordings import MOST_MS
-
         self._is_over = True
         self._put(min(ms, MOST_MS), event)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import socket
+import ssl
 import time
 from argparse import Namespace
 from ipaddress import IPv4Address
@@ -68,8 +69,6 @@ def _tls(options: Namespace, place: broker_options.Place, is_name: bool) -> Tls 
 
 def _certificate(data: bytes) -> bytes | None:
     """Return the one certificate that a file has, in DER, or None."""
-    import ssl
-
     texts = re.findall(_PEM, data.decode("latin-1"), re.DOTALL)
     if len(texts) > 1:
         return None

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.robot import simulator_options
-from tiniscript.cli.robot.event_printer import Bookkeeping
+from tiniscript.cli.robot.bookkeeping import Bookkeeping
 from tiniscript.cli.terminal import FRAME_S
 from tiniscript.cli.texts.common import text
 from tiniscript.robots.profile import Robot

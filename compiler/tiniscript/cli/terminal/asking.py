@@ -6,6 +6,7 @@ A password is in no argument, so no list of processes and no history has it.
 from __future__ import annotations
 
 import sys
+from getpass import getpass
 
 from tiniscript.cli.errors import CommandError
 
@@ -32,8 +33,6 @@ def password(prompt: str, least: int, most: int, complaint: str) -> bytes:
     Raises CommandError `complaint` if it has fewer or more bytes, or some that nobody types.
     """
     if sys.stdin is not None and sys.stdin.isatty():
-        from getpass import getpass
-
         try:
             data = getpass(prompt).encode("utf-8", "surrogateescape")
         except EOFError:

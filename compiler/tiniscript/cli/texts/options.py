@@ -87,6 +87,13 @@ TRUST = Kind("file", reads="path_trust")
 SHELL = Kind("choice", choices=("bash", "zsh", "powershell"))
 LEVEL = Kind("choice", choices=tuple(LEVELS))
 
+# What each action of `tsc lesson` takes besides the lesson and the language.
+LESSON_ACTIONS = {
+    "show": ("teacher",),
+    "check": ("program", "texts", "seed", "csv", "plot", "json"),
+    "sheet": ("teacher", "output"),
+}
+
 A_FILE = ("FILE", "ARCHIVO")
 A_ROBOT = ("NAME|FILE", "NOMBRE|ARCHIVO")
 A_TEXT = ("TEXT", "TEXTO")

@@ -1,0 +1,43 @@
+"""What the text of an input compiles to, with its diagnostics."""
+
+from __future__ import annotations
+
+from tiniscript.cli import inputs
+from tiniscript.diagnostics.codes import in_order
+from tiniscript.kit import Kit
+from tiniscript.library import compiling as library
+from tiniscript.library.compiling import Compiled
+from tiniscript.robots.profile import Robot
+from tiniscript.source import Source
+from tiniscript.syntax.parser import parse
+from tiniscript.text.levels import LEVELS
+
+
+def compiled(
+    given: inputs.Input, robot: Robot, is_strict: bool, names_robots: bool = True
+) -> Compiled:
+    """Return the result of compiling a program's text.
+
+    `is_strict`: a program that is too large for the robot is a mistake, else a warning.
+    `names_robots`: the command has `--robot`.
+    """
+    return library.compiled(given.data, robot, given.name, is_strict, names_robots=names_robots)
+
+
+def for_level(found: Compiled, robot: Robot, name: str | None) -> Compiled:
+    """Return `found` with what a robot of the level `name` lacks to read the program as text."""
+    if name is None or found.program is None or not found.is_right:
+        return found
+    from tiniscript.text.fitting import misfits
+
+    lacking = misfits(found.source, found.program, robot.kit, LEVELS[name])
+    return found._replace(diagnostics=in_order([*found.diagnostics, *lacking]))
+
+
+def parsed(given: inputs.Input, kit: Kit) -> Compiled:
+    """Return only the syntax mistakes of a program's text."""
+    text = library.text_of(given.data, given.name)
+    if not isinstance(text, str):
+        return text
+    source = Source(text, given.name)
+    return Compiled(source, in_order(parse(source).diagnostics))

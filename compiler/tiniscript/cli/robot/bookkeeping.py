@@ -1,0 +1,31 @@
+"""The values that `tsc live` has a robot show only to keep its variables: nobody else is told."""
+
+from __future__ import annotations
+
+from tiniscript.link.outcomes import Event
+
+MARK = -(2**31)  # the smallest number there is
+
+
+class Bookkeeping:
+    """Recognizes the values in a run that `tsc live` uses to keep its variables."""
+
+    def __init__(self) -> None:
+        self.is_on = False
+
+    def hides(self, event: Event) -> bool:
+        if event.name in ("STARTED", "DONE", "FAULT", "STOPPED", "ENDED", "RESTARTED"):
+            self.is_on = False
+        elif event.name != "SHOW":
+            return False
+        elif event.value == MARK and not event.is_yes_no:
+            self.is_on = True
+        return self.is_on
+
+    def hides_trace(self, what: str, values: tuple[int, ...]) -> bool:
+        """The same for an action in the trace of a virtual robot."""
+        if what in ("START", "DONE", "FAULT", "STOP", "OFF"):
+            self.is_on = False
+        elif what == "SHOW" and values == (MARK,):
+            self.is_on = True
+        return self.is_on and what == "SHOW"
