@@ -1,4 +1,4 @@
-"""The lessons beside the program: read, checked as by the command, and kept on the device."""
+"""The lessons beside the simulator: step by step, checked as by the command, kept on the device."""
 
 from __future__ import annotations
 
@@ -21,15 +21,18 @@ PATIENCE_MS = 240_000  # a busy computer drives through all worlds of a lesson
 @pytest.fixture
 def page(page: Page) -> Page:
     page.set_viewport_size({"width": 1366, "height": 768})
+    page.select_option("#speed", "20")
     page.click("#side_lessons")
-    page.locator("#lesson_check:enabled").wait_for()
+    page.locator("#lesson:enabled").wait_for()
     return page
 
 
 def choose(page: Page, number: int) -> None:
+    """See the task of a lesson."""
     page.select_option("#lesson", str(number))
-    title = catalogue.page(FOLDERS[number - 1], catalogue.PUPIL, "en").partition("## ")[2]
-    page.locator("#lesson_page h2").first.filter(has_text=title.partition("\n")[0]).wait_for()
+    page.locator(f"#lesson_page[data-lesson='{number}']").wait_for()
+    page.locator("#lesson_steps button").last.click()
+    page.locator("#lesson_check:enabled").wait_for()
 
 
 def check(page: Page, program: str) -> tuple[str, list[str]]:
@@ -96,13 +99,63 @@ def test_a_check_can_be_ended(page: Page) -> None:
     assert check(page, right[0].program) == ("passed", [])  # and not the other one's verdict
 
 
+def test_the_run_that_is_judged_is_seen_until_it_fails(page: Page) -> None:
+    """The robot stands at the wall that it touched; then the answer comes."""
+    choose(page, 1)
+    write(page, "SI|F(5, 80)")
+    page.select_option("#speed", "1")
+    page.click("#lesson_check")
+    page.locator("#lesson_said", has_text="Watch what the robot does").wait_for()
+    page.locator("html[data-phase=running]").wait_for(state="attached")
+    assert page.locator("#arena").is_visible()
+    assert page.locator("#lesson_said[data-verdict]").count() == 0
+    page.locator("#lesson_said[data-verdict=failed]").wait_for()
+    values = page.locator("#values dd")
+    assert (values.nth(0).inner_text(), values.nth(2).inner_text()) == ("3.0 s", "1")
+    assert page.locator("html[data-phase=ended]").count() == 1
+
+
+def test_who_has_seen_enough_gets_the_answer_at_once(page: Page) -> None:
+    choose(page, 2)
+    write(page, "F(3, 80); W(9)")
+    page.select_option("#speed", "1")
+    for button in ("#lesson_end", "#stop"):
+        page.click("#lesson_check")
+        page.locator("#lesson_end", has_text="Skip").wait_for()
+        page.click(button)
+        page.locator("#lesson_said[data-verdict=failed]").wait_for()
+        assert page.locator("#lesson_end").is_hidden()
+
+
+def test_a_lesson_is_one_step_at_a_time(page: Page) -> None:
+    choose(page, 2)
+    steps = page.locator("#lesson_steps button")
+    steps.first.click()
+    assert "several instructions" in page.inner_text("#lesson_page")
+    assert page.locator("#lesson_check").is_hidden() and page.locator("#lesson_hint").is_hidden()
+    for k in range(steps.count() - 1):
+        assert steps.nth(k).get_attribute("aria-current") == "step"
+        page.click("#lesson_next")
+    assert page.locator("#lesson_next").is_hidden()
+    page.click("#lesson_hint summary")
+    assert "Three instructions" in page.inner_text("#lesson_hint_said")
+    right, _ = catalogue.answers(FOLDERS[1])
+    assert check(page, right[0].program)[0] == "passed"
+    page.get_by_role("button", name="Next lesson").click()
+    page.locator("#lesson_page", has_text="behind a block of houses").wait_for()
+    assert page.input_value("#lesson") == "3"
+    assert steps.first.get_attribute("aria-current") == "step"
+    label = page.locator("#world option:checked").text_content()
+    assert label == "Lesson 3"
+
+
 def test_a_verdict_is_of_the_program_that_is_there(page: Page) -> None:
     choose(page, 1)
     right, _ = catalogue.answers(FOLDERS[0])
     assert check(page, right[0].program)[0] == "passed"
     page.locator(".cm-content").focus()
     page.keyboard.type(" ")
-    page.locator("#lesson_said:not([data-verdict])").wait_for()
+    page.locator("#lesson_said:not([data-verdict])").wait_for(state="attached")
     write(page, SLOW)
     page.click("#lesson_check")
     page.locator("#lesson_end").wait_for()
@@ -116,9 +169,6 @@ def test_the_world_where_it_failed_is_seen(page: Page) -> None:
     _, wrong = catalogue.answers(FOLDERS[11])
     assert check(page, wrong[0].program)[0] == "failed"
     said = page.inner_text("#lesson_said")
-    page.click("#lesson_world")
-    page.locator("#arena").wait_for()
-    page.locator("html[data-image]:not([data-image=''])").wait_for(state="attached")
     assert page.input_value("#robot") == "liner"
     label = page.locator("#world option:checked").inner_text()
     assert label.startswith("Lesson 12, world ") and label.rpartition(" ")[2] in said
@@ -129,16 +179,19 @@ def test_the_world_where_it_failed_is_seen(page: Page) -> None:
     page.locator("html[data-phase=paused]").wait_for(state="attached")
     page.locator("#values dd").first.filter(has_text=" s").wait_for()
     page.keyboard.press("Escape")
+    page.click("#side_virtual")
     page.select_option("#world", "obstacles")
     assert page.locator("#world option", has_text="12").count() == 0
+    page.click("#side_lessons")
+    page.locator("#world option:checked", has_text="12").wait_for(state="attached")
 
 
 def test_a_page_of_a_lesson_is_read_in_spanish_and_its_programs_are_used(page: Page) -> None:
     choose(page, 4)
+    page.locator("#lesson_steps button").nth(1).click()
     page.select_option("#language", "es")
-    page.locator("#lesson_page h2", has_text="Lo que necesitas").wait_for()
+    page.locator("#lesson_page", has_text="repite cuatro veces").wait_for()
     assert page.locator("#lesson option").nth(3).inner_text().startswith("4. Un cuadrado con LOOP")
-    assert "tsc lesson check" not in page.inner_text("#lesson_page")
     assert page.locator("#lesson_page code", has_text="LOOP(4)").count() == 1
     assert "`" not in page.inner_text("#lesson_page") and "**" not in page.inner_text(
         "#lesson_page"
@@ -153,20 +206,48 @@ def test_what_is_done_is_kept(pages: Pages) -> None:
     right, _ = catalogue.answers(FOLDERS[1])
     page.click("#side_lessons")
     kept = (json.dumps(["01_first_line", 5, "<b>", "x" * 500, None]), '"x"', "no JSON", "[]")
+    done = page.locator("#lesson option", has_text="✓")
     for k, each in enumerate(kept):
         page.evaluate("kept => localStorage.setItem('tiniscript.lessons', kept)", each)
         page.select_option("#language", "es")
-        page.locator("#lesson_said", has_text="Lecciones terminadas").wait_for()
+        page.locator("#lesson option", has_text="línea").first.wait_for(state="attached")
         page.select_option("#language", "en")
-        page.locator("#lesson_said", has_text="lessons done").wait_for()
-        assert page.inner_text("#lesson_said") == f"{int(k == 0)} of {len(FOLDERS)} lessons done."
-    page.select_option("#lesson", "2")
+        page.locator("#lesson option", has_text="first line").wait_for(state="attached")
+        assert done.count() == int(k == 0)
+    choose(page, 2)
+    page.select_option("#speed", "20")
     assert check(page, right[0].program)[0] == "passed"
     assert page.locator("#lesson option:checked").inner_text().endswith("✓ done")
     page.reload()
     checked(page)
     page.click("#side_lessons")
-    page.locator("#lesson_said", has_text=f"1 of {len(FOLDERS)}").wait_for()
+    done.first.wait_for(state="attached")
+
+
+def test_the_keyboard_alone_leads_from_the_start_to_a_checked_lesson(pages: Pages) -> None:
+    page = pages.open("start")
+    axe_of = [axe(page)]
+
+    def press(where: str) -> None:
+        """Go on with Tab to an element, and press Enter."""
+        for _ in range(60):
+            if page.evaluate("where => document.activeElement.matches(where)", where):
+                return page.keyboard.press("Enter")
+            page.keyboard.press("Tab")
+        raise AssertionError(f"Tab does not lead to {where}")
+
+    press("#start_lessons")
+    page.locator("#lesson_next:enabled").wait_for()
+    axe_of.append(axe(page))
+    press("#lesson_page .program button")
+    noted(page, "It is in the program now")
+    press("#lesson_steps li:last-child button")
+    page.locator("#lesson_check").wait_for()
+    press("#lesson_check")
+    page.locator("#lesson_said[data-verdict=failed]").wait_for()
+    assert page.evaluate("document.activeElement.id") == "lesson_check"
+    assert "54 cm" in page.inner_text("#lesson_findings")
+    assert axe_of == [[], []]
 
 
 def test_lessons_that_do_not_come_are_told_and_come_later(pages: Pages) -> None:
@@ -174,11 +255,11 @@ def test_lessons_that_do_not_come_are_told_and_come_later(pages: Pages) -> None:
     page.route("**/lessons.zip", lambda route: route.abort())
     page.click("#side_lessons")
     page.locator("#lesson_said", has_text="did not load").wait_for()
-    assert page.locator("#lesson_check").is_disabled()
+    assert page.locator("#lesson_next").is_disabled()
     page.unroute("**/lessons.zip")
     pages.wrong.clear()
     page.click("#side_lessons")
-    page.locator("#lesson_check:enabled").wait_for()
+    page.locator("#lesson_next:enabled").wait_for()
 
 
 def test_axe_finds_nothing(page: Page) -> None:

@@ -11,6 +11,7 @@ from pathlib import Path
 
 from tiniscript import robots
 from tiniscript.lessons.lesson import Answer, Criterion, Lesson, LessonRefused
+from tiniscript.lessons.markdown import printed
 from tiniscript.lessons.reader import read, read_answers
 from tiniscript.lessons.variation import point_of
 from tiniscript.robots.profile import ProfileRefused
@@ -96,7 +97,12 @@ def load(folder: Path) -> Lesson:
 
 
 def page(folder: Path, who: str, language: str) -> str:
-    """Return a page of a lesson with its numbers, as Markdown. Raises LessonRefused."""
+    """Return a page of a lesson as it is printed, as Markdown. Raises LessonRefused."""
+    return printed(whole_page(folder, who, language))
+
+
+def whole_page(folder: Path, who: str, language: str) -> str:
+    """Return a page of a lesson with its numbers and its marks. Raises LessonRefused."""
     path = folder / f"{who}.{language}.md"
     if not path.is_file():
         raise LessonRefused(("no_page", {"file": shown(path.name)}))

@@ -20,13 +20,15 @@ STILL_CM = 1.0  # less is no move
 class Finding(NamedTuple):
     """What is missing. `kind` is that of the criterion, or "" for the run as a whole.
 
-    `key` names a sentence. `labels` is what its place is called in each language.
+    `key` names a sentence. `labels` is what its place is called in each language. `ms`: when it
+    happened; None where it is known only at the end of the run.
     """
 
     kind: str
     key: str
     values: Mapping[str, str] = {}
     labels: Mapping[str, str] = {}
+    ms: int | None = None
 
 
 class Task(NamedTuple):

@@ -116,7 +116,8 @@ def _never_touches(criterion: Criterion, task: Task) -> Finding | None:
     if not touches:
         return None
     first = touches[0]
-    return Finding("never_touches", f"touches/{first.what}", {"seconds": in_seconds(first.ms)})
+    seconds = {"seconds": in_seconds(first.ms)}
+    return Finding("never_touches", f"touches/{first.what}", seconds, ms=first.ms)
 
 
 def _follows(criterion: Criterion, task: Task) -> Finding | None:
@@ -146,7 +147,8 @@ def _follows(criterion: Criterion, task: Task) -> Finding | None:
     values = {"cm": in_cm(followed_cm, least_cm), "least": f"{least_cm:g}"}
     if off_ms is not None:
         key = "early" if followed_cm < least_cm / 4 and off_ms < EARLY_MS else "off"
-        return Finding("follows", f"follows/{key}", {**values, "seconds": in_seconds(off_ms)})
+        values["seconds"] = in_seconds(off_ms)
+        return Finding("follows", f"follows/{key}", values, ms=off_ms)
     if followed_cm >= least_cm:
         return None
     values["seconds"] = in_seconds(run.end_ms)

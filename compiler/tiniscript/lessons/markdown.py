@@ -2,6 +2,9 @@
 
 Headings (`#`, `##`), paragraphs, lists (`-`, `- [ ]`, `1.`), tables, and fences of programs; in
 lines `**bold**` and `` `code` ``. Anything else is a paragraph. Knows no HTML (`sheet`).
+
+A pupil's page is printed, and it is read beside the studio's simulator. A line whose text begins
+with `[print]` is only in the first, one with `[page]` or `[hint]` only in the second.
 """
 
 from __future__ import annotations
@@ -15,6 +18,8 @@ from tiniscript.source import printable
 WIDTH = 80  # columns of a page on a terminal
 ITEM = re.compile(r"(- \[ \]|-|[0-9]{1,2}\.) +(.*)")
 KINDS = {"- [ ]": "checks", "-": "list"}
+MARK = re.compile(r"((?:-|[0-9]{1,2}\.) +)?\[(print|page|hint)\] +")
+HINT = "[hint] "
 
 
 class Block(NamedTuple):
@@ -75,6 +80,27 @@ def _paragraph(lines: list[str]) -> list[Block]:
     number = re.match(r"[0-9]+", lines[0])
     first = int(number[0]) if number and found[0][0] == "steps" else 1
     return [Block(kind, tuple((row,) for row in rows), first) for kind, rows in found]
+
+
+def printed(page: str) -> str:
+    """Return what is printed of a page."""
+    return _of(page, {"print": ""})
+
+
+def beside_simulator(page: str) -> str:
+    """Return what is read of a page in the studio; a hint is a paragraph that begins with HINT."""
+    return _of(page, {"page": "", "hint": HINT})
+
+
+def _of(page: str, kept: dict[str, str]) -> str:
+    found = []
+    for line in page.split("\n"):
+        mark = MARK.match(line)
+        if mark is None:
+            found.append(line)
+        elif mark[2] in kept:
+            found.append((mark[1] or "") + kept[mark[2]] + line[mark.end() :])
+    return "\n".join(found)
 
 
 def as_text(page: str) -> str:

@@ -190,7 +190,9 @@ def _stays_in(criterion: Criterion, task: Task) -> Finding | None:
         if criterion.area:
             is_out = _is_outside(criterion, task, _wheels(task.run, pose))
         if is_out:
-            return Finding("stays_in", "stays_in", {"seconds": in_seconds(ms)}, criterion.labels)
+            return Finding(
+                "stays_in", "stays_in", {"seconds": in_seconds(ms)}, criterion.labels, ms
+            )
     return None
 
 

@@ -110,7 +110,7 @@ class Trial:
 
     def __init__(self, image: Image, profile: Robot, lesson: Lesson, seed: int) -> None:
         """Raises WorldRefused where the robot does not fit into that world."""
-        robot = self._robot = VirtualRobot(
+        robot = self.robot = VirtualRobot(
             profile, varied(lesson, seed), Settings(seed=seed, noise=lesson.noise, eeprom_us=0)
         )
         self._witness = _Witness(robot, seed)
@@ -128,7 +128,7 @@ class Trial:
 
     def go(self, most_ms: int | None = None) -> Run | None:
         """Let the robot's time go on, at most by `most_ms`; return what it did, once it is over."""
-        robot, witness = self._robot, self._witness
+        robot, witness = self.robot, self._witness
         if self._asks:
             return witness.run(ASKS)
         until_ms = self._limit_ms if most_ms is None else robot.now_ms + most_ms

@@ -1,7 +1,7 @@
-"""The lessons in the page: their pages, their worlds, and what comes of a program.
+"""The lessons in the page: their steps, their worlds, and what comes of a program.
 
-Pupils see there what `tsc lesson show` shows, and hear what `tsc lesson check` says. The page
-fetches this when lessons are first looked at.
+Pupils hear there what `tsc lesson check` says, and see the run that it is said of. The page fetches
+this when lessons are first looked at.
 """
 
 from __future__ import annotations
@@ -10,19 +10,23 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+from tiniscript.bytecode.image import unpack
 from tiniscript.lessons import catalogue
 from tiniscript.lessons.lesson import Lesson
-from tiniscript.lessons.markdown import Block, blocks
+from tiniscript.lessons.markdown import HINT, Block, beside_simulator, blocks
 from tiniscript.lessons.marking import Marking, Outcome
+from tiniscript.lessons.running import ASKS, STEP_MS, Trial
 from tiniscript.lessons.sentences import sentence
 from tiniscript.lessons.variation import varied
 from tiniscript.library.compiling import compiled, for_robot, maker
+from tiniscript.link.session import Session
 from tiniscript.studio.checking import profile_of
+from tiniscript.studio.simulation import NONCE, Marks, Simulation
 from tiniscript.studio.world_form import Form, form_of
 from tiniscript.virtual.world import World
 
 MISTAKES = "mistakes"
-COMMAND = "`tsc lesson check "  # a paragraph for those who have a terminal
+STEPS, TASK = 2, 3  # of a page's headings, behind what is needed
 
 
 def titles(language: str) -> list[dict[str, Any]]:
@@ -34,10 +38,38 @@ def titles(language: str) -> list[dict[str, Any]]:
     ]  # fmt: skip
 
 
-def page(number: int, language: str) -> list[dict[str, Any]]:
-    """Return the blocks of a pupil's page, without its title."""
-    found = blocks(catalogue.page(_folder(number), catalogue.PUPIL, language))
-    return [each._asdict() for each in found if not _is_left_out(each)]
+def steps(number: int, language: str) -> list[dict[str, Any]]:
+    """Return what to do, one step after the other: its blocks, and a hint. The last is the task."""
+    written = catalogue.whole_page(_folder(number), catalogue.PUPIL, language)
+    found: list[tuple[list[Block], list[str]]] = []
+    before: list[Block] = []  # what the lesson is about stands at its first step
+    section = 0
+    for block in blocks(beside_simulator(written)):
+        if block.kind == "heading":
+            section += 1
+            if section == TASK:
+                found.append(([], []))
+        elif section == 0 and block.kind == "paragraph":
+            before.append(block)
+        elif section == STEPS and block.kind == "steps":
+            found += (([Block("paragraph", (row,))], []) for row in block.rows)
+        elif section in (STEPS, TASK) and block.kind in ("paragraph", "program"):
+            text = block.rows[0][0] if block.rows else ""
+            if text.startswith(HINT):
+                found[-1][1].append(text.removeprefix(HINT))
+            else:
+                found[-1][0].append(block)
+    found[0][0][:0] = before
+    return [
+        {"blocks": [_shown(each) for each in parts], "hint": " ".join(hints)}
+        for parts, hints in found
+    ]
+
+
+def _shown(block: Block) -> dict[str, Any]:
+    """Return a block without the blanks that are filled in on paper."""
+    rows = [[row.removesuffix(" ____") for row in each] for each in block.rows]
+    return {"kind": block.kind, "rows": rows}
 
 
 def world(number: int, seed: int) -> World:
@@ -68,7 +100,7 @@ class Check:
         """Let the robot's time go on, at most by `most_ms`.
 
         `verdict` is empty while it goes on. `seed` is that of the world where it is, or where the
-        program failed: 0 for none.
+        program failed: 0 for none. `run` is what to see of it then: in which world, and until when.
         """
         if self._marking is None:
             return self._said(MISTAKES, 0)
@@ -80,12 +112,45 @@ class Check:
     def _said(self, verdict: str, seed: int, outcome: Outcome | None = None) -> dict[str, Any]:
         findings = outcome.findings if outcome is not None else ()
         said = [sentence(each, self._language) for each in findings]
-        return {"verdict": verdict, "seed": seed, "worlds": self._worlds, "said": said}
+        run = None
+        if outcome is not None and outcome.run.ending != ASKS:
+            first = findings[0].ms if findings else None
+            until_ms = outcome.run.end_ms if first is None else first
+            run = {"seed": outcome.run.seed, "until_ms": until_ms}
+        return {"verdict": verdict, "seed": seed, "worlds": self._worlds, "said": said, "run": run}
 
 
-def _is_left_out(block: Block) -> bool:
-    first = block.rows[0][0] if block.rows else ""
-    return block.kind == "title" or (block.kind == "paragraph" and first.startswith(COMMAND))
+class JudgedRun(Simulation):
+    """The run that was judged, once more: the same as before, up to when it missed something."""
+
+    def __init__(self, number: int, seed: int, until_ms: int, image: bytes, marks: Marks) -> None:
+        lesson = _lesson(number)
+        profile = profile_of(lesson.robot)
+        self.robot = Trial(unpack(image), profile, lesson, seed).robot
+        self.session = Session(NONCE, profile.board.baud, profile.kit.fingerprint)
+        self.fault_at = None
+        self.marks = marks._replace(breakpoints=())
+        self._owed_ms = 0  # that are less than a look of the judge's
+        assert self.robot.started_ms is not None, "the program does not begin"
+        self._end_ms = self.robot.started_ms + min(until_ms, round(lesson.seconds * 1000))
+        self.go(0)
+
+    def go(self, duration_ms: int) -> None:
+        """Let time go on as it did for the judge, who looks where the robot is now and then."""
+        robot = self.robot
+        self._owed_ms += duration_ms
+        while robot.is_running and self._owed_ms >= STEP_MS and robot.now_ms < self._end_ms:
+            self._owed_ms -= STEP_MS
+            robot.step(min(robot.now_ms + STEP_MS, self._end_ms))
+            robot.driving.look(robot.now_ms)
+        if robot.now_ms >= self._end_ms:
+            robot.rest()
+
+    def step(self, limit_ms: int) -> None:
+        self.go(STEP_MS)
+
+    def stop(self) -> None:
+        self.robot.rest()
 
 
 def _folder(number: int) -> Path:

@@ -39,19 +39,25 @@ def _world(where: Any) -> World:
 def _power_on(fields: Answer, data: bytes) -> Answer:
     """Switch the virtual robot on in `world`: a shipped one's name, a form, or one of a lesson.
 
-    With `is_held` it stands in front of the program's first part.
+    With `is_held` it stands in front of the program's first part. A world of a lesson with an
+    `until_ms` brings the run that was judged there, up to then.
     """
     global _simulation
     if _simulation is not None:
         _simulation.close()
         _simulation = None
+    where = fields["world"]
     try:
-        world = _world(fields["world"])
         marks = Marks(tuple(fields.get("parts", ())), tuple(fields.get("breakpoints", ())),
                       fields.get("variables", 0), fields.get("is_held", False))  # fmt: skip
-        _simulation = Simulation(fields["robot"], world, data, marks)
+        if "until_ms" in where:
+            judged = (where["lesson"], where["seed"], where["until_ms"])
+            _simulation = _lessons().JudgedRun(*judged, data, marks)
+        else:
+            _simulation = Simulation(fields["robot"], _world(where), data, marks)
     except WorldRefused as refused:
         return {"refused": describe(refused, fields["language"])}
+    assert _simulation is not None
     return _simulation.state()
 
 
@@ -141,8 +147,8 @@ def _lesson_titles(fields: Answer, data: bytes) -> Answer:
     return {"lessons": _lessons().titles(fields["language"])}
 
 
-def _lesson_page(fields: Answer, data: bytes) -> Answer:
-    return {"blocks": _lessons().page(fields["number"], fields["language"])}
+def _lesson_steps(fields: Answer, data: bytes) -> Answer:
+    return {"steps": _lessons().steps(fields["number"], fields["language"])}
 
 
 def _lesson_world(fields: Answer, data: bytes) -> Answer:
@@ -164,6 +170,6 @@ ASKED: dict[str, Callable[[Answer, bytes], Answer]] = {
     "power_on": _power_on, "go": _go, "step": _step, "go_on": _go_on, "breakpoints": _breakpoints,
     "stop": _stop, "push": _push, "open_world": _open_world, "write_world": _write_world,
     "replay": _replay,
-    "lesson_titles": _lesson_titles, "lesson_page": _lesson_page, "lesson_world": _lesson_world,
+    "lesson_titles": _lesson_titles, "lesson_steps": _lesson_steps, "lesson_world": _lesson_world,
     "lesson_check": _lesson_check, "lesson_go": _lesson_go,
 }  # fmt: skip

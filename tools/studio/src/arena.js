@@ -14,6 +14,7 @@ const FINGER = 22; // pixels that a finger may miss
 const MOST_POINTS = 5000; // of a way
 const MOST_WAYS = 4; // of runs before, which are pale
 const SHAKE_MS = 240;
+const SAID_MS = 2500; // of the robot's time, for what it shows
 
 export class Arena {
   #canvas;
@@ -26,6 +27,8 @@ export class Arena {
   #rolled = [0, 0];
   #seen_ms = 0; // of the robot's time
   #beeps_until_ms = 0;
+  /** What it has shown last, and when. @type {[string, number]} */
+  #said = ['', 0];
   #scale = 1; // pixels of the canvas for a centimetre
   /** What is chosen to be changed. @type {{points: Place[], point: number} | null} */
   #mark = null;
@@ -50,6 +53,7 @@ export class Arena {
     this.#ways = [...this.#ways.filter((way) => way.length > 1), []].slice(-1 - MOST_WAYS);
     this.#rolled = [0, 0];
     this.#seen_ms = this.#beeps_until_ms = 0;
+    this.#said = ['', 0];
   }
 
   /** Takes what its pen has drawn off the floor. */
@@ -77,6 +81,11 @@ export class Arena {
   /** @param {number} until_ms of the robot's time */
   showBeep(until_ms) {
     this.#beeps_until_ms = until_ms;
+  }
+
+  /** @param {string} what @param {number} at_ms of the robot's time */
+  say(what, at_ms) {
+    this.#said = [what, at_ms];
   }
 
   /** Shakes the picture, unless this person wants nothing to move. */
@@ -180,6 +189,33 @@ export class Arena {
     drawRobot(pen, robot, state, { rolled: this.#rolled, isBeeping });
     pen.restore();
     if (state?.touches) this.#drawStar(...state.touches);
+    const [what, at_ms] = this.#said;
+    if (what && state && (!state.is_running || state.now_ms - at_ms < SAID_MS)) this.#drawSaid(x, y, what);
+  }
+
+  /** A bubble beside the robot, inside the picture. @param {number} x @param {number} y @param {string} what */
+  #drawSaid(x, y, what) {
+    const pen = this.#context;
+    const { a: scale, e: left, f: bottom } = pen.getTransform();
+    const size = 15 * (window.devicePixelRatio || 1);
+    pen.save();
+    pen.setTransform(1, 0, 0, 1, 0, 0);
+    pen.font = `600 ${size}px system-ui, sans-serif`;
+    const width = pen.measureText(what).width + size, height = 1.6 * size;
+    const [robot_x, robot_y] = [left + x * scale, bottom - y * scale];
+    const from_x = Math.max(2, Math.min(robot_x + 0.5 * size, this.#canvas.width - width - 2));
+    const isBelow = robot_y - 12 * scale - height < 2;
+    const from_y = isBelow ? robot_y + 12 * scale : robot_y - 12 * scale - height;
+    pen.beginPath();
+    pen.roundRect(from_x, from_y, width, height, 0.5 * size);
+    pen.fillStyle = '#fff';
+    pen.strokeStyle = '#123b63';
+    pen.lineWidth = size / 8;
+    pen.fill();
+    pen.stroke();
+    pen.fillStyle = '#123b63';
+    pen.fillText(what, from_x + 0.5 * size, from_y + 1.15 * size);
+    pen.restore();
   }
 
   /** Where it touches something. @param {number} x @param {number} y */

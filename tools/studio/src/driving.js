@@ -20,6 +20,7 @@ import { WorldDrawing } from './world_drawing.js';
 
 const SHOWN = 200; // lines of the trace
 const SHORT = 12; // characters of a name whose value stands beside another one
+const PLAYED_MS = 6000; // at most for a run of a lesson
 const SEEN = { arena: 'seen_arena', plot: 'seen_plot', trace: 'seen_trace' };
 
 export class Driving {
@@ -29,6 +30,7 @@ export class Driving {
   #whenCompiled;
   #starts = 0; // one that STOP or a newer one has overtaken does nothing
   #isWaiting = false; // for the compiler
+  #seenRun = () => {}; // the run of a lesson is over
   #python;
   #simulator;
   #arena = new Arena(element('arena', HTMLCanvasElement));
@@ -158,6 +160,16 @@ export class Driving {
     await this.#start(false);
   }
 
+  /**
+   * Shows the run of a lesson that was judged; resolves when it is over, or another one begins.
+   * @param {import('./lessons.js').JudgedRun} run
+   */
+  async play(run) {
+    const isStill = matchMedia('(prefers-reduced-motion: reduce)').matches;
+    await this.#start(false, run, isStill ? run.until_ms : run.until_ms / PLAYED_MS);
+    if (this.#isDriving) await new Promise((resolve) => { this.#seenRun = () => resolve(undefined); });
+  }
+
   stop() {
     this.#stop();
   }
@@ -206,6 +218,8 @@ export class Driving {
     const { world } = await this.#python.ask({ do: 'lesson_world', number, seed });
     this.#world.bring({ request: { lesson: number, seed }, shapes: world, label });
     this.begin();
+    this.#seen.value = 'arena';
+    this.#choose();
   }
 
   /** Another robot or world: what drove there has ended. */
@@ -271,8 +285,13 @@ export class Driving {
     return [...new Set([...this.#stops.values()].flat())];
   }
 
-  /** @param {boolean} isPaused */
-  async #start(isPaused) {
+  /**
+   * @param {boolean} isPaused
+   * @param {import('./lessons.js').JudgedRun | null} judged
+   * @param {number} least times as quick as the robot
+   */
+  async #start(isPaused, judged = null, least = 0) {
+    this.#seenRun();
     const start = ++this.#starts;
     this.#drawing.said = '';
     let program = this.#program();
@@ -297,7 +316,8 @@ export class Driving {
     this.#places = program.places;
     this.#variables = program.variables;
     this.#findStops();
-    await this.#simulator.begin(program, this.#work.robot, this.#world.request, this.#offsets, isPaused);
+    const world = judged ?? this.#world.request;
+    await this.#simulator.begin(program, this.#work.robot, world, judged ? [] : this.#offsets, isPaused, least);
   }
 
   #stop() {
@@ -329,6 +349,7 @@ export class Driving {
     this.#editor.showRunning(ranges.filter((each) => each !== null), Boolean(state?.is_held));
     this.#editor.showFault(state?.fault ? range : null, state?.fault ? faultSaid(state.fault) : '');
     document.documentElement.dataset['phase'] = phase;
+    if (!this.#isDriving) this.#seenRun();
   }
 
   /** What runs in the text that is seen, or what had a fault. */
@@ -353,7 +374,10 @@ export class Driving {
     }
     if (state.began_ms === null) return;
     const shown = state.events.findLast(([, what]) => what.startsWith('SHOW '));
-    if (shown) this.#shown = shown[1].slice('SHOW '.length);
+    if (shown) {
+      this.#shown = shown[1].slice('SHOW '.length);
+      this.#arena.say(this.#shown, shown[0]);
+    }
     this.#plot.add(state.now_ms - state.began_ms, [
       ...this.#sensors().map((device, k) => ({ name: device.text, value: numberOf(state.readings[k]?.text) })),
       ...this.#variables.map(({ name, is_yes_no }, k) => ({ name, value: is_yes_no ? Number(Boolean(state.variables[k])) : state.variables[k] })),
@@ -393,6 +417,7 @@ export class Driving {
       [text('bumps'), state ? String(state.bumps) : '–'],
       ...this.#sensors().map((device, k) => [nameOf(device), state ? measured(device, state.readings[k]?.text ?? '') : '–']),
       ...this.#variables.map(({ name, is_yes_no }, k) => [name, written(state?.variables[k], is_yes_no)]),
+      ...(this.#shown ? [['SHOW', this.#shown]] : []),
     ];
     element('values', HTMLElement).replaceChildren(
       ...rows.map(([name = '', value = '']) => {

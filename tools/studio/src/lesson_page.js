@@ -1,41 +1,17 @@
-// A page of a lesson: its blocks become elements. Knows no lesson.
+// A step of a lesson: its paragraphs and programs become elements. Knows no lesson.
 
 import { text } from './texts.js';
 
-/** @typedef {{kind: string, rows: string[][], first: number}} Block */
-
-/**
- * @param {Block[]} blocks
- * @param {(program: string) => void} use what is done with a program of the page
- * @returns {HTMLElement[]}
- */
-export function pageOf(blocks, use) {
-  return blocks.map((block) => elementOf(block, use));
-}
+/** @typedef {{kind: string, rows: string[][]}} Block */
 
 /**
  * @param {Block} block
- * @param {(program: string) => void} use
+ * @param {(program: string) => void} use what is done with a program of the page
+ * @returns {HTMLElement}
  */
-function elementOf({ kind, rows, first }, use) {
-  if (kind === 'program') return programOf(rows.map(([line = '']) => line).join('\n'), use);
-  if (kind === 'table') return tableOf(rows);
-  if (kind === 'heading') return filled('h2', rows[0]?.[0] ?? '');
-  if (kind === 'paragraph') return filled('p', rows[0]?.[0] ?? '');
-  const list = document.createElement(kind === 'steps' ? 'ol' : 'ul');
-  if (list instanceof HTMLOListElement) list.start = first;
-  list.append(...rows.map(([row = '']) => filled('li', row)));
-  return list;
-}
-
-/** @param {string[][]} rows the first one is the head */
-function tableOf(rows) {
-  const table = document.createElement('table');
-  rows.forEach((cells, k) => {
-    const row = table.insertRow();
-    row.append(...cells.map((cell) => filled(k ? 'td' : 'th', cell)));
-  });
-  return table;
+export function elementOf({ kind, rows }, use) {
+  const lines = rows.map(([line = '']) => line).join('\n');
+  return kind === 'program' ? programOf(lines, use) : filled('p', lines);
 }
 
 /**
@@ -60,7 +36,7 @@ function programOf(program, use) {
  * @param {string} kind
  * @param {string} line
  */
-function filled(kind, line) {
+export function filled(kind, line) {
   const found = document.createElement(kind);
   for (const part of line.split(/(\*\*.+?\*\*|`[^`]+`)/)) {
     const mark = part.startsWith('**') ? 2 : part.startsWith('`') ? 1 : 0;

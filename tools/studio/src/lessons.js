@@ -1,15 +1,24 @@
-// The lessons beside the program: one is chosen, its page is read, and the program is checked by it.
+// The lessons beside the simulator: one step at a time, and at the end a check of the program.
 //
 // The check is that of the command, in the worker. It goes on a little at a time, so that it can be
-// ended and nothing else has to wait for it.
+// ended and nothing else has to wait for it. Then the run that was judged is seen.
 
 import { element } from './elements.js';
-import { pageOf } from './lesson_page.js';
+import { elementOf, filled } from './lesson_page.js';
 import { keepDone, lessonsDone } from './progress.js';
 import { currentLanguage, text } from './texts.js';
 
 /** @typedef {{name: string, title: string, robot: string, worlds: number}} Lesson */
-/** @typedef {{verdict: '' | 'passed' | 'failed' | 'mistakes', seed: number, worlds: number, said: string[]}} Answer */
+/** @typedef {{blocks: import('./lesson_page.js').Block[], hint: string}} Step */
+/** @typedef {{lesson: number, seed: number, until_ms: number}} JudgedRun */
+/**
+ * @typedef {object} Answer
+ * @property {'' | 'passed' | 'failed' | 'mistakes'} verdict
+ * @property {number} seed
+ * @property {number} worlds
+ * @property {string[]} said
+ * @property {{seed: number, until_ms: number} | null} run
+ */
 /**
  * @typedef {object} Page what the lessons need of the page
  * @property {import('./python.js').Python} python
@@ -17,6 +26,8 @@ import { currentLanguage, text } from './texts.js';
  * @property {(robot: string) => void} setRobot
  * @property {(program: {text: string, robot: string}) => void} put another program into the editor
  * @property {(lesson: number, seed: number, label: () => string) => Promise<void>} showWorld
+ * @property {(run: JudgedRun) => Promise<void>} play resolves when it has been seen, or was stopped
+ * @property {() => void} stop
  * @property {(note: string) => void} tell
  */
 
@@ -36,7 +47,9 @@ export class Lessons {
   /** @type {Lesson[]} */
   #lessons = [];
   #number = 1;
-  #seed = 1; // of the world that is looked at
+  /** @type {Step[]} */
+  #steps = [];
+  #step = 0;
   #checks = 0; // the newest one goes on; others have been ended
   #asked = 0;
   #isShown = false;
@@ -45,7 +58,10 @@ export class Lessons {
   #end = element('lesson_end', HTMLButtonElement);
   #said = element('lesson_said', HTMLElement);
   #findings = element('lesson_findings', HTMLElement);
-  #world = element('lesson_world', HTMLButtonElement);
+  #next = element('lesson_next', HTMLButtonElement);
+  #hint = element('lesson_hint', HTMLDetailsElement);
+  #hasPassed = false;
+  #isPlaying = false;
 
   /** @param {Page} page */
   constructor(page) {
@@ -56,12 +72,17 @@ export class Lessons {
     });
     this.#check.addEventListener('click', () => this.#begin());
     this.#end.addEventListener('click', () => {
+      if (this.#isPlaying) {
+        this.#page.stop(); // which shows the verdict
+        return;
+      }
       this.#forget();
       this.#said.textContent = text('lesson_ended');
       this.#check.focus();
     });
-    this.#world.addEventListener('click', () => {
-      this.#seeWorld().catch((why) => this.#fail(why));
+    this.#next.addEventListener('click', () => {
+      if (this.#step < this.#steps.length - 1) this.#go(this.#step + 1);
+      else this.#choose(this.#number + 1).catch((why) => this.#fail(why));
     });
     this.#setReady(false);
   }
@@ -76,7 +97,10 @@ export class Lessons {
   }
 
   #show() {
-    if (this.#isShown) return;
+    if (this.#isShown) {
+      if (this.#steps.length) this.#seeWorld(1);
+      return;
+    }
     this.#isShown = true;
     this.#fetch();
   }
@@ -84,23 +108,18 @@ export class Lessons {
   /** Ends a check and forgets what was said. */
   #forget() {
     this.#checks += 1;
-    this.#seed = 1;
+    this.#isPlaying = this.#hasPassed = false;
     this.#end.hidden = true;
-    this.#check.hidden = false;
+    this.#end.textContent = text('lesson_end');
+    this.#lay();
     this.#findings.replaceChildren();
     delete this.#said.dataset['verdict'];
-    this.#said.textContent = this.#lessons.length
-      ? text('lessons_done', { done: this.#done().length, all: this.#lessons.length }) : '';
-  }
-
-  #done() {
-    const done = lessonsDone();
-    return this.#lessons.filter(({ name }) => done.has(name));
+    this.#said.textContent = '';
   }
 
   /** @param {boolean} isReady */
   #setReady(isReady) {
-    this.#choice.disabled = this.#check.disabled = this.#world.disabled = !isReady;
+    this.#choice.disabled = this.#check.disabled = this.#next.disabled = !isReady;
   }
 
   /** Fetches the names of the lessons and the page of the one that is chosen. */
@@ -123,9 +142,9 @@ export class Lessons {
   }
 
   #list() {
-    const done = new Set(this.#done());
+    const done = lessonsDone();
     this.#choice.replaceChildren(...this.#lessons.map((lesson, k) => {
-      const mark = done.has(lesson) ? ` ✓ ${text('lesson_is_done')}` : '';
+      const mark = done.has(lesson.name) ? ` ✓ ${text('lesson_is_done')}` : '';
       return new Option(`${k + 1}. ${lesson.title}${mark}`, String(k + 1));
     }));
     this.#choice.value = String(this.#number);
@@ -135,26 +154,65 @@ export class Lessons {
   async #choose(number) {
     const asked = ++this.#asked;
     const language = currentLanguage();
-    const place = element('lesson_page', HTMLElement);
+    const isOther = number !== this.#number || !this.#steps.length;
     this.#number = number;
     this.#choice.value = String(number);
     this.#forget();
-    const { blocks } = await this.#page.python.ask({ do: 'lesson_page', number, language });
+    const { steps } = await this.#page.python.ask({ do: 'lesson_steps', number, language });
     if (asked !== this.#asked) return;
-    const { robot } = /** @type {Lesson} */ (this.#lessons[number - 1]);
-    place.replaceChildren(...pageOf(blocks, (program) => {
-      this.#page.put({ text: program, robot });
-      this.#page.tell(text('lesson_used'));
-    }));
-    place.scrollTop = 0;
+    this.#steps = steps;
+    if (isOther) await this.#seeWorld(1);
+    this.#go(isOther ? 0 : this.#step);
     this.#setReady(true);
   }
 
-  async #seeWorld() {
+  /** Shows a step. @param {number} step */
+  #go(step) {
+    this.#step = step;
+    const place = element('lesson_page', HTMLElement);
+    const { blocks, hint } = /** @type {Step} */ (this.#steps[step]);
+    const { robot } = /** @type {Lesson} */ (this.#lessons[this.#number - 1]);
+    place.replaceChildren(...blocks.map((block) => elementOf(block, (program) => {
+      this.#page.put({ text: program, robot });
+      this.#page.tell(text('lesson_used'));
+    })));
+    place.dataset['lesson'] = String(this.#number);
+    element('lessons', HTMLElement).scrollTop = 0;
+    this.#hint.open = false;
+    this.#hint.hidden = !hint;
+    element('lesson_hint_said', HTMLElement).replaceChildren(filled('span', hint));
+    element('lesson_steps', HTMLElement).replaceChildren(...this.#steps.map((_, k) => {
+      const row = document.createElement('li');
+      const button = document.createElement('button');
+      const isTask = k === this.#steps.length - 1;
+      button.type = 'button';
+      button.textContent = isTask ? '★' : String(k + 1);
+      button.ariaLabel = isTask ? text('lesson_task') : text('lesson_step', { number: k + 1 });
+      if (k === step) button.setAttribute('aria-current', 'step');
+      button.addEventListener('click', () => {
+        this.#go(k);
+        element('lesson_steps', HTMLElement).querySelectorAll('button')[k]?.focus();
+      });
+      row.append(button);
+      return row;
+    }));
+    this.#lay();
+  }
+
+  /** Which buttons there are. */
+  #lay() {
+    const isTask = this.#step === this.#steps.length - 1;
+    this.#check.hidden = !isTask || !this.#end.hidden;
+    this.#next.hidden = isTask && !(this.#hasPassed && this.#number < this.#lessons.length);
+    this.#next.textContent = text(isTask ? 'lesson_other' : 'lesson_next');
+  }
+
+  /** @param {number} seed */
+  async #seeWorld(seed) {
     const { worlds, robot } = /** @type {Lesson} */ (this.#lessons[this.#number - 1]);
-    const values = { number: this.#number, seed: this.#seed };
+    const values = { number: this.#number, seed };
     this.#page.setRobot(robot);
-    await this.#page.showWorld(values.number, values.seed,
+    await this.#page.showWorld(values.number, seed,
       () => text(worlds > 1 ? 'world_of_lessons' : 'world_of_lesson', values));
   }
 
@@ -164,8 +222,8 @@ export class Lessons {
     const number = this.#number;
     const program = new TextEncoder().encode(this.#page.program());
     const { worlds } = /** @type {Lesson} */ (this.#lessons[number - 1]);
-    this.#check.hidden = true;
     this.#end.hidden = false;
+    this.#lay();
     this.#end.focus();
     this.#said.textContent = text('lesson_checking', { seed: 1, worlds });
     let most_ms = LEAST_MS;
@@ -177,7 +235,8 @@ export class Lessons {
         const answer = await this.#page.python.ask({ do: 'lesson_go', most_ms });
         if (check !== this.#checks) return;
         if (answer.verdict) {
-          this.#tell({ ...answer, verdict: answer.verdict });
+          if (answer.run) await this.#play(answer.run, answer.worlds);
+          if (check === this.#checks) this.#tell({ ...answer, verdict: answer.verdict });
           return;
         }
         this.#said.textContent = text('lesson_checking', { seed: answer.seed, worlds });
@@ -188,6 +247,16 @@ export class Lessons {
       if (check !== this.#checks) return;
       this.#fail(why);
     }
+  }
+
+  /** Shows what was judged, as far as it went well. @param {{seed: number, until_ms: number}} run @param {number} worlds */
+  async #play({ seed, until_ms }, worlds) {
+    const check = this.#checks;
+    this.#isPlaying = true;
+    this.#said.textContent = text('lesson_playing', { seed, worlds });
+    this.#end.textContent = text('lesson_skip');
+    await this.#seeWorld(seed);
+    if (check === this.#checks) await this.#page.play({ lesson: this.#number, seed, until_ms });
   }
 
   /** @param {unknown} why */
@@ -202,8 +271,9 @@ export class Lessons {
     const lesson = /** @type {Lesson} */ (this.#lessons[this.#number - 1]);
     const isKept = verdict !== 'passed' || keepDone(lesson.name);
     this.#forget();
-    if (verdict === 'passed') this.#list();
-    if (seed) this.#seed = seed;
+    this.#hasPassed = verdict === 'passed';
+    if (this.#hasPassed) this.#list();
+    this.#lay();
     this.#said.dataset['verdict'] = verdict;
     const [alone, inWorlds] = SAID[verdict];
     const isInWorlds = worlds > 1 && (seed > 0 || verdict === 'passed');
@@ -213,7 +283,9 @@ export class Lessons {
       row.textContent = sentence;
       return row;
     }));
+    this.#hint.open = false;
+    element('lessons', HTMLElement).scrollTop = 0;
     if (!isKept) this.#page.tell(text('not_kept'));
-    if (hadFocus) this.#check.focus();
+    if (hadFocus) (this.#next.hidden ? this.#check : this.#next).focus();
   }
 }

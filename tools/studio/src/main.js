@@ -16,7 +16,7 @@ import { Recorder } from './recorder.js';
 import { whyOutside } from './robot/host.js';
 import { RobotPanel } from './robot/panel.js';
 import { RobotPlace } from './robot/place.js';
-import { chooseSide, showSide } from './robot_side.js';
+import { chooseSide } from './robot_side.js';
 import { FIRST_PROGRAM } from './start/beginnings.js';
 import { beginScreens, isStart, show as showScreen } from './start/screens.js';
 import { Start } from './start/start.js';
@@ -85,10 +85,9 @@ const lessons = new Lessons({
     if (name !== work.robot) setRobot(name);
   },
   put: (program) => programs.replace({ ...program, name: '' }),
-  showWorld: async (lesson, seed, label) => {
-    await driving.showLesson(lesson, seed, label);
-    showSide('side_virtual');
-  },
+  showWorld: (lesson, seed, label) => driving.showLesson(lesson, seed, label),
+  play: (run) => driving.play(run),
+  stop: () => driving.stop(),
   tell: (said) => {
     note.textContent = said;
   },

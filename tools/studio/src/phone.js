@@ -25,7 +25,7 @@ export class Phone {
       if (!('phone' in dataset)) return;
       const isWrong = dataset['state'] === 'checked' && !dataset['image'];
       if (isWrong) this.#putAway(false);
-      else showSide('side_virtual');
+      else if (dataset['side'] !== 'side_lessons') showSide('side_virtual');
       this.show(isWrong ? 'program' : 'robot');
     });
     this.#sheet.addEventListener('click', () => this.#putAway(!this.#isAway));

@@ -1,10 +1,10 @@
-// What is seen beside the program: the virtual robot, a real one, a class, or the lessons. All go on
-// meanwhile.
+// What is seen beside the program: the virtual robot, also with the lessons above it, a real one, or a
+// class. All go on meanwhile.
 
 import { element } from './elements.js';
 
 const SIDES = [
-  { button: element('side_virtual', HTMLButtonElement), section: element('driving', HTMLElement) },
+  { button: element('side_virtual', HTMLButtonElement), section: null },
   { button: element('side_real', HTMLButtonElement), section: element('link', HTMLElement) },
   { button: element('side_class', HTMLButtonElement), section: element('class', HTMLElement) },
   { button: element('side_lessons', HTMLButtonElement), section: element('lessons', HTMLElement) },
@@ -18,6 +18,8 @@ export function chooseSide() {
 export function showSide(id) {
   for (const { button, section } of SIDES) {
     button.setAttribute('aria-pressed', String(button.id === id));
-    section.hidden = button.id !== id;
+    if (section) section.hidden = button.id !== id;
   }
+  element('driving', HTMLElement).hidden = id !== 'side_virtual' && id !== 'side_lessons';
+  document.documentElement.dataset['side'] = id;
 }

@@ -24,6 +24,7 @@ export class Simulator {
   /** @type {string[]} */
   trace = [];
   speed = 1;
+  #least = 0;
   failure = ''; // a mistake of ours
   #isAsking = false;
   isStopping = false; // it has not confirmed it yet
@@ -49,9 +50,11 @@ export class Simulator {
    * @param {unknown} world
    * @param {number[]} breakpoints offsets in its code
    * @param {boolean} isPaused in front of its first part
+   * @param {number} least times as quick as the robot, whatever `speed` is
    */
-  async begin(program, robot, world, breakpoints = [], isPaused = false) {
+  async begin(program, robot, world, breakpoints = [], isPaused = false, least = 0) {
     if (this.#isAsking) return;
+    this.#least = least;
     const bytes = program.image.match(/../g)?.map((pair) => parseInt(pair, 16)) ?? [];
     const parts = program.places.map(([offset]) => offset);
     const variables = program.variables.length;
@@ -127,7 +130,7 @@ export class Simulator {
   async #frame(now) {
     if (this.phase !== 'running') return;
     if (!this.#isAsking) {
-      this.#rest += Math.min(LOOKED_MS, now - this.#last) * this.speed;
+      this.#rest += Math.min(LOOKED_MS, now - this.#last) * Math.max(this.#least, this.speed);
       this.#last = now;
       const whole = Math.min(MOST_MS, Math.floor(this.#rest));
       if (whole > 0) {

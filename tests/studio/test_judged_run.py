@@ -1,0 +1,78 @@
+"""What the page of a lesson shows without a browser: its steps, and the run that was judged."""
+
+from __future__ import annotations
+
+import json
+import re
+
+import pytest
+
+from tiniscript.lessons import catalogue
+from tiniscript.robots.profile import LANGUAGES
+from tiniscript.studio import page_lessons
+from tiniscript.studio.checking import check
+from tiniscript.studio.simulation import Marks
+
+NUMBERS = range(1, len(catalogue.folders()) + 1)
+OF_A_TERMINAL = re.compile(r"\btsc\b|\w\.ts\b|____|--virtual|Ctrl|\[(print|page|hint)\]")
+
+
+def judged(number: int, program: str) -> tuple[dict[str, object], page_lessons.JudgedRun]:
+    """Return what a check says, and its run once more, as the page lets it go on."""
+    marking = page_lessons.Check(number, program.encode(), "en")
+    while not (answer := marking.go(700))["verdict"]:
+        pass
+    robot = catalogue.load(catalogue.folder_of(str(number))).robot
+    image = check(program.encode(), robot, "en").image
+    run = answer["run"]
+    seen = page_lessons.JudgedRun(number, run["seed"], run["until_ms"], image, Marks(()))
+    for _ in range(10_000):
+        if not seen.robot.is_running:
+            break
+        seen.go(33)
+    return answer, seen
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+@pytest.mark.parametrize("number", NUMBERS)
+def test_the_steps_are_written_for_the_page(number: int, language: str) -> None:
+    steps = page_lessons.steps(number, language)
+    assert len(steps) >= 4 and all(each["blocks"] for each in steps)
+    assert steps[-1]["hint"]
+    assert not OF_A_TERMINAL.search(json.dumps(steps, ensure_ascii=False))
+    printed = catalogue.page(catalogue.folder_of(str(number)), catalogue.PUPIL, language)
+    assert steps[-1]["hint"] not in printed
+    assert re.search(r"`tsc lesson check \d+ \w+\.ts`", printed)
+    assert not re.search(r"\[(print|page|hint)\]", printed)
+
+
+@pytest.mark.parametrize(
+    "number, program, seconds, touches",
+    [(1, "SI|F(5, 80)", 3.0, True), (1, "SI|F(2.5, 80)", 2.5, False),
+     (7, "SB|F(4, 80)", None, True), (10, "M(40, 40); W(20)", 11.5, True)],
+)  # fmt: skip
+def test_the_run_that_was_judged_is_the_one_that_is_seen(
+    number: int, program: str, seconds: float | None, touches: bool
+) -> None:
+    """Also where chance moves sensors, motors and walls: it ends where the judge saw it."""
+    answer, seen = judged(number, program)
+    state = seen.state()
+    assert (state["touches"] is not None) is touches
+    assert not state["is_running"]
+    took_s = (state["now_ms"] - state["began_ms"]) / 1000
+    if touches:
+        said = re.search(r"after (\d+\.\d) s", " ".join(answer["said"]))  # type: ignore[arg-type]
+        assert said and abs(took_s - float(said[1])) < 0.1
+    if seconds is not None:
+        assert round(took_s, 1) == seconds
+
+
+def test_a_judged_run_can_be_stopped_before_its_end() -> None:
+    _, seen = judged(1, "SI|F(2.5, 80)")
+    image = check(b"SI|F(2.5, 80)", "tinibot", "en").image
+    seen = page_lessons.JudgedRun(1, 1, 2500, image, Marks(()))
+    seen.go(1000)
+    seen.stop()
+    before = seen.state()["pose"]
+    seen.go(1000)
+    assert seen.state()["pose"] == before and not seen.state()["is_running"]
