@@ -19,7 +19,6 @@ BENCHMARKS = (
     "text",
     "tasks",
     "virtual",
-    "obstacles",
     "upload",
     "large_upload",
     "studio",

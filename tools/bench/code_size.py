@@ -4,12 +4,10 @@ The corpus is each program in a fence `tiniscript` of README.md, bytecode_spec.m
 lessons that compiles, each text once, and the files of `examples/`; for the robot that its fence
 `senses` names, else for the first shipped one that it compiles for. A statement is one of the IR:
 an arm of an IF is part of the IF, END_... is none, and a DEF, a TASK and a WHEN are one each.
-`--opcodes` also says how often each instruction occurs.
 """
 
 from __future__ import annotations
 
-import argparse
 import sys
 from collections import Counter
 from collections.abc import Iterator
@@ -81,18 +79,12 @@ def measured() -> Measured:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description="Measure the code of the documents' programs.")
-    parser.add_argument("--opcodes", action="store_true", help="say how often each one occurs")
-    with_opcodes: bool = parser.parse_args().opcodes
     found = measured()
     print(
         f"{found.programs} programs, {found.statements} statements, {found.code_bytes} code_bytes: "
         f"{found.per_statement:.2f} bytes a statement"
     )
     print(f"in instruction set 1.0: {BEFORE} code_bytes, {BEFORE / STATEMENTS:.2f} a statement")
-    if with_opcodes:
-        for name, count in found.opcodes.most_common():
-            print(f"{count:5}  {name}")
 
 
 if __name__ == "__main__":

@@ -18,7 +18,6 @@ ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path.insert(0, str(ROOT / "compiler"))
 
 from tiniscript import compile_text, robots
-from tools.bench import others
 
 KIT = robots.load(robots.DEFAULT).kit
 OBSTACLE = "SI|START;LOOP(FOREVER);F(1, 80);DISTANCE;IF(DISTANCE < 10);STOP;R(1, 60);ENDIF;END_LOOP"
@@ -44,7 +43,6 @@ def sizes() -> None:
     rows: list[tuple[object, ...]] = [
         ("code_bytes", *(len(each.code) for each in ours)),
         ("image_bytes", *(len(each.image) for each in ours)),
-        *others.CODE,
     ]
     table("Bytes", ("", "F(5,80)", "LOOP(3) ...", "obstacle"), rows)
 

@@ -1,4 +1,4 @@
-"""Prints how fast and how large the C++ machine is: `python -m tools.bench.machine`.
+"""Prints how fast the C++ machine is: `python -m tools.bench.machine`.
 
 Cycles come from a simulated ATmega328P and are exact: the same sources give the same ones. Every
 run is checked: a machine that shows a wrong value ends the command with an error. What lacks its
@@ -13,7 +13,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
-from tools.bench import avr_bench, machine_cycles, others, sizes, sketch_cycles, workloads
+from tools.bench import avr_bench, machine_cycles, sketch_cycles, workloads
 from tools.bench.compiler import table
 
 
@@ -26,7 +26,6 @@ def main() -> int:
     except RuntimeError as why:  # the firmware is not built
         print(why, file=sys.stderr)
         return 2
-    size()
     return 0
 
 
@@ -41,7 +40,6 @@ def cycles() -> None:
     rows = [
         ("all of `tick`", *alone),
         ("in the shipped sketch", *sketch),
-        *others.CYCLES,
     ]
     title = "Cycles of one iteration on a simulated ATmega328P"
     table(title, ("", *(work.name for work in workloads.WORKS)), rows)
@@ -53,16 +51,6 @@ def cycles() -> None:
     )
     for why in filter(None, (avr_bench.missing(), sketch_cycles.missing())):
         print(f"\n{why}")
-
-
-def size() -> None:
-    if why := sizes.missing(sizes.AVR):
-        print(f"\n{why}")
-        return
-    found = sizes.size("machine and verifier")
-    ram = sizes.size("machine, with images").ram
-    ours = ("machine and verifier", f"{found.flash:,}", str(ram))
-    table("Bytes on an AVR", ("", "flash", "RAM"), (ours, *others.SIZES))
 
 
 if __name__ == "__main__":

@@ -14,7 +14,6 @@ ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
 from tools import uno
-from tools.bench import others
 from tools.bench.compiler import OBSTACLE
 from tools.bench.link import BAUDS, PHASE_CYCLES, built, first_move, row
 from tools.uno import CYCLES_PER_MS, Uno
@@ -65,8 +64,6 @@ def main() -> int:
     print("|---|---:|---:|")
     for number, line in enumerate((f"`{SHORT}`", "the paper's obstacle program")):
         row(line, [f"{each[number]:.2f}" for each in found.values()])
-    for name, *figures in others.TYPED:
-        row(f"{name}, a line of its own", figures)
     return int(any(each[0] > MUST_MS for each in found.values()))
 
 

@@ -25,7 +25,6 @@ from tests.machines.host import missing
 from tests.support.pty_robot import PtyRobot
 from tests.support.robot_fleet import RobotFleet
 from tiniscript import robots
-from tools.bench import others
 from tools.bench.compiler import table
 
 RUNS = 15
@@ -138,7 +137,6 @@ def main() -> int:
     rows.append((f"  must {MUST}x and the wire, with tsc link", "", "", ""))
     rows.append(("python -c pass", f"{nothing_ms:.0f} ms", "1x", ""))
     head = ("to the first motor command", "median", "against pass", "")
-    rows += [(*each, "", "") for each in others.FIRST_MOTION]
     table(f"A new process, obstacle program, {runs} runs", head, rows)
     rows = []
     with tempfile.TemporaryDirectory() as folder:

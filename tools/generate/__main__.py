@@ -20,14 +20,20 @@ from tiniscript import robots
 from tiniscript.bytecode import image, opcodes, verify
 from tiniscript.kit import DEVICES
 from tiniscript.robots import firmware
-from tiniscript.robots.profile import LANGUAGES, ProfileRefused, Robot
+from tiniscript.robots.profile import ProfileRefused, Robot
 from tiniscript.robots.reader import read
 from tiniscript.robots.refusals import describe
-from tools.generate.command_pages import PAGES
+from tools.generate import avr_header, cpp_header, link_header, remark_tables, text_tables
+from tools.generate.command_pages import PAGES, page
+from tools.generate.cpp_cases import cases_header
 from tools.generate.documents import DOCUMENTS, list_of_documents, spliced, table
 from tools.generate.front import fronts
 from tools.generate.guide_pictures import guide_pictures
+from tools.generate.link_kit import link_kit
+from tools.generate.link_payloads import payloads
+from tools.generate.machine_kit import machine_kit
 from tools.generate.poster import posters
+from tools.generate.wiring_pages import wiring_pages
 from tools.generate.world_pictures import world_picture
 from tools.site.documents import LIST
 
@@ -218,69 +224,6 @@ def device_table() -> str:
     return table(("kit of", "number", "line", "hash"), rows)
 
 
-def cpp_header() -> str:
-    """Return `bytecode.h`: what the C++ machine takes from the tables of the compiler."""
-    from tools.generate.cpp_header import header
-
-    return header(COMMAND)
-
-
-def avr_header() -> str:
-    """Return `bytecode_avr.S`: what the machine in assembly takes from them."""
-    from tools.generate.avr_header import header
-
-    return header(COMMAND)
-
-
-def cpp_tables() -> str:
-    """Return `bytecode.cpp`: the tables that it declares."""
-    from tools.generate.cpp_header import tables
-
-    return tables(COMMAND)
-
-
-def link_header() -> str:
-    """Return `messages.h`: what the C++ half of the link takes from the table of messages."""
-    from tools.generate.link_header import header
-
-    return header(COMMAND)
-
-
-def link_tables() -> str:
-    """Return `messages.cpp`: the table that it declares."""
-    from tools.generate.link_header import tables
-
-    return tables(COMMAND)
-
-
-def link_payloads() -> str:
-    """Return `payloads.py`: a type for each reply and each event of the table of messages."""
-    from tools.generate.link_payloads import payloads
-
-    return payloads(COMMAND)
-
-
-def cpp_cases() -> str:
-    """Return `cases.h`: what the tests in C++ expect."""
-    from tools.generate.cpp_cases import cases_header  # reads the case files
-
-    return cases_header(COMMAND)
-
-
-def machine_kit() -> str:
-    """Return `machine.json`: what machines of other languages must do."""
-    from tools.generate.machine_kit import machine_kit as kit
-
-    return kit(COMMAND)
-
-
-def link_kit() -> str:
-    """Return `link.json`: what robots of others must do on a port."""
-    from tools.generate.link_kit import link_kit as kit
-
-    return kit(COMMAND)
-
-
 def robot_header(path: Path) -> str:
     """Return the header of a robot's firmware, for all the boards that its profile fits."""
     text = path.read_text(encoding="utf-8")
@@ -291,20 +234,6 @@ def robot_header(path: Path) -> str:
         except ProfileRefused:
             continue  # the board has no such pins
     return firmware.header(wired, f"{COMMAND} from robots/{path.name}.")
-
-
-def wiring_page(name: str) -> str:
-    """Return a file of `docs/wiring/`: how a shipped robot is wired."""
-    from tools.generate.wiring_pages import pages
-
-    return pages(COMMAND)[name]
-
-
-def command_page(language: str) -> str:
-    """Return a page of `docs/` that lists the verbs of `tsc` and their options."""
-    from tools.generate.command_pages import page
-
-    return page(language, COMMAND, table)
 
 
 SPEC = ROOT / "bytecode_spec.md"
@@ -321,21 +250,6 @@ SPEC_TABLES: dict[str, Callable[[], str]] = {
 }
 
 
-def text_table(name: str) -> str:
-    """Return a file of `vm_arduino/src/text/`: words or answers of the reader of text."""
-    from tools.generate import remark_tables, text_tables
-
-    makes = {
-        "words.h": text_tables.words_header,
-        "words.cpp": text_tables.words_tables,
-        "problems.h": text_tables.problems_header,
-        "remarks.h": remark_tables.remarks_header,
-        "texts.h": remark_tables.texts_header,
-        "texts.cpp": remark_tables.texts,
-    }
-    return makes[name](COMMAND)
-
-
 MACHINE = ROOT / "vm_arduino" / "src" / "vm"
 LINK = ROOT / "vm_arduino" / "src" / "link"
 PAYLOADS = ROOT / "compiler" / "tiniscript" / "link" / "payloads.py"
@@ -347,47 +261,36 @@ WIRING = ROOT / "docs" / "wiring"
 OUTPUTS: list[tuple[Path, Callable[[], str]]] = [
     (ROBOTS / "shipped.py", shipped_robots),
     (SPEC, spec),
-    (MACHINE / "bytecode.h", cpp_header),
-    (MACHINE / "bytecode.cpp", cpp_tables),
-    (MACHINE / "bytecode_avr.S", avr_header),
-    (LINK / "messages.h", link_header),
-    (LINK / "messages.cpp", link_tables),
-    *(
-        (TEXT / name, partial(text_table, name))
-        for name in (
-            "words.h",
-            "words.cpp",
-            "problems.h",
-            "remarks.h",
-            "texts.h",
-            "texts.cpp",
-        )
-    ),
+    (MACHINE / "bytecode.h", partial(cpp_header.header, COMMAND)),
+    (MACHINE / "bytecode.cpp", partial(cpp_header.tables, COMMAND)),
+    (MACHINE / "bytecode_avr.S", partial(avr_header.header, COMMAND)),
+    (LINK / "messages.h", partial(link_header.header, COMMAND)),
+    (LINK / "messages.cpp", partial(link_header.tables, COMMAND)),
+    (TEXT / "words.h", partial(text_tables.words_header, COMMAND)),
+    (TEXT / "words.cpp", partial(text_tables.words_tables, COMMAND)),
+    (TEXT / "problems.h", partial(text_tables.problems_header, COMMAND)),
+    (TEXT / "remarks.h", partial(remark_tables.remarks_header, COMMAND)),
+    (TEXT / "texts.h", partial(remark_tables.texts_header, COMMAND)),
+    (TEXT / "texts.cpp", partial(remark_tables.texts, COMMAND)),
     *((ROOT / "docs" / name, make) for name, make in DOCUMENTS.items()),
-    (PAYLOADS, link_payloads),
-    *((ROOT / "docs" / name, partial(command_page, language)) for language, name in PAGES.items()),
+    (PAYLOADS, partial(payloads, COMMAND)),
+    *(
+        (ROOT / "docs" / name, partial(page, language, COMMAND, table))
+        for language, name in PAGES.items()
+    ),
     *((ROOT / "docs" / "poster" / name, make) for name, make in posters(COMMAND).items()),
     *((ROOT / "docs" / name, make) for name, make in fronts(COMMAND).items()),
     (ROOT / "docs" / "worlds.svg", partial(world_picture, COMMAND)),
     *((ROOT / "docs" / name, make) for name, make in guide_pictures(COMMAND).items()),
     (ROOT / LIST, partial(list_of_documents, COMMAND)),  # which reads the other documents' titles
-    (ROOT / "vm_arduino" / "test" / "cases.h", cpp_cases),
-    (CONFORMANCE / "machine.json", machine_kit),
-    (CONFORMANCE / "link.json", link_kit),
+    (ROOT / "vm_arduino" / "test" / "cases.h", partial(cases_header, COMMAND)),
+    (CONFORMANCE / "machine.json", partial(machine_kit, COMMAND)),
+    (CONFORMANCE / "link.json", partial(link_kit, COMMAND)),
     *(
         (WIRED / f"{path.stem}.h", partial(robot_header, path))
         for path in sorted(ROBOTS.glob("*.toml"))
     ),
-    *(
-        (WIRING / name, partial(wiring_page, name))
-        for path in sorted(ROBOTS.glob("*.toml"))
-        for language in LANGUAGES
-        for name in (
-            f"{path.stem}.{language}.md",
-            f"{path.stem}.{language}.svg",
-            f"{path.stem}.finished.{language}.svg",
-        )
-    ),
+    *((WIRING / name, make) for name, make in wiring_pages(COMMAND).items()),
 ]
 
 
