@@ -3,21 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TypeVar
 
 from tiniscript import compile_text, robots
 from tiniscript.bytecode.image import unpack
 from tiniscript.link.authority import KeyRing
-from tiniscript.link.connection import PendingRequest
 from tiniscript.link.payloads import ReceiptReply
 from tiniscript.link.requests import Reply
-from tiniscript.link.session import Session
+from tiniscript.virtual.computer import Computer
 from tiniscript.virtual.robot import Settings, VirtualRobot
 from tiniscript.virtual.world import World
 from tiniscript.virtual.worlds import read
 from tiniscript.vm.trace import Event
-
-T = TypeVar("T")
 
 
 def floor(parts: str = "", start: str = "x_cm = 100\ny_cm = 100", size: int = 200) -> World:
@@ -43,26 +39,11 @@ def trace(events: Sequence[Event]) -> list[str]:
     return [f"{each.time_ms - began_ms} {each.text}" for each in events[starts[-1] + 1 :]]
 
 
-class Talk:
-    """A computer at the robot's port."""
+class Talk(Computer):
+    """One that sends programs as text."""
 
     def __init__(self, robot: VirtualRobot, nonce: int = 5, keys: KeyRing | None = None) -> None:
-        profile = robot.profile
-        self.robot = robot
-        self.session = Session(nonce, profile.board.baud, profile.kit.fingerprint, keys=keys)
-
-    def wait(self, milliseconds: int) -> None:
-        for _ in range(milliseconds):
-            now_ms = self.robot.now_ms + 1
-            sent = self.robot.step(now_ms, self.session.poll(now_ms))
-            self.session.receive(sent, now_ms)
-
-    def until(self, request: PendingRequest[T], limit_ms: int = 60_000) -> Reply[T]:
-        end_ms = self.robot.now_ms + limit_ms
-        while request.outcome is None:
-            assert self.robot.now_ms < end_ms, "the robot does not answer"
-            self.wait(1)
-        return request.outcome
+        super().__init__(robot, nonce, keys)
 
     def upload(
         self, text: str, runs: bool = True, is_detached: bool = False

@@ -26,6 +26,7 @@ from tiniscript.link.messages import (
     WIFI_RESTS,
     YOURS,
 )
+from tiniscript.link.names import row_name
 from tiniscript.link.payloads import HelloReply, SentReply, StatusReply
 from tiniscript.link.requests import Reply
 
@@ -87,9 +88,9 @@ def examined(
         findings += _restarts(restarts)
     elif after is None:
         findings.append(probably("falls_silent"))
-    elif RESETS[_row(hello.reset)][0] == _BROWN_OUT:
+    elif row_name(RESETS, hello.reset) == _BROWN_OUT:
         findings.append(sure("brown_out"))
-    elif RESETS[_row(hello.reset)][0] == _WATCHDOG or after.fault == _STALL:
+    elif row_name(RESETS, hello.reset) == _WATCHDOG or after.fault == _STALL:
         findings.append(sure("hung"))
     if not any(each.is_wrong for each in findings):
         name = hello.name.decode("utf-8", "replace")
@@ -108,13 +109,8 @@ def _about(hello: HelloReply, expected: Expected) -> dict[str, str]:
         "machine": f"{hello.isa_major}.{hello.isa_minor}",
         "room": str(hello.room),
         "features": ", ".join(features) or "-",
-        "reset": RESETS[_row(hello.reset)][0],
+        "reset": row_name(RESETS, hello.reset),
     }
-
-
-def _row(reset: int) -> int:
-    """Return the row of a reset: the first for one that only newer robots know."""
-    return reset if reset < len(RESETS) else 0
 
 
 def _other_link(reply: Reply[SentReply]) -> Finding:
@@ -209,7 +205,7 @@ def _watched(robot: Robot, hello: HelloReply, watch_ms: int) -> list[Restart]:
         if now is None:
             continue
         if now.nonce != nonce:
-            restarts.append(Restart(is_running, RESETS[_row(now.reset)][0]))
+            restarts.append(Restart(is_running, row_name(RESETS, now.reset)))
             nonce = now.nonce
         is_running = now.state == STATE_RUNNING
     return restarts

@@ -7,15 +7,14 @@ no program holds a checker up.
 
 from __future__ import annotations
 
-from typing import NamedTuple, TypeVar
+from typing import NamedTuple
 
 from tiniscript.bytecode.image import Image
 from tiniscript.lessons.lesson import Lesson
 from tiniscript.lessons.variation import varied
-from tiniscript.link.connection import PendingRequest
-from tiniscript.link.session import Session
 from tiniscript.robots.kinematics import Pose
 from tiniscript.robots.profile import Robot
+from tiniscript.virtual.computer import Computer
 from tiniscript.virtual.geometry import joined
 from tiniscript.virtual.robot import Settings, VirtualRobot
 from tiniscript.virtual.world import World
@@ -28,8 +27,6 @@ PUSH_MS = 60
 
 # How a run ends.
 DONE, FAULT, LIMIT, BUSY, ASKS = "DONE", "FAULT", "LIMIT", "BUSY", "ASKS"
-
-T = TypeVar("T")
 
 
 class Sample(NamedTuple):
@@ -148,19 +145,13 @@ class Trial:
 
 def _bring(robot: VirtualRobot, image: Image) -> None:
     """Bring a program to the robot and start it, by its button where it begins with SB."""
-    profile = robot.profile
-    session = Session(robot.settings.seed, profile.board.baud, profile.kit.fingerprint)
-
-    def wait(request: PendingRequest[T]) -> None:
-        end_ms = robot.now_ms + BRINGING_MS
-        while request.outcome is None:
-            now_ms = robot.now_ms + 1
-            assert now_ms < end_ms, "the robot does not answer"
-            session.receive(robot.step(now_ms, session.poll(now_ms)), now_ms)
-        assert not request.outcome.status, request.outcome
-
-    wait(session.hello())
-    wait(session.upload(image, True, False, True))
+    computer = Computer(robot, robot.settings.seed)
+    session = computer.session
+    for reply in (
+        computer.until(session.hello()),
+        computer.until(session.upload(image, True, False, True)),
+    ):
+        assert not reply.status, reply
     if image.start == "SB":
         robot.press()
         robot.step(robot.now_ms + PUSH_MS)

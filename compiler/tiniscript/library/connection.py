@@ -23,7 +23,8 @@ from tiniscript.library.programs import Language, Program, profile_of, program_o
 from tiniscript.library.refusing import refusal
 from tiniscript.library.runs import whole, within
 from tiniscript.link import known_ports, port_names, ports
-from tiniscript.link.messages import SAVED, STATE_RUNNING
+from tiniscript.link.messages import STATE_RUNNING
+from tiniscript.link.names import saved_name
 from tiniscript.link.payloads import ReceiptReply
 from tiniscript.robots.profile import Robot
 from tiniscript.source import printable
@@ -293,8 +294,7 @@ class RobotConnection:
         self._follower = Follower(receipt.run if is_running else None)
         self._ending = None
         self._is_detached = is_detached and is_running
-        name = SAVED[receipt.saved][0] if receipt.saved < len(SAVED) else "MEMORY"
-        return Receipt(receipt.program, name, is_running)
+        return Receipt(receipt.program, saved_name(receipt.saved), is_running)
 
 
 SLOWEST_BAUD, FASTEST_BAUD = 300, 2_000_000

@@ -6,12 +6,12 @@ from collections.abc import Mapping
 from time import monotonic
 from typing import Literal, NamedTuple
 
-from tiniscript.bytecode.opcodes import FAULTS
 from tiniscript.library import source_map
 from tiniscript.library.endings import DONE, FAULT
 from tiniscript.library.runs import Fault, Value, fault_of, value_of
 from tiniscript.library.source_map import Map
-from tiniscript.link.messages import CAUSES, LINK_FAULTS, STATES
+from tiniscript.link.messages import STATES
+from tiniscript.link.names import cause_name, fault_name
 from tiniscript.link.outcomes import Event
 from tiniscript.link.payloads import StatusReply
 from tiniscript.source import printable
@@ -63,7 +63,7 @@ class Reader:
         elif event.name == "FAULT":
             found = self._fault(event.fault, event.at, event.program)
         elif event.name == "STOPPED":
-            found = {"cause": CAUSES[event.cause if event.cause < len(CAUSES) else 0][0]}
+            found = {"cause": cause_name(event.cause)}
         elif event.name == "MISSED":
             found = {"count": event.count}
         elif event.name == "TEXT":
@@ -83,9 +83,8 @@ class Reader:
         return RobotEvent(ms, "STOPPED", {"cause": "NONE"})
 
     def _fault(self, number: int, offset: int, program: int) -> dict[str, Value]:
-        names = {each: name for each, name, _ in (*FAULTS, *LINK_FAULTS)}
         places = self.maps.get(program) or source_map.recall(program)
-        fault = fault_of(names.get(number, str(number)), offset, places)
+        fault = fault_of(fault_name(number), offset, places)
         found: dict[str, Value] = {"fault": fault.name, "offset": offset}
         if fault.line is not None and fault.column is not None:
             found |= {"line": fault.line, "column": fault.column}

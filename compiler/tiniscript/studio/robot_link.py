@@ -15,23 +15,20 @@ from typing import Any, NamedTuple, Protocol, TypeVar
 
 from tiniscript import robots
 from tiniscript.bytecode.image import Image, ImageRefused, unpack
-from tiniscript.bytecode.opcodes import FAULTS
 from tiniscript.fixed_point import as_text
 from tiniscript.library.known_kits import shipped_of_kit
 from tiniscript.library.refusing import refusal
 from tiniscript.link.authority import whose
 from tiniscript.link.connection import STATUS, Heard, PendingRequest, Requester, reason_of
 from tiniscript.link.messages import (
-    CAUSES,
-    LINK_FAULTS,
     MOST_BALANCE,
     MOST_LEAST,
     NAME_BYTES,
-    SAVED,
     STATE_FAULTED,
     STATE_IDLE,
     STATE_RUNNING,
 )
+from tiniscript.link.names import cause_name, fault_name, saved_name
 from tiniscript.link.outcomes import Event
 from tiniscript.link.payloads import HelloReply, ReceiptReply, StatusReply, TrimReply
 from tiniscript.link.requests import OK, DeviceInfo, Reply
@@ -47,7 +44,6 @@ LONGEST_MS = 20_000
 MOST_WAITING = 8  # requests at a time
 TEXT_CHARACTERS = 200
 MOST_EVENTS = 200  # at a time
-_FAULTS = {number: name for number, name, _ in (*FAULTS, *LINK_FAULTS)}
 
 
 class BadRequest(Exception):
@@ -191,7 +187,11 @@ class RobotLink:
             run = self._known(values.run)
             if pending.starts and run != self._over:
                 self._run = run
-            return {"ok": True, "program": f"{values.program:08x}", "saved": _saved(values.saved)}
+            return {
+                "ok": True,
+                "program": f"{values.program:08x}",
+                "saved": saved_name(values.saved),
+            }
         if isinstance(values, TrimReply):
             return {"ok": True, "trim": told(values)._asdict()}
         robot = self._connection.robot
@@ -218,7 +218,7 @@ class RobotLink:
         elif event.name == "FAULT":
             found |= _fault(event.fault, event.at, event.program)
         elif event.name == "STOPPED":
-            found["cause"] = CAUSES[event.cause if event.cause < len(CAUSES) else 0][0]
+            found["cause"] = cause_name(event.cause)
         elif event.name == "PLACE":
             found |= {"at": event.at, "program": f"{event.program:08x}"}
         elif event.name == "MISSED":
@@ -253,15 +253,11 @@ def _end(status: StatusReply) -> Json:
         return {"event": "FAULT", **_fault(status.fault, status.fault_at, status.fault_program)}
     if status.state == STATE_IDLE:
         return {"event": "DONE"}
-    return {"event": "STOPPED", "cause": CAUSES[0][0]}
+    return {"event": "STOPPED", "cause": cause_name(0)}
 
 
 def _fault(number: int, at: int, program: int) -> Json:
-    return {"fault": _FAULTS.get(number, str(number)), "at": at, "program": f"{program:08x}"}
-
-
-def _saved(number: int) -> str:
-    return SAVED[number][0] if number < len(SAVED) else "MEMORY"
+    return {"fault": fault_name(number), "at": at, "program": f"{program:08x}"}
 
 
 # -- the fields of a request ----------------------------------------------------------------------

@@ -11,8 +11,8 @@ from typing import Any, NamedTuple
 from tiniscript.bytecode.image import unpack
 from tiniscript.fixed_point import ONE
 from tiniscript.link.requests import OK
-from tiniscript.link.session import Session
 from tiniscript.studio.checking import profile_of
+from tiniscript.virtual.computer import Computer
 from tiniscript.virtual.robot import VirtualRobot
 from tiniscript.virtual.world import World
 
@@ -48,7 +48,8 @@ class Simulation:
         """Raises WorldRefused where the robot does not fit into the world."""
         profile = profile_of(robot)
         self.robot = VirtualRobot(profile, world)
-        self.session = Session(NONCE, profile.board.baud, profile.kit.fingerprint)
+        self._computer = Computer(self.robot, NONCE)
+        self.session = self._computer.session
         self.is_stopped = False
         self.fault_at: int | None = None  # where the last fault was, as the robot has told
         self.marks = marks or Marks(())
@@ -117,13 +118,8 @@ class Simulation:
         for _ in range(duration_ms):
             if self.held_at is not None:
                 break
-            self._pass()
+            self._computer.wait(1)
         self._hear()
-
-    def _pass(self) -> None:
-        now_ms = self.robot.now_ms + 1
-        sent = self.robot.step(now_ms, self.session.poll(now_ms))
-        self.session.receive(sent, self.robot.now_ms)
 
     def _hear(self) -> None:
         for event in self.session.events():
@@ -184,6 +180,6 @@ class Simulation:
         for _ in range(LONGEST_MS):
             if is_over():
                 return
-            self._pass()
+            self._computer.wait(1)
             self._hear()
         raise AssertionError("the virtual robot does not answer")

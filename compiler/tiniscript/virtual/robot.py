@@ -10,8 +10,7 @@ from collections.abc import Mapping, Sequence
 from random import Random
 from typing import NamedTuple
 
-from tiniscript.bytecode.opcodes import FAULTS
-from tiniscript.link.messages import LINK_FAULTS, SAVED
+from tiniscript.link.names import fault_name, saved_name
 from tiniscript.robots.driver import AT_STOP, HOLD
 from tiniscript.robots.kinematics import Pose
 from tiniscript.robots.kit_words import kit_words
@@ -34,7 +33,6 @@ from tiniscript.vm.trace import Event, TracedRobot
 
 __all__ = ("POWER_ON", "RESET_BUTTON", "Settings", "VirtualRobot")
 
-_FAULT_NAMES = {number: name for number, name, _ in FAULTS}
 LEVELS_PER_PERCENT = 2.55  # of a motor's power
 BITS = 10  # of a byte on the line
 EVENTS = 100_000  # that are kept until somebody takes them
@@ -297,7 +295,7 @@ class VirtualRobot:
         what, self._ended = self._ended, ""
         if what == "FAULT":
             number = self._firmware.call("fault")
-            self.fault = _FAULT_NAMES.get(number) or _link_fault(number)
+            self.fault = fault_name(number)
             what = f"FAULT {self.fault}"
         self._say(what)
 
@@ -331,8 +329,4 @@ class VirtualRobot:
     @property
     def held(self) -> str:
         """Return where its program is held: NOTHING, MEMORY, SAVING or STORED."""
-        return SAVED[self._firmware.call("saved")][0]
-
-
-def _link_fault(number: int) -> str:
-    return next((name for code, name, _ in LINK_FAULTS if code == number), str(number))
+        return saved_name(self._firmware.call("saved"))

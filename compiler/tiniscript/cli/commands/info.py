@@ -8,7 +8,7 @@ from argparse import Namespace
 from tiniscript.cli import inputs
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot.connect import Connection, robot_of_kit
-from tiniscript.cli.robot.event_printer import fault_name, fault_sentence
+from tiniscript.cli.robot.event_printer import fault_sentence
 from tiniscript.cli.robot.fleet import together
 from tiniscript.cli.robot.member import Member, Result, are_many
 from tiniscript.cli.texts.common import text
@@ -24,6 +24,7 @@ from tiniscript.link.messages import (
     TEXT_LEVEL,
     TEXT_LEVELS,
 )
+from tiniscript.link.names import fault_name, row_name
 
 
 def run(options: Namespace, language: str) -> int:
@@ -72,13 +73,13 @@ class Description:
             "isa": f"{self.device_info.isa[0]}.{self.device_info.isa[1]}",
             "room": self.device_info.room,
             "text_level": self._text_level(),
-            "state": _name(STATES, status.state),
+            "state": row_name(STATES, status.state),
             "program": f"{status.program:08x}" if has_program else None,
             "code_bytes": status.length if has_program else None,
-            "saved": _name(SAVED, status.saved),
+            "saved": row_name(SAVED, status.saved),
             "slot": status.slot if status.saved == SAVED_STORED else None,
             "fault": fault,
-            "reset": _name(RESETS, self.hello.reset),
+            "reset": row_name(RESETS, self.hello.reset),
             "damaged": status.damaged,
             "dropped": status.dropped,
             "framing": status.framing,
@@ -107,7 +108,7 @@ class Description:
     def _text_level(self) -> str | None:
         """Return the level of text that the robot reads, or None."""
         number = self.hello.features & TEXT_LEVEL
-        return _name(TEXT_LEVELS, number).lower() if number else None
+        return row_name(TEXT_LEVELS, number).lower() if number else None
 
     def _reader(self) -> str:
         level = self._text_level()
@@ -148,8 +149,3 @@ class Description:
         said = fault_sentence(status.fault, status.fault_at, status.fault_program, None,
                               self.connection.language)  # fmt: skip
         return text("info_fault", self.connection.language).format(fault=said)
-
-
-def _name(table: tuple[tuple[str, str], ...], number: int) -> str:
-    """Return the name of a number; the first name for a number that only newer robots know."""
-    return table[number if number < len(table) else 0][0]

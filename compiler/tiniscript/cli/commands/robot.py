@@ -25,8 +25,8 @@ from tiniscript.cli.terminal.world_drawing import WorldPicture
 from tiniscript.cli.texts.common import text
 from tiniscript.library import install_advice
 from tiniscript.link.keys import KeyFile
-from tiniscript.link.session import Session
 from tiniscript.virtual import directory
+from tiniscript.virtual.computer import Computer
 from tiniscript.virtual.robot import VirtualRobot
 from tiniscript.virtual.simulator import CALM_S, Simulator
 from tiniscript.virtual.transports import Transports, can_have_terminal
@@ -38,7 +38,6 @@ if TYPE_CHECKING:
 FASTEST_BAUD = 2_000_000
 MEMORY_BYTES = 1024  # of an Uno's EEPROM
 SAVE_S = 1.0  # between two looks at what the robot keeps
-NAME_MS = 20_000  # timeout for naming it, in the robot's time
 QUIT = "qQ\x04"
 PUSH_MS, HOLD_MS = 60, 2300  # as `virtual.simulator`, which takes long to import
 
@@ -293,13 +292,8 @@ def _memory(name: str | None) -> bytes | None:
 def _name(robot: VirtualRobot, name: str) -> None:
     """Name the robot as `tsc name` does, before any client connects."""
     data = name_bytes(name)
-    profile = robot.profile
-    nonce = robot.chance.getrandbits(32)
     keys = KeyFile(is_for_virtual=True)
-    session = Session(nonce, profile.board.baud, profile.kit.fingerprint, keys=keys)
-    request = session.name(data)
-    while request.outcome is None and robot.now_ms < NAME_MS:
-        now_ms = robot.now_ms + 1
-        session.receive(robot.step(now_ms, session.poll(now_ms)), now_ms)
+    computer = Computer(robot, robot.chance.getrandbits(32), keys)
+    computer.until(computer.session.name(data))
     robot.step(robot.now_ms + 500)  # it is saved
     robot.power_cycle()

@@ -13,10 +13,10 @@ from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.event_printer import EventPrinter, printer_of
 from tiniscript.cli.robot.fleet import together
 from tiniscript.cli.robot.member import Member, Result, are_many
-from tiniscript.cli.robot.program_upload import saved_name
 from tiniscript.cli.robot.run_monitor import Saving
 from tiniscript.cli.texts.common import text
 from tiniscript.library import source_map
+from tiniscript.link.names import saved_name
 from tiniscript.link.payloads import ReceiptReply
 
 
@@ -75,7 +75,7 @@ class Undone:
 
     def fields(self) -> dict[str, object]:
         """Return the receipt as data."""
-        saved = saved_name(self.values)
+        saved = saved_name(self.values.saved)
         return {
             "event": "RECEIPT",
             "robot": self.connection.device_info.name,

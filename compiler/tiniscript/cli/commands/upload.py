@@ -20,13 +20,13 @@ from tiniscript.cli.robot.program_upload import (
     has_keys,
     is_running,
     receipt,
-    saved_name,
     send_program,
 )
 from tiniscript.cli.robot.run_monitor import Saving, stop_and_say
 from tiniscript.cli.terminal.progress import Progress
 from tiniscript.cli.texts.common import text
 from tiniscript.library import source_map
+from tiniscript.link.names import saved_name
 from tiniscript.link.payloads import ReceiptReply
 from tiniscript.robots.profile import Robot
 
@@ -163,6 +163,6 @@ def _receipt_line(
         image=ready.image_bytes,
         code=len(ready.image.code),
         checksum=f"{values.program:08x}",
-        saved=text(f"saved_{saved_name(values)}", language).format(slot=values.slot),
+        saved=text(f"saved_{saved_name(values.saved)}", language).format(slot=values.slot),
         how=text(how, language).format(start=ready.image.start),
     )

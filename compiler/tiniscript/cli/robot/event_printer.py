@@ -9,7 +9,6 @@ import json
 import sys
 from collections.abc import Callable, Mapping
 
-from tiniscript.bytecode.opcodes import FAULTS
 from tiniscript.cli.faults import fault_text
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot.connect import Connection
@@ -18,15 +17,10 @@ from tiniscript.cli.texts.common import has_text, text
 from tiniscript.fixed_point import as_text
 from tiniscript.library import source_map
 from tiniscript.library.source_map import Map
-from tiniscript.link.messages import CAUSES, LINK_FAULTS, STATE_FAULTED, STATE_IDLE
+from tiniscript.link.messages import STATE_FAULTED, STATE_IDLE
+from tiniscript.link.names import cause_name, fault_name
 from tiniscript.link.outcomes import Event
 from tiniscript.link.payloads import ShowEvent, StatusReply
-
-
-def fault_name(number: int) -> str:
-    """Return the name of a fault: of the machine's, or of the link's."""
-    names = {each: name for each, name, _ in (*FAULTS, *LINK_FAULTS)}
-    return names.get(number, str(number))
 
 
 def fault_sentence(number: int, at: int, program: int, places: Map | None, language: str) -> str:
@@ -43,11 +37,6 @@ def value_text(value: int, is_yes_no: bool) -> str:
     if is_yes_no:
         return "TRUE" if value else "FALSE"
     return as_text(value)
-
-
-def cause_name(number: int) -> str:
-    """Return the name of a cause; NONE for a cause that only newer robots know."""
-    return CAUSES[number][0] if number < len(CAUSES) else CAUSES[0][0]
 
 
 def _out(line: str) -> None:

@@ -11,7 +11,6 @@ import re
 from typing import NamedTuple
 
 from tiniscript.cli.robot.bookkeeping import MARK
-from tiniscript.codegen.lower import Place
 from tiniscript.diagnostics import codes
 from tiniscript.fixed_point import as_text
 from tiniscript.kit import Kit
@@ -155,7 +154,7 @@ def _behind(compiled: Compiled, start: int, end: int | None = None) -> Compiled:
         and (diagnostic.span.start < end or end == len(text))
     ]
     places = tuple(
-        Place(place.offset, Span(max(0, place.span.start - start), max(0, place.span.end - start)))
+        place._replace(span=Span(max(0, place.span.start - start), max(0, place.span.end - start)))
         for place in compiled.places
     )
     source = Source(text[start:end], "live")

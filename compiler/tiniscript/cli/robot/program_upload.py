@@ -14,11 +14,12 @@ from tiniscript.cli import images, inputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot.connect import Connection
-from tiniscript.cli.robot.event_printer import EventPrinter, cause_name
+from tiniscript.cli.robot.event_printer import EventPrinter
 from tiniscript.cli.robot.run_monitor import DONE, RunMonitor, Saving, ended
 from tiniscript.cli.terminal.keys import Keys, is_in_front
 from tiniscript.cli.texts.common import text
-from tiniscript.link.messages import SAVED, STATUSES
+from tiniscript.link.messages import STATUSES
+from tiniscript.link.names import cause_name, saved_name
 from tiniscript.link.outcomes import LOST, Event
 from tiniscript.link.payloads import ReceiptReply
 from tiniscript.link.requests import Reply
@@ -85,7 +86,7 @@ def receipt(
     options: Namespace,
 ) -> dict[str, object]:  # fmt: skip
     """Return the result of the upload as data."""
-    image, runs, saved = ready.image, is_running(ready, options), saved_name(values)
+    image, runs, saved = ready.image, is_running(ready, options), saved_name(values.saved)
     return {
         "event": "RECEIPT",
         "robot": connection.device_info.name,
@@ -101,11 +102,6 @@ def receipt(
         "is_detached": runs and bool(options.detach),
         "is_pushed": has_button(connection, ready, options),  # JSON output has no keys
     }
-
-
-def saved_name(values: ReceiptReply) -> str:
-    """Return the place of the robot's program, as named in `link.messages`."""
-    return SAVED[values.saved][0] if values.saved < len(SAVED) else "MEMORY"
 
 
 PUSH = "bB "  # the keys that `tsc robot` has, too
