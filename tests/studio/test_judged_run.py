@@ -67,8 +67,21 @@ def test_the_run_that_was_judged_is_the_one_that_is_seen(
         assert round(took_s, 1) == seconds
 
 
+def test_the_goals_of_a_task_are_where_its_judge_looks() -> None:
+    (garage,) = page_lessons.goals(1, 1)
+    assert garage["is_flag"] and garage["around"] == [[95, 25], [150, 25], [150, 75], [95, 75]]
+    shop, home = page_lessons.goals(2, 1)
+    assert (shop["x_cm"], shop["y_cm"], shop["radius_cm"], shop["is_flag"]) == (130, 50, 10, True)
+    assert not home["is_flag"]
+    (exit_at,), (mirrored,) = page_lessons.goals(8, 1), page_lessons.goals(8, 2)
+    height_cm = page_lessons.world(8, 1).height_cm
+    assert exit_at["y_cm"] == height_cm - mirrored["y_cm"]
+    lamps = [page_lessons.goals(10, seed)[0]["x_cm"] for seed in (1, 2)]
+    assert lamps[0] != lamps[1]
+    assert page_lessons.goals(13, 1) == []
+
+
 def test_a_judged_run_can_be_stopped_before_its_end() -> None:
-    _, seen = judged(1, "SI|F(2.5, 80)")
     image = check(b"SI|F(2.5, 80)", "tinibot", "en").image
     seen = page_lessons.JudgedRun(1, 1, 2500, image, Marks(()))
     seen.go(1000)

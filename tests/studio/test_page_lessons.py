@@ -66,6 +66,7 @@ def test_a_lesson_is_solved_by_its_answer(page: Page, number: int) -> None:
     worlds = f", in {lesson.worlds} worlds" if lesson.worlds > 1 else ""
     wanted = f"Done! The task of lesson {number} is solved{worlds}."
     assert page.inner_text("#lesson_said") == wanted
+    assert page.inner_text("#lesson_stars") == "★" * lesson.worlds
 
 
 def rest(page: Page) -> list[str]:
@@ -171,7 +172,9 @@ def test_the_world_where_it_failed_is_seen(page: Page) -> None:
     said = page.inner_text("#lesson_said")
     assert page.input_value("#robot") == "liner"
     label = page.locator("#world option:checked").inner_text()
-    assert label.startswith("Lesson 12, world ") and label.rpartition(" ")[2] in said
+    seed = label.rpartition(" ")[2]
+    assert label.startswith("Lesson 12, world ") and seed in said
+    assert page.inner_text("#lesson_stars").count("★") == int(seed) - 1
     page.select_option("#language", "es")
     assert page.locator("#world option:checked").inner_text().startswith("Lección 12, mundo ")
     checked(page)

@@ -97,7 +97,20 @@ def test_run_shows_the_virtual_robot(phone: Page) -> None:
     turn(phone, "robot")
     phone.click("#side_lessons")
     phone.click("#run")
-    assert phone.locator("#arena").is_visible()
+    assert phone.locator("#arena").is_visible() and phone.locator("#lesson_page").is_visible()
+
+
+def test_run_beside_a_real_robot_is_not_the_virtual_one(phone: Page) -> None:
+    write(phone, "SI|F(9, 80)")
+    turn(phone, "robot")
+    phone.click("#side_real")
+    phone.click("#run")
+    phone.locator("#link_said", has_text="No robot is connected").wait_for()
+    assert phone.locator("html[data-phase=running]").count() == 0
+    assert phone.locator("#link").is_visible()
+    phone.click("#side_virtual")
+    phone.click("#run")
+    phone.locator("html[data-phase=running]").wait_for(state="attached")
 
 
 def test_a_phone_begins_with_the_pictures(pages: Pages) -> None:

@@ -81,6 +81,41 @@ REACHES = {
 }
 
 
+def test_a_program_gets_a_name(page: Page) -> None:
+    write(page, "SI|F(1, 33)")
+    page.click("#my_programs")
+    page.fill("#program_name", ' my/ <b>dance: "2" ')
+    assert opened(page)[0] == "my bdance 2.ts: SI|F(1, 33)"
+    page.click("#programs_close")
+    with page.expect_download() as download:
+        page.click("#save")
+    assert download.value.suggested_filename == "my bdance 2.ts"
+    page.click("#my_programs")
+    assert page.input_value("#program_name") == "my bdance 2"
+    page.fill("#program_name", "  ")
+    assert opened(page)[0] == "SI|F(1, 33)"
+    page.click("#programs_close")
+
+
+def test_a_link_has_the_public_address_of_the_page(page: Page) -> None:
+    write(page, "SI|F(1, 34)")
+    share(page)
+    for address, told in (("https://school.example/studio/", "sees the program in this page, at"),
+                          ("http://192.168.1.9:8000/", "in this network")):  # fmt: skip
+        page.fill("#public", address)
+        page.locator("#public").blur()
+        page.locator("#shared_told", has_text=told).wait_for()
+        assert page.input_value("#shared").startswith(address + "#program=")
+    page.fill("#public", "javascript:alert(1)")
+    page.locator("#public").blur()
+    page.locator("#programs[data-shared=wrong]").wait_for()
+    assert "begins with https://" in page.inner_text("#shared_told")
+    page.fill("#public", "")
+    page.locator("#public").blur()
+    page.locator("#shared_told", has_text="on this computer only").wait_for()
+    page.click("#programs_close")
+
+
 def test_a_link_says_from_where_it_opens() -> None:
     addresses = [each for row in REACHES.values() for each in row.split()]
     code = f"import {{ reachOf }} from './src/reach.js';\n{json.dumps(addresses)}"

@@ -13,11 +13,12 @@ from typing import Any
 from tiniscript.bytecode.image import unpack
 from tiniscript.lessons import catalogue
 from tiniscript.lessons.lesson import Lesson
+from tiniscript.lessons.map import GOALS
 from tiniscript.lessons.markdown import HINT, Block, beside_simulator, blocks
 from tiniscript.lessons.marking import Marking, Outcome
 from tiniscript.lessons.running import ASKS, STEP_MS, Trial
 from tiniscript.lessons.sentences import sentence
-from tiniscript.lessons.variation import varied
+from tiniscript.lessons.variation import is_mirrored, point_of, varied
 from tiniscript.library.compiling import compiled, for_robot, maker
 from tiniscript.link.session import Session
 from tiniscript.studio.checking import profile_of
@@ -79,6 +80,27 @@ def world(number: int, seed: int) -> World:
 
 def world_form(number: int, seed: int) -> Form:
     return form_of(world(number, seed))
+
+
+def goals(number: int, seed: int) -> list[dict[str, Any]]:
+    """Return where the task leads: a circle with a flag, or the area around a place."""
+    lesson, drawn = _lesson(number), world(number, seed)
+    found = []
+    for each in lesson.criteria:
+        if (each.kind not in GOALS and not each.area) or each.words:
+            continue
+        for place in each.places:
+            x_cm, y_cm = point_of(place, drawn, is_mirrored(lesson, seed))
+            is_flag = each.kind in GOALS and place.part != "start"
+            goal = {"x_cm": x_cm, "y_cm": y_cm, "is_flag": is_flag}
+            if each.area:
+                (left, right), (low, high) = each.area
+                corners = ((left, low), (right, low), (right, high), (left, high))
+                goal["around"] = [[x_cm + x, y_cm + y] for x, y in corners]
+            else:
+                goal["radius_cm"] = each.numbers["within_cm"]
+            found.append(goal)
+    return found
 
 
 class Check:

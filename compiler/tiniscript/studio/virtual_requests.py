@@ -152,7 +152,8 @@ def _lesson_steps(fields: Answer, data: bytes) -> Answer:
 
 
 def _lesson_world(fields: Answer, data: bytes) -> Answer:
-    return {"world": _lessons().world_form(fields["number"], fields["seed"])}
+    which = (fields["number"], fields["seed"])
+    return {"world": _lessons().world_form(*which), "goals": _lessons().goals(*which)}
 
 
 def _lesson_check(fields: Answer, data: bytes) -> Answer:

@@ -8,6 +8,7 @@ import { cornersOf } from './world_parts.js';
 /** @typedef {import('./python.js').RobotState} RobotState */
 /** @typedef {import('./world_parts.js').World} World */
 /** @typedef {import('./world_parts.js').Place} Place */
+/** @typedef {{x_cm: number, y_cm: number, is_flag: boolean, radius_cm?: number, around?: Place[]}} Goal */
 
 const MARGIN_CM = 4;
 const FINGER = 22; // pixels that a finger may miss
@@ -21,6 +22,8 @@ export class Arena {
   #context;
   #world = WORLDS[0];
   #robot = ROBOTS[0];
+  /** @type {Goal[]} */
+  #goals = [];
   /** What its pen has drawn, the newest run last. @type {[number, number][][]} */
   #ways = [[]];
   /** How far each wheel has turned, in cm. @type {[number, number]} */
@@ -45,10 +48,12 @@ export class Arena {
    * Begins again. What its pen has drawn in this world stays there.
    * @param {World} world
    * @param {string} robot
+   * @param {Goal[]} goals where a task leads
    */
-  begin(world, robot) {
+  begin(world, robot, goals) {
     if (world !== this.#world || robot !== this.#robot?.name) this.#ways = [];
     this.#world = world;
+    this.#goals = goals;
     this.#robot = ROBOTS.find((each) => each.name === robot) ?? ROBOTS[0];
     this.#ways = [...this.#ways.filter((way) => way.length > 1), []].slice(-1 - MOST_WAYS);
     this.#rolled = [0, 0];
@@ -154,6 +159,7 @@ export class Arena {
     pen.fillStyle = '#fffdf6';
     pen.fillRect(0, 0, world.width_cm, world.height_cm);
     pen.lineCap = pen.lineJoin = 'round';
+    for (const goal of this.#goals) this.#drawGoal(goal);
     for (const line of world.lines) path(pen, line.points, '#20242a', line.width_cm);
     for (const { x_cm: x, y_cm: y } of world.lamps) {
       dot(pen, x, y, 9, '#ffe9a3');
@@ -170,6 +176,24 @@ export class Arena {
       pen.lineWidth = 2;
       pen.strokeRect(0, 0, world.width_cm, world.height_cm);
     }
+  }
+
+  /** @param {Goal} goal */
+  #drawGoal({ x_cm: x, y_cm: y, is_flag, radius_cm, around }) {
+    const pen = this.#context;
+    pen.setLineDash([4, 2.5]);
+    if (around) path(pen, around, '#0d6040', 0.8, true);
+    else {
+      dot(pen, x, y, radius_cm ?? 0, '#2a9d6f22');
+      pen.strokeStyle = '#0d6040';
+      pen.lineWidth = 0.8;
+      pen.stroke();
+    }
+    pen.setLineDash([]);
+    if (!is_flag) return;
+    path(pen, [[x, y], [x, y + 13], [x + 10, y + 9.5], [x, y + 6]], '#0d6040', 1);
+    pen.fillStyle = '#ffd84d';
+    pen.fill();
   }
 
   /**

@@ -215,8 +215,8 @@ export class Driving {
    * @param {() => string} label
    */
   async showLesson(number, seed, label) {
-    const { world } = await this.#python.ask({ do: 'lesson_world', number, seed });
-    this.#world.bring({ request: { lesson: number, seed }, shapes: world, label });
+    const { world, goals } = await this.#python.ask({ do: 'lesson_world', number, seed });
+    this.#world.bring({ request: { lesson: number, seed }, shapes: world, label, goals });
     this.begin();
     this.#seen.value = 'arena';
     this.#choose();
@@ -241,7 +241,7 @@ export class Driving {
     this.#simulator.leave();
     this.#plot.begin();
     this.#variables = [];
-    this.#arena.begin(this.#shapes, this.#work.robot);
+    this.#arena.begin(this.#shapes, this.#work.robot, this.#world.goals);
     this.#show();
   }
 
@@ -310,7 +310,7 @@ export class Driving {
     if (start !== this.#starts || !program?.image) return;
     this.#wasStopped = false;
     this.#bumps = 0;
-    this.#arena.begin(this.#world.shapes, this.#work.robot);
+    this.#arena.begin(this.#world.shapes, this.#work.robot, this.#world.goals);
     this.#plot.begin();
     this.#shown = '';
     this.#places = program.places;

@@ -115,6 +115,7 @@ export class Lessons {
     this.#findings.replaceChildren();
     delete this.#said.dataset['verdict'];
     this.#said.textContent = '';
+    element('lesson_stars', HTMLElement).textContent = '';
   }
 
   /** @param {boolean} isReady */
@@ -278,6 +279,10 @@ export class Lessons {
     const [alone, inWorlds] = SAID[verdict];
     const isInWorlds = worlds > 1 && (seed > 0 || verdict === 'passed');
     this.#said.textContent = text(isInWorlds ? inWorlds : alone, { number: this.#number, worlds, seed });
+    if (verdict !== 'mistakes') { // one for each world where it did its task
+      const stars = verdict === 'passed' ? worlds : Math.max(0, seed - 1);
+      element('lesson_stars', HTMLElement).textContent = '★'.repeat(stars) + '☆'.repeat(worlds - stars);
+    }
     this.#findings.replaceChildren(...said.map((sentence) => {
       const row = document.createElement('li');
       row.textContent = sentence;

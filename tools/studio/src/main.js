@@ -93,7 +93,7 @@ const lessons = new Lessons({
   },
 });
 chooseSide();
-const phone = new Phone();
+const phone = new Phone(() => panel.run());
 beginScreens(whyOutside !== '' || bringsProgram(location.hash), !('class' in document.documentElement.dataset));
 if (kept) programs.keep();
 const start = new Start({

@@ -16,18 +16,27 @@ export class Phone {
   #sheet = element('sheet', HTMLButtonElement);
   #isAway = false; // the sheet, until the program is right again or somebody asks for it
 
-  constructor() {
+  #runReal;
+
+  /** @param {() => void} runReal runs the program on the real robot, or says why not */
+  constructor(runReal) {
+    this.#runReal = runReal;
     PHONE.addEventListener('change', () => this.#lay());
     // The teacher's wall has a place for STOP, and the teacher can leave it.
     new MutationObserver(() => this.#lay()).observe(document.documentElement, { attributeFilter: ['data-wall'] });
     element('other', HTMLButtonElement).addEventListener('click', () => this.show(dataset['half'] === 'robot' ? 'program' : 'robot'));
-    this.#run.addEventListener('click', () => {
+    this.#run.addEventListener('click', (event) => {
       if (!('phone' in dataset)) return;
+      if (dataset['side'] === 'side_real' && dataset['half'] === 'robot') {
+        event.stopImmediatePropagation(); // the virtual one is not seen
+        this.#runReal();
+        return;
+      }
       const isWrong = dataset['state'] === 'checked' && !dataset['image'];
       if (isWrong) this.#putAway(false);
       else if (dataset['side'] !== 'side_lessons') showSide('side_virtual');
       this.show(isWrong ? 'program' : 'robot');
-    });
+    }, { capture: true });
     this.#sheet.addEventListener('click', () => this.#putAway(!this.#isAway));
     this.show('program');
     this.#lay();

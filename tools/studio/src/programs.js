@@ -5,12 +5,14 @@ import { correction, generate } from 'lean-qr';
 import { element } from './elements.js';
 import { downloadFile } from './files.js';
 import { linkOf, sharedIn } from './links.js';
+import { isAddress, keepPublic, publicAddress } from './public_address.js';
 import { reachOf } from './reach.js';
 import { isGiven } from './start/beginnings.js';
 import { showInstead } from './start/screens.js';
 import { currentLanguage, text } from './texts.js';
 import { keepVersion, MOST_CHARACTERS, versions } from './versions.js';
 import { ROBOTS } from './words.js';
+import { keep } from './work.js';
 
 /** @typedef {import('./versions.js').Version} Version */
 /** @typedef {import('./work.js').Work} Work */
@@ -29,6 +31,8 @@ export class Programs {
   #link = element('share_link', HTMLButtonElement);
   #line = element('share_line', HTMLButtonElement);
   #copy = element('copy', HTMLButtonElement);
+  #name = element('program_name', HTMLInputElement);
+  #public = element('public', HTMLInputElement);
   #python;
   #work;
   #picturing;
@@ -60,6 +64,11 @@ export class Programs {
     this.#link.addEventListener('click', () => this.#share('link'));
     this.#line.addEventListener('click', () => this.#share('line'));
     element('share_picture', HTMLButtonElement).addEventListener('click', () => this.#savePicture());
+    this.#name.addEventListener('input', () => this.#rename());
+    this.#public.addEventListener('change', () => {
+      keepPublic(this.#public.value.trim());
+      this.#share('link');
+    });
     this.#copy.addEventListener('click', () => this.#copyIt());
     element('run', HTMLButtonElement).addEventListener('click', () => this.keep());
     addEventListener('pagehide', () => this.keep());
@@ -102,8 +111,19 @@ export class Programs {
   #open() {
     this.keep();
     this.#showVersions();
+    this.#name.value = this.#work.name.replace(/\.\w+$/, '');
+    this.#public.value = publicAddress();
     this.#window.showModal();
     this.#share('link');
+  }
+
+  /** Gives the program another name; its file gets it, too. */
+  #rename() {
+    const name = this.#name.value.replace(/[\\/:*?"<>|\u0000-\u001f]/g, '').trim();
+    this.#work.name = name && `${name}.ts`;
+    keep(this.#work);
+    this.keep();
+    this.#showVersions();
   }
 
   /** @param {'link' | 'line'} how */
@@ -118,13 +138,20 @@ export class Programs {
     } catch (why) {
       given = { wrong: text('bug', { why: String(why).split('\n').filter(Boolean).at(-1) ?? '' }) };
     }
-    const told = how === 'line' ? 'share_line_told' : LINK_TOLD[reachOf(location.href)];
+    const told = how === 'line' ? 'share_line_told' : LINK_TOLD[reachOf(this.#address)];
     if (asked === this.#asked) this.#show(given, text(told));
+  }
+
+  /** Where others find the page. */
+  get #address() {
+    const kept = publicAddress();
+    return isAddress(kept) ? kept : location.href;
   }
 
   /** @returns {Promise<Given>} */
   async #asLink() {
-    const link = await linkOf(this.#work, location.href);
+    if (publicAddress() && !isAddress(publicAddress())) return { wrong: text('public_wrong') };
+    const link = await linkOf(this.#work, this.#address);
     return link === null ? { wrong: text('link_too_long') } : { text: link };
   }
 

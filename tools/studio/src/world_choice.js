@@ -13,6 +13,7 @@ import { OWN_WORLD } from './work.js';
  * @property {unknown} request what the worker is asked for
  * @property {World} shapes
  * @property {() => string} label in the language of the page
+ * @property {import('./arena.js').Goal[]} goals
  */
 /**
  * @typedef {object} Page what the page does for who changes a world
@@ -63,6 +64,10 @@ export class WorldChoice {
   /** Whether the world that is seen was drawn or opened here. */
   get isOwn() {
     return !this.#brought && this.#own.newest !== null && this.#work.world === OWN_WORLD;
+  }
+
+  get goals() {
+    return this.#brought?.goals ?? [];
   }
 
   /** @returns {World} */

@@ -111,6 +111,12 @@ export class RobotPanel {
     this.#show();
   }
 
+  /** Sends the program and runs it, or says that no robot is there. */
+  run() {
+    if (this.#way) this.#upload(true);
+    else if (!this.#isBusy) this.#speech.say('say_no_robot');
+  }
+
   get isFree() { return !this.#isBusy && !this.#way; }
 
   /** Stops the robot; a page without one, or a teacher's, stops all that its `tsc studio` has. */

@@ -69,6 +69,8 @@ export const ROBOT_TEXTS = {
   serial_known: ['USB cable {number}', 'Cable USB {number}'],
   virtual_known: ['virtual robot', 'robot virtual'],
 
+  say_no_robot: ['No robot is connected. Connect one here, or press Virtual and Run.',
+    'No hay un robot conectado. Conecta uno aquí, o pulsa Virtual y Probar.'],
   say_choose: ['Choose a robot and press Connect.', 'Elige un robot y pulsa Conectar.'],
   say_none: ['This computer has no port now. Plug in the robot’s cable, or pair its Bluetooth, and look again.',
     'Esta computadora no tiene ahora ningún puerto. Conecta el cable del robot, o empareja su Bluetooth, y busca otra vez.'],
