@@ -92,7 +92,7 @@ def goals(number: int, seed: int) -> list[dict[str, Any]]:
         for place in each.places:
             x_cm, y_cm = point_of(place, drawn, is_mirrored(lesson, seed))
             is_flag = each.kind in GOALS and place.part != "start"
-            goal = {"x_cm": x_cm, "y_cm": y_cm, "is_flag": is_flag}
+            goal: dict[str, Any] = {"x_cm": x_cm, "y_cm": y_cm, "is_flag": is_flag}
             if each.area:
                 (left, right), (low, high) = each.area
                 corners = ((left, low), (right, low), (right, high), (left, high))
