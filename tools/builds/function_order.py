@@ -1,0 +1,163 @@
+"""Finds an order of the sketch's functions in flash in which few calls lead far.
+
+    python -m tools.builds.function_order     writes the order into `boards/avr/order.ld`
+
+On an AVR a call that leads at most 4 KB far takes two bytes less. An order that is old does no
+harm but to the size: a function that is not in it lies behind the others. So run this again when
+the sketch of an Uno comes near to its limit.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+import random
+import re
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+from typing import NamedTuple
+
+ROOT = Path(__file__).resolve().parent.parent.parent
+sys.path[:0] = [str(ROOT)]
+
+from tools.bench import firmware_size
+
+SCRIPT = firmware_size.PROJECT / "src" / "boards" / "avr" / "order.ld"
+BEGIN, END = "/* begin of the order */\n", "    /* end of the order */"
+BOARD = "uno"
+NEAR = range(-4096, 4096)  # bytes, from behind a short call
+TRIES = 200_000
+# What the compiler appends to a name may be another number after the next change.
+_APPENDED = re.compile(r"\.(lto_priv|constprop|part|isra)\.\d+")
+# Assembly calls its other files by short calls: they stay together.
+_ASSEMBLY = re.compile(r"\.text\.tiniscript_.*")
+_SECTION = re.compile(r"^ (\.\S+)\s+0x([0-9a-f]+)\s+0x([0-9a-f]+) ", re.M)
+_CALL = re.compile(
+    r"^\s+([0-9a-f]+):\t[0-9a-f ]+\t(?:call|jmp|rcall|rjmp)\s.*?; 0x([0-9a-f]+)", re.M
+)
+
+
+class Section(NamedTuple):
+    """Code as the linker has placed it: from `begin` to `end` it was in piece `number` at `at`."""
+
+    begin: int
+    end: int
+    number: int
+    at: int
+
+
+class Piece(NamedTuple):
+    """What a line of the script places together."""
+
+    pattern: str
+    size: int
+
+
+class Call(NamedTuple):
+    """From a place of a piece to a place of another one."""
+
+    piece: int
+    at: int
+    target: int
+    target_at: int
+
+
+def pieces(linked: str) -> tuple[list[Piece], list[Section]]:
+    """Return what a map of the linker names, in the order of flash."""
+    sizes: dict[str, int] = {}
+    sections = []
+    code = linked[linked.index("Linker script and memory map") :]
+    for name, begin_hex, size_hex in _SECTION.findall(code.replace("\n    ", " ")):
+        begin, size = int(begin_hex, 16), int(size_hex, 16)
+        if not name.startswith(".text.") or size == 0:
+            continue
+        pattern = _ASSEMBLY.sub(".text.tiniscript_", _APPENDED.sub("", name)) + "*"
+        at = sizes.setdefault(pattern, 0)
+        sections.append(Section(begin, begin + size, list(sizes).index(pattern), at))
+        sizes[pattern] = at + size
+    return [Piece(*each) for each in sizes.items()], sections
+
+
+def calls(disassembled: str, sections: list[Section]) -> list[Call]:
+    """Return what leads from one piece to another."""
+
+    def place(address: int) -> tuple[int, int] | None:
+        for each in sections:
+            if each.begin <= address < each.end:
+                return each.number, each.at + address - each.begin
+        return None
+
+    found = []
+    for at, target in _CALL.findall(disassembled):
+        here, there = place(int(at, 16)), place(int(target, 16))
+        if here and there and here[0] != there[0]:
+            found.append(Call(*here, *there))
+    return found
+
+
+def far(order: list[int], among: list[Piece], all_calls: list[Call]) -> int:
+    """Return how many calls lead far in an order."""
+    begin = [0] * len(among)
+    address = 0
+    for number in order:
+        begin[number] = address
+        address += among[number].size
+    return sum(
+        begin[target] + target_at - begin[piece] - at - 2 not in NEAR
+        for piece, at, target, target_at in all_calls
+    )
+
+
+def moved(order: list[int], chance: random.Random) -> list[int]:
+    """Return an order in which some neighbours lie elsewhere, or the other way round."""
+    begin = chance.randrange(len(order))
+    end = begin + chance.choice((1, 1, 1, 2, 3, 5, 8, 12))
+    some, rest = order[begin:end], order[:begin] + order[end:]
+    if chance.random() < 0.8:
+        begin = chance.randrange(len(rest) + 1)
+    else:
+        some.reverse()
+    return rest[:begin] + some + rest[begin:]
+
+
+def best(among: list[Piece], all_calls: list[Call], tries: int, chance: random.Random) -> list[int]:
+    """Search by simulated annealing."""
+    order = kept = list(range(len(among)))
+    now = least = far(order, among, all_calls)
+    for number in range(tries):
+        heat = 3.0 * (1 - number / tries) + 0.05
+        other = moved(order, chance)
+        count = far(other, among, all_calls)
+        if count <= now or chance.random() < math.exp((now - count) / heat):
+            order, now = other, count
+            if now < least:
+                kept, least = order, now
+    return kept
+
+
+def main() -> int:
+    with tempfile.TemporaryDirectory() as folder:
+        linked = Path(folder) / "map"
+        os.environ["PLATFORMIO_BUILD_FLAGS"] = f"-Wl,-Map={linked}"
+        sketch = firmware_size.measured(BOARD)
+        del os.environ["PLATFORMIO_BUILD_FLAGS"]
+        among, sections = pieces(linked.read_text(encoding="utf-8"))
+    command = ["avr-objdump", "-d", str(sketch.firmware)]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    all_calls = calls(done.stdout, sections)
+    order = best(among, all_calls, TRIES, random.Random(1))
+    print(f"{sketch.flash:,} bytes before; calls that lead far: "
+          f"{far(list(range(len(among))), among, all_calls)} before, "
+          f"{far(order, among, all_calls)} then")  # fmt: skip
+    text = SCRIPT.read_text(encoding="utf-8")
+    before, after = text.index(BEGIN) + len(BEGIN), text.index(END)
+    rows = "".join(f"    *({among[number].pattern})\n" for number in order)
+    SCRIPT.write_text(text[:before] + rows + text[after:], encoding="utf-8")
+    print(f"{firmware_size.measured(BOARD).flash:,} bytes with the new order")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
