@@ -32,7 +32,7 @@ _OF_BLOCK = (_UNENDED, codes.END_ALONE.number, codes.END_SPLIT.number, _BRACES,
              rows.DO_CODE, _WORD_CODE)  # fmt: skip
 _SHOW_WHOLE = frozenset(each.number for each in (
     codes.MISSING_SEPARATOR, codes.HEADER_SEPARATOR, codes.MISSING_OPEN, codes.MISSING_CLOSE,
-    codes.ELSE_IF, codes.END_SPLIT, codes.END_ALONE, codes.FOREVER_NOT_HERE, codes.SPANISH_IF,
+    codes.END_SPLIT, codes.END_ALONE, codes.FOREVER_NOT_HERE, codes.SPANISH_IF,
     codes.BRACES, codes.OTHER_ASSIGNMENT, codes.ASKED_BEHIND, codes.GROUPED, codes.OTHER_LANGUAGE,
 ))  # fmt: skip
 _OF_ARM = (_BRACES, _WORD_CODE, codes.HEADER_SEPARATOR.number)
@@ -463,7 +463,8 @@ def _slip(code: str, step: Step | None, before: Sequence[Lexeme], after: Sequenc
     shown = ";".join(laid_out(part) for part in fix[0 if has_end else head : len(fix) - tail])
     shown = shown or laid_out(after)
     is_all = code == codes.REPEATED.number or (code == codes.OTHER_SIGN.number and not right)
-    was = _written(one if is_all else found or one)
+    is_found = bool(found) or code == codes.OTHER_ASSIGNMENT.number  # else a sign is missing
+    was = _written(one if is_all or not is_found else found)
     if is_note:
         was = re.match(r"\w+|\W+", was).group().strip()  # type: ignore[union-attr]
     now = laid_out(right) or shown

@@ -258,8 +258,8 @@ v=@name *= e=@any+ | $v = $v * $e | 1 | TS050 | applied | X = 1⏎X *= 2 => X = 
 ^ set|LET v=@name TO|A|EN|COMO|= e=@num $ | $v = $e | 1 | TS050 | applied | set x to 5 => x = 5
 ^ v=@newname is|VALE|equal A|IGUAL? A? e=@num $ | $v = $e | 2 | TS050 | applied | velocidad es 60⏎F(2, velocidad) => velocidad = 60⏎F(2, velocidad)
 ^ v=@newname : e=@num $ | $v = $e | 2 | TS050 | applied | velocidad: 60⏎F(2, velocidad) => velocidad = 60⏎F(2, velocidad)
-^ v=@usedname e=@num $ | $v = $e | 3 | TS057 | applied | VELOCIDAD 50⏎F(2, VELOCIDAD) => VELOCIDAD = 50⏎F(2, VELOCIDAD)
-; v=@usedname e=@num f=;|$ | ; $v = $e $f | 3 | TS057 | applied | X = 15;X  17;SHOW(X) => X = 15;X = 17;SHOW(X)
+^ v=@usedname e=@num $ | $v = $e | 3 | TS050 | applied | VELOCIDAD 50⏎F(2, VELOCIDAD) => VELOCIDAD = 50⏎F(2, VELOCIDAD)
+; v=@usedname e=@num f=;|$ | ; $v = $e $f | 3 | TS050 | applied | X = 15;X  17;SHOW(X) => X = 15;X = 17;SHOW(X)
 ^ v=@name <- e=@any+ $ | $v = $e | 1 | TS050 | applied | potencia <- 80⏎F(2, potencia) => potencia = 80⏎F(2, potencia)
 = SI|YES $ | = TRUE | 1 | TS102 | applied | X = si⏎IF(X)⏎S⏎ENDIF => X = TRUE⏎IF(X)⏎S⏎ENDIF
 a=@num|@close b=@name = | $a ; $b = | 1.5 | TS013 | applied | F(1, 50) X = 2 => F(1, 50);X = 2
@@ -337,8 +337,8 @@ c=IF|WHILE|ELSEIF|UNTIL|LOOP ( a=@argt* b=@num|@word e=;|$ | $c ( $a $b ) $e | 1
 # ELSE and ELSEIF
 a=@nosep ELSE b=@name = | $a ; ELSE ; $b = | 1 | TS014 | applied | X = 5⏎IF(X = 5) X = 6 ELSE X = 7 => X = 5⏎IF(X = 5);X = 6;ELSE;X = 7;ENDIF
 h=IF|ELSEIF <question> ( <body> ) e=ELSEIF|ELSE | &h ( $c ) ; $b $r ; $e | .9 | TS080 | applied | IF(DISTANCE < 10)(S)ELSE(F(1,50)) => IF(DISTANCE < 10);S;ELSE;F(1, 50);ENDIF
-ELSE IF | ELSEIF | 1 | TS021 | first | IF(DISTANCE < 10);S;ELSE IF(DISTANCE < 30);F(1,50);ENDIF => IF(DISTANCE < 10);S; ELSEIF(DISTANCE < 30);F(1,50);ENDIF
-ELSE , IF | ELSEIF | 1 | TS021 | applied | IF(DISTANCE < 5);S;ELSE, IF(DISTANCE < 9);F(1, 50);ENDIF => IF(DISTANCE < 5);S; ELSEIF(DISTANCE < 9);F(1, 50);ENDIF
+ELSE IF | ELSEIF | 1 | TS022 | first | IF(DISTANCE < 10);S;ELSE IF(DISTANCE < 30);F(1,50);ENDIF => IF(DISTANCE < 10);S; ELSEIF(DISTANCE < 30);F(1,50);ENDIF
+ELSE , IF | ELSEIF | 1 | TS022 | applied | IF(DISTANCE < 5);S;ELSE, IF(DISTANCE < 9);F(1, 50);ENDIF => IF(DISTANCE < 5);S; ELSEIF(DISTANCE < 9);F(1, 50);ENDIF
 IF <question> ? a=@any+ : b=@any+ $ | IF ( $c ) ; $a ; ELSE ; $b ; ENDIF | 1 | TS014 | applied | IF(DISTANCE < 10) ? S : F(1,50) => IF(DISTANCE < 10);S;ELSE;F(1, 50);ENDIF
 ELSE ( <body> ) $ | ELSE ; $b $r | 1 | TS014 | applied | IF(DISTANCE < 10)(S)ELSE(F(1,50)) => IF(DISTANCE < 10);S;ELSE;F(1, 50);ENDIF
 h=ELSE :|,|THEN|=|'|' | &h ; | 1 | TS014 | applied | IF DISTANCE<10: STOP ELSE: F(1,50) => IF(DISTANCE < 10);STOP;ELSE;F(1, 50);ENDIF
@@ -436,8 +436,8 @@ v=@def ( ) | $v | 1 | TS028 | first | DEF GIRO()⏎R(1, 60)⏎END_DEF⏎GIRO() =
 ^ ( a=@callw ( c=@argt+ ) ) ( <body> ) $ | $a ( $c ) ; $b $r | 1 | TS080 | applied | (F(2,80))(R(1,60)) => F(2, 80);R(1, 60)
 v=@val A|TO the? wall | &v | 1 | TS102 | first | IF(distancia a la pared < 10)⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
 LOOP =|- n=@num | LOOP ( $n ) | 1 | TS015 | applied | LOOP=4;F(2,80);END_LOOP => LOOP(4);F(2,80);END_LOOP
-^ v=TIEMPO n=@num $ | $v = $n | 1 | TS057 | applied | tiempo 2⏎F(tiempo,80) => tiempo = 2⏎F(tiempo,80)
-a=@close '|' h=END_LOOP|ENDIF|END_WHILE|END_DEF|END_WHEN|END_TASK | $a ; &h | 1 | TS055 | applied | LOOP(2);F(1, 80)|END_LOOP => LOOP(2);F(1, 80);END_LOOP
+^ v=TIEMPO n=@num $ | $v = $n | 1 | TS050 | applied | tiempo 2⏎F(tiempo,80) => tiempo = 2⏎F(tiempo,80)
+a=@close '|' h=END_LOOP|ENDIF|END_WHILE|END_DEF|END_WHEN|END_TASK | $a ; &h | 1 | TS061 | applied | LOOP(2);F(1, 80)|END_LOOP => LOOP(2);F(1, 80);END_LOOP
 ^ DEF ( n=@word ) | DEF $n | 1 | TS039 | offered | DEF(SALUDO)⏎BEEP(1,440)⏎END_DEF⏎SALUDO => DEF SALUDO⏎BEEP(1,440)⏎END_DEF⏎SALUDO
 DEF n=@word :|'|'|=|'->'|'=>' | DEF $n ; | 1 | TS014 | applied | DEF SALUDO = BEEP(1,440)⏎SALUDO => DEF SALUDO;BEEP(1, 440);END_DEF⏎SALUDO
 DEF n=@word b=@start|'{' | DEF $n ; $b | 1 | TS014 | applied | procedure square F(1,50) end => DEF SQUARE;F(1, 50);END_DEF
@@ -460,10 +460,10 @@ a=@close soon+ b=@start | $a ; $b | 2 | TS044 | applied | F(2, 80) y por ultimo 
 ( a=@num , p=@num|@val ) then|&|+|AND BEEP ( b=@num | ( $a , $p ) ; BEEP ( @same:a:b | .9 | TS074 | offered | F(2, 80) AND BEEP(2, 440) => F(2, 80);BEEP(2, 440)
 a=@close ,? then|soon+ b=@start | $a ; $b | 1 | TS044 | applied | F(1,75) y R(1,75) => F(1, 75);R(1, 75)
 a=@close ,|.|: b=@start | $a ; $b | 1 | TS013 | applied | F(2,80), B(2,80) => F(2, 80);B(2, 80)
-a=@close '|' b=@start | $a ; $b | 1 | TS055 | applied | F(2,80)|R(1,60) => F(2, 80);R(1, 60)
+a=@close '|' b=@start | $a ; $b | 1 | TS061 | applied | F(2,80)|R(1,60) => F(2, 80);R(1, 60)
 a=@close &|+|AND|->|=>|/|>|>>|_|* b=@start | $a ; $b | 1 | TS061 | applied | F(2,80)&B(2,80) => F(2, 80);B(2, 80)
 a=@close , $ | $a ; | .8 | TS013 | applied | F(2,80),⏎R(1,50), => F(2, 80)⏎R(1, 50)
-a=@close '|' $ | $a ; | 1 | TS055 | applied | F(2,80)|⏎R(1,50)| => F(2, 80)⏎R(1, 50)
+a=@close '|' $ | $a ; | 1 | TS061 | applied | F(2,80)|⏎R(1,50)| => F(2, 80)⏎R(1, 50)
 a=@close b=@start | $a ; $b | 1 | TS013 | applied | S STOP => S;STOP
 call b=@def n=@num | LOOP ( $n ) ; $b ; END_LOOP | 1 | TS062 | applied | DEF SALTO;F(0.2, 60);END_DEF⏎CALL SALTO 3 => DEF SALTO;F(0.2, 60);END_DEF⏎LOOP(3);SALTO;END_LOOP
 ^ first ,? b=@start | $b | 1 | TS044 | applied | Primero, avanza 2 segundos⏎Luego gira a la izquierda 1 segundo => F(2, 80)⏎L(1, 80)

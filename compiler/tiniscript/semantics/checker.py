@@ -252,7 +252,8 @@ class _Checker(Scope):
         device = self.kit.actuators[number]
         word = actuator_word(device)
         if node.arguments is None:
-            self.report(codes.ACTUATOR_ALONE, node.span, name=device.name, fix=word.example)
+            self.report(codes.MISSING_OPEN, node.span, word=device.name, usage=word.usage,
+                        fix=word.example)  # fmt: skip
             return
         if len(node.arguments) != 1:
             self.wrong.count(word, node.arguments, node.span)

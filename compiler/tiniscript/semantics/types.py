@@ -91,8 +91,9 @@ class Kinds:
             kind = YES_NO if self.kit.sensors[name.number].is_yes_no else NUMBER
             term = Term("SENSOR", name.number)
         else:
-            code = codes.DEF_READ if name.what == "def" else codes.ACTUATOR_READ
-            scope.report(code, Span(part.start, part.end), name=part.value)
+            said = {"device": part.value} if name.what == "actuator" else {}
+            span = Span(part.start, part.end)
+            scope.report(codes.NO_VALUE, span, None, word=part.value, **said)
         stack.append(Operand(kind, 1, part.start, part.end))
         return term
 

@@ -39,7 +39,7 @@ class WrongValues:
     def unknown(self, part: Part, name: str, target: str | None) -> None:
         scope, span = self.scope, Span(part.start, part.end)
         if name in scope.def_names:
-            scope.report(codes.DEF_READ, span, name=name)
+            scope.report(codes.NO_VALUE, span, word=name)
             return
         meant = meant_by(name) or ""
         before = scope.source.text[max(0, span.start - _NEAR) : span.start]
