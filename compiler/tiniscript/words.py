@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator
-from functools import cache, lru_cache
+from functools import cache
 from typing import NamedTuple
 
 from tiniscript.fixed_point import HIGHEST, LOWEST
@@ -116,78 +116,8 @@ BLOCK_ENDS = {
 }
 TASKS = ("TASK", "WHEN")  # blocks that run beside the rest of the program
 
-# How other languages, and Spanish, say it. Used for messages alone: none of them is read.
-OTHER_WORDS = {
-    "F": "ADE ADEL FORWARD FWD FD AHEAD GO MOVE WALK ADELANTE AVANZAR AVANZA AVANCE ADELANTA CAMINAR CAMINA ANDAR ANDA CORRER CORRE"
-         " MOVER MUEVE MUEVETE DERECHO RECTO STRAIGHT FRENTE SIGUE SIGA SEGUIR KEEP DRIVE",
-    "B": "ATR BACKWARD BACKWARDS BACK BK REVERSE ATRAS RETROCEDER RETROCEDE REVERSA REGRESA REGRESAR BACK_UP",
-    "L": "LEFT LT TURN_LEFT IZQUIERDA IZQ GIRAR_IZQUIERDA",
-    "R": "RIGHT RT TURN_RIGHT DERECHA DER GIRAR_DERECHA",
-    "S": "HALT FREEZE BRAKE PARAR PARA PARE ALTO DETENER DETENTE FRENAR FRENA DETEN PARATE QUIETO",
-    "W": "WAIT DELAY SLEEP PAUSE ESPERAR ESPERA PAUSA PAUSAR DORMIR DUERME",
-    "M": "MOTOR MOTORS MOTORES",
-    "BEEP": "BIP PIP BOCINA ZUMBADOR ALARMA CLAXON TONE BUZZ BUZZER SOUND PITAR PITA PITO PITIDO SONAR SUENA TOCAR TOCA SONIDO TONO",
-    "SHOW": "ENSENA ENSENIA PRINT PRINTLN PRINTF WRITE SAY DISPLAY ECHO LOG MOSTRAR MUESTRA IMPRIMIR IMPRIME DECIR DI ESCRIBIR ESCRIBE",
-    "START": "INICIO BEGIN COMENZAR COMIENZO EMPEZAR EMPIEZA INICIAR VOID_SETUP",
-    "IF": "SI_ES CUANDO UNLESS A_MENOS_QUE SALVO EXCEPTO",
-    "ELSEIF": "ELIF ELSIF SINO_SI",
-    "ELSE": "SINO SI_NO OTHERWISE OTRO DE_LO_CONTRARIO",
-    "ENDIF": "FI FIN_SI FINSI FIN_IF FINIF IF_END",
-    "END_WHEN": "FIN_CUANDO FINCUANDO",
-    "LOOP": "REPEAT FOR DO TIMES REPETIR REPITE BUCLE CICLO PARA_CADA VECES",
-    "END_LOOP": "FIN_BUCLE FIN_LOOP FINLOOP FIN_REPETIR FINREPETIR FIN_REPITE FIN_CICLO FIN_PARA FINPARA"
-                " END_REPEAT ENDREPEAT END_FOR ENDFOR LOOP_END NEXT SIGUIENTE END_FOREVER ENDFOREVER FIN_FOREVER FIN_SIEMPRE"
-                " FINSIEMPRE",
-    "WHILE": "MIENTRAS",
-    "END_WHILE": "FIN_MIENTRAS FINMIENTRAS FIN_WHILE FINWHILE WHILE_END WEND",
-    "FOREVER": "SIEMPRE INFINITO PARA_SIEMPRE POR_SIEMPRE VOID_LOOP",
-    "BREAK": "EXIT LEAVE SALIR ROMPER",
-    "DEF": "DEFINE DEFINIR FUNCTION PROCEDURE SUB FUNCION PROCEDIMIENTO",
-    "END_DEF": "END_FUNCTION FIN_FUNCION FINFUNCION FIN_DEF FINDEF DEF_END END_SUB",
-    "UNTIL": "HASTA HASTA_QUE",
-    "TRUE": "YES VERDADERO CIERTO",
-    "FALSE": "NO FALSO",
-    "RANDOM": "RAND RANDINT AZAR ALEATORIO DADO",
-    "ROUND": "REDONDEAR",
-    "TIME": "MILLIS TIMER TIEMPO",
-    "BUTTON": "BOTON PULSADOR",
-    "DISTANCE": "DISTANCIA ULTRASONIDO ULTRASONICO ULTRASONIC",
-    "LIGHT_R": "LUZ_D LUZ_DERECHA LIGHT_RIGHT",
-    "LIGHT_L": "LUZ_I LUZ_IZQUIERDA LIGHT_LEFT",
-}
-
-# How who has Spanish in the ear spells a word of the language: LOOP, SHOW, WHILE, FOREVER.
-HEARD_WORDS = {
-    "LOOP": "LUP LUUP LUB",
-    "END_LOOP": "END_LUP ENDLUP EN_LUP ENLUP EN_LOOP ENLOOP FIN_LUP",
-    "SHOW": "SHOU CHOU CHOW CHO XOU SOU",
-    "WHILE": "UAIL GUAIL GUAIEL WAIL HUAIL JUAIL UAIEL WUAIL",
-    "END_WHILE": "END_WAIL END_GUAIL END_UAIL ENDWAIL ENDGUAIL ENDUAIL",
-    "ELSE": "EL_SE ELS_E",
-    "ENDIF": "EN_IF ENIF",
-    "END_DEF": "ENDEF EN_DEF",
-    "BREAK": "BREC BREIC BREK",
-    "START": "ESTAR ESTARD",
-    "BEEP": "VIIP BIIP BIPP",
-    "FOREVER": "FOREBER FOREVE FOREBE FOR_EVER FOR_EBER FOREVERR FORREVER FOREVA",
-    "TIME": "TAIM TAIN TAIME",
-    "TRUE": "TRU TRUU",
-    "FALSE": "FALS FOLS FALCE",
-    "RANDOM": "RANDON RAMDOM RAMDON RANDUM RANDOMM",
-    "ROUND": "RAUND RAUN ROUN",
-    "LIGHT_R": "LAIT_R LIGTH_R LIGH_R",
-    "LIGHT_L": "LAIT_L LIGTH_L LIGH_L",
-}
-
 # The sensor of which a robot has a left and a right one.
 SENSOR_STEMS = {"LUZ": "LIGHT", "LINEA": "LINE"}
-
-# What no single word says here: which way to turn, and what to switch on or off.
-TURN_WORDS = frozenset(["TURN", "ROTATE", "SPIN", "GIRAR", "GIRA", "GIRO", "ROTAR", "ROTA", "VOLTEAR", "VOLTEA", "VOLTEAS", "VOLTEE", "GIRE", "GIRAS", "DOBLAR", "DOBLA", "DOBLAS"])
-SWITCH_WORDS = {
-    **dict.fromkeys(["TURN_ON", "SWITCH_ON", "PRENDER", "PRENDE", "ENCENDER", "ENCIENDE"], "TRUE"),
-    **dict.fromkeys(["TURN_OFF", "SWITCH_OFF", "APAGAR", "APAGA"], "FALSE"),
-}
 
 # What a pupil asks for, where a robot measures how far something is.
 OTHER_WAY = {"F": "B", "B": "F", "L": "R", "R": "L"}  # the moves, and those that undo them
@@ -197,8 +127,6 @@ NEAR_WORDS = frozenset(
 # What a robot may have, and what nobody calls a variable.
 DEVICE_WORDS = frozenset(["LED", "LUZ", "FOCO", "LIGHT", "LAMP", "LAMPARA", "SERVO", "BUZZER", "ZUMBADOR", "BOCINA", "ALARMA", "MOTOR", "MOTORES", "GRIPPER", "GARRA", "PINZA", "PANTALLA", "LCD", "SCREEN"])
 
-# Commands of other languages whose time is in milliseconds.
-IN_MILLISECONDS = frozenset(["DELAY"])
 # What other languages do, and this one does not: pins, jumps, clocks. What the robot knows instead.
 NOT_DONE = {
     **dict.fromkeys(("DIGITALWRITE", "ANALOGWRITE", "PINMODE", "DIGITALREAD", "ANALOGREAD", "PIN"), "pins"),
@@ -228,18 +156,6 @@ _OTHER_NAMES = {
     "power": ("VEL", "VELOCIDAD", "SPEED", "V", "FUERZA", "POT"),
 }
 
-# Words that have a meaning elsewhere in this table, and are no misspelt ones.
-_KNOWN_OTHERWISE = frozenset(("CONTINUE", "CONTINUA", "CONTINUAR", *TURN_WORDS, *SWITCH_WORDS, *SENSOR_STEMS, *NOT_DONE))
-
-# Numbers in words, of what programs often say.
-NUMBER_WORDS = {name: str(value) for value, names in (
-    (1, "ONE UNO UN UNA"), (2, "TWO DOS"), (3, "THREE TRES"), (4, "FOUR CUATRO"), (5, "FIVE CINCO"),
-    (6, "SIX SEIS"), (7, "SEVEN SIETE"), (8, "EIGHT OCHO"), (9, "NINE NUEVE"), (10, "TEN DIEZ"),
-    (20, "TWENTY VEINTE"), (30, "THIRTY TREINTA"), (40, "FORTY CUARENTA"), (50, "FIFTY CINCUENTA"),
-    (60, "SIXTY SESENTA"), (70, "SEVENTY SETENTA"), (80, "EIGHTY OCHENTA"), (90, "NINETY NOVENTA"),
-    (100, "HUNDRED CIEN"),
-) for name in names.split()}
-
 # How much power a word says, where a power is wanted, and how high the notes of a song sound.
 POWER_WORDS = {name: str(value) for value, names in (
     (100, "ALTA MAX MAXIMO MAXIMA FULL HIGH FAST RAPIDO RAPIDA RAPIDAMENTE FUERTE TODO TODA"),
@@ -255,19 +171,6 @@ AMOUNT_WORDS = frozenset((
 NOTE_WORDS = {"DO": "262", "RE": "294", "MI": "330", "FA": "349", "SOL": "392", "LA": "440",
               "C4": "262", "D4": "294", "E4": "330", "F4": "349", "G4": "392", "A4": "440", "B4": "494", "C5": "523"}
 
-# What people write behind a number, which has none here: the unit that is meant, and how many
-# thousandths of it one is.
-UNITS = {name: (unit, thousandths) for unit, thousandths, names in (
-    ("s", 1000, "S SEC SECS SECOND SECONDS SEG SEGS SEGUNDO SEGUNDOS"),
-    ("s", 1, "MS MILISEGUNDO MILISEGUNDOS MILLISECOND MILLISECONDS"),
-    ("s", 60_000, "MIN MINS MINUTO MINUTOS MINUTE MINUTES"), ("s", 3_600_000, "H HORA HORAS HOUR HOURS"),
-    ("cm", 1000, "CM CMS CENTIMETRO CENTIMETROS CENTIMETER CENTIMETERS"),
-    ("cm", 30_480, "FT FEET FOOT PIE PIES"), ("cm", 2540, "INCH INCHES PULGADA PULGADAS"),
-    ("cm", 100, "MM MILIMETRO MILIMETROS"), ("cm", 100_000, "M MT MTS METRO METROS METER METERS"),
-    ("Hz", 1000, "HZ HERTZ HERCIO HERCIOS"), ("°", 1000, "DEG DEGREE DEGREES GRADO GRADOS ° º"),
-    ("%", 1000, "PERCENT PORCIENTO POTENCIA POWER %"), ("steps", 1000, "STEP STEPS PASO PASOS"),
-    ("times", 1000, "VEZ VECES TIMES"), ("V", 1000, "V"), ("°C", 1000, "°C"),
-) for name in names.split()}
 # fmt: on
 
 
@@ -279,70 +182,6 @@ def usage_of(word: str) -> str:
 def names_of(argument: str) -> tuple[str, ...]:
     """Return how pupils name a value of a call, `power`: POWER, POTENCIA, VEL."""
     return (*PLACEHOLDERS.get(argument, ()), *_OTHER_NAMES.get(argument, ()))
-
-
-def meant_by(word: str) -> str | None:
-    """Return the word of the language that `word` says in another one, or None.
-
-    `word` may be misspelt: `ABANZA`, `FOWARD`.
-    """
-    return _meanings().get(word) or _misspelt(word)[0] or _meant_in_two(word)
-
-
-def is_guessed(word: str) -> bool:
-    """Whether `meant_by` takes a letter for another one: `DERECJA` for DERECHA."""
-    return word not in _meanings() and _misspelt(word)[1]
-
-
-@lru_cache(1000)
-def _misspelt(word: str) -> tuple[str | None, bool]:
-    """Return what a misspelt word of another language means, and whether that is a guess.
-
-    A word that is rather a misspelt one of this language is left to `nearest`.
-    """
-    if word in WORDS or word in _KNOWN_OTHERWISE:
-        return None, False
-    found = _speller().alike(word)
-    if found is not None:
-        return _meanings().get(found), False
-    guessed = _meanings().get(_speller().near(word) or "")
-    return guessed, guessed is not None
-
-
-# Who moves, in a name of two words, and what is done by one.
-_WHO = frozenset("ROBOT CAR CARRO AUTO MOTOR MOTORS MOTORES IR".split())  # noqa: SIM905
-_DOING = frozenset(("F", "B", "L", "R", "S", "BEEP"))
-
-
-@lru_cache(1000)
-def _meant_in_two(word: str) -> str | None:
-    """Return what `moverAdelante` or `stopMotors` means: two words that say one command."""
-    if word in WORDS or word in _KNOWN_OTHERWISE or len(word) > 24:
-        return None
-    for k in range(2, len(word) - 1):
-        halves = word[:k].rstrip("_"), word[k:].lstrip("_")
-        meant = {"S" if half == "STOP" else _meanings().get(half, "") for half in halves}
-        said = meant - {"", "M", "F"} or meant - {"", "M"}
-        is_framed = "F" in meant or any(half in _WHO for half in halves)
-        is_turn = halves[0] in TURN_WORDS and said <= {"L", "R"}
-        unknown = [half for half in halves if half not in _WHO and half not in TURN_WORDS]
-        is_known = all(half == "STOP" or half in _meanings() for half in unknown)
-        if is_known and (is_framed or is_turn) and len(said) == 1 and said <= _DOING:
-            return said.pop()
-    return None
-
-
-@cache
-def _speller() -> Speller:
-
-    return Speller([*WORDS, *_KNOWN_OTHERWISE, *_meanings()])
-
-
-@cache
-def _meanings() -> dict[str, str]:
-    tables = (OTHER_WORDS, HEARD_WORDS)
-    rows = (row for table in tables for row in table.items())
-    return {other: ours for ours, others in rows for other in others.split()}
 
 
 def other_name(word: str) -> str:

@@ -266,8 +266,6 @@ class Behind:
         """Whether a token says nothing that the instruction does not."""
         token, text = self.row[k], self.row[k].text
         is_first = not any(each.kind in (WORD, NUMBER) for each in self.row[:k])
-        if self.is_arm and not k and any(said_of(text, each) for each in ("do", "times", "make")):
-            return False
         if token.kind is WORD and self.number(k) is None:
             return not self._is_order(k) and not (is_first and self._is_alone(k))
         if self.number(k) is not None:
@@ -307,17 +305,12 @@ class Behind:
         is_last = not any(each.kind in (WORD, NUMBER) for each in self.row[k + 1 :])
         if said_of(text, "small") and not is_last and (k or text in ("A", "E", "PARA")):
             return False
-        if text in self.names.defs:
-            before = self._text(k - 1)
-            return not said_of(before, "filler") or bool(said_of(before, "then"))
         if said_of(text, "turn") or text in ("VUELTA", "VUELTAS"):
             return own not in ("L", "R", "M", *("B" * (text[0] == "V")))
         if any(said_of(text, each) for each in ("on", "off", "act")):
             return True
         if said_of(text, "end") or text in ENDED:
             return self.is_in_block and not self.is_arm
-        if said_of(text, "etc"):
-            return True
         if text in ("HASTA", "UNTIL"):
             return own != "SHOW" and self.row[0].text != "(" and not self.is_asked
         meant = self.means(text)

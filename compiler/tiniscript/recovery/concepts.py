@@ -18,7 +18,7 @@ from tiniscript.recovery import lexicon_en, lexicon_es
 from tiniscript.syntax.lexer import DASHES, NUMBER, ODD, WORD
 from tiniscript.syntax.operators import SIGNS
 from tiniscript.syntax.outline import Known
-from tiniscript.words import ALIASES, BLOCK_ENDS, UNITS, WORDS, Speller, nearest
+from tiniscript.words import ALIASES, BLOCK_ENDS, WORDS, Speller, nearest
 
 KNOWN, MISSPELT, NEAR = 1, 2, 3  # what a meaning costs: said, written nearly so, a slip away
 STARTS = frozenset(("IF", "LOOP", "WHILE", "WHEN", "TASK"))
@@ -66,7 +66,7 @@ def _lexemes(line: str) -> tuple[Lexeme, ...]:
         text, kind = match[0], NUMBER if match[1] else WORD if match[2] else ODD
         if kind is WORD:
             text = plain(text)
-            if "Ñ" in match[0].upper() and not _lexicon().get(text):
+            if "Ñ" in match[0].upper() and not lexicon().get(text):
                 text = plain(re.sub("[ñÑ]", "ni", match[0]))
         elif text in _SIGNS or text in DASHES:
             kind = text = "-" if text in DASHES else text
@@ -95,7 +95,7 @@ def plain(text: str) -> str:
 
 
 @cache
-def _lexicon() -> dict[str, list[str]]:
+def lexicon() -> dict[str, list[str]]:
     """What each word means: all that the tables say of it, in their order."""
     found: dict[str, list[str]] = {}
     for table in (lexicon_es.TABLE, lexicon_en.TABLE):
@@ -107,10 +107,19 @@ def _lexicon() -> dict[str, list[str]]:
     return found
 
 
+# The unit that a word says behind a number, and how many thousandths of it one is.
+UNITS = {
+    word: (said[1], int(said[2]))
+    for word, meanings in lexicon().items()
+    for said in map(str.split, meanings)
+    if said[0] == "unit"
+}
+
+
 @lru_cache(4000)
 def said_of(word: str, kind: str) -> tuple[str, ...]:
     """Return what the lexicon says of a word, of one kind: `("s", "1000")` of SEG, `unit`."""
-    for meaning in _lexicon().get(word, ()):
+    for meaning in lexicon().get(word, ()):
         first, *rest = meaning.split()
         if first == kind:
             return tuple(rest) or (kind,)
@@ -119,20 +128,18 @@ def said_of(word: str, kind: str) -> tuple[str, ...]:
 
 @cache
 def _speller() -> Speller:
-    return Speller([*WORDS, *_lexicon()])
+    return Speller([*WORDS, *lexicon()])
 
 
 @lru_cache(4000)
 def concepts(word: str) -> tuple[Meaning, ...]:
     """Return which words of the language a word may mean, the likeliest first."""
-    if word in ALIASES:
-        return (Meaning(ALIASES[word], 0),)
     if word == "SI":
         return (Meaning("IF", KNOWN),)
     found = concept_of(word)
     if found:
         return (Meaning(found, KNOWN),)
-    if word in WORDS or word in _lexicon():
+    if word in WORDS or word in lexicon():
         return ()
     alike, near = _speller().alike(word), _speller().near(word)
     for spelt, cost in ((alike, KNOWN), (near, MISSPELT)):
@@ -149,9 +156,14 @@ def concepts(word: str) -> tuple[Meaning, ...]:
     return ()
 
 
+def meant_by(word: str) -> str | None:
+    """Return the word of the language that a word of another one surely says, misspelt or not."""
+    return next((each.concept for each in concepts(word) if each.cost < NEAR), None)
+
+
 def concept_of(word: str) -> str | None:
     """Return the word of the language or of a kit that the lexicon says a word for."""
-    for meaning in _lexicon().get(word, ()):
+    for meaning in lexicon().get(word, ()):
         if meaning.isupper() and " " not in meaning:
             return meaning
     return None
@@ -327,7 +339,7 @@ class Names:
         return [text, "@word", *self._classes_of_word(text)]
 
     def _classes_of_word(self, text: str) -> list[str]:
-        said = [meaning.split()[0] for meaning in _lexicon().get(text, ())]
+        said = [meaning.split()[0] for meaning in lexicon().get(text, ())]
         found = [each for each in said if each.islower() and text not in self.variables]
         found += ["@unit"] if "unit" in said and text not in WORDS else []
         meant = [each.concept for each in self.meanings(text) if each.cost < NEAR]

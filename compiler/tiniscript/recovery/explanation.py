@@ -16,13 +16,13 @@ from typing import NamedTuple
 from tiniscript.diagnostics import codes
 from tiniscript.recovery import rows
 from tiniscript.recovery.blocks import BRACES
-from tiniscript.recovery.concepts import ENDED, Lexeme, lexemes, said_of, texts
+from tiniscript.recovery.concepts import ENDED, Lexeme, lexemes, meant_by, said_of, texts
 from tiniscript.recovery.lines import Step
 from tiniscript.recovery.search import Candidate, Change
 from tiniscript.recovery.writing import laid_out, without_note
 from tiniscript.source import Edit, Span
 from tiniscript.syntax.lexer import NUMBER, WORD
-from tiniscript.words import BLOCK_ENDS, WORDS, meant_by
+from tiniscript.words import BLOCK_ENDS, WORDS
 
 _WORD_CODE = rows.OTHER_WORD
 _BRACES, _UNENDED = codes.BRACES.number, codes.NEVER_ENDS.number
@@ -423,7 +423,7 @@ def _code(
                 return codes.MISSING_COMMA.number, own[0]
         if is_translated:
             changed = (
-                it for it in own if foreign in texts(it.before) and foreign not in texts(it.after)
+                it for it in steps if foreign in texts(it.before) and foreign not in texts(it.after)
             )
             return _WORD_CODE, next(changed, own[0])
         return own[0].code, own[0]
@@ -449,6 +449,8 @@ def _slip(code: str, step: Step | None, before: Sequence[Lexeme], after: Sequenc
     if "WHEN" in texts(after):  # what the steps took for an IF
         old, new = _with_when(old), _with_when(new)
     start, found, right = _first_difference(old, new)
+    if code == _WORD_CODE and texts(found[:1]) == (";",):
+        found = found[1:]
     if not right and code == _WORD_CODE and start:
         found, right = [old[start - 1], *found], [old[start - 1]]
     elif not right and code == codes.BAD_NUMBER.number:

@@ -18,6 +18,7 @@ from tiniscript.recovery.concepts import (
     CALLED,
     NEAR,
     REMEMBERED,
+    UNITS,
     Lexeme,
     Names,
     lexemes,
@@ -29,7 +30,7 @@ from tiniscript.recovery.slots import LONG_S, MILLISECONDS_FROM, MOVES, filled
 from tiniscript.syntax.lexer import NUMBER, WORD
 from tiniscript.syntax.operators import SIGNS
 from tiniscript.syntax.outline import Failure, Item, outline
-from tiniscript.words import FUNCTIONS, UNITS, WORDS, nearest
+from tiniscript.words import FUNCTIONS, WORDS, nearest
 
 STATES = 80  # of one line that are looked at
 SLIP_STATES = 40

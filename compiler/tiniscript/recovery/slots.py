@@ -8,10 +8,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from tiniscript.recovery.concepts import CALLED, DONE, Lexeme, Names, made, said_of
+from tiniscript.recovery.concepts import CALLED, DONE, UNITS, Lexeme, Names, made, said_of
 from tiniscript.syntax.devices import actuator_word
 from tiniscript.syntax.lexer import NUMBER, WORD
-from tiniscript.words import NOTE_WORDS, UNITS, WORDS, Argument
+from tiniscript.words import NOTE_WORDS, WORDS, Argument
 
 LONG_S = 20  # so much without a unit may be a power, degrees or centimetres
 MILLISECONDS_FROM = 100  # no wait is so many seconds

@@ -14,15 +14,24 @@ from itertools import pairwise
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic, Repair
 from tiniscript.kit import Kit
-from tiniscript.recovery.concepts import CALLED, ENDED, Lexeme, Names, lexemes, plain, said_of
+from tiniscript.recovery.amounts import is_amount, with_number
+from tiniscript.recovery.concepts import (
+    CALLED,
+    ENDED,
+    UNITS,
+    Lexeme,
+    Names,
+    lexemes,
+    plain,
+    said_of,
+)
 from tiniscript.recovery.orders import block, command, made_up, orders, written
 from tiniscript.recovery.writing import without_note
 from tiniscript.source import Edit, Source, Span
-from tiniscript.syntax.amounts import is_amount, with_number
 from tiniscript.syntax.free_names import in_place_of
 from tiniscript.syntax.lexer import NUMBER, QUOTES, WORD
 from tiniscript.syntax.operators import COMPARISONS
-from tiniscript.words import BLOCK_ENDS, UNITS, WORDS, said_instead
+from tiniscript.words import BLOCK_ENDS, WORDS, said_instead
 
 _ASKING = ("IF", "ELSEIF", "WHILE", "UNTIL")
 _LAST_HEAD = re.compile(r"(?is)\b(IF|ELSEIF|WHILE|UNTIL)[ \t]*\((?!.*\b(?:IF|WHILE|UNTIL)\()")
@@ -195,8 +204,6 @@ class _Usage:
             return None
         if said := self.orders(found, piece, found.values["found"]):
             return said
-        if far := _far(right, tokens):
-            return found._replace(values={**found.values, "far": far})
         if len(tokens) == 1 and right in WORDS and not WORDS[right].arguments:
             values = {**found.values, "fix": right}
             repair = Repair((Edit(piece, right),), False)
@@ -365,14 +372,8 @@ class _Usage:
         depth = len(header) - len(header.lstrip())
         below = [n for n in range(k + 1, len(self.lines)) if self.lines[n].strip()]
         values = dict(found.values)
-        part = (
-            "ELSE" if self.source[found.span].upper().startswith("ELSE") else found.values["word"]
-        )
         if rest and k + 1 == len(self.lines):
             values |= {"behind": rest[-1]}
-        elif rest:
-            only = rest[0] if len(rest) == 1 else ""
-            values |= {"only": only, "all": "; ".join(rest), "part": part}
         elif not below:
             values |= {"head": self.source[found.span]}
         else:
@@ -457,17 +458,11 @@ class _Usage:
     def no_order(self, found: Diagnostic) -> Diagnostic | None:
         """A value where an instruction is expected."""
         piece, sign = self.piece(found.span), found.values.get("found", "")
-        word, tokens = WORDS.get(sign), self.tokens(piece)
+        tokens = self.tokens(piece)
         if self.source.text.startswith("/*", found.span.start):
             return Diagnostic(codes.OTHER_NOTE, found.span, {"found": "/*"})
         if sign.isdecimal() and len(tokens) > 2 and tokens[1].text in WORDS:
             return Diagnostic(codes.LINE_NUMBER, found.span, {"found": sign})
-        if word is not None and word.role == "function":
-            given = self.source[piece]
-            if any(self.command(each.text) in CALLED for each in tokens):
-                example = "X = RANDOM(1, 2);IF(X = 1);L(1, 60);ELSE;R(1, 60);ENDIF"
-                return Diagnostic(codes.BY_CHANCE, piece, {"example": example})
-            return found._replace(values={**found.values, "given": given, "number": f"N = {given}"})
         return None
 
     def function(self, found: Diagnostic) -> Diagnostic | None:

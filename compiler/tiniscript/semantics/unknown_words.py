@@ -11,6 +11,7 @@ from collections.abc import Set as AbstractSet
 from itertools import chain, takewhile
 
 from tiniscript.diagnostics import codes
+from tiniscript.recovery.concepts import meant_by, said_of
 from tiniscript.semantics.counts import LONG_TIME_S
 from tiniscript.semantics.named_values import value_of
 from tiniscript.semantics.symbols import ENOUGH, Scope
@@ -18,17 +19,12 @@ from tiniscript.source import Span
 from tiniscript.syntax import ast
 from tiniscript.words import (
     BLOCK_ENDS,
-    IN_MILLISECONDS,
     NEAR_WORDS,
     NOTE_WORDS,
     PLACEHOLDERS,
     POWER_WORDS,
-    SWITCH_WORDS,
-    TURN_WORDS,
     WORDS,
     Word,
-    is_guessed,
-    meant_by,
     names_of,
     said_instead,
 )
@@ -63,16 +59,7 @@ def report_unknown(scope: Scope, node: ast.Command, inside: str | None) -> None:
 def _report_unknown_word(scope: Scope, node: ast.Command) -> None:
     word, span = node.word, node.word_span
     meant = meant_by(word)
-    if is_guessed(word):  # a name of the program's own is rather meant
-        own = scope.near(word, chain(scope.names, scope.def_names))
-        if own:
-            scope.report(codes.UNKNOWN_WORD, span, found=word, near=own)
-            return
-    if (word in TURN_WORDS or meant == "F") and _report_way(scope, node):
-        return
-    is_value = meant in WORDS and WORDS[meant].role == "value" and word != "TIEMPO"
-    if is_value:  # `no avances si …`
-        scope.report(codes.UNKNOWN_WORD, span, found=word, near="")
+    if (said_of(word, "turn") or meant == "F") and _report_way(scope, node):
         return
     if meant is not None and (meant in WORDS or meant in scope.names):
         _report_foreign(scope, node, meant)
@@ -81,13 +68,8 @@ def _report_unknown_word(scope: Scope, node: ast.Command) -> None:
     if own:  # `VUELTA`, where there is a DEF MEDIA_VUELTA
         scope.report(codes.UNKNOWN_WORD, span, found=word, near=own)
         return
-    if word in TURN_WORDS or word in ("VUELTA", "VUELTAS"):
+    if said_of(word, "turn") or word in ("VUELTA", "VUELTAS"):
         scope.report(codes.WHICH_WAY, span, None, **_both_ways(scope, node))
-        return
-    if word in SWITCH_WORDS:
-        switched = next((each.name for each in scope.kit.actuators if each.is_yes_no), "")
-        fix = f"{switched}({SWITCH_WORDS[word]})" if switched else ""
-        scope.report(codes.SWITCH_WHAT, span, found=word if fix else "", fix=fix)
         return
     commands = [each.text for each in WORDS.values() if each.role not in
                 ("setup", "later", "value", "operator", "function", "forever")]  # fmt: skip
@@ -140,7 +122,7 @@ def _both_ways(scope: Scope, node: ast.Command) -> dict[str, str]:
 
 def _report_foreign(scope: Scope, node: ast.Command, meant: str) -> None:
     """`ADELANTE(5)`, `delay(1000)`, `DISTANCIA`: the same in a word of the language or the kit."""
-    said = {"milli": node.word} if node.word in IN_MILLISECONDS else {}
+    said = {"milli": node.word} if said_of(node.word, "milliseconds") else {}
     usage = WORDS[meant].usage if meant in WORDS else meant
     scope.report(codes.OTHER_LANGUAGE, node.word_span, node.span, found=node.word, right=meant,
                  usage=usage, **said)  # fmt: skip
@@ -230,19 +212,6 @@ def report_words_for_numbers(scope: Scope, node: ast.Command, word: Word, said: 
                 if near:
                     values = {**each.values, "near": near}
                     scope.diagnostics[k] = each._replace(values=values)
-
-
-def hyphened(scope: Scope, span: Span, name: str) -> bool:
-    """Whether `name` is a part of `mi-velocidad`, where MI_VELOCIDAD is set; then say so once."""
-    text = scope.source.text
-    after = re.compile(r"-([A-Za-z][A-Za-z0-9_]*)").match(text, span.end)
-    if after and f"{name}_{after[1].upper()}" in scope.set_somewhere:
-        whole = Span(span.start, after.end())
-        found, right = scope.source[whole], f"{name}_{after[1].upper()}"
-        scope.report(codes.NAME_WITH_SPACE, whole, None, found=found, right=right)
-        return True
-    before = re.search(r"([A-Za-z][A-Za-z0-9_]*)-$", text[max(0, span.start - 60) : span.start])
-    return before is not None and f"{before[1].upper()}_{name}" in scope.set_somewhere
 
 
 def whole_name(scope: Scope, part: str, names: AbstractSet[str]) -> str:

@@ -9,15 +9,16 @@ from __future__ import annotations
 import re
 
 from tiniscript.diagnostics import codes
+from tiniscript.recovery.amounts import is_amount, with_number
+from tiniscript.recovery.concepts import meant_by, said_of
 from tiniscript.semantics.comparisons import ASIDE
 from tiniscript.semantics.named_values import value_of
 from tiniscript.semantics.symbols import ENOUGH, NUMBER, Operand, Scope
-from tiniscript.semantics.unknown_words import hyphened, meant_value, whole_name
+from tiniscript.semantics.unknown_words import meant_value, whole_name
 from tiniscript.source import Span
-from tiniscript.syntax.amounts import is_amount, with_number
 from tiniscript.syntax.ast import Part
 from tiniscript.syntax.operators import SIGN_OF
-from tiniscript.words import NUMBER_WORDS, POWER_WORDS, SENSOR_STEMS, WORDS, meant_by
+from tiniscript.words import POWER_WORDS, SENSOR_STEMS, WORDS
 
 _EQUAL = frozenset(("EQ", "NE"))
 _COMPARES = re.compile(r"\w+\s*((?:<=|>=|<>|[<>=])\s*[\w.]+)")  # `> 5` of `X > 5`
@@ -54,8 +55,6 @@ class WrongValues:
         if meant == "BUTTON" or name == "BUTTON":
             scope.report(codes.NO_BUTTON, span)
             return
-        if hyphened(scope, span, name):
-            return
         is_free = name != target and name not in scope.set_somewhere
         amount = self._amount(span, name) if is_free else {}
         if amount:
@@ -66,7 +65,7 @@ class WrongValues:
         known = [each for each, its in names if its.what in ("sensor", "variable")]
         is_forever = _TIME_BEFORE.search(before) or _TIMES_BEFORE.search(before)
         known += ["FOREVER"] if is_forever else []
-        near = NUMBER_WORDS.get(name) or scope.near(name, known) or meant_value(
+        near = "".join(said_of(name, "number")) or scope.near(name, known) or meant_value(
             scope, span, name, is_assigned=target is not None
         )  # fmt: skip
         near = near or whole_name(scope, name, scope.set_somewhere)
