@@ -184,6 +184,7 @@ def started() -> Iterator[list[Person]]:
         os.close(person.ours)
 
 
+@pytest.mark.sampled("words", "size", "asks", "yes")
 @pytest.mark.parametrize(("words", "size", "asks", "yes"), [
     ([], "about 40 MB", "Go on? [y/N] ", "y"),
     (["--lang", "es"], "unos 40 MB", "¿Sigo? [s/N] ", "sí"),
@@ -205,6 +206,7 @@ def test_a_page_that_is_missing_is_built_after_a_yes(
     assert person.ended() == 0
 
 
+@pytest.mark.sampled("words", "said")
 @pytest.mark.parametrize(("words", "said"), [
     ([], "built from other sources"), (["--lang", "es"], "con otras fuentes"),
 ])  # fmt: skip
@@ -225,6 +227,7 @@ def test_a_page_of_other_sources_is_told(
         clone.root.joinpath(name).unlink()
 
 
+@pytest.mark.sampled("answer")
 @pytest.mark.parametrize("answer", ["n", "", "what?"])
 def test_nothing_happens_without_a_yes(clone: Clone, started: list[Person], answer: str) -> None:
     clone.has_node()
@@ -236,6 +239,7 @@ def test_nothing_happens_without_a_yes(clone: Clone, started: list[Person], answ
     assert "nothing was downloaded" in person.seen and not clone.page.exists()
 
 
+@pytest.mark.sampled("words", "said")
 @pytest.mark.parametrize(("words", "said"), [
     ([], "no terminal here to ask at"), (["--lang", "es"], "no hay una terminal"),
 ])  # fmt: skip
@@ -305,6 +309,7 @@ NO_NETWORK = "npm error code ENOTFOUND\\nnpm error network getaddrinfo ENOTFOUND
 NO_DISK = "npm warn tar ENOSPC: no space left on device\\nnpm error code ENOSPC"
 
 
+@pytest.mark.sampled("said", "words")
 @pytest.mark.parametrize(("said", "words"), [
     (NO_NETWORK, "Is this computer online?"),
     (NO_DISK, "the disk is full"),
@@ -338,6 +343,7 @@ def test_ctrl_c_ends_the_build_and_leaves_no_page(clone: Clone, started: list[Pe
 # -- PlatformIO and its compiler
 
 
+@pytest.mark.sampled("words", "size", "asks")
 @pytest.mark.parametrize(("words", "size", "asks"), [
     ([], "about 54 MB", "Go on? [y/N] "), (["--lang", "es"], "unos 54 MB", "¿Sigo? [s/N] "),
 ])  # fmt: skip
@@ -376,6 +382,7 @@ def test_the_compiler_alone_is_asked_for_too_and_once(clone: Clone) -> None:
     assert done.code == 0 and "MB" not in done.err
 
 
+@pytest.mark.sampled("robot", "size")
 @pytest.mark.parametrize(("robot", "size"), [("tinibot32", "354 MB"), ("tinibotc3", "434 MB")])
 def test_the_compiler_of_an_esp32_is_larger(clone: Clone, robot: str, size: str) -> None:
     assert size in clone.unasked(clone.firmware("--robot", robot)).err

@@ -44,6 +44,9 @@ UNKNOWN, POWER, WATCHDOG = 0, 1, 4  # resets in docs/link.md
 WAIT_MS = 2500  # so long an old Nano waits for a sketch
 
 
+pytestmark = pytest.mark.sampled(of="bootloaders", keep=3)
+
+
 @pytest.fixture(autouse=True)
 def needs_a_chip() -> None:
     needed()
@@ -66,7 +69,6 @@ def avrdude(uno: Uno, of: Bootloader, file: Path) -> str:
     return done.stdout
 
 
-@pytest.mark.sampled("board", "builder")
 @pytest.mark.parametrize(
     ("board", "builder"), [("uno", "PlatformIO"), ("nano", "PlatformIO"), ("uno", "Arduino IDE")]
 )

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Callable, Iterator
-from pathlib import Path
+from collections.abc import Callable
+from functools import lru_cache
+
+import pytest
 
 from tests.support.casefile import ROOT
 from tiniscript.link import messages
@@ -15,19 +17,6 @@ PACKAGE = ROOT / "compiler" / "tiniscript"
 FILES = sorted(PACKAGE.rglob("*.py"))
 
 
-def nodes(path: Path) -> Iterator[ast.AST]:
-    yield from ast.walk(ast.parse(path.read_text(encoding="utf-8")))
-
-
-def homes(is_it: Callable[[ast.AST], bool]) -> set[str]:
-    """Return the files in which a node is such a one."""
-    return {
-        path.relative_to(PACKAGE).as_posix()
-        for path in FILES
-        if any(is_it(node) for node in nodes(path))
-    }
-
-
 def is_text(node: ast.AST, pattern: str) -> bool:
     """Whether it is a literal text that matches as a whole."""
     return (
@@ -35,11 +24,6 @@ def is_text(node: ast.AST, pattern: str) -> bool:
         and isinstance(node.value, str)
         and re.fullmatch(pattern, node.value) is not None
     )
-
-
-def test_the_cache_folder_has_one_home() -> None:
-    found = homes(lambda node: isinstance(node, ast.Name) and node.id == "user_cache_path")
-    assert found == {"files.py"}
 
 
 FIELDS = r"state|saved|status|fault|reset|cause"  # of messages: their numbers have names
@@ -67,9 +51,46 @@ def is_number_of_a_message(node: ast.AST) -> bool:
     )
 
 
-def test_states_and_statuses_are_named() -> None:
-    """`values["saved"] == 3` says nothing, and stays 3 when the table changes."""
-    assert homes(is_number_of_a_message) == set()
+def ends_an_instruction(node: ast.AST) -> bool:
+    """Whether it is a set of tokens with `;`, a line's end and the text's end."""
+    parts = node.elts if isinstance(node, (ast.Tuple, ast.Set, ast.List)) else []
+    names = {each.id for each in parts if isinstance(each, ast.Name)}
+    return {"NEWLINE", "END"} <= names and any(is_text(each, ";") for each in parts)
+
+
+# What is looked for, and its homes.
+KINDS: dict[str, tuple[Callable[[ast.AST], bool], set[str]]] = {
+    "the cache folder": (
+        lambda node: isinstance(node, ast.Name) and node.id == "user_cache_path", {"files.py"}),
+    # `values["saved"] == 3` says nothing, and stays 3 when the table changes
+    "a plain number of a message": (is_number_of_a_message, set()),
+    # comparisons are in the table of opcodes, others in that of operators; the lexer knows which
+    # signs are one token
+    "signs of comparisons": (lambda node: is_text(node, "<>|<="), {"bytecode/opcodes.py"}),
+    "ends of blocks": (
+        lambda node: is_text(node, "ENDIF|END_LOOP|END_WHILE|END_DEF"), {"words.py"}),
+    "the end of an instruction": (ends_an_instruction, {"syntax/cursor.py"}),
+    # a row of recovery says with which one it is told
+    "numbers of diagnostics": (
+        lambda node: is_text(node, r"TS\d{3}"), {"diagnostics/codes.py", "recovery/rows.py"}),
+}  # fmt: skip
+
+
+@lru_cache(maxsize=1)
+def homes() -> dict[str, set[str]]:
+    """Return the files in which there is each kind; all are parsed once."""
+    found: dict[str, set[str]] = {name: set() for name in KINDS}
+    for path in FILES:
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            for name, (is_it, _) in KINDS.items():
+                if is_it(node):
+                    found[name].add(path.relative_to(PACKAGE).as_posix())
+    return found
+
+
+@pytest.mark.parametrize("name", KINDS)
+def test_it_has_one_home(name: str) -> None:
+    assert homes()[name] == KINDS[name][1]
 
 
 def test_names_of_states_are_rows_of_their_tables() -> None:
@@ -83,35 +104,6 @@ def test_names_of_states_are_rows_of_their_tables() -> None:
     )] == ["NOTHING", "SAVING", "STORED", "LOW_SUPPLY"]  # fmt: skip
 
 
-def test_signs_of_operators_have_one_home() -> None:
-    """Comparisons are in the table of opcodes, the others in that of operators.
-
-    The lexer knows which signs are one token.
-    """
-    found = homes(lambda node: is_text(node, "<>|<="))
-    assert found == {"bytecode/opcodes.py"}
-    assert homes(lambda node: is_text(node, "%")) >= {"syntax/operators.py"}
+def test_signs_of_operators_are_those_of_their_table() -> None:
     assert {"+", "-", "*", "/", "%", "=", "<", ">", "<=", ">=", "<>"} == operators.SIGNS
     assert operators.SIGN_OF["MOD"] == "%"
-
-
-def test_ends_of_blocks_have_one_home() -> None:
-    found = homes(lambda node: is_text(node, "ENDIF|END_LOOP|END_WHILE|END_DEF"))
-    assert found == {"words.py"}
-
-
-def test_the_end_of_an_instruction_has_one_home() -> None:
-    """A set of tokens with `;`, a line's end and the text's end is `AT_END`."""
-
-    def is_such_a_set(node: ast.AST) -> bool:
-        parts = node.elts if isinstance(node, (ast.Tuple, ast.Set, ast.List)) else []
-        names = {each.id for each in parts if isinstance(each, ast.Name)}
-        return {"NEWLINE", "END"} <= names and any(is_text(each, ";") for each in parts)
-
-    assert homes(is_such_a_set) == {"syntax/cursor.py"}
-
-
-def test_numbers_of_diagnostics_have_one_home() -> None:
-    """A row of recovery says with which one it is told."""
-    found = homes(lambda node: is_text(node, r"TS\d{3}"))
-    assert found == {"diagnostics/codes.py", "recovery/rows.py"}

@@ -163,6 +163,7 @@ def test_a_description_leads_to_files_wherever_it_is_shown(wheel: Path, repo: Pa
     assert ours > 30
 
 
+@pytest.mark.sampled(of="builds of PlatformIO", keep=4)
 def test_a_wheel_builds_its_own_firmware(wheel: Path, tmp_path: Path) -> None:
     variables, why = prepared()
     need(why)
@@ -183,6 +184,7 @@ touch compiler/tiniscript/studio/page/index.html
 """
 
 
+@pytest.mark.sampled("page")
 @pytest.mark.parametrize("page", ["none", "built", "asked for"])
 def test_a_wheel_says_what_it_is_made_without(unpacked: Path, tmp_path: Path, page: str) -> None:
     """Only who is at a terminal is asked for the page, as with `python -m build --wheel`; pip,

@@ -22,6 +22,11 @@ def test_case(case, chip): ...
 @pytest.mark.parametrize("pin", range(9))
 def test_pin(pin): ...
 def test_usual(): ...
+@pytest.mark.sampled(of="boards", keep=2)
+@pytest.mark.parametrize("board", ["uno", "mega"])
+def test_board(board): ...
+@pytest.mark.sampled(of="boards", keep=2)
+def test_other_board(): ...
 """
 Found = list[tuple[str, dict[str, object]]]
 
@@ -77,19 +82,24 @@ def test_each_value_is_in_each_sample_and_each_row_in_one(
     collected: Callable[..., tuple[Found, str]],
 ) -> None:
     seen: Counter[tuple[object, object]] = Counter()
+    together: Counter[tuple[str, object]] = Counter()
     for commit in range(15):
         found, said = collected("--sample", f"{commit}")
         assert f"--sample {commit} " in said
         cases = [row for name, row in found if name == "test_case"]
         assert [row["case"] for row in cases] == list(range(20))
         assert set(Counter(row["chip"] for row in cases).values()) == {6, 7}
-        assert Counter(name for name, _ in found) == {
+        boards = [(name, row.get("board")) for name, row in found if "board" in name]
+        assert len(boards) == 2
+        together.update(boards)
+        assert Counter(name for name, _ in found if "board" not in name) == {
             "test_case": 20,
             "test_pin": 2,
             "test_usual": 1,
         }
         seen.update((row["case"], row["chip"]) for row in cases)
     assert len(seen) > 55
+    assert len(together) == 3 and min(together.values()) >= 5
     assert collected("--sample", "7") == collected("--sample", "7")
     asked, said = collected("--sample", "7", "-k", "not usual")  # which asks for none
     assert len([name for name, _ in asked if name == "test_case"]) == 20 and said

@@ -450,7 +450,7 @@ def test_a_long_program_stays_text(page: Page) -> None:
     assert page.inner_text("#blocks_note") == ""
 
 
-@pytest.mark.sampled("language")
+@pytest.mark.sampled("language", "screen", keep=2)
 @pytest.mark.parametrize("language", ["en", "es"])
 @pytest.mark.parametrize("screen", SCREENS, ids=lambda screen: "x".join(map(str, screen)))
 def test_blocks_are_seen(page: Page, screen: tuple[int, int], language: str) -> None:

@@ -148,6 +148,7 @@ def radio_page(playwright: Playwright) -> Iterator[tuple[Browser, Page]]:
         context.close()
 
 
+@pytest.mark.sampled("service")
 @pytest.mark.parametrize("service", [NORDIC, HM10], ids=["nordic", "hm10"])
 def test_a_robot_is_driven_by_bluetooth(radio_page: tuple[Browser, Page], service: str) -> None:
     browser, page = radio_page

@@ -19,6 +19,8 @@ from tiniscript.virtual.worlds import read
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page, Playwright
 
+pytestmark = pytest.mark.sampled(of="Firefox", keep=3)
+
 PROGRAM = "SI|LOOP(2);\n  F(0.2, 80);\nEND_LOOP;\nSHOW(5)"
 
 

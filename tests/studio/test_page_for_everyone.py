@@ -47,7 +47,7 @@ LOOK = """() => {
 }"""
 
 
-@pytest.mark.sampled("language")
+@pytest.mark.sampled("language", "screen", keep=2)
 @pytest.mark.parametrize("language", ["en", "es"])
 @pytest.mark.parametrize("screen", SCREENS, ids=lambda screen: "x".join(map(str, screen)))
 def test_everything_is_seen(page: Page, screen: tuple[int, int], language: str) -> None:

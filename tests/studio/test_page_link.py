@@ -176,14 +176,15 @@ def test_a_page_that_hangs_stops_its_robot(page: Page, robot: PtyRobot) -> None:
     said(page, "Stopped")  # and it is told when it is back
 
 
-def test_a_page_that_is_hidden_stops_its_robot(own_page: Page, robot: PtyRobot) -> None:
-    drives(own_page, robot)
-    own_page.evaluate(
+def test_a_page_that_is_hidden_stops_its_robot(page: Page, robot: PtyRobot) -> None:
+    drives(page, robot)
+    page.evaluate(
         "Object.defineProperty(document, 'visibilityState', {value: 'hidden', configurable: true});"
         "document.dispatchEvent(new Event('visibilitychange'))"
     )
     robot.until(lambda: not robot.moves, "it stands")
-    said(own_page, "this page was hidden")
+    said(page, "this page was hidden")
+    page.evaluate("delete document.visibilityState")
 
 
 def test_a_page_that_is_closed_stops_its_robot(own_page: Page, robot: PtyRobot) -> None:
@@ -194,16 +195,16 @@ def test_a_page_that_is_closed_stops_its_robot(own_page: Page, robot: PtyRobot) 
 
 
 def test_a_page_that_reaches_nothing_stops_its_robot(
-    pages: Pages, own_page: Page, robot: PtyRobot
+    first: tuple[Pages, Page], page: Page, robot: PtyRobot
 ) -> None:
-    drives(own_page, robot)
-    own_page.context.new_cdp_session(own_page).send("Network.emulateNetworkConditions", {
-        "offline": True, "latency": 0, "downloadThroughput": 0, "uploadThroughput": 0,
-    })  # fmt: skip
+    drives(page, robot)
+    page.context.set_offline(True)
     robot.until(lambda: not robot.moves, "it stands")
-    said(own_page, "tsc studio does not answer any more")
-    assert all("ERR_INTERNET_DISCONNECTED" in each for each in pages.wrong)
-    pages.wrong.clear()
+    said(page, "tsc studio does not answer any more")
+    page.context.set_offline(False)
+    wrong = first[0].wrong
+    assert wrong and all("ERR_INTERNET_DISCONNECTED" in each for each in wrong)
+    wrong.clear()
 
 
 def test_two_tabs_do_not_fight(first: tuple[Pages, Page], page: Page, robot: PtyRobot) -> None:
@@ -244,21 +245,17 @@ def test_identify_name_and_trim(page: Page, robot: PtyRobot) -> None:
     assert page.input_value("#trim_balance") == "-7"
 
 
-@pytest.mark.sampled("language")
+@pytest.mark.sampled("language", "screen", keep=2)
 @pytest.mark.parametrize("language", ["en", "es"])
 @pytest.mark.parametrize("screen", SCREENS, ids=lambda screen: "x".join(map(str, screen)))
-def test_everything_is_seen(
-    page: Page, screen: tuple[int, int], language: str, tmp_path: Path
-) -> None:
+def test_everything_is_seen(page: Page, screen: tuple[int, int], language: str) -> None:
     page.set_viewport_size({"width": screen[0], "height": screen[1]})
     page.select_option("#language", language)
     checked(page)
     turn(page, "robot")
-    page.screenshot(path=tmp_path / "connected.png")
     assert page.evaluate(LOOK) == []
     page.click("#link_leave")
     page.locator("#link_connect").wait_for()
-    page.screenshot(path=tmp_path / "left.png")
     assert page.evaluate(LOOK) == []
 
 
@@ -283,10 +280,10 @@ def test_nothing_that_a_robot_says_becomes_markup(page: Page, robot: PtyRobot) -
     assert not page.evaluate("'taken' in window")
 
 
-def test_hostile_names_of_robots_are_text(pages: Pages, robot: PtyRobot) -> None:
+def test_hostile_names_of_robots_are_text(page: Page, robot: PtyRobot) -> None:
+    page.click("#link_leave")
     known_ports.remember(robot.port, HOSTILE)
-    page = pages.open()
-    page.click("#side_real")
+    page.click("#link_look")
     page.locator("#link_port option").filter(has_text=HOSTILE).wait_for(state="attached")
     assert page.locator("#link img").count() == 0
 
@@ -310,8 +307,7 @@ def says_why(page: Page, robot: PtyRobot) -> None:
     page.locator("#link_said").filter(has_text="cable").wait_for()
 
 
-def test_the_token_is_not_in_the_address(pages: Pages, server: serving.Server) -> None:
-    page = pages.open()
+def test_the_token_is_not_in_the_address(page: Page, server: serving.Server) -> None:
     assert page.evaluate("location.href") == server.address + "#editor"
     page.reload()
     checked(page)
@@ -328,13 +324,10 @@ def test_run_with_a_mistake_stops_what_runs(page: Page, robot: PtyRobot) -> None
     said(page, "The robot was stopped. Fix the program first.")
 
 
-def test_an_address_opens_the_robots_once_and_says_so(
-    pages: Pages, server: serving.Server, tmp_path: Path
-) -> None:
+def test_an_address_opens_the_robots_once_and_says_so(pages: Pages, server: serving.Server) -> None:
     entrance = server.entrance()
     first, second = pages.visit(entrance), pages.visit(entrance)
     studio.noted(second, "This address was opened before")
-    second.screenshot(path=str(tmp_path / "used.png"))
     assert first.locator("#note").inner_text() == ""
     for page, has_robots in ((first, True), (second, False)):
         page.click("#side_real")

@@ -44,25 +44,26 @@ def opened(page: Page) -> list[str]:
     return page.locator("#versions code").all_inner_texts()
 
 
-def test_a_link_brings_the_program_and_runs_nothing(pages: Pages) -> None:
-    page = pages.open()
+def test_a_link_brings_the_program_and_runs_nothing(pages: Pages, page: Page) -> None:
     page.select_option("#robot", "grabber")
     write(page, TEXT)
     wanted = image(page)
     link = share(page)
     assert link.startswith(pages.address + "#program=")
     assert "opens on this computer only" in page.inner_text("#shared_told")
-    other = pages.open()
-    write(other, "SI|F(9, 90)")
-    other.goto(link)  # in an open tab: only the part behind # changes
-    noted(other, "This program came with a link")
-    checked(other)
-    assert content(other).rstrip() == TEXT.rstrip()
-    assert (other.input_value("#robot"), image(other)) == ("grabber", wanted)
-    assert other.evaluate("document.documentElement.dataset.phase") == "off"
-    assert other.evaluate("location.hash") == "#editor"
-    other.click("#my_programs")
-    assert "SI|F(9, 90)" in opened(other)
+    page.keyboard.press("Escape")
+    page.select_option("#robot", "tinibot")
+    write(page, "SI|F(9, 90)")
+    page.goto(link)  # in an open tab: only the part behind # changes
+    noted(page, "This program came with a link")
+    checked(page)
+    assert content(page).rstrip() == TEXT.rstrip()
+    assert (page.input_value("#robot"), image(page)) == ("grabber", wanted)
+    assert page.evaluate("document.documentElement.dataset.phase") == "off"
+    assert page.evaluate("location.hash") == "#editor"
+    page.click("#my_programs")
+    assert "SI|F(9, 90)" in opened(page)
+    page.keyboard.press("Escape")
     visitor = pages.visit(link)  # in a new tab
     noted(visitor, "This program came with a link")
     checked(visitor)
@@ -317,24 +318,26 @@ def test_without_blocks_there_is_no_picture(page: Page) -> None:
     page.keyboard.press("Escape")
 
 
-def test_what_is_shared_can_be_copied(pages: Pages) -> None:
-    page = pages.open(permissions=["clipboard-read", "clipboard-write"])
+def test_what_is_shared_can_be_copied(page: Page) -> None:
+    write(page, "SI|F(1, 80)")
+    page.context.grant_permissions(["clipboard-read", "clipboard-write"])
     shared = share(page, "line")
     page.click("#copy")
     page.locator("#shared_told", has_text="Copied").wait_for()
     assert page.evaluate("navigator.clipboard.readText()") == shared
-    forbidden = pages.open()
-    shared = share(forbidden, "line")
-    forbidden.evaluate(
+    page.context.clear_permissions()
+    page.evaluate(
         "() => { navigator.clipboard.writeText = () => Promise.reject(new Error('no')); }"
     )
-    forbidden.click("#copy")
-    forbidden.locator("#shared_told", has_text="Ctrl+C").wait_for()
-    assert forbidden.evaluate("String(getSelection())") == shared
+    page.click("#copy")
+    page.locator("#shared_told", has_text="Ctrl+C").wait_for()
+    assert page.evaluate("String(getSelection())") == shared
+    page.evaluate("delete navigator.clipboard.writeText")
+    page.keyboard.press("Escape")
 
 
-def test_earlier_programs_come_back(pages: Pages) -> None:
-    page = pages.open()
+def test_earlier_programs_come_back(page: Page) -> None:
+    page.evaluate("localStorage.removeItem('tiniscript.versions')")
     write(page, "SI|F(1, 10)")
     page.click("#run")  # a program that has run is kept
     write(page, "SI|F(2, 20)")
@@ -405,14 +408,16 @@ def test_hostile_names_are_only_text(page: Page) -> None:
     page.evaluate("localStorage.removeItem('tiniscript.versions')")
 
 
-def test_a_browser_that_keeps_nothing_says_so(pages: Pages) -> None:
-    page = pages.open()
-    write(page, "SI|F(1, 10)")  # a program that the page has brought is not kept
+def test_a_browser_that_keeps_nothing_says_so(page: Page) -> None:
+    write(page, "SI|F(1, 11)")
     page.evaluate(
-        "() => { Storage.prototype.setItem = () => { throw new DOMException('full'); }; }"
+        "() => { window.kept = Storage.prototype.setItem;"
+        " Storage.prototype.setItem = () => { throw new DOMException('full'); }; }"
     )
     page.click("#run")
     noted(page, "This browser keeps nothing")
+    page.evaluate("() => { Storage.prototype.setItem = window.kept; }")
+    page.click("#stop")
 
 
 def test_a_stop_is_in_reach(page: Page) -> None:
@@ -453,7 +458,7 @@ LOOK = """() => {
 }"""
 
 
-@pytest.mark.sampled("language")
+@pytest.mark.sampled("language", "screen", keep=2)
 @pytest.mark.parametrize("language", ["en", "es"])
 @pytest.mark.parametrize("screen", SCREENS)
 def test_everything_is_seen(page: Page, screen: tuple[int, int], language: str) -> None:

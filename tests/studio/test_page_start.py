@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 import pytest
@@ -28,22 +29,38 @@ def start(pages: Pages) -> Page:
     return page
 
 
+@pytest.fixture
+def again(page: Page) -> Iterator[Page]:
+    """The same screen of a page that was here before; no earlier program is kept."""
+    page.set_viewport_size({"width": 1366, "height": 768})
+    page.click("#home")
+    page.click("[data-begin=dance]")  # what the page has brought is not kept
+    page.locator("html[data-phase=running]").wait_for(state="attached")
+    page.evaluate("localStorage.clear()")
+    page.click("#home")
+    page.locator(START).wait_for(state="attached")
+    yield page
+    if screen(page) == "start":
+        page.click("#start_write")
+    page.click("#view_text")
+
+
 def screen(page: Page) -> str:
     return str(page.evaluate("document.documentElement.dataset.screen"))
 
 
-def test_one_click_moves_the_robot(start: Page) -> None:
-    assert start.locator("[data-begin]").count() == len(PICTURES)
+def test_one_click_moves_the_robot(again: Page) -> None:
+    assert again.locator("[data-begin]").count() == len(PICTURES)
     for name in PICTURES:
-        start.click(f"[data-begin={name}]")
-        start.locator("html[data-phase=running]").wait_for(state="attached")
-        motors = start.locator("#values div").filter(has_text="Motors")
+        again.click(f"[data-begin={name}]")
+        again.locator("html[data-phase=running]").wait_for(state="attached")
+        motors = again.locator("#values div").filter(has_text="Motors")
         motors.filter(has_text=re.compile("[1-9]")).wait_for()
-        assert start.inner_text("#status").startswith("The program is correct"), name
-        assert start.locator("#arena").is_visible()
-        start.click("#home")
-        start.locator("html[data-phase=ended]").wait_for(state="attached")
-    assert start.locator("#start_programs li").count() == 0  # the page has brought all of them
+        assert again.inner_text("#status").startswith("The program is correct"), name
+        assert again.locator("#arena").is_visible()
+        again.click("#home")
+        again.locator("html[data-phase=ended]").wait_for(state="attached")
+    assert again.locator("#start_programs li").count() == 0  # the page has brought all of them
 
 
 def test_the_robot_moves_before_the_blocks_are_fetched(pages: Pages) -> None:
@@ -94,11 +111,11 @@ def test_a_link_opens_its_program_and_not_the_start(pages: Pages, start: Page) -
     assert screen(other) == "program"
 
 
-def test_a_class_has_no_start(pages: Pages) -> None:
-    page = pages.open()
+def test_a_class_has_no_start(page: Page) -> None:
     assert page.locator("#home").is_visible()
     page.evaluate("document.documentElement.dataset.class = 'pupil'")
     assert not page.locator("#home").is_visible()
+    page.evaluate("delete document.documentElement.dataset.class")
 
 
 def test_earlier_programs_are_there_with_a_picture(start: Page) -> None:
@@ -132,18 +149,18 @@ def test_hostile_programs_are_only_text(start: Page) -> None:
 
 @pytest.mark.sampled("language")
 @pytest.mark.parametrize("language", ["en", "es"])
-def test_everything_is_seen(start: Page, language: str) -> None:
-    start.select_option("#language", language)
+def test_everything_is_seen(again: Page, language: str) -> None:
+    again.select_option("#language", language)
     for k in range(2):
         for width, height in SCREENS:
-            start.set_viewport_size({"width": width, "height": height})
-            assert start.evaluate(LOOK) == [], (width, k)
-            assert start.locator("#stop").is_visible()
-        assert axe(start) == []
-        start.click("#start_write")
-        start.click("#view_text")
-        write(start, "SI|F(1, 80)\n" * 9)
-        start.click("#home")
+            again.set_viewport_size({"width": width, "height": height})
+            assert again.evaluate(LOOK) == [], (width, k)
+            assert again.locator("#stop").is_visible()
+        assert axe(again) == []
+        again.click("#start_write")
+        again.click("#view_text")
+        write(again, "SI|F(1, 80)\n" * 9)
+        again.click("#home")
 
 
 def test_the_keyboard_alone_is_enough(start: Page) -> None:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from io import BytesIO
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
+import pytest
 from PIL import Image
 
 from tests.studio.test_page_robot import in_phase
-from tests.support.studio import Pages, checked, write
+from tests.support.studio import checked, write
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
@@ -53,10 +54,17 @@ def count(page: Page, color: str) -> int:
     )
 
 
-def listening(pages: Pages, **options: Any) -> Page:
-    page = pages.open(**options)
-    page.evaluate(NOTING)
+@pytest.fixture
+def listening(page: Page) -> Page:
+    """A page whose sound is noted, and in which no way is drawn."""
+    page.evaluate(f"window.heard ? 0 : ({NOTING})()")
+    page.evaluate("window.heard = []; window.shaken = 0")
+    erase(page)
     return page
+
+
+def erase(page: Page) -> None:
+    page.get_by_role("button", name="Erase the paths").click()
 
 
 def run(page: Page, program: str) -> None:
@@ -68,8 +76,8 @@ def run(page: Page, program: str) -> None:
     in_phase(page, "ended")
 
 
-def test_the_buzzer_is_heard_unless_it_is_muted(pages: Pages) -> None:
-    page = listening(pages)
+def test_the_buzzer_is_heard_unless_it_is_muted(listening: Page) -> None:
+    page = listening
     run(page, "BEEP(0.1, 440);W(0.1);BEEP(0.2, 880)")
     assert page.evaluate("window.heard") == [440, 880]
     page.get_by_role("button", name="Sound").click()
@@ -85,8 +93,8 @@ def test_the_buzzer_is_heard_unless_it_is_muted(pages: Pages) -> None:
     assert page.evaluate("window.heard") == [550]
 
 
-def test_stop_and_pause_silence_it(pages: Pages) -> None:
-    page = listening(pages)
+def test_stop_and_pause_silence_it(listening: Page) -> None:
+    page = listening
     write(page, "BEEP(30, 440)")
     for button, phase in (("pause", "paused"), ("stop", "ended")):
         before = page.evaluate("window.stopped")
@@ -100,8 +108,8 @@ def test_stop_and_pause_silence_it(pages: Pages) -> None:
         assert page.evaluate("window.stopped") == before + 1
 
 
-def test_a_crash_is_heard_and_shakes(pages: Pages) -> None:
-    page = listening(pages)
+def test_a_crash_is_heard_and_shakes(listening: Page) -> None:
+    page = listening
     run(page, "W(1)")
     assert page.evaluate("[window.heard.length, window.shaken]") == [0, 0]
     run(page, CRASH)
@@ -109,15 +117,18 @@ def test_a_crash_is_heard_and_shakes(pages: Pages) -> None:
     assert count(page, "ffd84d") > 20  # the star where it touches the box
 
 
-def test_nothing_shakes_for_who_wants_it_still(pages: Pages) -> None:
-    page = listening(pages, reduced_motion="reduce")
+def test_nothing_shakes_for_who_wants_it_still(listening: Page) -> None:
+    page = listening
+    page.emulate_media(reduced_motion="reduce")
     run(page, CRASH)
+    page.emulate_media(reduced_motion="no-preference")
     assert page.evaluate("[window.heard.length, window.shaken]") == [1, 0]
     assert count(page, "ffd84d") > 20
 
 
-def test_ways_stay_until_they_are_erased(pages: Pages) -> None:
-    page = pages.open()
+def test_ways_stay_until_they_are_erased(listening: Page) -> None:
+    page = listening
+    page.select_option("#world", "obstacles")
     assert count(page, WAY) == 0
     run(page, "F(2, 80)")
     first = count(page, WAY)
@@ -125,7 +136,7 @@ def test_ways_stay_until_they_are_erased(pages: Pages) -> None:
     assert first > 20 and few < 10
     run(page, "R(0.5, 60);F(1, 80)")
     assert count(page, WAY) > 5 and count(page, WAY_BEFORE) > 50
-    page.get_by_role("button", name="Erase the paths").click()
+    erase(page)
     assert count(page, WAY) == 0 and count(page, WAY_BEFORE) < 10
     run(page, "F(1, 80)")
     page.select_option("#world", "light")

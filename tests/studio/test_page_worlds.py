@@ -386,6 +386,7 @@ def test_a_damaged_world_does_no_harm(page: Page) -> None:
     page.keyboard.press("Escape")
 
 
+@pytest.mark.sampled("language")
 @pytest.mark.parametrize("language", ["en", "es"])
 def test_everything_is_seen(floor: Page, language: str) -> None:
     floor.select_option("#language", language)

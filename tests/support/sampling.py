@@ -2,7 +2,8 @@
 
 A test marked `sampled("chip")` keeps, of the rows that differ in `chip` alone, one that the commit
 draws: every other value is in each run, each chip as often as the others, and every row in some.
-`sampled("chip", keep=2)` keeps two. `--whole` runs all, and what `-k` or a name asks for is run.
+`sampled("chip", keep=2)` keeps two. `sampled(of="bootloaders", keep=2)` keeps two of all tests that
+are marked so, with their rows. `--whole` runs all, and what `-k` or a name asks for is run.
 """
 
 from __future__ import annotations
@@ -31,7 +32,9 @@ def leave_out(config: pytest.Config, items: list[pytest.Item]) -> None:
     tests: dict[str, dict[str, list[pytest.Item]]] = defaultdict(lambda: defaultdict(list))
     for item in items:
         mark = item.get_closest_marker(MARK)
-        if mark is not None:
+        if mark is not None and "of" in mark.kwargs:
+            tests[mark.kwargs["of"]][""].append(item)
+        elif mark is not None:
             tests[item.nodeid.partition("[")[0]][_others(item, mark.args)].append(item)
     left_out: set[pytest.Item] = set()
     for name, groups in tests.items():

@@ -345,12 +345,13 @@ def write(page: Page, text: str) -> None:
     checked(page)
 
 
-def axe(page: Page, *rules: str) -> list[tuple[str, str]]:
-    """Return what axe finds in a page, of these rules or of all: the rule, the first element."""
+def axe(page: Page, *rules: str, within: str = "html") -> list[tuple[str, str]]:
+    """Return what axe finds in an element, of these rules or of all: the rule, the first place."""
     if not page.evaluate("'axe' in window"):
         page.evaluate((MODULES / "axe-core" / "axe.min.js").read_text(encoding="utf-8"))
     found: dict[str, Any] = page.evaluate(
-        "(rules) => axe.run(rules.length ? {runOnly: rules} : {})", list(rules)
+        "([within, ...rules]) => axe.run(within, rules.length ? {runOnly: rules} : {})",
+        [within, *rules],
     )
     return [(each["id"], each["nodes"][0]["html"]) for each in found["violations"]]
 
@@ -361,8 +362,11 @@ def image(page: Page) -> bytes:
 
 # The page's Python, asked as the page asks it: many requests at once. What a request has besides is
 # the bytes of `text`, or of `image` in hexadecimal digits.
+# One worker answers all that a page is asked: Python takes a while to start. After an error it is
+# another one.
 _ASK = """async (requests) => {
-  const worker = new Worker('./worker.js', {type: 'module'});
+  const worker = window.answers ?? new Worker('./worker.js', {type: 'module'});
+  window.answers = undefined;
   const answers = [];
   const done = new Promise((resolve, reject) => {
     worker.onmessage = ({data}) => {
@@ -378,7 +382,7 @@ _ASK = """async (requests) => {
     worker.postMessage({id: k + 1, request: JSON.stringify(request), data});
   });
   await done;
-  worker.terminate();
+  window.answers = worker;
   return answers;
 }"""
 
