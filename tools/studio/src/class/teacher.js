@@ -60,6 +60,8 @@ export class Teacher {
   #fetching = new Map();
   #told = ''; // of a file, until the next one
   #timer = 0;
+  #asked = 0; // the number of the newest request, and of the newest whose answer is seen
+  #answered = 0;
 
   /** @param {import('../python.js').Python} python */
   constructor(python) {
@@ -153,8 +155,12 @@ export class Teacher {
   /** @param {Record<string, unknown>} request */
   async #ask(request) {
     clearTimeout(this.#timer);
+    this.#asked += 1;
+    const number = this.#asked;
     try {
       const state = /** @type {State} */ (await post(request));
+      if (number < this.#answered) return; // an older state than is seen
+      this.#answered = number;
       this.#show(state);
       if (state.over) return;
     } catch {
