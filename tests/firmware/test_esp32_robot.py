@@ -171,6 +171,7 @@ def test_a_bluetooth_module_that_nobody_is_connected_to_ends_a_tethered_run() ->
     assert [event.cause for event in session.events() if event.name == "STOPPED"] == [4]
 
 
+@pytest.mark.sampled("motors")
 @pytest.mark.parametrize("motors", [SERVOS, TWO_WIRE], ids=["servos", "two_wire"])
 def test_other_motors(motors: str) -> None:
     robot = wired(motors)

@@ -46,6 +46,7 @@ def test_a_firmware_that_takes_too_much_is_seen() -> None:
     assert greedy.untouched >= LEAST_FREE > greedy.least_free
 
 
+@pytest.mark.sampled(of="long ways of a chip", keep=2)
 @pytest.mark.parametrize(("environment", "robot"), [("uno", "tinibot"), ("nano_liner", "liner")])
 def test_the_sketch_leaves_stack_free(
     environment: str,

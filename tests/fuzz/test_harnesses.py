@@ -56,6 +56,7 @@ def first_inputs(name: str, folder: Path) -> Path:
     return inputs
 
 
+@pytest.mark.sampled("name", keep=3)
 @pytest.mark.parametrize("name", NAMES)
 def test_nothing_is_wrong(name: str, tmp_path: Path) -> None:
     found = fuzz(harness(name), first_inputs(name, tmp_path), RUNS[name], SEED)
@@ -63,6 +64,7 @@ def test_nothing_is_wrong(name: str, tmp_path: Path) -> None:
     assert found.runs >= RUNS[name]
 
 
+@pytest.mark.sampled("name", keep=2)
 @pytest.mark.parametrize("name", NAMES)
 def test_a_break_is_found(name: str, tmp_path: Path) -> None:
     file, old, new = BREAKS[name]

@@ -24,7 +24,7 @@ from tests.support.ble_robot import (
     uploading,
 )
 from tests.support.command import LONG, Command, ended, inside, running
-from tests.support.fake_bluez import FakeBluez
+from tests.support.fake_bluez import ADVERTISED_S, FakeBluez
 from tests.support.pty_robot import PtyRobot
 from tiniscript.link import known_ports
 
@@ -34,9 +34,11 @@ LARGEST = 65  # bytes of a frame on the wire
 
 @pytest.fixture(autouse=True)
 def without_others(monkeypatch: pytest.MonkeyPatch) -> None:
-    """No cable, and nobody in the network, is waited for."""
+    """No cable, and nobody in the network, is waited for; modules say their names more often."""
     monkeypatch.setattr("tiniscript.link.ports.listed", list)
     monkeypatch.setattr("tiniscript.link.ports.announced", list)
+    monkeypatch.setattr("tiniscript.link.transports.bluetooth_search.LINGER_S", 16 * ADVERTISED_S)
+    monkeypatch.setattr("tiniscript.link.transports.bluetooth_search.LISTED_S", 30 * ADVERTISED_S)
 
 
 # -- what is done -------------------------------------------------------------------------------

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import inspect
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import pytest
@@ -32,11 +32,11 @@ Found = list[tuple[str, dict[str, object]]]
 
 
 class Plugin:
-    """What `tests/conftest.py` does, and the rows that are left."""
+    """What `tests/conftest.py` does, and the rows that are left for each of these commits."""
 
-    def __init__(self) -> None:
-        self.found: Found = []
-        self.said = ""
+    def __init__(self, commits: Sequence[str]) -> None:
+        self.commits = commits
+        self.found: list[tuple[Found, str]] = []
 
     def pytest_addoption(self, parser: pytest.Parser) -> None:
         sampling.add_options(parser)
@@ -47,45 +47,42 @@ class Plugin:
     def pytest_collection_modifyitems(
         self, config: pytest.Config, items: list[pytest.Item]
     ) -> None:
-        sampling.leave_out(config, items)
-        self.said = sampling.said(config)
-        for item in items:
-            assert isinstance(item, pytest.Function)
-            params = item.callspec.params if hasattr(item, "callspec") else {}
-            self.found.append((item.originalname, dict(params)))
+        for config.option.sample in self.commits:
+            left = list(items)
+            sampling.leave_out(config, left)
+            self.found.append(([_row(item) for item in left], sampling.said(config)))
+
+
+def _row(item: pytest.Item) -> tuple[str, dict[str, object]]:
+    assert isinstance(item, pytest.Function)
+    return item.originalname, dict(item.callspec.params) if hasattr(item, "callspec") else {}
 
 
 @pytest.fixture
-def collected(tmp_path: Path) -> Callable[..., tuple[Found, str]]:
+def collected(tmp_path: Path) -> Callable[..., list[tuple[Found, str]]]:
     (tmp_path / "test_rows.py").write_text(ROWS, encoding="utf-8")
     (tmp_path / "pytest.ini").write_text("[pytest]", encoding="utf-8")
 
-    def run(*words: str, of: str = "") -> tuple[Found, str]:
-        plugin = Plugin()
-        options = (
-            "-q",
-            "--collect-only",
-            "--import-mode=importlib",
-            "-p",
-            "no:cacheprovider",
-            "-p",
-            "no:xdist",
-        )
+    def run(*words: str, of: str = "", commits: Sequence[str] = ("7",)) -> list[tuple[Found, str]]:
+        plugin = Plugin(commits)
+        options = ("-q", "--collect-only", "--import-mode=importlib", "-p", "no:cacheprovider",
+                   "-p", "no:xdist")  # fmt: skip
         code = pytest.main([*options, *words, f"{tmp_path / 'test_rows.py'}{of}"], [plugin])
         assert code == pytest.ExitCode.OK
-        return plugin.found, plugin.said
+        return plugin.found
 
     return run
 
 
 def test_each_value_is_in_each_sample_and_each_row_in_one(
-    collected: Callable[..., tuple[Found, str]],
+    collected: Callable[..., list[tuple[Found, str]]],
 ) -> None:
     seen: Counter[tuple[object, object]] = Counter()
     together: Counter[tuple[str, object]] = Counter()
-    for commit in range(15):
-        found, said = collected("--sample", f"{commit}")
-        assert f"--sample {commit} " in said
+    commits = [*map(str, range(15)), "7"]
+    drawn = dict(enumerate(collected(commits=commits)))
+    for commit, (found, said) in drawn.items():
+        assert f"--sample {commits[commit]} " in said
         cases = [row for name, row in found if name == "test_case"]
         assert [row["case"] for row in cases] == list(range(20))
         assert set(Counter(row["chip"] for row in cases).values()) == {6, 7}
@@ -97,11 +94,11 @@ def test_each_value_is_in_each_sample_and_each_row_in_one(
             "test_pin": 2,
             "test_usual": 1,
         }
-        seen.update((row["case"], row["chip"]) for row in cases)
+        seen.update((row["case"], row["chip"]) for row in cases if commit < 15)
     assert len(seen) > 55
     assert len(together) == 3 and min(together.values()) >= 5
-    assert collected("--sample", "7") == collected("--sample", "7")
-    asked, said = collected("--sample", "7", "-k", "not usual")  # which asks for none
+    assert drawn[7] == drawn[15]
+    ((asked, said),) = collected("-k", "not usual")  # which asks for none
     assert len([name for name, _ in asked if name == "test_case"]) == 20 and said
 
 
@@ -109,9 +106,9 @@ def test_each_value_is_in_each_sample_and_each_row_in_one(
     ("words", "of"), [(["--whole"], ""), (["-k", "case"], ""), ([], "::test_case")]
 )
 def test_what_is_asked_for_has_all_its_rows(
-    words: list[str], of: str, collected: Callable[..., tuple[Found, str]]
+    words: list[str], of: str, collected: Callable[..., list[tuple[Found, str]]]
 ) -> None:
-    found, said = collected(*words, of=of)
+    ((found, said),) = collected(*words, of=of)
     assert len([name for name, _ in found if name == "test_case"]) == 60 and said == ""
 
 

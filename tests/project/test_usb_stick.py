@@ -77,6 +77,7 @@ def installed(root: str, extras: set[str]) -> dict[str, Distribution]:
     return found
 
 
+@pytest.mark.sampled(of="sticks that pip reads")
 def test_it_installs_with_the_network_off(stick: Path, tmp_path: Path) -> None:
     for needed in ("wasmtime", "bleak", "zeroconf", "PIL", "setuptools"):
         if find_spec(needed) is None:  # an import of setuptools would replace this one's distutils
@@ -117,6 +118,7 @@ def test_it_installs_with_the_network_off(stick: Path, tmp_path: Path) -> None:
     assert shown.returncode == 1
 
 
+@pytest.mark.sampled(of="sticks that pip reads")
 def test_a_stick_without_a_wheel_says_so(stick: Path, tmp_path: Path) -> None:
     empty = tmp_path / "empty"
     (empty / "wheels").mkdir(parents=True)
@@ -246,6 +248,7 @@ def test_a_folder_with_something_in_it_is_left_alone(tmp_path: Path) -> None:
     assert [each.name for each in tmp_path.iterdir()] == ["mine.txt"]
 
 
+@pytest.mark.sampled(of="sticks that pip reads")
 def test_markers_are_those_of_the_target(tmp_path: Path) -> None:
     """pip resolves for Windows what only Windows needs, and for an old Python what it lacks."""
     packages = tmp_path / "packages"
