@@ -35,8 +35,11 @@ def refused(text: str) -> list[str]:
     return lines["en"]
 
 
-def test_three_worlds_are_shipped_and_have_names_in_both_languages() -> None:
-    assert worlds.names() == ["obstacles", "light", "line"]
+def test_ten_worlds_are_shipped_and_have_names_in_both_languages() -> None:
+    assert worlds.names() == [
+        "obstacles", "dance", "delivery", "free", "gaps", "light", "line", "maze", "parking",
+        "ring",
+    ]  # fmt: skip
     for name in worlds.names():
         world = worlds.load(name.upper())
         assert world.name == name
@@ -173,7 +176,7 @@ def test_files_that_are_no_worlds(tsc: Tsc, tmp_path: Path, verb: list[str]) -> 
     wrong.write_text(RIGHT + "[[lamps]]\n", encoding="utf-8")
     for name, said in (
         ("obstacle", "Did you mean obstacles?"),
-        ("nowhere", "Take one of these: obstacles, light, line"),
+        ("nowhere", f"Take one of these: {', '.join(worlds.names())}"),
         ("", "There is no world"),
         (str(tmp_path), "is a folder"),
         (str(tmp_path / "missing.toml"), "There is no file"),

@@ -164,7 +164,7 @@ OPTIONS: tuple[Option, ...] = (
     Option("--pace", "run", ("with --show: N times as fast as the robot (1); 0 is as fast as possible", "con --show: N veces más rápido que el robot (1); 0 es lo más rápido posible"), NUMBER, N),
     Option("--machine", "run", ("which machine runs it: the one in Python, or the robot's own, in C++", "qué máquina lo ejecuta: la de Python, o la del propio robot, en C++"), MACHINE, ("python|cpp", "python|cpp")),
     Option("--replay", "run", ("runs it on the virtual robot, compares that with a robot's recorded run, and says where the two differ", "lo compara con la grabación de una ejecución de un robot, en el robot virtual, y dice en qué se diferencian"), OLD_RECORDING, A_FILE),
-    Option("--world", "run", ("with --replay: the world of the virtual robot: obstacles, line, light, or a file (obstacles)", "con --replay: el mundo del robot virtual: obstacles, line, light, o un archivo (obstacles)"), WORLD, A_ROBOT),
+    Option("--world", "run", ("with --replay: the world of the virtual robot, by name, or a file (obstacles)", "con --replay: el mundo del robot virtual, por nombre, o un archivo (obstacles)"), WORLD, A_ROBOT),
     # another machine or robot
     Option("--machine", "conform", ("a machine of your own: the command that starts it", "una máquina tuya: el comando que la inicia"), TEXT, ("COMMAND", "COMANDO")),
     Option("--only", "conform", ("only cases with this in their name", "solo los casos que tienen esto en su nombre"), TEXT, A_TEXT),
@@ -278,7 +278,7 @@ OPTIONS: tuple[Option, ...] = (
     Option("--json", "fetch", ("the listing as data", "la lista como datos"), silent="fetch"),
     Option("--json", "trim", ("prints what the robot keeps as data", "imprime lo que guarda el robot como datos"), silent="trim"),
     # a virtual robot of one's own
-    Option("--world", OWN, ("its world: obstacles, line, light, or a file (obstacles)", "su mundo: obstacles, line, light, o un archivo (obstacles)"), WORLD, A_ROBOT, virtual=True),
+    Option("--world", OWN, ("its world by name: maze, line, or another one, or a file (obstacles)", "su mundo por nombre: maze, line u otro, o un archivo (obstacles)"), WORLD, A_ROBOT, virtual=True),
     Option("--plot", OWN, ("draws the world and the path when it ends", "dibuja el mundo y el camino cuando termina"), PICTURE, ("F.png", "F.png"), virtual=True, silent="live"),
     Option("--for", OWN, ("ends after S seconds of the robot's time", "termina a los S segundos del reloj del robot"), NUMBER, S, virtual=True, silent="live"),
     Option("--hurry", OWN, ("runs N times as fast; max: as fast as this computer can", "un programa va N veces más rápido; max: lo más rápido que esta computadora pueda"), HURRY, ("N|max", "N|max"), virtual=True),
