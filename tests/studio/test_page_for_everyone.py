@@ -45,6 +45,7 @@ LOOK = """() => {
   if (document.documentElement.scrollWidth > innerWidth) found.push('the page is too wide');
   return found;
 }"""
+THEMES = {"dark": "[data-dark]", "light": ":not([data-dark])"}
 
 
 @pytest.mark.sampled("language", "screen", keep=2)
@@ -70,6 +71,35 @@ def test_everything_is_seen(page: Page, screen: tuple[int, int], language: str) 
 def test_axe_finds_nothing(page: Page, text: str) -> None:
     write(page, text)
     assert axe(page) == []
+
+
+def test_it_is_dark_where_the_system_is_or_somebody_wants_it(page: Page) -> None:
+    """With no less contrast; what somebody has chosen counts more, and is kept."""
+
+    def become(theme: str) -> None:
+        page.locator(f"html{THEMES[theme]}").wait_for(state="attached")
+
+    page.set_viewport_size({"width": 1366, "height": 768})
+    page.emulate_media(color_scheme="dark")
+    become("dark")
+    write(page, "F(-2, 80)\nF(1, 20)")
+    for side in ("#side_real", "#side_lessons", "#side_virtual"):
+        page.click(side)
+        assert axe(page) == [], side
+    page.click("#home")
+    assert axe(page) == []
+    page.click("#theme")
+    become("light")
+    page.emulate_media(color_scheme="light")
+    page.click("#theme")
+    become("dark")
+    assert page.get_attribute("#theme", "aria-pressed") == "true"
+    page.evaluate("localStorage.setItem('tiniscript.theme', '<b>')")
+    page.evaluate("dispatchEvent(new Event('storage'))")  # as another tab would
+    become("light")
+    page.evaluate("localStorage.removeItem('tiniscript.theme')")
+    page.emulate_media(color_scheme="null")
+    page.click("#start_write")
 
 
 def test_the_keyboard_alone_is_enough(page: Page) -> None:

@@ -35,12 +35,13 @@ const running = StateField.define({
 });
 
 const theme = EditorView.theme({
-  '&': { height: '100%', fontSize: '1rem', backgroundColor: '#fff', color: '#1b2733' },
-  '&.cm-focused': { outline: '3px solid #0b4f9e', outlineOffset: '-3px' },
+  '&': { height: '100%', fontSize: '1rem', backgroundColor: 'var(--card)', color: 'var(--ink)' },
+  '&.cm-focused': { outline: '3px solid var(--said-blue)', outlineOffset: '-3px' },
   '.cm-scroller': { fontFamily: 'ui-monospace, "DejaVu Sans Mono", Menlo, Consolas, monospace', lineHeight: '1.5' },
-  '.cm-gutters': { backgroundColor: '#eef2f6', color: '#4a5663', border: 'none' },
-  '.cm-activeLine': { backgroundColor: '#eef4fb' },
-  '.cm-running': { backgroundColor: '#ffd84d' },
+  '.cm-gutters': { backgroundColor: 'var(--pale)', color: 'var(--soft)', border: 'none' },
+  '.cm-content': { caretColor: 'var(--ink)' },
+  '.cm-activeLine, .cm-activeLineGutter': { backgroundColor: 'var(--line)' },
+  '.cm-running, .cm-running *': { backgroundColor: '#ffd84d', color: '#1b2733' },
   '@media (forced-colors: active)': { '.cm-running': { outline: '2px solid Highlight' } },
   '.cm-breakpoint': { boxShadow: 'inset 3px 0 #a8200f' },
   '.cm-breakpoints': { width: '1.3em', color: '#a8200f', cursor: 'pointer', textAlign: 'center' },

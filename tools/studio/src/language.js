@@ -42,12 +42,12 @@ export function languageOf(robot) {
 // Each has at least 4.5 times the contrast of the letters that a page must have.
 export const colors = syntaxHighlighting(
   HighlightStyle.define([
-    { tag: tags.keyword, color: '#8a3c00', fontWeight: '600' },
-    { tag: tags.atom, color: '#0b4f9e', fontWeight: '600' },
-    { tag: tags.typeName, color: '#0d6040' },
-    { tag: tags.number, color: '#6226b0' },
-    { tag: tags.comment, color: '#5c6670' },
-    { tag: tags.variableName, color: '#1b2733' },
+    { tag: tags.keyword, color: 'var(--said-keyword)', fontWeight: '600' },
+    { tag: tags.atom, color: 'var(--said-blue)', fontWeight: '600' },
+    { tag: tags.typeName, color: 'var(--said-right)' },
+    { tag: tags.number, color: 'var(--said-number)' },
+    { tag: tags.comment, color: 'var(--soft)' },
+    { tag: tags.variableName, color: 'var(--ink)' },
   ]),
 );
 

@@ -20,6 +20,7 @@ import { chooseSide } from './robot_side.js';
 import { FIRST_PROGRAM } from './start/beginnings.js';
 import { beginScreens, isStart, show as showScreen } from './start/screens.js';
 import { Start } from './start/start.js';
+import { beginTheme } from './theme.js';
 import { Views } from './views.js';
 import { ROBOTS, showWords } from './words.js';
 import { keep, keptWork, LONGEST } from './work.js';
@@ -37,6 +38,7 @@ const status = element('status', HTMLElement);
 const note = element('note', HTMLElement);
 const list = element('messages', HTMLElement);
 
+beginTheme();
 const kept = keptWork();
 const work = kept ?? {
   text: FIRST_PROGRAM,

@@ -29,6 +29,7 @@ export const TEXTS = {
   start_lessons: ['Lessons', 'Lecciones'],
   start_robot: ['Connect a robot', 'Conectar un robot'],
   robot: ['Robot', 'Robot'],
+  theme: ['Dark', 'Oscuro'],
   language: ['Language', 'Idioma'],
   open: ['Open…', 'Abrir…'],
   save: ['Save', 'Guardar'],

@@ -9,7 +9,7 @@ import { currentLanguage } from './texts.js';
 /** Words that stand for an instruction with its values. */
 export const FIXED = description.words.filter((word) => word.role === 'fixed');
 export const ROBOTS = description.robots;
-export const WORLDS = /** @type {import('./world_parts.js').World[]} */ (description.worlds);
+export const WORLDS = /** @type {import('./world_parts.js').World[]} */ (/** @type {unknown} */ (description.worlds));
 export const WORLD_LIMITS = description.world_limits;
 export const LINK = description.link;
 
