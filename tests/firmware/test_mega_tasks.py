@@ -45,6 +45,7 @@ def mega(sketch: Path, tmp_path: Path) -> Iterator[Uno]:  # noqa: F811
         yield found
 
 
+@pytest.mark.sampled("case", keep=8)
 @pytest.mark.parametrize("case", without_readings(), ids=lambda case: case.title)
 def test_the_pins_follow_the_trace(case: Case, mega: Uno) -> None:
     check_pins(case, mega)

@@ -131,8 +131,9 @@ def test_a_new_line_ends_what_runs_when_its_first_instruction_has_been_read() ->
     ("line", "ends"),
     [
         ("FOO(1)\n", False), ("SI|F(1,\n", False), ("F(1,500)\n", False), ("SB|X=\n", False),
-        ("F(1,50)~0\n", False), ("\x01\x02\n", False), ("9" * 300 + "\n", False),
-        ("HELP\n", False), ("// no\n", False), ("PING|CHECK_CONNECTION\n", False),
+        ("F(1,50) R(1,50)\n", False), ("F(1,50)~0\n", False), ("\x01\x02\n", False),
+        ("9" * 300 + "\n", False), ("HELP\n", False), ("// no\n", False),
+        ("PING|CHECK_CONNECTION\n", False),
         ("SI|LOOP(2);\nBAD\n", True), ("F(1,50); F(1,500)\n", True),
     ],
 )  # fmt: skip

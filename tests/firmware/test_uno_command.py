@@ -17,6 +17,9 @@ from tests.support.platformio import changed
 from tests.support.waiting import HANGS_S, until
 from tools.uno import CYCLES_PER_MS, Uno
 
+# The same promises are kept by the whole firmware on this computer, on every commit.
+pytestmark = pytest.mark.sampled(of="programs, texts and UNDO on a simulated Uno", keep=14)
+
 DRIVES = "SI|F(0.3, 80)"
 TETHER_MS = 1050
 # The last mark of the first slot for faults, written 230 ms after the fault.

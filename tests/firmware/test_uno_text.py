@@ -15,6 +15,9 @@ from tests.support.platformio import firmware, shared
 from tiniscript.link.requests import OK
 from tools.uno import CYCLES_PER_MS, Uno
 
+# The same promises are kept by the whole firmware on this computer, on every commit.
+pytestmark = pytest.mark.sampled(of="programs, texts and UNDO on a simulated Uno", keep=14)
+
 LINE_MS = 5  # from the end of a line to the pins, at most
 PROGRAM_MS = 10  # the same for the last line of the obstacle program
 STOP_CYCLES = 192  # from the last byte of a stop to the pins: 12 us

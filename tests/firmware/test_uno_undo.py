@@ -24,6 +24,9 @@ from tools.uno import CYCLES_PER_MS, Uno
 
 __all__ = ["memory", "sketch"]
 
+# The same promises are kept by the whole firmware on this computer, on every commit.
+pytestmark = pytest.mark.sampled(of="programs, texts and UNDO on a simulated Uno", keep=14)
+
 FIRST = "SB|F(0.2, 80); " + "SHOW(1); " * 20
 SECOND = "SB|B(0.2, 60); " + "SHOW(2); " * 30
 EVENTS = 13  # eight bytes, five of which are erased first

@@ -56,6 +56,7 @@ def is_on(uno: Uno) -> bool:
     return any(state in ("high", "pwm") for state in states(uno).values())
 
 
+@pytest.mark.sampled("board")
 @pytest.mark.parametrize("board", ["uno", "nano", "mega"])
 @pytest.mark.parametrize(
     ("hang", "limit_ms"),

@@ -25,9 +25,9 @@ from tiniscript.source import Source
 from tiniscript.syntax.formatter import formatted
 
 MAX_MS, MAX_STEPS = 20_000, 20_000
-BATCH = 500
+BATCH = 250
 PUSH32_BYTES = BY_NAME["PUSH32"].size
-BATCHES = 40  # in the tests, of which a commit runs one; a campaign runs more
+BATCHES = 80  # in the tests, of which a commit runs one; a campaign runs more
 
 
 def same(want: str, got: str) -> bool:
