@@ -2,8 +2,8 @@
 
 `python -m tools.campaign` goes on where the last one ended, until every goal is reached; Ctrl-C
 ends it at once, and all but the piece that was under way is kept. `--list` says what is reached,
-when, and how long the rest takes, `--minutes 30` ends it after a while, `--write` puts the figures
-into `docs/promises.md`. Calls the campaigns of the tests; has none of its own.
+and when; `--minutes 30` ends it after a while. What committed code has reached is written into the
+table of `docs/promises.md`. Calls the campaigns of the tests; has none of its own.
 """
 
 from __future__ import annotations
@@ -13,8 +13,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Sequence
-from datetime import date, datetime, timezone
-from itertools import repeat
+from datetime import datetime, timezone
 from math import inf
 from pathlib import Path
 
@@ -23,7 +22,7 @@ sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
 from tools.campaign import results
 from tools.campaign.goals import BY_NAME, GOALS, Goal
-from tools.campaign.results import Result, Results, reached
+from tools.campaign.results import Result, reached
 
 FIRST_SEED = 100_001  # others than those of the tests
 
@@ -32,46 +31,45 @@ def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description="Run what the project promises, many times.")
     parser.add_argument("goals", nargs="*", metavar="GOAL", help=", ".join(BY_NAME))
     parser.add_argument("--list", action="store_true", help="only say what is reached")
-    parser.add_argument("--minutes", type=float, help="end after so many minutes")
-    parser.add_argument("--pieces", type=int, help="at most so many pieces of each goal")
-    parser.add_argument("--write", action="store_true", help="put it into the document")
+    parser.add_argument("--minutes", type=float, default=inf, help="end after so many minutes")
     options = parser.parse_args(arguments)
     unknown = [name for name in options.goals if name not in BY_NAME]
     if unknown:
         parser.error(f"no goal is called {', '.join(unknown)}. There are: {', '.join(BY_NAME)}")
     goals = [BY_NAME[name] for name in options.goals] or list(GOALS)
-    done = results.read(results.kept())
-    if options.list:
-        tell(goals, done)
-        return 0
-    if options.write:
-        return put_down(done)
-    code = run(goals, done, options.minutes, options.pieces)
-    tell(goals, results.read(results.kept()))
+    code = 0 if options.list else run(goals, time.monotonic() + 60 * options.minutes)
+    done = results.read()
+    for goal in goals:
+        result = done.get(goal.name)
+        when = f"; {result.date}, code of {result.commit}" if result else ""
+        print(f"{goal.name:15} {goal.shall:>11,} {goal.unit}: {reached(goal, result)}{when}")
     return code
 
 
-def run(goals: Sequence[Goal], done: Results, minutes: float | None, pieces: int | None) -> int:
+def run(goals: Sequence[Goal], end_s: float) -> int:
     """Run pieces of the goals until all are reached or the time is over; return the exit code."""
-    end_s = inf if minutes is None else time.monotonic() + 60 * minutes
     commit = results.commit()
+    if commit.endswith("+"):
+        print("Code that is not committed: what it reaches is not kept.", flush=True)
+    done = results.read()
     is_wrong = False
     try:
         for goal in goals:
-            for _ in repeat(None) if pieces is None else range(pieces):
-                if is_reached(goal, done.get(goal.name), commit):
-                    break
+            while not is_reached(goal, done.get(goal.name), commit):
                 if time.monotonic() >= end_s:
                     print("The time is over; the next campaign goes on from here.", flush=True)
                     return int(is_wrong)
                 done[goal.name] = piece(goal, done.get(goal.name), commit)
-                results.write(results.kept(), done)
+                if not commit.endswith("+"):
+                    results.write(done)
                 if done[goal.name].wrong:
                     is_wrong = True
                     break
     except KeyboardInterrupt:
         print("\nInterrupted; the next campaign goes on from here.", flush=True)
         return 2
+    if not commit.endswith("+"):
+        subprocess.run([sys.executable, "-m", "tools.generate"], cwd=ROOT, check=True)
     return int(is_wrong)
 
 
@@ -101,40 +99,6 @@ def piece(goal: Goal, before: Result | None, commit: str) -> Result:
         print((ended.stdout + ended.stderr)[-4000:], flush=True)
         return before._replace(date=day, wrong=f"seed {seed}, `python {' '.join(words[1:])}`")
     return Result(before.done + count, seconds, before.seed, seed + goal.stride, day, commit)
-
-
-def tell(goals: Sequence[Goal], done: Results) -> None:
-    """Print what is reached, how long that took, how long the rest takes, and how old it is.
-
-    What this computer has not run is in the document, or nowhere.
-    """
-    commit = results.commit()
-    done = {**results.read(results.WRITTEN), **done}
-    today = datetime.now(timezone.utc).date()
-    for goal in goals:
-        result = done.get(goal.name)
-        said = reached(goal, result)
-        if result is not None and result.done:
-            left = max(0, goal.shall - result.done) * result.seconds / result.done
-            said += f" in {result.seconds:,.0f} s; the rest takes {left:,.0f} s"
-            if not results.is_same_code(result.commit, commit):
-                said += f"; with the code of {result.commit}, which is another one now"
-        if result is not None and result.date:
-            days = (today - date.fromisoformat(result.date)).days
-            said += f"; run {days} days ago" if days else "; run today"
-        print(f"{goal.name:15} {goal.shall:>11,} {goal.unit}: {said}")
-
-
-def put_down(done: Results) -> int:
-    """Put the figures of commits that led here into the document; return the exit code."""
-    rows = [*results.read(results.WRITTEN).items(), *done.items()]
-    fit = {name: each for name, each in rows if results.is_in_history(each.commit)}
-    left_out = sorted({name for name, _ in rows} - set(fit))
-    results.write(results.WRITTEN, fit)
-    if left_out:
-        said = f"Left out, as their code is in no commit that led here: {', '.join(left_out)}."
-        print(said, file=sys.stderr)
-    return subprocess.run([sys.executable, "-m", "tools.generate"], cwd=ROOT).returncode
 
 
 if __name__ == "__main__":

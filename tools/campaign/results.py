@@ -1,5 +1,4 @@
-"""What a campaign has reached: in the cache folder while it runs, in `results.json` for the table
-of `docs/promises.md`.
+"""What campaigns have reached: `results.json`, and from it the table of `docs/promises.md`.
 
 A result belongs to the code with which it was reached: figures of other code are not added up.
 """
@@ -11,7 +10,7 @@ import subprocess
 from pathlib import Path
 from typing import NamedTuple
 
-from tiniscript.files import cache_folder, replace
+from tiniscript.files import replace
 from tools.campaign.goals import GOALS, Goal
 
 ROOT = Path(__file__).resolve().parent.parent.parent
@@ -36,37 +35,22 @@ class Result(NamedTuple):
 Results = dict[str, Result]
 
 
-def kept() -> Path:
-    """Return where the results of this user are while campaigns run."""
-    return cache_folder() / "campaign.json"
+def read() -> Results:
+    found = json.loads(WRITTEN.read_text(encoding="utf-8"))
+    return {name: Result(**values) for name, values in found.items()}
 
 
-def read(path: Path) -> Results:
-    """Return the results in a file; none where it is not there, or is not ours."""
-    try:
-        found = json.loads(path.read_text(encoding="utf-8"))
-        return {name: Result(**values) for name, values in found.items()}
-    except (OSError, ValueError, TypeError, AttributeError):
-        return {}
-
-
-def write(path: Path, results: Results) -> None:
+def write(results: Results) -> None:
     """Write a line for each result, in the order of the goals."""
     rows = (f'"{goal.name}": {json.dumps(results[goal.name]._asdict())}'
             for goal in GOALS if goal.name in results)  # fmt: skip
-    path.parent.mkdir(parents=True, exist_ok=True)
-    replace(path, ("{\n" + ",\n".join(rows) + "\n}\n").encode())
+    replace(WRITTEN, ("{\n" + ",\n".join(rows) + "\n}\n").encode())
 
 
 def commit() -> str:
     """Return the commit of the code that is tested; with a `+` where it has changed since."""
     head = git("rev-parse", "--short=10", "HEAD").stdout.strip()
     return head + "+" * bool(git("status", "--porcelain", "--", *CODE).stdout.strip())
-
-
-def is_in_history(commit: str) -> bool:
-    """Whether a commit leads to the one that is checked out: who has this can look at its code."""
-    return "+" not in commit and not git("merge-base", "--is-ancestor", commit, "HEAD").returncode
 
 
 def is_same_code(one: str, other: str) -> bool:
@@ -92,7 +76,7 @@ def reached(goal: Goal, result: Result | None) -> str:
 
 def rows() -> list[tuple[str, ...]]:
     """Return the table of `docs/promises.md`."""
-    results = read(WRITTEN)
+    results = read()
     found: list[tuple[str, ...]] = []
     for goal in GOALS:
         result = results.get(goal.name)
