@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from tests.support.command import OBSTACLE, PROGRAM, TSC, Tsc, process
-from tiniscript.bytecode.image import HEADER_BYTES, unpack
+from tiniscript.bytecode.image import unpack
 from tiniscript.bytecode.opcodes import CODE_BYTES
 from tiniscript.cli.texts.verbs import VERBS
 
@@ -67,17 +67,6 @@ def test_a_failed_compile_leaves_the_old_image(tsc: Tsc, tmp_path: Path) -> None
     assert "TS" in done.err
     assert target.read_bytes() == b"TS\2 an old image"
     assert [each.name for each in tmp_path.glob("*.*")] == ["old.bin"]
-
-
-def test_compile_to_a_place_that_cannot_be_written(tsc: Tsc, program: Path) -> None:
-    folder = program.parent
-    assert tsc("compile", program, "-o", folder).code == 2
-    assert tsc("compile", program, "-o", folder / "no" / "such" / "a.bin").code == 2
-    assert tsc("compile", program, "-o", program).code == 2
-    assert tsc("compile", program, "-o", "a" * 300).code == 2
-    assert tsc("compile", program, "-o", "a\0b").code == 2
-    assert program.read_text(encoding="utf-8") == PROGRAM
-    assert not program.with_suffix(".bin").exists()
 
 
 def test_a_map_overwrites_nothing(tsc: Tsc, program: Path) -> None:
@@ -283,16 +272,6 @@ def test_sensor_of_another_robot(tsc: Tsc) -> None:
 # -- images -------------------------------------------------------------------------------------
 
 
-def test_an_image_for_another_robot_is_refused(tsc: Tsc, tmp_path: Path) -> None:
-    target = tmp_path / "line.bin"
-    tsc("compile", "-e", "LINE_L", "-o", target, "--robot", "liner")
-    done = tsc("run", target)
-    assert done.code == 1
-    assert "--robot liner" in done.err
-    assert tsc("run", target, "--robot", "liner").code == 0
-    assert "LINE_L" in tsc("show", target).out
-
-
 @pytest.mark.parametrize("verb", ["run", "show"])
 def test_damaged_images_are_refused_by_name(tsc: Tsc, tmp_path: Path, verb: str) -> None:
     target = tmp_path / "a.bin"
@@ -370,16 +349,6 @@ def test_show_json(tsc: Tsc, program: Path) -> None:
     assert [each["name"] for each in known["instructions"]] == ["MOVE8_F"]
     known = json.loads(tsc("show", "-e", "SB|DISTANCE", "--json").out)
     assert (known["robot"], known["start"]) == ("tinibot", "SB")
-
-
-@pytest.mark.parametrize(
-    ("text", "code"),
-    [("SI|F(5,80)", 3), ("SI|LOOP(3);F(2,50);END_LOOP", 7), (OBSTACLE, 14)],
-)
-def test_the_papers_programs_are_small(tsc: Tsc, text: str, code: int) -> None:
-    known = json.loads(tsc("show", "-e", text, "--json").out)
-    assert known["code_bytes"] == code
-    assert known["image_bytes"] == code + HEADER_BYTES
 
 
 # -- fmt and explain ----------------------------------------------------------------------------

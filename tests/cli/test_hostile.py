@@ -14,7 +14,6 @@ from tests.support.command import PROGRAM, TSC, Tsc, process
 from tiniscript.bytecode.image import unpack
 from tiniscript.cli import CLOSED, help, main
 from tiniscript.cli.texts import common
-from tiniscript.cli.texts.verbs import VERBS
 
 # -- anything whatever --------------------------------------------------------------------------
 
@@ -103,11 +102,6 @@ def test_no_verb_and_no_such_verb(tsc: Tsc) -> None:
     assert done.code == 2
     assert "compile" in done.err
     assert tsc("--lang", "es", "check", "-e", "W(1)").out == "-e: sin errores.\n"
-    for verb in VERBS:
-        for language in ("en", "es"):
-            done = tsc(verb, "--help", "--lang", language)
-            assert done.code == 0
-            assert done.out == help.of(verb, language)
 
 
 def test_texts_have_the_same_gaps_in_both_languages() -> None:

@@ -84,16 +84,17 @@ def test_a_stop_waits_for_a_port_longer_than_others(
     monkeypatch.setattr(opening, "sleep", lambda wait_s: now_s.append(now_s.pop() + wait_s))
     line = cast(Line, object())
 
-    def open_line(_: str, __: object) -> Line:
+    def open_line(*_: object) -> Line:
         if now_s[0] < 8.5:
             raise RobotError("port_busy", "en", {"port": "/dev/ttyUSB7", "why": ""})
         return line
 
+    monkeypatch.setattr(opening, "_opened_line", open_line)
     if is_patient:
-        assert opening.connection_to("/dev/ttyUSB7", verb, open_line) is line
+        assert opening.connection_to("/dev/ttyUSB7", verb, 9600, 1) is line
     else:
         with pytest.raises(RobotError):
-            opening.connection_to("/dev/ttyUSB7", verb, open_line)
+            opening.connection_to("/dev/ttyUSB7", verb, 9600, 1)
 
 
 @pytest.mark.parametrize("language", ["en", "es"])

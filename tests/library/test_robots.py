@@ -19,6 +19,7 @@ from tests.support.command import FOREVER, OBSTACLE, Command, process
 from tests.support.link_events import event
 from tests.support.pty_robot import PtyRobot
 from tiniscript.library import opening
+from tiniscript.library.client import Client
 from tiniscript.library.endings import End, Follower
 from tiniscript.link.connection import LinkConnection
 from tiniscript.link.outcomes import Event, LostEvent, RestartedEvent, StartedEvent
@@ -261,6 +262,12 @@ class ToldEvents:
         return self.events.pop(0) if self.events else None
 
 
+def client_of(line: ToldEvents) -> Client:
+    client = Client.__new__(Client)
+    client.line = cast(LinkConnection, line)
+    return client
+
+
 def test_only_its_own_word_confirms_a_stop() -> None:
     for names, is_confirmed in (
         (["SHOW", "STOPPED"], True),
@@ -268,10 +275,10 @@ def test_only_its_own_word_confirms_a_stop() -> None:
         ([], False),
     ):
         line = ToldEvents(*names)
-        assert opening.confirmed(cast(LinkConnection, line), 0.01) is is_confirmed
+        assert client_of(line).stop(0.01) is is_confirmed
         assert line.stops == 1
     earlier = ToldEvents("STOPPED", time_ms=4)
-    assert not opening.confirmed(cast(LinkConnection, earlier), 0.01)
+    assert not client_of(earlier).stop(0.01)
 
 
 def test_what_ended_before_a_run_is_not_its_end() -> None:

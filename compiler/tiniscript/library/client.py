@@ -8,23 +8,24 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
-from time import monotonic
-from typing import IO, TYPE_CHECKING, TypeVar
+from time import monotonic, sleep
+from typing import TYPE_CHECKING, TypeVar
 
 from tiniscript.bytecode.image import Image
 from tiniscript.library import opening
 from tiniscript.library.errors import ProgramError, RobotError
 from tiniscript.library.refusing import refusal
-from tiniscript.link.connection import LinkConnection, PendingRequest, Requester, reason_of
+from tiniscript.link import errors
+from tiniscript.link.connection import PendingRequest, Requester, reason_of
 from tiniscript.link.messages import SAVED_LOW_SUPPLY, SAVED_SAVING, SAVED_STORED
 from tiniscript.link.outcomes import CANCELLED, LOOK_S, Event, Gone
-from tiniscript.link.payloads import ReceiptReply, StatusReply
+from tiniscript.link.payloads import HelloReply, ReceiptReply, StatusReply
+from tiniscript.link.port_names import is_at_broker, is_bluetooth
 from tiniscript.link.requests import DeviceInfo, Reply
 from tiniscript.link.statuses import name_of, sentence
 from tiniscript.robots.profile import Robot
 
 if TYPE_CHECKING:
-    from tiniscript.link.line import Line
     from tiniscript.link.sharing.server import Server
 
     T = TypeVar("T")
@@ -56,12 +57,8 @@ class Client:
         self.profile = profile
         self.language = language
         speed = profile.board.baud if baud is None else baud
-
-        def open_line(address: str, lock: IO[bytes] | None) -> Line:
-            kit = profile.kit.fingerprint
-            return opening.opened_line(address, speed, kit, limit_s, lock, language, port)
-
-        self.line: LinkConnection = opening.connection_to(port, verb, open_line, baud, language)
+        kit = profile.kit.fingerprint
+        self.line = opening.connection_to(port, verb, speed, kit, limit_s, baud, language)
         self.server: Server | None = None
         try:
             if is_shared and not self.line.held_by:
@@ -88,7 +85,7 @@ class Client:
                 self.server.close()  # until then a client may start a run
                 has_run = has_run or self.server.may_have_run  # its client can no longer stop it
             if has_run and not self.line.has_ended:
-                opening.confirmed(self.line, stop_s)
+                self.stop(stop_s)
         finally:
             self.line.close()
 
@@ -100,20 +97,45 @@ class Client:
         `board` replaces the board of the profile. While `is_patient` a stop that comes first does
         not end the search.
         """
-        with self._connected():
-            chip = board or self.profile.board.chip
-            reply = opening.met(self.line, self.port, chip, self.wait)
-            while reply.status == CANCELLED and is_patient():
-                reply = self.wait(opening.hello(self.line, opening.ANSWER_MS))
+        reply = self.hello(board)
+        while reply.status == CANCELLED and is_patient():
+            reply = self.wait(self.search())
         robot = self.line.robot
         if reply.status or robot is None:
             raise self.failure(reply)
         return robot
 
-    def do(self, make: Callable[[Requester], PendingRequest[T]]) -> PendingRequest[T]:
+    def hello(self, board: str = "") -> Reply[HelloReply]:
+        """Send HELLO, but not so early that a board stays in its bootloader."""
+        if self.line.held_by:  # the port is open already
+            return self.wait(self.search())
+        from tiniscript.link import ports
+
+        if ports.is_radio(self.port):  # else opening it has reset the board
+            return self.wait(self.search())
+        sleep(opening.QUIET_S.get(board or self.profile.board.chip, 0.0))
+        reply = self.wait(self.search(opening.CABLE_ANSWER_MS))
+        if self.line.heard:
+            return reply
+        sleep(opening.LONG_QUIET_S)
+        return self.wait(self.search(opening.CABLE_ANSWER_MS))
+
+    def search(self, limit_ms: int | None = None) -> PendingRequest[HelloReply]:
+        """Begin a session. HELLO is repeated until the robot answers, as a reset takes a while."""
+        return self.do(lambda session: session.hello(), limit_ms or opening.ANSWER_MS)
+
+    def do(
+        self, make: Callable[[Requester], PendingRequest[T]], limit_ms: int | None = None
+    ) -> PendingRequest[T]:
         """Begin a request with a timeout."""
+
+        def limited(session: Requester) -> PendingRequest[T]:
+            request = make(session)
+            request.limit_ms = limit_ms or PATIENCE_MS
+            return request
+
         with self._connected():
-            return self.line.do(opening.limited(make, PATIENCE_MS))
+            return self.line.do(limited)
 
     def wait(self, request: PendingRequest[T], look: Callable[[], None] | None = None) -> Reply[T]:
         def watch() -> None:
@@ -156,6 +178,24 @@ class Client:
         request = self.do(lambda session: session.upload(image, runs, saves, is_detached, kit))
         return self.wait(request, lambda: draw(request.done_bytes))
 
+    def stop(self, limit_s: float | None = None) -> bool:
+        """Stop the robot; return whether it has confirmed. A second Ctrl-C ends the wait.
+
+        The default of `limit_s` is CONFIRM_S. Events from before the call do not count.
+        """
+        end_s = monotonic() + (opening.CONFIRM_S if limit_s is None else limit_s)
+        began_ms = self.line.stop()
+        try:
+            while monotonic() < end_s:
+                found = self.line.event()
+                if found is None or found[0] < began_ms:
+                    continue
+                if found[1].name in ("STOPPED", "LOST"):
+                    return found[1].name == "STOPPED"
+        except (Gone, KeyboardInterrupt):
+            pass
+        return False
+
     @contextmanager
     def _connected(self) -> Iterator[None]:
         try:
@@ -170,9 +210,20 @@ class Client:
         return self.lost(gone)
 
     def lost(self, gone: Gone) -> RobotError:
-        reason = opening.reason_of_end(self.line, gone, self.port)
+        reason = self._reason_of_end(gone)
         values = {"port": opening.shown(self.port), "verb": self.line.held_by}
         return RobotError(reason, self.language, values)
+
+    def _reason_of_end(self, gone: Gone) -> str:
+        if gone.is_server:
+            return "holder_ended"
+        if is_bluetooth(self.port):
+            return "radio_gone"
+        if is_at_broker(self.port):
+            return "port_taken" if str(gone) == errors.TAKEN else "broker_gone"
+        if self.line.heard and self.line.robot is None:  # it reported busy, and closed
+            return "port_busy"
+        return "port_gone"
 
     def failure(self, reply: Reply[object]) -> Exception:
         """Return the error for a reply that is not OK."""

@@ -240,7 +240,7 @@ class RobotConnection:
             self._part()
 
     def _stop(self) -> None:
-        if not opening.confirmed(self._client.line):
+        if not self._client.stop():
             raise StopNotConfirmed(
                 "not_confirmed", self.language, {"port": opening.shown(self.port)}
             )

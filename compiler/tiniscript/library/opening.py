@@ -10,18 +10,14 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Callable
 from time import monotonic, sleep
-from typing import IO, TYPE_CHECKING, TypeVar
+from typing import IO, TYPE_CHECKING
 
 from tiniscript.library.errors import RobotError
 from tiniscript.link import errors, known_ports
-from tiniscript.link.connection import LinkConnection, PendingRequest, Requester
+from tiniscript.link.connection import LinkConnection
 from tiniscript.link.errors import PortError
-from tiniscript.link.outcomes import Gone
-from tiniscript.link.payloads import HelloReply
-from tiniscript.link.port_names import is_address, is_at_broker, is_bluetooth, is_name
-from tiniscript.link.requests import Reply
+from tiniscript.link.port_names import is_address, is_at_broker, is_name
 from tiniscript.link.sharing import registry
 from tiniscript.link.sharing.shared_line import OtherVersion, SharedLine, joined
 from tiniscript.source import printable
@@ -29,8 +25,6 @@ from tiniscript.virtual import directory
 
 if TYPE_CHECKING:
     from tiniscript.link.line import Line
-
-    T = TypeVar("T")
 
 BUSY_S = 3.0  # timeout for a busy port: its owner may be leaving, or be about to share it
 STOP_BUSY_S = 10.0  # the same for a stop: an owner with a silent robot gives up only slowly
@@ -50,19 +44,18 @@ PSEUDO = ("/dev/pts/", "/dev/ttys")  # pseudo-terminals
 
 
 def connection_to(
-    port: str, verb: str, open_line: Callable[[str, IO[bytes] | None], Line],
-    baud: int | None = None, language: str = "en",
+    port: str, verb: str, baud: int, kit: int, limit_s: float = OPEN_S,
+    asked_baud: int | None = None, language: str = "en",
 ) -> LinkConnection:  # fmt: skip
     """Return the connection to a port. Raises RobotError if the port is busy or does not open.
 
-    `open_line` opens an address; its line closes the lock that it is given. `verb` is the name that
-    other commands show for this one. `baud` is the speed that the user has asked for. A robot's
-    name becomes its address, which may be in use under another name.
+    `verb` is the name that other commands show for this one. `asked_baud` is the speed that the
+    user has asked for. A robot's name becomes its address, which may be in use under another name.
     """
     address = port
     end_s = monotonic() + (STOP_BUSY_S if verb == "stop" else BUSY_S)
     while True:
-        client = _joined(address, verb, baud, language)
+        client = _joined(address, verb, asked_baud, language)
         if client is not None:
             return client
         if is_name(address):
@@ -70,7 +63,8 @@ def connection_to(
             end_s = monotonic() + (STOP_BUSY_S if verb == "stop" else BUSY_S)
             continue
         try:
-            line = open_line(address, _claimed(address, language))
+            lock = _claimed(address, language)
+            line = _opened_line(address, baud, kit, limit_s, lock, language, port)
             for name in {port, address}:
                 registry.forget(name)  # the port is ours: its former owner has crashed
             return line
@@ -80,13 +74,13 @@ def connection_to(
         sleep(AGAIN_S)
 
 
-def opened_line(
-    address: str, baud: int, kit: int, limit_s: float = OPEN_S, lock: IO[bytes] | None = None,
-    language: str = "en", port: str = "",
+def _opened_line(
+    address: str, baud: int, kit: int, limit_s: float, lock: IO[bytes] | None, language: str,
+    port: str,
 ) -> Line:  # fmt: skip
     """Open a port and begin a session for this kit. Raises RobotError.
 
-    `port` is the port's name in sentences, where it is not `address`.
+    `port` is the port's name in sentences. The line closes the lock.
     """
     from tiniscript.link.keys import KeyFile
     from tiniscript.link.line import Line
@@ -99,7 +93,7 @@ def opened_line(
         if lock is not None:
             lock.close()
         if isinstance(failure, PortError):
-            raise port_error(port or address, failure, language) from None
+            raise port_error(port, failure, language) from None
         raise
     keys = KeyFile(is_for_virtual=_is_virtual(address))
     session = Session(int.from_bytes(os.urandom(4), "little"), baud, kit, keys=keys)
@@ -128,76 +122,6 @@ def port_error(port: str, failure: PortError, language: str = "en") -> RobotErro
         if known:
             reason, values["known"] = "port_missing_but", shown(known)
     return RobotError(reason, language, values)
-
-
-def met(
-    line: LinkConnection,
-    port: str,
-    board: str,
-    wait: Callable[[PendingRequest[HelloReply]], Reply[HelloReply]],
-) -> Reply[HelloReply]:
-    """Send HELLO, but not so early that a board stays in its bootloader."""
-    if not line.held_by:  # else the port is open already
-        from tiniscript.link import ports
-
-        if not ports.is_radio(port):
-            sleep(QUIET_S.get(board, 0.0))
-            reply = wait(hello(line, CABLE_ANSWER_MS))
-            if line.heard:
-                return reply
-            sleep(LONG_QUIET_S)
-            return wait(hello(line, CABLE_ANSWER_MS))
-    return wait(hello(line, ANSWER_MS))
-
-
-def hello(line: LinkConnection, limit_ms: int) -> PendingRequest[HelloReply]:
-    """Begin a session. HELLO is repeated until the robot answers, as a reset takes a while."""
-    return line.do(limited(lambda session: session.hello(), limit_ms))
-
-
-def limited(
-    make: Callable[[Requester], PendingRequest[T]], limit_ms: int
-) -> Callable[[Requester], PendingRequest[T]]:
-    """Return a function that makes the same request with a timeout."""
-
-    def asked(session: Requester) -> PendingRequest[T]:
-        request = make(session)
-        request.limit_ms = limit_ms
-        return request
-
-    return asked
-
-
-def reason_of_end(line: LinkConnection, gone: Gone, port: str) -> str:
-    """Return why a connection has ended."""
-    if gone.is_server:
-        return "holder_ended"
-    if is_bluetooth(port):
-        return "radio_gone"
-    if is_at_broker(port):
-        return "port_taken" if str(gone) == errors.TAKEN else "broker_gone"
-    if line.heard and line.robot is None:  # it reported busy, and closed
-        return "port_busy"
-    return "port_gone"
-
-
-def confirmed(line: LinkConnection, limit_s: float | None = None) -> bool:
-    """Stop the robot; return whether it has confirmed. A second Ctrl-C ends the wait.
-
-    The default of `limit_s` is CONFIRM_S. Events from before the call do not count.
-    """
-    end_s = monotonic() + (CONFIRM_S if limit_s is None else limit_s)
-    began_ms = line.stop()
-    try:
-        while monotonic() < end_s:
-            found = line.event()
-            if found is None or found[0] < began_ms:
-                continue
-            if found[1].name in ("STOPPED", "LOST"):
-                return found[1].name == "STOPPED"
-    except (Gone, KeyboardInterrupt):
-        pass
-    return False
 
 
 def remember(port: str, name: str, is_used: bool = True) -> None:

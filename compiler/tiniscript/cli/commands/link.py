@@ -11,7 +11,6 @@ from tiniscript.cli.robot.bookkeeping import Bookkeeping
 from tiniscript.cli.robot.connect import Connection, connected
 from tiniscript.cli.robot.event_printer import EventPrinter
 from tiniscript.cli.texts.common import text
-from tiniscript.library import opening
 from tiniscript.link.connection import PendingRequest
 from tiniscript.link.outcomes import Event, Gone
 from tiniscript.link.payloads import HelloReply
@@ -63,7 +62,7 @@ class _Log:
             self._say(event.name, "link_started", program=f"{event.program:08x}")
         elif event.name == "LOST":
             self._say(event.name, "link_searching", port=shown(self.connection.port))
-            self.search = opening.hello(self.connection.line, opening.ANSWER_MS)
+            self.search = self.connection.search()
         elif not self.bookkeeping.hides(event):
             self.printer.tell(time_ms, event)
 
@@ -73,7 +72,7 @@ class _Log:
             self.search = None
             self._say("FOUND", "link_found", robot=self.connection.name)
         else:
-            self.search = opening.hello(self.connection.line, opening.ANSWER_MS)
+            self.search = self.connection.search()
 
     def _say(self, name: str, key: str, **values: str) -> None:
         said = text(key, self.language).format(**values)

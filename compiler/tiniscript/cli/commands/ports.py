@@ -15,9 +15,9 @@ from tiniscript.cli.robot.connect import about_virtual, baud_of, opened_client, 
 from tiniscript.cli.robot.in_reach import InReach, found
 from tiniscript.cli.texts.common import text
 from tiniscript.library import opening
+from tiniscript.library.errors import RobotError
 from tiniscript.link import known_ports, ports
 from tiniscript.link.authority import whose
-from tiniscript.link.outcomes import Gone
 from tiniscript.link.port_names import is_there, same_for_all
 from tiniscript.link.requests import OK
 from tiniscript.link.sharing.registry import all_found
@@ -100,13 +100,12 @@ def _ask(port: str, baud: int | None, robot: Robot, language: str) -> dict[str, 
     """Return the robot that answers on a port, or why none does."""
     try:
         with closing(opened_client(port, robot, "ports", baud, language, OPEN_S)) as client:
-            line = client.line
-            reply = opening.met(line, port, robot.board.chip, line.wait)
-            device_info, heard = line.robot, line.heard
+            reply = client.hello()
+            device_info, heard = client.line.robot, client.line.heard
     except CommandError as failure:
         return {"answer": None, "said": failure.sentence(language).removeprefix("tsc: ")}
-    except Gone as gone:
-        return {"answer": None, "said": gone.why}
+    except RobotError as gone:
+        return {"answer": None, "said": str(gone)}
     if reply.status == OK and device_info is not None:
         opening.remember(port, device_info.name, is_used=False)
         called = shown(device_info.name) or robot_of_kit(device_info.kit) or f"{device_info.id:08x}"

@@ -13,7 +13,6 @@ from tiniscript.cli import inputs, outputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot.connect import Connection
-from tiniscript.cli.robot.run_monitor import confirmed
 from tiniscript.cli.robot.self_test import OK, OPEN, WRONG, Found, SelfTest
 from tiniscript.cli.texts.common import text
 from tiniscript.doctor import report
@@ -37,7 +36,7 @@ def run(options: Namespace, language: str) -> int:
                 test = SelfTest(connection, options.robot is not None, not options.yes)
                 found = test.run()
             except BaseException:  # Ctrl-C, too: the motors may turn
-                confirmed(connection.line)
+                connection.stop()
                 raise
             if connection.line.robot is not None:
                 name = connection.name

@@ -11,7 +11,6 @@ from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.member import Member, Result, are_many
 from tiniscript.cli.texts.common import text
-from tiniscript.library.opening import confirmed
 
 
 def run(options: Namespace, language: str) -> int:
@@ -30,7 +29,7 @@ def run(options: Namespace, language: str) -> int:
     while True:
         with Connection(options, robot, language) as connection:
             port = connection.port
-            if confirmed(connection.line):
+            if connection.stop():
                 if options.teacher:
                     _hold_back(connection)
                 if options.json:
@@ -63,7 +62,7 @@ def _may_be_opened(connection: Connection) -> bool:
 
 def _one_of_many(connection: Connection, member: Member) -> Result:
     member.tell("crew_stopping")
-    if confirmed(connection.line):
+    if connection.stop():
         if connection.options.teacher:
             _hold_back(connection)
             return Result(True, text("held_back_short", connection.language))

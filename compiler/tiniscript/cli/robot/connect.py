@@ -115,7 +115,7 @@ class Connection(Client):
         if self._is_stopped_unseen or not self.drives:
             return False
         self._is_stopped_unseen = True
-        is_confirmed = opening.confirmed(self.line, STOP_S)
+        is_confirmed = self.stop(STOP_S)
         key = "output_stopped" if is_confirmed else "not_confirmed"
         with suppress(OSError):
             said = text(key, self.language).format(port=shown(self.port))

@@ -19,7 +19,6 @@ from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.member import Member, Result, Target, targets
-from tiniscript.cli.robot.run_monitor import CONFIRM_S, confirmed
 from tiniscript.cli.texts.common import text
 from tiniscript.library import opening
 from tiniscript.robots.profile import Robot
@@ -115,7 +114,7 @@ class Fleet:
                 if self.is_interrupted:
                     return
                 self.interrupt()
-                end_s = monotonic() + CONFIRM_S + 1
+                end_s = monotonic() + opening.CONFIRM_S + 1
         if table is not None:
             there = [member for member in self.in_order() if not member.is_absent]
             there.sort(key=lambda member: member.mark == "bad")  # failures are printed last
@@ -136,7 +135,7 @@ class Fleet:
         """Stop every robot, and wait until they have confirmed; a second Ctrl-C ends the wait."""
         self.interrupt()
         with suppress(KeyboardInterrupt):
-            self.wait(CONFIRM_S)
+            self.wait(opening.CONFIRM_S)
 
     def wait(self, limit_s: float) -> None:
         """Wait until all robots have a result."""
@@ -197,7 +196,7 @@ class Fleet:
                 member.result = self._stopped(connection)
 
     def _stopped(self, connection: Connection) -> Result:
-        if confirmed(connection.line):
+        if connection.stop():
             return Result(False, text("robot_stopped", self.language))
         failure = CommandError(3, "not_confirmed", port=shown(connection.port))
         return Result(False, _plain(failure, self.language))

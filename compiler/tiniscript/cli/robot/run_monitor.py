@@ -16,7 +16,6 @@ from tiniscript.cli.texts.common import text
 from tiniscript.library import client
 from tiniscript.library.endings import Follower, end_of
 from tiniscript.library.errors import RobotError
-from tiniscript.library.opening import CONFIRM_S, confirmed
 from tiniscript.link.connection import PendingRequest
 from tiniscript.link.messages import SAVED_LOW_SUPPLY, SAVED_STORED
 from tiniscript.link.outcomes import Event
@@ -25,8 +24,6 @@ from tiniscript.link.requests import Reply
 
 ASK_S = 1.0  # between two status requests about saving, while the program runs
 DONE, FAULTY, INTERRUPTED, LOST = 0, 1, 2, 3  # exit codes
-
-__all__ = ("CONFIRM_S", "RunMonitor", "Saving", "confirmed", "ended", "stop_and_say")
 
 
 class RunMonitor:
@@ -75,7 +72,7 @@ class RunMonitor:
 
     def stop_in_time(self) -> int:
         """Stop a virtual robot at its time limit: it stands already, but its firmware runs on."""
-        if not confirmed(self.connection.line):
+        if not self.connection.stop():
             raise CommandError(3, "not_confirmed", port=shown(self.connection.port))
         language = self.connection.language
         self.printer.say(0, "TIME_OVER", "", text("time_over", language))
@@ -94,7 +91,7 @@ def ended(event: Event, run: int | None) -> int | None:
 
 def stop_and_say(connection: Connection) -> int:
     """Stop the robot after Ctrl-C, and say whether it has confirmed; return the exit code."""
-    is_confirmed = confirmed(connection.line)
+    is_confirmed = connection.stop()
     if connection.simulator is not None:
         connection.simulator.unwatch()  # the robot has stopped in the picture, too
     print(file=sys.stderr)  # the terminal has written ^C

@@ -11,7 +11,7 @@ from tiniscript.bytecode.image import unpack
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.event_printer import EventPrinter
-from tiniscript.cli.robot.run_monitor import RunMonitor, confirmed
+from tiniscript.cli.robot.run_monitor import RunMonitor
 from tiniscript.cli.texts.common import text
 from tiniscript.library.compiling import compile_text
 from tiniscript.link.messages import MOST_BALANCE, MOST_LEAST
@@ -33,7 +33,7 @@ def guided(connection: Connection, before: Trim) -> Trim:
     except BaseException as why:
         if isinstance(why, KeyboardInterrupt):
             print(file=sys.stderr)
-            confirmed(connection.line)
+            connection.stop()
         if not isinstance(why, CommandError) or _is_there(why):
             _give_back(connection, before)
         raise
