@@ -77,6 +77,7 @@ SIGNS = r"""
 (?<=\(\d)\)\s+\((?=\d+\))  |  `, `  |  1  |  TS017  |  applied  |  F (2) (80) => F (2, 80)
 (?<=\))\s*[✓✔]\s*(?=\w)  |  `; `  |  1  |  TS005  |  applied  |  F(2, 80) ✓ R(1, 50) => F(2, 80); R(1, 50)
 \b([A-Za-z_]\w*)\s*=\+\s+(?=\d)  |  `\1 = \1 + `  |  1  |  TS050  |  applied  |  V = 5⏎V =+ 10⏎F(2, V) => V = 5⏎V = V + 10⏎F(2, V)
+\b([A-Za-z_]\w*)\s*=\+(?=\d)  |  `\1 = \1 + `  |  1  |  TS050  |  offered  |  X = 5⏎X =+1⏎SHOW(X) => X = 5⏎X = X + 1⏎SHOW(X)
 (?<![^;])\s*([*/+=-]+)([A-Za-z](?:[^;]*[\w)])?)\1\s*(?![^;])  |  `\2`  |  1  |  TS054  |  applied  |  **F(2, 80)** => F(2, 80)
 ^\s*-(?=[A-Z]\w*\()  |  ``  |  1  |  TS054  |  applied  |  -F(2,80) => F(2,80)
 ^"(S[IB]\|[^"]*)"$  |  `\1`  |  1  |  TS006  |  applied  |  "SI|F(2,80);R(1,50)" => SI|F(2,80);R(1,50)
@@ -306,7 +307,7 @@ a=@close UNTIL|HASTA QUE? c=@cond+ then+ ,? b=@start | $a UNTIL ( $c ) ; $b | 1 
 a=@close UNTIL|HASTA QUE? c=@noparen+ $ | $a UNTIL ( $c ) | 1 | TS015 | applied | F(3, 80) UNTIL DISTANCE < 10 => F(3, 80) UNTIL(DISTANCE < 10)
 a=@close HASTA|UNTIL QUE? ( | $a UNTIL ( | 1 | TS102 | applied | F(2,80) HASTA(DISTANCE<10) => F(2,80) UNTIL(DISTANCE<10)
 ^ UNTIL <question> ':'|'{'? $ | WHILE ( @not:c ) | 3 | TS029 | offered | UNTIL(DISTANCE < 10)⏎F(1, 60)⏎END_WHILE => WHILE(DISTANCE >= 10)⏎F(1, 60)⏎END_WHILE
-^ a=F|B|L|R ( UNTIL <question> , b=@num ) $ | $a ( FOREVER , $b ) UNTIL ( $c ) | 2 | TS029 | offered | F(UNTIL(DISTANCE < 20), 60) => F(FOREVER, 60) UNTIL(DISTANCE < 20)
+^ a=F|B|L|R ( UNTIL (? c=@cond+ )? , b=@num ) $ | $a ( FOREVER , $b ) UNTIL ( $c ) | 2 | TS029 | offered | F(UNTIL(DISTANCE < 20), 60) => F(FOREVER, 60) UNTIL(DISTANCE < 20)
 ^ UNTIL (? c=@cond+ )? a=F|B|L|R|W ( b=@argt+ ) $ | $a ( $b ) UNTIL ( $c ) | 2 | TS029 | offered | UNTIL DISTANCE < 10 F(2, 60) => F(2, 60) UNTIL(DISTANCE < 10)
 a=@close ; UNTIL ( | $a UNTIL ( | 1 | TS029 | applied | F(3, 80);UNTIL(DISTANCE < 10) => F(3, 80) UNTIL(DISTANCE < 10)
 c=@callw ( a=@argt+ UNTIL ( d=@noclose+ ) ) | $c ( $a ) UNTIL ( $d ) | 1 | TS016 | applied | F(5, 60 UNTIL(DISTANCE < 15)) => F(5, 60) UNTIL(DISTANCE < 15)
