@@ -67,6 +67,7 @@ def test_our_firmware_passes_all(pty_robot: PtyRobot, tsc: Tsc) -> None:
     assert not any("MOTORS" in row and row != "MOTORS 0 0" for row in pty_robot.did)
 
 
+@pytest.mark.sampled("group", keep=2)
 @pytest.mark.parametrize("group", ["link: ", "images: ", "stops: ", "programs: moves"])
 def test_an_uno_passes(group: str, sketch: Path, tmp_path: Path, tsc: Tsc) -> None:  # noqa: F811
     with at_work(sketch, tmp_path / "eeprom") as uno:

@@ -109,7 +109,7 @@ def run(robot: Esp32Robot, text: str) -> None:
     assert robot.until(session, session.upload(unpack(compiled.image))) == OK
 
 
-@pytest.mark.sampled("name", "major", keep=2)
+@pytest.mark.sampled("name", "major", draw="ESP32s", keep=2)
 @pytest.mark.parametrize("major", [2, 3])
 @pytest.mark.parametrize("name", KITS)
 def test_a_program_drives(name: str, major: int) -> None:
@@ -188,6 +188,7 @@ def test_other_motors(motors: str) -> None:
         assert robot.output(25) == robot.output(26) == 0
 
 
+@pytest.mark.sampled("name", "major", draw="ESP32s", keep=2)
 @pytest.mark.parametrize("major", [2, 3])
 @pytest.mark.parametrize("name", KITS)
 def test_a_panic_turns_the_motors_off_first(name: str, major: int) -> None:
@@ -259,6 +260,7 @@ def test_a_beep() -> None:
     assert robot.output(23) == 0
 
 
+@pytest.mark.sampled("name", "major", draw="ESP32s", keep=2)
 @pytest.mark.parametrize("major", [2, 3])
 @pytest.mark.parametrize("name", KITS)
 @pytest.mark.parametrize("hertz", [31, 37, 76, 999, 1000, 20000])

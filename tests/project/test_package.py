@@ -234,6 +234,7 @@ def test_a_source_package_has_the_whole_repository(unpacked: Path, kept: set[str
     assert found - ADDED == kept - ADDED
 
 
+@pytest.mark.sampled(of="source packages")
 def test_a_source_package_is_the_same_from_another_place(
     repo: Path, unpacked: Path, tmp_path: Path
 ) -> None:
@@ -254,6 +255,7 @@ def test_a_registry_takes_both_packages(wheel: Path, unpacked: Path) -> None:
     assert done.stdout.count("PASSED") == 2
 
 
+@pytest.mark.sampled(of="source packages")
 def test_the_tests_of_a_source_package_run(unpacked: Path) -> None:
     pytest_here = ("-m", "pytest", "-p", "no:cacheprovider")
     every = python("-c", IMPORT_ALL, folder=unpacked, PYTHONPATH=f"compiler{os.pathsep}.")

@@ -27,6 +27,13 @@ def test_usual(): ...
 def test_board(board): ...
 @pytest.mark.sampled(of="boards", keep=2)
 def test_other_board(): ...
+@pytest.mark.sampled("kit", draw="kits")
+@pytest.mark.parametrize("kit", range(4))
+@pytest.mark.parametrize("tone", range(5))
+def test_kit(kit, tone): ...
+@pytest.mark.sampled("kit", draw="kits")
+@pytest.mark.parametrize("kit", range(4))
+def test_same_kit(kit): ...
 """
 Found = list[tuple[str, dict[str, object]]]
 
@@ -89,14 +96,19 @@ def test_each_value_is_in_each_sample_and_each_row_in_one(
         boards = [(name, row.get("board")) for name, row in found if "board" in name]
         assert len(boards) == 2
         together.update(boards)
-        assert Counter(name for name, _ in found if "board" not in name) == {
+        kits = [row["kit"] for name, row in found if "kit" in name]
+        assert len(kits) == 6 and len(set(kits)) == 1
+        together.update(("kit", kit) for kit in kits[:1])
+        assert Counter(
+            name for name, _ in found if name in ("test_case", "test_pin", "test_usual")
+        ) == {
             "test_case": 20,
             "test_pin": 2,
             "test_usual": 1,
         }
         seen.update((row["case"], row["chip"]) for row in cases if commit < 15)
     assert len(seen) > 55
-    assert len(together) == 3 and min(together.values()) >= 5
+    assert len(together) == 3 + 4 and min(together.values()) >= 2
     assert drawn[7] == drawn[15]
     ((asked, said),) = collected("-k", "not usual")  # which asks for none
     assert len([name for name, _ in asked if name == "test_case"]) == 20 and said

@@ -3,7 +3,8 @@
 A test marked `sampled("chip")` keeps, of the rows that differ in `chip` alone, one that the commit
 draws: every other value is in each run, each chip as often as the others, and every row in some.
 `sampled("chip", keep=2)` keeps two. `sampled(of="bootloaders", keep=2)` keeps two of all tests that
-are marked so, with their rows. `--whole` runs all, and what `-k` or a name asks for is run.
+are marked so, with their rows. Tests with the same `draw` keep the same rows: of what is built for
+them less is built. `--whole` runs all, and what `-k` or a name asks for is run.
 """
 
 from __future__ import annotations
@@ -38,17 +39,22 @@ def leave_out(config: pytest.Config, items: list[pytest.Item]) -> None:
             tests[item.nodeid.partition("[")[0]][_others(item, mark.args)].append(item)
     left_out: set[pytest.Item] = set()
     for name, groups in tests.items():
-        draw = random.Random(f"{seed(config)} {name}")
+        together = _mark(next(iter(groups.values()))).kwargs.get("draw", "")
+        draw = random.Random(f"{seed(config)} {together or name}")
         turn = draw.randrange(1000)
         for rows in draw.sample(list(groups.values()), len(groups)):
-            mark = rows[0].get_closest_marker(MARK)
-            assert mark is not None
-            turn += 1
-            kept = {rows[(turn + k) % len(rows)] for k in range(mark.kwargs.get("keep", 1))}
+            turn += not together
+            kept = {rows[(turn + k) % len(rows)] for k in range(_mark(rows).kwargs.get("keep", 1))}
             left_out |= set(rows) - kept
     if left_out:
         items[:] = [item for item in items if item not in left_out]
         config.hook.pytest_deselected(items=list(left_out))
+
+
+def _mark(rows: list[pytest.Item]) -> pytest.Mark:
+    mark = rows[0].get_closest_marker(MARK)
+    assert mark is not None
+    return mark
 
 
 def said(config: pytest.Config) -> str:
