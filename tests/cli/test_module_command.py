@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import signal
 from collections.abc import Iterator
 
@@ -72,14 +71,6 @@ def test_without_a_wish_it_says_what_it_has_found(tsc: Tsc) -> None:
     assert "MLT-BT05 on" in done.out and "listens at 38400 baud" in done.out
     assert "It has: name BT05, 38400 baud." in done.out
     assert "--pin 123456" in done.out
-
-
-def test_as_data(tsc: Tsc, module: Simulated) -> None:
-    done = tsc("module", "--port", port_of(module), "--name", "ANA", "--json")
-    fields = json.loads(done.out)
-    assert (done.code, fields["module"], fields["baud"]) == (0, "HC-06 3.x", 9600)
-    (step,) = fields["steps"]
-    assert (step["what"], step["value"], step["how"]) == ("name", "ANA", "unseen")
 
 
 def test_nobody_answers(tsc: Tsc, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -75,7 +75,7 @@ MINOR = 2  # grows when messages, statuses or features are added
 # ones; HELLO says whether it takes large ones, and how many requests it holds before it has
 # answered the first.
 SMALL_FRAME, LARGE_FRAME = 63, 250
-SMALL_WINDOW, LARGE_WINDOW = 1, 4
+LARGE_WINDOW = 4
 LARGE_MINOR = 2  # a computer of an older version takes no large frame
 TEXT_FROM = 0x41  # an item whose first byte is this or more is no frame
 HEAD_BYTES = 3  # type, sequence number, epoch

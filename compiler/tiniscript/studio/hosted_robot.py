@@ -31,7 +31,6 @@ class HostedRobot:
         """`robot` is the profile of the page's programs."""
         self.port = port
         self.has_ended = False
-        self.why_ended = ""
         self.name = ""  # of the robot, once it has answered
         self.attending = Attending()
         self._profile = robots.load(robot)
@@ -120,7 +119,6 @@ class HostedRobot:
         return True
 
     def _end(self, reason: str, said: str = "") -> None:
-        self.why_ended = reason
         self.has_ended = True
         self.attending.end()
         self.attending.tell([{"over": reason, "said": said}])

@@ -18,7 +18,6 @@ def _block_words(*blocks: str) -> frozenset[str]:
     return frozenset((*blocks, *ends, *(each for each, end in ALIASES.items() if end in ends)))
 
 
-DEF_END = BLOCK_ENDS["DEF"]
 NO_TASKS = _block_words(*TASKS)
 NO_DEFS_OR_TASKS = _block_words("DEF") | NO_TASKS
 

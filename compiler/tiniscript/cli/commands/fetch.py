@@ -32,8 +32,6 @@ def run(options: Namespace, language: str) -> int:
             code=len(ready.image.code),
             checksum=f"{ready.image.checksum:08x}",
         ))  # fmt: skip
-    elif options.json:
-        show.print_json(ready, robot)
     else:
         show.print_listing(ready, robot, name, language)
     return 0

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import re
 import sys
 from argparse import Namespace
@@ -111,18 +110,15 @@ class _SetUp:
             _refuse(self.wanted, module.dialect, what)
         plan = set_up.steps(self.wanted, module.dialect)
         now = self._values(module)
-        if not self.options.json:
-            self._introduce(module, now)
+        self._introduce(module, now)
         outcomes: list[Outcome] = []
         if not self.options.dry_run:
             self.begun += [step for step in plan if step.what == BAUD]
             outcomes = set_up.done(self.wire, module, plan, self._tell)
-        elif not self.options.json:
+        else:
             self._show(plan)
         is_done = all(each.how in GOOD for each in outcomes)
-        if self.options.json:
-            print(json.dumps(self._fields(module, now, plan, outcomes), indent=2))
-        elif not plan:
+        if not plan:
             pin = "123456"[: module.dialect.pin_digits]
             print(self._text("module_nothing", port=self.port, pin=pin))
         elif outcomes and is_done:
@@ -134,12 +130,12 @@ class _SetUp:
         return text(key, self.language).format(**values)
 
     def _look(self, baud: int) -> None:
-        if not self.options.json and are_read(sys.stderr):
+        if are_read(sys.stderr):
             said = self._text("module_looking", baud=str(baud))
             print(f"\r\x1b[K{said}", end="", file=sys.stderr, flush=True)
 
     def _clear(self) -> None:
-        if not self.options.json and are_read(sys.stderr):
+        if are_read(sys.stderr):
             print("\r\x1b[K", end="", file=sys.stderr, flush=True)
 
     def _values(self, module: Module) -> dict[str, str]:
@@ -175,8 +171,6 @@ class _SetUp:
             print(f"{what}: " + self._text("module_plan", commands=commands))
 
     def _tell(self, outcome: Outcome) -> None:
-        if self.options.json:
-            return
         step, how, said = outcome
         what = self._text(f"module_what_{step.what}", value=step.value)
         key = f"module_{how}"
@@ -187,26 +181,3 @@ class _SetUp:
         out = sys.stdout if how in GOOD else sys.stderr
         said = shown(said) or self._text("module_no_word")
         print(self._text(key, what=what, said=said), file=out, flush=True)
-
-    def _fields(
-        self, module: Module, now: dict[str, str], plan: list[Step], outcomes: list[Outcome]
-    ) -> dict[str, object]:
-        """Return it as data. `how` of a step that was not done is null."""
-        ends = {outcome.step.what: outcome for outcome in outcomes}
-        return {
-            "port": self.options.port,
-            "module": module.dialect.name,
-            "version": module.version,
-            "baud": module.baud,
-            "had": now,
-            "steps": [
-                {
-                    "what": step.what,
-                    "value": step.value,
-                    "commands": step.commands,
-                    "how": ends[step.what].how if step.what in ends else None,
-                    "said": ends[step.what].said if step.what in ends else None,
-                }
-                for step in plan
-            ],
-        }

@@ -270,15 +270,14 @@ OPTIONS: tuple[Option, ...] = (
                                    "sin robot: uno virtual se mueve aquí, hasta que el programa termina o Ctrl-C; el de `tsc robot`, si está en marcha en otra terminal. La tecla b es el botón del de aquí; si no hay nadie en una terminal, se pulsa enseguida")),
     Option("--virtual", "live", ("uses a virtual robot here", "sin robot: lo hace aquí uno virtual")),
     # how it is said
-    Option("--json", "check show lesson ping info ports keys doctor module selftest conform", ("the same as data", "lo mismo como datos"), silent="keys module"),
+    Option("--json", "check show lesson ping info ports keys doctor selftest conform", ("the same as data", "lo mismo como datos"), silent="keys"),
     Option("--json", "upload class", ("prints the receipt and everything after it as lines of JSON", "imprime lo que se envió y lo que viene después como líneas de JSON")),
     Option("--json", "undo", ("prints the receipt, and that it is saved, as lines of JSON", "imprime a qué programa volvió, y que está guardado, como líneas de JSON"), silent="undo"),
     Option("--json", "stop identify", ("prints a line of JSON for each robot", "imprime una línea de JSON por cada robot"), silent="identify"),
     Option("--json", "link start monitor", ("prints lines of JSON", "imprime líneas de JSON"), silent="link"),
-    Option("--json", "fetch", ("the listing as data", "la lista como datos"), silent="fetch"),
     Option("--json", "trim", ("prints what the robot keeps as data", "imprime lo que guarda el robot como datos"), silent="trim"),
     # a virtual robot of one's own
-    Option("--world", OWN, ("its world by name: maze, line, or another one, or a file (obstacles)", "su mundo por nombre: maze, line u otro, o un archivo (obstacles)"), WORLD, A_ROBOT, virtual=True),
+    Option("--world", OWN, ("its world: obstacles, line, light, maze, gaps, ring, parking, delivery, dance, free, or a file (obstacles)", "su mundo: obstacles, line, light, maze, gaps, ring, parking, delivery, dance, free, o un archivo (obstacles)"), WORLD, A_ROBOT, virtual=True),
     Option("--plot", OWN, ("draws the world and the path when it ends", "dibuja el mundo y el camino cuando termina"), PICTURE, ("F.png", "F.png"), virtual=True, silent="live"),
     Option("--for", OWN, ("ends after S seconds of the robot's time", "termina a los S segundos del reloj del robot"), NUMBER, S, virtual=True, silent="live"),
     Option("--hurry", OWN, ("runs N times as fast; max: as fast as this computer can", "un programa va N veces más rápido; max: lo más rápido que esta computadora pueda"), HURRY, ("N|max", "N|max"), virtual=True),
