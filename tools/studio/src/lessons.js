@@ -173,12 +173,12 @@ export class Lessons {
     const place = element('lesson_page', HTMLElement);
     const { blocks, hint } = /** @type {Step} */ (this.#steps[step]);
     const { robot } = /** @type {Lesson} */ (this.#lessons[this.#number - 1]);
-    place.replaceChildren(...blocks.map((block) => elementOf(block, (program) => {
+    element('lesson_step', HTMLElement).replaceChildren(...blocks.map((block) => elementOf(block, (program) => {
       this.#page.put({ text: program, robot });
       this.#page.tell(text('lesson_used'));
     })));
     place.dataset['lesson'] = String(this.#number);
-    element('lessons', HTMLElement).scrollTop = 0;
+    element('lesson_page', HTMLElement).scrollTop = 0;
     this.#hint.open = false;
     this.#hint.hidden = !hint;
     element('lesson_hint_said', HTMLElement).replaceChildren(filled('span', hint));
@@ -289,7 +289,7 @@ export class Lessons {
       return row;
     }));
     this.#hint.open = false;
-    element('lessons', HTMLElement).scrollTop = 0;
+    element('lesson_page', HTMLElement).scrollTop = 0;
     if (!isKept) this.#page.tell(text('not_kept'));
     if (hadFocus) (this.#next.hidden ? this.#check : this.#next).focus();
   }
