@@ -14,7 +14,7 @@ from itertools import pairwise
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic, Repair
 from tiniscript.kit import Kit
-from tiniscript.recovery.amounts import is_amount, with_number
+from tiniscript.recovery.amounts import with_number
 from tiniscript.recovery.concepts import (
     CALLED,
     ENDED,
@@ -33,7 +33,6 @@ from tiniscript.syntax.lexer import NUMBER, QUOTES, WORD
 from tiniscript.syntax.operators import COMPARISONS
 from tiniscript.words import BLOCK_ENDS, WORDS, said_instead
 
-_ASKING = ("IF", "ELSEIF", "WHILE", "UNTIL")
 _LAST_HEAD = re.compile(r"(?is)\b(IF|ELSEIF|WHILE|UNTIL)[ \t]*\((?!.*\b(?:IF|WHILE|UNTIL)\()")
 _DOTS = re.compile(r"(?:\.[ \t]*){2,}|\u2026")
 _BEFORE_DOTS = re.compile(r"(?i)\b((IF|LOOP|WHILE)[ \t]*\([^()\n]*\)|(DEF)[ \t]+(\w+))[\s;]*$")
@@ -128,7 +127,7 @@ class _Usage:
             return None
         words = [each.text for each in tokens if each.kind is WORD]
         first = tokens[0].text
-        if (tokens[1:] and tokens[1].text == "[") or first in ("SWITCH", "CASE", "SEGUN", "CASO"):
+        if first in ("SWITCH", "CASE", "SEGUN", "CASO"):
             value = "".join(each.text for each in tokens[2:3] if first == "SWITCH") or "X"
             values = {"found": first, "first": f"IF({value} = 1)"}
             values |= {"second": f"ELSEIF({value} = 2)"} if first == "SWITCH" else {}
@@ -200,8 +199,6 @@ class _Usage:
         """A word of another language whose instruction the checker has read."""
         piece = self.piece(found.span)
         tokens, right = self.tokens(piece), found.values.get("right", "")
-        if found.span.start != piece.start or "fix" in found.values:
-            return None
         if said := self.orders(found, piece, found.values["found"]):
             return said
         if len(tokens) == 1 and right in WORDS and not WORDS[right].arguments:
@@ -218,7 +215,7 @@ class _Usage:
         said = orders(tokens, self.names) if meant else []
         if len(said) == 1 and not said[0].is_side_free:
             return self.translated(found.span, piece, meant, said[0].text)
-        if not said or len(said) == 1:
+        if len(said) < 2:
             return None
         told = self.offered(codes.SEVERAL_ORDERS, piece, written(said))
         values = {**told.values, "example": made_up(said)}
@@ -273,7 +270,7 @@ class _Usage:
     def brackets(self, found: Diagnostic) -> Diagnostic:
         """A word without its values; alone it gets an example of them."""
         piece, word = self.piece(found.span), found.values["word"]
-        if word == "WHEN" and any(self.is_button(each.text) for each in self.tokens(piece)):
+        if any(self.is_button(each.text) for each in self.tokens(piece)):
             return Diagnostic(codes.NO_BUTTON, found.span)
         said = self.orders(found, piece, word) if found.span.start == piece.start else None
         if said and said.code is codes.SEVERAL_ORDERS:
@@ -297,7 +294,7 @@ class _Usage:
         end = text.find(")", found.span.start)
         if tokens and self.command(tokens[0].text) == "SHOW":
             return Diagnostic(codes.WORDS_SHOWN, found.span)
-        if head is None or head[1].upper() not in _ASKING:
+        if head is None:
             return None
         start = self.piece(found.span).start + head.end()
         inner = self.tokens(Span(start, max(start, end)))
@@ -482,7 +479,7 @@ class _Usage:
         ends = (text.find(sign, found.span.start, piece.end) for sign in ",)")
         end = min((each for each in ends if each >= 0), default=0)
         value = Span(start + text[start:end].startswith(" "), end)
-        if not piece.start < start <= end or not is_amount(*self.source[value].split()):
+        if not piece.start < start <= end:
             return None
         values = with_number(text, value)
         return Diagnostic(codes.UNKNOWN_NAME, value, values) if values else None
