@@ -191,6 +191,7 @@ def glitched(width_us: float) -> list[tuple[int, int]]:
     return [(phase, shown(board, ms + 31)) for ms, phase in zip(times, PHASES, strict=False)]
 
 
+@pytest.mark.sampled("width_us", keep=2)
 @pytest.mark.parametrize("width_us", [2.0, 10.0, GLITCH_US, 80.0])
 def test_a_glitch_at_any_phase_is_no_echo(width_us: float) -> None:
     found = glitched(width_us)

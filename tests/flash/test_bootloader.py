@@ -44,7 +44,7 @@ UNKNOWN, POWER, WATCHDOG = 0, 1, 4  # resets in docs/link.md
 WAIT_MS = 2500  # so long an old Nano waits for a sketch
 
 
-pytestmark = pytest.mark.sampled(of="bootloaders", keep=3)
+pytestmark = pytest.mark.sampled(of="bootloaders", keep=2)
 
 
 @pytest.fixture(autouse=True)
