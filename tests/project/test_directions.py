@@ -28,9 +28,9 @@ UPSTREAM: dict[str, set[str]] = {
     "diagnostics": {"source"},
     "bytecode": {"kit"},
     "syntax": {*TEXT, "bytecode"},  # of the bytecode its limits and its comparators
-    "semantics": {*TEXT, "bytecode", "syntax"},
-    "repairs": {*TEXT, "syntax"},
     "recovery": {*TEXT, "syntax"},
+    "repairs": {*TEXT, "syntax"},
+    "semantics": {*TEXT, "bytecode", "syntax", "recovery"},  # of recovery its lexicon
     "codegen": {"source", "fixed_point", "bytecode", "semantics"},
     "vm": {"fixed_point", "kit", "bytecode"},
     "robots": SHARED,
