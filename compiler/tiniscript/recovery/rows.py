@@ -256,7 +256,7 @@ v=@name *= e=@any+ | $v = $v * $e | 1 | TS050 | applied | X = 1⏎X *= 2 => X = 
 ^ declare v=@newname ;? $ | $v = 0 | 1 | TS044 | offered | var vel⏎F(2, vel) => vel = 0⏎F(2, vel)
 ^ declare v=@name = | $v = | 1 | TS044 | applied | let v = 50⏎F(2, v) => v = 50⏎F(2, v)
 ^ CONST declare v=@name = | $v = | 1 | TS044 | applied | const int potencia = 80;⏎F(2, potencia); => potencia = 80;⏎F(2, potencia);
-^ set|LET v=@name TO|A|EN|COMO|= e=@num $ | $v = $e | 1 | TS050 | applied | set x to 5 => x = 5
+^ set|LET v=@name =|TO|A|EN|COMO? e=@num $ | $v = $e | 1 | TS050 | applied | set x to 5 => x = 5
 ^ v=@newname is|VALE|equal A|IGUAL? A? e=@num $ | $v = $e | 2 | TS050 | applied | velocidad es 60⏎F(2, velocidad) => velocidad = 60⏎F(2, velocidad)
 ^ v=@newname : e=@num $ | $v = $e | 2 | TS050 | applied | velocidad: 60⏎F(2, velocidad) => velocidad = 60⏎F(2, velocidad)
 ^ v=@usedname e=@num $ | $v = $e | 3 | TS050 | applied | VELOCIDAD 50⏎F(2, VELOCIDAD) => VELOCIDAD = 50⏎F(2, VELOCIDAD)

@@ -162,7 +162,8 @@ class _Usage:
         meant = next((each for each in words if self._is_order(each)), "")
         if said := self.orders(found, piece, meant):
             return said
-        if any(said_of(each, "on") or said_of(each, "off") for each in words):
+        switched = (*words, "_".join(words[:2]))  # `turn on the led`
+        if any(said_of(each, "on") or said_of(each, "off") for each in switched):
             return Diagnostic(codes.SWITCH_WHAT, found.span)
         if any(map(self.is_button, words)) and [each.text for each in tokens[1:2]] != ["("]:
             return Diagnostic(codes.NO_BUTTON, found.span)
