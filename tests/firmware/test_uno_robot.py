@@ -29,8 +29,8 @@ OFF = dict.fromkeys(MOTORS, "low")
 FORWARD = OFF | {"left": "pwm", "right": "pwm", "left forward": "high", "right forward": "high"}
 AWAY = "SI|F(70, 80)"
 CABLE = 4  # a cause in docs/link.md
-LIVE_CYCLES = 1600  # from the last byte of a frame to the pins: 100 us in three of four
-LATE_CYCLES = 2080  # 130 us: the work for a millisecond has just begun
+LIVE_CYCLES = 2160  # from the last byte of a frame to the pins: 135 us in three of four
+LATE_CYCLES = 2640  # 165 us: the work for a millisecond has just begun
 
 
 @pytest.fixture(scope="session")

@@ -17,7 +17,8 @@ from tiniscript.robots.boards import CHIPS
 from tiniscript.studio import checking, page_lessons, recordings, robot_link
 from tiniscript.virtual import worlds
 
-TEXT = "SHOW(1)\nWHEN(DISTANCE < 15)\n  S\nEND_WHEN\n"
+ROBOT = "liner"  # on a Nano
+TEXT = "SHOW(1)\nWHEN(BUTTON)\n  S\nEND_WHEN\n"
 WORDS = {"en": "has no TASK and no WHEN", "es": "no tiene TASK ni WHEN"}
 
 
@@ -35,7 +36,7 @@ def says_so(done: Done, language: str = "en") -> bool:
 
 def test_the_chips_without_tasks_are_those_with_little_memory() -> None:
     assert {name: chip.has for name, chip in CHIPS.items()} == {
-        "uno": 0,
+        "uno": image.TASKS,
         "nano": 0,
         "mega": image.TASKS,
         "esp32dev": image.TASKS,
@@ -48,46 +49,45 @@ def test_the_chips_without_tasks_are_those_with_little_memory() -> None:
     "verb",
     [
         ("upload",),
-        ("lesson", "check", "1"),
         ("compile", "--text"),
-        ("compile", "--text", "--text-level", "uno"),
-        ("check", "--text-level", "uno"),
     ],
 )
 def test_a_text_is_refused_at_its_task(program: Path, verb: tuple[str, ...], language: str) -> None:
-    done = inside(*verb, program, "--lang", language)
+    done = inside(*verb, program, "--robot", ROBOT, "--lang", language)
     said = done.out + done.err
     assert WORDS[language] in said and "tsc run" in said and done.code == 1
     assert ("line 2:" if language == "en" else "línea 2:") in said
 
 
-@pytest.mark.parametrize("level", ["mega", "esp32"])
+@pytest.mark.parametrize("level", ["uno", "mega", "esp32"])
 def test_a_reader_that_lacks_them_is_told_from_a_robot_that_does(program: Path, level: str) -> None:
-    """A Mega and an ESP32 run what is sent compiled."""
-    done = inside("check", "--text-level", level, program)
+    """An Uno, a Mega and an ESP32 run what is sent compiled."""
+    done = inside("check", "--text-level", level, program, "--robot", ROBOT)
     said = done.out + done.err
     assert (done.code, "TS313" in said, said.count("[TS308]")) == (1, False, 2)
     assert "line 2:" in said and "line 4:" in said and "tsc upload" in said
-    assert inside("check", program, "--robot", "grabber").code == 0
+    assert inside("check", program, "--robot", ROBOT).code == 0
 
 
 @pytest.mark.parametrize("language", ["en", "es"])
 def test_an_image_and_a_live_line_are_refused(program: Path, language: str) -> None:
     compiled = program.with_suffix(".bin")
-    assert inside("compile", program, "-o", compiled).code == 0
-    assert says_so(inside("upload", compiled, "--lang", language), language)
-    assert says_so(inside("live", "TASK;S;END_TASK", "--lang", language), language)
+    assert inside("compile", program, "--robot", ROBOT, "-o", compiled).code == 0
+    assert says_so(inside("upload", compiled, "--robot", ROBOT, "--lang", language), language)
+    assert says_so(
+        inside("live", "TASK;S;END_TASK", "--robot", ROBOT, "--lang", language), language
+    )
 
 
 def test_what_sends_nothing_takes_them(program: Path) -> None:
     for verb in (("check",), ("fmt",), ("show",), ("run", "--max-time", "0.01")):
-        done = inside(*verb, program)
+        done = inside(*verb, program, *(() if verb == ("fmt",) else ("--robot", ROBOT)))
         assert (done.code, WORDS["en"] in done.err) == (0, False)
 
 
 def test_the_library_sends_none() -> None:
-    program = tiniscript.compile(TEXT)
-    with tiniscript.virtual_robot(hurry=math.inf) as robot:
+    program = tiniscript.compile(TEXT, ROBOT)
+    with tiniscript.virtual_robot(ROBOT, hurry=math.inf) as robot:
         for send in (robot.upload, robot.live):
             for each in (program, TEXT, program.image):
                 if send == robot.upload or isinstance(each, str):
@@ -99,9 +99,9 @@ def test_the_library_sends_none() -> None:
         assert [each.values for each in robot.events() if each.name == "SHOW"] == [{"value": 2}]
 
 
-@pytest.mark.parametrize("robot_name", ["grabber", "tinibot32"])
+@pytest.mark.parametrize("robot_name", ["tinibot", "grabber", "tinibot32"])
 @pytest.mark.parametrize("sent", ["upload", "live"])
-def test_a_mega_and_an_esp32_run_them(sent: str, robot_name: str) -> None:
+def test_the_others_run_them(sent: str, robot_name: str) -> None:
     """A stop ends all tasks; and the robot has the image that the compiler makes."""
     text = "SHOW(7);TASK;SHOW(8);F(FOREVER, 60);END_TASK;WHEN(FALSE);END_WHEN"
     with tiniscript.virtual_robot(robot_name, hurry=math.inf) as robot:
@@ -120,34 +120,33 @@ def test_a_mega_and_an_esp32_run_them(sent: str, robot_name: str) -> None:
 
 @pytest.mark.parametrize("language", ["en", "es"])
 def test_the_studio_neither_sends_nor_simulates(language: str) -> None:
-    found = checking.check(TEXT.encode(), "tinibot", language)
+    found = checking.check(TEXT.encode(), ROBOT, language)
     assert found.image == b""
     message = found.findings[-1].message
     assert WORDS[language] in message.message and (message.code, message.line) == ("TS313", 2)
-    for robot, code in (("tinibot", "TS313"), ("grabber", "TS308"), ("tinibot32", "TS308")):
-        line = checking.line(TEXT.encode(), robot, language)
-        assert not isinstance(line, str) and (line.code, line.line) == (code, 2)
+    line = checking.line(TEXT.encode(), ROBOT, language)
+    assert not isinstance(line, str) and (line.code, line.line) == ("TS308", 2)
     check = page_lessons.Check(1, TEXT.encode(), language)
     assert check.go(1000)["verdict"] == page_lessons.MISTAKES
 
 
 @pytest.mark.parametrize("do", ["upload", "live"])
 def test_a_page_that_sends_an_image_all_the_same_is_refused(do: str) -> None:
-    kit = robots.load("tinibot").kit.fingerprint
+    kit = robots.load(ROBOT).kit.fingerprint
     robot = SimpleNamespace(kit=kit)
     connection: Any = SimpleNamespace(
         robot=robot, boot=0, held_by="", tell_places=lambda: None, event=lambda limit_s=0: None
     )
     link = robot_link.RobotLink(connection, "en")
-    data = tiniscript.compile(TEXT).image.hex()
-    link.ask({"id": 1, "do": do, "robot": "tinibot", "image": data})
+    data = tiniscript.compile(TEXT, ROBOT).image.hex()
+    link.ask({"id": 1, "do": do, "robot": ROBOT, "image": data})
     assert [each["failure"] for each in link.news()] == ["UNKNOWN_NEEDS"]
 
 
 def test_a_recording_is_of_another_program() -> None:
     """No robot has run it."""
-    checksum = tiniscript.compile(TEXT).checksum
+    checksum = tiniscript.compile(TEXT, ROBOT).checksum
     head = f'{{"tiniscript_recording": 1, "program": "{checksum:08x}"}}\n'
     recording = recordings.read((head + '{"ms": 1, "event": "DONE"}\n').encode())
-    found = recordings.replay(recording, TEXT.encode(), "tinibot", worlds.load("obstacles"))
+    found = recordings.replay(recording, TEXT.encode(), ROBOT, worlds.load("line"))
     assert found.what == "other_program"

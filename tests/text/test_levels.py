@@ -75,18 +75,13 @@ def test_a_word_that_a_level_lacks_is_told_at_each_place() -> None:
     ]
 
 
-@pytest.mark.parametrize("level", ["mega", "esp32"])
-def test_tasks_are_told_as_words_where_the_board_runs_them(level: str) -> None:
+@pytest.mark.parametrize("level", ["uno", "mega", "esp32"])
+def test_tasks_are_told_as_words(level: str) -> None:
     """So that somebody sends them compiled."""
     text = "TASK; S; ENDTASK; when(TRUE); F(FOREVER, 60); END_WHEN"
     words = ("TASK", "ENDTASK", "when", "END_WHEN")
     told_of = [("TS308", word, {"word": word.upper()}) for word in words]
     assert told(text, LEVELS[level]) == told_of
-
-
-def test_tasks_are_told_as_such_where_the_board_has_none() -> None:
-    (said,) = lacking("S; WHEN(TRUE); S; END_WHEN", UNO)
-    assert (said.code.number, said.values) == ("TS313", {"robot": "uno"})
 
 
 def test_code_may_have_255_bytes() -> None:

@@ -1,6 +1,6 @@
 """How late a WHEN looks while other tasks count: `python -m tools.bench.tasks`.
 
-A simulated Mega with the firmware that ships has up to four tasks beside the main one: a WHEN that
+A simulated Uno with the firmware that ships has up to four tasks beside the main one: a WHEN that
 looks at a light sensor every 20 ms, and others that count and never wait by themselves. The light
 goes on at moments that fit no 20 ms, and each time the WHEN turns the motors on. Its looks lie on a
 grid of 20 ms; what is printed is how far they lie apart on it. The clock of an AVR goes on every
@@ -39,7 +39,7 @@ def main() -> int:
         print(why, file=sys.stderr)
         return 2
     try:
-        firmware = firmware_size.measured("mega").firmware
+        firmware = firmware_size.measured("uno").firmware
     except (RuntimeError, CannotStandIn) as failed:
         print(failed, file=sys.stderr)
         return 2
@@ -55,7 +55,7 @@ def jitter_ms(firmware: Path, others: int) -> float:
     text = "SI|W(3600);" + WATCH + "".join(COUNTING.format(name) for name in "XYZ"[:others])
     names = {"left": f"D{ROBOT.board.motors.pins['left_pwm']}"}
     with tempfile.TemporaryDirectory() as folder, Uno(
-        firmware, names=names, board="mega", eeprom=Path(folder) / "eeprom",
+        firmware, names=names, eeprom=Path(folder) / "eeprom",
         baud=ROBOT.board.baud, resets_on_open=False,
     ) as board:  # fmt: skip
         board.run_ms(BOOT_MS)

@@ -96,7 +96,7 @@ OPERAND_KINDS = {kind.name: kind for kind in (
 
 # What an instruction is for the structure of a program; `verify` has a rule for each role. Those
 # from `plain` on stand between expressions and checks. Those of loops come in pairs: one that does
-# not count, one that does.
+# not count, one that does. What opens a routine comes before what closes it.
 ROLES = {
     "end":       "ends the program",
     "value":     "part of an expression",
@@ -115,14 +115,14 @@ ROLES = {
     "next":      "closes a loop that counts",
     "break":     "leaves the innermost loop, one that does not count",
     "drop":      "leaves the innermost loop, one that counts",
+    "call":      "calls a procedure that lies before it",
     "def":       "opens a procedure that ends at `to`",
     "return":    "closes a procedure",
-    "call":      "calls a procedure that lies before it",
     "task":      "opens a task that ends at `to`",
-    "when":      "opens a WHEN that ends at `to`, and its check",
-    "look":      "ends the check of a WHEN",
     "end_task":  "closes a task",
+    "when":      "opens a WHEN that ends at `to`, and its check",
     "end_when":  "closes a WHEN",
+    "look":      "ends the check of a WHEN",
 }
 
 

@@ -97,7 +97,7 @@ _PWM_2560 = {
 # reset; 18 and 19 are its own USB, and 19 is pulled up until the firmware runs. So is 6, for JTAG.
 _ESP32 = _pins(0, 2, 4, 5, range(12, 20), 21, 22, 23, 25, 26, 27, 32, 33)
 _ESP32C3 = _pins(range(11), 18, 19)
-_TASKS = 1  # the bit of `needs`; the machine in assembly, that of an AVR, has none
+_TASKS = 1  # the bit of `needs`; a Nano's old bootloader leaves no room for them
 
 CHIPS = {
     chip.name: chip
@@ -114,6 +114,7 @@ CHIPS = {
             first_analog=14,
             servo_timer=1,
             tone_timer=2,
+            has=_TASKS,
         ),
         Chip(
             "nano",

@@ -6,11 +6,9 @@ those have been reported.
 
 from __future__ import annotations
 
-from tiniscript.bytecode.image import TASKS
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.kit import Kit
-from tiniscript.robots.boards import CHIPS
 from tiniscript.semantics.ir import Program
 from tiniscript.source import Source, Span
 from tiniscript.syntax.lexer import WORD
@@ -22,8 +20,6 @@ from tiniscript.text.memory import MOST_BRACKETS, Reader
 
 def misfits(source: Source, program: Program, kit: Kit, level: Level) -> list[Diagnostic]:
     """Return what a robot of this level lacks for a checked program."""
-    if program.tasks and not CHIPS[level.board].has & TASKS:  # nor does it run them compiled
-        return [Diagnostic(codes.NO_TASKS, program.tasks[0].word, {"robot": level.name})]
     parsed = parse(source)
     tokens = list(spelled_out(parsed.scan.tokens))
     found = [

@@ -63,7 +63,7 @@ class HeldMachine : public Machine {
  private:
   // Whether the program waits for a later time.
   bool is_early(uint32_t now_ms) const {
-    return task().has_paused && static_cast<int32_t>(now_ms - task().clock_ms) < 0;
+    return task().has_paused && static_cast<int32_t>(now_ms - wake_ms()) < 0;
   }
 
   bool is_marked(uint32_t now_ms) const {
@@ -110,8 +110,8 @@ const int32_t* watched_tasks() {
   if (!is_running() || !machine.has_tasks()) return found;
   const Task& task = machine.task();
   for (const TaskRecord* each = task.records; each != task.end; each++) {
-    const uint16_t at = task.is_in_turn && each == task.me ? task.pc : each->pc;
-    if ((each->more & kHasEnded) == 0 && at != 0) found[++found[0]] = at - 1;
+    const uint16_t at = !task.is_between_turns && each == task.me ? task.pc : each->pc;
+    if (each->state != kHasEnded && at != 0) found[++found[0]] = at - 1;
   }
 #endif
   return found;

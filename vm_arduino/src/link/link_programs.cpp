@@ -3,7 +3,6 @@
 // A program that runs once is prepared before its frame has ended, so that it starts at once.
 
 #include "../vm/image.h"
-#include "../vm/shape.h"
 #include "../vm/small.h"
 #include "../vm/verify.h"
 #include "../vm/vm.h"
@@ -115,8 +114,7 @@ tini_noinline uint8_t Link::make(Use use, uint8_t start, const uint8_t* code, ui
   const DeviceInfo& device_info = port_device_info();
   const uint8_t sensors = is_other_kit ? 0 : device_info.sensors;
   const uint8_t actuators = is_other_kit ? 0 : device_info.actuators;
-  const bool has_tasks = has_task(code, length);
-  const Verdict verdict = verify(code, length, sensors, actuators, &devices, has_tasks);
+  const Verdict verdict = verify(code, length, sensors, actuators, &devices, kHasTasks);
   if (verdict.rule == Rule::kNoSuchDevice && is_other_kit) {
     return refuse(Answer::kWrongKit, port_identity().kit);
   }
@@ -125,14 +123,15 @@ tini_noinline uint8_t Link::make(Use use, uint8_t start, const uint8_t* code, ui
   if (found != kIsFine) return found;
   uint8_t* const image = made_;
   image[kIsaMajorAt] = kIsaMajor;
-  image[kIsaMinorAt] = has_tasks;  // as the compiler: 2.0 without
+  const uint8_t needs = kHasTasks && verdict.offset != 0;
+  image[kIsaMinorAt] = needs;  // as the compiler: 2.0 without tasks
   image[kStartAt] = start;
   image[kHeaderLengthAt] = kHeaderBytes;
   image[kDevicesAt] = static_cast<uint8_t>(devices);
   image[kDevicesAt + 1] = static_cast<uint8_t>(devices >> 8);
   image[kCodeLengthAt] = length;
   image[kCodeLengthAt + 1] = 0;
-  image[kNeedsAt] = has_tasks;
+  image[kNeedsAt] = needs;
   copy_bytes(code, image + kHeaderBytes, length);
   return kIsFine;
 }

@@ -92,11 +92,11 @@ const uint8_t kShapes[][3] tini_progmem = {
     {0x10, 0x0b, 50},  // BREAK_FAR
     {0x11, 0x02, 51},  // BREAK_LOOP
     {0x11, 0x0b, 51},  // BREAK_LOOP_FAR
-    {0x12, 0x02, 52},  // DEF
-    {0x12, 0x0b, 52},  // DEF_FAR
-    {0x13, 0x01, 53},  // RETURN
-    {0x14, 0x12, 54},  // CALL
-    {0x14, 0x1b, 54},  // CALL_FAR
+    {0x13, 0x02, 52},  // DEF
+    {0x13, 0x0b, 52},  // DEF_FAR
+    {0x14, 0x01, 53},  // RETURN
+    {0x12, 0x12, 54},  // CALL
+    {0x12, 0x1b, 54},  // CALL_FAR
     {0x22, 0x21, 8},  // PUSH_VAR_0, PUSH_VAR_1, PUSH_VAR_2, PUSH_VAR_3 ...
     {0x22, 0x41, 9},  // PUSH_SENSOR_0, PUSH_SENSOR_1, PUSH_SENSOR_2, PUSH_SENSOR_3 ...
     {0x22, 0x41, 10},  // PUSH_READ_0, PUSH_READ_1, PUSH_READ_2, PUSH_READ_3 ...
@@ -111,11 +111,11 @@ const uint8_t kShapes[][3] tini_progmem = {
     {0x08, 0x24, 60},  // IF_VAR8_EQ, IF_VAR8_NE, IF_VAR8_LT, IF_VAR8_LE ...
     {0x08, 0x25, 61},  // IF_VAR16_EQ, IF_VAR16_NE, IF_VAR16_LT, IF_VAR16_LE ...
 #ifdef tiniscript_has_tasks
-    {0x57, 0x01, 62},  // LOOK
-    {0x18, 0x01, 63},  // END_TASK
-    {0x19, 0x01, 64},  // END_WHEN
+    {0x59, 0x01, 62},  // LOOK
+    {0x16, 0x01, 63},  // END_TASK
+    {0x18, 0x01, 64},  // END_WHEN
     {0x15, 0x0b, 65},  // TASK
-    {0x16, 0x0b, 66},  // WHEN
+    {0x17, 0x0b, 66},  // WHEN
 #endif
 };
 

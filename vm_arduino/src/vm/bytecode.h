@@ -336,14 +336,14 @@ enum class Role : uint8_t {
   kNext = 15,  // closes a loop that counts
   kBreak = 16,  // leaves the innermost loop, one that does not count
   kDrop = 17,  // leaves the innermost loop, one that counts
-  kDef = 18,  // opens a procedure that ends at `to`
-  kReturn = 19,  // closes a procedure
-  kCall = 20,  // calls a procedure that lies before it
+  kCall = 18,  // calls a procedure that lies before it
+  kDef = 19,  // opens a procedure that ends at `to`
+  kReturn = 20,  // closes a procedure
   kTask = 21,  // opens a task that ends at `to`
-  kWhen = 22,  // opens a WHEN that ends at `to`, and its check
-  kLook = 23,  // ends the check of a WHEN
-  kEndTask = 24,  // closes a task
-  kEndWhen = 25,  // closes a WHEN
+  kEndTask = 22,  // closes a task
+  kWhen = 23,  // opens a WHEN that ends at `to`, and its check
+  kEndWhen = 24,  // closes a WHEN
+  kLook = 25,  // ends the check of a WHEN
 };
 
 // What a byte of operands is.

@@ -21,12 +21,13 @@
 #define tini_looped_at 19
 #define tini_called_at 20
 #ifdef tiniscript_has_tasks
-#define tini_variables_at 50
+#define tini_variables_at 46
+#define tini_stack_at (tini_variables_at + 128 + 140)
 #else
-#define tini_variables_at 63
-#endif
+#define tini_variables_at 59
 #define tini_stack_at (tini_variables_at + 128)
-#define tini_counters_at (tini_variables_at + 196)
-#define tini_calls_at (tini_variables_at + 260)
+#endif
+#define tini_counters_at (tini_stack_at + 68)
+#define tini_calls_at (tini_stack_at + 132)
 
 #endif  // TINISCRIPT_VM_EXECUTE_AVR_H_

@@ -10,15 +10,4 @@ __attribute__((noinline)) Shape shape_of(uint8_t code) {
           static_cast<Family>(flash_byte(row + 2))};
 }
 
-#ifdef tiniscript_has_tasks
-bool has_task(const uint8_t* code, uint16_t length) {
-  for (uint32_t at = 0; at < length;) {
-    const Shape shape = shape_of(code[at]);
-    if (shape.role() >= Role::kTask) return true;
-    at += shape.size();
-  }
-  return false;
-}
-#endif
-
 }  // namespace tiniscript

@@ -28,13 +28,6 @@ struct Shape {
 
 Shape shape_of(uint8_t code);
 
-#ifdef tiniscript_has_tasks
-// Whether code, which may be any bytes, has an instruction of a task.
-bool has_task(const uint8_t* code, uint16_t length);
-#else
-inline bool has_task(const uint8_t*, uint16_t) { return false; }
-#endif
-
 }  // namespace tiniscript
 
 #endif  // TINISCRIPT_VM_SHAPE_H_

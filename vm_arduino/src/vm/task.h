@@ -62,10 +62,10 @@ constexpr uint8_t kHasSet = 32;      // its M is in force
 constexpr uint8_t kKeeps = 64;       // a WHEN has wanted the motors, and has not found FALSE since
 constexpr uint8_t kHasWaited = 128;  // since it last went back to the start of a loop
 constexpr uint8_t kWantsMotors = kIsMoving | kHasSet | kKeeps;
+constexpr uint8_t kHasEnded = kIsBlocked;  // alone: it waits for nothing that ever comes
 // Bits of `more`.
 constexpr uint8_t kYesNo = 1;   // the value of `kUnsent` is one
 constexpr uint8_t kUnsent = 2;  // a SHOW found no room
-constexpr uint8_t kHasEnded = 4;
 
 struct Task {
   uint16_t pc;
@@ -75,14 +75,17 @@ struct Task {
   bool has_paused;  // the turn is over, and goes on behind the last instruction
   uint32_t random;
   uint32_t started_ms;
-  uint32_t clock_ms;  // that of the task whose turn it is; between rounds, when the next one begins
   bool is_late;       // 2^31 ms have passed since the start: TIME can no longer express it
 #ifdef tiniscript_has_tasks
-  bool is_in_turn;       // a turn has begun and is not over
-  bool is_first;         // it is the first one of the main task, before all others
-  bool is_first_round;   // the main task has had its turn in it
-  uint8_t looped_below;  // counters of the others, which lie below those of this task,
-  uint8_t called_below;  // and calls
+  bool has_others;  // there are tasks beside the main one
+  bool is_between_turns;
+  bool is_later_turn;   // than the first one of the main task, before all others
+  bool is_later_round;  // than the first one
+#ifdef __AVR__
+  uint8_t round_ms;      // when the last round was over, of 256
+#else
+  uint32_t wake_ms;      // when the next round begins
+#endif
   TaskRecord* me;        // whose turn it is, or was last
   TaskRecord* next;      // in this round
   TaskRecord* end;       // behind the main task
@@ -92,13 +95,13 @@ struct Task {
   TaskRecord me[1];
 #endif
   int32_t variables[kVariables];
+#ifdef tiniscript_has_tasks
+  TaskRecord records[kTasks + 1];  // in the order of rank, the main task last
+#endif
   // Everything from here on is written before it is read.
   int32_t stack[kStackValues + 1];  // the last one only lies after the values
   int32_t counters[kCounters];
   uint16_t calls[kCalls];  // where each open call continues
-#ifdef tiniscript_has_tasks
-  TaskRecord records[kTasks + 1];  // in the order of rank, the main task last
-#endif
 };
 
 }  // namespace tiniscript

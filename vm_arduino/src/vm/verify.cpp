@@ -9,22 +9,13 @@ namespace {
 
 constexpr uint16_t kFarAway = 0xffff;  // an offset behind any code
 
-// The upper two bits of a byte of a Block.
-enum class Kind : uint8_t { kCode = 0, kIf = 0x40, kRepeat = 0x80, kCount = 0xc0 };
+enum class Kind : uint8_t { kCode, kIf, kRepeat, kCount };
 
-constexpr uint8_t kKindBits = 0xc0;
-static_assert(kNestWords + 2 <= 0xff - kKindBits, "words are in the other bits");
-
-// An open block.
+// An open block: an IF is one of these, a loop two, its start below its end. Nothing lies deeper on
+// the stack of an ATmega328P.
 struct Block {
-  uint16_t end;    // 0: a loop that names none and has no BREAK yet
-  uint16_t start;  // of a loop
-  // Its kind and its words with those around it; an IF counts as one word, a loop as two. In one
-  // byte: nothing lies deeper on the stack of an ATmega328P than these blocks.
-  uint8_t kind_and_words;
-
-  Kind kind() const { return static_cast<Kind>(kind_and_words & kKindBits); }
-  uint8_t words() const { return kind_and_words & static_cast<uint8_t>(~kKindBits); }
+  uint16_t end;  // 0: a loop that names none and has no BREAK yet
+  Kind kind;
 };
 
 // The target of an AND_THEN or an OR_ELSE.
@@ -33,50 +24,26 @@ struct Join {
   uint8_t depth;  // values there
 };
 
-// A DEF or a task, and the most that is open in it at once, including its calls.
+// Counters in the low byte, calls in the high one: the most that a routine has open at once,
+// including what it calls.
+using Depth = uint16_t;
+constexpr Depth kCall = 0x100;
+
+// Whether that is more than a machine remembers.
+bool is_too_deep(Depth depth) { return (depth & 0xff) > kCounters || depth >= (kCalls + 1) * kCall; }
+
+// A closed DEF.
 struct Def {
   uint16_t start;
-  uint16_t end;  // 0: it is the code outside of all others
-  uint8_t counters;
-  uint8_t calls;
+  Depth most;
 };
 
 struct Memory {
   uint16_t devices;              // the hash of those that are used so far
   Join joins[kJoins + 1];        // the first one ends behind any code
-  Def defs[kDefs + 1];           // behind the closed ones: the one that is looked at
-  Block blocks[kNestWords + 1];  // the first one is the code itself
-#ifdef tiniscript_has_tasks
-  Def tasks[kTasks + 1];  // the first one is the main task
-  bool may_have_tasks;
-
-  Def* outermost() { return tasks; }
-  void allow(bool has_tasks) { may_have_tasks = has_tasks; }
-  bool lacks(Role role) const { return !may_have_tasks && role >= Role::kTask; }
-
-  // Whether more is open in all tasks together than a machine remembers.
-  bool is_too_deep(uint8_t begun) const {
-    uint16_t counters = 0;
-    uint16_t calls = 0;
-    for (uint8_t k = 0; k <= begun; k++) {
-      counters = static_cast<uint16_t>(counters + tasks[k].counters);
-      calls = static_cast<uint16_t>(calls + tasks[k].calls);
-    }
-    return counters > kCounters || calls > kCalls;
-  }
-#else
-  Def* outermost() { return defs; }
-  void allow(bool) {}
-  bool lacks(Role) const { return false; }
-  bool is_too_deep(uint8_t) const { return false; }
-#endif
+  Block blocks[kNestWords + 2];  // the first one is the code itself, the last one is too deep
+  Def defs[kDefs];               // that are closed
 };
-
-void open(Def* routine) {
-  routine->end = 0;
-  routine->counters = 0;
-  routine->calls = 0;
-}
 
 bool in_range(Byte kind, uint8_t value) {
   const uint8_t* const range = kRanges[static_cast<uint8_t>(kind)];
@@ -99,25 +66,28 @@ Kind loop_of(Role role) {
 // one function so that most of its state stays in registers: a class with a method for each role
 // takes about 100 bytes more.
 __attribute__((noinline)) Verdict pass(const uint8_t* code, uint16_t length, uint8_t sensors,
-                                       uint8_t actuators, Memory* memory) {
+                                       uint8_t actuators, Memory* memory, bool may_have_tasks) {
   uint16_t at = 0;              // where the instruction that is looked at begins
   uint16_t after = 0;           // where the next one begins
-  bool is_checking = false;     // the check of an UNTIL or of a WHEN is open
+  Role checker = Role::kNone;   // what ends the check of an UNTIL or of a WHEN that is open
   uint8_t depth = 0;            // values on the stack
   uint8_t joins = 0;            // that are open
-  uint8_t defs = 0;             // that are closed
+  Def* closed = memory->defs;   // behind the closed DEFs
   uint8_t counters = 0;         // counted loops that are open in this routine
   Join* join = memory->joins;   // the one that ends first
-  Def* routine = memory->outermost();  // that is looked at
+  uint16_t start = 0;           // of the routine that is looked at
+  uint16_t end = 0;             // of it, 0: it is the code outside of all others
+  Depth most = 0;               // that it needs
+  Depth main = 0;               // that the code outside needs, while it is looked at another routine
+  Depth ended = 0;              // that the tasks need that have ended, together
+  Depth beside = 0;             // that others need which are open with this routine
   Block* top = memory->blocks;  // the innermost block that is open
   uint8_t tasks = 0;            // that have begun beside the main one
-  bool is_looking = false;      // the check is that of a WHEN
-  Role opener = Role::kNone;    // of the routine
+  Role closer = Role::kNone;    // of the routine
   bool reads_inside = false;    // a reading was pushed above other values, or in an open join
   join->target = kFarAway;
-  open(routine);
   top->end = 0;
-  top->kind_and_words = static_cast<uint8_t>(Kind::kCode);
+  top->kind = Kind::kCode;
   memory->devices = 0;
 
   for (;; at = after) {
@@ -126,17 +96,19 @@ __attribute__((noinline)) Verdict pass(const uint8_t* code, uint16_t length, uin
       if (join->target != at) return {Rule::kMissedTarget, at};
       if (join->depth != depth) return {Rule::kStackNotEmpty, at};
     }
-    for (; top->kind() == Kind::kIf && top->end <= at; top--) {
-      if (top->end != at || depth != 0 || joins != 0 || is_checking) {
+    for (; top->kind == Kind::kIf && top->end <= at; top--) {
+      if (top->end != at || depth != 0 || joins != 0 || checker != Role::kNone) {
         return {Rule::kMissedTarget, at};
       }
     }
-    if (routine->end != 0 && routine->end <= at) return {Rule::kBadDef, at};
+    if (end != 0 && end <= at) return {Rule::kBadDef, at};
     if (at >= length) break;
 
     // opcode: an invalid one has one byte, and its role refuses it
     const Shape shape = shape_of(code[at]);
-    if (kHasTasks && memory->lacks(shape.role())) return {Rule::kUnknownOpcode, at};
+    if (kHasTasks && !may_have_tasks && shape.role() >= Role::kTask) {
+      return {Rule::kUnknownOpcode, at};
+    }
     after = static_cast<uint16_t>(at + shape.size());
     if (after > length) return {Rule::kCutOperand, at};
 
@@ -180,35 +152,14 @@ __attribute__((noinline)) Verdict pass(const uint8_t* code, uint16_t length, uin
       if (depth != 0 || joins != 0) return {Rule::kStackNotEmpty, at};
       const bool is_task = kHasTasks && (role == Role::kTask || role == Role::kWhen);
       if (is_task && reads_inside) return {Rule::kStackNotEmpty, at};
-      if (role >= Role::kPlain && is_checking && !(kHasTasks && role == Role::kLook)) {
+      if (role >= Role::kPlain && checker != Role::kNone && role != Role::kLook) {
         return {Rule::kInsideCheck, at};
       }
     }
 
-    // a step for each role, those of tasks first
-    if (kHasTasks && role == Role::kLook) {
-      if (!is_looking) return {Rule::kNotOpen, at};
-      is_checking = is_looking = false;
-      continue;
-    }
-    if (kHasTasks && role >= Role::kEndTask) {
-      const Role begin = role == Role::kEndTask ? Role::kTask : Role::kWhen;
-      if (routine->end == 0 || opener != begin) return {Rule::kNotOpen, at};
-      if (top->kind() != Kind::kCode) return {Rule::kStillOpen, at};
-      if (routine->end != after) return {Rule::kBadDef, at};
-      routine = memory->outermost();
-      continue;
-    }
-    if (kHasTasks && role >= Role::kTask) {
-      if (top->kind() != Kind::kCode || routine->end != 0) return {Rule::kBadDef, at};
-      if (tasks == kTasks) return {Rule::kTooManyTasks, at};
-      opener = role;
-      routine = memory->outermost() + ++tasks;
-      *routine = {after, target, 0, 0};
-      if (role == Role::kWhen) is_checking = is_looking = true;
-      continue;
-    }
+    // a step for each role
     Kind kind = loop_of(role);
+    Depth needs = 0;
     switch (role) {
       case Role::kNone:
         return {Rule::kUnknownOpcode, at};
@@ -227,21 +178,22 @@ __attribute__((noinline)) Verdict pass(const uint8_t* code, uint16_t length, uin
         continue;
 
       case Role::kWatch:
-        is_checking = true;
+        checker = Role::kUntil;
         continue;
       case Role::kUntil:
-        if (!is_checking || (kHasTasks && is_looking)) return {Rule::kNotOpen, at};
-        is_checking = false;
+      case Role::kLook:
+        if (checker != role) return {Rule::kNotOpen, at};
+        checker = Role::kNone;
         continue;
 
       // those that open a block: see `open` below
       case Role::kElse:
-        if (top->kind() != Kind::kIf || top->end != after) return {Rule::kNotOpen, at};
+        if (top->kind != Kind::kIf || top->end != after) return {Rule::kNotOpen, at};
         top--;
         kind = Kind::kIf;
         break;
       case Role::kIf:
-        if (top->kind() == Kind::kRepeat && top->end == target) continue;  // it leaves the loop
+        if (top->kind == Kind::kRepeat && top->end == target) continue;  // it leaves the loop
         kind = Kind::kIf;
         break;
       case Role::kForever:
@@ -257,83 +209,93 @@ __attribute__((noinline)) Verdict pass(const uint8_t* code, uint16_t length, uin
       case Role::kBreak:
       case Role::kDrop: {  // close, leave
         const bool closes = role <= Role::kNext;
-        const uint16_t end = closes ? after : target;
+        const uint16_t its_end = closes ? after : target;
         Block* loop = top;
-        if (closes && loop->kind() == Kind::kIf) return {Rule::kStillOpen, at};
-        while (loop->kind() == Kind::kIf) loop--;
-        if (loop->kind() != kind) return {Rule::kNotOpen, at};
-        if (end > length) return {Rule::kBadTarget, at};
+        if (closes && loop->kind == Kind::kIf) return {Rule::kStillOpen, at};
+        while (loop->kind == Kind::kIf) loop--;
+        if (loop->kind != kind) return {Rule::kNotOpen, at};
+        if (its_end > length) return {Rule::kBadTarget, at};
         if (closes) {
-          if (target != loop->start) return {Rule::kBadLoopStart, at};
+          if (target != loop[-1].end) return {Rule::kBadLoopStart, at};
           if (kind == Kind::kCount) counters--;
-          top--;
+          top -= 2;
         }
-        if (loop->end == 0) loop->end = end;
-        if (loop->end != end) return {Rule::kBadLoopEnd, at};
+        if (loop->end == 0) loop->end = its_end;
+        if (loop->end != its_end) return {Rule::kBadLoopEnd, at};
         continue;
       }
 
       case Role::kDef:
-        if (top->kind() != Kind::kCode || routine->end != 0) return {Rule::kBadDef, at};
-        if (defs == kDefs) return {Rule::kTooManyDefs, at};
-        opener = role;
-        if (kHasTasks) routine = memory->defs + defs;
-        *routine = {after, target, 0, 0};
+      case Role::kTask:
+      case Role::kWhen:
+        if (top->kind != Kind::kCode || end != 0) return {Rule::kBadDef, at};
+        main = most;
+        beside = 0;
+        if (role == Role::kDef) {
+          if (closed == memory->defs + kDefs) return {Rule::kTooManyDefs, at};
+        } else if (kHasTasks) {
+          if (tasks++ == kTasks) return {Rule::kTooManyTasks, at};
+          beside = static_cast<Depth>(ended + main);
+          if (role == Role::kWhen) checker = Role::kLook;
+        }
+        closer = static_cast<Role>(static_cast<uint8_t>(role) + 1);
+        start = after;
+        most = 0;
+        end = target;
         continue;
       case Role::kReturn:
-        if (routine->end == 0 || (kHasTasks && opener != Role::kDef)) return {Rule::kNotOpen, at};
-        if (top->kind() != Kind::kCode) return {Rule::kStillOpen, at};
-        if (routine->end != after) return {Rule::kBadDef, at};
-        if (kHasTasks) {
-          routine = memory->outermost();
-        } else {
-          open(++routine);
+      case Role::kEndTask:
+      case Role::kEndWhen:
+        if (end == 0 || closer != role) return {Rule::kNotOpen, at};
+        if (top->kind != Kind::kCode) return {Rule::kStillOpen, at};
+        if (end != after) return {Rule::kBadDef, at};
+        end = 0;
+        if (role == Role::kReturn) {
+          *closed++ = {start, most};
+        } else if (kHasTasks) {
+          ended = static_cast<Depth>(ended + most);
         }
-        defs++;
+        most = main;
+        beside = ended;
         continue;
       case Role::kCall: {
-        const Def* called = kHasTasks ? memory->defs + defs : routine;
-        uint8_t left = defs;
+        const Def* called = closed;
         do {
-          if (left-- == 0) return {Rule::kBadCall, at};
+          if (called == memory->defs) return {Rule::kBadCall, at};
           called--;
         } while (called->start != target);
-        const uint8_t most_counters = static_cast<uint8_t>(counters + called->counters);
-        const uint8_t most_calls = static_cast<uint8_t>(called->calls + 1);
-        if (most_counters > kCounters || most_calls > kCalls) return {Rule::kTooDeep, at};
-        if (routine->counters < most_counters) routine->counters = most_counters;
-        if (routine->calls < most_calls) routine->calls = most_calls;
-        if (memory->is_too_deep(tasks)) return {Rule::kTooDeep, at};
-        continue;
+        needs = static_cast<Depth>(called->most + kCall);
+        break;
       }
-      default:  // those of tasks are above
-        __builtin_unreachable();
     }
 
-    // open: a block that ends at the target; an IF shares the one around it that ends there too
-    if (target > length) return {Rule::kBadTarget, at};
-    // where both are known: behind 0, less 1, nothing lies
-    if (target > static_cast<uint16_t>(top->end - 1)) {
-      // the end of a loop lies behind what closes it
-      if (target != top->end || top->kind() != Kind::kIf) return {Rule::kBadTarget, at};
-      if (kind == Kind::kIf) continue;
-    }
-    const uint8_t words = static_cast<uint8_t>(top->words() + (kind == Kind::kIf ? 1 : 2));
-    if (words > kNestWords) return {Rule::kTooDeep, at};
-    *++top = {target, after, static_cast<uint8_t>(static_cast<uint8_t>(kind) | words)};
-    if (kind == Kind::kCount) {
-      static_assert(kNestWords / 2 <= kCounters, "no more loops are open at once");
+    if (role != Role::kCall) {
+      // open: a block that ends at the target; an IF shares the one around it that ends there too
+      if (target > length) return {Rule::kBadTarget, at};
+      // where both are known: behind 0, less 1, nothing lies
+      if (target > static_cast<uint16_t>(top->end - 1)) {
+        // the end of a loop lies behind what closes it
+        if (target != top->end || top->kind != Kind::kIf) return {Rule::kBadTarget, at};
+        if (kind == Kind::kIf) continue;
+      }
+      if (kind != Kind::kIf) (++top)->end = after;
+      if (top++ >= memory->blocks + kNestWords) return {Rule::kTooDeep, at};
+      *top = {target, kind};
+      if (kind != Kind::kCount) continue;
       counters++;
-      if (routine->counters < counters) routine->counters = counters;
-      if (memory->is_too_deep(tasks)) return {Rule::kTooDeep, at};
     }
+    // needs
+    needs = static_cast<Depth>(needs + counters);
+    if ((most & 0xff) < (needs & 0xff)) most = static_cast<Depth>((most & 0xff00) | (needs & 0xff));
+    if (most >> 8 < needs >> 8) most = static_cast<Depth>((most & 0xff) | (needs & 0xff00));
+    if (is_too_deep(static_cast<Depth>(most + beside))) return {Rule::kTooDeep, at};
   }
 
   // finish
   if (depth != 0 || joins != 0) return {Rule::kStackNotEmpty, at};
-  if (is_checking) return {Rule::kInsideCheck, at};
-  if (top->kind() != Kind::kCode || routine->end != 0) return {Rule::kStillOpen, at};
-  return {Rule::kNone, at};
+  if (checker != Role::kNone) return {Rule::kInsideCheck, at};
+  if (top->kind != Kind::kCode || end != 0) return {Rule::kStillOpen, at};
+  return {Rule::kNone, tasks};
 }
 
 }  // namespace
@@ -348,8 +310,8 @@ Verdict verify(const uint8_t* code, size_t length, uint8_t sensors, uint8_t actu
 #endif
   if (length > kCodeBytes) return {Rule::kCodeLength, 0};
   Memory memory;  // not cleared, which takes longer than most code: it is written before it is read
-  memory.allow(may_have_tasks);
-  const Verdict verdict = pass(code, static_cast<uint16_t>(length), sensors, actuators, &memory);
+  const Verdict verdict =
+      pass(code, static_cast<uint16_t>(length), sensors, actuators, &memory, may_have_tasks);
   *devices = memory.devices;
   return verdict;
 }

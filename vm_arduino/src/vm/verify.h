@@ -16,7 +16,8 @@
 
 namespace tiniscript {
 
-// The first violation of a rule and the offset of its instruction; kNone: accepted.
+// The first violation of a rule and the offset of its instruction; kNone: accepted, and how many
+// tasks it has beside the main one.
 struct Verdict {
   Rule rule;
   uint16_t offset;

@@ -16,7 +16,7 @@ void Machine::start(const uint8_t* code, uint16_t length, int32_t* readings, uin
 }
 
 void Machine::prepare() {
-  constexpr uint8_t kUsed = offsetof(Machine, task_) + offsetof(Task, stack);
+  constexpr uint16_t kUsed = offsetof(Machine, task_) + offsetof(Task, stack);
   clear(this, kUsed / 4 + 1);  // everything after that is written before it is read
 }
 
@@ -28,10 +28,25 @@ void Machine::start_prepared(const uint8_t* code, uint16_t length, int32_t* read
   code_ = code;
   task_.random = seed;
   task_.started_ms = now_ms;
-  task_.clock_ms = now_ms;
 #ifdef tiniscript_has_tasks
   find_tasks();
 #endif
+  task_.me->clock_ms = now_ms;
+}
+
+#if defined(tiniscript_has_tasks) && !defined(__AVR__)
+uint32_t Machine::wake_ms() const { return has_tasks() ? task_.wake_ms : task_.me->clock_ms; }
+#else
+uint32_t Machine::wake_ms() const { return task_.me->clock_ms; }
+#endif
+
+// Whether a wait goes on, or no round is due: on the AVR there is one in each millisecond, as that
+// takes less flash than to find out when the next turn is.
+inline bool Machine::is_early(uint32_t now_ms) const {
+#if defined(tiniscript_has_tasks) && defined(__AVR__)
+  if (has_tasks()) return task_.round_ms == static_cast<uint8_t>(now_ms);
+#endif
+  return static_cast<int32_t>(now_ms - wake_ms()) < 0;
 }
 
 // Ends a wait. False: it goes on.
@@ -40,7 +55,7 @@ bool Machine::may_go_on(uint32_t now_ms) {
   // No wait is longer than that, so no tick skips the whole second half of the clock.
   if (static_cast<int32_t>(now_ms - task_.started_ms) < 0) task_.is_late = true;
   if (task_.has_paused) {
-    if (static_cast<int32_t>(now_ms - task_.clock_ms) < 0) return false;
+    if (is_early(now_ms)) return false;
     task_.has_paused = false;
     if (!has_tasks() && task_.me->is(kToItsEnd)) end_move();
   }

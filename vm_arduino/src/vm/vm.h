@@ -57,7 +57,7 @@ class Machine {
   uint16_t at() const { return at_; }
 
   // When the machine has work again, while the program waits.
-  uint32_t wake_ms() const { return task_.clock_ms; }
+  uint32_t wake_ms() const;
 
   // Goes on to where the next instruction begins. False: none may run now.
   bool arrive(uint32_t now_ms);
@@ -125,6 +125,7 @@ class Machine {
   bool show(int32_t value, bool is_yes_no);
   bool sends();
 
+  bool is_early(uint32_t now_ms) const;
   bool may_go_on(uint32_t now_ms);
   bool goes_on(Fault fault);
   bool fail();
@@ -138,7 +139,7 @@ class Machine {
   void begin_turn(TaskRecord* me);
   void end_turn();
   bool waits_for_clock(const TaskRecord* task) const;
-  uint32_t next_wake_ms() const;
+  void end_round();
   bool pause();
   bool goes_back();
   bool look(bool holds);
@@ -175,7 +176,7 @@ class Machine {
 };
 
 #ifdef tiniscript_has_tasks
-inline bool Machine::has_tasks() const { return task_.end != task_.records + 1; }
+inline bool Machine::has_tasks() const { return task_.has_others; }
 inline bool Machine::is_below() const { return task_.holder < task_.me; }
 #else
 inline bool Machine::has_tasks() const { return false; }

@@ -18,7 +18,7 @@ constexpr Powers kOff = 0;
 // Sets the clock to the begin of the next wait or move, or to now if that is too long ago.
 tini_noinline void Machine::begin() {
   constexpr uint8_t kLateMs = 20;
-  if (now_ms_ - task_.clock_ms > kLateMs) task_.clock_ms = now_ms_;
+  if (now_ms_ - task_.me->clock_ms > kLateMs) task_.me->clock_ms = now_ms_;
 }
 
 // Keeps the move or wait that an UNTIL watches; its check begins after this instruction.
@@ -33,10 +33,7 @@ tini_noinline void Machine::keep_move(uint32_t move_ms) {
 
 namespace {
 
-void forget_set(TaskRecord* task) {
-  task->set = kOff;
-  task->state &= static_cast<uint8_t>(~kHasSet);
-}
+void forget_set(TaskRecord* task) { task->state &= static_cast<uint8_t>(~kHasSet); }
 
 // Its move is over, and so is its M. It goes on behind the move.
 tini_noinline void end_move_of(TaskRecord* task) {
@@ -83,7 +80,7 @@ bool Machine::until(bool stop) {
   TaskRecord* const me = task_.me;
   me->after = task_.pc;
   if (!stop) return go_on(true);
-  if (me->is(kHasBegun)) task_.clock_ms = now_ms_;
+  if (me->is(kHasBegun)) task_.me->clock_ms = now_ms_;
   if (me->is(kIsMoving)) end_move();
   return true;
 }
@@ -101,7 +98,7 @@ tini_noinline bool Machine::go_on(bool is_watched) {
     }
     me->state |= kHasBegun;
     begin();
-    me->begun_ms = task_.clock_ms;
+    me->begun_ms = task_.me->clock_ms;
   }
   uint32_t due_ms = me->rest_ms;
   bool is_last = true;
@@ -120,7 +117,7 @@ tini_noinline bool Machine::go_on(bool is_watched) {
     me->state |= kToItsEnd;
     if (is_over) end_move();
   }
-  task_.clock_ms = me->begun_ms + due_ms;
+  task_.me->clock_ms = me->begun_ms + due_ms;
   if (is_over) return true;
   me->state |= kHasWaited;
   return pause();
@@ -129,16 +126,18 @@ tini_noinline bool Machine::go_on(bool is_watched) {
 // Ends the move of the task whose turn it is: it drives, or it waited for the motors or stood
 // still.
 tini_noinline void Machine::end_move() {
-  const bool drove = task_.me->is(kDrives);
-  end_move_of(task_.me);
+  TaskRecord* const me = task_.me;
+  const bool drove = me->is(kDrives);
+  end_move_of(me);
   if (drove) set_motors(kOff);
 }
 
 // Waits for the motors.
 tini_noinline bool Machine::block() {
+  TaskRecord* const me = task_.me;
   want();
-  task_.me->state |= kIsMoving | kIsBlocked | kHasWaited;
-  task_.pc = task_.me->check;
+  me->state |= kIsMoving | kIsBlocked | kHasWaited;
+  task_.pc = me->check;
   return pause();
 }
 
@@ -165,8 +164,9 @@ void Machine::stop_motors() {
 
 // The M of this task is over; a WHEN goes on wanting the motors.
 tini_noinline void Machine::want() {
-  forget_set(task_.me);
-  if (task_.me->start != 0) task_.me->state |= kKeeps;
+  TaskRecord* const me = task_.me;
+  forget_set(me);
+  if (me->start != 0) me->state |= kKeeps;
 }
 
 // Gives the motors to the task whose turn it is; no higher one has them.
@@ -187,8 +187,8 @@ void Machine::pass_on() {
   task_.holder = highest;
   Powers powers = kOff;
   if (highest != task_.end) {
-    if (highest->is(kIsBlocked)) highest->clock_ms = now_ms_ + task_.is_first_round;
-    powers = highest->set;
+    if (highest->is(kIsBlocked)) highest->clock_ms = now_ms_ + !task_.is_later_round;
+    if (highest->is(kHasSet)) powers = highest->set;
   }
   if (powers != task_.powers) set_motors(powers);
 }
@@ -202,7 +202,7 @@ tini_noinline void Machine::set_motors(Powers powers) {
 
 tini_noinline bool Machine::wait(uint32_t duration_ms) {
   begin();
-  task_.clock_ms += duration_ms;
+  task_.me->clock_ms += duration_ms;
   return pause();
 }
 
@@ -222,14 +222,14 @@ bool Machine::until(bool stop) {
   const bool drives = me->powers != kNoPowers;
   if (stop) {
     if (!me->is(kHasBegun)) return true;
-    task_.clock_ms = now_ms_;
+    task_.me->clock_ms = now_ms_;
     if (drives) set_motors(kOff);
     return true;
   }
   if (!me->is(kHasBegun)) {
     me->state = kHasBegun;
     begin();
-    me->begun_ms = task_.clock_ms;
+    me->begun_ms = task_.me->clock_ms;
     if (drives) set_motors(me->powers);
   }
   const uint32_t gone_ms = now_ms_ - me->begun_ms;
@@ -241,7 +241,7 @@ bool Machine::until(bool stop) {
     next_ms = me->rest_ms;
     if (drives) me->state = kToItsEnd;
   }
-  task_.clock_ms = me->begun_ms + next_ms;
+  task_.me->clock_ms = me->begun_ms + next_ms;
   return pause();
 }
 

@@ -54,13 +54,12 @@ tini_noinline void Machine::powers(uint8_t code, int8_t power) {
 // the stack; a program without tasks waits for room, and so does the main task before all others.
 inline bool Machine::show(int32_t value, bool is_yes_no) {
 #ifdef tiniscript_has_tasks
-  if (has_tasks() && !task_.is_first) {
-    task_.me->rest_ms = static_cast<uint32_t>(value);
-    task_.me->more = static_cast<uint8_t>(kUnsent | is_yes_no);
-    return sends() || pause();
-  }
-#endif
+  task_.me->rest_ms = static_cast<uint32_t>(value);
+  task_.me->more = static_cast<uint8_t>(kUnsent | is_yes_no);
+  return sends() || (has_tasks() && task_.is_later_turn ? pause() : stay());
+#else
   return robot_show(value, is_yes_no) || stay();
+#endif
 }
 
 // Executes the instruction `code` at `bytes`, which lies before `task_.pc`; `top` points to the top
@@ -90,10 +89,11 @@ bool Machine::act(uint8_t code, const uint8_t* bytes, int32_t* top) {
   const int8_t power = takes ? percent(*top, low) : signed8(bytes[shape.size() - 1]);
   uint32_t time_ms = takes ? duration(shape.pops() == 1 ? *top : top[-1]) : time8(first);
   switch (family) {
-    case Family::kShow:
-      return show(*top, false);
     case Family::kShowYesNo:
-      return show(*top != 0 ? 1 : 0, true);
+      if (*top != 0) *top = 1;
+      // fallthrough
+    case Family::kShow:
+      return show(*top, family == Family::kShowYesNo);
     case Family::kSet:
       robot_set(first, *top);
       return true;

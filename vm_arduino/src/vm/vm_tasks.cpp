@@ -16,40 +16,48 @@ namespace tiniscript {
 
 namespace {
 
+#ifdef __AVR__
+// Whether an instruction that has used up a budget is a call, and not a jump back.
+bool is_call(uint8_t code) {
+  return static_cast<uint8_t>(code - static_cast<uint8_t>(Op::kCall)) < 2;
+}
+#else
 constexpr int32_t kNeverMs = 0x7fffffff;  // from now: nothing happens by itself
+#endif
+constexpr uint8_t kCounterBytes = sizeof(int32_t);
+constexpr uint8_t kCallBytes = sizeof(uint16_t);
 
-// Moves the first `count` of `all` values behind the others.
-template <class Value>
-tini_noinline void to_the_end(Value* values, uint8_t count, uint8_t all) {
-  if (count == all) return;
+// Moves the first `count` of `all` bytes behind the others.
+tini_noinline void to_the_end(uint8_t* bytes, uint8_t count, uint8_t all) {
   for (; count != 0; count--) {
-    const Value first = values[0];
-    for (uint8_t k = 1; k < all; k++) values[k - 1] = values[k];
-    values[all - 1] = first;
+    const uint8_t first = *bytes;
+    uint8_t* at = bytes;
+    for (uint8_t left = all; --left != 0; at++) *at = at[1];
+    *at = first;
   }
 }
 
 }  // namespace
 
-// Makes a record for each task in the order of rank, the main task behind them.
-void Machine::find_tasks() {
-  __builtin_memset(task_.records, 0, sizeof task_.records);
-  task_.me = task_.next = task_.records;
+// Makes a record for each task in the order of rank, the main task behind them; all of it is 0.
+tini_noinline void Machine::find_tasks() {
+  TaskRecord* me = task_.next = task_.records;
   Role kind = Role::kWhen;
   for (;;) {
     for (uint16_t at = 0; at < length_;) {
       const Shape shape = shape_of(code_[at]);
       at = static_cast<uint16_t>(at + shape.size());
-      if (shape.role() != kind || task_.me == task_.records + kTasks) continue;
-      task_.me->pc = at;
-      if (kind == Role::kWhen) task_.me->start = at;
-      task_.me++;
+      if (shape.role() != kind || me == task_.records + kTasks) continue;
+      me->pc = at;
+      if (kind == Role::kWhen) me->start = at;
+      me++;
+      task_.has_others = true;
     }
     if (kind == Role::kTask) break;
     kind = Role::kTask;
   }
-  task_.end = task_.holder = task_.me + 1;
-  task_.is_in_turn = task_.is_first = task_.is_first_round = true;
+  task_.me = me;
+  task_.end = task_.holder = me + 1;
 }
 
 // Goes on to where the next instruction begins. False: none may run now.
@@ -58,11 +66,11 @@ bool Machine::arrive(uint32_t now_ms) {
 }
 
 // Runs turns until the round is over or the budget is used up.
-void Machine::run_round() {
+tini_noinline void Machine::run_round() {
   while (left_ != 0 && fault_ == Fault::kNone && finds_turn()) {
     if (run_turn() || fault_ != Fault::kNone || status_ == Status::kDone) return;
     // before all others the main task waits for a reading, too
-    if (task_.is_first && !task_.has_paused) return;
+    if (!task_.is_later_turn && !task_.has_paused) return;
     end_turn();
   }
 }
@@ -72,16 +80,16 @@ bool Machine::run_turn() {
 #ifdef __AVR__
   // The inner loop leaves at each jump back, where a loop may wait.
   uint8_t left = left_;
-  bool goes_on;
+  bool is_over;
   do {
     execute(1);
-    goes_on = left_ == 0 && fault_ == Fault::kNone;
-    if (!goes_on) break;
+    is_over = left_ != 0 || fault_ != Fault::kNone;
+    if (is_over) break;
     left--;
-    goes_on = shape_of(code_[at_]).role() == Role::kCall || goes_back();
-  } while (goes_on && left != 0 && !Flag<Bit::kAttention>());
+    is_over = !is_call(code_[at_]) && !goes_back();
+  } while (!is_over && left != 0 && !Flag<Bit::kAttention>());
   left_ = left;
-  return goes_on;
+  return !is_over;
 #else
   return execute(left_);
 #endif
@@ -89,20 +97,20 @@ bool Machine::run_turn() {
 
 // Goes on with a turn, or begins the next one of the round. False: the round is over.
 bool Machine::finds_turn() {
-  while (!task_.is_in_turn) {
+  while (task_.is_between_turns) {
     TaskRecord* const task = task_.next;
     if (task == task_.end) {
       task_.next = task_.records;
-      task_.is_first_round = false;
-      task_.clock_ms = next_wake_ms();
-      task_.has_paused = true;
-      status_ =
-          static_cast<int32_t>(now_ms_ - task_.clock_ms) >= 0 ? Status::kRunning : Status::kWaiting;
+      task_.is_later_round = true;
+      pause();
+      end_round();
       return false;
     }
     // The counters and calls of the next one come to the end of those that all tasks share.
-    to_the_end(task_.counters, task->looped, task_.looped);
-    to_the_end(task_.calls, task->called, task_.called);
+    to_the_end(reinterpret_cast<uint8_t*>(task_.counters), task->looped * kCounterBytes,
+               task_.looped * kCounterBytes);
+    to_the_end(reinterpret_cast<uint8_t*>(task_.calls), task->called * kCallBytes,
+               task_.called * kCallBytes);
     task_.next = task + 1;
     if (waits_for_clock(task) && static_cast<int32_t>(now_ms_ - task->clock_ms) >= 0) {
       begin_turn(task);
@@ -111,31 +119,37 @@ bool Machine::finds_turn() {
   return true;
 }
 
+// Whether it waits for its clock, and not for the motors or for nothing any more.
 bool Machine::waits_for_clock(const TaskRecord* task) const {
-  return task->is(kIsBlocked) ? task_.holder == task : (task->more & kHasEnded) == 0;
+  return !task->is(kIsBlocked) || task_.holder == task;
 }
 
-uint32_t Machine::next_wake_ms() const {
+// A round is over.
+inline void Machine::end_round() {
+#ifdef __AVR__
+  task_.round_ms = static_cast<uint8_t>(now_ms_);
+#else
   int32_t more_ms = kNeverMs;
   for (const TaskRecord* task = task_.records; task != task_.end; task++) {
     const int32_t its_ms = static_cast<int32_t>(task->clock_ms - now_ms_);
     if (its_ms < more_ms && waits_for_clock(task)) more_ms = its_ms;
   }
-  return now_ms_ + static_cast<uint32_t>(more_ms);
+  task_.wake_ms = now_ms_ + static_cast<uint32_t>(more_ms);
+  if (more_ms <= 0) status_ = Status::kRunning;
+#endif
 }
 
 void Machine::begin_turn(TaskRecord* me) {
   task_.me = me;
-  task_.is_in_turn = true;
-  task_.looped_below = static_cast<uint8_t>(task_.looped - me->looped);
-  task_.called_below = static_cast<uint8_t>(task_.called - me->called);
+  task_.is_between_turns = false;
+  me->looped = static_cast<uint8_t>(me->looped - task_.looped);  // `end_turn` adds what it is then
+  me->called = static_cast<uint8_t>(me->called - task_.called);
   task_.pc = me->pc;
-  task_.clock_ms = me->clock_ms;
   bool goes_on = (me->more & kUnsent) == 0 || sends();
   if (!goes_on) {
   } else if (me->is(kIsBlocked)) {
     me->state &= static_cast<uint8_t>(~kIsBlocked);
-    task_.clock_ms = now_ms_;
+    me->clock_ms = now_ms_;
     goes_on = me->check != me->after || go_on(false);
   } else if (me->is(kToItsEnd)) {
     end_move();
@@ -146,14 +160,13 @@ void Machine::begin_turn(TaskRecord* me) {
 void Machine::end_turn() {
   TaskRecord* const me = task_.me;
   me->pc = task_.pc;
-  me->clock_ms = task_.clock_ms;
-  if (task_.looped < task_.looped_below || task_.called < task_.called_below) fail();
-  me->looped = static_cast<uint8_t>(task_.looped - task_.looped_below);
-  me->called = static_cast<uint8_t>(task_.called - task_.called_below);
-  task_.is_in_turn = task_.has_paused = false;
+  me->looped = static_cast<uint8_t>(me->looped + task_.looped);
+  me->called = static_cast<uint8_t>(me->called + task_.called);
+  task_.is_between_turns = true;
+  task_.has_paused = false;
   status_ = Status::kRunning;
-  if (task_.is_first) {
-    task_.is_first = false;
+  if (!task_.is_later_turn) {
+    task_.is_later_turn = true;
     for (TaskRecord* task = task_.records; task != me; task++) task->clock_ms = now_ms_;
   }
   pass_on();
@@ -180,7 +193,6 @@ bool Machine::goes_back() {
 bool Machine::look(bool holds) {
   if (holds) return true;
   TaskRecord* const me = task_.me;
-  me->set = 0;
   me->state &= static_cast<uint8_t>(~(kKeeps | kHasSet));
   return look_again();
 }
@@ -192,12 +204,10 @@ bool Machine::look_again() {
 
 // Ends this task. Returns whether it was the last one.
 bool Machine::ends_program() {
-  task_.me->more = kHasEnded;
-  task_.me->set = 0;
-  task_.me->state &= static_cast<uint8_t>(~kHasSet);
+  task_.me->state = kHasEnded;
   stay();  // behind the last END lies nothing
   for (const TaskRecord* task = task_.records; task != task_.end; task++) {
-    if ((task->more & kHasEnded) == 0) return pause();
+    if (task->state != kHasEnded) return pause();
   }
   return true;
 }

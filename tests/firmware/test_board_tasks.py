@@ -1,0 +1,126 @@
+"""Programs with tasks on a simulated Uno or Mega, with the firmware that ships: pins and stops."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from functools import lru_cache
+from pathlib import Path
+from typing import TypeVar
+
+import pytest
+
+from tests.firmware.test_host_firmware import outcome
+from tests.firmware.test_uno_robot import (
+    FORWARD,
+    MOTORS,
+    OFF,
+    computer,
+    send,
+    states,
+    switched_on,
+)
+from tests.firmware.test_uno_trace import check_pins, program
+from tests.machines.uno import needed
+from tests.support.casefile import ROOT, Case, read
+from tests.support.platformio import firmware, shared
+from tests.vm.test_tasks import STATES
+from tiniscript.link.messages import STATE_STOPPED
+from tiniscript.link.requests import OK
+from tools.uno import CYCLES_PER_MS, Uno
+
+Test = TypeVar("Test", bound=Callable[..., None])
+
+BUSY = "F(FOREVER, 60);" + "TASK;X = 0;LOOP(FOREVER);X = X + 1;END_LOOP;END_TASK;" * 4
+STOP = bytes(8)
+STOP_RUN = (
+    3  # the last zero of a stop that a robot must have seen behind a frame, which ends with one
+)
+STOP_US = 12
+
+
+def without_readings() -> list[Case]:
+    """Return the cases of tasks that a simulated board can follow to the millisecond."""
+    found = [each for each in read(ROOT / "tests" / "cases" / "tasks.md") if "robot" in each.parts]
+    return [each for each in found if not {"READ", "FAULT"} & set(each.parts["robot"].split())]
+
+
+@pytest.fixture(scope="session")
+def sketches(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
+    """Return what builds the firmware of a board, once."""
+    needed()
+
+    @lru_cache
+    def sketch(board: str) -> Path:
+        return firmware(board, tmp_path_factory.mktemp("sketch"), shared(tmp_path_factory))
+
+    return sketch
+
+
+@pytest.fixture
+def robot(board: str, sketches: Callable[[str], Path], tmp_path: Path) -> Iterator[Uno]:
+    with switched_on(sketches(board), tmp_path / "eeprom", board) as found:
+        yield found
+
+
+BOARDS = pytest.mark.parametrize("board", ["uno", "mega"])
+
+
+def each_board(test: Test) -> Test:
+    """Run a test on both; a commit draws one of them for each row."""
+    found: Test = pytest.mark.sampled("board")(BOARDS(test))
+    return found
+
+
+@pytest.mark.sampled("case", "board", keep=8)
+@BOARDS
+@pytest.mark.parametrize("case", without_readings(), ids=lambda case: case.title)
+def test_the_pins_follow_the_trace(case: Case, robot: Uno) -> None:
+    check_pins(case, robot)
+
+
+@each_board
+def test_while_four_tasks_count_the_clock_goes_on(robot: Uno) -> None:
+    text = "LOOP(3);F(0.1, 60);B(0.1, 60);END_LOOP;" + BUSY.partition(";")[2]
+    check_pins(
+        program(text)._replace(parts={"tiniscript": text, "senses": "max-time = 0.5"}), robot
+    )
+
+
+@each_board
+def test_a_stop_in_the_middle_of_busy_tasks(robot: Uno) -> None:
+    """It is at the pins as soon as in any program; then nothing starts again."""
+    wired = computer(robot)
+    send(wired, BUSY, is_detached=True)
+    wired.run(50)
+    assert states(robot) == FORWARD
+    robot.send(STOP)
+    robot.run_ms(20)
+    stopped = max(robot.pins[name].cycle for name in ("left", "right"))
+    last = robot.received[STOP_RUN - 1 - len(STOP)].cycle
+    assert states(robot) == OFF
+    assert 0 < stopped - last < STOP_US * CYCLES_PER_MS // 1000
+    wired.run(300)
+    assert states(robot) == OFF
+    assert wired.session.events()[-1].name == "STOPPED"
+
+
+@each_board
+@pytest.mark.parametrize("state", STATES)
+def test_a_stop_ends_all_tasks(state: str, robot: Uno) -> None:
+    """None goes on afterwards, nor in the next program."""
+    wired = computer(robot)
+    send(wired, STATES[state], is_detached=True)
+    wired.run(300)
+    assert (states(robot) == OFF) == (state == "a task waits")
+    robot.send(STOP)
+    robot.run_ms(20)
+    assert states(robot) == OFF
+    stopped = robot.cycle
+    wired.run(2000)
+    assert not [name for name in MOTORS if robot.pins.history(name)[-1].cycle > stopped]
+    status = wired.session.status()
+    assert wired.until(status) == OK
+    assert outcome(status).values.state == STATE_STOPPED
+    send(wired, "F(600, 80)", is_detached=True)
+    wired.run(100)
+    assert states(robot) == FORWARD
