@@ -42,8 +42,9 @@ LOOP(6)
   R(0.5, 60)
 END_LOOP
 """
-# As blocks after its run; at a breakpoint, with values; on the start screen, where both are kept.
-SCENES = {"": PROGRAM, ".held": COUNTED, ".start": COUNTED}
+# As blocks after its run; at a breakpoint, with values; on the start screen, where both are kept;
+# in a lesson, after a check.
+SCENES = {"": PROGRAM, ".held": COUNTED, ".start": COUNTED, ".lesson": "SI|F(5, 80)"}
 HOLDS = 5  # the line of the breakpoint
 SIZE = {"width": 1280, "height": 760}
 COLOURS = 128  # of a picture: its bytes are halved, and nobody sees it
@@ -95,12 +96,19 @@ def take(language: str, scene: str, target: Path) -> None:
             page.click("#view_text")
             numbers = page.locator(".cm-lineNumbers .cm-gutterElement")
             numbers.filter(has_text=str(HOLDS)).last.click()
-        page.click("#home" if scene == ".start" else "#run")
-        phase = {"": "ended", ".held": "paused", ".start": "off"}[scene]
+        if scene == ".lesson":
+            page.click("#side_lessons")
+            page.locator("#lesson_next:enabled").wait_for()
+            page.locator("#lesson_steps button").last.click()
+            page.click("#lesson_check")
+            page.locator("#lesson_said[data-verdict]").wait_for()
+        else:
+            page.click("#home" if scene == ".start" else "#run")
+        phase = {".held": "paused", ".start": "off"}.get(scene, "ended")
         page.locator(f"[data-phase={phase}]").first.wait_for(state="attached")
         if scene != ".start":
             page.select_option("#speed", "1")
-        if not scene:
+        if scene in ("", ".lesson"):
             page.click("#view_blocks")
             studio.shown(page)
         words = page.eval_on_selector_all(
