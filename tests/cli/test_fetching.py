@@ -6,6 +6,7 @@ Node, pip and the build of the page are stand-ins; `tests/studio/test_build.py` 
 from __future__ import annotations
 
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -20,7 +21,8 @@ from tests.support.casefile import ROOT
 from tests.support.command import TSC, Done, Tsc, rest_of
 from tests.support.needs import need
 from tests.support.waiting import HANGS_S, until
-from tiniscript.cli import fetching
+from tiniscript.cli import fetching, page_build
+from tiniscript.cli.texts.common import text
 from tiniscript.files import cache_folder
 from tiniscript.flash import children
 from tiniscript.library import install_advice
@@ -201,6 +203,10 @@ def test_a_page_that_is_missing_is_built_after_a_yes(
     person.types(yes)
     person.sees("[#")  # the progress
     person.sees("http://127.0.0.1:")
+    first, second = (text(step, words[-1] if words else "en") for step in page_build.STEPS[:2])
+    before, _, behind = person.seen.partition(second)
+    shown = before.rpartition(first)[2]
+    assert behind and re.search(r"\r {40,}\r", shown), "nothing is left of the step before"
     assert clone.page.exists()
     person.presses_ctrl_c()
     assert person.ended() == 0
