@@ -385,6 +385,10 @@ def _calls(tokens: Sequence[Lexeme]) -> Iterator[tuple[int, int]]:
     for k, token in enumerate([*tokens, made(";")]):
         role = WORDS[token.text].role if token.text in WORDS else ""
         is_edge = role in ("block", "arm", "end", "until") or token.text in (";", *BRACES)
+        before = tokens[k - 1].text if k else ""
+        if before == ")" and token.text in CALLED and start < k:  # the next call of a line
+            yield start, k
+            start = k
         if not is_edge:
             continue
         if start < k:
