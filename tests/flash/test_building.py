@@ -247,6 +247,24 @@ sys.exit(1)
     assert not ready.files(ready.cache())
 
 
+def test_a_firmware_that_is_too_large_with_tasks_is_built_without(
+    clone: Path, tmp_path: Path
+) -> None:
+    body = """
+name = sys.argv[sys.argv.index("-e") + 1]
+print("Compiling a", flush=True)
+if name == "uno":
+    print("Error: The program size (33000 bytes) is greater than maximum allowed (32256 bytes)")
+    sys.exit(1)
+made = os.path.join(sys.argv[sys.argv.index("-d") + 1], ".pio", "build", name)
+os.makedirs(made)
+open(os.path.join(made, "firmware.hex"), "w").write(":00000001FF\\n")
+"""
+    code, _, err = built(clone, pretending(tmp_path, body))
+    assert code == 0, err
+    assert len(list(ready.cache().glob("*.hex"))) == 1
+
+
 def test_half_a_file_from_platformio_is_not_kept(clone: Path, tmp_path: Path) -> None:
     body = """
 made = os.path.join(sys.argv[sys.argv.index("-d") + 1], ".pio", "build", "uno")

@@ -129,7 +129,7 @@ ESP32 = {"esp32dev": "tinibot32", "esp32c3": "tinibotc3"}
 def test_every_robot_has_a_sketch_for_its_board() -> None:
     text = (SKETCH / "platformio.ini").read_text(encoding="utf-8")
     named = re.findall(r"\[env:(\w+)\]", text)
-    assert set(named) == {*SKETCHES, *NEW_NANOS, *ESP32, "native"}
+    assert set(named) == {*SKETCHES, *NEW_NANOS, *ESP32, "uno_without_tasks", "native"}
     assert set(environments()) == set(SKETCHES)
     for board, name in ESP32.items():
         assert robots.load(name).board.chip == board

@@ -25,6 +25,7 @@ PROJECT = ROOT / "vm_arduino"
 OFFLINE = ROOT / "tools" / "builds" / "platformio_offline.py"
 DEFAULT = "tinibot"  # where the name of an environment has no robot
 NEW_NANO = "nano_new"
+WITHOUT_TASKS = "uno_without_tasks"  # not what a shipped robot gets
 PLATFORM = "atmelavr"
 
 
@@ -43,7 +44,7 @@ def environments() -> list[str]:
     Those of a Nano with a new bootloader build what the others of a Nano do.
     """
     config = config_of(PROJECT)
-    return [name for name in config.envs() if not name.startswith(NEW_NANO)
+    return [name for name in config.envs() if not name.startswith((NEW_NANO, WITHOUT_TASKS))
             and config.get(f"env:{name}", "platform").split()[0] == PLATFORM]  # fmt: skip
 
 

@@ -33,6 +33,8 @@ MADE_BY = "tsc firmware, from a robot profile."
 
 FETCHING, COMPILING, WRITING = "fetching", "compiling", "writing"
 CORE_FILES = 26  # of Arduino's core, about
+# For a robot that does not fit on its board with TASK and WHEN: one of more devices than tinibot.
+WITHOUT_TASKS = {"uno": "uno_without_tasks"}
 PLATFORMIO_MB = 4  # what pip fetches, measured
 # What PlatformIO fetches for a board with these chips: its platform, and the megabytes of compiler,
 # core and build tools, by estimate from what public indexes say of their archives for Linux.
@@ -137,12 +139,16 @@ class _Project:
         if command is None:
             raise CannotBuild(CannotBuild.NO_PLATFORMIO)
         self.folder = folder
-        self.command = [*command, "run", "-d", str(folder), "-e", robot.board.chip]
-        self.made = folder / ".pio" / "build" / robot.board.chip / "firmware.hex"
+        self.command = [*command, "run", "-d", str(folder), "-e"]
+        self.environment = robot.board.chip
         self.files = sum(name.endswith((".cpp", ".S")) for name in made_from.files) + CORE_FILES
         for name, data in {**made_from.files, HEADER: header(robot).encode()}.items():
             (folder / name).parent.mkdir(parents=True, exist_ok=True)
             (folder / name).write_bytes(data)
+
+    @property
+    def made(self) -> Path:
+        return self.folder / ".pio" / "build" / self.environment / "firmware.hex"
 
     def run(self, look: Callable[[Seen], None], *words: str) -> tuple[int, str]:
         """Run PlatformIO; return its exit code, and what it has said.
@@ -154,7 +160,8 @@ class _Project:
             if found := seen(said, self.files):
                 look(found)
 
-        return children.run([*self.command, *words], self.folder, look_at, _environment())
+        command = [*self.command, self.environment, *words]
+        return children.run(command, self.folder, look_at, _environment())
 
     def build(self, look: Callable[[Seen], None], is_hex: bool) -> None:
         code, log = self.run(look)
@@ -173,7 +180,13 @@ def build(made_from: Sources, robot: Robot, look: Callable[[Seen], None]) -> byt
     """
     with _folder() as folder:
         project = _Project(made_from, robot, folder)
-        project.build(look, is_hex=True)
+        try:
+            project.build(look, is_hex=True)
+        except CannotBuild as why:
+            if why.why != CannotBuild.TOO_LARGE or project.environment not in WITHOUT_TASKS:
+                raise
+            project.environment = WITHOUT_TASKS[project.environment]
+            project.build(look, is_hex=True)
         return project.made.read_bytes()
 
 
