@@ -166,10 +166,12 @@ def test_everything_is_seen(again: Page, language: str) -> None:
 def test_the_keyboard_alone_is_enough(start: Page) -> None:
     start.locator("#language").focus()
     visited = []
-    for _ in range(5 + len(PICTURES)):
+    for _ in range(6 + len(PICTURES)):
         start.keyboard.press("Tab")
         visited.append(start.evaluate("(e => e.dataset.begin ?? e.id)(document.activeElement)"))
-    assert visited == ["open", "stop", *PICTURES, "start_write", "start_lessons", "start_robot"]
+    assert visited == [
+        "theme", "open", "stop", *PICTURES, "start_write", "start_lessons", "start_robot",
+    ]  # fmt: skip
     start.locator("[data-begin=square]").focus()
     start.keyboard.press("Enter")
     start.locator("html[data-phase=running]").wait_for(state="attached")
