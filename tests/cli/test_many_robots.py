@@ -71,7 +71,8 @@ def test_thirty_robots_get_a_program_and_three_cannot_hold_them_up() -> None:
         receipts = [row["port"] for row in events if row["event"] == "RECEIPT"]
         assert len(receipts) == len(set(receipts)) >= ROBOTS - 3
         shown = [row["port"] for row in events if row["event"] == "SHOW"]
-        assert set(shown) == set(named) - bad
+        noisy = {pupils[number].port for number in NOISY}  # whose event may be the damaged one
+        assert set(named) - bad - noisy <= set(shown) <= set(named) - bad
         # the silent one is over last
         assert events[-1]["port"] in bad | {port for port, row in rows.items() if row["is_absent"]}
 
