@@ -1,6 +1,6 @@
 // Which machines have TASK and WHEN, in one place for C++ and assembly.
 //
-// Tasks take about 2,200 bytes of flash and 124 of RAM. An Uno has them with the compiler's options
+// Tasks take about 2,030 bytes of flash and 127 of RAM. An Uno has them with the compiler's options
 // of platformio.ini (`tiniscript_with_tasks`). With those of the Arduino IDE it has none, nor has a
 // Nano, whose old bootloader leaves 30,720 bytes, nor what says `tiniscript_no_tasks`.
 
