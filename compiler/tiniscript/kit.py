@@ -1,4 +1,4 @@
-"""What programs see of a robot: its sensors and actuators.
+"""What programs see of a robot: its sensors and actuators, and how fast it is.
 
 Knows names, order, kinds, units and ranges, and the fingerprints and hashes made of them. Knows no
 pins and no files: `robots` reads those.
@@ -9,7 +9,7 @@ import zlib
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from tiniscript.fixed_point import as_text
+from tiniscript.fixed_point import Fault, as_text, divided, in_range
 
 NUMBER = "number"
 YES_NO = "yes/no"
@@ -37,8 +37,27 @@ class Device(NamedTuple):
 
 
 class Kit(NamedTuple):
+    """`speed` and `turn` are thousandths of a centimetre and of a degree in a second at 100 %.
+
+    0: not known, and programs have no moves by the one or the other.
+    """
+
     sensors: tuple[Device, ...]
     actuators: tuple[Device, ...]
+    speed: int = 0
+    turn: int = 0
+
+    def go_ms(self, way: int, power: int, turns: bool) -> int:
+        """Return how long a move takes that goes, or `turns`, so many thousandths.
+
+        `power` is 0 to 100. Raises Fault where it never comes there, or takes too long.
+        """
+        if way <= 0:
+            return 0
+        per_second = (self.turn if turns else self.speed) * power  # in thousandths of a percent
+        if not per_second:
+            raise Fault("NO_POWER")
+        return in_range(divided(way * 100_000, per_second))
 
     @property
     def fingerprint(self) -> int:

@@ -69,6 +69,9 @@ class Word(NamedTuple):
 SECONDS = Argument("seconds", "s", 0)
 TIME = Argument("time", "s", 0, sample="2")
 POWER = Argument("power", "%", 0, 100_000, "80")
+# What a move may have in the place of its time, by the unit behind it.
+WAYS = {"CM": Argument("distance", "cm", 0, sample="20 CM"), "DEG": Argument("angle", "°", 0, sample="90 DEG")}
+UNIT_OF = {"F": "CM", "B": "CM", "L": "DEG", "R": "DEG"}
 LEFT = Argument("left", "%", -100_000, 100_000, "50")
 RIGHT = Argument("right", "%", -100_000, 100_000, "80")
 HERTZ = Argument("hertz", "Hz", 31_000, 20_000_000, "440")
@@ -102,6 +105,7 @@ WORDS = {word.text: word for word in (
     Word("RANDOM", "function", (LOW, HIGH)),
     Word("END_IF", "alias"), Word("ENDLOOP", "alias"), Word("ENDWHILE", "alias"), Word("ENDDEF", "alias"),
     Word("ENDTASK", "alias"), Word("ENDWHEN", "alias"),
+    Word("CM", "unit"), Word("DEG", "unit"),
     Word("SEND", "later"),
 )}
 

@@ -92,12 +92,12 @@ def test_each_reason() -> None:
     assert refusal(changed(5, 14)) == refusal(changed(5, 0)) == "BAD_HEADER"
     assert refusal(changed(9, 0x80)) == "BAD_HEADER"
     assert refusal(changed(4, 2)) == "PING_WITH_CODE"
-    assert refusal(changed(14, 2)) == "UNKNOWN_NEEDS"
+    assert refusal(changed(14, 4)) == "UNKNOWN_NEEDS"
 
 
 def test_the_first_reason_that_applies_is_said() -> None:
     """Each change before the other one: in the order of the table, whatever is wrong besides."""
-    bad_start, bad_needs = changed(4, 3), changed(14, 2)
+    bad_start, bad_needs = changed(4, 3), changed(14, 4)
     both = changed(4, 3, bad_needs)
     damaged = both[:-1] + bytes([both[-1] ^ 1])
     bad_header = changed(9, 0x80, damaged)

@@ -27,6 +27,8 @@ KIT = Kit(
         Device("GRIPPER", NUMBER, "°", 0, 180_000),
         Device("LED", YES_NO, "", 0, 1),
     ),
+    speed=45_000,
+    turn=360_000,
 )
 LANGUAGES = ("en", "es")
 TEXTS: dict[str, dict[str, Any]] = {
@@ -48,6 +50,8 @@ WITHOUT_EXAMPLE: dict[str, Mapping[str, str]] = {
     "TS310": LEVEL,
     "TS311": LEVEL,
     "TS313": {"robot": "tinibot"},
+    "TS314": {"unit": "CM", "line": "speed = 45"},
+    "TS315": {"robot": "tinibot"},
     "TS809": BOARD,
 }
 

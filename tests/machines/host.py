@@ -63,10 +63,10 @@ class Process(Child):
         raise NotImplementedError
 
     def verdicts(
-        self, codes: Sequence[bytes], sensors: int, actuators: int, has_tasks: bool = False
+        self, codes: Sequence[bytes], sensors: int, actuators: int, needs: int = 0
     ) -> list[tuple[int, int]]:
         """Return the number of the rule that each code breaks, or 0, and the offset."""
-        answer = self.ask(b"V", bytes((sensors, actuators, has_tasks)) + _texts(codes))
+        answer = self.ask(b"V", bytes((sensors, actuators, needs)) + _texts(codes))
         return [(rule, offset) for rule, offset in Struct("<BH").iter_unpack(answer)]
 
     def refusals(self, images: Sequence[bytes]) -> list[int]:

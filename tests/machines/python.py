@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from tests.machines.host import Ran
-from tiniscript.bytecode.image import TASKS
+from tiniscript.bytecode.image import EVERYTHING
 from tiniscript.bytecode.loading import loaded
 from tiniscript.kit import Kit
 from tiniscript.vm.trace import Ending, run
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from tests.machines import Senses
 
 
-def ran_python(image: bytes, kit: Kit, senses: Senses, has: int = TASKS) -> Ran:
+def ran_python(image: bytes, kit: Kit, senses: Senses, has: int = EVERYTHING) -> Ran:
     """Run an image, which is read and verified as a machine that has so much of `needs` does it."""
     code = loaded(image, kit, has).code
     events = run(code, kit, lists_of(kit, senses), senses.max_ms, senses.max_steps, senses.seed)

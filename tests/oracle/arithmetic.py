@@ -20,7 +20,7 @@ COMPARE: dict[str, Callable[[int, int], bool]] = {
 
 
 class Fault(Exception):
-    """OVERFLOW or DIVIDE_BY_ZERO."""
+    """OVERFLOW, DIVIDE_BY_ZERO or NO_POWER."""
 
 
 def divided(number: int, by: int) -> int:

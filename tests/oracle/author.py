@@ -5,13 +5,17 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from tests.oracle.author_values import (
+    LONG,
     MAX_CALLS,
     MAX_DEFS,
     MAX_NESTING,
     MAX_STACK,
     MAX_VARIABLES,
+    SMALL,
+    WIDE,
     Tokens,
     ValueAuthor,
+    plain,
 )
 
 
@@ -32,7 +36,21 @@ class Author(ValueAuthor):
                 end = f"{self.rng.uniform(0, 6):.2f}"
                 until = ["UNTIL", "(", "TIME", self.rng.choice((">", ">=")), end, ")"]
         power = [] if word == "W" else [",", *self.within(0, 100)]
+        if self.ways and word != "W" and time != ["FOREVER"] and self.chance(0.5):
+            time = self.way(word)
         self.say(word, "(", *time, *power, ")", *until)
+
+    def way(self, word: str) -> Tokens:
+        """How far a move goes, with its unit."""
+        words = ("CM", "cm") if word in "FB" else ("DEG", "deg", "°", "º")
+        roll = self.rng.random()
+        if roll < 0.6:
+            way = [self.rng.choice((*SMALL, *WIDE, *LONG))]
+        else:
+            way = self.seconds() if roll < 0.8 else self.number(2)
+        if plain(way) and way[0].startswith("-"):
+            way = ["0"]
+        return [*way, self.rng.choice(words)]
 
     def simple(self) -> None:
         """M, S, W, BEEP or START."""

@@ -35,8 +35,9 @@ def plain(tokens: Tokens) -> bool:
 class ValueAuthor:
     """Writes the values of a program: numbers, yes/no values and conditions of random shape."""
 
-    def __init__(self, rng: random.Random, kit: Kit) -> None:
+    def __init__(self, rng: random.Random, kit: Kit, ways: bool = False) -> None:
         """Starts with an empty page."""
+        self.ways = ways
         self.rng = rng
         self.kit = kit
         self.page: list[Tokens] = []

@@ -44,6 +44,8 @@ class ExpressionParser:
         self.tasks: list[Task] = []
         self.loops = 0  # loops open here, in this DEF or in the program
         self.blocks = 0
+        self.has_unit = False  # the arguments that were read last
+        self.speeds = {"CM": kit.speed, "DEG": kit.turn}
 
     # Tokens
 
@@ -79,8 +81,11 @@ class ExpressionParser:
         self.at += 1
         return True
 
-    def arguments(self, count: int, forever: bool = False) -> tuple[Expression | None, ...]:
-        """Exactly so many in parentheses; the first may be FOREVER (None) where that fits."""
+    def arguments(
+        self, count: int, forever: bool = False, unit: str = ""
+    ) -> tuple[Expression | None, ...]:
+        """Exactly so many in parentheses; the first may be FOREVER (None) or have a unit."""
+        has_unit = False
         self.expect("(")
         found: list[Expression | None] = []
         for number in range(count):
@@ -90,7 +95,10 @@ class ExpressionParser:
                 found.append(None)
             else:
                 found.append(self.expression())
+                if number == 0 and unit and self.accept(unit):
+                    has_unit = True
         self.expect(")")
+        self.has_unit = has_unit
         return tuple(found)
 
     def condition(self) -> Expression:

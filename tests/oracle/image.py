@@ -26,7 +26,7 @@ IMAGE = Struct(
     "later" / Bytes(this.header_length - HEADER.sizeof()),
     "code" / Bytes(this.code_length),
 )
-MAJOR, MINOR, NEEDS, STARTS, PING, MOST_BYTES = 2, 1, 1, 3, 2, 32767
+MAJOR, MINOR, NEEDS, STARTS, PING, MOST_BYTES = 2, 1, 3, 3, 2, 32767
 
 
 def refusal(data: bytes) -> str:

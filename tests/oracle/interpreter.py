@@ -184,7 +184,7 @@ class Robot:
         """Does an instruction that has no body."""
         word = statement.word
         self.read(statement.reads)
-        values = [None if a is None else self.value(a) for a in statement.arguments]
+        values = self.values(statement)
         if word in (*MOVES, "W"):
             self.move(statement, values)
             return
@@ -212,6 +212,17 @@ class Robot:
                 self.note(f"SHOW {written(value)}")
             else:
                 self.set(statement.name, value)
+
+    def values(self, statement: Do) -> list[Value | None]:
+        """The values of an instruction; a way becomes the time that it takes."""
+        values = [None if each is None else self.value(each) for each in statement.arguments]
+        if statement.unit:
+            way, power = max(0, values[0] or 0), limited(whole(values[1] or 0), 0, 100)
+            speed = self.kit.speed if statement.unit == "CM" else self.kit.turn
+            if way > 0 and power == 0:
+                raise Ending("FAULT NO_POWER")
+            values[0] = in_range(divided(1000 * way * 100, speed * power)) if way > 0 else 0
+        return values
 
     def set(self, name: str, value: Value) -> None:
         """Sets an actuator: a number is rounded, then limited to the actuator's range."""

@@ -16,6 +16,7 @@ from tests.oracle.arithmetic import (
     Fault,
     answer,
     calculated,
+    divided,
     fits,
     printed,
     random_between,
@@ -24,7 +25,7 @@ from tests.oracle.arithmetic import (
     whole,
     within,
 )
-from tests.oracle.spec_tables import Instruction, instructions
+from tests.oracle.spec_tables import Instruction, instruction_at
 from tests.oracle.words import Device, Kit
 
 TOO_MANY = "TOO MANY STEPS"  # the last line of a run that this machine gives up
@@ -114,7 +115,7 @@ class Run:
 
     def step(self) -> None:
         """Run one instruction."""
-        row = instructions()[self.code[self.pc]]
+        row = instruction_at(self.code, self.pc)
         operands = row.values(self.code, self.pc)
         after = self.pc + row.size
         to = row.target(self.code, self.pc)
@@ -134,6 +135,8 @@ class Run:
             elif not holds:
                 self.pc = to
         elif last in WAYS:
+            if "GO" in family:
+                taken[0] = self.way(taken[0], within(whole(taken[1]), 0, 100), last in "LR")
             self.drive(family, WAYS[last], taken, operands)
         elif name in ("WATCH_WAIT", "WATCH_FOREVER_WAIT"):
             self.watch(None, max(taken[0], 0) if taken else None)
@@ -288,6 +291,15 @@ class Run:
             assert time is not None
             self.motors(powers)
             self.wait(time, "MOVE")
+
+    def way(self, way: int, power: int, turns: bool) -> int:
+        """How many milliseconds a way takes."""
+        if way <= 0:
+            return 0
+        per_second = (self.kit.turn if turns else self.kit.speed) * power
+        if per_second == 0:
+            raise Fault("NO_POWER")
+        return fits(divided(100_000 * way, per_second))
 
     def watch(self, powers: tuple[int, int] | None, time: int | None) -> None:
         """Keep a prepared move; its check begins behind the instruction."""

@@ -29,14 +29,16 @@ WIDE_KIT = Kit(
         Device("LIFT", False, -90_000, 90_000),
         Device("LED", True, 0, 1),
     ),
+    speed=33_300,
+    turn=7,
 )
 
 
-def program(rng: random.Random, kit: Kit) -> str:
-    """A valid program."""
+def program(rng: random.Random, kit: Kit, ways: bool = False) -> str:
+    """A valid program; with `ways` some of its moves go by centimetres or degrees."""
     if rng.random() < 0.002:
         return rng.choice(("PING|check_connection", "ping|CHECK_CONNECTION\n", "", "SI|", "// -"))
-    return Layout(rng).program(Author(rng, kit).program())
+    return Layout(rng).program(Author(rng, kit, ways).program())
 
 
 def senses(rng: random.Random, kit: Kit) -> dict[str, list[int]]:

@@ -11,6 +11,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import NamedTuple
 
+ESCAPE = 0xFF
 SPEC = Path(__file__).resolve().parent.parent.parent / "bytecode_spec.md"
 
 
@@ -47,16 +48,17 @@ class Instruction(NamedTuple):
     takes: int
     leaves: int
     role: str
+    code_size: int = 1
 
     @property
     def size(self) -> int:
         """How many bytes it has, its opcode included."""
-        return 1 + sum(operand.size for operand in self.operands)
+        return self.code_size + sum(operand.size for operand in self.operands)
 
     def read(self, code: bytes, at: int) -> list[tuple[Operand, int]]:
         """Return the operands with their values, where the instruction is at an offset."""
         found = []
-        at += 1
+        at += self.code_size
         for operand in self.operands:
             found.append((operand, operand.read(code[at : at + operand.size])))
             at += operand.size
@@ -95,7 +97,10 @@ def instructions() -> dict[int, Instruction]:
         name.strip("` "): role for role, names, *_ in rows("roles") for name in names.split(",")
     }
     written = {
-        int(code, 16): (words.split(), [len(side.split()) for side in picture.split("--")])
+        int(code.replace(" ", ""), 16): (
+            words.split(),
+            [len(side.split()) for side in picture.split("--")],
+        )
         for code, words, picture, *_ in rows("instructions")
     }
     kind_of = {words[0]: _halves(words[1])[1] for words, _ in written.values() if words[1:]}
@@ -106,8 +111,19 @@ def instructions() -> dict[int, Instruction]:
         stem = short[1] if short else name.removesuffix("_FAR")
         implied = ((kind_of.get(stem, "u8"), int(short[2])),) if short else ()
         role = role_of[name]
-        found[code] = Instruction(name, stem, made, implied, takes, leaves, role)
+        bytes_ = 2 if code > 0xFF else 1
+        found[code] = Instruction(name, stem, made, implied, takes, leaves, role, bytes_)
     return found
+
+
+def code_at(code: bytes, at: int) -> int:
+    """Return the byte that begins an instruction; behind `ff` the next one belongs to it."""
+    return int.from_bytes(code[at : at + 1 + (code[at] == ESCAPE)], "big")
+
+
+def instruction_at(code: bytes, at: int) -> Instruction:
+    """Return what the page says of the instruction there."""
+    return instructions()[code_at(code, at)]
 
 
 def _halves(word: str) -> tuple[str, str]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import random
 
 TIMES = ("0", "0.001", "0.005", "0.01", "0.02", "0.03", "0.04", "0.05", "0.1", "0.12", "0.3")
+WAYS = ("0", "0.001", "0.3", "0.45", "1", "2", "3.6", "-1 + N")
 POWERS = ("0", "10", "20", "50", "60", "100")
 SIDES = ("-50", "0", "20", "40")
 SENSORS = ("DISTANCE", "LIGHT_L")
@@ -16,8 +17,9 @@ DEPTH = 3  # blocks of one task
 class TaskAuthor:
     """Writes one program."""
 
-    def __init__(self, rng: random.Random) -> None:
+    def __init__(self, rng: random.Random, ways: bool = False) -> None:
         self.rng = rng
+        self.ways = ways  # some moves go by centimetres or degrees
         self.lines: list[str] = ["A = 0;N = 0"]
         self.defs: list[str] = []
         self.loops = 0
@@ -86,7 +88,11 @@ class TaskAuthor:
         until = self.until(0.3)
         if rng.random() < 0.12:
             time = "FOREVER"
-        self.lines.append(f"{rng.choice('FBLR')}({time}, {rng.choice(POWERS)}){until}")
+        word, power = rng.choice("FBLR"), rng.choice(POWERS)
+        if self.ways and time != "FOREVER" and rng.random() < 0.7:
+            time = f"{rng.choice(WAYS)} {'CM' if word in 'FB' else 'DEG'}"
+            power = power if rng.random() < 0.05 else power.replace("0", "5", power == "0")
+        self.lines.append(f"{word}({time}, {power}){until}")
 
     def until(self, chance: float) -> str:
         return f" UNTIL({self.condition()})" if self.rng.random() < chance else ""
@@ -135,9 +141,9 @@ class TaskAuthor:
         )
 
 
-def task_program(rng: random.Random) -> tuple[str, dict[str, list[int]]]:
+def task_program(rng: random.Random, ways: bool = False) -> tuple[str, dict[str, list[int]]]:
     """A program, and the readings of its sensors in thousandths."""
-    text = TaskAuthor(rng).program()
+    text = TaskAuthor(rng, ways).program()
     distances = [1000 * rng.choice((5, 9, 50)) for _ in range(rng.randint(0, 6))]
     lights = [1000 * rng.choice((0, 600)) for _ in range(rng.randint(0, 4))]
     return text, {"DISTANCE": distances, "LIGHT_L": lights}

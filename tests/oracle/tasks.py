@@ -219,7 +219,7 @@ class TaskRobot(Robot):
             yield from self.body(self.program.defs[statement.name])
         elif word in (*MOVES, "W", "BEEP", "M", "S"):
             self.read(statement.reads)
-            values = [None if each is None else self.value(each) for each in statement.arguments]
+            values = self.values(statement)
             if word in MOVES:
                 yield from self.moving(statement, values)
             elif word == "W":

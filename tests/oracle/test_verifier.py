@@ -32,7 +32,7 @@ from tiniscript.bytecode.verify import RULES
 from tiniscript.robots import DEFAULT, load
 
 SENSORS, ACTUATORS = 3, 2
-OF_TASKS = {
+NEEDY = {spec_tables.ESCAPE} | {
     code for code, row in spec_tables.instructions().items() if row.name in verifier.OF_TASKS
 }
 
@@ -40,22 +40,22 @@ OF_TASKS = {
 def compare(codes: Iterable[bytes], sensors: int = SENSORS, actuators: int = ACTUATORS) -> set[int]:
     """Assert that all verifiers say the same of each code; return the rules that were broken.
 
-    Those of code with tasks are compared twice, with their bit of `needs` and without. The machine
-    in C++ has no tasks.
+    Those of code that needs something are compared twice, with all of `needs` and with none. The
+    machine in C++ gets the second.
     """
     codes = list(codes)
     said = [verifier.verdict(code, sensors, actuators) for code in codes]
     without = [
-        verifier.verdict(code, sensors, actuators, False) if OF_TASKS & {*code} else verdict
+        verifier.verdict(code, sensors, actuators, 0) if NEEDY & {*code} else verdict
         for code, verdict in zip(codes, said, strict=True)
     ]
     for code, *verdicts in zip(codes, said, without, strict=True):
-        for has_tasks, verdict in zip((True, False), verdicts, strict=True):
-            if not has_tasks and verdict == verdicts[0]:
+        for needs, verdict in zip((0xFF, 0), verdicts, strict=True):
+            if not needs and verdict == verdicts[0]:
                 continue
-            ours = python_verdict(code, sensors, actuators, has_tasks)
+            ours = python_verdict(code, sensors, actuators, needs)
             assert ours == verdict, f"{code.hex(' ')}: Python says {ours}, the page {verdict}"
-            ours = verdict_of_the_program(code, sensors, actuators, has_tasks)
+            ours = verdict_of_the_program(code, sensors, actuators, needs)
             assert ours == verdict, f"{code.hex(' ')}: the page's program: {ours}, not {verdict}"
     if not missing():
         theirs = host().verdicts(codes, sensors, actuators)
@@ -97,11 +97,11 @@ def program_of_the_page() -> dict[str, Any]:
 
 
 def verdict_of_the_program(
-    code: bytes, sensors: int, actuators: int, has_tasks: bool
+    code: bytes, sensors: int, actuators: int, needs: int
 ) -> verifier.Verdict:
     names = program_of_the_page()
     try:
-        names["verify"](code, sensors, actuators, has_tasks)
+        names["verify"](code, sensors, actuators, needs)
     except Broken as broken:
         return RULES[str(broken)][0], names["m"].at
     return 0, 0

@@ -40,6 +40,7 @@ from tests.oracle.words import (
     RESERVED,
     SETUPS,
     TASK_WORDS,
+    UNITS,
 )
 
 
@@ -218,7 +219,10 @@ class Parser(ExpressionParser):
         """F B L R M W BEEP, with the UNTIL that all but M and BEEP may have."""
         ranges = RANGES[word]
         may_until = word in (*MOVES, "W")
-        arguments = self.arguments(len(ranges), forever=may_until)
+        arguments = self.arguments(len(ranges), may_until, UNITS.get(word, ""))
+        unit = UNITS[word] if self.has_unit else ""
+        if unit and not self.speeds[unit]:
+            self.fail(f"how fast the robot is with {unit} is not known")
         for argument, (low, high) in zip(arguments, ranges, strict=True):
             self.want_number(argument)
             self.want_range(argument, low, high)
@@ -228,7 +232,7 @@ class Parser(ExpressionParser):
         has_tasks = any(token.text in TASK_WORDS for token in self.tokens)
         if arguments[0] is None and until is None and not has_tasks:
             self.fail("FOREVER needs UNTIL")
-        return self.checked(Do(word, arguments=arguments, until=until))
+        return self.checked(Do(word, arguments=arguments, until=until, unit=unit))
 
     def named(self, name: str) -> Do:
         """An instruction that begins with a name: assignment, reading, call or actuator."""

@@ -20,7 +20,9 @@ class Token(NamedTuple):
 _TOKEN = re.compile(
     r"""(?P<space>[ \t\u00a0\u202f]+|//[^\n]*)
       | (?P<newline>\n)
-      | (?P<number>(?:[0-9]+(?:\.[0-9]+)?|\.[0-9]+)(?![A-Za-z0-9_.]))
+      | (?P<number>(?:[0-9]+(?:\.[0-9]+)?|\.[0-9]+)
+            (?=(?i:cm|deg)(?![A-Za-z0-9_])|(?![A-Za-z0-9_.])))
+      | (?P<degrees>[°º])
       | (?P<word>[A-Za-z][A-Za-z0-9_]*)
       | (?P<symbol><=|>=|<>|[-+*/%=<>(),;|])""",
     re.VERBOSE,
@@ -54,6 +56,8 @@ def tokens_of(text: str) -> list[Token]:
             depth = max(0, depth + (1 if word == "(" else -1))
         if word == ";" and depth > 0:
             raise Mistake(f"line {line}: a ; inside parentheses")
+        if kind == "degrees":
+            kind, word = "word", "DEG"
         if word in FIXED:
             found += (each._replace(line=line) for each in tokens_of(FIXED[word])[:-1])
         elif kind != "space" and not (kind == "newline" and depth > 0):

@@ -43,6 +43,7 @@ class Do:
     until: Expression | None = None
     reads: tuple[str, ...] = ()
     until_reads: tuple[str, ...] = ()
+    unit: str = ""  # CM or DEG: the first argument is a way
 
 
 @dataclass

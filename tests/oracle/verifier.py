@@ -10,13 +10,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-from tests.oracle.spec_tables import Instruction, instructions, rule_numbers
+from tests.oracle.spec_tables import ESCAPE, Instruction, code_at, instructions, rule_numbers
 
 Verdict = tuple[int, int]  # the number of the rule that is broken, or 0, and the offset
 
 STACK, JOINS, WORDS, PROCEDURES, COUNTERS, CALLS, TASKS = 16, 16, 32, 16, 16, 8, 4
 MOST_BYTES = 32767
 UNKNOWN = None
+OF_GO = 2  # the bit of `needs`
 OF_TASKS = ("TASK", "WHEN", "LOOK", "END_TASK", "END_WHEN")
 ENDED_BY = {"return": "def", "end_task": "task", "end_when": "when"}
 
@@ -74,16 +75,16 @@ class Known:
 Next = Known | str
 
 
-def verdict(code: bytes, sensors: int, actuators: int, has_tasks: bool = True) -> Verdict:
+def verdict(code: bytes, sensors: int, actuators: int, needs: int = 0xFF) -> Verdict:
     """Whether a machine with so many sensors and actuators may run the code.
 
-    `has_tasks`: it comes with bit 0 of `needs`.
+    `needs` is what its image says.
     """
     if len(code) > MOST_BYTES:
         return rule_numbers()["CODE_LENGTH"], 0
     known = Known(len(code))
     while known.at < known.length:
-        came = one_instruction(known, code, sensors, actuators, has_tasks)
+        came = one_instruction(known, code, sensors, actuators, needs)
         if isinstance(came, str):
             return rule_numbers()[came], known.at
         known = replace(came, at=came.after)
@@ -96,15 +97,17 @@ def then(came: Next, step: Callable[[Known], Next]) -> Next:
     return came if isinstance(came, str) else step(came)
 
 
-def one_instruction(
-    known: Known, code: bytes, sensors: int, actuators: int, has_tasks: bool
-) -> Next:
+def one_instruction(known: Known, code: bytes, sensors: int, actuators: int, needs: int) -> Next:
     """Steps 1 to 6."""
     came = arrive(known)
     if isinstance(came, str):
         return came
-    row = instructions().get(code[came.at])
-    if row is None or (row.name in OF_TASKS and not has_tasks):
+    if code[came.at] == ESCAPE and not needs & OF_GO:
+        return "UNKNOWN_OPCODE"
+    if code[came.at :] == bytes([ESCAPE]):
+        return "CUT_OPERAND"
+    row = instructions().get(code_at(code, came.at))
+    if row is None or (row.name in OF_TASKS and not needs & 1):
         return "UNKNOWN_OPCODE"
     came = replace(came, after=came.at + row.size)
     if came.after > came.length:

@@ -17,10 +17,12 @@ class Device(NamedTuple):
 
 
 class Kit(NamedTuple):
-    """What a robot has."""
+    """What a robot has, and how fast it is: thousandths of cm and of degrees in a second."""
 
     sensors: tuple[Device, ...]
     actuators: tuple[Device, ...]
+    speed: int = 0
+    turn: int = 0
 
 
 PAPER_KIT = Kit(
@@ -30,6 +32,8 @@ PAPER_KIT = Kit(
         Device("DISTANCE", False, 0, 400_000),
     ),
     actuators=(),
+    speed=45_000,
+    turn=360_000,
 )
 
 
@@ -65,6 +69,7 @@ BLOCK_WORDS = (
 )  # fmt: skip
 TASK_WORDS = ("TASK", "WHEN")
 LATER_WORDS = ("SEND",)
+UNITS = {"F": "CM", "B": "CM", "L": "DEG", "R": "DEG"}  # of a way in the place of a time
 
 # Instructions with arguments in parentheses, and the range of each argument.
 _TIME = (0, HIGHEST)
@@ -93,6 +98,7 @@ FIXED = {
 RESERVED = frozenset(
     (
         *SETUPS, *MOVES, *FUNCTIONS, *ALIASES, *BLOCK_WORDS, *TASK_WORDS, *LATER_WORDS,
+        *UNITS.values(),
         "M", "S", "STOP", "W", "UNTIL", "FOREVER", "BEEP", "SHOW", "IF", "LOOP", "WHILE",
         "BREAK", "DEF", "START", "TRUE", "FALSE", "AND", "OR", "NOT", "TIME",
     )

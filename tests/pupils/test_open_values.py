@@ -14,7 +14,7 @@ from tiniscript.source import Source
 @pytest.mark.parametrize("language", ["en", "es"])
 @pytest.mark.parametrize(
     "program",
-    ["F(80)", "F(90, 60)", "R(90, 50)", "gira", "da una vuelta a la derecha", "F(20 cm, 80)"],
+    ["F(80)", "gira", "da una vuelta a la derecha", "F(20 pasos, 80)"],
 )
 def test_a_copied_call_is_never_taken_for_another_program(program: str, language: str) -> None:
     """In English `time` is the sensor TIME: F(time, 80) would be read."""

@@ -14,7 +14,7 @@ KIT = robots.load("tinibot").kit
 def lasting(text: str, is_optimized: bool = True) -> Duration:
     found = check_text(text, KIT)
     assert found.is_right and found.program is not None, found.diagnostics
-    return duration(optimized(found.program) if is_optimized else found.program)
+    return duration(optimized(found.program) if is_optimized else found.program, KIT)
 
 
 @pytest.mark.parametrize(

@@ -187,7 +187,7 @@ def test_advice(text: str, code: str) -> None:
         "M(50, 50);BEEP(1, 440);S",
         "F(2, 10)",
         "P = 0;F(2, P)",
-        "F(25, 60);L(29, 60);W(90);W(300);F(33, 60)",
+        "F(25, 60);L(19, 60);W(90);W(300);F(33, 60)",
         "F(90, 60) UNTIL(DISTANCE < 10)",
         "X = 5;SHOW(X)",
         "N = 3;WHILE(N > 0);N = N - 1;END_WHILE",

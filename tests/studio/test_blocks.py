@@ -138,6 +138,7 @@ ROLES = {
               "ENDWHILE": "WHILE(FALSE);ENDWHILE", "ENDDEF": "DEF X;ENDDEF",
               "ENDTASK": "TASK;ENDTASK", "ENDWHEN": "WHEN(FALSE);ENDWHEN"},
     "break": {"BREAK": "LOOP(1);BREAK;END_LOOP"},
+    "unit": {"CM": "F(20 CM, 60)", "DEG": "L(90 DEG, 60)"},
     "operator": {"AND": "SHOW(TRUE AND FALSE)", "OR": "SHOW(TRUE OR FALSE)",
                  "NOT": "SHOW(NOT TRUE)"},
 }  # fmt: skip
@@ -189,7 +190,8 @@ def test_the_shape_of_each_kind_is_what_is_read(monkeypatch: pytest.MonkeyPatch)
     monkeypatch.setitem(WORDS, HORN.text, HORN)
     left_out = ("later", "setup", "alias")
     text = ";".join(of_word(word) for word in WORDS if WORDS[word].role not in left_out)
-    text += ";F(1, 2) UNTIL(TRUE);X = 1;HOP;LED(TRUE);DISTANCE;LOOP(FOREVER);END_LOOP\n// note\nF("
+    text += ";F(1, 2) UNTIL(TRUE);F(1 CM, 2) UNTIL(TRUE)"
+    text += ";X = 1;HOP;LED(TRUE);DISTANCE;LOOP(FOREVER);END_LOOP\n// note\nF("
     found = in_order(read(text, TINIBOT).body)
     assert {block.kind for block in found} == {
         kind.name for kind in KINDS.values() if not kind.gives

@@ -13,7 +13,7 @@ from tests.support.cpp_checks import LATE_BUDGET, SIZES, compare_verdicts, run_l
 from tests.support.kits import KITS
 from tests.support.random_codes import mutated, task_codes
 from tiniscript import compile_text
-from tiniscript.bytecode.image import unpack
+from tiniscript.bytecode.image import TASKS, unpack
 from tiniscript.vm.state import DONE, FAULT, WAITING
 from tiniscript.vm.tasks import machine_of
 from tiniscript.vm.trace import Senses as Lists
@@ -37,10 +37,10 @@ def check_task_codes(machine: Process, seed: int, count: int) -> None:
     codes = list(task_codes(seed, count))
     codes += [mutated(rng, code, rng.choice(codes)) for code in codes]
     rules = set()
-    for has_tasks in (False, True):
-        accepted = compare_verdicts(machine, codes, *SIZES, has_tasks)
-        assert bool(accepted) == has_tasks or len(accepted) < len(codes) / 4
-        rules |= {rule for rule, _ in machine.verdicts(codes, *SIZES, has_tasks)}
+    for needs in (0, TASKS):
+        accepted = compare_verdicts(machine, codes, *SIZES, needs)
+        assert bool(accepted) == bool(needs) or len(accepted) < len(codes) / 4
+        rules |= {rule for rule, _ in machine.verdicts(codes, *SIZES, needs)}
     # accepted, UNKNOWN_OPCODE, STACK_NOT_EMPTY, NOT_OPEN, STILL_OPEN, BAD_DEF, INSIDE_CHECK,
     # TOO_MANY_TASKS
     assert {0, 21, 27, 32, 33, 35, 38, 40} <= rules, rules

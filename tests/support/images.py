@@ -2,21 +2,23 @@
 
 from __future__ import annotations
 
+from functools import reduce
+from operator import or_
+
 from tiniscript.bytecode.disassembly import rows
-from tiniscript.bytecode.image import TASKS, pack
-from tiniscript.bytecode.opcodes import UNO_OPS
+from tiniscript.bytecode.image import pack
 from tiniscript.bytecode.verify import Refused, verify
 from tiniscript.kit import Kit
 
 
-def has_tasks(code: bytes) -> bool:
-    """Whether there is an instruction that not every machine has: one of a task."""
-    return any(row.op is not None and row.op not in UNO_OPS for row in rows(code))
+def needs_of(code: bytes) -> int:
+    """Return what the instructions of code need that not every machine has."""
+    return reduce(or_, (row.op.needs for row in rows(code) if row.op is not None), 0)
 
 
 def image_for(code: bytes, kit: Kit, start: str = "SI") -> bytes:
     """Return the image of code for a robot; where its verifier refuses it, any one."""
-    needs = TASKS if has_tasks(code) else 0
+    needs = needs_of(code)
     try:
         uses = verify(code, len(kit.sensors), len(kit.actuators)).uses
     except Refused:

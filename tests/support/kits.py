@@ -15,7 +15,8 @@ def _devices(theirs: tuple[oracle.Device, ...]) -> tuple[Device, ...]:
 
 
 def _kit(theirs: oracle.Kit) -> Kit:
-    return Kit(_devices(theirs.sensors), _devices(theirs.actuators))
+    devices = _devices(theirs.sensors), _devices(theirs.actuators)
+    return Kit(*devices, theirs.speed, theirs.turn)
 
 
 KITS = [(each, _kit(each)) for each in (oracle.PAPER_KIT, programs.WIDE_KIT)]

@@ -92,7 +92,8 @@ def test_an_empty_text_has_only_its_end() -> None:
         ("a == b", ["word 'A'", "=", "=", "word 'B'"]),
         ("a ≤ b", ["word 'A'", "odd '≤'", "word 'B'"]),
         ("{}", ["odd '{'", "odd '}'"]),
-        ("1.2.3 5. 10cm", ["odd '1.2.3'", "odd '5.'", "odd '10cm'"]),
+        ("1.2.3 5. 10mm", ["odd '1.2.3'", "odd '5.'", "odd '10mm'"]),
+        ("10cms 5°C 5ºC", ["odd '10cms'", "number '5'", "odd '°'", "word 'C'", "odd '5ºC'"]),
         ("año _paso", ["odd 'año'", "odd '_paso'"]),
         ('"5"', ["odd '\"'", "number '5'", "odd '\"'"]),
         ("S # stop", ["word 'S'", "odd '#'", "word 'STOP'"]),
@@ -101,6 +102,17 @@ def test_an_empty_text_has_only_its_end() -> None:
 )
 def test_what_the_language_does_not_have_is_odd(text: str, tokens: list[str]) -> None:
     assert lexed(text) == tokens
+
+
+@pytest.mark.parametrize("text", ["10cm", "10 Cm", "10\u00a0CM"])
+def test_a_unit_is_a_word_of_its_own(text: str) -> None:
+    assert lexed(text) == ["number '10'", "word 'CM'"]
+
+
+@pytest.mark.parametrize("text", ["90°", "90º", "90 º", "90deg", "90 Deg"])
+def test_a_sign_of_degrees_is_their_word(text: str) -> None:
+    assert lexed(text) == ["number '90'", "word 'DEG'"]
+    assert lexed(f"X{text.lstrip('90')}")[0] != "word 'X90'"
 
 
 # -- any text -------------------------------------------------------------------------------------
@@ -129,5 +141,5 @@ def test_what_is_no_space_is_a_token_as_it_is_written() -> None:
         for token in (*scanned.tokens, *scanned.comments):
             written = text[token.start : token.end]
             if token.kind in (WORD, NUMBER, *SIGNS):
-                assert token.text == {"\u2013": "-"}.get(written, written.upper())
+                assert token.text == {"\u2013": "-", "°": "DEG"}.get(written, written.upper())
             assert token.kind in (WORD, NUMBER, NEWLINE, END, ODD, "comment", *SIGNS)

@@ -24,7 +24,7 @@ from tests.oracle import programs
 from tests.support import cpp_checks, cpp_images, cpp_tasks
 from tests.support.avr_questions import of_changed_code, of_long_loops
 from tests.support.casefile import Case
-from tests.support.images import has_tasks, image_for
+from tests.support.images import image_for, needs_of
 from tests.support.kits import KITS
 from tests.support.random_codes import random_codes, simple
 from tests.vm.test_cases import compiled, having, listings_alone, robot_and_senses
@@ -90,7 +90,7 @@ def same_on_the_chip(chip: str, image: bytes, kit: Kit, senses: Senses) -> str:
 @pytest.mark.parametrize("case", having("tiniscript", "robot"))
 def test_robot(case: Case, chip: str) -> None:
     robot, senses = robot_and_senses(case)
-    if has_tasks(compiled(case).code) and not has(chip):
+    if needs_of(compiled(case).code) & ~has(chip):
         with pytest.raises(ImageRefused, match="UNKNOWN_NEEDS"):
             CHIPS[chip].run(compiled(case).image, robot.kit, senses)
         return

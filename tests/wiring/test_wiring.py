@@ -61,7 +61,10 @@ def robot_with(motors: str, devices: list[Driver], chip_name: str = "mega", is_w
         table, kind = driver.used_by.split()
         device = Device(f"D{number}", kind, "", 0, 5 * ONE if kind == NUMBER else 1)
         made[table].append((device, wired(driver, chip, taken)))
-    kit = Kit(*(tuple(device for device, _ in made[table]) for table in ("sensors", "actuators")))
+    kit = Kit(
+        tuple(device for device, _ in made["sensors"]),
+        tuple(device for device, _ in made["actuators"]),
+    )
     board = tinibot.board._replace(
         chip=chip_name,
         motors=motors_wiring,

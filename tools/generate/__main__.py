@@ -151,7 +151,9 @@ def instruction_table() -> str:
     rows = []
     for op in opcodes.OPS:
         words = [op.name, *(f"{each.name}:{each.kind.name}" for each in op.operands)]
-        rows.append((f"`{op.code:02x}`", f"`{' '.join(words)}`", f"`{op.picture}`", op.meaning))
+        rows.append(
+            (f"`{op.opcode.hex(' ')}`", f"`{' '.join(words)}`", f"`{op.picture}`", op.meaning)
+        )
     return table(("code", "instruction", "stack", "meaning"), rows)
 
 

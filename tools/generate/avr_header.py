@@ -60,7 +60,7 @@ def handler(code: int) -> str:
 
 
 def without_tasks() -> str:
-    found = (handler(op.code) for op in opcodes.OPS if op not in opcodes.UNO_OPS)
+    found = (handler(op.code) for op in opcodes.OPS if op.needs == opcodes.NEEDS_TASKS)
     return "".join(f"#define {each} op_none\n" for each in found)
 
 

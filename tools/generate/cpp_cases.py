@@ -14,7 +14,7 @@ ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
 from tests.support.casefile import Case, read
-from tests.support.images import has_tasks, image_for
+from tests.support.images import image_for, needs_of
 from tests.vm.test_cases import compiled, robot_and_senses
 from tiniscript import robots
 from tiniscript.bytecode.disassembly import read_listing
@@ -109,7 +109,7 @@ def refused_row(case: Case) -> str:
     assert robot_and_senses(case)[0].name == robots.DEFAULT, case.id
     rule = f"Rule::{constant(name)}"
     title = f"{case.title}: {case.parts['refused'].strip()}"
-    may_have_tasks = str(has_tasks(code)).lower()
+    may_have_tasks = str(bool(needs_of(code))).lower()
     return f"{text(title)}, {numbers(code)}, {may_have_tasks}, {rule}, 0x{offset}"
 
 

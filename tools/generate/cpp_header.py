@@ -15,7 +15,7 @@ from tiniscript.kit import DEVICES, DEVICES_POLYNOMIAL
 
 HEADER_GUARD = "TINISCRIPT_VM_BYTECODE_H_"
 HAS_TASKS = "tiniscript_has_tasks"
-TASK_OPS = tuple(op for op in opcodes.OPS if op not in opcodes.UNO_OPS)
+TASK_OPS = tuple(op for op in opcodes.OPS if op.needs == opcodes.NEEDS_TASKS)
 
 # What a verifier distinguishes in the first two bytes of operands; devices come last.
 BYTES = ("any", "power", "percent", "variable", "count", "sensor", "actuator")
@@ -186,7 +186,7 @@ def form_numbers() -> str:
     """Return the families and what is declared of the tables, for the header."""
     named = []
     for number, family in enumerate(families()):
-        same = [op for op in opcodes.OPS if op.family == family]
+        same = [op for op in in_order() if op.family == family]
         named.append((family, number, names(same) if len(same) > 1 else ""))
     return "\n".join(
         (

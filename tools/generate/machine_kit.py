@@ -15,16 +15,18 @@ from typing import NamedTuple
 
 from tests.machines import Senses
 from tests.machines.python import lists_of
+from tests.oracle import programs
 from tests.oracle.task_programs import task_program
 from tests.support.casefile import ROOT, Case, read
 from tests.support.images import image_for
+from tests.support.kits import KITS
 from tests.vm.test_agreement import random_program
 from tests.vm.test_cases import compiled, robot_and_senses
-from tiniscript import robots
+from tiniscript import compile_text, robots
 from tiniscript.bytecode.disassembly import read_listing
-from tiniscript.bytecode.image import ImageRefused, pack, sealed, unpack
+from tiniscript.bytecode.image import GO, TASKS, ImageRefused, pack, sealed, unpack
 from tiniscript.bytecode.loading import loaded
-from tiniscript.bytecode.opcodes import BY_NAME, ISA_MAJOR, ISA_MINOR, SHORTS, Op
+from tiniscript.bytecode.opcodes import BY_NAME, ESCAPE, ISA_MAJOR, ISA_MINOR, SHORTS, Op
 from tiniscript.bytecode.verify import Refused
 from tiniscript.conformance.kit import FORM, VERSION
 from tiniscript.kit import DEVICES, NUMBER, YES_NO, Device, Kit
@@ -37,6 +39,7 @@ STEPS = 100_000  # a case that runs more without a wait says nothing about its e
 RANDOM_PROGRAMS = range(1000, 1030)
 TASK_PROGRAMS = range(1000, 1010)
 TASK_MS = 600
+WAY_PROGRAMS = range(1000, 1012)
 When = tuple[int, tuple[int, ...]]
 
 # When a run begins, and how often its machine is called: for the first wait, for the next, and the
@@ -78,7 +81,7 @@ def machine_kit(command: str) -> str:
     rows = []
     for run in [
         *documented(), *times(), *devices(), *images(), *arithmetic(), *random_programs(),
-        *task_programs(),
+        *task_programs(), *ways(),
     ]:  # fmt: skip
         answer = answer_of(run)
         if answer is None:
@@ -91,10 +94,16 @@ def machine_kit(command: str) -> str:
         "version": VERSION,
         "made_by": command,
         "isa": [ISA_MAJOR, ISA_MINOR],
-        "kits": [[line.removesuffix("\n") for line in kit.lines()] for kit in kits],
+        "kits": [[line.removesuffix("\n") for line in lines_of(kit)] for kit in kits],
     }
     start = json.dumps(head, ensure_ascii=False, indent=1).removesuffix("\n}")
     return f'{start},\n "cases": [\n' + ",\n".join(rows) + "\n ]\n}\n"
+
+
+def lines_of(kit: Kit) -> list[str]:
+    """Return the devices of a kit, and how fast it is where that is known."""
+    speeds = ("speed", kit.speed), ("turn", kit.turn)
+    return [*kit.lines(), *(f"{name} {value}" for name, value in speeds if value)]
 
 
 def case_of(run: Run, kit: int, answer: list[str]) -> dict[str, object]:
@@ -242,7 +251,7 @@ def images() -> Iterator[Run]:
         "only PING": pack("PING", 0, b""),
         "PING with code": pack("PING", 0, b"\x58"),
         "a start that is not known": changed(good, 4, 3),
-        "something of needs": changed(good, 14, 2),
+        "something of needs": changed(good, 14, 4),
         "the last bit of needs": changed(good, 14, 128),
         "an older major version": changed(good, 2, 1),
         "a later major version": changed(good, 2, 3),
@@ -257,8 +266,8 @@ def images() -> Iterator[Run]:
         "a letter of another kind": b"Ts" + good[2:],
         "one letter, another one": b"X",
         "nothing": b"",
-        "needs before the start": changed(changed(good, 14, 2), 4, 9),
-        "a checksum before needs": changed(good, 14, 2)[:-1] + b"\0",
+        "needs before the start": changed(changed(good, 14, 4), 4, 9),
+        "a checksum before needs": changed(good, 14, 4)[:-1] + b"\0",
         "a start before a rule": changed(pack("SI", 0, b"\xff"), 4, 3),
         "a rule before another kit": pack("SI", 0x1234, b"\x92\xff"),
         "another sensor": pack("SI", 0x1234, bytes.fromhex("9a")),
@@ -276,8 +285,6 @@ def images() -> Iterator[Run]:
 
 
 def compile_image(text: str) -> bytes:
-    from tiniscript import compile_text
-
     return compile_text(text, TINIBOT).image
 
 
@@ -328,3 +335,44 @@ def task_programs() -> Iterator[Run]:
         run = Run(f"tasks: {seed}", TINIBOT, compile_image(text), Senses(readings, TASK_MS))
         yield run
         yield run._replace(name=f"{run.name} (called every 7 ms)", when=SELDOM)
+
+
+def ways() -> Iterator[Run]:
+    """Return moves by centimetres and degrees: their edges, with tasks, at random and refused."""
+    longest = "2147483.647"
+    for text in (
+        "F(20 CM, 60); B(20 CM, 60); L(90 DEG, 60); R(90 DEG, 60)",
+        "F(0.009 CM, 40); F(0.008 CM, 40); F(0.001 CM, 100)",  # half a millisecond, and less
+        "F(0 CM, 0); B(0 - 5 CM, 0); F(-0.4 + TIME CM, 60)",
+        "F(1 CM, 200 + TIME); R(1 DEG, 0.5 + TIME); F(1 CM, 0.4 + TIME)",
+        f"L({longest} DEG, 100); F({longest} CM, 3) UNTIL(TIME >= 0)",
+        f"F({longest} CM, 2)",
+        "F(5 CM, 0) UNTIL(DISTANCE < 10)",
+        "F(45 CM, 100) UNTIL(DISTANCE < 10); B(4.5 CM, 100) UNTIL(DISTANCE > 10)",
+        "F(0.9 CM, 100) UNTIL(FALSE); F(0.91 CM, 100) UNTIL(FALSE)",
+        "W(0.05); F(4.5 CM, 100); TASK; W(0.07); L(36 DEG, 100); END_TASK",
+        "F(45 CM, 50) UNTIL(TIME > 0.5); WHEN(TIME > 0.1 AND TIME < 0.2); S; END_WHEN",
+        "F(FOREVER, 60); WHEN(TIME > 0.1); B(1 CM, 0); END_WHEN",
+    ):
+        run = Run(f"ways: {text}", TINIBOT, compile_image(text), FAR._replace(max_ms=5000))
+        yield run
+        yield run._replace(name=f"{run.name} (called every 45 ms)", when=LATE)
+    go, watch = BY_NAME["GO_F"].opcode, BY_NAME["WATCH_GO_R"].opcode
+    two = bytes([BY_NAME["PUSH_NUM_2"].code, BY_NAME["PUSH_NUM_20"].code])
+    for name, code, needs in (
+        ("no such code", two + bytes([ESCAPE, 0]), GO),
+        ("half a code", two + bytes([ESCAPE]), GO),
+        ("one value", two[:1] + go, GO),
+        ("no check", two + watch, GO),
+        ("needs that say tasks", two + go, TASKS),
+    ):
+        yield Run(f"ways: {name}", TINIBOT, pack("SI", 0, code, needs=needs))
+    for seed in WAY_PROGRAMS:
+        oracle_kit, kit = KITS[seed % len(KITS)]
+        rng = random.Random(seed)
+        text = programs.program(rng, oracle_kit, ways=True)
+        senses = Senses(programs.senses(rng, oracle_kit), 20_000)
+        image = compile_text(text, kit).image
+        yield Run(f"ways: program {seed}", kit, image, senses)
+        text, readings = task_program(random.Random(seed), ways=True)
+        yield Run(f"ways: tasks {seed}", TINIBOT, compile_image(text), Senses(readings, TASK_MS))

@@ -18,7 +18,7 @@ from tools.generate.paper import BOLD, MONO, SANS, Box, Line, Page
 
 LEFT, RIGHT = 36.0, 559.0
 CODE_X, SAYS_X = 44.0, 252.0
-HEAD_PT, ROW_PT = 20.5, 15.8
+HEAD_PT, ROW_PT = 20.5, 15.4
 CODE_SIZE, SAYS_SIZE = 9.8, 10.0
 CODE_SIGNS, SAYS_SIGNS = 34, 60  # that fit
 NOT_SHOWN = ("alias", "later")  # roles: other spellings, and words that do nothing yet
@@ -64,6 +64,7 @@ GROUPS = (
     Group("Move", "Moverse", (
         Row("{F}   {B}", "forward, back", "adelante, atrás"),
         Row("{L}   {R}", "turns left, turns right", "gira a la izquierda, a la derecha"),
+        Row("F(20 CM, 60)   R(90 DEG, 60)", "20 centimetres; 90 degrees", "20 centímetros; 90 grados"),
         Row("{M}", "left and right motor, and goes on at once", "motor izquierdo y derecho, y sigue enseguida"),
         Row("{W}", "waits", "espera"),
         Row("S   STOP", "stops the motors", "detiene los motores"),
@@ -160,11 +161,11 @@ def page(language: str) -> Page:
             says = row.es if k else row.en
             assert len(code) <= CODE_SIGNS and len(says) <= SAYS_SIGNS, (code, says)
             shown += re.findall(r"[A-Z_]+", re.sub(r"\(.*?\)", "", code.replace(",", "")))
-            shown += [word for word in ("UNTIL", "FOREVER") if word in code]
+            shown += re.findall(r"\b(?:UNTIL|FOREVER|CM|DEG)\b", code)
             if number % 2 == 0:
                 found.append(Box(LEFT, y, RIGHT - LEFT, ROW_PT, PALE))
-            found.append(Line(CODE_X, y + 12.0, CODE_SIZE, MONO, BLACK, code))
-            found.append(Line(SAYS_X, y + 12.0, SAYS_SIZE, SANS, BLACK, says))
+            found.append(Line(CODE_X, y + 11.8, CODE_SIZE, MONO, BLACK, code))
+            found.append(Line(SAYS_X, y + 11.8, SAYS_SIZE, SANS, BLACK, says))
             y += ROW_PT
         y += 2
     assert y <= paper.HEIGHT - 26, f"the page is too short by {y - paper.HEIGHT + 26} points"

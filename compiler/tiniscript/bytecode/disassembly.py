@@ -10,7 +10,7 @@ import re
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from tiniscript.bytecode.opcodes import BY_CODE, Op, instruction_text, read_operands
+from tiniscript.bytecode.opcodes import Op, instruction_text, op_at, read_operands
 from tiniscript.kit import Kit
 
 _ROW = re.compile(r"([0-9a-f]{4})  ((?:[0-9a-f]{2} )*[0-9a-f]{2})(?:  |$)")
@@ -37,7 +37,7 @@ def rows(code: bytes) -> list[Row]:
     made = []
     at = 0
     while at < len(code):
-        op = BY_CODE[code[at]]
+        op = op_at(code, at)
         if op is None or at + op.size > len(code):
             data = code[at : at + 1] if op is None else code[at:]
             made.append(Row(at, data, None, ()))

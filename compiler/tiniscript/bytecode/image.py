@@ -12,7 +12,7 @@ from struct import pack as struct_pack
 from struct import unpack as struct_unpack
 from typing import NamedTuple
 
-from tiniscript.bytecode.opcodes import CODE_BYTES, ISA_MAJOR, ISA_MINOR
+from tiniscript.bytecode.opcodes import CODE_BYTES, ISA_MAJOR, ISA_MINOR, NEEDS_GO, NEEDS_TASKS
 
 
 class Field(NamedTuple):
@@ -25,7 +25,9 @@ class Field(NamedTuple):
 
 
 MAGIC = b"TS"
-TASKS = 0x01  # a bit of `needs`: the code has tasks
+# What code may need, and a machine may lack.
+TASKS, GO = NEEDS_TASKS, NEEDS_GO
+EVERYTHING = TASKS | GO
 STARTS = ("SI", "SB", "PING")
 
 # The first fields lie where they lay in version 1, so that whoever finds a stored program of any
@@ -40,7 +42,7 @@ FIELDS = (
     Field("devices",       "H",  2, "A [hash](#devices) of those that the code uses; 0 for none."),
     Field("code_length",   "H",  2, "Bytes of code that follow the header, 0 to 32767."),
     Field("checksum",      "I",  4, "CRC-32 (zlib) of all bytes before and behind it."),
-    Field("needs",         "B",  1, "What the machine must have, a bit for each: 1 for tasks."),
+    Field("needs",         "B",  1, "What the machine must have: 1 for tasks, 2 for ways to go."),
 )
 HEADER_BYTES = sum(field.size for field in FIELDS)
 
@@ -80,11 +82,6 @@ class Image(NamedTuple):
     later: bytes = b""
     needs: int = 0
 
-    @property
-    def has_tasks(self) -> bool:
-        """Whether its code may have tasks."""
-        return bool(self.needs & TASKS)
-
 
 class ImageRefused(Exception):
     """Bytes that are no image for this machine; `name` is in REFUSALS."""
@@ -99,8 +96,8 @@ class ImageRefused(Exception):
 def pack(start: str, devices: int, code: bytes, later: bytes = b"", needs: int = 0) -> bytes:
     """Return the image of `code` (0 to 32767 bytes); `devices` is the hash of those it uses.
 
-    `later` (0 to 240 bytes) are fields that this version does not know; `needs` is TASKS for code
-    with tasks, else 0.
+    `later` (0 to 240 bytes) are fields that this version does not know; `needs` is what
+    its verdict says.
     """
     assert len(code) <= CODE_BYTES
     values = (MAGIC, *isa_of(needs), STARTS.index(start), HEADER_BYTES + len(later),
@@ -110,7 +107,7 @@ def pack(start: str, devices: int, code: bytes, later: bytes = b"", needs: int =
 
 def isa_of(needs: int) -> tuple[int, int]:
     """Return the smallest version of the instruction set that has what code needs."""
-    return ISA_MAJOR, 1 if needs & TASKS else 0
+    return ISA_MAJOR, 1 if needs else 0
 
 
 def sealed(image: bytes) -> bytes:
@@ -124,7 +121,7 @@ def checksum(image: bytes) -> int:
     return int.from_bytes(image[_CHECKSUM_AT:_BEHIND_CHECKSUM], "little")
 
 
-def unpack(data: bytes, has: int = TASKS) -> Image:
+def unpack(data: bytes, has: int = EVERYTHING) -> Image:
     """Return the image in `data`, whose code and devices are not verified yet.
 
     `has` is what the machine has of `needs`. Raises ImageRefused with the name of the reason.

@@ -17,7 +17,9 @@ from typing import NamedTuple
 
 ISA_MAJOR = 2  # a machine runs images of its own major version,
 ISA_MINOR = 1  # and of its own minor version or an earlier one
-ESCAPE = 0xFF  # kept for instructions of two bytes in a later minor version; none begins with it
+ESCAPE = 0xFF  # the first byte of the codes that have two
+# Bits of an image's `needs`: what a machine may lack.
+NEEDS_TASKS, NEEDS_GO = 0x01, 0x02
 SHORTS = 8  # variables, sensors and actuators that instructions of one byte name
 
 
@@ -45,7 +47,10 @@ class Implied(NamedTuple):
 
 
 class Op(NamedTuple):
-    """One instruction. `picture` is a Forth stack picture, top of the stack on the right."""
+    """One instruction. `picture` is a Forth stack picture, top of the stack on the right.
+
+    A `code` of two bytes begins with ESCAPE, 0xFF40; `size` counts both.
+    """
 
     code: int
     name: str
@@ -57,7 +62,12 @@ class Op(NamedTuple):
     pops: int
     pushes: int
     implied: Implied | None = None
-    minor: int = 0  # the minor version that brought it
+    needs: int = 0  # the bit of `needs` without which no code has it
+
+    @property
+    def opcode(self) -> bytes:
+        """The byte or the two that say which instruction it is."""
+        return self.code.to_bytes(1 + (self.code > 0xFF), "big")
 
     @property
     def family(self) -> str:
@@ -132,7 +142,7 @@ def _op(code: int, name: str, operands: str, picture: str, role: str, meaning: s
         label, _, kind = text.partition(":")
         parts.append(Operand(label, OPERAND_KINDS[kind]))
     taken, _, left = picture.partition("--")
-    size = 1 + sum(operand.kind.size for operand in parts)
+    size = 1 + (code > 0xFF) + sum(operand.kind.size for operand in parts)
     return Op(code, name, tuple(parts), picture, role, meaning,
               size, len(taken.split()), len(left.split()))
 
@@ -249,13 +259,18 @@ OPS = (
     _op(0x7B, "CALL",            "to:back8",            "--",              "call",  "Call the procedure whose first instruction is at `to`."),
     _op(0x7C, "CALL_FAR",        "to:back16",           "--",              "call",  "The same, further."),
     # tasks
-    *(each._replace(minor=1) for each in (
+    *(each._replace(needs=NEEDS_TASKS) for each in (
         _op(0x55, "LOOK",        "",                    "yes --",          "look",  "Go on if `yes`; else look again after 20 ms."),
         _op(0x76, "END_TASK",    "",                    "--",              "end_task", "The task is finished."),
         _op(0x77, "END_WHEN",    "",                    "--",              "end_when", "Look again after 20 ms."),
         _op(0x7D, "TASK",        "to:fwd16",            "--",              "task",  "A task begins here; go to `to`, its end."),
         _op(0x7E, "WHEN",        "to:fwd16",            "--",              "when",  "A WHEN begins here; go to `to`, its end."),
     )),
+    # centimetres and degrees
+    *(_op(0xFF40 + i, f"GO_{d}", "", "way power --", "plain", f"Drive {way} so far, then motors off.")
+      ._replace(needs=NEEDS_GO) for i, (d, way) in enumerate(_MOVES)),
+    *(_op(0xFF48 + i, f"WATCH_GO_{d}", "", "way power --", "watch", f"Prepare to drive {way} so far while checks fail.")
+      ._replace(needs=NEEDS_GO) for i, (d, way) in enumerate(_MOVES)),
     # in one byte
     *_shorts(0x80, "PUSH_VAR",    "variable", "-- value",   "value", "Push what variable {} holds."),
     *_shorts(0x88, "PUSH_SENSOR", "sensor",   "-- reading", "value", "Push the kept reading of sensor {}."),
@@ -277,12 +292,15 @@ FAULTS = (
     # number, name, meaning: what stops a running program
     (1, "OVERFLOW",       "A result is outside -2147483.648 to 2147483.647."),
     (2, "DIVIDE_BY_ZERO", "A division or a remainder by 0."),
+    (3, "NO_POWER",       "A way to go, with a power that never comes there."),
     (255, "BAD_CODE",     "A check failed that verified code never fails: memory has changed."),
 )
+_GOES = tuple(op.name for op in OPS if op.needs == NEEDS_GO)
 # Which instructions of verified code can fault.
 FAULTING = {
-    "OVERFLOW":       ("TIME", "RANDOM", "ADD", "SUB", "MUL", "DIV", "NEG", "ABS", "ROUND", "ADD_VAR8", "ADD_VAR", "INC_VAR", "DEC_VAR"),
+    "OVERFLOW":       ("TIME", "RANDOM", "ADD", "SUB", "MUL", "DIV", "NEG", "ABS", "ROUND", "ADD_VAR8", "ADD_VAR", "INC_VAR", "DEC_VAR", *_GOES),
     "DIVIDE_BY_ZERO": ("DIV", "MOD"),
+    "NO_POWER":       _GOES,
     "BAD_CODE":       (),
 }
 # fmt: on
@@ -300,14 +318,26 @@ NEST_WORDS = 32  # what a verifier remembers of open blocks: a word for an IF, t
 JOINS = 16  # AND_THEN and OR_ELSE open at once
 CHECK_MS = 20  # between two checks of an UNTIL
 
-UNO_OPS = tuple(op for op in OPS if not op.minor)  # an Uno has no tasks
+UNO_OPS = tuple(op for op in OPS if not op.needs)  # an Uno has what every machine has
 BY_NAME = {op.name: op for op in OPS}
 BY_CODE: list[Op | None] = [None] * 256
+ESCAPED: dict[int, Op] = {}  # by the second byte
 for _each in OPS:
+    if _each.code > 0xFF:
+        assert _each.code >> 8 == ESCAPE and _each.code & 0xFF not in ESCAPED
+        ESCAPED[_each.code & 0xFF] = _each
+        continue
     assert BY_CODE[_each.code] is None, f"code {_each.code:02x} is used twice"
     BY_CODE[_each.code] = _each
 assert len(BY_NAME) == len(OPS), "a name is used twice"
 assert BY_CODE[ESCAPE] is None
+
+
+def op_at(code: bytes, at: int) -> Op | None:
+    """Return the instruction that begins at an offset, or None if none does."""
+    if code[at] != ESCAPE:
+        return BY_CODE[code[at]]
+    return ESCAPED.get(code[at + 1]) if at + 1 < len(code) else None
 
 
 def time8_ms(time: int) -> int:
@@ -352,4 +382,4 @@ _LAYOUTS = {
 
 def read_operands(op: Op, code: bytes, offset: int) -> tuple[int, ...]:
     """Return the operands of the instruction `op` at `offset`, all of whose bytes are there."""
-    return _LAYOUTS[op.code].unpack_from(code, offset + 1)
+    return _LAYOUTS[op.code].unpack_from(code, offset + len(op.opcode))

@@ -13,18 +13,20 @@ from __future__ import annotations
 from typing import NamedTuple, NoReturn
 
 from tiniscript.bytecode.opcodes import (
-    BY_CODE,
     CALLS,
     CODE_BYTES,
     COUNTERS,
     DEFS,
+    ESCAPE,
     JOINS,
+    NEEDS_GO,
     NEST_WORDS,
     ROLES,
     STACK_VALUES,
     TASKS,
     Op,
     OperandKind,
+    op_at,
     read_operands,
 )
 
@@ -70,7 +72,7 @@ class Verdict(NamedTuple):
     """What accepted code needs: values on the stack, counters and calls open at once in all tasks.
 
     `uses` are its sensors and actuators, "sensor" or "actuator" and the number, in its order.
-    `tasks` are those beside the main one.
+    `tasks` are those beside the main one; `needs` is that of its image.
     """
 
     stack_values: int
@@ -78,17 +80,17 @@ class Verdict(NamedTuple):
     calls: int
     uses: tuple[tuple[str, int], ...]
     tasks: int = 0
+    needs: int = 0
 
 
-def verify(code: bytes, sensors: int, actuators: int, has_tasks: bool = True) -> Verdict:
+def verify(code: bytes, sensors: int, actuators: int, needs: int = 0xFF) -> Verdict:
     """Return what `code` needs on a machine with so many sensors and actuators.
 
-    `has_tasks`: its image says that it may have tasks. Raises Refused where a machine must not run
-    it.
+    `needs` is what its image says. Raises Refused where a machine must not run it.
     """
     if len(code) > CODE_BYTES:
         raise Refused("CODE_LENGTH", 0)
-    return _Verifier(code, sensors, actuators, has_tasks).run()
+    return _Verifier(code, sensors, actuators, needs).run()
 
 
 class _Join(NamedTuple):
@@ -134,9 +136,9 @@ class _Routine:
 
 
 class _Verifier:
-    def __init__(self, code: bytes, sensors: int, actuators: int, has_tasks: bool) -> None:
+    def __init__(self, code: bytes, sensors: int, actuators: int, needs: int) -> None:
         self.code = code
-        self.has_tasks = has_tasks
+        self.allowed = needs
         self.devices = {"sensor": sensors, "actuator": actuators}
         self.at = 0  # where the instruction that is looked at begins
         self.after = 0  # where the next one begins
@@ -156,6 +158,7 @@ class _Verifier:
         self.most_counters = 0
         self.most_calls = 0
         self.uses: list[tuple[str, int]] = []
+        self.needs = 0
 
     def run(self) -> Verdict:
         while self.at < len(self.code):
@@ -169,7 +172,9 @@ class _Verifier:
         self.arrive()
         self.finish()
         uses, tasks = tuple(self.uses), len(self.tasks) - 1
-        return Verdict(self.stack_values, self.most_counters, self.most_calls, uses, tasks)
+        return Verdict(
+            self.stack_values, self.most_counters, self.most_calls, uses, tasks, self.needs
+        )
 
     def refuse(self, name: str) -> NoReturn:
         raise Refused(name, self.at)
@@ -192,9 +197,13 @@ class _Verifier:
             self.refuse("BAD_DEF")
 
     def opcode(self) -> Op:
-        op = BY_CODE[self.code[self.at]]
-        if op is None or (op.minor and not self.has_tasks):
+        op = op_at(self.code, self.at)
+        if self.code[self.at] == ESCAPE and self.allowed & NEEDS_GO:
+            if self.at + 1 == len(self.code):
+                self.refuse("CUT_OPERAND")
+        if op is None or op.needs & ~self.allowed:
             self.refuse("UNKNOWN_OPCODE")
+        self.needs |= op.needs
         self.after = self.at + op.size
         if self.after > len(self.code):
             self.refuse("CUT_OPERAND")
@@ -271,7 +280,7 @@ class _Verifier:
         self.blocks.append(_Block(kind, self.after, end))
         if kind == _COUNT:
             self.counters += 1
-            self.needs(self.counters, 0)
+            self.opens(self.counters, 0)
 
     def close(self, kind: str) -> None:
         """Close the innermost block: a loop."""
@@ -299,7 +308,7 @@ class _Verifier:
             self.refuse("BAD_LOOP_END")
         loop.end = self.target
 
-    def needs(self, counters: int, calls: int) -> None:
+    def opens(self, counters: int, calls: int) -> None:
         """Note what is open at once, and refuse what is too deep, in all tasks together."""
         routine = self.routine
         routine.counters = max(routine.counters, counters)
@@ -428,7 +437,7 @@ class _Verifier:
         called = next((each for each in self.closed if each.start == self.target), None)
         if called is None:
             self.refuse("BAD_CALL")
-        self.needs(self.counters + called.counters, called.calls + 1)
+        self.opens(self.counters + called.counters, called.calls + 1)
 
 
 _IN_EXPRESSIONS = ("end", "value", "join")

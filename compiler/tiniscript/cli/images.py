@@ -11,7 +11,7 @@ from tiniscript.cli import compiling, inputs, outputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.library import source_map
 from tiniscript.library.compiling import Compiled, for_robot, image_of
-from tiniscript.library.known_kits import fitting, lacks
+from tiniscript.library.known_kits import fitting, lacking
 from tiniscript.library.other_robots import is_other_robots
 from tiniscript.library.source_map import Map
 from tiniscript.robots.profile import Robot
@@ -39,15 +39,15 @@ def ready(
 ) -> Ready | None:  # fmt: skip
     """Return the program of an input, or None if it has mistakes, which are printed.
 
-    `is_strict`: a program that is too large for the robot, or has tasks where the robot has none,
+    `is_strict`: a program that is too large for the robot, or has what the robot lacks,
     is a mistake. `is_open`: a program for another robot raises OtherRobot. Raises CommandError if
     an image is refused.
     """
     if given.is_image:
         image = _read(given)
         _check(given, image, robot)
-        if is_strict and lacks(image.needs, robot):
-            raise CommandError(1, "no_tasks", robot=robot.name, file=inputs.shown(given.name))
+        if is_strict and (lacks := lacking(image.needs, robot)):
+            raise CommandError(1, lacks, robot=robot.name, file=inputs.shown(given.name))
         return Ready(image, len(given.data), source_map.recall(image.checksum))
     compiled = compiling.compiled(given, robot, is_strict)
     if is_open and not compiled.is_right:

@@ -166,7 +166,7 @@ class _Lowering:
         until = move.until
         if until is None and time is None:  # a move for ever, beside other tasks
             until = Until((), (Term("YES_NO", 0),))
-        if until is None and time is not None:
+        if until is None and time is not None and not move.unit:
             time_ms = self.fixed(time)
             byte = None if time_ms is None else time8(time_ms)
             value = None if power is None else self.fixed(power)
@@ -179,9 +179,10 @@ class _Lowering:
         if power is not None:
             add_value(out, power)
         if until is None:
-            out.add("WAIT" if power is None else f"MOVE_{name}")
+            out.add("WAIT" if power is None else f"{'GO' if move.unit else 'MOVE'}_{name}")
             return
-        out.add(f"WATCH{'_FOREVER' if time is None else ''}_{name}")
+        kind = "_FOREVER" if time is None else "_GO" if move.unit else ""
+        out.add(f"WATCH{kind}_{name}")
         self.reads(until.reads)
         stops(out, until.condition)
 
@@ -360,6 +361,6 @@ def _write(code: bytearray, item: Item, target: int | None) -> None:
     if target is not None:
         distance = abs(target - (len(code) + item.op.size))
         operands = (*operands, min(distance, item.op.operands[-1].kind.high))
-    code.append(item.op.code)
+    code += item.op.opcode
     for operand, value in zip(item.op.operands, operands, strict=True):
         code += value.to_bytes(operand.kind.size, "little", signed=operand.kind.signed)

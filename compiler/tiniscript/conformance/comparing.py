@@ -45,11 +45,12 @@ def verdicts(cases: Iterable[MachineCase], ask: Ask) -> Iterator[Verdict]:
     """Yield the verdict of each case, up to where nobody waits for more.
 
     A machine that refuses the first case that needs something lacks it, and is asked for no other.
+    `needs` has a bit for each thing.
     """
     endless = silent = answers = 0
-    lacks: bool | None = None
+    lacks: dict[int, bool] = {}
     for case in cases:
-        if case.needs and lacks:
+        if any(is_missing and needs & case.needs for needs, is_missing in lacks.items()):
             yield Verdict(case.name, LACKS)
             continue
         try:
@@ -63,9 +64,10 @@ def verdicts(cases: Iterable[MachineCase], ask: Ask) -> Iterator[Verdict]:
                 return
         else:
             answers += 1
-            if case.needs and lacks is None:
-                lacks = list(got) in LACKING and list(got) != list(case.answer)
-                if lacks:
+            if case.needs and case.needs not in lacks:
+                refuses = list(got) in LACKING and list(got) != list(case.answer)
+                lacks[case.needs] = refuses
+                if refuses:
                     yield Verdict(case.name, LACKS)
                     continue
             yield compared(case.name, case.answer, got)

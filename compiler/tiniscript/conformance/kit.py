@@ -11,13 +11,14 @@ from importlib import resources
 from typing import NamedTuple
 
 FORM = "tiniscript-machine-kit"
-VERSION = 3  # of the form; grows when a reader of the file, or a machine, must know more
+VERSION = 4  # of the form; grows when a reader of the file, or a machine, must know more
 
 
 class MachineCase(NamedTuple):
-    """One run. `devices` are the kit's lines, as the specification hashes them; `readings` are
-    thousandths by the number of the sensor; times are milliseconds. `every_ms` has one for each
-    wait, the last for all that follow. A machine may lack what a case `needs`, as images say it."""
+    """One run. `devices` are the kit's lines, as the specification hashes them, and how fast it is;
+    `readings` are thousandths by the number of the sensor; times are milliseconds. `every_ms` has
+    one for each wait, the last for all that follow. A machine may lack what a case `needs`, as
+    images say it."""
 
     name: str
     devices: tuple[str, ...]

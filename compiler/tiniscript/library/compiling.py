@@ -11,7 +11,7 @@ from collections.abc import Callable
 from functools import cache
 from typing import NamedTuple
 
-from tiniscript.bytecode.image import TASKS, Image, checksum, isa_of, pack
+from tiniscript.bytecode.image import GO, TASKS, Image, checksum, isa_of, pack
 from tiniscript.bytecode.opcodes import CODE_BYTES
 from tiniscript.bytecode.verify import Verdict, verify
 from tiniscript.codegen.lower import Place, lower
@@ -110,20 +110,28 @@ def fitting(compiled: Compiled, robot: Robot, is_mistake: bool) -> Compiled:
 
 
 def for_robot(compiled: Compiled, robot: Robot) -> Compiled:
-    """Return `compiled`, with a mistake and no image where the robot has no tasks and it has one.
+    """Return `compiled`, with a mistake and no image where the robot lacks tasks or ways it has.
 
     For what is about to be sent to a robot, a virtual one too.
     """
-    program = compiled.program
-    if program is None or not program.tasks or not compiled.is_right:
+    program, verdict = compiled.program, compiled.verdict
+    if program is None or verdict is None or not verdict.needs or not compiled.is_right:
         return compiled
     from tiniscript.library.known_kits import lacks
 
-    if not lacks(TASKS, robot):
+    needed = (
+        (codes.NO_TASKS, TASKS, program.tasks[0].word if program.tasks else None),
+        (codes.NO_WAYS, GO, ir.first_way(program)),
+    )
+    lacking = [
+        codes.Diagnostic(code, span, {"robot": robot.name})
+        for code, need, span in needed
+        if span is not None and lacks(need, robot)
+    ]
+    if not lacking:
         return compiled
-    lacking = codes.Diagnostic(codes.NO_TASKS, program.tasks[0].word, {"robot": robot.name})
     return compiled._replace(
-        diagnostics=codes.in_order([*compiled.diagnostics, lacking]), image=b""
+        diagnostics=codes.in_order([*compiled.diagnostics, *lacking]), image=b""
     )
 
 
@@ -155,7 +163,7 @@ def _compiled(text: str, kit: Kit, name: str, optimize: bool) -> Compiled:
         return compiled._replace(diagnostics=[*compiled.diagnostics, diagnostic])
     verdict = verify(lowered.code, len(kit.sensors), len(kit.actuators))
     devices = kit.hash_of_used(verdict.uses)
-    image = pack(program.start, devices, lowered.code, needs=needs_of(verdict))
+    image = pack(program.start, devices, lowered.code, needs=verdict.needs)
     return compiled._replace(code=lowered.code, places=lowered.places, verdict=verdict, image=image)
 
 
@@ -204,14 +212,9 @@ def text_of(data: bytes, name: str) -> str | Compiled:
 def image_of(compiled: Compiled, robot: Robot) -> Image:
     """Return the image of a program without mistakes."""
     assert compiled.program is not None and compiled.verdict is not None
-    devices, needs = robot.kit.hash_of_used(compiled.verdict.uses), needs_of(compiled.verdict)
+    devices, needs = robot.kit.hash_of_used(compiled.verdict.uses), compiled.verdict.needs
     return Image(compiled.program.start, devices, compiled.code,
                  checksum(compiled.image), isa_of(needs), needs=needs)  # fmt: skip
-
-
-def needs_of(verdict: Verdict) -> int:
-    """Return the field `needs` of an image with verified code."""
-    return TASKS if verdict.tasks else 0
 
 
 def maker(robot: Robot) -> Callable[[str], Image | None]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tiniscript import robots
-from tiniscript.bytecode.image import Image, ImageRefused
+from tiniscript.bytecode.image import GO, TASKS, Image, ImageRefused
 from tiniscript.bytecode.loading import check
 from tiniscript.bytecode.verify import Refused
 from tiniscript.robots import given
@@ -59,4 +59,14 @@ def fits(image: Image, robot: Robot) -> bool:
 
 def lacks(needs: int, robot: Robot) -> bool:
     """Return whether the robot's firmware lacks something of `needs` in an image."""
-    return bool(needs & ~CHIPS[robot.board.chip].has)
+    has = CHIPS[robot.board.chip].has
+    if not robot.kit.speed and not robot.kit.turn:
+        has &= ~GO
+    return bool(needs & ~has)
+
+
+def lacking(needs: int, robot: Robot) -> str:
+    """Return the name of the text that says what the firmware lacks of `needs`, or nothing."""
+    if lacks(needs & TASKS, robot):
+        return "no_tasks"
+    return "no_ways" if lacks(needs, robot) else ""

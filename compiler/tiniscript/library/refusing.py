@@ -12,7 +12,7 @@ from tiniscript.robots.profile import Robot
 
 
 def refusal(image: Image, profile: Robot, robot: DeviceInfo) -> Reply[Any] | None:
-    """Return the refusal of a program for another kit or with tasks; None where it may run."""
+    """Return why a robot may not run a program: another kit, or what it lacks. None: it may."""
     if lacks(image.needs, profile):
         return Reply(REFUSALS["UNKNOWN_NEEDS"][0])
     if may_run(image, profile, robot.kit):

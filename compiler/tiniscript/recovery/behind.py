@@ -25,7 +25,7 @@ from tiniscript.source import Span
 from tiniscript.syntax.lexer import NUMBER, ODD, QUOTES, WORD
 from tiniscript.syntax.operators import COMPARISONS
 from tiniscript.syntax.outline import Failure
-from tiniscript.words import NOTE_WORDS, OTHER_WAY, WORDS, nearest
+from tiniscript.words import NOTE_WORDS, OTHER_WAY, WAYS, WORDS, nearest
 
 DOTS = ".…"
 ASKING = ("IF", "ELSEIF", "WHILE", "UNTIL")
@@ -226,7 +226,7 @@ class Behind:
 
     def means(self, word: str) -> str:
         """Return the word of the language that is said, "" where none is."""
-        if word in WORDS and word != "SI":
+        if word in WORDS and word != "SI" and word not in WAYS:
             return ENDED.get(word, word)
         meant = self.names.meanings(word)
         return meant[0].concept if meant and meant[0].cost < NEAR else ""

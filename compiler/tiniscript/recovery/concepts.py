@@ -18,7 +18,7 @@ from tiniscript.recovery import lexicon_en, lexicon_es
 from tiniscript.syntax.lexer import DASHES, NUMBER, ODD, WORD
 from tiniscript.syntax.operators import SIGNS
 from tiniscript.syntax.outline import Known
-from tiniscript.words import ALIASES, BLOCK_ENDS, WORDS, Speller, nearest
+from tiniscript.words import ALIASES, BLOCK_ENDS, WAYS, WORDS, Speller, nearest
 
 KNOWN, MISSPELT, NEAR = 1, 2, 3  # what a meaning costs: said, written nearly so, a slip away
 STARTS = frozenset(("IF", "LOOP", "WHILE", "WHEN", "TASK"))
@@ -319,7 +319,8 @@ class Names:
 
     def label(self, token: Lexeme) -> str:
         """Return all classes of a token, as one text that a pattern finds them in."""
-        is_unit = token.space == "" and token.text in WORDS and token.text in UNITS  # `5S`
+        is_glued = token.space == "" or token.text in WAYS
+        is_unit = is_glued and token.text in WORDS and token.text in UNITS  # `5S`, `5 CM`
         key = (token.kind, token.text, is_unit)
         if key not in self._labels:
             classes = [*self._classes(token), *(["@unit"] if is_unit else [])]

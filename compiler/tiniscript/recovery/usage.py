@@ -31,7 +31,7 @@ from tiniscript.source import Edit, Source, Span
 from tiniscript.syntax.free_names import in_place_of
 from tiniscript.syntax.lexer import NUMBER, QUOTES, WORD
 from tiniscript.syntax.operators import COMPARISONS
-from tiniscript.words import BLOCK_ENDS, WORDS, said_instead
+from tiniscript.words import BLOCK_ENDS, POWER, UNIT_OF, WAYS, WORDS, said_instead
 
 _LAST_HEAD = re.compile(r"(?is)\b(IF|ELSEIF|WHILE|UNTIL)[ \t]*\((?!.*\b(?:IF|WHILE|UNTIL)\()")
 _DOTS = re.compile(r"(?:\.[ \t]*){2,}|\u2026")
@@ -322,6 +322,10 @@ class _Usage:
                 its = word.arguments[min(signs[:k].count(","), len(word.arguments) - 1)]
                 values = {"word": word.text, "name": its.name, "usage": word.usage}
                 values |= {"wanted": _UNIT_NAMES[its.unit], "unit": _UNIT_NAMES.get(said, said)}
+                right = UNIT_OF.get(word.text, "")
+                if right and k == 2 and UNITS[unit.text] == (WAYS[right].unit, 1000):
+                    power = next(iter(signs[k + 3 : k + 4]), POWER.sample)
+                    values["way"] = f"{word.text}({number.text} {right}, {power})"
                 return Diagnostic(codes.OTHER_UNIT, found.span, values)
         return None
 

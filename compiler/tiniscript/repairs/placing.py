@@ -113,6 +113,7 @@ _PLACES: dict[Code, Callable[[Diagnostic, Source], Edits]] = {
     codes.ARGUMENT_COUNT: _own,
     codes.EMPTY_BRACKETS: _word,
     codes.OUT_OF_RANGE: _around,
+    codes.UNIT_PAIR: _around,
     codes.OTHER_LANGUAGE: _other_word,
     codes.UNKNOWN_WORD: _span,
     codes.UNKNOWN_NAME: _span,

@@ -28,6 +28,7 @@ UNIT_CHARACTERS = 8
 LABEL_CHARACTERS = 60
 FARTHEST_CM = 1000 * ONE
 FASTEST_CM_S = 1000 * ONE
+FASTEST_TURN = 10_000 * ONE
 
 
 def read(text: str, name: str, chip: str | None = None) -> Robot:
@@ -55,7 +56,16 @@ def read(text: str, name: str, chip: str | None = None) -> Robot:
 
 def _read_kit(table: Table) -> Kit:
     taken: set[str] = set()
-    kit = Kit(_read_devices(table, "sensors", taken), _read_devices(table, "actuators", taken))
+
+    def speed(key: str, most: int) -> int:
+        return table.number(key, 1, most) if table.has(key) else 0
+
+    kit = Kit(
+        _read_devices(table, "sensors", taken),
+        _read_devices(table, "actuators", taken),
+        speed("speed", FASTEST_CM_S),
+        speed("turn", FASTEST_TURN),
+    )
     table.finish()
     return kit
 

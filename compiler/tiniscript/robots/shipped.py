@@ -22,6 +22,8 @@ def _grabber() -> Robot:
                 Device(name="GRIPPER", kind="number", unit="°", low=0, high=180000),
                 Device(name="LED", kind="yes/no", unit="", low=0, high=1),
             ),
+            speed=40000,
+            turn=296000,
         ),
         board=Board(
             chip="mega",
@@ -109,6 +111,8 @@ def _liner() -> Robot:
                 Device(name="BATTERY", kind="number", unit="V", low=0, high=10000),
             ),
             actuators=(Device(name="LED", kind="yes/no", unit="", low=0, high=1),),
+            speed=60000,
+            turn=747000,
         ),
         board=Board(
             chip="nano",
@@ -195,6 +199,8 @@ def _tinibot() -> Robot:
                 Device(name="DISTANCE", kind="number", unit="cm", low=0, high=400000),
             ),
             actuators=(),
+            speed=45000,
+            turn=360000,
         ),
         board=Board(
             chip="uno",
@@ -263,6 +269,8 @@ def _tinibot32() -> Robot:
                 Device(name="DISTANCE", kind="number", unit="cm", low=0, high=400000),
             ),
             actuators=(),
+            speed=45000,
+            turn=360000,
         ),
         board=Board(
             chip="esp32dev",
@@ -331,6 +339,8 @@ def _tinibotc3() -> Robot:
                 Device(name="DISTANCE", kind="number", unit="cm", low=0, high=400000),
             ),
             actuators=(),
+            speed=45000,
+            turn=360000,
         ),
         board=Board(
             chip="esp32c3",

@@ -22,7 +22,7 @@ from tiniscript.source import Source, Span
 from tiniscript.syntax import ast
 from tiniscript.syntax.devices import actuator_word
 from tiniscript.syntax.parser import parse
-from tiniscript.words import WORDS, Argument, Word
+from tiniscript.words import UNIT_OF, WAYS, WORDS, Argument, Word
 
 if TYPE_CHECKING:
     from tiniscript.semantics.wrong_calls import WrongCalls
@@ -164,12 +164,17 @@ class _Checker(Scope):
         forever = word.role in ("move", "wait") and arguments[0].expression[0].op == "FOREVER"
         if forever and node.until is None and not self.has_tasks:
             self.wrong.forever(arguments[0].span, word, span)
+        wanted, way = word.arguments, arguments[0].unit if word.role == "move" else None
+        if way is not None:
+            self.way(node, way)
+            arguments = (arguments[0]._replace(unit=None), *arguments[1:])
+            wanted = (WAYS[UNIT_OF[word.text]], *wanted[1:])
         said = len(self.diagnostics)
         values = [
             self.kinds.value(each)
             if word.role == "show"
             else self.number(each, its, word.text, (node, word))
-            for each, its in zip(arguments[forever:], word.arguments[forever:], strict=True)
+            for each, its in zip(arguments[forever:], wanted[forever:], strict=True)
         ]
         if len(self.diagnostics) > said:
             self.wrong.values(node, word, said)
@@ -183,6 +188,7 @@ class _Checker(Scope):
                 values[-1].terms if word.role == "move" else None,
                 until,
                 span,
+                "" if way is None else way.op,
             ))  # fmt: skip
         elif word.role == "motors":
             made.append(ir.Motors(values[0].terms, values[1].terms, span))
@@ -190,6 +196,14 @@ class _Checker(Scope):
             made.append(ir.Beep(values[0].terms, values[1].terms, span))
         else:
             made.append(ir.Show(values[0].terms, values[0].kind == "yes_no", span))
+
+    def way(self, node: ast.Command, unit: ast.Part) -> None:
+        """Check the unit of a move, and whether the robot's speed is known."""
+        if unit.op != UNIT_OF[node.word]:
+            self.wrong.unit_pair(node, unit)
+        elif not (self.kit.speed if unit.op == "CM" else self.kit.turn):
+            line = "speed = 45" if unit.op == "CM" else "turn = 360"
+            self.report(codes.NO_SPEED, Span(unit.start, unit.end), unit=unit.op, line=line)
 
     def number(
         self,

@@ -8,7 +8,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from tiniscript.fixed_point import whole
+from tiniscript.fixed_point import Fault, whole
+from tiniscript.kit import Kit
 from tiniscript.semantics.ir import (
     Beep,
     Body,
@@ -26,6 +27,7 @@ from tiniscript.semantics.ir import (
     walk,
 )
 from tiniscript.semantics.optimizer import constant, fold
+from tiniscript.semantics.ways import way_ms
 
 
 class Duration(NamedTuple):
@@ -43,13 +45,13 @@ _NONE = Duration(0, 0)
 _UNKNOWN = Duration(0, None)
 
 
-def duration(program: Program) -> Duration:
+def duration(program: Program, kit: Kit) -> Duration:
     """Return how long `program`, best an optimised one, runs.
 
     Of several tasks it is known how long they run where no more than one moves: a move waits for
     the motors, and S ends one.
     """
-    made = _Durations(program)
+    made = _Durations(program, kit)
     bodies = (program.body, *(task.body for task in program.tasks))
     each = [made.of(body) for body in bodies]
     least = max(one.least for one in each)
@@ -65,7 +67,8 @@ def duration(program: Program) -> Duration:
 class _Durations:
     """Those of the bodies of one program."""
 
-    def __init__(self, program: Program) -> None:
+    def __init__(self, program: Program, kit: Kit) -> None:
+        self.kit = kit
         self.turn_ms = 1 if program.tasks else 0  # what a turn of a loop takes that has no wait
         self.known: list[Duration] = []
         self.procedures = program.procedures
@@ -98,7 +101,7 @@ class _Durations:
         if isinstance(statement, Move):
             if statement.time is None and statement.until is None:
                 return Duration(0, None, True)
-            longest = _time(statement.time)
+            longest = self.way(statement) if statement.unit else _time(statement.time)
             return longest if statement.until is None else Duration(0, longest.most)
         if isinstance(statement, Beep):
             return _time(statement.time)
@@ -113,6 +116,14 @@ class _Durations:
         if isinstance(statement, (Loop, While)):
             return self.loop(statement)
         return _NONE
+
+    def way(self, move: Move) -> Duration:
+        """How long a move takes by its way; one that faults ends the program."""
+        try:
+            time_ms = way_ms(move, self.kit)
+        except Fault:
+            time_ms = None
+        return _UNKNOWN if time_ms is None else Duration(time_ms, time_ms)
 
     def loop(self, loop: Loop | While) -> Duration:
         body = self.of(loop.body)

@@ -39,13 +39,17 @@ class Until(NamedTuple):
 
 
 class Move(NamedTuple):
-    """`direction` is F, B, L, R or W; a wait has no power. `time` is None for FOREVER."""
+    """`direction` is F, B, L, R or W; a wait has no power. `time` is None for FOREVER.
+
+    `unit` is CM or DEG where `time` is not a time but a way.
+    """
 
     direction: str
     time: Expression | None
     power: Expression | None
     until: Until | None
     span: Span
+    unit: str = ""
 
 
 class Motors(NamedTuple):
@@ -183,6 +187,12 @@ def every(program: Program) -> Iterator[Statement]:
         yield from walk(body)
 
 
+def first_way(program: Program) -> Span | None:
+    """Return where the first move is that goes by centimetres or degrees."""
+    moves = (each for each in every(program) if isinstance(each, Move) and each.unit)
+    return min((each.span for each in moves), default=None)
+
+
 def routines(program: Program) -> tuple[Body, ...]:
     """Return the bodies of the DEFs, those of the tasks, and the main task."""
     procedures = (each.body for each in program.procedures)
@@ -292,11 +302,21 @@ def _body_lines(body: Body, indent: str) -> Iterator[str]:
     for statement in body:
         words = [type(statement).__name__]
         for name, value in statement._asdict().items():
+            if value == "":
+                continue
             if value is None and name in ("time", "times"):
                 words.append("FOREVER")
             elif value is not None and name in _VALUES:
                 words.append(expression_text(value))
-            elif name in ("direction", "sensor", "actuator", "variable", "procedure", "reads"):
+            elif name in (
+                "direction",
+                "unit",
+                "sensor",
+                "actuator",
+                "variable",
+                "procedure",
+                "reads",
+            ):
                 words.append(str(value))
         yield indent + " ".join(words)
         if isinstance(statement, Move) and statement.until is not None:

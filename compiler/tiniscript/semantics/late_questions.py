@@ -198,7 +198,7 @@ def _nearest(body: Body, places: range) -> Statement | None:
 
 
 def _time(move: Move) -> int | None:
-    return None if move.time is None else constant(fold(move.time))
+    return None if move.time is None or move.unit else constant(fold(move.time))
 
 
 def _can_change(condition: Expression) -> bool:

@@ -43,6 +43,7 @@ from tiniscript.semantics.unlikely_values import (
     of_beep,
     of_ended_move,
     of_move,
+    of_way,
     swapped_names,
 )
 from tiniscript.semantics.unseen_motors import unseen
@@ -110,7 +111,9 @@ def _look_at(body: Body, look: _Look, around: _Around) -> None:
         if not program.tasks:  # what one asks another may change
             look.frozen.look_at(statement, around.is_repeated, around.asked, around.outermost)
         if isinstance(statement, Move):
-            if statement.until is None:
+            if statement.unit:
+                found += of_way(statement, look.kit)
+            elif statement.until is None:
                 found += of_move(statement, look.kit, look.source)
             else:
                 found += of_ended_move(statement, look.source)

@@ -10,13 +10,14 @@ import re
 
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic
-from tiniscript.fixed_point import ONE, as_text
+from tiniscript.fixed_point import ONE, Fault, as_text
 from tiniscript.kit import Kit
 from tiniscript.semantics.ir import Assign, Beep, Body, Expression, Move, Program, every, walk
 from tiniscript.semantics.named_values import is_power, is_time
 from tiniscript.semantics.optimizer import constant, fold
+from tiniscript.semantics.ways import way_ms
 from tiniscript.source import Source, Span
-from tiniscript.words import HERTZ, POWER, Argument
+from tiniscript.words import HERTZ, POWER, UNIT_OF, Argument
 
 SECOND = 1000  # ms
 LONG_TIME = 20 * SECOND  # a power was meant, where the power is a time
@@ -60,8 +61,20 @@ def of_move(move: Move, kit: Kit, source: Source) -> list[Diagnostic]:
         fix = f"{move.direction}({percent}, {seconds})"
         _report(found, codes.SWAPPED, move.span, time=seconds, power=percent, fix=fix)
     else:
-        _long(move, time, power, found)
+        _long(move, time, power, kit, found)
     return found or of_power(move)
+
+
+def of_way(move: Move, kit: Kit) -> list[Diagnostic]:
+    """Return the warning about a move by its way: what its numbers surely make."""
+    way = _number(move.time)
+    if way is not None and way <= 0:
+        return [Diagnostic(codes.MOVE_OF_NO_TIME, move.span, {"word": move.direction})]
+    try:
+        way_ms(move, kit)
+    except Fault as fault:
+        return [Diagnostic(codes.WILL_FAULT, move.span, {"fault": fault.name})]
+    return of_power(move)
 
 
 def of_ended_move(move: Move, source: Source) -> list[Diagnostic]:
@@ -104,9 +117,13 @@ def of_power(move: Move) -> list[Diagnostic]:
     """Return the warning about a power that moves no robot, or that is too much."""
     time, power = _number(move.time), _number(move.power)
     found = [] if move.power is None else _cut(move.power, POWER, move.span, move.direction)
-    if power is not None and 0 <= power < LITTLE_POWER and (time is None or time < LONG_TIME):
+    if (
+        power is not None
+        and 0 <= power < LITTLE_POWER
+        and (time is None or time < LONG_TIME or move.unit)
+    ):
         shown = "2" if not time else as_text(time)
-        shown = "FOREVER" if move.time is None else shown
+        shown = "FOREVER" if move.time is None else f"{shown} {move.unit}".rstrip()
         values = {"power": as_text(power), "example": f"{move.direction}({shown}, 50)"}
         if 0 < power < ONE:  # `F(2, 0.8)`
             values["percent"] = as_text(power * 100)
@@ -115,7 +132,7 @@ def of_power(move: Move) -> list[Diagnostic]:
     return found
 
 
-def _long(move: Move, time: int, power: int | None, found: list[Diagnostic]) -> None:
+def _long(move: Move, time: int, power: int | None, kit: Kit, found: list[Diagnostic]) -> None:
     """`R(90, 50)`, `F(90, 60)`, `W(1000)`: degrees, centimetres and milliseconds were meant."""
     word = move.direction
     shown = as_text(80_000 if power is None else power)
@@ -125,10 +142,16 @@ def _long(move: Move, time: int, power: int | None, found: list[Diagnostic]) -> 
     is_very_long = time >= VERY_LONG_TIME
     usage = f"{word}( , {shown})"
     length = as_text(time)
-    if turns and (time in ANGLES or (is_long and not is_very_long)):
-        _report(found, codes.LONG_TIME, move.span, degrees=length, word=word, turn=usage)
+    way = f"{word}({length} {UNIT_OF.get(word, '')}, {shown})"
+    is_turn = is_long or (kit.turn and time >= LONG_TIME)
+    if turns and (time in ANGLES or (is_turn and not is_very_long)):
+        values = {"degrees": length, "word": word, "turn": usage}
+        values |= {"way": way} if kit.turn else {}
+        _report(found, codes.LONG_TIME, move.span, **values)
     elif drives and is_long and not is_very_long:
-        _report(found, codes.LONG_TIME, move.span, centimetres=length, word=word, drive=usage)
+        values = {"centimetres": length, "word": word, "drive": usage}
+        values |= {"way": way} if kit.speed else {}
+        _report(found, codes.LONG_TIME, move.span, **values)
     elif _is_milliseconds(time) if word == "W" else is_very_long:
         power_shown = "" if word == "W" else f", {shown}"
         fix = f"{word}({as_text(time // 1000)}{power_shown})"
@@ -169,7 +192,7 @@ def swapped_names(body: Body, program: Program) -> list[Diagnostic]:
         if isinstance(statement, Assign):
             set_to.setdefault(statement.variable, []).append(constant(fold(statement.value)))
     for move in (each for each in walk(body) if isinstance(each, Move)):
-        if move.until is not None or move.time is None or move.power is None:
+        if move.until is not None or move.time is None or move.power is None or move.unit:
             continue
         sides = (move.time, move.power)
         if not all(len(side) == 1 and side[0].op == "VARIABLE" for side in sides):

@@ -26,7 +26,7 @@ from tiniscript.semantics.unknown_words import (
 from tiniscript.source import Source, Span
 from tiniscript.syntax import ast
 from tiniscript.syntax.free_names import numbered
-from tiniscript.words import OTHER_WAY, WORDS, Argument, Word
+from tiniscript.words import OTHER_WAY, UNIT_OF, WORDS, Argument, Word
 
 _NEAR = 500  # characters behind a value for a sensor in which its use is looked for
 
@@ -68,6 +68,17 @@ class WrongCalls:
         spans = [argument.span for argument in arguments]
         found = count_diagnostic(self.scope.source, word, spans, span)
         self.scope.diagnostics.append(found)
+
+    def unit_pair(self, node: ast.Command, unit: ast.Part) -> None:
+        """`F(20 DEG, 60)`: forward goes centimetres."""
+        right, place = UNIT_OF[node.word], Span(unit.start, unit.end)
+        start = node.span.start
+        before, behind = Span(start, unit.start), Span(unit.end, node.span.end)
+        fix = f"{self.scope.source[before]}{right}{self.scope.source[behind]}"
+        if "\n" in fix:
+            fix = ""
+        said = {"found": unit.op, "right": right, "cm": right if right == "CM" else ""}
+        self.scope.report(codes.UNIT_PAIR, place, None, word=node.word, fix=fix, **said)
 
     def values(self, node: ast.Command, word: Word, said: int) -> None:
         """Say more of values that have had diagnostics since there were `said`."""
@@ -151,7 +162,8 @@ _ROUND = 50
 def meant(source: Source, node: ast.Command, word: Word) -> dict[str, str]:
     """Return the values of a diagnostic, "" for none: `fix`, or an example."""
     arguments = node.arguments or ()
-    texts = [source[each.span] for each in arguments]
+    texts = [source[Span(each.span.start, each.unit.end if each.unit else each.span.end)]
+             for each in arguments]  # fmt: skip
     values = {"fix": "", "most": "", "tone": "", "sound": ""}
     if len(texts) != 2 or not all(each.is_plain for each in arguments):
         return values

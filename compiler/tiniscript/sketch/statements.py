@@ -14,6 +14,7 @@ from tiniscript.kit import Kit
 from tiniscript.semantics import ir
 from tiniscript.semantics.ir import Term
 from tiniscript.semantics.optimizer import constant
+from tiniscript.semantics.ways import timed
 from tiniscript.sketch.expressions import Expressions, has_random, reads_once
 from tiniscript.sketch.names import counter
 from tiniscript.source import Source, printable
@@ -207,6 +208,8 @@ class Statements:
             self.call(_MOVES[move.direction], said, self.drive(move))
 
     def drive(self, move: ir.Move) -> list[str]:
+        if move.unit:
+            move = timed(move, self.kit)
         parts: list[Part] = [] if move.time is None else [(move.time, None)]
         if move.power is not None:
             parts.append((move.power, (0, 100)))

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from tiniscript.words import WORDS
+from tiniscript.words import UNIT_OF, WORDS
 
 Both = tuple[str, str]  # in English and Spanish
 
@@ -34,7 +34,8 @@ class Kind(NamedTuple):
 
 # fmt: off
 BARE, TRIPLE = ("%1", "%1"), ("%1 %2 %3", "%1 %2 %3")
-MOVES = ("F", "B", "L", "R")
+MOVES = tuple(UNIT_OF)
+WAYS = tuple(f"{word} {unit}" for word, unit in UNIT_OF.items())
 _FIXED = {
     word.text: (f"{{{word.text}}} {word.says[0]}", f"{{{word.text}}} {word.says[1]}")
     for word in WORDS.values() if word.stands_for
@@ -43,6 +44,8 @@ _FIXED = {
 KINDS = {kind.name: kind for kind in (
     Kind("move", "move", ("%1 %2 s at %3 %%", "%1 %2 s al %3 %%"), ("number", "number"), words=MOVES, tip=("The robot drives or turns: how long, in seconds, and with how much power, from 0 to 100 %.", "El robot avanza o gira: cuánto tiempo, en segundos, y con cuánta potencia, de 0 a 100 %.")),
     Kind("move_until", "move", ("%1 %2 s at %3 %%, or until %4", "%1 %2 s al %3 %%, o hasta que %4"), ("number", "number", "truth"), words=MOVES, tip=("The move ends when its time is over, or as soon as this is true.", "El movimiento termina cuando se acaba su tiempo, o en cuanto esto se cumple.")),
+    Kind("go", "move", ("%1 %2 at %3 %%", "%1 %2 al %3 %%"), ("number", "number"), words=WAYS, tip=("The robot goes so many centimetres, or turns so many degrees, with so much power, from 0 to 100 %.", "El robot avanza esos centímetros, o gira esos grados, con esa potencia, de 0 a 100 %.")),
+    Kind("go_until", "move", ("%1 %2 at %3 %%, or until %4", "%1 %2 al %3 %%, o hasta que %4"), ("number", "number", "truth"), words=WAYS, tip=("The move ends when the robot is there, or as soon as this is true.", "El movimiento termina cuando el robot llega, o en cuanto esto se cumple.")),
     Kind("wait", "time", ("{W} wait %1 s", "{W} espera %1 s"), ("number",), tip=("Nothing changes for so long.", "Nada cambia durante ese tiempo.")),
     Kind("wait_until", "time", ("{W} wait %1 s, or until %2", "{W} espera %1 s, o hasta que %2"), ("number", "truth"), tip=("Waits until this is true, and at most so long.", "Espera hasta que esto se cumpla, y como máximo ese tiempo.")),
     Kind("motors", "move", ("{M} motors: left %1 %%, right %2 %%", "{M} motores: izquierdo %1 %%, derecho %2 %%"), ("number", "number"), tip=("Sets both motors, from -100 to 100 %, and goes on at once.", "Pone los dos motores, de -100 a 100 %, y sigue enseguida.")),
@@ -94,6 +97,10 @@ LABELS: dict[str, Both] = {
     "B": ("{B} back", "{B} retrocede"),
     "L": ("{L} turn left", "{L} gira a la izquierda"),
     "R": ("{R} turn right", "{R} gira a la derecha"),
+    "F CM": ("{F CM} forward, in cm:", "{F CM} avanza, en cm:"),
+    "B CM": ("{B CM} back, in cm:", "{B CM} retrocede, en cm:"),
+    "L DEG": ("{L DEG} turn left, in degrees:", "{L DEG} gira a la izquierda, en grados:"),
+    "R DEG": ("{R DEG} turn right, in degrees:", "{R DEG} gira a la derecha, en grados:"),
     "elseif": ("{ELSEIF} else, if %1", "{ELSEIF} si no, si %1"),
     "else": ("{ELSE} else", "{ELSE} si no"),
     "TRUE": ("{TRUE} yes", "{TRUE} sí"),

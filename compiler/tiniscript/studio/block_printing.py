@@ -119,6 +119,9 @@ def _instruction(block: Block, values: list[str]) -> _Instruction:
         text = f"{word} = {values[0]}"
     else:
         until = f" UNTIL({values.pop()})" if kind.endswith("_until") else ""
+        if kind.startswith("go"):
+            word, _, unit = word.partition(" ")
+            values[0] = f"{values[0]} {unit}"
         arguments = f"({', '.join(values)})" if values else ""
         text = (word or kind.upper()) + arguments + until
     return _Instruction(kind, word or kind.upper(), text, block.note, block.is_apart)

@@ -173,12 +173,16 @@ class _Reader:
             kind = "set"
         else:
             kind = "read" if node.word in self._sensors else "call"
+        word = node.word
+        if arguments and arguments[0].unit is not None:
+            kind, word = "go", f"{word} {arguments[0].unit.op}"
         if node.until is not None:
             kind += "_until"
             arguments = (*arguments, node.until)
-        if kind not in KINDS or len(KINDS[kind].values) != len(arguments):
+        is_known = kind in KINDS and len(KINDS[kind].values) == len(arguments)
+        if not is_known or (kind.startswith("go") and word not in KINDS[kind].words):
             return Block("grey", instruction_text(piece.tokens))
-        return Block(kind, node.word, tuple(self._value(each) for each in arguments))
+        return Block(kind, word, tuple(self._value(each) for each in arguments))
 
     def _value(self, argument: Argument | None) -> Value:
         assert argument is not None, "the line of an unread value is grey"

@@ -24,11 +24,15 @@ Expression = tuple[Part, ...]
 
 
 class Argument(NamedTuple):
-    """`is_plain`: just one number, with or without a minus, and no brackets around it."""
+    """`is_plain`: just one number, with or without a minus, and no brackets around it.
+
+    `unit` is the CM or DEG behind it, which `span` does not hold.
+    """
 
     expression: Expression
     span: Span
     is_plain: bool
+    unit: Part | None = None
 
 
 class Command(NamedTuple):

@@ -15,8 +15,8 @@ from tiniscript.syntax.ast import Argument, Part
 from tiniscript.syntax.cursor import AFTER_VALUE, Cursor
 from tiniscript.syntax.lexer import NEWLINE, NUMBER, ODD, WORD, Token
 from tiniscript.syntax.operators import AND, BINARY, COMPARISON, MINUS, NOT, OPEN, Operator, Postfix
-from tiniscript.syntax.reporter import Reporter
-from tiniscript.words import WORDS, Word
+from tiniscript.syntax.reporter import Failed, Reporter
+from tiniscript.words import UNIT_OF, WAYS, WORDS, Word
 
 
 class ExpressionParser:
@@ -47,7 +47,17 @@ class ExpressionParser:
             cursor.i += 1
             part = Part("FOREVER", 0, token.start, token.end)
             return Argument((part,), token.span, False)
-        return self.expression(in_brackets=True)
+        return self.with_unit(self.expression(in_brackets=True))
+
+    def with_unit(self, argument: Argument) -> Argument:
+        """Read the CM or DEG that may stand behind the whole of an argument."""
+        cursor = self.cursor
+        token = cursor.inner()
+        if token.kind is not WORD or token.text not in WAYS:
+            return argument
+        cursor.to_inner()
+        cursor.i += 1
+        return argument._replace(unit=Part(token.text, 0, *token.span))
 
     # -- expressions, by precedence ---------------------------------------------------------
 
@@ -209,6 +219,7 @@ class ExpressionParser:
         if token.kind is ODD:
             self.reporter.fail(*odd(token), found=token.text)
         if known is not None:
+            self.no_unit(token)
             if known.role == "forever":
                 self.reporter.fail(codes.FOREVER_NOT_HERE, token.span)
             if known.role == "until":
@@ -220,9 +231,23 @@ class ExpressionParser:
         shown = {} if before.kind is ODD else {"before": before.text}
         self.reporter.fail(codes.MISSING_VALUE, token.span or before.span, **shown)
 
+    def no_unit(self, token: Token) -> None:
+        """CM or DEG anywhere but behind the whole of a value."""
+        if token.kind is WORD and token.text in WAYS:
+            self.wrong_unit(token.text, token.span)
+            raise Failed
+
+    def wrong_unit(self, unit: str, span: Span) -> None:
+        first, second = (word for word, its in UNIT_OF.items() if its == unit)
+        example = f"{first}({WAYS[unit].sample}, 60)"
+        self.reporter.report(
+            codes.UNIT_PLACE, span, found=unit, first=first, second=second, example=example
+        )
+
     def no_close(self, bracket: Token) -> NoReturn:
         """In brackets a comma or their end is expected."""
         token, before = self.cursor.inner(), self.cursor.last
+        self.no_unit(token if before.text not in WAYS else before)
         if token.kind is ODD:
             self.reporter.fail(*odd(token), found=token.text)
         if token.kind in (NUMBER, WORD, "("):

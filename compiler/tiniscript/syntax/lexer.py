@@ -47,10 +47,10 @@ class Scan(NamedTuple):
 _PATTERN = re.compile(
     rf"(?P<space>[{SPACES}]+) | (?P<dash>[{DASHES}])"
     r"""
-      | (?P<word>[A-Za-z][A-Za-z0-9_]*)(?!\w)
+      | (?P<word>[A-Za-z][A-Za-z0-9_]*)(?![^\Wº]) | (?P<degrees>[°º](?!\w))
       | (?P<comment>//[^\r\n]*)
       | (?P<sign><=|>=|<>|[-+*/%=<>(),;|])
-      | (?P<number>(?:[0-9]+(?:\.[0-9]+)?|\.[0-9]+)(?![\w.]))
+      | (?P<number>(?:[0-9]+(?:\.[0-9]+)?|\.[0-9]+)(?=(?:[Cc][Mm]|[Dd][Ee][Gg]|º)\b|(?![\w.])))
       | (?P<newline>\r\n|\n|\r)
       | (?P<odd>\.?[0-9][\w.]*|\w+|~[0-9A-Fa-f]*|.)
     """,
@@ -85,6 +85,8 @@ def scan(text: str) -> Scan:
             add(new(Token, (NEWLINE, "\n", start, end)))
         elif group == "comment":
             comments.append(Token("comment", match.group(), start, end))
+        elif group == "degrees":
+            add(Token(WORD, "DEG", start, end))
         elif group == "dash":
             add(Token("-", "-", start, end))
         else:

@@ -27,6 +27,7 @@ expected there; the next instruction is read then. What was meant is for `recove
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 from tiniscript.diagnostics import codes
@@ -182,6 +183,7 @@ class Parser:
         if known is not None and not known.arguments:
             self.no_arguments(word)
         arguments = self.expressions.arguments()
+        self.no_units(arguments[known is not None and known.role == "move" :])
         if not arguments and known is None:
             span = self.cursor.span_from(word)
             self.reporter.report(codes.EMPTY_BRACKETS, span, word=word.text)
@@ -287,7 +289,13 @@ class Parser:
             self.expressions.wrong_count(
                 WORDS[word.text], len(arguments), cursor.span_from(bracket)
             )
+        self.no_units(arguments)
         return arguments[0]
+
+    def no_units(self, arguments: Sequence[Argument]) -> None:
+        """CM and DEG stand behind the way of a move alone."""
+        for unit in (each.unit for each in arguments if each.unit is not None):
+            self.expressions.wrong_unit(unit.op, Span(unit.start, unit.end))
 
     def no_arguments(self, word: Token) -> None:
         bracket = self.cursor.token
@@ -326,6 +334,7 @@ class Parser:
             self.reporter.fail(*odd(token), found=token.text)
         if token.kind == ")":
             self.reporter.fail(codes.EXTRA_CLOSE, token.span)
+        self.expressions.no_unit(token)
         header = first.text in (*HEADERS, "DEF", "ELSE", "ELSEIF")
         code = codes.HEADER_SEPARATOR if header else codes.MISSING_SEPARATOR
         before = " ".join(cursor.source[cursor.span_from(first)].split())

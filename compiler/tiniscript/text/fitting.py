@@ -9,7 +9,7 @@ from __future__ import annotations
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.kit import Kit
-from tiniscript.semantics.ir import Program
+from tiniscript.semantics.ir import Program, first_way
 from tiniscript.source import Source, Span
 from tiniscript.syntax.lexer import WORD
 from tiniscript.syntax.parser import parse
@@ -27,7 +27,7 @@ def misfits(source: Source, program: Program, kit: Kit, level: Level) -> list[Di
         for token in tokens
         if token.kind is WORD and (token.text in level.lacks or len(token.text) > LONGEST_WORD)
     ]
-    if found and program.tasks:  # they have no plain code
+    if found and (program.tasks or first_way(program)):  # they have no plain code
         return found
     plain = plain_code(program)
     limit = min(CODE_BYTES, level.room)

@@ -6,7 +6,7 @@ All other limits (variables, blocks, values on the stack, DEFs, calls) are those
 # No `from __future__ import annotations`: typing would compile each field's again, one by one.
 from typing import NamedTuple
 
-from tiniscript.words import ALIASES, BLOCK_ENDS, TASKS, WORDS
+from tiniscript.words import ALIASES, BLOCK_ENDS, TASKS, WAYS, WORDS
 
 CODE_BYTES = 255  # of a typed program: a jump of one byte reaches over all of it
 LONGEST_WORD = 255  # letters of a word that a reader takes
@@ -18,8 +18,8 @@ def _block_words(*blocks: str) -> frozenset[str]:
     return frozenset((*blocks, *ends, *(each for each, end in ALIASES.items() if end in ends)))
 
 
-NO_TASKS = _block_words(*TASKS)
-NO_DEFS_OR_TASKS = _block_words("DEF") | NO_TASKS
+NO_TASKS_OR_WAYS = _block_words(*TASKS) | WAYS.keys()
+NO_DEFS_TASKS_OR_WAYS = _block_words("DEF") | NO_TASKS_OR_WAYS
 
 
 class Level(NamedTuple):
@@ -47,9 +47,9 @@ class Level(NamedTuple):
 LEVELS = {
     level.name: level
     for level in (
-        Level("uno", "uno", 2, NO_DEFS_OR_TASKS),
-        Level("mega", "mega", 4, NO_TASKS),
-        Level("esp32", "esp32dev", 4, NO_TASKS),
+        Level("uno", "uno", 2, NO_DEFS_TASKS_OR_WAYS),
+        Level("mega", "mega", 4, NO_TASKS_OR_WAYS),
+        Level("esp32", "esp32dev", 4, NO_TASKS_OR_WAYS),
     )
 }
 

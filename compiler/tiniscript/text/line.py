@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
-from tiniscript.bytecode.opcodes import BY_CODE
+from tiniscript.bytecode.opcodes import op_at
 from tiniscript.codegen.lower import lower
 from tiniscript.semantics.ir import Program
 from tiniscript.source import Source, Span
@@ -84,7 +84,7 @@ def _short_offsets(code: bytes) -> dict[int, int]:
     """Return where each instruction, and the end, would be if no jump were a far one."""
     found, at, far = {0: 0}, 0, 0
     while at < len(code):
-        op = BY_CODE[code[at]]
+        op = op_at(code, at)
         assert op is not None
         at += op.size
         far += op.name.endswith("_FAR")

@@ -66,6 +66,18 @@ def _moves(direction: str, left: int, right: int) -> None:
     def watch_forever(m: Execution, after: int) -> Step:
         return lambda: m.prepare(FOREVER, popped(m), after)
 
+    def way(m: Execution) -> tuple[int, Powers]:
+        power = _percent(m.task.stack.pop(), 0)
+        return m.robot.go_ms(m.task.stack.pop(), power, left != right), powers(power)
+
+    def go(m: Execution, after: int) -> Step:
+        return lambda: m.drive(*way(m), after)
+
+    def watch_go(m: Execution, after: int) -> Step:
+        return lambda: m.prepare(*way(m), after)
+
+    HANDLERS[f"GO_{direction}"] = go
+    HANDLERS[f"WATCH_GO_{direction}"] = watch_go
     HANDLERS[f"MOVE8_{direction}"] = move8
     HANDLERS[f"MOVE_{direction}"] = move
     HANDLERS[f"WATCH_{direction}"] = watch

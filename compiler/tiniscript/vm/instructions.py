@@ -6,7 +6,7 @@ short instruction shares the handler of its long form. Those of tasks come with 
 
 from __future__ import annotations
 
-from tiniscript.bytecode.opcodes import BY_CODE, OPS, Op, read_operands
+from tiniscript.bytecode.opcodes import NEEDS_TASKS, OPS, Op, op_at, read_operands
 from tiniscript.vm import actions, control, values
 from tiniscript.vm.handlers import HANDLERS, Step
 from tiniscript.vm.state import Execution
@@ -17,7 +17,7 @@ for _op in OPS:
     if _op.implied is not None:
         HANDLERS[_op.name] = HANDLERS[_op.family]
 
-_missing = [op.name for op in OPS if op.name not in HANDLERS and not op.minor]
+_missing = [op.name for op in OPS if op.name not in HANDLERS and op.needs != NEEDS_TASKS]
 assert not _missing, f"no handler for {_missing}"
 
 
@@ -43,6 +43,6 @@ def bound(m: Execution, code: bytes) -> list[Step]:
 
 def instruction(code: bytes, at: int) -> tuple[Op, int]:
     """Return the instruction at an offset, and where the next one begins."""
-    op = BY_CODE[code[at]]
+    op = op_at(code, at)
     assert op is not None, "the code is not verified"
     return op, at + op.size

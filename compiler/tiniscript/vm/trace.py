@@ -81,6 +81,9 @@ class TracedRobot:
         self.say("READ", (sensor, value), f"READ {device.name} {device.text(value)}")
         return value
 
+    def go_ms(self, way: int, power: int, turns: bool) -> int:
+        return self.kit.go_ms(way, power, turns)
+
     def beep(self, hertz: int, duration_ms: int) -> None:
         self.say("BEEP", (hertz, duration_ms), f"BEEP {hertz} {duration_ms}")
 

@@ -32,6 +32,8 @@ const char* name_of(Fault fault) {
       return "OVERFLOW";
     case Fault::kDivideByZero:
       return "DIVIDE_BY_ZERO";
+    case Fault::kNoPower:
+      return "NO_POWER";
     case Fault::kBadCode:
       return "BAD_CODE";
   }

@@ -63,8 +63,10 @@ constexpr uint8_t kWordTask = 0x6b;
 constexpr uint8_t kWordEndTask = 0x6c;
 constexpr uint8_t kWordWhen = 0x6d;
 constexpr uint8_t kWordEndWhen = 0x6e;
-constexpr uint8_t kWordSend = 0x6f;
-constexpr uint8_t kWordsEnd = 0x70;
+constexpr uint8_t kWordCm = 0x6f;
+constexpr uint8_t kWordDeg = 0x70;
+constexpr uint8_t kWordSend = 0x71;
+constexpr uint8_t kWordsEnd = 0x72;
 
 // The words up to this one take arguments in brackets.
 constexpr uint8_t kCommands = 13;

@@ -313,6 +313,7 @@ enum class Fault : uint8_t {
   kNone = 0,  // It runs.
   kOverflow = 1,  // A result is outside -2147483.648 to 2147483.647.
   kDivideByZero = 2,  // A division or a remainder by 0.
+  kNoPower = 3,  // A way to go, with a power that never comes there.
   kBadCode = 255,  // A check failed that verified code never fails: memory has changed.
 };
 

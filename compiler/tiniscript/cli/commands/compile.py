@@ -12,6 +12,7 @@ from tiniscript.cli.errors import CommandError
 from tiniscript.cli.texts.common import text
 from tiniscript.diagnostics.codes import WILL_FAULT
 from tiniscript.fixed_point import as_text
+from tiniscript.kit import Kit
 from tiniscript.library.compiling import Compiled, for_robot
 from tiniscript.semantics.ir import Program
 from tiniscript.semantics.optimizer import optimized
@@ -50,7 +51,7 @@ def run(options: Namespace, language: str) -> int:
         code=len(compiled.code),
         stack=compiled.verdict.stack_values if compiled.verdict else 0,
         stacks=_stack_values(),
-        runs="" if _will_fault(compiled) else _runs(compiled.program, language),
+        runs="" if _will_fault(compiled) else _runs(compiled.program, robot.kit, language),
     )
     print(said, file=sys.stderr if target is None else sys.stdout)
     return 0
@@ -103,11 +104,11 @@ def _will_fault(compiled: Compiled) -> bool:
     return any(diagnostic.code is WILL_FAULT for diagnostic in compiled.diagnostics)
 
 
-def _runs(program: object, language: str) -> str:
+def _runs(program: object, kit: Kit, language: str) -> str:
     from tiniscript.semantics.duration import duration
 
     assert isinstance(program, Program)
-    how = duration(optimized(program))
+    how = duration(optimized(program), kit)
     if how.never_ends:
         key = "runs_forever"
     elif how.most is None:

@@ -9,7 +9,6 @@ from argparse import Namespace
 from collections.abc import Callable, Iterable, Iterator
 
 from tiniscript import files
-from tiniscript.bytecode.image import TASKS
 from tiniscript.cli import inputs, outputs
 from tiniscript.cli.commands.ping import ping
 from tiniscript.cli.errors import CommandError
@@ -22,7 +21,7 @@ from tiniscript.cli.robot.run_monitor import RunMonitor, stop_and_say
 from tiniscript.cli.texts.common import text
 from tiniscript.library import source_map
 from tiniscript.library.compiling import kit_of, naming
-from tiniscript.library.known_kits import lacks
+from tiniscript.library.known_kits import lacking
 from tiniscript.library.other_robots import is_other_robots
 from tiniscript.link.outcomes import Event, Gone
 from tiniscript.link.payloads import ShowEvent
@@ -87,9 +86,9 @@ def _compiled(
     outputs.print_diagnostics(naming(found.compiled, robot), language)
     if not found.compiled.is_right:
         return None
-    assert found.compiled.program is not None
-    if found.compiled.program.tasks and lacks(TASKS, robot):
-        raise CommandError(1, "no_tasks", robot=robot.name, file="prog.ts")
+    assert found.compiled.verdict is not None
+    if lacks := lacking(found.compiled.verdict.needs, robot):
+        raise CommandError(1, lacks, robot=robot.name, file="prog.ts")
     code = len(found.compiled.code)
     if code > room:
         raise CommandError(1, "live_too_long", code=str(code), room=str(room))

@@ -13,6 +13,8 @@ from tiniscript.cli.errors import CommandError
 from tiniscript.cli.texts.common import text
 from tiniscript.library.programs import remarks
 from tiniscript.robots.profile import Robot
+from tiniscript.semantics.ir import every
+from tiniscript.semantics.ways import is_open_way
 from tiniscript.sketch.writing import BOARDS, sketch_of
 
 
@@ -50,6 +52,8 @@ def _sketch(options: Namespace, given: inputs.Input, robot: Robot, language: str
     assert compiled.program is not None
     if compiled.program.tasks:
         raise CommandError(2, "sketch_no_tasks", file=inputs.shown(given.name))
+    if any(map(is_open_way, every(compiled.program))):
+        raise CommandError(2, "sketch_no_ways", file=inputs.shown(given.name))
     sketch = sketch_of(compiled.source, compiled.program, robot, language).encode()
     if options.output in (None, "-"):
         sys.stdout.buffer.write(sketch)

@@ -1,0 +1,43 @@
+"""Moves by centimetres or degrees whose time is known before they run.
+
+Knows how fast a kit says that its robot is.
+"""
+
+from __future__ import annotations
+
+from tiniscript.fixed_point import HIGHEST, Fault, limited, whole
+from tiniscript.kit import Kit
+from tiniscript.semantics.ir import Move, Statement, Term
+from tiniscript.semantics.optimizer import constant, fold
+
+
+def way_ms(move: Move, kit: Kit) -> int | None:
+    """Return how long a move takes whose way and power are fixed; None where they are not.
+
+    Raises Fault, as the robot does.
+    """
+    way = None if move.time is None else constant(fold(move.time))
+    power = None if move.power is None else constant(fold(move.power))
+    if way is None or power is None:
+        return None
+    return kit.go_ms(way, limited(whole(power), 0, 100), move.unit == "DEG")
+
+
+def is_open_way(statement: Statement) -> bool:
+    """Whether it is a move by its way that only the robot can tell the time of."""
+    if not isinstance(statement, Move) or not statement.unit:
+        return False
+    values = (statement.time, statement.power)
+    return any(each is None or constant(fold(each)) is None for each in values)
+
+
+def timed(move: Move, kit: Kit) -> Move:
+    """Return a move by its time in place of one by its way, which is not open.
+
+    Where the robot would fault it never ends.
+    """
+    try:
+        time_ms = way_ms(move, kit) or 0
+    except Fault:
+        time_ms = HIGHEST
+    return move._replace(time=(Term("NUMBER", time_ms),), unit="")

@@ -1,0 +1,93 @@
+"""Moves by centimetres and degrees that leave for a robot: one that has none refuses in words."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+import tiniscript
+from tests.support.command import inside
+from tiniscript import robots
+from tiniscript.bytecode.image import GO, TASKS
+from tiniscript.library.known_kits import lacking
+from tiniscript.robots.profile import ProfileRefused
+from tiniscript.robots.reader import read
+from tiniscript.studio import checking
+
+TEXT = "SHOW(1)\nF(20 CM, 60)\n"
+WORDS = {"en": "cannot go by centimetres", "es": "no puede avanzar por centímetros"}
+PROFILE = Path(robots.__path__[0]) / "tinibot.toml"
+
+
+@pytest.fixture
+def program(tmp_path: Path) -> Path:
+    path = tmp_path / "way.ts"
+    path.write_text(TEXT, encoding="utf-8")
+    return path
+
+
+@pytest.mark.parametrize("robot", ["tinibot", "grabber", "tinibot32"])
+@pytest.mark.parametrize("language", ["en", "es"])
+def test_it_is_refused_before_anything_is_sent(program: Path, robot: str, language: str) -> None:
+    for verb in (("upload",), ("compile", "--text")):
+        done = inside(*verb, program, "--robot", robot, "--lang", language)
+        said = done.out + done.err
+        assert done.code == 1 and "[TS315]" in said and "tsc run" in said
+        assert ("line 2:" if language == "en" else "línea 2:") in said
+
+
+def test_an_image_is_refused_too(program: Path, tmp_path: Path) -> None:
+    image = tmp_path / "way.bin"
+    assert inside("compile", program, "-o", image).code == 0
+    assert image.read_bytes()[3] == 1 and image.read_bytes()[14] == GO
+    for language, words in WORDS.items():
+        done = inside("upload", image, "--lang", language)
+        assert done.code == 1 and words in done.err and "tsc run" in done.err
+    assert inside("run", image).out.endswith("741 DONE\n")
+
+
+def test_what_is_lacking_has_a_text_of_its_own() -> None:
+    assert [lacking(needs, robots.load("liner")) for needs in (0, TASKS, GO, TASKS | GO)] == [
+        "", "no_tasks", "no_ways", "no_tasks"]  # fmt: skip
+    assert lacking(TASKS, robots.load("grabber")) == ""
+
+
+def test_the_page_says_so() -> None:
+    found = checking.check(TEXT.encode(), "tinibot32", "en")
+    assert found.findings[-1].message.code == "TS315" and not found.image
+
+
+def test_the_machine_in_cpp_says_so(program: Path) -> None:
+    done = inside("run", "--machine", "cpp", program)
+    assert done.code == 2 and "the one in Python has them" in done.err
+    with pytest.raises(tiniscript.UsageError, match="machine="):
+        list(tiniscript.run(TEXT, machine="cpp"))
+
+
+@pytest.mark.parametrize(("way", "ms"), [("20 CM", "0.741"), ("X CM", "")])
+def test_a_sketch_has_the_time_where_it_is_known(tmp_path: Path, way: str, ms: str) -> None:
+    path = tmp_path / "way.ts"
+    path.write_text(f"X = 5; F({way}, 60); SHOW(X)", encoding="utf-8")
+    done = inside("show", "--arduino", path)
+    assert done.code == (0 if ms else 2)
+    assert f"forward({ms}, 60);" in done.out if ms else "CM and DEG take numbers" in done.err
+
+
+def test_the_receipt_says_how_long(program: Path) -> None:
+    assert "0.741 s" in inside("compile", program, "-o", program.with_suffix(".bin")).out
+
+
+@pytest.mark.parametrize("key", ["speed", "turn"])
+def test_a_profile_may_leave_a_speed_out(key: str) -> None:
+    text = PROFILE.read_text(encoding="utf-8")
+    line = f"{key} = {45 if key == 'speed' else 360}\n"
+    assert line in text
+    kit = read(text.replace(line, ""), "mine").kit
+    assert getattr(kit, key) == 0
+    assert kit.fingerprint == robots.load("tinibot").kit.fingerprint
+    half = read(text.replace(line, f"{key} = 0.5\n"), "mine").kit
+    assert getattr(half, key) == 500
+    for wrong in ("0", "-1", "20000", '"fast"', "0.0001"):
+        with pytest.raises(ProfileRefused):
+            read(text.replace(line, f"{key} = {wrong}\n"), "mine")

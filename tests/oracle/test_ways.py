@@ -1,0 +1,142 @@
+"""Moves by centimetres and degrees: the compiler and the machines agree with the oracle.
+
+`python -m tests.oracle.test_ways 100000` compares more programs than the tests.
+"""
+
+from __future__ import annotations
+
+import argparse
+import random
+from collections import Counter
+
+import pytest
+
+from tests.machines import Senses
+from tests.machines.python import run_python
+from tests.oracle import machine, programs
+from tests.oracle.interpreter import PAPER_KIT, Kit, Mistake, run
+from tests.oracle.task_programs import task_program
+from tests.support.kits import KITS
+from tests.vm.test_agreement import MAX_MS, MAX_STEPS, same
+from tiniscript import compile_text
+from tiniscript.source import Source
+from tiniscript.syntax.formatter import formatted
+
+BATCH = 100
+TASKS_MS = 600
+
+
+def check_program(seed: int) -> str:
+    """Compare the traces of one random program; return how it ended."""
+    rng = random.Random(seed)
+    theirs, kit = KITS[seed % 2]
+    text = programs.program(rng, theirs, ways=True)
+    readings = programs.senses(rng, theirs)
+    want = run(text, theirs, readings, MAX_MS, MAX_STEPS)
+    for optimize in (True, False):
+        found = compile_text(text, kit, optimize=optimize)
+        assert found.is_right, f"seed {seed}:\n{text}"
+        got = run_python(found.image, kit, Senses(readings, MAX_MS, MAX_STEPS))
+        assert same(want, got), f"seed {seed}, optimize {optimize}:\n{text}"
+        got = machine.trace(found.code, theirs, readings, MAX_MS, max_steps=MAX_STEPS)
+        assert machine.TOO_MANY in got or same(want, got), f"seed {seed}, the page:\n{text}"
+    laid_out = formatted(Source(text))
+    assert compile_text(laid_out, kit).image == compile_text(text, kit).image, f"seed {seed}"
+    return want.split(" ", 1)[1].split("\n")[-2].split(" ", 1)[1] if want.count("\n") > 1 else ""
+
+
+def check_task_program(seed: int) -> str:
+    """The same with tasks."""
+    text, senses = task_program(random.Random(seed), ways=True)
+    want = run(text, PAPER_KIT, senses, TASKS_MS)
+    found = compile_text(text, KITS[0][1])
+    assert found.is_right, f"seed {seed}:\n{text}"
+    assert run_python(found.image, KITS[0][1], Senses(senses, TASKS_MS)) == want, f"{seed}:\n{text}"
+    return want.split()[-1]
+
+
+@pytest.mark.parametrize("first", range(0, 4 * BATCH, BATCH))
+def test_random_programs(first: int) -> None:
+    ends = Counter(check_program(seed) for seed in range(first, first + BATCH))
+    assert {"DONE", "FAULT NO_POWER", "FAULT OVERFLOW"} <= set(ends), ends
+
+
+def test_random_programs_with_tasks() -> None:
+    ends = Counter(check_task_program(seed) for seed in range(BATCH))
+    assert {"DONE", "LIMIT", "NO_POWER"} <= set(ends), ends
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "F(20 DEG, 60)",
+        "L(90 CM, 60)",
+        "F(20, CM, 60)",
+        "F(20 CM + 5, 60)",
+        "F((20 CM), 60)",
+        "F(MAX(5 CM, 3), 60)",
+        "F(FOREVER CM, 60) UNTIL(TRUE)",
+        "F(-5 CM, 60)",
+        "F(20 CM)",
+        "F(1, 60 CM)",
+        "F(CM 20, 60)",
+        "F(20 CM CM, 60)",
+        "F(CM, 60)",
+        "W(20 CM)",
+        "M(20 CM, 60)",
+        "BEEP(2 CM, 440)",
+        "SHOW(5 CM)",
+        "LOOP(3 CM);END_LOOP",
+        "IF(DISTANCE < 20 CM);ENDIF",
+        "F(1, 60) UNTIL(DISTANCE < 20 cm)",
+        "X = 20 CM",
+        "CM = 5",
+        "DEF DEG;END_DEF",
+        "CM",
+        "F(20 ° C, 60)",
+        "L(90°C, 60)",
+        "F(TRUE CM, 60)",
+    ],
+)
+def test_what_both_refuse(text: str) -> None:
+    with pytest.raises(Mistake):
+        run(text)
+    assert not compile_text(text, KITS[0][1]).is_right
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "F(20 CM, 60)",
+        "f(20cm,60);b(20Cm,60);L(90°,60);R(90º,60);R(90 deg,60);R(90 °,60)",
+        "F(\n20\nCM\n,\n60)",
+        "X = 3;F(X + 5 CM, X * 20);L((90) DEG, 60) UNTIL(TIME > 0.1)",
+        "F(-X CM, 60);X = 1".replace("-X", "-TIME"),
+        "F(MIN(5, 3) CM, MAX(60, 50))",
+        "F(0 CM, 0);R(0 DEG, 0);B(-1 + 0 CM, 0)",
+        "CMS = 5;DEGR = 1;F(CMS CM, 50)",
+        "F(0.009 CM, 40)",
+    ],
+)
+def test_what_both_take(text: str) -> None:
+    found = compile_text(text, KITS[0][1])
+    assert run_python(found.image, KITS[0][1], Senses()) == run(text)
+
+
+def test_a_robot_whose_speed_is_not_known_has_no_such_moves() -> None:
+    theirs, ours = Kit(PAPER_KIT.sensors, (), 45_000), KITS[0][1]._replace(turn=0)
+    assert run("F(45 CM, 100)", theirs).endswith("1000 DONE\n")
+    assert compile_text("F(45 CM, 100)", ours).is_right
+    with pytest.raises(Mistake):
+        run("L(9 DEG, 100)", theirs)
+    assert [each.code.number for each in compile_text("L(9 DEG, 100)", ours).diagnostics] == [
+        "TS314"
+    ]
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("count", type=int)
+    for each in range(parser.parse_args().count):
+        check_program(each)
+        check_task_program(each)
