@@ -134,6 +134,33 @@ def test_a_robot_whose_speed_is_not_known_has_no_such_moves() -> None:
     ]
 
 
+@pytest.mark.parametrize(
+    ("text", "code", "shown"),
+    [
+        ("R(20, 60)", "TS811", "R(20 DEG, 60)"),
+        ("L(90, 60)", "TS811", "L(90 DEG, 60)"),
+        ("R(19.9, 60)", "", ""),
+        ("F(30, 60)", "TS811", "F(30 CM, 60)"),
+        ("F(5 CM, 0)", "TS808", ""),
+        ("F(2147483.647 CM, 1)", "TS808", ""),
+        ("F(0 CM, 50)", "TS803", ""),
+        ("R(90 DEG, 60)", "", ""),
+        ("F(200 CM, 60);IF(DISTANCE < 9);S;ENDIF", "", ""),
+    ],
+)
+def test_what_is_advised(text: str, code: str, shown: str) -> None:
+    found = compile_text(text, KITS[0][1]).diagnostics
+    assert [each.code.number for each in found] == [code] * bool(code)
+    assert [each.values.get("way", "") for each in found] == [shown] * bool(code)
+
+
+def test_degrees_are_only_shown_where_the_robot_has_them() -> None:
+    kit = KITS[0][1]._replace(speed=0, turn=0)
+    assert not compile_text("R(20, 60)", kit).diagnostics
+    (found,) = compile_text("R(90, 60)", kit).diagnostics
+    assert found.code.number == "TS811" and "way" not in found.values
+
+
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("count", type=int)
