@@ -21,7 +21,7 @@
 #define tini_looped_at 19
 #define tini_called_at 20
 #ifdef tiniscript_has_tasks
-#define tini_variables_at 46
+#define tini_variables_at 47
 #define tini_stack_at (tini_variables_at + 128 + 140)
 #else
 #define tini_variables_at 59

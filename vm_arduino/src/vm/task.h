@@ -82,7 +82,8 @@ struct Task {
   bool is_later_turn;   // than the first one of the main task, before all others
   bool is_later_round;  // than the first one
 #ifdef __AVR__
-  uint8_t round_ms;      // when the last round was over, of 256
+  uint8_t round_ms;      // when the last round was over, of 256; before that if one is due now
+  bool is_due;           // a task that has had its turn is due again
 #else
   uint32_t wake_ms;      // when the next round begins
 #endif

@@ -34,19 +34,27 @@ void Machine::start_prepared(const uint8_t* code, uint16_t length, int32_t* read
   task_.me->clock_ms = now_ms;
 }
 
-#if defined(tiniscript_has_tasks) && !defined(__AVR__)
-uint32_t Machine::wake_ms() const { return has_tasks() ? task_.wake_ms : task_.me->clock_ms; }
+// With tasks an AVR begins a round in each millisecond: that takes less flash than to find out when
+// the next turn is.
+uint32_t Machine::wake_ms() const {
+#ifdef tiniscript_has_tasks
+#ifdef __AVR__
+  if (has_tasks()) return now_ms_ + (task_.round_ms == static_cast<uint8_t>(now_ms_));
 #else
-uint32_t Machine::wake_ms() const { return task_.me->clock_ms; }
+  if (has_tasks()) return task_.wake_ms;
 #endif
+#endif
+  return task_.me->clock_ms;
+}
 
-// Whether a wait goes on, or no round is due: on the AVR there is one in each millisecond, as that
-// takes less flash than to find out when the next turn is.
+// Whether a wait goes on, or no round is due.
 inline bool Machine::is_early(uint32_t now_ms) const {
 #if defined(tiniscript_has_tasks) && defined(__AVR__)
   if (has_tasks()) return task_.round_ms == static_cast<uint8_t>(now_ms);
-#endif
+  return static_cast<int32_t>(now_ms - task_.me->clock_ms) < 0;
+#else
   return static_cast<int32_t>(now_ms - wake_ms()) < 0;
+#endif
 }
 
 // Ends a wait. False: it goes on.

@@ -24,17 +24,22 @@ bool is_call(uint8_t code) {
 #else
 constexpr int32_t kNeverMs = 0x7fffffff;  // from now: nothing happens by itself
 #endif
-constexpr uint8_t kCounterBytes = sizeof(int32_t);
-constexpr uint8_t kCallBytes = sizeof(uint16_t);
 
 // Moves the first `count` of `all` bytes behind the others.
-tini_noinline void to_the_end(uint8_t* bytes, uint8_t count, uint8_t all) {
+tini_noinline void bytes_to_the_end(uint8_t* bytes, uint8_t count, uint8_t all) {
   for (; count != 0; count--) {
     const uint8_t first = *bytes;
     uint8_t* at = bytes;
-    for (uint8_t left = all; --left != 0; at++) *at = at[1];
+    for (uint8_t left = all; left > 1; left--, at++) *at = at[1];
     *at = first;
   }
+}
+
+// The same of values.
+template <class Value>
+tini_always_inline void to_the_end(Value* values, uint8_t count, uint8_t all) {
+  bytes_to_the_end(reinterpret_cast<uint8_t*>(values), static_cast<uint8_t>(count * sizeof(Value)),
+                   static_cast<uint8_t>(all * sizeof(Value)));
 }
 
 }  // namespace
@@ -107,10 +112,8 @@ bool Machine::finds_turn() {
       return false;
     }
     // The counters and calls of the next one come to the end of those that all tasks share.
-    to_the_end(reinterpret_cast<uint8_t*>(task_.counters), task->looped * kCounterBytes,
-               task_.looped * kCounterBytes);
-    to_the_end(reinterpret_cast<uint8_t*>(task_.calls), task->called * kCallBytes,
-               task_.called * kCallBytes);
+    to_the_end(task_.counters, task->looped, task_.looped);
+    to_the_end(task_.calls, task->called, task_.called);
     task_.next = task + 1;
     if (waits_for_clock(task) && static_cast<int32_t>(now_ms_ - task->clock_ms) >= 0) {
       begin_turn(task);
@@ -127,7 +130,8 @@ bool Machine::waits_for_clock(const TaskRecord* task) const {
 // A round is over.
 inline void Machine::end_round() {
 #ifdef __AVR__
-  task_.round_ms = static_cast<uint8_t>(now_ms_);
+  task_.round_ms = static_cast<uint8_t>(now_ms_ - task_.is_due);
+  task_.is_due = false;
 #else
   int32_t more_ms = kNeverMs;
   for (const TaskRecord* task = task_.records; task != task_.end; task++) {
@@ -164,6 +168,9 @@ void Machine::end_turn() {
   me->called = static_cast<uint8_t>(me->called + task_.called);
   task_.is_between_turns = true;
   task_.has_paused = false;
+#ifdef __AVR__
+  if (static_cast<int32_t>(now_ms_ - me->clock_ms) >= 0) task_.is_due = true;
+#endif
   status_ = Status::kRunning;
   if (!task_.is_later_turn) {
     task_.is_later_turn = true;
