@@ -12,7 +12,8 @@ import pytest
 
 from tests.support.command import OBSTACLE, PROGRAM, TSC, Tsc, process
 from tiniscript.bytecode.image import unpack
-from tiniscript.bytecode.opcodes import CODE_BYTES
+from tiniscript.bytecode.opcodes import CODE_BYTES, FAULTS
+from tiniscript.cli.texts.common import has_text
 from tiniscript.cli.texts.verbs import VERBS
 
 # -- compile ------------------------------------------------------------------------------------
@@ -105,6 +106,19 @@ def test_map_says_which_line(tsc: Tsc, tmp_path: Path) -> None:
     done = tsc("run", tmp_path / "a.bin")
     assert (done.code, done.out) == (1, "1000 FAULT DIVIDE_BY_ZERO\n")
     assert "line 3:  X = 0; SHOW(1 / X)" in done.err
+
+
+def test_each_fault_of_a_program_is_explained(tsc: Tsc) -> None:
+    for instruction, fault, what in (
+        ("SHOW(2000000 * 2000000)", "OVERFLOW", "Use smaller numbers."),
+        ("SHOW(1 / 0)", "DIVIDE_BY_ZERO", "Check with IF"),
+        ("F(20 CM, 0)", "NO_POWER", "Use more power."),
+    ):
+        done = tsc("run", "-e", f"SI|{instruction}")
+        assert (done.code, done.out) == (1, f"0 FAULT {fault}\n"), instruction
+        assert f"fault {fault}: " in done.err, instruction
+        assert what in done.err, instruction
+    assert all(has_text(f"fault_{name}") for _, name, _ in FAULTS)
 
 
 def test_the_board_has_less_memory_than_the_language(tsc: Tsc, tmp_path: Path) -> None:

@@ -36,6 +36,8 @@ SENTENCES: dict[str, tuple[str, str]] = {
                        "A los {seconds} s un número se hizo demasiado grande y el programa se detuvo. Usa números más pequeños."),
     "fault/DIVIDE_BY_ZERO": ("After {seconds} s something was divided by 0 and the program stopped. Ask with IF before you divide.",
                              "A los {seconds} s algo se dividió entre 0 y el programa se detuvo. Pregunta con IF antes de dividir."),
+    "fault/NO_POWER": ("After {seconds} s a move had power 0 and a way to go, and the program stopped. Use more power.",
+                       "A los {seconds} s un movimiento tenía potencia 0 y camino por recorrer, y el programa se detuvo. Usa más potencia."),
     "fault": ("After {seconds} s the robot ended the program ({fault}). Look at what it did just before.",
               "A los {seconds} s el robot terminó el programa ({fault}). Mira qué hizo justo antes."),
     # places

@@ -190,6 +190,8 @@ TEXTS: dict[str, tuple[str, str]] = {
                        "un resultado no cabe en un número (de -2147483.648 a 2147483.647). Usa números más pequeños."),
     "fault_DIVIDE_BY_ZERO": ("something is divided by 0. Check with IF that it is not 0 before you divide.",
                              "algo se divide entre 0. Comprueba con IF que no sea 0 antes de dividir."),
+    "fault_NO_POWER": ("the robot never gets that far with this power. Use more power.",
+                       "con esa potencia el robot nunca llega tan lejos. Usa más potencia."),
     # what --show draws
     "time": ("time", "tiempo"),
     "motor_left": ("left motor", "motor izq."),
