@@ -22,7 +22,7 @@ from tiniscript.recovery.search import Candidate, Change
 from tiniscript.recovery.writing import laid_out, without_note
 from tiniscript.source import Edit, Span
 from tiniscript.syntax.lexer import NUMBER, WORD
-from tiniscript.words import BLOCK_ENDS, WORDS
+from tiniscript.words import BLOCK_ENDS, WAYS, WORDS
 
 _WORD_CODE = rows.OTHER_WORD
 _BRACES, _UNENDED = codes.BRACES.number, codes.NEVER_ENDS.number
@@ -524,11 +524,13 @@ def _word(
 
 
 def _with_unit(tokens: Sequence[Lexeme]) -> list[Lexeme]:
-    """Return the first number with its unit."""
-    for number, unit in pairwise(tokens):
-        if number.kind is NUMBER and (said_of(unit.text, "unit") or unit.text == "%"):
-            return [number, unit]
-    return []
+    """Return the first number with its unit; one of the language only where there is no other."""
+    found = [
+        [number, unit]
+        for number, unit in pairwise(tokens)
+        if number.kind is NUMBER and (said_of(unit.text, "unit") or unit.text == "%")
+    ]
+    return min(found, key=lambda pair: pair[1].text in WAYS, default=[])
 
 
 def _first_difference(

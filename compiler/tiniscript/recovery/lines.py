@@ -30,7 +30,7 @@ from tiniscript.recovery.slots import LONG_S, MILLISECONDS_FROM, MOVES, filled
 from tiniscript.syntax.lexer import NUMBER, WORD
 from tiniscript.syntax.operators import SIGNS
 from tiniscript.syntax.outline import Failure, Item, outline
-from tiniscript.words import FUNCTIONS, WORDS, nearest
+from tiniscript.words import FUNCTIONS, WAYS, WORDS, nearest
 
 STATES = 80  # of one line that are looked at
 SLIP_STATES = 40
@@ -351,7 +351,7 @@ def _code_of_call(words: Sequence[Lexeme]) -> str:
     if "=" in signs:
         return rows.NAMED_VALUE
     inside = words[signs.index("(") :]
-    if any(each.text in UNITS for each in inside):
+    if any(each.text in UNITS and each.text not in (*WAYS, "°", "º") for each in inside):
         return rows.WITH_UNIT
     return rows.OTHER_CALL
 

@@ -11,7 +11,7 @@ from typing import NamedTuple
 from tiniscript.recovery.concepts import CALLED, DONE, UNITS, Lexeme, Names, made, said_of
 from tiniscript.syntax.devices import actuator_word
 from tiniscript.syntax.lexer import NUMBER, WORD
-from tiniscript.words import NOTE_WORDS, WORDS, Argument
+from tiniscript.words import NOTE_WORDS, UNIT_OF, WAYS, WORDS, Argument
 
 LONG_S = 20  # so much without a unit may be a power, degrees or centimetres
 MILLISECONDS_FROM = 100  # no wait is so many seconds
@@ -71,6 +71,7 @@ class _Reader:
         self.mark: str | None = None  # the unit of the next value, by its name: `potencia 80`
         self.times: float | None = None
         self.is_turn = False
+        self.way = ""  # the unit behind the first value of a move: `20 CM`
         self.is_sure = True
         self.cost = 1.0
 
@@ -184,7 +185,7 @@ class _Reader:
                 return None
             self.times = number
             return k
-        if unit in ("cm", "°", "steps", "V", "°C"):
+        if unit in ("steps", "V", "°C"):
             return None
         self.values.append(_Value(number * thousandths / 1000, unit))
         self.mark = None
@@ -322,6 +323,7 @@ class _Reader:
             text = sample if value is None else value
             text = told(text) if isinstance(text, float) else text
             out += [made("-"), made(text[1:])] if text.startswith("-") else [made(text)]
+            out += [made(self.way)] if self.way and not k else []
         samples = tuple(
             f"{each.sample} {each.unit}"
             for value, each in zip(slots, word.arguments, strict=True)
@@ -365,8 +367,13 @@ class _Reader:
         """Return the value of each argument: by its unit, by its range, and then in order."""
         slots: list[float | str | None] = [None] * len(arguments)
         order: dict[int, int] = {}
+        way = UNIT_OF.get(self.command or "", "")
         for k, (value, unit) in enumerate(values):
-            if unit is not None:
+            if way and unit == WAYS[way].unit:
+                if slots[0] is not None or any(each.unit is None for each in values[:k]):
+                    return None
+                slots[0], order[k], self.way = value, 0, way
+            elif unit is not None:
                 free = (i for i, a in enumerate(arguments) if slots[i] is None)
                 place = next(
                     (i for i in free if unit in (arguments[i].unit, arguments[i].name)), None

@@ -31,7 +31,7 @@ from tiniscript.source import Edit, Source, Span
 from tiniscript.syntax.free_names import in_place_of
 from tiniscript.syntax.lexer import NUMBER, QUOTES, WORD
 from tiniscript.syntax.operators import COMPARISONS
-from tiniscript.words import BLOCK_ENDS, POWER, UNIT_OF, WAYS, WORDS, said_instead
+from tiniscript.words import BLOCK_ENDS, UNIT_OF, WAYS, WORDS, said_instead
 
 _LAST_HEAD = re.compile(r"(?is)\b(IF|ELSEIF|WHILE|UNTIL)[ \t]*\((?!.*\b(?:IF|WHILE|UNTIL)\()")
 _DOTS = re.compile(r"(?:\.[ \t]*){2,}|\u2026")
@@ -52,6 +52,7 @@ _TAUGHT = ("SALTO", "PASO", "BAILE", "JUMP", "STEP", "DANCE")  # by the poster a
 _NO_NAMES = ("RETURN", "CONTINUE", "CONTINUA", "HOLA", "HELLO", "IDEM", "ETC", "NULL")
 _NO_ORDER = ("value", "operator", "function", "setup", "forever")
 _BUTTON = ("BUTTON", "BOTON")
+_SIDES = (("left", "L"), ("right", "R"))
 _INPUT = frozenset(("INPUT", "READ", "SCAN", "SCANF", "PROMPT", "LEER", "PREGUNTAR"))
 
 
@@ -177,13 +178,17 @@ class _Usage:
                 (self.command(each) for each in words if self.command(each) in ("L", "R")), ""
             )
             values = {"word": way, "way": "left" if way == "L" else "right", "usage": _usage(way)}
-            return Diagnostic(codes.WHICH_WAY, found.span, values if way else {})
+            turns = orders(tokens, self.names)
+            if [each.is_side_free for each in turns] == [True]:
+                values = {f"to_{side}": word + turns[0].text[1:] for side, word in _SIDES}
+            elif not way:
+                values = {}
+            return Diagnostic(codes.WHICH_WAY, found.span, values)
         concept = self.command(words[0] if words else "") or (self.command(meant) if meant else "")
         is_order = concept in WORDS and WORDS[concept].role not in _NO_ORDER
         if is_order and concept not in words[:1]:
             named = words[0] if self.command(words[0]) else meant or words[0]
             values = {"found": named, "right": concept, "usage": _usage(concept)}
-            values["far"] = _far(concept, tokens)
             return Diagnostic(codes.OTHER_LANGUAGE, found.span, values)
         signs = {each.text for each in tokens}
         if (
@@ -318,14 +323,11 @@ class _Usage:
             said = UNITS.get(unit.text, ("",))[0] if number.kind is NUMBER else ""
             if word is None or word.role not in ("move", "wait", "beep") or not said:
                 continue
-            if said not in [each.unit for each in word.arguments]:
+            own_way = WAYS[UNIT_OF[word.text]].unit if word.text in UNIT_OF and k == 2 else ""
+            if said not in (own_way, *(each.unit for each in word.arguments)):
                 its = word.arguments[min(signs[:k].count(","), len(word.arguments) - 1)]
                 values = {"word": word.text, "name": its.name, "usage": word.usage}
                 values |= {"wanted": _UNIT_NAMES[its.unit], "unit": _UNIT_NAMES.get(said, said)}
-                right = UNIT_OF.get(word.text, "")
-                if right and k == 2 and UNITS[unit.text] == (WAYS[right].unit, 1000):
-                    power = next(iter(signs[k + 3 : k + 4]), POWER.sample)
-                    values["way"] = f"{word.text}({number.text} {right}, {power})"
                 return Diagnostic(codes.OTHER_UNIT, found.span, values)
         return None
 
@@ -507,12 +509,6 @@ class _Usage:
         if right in WORDS:
             values = {"word": right, "right": right}
         return found._replace(values=values) if right else None
-
-
-def _far(word: str, tokens: Sequence[Lexeme]) -> str:
-    """Return a move of one second in place of one that is said by its distance."""
-    is_far = any(UNITS.get(each.text, ("",))[0] == "cm" for each in tokens)
-    return f"{word}(1, 80)" if is_far and word in WORDS and WORDS[word].role == "move" else ""
 
 
 def _usage(word: str) -> str:
