@@ -38,6 +38,9 @@ def image(program: Program) -> str:
         return ""
 
 
+LACKING = ("TS313", "TS315")  # said of a right program that a robot cannot run, when it is sent
+
+
 def said(text: str, language: str) -> list[Message]:
     """Return what `tsc compile` says of a program."""
     try:

@@ -7,7 +7,7 @@ import json
 import pytest
 
 from tests.pupils import corpus
-from tests.studio.programs import said
+from tests.studio.programs import LACKING, said
 from tiniscript import check, compile, robots
 from tiniscript.diagnostics.rendering import Message
 from tiniscript.robots.profile import LANGUAGES
@@ -31,7 +31,8 @@ def test_messages_are_those_of_the_command_and_repairs_help(first: int, part: in
     for k, entry in enumerate(corpus.entries()[part::6]):
         language = LANGUAGES[(first + k) % 2]
         found = checking.check(entry.program.encode(), "tinibot", language)
-        assert [each.message for each in found.findings] == said(entry.program, language)
+        told = [each.message for each in found.findings if each.message.code not in LACKING]
+        assert told == said(entry.program, language)
         for finding in found.findings:
             if finding.repair:
                 offered += 1
