@@ -54,7 +54,7 @@ def test_what_a_program_does_is_printed(drawing: ElementTree.Element) -> None:
 def test_every_world_and_its_way_are_inside_of_the_picture() -> None:
     drawing = ElementTree.fromstring(world_picture("a test"))
     _, _, width, height = map(int, drawing.get("viewBox", "").split())
-    assert {name for name, *_ in DRIVES} == set(worlds.names())
+    assert {name for name, *_ in DRIVES} < set(worlds.names())
     shown = "".join(drawing.itertext())
     for name, example, *_ in DRIVES:
         assert f"{name}: examples/{example}" in shown

@@ -1,4 +1,4 @@
-"""The picture of the three worlds that come with `tsc`, for the pages on worlds and on robots.
+"""The picture of three of the worlds that come with `tsc`, for the pages on worlds and on robots.
 
 Knows the layout. In each world an example drives the virtual robot.
 """
