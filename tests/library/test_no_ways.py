@@ -1,4 +1,4 @@
-"""Moves by centimetres and degrees that leave for a robot: one that has none refuses in words."""
+"""Moves by centimetres and degrees that leave for a robot: which has them, and who refuses."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def program(tmp_path: Path) -> Path:
     return path
 
 
-@pytest.mark.parametrize("robot", ["tinibot", "grabber", "tinibot32"])
+@pytest.mark.parametrize("robot", ["tinibot", "liner"])
 @pytest.mark.parametrize("language", ["en", "es"])
 def test_it_is_refused_before_anything_is_sent(program: Path, robot: str, language: str) -> None:
     for verb in (("upload",), ("compile", "--text")):
@@ -54,15 +54,30 @@ def test_what_is_lacking_has_a_text_of_its_own() -> None:
 
 
 def test_the_page_says_so() -> None:
-    found = checking.check(TEXT.encode(), "tinibot32", "en")
+    found = checking.check(TEXT.encode(), "tinibot", "en")
     assert found.findings[-1].message.code == "TS315" and not found.image
 
 
-def test_the_machine_in_cpp_says_so(program: Path) -> None:
+@pytest.mark.parametrize("robot", ["grabber", "tinibot32", "tinibotc3"])
+def test_a_mega_and_an_esp32_have_them(program: Path, robot: str) -> None:
+    profile = robots.load(robot)
+    assert not lacking(TASKS | GO, profile)
+    assert lacking(GO, profile._replace(kit=profile.kit._replace(speed=0, turn=0))) == "no_ways"
+    assert checking.check(TEXT.encode(), robot, "en").image
+
+
+def test_the_machine_in_cpp_has_them(program: Path) -> None:
     done = inside("run", "--machine", "cpp", program)
-    assert done.code == 2 and "the one in Python has them" in done.err
-    with pytest.raises(tiniscript.UsageError, match="machine="):
-        list(tiniscript.run(TEXT, machine="cpp"))
+    assert done.code == 0 and done.out == inside("run", program).out
+    assert tiniscript.run(TEXT, machine="cpp").events == tiniscript.run(TEXT).events
+
+
+@pytest.mark.parametrize(("language", "words"), [("en", "never gets"), ("es", "nunca llega")])
+def test_a_move_without_power_is_explained(language: str, words: str) -> None:
+    for text in ("F(5 CM, 0)", "X = 0; F(5 CM, X + TIME)"):
+        done = inside("run", "-e", text, "--lang", language)
+        assert done.code == 1 and done.out == "0 FAULT NO_POWER\n"
+        assert words in done.err
 
 
 @pytest.mark.parametrize(("way", "ms"), [("20 CM", "0.741"), ("X CM", "")])
@@ -81,7 +96,7 @@ def test_the_receipt_says_how_long(program: Path) -> None:
 @pytest.mark.parametrize("key", ["speed", "turn"])
 def test_a_profile_may_leave_a_speed_out(key: str) -> None:
     text = PROFILE.read_text(encoding="utf-8")
-    line = f"{key} = {45 if key == 'speed' else 360}\n"
+    line = f"{key} = {45 if key == 'speed' else 382}\n"
     assert line in text
     kit = read(text.replace(line, ""), "mine").kit
     assert getattr(kit, key) == 0

@@ -153,7 +153,8 @@ def run_request(
     parts.append(bytes((len(kit.actuators),)))
     for actuator in kit.actuators:
         parts += [_named(actuator, next(hashes)), pack("<ii", actuator.low, actuator.high)]
-    return b"".join(parts) + pack("<I", not_ready) + _texts([data])
+    parts.append(pack("<III", kit.speed, kit.turn, not_ready))
+    return b"".join(parts) + _texts([data])
 
 
 def _named(device: Device, hashed: int) -> bytes:

@@ -31,6 +31,8 @@ from tests.vm.test_cases import robot_and_senses
 from tiniscript import compile_text, fixed_point
 from tiniscript.bytecode.disassembly import read_listing
 from tiniscript.bytecode.image import (
+    EVERYTHING,
+    GO,
     TASKS,
     unpack,
 )
@@ -99,7 +101,7 @@ def check_listing(machine: Host, case: Case) -> None:
     kit = robot_and_senses(case)[0].kit
     code = read_listing(case.parts["bytecode"])
     beginnings = [code[:length] for length in range(len(code) + 1)]
-    for needs in (0, TASKS):
+    for needs in (0, TASKS, GO, EVERYTHING):
         compare_verdicts(machine, beginnings, len(kit.sensors), len(kit.actuators), needs)
 
 

@@ -10,9 +10,9 @@ from tests.machines import Senses
 from tests.machines.host import Process
 from tests.support.random_codes import changed_kit, images_of_programs, random_images
 from tiniscript.bytecode.image import (
+    EVERYTHING,
     HEADER_BYTES,
     REFUSALS,
-    TASKS,
     ImageRefused,
     pack,
     sealed,
@@ -23,7 +23,7 @@ from tiniscript.bytecode.opcodes import CODE_BYTES
 from tiniscript.bytecode.verify import Refused
 
 
-def python_refusal(data: bytes, has: int = TASKS) -> int:
+def python_refusal(data: bytes, has: int = EVERYTHING) -> int:
     try:
         unpack(data, has)
     except ImageRefused as refused:
@@ -38,7 +38,7 @@ def short_headers() -> Iterator[bytes]:
         yield sealed(whole[:5] + bytes([length]) + whole[6:])
 
 
-def check_images(machine: Process, seed: int, count: int, has: int = TASKS) -> None:
+def check_images(machine: Process, seed: int, count: int, has: int = EVERYTHING) -> None:
     """Headers are refused for the same reasons, and each for some image."""
     images = [*random_images(seed, count), b"", b"T", b"TS", b"S", b"TX", *short_headers()]
     theirs = machine.refusals(images)
@@ -73,7 +73,7 @@ def refusal_of(load: Callable[[], object]) -> str:
     return ""
 
 
-def check_whole_images(machine: Process, seed: int, count: int, has: int = TASKS) -> None:
+def check_whole_images(machine: Process, seed: int, count: int, has: int = EVERYTHING) -> None:
     """Programs with a change in them, for robots of which some have other devices."""
     rng = random.Random(seed)
     senses = Senses(max_ms=100, max_steps=20)

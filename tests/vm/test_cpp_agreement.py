@@ -14,7 +14,7 @@ from collections import Counter
 import pytest
 
 from tests.machines.host import host
-from tests.support import cpp_checks, cpp_edges, cpp_images, cpp_tasks
+from tests.support import cpp_checks, cpp_edges, cpp_images, cpp_tasks, cpp_ways
 from tests.support.casefile import Case
 from tests.support.rows import each_row
 from tests.vm.test_cases import listings_alone
@@ -163,6 +163,20 @@ def test_weeks_may_pass_between_two_turns() -> None:
 @pytest.mark.parametrize("not_ready", [2, 3])
 def test_a_task_whose_reading_is_not_ready_lets_the_others_go_on(not_ready: int) -> None:
     cpp_tasks.check_slow_tasks(host(), not_ready)
+
+
+# -- ways ---------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("seed", range(2))
+def test_random_codes_with_ways(seed: int) -> None:
+    cpp_ways.check_way_codes(host(), seed, 3000)
+
+
+@pytest.mark.sampled("first", keep=2)
+@pytest.mark.parametrize("first", range(0, 1600, 200))
+def test_random_programs_with_ways(first: int) -> None:
+    cpp_ways.check_way_programs(host(), first, 200)
 
 
 # -- images and arithmetic ----------------------------------------------------------------------

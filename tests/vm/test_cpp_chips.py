@@ -21,7 +21,7 @@ from tests.machines.python import ran_python
 from tests.machines.qemu import emulated
 from tests.machines.qemu import missing as emulator_missing
 from tests.oracle import programs
-from tests.support import cpp_checks, cpp_images, cpp_tasks
+from tests.support import cpp_checks, cpp_images, cpp_tasks, cpp_ways
 from tests.support.avr_questions import of_changed_code, of_long_loops
 from tests.support.casefile import Case
 from tests.support.images import image_for, needs_of
@@ -30,7 +30,7 @@ from tests.support.random_codes import random_codes, simple
 from tests.vm.test_cases import compiled, having, listings_alone, robot_and_senses
 from tiniscript import compile_text
 from tiniscript.bytecode.disassembly import read_listing
-from tiniscript.bytecode.image import TASKS, ImageRefused
+from tiniscript.bytecode.image import EVERYTHING, ImageRefused
 from tiniscript.bytecode.verify import Refused
 from tiniscript.kit import Kit
 from tools.builds import chips
@@ -62,8 +62,8 @@ one_chip = pytest.mark.sampled("chip")  # of each row; with `--whole` all
 
 
 def has(chip: str) -> int:
-    """Return what a chip has of `needs`: an Uno has no tasks."""
-    return 0 if chip == "avr" else TASKS
+    """Return what a chip has of `needs`: an ATmega328P has no tasks here, and no ways."""
+    return 0 if chip == "avr" else EVERYTHING
 
 
 def same_on_the_chip(chip: str, image: bytes, kit: Kit, senses: Senses) -> str:
@@ -193,6 +193,20 @@ def test_programs_with_tasks_in_assembly(chip: str) -> None:
         same_on_the_chip(chip, image, cpp_tasks.KIT, senses)
         ran = avr.ran_on(avr.MEGA, image, cpp_tasks.KIT, senses, 2 + number % 3)
         assert ran.trace == cpp_tasks.slow_run(image, senses, 2 + number % 3), ran.trace
+
+
+@one_chip
+@each_emulated
+def test_programs_with_ways(chip: str) -> None:
+    cpp_ways.check_way_codes(emulated(chip), 5, 1500)
+    cpp_ways.check_way_programs(emulated(chip), 2000, 100)
+
+
+@some_chips("mega")
+def test_programs_with_ways_in_assembly(chip: str) -> None:
+    for image, kit, senses in cpp_ways.some_way_programs(3000, 60):
+        if len(image) <= CHIPS[chip].most_bytes:
+            same_on_the_chip(chip, image, kit, senses)
 
 
 @one_chip

@@ -29,8 +29,9 @@ def header(command: str) -> str:
             "//\n// The numbers of the bytecode for assembly, and the handler of each byte.\n\n",
             f'#ifndef {GUARD}\n#define {GUARD}\n\n#include "has_tasks.h"\n\n',
             *(f"#define tini_{name} {number}\n" for name, number in numbers),
-            "\n// What a machine without tasks does about theirs.\n",
+            "\n// What a machine without tasks or ways does about theirs.\n",
             f"#ifndef tiniscript_has_tasks\n{without_tasks()}#endif\n",
+            "#ifndef tiniscript_has_ways\n#define op_way op_none\n#endif\n",
             "\n// The low bits of an instruction that compares are its comparator.\n",
             f"#define tini_comparator_bits {comparator_bits()}\n",
             "\n.macro handlers\n",
@@ -47,6 +48,8 @@ def handler(code: int) -> str:
     Instructions that differ only in what the bits of their codes say have one: those of a
     comparator, of a way to drive, of a number in the code.
     """
+    if code == opcodes.ESCAPE:
+        return "op_way"
     op = opcodes.BY_CODE[code]
     if op is None:
         return "op_none"

@@ -52,13 +52,15 @@ STRUCTS = """\
 struct Kit {
   std::vector<Device> sensors;
   std::vector<Device> actuators;
+  uint32_t speed;
+  uint32_t turn;
 };
 
 // A listing that breaks one rule, for the kit of tinibot.
 struct RefusedCase {
   std::string title;
   std::vector<uint8_t> code;
-  bool may_have_tasks;
+  uint8_t needs;
   Rule rule;
   uint16_t offset;
 };
@@ -88,7 +90,8 @@ def table(kind: str, name: str, rows: Iterable[str]) -> str:
 def kit(name: str, found: Kit) -> str:
     count = len(found.sensors)
     sensors = devices(found.sensors, found.hashes[:count])
-    fields = f"{sensors}, {devices(found.actuators, found.hashes[count:])}"
+    actuators = devices(found.actuators, found.hashes[count:])
+    fields = f"{sensors}, {actuators}, {found.speed}, {found.turn}"
     return (
         f"inline const Kit& {name}() {{\n  static const Kit found = {{{fields}}};\n"
         "  return found;\n}\n"
@@ -109,8 +112,8 @@ def refused_row(case: Case) -> str:
     assert robot_and_senses(case)[0].name == robots.DEFAULT, case.id
     rule = f"Rule::{constant(name)}"
     title = f"{case.title}: {case.parts['refused'].strip()}"
-    may_have_tasks = str(bool(needs_of(code))).lower()
-    return f"{text(title)}, {numbers(code)}, {may_have_tasks}, {rule}, 0x{offset}"
+    needs = needs_of(code)
+    return f"{text(title)}, {numbers(code)}, {needs}, {rule}, 0x{offset}"
 
 
 def program_row(case: Case) -> str:

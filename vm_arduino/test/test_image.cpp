@@ -59,7 +59,7 @@ TEST_CASE("every image of a program is read") {
     uint16_t devices = 0;
     const Verdict verdict =
         verify(image.code, image.code_length, static_cast<uint8_t>(robot.sensors.size()),
-               static_cast<uint8_t>(robot.actuators.size()), &devices, image.has_tasks);
+               static_cast<uint8_t>(robot.actuators.size()), &devices, image.needs);
     CHECK(verdict.rule == Rule::kNone);
     CHECK(devices == image.devices);
   }
@@ -104,7 +104,7 @@ TEST_CASE("an image is refused with the first reason that applies") {
         Refusal::kOtherVersion);
   CHECK(refusal(image_with([](Bytes* image) { (*image)[kStartAt] = kStarts; })) ==
         Refusal::kUnknownStart);
-  CHECK(refusal(image_with([](Bytes* image) { (*image)[kNeedsAt] = 2; })) ==
+  CHECK(refusal(image_with([](Bytes* image) { (*image)[kNeedsAt] = 4; })) ==
         Refusal::kUnknownNeeds);
   CHECK(refusal(image_with([](Bytes* image) { (*image)[kHeaderLengthAt]--; })) ==
         Refusal::kBadHeader);

@@ -18,6 +18,7 @@ std::string ending(const Machine& machine) {
   if (machine.status() == Status::kDone) return "DONE";
   if (machine.fault() == Fault::kOverflow) return "FAULT OVERFLOW";
   if (machine.fault() == Fault::kDivideByZero) return "FAULT DIVIDE_BY_ZERO";
+  if (machine.fault() == Fault::kNoPower) return "FAULT NO_POWER";
   return machine.status() == Status::kFault ? "FAULT BAD_CODE" : "LIMIT";
 }
 
@@ -26,6 +27,8 @@ std::string trace_of(const std::vector<uint8_t>& code, const cases::ProgramCase&
   robot = TracedRobot();
   robot.sensors = program.kit.sensors;
   robot.actuators = program.kit.actuators;
+  robot.speed = program.kit.speed;
+  robot.turn = program.kit.turn;
   robot.readings = program.readings;
   robot.taken.assign(program.kit.sensors.size(), 0);
   Machine machine;

@@ -11,9 +11,9 @@ using namespace tiniscript;
 
 namespace {
 
-Verdict verdict(const std::vector<uint8_t>& code, const cases::Kit& kit, bool has_tasks = false) {
+Verdict verdict(const std::vector<uint8_t>& code, const cases::Kit& kit, uint8_t needs = 0) {
   return verify(code.data(), code.size(), static_cast<uint8_t>(kit.sensors.size()),
-                static_cast<uint8_t>(kit.actuators.size()), has_tasks);
+                static_cast<uint8_t>(kit.actuators.size()), needs);
 }
 
 }  // namespace
@@ -21,7 +21,7 @@ Verdict verdict(const std::vector<uint8_t>& code, const cases::Kit& kit, bool ha
 TEST_CASE("what breaks a rule is refused with the rule and the offset") {
   for (const cases::RefusedCase& each : cases::refused_cases()) {
     INFO(each.title);
-    const Verdict found = verdict(each.code, cases::tinibot(), each.may_have_tasks);
+    const Verdict found = verdict(each.code, cases::tinibot(), each.needs);
     CHECK(static_cast<int>(found.rule) == static_cast<int>(each.rule));
     CHECK(found.offset == each.offset);
   }
@@ -48,7 +48,7 @@ TEST_CASE("every program is accepted, and no program that is cut inside an instr
   for (const cases::ProgramCase& each : cases::program_cases()) {
     INFO(each.title);
     std::vector<uint8_t> code(each.image.begin() + kHeaderBytes, each.image.end());
-    CHECK(verdict(code, each.kit, each.image[kNeedsAt] != 0).rule == Rule::kNone);
+    CHECK(verdict(code, each.kit, each.image[kNeedsAt]).rule == Rule::kNone);
   }
   CHECK(verdict({static_cast<uint8_t>(Op::kMove8F), 10}, cases::tinibot()).rule ==
         Rule::kCutOperand);

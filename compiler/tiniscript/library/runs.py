@@ -6,7 +6,7 @@ import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Literal, NamedTuple
 
-from tiniscript.bytecode.image import GO, Image, ImageRefused, pack
+from tiniscript.bytecode.image import Image, ImageRefused, pack
 from tiniscript.bytecode.verify import Refused
 from tiniscript.kit import Device, Kit
 from tiniscript.library.errors import UsageError
@@ -100,8 +100,6 @@ def run(
     if machine not in ("python", "cpp"):
         raise UsageError("bad_choice", language, {"found": printable(repr(machine))})
     machine_of: MachineOf | None = None
-    if machine == "cpp" and image.needs & GO:
-        raise UsageError("cpp_no_ways", language)
     if machine == "cpp":
         try:
             machine_of = cpp_machine(image, profile)

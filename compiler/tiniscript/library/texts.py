@@ -35,8 +35,6 @@ TEXTS: dict[str, tuple[str, str]] = {
                  "Aquí hay más bytes de los que tiene el programa (TRAILING). Compila su texto otra vez."),
     "DAMAGED": ("This program is damaged: its checksum does not fit (DAMAGED). Compile its text again.",
                 "Este programa está dañado: su suma de control no coincide (DAMAGED). Compila su texto otra vez."),
-    "cpp_no_ways": ("The C++ machine has no CM and no DEG yet. Leave out machine=\"cpp\".",
-                    "La máquina en C++ todavía no tiene CM ni DEG. Quita machine=\"cpp\"."),
     "UNKNOWN_NEEDS": ("This program needs something that this TiniScript does not have (UNKNOWN_NEEDS). Install a newer one.",
                       "Este programa necesita algo que este TiniScript no tiene (UNKNOWN_NEEDS). Instala uno más nuevo."),
     "UNKNOWN_START": ("This program has a start mode that this TiniScript does not know (UNKNOWN_START). Compile its text again.",

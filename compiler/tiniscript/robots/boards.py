@@ -97,7 +97,8 @@ _PWM_2560 = {
 # reset; 18 and 19 are its own USB, and 19 is pulled up until the firmware runs. So is 6, for JTAG.
 _ESP32 = _pins(0, 2, 4, 5, range(12, 20), 21, 22, 23, 25, 26, 27, 32, 33)
 _ESP32C3 = _pins(range(11), 18, 19)
-_TASKS = 1  # the bit of `needs`; a Nano's old bootloader leaves no room for them
+# Bits of `needs`. An Uno has no room for ways, and a Nano's old bootloader leaves none for tasks.
+_TASKS, _WAYS = 1, 2
 
 CHIPS = {
     chip.name: chip
@@ -141,7 +142,7 @@ CHIPS = {
             first_analog=54,
             servo_timer=1,
             tone_timer=2,
-            has=_TASKS,
+            has=_TASKS | _WAYS,
         ),
         Chip(
             "esp32dev",
@@ -159,7 +160,7 @@ CHIPS = {
             reset_pin=0,
             pwm_timers=8,
             pin_volts=3_300,
-            has=_TASKS,
+            has=_TASKS | _WAYS,
         ),
         Chip(
             "esp32c3",
@@ -177,7 +178,7 @@ CHIPS = {
             reset_pin=9,
             pwm_timers=3,
             pin_volts=3_300,
-            has=_TASKS,
+            has=_TASKS | _WAYS,
         ),
     )
 }

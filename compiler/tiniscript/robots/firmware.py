@@ -95,6 +95,8 @@ class Part:
             f"constexpr uint16_t kBoardKit = 0x{kit.fingerprint:04x};",
             f"constexpr uint8_t kBoardSensors = {len(kit.sensors)};",
             f"constexpr uint8_t kBoardActuators = {len(kit.actuators)};",
+            f"constexpr uint32_t kBoardSpeed = {kit.speed};",
+            f"constexpr uint32_t kBoardTurn = {kit.turn};",
             f"constexpr uint16_t kDeviceHashes[] tini_progmem = {{{_hashes(kit)}}};",
             "constexpr uint8_t kKitWords[] tini_progmem = {",
             *_rows(kit_words(kit)),

@@ -70,6 +70,8 @@ class Circumstances(NamedTuple):
     reset: int
     seed: int
     max_run_ms: int
+    speed: int
+    turn: int
     byte_us: int
     eeprom_us: int
     is_spanish: bool

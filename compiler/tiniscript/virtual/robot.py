@@ -172,6 +172,8 @@ class VirtualRobot:
                 reset=reset,
                 seed=self.chance.getrandbits(32),
                 max_run_ms=board.max_run_seconds * 1000,
+                speed=kit.speed,
+                turn=kit.turn,
                 byte_us=round(BITS * 1_000_000 / baud) if baud else 0,
                 eeprom_us=eeprom_us,
                 is_spanish=board.language == "es",

@@ -73,6 +73,8 @@ class WasmImage:
         self.exchange = numbers[first : first + _NUMBERS]
         hashes = kit.hashes
         memory.write(self._store, pack(f"<{len(hashes)}H", *hashes), self.call("hashes"))
+        speeds = pack("<II", kit.speed, kit.turn)
+        memory.write(self._store, speeds, self.call("speeds"))
         refusal = self.call("unpack", len(data))
         if refusal:
             raise ImageRefused(_REFUSAL_NAMES[refusal])

@@ -46,11 +46,11 @@ Fault result_of(Op op, int32_t a, int32_t b, int32_t* result) {
 void answer_verdicts(Request request, size_t end) {
   const uint8_t sensors = request.u8();
   const uint8_t actuators = request.u8();
-  const bool may_have_tasks = request.u8() != 0;
+  const uint8_t needs = request.u8();
   while (request.place() < end) {
     const Bytes code = next_bytes(&request);
     if (code.data == nullptr) return;
-    const Verdict verdict = verify(code.data, code.length, sensors, actuators, may_have_tasks);
+    const Verdict verdict = verify(code.data, code.length, sensors, actuators, needs);
     put_bytes(static_cast<uint8_t>(verdict.rule), 1);
     put_bytes(verdict.offset, 2);
   }

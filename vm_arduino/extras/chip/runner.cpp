@@ -38,6 +38,7 @@ void say_fault() {
   robot.say("FAULT ");
   if (machine.fault() == Fault::kOverflow) return put_text("OVERFLOW\n");
   if (machine.fault() == Fault::kDivideByZero) return put_text("DIVIDE_BY_ZERO\n");
+  if (machine.fault() == Fault::kNoPower) return put_text("NO_POWER\n");
   put_text("BAD_CODE\n");
 }
 
@@ -98,7 +99,7 @@ void answer_run(Request request, bool is_verified) {
     uint16_t devices;
     const Verdict verdict =
         verify(image.code, image.code_length, robot.sensor_count, robot.actuator_count, &devices,
-               image.has_tasks);
+               image.needs);
     if (verdict.rule != Rule::kNone) {
       return end("BREAKS", static_cast<uint8_t>(verdict.rule), verdict.offset);
     }

@@ -45,6 +45,8 @@ bool TracedRobot::read(Request* request) {
     actuator.low = request->i32();
     actuator.high = request->i32();
   }
+  speed = request->u32();
+  turn = request->u32();
   not_ready = request->u32();
   asked = 0;
   return true;
@@ -96,6 +98,8 @@ bool robot_show(int32_t value, bool is_yes_no) {
   put('\n');
   return true;
 }
+
+uint32_t robot_speed(bool is_turn) { return is_turn ? robot.turn : robot.speed; }
 
 uint16_t robot_device_hash(uint16_t device) {
   if (device < robot.sensor_count) return robot.sensors[device].hash;

@@ -30,6 +30,8 @@ struct TracedRobot {
   uint32_t now_ms;
   uint32_t not_ready;  // every so many questions the robot is not ready; 0: always ready
   uint32_t asked;
+  uint32_t speed;
+  uint32_t turn;
   uint8_t sensor_count;
   uint8_t actuator_count;
   Sensor sensors[8];

@@ -114,6 +114,8 @@ void read_robot(RequestReader* request) {
     robot.actuators.push_back({name, is_yes_no, low, request->i32(), hash});
   }
   robot.taken.assign(robot.sensors.size(), 0);
+  robot.speed = request->u32();
+  robot.turn = request->u32();
   robot.not_ready = request->u32();
 }
 
@@ -134,7 +136,7 @@ void answer_run(RequestReader* request, bool is_verified, Writer* answer) {
     uint16_t devices;
     const Verdict verdict =
         verify(image.code, image.code_length, static_cast<uint8_t>(robot.sensors.size()),
-               static_cast<uint8_t>(robot.actuators.size()), &devices, image.has_tasks);
+               static_cast<uint8_t>(robot.actuators.size()), &devices, image.needs);
     answer->u8(static_cast<uint8_t>(verdict.rule));
     answer->u16(verdict.offset);
     if (verdict.rule != Rule::kNone) return;

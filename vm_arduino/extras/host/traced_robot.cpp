@@ -64,6 +64,8 @@ bool robot_show(int32_t value, bool is_yes_no) {
   return true;
 }
 
+uint32_t robot_speed(bool is_turn) { return is_turn ? robot.turn : robot.speed; }
+
 uint16_t robot_device_hash(uint16_t device) {
   if (device < robot.sensors.size()) return robot.sensors[device].hash;
   const size_t number = device - robot.sensors.size();

@@ -25,6 +25,8 @@ struct TracedRobot {
   std::vector<Device> actuators;
   std::vector<std::vector<int32_t>> readings;  // of each sensor
   std::vector<size_t> taken;                   // how many, of each sensor
+  uint32_t speed = 0;  // thousandths of a centimetre in a second
+  uint32_t turn = 0;   // of a degree
   uint64_t now_ms = 0;  // does not wrap around
   std::string trace;
   bool has_tasks = false;  // each of them asks by itself

@@ -255,6 +255,8 @@ int32_t* board_readings() { return table.kept.data(); }
 
 uint32_t board_max_run_ms() { return table.max_run_ms; }
 
+uint32_t robot_speed(bool is_turn) { return is_turn ? 360000 : 45000; }
+
 uint16_t robot_device_hash(uint16_t device) { return table.hashes.at(device); }
 
 const uint8_t* robot_words() { return reinterpret_cast<const uint8_t*>(table.words.data()); }
@@ -278,7 +280,7 @@ void board_release() {
   uint16_t devices;
   const Verdict verdict = 
       verify(reinterpret_cast<const uint8_t*>(table.code.data()), table.code.size(),
-             table.sensors, table.actuators, &devices);
+             table.sensors, table.actuators, &devices, kNeeds);
   if (verdict.rule != Rule::kNone) {
     say("UNVERIFIED", static_cast<int32_t>(verdict.rule), verdict.offset);
   }

@@ -202,6 +202,8 @@ const uint8_t* port_run_image() { return bytes_of(port.run_image); }
 
 uint16_t port_image_length() { return static_cast<uint16_t>(port.held.size()); }
 
+uint32_t robot_speed(bool) { return 0; }
+
 uint16_t robot_device_hash(uint16_t device) { return port.hashes.at(device); }
 
 Answer port_image_byte(uint16_t offset, uint8_t* byte) {

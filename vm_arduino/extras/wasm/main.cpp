@@ -46,6 +46,7 @@ uint16_t devices;
 Machine machine;
 int32_t readings[kDevices];
 Exchange exchange;
+uint32_t speeds[2];        // of the kit, and how fast it turns
 uint16_t hashes[2 * 255];  // more than a profile may have
 
 void ask(void (*host)(), int32_t first, int32_t second = 0) {
@@ -80,6 +81,8 @@ bool robot_show(int32_t value, bool is_yes_no) {
 
 void robot_set(uint8_t actuator, int32_t value) { ask(host_set, actuator, value); }
 
+uint32_t robot_speed(bool is_turn) { return speeds[is_turn]; }
+
 uint16_t robot_device_hash(uint16_t device) { return hashes[device]; }
 
 }  // namespace tiniscript
@@ -94,6 +97,9 @@ tini_exported("room_bytes") uint32_t module_room_bytes() { return kRoom; }
 // Where the hashes of the kit's devices go: those of sensors, then those of actuators.
 tini_exported("hashes") uint16_t* module_hashes() { return hashes; }
 
+// How fast it goes and turns at 100 %, in thousandths.
+tini_exported("speeds") uint32_t* module_speeds() { return speeds; }
+
 // Reads the header of the image in the room; returns the number of what refuses it, or 0.
 tini_exported("unpack") uint32_t module_unpack(uint32_t length) {
   return static_cast<uint32_t>(unpack(room, length, &image));
@@ -102,7 +108,7 @@ tini_exported("unpack") uint32_t module_unpack(uint32_t length) {
 // Verifies the code of the image; returns the number of the rule that it breaks, or 0.
 tini_exported("verify") uint32_t module_verify(uint32_t sensors, uint32_t actuators) {
   verdict = verify(image.code, image.code_length, static_cast<uint8_t>(sensors),
-                   static_cast<uint8_t>(actuators), &devices, image.has_tasks);
+                   static_cast<uint8_t>(actuators), &devices, image.needs);
   return static_cast<uint32_t>(verdict.rule);
 }
 

@@ -50,6 +50,8 @@ struct Own {
   uint8_t sensors;
   uint8_t actuators;
   uint32_t max_run_ms;
+  uint32_t speed;
+  uint32_t turn;
   bool is_spanish;
 };
 
@@ -145,6 +147,8 @@ int32_t* board_readings() { return readings; }
 
 uint32_t board_max_run_ms() { return own.max_run_ms; }
 
+uint32_t robot_speed(bool is_turn) { return is_turn ? own.turn : own.speed; }
+
 uint16_t robot_device_hash(uint16_t device) { return hashes[device]; }
 
 const uint8_t* robot_words() { return words; }
@@ -228,6 +232,7 @@ tini_exported("reading") int32_t* module_reading() { return &reading; }
 // `is_spanish` is the language of its answers.
 tini_exported("begin") void module_begin(uint32_t kit, uint32_t sensors, uint32_t actuators,
                                          uint32_t reset, uint32_t seed, uint32_t max_run_ms,
+                                         uint32_t speed, uint32_t turn,
                                          uint32_t line_us, uint32_t eeprom_us,
                                          uint32_t is_spanish) {
   byte_us = line_us;
@@ -236,6 +241,8 @@ tini_exported("begin") void module_begin(uint32_t kit, uint32_t sensors, uint32_
   own.sensors = static_cast<uint8_t>(sensors);
   own.actuators = static_cast<uint8_t>(actuators);
   own.max_run_ms = max_run_ms;
+  own.speed = speed;
+  own.turn = turn;
   own.is_spanish = is_spanish != 0;
   Board board;
   board.reset = static_cast<Reset>(reset);

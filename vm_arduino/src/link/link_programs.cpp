@@ -114,7 +114,7 @@ tini_noinline uint8_t Link::make(Use use, uint8_t start, const uint8_t* code, ui
   const DeviceInfo& device_info = port_device_info();
   const uint8_t sensors = is_other_kit ? 0 : device_info.sensors;
   const uint8_t actuators = is_other_kit ? 0 : device_info.actuators;
-  const Verdict verdict = verify(code, length, sensors, actuators, &devices, kHasTasks);
+  const Verdict verdict = verify(code, length, sensors, actuators, &devices, kNeeds);
   if (verdict.rule == Rule::kNoSuchDevice && is_other_kit) {
     return refuse(Answer::kWrongKit, port_identity().kit);
   }
@@ -123,8 +123,9 @@ tini_noinline uint8_t Link::make(Use use, uint8_t start, const uint8_t* code, ui
   if (found != kIsFine) return found;
   uint8_t* const image = made_;
   image[kIsaMajorAt] = kIsaMajor;
-  const uint8_t needs = kHasTasks && verdict.offset != 0;
-  image[kIsaMinorAt] = needs;  // as the compiler: 2.0 without tasks
+  uint8_t needs = kHasTasks && verdict.offset != 0;
+  image[kIsaMinorAt] = needs;  // as the compiler: 2.0 without any
+  if (kHasWays) needs = static_cast<uint8_t>(verdict.offset);
   image[kStartAt] = start;
   image[kHeaderLengthAt] = kHeaderBytes;
   image[kDevicesAt] = static_cast<uint8_t>(devices);

@@ -50,13 +50,21 @@ constexpr uint8_t kDevicesPolynomial = 45;
 constexpr uint8_t kStarts = 3;
 constexpr uint8_t kStartPing = 2;
 
-// What this machine has of what an image needs.
+// Bits of what an image needs, and what this machine has of it.
+constexpr uint8_t kNeedsTasks = 1;
+constexpr uint8_t kNeedsWays = 2;
 #ifdef tiniscript_has_tasks
-constexpr uint8_t kNeeds = 1;
+constexpr bool kHasTasks = true;
 #else
-constexpr uint8_t kNeeds = 0;
+constexpr bool kHasTasks = false;
 #endif
-constexpr bool kHasTasks = kNeeds != 0;
+#ifdef tiniscript_has_ways
+constexpr bool kHasWays = true;
+#else
+constexpr bool kHasWays = false;
+#endif
+constexpr uint8_t kNeeds =
+    (kHasTasks ? kNeedsTasks : 0) | (kHasWays ? kNeedsWays : 0);
 
 enum class Op : uint8_t {
   kEnd = 0x00,  // --
@@ -265,7 +273,11 @@ enum class Op : uint8_t {
   kEndWhen = 0x77,  // --
   kTask = 0x7d,  // --
   kWhen = 0x7e,  // --
+  kEscape = 0xff,  // a second byte says which instruction it is
 };
+
+// Whether a second byte is that of GO or of WATCH_GO: the code of MOVE or of WATCH.
+constexpr bool is_way(uint8_t code) { return (code & 0xf4) == 0x40; }
 
 // Why bytes are no image for this machine.
 enum class Refusal : uint8_t {

@@ -115,6 +115,9 @@ op_motors8:
     rjmp 3f
 op_set:
 op_wait8:
+#ifdef tiniscript_has_ways
+op_way:
+#endif
     movw at, r26
     adiw r26, 1
     rjmp 3f

@@ -18,7 +18,7 @@ Refusal read(const uint8_t* data, Image* image) {
   image->code_length = word(data + kCodeLengthAt);
   image->devices = word(data + kDevicesAt);
   image->start = data[kStartAt];
-  image->has_tasks = kHasTasks && data[kNeedsAt] != 0;
+  image->needs = data[kNeedsAt];
   uint32_t check;
   __builtin_memcpy(&check, data + kChecksumAt, sizeof check);
   if (image_checksum(data, image_length(data)) != check) return Refusal::kDamaged;
@@ -65,7 +65,7 @@ tini_noinline Admission admit(const uint8_t* data, uint8_t sensors, uint8_t actu
   if (refusal != Refusal::kNone) return {static_cast<uint8_t>(refusal), 0};
   uint16_t devices;
   const Verdict verdict =
-      verify(image.code, image.code_length, sensors, actuators, &devices, image.has_tasks);
+      verify(image.code, image.code_length, sensors, actuators, &devices, image.needs);
   if (verdict.rule != Rule::kNone) return {static_cast<uint8_t>(verdict.rule), verdict.offset};
   return {static_cast<uint8_t>(check_devices(image, devices)), 0};
 }

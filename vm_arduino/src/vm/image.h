@@ -18,7 +18,7 @@ struct Image {
   uint16_t code_length;
   uint16_t devices;
   uint8_t start;
-  bool has_tasks;  // or may have
+  uint8_t needs;  // bits: what the code may have that not every machine has
 };
 
 // After the checksum come the parts that it covers besides the ten bytes before it: `needs`, fields

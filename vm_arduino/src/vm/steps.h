@@ -87,6 +87,18 @@ tini_always_inline bool Machine::act(Running* run, uint8_t code) {
   return goes_on;
 }
 
+// GO or WATCH_GO, in two bytes.
+tini_always_inline bool Machine::way(Running* run) {
+  run->next++;
+  int32_t* const top = run->top - 1;
+  if (!kHasWays || !pop(run, 2)) return halt(Fault::kBadCode);
+  at_ = offset(run->at);
+  task_.pc = offset(run->next);
+  const bool goes_on = act(static_cast<uint8_t>(Op::kEscape), run->at, top);
+  run->next = code_ + task_.pc;
+  return goes_on;
+}
+
 tini_always_inline bool Machine::until(Running* run, bool stop) {
   task_.pc = offset(run->next);
   const bool goes_on = until(stop);

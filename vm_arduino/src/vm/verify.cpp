@@ -66,7 +66,7 @@ Kind loop_of(Role role) {
 // one function so that most of its state stays in registers: a class with a method for each role
 // takes about 100 bytes more.
 __attribute__((noinline)) Verdict pass(const uint8_t* code, uint16_t length, uint8_t sensors,
-                                       uint8_t actuators, Memory* memory, bool may_have_tasks) {
+                                       uint8_t actuators, Memory* memory, uint8_t may_need) {
   uint16_t at = 0;              // where the instruction that is looked at begins
   uint16_t after = 0;           // where the next one begins
   Role checker = Role::kNone;   // what ends the check of an UNTIL or of a WHEN that is open
@@ -84,6 +84,7 @@ __attribute__((noinline)) Verdict pass(const uint8_t* code, uint16_t length, uin
   Block* top = memory->blocks;  // the innermost block that is open
   uint8_t tasks = 0;            // that have begun beside the main one
   Role closer = Role::kNone;    // of the routine
+  uint8_t needed = 0;           // of `needs`, beside tasks
   bool reads_inside = false;    // a reading was pushed above other values, or in an open join
   join->target = kFarAway;
   top->end = 0;
@@ -105,15 +106,21 @@ __attribute__((noinline)) Verdict pass(const uint8_t* code, uint16_t length, uin
     if (at >= length) break;
 
     // opcode: an invalid one has one byte, and its role refuses it
-    const Shape shape = shape_of(code[at]);
-    if (kHasTasks && !may_have_tasks && shape.role() >= Role::kTask) {
+    const uint8_t* operand = code + at;
+    after = at;
+    if (kHasWays && *operand == static_cast<uint8_t>(Op::kEscape) && (may_need & kNeedsWays) != 0) {
+      if (++after == length) return {Rule::kCutOperand, at};
+      if (!is_way(*++operand)) return {Rule::kUnknownOpcode, at};
+      needed = kNeedsWays;
+    }
+    const Shape shape = shape_of(*operand);
+    if (kHasTasks && (may_need & kNeedsTasks) == 0 && shape.role() >= Role::kTask) {
       return {Rule::kUnknownOpcode, at};
     }
-    after = static_cast<uint16_t>(at + shape.size());
+    after = static_cast<uint16_t>(after + shape.size());
     if (after > length) return {Rule::kCutOperand, at};
 
     // operands
-    const uint8_t* operand = code + at;
     for (uint8_t kinds = shape.kinds; kinds != 0; kinds = static_cast<uint8_t>(kinds >> 4)) {
       const Byte kind = static_cast<Byte>(kinds & 15);
       // a one-byte instruction holds its operand in its code
@@ -295,23 +302,24 @@ __attribute__((noinline)) Verdict pass(const uint8_t* code, uint16_t length, uin
   if (depth != 0 || joins != 0) return {Rule::kStackNotEmpty, at};
   if (checker != Role::kNone) return {Rule::kInsideCheck, at};
   if (top->kind != Kind::kCode || end != 0) return {Rule::kStillOpen, at};
-  return {Rule::kNone, tasks};
+  if (kHasWays && tasks != 0) needed |= kNeedsTasks;
+  return {Rule::kNone, kHasWays ? needed : tasks};
 }
 
 }  // namespace
 
-#ifdef tiniscript_has_tasks
+#if defined(tiniscript_has_tasks) || defined(tiniscript_has_ways)
 Verdict verify(const uint8_t* code, size_t length, uint8_t sensors, uint8_t actuators,
-               uint16_t* devices, bool may_have_tasks) {
+               uint16_t* devices, uint8_t may_need) {
 #else
 Verdict verify(const uint8_t* code, size_t length, uint8_t sensors, uint8_t actuators,
                uint16_t* devices) {
-  constexpr bool may_have_tasks = false;
+  constexpr uint8_t may_need = 0;
 #endif
   if (length > kCodeBytes) return {Rule::kCodeLength, 0};
   Memory memory;  // not cleared, which takes longer than most code: it is written before it is read
   const Verdict verdict =
-      pass(code, static_cast<uint16_t>(length), sensors, actuators, &memory, may_have_tasks);
+      pass(code, static_cast<uint16_t>(length), sensors, actuators, &memory, may_need);
   *devices = memory.devices;
   return verdict;
 }

@@ -16,33 +16,33 @@
 
 namespace tiniscript {
 
-// The first violation of a rule and the offset of its instruction; kNone: accepted, and how many
-// tasks it has beside the main one.
+// The first violation of a rule and the offset of its instruction; kNone: accepted, and what
+// it needs: on a machine with ways bits of `needs`, else how many tasks are beside the main one.
 struct Verdict {
   Rule rule;
   uint16_t offset;
 };
 
 // Whether a machine with this many sensors and actuators (0 to 255) may run `code`. Its image says
-// whether it may have tasks. Puts the hash of the used devices into `*devices`, which is undefined
+// what it may have. Puts the hash of the used devices into `*devices`, which is undefined
 // if the code is refused.
-#ifdef tiniscript_has_tasks
+#if defined(tiniscript_has_tasks) || defined(tiniscript_has_ways)
 Verdict verify(const uint8_t* code, size_t length, uint8_t sensors, uint8_t actuators,
-               uint16_t* devices, bool may_have_tasks = false);
+               uint16_t* devices, uint8_t needs = 0);
 #else
 Verdict verify(const uint8_t* code, size_t length, uint8_t sensors, uint8_t actuators,
                uint16_t* devices);
 
 inline Verdict verify(const uint8_t* code, size_t length, uint8_t sensors, uint8_t actuators,
-                      uint16_t* devices, bool) {
+                      uint16_t* devices, uint8_t) {
   return verify(code, length, sensors, actuators, devices);
 }
 #endif
 
 inline Verdict verify(const uint8_t* code, size_t length, uint8_t sensors, uint8_t actuators,
-                      bool may_have_tasks = false) {
+                      uint8_t needs = 0) {
   uint16_t devices;
-  return verify(code, length, sensors, actuators, &devices, may_have_tasks);
+  return verify(code, length, sensors, actuators, &devices, needs);
 }
 
 }  // namespace tiniscript

@@ -104,6 +104,7 @@ class Machine {
   bool join(Running* run, bool decisive, uint16_t distance);
   bool stay(Running* run);
   bool act(Running* run, uint8_t code);
+  bool way(Running* run);
   bool until(Running* run, bool stop);
   bool push_variable(Running* run, uint8_t number);
   bool push_sensor(Running* run, uint8_t number);
@@ -122,6 +123,7 @@ class Machine {
   bool until(bool stop) tini_called_by_assembly;
   bool sense(uint8_t number) tini_called_by_assembly;
   void powers(uint8_t code, int8_t power);
+  bool go_ms(uint8_t code, int8_t power, int32_t way, uint32_t* time_ms);
   bool show(int32_t value, bool is_yes_no);
   bool sends();
 

@@ -190,6 +190,8 @@ tini_always_inline bool Machine::step(Running* run) {
     case Op::kEndTask:
     case Op::kEndWhen:
       tini_each_short(kSet) : return act(run, code);
+    case Op::kEscape:
+      return way(run);
     case Op::kUntil:
       return pop(run, 1) && until(run, *run->top != 0);
 

@@ -62,12 +62,50 @@ inline bool Machine::show(int32_t value, bool is_yes_no) {
 #endif
 }
 
+// Puts into `*time_ms` how long it takes to go or to turn that way: `way` * 100000 / (speed * power),
+// rounded half away from zero. False: it never comes there, or not in time.
+//
+// It multiplies bit by bit and keeps the rest of the division, so that nothing has more than 32
+// bits: a kit's speed is at most 10^7.
+bool Machine::go_ms(uint8_t code, int8_t power, int32_t way, uint32_t* time_ms) {
+  constexpr uint32_t kMostMs = 0x7fffffff;
+  constexpr uint32_t kTimes = 100000;
+  *time_ms = 0;
+  if (way <= 0) return true;
+  const uint32_t divisor = robot_speed((code & 2) != 0) * static_cast<uint8_t>(power);
+  if (divisor == 0) return goes_on(Fault::kNoPower);
+  const uint32_t more = static_cast<uint32_t>(way) / divisor;
+  const uint32_t more_rest = static_cast<uint32_t>(way) % divisor;
+  uint32_t found = 0;
+  uint32_t rest = 0;
+  for (uint32_t bit = uint32_t{1} << 16; bit != 0; bit >>= 1) {
+    const bool adds = (kTimes & bit) != 0;
+    if (found > kMostMs / 2) return goes_on(Fault::kOverflow);
+    found += found;
+    rest += rest + (adds ? more_rest : 0);
+    while (rest >= divisor) {
+      rest -= divisor;
+      found++;
+    }
+    if (adds) found += more;
+    if (found > kMostMs) return goes_on(Fault::kOverflow);
+  }
+  if (rest >= divisor - rest) found++;
+  *time_ms = found;
+  return found <= kMostMs || goes_on(Fault::kOverflow);
+}
+
 // Executes the instruction `code` at `bytes`, which lies before `task_.pc`; `top` points to the top
 // of the stack. Returns whether the next instruction may run now.
 //
 // A time is the first value that an instruction takes, a power the last one; without values they
 // are its first and last operand. Both are read before the switch, which takes half as much flash.
 bool Machine::act(uint8_t code, const uint8_t* bytes, int32_t* top) {
+  const bool is_escaped = kHasWays && code == static_cast<uint8_t>(Op::kEscape);
+  if (is_escaped) {
+    code = bytes[1];
+    if (!is_way(code)) return fail();
+  }
   const Shape shape = shape_of(code);
   const Family family = shape.family;
   // The check of an UNTIL may contain these; its move is unchanged.
@@ -88,6 +126,7 @@ bool Machine::act(uint8_t code, const uint8_t* bytes, int32_t* top) {
   const int8_t low = family == Family::kMotors ? -100 : 0;
   const int8_t power = takes ? percent(*top, low) : signed8(bytes[shape.size() - 1]);
   uint32_t time_ms = takes ? duration(shape.pops() == 1 ? *top : top[-1]) : time8(first);
+  if (is_escaped && !go_ms(code, power, top[-1], &time_ms)) return false;
   switch (family) {
     case Family::kShowYesNo:
       if (*top != 0) *top = 1;

@@ -7,7 +7,7 @@ from argparse import Namespace
 from collections.abc import Iterator
 from typing import cast
 
-from tiniscript.bytecode.image import GO, Image
+from tiniscript.bytecode.image import Image
 from tiniscript.cli import images, inputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.faults import fault_text
@@ -55,8 +55,6 @@ def run(options: Namespace, language: str) -> int:
 
 def _cpp_machine(image: Image, robot: Robot) -> MachineOf:
     """Return the C++ machine with a verified image."""
-    if image.needs & GO:
-        raise CommandError(2, "cpp_no_ways")
     try:
         return cpp_machine(image, robot)
     except (ImportError, OSError, RuntimeError) as why:  # missing, or not for this computer

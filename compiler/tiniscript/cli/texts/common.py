@@ -129,8 +129,6 @@ TEXTS: dict[str, tuple[str, str]] = {
                         "tsc: todavía no hay sketches para la placa {chip}. Hay para: {known}. El mismo programa para un Uno:  tsc show --arduino --robot tinibot"),
     "sketch_no_ways": ("tsc: in a sketch CM and DEG take numbers, and so does the power beside them. Without a robot:  tsc run {file}",
                        "tsc: en un sketch, CM y DEG llevan números, y la potencia de al lado también. Sin robot:  tsc run {file}"),
-    "cpp_no_ways": ("tsc: the C++ machine has no CM and no DEG yet. Leave out --machine cpp: the one in Python has them.",
-                    "tsc: la máquina en C++ todavía no tiene CM ni DEG. Quita --machine cpp: la de Python los tiene."),
     "sketch_no_tasks": ("tsc: a sketch does one thing after the other, so it has no TASK and no WHEN. Without a robot:  tsc run {file}",
                         "tsc: un sketch hace una cosa después de otra; por eso no tiene TASK ni WHEN. Sin robot:  tsc run {file}"),
     "output_needs_arduino": ("tsc: -o is where a sketch goes. Try:  tsc show --arduino prog.ts -o {file}",

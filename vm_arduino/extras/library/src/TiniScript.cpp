@@ -65,7 +65,7 @@ uint8_t TiniPlayer::check(uint16_t length) {
   uint16_t devices = 0;
   const Verdict verdict =
       verify(image_.code, image_.code_length, kit_->sensors, kit_->actuators, &devices,
-             image_.has_tasks);
+             image_.needs);
   if (verdict.rule != Rule::kNone) return static_cast<uint8_t>(verdict.rule);
   const Refusal kit = check_devices(image_, devices);
   if (kit != Refusal::kNone) return static_cast<uint8_t>(kit);
@@ -109,6 +109,7 @@ bool robot_show(int32_t value, bool is_yes_no) {
   return show != nullptr ? show(value, is_yes_no) : player->robot()->show(value, is_yes_no);
 }
 void robot_set(uint8_t actuator, int32_t value) { player->robot()->set(actuator, value); }
+uint32_t robot_speed(bool is_turn) { return player->robot()->speed(is_turn); }
 uint16_t robot_device_hash(uint16_t device) { return player->kit().hash(device); }
 
 }  // namespace tiniscript

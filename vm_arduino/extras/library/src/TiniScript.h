@@ -45,6 +45,13 @@ class TiniRobot {
     (void)actuator;
     (void)value;
   }
+
+  // How fast it goes, or turns, at 100 %: thousandths of a centimetre or a degree in a second, as
+  // the profile's `speed` and `turn` say. 0: not known, and F(20 CM, 60) is the fault NO_POWER.
+  virtual uint32_t speed(bool is_turn) const {
+    (void)is_turn;
+    return 0;
+  }
 };
 
 // The devices of a robot: one line for each, as `bytecode_spec.md` hashes it, first the sensors,

@@ -14,6 +14,8 @@ namespace tiniscript {
 constexpr uint16_t kBoardKit = 0x74b5;
 constexpr uint8_t kBoardSensors = 3;
 constexpr uint8_t kBoardActuators = 2;
+constexpr uint32_t kBoardSpeed = 40000;
+constexpr uint32_t kBoardTurn = 296000;
 constexpr uint16_t kDeviceHashes[] tini_progmem = {0x0920, 0xe0c8, 0x3dd4, 0x5d07, 0x97d3};
 constexpr uint8_t kKitWords[] tini_progmem = {
     0x44, 0x49, 0x53, 0x54, 0x41, 0x4e, 0x43, 0xc5, 0x00, 0x54, 0x45, 0x4d, 0x50, 0x45, 0x52, 0x41,

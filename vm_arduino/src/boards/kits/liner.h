@@ -11,6 +11,8 @@ namespace tiniscript {
 constexpr uint16_t kBoardKit = 0xfc65;
 constexpr uint8_t kBoardSensors = 4;
 constexpr uint8_t kBoardActuators = 1;
+constexpr uint32_t kBoardSpeed = 60000;
+constexpr uint32_t kBoardTurn = 747000;
 constexpr uint16_t kDeviceHashes[] tini_progmem = {0xbc99, 0xd575, 0x3dd4, 0x5c59, 0x97d3};
 constexpr uint8_t kKitWords[] tini_progmem = {
     0x4c, 0x49, 0x4e, 0x45, 0x5f, 0xcc, 0x01, 0x4c, 0x49, 0x4e, 0x45, 0x5f, 0xd2, 0x01, 0x42, 0x55,
@@ -78,6 +80,8 @@ namespace tiniscript {
 constexpr uint16_t kBoardKit = 0xfc65;
 constexpr uint8_t kBoardSensors = 4;
 constexpr uint8_t kBoardActuators = 1;
+constexpr uint32_t kBoardSpeed = 60000;
+constexpr uint32_t kBoardTurn = 747000;
 constexpr uint16_t kDeviceHashes[] tini_progmem = {0xbc99, 0xd575, 0x3dd4, 0x5c59, 0x97d3};
 constexpr uint8_t kKitWords[] tini_progmem = {
     0x4c, 0x49, 0x4e, 0x45, 0x5f, 0xcc, 0x01, 0x4c, 0x49, 0x4e, 0x45, 0x5f, 0xd2, 0x01, 0x42, 0x55,
