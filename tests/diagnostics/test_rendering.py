@@ -28,7 +28,7 @@ KIT = Kit(
         Device("LED", YES_NO, "", 0, 1),
     ),
     speed=45_000,
-    turn=382_000,
+    turn=360_000,
 )
 LANGUAGES = ("en", "es")
 TEXTS: dict[str, dict[str, Any]] = {

@@ -96,7 +96,7 @@ def test_the_receipt_says_how_long(program: Path) -> None:
 @pytest.mark.parametrize("key", ["speed", "turn"])
 def test_a_profile_may_leave_a_speed_out(key: str) -> None:
     text = PROFILE.read_text(encoding="utf-8")
-    line = f"{key} = {45 if key == 'speed' else 382}\n"
+    line = f"{key} = {45 if key == 'speed' else 360}\n"
     assert line in text
     kit = read(text.replace(line, ""), "mine").kit
     assert getattr(kit, key) == 0

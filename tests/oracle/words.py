@@ -33,7 +33,7 @@ PAPER_KIT = Kit(
     ),
     actuators=(),
     speed=45_000,
-    turn=382_000,
+    turn=360_000,
 )
 
 

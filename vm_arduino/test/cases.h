@@ -47,7 +47,7 @@ struct ProgramCase {
 };
 
 inline const Kit& tinibot() {
-  static const Kit found = {{{"LIGHT_R", false, 0, 1023000, 8169}, {"LIGHT_L", false, 0, 1023000, 65451}, {"DISTANCE", false, 0, 400000, 2336}}, {}, 45000, 382000};
+  static const Kit found = {{{"LIGHT_R", false, 0, 1023000, 8169}, {"LIGHT_L", false, 0, 1023000, 65451}, {"DISTANCE", false, 0, 400000, 2336}}, {}, 45000, 360000};
   return found;
 }
 
@@ -62,12 +62,12 @@ inline const Kit& liner() {
 }
 
 inline const Kit& tinibot32() {
-  static const Kit found = {{{"LIGHT_R", false, 0, 1023000, 8169}, {"LIGHT_L", false, 0, 1023000, 65451}, {"DISTANCE", false, 0, 400000, 2336}}, {}, 45000, 382000};
+  static const Kit found = {{{"LIGHT_R", false, 0, 1023000, 8169}, {"LIGHT_L", false, 0, 1023000, 65451}, {"DISTANCE", false, 0, 400000, 2336}}, {}, 45000, 360000};
   return found;
 }
 
 inline const Kit& tinibotc3() {
-  static const Kit found = {{{"LIGHT_R", false, 0, 1023000, 8169}, {"LIGHT_L", false, 0, 1023000, 65451}, {"DISTANCE", false, 0, 400000, 2336}}, {}, 45000, 382000};
+  static const Kit found = {{{"LIGHT_R", false, 0, 1023000, 8169}, {"LIGHT_L", false, 0, 1023000, 65451}, {"DISTANCE", false, 0, 400000, 2336}}, {}, 45000, 360000};
   return found;
 }
 
@@ -686,8 +686,8 @@ inline const std::vector<ProgramCase>& program_cases() {
       {"values: Whole numbers of 16 bits", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 82, 0, 25, 29, 180, 30, 0, 2, 48, 117, 160, 2, 118, 190, 161, 240, 0, 48, 117, 2, 177, 57, 128, 176, 16, 224, 48, 117, 2, 178, 57, 244, 0, 47, 117, 2, 179, 57, 240, 1, 118, 190, 2, 180, 57, 129, 176, 16, 224, 118, 190, 2, 181, 57, 242, 1, 119, 190, 2, 182, 57, 2, 255, 127, 57, 2, 0, 128, 57, 2, 137, 65, 57, 2, 138, 65, 57, 2, 119, 190, 57, 2, 118, 190, 57, 128, 129, 16, 57},
        "0 SHOW 1\n0 SHOW 2\n0 SHOW 3\n0 SHOW 4\n0 SHOW 5\n0 SHOW 6\n0 SHOW 32767\n0 SHOW -32768\n0 SHOW 16777\n0 SHOW 16778\n0 SHOW -16777\n0 SHOW -16778\n0 SHOW 13222\n0 DONE\n"},
-      {"ways: So far, at 45 cm and 382 degrees in a second", tinibot(), {{}, {}, {}}, 60000, 1,
-       {84, 83, 2, 1, 0, 15, 0, 0, 23, 0, 163, 230, 31, 114, 2, 187, 191, 255, 64, 1, 45, 195, 255, 65, 4, 12, 117, 1, 0, 191, 255, 66, 2, 126, 1, 190, 255, 67},
+      {"ways: So far, at 45 cm and 360 degrees in a second", tinibot(), {{}, {}, {}}, 60000, 1,
+       {84, 83, 2, 1, 0, 15, 0, 0, 19, 0, 11, 28, 235, 178, 2, 187, 191, 255, 64, 1, 45, 195, 255, 65, 194, 191, 255, 66, 2, 104, 1, 190, 255, 67},
        "0 MOTORS 60 60\n741 MOTORS 0 0\n741 MOTORS -100 -100\n1741 MOTORS 0 0\n1741 MOTORS -60 60\n2158 MOTORS 0 0\n2158 MOTORS 50 -50\n4158 MOTORS 0 0\n4158 DONE\n"},
       {"ways: Half a millisecond is one, a way below 0 is none, and a power is limited first", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 1, 0, 15, 0, 0, 28, 0, 185, 118, 239, 35, 2, 176, 160, 3, 9, 0, 189, 255, 64, 128, 181, 17, 191, 255, 64, 128, 185, 16, 128, 2, 44, 1, 16, 255, 64, 128, 128, 255, 67},
@@ -702,7 +702,7 @@ inline const std::vector<ProgramCase>& program_cases() {
        {84, 83, 2, 1, 0, 15, 0, 0, 14, 0, 208, 250, 223, 158, 2, 4, 0, 148, 53, 119, 160, 128, 195, 255, 64, 128, 177, 255, 64},
        "0 MOTORS 100 100\n44444444 MOTORS 0 0\n44444444 FAULT OVERFLOW\n"},
       {"ways: A higher task has the motors meanwhile", tinibot(), {{}, {}, {}}, 60000, 1,
-       {84, 83, 2, 1, 0, 15, 0, 0, 20, 0, 65, 132, 173, 215, 3, 125, 11, 0, 81, 10, 4, 56, 149, 0, 0, 195, 255, 67, 118, 3, 228, 87, 195, 255, 64},
+       {84, 83, 2, 1, 0, 15, 0, 0, 17, 0, 24, 82, 230, 183, 3, 125, 8, 0, 81, 10, 1, 36, 195, 255, 67, 118, 3, 228, 87, 195, 255, 64},
        "0 MOTORS 100 100\n100 MOTORS 100 -100\n200 MOTORS 0 0\n200 MOTORS 100 100\n600 MOTORS 0 0\n600 DONE\n"},
   };
   return found;

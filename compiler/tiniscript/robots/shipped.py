@@ -200,7 +200,7 @@ def _tinibot() -> Robot:
             ),
             actuators=(),
             speed=45000,
-            turn=382000,
+            turn=360000,
         ),
         board=Board(
             chip="uno",
@@ -270,7 +270,7 @@ def _tinibot32() -> Robot:
             ),
             actuators=(),
             speed=45000,
-            turn=382000,
+            turn=360000,
         ),
         board=Board(
             chip="esp32dev",
@@ -340,7 +340,7 @@ def _tinibotc3() -> Robot:
             ),
             actuators=(),
             speed=45000,
-            turn=382000,
+            turn=360000,
         ),
         board=Board(
             chip="esp32c3",
