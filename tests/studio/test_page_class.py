@@ -50,6 +50,7 @@ def robot() -> Iterator[PtyRobot]:
 def taught(robot: PtyRobot, browser: Browser) -> Iterator[Class]:
     """A class that many tests share: Python takes a while to start in each page of it."""
     with studio.taught([robot.port]) as made:
+        made.room.teach({"do": "class_places", "places": 9})  # left ones keep theirs for 5 s
         yield made
 
 
