@@ -45,6 +45,13 @@ def test_code_may_be_as_long_as_the_limit() -> None:
     assert refusal(stop * (CODE_BYTES + 1)) == "CODE_LENGTH"
 
 
+def test_a_way_that_is_cut_behind_its_first_byte() -> None:
+    assert refusal(bytes.fromhex("bcbfff")) == "CUT_OPERAND"
+    assert refusal(bytes.fromhex("bcbfff40")) == ""
+    with pytest.raises(Refused, match="UNKNOWN_OPCODE"):
+        verify(bytes.fromhex("bcbfff"), SENSORS, ACTUATORS, needs=0)
+
+
 def runs_safely(code: bytes, seed: int) -> None:
     """Run accepted code; no list of the machine may be left, and nothing may grow too large."""
     machine = Machine(code, Nothing(), SENSORS, seed)
