@@ -471,7 +471,7 @@ def _slip(code: str, step: Step | None, before: Sequence[Lexeme], after: Sequenc
         was = re.match(r"\w+|\W+", was).group().strip()  # type: ignore[union-attr]
     now = laid_out(right) or shown
     now = shown if now == "FIN" and shown in ENDED else now  # of a block, whose end is known
-    now = now.partition("(")[0] if code == _WORD_CODE else now
+    now = re.split("[()]", now, maxsplit=1)[0] if code == _WORD_CODE else now
     word = _word(code, old, new, start, other)
     known = WORDS.get(word)
     until = len(fix[head]) if len(told) < len(fix) else None  # one instruction became two
