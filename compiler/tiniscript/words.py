@@ -178,11 +178,6 @@ NOTE_WORDS = {"DO": "262", "RE": "294", "MI": "330", "FA": "349", "SOL": "392", 
 # fmt: on
 
 
-def usage_of(word: str) -> str:
-    """Return how a word is used, as messages print it: `F(time, power)`; else the word."""
-    return WORDS[word].usage if word in WORDS else word
-
-
 def names_of(argument: str) -> tuple[str, ...]:
     """Return how pupils name a value of a call, `power`: POWER, POTENCIA, VEL."""
     return (*PLACEHOLDERS.get(argument, ()), *_OTHER_NAMES.get(argument, ()))

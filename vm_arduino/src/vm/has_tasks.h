@@ -2,18 +2,18 @@
 //
 // Tasks take about 2,030 bytes of flash and 127 of RAM. An Uno has them with the compiler's options
 // of platformio.ini (`tiniscript_with_tasks`). With those of the Arduino IDE it has none, nor has a
-// Nano, whose old bootloader leaves 30,720 bytes, nor what says `tiniscript_no_tasks`.
+// Nano, whose old bootloader leaves 30,720 bytes.
 //
-// No ATmega328P has CM and DEG, for want of flash, nor has what says `tiniscript_no_ways`.
+// No ATmega328P has CM and DEG, for want of flash.
 
 #ifndef TINISCRIPT_VM_HAS_TASKS_H_
 #define TINISCRIPT_VM_HAS_TASKS_H_
 
-#if !defined(tiniscript_no_tasks) && (!defined(__AVR_ATmega328P__) || defined(tiniscript_with_tasks))
+#if !defined(__AVR_ATmega328P__) || defined(tiniscript_with_tasks)
 #define tiniscript_has_tasks
 #endif
 
-#if !defined(tiniscript_no_ways) && !defined(__AVR_ATmega328P__)
+#ifndef __AVR_ATmega328P__
 #define tiniscript_has_ways
 #endif
 
