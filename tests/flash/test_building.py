@@ -10,6 +10,7 @@ import signal
 import subprocess
 import sys
 from argparse import Namespace
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -22,7 +23,7 @@ from tests.support.casefile import ROOT
 from tests.support.command import Tsc, process
 from tests.support.needs import need
 from tests.support.platformio import prepared
-from tests.support.waiting import HANGS_S
+from tests.support.waiting import HANGS_S, until
 from tiniscript import robots
 from tiniscript.cli import firmware_build
 from tiniscript.cli.errors import CommandError
@@ -350,8 +351,16 @@ time.sleep(600)
     _, said = running.communicate(timeout=HANGS_S)
     assert running.returncode == 2 and "Traceback" not in said
     for number in told.read_text().split():
-        stat = Path(f"/proc/{number}/stat")
-        assert not stat.exists() or stat.read_text().rpartition(")")[2].split()[0] == "Z"
+        until(partial(has_ended, number), f"the end of {number}")
+
+
+def has_ended(number: str) -> bool:
+    """Whether a process is gone, or waits only for somebody to ask how it ended."""
+    try:
+        stat = Path(f"/proc/{number}/stat").read_text()
+    except (FileNotFoundError, ProcessLookupError):
+        return True
+    return stat.rpartition(")")[2].split()[0] == "Z"
 
 
 # -- what is missing

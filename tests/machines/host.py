@@ -228,18 +228,13 @@ def made(
     """Return what the compiler makes of `words`, named after all that it is made from."""
     made = builds / (_key(compiler, flags, made_from) + suffix)
     if not made.exists():
-        builds.mkdir(mode=0o700, exist_ok=True)
-        own = made.with_suffix(f".{os.getpid()}-{get_ident()}")
         same = _preprocessed(compiler, builds, flags, words) if suffix == ".o" else made
-        if same.exists():
+        once(same, lambda own: _compiled(compiler, [*flags, *words, "-o", str(own)]))
+        if same != made:
+            own = made.with_suffix(f".{os.getpid()}-{get_ident()}")
             own.hardlink_to(same)
-        else:
-            _compiled(compiler, [*flags, *words, "-o", str(own)])
-            if same != made:
-                own.replace(same)
-                own.hardlink_to(same)
-        own.replace(made)
-        own.unlink(missing_ok=True)  # it stays where both are one file already
+            own.replace(made)
+            own.unlink(missing_ok=True)  # it stays where both are one file already
     return made
 
 
