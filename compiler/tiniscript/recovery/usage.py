@@ -293,7 +293,9 @@ class _Usage:
         """A question in words, in the brackets of a header."""
         text = self.source.text
         tokens = self.tokens(self.piece(found.span))
-        if (said := self.amount(found) or self.unit(found, tokens)) is not None:
+        if (said := self.foreign(found, tokens) or self.amount(found)) is not None:
+            return said
+        if (said := self.unit(found, tokens)) is not None:
             return said
         before = self.source[Span(self.piece(found.span).start, found.span.end)]
         head = _LAST_HEAD.search(before)
@@ -313,6 +315,17 @@ class _Usage:
         word = head[1].upper()
         values = {"word": word, "question": WORDS[word].arguments[0].sample}
         return Diagnostic(codes.IN_WORDS, found.span, values)
+
+    def foreign(self, found: Diagnostic, tokens: list[Lexeme]) -> Diagnostic | None:
+        """The values of a word that this robot does not have: whoever writes it wants the word."""
+        called = [each.text for each in tokens[1:2]] == ["("] and tokens[0].kind is WORD
+        word = tokens[0].text if called else ""
+        known = self.names.known
+        if not word or self.command(word) or word in known.instructions | known.actuators:
+            return None
+        start = self.piece(found.span).start
+        span = Span(start, start + len(tokens[0].source or word))
+        return Diagnostic(codes.UNKNOWN_WORD, span, {"found": word})
 
     def unit(self, found: Diagnostic, tokens: list[Lexeme]) -> Diagnostic | None:
         """A move that is said in degrees, steps or centimetres: it takes a time."""

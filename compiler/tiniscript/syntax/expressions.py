@@ -253,8 +253,8 @@ class ExpressionParser:
         if token.kind in (NUMBER, WORD, "("):
             word = self.cursor.source[Span(0, bracket.start)].rpartition("\n")[2].split("(")[-1]
             word = word.split(";")[-1].split("|")[-1].strip().upper()
-            usage = WORDS[word].usage if word in WORDS else ""
-            self.reporter.fail(codes.MISSING_COMMA, token.span, usage=usage)
+            usage = {"usage": WORDS[word].usage} if word in WORDS else {}
+            self.reporter.fail(codes.MISSING_COMMA, token.span, **usage)
         self.reporter.fail(codes.MISSING_CLOSE, bracket.span, before=before.text)
 
 
