@@ -1,7 +1,8 @@
 """What `pyproject.toml` cannot say.
 
-A wheel brings the firmware's sources, and nothing stale. One without the studio's page or without
-firmware that is ready says so; in a clone, at a terminal, the page is built if somebody wants it.
+A wheel brings the firmware's sources and the texts of each language, and nothing stale. One without
+the studio's page or firmware that is ready says so; in a clone, at a terminal, the page is built if
+somebody wants it.
 The links of its description lead to the project's address, where `pyproject.toml` has one. With
 SOURCE_DATE_EPOCH a source package has the same bytes whenever and wherever it is made, as
 setuptools does that for a wheel.
@@ -81,17 +82,28 @@ class Build(build_py):
             for path, target in self._copies().items():
                 target.parent.mkdir(parents=True, exist_ok=True)
                 self.copy_file(str(path), str(target))
+            for target, data in self._catalogues().items():
+                target.parent.mkdir(parents=True, exist_ok=True)
+                target.write_bytes(data)
             atexit.register(tell, missing(Path(self.build_lib)))  # below all that setuptools says
 
     def _copies(self) -> dict[Path, Path]:
         inside = Path(self.build_lib) / INSIDE
         return {path: inside / path.relative_to(PROJECT) for path in sources()}
 
+    def _catalogues(self) -> dict[Path, bytes]:
+        """Return the texts of each language as the package reads them."""
+        sys.path.insert(0, str(ROOT / "compiler"))
+        from tiniscript.languages import machine_objects
+
+        folder = Path(self.build_lib) / "tiniscript" / "languages"
+        return {folder / name: data for name, data in machine_objects().items()}
+
     def get_outputs(self, include_bytecode: bool = True) -> list[str]:
         outputs: list[str] = super().get_outputs(include_bytecode)
         if self.editable_mode:
             return outputs
-        return [*outputs, *map(str, self._copies().values())]
+        return [*outputs, *map(str, (*self._copies().values(), *self._catalogues()))]
 
 
 class Sources(sdist):

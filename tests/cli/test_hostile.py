@@ -13,7 +13,6 @@ import pytest
 from tests.support.command import PROGRAM, TSC, Tsc, process
 from tiniscript.bytecode.image import unpack
 from tiniscript.cli import CLOSED, help, main
-from tiniscript.cli.texts import common
 
 # -- anything whatever --------------------------------------------------------------------------
 
@@ -102,17 +101,6 @@ def test_no_verb_and_no_such_verb(tsc: Tsc) -> None:
     assert done.code == 2
     assert "compile" in done.err
     assert tsc("--lang", "es", "check", "-e", "W(1)").out == "-e: sin errores.\n"
-
-
-def test_texts_have_the_same_gaps_in_both_languages() -> None:
-    from string import Formatter
-
-    tables = tuple(common.tables())
-    together = {key: both for table in tables for key, both in table.items()}
-    assert len(together) == sum(map(len, tables)), "no key is in two tables"
-    for key, both in together.items():
-        gaps = [{name for _, name, _, _ in Formatter().parse(text) if name} for text in both]
-        assert gaps[0] == gaps[1], key
 
 
 def test_the_language_comes_from_the_locale(tsc: Tsc, monkeypatch: pytest.MonkeyPatch) -> None:

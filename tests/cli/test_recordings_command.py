@@ -10,6 +10,7 @@ import pytest
 
 from tests.support.casefile import ROOT
 from tests.support.command import Done, Tsc, process
+from tests.support.texts import in_all
 from tiniscript import compile
 from tiniscript.cli.commands import upload
 from tiniscript.cli.errors import CommandError
@@ -19,7 +20,6 @@ from tiniscript.cli.robot.event_printer import EventPrinter
 from tiniscript.cli.robot.recorder import Recorder
 from tiniscript.cli.robot.run_monitor import Saving
 from tiniscript.cli.robot.simulator import CommandSimulator
-from tiniscript.cli.texts.simulator import VIRTUAL_TEXTS
 from tiniscript.studio import recordings
 from tiniscript.studio.recordings import Recorded, read, replay
 from tiniscript.virtual import worlds
@@ -126,7 +126,7 @@ def test_a_recording_that_another_program_has_saved_is_read(
 )
 def test_the_command_says_what_the_page_says(what: str) -> None:
     page = PAGE_TEXTS.read_text(encoding="utf-8")
-    for said in VIRTUAL_TEXTS[f"replay_{what}"]:
+    for said in in_all(f"replay_{what}"):
         assert f"'{said}'" in page
 
 

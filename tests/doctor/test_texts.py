@@ -6,7 +6,8 @@ from string import Formatter
 
 import pytest
 
-from tiniscript.cli.texts.doctor import DOCTOR_TEXTS
+from tests.support.texts import in_all
+from tests.support.texts import said as all_said
 from tiniscript.doctor.findings import CAUSES
 
 # The values of each cause that has some; the sentences may use no others.
@@ -26,7 +27,7 @@ VALUES = {
 @pytest.mark.parametrize("cause", CAUSES)
 def test_a_cause_says_what_is_wrong_what_was_seen_and_what_to_do(cause: str) -> None:
     for kind in ("doctor", "seen", "next"):
-        for said in DOCTOR_TEXTS[f"{kind}_{cause}"]:
+        for said in in_all(f"{kind}_{cause}"):
             assert said
             gaps = {name for _, name, _, _ in Formatter().parse(said) if name}
             assert gaps <= VALUES.get(cause, set())
@@ -38,7 +39,7 @@ def test_no_sentence_is_of_a_cause_that_does_not_exist() -> None:
     known |= {"seen_restarts_once", "seen_motors_restart_once"}
     known |= {"seen_no_permission_other", "next_no_permission_other"}
     known |= {"seen_no_port_others", "next_no_port_others"}
-    named = {key for key in DOCTOR_TEXTS if key.startswith(("seen_", "next_"))}
+    named = {key for key in all_said("en") if key.startswith(("seen_", "next_"))}
     assert named == known
 
 

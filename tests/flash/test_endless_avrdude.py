@@ -10,7 +10,7 @@ from time import sleep as sleep_s
 
 import pytest
 
-from tiniscript.cli.texts.firmware import FLASH_TEXTS
+from tests.support.texts import in_all
 from tiniscript.flash import avrdude
 from tiniscript.flash.avrdude import Ended, Seen
 from tiniscript.flash.bootloaders import UNO
@@ -108,5 +108,5 @@ def state_of(process: Path) -> str:
 
 
 def test_the_sentence_says_what_to_do() -> None:
-    for said in FLASH_TEXTS["flash_endless"]:
+    for said in in_all("flash_endless"):
         assert "avrdude" in said and "{port}" in said

@@ -22,7 +22,7 @@ from tests.support.platformio import firmware, prepared, shared
 from tests.support.waiting import HANGS_S
 from tiniscript import robots
 from tiniscript.cli.commands import firmware as firmware_command
-from tiniscript.cli.texts.firmware import FLASH_TEXTS
+from tiniscript.cli.texts.common import has_text
 from tiniscript.flash import avrdude, ready
 from tiniscript.flash.bootloaders import BOARDS, UNO
 from tiniscript.robots.profile import LANGUAGES
@@ -274,7 +274,7 @@ def test_what_avrdude_says_has_a_name(how: str, said: str) -> None:
 
 def test_every_end_has_its_sentence() -> None:
     for how in avrdude.ENDS:
-        assert f"flash_{how}" in FLASH_TEXTS
+        assert has_text(f"flash_{how}")
 
 
 @pytest.mark.parametrize(("said", "seen"), [

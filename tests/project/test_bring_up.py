@@ -19,8 +19,9 @@ from tests.support.command import Command, process
 from tests.support.esp32_pty_robot import Esp32PtyRobot
 from tests.support.pty_robot import PtyRobot, on
 from tests.support.waiting import until
+from tiniscript.cli.commands.doctor import BLANK, STEPS
 from tiniscript.cli.options import Options
-from tiniscript.cli.texts.doctor import BLANK, DOCTOR_TEXTS, STEPS
+from tiniscript.cli.texts.common import text
 
 LISTS = {"en": ROOT / "docs" / "bring-up.md", "es": ROOT / "docs" / "puesta-en-marcha.es.md"}
 each_list = pytest.mark.parametrize(("language", "path"), LISTS.items(), ids=list(LISTS))
@@ -49,7 +50,7 @@ def commands(text: str) -> list[list[str]]:
 
 @each_list
 def test_the_form_names_its_list(language: str, path: Path) -> None:
-    assert path.relative_to(ROOT).as_posix() in DOCTOR_TEXTS["bring_up_about"][language == "es"]
+    assert path.relative_to(ROOT).as_posix() in text("bring_up_about", language)
     assert len(steps(path)) == len(STEPS)
 
 
@@ -93,9 +94,9 @@ def test_what_the_list_types_does_what_it_says(board: PtyRobot) -> None:
     found = steps(LISTS["en"])
 
     def typed(step: str) -> list[list[str]]:
-        text = found[DOCTOR_TEXTS[f"step_{step}"][0]][0]
+        do = found[text(f"step_{step}", "en")][0]
         return [[board.port if word == "PORT" else word for word in each]
-                for each in commands(text)]  # fmt: skip
+                for each in commands(do)]  # fmt: skip
 
     (ping,) = (process(*words) for words in typed("answers"))
     assert ping.code == 0

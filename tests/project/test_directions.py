@@ -11,21 +11,23 @@ from pathlib import Path
 import pytest
 
 from tests.support.rows import each_row
+from tiniscript.languages import catalogue
 from tools import measures
 
 PACKAGE = Path(__file__).resolve().parent.parent.parent / "compiler" / "tiniscript"
 
-SHARED = {"fixed_point", "kit", "words", "files", "source"}
+SHARED = {"fixed_point", "kit", "words", "files", "source", "languages"}
 TEXT = {"diagnostics", *SHARED}
 # Each stage, and each table that stages share: what it may import besides itself.
 UPSTREAM: dict[str, set[str]] = {
     "version": set(),
     "source": set(),
     "files": set(),
+    "languages": {"files"},
     "fixed_point": set(),
     "kit": {"fixed_point"},
     "words": {"fixed_point"},
-    "diagnostics": {"source"},
+    "diagnostics": {"source", "languages"},
     "bytecode": {"kit"},
     "syntax": {*TEXT, "bytecode"},  # of the bytecode its limits and its comparators
     "recovery": {*TEXT, "syntax"},
@@ -37,7 +39,7 @@ UPSTREAM: dict[str, set[str]] = {
     "text": {*TEXT, "bytecode", "syntax", "semantics", "codegen", "robots"},
     "sketch": {*TEXT, "syntax", "semantics", "robots"},  # of the syntax its comments
     "flash": {"files", "robots"},
-    "link": {"version", "files", "source", "bytecode"},
+    "link": {"version", "files", "source", "languages", "bytecode"},
     "conformance": {"bytecode", "link"},
     "doctor": {"files", "bytecode", "flash", "link"},
     "virtual": {*SHARED, "bytecode", "vm", "robots", "link"},
@@ -169,7 +171,7 @@ def test_a_right_program_loads_nothing_for_wrong_ones(verb: str, tmp_path: Path)
     )
     own = {each for each in modules if each.startswith("tiniscript")}
     assert not {each for each in own if OF_WRONG.match(each)}
-    assert "tomllib" not in modules and len(own) <= 67
+    assert "tomllib" not in modules and len(own) <= 68
 
 
 @pytest.mark.parametrize(
@@ -195,11 +197,12 @@ def test_every_verb_is_there_without_the_extras() -> None:
 def test_compile_imports_no_other_verb(tmp_path: Path) -> None:
     program = tmp_path / "drive.ts"
     program.write_text("SI|F(5,80)")
+    catalogue("command", "en")  # as a package has it
     modules = imported_by(
         f"from tiniscript.cli import main; assert main(['compile', {str(program)!r}]) == 0"
     )
     unwanted = {"cobs", "serial", "tomllib", "tomli", "rich", "dataclasses",
-                "tiniscript.link", "tiniscript.cli.texts.robot",
+                "tiniscript.link", "tiniscript.languages.compiling",
                 "tiniscript.vm.machine", "tiniscript.vm.trace", "tiniscript.bytecode.disassembly",
                 "tiniscript.syntax.formatter"}  # fmt: skip
     if sys.platform == "linux":  # and what only finds the cache

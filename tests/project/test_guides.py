@@ -20,10 +20,9 @@ import pytest
 
 from tests.support.casefile import ROOT
 from tests.support.pty_robot import PtyRobot
+from tests.support.texts import said as command_texts
 from tiniscript import robots
 from tiniscript.cli import main
-from tiniscript.cli.texts.common import TEXTS
-from tiniscript.cli.texts.robot import LINK_TEXTS
 from tiniscript.link import ports, statuses
 from tiniscript.link.ports import Found
 
@@ -131,7 +130,7 @@ def test_what_a_guide_types_prints_what_it_shows(
 
 def _sentences(language: str) -> list[str]:
     """Return all that `tsc` says of robots and ports, with `{}` for each gap."""
-    said = [both[language == "es"] for both in (*TEXTS.values(), *LINK_TEXTS.values())]
+    said = list(command_texts(language).values())
     said += [words[language] for words in statuses.texts().values()]
     return [re.sub(r"\{\w+\}", "{}", each) for each in said]
 
@@ -161,16 +160,16 @@ def test_both_guides_type_the_same() -> None:
 
 def said_in(language: str) -> dict[str, str]:
     """Return what is said in a language, by where: sentences of the package, and documents."""
-    from tiniscript.cli.texts.common import tables
     from tiniscript.lessons.sentences import SENTENCES
     from tiniscript.library.texts import TEXTS as LIBRARY_TEXTS
     from tiniscript.robots.profile import LANGUAGES
     from tiniscript.robots.toml_table import parse_toml
     from tiniscript.robots.wiring.texts import TEXTS as WIRING_TEXTS
 
-    both_languages = (*tables(), WIRING_TEXTS, LIBRARY_TEXTS, SENTENCES)
+    both_languages = (WIRING_TEXTS, LIBRARY_TEXTS, SENTENCES)
     k = LANGUAGES.index(language)
     found = {key: both[k] for table in both_languages for key, both in table.items()}
+    found |= command_texts(language)
     catalogue = ROOT / "compiler" / "tiniscript" / "diagnostics" / "catalogue.toml"
     entries = parse_toml(catalogue.read_text(encoding="utf-8"))
     assert isinstance(entries, dict)

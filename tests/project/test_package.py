@@ -24,7 +24,7 @@ from tools.release.packing import difference
 
 SKIPPED = (".git", ".venv", "build", "dist", "ready", "*.egg-info", "__pycache__", "*.pyc", ".pio",
            "page", "node_modules", "made",
-           ".*_cache", ".coverage", "own.h", "*.bin", "way.png")  # fmt: skip
+           ".*_cache", ".coverage", "own.h", "*.bin", "*.mo", "way.png")  # fmt: skip
 ADDED = {"PKG-INFO", "setup.cfg"}  # by setuptools
 SOURCES = "tiniscript/flash/vm_arduino/"
 BUILT = "tiniscript/studio/page/index.html"  # by tools.builds.studio, before a wheel is made
@@ -125,7 +125,11 @@ def test_a_wheel_has_what_is_in_the_repository_and_nothing_stale(
     wheel: Path, kept: set[str]
 ) -> None:
     found = {name for name in files_of(wheel) if name.startswith("tiniscript/")}
-    package = {name.removeprefix("compiler/") for name in kept if name.startswith("compiler/")}
+    package = {
+        re.sub(r"\.po$", ".mo", name.removeprefix("compiler/"))
+        for name in kept
+        if name.startswith("compiler/")
+    }
     sources = {
         SOURCES + name.removeprefix("vm_arduino/")
         for name in kept

@@ -19,10 +19,11 @@ import pytest
 
 from tests.support.casefile import ROOT
 from tests.support.command import Tsc
+from tests.support.texts import said as said_in
 from tiniscript import files
 from tiniscript.cli import CLOSED, streams
-from tiniscript.cli.texts.common import tables
 from tiniscript.cli.windows_names import has_no_file, is_device
+from tiniscript.languages import languages
 
 PROGRAM = "SI|F(2, 80)\n"
 
@@ -136,7 +137,7 @@ def encoded(said: str, encoding: str) -> str:
 def test_every_sentence_can_be_read_in_an_encoding_of_windows(encoding: str) -> None:
     from tiniscript.robots.wiring.texts import TEXTS
 
-    said = [each for table in tables() for both in table.values() for each in both]
+    said = [each for language in languages() for each in said_in(language).values()]
     said += [each for both in TEXTS.values() for each in both]
     assert len(said) > 500
     for each in said:
@@ -403,7 +404,7 @@ def test_a_file_that_is_open_elsewhere_is_replaced_a_moment_later(
 
 def test_programs_on_a_command_line_stand_in_double_quotes() -> None:
     """PowerShell, cmd and every shell take those; cmd hands single ones on to tsc."""
-    said = [each for table in tables() for both in table.values() for each in both]
+    said = [each for language in languages() for each in said_in(language).values()]
     pages = [*ROOT.glob("README*.md"), *ROOT.glob("docs/*.md"), *ROOT.glob("tools/try*")]
     said += [page.read_text(encoding="utf-8") for page in pages]
     assert not [found for each in said for found in re.findall(r"(?:-e|tsc live) '[^']*'", each)]

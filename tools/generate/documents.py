@@ -53,8 +53,8 @@ def lessons_document() -> str:
 
 def bring_up_document(document: str, language: str) -> str:
     """Return a list for a real board, with the steps of the form that `tsc doctor` writes."""
+    from tiniscript.cli.commands.doctor import STEPS
     from tiniscript.cli.texts.common import text
-    from tiniscript.cli.texts.doctor import STEPS
 
     kinds = ("step", "do", "see")
     rows = [

@@ -20,7 +20,6 @@ from tiniscript.cli.robot.simulator import running_address
 from tiniscript.cli.streams import are_read
 from tiniscript.cli.terminal.asking import agreed, can_ask
 from tiniscript.cli.texts.common import has_text, text
-from tiniscript.cli.texts.doctor import BLANK, STEPS
 from tiniscript.doctor import report
 from tiniscript.doctor.diagnosis import Diagnosis, Doors, Question, diagnosed
 from tiniscript.doctor.examination import Expected
@@ -37,6 +36,10 @@ from tiniscript.version import __version__
 from tiniscript.virtual import directory
 
 LONGEST_WATCH_S = 600
+BLANK = "____"
+# The steps of a bring-up: `step_` names one, `do_` says what to do, `see_` what must be seen.
+STEPS = ("answers", "boot", "drive", "stop", "typed", "cable", "upload", "power", "bluetooth",
+         "wifi", "supply")  # fmt: skip
 
 
 def run(options: Namespace, language: str) -> int:

@@ -8,6 +8,7 @@ Parsers, help, completion, `cli/paths.py` and the documents are made from it and
 from typing import NamedTuple
 
 from tiniscript.cli.texts.verbs import Both
+from tiniscript.languages import languages
 from tiniscript.text.levels import LEVELS
 
 
@@ -78,7 +79,7 @@ SENSOR = Kind("sensor")
 VERB = Kind("verb")
 HURRY = Kind("hurry")
 ACTION = Kind("action")  # of tsc lesson
-LANGUAGE = Kind("choice", choices=("en", "es"))
+LANGUAGE = Kind("choice", choices=languages())
 MACHINE = Kind("choice", choices=("python", "cpp"))
 YES_NO = Kind("choice", choices=("yes", "no"))
 ON_OFF = Kind("choice", choices=("on", "off"))

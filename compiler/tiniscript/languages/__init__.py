@@ -1,0 +1,101 @@
+"""The languages: a folder each, with the catalogues that a translator fills.
+
+A catalogue, `es/command.po`, has its texts by key, which is their context. A language is there as
+soon as its folder is, and what it lacks is said in English, text by text. Catalogues are read as
+`.mo`: `setup.py` makes them for a package, and in a clone they are made where a `.po` is newer.
+Knows no text.
+"""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from functools import cache
+from gettext import GNUTranslations
+from io import BytesIO
+from pathlib import Path
+
+FOLDER = Path(__file__).parent
+SOURCE = "en"  # what is translated, and said where there is no translation
+
+
+@cache
+def languages() -> tuple[str, ...]:
+    """Return the codes of all languages, the one that is translated first."""
+    found = (path.name for path in FOLDER.iterdir() if path.is_dir() and path.name[0] != "_")
+    return tuple(sorted(found, key=lambda code: (code != SOURCE, code)))
+
+
+def find(name: str) -> str:
+    """Return the language of a locale, `es_PE.UTF-8` or Windows' `Spanish_Peru`, else English."""
+    code = name.lower().replace("-", "_").partition(".")[0].partition("@")[0]
+    for each in (code, code.partition("_")[0]):
+        if each in languages():
+            return each
+    team = code.partition("_")[0]
+    by_team = {about("language-team", each).lower(): each for each in languages()} if team else {}
+    return by_team.get(team, SOURCE)
+
+
+def about(field: str, language: str) -> str:
+    """Return what the head of a language's catalogue says, such as its name."""
+    return catalogue("command", language).info().get(field, "")
+
+
+def text(name: str, key: str, language: str) -> str:
+    """Return a text of a catalogue."""
+    found = catalogue(name, language).gettext(key)
+    if found is key:
+        raise KeyError(key)
+    return found
+
+
+def counted(name: str, key: str, count: int, language: str) -> str:
+    """Return the form of a text with a plural that goes with a number."""
+    return catalogue(name, language).ngettext(key, key, count)
+
+
+def has_text(name: str, key: str) -> bool:
+    return catalogue(name, SOURCE).gettext(key) is not key
+
+
+@cache
+def catalogue(name: str, language: str) -> GNUTranslations:
+    """Return a catalogue of a language; of an unknown one it is English."""
+    language = language if language in languages() else SOURCE
+    made = FOLDER / language / f"{name}.mo"
+    if _is_fresh(made, _files(name, language)):
+        with made.open("rb") as file:
+            return GNUTranslations(file)
+    from tiniscript.files import replace
+    from tiniscript.languages.compiling import compiled
+
+    data = compiled(*_files(name, language))
+    with suppress(OSError):  # a folder that nobody may write to
+        replace(made, data)
+    return GNUTranslations(BytesIO(data))
+
+
+def machine_objects() -> dict[str, bytes]:
+    """Return all catalogues as a package has them, by their paths in FOLDER."""
+    from tiniscript.languages.compiling import compiled
+
+    names = sorted(path.stem for path in (FOLDER / SOURCE).glob("*.po"))
+    pairs = [(name, language) for language in languages() for name in names]
+    return {f"{language}/{name}.mo": compiled(*_files(name, language)) for name, language in pairs}
+
+
+def _files(name: str, language: str) -> tuple[Path, Path]:
+    """Return the English catalogue, and that of a language."""
+    return FOLDER / SOURCE / f"{name}.po", FOLDER / language / f"{name}.po"
+
+
+def _is_fresh(made: Path, sources: tuple[Path, Path]) -> bool:
+    """Return whether a file is there, and no source is newer: a package has none at all."""
+    return made.is_file() and _time(made) >= max(map(_time, sources))
+
+
+def _time(path: Path) -> int:
+    try:
+        return path.stat().st_mtime_ns
+    except OSError:
+        return 0

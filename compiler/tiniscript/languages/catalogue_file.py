@@ -1,0 +1,176 @@
+"""Reads and writes catalogues of gettext (`.po`), and says what is wrong with one.
+
+An entry is one text: its key is the context, and what is translated is the English text. Knows no
+language. A mistake in an entry costs that entry alone.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+from pathlib import Path
+from string import Formatter
+
+ESCAPES = {"n": "\n", "t": "\t", "r": "\r", '"': '"', "\\": "\\"}
+BRACES = "python-brace-format"  # gettext's flag for a text with gaps like {file}
+_ROW = re.compile(r'(msgctxt|msgid|msgid_plural|msgstr|msgstr\[(\d)\])?\s*"((?:[^"\\]|\\.)*)"\s*')
+_PLURALS = re.compile(r"nplurals\s*=\s*(\d+)")
+
+
+@dataclass
+class Entry:
+    """A text. `said` has its translation, of a text with a plural each form; empty is none yet.
+
+    `notes` are the comments for translators. A fuzzy entry is of an English text that has changed.
+    """
+
+    key: str = ""
+    english: str = ""
+    plural: str = ""
+    said: list[str] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
+    is_fuzzy: bool = False
+    line: int = 0
+
+    @property
+    def is_translated(self) -> bool:
+        return all(self.said) and bool(self.said) and not self.is_fuzzy
+
+
+@dataclass
+class Catalogue:
+    """The entries of a file by key, its head, and what is wrong: a line and a sentence each."""
+
+    head: str = ""
+    entries: dict[str, Entry] = field(default_factory=dict)
+    problems: list[tuple[int, str]] = field(default_factory=list)
+
+    @property
+    def plurals(self) -> int:
+        found = _PLURALS.search(self.head)
+        return int(found[1]) if found else 0
+
+
+def load(path: Path) -> Catalogue:
+    """Read a file; one that is not there has no entries."""
+    return (
+        read(path.read_text(encoding="utf-8-sig", errors="replace"))
+        if path.is_file()
+        else Catalogue()
+    )
+
+
+def read(text: str) -> Catalogue:
+    """Read a catalogue. What cannot be read is a problem, and left out."""
+    found = Catalogue()
+    entry, parts, part = Entry(), dict[str, str](), ""
+
+    def end() -> None:
+        nonlocal entry, parts, part
+        if parts:
+            entry.key, entry.english = parts.get("msgctxt", ""), parts.get("msgid", "")
+            entry.plural = parts.get("msgid_plural", "")
+            entry.said = [parts[each] for each in sorted(parts) if each.startswith("msgstr")]
+            _take(found, entry)
+        entry, parts, part = Entry(), {}, ""
+
+    for number, row in enumerate(text.split("\n"), 1):
+        row = row.strip()
+        if not row:
+            end()
+        elif row[0] == "#":
+            if any(each.startswith("msgstr") for each in parts):
+                end()
+            if row[:2] == "#.":
+                entry.notes.append(row[2:].strip())
+            entry.is_fuzzy |= row[:2] == "#," and "fuzzy" in row
+        elif match := _ROW.fullmatch(row):
+            if match[1] in ("msgctxt", "msgid") and any(
+                each.startswith("msgstr") for each in parts
+            ):
+                end()
+            part = match[1] or part
+            entry.line = entry.line or number
+            if match[1] and match[1] in parts:
+                found.problems.append((number, f"{part} is there twice"))
+            parts[part] = parts.get(part, "") * (not match[1]) + _unescaped(match[3])
+        else:
+            found.problems.append((number, f"this is no row of a catalogue: {row[:40]}"))
+    end()
+    for each in list(found.entries.values()):
+        for problem in _problems(each, found.plurals):
+            found.problems.append((each.line, f"{each.key}: {problem}"))
+            each.said = []
+    return found
+
+
+def _take(found: Catalogue, entry: Entry) -> None:
+    if not entry.key and not entry.english:
+        found.head = "".join(entry.said)
+    elif not entry.key:
+        found.problems.append((entry.line, "this text has no key: msgctxt is missing"))
+    elif entry.key in found.entries:
+        found.problems.append((entry.line, f"{entry.key} is there twice"))
+    else:
+        found.entries[entry.key] = entry
+
+
+def _problems(entry: Entry, plurals: int) -> list[str]:
+    """Return what is wrong with the translation of an entry."""
+    if not any(entry.said):
+        return []
+    wanted = plurals if entry.plural else 1
+    if len(entry.said) != wanted or not all(entry.said):
+        return [f"it has {sum(map(bool, entry.said))} forms, and needs {wanted}"]
+    known = gaps(entry.english) | gaps(entry.plural)
+    found = []
+    for said in entry.said:
+        try:
+            own = gaps(said)
+        except ValueError:
+            return ["a brace { or } has no other half"]
+        found += [f"{{{gap}}} is missing" for gap in sorted(gaps(entry.english) - own)]
+        found += [f"{{{gap}}} is no gap of the English text" for gap in sorted(own - known)]
+    return found
+
+
+def gaps(text: str) -> set[str]:
+    """Return the names of the gaps, with what follows a colon: how their value is written."""
+    return {
+        name + (":" + form if form else "")
+        for _, name, form, _ in Formatter().parse(text)
+        if name is not None
+    }
+
+
+def _unescaped(text: str) -> str:
+    return re.sub(r"\\(.)", lambda match: ESCAPES.get(match[1], match[1]), text)
+
+
+def _quoted(name: str, text: str) -> str:
+    """Return a text as rows of a file: one for each line of it."""
+    escaped = text.replace("\\", "\\\\").replace('"', '\\"').replace("\t", "\\t")
+    lines = [line + "\\n" for line in escaped.split("\n")]
+    lines[-1] = lines[-1][:-2]
+    lines = [line for line in lines if line] or [""]
+    if len(lines) == 1:
+        return f'{name} "{lines[0]}"'
+    return "\n".join([f'{name} ""', *(f'"{line}"' for line in lines)])
+
+
+def written(catalogue: Catalogue) -> str:
+    """Return a catalogue as the text of a file."""
+    parts = ["\n".join(['msgid ""', _quoted("msgstr", catalogue.head)])]
+    for entry in catalogue.entries.values():
+        flags = ["fuzzy"] * entry.is_fuzzy + [BRACES] * ("{" in entry.english + entry.plural)
+        rows = [f"#. {note}" for note in entry.notes]
+        rows += [f"#, {', '.join(flags)}"] * bool(flags)
+        rows += [_quoted("msgctxt", entry.key), _quoted("msgid", entry.english)]
+        if entry.plural:
+            rows.append(_quoted("msgid_plural", entry.plural))
+            forms = entry.said or [""] * catalogue.plurals
+            rows += [_quoted(f"msgstr[{k}]", said) for k, said in enumerate(forms)]
+        else:
+            rows.append(_quoted("msgstr", entry.said[0] if entry.said else ""))
+        parts.append("\n".join(rows))
+    return "\n\n".join(parts) + "\n"

@@ -1,0 +1,56 @@
+"""Makes the `.mo` of catalogues, with Python alone.
+
+A `.mo` has each text under its key. What is not translated, or wrong, or a translation of what the
+English text was before, is in English there.
+"""
+
+from __future__ import annotations
+
+import struct
+from pathlib import Path
+
+from tiniscript.languages.catalogue_file import Catalogue, Entry, load
+
+MAGIC, HEADER = 0x950412DE, 28  # of a .mo
+
+
+def merged(source: Path, own: Path) -> tuple[str, dict[str, list[str]]]:
+    """Return the head of a catalogue, and the forms of each text by key."""
+    english, translated = load(source), load(own)
+    return translated.head or english.head, {
+        key: _forms(entry, translated) for key, entry in english.entries.items()
+    }
+
+
+def _forms(source: Entry, own: Catalogue) -> list[str]:
+    entry = own.entries.get(source.key)
+    is_of_this = entry and (entry.english, entry.plural) == (source.english, source.plural)
+    if entry and is_of_this and entry.is_translated:
+        return entry.said
+    if not source.plural:
+        return [source.english]
+    return [source.english, *[source.plural] * max(1, own.plurals - 1)]
+
+
+def machine_object(head: str, texts: dict[str, list[str]]) -> bytes:
+    """Return a `.mo`: the offsets of keys, those of texts, and all of these, each with a 0."""
+    rows = {"": [head], **texts}
+    keys = [
+        (b"\0".join([key.encode()] * min(2, len(forms))), "\0".join(forms).encode())
+        for key, forms in sorted(rows.items(), key=lambda row: row[0].encode())
+    ]
+    at = HEADER + 16 * len(keys)
+    offsets: list[int] = []
+    for part in (0, 1):
+        for row in keys:
+            offsets += (len(row[part]), at)
+            at += len(row[part]) + 1
+    count = len(keys)
+    numbers = (MAGIC, 0, count, HEADER, HEADER + 8 * count, 0, 0, *offsets)
+    data = b"".join(row[part] + b"\0" for part in (0, 1) for row in keys)
+    return struct.pack(f"<{len(numbers)}I", *numbers) + data
+
+
+def compiled(source: Path, own: Path) -> bytes:
+    """Return the `.mo` of a catalogue."""
+    return machine_object(*merged(source, own))

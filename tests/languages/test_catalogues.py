@@ -1,0 +1,185 @@
+"""Catalogues of languages: those that are shipped are whole, and a wrong one costs little."""
+
+from __future__ import annotations
+
+import io
+import os
+from gettext import GNUTranslations
+from pathlib import Path
+
+import pytest
+
+from tests.support.command import Tsc
+from tiniscript import languages
+from tiniscript.cli.texts.common import Said, language_of, text
+from tiniscript.languages import FOLDER, SOURCE, compiling
+from tiniscript.languages.catalogue_file import Catalogue, Entry, load, read, written
+
+NAMES = sorted(path.stem for path in (FOLDER / SOURCE).glob("*.po"))
+FILES = sorted(FOLDER.glob("*/*.po"))
+HEAD = (
+    'msgid ""\nmsgstr "Content-Type: text/plain; charset=UTF-8\\n'
+    'Plural-Forms: nplurals=2; plural=(n != 1);\\n"\n\n'
+)
+ROW = 'msgctxt "a"\nmsgid "Read {file}."\nmsgstr "Lee {file}."\n'
+COUNT = 'msgctxt "n"\nmsgid "{n} byte"\nmsgid_plural "{n} bytes"\n'
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda path: f"{path.parent.name}/{path.stem}")
+def test_a_catalogue_has_the_gaps_and_the_keys_of_the_english_one(path: Path) -> None:
+    """Every text has its gaps. Spanish lacks none: a head that says X-Complete promises that."""
+    own, source = load(path), load(FOLDER / SOURCE / path.name)
+    assert own.problems == []
+    assert set(own.entries) <= set(source.entries)
+    if "X-Complete: yes" in own.head:
+        assert list(own.entries) == list(source.entries)
+        for key, entry in own.entries.items():
+            assert entry.is_translated, key
+            assert entry.english == source.entries[key].english, f"the English of {key} changed"
+            assert entry.plural == source.entries[key].plural, key
+    assert written(own) == path.read_text(encoding="utf-8"), "python -m tools.languages"
+
+
+def test_spanish_promises_to_be_complete() -> None:
+    assert all("X-Complete: yes" in load(FOLDER / "es" / f"{name}.po").head for name in NAMES)
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "said"),
+    [
+        (ROW.replace("Lee {file}", "Lee {fila}"), 4, "a: {file} is missing"),
+        (ROW.replace("Lee {file}", "Lee {file}{x}"), 4, "a: {x} is no gap of the English text"),
+        (ROW.replace("Lee {file}", "Lee {file}}"), 4, "a: a brace { or } has no other half"),
+        (ROW + "\n" + ROW.replace("Lee", "Mira"), 8, "a is there twice"),
+        (ROW.replace("msgctxt", "#"), 5, "this text has no key: msgctxt is missing"),
+        (
+            ROW.replace('msgid "', "msgid '"),
+            5,
+            "this is no row of a catalogue: msgid 'Read {file}.\"",
+        ),
+        (ROW + 'msgstr "Mira {file}."\n', 7, "msgstr is there twice"),
+        (COUNT + 'msgstr "{n} bytes"\n', 4, "n: it has 1 forms, and needs 2"),
+        (COUNT + 'msgstr[0] "{n} byte"\n', 4, "n: it has 1 forms, and needs 2"),
+        (COUNT + 'msgstr[0] "{n} byte"\nmsgstr[1] ""\n', 4, "n: it has 1 forms, and needs 2"),
+    ],
+)
+def test_what_is_wrong_is_said_with_its_line(text: str, line: int, said: str) -> None:
+    assert (line, said) in read(HEAD + text).problems
+
+
+@pytest.mark.parametrize("spoil", [
+    lambda text: "\ufeff" + text,
+    lambda text: text.replace("\n", "\r\n"),
+    lambda text: text + '\n#~ msgctxt "old"\n#~ msgid "Old."\n#~ msgstr "Viejo."\n',
+    lambda text: "# by somebody\n" + text.replace("msgctxt", "#: a.py:1\n#| msgid \"x\"\nmsgctxt"),
+])  # fmt: skip
+def test_what_other_programs_write_is_read(spoil, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
+    file = tmp_path / "command.po"
+    file.write_text(spoil(HEAD + ROW), encoding="utf-8", newline="")
+    found = load(file)
+    assert found.problems == []
+    assert {key: entry.said for key, entry in found.entries.items()} == {"a": ["Lee {file}."]}
+
+
+@pytest.mark.parametrize(
+    ("own", "said"),
+    [
+        (ROW, "Lee {file}."),
+        (ROW.replace("Lee {file}", "Lee {fila}"), "Read {file}."),
+        (ROW.replace("Lee {file}.", ""), "Read {file}."),
+        (ROW.replace("Read", "Open"), "Read {file}."),
+        ("#, fuzzy\n" + ROW, "Read {file}."),
+        ("", "Read {file}."),
+    ],
+)
+def test_what_is_not_translated_is_english_text_by_text(
+    own: str, said: str, tmp_path: Path
+) -> None:
+    """A wrong or fuzzy text, and one whose English has changed, are not translated."""
+    other = 'msgctxt "b"\nmsgid "Stop."\nmsgstr "Alto."\n'
+    for language, rows in (("en", ROW.replace("Lee {file}.", "")), ("xx", own)):
+        (tmp_path / language).mkdir()
+        (tmp_path / language / "t.po").write_text(f"{HEAD}{rows}\n{other}", encoding="utf-8")
+    found = GNUTranslations(
+        io.BytesIO(compiling.compiled(tmp_path / "en" / "t.po", tmp_path / "xx" / "t.po"))
+    )
+    assert found.gettext("a") == said
+    assert found.gettext("b") == "Alto."
+
+
+def test_plurals_follow_the_rule_of_the_language() -> None:
+    polish = (
+        "nplurals=3; plural=(n==1 ? 0 : n%10>=2 && n%10<=4 && (n%100<10 || n%100>=20) ? 1 : 2);"
+    )
+    head = f"Content-Type: text/plain; charset=UTF-8\nPlural-Forms: {polish}\n"
+    data = compiling.machine_object(head, {"n": ["bajt", "bajty", "bajtów"], "a": ["b\nc"]})
+    found = GNUTranslations(io.BytesIO(data))
+    assert [found.ngettext("n", "n", n) for n in (1, 2, 5, 22)] == [
+        "bajt", "bajty", "bajtów", "bajty",
+    ]  # fmt: skip
+    assert found.gettext("a") == "b\nc"
+    for language, one in (("en", "1 check"), ("es", "1 prueba")):
+        said = Said("{n} checks" if language == "en" else "{n} pruebas")
+        said.language = language
+        assert said.format(n="1") == one
+        assert said.format(n=0) != f"0 {one[2:]}"
+
+
+def test_a_catalogue_that_is_written_is_the_one_that_was_read() -> None:
+    hard = 'a "b" \\ c\n\n d\t{x}\n'
+    entry = Entry("k", hard, "", [hard], ["a note"])
+    many = Entry("n", "{n} byte", "{n} bytes", ["{n} b", "{n} bb"], [], is_fuzzy=True)
+    made = Catalogue(read(HEAD).head, {"k": entry, "n": many})
+    found = read(written(made))
+    assert found.problems == []
+    assert written(found) == written(made)
+    assert found.entries["k"].said == [hard]
+    assert found.entries["n"].is_fuzzy
+
+
+@pytest.mark.parametrize(("name", "language"), [
+    ("es_PE.UTF-8", "es"), ("es", "es"), ("ES-pe", "es"), ("es_ES@euro", "es"), ("C", "en"),
+    ("Spanish_Peru.1252", "es"), ("POSIX", "en"), ("C.UTF-8", "en"), ("tlh_XX.UTF-8", "en"),
+    ("", "en"), ("_", "en"), ("../es", "en"), ("__pycache__", "en"), ("eso", "en"),
+])  # fmt: skip
+def test_a_locale_has_a_language_or_english(name: str, language: str) -> None:
+    assert languages.find(name) == language
+
+
+def test_the_variables_of_a_locale_count_as_everywhere() -> None:
+    assert language_of([], {"LC_ALL": "C", "LANG": "es_PE.UTF-8"}) == "en"
+    assert language_of([], {"LC_ALL": "", "LANG": "es_PE.UTF-8"}) == "es"
+    assert language_of(["--lang", "xx"], {"LANG": "es_PE.UTF-8"}) == "es"
+    assert language_of(["--lang=en"], {"LANG": "es_PE.UTF-8"}) == "en"
+
+
+def test_an_unknown_language_is_refused_with_the_known_ones(tsc: Tsc) -> None:
+    done = tsc("check", "-e", "W(1)", "--lang", "xx")
+    assert done.code == 2
+    assert all(code in done.err for code in languages.languages())
+
+
+def test_a_clone_makes_what_is_stale_and_needs_no_folder_to_write_to(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for path in (FOLDER / SOURCE / "command.po", FOLDER / "es" / "command.po"):
+        (tmp_path / path.parent.name).mkdir()
+        (tmp_path / path.parent.name / path.name).write_bytes(path.read_bytes())
+    monkeypatch.setattr(languages, "FOLDER", tmp_path)
+    made, source = tmp_path / "es" / "command.mo", tmp_path / "es" / "command.po"
+
+    def stopped() -> str:
+        languages.catalogue.cache_clear()
+        return text("stopped", "es")
+
+    try:
+        assert stopped() == "Detenido."
+        made.write_bytes(made.read_bytes().replace(b"Detenido.", b"Parado!!!"))
+        assert stopped() == "Parado!!!", "it is read as it is while nothing is newer"
+        os.utime(source, (made.stat().st_mtime + 2,) * 2)
+        assert stopped() == "Detenido."
+        made.unlink()
+        made.mkdir()  # nobody can write this file
+        assert stopped() == "Detenido."
+    finally:
+        languages.catalogue.cache_clear()

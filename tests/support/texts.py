@@ -1,0 +1,20 @@
+"""What is said, of all catalogues."""
+
+from __future__ import annotations
+
+from functools import cache
+
+from tiniscript.languages import FOLDER, SOURCE, languages
+from tiniscript.languages.compiling import merged
+
+
+@cache
+def said(language: str, name: str = "command") -> dict[str, str]:
+    """Return all texts of a catalogue by key; of one with a plural, its last form."""
+    files = (FOLDER / each / f"{name}.po" for each in (SOURCE, language))
+    return {key: forms[-1] for key, forms in merged(*files)[1].items()}
+
+
+def in_all(key: str, name: str = "command") -> list[str]:
+    """Return a text in each language, English first."""
+    return [said(language, name)[key] for language in languages()]
