@@ -59,7 +59,7 @@ def test_one_program(tsc: Tsc, folder: Path) -> None:
 
 def test_the_world_of_a_failure_can_be_repeated(tsc: Tsc, tmp_path: Path) -> None:
     path = tmp_path / "left.ts"
-    path.write_text("SI|F(2.6, 60);L(0.39, 60);IF(TRUE);F(2.4, 60);ENDIF", encoding="utf-8")
+    path.write_text("SI|F(2.6, 60);L(0.42, 60);IF(TRUE);F(2.4, 60);ENDIF", encoding="utf-8")
     done = tsc("lesson", "check", "8", path)
     assert done.code == 1
     said = re.search(r"--seed (\d+)", done.out)

@@ -277,7 +277,7 @@ def test_every_sentence_is_there_in_both_languages_with_the_same_gaps() -> None:
 def test_all_complaints_come_at_once() -> None:
     text = edited("tinibot", "range = [0, 400]", "range = [4, 0]")
     text = text.replace("trigger = 4", "trigger = 1").replace('"LIGHT_R"', '"LOOP"', 1)
-    text = text.replace("speed_cm_s = 45", "speed = 45")
+    text = text.replace("length_cm = 21", "length = 21")
     found = codes(refusal(text))
     assert {"range_empty", "pin_of_link", "name_is_word", "missing", "unknown_key"} <= set(found)
 

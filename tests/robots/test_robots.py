@@ -92,7 +92,7 @@ def test_a_shipped_robot_needs_no_toml() -> None:
         ('LED = "lamp"', ""),
         ("baud = 57600", "baud = 9600"),
         ("left_pwm = 6", "left_pwm = 8"),
-        ("speed_cm_s = 40", "speed_cm_s = 40.5"),
+        ("speed = 40", "speed = 40.5"),
         ("x_cm = 14", "x_cm = -14"),
         ('name = "GRIPPER"', 'name = "Gripper"'),
         ("range = [-40, 125]", "range = [-40.000, 125.0]"),
@@ -163,7 +163,7 @@ def test_a_label_that_is_missing_is_the_other_languages_or_the_name() -> None:
 def test_a_robot_may_have_no_devices() -> None:
     board = TEXTS["tinibot"].partition("[board]")[2].partition("# Drivers of sensors")[0]
     body = TEXTS["tinibot"].partition("[body]")[2].partition("[body.sensors]")[0]
-    text = f"[kit]\n[board]{board}[body]{body}"
+    text = f"[kit]\nspeed = 45\n[board]{board}[body]{body}"
     assert read(text, "x").kit.sensors == ()
 
 

@@ -67,7 +67,7 @@ def test_unequal_motors_drive_a_curve() -> None:
     robot = robot_in(floor(size=400, start="x_cm = 100\ny_cm = 100"), motors=(100, 90))
     Talk(robot).upload("SI|F(2, 100)")
     robot.step(robot.now_ms + 900)
-    assert robot.pose.heading == pytest.approx(-0.1 * 45 * 0.9 / 13.5 * 57.2958, rel=0.1)
+    assert robot.pose.heading == pytest.approx(-0.1 / 2 * 360 * 0.9, rel=0.1)
 
 
 def test_its_trim_makes_unequal_motors_drive_straight() -> None:

@@ -9,6 +9,7 @@ from tiniscript import compile_text, robots, run
 from tiniscript.bytecode.image import GO, TASKS, unpack
 from tiniscript.kit import Kit
 from tiniscript.link.messages import SAVED_STORED, STATUSES
+from tiniscript.robots.kinematics import START, moved
 
 OK = STATUSES["OK"]
 ALONE = "F(20 CM, 60); R(90 DEG, 60); F(45 CM, 50) UNTIL(TIME > 2)"
@@ -28,6 +29,17 @@ def test_a_program_takes_as_long_as_the_profile_says(name: str, text: str) -> No
     talk.wait(6000)
     assert trace(robot.take_events()) == traced(text, name)
     assert talk.until(talk.session.status()).values.saved == SAVED_STORED
+
+
+@pytest.mark.parametrize("name", robots.names())
+def test_a_simulated_body_goes_and_turns_as_its_kit_says(name: str) -> None:
+    profile = robots.load(name)
+    go_ms = profile.kit.go_ms(20_000, 60, turns=False)
+    turn_ms = profile.kit.go_ms(90_000, 60, turns=True)
+    assert go_ms is not None
+    assert turn_ms is not None
+    assert moved(profile.body, START, 60, 60, go_ms).x_cm == pytest.approx(20, abs=0.05)
+    assert moved(profile.body, START, 60, -60, turn_ms).heading == pytest.approx(-90, abs=0.3)
 
 
 @pytest.mark.parametrize(("text", "needs"), [(ALONE, GO), (BESIDE, GO | TASKS), ("W(0.1)", 0)])

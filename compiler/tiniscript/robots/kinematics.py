@@ -35,15 +35,15 @@ def moved(body: Body, pose: Pose, left: float, right: float, duration_ms: float)
     left_cm, right_cm = (
         body.speed_cm_s * percent / 100 * duration_ms / 1000 for percent in (left, right)
     )
-    turn = (right_cm - left_cm) / body.wheel_base_cm
-    half = turn / 2
+    turn = body.turn_s * (right - left) / 200 * duration_ms / 1000
+    half = math.radians(turn / 2)
     # the chord of an arc points halfway between the headings at its ends
     chord_cm = (left_cm + right_cm) / 2 * (math.sin(half) / half if half else 1.0)
     along = math.radians(pose.heading) + half
     return Pose(
         pose.x_cm + chord_cm * math.cos(along),
         pose.y_cm + chord_cm * math.sin(along),
-        pose.heading + math.degrees(turn),
+        pose.heading + turn,
     )
 
 

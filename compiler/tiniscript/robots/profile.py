@@ -79,13 +79,17 @@ SEES = ("light", "distance", "line", "touch")
 
 
 class Body(NamedTuple):
-    """What a simulator must know. `speed_cm_s` is the speed of a wheel at 100 %.
+    """What a simulator must know. It goes `speed_cm_s` and turns `turn_s` degrees at 100 %.
+
+    They are the kit's `speed` and `turn`, where it says them. `wheel_base_cm` is where the wheels
+    are, which turn it less than their places say: they slip.
 
     A sensor that is not in `places` detects nothing in a simulated world.
     """
 
     wheel_base_cm: float
     speed_cm_s: float
+    turn_s: float
     length_cm: float
     width_cm: float
     places: Mapping[str, Place]

@@ -5,6 +5,7 @@ Reads `[kit]`, `[body]` and `[labels]`; `board_reader` reads `[board]`. Opens no
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 
 from tiniscript.fixed_point import ONE
@@ -138,12 +139,17 @@ def _read_body(table: Table, kit: Kit) -> Body:
         return table.number(key, 1, most, f"{key} = {sample}") / ONE
 
     wheel_base_cm = size("wheel_base_cm", "13.5")
-    speed_cm_s = size("speed_cm_s", "45", FASTEST_CM_S)
+    said_cm_s = 0.0
+    if table.has("speed_cm_s") or not kit.speed:
+        said_cm_s = size("speed_cm_s", "45", FASTEST_CM_S)
+    speed_cm_s = kit.speed / ONE or said_cm_s
+    by_wheels = math.degrees(2 * speed_cm_s / wheel_base_cm) if wheel_base_cm else 0.0
+    turn_s = kit.turn / ONE or by_wheels
     length_cm, width_cm = size("length_cm", "20"), size("width_cm", "15")
     wired = device_tables(table, "sensors", kit.sensors)
     places = {name: _read_place(wired[name]) for name, *_ in kit.sensors if name in wired}
     table.finish()
-    return Body(wheel_base_cm, speed_cm_s, length_cm, width_cm, places)
+    return Body(wheel_base_cm, speed_cm_s, turn_s, length_cm, width_cm, places)
 
 
 def _read_place(table: Table) -> Place:

@@ -72,6 +72,7 @@ def _grabber() -> Robot:
         body=Body(
             wheel_base_cm=15.5,
             speed_cm_s=40.0,
+            turn_s=296.0,
             length_cm=26.0,
             width_cm=18.0,
             places={
@@ -160,6 +161,7 @@ def _liner() -> Robot:
         body=Body(
             wheel_base_cm=9.2,
             speed_cm_s=60.0,
+            turn_s=747.0,
             length_cm=12.0,
             width_cm=10.5,
             places={
@@ -234,6 +236,7 @@ def _tinibot() -> Robot:
         body=Body(
             wheel_base_cm=13.5,
             speed_cm_s=45.0,
+            turn_s=360.0,
             length_cm=21.0,
             width_cm=15.0,
             places={
@@ -304,6 +307,7 @@ def _tinibot32() -> Robot:
         body=Body(
             wheel_base_cm=13.5,
             speed_cm_s=45.0,
+            turn_s=360.0,
             length_cm=21.0,
             width_cm=15.0,
             places={
@@ -372,6 +376,7 @@ def _tinibotc3() -> Robot:
         body=Body(
             wheel_base_cm=13.5,
             speed_cm_s=45.0,
+            turn_s=360.0,
             length_cm=21.0,
             width_cm=15.0,
             places={

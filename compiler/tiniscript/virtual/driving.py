@@ -220,7 +220,7 @@ class Driving:
         """Return how fast the fastest point of the body can be."""
         full = self.body.speed_cm_s / 100 / 1000
         ahead = abs(self.left + self.right) / 2 * full
-        turning = abs(self.right - self.left) * full / self.body.wheel_base_cm
+        turning = abs(self.right - self.left) / 200 * math.radians(self.body.turn_s) / 1000
         return ahead + turning * self.hull.reach_cm
 
     def _pushed(self, before: Pose, pose: Pose) -> tuple[Pose, float]:

@@ -19,7 +19,7 @@ END_LOOP;
   square: { robot: 'tinibot', world: 'obstacles', text: `\
 SI|LOOP(4);
   F(0.8, 70);
-  L(0.4, 60);
+  L(0.42, 60);
 END_LOOP;
 ` },
   obstacle: { robot: 'tinibot', world: 'obstacles', text: `\
