@@ -124,7 +124,7 @@ PROGRAMS: dict[int, dict[str, dict[str, str]]] = {
             "F(3.7, 60); L(90, 60); F(3.7, 60)": "After 20.0 s the robot was still moving when the time was over",
             "F(3.7, 60); R(0.42, 60); F(3.7, 60)": "The robot touched the edge of the floor after 5.1 s",
             "L(0.42, 60); F(3.7, 60); R(0.42, 60); F(3.7, 60)": "The robot touched a box after 1.1 s",
-            "F(3.7, 60); L(0.42, 60); F(3.7, 60); L(0.42, 60)": "At the end the robot looks 89 degrees too far to the left",
+            "F(3.7, 60); L(0.42, 60); F(3.7, 60); L(0.42, 60)": "At the end the robot looks 91 degrees too far to the left",
             "F(3.7, 60); L(0.42, 60)": "At the end the robot was 100 cm from the school",
             "F(3.7, 60); L(0.42, 60); F(2.6, 60)": "At the end the robot was 30 cm from the school",
         },
@@ -153,8 +153,8 @@ PROGRAMS: dict[int, dict[str, dict[str, str]]] = {
         "wrong": {
             "LOOP(3); F(2.96, 60); L(0.417, 60); END_LOOP": "At the end the robot was 80 cm from its place",
             "LOOP(4); F(2.96, 60); END_LOOP": "The robot touched the edge of the floor after 4.4 s",
-            "LOOP(4); F(2.96, 60); L(0.3, 60); END_LOOP": "The robot touched the edge of the floor after 8.4 s",
-            "LOOP(4); F(2.96, 60); L(0.5, 60); END_LOOP": "The robot touched a box after 4.4 s",
+            "LOOP(4); F(2.96, 60); L(0.3, 60); END_LOOP": "The robot touched the edge of the floor after 8.3 s",
+            "LOOP(4); F(2.96, 60); L(0.5, 60); END_LOOP": "The robot touched a box after 4.8 s",
             "LOOP(4); F(1.48, 60); L(0.417, 60); END_LOOP": "The robot touched a box after 2.2 s",
             "LOOP(4); F(2.96, 60); R(0.417, 60); END_LOOP": "The robot touched the edge of the floor after 4.4 s",
             "LOOP(4); F(3.6, 60); L(0.417, 60); END_LOOP": "The robot went 17 cm past corner 1 before it stopped or turned",
@@ -335,7 +335,7 @@ PROGRAMS: dict[int, dict[str, dict[str, str]]] = {
         "wrong": {
             "DEF STRAIGHT; M(35, 35); W(FOREVER) UNTIL(LINE_L OR LINE_R OR BUTTON); END_DEF; DEF TO_LEFT; M(5, 40); W(FOREVER) UNTIL(NOT LINE_L OR BUTTON); END_DEF; DEF TO_RIGHT; M(40, 5); W(FOREVER) UNTIL(NOT LINE_R OR BUTTON); END_DEF; WHILE(NOT BUTTON); STRAIGHT; IF(LINE_L); TO_LEFT; ENDIF; IF(LINE_R); TO_RIGHT; ENDIF; END_WHILE; S": "The robot showed nothing. Write what it should show: SHOW(TIME)",
             "DEF STRAIGHT; M(35, 35); W(FOREVER) UNTIL(LINE_L OR LINE_R OR BUTTON); END_DEF; DEF TO_LEFT; M(41, 5); W(FOREVER) UNTIL(NOT LINE_L OR BUTTON); END_DEF; DEF TO_RIGHT; M(5, 41); W(FOREVER) UNTIL(NOT LINE_R OR BUTTON); END_DEF; WHILE(NOT BUTTON); STRAIGHT; IF(LINE_L); TO_LEFT; ENDIF; IF(LINE_R); TO_RIGHT; ENDIF; END_WHILE; S; SHOW(TIME)": "After 1.1 s the robot left the black line",
-            "DEF STRAIGHT; M(35, 35); W(FOREVER) UNTIL(LINE_L OR LINE_R OR BUTTON); END_DEF; DEF TO_LEFT; M(5, 40); W(FOREVER) UNTIL(NOT LINE_L OR BUTTON); END_DEF; DEF TO_RIGHT; M(40, 5); W(FOREVER) UNTIL(NOT LINE_R OR BUTTON); END_DEF; LOOP(FOREVER); STRAIGHT; TO_LEFT; TO_RIGHT; END_LOOP; SHOW(TIME)": "In 16.6 s the robot did more than 200000 things without a rest",
+            "DEF STRAIGHT; M(35, 35); W(FOREVER) UNTIL(LINE_L OR LINE_R OR BUTTON); END_DEF; DEF TO_LEFT; M(5, 40); W(FOREVER) UNTIL(NOT LINE_L OR BUTTON); END_DEF; DEF TO_RIGHT; M(40, 5); W(FOREVER) UNTIL(NOT LINE_R OR BUTTON); END_DEF; LOOP(FOREVER); STRAIGHT; TO_LEFT; TO_RIGHT; END_LOOP; SHOW(TIME)": "In 16.3 s the robot did more than 200000 things without a rest",
             "SHOW(TIME); DEF STRAIGHT; M(35, 35); W(FOREVER) UNTIL(LINE_L OR LINE_R OR BUTTON); END_DEF; DEF TO_LEFT; M(5, 40); W(FOREVER) UNTIL(NOT LINE_L OR BUTTON); END_DEF; DEF TO_RIGHT; M(40, 5); W(FOREVER) UNTIL(NOT LINE_R OR BUTTON); END_DEF; WHILE(NOT BUTTON); STRAIGHT; IF(LINE_L); TO_LEFT; ENDIF; IF(LINE_R); TO_RIGHT; ENDIF; END_WHILE; S": "After it stops, the robot should show a value, but it does not",
             "DEF WIG; L(0.05, 20); R(0.05, 20); END_DEF; LOOP(FOREVER); WIG; END_LOOP": "In 60.0 s the robot followed only 10 cm of the black line; the task asks for 240 cm",
         },
