@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from typing import Any
 
 import pytest
 
 from tests.support.rows import each_row
+from tests.support.texts import said as all_said
 from tiniscript import check_text, compile_text
 from tiniscript.diagnostics import codes, rendering
 from tiniscript.diagnostics.codes import CODES, Diagnostic
 from tiniscript.diagnostics.rendering import Message, as_json, as_text, explain, message, titles
 from tiniscript.kit import NUMBER, YES_NO, Device, Kit
+from tiniscript.languages import FOLDER, SOURCE, languages
+from tiniscript.languages.catalogue_file import load
 from tiniscript.source import Source, Span
 
 KIT = Kit(
@@ -30,11 +32,10 @@ KIT = Kit(
     speed=45_000,
     turn=360_000,
 )
-LANGUAGES = ("en", "es")
-TEXTS: dict[str, dict[str, Any]] = {
-    code: texts for code, texts in rendering._texts().items() if code.startswith("TS")
-}
-EXAMPLES = sorted(code for code, texts in TEXTS.items() if "wrong" in texts)
+LANGUAGES = languages()
+TEXTS = {language: all_said(language, "messages") for language in languages()}
+PROGRAMS = rendering.examples()
+EXAMPLES = sorted(PROGRAMS)
 BOARD = {"robot": "TINIBOT", "limit": "900", "code": "1000", "over": "100"}
 LEVEL = {"level": "uno", "limit": "255", "code": "260", "over": "5"}
 WITHOUT_EXAMPLE: dict[str, Mapping[str, str]] = {
@@ -61,8 +62,8 @@ def gaps(code: str) -> set[str]:
 
     Of several texts only the last one has to be filled: it is taken where no other is.
     """
-    texts = [TEXTS[code][lang + end] for lang in LANGUAGES for end in ("", "_try")]
-    both = "".join(text if isinstance(text, str) else text[-1] for text in texts)
+    both = "".join(list(rendering._texts(f"{code}/{part}", lang))[-1]
+                   for part in ("message", "try") for lang in LANGUAGES)  # fmt: skip
     return set(re.findall(r"\{@?(\w+)\}", both))
 
 
@@ -81,62 +82,40 @@ def shown(text: str, lang: str = "en") -> list[str]:
 
 
 def test_each_code_has_its_words_and_no_words_lack_a_code() -> None:
-    assert set(TEXTS) == set(CODES)
-    assert set(rendering._texts()) - set(TEXTS) == {"terms", "labels"}
+    for texts in TEXTS.values():
+        assert {key.partition("/")[0] for key in texts} == {"label", "term", *CODES}
+    assert set(PROGRAMS) == set(CODES) - set(WITHOUT_EXAMPLE)
 
 
-def test_one_table_alone_is_what_it_is_among_all() -> None:
-    for name, table in rendering._texts().items():
-        assert rendering._table(name) == table
+@each_row("code", sorted(CODES))
+def test_each_code_has_all_texts_in_every_language(code: str) -> None:
+    for texts in TEXTS.values():
+        for part in ("title", "message", "try", "more"):
+            assert texts[f"{code}/{part}"]
+            assert part in ("message", "try") or "{" not in texts[f"{code}/{part}"]
 
 
-def test_what_is_read_without_tomllib_is_what_tomllib_reads() -> None:
-    for code, table in TEXTS.items():
-        keys = ("en", "en_try", "es", "es_try")
-        assert rendering._said(code) == {key: table[key] for key in keys}, code
-    for name in ("terms", "labels"):
-        table = {key: (each["en"], each["es"]) for key, each in rendering._texts()[name].items()}
-        assert rendering._terms(name) == table
-
-
-def test_a_text_with_an_escape_is_read_by_tomllib(monkeypatch: pytest.MonkeyPatch) -> None:
-    rows = '[TS999]\nen = "a"\nen_try = ["b {x}", "c]"]\nes = "\\"d\\""\nes_try = "e"\n'
-    monkeypatch.setattr(rendering, "_file", lambda: f"\n{rows}")
-    said = {"en": "a", "en_try": ["b {x}", "c]"], "es": '"d"', "es_try": "e"}
-    assert rendering._said("TS999") == said
-
-
-@each_row("code", sorted(TEXTS))
-def test_each_code_has_all_texts_in_both_languages(code: str) -> None:
-    texts = TEXTS[code]
-    wanted = {lang + end for lang in LANGUAGES for end in ("", "_title", "_try", "_more")}
-    examples = set() if code in WITHOUT_EXAMPLE else {"wrong", "right"}
-    assert set(texts) == wanted | examples
-    for name in wanted:
-        assert texts[name], name
-        assert "{" not in texts[name] or not name.endswith(("_title", "_more"))
-
-
-def test_each_term_and_label_is_in_both_languages() -> None:
-    for table in ("terms", "labels"):
-        for name, term in rendering._texts()[table].items():
-            assert set(term) == set(LANGUAGES), name
+def test_a_translator_sees_the_wrong_program_of_a_message() -> None:
+    entries = load(FOLDER / SOURCE / "messages.po").entries
+    for code, programs in PROGRAMS.items():
+        rows = [f"wrong: {row}" for row in programs["wrong"].strip().splitlines()]
+        assert entries[f"{code}/message"].notes == rows, f"fix the notes of {code}"
 
 
 @each_row("code", EXAMPLES)
 def test_the_wrong_example_has_its_diagnostic_first(code: str) -> None:
-    found = compile_text(TEXTS[code]["wrong"], KIT).diagnostics
+    found = compile_text(PROGRAMS[code]["wrong"], KIT).diagnostics
     assert [diagnostic.code.number for diagnostic in found][:1] == [code]
 
 
 @each_row("code", EXAMPLES)
 def test_the_right_example_has_no_diagnostic(code: str) -> None:
-    assert compile_text(TEXTS[code]["right"], KIT).diagnostics == []
+    assert compile_text(PROGRAMS[code]["right"], KIT).diagnostics == []
 
 
 @each_row("code", EXAMPLES)
 def test_the_examples_fill_all_gaps_of_their_messages(code: str) -> None:
-    found = compile_text(TEXTS[code]["wrong"], KIT)
+    found = compile_text(PROGRAMS[code]["wrong"], KIT)
     values = found.diagnostics[0].values
     if found.diagnostics[0].repair is None:  # else what it becomes is told
         assert gaps(code) <= set(values)
@@ -341,14 +320,14 @@ def test_as_json() -> None:
 
 
 @pytest.mark.parametrize("lang", LANGUAGES)
-@each_row("code", sorted(TEXTS))
+@each_row("code", sorted(CODES))
 def test_each_code_is_explained(code: str, lang: str) -> None:
     text = explain(code, lang)
     assert text is not None
-    assert TEXTS[code][lang + "_title"] in text
-    assert " ".join(TEXTS[code][lang + "_more"].split()) in " ".join(text.split())
+    assert TEXTS[lang][f"{code}/title"] in text
+    assert TEXTS[lang][f"{code}/more"] in " ".join(text.split())
     for example in ("wrong", "right"):
-        for row in TEXTS[code].get(example, "").strip().split("\n"):
+        for row in PROGRAMS.get(code, {}).get(example, "").strip().split("\n"):
             assert row in text
     assert max(map(len, text.split("\n"))) <= 100
 

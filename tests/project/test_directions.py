@@ -165,6 +165,7 @@ OF_WRONG = re.compile(
 def test_a_right_program_loads_nothing_for_wrong_ones(verb: str, tmp_path: Path) -> None:
     program = tmp_path / "right.ts"
     program.write_text(RIGHT)
+    catalogue("command", "en")  # as a package has it
     modules = imported_by(
         "from tiniscript.cli import main; "
         f"assert main([{verb!r}, '--robot', 'grabber', {str(program)!r}]) == 0"

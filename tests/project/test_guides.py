@@ -163,21 +163,12 @@ def said_in(language: str) -> dict[str, str]:
     from tiniscript.lessons.sentences import SENTENCES
     from tiniscript.library.texts import TEXTS as LIBRARY_TEXTS
     from tiniscript.robots.profile import LANGUAGES
-    from tiniscript.robots.toml_table import parse_toml
     from tiniscript.robots.wiring.texts import TEXTS as WIRING_TEXTS
 
     both_languages = (WIRING_TEXTS, LIBRARY_TEXTS, SENTENCES)
     k = LANGUAGES.index(language)
     found = {key: both[k] for table in both_languages for key, both in table.items()}
-    found |= command_texts(language)
-    catalogue = ROOT / "compiler" / "tiniscript" / "diagnostics" / "catalogue.toml"
-    entries = parse_toml(catalogue.read_text(encoding="utf-8"))
-    assert isinstance(entries, dict)
-    for code, entry in entries.items():
-        assert isinstance(entry, dict)
-        found[code] = "\n".join(
-            str(said) for key, said in entry.items() if key.startswith(language)
-        )
+    found |= command_texts(language) | command_texts(language, "messages")
     found |= {key: words[language] for key, words in statuses.texts().items()}
     name = f"*.{language}.md"
     places = (name, f"docs/**/{name}", f"compiler/tiniscript/lessons/*/{name}")

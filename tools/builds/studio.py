@@ -26,6 +26,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
+from tiniscript.languages import catalogue, languages
 from tiniscript.studio import block_kinds, building
 from tiniscript.studio.building import MODULES, SOURCES, Tools
 from tiniscript.studio.description import description
@@ -100,6 +101,8 @@ def build(page: Path = PAGE) -> None:
     say(f"node {tools.version}")
     install(tools)
     lock = json.loads((MODULES / "pyodide" / "pyodide-lock.json").read_text(encoding="utf-8"))
+    for language in languages():
+        catalogue("messages", language)  # made where it is stale
     make("description.json", description())
     make("blocks.json", block_kinds.data())
     make("blockly_texts.json", texts(BLOCKLY, SOURCES / "src"))

@@ -1,7 +1,7 @@
 """The codes of diagnostics: everything we can tell a person about a program, as data.
 
-Knows which diagnostics there are. Their words, in English and Spanish, are in `catalogue.toml`,
-which `rendering` reads when there is something to say.
+Knows which diagnostics there are. Their words are in the catalogue `messages`, which `rendering`
+reads when there is something to say.
 """
 
 from __future__ import annotations

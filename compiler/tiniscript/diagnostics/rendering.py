@@ -1,35 +1,37 @@
-"""Diagnostics become words: in English or Spanish, for people and for editors.
+"""Diagnostics become words: in the reader's language, for people and for editors.
 
-Knows how the texts of `catalogue.toml` are filled, and how a line of a program is shown with the
-place marked under it. Knows no single diagnostic: what is said of each is in that file, which is
-read when there is something to say. Prints nothing.
+Knows how the texts of the catalogue are filled, and how a line of a program is shown with the place
+marked under it. Knows no single diagnostic. Prints nothing.
+
+Of each code the catalogue has a title, which is the diagnostic in general words; a message, which
+is one cause; what to try, which is one thing; and more, which `tsc explain` says. Messages and
+things to try have gaps: `{found}` is a value itself, `{@unit}` one in the reader's language. Words
+in it that are terms are translated, all else stays: `F(time, power)` is `F(tiempo, potencia)`. A
+value that begins with @ is a term, wherever it stands. Of several texts, `/message`, `/message/2`,
+the first one whose gaps all have a value is taken, else the last one. No full stop stands right
+after a gap or a piece of program: it would look like a part of it.
 """
 
 from __future__ import annotations
 
 import re
 import sys
-from collections.abc import Iterable, Mapping
-from functools import cache
+from collections.abc import Iterable, Iterator, Mapping
+from itertools import count
 from pathlib import Path
-from typing import Any, Literal, NamedTuple
+from typing import Literal, NamedTuple
 
+from tiniscript import languages
 from tiniscript.diagnostics.codes import CODES, Diagnostic
 from tiniscript.source import Source, Span
 
+CATALOGUE = "messages"
 LINE_COLUMNS = 100  # of a program's line; of a longer one a window is shown
 COLUMNS_BEFORE = 40  # of that window, before the place
 ROW_CHARACTERS = 110  # a longer message has what to try in a row of its own
 VALUE_CHARACTERS = 60  # of a program's text within a message
 FIX_CHARACTERS = 200  # of what to try, which is cut only where nobody would copy it
 TAB = "    "
-
-# Rows of `catalogue.toml`, without escapes.
-_SAID = re.compile(
-    r'^((?:en|es)(?:_try)?) = (?:"([^"\\\n]*)"|\[((?:\s*"[^"\\\n]*",?)+)\s*\])$', re.MULTILINE
-)
-_TERM = re.compile(r'^"?([^\s"=]+)"? = \{ en = "([^"\\\n]*)", es = "([^"\\\n]*)" \}$', re.MULTILINE)
-_TEXT = re.compile(r'"([^"]*)"')
 
 _GAP = re.compile(r"\{(@?)(\w+)\}")
 _TERM_WORD = re.compile(r"[A-Za-z_]+")
@@ -54,7 +56,7 @@ class Message(NamedTuple):
 
 def message(diagnostic: Diagnostic, source: Source, lang: str) -> Message:
     """Return what is said of a diagnostic, and where."""
-    texts = _said(diagnostic.code.number)
+    number = diagnostic.code.number
     start, end = _shown_range(source.text, diagnostic.span)
     line, column = source.position(start)
     end_line, end_column = line, column
@@ -62,14 +64,14 @@ def message(diagnostic: Diagnostic, source: Source, lang: str) -> Message:
         end_line, last_column = source.position(end - 1)
         end_column = last_column + 1
     return Message(
-        diagnostic.code.number,
+        number,
         "mistake" if diagnostic.is_mistake else "warning",
         line,
         column,
         end_line,
         end_column,
-        _filled(texts[lang], diagnostic.values, lang),
-        _filled(texts[lang + "_try"], diagnostic.values, lang),
+        _filled(f"{number}/message", diagnostic.values, lang),
+        _filled(f"{number}/try", diagnostic.values, lang),
     )
 
 
@@ -108,88 +110,60 @@ def explain(code: str, lang: str) -> str | None:
     number = number if number.startswith("TS") else "TS" + number
     if number not in CODES:
         return None
-    texts = _table(number)
     severity = _label("mistake" if CODES[number].is_mistake else "warning", lang)
     parts = [
-        f"{number} ({severity}): {texts[lang + '_title']}",
-        fill(" ".join(texts[lang + "_more"].split()), 88, break_on_hyphens=False),
+        f"{number} ({severity}): {_text(f'{number}/title', lang)}",
+        fill(_text(f"{number}/more", lang), 88, break_on_hyphens=False),
     ]
-    for example in ("wrong", "right"):
-        if example in texts:
-            parts.append(_label(example, lang) + "\n\n" + indent(texts[example].strip(), "    "))
+    for example, program in examples().get(number, {}).items():
+        parts.append(_label(example, lang) + "\n\n" + indent(program.strip(), "    "))
     return "\n\n".join(parts)
 
 
 def titles(lang: str) -> list[tuple[str, str]]:
     """Return every code with its diagnostic in general words."""
-    texts = _texts()
-    return [(number, texts[number][lang + "_title"]) for number in sorted(CODES)]
+    return [(number, _text(f"{number}/title", lang)) for number in sorted(CODES)]
+
+
+def examples() -> dict[str, dict[str, str]]:
+    """Return a wrong and a right program for each code that is in a short text."""
+    if sys.version_info >= (3, 11):
+        import tomllib
+    else:
+        import tomli as tomllib
+    path = Path(__file__).with_name("examples.toml")
+    return tomllib.loads(path.read_text(encoding="utf-8"))
 
 
 # -- words --------------------------------------------------------------------------------------
 
 
-def _texts() -> dict[str, dict[str, Any]]:
-    """Return all tables of `catalogue.toml`."""
-    return _read(_file())
-
-
-@cache
-def _said(number: str) -> dict[str, str | list[str]]:
-    """Return the messages of a code and what to try, in both languages.
-
-    Importing tomllib and reading with it takes a tenth as long as compiling a program.
-    """
-    found: dict[str, str | list[str]] = {}
-    for key, text, several in _SAID.findall(_part(number)):
-        found[key] = _TEXT.findall(several) if several else text
-    return found if len(found) == 4 else _table(number)  # with an escape
-
-
-@cache
-def _terms(name: str) -> dict[str, tuple[str, str]]:
-    """Return the table of [labels] or [terms], in English and Spanish."""
-    return {key: (en, es) for key, en, es in _TERM.findall(_part(name))}
-
-
-def _table(name: str) -> dict[str, Any]:
-    """Return one table of `catalogue.toml`."""
-    return _read(_part(name))[name]
-
-
-def _part(name: str) -> str:
-    """Return the rows of one table: reading all takes as long as compiling."""
-    begin = _file().index(f"\n[{name}]\n") + 1
-    end = _file().find("\n[", begin)
-    return _file()[begin : end if end >= 0 else None]
-
-
-@cache
-def _file() -> str:
-    return Path(__file__).with_name("catalogue.toml").read_text(encoding="utf-8")
-
-
-def _read(toml: str) -> dict[str, dict[str, Any]]:
-    if sys.version_info >= (3, 11):
-        import tomllib
-    else:
-        import tomli as tomllib
-    return tomllib.loads(toml)
+def _text(key: str, lang: str) -> str:
+    return languages.text(CATALOGUE, key, lang)
 
 
 def _label(name: str, lang: str) -> str:
-    return _terms("labels")[name][lang == "es"]
+    return _text(f"label/{name}", lang)
 
 
 def _term(word: str, lang: str) -> str | None:
-    term = _terms("terms").get(word)
-    return None if term is None else term[lang == "es"]
+    return languages.found(CATALOGUE, f"term/{word}", lang)
 
 
-def _filled(texts: str | list[str], values: Mapping[str, str], lang: str) -> str:
+def _texts(key: str, lang: str) -> Iterator[str]:
+    """Yield the texts of which one is taken."""
+    yield _text(key, lang)
+    for number in count(2):
+        said = languages.found(CATALOGUE, f"{key}/{number}", lang)
+        if said is None:
+            return
+        yield said
+
+
+def _filled(key: str, values: Mapping[str, str], lang: str) -> str:
     """Return the first text whose gaps all have a value, else the last one, filled."""
     chosen = ""
-    for chosen in [texts] if isinstance(texts, str) else texts:
+    for chosen in _texts(key, lang):
         if all(values.get(name) for _, name in _GAP.findall(chosen)):
             break
 

@@ -41,21 +41,23 @@ def about(field: str, language: str) -> str:
     return catalogue("command", language).info().get(field, "")
 
 
+def found(name: str, key: str, language: str) -> str | None:
+    """Return a text of a catalogue, None where it has no such key."""
+    said = catalogue(name, language).gettext(key)
+    return None if said is key else said
+
+
 def text(name: str, key: str, language: str) -> str:
     """Return a text of a catalogue."""
-    found = catalogue(name, language).gettext(key)
-    if found is key:
+    said = found(name, key, language)
+    if said is None:
         raise KeyError(key)
-    return found
+    return said
 
 
 def counted(name: str, key: str, count: int, language: str) -> str:
     """Return the form of a text with a plural that goes with a number."""
     return catalogue(name, language).ngettext(key, key, count)
-
-
-def has_text(name: str, key: str) -> bool:
-    return catalogue(name, SOURCE).gettext(key) is not key
 
 
 @cache

@@ -1,6 +1,6 @@
 """The sentences of the library's errors and listings, in English and Spanish.
 
-The sentences of diagnostics are in `diagnostics/catalogue.toml`, those of a robot's answers in
+The sentences of diagnostics are in the catalogue `messages`, those of a robot's answers in
 `link/statuses.toml`. The command has sentences of its own, which name its options.
 """
 

@@ -58,7 +58,7 @@ def text(key: str, language: str) -> str:
 
 
 def has_text(key: str) -> bool:
-    return languages.has_text(CATALOGUE, key)
+    return languages.found(CATALOGUE, key, languages.SOURCE) is not None
 
 
 def language_of(arguments: Sequence[str], environ: Mapping[str, str] = os.environ) -> str:
