@@ -33,7 +33,7 @@ OTHER_NUMBERS = (
     codes.PASTED,  # `[20:14] Luis:`
     codes.NO_BRACKETS_HERE,  # `TASK(1)`
 )
-SHIFTED = re.compile(r"[=!\"$%/]")  # signs on the keys of digits
+SHIFTED = re.compile(r"[=!\"$%/]|\d\d, \d{3}$")  # a digit for a sign on its key, or turned round
 CONVERTED = re.compile(r"(?i)[0-9] *(min|ms|mili|hora|hour)|delay")
 
 
@@ -85,6 +85,7 @@ def test_each_repair_helps_and_keeps_the_numbers(entry: Entry) -> None:
         is_counted = is_counted or SHIFTED.search(source[diagnostic.span]) is not None
         is_counted = is_counted or CONVERTED.search(entry.program) is not None
         is_always = diagnostic.code is codes.WANTS_CONDITION and fix == "TRUE"  # `WHILE(1)`
+        is_always |= fix == "TASK"  # `TAREA 1`
         stem = diagnostic.values.get("found", "").rstrip("0123456789")  # of `STOP2`
         is_always |= diagnostic.code is codes.UNKNOWN_WORD and diagnostic.values["near"] == stem
         if diagnostic.code not in OTHER_NUMBERS and not (is_counted or is_always):

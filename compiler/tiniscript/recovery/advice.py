@@ -27,7 +27,7 @@ from tiniscript.syntax.free_names import for_a_number
 from tiniscript.syntax.lexer import WORD
 from tiniscript.syntax.operators import COMPARISONS
 from tiniscript.syntax.outline import Failure
-from tiniscript.words import BLOCK_ENDS, OTHER_WAY, WORDS, nearest
+from tiniscript.words import BLOCK_ENDS, OTHER_WAY, UNIT_OF, WORDS, nearest
 
 LONGEST = 24  # words behind an instruction that are read
 MOST = 1_000  # of them in a text
@@ -455,6 +455,13 @@ def _with_value(gaps: _Gaps, place: int) -> str:
     return "" if is_same or not is_sensible else f"{call[:start]}{number}{call[end:]}"
 
 
+def _by_way(gaps: _Gaps) -> str:
+    """The call by centimetres or degrees instead of seconds."""
+    call, values = gaps.part.call, gaps.part.values
+    end = values[0][1] if values else 0
+    return f"{call[:end]} {UNIT_OF[plain(call.partition('(')[0])]}{call[end:]}" if end else ""
+
+
 def _both(gaps: _Gaps) -> str:
     """A move and a sound at once, where the sound does not end later."""
     part = gaps.part
@@ -560,6 +567,7 @@ _GAPS: dict[str, Callable[[_Gaps], str]] = {
     "always": lambda gaps: laid_out(_asked(gaps, "c")), "shown": _shown,
     "other": _other, "note": _note,
     "once": lambda gaps: gaps.part.call if gaps["n"] == "1" else "",
+    "by_way": _by_way,
     "longer": lambda gaps: _with_value(gaps, 0), "paced": lambda gaps: _with_value(gaps, -1),
     "question": lambda gaps: laid_out(_asked(gaps)), "contrary": _contrary, "near": _near,
     "example?": _example,

@@ -80,6 +80,8 @@ ADVICE = """
 ^ @none w=@call @any* (|, s=@order ) $ | TS051 | word={s}; example={example} | F(2, R) => example=F(2, 80)
 ^ @none <asks> ( s=@order @any* ) $ | TS105 | word={s}; right= | IF(L > 5)⏎S⏎ENDIF => word=L
 # words for nothing, and those that are no words behind it
+^ c=F|B CM|CENTIMETROS $ | TS085 | fix={by_way} | F(20, 60) cm => fix=F(20 CM, 60)
+^ c=L|R GRADOS|DEGREES|° $ | TS085 | fix={by_way} | R(90, 60) grados => fix=R(90 DEG, 60)
 ^ c=@any s=idle+ $ | TS044 | found={s} | SHOW(DISTANCE) cm => found=cm
 ^ c=S|STOP s=LOOP $ | TS102 | found={text}; right=BREAK; fix=BREAK; usage=BREAK | STOP LOOP => fix=BREAK
 ^ c=@move|W s=UN u=TIL q=@any+ $ | TS102 | found={s} {u}; right=UNTIL; usage=UNTIL{q} | F(5, 60) UN TIL(DISTANCE < 30) => usage=UNTIL(DISTANCE < 30)

@@ -76,6 +76,9 @@ class _Block:
         self.is_do = is_header and line.is_do
         self.is_translated = line.tokens[item.start].source is None
         self.name = line.tokens[item.start + 1].text if self.word == "DEF" else ""
+        head = [each.text for each in line.tokens[item.start + 1 : item.end]]
+        self.is_endless = head == ["(", "FOREVER", ")"]  # until a BREAK is read in it
+        self.last: int | None = None  # its last line that is ever done
 
     @property
     def end(self) -> str:
@@ -124,7 +127,7 @@ class _Matching:
                 self.tails.setdefault(last, []).append(block.end)
                 continue
             self.is_sure = self.is_sure and block.has_indented_body and block.is_begun
-            self.close_behind(last, block)
+            self.close_behind(last if block.last is None else block.last, block)
         return Matched(self.edits, self.tails, self.behind, self.is_sure)
 
     def edit(self, k: int, item: Item, old: int, *new: str) -> None:
@@ -185,6 +188,10 @@ class _Matching:
             while self.open and self.open[-1].word != "IF" and self.open[-1].line == k:
                 self.edit(k, item, 0, self.open.pop().end, ";")
             return bool(self.open) and self.open[-1].word == "IF"
+        if item.word == "BREAK" and (
+            loop := next((each for each in self.open[::-1] if each.word in ("LOOP", "WHILE")), None)
+        ):
+            loop.is_endless = False
         if item.kind == "end":
             return self.bare_end(place, k, item) if item.word == ANY_END else self.end(k, item)
         return True
@@ -289,6 +296,8 @@ class _Matching:
         if self.open and self.open[-1].word == want:
             block = self.open.pop()
             self.is_sure = self.is_sure and not block.has_brace and line.is_do <= block.is_do
+            if block.is_endless and self.open and self.open[-1].last is None:
+                self.open[-1].last = k
             return True
         if self.open or self.has_unread:
             return False

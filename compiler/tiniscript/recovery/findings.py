@@ -165,6 +165,8 @@ def _meant(
 
 
 def _is_sure(told: Explanation, meant: Candidate) -> bool:
+    if told.code == rows.DO_CODE and not re.search(r"(?i)\bBREAK\b", meant.text):
+        return False  # nothing says how often
     return meant.is_applied or (meant.is_whole and told.is_sure)
 
 
@@ -208,6 +210,8 @@ def _moved(found: Diagnostic, text: str, meant: Candidate) -> Diagnostic:
     )
     whole = "; ".join(each for each in lines_ if each)
     values = {**found.values, "whole": whole if len(whole) <= LONGEST_BLOCK else ""}
+    if meant.move and meant.move.is_end and meant.move.last > len(text.splitlines()):
+        values |= {"open": meant.move.name}  # its end is in no line
     if found.code is codes.WRONG_END:
         values["swapped"] = found.values["right"]
     elif (move := meant.move) is not None:

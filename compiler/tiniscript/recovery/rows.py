@@ -73,7 +73,7 @@ DO_ALONE = r"\s*(?:REPEAT|REPETIR|REPITE|DO|LOOP|HACER)\b\s*\{?\s*$"
 SIGNS = r"""
 (?<!\) )(["'«»`])([A-Za-z0-9_.,()| <>=]*[A-Za-z0-9)][A-Za-z0-9_.,()| <>=]*)(?:\1|»)  |  `\2`  |  1  |  TS006  |  applied  |  F("2","80") => F(2,80)
 (?<=\(\d)\. (?=\d\d\s*\))  |  `, `  |  1  |  TS017  |  applied  |  F(2. 80) => F(2, 80)
-(?<=W\()0:(\d\d)(?=\))  |  `\1`  |  1  |  TS008  |  applied  |  W(0:30) => W(30)
+(?<=[( ])0?0:(\d\d)(?=\))  |  `\1`  |  1  |  TS008  |  applied  |  W(0:30) => W(30)
 (?<=\(\d)\)\s+\((?=\d+\))  |  `, `  |  1  |  TS017  |  applied  |  F (2) (80) => F (2, 80)
 (?<=\))\s*[✓✔]\s*(?=\w)  |  `; `  |  1  |  TS005  |  applied  |  F(2, 80) ✓ R(1, 50) => F(2, 80); R(1, 50)
 \b([A-Za-z_]\w*)\s*=\+\s+(?=\d)  |  `\1 = \1 + `  |  1  |  TS050  |  applied  |  V = 5⏎V =+ 10⏎F(2, V) => V = 5⏎V = V + 10⏎F(2, V)
@@ -94,6 +94,8 @@ SIGNS = r"""
 (?<=[(,])(\s*)/(?=\d)  |  `\g<1>7`  |  1  |  TS076  |  offered  |  F(2, /0) => F(2, 70)
 (?<=\()l(?=\s*,)  |  `1`  |  1  |  TS008  |  offered  |  F(l, 80) => F(1, 80)
 \((\d)\.,(\d+) +(\d+)\)  |  `(\1.\2, \3)`  |  1  |  TS008  |  applied  |  F(0.,5 60) => F(0.5, 60)
+(?<=\(\d) +(?=\.\d+,)  |  ``  |  1  |  TS008  |  applied  |  F(1 .5, 80) => F(1.5, 80)
+\b([FBLR])(?:8(\d),\s*(\d\d)9|9(\d),\s*(\d\d)0)\s*(?=;|$)  |  `\1(\2\4, \3\5)`  |  1  |  TS010  |  offered  |  F82, 809 => F(2, 80)
 (?<=\d)\. (?=\d)  |  `.`  |  1  |  TS008  |  applied  |  F(1. 5, 80) => F(1.5, 80)
 ^(\s*S[IB]\s*\|)\s+\|  |  `\1`  |  1  |  TS054  |  applied  |  SI| |F(2, 80) => SI|F(2, 80)
 −  |  `-`  |  0  |  TS010  |  applied  |  M(−50 50) => M(-50, 50)
@@ -224,6 +226,7 @@ a=@num|@val MAS b=@num|@val | $a + $b | 1 | TS010 | first | X = 5 mas 3⏎SHOW(X
 NO l=@val | NOT $l | 1 | TS010 | applied | IF(NO DISTANCE < 10)⏎F(1,50)⏎ENDIF => IF(NOT DISTANCE < 10)⏎F(1,50)⏎ENDIF
 l=@val s=<|>|<=|>= a=@num o=AND|OR t=<|>|<=|>= b=@num | $l $s $a &o $l $t $b | 1 | TS018 | offered | IF(DISTANCE < 10 OR < 5);S;ENDIF => IF(DISTANCE < 10 OR DISTANCE < 5);S;ENDIF
 = a=@num over POR? b=@num | = $a / $b | 1 | TS010 | applied | x = 10 dividido 2⏎mostrar x => x = 10 / 2⏎SHOW(X)
+h=IF|WHILE|UNTIL|WHEN|ELSEIF ( a=@val then|& b=@val s=<|> n=@num ) | &h ( $a $s $n AND $b $s $n ) | 1 | TS010 | first offered | IF(LIGHT_L y LIGHT_R > 500)⏎S⏎ENDIF => IF(LIGHT_L > 500 AND LIGHT_R > 500)⏎S⏎ENDIF
 a=@num|@val then|& b=@val|MENOR|MAYOR|NOT|< | $a AND $b | 1 | TS010 | first | IF(DISTANCE < 10 y LIGHT_L > 100);S;ENDIF => IF(DISTANCE < 10 AND LIGHT_L > 100);S;ENDIF
 a=@num|@val O|U b=@val|NOT|MENOR|MAYOR | $a OR $b | 1 | TS010 | first | IF(DISTANCE < 10 o DISTANCE > 50);S;ENDIF => IF(DISTANCE < 10 OR DISTANCE > 50);S;ENDIF
 o=AND|OR IF | &o | 1 | TS010 | first | IF(DISTANCE > 5 AND IF DISTANCE < 9);S;ENDIF => IF(DISTANCE > 5 AND DISTANCE < 9);S;ENDIF
@@ -368,12 +371,18 @@ LOOP n=@num times? b=@start|'{' | LOOP ( $n ) ; $b | 1 | TS102 | applied | LOOP 
 LOOP POR? n=@num times? $ | LOOP ( $n ) | 1 | TS102 | applied | repetir 4⏎S⏎fin => LOOP(4)⏎S⏎END_LOOP
 LOOP n=@val o=*|+|- m=@num $ | LOOP ( $n &o $m ) | 1 | TS015 | applied | X = 2⏎LOOP X * 4⏎F(1,50)⏎END_LOOP => X = 2⏎LOOP(X * 4)⏎F(1,50)⏎END_LOOP
 ^ START b=@start | START ; $b | 1 | TS013 | applied | START F(2,80) => START;F(2, 80)
+a=L|R ( MEDIA|HALF A? VUELTA|GIRO|TURN , | $a ( 180 DEG , | 1 | TS102 | offered | R(media vuelta, 60) => R(180 DEG, 60)
+a=L|R ( UNA|A|ONE|FULL VUELTA|GIRO|TURN COMPLETA? , | $a ( 360 DEG , | 1 | TS102 | offered | L(una vuelta completa, 60) => L(360 DEG, 60)
+a=L|R ( A? CUARTO|QUARTER DE? VUELTA|GIRO|TURN , | $a ( 90 DEG , | 1 | TS102 | offered | R(cuarto de vuelta, 60) => R(90 DEG, 60)
+a=@callw ( n=@num A|TO|HASTA m=@num , | $a ( RANDOM ( $n , $m ) , | 1 | TS076 | offered | F(1 a 3, 60) => F(RANDOM(1, 3), 60)
+a=F|B ( FOREVER ) | $a ( FOREVER , 80 ) | 2 | TS020 | offered | F(FOREVER) UNTIL(DISTANCE < 10) => F(FOREVER, 80) UNTIL(DISTANCE < 10)
 RANDOM ( n=@num ) | RANDOM ( 1 , @whole:n ) | 2 | TS020 | offered | X = RANDOM(6)⏎F(X, 50) => X = RANDOM(1, 6)⏎F(X, 50)
 ROUND ( n=@num|@val ) | ROUND ( $n , 0 ) | 2 | TS020 | offered | X = ROUND(3.7)⏎SHOW(X) => X = ROUND(3.7, 0)⏎SHOW(X)
 ^ M ( s='-'? a=@num , t='-'? b=@num , n=@num ) $ | M ( $s @power:a , $t @power:b ) ; W ( @time:n ) ; S | 2 | TS020 | offered | M(50, -50, 2) => M(50, -50);W(2);S
 ^ M ( n=@num , s='-'? a=@num , t='-'? b=@num ) $ | M ( $s @power:a , $t @power:b ) ; W ( @time:n ) ; S | 2 | TS020 | offered | M(2, 50, -80) => M(50, -80);W(2);S
 ^ BEEP ( n=@num , a=@num , b=@num ) $ | BEEP ( @time:n , $a ) ; BEEP ( $n , $b ) | 2 | TS020 | offered | BEEP(0.2, 440, 660) => BEEP(0.2, 440);BEEP(0.2, 660)
 ^ BEEP ( n=@num , a=@num , b=@num , c=@num ) $ | BEEP ( @time:n , $a ) ; BEEP ( $n , $b ) ; BEEP ( $n , $c ) | 2 | TS020 | offered | BEEP(0.2, 440, 660, 880) => BEEP(0.2, 440);BEEP(0.2, 660);BEEP(0.2, 880)
+^ a=F|B|L|R ( b=@num|FOREVER ,? c=@num ,? UNTIL (? q=@argt+ )? ) $ | $a ( $b , $c ) UNTIL ( $q ) | 2 | TS029 | offered | F(5, 60, UNTIL DISTANCE < 10) => F(5, 60) UNTIL(DISTANCE < 10)
 ^ a=F|B|L|R ( b=@num , c=@num , d=@val e=<|> f=@num ) $ | $a ( $b , $c ) UNTIL ( $d $e $f ) | 2 | TS020 | offered | F(3, 80, DISTANCE < 10) => F(3, 80) UNTIL(DISTANCE < 10)
 h=IF|WHILE ( a=@val s=<|> b=@num , c=@val t=<|> d=@num ) | &h ( $a $s $b AND $c $t $d ) | 2 | TS020 | offered | IF(DISTANCE < 10, LIGHT_R > 50)⏎S⏎ENDIF => IF(DISTANCE < 10 AND LIGHT_R > 50)⏎S⏎ENDIF
 ^ h=IF|WHILE ( c=@argt+ , b=@start r=@argt* ) $ | &h ( $c ) ; $b $r | 2 | TS080 | applied | IF(DISTANCE < 10, S)⏎ELSE⏎F(1,50)⏎ENDIF => IF(DISTANCE < 10);S⏎ELSE⏎F(1,50)⏎ENDIF
@@ -386,7 +395,8 @@ LOOP|FOR|PARA|DESDE @name =|DESDE|than 1 TO|A|HASTA n=@num do|:? | LOOP ( $n ) ;
 LOOP ( INT? @name = 0 ; @name < n=@num ; @name ++ ) | LOOP ( $n ) | 1 | TS063 | offered | LOOP(I = 0; I < 4; I++);F(1, 50);END_LOOP => LOOP(4);F(1, 50);END_LOOP
 ^ v=@name = c=@cond+ ? a=@num|@val : b=@num|@val $ | IF ( $c ) ; $v = $a ; ELSE ; $v = $b ; ENDIF | 1 | TS069 | applied | V = DISTANCE > 20 ? 80 : 30⏎F(1, V) => IF(DISTANCE > 20);V = 80;ELSE;V = 30;ENDIF⏎F(1, V)
 ^ n=@num = v=@name $ | $v = $n | 1 | TS042 | offered | 50 = v⏎F(2, v) => v = 50⏎F(2, v)
-^ q=@val s=<|>|<=|>= n=@num|@val :|do? b=@start r=@all* | IF ( $q $s $n ) ; $b $r | 1 | TS042 | offered | DISTANCE < 10: S => IF(DISTANCE < 10);S;ENDIF
+^ q=@val s=<|>|<=|>= n=@num|@val :|do|=|->|=>? b=@start r=@all* | IF ( $q $s $n ) ; $b $r | 1 | TS042 | offered | DISTANCE < 10: S => IF(DISTANCE < 10);S;ENDIF
+^ @name = 1 TO|HASTA n=@num do|:? $ | LOOP ( $n ) | 1 | TS102 | offered | veces = 1 hasta 5⏎F(1,50)⏎fin => LOOP(5)⏎F(1,50)⏎END_LOOP
 <for> ( INT? @name = 1 ; @name <= n=@num ; @name ++ ) | LOOP ( $n ) ; | 1 | TS102 | offered | for(i=1; i<=3; i++){ F(1,80); } => LOOP(3);F(1, 80);END_LOOP;
 ^ FOREVER|SIEMPRE : $ | LOOP ( FOREVER ) ; | 1 | TS032 | applied | forever:⏎  F(1,50) => LOOP(FOREVER)⏎  F(1,50)⏎END_LOOP
 ^ FOREVER|SIEMPRE $ | LOOP ( FOREVER ) | 1 | TS032 | applied | siempre⏎F(1,50)⏎fin => LOOP(FOREVER)⏎F(1,50)⏎END_LOOP
@@ -397,6 +407,7 @@ LOOP ( INT? @name = 0 ; @name < n=@num ; @name ++ ) | LOOP ( $n ) | 1 | TS063 | 
 ^ FOREVER QUE c=@cond+ ':'? $ | WHILE ( $c ) | 1 | TS102 | offered | siempre que DISTANCE > 10⏎F(1, 50)⏎fin => WHILE(DISTANCE > 10)⏎F(1, 50)⏎END_WHILE
 h=TASK :|,|-|'|' | &h ; | 1 | TS014 | applied | TASK:⏎BEEP(1, 440)⏎END_TASK => TASK⏎BEEP(1, 440)⏎END_TASK
 h=TASK b=@start|'{' | &h ; $b | 1 | TS014 | applied | TASK BEEP(1, 440) END_TASK => TASK;BEEP(1, 440);END_TASK
+^ TASK @num ':'? $ | TASK | 1 | TS044 | offered | TAREA 1⏎BEEP(1, 440)⏎END_TASK => TASK⏎BEEP(1, 440)⏎END_TASK
 TASK ( @num|@word? ) | TASK | 1 | TS039 | offered | TASK(1)⏎BEEP(1, 440)⏎END_TASK => TASK⏎BEEP(1, 440)⏎END_TASK
 ^ LOOP UNTIL c=@cond+ ':'|'{'? $ | WHILE ( @not:c ) | 1 | TS102 | applied | repetir hasta DISTANCE < 10⏎F(1,50)⏎fin => WHILE(DISTANCE >= 10)⏎F(1,50)⏎END_WHILE
 ^ UNTIL c=@cond+ $ | IF ( $c ) ; <end> | 2 | TS064 | applied | LOOP⏎F(1, 50)⏎UNTIL DISTANCE < 10 => LOOP(FOREVER)⏎F(1, 50)⏎IF(DISTANCE < 10);BREAK;ENDIF;END_LOOP
@@ -418,6 +429,7 @@ TASK ( @num|@word? ) | TASK | 1 | TS039 | offered | TASK(1)⏎BEEP(1, 440)⏎END
 ^ a=S|STOP during|(? n=@num seconds? )? $ | $a ; W ( $n ) | 2 | TS085 | offered | S(2) => S;W(2)
 ^ a=F|B|L|R ( e=@num|@val , f=@num ) A|AL|CON|DE? n=@num %|POTENCIA DE? POTENCIA? $ | $a ( $e , $n ) | 3 | TS085 | offered | F(2,80) 80% => F(2, 80)
 ^ a=@callw ( b=@argt+ ) FOREVER $ | LOOP ( FOREVER ) ; $a ( $b ) ; END_LOOP | 3 | TS085 | offered | F(1, 80) siempre => LOOP(FOREVER);F(1, 80);END_LOOP
+^ BREAK IF|CUANDO? (? c=@cond+ )? $ | IF ( $c ) ; BREAK ; ENDIF | .9 | TS071 | offered | LOOP(FOREVER)⏎F(0.5, 60)⏎BREAK(DISTANCE < 10)⏎END_LOOP => LOOP(FOREVER)⏎F(0.5, 60)⏎IF(DISTANCE < 10);BREAK;ENDIF⏎END_LOOP
 ^ a=@callw ( b=@argt+ ) IF|CUANDO (? d=@cond+ )? $ | IF ( $d ) ; $a ( $b ) ; ENDIF | .9 | TS071 | offered | F(1, 50) IF(DISTANCE > 10) => IF(DISTANCE > 10);F(1, 50);ENDIF
 ^ a=F|B|L|R ( b=@argt+ ) WHILE (? d=@argt+ )? $ | $a ( $b ) UNTIL ( @not:d ) | .9 | TS071 | offered | F(5, 50) WHILE(DISTANCE > 10) => F(5, 50) UNTIL(DISTANCE <= 10)
 # what the devices of a kit are set to
@@ -456,7 +468,9 @@ a=@close h=end $ | $a ; &h | 1 | TS013 | applied | F(2,80) fin => F(2, 80);
 end -|.|DEL|DE|EL? k=IF|LOOP|WHILE|DEF|FOREVER|FOR|PARA ;|$ | @endof:k | 1 | TS022 | first | definir bailar⏎L(1,50)⏎fin definir⏎bailar => DEF bailar⏎L(1,50)⏎END_DEF⏎bailar
 # what joins instructions
 ^ @newname : b=@start | $b | 2.5 | TS054 | applied | square: F(1,50); R(1,50) => F(1,50); R(1,50)
-a=@close please|CM|CENTIMETROS|SEG|SEGS|SEGUNDO|SEGUNDOS|SECONDS $ | $a | 1 | TS044 | applied | F(1, 80) cm => F(1, 80)
+^ a=F|B ( n=@num , p=@num ) CM|CENTIMETROS $ | $a ( $n CM , $p ) | .5 | TS076 | offered | F(20, 60) CM => F(20 CM, 60)
+^ a=L|R ( n=@num , p=@num ) DEG|GRADOS|DEGREES|° $ | $a ( $n DEG , $p ) | .5 | TS076 | offered | R(90, 60) DEG => R(90 DEG, 60)
+a=@close please|CM|CENTIMETROS|SEG|SEGS|SEGUNDO|SEGUNDOS|SECONDS $ | $a | 1 | TS044 | applied | SHOW(DISTANCE) cm => SHOW(DISTANCE)
 a=@close soon+ b=@start | $a ; $b | 2 | TS044 | applied | F(2, 80) y por ultimo B(1, 50) => F(2, 80);B(1, 50)
 ( a=@num , p=@num|@val ) then|&|+|AND BEEP ( b=@num | ( $a , $p ) ; BEEP ( @same:a:b | .9 | TS074 | offered | F(2, 80) AND BEEP(2, 440) => F(2, 80);BEEP(2, 440)
 a=@close ,? then|soon+ b=@start | $a ; $b | 1 | TS044 | applied | F(1,75) y R(1,75) => F(1, 75);R(1, 75)

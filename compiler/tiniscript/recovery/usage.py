@@ -48,6 +48,7 @@ _MANY = 30  # diagnostics of which more is said
 _PAUSE = "W(2)"
 _UNIT_NAMES = {"s": "seconds", "%": "percent", "Hz": "hertz", "cm": "centimetres"}
 _OF_ENDS = (codes.NEVER_ENDS, codes.NOT_OPEN, codes.CALLS_ITSELF)
+_OF_ITS_WORD = (codes.UNKNOWN_WORD, codes.WHICH_WAY)  # whose units say nothing more
 _TAUGHT = ("SALTO", "PASO", "BAILE", "JUMP", "STEP", "DANCE")  # by the poster and the lessons
 _NO_NAMES = ("RETURN", "CONTINUE", "CONTINUA", "HOLA", "HELLO", "IDEM", "ETC", "NULL")
 _NO_ORDER = ("value", "operator", "function", "setup", "forever")
@@ -66,10 +67,12 @@ def with_usage(found: Sequence[Diagnostic], source: Source, kit: Kit) -> list[Di
     late = [each for each in told if each.code is codes.NOT_OPEN and each.values.get("line")]
     has_no_ends = is_near or late or any(it.code in (codes.BRACES, codes.DOTS) for it in told)
     reserved = {each.values["word"] for each in told if each.code is codes.RESERVED}
+    unknown = {teller.piece(it.span) for it in told if it.code in _OF_ITS_WORD}
     kept = [
         each
         for each in (*told, *found[_MANY:])
-        if each.code is not codes.NO_VALUE or each.values.get("word") not in reserved
+        if (each.code is not codes.NO_VALUE or each.values.get("word") not in reserved)
+        and (each.code is not codes.UNIT_PLACE or teller.piece(each.span) not in unknown)
     ]
     return [each for each in kept if each in late or not (has_no_ends and each.code in _OF_ENDS)]
 
@@ -325,7 +328,8 @@ class _Usage:
             return None
         start = self.piece(found.span).start
         span = Span(start, start + len(tokens[0].source or word))
-        return Diagnostic(codes.UNKNOWN_WORD, span, {"found": word})
+        told = Diagnostic(codes.UNKNOWN_WORD, span, {"found": word})
+        return self.unknown(told) or told
 
     def unit(self, found: Diagnostic, tokens: list[Lexeme]) -> Diagnostic | None:
         """A move that is said in degrees, steps or centimetres: it takes a time."""

@@ -17,6 +17,7 @@ from tiniscript.semantics.named_values import value_of
 from tiniscript.semantics.symbols import ENOUGH, Scope
 from tiniscript.source import Span
 from tiniscript.syntax import ast
+from tiniscript.syntax.lexer import WORD, scan
 from tiniscript.words import (
     BLOCK_ENDS,
     NEAR_WORDS,
@@ -237,12 +238,22 @@ def meant_value(scope: Scope, span: Span, name: str, is_assigned: bool) -> str:
 _HEADER = re.compile(r"(?i)\b(IF|ELSEIF|UNTIL|WHILE)\s*\(\s*(NOT\s+)?$")
 
 
+def _wanted(scope: Scope, name: str) -> list[str]:
+    """Return the names in the body of a DEF that nothing gives a value."""
+    body = re.search(rf"(?is)\bDEF\s+{name}\b(.*?)\bEND_?DEF\b", scope.source.text)
+    words = [each.text for each in scan(body[1]).tokens if each.kind is WORD] if body else []
+    known = {*WORDS, *scope.names, *scope.set_somewhere, *scope.def_names}
+    return [*dict.fromkeys(each for each in words if each not in known)]
+
+
 def report_not_callable(scope: Scope, node: ast.Command) -> None:
     """`SQUARE(3)`, where there is a `DEF SQUARE(SIDE)`: a variable brings the value."""
     texts = [scope.source[each.span] for each in node.arguments or ()]
     head = rf"(?i)\bDEF\s+{node.word}[ \t]*\(([ \t,A-Z0-9_]{{1,200}})\)"
     found = re.search(head, scope.source.text)
     names = [each.strip().upper() for each in found[1].split(",")] if found else []
+    if found is None:
+        names = _wanted(scope, node.word)
     fix = ""
     if texts and len(names) == len(texts):
         pairs = zip(names, texts, strict=True)

@@ -8,7 +8,7 @@ from __future__ import annotations
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.fixed_point import as_text
-from tiniscript.semantics.ir import Assign, Body, Motors, Move, Read, Set, Show, Stop
+from tiniscript.semantics.ir import Assign, Body, If, Motors, Move, Read, Set, Show, Statement, Stop
 from tiniscript.semantics.optimizer import constant, fold
 from tiniscript.source import Source
 
@@ -25,6 +25,8 @@ def unseen(body: Body, ends: bool, source: Source) -> list[Diagnostic]:
             continue
         rest = (body[at] for at in range(k + 1, len(body)))
         after = next((each for each in rest if not isinstance(each, _TAKE_NO_TIME)), None)
+        if isinstance(after, If) and all(map(_takes_no_time, (after, *rest))):
+            after = None
         if isinstance(after, Motors) and after[:2] == motors[:2]:
             continue  # they are set again to the same
         values = {"found": source[motors.span]}
@@ -40,6 +42,14 @@ def unseen(body: Body, ends: bool, source: Source) -> list[Diagnostic]:
             values["move"] = f"F({as_text(left)}, {as_text(right)})"
         found.append(Diagnostic(codes.UNSEEN_MOTORS, motors.span, values))
     return found
+
+
+def _takes_no_time(statement: Statement) -> bool:
+    """Also an IF that is over at once, whatever the answer is."""
+    if not isinstance(statement, If):
+        return isinstance(statement, _TAKE_NO_TIME)
+    bodies = (statement.otherwise, *(arm.body for arm in statement.arms))
+    return all(isinstance(each, Stop) or _takes_no_time(each) for body in bodies for each in body)
 
 
 def _is_still(motors: Motors) -> bool:

@@ -78,6 +78,8 @@ class WrongCalls:
         if "\n" in fix:
             fix = ""
         said = {"found": unit.op, "right": right, "cm": right if right == "CM" else ""}
+        called = "R" if right == "CM" else "F"
+        said["other"] = called + self.scope.source[node.span][len(node.word) :] if fix else ""
         self.scope.report(codes.UNIT_PAIR, place, None, word=node.word, fix=fix, **said)
 
     def values(self, node: ast.Command, word: Word, said: int) -> None:
@@ -149,6 +151,9 @@ def ended_by(
     before = made[-1] if made else None
     if word is not None and word.role == "motors":
         return f"{call};W(FOREVER) {asked};S"
+    if word is not None and word.role in ("show", "beep"):
+        question = asked.removeprefix("UNTIL")
+        return f"WHILE(NOT {question});{call};END_WHILE"
     is_stop = word is not None and word.role == "stop"
     if is_stop and isinstance(before, ir.Move) and before.until is None:
         return f"{source[before.span]} {asked}"
