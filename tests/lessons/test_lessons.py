@@ -8,13 +8,14 @@ from pathlib import Path
 import pytest
 
 from tiniscript import robots
+from tiniscript.languages import text
 from tiniscript.lessons import catalogue, text_judging
 from tiniscript.lessons.findings import Finding
 from tiniscript.lessons.judging import JUDGES
 from tiniscript.lessons.lesson import Answer, Lesson
 from tiniscript.lessons.markdown import blocks
 from tiniscript.lessons.sentences import sentence
-from tiniscript.lessons.sheet import MOVES, sheet
+from tiniscript.lessons.sheet import sheet
 from tiniscript.library.compiling import compiled, maker
 from tiniscript.robots.profile import LANGUAGES
 
@@ -119,7 +120,7 @@ def test_a_sheet_draws_what_it_says(folder: Path, language: str) -> None:
     made = sheet(page, lesson, False, language)
     dashed = len({(each.place.part, each.place.number) for each in lesson.variations})
     assert made.count("stroke-dasharray") == dashed
-    assert (MOVES[language] in made) is (dashed > 0)
+    assert (text("lessons", "sheet/moves", language) in made) is (dashed > 0)
     assert "__" not in made and made.count('class="blank"') == page.count("____")
     told = re.search(r"(?:a square is|un cuadrado mide) (\d+) cm", made)
     assert told and f'<path d="M{told[1]} 0V' in made

@@ -14,10 +14,10 @@ import pytest
 
 import tiniscript
 from tests.support.command import OBSTACLE, Tsc
+from tests.support.texts import said as all_said
 from tiniscript.bytecode.image import REFUSALS, pack
 from tiniscript.bytecode.verify import RULES
 from tiniscript.library import install_advice
-from tiniscript.library.texts import TEXTS
 
 # -- compile, check, show --------------------------------------------------------------------------
 
@@ -173,7 +173,7 @@ def test_what_is_said_of_bytes_names_no_robot_that_is_not_there(
         assert raised.value.reason in said
         assert "robot" not in said.lower()
         assert ("ompila" if language == "es" else "ompile") in said
-    assert set(REFUSALS) <= set(TEXTS)
+    assert set(REFUSALS) <= set(all_said("en", "library"))
 
 
 # -- wrong use -------------------------------------------------------------------------------------
@@ -214,14 +214,6 @@ def test_wrong_use_is_an_error_with_a_sentence(reason: str) -> None:
 def test_arguments_out_of_their_range_are_refused(arguments: Any) -> None:
     with pytest.raises(tiniscript.UsageError):
         tiniscript.run("F(1, 2)", **arguments)
-
-
-def test_every_sentence_has_the_same_gaps_in_both_languages() -> None:
-    from string import Formatter
-
-    for reason, said in TEXTS.items():
-        gaps = [{name for _, name, _, _ in Formatter().parse(each) if name} for each in said]
-        assert gaps[0] == gaps[1], reason
 
 
 # -- the package -----------------------------------------------------------------------------------

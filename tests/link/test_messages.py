@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import functools
 import operator
-import re
 
 import pytest
 from cobs import cobs
 
 from tests.support.rows import each_row
+from tests.support.texts import said
 from tiniscript.bytecode.image import REFUSALS
 from tiniscript.bytecode.verify import RULES
 from tiniscript.link import messages, statuses
@@ -91,13 +91,13 @@ def test_a_large_frame_has_a_zero_behind_its_head(is_sealed: bool) -> None:
 
 
 def test_each_status_has_its_sentences() -> None:
-    assert set(statuses.texts()) == {*STATUSES, "IMAGE", "RULE", "OTHER_VERSION", "UNKNOWN_NEEDS"}
-    for name, words in statuses.texts().items():
-        assert {"en", "es"} <= set(words) <= {"en", "es", "en_try", "es_try"}, name
-        assert ("en_try" in words) == ("es_try" in words) == (name != "OK"), name
-        gaps = {lang: set(re.findall(r"{(\w+)}", words[lang])) for lang in ("en", "es")}
-        assert gaps["en"] == gaps["es"], name
-        assert bool(gaps["en"]) == (name in {*messages.DETAILS, "IMAGE", "RULE"}), name
+    texts = said("en", "statuses")
+    names = {*STATUSES, "IMAGE", "RULE", "OTHER_VERSION", "UNKNOWN_NEEDS"}
+    assert {key.partition("/")[0] for key in texts} == names
+    for name in names:
+        assert (f"{name}/try" in texts) == (name != "OK"), name
+        has_gaps = "{" in texts[f"{name}/said"]
+        assert has_gaps == (name in {*messages.DETAILS, "IMAGE", "RULE"}), name
 
 
 @pytest.mark.parametrize("lang", ["en", "es"])

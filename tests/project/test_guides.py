@@ -23,7 +23,8 @@ from tests.support.pty_robot import PtyRobot
 from tests.support.texts import said as command_texts
 from tiniscript import robots
 from tiniscript.cli import main
-from tiniscript.link import ports, statuses
+from tiniscript.languages import FOLDER
+from tiniscript.link import ports
 from tiniscript.link.ports import Found
 
 GUIDES = {"en": ROOT / "docs" / "monday.en.md", "es": ROOT / "docs" / "lunes.es.md"}
@@ -131,7 +132,7 @@ def test_what_a_guide_types_prints_what_it_shows(
 def _sentences(language: str) -> list[str]:
     """Return all that `tsc` says of robots and ports, with `{}` for each gap."""
     said = list(command_texts(language).values())
-    said += [words[language] for words in statuses.texts().values()]
+    said += [each for key, each in command_texts(language, "statuses").items() if "/said" in key]
     return [re.sub(r"\{\w+\}", "{}", each) for each in said]
 
 
@@ -161,15 +162,16 @@ def test_both_guides_type_the_same() -> None:
 def said_in(language: str) -> dict[str, str]:
     """Return what is said in a language, by where: sentences of the package, and documents."""
     from tiniscript.lessons.sentences import SENTENCES
-    from tiniscript.library.texts import TEXTS as LIBRARY_TEXTS
     from tiniscript.robots.profile import LANGUAGES
     from tiniscript.robots.wiring.texts import TEXTS as WIRING_TEXTS
 
-    both_languages = (WIRING_TEXTS, LIBRARY_TEXTS, SENTENCES)
+    both_languages = (WIRING_TEXTS, SENTENCES)
     k = LANGUAGES.index(language)
     found = {key: both[k] for table in both_languages for key, both in table.items()}
-    found |= command_texts(language) | command_texts(language, "messages")
-    found |= {key: words[language] for key, words in statuses.texts().items()}
+    for path in (FOLDER / language).glob("*.po"):
+        found |= {
+            f"{path.stem}/{k}": said for k, said in command_texts(language, path.stem).items()
+        }
     name = f"*.{language}.md"
     places = (name, f"docs/**/{name}", f"compiler/tiniscript/lessons/*/{name}")
     pages = [path for place in places for path in ROOT.glob(place)]

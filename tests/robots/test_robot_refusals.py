@@ -8,16 +8,16 @@ from __future__ import annotations
 import random
 import re
 from pathlib import Path
-from string import Formatter
 
 import pytest
 
 from tests.robots.test_robots import TEXTS, edited
+from tests.support.texts import said
 from tiniscript import robots
 from tiniscript.robots.boards import NEEDS
 from tiniscript.robots.profile import LANGUAGES, ProfileRefused, Robot
 from tiniscript.robots.reader import read
-from tiniscript.robots.refusals import SENTENCES, WORDS_FOR, describe, shown
+from tiniscript.robots.refusals import describe, shown
 from tiniscript.words import WORDS
 
 
@@ -261,17 +261,10 @@ def test_every_code_has_a_test() -> None:
         | {"no_such_robot", *(code for code, *_ in FILES)}
         | {code for code, *_ in REFUSED}
     )
-    assert tested == {code for code in SENTENCES if not code.endswith("/near")}
-
-
-def test_every_sentence_is_there_in_both_languages_with_the_same_gaps() -> None:
-    for code, sentences in SENTENCES.items():
-        assert set(sentences) == set(LANGUAGES), code
-        gaps = [{gap for _, gap, _, _ in Formatter().parse(each)} for each in sentences.values()]
-        assert gaps[0] == gaps[1], code
-    for words in WORDS_FOR.values():
-        assert all(set(word) == set(LANGUAGES) for word in words.values())
-    assert set(WORDS_FOR["need"]) == set(NEEDS)
+    texts = said("en", "refusals")
+    codes = {key.removeprefix("profile/") for key in texts if key.startswith("profile/")}
+    assert tested == {code for code in codes if not code.endswith("/near")}
+    assert {f"need/{need}" for need in NEEDS} == {key for key in texts if key[:5] == "need/"}
 
 
 def test_all_complaints_come_at_once() -> None:

@@ -21,6 +21,7 @@ import sys
 import tempfile
 from importlib.metadata import version
 from importlib.util import find_spec
+from itertools import product
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent.parent
@@ -101,8 +102,8 @@ def build(page: Path = PAGE) -> None:
     say(f"node {tools.version}")
     install(tools)
     lock = json.loads((MODULES / "pyodide" / "pyodide-lock.json").read_text(encoding="utf-8"))
-    for language in languages():
-        catalogue("messages", language)  # made where it is stale
+    for language, name in product(languages(), ("messages", "statuses", "refusals", "library")):
+        catalogue(name, language)  # made where it is stale
     make("description.json", description())
     make("blocks.json", block_kinds.data())
     make("blockly_texts.json", texts(BLOCKLY, SOURCES / "src"))

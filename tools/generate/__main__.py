@@ -19,6 +19,7 @@ sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 from tiniscript import robots
 from tiniscript.bytecode import image, opcodes, verify
 from tiniscript.kit import DEVICES
+from tiniscript.languages import ByLanguage
 from tiniscript.robots import firmware
 from tiniscript.robots.profile import ProfileRefused, Robot
 from tiniscript.robots.reader import read
@@ -74,6 +75,7 @@ def shipped_robots() -> str:
         "from collections.abc import Callable\n"
         "\n"
         "from tiniscript.kit import Device, Kit\n"
+        "from tiniscript.languages import ByLanguage\n"
         "from tiniscript.robots.profile import Board, Body, Place, Robot, Wiring\n"
     ]
     for path in paths:
@@ -112,6 +114,8 @@ def _on_one_line(value: object) -> str:
 
 def _parts_of(value: object) -> tuple[str, list[tuple[str, object]], str]:
     """Return what opens a value, its parts with what stands before each, and what closes it."""
+    if isinstance(value, ByLanguage):
+        return "ByLanguage(", [("", dict(value))], ")"
     if isinstance(value, Mapping):
         return "{", [(f"{_on_one_line(key)}: ", part) for key, part in value.items()], "}"
     if isinstance(value, tuple) and hasattr(value, "_asdict"):

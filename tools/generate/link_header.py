@@ -8,9 +8,9 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from itertools import accumulate
 
+from tiniscript.languages import SOURCE, text
 from tiniscript.link import messages
 from tiniscript.link.messages import MESSAGES, Field
-from tiniscript.link.statuses import texts
 from tools.generate.cpp_header import array, camel, constants, enumeration
 
 HEADER_GUARD = "TINISCRIPT_LINK_MESSAGES_H_"
@@ -19,7 +19,10 @@ HEADER_GUARD = "TINISCRIPT_LINK_MESSAGES_H_"
 def header(command: str) -> str:
     """Return `messages.h`: every number of the link."""
     named = [(each.name, each.number, each.meaning) for each in MESSAGES]
-    statuses = [(name, number, texts()[name]["en"]) for name, number in messages.STATUSES.items()]
+    statuses = [
+        (name, number, text("statuses", f"{name}/said", SOURCE))
+        for name, number in messages.STATUSES.items()
+    ]
     parts = (
         f"{_first_line(command)}"
         "//\n"
@@ -205,9 +208,8 @@ def _shown(fields: Sequence[Field]) -> str:
 def status_rows() -> Rows:
     rows = []
     for name, number in messages.STATUSES.items():
-        words = texts()[name]
         detail = messages.DETAILS.get(name, "")
-        rows.append((number, f"`{name}`", detail, words["en"]))
+        rows.append((number, f"`{name}`", detail, text("statuses", f"{name}/said", SOURCE)))
     return ("number", "status", "detail", "English"), rows
 
 

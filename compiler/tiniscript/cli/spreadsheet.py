@@ -1,7 +1,8 @@
 """Rows for a spreadsheet: CSV that Excel and LibreOffice open with its accents.
 
-In Spanish its cells end with a semicolon, as Excel in Spanish takes them, and its heads are
-Spanish. A cell may come from a pupil: none begins a formula, and none has control characters.
+Its heads are in the reader's language, and so is what its cells end with, as Excel takes them: in
+Spanish a semicolon. A cell may come from a pupil: none begins a formula, and none has control
+characters.
 """
 
 from __future__ import annotations
@@ -11,20 +12,12 @@ import re
 from collections.abc import Iterable, Sequence
 from io import StringIO
 
+from tiniscript.cli.texts.common import text
+from tiniscript.languages import languages
 from tiniscript.source import printable
 
 LONGEST = 2000  # characters of a cell
-SEPARATORS = {"en": ",", "es": ";"}
-HEADS: dict[str, dict[str, tuple[str, ...]]] = {
-    "check": {
-        "en": ("file", "mistakes", "warnings", "repaired", "line", "code", "message"),
-        "es": ("archivo", "errores", "avisos", "corregidos", "línea", "código", "mensaje"),
-    },
-    "lesson": {
-        "en": ("file", "verdict", "seed", "sentence"),
-        "es": ("archivo", "resultado", "mundo", "frase"),
-    },
-}
+TABLES = ("check", "lesson")
 # What begins a formula: at the beginning of a cell; in a name wherever a cell may begin, too, since
 # whoever opens the file chooses what ends its cells. Ours end with a comma or a semicolon.
 _SIGN = "(?=[=+\\-@＝＋－＠])"
@@ -34,10 +27,10 @@ _BEHIND_ANY = re.compile(rf"(^|[,;|\"])(\s*){_SIGN}")
 
 
 def as_csv(table: str, language: str, rows: Iterable[Sequence[object]]) -> bytes:
-    """Return a table of HEADS as a file. The first cell of a row is the name of somebody's file."""
+    """Return a table of TABLES as a file. The first cell of a row is the name of a file."""
     written = StringIO()
-    writer = csv.writer(written, delimiter=SEPARATORS[language], lineterminator="\n")
-    writer.writerow(HEADS[table][language])
+    writer = csv.writer(written, delimiter=text("rows_separator", language), lineterminator="\n")
+    writer.writerow(text(f"rows_{table}", language).split())
     writer.writerows([_name(row[0]), *map(_cell, row[1:])] for row in rows)
     return written.getvalue().encode("utf-8-sig", "backslashreplace")
 
@@ -47,7 +40,7 @@ def beginnings() -> tuple[bytes, ...]:
 
     A spreadsheet that has kept such a file may have given it other line ends.
     """
-    empty = [as_csv(table, each, ()) for table, heads in HEADS.items() for each in heads]
+    empty = [as_csv(table, each, ()) for table in TABLES for each in languages()]
     return (*empty, *(each.replace(b"\n", b"\r\n") for each in empty))
 
 

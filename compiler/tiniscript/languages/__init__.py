@@ -13,9 +13,20 @@ from functools import cache
 from gettext import GNUTranslations
 from io import BytesIO
 from pathlib import Path
+from typing import TypeVar
 
 FOLDER = Path(__file__).parent
 SOURCE = "en"  # what is translated, and said where there is no translation
+
+
+T = TypeVar("T")
+
+
+class ByLanguage(dict[str, T]):
+    """Something in each language that it is there in: elsewhere in English, else in the first."""
+
+    def __missing__(self, language: str) -> T:
+        return self.get(SOURCE) or next(iter(self.values()))
 
 
 @cache

@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from tiniscript import robots
+from tiniscript.languages import SOURCE
 from tiniscript.lessons.lesson import Answer, Criterion, Lesson, LessonRefused
 from tiniscript.lessons.markdown import printed
 from tiniscript.lessons.reader import read, read_answers
@@ -103,9 +104,10 @@ def page(folder: Path, who: str, language: str) -> str:
 
 def whole_page(folder: Path, who: str, language: str) -> str:
     """Return a page of a lesson with its numbers and its marks. Raises LessonRefused."""
-    path = folder / f"{who}.{language}.md"
-    if not path.is_file():
-        raise LessonRefused(("no_page", {"file": shown(path.name)}))
+    paths = [folder / f"{who}.{each}.md" for each in (language, SOURCE)]
+    path = next((each for each in paths if each.is_file()), None)
+    if path is None:
+        raise LessonRefused(("no_page", {"file": shown(paths[0].name)}))
     return filled(_text(path), shown(path.name), load(folder))
 
 

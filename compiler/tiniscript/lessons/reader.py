@@ -10,6 +10,7 @@ from collections.abc import Mapping
 
 from tiniscript import robots
 from tiniscript.fixed_point import ONE
+from tiniscript.languages import ByLanguage
 from tiniscript.lessons.lesson import (
     ANY_VALUE,
     AREA,
@@ -39,7 +40,7 @@ MOST_SECONDS, MOST_WORLDS, MOST_NOISE = 600, 20, 20
 MOST_CM = 2000
 ROWS = 100  # criteria, variations, answers
 PART = re.compile(r"(start)|(walls|boxes|lines|lamps)\[([1-9][0-9]{0,2})\]")
-NO_LABELS = {"en": "the goal", "es": "la meta"}
+NO_LABELS = ByLanguage({"en": "the goal", "es": "la meta"})
 TIME = "TIME"
 
 
@@ -113,7 +114,7 @@ def _answer(table: Table, is_wrong: bool) -> Answer:
 
 def _labels(table: Table, most: int = LABEL_CHARACTERS) -> dict[str, str]:
     """Return a text in each language; both must be there."""
-    found = {}
+    found: ByLanguage[str] = ByLanguage()
     for language in LANGUAGES:
         label = table.text(language, f'{language} = "…"')
         if label is not None and (

@@ -6,8 +6,10 @@ Knows HTML. The text comes from the lesson's Markdown, the drawing from `map`.
 from __future__ import annotations
 
 import re
+from functools import partial
 from html import escape
 
+from tiniscript import languages
 from tiniscript.lessons.lesson import Lesson
 from tiniscript.lessons.map import plan
 from tiniscript.lessons.markdown import Block, blocks
@@ -42,34 +44,27 @@ ul.checks li::before { content: "\\2610"; display: inline-block; width: 1.33em; 
   svg { max-height: 46mm; }
 }
 """
-NAMES = {"en": ("Names:", "Robot:", "Date:"), "es": ("Nombres:", "Robot:", "Fecha:")}
-PLAN = {
-    "en": "The floor from above, a square is 20 cm. The arrow is the robot.",
-    "es": "La pista desde arriba, un cuadrado mide 20 cm. La flecha es el robot.",
-}
-MOVES = {
-    "en": "What is drawn with dashes is in a different place each time.",
-    "es": "Lo dibujado con rayas cambia de lugar cada vez.",
-}
-MIRRORED = {
-    "en": "In half of the worlds left and right are exchanged.",
-    "es": "En la mitad de los mundos, izquierda y derecha están al revés.",
-}
+BLANKS = ("names", "robot", "date")
+
+
+def _said(language: str, key: str) -> str:
+    return languages.text("lessons", f"sheet/{key}", language)
 
 
 def sheet(page: str, lesson: Lesson, is_teachers: bool, language: str) -> str:
     """Return the page of pupils or of teachers. `page` is its Markdown."""
+    said = partial(_said, language)
     found = blocks(page)
     title = lesson.titles[language]
     parts = [_html(block) for block in found]
-    caption = [PLAN[language]]
+    caption = [said("plan")]
     if lesson.variations:
-        caption.append(MOVES[language])
+        caption.append(said("moves"))
     if lesson.is_mirrored:
-        caption.append(MIRRORED[language])
+        caption.append(said("mirrored"))
     drawing = f"{plan(lesson, title)}\n<p>{escape(' '.join(caption))}</p>"
     if not is_teachers:
-        names = "".join(f"<span>{escape(name)}</span>" for name in NAMES[language])
+        names = "".join(f"<span>{escape(name)}</span>" for name in map(said, BLANKS))
         parts.insert(1, f'<p class="names">{names}</p>\n{drawing}')
     else:
         parts.insert(1, drawing)

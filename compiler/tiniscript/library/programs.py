@@ -13,12 +13,13 @@ from tiniscript.bytecode.verify import Refused
 from tiniscript.diagnostics.rendering import Message as Message
 from tiniscript.diagnostics.rendering import as_text, message
 from tiniscript.files import contents
+from tiniscript.languages import languages
 from tiniscript.library import source_map
 from tiniscript.library.compiling import Compiled, compiled, image_of
 from tiniscript.library.errors import ProgramError, UsageError
 from tiniscript.library.known_kits import fitting
 from tiniscript.library.source_map import Map
-from tiniscript.library.texts import LANGUAGES, sentence
+from tiniscript.library.texts import sentence
 from tiniscript.robots.profile import ProfileRefused, Robot
 from tiniscript.robots.refusals import describe
 from tiniscript.source import PROGRAM_ENDS, printable
@@ -245,6 +246,7 @@ def _unpacked(data: bytes, language: Language) -> Image:
 
 
 def _checked(language: Language) -> Language:
-    if language not in LANGUAGES:
-        raise UsageError("bad_language", "en", {"found": printable(repr(language), SHOWN)})
+    if language not in languages():
+        values = {"found": printable(repr(language), SHOWN), "known": ", ".join(languages())}
+        raise UsageError("bad_language", "en", values)
     return language

@@ -1,18 +1,22 @@
-"""A robot's answers in words: the sentence of each status, in English or Spanish.
+"""A robot's answers in words: the sentence of each status, in the reader's language.
 
-Knows how the texts of `statuses.toml` are filled. Knows no message. Prints nothing.
+Knows how the texts of the catalogue are filled, which has IMAGE and RULE for the numbers of images
+and of the verifier that have no text of their own. Knows no message. Prints nothing.
+
+Gaps: `{detail}` is the number that follows the status, `{kit}` the same as four hexadecimal digits,
+`{version}` the same as major and minor, `{name}` the name of an image's refusal or a rule.
 """
 
 from __future__ import annotations
 
-import sys
-from functools import lru_cache
-from pathlib import Path
 from typing import NamedTuple
 
+from tiniscript import languages
 from tiniscript.bytecode.image import REFUSALS
 from tiniscript.bytecode.verify import RULES
 from tiniscript.link.messages import FIRST_RULE, FIRST_STATUS, STATUS_NAMES
+
+CATALOGUE = "statuses"
 
 
 class Sentence(NamedTuple):
@@ -33,7 +37,7 @@ def name_of(status: int) -> str:
 def sentence(status: int, detail: int, lang: str) -> Sentence:
     """Return the sentence for a status and its detail number."""
     name = name_of(status)
-    if name in texts():
+    if languages.found(CATALOGUE, f"{name}/said", lang) is not None:
         key = name
     elif 0 < status < FIRST_STATUS:
         key = "IMAGE" if status < FIRST_RULE else "RULE"
@@ -45,16 +49,6 @@ def sentence(status: int, detail: int, lang: str) -> Sentence:
         "version": f"{detail >> 8}.{detail & 0xFF}",
         "name": name,
     }
-    words = texts()[key]
-    advice = words.get(lang + "_try", "")
-    return Sentence(words[lang].format(**values), advice.format(**values))
-
-
-@lru_cache(maxsize=1)
-def texts() -> dict[str, dict[str, str]]:
-    """Return the table of `statuses.toml`."""
-    if sys.version_info >= (3, 11):
-        import tomllib
-    else:
-        import tomli as tomllib
-    return tomllib.loads(Path(__file__).with_name("statuses.toml").read_text(encoding="utf-8"))
+    said = languages.text(CATALOGUE, f"{key}/said", lang)
+    advice = languages.found(CATALOGUE, f"{key}/try", lang) or ""
+    return Sentence(said.format(**values), advice.format(**values))

@@ -10,6 +10,7 @@ from collections.abc import Mapping, Sequence
 
 from tiniscript.fixed_point import ONE
 from tiniscript.kit import DEVICES, NUMBER, YES_NO, Device, Kit
+from tiniscript.languages import ByLanguage
 from tiniscript.robots.board_reader import device_tables, read_board
 from tiniscript.robots.profile import (
     LANGUAGES,
@@ -168,7 +169,7 @@ def _read_labels(table: Table, kit: Kit, name: str) -> Mapping[str, Mapping[str,
     devices = (*kit.sensors, *kit.actuators)
     written = {language: _read_language(table, language, devices) for language in LANGUAGES}
     table.finish()
-    found: dict[str, dict[str, str]] = {}
+    found: ByLanguage[dict[str, str]] = ByLanguage()
     for language in LANGUAGES:
         found[language] = {"robot": name, **{device.name: device.name for device in devices}}
         for each in (*LANGUAGES, language):

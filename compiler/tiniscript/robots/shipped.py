@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from tiniscript.kit import Device, Kit
+from tiniscript.languages import ByLanguage
 from tiniscript.robots.profile import Board, Body, Place, Robot, Wiring
 
 
@@ -80,24 +81,26 @@ def _grabber() -> Robot:
                 "BUTTON": Place(x_cm=18.0, y_cm=0.0, heading=0.0, sees="touch"),
             },
         ),
-        labels={
-            "en": {
-                "robot": "Grabber",
-                "DISTANCE": "distance sensor",
-                "TEMPERATURE": "thermometer",
-                "BUTTON": "button in the jaws",
-                "GRIPPER": "gripper",
-                "LED": "lamp",
+        labels=ByLanguage(
+            {
+                "en": {
+                    "robot": "Grabber",
+                    "DISTANCE": "distance sensor",
+                    "TEMPERATURE": "thermometer",
+                    "BUTTON": "button in the jaws",
+                    "GRIPPER": "gripper",
+                    "LED": "lamp",
+                },
+                "es": {
+                    "robot": "Grabber",
+                    "DISTANCE": "sensor de distancia",
+                    "TEMPERATURE": "termómetro",
+                    "BUTTON": "botón en la pinza",
+                    "GRIPPER": "pinza",
+                    "LED": "foco LED",
+                },
             },
-            "es": {
-                "robot": "Grabber",
-                "DISTANCE": "sensor de distancia",
-                "TEMPERATURE": "termómetro",
-                "BUTTON": "botón en la pinza",
-                "GRIPPER": "pinza",
-                "LED": "foco LED",
-            },
-        },
+        ),
     )
 
 
@@ -170,24 +173,26 @@ def _liner() -> Robot:
                 "BUTTON": Place(x_cm=9.0, y_cm=0.0, heading=0.0, sees="touch"),
             },
         ),
-        labels={
-            "en": {
-                "robot": "Liner",
-                "LINE_L": "left line sensor",
-                "LINE_R": "right line sensor",
-                "BUTTON": "bumper",
-                "BATTERY": "battery voltage",
-                "LED": "lamp",
+        labels=ByLanguage(
+            {
+                "en": {
+                    "robot": "Liner",
+                    "LINE_L": "left line sensor",
+                    "LINE_R": "right line sensor",
+                    "BUTTON": "bumper",
+                    "BATTERY": "battery voltage",
+                    "LED": "lamp",
+                },
+                "es": {
+                    "robot": "Liner",
+                    "LINE_L": "sensor de línea izquierdo",
+                    "LINE_R": "sensor de línea derecho",
+                    "BUTTON": "parachoques",
+                    "BATTERY": "voltaje de la batería",
+                    "LED": "foco LED",
+                },
             },
-            "es": {
-                "robot": "Liner",
-                "LINE_L": "sensor de línea izquierdo",
-                "LINE_R": "sensor de línea derecho",
-                "BUTTON": "parachoques",
-                "BATTERY": "voltaje de la batería",
-                "LED": "foco LED",
-            },
-        },
+        ),
     )
 
 
@@ -245,20 +250,22 @@ def _tinibot() -> Robot:
                 "DISTANCE": Place(x_cm=13.0, y_cm=0.0, heading=0.0, sees="distance"),
             },
         ),
-        labels={
-            "en": {
-                "robot": "TiniBot",
-                "LIGHT_R": "right light sensor",
-                "LIGHT_L": "left light sensor",
-                "DISTANCE": "distance sensor",
+        labels=ByLanguage(
+            {
+                "en": {
+                    "robot": "TiniBot",
+                    "LIGHT_R": "right light sensor",
+                    "LIGHT_L": "left light sensor",
+                    "DISTANCE": "distance sensor",
+                },
+                "es": {
+                    "robot": "TiniBot",
+                    "LIGHT_R": "sensor de luz derecho",
+                    "LIGHT_L": "sensor de luz izquierdo",
+                    "DISTANCE": "sensor de distancia",
+                },
             },
-            "es": {
-                "robot": "TiniBot",
-                "LIGHT_R": "sensor de luz derecho",
-                "LIGHT_L": "sensor de luz izquierdo",
-                "DISTANCE": "sensor de distancia",
-            },
-        },
+        ),
     )
 
 
@@ -316,20 +323,22 @@ def _tinibot32() -> Robot:
                 "DISTANCE": Place(x_cm=13.0, y_cm=0.0, heading=0.0, sees="distance"),
             },
         ),
-        labels={
-            "en": {
-                "robot": "TiniBot 32",
-                "LIGHT_R": "right light sensor",
-                "LIGHT_L": "left light sensor",
-                "DISTANCE": "distance sensor",
+        labels=ByLanguage(
+            {
+                "en": {
+                    "robot": "TiniBot 32",
+                    "LIGHT_R": "right light sensor",
+                    "LIGHT_L": "left light sensor",
+                    "DISTANCE": "distance sensor",
+                },
+                "es": {
+                    "robot": "TiniBot 32",
+                    "LIGHT_R": "sensor de luz derecho",
+                    "LIGHT_L": "sensor de luz izquierdo",
+                    "DISTANCE": "sensor de distancia",
+                },
             },
-            "es": {
-                "robot": "TiniBot 32",
-                "LIGHT_R": "sensor de luz derecho",
-                "LIGHT_L": "sensor de luz izquierdo",
-                "DISTANCE": "sensor de distancia",
-            },
-        },
+        ),
     )
 
 
@@ -385,20 +394,22 @@ def _tinibotc3() -> Robot:
                 "DISTANCE": Place(x_cm=13.0, y_cm=0.0, heading=0.0, sees="distance"),
             },
         ),
-        labels={
-            "en": {
-                "robot": "TiniBot C3",
-                "LIGHT_R": "right light sensor",
-                "LIGHT_L": "left light sensor",
-                "DISTANCE": "distance sensor",
+        labels=ByLanguage(
+            {
+                "en": {
+                    "robot": "TiniBot C3",
+                    "LIGHT_R": "right light sensor",
+                    "LIGHT_L": "left light sensor",
+                    "DISTANCE": "distance sensor",
+                },
+                "es": {
+                    "robot": "TiniBot C3",
+                    "LIGHT_R": "sensor de luz derecho",
+                    "LIGHT_L": "sensor de luz izquierdo",
+                    "DISTANCE": "sensor de distancia",
+                },
             },
-            "es": {
-                "robot": "TiniBot C3",
-                "LIGHT_R": "sensor de luz derecho",
-                "LIGHT_L": "sensor de luz izquierdo",
-                "DISTANCE": "sensor de distancia",
-            },
-        },
+        ),
     )
 
 

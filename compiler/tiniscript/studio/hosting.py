@@ -11,6 +11,7 @@ from time import monotonic
 from typing import Any
 
 from tiniscript import robots
+from tiniscript.languages import languages
 from tiniscript.link import known_ports, ports
 from tiniscript.link.port_names import is_there, same_for_all
 from tiniscript.source import printable
@@ -19,7 +20,6 @@ from tiniscript.studio.hosted_robot import HostedRobot
 from tiniscript.studio.robot_link import BadRequest, Json
 from tiniscript.virtual import directory
 
-LANGUAGES = ("en", "es")
 NAME_CHARACTERS = 64  # of a page
 PORT_CHARACTERS = 300
 MOST_ROBOTS = 40
@@ -86,7 +86,7 @@ class Hosting:
     def _connect(self, page: str, request: Json) -> Json:
         port = _text(request, "port", PORT_CHARACTERS).strip()
         robot, language = request.get("robot"), request.get("language")
-        if robot not in robots.names() or language not in LANGUAGES or not port:
+        if robot not in robots.names() or language not in languages() or not port:
             raise BadRequest
         with self._lock:
             self._forget_ended()

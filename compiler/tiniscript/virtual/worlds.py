@@ -7,6 +7,7 @@ from pathlib import Path
 
 from tiniscript import robots
 from tiniscript.fixed_point import ONE
+from tiniscript.languages import ByLanguage
 from tiniscript.robots.kinematics import Pose
 from tiniscript.robots.profile import LANGUAGES, ProfileRefused, Reason
 from tiniscript.robots.refusals import shown
@@ -165,7 +166,7 @@ def _labels(table: Table, name: str) -> dict[str, str]:
         written[language] = label
     table.finish()
     other = next(iter(written.values()), name)
-    return {language: written.get(language, other) for language in LANGUAGES}
+    return ByLanguage({language: written.get(language, other) for language in LANGUAGES})
 
 
 DEFAULT = "obstacles"
