@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from tests.support.shell import Shell
 
 PARSERS = parsers()
-FLAG = r"(?<![\w-])--?[a-zA-Z][a-z-]*"
+FLAG = r"(?<![\w-])--?[a-zA-Z][a-z0-9-]*"
 
 in_both = pytest.mark.parametrize("language", ["en", "es"])
 of_each = each_row("verb", VERBS)

@@ -15,14 +15,18 @@ from tests.support import pty_robot as pty_robots
 from tests.support.command import TSC, Done, Tsc
 from tests.support.pty_robot import PtyRobot
 from tests.support.waiting import HANGS_S
-from tiniscript import robots
+from tiniscript import compile_text, robots
+from tiniscript.bytecode.image import unpack
+from tiniscript.cli.commands.trim import words
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.robot import trim_wizard
 from tiniscript.cli.robot.connect import Connection
 from tiniscript.link.messages import STATUSES
+from tiniscript.link.names import fault_name
+from tiniscript.link.payloads import TrimReply
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
-from tiniscript.link.trim import Trim, told
+from tiniscript.link.trim import Pace, Trim, told
 
 KIT = robots.load("tinibot").kit
 
@@ -34,7 +38,8 @@ def on(pty_robot: PtyRobot, *arguments: str, data: str = "") -> Done:
 def keeps(pty_robot: PtyRobot) -> Trim:
     """What the robot says that it keeps."""
     fields = json.loads(on(pty_robot, "--show", "--json").out)
-    return Trim(*(fields[name] for name in Trim._fields))
+    pace = fields["pace"]
+    return Trim(*(fields[name] for name in Trim._fields[:-1]), pace and Pace(**pace))
 
 
 def switched_on(memory: bytes = EMPTY) -> HostFirmware:
@@ -102,7 +107,7 @@ def test_a_trim_survives_and_so_does_the_name() -> None:
     again, other = switched_on(robot.memory()), computer(2)
     asked = other.trim()
     assert again.until(other, asked) == OK
-    assert asked.outcome is not None and told(asked.outcome.values) == trim
+    assert asked.outcome is not None and told(asked.outcome.values) == trim._replace(pace=Pace())
     assert other.robot is not None and other.robot.name == "TINI"
 
 
@@ -116,7 +121,7 @@ def test_a_trim_that_makes_no_sense_is_refused(data: bytes) -> None:
     assert robot.until(session, session.trim(data)) == STATUSES[expected]
     asked = session.trim()
     assert robot.until(session, asked) == OK
-    assert asked.outcome is not None and told(asked.outcome.values) == Trim(balance=3)
+    assert asked.outcome is not None and told(asked.outcome.values) == Trim(balance=3, pace=Pace())
 
 
 # -- the command ----------------------------------------------------------------------------------
@@ -127,13 +132,13 @@ def test_numbers_are_set_one_by_one_and_reset_at_once(pty_robot: PtyRobot) -> No
     done = on(pty_robot, "--exchange", "yes", "--reverse-right", "yes")
     assert done.out.endswith(
         "keeps: motors swapped, right wheel reversed, right wheel 5 % weaker, "
-        "wheels move from 12 % on\n"
+        "wheels move from 12 % on, centimetres and degrees by the numbers of its kit\n"
     )
-    assert keeps(pty_robot) == Trim(True, False, True, -5, 12)
+    assert keeps(pty_robot) == Trim(True, False, True, -5, 12, Pace())
     assert on(pty_robot, "--exchange", "no", "--balance", "0").code == 0
-    assert keeps(pty_robot) == Trim(False, False, True, 0, 12)
+    assert keeps(pty_robot) == Trim(False, False, True, 0, 12, Pace())
     assert "as they are wired, both wheels equally strong" in on(pty_robot, "--reset").out
-    assert keeps(pty_robot) == Trim()
+    assert keeps(pty_robot) == Trim(pace=Pace())
 
 
 @pytest.mark.parametrize(
@@ -145,22 +150,24 @@ def test_what_cannot_be_set_is_said_without_a_robot(tsc: Tsc, wrong: tuple[str, 
 
 
 # Enter; the left output turns the right wheel, backward; the right one the left wheel, forward;
-# 5 and 10 % do not move both, 15 do; on the floor it goes to its left, its right, then straight
-ANSWERS = "\n2\n2\n1\n1\n2\n2\n1\n\n2\n9\n3\n1\n"
+# 5 and 10 % do not move both, 15 do; on the floor at 40 % it goes to its left, its right, then
+# straight, and so at 80 %
+ANSWERS = "\n2\n2\n1\n1\n2\n2\n1\n\n2\n9\n3\n1\n1\n"
 
 
 def test_a_person_is_guided_to_a_robot_that_drives_straight(pty_robot: PtyRobot) -> None:
     assert pty_robots.on(pty_robot, "live", "W(0)").code == 0
-    done = on(pty_robot, data=ANSWERS)
+    done = on(pty_robot, data=ANSWERS + "2\n")
     assert done.code == 0, done.err
-    assert keeps(pty_robot) == Trim(True, False, True, -8, 15)
+    assert keeps(pty_robot) == Trim(True, False, True, -8, 15, Pace())
     assert "A number from 1 to 4" in done.err
     assert done.err.index("One motor turned") < done.err.index("The other motor turned")
     moves = [line for line in pty_robot.did if line.startswith("MOTORS") and line != "MOTORS 0 0"]
     assert moves == [
         "MOTORS 60 0", "MOTORS 0 60",  # as they are wired
         "MOTORS -5 5", "MOTORS -10 10", "MOTORS -15 15",
-        "MOTORS -66 66", "MOTORS -56 66", "MOTORS -61 66",
+        "MOTORS -49 49", "MOTORS -42 49", "MOTORS -45 49",  # at 40 %
+        "MOTORS -76 83",  # at 80
     ]  # fmt: skip
 
 
@@ -181,7 +188,7 @@ def test_a_robot_that_cannot_be_trimmed_keeps_what_it_had(
     done = on(pty_robot, data=answers)
     assert done.code == 3
     assert said in done.err
-    assert keeps(pty_robot) == Trim(balance=7, least=3)
+    assert keeps(pty_robot) == Trim(balance=7, least=3, pace=Pace())
     assert not pty_robot.moves
 
 
@@ -203,7 +210,7 @@ def test_a_stop_from_elsewhere_while_a_trim_is_set_leaves_the_one_before(
                 raise CommandError(3, stops.pop())
             make(Asked())
 
-    def stopped(wizard: trim_wizard.TrimWizard) -> Trim:
+    def stopped(wizard: trim_wizard.TrimWizard, before: Trim) -> Trim:
         raise CommandError(3, key)
 
     monkeypatch.setattr(trim_wizard.TrimWizard, "trim", stopped)
@@ -228,4 +235,133 @@ def test_ctrl_c_stops_the_robot_and_it_keeps_what_it_had(pty_robot: PtyRobot) ->
     done = Done(command.returncode, out.decode(), err.decode())
     assert done.code == 2
     assert not pty_robot.moves
-    assert keeps(pty_robot) == Trim(balance=7)
+    assert keeps(pty_robot) == Trim(balance=7, pace=Pace())
+
+
+# -- how fast it is -------------------------------------------------------------------------------
+
+PACE = Pace(16.5, 33.25, 144, 288)
+LIFTED = "\n1\n1\n2\n1\n1\n\n1\n1\n"  # as it is wired, straight at both powers
+
+
+def moves_in(robot: HostFirmware, session: Session, line: str) -> list[int]:
+    """Return how long each move of a live line takes, in milliseconds."""
+    before = len(robot.did)
+    code = unpack(compile_text(f"SI|{line}", KIT).image).code
+    assert robot.until(session, session.live(code)) == OK
+    robot.talk(session, 9000)
+    at = [int(told.split()[0]) for told in robot.did[before:] if "MOTORS" in told]
+    return [end - begun for begun, end in zip(at[::2], at[1::2], strict=True)]
+
+
+def test_a_measured_robot_goes_by_the_line_through_two_points() -> None:
+    robot, session = switched_on(), computer()
+    line = "F(20 CM, 60); R(90 DEG, 60); F(20 CM, 100); F(20 CM, 10)"
+    assert moves_in(robot, session, line) == [741, 417, 444, 4444]
+    assert robot.until(session, session.trim(Trim(pace=PACE).data())) == OK
+    # 24.875 cm and 216 degrees in a second at 60 %, 41.625 at 100, 3.9375 at 10
+    assert moves_in(robot, session, line) == [804, 417, 480, 5079]
+
+
+def test_a_measured_robot_may_not_move_at_all_with_little_power() -> None:
+    robot, session = switched_on(), computer()
+    pace = Pace(0, 40, 100, 300)
+    assert robot.until(session, session.trim(Trim(pace=pace).data())) == OK
+    code = unpack(compile_text("F(20 CM, 40)", KIT).image).code
+    assert robot.until(session, session.live(code)) == OK
+    robot.talk(session, 100)
+    status = session.status()
+    assert robot.until(session, status) == OK
+    assert status.outcome is not None
+    assert fault_name(status.outcome.values.fault) == "NO_POWER"
+
+
+@pytest.mark.parametrize("pace", [Pace(20, 20), Pace(20, 10), Pace(1, 0), Pace(0, 0, 9, 8)])
+def test_a_robot_refuses_a_pace_that_does_not_rise_whole(pace: Pace) -> None:
+    robot, session = switched_on(), computer()
+    assert robot.until(session, session.trim(Trim(balance=3, pace=PACE).data())) == OK
+    refused = robot.until(session, session.trim(Trim(balance=9, pace=pace).data()))
+    assert refused == STATUSES["BAD_VALUE"]
+    asked = session.trim()
+    assert robot.until(session, asked) == OK
+    assert asked.outcome is not None
+    assert told(asked.outcome.values) == Trim(balance=3, pace=PACE)
+
+
+def test_a_pace_survives_a_fault_and_a_torn_save() -> None:
+    robot, session = switched_on(), computer()
+    assert robot.until(session, session.trim(Trim(pace=PACE).data())) == OK
+    robot.talk(session, 1000)
+    kept = robot.memory()
+    code = unpack(compile_text("SHOW(1 / 0)", KIT).image).code
+    assert robot.until(session, session.live(code)) == OK  # the fault is saved beside it
+    robot.talk(session, 1000)
+    for memory in (kept, robot.memory()):
+        assert pace_of(memory) == PACE
+    assert robot.memory() != kept
+    slots = [at for at in (66, 97) if robot.memory()[at] != 0xFF]
+    torn = bytearray(robot.memory())
+    for at in slots:
+        torn[at + 4 + 20] ^= 1  # a bit of both records
+    assert pace_of(bytes(torn)) == Pace()
+
+
+def pace_of(memory: bytes) -> Pace | None:
+    robot, session = switched_on(memory), computer(2)
+    asked = session.trim()
+    assert robot.until(session, asked) == OK
+    assert asked.outcome is not None
+    return told(asked.outcome.values).pace
+
+
+def test_a_robot_without_ways_keeps_none() -> None:
+    uno = TrimReply(0, 0, 0, b"")
+    assert told(uno).pace is None
+    assert "centimetres" not in words(told(uno), "en")
+
+
+def test_a_person_measures_with_tape_and_protractor(pty_robot: PtyRobot) -> None:
+    measuring = "1\n\nx\n-3\n0.5 m\n1e3\n99999\n\n33\n\n66,5 cm\n\n144°\n\n288\n"
+    done = on(pty_robot, data=LIFTED + measuring)
+    assert done.code == 0, done.err
+    assert keeps(pty_robot).pace == Pace(16.5, 33.25, 144, 288)
+    assert done.err.count("18 in") == 5
+    assert "goes 16.5 cm in a second at 40 % and 33.25 at 80 %" in done.out
+    told_by_info = pty_robots.on(pty_robot, "info").out
+    assert "turns 144 degrees in a second at 40 % and 288 at 80 %" in told_by_info
+
+
+def test_who_measures_less_at_80_measures_again(pty_robot: PtyRobot) -> None:
+    wrong = "1\n\n33\n\n33\n"
+    done = on(pty_robot, data=LIFTED + wrong + "\n0\n\n13 in\n\n144\n\n288\n")
+    assert done.code == 0, done.err
+    assert "Measure both again" in done.err
+    assert keeps(pty_robot).pace == Pace(0, 16.51, 144, 288)
+
+
+@pytest.mark.parametrize("answers", ["1\n", "1\n\n33\n\n"])
+def test_who_stops_measuring_leaves_what_was_there(pty_robot: PtyRobot, answers: str) -> None:
+    assert on(pty_robot, "--speed-40", "10", "--speed-80", "20,5", "--balance", "7").code == 0
+    done = on(pty_robot, data=LIFTED + answers)
+    assert done.code == 3
+    assert "the answers ended" in done.err
+    assert keeps(pty_robot) == Trim(balance=7, pace=Pace(10, 20.5))
+    assert not pty_robot.moves
+
+
+@pytest.mark.parametrize(
+    ("wrong", "said"),
+    [
+        (("--speed-40", "20"), "faster than at 40 %"),
+        (("--speed-80", "-1"), "--speed-80"),
+        (("--turn-80", "656"), "--turn-80"),
+        (("--turn-40", "fast"), "--turn-40"),
+    ],
+)
+def test_a_pace_that_cannot_be_is_refused(
+    pty_robot: PtyRobot, wrong: tuple[str, str], said: str
+) -> None:
+    done = on(pty_robot, *wrong)
+    assert done.code == 2
+    assert said in done.err
+    assert keeps(pty_robot).pace == Pace()

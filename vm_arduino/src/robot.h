@@ -28,9 +28,10 @@ bool robot_show(int32_t value, bool is_yes_no);
 // Sets an actuator; the robot rounds and limits the value to its range.
 void robot_set(uint8_t actuator, int32_t value);
 
-// How fast it goes, or turns, at 100 %: thousandths of a centimetre or a degree in a second; 0: not
-// known. Only a machine with ways asks.
-uint32_t robot_speed(bool is_turn);
+// How fast it goes, or turns, at a power of 1 to 100 %: hundred thousandths of a centimetre or a
+// degree in a second, at most 10^9; 0: it does not move, or does not know. Only a machine with ways
+// asks.
+uint32_t robot_speed(bool is_turn, uint8_t power);
 
 // The hash of a device of the kit by its number: first the sensors, then the actuators.
 // `bytecode_spec.md` defines it.

@@ -84,7 +84,7 @@ STATUS_BYTES = 1  # before the fields of a reply
 REPLY = 0x80  # flag of a type: sent to the computer
 SEALED = 0x40  # flag of a type: a 0 and a counter before the payload, and a MAC behind it
 NAME_BYTES = 16
-TRIM_BYTES = 3
+TRIM_BYTES, PACE_BYTES = 3, 8
 KEY_BYTES = 16
 CHALLENGE_BYTES = 8
 TAG_BYTES = 8
@@ -250,8 +250,8 @@ MESSAGES = (
     _message(12, "COMMIT", True, "checksum:u32", _RECEIPT, "The program is whole: its image's checksum."),
     _message(13, "ABORT", True, "", "", "Drops the program that was begun."),
     _message(14, "NAME", True, "name:rest=1..16", "", "Names the robot: UTF-8. OK once it is kept; until then SAVING or LOW_SUPPLY: ask again."),
-    _message(15, "TRIM", True, f"trim:rest=0..{TRIM_BYTES}", "wheels:u8 balance:i8 least:u8",
-             "Sets the motors' trim, three bytes like those of the reply; without them only reports it. OK as for NAME."),
+    _message(15, "TRIM", True, f"trim:rest=0..{TRIM_BYTES + PACE_BYTES}", f"wheels:u8 balance:i8 least:u8 pace:rest=0..{PACE_BYTES}",
+             "Sets the motors' trim, bytes like those of the reply, with `pace` or without; without any only reports it. OK as for NAME."),
     _message(16, "CLAIM", True, f"which:u8 key:rest=0..{KEY_BYTES}", "",
              "Gives the robot a key after its button was held: `which` of KEYS. Without a key: takes that key away. OK as for NAME."),
     _message(17, "AUTHENTICATE", True, f"which:u8 tag:rest=0..{TAG_BYTES}", f"features:u16 challenge:rest=0..{CHALLENGE_BYTES}",

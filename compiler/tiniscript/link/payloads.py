@@ -89,6 +89,7 @@ class TrimReply(NamedTuple):
     wheels: int
     balance: int
     least: int
+    pace: bytes
 
 
 class AuthenticateReply(NamedTuple):

@@ -1,7 +1,7 @@
-"""The trim of a robot's motors, which the robot keeps in three bytes.
+"""The trim of a robot's motors and how fast it was measured to be, which the robot keeps.
 
 Knows what the bytes mean. The robot applies the trim to its motors
-(`vm_arduino/src/firmware/trim.cpp`).
+(`vm_arduino/src/firmware/trim.cpp`), and the pace to moves by centimetres and degrees (`pace.cpp`).
 """
 
 from __future__ import annotations
@@ -9,15 +9,39 @@ from __future__ import annotations
 import struct
 from typing import NamedTuple
 
-from tiniscript.link.messages import EXCHANGED, LEFT_REVERSED, RIGHT_REVERSED
+from tiniscript.link.messages import EXCHANGED, LEFT_REVERSED, PACE_BYTES, RIGHT_REVERSED
 from tiniscript.link.payloads import TrimReply
+
+MOST_PACE = 655.35  # cm or degrees in a second, at 80 %
+
+
+class Pace(NamedTuple):
+    """How fast a robot goes and turns at 40 and 80 %: cm, or degrees, in a second.
+
+    0 and 0: not measured, and the kit's numbers hold.
+    """
+
+    speed_40: float = 0.0
+    speed_80: float = 0.0
+    turn_40: float = 0.0
+    turn_80: float = 0.0
+
+    @property
+    def rises(self) -> bool:
+        """Whether the robot is faster at 80 % than at 40, or not measured: it takes no other."""
+        lines = (self[:2], self[2:])
+        return all(at_40 < at_80 or (at_40, at_80) == (0, 0) for at_40, at_80 in lines)
+
+    def data(self) -> bytes:
+        return struct.pack("<4H", *(round(100 * each) for each in self))
 
 
 class Trim(NamedTuple):
     """How the motors are wired, and the correction that makes the robot drive straight.
 
     `balance` is the percent by which the left wheel is too strong; if it is below 0, the right
-    wheel is. `least` is the smallest power in percent that moves the wheels.
+    wheel is. `least` is the smallest power in percent that moves the wheels. Without a pace: the
+    robot cannot keep one, or shall keep what it has.
     """
 
     is_exchanged: bool = False
@@ -25,6 +49,7 @@ class Trim(NamedTuple):
     is_right_reversed: bool = False
     balance: int = 0
     least: int = 0
+    pace: Pace | None = None
 
     def data(self) -> bytes:
         wheels = (
@@ -32,7 +57,8 @@ class Trim(NamedTuple):
             | LEFT_REVERSED * self.is_left_reversed
             | RIGHT_REVERSED * self.is_right_reversed
         )
-        return struct.pack("<BbB", wheels, self.balance, self.least)
+        pace = b"" if self.pace is None else self.pace.data()
+        return struct.pack("<BbB", wheels, self.balance, self.least) + pace
 
 
 def told(reply: TrimReply) -> Trim:
@@ -43,4 +69,11 @@ def told(reply: TrimReply) -> Trim:
         bool(reply.wheels & RIGHT_REVERSED),
         reply.balance,
         reply.least,
+        _pace(reply.pace),
     )
+
+
+def _pace(data: bytes) -> Pace | None:
+    if len(data) != PACE_BYTES:
+        return None
+    return Pace(*(each / 100 for each in struct.unpack("<4H", data)))

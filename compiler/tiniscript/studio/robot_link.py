@@ -193,7 +193,9 @@ class RobotLink:
                 "saved": saved_name(values.saved),
             }
         if isinstance(values, TrimReply):
-            return {"ok": True, "trim": told(values)._asdict()}
+            trim = told(values)._asdict()
+            del trim["pace"]  # who sets a trim without it leaves it
+            return {"ok": True, "trim": trim}
         robot = self._connection.robot
         if isinstance(values, HelloReply) and robot is not None:
             return {"ok": True, "robot": about(robot)}

@@ -99,7 +99,9 @@ bool robot_show(int32_t value, bool is_yes_no) {
   return true;
 }
 
-uint32_t robot_speed(bool is_turn) { return is_turn ? robot.turn : robot.speed; }
+uint32_t robot_speed(bool is_turn, uint8_t power) {
+  return (is_turn ? robot.turn : robot.speed) * power;
+}
 
 uint16_t robot_device_hash(uint16_t device) {
   if (device < robot.sensor_count) return robot.sensors[device].hash;

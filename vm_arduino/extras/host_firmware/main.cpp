@@ -255,7 +255,7 @@ int32_t* board_readings() { return table.kept.data(); }
 
 uint32_t board_max_run_ms() { return table.max_run_ms; }
 
-uint32_t robot_speed(bool is_turn) { return is_turn ? 360000 : 45000; }
+uint32_t board_speed(bool is_turn) { return is_turn ? 360000 : 45000; }
 
 uint16_t robot_device_hash(uint16_t device) { return table.hashes.at(device); }
 

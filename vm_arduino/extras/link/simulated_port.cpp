@@ -69,6 +69,8 @@ const DeviceInfo& port_device_info() { return port.device_info; }
 Identity& port_identity() { return port.identity; }
 const RobotStatus& port_status() { return port.robot_status; }
 const Trim& port_trim() { return port.trim; }
+
+const Pace& port_pace() { return port.pace; }
 LineErrors port_line_errors() { return {0, 0}; }
 uint16_t port_room() { return port.room; }
 
@@ -202,7 +204,7 @@ const uint8_t* port_run_image() { return bytes_of(port.run_image); }
 
 uint16_t port_image_length() { return static_cast<uint16_t>(port.held.size()); }
 
-uint32_t robot_speed(bool) { return 0; }
+uint32_t robot_speed(bool, uint8_t) { return 0; }
 
 uint16_t robot_device_hash(uint16_t device) { return port.hashes.at(device); }
 
@@ -231,10 +233,11 @@ Answer port_keep_key(uint8_t which, const uint8_t* key) {
 
 void port_identify() { say("IDENTIFY"); }
 
-Answer port_set_trim(const Trim& trim) {
+Answer port_set_trim(const Trim& trim, const Pace* pace) {
   if (port.is_busy) return Answer::kBusy;
   if (trim.least > kMostLeast) return Answer::kBadValue;
   port.trim = trim;
+  if (pace != nullptr) port.pace = *pace;
   say("TRIM %u", trim.wheels);
   return port.is_saving ? Answer::kSaving : Answer::kOk;
 }

@@ -147,7 +147,7 @@ int32_t* board_readings() { return readings; }
 
 uint32_t board_max_run_ms() { return own.max_run_ms; }
 
-uint32_t robot_speed(bool is_turn) { return is_turn ? own.turn : own.speed; }
+uint32_t board_speed(bool is_turn) { return is_turn ? own.turn : own.speed; }
 
 uint16_t robot_device_hash(uint16_t device) { return hashes[device]; }
 

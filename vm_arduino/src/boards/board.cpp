@@ -89,7 +89,7 @@ int32_t* board_readings() { return readings; }
 
 uint32_t board_max_run_ms() { return uint32_t{kMaxRunSeconds} * 1000; }
 
-uint32_t robot_speed(bool is_turn) { return is_turn ? kBoardTurn : kBoardSpeed; }
+uint32_t board_speed(bool is_turn) { return is_turn ? kBoardTurn : kBoardSpeed; }
 
 uint16_t robot_device_hash(uint16_t device) { return flash_word(kDeviceHashes + device); }
 

@@ -26,6 +26,9 @@ uint8_t board_actuators();
 int32_t* board_readings();
 uint32_t board_max_run_ms();
 
+// How fast the kit is at 100 %, or turns: thousandths in a second; 0: it does not say.
+uint32_t board_speed(bool is_turn);
+
 // A place in a program: the checksum of the image and the offset of an instruction.
 struct Place {
   uint32_t program;

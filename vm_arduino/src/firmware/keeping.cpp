@@ -4,6 +4,7 @@
 #include "../store/nvm.h"
 #include "../vm/flags.h"
 #include "identity.h"
+#include "pace.h"
 #include "program.h"
 #include "run.h"
 #include "state.h"
@@ -22,6 +23,7 @@ constexpr uint8_t kProgramBit = 1;
 constexpr uint8_t kFaultBit = 2;
 constexpr uint8_t kIdentityBit = 4;
 constexpr uint8_t kOwnerBit = 8;
+constexpr uint8_t kAskedFor = kIdentityBit | kOwnerBit | (kHasWays ? kFaultBit : 0);  // by somebody
 
 Boot boot;
 uint8_t record[kOwnerBytes];
@@ -41,6 +43,11 @@ void load_identity() {
 
 // The record of a fault: what, where, in which image. A hang that the watchdog ended is newer.
 void load_fault() {
+  const bool is_there = store.fetch_first(Area::kFault, record, kRecordBytes);
+#ifdef tiniscript_has_ways
+  const Pace& pace = *reinterpret_cast<const Pace*>(record + kPaceAt);
+  if (is_there && is_sound(pace)) change_pace(pace);  // otherwise it was written by other firmware
+#endif
   Place hung;
   if (board_has_hung(&hung)) {
     robot_status.fault = static_cast<uint8_t>(LinkFault::kStall);
@@ -48,8 +55,7 @@ void load_fault() {
     robot_status.fault_program = hung.program;
     return keep_fault();
   }
-  if (!store.fetch_first(Area::kFault, record, kRecordBytes)) return;
-  copy_bytes(record + kFaultAt, &robot_status.fault, kFaultBytes);
+  if (is_there) copy_bytes(record + kFaultAt, &robot_status.fault, kFaultBytes);
 }
 
 // Reads the next item when the store is free.
@@ -88,6 +94,9 @@ void write_record() {
   } else {
     copy_bytes(&robot_status.fault, record + kFaultAt, kFaultBytes);
     record[kFaultAt + kFaultBytes] = static_cast<uint8_t>(port_identity().reset);
+#ifdef tiniscript_has_ways
+    copy_bytes(&port_pace(), record + kPaceAt, sizeof(Pace));
+#endif
   }
 }
 
@@ -146,7 +155,7 @@ void tick_keeping() {
     tell_saving();
   }
   if (is_busy) return;
-  if ((keeping & (kIdentityBit | kOwnerBit)) != 0) is_worn = !is_kept;
+  if ((keeping & kAskedFor) != 0) is_worn = !is_kept;
   if (keeping == kOwnerBit) read_owner();
   keeping = 0;
   if (to_keep != 0) keep_next();
@@ -163,12 +172,15 @@ void keep_fault() { to_keep = to_keep | kFaultBit; }
 
 void keep_identity() { to_keep = to_keep | kIdentityBit; }
 
-Answer identity_kept() {
-  if (((to_keep | keeping) & kIdentityBit) != 0) {
+Answer identity_kept(bool and_pace) {
+  const bool has_pace = kHasWays && and_pace;
+  const uint8_t asked = has_pace ? kIdentityBit | kFaultBit : kIdentityBit;
+  if (((to_keep | keeping) & asked) != 0) {
     return is_low ? Answer::kLowSupply : Answer::kSaving;
   }
   if (!is_worn) return Answer::kOk;
   keep_identity();
+  if (has_pace) keep_fault();
   return Answer::kNotKept;
 }
 

@@ -6,6 +6,7 @@
 #include "../vm/image.h"
 #include "identity.h"
 #include "keeping.h"
+#include "pace.h"
 #include "program.h"
 #include "run.h"
 #include "state.h"
@@ -145,14 +146,20 @@ Answer port_set_wifi(WifiStep step, const uint8_t* text, uint8_t length) {
 Answer port_rename(const uint8_t* name, uint8_t length) {
   if (!has_booted()) return not_now();
   if (change_name(name, length)) keep_identity();
-  return identity_kept();
+  return identity_kept(false);
 }
 
-Answer port_set_trim(const Trim& trim) {
+Answer port_set_trim(const Trim& trim, const Pace* pace) {
   if (!is_sound(trim)) return Answer::kBadValue;
+#ifdef tiniscript_has_ways
+  if (pace != nullptr && !is_sound(*pace)) return Answer::kBadValue;
+#endif
   if (!has_booted()) return not_now();
   if (change_trim(trim)) keep_identity();
-  return identity_kept();
+#ifdef tiniscript_has_ways
+  if (pace != nullptr && change_pace(*pace)) keep_fault();
+#endif
+  return identity_kept(pace != nullptr);
 }
 
 }  // namespace tiniscript

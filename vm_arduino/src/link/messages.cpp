@@ -21,7 +21,7 @@ const uint8_t kRequestBytes[][2] tini_progmem = {
     {4, 4},  // COMMIT
     {0, 0},  // ABORT
     {1, 16},  // NAME
-    {0, 3},  // TRIM
+    {0, 11},  // TRIM
     {1, 17},  // CLAIM
     {1, 9},  // AUTHENTICATE
     {0, 0},  // IDENTIFY

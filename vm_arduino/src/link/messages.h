@@ -89,7 +89,7 @@ enum class Message : uint8_t {
   kCommit = 12,  // The program is whole: its image's checksum.
   kAbort = 13,  // Drops the program that was begun.
   kName = 14,  // Names the robot: UTF-8. OK once it is kept; until then SAVING or LOW_SUPPLY: ask again.
-  kTrim = 15,  // Sets the motors' trim, three bytes like those of the reply; without them only reports it. OK as for NAME.
+  kTrim = 15,  // Sets the motors' trim, bytes like those of the reply, with `pace` or without; without any only reports it. OK as for NAME.
   kClaim = 16,  // Gives the robot a key after its button was held: `which` of KEYS. Without a key: takes that key away. OK as for NAME.
   kAuthenticate = 17,  // Without a tag: asks for a challenge. With it: shows a key of the robot.
   kIdentify = 18,  // The robot blinks and plays the tune of its id.

@@ -56,6 +56,15 @@ struct tini_packed Trim {
   uint8_t least;
 };
 
+// How fast the robot was measured to be at 40 and 80 %: hundredths of a centimetre, or of a degree,
+// in a second. Zeros: not measured, and the kit's numbers hold.
+struct tini_packed Pace {
+  struct tini_packed Line {
+    uint16_t at40;
+    uint16_t at80;
+  } lines[2];  // ahead, turning
+};
+
 constexpr uint8_t kFaultBytes = 7;     // of a RobotStatus, from `fault` on
 constexpr uint8_t kFeaturesBytes = 2;  // of an Identity, from `features` on
 constexpr uint8_t kMoreByTeacher = kByTeacher >> 8;
@@ -74,6 +83,7 @@ const DeviceInfo& port_device_info();
 Identity& port_identity();
 const RobotStatus& port_status();
 const Trim& port_trim();
+const Pace& port_pace();  // of a robot with ways
 LineErrors port_line_errors();
 
 // The largest code that fits, after a header of this version.
@@ -200,8 +210,8 @@ void port_identify();
 // tries again.
 Answer port_rename(const uint8_t* name, uint8_t length);
 
-// The same for a trim; also kBadValue.
-Answer port_set_trim(const Trim& trim);
+// The same for a trim, and for a pace where one is given; also kBadValue.
+Answer port_set_trim(const Trim& trim, const Pace* pace);
 
 }  // namespace tiniscript
 

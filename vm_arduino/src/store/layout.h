@@ -46,10 +46,12 @@ constexpr uint8_t kTrimAt = kNameAt + kNameRoom;  // of the motors
 constexpr uint8_t kTrimBytes = 3;
 static_assert(kTrimAt + kTrimBytes == kRecordBytes, "who the robot is fills a record");
 
-// The record kFault: the last fault. The rest of it is unused.
+// The record kFault: the last fault, and how fast the robot was measured to be.
 constexpr uint8_t kFaultAt = kCheckBytes;
-constexpr uint8_t kFaultRoom = 16;
-static_assert(kFaultAt + kFaultRoom <= kRecordBytes, "a fault fits into a record");
+constexpr uint8_t kFaultRoom = 15;
+constexpr uint8_t kPaceAt = kFaultAt + kFaultRoom;
+constexpr uint8_t kPaceBytes = 8;  // zeros: not measured, as earlier firmware wrote
+static_assert(kPaceAt + kPaceBytes == kRecordBytes, "fault and pace fill a record");
 
 // The record kOwner is larger: the keys of the robot, zeros where there is none.
 constexpr uint8_t kKeys = 2;

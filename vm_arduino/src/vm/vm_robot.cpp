@@ -62,17 +62,18 @@ inline bool Machine::show(int32_t value, bool is_yes_no) {
 #endif
 }
 
-// Puts into `*time_ms` how long it takes to go or to turn that way: `way` * 100000 / (speed * power),
+// Puts into `*time_ms` how long it takes to go or to turn that way: `way` * 100000 / its speed,
 // rounded half away from zero. False: it never comes there, or not in time.
 //
 // It multiplies bit by bit and keeps the rest of the division, so that nothing has more than 32
-// bits: a kit's speed is at most 10^7.
+// bits: a speed is at most 10^9.
 bool Machine::go_ms(uint8_t code, int8_t power, int32_t way, uint32_t* time_ms) {
   constexpr uint32_t kMostMs = 0x7fffffff;
   constexpr uint32_t kTimes = 100000;
   *time_ms = 0;
   if (way <= 0) return true;
-  const uint32_t divisor = robot_speed((code & 2) != 0) * static_cast<uint8_t>(power);
+  const uint32_t divisor =
+      power == 0 ? 0 : robot_speed((code & 2) != 0, static_cast<uint8_t>(power));
   if (divisor == 0) return goes_on(Fault::kNoPower);
   const uint32_t more = static_cast<uint32_t>(way) / divisor;
   const uint32_t more_rest = static_cast<uint32_t>(way) % divisor;

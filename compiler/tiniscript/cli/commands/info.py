@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import json
 from argparse import Namespace
+from contextlib import suppress
 
 from tiniscript.cli import inputs
+from tiniscript.cli.commands.trim import as_data, words
+from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot.connect import Connection, robot_of_kit
 from tiniscript.cli.robot.event_printer import fault_sentence
@@ -25,6 +28,7 @@ from tiniscript.link.messages import (
     TEXT_LEVELS,
 )
 from tiniscript.link.names import fault_name, row_name
+from tiniscript.link.trim import Trim, told
 
 
 def run(options: Namespace, language: str) -> int:
@@ -52,6 +56,9 @@ class Description:
         self.device_info = connection.device_info
         self.hello = self.device_info.values
         self.status = connection.ask(lambda session: session.status()).values
+        self.trim: Trim | None = None
+        with suppress(CommandError):  # another's robot does not tell
+            self.trim = told(connection.ask(lambda session: session.trim()).values)
 
     def fields(self) -> dict[str, object]:
         """Return it as data."""
@@ -80,6 +87,7 @@ class Description:
             "slot": status.slot if status.saved == SAVED_STORED else None,
             "fault": fault,
             "reset": row_name(RESETS, self.hello.reset),
+            "trim": None if self.trim is None else as_data(self.trim),
             "damaged": status.damaged,
             "dropped": status.dropped,
             "framing": status.framing,
@@ -138,6 +146,8 @@ class Description:
             self._program(),
             text("info_state", language).format(state=state, reset=reset),
         ]
+        if self.trim is not None:
+            lines.append(text("info_trim", language).format(trim=words(self.trim, language)))
         if status.fault:
             lines.append(self._fault())
         if status.damaged or status.dropped or status.framing or status.overrun:

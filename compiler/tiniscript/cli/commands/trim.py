@@ -1,4 +1,7 @@
-"""`tsc trim`: how a robot's motors are wired, and how strong each is; the robot keeps it."""
+"""`tsc trim`: how a robot's motors are wired, how strong each is and how fast it goes.
+
+The robot keeps it.
+"""
 
 from __future__ import annotations
 
@@ -6,13 +9,15 @@ import json
 from argparse import Namespace
 from typing import Any
 
+from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
-from tiniscript.cli.options import whole_number
+from tiniscript.cli.options import thousandths, whole_number
 from tiniscript.cli.robot.connect import Connection, connected
 from tiniscript.cli.robot.trim_wizard import guided
 from tiniscript.cli.texts.common import text
+from tiniscript.fixed_point import ONE
 from tiniscript.link.messages import MOST_BALANCE, MOST_LEAST
-from tiniscript.link.trim import Trim, told
+from tiniscript.link.trim import MOST_PACE, Pace, Trim, told
 
 
 def run(options: Namespace, language: str) -> int:
@@ -24,13 +29,26 @@ def run(options: Namespace, language: str) -> int:
             _print(connection, "trim_tells", before, options.json)
             return 0
         if options.reset or given:
-            trim = (Trim() if options.reset else before)._replace(**given)
+            trim = _changed(before, given, options.reset)
         else:
             trim = guided(connection, before)
         # This trim may be set already; the status OK means that it is saved.
         connection.ask(lambda session: session.trim(trim.data()))
         _print(connection, "trim_keeps", trim, options.json)
     return 0
+
+
+def _changed(before: Trim, given: dict[str, Any], is_reset: bool) -> Trim:
+    """Return a trim with what the options say."""
+    paces = {name: given.pop(name) for name in Pace._fields if name in given}
+    if paces and before.pace is None:
+        raise CommandError(1, "trim_no_pace")
+    if before.pace is not None:
+        pace = (Pace() if is_reset else before.pace)._replace(**paces)
+        if not pace.rises:
+            raise CommandError(2, "trim_not_faster")
+        given["pace"] = pace
+    return (Trim() if is_reset else before)._replace(**given)
 
 
 def _given(options: Namespace, language: str) -> dict[str, Any]:
@@ -48,6 +66,12 @@ def _given(options: Namespace, language: str) -> dict[str, Any]:
         found["balance"] = whole_number(
             "--balance", options.balance, 0, -MOST_BALANCE, MOST_BALANCE, language
         )
+    for name in Pace._fields:
+        said: str | None = getattr(options, name)
+        if said is not None:
+            option, most = f"--{name.replace('_', '-')}", round(MOST_PACE * ONE)
+            size = thousandths(option, said.replace(",", "."), 0, 0, most, language)
+            found[name] = size / ONE
     if options.least is not None:
         found["least"] = whole_number("--least", options.least, 0, 0, MOST_LEAST, language)
     return found
@@ -56,12 +80,17 @@ def _given(options: Namespace, language: str) -> dict[str, Any]:
 def _print(connection: Connection, key: str, trim: Trim, is_json: bool) -> None:
     if is_json:
         print(json.dumps({"robot": connection.device_info.name, "port": connection.port,
-                          **trim._asdict()}))  # fmt: skip
+                          **as_data(trim)}))  # fmt: skip
         return
     said = text(key, connection.language).format(
         robot=connection.name, port=shown(connection.port), trim=words(trim, connection.language)
     )
     print(said)
+
+
+def as_data(trim: Trim) -> dict[str, Any]:
+    pace = None if trim.pace is None else trim.pace._asdict()
+    return {**trim._asdict(), "pace": pace}
 
 
 def words(trim: Trim, language: str) -> str:
@@ -80,4 +109,11 @@ def words(trim: Trim, language: str) -> str:
     found.append(text(balance, language).format(n=abs(trim.balance)))
     if trim.least:
         found.append(text("trim_least", language).format(n=trim.least))
+    if trim.pace is not None:
+        lines = (("trim_speed", trim.pace[:2]), ("trim_turn", trim.pace[2:]))
+        found += [
+            text(key, language).format(at_40=f"{at_40:g}", at_80=f"{at_80:g}")
+            for key, (at_40, at_80) in lines
+            if at_80
+        ] or [text("trim_kits_pace", language)]
     return ", ".join(found)

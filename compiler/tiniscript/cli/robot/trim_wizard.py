@@ -5,6 +5,7 @@ If it ends early, the robot keeps its former trim.
 
 from __future__ import annotations
 
+import re
 import sys
 
 from tiniscript.bytecode.image import unpack
@@ -15,10 +16,15 @@ from tiniscript.cli.robot.run_monitor import RunMonitor
 from tiniscript.cli.texts.common import text
 from tiniscript.library.compiling import compile_text
 from tiniscript.link.messages import MOST_BALANCE, MOST_LEAST
-from tiniscript.link.trim import Trim
+from tiniscript.link.trim import MOST_PACE, Pace, Trim
 
 TURNING = 60  # percent, while the user looks at a motor
-STRAIGHT = "F(2, 60)"
+POWERS = 40, 80  # percent: it is seen and measured at both
+AHEAD_S, TURN_S = 2, 1  # how long it is measured
+INCH_CM = 2.54
+NUMBER = r"([0-9]{1,4}(?:[.,][0-9]{1,3})?)"
+INCHES = ("in", "inch", "inches", "pulg", "pulgada", "pulgadas", '"')
+DEGREES = ("°", "º")
 LEAST_STEP = 5  # percent
 FIRST_STEP = 16  # percent of balance; halved each time that the drift changes side
 YES, AGAIN = 1, 4
@@ -29,7 +35,7 @@ TRIES = 4
 def guided(connection: Connection, before: Trim) -> Trim:
     """Ask until the robot drives straight; return the new trim."""
     try:
-        return TrimWizard(connection).trim()
+        return TrimWizard(connection).trim(before)
     except BaseException as why:
         if isinstance(why, KeyboardInterrupt):
             print(file=sys.stderr)
@@ -62,7 +68,7 @@ class TrimWizard:
         self.connection = connection
         self.language = connection.language
 
-    def trim(self) -> Trim:
+    def trim(self, before: Trim) -> Trim:
         self._ask_line("trim_lift")
         self._set(Trim())
         left, left_forward = self._turned(f"M({TURNING}, 0)", "trim_which")
@@ -76,7 +82,16 @@ class TrimWizard:
         found = found._replace(least=self._least())
         self._set(found)
         self._ask_line("trim_floor")
-        return self._straight(found)
+        slow = self._straight(found, POWERS[0])
+        quick = self._straight(found._replace(balance=slow), POWERS[1])
+        found = found._replace(balance=round((slow + quick) / 2))
+        self._set(found)
+        if before.pace is None:
+            print(text("trim_no_pace_here", self.language), file=sys.stderr)
+            return found
+        if self._choice("trim_measure", 2) != YES:
+            return found._replace(pace=before.pace)
+        return found._replace(pace=Pace(*self._ahead(), *self._turning()))
 
     def _turned(self, motors: str, question: str) -> tuple[int, bool]:
         """Turn a motor; return the wheel, 1 left or 2 right, and whether it turned forward."""
@@ -96,14 +111,42 @@ class TrimWizard:
                 return power if power > LEAST_STEP else 0
         raise CommandError(3, "trim_too_weak", n=str(MOST_LEAST))
 
-    def _straight(self, found: Trim) -> Trim:
-        """Balance the wheels until the robot goes straight."""
-        step, last = FIRST_STEP, 0
+    def _ahead(self) -> list[float]:
+        return self._measured("F", AHEAD_S, "trim_how_far")
+
+    def _turning(self) -> list[float]:
+        return self._measured("R", TURN_S, "trim_how_round")
+
+    def _measured(self, move: str, seconds: int, question: str) -> list[float]:
+        """Return how much it went, or turned, in a second at each power."""
         while True:
-            self._drive(STRAIGHT)
+            found = [self._went(move, power, seconds, question) / seconds for power in POWERS]
+            if found[0] < found[1]:
+                return found
+            print(text("trim_not_faster_again", self.language), file=sys.stderr)
+
+    def _went(self, move: str, power: int, seconds: int, question: str) -> float:
+        """Return how far it went in centimetres, or turned in degrees, as the person measured."""
+        self._ask_line("trim_mark")
+        while True:
+            self._drive(f"{move}({seconds}, {power})")
+            answer = self._ask_line(question, n=str(power)).strip()
+            while answer:
+                size = measured(answer, move == "R")
+                if size is not None and size <= MOST_PACE * seconds:
+                    return size
+                print(text(f"{question}_number", self.language), file=sys.stderr)
+                answer = self._ask_line(question, n=str(power)).strip()
+
+    def _straight(self, found: Trim, power: int) -> int:
+        """Balance the wheels until the robot goes straight; return the balance."""
+        step, last = FIRST_STEP, 0
+        self._set(found)
+        while True:
+            self._drive(f"F(2, {power})")
             answer = self._choice("trim_straight", AGAIN)
             if answer == 1:
-                return found
+                return found.balance
             if answer == AGAIN:
                 continue
             # to its left: the right wheel is too strong
@@ -140,3 +183,16 @@ class TrimWizard:
         if not answer:
             raise CommandError(3, "trim_no_answer")
         return answer
+
+
+def measured(answer: str, is_turn: bool) -> float | None:
+    """Return the centimetres or degrees that a person wrote, with a comma or a point; else None."""
+    found = re.fullmatch(NUMBER + r" *(\S*?)\.?", answer.strip().lower())
+    if found is None:
+        return None
+    number, unit = float(found[1].replace(",", ".")), found[2]
+    if is_turn:
+        return number if unit in ("", *DEGREES) else None
+    if unit in INCHES:
+        return number * INCH_CM
+    return number if unit in ("", "cm") else None

@@ -239,9 +239,9 @@ VERBS: dict[str, Verb] = {
         ("NEW [options]", "NUEVO [opciones]"),
     ),
     "trim": Verb(
-        SETTINGS, ("trim", "trim"), ("make the robot drive straight", "hace que el robot vaya en línea recta"),
-        ("Makes a robot drive straight: turns its motors and asks what you see. The robot keeps the result in its own memory, for every program. You change no wire and flash nothing.",
-         "Hace que un robot vaya en línea recta: hace girar sus motores, pregunta qué ves, y el robot guarda el resultado en su memoria, para cualquier programa. No se cambia ningún cable ni se escribe otro firmware."),
+        SETTINGS, ("trim", "trim"), ("make the robot drive straight, and as far as you say", "hace que el robot vaya derecho, y tanto como dices"),
+        ("Makes a robot drive straight, and as far as a program says: turns its motors and asks what you see and, if you have a tape measure and a protractor, what you measure. The robot keeps the result in its own memory, for every program. You change no wire and flash nothing.",
+         "Hace que un robot vaya en línea recta, y tanto como dice un programa: hace girar sus motores, pregunta qué ves y, si tienes cinta métrica y transportador, qué mides, y el robot guarda el resultado en su memoria, para cualquier programa. No se cambia ningún cable ni se escribe otro firmware."),
     ),
     "text": Verb(
         SETTINGS, ("text on", "text on"), ("let lines of text drive your robot, or not", "deja manejarlo con líneas de texto, o no"),

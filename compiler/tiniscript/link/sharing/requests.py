@@ -15,6 +15,7 @@ from tiniscript.link.messages import (
     LEAST_PASSWORD,
     NAME_BYTES,
     NETWORK_BYTES,
+    PACE_BYTES,
     PASSWORD_BYTES,
     TRIM_BYTES,
 )
@@ -94,7 +95,7 @@ def _name(message: JsonMessage) -> bytes:
 
 def _trim(message: JsonMessage) -> bytes:
     trim = protocol.data(message, "trim")
-    if len(trim) not in (0, TRIM_BYTES):
+    if len(trim) not in (0, TRIM_BYTES, TRIM_BYTES + PACE_BYTES):
         raise BadMessage
     return trim
 

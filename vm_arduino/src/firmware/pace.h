@@ -1,0 +1,21 @@
+// How fast the robot was measured to be: what the numbers in its memory mean for a move.
+//
+// Does only arithmetic: no storage. `pace.cpp` implements `robot_speed` and `port_pace`.
+
+#ifndef TINISCRIPT_FIRMWARE_PACE_H_
+#define TINISCRIPT_FIRMWARE_PACE_H_
+
+#include "../link/port.h"
+#include "../vm/bytecode.h"
+
+namespace tiniscript {
+
+// Whether each line rises, or is not there.
+bool is_sound(const Pace& pace);
+
+// Takes over a pace, which must be sound. Returns whether that changes anything.
+bool change_pace(const Pace& pace);
+
+}  // namespace tiniscript
+
+#endif  // TINISCRIPT_FIRMWARE_PACE_H_
