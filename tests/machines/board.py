@@ -129,6 +129,7 @@ def _build(header: str, more: str, words: Sequence[object], made: Path) -> None:
                 [
                     source / "more.cpp",
                     source / "firmware" / "trim.cpp",
+                    source / "firmware" / "pace.cpp",
                     *source.rglob("boards/**/*"),
                     *source.rglob("vm/*"),
                 ]
