@@ -39,7 +39,8 @@ def keeps(pty_robot: PtyRobot) -> Trim:
     """What the robot says that it keeps."""
     fields = json.loads(on(pty_robot, "--show", "--json").out)
     pace = fields["pace"]
-    return Trim(*(fields[name] for name in Trim._fields[:-1]), pace and Pace(**pace))
+    found = Trim(*(fields[name] for name in Trim._fields))
+    return found._replace(pace=pace and Pace(**pace))
 
 
 def switched_on(memory: bytes = EMPTY) -> HostFirmware:
