@@ -119,7 +119,7 @@ def test_tests_are_for_a_computer(project: Path) -> None:
 # -- the sketch ---------------------------------------------------------------------------------
 
 
-SKETCHES = ("uno", "nano", "mega", "nano_liner", "mega_liner", "mega_grabber")
+SKETCHES = ("uno", "nano", "mega", "nano_liner", "mega_liner", "mega_grabber", "mega_tinibot2")
 
 NEW_NANOS = {"nano_new": "nano", "nano_new_liner": "nano_liner"}
 # Their platform cannot be had everywhere: tests/firmware/test_esp32_builds.py builds them.

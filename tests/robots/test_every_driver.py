@@ -7,7 +7,7 @@ import re
 import pytest
 
 from tests.support.casefile import ROOT
-from tests.wiring.test_wiring import DEVICES, MOTORS, robot_with
+from tests.wiring.test_wiring import DEVICES, DISCS, MOTORS, robot_with, with_discs
 from tiniscript import compile_text, robots
 from tiniscript.kit import Device
 from tiniscript.robots import firmware
@@ -74,6 +74,22 @@ def test_motors_are_driven_by_firmware_and_sketch(motors: str) -> None:
     header, sketch = written(robot_with(motors, []))
     assert "kLeftMotor" in header and "kRightMotor" in header
     assert "void driveMotor(" in sketch
+
+
+@pytest.mark.parametrize("chip", ["mega", "esp32dev"])
+@pytest.mark.parametrize("name", DISCS)
+def test_discs_are_counted_by_the_firmware(name: str, chip: str) -> None:
+    robot = with_discs(chip, name)
+    header = firmware.header([robot], "a test.")
+    assert "#define tiniscript_discs\n" in header
+    assert robot.board.discs
+    has_two = name == "two_channel"
+    assert f"kDiscs = {{32673, 277333, {str(has_two).lower()}}};" in header
+    for side in ("Left", "Right"):
+        disc = re.search(rf"constexpr Disc k{side}Disc = (.*);", header)
+        assert disc and ("kNoPin" in disc[1]) == (not has_two)
+        if chip == "mega":
+            assert re.search(rf"#define tiniscript_disc_{side.lower()} INT\d_vect\n", header)
 
 
 @pytest.mark.parametrize("table", ["motors", "sensors", "actuators"])

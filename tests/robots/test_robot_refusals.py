@@ -119,6 +119,17 @@ REFUSED = [
     ("pin_cannot", "tinibot", "left_pwm = 5", "left_pwm = 4", "board.motors.left_pwm"),
     ("pin_cannot", "tinibot", 'pin = "A0"', "pin = 10", "board.sensors.LIGHT_R.pin"),
     ("pin_cannot", "liner", "standby = 4", 'standby = "A6"', "board.motors.standby"),
+    ("pin_cannot", "tinibot2", "left = 18", "left = 22", "board.discs.left"),
+    ("pin_twice", "tinibot2", "left = 18", "left = 19", "board.discs.right"),
+    ("missing", "tinibot2", "left = 18\n", "", "board.discs.left"),
+    ("missing", "tinibot2", 'driver = "slotted"', 'driver = "two_channel"', "board.discs.left_b"),
+    ("not_one_of", "tinibot2", 'driver = "slotted"', 'driver = "slots"', "board.discs.driver"),
+    ("unknown_key", "tinibot2", "wheel_cm = 6.5", "wheels_cm = 6.5", "board.discs.wheels_cm"),
+    ("out_of_range", "tinibot2", "holes = 20", "holes = 4", "board.discs.holes"),
+    ("out_of_range", "tinibot2", "wheel_cm = 6.5", "wheel_cm = 65", "board.discs.wheel_cm"),
+    ("no_discs", "tinibot", "[board.motors]",
+     '[board.discs]\ndriver = "slotted"\nleft = 18\nright = 19\n[board.motors]',
+     "board.discs.left"),
     ("pin_cannot", "grabber", "echo = 2", "echo = 33", "board.sensors.DISTANCE.echo"),
     ("timer_twice", "tinibot", "left_pwm = 5", "left_pwm = 3", "board.motors.left_pwm"),
     ("timer_twice", "grabber", "left_pwm = 6", "left_pwm = 12", "board.motors.left_pwm"),
@@ -376,7 +387,7 @@ def test_a_wrong_name_gets_the_nearest_one() -> None:
         robots.load("Tinybot")
     assert describe(caught.value, "es") == [
         "No hay un robot Tinybot. ¿Quisiste decir tinibot? Los robots son: tinibot, grabber,"
-        " liner, tinibot32, tinibotc3."
+        " liner, tinibot2, tinibot32, tinibotc3."
     ]
     for name in ("", "zzz", "\0", "💥", "{path}"):
         with pytest.raises(ProfileRefused) as caught:

@@ -79,13 +79,25 @@ def robot_with(motors: str, devices: list[Driver], chip_name: str = "mega", is_w
     return Robot("many", kit, board, body, labels)
 
 
-DEVICES = [driver for (used_by, _), driver in DRIVERS.items() if used_by != "motors"]
+def with_discs(chip: str, name: str) -> Robot:
+    """Return a robot with discs of a driver."""
+    robot = robots.load("tinibot2" if chip == "mega" else "tinibot32")
+    taken = pins_of(robot)
+    return robot._replace(
+        board=robot.board._replace(discs=wired(DRIVERS["discs", name], CHIPS[chip], taken))
+    )
+
+
+DEVICES = [driver for (used_by, _), driver in DRIVERS.items() if " " in used_by]
+DISCS = [name for used_by, name in DRIVERS if used_by == "discs"]
 MOTORS = [name for used_by, name in DRIVERS if used_by == "motors"]
 ROBOTS = {
     **{name: robots.load(name) for name in robots.names()},
     **{f"mega {motors}": robot_with(motors, DEVICES) for motors in MOTORS},
     **{f"nano {motors}": robot_with(motors, DEVICES[:3], "nano", False) for motors in MOTORS},
     "mega, many": robot_with("two_wire", DEVICES * 4),
+    **{f"mega {discs}": with_discs("mega", discs) for discs in DISCS},
+    **{f"esp32dev {discs}": with_discs("esp32dev", discs) for discs in DISCS},
 }
 each_robot = pytest.mark.parametrize("robot", ROBOTS.values(), ids=list(ROBOTS))
 

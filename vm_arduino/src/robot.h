@@ -33,6 +33,18 @@ void robot_set(uint8_t actuator, int32_t value);
 // asks.
 uint32_t robot_speed(bool is_turn, uint8_t power);
 
+// Of a robot with a disc on each wheel, which measures its ways. Where no build defines them it has
+// none.
+bool robot_measures();
+
+// Sets both motors, not to 0, until it has gone a way above 0: thousandths of a centimetre, or of
+// a degree where the signs differ. It stops by itself; `robot_motors` and `robot_off` end it.
+void robot_go(int8_t left, int8_t right, int32_t way);
+
+// Where it is on that way; `*rest` is what is left of it.
+enum class Going : uint8_t { kOn, kThere, kStuck };
+Going robot_going(int32_t* rest);
+
 // The hash of a device of the kit by its number: first the sensors, then the actuators.
 // `bytecode_spec.md` defines it.
 uint16_t robot_device_hash(uint16_t device);

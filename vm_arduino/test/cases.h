@@ -61,6 +61,11 @@ inline const Kit& liner() {
   return found;
 }
 
+inline const Kit& tinibot2() {
+  static const Kit found = {{{"LIGHT_R", false, 0, 1023000, 8169}, {"LIGHT_L", false, 0, 1023000, 65451}, {"DISTANCE", false, 0, 400000, 2336}}, {}, 45000, 360000};
+  return found;
+}
+
 inline const Kit& tinibot32() {
   static const Kit found = {{{"LIGHT_R", false, 0, 1023000, 8169}, {"LIGHT_L", false, 0, 1023000, 65451}, {"DISTANCE", false, 0, 400000, 2336}}, {}, 45000, 360000};
   return found;

@@ -38,6 +38,8 @@ SENTENCES: dict[str, tuple[str, str]] = {
                              "A los {seconds} s algo se dividió entre 0 y el programa se detuvo. Pregunta con IF antes de dividir."),
     "fault/NO_POWER": ("After {seconds} s a move had power 0 and a way to go, and the program stopped. Use more power.",
                        "A los {seconds} s un movimiento tenía potencia 0 y camino por recorrer, y el programa se detuvo. Usa más potencia."),
+    "fault/STUCK": ("After {seconds} s a wheel did not turn, and the program stopped. Keep away from what is in the way.",
+                    "A los {seconds} s una rueda no giraba, y el programa se detuvo. Aléjate de lo que estorba."),
     "fault": ("After {seconds} s the robot ended the program ({fault}). Look at what it did just before.",
               "A los {seconds} s el robot terminó el programa ({fault}). Mira qué hizo justo antes."),
     # places

@@ -60,6 +60,8 @@ class Pins:
         before = next((use for use in self._uses if use.pin == pin), None)
         if pin in chip.link_pins:
             table.complain("pin_of_link", key, **named)
+        elif need == "count" and not chip.counting:
+            table.complain("no_discs", key, **named)
         elif not chip.can(pin, need):
             table.complain("pin_cannot", key, need=need, **named, choices=_choices(chip, need))
         elif is_motor and pin in chip.boot_pins:
@@ -139,6 +141,9 @@ def read_board(table: Table, kit: Kit) -> Board:
     bluetooth_state = pins.take(table, "bluetooth_state", "input", is_optional=True)
     language = table.choice("language", LANGUAGES) if table.has("language") else ""
     motors = _read_wiring(table.table("motors", "[board.motors]"), "motors", pins)
+    discs = None
+    if table.has("discs"):
+        discs = _read_wiring(table.table("discs"), "discs", pins)
     sensors = _read_devices(table, "sensors", kit.sensors, pins)
     actuators = _read_devices(table, "actuators", kit.actuators, pins)
     table.finish()
@@ -156,6 +161,7 @@ def read_board(table: Table, kit: Kit) -> Board:
         status_led=status_led,
         bluetooth_state=bluetooth_state,
         language=language,
+        discs=discs,
     )
 
 

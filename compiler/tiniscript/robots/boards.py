@@ -37,6 +37,7 @@ class Chip(NamedTuple):
     tone_timer: int | None
     boot_pins: frozenset[int] = frozenset()
     reset_pin: int | None = None
+    counting: frozenset[int] = frozenset()  # pins that count the edges of a slotted disc
     pwm_timers: int = 0
     pin_volts: int = 5 * ONE  # in thousandths: what its pins give, and the most that they take
     has: int = 0  # what its firmware has of `needs` in an image
@@ -51,6 +52,8 @@ class Chip(NamedTuple):
             return pin in self.pwm
         if need == "echo":
             return pin in self.echo
+        if need == "count":
+            return pin in self.counting
         return pin in self.digital  # output, pull_up, servo, tone
 
     def pin_number(self, written: object) -> int | None:
@@ -70,7 +73,7 @@ class Chip(NamedTuple):
 
 
 ANALOG_DIGITS = frozenset(str(number) for number in range(16))
-NEEDS = ("input", "output", "pull_up", "analog", "pwm", "echo", "servo", "tone")
+NEEDS = ("input", "output", "pull_up", "analog", "pwm", "echo", "count", "servo", "tone")
 
 
 def _pins(*parts: int | range) -> frozenset[int]:
@@ -142,6 +145,7 @@ CHIPS = {
             first_analog=54,
             servo_timer=1,
             tone_timer=2,
+            counting=_pins(2, 3, range(18, 22)),  # those with an interrupt of their own
             has=_TASKS | _WAYS,
         ),
         Chip(
@@ -158,6 +162,7 @@ CHIPS = {
             tone_timer=None,
             boot_pins=_pins(0, 5, 12, 14, 15),
             reset_pin=0,
+            counting=_ESP32 | _pins(34, 35, 36, 39),
             pwm_timers=8,
             pin_volts=3_300,
             has=_TASKS | _WAYS,

@@ -7,6 +7,7 @@ its lines, and the wiring page for what it looks like.
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from typing import ClassVar, NamedTuple, Protocol
@@ -86,6 +87,7 @@ class PinTexts(Protocol):
     """The pins of one robot; each text stands for an object of C++."""
 
     vectors: list[str]  # names of interrupts, for the handlers
+    counters: list[str]  # and those of discs, left and right
 
     def pin(self, pin: int | None) -> str: ...
 
@@ -96,6 +98,8 @@ class PinTexts(Protocol):
     def buzzer(self, pin: int) -> str: ...
 
     def echo(self, pin: int) -> str: ...
+
+    def count(self, pin: int) -> str: ...
 
 
 class Part(Protocol):
@@ -175,6 +179,36 @@ class MotorDriver(Driver):
     @abstractmethod
     def sketch(self, plan: Plan, wiring: Wiring) -> list[str]:
         """Return the lines of a sketch that drive both motors, by `left` and `right`."""
+
+
+class DiscDriver(Driver):
+    """A slotted disc on each wheel, whose edges are counted. `has_two`: channels, and a direction.
+
+    The wheels are as far apart as the robot's body says.
+    """
+
+    used_by = "discs"
+    pins: ClassVar[tuple[PinKey, ...]] = (PinKey("left", "count"), PinKey("right", "count"))
+    settings = (
+        Setting("holes", "whole", 20, 8, 60),
+        Setting("wheel_cm", "number", 6_500, 3 * ONE, 30 * ONE),  # the diameter
+    )
+    has_two: ClassVar[bool] = False
+
+    def edges(self, wiring: Wiring, wheel_base_cm: float) -> tuple[int, int]:
+        """Return what a wheel goes from edge to edge, and the robot turns: 64ths of thousandths."""
+        of_wheel = math.pi * wiring.settings["wheel_cm"] / (2 * wiring.settings["holes"]) * 64
+        return round(of_wheel), round(of_wheel * 360 / (math.pi * wheel_base_cm))
+
+    def firmware(self, part: Part, wiring: Wiring, wheel_base_cm: float) -> list[str]:
+        """Return the constants of both discs in the robot's header."""
+        cm, degrees = self.edges(wiring, wheel_base_cm)
+        lines = [f"constexpr Discs kDiscs = {{{cm}, {degrees}, {str(self.has_two).lower()}}};"]
+        for side in SIDES:
+            second = part.pins.pin(wiring.pins.get(f"{side}_b"))
+            count = part.pins.count(wiring.pins[side])
+            lines.append(f"constexpr Disc k{side.capitalize()}Disc = {{{count}, {second}}};")
+        return lines
 
 
 class SensorDriver(Driver):

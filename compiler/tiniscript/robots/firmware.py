@@ -11,7 +11,8 @@ from collections.abc import Sequence
 from tiniscript.fixed_point import ONE
 from tiniscript.kit import Device, Kit
 from tiniscript.robots.boards import CHIPS
-from tiniscript.robots.drivers import actuator_of, motors_of, sensor_of
+from tiniscript.robots.driver import SIDES
+from tiniscript.robots.drivers import actuator_of, discs_of, motors_of, sensor_of
 from tiniscript.robots.kit_words import kit_words
 from tiniscript.robots.pin_texts import AvrPins, texts_of
 from tiniscript.robots.ports import AVRS, ESP32S
@@ -85,6 +86,10 @@ class Part:
             )
             for line in (f"    case {number}:  // {device.name}", *self._set(device, wiring))
         ]
+        discs = []
+        if board.discs:
+            base_cm = self.robot.body.wheel_base_cm
+            discs = discs_of(board.discs).firmware(self, board.discs, base_cm)
         state, light = board.bluetooth_state, board.status_led
         lines = [
             *(f"#define tiniscript_{name}" for name in self._parts()),
@@ -110,6 +115,7 @@ class Part:
             f"constexpr Pin kLight = {self.pins.pin(light)};",
             f"constexpr Pin kBluetoothState = {self.pins.pin(state)};",
             *motors,
+            *discs,
         ]
         if self.servos:
             pins = ", ".join(self.pins.servo(pin) for pin in self.servos)
@@ -140,6 +146,11 @@ class Part:
             names.append("servos")
         if self.ultrasonics:
             names.append("ultrasonics")
+        if self.robot.board.discs:
+            names.append("discs")
+        names += [
+            f"disc_{side} {vector}" for side, vector in zip(SIDES, self.pins.counters, strict=False)
+        ]
         if self.pins.vectors:
             each = " ".join(f"each({name})" for name in self.pins.vectors)
             names.append(f"ultrasonic_vectors(each) {each}")

@@ -17,6 +17,7 @@ class AvrPins:
     def __init__(self, robot: Robot) -> None:
         self._avr = AVRS[robot.board.chip]
         self.vectors: list[str] = []
+        self.counters: list[str] = []
 
     def pin(self, pin: int | None) -> str:
         if pin is None:
@@ -40,6 +41,11 @@ class AvrPins:
             self.vectors.append(vector)
         return f"{{{self.pin(pin)}, {group}, 1 << {bit}}}"
 
+    def count(self, pin: int) -> str:
+        vector, _, bit = self._avr.interrupts[pin]
+        self.counters.append(vector)
+        return f"{self.pin(pin)}, 1 << {bit}"
+
 
 class Esp32Pins:
     """Numbers of pins, and channels of LEDC."""
@@ -47,6 +53,7 @@ class Esp32Pins:
     def __init__(self, robot: Robot) -> None:
         self._channels = channels_of(robot.board)
         self.vectors: list[str] = []
+        self.counters: list[str] = []
 
     def pin(self, pin: int | None) -> str:
         return "kNoPin" if pin is None else f"{{{pin}}}"
@@ -62,6 +69,9 @@ class Esp32Pins:
 
     def echo(self, pin: int) -> str:
         return f"{{{self.pin(pin)}}}"
+
+    def count(self, pin: int) -> str:
+        return self.pin(pin)
 
 
 def texts_of(robot: Robot) -> PinTexts:

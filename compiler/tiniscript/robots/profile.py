@@ -46,6 +46,7 @@ class Board(NamedTuple):
     `program_bytes` is the largest size of a program's code. `max_run_seconds` limits how long a
     program runs without a client. A pin that is None is not wired. `language`,
     one of LANGUAGES, is that of its answers to text; empty: that of whoever makes its firmware.
+    `discs` are those on the wheels, None where it measures no ways.
     """
 
     chip: str
@@ -60,6 +61,7 @@ class Board(NamedTuple):
     status_led: int | None
     bluetooth_state: int | None
     language: str = ""
+    discs: Wiring | None = None
 
 
 class Place(NamedTuple):

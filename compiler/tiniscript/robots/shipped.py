@@ -69,6 +69,7 @@ def _grabber() -> Robot:
             status_led=13,
             bluetooth_state=32,
             language="",
+            discs=None,
         ),
         body=Body(
             wheel_base_cm=15.5,
@@ -160,6 +161,7 @@ def _liner() -> Robot:
             status_led=13,
             bluetooth_state=None,
             language="",
+            discs=None,
         ),
         body=Body(
             wheel_base_cm=9.2,
@@ -237,6 +239,7 @@ def _tinibot() -> Robot:
             status_led=13,
             bluetooth_state=12,
             language="",
+            discs=None,
         ),
         body=Body(
             wheel_base_cm=13.5,
@@ -266,6 +269,81 @@ def _tinibot() -> Robot:
                 },
             },
         ),
+    )
+
+
+def _tinibot2() -> Robot:
+    return Robot(
+        name="tinibot2",
+        kit=Kit(
+            sensors=(
+                Device(name="LIGHT_R", kind="number", unit="", low=0, high=1023000),
+                Device(name="LIGHT_L", kind="number", unit="", low=0, high=1023000),
+                Device(name="DISTANCE", kind="number", unit="cm", low=0, high=400000),
+            ),
+            actuators=(),
+            speed=45000,
+            turn=360000,
+        ),
+        board=Board(
+            chip="mega",
+            program_bytes=1900,
+            baud=9600,
+            max_run_seconds=600,
+            motors=Wiring(
+                driver="l298n",
+                pins={
+                    "left_pwm": 5,
+                    "left_forward": 7,
+                    "left_backward": 8,
+                    "right_pwm": 6,
+                    "right_forward": 9,
+                    "right_backward": 10,
+                },
+                settings={},
+            ),
+            sensors=(
+                Wiring(driver="analog", pins={"pin": 54}, settings={"zero": 0, "full": 1023000}),
+                Wiring(driver="analog", pins={"pin": 55}, settings={"zero": 0, "full": 1023000}),
+                Wiring(driver="hc_sr04", pins={"trigger": 4, "echo": 3}, settings={}),
+            ),
+            actuators=(),
+            start_button=2,
+            buzzer=11,
+            status_led=13,
+            bluetooth_state=12,
+            language="",
+            discs=Wiring(
+                driver="slotted",
+                pins={"left": 18, "right": 19},
+                settings={"holes": 20, "wheel_cm": 6500},
+            ),
+        ),
+        body=Body(
+            wheel_base_cm=13.5,
+            speed_cm_s=45.0,
+            length_cm=21.0,
+            width_cm=15.0,
+            places={
+                "LIGHT_R": Place(x_cm=12.0, y_cm=-5.0, heading=-30.0, sees="light"),
+                "LIGHT_L": Place(x_cm=12.0, y_cm=5.0, heading=30.0, sees="light"),
+                "DISTANCE": Place(x_cm=13.0, y_cm=0.0, heading=0.0, sees="distance"),
+            },
+        ),
+        labels={
+            "en": {
+                "robot": "TiniBot 2",
+                "LIGHT_R": "right light sensor",
+                "LIGHT_L": "left light sensor",
+                "DISTANCE": "distance sensor",
+            },
+            "es": {
+                "robot": "TiniBot 2",
+                "LIGHT_R": "sensor de luz derecho",
+                "LIGHT_L": "sensor de luz izquierdo",
+                "DISTANCE": "sensor de distancia",
+            },
+        },
     )
 
 
@@ -310,6 +388,7 @@ def _tinibot32() -> Robot:
             status_led=2,
             bluetooth_state=None,
             language="",
+            discs=None,
         ),
         body=Body(
             wheel_base_cm=13.5,
@@ -381,6 +460,7 @@ def _tinibotc3() -> Robot:
             status_led=None,
             bluetooth_state=None,
             language="",
+            discs=None,
         ),
         body=Body(
             wheel_base_cm=13.5,
@@ -417,6 +497,7 @@ ROBOTS: dict[str, Callable[[], Robot]] = {
     "grabber": _grabber,
     "liner": _liner,
     "tinibot": _tinibot,
+    "tinibot2": _tinibot2,
     "tinibot32": _tinibot32,
     "tinibotc3": _tinibotc3,
 }

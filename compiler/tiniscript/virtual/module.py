@@ -42,13 +42,15 @@ class Board(Protocol):
     def finished(self, now_ms: int) -> None: ...
     def faulted(self, now_ms: int) -> None: ...
     def actuators_off(self, now_ms: int) -> None: ...
+    def pace(self, now_ms: int, left: int, right: int) -> None: ...
+    def edges(self, now_ms: int) -> int: ...
 
 
 # What a note says, from 1 on, and with how many numbers. As `What` in `robot.cpp`.
 _WHAT = (("motors", 2), ("read", 1), ("beep", 2), ("show", 2), ("set", 2), ("stop", 0),
          ("release", 0), ("light", 1), ("finished", 0), ("faulted", 0),
-         ("actuators_off", 0))  # fmt: skip
-_READ = 2
+         ("actuators_off", 0), ("pace", 2), ("edges", 0))  # fmt: skip
+_ASKS = (2, 13)  # for a number
 _CLOCK = 1 << 32
 _NOTE = 4  # numbers of 32 bits
 
@@ -57,8 +59,9 @@ class Circumstances(NamedTuple):
     """The settings with which a firmware is switched on.
 
     `words` are those of the kit, as its reader of text keeps them, and `hashes` those of its
-    devices; `byte_us` is how long a byte takes on the line, both
-    ways (0: none); `eeprom_us` how long one takes in the memory that keeps programs.
+    devices; `edge_cm` and `edge_degrees` are what the firmware knows of discs, `has_two` says
+    whether they have two channels; `byte_us` is how long a byte takes on the line, both ways
+    (0: none); `eeprom_us` how long one takes in the memory that keeps programs.
     `is_spanish` is the language of its answers to text.
     """
 
@@ -72,6 +75,9 @@ class Circumstances(NamedTuple):
     max_run_ms: int
     speed: int
     turn: int
+    edge_cm: int
+    edge_degrees: int
+    has_two: bool
     byte_us: int
     eeprom_us: int
     is_spanish: bool
@@ -237,5 +243,5 @@ class Firmware:
             now_ms, what, *values = numbers[k : k + _NOTE]
             tell, takes = self._told[what - 1]
             found = tell(now_ms % _CLOCK, *values[:takes])
-            if what == _READ:
+            if what in _ASKS:
                 numbers[self._reading] = found

@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 from tiniscript.link.names import fault_name, saved_name
 from tiniscript.robots.driver import AT_STOP, HOLD
+from tiniscript.robots.drivers import discs_of
 from tiniscript.robots.kinematics import Pose
 from tiniscript.robots.kit_words import kit_words
 from tiniscript.robots.ports import ESP32S
@@ -28,6 +29,7 @@ from tiniscript.virtual.module import (
     Firmware,
 )
 from tiniscript.virtual.sensing import Sensing
+from tiniscript.virtual.wheels import Roughness, Wheels
 from tiniscript.virtual.world import World, WorldRefused
 from tiniscript.vm.trace import Event, TracedRobot
 
@@ -44,7 +46,8 @@ class Settings(NamedTuple):
     `seed` starts the random numbers. `noise` is a fraction: 0.05 is 5 %. `motors` are percent of
     each motor's nominal speed. `baud` of 0: a byte takes no time; None: as in the profile.
     `eeprom_us` is the time to save one byte; None: as the chip takes.
-    `told` are readings of single sensors.
+    `told` are readings of single sensors. `rough` is what discs and their wheels do to a robot that
+    has them.
     """
 
     seed: int = 1
@@ -53,6 +56,7 @@ class Settings(NamedTuple):
     baud: int | None = None
     eeprom_us: int | None = None
     told: Mapping[int, Sequence[int]] = {}
+    rough: Roughness = Roughness()
 
 
 PLAIN = Settings()
@@ -80,6 +84,11 @@ class VirtualRobot:
         self.now_ms = 0
         self.chance = Random(settings.seed)
         self.driving = Driving(profile.body, world.obstacles(), world.start)
+        discs = profile.board.discs
+        self.wheels: Wheels | None = None
+        if discs:
+            self.wheels = Wheels(profile.body, discs, discs_of(discs).has_two, settings.rough,
+                                 settings.seed, self.driving.set_motors)  # fmt: skip
         if self.driving.is_blocked():
             place = f"x_cm = {world.start.x_cm:g}, y_cm = {world.start.y_cm:g}"
             raise WorldRefused(("start_blocked", {"path": "start", "place": place}))
@@ -132,7 +141,7 @@ class VirtualRobot:
 
     def rest(self) -> None:
         """End its time: it no longer moves, whatever its firmware does."""
-        self.driving.set_motors(self.now_ms, 0, 0)
+        self._halt()
         self._traced.now_ms = self.now_ms
         if self.is_running:
             self._say("STOP")
@@ -144,7 +153,7 @@ class VirtualRobot:
 
     def switch_off(self) -> None:
         """Switch it off. Its clock must not go on until it is switched on again."""
-        self.driving.set_motors(self.now_ms, 0, 0)
+        self._halt()
         if self.is_running:
             self._traced.now_ms = self.now_ms
             self._say("OFF")
@@ -161,6 +170,11 @@ class VirtualRobot:
         eeprom_us = self.settings.eeprom_us
         if eeprom_us is None:
             eeprom_us = FLASH_US if is_esp32 else EEPROM_US
+        discs = board.discs
+        edge_cm, edge_degrees = (0, 0)
+        if discs:
+            wheel_base_cm = self.profile.body.wheel_base_cm
+            edge_cm, edge_degrees = discs_of(discs).edges(discs, wheel_base_cm)
         return Firmware(
             self,
             Circumstances(
@@ -174,6 +188,9 @@ class VirtualRobot:
                 max_run_ms=board.max_run_seconds * 1000,
                 speed=kit.speed,
                 turn=kit.turn,
+                edge_cm=edge_cm,
+                edge_degrees=edge_degrees,
+                has_two=discs is not None and discs_of(discs).has_two,
                 byte_us=round(BITS * 1_000_000 / baud) if baud else 0,
                 eeprom_us=eeprom_us,
                 is_spanish=board.language == "es",
@@ -194,6 +211,8 @@ class VirtualRobot:
 
     @property
     def pose(self) -> Pose:
+        if self.wheels:
+            self.wheels.go_on(self.now_ms)
         return self.driving.look(self.now_ms)
 
     @property
@@ -211,6 +230,15 @@ class VirtualRobot:
         powers = (left / LEVELS_PER_PERCENT, right / LEVELS_PER_PERCENT)
         self._set_motors(now_ms, *powers)
         self._traced.motors(*(round(power) for power in powers))
+
+    def pace(self, now_ms: int, left: int, right: int) -> None:
+        """Set what the motors get while the firmware measures a move: the trace has its begin."""
+        self._set_motors(now_ms, left / LEVELS_PER_PERCENT, right / LEVELS_PER_PERCENT)
+
+    def edges(self, now_ms: int) -> int:
+        """Return how many edges of both discs have passed."""
+        self._at(now_ms)
+        return self.wheels.edges(self.now_ms) if self.wheels else 0
 
     def read(self, now_ms: int, sensor: int) -> int:
         self._at(now_ms)
@@ -285,9 +313,21 @@ class VirtualRobot:
         for power, percent in zip((left, right), self.settings.motors, strict=True):
             off = self.chance.gauss(0.0, self.settings.noise) if self.settings.noise else 0.0
             made.append(power * percent / 100 * (1 + off))
-        self.driving.set_motors(self.now_ms, *made)
+        if self.wheels:
+            self.wheels.set(self.now_ms, *made)
+        else:
+            self.driving.set_motors(self.now_ms, *made)
+
+    def _halt(self) -> None:
+        """Its motors have no power from now on, and its time need not go on."""
+        if self.wheels:
+            self.wheels.go_on(self.now_ms)
+            self.wheels.brake()
+        self.driving.set_motors(self.now_ms, 0, 0)
 
     def _noticed(self, sensor: int) -> int:
+        if self.wheels:
+            self.wheels.go_on(self.now_ms)
         return self.sensing.read(sensor, self.driving.go_on(self.now_ms))
 
     def _settle(self) -> None:

@@ -229,6 +229,12 @@ void board_motors(int16_t left, int16_t right) {
   if (!table.is_latched) turn(percent_of(left), percent_of(right));
 }
 
+void board_pace(int16_t left, int16_t right) { board_motors(left, right); }
+
+Discs board_discs() { return {0, 0, false}; }
+
+uint16_t board_edges(bool) { return 0; }
+
 void robot_off() { turn(0, 0); }
 
 bool robot_read(uint8_t sensor, int32_t* value) {

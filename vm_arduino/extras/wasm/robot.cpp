@@ -18,7 +18,8 @@
 
 using namespace tiniscript;
 
-// There are notes to be read. Where the last one is about a sensor, `reading` is to be filled.
+// There are notes to be read. Where the last one is about a sensor or a disc, `reading` is to be
+// filled.
 tini_imported("look") void host_look();
 
 namespace {
@@ -52,14 +53,14 @@ struct Own {
   uint32_t max_run_ms;
   uint32_t speed;
   uint32_t turn;
+  Discs discs;
   bool is_spanish;
 };
 
 Own own;
 uint8_t memory[kMemoryBytes];
 
-// What the robot does, and when: milliseconds since power-on. `what` is one of kMotors to
-// kActuatorsOff.
+// What the robot does, and when: milliseconds since power-on.
 struct Note {
   uint32_t now_ms;
   uint32_t what;
@@ -79,6 +80,8 @@ enum What : uint32_t {
   kFinished,
   kFaulted,
   kActuatorsOff,
+  kPace,
+  kEdges,
 };
 
 constexpr uint32_t kNotes = 256;
@@ -120,6 +123,26 @@ namespace tiniscript {
 
 void board_motors(int16_t left, int16_t right) {
   if (!is_latched) note(kMotors, left, right);
+}
+
+void board_pace(int16_t left, int16_t right) {
+  if (!is_latched) note(kPace, left, right);
+}
+
+Discs board_discs() { return own.discs; }
+
+// Both are asked at once, and once in a millisecond.
+uint16_t board_edges(bool is_right) {
+  static uint32_t asked_ms;
+  static uint16_t edges[2];
+  if (!is_right && asked_ms != now_ms()) {
+    asked_ms = now_ms();
+    note(kEdges);
+    host_look();
+    edges[0] = static_cast<uint16_t>(reading);
+    edges[1] = static_cast<uint16_t>(reading >> 16);
+  }
+  return edges[is_right];
 }
 
 void robot_off() {}  // `board_stop` says it
@@ -232,7 +255,8 @@ tini_exported("reading") int32_t* module_reading() { return &reading; }
 // `is_spanish` is the language of its answers.
 tini_exported("begin") void module_begin(uint32_t kit, uint32_t sensors, uint32_t actuators,
                                          uint32_t reset, uint32_t seed, uint32_t max_run_ms,
-                                         uint32_t speed, uint32_t turn,
+                                         uint32_t speed, uint32_t turn, uint32_t edge_cm,
+                                         uint32_t edge_degrees, uint32_t has_two,
                                          uint32_t line_us, uint32_t eeprom_us,
                                          uint32_t is_spanish) {
   byte_us = line_us;
@@ -243,6 +267,7 @@ tini_exported("begin") void module_begin(uint32_t kit, uint32_t sensors, uint32_
   own.max_run_ms = max_run_ms;
   own.speed = speed;
   own.turn = turn;
+  own.discs = {edge_cm, edge_degrees, has_two != 0};
   own.is_spanish = is_spanish != 0;
   Board board;
   board.reset = static_cast<Reset>(reset);

@@ -8,6 +8,7 @@
 #include "../text/kit_words.h"
 #include "analog.h"
 #include "chip.h"
+#include "discs.h"
 #include "kit.h"
 #include "motors.h"
 #include "servo.h"
@@ -36,6 +37,7 @@ void board_begin() {
   analog_begin();
   sound_begin();
   ultrasonic_begin();
+  discs_begin();
 #ifdef tiniscript_servos
   servo_begin();
 #endif
@@ -137,6 +139,8 @@ void board_light(bool is_on) {
 void board_finished() { sound_finished(); }
 
 void board_faulted() { sound_faulted(); }
+
+void board_pace(int16_t left, int16_t right) { board_motors(left, right); }
 
 void robot_off() {
   board_motors(0, 0);

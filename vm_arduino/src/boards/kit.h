@@ -9,6 +9,7 @@
 #include "../vm/flash.h"
 #include "analog.h"
 #include "chip.h"
+#include "discs.h"
 #include "motors.h"
 #include "servo.h"
 #include "ultrasonic.h"
@@ -19,6 +20,8 @@
 #include "kits/liner.h"
 #elif defined(tiniscript_grabber)
 #include "kits/grabber.h"
+#elif defined(tiniscript_tinibot2)
+#include "kits/tinibot2.h"
 #elif __has_include("kits/own.h") && !defined(tiniscript_tinibot)
 #include "kits/own.h"
 #elif defined(CONFIG_IDF_TARGET_ESP32)

@@ -39,6 +39,9 @@ struct Place {
 // latch is closed.
 void board_motors(int16_t left, int16_t right);
 
+// The same, many times in a move that is measured.
+void board_pace(int16_t left, int16_t right);
+
 // Closes the latch: motors are off until `board_release`.
 void board_stop();
 void board_release();
@@ -49,6 +52,18 @@ void board_actuators_off();
 
 // Whether the main loop has hung since the last call; the board has then turned the motors off.
 bool board_has_stalled();
+
+// The slotted discs on both wheels.
+struct Discs {
+  uint32_t cm;       // that a wheel goes between two edges of its disc, in 64ths of thousandths; 0:
+                     // it has no discs
+  uint32_t degrees;  // that the robot turns on the spot then
+  bool has_two;      // channels: it counts back while the wheel turns backward
+};
+
+// Only a machine that `tiniscript_has_discs` asks. Edges are counted since the start, modulo 2^16.
+Discs board_discs();
+uint16_t board_edges(bool is_right);
 
 LineErrors board_line_errors();
 

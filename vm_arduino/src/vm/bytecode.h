@@ -326,6 +326,7 @@ enum class Fault : uint8_t {
   kOverflow = 1,  // A result is outside -2147483.648 to 2147483.647.
   kDivideByZero = 2,  // A division or a remainder by 0.
   kNoPower = 3,  // A way to go, with a power that never comes there.
+  kStuck = 4,  // A wheel does not turn, in a move that the robot measures.
   kBadCode = 255,  // A check failed that verified code never fails: memory has changed.
 };
 

@@ -10,6 +10,7 @@
 #define tini_fault_overflow 1
 #define tini_fault_divide_by_zero 2
 #define tini_fault_no_power 3
+#define tini_fault_stuck 4
 #define tini_fault_bad_code 255
 #define tini_variables 32
 #define tini_stack_values 16

@@ -17,4 +17,9 @@
 #define tiniscript_has_ways
 #endif
 
+// Where it has both it can wait for a robot that measures its ways.
+#if defined(tiniscript_has_tasks) && defined(tiniscript_has_ways)
+#define tiniscript_has_discs
+#endif
+
 #endif  // TINISCRIPT_VM_HAS_TASKS_H_

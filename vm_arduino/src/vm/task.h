@@ -41,13 +41,15 @@ struct TaskRecord {
   uint16_t after;     // behind the move; 0: behind its UNTIL
   uint32_t clock_ms;  // its own clock; its next turn is due then
   uint32_t begun_ms;  // when its move began,
-  uint32_t rest_ms;   // and how long it may last then, or kForever; or the value of `kUnsent`
+  uint32_t rest_ms;   // and how long it may last then, or kForever; or the value of `kUnsent`, or
+                      // the way of a move that is measured
   Powers powers;      // of its move; kNoPowers: a wait, the motors stay as they are
   Powers set;         // by its M; 0 where none is in force
   uint8_t looped;     // how many counters it has,
   uint8_t called;     // and calls
 
   bool is(uint8_t bits) const { return (state & bits) != 0; }
+  bool measures() const;
 };
 
 constexpr Powers kNoPowers = 0x8080;
@@ -65,7 +67,18 @@ constexpr uint8_t kWantsMotors = kIsMoving | kHasSet | kKeeps;
 constexpr uint8_t kHasEnded = kIsBlocked;  // alone: it waits for nothing that ever comes
 // Bits of `more`.
 constexpr uint8_t kYesNo = 1;   // the value of `kUnsent` is one
-constexpr uint8_t kUnsent = 2;  // a SHOW found no room
+constexpr uint8_t kUnsent = 2;    // a SHOW found no room
+constexpr uint8_t kMeasures = 4;  // its move lasts until the robot has gone its way
+
+#ifdef tiniscript_has_discs
+constexpr bool kHasDiscs = true;
+#else
+constexpr bool kHasDiscs = false;
+#endif
+
+inline bool TaskRecord::measures() const {
+  return kHasDiscs && (more & kMeasures) != 0 && powers != kNoPowers;
+}
 
 struct Task {
   uint16_t pc;

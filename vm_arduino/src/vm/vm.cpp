@@ -65,7 +65,7 @@ bool Machine::may_go_on(uint32_t now_ms) {
   if (task_.has_paused) {
     if (is_early(now_ms)) return false;
     task_.has_paused = false;
-    if (!has_tasks() && task_.me->is(kToItsEnd)) end_move();
+    if (!has_tasks() && task_.me->is(kToItsEnd) && !comes_to_end()) return false;
   }
   status_ = Status::kRunning;
   return true;
@@ -74,8 +74,10 @@ bool Machine::may_go_on(uint32_t now_ms) {
 Status Machine::tick(uint32_t now_ms, uint8_t budget) {
   left_ = budget;
   if (status_ >= Status::kDone || budget == 0) return status_;
-  if (!may_go_on(now_ms)) return Status::kWaiting;
-  if (has_tasks()) {
+  if (kHasDiscs && fault_ != Fault::kNone) {
+  } else if (!may_go_on(now_ms)) {
+    if (!kHasDiscs || fault_ == Fault::kNone) return Status::kWaiting;
+  } else if (has_tasks()) {
     run_round();
   } else {
     execute(budget);

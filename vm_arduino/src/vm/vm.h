@@ -155,6 +155,9 @@ class Machine {
   void keep_move(uint32_t move_ms);
   void begin();
   bool go_on(bool is_watched);
+  void go_way();
+  bool is_on_the_way();
+  bool comes_to_end();
   void end_move();
   bool block();
   void motors(Powers powers);

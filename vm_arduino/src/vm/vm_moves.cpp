@@ -29,6 +29,14 @@ tini_noinline void Machine::keep_move(uint32_t move_ms) {
   me->state &= static_cast<uint8_t>(~kHasBegun);
 }
 
+#ifdef tiniscript_has_discs
+
+__attribute__((weak)) bool robot_measures() { return false; }
+__attribute__((weak)) void robot_go(int8_t, int8_t, int32_t) {}
+__attribute__((weak)) Going robot_going(int32_t*) { return Going::kThere; }
+
+#endif
+
 #ifdef tiniscript_has_tasks
 
 namespace {
@@ -44,7 +52,13 @@ tini_noinline void end_move_of(TaskRecord* task) {
 
 // Its move that drives loses the motors.
 void stand_still(TaskRecord* task, uint32_t now_ms) {
-  if (task->rest_ms != kForever) {
+  if (task->measures()) {
+#ifdef tiniscript_has_discs
+    int32_t rest;
+    if (robot_going(&rest) == Going::kThere || rest <= 0) return end_move_of(task);
+    task->rest_ms = static_cast<uint32_t>(rest);
+#endif
+  } else if (task->rest_ms != kForever) {
     const uint32_t left_ms = task->begun_ms + task->rest_ms - now_ms;
     if (static_cast<int32_t>(left_ms) <= 0) return end_move_of(task);
     task->rest_ms = left_ms;
@@ -89,12 +103,17 @@ bool Machine::until(bool stop) {
 // Returns whether the next instruction may run now.
 tini_noinline bool Machine::go_on(bool is_watched) {
   TaskRecord* const me = task_.me;
+  const bool measures = me->measures();
   if (!me->is(kHasBegun)) {
     if (me->powers != kNoPowers) {
       if (is_below()) return block();
       take();
       me->state |= kIsMoving | kDrives;
-      set_motors(me->powers);
+      if (measures) {
+        go_way();
+      } else {
+        set_motors(me->powers);
+      }
     }
     me->state |= kHasBegun;
     begin();
@@ -102,14 +121,22 @@ tini_noinline bool Machine::go_on(bool is_watched) {
   }
   uint32_t due_ms = me->rest_ms;
   bool is_last = true;
-  if (is_watched) {
+  if (measures) {
+    if (!is_on_the_way()) {
+      me->clock_ms = now_ms_;
+      return fault_ == Fault::kNone;
+    }
+    due_ms = kForever;
+    if (!is_watched) me->state |= kToItsEnd;
+  }
+  if (is_watched || measures) {
     const uint32_t gone_ms = now_ms_ - me->begun_ms;
     // Never kForever. After 2^32 ms it wraps around, and a new row of checks begins.
     const uint32_t next_ms = gone_ms - gone_ms % kCheckMs + kCheckMs;
     is_last = next_ms >= due_ms;
     if (!is_last) {
       due_ms = next_ms;
-      task_.pc = me->check;
+      if (is_watched) task_.pc = me->check;
     }
   }
   const bool is_over = due_ms == 0 && has_tasks();
@@ -121,6 +148,40 @@ tini_noinline bool Machine::go_on(bool is_watched) {
   if (is_over) return true;
   me->state |= kHasWaited;
   return pause();
+}
+
+// Lets the robot go a way that it measures.
+void Machine::go_way() {
+#ifdef tiniscript_has_discs
+  const Powers powers = task_.powers = task_.me->powers;
+  robot_go(static_cast<int8_t>(powers), static_cast<int8_t>(powers >> 8),
+           static_cast<int32_t>(task_.me->rest_ms));
+#endif
+}
+
+// False: it is there, and its move is over, or a wheel does not turn.
+bool Machine::is_on_the_way() {
+#ifdef tiniscript_has_discs
+  constexpr uint8_t kGoBytes = 2;
+  int32_t rest;
+  const Going going = robot_going(&rest);
+  if (going == Going::kOn) return true;
+  if (going == Going::kThere) {
+    end_move();
+    return false;
+  }
+  at_ = static_cast<uint16_t>(task_.me->check - kGoBytes);  // an UNTIL sets its own behind
+  return goes_on(Fault::kStuck);
+#else
+  return false;
+#endif
+}
+
+// At the end of a move, or at a look at one that is measured. False: it goes on.
+bool Machine::comes_to_end() {
+  if (task_.me->measures()) return go_on(false);
+  end_move();
+  return true;
 }
 
 // Ends the move of the task whose turn it is: it drives, or it waited for the motors or stood
@@ -248,6 +309,11 @@ bool Machine::until(bool stop) {
 void Machine::end_move() {
   task_.me->state = 0;
   set_motors(kOff);
+}
+
+bool Machine::comes_to_end() {
+  end_move();
+  return true;
 }
 
 void Machine::motors(Powers powers) { set_motors(powers); }

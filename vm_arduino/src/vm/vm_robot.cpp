@@ -72,6 +72,13 @@ bool Machine::go_ms(uint8_t code, int8_t power, int32_t way, uint32_t* time_ms) 
   constexpr uint32_t kTimes = 100000;
   *time_ms = 0;
   if (way <= 0) return true;
+#ifdef tiniscript_has_discs
+  if (robot_measures()) {
+    task_.me->more |= kMeasures;
+    *time_ms = static_cast<uint32_t>(way);
+    return goes_on(power == 0 ? Fault::kNoPower : Fault::kNone);
+  }
+#endif
   const uint32_t divisor =
       power == 0 ? 0 : robot_speed((code & 2) != 0, static_cast<uint8_t>(power));
   if (divisor == 0) return goes_on(Fault::kNoPower);
@@ -127,6 +134,7 @@ bool Machine::act(uint8_t code, const uint8_t* bytes, int32_t* top) {
   const int8_t low = family == Family::kMotors ? -100 : 0;
   const int8_t power = takes ? percent(*top, low) : signed8(bytes[shape.size() - 1]);
   uint32_t time_ms = takes ? duration(shape.pops() == 1 ? *top : top[-1]) : time8(first);
+  if (kHasDiscs) task_.me->more &= static_cast<uint8_t>(~kMeasures);
   if (is_escaped && !go_ms(code, power, top[-1], &time_ms)) return false;
   switch (family) {
     case Family::kShowYesNo:

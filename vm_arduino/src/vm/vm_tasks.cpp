@@ -67,7 +67,8 @@ tini_noinline void Machine::find_tasks() {
 
 // Goes on to where the next instruction begins. False: none may run now.
 bool Machine::arrive(uint32_t now_ms) {
-  return status_ < Status::kDone && may_go_on(now_ms) && finds_turn();
+  if (status_ >= Status::kDone) return false;
+  return fault_ != Fault::kNone || (may_go_on(now_ms) && finds_turn()) || fault_ != Fault::kNone;
 }
 
 // Runs turns until the round is over or the budget is used up.
@@ -117,6 +118,7 @@ bool Machine::finds_turn() {
     task_.next = task + 1;
     if (waits_for_clock(task) && static_cast<int32_t>(now_ms_ - task->clock_ms) >= 0) {
       begin_turn(task);
+      if (kHasDiscs && fault_ != Fault::kNone) return false;
     }
   }
   return true;
@@ -156,7 +158,7 @@ void Machine::begin_turn(TaskRecord* me) {
     me->clock_ms = now_ms_;
     goes_on = me->check != me->after || go_on(false);
   } else if (me->is(kToItsEnd)) {
-    end_move();
+    goes_on = comes_to_end();
   }
   if (!goes_on) end_turn();
 }

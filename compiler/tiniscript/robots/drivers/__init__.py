@@ -5,7 +5,7 @@ from __future__ import annotations
 from importlib import import_module
 from pkgutil import iter_modules
 
-from tiniscript.robots.driver import ActuatorDriver, Driver, MotorDriver, SensorDriver
+from tiniscript.robots.driver import ActuatorDriver, DiscDriver, Driver, MotorDriver, SensorDriver
 from tiniscript.robots.profile import Wiring
 
 
@@ -37,6 +37,13 @@ def motors_of(wiring: Wiring) -> MotorDriver:
     """Return the driver of a robot's motors. Raises LookupError where no file has it."""
     found = driver_of("motors", wiring)
     assert isinstance(found, MotorDriver)
+    return found
+
+
+def discs_of(wiring: Wiring) -> DiscDriver:
+    """Return the driver of the discs on a robot's wheels. Raises LookupError where there is none."""
+    found = driver_of("discs", wiring)
+    assert isinstance(found, DiscDriver)
     return found
 
 

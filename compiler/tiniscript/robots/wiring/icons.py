@@ -27,6 +27,8 @@ ICONS = {
     '<path d="M-16,3 h-8 M16,3 h8" fill="none"/>',
     "lamp": '<path d="M-12,-11 v22 l20,-11 z M8,-11 v22 M-20,0 h8 M8,0 h10" />'
     '<path d="M8,-13 l8,-5 m-5,0 h5 v5" fill="none"/>',
+    "disc": '<circle cx="0" cy="0" r="17"/><circle cx="0" cy="0" r="11" stroke-dasharray="4 3"/>'
+    '<circle cx="0" cy="0" r="3"/>',
     "buzzer": '<circle cx="0" cy="0" r="16"/><circle cx="0" cy="0" r="4"/>'
     '<path d="M-12,-7 h6 M-9,-10 v6" fill="none"/>',
     "bluetooth": '<rect x="-15" y="-17" width="30" height="34" rx="2"/>'

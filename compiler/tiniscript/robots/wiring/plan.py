@@ -147,6 +147,9 @@ def plan_of(robot: Robot, language: str) -> Plan:
     if not motors.model:
         title, label = named("part_servos"), ""
     found.append(counter.part(title, label, motors, board.motors.pins))
+    if board.discs:
+        discs = parts.shape_of("discs", board.discs, pin_volts=chip.pin_volts)
+        found.append(counter.part(discs.model, named("part_discs"), discs, board.discs.pins))
     groups = (
         ("sensors", kit.sensors, board.sensors),
         ("actuators", kit.actuators, board.actuators),
@@ -200,7 +203,8 @@ def _with_servo_supply(shape: Shape) -> Shape:
 def pins_of(robot: Robot) -> set[int]:
     """Return every pin that the robot's [board] names."""
     board = robot.board
-    wirings: Iterable[Wiring] = (board.motors, *board.sensors, *board.actuators)
+    discs = [board.discs] if board.discs else []
+    wirings: Iterable[Wiring] = (board.motors, *discs, *board.sensors, *board.actuators)
     pins = {pin for wiring in wirings for pin in wiring.pins.values()}
     single = (board.start_button, board.buzzer, board.status_led, board.bluetooth_state)
     return pins | {pin for pin in single if pin is not None}

@@ -29,6 +29,7 @@ TEXTS: dict[str, tuple[str, str]] = {
     "right_motor": ("right motor", "motor derecho"),
     "row_at_the_end": ("double row", "fila doble"),
     # parts
+    "part_discs": ("discs on the wheels", "discos en las ruedas"),
     "part_motors": ("motor driver", "controlador de motores"),
     "part_servos": ("turning servos", "servos de giro continuo"),
     "part_button": ("start button", "botón de inicio"),

@@ -135,6 +135,7 @@ export const ROBOT_TEXTS = {
 
   fault_OVERFLOW: ['a result is too large for a number. Use smaller numbers.', 'un resultado no cabe en un número. Usa números más pequeños.'],
   fault_DIVIDE_BY_ZERO: ['something is divided by 0. Check with IF that it is not 0 before.', 'algo se divide entre 0. Antes comprueba con IF que no sea 0.'],
+  fault_STUCK: ['a wheel did not turn for half a second. Free it, and see that its disc sits in the sensor and that the battery is full.', 'una rueda no giró durante medio segundo. Destrábala; mira que su disco pase por el sensor y que la batería tenga carga.'],
   fault_NO_POWER: ['the robot never gets that far with this power. Use more power.', 'con esa potencia el robot nunca llega tan lejos. Usa más potencia.'],
   fault_LINK_LOST: ['the robot heard nothing from this page for a second, and stopped. Bring it nearer and run it again.',
     'el robot no oyó nada de esta página durante un segundo y se detuvo. Acércalo y prueba otra vez.'],

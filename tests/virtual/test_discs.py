@@ -1,0 +1,206 @@
+"""Robots with a disc on each wheel: how far and how straight they go, and what ends such a move.
+
+The firmware is the robot's own; wheels, motors and discs are those of `virtual/wheels.py`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import pytest
+
+from tests.support.virtual_robot import Talk, floor, trace
+from tiniscript import compile_text, robots
+from tiniscript.bytecode.image import unpack
+from tiniscript.bytecode.opcodes import BY_CODE, ESCAPE
+from tiniscript.link.messages import STATUSES
+from tiniscript.robots.profile import Robot
+from tiniscript.virtual.robot import Settings, VirtualRobot
+from tiniscript.virtual.wheels import Roughness, Wheel
+
+OK = STATUSES["OK"]
+UNEVEN = ((107.5, 92.5), (92.5, 107.5))
+TWO = robots.load("tinibot2")
+TWO_CHANNELS = TWO._replace(
+    board=TWO.board._replace(
+        discs=TWO.board.discs
+        and TWO.board.discs._replace(
+            driver="two_channel", pins={"left": 18, "right": 19, "left_b": 20, "right_b": 21}
+        )
+    )
+)
+WAY = "F(60 CM, 60)"
+
+
+def begun(
+    text: str, seed: int = 1, profile: Robot = TWO, slip: float = 0.005, is_detached: bool = False
+) -> tuple[VirtualRobot, Talk]:
+    """A robot with uneven motors in the middle of a floor, whose program has just begun."""
+    world = floor(size=500, start="x_cm = 250\ny_cm = 250")
+    settings = Settings(seed=seed, motors=UNEVEN[seed % 2], rough=Roughness(slip))
+    robot = VirtualRobot(profile, world, settings)
+    talk = Talk(robot)
+    assert talk.upload(text, is_detached=is_detached).status == OK
+    return robot, talk
+
+
+def gone(robot: VirtualRobot) -> tuple[float, float, float]:
+    """Return how far it is ahead and to the left of where it began, and how it has turned."""
+    pose = robot.pose
+    return pose.x_cm - 250, pose.y_cm - 250, pose.heading
+
+
+def wheel(robot: VirtualRobot, number: int) -> Wheel:
+    assert robot.wheels
+    return robot.wheels.both[number]
+
+
+def is_still(robot: VirtualRobot) -> bool:
+    before = robot.pose
+    robot.step(robot.now_ms + 300)
+    return math.dist(before[:2], robot.pose[:2]) < 0.01
+
+
+@pytest.mark.parametrize("profile", [TWO, TWO_CHANNELS], ids=["slotted", "two_channel"])
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_it_goes_as_far_as_was_said_and_straight(profile: Robot, seed: int) -> None:
+    robot, talk = begun("F(100 CM, 60)", seed, profile)
+    talk.wait(9000)
+    ahead, aside, _ = gone(robot)
+    assert abs(ahead - 100) <= 1.5 and abs(aside) <= 3.2
+    lines = trace(robot.take_events())
+    assert lines[0] == "0 MOTORS 60 60" and len(lines) == 3
+    assert [line.split(" ", 1)[1] for line in lines[1:]] == ["MOTORS 0 0", "DONE"]
+
+
+@pytest.mark.parametrize("profile", [TWO, TWO_CHANNELS], ids=["slotted", "two_channel"])
+@pytest.mark.parametrize(("text", "turn"), [("L(360 DEG, 60)", 360), ("R(90 DEG, 80)", -90)])
+def test_it_turns_as_far_as_was_said(profile: Robot, text: str, turn: int) -> None:
+    robot, talk = begun(text, 2, profile)
+    talk.wait(6000)
+    assert abs(gone(robot)[2] - turn) <= 6
+
+
+def test_back_and_short_ways_and_no_way() -> None:
+    robot, talk = begun("B(30 CM, 100); F(2 CM, 40); F(0 CM, 0)")
+    talk.wait(6000)
+    assert abs(gone(robot)[0] + 28) < 1.5 and robot.fault == ""
+    assert [line.split(" ", 1)[1] for line in trace(robot.take_events())] == [
+        "MOTORS -100 -100", "MOTORS 0 0", "MOTORS 40 40", "MOTORS 0 0", "MOTORS 0 0", "MOTORS 0 0",
+        "DONE",
+    ]  # fmt: skip
+
+
+def test_a_kit_without_speed_measures_too_and_power_0_is_a_fault() -> None:
+    robot, talk = begun("P = 0; F(20 CM, P)")
+    talk.wait(500)
+    assert robot.fault == "NO_POWER"
+
+
+@pytest.mark.parametrize("text", [
+    f"{WAY} UNTIL(TIME > 0.5); SHOW(1)",
+    f"{WAY}; SHOW(1)\nTASK\nW(0.5); S\nEND_TASK",
+])  # fmt: skip
+def test_what_ends_a_move_early_ends_it_at_once(text: str) -> None:
+    """Without a correction: what it rolls on stays."""
+    robot, talk = begun(text)
+    talk.wait(540)
+    assert "MOTORS 0 0" in " ".join(trace(robot.take_events()))
+    talk.wait(500)
+    ahead = gone(robot)[0]
+    assert 4 < ahead < 20 and is_still(robot)
+
+
+@pytest.mark.parametrize("after_ms", [0, 5, 60, 700, 2400, 2500, 2560, 2620, 2700])
+@pytest.mark.parametrize("how", ["button", "client"])
+def test_a_stop_in_any_phase_is_one(after_ms: int, how: str) -> None:
+    """While it drives, slows down, rolls, or goes back: no motor is driven again."""
+    robot, talk = begun("F(60 CM, 60); R(90 DEG, 60)")
+    talk.wait(after_ms)
+    if how == "button":
+        robot.press()
+        robot.let_go()
+    else:
+        talk.session.stop(robot.now_ms)
+    talk.wait(60)
+    assert not robot.is_running
+    for _ in range(30):
+        assert not any(wheel(robot, number).wanted for number in (0, 1))
+        talk.wait(20)
+    assert is_still(robot)
+
+
+def test_a_lost_link_ends_it() -> None:
+    robot, talk = begun("F(200 CM, 20)")
+    talk.wait(300)
+    robot.step(robot.now_ms + 1200)
+    assert robot.fault == "LINK_LOST" and is_still(robot)
+
+
+def test_a_task_that_takes_the_motors_gives_them_back_and_the_way_goes_on() -> None:
+    """The turn comes with the motors, and the rest of the way is behind it."""
+    robot, talk = begun(
+        "X = 0; F(60 CM, 60)\nWHEN(X = 0 AND TIME > 0.6)\nX = 1; R(90 DEG, 60)\nEND_WHEN"
+    )
+    talk.wait(6000)
+    talk.session.stop(robot.now_ms)
+    talk.wait(100)
+    ahead, aside, turned = gone(robot)
+    assert 8 < ahead < 25 and abs(ahead - aside - 60) < 8 and abs(turned + 90) < 6
+
+
+@pytest.mark.parametrize("number", [0, 1])
+@pytest.mark.parametrize("text", [WAY, f"{WAY} UNTIL(DISTANCE = 1)",
+                                  f"W(0.01); {WAY}\nTASK\nW(60)\nEND_TASK"])  # fmt: skip
+def test_a_disc_that_tells_nothing_is_the_fault_stuck(
+    number: int, text: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    robot, talk = begun(text)
+    monkeypatch.setattr(wheel(robot, number), "is_seen", False)
+    talk.wait(480)
+    assert robot.is_running
+    talk.wait(100)
+    assert robot.fault == "STUCK" and not robot.is_running
+    at = talk.until(talk.session.status()).values.fault_at
+    code = unpack(compile_text(text, TWO.kit).image).code
+    found = BY_CODE[code[at]]
+    assert found.role == "until" if found else code[at] == ESCAPE, "the GO, or the UNTIL"
+    assert (found is not None) == ("UNTIL" in text)
+    talk.wait(300)
+    assert is_still(robot)
+
+
+@pytest.mark.parametrize(("profile", "sees"), [(TWO, False), (TWO_CHANNELS, True)])
+def test_a_hand_that_turns_a_wheel_back(profile: Robot, sees: bool) -> None:
+    """With two channels the wheel goes that again. With one it seems to have gone ahead."""
+    robot, talk = begun(WAY, profile=profile)
+    one = wheel(robot, 0)
+    begun_cm = one.turned_cm
+    talk.wait(800)
+    for _ in range(12):
+        one.turned_cm -= one.edge_cm
+        talk.wait(20)
+    talk.wait(6000)
+    assert robot.fault == "" and not robot.is_running
+    off_cm = one.turned_cm - begun_cm - 60
+    assert abs(off_cm) < 1.5 if sees else -14 < off_cm < -8
+
+
+def test_counts_that_wrap_around() -> None:
+    robot, talk = begun("W(0.1); F(30 CM, 60)")
+    for number in (0, 1):
+        wheel(robot, number).counted = (1 << 16) - 7
+    talk.wait(4000)
+    assert abs(gone(robot)[0] - 30) < 1.5
+
+
+def test_the_same_seed_gives_the_same_run_however_often_it_is_looked_at() -> None:
+    def run(look: Callable[[VirtualRobot], object], step_ms: int) -> object:
+        robot, talk = begun(WAY, seed=5)
+        for _ in range(4000 // step_ms):
+            talk.wait(step_ms)
+            look(robot)
+        return robot.pose, trace(robot.take_events())
+
+    assert run(lambda robot: None, 1000) == run(lambda robot: robot.pose, 8)

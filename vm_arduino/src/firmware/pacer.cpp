@@ -1,0 +1,290 @@
+#include "pacer.h"
+
+#ifdef tiniscript_has_discs
+
+#include "board.h"
+#include "state.h"
+#include "trim.h"
+
+namespace tiniscript {
+
+namespace {
+
+constexpr uint8_t kTurnMs = 10;      // of the controller
+constexpr uint16_t kStuckMs = 500;   // a wheel that drives and shows no edge for so long
+constexpr uint8_t kStillMs = 150;    // one that shows none for so long stands
+constexpr uint8_t kSlowMs = 150;     // one that shows none for so long gets more power
+constexpr uint16_t kGivesUpMs = 300;  // a correction that does nothing
+constexpr int32_t kEdge = 64;        // positions are in 64ths of the way between two edges
+constexpr uint8_t kRollMs = 60;      // until the robot has seen how it rolls
+constexpr uint8_t kLeastRollMs = 10;
+constexpr uint8_t kMostRollMs = 200;
+constexpr int8_t kCreep = 35;        // percent: slow, but it moves
+constexpr uint8_t kCorrections = 2;  // of one move
+constexpr uint8_t kWheels = 2;
+
+enum class Phase : uint8_t { kNone, kDrives, kRolls, kCorrects, kThere, kStuck };
+
+struct Wheel {
+  int32_t edges;       // that it has gone in the direction of the move
+  uint16_t counted;    // by the board, when it was last asked
+  uint16_t edge_ms;    // when the last edge came,
+  uint16_t before_ms;  // and the one before
+  uint16_t two_ms;     // how long the last two took; 0: not known
+  uint16_t first_ms;   // how long the first edge took,
+  uint8_t first;       // and how far it was, in parts of the way between two
+  bool is_backward;    // the move
+  bool is_returning;   // its motor last drove it against the move
+  int8_t power;        // in the direction of the move
+};
+
+struct Pacer {
+  Phase phase;
+  uint8_t corrections;
+  int8_t most;         // power that the program wants
+  int8_t least;        // power that moves a wheel
+  uint8_t roll_ms;     // a wheel rolls on as far as it would go in this time
+  uint16_t turn_ms;    // when the controller last did something
+  uint16_t begun_ms;   // when the move began
+  uint16_t off_ms;     // when both motors were turned off,
+  int32_t off_at;      // where both wheels were then, together,
+  int32_t off_roll;    // and how far they were to roll
+  int16_t uneven;      // sum of what the left wheel was ahead
+  int32_t target;
+  uint32_t edge;       // what a wheel, or the robot, goes between two edges
+  Wheel wheels[kWheels];
+};
+
+Pacer pacer;
+
+uint16_t since(uint16_t then_ms) {
+  return static_cast<uint16_t>(static_cast<uint16_t>(now_ms) - then_ms);
+}
+
+int32_t limited(int32_t value, int32_t most) {
+  return value > most ? most : value < -most ? -most : value;
+}
+
+// Where a wheel is when it stands: in the middle between two edges, as far as is known.
+int32_t place(const Wheel& wheel) {
+  return (wheel.edges - 1) * kEdge + wheel.first + kEdge / 2;
+}
+
+// Where it is while it turns: behind its last edge as far as the time since then tells.
+int32_t position(const Wheel& wheel) {
+  int32_t more = kEdge / 2;
+  if (wheel.two_ms != 0 && wheel.power > 0) {
+    const uint32_t part = uint32_t{since(wheel.edge_ms)} * (2 * kEdge) / wheel.two_ms;
+    more = part < kEdge ? static_cast<int32_t>(part) : kEdge - 1;
+  }
+  return place(wheel) + more - kEdge / 2;
+}
+
+// How far something has come that speeds up to 1: t less about what it lost meanwhile.
+uint16_t gone(uint16_t time_ms) {
+  return static_cast<uint16_t>(uint32_t{time_ms} * time_ms / (time_ms + 2 * pacer.roll_ms));
+}
+
+// A disc stands anywhere between two edges. How far the first one was is seen from when it came,
+// beside when the third did: wheels speed up as they roll on.
+void find_first(Wheel* wheel) {
+  const uint16_t first = gone(wheel->first_ms);
+  const uint16_t more = static_cast<uint16_t>(gone(since(pacer.begun_ms)) - first);
+  const uint32_t found = more == 0 ? kEdge : uint32_t{first} * (2 * kEdge) / more;
+  wheel->first = found < kEdge ? static_cast<uint8_t>(found) : kEdge;
+}
+
+// How far it will roll on once its motor is off.
+int32_t roll(const Wheel& wheel) {
+  if (wheel.two_ms == 0) return 0;
+  return static_cast<int32_t>(uint32_t{pacer.roll_ms} * (2 * kEdge) / wheel.two_ms);
+}
+
+void count(Wheel* wheel, uint16_t counted, bool has_two) {
+  int16_t edges = static_cast<int16_t>(counted - wheel->counted);
+  if (edges == 0) return;
+  wheel->counted = counted;
+  // A disc with one channel tells no direction: it is that of the motor.
+  const bool is_back = has_two ? wheel->is_backward : wheel->is_returning;
+  const int16_t steps = edges < 0 ? static_cast<int16_t>(-edges) : edges;
+  if (is_back) edges = static_cast<int16_t>(-edges);
+  wheel->edges += edges;
+  if (wheel->edges == 1) wheel->first_ms = since(pacer.begun_ms);
+  if (wheel->edges == 3 && pacer.phase == Phase::kDrives) find_first(wheel);
+  if (steps == 1) {
+    if (wheel->edges > 2) wheel->two_ms = since(wheel->before_ms);
+    wheel->before_ms = wheel->edge_ms;
+  } else {
+    wheel->two_ms = static_cast<uint16_t>(since(wheel->edge_ms) * 2 / static_cast<uint16_t>(steps));
+    wheel->before_ms = static_cast<uint16_t>(now_ms);
+  }
+  wheel->edge_ms = static_cast<uint16_t>(now_ms);
+}
+
+int8_t signed_power(const Wheel& wheel) {
+  return wheel.is_backward ? static_cast<int8_t>(-wheel.power) : wheel.power;
+}
+
+void set_motors() {
+  const Levels levels =
+      trimmed(port_trim(), signed_power(pacer.wheels[0]), signed_power(pacer.wheels[1]));
+  board_pace(levels.left, levels.right);
+}
+
+// Whether a wheel that its motor drives has shown no edge for so long.
+bool is_slow(uint16_t most_ms) {
+  for (const Wheel& wheel : pacer.wheels) {
+    if (wheel.power != 0 && since(wheel.edge_ms) >= most_ms) return true;
+  }
+  return false;
+}
+
+void turn_off() {
+  const Wheel& left = pacer.wheels[0];
+  const Wheel& right = pacer.wheels[1];
+  pacer.off_at = position(left) + position(right);
+  pacer.off_roll = pacer.phase == Phase::kDrives ? roll(left) + roll(right) : 0;
+  for (Wheel& wheel : pacer.wheels) wheel.power = 0;
+  set_motors();
+  pacer.off_ms = static_cast<uint16_t>(now_ms);
+  pacer.phase = Phase::kRolls;
+}
+
+void drive() {
+  Wheel* const left = pacer.wheels;
+  Wheel* const right = pacer.wheels + 1;
+  const int32_t left_at = position(*left);
+  const int32_t right_at = position(*right);
+  const int32_t ahead = left_at - right_at;
+  const int32_t rest = pacer.target - (left_at + right_at) / 2;
+  if (rest <= (roll(*left) + roll(*right)) / 2) return turn_off();
+  pacer.uneven = static_cast<int16_t>(limited(pacer.uneven + limited(ahead, 1000), 24000));
+  // in 256ths of the power
+  const int32_t less = limited((ahead * 12 + pacer.uneven / 8) / 64, 64);
+  int32_t power = pacer.least + (rest / kEdge - 2) * 4;
+  if (power < pacer.least) power = pacer.least;
+  if (power > pacer.most) power = pacer.most;
+  int32_t left_power = power * (256 - less);
+  int32_t right_power = power * (256 + less);
+  const int32_t more = left_power > right_power ? left_power : right_power;
+  if (more > 100 * 256) {
+    left_power = left_power * 100 / (more / 256);
+    right_power = right_power * 100 / (more / 256);
+  }
+  left->power = static_cast<int8_t>((left_power + 128) / 256);
+  right->power = static_cast<int8_t>((right_power + 128) / 256);
+  set_motors();
+}
+
+// Both motors are off: waits until the wheels stand, and looks where they are.
+void settle() {
+  if (since(pacer.off_ms) < kStillMs) return;
+  bool is_off = false;
+  int32_t rolled = -pacer.off_at;
+  for (const Wheel& wheel : pacer.wheels) {
+    if (since(wheel.edge_ms) < kStillMs) return;
+    const int32_t missing = pacer.target - place(wheel);
+    if (missing >= kEdge || missing <= -kEdge) is_off = true;
+    rolled += place(wheel);
+  }
+  if (pacer.off_roll > 0 && rolled > 0) {  // the next move knows better
+    const int32_t found = pacer.roll_ms * (3 * pacer.off_roll + rolled) / (4 * pacer.off_roll);
+    pacer.roll_ms = static_cast<uint8_t>(found < kLeastRollMs  ? kLeastRollMs
+                                         : found > kMostRollMs ? kMostRollMs
+                                                               : found);
+  }
+  if (!is_off || pacer.corrections == kCorrections) {
+    pacer.phase = Phase::kThere;
+    return;
+  }
+  pacer.corrections++;
+  pacer.phase = Phase::kCorrects;
+  for (Wheel& wheel : pacer.wheels) {
+    const int32_t missing = pacer.target - place(wheel);
+    wheel.two_ms = 0;
+    wheel.edge_ms = static_cast<uint16_t>(now_ms);
+    if (missing < kEdge && missing > -kEdge) continue;
+    wheel.is_returning = missing < 0;
+    wheel.power = missing < 0 ? static_cast<int8_t>(-pacer.least) : pacer.least;
+  }
+  set_motors();
+}
+
+// Each wheel goes on, or back, by itself.
+void correct() {
+  bool is_over = true;
+  for (Wheel& wheel : pacer.wheels) {
+    const int32_t missing = pacer.target - place(wheel);
+    if (wheel.power > 0 ? missing < kEdge : missing > -kEdge) wheel.power = 0;
+    if (wheel.power != 0) is_over = false;
+  }
+  if (is_over || is_slow(kGivesUpMs)) return turn_off();
+  set_motors();
+}
+
+}  // namespace
+
+void pacer_go(int8_t left, int8_t right, int32_t way) {
+  const Discs discs = board_discs();
+  pacer.edge = (left ^ right) < 0 ? discs.degrees : discs.cm;
+  uint32_t target = static_cast<uint32_t>(way) / pacer.edge;
+  uint32_t rest = static_cast<uint32_t>(way) % pacer.edge;
+  for (uint8_t k = 0; k < 12; k++) {  // 64ths of each
+    rest += rest;
+    target += target;
+    if (rest >= pacer.edge) {
+      rest -= pacer.edge;
+      target++;
+    }
+  }
+  pacer.target = static_cast<int32_t>(target);
+  pacer.most = left < 0 ? static_cast<int8_t>(-left) : left;
+  pacer.least = pacer.most < kCreep ? pacer.most : kCreep;
+  pacer.corrections = 0;
+  if (pacer.roll_ms == 0) pacer.roll_ms = kRollMs;
+  pacer.phase = Phase::kDrives;
+  for (uint8_t k = 0; k < kWheels; k++) {
+    Wheel& wheel = pacer.wheels[k];
+    wheel.edges = 0;
+    wheel.counted = board_edges(k != 0);
+    wheel.edge_ms = wheel.before_ms = static_cast<uint16_t>(now_ms);
+    wheel.two_ms = 0;
+    wheel.first = kEdge / 2;
+    wheel.is_returning = false;
+    wheel.is_backward = (k == 0 ? left : right) < 0;
+    wheel.power = 0;
+  }
+  pacer.turn_ms = pacer.begun_ms = static_cast<uint16_t>(now_ms);
+  drive();
+}
+
+Going pacer_going(int32_t* rest) {
+  const int32_t missing = pacer.target - (position(pacer.wheels[0]) + position(pacer.wheels[1])) / 2;
+  const uint32_t left = missing > 0 ? static_cast<uint32_t>(missing) : 0;
+  *rest = static_cast<int32_t>((left >> 12) * pacer.edge + (((left & 4095) >> 2) * pacer.edge >> 10));
+  if (pacer.phase == Phase::kStuck) return Going::kStuck;
+  return pacer.phase == Phase::kThere ? Going::kThere : Going::kOn;
+}
+
+void pacer_end() { pacer.phase = Phase::kNone; }
+
+void pacer_tick() {
+  if (pacer.phase == Phase::kNone || pacer.phase >= Phase::kThere) return;
+  const bool has_two = board_discs().has_two;
+  for (uint8_t k = 0; k < kWheels; k++) count(pacer.wheels + k, board_edges(k != 0), has_two);
+  if (since(pacer.turn_ms) < kTurnMs) return;
+  pacer.turn_ms = static_cast<uint16_t>(now_ms);
+  if (pacer.phase == Phase::kRolls) return settle();
+  if (is_slow(kSlowMs) && pacer.least < pacer.most) pacer.least++;
+  if (pacer.phase == Phase::kCorrects) return correct();
+  if (is_slow(kStuckMs)) {
+    turn_off();
+    pacer.phase = Phase::kStuck;
+    return;
+  }
+  drive();
+}
+
+}  // namespace tiniscript
+
+#endif

@@ -1,0 +1,29 @@
+// Goes a way by what the discs of both wheels say: as far as was said, and straight.
+//
+// Every 10 ms it compares how far the wheels have gone, gives more power to the one behind, and goes
+// slower towards the end. Both wheels off, it waits until they stand, and corrects what they rolled
+// too far. Knows neither pins nor time but through `board.h` and the firmware's clock.
+
+#ifndef TINISCRIPT_FIRMWARE_PACER_H_
+#define TINISCRIPT_FIRMWARE_PACER_H_
+
+#include <stdint.h>
+
+#include "../robot.h"
+#include "../vm/has_tasks.h"
+
+namespace tiniscript {
+
+#ifdef tiniscript_has_discs
+void pacer_go(int8_t left, int8_t right, int32_t way);
+Going pacer_going(int32_t* rest);
+void pacer_end();   // it sets no motor any more
+void pacer_tick();  // as often as may be
+#else
+inline void pacer_end() {}
+inline void pacer_tick() {}
+#endif
+
+}  // namespace tiniscript
+
+#endif  // TINISCRIPT_FIRMWARE_PACER_H_
