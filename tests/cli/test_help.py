@@ -190,7 +190,7 @@ def test_names_that_help_lists_are_those_that_there_are(
     verb: str, flag: str, names: list[str], language: str
 ) -> None:
     (option,) = (each for each in of_verb(verb) if each.flags == flag)
-    listed = re.split(r"[^a-z-]+", option.help[language == "es"])
+    listed = re.split(r"[^a-z0-9-]+", option.help[language == "es"])
     assert set(names) <= set(listed)
 
 

@@ -34,6 +34,8 @@ const char* name_of(Fault fault) {
       return "DIVIDE_BY_ZERO";
     case Fault::kNoPower:
       return "NO_POWER";
+    case Fault::kStuck:
+      return "STUCK";
     case Fault::kBadCode:
       return "BAD_CODE";
   }
