@@ -62,7 +62,7 @@ inline const Kit& liner() {
 }
 
 inline const Kit& tinibot2() {
-  static const Kit found = {{{"LIGHT_R", false, 0, 1023000, 8169}, {"LIGHT_L", false, 0, 1023000, 65451}, {"DISTANCE", false, 0, 400000, 2336}}, {}, 45000, 360000};
+  static const Kit found = {{{"LIGHT_R", false, 0, 1023000, 8169}, {"LIGHT_L", false, 0, 1023000, 65451}, {"DISTANCE", false, 0, 400000, 2336}}, {}, 45000, 382000};
   return found;
 }
 

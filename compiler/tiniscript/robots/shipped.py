@@ -283,7 +283,7 @@ def _tinibot2() -> Robot:
             ),
             actuators=(),
             speed=45000,
-            turn=360000,
+            turn=382000,
         ),
         board=Board(
             chip="mega",
@@ -322,6 +322,7 @@ def _tinibot2() -> Robot:
         body=Body(
             wheel_base_cm=13.5,
             speed_cm_s=45.0,
+            turn_s=382.0,
             length_cm=21.0,
             width_cm=15.0,
             places={
@@ -330,20 +331,22 @@ def _tinibot2() -> Robot:
                 "DISTANCE": Place(x_cm=13.0, y_cm=0.0, heading=0.0, sees="distance"),
             },
         ),
-        labels={
-            "en": {
-                "robot": "TiniBot 2",
-                "LIGHT_R": "right light sensor",
-                "LIGHT_L": "left light sensor",
-                "DISTANCE": "distance sensor",
+        labels=ByLanguage(
+            {
+                "en": {
+                    "robot": "TiniBot 2",
+                    "LIGHT_R": "right light sensor",
+                    "LIGHT_L": "left light sensor",
+                    "DISTANCE": "distance sensor",
+                },
+                "es": {
+                    "robot": "TiniBot 2",
+                    "LIGHT_R": "sensor de luz derecho",
+                    "LIGHT_L": "sensor de luz izquierdo",
+                    "DISTANCE": "sensor de distancia",
+                },
             },
-            "es": {
-                "robot": "TiniBot 2",
-                "LIGHT_R": "sensor de luz derecho",
-                "LIGHT_L": "sensor de luz izquierdo",
-                "DISTANCE": "sensor de distancia",
-            },
-        },
+        ),
     )
 
 

@@ -17,7 +17,7 @@ constexpr uint16_t kBoardKit = 0x231b;
 constexpr uint8_t kBoardSensors = 3;
 constexpr uint8_t kBoardActuators = 0;
 constexpr uint32_t kBoardSpeed = 45000;
-constexpr uint32_t kBoardTurn = 360000;
+constexpr uint32_t kBoardTurn = 382000;
 constexpr uint16_t kDeviceHashes[] tini_progmem = {0x1fe9, 0xffab, 0x0920};
 constexpr uint8_t kKitWords[] tini_progmem = {
     0x4c, 0x49, 0x47, 0x48, 0x54, 0x5f, 0xd2, 0x00, 0x4c, 0x49, 0x47, 0x48, 0x54, 0x5f, 0xcc, 0x00,
