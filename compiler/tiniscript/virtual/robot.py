@@ -231,7 +231,7 @@ class VirtualRobot:
         self._set_motors(now_ms, *powers)
         self._traced.motors(*(round(power) for power in powers))
 
-    def pace(self, now_ms: int, left: int, right: int) -> None:
+    def steer(self, now_ms: int, left: int, right: int) -> None:
         """Set what the motors get while the firmware measures a move: the trace has its begin."""
         self._set_motors(now_ms, left / LEVELS_PER_PERCENT, right / LEVELS_PER_PERCENT)
 

@@ -229,7 +229,7 @@ void board_motors(int16_t left, int16_t right) {
   if (!table.is_latched) turn(percent_of(left), percent_of(right));
 }
 
-void board_pace(int16_t left, int16_t right) { board_motors(left, right); }
+void board_steer(int16_t left, int16_t right) { board_motors(left, right); }
 
 Discs board_discs() { return {0, 0, false}; }
 

@@ -80,7 +80,7 @@ enum What : uint32_t {
   kFinished,
   kFaulted,
   kActuatorsOff,
-  kPace,
+  kSteer,
   kEdges,
 };
 
@@ -125,8 +125,8 @@ void board_motors(int16_t left, int16_t right) {
   if (!is_latched) note(kMotors, left, right);
 }
 
-void board_pace(int16_t left, int16_t right) {
-  if (!is_latched) note(kPace, left, right);
+void board_steer(int16_t left, int16_t right) {
+  if (!is_latched) note(kSteer, left, right);
 }
 
 Discs board_discs() { return own.discs; }

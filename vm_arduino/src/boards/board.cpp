@@ -140,7 +140,7 @@ void board_finished() { sound_finished(); }
 
 void board_faulted() { sound_faulted(); }
 
-void board_pace(int16_t left, int16_t right) { board_motors(left, right); }
+void board_steer(int16_t left, int16_t right) { board_motors(left, right); }
 
 void robot_off() {
   board_motors(0, 0);

@@ -40,7 +40,7 @@ struct Place {
 void board_motors(int16_t left, int16_t right);
 
 // The same, many times in a move that is measured.
-void board_pace(int16_t left, int16_t right);
+void board_steer(int16_t left, int16_t right);
 
 // Closes the latch: motors are off until `board_release`.
 void board_stop();

@@ -9,7 +9,7 @@
 #include "firmware.h"
 #include "holding.h"
 #include "keeping.h"
-#include "pacer.h"
+#include "guide.h"
 #include "program.h"
 #include "state.h"
 #include "trim.h"
@@ -94,14 +94,14 @@ void tick_run() {
   if (!is_running()) {
     if (!is_prepared) prepare();
   } else if (!store.is_committing()) {
-    pacer_tick();
+    guide_tick();
     go_on();
   }
 }
 
 void end_run(State state, bool is_done) {
   board_stop();
-  pacer_end();
+  guide_end();
   if (!is_done) board_actuators_off();
   robot_off();
   may_start = false;
@@ -193,15 +193,15 @@ bool robot_measures() { return board_discs().cm != 0; }
 
 void robot_go(int8_t left, int8_t right, int32_t way) {
   robot_motors(left, right);
-  pacer_go(left, right, way);
+  guide_go(left, right, way);
 }
 
-Going robot_going(int32_t* way) { return pacer_going(way); }
+Going robot_going(int32_t* way) { return guide_going(way); }
 
 #endif
 
 void robot_motors(int8_t left, int8_t right) {
-  pacer_end();
+  guide_end();
   const Levels levels = trimmed(port_trim(), left, right);
   has_motors_on = (left | right) != 0;
   board_motors(levels.left, levels.right);

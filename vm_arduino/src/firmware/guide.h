@@ -4,8 +4,8 @@
 // slower towards the end. Both wheels off, it waits until they stand, and corrects what they rolled
 // too far. Knows neither pins nor time but through `board.h` and the firmware's clock.
 
-#ifndef TINISCRIPT_FIRMWARE_PACER_H_
-#define TINISCRIPT_FIRMWARE_PACER_H_
+#ifndef TINISCRIPT_FIRMWARE_GUIDE_H_
+#define TINISCRIPT_FIRMWARE_GUIDE_H_
 
 #include <stdint.h>
 
@@ -15,15 +15,15 @@
 namespace tiniscript {
 
 #ifdef tiniscript_has_discs
-void pacer_go(int8_t left, int8_t right, int32_t way);
-Going pacer_going(int32_t* rest);
-void pacer_end();   // it sets no motor any more
-void pacer_tick();  // as often as may be
+void guide_go(int8_t left, int8_t right, int32_t way);
+Going guide_going(int32_t* rest);
+void guide_end();   // it sets no motor any more
+void guide_tick();  // as often as may be
 #else
-inline void pacer_end() {}
-inline void pacer_tick() {}
+inline void guide_end() {}
+inline void guide_tick() {}
 #endif
 
 }  // namespace tiniscript
 
-#endif  // TINISCRIPT_FIRMWARE_PACER_H_
+#endif  // TINISCRIPT_FIRMWARE_GUIDE_H_

@@ -1,4 +1,4 @@
-#include "pacer.h"
+#include "guide.h"
 
 #ifdef tiniscript_has_discs
 
@@ -38,7 +38,7 @@ struct Wheel {
   int8_t power;        // in the direction of the move
 };
 
-struct Pacer {
+struct Guide {
   Phase phase;
   uint8_t corrections;
   int8_t most;         // power that the program wants
@@ -55,7 +55,7 @@ struct Pacer {
   Wheel wheels[kWheels];
 };
 
-Pacer pacer;
+Guide guide;
 
 uint16_t since(uint16_t then_ms) {
   return static_cast<uint16_t>(static_cast<uint16_t>(now_ms) - then_ms);
@@ -82,14 +82,14 @@ int32_t position(const Wheel& wheel) {
 
 // How far something has come that speeds up to 1: t less about what it lost meanwhile.
 uint16_t gone(uint16_t time_ms) {
-  return static_cast<uint16_t>(uint32_t{time_ms} * time_ms / (time_ms + 2 * pacer.roll_ms));
+  return static_cast<uint16_t>(uint32_t{time_ms} * time_ms / (time_ms + 2 * guide.roll_ms));
 }
 
 // A disc stands anywhere between two edges. How far the first one was is seen from when it came,
 // beside when the third did: wheels speed up as they roll on.
 void find_first(Wheel* wheel) {
   const uint16_t first = gone(wheel->first_ms);
-  const uint16_t more = static_cast<uint16_t>(gone(since(pacer.begun_ms)) - first);
+  const uint16_t more = static_cast<uint16_t>(gone(since(guide.begun_ms)) - first);
   const uint32_t found = more == 0 ? kEdge : uint32_t{first} * (2 * kEdge) / more;
   wheel->first = found < kEdge ? static_cast<uint8_t>(found) : kEdge;
 }
@@ -97,7 +97,7 @@ void find_first(Wheel* wheel) {
 // How far it will roll on once its motor is off.
 int32_t roll(const Wheel& wheel) {
   if (wheel.two_ms == 0) return 0;
-  return static_cast<int32_t>(uint32_t{pacer.roll_ms} * (2 * kEdge) / wheel.two_ms);
+  return static_cast<int32_t>(uint32_t{guide.roll_ms} * (2 * kEdge) / wheel.two_ms);
 }
 
 void count(Wheel* wheel, uint16_t counted, bool has_two) {
@@ -109,8 +109,8 @@ void count(Wheel* wheel, uint16_t counted, bool has_two) {
   const int16_t steps = edges < 0 ? static_cast<int16_t>(-edges) : edges;
   if (is_back) edges = static_cast<int16_t>(-edges);
   wheel->edges += edges;
-  if (wheel->edges == 1) wheel->first_ms = since(pacer.begun_ms);
-  if (wheel->edges == 3 && pacer.phase == Phase::kDrives) find_first(wheel);
+  if (wheel->edges == 1) wheel->first_ms = since(guide.begun_ms);
+  if (wheel->edges == 3 && guide.phase == Phase::kDrives) find_first(wheel);
   if (steps == 1) {
     if (wheel->edges > 2) wheel->two_ms = since(wheel->before_ms);
     wheel->before_ms = wheel->edge_ms;
@@ -127,43 +127,43 @@ int8_t signed_power(const Wheel& wheel) {
 
 void set_motors() {
   const Levels levels =
-      trimmed(port_trim(), signed_power(pacer.wheels[0]), signed_power(pacer.wheels[1]));
-  board_pace(levels.left, levels.right);
+      trimmed(port_trim(), signed_power(guide.wheels[0]), signed_power(guide.wheels[1]));
+  board_steer(levels.left, levels.right);
 }
 
 // Whether a wheel that its motor drives has shown no edge for so long.
 bool is_slow(uint16_t most_ms) {
-  for (const Wheel& wheel : pacer.wheels) {
+  for (const Wheel& wheel : guide.wheels) {
     if (wheel.power != 0 && since(wheel.edge_ms) >= most_ms) return true;
   }
   return false;
 }
 
 void turn_off() {
-  const Wheel& left = pacer.wheels[0];
-  const Wheel& right = pacer.wheels[1];
-  pacer.off_at = position(left) + position(right);
-  pacer.off_roll = pacer.phase == Phase::kDrives ? roll(left) + roll(right) : 0;
-  for (Wheel& wheel : pacer.wheels) wheel.power = 0;
+  const Wheel& left = guide.wheels[0];
+  const Wheel& right = guide.wheels[1];
+  guide.off_at = position(left) + position(right);
+  guide.off_roll = guide.phase == Phase::kDrives ? roll(left) + roll(right) : 0;
+  for (Wheel& wheel : guide.wheels) wheel.power = 0;
   set_motors();
-  pacer.off_ms = static_cast<uint16_t>(now_ms);
-  pacer.phase = Phase::kRolls;
+  guide.off_ms = static_cast<uint16_t>(now_ms);
+  guide.phase = Phase::kRolls;
 }
 
 void drive() {
-  Wheel* const left = pacer.wheels;
-  Wheel* const right = pacer.wheels + 1;
+  Wheel* const left = guide.wheels;
+  Wheel* const right = guide.wheels + 1;
   const int32_t left_at = position(*left);
   const int32_t right_at = position(*right);
   const int32_t ahead = left_at - right_at;
-  const int32_t rest = pacer.target - (left_at + right_at) / 2;
+  const int32_t rest = guide.target - (left_at + right_at) / 2;
   if (rest <= (roll(*left) + roll(*right)) / 2) return turn_off();
-  pacer.uneven = static_cast<int16_t>(limited(pacer.uneven + limited(ahead, 1000), 24000));
+  guide.uneven = static_cast<int16_t>(limited(guide.uneven + limited(ahead, 1000), 24000));
   // in 256ths of the power
-  const int32_t less = limited((ahead * 12 + pacer.uneven / 8) / 64, 64);
-  int32_t power = pacer.least + (rest / kEdge - 2) * 4;
-  if (power < pacer.least) power = pacer.least;
-  if (power > pacer.most) power = pacer.most;
+  const int32_t less = limited((ahead * 12 + guide.uneven / 8) / 64, 64);
+  int32_t power = guide.least + (rest / kEdge - 2) * 4;
+  if (power < guide.least) power = guide.least;
+  if (power > guide.most) power = guide.most;
   int32_t left_power = power * (256 - less);
   int32_t right_power = power * (256 + less);
   const int32_t more = left_power > right_power ? left_power : right_power;
@@ -178,34 +178,34 @@ void drive() {
 
 // Both motors are off: waits until the wheels stand, and looks where they are.
 void settle() {
-  if (since(pacer.off_ms) < kStillMs) return;
+  if (since(guide.off_ms) < kStillMs) return;
   bool is_off = false;
-  int32_t rolled = -pacer.off_at;
-  for (const Wheel& wheel : pacer.wheels) {
+  int32_t rolled = -guide.off_at;
+  for (const Wheel& wheel : guide.wheels) {
     if (since(wheel.edge_ms) < kStillMs) return;
-    const int32_t missing = pacer.target - place(wheel);
+    const int32_t missing = guide.target - place(wheel);
     if (missing >= kEdge || missing <= -kEdge) is_off = true;
     rolled += place(wheel);
   }
-  if (pacer.off_roll > 0 && rolled > 0) {  // the next move knows better
-    const int32_t found = pacer.roll_ms * (3 * pacer.off_roll + rolled) / (4 * pacer.off_roll);
-    pacer.roll_ms = static_cast<uint8_t>(found < kLeastRollMs  ? kLeastRollMs
+  if (guide.off_roll > 0 && rolled > 0) {  // the next move knows better
+    const int32_t found = guide.roll_ms * (3 * guide.off_roll + rolled) / (4 * guide.off_roll);
+    guide.roll_ms = static_cast<uint8_t>(found < kLeastRollMs  ? kLeastRollMs
                                          : found > kMostRollMs ? kMostRollMs
                                                                : found);
   }
-  if (!is_off || pacer.corrections == kCorrections) {
-    pacer.phase = Phase::kThere;
+  if (!is_off || guide.corrections == kCorrections) {
+    guide.phase = Phase::kThere;
     return;
   }
-  pacer.corrections++;
-  pacer.phase = Phase::kCorrects;
-  for (Wheel& wheel : pacer.wheels) {
-    const int32_t missing = pacer.target - place(wheel);
+  guide.corrections++;
+  guide.phase = Phase::kCorrects;
+  for (Wheel& wheel : guide.wheels) {
+    const int32_t missing = guide.target - place(wheel);
     wheel.two_ms = 0;
     wheel.edge_ms = static_cast<uint16_t>(now_ms);
     if (missing < kEdge && missing > -kEdge) continue;
     wheel.is_returning = missing < 0;
-    wheel.power = missing < 0 ? static_cast<int8_t>(-pacer.least) : pacer.least;
+    wheel.power = missing < 0 ? static_cast<int8_t>(-guide.least) : guide.least;
   }
   set_motors();
 }
@@ -213,8 +213,8 @@ void settle() {
 // Each wheel goes on, or back, by itself.
 void correct() {
   bool is_over = true;
-  for (Wheel& wheel : pacer.wheels) {
-    const int32_t missing = pacer.target - place(wheel);
+  for (Wheel& wheel : guide.wheels) {
+    const int32_t missing = guide.target - place(wheel);
     if (wheel.power > 0 ? missing < kEdge : missing > -kEdge) wheel.power = 0;
     if (wheel.power != 0) is_over = false;
   }
@@ -224,27 +224,27 @@ void correct() {
 
 }  // namespace
 
-void pacer_go(int8_t left, int8_t right, int32_t way) {
+void guide_go(int8_t left, int8_t right, int32_t way) {
   const Discs discs = board_discs();
-  pacer.edge = (left ^ right) < 0 ? discs.degrees : discs.cm;
-  uint32_t target = static_cast<uint32_t>(way) / pacer.edge;
-  uint32_t rest = static_cast<uint32_t>(way) % pacer.edge;
+  guide.edge = (left ^ right) < 0 ? discs.degrees : discs.cm;
+  uint32_t target = static_cast<uint32_t>(way) / guide.edge;
+  uint32_t rest = static_cast<uint32_t>(way) % guide.edge;
   for (uint8_t k = 0; k < 12; k++) {  // 64ths of each
     rest += rest;
     target += target;
-    if (rest >= pacer.edge) {
-      rest -= pacer.edge;
+    if (rest >= guide.edge) {
+      rest -= guide.edge;
       target++;
     }
   }
-  pacer.target = static_cast<int32_t>(target);
-  pacer.most = left < 0 ? static_cast<int8_t>(-left) : left;
-  pacer.least = pacer.most < kCreep ? pacer.most : kCreep;
-  pacer.corrections = 0;
-  if (pacer.roll_ms == 0) pacer.roll_ms = kRollMs;
-  pacer.phase = Phase::kDrives;
+  guide.target = static_cast<int32_t>(target);
+  guide.most = left < 0 ? static_cast<int8_t>(-left) : left;
+  guide.least = guide.most < kCreep ? guide.most : kCreep;
+  guide.corrections = 0;
+  if (guide.roll_ms == 0) guide.roll_ms = kRollMs;
+  guide.phase = Phase::kDrives;
   for (uint8_t k = 0; k < kWheels; k++) {
-    Wheel& wheel = pacer.wheels[k];
+    Wheel& wheel = guide.wheels[k];
     wheel.edges = 0;
     wheel.counted = board_edges(k != 0);
     wheel.edge_ms = wheel.before_ms = static_cast<uint16_t>(now_ms);
@@ -254,32 +254,32 @@ void pacer_go(int8_t left, int8_t right, int32_t way) {
     wheel.is_backward = (k == 0 ? left : right) < 0;
     wheel.power = 0;
   }
-  pacer.turn_ms = pacer.begun_ms = static_cast<uint16_t>(now_ms);
+  guide.turn_ms = guide.begun_ms = static_cast<uint16_t>(now_ms);
   drive();
 }
 
-Going pacer_going(int32_t* rest) {
-  const int32_t missing = pacer.target - (position(pacer.wheels[0]) + position(pacer.wheels[1])) / 2;
+Going guide_going(int32_t* rest) {
+  const int32_t missing = guide.target - (position(guide.wheels[0]) + position(guide.wheels[1])) / 2;
   const uint32_t left = missing > 0 ? static_cast<uint32_t>(missing) : 0;
-  *rest = static_cast<int32_t>((left >> 12) * pacer.edge + (((left & 4095) >> 2) * pacer.edge >> 10));
-  if (pacer.phase == Phase::kStuck) return Going::kStuck;
-  return pacer.phase == Phase::kThere ? Going::kThere : Going::kOn;
+  *rest = static_cast<int32_t>((left >> 12) * guide.edge + (((left & 4095) >> 2) * guide.edge >> 10));
+  if (guide.phase == Phase::kStuck) return Going::kStuck;
+  return guide.phase == Phase::kThere ? Going::kThere : Going::kOn;
 }
 
-void pacer_end() { pacer.phase = Phase::kNone; }
+void guide_end() { guide.phase = Phase::kNone; }
 
-void pacer_tick() {
-  if (pacer.phase == Phase::kNone || pacer.phase >= Phase::kThere) return;
+void guide_tick() {
+  if (guide.phase == Phase::kNone || guide.phase >= Phase::kThere) return;
   const bool has_two = board_discs().has_two;
-  for (uint8_t k = 0; k < kWheels; k++) count(pacer.wheels + k, board_edges(k != 0), has_two);
-  if (since(pacer.turn_ms) < kTurnMs) return;
-  pacer.turn_ms = static_cast<uint16_t>(now_ms);
-  if (pacer.phase == Phase::kRolls) return settle();
-  if (is_slow(kSlowMs) && pacer.least < pacer.most) pacer.least++;
-  if (pacer.phase == Phase::kCorrects) return correct();
+  for (uint8_t k = 0; k < kWheels; k++) count(guide.wheels + k, board_edges(k != 0), has_two);
+  if (since(guide.turn_ms) < kTurnMs) return;
+  guide.turn_ms = static_cast<uint16_t>(now_ms);
+  if (guide.phase == Phase::kRolls) return settle();
+  if (is_slow(kSlowMs) && guide.least < guide.most) guide.least++;
+  if (guide.phase == Phase::kCorrects) return correct();
   if (is_slow(kStuckMs)) {
     turn_off();
-    pacer.phase = Phase::kStuck;
+    guide.phase = Phase::kStuck;
     return;
   }
   drive();
