@@ -47,6 +47,12 @@ def find(name: str) -> str:
     return by_team.get(team, SOURCE)
 
 
+def table(language: str, name: str) -> str:
+    """Return a file of a language's folder, which may lack it."""
+    path = FOLDER / language / name
+    return path.read_text(encoding="utf-8-sig") if path.is_file() else ""
+
+
 def about(field: str, language: str) -> str:
     """Return what the head of a language's catalogue says, such as its name."""
     return catalogue("command", language).info().get(field, "")

@@ -14,7 +14,7 @@ from itertools import pairwise
 from typing import NamedTuple
 
 from tiniscript.kit import Kit
-from tiniscript.recovery import lexicon_en, lexicon_es
+from tiniscript.languages import SOURCE, languages, table
 from tiniscript.syntax.lexer import DASHES, NUMBER, ODD, WORD
 from tiniscript.syntax.operators import SIGNS
 from tiniscript.syntax.outline import Known
@@ -96,10 +96,10 @@ def plain(text: str) -> str:
 
 @cache
 def lexicon() -> dict[str, list[str]]:
-    """What each word means: all that the tables say of it, in their order."""
+    """What each word means: all that the languages say of it, English last."""
     found: dict[str, list[str]] = {}
-    for table in (lexicon_es.TABLE, lexicon_en.TABLE):
-        for row in table.strip().split("\n"):
+    for language in (*languages()[1:], SOURCE):
+        for row in table(language, "lexicon.txt").split("\n"):
             if not row.startswith("#"):
                 meaning, _, words = row.partition("|")
                 for word in words.split():
