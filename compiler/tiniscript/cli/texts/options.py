@@ -292,7 +292,7 @@ OPTIONS: tuple[Option, ...] = (
     Option("--faults", OWN, ("of 1000 bytes on its line, X are lost, changed or late (0)", "de 1000 bytes en su línea, X se pierden, cambian o llegan tarde (0)"), NUMBER, X, virtual=True, silent="live"),
     Option("--seed", OWN, ("the random seed: the same number gives the same run (1)", "la semilla del azar: con el mismo número, el mismo recorrido (1)"), NUMBER, N, virtual=True, silent="live"),
     # every verb
-    Option("--lang", "*", ("the language: English (en) or Spanish (es)", "dice todo en inglés (en) o en español (es)"), LANGUAGE, ("en|es", "en|es")),
+    Option("--lang", "*", ("the language in which tsc says everything", "el idioma en que tsc dice todo"), LANGUAGE, ("|".join(LANGUAGE.choices),) * 2),
     Option("-h --help", "*", ("prints this help", "imprime esta ayuda")),
     Option("-V --version", "tsc", ("prints the version of tsc", "imprime qué tsc es este")),
 )
