@@ -51,16 +51,17 @@ def test_a_new_board_becomes_a_robot(
         enter(found, server.address)
         found.click("#side_real")
         found.locator("#link_port option").first.wait_for(state="attached")
-        found.click("#flash summary")
-        # Of the other board there is no firmware here; what is no firmware is not written.
-        found.select_option("#flash_board", "nano")
+        found.click("#link_teacher summary")
+        # Of another robot there is no firmware here; what is no firmware is not written.
+        found.select_option("#robot", "liner")
         found.click("#flash_write")
         said(found, "There is no firmware of this robot for this board here.")
+        found.select_option("#robot", "tinibot")
         found.set_input_files("#flash_file", {"name": "<b>.hex", "mimeType": "", "buffer": b":00"})
         said(found, "<b>.hex is next")
         found.click("#flash_write")
         said(found, "That is not a whole HEX file")
-        found.select_option("#flash_board", "uno")
+        assert found.locator("#flash_board option").all_inner_texts() == ["Uno"]
         # Cancelled in the middle it does nothing, and is whole once it has got its firmware again.
         found.click("#flash_write")
         done = "document.querySelector('#flash_progress').value"  # the page evaluates no text

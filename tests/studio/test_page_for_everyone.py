@@ -5,13 +5,13 @@ from __future__ import annotations
 import json
 import socket
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import pytest
 
 from tests.support import studio
 from tests.support.needs import need
-from tests.support.studio import Pages, axe, checked, enter, image, turn, write
+from tests.support.studio import Pages, axe, checked, enter, image, shown, turn, write
 from tiniscript import compile
 from tiniscript.studio import serving
 
@@ -67,10 +67,84 @@ def test_everything_is_seen(page: Page, screen: tuple[int, int], language: str) 
     assert page.locator("#editor").bounding_box()["height"] >= 96  # type: ignore[index]
 
 
-@pytest.mark.parametrize("text", ["SI|F(2, 80)", WRONG], ids=["right", "wrong"])
-def test_axe_finds_nothing(page: Page, text: str) -> None:
-    write(page, text)
-    assert axe(page) == []
+@pytest.mark.sampled("theme")
+@pytest.mark.parametrize("theme", ["light", "dark"])
+def test_axe_finds_nothing_in_any_state(page: Page, theme: Literal["light", "dark"]) -> None:
+    """From the start to a world that is drawn; the class has its own (`test_page_class.py`)."""
+
+    def seen(state: str) -> None:
+        assert axe(page) == [], state
+
+    def in_phase(phase: str) -> None:
+        page.locator(f"html[data-phase={phase}]").wait_for(state="attached")
+
+    def text(program: str) -> None:
+        page.click("#view_text")
+        write(page, program)
+
+    page.set_viewport_size({"width": 1366, "height": 768})
+    page.emulate_media(color_scheme=theme)
+    page.click("#home")
+    seen("start")
+    page.click("#start_write")
+    page.click("#view_blocks")
+    shown(page)
+    page.locator(".blocklyToolboxCategory").first.click()
+    seen("blocks, and what can be added")
+    page.click("#words")
+    seen("blocks with words")
+    page.click("#words")
+    text(WRONG)
+    seen("wrong text")
+    page.click("#view_blocks")
+    seen("blocks that wait")
+    text("F(3, 80);SHOW(1 / 0)")
+    page.select_option("#world", "maze")
+    page.select_option("#speed", "0.1")
+    page.click("#run")
+    in_phase("running")
+    seen("running")
+    page.click("#pause")
+    in_phase("paused")
+    seen("paused")
+    page.select_option("#speed", "20")
+    page.click("#pause")
+    in_phase("ended")
+    seen("a fault, and a score")
+    for view in ("plot", "trace", "arena"):
+        page.select_option("#seen", view)
+        seen(view)
+    for part in (0, 1, 2, -1):
+        if part == 0:
+            page.click("#world_draw")
+        count = page.locator("#world_part option").count()
+        page.select_option("#world_part", index=part % count)
+        seen(f"part {part} of a world that is drawn")
+    page.click("#world_done")
+    page.select_option("#world", "obstacles")
+    page.click("#side_lessons")
+    page.locator("#lesson_check:enabled").wait_for(state="attached")
+    seen("a lesson")
+    page.locator("#lesson_steps button").last.click()
+    page.click("#lesson_hint summary")
+    page.click("#lesson_check")
+    page.locator("#lesson_said[data-verdict]").wait_for()
+    seen("a lesson that is checked")
+    page.click("#lesson_hint summary")
+    page.click("#side_real")
+    page.click("#link_teacher summary")
+    seen("a real robot, and the teacher's part")
+    page.click("#link_teacher summary")
+    page.click("#side_virtual")
+    page.click("#my_programs")
+    seen("programs")
+    page.click("#programs_close")
+    page.set_viewport_size({"width": 390, "height": 844})
+    for half in ("robot", "program"):
+        turn(page, half)
+        seen(f"{half} on a phone")
+    page.emulate_media(color_scheme="null")
+    page.set_viewport_size({"width": 1366, "height": 768})
 
 
 def test_it_is_dark_where_the_system_is_or_somebody_wants_it(page: Page) -> None:
@@ -83,11 +157,7 @@ def test_it_is_dark_where_the_system_is_or_somebody_wants_it(page: Page) -> None
     page.emulate_media(color_scheme="dark")
     become("dark")
     write(page, "F(-2, 80)\nF(1, 20)")
-    for side in ("#side_real", "#side_lessons", "#side_virtual"):
-        page.click(side)
-        assert axe(page) == [], side
     page.click("#home")
-    assert axe(page) == []
     page.click("#theme")
     become("light")
     page.emulate_media(color_scheme="light")
@@ -235,5 +305,10 @@ def test_the_service_worker_has_every_file() -> None:
     need(studio.missing())
     source = serving.files()["service_worker.js"].data.decode()
     listed = json.loads(source.partition("FILES = ")[2].partition(";")[0])
-    names = set(serving.files()) - {"index.html", "service_worker.js", "licences.txt"}
+    names = set(serving.files()) - {
+        "index.html",
+        "service_worker.js",
+        "licences.txt",
+        serving.FIRMWARE,
+    }
     assert set(listed) == {"./", *names}

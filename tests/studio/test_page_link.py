@@ -227,7 +227,7 @@ def test_two_tabs_do_not_fight(first: tuple[Pages, Page], page: Page, robot: Pty
 def test_identify_name_and_trim(page: Page, robot: PtyRobot) -> None:
     page.click("#link_identify")
     said(page, BLINKS)
-    page.click("#link_drive summary")
+    page.click("#link_teacher summary")
     page.fill("#link_rename_to", "Ñandú")
     page.click("#link_rename")
     said(page, "The robot is called Ñandú now.")
@@ -260,7 +260,7 @@ def test_everything_is_seen(page: Page, screen: tuple[int, int], language: str) 
 
 
 def test_axe_finds_nothing(page: Page) -> None:
-    page.click("#link_drive summary")
+    page.click("#link_teacher summary")
     assert axe(page) == []
 
 
@@ -272,7 +272,7 @@ def test_nothing_that_a_robot_says_becomes_markup(page: Page, robot: PtyRobot) -
     robot.say(b"<script>window.taken = 1</script>\r\n<b>\x1b[2J\xe2\x80\xae\r\n")
     page.locator("#link_shown").filter(has_text="<script>").wait_for()
     assert "\x1b" not in page.locator("#link_shown").inner_text()
-    page.click("#link_drive summary")
+    page.click("#link_teacher summary")
     page.fill("#link_rename_to", "<b>x</b>")
     page.click("#link_rename")
     said(page, "The robot is called <b>x</b> now.")
@@ -349,7 +349,7 @@ def test_a_line_and_a_lost_link_leave_a_recording_as_it_is(page: Page) -> None:
     page.click("#link_upload")
     said(page, "The robot has it")
     page.locator("#record_compare:enabled").wait_for(state="attached")
-    page.click("#record summary")
+    page.click("#link_teacher summary")
     told = page.locator("#record_said")
     page.click("#record_compare")
     told.filter(has_text="Both did the same. Comparisons: 1.").wait_for()  # it still runs
@@ -389,7 +389,7 @@ def agrees(page: Page, run: Callable[[], None]) -> None:
     for _ in range(RUNS):
         run()
         if not page.locator("#record_compare").is_visible():
-            page.click("#record summary")
+            page.click("#link_teacher summary")
         page.click("#record_compare")
         told.filter(has_text=re.compile("Comparisons|another time")).wait_for()
         if "another time" not in told.inner_text():

@@ -141,3 +141,50 @@ def test_ways_stay_until_they_are_erased(listening: Page) -> None:
     run(page, "F(1, 80)")
     page.select_option("#world", "light")
     assert count(page, WAY) == 0 and count(page, WAY_BEFORE) < 10
+
+
+TASK = """[floor]
+width_cm = 200
+height_cm = 100
+[start]
+x_cm = 40
+y_cm = 50
+[task]
+seconds = 9
+[[flags]]
+x_cm = 90
+y_cm = 50
+[[flags]]
+x_cm = 140
+y_cm = 50
+"""
+
+
+def test_flags_points_and_stars_are_seen_and_heard(listening: Page) -> None:
+    page = listening
+    page.set_input_files(
+        "#world_file", {"name": "task.toml", "mimeType": "", "buffer": TASK.encode()}
+    )
+    page.locator("#world option:checked", has_text="task").wait_for(state="attached")
+    assert page.locator("#doing").inner_text().startswith("Opened")
+    write(page, "F(4, 80)")
+    page.click("#run")
+    in_phase(page, "ended")
+    assert page.locator("#score").inner_text() == "⚑ 2/2   230   ★★★"
+    assert count(page, "2a9d6f") > 100  # the flags that were taken
+    heard = page.locator("#where").inner_text()
+    assert "Flags: 2 of 2. Points: 230. Stars: 3 of 3." in heard
+    assert "cm from the left and 50 cm from the bottom, and looks to the right." in heard
+    page.select_option("#world", "obstacles")
+    assert not page.locator("#score").is_visible()
+
+
+def test_a_crash_is_said_with_where_it_was(listening: Page) -> None:
+    listening.evaluate(
+        "() => { window.told = []; new MutationObserver(([row]) => window.told.push("
+        "row.target.textContent)).observe(document.querySelector('#where'), {childList: true}); }"
+    )
+    run(listening, CRASH)
+    first, *_, last = listening.evaluate("window.told")
+    assert first.startswith("It bumps into something. The robot is ")
+    assert last.startswith("Collisions: 1. The robot is ") and last.endswith("to the right.")

@@ -230,9 +230,29 @@ def test_keys_alone_are_enough(floor: Page) -> None:
     floor.select_option("#world_part", label="Floor")
     floor.locator("#world_width_cm").fill("100")
     press("Enter")
-    floor.uncheck("#world_border")
+    floor.uncheck("#world_has_border")
     found = saved(floor)  # the robot is still on the floor
     assert (found.width_cm, found.start.x_cm, found.has_border) == (100, 100, False)
+
+
+def test_a_handle_turns_the_robot_and_a_flag_is_put(floor: Page) -> None:
+    floor.mouse.click(*on_screen(floor, (56, 75)))
+    drag(floor, [(75, 75), (75, 90), (56, 96)])  # the handle in front of it
+    assert saved(floor).start == (56, 75, 90)
+    floor.click("#world_undo")
+    assert saved(floor).start == (56, 75, 0)
+    floor.click("#world_add_flags")
+    floor.mouse.click(*on_screen(floor, (150, 100)))
+    assert chosen(floor) == "Flag 1"
+    floor.check("#world_rests")
+    flag = saved(floor).flags[0]
+    assert (round(flag.place.x), round(flag.place.y), flag.reach_cm, flag.rests) == (
+        150, 100, 12, True,
+    )  # fmt: skip
+    floor.select_option("#world_part", label="Floor")
+    floor.locator("#world_seconds").fill("30")
+    floor.keyboard.press("Enter")
+    assert saved(floor).seconds == 30
 
 
 def test_nothing_leaves_the_floor(floor: Page) -> None:

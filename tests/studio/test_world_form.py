@@ -65,6 +65,9 @@ def test_random_forms_keep_every_number() -> None:
                       for _ in range(chance.randrange(3))],
             "lamps": [{"x_cm": number(0, 200), "y_cm": number(0, 150), "reach_cm": number(1, 300)}
                       for _ in range(chance.randrange(3))],
+            "flags": [{"x_cm": number(0, 200), "y_cm": number(0, 150), "reach_cm": number(1, 300),
+                       "rests": chance.random() < 0.5} for _ in range(chance.randrange(3))],
+            "seconds": chance.choice([0, number(1, 600)]),
         }  # fmt: skip
         assert is_near(as_tuples(form_of(read(toml_of(form), "own"))), as_tuples(form))
 

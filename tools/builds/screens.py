@@ -14,12 +14,8 @@ if TYPE_CHECKING:
     from playwright.sync_api import Page
 
 SIZES = {"laptop": (1366, 768), "small": (1024, 600), "phone": (390, 844)}
-BESIDE = {
-    "driven",
-    "lesson",
-    "real",
-    "programs",
-}  # the program, and on a phone a screen of their own
+# Beside the program; on a phone a screen of their own.
+BESIDE = {"driven", "task", "plot", "drawing", "lesson", "real", "teacher", "programs"}
 WRONG = "SI|F(-2, 80)\nB(1, 80)\n"
 
 
@@ -52,7 +48,27 @@ def _driven(page: Page) -> None:
     page.locator("html[data-phase=ended]").wait_for(state="attached")
 
 
+def _task(page: Page) -> None:
+    from tests.support.studio import write
+
+    write(page, "SI|F(1.8, 80)\nR(0.3, 60)\nF(1, 80)\n")
+    page.select_option("#world", "maze")
+    page.click("#run")
+    page.locator("html[data-phase=ended]").wait_for(state="attached")
+
+
+def _plot(page: Page) -> None:
+    page.select_option("#seen", "plot")
+
+
+def _drawing(page: Page) -> None:
+    page.select_option("#seen", "arena")
+    page.click("#world_draw")
+    page.select_option("#world_part", index=1)
+
+
 def _lesson(page: Page) -> None:
+    page.click("#world_done")
     page.click("#side_lessons")
     page.locator("#lesson_steps button").last.click()
     page.locator("#lesson_check:enabled").click()
@@ -63,14 +79,19 @@ def _real(page: Page) -> None:
     page.click("#side_real")
 
 
+def _teacher(page: Page) -> None:
+    page.click("#link_teacher summary")
+
+
 def _programs(page: Page) -> None:
     page.click("#my_programs")
     page.locator("#programs:not([data-shared=asked])").wait_for()
 
 
 SCREENS: dict[str, Callable[[Page], None]] = {
-    "start": _start, "blocks": _blocks, "wrong": _wrong, "driven": _driven, "lesson": _lesson,
-    "real": _real, "programs": _programs,
+    "start": _start, "blocks": _blocks, "wrong": _wrong, "driven": _driven, "task": _task,
+    "plot": _plot, "drawing": _drawing, "lesson": _lesson, "real": _real, "teacher": _teacher,
+    "programs": _programs,
 }  # fmt: skip
 
 

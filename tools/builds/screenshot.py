@@ -13,9 +13,11 @@ import argparse
 import json
 import re
 import sys
+from collections.abc import Callable
 from io import BytesIO
 from itertools import product
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from PIL import Image
 from PIL.PngImagePlugin import PngInfo
@@ -25,6 +27,9 @@ sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
 from tests.support import studio
 from tiniscript.robots.profile import LANGUAGES
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Page
 
 COMMAND = "python -m tools.builds.screenshot"
 PROGRAM = """\
@@ -43,10 +48,12 @@ LOOP(6)
 END_LOOP
 """
 # As blocks after its run; at a breakpoint, with values; on the start screen, where both are kept;
-# in a lesson, after a check.
-SCENES = {"": PROGRAM, ".held": COUNTED, ".start": COUNTED, ".lesson": "SI|F(5, 80)"}
+# in a lesson, after a check; and those of SHEETS.
+SCENES = {"": PROGRAM, ".held": COUNTED, ".start": COUNTED, ".lesson": "SI|F(5, 80)",
+          ".drawing": PROGRAM, ".phone": PROGRAM, ".minute": PROGRAM}  # fmt: skip
 HOLDS = 5  # the line of the breakpoint
 SIZE = {"width": 1280, "height": 760}
+GAP = 12  # pixels between the pictures of a sheet
 COLOURS = 128  # of a picture: its bytes are halved, and nobody sees it
 KEPT = "words"  # the text of the picture that has them
 SEEN = "button, label, h1, h2, .blocklyToolboxCategoryLabel"
@@ -78,6 +85,18 @@ def main(arguments: list[str] | None = None) -> int:
 
 def take(language: str, scene: str, target: Path) -> None:
     """Write the picture of a scene of the page in a language, with the words that are in it."""
+    words: list[str] = []
+    shots: list[Image.Image] = []
+
+    def look() -> None:
+        page.evaluate(studio.SETTLED)
+        words.extend(
+            page.eval_on_selector_all(
+                SEEN, "all => all.filter(one => one.checkVisibility()).map(one => one.innerText)"
+            )
+        )
+        shots.append(Image.open(BytesIO(page.screenshot())).convert("RGB"))
+
     with (
         studio.served() as server,
         studio.driver() as driver,
@@ -87,42 +106,120 @@ def take(language: str, scene: str, target: Path) -> None:
         page = pages.open("text", viewport=SIZE, device_scale_factor=1)
         page.select_option("#language", language)
         studio.write(page, PROGRAM)
-        if scene == ".start":
-            page.click("#home")
-            page.click("#start_write")
-        studio.write(page, SCENES[scene])
-        page.select_option("#speed", "20")
-        if scene == ".held":
-            page.click("#view_text")
-            numbers = page.locator(".cm-lineNumbers .cm-gutterElement")
-            numbers.filter(has_text=str(HOLDS)).last.click()
-        if scene == ".lesson":
-            page.click("#side_lessons")
-            page.locator("#lesson_next:enabled").wait_for()
-            page.locator("#lesson_steps button").last.click()
-            page.click("#lesson_check")
-            page.locator("#lesson_said[data-verdict]").wait_for()
-        else:
-            page.click("#home" if scene == ".start" else "#run")
-        phase = {".held": "paused", ".start": "off"}.get(scene, "ended")
-        page.locator(f"[data-phase={phase}]").first.wait_for(state="attached")
-        if scene != ".start":
-            page.select_option("#speed", "1")
-        if scene in ("", ".lesson"):
-            page.click("#view_blocks")
-            studio.shown(page)
-        words = page.eval_on_selector_all(
-            SEEN, "all => all.filter(one => one.checkVisibility()).map(one => one.innerText)"
-        )
-        seen = page.screenshot()
+        SHEETS.get(scene, _single)(page, scene, look)
         pages.close()
     if pages.wrong:
         raise SystemExit(f"the page said {pages.wrong[0]}")
     kept = PngInfo()
     said = sorted({row.strip() for each in words for row in each.splitlines() if row.strip()})
     kept.add_text(KEPT, json.dumps([each for each in said if is_said(each)]))
-    image = Image.open(BytesIO(seen)).convert("RGB")
-    image.quantize(COLOURS).save(target, optimize=True, pnginfo=kept)
+    _sheet(shots).quantize(COLOURS).save(target, optimize=True, pnginfo=kept)
+
+
+def _single(page: Page, scene: str, look: Callable[[], None]) -> None:
+    if scene == ".start":
+        page.click("#home")
+        page.click("#start_write")
+    studio.write(page, SCENES[scene])
+    page.select_option("#speed", "20")
+    if scene == ".held":
+        page.click("#view_text")
+        numbers = page.locator(".cm-lineNumbers .cm-gutterElement")
+        numbers.filter(has_text=str(HOLDS)).last.click()
+    if scene == ".lesson":
+        page.click("#side_lessons")
+        page.locator("#lesson_next:enabled").wait_for()
+        page.locator("#lesson_steps button").last.click()
+        page.click("#lesson_check")
+        page.locator("#lesson_said[data-verdict]").wait_for()
+    else:
+        page.click("#home" if scene == ".start" else "#run")
+    _in_phase(page, {".held": "paused", ".start": "off"}.get(scene, "ended"))
+    if scene != ".start":
+        page.select_option("#speed", "1")
+    if scene in ("", ".lesson"):
+        page.click("#view_blocks")
+        studio.shown(page)
+    look()
+
+
+def _in_phase(page: Page, phase: str) -> None:
+    page.locator(f"[data-phase={phase}]").first.wait_for(state="attached")
+
+
+def _drawing(page: Page, scene: str, look: Callable[[], None]) -> None:
+    page.select_option("#world", "parking")
+    page.click("#world_draw")
+    page.select_option("#world_part", index=1)
+    look()
+
+
+def _phone(page: Page, scene: str, look: Callable[[], None]) -> None:
+    """The program, the robot on its way, and a world that is drawn."""
+    page.select_option("#world", "maze")
+    page.select_option("#speed", "20")
+    page.click("#view_blocks")
+    studio.shown(page)
+    page.set_viewport_size({"width": 390, "height": 844})
+    look()
+    page.click("#run")
+    _in_phase(page, "ended")
+    look()
+    page.click("#world_draw")
+    page.select_option("#world_part", index=1)
+    look()
+
+
+def _minute(page: Page, scene: str, look: Callable[[], None]) -> None:
+    """The start, a robot that dances, its blocks, one of them changed, run again, and a lesson."""
+    page.click("#home")
+    look()
+    page.click("[data-begin=obstacle]")
+    _in_phase(page, "running")
+    page.wait_for_timeout(2500)
+    look()
+    page.click("#stop")
+    page.click("#view_blocks")
+    studio.shown(page)
+    page.locator(".blocklyToolboxCategory").first.click()
+    look()
+    page.keyboard.press("Escape")
+    page.click("#view_text")
+    studio.write(page, PROGRAM.replace("(0.5, 60)", "(0.9, 60)"))
+    page.click("#view_blocks")
+    page.select_option("#speed", "20")
+    page.click("#run")
+    _in_phase(page, "ended")
+    look()
+    page.select_option("#world", "maze")
+    page.click("#run")
+    page.locator("#score").wait_for()
+    page.wait_for_timeout(500)
+    look()
+    page.click("#stop")
+    page.click("#side_lessons")
+    page.locator("#lesson_check:enabled").wait_for(state="attached")
+    look()
+
+
+# Scenes of several pictures, or beside the program.
+SHEETS = {".drawing": _drawing, ".phone": _phone, ".minute": _minute}
+
+
+def _sheet(shots: list[Image.Image]) -> Image.Image:
+    """Put pictures side by side, in two rows where there are many."""
+    width, height = SIZE["width"], SIZE["height"]
+    columns, rows = (3, 2) if len(shots) > 3 else (len(shots), 1)
+    sheet = Image.new("RGB", (width, height), "#ffffff")
+    room = ((width - GAP * (columns - 1)) // columns, (height - GAP * (rows - 1)) // rows)
+    for k, shot in enumerate(shots):
+        scale = min(room[0] / shot.width, room[1] / shot.height)
+        small = shot.resize(
+            (round(shot.width * scale), round(shot.height * scale)), Image.Resampling.LANCZOS
+        )
+        x = (k % columns) * (room[0] + GAP) + (room[0] - small.width) // 2
+        sheet.paste(small, (x, (k // columns) * (room[1] + GAP) + (room[1] - small.height) // 2))
+    return sheet
 
 
 def is_said(words: str) -> bool:

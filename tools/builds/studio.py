@@ -123,6 +123,7 @@ def build(page: Path = PAGE) -> None:
         for name in PICTURES:
             shutil.copyfile(BLOCKLY / "media" / name, new / name)
         put_own(new)
+        (new / FIRMWARE).write_text("[]\n", encoding="utf-8")
         (new / LICENCES).write_text(licences(), encoding="utf-8")
         offline(new)
         stamp = {"sources": sources, "node": tools.version}
@@ -228,6 +229,7 @@ def bundle(tools: Tools, target: Path) -> None:
               "--legal-comments=none", "--external:node:*", "--external:ws",
               "--chunk-names=[name]-[hash]", "--splitting", f"--outdir={target}",
               "--alias:blockly/core=./made/blockly/blockly.mjs",
+              "--external:./targets/stub_flasher/*",  # programs that the page does not use
               f"--metafile={SOURCES / 'made' / INPUTS}")  # fmt: skip
     esbuild = "node_modules/esbuild-wasm/bin/esbuild"
     run(tools.node, esbuild, "src/main.js", "src/worker.js", *common)
@@ -239,7 +241,7 @@ def offline(target: Path) -> None:
     whole = hashlib.sha256()
     for name in names:
         whole.update(f"{name}\0".encode() + hashlib.sha256((target / name).read_bytes()).digest())
-    files = ["./", *(name for name in names if name not in ("index.html", LICENCES))]
+    files = ["./", *(name for name in names if name not in ("index.html", LICENCES, FIRMWARE))]
     head = f"const VERSION = '{whole.hexdigest()[:16]}';\nconst FILES = {json.dumps(files)};\n"
     worker = (SOURCES / "src" / "service_worker.js").read_text(encoding="utf-8")
     (target / "service_worker.js").write_text(head + worker, encoding="utf-8")
@@ -271,7 +273,7 @@ def size_rows(page: Path) -> list[str]:
     """Return what the page's files weigh, and packed as a server sends them."""
     rows, whole, packed = [], 0, 0
     for path in sorted(page.iterdir()):
-        if path.name in (STAMP, LICENCES, FIRMWARE) or path.suffix == ".hex":
+        if path.name in (STAMP, LICENCES, FIRMWARE) or path.suffix in (".hex", ".bin"):
             continue
         data = path.read_bytes()
         small = len(gzip.compress(data, 9, mtime=0))

@@ -17,11 +17,13 @@ FOLDER = Path(__file__).resolve().parent / "ready"
 NOTICE = "NOTICE.txt"
 KEPT = 30  # files in the cache; the oldest go first
 NAME_CHARACTERS = 24  # of a title, in a file's name
+IMAGES = {"esp32dev": 0x1000, "esp32c3": 0}  # where an image begins in the flash of each
+MAGIC = b"\xe9"  # its first byte
 DATA, END = "00", "01"  # in the row of a HEX file
 
 
 class Ready(NamedTuple):
-    """A firmware: an Intel HEX file."""
+    """A firmware: an Intel HEX file, or what an ESP32 has in its flash."""
 
     title: str
     board: str
@@ -57,6 +59,17 @@ def files(folder: Path = FOLDER) -> list[Ready]:
     for path in sorted(folder.glob("*-*-*.hex")):
         if is_whole(path):
             title, board, digest = path.stem.rsplit("-", 2)
+            found.append(Ready(title, board, digest, path))
+    return found
+
+
+def images(folder: Path = FOLDER) -> list[Ready]:
+    """Return what ESP32s get: whole firmware from address 0 on, as `esptool merge_bin` makes it."""
+    found = []
+    for path in sorted(folder.glob("*-*-*.bin")):
+        title, board, digest = path.stem.rsplit("-", 2)
+        head = IMAGES.get(board, 0)
+        if board in IMAGES and path.read_bytes()[head : head + 1] == MAGIC:
             found.append(Ready(title, board, digest, path))
     return found
 

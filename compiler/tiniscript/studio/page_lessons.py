@@ -24,6 +24,7 @@ from tiniscript.link.session import Session
 from tiniscript.studio.checking import profile_of
 from tiniscript.studio.simulation import NONCE, Marks, Simulation
 from tiniscript.studio.world_form import Form, form_of
+from tiniscript.virtual.score import Score
 from tiniscript.virtual.world import World
 
 MISTAKES = "mistakes"
@@ -75,7 +76,7 @@ def _shown(block: Block) -> dict[str, Any]:
 
 def world(number: int, seed: int) -> World:
     """Return the world of a lesson where a program is tried."""
-    return varied(_lesson(number), seed)
+    return varied(_lesson(number), seed)._replace(flags=(), seconds=0)  # a lesson has its own task
 
 
 def world_form(number: int, seed: int) -> Form:
@@ -152,6 +153,7 @@ class JudgedRun(Simulation):
         self.session = Session(NONCE, profile.board.baud, profile.kit.fingerprint)
         self.fault_at = None
         self.marks = marks._replace(breakpoints=())
+        self._score = Score(world(number, seed))
         self._owed_ms = 0  # that are less than a look of the judge's
         assert self.robot.started_ms is not None, "the program does not begin"
         self._end_ms = self.robot.started_ms + min(until_ms, round(lesson.seconds * 1000))

@@ -66,6 +66,7 @@ TYPES = {
     ".zip": "application/zip",
     ".txt": "text/plain; charset=utf-8",
     ".hex": "text/plain; charset=utf-8",
+    ".bin": "application/octet-stream",
     ".json": "application/json",
     ".webmanifest": "application/manifest+json",
 }
@@ -130,9 +131,9 @@ def files(folder: Path | None = None) -> dict[str, File]:
 def with_firmware(page: dict[str, File]) -> dict[str, File]:
     """Return the page with the firmware that the package brings, for boards at its browser."""
     found = dict(page)
-    brought = ready.files()
+    brought = [*ready.files(), *ready.images()]
     for each in brought:
-        found[each.path.name] = _tagged(each.path.read_bytes(), TYPES[".hex"])
+        found[each.path.name] = _tagged(each.path.read_bytes(), TYPES[each.path.suffix])
     rows = [{"title": each.title, "board": each.board, "file": each.path.name} for each in brought]
     found[FIRMWARE] = _tagged(json.dumps(rows).encode(), TYPES[".json"])
     return found

@@ -14,6 +14,7 @@ from tiniscript.link.requests import OK
 from tiniscript.studio.checking import profile_of
 from tiniscript.virtual.computer import Computer
 from tiniscript.virtual.robot import VirtualRobot
+from tiniscript.virtual.score import Score
 from tiniscript.virtual.world import World
 
 LONGEST_MS = 10_000  # for a robot to answer
@@ -48,6 +49,7 @@ class Simulation:
         """Raises WorldRefused where the robot does not fit into the world."""
         profile = profile_of(robot)
         self.robot = VirtualRobot(profile, world)
+        self._score = Score(world)
         self._computer = Computer(self.robot, NONCE)
         self.session = self._computer.session
         self.is_stopped = False
@@ -119,6 +121,7 @@ class Simulation:
             if self.held_at is not None:
                 break
             self._computer.wait(1)
+            self._score.look(self.robot)
         self._hear()
 
     def _hear(self) -> None:
@@ -164,6 +167,7 @@ class Simulation:
             "fault_at": self.fault_at if robot.fault else None,
             "bumps": robot.driving.bumps,
             "touches": touched and list(touched),
+            "score": self._score.state(),
             "actuators": [None if (value := robot.actuators.get(k)) is None else value / ONE
                           for k in range(len(kit.actuators))],
             "at": robot.at if self.held_at is None else self.held_at,

@@ -39,6 +39,9 @@ def form_of(world: World) -> Form:
                   for each in world.lines],
         "lamps": [{"x_cm": lamp.place.x, "y_cm": lamp.place.y, "reach_cm": lamp.reach_cm}
                   for lamp in world.lamps],
+        "flags": [{"x_cm": flag.place.x, "y_cm": flag.place.y, "reach_cm": flag.reach_cm,
+                   "rests": flag.rests} for flag in world.flags],
+        "seconds": world.seconds,
     }  # fmt: skip
 
 
@@ -53,9 +56,10 @@ def toml_of(form: Form) -> str:
         _table("[floor]", floor),
         _table("[start]", form["start"]),
         _table("[light]", {"ambient_percent": form["ambient_percent"]}),
+        *([_table("[task]", {"seconds": form["seconds"]})] if form["seconds"] else []),
         *(
             _table(f"[[{kind}]]", part)
-            for kind in ("walls", "boxes", "lines", "lamps")
+            for kind in ("walls", "boxes", "lines", "lamps", "flags")
             for part in form[kind]
         ),
         _table("[labels]", labels),

@@ -1,4 +1,4 @@
-"""The types of a world: a floor with walls, boxes, black lines and lamps; and why one is refused.
+"""The types of a world: a floor with walls, boxes, lines, lamps and flags; and why one is refused.
 
 Lengths are centimetres: x goes to the right and y up, from the lower left corner of the floor.
 Knows the shapes. Knows no TOML and no files (`worlds`) and no robots.
@@ -33,10 +33,19 @@ class Lamp(NamedTuple):
     reach_cm: float
 
 
+class Flag(NamedTuple):
+    """A flag: a robot takes it within `reach_cm`; where `rests`, only while it stands there."""
+
+    place: Point
+    reach_cm: float
+    rests: bool
+
+
 class World(NamedTuple):
     """A world. `walls` are rows of points, `boxes` corners; the robot begins at `start`.
 
     `ambient` is the light without lamps, 0 to 1. `labels` has the name in each language.
+    `flags` are to be taken in their order, within `seconds`, if that is not 0.
     """
 
     name: str
@@ -50,6 +59,8 @@ class World(NamedTuple):
     lines: tuple[Line, ...]
     lamps: tuple[Lamp, ...]
     ambient: float
+    flags: tuple[Flag, ...] = ()
+    seconds: float = 0
 
     def obstacles(self) -> list[Segment]:
         """Return everything that a robot cannot drive through."""

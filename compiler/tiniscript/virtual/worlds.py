@@ -13,11 +13,12 @@ from tiniscript.robots.profile import LANGUAGES, ProfileRefused, Reason
 from tiniscript.robots.refusals import shown
 from tiniscript.robots.toml_table import Table, parse_toml
 from tiniscript.virtual.geometry import Point
-from tiniscript.virtual.world import Lamp, Line, World, WorldRefused
+from tiniscript.virtual.world import Flag, Lamp, Line, World, WorldRefused
 from tiniscript.words import nearest
 
 LARGEST_CM = 2000 * ONE
-PARTS = 100  # walls, and as many boxes, lines and lamps
+PARTS = 100  # walls, and as many boxes, lines, lamps and flags
+MOST_S = 600 * ONE  # for its flags
 POINTS = 200  # of a wall or a line
 LABEL_CHARACTERS = 60
 
@@ -72,6 +73,9 @@ def _read(root: Table, name: str) -> World:
     light = root.table("light")
     ambient = _number(light, "ambient_percent", 0, 100 * ONE, default=10) / 100
     light.finish()
+    task = root.table("task")
+    seconds = _number(task, "seconds", 0, MOST_S)
+    task.finish()
     world = World(
         name,
         _labels(root.table("labels"), name),
@@ -84,6 +88,8 @@ def _read(root: Table, name: str) -> World:
         tuple(_line(each) for each in _parts(root, "lines")),
         tuple(_lamp(each) for each in _parts(root, "lamps")),
         ambient,
+        tuple(_flag(each) for each in _parts(root, "flags")),
+        seconds,
     )
     root.finish()
     return world
@@ -152,6 +158,13 @@ def _lamp(table: Table) -> Lamp:
     lamp = Lamp(_place(table), _number(table, "reach_cm", ONE, LARGEST_CM, default=100))
     table.finish()
     return lamp
+
+
+def _flag(table: Table) -> Flag:
+    reach_cm = _number(table, "reach_cm", ONE, LARGEST_CM, default=12)
+    flag = Flag(_place(table), reach_cm, table.yes_no("rests", False))
+    table.finish()
+    return flag
 
 
 def _labels(table: Table, name: str) -> dict[str, str]:

@@ -8,9 +8,11 @@ import { cornersOf } from './world_parts.js';
 /** @typedef {import('./python.js').RobotState} RobotState */
 /** @typedef {import('./world_parts.js').World} World */
 /** @typedef {import('./world_parts.js').Place} Place */
+/** @typedef {{points: Place[], point: number, handle: Place | null}} Mark the points that can be taken, which one is, and what turns it */
 /** @typedef {{x_cm: number, y_cm: number, is_flag: boolean, radius_cm?: number, around?: Place[]}} Goal */
 
 const MARGIN_CM = 4;
+const GRID_CM = 10; // while a world is changed
 const FINGER = 22; // pixels that a finger may miss
 const MOST_POINTS = 5000; // of a way
 const MOST_WAYS = 4; // of runs before, which are pale
@@ -30,10 +32,11 @@ export class Arena {
   #rolled = [0, 0];
   #seen_ms = 0; // of the robot's time
   #beeps_until_ms = 0;
+  #taken = 0; // flags
   /** What it has shown last, and when. @type {[string, number]} */
   #said = ['', 0];
   #scale = 1; // pixels of the canvas for a centimetre
-  /** What is chosen to be changed. @type {{points: Place[], point: number} | null} */
+  /** What is chosen to be changed. @type {Mark | null} */
   #mark = null;
 
   /** @param {HTMLCanvasElement} canvas */
@@ -58,6 +61,7 @@ export class Arena {
     this.#ways = [...this.#ways.filter((way) => way.length > 1), []].slice(-1 - MOST_WAYS);
     this.#rolled = [0, 0];
     this.#seen_ms = this.#beeps_until_ms = 0;
+    this.#taken = 0;
     this.#said = ['', 0];
   }
 
@@ -79,6 +83,7 @@ export class Arena {
     const passed_s = Math.max(0, state.now_ms - this.#seen_ms) / 1000;
     const full = (this.#robot?.speed_cm_s ?? 0) / 100;
     this.#seen_ms = state.now_ms;
+    this.#taken = state.score?.taken ?? 0;
     this.#rolled[0] += state.motors[0] * full * passed_s;
     this.#rolled[1] += state.motors[1] * full * passed_s;
   }
@@ -100,7 +105,7 @@ export class Arena {
     this.#canvas.animate(ways.map((translate) => ({ translate })), SHAKE_MS);
   }
 
-  /** @param {{points: Place[], point: number} | null} mark the points that can be taken, and which one is */
+  /** @param {Mark | null} mark */
   mark(mark) {
     this.#mark = mark;
   }
@@ -159,7 +164,9 @@ export class Arena {
     pen.fillStyle = '#fffdf6';
     pen.fillRect(0, 0, world.width_cm, world.height_cm);
     pen.lineCap = pen.lineJoin = 'round';
+    if (this.#mark) this.#drawGrid(world);
     for (const goal of this.#goals) this.#drawGoal(goal);
+    world.flags.forEach((flag, k) => this.#drawFlag(flag, k));
     for (const line of world.lines) path(pen, line.points, '#20242a', line.width_cm);
     for (const { x_cm: x, y_cm: y } of world.lamps) {
       dot(pen, x, y, 9, '#ffe9a3');
@@ -178,6 +185,16 @@ export class Arena {
     }
   }
 
+  /** @param {World} world */
+  #drawGrid({ width_cm, height_cm }) {
+    const pen = this.#context;
+    for (let at = GRID_CM; at < Math.max(width_cm, height_cm); at += GRID_CM) {
+      const color = at % (5 * GRID_CM) ? '#eee8d8' : '#d9cfb4';
+      if (at < width_cm) path(pen, [[at, 0], [at, height_cm]], color, 0.4);
+      if (at < height_cm) path(pen, [[0, at], [width_cm, at]], color, 0.4);
+    }
+  }
+
   /** @param {Goal} goal */
   #drawGoal({ x_cm: x, y_cm: y, is_flag, radius_cm, around }) {
     const pen = this.#context;
@@ -190,10 +207,45 @@ export class Arena {
       pen.stroke();
     }
     pen.setLineDash([]);
-    if (!is_flag) return;
-    path(pen, [[x, y], [x, y + 13], [x + 10, y + 9.5], [x, y + 6]], '#0d6040', 1);
-    pen.fillStyle = '#ffd84d';
-    pen.fill();
+    if (is_flag) this.#drawCloth(x, y, '#ffd84d');
+  }
+
+  /** A flag of the world: taken, the next one, or one of those behind it. @param {import('./world_parts.js').Flag} flag @param {number} k */
+  #drawFlag({ x_cm: x, y_cm: y, reach_cm, rests }, k) {
+    const pen = this.#context;
+    const isTaken = k < this.#taken, isNext = k === this.#taken;
+    dot(pen, x, y, reach_cm, isTaken ? '#2a9d6f44' : isNext ? '#ffd84d77' : '#c8d2dc66');
+    if (!isTaken) pen.setLineDash(rests ? [] : [4, 2.5]);
+    pen.strokeStyle = isTaken || isNext ? '#0d6040' : '#66727e';
+    pen.lineWidth = rests ? 1.4 : 0.8;
+    pen.stroke();
+    pen.setLineDash([]);
+    if (isTaken) path(pen, [[x - 5, y], [x - 1.5, y - 4], [x + 6, y + 5]], '#0d6040', 2.4);
+    else {
+      this.#drawCloth(x, y, isNext ? '#ffd84d' : '#fff');
+      this.#drawNumber(x + 3.6, y + 9.6, String(k + 1));
+    }
+  }
+
+  /** @param {number} x @param {number} y of its foot @param {string} color */
+  #drawCloth(x, y, color) {
+    path(this.#context, [[x, y], [x, y + 14], [x + 11, y + 10], [x, y + 6]], '#0d6040', 1);
+    this.#context.fillStyle = color;
+    this.#context.fill();
+  }
+
+  /** @param {number} x @param {number} y its middle @param {string} number */
+  #drawNumber(x, y, number) {
+    const pen = this.#context;
+    pen.save();
+    pen.translate(x, y);
+    pen.scale(1, -1);
+    pen.font = '700 6px system-ui, sans-serif';
+    pen.textAlign = 'center';
+    pen.textBaseline = 'middle';
+    pen.fillStyle = '#123b63';
+    pen.fillText(number, 0, 0);
+    pen.restore();
   }
 
   /**
@@ -259,6 +311,16 @@ export class Arena {
     const pen = this.#context;
     path(pen, mark.points, '#b0186b', 0.6);
     const radius = (7 * (window.devicePixelRatio || 1)) / this.#scale;
+    const [middle] = mark.points, { handle } = mark;
+    if (handle && middle) {
+      path(pen, [middle, handle], '#b0186b', 0.6);
+      dot(pen, ...handle, radius * 1.3, '#b0186b');
+      pen.beginPath();
+      pen.arc(...handle, radius * 0.7, 0.6, 5.4);
+      pen.strokeStyle = '#fff';
+      pen.lineWidth = radius / 4;
+      pen.stroke();
+    }
     mark.points.forEach(([x, y], k) => {
       dot(pen, x, y, radius, '#fff');
       dot(pen, x, y, radius * 0.75, mark.point < 0 || k === mark.point ? '#b0186b' : '#7c8894');

@@ -130,6 +130,7 @@ export class Blocks {
     });
     workspace.MAX_UNDO = 0;
     hideMeasure();
+    hideConnections(workspace.getFlyout()?.getWorkspace().getCanvas());
     workspace.addChangeListener((event) => {
       if (event instanceof Blockly.Events.BubbleOpen && !event.isOpen) this.#closed = this.#saidAt(event.blockId);
       if (event.isUiEvent || event.type === Blockly.Events.FINISHED_LOADING) return;
@@ -373,6 +374,14 @@ function inOrder(blocks) {
 /** @param {string} message */
 function folded(message) {
   return Blockly.utils.string.wrap(message, LONGEST_TIP);
+}
+
+/** In a list of blocks to take there is nothing else: where they would be joined is no part of it. @param {SVGElement | undefined} list */
+function hideConnections(list) {
+  if (!list) return;
+  new MutationObserver(() => {
+    for (const each of list.querySelectorAll('.blocklyHighlightedConnectionPath')) each.setAttribute('aria-hidden', 'true');
+  }).observe(list, { childList: true, subtree: true });
 }
 
 /** Hides what Blockly measures texts with, which it makes when it first needs it. */

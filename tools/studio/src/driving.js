@@ -13,6 +13,7 @@ import { text } from './texts.js';
 import { nameOf, ROBOTS } from './words.js';
 import { OWN_WORLD } from './work.js';
 import { WorldChoice } from './world_choice.js';
+import { starsShown, Where } from './where.js';
 import { WorldDrawing } from './world_drawing.js';
 
 /** @typedef {import('./python.js').Checked} Checked */
@@ -36,6 +37,7 @@ export class Driving {
   #arena = new Arena(element('arena', HTMLCanvasElement));
   #plot = new Plot(element('plot', HTMLCanvasElement));
   #sounds = new Sounds();
+  #where = new Where();
   #bumps = 0; // that were seen
   #shown = ''; // what SHOW has shown last
   #seen = element('seen', HTMLSelectElement);
@@ -340,6 +342,8 @@ export class Driving {
     this.#push.hidden = !state?.is_waiting || phase !== 'running';
     element('doing', HTMLElement).textContent = this.#note || this.#drawing.said || this.#doing();
     element('trace', HTMLElement).textContent = trace.slice(-SHOWN).join('\n');
+    this.#showScore(state?.score ?? null);
+    this.#where.tell(state, phase);
     this.#showValues();
     this.#plot.draw();
     this.#arena.draw(state);
@@ -394,7 +398,7 @@ export class Driving {
     const { phase, state, isStopping, failure } = this.#simulator;
     if (failure) return failure;
     if (isStopping) return text('robot_stopping');
-    if (phase === 'off' || !state) return text('robot_off');
+    if (phase === 'off' || !state) return this.#task() || text('robot_off');
     if (state.fault) {
       const what = faultSaid(state.fault);
       const line = this.#place()?.line;
@@ -408,6 +412,23 @@ export class Driving {
     return text(state.is_waiting ? 'robot_waiting' : 'robot_running');
   }
 
+  /** What is to be done in this world, if there is such a thing. */
+  #task() {
+    const { flags, seconds } = this.#shapes;
+    if (!flags.length) return '';
+    return text(seconds ? 'task_in_time' : 'task', { count: flags.length, seconds });
+  }
+
+  /** @param {import('./python.js').RobotState['score']} score */
+  #showScore(score) {
+    const place = element('score', HTMLElement);
+    place.hidden = !score;
+    if (!score) return;
+    const { taken, of, points, stars } = score;
+    place.textContent = `⚑ ${taken}/${of}   ${points}   ${starsShown(stars)}`;
+    place.classList.toggle('whole', stars > 0);
+  }
+
   #showValues() {
     const { state } = this.#simulator;
     const seconds = state ? ((state.now_ms - (state.began_ms ?? state.now_ms)) / 1000).toFixed(1) : '–';
@@ -415,14 +436,15 @@ export class Driving {
       [text('time'), state ? `${seconds} s` : '–'],
       [text('motors'), state ? state.motors.join('  ') : '–'],
       [text('bumps'), state ? String(state.bumps) : '–'],
-      ...this.#sensors().map((device, k) => [nameOf(device), state ? measured(device, state.readings[k]?.text ?? '') : '–']),
+      ...this.#sensors().map((device, k) => [nameOf(device), state ? measured(device, state.readings[k]?.text ?? '') : '–', partOf(device, state?.readings[k]?.value)]),
       ...this.#variables.map(({ name, is_yes_no }, k) => [name, written(state?.variables[k], is_yes_no)]),
       ...(this.#shown ? [['SHOW', this.#shown]] : []),
     ];
     element('values', HTMLElement).replaceChildren(
-      ...rows.map(([name = '', value = '']) => {
+      ...rows.map(([name = '', value = '', part = '']) => {
         const row = document.createElement('div');
-        row.className = name.length > SHORT ? 'wide' : '';
+        row.className = name.length > SHORT || part ? 'wide' : '';
+        if (part) row.style.setProperty('--part', part);
         const term = document.createElement('dt');
         const found = document.createElement('dd');
         term.textContent = name;
@@ -432,6 +454,12 @@ export class Driving {
       }),
     );
   }
+}
+
+/** How much of its range a reading is, for a bar. @param {typeof ROBOTS[number]['devices'][number]} device @param {number} [value] */
+function partOf({ arguments: [range] }, value) {
+  if (!range || value === undefined || range.high <= range.low) return '0%';
+  return `${Math.round((100 * (value - range.low)) / (range.high - range.low))}%`;
 }
 
 /**

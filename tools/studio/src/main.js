@@ -9,6 +9,7 @@ import { whenOffline } from './offline.js';
 import { Phone } from './phone.js';
 import { Programs } from './programs.js';
 import { Python } from './python.js';
+import { pictured, robotPicture } from './pictures_of.js';
 import { bringsProgram } from './links.js';
 import { currentLanguage, setLanguage, text } from './texts.js';
 import { Driving } from './driving.js';
@@ -225,7 +226,7 @@ function repair(finding) {
 function showRobots() {
   const language = currentLanguage();
   robots.replaceChildren(
-    ...ROBOTS.map((robot) => new Option(`${robot.labels[language]} (${robot.name})`, robot.name)),
+    ...ROBOTS.map((robot) => pictured(robot.labels[language], robot.name, robotPicture(robot))),
   );
   robots.value = work.robot;
 }

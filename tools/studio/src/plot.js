@@ -3,7 +3,8 @@
 const MOST = 2000; // samples; then every other one is forgotten
 const LEAST_ROW = 54; // pixels for one value
 const LEFT = 6;
-const COLORS = ['#0b4f9e', '#a8200f', '#0d6040', '#7a4b00', '#5b2a86', '#00616b'];
+const LIGHT = { rule: '#c8d2dc', said: '#4a5663', behind: 'rgb(255 255 255 / 80%)', rows: ['#0b4f9e', '#a8200f', '#0d6040', '#7a4b00', '#5b2a86', '#00616b'] };
+const DARK = { rule: '#3b4d5f', said: '#b8c5d1', behind: 'rgb(27 40 54 / 80%)', rows: ['#8cc0ff', '#ff9e90', '#62d49d', '#ffc76b', '#c9a6ff', '#6fd6e0'] };
 
 /** @typedef {{name: string, value: number | undefined}} Value */
 
@@ -11,6 +12,7 @@ export class Plot {
   #canvas;
   /** @type {{at_ms: number, values: Map<string, number>}[]} */
   #samples = [];
+  #colors = LIGHT;
   #every = 1; // of so many samples one is kept
   #left = 0; // samples until the next one that is kept
 
@@ -72,8 +74,9 @@ export class Plot {
     /** @param {number} at_ms */
     const x = (at_ms) => LEFT + ((at_ms - from) / (until - from)) * wide;
     const step = niceStep((until - from) / Math.max(2, wide / 70));
-    pen.strokeStyle = '#c8d2dc';
-    pen.fillStyle = '#4a5663';
+    this.#colors = document.documentElement.hasAttribute('data-dark') ? DARK : LIGHT;
+    pen.strokeStyle = this.#colors.rule;
+    pen.fillStyle = this.#colors.said;
     pen.lineWidth = 1;
     for (let at = Math.ceil(from / step) * step; at <= until; at += step) {
       pen.beginPath();
@@ -83,7 +86,7 @@ export class Plot {
       const label = `${rounded(at / 1000)} s`;
       pen.fillText(label, Math.min(x(at) + 2, LEFT + wide - pen.measureText(label).width), names.length * row + 14);
     }
-    names.forEach((name, k) => this.#drawRow(pen, name, k * row, row, x, COLORS[k % COLORS.length] ?? '#000'));
+    names.forEach((name, k) => this.#drawRow(pen, name, k * row, row, x, this.#colors.rows[k % this.#colors.rows.length] ?? ''));
   }
 
   /**
@@ -109,7 +112,7 @@ export class Plot {
     const middle = high === low ? 0.5 : 0;
     /** @param {number} value */
     const y = (value) => top + row - 6 - ((value - low) / span + middle) * (row - 26);
-    pen.strokeStyle = '#c8d2dc';
+    pen.strokeStyle = this.#colors.rule;
     pen.lineWidth = 1;
     pen.beginPath();
     pen.moveTo(0, top + row - 0.5);
@@ -132,7 +135,7 @@ export class Plot {
     pen.stroke();
     const range = low === high ? rounded(last) : `${rounded(low)} – ${rounded(high)}`;
     const label = `${name}: ${rounded(last)}  (${range})`;
-    pen.fillStyle = 'rgb(255 255 255 / 80%)';
+    pen.fillStyle = this.#colors.behind;
     pen.fillRect(LEFT, top + 2, pen.measureText(label).width + 6, 16);
     pen.fillStyle = color;
     pen.fillText(label, LEFT + 3, top + 14);

@@ -45,6 +45,7 @@
  * @property {string} fault
  * @property {number} bumps
  * @property {[number, number] | null} touches where it touches something
+ * @property {{taken: number, of: number, points: number, stars: number} | null} score of the flags of its world
  * @property {(number | null)[]} actuators null of one that has not been set, or is released
  * @property {number | null} at where the program is, or what it does next where it is held
  * @property {number[]} places where each of its tasks is

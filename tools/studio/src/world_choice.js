@@ -2,6 +2,7 @@
 // another part of the page brings.
 
 import { element } from './elements.js';
+import { pictured, worldPicture } from './pictures_of.js';
 import { currentLanguage, text } from './texts.js';
 import { WORLDS } from './words.js';
 import { OwnWorlds } from './own_worlds.js';
@@ -131,9 +132,9 @@ export class WorldChoice {
     /** @param {World} world */
     const label = (world) => world.labels[language].trim() || text('world_own');
     this.#choice.replaceChildren(
-      ...WORLDS.map((world) => new Option(world.labels[language], world.name)),
-      ...(newest ? [new Option(label(newest), OWN_WORLD)] : []),
-      ...before.map((world, k) => new Option(text(k ? 'world_before_more' : 'world_before', { world: label(world), number: k + 1 }), `${BEFORE}${k}`)),
+      ...WORLDS.map((world) => pictured(world.labels[language], world.name, worldPicture(world))),
+      ...(newest ? [pictured(label(newest), OWN_WORLD, worldPicture(newest))] : []),
+      ...before.map((world, k) => pictured(text(k ? 'world_before_more' : 'world_before', { world: label(world), number: k + 1 }), `${BEFORE}${k}`, worldPicture(world))),
       ...(brought ? [new Option(brought.label(), BROUGHT)] : []),
     );
     this.#choice.value = brought ? BROUGHT : this.isOwn ? OWN_WORLD : this.shapes.name;

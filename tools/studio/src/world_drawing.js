@@ -6,7 +6,7 @@ import { bytesOf, download } from './files.js';
 import { ownCopy } from './own_worlds.js';
 import { currentLanguage, text } from './texts.js';
 import {
-  FLOOR, isSame, KINDS, moved, NUMBERS, onFloor, partAt, partsOf, pointAt, pointsOf, START, turnedPart,
+  FLOOR, handleOf, isSame, KINDS, moved, NUMBERS, onFloor, partAt, partsOf, pointAt, pointsOf, START, turnedBy, turnedPart,
   valueOf, withDrawn, without, withPoint,
 } from './world_parts.js';
 import { nameOf, showNumbers } from './world_numbers.js';
@@ -16,7 +16,7 @@ import { nameOf, showNumbers } from './world_numbers.js';
 /** @typedef {import('./world_parts.js').Kind} Kind */
 /** @typedef {import('./world_parts.js').Place} Place */
 /** @typedef {import('./world_choice.js').Page} Page */
-/** @typedef {{how: 'move' | 'draw', part: Part, point: number, from: Place, before: World, base: World, way: Place[]}} Drag `base`: what is moved */
+/** @typedef {{how: 'move' | 'draw' | 'turn', part: Part, point: number, from: Place, before: World, base: World, way: Place[]}} Drag `base`: what is moved */
 
 const STEP_CM = 5;
 const FINE_CM = 1;
@@ -163,7 +163,7 @@ export class WorldDrawing {
     const place = value.points?.[this.#point];
     const numbers = place ? `${text('world_point')} ${this.#point + 1}: ${place.join(', ')}`
       : NUMBERS[this.#chosen.kind].slice(0, SPOKEN).map(([key]) => `${text(`world_${key}`)} ${value[key]}`).join(', ');
-    return text('world_chosen', { part: nameOf(this.#chosen), numbers });
+    return numbers ? text('world_chosen', { part: nameOf(this.#chosen), numbers }) : nameOf(this.#chosen);
   }
 
   /** A change that can be undone. @param {World} world */
@@ -288,6 +288,11 @@ export class WorldDrawing {
     }
     const own = valueOf(before, this.#chosen).points ?? [];
     const handle = pointAt(own, place, reach_cm / 2);
+    const turning = handleOf(before, this.#chosen);
+    if (turning && Math.hypot(turning[0] - place[0], turning[1] - place[1]) < reach_cm / 2) {
+      this.#begin(event, { how: 'turn', part: this.#chosen, point: -1, from: turning, before, base: before, way: [] });
+      return;
+    }
     const part = handle >= 0 ? this.#chosen : partAt(before, place, reach_cm);
     this.#choose(part ?? FLOOR, handle);
     if (part) this.#begin(event, { how: 'move', part, point: handle, from: place, before, base: before, way: [] });
@@ -308,8 +313,13 @@ export class WorldDrawing {
     const { before, base, from } = drag;
     if (drag.how === 'draw') {
       drag.way.push(onFloor(place, before));
-      this.#arena.mark({ points: drag.way, point: -1 });
+      this.#arena.mark({ points: drag.way, point: -1, handle: null });
       this.#page.tell();
+      return;
+    }
+    if (drag.how === 'turn') {
+      this.#page.preview(turnedBy(base, drag.part, from, place));
+      this.#mark();
       return;
     }
     const way = [Math.round(place[0] - from[0]), Math.round(place[1] - from[1])];
@@ -334,7 +344,7 @@ export class WorldDrawing {
   letGo() {
     const drag = this.#drag;
     this.#drag = null;
-    if (drag?.how === 'move') this.#page.preview(drag.before);
+    if (drag && drag.how !== 'draw') this.#page.preview(drag.before);
     return drag !== null;
   }
 
@@ -377,7 +387,8 @@ export class WorldDrawing {
   }
 
   #mark() {
-    this.#arena.mark(this.isOn ? { points: pointsOf(this.#page.world(), this.#chosen), point: this.#point } : null);
+    const world = this.#page.world();
+    this.#arena.mark(this.isOn ? { points: pointsOf(world, this.#chosen), point: this.#point, handle: handleOf(world, this.#chosen) } : null);
     this.#page.tell();
   }
 
@@ -389,7 +400,7 @@ export class WorldDrawing {
     this.#parts.selectedIndex = parts.findIndex((part) => isSame(part, this.#chosen));
     const hasPoints = kind === 'walls' || kind === 'lines';
     element('world_point', HTMLElement).hidden = element('world_add_point', HTMLElement).hidden = !hasPoints;
-    for (const name of ['world_turn_left', 'world_turn_right']) element(name, HTMLButtonElement).disabled = kind === 'floor' || kind === 'lamps';
+    for (const name of ['world_turn_left', 'world_turn_right']) element(name, HTMLButtonElement).disabled = !('heading' in valueOf(world, this.#chosen)) && !hasPoints;
     element('world_delete', HTMLButtonElement).disabled = kind === 'floor' || kind === 'start';
     element('world_undo', HTMLButtonElement).disabled = !this.#before.length;
     element('world_redo', HTMLButtonElement).disabled = !this.#after.length;

@@ -1,7 +1,7 @@
 // The numbers of a part of a world, as inputs for whoever wants them exactly.
 
 import { text } from './texts.js';
-import { NUMBERS, valueOf, withNumber } from './world_parts.js';
+import { CHOICES, NUMBERS, valueOf, withChoice, withNumber } from './world_parts.js';
 
 /** @typedef {import('./world_parts.js').World} World */
 /** @typedef {import('./world_parts.js').Part} Part */
@@ -25,11 +25,12 @@ export function showNumbers(place, world, part, change) {
     });
     return labelled(text(`world_${key}`), input);
   });
-  if (part.kind === 'floor') {
-    const border = document.createElement('input');
-    Object.assign(border, { type: 'checkbox', checked: world.has_border, id: 'world_border' });
-    border.addEventListener('change', () => change({ ...world, has_border: border.checked }));
-    rows.push(labelled(text('world_border'), border));
+  const choice = CHOICES[part.kind];
+  if (choice) {
+    const input = document.createElement('input');
+    Object.assign(input, { type: 'checkbox', checked: value[choice], id: `world_${choice}` });
+    input.addEventListener('change', () => change(withChoice(world, part, choice, input.checked)));
+    rows.push(labelled(text(`world_${choice}`), input));
   }
   const focused = place.contains(document.activeElement) ? document.activeElement?.id : '';
   place.replaceChildren(...rows);

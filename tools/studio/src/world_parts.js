@@ -10,6 +10,7 @@ import { WORLD_LIMITS } from './words.js';
 /** @typedef {{x_cm: number, y_cm: number, length_cm: number, width_cm: number, heading: number}} Box */
 /** @typedef {{points: Place[], width_cm: number}} Line */
 /** @typedef {{x_cm: number, y_cm: number, reach_cm: number}} Lamp */
+/** @typedef {{x_cm: number, y_cm: number, reach_cm: number, rests: boolean}} Flag `rests`: the robot is to stand there */
 /**
  * @typedef {object} World
  * @property {string} name
@@ -23,12 +24,14 @@ import { WORLD_LIMITS } from './words.js';
  * @property {Box[]} boxes
  * @property {Line[]} lines
  * @property {Lamp[]} lamps
+ * @property {Flag[]} flags to be taken in their order
+ * @property {number} seconds for them; 0 is as long as it takes
  */
-/** @typedef {'walls' | 'boxes' | 'lines' | 'lamps'} Kind of what can be added */
+/** @typedef {'walls' | 'boxes' | 'lines' | 'lamps' | 'flags'} Kind of what can be added */
 /** @typedef {{kind: Kind | 'floor' | 'start', index: number}} Part */
 
 /** @type {readonly Kind[]} */
-export const KINDS = ['walls', 'boxes', 'lines', 'lamps'];
+export const KINDS = ['walls', 'boxes', 'lines', 'lamps', 'flags'];
 /** @type {Part} */
 export const FLOOR = { kind: 'floor', index: 0 };
 /** @type {Part} */
@@ -36,6 +39,8 @@ export const START = { kind: 'start', index: 0 };
 const LARGEST_CM = 2000;
 const LEAST_FLOOR_CM = 20;
 const ROBOT_CM = 9; // from its middle: where it is taken
+const HANDLE_CM = 10; // from the front of a part to what turns it
+const TURNED_TO = 5; // degrees
 const SMALLEST_CM = 1; // of what is drawn
 const TAP_CM = 3; // a finger that moves less has not moved
 const ROUGH_CM = 1; // how far a line may be from the way of a finger
@@ -45,13 +50,17 @@ const ROUGH_CM = 1; // how far a line may be from the way of a finger
  * @type {Record<Part['kind'], [string, number, number][]>}
  */
 export const NUMBERS = {
-  floor: [['width_cm', LEAST_FLOOR_CM, LARGEST_CM], ['height_cm', LEAST_FLOOR_CM, LARGEST_CM], ['ambient_percent', 0, 100]],
+  floor: [['width_cm', LEAST_FLOOR_CM, LARGEST_CM], ['height_cm', LEAST_FLOOR_CM, LARGEST_CM], ['ambient_percent', 0, 100], ['seconds', 0, 600]],
   start: [['x_cm', 0, LARGEST_CM], ['y_cm', 0, LARGEST_CM], ['heading', -360, 360]],
   walls: [],
   boxes: [['x_cm', 0, LARGEST_CM], ['y_cm', 0, LARGEST_CM], ['length_cm', SMALLEST_CM, LARGEST_CM], ['width_cm', SMALLEST_CM, LARGEST_CM], ['heading', -360, 360]],
   lines: [['width_cm', 0.1, 100]],
   lamps: [['x_cm', 0, LARGEST_CM], ['y_cm', 0, LARGEST_CM], ['reach_cm', 1, LARGEST_CM]],
+  flags: [['x_cm', 0, LARGEST_CM], ['y_cm', 0, LARGEST_CM], ['reach_cm', 1, LARGEST_CM]],
 };
+
+/** What a kind of part is, or not: its key. @type {Partial<Record<Part['kind'], string>>} */
+export const CHOICES = { floor: 'has_border', flags: 'rests' };
 
 /** @param {World} world @returns {Part[]} all of its parts */
 export function partsOf(world) {
@@ -132,8 +141,24 @@ export function turnedPart(world, part, degrees) {
     const [x, y] = turned(each, middle, degrees);
     return [neat(x), neat(y)];
   });
-  const isOnFloor = points.every(([x, y]) => x >= 0 && y >= 0 && x <= world.width_cm && y <= world.height_cm);
-  return isOnFloor ? withValue(world, part, { ...value, points }) : world;
+  return points.every((each) => isOnFloor(each, world)) ? withValue(world, part, { ...value, points }) : world;
+}
+
+/** Where a part that has a front is taken to turn it: in front of it, or behind it at the edge. @param {World} world @param {Part} part @returns {Place | null} */
+export function handleOf(world, part) {
+  const { x_cm = 0, y_cm = 0, heading, length_cm = ROBOT_CM * 2 } = valueOf(world, part);
+  if (heading === undefined) return null;
+  const far = length_cm / 2 + HANDLE_CM;
+  const [ahead, behind] = [far, -far].map((way) => turned([x_cm + way, y_cm], [x_cm, y_cm], heading));
+  return ahead && behind && !isOnFloor(ahead, world) && isOnFloor(behind, world) ? behind : ahead ?? null;
+}
+
+/** A part whose handle was taken to a place. @param {World} world @param {Part} part @param {Place} from where its handle was @param {Place} to @returns {World} */
+export function turnedBy(world, part, from, to) {
+  const { x_cm, y_cm, heading } = valueOf(world, part);
+  const [before, now] = [from, to].map(([x, y]) => (Math.atan2(y - y_cm, x - x_cm) * 180) / Math.PI);
+  const wanted = Math.round((heading + (now ?? 0) - (before ?? 0)) / TURNED_TO) * TURNED_TO;
+  return withValue(world, part, { ...valueOf(world, part), heading: around(wanted) });
 }
 
 /** @param {World} world @param {Part} part @returns {World} */
@@ -151,6 +176,11 @@ export function withNumber(world, part, key, number) {
   const set = Math.max(low, Math.min(most, Math.round(number * 10) / 10));
   const changed = withValue(world, part, { ...valueOf(world, part), [key]: set });
   return moved(changed, START, ...toFloor(changed));
+}
+
+/** @param {World} world @param {Part} part @param {string} key @param {boolean} isSo @returns {World} */
+export function withChoice(world, part, key, isSo) {
+  return withValue(world, part, { ...valueOf(world, part), [key]: isSo });
 }
 
 /** How far the start has to go to be on the floor. @param {World} world @returns {Place} */
@@ -181,6 +211,7 @@ export function withDrawn(world, kind, way) {
     walls: () => ({ points: across }),
     lines: () => ({ points: isTap ? across : simple(places), width_cm: 2 }),
     lamps: () => ({ x_cm: from[0], y_cm: from[1], reach_cm: 100 }),
+    flags: () => ({ x_cm: from[0], y_cm: from[1], reach_cm: 12, rests: false }),
     boxes: () => ({ x_cm: neat((from[0] + to[0]) / 2), y_cm: neat((from[1] + to[1]) / 2), length_cm: width_cm, width_cm: height_cm, heading: 0 }),
   }[kind]();
   return { ...world, [kind]: [...world[kind], part] };
@@ -224,7 +255,7 @@ export function partAt(world, place, reach_cm) {
   return near[0]?.[0] ?? null;
 }
 
-const ORDER = ['start', 'lamps', 'walls', 'boxes', 'lines'];
+const ORDER = ['start', 'flags', 'lamps', 'walls', 'boxes', 'lines'];
 
 /** @param {Place[]} points @param {Place} place @param {number} reach_cm @returns {number} the point that is nearest, or -1 */
 export function pointAt(points, place, reach_cm) {
@@ -283,6 +314,11 @@ function middleOf(points) {
 function turned([x, y], [midX, midY], degrees) {
   const cos = Math.cos((degrees * Math.PI) / 180), sin = Math.sin((degrees * Math.PI) / 180);
   return [midX + (x - midX) * cos - (y - midY) * sin, midY + (x - midX) * sin + (y - midY) * cos];
+}
+
+/** @param {Place} place @param {World} world */
+function isOnFloor([x, y], { width_cm, height_cm }) {
+  return x >= 0 && y >= 0 && x <= width_cm && y <= height_cm;
 }
 
 /** @param {Place} place @param {World} world @returns {Place} the nearest on the floor */

@@ -9,8 +9,9 @@ import { BOARDS, flash } from './stk500.js';
 
 /** @typedef {{title: string, board: string, file: string}} Firmware */
 
-const FLASH_BYTES = 0x8000;
-const MOST_CHARACTERS = 200_000; // of a file; a full flash has 92,000
+const FLASH_BYTES = 0x8000; // of an Uno or a Nano
+const MOST_BYTES = 0x50_0000; // of a file; a full flash of an ESP32 has 4 MB
+const ESP32S = ['esp32dev', 'esp32c3'];
 
 /**
  * Writes the firmware of a robot, or that of a file; rejects with a Failed.
@@ -21,10 +22,16 @@ const MOST_CHARACTERS = 200_000; // of a file; a full flash has 92,000
  * @param {AbortSignal} cancelled
  */
 export async function flashBoard(port, board, which, progress, cancelled) {
-  const text = which instanceof File ? await which.slice(0, MOST_CHARACTERS).text() : await fetched(which, board);
+  const found = which instanceof File ? await which.slice(0, MOST_BYTES).arrayBuffer() : await fetched(which, board);
+  const data = new Uint8Array(found);
+  if (ESP32S.includes(board)) {
+    const { flashEsp32 } = await import('./esp32.js');
+    await flashEsp32(port, board, data, progress, cancelled);
+    return;
+  }
   let firmware;
   try {
-    firmware = readHex(text, FLASH_BYTES);
+    firmware = readHex(new TextDecoder().decode(data), FLASH_BYTES);
   } catch (why) {
     if (why instanceof BadHex) throw new Failed('flash_bad_file');
     throw why;
@@ -32,20 +39,25 @@ export async function flashBoard(port, board, which, progress, cancelled) {
   await flash((baud) => new SerialPort(port, baud), BOARDS[board] ?? [], firmware, progress, cancelled);
 }
 
+/** What there is beside this page. @returns {Promise<Firmware[]>} */
+export async function firmwares() {
+  return JSON.parse(new TextDecoder().decode(await fetchedBytes('firmware.json')));
+}
+
 /** @param {{robot: string, language: string}} which @param {string} board */
 async function fetched({ robot, language }, board) {
-  const list = /** @type {Firmware[]} */ (JSON.parse(await fetchedText('firmware.json')));
+  const list = await firmwares();
   const titles = [`${robot}_${language}`, robot];
   const found = titles.map((title) => list.find((each) => each.title === title && each.board === board)).find(Boolean);
   if (!found) throw new Failed('flash_none');
-  return fetchedText(found.file);
+  return fetchedBytes(found.file);
 }
 
 /** @param {string} name */
-async function fetchedText(name) {
+async function fetchedBytes(name) {
   try {
     const answer = await fetch(`./${encodeURIComponent(name)}`);
-    if (answer.ok) return await answer.text();
+    if (answer.ok) return await answer.arrayBuffer();
   } catch {
     // no network, or a service worker without it
   }

@@ -1,7 +1,7 @@
 // The part of the page that puts a firmware on a board: which file, how far it is, and its end.
 
 import { element } from '../elements.js';
-import { chosenPort } from './serial.js';
+import { chosenPort, hasSerial } from './serial.js';
 import { shown } from './said.js';
 import { Failed } from './way.js';
 import { currentLanguage } from '../texts.js';
@@ -16,6 +16,9 @@ import { currentLanguage } from '../texts.js';
  * @property {(port: any) => Promise<void>} meet the robot that the board is then
  */
 
+/** What people call the boards that can be written from here. @type {Record<string, string>} */
+const NAMES = { uno: 'Uno', nano: 'Nano', esp32dev: 'ESP32', esp32c3: 'ESP32-C3' };
+
 export class Flashing {
   #panel;
   /** A firmware that a person has opened. @type {File | null} */
@@ -28,6 +31,7 @@ export class Flashing {
   /** @param {Panel} panel */
   constructor(panel) {
     this.#panel = panel;
+    element('link_teacher', HTMLDetailsElement).addEventListener('toggle', () => this.#offer());
     element('flash_write', HTMLButtonElement).addEventListener('click', () => this.#flash());
     element('flash_open', HTMLButtonElement).addEventListener('click', () => this.#chooser.click());
     this.#cancel.addEventListener('click', () => this.#cancelling.abort());
@@ -35,6 +39,20 @@ export class Flashing {
       this.#file = this.#chooser.files?.[0] ?? null;
       panel.speech.say('say_file', { name: shown(this.#file?.name ?? '') });
     });
+  }
+
+  /** A page without firmware, or a browser without ports, offers nothing. */
+  async #offer() {
+    const place = element('flash', HTMLElement), boards = element('flash_board', HTMLSelectElement);
+    if (!hasSerial || boards.options.length) return;
+    try {
+      const { firmwares } = await import('./flash.js');
+      const there = new Set((await firmwares()).map((each) => each.board));
+      boards.replaceChildren(...Object.entries(NAMES).filter(([board]) => there.has(board)).map(([board, name]) => new Option(name, board)));
+    } catch {
+      // no list of firmware: a page by itself
+    }
+    place.hidden = !boards.options.length;
   }
 
   async #flash() {

@@ -384,7 +384,8 @@ export class RobotPanel {
     element('link_bluetooth', HTMLButtonElement).hidden = !hasBluetooth;
     element('link_ports', HTMLElement).hidden = !hasHost && !this.#choices.length;
     element('link_identify', HTMLButtonElement).hidden = !isThere;
-    element('flash', HTMLElement).hidden = !hasSerial;
+    element('link_settings', HTMLElement).hidden = !isThere;
+    element('flash', HTMLElement).classList.toggle('away', this.#way !== null);
     for (const id of ['link_connect', 'link_serial', 'link_bluetooth', 'flash_write', 'flash_open']) element(id, HTMLButtonElement).disabled = this.#isBusy;
     document.documentElement.dataset['robot'] = isThere ? 'connected' : this.#isBusy ? 'connecting' : 'none';
   }

@@ -1,0 +1,174 @@
+"""An ESP32 gets its firmware from the page: its own code in node, onto the simulated ROM.
+
+And the page itself, where there is such firmware; a page without any never offers it.
+"""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import json
+import subprocess
+import zlib
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from random import Random
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from tests.support import studio
+from tests.support.needs import need
+from tests.support.studio import axe, enter
+from tests.support.waiting import until
+from tiniscript.flash import ready
+from tiniscript.studio import serving
+from tiniscript.studio.building import MODULES, SOURCES
+from tools.builds.studio import CannotBuild, found_tools
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser, Page
+
+HERE = Path(__file__).parent
+ROM = HERE / "esp32_rom.js"
+HEADS = {"esp32dev": (0x1000, 0), "esp32c3": (0, 5)}
+
+
+def image(board: str, size: int = 70_001) -> bytes:
+    """Return a whole firmware: what is packed well, what is not, and the heads where they are."""
+    head, chip = HEADS[board]
+    data = bytearray(b"\xff" * head + Random(1).randbytes(9000) + bytes(size))[:size]
+    data[head], data[head + 12] = 0xE9, chip
+    data[head + 13 : head + 17] = b"\xc0\xdb\xdc\xdd"  # what SLIP has to write differently
+    return bytes(data)
+
+
+def flashed(board: str, firmware: bytes, **how: Any) -> dict[str, Any]:
+    try:
+        node = found_tools().node
+    except CannotBuild as why:
+        need(str(why))
+    need("" if (MODULES / "esptool-js").is_dir() else "esptool-js is not fetched")
+    case = {"board": board, "firmware": base64.b64encode(firmware).decode(), **how}
+    words = [*node, str(HERE / "flash_esp32_in_node.mjs"), str(SOURCES / "src"), str(ROM)]
+    done = subprocess.run(
+        words, input=json.dumps(case), capture_output=True, text=True, timeout=120, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    found: dict[str, Any] = json.loads(done.stdout.strip().splitlines()[-1])
+    assert found["sums"]
+    assert not found["is_open"]  # the next one can have the port
+    return found
+
+
+@pytest.mark.parametrize("board", ["esp32dev", "esp32c3"])
+def test_a_new_board_gets_the_whole_firmware_and_starts_it(board: str) -> None:
+    chip = {"esp32dev": "esp32", "esp32c3": "esp32c3"}[board]
+    found = flashed(board, image(board), chip=chip)
+    assert (found["ended"], found["is_there"], found["starts"], found["seen"]) == (
+        "done",
+        True,
+        1,
+        1,
+    )
+    assert {op for op, _ in found["refused"]} <= {0}  # but what an ESP32 does not know
+
+
+@pytest.mark.parametrize(
+    ("how", "ended"),
+    [
+        ({"isDeaf": True}, "flash_nobody_esp"),
+        ({"chip": "esp32c3"}, "flash_other_esp"),
+        ({"chip": "esp8266"}, "flash_other_esp"),
+        ({"cancelAt": -1}, "flash_not_begun"),
+    ],
+)
+def test_a_board_that_is_not_the_one_stays_as_it_is(how: dict[str, Any], ended: str) -> None:
+    found = flashed("esp32dev", image("esp32dev", 20_000), **how)
+    assert (found["ended"], found["is_untouched"]) == (ended, True)
+
+
+@pytest.mark.parametrize(
+    ("how", "ended"),
+    [
+        ({"breaksAt": 3}, "flash_broken_off"),
+        ({"cancelAt": 0.3}, "flash_cancelled"),
+        ({"spoils": True}, "flash_differs"),
+    ],
+)
+def test_half_a_firmware_is_never_called_a_whole_one(how: dict[str, Any], ended: str) -> None:
+    assert flashed("esp32dev", image("esp32dev", 20_000), **how)["ended"] == ended
+
+
+def test_what_is_no_firmware_of_the_board_is_not_written() -> None:
+    whole = image("esp32dev", 20_000)
+    for board, data in (
+        ("esp32dev", whole[0x1000:]),  # the image alone, without what comes before it
+        ("esp32dev", b":00000001FF\n"),
+        ("esp32dev", whole + bytes(0x400000)),
+        ("esp32c3", whole),
+        ("esp32c3", b"\xe9" + bytes(11) + b"\0" + bytes(99)),  # of another chip
+    ):
+        found = flashed(board, data)
+        assert (found["ended"], found["is_untouched"]) == ("flash_bad_image", True)
+
+
+# A browser's ports, behind one of which is the ROM; Python packs out and adds up for it.
+PORT = """
+window.rom = new globalThis.Esp32Rom({
+  sum: (data) => window.summed([...data]),
+  inflate: async (data) => Uint8Array.from(await window.unpacked([...data])),
+});
+Object.defineProperty(navigator, 'serial', {value: {
+  getPorts: async () => [], requestPort: async () => window.rom,
+}});
+"""
+
+
+@contextmanager
+def at_the_teachers(browser: Browser, folder: Path) -> Iterator[Page]:
+    """A page beside the firmware of a folder, opened where a teacher finds it."""
+    need(studio.missing())
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(ready.files, "__defaults__", (folder,))
+        patch.setattr(ready.images, "__defaults__", (folder,))
+        page = serving.with_firmware(serving.files())
+    context = browser.new_context(viewport={"width": 1366, "height": 768}, locale="en-US")
+    context.expose_function("summed", lambda data: hashlib.md5(bytes(data)).hexdigest())
+    context.expose_function("unpacked", lambda data: list(zlib.decompress(bytes(data))))
+    context.add_init_script(ROM.read_text(encoding="utf-8") + PORT)
+    try:
+        with studio.served(page=page) as server:
+            found = context.new_page()
+            enter(found, server.address)
+            found.click("#side_real")
+            found.click("#link_teacher summary")
+            yield found
+    finally:
+        context.close()
+
+
+def test_a_page_without_firmware_never_offers_it(browser: Browser, tmp_path: Path) -> None:
+    (tmp_path / "tinibot32-esp32dev-digest.bin").write_bytes(b"nothing")
+    with at_the_teachers(browser, tmp_path) as page:
+        page.locator("#record_open").wait_for()
+        page.wait_for_load_state("networkidle")
+        assert not page.locator("#flash").is_visible()
+        assert axe(page) == []
+
+
+def test_a_teacher_puts_the_firmware_on_an_esp32(browser: Browser, tmp_path: Path) -> None:
+    whole = image("esp32dev", 12_000)
+    (tmp_path / "tinibot32-esp32dev-digest.bin").write_bytes(whole)
+    with at_the_teachers(browser, tmp_path) as page:
+        page.locator("#flash_write").wait_for()
+        assert page.locator("#flash_board option").all_inner_texts() == ["ESP32"]
+        page.click("#flash_write")
+        page.get_by_text("There is no firmware of this robot for this board here.").wait_for()
+        page.select_option("#robot", "tinibot32")
+        page.click("#flash_write")
+        page.get_by_text("Connecting").first.wait_for()
+        until(lambda: page.evaluate("window.rom.starts") == 1, "it starts")
+        assert page.evaluate(f"[...window.rom.flash.subarray(0, {len(whole)})]") == list(whole)
+        page.get_by_text("Nothing answers.").wait_for()  # the simulated chip is no robot

@@ -1,0 +1,107 @@
+"""Flags, points and stars of a world: what counts, and that each shipped task has three stars."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from tests.support.virtual_robot import robot_in
+from tiniscript import compile
+from tiniscript.studio.simulation import Simulation
+from tiniscript.virtual import worlds
+from tiniscript.virtual.score import LOOKS_MS, Score
+from tiniscript.virtual.worlds import read
+
+FLOOR = "[floor]\nwidth_cm = 300\nheight_cm = 100\n[start]\nx_cm = 40\ny_cm = 50\n"
+FLAGS = FLOOR + "[task]\nseconds = 6\n[[flags]]\nx_cm = 90\ny_cm = 50\n[[flags]]\nx_cm = 140\n"
+TWO = FLAGS + "y_cm = 50\n"
+# Where a robot goes straight to, one after the other.
+WAYS = {
+    "maze": [(25, 75), (75, 75), (75, 25), (125, 25), (125, 175), (175, 175), (175, 25)],
+    "parking": [(125, 50), (125, 105)],
+    "gaps": [(140, 31), (165, 38), (190, 72), (180, 94), (120, 110), (40, 110)],
+    "line": [(130, 25), (163, 50), (126, 84), (85, 91), (48, 106), (30, 55), (60, 25)],
+    "delivery": [
+        (28, 25),
+        (135, 25),
+        (135, 62),
+        (135, 104),
+        (185, 104),
+        (236, 104),
+        (236, 186),
+        (54, 190),
+    ],
+    "ring": [(60, 110), (75, 160), (104, 160), (150, 110), (100, 55)],
+    "light": [(190, 130)],
+}
+
+
+def scored(text: str, program: str, ms: int = 9000) -> dict[str, object] | None:
+    simulation = Simulation("tinibot", read(text, "own"), compile(program).image)
+    for part in (ms // 3, ms // 3, ms // 3):
+        simulation.go(part)
+    found: dict[str, object] | None = simulation.state()["score"]
+    return found
+
+
+def test_a_world_without_flags_has_no_score() -> None:
+    assert scored(FLOOR, "F(1, 80)", 900) is None
+
+
+def test_flags_are_taken_in_their_order() -> None:
+    found = scored(TWO, "F(100 CM, 80)")
+    assert found is not None and (found["taken"], found["of"], found["stars"]) == (2, 2, 3)
+    turned = TWO.replace("x_cm = 90", "x_cm = 200").replace("x_cm = 140", "x_cm = 90")
+    found = scored(turned.replace("x_cm = 200", "x_cm = 140"), "F(100 CM, 80)")
+    assert found is not None and (found["taken"], found["stars"], found["points"]) == (1, 0, 100)
+
+
+def test_a_collision_and_a_late_end_cost_a_star_each() -> None:
+    assert (scored(TWO, "F(100 CM, 80)") or {})["stars"] == 3
+    assert (scored(TWO, "W(5);F(100 CM, 80)", 12_000) or {})["stars"] == 2
+    wall = "[[walls]]\npoints = [[20, 80], [20, 20]]\n"
+    crashed = scored(TWO.replace("seconds = 6", "seconds = 60") + wall, "B(1, 80);F(4, 80)")
+    assert crashed is not None and (crashed["stars"], crashed["taken"]) == (2, 2)
+    late = scored(TWO.replace("seconds = 6", "seconds = 4") + wall, "B(1, 80);W(3);F(4, 80)")
+    assert late is not None and late["stars"] == 1
+    # What happens after the last flag counts no more.
+    assert (scored(TWO, "F(9, 80)", 12_000) or {})["stars"] == 3
+
+
+def test_points_are_for_flags_and_for_seconds_that_are_left() -> None:
+    at_once = scored(TWO, "F(100 CM, 80)") or {}
+    later = scored(TWO, "W(2);F(100 CM, 80)") or {}
+    assert at_once["points"] == int(str(later["points"])) + 10
+
+
+def test_where_it_is_to_rest_it_stands() -> None:
+    rests = TWO + "rests = true\nreach_cm = 20\n"
+    assert (scored(rests, "F(9, 80)") or {})["taken"] == 1
+    assert (scored(rests, "F(100 CM, 80)") or {})["taken"] == 2  # its program has ended there
+
+
+@pytest.mark.parametrize("name", [each for each in worlds.names() if worlds.load(each).flags])
+def test_each_task_has_three_stars(name: str) -> None:
+    """One that always sees where it is drives a way at two thirds of its power."""
+    world = worlds.load(name)
+    robot = robot_in(world, "liner" if name in ("line", "gaps", "ring") else "tinibot")
+    score = Score(world)
+    robot.started_ms, robot.is_running = 0, True
+    driving = robot.driving
+
+    def motors(left: float, right: float) -> None:
+        driving.set_motors(robot.now_ms, left, right)
+        robot.now_ms += LOOKS_MS
+        score.look(robot)
+
+    for x_cm, y_cm in WAYS[name]:
+        while (far := math.dist((x_cm, y_cm), robot.pose[:2])) > 2:
+            assert robot.now_ms < 1000 * world.seconds, robot.pose
+            x, y, heading = robot.pose
+            off = math.degrees(math.atan2(y_cm - y, x_cm - x)) - heading
+            off = (off + 180) % 360 - 180
+            ahead = abs(off) < max(4, 60 / far)
+            motors(*((66, 66) if ahead else (-40, 40) if off > 0 else (40, -40)))
+        motors(0, 0)
+    assert score.state() == {**(score.state() or {}), "stars": 3, "taken": len(world.flags)}
