@@ -23,6 +23,7 @@ NOTING = """() => {
   const node = () => ({connect: (to) => to});
   window.AudioContext = class {
     state = 'running'; destination = {};
+    close() {}  // Blockly does, of its own
     get currentTime() { return performance.now() / 1000; }
     createGain() {
       return {...node(), gain: {setValueAtTime() {}, linearRampToValueAtTime() {}}};
@@ -133,9 +134,9 @@ def test_ways_stay_until_they_are_erased(listening: Page) -> None:
     run(page, "F(2, 80)")
     first = count(page, WAY)
     few = count(page, WAY_BEFORE)  # where edges happen to have that color
-    assert first > 20 and few < 10
+    assert first > 20
     run(page, "R(0.5, 60);F(1, 80)")
-    assert count(page, WAY) > 5 and count(page, WAY_BEFORE) > 50
+    assert count(page, WAY) > 5 and count(page, WAY_BEFORE) > few + 20
     erase(page)
     assert count(page, WAY) == 0 and count(page, WAY_BEFORE) < 10
     run(page, "F(1, 80)")

@@ -96,7 +96,7 @@ def test_a_mouse_adds_moves_and_deletes(floor: Page) -> None:
     floor.click("#world_add_boxes")
     assert floor.locator("#world_add_boxes").get_attribute("aria-pressed") == "true"
     drag(floor, [(140, 60), (170, 80)])
-    assert chosen(floor) == "Box 13"
+    assert chosen(floor) == "Box 7"
     drag(floor, [(155, 70), (155, 110), (145, 120)])
     found = saved(floor)
     corners = sorted((round(x), round(y)) for x, y in found.boxes[-1])
@@ -110,7 +110,7 @@ def test_a_mouse_adds_moves_and_deletes(floor: Page) -> None:
     corners = sorted((round(x), round(y)) for x, y in saved(floor).boxes[-1])
     assert all(abs(a - b) <= 1 for (a, _), b in zip(corners, (140, 140, 170, 170), strict=True))
     floor.click("#world_redo")
-    floor.select_option("#world_part", label="Box 13")
+    floor.select_option("#world_part", label="Box 7")
     assert abs(number(floor, "x_cm") - 145) <= 1 and abs(number(floor, "y_cm") - 120) <= 1
 
 
@@ -146,7 +146,7 @@ def picture(page: Page) -> str:
 
 @pytest.mark.parametrize("way", ["undo", "cancel"])
 def test_a_stroke_that_is_let_go_is_not_seen(floor: Page, way: str) -> None:
-    drag(floor, [(56, 75), (56, 90)])  # there is something to undo
+    drag(floor, [(56, 82.5), (56, 90)])  # there is something to undo
     floor.click("#world_add_walls")
     wanted = picture(floor)
     floor.mouse.move(*on_screen(floor, (60, 30)))
@@ -166,7 +166,7 @@ def test_a_stroke_that_is_let_go_is_not_seen(floor: Page, way: str) -> None:
 def test_a_press_with_ctrl_is_the_menu_of_a_mac(floor: Page) -> None:
     wanted = saved(floor)
     floor.keyboard.down("Control")
-    drag(floor, [(56, 75), (56, 90)])
+    drag(floor, [(56, 82.5), (56, 90)])
     floor.keyboard.up("Control")
     assert saved(floor).start == wanted.start
 
@@ -183,7 +183,7 @@ def test_each_kind_is_drawn_and_found_again(floor: Page) -> None:
     line = [(round(x), round(y)) for x, y in found.lines[0].points]
     assert (line[0], line[-1]) == ((150, 60), (60, 140)) and 3 <= len(line) <= 9
     assert [round(each) for each in found.lamps[0].place] == [200, 180]
-    there = {(80, 45): "Wall 1", (100, 140): "Line 1", (200, 180): "Lamp 1", (56, 75): "Robot",
+    there = {(80, 45): "Wall 1", (100, 140): "Line 1", (200, 180): "Lamp 1", (56, 82.5): "Robot",
              (110, 100): "Box 1", (10, 190): "Floor"}  # fmt: skip
     for place, name in there.items():
         floor.mouse.click(*on_screen(floor, place))
@@ -219,7 +219,7 @@ def test_keys_alone_are_enough(floor: Page) -> None:
     floor.locator("#arena").focus()
     press("r")
     press("ArrowRight")
-    assert saved(floor).start == (61, 75, 15)
+    assert saved(floor).start == (61, 82.5, 15)
     floor.locator("#world_heading").fill("-90")
     press("Enter")
     assert saved(floor).start.heading == -90
@@ -236,11 +236,11 @@ def test_keys_alone_are_enough(floor: Page) -> None:
 
 
 def test_a_handle_turns_the_robot_and_a_flag_is_put(floor: Page) -> None:
-    floor.mouse.click(*on_screen(floor, (56, 75)))
-    drag(floor, [(75, 75), (75, 90), (56, 96)])  # the handle in front of it
-    assert saved(floor).start == (56, 75, 90)
+    floor.mouse.click(*on_screen(floor, (56, 82.5)))
+    drag(floor, [(75, 82.5), (75, 98), (56, 103)])  # the handle in front of it
+    assert saved(floor).start == (56, 82.5, 90)
     floor.click("#world_undo")
-    assert saved(floor).start == (56, 75, 0)
+    assert saved(floor).start == (56, 82.5, 0)
     floor.click("#world_add_flags")
     floor.mouse.click(*on_screen(floor, (150, 100)))
     assert chosen(floor) == "Flag 1"
@@ -256,11 +256,11 @@ def test_a_handle_turns_the_robot_and_a_flag_is_put(floor: Page) -> None:
 
 
 def test_nothing_leaves_the_floor(floor: Page) -> None:
-    drag(floor, [(56, 75), (-60, 300)])
+    drag(floor, [(56, 82.5), (-60, 300)])
     assert saved(floor).start[:2] == (0, 200)
     said(floor, "does not fit there")
     floor.click("#world_undo")
-    assert saved(floor).start[:2] == (56, 75)
+    assert saved(floor).start[:2] == (56, 82.5)
 
 
 def finger(page: Page, way: Sequence[Place]) -> None:
@@ -282,7 +282,7 @@ def test_a_finger_draws_and_drags_on_a_small_screen(pages: Pages) -> None:
     page.tap("#world_add_lines")
     finger(page, [(60, 40), (100, 40), (150, 60), (160, 80)])
     assert chosen(page) == "Línea 1"
-    finger(page, [(56, 75), (56, 90), (60, 110)])
+    finger(page, [(56, 82.5), (56, 97.5), (60, 110)])
     assert chosen(page) == "Robot"
     found = saved(page)
     assert abs(found.start.x_cm - 60) <= 1 and abs(found.start.y_cm - 110) <= 1
