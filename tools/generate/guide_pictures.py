@@ -6,6 +6,7 @@ conversation from its guide. A picture without words is one for both languages.
 
 from __future__ import annotations
 
+import math
 import re
 from functools import partial
 from html import escape
@@ -58,7 +59,8 @@ def guide_pictures(command: str) -> dict[str, partial[str]]:
     made = {name: partial(drive, command, *row) for name, row in DRIVES.items()}
     made |= {f"phone.{each}.svg": partial(phone, command, each) for each in LANGUAGES}
     wired = {"cable.svg": cable, "adapter.svg": adapter, "room.svg": room, "lesson.svg": lesson,
-             "blinks.svg": blinks, "hand.svg": hand, "port.svg": port}  # fmt: skip
+             "blinks.svg": blinks, "hand.svg": hand, "port.svg": port,
+             "measure.svg": measure}  # fmt: skip
     return made | {name: partial(picture, command) for name, picture in wired.items()}
 
 
@@ -161,6 +163,42 @@ def hand(command: str) -> str:
     parts = [*arena(world, way, PAD, PAD, scale), *_wire(front, y, wall, y)]
     parts.append(_words((front + wall) / 2 - 32, y - 10, said))
     return _svg(command, world.width_cm * scale, world.height_cm * scale, parts)
+
+
+def measure(command: str) -> str:
+    """Return a robot beside a tape measure that begins at a mark, and one across a protractor."""
+    left, right, y, per_cm = 40, 370, 60, 8
+    parts = [_box(left - 6, 30, 6, 60, BOX), _box(left, 100, right - left, 26, SKY)]
+    for cm in range((right - left) // per_cm):
+        height = 14 if cm % 10 == 0 else 6
+        parts.append(_line(left + cm * per_cm, 100, left + cm * per_cm, 100 + height))
+    parts += [_words(left + cm * per_cm + 3, 122, str(cm)) for cm in (10, 20, 30)]
+    parts += _wire(left, y, left + 33 * per_cm, y)
+    parts.append(_robot(left + 33 * per_cm, y, 0))
+    middle, floor_y, radius = 560, 150, 110
+    begin, end = middle - radius, middle + radius
+    half = f"M{begin},{floor_y} A{radius},{radius} 0 0 1 {end},{floor_y} Z"
+    parts.append(f'<path d="{half}" fill="{SKY}" stroke="{WALL}"/>')
+    for angle in range(0, 181, 15):
+        along, across = math.cos(math.radians(angle)), math.sin(math.radians(angle))
+        inner = radius - (14 if angle % 45 == 0 else 7)
+        parts.append(_line(*(each for size in (inner, radius) for each in
+                             (middle + size * along, floor_y - size * across))))  # fmt: skip
+    degrees = ((end + 6, floor_y, "0"), (middle - 8, 34, "90"), (begin - 36, floor_y, "180"))
+    parts += [*(_words(*each) for each in degrees), _robot(middle, floor_y, 135)]
+    return _svg(command, 720, 190, parts)
+
+
+def _robot(x: float, y: float, heading: int) -> str:
+    """Return a robot from above, whose front is at a place, or whose middle is when it turned."""
+    back, front = (-70, 0) if heading == 0 else (-35, 35)
+    outline = f"M{back},-22 H{front - 14} L{front},0 L{front - 14},22 H{back} Z"
+    return (f'<path transform="translate({x:g},{y:g}) rotate({-heading})" d="{outline}"'
+            f' fill="{BODY}" stroke="{WALL}"/>')  # fmt: skip
+
+
+def _line(x: float, y: float, to_x: float, to_y: float) -> str:
+    return f'<path d="M{x:.1f},{y:.1f} L{to_x:.1f},{to_y:.1f}" stroke="{WALL}"/>'
 
 
 def port(command: str) -> str:

@@ -54,6 +54,7 @@ def documents(root: Path) -> list[Document]:
         _both("bring-up", "teach", "docs/bring-up.md", "docs/puesta-en-marcha.es.md"),
         _both("lessons", "teach", "docs/lessons.en.md", "docs/lecciones.es.md"),
         _both("materials", "teach", "docs/materials.en.md", "docs/materiales.es.md"),
+        _both("measure", "teach", "docs/measure.en.md", "docs/medir.es.md"),
         _both("modules", "teach", "docs/modules.en.md", "docs/modulos.es.md"),
         _both("language", "write", "docs/language.en.md", "docs/lenguaje.es.md"),
         _both("robots", "write", "docs/robots.en.md", "docs/robots.es.md"),
