@@ -41,7 +41,7 @@ def test_the_robot_drives_around(drawing: ElementTree.Element) -> None:
     way = next(drawing.iter(f"{SVG}polyline")).get("points", "").split()
     assert len(set(way)) > 10
     shapes = list(drawing.iter(f"{SVG}polygon"))
-    assert len(shapes) == 15  # the arena, twelve boxes, the robot at its beginning and end
+    assert len(shapes) == 9  # the arena, six boxes, the robot at its beginning and end
 
 
 def test_what_a_program_does_is_printed(drawing: ElementTree.Element) -> None:

@@ -116,7 +116,7 @@ def _look_at(body: Body, look: _Look, around: _Around) -> None:
             elif statement.until is None:
                 found += of_move(statement, look.kit, look.source)
             else:
-                found += of_ended_move(statement, look.source)
+                found += of_ended_move(statement, look.kit, look.source)
         if isinstance(statement, Beep):
             found += of_beep(statement)
         inside = around._replace(

@@ -24,6 +24,7 @@ LONG_TIME = 20 * SECOND  # a power was meant, where the power is a time
 LONG_DRIVE = 30 * SECOND  # no classroom is so long: centimetres or degrees were meant
 LONGEST_DRIVE = 60 * SECOND  # … also where the number is no round one
 LONG_WAIT = 100 * SECOND
+FAR = 300 * SECOND * 100 * SECOND * SECOND  # 3 m, as a product of speed, power and time
 VERY_LONG_TIME = 500 * SECOND  # milliseconds were meant, as `delay(1000)` of an Arduino has them
 LONG_BEEP = 100 * SECOND
 LOW_HERTZ = 100_000  # thousandths: a power was meant
@@ -77,11 +78,14 @@ def of_way(move: Move, kit: Kit) -> list[Diagnostic]:
     return of_power(move)
 
 
-def of_ended_move(move: Move, source: Source) -> list[Diagnostic]:
+def of_ended_move(move: Move, kit: Kit, source: Source) -> list[Diagnostic]:
     """Return the warnings about the numbers of a move or a wait with UNTIL: one at most."""
     time, power = _number(move.time), _number(move.power)
     if time is None or not _is_swapped(time, power):
-        return of_power(move)
+        found: list[Diagnostic] = []
+        if time is not None and move.direction in ("L", "R") and kit.turn:
+            _long(move, time, power, kit, found)
+        return found or of_power(move)
     seconds, percent = as_text(time), as_text(power or 0)
     until = _UNTIL.search(source[move.span])
     fix = f"{move.direction}({percent}, {seconds}){until[0] if until else ''}"
@@ -143,12 +147,12 @@ def _long(move: Move, time: int, power: int | None, kit: Kit, found: list[Diagno
     usage = f"{word}( , {shown})"
     length = as_text(time)
     way = f"{word}({length} {UNIT_OF.get(word, '')}, {shown})"
-    is_turn = is_long or (kit.turn and time >= LONG_TIME)
-    if turns and (time in ANGLES or (is_turn and not is_very_long)):
+    is_far = is_round and time >= LONG_TIME and kit.speed * (power or 0) * time >= FAR
+    if turns and _is_turn(time, kit, is_long):
         values = {"degrees": length, "word": word, "turn": usage}
         values |= {"way": way} if kit.turn else {}
         _report(found, codes.LONG_TIME, move.span, **values)
-    elif drives and is_long and not is_very_long:
+    elif drives and (is_long or is_far) and not is_very_long:
         values = {"centimetres": length, "word": word, "drive": usage}
         values |= {"way": way} if kit.speed else {}
         _report(found, codes.LONG_TIME, move.span, **values)
@@ -156,6 +160,13 @@ def _long(move: Move, time: int, power: int | None, kit: Kit, found: list[Diagno
         power_shown = "" if word == "W" else f", {shown}"
         fix = f"{word}({as_text(time // 1000)}{power_shown})"
         _report(found, codes.LONG_TIME, move.span, time=length, fix=fix)
+
+
+def _is_turn(time: int, kit: Kit, is_long: bool) -> bool:
+    """`R(90, 60)`, which turns for 90 seconds: degrees were meant."""
+    if kit.turn:
+        return time >= LONG_TIME
+    return time in ANGLES or (is_long and time < VERY_LONG_TIME)
 
 
 def _is_milliseconds(time: int) -> bool:

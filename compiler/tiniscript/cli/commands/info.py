@@ -28,7 +28,7 @@ from tiniscript.link.messages import (
     TEXT_LEVELS,
 )
 from tiniscript.link.names import fault_name, row_name
-from tiniscript.link.trim import Trim, told
+from tiniscript.link.trim import Pace, Trim, told
 
 
 def run(options: Namespace, language: str) -> int:
@@ -146,8 +146,10 @@ class Description:
             self._program(),
             text("info_state", language).format(state=state, reset=reset),
         ]
-        if self.trim is not None:
-            lines.append(text("info_trim", language).format(trim=words(self.trim, language)))
+        if self.trim not in (None, Trim(), Trim(pace=Pace())):
+            lines.append(
+                text("info_trim", language).format(trim=words(self.trim or Trim(), language))
+            )
         if status.fault:
             lines.append(self._fault())
         if status.damaged or status.dropped or status.framing or status.overrun:
