@@ -43,9 +43,12 @@ def cache() -> Path:
 
 
 def title_of(robot: Robot) -> str:
-    """Return a robot's name, and the language of its answers where that is not English."""
+    """Return a robot's name, and the language of its answers where that is not English.
+
+    A firmware without answers in a language is the English one.
+    """
     language = robot.board.language
-    return robot.name if language in ("", LANGUAGES[0]) else f"{robot.name}_{language}"
+    return f"{robot.name}_{language}" if language in LANGUAGES[1:] else robot.name
 
 
 def name_of(title: str, board: str, digest: str) -> str:
