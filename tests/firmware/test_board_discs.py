@@ -1,0 +1,95 @@
+"""What a Mega counts of its discs' edges, on a simulated chip: each one, and no glitch."""
+
+from __future__ import annotations
+
+import random
+
+import pytest
+
+from tests.machines.board import Board
+from tests.wiring.test_wiring import with_discs
+from tiniscript import robots
+from tiniscript.robots.profile import Robot
+
+TWO = robots.load("tinibot2")
+TWO_CHANNELS = with_discs("mega", "two_channel")
+PORT_A, PORT_C = 0x22, 0x28  # free on this robot: the counts are copied there
+COPIED = """
+#include "firmware/board.h"
+extern "C" void test_turn() {
+  *reinterpret_cast<volatile unsigned char*>(0x22) = static_cast<unsigned char>(tiniscript::board_edges(false));
+  *reinterpret_cast<volatile unsigned char*>(0x28) = static_cast<unsigned char>(tiniscript::board_edges(true));
+}
+"""
+
+
+def counting(robot: Robot) -> Board:
+    board = Board(robot, more=COPIED)
+    board.watched |= {PORT_A, PORT_C}
+    assert robot.board.discs
+    for pin in robot.board.discs.pins.values():
+        board.level(0, pin, False)
+    return board
+
+
+def pins(robot: Robot) -> tuple[int, int]:
+    assert robot.board.discs
+    return robot.board.discs.pins["left"], robot.board.discs.pins["right"]
+
+
+def counts(board: Board, ms: float) -> tuple[int, int]:
+    """Return what it has counted until then, from 20 ms on."""
+    begun = (board.register(PORT_A, 20), board.register(PORT_C, 20))
+    then = (board.register(PORT_A, ms), board.register(PORT_C, ms))
+    return (then[0] - begun[0]) % 256, (then[1] - begun[1]) % 256
+
+
+def test_each_edge_of_both_counts() -> None:
+    """Fast and slow ones, and both at once; 65.6 ms apart is no glitch where the clock wraps."""
+    board = counting(TWO)
+    left, right = pins(TWO)
+    for k in range(20):
+        board.level(30 + 2 * k, left, k % 2 == 0)
+        board.level(30 + 2 * k, right, k % 2 == 0)
+    for k in range(6):
+        board.level(100 + 65.6 * k, left, k % 2 == 0)
+    board.ran(450)
+    assert counts(board, 90) == (20, 20)
+    assert counts(board, 445) == (26, 20)
+
+
+@pytest.mark.parametrize("span_us", [1, 5, 20, 60, 200])
+@pytest.mark.parametrize("is_high", [False, True])
+def test_pulses_that_are_too_short_do_not_count(span_us: float, is_high: bool) -> None:
+    """Whether the line rests low or high: a motor's brushes do that. Edges between them count."""
+    board = counting(TWO)
+    left, right = pins(TWO)
+    chance = random.Random(5)
+    board.level(25, left, is_high)
+    at_ms = 40.0
+    for _ in range(30):
+        at_ms += chance.uniform(1, 5)
+        board.level(at_ms, left, not is_high)
+        board.level(at_ms + span_us / 1000, left, is_high)
+    board.level(at_ms + 5, left, not is_high)
+    for k in range(3):  # an edge that bounces
+        board.level(at_ms + 12 + 0.03 * k, left, is_high == (k % 2 == 0))
+    board.ran(at_ms + 40)
+    assert counts(board, at_ms + 35) == (is_high + 2, 0)
+
+
+def test_two_channels_count_back() -> None:
+    board = counting(TWO_CHANNELS)
+    discs = TWO_CHANNELS.board.discs
+    assert discs
+    a, b = discs.pins["left"], discs.pins["left_b"]
+    states = [(True, False), (True, True), (False, True), (False, False)]
+    for k in range(16):  # four holes ahead
+        for pin, level in zip((a, b), states[k % 4], strict=True):
+            board.level(30 + 2 * k, pin, level)
+    for k in range(10):  # and back
+        for pin, level in zip((a, b), states[(2 - k) % 4], strict=True):
+            board.level(100 + 2 * k, pin, level)
+    board.ran(150)
+    assert counts(board, 90) == (8, 0)
+    assert counts(board, 145) == (3, 0)
