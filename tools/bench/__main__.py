@@ -19,6 +19,7 @@ BENCHMARKS = (
     "text",
     "tasks",
     "virtual",
+    "ways",
     "upload",
     "large_upload",
     "studio",

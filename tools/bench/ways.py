@@ -50,10 +50,10 @@ class Robot(Talk):
     def driven(self, text: str) -> tuple[float, float, float]:
         """Return how far a program leads ahead and aside, and how far it turns, to the left."""
         before = self.robot.pose
-        self.upload(text)
+        self.upload(text, is_detached=True)
         end_ms = self.robot.now_ms + LONGEST_MS
         while self.robot.is_running and self.robot.now_ms < end_ms:
-            self.wait(20)
+            self.robot.step(self.robot.now_ms + 100)
         self.robot.step(self.robot.now_ms + 500)
         pose = self.robot.pose
         along = math.radians(before.heading)
