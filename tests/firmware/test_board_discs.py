@@ -17,8 +17,9 @@ PORT_A, PORT_C = 0x22, 0x28  # free on this robot: the counts are copied there
 COPIED = """
 #include "firmware/board.h"
 extern "C" void test_turn() {
-  *reinterpret_cast<volatile unsigned char*>(0x22) = static_cast<unsigned char>(tiniscript::board_edges(false));
-  *reinterpret_cast<volatile unsigned char*>(0x28) = static_cast<unsigned char>(tiniscript::board_edges(true));
+  using Port = volatile unsigned char*;
+  *reinterpret_cast<Port>(0x22) = static_cast<unsigned char>(tiniscript::board_edges(false));
+  *reinterpret_cast<Port>(0x28) = static_cast<unsigned char>(tiniscript::board_edges(true));
 }
 """
 
@@ -63,7 +64,7 @@ def test_each_edge_of_both_counts() -> None:
 def test_pulses_that_are_too_short_do_not_count(span_us: float, is_high: bool) -> None:
     """Whether the line rests low or high: a motor's brushes do that. Edges between them count."""
     board = counting(TWO)
-    left, right = pins(TWO)
+    left, _ = pins(TWO)
     chance = random.Random(5)
     board.level(25, left, is_high)
     at_ms = 40.0

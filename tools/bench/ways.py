@@ -3,7 +3,7 @@
 By discs, by time after calibration, and by time without: on virtual robots, 100 seeds each, with
 the firmware itself. Motors differ by 15 %, take 45 to 75 ms to come up to speed, and roll on as
 long; discs of 20 holes have each edge up to a tenth from its place; a wheel slips as much as the
-column says on average. No real floor was seen. Ends with 1 if the discs are not within their limits.
+column says on average. No real floor was seen. Ends with 1 if the limits do not hold at 0.5 %.
 """
 
 from __future__ import annotations
