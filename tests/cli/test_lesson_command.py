@@ -38,7 +38,7 @@ def test_the_lessons_are_listed(tsc: Tsc) -> None:
     done = tsc("lesson", "--lang", "es")
     assert done.code == 0
     rows = done.out.splitlines()
-    assert len(rows) == 14
+    assert len(rows) == 16
     assert rows[0] == " 1  La primera línea   (tinibot)"
 
 
@@ -130,7 +130,7 @@ def test_a_picture_of_the_way(tsc: Tsc, tmp_path: Path) -> None:
         (["jump"], "lesson takes show, check or sheet, not jump"),
         (["--json"], "--json does not go with tsc lesson."),
         (["show"], "which lesson?"),
-        (["show", "15"], "There is no lesson 15. Give a number from 1 to 14"),
+        (["show", "17"], "There is no lesson 17. Give a number from 1 to 16"),
         (["show", "0"], "There is no lesson 0."),
         (["show", "²"], "There is no lesson ²."),
         (["show", "9" * 5000], "There is no lesson 999"),

@@ -376,6 +376,40 @@ PROGRAMS: dict[int, dict[str, dict[str, str]]] = {
             "SI|F(4, 60); L(0.51, 60); F(2, 60)\nTASK; LOOP(12); LED(TRUE); W(0.2); LED(FALSE); W(0.2); END_LOOP; END_TASK": "The robot stopped 40 cm before the middle of the hospital. Make it go further.",
         },
     },
+    15: {
+        "right": {
+            "SI|L(90°, 80); LOOP(4); F(30CM, 80); R(90°, 80); END_LOOP": "",
+            "LADO = 15; LOOP(4); F(LADO + LADO CM, 50); L(90 DEG, 50); END_LOOP": "",
+            "DEF SIDE; F(30 cm, 100); L(45 DEG, 60); L(45 DEG, 60); END_DEF; SIDE; SIDE; SIDE; SIDE": "",
+        },
+        "rote": {
+            "SI|F(20 CM, 40)\nW(1)\nF(20 CM, 80)": "The program ended before the robot got to corner 2 of 3",
+            "L(90 DEG, 60); R(45 DEG, 60)": "The robot only turned on the spot",
+            "SI|LOOP(4); F(1, 60); L(0.42, 60); END_LOOP": "The robot did not get to corner 2 of 3",
+        },
+        "wrong": {
+            "LOOP(3); F(30 CM, 60); L(90 DEG, 60); END_LOOP": "At the end the robot was 30 cm from its place",
+            "LOOP(4); F(20 CM, 60); L(90 DEG, 60); END_LOOP": "The robot did not get to corner 1 of 3",
+            "LOOP(4); F(30 CM, 60); L(0.42, 60); END_LOOP": "The program does not use DEG",
+        },
+    },
+    16: {
+        "right": {
+            "SHOW(DISTANCE); WAY = DISTANCE - 20; F(WAY CM, 80); SHOW(DISTANCE)": "",
+            "SI|D = DISTANCE; SHOW(D); LOOP(4); F((D - 20) / 4 CM, 60); SHOW(DISTANCE); END_LOOP": "",
+            "D = DISTANCE; SHOW(D); F(D - 5 CM, 60) UNTIL(DISTANCE < 20); SHOW(DISTANCE)": "",
+        },
+        "rote": {
+            "SI|SHOW(DISTANCE)": "The robot did not move",
+            "SHOW(DISTANCE); F(30 CM, 60); SHOW(DISTANCE)": "The robot stood 51 cm before the obstacle; the task asks for 17 to 23 cm",
+            "X = 10; F(X + 5 CM, 60)": "The robot showed nothing",
+        },
+        "wrong": {
+            "D = DISTANCE; SHOW(D); F(D - 40 CM, 60); SHOW(DISTANCE)": "The robot stood 40 cm before the obstacle; the task asks for 17 to 23 cm",
+            "D = DISTANCE; F(D - 20 CM, 60); SHOW(D); SHOW(D)": "The robot showed 81.4, but DISTANCE was about 20 then",
+            "D = DISTANCE; SHOW(D); F(D - 20, 60); SHOW(DISTANCE)": "The robot touched the wall after 3.1 s",
+        },
+    },
 }  # fmt: skip
 GROUPS = ("right", "rote", "wrong")
 EACH = [

@@ -195,6 +195,7 @@ EXAMPLES = {
     "WHILE": "WHILE({question}) ... END_WHILE", "LOOP": "LOOP(3) ... END_LOOP",
     "ELSE": "IF({question}) ... ELSE ... ENDIF", "DEF": "DEF STEP ... END_DEF",
     "WHEN": "WHEN({question}) ... END_WHEN", "TASK": "TASK ... END_TASK",
+    "CM": "F(20 CM, 60)", "DEG": "R(90 DEG, 60)",
 }
 # fmt: on
 
