@@ -19,6 +19,7 @@ from tests.support.command import rest_of
 from tests.support.needs import need
 from tests.support.platformio import prepared
 from tests.support.waiting import HANGS_S
+from tiniscript.languages import machine_objects
 from tools.release import facts
 from tools.release.packing import difference
 
@@ -125,11 +126,9 @@ def test_a_wheel_has_what_is_in_the_repository_and_nothing_stale(
     wheel: Path, kept: set[str]
 ) -> None:
     found = {name for name in files_of(wheel) if name.startswith("tiniscript/")}
-    package = {
-        re.sub(r"\.po$", ".mo", name.removeprefix("compiler/"))
-        for name in kept
-        if name.startswith("compiler/")
-    }
+    package = {name.removeprefix("compiler/") for name in kept if name.startswith("compiler/")}
+    package = {name for name in package if not name.endswith(".po")}
+    package |= {f"tiniscript/languages/{name}" for name in machine_objects()}
     sources = {
         SOURCES + name.removeprefix("vm_arduino/")
         for name in kept

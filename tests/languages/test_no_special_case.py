@@ -1,0 +1,50 @@
+"""No language is a special case in code: what is left of that only gets less."""
+
+from __future__ import annotations
+
+import re
+
+from tests.support.casefile import ROOT
+
+SPECIAL = re.compile(r"""(?:==|===|!=) ?["'](?:es|en)["']|["'](?:es|en)["'] (?:==|===)""")
+# Places that still choose between English and Spanish themselves, by file. Take one out: never add.
+LEFT = {
+    "compiler/tiniscript/cli/commands/completion.py": 1,
+    "compiler/tiniscript/cli/errors.py": 1,
+    "compiler/tiniscript/cli/help.py": 9,
+    "compiler/tiniscript/cli/lesson_check.py": 1,
+    "compiler/tiniscript/cli/options.py": 2,
+    "compiler/tiniscript/lessons/sentences.py": 1,
+    "compiler/tiniscript/robots/firmware.py": 1,
+    "compiler/tiniscript/robots/wiring/texts.py": 1,
+    "compiler/tiniscript/sketch/names.py": 1,
+    "compiler/tiniscript/sketch/texts.py": 3,
+    "compiler/tiniscript/virtual/robot.py": 1,
+    "tools/builds/site.py": 1,
+    "tools/builds/stick/install.py": 3,
+    "tools/builds/stick_pages.py": 2,
+    "tools/environment.py": 1,
+    "tools/generate/command_pages.py": 3,
+    "tools/generate/poster.py": 1,
+    "tools/generate/remark_tables.py": 1,
+    "tools/studio/src/block_texts.js": 1,
+    "tools/studio/src/editor.js": 1,
+    "tools/studio/src/main.js": 1,
+    "tools/studio/src/texts.js": 1,
+    "tools/studio/src/work.js": 1,
+}
+
+
+def test_no_code_asks_for_one_language() -> None:
+    folders = ("compiler/tiniscript", "tools", "vm_arduino")
+    found = {}
+    for path in sorted(path for folder in folders for path in (ROOT / folder).rglob("*")):
+        parts = path.relative_to(ROOT).parts
+        if path.suffix not in (".py", ".js", ".cpp", ".h") or not path.is_file():
+            continue
+        if {"node_modules", "made", "page", "__pycache__", ".pio"} & set(parts):
+            continue
+        count = len(SPECIAL.findall(path.read_text(encoding="utf-8")))
+        if count:
+            found["/".join(parts)] = count
+    assert found == LEFT
