@@ -43,6 +43,7 @@ export class Driving {
   #seen = element('seen', HTMLSelectElement);
   #wasStopped = false;
   #note = '';
+  #told = ''; // of the trace
   /** @type {Checked['places']} */
   #places = [];
   /** Offsets at which the program that runs stops, for each breakpoint. @type {Map<object, number[]>} */
@@ -341,7 +342,8 @@ export class Driving {
     this.#pause.textContent = text(phase === 'paused' ? 'go_on' : 'pause');
     this.#push.hidden = !state?.is_waiting || phase !== 'running';
     element('doing', HTMLElement).textContent = this.#note || this.#drawing.said || this.#doing();
-    element('trace', HTMLElement).textContent = trace.slice(-SHOWN).join('\n');
+    const told = trace.slice(-SHOWN).join('\n');
+    if (told !== this.#told) element('trace', HTMLElement).textContent = this.#told = told;
     this.#showScore(state?.score ?? null);
     this.#where.tell(state, phase);
     this.#showValues();
@@ -440,20 +442,26 @@ export class Driving {
       ...this.#variables.map(({ name, is_yes_no }, k) => [name, written(state?.variables[k], is_yes_no)]),
       ...(this.#shown ? [['SHOW', this.#shown]] : []),
     ];
-    element('values', HTMLElement).replaceChildren(
-      ...rows.map(([name = '', value = '', part = '']) => {
-        const row = document.createElement('div');
-        row.className = name.length > SHORT || part ? 'wide' : '';
-        if (part) row.style.setProperty('--part', part);
-        const term = document.createElement('dt');
-        const found = document.createElement('dd');
-        term.textContent = name;
-        found.textContent = value;
-        row.append(term, found);
-        return row;
-      }),
-    );
+    const place = element('values', HTMLElement);
+    while (place.children.length > rows.length) place.lastElementChild?.remove();
+    rows.forEach(([name = '', value = '', part = ''], k) => {
+      const row = /** @type {HTMLElement} */ (place.children[k] ?? place.appendChild(valueRow()));
+      row.classList.toggle('wide', name.length > SHORT || part !== '');
+      if (part) row.style.setProperty('--part', part);
+      else row.removeAttribute('style');
+      [name, value].forEach((said, at) => {
+        const cell = row.children[at];
+        if (cell && cell.textContent !== said) cell.textContent = said; // what stays costs nothing
+      });
+    });
   }
+}
+
+/** A row of the values, still empty. */
+function valueRow() {
+  const row = document.createElement('div');
+  row.append(document.createElement('dt'), document.createElement('dd'));
+  return row;
 }
 
 /** How much of its range a reading is, for a bar. @param {typeof ROBOTS[number]['devices'][number]} device @param {number} [value] */
