@@ -248,8 +248,12 @@ sys.exit(1)
     assert not ready.files(ready.cache())
 
 
-def test_a_firmware_that_is_too_large_with_tasks_is_built_without(
-    clone: Path, tmp_path: Path
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [([], "gets no TASK and no WHEN"), (["--lang", "es"], "queda sin TASK ni WHEN")],
+)
+def test_a_firmware_that_is_too_large_with_tasks_is_built_without_and_says_so(
+    words: list[str], said: str, clone: Path, tmp_path: Path
 ) -> None:
     body = """
 name = sys.argv[sys.argv.index("-e") + 1]
@@ -261,8 +265,8 @@ made = os.path.join(sys.argv[sys.argv.index("-d") + 1], ".pio", "build", name)
 os.makedirs(made)
 open(os.path.join(made, "firmware.hex"), "w").write(":00000001FF\\n")
 """
-    code, _, err = built(clone, pretending(tmp_path, body))
-    assert code == 0, err
+    code, _, err = built(clone, pretending(tmp_path, body), *words)
+    assert code == 0 and err.count(said) == 1, err
     assert len(list(ready.cache().glob("*.hex"))) == 1
 
 

@@ -15,7 +15,7 @@ from tiniscript.cli.inputs import shown
 from tiniscript.cli.terminal.progress import Progress
 from tiniscript.cli.texts.common import text
 from tiniscript.flash import building, ready
-from tiniscript.flash.building import CannotBuild, Seen, Sources
+from tiniscript.flash.building import LESS, CannotBuild, Seen, Sources
 from tiniscript.flash.ready import Ready
 from tiniscript.library import install_advice
 from tiniscript.robots.ports import AVRS, ESP32S
@@ -142,6 +142,10 @@ def _shown(robot: Robot, language: str) -> Iterator[Callable[[Seen], None]]:
 
     def look(seen: Seen) -> None:
         nonlocal fetched
+        if seen.phase == LESS:
+            progress.end()
+            print(text("flash_less", language).format(**values), file=sys.stderr, flush=True)
+            return
         progress.label = text(f"flash_{seen.phase}", language)
         if seen.what and seen.what != fetched:
             progress.end()

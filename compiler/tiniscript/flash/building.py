@@ -32,6 +32,7 @@ HEADER = "src/boards/kits/own.h"
 MADE_BY = "tsc firmware, from a robot profile."
 
 FETCHING, COMPILING, WRITING = "fetching", "compiling", "writing"
+LESS = "less"  # it is too large, and is built once more, without tasks
 CORE_FILES = 26  # of Arduino's core, about
 # For a robot that does not fit on its board with TASK and WHEN: one of more devices than tinibot.
 WITHOUT_TASKS = {"uno": "uno_without_tasks"}
@@ -186,6 +187,7 @@ def build(made_from: Sources, robot: Robot, look: Callable[[Seen], None]) -> byt
             if why.why != CannotBuild.TOO_LARGE or project.environment not in WITHOUT_TASKS:
                 raise
             project.environment = WITHOUT_TASKS[project.environment]
+            look(Seen(LESS, 0))
             project.build(look, is_hex=True)
         return project.made.read_bytes()
 
