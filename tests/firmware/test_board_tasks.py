@@ -19,7 +19,7 @@ from tests.firmware.test_uno_robot import (
     states,
     switched_on,
 )
-from tests.firmware.test_uno_trace import check_pins, program
+from tests.firmware.test_uno_trace import OFF_MS, Setting, check_pins, last_zero, program, seen
 from tests.machines.uno import needed
 from tests.support.casefile import ROOT, Case, read
 from tests.support.platformio import firmware, shared
@@ -30,6 +30,10 @@ from tools.uno import CYCLES_PER_MS, Uno
 
 Test = TypeVar("Test", bound=Callable[..., None])
 
+AWAY = (ROOT / "examples" / "away.ts").read_text(encoding="utf-8")
+LOOK_MS = (
+    90.0  # until a WHEN has seen what comes near: 20 ms, and an echo 30 ms behind the one before
+)
 BUSY = "F(FOREVER, 60);" + "TASK;X = 0;LOOP(FOREVER);X = X + 1;END_LOOP;END_TASK;" * 4
 STOP = bytes(8)
 STOP_RUN = (
@@ -84,6 +88,48 @@ def test_while_four_tasks_count_the_clock_goes_on(robot: Uno) -> None:
     check_pins(
         program(text)._replace(parts={"tiniscript": text, "senses": "max-time = 0.5"}), robot
     )
+
+
+def driven(robot: Uno, since: int) -> list[Setting]:
+    """Return how the motors have driven since a cycle, without the time in which they stand."""
+    return [each for each in seen(robot, since) if each[1:] != (0, 0)]
+
+
+@each_board
+def test_it_backs_away_from_what_comes_near_and_drives_on(robot: Uno) -> None:
+    """Each time: and what has gone in the meantime is driven on to at once."""
+    robot.sonar("trigger", "echo", 80)
+    wired = computer(robot)
+    send(wired, AWAY, is_detached=True)
+    wired.run(500)
+    assert states(robot) == FORWARD
+    for wait_ms in (0, 7):
+        wired.run(wait_ms)
+        near = robot.cycle
+        robot.sonar("trigger", "echo", 10)
+        wired.run(700)
+        robot.sonar("trigger", "echo", 80)
+        wired.run(800)
+        found = driven(robot, near)
+        assert [each[1:] for each in found] == [(-60, -60), (60, -60), (60, 60)]
+        begins, turns, goes_on = (each.ms for each in found)
+        assert begins < LOOK_MS and abs(turns - begins - 500) < OFF_MS
+        assert 500 - OFF_MS < goes_on - turns < 500 + LOOK_MS
+
+
+@each_board
+def test_an_echo_that_does_not_come_holds_up_no_other_task(robot: Uno) -> None:
+    robot.sonar("trigger", "echo", None)
+    wired = computer(robot)
+    heard = len(robot.received)
+    send(wired, "LOOP(4);F(0.2, 60);B(0.2, 60);END_LOOP;WHEN(DISTANCE < 15);S;END_WHEN",
+         is_detached=True)  # fmt: skip
+    wired.run(2000)
+    found = driven(robot, last_zero(robot, heard))
+    assert [each[1:] for each in found] == [(60, 60), (-60, -60)] * 4
+    for number, each in enumerate(found):
+        assert abs(each.ms - 200 * number) < OFF_MS, found
+    assert states(robot) == OFF
 
 
 @each_board

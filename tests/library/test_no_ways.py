@@ -27,41 +27,43 @@ def program(tmp_path: Path) -> Path:
     return path
 
 
-@pytest.mark.parametrize("robot", ["tinibot", "liner"])
+def without(key: str, text: str) -> str:
+    line = f"{key} = {45 if key == 'speed' else 360}\n"
+    assert line in text
+    return text.replace(line, "")
+
+
+@pytest.fixture
+def slow(tmp_path: Path) -> Path:
+    """The profile of a robot whose speeds nobody has measured."""
+    path = tmp_path / "slow.toml"
+    text = without("turn", without("speed", PROFILE.read_text(encoding="utf-8")))
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
 @pytest.mark.parametrize("language", ["en", "es"])
-def test_it_is_refused_before_anything_is_sent(program: Path, robot: str, language: str) -> None:
-    for verb in (("upload",), ("compile", "--text")):
-        done = inside(*verb, program, "--robot", robot, "--lang", language)
-        said = done.out + done.err
-        assert done.code == 1 and "[TS315]" in said and "tsc run" in said
-        assert ("line 2:" if language == "en" else "línea 2:") in said
-
-
-def test_an_image_is_refused_too(program: Path, tmp_path: Path) -> None:
+def test_a_robot_without_speeds_refuses_an_image(
+    program: Path, slow: Path, language: str, tmp_path: Path
+) -> None:
     image = tmp_path / "way.bin"
     assert inside("compile", program, "-o", image).code == 0
     assert image.read_bytes()[3] == 1 and image.read_bytes()[14] == GO
-    for language, words in WORDS.items():
-        done = inside("upload", image, "--lang", language)
-        assert done.code == 1 and words in done.err and "tsc run" in done.err
+    done = inside("upload", image, "--robot", slow, "--lang", language)
+    assert done.code == 1 and WORDS[language] in done.err and "tsc run" in done.err
     assert inside("run", image).out.endswith("741 DONE\n")
 
 
 def test_what_is_lacking_has_a_text_of_its_own() -> None:
     assert [lacking(needs, robots.load("liner")) for needs in (0, TASKS, GO, TASKS | GO)] == [
-        "", "no_tasks", "no_ways", "no_tasks"]  # fmt: skip
+        "", "no_tasks", "", "no_tasks"]  # fmt: skip
     assert lacking(TASKS, robots.load("grabber")) == ""
 
 
-def test_the_page_says_so() -> None:
-    found = checking.check(TEXT.encode(), "tinibot", "en")
-    assert found.findings[-1].message.code == "TS315" and not found.image
-
-
-@pytest.mark.parametrize("robot", ["grabber", "tinibot32", "tinibotc3"])
-def test_a_mega_and_an_esp32_have_them(program: Path, robot: str) -> None:
+@pytest.mark.parametrize("robot", robots.names())
+def test_all_robots_have_them(program: Path, robot: str) -> None:
     profile = robots.load(robot)
-    assert not lacking(TASKS | GO, profile)
+    assert not lacking(GO, profile)
     assert lacking(GO, profile._replace(kit=profile.kit._replace(speed=0, turn=0))) == "no_ways"
     assert checking.check(TEXT.encode(), robot, "en").image
 
@@ -97,8 +99,7 @@ def test_the_receipt_says_how_long(program: Path) -> None:
 def test_a_profile_may_leave_a_speed_out(key: str) -> None:
     text = PROFILE.read_text(encoding="utf-8")
     line = f"{key} = {45 if key == 'speed' else 360}\n"
-    assert line in text
-    kit = read(text.replace(line, ""), "mine").kit
+    kit = read(without(key, text), "mine").kit
     assert getattr(kit, key) == 0
     assert kit.fingerprint == robots.load("tinibot").kit.fingerprint
     half = read(text.replace(line, f"{key} = 0.5\n"), "mine").kit

@@ -42,8 +42,8 @@ MORE = {
 
 
 @lru_cache(maxsize=8)
-def built(name: str, sources: Path = SOURCES) -> bytes:
-    """Return `bench/NAME.cpp` with the machine of `sources`, an ELF file."""
+def built(name: str, sources: Path = SOURCES, *more: str) -> bytes:
+    """Return `bench/NAME.cpp` with the machine of `sources`, an ELF file; `more` are flags."""
     code = [
         sources / "extras" / "bench" / f"{name}.cpp",
         *sorted((sources / "src" / "vm").glob("*.[cS]*")),
@@ -52,7 +52,7 @@ def built(name: str, sources: Path = SOURCES) -> bytes:
     with tempfile.TemporaryDirectory() as folder:
         program = Path(folder) / "program.elf"
         done = subprocess.run(
-            ["avr-g++", *FLAGS, *WARNINGS, *map(str, code), "-o", str(program)],
+            ["avr-g++", *FLAGS, *more, *WARNINGS, *map(str, code), "-o", str(program)],
             capture_output=True,
             text=True,
         )

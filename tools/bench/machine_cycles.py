@@ -30,9 +30,9 @@ class Counted(NamedTuple):
     cycles: int
 
 
-def count(code: bytes, readings: Sequence[int], budget: int) -> Counted:
+def count(code: bytes, readings: Sequence[int], budget: int, *more: str) -> Counted:
     request = pack(f"<BB{len(readings)}iH", budget, len(readings), *readings, len(code)) + code
-    said = avr_bench.run(avr_bench.built("cycles"), request)
+    said = avr_bench.run(avr_bench.built("cycles", avr_bench.SOURCES, *more), request)
     found: dict[str, list[list[int]]] = defaultdict(list)
     for line in said:
         word, *numbers = line.split()

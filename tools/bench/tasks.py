@@ -1,4 +1,4 @@
-"""How late a WHEN looks while other tasks count: `python -m tools.bench.tasks`.
+"""What a turn takes, and how late a WHEN looks while others count: `python -m tools.bench.tasks`.
 
 A simulated Uno with the firmware that ships has up to four tasks beside the main one: a WHEN that
 looks at a light sensor every 20 ms, and others that count and never wait by themselves. The light
@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import sys
 import tempfile
+from itertools import pairwise
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent.parent
@@ -21,7 +22,8 @@ from tiniscript import compile_text, robots
 from tiniscript.bytecode.image import unpack
 from tiniscript.link.session import Session
 from tools import uno
-from tools.bench import firmware_size
+from tools.bench import avr_bench, firmware_size
+from tools.bench.machine_cycles import BUDGET, count
 from tools.bench.sketch_cycles import pin_of_sensor
 from tools.builds.platformio_offline import CannotStandIn
 from tools.uno import CYCLES_PER_MS, Uno
@@ -31,11 +33,13 @@ LOOK_MS = 20
 LOOKS = 40
 BOOT_MS = 300
 COUNTING = "TASK; {0} = 0; LOOP(FOREVER); {0} = {0} + 1; END_LOOP; END_TASK;"
+TURNS = 1000
+WITH_TASKS = "-Dtiniscript_with_tasks"
 WATCH = "WHEN(LIGHT_L > 500); M(50, 50); W(0.04); M(0, 0); W(0.06); END_WHEN;"
 
 
 def main() -> int:
-    if why := uno.missing():
+    if why := uno.missing() or avr_bench.missing():
         print(why, file=sys.stderr)
         return 2
     try:
@@ -43,11 +47,22 @@ def main() -> int:
     except (RuntimeError, CannotStandIn) as failed:
         print(failed, file=sys.stderr)
         return 2
+    print("tasks beside the main one   cycles of a turn of one more")
+    rounds = [turns_cycles(tasks) for tasks in range(5)]
+    for tasks, (before, after) in enumerate(pairwise(rounds), 1):
+        print(f"{tasks:25} {(after - before) / TURNS:30,.0f}")
     print("tasks that count   latest look behind the earliest one")
     for others in range(4):
         spread_ms = jitter_ms(firmware, others)
         print(f"{others:16} {spread_ms * 1000:37.0f} us")
     return 0
+
+
+def turns_cycles(tasks: int) -> int:
+    """Return the cycles of the machine while each task goes so often around an empty loop."""
+    text = f"TASK;LOOP({TURNS});END_LOOP;END_TASK;" * tasks + "W(1.2)"
+    code = unpack(compile_text(text, ROBOT.kit).image).code
+    return count(code, (), BUDGET, WITH_TASKS).cycles
 
 
 def jitter_ms(firmware: Path, others: int) -> float:

@@ -78,9 +78,7 @@ def header(command: str) -> str:
         "// Bits of what an image needs, and what this machine has of it.\n"
         + constants(("kNeedsTasks", image.TASKS), ("kNeedsWays", image.GO))
         + only_with("tasks", has("kHasTasks", True), has("kHasTasks", False))
-        + only_with("ways", has("kHasWays", True), has("kHasWays", False))
-        + "constexpr uint8_t kNeeds =\n"
-        "    (kHasTasks ? kNeedsTasks : 0) | (kHasWays ? kNeedsWays : 0);\n",
+        + "constexpr uint8_t kNeeds = (kHasTasks ? kNeedsTasks : 0) | kNeedsWays;\n",
         enumeration(
             "Op",
             [

@@ -100,7 +100,7 @@ _PWM_2560 = {
 # reset; 18 and 19 are its own USB, and 19 is pulled up until the firmware runs. So is 6, for JTAG.
 _ESP32 = _pins(0, 2, 4, 5, range(12, 20), 21, 22, 23, 25, 26, 27, 32, 33)
 _ESP32C3 = _pins(range(11), 18, 19)
-# Bits of `needs`. An Uno has no room for ways, and a Nano's old bootloader leaves none for tasks.
+# Bits of `needs`. A Nano's old bootloader leaves no room for tasks.
 _TASKS, _WAYS = 1, 2
 
 CHIPS = {
@@ -118,7 +118,7 @@ CHIPS = {
             first_analog=14,
             servo_timer=1,
             tone_timer=2,
-            has=_TASKS,
+            has=_TASKS | _WAYS,
         ),
         Chip(
             "nano",
@@ -132,6 +132,7 @@ CHIPS = {
             first_analog=14,
             servo_timer=1,
             tone_timer=2,
+            has=_WAYS,
         ),
         Chip(
             "mega",

@@ -94,7 +94,11 @@ tini_noinline uint8_t Link::authenticate(const uint8_t* payload, uint8_t length)
   const uint8_t* const tag = payload + kAuthenticateTagAt;
   if (which > static_cast<uint8_t>(Key::kTeacher)) return number_of(Answer::kBadValue);
   if (left_ms_[kKeyPause] != 0) {
-    return refuse(Answer::kTooManyTries, static_cast<uint16_t>(left_ms_[kKeyPause] / 1000 + 1));
+    uint16_t seconds = 1;  // a division of 16 bits takes more flash: an AVR has no other
+    for (uint16_t ms = left_ms_[kKeyPause]; ms >= 1000; ms = static_cast<uint16_t>(ms - 1000)) {
+      seconds++;
+    }
+    return refuse(Answer::kTooManyTries, seconds);
   }
   uint8_t key[kKeyBytes];
   const Answer found = port_key(which, key);

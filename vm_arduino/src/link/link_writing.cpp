@@ -67,10 +67,10 @@ tini_noinline void Link::confirm(Cause cause) {
 }
 
 bool Link::show(int32_t value, bool is_yes_no) {
-  const bool is_text = talks();
-  if (!is_listened_to() && !is_text) return true;
+  const bool is_heard = is_listened_to();
+  if (!is_heard && !console_.is_talking()) return true;
   if (left_ != 0 || due_ != 0) return false;
-  if (is_text) {
+  if (!is_heard) {
     show_text(value, is_yes_no);
     return true;
   }

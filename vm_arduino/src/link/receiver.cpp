@@ -202,7 +202,7 @@ bool Receiver::end(Item item) {
 // for a kLineCut: if that is taken, it tells of what is lost now, too.
 void Receiver::pass_on(uint8_t byte) {
   const uint8_t at = behind_;
-  const uint8_t behind = static_cast<uint8_t>((at + 1) % kTextBytes);
+  const uint8_t behind = static_cast<uint8_t>(at + 1) % kTextBytes;
   const uint8_t room = static_cast<uint8_t>(first_ - behind) % kTextBytes;
   if (byte == kLineCut) {
     if (room == 0) return;
@@ -246,7 +246,7 @@ bool Receiver::take_text(uint8_t* byte) {
   if (first == behind_) return false;
   *byte = text_[first];
   asm volatile("" ::: "memory");
-  first_ = static_cast<uint8_t>((first + 1) % kTextBytes);
+  first_ = static_cast<uint8_t>(first + 1) % kTextBytes;
   return true;
 }
 

@@ -58,13 +58,7 @@ constexpr bool kHasTasks = true;
 #else
 constexpr bool kHasTasks = false;
 #endif
-#ifdef tiniscript_has_ways
-constexpr bool kHasWays = true;
-#else
-constexpr bool kHasWays = false;
-#endif
-constexpr uint8_t kNeeds =
-    (kHasTasks ? kNeedsTasks : 0) | (kHasWays ? kNeedsWays : 0);
+constexpr uint8_t kNeeds = (kHasTasks ? kNeedsTasks : 0) | kNeedsWays;
 
 enum class Op : uint8_t {
   kEnd = 0x00,  // --

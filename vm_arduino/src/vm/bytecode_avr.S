@@ -25,16 +25,13 @@
 #define tini_comparator_gt 4
 #define tini_comparator_ge 5
 
-// What a machine without tasks or ways does about theirs.
+// What a machine without tasks does about theirs.
 #ifndef tiniscript_has_tasks
 #define op_look op_none
 #define op_end_task op_none
 #define op_end_when op_none
 #define op_task op_none
 #define op_when op_none
-#endif
-#ifndef tiniscript_has_ways
-#define op_way op_none
 #endif
 
 // The low bits of an instruction that compares are its comparator.

@@ -115,9 +115,7 @@ op_motors8:
     rjmp 3f
 op_set:
 op_wait8:
-#ifdef tiniscript_has_ways
 op_way:
-#endif
     movw at, r26
     adiw r26, 1
     rjmp 3f

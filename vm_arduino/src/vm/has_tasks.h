@@ -1,10 +1,8 @@
-// Which machines have TASK and WHEN, and which CM and DEG: in one place for C++ and assembly.
+// Which machines have TASK and WHEN: in one place for C++ and assembly.
 //
 // Tasks take about 2,030 bytes of flash and 127 of RAM. An Uno has them with the compiler's options
 // of platformio.ini (`tiniscript_with_tasks`). With those of the Arduino IDE it has none, nor has a
 // Nano, whose old bootloader leaves 30,720 bytes.
-//
-// No ATmega328P has CM and DEG, for want of flash.
 
 #ifndef TINISCRIPT_VM_HAS_TASKS_H_
 #define TINISCRIPT_VM_HAS_TASKS_H_
@@ -14,11 +12,6 @@
 #endif
 
 #ifndef __AVR_ATmega328P__
-#define tiniscript_has_ways
-#endif
-
-// Where it has both it can wait for a robot that measures its ways.
-#if defined(tiniscript_has_tasks) && defined(tiniscript_has_ways)
 #define tiniscript_has_discs
 #endif
 

@@ -78,7 +78,7 @@ tini_always_inline Division divided(uint32_t a, uint32_t b, uint32_t divisor) {
 #endif
 
 // Returns a * b / divisor rounded half up, or 2^32 - 1 if that is larger.
-tini_always_inline uint32_t scaled(uint32_t a, uint32_t b, uint32_t divisor) {
+tini_always_inline uint32_t rounded(uint32_t a, uint32_t b, uint32_t divisor) {
   const Division division = divided(a, b, divisor);
   const bool is_up = division.remainder >= divisor - division.remainder;
   return division.quotient + (is_up && division.quotient != 0xffffffff ? 1 : 0);
@@ -96,9 +96,9 @@ Fault scale(Op op, int32_t* pair) {
   const bool differ = is_negative != (pair[0] < 0);
   const uint32_t first = magnitude(pair[0]);
   const uint32_t second = magnitude(pair[1]);
-  if (op == Op::kMul) return finish(scaled(first, second, kOne), differ, pair);
+  if (op == Op::kMul) return finish(rounded(first, second, kOne), differ, pair);
   if (second == 0) return Fault::kDivideByZero;
-  if (op == Op::kDiv) return finish(scaled(first, kOne, second), differ, pair);
+  if (op == Op::kDiv) return finish(rounded(first, kOne, second), differ, pair);
   // The exact remainder has the sign of the divisor.
   const uint32_t rest = first % second;
   return finish(rest != 0 && differ ? second - rest : rest, is_negative, pair);
@@ -112,7 +112,7 @@ Fault round(int32_t* pair) {
   if (places >= -6) {  // half of 10^7 is more than any number
     uint32_t unit = 1;
     for (int32_t k = places; k < 3; k++) unit *= 10;
-    size = scaled(magnitude(pair[0]), 1, unit) * unit;
+    size = rounded(magnitude(pair[0]), 1, unit) * unit;
   }
   return finish(size, pair[0] < 0, pair);
 }
@@ -165,9 +165,11 @@ bool compare(const int32_t* a, int16_t whole, uint8_t op) {
 }
 
 int32_t whole(int32_t a) {
-  const int32_t units = static_cast<int32_t>(scaled(magnitude(a), 1, kOne));
+  const int32_t units = static_cast<int32_t>(rounded(magnitude(a), 1, kOne));
   return a < 0 ? -units : units;
 }
+
+uint32_t scaled(uint32_t a, uint32_t b, uint32_t divisor) { return rounded(a, b, divisor); }
 
 uint32_t next_random(uint32_t state) {
   state ^= state << 13;

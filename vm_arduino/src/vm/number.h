@@ -35,6 +35,10 @@ int32_t whole(int32_t a);
 // xorshift32, shifts 13, 17, 5 (Marsaglia 2003): the state is never 0.
 uint32_t next_random(uint32_t state);
 
+// Returns a * b / divisor, rounded half up, or 2^31 and more where it has no room for it. `divisor`
+// is not 0, and at most 2^31.
+uint32_t scaled(uint32_t a, uint32_t b, uint32_t divisor);
+
 // Replaces the first of a pair by a random whole number between the two, both included. `state`
 // must have just been stepped.
 Fault random_between(int32_t* pair, uint32_t state);

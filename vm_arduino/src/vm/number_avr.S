@@ -263,10 +263,26 @@ function _ZN10tiniscript14random_betweenEPlm
     rol r24                 ; Fault::kOverflow is 1
     pop r29
     pop r28
+products_end:
     pop carry
     pop part1
     pop part0
     ret
+
+; uint32_t scaled(uint32_t a, uint32_t b, uint32_t divisor)
+function _ZN10tiniscript6scaledEmmm
+    push part0
+    push part1
+    push carry
+    call multiply
+    movw a0, r14            ; the divisor
+    movw a2, r16
+    call divide_and_round
+    movw a0, b0
+    movw a2, b2
+    brcc products_end
+    ldi a3, 0xff
+    rjmp products_end
 
 load_whole:
     ld a0, Y

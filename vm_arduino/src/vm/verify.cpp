@@ -108,7 +108,7 @@ __attribute__((noinline)) Verdict pass(const uint8_t* code, uint16_t length, uin
     // opcode: an invalid one has one byte, and its role refuses it
     const uint8_t* operand = code + at;
     after = at;
-    if (kHasWays && *operand == static_cast<uint8_t>(Op::kEscape) && (may_need & kNeedsWays) != 0) {
+    if (*operand == static_cast<uint8_t>(Op::kEscape) && (may_need & kNeedsWays) != 0) {
       if (++after == length) return {Rule::kCutOperand, at};
       if (!is_way(*++operand)) return {Rule::kUnknownOpcode, at};
       needed = kNeedsWays;
@@ -302,20 +302,14 @@ __attribute__((noinline)) Verdict pass(const uint8_t* code, uint16_t length, uin
   if (depth != 0 || joins != 0) return {Rule::kStackNotEmpty, at};
   if (checker != Role::kNone) return {Rule::kInsideCheck, at};
   if (top->kind != Kind::kCode || end != 0) return {Rule::kStillOpen, at};
-  if (kHasWays && tasks != 0) needed |= kNeedsTasks;
-  return {Rule::kNone, kHasWays ? needed : tasks};
+  if (tasks != 0) needed |= kNeedsTasks;
+  return {Rule::kNone, needed};
 }
 
 }  // namespace
 
-#if defined(tiniscript_has_tasks) || defined(tiniscript_has_ways)
 Verdict verify(const uint8_t* code, size_t length, uint8_t sensors, uint8_t actuators,
                uint16_t* devices, uint8_t may_need) {
-#else
-Verdict verify(const uint8_t* code, size_t length, uint8_t sensors, uint8_t actuators,
-               uint16_t* devices) {
-  constexpr uint8_t may_need = 0;
-#endif
   if (length > kCodeBytes) return {Rule::kCodeLength, 0};
   Memory memory;  // not cleared, which takes longer than most code: it is written before it is read
   const Verdict verdict =

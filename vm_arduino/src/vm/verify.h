@@ -16,8 +16,8 @@
 
 namespace tiniscript {
 
-// The first violation of a rule and the offset of its instruction; kNone: accepted, and what
-// it needs: on a machine with ways bits of `needs`, else how many tasks are beside the main one.
+// The first violation of a rule and the offset of its instruction; kNone: accepted, and bits of
+// `needs`.
 struct Verdict {
   Rule rule;
   uint16_t offset;
@@ -26,18 +26,8 @@ struct Verdict {
 // Whether a machine with this many sensors and actuators (0 to 255) may run `code`. Its image says
 // what it may have. Puts the hash of the used devices into `*devices`, which is undefined
 // if the code is refused.
-#if defined(tiniscript_has_tasks) || defined(tiniscript_has_ways)
 Verdict verify(const uint8_t* code, size_t length, uint8_t sensors, uint8_t actuators,
-               uint16_t* devices, uint8_t needs = 0);
-#else
-Verdict verify(const uint8_t* code, size_t length, uint8_t sensors, uint8_t actuators,
-               uint16_t* devices);
-
-inline Verdict verify(const uint8_t* code, size_t length, uint8_t sensors, uint8_t actuators,
-                      uint16_t* devices, uint8_t) {
-  return verify(code, length, sensors, actuators, devices);
-}
-#endif
+               uint16_t* devices, uint8_t needs);
 
 inline Verdict verify(const uint8_t* code, size_t length, uint8_t sensors, uint8_t actuators,
                       uint8_t needs = 0) {

@@ -96,7 +96,7 @@ bool Machine::pause() {
   return false;
 }
 
-tini_noinline bool Machine::goes_on(Fault fault) {
+bool Machine::goes_on(Fault fault) {
   fault_ = fault;
   return fault == Fault::kNone;
 }

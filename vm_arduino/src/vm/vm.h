@@ -123,7 +123,7 @@ class Machine {
   bool until(bool stop) tini_called_by_assembly;
   bool sense(uint8_t number) tini_called_by_assembly;
   void powers(uint8_t code, int8_t power);
-  bool go_ms(uint8_t code, int8_t power, int32_t way, uint32_t* time_ms);
+  bool go_ms(uint8_t code, int32_t* top);
   bool show(int32_t value, bool is_yes_no);
   bool sends();
 

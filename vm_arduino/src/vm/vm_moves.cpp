@@ -16,7 +16,7 @@ constexpr Powers kOff = 0;
 }  // namespace
 
 // Sets the clock to the begin of the next wait or move, or to now if that is too long ago.
-tini_noinline void Machine::begin() {
+void Machine::begin() {
   constexpr uint8_t kLateMs = 20;
   if (now_ms_ - task_.me->clock_ms > kLateMs) task_.me->clock_ms = now_ms_;
 }
@@ -44,7 +44,7 @@ namespace {
 void forget_set(TaskRecord* task) { task->state &= static_cast<uint8_t>(~kHasSet); }
 
 // Its move is over, and so is its M. It goes on behind the move.
-tini_noinline void end_move_of(TaskRecord* task) {
+void end_move_of(TaskRecord* task) {
   forget_set(task);
   task->state &= static_cast<uint8_t>(~(kIsMoving | kIsBlocked | kDrives | kToItsEnd));
   task->pc = task->after;
@@ -71,7 +71,7 @@ void stand_still(TaskRecord* task, uint32_t now_ms) {
 }  // namespace
 
 // A wait is a move that leaves the motors as they are. One of 0 ms ends no turn of a task.
-tini_noinline bool Machine::wait(uint32_t duration_ms) {
+bool Machine::wait(uint32_t duration_ms) {
   task_.me->powers = kNoPowers;
   return drive(duration_ms);
 }
@@ -261,7 +261,7 @@ tini_noinline void Machine::set_motors(Powers powers) {
 
 #else
 
-tini_noinline bool Machine::wait(uint32_t duration_ms) {
+bool Machine::wait(uint32_t duration_ms) {
   begin();
   task_.me->clock_ms += duration_ms;
   return pause();

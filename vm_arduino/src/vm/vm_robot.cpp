@@ -29,10 +29,13 @@ tini_noinline int16_t limited(int32_t value, int16_t low, int16_t high) {
   return part < low ? low : part > high ? high : part;
 }
 
-// A power in percent, from `low` to 100.
-tini_noinline int8_t percent(int32_t power, int8_t low) {
-  return static_cast<int8_t>(limited(whole(power), low, 100));
+// A power in percent, from -100 to 100.
+tini_noinline int8_t percent(int32_t power) {
+  return static_cast<int8_t>(limited(whole(power), -100, 100));
 }
+
+// That of a move is not below 0.
+int8_t of_move(int8_t power) { return power < 0 ? 0 : power; }
 
 }  // namespace
 
@@ -43,8 +46,9 @@ bool Machine::sense(uint8_t number) {
 }
 
 // Keeps the powers of a move. The last two bits of its code are the direction: F, B, L, R.
-tini_noinline void Machine::powers(uint8_t code, int8_t power) {
+inline void Machine::powers(uint8_t code, int8_t power) {
   const uint8_t way = code & 3;
+  power = of_move(power);
   const int8_t reversed = static_cast<int8_t>(-power);
   task_.me->powers =
       powers_of(way == 1 || way == 2 ? reversed : power, way == 1 || way == 3 ? reversed : power);
@@ -62,45 +66,23 @@ inline bool Machine::show(int32_t value, bool is_yes_no) {
 #endif
 }
 
-// Puts into `*time_ms` how long it takes to go or to turn that way: `way` * 100000 / its speed,
-// rounded half away from zero. False: it never comes there, or not in time.
-//
-// It multiplies bit by bit and keeps the rest of the division, so that nothing has more than 32
-// bits: a speed is at most 10^9.
-bool Machine::go_ms(uint8_t code, int8_t power, int32_t way, uint32_t* time_ms) {
-  constexpr uint32_t kMostMs = 0x7fffffff;
-  constexpr uint32_t kTimes = 100000;
-  *time_ms = 0;
-  if (way <= 0) return true;
+// Lets the second value from the top be how long it takes to go or to turn so far. False: it never
+// comes there, or not in time.
+inline bool Machine::go_ms(uint8_t code, int32_t* top) {
+  int32_t* const way = top - 1;
+  if (kHasDiscs) task_.me->more &= static_cast<uint8_t>(~kMeasures);
+  if (*way <= 0) return true;
+  const uint8_t power = static_cast<uint8_t>(of_move(percent(*top)));
 #ifdef tiniscript_has_discs
   if (robot_measures()) {
     task_.me->more |= kMeasures;
-    *time_ms = static_cast<uint32_t>(way);
     return goes_on(power == 0 ? Fault::kNoPower : Fault::kNone);
   }
 #endif
-  const uint32_t divisor =
-      power == 0 ? 0 : robot_speed((code & 2) != 0, static_cast<uint8_t>(power));
+  const uint32_t divisor = power == 0 ? 0 : robot_speed((code & 2) != 0, power);
   if (divisor == 0) return goes_on(Fault::kNoPower);
-  const uint32_t more = static_cast<uint32_t>(way) / divisor;
-  const uint32_t more_rest = static_cast<uint32_t>(way) % divisor;
-  uint32_t found = 0;
-  uint32_t rest = 0;
-  for (uint32_t bit = uint32_t{1} << 16; bit != 0; bit >>= 1) {
-    const bool adds = (kTimes & bit) != 0;
-    if (found > kMostMs / 2) return goes_on(Fault::kOverflow);
-    found += found;
-    rest += rest + (adds ? more_rest : 0);
-    while (rest >= divisor) {
-      rest -= divisor;
-      found++;
-    }
-    if (adds) found += more;
-    if (found > kMostMs) return goes_on(Fault::kOverflow);
-  }
-  if (rest >= divisor - rest) found++;
-  *time_ms = found;
-  return found <= kMostMs || goes_on(Fault::kOverflow);
+  *way = static_cast<int32_t>(scaled(static_cast<uint32_t>(*way), 100000, divisor));
+  return *way >= 0 || goes_on(Fault::kOverflow);
 }
 
 // Executes the instruction `code` at `bytes`, which lies before `task_.pc`; `top` points to the top
@@ -109,10 +91,9 @@ bool Machine::go_ms(uint8_t code, int8_t power, int32_t way, uint32_t* time_ms) 
 // A time is the first value that an instruction takes, a power the last one; without values they
 // are its first and last operand. Both are read before the switch, which takes half as much flash.
 bool Machine::act(uint8_t code, const uint8_t* bytes, int32_t* top) {
-  const bool is_escaped = kHasWays && code == static_cast<uint8_t>(Op::kEscape);
-  if (is_escaped) {
+  if (code == static_cast<uint8_t>(Op::kEscape)) {  // then it is a move with a time
     code = bytes[1];
-    if (!is_way(code)) return fail();
+    if (!go_ms(code, top)) return false;
   }
   const Shape shape = shape_of(code);
   const Family family = shape.family;
@@ -131,11 +112,10 @@ bool Machine::act(uint8_t code, const uint8_t* bytes, int32_t* top) {
   }
   const bool takes = shape.pops() != 0;
   const uint8_t first = shape.size() == 1 ? static_cast<uint8_t>(code % kShorts) : bytes[1];
-  const int8_t low = family == Family::kMotors ? -100 : 0;
-  const int8_t power = takes ? percent(*top, low) : signed8(bytes[shape.size() - 1]);
+  const int8_t power = takes ? percent(*top) : signed8(bytes[shape.size() - 1]);
   uint32_t time_ms = takes ? duration(shape.pops() == 1 ? *top : top[-1]) : time8(first);
-  if (kHasDiscs) task_.me->more &= static_cast<uint8_t>(~kMeasures);
-  if (is_escaped && !go_ms(code, power, top[-1], &time_ms)) return false;
+  if (kHasDiscs && *bytes == code) task_.me->more &= static_cast<uint8_t>(~kMeasures);
+  powers(code, power);  // of a move; what is none leaves them to the next one, or has none
   switch (family) {
     case Family::kShowYesNo:
       if (*top != 0) *top = 1;
@@ -149,20 +129,18 @@ bool Machine::act(uint8_t code, const uint8_t* bytes, int32_t* top) {
       stop_motors();
       return true;
     case Family::kMotors:
-      motors(powers_of(percent(top[-1], low), power));
+      motors(powers_of(percent(top[-1]), power));
       return true;
     case Family::kMotors8:
       motors(powers_of(signed8(first), power));
       return true;
     case Family::kMove:
     case Family::kMove8:
-      powers(code, power);
       return drive(time_ms);
     case Family::kWatchForever:
       time_ms = kForever;
       // fallthrough
     case Family::kWatch:
-      powers(code, power);
       return watch(time_ms);
     case Family::kWatchForeverWait:
       time_ms = kForever;
@@ -180,10 +158,11 @@ bool Machine::act(uint8_t code, const uint8_t* bytes, int32_t* top) {
     case Family::kWait8:
       return wait(time_ms);
     default:  // kEnd or kEndTask: the others are in the inner loop
+      stay();  // behind the last END lies nothing
       if (has_tasks() && !ends_program()) return false;
       robot_off();
       status_ = Status::kDone;
-      return stay();
+      return false;
   }
 }
 

@@ -45,7 +45,7 @@ tini_always_inline void to_the_end(Value* values, uint8_t count, uint8_t all) {
 }  // namespace
 
 // Makes a record for each task in the order of rank, the main task behind them; all of it is 0.
-tini_noinline void Machine::find_tasks() {
+void Machine::find_tasks() {
   TaskRecord* me = task_.next = task_.records;
   Role kind = Role::kWhen;
   for (;;) {
@@ -214,7 +214,6 @@ bool Machine::look_again() {
 // Ends this task. Returns whether it was the last one.
 bool Machine::ends_program() {
   task_.me->state = kHasEnded;
-  stay();  // behind the last END lies nothing
   for (const TaskRecord* task = task_.records; task != task_.end; task++) {
     if (task->state != kHasEnded) return pause();
   }

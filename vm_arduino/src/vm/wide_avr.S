@@ -105,6 +105,24 @@ shared divide
     clc
     ret
 
+; What the compiler calls for a / b: b is the quotient, a what is left. Its own is larger and slower.
+shared __udivmodsi4
+    push part1
+    movw high0, a0
+    movw high2, a2
+    movw a0, b0
+    movw a2, b2
+    movw b0, high0
+    movw b2, high2
+    clr high0
+    clr high1
+    movw high2, high0
+    rcall divide
+    movw a0, high0
+    movw a2, high2
+    pop part1
+    ret
+
 ; The highest byte of b becomes one of the quotient, the lowest. It is 0 at once, or comes bit by
 ; bit.
 divide_byte:

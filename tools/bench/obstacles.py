@@ -1,0 +1,97 @@
+"""How often a robot touches something, and gets stuck: `python -m tools.bench.obstacles`.
+
+Each program drives for half an hour of the robot's time in the world `obstacles`, from 20 places
+that the seed draws, with motors that differ by up to 5 % and readings that differ by up to 2 %. A
+robot is stuck where it stays within 3 cm of one place for 5 s.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+import sys
+from concurrent.futures import ProcessPoolExecutor
+from functools import partial
+from pathlib import Path
+from random import Random
+from statistics import median
+from typing import NamedTuple
+
+ROOT = Path(__file__).resolve().parent.parent.parent
+sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
+
+from tests.support.virtual_robot import Talk
+from tiniscript import robots
+from tiniscript.robots.kinematics import Pose
+from tiniscript.virtual import worlds
+from tiniscript.virtual.driving import Driving
+from tiniscript.virtual.robot import Settings, VirtualRobot
+
+SECONDS = 1800
+SEEDS = 20
+STUCK_S = 5
+STUCK_CM = 3.0
+LOOK_MS = 500
+PROGRAMS = ("obstacle.ts", "away.ts", "explore.ts")
+ROBOT = "tinibot32"
+
+
+class Drive(NamedTuple):
+    contacts: int
+    driven_m: float
+    stood_s: float  # the longest time in one place
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--seconds", type=int, default=SECONDS, help="of the robot's time")
+    parser.add_argument("--seeds", type=int, default=SEEDS)
+    given = parser.parse_args()
+    head = ("program", "contacts: median", "most", "metres: median", "longest in a place", "stuck")
+    print("{:14} {:>16} {:>5} {:>14} {:>18} {:>8}".format(*head))
+    for name in PROGRAMS:
+        text = (ROOT / "examples" / name).read_text(encoding="utf-8")
+        with ProcessPoolExecutor() as pool:
+            drives = list(pool.map(partial(drive, text, given.seconds), range(given.seeds)))
+        contacts = [each.contacts for each in drives]
+        metres = median(each.driven_m for each in drives)
+        stood_s = max(each.stood_s for each in drives)
+        stuck = sum(each.stood_s >= STUCK_S for each in drives)
+        print(f"{name:14} {median(contacts):16.0f} {max(contacts):5} {metres:14.0f}"
+              f" {stood_s:16.1f} s {stuck:2} of {given.seeds}", flush=True)  # fmt: skip
+
+
+def drive(text: str, seconds: int, seed: int) -> Drive:
+    """Return how a program drives that begins at a place of this seed."""
+    chance = Random(seed)
+    profile = robots.load(ROBOT)
+    board = profile.board._replace(max_run_seconds=seconds + 60)  # ten minutes would end it
+    profile = profile._replace(board=board)
+    world = worlds.load("obstacles")
+    start = world.start
+    while seed:  # the first one begins where the world says
+        start = Pose(chance.uniform(0, 220), chance.uniform(0, 200), chance.uniform(0, 360))
+        if not Driving(profile.body, world.obstacles(), start).is_blocked():
+            break
+    settings = Settings(seed + 1, noise=0.02, motors=(100.0, chance.uniform(95, 105)))
+    robot = VirtualRobot(profile, world._replace(start=start), settings)
+    Talk(robot).upload(text, is_detached=True)
+    begins_ms = ends_ms = robot.now_ms
+    place = robot.pose
+    stood_ms = 0
+    while ends_ms < begins_ms + seconds * 1000:
+        since_ms = ends_ms
+        while math.dist(place[:2], robot.pose[:2]) <= STUCK_CM:
+            stood_ms = max(stood_ms, ends_ms - since_ms)
+            if ends_ms >= begins_ms + seconds * 1000:
+                break
+            ends_ms += LOOK_MS
+            robot.step(ends_ms)
+            robot.take_events()
+        place = robot.pose
+    assert robot.is_running, f"seed {seed}: its program has ended"
+    return Drive(robot.driving.bumps, robot.driving.driven_cm / 100, stood_ms / 1000)
+
+
+if __name__ == "__main__":
+    main()
