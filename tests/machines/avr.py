@@ -22,7 +22,12 @@ from tiniscript.kit import Kit
 if TYPE_CHECKING:
     from tests.machines import Senses
 
-UNO, MEGA = "atmega328p", "atmega2560"
+UNO, NANO, MEGA = "uno", "nano", "mega"
+BUILT = {
+    UNO: ("atmega328p", "-Dtiniscript_with_tasks"),
+    NANO: ("atmega328p",),
+    MEGA: ("atmega2560",),
+}
 FLAGS = ("-std=c++11", "-Os", "-flto", "-fno-exceptions", "-fno-rtti")
 MARK = b"TiniScript: here is the request"
 REQUEST_BYTES = 8192
@@ -34,13 +39,14 @@ def missing() -> str:
     return f"no {' and no '.join(wanted)} on this computer: no simulated ATmega" if wanted else ""
 
 
-@lru_cache(maxsize=2)
+@lru_cache(maxsize=3)
 def program(chip: str) -> bytes:
     """Return the program of a chip, an ELF file."""
     folders = [SOURCES / name for name in ("src/vm", "extras/chip", "extras/avr")]
     made_from = contents(SOURCES / "src", *folders)
     code = sorted(str(path) for each in folders for path in each.glob("*.[cS]*"))
-    flags = (f"-mmcu={chip}", *FLAGS, *WARNINGS)
+    mcu, *more = BUILT[chip]
+    flags = (f"-mmcu={mcu}", *more, *FLAGS, *WARNINGS)
     return compiled("the C++ machine", flags, code, made_from).read_bytes()
 
 
@@ -69,7 +75,7 @@ def answer(chip: str, request: bytes, most_seconds: int = 120) -> str:
         path = Path(folder) / "machine.elf"
         path.write_bytes(elf[:at] + request + elf[at + len(request) :])
         done = subprocess.run(
-            ["simavr", "-m", chip, "-f", "16000000", str(path)],
+            ["simavr", "-m", BUILT[chip][0], "-f", "16000000", str(path)],
             capture_output=True,
             timeout=most_seconds,
         )

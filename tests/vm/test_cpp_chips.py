@@ -30,7 +30,7 @@ from tests.support.random_codes import random_codes, simple
 from tests.vm.test_cases import compiled, having, listings_alone, robot_and_senses
 from tiniscript import compile_text
 from tiniscript.bytecode.disassembly import read_listing
-from tiniscript.bytecode.image import EVERYTHING, ImageRefused
+from tiniscript.bytecode.image import EVERYTHING, TASKS, ImageRefused
 from tiniscript.bytecode.verify import Refused
 from tiniscript.kit import Kit
 from tools.builds import chips
@@ -41,8 +41,8 @@ def _run_emulated(name: str, image: bytes, kit: Kit, senses: Senses) -> Ran:
 
 
 CHIPS = {
-    name: Chip(avr.missing(), partial(avr.ran_on, chip), 700, counts_jumps=True)
-    for name, chip in (("avr", avr.UNO), ("mega", avr.MEGA))
+    name: Chip(avr.missing(), partial(avr.ran_on, name), 700, counts_jumps=True)
+    for name in avr.BUILT
 }
 CHIPS |= {name: Chip(emulator_missing(name), partial(_run_emulated, name)) for name in chips.CHIPS}
 
@@ -62,8 +62,8 @@ one_chip = pytest.mark.sampled("chip")  # of each row; with `--whole` all
 
 
 def has(chip: str) -> int:
-    """Return what a chip has of `needs`: an ATmega328P has no tasks here, and no ways."""
-    return 0 if chip == "avr" else EVERYTHING
+    """Return what a chip has of `needs`: a Nano has no tasks."""
+    return EVERYTHING & ~TASKS if chip == avr.NANO else EVERYTHING
 
 
 def same_on_the_chip(chip: str, image: bytes, kit: Kit, senses: Senses) -> str:
@@ -123,7 +123,7 @@ def test_random_programs(chip: str, seed: int) -> None:
 
 
 @pytest.mark.sampled("seed")
-@some_chips("avr")
+@some_chips(avr.UNO)
 @pytest.mark.parametrize("seed", range(4))
 def test_some_random_codes(chip: str, seed: int) -> None:
     endings = set()
@@ -137,7 +137,7 @@ def test_some_random_codes(chip: str, seed: int) -> None:
     assert "DONE" in endings and len(endings) > 2
 
 
-@some_chips("avr")
+@some_chips(avr.UNO)
 def test_code_that_changed_after_it_was_verified(chip: str) -> None:
     """It ends in BAD_CODE at each edge, and not too early."""
     endings = set()
@@ -148,14 +148,14 @@ def test_code_that_changed_after_it_was_verified(chip: str) -> None:
     assert endings == {"DONE", "BAD_CODE"}
 
 
-@some_chips("avr")
+@some_chips(avr.UNO)
 def test_loops_count_beyond_65535(chip: str) -> None:
     """A counter has 24 bits, in registers and in memory."""
     for question in of_long_loops():
         assert question.is_answered_by(avr.answer(avr.UNO, question.request)), question.name
 
 
-@some_chips("avr")
+@some_chips(avr.UNO)
 def test_a_robot_that_is_not_ready_is_asked_again(chip: str) -> None:
     """Values stay on the stack, and the next tick goes on with them."""
     kit = KITS[0][1]
@@ -187,11 +187,11 @@ def test_programs_with_tasks(chip: str) -> None:
     cpp_tasks.check_task_programs(emulated(chip), 2000, 100)
 
 
-@some_chips("mega")
+@some_chips(avr.UNO, avr.MEGA)
 def test_programs_with_tasks_in_assembly(chip: str) -> None:
     for number, (image, senses) in enumerate(cpp_tasks.some_task_programs(3000, 60)):
         same_on_the_chip(chip, image, cpp_tasks.KIT, senses)
-        ran = avr.ran_on(avr.MEGA, image, cpp_tasks.KIT, senses, 2 + number % 3)
+        ran = avr.ran_on(chip, image, cpp_tasks.KIT, senses, 2 + number % 3)
         assert ran.trace == cpp_tasks.slow_run(image, senses, 2 + number % 3), ran.trace
 
 
@@ -202,7 +202,7 @@ def test_programs_with_ways(chip: str) -> None:
     cpp_ways.check_way_programs(emulated(chip), 2000, 100)
 
 
-@some_chips("mega")
+@some_chips(avr.UNO, avr.MEGA)
 def test_programs_with_ways_in_assembly(chip: str) -> None:
     for image, kit, senses in cpp_ways.some_way_programs(3000, 60):
         if len(image) <= CHIPS[chip].most_bytes:

@@ -89,9 +89,9 @@ tini_always_inline bool Machine::act(Running* run, uint8_t code) {
 
 // GO or WATCH_GO, in two bytes.
 tini_always_inline bool Machine::way(Running* run) {
-  const uint8_t code = run->u8();
+  run->next++;
   int32_t* const top = run->top - 1;
-  if (!is_way(code) || !pop(run, 2)) return halt(Fault::kBadCode);
+  if (!pop(run, 2)) return false;
   at_ = offset(run->at);
   task_.pc = offset(run->next);
   const bool goes_on = act(static_cast<uint8_t>(Op::kEscape), run->at, top);

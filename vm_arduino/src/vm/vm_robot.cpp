@@ -69,6 +69,7 @@ inline bool Machine::show(int32_t value, bool is_yes_no) {
 // Lets the second value from the top be how long it takes to go or to turn so far. False: it never
 // comes there, or not in time.
 inline bool Machine::go_ms(uint8_t code, int32_t* top) {
+  if (!is_way(code)) return fail();
   int32_t* const way = top - 1;
   if (kHasDiscs) task_.me->more &= static_cast<uint8_t>(~kMeasures);
   if (*way <= 0) return true;

@@ -106,7 +106,9 @@ shared divide
     ret
 
 ; What the compiler calls for a / b: b is the quotient, a what is left. Its own is larger and slower.
+; Signed numbers keep a sign in r0 meanwhile.
 shared __udivmodsi4
+    push r0
     push part1
     movw high0, a0
     movw high2, a2
@@ -121,6 +123,7 @@ shared __udivmodsi4
     movw a0, high0
     movw a2, high2
     pop part1
+    pop r0
     ret
 
 ; The highest byte of b becomes one of the quotient, the lowest. It is 0 at once, or comes bit by
