@@ -23,7 +23,7 @@ constexpr uint8_t kProgramBit = 1;
 constexpr uint8_t kFaultBit = 2;
 constexpr uint8_t kIdentityBit = 4;
 constexpr uint8_t kOwnerBit = 8;
-constexpr uint8_t kAskedFor = kIdentityBit | kOwnerBit | (kHasWays ? kFaultBit : 0);  // by somebody
+constexpr uint8_t kAskedFor = kIdentityBit | kOwnerBit | (kHasPace ? kFaultBit : 0);  // by somebody
 
 Boot boot;
 uint8_t record[kOwnerBytes];
@@ -44,7 +44,7 @@ void load_identity() {
 // The record of a fault: what, where, in which image. A hang that the watchdog ended is newer.
 void load_fault() {
   const bool is_there = store.fetch_first(Area::kFault, record, kRecordBytes);
-#ifdef tiniscript_has_ways
+#ifdef tiniscript_has_pace
   const Pace& pace = *reinterpret_cast<const Pace*>(record + kPaceAt);
   if (is_there && is_sound(pace)) change_pace(pace);  // otherwise it was written by other firmware
 #endif
@@ -94,7 +94,7 @@ void write_record() {
   } else {
     copy_bytes(&robot_status.fault, record + kFaultAt, kFaultBytes);
     record[kFaultAt + kFaultBytes] = static_cast<uint8_t>(port_identity().reset);
-#ifdef tiniscript_has_ways
+#ifdef tiniscript_has_pace
     copy_bytes(&port_pace(), record + kPaceAt, sizeof(Pace));
 #endif
   }
@@ -173,7 +173,7 @@ void keep_fault() { to_keep = to_keep | kFaultBit; }
 void keep_identity() { to_keep = to_keep | kIdentityBit; }
 
 Answer identity_kept(bool and_pace) {
-  const bool has_pace = kHasWays && and_pace;
+  const bool has_pace = kHasPace && and_pace;
   const uint8_t asked = has_pace ? kIdentityBit | kFaultBit : kIdentityBit;
   if (((to_keep | keeping) & asked) != 0) {
     return is_low ? Answer::kLowSupply : Answer::kSaving;

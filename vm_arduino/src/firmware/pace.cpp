@@ -4,9 +4,9 @@
 #include "../store/layout.h"
 #include "board.h"
 
-#ifdef tiniscript_has_ways
-
 namespace tiniscript {
+
+#ifdef tiniscript_has_pace
 
 namespace {
 
@@ -43,6 +43,10 @@ uint32_t robot_speed(bool is_turn, uint8_t power) {
   return found < 0 ? 0 : static_cast<uint32_t>(found) * 25;
 }
 
-}  // namespace tiniscript
+#else
+
+uint32_t robot_speed(bool is_turn, uint8_t power) { return board_speed(is_turn) * power; }
 
 #endif
+
+}  // namespace tiniscript

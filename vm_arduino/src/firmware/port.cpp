@@ -151,12 +151,12 @@ Answer port_rename(const uint8_t* name, uint8_t length) {
 
 Answer port_set_trim(const Trim& trim, const Pace* pace) {
   if (!is_sound(trim)) return Answer::kBadValue;
-#ifdef tiniscript_has_ways
+#ifdef tiniscript_has_pace
   if (pace != nullptr && !is_sound(*pace)) return Answer::kBadValue;
 #endif
   if (!has_booted()) return not_now();
   if (change_trim(trim)) keep_identity();
-#ifdef tiniscript_has_ways
+#ifdef tiniscript_has_pace
   if (pace != nullptr && change_pace(*pace)) keep_fault();
 #endif
   return identity_kept(pace != nullptr);

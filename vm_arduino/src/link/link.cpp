@@ -327,7 +327,7 @@ Answer Link::clear() {
 
 Answer Link::set_trim(const uint8_t* payload, uint8_t length) {
   const Trim& trim = *reinterpret_cast<const Trim*>(payload);
-  if (kHasWays && length == sizeof(Trim) + sizeof(Pace))
+  if (kHasPace && length == sizeof(Trim) + sizeof(Pace))
     return port_set_trim(trim, reinterpret_cast<const Pace*>(payload + sizeof(Trim)));
   if (length != sizeof(Trim)) return Answer::kBadLength;
   return port_set_trim(trim, nullptr);

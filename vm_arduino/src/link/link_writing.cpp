@@ -149,7 +149,7 @@ void Link::reply() {
       break;
     case Message::kTrim:
       put_all(&port_trim(), sizeof(Trim));
-      if (kHasWays) put_all(&port_pace(), sizeof(Pace));
+      if (kHasPace) put_all(&port_pace(), sizeof(Pace));
       break;
     case Message::kAuthenticate:
     case Message::kText:

@@ -7,6 +7,7 @@
 
 #include <stdint.h>
 
+#include "../vm/has_tasks.h"
 #include "has_transports.h"
 #include "messages.h"
 
@@ -83,7 +84,12 @@ const DeviceInfo& port_device_info();
 Identity& port_identity();
 const RobotStatus& port_status();
 const Trim& port_trim();
-const Pace& port_pace();  // of a robot with ways
+#ifdef tiniscript_has_pace
+constexpr bool kHasPace = true;
+#else
+constexpr bool kHasPace = false;
+#endif
+const Pace& port_pace();
 LineErrors port_line_errors();
 
 // The largest code that fits, after a header of this version.

@@ -1,8 +1,11 @@
-// Which machines have TASK and WHEN: in one place for C++ and assembly.
+// Which machines have TASK and WHEN, in one place for C++ and assembly; and which firmware keeps how
+// fast its robot was measured to be, and can measure a way with discs.
 //
 // Tasks take about 2,030 bytes of flash and 127 of RAM. An Uno has them with the compiler's options
 // of platformio.ini (`tiniscript_with_tasks`). With those of the Arduino IDE it has none, nor has a
 // Nano, whose old bootloader leaves 30,720 bytes.
+//
+// No ATmega328P keeps its pace or has discs, for want of flash: it goes by the numbers of its kit.
 
 #ifndef TINISCRIPT_VM_HAS_TASKS_H_
 #define TINISCRIPT_VM_HAS_TASKS_H_
@@ -12,6 +15,7 @@
 #endif
 
 #ifndef __AVR_ATmega328P__
+#define tiniscript_has_pace
 #define tiniscript_has_discs
 #endif
 
