@@ -26,7 +26,7 @@ OTHERS = [
     "SI|F(0.3, 80) UNTIL(DISTANCE < 20); B(0.2, 40); SHOW(TIME)",
     "SI|X = 3; LOOP(X); M(X * 10, -50); W(0.15); X = X - 1; END_LOOP",
     "SI|BEEP(0.2, 440); F(0.2, 100); BEEP(0.1, 880); L(0.1, 30); SHOW(TRUE)",
-    "SI|N = 2; F(10 CM, 60); R(45 * N DEG, 50); L(90 DEG, 100) UNTIL(DISTANCE < 70); B(N * 4 CM, 90)",
+    "SI|N = 2; F(10 CM, 60); R(45 * N DEG, 50); L(90 DEG, 100) UNTIL(DISTANCE < 70); B(N CM, 9)",
     "SI|DEF TURN; R(0.12, 60); W(0.05); END_DEF; LOOP(3); TURN; F(0.2, 70); END_LOOP",
 ]
 
