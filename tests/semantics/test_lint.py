@@ -243,6 +243,7 @@ def test_advice(text: str, code: str) -> None:
         "LOOP(3);F(1, 60);IF(NOT (DISTANCE < 50));R(1, 60);ENDIF;END_LOOP",
         "D = 20;B(5, 60);IF(DISTANCE < D);S;ENDIF",
         "F(2, 80) // R(1, 60)/S",
+        "SPEED = 80;TIME_S = 20;F(SPEED, TIME_S)",
     ],
 )
 def test_no_advice(text: str) -> None:

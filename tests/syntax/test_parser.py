@@ -258,6 +258,7 @@ MISTAKES: dict[str, tuple[list[str], str]] = {
         "loop [2]! «LOOP(2);S;ENDIF;END_LOOP»\n  S «S»",
     ),
     "ELSE;S": (["TS025 ELSE"], "S «S»"),
+    "LOOP(I = 1);S;END_LOOP": (["TS063 I"], "loop forever «LOOP(I = 1);S;END_LOOP»\n  S «S»"),
     "IF(A);ELSE;S;ELSE;W(1);ENDIF": (
         ["TS027 ELSE"],
         "if «ELSE;S;ELSE;W(1);ENDIF»\n  arm [A] «IF(A)»\n  else\n    W [1]! «W(1)»",

@@ -216,7 +216,7 @@ def swapped_names(body: Body, program: Program) -> list[Diagnostic]:
         first, second = (program.variables[each] for each in numbers)
         if _is_right_order(first, second):
             continue
-        if LONG_TIME <= time <= 100_000 and 0 < power <= LITTLE_POWER:
+        if _is_swapped(time, power):
             fix = f"{move.direction}({second}, {first})"
             _report(found, codes.SWAPPED, move.span, fix=fix,
                     time=as_text(time), power=as_text(power))  # fmt: skip
