@@ -72,7 +72,7 @@ MODULES = (
     _python("bytecode", "tests/bytecode", "tests/vm/test_cases.py"),
     _python("vm", "tests/vm/test_cases.py", "tests/vm"),
     _python("text"), _python("sketch"), _python("conformance", "tests/conform"),
-    _python("library"), _python("doctor"), _python("virtual"),
+    _python("library"), _python("languages"), _python("doctor"), _python("virtual"),
     _python("link", "tests/link", "tests/sharing", "tests/modules", "tests/cli/test_keys.py"),
     _python("robots", "tests/robots", "tests/wiring"), _python("lessons"), _python("flash"),
     _python("studio"), _python("cli"),
