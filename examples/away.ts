@@ -1,5 +1,5 @@
 // Drives on, and backs away from whatever comes near: the WHEN takes the motors, and gives them back.
-// An Uno has no memory for it:  tsc upload examples/away.ts --robot tinibot32 --virtual
+// tsc upload examples/away.ts --virtual
 SI|F(FOREVER, 60);
 WHEN(DISTANCE < 15);
   B(0.5, 60);

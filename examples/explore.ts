@@ -1,5 +1,5 @@
 // As away.ts, and never stuck: its eye looks ahead, so every two seconds it frees itself from what may
-// stand beside it.  tsc upload examples/explore.ts --robot tinibot32 --virtual
+// stand beside it.  tsc upload examples/explore.ts --virtual
 SI|LOOP(FOREVER);
   F(2, 60);
   B(0.4, 60);

@@ -1,5 +1,5 @@
 // Follows a light: drives on, and a WHEN for each side turns the robot while that side is brighter.
-// tsc upload examples/light_when.ts --robot tinibot32 --virtual --world light
+// tsc upload examples/light_when.ts --virtual --world light
 SI|F(FOREVER, 60);
 WHEN(LIGHT_L > LIGHT_R + 20);
   M(20, 60);

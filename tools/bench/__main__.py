@@ -19,6 +19,7 @@ BENCHMARKS = (
     "text",
     "tasks",
     "virtual",
+    "obstacles",
     "ways",
     "upload",
     "large_upload",

@@ -32,7 +32,7 @@ SEEDS = 20
 STUCK_S = 5
 STUCK_CM = 3.0
 LOOK_MS = 500
-PROGRAMS = ("obstacle.ts", "away.ts", "explore.ts")
+PROGRAMS = ("obstacle.ts", "explore.ts")
 ROBOT = "tinibot32"
 
 
