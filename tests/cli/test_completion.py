@@ -17,6 +17,7 @@ from tiniscript import robots
 from tiniscript.cli.commands import completion
 from tiniscript.cli.texts.verbs import VERBS
 from tiniscript.diagnostics.codes import CODES
+from tiniscript.languages import languages
 
 BASH = shutil.which("bash") or ""
 ZSH = shutil.which("zsh") or ""
@@ -37,7 +38,7 @@ def test_verbs_options_and_values(tsc: Tsc) -> None:
     assert offered(tsc, "--lang", "es", "up") == {"upload"}
     assert offered(tsc, "--lang", "=", "es", "up") == {"upload"}
     assert offered(tsc, "--l") == {"--lang"}
-    assert offered(tsc, "--lang", "") == {"en", "es"}
+    assert offered(tsc, "--lang", "") == set(languages())
     assert offered(tsc, "upload", "--no-") == {"--no-run", "--no-save"}
     assert offered(tsc, "upload", "a.ts", "--virtual", "--world", "l") == {"light", "line"}
     assert offered(tsc, "check", "--robot", "") == set(robots.names())

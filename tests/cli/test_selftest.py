@@ -74,8 +74,9 @@ def test_every_board_has_its_sensors_tested(tsc: Tsc, name: str) -> None:
     kit = robots.load(name).kit
     with PtyRobot(kit) as robot:
         code, found = found_by(tsc, robot)
-        # an ESP32's robot has the kit of the paper's
-        same = [{"robot": each} for each in robots.names() if robots.load(each).kit == kit]
+        # an ESP32's robot has the words of the paper's
+        kits = {each: robots.load(each).kit for each in robots.names()}
+        same = [{"robot": each} for each, its in kits.items() if its[:2] == kit[:2]]
         assert found["kit"]["values"] in same and {"robot": name} in same
         assert len([each for each in found if each.startswith("sensor")]) == len(kit.sensors)
         assert code == 0
