@@ -82,7 +82,8 @@ void setup() {
   is_accepted =
       code_length <= kProgramBytes &&
       unpack(program, kHeaderBytes + code_length, &image) == Refusal::kNone &&
-      verify(image.code, code_length, kBoardSensors, kBoardActuators, &devices).rule ==
+      verify(image.code, code_length, kBoardSensors, kBoardActuators, &devices,
+             image.needs).rule ==
           Rule::kNone &&
       check_devices(image, devices) == Refusal::kNone;
   board_light(is_accepted);

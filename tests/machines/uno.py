@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import lru_cache
 from pathlib import Path
 
-from tests.machines.avr import FLAGS, UNO, compiled
+from tests.machines.avr import BUILT, FLAGS, UNO, compiled
 from tests.machines.avr import missing as no_compiler
 from tests.machines.host import WARNINGS
 from tests.support.needs import need
@@ -25,5 +25,5 @@ def built(name: str, **constants: int) -> Path:
     needed()
     given = [f"-Dk{constant}={value}L" for constant, value in constants.items()]
     source = SOURCES / f"{name}.cpp"
-    flags = (f"-mmcu={UNO}", *FLAGS, *WARNINGS, "-DF_CPU=16000000L", *given)
+    flags = (f"-mmcu={BUILT[UNO][0]}", *FLAGS, *WARNINGS, "-DF_CPU=16000000L", *given)
     return compiled(source.name, flags, [str(source)], [source.read_bytes()])

@@ -14,7 +14,7 @@ from tiniscript.virtual import worlds
 if TYPE_CHECKING:
     from playwright.sync_api import Page, Route
 
-OBSTACLES_START = (56, 75)
+OBSTACLES_START = (56, 82.5)
 NO_BORDER = b"""[floor]
 width_cm = 120.06
 height_cm = 80.04

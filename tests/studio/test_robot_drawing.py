@@ -114,7 +114,7 @@ def test_a_cone_is_as_long_as_what_is_read() -> None:
 
 
 def test_a_robot_tells_where_it_touches_something() -> None:
-    """It drives to the right into a box, whose left side is 183 cm from the left wall."""
+    """It drives to the right into a box, whose left side is 184 cm from the left wall."""
     assert after("F(1, 80)", "tinibot", 300)["touches"] is None
     state = after("F(9, 80)", "tinibot", 4000)
-    assert state["bumps"] == 1 and state["touches"][0] == pytest.approx(183, abs=0.5)
+    assert state["bumps"] == 1 and state["touches"][0] == pytest.approx(184, abs=0.5)

@@ -69,7 +69,7 @@ int main() {
 IMAGE = """{ Image image;
         sink = (uint8_t)unpack(bytes, sink, &image); sink = image.start; }"""
 VERIFY_AND_RUN = """{ uint16_t devices;
-        Verdict verdict = verify(bytes, sink, sink, sink, &devices);
+        Verdict verdict = verify(bytes, sink, sink, sink, &devices, sink);
         sink = (uint8_t)verdict.rule; sink = verdict.offset; sink = devices; }
       { static Machine machine; static int32_t readings[8];
         machine.start(bytes, sink, readings, sink, sink, sink);
@@ -88,7 +88,7 @@ Identity& port_identity() { return identity; }
 const RobotStatus& port_status() { return robot_status; }
 Trim trim;
 const Trim& port_trim() { return trim; }
-Answer port_set_trim(const Trim& other) { trim = other; return (Answer)sink; }
+Answer port_set_trim(const Trim& other, const Pace*) { trim = other; return (Answer)sink; }
 const DeviceInfo& port_device_info() { return device_info; }
 LineErrors port_line_errors() { return {0, 0}; }
 uint16_t port_room() { return sink; }
@@ -123,7 +123,7 @@ void port_identify() { sink = 1; }
 """
 PORT_USED = """port_identity(); port_status(); port_device_info(); sink = port_room();
   sink = port_line_errors().framing;
-  port_set_trim(port_trim());
+  port_set_trim(port_trim(), nullptr);
   port_may_prepare(); port_make_way(sink); port_memory(sink, 0); port_forget(); port_take(sink, 0);
   port_undo();
   port_seal(bytes); port_start(sink); port_stop(sink);

@@ -185,7 +185,7 @@ Answer port_rename(const uint8_t* name, uint8_t length) {
   return only->rename(name, length) ? Answer::kNotKept : Answer::kBadValue;
 }
 
-Answer port_set_trim(const Trim&) { return Answer::kNotKept; }
+Answer port_set_trim(const Trim&, const Pace*) { return Answer::kNotKept; }
 void port_identify() {}
 
 // No owner.
