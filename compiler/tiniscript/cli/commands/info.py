@@ -16,7 +16,7 @@ from tiniscript.cli.robot.fleet import together
 from tiniscript.cli.robot.member import Member, Result, are_many
 from tiniscript.cli.texts.common import text
 from tiniscript.library import source_map
-from tiniscript.link.authority import whose
+from tiniscript.link.authority import OF_ANOTHER, whose
 from tiniscript.link.messages import (
     RESETS,
     SAVED,
@@ -57,8 +57,9 @@ class Description:
         self.hello = self.device_info.values
         self.status = connection.ask(lambda session: session.status()).values
         self.trim: Trim | None = None
-        with suppress(CommandError):  # another's robot does not tell
-            self.trim = told(connection.ask(lambda session: session.trim()).values)
+        if whose(self.device_info) != OF_ANOTHER:  # it would count as a wrong key
+            with suppress(CommandError):
+                self.trim = told(connection.ask(lambda session: session.trim()).values)
 
     def fields(self) -> dict[str, object]:
         """Return it as data."""
