@@ -31,14 +31,24 @@ from tiniscript import compile_text, robots
 from tiniscript.fixed_point import ONE
 from tiniscript.lessons import catalogue
 from tiniscript.robots.profile import Robot
+from tiniscript.semantics.ir import every
+from tiniscript.semantics.ways import is_open_way
 from tiniscript.sketch.writing import sketch_of
 
 EXAMPLES = sketch_examples()
+
+
+def has_sketch(text: str) -> bool:
+    """Whether `tsc show --arduino` makes one: for no task, and no way that is calculated."""
+    program = compile_text(text, robots.load("tinibot").kit).program
+    return not has_tasks(text) and not any(map(is_open_way, every(program) if program else ()))
+
+
 ANSWERS = [
     (f"{folder.name} {number}", answer.program)
     for folder in catalogue.folders()
     for number, answer in enumerate(catalogue.answers(folder)[0])
-    if not has_tasks(answer.program)  # a sketch has none
+    if has_sketch(answer.program)
 ]
 START_MS = 0.5
 FAR, NEAR = 0.0, 8 * 2 / 0.0343  # echoes: none, and that of 8 cm

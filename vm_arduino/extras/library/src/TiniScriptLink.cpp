@@ -186,6 +186,13 @@ Answer port_rename(const uint8_t* name, uint8_t length) {
 }
 
 Answer port_set_trim(const Trim&, const Pace*) { return Answer::kNotKept; }
+
+// Not measured: `Robot::speed` says how fast it is.
+const Pace& port_pace() {
+  static const Pace none = {};
+  return none;
+}
+
 void port_identify() {}
 
 // No owner.
