@@ -412,7 +412,11 @@ class _Usage:
         """An ELSE behind the end of its block."""
         if not self.source[found.span].upper().startswith("ELSE"):
             return None
-        ends = [*re.finditer(r"(?i)\bENDIF\b", self.source.text[: found.span.start])]
+        before = self.source.text[: found.span.start]
+        whens = re.findall(r"(?i)\b(?:END_?)?WHEN\b", before)
+        if whens and not whens[-1].upper().startswith("END"):
+            return found._replace(values={**found.values, "part": found.values["found"]})
+        ends = [*re.finditer(r"(?i)\bENDIF\b", before)]
         line = str(self.source.position(ends[-1].start())[0]) if ends else ""
         return found._replace(values={**found.values, "line": line})
 
@@ -474,6 +478,8 @@ class _Usage:
             r"(?i)\bDEF\s+$", text[max(0, found.span.start - 9) : found.span.start]
         )
         right = in_place_of(text, word) if is_set else ""
+        if right and word == "TIME":
+            return found._replace(values={**found.values, "clock": right})
         return found._replace(values={**found.values, "right": right})
 
     def no_order(self, found: Diagnostic) -> Diagnostic | None:
