@@ -9,7 +9,9 @@ from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.rendering import message
 from tiniscript.repairs.fixing import fixed
 from tiniscript.repairs.placing import edits_of
+from tiniscript.semantics import unknown_words
 from tiniscript.source import Source, applied
+from tiniscript.syntax.lexer import Scan, scan
 
 
 @pytest.mark.parametrize(
@@ -71,6 +73,19 @@ def test_values_of_a_def_are_not_lost(call: str) -> None:
     program = f"DEF V;S;END_DEF\n{call}"
     (found,) = check(program)
     assert found.values["fix"] == "" and edits_of(found, Source(program)) is None
+
+
+def test_the_body_of_a_def_is_read_once_for_all_its_calls(monkeypatch: pytest.MonkeyPatch) -> None:
+    read: list[str] = []
+
+    def scanned(text: str) -> Scan:
+        read.append(text)
+        return scan(text)
+
+    monkeypatch.setattr(unknown_words, "scan", scanned)
+    told = check("DEF V;F(X CM, 60);END_DEF\n" + "V(20)\n" * 50)
+    assert [each.values["fix"] for each in told[1:]] == ["X = 20;V"] * 50
+    assert read == [";F(X CM, 60);"]
 
 
 def test_numbers_of_lines_are_not_how_often() -> None:

@@ -46,6 +46,7 @@ class Scope:
         self.set_somewhere = {each.name for each in _assignments(parsed.body)}
         self.parsed = parsed
         self.def_names = {each.name for each in parsed.body if isinstance(each, ast.Def)}
+        self.wanted: dict[str, list[str]] = {}  # the names in a DEF that nothing gives a value
 
     def report(self, code: Code, span: Span, place: Span | None = None, **values: str) -> None:
         self.diagnostics.append(Diagnostic(code, span, values, place))

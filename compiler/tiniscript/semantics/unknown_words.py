@@ -239,11 +239,14 @@ _HEADER = re.compile(r"(?i)\b(IF|ELSEIF|UNTIL|WHILE)\s*\(\s*(NOT\s+)?$")
 
 
 def _wanted(scope: Scope, name: str) -> list[str]:
-    """Return the names in the body of a DEF that nothing gives a value."""
+    """Return the names in the body of a DEF that nothing gives a value: of each DEF, once."""
+    if name in scope.wanted:
+        return scope.wanted[name]
     body = re.search(rf"(?is)\bDEF\s+{name}\b(.*?)\bEND_?DEF\b", scope.source.text)
     words = [each.text for each in scan(body[1]).tokens if each.kind is WORD] if body else []
     known = {*WORDS, *scope.names, *scope.set_somewhere, *scope.def_names}
-    return [*dict.fromkeys(each for each in words if each not in known)]
+    scope.wanted[name] = [*dict.fromkeys(each for each in words if each not in known)]
+    return scope.wanted[name]
 
 
 def report_not_callable(scope: Scope, node: ast.Command) -> None:
