@@ -474,13 +474,13 @@ class _Usage:
         """A word of the language as a name: another one for it."""
         word = found.values["word"]
         text = self.source.text
-        is_set = re.match(r"\s*=", text[found.span.end :]) or re.search(
+        is_set = re.match(r"\s*=", text[found.span.end :])
+        is_taught = re.search(
             r"(?i)\bDEF\s+$", text[max(0, found.span.start - 9) : found.span.start]
         )
-        right = in_place_of(text, word) if is_set else ""
-        if right and word == "TIME":
-            return found._replace(values={**found.values, "clock": right})
-        return found._replace(values={**found.values, "right": right})
+        right = in_place_of(text, word) if is_set or is_taught else ""
+        gap = "clock" if is_set and word == "TIME" else "right"
+        return found._replace(values={**found.values, gap: right})
 
     def no_order(self, found: Diagnostic) -> Diagnostic | None:
         """A value where an instruction is expected."""
