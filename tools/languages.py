@@ -10,6 +10,7 @@ from __future__ import annotations
 import argparse
 import re
 import sys
+from difflib import SequenceMatcher
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -25,13 +26,35 @@ def in_step(source: Catalogue, own: Catalogue, language: str) -> Catalogue:
         r"^(Language|X-Name): .*$", rf"\1: {language}", source.head, flags=re.M
     )
     made = Catalogue(head)
-    for key, entry in source.entries.items():
-        old = own.entries.get(key, entry)
-        has_changed = (old.english, old.plural) != (entry.english, entry.plural)
+    olds = _before(source, own)
+    for at, entry in source.entries.items():
+        old = olds.get(at, entry)
+        has_changed = (old.at, old.plural) != (at, entry.plural)
         is_fuzzy = any(old.said) and (old.is_fuzzy or has_changed)
         said = old.said if bool(old.plural) == bool(entry.plural) else []
-        made.entries[key] = Entry(key, entry.english, entry.plural, said, entry.notes, is_fuzzy)
+        made.entries[at] = Entry(*at, entry.plural, said, entry.notes, is_fuzzy)
     return made
+
+
+def _before(source: Catalogue, own: Catalogue) -> dict[tuple[str, str], Entry]:
+    """Return what each text was before: itself, else what is gone and most like it.
+
+    That one has the same key, or the same English text under another key.
+    """
+    found = {at: own.entries[at] for at in source.entries if at in own.entries}
+    for entry in own.entries.values():
+        if entry.at in found or not any(entry.said):
+            continue
+        new = [at for at in source.entries if at not in found]
+        places = [at for at in new if at[0] == entry.key]
+        places = places or [at for at in new if at[1] == entry.english]
+        if places:
+            found[max(places, key=lambda at: _likeness(at[1], entry.english))] = entry
+    return found
+
+
+def _likeness(one: str, other: str) -> float:
+    return SequenceMatcher(a=one, b=other).ratio()
 
 
 def main() -> int:

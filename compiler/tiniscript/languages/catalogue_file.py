@@ -1,6 +1,7 @@
 """Reads and writes catalogues of gettext (`.po`), and says what is wrong with one.
 
-An entry is one text: its key is the context, and what is translated is the English text. Knows no
+An entry is one text: its key is the context, and what is translated is the English text. Several
+texts may have one key: which one is meant is told by the English text, wherever it stands. Knows no
 language. A mistake in an entry costs that entry alone.
 """
 
@@ -33,16 +34,21 @@ class Entry:
     line: int = 0
 
     @property
+    def at(self) -> tuple[str, str]:
+        return self.key, self.english
+
+    @property
     def is_translated(self) -> bool:
         return all(self.said) and bool(self.said) and not self.is_fuzzy
 
 
 @dataclass
 class Catalogue:
-    """The entries of a file by key, its head, and what is wrong: a line and a sentence each."""
+    """The entries of a file by key and English text, its head, and what is wrong: a line and a
+    sentence each."""
 
     head: str = ""
-    entries: dict[str, Entry] = field(default_factory=dict)
+    entries: dict[tuple[str, str], Entry] = field(default_factory=dict)
     problems: list[tuple[int, str]] = field(default_factory=list)
 
     @property
@@ -109,10 +115,10 @@ def _take(found: Catalogue, entry: Entry) -> None:
         found.head = "".join(entry.said)
     elif not entry.key:
         found.problems.append((entry.line, "this text has no key: msgctxt is missing"))
-    elif entry.key in found.entries:
+    elif entry.at in found.entries:
         found.problems.append((entry.line, f"{entry.key} is there twice"))
     else:
-        found.entries[entry.key] = entry
+        found.entries[entry.at] = entry
 
 
 def _problems(entry: Entry, plurals: int) -> list[str]:

@@ -1,12 +1,13 @@
 """Makes the `.mo` of catalogues, with Python alone.
 
-A `.mo` has each text under its key. What is not translated, or wrong, or a translation of what the
-English text was before, is in English there.
+A `.mo` has each text under its key, and of several with one key the second under `key/2`. What is
+not translated, or wrong, or a translation of what the English text was before, is in English there.
 """
 
 from __future__ import annotations
 
 import struct
+from collections import Counter
 from pathlib import Path
 
 from tiniscript.languages.catalogue_file import Catalogue, Entry, load
@@ -17,15 +18,18 @@ MAGIC, HEADER = 0x950412DE, 28  # of a .mo
 def merged(source: Path, own: Path) -> tuple[str, dict[str, list[str]]]:
     """Return the head of a catalogue, and the forms of each text by key."""
     english, translated = load(source), load(own)
-    return translated.head or english.head, {
-        key: _forms(entry, translated) for key, entry in english.entries.items()
-    }
+    texts: dict[str, list[str]] = {}
+    numbers = Counter[str]()
+    for (key, _), entry in english.entries.items():
+        numbers[key] += 1
+        number = f"/{numbers[key]}" if numbers[key] > 1 else ""
+        texts[key + number] = _forms(entry, translated)
+    return translated.head or english.head, texts
 
 
 def _forms(source: Entry, own: Catalogue) -> list[str]:
-    entry = own.entries.get(source.key)
-    is_of_this = entry and (entry.english, entry.plural) == (source.english, source.plural)
-    if entry and is_of_this and entry.is_translated:
+    entry = own.entries.get(source.at)
+    if entry and entry.plural == source.plural and entry.is_translated:
         return entry.said
     if not source.plural:
         return [source.english]
