@@ -78,6 +78,8 @@ GOALS: tuple[Goal, ...] = (
          "programs, right and broken", 100_000, 5_000, "tests.vm.test_agreement {count} --seed {seed}", 10_000),
     Goal("tasks", "Programs with TASK and WHEN do the same on the machines in Python and in C++ and in the interpreter written from the language reference.",
          "programs", 100_000, 5_000, "tests.oracle.test_tasks {count} --seed {seed}", 10_000),
+    Goal("ways", "Programs that go by centimetres and degrees, half of them with tasks, do the same on the machines in Python and in C++ and in the interpreter written from the language reference.",
+         "programs", 100_000, 5_000, "tests.oracle.test_ways {count} --seed {seed}", 10_000),
     Goal("page", "From a program's text, and from its blocks, the studio's page makes the same bytecode as tsc compile.",
          "programs", 1_000, 100, "tests.studio.test_page_random {count} --seed {seed}", 100),
     Goal("reader", "The robot's reader makes the same of a text as the compiler.",
