@@ -109,6 +109,7 @@ def pictures(folder: Path) -> list[Path]:
                 page.select_option("#language", language)
                 for screen, see in SCREENS.items():
                     page.set_viewport_size({"width": 1366, "height": 768})
+                    page.evaluate(SETTLED)
                     see(page)
                     for size, (width, height) in SIZES.items():
                         page.set_viewport_size({"width": width, "height": height})

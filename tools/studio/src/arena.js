@@ -3,16 +3,16 @@
 import { drawRobot } from './robot_drawing.js';
 import { dot, path } from './shapes.js';
 import { ROBOTS, WORLDS } from './words.js';
-import { cornersOf } from './world_parts.js';
+import { drawWorld } from './world_floor.js';
 
 /** @typedef {import('./python.js').RobotState} RobotState */
 /** @typedef {import('./world_parts.js').World} World */
 /** @typedef {import('./world_parts.js').Place} Place */
 /** @typedef {{points: Place[], point: number, handle: Place | null}} Mark the points that can be taken, which one is, and what turns it */
-/** @typedef {{x_cm: number, y_cm: number, is_flag: boolean, radius_cm?: number, around?: Place[]}} Goal */
+/** @typedef {import('./world_floor.js').Goal} Goal */
+/** @typedef {import('./shapes.js').Pen} Pen */
 
 const MARGIN_CM = 4;
-const GRID_CM = 10; // while a world is changed
 const FINGER = 22; // pixels that a finger may miss
 const MOST_POINTS = 5000; // of a way
 const MOST_WAYS = 4; // of runs before, which are pale
@@ -21,7 +21,11 @@ const SAID_MS = 2500; // of the robot's time, for what it shows
 
 export class Arena {
   #canvas;
-  #context;
+  #pen;
+  /** The world and the ways, which stay the same from one picture to the next. */
+  #floor = document.createElement('canvas');
+  #isFloorDrawn = false;
+  #wayDrawn = 0; // points of the newest way that are on the floor
   #world = WORLDS[0];
   #robot = ROBOTS[0];
   /** @type {Goal[]} */
@@ -42,9 +46,16 @@ export class Arena {
   /** @param {HTMLCanvasElement} canvas */
   constructor(canvas) {
     this.#canvas = canvas;
-    const context = canvas.getContext('2d');
-    if (!context) throw new Error('no canvas');
-    this.#context = context;
+    this.#pen = penOf(canvas);
+  }
+
+  /** Takes the size that the canvas has on the page. */
+  resize() {
+    const ratio = window.devicePixelRatio || 1;
+    const width = Math.max(1, Math.round(this.#canvas.clientWidth * ratio));
+    const height = Math.max(1, Math.round(this.#canvas.clientHeight * ratio));
+    for (const each of [this.#canvas, this.#floor]) Object.assign(each, { width, height });
+    this.#isFloorDrawn = false;
   }
 
   /**
@@ -63,11 +74,13 @@ export class Arena {
     this.#seen_ms = this.#beeps_until_ms = 0;
     this.#taken = 0;
     this.#said = ['', 0];
+    this.#isFloorDrawn = false;
   }
 
   /** Takes what its pen has drawn off the floor. */
   eraseWays() {
     this.#ways = [[]];
+    this.#isFloorDrawn = false;
   }
 
   /**
@@ -79,11 +92,16 @@ export class Arena {
     const way = this.#ways.at(-1) ?? [];
     const last = way.at(-1);
     if (!last || Math.hypot(last[0] - x, last[1] - y) > 0.5) way.push([x, y]);
-    if (way.length > MOST_POINTS) way.splice(0, MOST_POINTS / 2);
+    const taken = state.score?.taken ?? 0;
+    if (taken !== this.#taken) this.#isFloorDrawn = false;
+    if (way.length > MOST_POINTS) {
+      way.splice(0, MOST_POINTS / 2);
+      this.#isFloorDrawn = false;
+    }
     const passed_s = Math.max(0, state.now_ms - this.#seen_ms) / 1000;
     const full = (this.#robot?.speed_cm_s ?? 0) / 100;
     this.#seen_ms = state.now_ms;
-    this.#taken = state.score?.taken ?? 0;
+    this.#taken = taken;
     this.#rolled[0] += state.motors[0] * full * passed_s;
     this.#rolled[1] += state.motors[1] * full * passed_s;
   }
@@ -107,6 +125,7 @@ export class Arena {
 
   /** @param {Mark | null} mark */
   mark(mark) {
+    if (Boolean(mark) !== Boolean(this.#mark)) this.#isFloorDrawn = false; // a grid
     this.#mark = mark;
   }
 
@@ -129,123 +148,45 @@ export class Arena {
   draw(state) {
     const world = this.#world;
     if (!world) return;
-    const canvas = this.#canvas;
-    const ratio = window.devicePixelRatio || 1;
-    const width = Math.max(1, Math.round(canvas.clientWidth * ratio));
-    const height = Math.max(1, Math.round(canvas.clientHeight * ratio));
-    if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, { width, height });
-    const scale = Math.min(
+    const { width, height } = this.#canvas;
+    this.#scale = Math.min(
       width / (world.width_cm + 2 * MARGIN_CM),
       height / (world.height_cm + 2 * MARGIN_CM),
     );
-    this.#scale = scale;
-    const pen = this.#context;
+    this.#drawFloor(world);
+    const pen = this.#pen;
     pen.setTransform(1, 0, 0, 1, 0, 0);
     pen.clearRect(0, 0, width, height);
-    // Centimetres from the lower left corner of the floor; y goes up.
-    pen.setTransform(
-      scale, 0, 0, -scale,
-      (width - world.width_cm * scale) / 2,
-      (height + world.height_cm * scale) / 2,
-    );
-    this.#drawWorld(world);
-    this.#ways.forEach((way, k) => {
-      path(pen, way, k === this.#ways.length - 1 ? '#2f74c0' : '#bcd2ea', 1);
-    });
+    pen.drawImage(this.#floor, 0, 0);
+    this.#measure(pen, world);
     const { start } = world;
     const [x, y, heading] = state?.pose ?? [start.x_cm, start.y_cm, start.heading];
     this.#drawBody(x, y, heading, state);
     this.#drawMark();
   }
 
-  /** @param {World} world */
-  #drawWorld(world) {
-    const pen = this.#context;
-    pen.fillStyle = '#fffdf6';
-    pen.fillRect(0, 0, world.width_cm, world.height_cm);
+  /** Draws what is new on the floor, or all of it where it has become another one. @param {World} world */
+  #drawFloor(world) {
+    const pen = penOf(this.#floor);
+    if (!this.#isFloorDrawn) {
+      pen.setTransform(1, 0, 0, 1, 0, 0);
+      pen.clearRect(0, 0, this.#floor.width, this.#floor.height);
+      this.#measure(pen, world);
+      drawWorld(pen, world, this.#goals, this.#taken, this.#mark !== null);
+      for (const way of this.#ways.slice(0, -1)) path(pen, way, '#bcd2ea', 1);
+      this.#wayDrawn = 0;
+      this.#isFloorDrawn = true;
+    }
+    const way = this.#ways.at(-1) ?? [];
+    if (way.length > this.#wayDrawn) path(pen, way.slice(Math.max(0, this.#wayDrawn - 1)), '#2f74c0', 1);
+    this.#wayDrawn = way.length;
+  }
+
+  /** Centimetres from the lower left corner of the floor; y goes up. @param {Pen} pen @param {World} world */
+  #measure(pen, { width_cm, height_cm }) {
+    const { width, height } = this.#canvas, scale = this.#scale;
     pen.lineCap = pen.lineJoin = 'round';
-    if (this.#mark) this.#drawGrid(world);
-    for (const goal of this.#goals) this.#drawGoal(goal);
-    world.flags.forEach((flag, k) => this.#drawFlag(flag, k));
-    for (const line of world.lines) path(pen, line.points, '#20242a', line.width_cm);
-    for (const { x_cm: x, y_cm: y } of world.lamps) {
-      dot(pen, x, y, 9, '#ffe9a3');
-      dot(pen, x, y, 3, '#e08a1e');
-    }
-    for (const box of world.boxes) {
-      path(pen, cornersOf(box), '#6b4a2f', 1, true);
-      pen.fillStyle = '#c79a6b';
-      pen.fill();
-    }
-    for (const wall of world.walls) path(pen, wall.points, '#6b4a2f', 2);
-    if (world.has_border) {
-      pen.strokeStyle = '#6b4a2f';
-      pen.lineWidth = 2;
-      pen.strokeRect(0, 0, world.width_cm, world.height_cm);
-    }
-  }
-
-  /** @param {World} world */
-  #drawGrid({ width_cm, height_cm }) {
-    const pen = this.#context;
-    for (let at = GRID_CM; at < Math.max(width_cm, height_cm); at += GRID_CM) {
-      const color = at % (5 * GRID_CM) ? '#eee8d8' : '#d9cfb4';
-      if (at < width_cm) path(pen, [[at, 0], [at, height_cm]], color, 0.4);
-      if (at < height_cm) path(pen, [[0, at], [width_cm, at]], color, 0.4);
-    }
-  }
-
-  /** @param {Goal} goal */
-  #drawGoal({ x_cm: x, y_cm: y, is_flag, radius_cm, around }) {
-    const pen = this.#context;
-    pen.setLineDash([4, 2.5]);
-    if (around) path(pen, around, '#0d6040', 0.8, true);
-    else {
-      dot(pen, x, y, radius_cm ?? 0, '#2a9d6f22');
-      pen.strokeStyle = '#0d6040';
-      pen.lineWidth = 0.8;
-      pen.stroke();
-    }
-    pen.setLineDash([]);
-    if (is_flag) this.#drawCloth(x, y, '#ffd84d');
-  }
-
-  /** A flag of the world: taken, the next one, or one of those behind it. @param {import('./world_parts.js').Flag} flag @param {number} k */
-  #drawFlag({ x_cm: x, y_cm: y, reach_cm, rests }, k) {
-    const pen = this.#context;
-    const isTaken = k < this.#taken, isNext = k === this.#taken;
-    dot(pen, x, y, reach_cm, isTaken ? '#2a9d6f44' : isNext ? '#ffd84d77' : '#c8d2dc66');
-    if (!isTaken) pen.setLineDash(rests ? [] : [4, 2.5]);
-    pen.strokeStyle = isTaken || isNext ? '#0d6040' : '#66727e';
-    pen.lineWidth = rests ? 1.4 : 0.8;
-    pen.stroke();
-    pen.setLineDash([]);
-    if (isTaken) path(pen, [[x - 5, y], [x - 1.5, y - 4], [x + 6, y + 5]], '#0d6040', 2.4);
-    else {
-      this.#drawCloth(x, y, isNext ? '#ffd84d' : '#fff');
-      this.#drawNumber(x + 3.6, y + 9.6, String(k + 1));
-    }
-  }
-
-  /** @param {number} x @param {number} y of its foot @param {string} color */
-  #drawCloth(x, y, color) {
-    path(this.#context, [[x, y], [x, y + 14], [x + 11, y + 10], [x, y + 6]], '#0d6040', 1);
-    this.#context.fillStyle = color;
-    this.#context.fill();
-  }
-
-  /** @param {number} x @param {number} y its middle @param {string} number */
-  #drawNumber(x, y, number) {
-    const pen = this.#context;
-    pen.save();
-    pen.translate(x, y);
-    pen.scale(1, -1);
-    pen.font = '700 6px system-ui, sans-serif';
-    pen.textAlign = 'center';
-    pen.textBaseline = 'middle';
-    pen.fillStyle = '#123b63';
-    pen.fillText(number, 0, 0);
-    pen.restore();
+    pen.setTransform(scale, 0, 0, -scale, (width - width_cm * scale) / 2, (height + height_cm * scale) / 2);
   }
 
   /**
@@ -257,7 +198,7 @@ export class Arena {
   #drawBody(x, y, heading, state) {
     const robot = this.#robot;
     if (!robot) return;
-    const pen = this.#context;
+    const pen = this.#pen;
     pen.save();
     pen.translate(x, y);
     pen.rotate((heading * Math.PI) / 180);
@@ -271,7 +212,7 @@ export class Arena {
 
   /** A bubble beside the robot, inside the picture. @param {number} x @param {number} y @param {string} what */
   #drawSaid(x, y, what) {
-    const pen = this.#context;
+    const pen = this.#pen;
     const { a: scale, e: left, f: bottom } = pen.getTransform();
     const size = 15 * (window.devicePixelRatio || 1);
     pen.save();
@@ -300,15 +241,15 @@ export class Arena {
       const angle = (k * Math.PI) / 8, far = k % 2 ? 2.4 : 6;
       return [x + far * Math.cos(angle), y + far * Math.sin(angle)];
     });
-    path(this.#context, points, '#a8200f', 0.6, true);
-    this.#context.fillStyle = '#ffd84d';
-    this.#context.fill();
+    path(this.#pen, points, '#a8200f', 0.6, true);
+    this.#pen.fillStyle = '#ffd84d';
+    this.#pen.fill();
   }
 
   #drawMark() {
     const mark = this.#mark;
     if (!mark) return;
-    const pen = this.#context;
+    const pen = this.#pen;
     path(pen, mark.points, '#b0186b', 0.6);
     const radius = (7 * (window.devicePixelRatio || 1)) / this.#scale;
     const [middle] = mark.points, { handle } = mark;
@@ -326,4 +267,11 @@ export class Arena {
       dot(pen, x, y, radius * 0.75, mark.point < 0 || k === mark.point ? '#b0186b' : '#7c8894');
     });
   }
+}
+
+/** @param {HTMLCanvasElement} canvas @returns {Pen} */
+function penOf(canvas) {
+  const pen = canvas.getContext('2d');
+  if (!pen) throw new Error('no canvas');
+  return pen;
 }

@@ -2,7 +2,7 @@
 
 import { Arena } from './arena.js';
 import { BLOCK_TEXTS, said } from './block_texts.js';
-import { element } from './elements.js';
+import { element, say } from './elements.js';
 import { faultSaid } from './faults.js';
 import { download } from './files.js';
 import { offsetsOf, rangeAt } from './parts.js';
@@ -20,6 +20,7 @@ import { WorldDrawing } from './world_drawing.js';
 /** @typedef {import('./work.js').Work} Work */
 
 const SHOWN = 200; // lines of the trace
+const READ_MS = 100; // nobody reads what changes more often
 const SHORT = 12; // characters of a name whose value stands beside another one
 const PLAYED_MS = 6000; // at most for a run of a lesson
 const SEEN = { arena: 'seen_arena', plot: 'seen_plot', trace: 'seen_trace' };
@@ -44,6 +45,7 @@ export class Driving {
   #wasStopped = false;
   #note = '';
   #told = ''; // of the trace
+  #shown_ms = 0; // when all was shown last
   /** @type {Checked['places']} */
   #places = [];
   /** Offsets at which the program that runs stops, for each breakpoint. @type {Map<object, number[]>} */
@@ -78,7 +80,9 @@ export class Driving {
     this.#world = new WorldChoice(python, work, () => this.#enter());
     this.#simulator = new Simulator(python, (state) => {
       if (state) this.#keep(state);
-      this.#show();
+      const isSame = document.documentElement.dataset['phase'] === 'running' && this.#simulator.phase === 'running';
+      if (state && isSame && performance.now() - this.#shown_ms < READ_MS) this.#arena.draw(state);
+      else this.#show();
     });
     this.#drawing = new WorldDrawing(python, this.#arena, {
       world: () => this.#shapes,
@@ -146,7 +150,10 @@ export class Driving {
       this.#show();
     });
     new ResizeObserver(() => this.#plot.draw()).observe(element('plot_place', HTMLElement));
-    new ResizeObserver(() => this.#arena.draw(this.#simulator.state)).observe(element('arena', HTMLCanvasElement));
+    new ResizeObserver(() => {
+      this.#arena.resize();
+      this.#arena.draw(this.#simulator.state);
+    }).observe(element('arena', HTMLCanvasElement));
     this.setLanguage();
     this.begin();
     this.#restored = this.#restore();
@@ -338,10 +345,12 @@ export class Driving {
 
   #show() {
     const { phase, state, trace } = this.#simulator;
+    this.#shown_ms = performance.now();
+    this.#showPlaces(); // first: the editor has the page laid out, which is little as long as nothing else is new
     this.#pause.disabled = !this.#isDriving;
-    this.#pause.textContent = text(phase === 'paused' ? 'go_on' : 'pause');
+    say(this.#pause, text(phase === 'paused' ? 'go_on' : 'pause'));
     this.#push.hidden = !state?.is_waiting || phase !== 'running';
-    element('doing', HTMLElement).textContent = this.#note || this.#drawing.said || this.#doing();
+    say(element('doing', HTMLElement), this.#note || this.#drawing.said || this.#doing());
     const told = trace.slice(-SHOWN).join('\n');
     if (told !== this.#told) element('trace', HTMLElement).textContent = this.#told = told;
     this.#showScore(state?.score ?? null);
@@ -349,13 +358,18 @@ export class Driving {
     this.#showValues();
     this.#plot.draw();
     this.#arena.draw(state);
+    document.documentElement.dataset['phase'] = phase;
+    if (!this.#isDriving) this.#seenRun();
+  }
+
+  /** Marks what runs, or where it had a fault. */
+  #showPlaces() {
+    const { state } = this.#simulator;
     const range = this.#place();
     const isAlone = !state || state.fault || state.is_held;
     const ranges = isAlone ? [range] : state.places.map((at) => rangeAt(this.#places, at));
     this.#editor.showRunning(ranges.filter((each) => each !== null), Boolean(state?.is_held));
     this.#editor.showFault(state?.fault ? range : null, state?.fault ? faultSaid(state.fault) : '');
-    document.documentElement.dataset['phase'] = phase;
-    if (!this.#isDriving) this.#seenRun();
   }
 
   /** What runs in the text that is seen, or what had a fault. */
@@ -427,7 +441,7 @@ export class Driving {
     place.hidden = !score;
     if (!score) return;
     const { taken, of, points, stars } = score;
-    place.textContent = `⚑ ${taken}/${of}   ${points}   ${starsShown(stars)}`;
+    say(place, `⚑ ${taken}/${of}   ${points}   ${starsShown(stars)}`);
     place.classList.toggle('whole', stars > 0);
   }
 
@@ -451,7 +465,7 @@ export class Driving {
       else row.removeAttribute('style');
       [name, value].forEach((said, at) => {
         const cell = row.children[at];
-        if (cell && cell.textContent !== said) cell.textContent = said; // what stays costs nothing
+        if (cell) say(cell, said);
       });
     });
   }

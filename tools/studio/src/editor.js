@@ -64,6 +64,7 @@ export class Editor {
   /** Where parts of the newest text begin; null while it is not compiled. @type {import('./parts.js').Places | null} */
   #places = null;
   #noBreakpoint;
+  #marked = ''; // what runs
   #held = -1; // where the program is held, and the editor has been scrolled to
 
   /**
@@ -89,6 +90,7 @@ export class Editor {
           EditorView.updateListener.of((update) => { // before breakpoints are told: they are of another text
             if (!update.docChanged) return;
             this.#places = null;
+            this.#marked = '';
             changed();
           }),
           breakpoints(toggle, breakpointsChanged),
@@ -242,6 +244,9 @@ export class Editor {
    */
   showRunning(ranges, isHeld = false) {
     const all = ranges.map((each) => this.#offsets(each));
+    const marked = all.length ? JSON.stringify([all, isHeld]) : '';
+    if (marked === this.#marked) return;
+    this.#marked = marked;
     const [offsets] = all;
     /** @type {StateEffect<unknown>[]} */
     const effects = [setRunning.of(all)];

@@ -11,3 +11,8 @@ export function element(id, kind) {
   if (!(found instanceof kind)) throw new Error(`no element ${id}`);
   return found;
 }
+
+/** Says it there, unless it is said: what stays costs the browser nothing. @param {Element} place @param {string} said */
+export function say(place, said) {
+  if (place.textContent !== said) place.textContent = said;
+}
