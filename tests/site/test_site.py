@@ -268,7 +268,7 @@ def test_an_old_name_leads_to_a_place_that_is_there(built: Path, half: str) -> N
 
 
 @pytest.mark.parametrize(("half", "old"), [
-    ("en", "house"), ("en", "readme#figures"), ("en", "wiring/liner#mind"),
+    ("en", "house"), ("en", "link#ports"), ("en", "wiring/liner#mind"),
     ("es", "class#qué-ves-y-qué-puedes-hacer"),
 ])  # fmt: skip
 def test_an_old_address_leads_on(visitor: Page, address: str, half: str, old: str) -> None:

@@ -81,8 +81,6 @@ def build(root: Path, folder: Path, has_studio: bool) -> None:
 
 def _build(root: Path, folder: Path, scratch: Path, has_studio: bool) -> None:
     found = documents(root)
-    fronts = {language: f"tools/site/index.{language}.md" for language in LANGUAGES}
-    found.append(Document("index", "", fronts))
     on = shelf(root, found)
     for language in LANGUAGES:
         half = scratch / language
@@ -162,6 +160,7 @@ def contents(found: list[Document], language: str) -> str:
     rows: list[str] = []
     for part, title in PARTS[language].items():
         names = [each.name for each in found if each.part == part and language in each.sources]
+        names = ["self" if name == "index" else name for name in names]
         if names:
             rows += ["", "```{toctree}", ":hidden:", f":caption: {title}", "", *names, "```"]
     return "\n".join(rows) + "\n"
