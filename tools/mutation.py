@@ -1,9 +1,10 @@
 """Makes small mistakes in the code, one at a time, and says which of them no test notices.
 
 `python -m tools.mutation 150 --seed 1` draws 150 mutants, the same number of every module that
-still has some, and runs the tests of each one's module until one fails. `--module vm` and
-`--file PATTERN` draw from less, `--list` only shows them, `--all` takes every one. What was tried
-is kept in a file of the cache folder, so an interrupted run goes on. Exit code 1: mutants survived.
+still has some, and runs the tests of each one's module until one fails, two mutants at a time.
+`--module vm` and `--file PATTERN` draw from less, `--list` only shows them, `--all` takes every
+one. What was tried is kept in the cache folder, so an interrupted run goes on. Exit code 1: mutants
+survived.
 
 A survivor gets a test, and a row in `tests/project/known_mutants.py`, which CI tries at every run;
 or a row in `tools/equivalent_mutants.json`, where nothing can notice it. Knows how the languages
@@ -27,21 +28,26 @@ import tempfile
 import time
 import tokenize
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import suppress
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import ExitStack, suppress
 from itertools import accumulate, zip_longest
 from pathlib import Path
+from queue import SimpleQueue
 from typing import NamedTuple
 
 ROOT = Path(__file__).resolve().parent.parent
 sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
+from tests.support import order
 from tiniscript.files import cache_folder
 
 EQUIVALENT = Path(__file__).with_name("equivalent_mutants.json")
 LIMIT_S = 900  # processor time of the tests of one mutant: an endless loop is noticed, too
 WAITS_S = 1800  # for what waits and does not work
+AT_ONCE = 2
+NOTHING = "**nothing**"
 NODE_MODULES = Path("tools/studio/node_modules")
-TEST = re.compile(r"(?:FAILED|ERROR) (\S+?\.py(?:::\w+)*)")  # without its parameters
+TEST = re.compile(r"(?:FAILED|ERROR) (\S+?\.py(?:::\w+)*(?:\[.*?\](?= - |$))?)")
 # What the page is built again from.
 BUILT = ("tools/studio/made", "compiler/tiniscript/studio/page")
 
@@ -282,6 +288,23 @@ def module_of(file: str) -> Module:
     )
 
 
+def tests_of(file: str) -> list[str]:
+    """Return the tests of a file's module: those first that name the file, and quick ones first."""
+    found = [
+        sorted((ROOT / each).rglob("test_*.py")) or [ROOT / each] for each in module_of(file).tests
+    ]
+    named = re.compile(rf"\b{Path(file).stem}\b")
+
+    def far(path: Path) -> tuple[bool, int]:
+        name = path.relative_to(ROOT).as_posix()
+        times = len(named.findall(path.read_text(encoding="utf-8")))
+        is_long = name in order.LONG or name.startswith(order.PAGES)
+        return is_long, -times - 100 * (Path(file).stem in path.stem)
+
+    paths = dict.fromkeys(path for row in found for path in row)
+    return [path.relative_to(ROOT).as_posix() for path in sorted(paths, key=far)]
+
+
 # -- trying them -----------------------------------------------------------------------------------
 
 
@@ -369,21 +392,29 @@ def main(arguments: list[str] | None = None) -> int:
     kept = cache_folder() / f"mutation-{_code()}.json"
     results: dict[str, str] = json.loads(kept.read_text("utf-8")) if kept.is_file() else {}
     kept.parent.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory() as folder:
-        copy = Copy(Path(folder))
-        for number, each in enumerate(chosen, 1):
+    with ThreadPoolExecutor(AT_ONCE) as pool, ExitStack() as stack:
+        copies: SimpleQueue[Copy] = SimpleQueue()
+        for _ in range(AT_ONCE):
+            copies.put(Copy(Path(stack.enter_context(tempfile.TemporaryDirectory()))))
+
+        def tried(each: Mutant) -> str:
+            if each.name in results:
+                return results[each.name] or NOTHING
             begun = time.monotonic()
-            if each.name not in results:
-                by = copy.notices(each, module_of(each.file).tests)
+            copy = copies.get()
+            try:
+                by = copy.notices(each, tests_of(each.file))
                 named = TEST.match(by)  # one that fails without the mutant, too, notices nothing
                 if named and (why := copy.failing([named[1]], is_page=each.file.endswith(".js"))):
-                    print(f"{number}/{len(chosen)} {each.name}: undecided, without it, too: {why}")
-                    continue
-                results[each.name] = by
-                kept.write_text(json.dumps(results, indent=1), encoding="utf-8")
-            by = results[each.name] or "**nothing**"
-            took = f"({time.monotonic() - begun:.0f} s)"
-            print(f"{number}/{len(chosen)} {each.name}: {by} {took}", flush=True)
+                    return f"undecided, without it, too: {why}"
+            finally:
+                copies.put(copy)
+            results[each.name] = by
+            kept.write_text(json.dumps(results.copy(), indent=1), encoding="utf-8")
+            return f"{by or NOTHING} ({time.monotonic() - begun:.0f} s)"
+
+        for number, (each, by) in enumerate(zip(chosen, pool.map(tried, chosen), strict=True), 1):
+            print(f"{number}/{len(chosen)} {each.name}: {by}", flush=True)
     survivors = [each.name for each in chosen if not results.get(each.name)]
     print(f"\n{len(chosen)} mutants, {len(survivors)} survived:", *survivors, sep="\n  ")
     return int(bool(survivors))
