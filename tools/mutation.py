@@ -42,7 +42,7 @@ from tests.support import order
 from tiniscript.files import cache_folder
 
 EQUIVALENT = Path(__file__).with_name("equivalent_mutants.json")
-LIMIT_S = 900  # processor time of the tests of one mutant: an endless loop is noticed, too
+LIMIT_S = 300  # processor time of the tests of one mutant: an endless loop is noticed, too
 WAITS_S = 1800  # for what waits and does not work
 AT_ONCE = 2
 NOTHING = "**nothing**"

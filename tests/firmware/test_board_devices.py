@@ -178,14 +178,12 @@ def test_a_servo_and_a_lamp() -> None:
     assert board.pin(30, START + 50) == "high"
 
 
-FAN = '[[kit.actuators]]\nname = "FAN"\nkind = "number"\nrange = [-20, 180]\n\n'
-
 # what the shipped robots do not have: a lamp that is on when its pin is low, a fan, a threshold
 WORKSHOP = (
     ("[[kit.sensors]]", '[[kit.sensors]]\nname = "BRIGHT"\nkind = "yes/no"\n\n[[kit.sensors]]'),
     (
         "[board]\n",
-        '[[kit.actuators]]\nname = "FAN"\nkind = "number"\nrange = [-20, 180]\n\n' + LAMP,
+        '[[kit.actuators]]\nname = "FAN"\nkind = "number"\nrange = [-30000, 30000]\n\n' + LAMP,
     ),
     ("bluetooth_state = 12", ""),
     ("right_forward = 9", "right_forward = 12"),
@@ -201,7 +199,9 @@ WORKSHOP = (
 
 def test_a_fan_and_a_lamp_that_is_on_when_low() -> None:
     robot = on_board("tinibot", "uno", *WORKSHOP)
-    board = started(robot, "SI|FAN(-20);LAMP(TRUE);W(0.1);FAN(80);LAMP(FALSE);W(0.1);FAN(999 * 9)")
+    board = started(
+        robot, "SI|FAN(-30000);LAMP(TRUE);W(0.1);FAN(0);LAMP(FALSE);W(0.1);FAN(999 * 99)"
+    )
     for pin in (9, 19):
         board.watch(pin)
     board.ran(START + 250)

@@ -203,6 +203,14 @@ def test_who_has_the_robot_keeps_it_while_it_speaks(broker: Mosquitto) -> None:
     stranger.close()
 
 
+def test_a_robot_that_is_told_its_broker_often_has_one_connection(broker: Mosquitto) -> None:
+    """As many sockets as an ESP32 has it would have used up otherwise."""
+    robot, owner = at(broker, Keys())
+    for _ in range(20):
+        assert ended(robot, [(None, owner)], owner.use_broker(broker.settings())) == "OK"
+    until(robot, lambda: told(robot, owner)[1] == "READY", 10_000)
+
+
 # -- stops --------------------------------------------------------------------------------------
 
 

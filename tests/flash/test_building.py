@@ -420,6 +420,24 @@ def test_how_far_it_is(said: str, seen: Seen | None) -> None:
     assert building.seen(said, 10) == seen
 
 
+def test_all_sources_are_not_yet_all_of_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Arduino's own files follow."""
+    script = tmp_path / "pretends.py"
+    script.write_text(
+        "from pathlib import Path\n"
+        "for path in Path().rglob('*'):\n"
+        "    if path.suffix in ('.cpp', '.S'):\n"
+        "        print('Compiling', path)\n",
+        encoding="utf-8",
+    )
+    monkeypatch.setattr(building, "platformio", lambda: [sys.executable, str(script)])
+    sources, found = building.sources(), list[Seen]()
+    assert sources is not None
+    with pytest.raises(building.CannotBuild):
+        building.build(sources, robots.load("tinibot"), found.append)
+    assert found[-1].phase == COMPILING and 60 < found[-1].percent < 90
+
+
 # -- a robot with an ESP32: PlatformIO builds and writes it
 
 

@@ -39,6 +39,7 @@ CASES = [
     (HEAD + '[[criteria]]\nkind = "ends_in"\nat = "boxes[1]"\n', "world.toml has 0 of them"),
     (HEAD + '[[criteria]]\nkind = "ends_in"\nat = "moon"\n', "Write start, or one of walls"),
     (HEAD + '[[criteria]]\nkind = "ends_in"\nat = "start"\nwithin_cm = 900\n', "from 1 to 500"),
+    (HEAD + '[[criteria]]\nkind = "follows"\nat_least_cm = 0\n', "from 1 to 10000"),
     (HEAD + '[[criteria]]\nkind = "ends_in"\nat = "start"\nen = "x"\n', "criteria[1].es is missing"),
     (HEAD + '[[criteria]]\nkind = "uses"\nwords = ["LOP"]\n', "Did you mean LOOP?"),
     (HEAD + '[[criteria]]\nkind = "uses"\nwords = "LOOP"\n', "is no list of words"),

@@ -48,6 +48,11 @@ def test_a_simple_program_has_simple_numbers() -> None:
     assert "for (int i = 0; i < 3; i++) {" in text and "if (distance < 10.5) {" in text
 
 
+def test_a_large_whole_number_is_itself() -> None:
+    """Its thousandths have more digits than a float, which a fraction would be written as."""
+    assert "  x = 1000003;" in part(sketch("X = 1000003;SHOW(X)"), "void setup()")
+
+
 def test_a_variable_that_a_def_copies_from_below_is_a_yes_no() -> None:
     text = sketch("Q = TRUE; DEF LOOK; SEEN = Q; END_DEF; LOOK; SHOW(SEEN)")
     assert "bool q = false;" in text and "bool seen = false;" in text

@@ -315,6 +315,12 @@ def test_a_chain_of_arms_takes_a_reading_once() -> None:
     assert readings_of("IF(DISTANCE>0);ELSEIF(DISTANCE>1);S;ENDIF;X=DISTANCE") == ["READ_2"] * 2
 
 
+def test_an_until_reads_in_each_of_its_turns() -> None:
+    """LIGHT_R is the first sensor, DISTANCE the last one."""
+    for sensor, reading in (("LIGHT_R", "READ_0"), ("DISTANCE", "READ_2")):
+        assert readings_of(f"F({sensor},80)UNTIL({sensor}>1)") == [reading] * 2
+
+
 def test_a_call_makes_surely_read_what_its_body_does() -> None:
     assert readings_of("DEF LOOK;DISTANCE;END_DEF;LOOK;X=DISTANCE") == ["READ_2"]
     assert readings_of("DEF LOOK;X=DISTANCE;END_DEF;LOOK;X=DISTANCE") == ["READ_2"] * 2

@@ -156,6 +156,15 @@ def test_a_program_that_another_one_ends_ends_before_it() -> None:
     assert [each.what for each in robot.take_events()] == ["STOP", "START", "MOTORS"]
 
 
+def test_of_what_nobody_takes_the_newest_is_kept(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("tiniscript.virtual.robot.EVENTS", 10)
+    robot = robot_in()
+    Talk(robot).upload("SI|X = 0;LOOP(40);X = X + 1;SHOW(X);END_LOOP", is_detached=True)
+    robot.step(robot.now_ms + 2000)
+    events = robot.take_events()
+    assert len(events) == 10 and [each.text for each in events[-2:]] == ["SHOW 40", "DONE"]
+
+
 def test_a_saved_program_is_there_after_a_power_cycle() -> None:
     robot = robot_in()
     talk = Talk(robot)

@@ -23,7 +23,7 @@ from tiniscript.robots.drivers import DRIVERS
 from tiniscript.robots.profile import LANGUAGES, Place, Robot, Wiring
 from tiniscript.robots.reader import read
 from tiniscript.robots.wiring import parts
-from tiniscript.robots.wiring.drawing import drawing_of
+from tiniscript.robots.wiring.drawing import _width, drawing_of
 from tiniscript.robots.wiring.finished import _Finished, finished_of
 from tiniscript.robots.wiring.headers import SIDES
 from tiniscript.robots.wiring.html import html_of
@@ -455,6 +455,20 @@ def test_the_finished_robot_has_each_sensor_where_the_body_says(robot: Robot) ->
         assert f"{robot.body.length_cm:g} × {robot.body.width_cm:g} cm" in shown
 
 
+@pytest.mark.parametrize(("size_cm", "wheel_cm"), [(40, (6.5, 2.6)), (10, (4, 2))])
+def test_a_small_plate_is_drawn_with_small_wheels(
+    size_cm: float, wheel_cm: tuple[float, float]
+) -> None:
+    tinibot = robots.load("tinibot")
+    body = tinibot.body._replace(length_cm=size_cm, width_cm=size_cm, wheel_base_cm=size_cm)
+    svg = finished_of(plan_of(tinibot._replace(body=body), "en"))
+    wheels = [
+        each for each in Tree.fromstring(svg).iter(f"{SVG}rect") if each.get("fill") == "#333333"
+    ]
+    drawn = [float(wheels[0].attrib[side]) / (520 / size_cm) for side in ("height", "width")]
+    assert len(wheels) == 2 and drawn == pytest.approx(wheel_cm)
+
+
 def test_a_gripper_is_drawn_around_its_button_and_another_servo_has_an_arm() -> None:
     grabber = robots.load("grabber")
     for language, label in (("en", "gripper"), ("es", "pinza")):
@@ -474,6 +488,20 @@ def test_a_gripper_is_drawn_around_its_button_and_another_servo_has_an_arm() -> 
     svg = finished_of(plan_of(bare, "en"))
     assert "GRIPPER" in texts_of(svg) and "<path" not in svg and 'stroke-width="7"' in svg
     assert "GRIPPER" not in texts_of(finished_of(plan_of(robots.load("tinibot"), "en")))
+
+
+def test_the_longest_names_stay_in_the_finished_drawing() -> None:
+    plan = plan_of(robots.load("grabber"), "en")
+    long = "W" * 24
+    parts = tuple(each._replace(title=long, label=long) for each in plan.parts)
+    svg = finished_of(plan._replace(parts=parts))
+    tree = Tree.fromstring(svg)
+    right = float(tree.attrib["viewBox"].split()[2])
+    for each in tree.iter(f"{SVG}text"):
+        x, anchor = float(each.attrib["x"]), each.attrib["text-anchor"]
+        wide = _width(each.text or "", float(each.get("font-size", 14)))
+        begin = x - wide * {"start": 0, "middle": 0.5, "end": 1}[anchor]
+        assert begin >= 0 and begin + wide <= right, each.text
 
 
 def places_of(plan: Plan, place: Place) -> tuple[float, float]:

@@ -120,6 +120,7 @@ class VirtualRobot:
         self._settle()
         if self.is_at_rest:
             del self._traced.events[self._told :]
+        del self._traced.events[:-EVENTS]
         return sent
 
     def press(self) -> None:
@@ -343,8 +344,6 @@ class VirtualRobot:
 
     def _say(self, text: str) -> None:
         self._traced.say(text.partition(" ")[0], (), text)
-        if len(self._traced.events) > EVENTS:
-            del self._traced.events[: EVENTS // 2]
 
     @property
     def at(self) -> int | None:
