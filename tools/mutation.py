@@ -2,9 +2,8 @@
 
 `python -m tools.mutation 150 --seed 1` draws 150 mutants, the same number of every module that
 still has some, and runs the tests of each one's module until one fails, two mutants at a time.
-`--module vm` and `--file PATTERN` draw from less, `--list` only shows them, `--all` takes every
-one. What was tried is kept in the cache folder, so an interrupted run goes on. Exit code 1: mutants
-survived.
+`--file PATTERN` draws from less, `--list` only shows them. What was tried is kept in the cache
+folder, so an interrupted run goes on. Exit code 1: mutants survived.
 
 A survivor gets a test, and a row in `tests/project/known_mutants.py`, which CI tries at every run;
 or a row in `tools/equivalent_mutants.json`, where nothing can notice it. Knows how the languages
@@ -25,14 +24,11 @@ import signal
 import subprocess
 import sys
 import tempfile
-import time
 import tokenize
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import ExitStack, suppress
 from itertools import accumulate, zip_longest
 from pathlib import Path
-from queue import SimpleQueue
 from typing import NamedTuple
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -45,11 +41,10 @@ EQUIVALENT = Path(__file__).with_name("equivalent_mutants.json")
 LIMIT_S = 300  # processor time of the tests of one mutant: an endless loop is noticed, too
 WAITS_S = 1800  # for what waits and does not work
 AT_ONCE = 2
-NOTHING = "**nothing**"
 NODE_MODULES = Path("tools/studio/node_modules")
 TEST = re.compile(r"(?:FAILED|ERROR) (\S+?\.py(?:::\w+)*(?:\[.*?\](?= - |$))?)")
-# What the page is built again from.
-BUILT = ("tools/studio/made", "compiler/tiniscript/studio/page")
+# What is a person's own, or being written.
+OWN = (".git", ".venv", ".*_cache", ".pio", "*.pyc.*", "node_modules", "own.h", "ready")
 
 _CPP, _PY, _JS = "vm_arduino/src", "compiler/tiniscript", "tools/studio/src"
 _HOST = "tests/firmware/test_host_firmware.py"
@@ -93,7 +88,6 @@ MODULES = (
     Module("page", (f"{_JS}/**/*.js",), ("tests/studio",)),
 )
 # fmt: on
-BY_NAME = {module.name: module for module in MODULES}
 
 
 class Mutant(NamedTuple):
@@ -160,8 +154,7 @@ def braces_edits(text: str, suffix: str) -> Iterator[Edit]:
     for found in NUMBER.finditer(plain):
         yield found.start(), found.end(), str(int(found[0], 0) + 1)
     for found in IF.finditer(plain):
-        end = _closing(plain, found.end())
-        yield found.end(), end, "false"
+        yield found.end(), _closing(plain, found.end()), "false"
     for found in STATEMENT.finditer(plain):
         yield found.end() - len(found[0].lstrip()), found.end(), ";"
 
@@ -242,8 +235,7 @@ EDITS: dict[str, Callable[[str], Iterator[Edit]]] = {
 
 def equivalent() -> dict[tuple[str, str, str], str]:
     """Return why nothing can notice a mutant: of this file, of this line, that becomes this."""
-    rows: dict[str, list[tuple[str, str, str]]]
-    rows = json.loads(EQUIVALENT.read_text(encoding="utf-8"))
+    rows: dict[str, list[tuple[str, str, str]]] = json.loads(EQUIVALENT.read_text("utf-8"))
     return {(file, was, becomes): why for why, row in rows.items() for file, was, becomes in row}
 
 
@@ -258,17 +250,14 @@ def mutants(module: Module, root: Path = ROOT) -> list[Mutant]:
         for start, end, instead in EDITS[path.suffix](text):
             changed = text[:start] + instead + text[end:]
             line = text.count("\n", 0, start)
-            was = text.splitlines()[line].strip()
-            becomes = changed.splitlines()[line].strip()
+            was, becomes = (each.splitlines()[line].strip() for each in (text, changed))
             name = path.relative_to(root).as_posix()
             if was != becomes and (name, was, becomes) not in needless:
                 found.append(Mutant(name, line + 1, was, becomes, changed))
     return found
 
 
-def drawn(
-    modules: Sequence[Module], count: int | None, seed: int, pattern: str = "*"
-) -> list[Mutant]:
+def drawn(modules: Sequence[Module], count: int, seed: int, pattern: str = "*") -> list[Mutant]:
     """Draw mutants in turn from each module, the same ones for the same seed and code."""
     rows = []
     for module in modules:
@@ -282,51 +271,47 @@ def drawn(
 def module_of(file: str) -> Module:
     """Return the module that a file is of."""
     return next(
-        module
-        for module in MODULES
-        if any(path == ROOT / file for pattern in module.files for path in ROOT.glob(pattern))
+        each for each in MODULES if any(ROOT / file in ROOT.glob(pattern) for pattern in each.files)
     )
 
 
 def tests_of(file: str) -> list[str]:
     """Return the tests of a file's module: those first that name the file, and quick ones first."""
-    found = [
-        sorted((ROOT / each).rglob("test_*.py")) or [ROOT / each] for each in module_of(file).tests
-    ]
-    named = re.compile(rf"\b{Path(file).stem}\b")
+    stem = Path(file).stem
 
     def far(path: Path) -> tuple[bool, int]:
-        name = path.relative_to(ROOT).as_posix()
-        times = len(named.findall(path.read_text(encoding="utf-8")))
+        name, text = path.relative_to(ROOT).as_posix(), path.read_text(encoding="utf-8")
         is_long = name in order.LONG or name.startswith(order.PAGES)
-        return is_long, -times - 100 * (Path(file).stem in path.stem)
+        return is_long, -100 * (stem in path.stem) - len(re.findall(rf"\b{stem}\b", text))
 
-    paths = dict.fromkeys(path for row in found for path in row)
-    return [path.relative_to(ROOT).as_posix() for path in sorted(paths, key=far)]
+    found: dict[Path, None] = {}
+    for each in module_of(file).tests:
+        found |= dict.fromkeys(sorted((ROOT / each).rglob("test_*.py")) or [ROOT / each])
+    return [path.relative_to(ROOT).as_posix() for path in sorted(found, key=far)]
 
 
 # -- trying them -----------------------------------------------------------------------------------
 
 
 class Copy:
-    """A copy of what git tracks, in which the tests run."""
+    """A copy of the repository, in which the tests run."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
-        names = subprocess.run(
-            ["git", "ls-files", "-z"], cwd=ROOT, check=True, capture_output=True, text=True
-        ).stdout.split("\0")
-        # What Python has compiled is of these files still, and is not compiled for each mutant.
-        made = (path for top in ("compiler", "tests") for path in (ROOT / top).rglob("*.pyc"))
-        for name in filter(None, (*names, *(str(path.relative_to(ROOT)) for path in made))):
-            (folder / name).parent.mkdir(parents=True, exist_ok=True)
-            with suppress(FileNotFoundError):  # removed, or replaced meanwhile
-                shutil.copy2(ROOT / name, folder / name)
+        # With what Python has compiled of these files, and the built page.
+        shutil.copytree(
+            ROOT, folder, ignore=shutil.ignore_patterns(*OWN), symlinks=True, dirs_exist_ok=True
+        )
         if (ROOT / NODE_MODULES).is_dir():
             (folder / NODE_MODULES).symlink_to(ROOT / NODE_MODULES)
-        for name in BUILT:
-            if (ROOT / name).is_dir():
-                shutil.copytree(ROOT / name, folder / name)
+
+    def tried(self, mutant: Mutant) -> str:
+        """Return what the tests of its module say of a mutant: what fails, or nothing."""
+        found = self.notices(mutant, tests_of(mutant.file))
+        named = TEST.match(found)  # one that fails without the mutant, too, notices nothing
+        if named and (why := self.failing([named[1]], is_page=mutant.file.endswith(".js"))):
+            return f"undecided, without it, too: {why}"
+        return found
 
     def notices(self, mutant: Mutant, tests: Sequence[str]) -> str:
         """Return which test notices a mutant, or nothing."""
@@ -357,11 +342,10 @@ class Copy:
             "PYTHONDONTWRITEBYTECODE": "1",
             "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1",  # importing them takes longer than most tests
         }
-        limited = ["sh", "-c", f'ulimit -t {LIMIT_S}; exec "$@"', "sh"]
         process = subprocess.Popen(
-            [*limited, sys.executable, *words], cwd=self.folder, env=environment, stdin=subprocess.DEVNULL,
-            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace",
-            start_new_session=True,
+            ["sh", "-c", f'ulimit -t {LIMIT_S}; exec "$@"', "sh", sys.executable, *words],
+            cwd=self.folder, env=environment, start_new_session=True, text=True, errors="replace",
+            stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
         )  # fmt: skip
         try:
             output, _ = process.communicate(timeout=WAITS_S)
@@ -379,52 +363,37 @@ def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description="Make small mistakes; say which no test notices.")
     parser.add_argument("count", nargs="?", type=int, default=30, help="how many (30)")
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--module", action="append", choices=list(BY_NAME))
     parser.add_argument("--file", default="*", help="only files like this one")
-    parser.add_argument("--all", action="store_true", help="every mutant")
     parser.add_argument("--list", action="store_true", help="only list them")
     options = parser.parse_args(arguments)
-    modules = [BY_NAME[name] for name in options.module or BY_NAME]
-    chosen = drawn(modules, None if options.all else options.count, options.seed, options.file)
+    chosen = drawn(MODULES, options.count, options.seed, options.file)
     if options.list:
         print("\n".join(each.name for each in chosen))
         return 0
     kept = cache_folder() / f"mutation-{_code()}.json"
     results: dict[str, str] = json.loads(kept.read_text("utf-8")) if kept.is_file() else {}
     kept.parent.mkdir(parents=True, exist_ok=True)
-    with ThreadPoolExecutor(AT_ONCE) as pool, ExitStack() as stack:
-        copies: SimpleQueue[Copy] = SimpleQueue()
-        for _ in range(AT_ONCE):
-            copies.put(Copy(Path(stack.enter_context(tempfile.TemporaryDirectory()))))
 
-        def tried(each: Mutant) -> str:
-            if each.name in results:
-                return results[each.name] or NOTHING
-            begun = time.monotonic()
-            copy = copies.get()
-            try:
-                by = copy.notices(each, tests_of(each.file))
-                named = TEST.match(by)  # one that fails without the mutant, too, notices nothing
-                if named and (why := copy.failing([named[1]], is_page=each.file.endswith(".js"))):
-                    return f"undecided, without it, too: {why}"
-            finally:
-                copies.put(copy)
-            results[each.name] = by
-            kept.write_text(json.dumps(results.copy(), indent=1), encoding="utf-8")
-            return f"{by or NOTHING} ({time.monotonic() - begun:.0f} s)"
+    def work(rest: Iterator[Mutant]) -> None:
+        with tempfile.TemporaryDirectory() as folder:
+            copy = Copy(Path(folder))
+            for each in rest:
+                if each.name not in results:
+                    results[each.name] = copy.tried(each)
+                    kept.write_text(json.dumps(results.copy(), indent=1), encoding="utf-8")
+                print(f"{each.name}: {results[each.name] or '**nothing**'}", flush=True)
 
-        for number, (each, by) in enumerate(zip(chosen, pool.map(tried, chosen), strict=True), 1):
-            print(f"{number}/{len(chosen)} {each.name}: {by}", flush=True)
-    survivors = [each.name for each in chosen if not results.get(each.name)]
+    with ThreadPoolExecutor(AT_ONCE) as pool:
+        list(pool.map(work, [iter(chosen)] * AT_ONCE))
+    survivors = [each.name for each in chosen if not results[each.name]]
     print(f"\n{len(chosen)} mutants, {len(survivors)} survived:", *survivors, sep="\n  ")
     return int(bool(survivors))
 
 
 def _code() -> str:
     """Return which code is tried: results of other code say nothing."""
-    words = (["git", "rev-parse", "HEAD"], ["git", "diff", "HEAD"])
-    asked = [subprocess.run(each, cwd=ROOT, capture_output=True).stdout for each in words]
-    return hashlib.sha256(b"".join(asked)).hexdigest()[:12]
+    asked = ["sh", "-c", "git rev-parse HEAD; git diff HEAD"]
+    return hashlib.sha256(subprocess.check_output(asked, cwd=ROOT)).hexdigest()[:12]
 
 
 if __name__ == "__main__":

@@ -12,7 +12,7 @@ import pytest
 from tests.project.known_mutants import KNOWN, Known
 from tests.support.casefile import ROOT
 from tools import mutation
-from tools.mutation import BY_NAME, EDITS, MODULES, Copy, Module, Mutant, drawn, equivalent, mutants
+from tools.mutation import EDITS, MODULES, Copy, Module, Mutant, drawn, equivalent, mutants
 
 PYTHON = '''
 from here import of
@@ -126,10 +126,15 @@ def test_every_source_is_of_one_module() -> None:
 
 
 def test_the_same_seed_draws_the_same_mutants_in_turn_from_each_module() -> None:
-    modules = [BY_NAME["codegen"], BY_NAME["bytecode"]]
+    modules = [each for each in MODULES if each.name in ("codegen", "bytecode")]
     first = drawn(modules, 6, 1)
     assert first == drawn(modules, 6, 1) != drawn(modules, 6, 2)
     assert [mutation.module_of(each.file) for each in first] == modules * 3
+
+
+def test_tests_that_name_a_file_are_first_and_long_ones_last() -> None:
+    found = mutation.tests_of("compiler/tiniscript/link/seal.py")
+    assert found[0] == "tests/link/test_seal.py" and found[-1] == "tests/link/test_named_robots.py"
 
 
 def test_what_is_listed_as_equivalent_is_still_there() -> None:
