@@ -70,7 +70,7 @@ GOALS: tuple[Goal, ...] = (
          "inputs", 10_000_000, 100_000, "tests.fuzz.harnesses store {count} --seed {seed}"),
     Goal("agreement", "The machines and verifiers in C++ and in Python say and do the same.",
          "random and mutated codes", 10_000_000, 200_000, "tests.vm.test_cpp_agreement {count} --seed {seed}", 1000),
-    Goal("verifier", "Both verifiers and the one written from the specification give the same verdict at the same offset.",
+    Goal("verifier", "Both verifiers and the one in the specification give the same verdict at the same offset.",
          "random and damaged codes", 10_000_000, 100_000, "tests.oracle.test_verifier {count} --seed {seed}", 1000),
     Goal("machine", "The machine does what the one written from the specification does.",
          "runs", 100_000, 5_000, "tests.oracle.test_machine {count} --seed {seed}"),
