@@ -100,7 +100,7 @@ def calculated(name: str, a: int, b: int = 0) -> int:
             return min(a, b) if name == "MIN" else max(a, b)
         case "ROUND":
             places = whole(b)
-            unit = 10 ** max(3 - places, 0)
+            unit = 10 ** min(max(3 - places, 0), 11)  # half of which is more than any value
             return a if places >= 3 else fits(divided(a, unit) * unit)
         case "AND":
             return int(a != 0 and b != 0)

@@ -57,7 +57,8 @@ class Run:
     max_ms: int
     random: int
     max_steps: int
-    late: Callable[[int], int]  # how much later than the clock the call comes that ends a wait
+    late: Callable[[int, int], int]  # how much later the call comes: see `trace`
+    begin_ms: int = 0
     waited: int = 0  # how often
     lines: list[str] = field(default_factory=list)
     taken: dict[int, int] = field(default_factory=dict)
@@ -75,7 +76,7 @@ class Run:
     @property
     def now(self) -> int:
         """The time that instructions see."""
-        return self.passed % WRAP
+        return (self.begin_ms + self.passed) % WRAP
 
     def note(self, what: str) -> None:
         """Print a line."""
@@ -105,10 +106,12 @@ class Run:
         passes = (self.clock - self.now) % WRAP
         if passes >= WRAP // 2:  # the clock was reached before
             passes = 0
-        if self.passed + passes > self.max_ms:
-            raise Over
         self.waited += 1
-        self.passed += passes + self.late(self.waited)
+        reached = self.passed + passes
+        reached += self.late(self.waited, reached)
+        if reached > self.max_ms:
+            raise Over
+        self.passed = reached
         if self.waits == "MOVE":
             self.motors((0, 0))
         self.waits = ""
@@ -336,12 +339,14 @@ def trace(
     max_ms: int = 60_000,
     seed: int = 1,
     max_steps: int = 10_000,
-    late: Callable[[int], int] = lambda waited: 0,
+    late: Callable[[int, int], int] = lambda waited, reached: 0,
+    begin_ms: int = 0,
 ) -> str:
     """Return what a run of verified code prints; `max_steps` instructions run at most.
 
-    On a robot that is `late`, the call after each wait comes some milliseconds after the clock.
+    On a robot that is `late`, the call after each wait comes some milliseconds after the clock: it
+    is given which wait it is, from 1, and when the clock is reached.
     """
-    run = Run(code, kit, readings, max_ms, seed, max_steps, late)
+    run = Run(code, kit, readings, max_ms, seed, max_steps, late, begin_ms, clock=begin_ms)
     run.run()
     return "".join(run.lines)

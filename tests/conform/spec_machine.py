@@ -1,0 +1,96 @@
+"""A machine of others for `tsc conform --machine`: what `tests/oracle` has of `bytecode_spec.md`.
+
+`python -m tests.conform.spec_machine` takes runs on standard input and prints their traces, as
+`docs/conformance.md` says. It knows no tasks: it lacks all that an image says to need.
+"""
+
+from __future__ import annotations
+
+import sys
+import zlib
+from collections.abc import Iterable, Iterator
+from typing import Any
+
+from tests.oracle import image, machine, verifier
+from tests.oracle.spec_tables import instruction_at, rule_numbers
+from tests.oracle.words import Device, Kit
+
+
+class Spec:
+    """The parts; a test puts a broken one in the place of one."""
+
+    image: Any = image
+    machine: Any = machine
+    verifier: str = ""
+
+    def answer(self, rows: Iterable[str]) -> list[str]:
+        """Return the lines of a run."""
+        told: dict[str, list[list[str]]] = {}
+        for word, *rest in (row.split(" ") for row in rows):
+            told.setdefault(word, []).append(rest)
+        sensors, actuators = told.get("sensor", []), told.get("actuator", [])
+        kit = Kit(tuple(map(_device, sensors)), tuple(map(_device, actuators)))
+        (data,) = (bytes.fromhex("".join(rest)) for rest in told["image"])
+        refused = self.image.refusal(data)
+        if not refused and data[14]:
+            refused = "UNKNOWN_NEEDS"
+        code = data[data[5] :] if not refused else b""
+        rule, at = verifier.verdict(code, len(sensors), len(actuators), 0, self.verifier)
+        if rule:
+            names = {number: name for name, number in rule_numbers().items()}
+            refused = f"{names[rule]} {at}"
+        hashes = {"sensor": list(map(_hash, sensors, ["sensor"] * 32)),
+                  "actuator": list(map(_hash, actuators, ["actuator"] * 32))}  # fmt: skip
+        if not refused and _devices(code, hashes) != int.from_bytes(data[6:8], "little"):
+            refused = "OTHER_KIT"
+        if refused:
+            return [f"REFUSED {refused}"]
+        lists = {kit.sensors[int(k)].name: [*map(int, row)] for k, *row in told.get("readings", [])}
+        numbers = {name: int(told[name][0][0]) for name in ("seed", "begin", "until")}
+        every = [int(each) for each in told["every"][0]]
+
+        def late(waited: int, reached: int) -> int:
+            return -reached % every[min(waited, len(every)) - 1]
+
+        said: str = self.machine.trace(
+            code, kit, lists, numbers["until"], numbers["seed"], 10**6, late, numbers["begin"]
+        )
+        return said.splitlines()
+
+
+def _device(row: list[str]) -> Device:
+    name, kind, _, low, high = row
+    return Device(name, kind == "yes/no", int(low), int(high))
+
+
+def _hash(row: list[str], word: str) -> int:
+    return zlib.crc32(f"{' '.join([word, *row])}\n".encode()) & 0xFFFF or 0xFFFF
+
+
+def _devices(code: bytes, hashes: dict[str, list[int]]) -> int:
+    """Return the hash of those that the code uses."""
+    total = at = 0
+    while at < len(code):
+        row = instruction_at(code, at)
+        used = [(each.kind, value) for each, value in row.read(code, at)]
+        for kind, value in (*used, *row.implied):
+            if kind in hashes:
+                total = total << 1 & 0xFFFF ^ 0x2D * (total >> 15) ^ hashes[kind][value]
+        at += row.size
+    return total
+
+
+def runs(lines: Iterable[str]) -> Iterator[list[str]]:
+    """Yield the lines of each run."""
+    rows: list[str] = []
+    for line in lines:
+        if line == "run\n":
+            yield rows
+            rows = []
+        else:
+            rows.append(line.rstrip("\n"))
+
+
+if __name__ == "__main__":
+    for run in runs(sys.stdin):
+        print(*Spec().answer(run), sep="\n", flush=True)
