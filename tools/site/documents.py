@@ -102,6 +102,7 @@ MOVED = {
             "esp32#bring-up-20-minutes-with-a-board-and-20-for-its-radios"
         ),
         "language#a-dance": "language#projects",
+        "language#a-program-as-one-line": "text#the-checksum-of-a-line",
         "language#a-square": "language#projects",
         "language#a-warning-is-advice": "language#common-mistakes",
         "language#an-obstacle-course": "language#projects",
