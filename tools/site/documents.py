@@ -120,6 +120,7 @@ MOVED = {
         "link#ports": "network#ports",
         "link#sealed-frames": "owners#sealed-frames",
         "link#several-transports": "network#several-transports",
+        "link#why-it-is-so": "link#frames",
         "link#what-is-kept": "link#programs",
         "monday#three-lessons": "lessons",
         "promises#what-needs-no-numbers": "promises#guarantees-without-a-number",
