@@ -140,6 +140,15 @@ def test_a_beep_has_its_frequency_and_its_length(name: str, hertz: int) -> None:
     assert abs(found / hertz - 1) < 0.01
 
 
+def test_a_beep_of_no_time_ends_the_one_before() -> None:
+    robot = on_board("tinibot", "mega")
+    board = started(robot, "SI|BEEP(0.5, 440)\nTASK\nW(0.1);BEEP(0, 440);W(9)\nEND_TASK")
+    board.watch(robot.board.buzzer)
+    board.ran(START + 300)
+    edges = [cycle / MS - START for cycle in board.edges(robot.board.buzzer)]
+    assert 95 < edges[-1] < 103
+
+
 def test_a_program_that_has_ended_plays_its_tune() -> None:
     robot = robots.load("tinibot")
     board = started(robot, "SI|F(0.1, 50)")

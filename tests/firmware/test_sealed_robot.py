@@ -283,6 +283,16 @@ def test_a_seal_that_has_lapsed_is_made_again_for_the_same_request() -> None:
     assert len([line for line in table.robot.did if "MOTORS 80 80" in line]) == 1
 
 
+def test_a_sealed_session_opens_anew_with_a_robot_that_was_reset() -> None:
+    """Whatever is asked first, also what needs no HELLO."""
+    table = Owned()
+    session, _ = open_(table)
+    later = Owned(table.robot.memory(), seed=7)
+    later.robot.now_ms = table.robot.now_ms
+    assert later.outcome(session, session.status()) == "OK"
+    assert session._sealing.seal
+
+
 def test_more_requests_than_numbers_and_a_lapse() -> None:
     """AUTHENTICATE has a number after those of the sealed requests."""
     table = Owned()

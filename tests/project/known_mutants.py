@@ -102,5 +102,16 @@ KNOWN: tuple[Known, ...] = (
     Known("files that are still to be compiled", "compiler/tiniscript/flash/building.py",
           "for name in made_from.files) + CORE_FILES", "for name in made_from.files) - CORE_FILES",
           "tests/flash/test_building.py::test_all_sources_are_not_yet_all_of_it"),
+    Known("a seal that a robot has lost", "compiler/tiniscript/link/session.py",
+          "self._sealing.seal = None\n        self._handshake.is_open = False",
+          "self._sealing.seal = None\n        self._handshake.is_open = True",
+          "tests/firmware/test_sealed_robot.py::test_a_sealed_session_opens_anew_with_a_robot_that_was_reset"),
+    Known("a beep that begins while another sounds", "vm_arduino/src/boards/avr/sound.cpp",
+          "  sound_off();\n  if (duration_ms == 0) return;", "  if (duration_ms == 0) return;",
+          "tests/firmware/test_board_devices.py::test_a_beep_of_no_time_ends_the_one_before"),
+    Known("the places of tasks", "compiler/tiniscript/virtual/module.py",
+          "self._numbers[start + 1 : start + 1 + count]]\n\n    def variables",
+          "self._numbers[start + 1 : start + 2 + count]]\n\n    def variables",
+          "tests/virtual/test_virtual_robot.py::test_each_task_that_has_not_ended_has_a_place"),
 )
 # fmt: on

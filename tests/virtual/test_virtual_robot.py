@@ -165,6 +165,16 @@ def test_of_what_nobody_takes_the_newest_is_kept(monkeypatch: pytest.MonkeyPatch
     assert len(events) == 10 and [each.text for each in events[-2:]] == ["SHOW 40", "DONE"]
 
 
+def test_each_task_that_has_not_ended_has_a_place() -> None:
+    text = "SI|W(9)\nTASK\nW(9)\nEND_TASK\nTASK\nW(0.1)\nEND_TASK"
+    robot = robot_in()
+    Talk(robot).upload(text, is_detached=True)
+    robot.step(robot.now_ms + 50)
+    assert len(robot.places) == 3
+    robot.step(robot.now_ms + 500)
+    assert len(robot.places) == len(set(robot.places)) == 2
+
+
 def test_a_saved_program_is_there_after_a_power_cycle() -> None:
     robot = robot_in()
     talk = Talk(robot)
