@@ -1,4 +1,4 @@
-"""What a Mega counts of its discs' edges, on a simulated chip: each one, and no glitch."""
+"""What an Uno and a Mega count of their discs' edges, on simulated chips: each one, and no glitch."""
 
 from __future__ import annotations
 
@@ -11,22 +11,22 @@ from tests.wiring.test_wiring import with_discs
 from tiniscript import robots
 from tiniscript.robots.profile import Robot
 
-TWO = robots.load("tinibot2")
-TWO_CHANNELS = with_discs("mega", "two_channel")
-PORT_A, PORT_C = 0x22, 0x28  # free on this robot: the counts are copied there
+BOARDS = ("uno", "mega")
+each_board = pytest.mark.parametrize("name", BOARDS)
+LEFT, RIGHT = 0x88, 0x8A  # OCR1A and OCR1B are free on this robot: the counts are copied there
 COPIED = """
 #include "firmware/board.h"
 extern "C" void test_turn() {
   using Port = volatile unsigned char*;
-  *reinterpret_cast<Port>(0x22) = static_cast<unsigned char>(tiniscript::board_edges(false));
-  *reinterpret_cast<Port>(0x28) = static_cast<unsigned char>(tiniscript::board_edges(true));
+  *reinterpret_cast<Port>(0x88) = static_cast<unsigned char>(tiniscript::board_edges(false));
+  *reinterpret_cast<Port>(0x8a) = static_cast<unsigned char>(tiniscript::board_edges(true));
 }
 """
 
 
 def counting(robot: Robot) -> Board:
     board = Board(robot, more=COPIED)
-    board.watched |= {PORT_A, PORT_C}
+    board.watched |= {LEFT, RIGHT}
     assert robot.board.discs
     for pin in robot.board.discs.pins.values():
         board.level(0, pin, False)
@@ -40,15 +40,17 @@ def pins(robot: Robot) -> tuple[int, int]:
 
 def counts(board: Board, ms: float) -> tuple[int, int]:
     """Return what it has counted until then, from 20 ms on."""
-    begun = (board.register(PORT_A, 20), board.register(PORT_C, 20))
-    then = (board.register(PORT_A, ms), board.register(PORT_C, ms))
+    begun = (board.register(LEFT, 20), board.register(RIGHT, 20))
+    then = (board.register(LEFT, ms), board.register(RIGHT, ms))
     return (then[0] - begun[0]) % 256, (then[1] - begun[1]) % 256
 
 
-def test_each_edge_of_both_counts() -> None:
+@each_board
+def test_each_edge_of_both_counts(name: str) -> None:
     """Fast and slow ones, and both at once; 65.6 ms apart is no glitch where the clock wraps."""
-    board = counting(TWO)
-    left, right = pins(TWO)
+    robot = robots.load("tinibot2", name)
+    board = counting(robot)
+    left, right = pins(robot)
     for k in range(20):
         board.level(30 + 2 * k, left, k % 2 == 0)
         board.level(30 + 2 * k, right, k % 2 == 0)
@@ -59,12 +61,14 @@ def test_each_edge_of_both_counts() -> None:
     assert counts(board, 445) == (26, 20)
 
 
+@each_board
 @pytest.mark.parametrize("span_us", [1, 5, 20, 60, 200])
 @pytest.mark.parametrize("is_high", [False, True])
-def test_pulses_that_are_too_short_do_not_count(span_us: float, is_high: bool) -> None:
+def test_pulses_that_are_too_short_do_not_count(name: str, span_us: float, is_high: bool) -> None:
     """Whether the line rests low or high: a motor's brushes do that. Edges between them count."""
-    board = counting(TWO)
-    left, _ = pins(TWO)
+    robot = robots.load("tinibot2", name)
+    board = counting(robot)
+    left, _ = pins(robot)
     chance = random.Random(5)
     board.level(25, left, is_high)
     at_ms = 40.0
@@ -79,9 +83,11 @@ def test_pulses_that_are_too_short_do_not_count(span_us: float, is_high: bool) -
     assert counts(board, at_ms + 35) == (is_high + 2, 0)
 
 
-def test_two_channels_count_back() -> None:
-    board = counting(TWO_CHANNELS)
-    discs = TWO_CHANNELS.board.discs
+@each_board
+def test_two_channels_count_back(name: str) -> None:
+    robot = with_discs(name, "two_channel")
+    board = counting(robot)
+    discs = robot.board.discs
     assert discs
     a, b = discs.pins["left"], discs.pins["left_b"]
     states = [(True, False), (True, True), (False, True), (False, False)]

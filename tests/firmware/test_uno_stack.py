@@ -47,7 +47,10 @@ def test_a_firmware_that_takes_too_much_is_seen() -> None:
 
 
 @pytest.mark.sampled(of="long ways of a chip", keep=2)
-@pytest.mark.parametrize(("environment", "robot"), [("uno", "tinibot"), ("nano_liner", "liner")])
+@pytest.mark.parametrize(
+    ("environment", "robot"),
+    [("uno", "tinibot"), ("nano_liner", "liner"), ("uno_tinibot2", "tinibot2")],
+)
 def test_the_sketch_leaves_stack_free(
     environment: str,
     robot: str,

@@ -119,9 +119,11 @@ def test_tests_are_for_a_computer(project: Path) -> None:
 # -- the sketch ---------------------------------------------------------------------------------
 
 
-SKETCHES = ("uno", "nano", "mega", "nano_liner", "mega_liner", "mega_grabber", "mega_tinibot2")
+SKETCHES = ("uno", "nano", "mega", "nano_liner", "mega_liner", "mega_grabber", "uno_tinibot2",
+            "nano_tinibot2", "mega_tinibot2")  # fmt: skip
 
-NEW_NANOS = {"nano_new": "nano", "nano_new_liner": "nano_liner"}
+NEW_NANOS = {"nano_new": "nano", "nano_new_liner": "nano_liner",
+             "nano_new_tinibot2": "nano_tinibot2"}  # fmt: skip
 # Their platform cannot be had everywhere: tests/firmware/test_esp32_builds.py builds them.
 ESP32 = {"esp32dev": "tinibot32", "esp32c3": "tinibotc3"}
 

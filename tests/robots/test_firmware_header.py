@@ -88,7 +88,7 @@ def test_shipped_headers_are_for_every_board_that_they_fit() -> None:
         ("tinibot", ["uno", "nano", "mega"]),
         ("liner", ["nano", "mega"]),
         ("grabber", ["mega"]),
-        ("tinibot2", ["mega"]),
+        ("tinibot2", ["uno", "nano", "mega"]),
         ("tinibot32", ["esp32dev"]),
         ("tinibotc3", ["esp32c3"]),
     ):

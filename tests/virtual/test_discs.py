@@ -14,7 +14,7 @@ from tests.support.virtual_robot import Talk, floor, trace
 from tiniscript import compile_text, robots
 from tiniscript.bytecode.image import unpack
 from tiniscript.bytecode.opcodes import BY_CODE, ESCAPE
-from tiniscript.link.messages import STATUSES
+from tiniscript.link.messages import STATUSES, TEXT_LEVEL, TEXT_LEVELS
 from tiniscript.robots.profile import Robot
 from tiniscript.virtual.robot import Settings, VirtualRobot
 from tiniscript.virtual.wheels import Roughness, Wheel
@@ -26,7 +26,7 @@ TWO_CHANNELS = TWO._replace(
     board=TWO.board._replace(
         discs=TWO.board.discs
         and TWO.board.discs._replace(
-            driver="two_channel", pins={"left": 18, "right": 19, "left_b": 20, "right_b": 21}
+            driver="two_channel", pins={"left": 2, "right": 3, "left_b": 18, "right_b": 19}
         )
     )
 )
@@ -204,3 +204,22 @@ def test_the_same_seed_gives_the_same_run_however_often_it_is_looked_at() -> Non
         return robot.pose, trace(robot.take_events())
 
     assert run(lambda robot: None, 1000) == run(lambda robot: robot.pose, 8)
+
+
+def test_an_uno_with_discs_reads_no_text_but_a_typed_stop() -> None:
+    """And it stops for one at once, while it goes a way."""
+    robot, talk = begun("F(60 CM, 60); SHOW(1)", is_detached=True)
+    found = talk.until(talk.session.hello()).values
+    assert TEXT_LEVELS[found.features & TEXT_LEVEL][0] == "NONE"
+    talk.wait(300)
+    for line in (b"SI|R(1, 80)\r\n", b"HELP\r\n", b"PING|check_connection\r\n", b"\xff\n"):
+        assert b"//" not in robot.step(robot.now_ms + 200, line)
+    assert robot.is_running and robot.fault == ""
+    robot.step(robot.now_ms + 30, b"STOP\r\n")
+    assert not robot.is_running and not any(wheel(robot, number).wanted for number in (0, 1))
+
+
+def test_a_mega_with_discs_reads_text() -> None:
+    talk = Talk(VirtualRobot(robots.load("tinibot2", "mega"), floor()))
+    found = talk.until(talk.session.hello()).values
+    assert TEXT_LEVELS[found.features & TEXT_LEVEL][0] == "MEGA"

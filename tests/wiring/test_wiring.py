@@ -81,8 +81,9 @@ def robot_with(motors: str, devices: list[Driver], chip_name: str = "mega", is_w
 
 def with_discs(chip: str, name: str) -> Robot:
     """Return a robot with discs of a driver."""
-    robot = robots.load("tinibot2" if chip == "mega" else "tinibot32")
-    taken = pins_of(robot)
+    robot = robots.load("tinibot32" if chip == "esp32dev" else "tinibot2", chip)
+    robot = robot._replace(board=robot.board._replace(discs=None))
+    taken = set(pins_of(robot))
     return robot._replace(
         board=robot.board._replace(discs=wired(DRIVERS["discs", name], CHIPS[chip], taken))
     )
@@ -96,8 +97,11 @@ ROBOTS = {
     **{f"mega {motors}": robot_with(motors, DEVICES) for motors in MOTORS},
     **{f"nano {motors}": robot_with(motors, DEVICES[:3], "nano", False) for motors in MOTORS},
     "mega, many": robot_with("two_wire", DEVICES * 4),
-    **{f"mega {discs}": with_discs("mega", discs) for discs in DISCS},
-    **{f"esp32dev {discs}": with_discs("esp32dev", discs) for discs in DISCS},
+    **{
+        f"{chip} {discs}": with_discs(chip, discs)
+        for chip in ("uno", "mega", "esp32dev")
+        for discs in DISCS
+    },
 }
 each_robot = pytest.mark.parametrize("robot", ROBOTS.values(), ids=list(ROBOTS))
 

@@ -25,6 +25,7 @@ from tiniscript.link.connection import PendingRequest
 from tiniscript.link.messages import KEY_OWNER
 from tiniscript.link.session import Session
 from tiniscript.robots.profile import Robot
+from tiniscript.text.levels import NO_TEXT, level_of
 from tools.uno import Stack, Uno
 
 LEAST_FREE = 150  # bytes
@@ -110,7 +111,10 @@ def wear_out(wired: Wired, robot: Robot) -> None:
     must(wired, session.upload(longest(kit, robot.board.program_bytes), runs=False))
     wired.run(2500)  # it is saved
     claim(wired, button)
-    type_deep(uno, kit)
+    if level_of(robot.board.chip, robot.board.discs is not None) is NO_TEXT:
+        drive_a_way(wired, kit)
+    else:
+        type_deep(uno, kit)
     uno.reset("external")  # and looked at when the robot begins
     uno.run_ms(200)
     uno.press(button)
@@ -144,6 +148,12 @@ def type_deep(uno: Uno, kit: Kit) -> None:
     for answer in ANSWERS:
         if answer not in said:
             raise RuntimeError(f"the robot has not said {answer} but {said}")
+
+
+def drive_a_way(wired: Wired, kit: Kit) -> None:
+    """Go by discs that never turn: with all that a way takes, until that is a fault."""
+    must(wired, wired.session.live(image_of("F(100 CM, 60) UNTIL(DISTANCE < 1)", kit).code))
+    wired.run(1500)
 
 
 def must(wired: Wired, request: PendingRequest[Any]) -> None:

@@ -1,7 +1,8 @@
 """Makes the `.wasm` of the package from the C++: `python -m tools.builds.wasm` after changes.
 
 `tsc run --machine cpp` runs the machine, and `tsc robot` the whole robot: `robot_mega.wasm` and
-`robot_esp32.wasm` have the sizes of one with a Mega and with an ESP32. Needs the compiler `ziglang`
+`robot_esp32.wasm` have the sizes of one with a Mega and with an ESP32, `robot_discs.wasm` has no
+reader of text. Needs the compiler `ziglang`
 from PyPI, in the version that the extra `test` pins: with it, the same sources give the same bytes
 wherever they are. `--check` writes nothing, and says if a file is stale.
 """
@@ -56,7 +57,10 @@ ROBOT_MEGA = ROBOT._replace(
     path="compiler/tiniscript/virtual/robot_mega.wasm",
     flags=("-Dtiniscript_like_mega",),
 )
-MODULES = (MACHINE, ROBOT, ROBOT_MEGA, ROBOT_ESP32)
+ROBOT_DISCS = ROBOT._replace(
+    path="compiler/tiniscript/virtual/robot_discs.wasm", flags=("-Dtiniscript_without_text",)
+)
+MODULES = (MACHINE, ROBOT, ROBOT_MEGA, ROBOT_ESP32, ROBOT_DISCS)
 
 
 def main(arguments: list[str] | None = None) -> int:

@@ -36,6 +36,8 @@ LESS = "less"  # it is too large, and is built once more, without tasks
 CORE_FILES = 26  # of Arduino's core, about
 # For a robot that does not fit on its board with TASK and WHEN: one of more devices than tinibot.
 WITHOUT_TASKS = {"uno": "uno_without_tasks"}
+# For a robot with discs on its wheels, which have the place of the reader of text.
+WITH_DISCS = {"uno": "uno_tinibot2", "nano": "nano_tinibot2"}
 PLATFORMIO_MB = 4  # what pip fetches, measured
 # What PlatformIO fetches for a board with these chips: its platform, and the megabytes of compiler,
 # core and build tools, by estimate from what public indexes say of their archives for Linux.
@@ -141,7 +143,8 @@ class _Project:
             raise CannotBuild(CannotBuild.NO_PLATFORMIO)
         self.folder = folder
         self.command = [*command, "run", "-d", str(folder), "-e"]
-        self.environment = robot.board.chip
+        chip = robot.board.chip
+        self.environment = WITH_DISCS.get(chip, chip) if robot.board.discs else chip
         self.files = sum(name.endswith((".cpp", ".S")) for name in made_from.files) + CORE_FILES
         for name, data in {**made_from.files, HEADER: header(robot).encode()}.items():
             (folder / name).parent.mkdir(parents=True, exist_ok=True)

@@ -37,7 +37,7 @@ class Chip(NamedTuple):
     tone_timer: int | None
     boot_pins: frozenset[int] = frozenset()
     reset_pin: int | None = None
-    counting: frozenset[int] = frozenset()  # pins that count the edges of a slotted disc
+    counting: frozenset[int] = frozenset()  # count the edges of a disc, by interrupts of their own
     pwm_timers: int = 0
     pin_volts: int = 5 * ONE  # in thousandths: what its pins give, and the most that they take
     has: int = 0  # what its firmware has of `needs` in an image
@@ -118,6 +118,7 @@ CHIPS = {
             first_analog=14,
             servo_timer=1,
             tone_timer=2,
+            counting=_pins(2, 3),
             has=_TASKS | _WAYS,
         ),
         Chip(
@@ -132,6 +133,7 @@ CHIPS = {
             first_analog=14,
             servo_timer=1,
             tone_timer=2,
+            counting=_pins(2, 3),
             has=_WAYS,
         ),
         Chip(
@@ -146,7 +148,7 @@ CHIPS = {
             first_analog=54,
             servo_timer=1,
             tone_timer=2,
-            counting=_pins(2, 3, range(18, 22)),  # those with an interrupt of their own
+            counting=_pins(2, 3, range(18, 22)),
             has=_TASKS | _WAYS,
         ),
         Chip(

@@ -42,7 +42,7 @@ class AvrPins:
         return f"{{{self.pin(pin)}, {group}, 1 << {bit}}}"
 
     def count(self, pin: int) -> str:
-        vector, _, bit = self._avr.interrupts[pin]
+        vector, _, bit = self._avr.external[pin]
         self.counters.append(vector)
         return f"{self.pin(pin)}, 1 << {bit}"
 

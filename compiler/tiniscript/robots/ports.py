@@ -43,6 +43,7 @@ class Avr(NamedTuple):
     bits: Mapping[int, Bit]
     compares: Mapping[int, Compare]
     interrupts: Mapping[int, Interrupt]
+    external: Mapping[int, Interrupt]  # those that a pin has for itself
 
 
 EXTERNAL = 3  # the group of INT0 to INT7
@@ -80,6 +81,7 @@ _BITS_2560 = _bits(
 )
 _GROUPS_328P = {"b": 0, "c": 1, "d": 2}
 _GROUPS_2560 = {"b": 0, "j": 1, "k": 2}
+_EXTERNAL_328P = {"d2": 0, "d3": 1}
 _EXTERNAL_2560 = {"d0": 0, "d1": 1, "d2": 2, "d3": 3, "e4": 4, "e5": 5}
 
 
@@ -92,24 +94,27 @@ def _changes(bits: Mapping[int, Bit], groups: Mapping[str, int]) -> dict[int, In
     }
 
 
+def _externals(bits: Mapping[int, Bit], numbers: Mapping[str, int]) -> dict[int, Interrupt]:
+    return {
+        pin: Interrupt(f"INT{number}_vect", EXTERNAL, number)
+        for pin, bit in bits.items()
+        if (number := numbers.get(f"{bit.port}{bit.bit}")) is not None
+    }
+
+
 AVR_328P = Avr(
     "__AVR_ATmega328P__",
     _BITS_328P,
     _compares("3:2b 5:0b 6:0a 9:1a 10:1b 11:2a"),
     _changes(_BITS_328P, _GROUPS_328P),
+    _externals(_BITS_328P, _EXTERNAL_328P),
 )
 AVR_2560 = Avr(
     "__AVR_ATmega2560__",
     _BITS_2560,
     _compares("2:3b 3:3c 4:0b 5:3a 6:4a 7:4b 8:4c 9:2b 10:2a 11:1a 12:1b 13:0a 44:5c 45:5b 46:5a"),
-    {
-        **_changes(_BITS_2560, _GROUPS_2560),
-        **{
-            pin: Interrupt(f"INT{_EXTERNAL_2560[name]}_vect", EXTERNAL, _EXTERNAL_2560[name])
-            for pin, bit in _BITS_2560.items()
-            if (name := f"{bit.port}{bit.bit}") in _EXTERNAL_2560
-        },
-    },
+    {**_changes(_BITS_2560, _GROUPS_2560), **_externals(_BITS_2560, _EXTERNAL_2560)},
+    _externals(_BITS_2560, _EXTERNAL_2560),
 )
 # What the configuration of Espressif's core defines for the chips of `CHIPS`.
 ESP32S = {"esp32dev": "CONFIG_IDF_TARGET_ESP32", "esp32c3": "CONFIG_IDF_TARGET_ESP32C3"}

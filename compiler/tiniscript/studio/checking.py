@@ -88,7 +88,7 @@ def line(data: bytes, robot: str, language: str) -> str | Message:
     if not found.is_right or found.program is None:
         mistake = next(each for each in found.diagnostics if each.is_mistake)
         return message(mistake, found.source, language)
-    level = level_of(profile.board.chip)
+    level = level_of(profile.board.chip, profile.board.discs is not None)
     lacking = misfits(found.source, found.program, profile.kit, level)
     return message(lacking[0], found.source, language) if lacking else line_of(found.source)
 

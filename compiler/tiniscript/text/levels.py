@@ -53,6 +53,9 @@ LEVELS = {
     )
 }
 
+# A robot that reads no text, and so no word.
+NO_TEXT = Level("none", "uno", 0, frozenset((*WORDS, *ALIASES)))
+
 # Words that no level reads: a robot knows that their names are taken, and no more. `line` writes
 # those with fixed values out.
 UNREAD = frozenset.intersection(*(level.lacks for level in LEVELS.values())).union(
@@ -60,9 +63,13 @@ UNREAD = frozenset.intersection(*(level.lacks for level in LEVELS.values())).uni
 )
 
 
-def level_of(chip: str) -> Level:
-    """Return the level of a robot with this chip, a name of `robots.boards`."""
+def level_of(chip: str, has_discs: bool = False) -> Level:
+    """Return the level of a robot with this chip, a name of `robots.boards`.
+
+    On an Uno or a Nano discs have the place of the reader.
+    """
     from tiniscript.robots.boards import CHIPS
 
     room = CHIPS[chip].program_bytes
-    return next(level for level in LEVELS.values() if level.room == room)
+    level = next(level for level in LEVELS.values() if level.room == room)
+    return NO_TEXT if has_discs and level.name == "uno" else level

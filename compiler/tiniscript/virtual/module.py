@@ -1,7 +1,7 @@
 """The robot's firmware, as a WebAssembly module: one instance is one power-on.
 
 `robot.wasm` has the memory and the link of an Uno, `robot_mega.wasm` and `robot_esp32.wasm` those
-of a Mega and of an ESP32.
+of a Mega and of an ESP32. `robot_discs.wasm` is an Uno with discs, which reads no text.
 
 Knows how to call the module (`vm_arduino/extras/wasm/robot.cpp` is the other side). Does not know
 what a robot does in its world: a `Board` is told.
@@ -17,6 +17,7 @@ from typing import NamedTuple, Protocol
 from weakref import WeakMethod
 
 PATH = Path(__file__).with_name("robot.wasm")
+PATH_DISCS = Path(__file__).with_name("robot_discs.wasm")
 PATH_MEGA = Path(__file__).with_name("robot_mega.wasm")
 PATH_ESP32 = Path(__file__).with_name("robot_esp32.wasm")
 

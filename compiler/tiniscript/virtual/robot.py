@@ -21,6 +21,7 @@ from tiniscript.virtual.driving import Driving
 from tiniscript.virtual.module import (
     NOWHERE,
     PATH,
+    PATH_DISCS,
     PATH_ESP32,
     PATH_MEGA,
     POWER_ON,
@@ -197,7 +198,7 @@ class VirtualRobot:
                 is_spanish=board.language == "es",
             ),
             memory,
-            MODULES.get(board.chip, PATH),
+            MODULES.get(board.chip, PATH_DISCS if board.discs else PATH),
         )
 
     # -- what it does -----------------------------------------------------------------------------

@@ -6,6 +6,10 @@
 
 #ifdef tiniscript_discs
 
+#ifndef tiniscript_has_discs
+#error "An Uno or a Nano has room for discs as uno_tinibot2 and nano_tinibot2 of platformio.ini."
+#endif
+
 #ifndef __AVR__
 #include <driver/pcnt.h>
 #endif

@@ -24,6 +24,8 @@
 #include "kits/tinibot2.h"
 #elif __has_include("kits/own.h") && !defined(tiniscript_tinibot)
 #include "kits/own.h"
+#elif defined(tiniscript_with_discs)
+#include "kits/tinibot2.h"
 #elif defined(CONFIG_IDF_TARGET_ESP32)
 #include "kits/tinibot32.h"
 #elif defined(CONFIG_IDF_TARGET_ESP32C3)

@@ -1,8 +1,11 @@
 #include "console.h"
 
 #include "../vm/bytecode.h"
+#include "../vm/has_tasks.h"
 #include "../vm/small.h"
 #include "port.h"
+
+#ifndef tiniscript_without_text
 
 namespace tiniscript {
 
@@ -231,3 +234,5 @@ bool Console::is_patient() {
 }
 
 }  // namespace tiniscript
+
+#endif  // tiniscript_without_text

@@ -5,11 +5,14 @@
 #include "../text/kit_words.h"
 #include "../text/unpacked.h"
 #include "../text/words.h"
+#include "../vm/has_tasks.h"
 #include "../vm/small.h"
 #include "console.h"
 #include "frames.h"
 #include "port.h"
 #include "text_level.h"
+
+#ifndef tiniscript_without_text
 
 namespace tiniscript {
 
@@ -185,3 +188,5 @@ tini_noinline uint8_t Console::write(uint8_t* out) {
 }
 
 }  // namespace tiniscript
+
+#endif  // tiniscript_without_text

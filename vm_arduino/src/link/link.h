@@ -10,13 +10,19 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "console.h"
+#include "../vm/has_tasks.h"
 #include "frames.h"
 #include "has_seals.h"
 #include "has_transports.h"
 #include "messages.h"
 #include "receiver.h"
 #include "seal.h"
+
+#ifdef tiniscript_without_text
+#include "no_console.h"
+#else
+#include "console.h"
+#endif
 
 namespace tiniscript {
 
@@ -278,11 +284,18 @@ class Link {
 
   // text
   void talk();
+#ifdef tiniscript_without_text
+  static void drop_answer() {}
+  static void send_text() {}
+  static void show_text(int32_t, bool) {}
+  static bool separate() { return false; }
+#else
   void drop_answer();
   Remark start_text(const Console& console);
   void send_text();
   void show_text(int32_t value, bool is_yes_no);
   bool separate();
+#endif
   void reply();
   void describe();
   void fetch();

@@ -1,4 +1,5 @@
-// The link of a robot that reads text: does what a line asks for, and answers with lines.
+// The link of a robot that reads text: does what a line asks for, and answers with lines. Any other
+// does only what a typed stop asks for.
 
 #include "../vm/bytecode.h"
 #include "../vm/small.h"
@@ -6,6 +7,19 @@
 #include "port.h"
 
 namespace tiniscript {
+
+#ifdef tiniscript_without_text
+
+void Link::talk() {
+  uint8_t byte;
+  while (receiver_->take_text(&byte)) {
+    if (byte != kLineStop) continue;
+    receiver_->take_mark();
+    return halt(Cause::kText);
+  }
+}
+
+#else
 
 // Does what a line asks for.
 tini_noinline void Link::talk() {
@@ -87,5 +101,7 @@ bool Link::separate() {
   hand_over();
   return true;
 }
+
+#endif
 
 }  // namespace tiniscript

@@ -3,11 +3,14 @@
 #ifndef TINISCRIPT_LINK_TEXT_LEVEL_H_
 #define TINISCRIPT_LINK_TEXT_LEVEL_H_
 
+#include "../vm/has_tasks.h"
 #include "messages.h"
 
 namespace tiniscript {
 
-#if defined(__AVR_ATmega2560__) || defined(tiniscript_like_mega)
+#ifdef tiniscript_without_text
+constexpr TextLevel kRobotTextLevel = TextLevel::kNone;
+#elif defined(__AVR_ATmega2560__) || defined(tiniscript_like_mega)
 constexpr TextLevel kRobotTextLevel = TextLevel::kMega;
 #elif defined(ARDUINO_ARCH_ESP32) || defined(tiniscript_like_esp32)
 constexpr TextLevel kRobotTextLevel = TextLevel::kEsp32;

@@ -1,11 +1,12 @@
 // Which machines have TASK and WHEN, in one place for C++ and assembly; and which firmware keeps how
-// fast its robot was measured to be, and can measure a way with discs.
+// fast its robot was measured to be, can measure a way with discs, and reads text.
 //
 // Tasks take about 2,030 bytes of flash and 127 of RAM. An Uno has them with the compiler's options
 // of platformio.ini (`tiniscript_with_tasks`). With those of the Arduino IDE it has none, nor has a
 // Nano, whose old bootloader leaves 30,720 bytes.
 //
-// No ATmega328P keeps its pace or has discs, for want of flash: it goes by the numbers of its kit.
+// An ATmega328P keeps no pace, for want of flash: it goes by the numbers of its kit. It has discs in
+// the place of the reader of text (`tiniscript_with_discs`).
 
 #ifndef TINISCRIPT_VM_HAS_TASKS_H_
 #define TINISCRIPT_VM_HAS_TASKS_H_
@@ -17,6 +18,9 @@
 #ifndef __AVR_ATmega328P__
 #define tiniscript_has_pace
 #define tiniscript_has_discs
+#elif defined(tiniscript_with_discs)
+#define tiniscript_has_discs
+#define tiniscript_without_text
 #endif
 
 #endif  // TINISCRIPT_VM_HAS_TASKS_H_

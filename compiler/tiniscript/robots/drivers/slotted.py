@@ -17,7 +17,7 @@ class Slotted(DiscDriver):
             Terminal("GND", rail=GROUND),
         ),
         "FC-03",
-        notes=("mind_slotted",),
+        notes=("mind_slotted", "mind_no_text"),
         checks=("check_slotted",),
     )
     # fmt: off
@@ -28,6 +28,8 @@ class Slotted(DiscDriver):
         "terminal_right_d0": ("D0 right", "D0 der."),
         "mind_slotted": ("Discs: the profile says how many holes a disc has and how wide a wheel is. Measure the wheel: 1 mm is 1.5 % of each way.",
                          "Discos: el perfil dice cuántas ranuras tiene un disco y cuánto mide una rueda. Mide la rueda: 1 mm es el 1.5 % de cada camino."),
+        "mind_no_text": ("Discs: on an Uno or a Nano they have the place of the robot's reader of text. Programs come from tsc and from the studio; of lines that are typed it obeys S alone.",
+                         "Discos: en una Uno o una Nano ocupan el lugar del lector de texto del robot. Los programas llegan de tsc y del estudio; de las líneas que se escriben solo obedece S."),
         "check_slotted": ("Discs: turn each wheel by hand. The lamp of its sensor blinks with each hole, and nothing rubs.",
                           "Discos: gira cada rueda con la mano. La luz de su sensor parpadea con cada ranura y nada roza."),
     }

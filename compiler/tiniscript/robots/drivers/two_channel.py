@@ -21,7 +21,7 @@ class TwoChannel(DiscDriver):
             Terminal("GND", rail=GROUND),
         ),
         "A, B",
-        notes=("mind_two_channel",),
+        notes=("mind_two_channel", "mind_no_text"),
         checks=("check_slotted",),
     )
     # fmt: off

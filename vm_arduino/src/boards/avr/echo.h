@@ -32,11 +32,11 @@ tini_always_inline void listen_inside(Echo echo, bool is_on) {
       echo.group == kExternalGroup ? kExternal : static_cast<uint16_t>(kChanges + echo.group);
   if (is_on) {
     if (echo.group == kExternalGroup) {
+      EICRA = 0x55;  // any edge of INT0 to INT3, as far as there are so many
 #ifdef EICRB
-      EICRA = 0x55;  // any edge of INT0 to INT7
-      EICRB = 0x55;
-      EIFR = echo.interrupt;
+      EICRB = 0x55;  // of INT4 to INT7
 #endif
+      EIFR = echo.interrupt;
     } else {
       PCIFR = static_cast<uint8_t>(1 << echo.group);
       register8(kGroups) |= static_cast<uint8_t>(1 << echo.group);

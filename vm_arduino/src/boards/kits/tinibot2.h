@@ -2,14 +2,84 @@
 // How the robot tinibot2 is wired. `pins.h` says what the values mean.
 
 // clang-format off
-#if defined(__AVR_ATmega2560__)  // mega
+#if defined(__AVR_ATmega328P__)  // uno, nano
 
 #define tiniscript_motors_bridge
 #define tiniscript_ultrasonics
 #define tiniscript_discs
-#define tiniscript_disc_left INT3_vect
-#define tiniscript_disc_right INT2_vect
-#define tiniscript_ultrasonic_vectors(each) each(INT5_vect)
+#define tiniscript_disc_left INT0_vect
+#define tiniscript_disc_right INT1_vect
+#define tiniscript_ultrasonic_vectors(each) each(PCINT0_vect)
+
+namespace tiniscript {
+
+constexpr uint16_t kBoardKit = 0x231b;
+constexpr uint8_t kBoardSensors = 3;
+constexpr uint8_t kBoardActuators = 0;
+constexpr uint32_t kBoardSpeed = 45000;
+constexpr uint32_t kBoardTurn = 382000;
+constexpr uint16_t kDeviceHashes[] tini_progmem = {0x1fe9, 0xffab, 0x0920};
+constexpr uint8_t kKitWords[] tini_progmem = {
+    0x4c, 0x49, 0x47, 0x48, 0x54, 0x5f, 0xd2, 0x00, 0x4c, 0x49, 0x47, 0x48, 0x54, 0x5f, 0xcc, 0x00,
+    0x44, 0x49, 0x53, 0x54, 0x41, 0x4e, 0x43, 0xc5, 0x00, 0x00,
+};
+constexpr uint16_t kProgramBytes = 389;
+constexpr uint16_t kMaxRunSeconds = 600;
+constexpr uint32_t kBaud = 9600;
+
+constexpr Pin kStartButton = {kPortC, 1 << 2};
+constexpr Pin kBuzzer = {kPortB, 1 << 3};
+constexpr Pin kLight = {kPortB, 1 << 5};
+constexpr Pin kBluetoothState = {kPortC, 1 << 3};
+constexpr Bridge kLeftMotor =
+    {{{kPortD, 1 << 5}, 0, kChannelB}, {kPortD, 1 << 7}, {kPortB, 1 << 0}};
+constexpr Bridge kRightMotor =
+    {{{kPortD, 1 << 6}, 0, kChannelA}, {kPortB, 1 << 1}, {kPortB, 1 << 2}};
+constexpr Pin kStandby = kNoPin;
+constexpr Discs kDiscs = {32673, 277333, false};
+constexpr Disc kLeftDisc = {{kPortD, 1 << 2}, 1 << 0, kNoPin};
+constexpr Disc kRightDisc = {{kPortD, 1 << 3}, 1 << 1, kNoPin};
+constexpr uint8_t kUltrasonics = 1;
+
+tini_always_inline Ultrasonic ultrasonic_at(uint8_t) {
+  return {{kPortD, 1 << 4}, {{kPortB, 1 << 4}, 0, 1 << 4}};
+}
+
+inline void begin_devices() {
+  begin_output({kPortD, 1 << 4}, false);
+}
+
+inline bool read_sensor(uint8_t number, int32_t* value) {
+  switch (number) {
+    case 0:  // LIGHT_R
+      if (!analog_read(0, value)) return false;
+      *value = analog_scaled(*value, 0, 1000, 0);
+      return true;
+    case 1:  // LIGHT_L
+      if (!analog_read(1, value)) return false;
+      *value = analog_scaled(*value, 0, 1000, 0);
+      return true;
+    case 2:  // DISTANCE
+      if (!ultrasonic_read(0, value)) return false;
+      return true;
+  }
+  return true;
+}
+
+inline void set_actuator(uint8_t, int32_t) {}
+
+inline void actuators_off(bool) {}
+
+}  // namespace tiniscript
+
+#elif defined(__AVR_ATmega2560__)  // mega
+
+#define tiniscript_motors_bridge
+#define tiniscript_ultrasonics
+#define tiniscript_discs
+#define tiniscript_disc_left INT4_vect
+#define tiniscript_disc_right INT5_vect
+#define tiniscript_ultrasonic_vectors(each) each(PCINT0_vect)
 
 namespace tiniscript {
 
@@ -27,22 +97,22 @@ constexpr uint16_t kProgramBytes = 1900;
 constexpr uint16_t kMaxRunSeconds = 600;
 constexpr uint32_t kBaud = 9600;
 
-constexpr Pin kStartButton = {kPortE, 1 << 4};
+constexpr Pin kStartButton = {kPortF, 1 << 2};
 constexpr Pin kBuzzer = {kPortB, 1 << 5};
 constexpr Pin kLight = {kPortB, 1 << 7};
-constexpr Pin kBluetoothState = {kPortB, 1 << 6};
+constexpr Pin kBluetoothState = {kPortF, 1 << 3};
 constexpr Bridge kLeftMotor =
     {{{kPortE, 1 << 3}, 3, kChannelA}, {kPortH, 1 << 4}, {kPortH, 1 << 5}};
 constexpr Bridge kRightMotor =
     {{{kPortH, 1 << 3}, 4, kChannelA}, {kPortH, 1 << 6}, {kPortB, 1 << 4}};
 constexpr Pin kStandby = kNoPin;
 constexpr Discs kDiscs = {32673, 277333, false};
-constexpr Disc kLeftDisc = {{kPortD, 1 << 3}, 1 << 3, kNoPin};
-constexpr Disc kRightDisc = {{kPortD, 1 << 2}, 1 << 2, kNoPin};
+constexpr Disc kLeftDisc = {{kPortE, 1 << 4}, 1 << 4, kNoPin};
+constexpr Disc kRightDisc = {{kPortE, 1 << 5}, 1 << 5, kNoPin};
 constexpr uint8_t kUltrasonics = 1;
 
 tini_always_inline Ultrasonic ultrasonic_at(uint8_t) {
-  return {{kPortG, 1 << 5}, {{kPortE, 1 << 5}, 3, 1 << 5}};
+  return {{kPortG, 1 << 5}, {{kPortB, 1 << 6}, 0, 1 << 6}};
 }
 
 inline void begin_devices() {
@@ -73,5 +143,5 @@ inline void actuators_off(bool) {}
 }  // namespace tiniscript
 
 #else
-#error "The robot tinibot2 is wired to another board. It fits: mega."
+#error "The robot tinibot2 is wired to another board. It fits: uno, nano, mega."
 #endif

@@ -1,0 +1,24 @@
+// In the place of the console, where a robot reads no text: nobody talks to it, and nothing is said.
+
+#ifndef TINISCRIPT_LINK_NO_CONSOLE_H_
+#define TINISCRIPT_LINK_NO_CONSOLE_H_
+
+#include <stdint.h>
+
+namespace tiniscript {
+
+class Console {
+ public:
+  static void pass(uint16_t, bool) {}
+  static constexpr bool is_due() { return false; }
+  static constexpr bool is_in_block() { return false; }
+  static constexpr bool is_open() { return false; }
+  static constexpr bool is_talking() { return false; }
+  static void drop() {}
+  static void pick_up() {}
+  static void hang_up() {}
+};
+
+}  // namespace tiniscript
+
+#endif  // TINISCRIPT_LINK_NO_CONSOLE_H_
