@@ -1,4 +1,4 @@
-"""What an Uno and a Mega count of their discs' edges, on simulated chips: each one, and no glitch."""
+"""What an Uno and a Mega count of their discs' edges, on simulated chips: each, and no glitch."""
 
 from __future__ import annotations
 

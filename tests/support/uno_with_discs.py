@@ -1,0 +1,90 @@
+"""A simulated Uno that is a tinibot2: its motors turn wheels, whose discs change its pins.
+
+Wheels, motors and discs are those of the virtual robot (`virtual/wheels.py`), the firmware is the
+one that goes onto the board. Who looks at the wheels' way finds it in `pose`.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from tests.machines.wired import Wired
+from tiniscript import compile_text, robots
+from tiniscript.bytecode.image import unpack
+from tiniscript.link.requests import OK
+from tiniscript.link.session import Session
+from tiniscript.robots.drivers import discs_of
+from tiniscript.robots.kinematics import Pose
+from tiniscript.virtual.driving import Driving
+from tiniscript.virtual.wheels import Roughness, Wheels
+from tools.uno import Uno
+from tools.uno.log import Event
+
+ROBOT = robots.load("tinibot2", "uno")
+ENVIRONMENT = "uno_tinibot2"  # of vm_arduino/platformio.ini
+FULL = 255  # what PWM says of 100 %
+
+
+class Driven(Wired):
+    """It stands on an endless floor; its motors have `motors` percent of their speed."""
+
+    def __init__(
+        self, firmware: Path, seed: int, motors: tuple[float, float], rough: Roughness
+    ) -> None:
+        board = ROBOT.board
+        assert board.discs
+        uno = Uno(firmware, baud=board.baud, resets_on_open=False, tells_sleep=False)
+        super().__init__(uno, Session(seed, board.baud, ROBOT.kit.fingerprint))
+        self._motors = motors
+        self._driving = Driving(ROBOT.body, (), Pose(0, 0, 0))
+        self.wheels = Wheels(ROBOT.body, board.discs, discs_of(board.discs).has_two, rough, seed,
+                             self._driving.set_motors)  # fmt: skip
+        self._discs = [f"D{board.discs.pins[side]}" for side in ("left", "right")]
+        self._levels = [False, False]
+        self._noticed = 0  # events of the board
+        self._pins: dict[str, Event] = {}  # what it did last with each pin
+        for name in self._discs:
+            uno.drive(name, False)
+        uno.run_ms(300)
+
+    @property
+    def pose(self) -> Pose:
+        self.wheels.go_on(self.now_ms)
+        return self._driving.go_on(self.now_ms)
+
+    def run(self, milliseconds: int) -> None:
+        for _ in range(milliseconds):
+            super().run(1)
+            for event in self.uno.events[self._noticed :]:
+                self._noticed += 1
+                if event.what == "pin":
+                    self._pins[event["pin"]] = event
+            left, right = self._motors
+            powers = self._power("left") * left / 100, self._power("right") * right / 100
+            self.wheels.set(self.now_ms, *powers)
+            for number, wheel in enumerate(self.wheels.both):
+                level = wheel.counted % 2 == 1
+                if level != self._levels[number]:
+                    self._levels[number] = level
+                    self.uno.drive(self._discs[number], level)
+
+    def _power(self, side: str) -> float:
+        """Return what a motor gets, in percent."""
+        pins = ROBOT.board.motors.pins
+        pwm = self._pins[f"D{pins[f'{side}_pwm']}"]
+        level: int = pwm["value"] if pwm["is"] == "pwm" else FULL * (pwm["is"] == "high")
+        is_backward = self._pins[f"D{pins[f'{side}_backward']}"]["is"] == "high"
+        return (-level if is_backward else level) * 100 / FULL
+
+    def drive(self, text: str, limit_ms: int = 20_000) -> str:
+        """Run a program to its end and a little longer; return what has ended it."""
+        image = unpack(compile_text(text, ROBOT.kit).image)
+        assert self.until(self.session.hello()) == OK
+        assert self.until(self.session.upload(image)) == OK
+        for _ in range(limit_ms // 10):
+            self.run(10)
+            for event in self.session.events():
+                if event.name in ("DONE", "FAULT"):
+                    self.run(500)
+                    return event.name
+        raise AssertionError(f"not over after {limit_ms} ms")
