@@ -25,7 +25,7 @@ from tiniscript.cli.texts.verbs import FIRST, NOTES, VERBS
 from tiniscript.flash.bootloaders import BOARDS
 from tiniscript.robots.ports import AVRS
 from tiniscript.virtual import worlds
-from tools.generate.command_pages import PAGES
+from tools.site.documents import name_in
 
 if TYPE_CHECKING:
     from tests.support.shell import Shell
@@ -217,7 +217,7 @@ def test_help_of_a_verb_that_there_is_not(tsc: Tsc) -> None:
 @in_both
 @of_each
 def test_the_page_of_the_documents_says_all_of_it_too(verb: str, language: str) -> None:
-    page = (ROOT / "docs" / PAGES[language]).read_text(encoding="utf-8")
+    page = (ROOT / name_in(language, "docs/command.en.md")).read_text(encoding="utf-8")
     common, *sections = page.split("\n## ")
     (section,) = (each for each in sections if each.startswith(f"`tsc {verb}`\n"))
     typed = re.findall(r"^\| `(-.*?)` \|", common + "\n" + section, re.M)

@@ -14,9 +14,9 @@ from pathlib import Path
 import pytest
 
 from tests.support.command import Tsc
+from tests.support.texts import LANGUAGES
 from tiniscript.cli import lesson_check
 from tiniscript.lessons import catalogue
-from tiniscript.robots.profile import LANGUAGES
 
 RIGHT, SHORT, WRONG = "SI|F(2.5, 80)", "SI|F(2, 80)", "SI|F(2 80)"
 

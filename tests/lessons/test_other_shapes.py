@@ -13,12 +13,12 @@ from pathlib import Path
 import pytest
 
 from tests.lessons.test_lessons import findings_of
+from tests.support.texts import LANGUAGES
 from tiniscript.lessons import catalogue
 from tiniscript.lessons.catalogue import NAMED
 from tiniscript.lessons.lesson import Lesson
 from tiniscript.lessons.markdown import blocks, printed
 from tiniscript.lessons.sentences import sentence
-from tiniscript.robots.profile import LANGUAGES
 
 FOLLOW = (
     "IF(LINE_L); M(5,40); ELSEIF(LINE_R); M(40,5); ELSE; M(35,35); ENDIF; W(0.02) UNTIL(BUTTON)"
@@ -461,7 +461,10 @@ def test_a_program_by_heart_does_not(number: int, seed: int, program: str) -> No
 def test_a_task_says_the_numbers_that_are_measured(folder: Path, language: str) -> None:
     """Each has one home, the criterion: a page names it, and has no number of its own."""
     lesson = catalogue.load(folder)
-    written = printed((folder / f"pupil.{language}.md").read_text(encoding="utf-8"))
+    path = folder / f"pupil.{language}.md"
+    if not path.is_file() and language not in ("en", "es"):
+        pytest.skip("not translated yet")
+    written = printed(path.read_text(encoding="utf-8"))
     task = written.split("\n## ")[-2]
     assert "{seconds}" in task
     assert not re.search("[0-9]", re.sub(r"`[^`]*`", "", NAMED.sub("", task))), task

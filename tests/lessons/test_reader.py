@@ -40,7 +40,7 @@ CASES = [
     (HEAD + '[[criteria]]\nkind = "ends_in"\nat = "moon"\n', "Write start, or one of walls"),
     (HEAD + '[[criteria]]\nkind = "ends_in"\nat = "start"\nwithin_cm = 900\n', "from 1 to 500"),
     (HEAD + '[[criteria]]\nkind = "follows"\nat_least_cm = 0\n', "from 1 to 10000"),
-    (HEAD + '[[criteria]]\nkind = "ends_in"\nat = "start"\nen = "x"\n', "criteria[1].es is missing"),
+    (HEAD + '[[criteria]]\nkind = "ends_in"\nat = "start"\nen = "x"\n', "criteria[1].at"),
     (HEAD + '[[criteria]]\nkind = "uses"\nwords = ["LOP"]\n', "Did you mean LOOP?"),
     (HEAD + '[[criteria]]\nkind = "uses"\nwords = "LOOP"\n', "is no list of words"),
     (HEAD + '[[criteria]]\nkind = "order"\nwords = ["sings"]\n', "sings, which is not a known word"),
@@ -57,7 +57,7 @@ CASES = [
     (HEAD + TOUCH + '[[varies]]\npart = "start"\nheading = [-900, 5]\n', "from -360 to 360"),
     ("worlds = 99\n" + HEAD + TOUCH, "Write a number from 1 to 20."),
     (HEAD.replace("tinibot", "tinibt") + TOUCH, "robot is tinibt. Write one of these: tinibot"),
-    (HEAD.replace('es = "B"\n', "") + TOUCH, "title.es is missing"),
+    (HEAD.replace('en = "A"\nes = "B"\n', "") + TOUCH, "title.en is missing"),
     ("x", "Line 1 is not TOML."),
 ]  # fmt: skip
 

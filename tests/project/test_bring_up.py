@@ -22,8 +22,9 @@ from tests.support.waiting import until
 from tiniscript.cli.commands.doctor import BLANK, STEPS
 from tiniscript.cli.options import Options
 from tiniscript.cli.texts.common import text
+from tools.site.documents import sources
 
-LISTS = {"en": ROOT / "docs" / "bring-up.md", "es": ROOT / "docs" / "puesta-en-marcha.es.md"}
+LISTS = {each: ROOT / name for each, name in sources(ROOT, "docs/bring-up.md").items()}
 each_list = pytest.mark.parametrize(("language", "path"), LISTS.items(), ids=list(LISTS))
 
 

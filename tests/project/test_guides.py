@@ -26,8 +26,9 @@ from tiniscript.cli import main
 from tiniscript.languages import FOLDER
 from tiniscript.link import ports
 from tiniscript.link.ports import Found
+from tools.site.documents import sources
 
-GUIDES = {"en": ROOT / "docs" / "monday.en.md", "es": ROOT / "docs" / "lunes.es.md"}
+GUIDES = {each: ROOT / name for each, name in sources(ROOT, "docs/monday.en.md").items()}
 # The robot's port by cable, then by Bluetooth, and what Windows says of them.
 PORTS = {
     "COM3": "Arduino Uno (COM3)",
@@ -146,23 +147,23 @@ def test_the_sentences_of_the_table_are_those_of_tsc(language: str, guide: Path)
         assert any(gaps in sentence for sentence in _sentences(language)), each
 
 
-def test_both_guides_type_the_same() -> None:
-    english, spanish = (steps(GUIDES[language]) for language in ("en", "es"))
-    assert len(english) == len(spanish)
-    for step, other in zip(english, spanish, strict=True):
+@each_guide
+def test_all_guides_type_the_same(language: str, guide: Path) -> None:
+    english, own = steps(GUIDES["en"]), steps(guide)
+    for step, other in zip(english, own, strict=True):
         assert step.words[:1] == other.words[:1]
         assert bool(step.name) == bool(other.name)
     headings = [
-        len(re.findall(r"^## ", guide.read_text(encoding="utf-8"), re.M))
-        for guide in GUIDES.values()
+        len(re.findall(r"^## ", each.read_text(encoding="utf-8"), re.M))
+        for each in (GUIDES["en"], guide)
     ]
     assert headings[0] == headings[1]
 
 
 def said_in(language: str) -> dict[str, str]:
     """Return what is said in a language, by where: sentences of the package, and documents."""
+    from tests.support.texts import LANGUAGES
     from tiniscript.lessons.sentences import SENTENCES
-    from tiniscript.robots.profile import LANGUAGES
     from tiniscript.robots.wiring.texts import TEXTS as WIRING_TEXTS
 
     both_languages = (WIRING_TEXTS, SENTENCES)

@@ -6,18 +6,19 @@ from xml.etree import ElementTree
 
 import pytest
 
-from tiniscript.robots.profile import LANGUAGES
+from tests.support.casefile import ROOT
 from tiniscript.virtual import worlds
 from tools.generate import arena, front
 from tools.generate.guide_pictures import DRIVES as DRIVES_OF_GUIDES
 from tools.generate.guide_pictures import guide_pictures
 from tools.generate.world_pictures import DRIVES, world_picture
+from tools.site.documents import sources
 
 SVG = "{http://www.w3.org/2000/svg}"
 SIGN = 0.602  # the width of a sign, of its size
 
 
-@pytest.fixture(params=LANGUAGES)
+@pytest.fixture(params=sources(ROOT, "README.md"))
 def drawing(request: pytest.FixtureRequest) -> ElementTree.Element:
     return ElementTree.fromstring(front.front(request.param, "a test"))
 

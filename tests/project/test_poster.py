@@ -9,12 +9,12 @@ import pytest
 
 from tests.support.casefile import ROOT
 from tiniscript import check_text, robots
-from tiniscript.robots.profile import LANGUAGES
+from tiniscript.languages import told_in
 from tiniscript.words import WORDS
 from tools.generate import paper, poster
 from tools.generate.paper import MONO, Line
 
-in_both = pytest.mark.parametrize("language", LANGUAGES)
+in_both = pytest.mark.parametrize("language", told_in("documents", "poster/title"))
 
 
 def lines_of(language: str) -> list[Line]:

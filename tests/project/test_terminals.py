@@ -32,7 +32,7 @@ def conversations(page: Path) -> Iterator[list[str]]:
 
 
 EVERY = [
-    pytest.param("es" if page.name.endswith(".es.md") else "en", lines, id=f"{page.name}-{k}")
+    pytest.param(page.name.split(".")[-2], lines, id=f"{page.name}-{k}")
     for page in PAGES
     for k, lines in enumerate(conversations(page))
 ]

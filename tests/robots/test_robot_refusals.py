@@ -12,10 +12,10 @@ from pathlib import Path
 import pytest
 
 from tests.robots.test_robots import TEXTS, edited
-from tests.support.texts import said
+from tests.support.texts import LANGUAGES, said
 from tiniscript import robots
 from tiniscript.robots.boards import NEEDS
-from tiniscript.robots.profile import LANGUAGES, ProfileRefused, Robot
+from tiniscript.robots.profile import ProfileRefused, Robot
 from tiniscript.robots.reader import read
 from tiniscript.robots.refusals import describe, shown
 from tiniscript.words import WORDS

@@ -9,10 +9,10 @@ from pathlib import Path
 
 import pytest
 
+from tests.support.texts import LANGUAGES
 from tiniscript import robots
 from tiniscript.robots.boards import CHIPS, NEEDS, Chip
 from tiniscript.robots.drivers import DRIVERS, drivers_for
-from tiniscript.robots.profile import LANGUAGES
 from tiniscript.robots.reader import read
 
 FOLDER = Path(robots.__file__).parent

@@ -8,9 +8,9 @@ import pytest
 
 from tests.pupils import corpus
 from tests.studio.programs import LACKING, said
+from tests.support.texts import LANGUAGES
 from tiniscript import check, compile, robots
 from tiniscript.diagnostics.rendering import Message
-from tiniscript.robots.profile import LANGUAGES
 from tiniscript.studio import checking, worker
 from tiniscript.studio.description import description
 
@@ -29,7 +29,7 @@ def test_messages_are_those_of_the_command_and_repairs_help(first: int, part: in
     """In one language and the next in the other: no repair that is offered makes it worse."""
     offered = 0
     for k, entry in enumerate(corpus.entries()[part::6]):
-        language = LANGUAGES[(first + k) % 2]
+        language = LANGUAGES[(first + k) % len(LANGUAGES)]
         found = checking.check(entry.program.encode(), "tinibot", language)
         told = [each.message for each in found.findings if each.message.code not in LACKING]
         assert told == said(entry.program, language)

@@ -7,8 +7,8 @@ import re
 
 import pytest
 
+from tests.support.texts import LANGUAGES
 from tiniscript.lessons import catalogue
-from tiniscript.robots.profile import LANGUAGES
 from tiniscript.studio import page_lessons
 from tiniscript.studio.checking import check
 from tiniscript.studio.simulation import Marks

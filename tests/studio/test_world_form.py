@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 
+from tests.support.texts import LANGUAGES
 from tiniscript.lessons import catalogue
 from tiniscript.lessons.variation import varied
 from tiniscript.studio import worker
@@ -51,7 +52,9 @@ def test_random_forms_keep_every_number() -> None:
     for _ in range(200):
         form = {
             "name": "own",
-            "labels": {"en": chance.choice(['my "own"', "a\\b", "own"]), "es": "ñandú 🤖"},
+            "labels": {
+                each: chance.choice(['my "own"', "a\\b", "own", "ñandú 🤖"]) for each in LANGUAGES
+            },
             "width_cm": 200.5,
             "height_cm": 150,
             "has_border": chance.random() < 0.5,

@@ -7,6 +7,8 @@ from functools import cache
 from tiniscript.languages import FOLDER, SOURCE, languages
 from tiniscript.languages.compiling import merged
 
+LANGUAGES = languages()
+
 
 @cache
 def said(language: str, name: str = "command") -> dict[str, str]:

@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 
 from tests.support.command import Tsc
+from tests.support.texts import LANGUAGES
 from tiniscript import robots
 from tiniscript.cli.commands import wiring
 from tiniscript.fixed_point import ONE
@@ -20,7 +21,7 @@ from tiniscript.kit import NUMBER, Device, Kit
 from tiniscript.robots.boards import CHIPS, Chip
 from tiniscript.robots.driver import Driver
 from tiniscript.robots.drivers import DRIVERS
-from tiniscript.robots.profile import LANGUAGES, Place, Robot, Wiring
+from tiniscript.robots.profile import Place, Robot, Wiring
 from tiniscript.robots.reader import read
 from tiniscript.robots.wiring import parts
 from tiniscript.robots.wiring.drawing import _width, drawing_of

@@ -26,7 +26,7 @@ ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
 from tests.support import studio
-from tiniscript.robots.profile import LANGUAGES
+from tools.site.documents import sources
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
@@ -57,6 +57,11 @@ GAP = 12  # pixels between the pictures of a sheet
 COLOURS = 128  # of a picture: its bytes are halved, and nobody sees it
 KEPT = "words"  # the text of the picture that has them
 SEEN = "button, label, h1, h2, .blocklyToolboxCategoryLabel"
+GUIDES = {
+    each: (ROOT / name).read_text("utf-8")
+    for each, name in sources(ROOT, "docs/studio.en.md").items()
+}
+LANGUAGES = tuple(each for each, text in GUIDES.items() if f"(studio.{each}.png)" in text)
 TEXTS = sorted((ROOT / "tools" / "studio" / "src").rglob("*texts.js"))
 
 

@@ -1,10 +1,11 @@
-"""Builds the site: the documents in two languages, and the studio.
+"""Builds the site: the documents in each language, and the studio.
 
     python -m tools.builds.site site
 
-writes a folder for any static host: `en/` and `es/` with a search each, `studio/` where its page is
-built (`python -m tools.builds.studio`), and `files/` with what the documents lead to besides. Needs
-`pip install -e ".[site]"`. A link that leads nowhere ends it, so does every warning of Sphinx.
+writes a folder for any static host: a half for each language with a search, `en/` and `es/`,
+`studio/` where its page is built (`python -m tools.builds.studio`), and `files/` with what the
+documents lead to besides. Needs `pip install -e ".[site]"`. A link that leads nowhere ends it, so
+does every warning of Sphinx.
 """
 
 from __future__ import annotations
@@ -23,14 +24,13 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
+from tiniscript.languages import SOURCE, about, languages, text
 from tools.builds import studio
 from tools.site import links, theme
-from tools.site.documents import LANGUAGES, MOVED, PARTS, Document, documents
-from tools.site.pages import FILES, Missing, Shelf, page, shelf
+from tools.site.documents import FRONT, MOVED, PARTS, Document, documents, sources
+from tools.site.pages import FILES, Missing, Place, Shelf, page, shelf
 
 SITE = ROOT / "tools" / "site"
-OTHER = {"en": "es", "es": "en"}
-NAMES = {"en": "English", "es": "Español"}
 
 
 LEADS_ON = """\
@@ -82,11 +82,12 @@ def build(root: Path, folder: Path, has_studio: bool) -> None:
 def _build(root: Path, folder: Path, scratch: Path, has_studio: bool) -> None:
     found = documents(root)
     on = shelf(root, found)
-    for language in LANGUAGES:
+    halves = halves_of(found)
+    for language in halves:
         half = scratch / language
         stage(half, found, on, language)
         render(half, folder / language, found, has_studio)
-        for old, new in MOVED[language].items():
+        for old, new in MOVED.get(language, {}).items():
             if "#" not in old:
                 (folder / language / f"{old}.html").write_text(
                     LEADS_ON.format(f"{new}.html"), "utf-8"
@@ -98,24 +99,40 @@ def _build(root: Path, folder: Path, scratch: Path, has_studio: bool) -> None:
         shutil.copytree(studio.PAGE, folder / "studio",
                         ignore=shutil.ignore_patterns(studio.STAMP))  # fmt: skip
         link = '<a href="studio/index.html">TiniScript Studio</a>'
-    text = (SITE / "choice.html").read_text(encoding="utf-8")
-    (folder / "index.html").write_text(text.replace("STUDIO", link), encoding="utf-8")
+    choice = (SITE / "choice.html").read_text(encoding="utf-8")
+    rows = "\n".join(map(_chosen, reversed(halves)))
+    choice = choice.replace("STUDIO", link).replace("HALVES", rows)
+    (folder / "index.html").write_text(choice, encoding="utf-8")
     (folder / ".nojekyll").touch()  # else some hosts leave out folders that begin with _
     wrong = links.dead(folder)
     if wrong:
         raise CannotBuild("\n".join(wrong))
 
 
+def halves_of(found: list[Document]) -> list[str]:
+    """Return the languages of the documents, English first."""
+    return [each for each in languages() if any(each in one.sources for one in found)]
+
+
+def _chosen(language: str) -> str:
+    said = f"{about('x-name', language)}: {text('documents', 'site/choice', language)}"
+    return f'<a href="{language}/index.html" lang="{language}" hreflang="{language}">{said}</a>'
+
+
 def stage(half: Path, found: list[Document], on: Shelf, language: str) -> None:
-    """Write the sources of one half, as Sphinx reads them. Raises Missing."""
-    for each in found:
-        if language in each.sources:
-            text = page(each.sources[language], on)
-            if each.name == "index":
-                text += contents(found, language)
-            target = half / f"{each.name}.md"
-            target.parent.mkdir(parents=True, exist_ok=True)
-            target.write_text(text, encoding="utf-8")
+    """Write the sources of one half, as Sphinx reads them. Raises Missing.
+
+    A language without a front page has the English one.
+    """
+    pages = {
+        each.name: page(each.sources[language], on) for each in found if language in each.sources
+    }
+    front = sources(on.root, FRONT)
+    front_page = page(front.get(language, FRONT), on, Place(language, "index"))
+    for name, said in {**pages, "index": front_page + contents(found, language)}.items():
+        target = half / f"{name}.md"
+        target.parent.mkdir(parents=True, exist_ok=True)
+        target.write_text(said, encoding="utf-8")
     for name in sorted(on.pictures):
         _copy(on.root / name, half / FILES / name)
     for name in ("templates", "static"):
@@ -126,10 +143,9 @@ def stage(half: Path, found: list[Document], on: Shelf, language: str) -> None:
 def render(half: Path, folder: Path, found: list[Document], has_studio: bool) -> None:
     """Make the pages of one half with Sphinx. Raises CannotBuild with what it complains about."""
     language = folder.name
-    other = OTHER[language]
-    both = [each.name for each in found if set(each.sources) == set(LANGUAGES)]
-    told = {"other": other, "other_name": NAMES[other], "both": both, "has_studio": has_studio,
-            "moved": moved_places(language)}  # fmt: skip
+    others = {each: about("x-name", each) for each in halves_of(found) if each != language}
+    told = {"others": others, "pages": {each.name: list(each.sources) for each in found},
+            "has_studio": has_studio, "moved": moved_places(language)}  # fmt: skip
     (half / "half.json").write_text(json.dumps(told), encoding="utf-8")
     words = [sys.executable, "-m", "sphinx", "-b", "html", "-q", "-j", "2", "-W", "--keep-going",
              "-E", "-D", f"language={language}", "-d", str(half.parent / f"{language}.trees"),
@@ -139,14 +155,14 @@ def render(half: Path, folder: Path, found: list[Document], has_studio: bool) ->
                            env={**os.environ, "PYTHONPATH": paths})  # fmt: skip
     if ended.returncode:
         raise CannotBuild((ended.stdout + ended.stderr).replace(f"{half}{os.sep}", "").strip())
-    if language == "es":
-        theme.translate(folder)
+    if language != SOURCE:
+        theme.translate(folder, language)
 
 
 def moved_places(language: str) -> dict[str, dict[str, str]]:
     """Return where the places that have moved in one half are now, by page and old name."""
     found: dict[str, dict[str, str]] = {}
-    for old, new in MOVED[language].items():
+    for old, new in MOVED.get(language, {}).items():
         page_name, is_place, place = old.partition("#")
         if is_place:
             target, mark, there = new.partition("#")
@@ -158,11 +174,19 @@ def moved_places(language: str) -> dict[str, dict[str, str]]:
 def contents(found: list[Document], language: str) -> str:
     """Return the table of contents of one half, which the page's side shows."""
     rows: list[str] = []
-    for part, title in PARTS[language].items():
+    for part in PARTS:
         names = [each.name for each in found if each.part == part and language in each.sources]
         names = ["self" if name == "index" else name for name in names]
         if names:
-            rows += ["", "```{toctree}", ":hidden:", f":caption: {title}", "", *names, "```"]
+            rows += [
+                "",
+                "```{toctree}",
+                ":hidden:",
+                f":caption: {text('documents', f'part/{part}', language)}",
+                "",
+                *names,
+                "```",
+            ]
     return "\n".join(rows) + "\n"
 
 

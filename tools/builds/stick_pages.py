@@ -19,11 +19,12 @@ from markdown_it import MarkdownIt
 from markdown_it.token import Token
 
 from tiniscript import robots
+from tiniscript.languages import SOURCE, about, languages, text, told_in
 from tiniscript.lessons import catalogue
 from tiniscript.robots.wiring.html import html_of
 from tiniscript.robots.wiring.plan import plan_of
+from tools.site.documents import name_in, sources
 
-LANGUAGES = ("en", "es")
 STYLE = """\
 body { font-family: Verdana, 'DejaVu Sans', Arial, sans-serif; line-height: 1.5; color: #111;
   max-width: 55em; margin: 1em auto; padding: 0 1em; overflow-wrap: break-word; }
@@ -37,21 +38,10 @@ li.check { list-style: none; }
 @page { size: A4; margin: 15mm; }
 @media print { h2, h3 { break-after: avoid; } tr, pre, li { break-inside: avoid; } }
 """
-TITLES = {
-    "en": ("TiniScript without internet", "Lessons", "pupils", "teacher", "Wiring", "Guides",
-           "The language on one page"),
-    "es": ("TiniScript sin internet", "Lecciones", "alumnos", "docente", "Conexiones", "Guías",
-           "El lenguaje en una página"),
-}  # fmt: skip
-GUIDES = {
-    "en": ("docs/monday.en.md", "docs/lessons.en.md", "docs/materials.en.md",
-           "docs/studio.en.md", "docs/class.en.md", "docs/language.en.md", "docs/robots.en.md",
-           "docs/command.en.md", "docs/worlds.en.md", "docs/modules.en.md", "docs/api.en.md",
-           "README.md"),
-    "es": ("docs/lunes.es.md", "docs/lecciones.es.md", "docs/materiales.es.md",
-           "docs/estudio.es.md", "docs/clase.es.md", "docs/lenguaje.es.md", "docs/robots.es.md",
-           "docs/comandos.es.md", "docs/mundos.es.md", "docs/modulos.es.md", "docs/api.es.md"),
-}  # fmt: skip
+GUIDES = ("docs/monday.en.md", "docs/lessons.en.md", "docs/materials.en.md", "docs/studio.en.md",
+          "docs/class.en.md", "docs/language.en.md", "docs/robots.en.md", "docs/command.en.md",
+          "docs/worlds.en.md", "docs/modules.en.md", "docs/api.en.md", "README.md")  # fmt: skip
+INDEX = "index.html"
 LINK = re.compile(r'(href|src)="([^"#:]+)(#[^"]*)?"')
 
 
@@ -63,7 +53,8 @@ def make(root: Path, folder: Path) -> None:
         body, title = rendered(source.read_text(encoding="utf-8"))
         wanted |= {(source.parent / path).resolve() for _, path, _ in LINK.findall(body)}
         body = LINK.sub(partial(_to_page, folder=source.parent, documents=documents), body)
-        language = "es" if source.name.endswith(".es.md") else "en"
+        own = source.name.split(".")[-2]
+        language = own if own in languages() else SOURCE
         _write(folder / source.relative_to(root).with_suffix(".html"), page(title, body, language))
     for path in sorted(wanted - {each.resolve() for each in documents}):
         target = folder / path.relative_to(root.resolve())
@@ -71,13 +62,12 @@ def make(root: Path, folder: Path) -> None:
             target.parent.mkdir(parents=True, exist_ok=True)
             shutil.copy(path, target)
         else:
-            _write(target / "index.html", page(path.name, f"<p>{escape(path.name)}/</p>", "en"))
-    for language in LANGUAGES:
+            _write(target / "index.html", page(path.name, f"<p>{escape(path.name)}/</p>", SOURCE))
+    for language in told_in("documents", "stick/title"):
         for name in robots.names():
             plan = plan_of(robots.load(name).speaking(language), language)
             _write(folder / "wiring" / f"{name}.{language}.html", html_of(plan))
-        _write(folder / ("index.html" if language == "en" else "indice.html"),
-               _index(root, folder, language))  # fmt: skip
+        _write(folder / name_in(language, INDEX), _index(root, folder, language))
 
 
 def page(title: str, body: str, language: str) -> str:
@@ -124,17 +114,22 @@ def _index(root: Path, folder: Path, language: str) -> str:
     """Write the lessons' sheets, and return the page that leads to everything."""
     from tiniscript.cli import main as tsc
 
-    title, lessons, pupils, teacher, wiring, guides, poster = TITLES[language]
-    other = (
-        '<a href="indice.html">Español</a>'
-        if language == "en"
-        else '<a href="index.html">English</a>'
+    keys = ("title", "lessons", "pupils", "teacher", "wiring", "guides", "poster")
+    title, lessons, pupils, teacher, wiring, guides, poster = (
+        text("documents", f"stick/{key}", language) for key in keys
     )
-    rows = [f"<h1>{title}</h1>", f"<p>{other}</p>", f"<h2>{guides}</h2>", "<ul>"]
-    for name in GUIDES[language]:
+    others = " · ".join(
+        f'<a href="{name_in(each, INDEX)}">{about("x-name", each)}</a>'
+        for each in told_in("documents", "stick/title")
+        if each != language
+    )
+    rows = [f"<h1>{title}</h1>", f"<p>{others}</p>", f"<h2>{guides}</h2>", "<ul>"]
+    for guide in GUIDES:
+        name = sources(root, guide).get(language, guide)
         _, heading = rendered((root / name).read_text(encoding="utf-8"))
         rows.append(f'<li><a href="{name.removesuffix(".md")}.html">{escape(heading)}</a></li>')
-    rows += [f'<li><a href="docs/poster/poster.{language}.pdf">{poster}</a></li>', "</ul>"]
+    file = sources(root, "docs/poster/poster.en.pdf").get(language, "docs/poster/poster.en.pdf")
+    rows += [f'<li><a href="{file}">{poster}</a></li>', "</ul>"]
     rows += [f"<h2>{wiring}</h2>", "<ul>"]
     for name in robots.names():
         label = robots.load(name).labels[language]["robot"]

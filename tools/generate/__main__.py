@@ -25,7 +25,7 @@ from tiniscript.robots.profile import ProfileRefused, Robot
 from tiniscript.robots.reader import read
 from tiniscript.robots.refusals import describe
 from tools.generate import avr_header, cpp_header, link_header, remark_tables, text_tables
-from tools.generate.command_pages import PAGES, page
+from tools.generate.command_pages import DOCUMENTED, page
 from tools.generate.cpp_cases import cases_header
 from tools.generate.documents import DOCUMENTS, list_of_documents, spliced, table
 from tools.generate.front import fronts
@@ -36,7 +36,7 @@ from tools.generate.machine_kit import machine_kit
 from tools.generate.poster import posters
 from tools.generate.wiring_pages import wiring_pages
 from tools.generate.world_pictures import world_picture
-from tools.site.documents import LIST
+from tools.site.documents import LIST, name_in
 
 COMMAND = "python -m tools.generate"
 LINE_LENGTH = 100
@@ -281,8 +281,8 @@ OUTPUTS: list[tuple[Path, Callable[[], str]]] = [
     *((ROOT / "docs" / name, make) for name, make in DOCUMENTS.items()),
     (PAYLOADS, partial(payloads, COMMAND)),
     *(
-        (ROOT / "docs" / name, partial(page, language, COMMAND, table))
-        for language, name in PAGES.items()
+        (ROOT / name_in(language, "docs/command.en.md"), partial(page, language, COMMAND, table))
+        for language in DOCUMENTED
     ),
     *((ROOT / "docs" / "poster" / name, make) for name, make in posters(COMMAND).items()),
     *((ROOT / "docs" / name, make) for name, make in fronts(COMMAND).items()),

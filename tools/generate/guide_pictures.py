@@ -1,7 +1,7 @@
 """The pictures of the guides: programs that drive, a phone that talks to a robot, wires, a room.
 
 What a picture shows is taken from where it is said: a program from its guide or its lesson, a
-conversation from its guide. A picture without words is one for both languages.
+conversation from its guide. A picture without words is one for all languages.
 """
 
 from __future__ import annotations
@@ -14,13 +14,13 @@ from pathlib import Path
 
 from tiniscript.lessons import catalogue
 from tiniscript.lessons.variation import varied
-from tiniscript.robots.profile import LANGUAGES
 from tiniscript.virtual import worlds
 from tiniscript.virtual.world import World
 from tools.generate.arena import BODY, BOX, FLOOR, LAMP, WALL, WAY, arena, driven
+from tools.site.documents import sources
 
 DOCS = Path(__file__).resolve().parent.parent.parent / "docs"
-GUIDES = {"en": "monday.en.md", "es": "lunes.es.md"}
+GUIDES = {each: Path(file).name for each, file in sources(DOCS.parent, "docs/monday.en.md").items()}
 SANS = "'DejaVu Sans', Verdana, Arial, sans-serif"
 PAD, PAPER, GROUND, SKY = 10, "#ffffff", "#e9edf0", "#dcebfb"
 
@@ -57,7 +57,7 @@ DRIVES: dict[str, tuple[str, str, Drives]] = {  # the guide, how its program beg
 def guide_pictures(command: str) -> dict[str, partial[str]]:
     """Return how the pictures are made, by their names in `docs/`. `command` makes them."""
     made = {name: partial(drive, command, *row) for name, row in DRIVES.items()}
-    made |= {f"phone.{each}.svg": partial(phone, command, each) for each in LANGUAGES}
+    made |= {f"phone.{each}.svg": partial(phone, command, each) for each in GUIDES}
     wired = {"cable.svg": cable, "adapter.svg": adapter, "room.svg": room, "lesson.svg": lesson,
              "blinks.svg": blinks, "hand.svg": hand, "port.svg": port,
              "measure.svg": measure}  # fmt: skip

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import json
+from importlib import import_module
 from pathlib import Path
+from typing import Any
 
 from pygments.lexers.python import PythonLexer
 from pygments.lexers.special import TextLexer
 from sphinx.application import Sphinx
-from sphinx.search.en import SearchEnglish
-from sphinx.search.es import SearchSpanish
+from sphinx.search import languages as searches
 
 from tiniscript import __version__
 from tiniscript.words import WORDS
@@ -52,15 +53,16 @@ PLAIN = ("output", "robot", "senses", "terminal", "link", "bytecode", "plain", "
 HALF = json.loads((Path(__file__).parent / "half.json").read_text(encoding="utf-8"))
 
 
-def lead_to_the_other_half(
+def lead_to_the_other_halves(
     app: Sphinx, name: str, template: str, context: dict[str, object], tree: object
 ) -> None:
-    """Tell a page where it is in the other language, and where the studio is."""
+    """Tell a page where it is in each other language, and where the studio is."""
     up = "../" * (name.count("/") + 1)
-    there = name if name in HALF["both"] else "index"
-    context["other_address"] = f"{up}{HALF['other']}/{there}.html"
-    context["other_language"] = HALF["other"]
-    context["other_name"] = HALF["other_name"]
+    there = HALF["pages"].get(name, [])
+    context["others"] = [
+        (language, said, f"{up}{language}/{name if language in there else 'index'}.html")
+        for language, said in HALF["others"].items()
+    ]
     context["has_studio"] = HALF["has_studio"]
     context["studio_address"] = f"{up}studio/index.html"
     context["moved"] = HALF["moved"].get(name, {})
@@ -69,13 +71,17 @@ def lead_to_the_other_half(
 def find_words_of_the_language() -> None:
     """Have the search find IF, UNTIL and SI, too: words that it leaves out as too common."""
     ours = {word.lower() for word in WORDS}
-    for language in (SearchEnglish, SearchSpanish):
-        language.stopwords = frozenset(language.stopwords) - ours
+    for place in searches.values():  # a class, or where it is
+        search: Any = place
+        if isinstance(place, str):
+            module, _, name = place.rpartition(".")
+            search = getattr(import_module(module), name)
+        search.stopwords = frozenset(search.stopwords) - ours
 
 
 def setup(app: Sphinx) -> None:
     find_words_of_the_language()
-    app.connect("html-page-context", lead_to_the_other_half)
+    app.connect("html-page-context", lead_to_the_other_halves)
     app.add_lexer("tiniscript", TiniScriptLexer)
     app.add_lexer("verifier", PythonLexer)
     for name in PLAIN:

@@ -1,16 +1,25 @@
 """Which documents the site has, in which language, under which name, and beside which others.
 
-Knows the repository's documents. A document that is here twice is one document in two languages.
-`test_site.py` fails where a document of the repository is in no row.
+Knows the repository's documents by their English files. In another language a document has the
+name that `documents.txt` in the folder of the language gives it, else that of the English file with
+the code of the language; it is there as soon as its file is. `test_site.py` fails where a document
+of the repository is in no row.
 """
 
 from __future__ import annotations
 
-from pathlib import Path
+import re
+from collections.abc import Iterable
+from functools import cache
+from pathlib import Path, PurePosixPath
 from typing import NamedTuple
 
-LANGUAGES = ("en", "es")
+from tiniscript.languages import SOURCE, about, languages, table
+
 LIST = "docs/README.md"  # of all others, made from here
+FRONT = "README.md"  # of each half of the site
+PARTS = ("teach", "write", "wiring", "pupils", "teachers", "trust", "build")
+ENDING = re.compile(r"(?:\.en)?(\.\w+)$")
 
 
 class Document(NamedTuple):
@@ -21,60 +30,81 @@ class Document(NamedTuple):
     sources: dict[str, str]
 
 
-def _both(name: str, part: str, english: str, spanish: str) -> Document:
-    return Document(name, part, {"en": english, "es": spanish})
+def name_in(language: str, english: str) -> str:
+    """Return what the file of a document is called in a language, whether it is there or not."""
+    if language == SOURCE:
+        return english
+    return _names(language).get(english) or ENDING.sub(rf".{language}\1", english)
 
 
-def _english(part: str, *sources: str) -> list[Document]:
-    return [Document(Path(source).stem.lower(), part, {"en": source}) for source in sources]
+@cache
+def _names(language: str) -> dict[str, str]:
+    rows = (row.split() for row in table(language, "documents.txt").splitlines())
+    return {row[0]: row[1] for row in rows if row and row[0] != "#"}
 
 
-def _wiring(root: Path) -> list[Document]:
-    found = sorted(path.name.split(".")[0] for path in root.glob("docs/wiring/*.en.md"))
+def sources(root: Path, english: str) -> dict[str, str]:
+    """Return the files of a document by language, English first."""
+    found = {language: name_in(language, english) for language in languages()}
+    return {
+        language: name
+        for language, name in found.items()
+        if language == SOURCE or (root / name).is_file()
+    }
+
+
+def links(language: str, english: str, others: Iterable[str]) -> list[str]:
+    """Return the links on a document to itself in other languages."""
     return [
-        _both(f"wiring/{each}", "wiring", f"docs/wiring/{each}.en.md", f"docs/wiring/{each}.es.md")
-        for each in found
+        f"[{about('x-name', each)}]({PurePosixPath(name_in(each, english)).name})"
+        for each in others
+        if each != language
     ]
 
 
+def _rows(root: Path, part: str, *files: str, folder: str = "") -> list[Document]:
+    """Return documents whose pages are called as their English files."""
+    return [
+        Document(
+            folder + ENDING.sub("", PurePosixPath(each).name).lower(), part, sources(root, each)
+        )
+        for each in files
+    ]
+
+
+def _files(root: Path, pattern: str) -> list[str]:
+    return sorted(path.relative_to(root).as_posix() for path in root.glob(pattern))
+
+
 def _lessons(root: Path) -> list[Document]:
-    found: list[Document] = []
-    for folder in sorted(root.glob("compiler/tiniscript/lessons/[0-9]*")):
-        place = folder.relative_to(root).as_posix()
-        for reader in ("pupil", "teacher"):
-            sources = (f"{place}/{reader}.{language}.md" for language in LANGUAGES)
-            found.append(_both(f"lessons/{folder.name}_{reader}", f"{reader}s", *sources))
-    return found
+    return [
+        Document(f"lessons/{Path(file).parent.name}_{reader}", f"{reader}s", sources(root, file))
+        for folder in _files(root, "compiler/tiniscript/lessons/[0-9]*")
+        for reader in ("pupil", "teacher")
+        for file in [f"{folder}/{reader}.en.md"]
+    ]
 
 
 def documents(root: Path) -> list[Document]:
     """Return the documents of a clone, in the order in which the site shows them."""
     return [
-        _both("monday", "teach", "docs/monday.en.md", "docs/lunes.es.md"),
-        _both("bring-up", "teach", "docs/bring-up.md", "docs/puesta-en-marcha.es.md"),
-        _both("lessons", "teach", "docs/lessons.en.md", "docs/lecciones.es.md"),
-        _both("materials", "teach", "docs/materials.en.md", "docs/materiales.es.md"),
-        _both("measure", "teach", "docs/measure.en.md", "docs/medir.es.md"),
-        _both("modules", "teach", "docs/modules.en.md", "docs/modulos.es.md"),
-        _both("language", "write", "docs/language.en.md", "docs/lenguaje.es.md"),
-        _both("robots", "write", "docs/robots.en.md", "docs/robots.es.md"),
-        _both("studio", "write", "docs/studio.en.md", "docs/estudio.es.md"),
-        _both("command", "write", "docs/command.en.md", "docs/comandos.es.md"),
-        _both("class", "teach", "docs/class.en.md", "docs/clase.es.md"),
-        _both("worlds", "write", "docs/worlds.en.md", "docs/mundos.es.md"),
-        _both("library", "write", "docs/api.en.md", "docs/api.es.md"),
-        *_wiring(root),
+        *_rows(root, "teach", "docs/monday.en.md", "docs/bring-up.md", "docs/lessons.en.md",
+               "docs/materials.en.md", "docs/measure.en.md", "docs/modules.en.md"),
+        *_rows(root, "write", "docs/language.en.md", "docs/robots.en.md", "docs/studio.en.md",
+               "docs/command.en.md"),
+        *_rows(root, "teach", "docs/class.en.md"),
+        *_rows(root, "write", "docs/worlds.en.md"),
+        Document("library", "write", sources(root, "docs/api.en.md")),
+        *_rows(root, "wiring", *_files(root, "docs/wiring/*.en.md"), folder="wiring/"),
         *_lessons(root),
-        _both("index", "trust", "README.md", "README.es.md"),
-        _both("comparison", "trust", "docs/comparison.en.md", "docs/comparacion.es.md"),
-        *_english("trust", "docs/promises.md", "docs/figures.md", "docs/computer.md",
-                  "SECURITY.md", "CODE_OF_CONDUCT.md"),
-        *_english("build", "CONTRIBUTING.md", "docs/first-change.md", "docs/translating.md",
-                  "docs/architecture.md",
-                  "bytecode_spec.md", "docs/conformance.md", "docs/link.md", "docs/owners.md",
-                  "docs/network.md", "docs/text.md", "docs/store.md", "docs/esp32.md",
-                  "docs/versions.md", "CHANGELOG.md"),
-        Document("documents", "build", {"en": LIST}),
+        Document("index", "trust", sources(root, FRONT)),
+        *_rows(root, "trust", "docs/comparison.en.md", "docs/promises.md", "docs/figures.md",
+               "docs/computer.md", "SECURITY.md", "CODE_OF_CONDUCT.md"),
+        *_rows(root, "build", "CONTRIBUTING.md", "docs/first-change.md", "docs/translating.md",
+               "docs/architecture.md", "bytecode_spec.md", "docs/conformance.md", "docs/link.md",
+               "docs/owners.md", "docs/network.md", "docs/text.md", "docs/store.md",
+               "docs/esp32.md", "docs/versions.md", "CHANGELOG.md"),
+        Document("documents", "build", {SOURCE: LIST}),
     ]  # fmt: skip
 
 
@@ -159,27 +189,5 @@ MOVED = {
         "studio#un-mundo-propio": "studio#tu-propio-mundo",
         "worlds#lo-que-nota-el-robot": "worlds#lo-que-percibe-el-robot",
         "readme": "index",
-    },
-}
-
-
-PARTS = {
-    "en": {
-        "teach": "Teach",
-        "write": "Write programs",
-        "wiring": "Wire a robot",
-        "pupils": "Lessons, for pupils",
-        "teachers": "Lessons, for the teacher",
-        "trust": "Decide",
-        "build": "Build it with us",
-    },
-    "es": {
-        "teach": "Enseñar",
-        "write": "Escribir programas",
-        "wiring": "Conectar un robot",
-        "pupils": "Lecciones, para alumnos",
-        "teachers": "Lecciones, para el docente",
-        "trust": "Decidir",
-        "build": "Construirlo con nosotros",
     },
 }

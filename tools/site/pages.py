@@ -57,29 +57,33 @@ def shelf(root: Path, found: list[Document]) -> Shelf:
     return Shelf(root, places)
 
 
-def page(source: str, on: Shelf) -> str:
+def page(source: str, on: Shelf, place: Place | None = None) -> str:
     """Return the Markdown of a document's page; note the files that it leads to.
 
-    Raises Missing where a link leads to no file.
+    `place` is where it is, if not where its source is. Raises Missing where a link leads to no
+    file.
     """
     found: list[str] = []
     path = on.root / source
+    here = place or on.places[source]
     text = path.read_text(encoding="utf-8")
     if (path.parent / "lesson.toml").is_file():
         text = filled(text, source, catalogue.load(path.parent))
     for number, part in enumerate(_FENCED.split(text)):
         is_code = number % 2 == 1
-        found.append(part if is_code else _LINK.sub(lambda link: _led(link, source, on), part))
+        found.append(
+            part if is_code else _LINK.sub(lambda link: _led(link, source, here, on), part)
+        )
     return "".join(found)
 
 
-def _led(link: re.Match[str], source: str, on: Shelf) -> str:
+def _led(link: re.Match[str], source: str, here: Place, on: Shelf) -> str:
     """Return a link of a document as the page has it."""
     mark, text, path, anchor = link.group(1), link.group(2), link.group(3), link.group(4) or ""
     if not path or ":" in path:
         return link.group(0)
     target = Path(os.path.normpath(PurePosixPath(source).parent / path)).as_posix()
-    here, there = on.places[source], on.places.get(target)
+    there = on.places.get(target)
     if there is not None and there.language == here.language:
         return f"[{text}]({way(here.name, there.name)}.md{anchor})"
     if there is not None:

@@ -72,6 +72,12 @@ def text(name: str, key: str, language: str) -> str:
     return said
 
 
+def told_in(name: str, key: str) -> list[str]:
+    """Return the languages in which a text is there, the one that is translated first."""
+    english = text(name, key, SOURCE)
+    return [each for each in languages() if each == SOURCE or text(name, key, each) != english]
+
+
 def counted(name: str, key: str, count: int, language: str) -> str:
     """Return the form of a text with a plural that goes with a number."""
     return catalogue(name, language).ngettext(key, key, count)

@@ -10,7 +10,8 @@ from collections.abc import Mapping
 
 from tiniscript import robots
 from tiniscript.fixed_point import ONE
-from tiniscript.languages import ByLanguage
+from tiniscript.languages import SOURCE, ByLanguage, languages
+from tiniscript.languages import text as said_in
 from tiniscript.lessons.lesson import (
     ANY_VALUE,
     AREA,
@@ -28,7 +29,7 @@ from tiniscript.lessons.lesson import (
     Place,
     Variation,
 )
-from tiniscript.robots.profile import LANGUAGES, Reason, Robot
+from tiniscript.robots.profile import Reason, Robot
 from tiniscript.robots.refusals import shown
 from tiniscript.robots.toml_table import Table, parse_toml
 from tiniscript.virtual.world import World
@@ -40,7 +41,7 @@ MOST_SECONDS, MOST_WORLDS, MOST_NOISE = 600, 20, 20
 MOST_CM = 2000
 ROWS = 100  # criteria, variations, answers
 PART = re.compile(r"(start)|(walls|boxes|lines|lamps)\[([1-9][0-9]{0,2})\]")
-NO_LABELS = ByLanguage({"en": "the goal", "es": "la meta"})
+NO_LABELS = ByLanguage({each: said_in("lessons", "place", each) for each in languages()})
 TIME = "TIME"
 
 
@@ -113,9 +114,9 @@ def _answer(table: Table, is_wrong: bool) -> Answer:
 
 
 def _labels(table: Table, most: int = LABEL_CHARACTERS) -> dict[str, str]:
-    """Return a text in each language; both must be there."""
+    """Return a text in each language that it is there in; one must be."""
     found: ByLanguage[str] = ByLanguage()
-    for language in LANGUAGES:
+    for language in [each for each in languages() if table.has(each)] or [SOURCE]:
         label = table.text(language, f'{language} = "…"')
         if label is not None and (
             not label.strip() or len(label) > most or not label.isprintable()
@@ -185,7 +186,7 @@ def _criterion(table: Table, world: World, known: Mapping[str, tuple[str, ...]])
         x_cm, y_cm = (_span(table, key, MOST_CM) for key in AREA)
         area = x_cm, y_cm
     labels: dict[str, str] = NO_LABELS
-    if has_places and any(table.has(language) for language in LANGUAGES):
+    if has_places and any(map(table.has, languages())):
         labels = _labels(table)
     words: tuple[str, ...] = ()
     if kind.words in WHATS:

@@ -208,7 +208,7 @@ def sentence(finding: Finding, language: str) -> str:
     if key == "order" and finding.values["times"] != "1":
         key = "order_again"
     k = language == "es"
-    place = finding.labels.get(language, "")
+    place = finding.labels[language] if finding.labels else ""
     what = finding.values.get("what") or "DISTANCE"
     values = {
         **{name: printable(value) for name, value in finding.values.items()},

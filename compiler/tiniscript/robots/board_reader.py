@@ -10,11 +10,12 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from tiniscript.kit import Device, Kit
+from tiniscript.languages import languages
 from tiniscript.robots.boards import BAUDS, CHIPS, Chip
 from tiniscript.robots.driver import AT_STOP, Setting
 from tiniscript.robots.drivers import DRIVERS, drivers_for
 from tiniscript.robots.ledc import FREQUENCIES, timers_of
-from tiniscript.robots.profile import LANGUAGES, Board, Wiring
+from tiniscript.robots.profile import Board, Wiring
 from tiniscript.robots.refusals import shown
 from tiniscript.robots.toml_table import Table
 
@@ -139,7 +140,7 @@ def read_board(table: Table, kit: Kit) -> Board:
     buzzer = pins.take(table, "buzzer", "tone")
     status_led = pins.take(table, "status_led", "output", is_optional=True)
     bluetooth_state = pins.take(table, "bluetooth_state", "input", is_optional=True)
-    language = table.choice("language", LANGUAGES) if table.has("language") else ""
+    language = table.choice("language", languages()) if table.has("language") else ""
     motors = _read_wiring(table.table("motors", "[board.motors]"), "motors", pins)
     discs = None
     if table.has("discs"):

@@ -10,7 +10,6 @@ from typing import NamedTuple
 
 from tiniscript.kit import Kit
 
-LANGUAGES = ("en", "es")
 Reason = tuple[str, Mapping[str, str]]
 
 
@@ -45,7 +44,7 @@ class Board(NamedTuple):
 
     `program_bytes` is the largest size of a program's code. `max_run_seconds` limits how long a
     program runs without a client. A pin that is None is not wired. `language`,
-    one of LANGUAGES, is that of its answers to text; empty: that of whoever makes its firmware.
+    is that of its answers to text; empty: that of whoever makes its firmware.
     `discs` are those on the wheels, None where it measures no ways.
     """
 
@@ -98,7 +97,7 @@ class Body(NamedTuple):
 
 
 class Robot(NamedTuple):
-    """A profile. `labels[language]` names `robot` and every device, in each of LANGUAGES."""
+    """A profile. `labels[language]` names `robot` and every device."""
 
     name: str
     kit: Kit

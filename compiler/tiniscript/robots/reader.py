@@ -10,10 +10,9 @@ from collections.abc import Mapping, Sequence
 
 from tiniscript.fixed_point import ONE
 from tiniscript.kit import DEVICES, NUMBER, YES_NO, Device, Kit
-from tiniscript.languages import ByLanguage
+from tiniscript.languages import SOURCE, ByLanguage, languages
 from tiniscript.robots.board_reader import device_tables, read_board
 from tiniscript.robots.profile import (
-    LANGUAGES,
     SEES,
     Body,
     Place,
@@ -165,15 +164,19 @@ def _read_place(table: Table) -> Place:
 
 
 def _read_labels(table: Table, kit: Kit, name: str) -> Mapping[str, Mapping[str, str]]:
-    """Return the labels. A missing one is taken from the other language, or is the name itself."""
+    """Return the labels by language, English and those that are written.
+
+    A missing one is taken from another language, or is the name itself.
+    """
     devices = (*kit.sensors, *kit.actuators)
-    written = {language: _read_language(table, language, devices) for language in LANGUAGES}
+    known = [each for each in languages() if table.has(each)]
+    written = {each: _read_language(table, each, devices) for each in known}
     table.finish()
     found: ByLanguage[dict[str, str]] = ByLanguage()
-    for language in LANGUAGES:
+    for language in dict.fromkeys((SOURCE, *known)):
         found[language] = {"robot": name, **{device.name: device.name for device in devices}}
-        for each in (*LANGUAGES, language):
-            found[language].update(written[each])
+        for each in (*known, language):
+            found[language].update(written.get(each, {}))
     return found
 
 

@@ -9,10 +9,11 @@ from typing import Any
 
 from tiniscript import robots
 from tiniscript.fixed_point import ONE
+from tiniscript.languages import languages
 from tiniscript.library import opening
 from tiniscript.link.messages import NAME_BYTES, STOP_BYTES
 from tiniscript.robots.kinematics import Pose
-from tiniscript.robots.profile import LANGUAGES, Robot
+from tiniscript.robots.profile import Robot
 from tiniscript.studio.world_form import form_of, limits
 from tiniscript.virtual import worlds
 from tiniscript.virtual.driving import Hull
@@ -54,7 +55,7 @@ def _robot(profile: Robot) -> dict[str, Any]:
     kit = profile.kit
     return {
         "name": profile.name,
-        "labels": {each: profile.labels[each]["robot"] for each in LANGUAGES},
+        "labels": {each: profile.labels[each]["robot"] for each in languages()},
         "baud": profile.board.baud,
         "speed_cm_s": profile.body.speed_cm_s,
         "wheel_base_cm": profile.body.wheel_base_cm,
@@ -69,7 +70,7 @@ def _robot(profile: Robot) -> dict[str, Any]:
                 "unit": device.unit,
                 "is_yes_no": device.is_yes_no,
                 "arguments": [_range(device.low, device.high, "0")],
-                "labels": {each: profile.labels[each][device.name] for each in LANGUAGES},
+                "labels": {each: profile.labels[each][device.name] for each in languages()},
             }
             for role, devices in (("sensor", kit.sensors), ("actuator", kit.actuators))
             for device in devices

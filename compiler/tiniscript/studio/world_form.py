@@ -9,6 +9,7 @@ import json
 import math
 from typing import Any
 
+from tiniscript.languages import SOURCE, languages
 from tiniscript.virtual.geometry import Point
 from tiniscript.virtual.world import World
 from tiniscript.virtual.worlds import PARTS, POINTS
@@ -27,7 +28,7 @@ def form_of(world: World) -> Form:
     x_cm, y_cm, heading = world.start
     return {
         "name": world.name,
-        "labels": dict(world.labels),
+        "labels": {each: world.labels[each] for each in languages()},
         "width_cm": world.width_cm,
         "height_cm": world.height_cm,
         "has_border": world.has_border,
@@ -52,6 +53,8 @@ def toml_of(form: Form) -> str:
     labels = form["labels"]
     if set(labels.values()) == {form["name"]}:
         labels = {}  # the name of a file, which the next one may have differently
+    other = {each: label for each, label in labels.items() if label != labels[SOURCE]}
+    labels = {SOURCE: labels[SOURCE], **other} if labels else {}
     tables = [
         _table("[floor]", floor),
         _table("[start]", form["start"]),

@@ -7,9 +7,9 @@ from pathlib import Path
 
 from tiniscript import robots
 from tiniscript.fixed_point import ONE
-from tiniscript.languages import ByLanguage
+from tiniscript.languages import ByLanguage, languages
 from tiniscript.robots.kinematics import Pose
-from tiniscript.robots.profile import LANGUAGES, ProfileRefused, Reason
+from tiniscript.robots.profile import ProfileRefused, Reason
 from tiniscript.robots.refusals import shown
 from tiniscript.robots.toml_table import Table, parse_toml
 from tiniscript.virtual.geometry import Point
@@ -168,9 +168,9 @@ def _flag(table: Table) -> Flag:
 
 
 def _labels(table: Table, name: str) -> dict[str, str]:
-    """Return the world's name in each language; one that is missing is the other's, or `name`."""
-    written: dict[str, str] = {}
-    for language in LANGUAGES:
+    """Return the world's name by language, or `name` in each where it has none."""
+    written: ByLanguage[str] = ByLanguage()
+    for language in languages():
         label = table.text(language)
         if label is None:
             continue
@@ -178,8 +178,7 @@ def _labels(table: Table, name: str) -> dict[str, str]:
             table.complain("label_bad", language, most=str(LABEL_CHARACTERS))
         written[language] = label
     table.finish()
-    other = next(iter(written.values()), name)
-    return ByLanguage({language: written.get(language, other) for language in LANGUAGES})
+    return written or ByLanguage.fromkeys(languages(), name)
 
 
 DEFAULT = "obstacles"
