@@ -40,7 +40,7 @@ CASES = [
     (HEAD + '[[criteria]]\nkind = "ends_in"\nat = "moon"\n', "Write start, or one of walls"),
     (HEAD + '[[criteria]]\nkind = "ends_in"\nat = "start"\nwithin_cm = 900\n', "from 1 to 500"),
     (HEAD + '[[criteria]]\nkind = "follows"\nat_least_cm = 0\n', "from 1 to 10000"),
-    (HEAD + '[[criteria]]\nkind = "ends_in"\nat = "start"\nen = "x"\n', "criteria[1].at"),
+    (HEAD + '[[criteria]]\nkind = "ends_in"\nat = "start"\nen = ""\n', "criteria[1].en"),
     (HEAD + '[[criteria]]\nkind = "uses"\nwords = ["LOP"]\n', "Did you mean LOOP?"),
     (HEAD + '[[criteria]]\nkind = "uses"\nwords = "LOOP"\n', "is no list of words"),
     (HEAD + '[[criteria]]\nkind = "order"\nwords = ["sings"]\n', "sings, which is not a known word"),
