@@ -151,8 +151,6 @@ def concepts(word: str) -> tuple[Meaning, ...]:
     close = nearest(word, WORDS) if len(word) > 3 else None
     if close:
         return (Meaning(close, NEAR),)
-    if word.startswith(("END_", "FIN_")):
-        return (Meaning("FIN", KNOWN),)
     return ()
 
 
@@ -301,6 +299,8 @@ class Names:
         """Return what a word that is no name of the program may mean."""
         if self.is_name(word):
             return ()
+        if word[:4] in ("END_", "FIN_") and word[4:] in (*WORDS, *self.defs):
+            return (Meaning("FIN", KNOWN),)
         found = concepts(word)
         return tuple(each for each in found if each.concept in WORDS or self.has(each.concept))
 
@@ -341,7 +341,8 @@ class Names:
 
     def _classes_of_word(self, text: str) -> list[str]:
         said = [meaning.split()[0] for meaning in lexicon().get(text, ())]
-        found = [each for each in said if each.islower() and text not in self.variables]
+        is_own = text in self.variables or text in self.defs
+        found = [each for each in said if each.islower() and not is_own]
         found += ["@unit"] if "unit" in said and text not in WORDS else []
         meant = [each.concept for each in self.meanings(text) if each.cost < NEAR]
         word = text if text in WORDS else meant[0] if meant else ""

@@ -479,7 +479,7 @@ def _slip(code: str, step: Step | None, before: Sequence[Lexeme], after: Sequenc
         lambda both: both[0].text == both[1].text, zip(one, other[:until], strict=False)
     )
     kept = _written([each for each, _ in alike])
-    if code == codes.MISSING_VALUE.number and not found and start:
+    if code in (codes.MISSING_VALUE.number, codes.MISSING_SIGN.number) and not found and start:
         was, kept = _written(old[start : start + 1]), _written(old[start - 1 : start])
     if code == codes.HEADER_SEPARATOR.number and not kept:
         kept = other[0].text  # `CADA VEZ QUE DISTANCE < 15 S`

@@ -312,7 +312,7 @@ def _decimal(place: _Place) -> _Made:
     (whole,), (rest,) = place.captured
     before = place.line.tokens[place.start - 1].text if place.start else ""
     longest = 3 if whole.text == "0" else 2 if before == "=" else 1
-    is_list = len(whole.text) > 1 and rest.text not in ("0", "5")
+    is_list = rest.text == "0" or (len(whole.text) > 1 and rest.text != "5")
     has_space = any(each.space for each in place.match[1:])
     if "." in whole.text + rest.text or is_list or len(rest.text) > longest or has_space:
         return None

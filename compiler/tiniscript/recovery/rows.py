@@ -59,6 +59,9 @@ CONFUSED = {
     ",": ";", "'": ",", "|": ";", "!": "|",
 }  # fmt: skip
 
+# What is on the key of `)`, and beside that of `,`: what stands in the place of the sign may be it.
+CLOSE_KEY, COMMA_KEY = "9", "M"
+
 # What stands for `SI|` and `SB|`: signs, a letter that looks like the bar, or nothing.
 SETUP = (
     r"\s*(?P<head>[Ss][IiÍíBb1Ll])(?P<sep>\s*(?:\|\|+|//|[^\w\s|｜(]{1,3}\|?|[(_]|\||"
@@ -99,6 +102,7 @@ SIGNS = r"""
 \b(IF|WHILE|UNTIL)\s*¿\s*([^?()¿]+?)\s*\?  |  `\1(\2)`  |  1  |  TS015  |  applied  |  IF ¿DISTANCE < 10?⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
 \b(\w+)\s*(?:\^|\*\*)\s*2\b  |  `\1 * \1`  |  1  |  TS010  |  offered  |  X = 7^2⏎SHOW(X) => X = 7 * 7⏎SHOW(X)
 (?<=\d)\. (?=\d)  |  `.`  |  1  |  TS008  |  applied  |  F(1. 5, 80) => F(1.5, 80)
+^S ([IB])(?=\s*\|)  |  `S\1`  |  1  |  TS034  |  applied  |  S I|F(2, 80) => SI|F(2, 80)
 ^(\s*S[IB]\s*\|)\s+\|  |  `\1`  |  1  |  TS054  |  applied  |  SI| |F(2, 80) => SI|F(2, 80)
 −  |  `-`  |  0  |  TS010  |  applied  |  M(−50 50) => M(-50, 50)
 &nbsp;  |  ` `  |  1  |  TS072  |  applied  |  F(2, 80);&nbsp;R(1, 50); => F(2, 80); R(1, 50);
@@ -112,6 +116,7 @@ SIGNS = r"""
 \b([FBLR])/(\d+)[/,](\d+)/?  |  `\1(\2, \3)`  |  1  |  TS015  |  applied  |  F/2/80 => F(2, 80)
 (?<=\))\s+(?:/\s*|-)(?=(?-i:[a-zñáéíóú]+)/?\s*$)  |  ` // `  |  1  |  TS007  |  applied  |  F(1, 80) / adelante => F(1, 80) // adelante
 ¡=  |  `<>`  |  1  |  TS010  |  applied  |  IF(DISTANCE ¡= 10)⏎S⏎ENDIF => IF(DISTANCE <> 10)⏎S⏎ENDIF
+(?i:\bFOREVER)\.(?=\d)  |  `FOREVER, `  |  1  |  TS017  |  applied  |  F(FOREVER.60) UNTIL(DISTANCE < 9) => F(FOREVER, 60) UNTIL(DISTANCE < 9)
 (?<=\d)\.\.(?=\d)  |  `, `  |  1  |  TS020  |  offered  |  X = RANDOM(1..6) => X = RANDOM(1, 6)
 (?<=\d)\s*([×✕])\s*(?=\d)  |  `*`  |  1  |  TS010  |  applied  |  SHOW(3 × 4) => SHOW(3*4)
 ≤  |  `<=`  |  0  |  TS010  |  applied  |  SI|IF(DISTANCE≤10);S;ENDIF => SI|IF(DISTANCE<=10);S;ENDIF
@@ -239,7 +244,8 @@ a=@num|@val '|' b=@val | $a OR $b | 1 | TS010 | applied | IF(DISTANCE<10 | LIGHT
 a=@num POR CIENTO|CIEN | $a % | 1 | TS049 | first | R(1, 50 por ciento) => R(1, 50)
 a=@num 0 | @cat:a | 1 | TS008 | offered | F(2, 8 0) => F(2, 80)
 a=@num , b=@num | @dec:a:b | 1 | TS012 | applied | W(2,5) => W(2.5)
-a=@num % ) | $a ) | 1 | TS049 | first | F(2,80%) => F(2,80)
+o=(|,|; a=@num % ) | $o $a ) | 1 | TS049 | first | F(2,80%) => F(2,80)
+a=@num|@val s=+|- n=@num % e=)|$ | $a $s $a * $n / 100 $e | 1 | TS049 | offered | F(2, 80 - 20%) => F(2, 80 - 80 * 20 / 100)
 a=@num : b=@num | @mmss:a:b | 1 | TS008 | applied | W(1:30) => W(90)
 s=<|>|<=|>= n=@num M|METRO|METROS|METERS|METER e=) | $s @cm:n $e | 1 | TS049 | applied | IF(DISTANCE < 1 m);S;ENDIF => IF(DISTANCE < 100);S;ENDIF
 s=<|>|<=|>=|=|<> n=@num @unit | $s $n | 1 | TS049 | first | x = 5 cm => x = 5
@@ -404,6 +410,8 @@ LOOP ( n=@num <body> ) $ | LOOP ( $n ) ; $b $r ; END_LOOP | 2 | TS080 | applied 
 LOOP|FOR|PARA|DESDE @name =|DESDE|than 1 TO|A|HASTA n=@num do|:? | LOOP ( $n ) ; | 1 | TS102 | offered | para i de 1 a 4⏎F(1,50)⏎fin para => LOOP(4)⏎F(1,50)⏎END_LOOP
 LOOP ( INT? @name = 0 ; @name < n=@num ; @name ++ ) | LOOP ( $n ) | 1 | TS063 | offered | LOOP(I = 0; I < 4; I++);F(1, 50);END_LOOP => LOOP(4);F(1, 50);END_LOOP
 ^ v=@name = c=@cond+ ? a=@num|@val : b=@num|@val $ | IF ( $c ) ; $v = $a ; ELSE ; $v = $b ; ENDIF | 1 | TS069 | applied | V = DISTANCE > 20 ? 80 : 30⏎F(1, V) => IF(DISTANCE > 20);V = 80;ELSE;V = 30;ENDIF⏎F(1, V)
+^ w=@callw ( a=@argt+ , c=@val s=<|> n=@num ? x=@num : y=@num ) $ | IF ( $c $s $n ) ; $w ( $a , $x ) ; ELSE ; $w ( $a , $y ) ; ENDIF | 1 | TS069 | offered | F(1, DISTANCE > 20 ? 80 : 40) => IF(DISTANCE > 20);F(1, 80);ELSE;F(1, 40);ENDIF
+a=@num ( c=@noparen+ ) | $a * ( $c ) | 1 | TS048 | offered | X = 2(20 + 10)⏎F(1, X) => X = 2 *(20 + 10)⏎F(1, X)
 ^ n=@num = v=@name $ | $v = $n | 1 | TS042 | offered | 50 = v⏎F(2, v) => v = 50⏎F(2, v)
 ^ q=@val s=<|>|<=|>= n=@num|@val :|do|=|->|=>? b=@start r=@all* | IF ( $q $s $n ) ; $b $r | 1 | TS042 | offered | DISTANCE < 10: S => IF(DISTANCE < 10);S;ENDIF
 ^ @name = 1 TO|HASTA n=@num do|:? $ | LOOP ( $n ) | 1 | TS102 | offered | veces = 1 hasta 5⏎F(1,50)⏎fin => LOOP(5)⏎F(1,50)⏎END_LOOP
@@ -487,6 +495,7 @@ a=@close ,? then|soon+ b=@start | $a ; $b | 1 | TS044 | applied | F(1,75) y R(1,
 a=@close ,|.|: b=@start | $a ; $b | 1 | TS013 | applied | F(2,80), B(2,80) => F(2, 80);B(2, 80)
 a=@close '|' b=@start | $a ; $b | 1 | TS061 | applied | F(2,80)|R(1,60) => F(2, 80);R(1, 60)
 a=@close &|+|AND|->|=>|/|>|>>|_|* b=@start | $a ; $b | 1 | TS061 | applied | F(2,80)&B(2,80) => F(2, 80);B(2, 80)
+a=@close +|&|AND|-> $ | $a ; | 1 | TS061 | applied | F(2, 80) +⏎R(1, 50) => F(2, 80)⏎R(1, 50)
 a=@close , $ | $a ; | .8 | TS013 | applied | F(2,80),⏎R(1,50), => F(2, 80)⏎R(1, 50)
 a=@close '|' $ | $a ; | 1 | TS061 | applied | F(2,80)|⏎R(1,50)| => F(2, 80)⏎R(1, 50)
 a=@close b=@start | $a ; $b | 1 | TS013 | applied | S STOP => S;STOP
@@ -506,6 +515,7 @@ read ( v=@val ) | $v | 1 | TS102 | applied | X = leer(DISTANCE)⏎SHOW(X) => X =
 ^ no F|B|L|R|M extra? $ | S | .5 | TS102 | first | no avanzar mas => S
 ^ PARA|DEJA DE AVANZAR|MOVER|MOVERTE $ | S | .5 | TS102 | first | para de avanzar => S
 ^ APAGAR|APAGA|DETENER|PARAR the? engine $ | S | 1 | TS102 | applied | apaga motores => S
+^ b=@start r=@all* '|' s=SI|SB $ | $s '|' $b $r | 1 | TS034 | offered | F(2, 80)|SI => SI |F(2, 80)
 ^ START '|' | SI '|' | 1 | TS034 | offered | start|F(2,80) => SI |F(2,80)
 IF <question> BREAK ;|$ | IF ( $c ) ; BREAK ; ENDIF ; | 1 | TS014 | applied | LOOP(FOREVER)⏎F(1, 50)⏎if (DISTANCE < 10) break;⏎END_LOOP => LOOP(FOREVER)⏎F(1, 50)⏎IF(DISTANCE < 10);BREAK;ENDIF⏎END_LOOP
 ^ INT|VOID? MAIN|PRINCIPAL ( ) '{' | START ; { | 1 | TS065 | applied | main() {⏎F(3, 70);⏎} => START;⏎F(3, 70);⏎

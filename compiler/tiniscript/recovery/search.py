@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterator, Sequence
 from functools import cached_property
+from itertools import pairwise
 from typing import NamedTuple
 
 from tiniscript.kit import Kit
@@ -206,7 +207,8 @@ class Recovery:
             each.is_sure and each.cost < first.cost + MARGIN and _kept(each) >= _kept(first)
             for each in line.rivals
         )
-        line.reading = first._replace(is_sure=first.is_sure and not is_close)
+        is_sure = first.is_sure and not is_close and not _is_key(tokens, first.tokens)
+        line.reading = first._replace(is_sure=is_sure)
 
     # -- programs -------------------------------------------------------------------------------
 
@@ -348,6 +350,15 @@ class Recovery:
 def _is_alone(reading: Reading) -> bool:
     """Whether a line has no part of a block."""
     return all(each.kind == "do" for each in reading.items or ())
+
+
+def _is_key(old: Sequence[Lexeme], new: Sequence[Lexeme]) -> bool:
+    """Whether a digit may be meant for the bracket that is missing behind it: `DISTANCE < 209`."""
+    written = texts(old)
+    return written.count("(") > written.count(")") and any(
+        sign.text == ")" and sign.source is None and re.fullmatch(f".+{rows.CLOSE_KEY}", one.text)
+        for one, sign in pairwise(new)
+    )
 
 
 def _words(text: str) -> set[str]:

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NamedTuple
 
+from tiniscript.recovery import rows
 from tiniscript.recovery.concepts import CALLED, DONE, UNITS, Lexeme, Names, made, said_of
 from tiniscript.syntax.devices import actuator_word
 from tiniscript.syntax.lexer import NUMBER, WORD
@@ -173,7 +174,10 @@ class _Reader:
         elif self.text(k) in UNITS:
             unit, thousandths = UNITS[self.text(k)]
             is_stop = self.words[k].source == "S" and bool(self.words[k].space)
-            self.is_sure, k = self.is_sure and not is_stop, k + 1
+            if is_stop and self.values and k + 1 == len(self.words):
+                return None  # `R 1 50 S`: an order of its own
+            is_comma = self.words[k].text == rows.COMMA_KEY and self._is_number(k + 1)
+            self.is_sure, k = self.is_sure and not (is_stop or is_comma), k + 1
             if self._is_and_a_half(k):
                 number, k, self.is_sure = number + 0.5, k + 2, False
         elif self.text(k) in ("DE", "OF") and (marked := said_of(self.text(k + 1), "value")):
@@ -190,6 +194,9 @@ class _Reader:
         self.values.append(_Value(number * thousandths / 1000, unit))
         self.mark = None
         return k
+
+    def _is_number(self, k: int) -> bool:
+        return k < len(self.words) and self.words[k].kind is NUMBER
 
     def _is_and_a_half(self, k: int) -> bool:
         return self.text(k) in ("Y", "AND") and said_of(self.text(k + 1), "power") == ("50",)

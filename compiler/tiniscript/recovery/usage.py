@@ -14,6 +14,7 @@ from itertools import pairwise
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic, Repair
 from tiniscript.kit import Kit
+from tiniscript.recovery import lines
 from tiniscript.recovery.amounts import with_number
 from tiniscript.recovery.concepts import (
     CALLED,
@@ -26,11 +27,12 @@ from tiniscript.recovery.concepts import (
     said_of,
 )
 from tiniscript.recovery.orders import block, command, made_up, orders, written
-from tiniscript.recovery.writing import without_note
+from tiniscript.recovery.writing import shortened, without_note
 from tiniscript.source import Edit, Source, Span
 from tiniscript.syntax.free_names import in_place_of
 from tiniscript.syntax.lexer import NUMBER, QUOTES, WORD
 from tiniscript.syntax.operators import COMPARISONS
+from tiniscript.syntax.outline import Failure
 from tiniscript.words import BLOCK_ENDS, UNIT_OF, WAYS, WORDS, said_instead
 
 _LAST_HEAD = re.compile(r"(?is)\b(IF|ELSEIF|WHILE|UNTIL)[ \t]*\((?!.*\b(?:IF|WHILE|UNTIL)\()")
@@ -514,6 +516,15 @@ class _Usage:
         values = with_number(text, value)
         return Diagnostic(codes.UNKNOWN_NAME, value, values) if values else None
 
+    def behind(self, found: Diagnostic) -> Diagnostic | None:
+        """What begins no instruction comes behind one: with a `;` between them it is as wrong."""
+        span = Span(found.span.start, self.piece(found.span).end)
+        right = lines.right(self.tokens(span), self.names)
+        words = shortened(self.source[span])
+        values = {"before": found.values["before"], "words": words, "order": words}
+        is_none = isinstance(right, Failure) and right.at == 0
+        return Diagnostic(codes.WORDS_BEHIND, span, values) if is_none else None
+
     def letters(self, found: Diagnostic) -> Diagnostic | None:
         """A name with letters that a name has not."""
         if (said := self.amount(found)) is not None:
@@ -543,6 +554,7 @@ _SAYS: dict[Code, Callable[[_Usage, Diagnostic], Diagnostic | None]] = {
     codes.UNKNOWN_WORD: _Usage.unknown,
     codes.OTHER_LANGUAGE: _Usage.other,
     codes.MISSING_OPEN: _Usage.brackets,
+    codes.MISSING_SEPARATOR: _Usage.behind,
     codes.MISSING_COMMA: _Usage.question,
     codes.MISSING_CLOSE: _Usage.question,
     codes.MISSING_VALUE: _Usage.question,

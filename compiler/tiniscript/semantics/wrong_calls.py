@@ -175,7 +175,9 @@ def meant(source: Source, node: ast.Command, word: Word) -> dict[str, str]:
     first, second = texts
     is_short = first.replace(".", "", 1).isdecimal() and float(first) < LONG_TIME_S
     if word.role == "beep":
-        if _is_whole(first) > LOWEST_HERTZ:
+        if re.fullmatch(r"\d+\.\d{3}", second):  # `BEEP(1, 1.000)`
+            values["fix"] = f"{word.text}({first}, {second.replace('.', '')})"
+        elif _is_whole(first) > LOWEST_HERTZ:
             values["fix"] = f"{word.text}({second}, {first})"
         elif is_short:
             values["tone"] = f"{word.text}({first}, {WORDS['BEEP'].arguments[1].sample})"
