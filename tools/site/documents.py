@@ -131,6 +131,7 @@ MOVED = {
         "esp32#bring-up-20-minutes-with-a-board": (
             "esp32#bring-up-20-minutes-with-a-board-and-20-for-its-radios"
         ),
+        "esp32#speed": "esp32#sizes",
         "language#a-dance": "language#projects",
         "language#a-program-as-one-line": "text#the-checksum-of-a-line",
         "language#a-square": "language#projects",
