@@ -16,15 +16,20 @@ import pytest
 from tests.support.casefile import ROOT
 from tests.support.command import PROGRAM, TSC, Tsc
 from tests.support.rows import each_row
+from tests.support.texts import LANGUAGES
+from tests.support.texts import said as all_said
 from tests.support.verbs import parsers
 from tiniscript import robots
 from tiniscript.cli import help, main
 from tiniscript.cli.texts.options import OPTIONS, Option, of_verb, shown_of
 from tiniscript.cli.texts.options import PROGRAM as A_PROGRAM
 from tiniscript.cli.texts.verbs import FIRST, NOTES, VERBS
+from tiniscript.cli.texts.verbs import of_verb as of_verb_text
+from tiniscript.cli.texts.verbs import said as said_in
 from tiniscript.flash.bootloaders import BOARDS
 from tiniscript.robots.ports import AVRS
 from tiniscript.virtual import worlds
+from tools.generate.command_pages import DOCUMENTED
 from tools.site.documents import name_in
 
 if TYPE_CHECKING:
@@ -33,7 +38,7 @@ if TYPE_CHECKING:
 PARSERS = parsers()
 FLAG = r"(?<![\w-])--?[a-zA-Z][a-z0-9-]*"
 
-in_both = pytest.mark.parametrize("language", ["en", "es"])
+in_both = pytest.mark.parametrize("language", LANGUAGES)
 of_each = each_row("verb", VERBS)
 
 
@@ -96,22 +101,23 @@ def test_help_fits_a_terminal(language: str, columns: int) -> None:
 
 @in_both
 def test_no_backticks_are_printed_and_no_texts_are_lost(language: str) -> None:
-    k = language == "es"
-
     def words(text: str) -> str:
         return " ".join(text.replace("`", "").split())
 
-    for verb, each in VERBS.items():
+    for verb, group in VERBS.items():
         said = help.of(verb, language)
         assert "`" not in said
-        assert words(each.says[k]) in words(said) and words(each.ends[k]) in words(said)
+        assert all(
+            words(of_verb_text(verb, each, language)) in words(said) for each in ("says", "ends")
+        )
         for option in shown_of(verb):
-            assert words(option.help[k]) in words(said), option
-        assert words(each.summary[k]) in words(help.everything(language))
-        if isinstance(each.group, str):
-            assert re.search(rf"tsc {each.group}\b.*, {verb}\b", help.everything(language))
+            assert words(option.help(language)) in words(said), option
+        everything = help.everything(language)
+        assert words(of_verb_text(verb, "summary", language)) in words(everything)
+        if group in VERBS:
+            assert re.search(rf"tsc {group}\b.*, {verb}\b", everything)
     for note in NOTES:
-        assert words(note[k]) in words(help.everything(language))
+        assert words(said_in(note, language)) in words(help.everything(language))
 
 
 @in_both
@@ -164,13 +170,27 @@ def test_every_verb_is_a_module_and_every_module_a_verb() -> None:
 @each_row("option", OPTIONS)
 def test_every_row_of_the_table_is_for_a_verb_and_says_something_in_both(option: Option) -> None:
     assert option.verbs in ("*", "tsc") or set(option.verbs.split()) <= set(VERBS)
-    english, spanish = option.help
+    english, spanish = (option.help(language) for language in ("en", "es"))
     assert english and spanish and english != spanish
-    assert (option.kind is None) == (option.value == ("", ""))
+    assert (option.kind is None) == (option.value == "")
     if option.kind is not None and option.kind.choices and not option.is_argument:
-        assert option.value == ("|".join(option.kind.choices),) * 2
-    for text in option.help:
-        assert text.count("`") % 2 == 0
+        assert option.value == "|".join(option.kind.choices)
+    for language in LANGUAGES:
+        assert option.help(language).count("`") % 2 == 0
+
+
+def test_every_text_of_help_is_shown() -> None:
+    """The catalogue has none that no verb or option asks for."""
+    known = {f"option/{each.flags}/{each.verbs.split()[0]}" for each in OPTIONS}
+    known |= {f"value/{each.value}" for each in OPTIONS} | {
+        f"group/{each}" for each in VERBS.values()
+    }
+    known |= {f"verb/{verb}/{each}" for verb in VERBS
+              for each in ("example", "summary", "says", "usage", "ends")}  # fmt: skip
+    left = set(all_said("en", "help")) - known - set(NOTES)
+    assert {each.partition("/")[0] for each in left} == {
+        "title", "more", "usage", "virtual", "all", "wrong",
+    }  # fmt: skip
 
 
 # Robots whose board `tsc firmware` writes to.
@@ -190,7 +210,7 @@ def test_names_that_help_lists_are_those_that_there_are(
     verb: str, flag: str, names: list[str], language: str
 ) -> None:
     (option,) = (each for each in of_verb(verb) if each.flags == flag)
-    listed = re.split(r"[^a-z0-9-]+", option.help[language == "es"])
+    listed = re.split(r"[^a-z0-9-]+", option.help(language))
     assert set(names) <= set(listed)
 
 
@@ -214,7 +234,7 @@ def test_help_of_a_verb_that_there_is_not(tsc: Tsc) -> None:
     assert "¿Quisiste decir upload?" in done.err
 
 
-@in_both
+@pytest.mark.parametrize("language", DOCUMENTED)
 @of_each
 def test_the_page_of_the_documents_says_all_of_it_too(verb: str, language: str) -> None:
     page = (ROOT / name_in(language, "docs/command.en.md")).read_text(encoding="utf-8")

@@ -9,11 +9,6 @@ from tests.support.casefile import ROOT
 SPECIAL = re.compile(r"""(?:==|===|!=) ?["'](?:es|en)["']|["'](?:es|en)["'] (?:==|===)""")
 # Places that still choose between English and Spanish themselves, by file. Take one out: never add.
 LEFT = {
-    "compiler/tiniscript/cli/commands/completion.py": 1,
-    "compiler/tiniscript/cli/errors.py": 1,
-    "compiler/tiniscript/cli/help.py": 9,
-    "compiler/tiniscript/cli/lesson_check.py": 1,
-    "compiler/tiniscript/cli/options.py": 2,
     "compiler/tiniscript/lessons/sentences.py": 1,
     "compiler/tiniscript/robots/firmware.py": 1,
     "compiler/tiniscript/robots/wiring/texts.py": 1,
@@ -22,7 +17,6 @@ LEFT = {
     "compiler/tiniscript/virtual/robot.py": 1,
     "tools/builds/stick/install.py": 3,
     "tools/environment.py": 1,
-    "tools/generate/command_pages.py": 3,
     "tools/generate/poster.py": 1,
     "tools/generate/remark_tables.py": 1,
     "tools/studio/src/block_texts.js": 1,

@@ -38,7 +38,7 @@ UPSTREAM: dict[str, set[str]] = {
     "robots": SHARED,
     "text": {*TEXT, "bytecode", "syntax", "semantics", "codegen", "robots"},
     "sketch": {*TEXT, "syntax", "semantics", "robots"},  # of the syntax its comments
-    "flash": {"files", "robots"},
+    "flash": {"files", "languages", "robots"},
     "link": {"version", "files", "source", "languages", "bytecode"},
     "conformance": {"bytecode", "link"},
     "doctor": {"files", "bytecode", "flash", "link"},

@@ -10,6 +10,7 @@ from tests.machines.board import VARIANTS
 from tests.support.casefile import ROOT
 from tiniscript.cli.texts.options import OPTIONS
 from tiniscript.flash import bootloaders
+from tiniscript.languages import languages
 from tiniscript.robots import firmware
 from tiniscript.robots.boards import CHIPS
 from tiniscript.robots.ports import AVRS
@@ -37,9 +38,9 @@ def test_a_board_with_an_avr_is_written_and_has_sketches(board: str) -> None:
 
 def test_every_board_is_told_to_people() -> None:
     (option,) = (each for each in OPTIONS if (each.flags, each.verbs) == ("--board", "firmware"))
-    for help_text in option.help:
-        assert set(bootloaders.BOARDS) <= set(re.findall(r"[\w-]+", help_text)), (
-            "cli/texts/options.py names the values of --board"
+    for language in languages():
+        assert set(bootloaders.BOARDS) <= set(re.findall(r"[\w-]+", option.help(language))), (
+            "the catalogue help names the values of --board"
         )
     sample = ROOT / "compiler" / "tiniscript" / "robots" / "tinibot.toml"
     comment = re.search(r"(?m)^chip = .*# (.*)$", sample.read_text(encoding="utf-8"))

@@ -8,8 +8,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 
 from tiniscript.cli import help
-from tiniscript.cli.texts.options import WITH_VIRTUAL, Option, shown_of
-from tiniscript.cli.texts.verbs import NOTES, VERBS
+from tiniscript.cli.texts.options import Option, shown_of
+from tiniscript.cli.texts.verbs import NOTES, VERBS, of_verb, said
 from tiniscript.languages import text, told_in
 from tools.site.documents import links
 
@@ -34,7 +34,6 @@ def page(language: str, command: str, table: Table) -> str:
 
 
 def _overview(language: str, table: Table) -> Iterator[str]:
-    k = language == "es"
     yield f"# {_said('title', language)}"
     yield _said("introduction", language)
     for heading, rows in help.groups(language):
@@ -43,27 +42,25 @@ def _overview(language: str, table: Table) -> Iterator[str]:
             [_said(key, language) for key in ("command", "does")],
             [(f"`{typed}`", does) for typed, does in rows],
         )
-    yield from (note[k] for note in NOTES)
+    yield from (said(note, language) for note in NOTES)
     yield _said("each", language)
     yield _options([option for option in shown_of("tsc") if option.verbs == "*"], language, table)
 
 
 def _verb(verb: str, language: str, table: Table) -> Iterator[str]:
-    k = language == "es"
     yield f"## `tsc {verb}`"
     yield "\\\n".join(f"`{way}`" for way in help.usage(verb, language))
-    yield VERBS[verb].says[k]
+    yield of_verb(verb, "says", language)
     own = [option for option in shown_of(verb) if option.verbs != "*"]
     is_apart = any(option.name == "virtual" for option in own)
     yield _options([each for each in own if not (is_apart and each.virtual)], language, table)
     virtual = [each for each in own if is_apart and each.virtual]
     if virtual:
-        yield WITH_VIRTUAL[k]
+        yield said("virtual", language)
         yield _options(virtual, language, table)
-    yield VERBS[verb].ends[k].replace("\n", "\\\n")
+    yield of_verb(verb, "ends", language).replace("\n", "\\\n")
 
 
 def _options(options: list[Option], language: str, table: Table) -> str:
-    k = language == "es"
-    rows = [(f"`{help.signature(option, language)}`", option.help[k]) for option in options]
+    rows = [(f"`{help.signature(option, language)}`", option.help(language)) for option in options]
     return table([_said(key, language) for key in ("option", "does")], rows) if rows else ""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from tiniscript import languages
 from tiniscript.cli.texts.common import text
 
 
@@ -21,7 +22,7 @@ class CommandError(Exception):
         said = text(self.key, language).format(**self.values)
         if self.values.get("near"):
             near = text("did_you_mean", language).format(near=self.values["near"])
-            try_it = " Prueba:  " if language == "es" else " Try:  "
+            try_it = f" {languages.text('messages', 'label/try', language)}  "
             what, advice, example = said.rpartition(try_it)  # what was typed may have it, too
             return f"{what} {near}{advice}{example}" if advice else f"{said} {near}"
         return said

@@ -12,8 +12,8 @@ from shutil import get_terminal_size
 from textwrap import wrap
 
 from tiniscript.cli.terminal import pager
-from tiniscript.cli.texts.options import PROGRAM, USAGE, WITH_VIRTUAL, Option, shown_of
-from tiniscript.cli.texts.verbs import FIRST, MORE, NOTES, TITLE, VERBS
+from tiniscript.cli.texts.options import PROGRAM, Option, shown_of
+from tiniscript.cli.texts.verbs import FIRST, NOTES, VERBS, of_verb, said
 
 WIDTH = 80  # columns, where the terminal has as many
 NARROWEST = 40
@@ -41,79 +41,74 @@ def show_found(verbs: Iterable[str], language: str) -> None:
 
 def of(verb: str, language: str, width: int = WIDTH) -> str:
     """Return the help of a verb."""
-    found, k = VERBS[verb], language == "es"
     table = shown_of(verb)
     parts = [
         _paragraphs("\n".join(usage(verb, language)), width),
-        _paragraphs(found.says[k], width),
+        _paragraphs(of_verb(verb, "says", language), width),
         "\n".join(_options(table, language, width)),
-        _paragraphs(found.ends[k], width),
+        _paragraphs(of_verb(verb, "ends", language), width),
     ]
     return "\n\n".join(part for part in parts if part) + "\n"
 
 
 def overview(language: str, width: int = WIDTH) -> str:
     """Return the help of `tsc`: the verbs that most people need, with an example each."""
-    k = language == "es"
     rows = [_row(verb, language) for verb in FIRST]
     parts = [
-        _paragraphs(TITLE[k], width),
+        _paragraphs(said("title", language), width),
         "\n".join(_columns(rows, _left(rows, width * 4 // 10), width)),
         "\n".join(_options(shown_of("tsc"), language, width)),
-        _paragraphs(MORE[k], width),
+        _paragraphs(said("more", language), width),
     ]
     return "\n\n".join(parts) + "\n"
 
 
 def everything(language: str, width: int = WIDTH) -> str:
     """Return what `tsc help all` says: every verb, in groups."""
-    k = language == "es"
-    parts = [_paragraphs(TITLE[k], width)]
+    parts = [_paragraphs(said("title", language), width)]
     commands = groups(language)
     left = _left([row for _, rows in commands for row in rows], width * 4 // 10)
     for heading, rows in commands:
         parts.append(_paragraphs(heading, width))
         parts.append("\n".join(_columns(rows, left, width)))
     parts.append("\n".join(_options(shown_of("tsc"), language, width)))
-    parts.append("\n".join(_paragraphs(note[k], width) for note in NOTES))
+    parts.append("\n".join(_paragraphs(said(note, language), width) for note in NOTES))
     return "\n\n".join(parts) + "\n"
 
 
 def groups(language: str) -> list[tuple[str, list[Row]]]:
     """Return the headings of all verbs with the commands below each, and what these do."""
-    k = language == "es"
     found: dict[str, list[Row]] = {}
-    for verb, each in VERBS.items():
-        if isinstance(each.group, tuple):
-            beside = [name for name, other in VERBS.items() if other.group == verb]
+    for verb, group in VERBS.items():
+        if group not in VERBS:
+            beside = [name for name, other in VERBS.items() if other == verb]
             does = "; ".join(_row(name, language)[1] for name in (verb, *beside))
             typed = ", ".join([_row(verb, language)[0], *beside])
-            found.setdefault(each.group[k], []).append((typed, does))
+            found.setdefault(said(f"group/{group}", language), []).append((typed, does))
     return list(found.items())
 
 
 def _row(verb: str, language: str) -> Row:
-    k = language == "es"
-    return f"tsc {VERBS[verb].example[k]}", VERBS[verb].summary[k].replace("`", "")
+    summary = of_verb(verb, "summary", language).replace("`", "")
+    return f"tsc {of_verb(verb, 'example', language)}", summary
 
 
 def usage(verb: str, language: str) -> list[str]:
     """Return how a verb is used: a line for each way."""
-    k = language == "es"
-    if VERBS[verb].usage[k]:
-        return [f"tsc {verb} {way}" for way in VERBS[verb].usage[k].split("\n")]
+    if ways := of_verb(verb, "usage", language):
+        return [f"tsc {verb} {way}" for way in ways.split("\n")]
     words = [f"tsc {verb}"]
     for option in shown_of(verb):
         if option.is_argument:
             is_there = option.is_needed or option.kind == PROGRAM  # in whose place -e may stand
-            label = option.value[k] + (" ..." if option.repeats else "")
+            label = option.shown_value(language) + (" ..." if option.repeats else "")
             words.append(label if is_there else f"[{label}]")
-    return [" ".join([*words, USAGE[k]])]
+    return [" ".join([*words, said("usage", language)])]
 
 
 def signature(option: Option, language: str) -> str:
     """Return an option as help shows it: `-o FILE`."""
-    value = option.value[language == "es"]
+    value = option.shown_value(language)
     if option.is_argument:
         return value
     return f"{', '.join(option.flags.split())} {value}".rstrip()
@@ -125,7 +120,7 @@ def _options(table: Iterable[Option], language: str, width: int) -> Iterator[str
     last: list[Row] = []
     is_apart = any(option.name == "virtual" for option in table)
     for option in table:
-        row = signature(option, language), option.help[language == "es"]
+        row = signature(option, language), option.help(language)
         if option.verbs in ("*", "tsc"):
             last.append(row)
         else:
@@ -135,7 +130,7 @@ def _options(table: Iterable[Option], language: str, width: int) -> Iterator[str
     yield from _columns(rows[False], left, width)
     if rows[True]:
         yield ""
-        yield WITH_VIRTUAL[language == "es"]
+        yield said("virtual", language)
         yield from _columns(rows[True], left, width)
         yield ""
     yield from _columns(last, left, width)

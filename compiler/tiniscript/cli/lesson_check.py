@@ -280,7 +280,7 @@ def _data(mark: Mark) -> dict[str, object]:
 
 def _rows(marks: Sequence[Mark], language: str) -> bytes:
     def cells(mark: Mark) -> tuple[object, ...]:
-        verdict = mark.verdict if language == "en" else text(f"verdict_{mark.verdict}", language)
+        verdict = text(f"csv_verdict_{mark.verdict}", language)
         return mark.name, verdict, mark.seed or "", mark.said[0][1] if mark.said else ""
 
     return as_csv("lesson", language, map(cells, marks))

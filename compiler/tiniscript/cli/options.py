@@ -1,4 +1,4 @@
-"""The options of a verb: reads them with argparse, and reports mistakes in two languages."""
+"""The options of a verb: reads them with argparse, and reports mistakes."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.texts.common import text
 from tiniscript.cli.texts.options import Option, of_verb
+from tiniscript.cli.texts.verbs import said
 from tiniscript.fixed_point import as_text, read_literal
 from tiniscript.words import nearest
 
@@ -21,17 +22,13 @@ if TYPE_CHECKING:
     from tiniscript.kit import Device
     from tiniscript.robots.profile import Robot
 
-# The messages of argparse, and what is said instead, in English and Spanish.
-_MESSAGES = (
-    (r"the following arguments are required: (.*)", r"\1 is missing", r"falta \1"),
-    (r"unrecognized arguments: (.*)", r"\1 means nothing here", r"no conozco \1"),
-    (r"argument (\S+): expected one argument", r"\1 needs a value", r"a \1 le falta su valor"),
-    (
-        r"argument (\S+): ignored explicit argument (.*)",
-        r"\1 takes no value: \2",
-        r"\1 no lleva valor: \2",
-    ),
-)
+# The messages of argparse, and what is said instead.
+_MESSAGES = {
+    "missing": r"the following arguments are required: (.*)",
+    "unknown": r"unrecognized arguments: (.*)",
+    "value": r"argument (\S+): expected one argument",
+    "no_value": r"argument (\S+): ignored explicit argument (.*)",
+}
 
 
 def _plain_formatter(prog: str) -> HelpFormatter:
@@ -87,13 +84,14 @@ class Options(ArgumentParser):
         """Refuse a value that is not among the option's choices."""
         known = option.kind.choices if option.kind is not None else ()
         if known and found is not None and found not in known:
-            label = option.value[self.language == "es"] if option.is_argument else option.flags
+            label = option.shown_value(self.language) if option.is_argument else option.flags
             raise bad_choice(label, known, found, self.language)
 
     def error(self, message: str) -> NoReturn:
         near = self._near(message.partition("unrecognized arguments: ")[2].partition(" ")[0])
-        for pattern, *said in _MESSAGES:
-            message = re.sub(pattern, said[self.language == "es"], message)
+        for key, pattern in _MESSAGES.items():
+            if found := re.fullmatch(pattern, message):
+                message = said(f"wrong/{key}", self.language).format(*found.groups())
         raise CommandError(2, "bad_option", detail=message, verb=self.verb, near=near)
 
     def _near(self, found: str) -> str:

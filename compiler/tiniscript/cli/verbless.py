@@ -15,6 +15,8 @@ from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.texts.options import of_verb
 from tiniscript.cli.texts.verbs import VERBS
+from tiniscript.cli.texts.verbs import of_verb as said_of
+from tiniscript.languages import languages
 from tiniscript.source import PROGRAM_ENDS
 from tiniscript.words import nearest
 
@@ -98,13 +100,17 @@ def verbs_for(said: str) -> list[str]:
 
 def _weights(verb: str) -> dict[str, int]:
     """Return what each stem of a verb's texts counts."""
-    each = VERBS[verb]
-    options = " ".join(" ".join((option.flags, *option.help)) for option in of_verb(verb)
-                       if option.verbs not in ("*", "tsc"))  # fmt: skip
+    options = [option for option in of_verb(verb) if option.verbs not in ("*", "tsc")]
+
+    def said(what: str) -> set[str]:
+        return {stem for each in languages() for stem in _stems(said_of(verb, what, each))}
+
+    helps = (each.help(language) for each in options for language in languages())
     elsewhere = " ".join(word for word, meant in MEANT.items() if meant == verb)
-    weights = dict.fromkeys(_stems(" ".join((*each.ends, options))), 1)
-    weights |= dict.fromkeys(_stems(" ".join(each.says)), 2)
-    weights |= dict.fromkeys(_stems(" ".join(each.summary)), 4)
+    flags = (each.flags for each in options)
+    weights = dict.fromkeys(_stems(" ".join((*flags, *helps))) | said("ends"), 1)
+    weights |= dict.fromkeys(said("says"), 2)
+    weights |= dict.fromkeys(said("summary"), 4)
     weights |= dict.fromkeys(_stems(elsewhere), 6)
     return weights | dict.fromkeys(_stems(verb), 12)
 

@@ -14,6 +14,7 @@ from argparse import Namespace
 from tiniscript import robots
 from tiniscript.cli.texts.options import LESSON_ACTIONS, VERB, Kind, of_verb
 from tiniscript.cli.texts.verbs import VERBS
+from tiniscript.cli.texts.verbs import of_verb as summary_of
 from tiniscript.diagnostics.codes import CODES
 from tiniscript.flash.bootloaders import BOARDS
 from tiniscript.link import ports
@@ -77,7 +78,7 @@ def run(options: Namespace, language: str) -> int:
     last = last[1:]
     if last == "=":  # bash makes three words of --robot=liner
         last = ""
-    kind, rows = _fitting([word for word in before if word != "="], last, language == "es")
+    kind, rows = _fitting([word for word in before if word != "="], last, language)
     print("files" if kind in FILES else "words")
     for word, says in rows:
         if word.startswith(last):
@@ -85,7 +86,7 @@ def run(options: Namespace, language: str) -> int:
     return 0
 
 
-def _fitting(before: list[str], last: str, is_spanish: bool) -> tuple[str, list[tuple[str, str]]]:
+def _fitting(before: list[str], last: str, language: str) -> tuple[str, list[tuple[str, str]]]:
     """Return the kind of what the last word may be, and the words of that kind."""
     verb = _verb(before)
     if verb not in ("tsc", *VERBS):
@@ -99,9 +100,9 @@ def _fitting(before: list[str], last: str, is_spanish: bool) -> tuple[str, list[
         arguments = [each.kind for each in options if each.is_argument]
         kind = VERB if verb == "tsc" else arguments[0] if arguments else None
     if kind is None:
-        return "", [(flag, _short(each.help[is_spanish])) for flag, each in flags.items()]
+        return "", [(flag, _short(each.help(language))) for flag, each in flags.items()]
     begin = f"{name}=" if equals else ""
-    return kind.name, [(begin + word, says) for word, says in _words_of(kind, is_spanish)]
+    return kind.name, [(begin + word, says) for word, says in _words_of(kind, language)]
 
 
 def _verb(before: list[str]) -> str:
@@ -114,10 +115,10 @@ def _verb(before: list[str]) -> str:
     return "tsc"
 
 
-def _words_of(kind: Kind, is_spanish: bool) -> list[tuple[str, str]]:
+def _words_of(kind: Kind, language: str) -> list[tuple[str, str]]:
     """Return the values of a kind that have names, and what they do where that is known."""
     if kind is VERB:
-        return [(verb, _short(each.summary[is_spanish])) for verb, each in VERBS.items()]
+        return [(each, _short(summary_of(each, "summary", language))) for each in VERBS]
     if kind.name == "port":
         return [(each.port, each.description) for each in ports.listed()]
     named = {"robot": robots.names(), "world": worlds.names(), "board": BOARDS, "code": CODES,

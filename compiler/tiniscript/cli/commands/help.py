@@ -7,17 +7,16 @@ from argparse import Namespace
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.help import show_all, show_first, show_found, show_verb
 from tiniscript.cli.inputs import shown
-from tiniscript.cli.texts.verbs import VERBS
+from tiniscript.cli.texts.verbs import VERBS, said
 from tiniscript.cli.verbless import meant, refuse, verbs_for
-
-ALL = ("all", "todo", "todos")
+from tiniscript.languages import languages
 
 
 def run(options: Namespace, language: str) -> int:
     about = " ".join(options.about)
     if not about:
         show_first(language)
-    elif about in ALL:
+    elif any(about in said("all", each).split() for each in languages()):
         show_all(language)
     elif about in VERBS:
         show_verb(about, language)
