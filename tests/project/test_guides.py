@@ -162,13 +162,7 @@ def test_all_guides_type_the_same(language: str, guide: Path) -> None:
 
 def said_in(language: str) -> dict[str, str]:
     """Return what is said in a language, by where: sentences of the package, and documents."""
-    from tests.support.texts import LANGUAGES
-    from tiniscript.lessons.sentences import SENTENCES
-    from tiniscript.robots.wiring.texts import TEXTS as WIRING_TEXTS
-
-    both_languages = (WIRING_TEXTS, SENTENCES)
-    k = LANGUAGES.index(language)
-    found = {key: both[k] for table in both_languages for key, both in table.items()}
+    found: dict[str, str] = {}
     for path in (FOLDER / language).glob("*.po"):
         found |= {
             f"{path.stem}/{k}": said for k, said in command_texts(language, path.stem).items()

@@ -9,10 +9,12 @@ import pytest
 
 from tests.machines.sketch_board import built
 from tests.support.casefile import ROOT, example_robot, sketch_examples
+from tests.support.texts import LANGUAGES
+from tests.support.texts import said as all_said
 from tiniscript import compile_text, robots
 from tiniscript.cli.paths import is_foreign
 from tiniscript.sketch.names import RESERVED, Names, counter
-from tiniscript.sketch.texts import IDENTIFIERS, LOCALS, TEXTS
+from tiniscript.sketch.texts import IDENTIFIERS, LOCALS, called
 from tiniscript.sketch.writing import sketch_of
 
 
@@ -150,8 +152,9 @@ def test_names_are_like_those_of_cpp() -> None:
 
 
 def test_no_helper_has_a_reserved_name() -> None:
-    for both in IDENTIFIERS.values():
-        assert not RESERVED & set(both) - {"read", "leer", "time", "value"}
+    for language in LANGUAGES:
+        names = {called(each, language) for each in IDENTIFIERS}
+        assert not RESERVED & names - {"read", "leer", "time", "value"}
 
 
 @pytest.mark.parametrize("first", [0, 1, 2, 3, 4, 5])
@@ -178,9 +181,10 @@ def test_no_name_of_a_helper_is_in_the_other_language() -> None:
     assert "segundos.milesimas == PARA_SIEMPRE.milesimas" in code
     notes = " ".join(re.findall(r"// (.*)", said))
     assert not set(re.findall(r"\w+", notes)) & {"low", "high", "first", "last"}
-    names = [*LOCALS.values(), *(both[1] for both in IDENTIFIERS.values())]
-    assert len(set(LOCALS.values())) == len(LOCALS) and not set(names) & RESERVED - {"leer"}
-    assert set(LOCALS.values()) & {both[1] for both in IDENTIFIERS.values()} == {"valor"}
+    local = {all_said("es", "sketch")[f"local/{each}"] for each in LOCALS}
+    names = {called(each, "es") for each in IDENTIFIERS}
+    assert len(local) == len(LOCALS) and not (local | names) & RESERVED - {"leer"}
+    assert local & names == {"valor"}
 
 
 # -- what it says of itself
@@ -188,16 +192,14 @@ def test_no_name_of_a_helper_is_in_the_other_language() -> None:
 
 @pytest.mark.parametrize("language", ["en", "es"])
 def test_its_first_lines_name_the_limits_that_it_has(language: str) -> None:
-    which = language == "es"
-
     def limits(text: str) -> set[str]:
         first = " ".join(
             row.lstrip("/ ") for row in sketch(text, language).split("#include")[0].splitlines()
         )
         return {
-            key
-            for key, both in TEXTS.items()
-            if key.startswith("limit_") and both[which].split("{")[0].strip() in first
+            key.removeprefix("said/")
+            for key, said in all_said(language, "sketch").items()
+            if key.startswith("said/limit_") and said.split("{")[0].strip() in first
         }
 
     always = {"limit_link", "limit_watch", "limit_time"}
@@ -209,11 +211,13 @@ def test_its_first_lines_name_the_limits_that_it_has(language: str) -> None:
 
 
 def test_texts_are_there_in_both_languages() -> None:
-    for both in (*TEXTS.values(), *IDENTIFIERS.values()):
-        assert len(both) == 2 and all(both)
-    for k in range(2):
-        names = [both[k] for both in IDENTIFIERS.values()]
-        assert len(set(names)) == len(names)
+    for language in LANGUAGES:
+        texts = all_said(language, "sketch")
+        names = [said for key, said in texts.items() if key.startswith("name/")]
+        assert len(set(names)) == len(names) == len(IDENTIFIERS)
+        for key, said in texts.items():
+            is_name = key.partition("/")[0] in ("name", "local", "prefix")
+            assert not is_name or re.fullmatch(r"[A-Za-z_]\w*", said, re.ASCII), key
 
 
 @pytest.mark.parametrize("path", sketch_examples(), ids=lambda path: path.stem)

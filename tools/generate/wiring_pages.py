@@ -10,13 +10,14 @@ from collections.abc import Callable
 from functools import partial
 
 from tiniscript import robots
+from tiniscript.languages import told_in
 from tiniscript.robots.wiring.drawing import drawing_of
 from tiniscript.robots.wiring.finished import finished_of
 from tiniscript.robots.wiring.page import Block, page_of
 from tiniscript.robots.wiring.plan import Plan, plan_of
 from tools.site.documents import links
 
-LANGUAGES = ("en", "es")
+LANGUAGES = tuple(told_in("wiring", "title"))
 
 
 def wiring_pages(command: str) -> dict[str, Callable[[], str]]:

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
 from typing import ClassVar, NamedTuple, Protocol
 
 from tiniscript.fixed_point import ONE
@@ -149,8 +148,8 @@ class Plan(Protocol):
 class Driver(ABC):
     """`used_by` is the table of [board] and the kind of the device: `sensors number`.
 
-    `looks` is its shape, where that is always the same. `texts` are sentences of the wiring page,
-    in English and Spanish, by the keys that its shape has.
+    `looks` is its shape, where that is always the same; the catalogue `wiring` has the sentences by
+    the keys that its shape has.
     """
 
     name: ClassVar[str]
@@ -158,7 +157,6 @@ class Driver(ABC):
     pins: ClassVar[tuple[PinKey, ...]]
     settings: ClassVar[tuple[Setting, ...]] = ()
     looks: ClassVar[Shape]
-    texts: ClassVar[Mapping[str, tuple[str, str]]] = {}
 
     def shape(self, wiring: Wiring, device: Device | None, sees: str, pin_volts: int) -> Shape:
         """Return what it looks like; a sensor `sees` what its place in the robot's body says."""

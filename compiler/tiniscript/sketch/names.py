@@ -7,7 +7,8 @@ from __future__ import annotations
 
 import re
 
-from tiniscript.sketch.texts import IDENTIFIERS
+from tiniscript.languages import languages, text
+from tiniscript.sketch.texts import IDENTIFIERS, called
 
 RESERVED = frozenset(
     # a table of words
@@ -49,15 +50,14 @@ RESERVED = frozenset(
 
 
 _COUNTER = re.compile(r"[ijk][0-9]*|first[0-9]+")  # of a LOOP; of a value that is kept
-_PREFIXES = ("my", "mi")  # in English and in Spanish
 
 
 class Names:
     """Gives names in the order in which it is asked."""
 
     def __init__(self, language: str) -> None:
-        self._prefix = _PREFIXES[language == "es"]
-        self._taken = {word for both in IDENTIFIERS.values() for word in both}
+        self._prefix = text("sketch", "prefix", language)
+        self._taken = {called(name, each) for name in IDENTIFIERS for each in languages()}
 
     def of(self, name: str, before: str = "") -> str:
         """Return the name in C++ of a name in capitals; `before` is the verb of a function."""

@@ -16,7 +16,7 @@ from tiniscript.sketch import helpers, numbers
 from tiniscript.sketch.expressions import FUNCTIONS, Expressions, is_float
 from tiniscript.sketch.names import Names
 from tiniscript.sketch.statements import Comment, Named, Statements, harmless
-from tiniscript.sketch.texts import IDENTIFIERS, TEXTS, called, said, with_locals
+from tiniscript.sketch.texts import IDENTIFIERS, called, said, with_locals
 from tiniscript.sketch.wiring import Plan, is_count, is_small
 from tiniscript.source import Source
 from tiniscript.syntax.lexer import scan
@@ -97,7 +97,7 @@ class _Sketch:
 
     def use(self, key: str) -> str:
         self.needed[key] = None
-        return called(key, self.language) if key in IDENTIFIERS else key
+        return called(key, self.language)
 
     def label(self, name: str) -> str:
         return harmless(self.robot.labels[self.language][name])
@@ -332,11 +332,11 @@ class _Sketch:
     def note(self, key: str) -> str:
         if key in ("ADD", "SUB", "MUL", "DIV", "MOD", "NEG"):
             return self.says("operator")
-        if key in numbers.NUMBERS and key not in TEXTS:
+        if key in numbers.NUMBERS and not self.says(key):
             return self.says("compare")
         if key.startswith("start_") and key != "start_wait" and key != "start_move":
             return self.says("start_forward")
-        return self.says(key) if key in TEXTS else ""
+        return self.says(key)
 
     def commented(self, note: str, code: str) -> str:
         comment = "\n".join(_wrapped(note, "// ", "// ")) + "\n" if note else ""

@@ -35,20 +35,6 @@ class Analog(SensorDriver):
         Setting("zero", "number", 0, -1_000_000_000, 1_000_000_000),
         Setting("full", "number", 1_023_000, -1_000_000_000, 1_000_000_000),
     )
-    # fmt: off
-    texts = {
-        "need_analog": ("sensor with three pins whose output is a voltage from 0 to 5 V",
-                        "sensor de tres pines cuya salida es un voltaje de 0 a 5 V"),
-        "need_analog_3v3": ("sensor with three pins that works at 3.3 V, whose output is a voltage",
-                            "sensor de tres pines que funciona con 3.3 V, cuya salida es un voltaje"),
-        "mind_analog": ("Sensors with three pins have them in different orders: go by the names printed on yours, or by its data sheet.",
-                        "Los sensores de tres pines los tienen en distinto orden: guíate por los nombres impresos en el tuyo, o por su hoja de datos."),
-        "mind_voltage": ("The two resistors at {part} let the board measure more than 5 V. Join their middle to the pin, never the battery itself: that destroys the pin.",
-                         "Las dos resistencias de {part} le permiten a la placa medir más de 5 V. Une su punto medio con el pin, nunca la batería misma: eso daña el pin."),
-        "mind_voltage_3v3": ("The two resistors at {part} let the board measure more than 3.3 V. Join their middle to the pin, never the battery itself: that destroys the pin.",
-                             "Las dos resistencias de {part} le permiten a la placa medir más de 3.3 V. Une su punto medio con el pin, nunca la batería misma: eso daña el pin."),
-    }
-    # fmt: on
 
     def firmware(self, part: Part, device: Device, wiring: Wiring) -> list[str]:
         zero, full = wiring.settings["zero"], wiring.settings["full"]

@@ -21,13 +21,6 @@ class DigitalSensor(SensorDriver):
     used_by = "sensors yes/no"
     pins = (PinKey("pin", "input"),)
     settings = (Setting("pull_up", "yes/no"), Setting("yes_is_low", "yes/no"))
-    # fmt: off
-    texts = {
-        "need_digital": ("sensor module with a digital output (D0)", "módulo sensor con salida digital (D0)"),
-        "mind_digital": ("A module with a small screw: turn it until its own lamp changes where it should.",
-                         "Un módulo con un tornillo pequeño: gíralo hasta que su propia luz cambie donde debe."),
-    }
-    # fmt: on
 
     def firmware(self, part: Part, device: Device, wiring: Wiring) -> list[str]:
         pin = part.pins.pin(wiring.pins["pin"])

@@ -37,15 +37,6 @@ class HcSr04(SensorDriver):
         notes=("mind_hc_sr04",),
         needs_5v=True,
     )
-    # fmt: off
-    texts = {
-        "need_hc_sr04": ("distance sensor HC-SR04", "sensor de distancia HC-SR04"),
-        "mind_hc_sr04": ("HC-SR04: it needs 5 V. With 3.3 V it measures nonsense.",
-                         "HC-SR04: necesita 5 V. Con 3.3 V mide cualquier cosa."),
-        "mind_hc_sr04_3v3": ("HC-SR04: it needs 5 V, and its ECHO answers with 5 V: the resistors of 1 kΩ and 2 kΩ bring that down to 3.3 V. The pin is between the two: 1 kΩ to ECHO, 2 kΩ to GND. Otherwise ECHO destroys it.",
-                             "HC-SR04: necesita 5 V, y su ECHO responde con 5 V: las resistencias de 1 kΩ y 2 kΩ lo bajan a 3.3 V. El pin va entre las dos: 1 kΩ hacia ECHO, 2 kΩ hacia GND. De otro modo, ECHO lo daña."),
-    }
-    # fmt: on
 
     def firmware(self, part: Part, device: Device, wiring: Wiring) -> list[str]:
         trigger = part.pins.pin(wiring.pins["trigger"])

@@ -35,16 +35,6 @@ class L293D(Bridge):
         power="power_volts_l293d",
         needs_5v=True,
     )
-    # fmt: off
-    texts = {
-        "need_l293d": ("motor driver chip L293D, and two motors with gears",
-                       "integrado L293D para motores, y dos motorreductores"),
-        "power_volts_l293d": ("The L293D keeps about 2 V for itself: a battery of 7 to 9 V (6 AA cells) suits motors for 6 V.",
-                              "El L293D se queda con unos 2 V: una batería de 7 a 9 V (6 pilas AA) va bien con motores de 6 V."),
-        "mind_l293d": ("L293D: the number in brackets is the chip's pin. With the notch at the top, pin 1 is the first one on the left, and 16 the first one on the right. All four GND pins go to GND.",
-                       "L293D: el número entre paréntesis es el pin del integrado. Con la muesca arriba, el pin 1 es el primero de la izquierda, y el 16 el primero de la derecha. Los cuatro GND van a GND."),
-    }
-    # fmt: on
 
 
 DRIVER = L293D()

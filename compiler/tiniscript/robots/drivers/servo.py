@@ -38,11 +38,6 @@ class Servo(ActuatorDriver):
         ),
         notes=("mind_servo_supply",),
     )
-    # fmt: off
-    texts = {
-        "need_servo": ("servo (180°)", "servo (180°)"),
-    }
-    # fmt: on
 
     def firmware(self, part: Part, device: Device, wiring: Wiring) -> list[str]:
         part.servos.append(wiring.pins["pin"])

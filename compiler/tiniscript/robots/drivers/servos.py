@@ -50,13 +50,6 @@ void $drive_motor(byte servo, int percent, unsigned int stillUs) {
         ),
         notes=("mind_servo_supply", "mind_servos"),
     )
-    # fmt: off
-    texts = {
-        "need_servos": ("pair of servos that turn without end (360°)", "par de servos de giro continuo (360°)"),
-        "mind_servos": ("A servo that creeps when it should stand still: turn its small screw until it stops, or change left_still_us or right_still_us in the profile.",
-                        "Un servo que avanza despacio cuando debería estar quieto: gira su tornillo pequeño hasta que pare, o cambia left_still_us o right_still_us en el perfil."),
-    }
-    # fmt: on
 
     def firmware(self, part: Part, wiring: Wiring) -> list[str]:
         lines = []

@@ -24,11 +24,6 @@ class Threshold(SensorDriver):
         Setting("threshold", "whole", 512, 1, 1023),
         Setting("yes_is_low", "yes/no"),
     )
-    # fmt: off
-    texts = {
-        "need_threshold": ("sensor module with an analog output (A0)", "módulo sensor con salida analógica (A0)"),
-    }
-    # fmt: on
 
     def firmware(self, part: Part, device: Device, wiring: Wiring) -> list[str]:
         compare = "<" if wiring.settings["yes_is_low"] else ">="

@@ -24,18 +24,6 @@ class TwoChannel(DiscDriver):
         notes=("mind_two_channel", "mind_no_text"),
         checks=("check_slotted",),
     )
-    # fmt: off
-    texts = {
-        "need_two_channel": ("2 × encoder with two channels (A and B), on the wheels or the motors",
-                             "2 × encoder de dos canales (A y B), en las ruedas o en los motores"),
-        "terminal_left_a": ("A left", "A izq."),
-        "terminal_left_b": ("B left", "B izq."),
-        "terminal_right_a": ("A right", "A der."),
-        "terminal_right_b": ("B right", "B der."),
-        "mind_two_channel": ("Encoders: if a wheel counts back while it goes forward, exchange its A and B. `holes` is the pulses of A in one turn of the wheel.",
-                             "Encoders: si una rueda cuenta hacia atrás cuando avanza, intercambia su A y su B. `holes` son los pulsos de A en una vuelta de la rueda."),
-    }
-    # fmt: on
 
 
 DRIVER = TwoChannel()

@@ -18,7 +18,7 @@ from tiniscript.robots.driver import (
 )
 from tiniscript.robots.drivers import driver_of
 from tiniscript.robots.profile import Place, Wiring
-from tiniscript.robots.wiring.texts import TEXTS
+from tiniscript.robots.wiring.texts import has_text
 
 BOARD_RAILS = (BOARD_5V, BOARD_3V3, GROUND)
 RAILS = (BOARD_5V, BOARD_3V3, GROUND, MOTOR_BATTERY, SERVO_SUPPLY)
@@ -54,7 +54,7 @@ def _at_3v3(shape: Shape) -> Shape:
 
 def of_3v3(key: str) -> str:
     """Return the key of what is said of a part on such a board, where that differs."""
-    return f"{key}_3v3" if f"{key}_3v3" in TEXTS else key
+    return f"{key}_3v3" if has_text(f"{key}_3v3") else key
 
 
 # -- what every robot has
