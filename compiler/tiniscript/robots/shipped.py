@@ -100,6 +100,14 @@ def _grabber() -> Robot:
                     "GRIPPER": "pinza",
                     "LED": "foco LED",
                 },
+                "pt": {
+                    "robot": "Grabber",
+                    "DISTANCE": "sensor de distância",
+                    "TEMPERATURE": "termômetro",
+                    "BUTTON": "botão na garra",
+                    "GRIPPER": "garra",
+                    "LED": "lâmpada LED",
+                },
             },
         ),
     )
@@ -193,6 +201,14 @@ def _liner() -> Robot:
                     "BATTERY": "voltaje de la batería",
                     "LED": "foco LED",
                 },
+                "pt": {
+                    "robot": "Liner",
+                    "LINE_L": "sensor de linha esquerdo",
+                    "LINE_R": "sensor de linha direito",
+                    "BUTTON": "para-choque",
+                    "BATTERY": "tensão da bateria",
+                    "LED": "lâmpada LED",
+                },
             },
         ),
     )
@@ -266,6 +282,12 @@ def _tinibot() -> Robot:
                     "LIGHT_R": "sensor de luz derecho",
                     "LIGHT_L": "sensor de luz izquierdo",
                     "DISTANCE": "sensor de distancia",
+                },
+                "pt": {
+                    "robot": "TiniBot",
+                    "LIGHT_R": "sensor de luz direito",
+                    "LIGHT_L": "sensor de luz esquerdo",
+                    "DISTANCE": "sensor de distância",
                 },
             },
         ),
@@ -345,6 +367,12 @@ def _tinibot2() -> Robot:
                     "LIGHT_L": "sensor de luz izquierdo",
                     "DISTANCE": "sensor de distancia",
                 },
+                "pt": {
+                    "robot": "TiniBot 2",
+                    "LIGHT_R": "sensor de luz direito",
+                    "LIGHT_L": "sensor de luz esquerdo",
+                    "DISTANCE": "sensor de distância",
+                },
             },
         ),
     )
@@ -419,6 +447,12 @@ def _tinibot32() -> Robot:
                     "LIGHT_L": "sensor de luz izquierdo",
                     "DISTANCE": "sensor de distancia",
                 },
+                "pt": {
+                    "robot": "TiniBot 32",
+                    "LIGHT_R": "sensor de luz direito",
+                    "LIGHT_L": "sensor de luz esquerdo",
+                    "DISTANCE": "sensor de distância",
+                },
             },
         ),
     )
@@ -490,6 +524,12 @@ def _tinibotc3() -> Robot:
                     "LIGHT_R": "sensor de luz derecho",
                     "LIGHT_L": "sensor de luz izquierdo",
                     "DISTANCE": "sensor de distancia",
+                },
+                "pt": {
+                    "robot": "TiniBot C3",
+                    "LIGHT_R": "sensor de luz direito",
+                    "LIGHT_L": "sensor de luz esquerdo",
+                    "DISTANCE": "sensor de distância",
                 },
             },
         ),
