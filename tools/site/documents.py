@@ -157,6 +157,7 @@ MOVED = {
         "promises#what-needs-no-numbers": "promises#guarantees-without-a-number",
         "promises#what-the-tests-notice": "promises#guarantees-without-a-number",
         "readme": "index",
+        "robots#it-does-not-work": "robots#a-class-with-several-computers",
         "robots#a-class-past-one-computer": "robots#a-class-with-several-computers",
         "store#in-which-order": "store#the-order-of-writes",
         "store#why-in-this-order": "store#why-this-order",
