@@ -8,9 +8,8 @@ from time import monotonic
 
 import pytest
 
-from tests.support.casefile import ROOT
+from tests.support import texts
 from tests.support.command import Done, Tsc, process
-from tests.support.texts import in_all
 from tiniscript import compile
 from tiniscript.cli.commands import upload
 from tiniscript.cli.errors import CommandError
@@ -20,12 +19,12 @@ from tiniscript.cli.robot.event_printer import EventPrinter
 from tiniscript.cli.robot.recorder import Recorder
 from tiniscript.cli.robot.run_monitor import Saving
 from tiniscript.cli.robot.simulator import CommandSimulator
+from tiniscript.languages import languages
 from tiniscript.studio import recordings
 from tiniscript.studio.recordings import Recorded, read, replay
 from tiniscript.virtual import worlds
 
 TEXT = "SI|W(0.2); SHOW(5);\nX = 0; W(0.2);\nSHOW(1 / X)"
-PAGE_TEXTS = ROOT / "tools/studio/src/robot/robot_texts.js"
 CHECKSUM = compile(TEXT).checksum
 
 
@@ -125,9 +124,9 @@ def test_a_recording_that_another_program_has_saved_is_read(
     "what", ["same", "missed", "empty", "value", "time", "robot_more", "virtual_more"]
 )
 def test_the_command_says_what_the_page_says(what: str) -> None:
-    page = PAGE_TEXTS.read_text(encoding="utf-8")
-    for said in in_all(f"replay_{what}"):
-        assert f"'{said}'" in page
+    for language in languages():
+        wanted = texts.said(language)[f"replay_{what}"]
+        assert texts.said(language, "studio")[f"record_{what}"] == wanted
 
 
 @pytest.mark.parametrize(

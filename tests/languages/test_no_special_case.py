@@ -15,11 +15,6 @@ LEFT = {
     "tools/environment.py": 1,
     "tools/generate/poster.py": 1,
     "tools/generate/remark_tables.py": 1,
-    "tools/studio/src/block_texts.js": 1,
-    "tools/studio/src/editor.js": 1,
-    "tools/studio/src/main.js": 1,
-    "tools/studio/src/texts.js": 1,
-    "tools/studio/src/work.js": 1,
 }
 
 

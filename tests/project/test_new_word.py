@@ -90,8 +90,10 @@ from tiniscript.words import WORDS
 WORDS[HORN.text] = HORN
 import json
 from tiniscript.studio import block_kinds
+from tools.builds.page_texts import page_texts
 from tools.generate import text_tables
-print(json.dumps([block_kinds.data(), text_tables.words_tables("a test")]))
+labels = [page_texts(language)["block/HORN"] for language in ("en", "es")]
+print(json.dumps([block_kinds.data(), labels, text_tables.words_tables("a test")]))
 """
 
 
@@ -99,9 +101,9 @@ def test_blocks_and_the_robots_reader_have_it_in_their_tables() -> None:
     ran = subprocess.run(
         [sys.executable, "-c", FRESH], cwd=ROOT, check=True, capture_output=True, text=True
     )
-    blocks, tables = json.loads(ran.stdout)
+    blocks, labels, tables = json.loads(ran.stdout)
     assert HORN.text in blocks["kinds"]["fixed"]["words"]
-    assert blocks["labels"][HORN.text] == [f"{{{HORN.text}}} {says}" for says in HORN.says]
+    assert labels == [f"{{{HORN.text}}} {says}" for says in HORN.says]
     packed, rows, _ = tables.split("tini_progmem = {")[1:]
     assert "// HORN" in packed and "// HORN" not in rows
 

@@ -55,7 +55,7 @@ def only_page(browser: Browser, address: str) -> Iterator[tuple[studio.Pages, Pa
 def page(only_page: tuple[studio.Pages, Page]) -> Iterator[Page]:
     """The page in English, for a tinibot. What it says of errors is looked at after each test."""
     pages, found = only_page
-    found.select_option("#language", "en")
+    studio.speak(found, "en")
     found.select_option("#robot", "tinibot")
     yield found
     wrong, pages.wrong[:] = pages.wrong[:], []

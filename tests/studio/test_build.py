@@ -13,21 +13,23 @@ import pytest
 from tests.support.casefile import ROOT
 from tests.support.needs import need
 from tiniscript.flash import ready
+from tiniscript.languages import FOLDER, SOURCE, catalogue, languages
+from tiniscript.languages.catalogue_file import load
 from tiniscript.studio import serving
+from tiniscript.studio.block_kinds import KINDS
 from tiniscript.studio.serving import POLICY
 from tools.builds import studio
+from tools.builds.page_texts import page_texts
 
 LARGEST = 6_000_000  # bytes of all files, gzipped
 SOURCES = ROOT / "tools" / "studio"
-TEXTS = (
-    "texts.js",
-    "robot/robot_texts.js",
-    "class/class_texts.js",
-    "lesson_texts.js",
-    "world_texts.js",
-)
-# whose names stand in the sources; those of the others are made of what a robot or a class says
-NAMED_TEXTS = ("texts.js", "lesson_texts.js")
+PACKAGE = ROOT / "compiler" / "tiniscript"
+PAGE_SOURCES = {
+    path: path.read_text(encoding="utf-8")
+    for path in sorted((SOURCES / "src").rglob("*"))
+    if path.suffix in (".js", ".html")
+}
+OTHERS = ("block", "blockly", "editor", "tip")  # of other tables: see below
 
 
 @pytest.fixture(scope="module")
@@ -55,28 +57,51 @@ def test_node_trusts_the_certificates_of_the_system(monkeypatch: pytest.MonkeyPa
     assert studio.run(asks) == "0\n"
 
 
-@pytest.mark.parametrize("name", TEXTS)
-def test_every_sentence_is_there_in_both_languages(name: str) -> None:
-    source = (SOURCES / "src" / name).read_text(encoding="utf-8")
-    table = source[source.index("TEXTS = {") : source.index("\n};")]
-    rows = re.findall(r"^  (\w+): \[", table, re.MULTILINE)
-    pairs = re.findall(r"^  \w+: \['(?:[^'\\]|\\.)*',\s+'(?:[^'\\]|\\.)*'\],$", table, re.MULTILINE)
-    assert len(rows) == len(pairs) > 20
-    for pair in pairs:
-        english, spanish = re.findall(r"'((?:[^'\\]|\\.)*)'", pair)
-        assert sorted(re.findall(r"\{\w+\}", english)) == sorted(re.findall(r"\{\w+\}", spanish))
+@pytest.mark.parametrize("language", languages())
+def test_a_text_has_the_places_of_the_english_one(language: str) -> None:
+    """`%1` and so on, which Blockly and the page fill; gaps are checked of all catalogues."""
+    for (key, _), entry in load(FOLDER / language / "studio.po").entries.items():
+        for said in entry.said:
+            places = re.findall(r"%[\d%]", entry.english) if said else []
+            assert sorted(re.findall(r"%[\d%]", said)) == sorted(places), key
 
 
-@pytest.mark.parametrize("name", NAMED_TEXTS)
-def test_every_sentence_is_said_somewhere(name: str) -> None:
-    source = (SOURCES / "src" / name).read_text(encoding="utf-8")
-    names = re.findall(r"^  (\w+): \[", source, re.MULTILINE)
-    said = "".join(
-        path.read_text(encoding="utf-8")
-        for path in (SOURCES / "src").rglob("*")
-        if path.suffix in (".js", ".html") and path.name != name
-    )
-    assert [name for name in names if not re.search(rf"['\"]{name}['\"]", said)] == []
+def test_every_sentence_is_said_somewhere() -> None:
+    """By its name, or by a name in two parts: `why_${reason}` and the reason's name."""
+    sources = "".join(PAGE_SOURCES.values())
+    named = set(re.findall(r"['\"]([\w/]+)['\"]", sources))
+    heads = tuple(re.findall(r"`(\w+[_/])\$\{", sources))
+    package = (path.read_text(encoding="utf-8") for path in (PACKAGE.rglob("*.py")))
+    words = set(re.findall(r"\w+", "".join((*package, sources))))
+    keys = set(page_texts(SOURCE)) - {""}
+    assert len(keys) > 700
+    for key in keys:
+        if key.partition("/")[0] not in OTHERS:
+            rest = [key[len(head) :] for head in heads if key.startswith(head)]
+            own = key.removesuffix("_sure")  # a button that is pressed twice
+            assert own in named or words & {own, *rest}, key
+
+
+def test_every_block_says_something_and_nothing_else_does() -> None:
+    said = set(page_texts(SOURCE))
+    blocks = {f"block/{name}" for name, kind in KINDS.items() if not kind.says}
+    words = [word for kind in KINDS.values() for word in kind.words]
+    words += ["SI", "SB", "PING", "AND", "OR", "elseif", "else"]
+    blocks |= {f"block/{word}" for word in words}
+    assert {key for key in said if key.startswith("block/")} == blocks
+    tips = {key.partition("/")[2] for key in said if key.startswith("tip/")}
+    assert tips <= {*KINDS, "program", "more", "less"} and len(tips) > 25
+
+
+def test_a_plural_has_the_form_of_its_number() -> None:
+    """A rule repeats itself after a hundred: the page has a digit for each number before that."""
+    for language in languages():
+        forms = page_texts(language)[""]
+        said = catalogue("studio", language)
+        for number in (*range(200), 1000, 1001, 2101, 1_000_000):
+            form = forms[number if number < 100 else 100 + number % 100]
+            wanted = said.ngettext("mistakes", "mistakes", number)
+            assert page_texts(language)["mistakes"][int(form)] == wanted, (language, number)
 
 
 def test_nothing_makes_markup_of_a_text() -> None:

@@ -11,7 +11,7 @@ import pytest
 from tests.pupils import corpus
 from tests.studio.programs import LACKING, programs, said
 from tests.studio.programs import image as image_of
-from tests.support.studio import Pages, asked, checked, enter, image, noted, write
+from tests.support.studio import Pages, asked, checked, enter, image, noted, speak, write
 from tiniscript import check, compile, robots
 from tiniscript.bytecode.image import unpack
 from tiniscript.library.known_kits import lacks
@@ -74,7 +74,7 @@ def test_what_is_typed_is_compiled(page: Page) -> None:
 
 
 def test_a_mistake_is_marked_where_it_is_and_its_button_repairs_it(page: Page) -> None:
-    page.select_option("#language", "es")
+    speak(page, "es")
     write(page, "// ñandú 🤖\nSI|F(1, 80); // 🤖 F(\nF(-2, 80)")
     assert page.inner_text("#status") == "1 error"
     assert page.locator(".cm-lintRange-error").all_inner_texts() == ["-2"]
@@ -123,7 +123,7 @@ def test_words_of_the_language_have_colors(page: Page) -> None:
 def test_languages_change_everything(page: Page) -> None:
     write(page, "FF(2, 80)")
     english = page.inner_text("body")
-    page.select_option("#language", "es")
+    speak(page, "es")
     page.locator("#status").filter(has_text="1 error").wait_for()
     assert page.evaluate("document.documentElement.lang") == "es"
     spanish = page.inner_text("body")
@@ -134,7 +134,7 @@ def test_languages_change_everything(page: Page) -> None:
 def test_work_is_kept(pages: Pages) -> None:
     page = pages.open()
     page.select_option("#robot", "grabber")
-    page.select_option("#language", "es")
+    speak(page, "es")
     page.click("#words")
     write(page, "GRIPPER(90)")
     page.reload()

@@ -16,14 +16,12 @@ from tests.studio.test_page_for_everyone import LOOK, SCREENS
 from tests.support.casefile import ROOT
 from tests.support.kits import KITS
 from tests.support.needs import need
-from tests.support.studio import Pages, axe, image, shown, write
+from tests.support.studio import Pages, axe, image, shown, speak, write
 from tiniscript import check, compile, robots
 from tiniscript.studio.block_form import data_of
-from tiniscript.studio.block_kinds import data
 from tiniscript.studio.block_reading import read
-from tiniscript.studio.building import SOURCES
 from tiniscript.studio.serving import files
-from tools.builds.blockly_texts import english
+from tools.builds.page_texts import page_texts
 from tools.builds.studio import BLOCKLY, stale
 
 if TYPE_CHECKING:
@@ -57,7 +55,7 @@ def page(only_page: tuple[Pages, Page]) -> Any:
     found.bring_to_front()  # another test's page may have the focus
     found.set_default_timeout(PATIENCE_MS)
     found.set_viewport_size({"width": 1366, "height": 768})
-    found.select_option("#language", "en")
+    speak(found, "en")
     found.select_option("#robot", "tinibot")
     start(found, "SI|F(2, 80);\nS;\n")
     yield found
@@ -375,13 +373,13 @@ def test_the_words_of_the_text_come_to_the_blocks_of_who_wants_them(page: Page) 
         "when it starts", "repeat", "times", "if", "distance sensor", "<", "stop", "else",
         "forward", "s at", "%",
     }  # fmt: skip
-    page.select_option("#language", "es")
+    speak(page, "es")
     shown(page)
     assert {"al empezar", "repite", "veces", "si", "si no"} <= said_by(page)
     page.click("#words")
     shown(page)
     assert {"SI al empezar", "LOOP repite", "IF si", "ELSE si no", "F avanza"} <= said_by(page)
-    page.select_option("#language", "en")
+    speak(page, "en")
     shown(page)
     worded = said_by(page)
     assert {"SI when it starts", "IF", "DISTANCE sensor", "S stop", "ELSE"} <= worded
@@ -455,7 +453,7 @@ def test_a_long_program_stays_text(page: Page) -> None:
 @pytest.mark.parametrize("screen", SCREENS, ids=lambda screen: "x".join(map(str, screen)))
 def test_blocks_are_seen(page: Page, screen: tuple[int, int], language: str) -> None:
     page.set_viewport_size({"width": screen[0], "height": screen[1]})
-    page.select_option("#language", language)
+    speak(page, language)
     for text in ("SI|F(2, 80)", "SI|F(-2, 80);\nIF(DISTANCE < 10;\n"):
         start(page, text)
         assert page.evaluate(LOOK) == []
@@ -510,20 +508,16 @@ def test_a_finger_drags_a_block(pages: Pages) -> None:
 # -- sentences -------------------------------------------------------------------------------------
 
 
-def test_blockly_speaks_spanish() -> None:
+def test_the_catalogue_has_what_blockly_says() -> None:
+    """All that Blockly's core names: the page uses none of its ready blocks."""
     need("" if BLOCKLY.is_dir() else stale() or f"there is no {BLOCKLY}")
-    wanted = english(BLOCKLY)
-    ours = json.loads((SOURCES / "src" / "blockly_es.json").read_text(encoding="utf-8"))
-    assert set(ours) == set(wanted) and len(ours) > 150
-    same = {name for name, text in ours.items() if text == wanted[name]}
-    assert same == {"ALT_KEY", "ESCAPE", "CONTROL_KEY"} & same
-    for name, text in wanted.items():
-        assert sorted(re.findall(r"%\d", text)) == sorted(re.findall(r"%\d", ours[name])), name
-
-
-def test_what_a_block_says_has_the_same_places_in_both_languages() -> None:
-    for one, other in data()["labels"].values():
-        assert sorted(re.findall(r"%[\d%]", one)) == sorted(re.findall(r"%[\d%]", other))
+    core = (BLOCKLY / "blockly_compressed.js").read_text(encoding="utf-8")
+    named = set(re.findall(r"[A-Z][A-Z0-9_]+", core))
+    messages = (BLOCKLY / "msg" / "en.js").read_text(encoding="utf-8")
+    rows = re.findall(r'^Blockly\.Msg\["(\w+)"\] = ("(?:[^"\\]|\\.)*");$', messages, re.MULTILINE)
+    wanted = {f"blockly/{name}": json.loads(text) for name, text in rows if name in named}
+    found = page_texts("en")
+    assert {key: found[key] for key in found if key.startswith("blockly/")} == wanted
 
 
 def test_no_word_of_the_sources_is_a_picture_of_a_face() -> None:
@@ -539,7 +533,7 @@ def test_a_fault_is_said_at_its_block(page: Page) -> None:
     fault.wait_for()
     assert fault.count() == 1 and "show" in str(fault.text_content())
     assert fault.locator(".blocklyIconGroup").count() == 1
-    page.select_option("#language", "es")
+    speak(page, "es")
     page.locator("#doing", has_text="Línea 2: algo se divide entre 0.").wait_for()
     shown(page)
     fault.wait_for()  # the blocks are others now

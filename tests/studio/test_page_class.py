@@ -20,7 +20,18 @@ from tests.studio.test_page_for_everyone import LOOK, SCREENS
 from tests.support import studio
 from tests.support.command import FOREVER
 from tests.support.pty_robot import PtyRobot
-from tests.support.studio import HUNG_MS, Class, Pages, axe, checked, drives, hang, image, write
+from tests.support.studio import (
+    HUNG_MS,
+    Class,
+    Pages,
+    axe,
+    checked,
+    drives,
+    hang,
+    image,
+    speak,
+    write,
+)
 from tests.support.waiting import until
 from tiniscript import compile, robots
 from tiniscript.studio.attending import LATCH_S
@@ -278,13 +289,13 @@ def test_thirty_tiles_are_seen_without_scrolling(teacher: Page, taught: Class) -
         room.answer(tokens[k], "192.0.2.7", here)
     for language, (width, height) in product(("en", "es"), ((1366, 768), (1024, 600))):
         teacher.set_viewport_size({"width": width, "height": height})
-        teacher.select_option("#language", language)
+        speak(teacher, language)
         teacher.locator("#wall li").nth(29).wait_for()
         teacher.wait_for_function(WHOLE)  # a wall fits its tiles once it knows its size
         assert teacher.evaluate(LOOK) == []
     tile(teacher, "Pupil 7").locator("img[src^=blob]").wait_for()
     assert tile(teacher, "Pupil 7").locator("i.done").count() == 1
-    teacher.select_option("#language", "en")
+    speak(teacher, "en")
     for pupil in room.teach({"do": "class"})["pupils"]:
         if pupil["name"].startswith("Pupil "):
             room.teach({"do": "class_remove", "pupil": pupil["number"]})
@@ -339,7 +350,7 @@ def test_everything_is_seen_and_axe_finds_nothing(
         for width, height in SCREENS:
             page.set_viewport_size({"width": width, "height": height})
             for language in ("en", "es"):
-                page.select_option("#language", language)
+                speak(page, language)
                 checked(page)
                 assert page.evaluate(LOOK) == []
         assert axe(page) == []
@@ -356,7 +367,7 @@ def test_everything_is_seen_and_axe_finds_nothing(
         teacher.click(f"{window} [data-text=close]")
     assert axe(teacher, "color-contrast") == []  # the wall, in the dark
     teacher.emulate_media(color_scheme="light")
-    teacher.select_option("#language", "en")
+    speak(teacher, "en")
     tile(teacher, "A" * 24).locator(".hand").click()
     longest.locator("#class_hand[aria-pressed=false]").wait_for()
 

@@ -9,7 +9,7 @@ import pytest
 
 from tests.studio.test_page_for_everyone import LOOK, SCREENS
 from tests.studio.test_page_robot import in_phase, running, value
-from tests.support.studio import axe, checked, noted, shown, turn, write
+from tests.support.studio import axe, checked, noted, shown, speak, turn, write
 from tiniscript import run
 
 if TYPE_CHECKING:
@@ -215,7 +215,7 @@ def test_everything_is_seen_of_values_and_lists(page: Page, seen: str) -> None:
     page.click("#run")
     in_phase(page, "ended")
     for language in ("en", "es"):
-        page.select_option("#language", language)
+        speak(page, language)
         page.select_option("#seen", seen)
         for width, height in SCREENS:
             page.set_viewport_size({"width": width, "height": height})

@@ -12,7 +12,16 @@ from tests.studio.test_page_programs import MOVE, colours, content, opened, shar
 from tests.studio.test_simulation import DANCE
 from tests.support import studio
 from tests.support.needs import need
-from tests.support.studio import Pages, checked, enter, image, runs_like_the_command, shown, write
+from tests.support.studio import (
+    Pages,
+    checked,
+    enter,
+    image,
+    runs_like_the_command,
+    shown,
+    speak,
+    write,
+)
 from tiniscript import compile
 from tiniscript.virtual.worlds import read
 
@@ -78,13 +87,13 @@ def test_blocks_and_text_are_the_same_program(page: Page) -> None:
 
 
 def test_a_mistake_is_said_in_spanish_and_repaired(page: Page) -> None:
-    page.select_option("#language", "es")
+    speak(page, "es")
     write(page, "F(-2, 80)")
     assert page.inner_text("#status") == "1 error"
     page.get_by_role("button", name="Hacerlo: línea 1, B(2, 80)").click()
     checked(page)
     assert image(page) == compile("B(2, 80)").image
-    page.select_option("#language", "en")
+    speak(page, "en")
 
 
 def test_a_run_is_that_of_the_command(page: Page) -> None:

@@ -11,8 +11,9 @@ import pytest
 
 from tests.support import studio
 from tests.support.needs import need
-from tests.support.studio import Pages, axe, checked, enter, image, shown, turn, write
-from tiniscript import compile
+from tests.support.studio import Pages, axe, checked, enter, image, shown, speak, turn, write
+from tiniscript import check, compile
+from tiniscript.languages import SOURCE, languages
 from tiniscript.studio import serving
 
 if TYPE_CHECKING:
@@ -53,7 +54,7 @@ THEMES = {"dark": "[data-dark]", "light": ":not([data-dark])"}
 @pytest.mark.parametrize("screen", SCREENS, ids=lambda screen: "x".join(map(str, screen)))
 def test_everything_is_seen(page: Page, screen: tuple[int, int], language: str) -> None:
     page.set_viewport_size({"width": screen[0], "height": screen[1]})
-    page.select_option("#language", language)
+    speak(page, language)
     for text in ("SI|F(2, 80)", WRONG):
         write(page, text)
         assert page.evaluate(LOOK) == []
@@ -235,6 +236,13 @@ def test_the_policy_holds(pages: Pages) -> None:
     pages.wrong.clear()
 
 
+# Waits until files of a language are kept.
+KEPT = """async (names) => {
+  const isKept = async (name) => Boolean(await caches.match(name));
+  while (!(await Promise.all(names.map(isKept))).every(Boolean)) await new Promise((resolve) => setTimeout(resolve, 20));
+}"""
+
+
 def test_it_works_without_its_server(playwright: Playwright, tmp_path: Path) -> None:
     """After one visit: the server is gone, and the browser was closed in between."""
 
@@ -248,6 +256,10 @@ def test_it_works_without_its_server(playwright: Playwright, tmp_path: Path) -> 
             page.click("#view_text")
             page.evaluate("navigator.serviceWorker.ready.then(() => 1)")
             before = image(page)
+            speak(page, "es")
+            page.evaluate(KEPT, ["./texts.es.json", "./messages.es.json"])
+            write(page, "F(-2, 80)")
+            assert check("F(-2, 80)", language="es")[0].message in page.inner_text("#messages li")
             write(page, text)
             return before
         finally:
@@ -271,7 +283,7 @@ def test_an_open_page_is_left_by_its_update(browser: Browser) -> None:
         tab.click("#view_text")
         for name, old, new in (
             ("index.html", b"<html ", b'<html data-build="2" '),
-            ("service_worker.js", b"VERSION = '", b"VERSION = 'newer"),
+            ("service_worker.js", b'VERSION = "', b'VERSION = "newer'),
         ):
             data = page[name].data.replace(old, new, 1)
             assert data != page[name].data
@@ -311,4 +323,7 @@ def test_the_service_worker_has_every_file() -> None:
         "licences.txt",
         serving.FIRMWARE,
     }
-    assert set(listed) == {"./", *names}
+    said = json.loads(source.partition("LANGUAGES = ")[2].partition(";")[0])
+    assert set(said) == set(languages())
+    later = {name for code in said if code != SOURCE for name in said[code]}
+    assert set(listed) == {"./", *names} - later and later < names

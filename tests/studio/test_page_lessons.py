@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.support.studio import Pages, axe, checked, noted, write
+from tests.support.studio import Pages, axe, checked, noted, speak, write
 from tiniscript.lessons import catalogue
 
 if TYPE_CHECKING:
@@ -175,7 +175,7 @@ def test_the_world_where_it_failed_is_seen(page: Page) -> None:
     seed = label.rpartition(" ")[2]
     assert label.startswith("Lesson 12, world ") and seed in said
     assert page.inner_text("#lesson_stars").count("★") == int(seed) - 1
-    page.select_option("#language", "es")
+    speak(page, "es")
     assert page.locator("#world option:checked").inner_text().startswith("Lección 12, mundo ")
     checked(page)
     page.click("#step")
@@ -192,7 +192,7 @@ def test_the_world_where_it_failed_is_seen(page: Page) -> None:
 def test_a_page_of_a_lesson_is_read_in_spanish_and_its_programs_are_used(page: Page) -> None:
     choose(page, 4)
     page.locator("#lesson_steps button").nth(1).click()
-    page.select_option("#language", "es")
+    speak(page, "es")
     page.locator("#lesson_page", has_text="repite cuatro veces").wait_for()
     assert page.locator("#lesson option").nth(3).inner_text().startswith("4. Un cuadrado con LOOP")
     assert page.locator("#lesson_page code", has_text="LOOP(4)").count() == 1
@@ -212,9 +212,9 @@ def test_what_is_done_is_kept(pages: Pages) -> None:
     done = page.locator("#lesson option", has_text="✓")
     for k, each in enumerate(kept):
         page.evaluate("kept => localStorage.setItem('tiniscript.lessons', kept)", each)
-        page.select_option("#language", "es")
+        speak(page, "es")
         page.locator("#lesson option", has_text="línea").first.wait_for(state="attached")
-        page.select_option("#language", "en")
+        speak(page, "en")
         page.locator("#lesson option", has_text="first line").wait_for(state="attached")
         assert done.count() == int(k == 0)
     choose(page, 2)

@@ -14,7 +14,18 @@ import pytest
 from tests.studio.test_page_for_everyone import LOOK, SCREENS
 from tests.support import studio
 from tests.support.pty_robot import PtyRobot
-from tests.support.studio import HUNG_MS, Pages, axe, checked, drives, enter, hang, turn, write
+from tests.support.studio import (
+    HUNG_MS,
+    Pages,
+    axe,
+    checked,
+    drives,
+    enter,
+    hang,
+    speak,
+    turn,
+    write,
+)
 from tiniscript import compile, robots
 from tiniscript.link import known_ports
 from tiniscript.studio import serving
@@ -87,7 +98,7 @@ def page(first: tuple[Pages, Page], robot: PtyRobot) -> Iterator[Page]:
     """A page that has met its robot; many tests share it, and each connects."""
     pages, found = first
     found.set_viewport_size({"width": 1366, "height": 768})
-    found.select_option("#language", "en")
+    speak(found, "en")
     found.evaluate("for (const each of document.querySelectorAll('details')) each.open = false")
     connect(found)
     yield found
@@ -250,7 +261,7 @@ def test_identify_name_and_trim(page: Page, robot: PtyRobot) -> None:
 @pytest.mark.parametrize("screen", SCREENS, ids=lambda screen: "x".join(map(str, screen)))
 def test_everything_is_seen(page: Page, screen: tuple[int, int], language: str) -> None:
     page.set_viewport_size({"width": screen[0], "height": screen[1]})
-    page.select_option("#language", language)
+    speak(page, language)
     checked(page)
     turn(page, "robot")
     assert page.evaluate(LOOK) == []

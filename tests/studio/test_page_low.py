@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from tests.studio.test_page_for_everyone import LOOK
-from tests.support.studio import axe, shown, turn, write
+from tests.support.studio import axe, shown, speak, turn, write
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
@@ -43,7 +43,7 @@ def large_again(page: Page) -> object:
 @pytest.mark.sampled("language")
 @pytest.mark.parametrize("language", ["en", "es"])
 def test_everything_is_reached_on_a_low_screen(page: Page, language: str) -> None:
-    page.select_option("#language", language)
+    speak(page, language)
     write(page, "SI|LOOP(FOREVER); F(1, 80); END_LOOP")
     for width, height in LOW if language == "es" else LOW[:1]:
         page.set_viewport_size({"width": width, "height": height})

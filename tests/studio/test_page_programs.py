@@ -14,7 +14,7 @@ import pytest
 
 from tests.studio.programs import programs
 from tests.studio.test_page_for_everyone import SCREENS
-from tests.support.studio import Pages, asked, axe, checked, image, noted, write
+from tests.support.studio import Pages, asked, axe, checked, image, noted, speak, write
 from tiniscript import check, compile
 from tiniscript.studio.building import MODULES
 from tiniscript.studio.checking import line
@@ -463,7 +463,7 @@ LOOK = """() => {
 @pytest.mark.parametrize("screen", SCREENS)
 def test_everything_is_seen(page: Page, screen: tuple[int, int], language: str) -> None:
     page.set_viewport_size({"width": screen[0], "height": screen[1]})
-    page.select_option("#language", language)
+    speak(page, language)
     write(page, TEXT)
     for how in ("link", "line"):
         share(page, how)

@@ -10,7 +10,7 @@ import pytest
 from tests.studio.test_page_for_everyone import SCREENS
 from tests.studio.test_simulation import DANCE
 from tests.support.casefile import ROOT
-from tests.support.studio import asked, checked, runs_like_the_command, turn, write
+from tests.support.studio import asked, checked, runs_like_the_command, speak, turn, write
 from tiniscript import compile
 from tiniscript.studio.simulation import Simulation
 from tiniscript.virtual import worlds
@@ -206,7 +206,7 @@ PLACES = """() => 'arena run pause step speed world doing values'.split(' ').map
 @pytest.mark.parametrize("screen", SCREENS, ids=lambda screen: "x".join(map(str, screen)))
 def test_nothing_jumps_when_a_run_begins(page: Page, screen: tuple[int, int]) -> None:
     page.set_viewport_size({"width": screen[0], "height": screen[1]})
-    page.select_option("#language", "es")
+    speak(page, "es")
     turn(page, "robot")
     page.select_option("#world", "obstacles")  # nothing has run in it
     write(page, f"SB|X = 1\n{FOREVER}")

@@ -10,7 +10,7 @@ import pytest
 
 from tests.studio.test_page_for_everyone import LOOK, SCREENS
 from tests.studio.test_page_programs import GOOD
-from tests.support.studio import Pages, axe, checked, image, noted, shown, write
+from tests.support.studio import Pages, axe, checked, image, noted, shown, speak, write
 from tiniscript import compile
 
 if TYPE_CHECKING:
@@ -150,7 +150,7 @@ def test_hostile_programs_are_only_text(start: Page) -> None:
 @pytest.mark.sampled("language")
 @pytest.mark.parametrize("language", ["en", "es"])
 def test_everything_is_seen(again: Page, language: str) -> None:
-    again.select_option("#language", language)
+    speak(again, language)
     for k in range(2):
         for width, height in SCREENS:
             again.set_viewport_size({"width": width, "height": height})

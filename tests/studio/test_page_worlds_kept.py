@@ -8,7 +8,7 @@ import pytest
 
 from tests.studio.test_page_robot import in_phase
 from tests.studio.test_page_worlds import drag, on_screen, put, read_start, rest, said, saved
-from tests.support.studio import Pages, checked, write
+from tests.support.studio import Pages, checked, speak, write
 from tiniscript.virtual import worlds
 
 if TYPE_CHECKING:
@@ -76,7 +76,7 @@ def test_a_world_is_not_lost_to_the_next_one(pages: Pages) -> None:
     assert listed(page) == ["aula", "my world (before)", "my world (before 2)"]
     assert walls_of(page, "my world (before)") == 1
     assert listed(page) == ["my world", "aula (before)", "my world (before 2)"]
-    page.select_option("#language", "es")
+    speak(page, "es")
     assert "mi mundo (de antes 2)" in listed(page)
 
 

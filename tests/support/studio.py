@@ -293,6 +293,12 @@ def checked(page: Page) -> None:
     page.locator("html[data-state=checked]").wait_for(state="attached")
 
 
+def speak(page: Page, language: str) -> None:
+    """Choose a language, and wait until its texts are there."""
+    page.select_option("#language", language)
+    page.locator(f"html[lang={language}]").wait_for(state="attached")
+
+
 def shown(page: Page) -> None:
     """Wait until the blocks are those of the text, and the text is compiled."""
     page.locator("#blocks[data-state=shown]").wait_for()
@@ -367,21 +373,23 @@ def image(page: Page) -> bytes:
 _ASK = """async (requests) => {
   const worker = window.answers ?? new Worker('./worker.js', {type: 'module'});
   window.answers = undefined;
-  const answers = [];
-  const done = new Promise((resolve, reject) => {
+  const send = (requests) => new Promise((resolve, reject) => {
+    const answers = [];
     worker.onmessage = ({data}) => {
       if (data.error) { reject(new Error(data.error)); return; }
       if (data.id) answers.push(JSON.parse(data.answer));
-      if (answers.length === requests.length) resolve();
+      if (answers.length === requests.length) resolve(answers);
     };
     worker.onerror = (event) => reject(new Error(event.message));
+    requests.forEach(({text, image, ...request}, k) => {
+      const data = image ? Uint8Array.from(image.match(/../g), (pair) => parseInt(pair, 16))
+        : new TextEncoder().encode(text ?? '');
+      worker.postMessage({id: k + 1, request: JSON.stringify(request), data});
+    });
   });
-  requests.forEach(({text, image, ...request}, k) => {
-    const data = image ? Uint8Array.from(image.match(/../g), (pair) => parseInt(pair, 16))
-      : new TextEncoder().encode(text ?? '');
-    worker.postMessage({id: k + 1, request: JSON.stringify(request), data});
-  });
-  await done;
+  const languages = new Set(['en', ...requests.flatMap(({language}) => language ?? [])]);
+  await send([...languages].map((language) => ({do: 'learn', language})));
+  const answers = await send(requests);
   window.answers = worker;
   return answers;
 }"""

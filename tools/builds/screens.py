@@ -97,7 +97,7 @@ SCREENS: dict[str, Callable[[Page], None]] = {
 
 def pictures(folder: Path) -> list[Path]:
     """Make them all; return their files, by size, language, theme and screen."""
-    from tests.support.studio import SETTLED, Pages, browser, driver, served, turn
+    from tests.support.studio import SETTLED, Pages, browser, driver, served, speak, turn
 
     folder.mkdir(parents=True, exist_ok=True)
     found = []
@@ -106,7 +106,7 @@ def pictures(folder: Path) -> list[Path]:
             for language in ("en", "es"):
                 pages = Pages(opened, server.address)
                 page = pages.open("start", color_scheme=theme, reduced_motion="reduce")
-                page.select_option("#language", language)
+                speak(page, language)
                 for screen, see in SCREENS.items():
                     page.set_viewport_size({"width": 1366, "height": 768})
                     page.evaluate(SETTLED)

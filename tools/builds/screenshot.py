@@ -11,9 +11,9 @@ from __future__ import annotations
 
 import argparse
 import json
-import re
 import sys
 from collections.abc import Callable
+from functools import cache
 from io import BytesIO
 from itertools import product
 from pathlib import Path
@@ -26,6 +26,8 @@ ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
 from tests.support import studio
+from tiniscript.languages import languages
+from tools.builds.page_texts import page_texts
 from tools.site.documents import sources
 
 if TYPE_CHECKING:
@@ -62,7 +64,6 @@ GUIDES = {
     for each, name in sources(ROOT, "docs/studio.en.md").items()
 }
 LANGUAGES = tuple(each for each, text in GUIDES.items() if f"(studio.{each}.png)" in text)
-TEXTS = sorted((ROOT / "tools" / "studio" / "src").rglob("*texts.js"))
 
 
 def picture(language: str, scene: str = "") -> Path:
@@ -109,7 +110,7 @@ def take(language: str, scene: str, target: Path) -> None:
     ):
         pages = studio.Pages(opened, server.address, patience_s=120)
         page = pages.open("text", viewport=SIZE, device_scale_factor=1)
-        page.select_option("#language", language)
+        studio.speak(page, language)
         studio.write(page, PROGRAM)
         SHEETS.get(scene, _single)(page, scene, look)
         pages.close()
@@ -229,7 +230,7 @@ def _sheet(shots: list[Image.Image]) -> Image.Image:
 
 def is_said(words: str) -> bool:
     """Whether the page's sentences have these words."""
-    return any(f"'{words}'" in text for text in _sources())
+    return any(words in _said(language) for language in languages())
 
 
 def stale(language: str, scene: str = "") -> str:
@@ -247,8 +248,9 @@ def stale(language: str, scene: str = "") -> str:
     return ""
 
 
-def _sources() -> list[str]:
-    return [re.sub(r"\\'", "’", path.read_text(encoding="utf-8")) for path in TEXTS]
+@cache
+def _said(language: str) -> frozenset[str]:
+    return frozenset(map(str, page_texts(language).values()))
 
 
 if __name__ == "__main__":

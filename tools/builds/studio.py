@@ -21,18 +21,17 @@ import sys
 import tempfile
 from importlib.metadata import version
 from importlib.util import find_spec
-from itertools import product
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
-from tiniscript.languages import catalogue, languages
+from tiniscript.languages import SOURCE, about, languages
 from tiniscript.studio import block_kinds, building
 from tiniscript.studio.building import MODULES, SOURCES, Tools
 from tiniscript.studio.description import description
 from tiniscript.studio.serving import FIRMWARE, POLICY, with_firmware
-from tools.builds.blockly_texts import texts
+from tools.builds.page_texts import messages, page_texts
 
 COMMAND = f"python -m {building.MODULE}"
 PACKAGE = ROOT / "compiler"
@@ -102,11 +101,10 @@ def build(page: Path = PAGE) -> None:
     say(f"node {tools.version}")
     install(tools)
     lock = json.loads((MODULES / "pyodide" / "pyodide-lock.json").read_text(encoding="utf-8"))
-    for language, name in product(languages(), ("messages", "statuses", "refusals", "library")):
-        catalogue(name, language)  # made where it is stale
+    make("languages.json", [(code, about("x-name", code)) for code in languages()])
+    make(f"texts.{SOURCE}.json", page_texts(SOURCE))  # whose keys are checked
     make("description.json", description())
     make("blocks.json", block_kinds.data())
-    make("blockly_texts.json", texts(BLOCKLY, SOURCES / "src"))
     make_blockly()
     make("lock.json", {"info": lock["info"], "packages": {}})
     check_types(tools)
@@ -139,8 +137,17 @@ def put_own(page: Path) -> None:
     """Put the page's own files into a folder, but for its modules."""
     for name in COPIED:
         shutil.copyfile(SOURCES / "src" / name, page / Path(name).name)
+    for code in languages():
+        for name, content in zip(said_in(code), (page_texts(code), messages(code)), strict=True):
+            whole = json.dumps(content, ensure_ascii=False, separators=(",", ":"))
+            (page / name).write_text(whole, encoding="utf-8")
     html = (SOURCES / "src" / "index.html").read_text(encoding="utf-8")
     (page / "index.html").write_text(html.replace("POLICY", POLICY), encoding="utf-8")
+
+
+def said_in(language: str) -> tuple[str, str]:
+    """Return the names of the files with what page and Python say in a language."""
+    return f"texts.{language}.json", f"messages.{language}.json"
 
 
 def build_again(page: Path) -> None:
@@ -241,8 +248,12 @@ def offline(target: Path) -> None:
     whole = hashlib.sha256()
     for name in names:
         whole.update(f"{name}\0".encode() + hashlib.sha256((target / name).read_bytes()).digest())
-    files = ["./", *(name for name in names if name not in ("index.html", LICENCES, FIRMWARE))]
-    head = f"const VERSION = '{whole.hexdigest()[:16]}';\nconst FILES = {json.dumps(files)};\n"
+    said = {code: said_in(code) for code in languages()}
+    later = {name for code in said if code != SOURCE for name in said[code]}
+    apart = {"index.html", LICENCES, FIRMWARE, *later}
+    files = ["./", *(name for name in names if name not in apart)]
+    constants = {"VERSION": whole.hexdigest()[:16], "FILES": files, "LANGUAGES": said}
+    head = "".join(f"const {name} = {json.dumps(each)};\n" for name, each in constants.items())
     worker = (SOURCES / "src" / "service_worker.js").read_text(encoding="utf-8")
     (target / "service_worker.js").write_text(head + worker, encoding="utf-8")
 

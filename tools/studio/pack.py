@@ -25,9 +25,7 @@ NOT_HERE = {"wasmtime", "serial", "bleak", "zeroconf", "platformdirs", "tomli",
             "ctypes", "multiprocessing", "urllib.request", "ssl",
             "asyncio.windows_events", "asyncio.windows_utils",
             "pydoc", "doctest", "unittest", "pdb", "argparse"}  # fmt: skip
-DATA = {"languages": ("*/messages.mo", "*/statuses.mo", "*/refusals.mo", "*/library.mo",
-                      "*/lexicon.txt"),
-        "virtual": ("*.wasm",), "virtual/worlds": ("*.toml",)}  # fmt: skip
+DATA = {"languages": ("*/lexicon.txt",), "virtual": ("*.wasm",), "virtual/worlds": ("*.toml",)}
 DATA_OF_LESSONS = {"lessons": ("*/lesson.toml", "*/world.toml", "*/pupil.*.md")}
 ENCODINGS = ("encodings.latin_1", "encodings.ascii", "encodings.utf_8_sig", "encodings.cp437")
 STAMP = (1980, 1, 1, 0, 0, 0)

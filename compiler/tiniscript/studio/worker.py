@@ -9,8 +9,10 @@ import json
 from collections.abc import Callable
 from typing import Any
 
+from tiniscript import languages
 from tiniscript.bytecode.image import checksum
 from tiniscript.diagnostics.rendering import Message
+from tiniscript.languages import compiling
 from tiniscript.studio import checking
 from tiniscript.studio.block_form import data_of, from_data, in_order, size_of
 from tiniscript.studio.block_printing import print_blocks
@@ -74,8 +76,20 @@ def _text(fields: Answer, data: bytes) -> Answer:
     return print_blocks(from_data(fields["form"]))._asdict()
 
 
+def _learn(fields: Answer, data: bytes) -> Answer:
+    """Take the messages of a language, by catalogue and key; a page fetches what it needs."""
+    folder = languages.FOLDER / fields["language"]
+    folder.mkdir(exist_ok=True)
+    for name, texts in json.loads(data).items():
+        made = compiling.machine_object(texts.pop(""), texts)
+        (folder / f"{name}.mo").write_bytes(made)
+    languages.languages.cache_clear()
+    return {}
+
+
 _ASKED: dict[str, Callable[[Answer, bytes], Answer]] = {
-    "check": _check, "open": _open, "line": _line, "blocks": _blocks, "text": _text,
+    "learn": _learn, "check": _check, "open": _open, "line": _line, "blocks": _blocks,
+    "text": _text,
 }  # fmt: skip
 
 

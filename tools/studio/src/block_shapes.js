@@ -5,8 +5,8 @@ import * as Blockly from 'blockly/core';
 import blocks from '../made/blocks.json';
 import { LineField, NameField, NumberField } from './block_fields.js';
 import { rangeOf } from './block_places.js';
-import { BLOCK_TEXTS, TIPS, said } from './block_texts.js';
-import { nameOf, ROBOTS } from './words.js';
+import { called } from './texts.js';
+import { nameOf, onBlock, ROBOTS, tipOf } from './words.js';
 
 /** @typedef {'number' | 'truth' | 'any'} Place what a value there is */
 /** @typedef {{colour: string, words: string[], values: Place[], bodies: number, gives: '' | Place, field: '' | 'name' | 'line' | 'sensor' | 'actuator'}} Shape */
@@ -47,7 +47,7 @@ export class Checker extends Blockly.ConnectionChecker {
  * @returns {Blockly.Field | null} what stands before its values
  */
 function firstField(block, shape) {
-  if (shape.words.length) return options(shape.words.map((word) => [said(BLOCK_TEXTS, word), word]));
+  if (shape.words.length) return options(shape.words.map((word) => [onBlock(word), word]));
   if (shape.field === 'name') return new NameField('X');
   if (shape.field === 'line') return new LineField('');
   if (shape.field) return new DeviceField(shape.field);
@@ -81,7 +81,7 @@ class DeviceField extends Blockly.FieldDropdown {
 }
 
 /**
- * Adds what a message of `BLOCK_TEXTS` says, its fields and places.
+ * Adds what a message says, its fields and places.
  * @param {Blockly.Block} block
  * @param {string} message
  * @param {(number: number) => Blockly.Field | string} what a field, or the name of a place
@@ -127,9 +127,9 @@ function named(field, name) {
 /** @param {Blockly.Block} block @param {string} kind @param {Shape} shape */
 function build(block, kind, shape) {
   const first = firstField(block, shape);
-  const sign = { math: RECKONED, compare: COMPARED, logic: [[said(BLOCK_TEXTS, 'AND'), 'AND'], [said(BLOCK_TEXTS, 'OR'), 'OR']] }[kind];
+  const sign = { math: RECKONED, compare: COMPARED, logic: [[onBlock('AND'), 'AND'], [onBlock('OR'), 'OR']] }[kind];
   let value = 0;
-  add(block, said(BLOCK_TEXTS, kind), (number) => {
+  add(block, onBlock(kind), (number) => {
     if (first && number === 1) return named(first, 'WORD');
     if (sign && number === 2) return named(options(sign), 'SIGN');
     return `V${value++}`;
@@ -189,7 +189,7 @@ const IF = {
     this.hasElse = hasElse;
     for (let k = 0; k < arms; k += 1) {
       if (this.getInput(`V${k}`)) continue;
-      add(this, said(BLOCK_TEXTS, k ? 'elseif' : 'if'), () => `V${k}`, () => 'truth');
+      add(this, onBlock(k ? 'elseif' : 'if'), () => `V${k}`, () => 'truth');
       this.getInput(`V${k}`).connection.setShadowState(truth());
       this.appendStatementInput(`B${k}`);
       if (this.getInput('ELSE')) {
@@ -201,7 +201,7 @@ const IF = {
       this.removeInput(`B${k}`);
     }
     if (hasElse && !this.getInput('ELSE')) {
-      this.appendDummyInput('ELSE').appendField(said(BLOCK_TEXTS, 'else'));
+      this.appendDummyInput('ELSE').appendField(onBlock('else'));
       this.appendStatementInput('OTHERWISE');
     } else if (!hasElse && this.getInput('ELSE')) {
       this.removeInput('ELSE');
@@ -236,15 +236,15 @@ const IF = {
     this.setArms(1, false);
     const buttons = this.appendDummyInput('MORE');
     for (const [name, act] of [['more', () => this.more()], ['less', () => this.less()]]) {
-      const picture = new Blockly.FieldImage(`./${name}.svg`, 24, 24, said(TIPS, String(name)), /** @type {any} */ (act));
-      picture.setTooltip(said(TIPS, String(name)));
+      const picture = new Blockly.FieldImage(`./${name}.svg`, 24, 24, tipOf(String(name)), /** @type {any} */ (act));
+      picture.setTooltip(tipOf(String(name)));
       buttons.appendField(picture);
     }
     this.setInputsInline(true);
     this.setPreviousStatement(true);
     this.setNextStatement(true);
     this.setStyle('control');
-    this.setTooltip(said(TIPS, 'if'));
+    this.setTooltip(tipOf('if'));
   },
 };
 
@@ -253,12 +253,12 @@ export function defineBlocks() {
   Blockly.Blocks['program'] = {
     /** @this {Blockly.Block} */
     init() {
-      this.appendDummyInput().appendField(options(['SI', 'SB', 'PING'].map((word) => [said(BLOCK_TEXTS, word), word])), 'WORD');
+      this.appendDummyInput().appendField(options(['SI', 'SB', 'PING'].map((word) => [onBlock(word), word])), 'WORD');
       this.setNextStatement(true);
       this.setDeletable(false);
       this.setMovable(false); // what is dragged is all that is seen
       this.setStyle('program');
-      this.setTooltip(said(TIPS, 'program'));
+      this.setTooltip(tipOf('program'));
     },
   };
   for (const [kind, shape] of Object.entries(SHAPES)) {
@@ -266,18 +266,17 @@ export function defineBlocks() {
       /** @this {Blockly.Block} */
       init() {
         build(this, kind, shape);
-        if (TIPS[kind]) this.setTooltip(said(TIPS, kind));
-        if (shape.field === 'sensor' || shape.field === 'actuator') this.setTooltip(() => tipOf(this));
+        this.setTooltip(tipOf(kind));
+        if (shape.field === 'sensor' || shape.field === 'actuator') this.setTooltip(() => deviceTip(this));
       },
     };
   }
 }
 
 /** @param {Blockly.Block} block of a device */
-function tipOf(block) {
+function deviceTip(block) {
   const name = block.getFieldValue('WORD');
   const device = [...devices('sensor'), ...devices('actuator')].find((each) => each.text === name);
-  const label = device?.labels[/** @type {'en' | 'es'} */ (document.documentElement.lang)];
-  const tip = TIPS[block.type] ? said(TIPS, block.type) : '';
-  return [label && `${name}: ${label}${device?.unit ? ` (${device.unit})` : ''}.`, tip].filter(Boolean).join(' ');
+  const label = device && `${name}: ${called(device.labels)}${device.unit ? ` (${device.unit})` : ''}.`;
+  return [label, tipOf(block.type)].filter(Boolean).join(' ');
 }

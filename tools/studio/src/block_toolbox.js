@@ -2,7 +2,7 @@
 // it, and the names that the program has. A group is short enough to be seen at once.
 
 import { devices } from './block_shapes.js';
-import { GROUPS, said } from './block_texts.js';
+import { known, text } from './texts.js';
 import { FIXED } from './words.js';
 
 /** @typedef {'few' | 'usual' | 'all'} Level */
@@ -63,7 +63,7 @@ function groups(used) {
     ]],
     ['few', 'time', [
       ['few', item('wait', [1])], ['few', item('beep', [0.5, 440])], ['usual', item('show', [1])],
-      ...FIXED.map(({ text }) => /** @type {[Level, Item]} */ (['few', item('fixed', [], text)])),
+      ...FIXED.map((word) => /** @type {[Level, Item]} */ (['few', item('fixed', [], word.text)])),
       ['usual', until('wait_until', [5])], ['all', item('time')], ['all', item('endless')],
     ]],
     ['few', 'control', [
@@ -110,7 +110,7 @@ export function toolbox(level, used) {
     kind: 'categoryToolbox',
     contents: groups(used).filter(([its]) => isShown(its)).map(([, name, items]) => ({
       kind: 'category',
-      name: said(GROUPS, name),
+      name: text(known(`group/${name}`)),
       categorystyle: name,
       contents: items.filter(([its]) => isShown(its)).map(([, each]) => ({ ...each, gap: 8 })),
     })),

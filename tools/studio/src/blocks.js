@@ -3,14 +3,13 @@
 // The text is what is kept: a change of the blocks is told to the page, which asks for their text.
 
 import * as Blockly from 'blockly/core';
-import texts from '../made/blockly_texts.json';
 import { formOf, keepPlaces, showForm } from './block_form.js';
 import { setActuators } from './block_places.js';
 import { Checker, defineBlocks, setRobot } from './block_shapes.js';
 import { pictureOf } from './block_picture.js';
 import { look } from './block_styles.js';
 import { toolbox } from './block_toolbox.js';
-import { currentLanguage, text } from './texts.js';
+import { text, textsOf } from './texts.js';
 
 /** @typedef {import('./block_form.js').Form} Form */
 /** @typedef {import('./block_form.js').Range} Range */
@@ -113,8 +112,7 @@ export class Blocks {
   }
 
   #begin() {
-    const language = currentLanguage();
-    Blockly.setLocale(/** @type {Record<string, string>} */ (texts[language]));
+    Blockly.setLocale(textsOf('blockly'));
     defineBlocks();
     const isNarrow = innerWidth < NARROW;
     const workspace = Blockly.inject(this.#place, {

@@ -1,7 +1,6 @@
 // The part of the page with the virtual robot: its buttons, its picture and what is told of it.
 
 import { Arena } from './arena.js';
-import { BLOCK_TEXTS, said } from './block_texts.js';
 import { element, say } from './elements.js';
 import { faultSaid } from './faults.js';
 import { download } from './files.js';
@@ -9,8 +8,8 @@ import { offsetsOf, rangeAt } from './parts.js';
 import { Plot } from './plot.js';
 import { Simulator } from './simulator.js';
 import { Sounds } from './sounds.js';
-import { text } from './texts.js';
-import { nameOf, ROBOTS } from './words.js';
+import { hasText, text } from './texts.js';
+import { nameOf, onBlock, ROBOTS } from './words.js';
 import { OWN_WORLD } from './work.js';
 import { WorldChoice } from './world_choice.js';
 import { starsShown, Where } from './where.js';
@@ -23,7 +22,7 @@ const SHOWN = 200; // lines of the trace
 const READ_MS = 100; // nobody reads what changes more often
 const SHORT = 12; // characters of a name whose value stands beside another one
 const PLAYED_MS = 6000; // at most for a run of a lesson
-const SEEN = { arena: 'seen_arena', plot: 'seen_plot', trace: 'seen_trace' };
+const SEEN = /** @type {const} */ ({ arena: 'seen_arena', plot: 'seen_plot', trace: 'seen_trace' });
 
 export class Driving {
   #editor;
@@ -490,7 +489,7 @@ function partOf({ arguments: [range] }, value) {
  * @param {string} value
  */
 function measured({ unit, arguments: [range] }, value) {
-  if (value in BLOCK_TEXTS) return said(BLOCK_TEXTS, value); // TRUE or FALSE
+  if (hasText(`block/${value}`)) return onBlock(value); // TRUE or FALSE
   return unit || !range ? `${value} ${unit}` : text('of', { value, most: range.high });
 }
 

@@ -12,7 +12,7 @@ import { Decoration, EditorView, highlightActiveLine, keymap, lineNumbers } from
 import { breakpoints, placesOf, pointsOf, pressed, setBreakpoints } from './breakpoints.js';
 import { colors, completionOf, languageOf } from './language.js';
 import { partAt } from './parts.js';
-import { EDITOR_PHRASES_ES, currentLanguage, text } from './texts.js';
+import { text, textsOf } from './texts.js';
 
 /** @typedef {import('./python.js').Finding} Finding */
 /** @typedef {import('./python.js').Change} Change */
@@ -286,7 +286,7 @@ export class Editor {
 
   #inLanguage() {
     return [
-      EditorState.phrases.of(currentLanguage() === 'es' ? EDITOR_PHRASES_ES : {}),
+      EditorState.phrases.of(textsOf('editor')),
       EditorView.contentAttributes.of({
         'aria-label': text('editor'),
         tabindex: '0',

@@ -6,5 +6,6 @@ import { hasText, text } from './texts.js';
 /** @param {unknown} fault its name @returns {string} a sentence that stands behind its line */
 export function faultSaid(fault) {
   const name = shown(String(fault));
-  return text(hasText(`fault_${name}`) ? `fault_${name}` : 'fault_other', { name });
+  const key = `fault_${name}`;
+  return text(hasText(key) ? key : 'fault_other', { name });
 }

@@ -11,7 +11,7 @@ import { Programs } from './programs.js';
 import { Python } from './python.js';
 import { pictured, robotPicture } from './pictures_of.js';
 import { bringsProgram } from './links.js';
-import { currentLanguage, setLanguage, text } from './texts.js';
+import { called, currentLanguage, known, languageOf, LANGUAGES, setLanguage, text } from './texts.js';
 import { Driving } from './driving.js';
 import { Recorder } from './recorder.js';
 import { whyOutside } from './robot/host.js';
@@ -45,19 +45,19 @@ const work = kept ?? {
   text: FIRST_PROGRAM,
   robot: ROBOTS[0]?.name ?? '',
   world: 'obstacles',
-  language: navigator.language.toLowerCase().startsWith('es') ? /** @type {const} */ ('es') : /** @type {const} */ ('en'),
+  language: languageOf(navigator.language),
   name: '',
   view: /** @type {const} */ ('blocks'),
   level: /** @type {const} */ ('few'),
   words: false,
   sound: true,
 };
-setLanguage(work.language);
-languages.value = work.language;
+const python = new Python(work.language);
+languages.replaceChildren(...LANGUAGES.map(([code, name]) => Object.assign(new Option(name, code), { lang: code })));
+languages.value = work.language = await setLanguage(work.language);
 showWords(work.words);
 words.setAttribute('aria-pressed', String(work.words));
 
-const python = new Python();
 const editor = new Editor(element('editor', HTMLElement), work.robot, changed, () => driving.breakpointsChanged(), (line) => {
   note.textContent = text('no_breakpoint', { line });
 });
@@ -130,7 +130,7 @@ let timer = 0;
 const waiting = [];
 
 showRobots();
-if (whyOutside) note.textContent = text(`why_${whyOutside}`);
+if (whyOutside) note.textContent = text(known(`why_${whyOutside}`));
 editor.replace(work.text);
 status.textContent = text('starting');
 python.ready.then(
@@ -224,9 +224,8 @@ function repair(finding) {
 }
 
 function showRobots() {
-  const language = currentLanguage();
   robots.replaceChildren(
-    ...ROBOTS.map((robot) => pictured(robot.labels[language], robot.name, robotPicture(robot))),
+    ...ROBOTS.map((robot) => pictured(called(robot.labels), robot.name, robotPicture(robot))),
   );
   robots.value = work.robot;
 }
@@ -259,9 +258,10 @@ function putProgram(program) {
   remember();
 }
 
-languages.addEventListener('change', () => {
-  work.language = languages.value === 'en' ? 'en' : 'es';
-  setLanguage(work.language);
+languages.addEventListener('change', async () => {
+  document.documentElement.dataset['state'] = 'changed';
+  const isLearnt = python.ask({ do: 'learn', language: languages.value }).catch(() => null);
+  languages.value = work.language = await setLanguage(languages.value);
   editor.setLanguage();
   views.setLanguage();
   showRobots();
@@ -274,6 +274,8 @@ languages.addEventListener('change', () => {
   note.textContent = '';
   if (!isReady) status.textContent = text('starting');
   remember();
+  await isLearnt;
+  newest.key = ''; // what was said meanwhile is in English
   check();
 });
 

@@ -50,10 +50,10 @@ export function summary({ findings, bytes, loose }) {
   const mistakes = findings.filter((each) => each.severity === 'mistake').length;
   const warnings = findings.length - mistakes;
   const parts = [];
-  if (mistakes) parts.push(mistakes === 1 ? text('one_mistake') : text('mistakes', { count: mistakes }));
+  if (mistakes) parts.push(text('mistakes', { count: mistakes }));
   else if (!loose) parts.push(text('right', { bytes }));
-  if (loose) parts.push(loose === 1 ? text('one_loose') : text('loose', { count: loose }));
-  if (warnings) parts.push(warnings === 1 ? text('one_warning') : text('warnings', { count: warnings }));
+  if (loose) parts.push(text('loose', { count: loose }));
+  if (warnings) parts.push(text('warnings', { count: warnings }));
   return parts.join(mistakes || loose ? ', ' : ' ');
 }
 

@@ -2,7 +2,7 @@
 //
 // Knows how they are kept on this device, in the form of their files; shows nothing.
 
-import { currentLanguage, TEXTS } from './texts.js';
+import { currentLanguage } from './texts.js';
 import { keepWorlds, keptWorlds } from './work.js';
 
 /** @typedef {import('./world_parts.js').World} World */
@@ -90,5 +90,5 @@ export class OwnWorlds {
 
 /** A shipped world that is changed is nobody's but this person's. @param {World} world @returns {World} */
 export function ownCopy(world) {
-  return { ...world, name: '', labels: { en: TEXTS['world_own']?.[0] ?? '', es: TEXTS['world_own']?.[1] ?? '' } };
+  return { ...world, name: '', labels: {} };
 }

@@ -9,7 +9,7 @@ import { isAddress, keepPublic, publicAddress } from './public_address.js';
 import { reachOf } from './reach.js';
 import { isGiven } from './start/beginnings.js';
 import { showInstead } from './start/screens.js';
-import { currentLanguage, text } from './texts.js';
+import { called, currentLanguage, text } from './texts.js';
 import { keepVersion, MOST_CHARACTERS, versions } from './versions.js';
 import { ROBOTS } from './words.js';
 import { keep } from './work.js';
@@ -21,7 +21,7 @@ import { keep } from './work.js';
 const MOST_PICTURED = 900; // bytes: a camera reads no picture with more from a screen
 const MARGIN = 4; // modules that must stay white around a code
 
-const LINK_TOLD = { anywhere: 'share_link_anywhere', network: 'share_link_network', here: 'share_link_here' };
+const LINK_TOLD = /** @type {const} */ ({ anywhere: 'share_link_anywhere', network: 'share_link_network', here: 'share_link_here' });
 
 export class Programs {
   #window = element('programs', HTMLDialogElement);
@@ -227,7 +227,7 @@ export class Programs {
         this.#tell(text('opened_again', { time: String(when.textContent) }));
       });
       const robot = document.createElement('span');
-      robot.textContent = ROBOTS.find((each) => each.name === version.robot)?.labels[language] ?? version.robot;
+      robot.textContent = called(ROBOTS.find((each) => each.name === version.robot)?.labels ?? {}) || version.robot;
       row.append(when, robot, what, open);
       return row;
     });

@@ -59,7 +59,7 @@
 /** @typedef {{resolve: (answer: any) => void, reject: (why: Error) => void}} Waiting */
 
 export class Python {
-  #worker = new Worker('./worker.js', { type: 'module' });
+  #worker;
   /** @type {Map<number, Waiting>} */
   #waiting = new Map();
   #asked = 0;
@@ -68,7 +68,9 @@ export class Python {
   /** Resolves when it answers; rejects when it cannot be had. @type {Promise<void>} */
   ready;
 
-  constructor() {
+  /** @param {string} language to begin with */
+  constructor(language) {
+    this.#worker = new Worker('./worker.js', { type: 'module', name: language });
     this.ready = new Promise((resolve, reject) => {
       this.#worker.addEventListener('message', ({ data }) => {
         if (data.id === 0) {

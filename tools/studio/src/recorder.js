@@ -4,7 +4,7 @@
 
 import { element } from './elements.js';
 import { bytesOf, download } from './files.js';
-import { currentLanguage, text } from './texts.js';
+import { currentLanguage, known, text } from './texts.js';
 
 /** @typedef {import('./robot/way.js').RobotEvent} RobotEvent */
 /** @typedef {{ms: number, event: string}} Recorded */
@@ -130,7 +130,7 @@ export class Recorder {
 function said({ what, said = '', agreed = 0, line, robot, virtual }) {
   if (what === 'refused') return said;
   const place = line ? text('line', { line }) : text('record_end');
-  return text(`record_${what}`, { count: agreed, line, place, robot: told(robot), virtual: told(virtual) });
+  return text(known(`record_${what}`), { count: agreed, line, place, robot: told(robot), virtual: told(virtual) });
 }
 
 /** @param {Recorded | null | undefined} event */

@@ -1,16 +1,37 @@
 // Keeps the files of one build of the page, and answers with them. `tools.builds.studio` puts the
-// build's name and its files into VERSION and FILES.
+// build's name, its files, and those of each language into VERSION, FILES and LANGUAGES. A language is
+// kept when a page shows it, or a build before has kept it.
 //
 // It does not take over pages of another build: a worker and a page of two builds would not fit.
 
 const PREFIX = 'tiniscript-studio-';
 const NAME = PREFIX + VERSION;
 
+/** @param {string[]} names of files */
+async function keep(names) {
+  const cache = await caches.open(NAME);
+  return cache.addAll(names.map((name) => new Request(name, { cache: 'reload' })));
+}
+
+/** Whether a build keeps one of these files. @param {string[]} names */
+async function isKept(names) {
+  return (await Promise.all(names.map((name) => caches.match(name)))).some(Boolean);
+}
+
 self.addEventListener('install', (event) => {
   event.waitUntil(
-    caches.open(NAME).then((cache) =>
-      cache.addAll(FILES.map((name) => new Request(name, { cache: 'reload' }))),
-    ),
+    Promise.all(Object.values(LANGUAGES).map(async (names) => ((await isKept(names)) ? names : [])))
+      .then((kept) => keep([...FILES, ...kept.flat()])),
+  );
+});
+
+self.addEventListener('message', (event) => {
+  const names = LANGUAGES[event.data] ?? [];
+  event.waitUntil(
+    caches
+      .open(NAME)
+      .then((cache) => Promise.all(names.map((name) => cache.match(name))))
+      .then((found) => (found.every(Boolean) ? undefined : keep(names))),
   );
 });
 

@@ -8,7 +8,7 @@ import { text } from './texts.js';
 /** @typedef {import('./simulator.js').Phase} Phase */
 
 const EVERY_MS = 5000; // of this computer's time, while it drives
-const WAYS = ['where_right', 'where_up_right', 'where_up', 'where_up_left', 'where_left', 'where_down_left', 'where_down', 'where_down_right'];
+const WAYS = /** @type {const} */ (['where_right', 'where_up_right', 'where_up', 'where_up_left', 'where_left', 'where_down_left', 'where_down', 'where_down_right']);
 const STARS = 3;
 
 export class Where {
@@ -47,7 +47,7 @@ export class Where {
 
 /** @param {number[]} pose */
 function placeSaid([x = 0, y = 0, heading = 0]) {
-  const way = WAYS.at(Math.round((heading * WAYS.length) / 360) % WAYS.length) ?? '';
+  const way = WAYS.at(Math.round((heading * WAYS.length) / 360) % WAYS.length) ?? 'where_right';
   return text('where_is', { x: Math.round(x), y: Math.round(y), way: text(way) });
 }
 

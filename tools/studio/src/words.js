@@ -1,8 +1,9 @@
 // The words of the language and of each robot, for colors and completion. The table is
 // `description.json`, which is made from the compiler's own.
 
+import blocks from '../made/blocks.json';
 import description from '../made/description.json';
-import { currentLanguage } from './texts.js';
+import { called, hasText, text } from './texts.js';
 
 /** @typedef {{text: string, role: string, usage?: string, example: string}} Word */
 
@@ -37,7 +38,22 @@ export function labelled(label) {
 
 /** @param {typeof ROBOTS[number]['devices'][number]} device @returns {string} */
 export function nameOf(device) {
-  return labelled(`{${device.text}} ${device.labels[currentLanguage()]}`);
+  return labelled(`{${device.text}} ${called(device.labels)}`);
+}
+
+/** @type {Record<string, {says: string}>} */
+const KINDS = blocks.kinds;
+
+/** @param {string} name of a kind of block, or of what may be chosen @returns {string} its words; `%1` and so on are where values go */
+export function onBlock(name) {
+  const key = `block/${name}`;
+  return labelled(hasText(key) ? text(key) : KINDS[name]?.says ?? '');
+}
+
+/** @param {string} name of a kind of block @returns {string} what it does, said when a pointer rests on it, or nothing */
+export function tipOf(name) {
+  const key = `tip/${name}`;
+  return hasText(key) ? text(key) : '';
 }
 
 /**

@@ -2,9 +2,10 @@
 //
 // What is kept may be damaged, or from somebody else on this device: all of it is checked.
 
+import { languageOf } from './texts.js';
 import { isRobot, WORLDS } from './words.js';
 
-/** @typedef {{text: string, robot: string, world: string, language: 'en' | 'es', name: string, view: 'blocks' | 'text', level: 'few' | 'usual' | 'all', words: boolean, sound: boolean}} Work */
+/** @typedef {{text: string, robot: string, world: string, language: string, name: string, view: 'blocks' | 'text', level: 'few' | 'usual' | 'all', words: boolean, sound: boolean}} Work */
 
 const PLACE = 'tiniscript.work';
 const WORLD_PLACE = 'tiniscript.world'; // the text of the newest world that was drawn here
@@ -136,7 +137,7 @@ function checked(found) {
     text: found.text,
     robot: isRobot(found.robot) ? found.robot : 'tinibot',
     world: found.world === OWN_WORLD || WORLDS.some((world) => world.name === found.world) ? found.world : 'obstacles',
-    language: found.language === 'en' ? 'en' : 'es',
+    language: languageOf(found.language),
     name: typeof found.name === 'string' ? found.name.slice(0, 200) : '',
     view: found.view === 'text' ? 'text' : 'blocks',
     level: found.level === 'all' || found.level === 'usual' ? found.level : 'few',

@@ -2,7 +2,10 @@
 
 import { loadPyodide } from 'pyodide';
 // Nothing is installed: all modules are in the archives.
+import languages from '../made/languages.json';
 import lock from '../made/lock.json';
+
+const SOURCE = languages[0]?.[0] ?? ''; // the language that is always there
 
 /** @param {string} name */
 async function fetched(name) {
@@ -13,8 +16,16 @@ async function fetched(name) {
   return found.arrayBuffer();
 }
 
+/** The languages that Python speaks. @type {Set<string>} */
+const learnt = new Set();
+
 async function begin() {
   const archive = fetched('tiniscript.zip');
+  const wanted = [...new Set([SOURCE, self.name || SOURCE])];
+  const messages = wanted.map((language) => fetched(`messages.${language}.json`).catch((why) => {
+    if (language === SOURCE) throw why;
+    return null;
+  }));
   const python = await loadPyodide({
     indexURL: new URL('./', self.location.href).href,
     stdLibURL: new URL('./python.zip', self.location.href).href,
@@ -31,7 +42,13 @@ sys.path.insert(0, "/studio")
 from tiniscript.studio.worker import answer
 lambda request, data: answer(request, data.to_bytes())
 `);
-  return { ask, unpack };
+  /** @param {string} language @param {ArrayBuffer | null} data its messages */
+  const learn = (language, data) => {
+    if (data) ask(JSON.stringify({ do: 'learn', language }), new Uint8Array(data));
+    if (data) learnt.add(language);
+  };
+  (await Promise.all(messages)).forEach((data, k) => learn(wanted[k] ?? '', data));
+  return { ask, unpack, learn };
 }
 
 addEventListener('unhandledrejection', ({ reason }) => postMessage({ id: 0, error: String(reason) }));
@@ -56,9 +73,17 @@ function needLessons() {
 
 addEventListener('message', async ({ data: { id, request, data } }) => {
   try {
-    const { ask } = await python;
-    if (request.startsWith('{"do":"lesson_')) await needLessons();
-    postMessage({ id, answer: ask(request, data) });
+    const { ask, learn } = await python;
+    const asked = JSON.parse(request);
+    const { language } = asked;
+    if (asked.do.startsWith('lesson_')) await needLessons();
+    if (asked.do === 'learn') {
+      if (!learnt.has(language)) learn(language, await fetched(`messages.${language}.json`));
+      postMessage({ id, answer: '{}' });
+      return;
+    }
+    if (language && !learnt.has(language)) asked.language = SOURCE;
+    postMessage({ id, answer: ask(JSON.stringify(asked), data) });
   } catch (why) {
     postMessage({ id, error: String(why) });
   }

@@ -3,7 +3,7 @@
 
 import { element } from './elements.js';
 import { pictured, worldPicture } from './pictures_of.js';
-import { currentLanguage, text } from './texts.js';
+import { called, text } from './texts.js';
 import { WORLDS } from './words.js';
 import { OwnWorlds } from './own_worlds.js';
 import { OWN_WORLD } from './work.js';
@@ -126,13 +126,12 @@ export class WorldChoice {
   }
 
   setLanguage() {
-    const language = currentLanguage();
     const brought = this.#brought;
     const { newest, before } = this.#own;
     /** @param {World} world */
-    const label = (world) => world.labels[language].trim() || text('world_own');
+    const label = (world) => called(world.labels).trim() || text('world_own');
     this.#choice.replaceChildren(
-      ...WORLDS.map((world) => pictured(world.labels[language], world.name, worldPicture(world))),
+      ...WORLDS.map((world) => pictured(called(world.labels), world.name, worldPicture(world))),
       ...(newest ? [pictured(label(newest), OWN_WORLD, worldPicture(newest))] : []),
       ...before.map((world, k) => pictured(text(k ? 'world_before_more' : 'world_before', { world: label(world), number: k + 1 }), `${BEFORE}${k}`, worldPicture(world))),
       ...(brought ? [new Option(brought.label(), BROUGHT)] : []),

@@ -4,7 +4,7 @@
 import { element } from './elements.js';
 import { bytesOf, download } from './files.js';
 import { ownCopy } from './own_worlds.js';
-import { currentLanguage, text } from './texts.js';
+import { currentLanguage, known, text } from './texts.js';
 import {
   FLOOR, handleOf, isSame, KINDS, moved, NUMBERS, onFloor, partAt, partsOf, pointAt, pointsOf, START, turnedBy, turnedPart,
   valueOf, withDrawn, without, withPoint,
@@ -162,7 +162,7 @@ export class WorldDrawing {
     const value = valueOf(this.#page.world(), this.#chosen);
     const place = value.points?.[this.#point];
     const numbers = place ? `${text('world_point')} ${this.#point + 1}: ${place.join(', ')}`
-      : NUMBERS[this.#chosen.kind].slice(0, SPOKEN).map(([key]) => `${text(`world_${key}`)} ${value[key]}`).join(', ');
+      : NUMBERS[this.#chosen.kind].slice(0, SPOKEN).map(([key]) => `${text(known(`world_${key}`))} ${value[key]}`).join(', ');
     return numbers ? text('world_chosen', { part: nameOf(this.#chosen), numbers }) : nameOf(this.#chosen);
   }
 

@@ -1,6 +1,6 @@
 // The numbers of a part of a world, as inputs for whoever wants them exactly.
 
-import { text } from './texts.js';
+import { known, text } from './texts.js';
 import { CHOICES, NUMBERS, valueOf, withChoice, withNumber } from './world_parts.js';
 
 /** @typedef {import('./world_parts.js').World} World */
@@ -23,14 +23,14 @@ export function showNumbers(place, world, part, change) {
       input.value = String(valueOf(changed, part)[key]); // what it was, where it was no number
       change(changed);
     });
-    return labelled(text(`world_${key}`), input);
+    return labelled(text(known(`world_${key}`)), input);
   });
   const choice = CHOICES[part.kind];
   if (choice) {
     const input = document.createElement('input');
     Object.assign(input, { type: 'checkbox', checked: value[choice], id: `world_${choice}` });
     input.addEventListener('change', () => change(withChoice(world, part, choice, input.checked)));
-    rows.push(labelled(text(`world_${choice}`), input));
+    rows.push(labelled(text(known(`world_${choice}`)), input));
   }
   const focused = place.contains(document.activeElement) ? document.activeElement?.id : '';
   place.replaceChildren(...rows);

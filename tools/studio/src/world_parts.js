@@ -14,7 +14,7 @@ import { WORLD_LIMITS } from './words.js';
 /**
  * @typedef {object} World
  * @property {string} name
- * @property {{en: string, es: string}} labels
+ * @property {Record<string, string>} labels in each language; of one that somebody has drawn, none
  * @property {number} width_cm
  * @property {number} height_cm
  * @property {boolean} has_border

@@ -49,12 +49,12 @@ export class BigPupil extends Big {
   /** @param {Told} told */
   constructor(told) {
     super('big_pupil');
-    const act = (/** @type {string} */ key, /** @type {(key: string) => void} */ what) => button(key, () => what(this.key));
+    const act = (/** @type {import('../texts.js').Key} */ key, /** @type {(key: string) => void} */ what) => button(key, () => what(this.key));
     this.#lower = act('class_lower_hand', told.lower);
     this.#stop = act('stop', told.stop);
     this.#next = act('class_next', told.next);
     this.#remove = act('class_remove', told.remove);
-    const step = (/** @type {string} */ name, /** @type {number} */ by) => {
+    const step = (/** @type {'left' | 'right'} */ name, /** @type {number} */ by) => {
       const found = made('button', '', sign(name));
       found.type = 'button';
       found.dataset['label'] = `class_${name}`;

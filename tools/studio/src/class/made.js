@@ -5,7 +5,7 @@ import { text } from '../texts.js';
 /**
  * @template {keyof HTMLElementTagNameMap} K
  * @param {K} kind
- * @param {string} [key] of its text
+ * @param {import('../texts.js').Key | ''} key of its text
  * @param {(Node | string)[]} inside
  * @returns {HTMLElementTagNameMap[K]}
  */
@@ -19,7 +19,7 @@ export function made(kind, key = '', ...inside) {
   return found;
 }
 
-/** @param {string} key @param {() => void} pressed */
+/** @param {import('../texts.js').Key} key @param {() => void} pressed */
 export function button(key, pressed) {
   const found = made('button', key);
   found.type = 'button';
@@ -27,7 +27,7 @@ export function button(key, pressed) {
   return found;
 }
 
-/** @param {string} key @param {HTMLElement} field */
+/** @param {import('../texts.js').Key} key @param {HTMLElement} field */
 export function labelled(key, field) {
   return made('label', '', made('span', key), ' ', field);
 }

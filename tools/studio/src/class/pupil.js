@@ -102,7 +102,7 @@ export class Pupil {
     this.#look();
   }
 
-  /** @param {string} why */
+  /** @param {import('../texts.js').Key} why */
   #leave(why) {
     clearTimeout(this.#timer);
     askAs('');
@@ -178,8 +178,9 @@ export class Pupil {
   #showHand(isUp) {
     this.#isUp = isUp;
     this.#hands.setAttribute('aria-pressed', String(isUp));
-    this.#hands.dataset['label'] = isUp ? 'class_hand_down' : 'class_hand';
-    this.#hands.title = text(this.#hands.dataset['label']);
+    const key = isUp ? 'class_hand_down' : 'class_hand';
+    this.#hands.dataset['label'] = key;
+    this.#hands.title = text(key);
     this.#hands.setAttribute('aria-label', this.#hands.title);
   }
 
@@ -208,7 +209,7 @@ export class Pupil {
     this.#page.empty();
   }
 
-  /** @param {string} key @param {Record<string, string | number>} values */
+  /** @param {import('../texts.js').Key} key @param {Record<string, string | number>} values */
   #say(key, values = {}) {
     const said = text(key, values);
     if (this.#said.textContent !== said) this.#said.textContent = said;

@@ -11,7 +11,7 @@ import { clock, put, Wall } from './wall.js';
 import { element } from '../elements.js';
 import { hostPorts, post } from '../robot/host.js';
 import { shown } from '../robot/said.js';
-import { text } from '../texts.js';
+import { known, text } from '../texts.js';
 
 /** @typedef {{number: number, name: string, silent_s: number, place: number, robot: string, left_s: number, version: number, is_right: boolean, hand: number, lessons: string[]}} PupilRow */
 /** @typedef {{port: string, name: string, pupil: string, left_s: number}} RobotRow */
@@ -341,14 +341,14 @@ export class Teacher {
     if (next) this.#showBig(next.key);
   }
 
-  /** @param {string} key */
+  /** @param {import('../texts.js').Key} key */
   #say(key) {
     put(this.#said, text(key));
     document.documentElement.dataset['teacher'] = key;
   }
 }
 
-/** A button of what cannot be taken back: it acts at the second press. @param {string} key @param {() => void} act */
+/** A button of what cannot be taken back: it acts at the second press. @param {'class_end' | 'class_anew'} key @param {() => void} act */
 function pressedTwice(key, act) {
   let isSure = false;
   const found = button(key, () => {
@@ -357,8 +357,9 @@ function pressedTwice(key, act) {
   });
   const sure = (/** @type {boolean} */ now) => {
     isSure = now;
-    found.dataset['text'] = now ? `${key}_sure` : key;
-    found.textContent = text(found.dataset['text']);
+    const said = now ? known(`${key}_sure`) : key;
+    found.dataset['text'] = said;
+    found.textContent = text(said);
     if (now) setTimeout(() => sure(false), SURE_MS);
   };
   return found;

@@ -15,7 +15,7 @@ import { refusal, shown } from './said.js';
 import { stopAll } from './stops.js';
 import { Speech } from './speech.js';
 import { Failed } from './way.js';
-import { currentLanguage, text } from '../texts.js';
+import { called, currentLanguage, known, text } from '../texts.js';
 import { LINK, ROBOTS } from '../words.js';
 
 /** @typedef {import('../python.js').Checked} Checked */
@@ -103,7 +103,7 @@ export class RobotPanel {
   get #name() {
     const about = this.#about;
     if (!about) return '';
-    return shown(about.name) || ROBOTS.find((each) => each.name === about.robot)?.labels[currentLanguage()] || about.id;
+    return shown(about.name) || called(ROBOTS.find((each) => each.name === about.robot)?.labels ?? {}) || about.id;
   }
 
   setLanguage() {
@@ -354,7 +354,7 @@ export class RobotPanel {
     else if (event.event === 'RESTARTED') this.#speech.say('why_restarted');
     else if (event.event === 'STOPPED') {
       clearTimeout(this.#confirming);
-      if (document.visibilityState !== 'hidden') this.#speech.say(this.#isBroken ? 'say_broken' : `stopped_${event.cause}`);
+      if (document.visibilityState !== 'hidden') this.#speech.say(this.#isBroken ? 'say_broken' : known(`stopped_${event.cause}`));
       this.#isBroken = false;
     }
   }

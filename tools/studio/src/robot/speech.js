@@ -2,7 +2,7 @@
 
 import { element } from '../elements.js';
 import { shown } from './said.js';
-import { hasText, text } from '../texts.js';
+import { hasText, known, text } from '../texts.js';
 
 /** @typedef {import('./way.js').Failed} Failed */
 
@@ -30,12 +30,12 @@ export class Speech {
   }
 
   /**
-   * @param {string} key
+   * @param {import('../texts.js').Key} key
    * @param {Record<string, string | number>} values
    * @param {string} [saved]
    */
   say(key, values = {}, saved = '') {
-    this.#put(() => text(key, saved ? { ...values, saved: text(saved) } : values), key);
+    this.#put(() => text(key, saved ? { ...values, saved: text(known(saved)) } : values), key);
   }
 
   /** @param {string} said */
@@ -64,7 +64,7 @@ export class Speech {
     this.#list.textContent = '';
   }
 
-  /** Something new begins: what was shown before is gone. @param {string} key */
+  /** Something new begins: what was shown before is gone. @param {import('../texts.js').Key} key */
   begin(key) {
     this.clear();
     this.say(key);

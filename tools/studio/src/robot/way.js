@@ -58,7 +58,7 @@
  * @property {() => void} leave
  */
 
-/** Why there is no connection: a name of `robot_texts`, and what somebody else says of it. */
+/** Why there is no connection: a text `why_…`, and what somebody else says of it. */
 export class Failed extends Error {
   /**
    * @param {string} reason

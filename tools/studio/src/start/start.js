@@ -1,7 +1,7 @@
 // The start screen: pictures that begin with a robot that moves, earlier programs, and ways onward.
 
 import { element } from '../elements.js';
-import { currentLanguage, text } from '../texts.js';
+import { currentLanguage, known, text } from '../texts.js';
 import { titleOf, versions } from '../versions.js';
 import { BEGINNINGS } from './beginnings.js';
 import { isStart, show, whenScreen } from './screens.js';
@@ -49,7 +49,7 @@ export class Start {
   async #begin(name) {
     const { text: program, robot, world } = BEGINNINGS[name] ?? { text: '', robot: '', world: '' };
     this.#isBeginning = true;
-    this.#page.put({ text: program, robot, name: `${text(`begin_${name}`).toLowerCase()}.ts` });
+    this.#page.put({ text: program, robot, name: `${text(known(`begin_${name}`)).toLowerCase()}.ts` });
     this.#page.side('side_virtual');
     element('stop', HTMLButtonElement).focus();
     try {

@@ -1,0 +1,44 @@
+"""What the page says in a language, and the Python in it: from the catalogues."""
+
+from __future__ import annotations
+
+import re
+from gettext import c2py
+from typing import Any
+
+from tiniscript.languages import FOLDER, ByLanguage, languages
+from tiniscript.languages.compiling import merged
+from tiniscript.words import WORDS
+
+MESSAGES = ("messages", "statuses", "refusals", "library")  # of what the page's Python says
+PERIOD = 100  # after so many numbers a rule of plurals repeats itself, but for the first hundred
+
+
+def page_texts(language: str) -> dict[str, str | list[str]]:
+    """Return the page's texts by key; of one with a plural, its forms.
+
+    The one without a key has which form is for which number, from 0 to 199.
+    """
+    head, found = _texts("studio", language)
+    rule = re.search(r"plural=([^;\n]+)", head)
+    form = c2py(rule[1] if rule else "0")
+    return {
+        "": "".join(str(form(number)) for number in range(2 * PERIOD)),
+        **{key: forms if len(forms) > 1 else forms[0] for key, forms in found.items()},
+        **{
+            f"block/{word.text}": f"{{{word.text}}} "
+            + ByLanguage(zip(languages(), word.says, strict=False))[language]
+            for word in WORDS.values()
+            if word.stands_for
+        },
+    }
+
+
+def messages(language: str) -> dict[str, dict[str, Any]]:
+    """Return what `tiniscript.studio.worker` learns, by catalogue."""
+    found = {name: _texts(name, language) for name in MESSAGES}
+    return {name: {"": head, **texts} for name, (head, texts) in found.items()}
+
+
+def _texts(name: str, language: str) -> tuple[str, dict[str, list[str]]]:
+    return merged(FOLDER / "en" / f"{name}.po", FOLDER / language / f"{name}.po")
