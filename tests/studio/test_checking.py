@@ -107,7 +107,7 @@ def test_the_page_knows_every_robot_and_its_words() -> None:
         kit = robots.load(each["name"]).kit
         names = [device["text"] for device in each["devices"]]
         assert names == [device.name for device in (*kit.sensors, *kit.actuators)]
-        assert set(each["labels"]) == {"en", "es"}
+        assert set(each["labels"]) == set(LANGUAGES)
     words = {each["text"] for each in found["words"]}
     assert {"F", "IF", "END_LOOP", "UNTIL"} <= words and not words & {"SEND", "ENDLOOP"}
     assert found["worlds"][0]["name"] == "obstacles"
