@@ -159,7 +159,8 @@ WRONG = {
     "F(2 80)": ("COMMA", 5), "F(2-1 (80))": ("COMMA", 7), "X=MIN(1 DISTANCE)": ("COMMA", 9),
     "F(2,80 5)": ("CLOSE", 8), "X=(1 2)": ("CLOSE", 6), "X=ABS(1 2)": ("CLOSE", 9),
     "F(1,80;L(1,50)": ("CLOSE", 5), "W(1 2)": ("CLOSE", 5),
-    "DEF F": ("RESERVED", 5), "TASK": ("RESERVED", 1), "ROUND(1)": ("RESERVED", 1),
+    "DEF F": ("RESERVED", 5), "TASK": ("LACKS", 1), "F(20 CM,60)": ("LACKS", 6),
+    "ROUND(1)": ("RESERVED", 1),
 }  # fmt: skip
 
 

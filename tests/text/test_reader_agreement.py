@@ -66,7 +66,7 @@ def check_bytes(data: bytes, kit: Kit, room: int = LARGEST_ROOM) -> Answer | Non
     right = is_right(data, kit)
     if right and UNREAD & {token.text for token in scan(decode(data)).tokens}:
         # FOREVER without UNTIL is right in a program with tasks; the others are what a unit is
-        known = ("RESERVED", "FULL", "FOREVER_HERE", "COMMA", "CHARACTER", "NUMBER")
+        known = ("LACKS", "FULL", "FOREVER_HERE", "CHARACTER", "NUMBER")
         assert answer.problem in known, f"{answer}\n{data!r}"
         return None
     if right:

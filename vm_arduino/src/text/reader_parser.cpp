@@ -40,6 +40,8 @@ Problem Reader::before(Problem problem) {
 }
 
 Problem Reader::parse(uint8_t token) {
+  // TASK, WHEN, CM and DEG are for robots that get a compiled program.
+  if (token >= kWordTask && token <= kWordDeg) return Problem::kLacks;
   const uint8_t state = state_;
   switch (state) {
     case kBegin:
