@@ -5,9 +5,11 @@ from __future__ import annotations
 import pytest
 
 from tests.pupils.corpus import check
+from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.kit import Kit
 from tiniscript.library import compiling
-from tiniscript.repairs.fixing import fixed
+from tiniscript.repairs.fixing import CHECKS, fixed, is_better
+from tiniscript.source import Edit, Span
 
 
 @pytest.mark.parametrize(
@@ -74,3 +76,23 @@ def test_a_long_hostile_text_takes_few_steps(piece: str, monkeypatch: pytest.Mon
     monkeypatch.setattr(compiling, "analyzed", counted)
     assert check(text)
     assert 0 < len(checks) <= 40
+
+
+def test_a_program_is_checked_so_often_and_no_more() -> None:
+    """Whatever its repairs uncover."""
+    (missing,) = check("F(2 80)")
+    texts: list[str] = []
+
+    def endless(text: str) -> list[Diagnostic]:
+        texts.append(text)
+        return [missing] * (2 * CHECKS - len(texts))
+
+    assert fixed("F(2 80)", endless).repairs == CHECKS - 1 and len(texts) == CHECKS
+
+
+def test_a_repair_with_a_mistake_in_it_is_none() -> None:
+    (missing,) = check("F(2 80)")
+    edits = [Edit(Span(3, 3), ",,,"), Edit(Span(5, 6), "")]
+    for start, is_repair in ((2, True), (3, False), (5, False), (6, True)):
+        other = missing._replace(span=Span(start, 9))
+        assert is_better([other], [missing], missing.code, edits) == is_repair
