@@ -138,6 +138,15 @@ def test_a_robot_whose_key_this_computer_has_is_fine() -> None:
         assert only(Firmware(features=features), kit=KIT, its_key=key) == ("fine", True)
 
 
+@pytest.mark.parametrize(("features", "said"), [(0, "-"), (OWNERS | OWNED, "OWNERS, OWNED")])
+def test_a_report_tells_what_a_robot_can_do(features: int, said: str) -> None:
+    robot = WireRobot(SimulatedWire(Firmware(features=features)), 4711, KIT)
+    reply, noted = robot.hello(), dict[str, str]()
+    assert reply is not None
+    list(examined(robot, reply, Expected(KIT, "tinibot", NAMES.get, note=noted.update), 0))
+    assert noted["features"] == said
+
+
 def test_a_kit_that_nobody_knows() -> None:
     assert only(Firmware(kit=0x1234)) == ("unknown_kit", True)
     assert only(Firmware(kit=0x1234), kit=0x1234) == ("fine", True)

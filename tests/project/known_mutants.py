@@ -119,5 +119,8 @@ KNOWN: tuple[Known, ...] = (
     Known("a mistake in what a repair writes", "compiler/tiniscript/repairs/fixing.py",
           "end = start + len(new)", "end = start - len(new)",
           "tests/pupils/test_choices.py::test_a_repair_with_a_mistake_in_it_is_none"),
+    Known("what a robot can do in a report", "compiler/tiniscript/doctor/examination.py",
+          "\", \".join(features) or \"-\"", "\", \".join(features) and \"-\"",
+          "tests/doctor/test_line.py::test_a_report_tells_what_a_robot_can_do"),
 )
 # fmt: on
