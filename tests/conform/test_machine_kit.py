@@ -9,8 +9,9 @@ import shlex
 import sys
 import time
 from collections.abc import Sequence
+from itertools import count
 from pathlib import Path
-from types import ModuleType
+from types import ModuleType, SimpleNamespace
 
 import pytest
 
@@ -23,6 +24,7 @@ from tests.support.waiting import until
 from tiniscript.bytecode.image import GO
 from tiniscript.bytecode.loading import loaded
 from tiniscript.bytecode.opcodes import OPS
+from tiniscript.conformance import machine_process
 from tiniscript.conformance.comparing import AGREES, DIFFERS, LACKS, verdicts
 from tiniscript.conformance.kit import MachineCase, machine_cases
 from tiniscript.conformance.link_kit import link_kit
@@ -277,6 +279,19 @@ def test_a_slow_reader_takes_nothing_of_the_next_process(
         with pytest.raises(Problem) as problem:
             process.ask("run\n", 0)
         assert problem.value.what == "more"
+
+
+def test_a_machine_that_has_ended_is_not_waited_for(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    process = MachineProcess(machine(tmp_path, ONE_SHOT), 100)
+    process.ask("run\n", 0)
+    until(lambda: not process._reader.is_alive(), "it ends")
+    looks = count()
+    clock = SimpleNamespace(monotonic=lambda: next(looks))
+    monkeypatch.setattr(machine_process, "time", clock)
+    process.close()
+    assert next(looks) == 1, "only when it began to wait"
 
 
 def test_of_a_machine_that_crashed_without_a_word_the_exit_code_is_told(

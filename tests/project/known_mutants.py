@@ -122,5 +122,11 @@ KNOWN: tuple[Known, ...] = (
     Known("what a robot can do in a report", "compiler/tiniscript/doctor/examination.py",
           "\", \".join(features) or \"-\"", "\", \".join(features) and \"-\"",
           "tests/doctor/test_line.py::test_a_report_tells_what_a_robot_can_do"),
+    Known("servos beside each other", "compiler/tiniscript/robots/wiring/finished.py",
+          "self.x + share * self.breadth", "self.x + share // self.breadth",
+          "tests/wiring/test_wiring.py::test_two_servos_share_the_front_edge"),
+    Known("a machine that has ended", "compiler/tiniscript/conformance/machine_process.py",
+          "while self._reader.is_alive() and time", "while self._reader.is_alive() or time",
+          "tests/conform/test_machine_kit.py::test_a_machine_that_has_ended_is_not_waited_for"),
 )
 # fmt: on

@@ -483,6 +483,20 @@ def test_a_gripper_is_drawn_around_its_button_and_another_servo_has_an_arm() -> 
     assert "GRIPPER" not in texts_of(finished_of(plan_of(robots.load("tinibot"), "en")))
 
 
+def test_two_servos_share_the_front_edge() -> None:
+    plan = plan_of(robots.load("grabber"), "en")
+    servo = next(each for each in plan.parts if each.is_device and each.shape.icon == "servo")
+    bare = plan._replace(body=plan.body._replace(places={}), parts=(*plan.parts, servo))
+    middle, half = _Finished(bare).x, _Finished(bare).breadth / 2
+    boxes = [each.attrib for each in Tree.fromstring(finished_of(bare)).iter(f"{SVG}rect")]
+    found = [
+        float(each["x"]) + 26 - middle
+        for each in boxes
+        if (each["width"], each["height"]) == ("52", "30")
+    ]
+    assert found == pytest.approx([-half / 2, half / 2], abs=0.1)
+
+
 def test_the_longest_names_stay_in_the_finished_drawing() -> None:
     plan = plan_of(robots.load("grabber"), "en")
     long = "W" * 24

@@ -17,7 +17,6 @@ Edits = list[Edit] | None
 
 _NEAR = 80  # characters before a value in which its word is looked for
 _CALL = re.compile(r"[A-Za-z_]\w*\s*\([^()\r\n]*$")  # up to a value in brackets
-_WORD_BEFORE = re.compile(r"[A-Za-z_]\w*\s*$")
 _TO_ITS_END = re.compile(r"[^;\r\n{}]*")
 
 
@@ -51,13 +50,6 @@ def _own(diagnostic: Diagnostic, source: Source) -> Edits:
     if diagnostic.place is not None:
         return [Edit(diagnostic.place, fix)]
     start, end = diagnostic.span
-    head = fix.partition("(")[0].upper()
-    if text[start:end].startswith("("):
-        begin = max(0, start - _NEAR)
-        word = _WORD_BEFORE.search(text[begin:start])
-        if word is None or word[0].strip().upper() != head:
-            return None
-        return [Edit(Span(begin + word.start(), end), fix)]
     if "UNTIL" not in fix:
         end = _end_of_call(text, start) or end
     return [Edit(Span(start, end), fix)]
