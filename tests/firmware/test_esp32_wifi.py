@@ -93,6 +93,19 @@ def test_the_owner_gives_the_robot_a_network(network: wifi.Network) -> None:
     assert asked.service == "_tiniscript._tcp 8473"
 
 
+def test_what_there_is_no_memory_for_is_announced_later() -> None:
+    robot, _ = joined(Keys())
+    again = Esp32Robot(kept=robot.kept())
+    again.wait(100)
+    again.radio("H", b"\1")
+    in_reach(again, SCHOOL.name.decode(), SCHOOL.password.decode())
+    again.wait(400)
+    assert port_of(again) and not radios(again).service
+    again.radio("H", b"\0")
+    again.wait(400)
+    assert radios(again).service == "_tiniscript._tcp 8473"
+
+
 def test_it_is_there_again_after_a_reset_and_gone_when_forgotten() -> None:
     robot, owner = joined(Keys())
     again = Esp32Robot(kept=robot.kept())

@@ -401,7 +401,7 @@ bool MDNSResponder::begin(const String& hostName) {
   expect(has_network_stack, "the network before WiFi has begun");
   const Lock lock(guard);
   settings.host = hostName.c_str();
-  return true;
+  return !chip.is_heap_full;
 }
 void MDNSResponder::setInstanceName(const String& name) {
 #else
@@ -409,7 +409,7 @@ bool MDNSResponder::begin(const char* hostName) {
   expect(has_network_stack, "the network before WiFi has begun");
   const Lock lock(guard);
   settings.host = hostName;
-  return true;
+  return !chip.is_heap_full;
 }
 void MDNSResponder::setInstanceName(String name) {
 #endif
