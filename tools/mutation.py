@@ -329,8 +329,8 @@ class Copy:
         """Return what fails first of the tests, or nothing."""
         if is_page and (why := self._ends(["-m", "tools.builds.studio", "--again"])):
             return f"the build: {why}"
-        # A size, and what is generated, notice any change.
-        left_out = "not keeps_to_its_size and not generated and not is_of_these_sources"
+        # A size, and what is generated or built, notice any change.
+        left_out = "not keeps_to_its_size and not generated and not same_page"
         return self._ends(
             ["-m", "pytest", "-q", "-x", "-p", "no:cacheprovider", "-k", left_out, *tests]
         )
