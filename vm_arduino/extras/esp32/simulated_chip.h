@@ -1,8 +1,7 @@
 // An ESP32 on a computer, for tests: what `core/` declares, done by variables.
 //
 // Knows time, pins, the GPIO matrix, LEDC, timers, UART 0, NVS and the watchdog; no instructions.
-// `simulated_radio` has the radios. What the real parts refuse is refused: `refusals.cpp` says what,
-// and by whose word.
+// `simulated_radio` has the radios. What the real parts refuse ends the run.
 
 #ifndef TINISCRIPT_ESP32_SIMULATED_CHIP_H_
 #define TINISCRIPT_ESP32_SIMULATED_CHIP_H_
@@ -83,7 +82,7 @@ struct SimulatedChip {
 
 extern SimulatedChip chip;
 
-// Ends the program with "MISUSE" and a row of `refusals.cpp`, unless it is so.
+// Ends the program with "MISUSE" and what it was, unless it is so.
 void expect(bool is_so, const char* what);
 void expect_free(const char* what);  // of a critical section
 
