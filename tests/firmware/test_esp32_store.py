@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.firmware.test_store import STORE, break_of
+from tests.firmware.test_store import STORE
 from tests.machines.esp32 import STAND_INS, flags_of
 from tests.machines.host import BUILDS, FLAGS, SOURCES, WARNINGS, made
 
@@ -78,14 +78,3 @@ def test_the_largest_programs_are_saved_again_and_again(pages: int, is_enough: b
     done = run(program(), 1, 8192, pages)
     assert (done.returncode == 0) == is_enough, (done.stdout + done.stderr)[-2000:]
     assert is_enough or "a save fails" in done.stdout
-
-
-NOTICED = ("the mark comes before the body", "the generation is not in the body",
-           "what counts is written over", "the older one counts")  # fmt: skip
-
-
-@pytest.mark.parametrize("name", NOTICED)
-def test_a_break_is_noticed(name: str, tmp_path: Path) -> None:
-    broken = tmp_path / "store.cpp"
-    broken.write_text(break_of(name), encoding="utf-8")
-    assert run(program(broken), 1, 24).returncode == 1

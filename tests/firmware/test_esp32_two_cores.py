@@ -27,7 +27,6 @@ THREADS = (
     "simulated_radio.cpp",
     "simulated_tls.cpp",
 )
-PIPE = "src/boards/esp32/pipe.h"
 
 
 def program(sources: Path = SOURCES) -> Path:
@@ -56,26 +55,3 @@ def run(sources: Path = SOURCES, seconds: int = 2) -> subprocess.CompletedProces
 def test_no_two_cores_touch_the_same_at_once() -> None:
     done = run()
     assert done.returncode == 0, (done.stdout + done.stderr)[-4000:]
-
-
-@pytest.mark.sampled("file", "old", "new", keep=2)
-@pytest.mark.parametrize(("file", "old", "new"), [
-    (PIPE, "__atomic_store_n(&behind_, behind, __ATOMIC_RELEASE);", "behind_ = behind;"),
-    (PIPE, "__atomic_load_n(&behind_, __ATOMIC_ACQUIRE)", "behind_"),
-    ("src/boards/esp32/watchdog.cpp", "return __atomic_load_n(&from, __ATOMIC_ACQUIRE);",
-     "return from;"),
-    ("src/boards/esp32/kept_settings.h",
-     "      const CriticalSection critical;\n      *found = now_;", "      *found = now_;"),
-    ("src/boards/esp32/broker_settings.cpp", "__atomic_load_n(&state, __ATOMIC_RELAXED)", "state"),
-])  # fmt: skip
-def test_a_race_is_noticed(file: str, old: str, new: str, tmp_path: Path) -> None:
-    """What is published without the order of its bytes."""
-    copy = Path(shutil.copytree(SOURCES, tmp_path / "vm", ignore=shutil.ignore_patterns(".pio")))
-    text = (copy / file).read_text(encoding="utf-8")
-    assert old in text
-    (copy / file).write_text(text.replace(old, new), encoding="utf-8")
-    for seconds in (2, 10, 40):  # a busy computer rarely runs both at once
-        done = run(copy, seconds)
-        if done.returncode:
-            break
-    assert done.returncode == 66 and "data race" in done.stderr, done.stdout

@@ -20,7 +20,7 @@ from zlib import crc32
 
 import pytest
 
-from tests.machines.host import FLAGS, ROOT, SOURCES, WARNINGS, compiled
+from tests.machines.host import FLAGS, ROOT, SOURCES, compiled
 from tiniscript.bytecode.image import HEADER_BYTES, pack
 from tools.bench import avr_bench
 
@@ -33,7 +33,6 @@ SAMPLES = (("3", "3"), ("24", "9"), ("389", "97"), ("records", "9"))
 CAMPAIGN = (("3", "1"), ("24", "1"), ("64", "2"), ("389", "5"), ("records", "2"))
 MEGA = "-D__AVR_ATmega2560__"
 STORE = SOURCES / "src" / "store" / "store.cpp"
-SEEDS = range(1, 3)  # in which a break must be noticed
 CODE_BYTES = 389  # kStoredCodeBytes on an Uno
 SAVED, SAVING = 3, 2  # StoreState
 
@@ -87,113 +86,6 @@ def test_no_byte_is_erased_twice_by_a_save() -> None:
 
 def test_the_layout_of_a_mega() -> None:
     assert run(compiled(parts(SOURCES), (*FLAGS, MEGA)), 1, ("3", "9")).cases > 10_000
-
-
-def steps(*names: str) -> str:
-    """Return steps as they stand in the store."""
-    return "\n    ".join(f"step(WriteStep::k{name})," for name in names)
-
-
-CLEARS = steps("Clear, 3", "Clear, 2", "Clear, 1")
-EMPTIES = steps("Empty, 0", "Empty, kBodyAt", "Empty, 1")
-
-GIVES_UP = (
-    "  state_ = StoreState::kIdle;\n  is_busy_ = false;\n}\n\ntini_noinline bool Store::begin_save"
-)
-
-# What must be noticed: a change of the store.
-BREAKS = {
-    "the mark comes before the body": (
-        steps("Generation", "Body", "Check", "Mark, 1"),
-        steps("Generation", "Mark, 1", "Body", "Check"),
-    ),
-    "the old mark is not taken away": (
-        f"// saving\n    {CLEARS}",
-        f"// saving\n    {steps('Clear, 3', 'Clear, 2', 'Clear, 2')}",
-    ),
-    "the old seals are not taken away": (
-        f"// saving\n    {CLEARS}",
-        f"// saving\n    {steps('Clear, 1', 'Clear, 1', 'Clear, 1')}",
-    ),
-    "the body goes before the marks": (
-        f"// saving\n    {CLEARS}",
-        f"// saving\n    {steps('Clear, 4', 'Clear, 2', 'Clear, 1')}",
-    ),
-    "what counts is not settled": ("!= mark   ? kKeeping", "!= mark ? kKeepingEnd"),
-    "what does not count is not settled": (
-        "first == kEmptied ? kEmptyingEnd : kEmptying;",
-        "first == kEmptied ? kEmptyingEnd : kEmptyingEnd;",
-    ),
-    "settling begins with the mark": ("kKeeping = 15;", "kKeeping = 16;"),
-    "the checksum is not looked at": ("!= kBehindItself) return false;", "== 0) return false;"),
-    "equal bytes are never written": (
-        "is_stable_ = held_[slot_] != kNothing;",
-        "is_stable_ = true;",
-    ),
-    "the generation is not in the body": ("at == 0 ? byte ^ nvm_read(place) : byte;", "byte;"),
-    "the mark is the same for each generation": ("generation_ ^ kMarkOf;", "kMarkOf;"),
-    "what is emptied still fits": (
-        "step(WriteStep::kEmpty, kBodyAt),",
-        "step(WriteStep::kEmpty, 0),",
-    ),
-    "the emptied mark comes first": (
-        EMPTIES,
-        steps("Empty, 1", "Empty, kBodyAt", "Empty, 0"),
-    ),
-    "the second seal is ignored": (": nvm_read(place + 3) != mark ? kKeepingMarks", ": false ? 0"),
-    "the older one counts": (">= kGenerations / 2;", "< kGenerations / 2;"),
-    "generations do not go around": ("ahead % kGenerations >= kGenerations / 2", "first > second"),
-    "what counts is written over": ("slot ^ 1);\n}", "slot);\n}"),
-    "what was given up counts": (GIVES_UP, f"  held_[slot_] = generation_;\n{GIVES_UP}"),
-}
-
-
-@pytest.fixture(scope="module")
-def objects(tmp_path_factory: pytest.TempPathFactory) -> list[str]:
-    """All but the store, compiled once."""
-    folder = tmp_path_factory.mktemp("objects")
-    code = [path for path in parts(SOURCES) if path.suffix == ".cpp" and path != STORE]
-    command = ["g++", "-std=c++11", "-O2", *WARNINGS, "-c", *map(str, code)]
-    subprocess.run(command, cwd=folder, check=True)
-    return [str(folder / f"{path.stem}.o") for path in code]
-
-
-def break_of(name: str) -> str:
-    """Return the store with a break, without what the compiler would say of it."""
-    text = STORE.read_text(encoding="utf-8")
-    old, new = BREAKS[name]
-    assert old in text
-    text = re.sub(r"^static_assert[^;]*;", "", text.replace(old, new), flags=re.M)
-    return text.replace('#include "', f'#include "{STORE.parent}/')
-
-
-def quick(source: Path, objects: list[str], folder: Path) -> Path:
-    """Return the program with another store, without sanitizers."""
-    program = folder / "program"
-    command = ["g++", "-std=c++11", "-O2", str(source), *objects, "-o", str(program)]
-    subprocess.run(command, check=True)
-    return program
-
-
-def test_what_breaks_are_noticed_by_finds_nothing(objects: list[str], tmp_path: Path) -> None:
-    program = quick(STORE, objects, tmp_path)
-    for seed in SEEDS:
-        assert run(program, seed, ("3",)).cases > 10_000
-
-
-@pytest.mark.sampled("name", keep=6)
-@pytest.mark.parametrize("name", BREAKS)
-def test_a_break_is_noticed(name: str, objects: list[str], tmp_path: Path) -> None:
-    source = tmp_path / "store.cpp"
-    source.write_text(break_of(name), encoding="utf-8")
-    program = quick(source, objects, tmp_path)
-    for seed in SEEDS:
-        words = [str(program), str(seed), "3"]
-        done = subprocess.run(words, capture_output=True, text=True, timeout=300)
-        if done.returncode:
-            assert re.match(r"WRONG .*: .*, cut \d at \d+", done.stdout), done.stdout
-            return
-    raise AssertionError("not noticed")
 
 
 # -- the document -------------------------------------------------------------------------------

@@ -40,12 +40,6 @@ def test_what_is_left_at_least_is_what_is_left_where_they_meet() -> None:
     assert apart.least_free == pytest.approx(met.least_free, abs=4)
 
 
-def test_a_firmware_that_takes_too_much_is_seen() -> None:
-    """What stays free would be enough, did not an interrupt come in the deepest place."""
-    greedy = stack_of(1280, 200, False)
-    assert greedy.untouched >= LEAST_FREE > greedy.least_free
-
-
 @pytest.mark.sampled(of="long ways of a chip", keep=2)
 @pytest.mark.parametrize(
     ("environment", "robot"),

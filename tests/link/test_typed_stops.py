@@ -8,15 +8,12 @@ backwards to know whether it is a stop.
 from __future__ import annotations
 
 import argparse
-import shutil
 import sys
 import time
-from pathlib import Path
 
 import pytest
 
 from tests.machines.damage import CppDamage, cpp_damage
-from tests.machines.host import SOURCES
 from tiniscript.link.frames import begins_text
 from tiniscript.link.session import Session
 
@@ -25,29 +22,6 @@ FRAMES = 1_000_000
 LINES = 200  # asked for at a time; a line has 1,024 frames
 PER_LINE = 1024
 SEED = 7
-
-# Breaks that the prefixes must see: the file, what it has, and what becomes of that.
-STOPS, RECEIVER = "src/link/typed_stop.h", "src/link/receiver.cpp"
-BREAKS = {
-    "a control byte begins nothing": (STOPS, "kEscape : kBegin;", "kEscape : kOther;"),
-    "0x7f begins nothing": (STOPS, " || byte == 0x7f) {", ") {"),
-    "a key begins nothing": (STOPS, "(byte == '[' || byte == 'O')", "byte == ']'"),
-    "letters are kept from the line before": (
-        STOPS, "= byte == kEscapeByte ? kEscape : kBegin;", "= ends_line(byte) ? place : kBegin;"),
-    "silence begins nothing": (RECEIVER, "    typed_.begin();\n", ""),
-    "a tab is no blank": (STOPS, "byte == '\\t' || byte == ';'", "byte == ';'"),
-    "S alone is no stop": (STOPS, "place == kLetter || place == kStop;", "place == kStop;"),
-    "a frame that is cut keeps its stop": (
-        RECEIVER, "may_stop_[filled()] = place_ == Place::kHeld;", "may_stop_[filled()] = false;"),
-    "a frame that is too long keeps it": (
-        RECEIVER, "before != Place::kHeld || place_ != Place::kSkip", "true"),
-    "a mark without a place": (
-        RECEIVER, "  if (place_ != Place::kAfterText) return false;\n  marks_", "  marks_"),
-}  # fmt: skip
-# Breaks that undamaged frames must see.
-FALSE_STOPS = {
-    "frames stop at once": (RECEIVER, "is_frame() && !is_dropping_", "false"),
-}
 
 
 def false_stops(
@@ -87,29 +61,6 @@ def test_a_request_that_would_be_text_gets_another_number(monkeypatch: pytest.Mo
     frames = asked.poll(0).strip(b"\0")
     assert frames[2] == 0x7F
     assert begins_text(b"\r\nA") and not begins_text(b"\r\n\x7f") and not begins_text(b"\n\nA")
-
-
-def broken(name: str, tmp_path: Path) -> CppDamage:
-    file, old, new = {**BREAKS, **FALSE_STOPS}[name]
-    for part in ("src", "extras"):
-        shutil.copytree(SOURCES / part, tmp_path / part)
-    text = (tmp_path / file).read_text(encoding="utf-8")
-    assert text.count(old) == 1, "the sources were rewritten: BREAKS"
-    (tmp_path / file).write_text(text.replace(old, new), encoding="utf-8")
-    return CppDamage(tmp_path)
-
-
-@pytest.mark.sampled("name", keep=2)
-@pytest.mark.parametrize("name", BREAKS)
-def test_a_stop_that_is_missed_is_seen(name: str, tmp_path: Path) -> None:
-    with pytest.raises(AssertionError, match="prefix"):
-        broken(name, tmp_path).type_behind(SEED, 0, PREFIXES)
-
-
-@pytest.mark.sampled("name", keep=2)
-@pytest.mark.parametrize("name", FALSE_STOPS)
-def test_a_false_stop_is_seen(name: str, tmp_path: Path) -> None:
-    assert false_stops(broken(name, tmp_path), FRAMES // 10, SEED)[1] > 0
 
 
 def main() -> int:

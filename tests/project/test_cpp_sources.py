@@ -59,12 +59,6 @@ def test_nothing_shouts(path: Path) -> None:
     assert not shouting(path)
 
 
-def test_the_check_of_capitals_can_fail(tmp_path: Path) -> None:
-    path = tmp_path / "some.h"
-    path.write_text("#ifndef A_H_\n#define A_H_\nint F; // GOOD\n#define LIMIT 1\n#endif\n")
-    assert shouting(path) == {"F", "LIMIT"}
-
-
 @each_row("path", PORTABLE)
 def test_the_machine_asks_nothing_of_a_board(path: Path) -> None:
     text = path.read_text(encoding="utf-8")

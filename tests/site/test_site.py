@@ -21,7 +21,6 @@ from tests.support.casefile import ROOT
 from tests.support.platformio import shared
 from tools.builds import site
 from tools.builds import studio as studio_build
-from tools.site import links
 from tools.site.documents import MOVED, PARTS, documents
 from tools.site.lexer import TiniScriptLexer
 from tools.site.pages import Missing, page, shelf
@@ -91,23 +90,6 @@ def test_every_page_is_there(built: Path) -> None:
     for each in documents(ROOT):
         for language in each.sources:
             assert (built / language / f"{each.name}.html").is_file()
-
-
-def test_the_check_of_links_can_fail(tmp_path: Path) -> None:
-    (tmp_path / "a").mkdir()
-    (tmp_path / "a" / "one.html").write_text(
-        '<p id="here"><a href="../two.html">no</a> <a href="#here">yes</a> <a href="#there">no</a>'
-        '<a href="one.html#here">yes</a> <a href="https://example.org/">yes</a>'
-        '<script src="https://example.org/x.js"></script> <img src="data:image/png,">'
-        '<a href="../../out.html">no</a> <a href="../a">no</a>'
-    )
-    assert links.dead(tmp_path) == [
-        "a/one.html: ../two.html: no such file",
-        "a/one.html: #there: no such place on that page",
-        "a/one.html: https://example.org/x.js: fetched from another origin",
-        "a/one.html: ../../out.html: outside of the site",
-        "a/one.html: ../a: no such file",
-    ]
 
 
 @pytest.fixture
