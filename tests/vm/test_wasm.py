@@ -12,18 +12,13 @@ import pytest
 
 from tests.machines import Senses
 from tests.project.test_directions import imported_by
-from tests.support.casefile import ROOT, Case
+from tests.support.casefile import ROOT
 from tests.support.command import Tsc
 from tests.support.cpp_checks import check_round, run_late
-from tests.support.images import image_for
 from tests.support.kits import KITS
-from tests.support.rows import each_row
-from tests.vm.test_cases import having, listings_alone, robot_and_senses
 from tiniscript import compile_text, robots
-from tiniscript.bytecode.disassembly import read_listing
 from tiniscript.bytecode.image import Image, ImageRefused, unpack
 from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
-from tiniscript.bytecode.verify import Refused, verify
 from tiniscript.cli.commands import run
 from tiniscript.kit import Kit
 from tiniscript.library import install_advice
@@ -111,29 +106,6 @@ def both(tsc: Tsc, *arguments: str) -> tuple[int, str, str]:
     return theirs.code, theirs.out, theirs.err
 
 
-@pytest.mark.parametrize("case", having("tiniscript", "robot"))
-def test_run_says_the_same(case: Case, tsc: Tsc) -> None:
-    robot, _ = robot_and_senses(case)
-    options = ["--robot", robot.name]
-    for row in case.parts.get("senses", "").splitlines():
-        name, _, values = (part.strip() for part in row.partition("="))
-        if name in ("max-time", "seed"):
-            options += [f"--{name}", values]
-        elif name != "robot":
-            options += ["--sensor", f"{name}={values}"]
-    code, out, _ = both(tsc, "-e", case.parts["tiniscript"].removesuffix("\n"), *options)
-    assert out == case.parts["robot"]
-    assert code == (" FAULT " in out)
-
-
-@pytest.mark.parametrize("program", ["SB|F(1, 50)", "SI|F(1, 50)", "PING|check_connection"])
-def test_every_way_to_start(program: str, tsc: Tsc, tmp_path: Path) -> None:
-    both(tsc, "-e", program)
-    image = tmp_path / "some.bin"
-    assert tsc("compile", "-e", program, "-o", image).code == 0
-    assert both(tsc, str(image))[1].endswith(" DONE\n")
-
-
 @pytest.mark.parametrize("language", ["en", "es"])
 def test_a_fault_has_its_line(language: str, tsc: Tsc) -> None:
     code, out, err = both(tsc, "-e", "F(1, 50)\nA = 0\nSHOW(5 / A)", "--lang", language)
@@ -151,21 +123,6 @@ def test_time_is_over_for_good(waits: str, at_ms: int, tsc: Tsc) -> None:
     """Once it is too large for a number, it stays so: a clock of 32 bits wraps around."""
     _, out, _ = both(tsc, "-e", f"SI|{waits};SHOW(TIME)", "--max-time", "9999999")
     assert out == f"{at_ms} FAULT OVERFLOW\n"
-
-
-@pytest.mark.parametrize(
-    "arguments",
-    [
-        ["-e", "FOREVER; A = A + 1; END_FOREVER", "--max-steps", "5001"],
-        ["-e", "FOREVER; A = A + 1; END_FOREVER", "--max-steps", "0"],
-        ["-e", "FOREVER; W(2000000); TIME; END_FOREVER", "--max-time", "9000000"],
-        ["-e", "SHOW(RANDOM(1, 1000))", "--seed", "4294967295"],
-        ["-e", "F(2, 80)", "--max-time", "1.5"],
-        ["-e", "", "--robot", "liner"],
-    ],
-)
-def test_limits_and_seeds(arguments: list[str], tsc: Tsc) -> None:
-    both(tsc, *arguments)
 
 
 @pytest.mark.parametrize("language", ["en", "es"])
@@ -235,26 +192,6 @@ def test_functions_are_called_alike_where_wasmtime_is_known_inside_or_not(
 
 
 # -- what it refuses ----------------------------------------------------------------------------
-
-
-@each_row("case", listings_alone())
-def test_verdict_of_a_listing(case: Case) -> None:
-    from tiniscript.vm.wasm import WasmImage
-
-    kit = robot_and_senses(case)[0].kit
-    code = read_listing(case.parts["bytecode"])
-    said = []
-    for accept in (
-        lambda: verify(code, len(kit.sensors), len(kit.actuators)),
-        lambda: WasmImage(image_for(code, kit), kit),
-    ):
-        try:
-            accept()
-            said.append("")
-        except Refused as refused:
-            said.append(f"{refused.number} {refused}")
-    assert said[0] == said[1]
-    assert bool(said[0]) == ("refused" in case.parts)
 
 
 def test_refused_images() -> None:
