@@ -12,8 +12,11 @@ from pathlib import Path
 
 import pytest
 
-from tests.firmware.test_uno_command import at_work
-from tests.firmware.test_uno_robot import sketch  # noqa: F401
+from tests.firmware.test_uno_robot import (
+    BAUD,
+    NAMES,
+    sketch,  # noqa: F401
+)
 from tests.support.command import Tsc
 from tests.support.pty_robot import PtyRobot, on
 from tests.support.simulated_port import simulated
@@ -25,6 +28,7 @@ from tiniscript.link import ports
 from tiniscript.link.frames import Frame, decoded, encoded
 from tiniscript.link.messages import BY_NAME
 from tiniscript.link.wire import SerialWire
+from tools.uno import Uno
 
 Change = Callable[[Frame], "Frame | None"]
 
@@ -70,7 +74,8 @@ def test_our_firmware_passes_all(pty_robot: PtyRobot, tsc: Tsc) -> None:
 @pytest.mark.sampled("group", keep=2)
 @pytest.mark.parametrize("group", ["link: ", "images: ", "stops: ", "programs: moves"])
 def test_an_uno_passes(group: str, sketch: Path, tmp_path: Path, tsc: Tsc) -> None:  # noqa: F811
-    with at_work(sketch, tmp_path / "eeprom") as uno:
+    with Uno(sketch, names=NAMES, eeprom=tmp_path / "eeprom", baud=BAUD, tells_sleep=False) as uno:
+        uno.go()
         done = tsc("conform", "--port", uno.pty, "--only", group)
     assert done.code == 0, done.out
 

@@ -153,33 +153,6 @@ def test_the_whole_sketch_links_with_the_core_alone(chip: str, major: int, tmp_p
     assert left == CORE | OF_VERSION[major] | {"setup", "loop"} & left
 
 
-@needs_host
-@pytest.mark.parametrize(("major", "old", "new"), [
-    (2, "void ledcWrite(uint8_t channel", "bool ledcWrite(uint8_t channel"),
-    (3, "bool ledcWrite(uint8_t pin", "void ledcWrite(uint8_t pin"),
-    (2, "uint16_t analogRead", "int analogRead"),
-    (2, "int mbedtls_ssl_handshake_step(", "void mbedtls_ssl_handshake_step("),
-    (2, "esp_err_t esp_task_wdt_delete(TaskHandle_t", "void esp_task_wdt_delete(TaskHandle_t"),
-    (2, "TaskHandle_t xTaskGetIdle", "UBaseType_t xTaskGetIdle"),
-    (3, "mbedtls_ssl_protocol_version tls_version", "int tls_version"),
-    (3, "hostent* lwip_gethostbyname(const", "hostent* lwip_gethostbyname("),
-])  # fmt: skip
-def test_a_signature_that_differs_is_noticed(
-    major: int, old: str, new: str, tmp_path: Path
-) -> None:
-    core = STAND_INS / "core"
-    texts = {path: path.read_text(encoding="utf-8") for path in core.rglob("*.h")}
-    [path] = [path for path, text in texts.items() if old in text]
-    other = tmp_path / path.relative_to(core)
-    other.parent.mkdir(exist_ok=True)
-    other.write_text(texts[path].replace(old, new), encoding="utf-8")
-    command = ["g++", "-std=gnu++11", *STRICT, f"-isystem{tmp_path}", *flags_of("esp32dev", major)]
-    done = subprocess.run(
-        [*command, str(STAND_INS / "signatures.cpp")], capture_output=True, text=True, check=False
-    )
-    assert done.returncode != 0 and "static assertion failed" in done.stderr
-
-
 @pytest.mark.parametrize("chip", sorted(ESP32S))
 def test_every_file_says_for_which_chip_it_is(chip: str) -> None:
     """The Arduino IDE compiles all files for any board: those of other families are empty."""
