@@ -64,7 +64,7 @@ def _python(name: str, *tests: str) -> Module:
 
 # fmt: off
 MODULES = (
-    Module("shared", (f"{_PY}/*.py",), ("tests/vm/test_fixed_point.py", "tests/vm/test_cases.py", "tests/robots", "tests/project/test_one_home.py", "tests/cli/test_files.py", "tests/pupils/test_pupils.py")),
+    Module("shared", (f"{_PY}/*.py",), ("tests/vm/test_fixed_point.py", "tests/vm/test_cases.py", "tests/robots", "tests/cli/test_files.py", "tests/pupils/test_pupils.py")),
     _python("syntax", "tests/syntax", "tests/vm/test_cases.py", "tests/pupils"),
     _python("semantics", "tests/semantics", "tests/vm/test_cases.py", "tests/pupils/test_pupils.py"),
     _python("repairs", "tests/pupils"), _python("recovery", "tests/recovery", "tests/pupils"),

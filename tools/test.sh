@@ -11,7 +11,7 @@ set -eu
 QUICK=""
 if [ "${1:-}" = --quick ]; then
     shift
-    QUICK="tests/project/test_directions.py tests/project/test_one_home.py tests/project/test_documents.py
+    QUICK="tests/project/test_directions.py tests/project/test_documents.py
         tests/syntax/test_lexer.py tests/syntax/test_parser.py tests/semantics tests/codegen
         tests/bytecode/test_image.py tests/diagnostics/test_rendering.py
         tests/pupils/test_pupils.py::test_the_corpus_is_as_it_was

@@ -15,13 +15,11 @@ from pathlib import Path
 import pytest
 
 from tests.support.casefile import ROOT
-from tests.support.command import Command, process
+from tests.support.command import process
 from tests.support.esp32_pty_robot import Esp32PtyRobot
 from tests.support.pty_robot import PtyRobot, on
-from tests.support.waiting import until
 from tiniscript.cli.commands.doctor import BLANK, STEPS
 from tiniscript.cli.options import Options
-from tiniscript.cli.texts.common import text
 from tools.site.documents import sources
 
 LISTS = {each: ROOT / name for each, name in sources(ROOT, "docs/bring-up.md").items()}
@@ -47,12 +45,6 @@ def commands(text: str) -> list[list[str]]:
     """Return the commands in a text, each as its words without `tsc`."""
     found = re.findall(r"(?:`|^ {4})tsc ([^`\n]+)", text.replace("\\|", "|"), re.M)
     return [shlex.split(each) for each in found]
-
-
-@each_list
-def test_the_form_names_its_list(language: str, path: Path) -> None:
-    assert path.relative_to(ROOT).as_posix() in text("bring_up_about", language)
-    assert len(steps(path)) == len(STEPS)
 
 
 def test_both_lists_type_the_same() -> None:
@@ -89,41 +81,6 @@ def test_who_does_not_answer_gets_the_form_all_the_same(tmp_path: Path) -> None:
     assert process("doctor", "--port", "/dev/ttyUSB99", "--report", report).code == 3
     form = report.read_text("utf-8").split("\n\n")[-1].splitlines()
     assert form[2:4] == ["robot: none has answered", f"1. It answers: {BLANK}"]
-
-
-def test_what_the_list_types_does_what_it_says(board: PtyRobot) -> None:
-    found = steps(LISTS["en"])
-
-    def typed(step: str) -> list[list[str]]:
-        do = found[text(f"step_{step}", "en")][0]
-        return [[board.port if word == "PORT" else word for word in each]
-                for each in commands(do)]  # fmt: skip
-
-    (ping,) = (process(*words) for words in typed("answers"))
-    assert ping.code == 0
-    trips, *_ = re.findall(r"`(.+?)`", found["It answers"][1])
-    assert trips in ping.out
-    assert "(tinibot)" in ping.out
-    drive, *_ = typed("drive")
-    assert process(*drive).code == 0
-    assert board.did[:2] == ["MOTORS 50 50", "MOTORS 0 0"]
-    live, stop = typed("stop")
-    driving = Command(*live)
-    board.until(lambda: board.moves, "it drives")
-    stopped = process(*stop)
-    assert stopped.code == 0
-    assert "confirmed" in stopped.out + stopped.err
-    assert not board.moves
-    driving.ended()
-    upload, *_ = typed("upload")
-    assert process(*upload, "--detach").code == 0
-    board.switch_off()
-    board.switch_on()
-    until(lambda: board.robot_ms > 1000, "it has started")
-    assert not board.moves
-    board.hold(100)
-    board.until(lambda: board.moves, "the button starts it")
-    board.until(lambda: not board.moves, "it ends")
 
 
 @pytest.mark.parametrize("before", ["", "(\n"])

@@ -106,17 +106,6 @@ def test_no_circle_of_files() -> None:
     assert not measures.circles(measures.imports_of(FILES))
 
 
-def test_only_the_command_prints() -> None:
-    for path in PACKAGE.rglob("*.py"):
-        if stage_of(path) != "cli":
-            calls = [
-                node
-                for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
-                if isinstance(node, ast.Call) and ast.unparse(node.func) == "print"
-            ]
-            assert not calls, f"{path.name} prints"
-
-
 def imported_by(statement: str) -> set[str]:
     code = f"import sys; {statement}; print(' '.join(sys.modules))"
     done = subprocess.run(
@@ -223,14 +212,6 @@ def test_the_end_of_a_process_looks_for_no_garbage(arguments: str, is_frozen: bo
         [sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=PACKAGE.parent
     )
     assert done.stdout.splitlines()[-1] == f"{is_frozen} {is_frozen}"
-
-
-def test_only_two_files_know_pyserial() -> None:
-    for path in PACKAGE.rglob("*.py"):
-        if re.search(r"(?m)^ *(import|from) serial\b", path.read_text(encoding="utf-8")):
-            assert path.relative_to(PACKAGE / "link").as_posix() in (
-                "line.py", "transports/serial.py",
-            )  # fmt: skip
 
 
 def test_the_link_has_no_port_and_no_clock() -> None:

@@ -162,19 +162,6 @@ def test_files_that_are_named_exist(document: Path) -> None:
         assert not wrong, "\n".join(wrong)
 
 
-def test_every_stand_in_for_a_robot_has_its_row() -> None:
-    """Whoever writes a test finds all of them in one table, with what each is for."""
-    helpers = {"__init__", "child", "chips", "bootloaders", "uno"}  # what several of them share
-    text = (ROOT / "tests" / "README.md").read_text(encoding="utf-8")
-    rows = re.findall(r"^\| `([\w/.]+)` \|", text, flags=re.MULTILINE)
-    machines = set((ROOT / "tests" / "machines").glob("*.py"))
-    robots = set((ROOT / "tests" / "support").glob("*robot*.py"))
-    robots -= {ROOT / "tests" / "support" / "shared_pty_robot.py"}  # one that shares its port
-    expected = {path.relative_to(ROOT).as_posix() for path in machines | robots
-                if path.stem not in helpers}  # fmt: skip
-    assert {row for row in rows if "/" in row} == {*expected, "tools/uno/"}
-
-
 def test_paths_in_sources_exist() -> None:
     """A path that a docstring or a comment names, as in a document."""
     names = {path.name for path in SOURCES} | {"serial.py"}  # which a test writes
@@ -209,13 +196,3 @@ def test_examples_have_no_mistakes(capsys: pytest.CaptureFixture[str]) -> None:
         assert main(["fmt", "--check", str(example)]) == 0
         assert main(["run", str(example), "--robot", robot, "--max-time", "5"]) == 0
         capsys.readouterr()
-
-
-@pytest.mark.parametrize("base", ["compiler/tiniscript", "vm_arduino/src", "tools"])
-def test_the_architecture_has_a_row_for_every_folder(base: str) -> None:
-    architecture = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")
-    places = "".join(re.findall(r"(?m)^\| (`.*?) \|", architecture))
-    folders = {path.parent.relative_to(ROOT).as_posix() for path in ROOT.glob(f"{base}/*/*.*")}
-    folders = {name for name in folders if not name.endswith("__pycache__")}
-    assert len(folders) > 5
-    assert {name for name in folders if f"`{name}/`" not in places} == set()

@@ -23,7 +23,6 @@ from tests.support.pty_robot import PtyRobot
 from tests.support.texts import said as command_texts
 from tiniscript import robots
 from tiniscript.cli import main
-from tiniscript.languages import FOLDER
 from tiniscript.link import ports
 from tiniscript.link.ports import Found
 from tools.site.documents import sources
@@ -158,55 +157,3 @@ def test_all_guides_type_the_same(language: str, guide: Path) -> None:
         for each in (GUIDES["en"], guide)
     ]
     assert headings[0] == headings[1]
-
-
-def said_in(language: str) -> dict[str, str]:
-    """Return what is said in a language, by where: sentences of the package, and documents."""
-    found: dict[str, str] = {}
-    for path in (FOLDER / language).glob("*.po"):
-        found |= {
-            f"{path.stem}/{k}": said for k, said in command_texts(language, path.stem).items()
-        }
-    name = f"*.{language}.md"
-    places = (name, f"docs/**/{name}", f"compiler/tiniscript/lessons/*/{name}")
-    pages = [path for place in places for path in ROOT.glob(place)]
-    return found | {path.name: path.read_text(encoding="utf-8") for path in pages}
-
-
-@pytest.mark.parametrize(
-    ("wrong", "right"),
-    [
-        (r"\btensi[oó]n\b", "voltaje"),
-        (r"\b1 veces\b", "una vez"),
-        (r"\busted(es no)?\b", "tú"),
-        (r"\b(vosotros|vuestr\w+|(?!\w*séis\b)\w+[áé]is)\b", "ustedes"),
-        (r"\bordenador(es)?\b", "computadora"),
-        (r"(?<!internet )\b(celular|m[oó]vil|smartphone)(es)?\b", "teléfono"),
-        (r"\b(estudiante|pupilo)s?\b", "alumno"),
-        (r"\bcablead[oa]s?\b", "conexiones, cables"),
-        (r"\ble\w*[nd]?o? de vuelta\b", "comprobar"),
-        (r"\brueda (hecha|de Python)", "wheel"),
-        (r"\b[0-9],[0-9]+ ?(V|GHz|kΩ|cm|s)\b", "a decimal point"),
-        (r"(?<!/)\bp[oó]ster\b(?![/.])", "afiche"),
-        (r"\b(click(ear)?|resetea\w*|chequea\w*|linkea\w*)\b", "a Spanish word"),
-    ],
-)
-def test_one_thing_has_one_word_in_spanish(wrong: str, right: str) -> None:
-    found = {where for where, said in said_in("es").items() if re.search(wrong, said, re.I)}
-    assert not found, f"say {right}"
-
-
-@pytest.mark.parametrize(
-    ("wrong", "right"),
-    [
-        (r"\bthere is no verb\b", "there is no command"),
-        (r"\bnobody is reached\b", "cannot reach the robot"),
-        (r"\bdo a line at once\b", "run one line now"),
-        (r"\b1 times\b", "once"),
-        (r"\bhung up on\b", "the connection ends"),
-        (r"\bstudents?\b", "pupils"),
-    ],
-)
-def test_one_thing_has_one_word_in_english(wrong: str, right: str) -> None:
-    found = {where for where, said in said_in("en").items() if re.search(wrong, said, re.I)}
-    assert not found, f"say {right}"
