@@ -105,17 +105,6 @@ def test_a_first_answer_is_of_tests_that_are_there() -> None:
         assert (ROOT / name.partition("::")[0]).exists(), name
 
 
-def test_a_document_says_what_stays_in_the_folder_for_temporary_files() -> None:
-    document = (ROOT / "tests" / "README.md").read_text(encoding="utf-8")
-    kept = set()
-    for path in [*ROOT.glob("tests/**/*.py"), *ROOT.glob("tools/**/*.py")]:
-        text = path.read_text(encoding="utf-8")
-        kept |= set(re.findall(r'gettempdir\(\)\) / f"([\w-]+-)\{', text))
-    assert kept == {"tiniscript-host-", "tiniscript-platformio-", "tiniscript-uno-"}
-    for name in kept:
-        assert f"`{name}…`" in document
-
-
 # -- the virtual environment
 
 
