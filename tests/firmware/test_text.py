@@ -86,13 +86,13 @@ ANSWERS = (
 )  # fmt: skip
 
 
-@pytest.mark.parametrize("is_spanish", [False, True])
-def test_every_sentence_in_its_language(is_spanish: bool) -> None:
-    robot = HostFirmware(robots.load("tinibot").kit, is_spanish=is_spanish)
+@pytest.mark.parametrize("language", ["en", "es"])
+def test_every_sentence_in_its_language(language: str) -> None:
+    robot = HostFirmware(robots.load("tinibot").kit, language=language)
     robot.wait(1000)  # a new robot saves who it is
     for line, english, spanish in ANSWERS:
         answers = typed(robot, line + "\n", 1100)
-        assert answers[0] == f"// {spanish if is_spanish else english}", line
+        assert answers[0] == f"// {spanish if language == 'es' else english}", line
         robot.wait(4000)
 
 
@@ -128,12 +128,12 @@ def test_backspace_edits_what_is_typed() -> None:
     assert typed(robot, "F(0.2,50)\b\n", 400) == ["// 10: Unknown sign"]
 
 
-@pytest.mark.parametrize("is_spanish", [False, True])
-def test_who_makes_many_mistakes_is_told_that_once(is_spanish: bool) -> None:
+@pytest.mark.parametrize("language", ["en", "es"])
+def test_who_makes_many_mistakes_is_told_that_once(language: str) -> None:
     """And is answered again after a pause."""
-    robot = HostFirmware(robots.load("tinibot").kit, is_spanish=is_spanish)
+    robot = HostFirmware(robots.load("tinibot").kit, language=language)
     robot.wait(1000)
-    mute = ["// Son muchos. Espera 5 s." if is_spanish else "// Too many. Wait 5 s."]
+    mute = ["// Son muchos. Espera 5 s." if language == "es" else "// Too many. Wait 5 s."]
     for _ in range(2):
         answers = [typed(robot, "FOO\n", 1100) for _ in range(30)]
         assert answers[0] and answers[:16] == [answers[0]] * 16

@@ -25,6 +25,7 @@ from tiniscript.cli.commands import firmware as firmware_command
 from tiniscript.cli.texts.common import has_text
 from tiniscript.flash import avrdude, ready
 from tiniscript.flash.bootloaders import BOARDS, UNO
+from tiniscript.robots.profile import answered
 from tools.bench import firmware_size
 from tools.builds import firmware_files
 from tools.uno import Uno
@@ -317,7 +318,7 @@ def test_every_board_of_the_option_is_one_that_is_built() -> None:
     }
     assert brought == {
         (robot or robots.DEFAULT, board, language)
-        for language in ("en", "es")
+        for language in answered()
         for board, _, robot in (name.partition("_") for name in firmware_size.environments())
     }
 

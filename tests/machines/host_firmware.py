@@ -17,6 +17,7 @@ from tiniscript.kit import Kit
 from tiniscript.link.connection import PendingRequest
 from tiniscript.link.session import Session
 from tiniscript.robots.kit_words import kit_words
+from tiniscript.robots.profile import language_number
 
 __all__ = ("EMPTY", "HostFirmware", "Seen")
 
@@ -51,7 +52,7 @@ class HostFirmware(Process):
         max_run_ms: int = 600_000,
         write_ms: float = 3.4,
         sources: Path = SOURCES,
-        is_spanish: bool = False,
+        language: str = "en",
         defines: tuple[str, ...] = (),
     ) -> None:
         if not self.has_draft:
@@ -65,7 +66,9 @@ class HostFirmware(Process):
         hashes = pack(f"<{len(kit.hashes)}H", *kit.hashes)
         words = kit_words(kit)
         begin = head + times + hashes + pack("<I", len(memory)) + memory
-        self.ask(b"B", begin + pack("<I", len(words)) + words + bytes([is_spanish]))
+        self.ask(
+            b"B", begin + pack("<I", len(words)) + words + pack("<H", language_number(language))
+        )
 
     def step(self, data: bytes = b"", flags: int = 0, ticks: int = TICKS) -> bytes:
         """Let a millisecond pass in which bytes arrive; return what is sent."""

@@ -161,7 +161,7 @@ def test_what_a_profile_changes(changes: tuple[tuple[str, str], ...], line: str)
 
 def test_the_language_of_answers_is_that_of_the_profile_or_else_of_whoever_makes_it() -> None:
     """The kit's fingerprint does not depend on it: programs run on both."""
-    define = "#define tiniscript_spanish 1\n"
+    define = "#define tiniscript_language 0x6573\n"
     plain = wired("uno")
     fixed = wired("uno", "tinibot", ("status_led = 13", 'language = "es"'))
     english = wired("uno", "tinibot", ("status_led = 13", 'language = "en"'))
@@ -198,8 +198,8 @@ def test_board_writes_the_header(tsc: Tsc, tmp_path: Path) -> None:
 
 
 def test_board_speaks_the_language_of_the_command(tsc: Tsc) -> None:
-    assert "#define tiniscript_spanish 1\n" in tsc("board", "liner", "--lang", "es").out
-    assert "spanish" not in tsc("board", "liner", "--lang", "en").out
+    assert "#define tiniscript_language 0x6573\n" in tsc("board", "liner", "--lang", "es").out
+    assert "tiniscript_language" not in tsc("board", "liner", "--lang", "en").out
 
 
 def test_board_refuses_what_it_cannot_read(tsc: Tsc) -> None:

@@ -9,6 +9,8 @@ import pytest
 from tests.machines.text_reader import NO_DEFS, Answer, TextReader, read_lines
 from tests.support.casefile import all_cases
 from tests.support.kits import KITS
+from tests.support.texts import LANGUAGES
+from tests.support.texts import said as all_said
 from tiniscript import robots
 from tiniscript.bytecode.disassembly import listing
 from tiniscript.text.problems import LONGEST, PROBLEMS
@@ -179,7 +181,7 @@ def test_columns_from_255_on_are_255() -> None:
 
 def test_every_problem_has_its_test() -> None:
     said = {problem for problem, _ in WRONG.values()} | {"CHECKSUM", "LIMIT", "FULL", "LACKS"}
-    assert said == {problem.name for problem in PROBLEMS}
+    assert said == set(PROBLEMS)
 
 
 def test_a_reader_without_defs_reads_all_else() -> None:
@@ -200,8 +202,8 @@ def test_a_reader_without_defs_reads_all_else() -> None:
 
 
 def test_texts_are_short_and_plain() -> None:
-    for problem in PROBLEMS:
-        for text in (problem.english, problem.spanish):
+    for language in LANGUAGES:
+        for text in all_said(language, "robot").values():
             assert text.isascii() and 0 < len(text) <= LONGEST
 
 

@@ -114,7 +114,7 @@ void port_take_text(uint8_t* image, bool) { sink = *image; }
 void port_end() { sink = 0; }
 const uint8_t words[] tini_progmem = {0};
 const uint8_t* robot_words() { return words; }
-bool robot_speaks_spanish() { return false; }
+uint16_t robot_language() { return 0; }
 Answer port_rename(const uint8_t* name, uint8_t at) { sink = name[at]; return (Answer)sink; }
 Answer port_key(uint8_t which, uint8_t* key) { key[which] = sink; return (Answer)sink; }
 Answer port_keep_key(uint8_t at, const uint8_t* key) { sink = key[at]; return (Answer)sink; }
@@ -146,7 +146,7 @@ using namespace tiniscript;
 volatile uint8_t sink;
 const uint8_t words[] tini_progmem = {0};
 const uint8_t* tiniscript::robot_words() { return words; }
-bool tiniscript::robot_speaks_spanish() { return false; }
+uint16_t tiniscript::robot_language() { return 0; }
 uint8_t buffer[389];
 Reader reader;
 int main() {

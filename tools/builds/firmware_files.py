@@ -24,7 +24,7 @@ from tiniscript.cli.firmware_build import on_boards
 from tiniscript.flash import building
 from tiniscript.flash.ready import FOLDER, NOTICE, name_of, title_of
 from tiniscript.library import install_advice
-from tiniscript.robots.profile import Robot
+from tiniscript.robots.profile import Robot, answered
 from tools.builds.platformio_offline import PROJECT, CannotStandIn, settings_for
 
 LICENCE = Path("/usr/share/common-licenses/LGPL-2.1")  # Debian's copy
@@ -55,7 +55,7 @@ def shipped() -> list[Robot]:
     return [
         robot
         for name in robots.names()
-        for language in ("en", "es")
+        for language in answered()
         for robot in on_boards(name, language)
     ]
 

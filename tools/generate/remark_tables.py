@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from tiniscript.bytecode.opcodes import FAULTS
+from tiniscript.languages import SOURCE
 from tiniscript.link.messages import LINK_FAULTS
-from tiniscript.text.problems import PROBLEMS, REMARKS
+from tiniscript.robots.profile import answered, language_number
+from tiniscript.text.problems import PROBLEMS, REMARKS, said
 from tools.generate.cpp_header import camel
 from tools.generate.packed_texts import DEEPEST, END, FIRST_COMMON, FIRST_LETTER, letters_of, packed
 from tools.generate.text_tables import bytes_of_table, file_of
@@ -15,7 +17,7 @@ from tools.generate.text_tables import bytes_of_table, file_of
 def remarks_header(command: str) -> str:
     """Return `remarks.h`."""
     rows = [
-        f"  k{camel(remark.name)} = {number},  // {remark.english}".rstrip(" /")
+        f"  k{camel(remark)} = {number},  // {said('remark', remark, SOURCE)}".rstrip(" /")
         for number, remark in enumerate(REMARKS, 1)
     ]
     return file_of(
@@ -75,8 +77,8 @@ def texts_header(command: str) -> str:
 def rows(language: str) -> list[str]:
     """Return all that a robot says in a language, in the order of the table."""
     names = [name for _, name, _ in sorted((*FAULTS, *LINK_FAULTS))]
-    said = [(row.english, row.spanish) for row in (*PROBLEMS, *REMARKS)]
-    return [*(spanish if language == "es" else english for english, spanish in said), *names]
+    problems = (said("problem", each, language) for each in PROBLEMS)
+    return [*problems, *(said("remark", each, language) for each in REMARKS), *names]
 
 
 def texts(command: str) -> str:
@@ -88,10 +90,7 @@ def texts(command: str) -> str:
         [
             "namespace {",
             "",
-            *_tables("English", rows("en")),
-            "",
-            *_tables("Spanish", rows("es")),
-            "",
+            *(row for each in answered() for row in (*_tables(each, rows(each)), "")),
             "}  // namespace",
             "",
             *_chosen("packed_texts()", ""),
@@ -106,7 +105,11 @@ def texts(command: str) -> str:
 
 def _chosen(function: str, table: str, at: str = "") -> list[str]:
     """Return a function that has a table of the robot's language."""
-    choice = f"robot_speaks_spanish() ? kSpanish{table} : kEnglish{table}"
+    first, *others = (f"k{each.title()}{table}" for each in answered())
+    numbers = [language_number(each) for each in answered()[1:]]
+    pairs = zip(numbers, others, strict=True)
+    choice = "".join(f"robot_language() == 0x{number:04x} ? {other} : " for number, other in pairs)
+    choice += first
     return [
         f"const uint8_t* {function} {{",
         f"  return {f'({choice}){at}' if at else choice};",
@@ -115,7 +118,8 @@ def _chosen(function: str, table: str, at: str = "") -> list[str]:
 
 
 def _tables(language: str, rows: Sequence[str]) -> list[str]:
-    """Return the texts of a language. On a board the linker leaves the other one out."""
+    """Return the texts of a language. On a board the linker leaves the others out."""
+    language = language.title()
     data = packed(rows)
     lines = [data.texts[at : at + 16] for at in range(0, len(data.texts), 16)]
     return [

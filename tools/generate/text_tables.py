@@ -10,9 +10,10 @@ from collections.abc import Iterable, Sequence
 from tiniscript.bytecode.image import STARTS
 from tiniscript.bytecode.opcodes import BLOCKS, BY_NAME
 from tiniscript.fixed_point import HIGHEST, LOWEST
+from tiniscript.languages import SOURCE
 from tiniscript.robots.kit_words import packed, packed_range
 from tiniscript.text.levels import UNREAD
-from tiniscript.text.problems import PROBLEMS
+from tiniscript.text.problems import PROBLEMS, said
 from tiniscript.words import ALIASES, WORDS, Word
 from tools.generate.cpp_header import camel
 
@@ -191,7 +192,7 @@ def words_tables(command: str) -> str:
 def problems_header(command: str) -> str:
     """Return `problems.h`."""
     rows = [
-        f"  k{camel(problem.name)} = {number},  // {problem.english}"
+        f"  k{camel(problem)} = {number},  // {said('problem', problem, SOURCE)}"
         for number, problem in enumerate(PROBLEMS, 1)
     ]
     return file_of(

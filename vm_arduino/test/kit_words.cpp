@@ -40,4 +40,4 @@ const uint8_t words[] = {'D',
 
 const uint8_t* tiniscript::robot_words() { return words; }
 
-bool tiniscript::robot_speaks_spanish() { return false; }
+uint16_t tiniscript::robot_language() { return 0; }

@@ -11,8 +11,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from tiniscript.files import cache_folder, replace
-from tiniscript.languages import languages
-from tiniscript.robots.profile import Robot
+from tiniscript.robots.profile import Robot, language_number
 
 FOLDER = Path(__file__).resolve().parent / "ready"
 NOTICE = "NOTICE.txt"
@@ -49,7 +48,7 @@ def title_of(robot: Robot) -> str:
     A firmware without answers in a language is the English one.
     """
     language = robot.board.language
-    return f"{robot.name}_{language}" if language in languages()[1:] else robot.name
+    return f"{robot.name}_{language}" if language_number(language) else robot.name
 
 
 def name_of(title: str, board: str, digest: str) -> str:

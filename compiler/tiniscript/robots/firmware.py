@@ -16,7 +16,7 @@ from tiniscript.robots.drivers import actuator_of, discs_of, motors_of, sensor_o
 from tiniscript.robots.kit_words import kit_words
 from tiniscript.robots.pin_texts import AvrPins, texts_of
 from tiniscript.robots.ports import AVRS, ESP32S
-from tiniscript.robots.profile import Robot, Wiring
+from tiniscript.robots.profile import Robot, Wiring, language_number
 
 SPACE = "tiniscript"
 BOARDS = (*AVRS, *ESP32S)
@@ -91,9 +91,10 @@ class Part:
             base_cm = self.robot.body.wheel_base_cm
             discs = discs_of(board.discs).firmware(self, board.discs, base_cm)
         state, light = board.bluetooth_state, board.status_led
+        language = language_number(board.language)
         lines = [
             *(f"#define tiniscript_{name}" for name in self._parts()),
-            *(["#define tiniscript_spanish 1"] if board.language == "es" else []),
+            *([f"#define tiniscript_language 0x{language:04x}"] if language else []),
             "",
             f"namespace {SPACE} {{",
             "",

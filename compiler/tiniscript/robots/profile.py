@@ -9,6 +9,7 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 from tiniscript.kit import Kit
+from tiniscript.languages import told_in
 
 Reason = tuple[str, Mapping[str, str]]
 
@@ -24,6 +25,17 @@ class ProfileRefused(Exception):
     def __init__(self, *reasons: Reason) -> None:
         super().__init__(", ".join(code for code, _ in reasons))
         self.reasons: tuple[Reason, ...] = reasons
+
+
+def answered() -> list[str]:
+    """Return the languages in which a robot answers to text, English first."""
+    return told_in("robot", "remark/STOPPED")
+
+
+def language_number(language: str) -> int:
+    """Return by what firmware knows a language: the letters of its code; 0 for English."""
+    code = int.from_bytes(language[:2].encode(), "big")
+    return code if language in answered()[1:] else 0
 
 
 class Wiring(NamedTuple):

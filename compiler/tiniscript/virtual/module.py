@@ -63,7 +63,7 @@ class Circumstances(NamedTuple):
     devices; `edge_cm` and `edge_degrees` are what the firmware knows of discs, `has_two` says
     whether they have two channels; `byte_us` is how long a byte takes on the line, both ways
     (0: none); `eeprom_us` how long one takes in the memory that keeps programs.
-    `is_spanish` is the language of its answers to text.
+    `language` is the number of that of its answers to text.
     """
 
     words: bytes
@@ -81,7 +81,7 @@ class Circumstances(NamedTuple):
     has_two: bool
     byte_us: int
     eeprom_us: int
-    is_spanish: bool
+    language: int
 
 
 class Firmware:

@@ -16,7 +16,7 @@ from tiniscript.robots.drivers import discs_of
 from tiniscript.robots.kinematics import Pose
 from tiniscript.robots.kit_words import kit_words
 from tiniscript.robots.ports import ESP32S
-from tiniscript.robots.profile import Robot
+from tiniscript.robots.profile import Robot, language_number
 from tiniscript.virtual.driving import Driving
 from tiniscript.virtual.module import (
     NOWHERE,
@@ -195,7 +195,7 @@ class VirtualRobot:
                 has_two=discs is not None and discs_of(discs).has_two,
                 byte_us=round(BITS * 1_000_000 / baud) if baud else 0,
                 eeprom_us=eeprom_us,
-                is_spanish=board.language == "es",
+                language=language_number(board.language),
             ),
             memory,
             MODULES.get(board.chip, PATH_DISCS if board.discs else PATH),

@@ -23,7 +23,7 @@ uint16_t words_at;
 }  // namespace
 
 const uint8_t* tiniscript::robot_words() { return simulated::kRequest + words_at; }
-bool tiniscript::robot_speaks_spanish() { return false; }
+uint16_t tiniscript::robot_language() { return 0; }
 
 int main() {
   simulated::begin();

@@ -36,7 +36,7 @@ struct Tabletop {
   std::vector<int32_t> kept;  // the firmware's
   std::vector<uint16_t> hashes;
   std::string words;
-  bool is_spanish = false;  // the answers to text
+  uint16_t language = 0;  // the answers to text
   std::string log;
   int8_t left = 0;
   int8_t right = 0;
@@ -116,7 +116,7 @@ void answer_begin(RequestReader* request) {
   table.kept.resize(table.sensors);
   table.memory = request->text();
   table.words = request->text();
-  table.is_spanish = request->u8() != 0;
+  table.language = request->u16();
   firmware_begin(board);
 }
 
@@ -267,7 +267,7 @@ uint16_t robot_device_hash(uint16_t device) { return table.hashes.at(device); }
 
 const uint8_t* robot_words() { return reinterpret_cast<const uint8_t*>(table.words.data()); }
 
-bool robot_speaks_spanish() { return table.is_spanish; }
+uint16_t robot_language() { return table.language; }
 
 void board_actuators_off() {
   if (table.has_set) table.log += "ACTUATORS OFF\n";

@@ -182,7 +182,7 @@ void port_end() {
 }
 
 const uint8_t* robot_words() { return port.words.data(); }
-bool robot_speaks_spanish() { return false; }
+uint16_t robot_language() { return 0; }
 
 void port_stop(uint8_t fault) {
   port.robot_status.state = fault != 0 ? State::kFaulted : State::kStopped;

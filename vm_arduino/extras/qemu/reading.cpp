@@ -58,6 +58,6 @@ void answer_texts(Request request, size_t end) {
 
 const uint8_t* robot_words() { return words; }
 
-bool robot_speaks_spanish() { return false; }
+uint16_t robot_language() { return 0; }
 
 }  // namespace tiniscript

@@ -80,7 +80,7 @@ void read_texts(Read* read) {
 }  // namespace
 
 const uint8_t* tiniscript::robot_words() { return words.data(); }
-bool tiniscript::robot_speaks_spanish() { return false; }
+uint16_t tiniscript::robot_language() { return 0; }
 
 int main(int count, char** arguments) {
   if (count < 3) return 2;

@@ -54,7 +54,7 @@ struct Own {
   uint32_t speed;
   uint32_t turn;
   Discs discs;
-  bool is_spanish;
+  uint16_t language;
 };
 
 Own own;
@@ -176,7 +176,7 @@ uint16_t robot_device_hash(uint16_t device) { return hashes[device]; }
 
 const uint8_t* robot_words() { return words; }
 
-bool robot_speaks_spanish() { return own.is_spanish; }
+uint16_t robot_language() { return own.language; }
 
 void board_stop() {
   is_latched = true;
@@ -252,13 +252,13 @@ tini_exported("noted") uint32_t* module_noted() { return &noted; }
 tini_exported("reading") int32_t* module_reading() { return &reading; }
 
 // Power on. `line_us` is how long a byte takes on the line, `eeprom_us` how long in the EEPROM.
-// `is_spanish` is the language of its answers.
+// `language` is the number of that of its answers.
 tini_exported("begin") void module_begin(uint32_t kit, uint32_t sensors, uint32_t actuators,
                                          uint32_t reset, uint32_t seed, uint32_t max_run_ms,
                                          uint32_t speed, uint32_t turn, uint32_t edge_cm,
                                          uint32_t edge_degrees, uint32_t has_two,
                                          uint32_t line_us, uint32_t eeprom_us,
-                                         uint32_t is_spanish) {
+                                         uint32_t language) {
   byte_us = line_us;
   write_us = eeprom_us;
   own.kit = static_cast<uint16_t>(kit);
@@ -268,7 +268,7 @@ tini_exported("begin") void module_begin(uint32_t kit, uint32_t sensors, uint32_
   own.speed = speed;
   own.turn = turn;
   own.discs = {edge_cm, edge_degrees, has_two != 0};
-  own.is_spanish = is_spanish != 0;
+  own.language = static_cast<uint16_t>(language);
   Board board;
   board.reset = static_cast<Reset>(reset);
   board.seed = seed;

@@ -97,12 +97,12 @@ uint16_t robot_device_hash(uint16_t device) { return flash_word(kDeviceHashes + 
 
 const uint8_t* robot_words() { return kKitWords; }
 
-// A profile's `language` defines it, or -D tiniscript_spanish.
-bool robot_speaks_spanish() {
-#ifdef tiniscript_spanish
-  return true;
+// A profile's `language` defines it, or -D tiniscript_language=0x6573.
+uint16_t robot_language() {
+#ifdef tiniscript_language
+  return tiniscript_language;
 #else
-  return false;
+  return 0;
 #endif
 }
 

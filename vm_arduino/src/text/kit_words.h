@@ -21,8 +21,9 @@ constexpr uint8_t kRangeBytes = 8;
 // little-endian. A 0 ends the table.
 const uint8_t* robot_words();
 
-// Whether a person is answered in Spanish, else in English.
-bool robot_speaks_spanish();
+// The language in which a person is answered: both letters of its code, as 0x6573 for es. Of one
+// that texts.cpp does not have, English.
+uint16_t robot_language();
 
 // Returns what is behind a device, from what it is on.
 inline const uint8_t* behind_device(const uint8_t* device) {

@@ -215,6 +215,6 @@ bool port_text_is_beside(bool) { return false; }
 bool port_may_make_way(bool) { return true; }
 void port_take_text(uint8_t*, bool) {}
 const uint8_t* robot_words() { return no_words; }
-bool robot_speaks_spanish() { return false; }
+uint16_t robot_language() { return 0; }
 
 }  // namespace tiniscript
