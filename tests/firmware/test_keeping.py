@@ -21,6 +21,7 @@ from tiniscript.link.messages import SAVED, STATUSES
 from tiniscript.link.payloads import EmptyReply, FetchReply
 from tiniscript.link.requests import OK, Request, single
 from tiniscript.link.session import Session
+from tiniscript.link.trim import Pace, Trim, told
 
 WAITS = "SI|LOOP(FOREVER);W(1);END_LOOP"
 DRIVES = "SI|LOOP(FOREVER);F(1, 80);END_LOOP"
@@ -153,6 +154,33 @@ def test_a_trim_is_ok_when_it_is_kept() -> None:
         assert bytes((values.wheels, values.balance, values.least)) == trim
     send(robot, session, DRIVES, saves=False)
     assert robot.until(session, session.trim(b"\1\2\3")) == STATUSES["SAVING"]
+
+
+def test_a_plug_pulled_while_a_pace_is_kept_leaves_a_whole_one() -> None:
+    """The old or the new one, whatever the trim beside it is; both are new once it has said OK."""
+    robot, session = switched_on(), computer()
+    before = Trim(balance=3, least=7, pace=Pace(9, 19, 80, 170))
+    after = Trim(balance=5, least=7, pace=Pace(11, 30, 70, 260))
+    assert robot.until(session, session.trim(before.data())) == OK
+    request = session.trim(after.data())
+    seen: list[Trim] = []
+    while request.outcome is None or robot.now_ms % 7:
+        robot.talk(session, 1)
+        if robot.now_ms % 7 == 0:
+            seen.append(trim_after_power_off(robot))
+    assert robot.until(session, request) == OK
+    assert {each.pace for each in seen} == {before.pace, after.pace}
+    assert {each._replace(pace=Pace()) for each in seen} == {
+        each._replace(pace=Pace()) for each in (before, after)
+    }
+    assert trim_after_power_off(robot) == seen[-1] == after
+
+
+def trim_after_power_off(robot: HostFirmware) -> Trim:
+    again, other = switched_on(robot.memory()), computer(2)
+    request = other.trim()
+    assert again.until(other, request) == OK
+    return told(outcome(request).values)
 
 
 def test_a_worn_memory_is_told() -> None:
