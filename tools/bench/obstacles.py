@@ -32,7 +32,7 @@ SEEDS = 20
 STUCK_S = 5
 STUCK_CM = 3.0
 LOOK_MS = 500
-PROGRAMS = ("obstacle.ts", "explore.ts")
+PROGRAMS = ("away.ts", "obstacle.ts", "explore.ts")
 ROBOT = "tinibot32"
 
 
@@ -44,12 +44,13 @@ class Drive(NamedTuple):
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("programs", nargs="*", default=PROGRAMS, help="of examples/")
     parser.add_argument("--seconds", type=int, default=SECONDS, help="of the robot's time")
     parser.add_argument("--seeds", type=int, default=SEEDS)
     given = parser.parse_args()
     head = ("program", "contacts: median", "most", "metres: median", "longest in a place", "stuck")
     print("{:14} {:>16} {:>5} {:>14} {:>18} {:>8}".format(*head))
-    for name in PROGRAMS:
+    for name in given.programs:
         text = (ROOT / "examples" / name).read_text(encoding="utf-8")
         with ProcessPoolExecutor() as pool:
             drives = list(pool.map(partial(drive, text, given.seconds), range(given.seeds)))

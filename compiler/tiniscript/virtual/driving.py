@@ -1,5 +1,6 @@
-"""The path of a robot among obstacles: it slides along what it touches, and passes through nothing.
+"""The path of a robot among obstacles: it turns along what it touches, and passes through nothing.
 
+What it touches pushes against the body, and so slows its motors down, one more than the other.
 Knows the geometry of bodies and walls. Knows no clock, no sensors and no friction. The results
 depend on when the motors were set, not on how often they are queried.
 """
@@ -19,6 +20,7 @@ STEP_MS = 10.0  # time step of a robot in contact
 STRIDE_MS = 100.0  # time between two kept poses
 NEAR_CM = 20.0  # obstacles further away than this are checked later
 KEPT = 20_000  # corners of the path; beyond that every other one is dropped
+LEANS_CM = 0.05  # a smaller one, and the obstacle pushes back
 EXACT_CM = 1e-6  # a smaller overlap does not count
 PUSHES = 6  # attempts to push the body out of obstacles in one place
 
@@ -208,7 +210,7 @@ class Driving:
                 free_cm -= speed * step_ms
                 is_known = False
             else:
-                wanted = moved(self.body, pose, self.left, self.right, step_ms)
+                wanted = moved(self.body, pose, *self._slowed(pose), step_ms)
                 pushed, free_cm = self._pushed(pose, wanted)
                 way.append(pushed)
                 is_known = True
@@ -222,6 +224,33 @@ class Driving:
         ahead = abs(self.left + self.right) / 2 * full
         turning = abs(self.right - self.left) / 200 * math.radians(self.body.turn_s) / 1000
         return ahead + turning * self.hull.reach_cm
+
+    def _slowed(self, pose: Pose) -> tuple[float, float]:
+        """Return how fast the wheels are, in percent, where an obstacle pushes against the body.
+
+        It pushes as much as keeps the body out. Each motor is slower by what pushes against it,
+        and no wheel slips aside: so the side that has touched something stays behind.
+        """
+        left, right = self.left, self.right
+        contact = self._contact(pose)
+        if contact is None or contact.gap_cm > LEANS_CM:
+            return left, right
+        along = math.radians(pose.heading)
+        cos, sin = math.cos(along), math.sin(along)
+        apart = math.dist(contact.ours, contact.theirs) or 1.0
+        away_x, away_y = (
+            (ours - theirs) / apart
+            for ours, theirs in zip(contact.ours, contact.theirs, strict=True)
+        )
+        ahead = away_x * cos + away_y * sin  # the part of the push that is along the robot,
+        aside = away_y * cos - away_x * sin
+        lever_cm = (contact.ours.x - pose.x_cm) * cos + (contact.ours.y - pose.y_cm) * sin
+        turning = 2 * aside * lever_cm / self.body.wheel_base_cm  # and the one that turns it
+        comes = (left + right) / 2 * ahead + (right - left) / 2 * turning
+        if comes >= 0:
+            return left, right
+        push = comes / (ahead * ahead + turning * turning)
+        return left - push * (ahead - turning), right - push * (ahead + turning)
 
     def _pushed(self, before: Pose, pose: Pose) -> tuple[Pose, float]:
         """Return where a robot ends up on its way to `pose`, and the free distance there.
