@@ -76,7 +76,7 @@ MODULES = (
     _python("library"), _python("languages"), _python("doctor"), _python("virtual"),
     _python("link", "tests/link", "tests/sharing", "tests/modules", "tests/cli/test_keys.py"),
     _python("robots", "tests/robots", "tests/wiring"), _python("lessons"), _python("flash"),
-    _python("studio"), _python("cli"),
+    _python("studio"), _python("cli", "tests/cli", "tests/wiring"),
     Module("machine", (f"{_CPP}/vm/*.cpp",), ("tests/vm/test_cases.py", "tests/vm/test_cpp_agreement.py", "tests/vm/test_cpp_chips.py")),
     Module("machine-avr", (f"{_CPP}/vm/*.S",), ("tests/vm/test_cases.py", "tests/vm/test_cpp_chips.py", "tests/vm/test_cpp_avr_arithmetic.py")),
     Module("reader", (f"{_CPP}/text/*.cpp", f"{_CPP}/text/*.S"), ("tests/text/test_reader.py", "tests/text", "tests/firmware/test_text_small.py")),

@@ -84,6 +84,15 @@ def test_a_program_in_one_frame_drives_at_once() -> None:
     assert robot.is_latched
 
 
+@pytest.mark.parametrize("more", ["", "\nTASK\nW(1); S\nEND_TASK"])
+def test_code_in_one_frame_is_the_program_that_was_compiled(more: str) -> None:
+    """Its image, which says what it needs, is made by the robot."""
+    robot, session, image = switched_on(), computer(), image_of(f"SI|F(9, 80){more}")
+    request = session.live(image.code)
+    assert robot.until(session, request) == OK
+    assert outcome(request).values.program == image.checksum
+
+
 def test_a_longer_program_drives_and_shows() -> None:
     robot, session = switched_on(), computer()
     assert len(image_of(LONG).code) > 100
