@@ -8,7 +8,6 @@ from pathlib import Path
 
 import pytest
 
-from tests.doctor.test_real_bootloaders import TRIES
 from tests.firmware.test_uno_robot import (
     AWAY,
     BAUD,
@@ -38,6 +37,8 @@ from tests.support.needs import need
 from tests.support.platformio import firmware, shared
 from tiniscript.link.requests import OK
 from tools.uno import CYCLES_PER_MS, Uno
+
+TRIES = 20  # a simulated board waits for its bootloader as long as a real one, however late it is
 
 DRIVES = "SI|F(0.3, 80)"
 UNKNOWN, POWER, WATCHDOG = 0, 1, 4  # resets in docs/link.md

@@ -24,7 +24,6 @@ LONG = (
     "tests/flash/test_bootloader.py",
     "tests/cli/test_many_robots.py",
     "tests/cli/test_doctor_command.py",
-    "tests/doctor/test_real_bootloaders.py",
     "tests/vm/test_agreement.py",
     "tests/link/test_named_robots.py",
     "tests/link/test_bluetooth.py",
