@@ -3,6 +3,7 @@
 What is new gets an empty place, what is gone goes, and the translation of a text whose English has
 changed is marked as fuzzy: it is not used until somebody has looked at it. With codes, `pt fr`, it
 makes their folders. `--check` writes nothing, and says what is wrong and how much is translated.
+`--pseudo` makes a language that shows where longer texts do not fit.
 """
 
 from __future__ import annotations
@@ -18,6 +19,9 @@ sys.path.insert(0, str(ROOT / "compiler"))
 
 from tiniscript.languages import FOLDER, SOURCE, languages
 from tiniscript.languages.catalogue_file import Catalogue, Entry, load, written
+
+PSEUDO = "qps"  # by custom: no language has this code
+ACCENTS = str.maketrans("aeiouncAEIOU", "àéîõüñçÀÉÎÕÜ")
 
 
 def in_step(source: Catalogue, own: Catalogue, language: str) -> Catalogue:
@@ -57,11 +61,35 @@ def _likeness(one: str, other: str) -> float:
     return SequenceMatcher(a=one, b=other).ratio()
 
 
+def pseudo(source: Catalogue) -> Catalogue:
+    """Return a catalogue whose texts are the English ones, a third longer and with accents."""
+    head = re.sub(r"^(Language|X-Name): .*$", rf"\1: {PSEUDO}", source.head, flags=re.M)
+    made = Catalogue(head)
+    for at, entry in source.entries.items():
+        forms = [_longer(each) for each in (entry.english, entry.plural) if each]
+        made.entries[at] = Entry(*at, entry.plural, forms, entry.notes)
+    return made
+
+
+def _longer(text: str) -> str:
+    """Return a text with accents outside of its gaps, and with more words in its last line."""
+    parts = re.split(r"(\{[^{}]*\}|`[^`]*`)", text)
+    parts[::2] = [each.translate(ACCENTS) for each in parts[::2]]
+    more = "ñandú " * (len(text.rpartition("\n")[2]) // 3 // 6 + 1)
+    return f"{''.join(parts)} {more}".rstrip()
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("languages", nargs="*", default=list(languages()))
     parser.add_argument("--check", action="store_true")
+    parser.add_argument("--pseudo", action="store_true", help=f"make the language {PSEUDO}")
     options = parser.parse_args()
+    if options.pseudo:
+        (FOLDER / PSEUDO).mkdir(exist_ok=True)
+        for path in FOLDER.glob(f"{SOURCE}/*.po"):
+            (FOLDER / PSEUDO / path.name).write_text(written(pseudo(load(path))), encoding="utf-8")
+        return 0
     wrong = 0
     for language in options.languages:
         done = every = 0

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import io
 import os
+import re
+from collections.abc import Iterator
 from gettext import GNUTranslations
 from pathlib import Path
 
@@ -12,9 +14,10 @@ import pytest
 from tests.support.command import Tsc
 from tiniscript import languages
 from tiniscript.cli.texts.common import Said, language_of, text
+from tiniscript.cli.texts.verbs import VERBS
 from tiniscript.languages import FOLDER, SOURCE, compiling
 from tiniscript.languages.catalogue_file import Catalogue, Entry, load, read, written
-from tools.languages import in_step
+from tools.languages import PSEUDO, in_step, pseudo
 
 NAMES = sorted(path.stem for path in (FOLDER / SOURCE).glob("*.po"))
 FILES = sorted(FOLDER.glob("*/*.po"))
@@ -215,3 +218,42 @@ def test_a_clone_makes_what_is_stale_and_needs_no_folder_to_write_to(
         assert stopped() == "Detenido."
     finally:
         languages.catalogue.cache_clear()
+
+
+@pytest.fixture
+def longer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
+    """A language whose texts are a third longer, beside English."""
+    for code in (*languages.languages(), PSEUDO):
+        (tmp_path / code).mkdir()
+    for path in FOLDER.glob(f"{SOURCE}/*.po"):
+        made = tmp_path / PSEUDO / path.name
+        made.write_text(written(pseudo(load(path))), encoding="utf-8")
+        assert load(made).problems == []
+        (tmp_path / SOURCE / path.name).write_bytes(path.read_bytes())
+    monkeypatch.setattr(languages, "FOLDER", tmp_path)
+    _forget()
+    yield PSEUDO
+    _forget()
+
+
+def _forget() -> None:
+    languages.languages.cache_clear()
+    languages.catalogue.cache_clear()
+
+
+# What is laid out. A sentence is one row, which the terminal breaks.
+LAID_OUT = (("help",), ("help", "all"), *(("help", verb) for verb in VERBS))
+
+
+def test_texts_that_are_longer_keep_to_80_columns(
+    longer: str, tsc: Tsc, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """And each of their texts is another one there: none is outside of the catalogues."""
+    for words in LAID_OUT:
+        rows = {}
+        for language in (SOURCE, longer):
+            monkeypatch.setenv("LC_ALL", language)
+            rows[language] = tsc(*words).out.splitlines()
+        assert [row for row in rows[longer] if len(row) > 80] == [], words
+        same = {row for row in {*rows[SOURCE]} & {*rows[longer]} if "$(" not in row}  # no code
+        assert [row for row in same if re.search(r"^ *\w.*[a-z]{3} [a-z]{3}", row)] == [], words
