@@ -10,7 +10,13 @@ from tiniscript.languages import FOLDER, ByLanguage, languages
 from tiniscript.languages.compiling import merged
 from tiniscript.words import WORDS
 
-MESSAGES = ("messages", "statuses", "refusals", "library")  # of what the page's Python says
+MESSAGES = (
+    "messages",
+    "statuses",
+    "refusals",
+    "library",
+    "lessons",
+)  # of what the page's Python says
 PERIOD = 100  # after so many numbers a rule of plurals repeats itself, but for the first hundred
 
 
