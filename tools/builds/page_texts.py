@@ -10,13 +10,8 @@ from tiniscript.languages import FOLDER, ByLanguage, languages
 from tiniscript.languages.compiling import merged
 from tiniscript.words import WORDS
 
-MESSAGES = (
-    "messages",
-    "statuses",
-    "refusals",
-    "library",
-    "lessons",
-)  # of what the page's Python says
+# Of what the page's Python says; the sentences of lessons come with these.
+MESSAGES = ("messages", "statuses", "refusals", "library")
 PERIOD = 100  # after so many numbers a rule of plurals repeats itself, but for the first hundred
 
 

@@ -26,7 +26,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
-from tiniscript.languages import SOURCE, about, languages
+from tiniscript.languages import SOURCE, about, catalogue, languages
 from tiniscript.studio import block_kinds, building
 from tiniscript.studio.building import MODULES, SOURCES, Tools
 from tiniscript.studio.description import description
@@ -101,6 +101,8 @@ def build(page: Path = PAGE) -> None:
     say(f"node {tools.version}")
     install(tools)
     lock = json.loads((MODULES / "pyodide" / "pyodide-lock.json").read_text(encoding="utf-8"))
+    for code in languages():
+        catalogue("lessons", code)  # made where it is stale
     make("languages.json", [(code, about("x-name", code)) for code in languages()])
     make(f"texts.{SOURCE}.json", page_texts(SOURCE))  # whose keys are checked
     make("description.json", description())

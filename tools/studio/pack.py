@@ -26,7 +26,8 @@ NOT_HERE = {"wasmtime", "serial", "bleak", "zeroconf", "platformdirs", "tomli",
             "asyncio.windows_events", "asyncio.windows_utils",
             "pydoc", "doctest", "unittest", "pdb", "argparse"}  # fmt: skip
 DATA = {"languages": ("*/lexicon.txt",), "virtual": ("*.wasm",), "virtual/worlds": ("*.toml",)}
-DATA_OF_LESSONS = {"lessons": ("*/lesson.toml", "*/world.toml", "*/pupil.*.md")}
+DATA_OF_LESSONS = {"lessons": ("*/lesson.toml", "*/world.toml", "*/pupil.*.md"),
+                   "languages": ("*/lessons.mo",)}  # fmt: skip
 ENCODINGS = ("encodings.latin_1", "encodings.ascii", "encodings.utf_8_sig", "encodings.cp437")
 STAMP = (1980, 1, 1, 0, 0, 0)
 Files = dict[str, bytes]
