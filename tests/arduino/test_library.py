@@ -5,7 +5,6 @@ from __future__ import annotations
 import subprocess
 import sys
 import tarfile
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -157,53 +156,6 @@ def test_the_link_of_an_example_conforms(
 
 def test_the_library_keeps_the_rules(made: Path) -> None:
     assert complaints(made) == []
-
-
-def replaced(name: str, old: str, new: str) -> Callable[[Path], None]:
-    def change(folder: Path) -> None:
-        path = folder / name
-        text = path.read_text(encoding="utf-8")
-        assert old in text
-        path.write_text(text.replace(old, new), encoding="utf-8")
-
-    return change
-
-
-BREAKS: dict[str, Callable[[Path], object]] = {
-    "paragraph is missing": replaced("library.properties", "paragraph=", "#"),
-    "nobody knows colour": replaced("library.properties", "license=", "colour="),
-    "no name for a library": replaced("library.properties", "name=Tini", "name=Arduino Tini"),
-    "not MAJOR.MINOR.PATCH": replaced("library.properties", "version=", "version=v"),
-    "the category": replaced("library.properties", "Device Control", "Robots"),
-    "the url": replaced("library.properties", "https:", "ftp:"),
-    "says the sentence again": replaced("library.properties", "paragraph=Runs",
-                                        f"paragraph={library.SENTENCE} Runs"),
-    "the architecture": replaced("library.properties", "avr,", "avr,z80,"),
-    "to include": replaced("library.properties", "includes=Tini", "includes=Tiny"),
-    "cannot be read": replaced("library.json", "{", "["),
-    "version is another one": replaced("library.json", '"version": "', '"version": "9'),
-    "keywords is missing": replaced("library.json", '"keywords"', '"words"'),
-    "no header": replaced("library.json", "TiniScriptLink.h", "TiniScriptLnk.h"),
-    "the header TiniScript.h is missing": lambda f: (f / "src" / "TiniScript.h").unlink(),
-    "LICENSE is missing": lambda f: (f / "LICENSE").unlink(),
-    "a library has no such folder": lambda f: (f / "tests").mkdir(),
-    "no file of a library": lambda f: (f / "src" / "a.exe").write_text(""),
-    "a link": lambda f: (f / "src" / "b.h").symlink_to("TiniScript.h"),
-    "a sketch outside": lambda f: (f / "src" / "b.ino").write_text(""),
-    "a name with other signs": lambda f: (f / "src" / "b c.h").write_text(""),
-    "has no sketch of its name": lambda f: (f / "examples" / "Other").mkdir(),
-    "is no word, a tab": replaced("keywords.txt", "motors\t", "motors "),
-}  # fmt: skip
-
-
-@pytest.mark.parametrize("rule", BREAKS)
-def test_a_rule_that_is_broken_is_named(rule: str, made: Path, tmp_path: Path) -> None:
-    import shutil
-
-    folder = tmp_path / "TiniScript"
-    shutil.copytree(made, folder)
-    BREAKS[rule](folder)
-    assert any(rule in each for each in complaints(folder)), complaints(folder)
 
 
 def test_platformio_packs_it(made: Path, tmp_path: Path) -> None:

@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import pytest
 
-from tests.support.casefile import ROOT, read
 from tiniscript import compile_text, robots
 from tiniscript.bytecode import opcodes
 from tiniscript.bytecode.disassembly import listing, read_listing, rows
@@ -30,7 +27,6 @@ from tiniscript.bytecode.opcodes import (
 from tiniscript.bytecode.verify import RULES
 from tiniscript.vm.machine import Machine
 from tiniscript.vm.tasks import TaskMachine
-from tools.generate import __main__ as generate
 
 SLOW = robots.load("tinibot").kit._replace(speed=1, turn=1)
 
@@ -219,22 +215,3 @@ def test_a_listing_names_the_devices_that_the_kit_has() -> None:
 def test_what_is_no_listing_is_no_listing(text: str) -> None:
     with pytest.raises(ValueError, match="no line of a listing"):
         read_listing(text)
-
-
-def test_generated_check_notices(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    """The check, which `test.sh` runs, can fail: a file with a changed byte is named, and stays."""
-    spec = tmp_path / "bytecode_spec.md"
-    right = (ROOT / "bytecode_spec.md").read_text(encoding="utf-8")
-    monkeypatch.setattr(generate, "ROOT", tmp_path)
-    monkeypatch.setattr(generate, "OUTPUTS", [(spec, generate.spec)])
-    for text, code in ((right, 0), (right.replace("`MOVE8_F ", "`MOVE9_F "), 1)):
-        spec.write_text(text, encoding="utf-8")
-        assert generate.main(["--check"]) == code
-        assert ("bytecode_spec.md" in capsys.readouterr().err) == bool(code)
-        assert spec.read_text(encoding="utf-8") == text
-
-
-def test_spec_has_cases() -> None:
-    assert len(read(ROOT / "bytecode_spec.md")) >= 2

@@ -8,7 +8,6 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
-from io import BytesIO
 from pathlib import Path
 
 import pytest
@@ -218,69 +217,7 @@ def test_every_platform_has_its_version_and_another_one_is_refused(
     assert "wants atmelavr @ 5.0.0, the stand-in is one for 5.1.0" in err
 
 
-def test_other_doctest_is_refused(project: Path, tmp_path: Path) -> None:
-    runner = project / "test" / "test_custom_runner.py"
-    with changed(runner, ("doctest@^2.4.9", "doctest@^3.0.0")):
-        code, out, err = offline("--project", str(project), PLATFORMIO_CORE_DIR=str(tmp_path))
-    assert (code, out) == (2, "")
-    assert re.search(r"doctest-dev is doctest 2\.\d+\.\d+, the tests want", err)
-
-
-def test_other_scons_is_refused(project: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from platformio import dependencies
-
-    from tools.builds import platformio_offline
-
-    monkeypatch.setattr(dependencies, "get_core_dependencies", lambda: {"tool-scons": "^5.0.0"})
-    with pytest.raises(platformio_offline.CannotStandIn, match=r"wants tool-scons \^5\.0\.0"):
-        platformio_offline.scons_wanted()
-
-
-def test_registry_is_left_to_pio(
-    project: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    from tools.builds import platformio_offline
-
-    monkeypatch.setenv("PLATFORMIO_CORE_DIR", str(tmp_path / "core"))
-    monkeypatch.setattr(platformio_offline, "registry_answers", lambda: True)
-    assert platformio_offline.settings_for(project, False, False) == {}
-    assert not (tmp_path / "core" / "platforms").exists()
-
-
-@pytest.mark.parametrize(
-    ("answer", "is_one"),
-    [(b'{"name": "native"}', True), (b"<p>blocked</p>", False), (b"[]", False)],
-)
-def test_what_is_an_answer_of_the_registry(
-    project: Path, answer: bytes, is_one: bool, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """A page that something on the way puts there is none."""
-    from tools.builds import platformio_offline
-
-    monkeypatch.setattr("urllib.request.urlopen", lambda *_, **__: BytesIO(answer))
-    assert platformio_offline.registry_answers() == is_one
-
-
-def test_a_file_that_has_just_changed_is_read_anew(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Of the same length in the same second: nothing but its text tells it from the one before."""
-    from tools.builds import platformio_offline
-
-    monkeypatch.setattr(sys, "dont_write_bytecode", False)
-    file = tmp_path / "some_module.py"
-    for value in ("1", "2"):
-        file.write_text(f"VALUE = {value}\n", encoding="utf-8")
-        os.utime(file, (1_000_000_000, 1_000_000_000))
-        assert str(platformio_offline.load(file).VALUE) == value
-
-
 def test_command_runs_in_the_project(project: Path) -> None:
     code, out, _ = offline("--project", str(project), "pio", "project", "config")
     assert code == 0
     assert "env:native" in out
-
-
-def test_the_repo_names_no_registry() -> None:
-    for path in (OFFLINE, *OFFLINE.with_name("platformio_stand_ins").rglob("*.*")):
-        assert "registry.platformio" not in path.read_text(encoding="utf-8"), path.name

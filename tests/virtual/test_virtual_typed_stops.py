@@ -6,7 +6,7 @@ from random import Random
 
 import pytest
 
-from tests.firmware.test_typed_stops import HELD_MS, PREFIXES, RUNS, SILENCE_MS, SPELLINGS
+from tests.firmware.test_typed_stops import RUNS, SILENCE_MS
 from tests.support.virtual_robot import robot_in
 from tests.virtual.test_simulator import simulator, until, visit
 from tiniscript.link.messages import STOP_BYTES
@@ -16,29 +16,11 @@ from tiniscript.virtual.simulator import Simulator
 
 __all__ = ("simulator",)
 
-ROBOTS = ("tinibot", "grabber", "tinibot32")  # one for each module
 BITS = 10
 
 
 def wait(robot: VirtualRobot, milliseconds: int, data: bytes = b"") -> None:
     robot.step(robot.now_ms + milliseconds, data)
-
-
-@pytest.mark.parametrize("name", ROBOTS)
-def test_a_typed_stop_in_every_state(name: str) -> None:
-    robot = robot_in(name=name)
-    byte_ms = 1000 * BITS / robot.profile.board.baud
-    for k, (what, prefix) in enumerate(PREFIXES.items()):
-        wait(robot, SILENCE_MS + 50)
-        wait(robot, SILENCE_MS + 100, RUNS)
-        assert robot.is_running, what
-        typed = prefix + SPELLINGS[k % len(SPELLINGS)]
-        wait(robot, round(len(typed) * byte_ms) + 2, typed)
-        if robot.is_running:
-            wait(robot, HELD_MS)  # in what began as a frame
-        assert not robot.is_running, what
-        wait(robot, 300, b"F(1,80)\n")  # not before a second of silence
-        assert not robot.is_running, what
 
 
 def test_the_next_client_begins_a_line(simulator: Simulator) -> None:
