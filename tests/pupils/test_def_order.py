@@ -33,14 +33,14 @@ from tiniscript.syntax.lexer import Scan, scan
 )
 def test_one_message_moves_the_block_or_its_end(program: str, right: str) -> None:
     (found,) = check(program)
-    assert applied(program, edits_of(found, Source(program)) or []) == right
+    assert applied(program, edits_of(found) or []) == right
     assert not any(each.is_mistake for each in check(right))
 
 
 def test_a_def_that_is_called_below_may_be_meant_to_begin_again() -> None:
     found = check("DEF V\nS\nV\nV\nEND_DEF\nV")
     assert [each.code for each in found] == [codes.CALLS_ITSELF]
-    assert edits_of(found[0], Source("DEF V\nS\nV\nV\nEND_DEF\nV")) is None
+    assert edits_of(found[0]) is None
 
 
 def test_a_long_program_gets_its_lines_named() -> None:
@@ -72,7 +72,7 @@ def test_how_often_a_def_is_called_is_a_loop(call: str) -> None:
 def test_values_of_a_def_are_not_lost(call: str) -> None:
     program = f"DEF V;S;END_DEF\n{call}"
     (found,) = check(program)
-    assert found.values["fix"] == "" and edits_of(found, Source(program)) is None
+    assert found.values["fix"] == "" and edits_of(found) is None
 
 
 def test_the_body_of_a_def_is_read_once_for_all_its_calls(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -91,7 +91,7 @@ def test_a_block_that_waits_or_is_to_be_filled_is_not(program: str) -> None:
 def test_ends_the_wrong_way_round_are_swapped(program: str, right: str) -> None:
     (found,) = check(program)
     assert found.values["swapped"] == "ENDIF"
-    assert applied(program, edits_of(found, Source(program)) or []) == right
+    assert applied(program, edits_of(found) or []) == right
 
 
 def test_an_unknown_word_with_a_number_is_the_loop_that_ends_below() -> None:

@@ -30,7 +30,7 @@ def test_a_note_keeps_all_and_changes_nothing(program: str) -> None:
     text = program
     while found := check(text):
         assert found[0].code is codes.WORDS_BEHIND
-        edits = edits_of(found[0], Source(text))
+        edits = edits_of(found[0])
         assert edits
         text = applied(text, edits)
     lines = [line.partition("//") for line in text.split("\n")]

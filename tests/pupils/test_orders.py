@@ -46,7 +46,7 @@ def test_each_order_of_a_sentence_is_written(program: str, orders: str, example:
     assert found.code is codes.SEVERAL_ORDERS
     assert found.values["fix"] == orders
     assert found.values["example"] == example
-    edits = edits_of(found, Source(program))
+    edits = edits_of(found)
     assert edits and not check(applied(program, edits))
     if example:
         assert fixed(program, check).text == program, "an example is a guess"

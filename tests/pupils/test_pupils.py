@@ -74,7 +74,7 @@ def test_the_corpus_is_as_it_was(request: pytest.FixtureRequest) -> None:
 def test_each_repair_helps_and_keeps_the_numbers(entry: Entry) -> None:
     found, source = check(entry.program), Source(entry.program)
     for diagnostic in found:
-        edits = edits_of(diagnostic, source)
+        edits = edits_of(diagnostic)
         if not edits or not diagnostic.is_mistake:
             continue
         after = check(applied(entry.program, edits))

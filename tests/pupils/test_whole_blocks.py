@@ -35,7 +35,7 @@ def test_one_message_shows_the_whole_block(program: str, shown: str) -> None:
     (found,) = check(program)
     assert found.values["whole"] == shown
     assert message(found, Source(program), "es").fix == shown
-    edits = edits_of(found, Source(program))
+    edits = edits_of(found)
     assert edits and not any(each.is_mistake for each in check(applied(program, edits)))
 
 

@@ -223,23 +223,14 @@ def in_order(found: list[Diagnostic]) -> list[Diagnostic]:
     kept = []
     mistaken = set()
     seen = set()
-    other_units = [each.span for each in found if each.code is OTHER_UNIT]
-    translated = {each.span.start for each in found if each.code is OTHER_LANGUAGE}
-    shown = {each.span.start for each in found if each.values.get("shown")}
     meant = {each.span.start for each in found if each.code is UNKNOWN_WORD or (
         each.code is UNKNOWN_NAME and each.values.get("near")
     )}  # fmt: skip
     for diagnostic in found:
-        start = diagnostic.span.start
-        if diagnostic.code is ARGUMENT_COUNT and any(
-            diagnostic.span.start <= each.start < diagnostic.span.end for each in other_units
-        ):
-            continue  # `R(90 grados)`
         key = (diagnostic.code, diagnostic.span)
-        if diagnostic.code is QUOTE and start in shown:
-            continue  # `SHOW("HELLO")`
-        if diagnostic.code is BAD_NAME and (start in translated or start in meant):
-            continue  # `atrás(2, 80)`, `Bebé(1, 440)`: the word goes, with its accent
+        start = diagnostic.span.start
+        if diagnostic.code is BAD_NAME and start in meant:
+            continue  # `Bebé(1, 440)`: the word goes, with its accent
         if key in seen or (diagnostic.is_mistake and start in mistaken):
             continue
         seen.add(key)

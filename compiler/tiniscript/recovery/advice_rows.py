@@ -72,6 +72,10 @@ ADVICE = """
 ^ @none s=@cond+ $ | TS042 | found={s}; asked={s}; fix=IF({alone}) | DISTANCE < 20 => fix=IF(DISTANCE < 20)
 ^ @none s=@cond+ ¿|¡ @any* $ | TS042 | found={s}; asked={s}; one=IF({alone}) | DISTANCE < 20 ¿si? S => one=IF(DISTANCE < 20)
 ^ @none v=@word|@num|+|-|*|/|%|(|)+ = x=@name $ | TS042 | found={x}; turned={x}; fix={free} = {v} | DISTANCE - 5 = FALTA => fix=FALTA = DISTANCE - 5
+# letters for a way
+^ @none s=FL|LF ( n=@num , @num ) $ | TS101 | found={s}; near=; curve=M(30, 60);W({n});S | FL(1, 60) => curve=M(30, 60);W(1);S
+^ @none s=FR|RF ( n=@num , @num ) $ | TS101 | found={s}; near=; curve=M(60, 30);W({n});S | FR(1, 60) => curve=M(60, 30);W(1);S
+^ @none s=A ( n=@num , m=@num ) $ | TS101 | found=A; near=; ahead=F({n}, {m}); back=B({n}, {m}) | A(2, 80) => ahead=F(2, 80)
 # an order that is chosen, or stands for a value
 ^ @none RANDOM ( l=@any+ ) $ | TS136 | fix={choice}; example={choices} | RANDOM(L(1, 60), S) => fix=IF(RANDOM(1, 2) = 1);L(1, 60);ELSE;S;ENDIF
 ^ @none @any* RANDOM ( l=@any+ ) $ | TS136 | example={choices} | giro = RANDOM(L, R) => example=IF(RANDOM(1, 2) = 1); L(2, 80); ELSE; R(2, 80); ENDIF

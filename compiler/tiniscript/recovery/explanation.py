@@ -112,16 +112,7 @@ class _Told:
         self.edits = [edit]
         self.first = first
         self.last = (first, 1)
-        self.lines: list[int] = []
         self.opened: set[int] = set()  # changes in which blocks begin that it ends
-
-    def is_same(self, code: str, slip: Slip | Unended) -> bool:
-        own = self.slip
-        if not isinstance(own, Slip) or not isinstance(slip, Slip) or self.code != code:
-            return False
-        if code == codes.EMPTY_BRACKETS.number:
-            return own.word == slip.word
-        return (own.found.upper(), own.right) == (slip.found.upper(), slip.right)
 
 
 class _Block:
@@ -193,12 +184,7 @@ class _Teller:
         if isinstance(slip, Slip):
             is_shown = self.is_whole and told.last > (told.first, 1)
             whole = self.whole(told.first, told.last) if is_shown else ""
-            here = self.changes[told.first].first + 1
-            others = [str(each) for each in told.lines if each != here]
-            several = ", ".join(others) if len(others) > 1 else ""
-            times = slip.times or (str(len(told.lines) + 1) if told.lines and not others else "")
-            line = slip.line or "".join(others[:1])
-            slip = slip._replace(whole=whole, line=line, lines=several, times=times)
+            slip = slip._replace(whole=whole)
         start, end = self.words(told.edits[0].span)
         while start < end and self.program[start] in "\r\n":
             start += 1
@@ -304,10 +290,7 @@ class _Teller:
         code, step = _code(part.steps, part.before, part.after)
         start = self.starts[change.first]
         place = Span(start + part.span.start, start + part.span.end)
-        told = self.new(code, place, part.edit, k, step, part.before, part.after)
-        for block in self.open:
-            if block.first == k:
-                block.told = block.told or told
+        self.new(code, place, part.edit, k, step, part.before, part.after)
 
     def walk(self, k: int, tokens: Sequence[Lexeme]) -> _Block | None:
         """Open and close blocks; return the first one that began in an earlier change."""
@@ -356,11 +339,6 @@ class _Teller:
         if code in _SAID_ONCE and isinstance(slip, Slip):
             count = sum(each.code == code for each in self.steps.get(k, []))
             slip = slip._replace(times=str(count) if count > 1 else "")
-        for told in self.out if code in _SAID_ONCE else ():
-            if told.is_same(code, slip):
-                told.edits.append(edit)
-                told.lines.append(self.changes[k].first + 1)
-                return told
         self.out.append(_Told(code, place, slip, edit, k))
         return self.out[-1]
 
@@ -412,8 +390,6 @@ def _code(
         )  # fmt: skip
         is_translated = bool(foreign)
         has_brackets = "(" in words or "(" not in new
-        if not (own or is_translated or has_brackets) and before[0].text in {*WORDS} & new:
-            return rows.NO_BRACKETS, steps[0]
         if translated and (is_translated or not own):
             is_said = is_translated or has_brackets or before[0].text not in new
             return _WORD_CODE if is_said else rows.NO_BRACKETS, translated[0]

@@ -10,7 +10,8 @@ from tiniscript.source import Source
 
 MANY = 6  # calls that an example has
 # One message has the lines of the others, and their repairs.
-_WITH_LINES = (codes.RESERVED, codes.SAME_AGAIN)
+_OF_WORDS = (codes.BAD_NAME, codes.EMPTY_BRACKETS, codes.NAME_WITH_SPACE)  # in any instruction
+_WITH_LINES = (codes.RESERVED, codes.SAME_AGAIN, *_OF_WORDS)
 _DROPPED = (codes.BRACES, codes.DOTS, codes.UNTAUGHT, codes.CALLS_ITSELF, codes.UNKNOWN_NAME,
             codes.CASES)  # fmt: skip
 _OF_CASES = (codes.BRACES, codes.BREAK_OUTSIDE)  # which go with them
@@ -30,6 +31,9 @@ def said_once(found: Sequence[Diagnostic], source: Source) -> list[Diagnostic]:
         is_one = each.code in (*_WITH_LINES, *_DROPPED) and not is_meant
         is_any = each.code in (codes.BRACES, codes.CASES)
         kind = () if is_any else tuple(sorted(each.values.items()))
+        if each.code in _OF_WORDS:
+            its = ("word",) if each.code is codes.EMPTY_BRACKETS else ("found", "right")
+            kind = tuple((name, each.values.get(name, "").upper()) for name in its)
         key = (each.code, kind if is_one else (("at", str(each.span)),))
         groups.setdefault(key, []).append(each)
     kept = [

@@ -51,7 +51,8 @@ def orders(words: Sequence[Lexeme], names: Names) -> list[Order]:
     found: list[Order] = []
     if len(words) > LONGEST:
         return []
-    groups = groupby(words, key=lambda each: each.text in ",." or bool(said_of(each.text, "then")))
+    joins = "" if any(each.text == "(" for each in words) else ",."  # `gira(2, 80)` is one
+    groups = groupby(words, key=lambda it: it.text in (*joins,) or bool(said_of(it.text, "then")))
     for is_between, group in groups:
         part = list(group)
         if is_between or (not found and all(said_of(each.text, "filler") for each in part)):

@@ -103,6 +103,7 @@ SIGNS = r"""
 \b(\w+)\s*(?:\^|\*\*)\s*2\b  |  `\1 * \1`  |  1  |  TS010  |  offered  |  X = 7^2⏎SHOW(X) => X = 7 * 7⏎SHOW(X)
 (?<=\d)\. (?=\d)  |  `.`  |  1  |  TS008  |  applied  |  F(1. 5, 80) => F(1.5, 80)
 ^S ([IB])(?=\s*\|)  |  `S\1`  |  1  |  TS034  |  applied  |  S I|F(2, 80) => SI|F(2, 80)
+\bLOOP_?(\d+)(?=\s*(?:;|$))  |  `LOOP(\1)`  |  1  |  TS015  |  applied  |  LOOP4;F(2, 80);END_LOOP => LOOP(4);F(2, 80);END_LOOP
 ^(\s*S[IB]\s*\|)\s+\|  |  `\1`  |  1  |  TS054  |  applied  |  SI| |F(2, 80) => SI|F(2, 80)
 −  |  `-`  |  0  |  TS010  |  applied  |  M(−50 50) => M(-50, 50)
 &nbsp;  |  ` `  |  1  |  TS072  |  applied  |  F(2, 80);&nbsp;R(1, 50); => F(2, 80); R(1, 50);
@@ -302,7 +303,6 @@ SHOW ( TIME ) | SHOW ( TIME ) | 1 | TS102 | applied | mostrar(tiempo) => SHOW(TI
 c=@callw ( ( a=@nobrace+ ) ) | $c ( $a ) | 1 | TS076 | applied | F((2,80)) => F(2,80)
 c=@callw ( a=@argt+ s=*|/|%|- b=@num|@val t=+|-|*|/|% d=@argt+ ) ) e=;|$ | $c ( $a $s ( $b $t $d ) ) $e | 1 | TS041 | applied | SHOW(5 / 3 - 3)) => SHOW(5 /(3 - 3))
 c=@callw ( a=@argt+ ) ) e=;|$ | $c ( $a ) $e | 1 | TS041 | applied | F(2,80)) => F(2,80)
-c=@callw ( a=@num b=@num ) | $c ( $a , $b ) | 1 | TS017 | applied | F(2 80);F(3 80);R(1 50) => F(2, 80);F(3, 80);R(1, 50)
 c=@callw ( a=@num /|- b=@num ) | $c ( $a , $b ) | 2 | TS076 | offered | F(2/80) => F(2, 80)
 c=@callw ( a=@num _|.|;|&|<|'|'|Y|> b=@num ) | $c ( $a , $b ) | 1 | TS076 | applied | F(2|80) => F(2, 80)
 SHOW ( a=@val , b=@val ) | SHOW ( $a ) ; SHOW ( $b ) | 2 | TS020 | offered | SHOW(DISTANCE, LIGHT_L) => SHOW(DISTANCE);SHOW(LIGHT_L)
@@ -336,7 +336,7 @@ h=IF|WHILE|LOOP|UNTIL|ELSEIF :|.|->|, ( | &h ( | 1 | TS015 | applied | IF:(DISTA
 h=IF|WHILE|ELSEIF|LOOP|UNTIL '{' c=@nob+ '}' | &h ( $c ) | 1 | TS015 | applied | IF{DISTANCE < 10}⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
 <asks> ( c=@argt+ b=@start | &h ( $c ) ; $b | 1 | TS016 | offered | si DISTANCE < 10 S si DISTANCE > 10 F(1,50) => IF(DISTANCE < 10);S;IF(DISTANCE > 10);F(1, 50);ENDIF;ENDIF
 <asks> c=@cond+ t=do|:|,|'|'|'{' | &h ( $c ) ; @brace:t | 1.3 | TS015 | applied | SI DISTANCE < 10 | S => IF(DISTANCE < 10);S;ENDIF
-<asks> c=@cond+ ;|$ | &h ( $c ) ; | 1.3 | TS015 | applied | F(2,80) si DISTANCE > 10 => IF(DISTANCE > 10);F(2, 80);ENDIF
+<asks> c=@cond+ ;|$ | &h ( $c ) ; | 1.3 | TS015 | applied | si DISTANCE > 10⏎S⏎fin => IF(DISTANCE > 10)⏎S⏎ENDIF
 <asks> c=@cond+ b=@start | &h ( $c ) ; $b | 2 | TS014 | applied | IF DISTANCE < 10 STOP => IF(DISTANCE < 10);STOP;ENDIF
 h=IF|WHILE|LOOP ( c=@noclose+ , <body> ) $ | &h ( $c ) ; $b $r ; @endof:h | 1 | TS080 | applied | SI|IF(DISTANCE < 10, S) => SI|IF(DISTANCE < 10);S;ENDIF
 ^ IF ( c=@noclose+ , <body> , d=@start s=@all* ) $ | IF ( $c ) ; $b $r ; ELSE ; $d $s ; ENDIF | .9 | TS080 | offered | IF(DISTANCE < 15, B(1, 50), F(1, 50)) => IF(DISTANCE < 15);B(1, 50);ELSE;F(1, 50);ENDIF
@@ -412,7 +412,6 @@ LOOP ( INT? @name = 0 ; @name < n=@num ; @name ++ ) | LOOP ( $n ) | 1 | TS063 | 
 ^ v=@name = c=@cond+ ? a=@num|@val : b=@num|@val $ | IF ( $c ) ; $v = $a ; ELSE ; $v = $b ; ENDIF | 1 | TS069 | applied | V = DISTANCE > 20 ? 80 : 30⏎F(1, V) => IF(DISTANCE > 20);V = 80;ELSE;V = 30;ENDIF⏎F(1, V)
 ^ w=@callw ( a=@argt+ , c=@val s=<|> n=@num ? x=@num : y=@num ) $ | IF ( $c $s $n ) ; $w ( $a , $x ) ; ELSE ; $w ( $a , $y ) ; ENDIF | 1 | TS069 | offered | F(1, DISTANCE > 20 ? 80 : 40) => IF(DISTANCE > 20);F(1, 80);ELSE;F(1, 40);ENDIF
 a=@num ( c=@noparen+ ) | $a * ( $c ) | 1 | TS048 | offered | X = 2(20 + 10)⏎F(1, X) => X = 2 *(20 + 10)⏎F(1, X)
-^ n=@num = v=@name $ | $v = $n | 1 | TS042 | offered | 50 = v⏎F(2, v) => v = 50⏎F(2, v)
 ^ q=@val s=<|>|<=|>= n=@num|@val :|do|=|->|=>? b=@start r=@all* | IF ( $q $s $n ) ; $b $r | 1 | TS042 | offered | DISTANCE < 10: S => IF(DISTANCE < 10);S;ENDIF
 ^ @name = 1 TO|HASTA n=@num do|:? $ | LOOP ( $n ) | 1 | TS102 | offered | veces = 1 hasta 5⏎F(1,50)⏎fin => LOOP(5)⏎F(1,50)⏎END_LOOP
 <for> ( INT? @name = 1 ; @name <= n=@num ; @name ++ ) | LOOP ( $n ) ; | 1 | TS102 | offered | for(i=1; i<=3; i++){ F(1,80); } => LOOP(3);F(1, 80);END_LOOP;
@@ -431,25 +430,16 @@ TASK ( @num|@word? ) | TASK | 1 | TS039 | offered | TASK(1)⏎BEEP(1, 440)⏎END
 ^ UNTIL c=@cond+ $ | IF ( $c ) ; <end> | 2 | TS064 | applied | LOOP⏎F(1, 50)⏎UNTIL DISTANCE < 10 => LOOP(FOREVER)⏎F(1, 50)⏎IF(DISTANCE < 10);BREAK;ENDIF;END_LOOP
 ^ DO '{' b=@start | LOOP ( FOREVER ) ; $b | 3 | TS064 | applied | DO { F(1, 50)⏎} WHILE(DISTANCE > 9) => LOOP(FOREVER);F(1, 50)⏎IF(DISTANCE <= 9);BREAK;ENDIF;END_LOOP
 # how often something is done, said behind it or before it
-^ a=@callw ( b=@argt+ ) POR|X|*|=|(? X|*? n=@num times? )? $ | LOOP ( $n ) ; $a ( $b ) ; END_LOOP | 3 | TS062 | offered | F(1,50) x 3 => LOOP(3);F(1, 50);END_LOOP
-^ a=@callw ( b=@argt+ ) n=X2|X3|X4|X5|X6 $ | LOOP ( @xn:n ) ; $a ( $b ) ; END_LOOP | 3 | TS062 | offered | F(2, 80) x3 => LOOP(3);F(2, 80);END_LOOP
 ^ n=@num b=@def $ | LOOP ( $n ) ; $b ; END_LOOP | 1 | TS062 | applied | DEF SALTO;F(0.2, 60);END_DEF⏎3 SALTO => DEF SALTO;F(0.2, 60);END_DEF⏎LOOP(3);SALTO;END_LOOP
 ^ n=@num times|X|* :|,|DE? <body> $ | LOOP ( $n ) ; $b $r ; END_LOOP | 1 | TS062 | applied | 3 * F(1,50) => LOOP(3);F(1, 50);END_LOOP
 ^ n=@num *|X|times? ( <body> ) $ | LOOP ( $n ) ; $b $r ; END_LOOP | 1 | TS080 | applied | SI|4*(F(2,80);R(1,50)) => SI|LOOP(4);F(2, 80);R(1, 50);END_LOOP
 ^ b=@def n=X2|X3|X4|X5|X6 $ | LOOP ( @xn:n ) ; $b ; END_LOOP | 1 | TS062 | applied | DEF SALTO;F(0.2, 60);END_DEF⏎SALTO x3 => DEF SALTO;F(0.2, 60);END_DEF⏎LOOP(3);SALTO;END_LOOP
 ^ b=@def *|X? n=@num times? $ | LOOP ( $n ) ; $b ; END_LOOP | 1 | TS062 | applied | DEF SALTO;F(0.2, 60);END_DEF⏎SALTO*3 => DEF SALTO;F(0.2, 60);END_DEF⏎LOOP(3);SALTO;END_LOOP
-^ b=@start r=@any+ *|X? n=@num times $ | LOOP ( $n ) ; $b $r ; END_LOOP | 1 | TS062 | offered | F(1, 80) 2 veces => LOOP(2);F(1, 80);END_LOOP
 ^ do|make b=@start r=@any* n=@num times $ | LOOP ( $n ) ; $b $r ; END_LOOP | 1 | TS062 | offered | hacer F(1,50) 3 veces => LOOP(3);F(1, 50);END_LOOP
 ^ n=@num LOOP ( <body> ) $ | LOOP ( $n ) ; $b $r ; END_LOOP | 1 | TS080 | applied | 3 LOOP (F(1, 50)) => LOOP(3);F(1, 50);END_LOOP
 # words behind a call: shown, not made
-^ a=F|B|L|R ( FOREVER|@num|@val , b=@num ) during? n=@num seconds $ | $a ( $n , $b ) | 3 | TS085 | offered | F(2,80) 5 seg => F(5, 80)
-^ M ( b=@argt+ ) during|(? n=@num seconds )? $ | M ( $b ) ; W ( $n ) ; S | 3 | TS085 | offered | M(50, 50) 2 segundos => M(50, 50);W(2);S
 ^ a=S|STOP during|(? n=@num seconds? )? $ | $a ; W ( $n ) | 2 | TS085 | offered | S(2) => S;W(2)
-^ a=F|B|L|R ( e=@num|@val , f=@num ) A|AL|CON|DE? n=@num %|POTENCIA DE? POTENCIA? $ | $a ( $e , $n ) | 3 | TS085 | offered | F(2,80) 80% => F(2, 80)
-^ a=@callw ( b=@argt+ ) FOREVER $ | LOOP ( FOREVER ) ; $a ( $b ) ; END_LOOP | 3 | TS085 | offered | F(1, 80) siempre => LOOP(FOREVER);F(1, 80);END_LOOP
 ^ BREAK IF|CUANDO? (? c=@cond+ )? $ | IF ( $c ) ; BREAK ; ENDIF | .9 | TS071 | offered | LOOP(FOREVER)⏎F(0.5, 60)⏎BREAK(DISTANCE < 10)⏎END_LOOP => LOOP(FOREVER)⏎F(0.5, 60)⏎IF(DISTANCE < 10);BREAK;ENDIF⏎END_LOOP
-^ a=@callw ( b=@argt+ ) IF|CUANDO (? d=@cond+ )? $ | IF ( $d ) ; $a ( $b ) ; ENDIF | .9 | TS071 | offered | F(1, 50) IF(DISTANCE > 10) => IF(DISTANCE > 10);F(1, 50);ENDIF
-^ a=F|B|L|R ( b=@argt+ ) WHILE (? d=@argt+ )? $ | $a ( $b ) UNTIL ( @not:d ) | .9 | TS071 | offered | F(5, 50) WHILE(DISTANCE > 10) => F(5, 50) UNTIL(DISTANCE <= 10)
 # what the devices of a kit are set to
 d=@device v=lit|on e=;|$ | &d ( TRUE ) $e | 1 | TS015 | applied | LED ON => LED(TRUE)
 d=@device v=dark|off e=;|$ | &d ( FALSE ) $e | 1 | TS015 | applied | LED OFF => LED(FALSE)
@@ -489,7 +479,6 @@ end -|.|DEL|DE|EL? k=IF|LOOP|WHILE|DEF|FOREVER|FOR|PARA ;|$ | @endof:k | 1 | TS0
 ^ a=F|B ( n=@num , p=@num ) CM|CENTIMETROS $ | $a ( $n CM , $p ) | .5 | TS076 | offered | F(20, 60) CM => F(20 CM, 60)
 ^ a=L|R ( n=@num , p=@num ) DEG|GRADOS|DEGREES|° $ | $a ( $n DEG , $p ) | .5 | TS076 | offered | R(90, 60) DEG => R(90 DEG, 60)
 a=@close please|CM|CENTIMETROS|SEG|SEGS|SEGUNDO|SEGUNDOS|SECONDS $ | $a | 1 | TS044 | applied | SHOW(DISTANCE) cm => SHOW(DISTANCE)
-a=@close soon+ b=@start | $a ; $b | 2 | TS044 | applied | F(2, 80) y por ultimo B(1, 50) => F(2, 80);B(1, 50)
 ( a=@num , p=@num|@val ) then|&|+|AND BEEP ( b=@num | ( $a , $p ) ; BEEP ( @same:a:b | .9 | TS074 | offered | F(2, 80) AND BEEP(2, 440) => F(2, 80);BEEP(2, 440)
 a=@close ,? then|soon+ b=@start | $a ; $b | 1 | TS044 | applied | F(1,75) y R(1,75) => F(1, 75);R(1, 75)
 a=@close ,|.|: b=@start | $a ; $b | 1 | TS013 | applied | F(2,80), B(2,80) => F(2, 80);B(2, 80)

@@ -182,15 +182,11 @@ class _Reader:
                 number, k, self.is_sure = number + 0.5, k + 2, False
         elif self.text(k) in ("DE", "OF") and (marked := said_of(self.text(k + 1), "value")):
             unit, k = marked[0], k + 2
-        if self.text(k) in ("DE", "OF") and said_of(self.text(k + 1), "value") == ("%",):
-            k += 2
         if unit == "times":
             if self.times is not None:
                 return None
             self.times = number
             return k
-        if unit in ("steps", "V", "°C"):
-            return None
         self.values.append(_Value(number * thousandths / 1000, unit))
         self.mark = None
         return k

@@ -39,12 +39,12 @@ _LAST_HEAD = re.compile(r"(?is)\b(IF|ELSEIF|WHILE|UNTIL)[ \t]*\((?!.*\b(?:IF|WHI
 _DOTS = re.compile(r"(?:\.[ \t]*){2,}|\u2026")
 _BEFORE_DOTS = re.compile(r"(?i)\b((IF|LOOP|WHILE)[ \t]*\([^()\n]*\)|(DEF)[ \t]+(\w+))[\s;]*$")
 _BEHIND_DOTS = re.compile(r"(?i)[ \t]*\n?[ \t]*(END_?\w+|ELSE\w*)?")
+_MANY_BELOW = 6  # instructions that an example takes into a block
+_IS_BLOCK = re.compile(rf"(?i)(?:{'|'.join((*BLOCK_ENDS, 'END', 'ELSE'))})\b|END_")
 _WORD = re.compile(r"\w")
 _MEMBER = re.compile(r"[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)+(?=[ \t]*\()")
 _SEPARATOR = re.compile(r"[;|{}]")
-_IS_BLOCK = re.compile(rf"(?i)(?:{'|'.join((*BLOCK_ENDS, 'END', 'ELSE'))})\b|END_")
 _MOST_TIMES = 20  # that a DEF is done
-_MANY_BELOW = 6  # instructions that an example takes into a block
 _LONGEST = 120  # characters of a sentence that a message shows
 _MANY = 30  # diagnostics of which more is said
 _PAUSE = "W(2)"
@@ -147,10 +147,6 @@ class _Usage:
         if instead := said_instead(first):
             return found._replace(values={**found.values, **instead})
         is_name = not (self.command(first) or said_of(first, "turn"))
-        if len(tokens) == 2 and tokens[1].kind is NUMBER and is_name:
-            fix = f"{first} = {tokens[1].text}"
-            said = self.offered(codes.OTHER_ASSIGNMENT, piece, fix)
-            return said._replace(values={"found": "", "fix": fix})
         if tokens[1:] and tokens[1].text in ("++", "--", "+", "-") and is_name:
             by = next((each.text for each in tokens[2:] if each.kind is NUMBER), "1")
             fix = f"{first} = {first} {tokens[1].text[0]} {by}"
@@ -184,15 +180,15 @@ class _Usage:
             )
             values = {"word": way, "way": "left" if way == "L" else "right", "usage": _usage(way)}
             turns = orders(tokens, self.names)
-            if [each.is_side_free for each in turns] == [True]:
+            if [(each.is_side_free, each.samples) for each in turns] == [(True, ())]:
                 values = {f"to_{side}": word + turns[0].text[1:] for side, word in _SIDES}
-            elif not way:
-                values = {}
             return Diagnostic(codes.WHICH_WAY, found.span, values)
         concept = self.command(words[0] if words else "") or (self.command(meant) if meant else "")
         is_order = concept in WORDS and WORDS[concept].role not in _NO_ORDER
         if is_order and concept not in words[:1]:
             named = words[0] if self.command(words[0]) else meant or words[0]
+            if len(tokens) == 1 and not WORDS[concept].arguments:
+                return self.translated(found.span, piece, named, concept)
             values = {"found": named, "right": concept, "usage": _usage(concept)}
             return Diagnostic(codes.OTHER_LANGUAGE, found.span, values)
         signs = {each.text for each in tokens}
@@ -205,18 +201,6 @@ class _Usage:
         if words[0] == "TSC":
             return Diagnostic(codes.PROSE, piece, {"command": piece_})
         return self.offered(codes.PROSE, piece, f"// {piece_}")
-
-    def other(self, found: Diagnostic) -> Diagnostic | None:
-        """A word of another language whose instruction the checker has read."""
-        piece = self.piece(found.span)
-        tokens, right = self.tokens(piece), found.values.get("right", "")
-        if said := self.orders(found, piece, found.values["found"]):
-            return said
-        if len(tokens) == 1 and right in WORDS and not WORDS[right].arguments:
-            values = {**found.values, "fix": right}
-            repair = Repair((Edit(piece, right),), False)
-            return found._replace(values=values, place=piece, repair=repair)
-        return None
 
     def orders(self, found: Diagnostic, piece: Span, meant: str) -> Diagnostic | None:
         """Words that say a block, or orders, of which `meant` is a word; offered, never made."""
@@ -427,8 +411,6 @@ class _Usage:
         tokens = self.tokens(piece)
         if sign in "\u00a1\u00bf" and sum(each.kind is WORD for each in tokens) > 1:
             return self.offered(codes.PROSE, piece, f"// {self.source[piece]}")
-        if (said := self.unit(found, tokens)) is not None:
-            return said
         if sign in ".\u2026" and (said := self.dots(found)) is not None:
             return said
         if sign == "[" and [each.text for each in tokens[1:3]] == ["=", "["]:
@@ -552,7 +534,6 @@ def _usage(word: str) -> str:
 
 _SAYS: dict[Code, Callable[[_Usage, Diagnostic], Diagnostic | None]] = {
     codes.UNKNOWN_WORD: _Usage.unknown,
-    codes.OTHER_LANGUAGE: _Usage.other,
     codes.MISSING_OPEN: _Usage.brackets,
     codes.MISSING_SEPARATOR: _Usage.behind,
     codes.MISSING_COMMA: _Usage.question,

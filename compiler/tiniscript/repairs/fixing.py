@@ -6,7 +6,6 @@ guess a name, and with it the program has fewer mistakes. All others are left to
 
 from __future__ import annotations
 
-import re
 import sys
 from collections.abc import Callable
 from typing import NamedTuple
@@ -82,7 +81,7 @@ def offers(text: str, found: list[Diagnostic], check: Check) -> list[list[Edit]]
     source, tried = Source(text), 0
     offered: list[list[Edit]] = []
     for diagnostic in found:
-        edits = edits_of(diagnostic, source) if diagnostic.is_mistake else None
+        edits = edits_of(diagnostic) if diagnostic.is_mistake else None
         if not edits or tried >= OFFERS or any(_is_sealed(edit, source) for edit in edits):
             offered.append([])
             continue
@@ -158,15 +157,6 @@ def _sure(found: list[Diagnostic], text: str) -> list[_Repair]:
 def _is_sealed(edit: Edit, source: Source) -> bool:
     """Whether a change is in a line that has a checksum: it is to be copied again."""
     return "~" in source.line_text(source.position(edit.span.start)[0])
-
-
-def keeps_numbers(text: str, edits: list[Edit]) -> bool:
-    """Whether a change drops no digit of the program, and adds none."""
-    return _digits(text) == _digits(applied(text, edits))
-
-
-def _digits(text: str) -> str:
-    return "".join(re.findall("[0-9]", text))
 
 
 def _first(found: list[Diagnostic]) -> int:

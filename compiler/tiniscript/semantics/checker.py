@@ -143,7 +143,7 @@ class _Checker(Scope):
     def command(self, node: ast.Command, made: list[Statement]) -> None:
         word = WORDS.get(node.word)
         if node.until is not None and (word is None or word.role not in ("move", "wait")):
-            self.wrong.until_not_here(node, node.until, word, made)
+            self.wrong.until_not_here(node, node.until, word)
             node = node._replace(until=None)
         if word is None:
             self.kit_or_def(node, made)

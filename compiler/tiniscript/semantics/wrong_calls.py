@@ -17,16 +17,15 @@ from tiniscript.semantics.comparisons import looks_ahead
 from tiniscript.semantics.counts import LONG_TIME_S, LOWEST_HERTZ, count_diagnostic
 from tiniscript.semantics.symbols import Name, Scope
 from tiniscript.semantics.unknown_words import (
-    report_named_arguments,
     report_not_callable,
     report_placeholders,
     report_unknown,
-    report_words_for_numbers,
+    report_words_shown,
 )
 from tiniscript.source import Source, Span
 from tiniscript.syntax import ast
 from tiniscript.syntax.free_names import numbered
-from tiniscript.words import OTHER_WAY, UNIT_OF, WORDS, Argument, Word
+from tiniscript.words import BLOCK_ENDS, OTHER_WAY, UNIT_OF, WORDS, Argument, Word
 
 _NEAR = 500  # characters behind a value for a sensor in which its use is looked for
 
@@ -42,21 +41,14 @@ class WrongCalls:
     def not_callable(self, node: ast.Command) -> None:
         report_not_callable(self.scope, node)
 
-    def until_not_here(
-        self,
-        node: ast.Command,
-        until: ast.Argument,
-        word: Word | None,
-        made: Sequence[ir.Statement],
-    ) -> None:
-        """`made` is what comes before the UNTIL of this command."""
+    def until_not_here(self, node: ast.Command, until: ast.Argument, word: Word | None) -> None:
         source = self.scope.source
         before = source[Span(node.span.start, until.span.start)]
         start = node.span.start + before.upper().rfind("UNTIL")
         call = source[Span(node.span.start, start)].rstrip()
         asked = f"UNTIL({source[until.span]})"
         self.scope.report(codes.UNTIL_NOT_HERE, Span(start, node.span.end), word=node.word,
-                          example=ended_by(source, call, asked, word, made))  # fmt: skip
+                          example=ended_by(call, asked, word))  # fmt: skip
 
     def forever(self, span: Span, word: Word, call: Span) -> None:
         """FOREVER at `span` in a move without UNTIL."""
@@ -75,17 +67,15 @@ class WrongCalls:
         start = node.span.start
         before, behind = Span(start, unit.start), Span(unit.end, node.span.end)
         fix = f"{self.scope.source[before]}{right}{self.scope.source[behind]}"
-        if "\n" in fix:
-            fix = ""
         said = {"found": unit.op, "right": right, "cm": right if right == "CM" else ""}
         called = "R" if right == "CM" else "F"
         said["other"] = called + self.scope.source[node.span][len(node.word) :] if fix else ""
-        self.scope.report(codes.UNIT_PAIR, place, None, word=node.word, fix=fix, **said)
+        self.scope.report(codes.UNIT_PAIR, place, node.span, word=node.word, fix=fix, **said)
 
     def values(self, node: ast.Command, word: Word, said: int) -> None:
         """Say more of values that have had diagnostics since there were `said`."""
-        report_words_for_numbers(self.scope, node, word, said)
-        report_named_arguments(self.scope, node, word, said)
+        if word.role == "show":
+            report_words_shown(self.scope, said)
         report_placeholders(self.scope, node, word, said)
 
     def out_of_range(
@@ -95,8 +85,9 @@ class WrongCalls:
         """`number`, in thousandths, is a value of the command `of`, if of one."""
         low, high = as_text(its.low), "" if its.high == HIGHEST else as_text(its.high)
         said = {} if of is None else meant(self.scope.source, *of)
-        self.scope.report(codes.OUT_OF_RANGE, span, None, word=word, name=its.name, unit=its.unit,
-                          low=low, high=high, found=as_text(number), **said)  # fmt: skip
+        said |= {"low": low, "high": high, "found": as_text(number)}
+        self.scope.report(codes.OUT_OF_RANGE, span, of and of[0].span, word=word, name=its.name,
+                          unit=its.unit, **said)  # fmt: skip
 
     def no_number(self, span: Span, word: str) -> None:
         """A yes or no where `word` takes a number."""
@@ -141,23 +132,16 @@ def asked_next(source: Source, span: Span) -> str:
     return found[1].strip() if found else "DISTANCE < 10"
 
 
-def ended_by(
-    source: Source, call: str, asked: str, word: Word | None, made: Sequence[ir.Statement]
-) -> str:
-    """Return how something is ended by a question: `F(5, 60); S UNTIL(c)`, `M(5, 5) UNTIL(c)`.
+def ended_by(call: str, asked: str, word: Word | None) -> str:
+    """Return how something is ended by a question: `M(5, 5);W(FOREVER) UNTIL(c);S`.
 
-    `call` is what the UNTIL of `asked` stands behind, `made` what comes before that.
+    `call` is what the UNTIL of `asked` stands behind.
     """
-    before = made[-1] if made else None
     if word is not None and word.role == "motors":
         return f"{call};W(FOREVER) {asked};S"
     if word is not None and word.role in ("show", "beep"):
-        question = asked.removeprefix("UNTIL")
-        return f"WHILE(NOT {question});{call};END_WHILE"
-    is_stop = word is not None and word.role == "stop"
-    if is_stop and isinstance(before, ir.Move) and before.until is None:
-        return f"{source[before.span]} {asked}"
-    return f"{WORDS['F'].example} {asked}"
+        return f"WHILE(NOT {asked.removeprefix('UNTIL')});{call};{BLOCK_ENDS['WHILE']}"
+    return f"F(5, 60) {asked}"
 
 
 _LOW_TONE = 150  # hertz: a note that is no round number, as powers are

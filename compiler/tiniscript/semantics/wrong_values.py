@@ -18,18 +18,16 @@ from tiniscript.semantics.unknown_words import meant_value, whole_name
 from tiniscript.source import Span
 from tiniscript.syntax.ast import Part
 from tiniscript.syntax.operators import SIGN_OF
-from tiniscript.words import POWER_WORDS, SENSOR_STEMS, WORDS
+from tiniscript.words import POWER_WORDS, SENSOR_STEMS, UNIT_OF, WORDS
 
 _EQUAL = frozenset(("EQ", "NE"))
 _COMPARES = re.compile(r"\w+\s*((?:<=|>=|<>|[<>=])\s*[\w.]+)")  # `> 5` of `X > 5`
 _COMPARED = re.compile(r"[^<>=]{1,40}?\s*(?:<=|>=|<>|[<>=])(?=[^<>=]*$)")  # `X =` of `X = 5`
-_TIME, _POWER, _TIMES, _HERTZ = "2", "50", "3", "440"  # examples of what a variable may hold
-_POWER_BEFORE = re.compile(r"(?i)\b[FBLR][ \t]*\([^(),]*,[ \t]*$")
 _NEAR = 20  # characters before a name in which its word is looked for
 _TIMES_BEFORE = re.compile(r"(?i)\bLOOP[ \t]*\([ \t]*$")
-_HERTZ_BEFORE = re.compile(r"(?i)\bBEEP[ \t]*\([^(),]*,[ \t]*$")
-_ASKED_BEFORE = re.compile(r"(?i)\b(?:IF|ELSEIF|UNTIL|WHILE)[ \t]*\([ \t]*$")
 _DIGITS = "0123456789"
+_TIME = "2"  # an example of what a variable may hold
+_CALL_BEFORE = re.compile(r"([A-Za-z]+)[ \t]*\(([^()]*)$")
 _TIME_BEFORE = re.compile(r"(?i)\b(?:[FBLRW]|BEEP)[ \t]*\([ \t]*$")  # a time comes first
 
 
@@ -39,9 +37,6 @@ class WrongValues:
 
     def unknown(self, part: Part, name: str, target: str | None) -> None:
         scope, span = self.scope, Span(part.start, part.end)
-        if name in scope.def_names:
-            scope.report(codes.NO_VALUE, span, word=name)
-            return
         meant = meant_by(name) or ""
         before = scope.source.text[max(0, span.start - _NEAR) : span.start]
         is_variable = meant == "TIME" and _TIME_BEFORE.search(before) is not None
@@ -74,8 +69,6 @@ class WrongValues:
         several = [each for each in known if each.startswith(stem)]
         which = {} if len(several) != 2 else {"first": several[0], "second": several[1]}
         sensors = [each for each, its in names if its.what == "sensor"]
-        if name in ("SENSOR", "SENSORES", "SENSORS") and len(sensors) > 1:
-            which = {"first": ", ".join(sensors[:-1]), "second": sensors[-1]}
         if name == target or name in scope.set_somewhere:
             first = scope.line_to_move_up(name, span)
             if any(each.code is codes.USED_BEFORE_SET and each.values["name"] == name
@@ -83,27 +76,26 @@ class WrongValues:
                 return  # said once
             scope.report(codes.USED_BEFORE_SET, span, None, name=name, near=near, **first)
         else:
-            near = "" if which else near
-            near = "" if is_variable else near
-            value = value_of(name)
-            if _TIME_BEFORE.search(before):
-                value = _TIME
-            elif _POWER_BEFORE.search(before):
-                value = _POWER
-            elif _TIMES_BEFORE.search(before):
-                value = _TIMES
-            elif _HERTZ_BEFORE.search(before):
-                value = _HERTZ
+            near = "" if which or is_variable else near
+            value = self._sample(before) or value_of(name)
             only = next((each for each in sensors if name.startswith(each + "_")), "")
             aside = only if name.rpartition("_")[2] in ASIDE else ""
-            numbered = self._numbered(name, base, span, sensors)
-            only = numbered.get("bare") or only
-            alike = near if near and near.rstrip(_DIGITS) == name.rstrip(_DIGITS) else ""
-            near = "" if aside or numbered or alike else only or near
-            if alike and not which and not numbered:
-                numbered, value = {"alike": alike}, value or "0"
+            alike = near if near and near.rstrip(_DIGITS) == base else ""
+            near = "" if aside or alike else only or near
+            said = {"alike": alike} if alike and not which else {}
+            value = value or ("0" if said else "")
             scope.report(codes.UNKNOWN_NAME, span, None, found=name, near=near,
-                         value=value, only=only, aside=aside, **numbered, **which)  # fmt: skip
+                         value=value, only=only, aside=aside, **said, **which)  # fmt: skip
+
+    @staticmethod
+    def _sample(before: str) -> str:
+        """Return an example of the value of a call in whose brackets a name stands alone."""
+        call = _CALL_BEFORE.search(before)
+        word = WORDS.get(call[1].upper()) if call else None
+        if call is None or word is None or word.text not in ("LOOP", *UNIT_OF, "W", "BEEP"):
+            return ""
+        its = word.arguments[call[2].count(",") :][:1]
+        return "".join(_TIME if each.unit == "s" else each.sample for each in its)
 
     def _amount(self, span: Span, name: str) -> dict[str, str]:
         """Return how the call around `poco` is written, or around the `lento` beside it."""
@@ -120,18 +112,6 @@ class WrongValues:
             return False
         between = self.scope.source[Span(found[0].span.end, span.start)]
         return not set(between) & set("();\r\n") and "," in between
-
-    def _numbered(self, name: str, base: str, span: Span, sensors: list[str]) -> dict[str, str]:
-        """`DISTANCE2`, `IF(DISTANCE20)`: there is one such sensor, or a sign is missing."""
-        sensor = base if base in sensors else meant_by(base) or ""
-        digits = name[len(base) :].lstrip("_")
-        if sensor not in sensors or not digits:
-            return {}
-        text = self.scope.source.text
-        is_asked = _ASKED_BEFORE.search(text[max(0, span.start - _NEAR) : span.start])
-        if is_asked and text[span.end : span.end + _NEAR].lstrip()[:1] == ")":
-            return {"bare": sensor, "less": f"{sensor} < {digits}"}
-        return {"bare": sensor, "digits": digits}
 
     def mixed(self, op: str, left: Operand, right: Operand, span: Span) -> None:
         """A number is compared with a yes or no."""
