@@ -7,8 +7,12 @@ from pathlib import Path
 import pytest
 
 from tests.machines.uno import needed
+from tests.support.casefile import ROOT
 from tests.support.platformio import firmware, shared
-from tests.support.uno_with_discs import ENVIRONMENT, Driven
+from tests.support.uno_with_discs import ENVIRONMENT, ROBOT, Driven
+from tiniscript import compile_text
+from tiniscript.bytecode.image import unpack
+from tiniscript.link.requests import OK
 from tiniscript.virtual.wheels import Roughness
 
 
@@ -32,3 +36,26 @@ def test_a_wheel_whose_disc_tells_nothing_is_stuck(sketch: Path) -> None:
     with robot.uno:
         assert robot.drive("F(30 CM, 60)") == "FAULT"
         assert not any(wheel.wanted for wheel in robot.wheels.both)
+
+
+def test_a_nano_with_discs_has_tasks(tmp_path_factory: pytest.TempPathFactory) -> None:
+    """The reader of text has left room for them: it backs away from what comes near."""
+    needed()
+    nano = firmware("nano_tinibot2", tmp_path_factory.mktemp("nano"), shared(tmp_path_factory))
+    robot = Driven(nano, 1, (100, 100), Roughness())
+    pins = ROBOT.board.sensors[2].pins
+    eye = f"D{pins['trigger']}", f"D{pins['echo']}"
+    text = (ROOT / "examples" / "away.ts").read_text(encoding="utf-8")
+    with robot.uno:
+        robot.uno.sonar(*eye, 50)
+        assert robot.until(robot.session.hello()) == OK
+        image = unpack(compile_text(text, ROBOT.kit).image)
+        assert robot.until(robot.session.upload(image)) == OK
+        seen = []
+        for distance_cm, milliseconds in ((50, 500), (9, 300), (50, 500), (50, 500)):
+            robot.uno.sonar(*eye, distance_cm)
+            robot.run(milliseconds)
+            seen.append(
+                tuple((wheel.wanted > 0) - (wheel.wanted < 0) for wheel in robot.wheels.both)
+            )
+    assert seen == [(1, 1), (-1, -1), (1, -1), (1, 1)]
