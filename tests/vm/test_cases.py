@@ -13,6 +13,7 @@ from tiniscript.bytecode.disassembly import listing, read_listing
 from tiniscript.bytecode.verify import Refused, verify
 from tiniscript.cli.options import decimal
 from tiniscript.diagnostics.rendering import as_text, message
+from tiniscript.languages import SOURCE, languages
 from tiniscript.robots.profile import Robot
 from tiniscript.syntax.formatter import formatted
 from tiniscript.text.line import line_of, plain_code
@@ -39,7 +40,8 @@ def robot_and_senses(case: Case) -> tuple[Robot, Senses]:
 
 
 def language_of(case: Case) -> str:
-    return "es" if case.path.stem.endswith(".es") else "en"  # `values.md` is English
+    code = case.path.suffixes[0][1:]  # `values.md` is English
+    return code if code in languages() else SOURCE
 
 
 def compiled(case: Case) -> Compiled:
