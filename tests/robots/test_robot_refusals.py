@@ -346,7 +346,7 @@ def test_another_name_in_the_kit_names_the_tables_that_need_it_too() -> None:
     said = describe(refusal(edited("tinibot", 'name = "DISTANCE"', 'name = "DISTANCIA"')), "en")
     assert [each.partition(":")[0] for each in said] == [
         "board.sensors.DISTANCE", "body.sensors.DISTANCE",
-        "labels.en.DISTANCE", "labels.es.DISTANCE",
+        *(f"labels.{each}.DISTANCE" for each in robots.load("tinibot").labels),
     ]  # fmt: skip
     assert all(each.endswith("Did you mean DISTANCIA?") for each in said)
 
