@@ -5,6 +5,9 @@ many. A quarter of the pupils' programs is put aside: its score is printed, neve
 `--show worse` prints the others that have this mark, `--code TS036` those of a code alone; `--keep`
 writes scores that rose.
 
+`--judge FILE` prints for judges what is said of each program of a file, which blank lines part, and
+what `--fix` makes of it; `--lang en` says it in English.
+
 `slips as meant` was begun anew: its sample was drawn from pins, and fell from 16.8 to 12.0 as they
 changed. It is drawn from right programs now, and says what `--fix` makes of them; with 64 other
 programs of documents it fell from 18.0 to 17.8. `aside without a false repair` fell from 100.0 to
@@ -29,9 +32,11 @@ sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
 from tests.pupils.corpus import Entry, check, entries
 from tests.pupils.test_damage import programs
+from tiniscript.diagnostics.rendering import message
 from tiniscript.lessons import catalogue
 from tiniscript.recovery.explanation import explained
 from tiniscript.repairs.fixing import fixed
+from tiniscript.source import Source
 from tools.shadow import marks
 from tools.shadow.marks import EQUIVALENT, MARKS, QUESTION, SAME, WORSE, Answer
 
@@ -56,7 +61,15 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--show", choices=MARKS, help="print the programs with this mark")
     parser.add_argument("--code", default="", help="print those with this code alone")
     parser.add_argument("--keep", action="store_true", help="write what rose")
+    parser.add_argument(
+        "--judge", type=Path, metavar="FILE", help="print what is said of its programs"
+    )
+    parser.add_argument("--lang", default="es", help="the language of what is said")
     options = parser.parse_args(arguments)
+    if options.judge:
+        for program in options.judge.read_text(encoding="utf-8").strip("\n").split("\n\n"):
+            judge(program, options.lang)
+        return 0
     begun = time.monotonic()
     took: list[float] = []
     seen: list[Answer] = []
@@ -76,6 +89,17 @@ def main(arguments: list[str] | None = None) -> int:
     median, worst = (1000 * took[k] for k in (len(took) // 2, -1))
     print(f"median {median:.1f} ms, at worst {worst:.0f} ms; {time.monotonic() - begun:.0f} s")
     return kept(scores, options.keep)
+
+
+def judge(program: str, lang: str) -> None:
+    """Print a program, what is said of it, and what `--fix` makes of it."""
+    print("-" * 80, program, sep="\n")
+    for each in check(program):
+        said = message(each, Source(program), lang)
+        print(f"  line {said.line}: {said.message} | try: {said.fix}")
+    made = fixed(program, check).text
+    if made != program:
+        print("  repaired:", *made.split("\n"), sep="\n    ")
 
 
 def of_pupils(name: str, answers: Sequence[Answer]) -> Scores:

@@ -5,6 +5,7 @@ Every number of the words is in the call, or there is no call. Knows no separato
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -344,6 +345,8 @@ class _Reader:
             return values
         if count == 1 and numbers[0] != 0:
             return None
+        if any(re.fullmatch("0[0-9]+", each.text) for each in self.words):
+            return None  # `W(0, 05)`: a zero may not be lost
         pairs = zip(values[::2], values[1::2], strict=True)
         return [_Value(float(f"{int(a.value)}.{int(b.value)}"), b.unit) for a, b in pairs]
 
