@@ -5,7 +5,7 @@
 A module is a folder of the package, or a single file in it; an arrow says that one imports another,
 at the top of a file, inside a function or for types; a circle is a group of files each of which
 imports all others, if only through others. An import that is indented is one inside a function, or
-one for types. Goals, not tests.
+one for types. Languages other than English and Spanish are not counted. Goals, not tests.
 """
 
 from __future__ import annotations
@@ -65,10 +65,17 @@ def _graph(trees: dict[str, ast.Module]) -> Graph:
 
 
 def _tracked() -> list[Path]:
-    """Return the files that git knows, without those that are deleted here."""
+    """Return the files that git knows and that are here, in English, Spanish or no language."""
     listed = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, check=True, capture_output=True)
     paths = (ROOT / name for name in listed.stdout.decode().split("\0") if name)
-    return [path for path in paths if path.is_file()]
+    languages = PACKAGE / "languages"
+    others = {path.name for path in languages.iterdir() if path.is_dir()} - {"en", "es"}
+    return [
+        path for path in paths
+        if path.is_file()
+        and not others & {suffix[1:] for suffix in path.suffixes}
+        and not any(languages / other in path.parents for other in others)
+    ]  # fmt: skip
 
 
 def _words(tracked: list[Path]) -> int:
