@@ -147,6 +147,10 @@ class _Usage:
         if instead := said_instead(first):
             return found._replace(values={**found.values, **instead})
         is_name = not (self.command(first) or said_of(first, "turn"))
+        if len(tokens) == 2 and tokens[1].kind is NUMBER and is_name:
+            fix = f"{first} = {tokens[1].text}"
+            said = self.offered(codes.OTHER_ASSIGNMENT, piece, fix)
+            return said._replace(values={"found": "", "fix": fix})
         if tokens[1:] and tokens[1].text in ("++", "--", "+", "-") and is_name:
             by = next((each.text for each in tokens[2:] if each.kind is NUMBER), "1")
             fix = f"{first} = {first} {tokens[1].text[0]} {by}"

@@ -37,6 +37,9 @@ class WrongValues:
 
     def unknown(self, part: Part, name: str, target: str | None) -> None:
         scope, span = self.scope, Span(part.start, part.end)
+        if name in scope.def_names:
+            scope.report(codes.NO_VALUE, span, word=name)
+            return
         meant = meant_by(name) or ""
         before = scope.source.text[max(0, span.start - _NEAR) : span.start]
         is_variable = meant == "TIME" and _TIME_BEFORE.search(before) is not None
