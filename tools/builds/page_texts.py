@@ -11,7 +11,7 @@ from tiniscript.languages.compiling import merged
 from tiniscript.words import WORDS
 
 # Of what the page's Python says; the sentences of lessons come with these.
-MESSAGES = ("messages", "statuses", "refusals", "library")
+MESSAGES = ("messages", "statuses", "refusals", "library", "robot")
 PERIOD = 100  # after so many numbers a rule of plurals repeats itself, but for the first hundred
 
 

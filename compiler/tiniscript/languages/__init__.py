@@ -91,6 +91,8 @@ def catalogue(name: str, language: str) -> GNUTranslations:
     if _is_fresh(made, _files(name, language)):
         with made.open("rb") as file:
             return GNUTranslations(file)
+    if language != SOURCE and not any(map(Path.is_file, _files(name, language))):
+        return catalogue(name, SOURCE)  # a page has not fetched it
     from tiniscript.files import replace
     from tiniscript.languages.compiling import compiled
 

@@ -84,6 +84,7 @@ def _learn(fields: Answer, data: bytes) -> Answer:
         made = compiling.machine_object(texts.pop(""), texts)
         (folder / f"{name}.mo").write_bytes(made)
     languages.languages.cache_clear()
+    languages.catalogue.cache_clear()
     return {}
 
 
