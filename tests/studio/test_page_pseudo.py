@@ -1,0 +1,71 @@
+"""The page in a language whose texts are a third longer: nothing is cut or too wide."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING
+
+from tests.support import studio
+from tests.support.pseudo import pseudo
+from tests.support.studio import SETTLED, Pages, turn
+from tools.builds.screens import BESIDE, SCREENS
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser, Route
+
+SIZES = ((1366, 768), (390, 844))
+# Each text that can be seen, and whether what holds it cuts it, or it leaves its button or the
+# page. What may be scrolled, and what only screen readers read, cuts nothing.
+CUT = """() => {
+  const found = new Set();
+  const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
+  const range = document.createRange();
+  for (let node = walker.nextNode(); node; node = walker.nextNode()) {
+    const holder = node.parentElement;
+    if (!node.textContent.trim() || !holder.checkVisibility()) continue;
+    if (holder.closest('option, .blocklySvg') || holder.clientWidth === 1) continue;
+    range.selectNodeContents(node);
+    const text = range.getBoundingClientRect();
+    const said = holder.closest('[id]')?.id + ': ' + node.textContent.trim().slice(0, 40);
+    for (let at = holder; at; at = at.parentElement) {
+      const {overflowX, display} = getComputedStyle(at);
+      if (overflowX === 'auto' || overflowX === 'scroll') break;
+      const box = at.getBoundingClientRect();
+      const holds = overflowX !== 'visible' || at.tagName === 'BUTTON';
+      const isOut = text.right > box.right + 1 || text.left < box.left - 1;
+      if (display !== 'inline' && holds && isOut) found.add('cut in ' + said);
+      if (at === document.body && text.right > innerWidth + 1) found.add('outside: ' + said);
+    }
+  }
+  if (document.documentElement.scrollWidth > innerWidth) found.add('the page is too wide');
+  return [...found];
+}"""
+
+
+def _answer(route: Route) -> None:
+    said = route.fetch().json()
+    route.fulfill(body=json.dumps(pseudo(said)), content_type="application/json")
+
+
+def test_longer_texts_fit_into_every_screen(browser: Browser) -> None:
+    with studio.served() as server:
+        pages = Pages(browser, server.address)
+        page = pages.open("start", reduced_motion="reduce")
+        page.route("**/texts.en.json", _answer)
+        page.reload()
+        page.locator("#start_title", has_text="lóñg").wait_for()
+        page.evaluate("document.querySelector('#start_write').style.width = '3em'")
+        assert page.evaluate(CUT) != []  # it would be noticed
+        page.evaluate("document.querySelector('#start_write').style.width = ''")
+        cut = {}
+        for screen, see in SCREENS.items():
+            page.set_viewport_size({"width": 1366, "height": 768})
+            page.evaluate(SETTLED)
+            see(page)
+            for width, height in SIZES:
+                page.set_viewport_size({"width": width, "height": height})
+                turn(page, "robot" if screen in BESIDE else "program")
+                page.evaluate(SETTLED)
+                cut[screen, width] = page.evaluate(CUT)
+        assert {where: each for where, each in cut.items() if each} == {}
+        pages.close()
