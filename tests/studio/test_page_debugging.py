@@ -30,7 +30,7 @@ def at_rest(page: Page) -> None:
     page.keyboard.press("Escape")
     page.click("#view_text")
     page.select_option("#speed", "20")
-    page.select_option("#seen", "arena")
+    page.click("#seen_arena")
 
 
 def press_margin(page: Page, line: int) -> None:
@@ -216,7 +216,7 @@ def test_everything_is_seen_of_values_and_lists(page: Page, seen: str) -> None:
     in_phase(page, "ended")
     for language in ("en", "es"):
         speak(page, language)
-        page.select_option("#seen", seen)
+        page.click(f"#seen_{seen}")
         for width, height in SCREENS:
             page.set_viewport_size({"width": width, "height": height})
             turn(page, "robot")
@@ -228,7 +228,7 @@ def test_everything_is_seen_of_values_and_lists(page: Page, seen: str) -> None:
 
 def test_curves_are_drawn_of_sensors_variables_and_what_is_shown(page: Page) -> None:
     write(page, COUNT)
-    page.select_option("#seen", "plot")
+    page.click("#seen_plot")
     page.click("#run")
     in_phase(page, "ended")
     colors = page.evaluate(

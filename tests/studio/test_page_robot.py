@@ -75,11 +75,11 @@ def test_a_run_is_the_same_as_without_a_page(page: Page, name: str, robot: str, 
 def test_the_list_is_the_trace_of_the_command(page: Page) -> None:
     wanted = runs_like_the_command(page, DANCE)
     assert page.inner_text("#doing") == "It has ended."
-    page.select_option("#seen", "trace")
+    page.click("#seen_trace")
     with page.expect_download() as saved:
         page.click("#save_trace")
     assert saved.value.path().read_text().splitlines() == wanted
-    page.select_option("#seen", "arena")
+    page.click("#seen_arena")
 
 
 @pytest.mark.parametrize("is_paused", [False, True], ids=["driving", "paused"])

@@ -58,11 +58,11 @@ def _task(page: Page) -> None:
 
 
 def _plot(page: Page) -> None:
-    page.select_option("#seen", "plot")
+    page.click("#seen_plot")
 
 
 def _drawing(page: Page) -> None:
-    page.select_option("#seen", "arena")
+    page.click("#seen_arena")
     page.click("#world_draw")
     page.select_option("#world_part", index=1)
 

@@ -52,7 +52,8 @@ END_LOOP
 # As blocks after its run; at a breakpoint, with values; on the start screen, where both are kept;
 # in a lesson, after a check; and those of SHEETS.
 SCENES = {"": PROGRAM, ".held": COUNTED, ".start": COUNTED, ".lesson": "SI|F(5, 80)",
-          ".drawing": PROGRAM, ".phone": PROGRAM, ".minute": PROGRAM}  # fmt: skip
+          ".drawing": PROGRAM, ".phone": PROGRAM, ".minute": PROGRAM,
+          ".teacher": PROGRAM}  # fmt: skip
 HOLDS = 5  # the line of the breakpoint
 SIZE = {"width": 1280, "height": 760}
 GAP = 12  # pixels between the pictures of a sheet
@@ -208,8 +209,15 @@ def _minute(page: Page, scene: str, look: Callable[[], None]) -> None:
     look()
 
 
+def _teacher(page: Page, scene: str, look: Callable[[], None]) -> None:
+    """A real robot in four steps, and below them what is for the teacher."""
+    page.click("#side_real")
+    page.click("#link_teacher summary")
+    look()
+
+
 # Scenes of several pictures, or beside the program.
-SHEETS = {".drawing": _drawing, ".phone": _phone, ".minute": _minute}
+SHEETS = {".drawing": _drawing, ".phone": _phone, ".minute": _minute, ".teacher": _teacher}
 
 
 def _sheet(shots: list[Image.Image]) -> Image.Image:

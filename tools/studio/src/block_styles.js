@@ -55,6 +55,7 @@ export function look() {
 function prepared() {
   Blockly.blockRendering.register(RENDERER, Renderer);
   adoptCommon();
+  adopt(Object.entries(COLOURS).map(([name, colour]) => `.category.${name} { --colour: ${colour}; }`).join('\n'));
   const styles = Object.entries(COLOURS).map(([name, colour]) => [name, { colourPrimary: colour }]);
   const theme = Blockly.Theme.defineTheme('tiniscript', {
     name: 'tiniscript',

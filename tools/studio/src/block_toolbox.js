@@ -112,6 +112,7 @@ export function toolbox(level, used) {
       kind: 'category',
       name: text(known(`group/${name}`)),
       categorystyle: name,
+      cssConfig: { icon: `category ${name}` },
       contents: items.filter(([its]) => isShown(its)).map(([, each]) => ({ ...each, gap: 8 })),
     })),
   };

@@ -22,7 +22,8 @@ const SHOWN = 200; // lines of the trace
 const READ_MS = 100; // nobody reads what changes more often
 const SHORT = 12; // characters of a name whose value stands beside another one
 const PLAYED_MS = 6000; // at most for a run of a lesson
-const SEEN = /** @type {const} */ ({ arena: 'seen_arena', plot: 'seen_plot', trace: 'seen_trace' });
+/** What of a run is seen, by the button that shows it. */
+const SEEN = { seen_arena: 'arena', seen_plot: 'plot_place', seen_trace: 'trace_place' };
 
 export class Driving {
   #editor;
@@ -40,7 +41,6 @@ export class Driving {
   #where = new Where();
   #bumps = 0; // that were seen
   #shown = ''; // what SHOW has shown last
-  #seen = element('seen', HTMLSelectElement);
   #wasStopped = false;
   #note = '';
   #told = ''; // of the trace
@@ -95,8 +95,7 @@ export class Driving {
       isDriving: () => this.#isDriving,
       rest: () => {
         this.#rest();
-        this.#seen.value = 'arena';
-        this.#choose();
+        this.#choose('seen_arena');
       },
       put: (world, isOther) => {
         this.#preview = null;
@@ -132,7 +131,7 @@ export class Driving {
     element('save_trace', HTMLButtonElement).addEventListener('click', () => {
       download(text('trace_name'), this.#simulator.trace.map((line) => `${line}\n`).join(''));
     });
-    this.#seen.addEventListener('change', () => this.#choose());
+    for (const each of Object.keys(SEEN)) element(each, HTMLButtonElement).addEventListener('click', () => this.#choose(each));
     const sound = element('sound', HTMLButtonElement);
     const hear = () => {
       this.#sounds.mute(!work.sound);
@@ -189,20 +188,17 @@ export class Driving {
   }
 
   setLanguage() {
-    const { value } = this.#seen;
-    this.#seen.replaceChildren(...Object.entries(SEEN).map(([each, name]) => new Option(text(name), each)));
-    this.#seen.value = value || 'arena';
     this.#world.setLanguage();
     this.#drawing.setLanguage();
     this.#show();
   }
 
-  /** Shows the robot from above, or its values, or what it has done. */
-  #choose() {
-    const { value } = this.#seen;
-    element('arena', HTMLElement).hidden = value !== 'arena';
-    element('plot_place', HTMLElement).hidden = value !== 'plot';
-    element('trace_place', HTMLElement).hidden = value !== 'trace';
+  /** Shows the robot from above, or its values, or what it has done. @param {string} chosen a button */
+  #choose(chosen) {
+    for (const [each, place] of Object.entries(SEEN)) {
+      element(each, HTMLButtonElement).setAttribute('aria-pressed', String(each === chosen));
+      element(place, HTMLElement).hidden = each !== chosen;
+    }
     this.#show();
   }
 
@@ -227,8 +223,7 @@ export class Driving {
     const { world, goals } = await this.#python.ask({ do: 'lesson_world', number, seed });
     this.#world.bring({ request: { lesson: number, seed }, shapes: world, label, goals });
     this.begin();
-    this.#seen.value = 'arena';
-    this.#choose();
+    this.#choose('seen_arena');
   }
 
   /** Another robot or world: what drove there has ended. */
@@ -398,7 +393,7 @@ export class Driving {
       this.#arena.say(this.#shown, shown[0]);
     }
     this.#plot.add(state.now_ms - state.began_ms, [
-      ...this.#sensors().map((device, k) => ({ name: device.text, value: numberOf(state.readings[k]?.text) })),
+      ...this.#sensors().map((device, k) => ({ name: nameOf(device), value: numberOf(state.readings[k]?.text) })),
       ...this.#variables.map(({ name, is_yes_no }, k) => ({ name, value: is_yes_no ? Number(Boolean(state.variables[k])) : state.variables[k] })),
       { name: 'SHOW', value: numberOf(this.#shown) },
     ]);

@@ -40,11 +40,28 @@ export function robotPicture(robot) {
   return picture;
 }
 
+/** @param {number} count @returns {SVGElement} so many blocks */
+export function blocksPicture(count) {
+  const picture = part('svg', { viewBox: '0 0 28 28', 'aria-hidden': 'true' });
+  const first = 14 - 4.5 * count;
+  for (let k = 0; k < count; k += 1) {
+    picture.append(part('path', { d: `M3 ${first + 9 * k}h5q1 2.500 3 2.500t3-2.500h11v8H14q-1 2.500-3 2.500t-3-2.500H3z`, fill: ['#0b4f9e', '#c56a1b', '#2a9d6f'][k] ?? '' }));
+  }
+  return picture;
+}
+
 /** An option with a picture, where the browser shows one. @param {string} label @param {string} value @param {Element} picture */
 export function pictured(label, value, picture) {
-  const option = new Option(label, value);
-  option.prepend(picture);
+  const option = new Option('', value);
+  const said = document.createElement('span');
+  said.textContent = label;
+  option.append(picture, said);
   return option;
+}
+
+/** Offers these instead of those before; what shows the chosen one stays. @param {HTMLSelectElement} choice @param {HTMLOptionElement[]} options */
+export function offer(choice, options) {
+  choice.replaceChildren(...choice.querySelectorAll('button'), ...options);
 }
 
 /** @param {string} name @param {Record<string, string | number>} values */

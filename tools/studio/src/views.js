@@ -2,6 +2,7 @@
 // blocks are made of it when it changes, and it is made of them when they do.
 
 import { element } from './elements.js';
+import { blocksPicture, offer, pictured } from './pictures_of.js';
 import { text } from './texts.js';
 
 /** @typedef {import('./blocks.js').Blocks} Blocks */
@@ -102,7 +103,7 @@ export class Views {
   }
 
   setLanguage() {
-    this.#level.replaceChildren(...LEVELS.map(([level, name]) => new Option(text(name), level)));
+    offer(this.#level, LEVELS.map(([level, name], k) => pictured(text(name), level, blocksPicture(k + 1))));
     this.#level.value = this.#work.level;
     this.#blocks?.setLanguage();
     if (!this.#isStale()) this.#showAll();
