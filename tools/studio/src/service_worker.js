@@ -21,7 +21,7 @@ async function isKept(names) {
 self.addEventListener('install', (event) => {
   event.waitUntil(
     Promise.all(Object.values(LANGUAGES).map(async (names) => ((await isKept(names)) ? names : [])))
-      .then((kept) => keep([...FILES, ...kept.flat()])),
+      .then((kept) => keep([...new Set([...FILES, ...kept.flat()])])),
   );
 });
 
