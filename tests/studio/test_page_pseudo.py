@@ -23,7 +23,7 @@ CUT = """() => {
   for (let node = walker.nextNode(); node; node = walker.nextNode()) {
     const holder = node.parentElement;
     if (!node.textContent.trim() || !holder.checkVisibility()) continue;
-    if (holder.closest('option, .blocklySvg') || holder.clientWidth === 1) continue;
+    if (holder.closest('option, .blocklySvg') || holder.getBoundingClientRect().width < 2) continue;
     range.selectNodeContents(node);
     const text = range.getBoundingClientRect();
     const said = holder.closest('[id]')?.id + ': ' + node.textContent.trim().slice(0, 40);
