@@ -33,9 +33,9 @@ OTHER_NUMBERS = (
     codes.PASTED,  # `[20:14] Luis:`
     codes.NO_BRACKETS_HERE,  # `TASK(1)`
 )
-# A digit for a sign on its key, or turned round; a power; a point between thousands.
-SHIFTED = re.compile(r"[=!\"$%/]|\d\d, \d{3}$|^F8\d$|\^2|\.000$")
-CONVERTED = re.compile(r"(?i)[0-9] *(min|ms|mili|hora|hour)|delay")
+# A digit for a sign on its key, or turned round; a power; a point between thousands; a sound.
+SHIFTED = re.compile(r"[=!\"$%/]|\d\d, \d{3}$|^F8\d$|\^2|\.000$|^4WARD|^W8")
+CONVERTED = re.compile(r"(?i)[0-9] *(min|ms|mili|hora|hour)|delay|tone")
 
 
 def mistakes(found: list[Diagnostic]) -> int:

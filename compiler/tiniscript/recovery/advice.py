@@ -548,6 +548,7 @@ def _note(gaps: _Gaps) -> str:
 _GAPS: dict[str, Callable[[_Gaps], str]] = {
     "above?": lambda gaps: [gaps.part.above.line or "", *(gaps.part.before or ())][-1],
     "all": lambda gaps: _all(gaps, gaps["n"]), "often?": lambda gaps: _all(gaps, "4"),
+    "endless": lambda gaps: _all(gaps, "FOREVER"),
     "more": lambda gaps: _all(gaps, str(int(gaps["n"]) + 1)), "twice": _twice,
     "said": lambda gaps: gaps.part.words.strip(" ,:"),
     "joint": lambda gaps: _worded(gaps).joint, "head": _head,

@@ -141,6 +141,9 @@ def concepts(word: str) -> tuple[Meaning, ...]:
         return (Meaning(found, KNOWN),)
     if word in WORDS or word in lexicon():
         return ()
+    less = re.sub(r"(.)\1\1+", r"\1\1", word)  # `BEEEEEP`
+    if less != word:
+        return (Meaning(less, MISSPELT),) if less in WORDS else concepts(less)
     alike, near = _speller().alike(word), _speller().near(word)
     for spelt, cost in ((alike, KNOWN), (near, MISSPELT)):
         if spelt and (found := concept_of(spelt)):

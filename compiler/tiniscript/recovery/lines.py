@@ -375,7 +375,7 @@ def _is_duration(tokens: Sequence[Lexeme], k: int, concept: str) -> bool:
 
 def _is_long(tokens: Sequence[Lexeme], k: int, concept: str) -> bool:
     """Whether a number behind a translated word is rarely meant for seconds: `move(50, 50)`."""
-    first = tokens[k + 2] if k + 2 < len(tokens) and concept in MOVES else None
+    first = tokens[k + 2] if k + 2 < len(tokens) and concept in (*MOVES, "BEEP") else None
     return first is not None and first.kind is NUMBER and float(first.text) >= LONG_S
 
 

@@ -379,6 +379,18 @@ def _end_of_range(place: _Place, is_high: bool) -> _Made:
     return [made(f"{(known.high if is_high else known.low) / 1000:g}")]
 
 
+def _seconds(place: _Place) -> _Made:
+    """`1000` milliseconds are 1."""
+    (number,) = place.captured[0]
+    return [made(f"{float(number.text) / 1000:g}")]
+
+
+def _by(place: _Place) -> _Made:
+    """`2VEL` is 2 * VEL."""
+    (number,), (name,) = place.captured
+    return [number, made("*"), name._replace(space=None)] if name.space == "" else None
+
+
 def _centimetres(place: _Place) -> _Made:
     """`1 m` is 100."""
     (metres,) = place.captured[0]
@@ -398,7 +410,7 @@ def _number_if(is_so: Callable[[float], bool]) -> Callable[[_Place], _Made]:
 _FUNCTIONS: dict[str, Callable[[_Place], _Made]] = {
     "not": _not, "endof": _end_of, "dec": _decimal, "cat": _zero_behind, "mmss": _minutes,
     "xn": _times, "brace": _brace, "same": _same, "join": _name, "known": _known_name,
-    "most": _most, "least": _least, "cm": _centimetres,
+    "ms": _seconds, "by": _by, "most": _most, "least": _least, "cm": _centimetres,
     "power": _number_if(lambda it: LONG_S <= it <= _MOST_POWER),
     "time": _number_if(lambda it: it < LONG_S),
     "whole": _number_if(float.is_integer),

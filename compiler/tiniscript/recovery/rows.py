@@ -71,7 +71,7 @@ BARS = (":", "||", "/", "\\", "¦", "!", "¡")  # signs that stand for the bar w
 NOTES = ("//", "#")  # which stand for it before a call alone
 
 # A line that begins a block whose question comes at its end.
-DO_ALONE = r"\s*(?:REPEAT|REPETIR|REPITE|DO|LOOP|HACER)\b\s*\{?\s*$"
+DO_ALONE = r"\s*(?:S[IB]\s*\|\s*)?(?:REPEAT|REPETIR|REPITE|DO|LOOP|HACER)\b\s*\{?\s*$"
 
 SIGNS = r"""
 (?<!\) )(["'«»`])([A-Za-z0-9_.,()| <>=]*[A-Za-z0-9)][A-Za-z0-9_.,()| <>=]*)(?:\1|»)  |  `\2`  |  1  |  TS006  |  applied  |  F("2","80") => F(2,80)
@@ -106,7 +106,12 @@ SIGNS = r"""
 \bLOOP_?(\d+)(?=\s*(?:;|$))  |  `LOOP(\1)`  |  1  |  TS015  |  applied  |  LOOP4;F(2, 80);END_LOOP => LOOP(4);F(2, 80);END_LOOP
 ^(\s*S[IB]\s*\|)\s+\|  |  `\1`  |  1  |  TS054  |  applied  |  SI| |F(2, 80) => SI|F(2, 80)
 −  |  `-`  |  0  |  TS010  |  applied  |  M(−50 50) => M(-50, 50)
+&lt;  |  `<`  |  1  |  TS010  |  applied  |  IF(DISTANCE &lt; 10)⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
+&gt;  |  `>`  |  1  |  TS010  |  applied  |  IF(DISTANCE &gt; 10)⏎S⏎ENDIF => IF(DISTANCE > 10)⏎S⏎ENDIF
 &nbsp;  |  ` `  |  1  |  TS072  |  applied  |  F(2, 80);&nbsp;R(1, 50); => F(2, 80); R(1, 50);
+(?<=\d) ?½  |  `.5`  |  .5  |  TS010  |  applied  |  F(1 ½, 80) => F(1.5, 80)
+(?<=\d) ?¼  |  `.25`  |  .5  |  TS010  |  applied  |  W(2¼) => W(2.25)
+(?<=\d) ?¾  |  `.75`  |  .5  |  TS010  |  applied  |  W(1 ¾) => W(1.75)
 ½  |  `0.5`  |  1  |  TS010  |  applied  |  F(½, 80) => F(0.5, 80)
 ¼  |  `0.25`  |  1  |  TS010  |  applied  |  W(¼) => W(0.25)
 ¾  |  `0.75`  |  1  |  TS010  |  applied  |  W(¾) => W(0.75)
@@ -129,6 +134,7 @@ SIGNS = r"""
 [→➜⇒]  |  `;`  |  1  |  TS061  |  applied  |  →F(2, 80) => ;F(2, 80)
 [，、]  |  `,`  |  0  |  TS010  |  applied  |  F(2、80) => F(2,80)
 </?[a-z]+/?>  |  ``  |  1  |  TS072  |  applied  |  <b>F(2, 80)</b> => F(2, 80)
+^\s*tsc(?: run)? (?=S[IB]\|)  |  ``  |  1  |  TS044  |  applied  |  tsc SI|F(2, 80) => SI|F(2, 80)
 ^\s*[$>] tsc\b.*$  |  ``  |  1  |  TS072  |  applied  |  $ tsc run prog.ts⏎F(2, 80) => ⏎F(2, 80)
 ^\s*\.\s*$  |  ``  |  1  |  TS005  |  applied  |  F(2,80)⏎.⏎.⏎. => F(2,80)⏎⏎⏎
 ^\s*(?:➤|[\u2600-\u2793\U0001F300-\U0001FAFF])\s*(?=[A-Za-z]+\()  |  ``  |  1  |  TS054  |  applied  |  ✅ F(2,80)⏎🚗 R(1,50) => F(2,80)⏎R(1,50)
@@ -165,6 +171,9 @@ SIGNS = r"""
 (?<=\d) (?=000\b)  |  ``  |  1  |  TS008  |  applied  |  F(1 000,80) => F(1000,80)
 (?<=[\w)])\s*(?:[¡¿!…?$¬^´`¨\\\u2600-\u2793\U0001F300-\U0001FAFF]+|<br>)\s*$  |  ``  |  1  |  TS005  |  applied  |  STOP! => STOP
 <br>  |  `;`  |  1  |  TS010  |  applied  |  F(2, 80)<br>R(1, 50) => F(2, 80);R(1, 50)
+\b4WARDS?\b(?=\s*\()  |  `F`  |  1  |  TS102  |  offered  |  4WARD(2, 80) => F(2, 80)
+^(S[IB]) (?:bar|barra) (?=[A-Z])  |  `\1|`  |  1  |  TS010  |  offered  |  SI bar F(2, 80) => SI|F(2, 80)
+\b([A-Z]+) open (?:bracket|parenthesis) ([\d.]+) comma (\d+) close (?:bracket|parenthesis)  |  `\1(\2, \3)`  |  1  |  TS015  |  offered  |  F open bracket 2 comma 80 close bracket => F(2, 80)
 (?<=\()¿|\?(?=\))  |  ``  |  1  |  TS005  |  applied  |  F(5, 60) UNTIL(¿DISTANCE < 20?) => F(5, 60) UNTIL(DISTANCE < 20)
 (?:(?<=\|)|(?<=;)|^)(\s*)([FBLR])(?!\s+-\d|\s+\.\d|\.\d+(?![\d.]))\s*[_.<=,;" -]?\s*([12]?\d(?:\.\d+)?)(?:[_,;<=-]+ ?| +|[ .]+(?=[1-9]0\b|100\b))(?:= ?)?(\d+)\s*[])>"]?\s*(?=;|$)  |  `\1\2(\3, \4)`  |  1  |  TS015  |  applied  |  F2,80 => F(2, 80)
 (?:^|(?<=[;|]))(\s*)M(-?\d+)[\s,;]+(-?\d+)\s*\)?\s*(?=;|$)  |  `\1M(\2, \3)`  |  1  |  TS015  |  applied  |  M50 -50 => M(50, -50)
@@ -229,12 +238,16 @@ l=@val is? between a=@num Y|AND b=@num | $l > $a AND $l < $b | 1 | TS010 | first
 # questions and sums
 a=@num|@val s=<|<=|>|>= b=@val t=<|<=|>|>= c=@num|@val | $a $s $b AND $b $t $c | 1 | TS037 | applied | SI|IF(10>DISTANCE>5);S;ENDIF => SI|IF(10>DISTANCE AND DISTANCE>5);S;ENDIF
 a=@num|@val X b=@num|@val | $a * $b | 1 | TS010 | first | SHOW(2 X 3) => SHOW(2 * 3)
+average ( a=@num|@val , b=@num|@val ) | ( $a + $b ) / 2 | 1 | TS010 | offered | X = PROMEDIO(LIGHT_L, LIGHT_R)⏎SHOW(X) => X =(LIGHT_L + LIGHT_R) / 2⏎SHOW(X)
+average ( a=@num|@val , b=@num|@val , c=@num|@val ) | ( $a + $b + $c ) / 3 | 1 | TS010 | offered | SHOW(AVERAGE(LIGHT_L, LIGHT_R, 5)) => SHOW((LIGHT_L + LIGHT_R + 5) / 3)
+a=@num v=@val | @by:a:v | 1 | TS048 | offered | VEL = 30⏎F(2, 2VEL) => VEL = 30⏎F(2, 2 * VEL)
 a=@num|@val MOD b=@num|@val | $a % $b | 1 | TS010 | first | X = 7⏎X = X MOD 2 => X = 7⏎X = X % 2
 a=@num|@val MAS b=@num|@val | $a + $b | 1 | TS010 | first | X = 5 mas 3⏎SHOW(X) => X = 5 + 3⏎SHOW(X)
 NO l=@val | NOT $l | 1 | TS010 | applied | IF(NO DISTANCE < 10)⏎F(1,50)⏎ENDIF => IF(NOT DISTANCE < 10)⏎F(1,50)⏎ENDIF
 l=@val s=<|>|<=|>= a=@num o=AND|OR t=<|>|<=|>= b=@num | $l $s $a &o $l $t $b | 1 | TS018 | offered | IF(DISTANCE < 10 OR < 5);S;ENDIF => IF(DISTANCE < 10 OR DISTANCE < 5);S;ENDIF
 = a=@num over POR? b=@num | = $a / $b | 1 | TS010 | applied | x = 10 dividido 2⏎mostrar x => x = 10 / 2⏎SHOW(X)
 h=IF|WHILE|UNTIL|WHEN|ELSEIF ( a=@val then|& b=@val s=<|> n=@num ) | &h ( $a $s $n AND $b $s $n ) | 1 | TS010 | first offered | IF(LIGHT_L y LIGHT_R > 500)⏎S⏎ENDIF => IF(LIGHT_L > 500 AND LIGHT_R > 500)⏎S⏎ENDIF
+SHOW ( a=@val & b=@val ) | SHOW ( $a ) ; SHOW ( $b ) | 1 | TS020 | first offered | SHOW(LIGHT_L & LIGHT_R) => SHOW(LIGHT_L);SHOW(LIGHT_R)
 a=@num|@val then|& b=@val|MENOR|MAYOR|NOT|< | $a AND $b | 1 | TS010 | first | IF(DISTANCE < 10 y LIGHT_L > 100);S;ENDIF => IF(DISTANCE < 10 AND LIGHT_L > 100);S;ENDIF
 a=@num|@val O|U b=@val|NOT|MENOR|MAYOR | $a OR $b | 1 | TS010 | first | IF(DISTANCE < 10 o DISTANCE > 50);S;ENDIF => IF(DISTANCE < 10 OR DISTANCE > 50);S;ENDIF
 o=AND|OR IF | &o | 1 | TS010 | first | IF(DISTANCE > 5 AND IF DISTANCE < 9);S;ENDIF => IF(DISTANCE > 5 AND DISTANCE < 9);S;ENDIF
@@ -279,6 +292,12 @@ a=@num|@close b=@name = | $a ; $b = | 1.5 | TS013 | applied | F(1, 50) X = 2 => 
 ^ set the? v=@word A|TO|EN n=@num $ | $v = $n | 1.5 | TS050 | applied | X = 1⏎sube la X a 5 => X = 1⏎X = 5
 ^ CAMBIAR|CHANGE v=@name POR|BY n=@num $ | $v = $v + $n | 1.5 | TS050 | offered | N = 5⏎cambiar N por 1 => N = 5⏎N = N + 1
 ^ CAMBIAR|CHANGE v=@name POR|BY - n=@num $ | $v = $v - $n | 1.5 | TS050 | offered | N = 5⏎cambiar N por -1 => N = 5⏎N = N -1
+^ add n=@num|@val TO|A|AL|EN|EM|AO the? v=@name $ | $v = $v + $n | 1 | TS050 | offered | VEL = 40⏎SUMAR 10 A VEL⏎F(1, VEL) => VEL = 40⏎VEL = VEL + 10⏎F(1, VEL)
+^ subtract n=@num|@val FROM|A|DE|AL|EN the? v=@name $ | $v = $v - $n | 1 | TS050 | offered | X = 40⏎resta 5 a X⏎F(1, X) => X = 40⏎X = X - 5⏎F(1, X)
+^ multiply the? v=@name BY|POR n=@num|@val $ | $v = $v * $n | 1 | TS050 | offered | X = 40⏎multiply X by 2⏎F(1, X) => X = 40⏎X = X * 2⏎F(1, X)
+^ divide the? v=@name BY|POR|ENTRE n=@num|@val $ | $v = $v / $n | 1 | TS050 | offered | X = 40⏎divide X entre 2⏎F(1, X) => X = 40⏎X = X / 2⏎F(1, X)
+^ increase the? v=@name BY|EN|EM|POR n=@num|@val $ | $v = $v + $n | 1 | TS050 | offered | X = 40⏎aumenta X en 5⏎F(1, X) => X = 40⏎X = X + 5⏎F(1, X)
+^ decrease the? v=@name BY|EN|EM|POR n=@num|@val $ | $v = $v - $n | 1 | TS050 | offered | X = 40⏎decrease X by 5⏎F(1, X) => X = 40⏎X = X - 5⏎F(1, X)
 ^ keep the? e=@val|@num EN|IN|COMO v=@word $ | $v = $e | 1.5 | TS050 | applied | guardar 80 en potencia⏎F(2, potencia) => potencia = 80⏎F(2, potencia)
 ^ a=@name = b=@num ,? c=@name = d=@num $ | $a = $b ; $c = $d | 1 | TS013 | applied | x = 5, y = 80⏎F(x, y) => X = 5;Y = 80⏎F(x, y)
 ^ v=@name = ( a=@num $ | $v = ( $a ) | 1 | TS016 | applied | vel = (50⏎F(1, vel) => vel =(50)⏎F(1, vel)
@@ -306,8 +325,14 @@ c=@callw ( a=@argt+ ) ) e=;|$ | $c ( $a ) $e | 1 | TS041 | applied | F(2,80)) =>
 c=@callw ( a=@num /|- b=@num ) | $c ( $a , $b ) | 2 | TS076 | offered | F(2/80) => F(2, 80)
 c=@callw ( a=@num _|.|;|&|<|'|'|Y|> b=@num ) | $c ( $a , $b ) | 1 | TS076 | applied | F(2|80) => F(2, 80)
 SHOW ( a=@val , b=@val ) | SHOW ( $a ) ; SHOW ( $b ) | 2 | TS020 | offered | SHOW(DISTANCE, LIGHT_L) => SHOW(DISTANCE);SHOW(LIGHT_L)
+SHOW ( a=@val &|+|, " " &|+|, b=@val ) | SHOW ( $a ) ; SHOW ( $b ) | 1 | TS020 | offered | SHOW(LIGHT_L & " " & LIGHT_R) => SHOW(LIGHT_L);SHOW(LIGHT_R)
+SHOW ( a=@val , b=@val , c=@val ) | SHOW ( $a ) ; SHOW ( $b ) ; SHOW ( $c ) | 2 | TS020 | offered | SHOW(DISTANCE, LIGHT_L, LIGHT_R) => SHOW(DISTANCE);SHOW(LIGHT_L);SHOW(LIGHT_R)
 ^ SHOW a=@val ,? b=@val $ | SHOW ( $a ) ; SHOW ( $b ) | 2 | TS015 | applied | SHOW DISTANCE LIGHT_R => SHOW(DISTANCE);SHOW(LIGHT_R)
 c=@callw ( a=@argt* b=@num|@word e=;|$|UNTIL|@start | $c ( $a $b ) $e | 1 | TS016 | applied | F(2,80 => F(2,80)
+TONE ( a=@num , b=@num ) | BEEP ( @ms:b , $a ) | 1 | TS102 | offered | tone(440, 1000) => BEEP(1, 440)
+TONE ( @num , a=@num , b=@num ) | BEEP ( @ms:b , $a ) | 1 | TS102 | offered | tone(8, 440, 500) => BEEP(0.5, 440)
+a=F|B|L|R ( u=CM|DEG (? n=@num )? , p=@num ) | $a ( $n $u , $p ) | 1 | TS076 | offered | B(CM(20), 60) => B(20 CM, 60)
+a=F|B|L|R ( p=@num , n=@num u=CM|DEG ) | $a ( $n $u , @power:p ) | 1 | TS076 | offered | R(60, 90 DEG) => R(90 DEG, 60)
 # UNTIL
 ^ WHILE <question> ;|:? a=F|B|L|R ( FOREVER , p=@num|@val ) $ | $a ( FOREVER , $p ) UNTIL ( @not:c ) | .9 | TS031 | offered | WHILE(DISTANCE > 20) F(FOREVER, 50) => F(FOREVER, 50) UNTIL(DISTANCE <= 20)
 a=F|B|L|R ( FOREVER , p=@num|@val ) UNTIL ( n=@num ) | $a ( $n , $p ) | 2 | TS202 | offered | F(FOREVER, 80) UNTIL(2) => F(2, 80)
@@ -338,8 +363,9 @@ h=IF|WHILE|ELSEIF|LOOP|UNTIL '{' c=@nob+ '}' | &h ( $c ) | 1 | TS015 | applied |
 <asks> c=@cond+ t=do|:|,|'|'|'{' | &h ( $c ) ; @brace:t | 1.3 | TS015 | applied | SI DISTANCE < 10 | S => IF(DISTANCE < 10);S;ENDIF
 <asks> c=@cond+ ;|$ | &h ( $c ) ; | 1.3 | TS015 | applied | si DISTANCE > 10⏎S⏎fin => IF(DISTANCE > 10)⏎S⏎ENDIF
 <asks> c=@cond+ b=@start | &h ( $c ) ; $b | 2 | TS014 | applied | IF DISTANCE < 10 STOP => IF(DISTANCE < 10);STOP;ENDIF
-h=IF|WHILE|LOOP ( c=@noclose+ , <body> ) $ | &h ( $c ) ; $b $r ; @endof:h | 1 | TS080 | applied | SI|IF(DISTANCE < 10, S) => SI|IF(DISTANCE < 10);S;ENDIF
+h=IF|WHILE|LOOP|WHEN ( c=@noclose+ , <body> ) $ | &h ( $c ) ; $b $r ; @endof:h | 1 | TS080 | applied | SI|IF(DISTANCE < 10, S) => SI|IF(DISTANCE < 10);S;ENDIF
 ^ IF ( c=@noclose+ , <body> , d=@start s=@all* ) $ | IF ( $c ) ; $b $r ; ELSE ; $d $s ; ENDIF | .9 | TS080 | offered | IF(DISTANCE < 15, B(1, 50), F(1, 50)) => IF(DISTANCE < 15);B(1, 50);ELSE;F(1, 50);ENDIF
+^ '='? IF|SE ( c=@argt+ ,|; b=@callw ( e=@argt+ ,|; f=@argt+ ) ,|; d=@callw ( g=@argt+ ,|; h=@argt+ ) ) $ | IF ( $c ) ; $b ( $e , $f ) ; ELSE ; $d ( $g , $h ) ; ENDIF | .8 | TS080 | offered | =SI(DISTANCE<10;B(1;60);F(1;60)) => IF(DISTANCE < 10);B(1, 60);ELSE;F(1, 60);ENDIF
 h=IF|WHILE ( c=@noclose+ , b=@start | &h ( $c ) ; $b | 2 | TS080 | applied | IF(DISTANCE < 10, S) ELSE F(1, 60) ENDIF => IF(DISTANCE < 10);S;ELSE;F(1, 60);ENDIF
 <block> <question> do|times ':'? | &h ( $c ) ; | 1 | TS044 | applied | LOOP(3) TIMES⏎F(1,50)⏎END_LOOP => LOOP(3)⏎F(1,50)⏎END_LOOP
 <block> <question> :|,|=|?|'|'|- ':'? | &h ( $c ) ; | 1 | TS014 | applied | LOOP(3): F(1,50) => LOOP(3);F(1, 50);END_LOOP
@@ -372,8 +398,7 @@ h=LOOP|IF|WHILE|ELSEIF <question> [ <body> ] $ | &h ( $c ) ; $b $r ; @endof:h | 
 ^ LOOP <body> n=@num times $ | LOOP ( $n ) ; $b $r ; END_LOOP | 1.5 | TS102 | applied | repeat F(1,60) R(1,60) 4 times => LOOP(4);F(1, 60);R(1, 60);END_LOOP
 ^ LOOP ;? <body> ;? UNTIL c=@cond+ $ | LOOP ( FOREVER ) ; $b $r ; IF ( $c ) ; <end> | 1.5 | TS064 | applied | repeat F(1,50) until DISTANCE < 10 => LOOP(FOREVER);F(1, 50);IF(DISTANCE < 10);BREAK;ENDIF;END_LOOP
 LOOP ( n=@num @unit ) | LOOP ( $n ) | 1 | TS049 | applied | LOOP(3 veces);F(1,50);END_LOOP => LOOP(3);F(1,50);END_LOOP
-LOOP -> n=@num | LOOP ( $n ) | 1 | TS015 | applied | LOOP -> 4⏎F(1,50)⏎END_LOOP => LOOP(4)⏎F(1,50)⏎END_LOOP
-LOOP X n=@num | LOOP ( $n ) | 1 | TS015 | applied | LOOP x 3;F(1, 50);END_LOOP => LOOP(3);F(1, 50);END_LOOP
+LOOP X|=|-|-> n=@num | LOOP ( $n ) | 1 | TS015 | applied | LOOP x 3;F(1, 50);END_LOOP => LOOP(3);F(1, 50);END_LOOP
 LOOP POR? n=@num times? :|,|do|; | LOOP ( $n ) ; | 1 | TS102 | applied | repite 4: F(1, 60) => LOOP(4);F(1, 60);END_LOOP
 LOOP n=@num times? b=@start|'{' | LOOP ( $n ) ; $b | 1 | TS102 | applied | LOOP 4 F(1,60) => LOOP(4);F(1, 60);END_LOOP
 LOOP POR? n=@num times? $ | LOOP ( $n ) | 1 | TS102 | applied | repetir 4⏎S⏎fin => LOOP(4)⏎S⏎END_LOOP
@@ -385,7 +410,7 @@ a=L|R ( A? CUARTO|QUARTER DE? VUELTA|GIRO|TURN , | $a ( 90 DEG , | 1 | TS102 | o
 a=@callw ( n=@num A|TO|HASTA m=@num , | $a ( RANDOM ( $n , $m ) , | 1 | TS076 | offered | F(1 a 3, 60) => F(RANDOM(1, 3), 60)
 a=L|R ( 1 / 4 DE? VUELTA|GIRO|TURN , | $a ( 90 DEG , | 1 | TS102 | offered | R(1/4 vuelta, 60) => R(90 DEG, 60)
 a=L|R ( 1 / 2 DE? VUELTA|GIRO|TURN , | $a ( 180 DEG , | 1 | TS102 | offered | R(1/2 turn, 60) => R(180 DEG, 60)
-^ v=@name = '|' c=@nob+ '|' $ | $v = ABS ( $c ) | 1 | TS010 | offered | D = |LIGHT_L - LIGHT_R|⏎SHOW(D) => D = ABS(LIGHT_L - LIGHT_R)⏎SHOW(D)
+o=(|,|=|<|>|+|- '|' v=@val c=@argt+ '|' | $o ABS ( $v $c ) | 1 | TS010 | offered | D = |LIGHT_L - LIGHT_R|⏎SHOW(D) => D = ABS(LIGHT_L - LIGHT_R)⏎SHOW(D)
 ^ W ( UNTIL (? q=@argt+ )? ) $ | W ( FOREVER ) UNTIL ( $q ) | 1 | TS029 | offered | W(UNTIL DISTANCE < 10) => W(FOREVER) UNTIL(DISTANCE < 10)
 ^ a=@callw ( b=@argt+ ) UNTIL ( c=@noclose+ ) UNTIL ( d=@noclose+ ) $ | $a ( $b ) UNTIL ( $c OR $d ) | 1 | TS029 | offered | F(5, 60) UNTIL(DISTANCE < 10) UNTIL(LIGHT_L > 500) => F(5, 60) UNTIL(DISTANCE < 10 OR LIGHT_L > 500)
 m=MIN|MAX ( a=@num|@val , b=@num|@val , c=@num|@val ) | $m ( $a , $m ( $b , $c ) ) | 1 | TS020 | offered | SHOW(MIN(DISTANCE, 5, 9)) => SHOW(MIN(DISTANCE, MIN(5, 9)))
@@ -456,7 +481,6 @@ v=@def ( ) | $v | 1 | TS028 | first | DEF GIRO()⏎R(1, 60)⏎END_DEF⏎GIRO() =
 ^ DEF n=@word ( <body> ) $ | DEF $n ; $b $r ; END_DEF | 1 | TS080 | applied | DEF SALUDO(BEEP(1,440))⏎SALUDO => DEF SALUDO;BEEP(1, 440);END_DEF⏎SALUDO
 ^ ( a=@callw ( c=@argt+ ) ) ( <body> ) $ | $a ( $c ) ; $b $r | 1 | TS080 | applied | (F(2,80))(R(1,60)) => F(2, 80);R(1, 60)
 v=@val A|TO the? wall | &v | 1 | TS102 | first | IF(distancia a la pared < 10)⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
-LOOP =|- n=@num | LOOP ( $n ) | 1 | TS015 | applied | LOOP=4;F(2,80);END_LOOP => LOOP(4);F(2,80);END_LOOP
 ^ v=TIEMPO n=@num $ | $v = $n | 1 | TS050 | applied | tiempo 2⏎F(tiempo,80) => tiempo = 2⏎F(tiempo,80)
 a=@close '|' h=END_LOOP|ENDIF|END_WHILE|END_DEF|END_WHEN|END_TASK | $a ; &h | 1 | TS061 | applied | LOOP(2);F(1, 80)|END_LOOP => LOOP(2);F(1, 80);END_LOOP
 ^ DEF ( n=@word ) | DEF $n | 1 | TS039 | offered | DEF(SALUDO)⏎BEEP(1,440)⏎END_DEF⏎SALUDO => DEF SALUDO⏎BEEP(1,440)⏎END_DEF⏎SALUDO
@@ -474,7 +498,10 @@ a=@close h=end $ | $a ; &h | 1 | TS013 | applied | F(2,80) fin => F(2, 80);
 ^ RETURN 0 ;? $ |  | 1 | TS065 | applied | F(1, 50)⏎return 0; => F(1, 50)⏎
 ^ end program? $ | FIN | 0 | TS044 | first | F(1, 50)⏎fin programa => F(1, 50)⏎
 end -|.|DEL|DE|EL? k=IF|LOOP|WHILE|DEF|FOREVER|FOR|PARA ;|$ | @endof:k | 1 | TS022 | first | definir bailar⏎L(1,50)⏎fin definir⏎bailar => DEF bailar⏎L(1,50)⏎END_DEF⏎bailar
+^ idles $ |  | 1 | TS044 | offered | IF(DISTANCE < 10)⏎NADA⏎ELSE⏎F(1, 60)⏎ENDIF => IF(DISTANCE < 10)⏎⏎ELSE⏎F(1, 60)⏎ENDIF
 # what joins instructions
+^ please b=@start | $b | 1 | TS044 | applied | please F(2, 80) => F(2, 80)
+a=@close please please+ $ | $a | 1 | TS044 | applied | F(2, 80) thank you => F(2, 80)
 ^ @newname : b=@start | $b | 2.5 | TS054 | applied | square: F(1,50); R(1,50) => F(1,50); R(1,50)
 ^ a=F|B ( n=@num , p=@num ) CM|CENTIMETROS $ | $a ( $n CM , $p ) | .5 | TS076 | offered | F(20, 60) CM => F(20 CM, 60)
 ^ a=L|R ( n=@num , p=@num ) DEG|GRADOS|DEGREES|° $ | $a ( $n DEG , $p ) | .5 | TS076 | offered | R(90, 60) DEG => R(90 DEG, 60)
@@ -482,11 +509,9 @@ a=@close please|CM|CENTIMETROS|SEG|SEGS|SEGUNDO|SEGUNDOS|SECONDS $ | $a | 1 | TS
 ( a=@num , p=@num|@val ) then|&|+|AND BEEP ( b=@num | ( $a , $p ) ; BEEP ( @same:a:b | .9 | TS074 | offered | F(2, 80) AND BEEP(2, 440) => F(2, 80);BEEP(2, 440)
 a=@close ,? then|soon+ b=@start | $a ; $b | 1 | TS044 | applied | F(1,75) y R(1,75) => F(1, 75);R(1, 75)
 a=@close ,|.|: b=@start | $a ; $b | 1 | TS013 | applied | F(2,80), B(2,80) => F(2, 80);B(2, 80)
-a=@close '|' b=@start | $a ; $b | 1 | TS061 | applied | F(2,80)|R(1,60) => F(2, 80);R(1, 60)
-a=@close &|+|AND|->|=>|/|>|>>|_|* b=@start | $a ; $b | 1 | TS061 | applied | F(2,80)&B(2,80) => F(2, 80);B(2, 80)
-a=@close +|&|AND|-> $ | $a ; | 1 | TS061 | applied | F(2, 80) +⏎R(1, 50) => F(2, 80)⏎R(1, 50)
+a=@close &|+|AND|->|=>|/|>|>>|_|*|'|' b=@start | $a ; $b | 1 | TS061 | applied | F(2,80)&B(2,80) => F(2, 80);B(2, 80)
+a=@close +|&|AND|->|'|' $ | $a ; | 1 | TS061 | applied | F(2, 80) +⏎R(1, 50) => F(2, 80)⏎R(1, 50)
 a=@close , $ | $a ; | .8 | TS013 | applied | F(2,80),⏎R(1,50), => F(2, 80)⏎R(1, 50)
-a=@close '|' $ | $a ; | 1 | TS061 | applied | F(2,80)|⏎R(1,50)| => F(2, 80)⏎R(1, 50)
 a=@close b=@start | $a ; $b | 1 | TS013 | applied | S STOP => S;STOP
 call b=@def n=@num | LOOP ( $n ) ; $b ; END_LOOP | 1 | TS062 | applied | DEF SALTO;F(0.2, 60);END_DEF⏎CALL SALTO 3 => DEF SALTO;F(0.2, 60);END_DEF⏎LOOP(3);SALTO;END_LOOP
 ^ first ,? b=@start | $b | 1 | TS044 | applied | Primero, avanza 2 segundos⏎Luego gira a la izquierda 1 segundo => F(2, 80)⏎L(1, 80)
@@ -496,6 +521,8 @@ call b=@def n=@num | LOOP ( $n ) ; $b ; END_LOOP | 1 | TS062 | applied | DEF SAL
 ^ [ <body> ] $ | $b $r | 1 | TS080 | applied | [F(2,80), R(1,60)] => F(2, 80);R(1, 60)
 ^ then ,? $ |  | 1 | TS044 | applied | F(1, 50);⏎luego, => F(1, 50);⏎
 # words of other languages around a program
+W8 | W | 1 | TS102 | offered | W8(1) => W(1)
+BRAKE | BREAK | 1 | TS102 | offered | LOOP(3)⏎S⏎BRAKE⏎END_LOOP => LOOP(3)⏎S⏎BREAK⏎END_LOOP
 EFE | F | 1 | TS102 | first offered | efe dos coma ochenta => F(2, 80)
 ^ import @any+ ;? $ |  | 1 | TS072 | applied | import robot⏎F(2,80) => ⏎F(2,80)
 v=S|STOP|BREAK|START|ELSE|ENDIF|END_LOOP ( ) | $v | 1 | TS028 | first | s() => s

@@ -70,6 +70,10 @@ def with_usage(found: Sequence[Diagnostic], source: Source, kit: Kit) -> list[Di
     has_no_ends = is_near or late or any(it.code in (codes.BRACES, codes.DOTS) for it in told)
     reserved = {each.values["word"] for each in told if each.code is codes.RESERVED}
     unknown = {teller.piece(it.span) for it in told if it.code in _OF_ITS_WORD}
+    part = next((it.values["part"] for it in told if it.values.get("part")), "")
+    if part and any(each.code is codes.TASK_NOT_TOP for each in told):  # rather an IF
+        told = [it._replace(values={**it.values, "part": part}) for it in told
+                if not it.values.get("part")]  # fmt: skip
     kept = [
         each
         for each in (*told, *found[_MANY:])
@@ -204,6 +208,10 @@ class _Usage:
             return None
         if words[0] == "TSC":
             return Diagnostic(codes.PROSE, piece, {"command": piece_})
+        if name := next((each for each in words if each in self.names.variables), ""):
+            by = next((each.text for each in tokens if each.kind is NUMBER), "1")
+            values = {"name": name, "example": f"{name} = {name} + {by}", "fix": ""}
+            return Diagnostic(codes.PROSE, piece, values)
         return self.offered(codes.PROSE, piece, f"// {piece_}")
 
     def orders(self, found: Diagnostic, piece: Span, meant: str) -> Diagnostic | None:
@@ -462,13 +470,18 @@ class _Usage:
         """A word of the language as a name: another one for it."""
         word = found.values["word"]
         text = self.source.text
-        is_set = re.match(r"\s*=", text[found.span.end :])
+        is_set = re.match(r"\s*=\s*([1-9]?)", text[found.span.end :])
         is_taught = re.search(
             r"(?i)\bDEF\s+$", text[max(0, found.span.start - 9) : found.span.start]
         )
         right = in_place_of(text, word) if is_set or is_taught else ""
-        gap = "clock" if is_set and word == "TIME" else "right"
-        return found._replace(values={**found.values, gap: right})
+        gap = "clock" if is_set and word == "TIME" and not is_set[1] else "right"
+        values = {**found.values, gap: right}
+        if is_set and word == "TIME":
+            used = [str(self.source.position(each.start())[0])
+                    for each in re.finditer(r"(?i)\bTIME\b", text)][1:]  # fmt: skip
+            values |= {"line": used[0]} if len(used) == 1 else {"lines": ", ".join(used)}
+        return found._replace(values=values)
 
     def no_order(self, found: Diagnostic) -> Diagnostic | None:
         """A value where an instruction is expected."""
@@ -483,7 +496,7 @@ class _Usage:
     def function(self, found: Diagnostic) -> Diagnostic | None:
         name = found.values["found"]
         if name in self.names.sensors:
-            return Diagnostic(codes.NO_BRACKETS_HERE, found.span, {"word": name})
+            return Diagnostic(codes.NO_BRACKETS_HERE, found.span, {"word": name, "right": name})
         return Diagnostic(codes.NO_INPUT, found.span) if name in _INPUT else None
 
     def number(self, found: Diagnostic) -> Diagnostic | None:

@@ -239,7 +239,9 @@ class ExpressionParser:
 
     def wrong_unit(self, unit: str, span: Span) -> None:
         first, second = (word for word, its in UNIT_OF.items() if its == unit)
-        example = f"{first}({WAYS[unit].sample}, 60)"
+        called = self.cursor.source[Span(0, span.start)].upper().rpartition(f"{second}(")
+        word = second if called[1] and not set("\n;") & set(called[2]) else first
+        example = f"{word}({WAYS[unit].sample}, 60)"
         self.reporter.report(
             codes.UNIT_PLACE, span, found=unit, first=first, second=second, example=example
         )

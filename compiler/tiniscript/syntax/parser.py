@@ -223,7 +223,7 @@ class Parser:
         self.blocks.begin("DEF", Span(word.start, name.end), name=name)
         if name.text in WORDS:
             self.reporter.fail(codes.RESERVED, name.span, word=name.text)
-        self.no_arguments(name)
+        self.no_arguments(name, "DEF ")
 
     def task(self, word: Token) -> None:
         cursor = self.cursor
@@ -297,10 +297,11 @@ class Parser:
         for unit in (each.unit for each in arguments if each.unit is not None):
             self.expressions.wrong_unit(unit.op, Span(unit.start, unit.end))
 
-    def no_arguments(self, word: Token) -> None:
+    def no_arguments(self, word: Token, before: str = "") -> None:
         bracket = self.cursor.token
         if bracket.kind == "(":
-            self.reporter.fail(codes.NO_BRACKETS_HERE, bracket.span, word=word.text)
+            self.reporter.fail(codes.NO_BRACKETS_HERE, bracket.span, word=word.text,
+                               right=before + word.text)  # fmt: skip
 
     # -- what is wrong ------------------------------------------------------------------------
 
