@@ -33,7 +33,7 @@ from tiniscript.syntax import ast
 from tiniscript.syntax.formatter import formatted
 from tiniscript.syntax.lexer import scan
 from tiniscript.syntax.parser import parse
-from tiniscript.words import ALIASES, WORDS
+from tiniscript.words import ALIASES, UNIT_OF, WORDS
 
 TINIBOT = robots.load("tinibot").kit
 GRABBER = robots.load("grabber").kit
@@ -175,6 +175,16 @@ def test_moves_and_waits_can_have_an_until(word: str) -> None:
     check(f"{word}({arguments}) UNTIL(DISTANCE < 10)", TINIBOT)
 
 
+@pytest.mark.parametrize(("word", "unit"), UNIT_OF.items())
+def test_a_way_is_a_move_with_another_unit(word: str, unit: str) -> None:
+    way = f"{word}(X * 2 {unit}, 60)"
+    for until, kind in (("", "move"), (" UNTIL(DISTANCE < 10)", "move_until")):
+        check(f"X = 20;{way}{until}", TINIBOT)
+        (block,) = read(way + until, TINIBOT).body
+        assert (block.kind, block.word) == (kind, f"{word} {unit}")
+    assert kinds(way.replace(unit, {"CM": "DEG", "DEG": "CM"}[unit])) == ["grey"]
+
+
 def test_every_word_of_a_kit_is_in_blocks() -> None:
     for name in robots.names():
         kit = robots.load(name).kit
@@ -190,7 +200,7 @@ def test_the_shape_of_each_kind_is_what_is_read(monkeypatch: pytest.MonkeyPatch)
     monkeypatch.setitem(WORDS, HORN.text, HORN)
     left_out = ("later", "setup", "alias")
     text = ";".join(of_word(word) for word in WORDS if WORDS[word].role not in left_out)
-    text += ";F(1, 2) UNTIL(TRUE);F(1 CM, 2) UNTIL(TRUE)"
+    text += ";F(1, 2) UNTIL(TRUE)"
     text += ";X = 1;HOP;LED(TRUE);DISTANCE;LOOP(FOREVER);END_LOOP\n// note\nF("
     found = in_order(read(text, TINIBOT).body)
     assert {block.kind for block in found} == {

@@ -86,7 +86,8 @@ def test_every_block_says_something_and_nothing_else_does() -> None:
     said = set(page_texts(SOURCE))
     blocks = {f"block/{name}" for name, kind in KINDS.items() if not kind.says}
     words = [word for kind in KINDS.values() for word in kind.words]
-    words += ["SI", "SB", "PING", "AND", "OR", "elseif", "else"]
+    words += [unit for kind in KINDS.values() for unit in kind.units.values()]
+    words += ["seconds", "SI", "SB", "PING", "AND", "OR", "elseif", "else"]
     blocks |= {f"block/{word}" for word in words}
     assert {key for key in said if key.startswith("block/")} == blocks
     tips = {key.partition("/")[2] for key in said if key.startswith("tip/")}

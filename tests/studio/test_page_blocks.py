@@ -371,7 +371,7 @@ def test_the_words_of_the_text_come_to_the_blocks_of_who_wants_them(page: Page) 
     start(page, "SI|LOOP(3)\n  IF(DISTANCE < 20)\n    S\n  ELSE\n    F(1, 80)\n  ENDIF\nEND_LOOP\n")
     assert said_by(page) == {
         "when it starts", "repeat", "times", "if", "distance sensor", "<", "stop", "else",
-        "forward", "s at", "%",
+        "forward", "s", "at", "%",
     }  # fmt: skip
     speak(page, "es")
     shown(page)
@@ -386,6 +386,20 @@ def test_the_words_of_the_text_come_to_the_blocks_of_who_wants_them(page: Page) 
     page.click("#words")
     shown(page)
     assert "stop" in said_by(page)
+
+
+def test_a_move_is_so_long_or_so_far(page: Page) -> None:
+    start(page, "SI|F(2, 80);\n")
+    for field, choice, says, text in (
+        ("s", "cm", {"forward", "cm"}, "F(2 CM, 80)"),
+        ("forward", "turn right", {"turn right", "°"}, "R(2 DEG, 80)"),
+        ("°", "s", {"turn right", "s"}, "R(2, 80)"),
+        ("s", "°", {"turn right", "°"}, "R(2 DEG, 80)"),
+    ):
+        page.locator(f"{PROGRAM} .blocklyDropdownText", has_text=re.compile(f"^{field}")).click()
+        page.locator(".blocklyMenuItem", has_text=re.compile(rf"^{choice}$")).click()
+        becomes(page, f"SI|{text}\n")
+        assert said_by(page) == {"when it starts", "at", "%", *says}
 
 
 def test_the_names_of_the_program_are_blocks(page: Page) -> None:

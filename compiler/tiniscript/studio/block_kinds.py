@@ -8,6 +8,7 @@ a block it is seen where somebody wants it, of `{IF} if %1` as `IF %1`.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 from tiniscript.words import UNIT_OF, WORDS
@@ -17,8 +18,9 @@ class Kind(NamedTuple):
     """`colour` is a style of the page. A value is `number`, `truth` or `any`.
 
     `field` is what is written in it: `name`, `line`, `sensor` or `actuator`; `words` are the words
-    to choose from instead. `gives` is what a block gives that is a value. `says` is what it says in
-    all languages, where there are no words.
+    to choose from instead, and `units` of those the units behind the first value, instead of
+    seconds. `gives` is what a block gives that is a value. `says` is what it says in all
+    languages, where there are no words.
     """
 
     name: str
@@ -28,19 +30,17 @@ class Kind(NamedTuple):
     gives: str = ""
     field: str = ""
     words: tuple[str, ...] = ()
+    units: Mapping[str, str] = {}
     says: str = ""
 
 
 # fmt: off
 MOVES = tuple(UNIT_OF)
-WAYS = tuple(f"{word} {unit}" for word, unit in UNIT_OF.items())
 FIXED = tuple(word.text for word in WORDS.values() if word.stands_for)
 
 KINDS = {kind.name: kind for kind in (
-    Kind("move", "move", ("number", "number"), words=MOVES),
-    Kind("move_until", "move", ("number", "number", "truth"), words=MOVES),
-    Kind("go", "move", ("number", "number"), words=WAYS),
-    Kind("go_until", "move", ("number", "number", "truth"), words=WAYS),
+    Kind("move", "move", ("number", "number"), words=MOVES, units=UNIT_OF),
+    Kind("move_until", "move", ("number", "number", "truth"), words=MOVES, units=UNIT_OF),
     Kind("wait", "time", ("number",)),
     Kind("wait_until", "time", ("number", "truth")),
     Kind("motors", "move", ("number", "number")),

@@ -10,6 +10,7 @@ import re
 from typing import NamedTuple
 
 from tiniscript.studio.block_form import Block, Form, Place, Stack, Value
+from tiniscript.studio.block_kinds import KINDS
 from tiniscript.studio.block_reading import LOOSE, LOOSE_VALUE
 from tiniscript.syntax.formatter import BEFORE_COMMENT, Row, lines_of
 from tiniscript.syntax.operators import BINARY, COMPARISON, MINUS, NOT
@@ -119,9 +120,9 @@ def _instruction(block: Block, values: list[str]) -> _Instruction:
         text = f"{word} = {values[0]}"
     else:
         until = f" UNTIL({values.pop()})" if kind.endswith("_until") else ""
-        if kind.startswith("go"):
-            word, _, unit = word.partition(" ")
-            values[0] = f"{values[0]} {unit}"
+        if KINDS[kind].units:
+            word, *unit = word.split()
+            values[0] = " ".join((values[0], *unit))
         arguments = f"({', '.join(values)})" if values else ""
         text = (word or kind.upper()) + arguments + until
     return _Instruction(kind, word or kind.upper(), text, block.note, block.is_apart)

@@ -174,13 +174,14 @@ class _Reader:
         else:
             kind = "read" if node.word in self._sensors else "call"
         word = node.word
-        if arguments and arguments[0].unit is not None:
-            kind, word = "go", f"{word} {arguments[0].unit.op}"
+        unit = arguments[0].unit if arguments else None
+        if unit is not None:
+            word = f"{word} {unit.op}"
         if node.until is not None:
             kind += "_until"
             arguments = (*arguments, node.until)
         is_known = kind in KINDS and len(KINDS[kind].values) == len(arguments)
-        if not is_known or (kind.startswith("go") and word not in KINDS[kind].words):
+        if not is_known or (unit is not None and KINDS[kind].units.get(node.word) != unit.op):
             return Block("grey", instruction_text(piece.tokens))
         return Block(kind, word, tuple(self._value(each) for each in arguments))
 

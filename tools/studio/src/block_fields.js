@@ -2,6 +2,9 @@
 
 import * as Blockly from 'blockly/core';
 import { rangeAt } from './block_places.js';
+import { onBlock } from './words.js';
+
+export const WAY = 'way'; // not for so long, but so far
 
 /** A number with at most three decimals; what a person types is made to fit, what a text says stays. */
 export class NumberField extends Blockly.FieldNumber {
@@ -32,6 +35,31 @@ export class NameField extends Blockly.FieldTextInput {
     const text = String(value ?? '').normalize('NFC').replace(/ñ/gi, 'NI').normalize('NFD').replace(/[\u0300-\u036f]/g, '');
     const plain = text.toUpperCase().trim().replace(/\W+/g, '_').replace(/^[^A-Z]+/, '');
     return plain || null;
+  }
+}
+
+/** Seconds, or the unit of the word that is chosen. */
+export class UnitField extends Blockly.FieldDropdown {
+  /** @param {Record<string, string>} units of each word */
+  constructor(units) {
+    /** @this {any} */
+    super(function () {
+      return [[onBlock('seconds'), 'seconds'], [onBlock(/** @type {any} */ (this).unit?.() ?? ''), WAY]];
+    });
+    this.units = units;
+  }
+
+  unit() {
+    return this.units?.[String(this.getSourceBlock()?.getFieldValue('WORD'))] ?? '';
+  }
+
+  /** @returns {string} the unit as the text has it: none for seconds */
+  written() {
+    return this.getValue() === WAY ? this.unit() : '';
+  }
+
+  getText_() {
+    return onBlock(this.written() || 'seconds');
   }
 }
 

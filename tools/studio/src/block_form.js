@@ -3,7 +3,8 @@
 // Goes along the blocks with lists of its own: a long program must not exhaust the stack.
 
 import * as Blockly from 'blockly/core';
-import { wordOf } from './block_places.js';
+import { WAY } from './block_fields.js';
+import { wordOf, wordOn } from './block_places.js';
 import { Checker, SHAPES } from './block_shapes.js';
 
 /** @typedef {[number, number, number, number]} Range line and column, from 1, and those of the end */
@@ -95,7 +96,7 @@ function bodyOf(first, ids) {
     const kept = dataOf(block);
     found.push({
       kind: block.type,
-      word: String(block.getFieldValue('WORD') ?? kept.word ?? wordOf(block.type)),
+      word: String(wordOn(block) ?? kept.word ?? wordOf(block.type)),
       values: block.inputList.filter((input) => /^V\d/.test(input.name)).map((input) => valueOf(input.connection?.targetBlock() ?? null)),
       bodies: block.inputList.filter((input) => /^B\d|^OTHERWISE/.test(input.name))
         .map((input) => bodyOf(input.connection?.targetBlock() ?? null, ids)),
@@ -205,7 +206,9 @@ function hang(blocks, place, make, ids) {
     if (each.kind === 'if') {
       /** @type {any} */ (block).setArms(each.values.length, each.bodies.length > each.values.length);
     }
-    if (block.getField('WORD')) block.setFieldValue(each.word, 'WORD');
+    const [word, unit] = block.getField('UNIT') ? each.word.split(' ') : [each.word];
+    if (block.getField('WORD')) block.setFieldValue(word, 'WORD');
+    if (unit) block.setFieldValue(WAY, 'UNIT');
     block.data = JSON.stringify({ word: each.word, isApart: each.is_apart });
     if (each.note) block.setCommentText(each.note);
     each.values.forEach((value, k) => put(value, block.getInput(`V${k}`)?.connection ?? null, make));

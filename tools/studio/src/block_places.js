@@ -33,6 +33,16 @@ export function wordOf(kind) {
 }
 
 /**
+ * @param {import('blockly/core').Block} block
+ * @returns {string | undefined} the word on it, with its unit unless that is seconds: `F CM`
+ */
+export function wordOn(block) {
+  const word = block.getFieldValue('WORD') ?? undefined;
+  const unit = /** @type {import('./block_fields.js').UnitField | null} */ (block.getField('UNIT'))?.written();
+  return unit ? `${word} ${unit}` : word;
+}
+
+/**
  * @param {string} kind
  * @param {string} word
  * @param {number} index of the place
@@ -53,5 +63,5 @@ export function rangeAt(block) {
   const input = parent?.inputList.find((each) => each.connection?.targetBlock() === block);
   if (!parent || !input) return ANY;
   const index = Number(input.name.slice(1));
-  return rangeOf(parent.type, String(parent.getFieldValue('WORD') ?? ''), index);
+  return rangeOf(parent.type, wordOn(parent) ?? '', index);
 }

@@ -3,13 +3,13 @@
 
 import * as Blockly from 'blockly/core';
 import blocks from '../made/blocks.json';
-import { LineField, NameField, NumberField } from './block_fields.js';
+import { LineField, NameField, NumberField, UnitField } from './block_fields.js';
 import { rangeOf } from './block_places.js';
 import { called } from './texts.js';
 import { nameOf, onBlock, ROBOTS, tipOf } from './words.js';
 
 /** @typedef {'number' | 'truth' | 'any'} Place what a value there is */
-/** @typedef {{colour: string, words: string[], values: Place[], bodies: number, gives: '' | Place, field: '' | 'name' | 'line' | 'sensor' | 'actuator'}} Shape */
+/** @typedef {{colour: string, words: string[], values: Place[], units: Record<string, string>, bodies: number, gives: '' | Place, field: '' | 'name' | 'line' | 'sensor' | 'actuator'}} Shape */
 
 const COMPARED = [['=', 'EQ'], ['≠', 'NE'], ['<', 'LT'], ['≤', 'LE'], ['>', 'GT'], ['≥', 'GE']];
 const RECKONED = [['+', 'ADD'], ['−', 'SUB'], ['×', 'MUL'], ['÷', 'DIV'], ['%', 'MOD']];
@@ -128,10 +128,13 @@ function named(field, name) {
 function build(block, kind, shape) {
   const first = firstField(block, shape);
   const sign = { math: RECKONED, compare: COMPARED, logic: [[onBlock('AND'), 'AND'], [onBlock('OR'), 'OR']] }[kind];
+  const unit = Object.keys(shape.units).length ? new UnitField(shape.units) : null;
+  if (unit) first?.setValidator(() => unit.forceRerender());
   let value = 0;
   add(block, onBlock(kind), (number) => {
     if (first && number === 1) return named(first, 'WORD');
     if (sign && number === 2) return named(options(sign), 'SIGN');
+    if (unit && number === 3) return named(unit, 'UNIT');
     return `V${value++}`;
   }, (name) => shape.values[Number(name.slice(1))] ?? 'any');
   for (let k = 0; k < shape.bodies; k += 1) block.appendStatementInput(`B${k}`);

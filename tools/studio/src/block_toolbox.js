@@ -58,7 +58,6 @@ function groups(used) {
     ['few', 'move', [
       ['few', item('move', [2, 80], 'F')], ['few', item('move', [2, 80], 'B')],
       ['few', item('move', [0.5, 60], 'L')], ['few', item('move', [0.5, 60], 'R')], ['few', item('stop')],
-      ['usual', item('go', [20, 60], 'F CM')], ['usual', item('go', [90, 60], 'R DEG')],
       ['usual', until('move_until', [5, 60], 'F')], ['all', item('motors', [50, 80])],
     ]],
     ['few', 'time', [
