@@ -238,8 +238,8 @@ l=@val is? between a=@num Y|AND b=@num | $l > $a AND $l < $b | 1 | TS010 | first
 # questions and sums
 a=@num|@val s=<|<=|>|>= b=@val t=<|<=|>|>= c=@num|@val | $a $s $b AND $b $t $c | 1 | TS037 | applied | SI|IF(10>DISTANCE>5);S;ENDIF => SI|IF(10>DISTANCE AND DISTANCE>5);S;ENDIF
 a=@num|@val X b=@num|@val | $a * $b | 1 | TS010 | first | SHOW(2 X 3) => SHOW(2 * 3)
-average ( a=@num|@val , b=@num|@val ) | ( $a + $b ) / 2 | 1 | TS010 | offered | X = PROMEDIO(LIGHT_L, LIGHT_R)⏎SHOW(X) => X =(LIGHT_L + LIGHT_R) / 2⏎SHOW(X)
-average ( a=@num|@val , b=@num|@val , c=@num|@val ) | ( $a + $b + $c ) / 3 | 1 | TS010 | offered | SHOW(AVERAGE(LIGHT_L, LIGHT_R, 5)) => SHOW((LIGHT_L + LIGHT_R + 5) / 3)
+o==|(|,|+|-|*|<|> average ( a=@num|@val , b=@num|@val ) | $o ( $a + $b ) / 2 | 1 | TS010 | offered | X = PROMEDIO(LIGHT_L, LIGHT_R)⏎SHOW(X) => X =(LIGHT_L + LIGHT_R) / 2⏎SHOW(X)
+o==|(|,|+|-|*|<|> average ( a=@num|@val , b=@num|@val , c=@num|@val ) | $o ( $a + $b + $c ) / 3 | 1 | TS010 | offered | SHOW(AVERAGE(LIGHT_L, LIGHT_R, 5)) => SHOW((LIGHT_L + LIGHT_R + 5) / 3)
 a=@num v=@val | @by:a:v | 1 | TS048 | offered | VEL = 30⏎F(2, 2VEL) => VEL = 30⏎F(2, 2 * VEL)
 a=@num|@val MOD b=@num|@val | $a % $b | 1 | TS010 | first | X = 7⏎X = X MOD 2 => X = 7⏎X = X % 2
 a=@num|@val MAS b=@num|@val | $a + $b | 1 | TS010 | first | X = 5 mas 3⏎SHOW(X) => X = 5 + 3⏎SHOW(X)
@@ -329,7 +329,7 @@ SHOW ( a=@val &|+|, " " &|+|, b=@val ) | SHOW ( $a ) ; SHOW ( $b ) | 1 | TS020 |
 SHOW ( a=@val , b=@val , c=@val ) | SHOW ( $a ) ; SHOW ( $b ) ; SHOW ( $c ) | 2 | TS020 | offered | SHOW(DISTANCE, LIGHT_L, LIGHT_R) => SHOW(DISTANCE);SHOW(LIGHT_L);SHOW(LIGHT_R)
 ^ SHOW a=@val ,? b=@val $ | SHOW ( $a ) ; SHOW ( $b ) | 2 | TS015 | applied | SHOW DISTANCE LIGHT_R => SHOW(DISTANCE);SHOW(LIGHT_R)
 c=@callw ( a=@argt* b=@num|@word e=;|$|UNTIL|@start | $c ( $a $b ) $e | 1 | TS016 | applied | F(2,80 => F(2,80)
-TONE ( a=@num , b=@num ) | BEEP ( @ms:b , $a ) | 1 | TS102 | offered | tone(440, 1000) => BEEP(1, 440)
+TONE|TONO ( a=@num , b=@num ) | BEEP ( @ms:b , $a ) | 1 | TS102 | offered | tone(440, 1000) => BEEP(1, 440)
 TONE ( @num , a=@num , b=@num ) | BEEP ( @ms:b , $a ) | 1 | TS102 | offered | tone(8, 440, 500) => BEEP(0.5, 440)
 a=F|B|L|R ( u=CM|DEG (? n=@num )? , p=@num ) | $a ( $n $u , $p ) | 1 | TS076 | offered | B(CM(20), 60) => B(20 CM, 60)
 a=F|B|L|R ( p=@num , n=@num u=CM|DEG ) | $a ( $n $u , @power:p ) | 1 | TS076 | offered | R(60, 90 DEG) => R(90 DEG, 60)
@@ -364,8 +364,8 @@ h=IF|WHILE|ELSEIF|LOOP|UNTIL '{' c=@nob+ '}' | &h ( $c ) | 1 | TS015 | applied |
 <asks> c=@cond+ ;|$ | &h ( $c ) ; | 1.3 | TS015 | applied | si DISTANCE > 10⏎S⏎fin => IF(DISTANCE > 10)⏎S⏎ENDIF
 <asks> c=@cond+ b=@start | &h ( $c ) ; $b | 2 | TS014 | applied | IF DISTANCE < 10 STOP => IF(DISTANCE < 10);STOP;ENDIF
 h=IF|WHILE|LOOP|WHEN ( c=@noclose+ , <body> ) $ | &h ( $c ) ; $b $r ; @endof:h | 1 | TS080 | applied | SI|IF(DISTANCE < 10, S) => SI|IF(DISTANCE < 10);S;ENDIF
-^ IF ( c=@noclose+ , <body> , d=@start s=@all* ) $ | IF ( $c ) ; $b $r ; ELSE ; $d $s ; ENDIF | .9 | TS080 | offered | IF(DISTANCE < 15, B(1, 50), F(1, 50)) => IF(DISTANCE < 15);B(1, 50);ELSE;F(1, 50);ENDIF
-^ '='? IF|SE ( c=@argt+ ,|; b=@callw ( e=@argt+ ,|; f=@argt+ ) ,|; d=@callw ( g=@argt+ ,|; h=@argt+ ) ) $ | IF ( $c ) ; $b ( $e , $f ) ; ELSE ; $d ( $g , $h ) ; ENDIF | .8 | TS080 | offered | =SI(DISTANCE<10;B(1;60);F(1;60)) => IF(DISTANCE < 10);B(1, 60);ELSE;F(1, 60);ENDIF
+^ '='? IF|SE ( c=@noclose+ , <body> , d=@start s=@all* ) $ | IF ( $c ) ; $b $r ; ELSE ; $d $s ; ENDIF | .9 | TS080 | offered | IF(DISTANCE < 15, B(1, 50), F(1, 50)) => IF(DISTANCE < 15);B(1, 50);ELSE;F(1, 50);ENDIF
+^ '=' IF|SE ( c=@argt+ ; <body> ; d=@start s=@all* ) $ | IF ( $c ) ; $b $r ; ELSE ; $d $s ; ENDIF | .8 | TS080 | offered | =SI(DISTANCE<10;B(1;60);F(1;60)) => IF(DISTANCE < 10);B(1, 60);ELSE;F(1, 60);ENDIF
 h=IF|WHILE ( c=@noclose+ , b=@start | &h ( $c ) ; $b | 2 | TS080 | applied | IF(DISTANCE < 10, S) ELSE F(1, 60) ENDIF => IF(DISTANCE < 10);S;ELSE;F(1, 60);ENDIF
 <block> <question> do|times ':'? | &h ( $c ) ; | 1 | TS044 | applied | LOOP(3) TIMES⏎F(1,50)⏎END_LOOP => LOOP(3)⏎F(1,50)⏎END_LOOP
 <block> <question> :|,|=|?|'|'|- ':'? | &h ( $c ) ; | 1 | TS014 | applied | LOOP(3): F(1,50) => LOOP(3);F(1, 50);END_LOOP
@@ -410,7 +410,7 @@ a=L|R ( A? CUARTO|QUARTER DE? VUELTA|GIRO|TURN , | $a ( 90 DEG , | 1 | TS102 | o
 a=@callw ( n=@num A|TO|HASTA m=@num , | $a ( RANDOM ( $n , $m ) , | 1 | TS076 | offered | F(1 a 3, 60) => F(RANDOM(1, 3), 60)
 a=L|R ( 1 / 4 DE? VUELTA|GIRO|TURN , | $a ( 90 DEG , | 1 | TS102 | offered | R(1/4 vuelta, 60) => R(90 DEG, 60)
 a=L|R ( 1 / 2 DE? VUELTA|GIRO|TURN , | $a ( 180 DEG , | 1 | TS102 | offered | R(1/2 turn, 60) => R(180 DEG, 60)
-o=(|,|=|<|>|+|- '|' v=@val c=@argt+ '|' | $o ABS ( $v $c ) | 1 | TS010 | offered | D = |LIGHT_L - LIGHT_R|⏎SHOW(D) => D = ABS(LIGHT_L - LIGHT_R)⏎SHOW(D)
+o=(|,|=|<|>|+|- '|' v=@num|@val c=@argt* '|' | $o ABS ( $v $c ) | 1 | TS010 | offered | D = |LIGHT_L - LIGHT_R|⏎SHOW(D) => D = ABS(LIGHT_L - LIGHT_R)⏎SHOW(D)
 ^ W ( UNTIL (? q=@argt+ )? ) $ | W ( FOREVER ) UNTIL ( $q ) | 1 | TS029 | offered | W(UNTIL DISTANCE < 10) => W(FOREVER) UNTIL(DISTANCE < 10)
 ^ a=@callw ( b=@argt+ ) UNTIL ( c=@noclose+ ) UNTIL ( d=@noclose+ ) $ | $a ( $b ) UNTIL ( $c OR $d ) | 1 | TS029 | offered | F(5, 60) UNTIL(DISTANCE < 10) UNTIL(LIGHT_L > 500) => F(5, 60) UNTIL(DISTANCE < 10 OR LIGHT_L > 500)
 m=MIN|MAX ( a=@num|@val , b=@num|@val , c=@num|@val ) | $m ( $a , $m ( $b , $c ) ) | 1 | TS020 | offered | SHOW(MIN(DISTANCE, 5, 9)) => SHOW(MIN(DISTANCE, MIN(5, 9)))
