@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from tests.studio.test_page_for_everyone import LOOK, SCREENS
+from tests.support import pty_robot as pty_robots
 from tests.support import studio
 from tests.support.pty_robot import PtyRobot
 from tests.support.studio import (
@@ -247,13 +248,24 @@ def test_identify_name_and_trim(page: Page, robot: PtyRobot) -> None:
     page.check("#trim_left")
     page.click("#trim_set")
     said(page, "The robot keeps it.")
+    pace = page.locator("#trim_pace")
+    assert pace.inner_text() == "Its pace is that of its kit: tsc trim measures it."
     page.click("#link_leave")
     said(page, "Disconnected.")
+    time.sleep(0.3)
+    measured = ("--speed-40", "20", "--speed-80", "45", "--turn-40", "100", "--turn-80", "212.5")
+    assert pty_robots.on(robot, "trim", *measured).code == 0
     time.sleep(0.3)
     page.click("#link_connect")
     said(page, "Connected: Ñandú.")
     page.locator("#trim_left:checked").wait_for(state="attached")
     assert page.input_value("#trim_balance") == "-7"
+    page.click("#trim_set")  # leaves the pace
+    said(page, "The robot keeps it.")
+    assert pace.inner_text() == (
+        "It goes 20 cm in a second at 40 %, and 45 at 80 %."
+        " It turns 100 degrees in a second at 40 %, and 212.5 at 80 %."
+    )
 
 
 @pytest.mark.sampled("language", "screen", keep=2)

@@ -193,9 +193,9 @@ class RobotLink:
                 "saved": saved_name(values.saved),
             }
         if isinstance(values, TrimReply):
-            trim = told(values)._asdict()
-            del trim["pace"]  # who sets a trim without it leaves it
-            return {"ok": True, "trim": trim}
+            trim = told(values)
+            pace = None if trim.pace is None else trim.pace._asdict()
+            return {"ok": True, "trim": {**trim._asdict(), "pace": pace}}
         robot = self._connection.robot
         if isinstance(values, HelloReply) and robot is not None:
             return {"ok": True, "robot": about(robot)}
@@ -295,7 +295,7 @@ def _trim(request: Json) -> _Make:
         return lambda session: session.trim()
     if not isinstance(found, dict):
         raise BadRequest
-    trim = Trim(
+    trim = Trim(  # without a pace: the robot leaves what it has
         found.get("is_exchanged") is True,
         found.get("is_left_reversed") is True,
         found.get("is_right_reversed") is True,

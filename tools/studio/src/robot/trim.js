@@ -1,6 +1,7 @@
 // The fields of a robot's trim.
 
 import { element } from '../elements.js';
+import { text } from '../texts.js';
 
 /** @typedef {import('./way.js').Trim} Trim */
 
@@ -9,6 +10,7 @@ const least = element('trim_least', HTMLInputElement);
 const exchanged = element('trim_exchanged', HTMLInputElement);
 const left = element('trim_left', HTMLInputElement);
 const right = element('trim_right', HTMLInputElement);
+const pace = element('trim_pace', HTMLElement);
 
 /** @param {Trim} trim */
 export function showTrim(trim) {
@@ -17,9 +19,19 @@ export function showTrim(trim) {
   exchanged.checked = trim.is_exchanged;
   left.checked = trim.is_left_reversed;
   right.checked = trim.is_right_reversed;
+  pace.textContent = trim.pace ? told(trim.pace) : '';
 }
 
-/** @returns {Trim} */
+/** @param {import('./way.js').Pace} pace @returns {string} */
+function told({ speed_40, speed_80, turn_40, turn_80 }) {
+  const said = [
+    speed_80 ? text('trim_speed', { at_40: speed_40, at_80: speed_80 }) : '',
+    turn_80 ? text('trim_turn', { at_40: turn_40, at_80: turn_80 }) : '',
+  ].filter(Boolean);
+  return said.join(' ') || text('trim_kits_pace');
+}
+
+/** @returns {Trim} what is typed; the pace stays as it is */
 export function readTrim() {
   return {
     is_exchanged: exchanged.checked,

@@ -29,7 +29,10 @@
  * @property {boolean} is_right_reversed
  * @property {number} balance
  * @property {number} least
+ * @property {Pace | null} [pace] none: the robot cannot keep one
  */
+
+/** @typedef {{speed_40: number, speed_80: number, turn_40: number, turn_80: number}} Pace cm and degrees in a second, at 40 and 80 %; 0 is not measured */
 
 /**
  * @typedef {object} RobotEvent
