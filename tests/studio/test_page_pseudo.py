@@ -33,7 +33,7 @@ CUT = """() => {
       const box = at.getBoundingClientRect();
       const holds = overflowX !== 'visible' || at.tagName === 'BUTTON';
       const isOut = text.right > box.right + 1 || text.left < box.left - 1;
-      if (display !== 'inline' && holds && isOut) found.add('cut in ' + said);
+      if (!['inline', 'contents'].includes(display) && holds && isOut) found.add('cut in ' + said);
       if (at === document.body && text.right > innerWidth + 1) found.add('outside: ' + said);
     }
   }
