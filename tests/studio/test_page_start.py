@@ -24,7 +24,7 @@ START = "html[data-screen=start]"
 def start(pages: Pages) -> Page:
     """The page as somebody finds it who has never been here."""
     page = pages.open("start")
-    assert screen(page) == "start"
+    page.locator("html[data-screen=start]").wait_for(state="attached")
     checked(page)
     return page
 
@@ -86,7 +86,7 @@ def test_the_address_says_which_screen_is_seen(pages: Pages, start: Page) -> Non
     start.click("#start_write")
     assert (screen(start), start.evaluate("location.hash")) == ("program", "#editor")
     start.reload()
-    assert screen(start) == "program"
+    start.locator("html[data-screen=program]").wait_for(state="attached")
     start.go_back()
     start.locator(START).wait_for(state="attached")
     start.go_forward()

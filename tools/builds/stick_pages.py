@@ -41,14 +41,14 @@ li.check { list-style: none; }
 GUIDES = ("docs/monday.en.md", "docs/lessons.en.md", "docs/materials.en.md", "docs/studio.en.md",
           "docs/class.en.md", "docs/language.en.md", "docs/robots.en.md", "docs/command.en.md",
           "docs/worlds.en.md", "docs/modules.en.md", "docs/api.en.md", "README.md")  # fmt: skip
-INDEX = "index.html"
+INDEX, POSTER = "index.html", "docs/poster/poster.en.pdf"
 LINK = re.compile(r'(href|src)="([^"#:]+)(#[^"]*)?"')
 
 
 def make(root: Path, folder: Path) -> None:
     """Write all pages into a folder, with an index in each language."""
     documents = [*root.glob("*.md"), *root.glob("docs/**/*.md")]
-    wanted: set[Path] = set()
+    wanted = {(root / name).resolve() for name in sources(root, POSTER).values()}
     for source in documents:
         body, title = rendered(source.read_text(encoding="utf-8"))
         wanted |= {(source.parent / path).resolve() for _, path, _ in LINK.findall(body)}
@@ -128,7 +128,7 @@ def _index(root: Path, folder: Path, language: str) -> str:
         name = sources(root, guide).get(language, guide)
         _, heading = rendered((root / name).read_text(encoding="utf-8"))
         rows.append(f'<li><a href="{name.removesuffix(".md")}.html">{escape(heading)}</a></li>')
-    file = sources(root, "docs/poster/poster.en.pdf").get(language, "docs/poster/poster.en.pdf")
+    file = sources(root, POSTER).get(language, POSTER)
     rows += [f'<li><a href="{file}">{poster}</a></li>', "</ul>"]
     rows += [f"<h2>{wiring}</h2>", "<ul>"]
     for name in robots.names():

@@ -18,6 +18,8 @@ async function fetched(name) {
 
 /** The languages that Python speaks. @type {Set<string>} */
 const learnt = new Set();
+/** Those that are fetched: what is kept for long waits for its language. @type {Map<string, Promise<unknown>>} */
+const coming = new Map();
 
 async function begin() {
   const archive = fetched('tiniscript.zip');
@@ -76,9 +78,12 @@ addEventListener('message', async ({ data: { id, request, data } }) => {
     const { ask, learn } = await python;
     const asked = JSON.parse(request);
     const { language } = asked;
-    if (asked.do.startsWith('lesson_')) await needLessons();
+    if (asked.do.startsWith('lesson_')) await Promise.all([needLessons(), coming.get(language)?.catch(() => null)]);
     if (asked.do === 'learn') {
-      if (!learnt.has(language)) learn(language, await fetched(`messages.${language}.json`));
+      if (!learnt.has(language)) {
+        coming.set(language, fetched(`messages.${language}.json`).then((found) => learn(language, found)));
+        await coming.get(language);
+      }
       postMessage({ id, answer: '{}' });
       return;
     }
