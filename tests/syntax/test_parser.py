@@ -230,7 +230,6 @@ MISTAKES: dict[str, tuple[list[str], str]] = {
     "F(2, 80);UNTIL(A)": (["TS029 UNTIL"], "F [2]! [80]! «F(2, 80)»"),
     "PING|F(2, 80)": (["TS035 PING"], ""),
     "GO|S": (["TS034 GO"], "S «S»"),
-    "DANCE();S": (["TS028 DANCE()"], "DANCE «DANCE()»\nS «S»"),
     # brackets hold back the end of a line, and no longer than that
     "X = (A)\n+ 1": (["TS042 +"], "X = [A] «X = (A)»"),
     # a block opens even where its header is wrong, and its end is no other mistake

@@ -184,10 +184,6 @@ class Parser:
             self.no_arguments(word)
         arguments = self.expressions.arguments()
         self.no_units(arguments[known is not None and known.role == "move" :])
-        if not arguments and known is None:
-            span = self.cursor.span_from(word)
-            self.reporter.report(codes.EMPTY_BRACKETS, span, word=word.text)
-            return None
         return arguments
 
     def until(self) -> Argument | None:
