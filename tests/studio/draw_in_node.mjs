@@ -4,7 +4,7 @@
 import { text } from 'node:stream/consumers';
 import { pathToFileURL } from 'node:url';
 
-const { drawRobot } = await import(pathToFileURL(`${process.argv[2]}/robot_drawing.js`).href);
+const { drawRobot } = await import(pathToFileURL(`${process.argv[2]}/virtual/robot_drawing.js`).href);
 
 class Pen {
   drawn = [];

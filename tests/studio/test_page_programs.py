@@ -119,7 +119,7 @@ def test_a_link_has_the_public_address_of_the_page(page: Page) -> None:
 
 def test_a_link_says_from_where_it_opens() -> None:
     addresses = [each for row in REACHES.values() for each in row.split()]
-    code = f"import {{ reachOf }} from './src/reach.js';\n{json.dumps(addresses)}"
+    code = f"import {{ reachOf }} from './src/programs/reach.js';\n{json.dumps(addresses)}"
     done = subprocess.run(
         [*found_tools().node, "--input-type=module", "-e",
          f"{code}.forEach((each) => console.log(reachOf(each)));"],
@@ -288,7 +288,7 @@ def colours(page: Page, data: bytes) -> tuple[int, int, dict[str, int]]:
     return width, height, counts
 
 
-MOVE = "11,79,158"  # the colour of blocks that move, as block_styles.js has it
+MOVE = "11,79,158"  # the colour of blocks that move, as blocks/colours.js has it
 
 
 @pytest.mark.parametrize("view", ["text", "blocks"])

@@ -1,30 +1,30 @@
 // The page: puts editor, compiler, files and kept work together.
 
-import { element } from './elements.js';
-import { Editor } from './editor.js';
-import { bytesOf, download } from './files.js';
-import { Lessons } from './lessons.js';
-import { showMessages, summary } from './messages.js';
-import { whenOffline } from './offline.js';
-import { Phone } from './phone.js';
-import { Programs } from './programs.js';
+import { element } from './page/elements.js';
+import { Editor } from './writing/editor.js';
+import { bytesOf, download } from './page/files.js';
+import { Lessons } from './lesson/lessons.js';
+import { showMessages, summary } from './writing/messages.js';
+import { whenOffline } from './page/offline.js';
+import { Phone } from './page/phone.js';
+import { Programs } from './programs/programs.js';
 import { Python } from './python.js';
-import { pictured, robotPicture } from './pictures_of.js';
-import { bringsProgram } from './links.js';
-import { called, currentLanguage, known, languageOf, LANGUAGES, setLanguage, text } from './texts.js';
-import { Driving } from './driving.js';
-import { Recorder } from './recorder.js';
+import { pictured, robotPicture } from './page/pictures.js';
+import { bringsProgram } from './programs/links.js';
+import { called, currentLanguage, known, languageOf, LANGUAGES, setLanguage, text } from './page/texts.js';
+import { Driving } from './virtual/driving.js';
+import { Recorder } from './robot/recorder.js';
 import { whyOutside } from './robot/host.js';
 import { RobotPanel } from './robot/panel.js';
 import { RobotPlace } from './robot/place.js';
-import { chooseSide } from './robot_side.js';
+import { chooseSide } from './page/sides.js';
 import { FIRST_PROGRAM } from './start/beginnings.js';
 import { beginScreens, isStart, show as showScreen } from './start/screens.js';
 import { Start } from './start/start.js';
-import { beginTheme } from './theme.js';
-import { Views } from './views.js';
-import { ROBOTS, showWords } from './words.js';
-import { keep, keptWork, LONGEST } from './work.js';
+import { beginTheme } from './page/theme.js';
+import { Views } from './writing/views.js';
+import { ROBOTS, showWords } from './page/words.js';
+import { keep, keptWork, LONGEST } from './programs/work.js';
 
 /** @typedef {import('./python.js').Checked} Checked */
 /** @typedef {import('./python.js').Finding} Finding */

@@ -4,8 +4,8 @@ import { correction, generate } from 'lean-qr';
 import { button, made } from './made.js';
 import { put } from './wall.js';
 import { sign } from './signs.js';
-import { element } from '../elements.js';
-import { text } from '../texts.js';
+import { element } from '../page/elements.js';
+import { text } from '../page/texts.js';
 
 const QUIET = 4; // white modules around a QR code
 
@@ -49,7 +49,7 @@ export class BigPupil extends Big {
   /** @param {Told} told */
   constructor(told) {
     super('big_pupil');
-    const act = (/** @type {import('../texts.js').Key} */ key, /** @type {(key: string) => void} */ what) => button(key, () => what(this.key));
+    const act = (/** @type {import('../page/texts.js').Key} */ key, /** @type {(key: string) => void} */ what) => button(key, () => what(this.key));
     this.#lower = act('class_lower_hand', told.lower);
     this.#stop = act('stop', told.stop);
     this.#next = act('class_next', told.next);

@@ -7,7 +7,7 @@ import { isTeacher } from '../robot/host.js';
 /**
  * @typedef {object} Page what a class uses of the page
  * @property {import('../robot/panel.js').RobotPanel} panel
- * @property {import('../work.js').Work} work
+ * @property {import('../programs/work.js').Work} work
  * @property {import('../python.js').Python} python
  * @property {() => void} empty takes the program off the page
  * @property {(program: {text: string, robot: string}) => void} put another program into the editor

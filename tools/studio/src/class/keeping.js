@@ -1,9 +1,9 @@
 // The work of a class as one file: saved by the teacher, and opened again another day. What is in a
 // file is somebody else's: `tsc studio` checks all of it.
 
-import { downloadFile } from '../files.js';
+import { downloadFile } from '../page/files.js';
 import { post } from '../robot/host.js';
-import { text } from '../texts.js';
+import { text } from '../page/texts.js';
 
 /** @typedef {{name: string, text: string, robot: string, lessons: string[]}} WorkOfOne */
 

@@ -1,11 +1,11 @@
 // Elements that the class's parts of the page make, with texts that change with the language.
 
-import { text } from '../texts.js';
+import { text } from '../page/texts.js';
 
 /**
  * @template {keyof HTMLElementTagNameMap} K
  * @param {K} kind
- * @param {import('../texts.js').Key | ''} key of its text
+ * @param {import('../page/texts.js').Key | ''} key of its text
  * @param {(Node | string)[]} inside
  * @returns {HTMLElementTagNameMap[K]}
  */
@@ -19,7 +19,7 @@ export function made(kind, key = '', ...inside) {
   return found;
 }
 
-/** @param {import('../texts.js').Key} key @param {() => void} pressed */
+/** @param {import('../page/texts.js').Key} key @param {() => void} pressed */
 export function button(key, pressed) {
   const found = made('button', key);
   found.type = 'button';
@@ -27,7 +27,7 @@ export function button(key, pressed) {
   return found;
 }
 
-/** @param {import('../texts.js').Key} key @param {HTMLElement} field */
+/** @param {import('../page/texts.js').Key} key @param {HTMLElement} field */
 export function labelled(key, field) {
   return made('label', '', made('span', key), ' ', field);
 }

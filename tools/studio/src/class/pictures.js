@@ -9,7 +9,7 @@ const NO_PICTURE = ''; // of a program that is empty, or too long
 
 export class Pictures {
   #python;
-  /** @type {Promise<import('../blocks.js').Blocks> | null} */
+  /** @type {Promise<import('../blocks/blocks.js').Blocks> | null} */
   #blocks = null;
   #robot = '';
   /** What is wanted, the oldest first; each owner wants its newest program alone. @type {Map<string, Wish>} */
@@ -61,7 +61,7 @@ export class Pictures {
     await this.#python.ready;
     const form = await this.#python.ask({ do: 'blocks', robot }, new TextEncoder().encode(text));
     if (!form.body) return NO_PICTURE;
-    this.#blocks ??= import('../blocks.js').then(({ Blocks }) => new Blocks(this.#place, robot, 'few', { changed() {}, toggle() {} }));
+    this.#blocks ??= import('../blocks/blocks.js').then(({ Blocks }) => new Blocks(this.#place, robot, 'few', { changed() {}, toggle() {} }));
     const blocks = await this.#blocks;
     if (this.#robot !== robot) blocks.setRobot(robot);
     this.#robot = robot;

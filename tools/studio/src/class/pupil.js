@@ -4,16 +4,16 @@
 // The page asks once a second for its place. That keeps no robot going: only a page that drives does.
 
 import { button, labelled, made } from './made.js';
-import { element } from '../elements.js';
+import { element } from '../page/elements.js';
 import { askAs, post } from '../robot/host.js';
-import { keepDone, lessonsDone } from '../progress.js';
+import { keepDone, lessonsDone } from '../lesson/progress.js';
 import { shown } from '../robot/said.js';
 import { Failed } from '../robot/way.js';
 import { sign } from './signs.js';
 import { clock } from './wall.js';
-import { text } from '../texts.js';
-import { isRobot } from '../words.js';
-import { forgetAll } from '../work.js';
+import { text } from '../page/texts.js';
+import { isRobot } from '../page/words.js';
+import { forgetAll } from '../programs/work.js';
 
 const PLACE = 'tiniscript.pupil';
 const LOOK_MS = 1000;
@@ -102,7 +102,7 @@ export class Pupil {
     this.#look();
   }
 
-  /** @param {import('../texts.js').Key} why */
+  /** @param {import('../page/texts.js').Key} why */
   #leave(why) {
     clearTimeout(this.#timer);
     askAs('');
@@ -209,7 +209,7 @@ export class Pupil {
     this.#page.empty();
   }
 
-  /** @param {import('../texts.js').Key} key @param {Record<string, string | number>} values */
+  /** @param {import('../page/texts.js').Key} key @param {Record<string, string | number>} values */
   #say(key, values = {}) {
     const said = text(key, values);
     if (this.#said.textContent !== said) this.#said.textContent = said;

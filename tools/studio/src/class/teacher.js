@@ -8,10 +8,10 @@ import { button, labelled, made } from './made.js';
 import { Pictures } from './pictures.js';
 import { sign } from './signs.js';
 import { clock, put, Wall } from './wall.js';
-import { element } from '../elements.js';
+import { element } from '../page/elements.js';
 import { hostPorts, post } from '../robot/host.js';
 import { shown } from '../robot/said.js';
-import { known, text } from '../texts.js';
+import { known, text } from '../page/texts.js';
 
 /** @typedef {{number: number, name: string, silent_s: number, place: number, robot: string, left_s: number, version: number, is_right: boolean, hand: number, lessons: string[]}} PupilRow */
 /** @typedef {{port: string, name: string, pupil: string, left_s: number}} RobotRow */
@@ -341,7 +341,7 @@ export class Teacher {
     if (next) this.#showBig(next.key);
   }
 
-  /** @param {import('../texts.js').Key} key */
+  /** @param {import('../page/texts.js').Key} key */
   #say(key) {
     put(this.#said, text(key));
     document.documentElement.dataset['teacher'] = key;

@@ -5,7 +5,7 @@
 import { made } from './made.js';
 import { sign } from './signs.js';
 import { shown } from '../robot/said.js';
-import { text } from '../texts.js';
+import { text } from '../page/texts.js';
 
 /** @typedef {import('./teacher.js').PupilRow} PupilRow */
 /**

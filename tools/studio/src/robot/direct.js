@@ -5,7 +5,7 @@
 // sleeps, nothing is sent, and the robot stops by itself.
 
 import { Failed, pause } from './way.js';
-import { LINK, ROBOTS } from '../words.js';
+import { LINK, ROBOTS } from '../page/words.js';
 
 /** @typedef {import('./way.js').Heard} Heard */
 /** @typedef {import('./way.js').Answer} Answer */

@@ -1,10 +1,10 @@
 // The part of the page that puts a firmware on a board: which file, how far it is, and its end.
 
-import { element } from '../elements.js';
+import { element } from '../page/elements.js';
 import { chosenPort, hasSerial } from './serial.js';
 import { shown } from './said.js';
 import { Failed } from './way.js';
-import { currentLanguage } from '../texts.js';
+import { currentLanguage } from '../page/texts.js';
 
 /**
  * @typedef {object} Panel what is used of the part with a robot

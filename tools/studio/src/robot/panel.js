@@ -1,9 +1,9 @@
 // The part of the page with a real robot: how it is reached, what it is told, and what it says.
 // Everything that a robot says is put there as text, never as markup.
 
-import { element } from '../elements.js';
-import { faultSaid } from '../faults.js';
-import { bytesOf } from '../files.js';
+import { element } from '../page/elements.js';
+import { faultSaid } from '../page/faults.js';
+import { bytesOf } from '../page/files.js';
 import { chosenDevice, BluetoothPort, hasBluetooth } from './bluetooth.js';
 import { DirectRobot } from './direct.js';
 import { hasHost, hostPorts, HostRobot, isPupil, isTeacher } from './host.js';
@@ -15,8 +15,8 @@ import { refusal, shown } from './said.js';
 import { stopAll } from './stops.js';
 import { Speech } from './speech.js';
 import { Failed } from './way.js';
-import { called, currentLanguage, known, text } from '../texts.js';
-import { LINK, ROBOTS } from '../words.js';
+import { called, currentLanguage, known, text } from '../page/texts.js';
+import { LINK, ROBOTS } from '../page/words.js';
 
 /** @typedef {import('../python.js').Checked} Checked */
 /** @typedef {import('./way.js').About} About */
@@ -31,8 +31,8 @@ import { LINK, ROBOTS } from '../words.js';
  * @property {() => Checked | null} program what the compiler says of the newest text
  * @property {() => string} robot for which it compiles
  * @property {(name: string) => void} setRobot
- * @property {(place: import('../editor.js').Range) => void} goTo
- * @property {import('../recorder.js').Recorder} recorder of what the robot tells
+ * @property {(place: import('../writing/editor.js').Range) => void} goTo
+ * @property {import('./recorder.js').Recorder} recorder of what the robot tells
  * @property {import('./place.js').RobotPlace} place where its program is
  */
 

@@ -1,6 +1,6 @@
 // The line that a real robot runs now, where it tells that and runs the program of the page.
 
-import { rangeAt } from '../parts.js';
+import { rangeAt } from '../writing/parts.js';
 
 /** @typedef {import('./way.js').RobotEvent} RobotEvent */
 
@@ -14,7 +14,7 @@ export class RobotPlace {
   /**
    * @param {{
    *   program: () => import('../python.js').Checked | null,
-   *   show: (range: import('../editor.js').Range | null) => void,
+   *   show: (range: import('../writing/editor.js').Range | null) => void,
    * }} page `program` is what the compiler says of the newest text
    */
   constructor(page) {

@@ -1,6 +1,6 @@
 // What a robot or a host has said, as a person may read it: as text alone, and with what to try.
 
-import { hasText, text } from '../texts.js';
+import { hasText, text } from '../page/texts.js';
 
 /** @typedef {import('./way.js').Answer} Answer */
 

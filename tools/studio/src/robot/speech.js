@@ -1,8 +1,8 @@
 // What the panel of a real robot says, and what the robot shows: as text, never as markup.
 
-import { element } from '../elements.js';
+import { element } from '../page/elements.js';
 import { shown } from './said.js';
-import { hasText, known, text } from '../texts.js';
+import { hasText, known, text } from '../page/texts.js';
 
 /** @typedef {import('./way.js').Failed} Failed */
 
@@ -30,7 +30,7 @@ export class Speech {
   }
 
   /**
-   * @param {import('../texts.js').Key} key
+   * @param {import('../page/texts.js').Key} key
    * @param {Record<string, string | number>} values
    * @param {string} [saved]
    */
@@ -64,7 +64,7 @@ export class Speech {
     this.#list.textContent = '';
   }
 
-  /** Something new begins: what was shown before is gone. @param {import('../texts.js').Key} key */
+  /** Something new begins: what was shown before is gone. @param {import('../page/texts.js').Key} key */
   begin(key) {
     this.clear();
     this.say(key);

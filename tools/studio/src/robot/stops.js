@@ -1,11 +1,11 @@
 // STOP for all robots of a `tsc studio`: how many have confirmed it, and in red which have not.
 
 import { made } from '../class/made.js';
-import { element } from '../elements.js';
+import { element } from '../page/elements.js';
 import { isTeacher, post } from './host.js';
 import { shown } from './said.js';
-import { text } from '../texts.js';
-import { LINK } from '../words.js';
+import { text } from '../page/texts.js';
+import { LINK } from '../page/words.js';
 
 /** @typedef {{name: string, stop: 'asked' | 'confirmed' | 'silent'}} Stop */
 

@@ -1,7 +1,7 @@
 // The fields of a robot's trim.
 
-import { element } from '../elements.js';
-import { text } from '../texts.js';
+import { element } from '../page/elements.js';
+import { text } from '../page/texts.js';
 
 /** @typedef {import('./way.js').Trim} Trim */
 

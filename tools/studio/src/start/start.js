@@ -1,8 +1,8 @@
 // The start screen: pictures that begin with a robot that moves, earlier programs, and ways onward.
 
-import { element } from '../elements.js';
-import { currentLanguage, known, text } from '../texts.js';
-import { titleOf, versions } from '../versions.js';
+import { element } from '../page/elements.js';
+import { currentLanguage, known, text } from '../page/texts.js';
+import { titleOf, versions } from '../programs/versions.js';
 import { BEGINNINGS } from './beginnings.js';
 import { isStart, show, whenScreen } from './screens.js';
 import { thumbnail } from './thumbnail.js';

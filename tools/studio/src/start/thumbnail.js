@@ -1,8 +1,8 @@
 // A program as a small picture: a bar for each instruction, in the colour of its block. Made of the
 // text alone, so that it costs nothing and shows nothing that somebody else has written.
 
-import { COLOURS } from '../block_colours.js';
-import { wordsOf } from '../words.js';
+import { COLOURS } from '../blocks/colours.js';
+import { wordsOf } from '../page/words.js';
 
 const SVG = 'http://www.w3.org/2000/svg';
 const MOST = 7; // bars

@@ -1,0 +1,394 @@
+// The program as blocks. Knows Blockly; the page fetches this file when blocks are first looked at.
+//
+// The text is what is kept: a change of the blocks is told to the page, which asks for their text.
+
+import * as Blockly from 'blockly/core';
+import { formOf, keepPlaces, showForm } from './form.js';
+import { setActuators } from './places.js';
+import { Checker, defineBlocks, setRobot } from './shapes.js';
+import { pictureOf } from './picture.js';
+import { look } from './styles.js';
+import { toolbox } from './toolbox.js';
+import { text, textsOf } from '../page/texts.js';
+
+/** @typedef {import('./form.js').Form} Form */
+/** @typedef {import('./form.js').Range} Range */
+/** @typedef {import('./toolbox.js').Level} Level */
+/** @typedef {import('../python.js').Finding} Finding */
+/** @typedef {{changed: () => void, toggle: (place: {line: number, column: number}) => void}} Told */
+
+const NARROW = 700; // pixels of width, below which blocks are smaller
+const LONGEST_TIP = 42; // characters in a line of a message at a block
+const SNAPS = 48; // units of a workspace: how far off a block may be dropped
+const STAYS = 68; // the same while it is shown where it would go
+const BESIDE = 24; // units between a block and its message
+const LOW = 240; // pixels of height: in less, a message is seen when somebody asks
+const MOST_STOOD = 200; // stacks whose places are known
+
+export class Blocks {
+  #place;
+  #told;
+  #looks = look();
+  /** @type {Blockly.WorkspaceSvg} */
+  #workspace;
+  /** @type {Level} */
+  #level = 'few';
+  /** @type {{names: string[], words: string[]}} */
+  #used = { names: [], words: [] };
+  /** Ids of the blocks, and where each is in the text. @type {[string, Range][]} */
+  #places = [];
+  #isTouched = false; // by somebody, who may have scrolled
+  /** @type {import('./form.js').Stood} */
+  #stood = new Map();
+  /** @type {Blockly.BlockSvg[]} */
+  #loose = []; // the first blocks of what is not joined
+  /** @type {Blockly.icons.WarningIcon | null} */
+  #opening = null;
+  #closed = ''; // the message that somebody has put away
+  /** @type {Set<string>} */
+  #running = new Set();
+  #fault = { id: '', said: '' };
+  /** @type {Finding[]} */
+  #findings = [];
+
+  /**
+   * @param {HTMLElement} place
+   * @param {string} robot
+   * @param {Level} level
+   * @param {Told} told
+   */
+  constructor(place, robot, level, told) {
+    this.#place = place;
+    this.#told = told;
+    this.#level = level;
+    Blockly.registry.register(Blockly.registry.Type.CONNECTION_CHECKER, 'tiniscript', Checker, true);
+    Object.assign(Blockly.config, { snapRadius: SNAPS, connectingSnapRadius: STAYS });
+    this.#leaveOut();
+    this.#offerBreakpoints();
+    setRobot(robot);
+    setActuators(robot);
+    this.#workspace = this.#begin();
+    for (const kind of ['pointerdown', 'wheel', 'keydown']) {
+      place.addEventListener(kind, () => { this.#isTouched = true; }, { capture: true, passive: true });
+    }
+  }
+
+  /** Undo and redo are those of the text, which is what changes: the page has their keys. */
+  #leaveOut() {
+    for (const name of ['undoWorkspace', 'redoWorkspace', 'blockDisable', 'blockInline', 'blockCollapseExpand', 'collapseWorkspace', 'expandWorkspace', 'blockHelp']) {
+      if (Blockly.ContextMenuRegistry.registry.getItem(name)) Blockly.ContextMenuRegistry.registry.unregister(name);
+    }
+    const { registry } = Blockly.ShortcutRegistry;
+    for (const name of ['undo', 'redo']) if (registry.getRegistry()[name]) registry.unregister(name);
+  }
+
+  /** In the menu of a block, and by F9. */
+  #offerBreakpoints() {
+    const toggle = (/** @type {any} */ block) => {
+      const place = block && this.#places.find(([id]) => id === block.id)?.[1];
+      if (place?.[0]) this.#told.toggle({ line: place[0], column: place[1] });
+      return Boolean(place?.[0]);
+    };
+    if (Blockly.ContextMenuRegistry.registry.getItem('breakpoint')) return; // a page has its blocks once
+    Blockly.ContextMenuRegistry.registry.register({
+      id: 'breakpoint',
+      weight: 0,
+      scopeType: Blockly.ContextMenuRegistry.ScopeType.BLOCK,
+      displayText: () => text('breakpoint'),
+      preconditionFn: ({ block }) => (this.#places.some(([id]) => id === block?.id) ? 'enabled' : 'hidden'),
+      callback: ({ block }) => toggle(block),
+    });
+    Blockly.ShortcutRegistry.registry.register({
+      name: 'breakpoint',
+      keyCodes: [Blockly.utils.KeyCodes.F9],
+      callback: () => {
+        let node = Blockly.getFocusManager().getFocusedNode();
+        while (node && !(node instanceof Blockly.BlockSvg)) node = /** @type {any} */ (node).getSourceBlock?.() ?? null;
+        let block = /** @type {Blockly.BlockSvg | null} */ (node);
+        while (block && !this.#places.some(([id]) => id === block?.id)) block = block.getParent();
+        return toggle(block);
+      },
+    });
+  }
+
+  #begin() {
+    Blockly.setLocale(textsOf('blockly'));
+    defineBlocks();
+    const isNarrow = innerWidth < NARROW;
+    const workspace = Blockly.inject(this.#place, {
+      ...this.#looks,
+      plugins: { connectionChecker: 'tiniscript' },
+      toolbox: toolbox(this.#level, this.#used),
+      trashcan: !isNarrow,
+      comments: false,
+      collapse: false,
+      disable: false,
+      move: { scrollbars: true, drag: true, wheel: true },
+      zoom: { controls: !isNarrow, wheel: false, pinch: true, startScale: isNarrow ? 0.62 : 0.75, minScale: 0.4, maxScale: 1.6 },
+    });
+    workspace.MAX_UNDO = 0;
+    hideMeasure();
+    hideConnections(workspace.getFlyout()?.getWorkspace().getCanvas());
+    workspace.addChangeListener((event) => {
+      if (event instanceof Blockly.Events.BubbleOpen && !event.isOpen) this.#closed = this.#saidAt(event.blockId);
+      if (event.isUiEvent || event.type === Blockly.Events.FINISHED_LOADING) return;
+      this.#told.changed();
+    });
+    return workspace;
+  }
+
+  /** Whether a block is being dragged or a field is being typed in. */
+  get isBusy() {
+    return this.#workspace.isDragging();
+  }
+
+  get hasFocus() {
+    return this.#place.contains(document.activeElement);
+  }
+
+  /** The language of the page is another one, or whether words of the text are shown. */
+  setLanguage() {
+    const { form } = formOf(this.#workspace);
+    const places = this.#places.map(([, place]) => place);
+    const { scrollX, scrollY } = this.#workspace;
+    this.#workspace.dispose();
+    this.#workspace = this.#begin();
+    this.show(form);
+    if (this.#isTouched) this.#workspace.scroll(scrollX, scrollY);
+    this.placed(this.#places.map(([id]) => id), places);
+  }
+
+  /** @param {string} robot */
+  setRobot(robot) {
+    setRobot(robot);
+    setActuators(robot);
+    this.#workspace.updateToolbox(toolbox(this.#level, this.#used));
+  }
+
+  /** @param {Level} level */
+  setLevel(level) {
+    this.#level = level;
+    this.#workspace.updateToolbox(toolbox(level, this.#used));
+  }
+
+  /** The blocks as a PNG file; null without any. @returns {Promise<Blob | null>} */
+  picture() {
+    return pictureOf(this.#workspace.getCanvas(), this.#workspace.getBlocksBoundingBox());
+  }
+
+  resize() {
+    if (!this.#place.clientWidth) return; // hidden: Blockly would forget what was seen
+    Blockly.svgResize(this.#workspace);
+    this.#seeBeginning();
+  }
+
+  /** Until somebody scrolls: Blockly keeps the place of its scrollbars, not that of the blocks. */
+  #seeBeginning() {
+    if (!this.#isTouched) this.#workspace.scroll(0, 0);
+  }
+
+  /** The next blocks are of another program, which is seen from its beginning. */
+  begin() {
+    this.#isTouched = false;
+    this.#stood.clear();
+  }
+
+  /** Replaces the blocks: what stays the same stays in its place, and the focus, too. @param {Form} form */
+  show(form) {
+    const { scrollX, scrollY } = this.#workspace;
+    const focus = this.hasFocus ? this.#focused() : null;
+    Blockly.hideChaff();
+    this.#running = new Set();
+    this.#fault = { id: '', said: '' };
+    const ids = showForm(this.#workspace, form, this.#stood);
+    this.placed(ids, inOrder(form.body).map((block) => block.place ?? [0, 0, 0, 0]));
+    this.#use(form);
+    this.#greyLoose();
+    const block = focus === null ? null : this.#workspace.getBlockById(ids[Math.min(focus, ids.length - 1)] ?? '');
+    if (block) Blockly.getFocusManager().focusNode(block);
+    else if (focus !== null) Blockly.getFocusManager().focusTree(this.#workspace);
+    this.#workspace.scroll(scrollX, scrollY);
+    this.#seeBeginning();
+  }
+
+  /** @returns {number} which block of the text has the focus; -1 where none has */
+  #focused() {
+    const node = /** @type {any} */ (Blockly.getFocusManager().getFocusedNode());
+    const id = (node?.getSourceBlock?.() ?? node)?.id;
+    return this.#places.findIndex(([each]) => each === id);
+  }
+
+  /** @returns {{form: Form, ids: string[]}} */
+  read() {
+    const found = formOf(this.#workspace);
+    this.#use(found.form);
+    this.#greyLoose();
+    return found;
+  }
+
+  /** What is not joined to the program looks it, and is found where it is now. */
+  #greyLoose() {
+    for (const block of this.#loose) block.removeClass('loose');
+    this.#loose = this.#workspace.getTopBlocks(false).filter((block) => block.type !== 'program');
+    for (const block of this.#loose) block.addClass('loose');
+    if (this.#stood.size > MOST_STOOD) this.#stood.clear();
+    keepPlaces(this.#workspace, this.#stood);
+  }
+
+  /**
+   * @param {string[]} ids
+   * @param {Range[]} places
+   */
+  placed(ids, places) {
+    this.#places = ids.map((id, k) => [id, places[k] ?? [0, 0, 0, 0]]);
+  }
+
+  /** Offers the names that the program has. @param {Form} form */
+  #use(form) {
+    const blocks = inOrder([...form.body, ...form.loose.flatMap((stack) => stack.body)]);
+    const of = (/** @type {string} */ kind) => [...new Set(blocks.filter((block) => block.kind === kind).map((block) => block.word))].sort();
+    const used = { names: of('assign'), words: of('def') };
+    if (JSON.stringify(used) === JSON.stringify(this.#used)) return;
+    this.#used = used;
+    if (!this.#workspace.isDragging()) this.#workspace.updateToolbox(toolbox(this.#level, used));
+  }
+
+  /** Says at each block what the compiler says of it. @param {Finding[]} findings */
+  showFindings(findings) {
+    this.#findings = findings;
+    /** @type {Map<string, string[]>} */
+    const said = new Map();
+    /** @type {Set<string>} */
+    const wrong = new Set();
+    if (this.#fault.id) said.set(this.#fault.id, [this.#fault.said]);
+    for (const finding of findings) {
+      const id = this.#blockAt(finding.line, finding.column) ?? '';
+      const whole = [finding.message, finding.fix && `${text('try')} ${finding.fix}`].filter(Boolean).join('\n');
+      said.set(id, [...(said.get(id) ?? []), whole]);
+      if (finding.severity === 'mistake') wrong.add(id);
+    }
+    Blockly.Events.disable();
+    try {
+      for (const block of this.#workspace.getAllBlocks(false)) {
+        if (block.isShadow()) continue;
+        const id = block.type === 'program' ? '' : block.id;
+        block.setWarningText(said.get(id)?.map(folded).join('\n\n') ?? null);
+        if (wrong.has(id)) block.addClass('wrong');
+        else block.removeClass('wrong');
+      }
+    } finally {
+      Blockly.Events.enable();
+    }
+    const [first] = wrong;
+    if (first && this.#saidAt(first) !== this.#closed) this.#open(first);
+  }
+
+  /** @param {string | undefined} id @returns {Blockly.icons.WarningIcon | null} */
+  #badgeOf(id) {
+    return this.#workspace.getBlockById(id ?? '')?.getIcon(Blockly.icons.WarningIcon.TYPE) ?? null;
+  }
+
+  /** @param {string | undefined} id @returns {string} */
+  #saidAt(id) {
+    return this.#badgeOf(id)?.getText() ?? '';
+  }
+
+  /** Shows the message of a block beside it, where there is room: over others it stands as Blockly has it. @param {string} id */
+  async #open(id) {
+    const badge = this.#badgeOf(id);
+    if (!badge || badge === this.#opening || this.#place.clientHeight < LOW) return;
+    this.#opening = badge; // asked twice, Blockly would show it twice
+    await badge.setBubbleVisible(true);
+    this.#opening = null;
+    const bubble = badge.getBubble();
+    if (badge !== this.#badgeOf(id)) return bubble?.dispose(); // that block is gone
+    const block = this.#workspace.getBlockById(id);
+    if (!bubble || !block) return;
+    const { right, top } = block.getBoundingRectangleWithoutChildren();
+    const { left, width } = this.#workspace.getMetricsManager().getViewMetrics(true);
+    const isRoom = right + BESIDE + bubble.getBoundingRectangle().getWidth() <= left + width;
+    if (isRoom) bubble.moveDuringDrag(new Blockly.utils.Coordinate(right + BESIDE, top));
+  }
+
+  /** Marks the blocks that run now, one in each task. @param {{line: number, column: number}[]} ranges */
+  showRunning(ranges) {
+    const ids = new Set(ranges.map(({ line, column }) => this.#blockAt(line, column) ?? ''));
+    for (const id of this.#running) if (!ids.has(id)) this.#workspace.getBlockById(id)?.removeClass('running');
+    for (const id of ids) if (!this.#running.has(id)) this.#workspace.getBlockById(id)?.addClass('running');
+    this.#running = ids;
+  }
+
+  /** @param {{line: number, column: number}[]} breakpoints */
+  showBreakpoints(breakpoints) {
+    const ids = new Set(breakpoints.map(({ line, column }) => this.#blockAt(line, column)));
+    for (const [id] of this.#places) {
+      const block = this.#workspace.getBlockById(id);
+      if (ids.has(id)) block?.addClass('breakpoint');
+      else block?.removeClass('breakpoint');
+    }
+  }
+
+  /**
+   * Says at a block which fault it had, or that there is none.
+   * @param {{line: number, column: number} | null} range
+   * @param {string} said
+   */
+  showFault(range, said) {
+    const id = range ? this.#blockAt(range.line, range.column) ?? '' : '';
+    if (id === this.#fault.id && said === this.#fault.said) return;
+    this.#workspace.getBlockById(this.#fault.id)?.removeClass('fault');
+    this.#workspace.getBlockById(id)?.addClass('fault');
+    this.#fault = { id, said };
+    this.showFindings(this.#findings);
+  }
+
+  /** @param {{line: number, column: number}} place */
+  goTo(place) {
+    const block = this.#workspace.getBlockById(this.#blockAt(place.line, place.column) ?? '');
+    if (!block) return;
+    this.#isTouched = true;
+    this.#workspace.centerOnBlock(block.id);
+    Blockly.getFocusManager().focusNode(block);
+    this.#open(block.id);
+  }
+
+  /**
+   * @param {number} line
+   * @param {number} column
+   * @returns {string | undefined} the innermost block there
+   */
+  #blockAt(line, column) {
+    const found = this.#places.findLast(([, [first, from, last, to]]) =>
+      (line > first || (line === first && column >= from)) && (line < last || (line === last && column < to)));
+    return (found ?? this.#places.findLast(([, [first]]) => first === line))?.[0];
+  }
+}
+
+/** @param {import('./form.js').FormBlock[]} blocks @returns {import('./form.js').FormBlock[]} */
+function inOrder(blocks) {
+  return blocks.flatMap((block) => [block, ...block.bodies.flatMap(inOrder)]);
+}
+
+/** @param {string} message */
+function folded(message) {
+  return Blockly.utils.string.wrap(message, LONGEST_TIP);
+}
+
+/** In a list of blocks to take there is nothing else: where they would be joined is no part of it. @param {SVGElement | undefined} list */
+function hideConnections(list) {
+  if (!list) return;
+  new MutationObserver(() => {
+    for (const each of list.querySelectorAll('.blocklyHighlightedConnectionPath')) each.setAttribute('aria-hidden', 'true');
+  }).observe(list, { childList: true, subtree: true });
+}
+
+/** Hides what Blockly measures texts with, which it makes when it first needs it. */
+function hideMeasure() {
+  new MutationObserver((_, observer) => {
+    const found = document.querySelector('.blocklyComputeCanvas');
+    if (!found) return;
+    found.setAttribute('aria-hidden', 'true');
+    observer.disconnect();
+  }).observe(document.body, { childList: true });
+  document.querySelector('.blocklyComputeCanvas')?.setAttribute('aria-hidden', 'true');
+}

@@ -1,0 +1,67 @@
+// Which plain numbers may stand in which place of a block. The ranges are those of the compiler's
+// table of words, and of the robot.
+
+import description from '../../made/description.json';
+
+/** @typedef {{low: number, high: number, sample: string}} Range */
+
+const ANY = { low: -2147483.648, high: 2147483.647, sample: '1' };
+/** @type {Map<string, Range[]>} */
+const ARGUMENTS = new Map(description.words.map((word) => [word.text, word.arguments]));
+/** Of each role of an instruction its first word: a kind of block is named like it. @type {Map<string, string>} */
+const FIRST_WORDS = new Map(description.words
+  .filter((word) => word.arguments.length || ['stop', 'start'].includes(word.role))
+  .map((word) => /** @type {[string, string]} */ ([word.role, word.text])).reverse());
+/** Words with arguments whose kinds are no roles. */
+const OTHERS = /** @type {Record<string, string>} */ ({ loop: 'LOOP', round: 'ROUND', random: 'RANDOM' });
+/** @type {Map<string, Range>} */
+let actuators = new Map();
+
+/** @param {string} robot */
+export function setActuators(robot) {
+  const found = description.robots.find((each) => each.name === robot);
+  actuators = new Map((found?.devices ?? []).filter((device) => device.role === 'actuator')
+    .map((device) => [device.text, /** @type {Range} */ (device.arguments[0])]));
+}
+
+/**
+ * @param {string} kind
+ * @returns {string} the word of a block that does not say it
+ */
+export function wordOf(kind) {
+  return FIRST_WORDS.get(kind.replace(/_until$/, '')) ?? '';
+}
+
+/**
+ * @param {import('blockly/core').Block} block
+ * @returns {string | undefined} the word on it, with its unit unless that is seconds: `F CM`
+ */
+export function wordOn(block) {
+  const word = block.getFieldValue('WORD') ?? undefined;
+  const unit = /** @type {import('./fields.js').UnitField | null} */ (block.getField('UNIT'))?.written();
+  return unit ? `${word} ${unit}` : word;
+}
+
+/**
+ * @param {string} kind
+ * @param {string} word
+ * @param {number} index of the place
+ * @returns {Range}
+ */
+export function rangeOf(kind, word, index) {
+  if (kind === 'set') return actuators.get(word) ?? ANY;
+  const range = ARGUMENTS.get(word || OTHERS[kind] || wordOf(kind))?.[index] ?? ANY;
+  return Number.isFinite(Number(range.sample)) ? range : { ...range, sample: '1' };
+}
+
+/**
+ * @param {import('blockly/core').Block | null} block a number in a place of another block
+ * @returns {Range}
+ */
+export function rangeAt(block) {
+  const parent = block?.getParent();
+  const input = parent?.inputList.find((each) => each.connection?.targetBlock() === block);
+  if (!parent || !input) return ANY;
+  const index = Number(input.name.slice(1));
+  return rangeOf(parent.type, wordOn(parent) ?? '', index);
+}

@@ -1,0 +1,285 @@
+// How Blockly shows the kinds of blocks: their words, places, colours and fields. The kinds and the
+// order of their values are those of `studio/block_kinds.py`.
+
+import * as Blockly from 'blockly/core';
+import blocks from '../../made/blocks.json';
+import { LineField, NameField, NumberField, UnitField } from './fields.js';
+import { rangeOf } from './places.js';
+import { called } from '../page/texts.js';
+import { nameOf, onBlock, ROBOTS, tipOf } from '../page/words.js';
+
+/** @typedef {'number' | 'truth' | 'any'} Place what a value there is */
+/** @typedef {{colour: string, words: string[], values: Place[], units: Record<string, string>, bodies: number, gives: '' | Place, field: '' | 'name' | 'line' | 'sensor' | 'actuator'}} Shape */
+
+const COMPARED = [['=', 'EQ'], ['≠', 'NE'], ['<', 'LT'], ['≤', 'LE'], ['>', 'GT'], ['≥', 'GE']];
+const RECKONED = [['+', 'ADD'], ['−', 'SUB'], ['×', 'MUL'], ['÷', 'DIV'], ['%', 'MOD']];
+
+export const SHAPES = /** @type {Record<string, Shape>} */ (blocks.kinds);
+
+const CHECKS = { number: 'Number', truth: 'Boolean', any: null };
+/** @type {string} */
+let robot = '';
+
+/** @param {string} name of the robot whose words are offered */
+export function setRobot(name) {
+  robot = name;
+}
+
+/** @param {'sensor' | 'actuator'} role */
+export function devices(role) {
+  const devices = ROBOTS.find((each) => each.name === robot)?.devices ?? [];
+  return devices.filter((device) => device.role === role);
+}
+
+/** Lets what a text says stand anywhere: the compiler says what does not fit. */
+export class Checker extends Blockly.ConnectionChecker {
+  static isLenient = false;
+
+  /** @param {Blockly.Connection} a @param {Blockly.Connection} b */
+  doTypeChecks(a, b) {
+    return Checker.isLenient || super.doTypeChecks(a, b);
+  }
+}
+
+/**
+ * @param {Blockly.Block} block
+ * @param {Shape} shape
+ * @returns {Blockly.Field | null} what stands before its values
+ */
+function firstField(block, shape) {
+  if (shape.words.length) return options(shape.words.map((word) => [onBlock(word), word]));
+  if (shape.field === 'name') return new NameField('X');
+  if (shape.field === 'line') return new LineField('');
+  if (shape.field) return new DeviceField(shape.field);
+  return block.type === 'number' ? new NumberField(0) : null;
+}
+
+/** @param {string[][]} rows */
+function options(rows) {
+  return new Blockly.FieldDropdown(/** @type {[string, string][]} */ (rows));
+}
+
+/** A word of the robot; one that it does not have stays, too. */
+class DeviceField extends Blockly.FieldDropdown {
+  /** @param {'sensor' | 'actuator'} role */
+  constructor(role) {
+    /** @this {any} */
+    super(function () {
+      const rows = devices(role).map((device) => /** @type {[string, string]} */ ([nameOf(device), device.text]));
+      const kept = /** @type {any} */ (this).kept;
+      if (kept && !rows.some(([, name]) => name === kept)) rows.push([kept, kept]);
+      return rows.length ? rows : [['?', '?']];
+    });
+  }
+
+  /** @param {string} [value] */
+  doClassValidation_(value) {
+    if (typeof value !== 'string') return null;
+    /** @type {any} */ (this).kept = value;
+    return value;
+  }
+}
+
+/**
+ * Adds what a message says, its fields and places.
+ * @param {Blockly.Block} block
+ * @param {string} message
+ * @param {(number: number) => Blockly.Field | string} what a field, or the name of a place
+ * @param {(name: string) => Place} kindOf
+ */
+function add(block, message, what, kindOf) {
+  let label = '';
+  /** @type {Blockly.Field[]} */
+  let fields = [];
+  const flush = () => {
+    const text = label.trim();
+    if (text) fields.push(new Blockly.FieldLabel(text));
+    label = '';
+  };
+  for (const part of message.split(/(%\d|%%)/)) {
+    if (part === '%%') label += '%';
+    else if (!/^%\d$/.test(part)) label += part;
+    else {
+      flush();
+      const found = what(Number(part[1]));
+      if (typeof found !== 'string') {
+        fields.push(found);
+        continue;
+      }
+      const input = block.appendValueInput(found).setCheck(CHECKS[kindOf(found)]);
+      for (const field of fields) input.appendField(field, field.name);
+      fields = [];
+    }
+  }
+  flush();
+  if (fields.length) {
+    const input = block.appendDummyInput();
+    for (const field of fields) input.appendField(field, field.name);
+  }
+}
+
+/** @param {Blockly.Field} field @param {string} name */
+function named(field, name) {
+  field.name = name;
+  return field;
+}
+
+/** @param {Blockly.Block} block @param {string} kind @param {Shape} shape */
+function build(block, kind, shape) {
+  const first = firstField(block, shape);
+  const sign = { math: RECKONED, compare: COMPARED, logic: [[onBlock('AND'), 'AND'], [onBlock('OR'), 'OR']] }[kind];
+  const unit = Object.keys(shape.units).length ? new UnitField(shape.units) : null;
+  if (unit) first?.setValidator(() => unit.forceRerender());
+  let value = 0;
+  add(block, onBlock(kind), (number) => {
+    if (first && number === 1) return named(first, 'WORD');
+    if (sign && number === 2) return named(options(sign), 'SIGN');
+    if (unit && number === 3) return named(unit, 'UNIT');
+    return `V${value++}`;
+  }, (name) => shape.values[Number(name.slice(1))] ?? 'any');
+  for (let k = 0; k < shape.bodies; k += 1) block.appendStatementInput(`B${k}`);
+  block.setInputsInline(true);
+  if (shape.gives) block.setOutput(true, CHECKS[shape.gives]);
+  else {
+    block.setPreviousStatement(true);
+    block.setNextStatement(true);
+  }
+  block.setStyle(shape.colour);
+  fill(block, kind, shape.values);
+}
+
+/**
+ * Gives every place a value that is there while nothing else is.
+ * @param {Blockly.Block} block
+ * @param {string} kind
+ * @param {Place[]} values
+ */
+function fill(block, kind, values) {
+  values.forEach((place, k) => {
+    const word = String(block.getFieldValue('WORD') ?? '');
+    const { sample } = rangeOf(kind, word, k);
+    const device = kind === 'set' ? devices('actuator').find((each) => each.text === word) : undefined;
+    block.getInput(`V${k}`)?.connection?.setShadowState(
+      place === 'truth' || device?.is_yes_no ? truth() : { type: 'number', fields: { WORD: Number(sample) } },
+    );
+  });
+}
+
+function truth() {
+  return { type: 'truth', fields: { WORD: 'TRUE' } };
+}
+
+const MOST_ARMS = 20;
+
+/** The block of IF: as many arms as its state says. */
+const IF = {
+  arms: 1,
+  hasElse: false,
+
+  /** @this {any} */
+  saveExtraState() {
+    return { arms: this.arms, hasElse: this.hasElse };
+  },
+
+  /** @this {any} @param {{arms: number, hasElse: boolean}} state */
+  loadExtraState(state) {
+    this.setArms(state.arms, state.hasElse);
+  },
+
+  /** @this {any} @param {number} arms @param {boolean} hasElse */
+  setArms(arms, hasElse) {
+    this.arms = arms;
+    this.hasElse = hasElse;
+    for (let k = 0; k < arms; k += 1) {
+      if (this.getInput(`V${k}`)) continue;
+      add(this, onBlock(k ? 'elseif' : 'if'), () => `V${k}`, () => 'truth');
+      this.getInput(`V${k}`).connection.setShadowState(truth());
+      this.appendStatementInput(`B${k}`);
+      if (this.getInput('ELSE')) {
+        for (const name of [`V${k}`, `B${k}`]) this.moveInputBefore(name, 'ELSE');
+      }
+    }
+    for (let k = arms; this.getInput(`V${k}`); k += 1) {
+      this.removeInput(`V${k}`);
+      this.removeInput(`B${k}`);
+    }
+    if (hasElse && !this.getInput('ELSE')) {
+      this.appendDummyInput('ELSE').appendField(onBlock('else'));
+      this.appendStatementInput('OTHERWISE');
+    } else if (!hasElse && this.getInput('ELSE')) {
+      this.removeInput('ELSE');
+      this.removeInput('OTHERWISE');
+    }
+    if (this.getInput('MORE')) this.moveInputBefore('MORE', null);
+  },
+
+  /** @this {any} */
+  more() {
+    this.change(this.hasElse ? Math.min(this.arms + 1, MOST_ARMS) : this.arms, true);
+  },
+
+  /** @this {any} */
+  less() {
+    if (this.arms > 1) this.change(this.arms - 1, this.hasElse);
+    else this.change(1, false);
+  },
+
+  /** @this {any} @param {number} arms @param {boolean} hasElse */
+  change(arms, hasElse) {
+    const before = JSON.stringify(this.saveExtraState());
+    this.setArms(arms, hasElse);
+    const after = JSON.stringify(this.saveExtraState());
+    if (before !== after) {
+      Blockly.Events.fire(new (Blockly.Events.get(Blockly.Events.BLOCK_CHANGE))(this, 'mutation', null, before, after));
+    }
+  },
+
+  /** @this {any} */
+  init() {
+    this.setArms(1, false);
+    const buttons = this.appendDummyInput('MORE');
+    for (const [name, act] of [['more', () => this.more()], ['less', () => this.less()]]) {
+      const picture = new Blockly.FieldImage(`./${name}.svg`, 24, 24, tipOf(String(name)), /** @type {any} */ (act));
+      picture.setTooltip(tipOf(String(name)));
+      buttons.appendField(picture);
+    }
+    this.setInputsInline(true);
+    this.setPreviousStatement(true);
+    this.setNextStatement(true);
+    this.setStyle('control');
+    this.setTooltip(tipOf('if'));
+  },
+};
+
+/** Makes all kinds known, in the page's language. */
+export function defineBlocks() {
+  Blockly.Blocks['program'] = {
+    /** @this {Blockly.Block} */
+    init() {
+      this.appendDummyInput().appendField(options(['SI', 'SB', 'PING'].map((word) => [onBlock(word), word])), 'WORD');
+      this.setNextStatement(true);
+      this.setDeletable(false);
+      this.setMovable(false); // what is dragged is all that is seen
+      this.setStyle('program');
+      this.setTooltip(tipOf('program'));
+    },
+  };
+  for (const [kind, shape] of Object.entries(SHAPES)) {
+    Blockly.Blocks[kind] = kind === 'if' ? IF : {
+      /** @this {Blockly.Block} */
+      init() {
+        build(this, kind, shape);
+        this.setTooltip(tipOf(kind));
+        if (shape.field === 'sensor' || shape.field === 'actuator') this.setTooltip(() => deviceTip(this));
+      },
+    };
+  }
+}
+
+/** @param {Blockly.Block} block of a device */
+function deviceTip(block) {
+  const name = block.getFieldValue('WORD');
+  const device = [...devices('sensor'), ...devices('actuator')].find((each) => each.text === name);
+  const label = device && `${name}: ${called(device.labels)}${device.unit ? ` (${device.unit})` : ''}.`;
+  return [label, tipOf(block.type)].filter(Boolean).join(' ');
+}

@@ -1,0 +1,296 @@
+// The lessons beside the simulator: one step at a time, and at the end a check of the program.
+//
+// The check is that of the command, in the worker. It goes on a little at a time, so that it can be
+// ended and nothing else has to wait for it. Then the run that was judged is seen.
+
+import { element } from '../page/elements.js';
+import { elementOf, filled } from './page.js';
+import { keepDone, lessonsDone } from './progress.js';
+import { currentLanguage, text } from '../page/texts.js';
+
+/** @typedef {{name: string, title: string, robot: string, worlds: number}} Lesson */
+/** @typedef {{blocks: import('./page.js').Block[], hint: string}} Step */
+/** @typedef {{lesson: number, seed: number, until_ms: number}} JudgedRun */
+/**
+ * @typedef {object} Answer
+ * @property {'' | 'passed' | 'failed' | 'mistakes'} verdict
+ * @property {number} seed
+ * @property {number} worlds
+ * @property {string[]} said
+ * @property {{seed: number, until_ms: number} | null} run
+ */
+/**
+ * @typedef {object} Page what the lessons need of the page
+ * @property {import('../python.js').Python} python
+ * @property {() => string} program
+ * @property {(robot: string) => void} setRobot
+ * @property {(program: {text: string, robot: string}) => void} put another program into the editor
+ * @property {(lesson: number, seed: number, label: () => string) => Promise<void>} showWorld
+ * @property {(run: JudgedRun) => Promise<void>} play resolves when it has been seen, or was stopped
+ * @property {() => void} stop
+ * @property {(note: string) => void} tell
+ */
+
+/** What is said of each verdict, where a lesson has one world, and where it has several. */
+const SAID = /** @type {const} */ ({
+  passed: ['lesson_passed', 'lesson_passed_worlds'],
+  failed: ['lesson_failed', 'lesson_failed_world'],
+  mistakes: ['lesson_mistakes', 'lesson_mistakes'],
+});
+const ARCHIVE = 'lessons.zip'; // named where it cannot be fetched
+const BUSY_MS = 40; // of the worker's time for a part of a check
+const LEAST_MS = 20; // of the robot's time in a part, and the most
+const MOST_MS = 2000;
+
+export class Lessons {
+  #page;
+  /** @type {Lesson[]} */
+  #lessons = [];
+  #number = 1;
+  /** @type {Step[]} */
+  #steps = [];
+  #step = 0;
+  #checks = 0; // the newest one goes on; others have been ended
+  #asked = 0;
+  #isShown = false;
+  #choice = element('lesson', HTMLSelectElement);
+  #check = element('lesson_check', HTMLButtonElement);
+  #end = element('lesson_end', HTMLButtonElement);
+  #said = element('lesson_said', HTMLElement);
+  #findings = element('lesson_findings', HTMLElement);
+  #next = element('lesson_next', HTMLButtonElement);
+  #hint = element('lesson_hint', HTMLDetailsElement);
+  #hasPassed = false;
+  #isPlaying = false;
+
+  /** @param {Page} page */
+  constructor(page) {
+    this.#page = page;
+    element('side_lessons', HTMLButtonElement).addEventListener('click', () => this.#show());
+    this.#choice.addEventListener('change', () => {
+      this.#choose(Number(this.#choice.value)).catch((why) => this.#fail(why));
+    });
+    this.#check.addEventListener('click', () => this.#begin());
+    this.#end.addEventListener('click', () => {
+      if (this.#isPlaying) {
+        this.#page.stop(); // which shows the verdict
+        return;
+      }
+      this.#forget();
+      this.#said.textContent = text('lesson_ended');
+      this.#check.focus();
+    });
+    this.#next.addEventListener('click', () => {
+      if (this.#step < this.#steps.length - 1) this.#go(this.#step + 1);
+      else this.#choose(this.#number + 1).catch((why) => this.#fail(why));
+    });
+    this.#setReady(false);
+  }
+
+  setLanguage() {
+    if (this.#isShown) this.#fetch();
+  }
+
+  /** The program is another one: what was said of the one before is not of it. */
+  textChanged() {
+    if (this.#isShown) this.#forget();
+  }
+
+  #show() {
+    if (this.#isShown) {
+      if (this.#steps.length) this.#seeWorld(1);
+      return;
+    }
+    this.#isShown = true;
+    this.#fetch();
+  }
+
+  /** Ends a check and forgets what was said. */
+  #forget() {
+    this.#checks += 1;
+    this.#isPlaying = this.#hasPassed = false;
+    this.#end.hidden = true;
+    this.#end.textContent = text('lesson_end');
+    this.#lay();
+    this.#findings.replaceChildren();
+    delete this.#said.dataset['verdict'];
+    this.#said.textContent = '';
+    element('lesson_stars', HTMLElement).textContent = '';
+  }
+
+  /** @param {boolean} isReady */
+  #setReady(isReady) {
+    this.#choice.disabled = this.#check.disabled = this.#next.disabled = !isReady;
+  }
+
+  /** Fetches the names of the lessons and the page of the one that is chosen. */
+  async #fetch() {
+    const asked = ++this.#asked;
+    this.#said.textContent = text('lessons_coming');
+    const language = currentLanguage();
+    try {
+      const { lessons } = await this.#page.python.ask({ do: 'lesson_titles', language });
+      if (asked !== this.#asked) return;
+      this.#lessons = lessons;
+      this.#list();
+      await this.#choose(this.#number);
+    } catch (why) {
+      this.#isShown = false;
+      this.#setReady(false);
+      if (String(why).includes(ARCHIVE)) this.#said.textContent = text('lessons_unreachable');
+      else this.#fail(why);
+    }
+  }
+
+  #list() {
+    const done = lessonsDone();
+    this.#choice.replaceChildren(...this.#lessons.map((lesson, k) => {
+      const mark = done.has(lesson.name) ? ` ✓ ${text('lesson_is_done')}` : '';
+      return new Option(`${k + 1}. ${lesson.title}${mark}`, String(k + 1));
+    }));
+    this.#choice.value = String(this.#number);
+  }
+
+  /** @param {number} number */
+  async #choose(number) {
+    const asked = ++this.#asked;
+    const language = currentLanguage();
+    const isOther = number !== this.#number || !this.#steps.length;
+    this.#number = number;
+    this.#choice.value = String(number);
+    this.#forget();
+    const { steps } = await this.#page.python.ask({ do: 'lesson_steps', number, language });
+    if (asked !== this.#asked) return;
+    this.#steps = steps;
+    if (isOther) await this.#seeWorld(1);
+    this.#go(isOther ? 0 : this.#step);
+    this.#setReady(true);
+  }
+
+  /** Shows a step. @param {number} step */
+  #go(step) {
+    this.#step = step;
+    const place = element('lesson_page', HTMLElement);
+    const { blocks, hint } = /** @type {Step} */ (this.#steps[step]);
+    const { robot } = /** @type {Lesson} */ (this.#lessons[this.#number - 1]);
+    element('lesson_step', HTMLElement).replaceChildren(...blocks.map((block) => elementOf(block, (program) => {
+      this.#page.put({ text: program, robot });
+      this.#page.tell(text('lesson_used'));
+    })));
+    place.dataset['lesson'] = String(this.#number);
+    element('lesson_page', HTMLElement).scrollTop = 0;
+    this.#hint.open = false;
+    this.#hint.hidden = !hint;
+    element('lesson_hint_said', HTMLElement).replaceChildren(filled('span', hint));
+    element('lesson_steps', HTMLElement).replaceChildren(...this.#steps.map((_, k) => {
+      const row = document.createElement('li');
+      const button = document.createElement('button');
+      const isTask = k === this.#steps.length - 1;
+      button.type = 'button';
+      button.textContent = isTask ? '★' : String(k + 1);
+      button.ariaLabel = isTask ? text('lesson_task') : text('lesson_step', { number: k + 1 });
+      if (k === step) button.setAttribute('aria-current', 'step');
+      button.addEventListener('click', () => {
+        this.#go(k);
+        element('lesson_steps', HTMLElement).querySelectorAll('button')[k]?.focus();
+      });
+      row.append(button);
+      return row;
+    }));
+    this.#lay();
+  }
+
+  /** Which buttons there are. */
+  #lay() {
+    const isTask = this.#step === this.#steps.length - 1;
+    this.#check.hidden = !isTask || !this.#end.hidden;
+    this.#next.hidden = isTask && !(this.#hasPassed && this.#number < this.#lessons.length);
+    this.#next.textContent = text(isTask ? 'lesson_other' : 'lesson_next');
+  }
+
+  /** @param {number} seed */
+  async #seeWorld(seed) {
+    const { worlds, robot } = /** @type {Lesson} */ (this.#lessons[this.#number - 1]);
+    const values = { number: this.#number, seed };
+    this.#page.setRobot(robot);
+    await this.#page.showWorld(values.number, seed,
+      () => text(worlds > 1 ? 'world_of_lessons' : 'world_of_lesson', values));
+  }
+
+  async #begin() {
+    this.#forget();
+    const check = this.#checks;
+    const number = this.#number;
+    const program = new TextEncoder().encode(this.#page.program());
+    const { worlds } = /** @type {Lesson} */ (this.#lessons[number - 1]);
+    this.#end.hidden = false;
+    this.#lay();
+    this.#end.focus();
+    this.#said.textContent = text('lesson_checking', { seed: 1, worlds });
+    let most_ms = LEAST_MS;
+    try {
+      await this.#page.python.ask({ do: 'lesson_check', number, language: currentLanguage() }, program);
+      while (check === this.#checks) {
+        const began = performance.now();
+        /** @type {Answer} */
+        const answer = await this.#page.python.ask({ do: 'lesson_go', most_ms });
+        if (check !== this.#checks) return;
+        if (answer.verdict) {
+          if (answer.run) await this.#play(answer.run, answer.worlds);
+          if (check === this.#checks) this.#tell({ ...answer, verdict: answer.verdict });
+          return;
+        }
+        this.#said.textContent = text('lesson_checking', { seed: answer.seed, worlds });
+        const part = BUSY_MS / Math.max(1, performance.now() - began);
+        most_ms = Math.round(Math.min(MOST_MS, Math.max(LEAST_MS, most_ms * Math.min(4, part))));
+      }
+    } catch (why) {
+      if (check !== this.#checks) return;
+      this.#fail(why);
+    }
+  }
+
+  /** Shows what was judged, as far as it went well. @param {{seed: number, until_ms: number}} run @param {number} worlds */
+  async #play({ seed, until_ms }, worlds) {
+    const check = this.#checks;
+    this.#isPlaying = true;
+    this.#said.textContent = text('lesson_playing', { seed, worlds });
+    this.#end.textContent = text('lesson_skip');
+    await this.#seeWorld(seed);
+    if (check === this.#checks) await this.#page.play({ lesson: this.#number, seed, until_ms });
+  }
+
+  /** @param {unknown} why */
+  #fail(why) {
+    this.#forget();
+    this.#said.textContent = text('bug', { why: String(why).split('\n').filter(Boolean).at(-1) ?? '' });
+  }
+
+  /** @param {Answer & {verdict: keyof typeof SAID}} answer */
+  #tell({ verdict, seed, worlds, said }) {
+    const hadFocus = document.activeElement === this.#end;
+    const lesson = /** @type {Lesson} */ (this.#lessons[this.#number - 1]);
+    const isKept = verdict !== 'passed' || keepDone(lesson.name);
+    this.#forget();
+    this.#hasPassed = verdict === 'passed';
+    if (this.#hasPassed) this.#list();
+    this.#lay();
+    this.#said.dataset['verdict'] = verdict;
+    const [alone, inWorlds] = SAID[verdict];
+    const isInWorlds = worlds > 1 && (seed > 0 || verdict === 'passed');
+    this.#said.textContent = text(isInWorlds ? inWorlds : alone, { number: this.#number, worlds, seed });
+    if (verdict !== 'mistakes') { // one for each world where it did its task
+      const stars = verdict === 'passed' ? worlds : Math.max(0, seed - 1);
+      element('lesson_stars', HTMLElement).textContent = '★'.repeat(stars) + '☆'.repeat(worlds - stars);
+    }
+    this.#findings.replaceChildren(...said.map((sentence) => {
+      const row = document.createElement('li');
+      row.textContent = sentence;
+      return row;
+    }));
+    this.#hint.open = false;
+    element('lesson_page', HTMLElement).scrollTop = 0;
+    if (!isKept) this.#page.tell(text('not_kept'));
+    if (hadFocus) (this.#next.hidden ? this.#check : this.#next).focus();
+  }
+}

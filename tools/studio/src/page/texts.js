@@ -1,0 +1,91 @@
+// Every sentence of the page, in the language that is chosen. They come from the catalogues
+// `languages/*/studio.po`, of which the build makes a file for each language. What is said of programs
+// comes from the compiler.
+
+import languages from '../../made/languages.json';
+import { needLanguage } from './offline.js';
+
+/** @typedef {Exclude<keyof typeof import('../../made/texts.en.json'), ''>} Key */
+
+/** Code and name of each language. @type {[string, string][]} */
+export const LANGUAGES = /** @type {any} */ (languages);
+
+const SOURCE = LANGUAGES[0]?.[0] ?? ''; // what others fall back to
+
+let language = '';
+let wanted = '';
+/** A text, or its forms for numbers; which form is for which number has no key. @type {Record<string, string | string[]>} */
+let texts = {};
+
+/** @returns {string} */
+export function currentLanguage() {
+  return language;
+}
+
+/** @param {unknown} locale such as `pt-BR` @returns {string} the language to begin with */
+export function languageOf(locale) {
+  const code = String(locale).toLowerCase().split('-')[0];
+  return (LANGUAGES.find(([each]) => each === code) ?? [SOURCE])[0];
+}
+
+/** @param {string} chosen @returns {Promise<string>} the language that is seen now: without a connection it may be the one before */
+export async function setLanguage(chosen) {
+  wanted = chosen;
+  for (const code of [chosen, ...(language ? [] : LANGUAGES.map(([each]) => each))]) {
+    const found = await fetch(`./texts.${code}.json`).then((answer) => (answer.ok ? answer.json() : null)).catch(() => null);
+    if (chosen !== wanted) return language; // another one was chosen meanwhile
+    if (!found) continue;
+    texts = found;
+    language = code;
+    break;
+  }
+  needLanguage(language);
+  document.documentElement.lang = language;
+  for (const element of document.querySelectorAll('[data-text]')) {
+    element.textContent = text(known(element.getAttribute('data-text')));
+  }
+  for (const element of document.querySelectorAll('[data-label]')) {
+    const label = text(known(element.getAttribute('data-label')));
+    element.setAttribute('aria-label', label);
+    if (element instanceof HTMLButtonElement) element.title = label;
+  }
+  return language;
+}
+
+/** @param {string} key @returns {key is Key} */
+export function hasText(key) {
+  return Object.hasOwn(texts, key);
+}
+
+/** @param {unknown} key which is made of parts @returns {Key} */
+export function known(key) {
+  if (!hasText(String(key))) throw new Error(`no text ${key}`);
+  return /** @type {Key} */ (key);
+}
+
+/**
+ * @param {Key} key
+ * @param {Record<string, string | number>} values
+ * @returns {string}
+ */
+export function text(key, values = {}) {
+  const found = texts[known(key)] ?? '';
+  const said = typeof found === 'string' ? found : found[formOf(Number(values['count']))] ?? '';
+  return said.replace(/\{(\w+)\}/g, (gap, name) => (name in values ? String(values[name]) : gap));
+}
+
+/** @param {number} count @returns {number} which form of a text is for it: rules repeat after a hundred */
+function formOf(count) {
+  return Number(texts['']?.[count < 100 ? count : 100 + (count % 100)]);
+}
+
+/** @param {string} group of keys @returns {Record<string, string>} its texts as they are, by what follows in their keys */
+export function textsOf(group) {
+  const found = Object.entries(texts).filter(([key]) => key.startsWith(`${group}/`));
+  return Object.fromEntries(found.map(([key, said]) => [key.slice(group.length + 1), String(said)]));
+}
+
+/** @param {Record<string, string>} labels of a world, a robot or a device by language, or none @returns {string} what it is called */
+export function called(labels) {
+  return labels[language] ?? labels[SOURCE] ?? '';
+}

@@ -1,0 +1,73 @@
+// The words of the language and of each robot, for colors and completion. The table is
+// `description.json`, which is made from the compiler's own.
+
+import blocks from '../../made/blocks.json';
+import description from '../../made/description.json';
+import { called, hasText, text } from './texts.js';
+
+/** @typedef {{text: string, role: string, usage?: string, example: string}} Word */
+
+/** Words that stand for an instruction with its values. */
+export const FIXED = description.words.filter((word) => word.role === 'fixed');
+export const ROBOTS = description.robots;
+export const WORLDS = /** @type {import('../world/parts.js').World[]} */ (/** @type {unknown} */ (description.worlds));
+export const WORLD_LIMITS = description.world_limits;
+export const LINK = description.link;
+
+/** @type {Map<string, Map<string, Word>>} */
+const WORDS = new Map(
+  ROBOTS.map((robot) => [
+    robot.name,
+    new Map(
+      [...description.words, ...robot.devices].map((word) => [word.text, /** @type {Word} */ (word)]),
+    ),
+  ]),
+);
+
+let areShown = false;
+
+/** Whether the words of the text stand on blocks and at readings. @param {boolean} chosen */
+export function showWords(chosen) {
+  areShown = chosen;
+}
+
+/** @param {string} label with a word of the text: of `{IF} if %1` the rest, or `IF %1` @returns {string} */
+export function labelled(label) {
+  return areShown ? label.replace(/\{(\S+)\} (\1\b ?)?/i, '$1 ').trim() : label.replace(/\{\S+\} /, '');
+}
+
+/** @param {typeof ROBOTS[number]['devices'][number]} device @returns {string} */
+export function nameOf(device) {
+  return labelled(`{${device.text}} ${called(device.labels)}`);
+}
+
+/** @type {Record<string, {says: string}>} */
+const KINDS = blocks.kinds;
+
+/** @param {string} name of a kind of block, or of what may be chosen @returns {string} its words; `%1` and so on are where values go */
+export function onBlock(name) {
+  const key = `block/${name}`;
+  return labelled(hasText(key) ? text(key) : KINDS[name]?.says ?? '');
+}
+
+/** @param {string} name of a kind of block @returns {string} what it does, said when a pointer rests on it, or nothing */
+export function tipOf(name) {
+  const key = `tip/${name}`;
+  return hasText(key) ? text(key) : '';
+}
+
+/**
+ * @param {string} robot
+ * @returns {Map<string, Word>}
+ */
+export function wordsOf(robot) {
+  return WORDS.get(robot) ?? new Map();
+}
+
+/**
+ * @param {string} robot
+ * @returns {boolean}
+ */
+export function isRobot(robot) {
+  return WORDS.has(robot);
+}

@@ -1,0 +1,242 @@
+// The window with this person's programs: one is shared as a link or as a line of text, each with a
+// picture for a phone's camera, and earlier ones are opened again.
+
+import { correction, generate } from 'lean-qr';
+import { element } from '../page/elements.js';
+import { downloadFile } from '../page/files.js';
+import { linkOf, sharedIn } from './links.js';
+import { isAddress, keepPublic, publicAddress } from './public_address.js';
+import { reachOf } from './reach.js';
+import { isGiven } from '../start/beginnings.js';
+import { showInstead } from '../start/screens.js';
+import { called, currentLanguage, text } from '../page/texts.js';
+import { keepVersion, MOST_CHARACTERS, versions } from './versions.js';
+import { ROBOTS } from '../page/words.js';
+import { keep } from './work.js';
+
+/** @typedef {import('./versions.js').Version} Version */
+/** @typedef {import('./work.js').Work} Work */
+/** @typedef {{text: string} | {wrong: string}} Given what is shared, or why it is not */
+
+const MOST_PICTURED = 900; // bytes: a camera reads no picture with more from a screen
+const MARGIN = 4; // modules that must stay white around a code
+
+const LINK_TOLD = /** @type {const} */ ({ anywhere: 'share_link_anywhere', network: 'share_link_network', here: 'share_link_here' });
+
+export class Programs {
+  #window = element('programs', HTMLDialogElement);
+  #shared = element('shared', HTMLTextAreaElement);
+  #told = element('shared_told', HTMLElement);
+  #picture = element('shared_picture', HTMLCanvasElement);
+  #link = element('share_link', HTMLButtonElement);
+  #line = element('share_line', HTMLButtonElement);
+  #copy = element('copy', HTMLButtonElement);
+  #name = element('program_name', HTMLInputElement);
+  #public = element('public', HTMLInputElement);
+  #python;
+  #work;
+  #picturing;
+  #put;
+  #tell;
+  #asked = 0;
+
+  /**
+   * @param {import('../python.js').Python} python
+   * @param {Work} work
+   * @param {(program: {text: string, robot: string, name: string}) => void} put it into the editor
+   * @param {(note: string) => void} tell
+   * @param {() => Promise<Blob | null>} picturing the program's blocks, as a file
+   */
+  constructor(python, work, put, tell, picturing) {
+    this.#python = python;
+    this.#work = work;
+    this.#put = put;
+    this.#tell = tell;
+    this.#picturing = picturing;
+    element('my_programs', HTMLButtonElement).addEventListener('click', () => this.#open());
+    element('programs_close', HTMLButtonElement).addEventListener('click', () => this.#window.close());
+    // The page's own is behind this window.
+    element('programs_stop', HTMLButtonElement).addEventListener('click', () => element('stop', HTMLButtonElement).click());
+    element('new', HTMLButtonElement).addEventListener('click', () => {
+      this.replace({ text: '', robot: work.robot, name: '' });
+      this.#window.close();
+    });
+    this.#link.addEventListener('click', () => this.#share('link'));
+    this.#line.addEventListener('click', () => this.#share('line'));
+    element('share_picture', HTMLButtonElement).addEventListener('click', () => this.#savePicture());
+    this.#name.addEventListener('input', () => this.#rename());
+    this.#public.addEventListener('change', () => {
+      keepPublic(this.#public.value.trim());
+      this.#share('link');
+    });
+    this.#copy.addEventListener('click', () => this.#copyIt());
+    element('run', HTMLButtonElement).addEventListener('click', () => this.keep());
+    addEventListener('pagehide', () => this.keep());
+    document.addEventListener('visibilitychange', () => { // a phone ends a page without a word
+      if (document.hidden) this.keep();
+    });
+    addEventListener('hashchange', () => this.openLink());
+  }
+
+  /** Keeps what is in the editor among the earlier programs, unless the page has brought it. */
+  keep() {
+    if (isGiven(this.#work.text)) return;
+    if (!keepVersion(this.#work)) this.#tell(text(this.#work.text.length > MOST_CHARACTERS ? 'kept_too_long' : 'not_kept'));
+  }
+
+  /**
+   * Puts another program into the editor. The one before is kept, and undo brings it back, too.
+   * @param {{text: string, robot: string, name: string}} program
+   */
+  replace(program) {
+    this.keep();
+    this.#put(program);
+  }
+
+  /** Opens the program of the page's address, if there is one; it does not run. */
+  async openLink() {
+    let found;
+    try {
+      found = await sharedIn(location.hash);
+    } catch {
+      this.#tell(text('link_wrong'));
+    }
+    if (found === null) return;
+    showInstead();
+    if (!found) return;
+    this.replace({ ...found, name: '' });
+    this.#tell(text('link_opened'));
+  }
+
+  #open() {
+    this.keep();
+    this.#showVersions();
+    this.#name.value = this.#work.name.replace(/\.\w+$/, '');
+    this.#public.value = publicAddress();
+    this.#window.showModal();
+    this.#share('link');
+  }
+
+  /** Gives the program another name; its file gets it, too. */
+  #rename() {
+    const name = this.#name.value.replace(/[\\/:*?"<>|\u0000-\u001f]/g, '').trim();
+    this.#work.name = name && `${name}.ts`;
+    keep(this.#work);
+    this.keep();
+    this.#showVersions();
+  }
+
+  /** @param {'link' | 'line'} how */
+  async #share(how) {
+    const asked = ++this.#asked; // only what was asked last is shown
+    this.#link.setAttribute('aria-pressed', String(how === 'link'));
+    this.#line.setAttribute('aria-pressed', String(how === 'line'));
+    this.#show({ text: '' }, '');
+    let given;
+    try {
+      given = how === 'link' ? await this.#asLink() : await this.#asLine();
+    } catch (why) {
+      given = { wrong: text('bug', { why: String(why).split('\n').filter(Boolean).at(-1) ?? '' }) };
+    }
+    const told = how === 'line' ? 'share_line_told' : LINK_TOLD[reachOf(this.#address)];
+    if (asked === this.#asked) this.#show(given, text(told));
+  }
+
+  /** Where others find the page. */
+  get #address() {
+    const kept = publicAddress();
+    return isAddress(kept) ? kept : location.href;
+  }
+
+  /** @returns {Promise<Given>} */
+  async #asLink() {
+    if (publicAddress() && !isAddress(publicAddress())) return { wrong: text('public_wrong') };
+    const link = await linkOf(this.#work, this.#address);
+    return link === null ? { wrong: text('link_too_long') } : { text: link };
+  }
+
+  /** @returns {Promise<Given>} */
+  async #asLine() {
+    const request = { do: 'line', robot: this.#work.robot, language: currentLanguage() };
+    const answer = await this.#python.ask(request, new TextEncoder().encode(this.#work.text));
+    if (answer.text !== undefined) return { text: answer.text };
+    return { wrong: [answer.message, answer.fix && `${text('try')} ${answer.fix}`].filter(Boolean).join(' ') };
+  }
+
+  /**
+   * @param {Given} given
+   * @param {string} told
+   */
+  #show(given, told) {
+    const shared = 'text' in given ? given.text : '';
+    const isPictured = shared !== '' && new TextEncoder().encode(shared).length <= MOST_PICTURED;
+    this.#shared.value = shared;
+    this.#shared.hidden = shared === '';
+    this.#copy.hidden = shared === '' || !navigator.clipboard; // which plain http has not
+    this.#told.textContent = 'wrong' in given ? given.wrong
+      : shared && !isPictured ? `${told} ${text('no_picture')}` : told;
+    this.#picture.hidden = !isPictured;
+    if (isPictured) {
+      generate(shared, { minCorrectionLevel: correction.L })
+        .toCanvas(this.#picture, { padX: MARGIN, padY: MARGIN, on: [0, 0, 0, 255], off: [255, 255, 255, 255] });
+    }
+    this.#window.dataset['shared'] = 'wrong' in given ? 'wrong' : shared ? 'done' : 'asked';
+  }
+
+  async #savePicture() {
+    const name = (this.#work.name || text('file_name')).replace(/\.\w+$/, '') + '.png';
+    let file = null;
+    try {
+      file = await this.#picturing();
+    } catch {
+      // said below
+    }
+    if (file) downloadFile(name, file);
+    this.#told.textContent = file ? text('saved', { name }) : text('share_picture_not');
+  }
+
+  async #copyIt() {
+    this.#shared.focus();
+    this.#shared.select();
+    try {
+      await navigator.clipboard.writeText(this.#shared.value);
+      this.#told.textContent = text('copied');
+    } catch {
+      this.#told.textContent = text('copy_by_hand'); // it is selected
+    }
+  }
+
+  #showVersions() {
+    const language = currentLanguage();
+    const time = new Intl.DateTimeFormat(language, { dateStyle: 'short', timeStyle: 'short' });
+    const rows = versions().map((version) => {
+      const row = document.createElement('li');
+      const when = document.createElement('time');
+      const what = document.createElement('code');
+      const open = document.createElement('button');
+      const at = new Date(version.at_ms);
+      when.dateTime = at.toISOString();
+      when.textContent = time.format(at);
+      what.textContent = beginOf(version);
+      open.type = 'button';
+      open.textContent = text('open_again');
+      open.setAttribute('aria-label', text('open_again_from', { time: when.textContent }));
+      open.addEventListener('click', () => {
+        this.replace(version);
+        this.#window.close();
+        this.#tell(text('opened_again', { time: String(when.textContent) }));
+      });
+      const robot = document.createElement('span');
+      robot.textContent = called(ROBOTS.find((each) => each.name === version.robot)?.labels ?? {}) || version.robot;
+      row.append(when, robot, what, open);
+      return row;
+    });
+    element('versions', HTMLElement).replaceChildren(...rows);
+  }
+}
+
+/** @param {Version} version */
+function beginOf({ name, text: whole }) {
+  const begin = whole.trim().split('\n', 3).join(' ');
+  return (name ? `${name}: ` : '') + (begin.length > 60 ? `${begin.slice(0, 60)}…` : begin);
+}

@@ -1,0 +1,142 @@
+// Records what a robot tells of a run, saves it, and compares it with the virtual robot.
+//
+// The form of a recording is that of `recordings.py`, which reads it.
+
+import { element } from '../page/elements.js';
+import { bytesOf, download } from '../page/files.js';
+import { currentLanguage, known, text } from '../page/texts.js';
+
+/** @typedef {import('./way.js').RobotEvent} RobotEvent */
+/** @typedef {{ms: number, event: string}} Recorded */
+
+const VERSION = 1;
+const MOST = 10_000; // events; then it is over
+const MOST_MS = 600_000;
+
+export class Recorder {
+  #page;
+  #said = () => ''; // so that it can be said in another language
+  #program = '';
+  /** When what is recorded began; null until the first event of a run by the robot's button. @type {number | null} */
+  #began = null;
+  #isOver = true;
+  /** @type {Recorded[]} */
+  #events = [];
+  #save = element('record_save', HTMLButtonElement);
+  #compare = element('record_compare', HTMLButtonElement);
+
+  /**
+   * @param {{python: import('../python.js').Python, text: () => string, robot: () => string, world: () => unknown}} page
+   */
+  constructor(page) {
+    this.#page = page;
+    const file = element('record_file', HTMLInputElement);
+    this.#save.addEventListener('click', () => download(text('record_name'), this.#whole()));
+    this.#compare.addEventListener('click', () => this.#replay(new TextEncoder().encode(this.#whole())));
+    element('record_open', HTMLButtonElement).addEventListener('click', () => file.click());
+    file.addEventListener('change', async () => {
+      const chosen = file.files?.[0];
+      file.value = '';
+      if (!chosen) return;
+      try {
+        this.#replay(await bytesOf(chosen));
+      } catch {
+        this.#tell(() => text('unreadable'));
+      }
+    });
+    this.#show();
+  }
+
+  setLanguage() {
+    element('record_said', HTMLElement).textContent = this.#said();
+  }
+
+  /** @param {() => string} said */
+  #tell(said) {
+    this.#said = said;
+    this.setLanguage();
+  }
+
+  /** A program waits for the robot's button: no robot tells when it begins. @param {string} program its checksum, in hexadecimal */
+  wait(program) {
+    this.#record(program, null);
+  }
+
+  /** The recording is over, if there is one. @param {string} event the last one */
+  end(event) {
+    if (this.#isOver) return;
+    this.#events.push({ ms: Math.min(this.#ms, MOST_MS), event });
+    this.#isOver = true;
+    this.#show();
+  }
+
+  /** @param {RobotEvent} event */
+  hear(event) {
+    if (event.event === 'STARTED') {
+      if (event.is_program && event.program) this.#record(event.program, performance.now());
+      else this.end('STOPPED');
+    }
+    const said = { SHOW: `SHOW ${event.value}`, DONE: 'DONE', FAULT: `FAULT ${event.fault}`, STOPPED: 'STOPPED', RESTARTED: 'LOST', LOST: 'LOST', MISSED: 'MISSED' }[event.event];
+    if (!said || this.#isOver) return;
+    this.#began ??= performance.now();
+    if (event.event !== 'SHOW') this.end(said);
+    else if (this.#events.length >= MOST || this.#ms > MOST_MS) this.end('STOPPED');
+    else this.#events.push({ ms: this.#ms, event: said });
+    this.#show();
+  }
+
+  /**
+   * @param {string} program
+   * @param {number | null} began
+   */
+  #record(program, began) {
+    this.#program = program;
+    this.#began = began;
+    this.#events = [];
+    this.#isOver = false;
+    this.#show();
+  }
+
+  get #ms() {
+    return this.#began === null ? 0 : Math.round(performance.now() - this.#began);
+  }
+
+  /** The file; of a run that goes on, what there is. */
+  #whole() {
+    const head = { tiniscript_recording: VERSION, program: this.#program, robot: this.#page.robot() };
+    const end = this.#isOver ? [] : [{ ms: Math.min(this.#ms, MOST_MS), event: 'STOPPED' }];
+    return [head, ...this.#events, ...end].map((row) => `${JSON.stringify(row)}\n`).join('');
+  }
+
+  #show() {
+    this.#save.disabled = this.#compare.disabled = !this.#events.length;
+  }
+
+  /** @param {Uint8Array} data a recording */
+  async #replay(data) {
+    this.#tell(() => text('record_comparing'));
+    const { python, text: program, robot, world } = this.#page;
+    try {
+      const request = { do: 'replay', robot: robot(), world: world(), text: program(), language: currentLanguage() };
+      const found = await python.ask(request, data);
+      this.#tell(() => said(found));
+    } catch (why) {
+      this.#tell(() => text('bug', { why: String(why).split('\n').filter(Boolean).at(-1) ?? '' }));
+    }
+  }
+}
+
+/** @param {{what: string, said?: string, agreed?: number, line: number, robot?: Recorded | null, virtual?: Recorded | null}} found */
+function said({ what, said = '', agreed = 0, line, robot, virtual }) {
+  if (what === 'refused') return said;
+  const place = line ? text('line', { line }) : text('record_end');
+  return text(known(`record_${what}`), { count: agreed, line, place, robot: told(robot), virtual: told(virtual) });
+}
+
+/** @param {Recorded | null | undefined} event */
+function told(event) {
+  if (!event) return '';
+  const seconds = (event.ms / 1000).toFixed(1);
+  const what = event.event.startsWith('SHOW ') ? event.event.slice('SHOW '.length) : event.event;
+  return text('record_at', { what, seconds });
+}

@@ -1,0 +1,277 @@
+// Draws a world and the robot in it. Knows shapes; what a robot does, the firmware decides.
+
+import { drawRobot } from './robot_drawing.js';
+import { dot, path } from '../page/shapes.js';
+import { ROBOTS, WORLDS } from '../page/words.js';
+import { drawWorld } from '../world/floor.js';
+
+/** @typedef {import('../python.js').RobotState} RobotState */
+/** @typedef {import('../world/parts.js').World} World */
+/** @typedef {import('../world/parts.js').Place} Place */
+/** @typedef {{points: Place[], point: number, handle: Place | null}} Mark the points that can be taken, which one is, and what turns it */
+/** @typedef {import('../world/floor.js').Goal} Goal */
+/** @typedef {import('../page/shapes.js').Pen} Pen */
+
+const MARGIN_CM = 4;
+const FINGER = 22; // pixels that a finger may miss
+const MOST_POINTS = 5000; // of a way
+const MOST_WAYS = 4; // of runs before, which are pale
+const SHAKE_MS = 240;
+const SAID_MS = 2500; // of the robot's time, for what it shows
+
+export class Arena {
+  #canvas;
+  #pen;
+  /** The world and the ways, which stay the same from one picture to the next. */
+  #floor = document.createElement('canvas');
+  #isFloorDrawn = false;
+  #wayDrawn = 0; // points of the newest way that are on the floor
+  #world = WORLDS[0];
+  #robot = ROBOTS[0];
+  /** @type {Goal[]} */
+  #goals = [];
+  /** What its pen has drawn, the newest run last. @type {[number, number][][]} */
+  #ways = [[]];
+  /** How far each wheel has turned, in cm. @type {[number, number]} */
+  #rolled = [0, 0];
+  #seen_ms = 0; // of the robot's time
+  #beeps_until_ms = 0;
+  #taken = 0; // flags
+  /** What it has shown last, and when. @type {[string, number]} */
+  #said = ['', 0];
+  #scale = 1; // pixels of the canvas for a centimetre
+  /** What is chosen to be changed. @type {Mark | null} */
+  #mark = null;
+
+  /** @param {HTMLCanvasElement} canvas */
+  constructor(canvas) {
+    this.#canvas = canvas;
+    this.#pen = penOf(canvas);
+  }
+
+  /** Takes the size that the canvas has on the page. */
+  resize() {
+    const ratio = window.devicePixelRatio || 1;
+    const width = Math.max(1, Math.round(this.#canvas.clientWidth * ratio));
+    const height = Math.max(1, Math.round(this.#canvas.clientHeight * ratio));
+    for (const each of [this.#canvas, this.#floor]) Object.assign(each, { width, height });
+    this.#isFloorDrawn = false;
+  }
+
+  /**
+   * Begins again. What its pen has drawn in this world stays there.
+   * @param {World} world
+   * @param {string} robot
+   * @param {Goal[]} goals where a task leads
+   */
+  begin(world, robot, goals) {
+    if (world !== this.#world || robot !== this.#robot?.name) this.#ways = [];
+    this.#world = world;
+    this.#goals = goals;
+    this.#robot = ROBOTS.find((each) => each.name === robot) ?? ROBOTS[0];
+    this.#ways = [...this.#ways.filter((way) => way.length > 1), []].slice(-1 - MOST_WAYS);
+    this.#rolled = [0, 0];
+    this.#seen_ms = this.#beeps_until_ms = 0;
+    this.#taken = 0;
+    this.#said = ['', 0];
+    this.#isFloorDrawn = false;
+  }
+
+  /** Takes what its pen has drawn off the floor. */
+  eraseWays() {
+    this.#ways = [[]];
+    this.#isFloorDrawn = false;
+  }
+
+  /**
+   * Goes on to a newer state.
+   * @param {RobotState} state
+   */
+  follow(state) {
+    const [x, y] = state.pose;
+    const way = this.#ways.at(-1) ?? [];
+    const last = way.at(-1);
+    if (!last || Math.hypot(last[0] - x, last[1] - y) > 0.5) way.push([x, y]);
+    const taken = state.score?.taken ?? 0;
+    if (taken !== this.#taken) this.#isFloorDrawn = false;
+    if (way.length > MOST_POINTS) {
+      way.splice(0, MOST_POINTS / 2);
+      this.#isFloorDrawn = false;
+    }
+    const passed_s = Math.max(0, state.now_ms - this.#seen_ms) / 1000;
+    const full = (this.#robot?.speed_cm_s ?? 0) / 100;
+    this.#seen_ms = state.now_ms;
+    this.#taken = taken;
+    this.#rolled[0] += state.motors[0] * full * passed_s;
+    this.#rolled[1] += state.motors[1] * full * passed_s;
+  }
+
+  /** @param {number} until_ms of the robot's time */
+  showBeep(until_ms) {
+    this.#beeps_until_ms = until_ms;
+  }
+
+  /** @param {string} what @param {number} at_ms of the robot's time */
+  say(what, at_ms) {
+    this.#said = [what, at_ms];
+  }
+
+  /** Shakes the picture, unless this person wants nothing to move. */
+  shake() {
+    if (matchMedia('(prefers-reduced-motion: reduce)').matches || this.#canvas.getAnimations().length) return;
+    const ways = ['0 0', '5px 2px', '-5px -2px', '3px -1px', '0 0'];
+    this.#canvas.animate(ways.map((translate) => ({ translate })), SHAKE_MS);
+  }
+
+  /** @param {Mark | null} mark */
+  mark(mark) {
+    if (Boolean(mark) !== Boolean(this.#mark)) this.#isFloorDrawn = false; // a grid
+    this.#mark = mark;
+  }
+
+  /**
+   * Returns the place on the floor under a finger, and how far it may miss.
+   * @param {PointerEvent} event
+   * @returns {{place: Place, reach_cm: number}}
+   */
+  floorAt(event) {
+    const box = this.#canvas.getBoundingClientRect();
+    const scale = this.#scale / (window.devicePixelRatio || 1);
+    const { width_cm, height_cm } = this.#world ?? { width_cm: 0, height_cm: 0 };
+    return {
+      place: [(event.clientX - box.left - box.width / 2) / scale + width_cm / 2, (box.top + box.height / 2 - event.clientY) / scale + height_cm / 2],
+      reach_cm: FINGER / scale,
+    };
+  }
+
+  /** @param {RobotState | null} state */
+  draw(state) {
+    const world = this.#world;
+    if (!world) return;
+    const { width, height } = this.#canvas;
+    this.#scale = Math.min(
+      width / (world.width_cm + 2 * MARGIN_CM),
+      height / (world.height_cm + 2 * MARGIN_CM),
+    );
+    this.#drawFloor(world);
+    const pen = this.#pen;
+    pen.setTransform(1, 0, 0, 1, 0, 0);
+    pen.clearRect(0, 0, width, height);
+    pen.drawImage(this.#floor, 0, 0);
+    this.#measure(pen, world);
+    const { start } = world;
+    const [x, y, heading] = state?.pose ?? [start.x_cm, start.y_cm, start.heading];
+    this.#drawBody(x, y, heading, state);
+    this.#drawMark();
+  }
+
+  /** Draws what is new on the floor, or all of it where it has become another one. @param {World} world */
+  #drawFloor(world) {
+    const pen = penOf(this.#floor);
+    if (!this.#isFloorDrawn) {
+      pen.setTransform(1, 0, 0, 1, 0, 0);
+      pen.clearRect(0, 0, this.#floor.width, this.#floor.height);
+      this.#measure(pen, world);
+      drawWorld(pen, world, this.#goals, this.#taken, this.#mark !== null);
+      for (const way of this.#ways.slice(0, -1)) path(pen, way, '#bcd2ea', 1);
+      this.#wayDrawn = 0;
+      this.#isFloorDrawn = true;
+    }
+    const way = this.#ways.at(-1) ?? [];
+    if (way.length > this.#wayDrawn) path(pen, way.slice(Math.max(0, this.#wayDrawn - 1)), '#2f74c0', 1);
+    this.#wayDrawn = way.length;
+  }
+
+  /** Centimetres from the lower left corner of the floor; y goes up. @param {Pen} pen @param {World} world */
+  #measure(pen, { width_cm, height_cm }) {
+    const { width, height } = this.#canvas, scale = this.#scale;
+    pen.lineCap = pen.lineJoin = 'round';
+    pen.setTransform(scale, 0, 0, -scale, (width - width_cm * scale) / 2, (height + height_cm * scale) / 2);
+  }
+
+  /**
+   * @param {number} x
+   * @param {number} y
+   * @param {number} heading
+   * @param {RobotState | null} state null of a robot that is off
+   */
+  #drawBody(x, y, heading, state) {
+    const robot = this.#robot;
+    if (!robot) return;
+    const pen = this.#pen;
+    pen.save();
+    pen.translate(x, y);
+    pen.rotate((heading * Math.PI) / 180);
+    const isBeeping = state !== null && state.is_running && state.now_ms < this.#beeps_until_ms;
+    drawRobot(pen, robot, state, { rolled: this.#rolled, isBeeping });
+    pen.restore();
+    if (state?.touches) this.#drawStar(...state.touches);
+    const [what, at_ms] = this.#said;
+    if (what && state && (!state.is_running || state.now_ms - at_ms < SAID_MS)) this.#drawSaid(x, y, what);
+  }
+
+  /** A bubble beside the robot, inside the picture. @param {number} x @param {number} y @param {string} what */
+  #drawSaid(x, y, what) {
+    const pen = this.#pen;
+    const { a: scale, e: left, f: bottom } = pen.getTransform();
+    const size = 15 * (window.devicePixelRatio || 1);
+    pen.save();
+    pen.setTransform(1, 0, 0, 1, 0, 0);
+    pen.font = `600 ${size}px system-ui, sans-serif`;
+    const width = pen.measureText(what).width + size, height = 1.6 * size;
+    const [robot_x, robot_y] = [left + x * scale, bottom - y * scale];
+    const from_x = Math.max(2, Math.min(robot_x + 0.5 * size, this.#canvas.width - width - 2));
+    const isBelow = robot_y - 12 * scale - height < 2;
+    const from_y = isBelow ? robot_y + 12 * scale : robot_y - 12 * scale - height;
+    pen.beginPath();
+    pen.roundRect(from_x, from_y, width, height, 0.5 * size);
+    pen.fillStyle = '#fff';
+    pen.strokeStyle = '#123b63';
+    pen.lineWidth = size / 8;
+    pen.fill();
+    pen.stroke();
+    pen.fillStyle = '#123b63';
+    pen.fillText(what, from_x + 0.5 * size, from_y + 1.15 * size);
+    pen.restore();
+  }
+
+  /** Where it touches something. @param {number} x @param {number} y */
+  #drawStar(x, y) {
+    const points = Array.from({ length: 16 }, (_, k) => {
+      const angle = (k * Math.PI) / 8, far = k % 2 ? 2.4 : 6;
+      return [x + far * Math.cos(angle), y + far * Math.sin(angle)];
+    });
+    path(this.#pen, points, '#a8200f', 0.6, true);
+    this.#pen.fillStyle = '#ffd84d';
+    this.#pen.fill();
+  }
+
+  #drawMark() {
+    const mark = this.#mark;
+    if (!mark) return;
+    const pen = this.#pen;
+    path(pen, mark.points, '#b0186b', 0.6);
+    const radius = (7 * (window.devicePixelRatio || 1)) / this.#scale;
+    const [middle] = mark.points, { handle } = mark;
+    if (handle && middle) {
+      path(pen, [middle, handle], '#b0186b', 0.6);
+      dot(pen, ...handle, radius * 1.3, '#b0186b');
+      pen.beginPath();
+      pen.arc(...handle, radius * 0.7, 0.6, 5.4);
+      pen.strokeStyle = '#fff';
+      pen.lineWidth = radius / 4;
+      pen.stroke();
+    }
+    mark.points.forEach(([x, y], k) => {
+      dot(pen, x, y, radius, '#fff');
+      dot(pen, x, y, radius * 0.75, mark.point < 0 || k === mark.point ? '#b0186b' : '#7c8894');
+    });
+  }
+}
+
+/** @param {HTMLCanvasElement} canvas @returns {Pen} */
+function penOf(canvas) {
+  const pen = canvas.getContext('2d');
+  if (!pen) throw new Error('no canvas');
+  return pen;
+}

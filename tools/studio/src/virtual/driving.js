@@ -1,0 +1,505 @@
+// The part of the page with the virtual robot: its buttons, its picture and what is told of it.
+
+import { Arena } from './arena.js';
+import { element, say } from '../page/elements.js';
+import { faultSaid } from '../page/faults.js';
+import { download } from '../page/files.js';
+import { offsetsOf, rangeAt } from '../writing/parts.js';
+import { Plot } from './plot.js';
+import { Simulator } from './simulator.js';
+import { Sounds } from './sounds.js';
+import { hasText, text } from '../page/texts.js';
+import { nameOf, onBlock, ROBOTS } from '../page/words.js';
+import { OWN_WORLD } from '../programs/work.js';
+import { WorldChoice } from '../world/choice.js';
+import { starsShown, Where } from './where.js';
+import { WorldDrawing } from '../world/drawing.js';
+
+/** @typedef {import('../python.js').Checked} Checked */
+/** @typedef {import('../programs/work.js').Work} Work */
+
+const SHOWN = 200; // lines of the trace
+const READ_MS = 100; // nobody reads what changes more often
+const SHORT = 12; // characters of a name whose value stands beside another one
+const PLAYED_MS = 6000; // at most for a run of a lesson
+/** What of a run is seen, by the button that shows it. */
+const SEEN = { seen_arena: 'arena', seen_plot: 'plot_place', seen_trace: 'trace_place' };
+
+export class Driving {
+  #editor;
+  #work;
+  #program;
+  #whenCompiled;
+  #starts = 0; // one that STOP or a newer one has overtaken does nothing
+  #isWaiting = false; // for the compiler
+  #seenRun = () => {}; // the run of a lesson is over
+  #python;
+  #simulator;
+  #arena = new Arena(element('arena', HTMLCanvasElement));
+  #plot = new Plot(element('plot', HTMLCanvasElement));
+  #sounds = new Sounds();
+  #where = new Where();
+  #bumps = 0; // that were seen
+  #shown = ''; // what SHOW has shown last
+  #wasStopped = false;
+  #note = '';
+  #told = ''; // of the trace
+  #shown_ms = 0; // when all was shown last
+  /** @type {Checked['places']} */
+  #places = [];
+  /** Offsets at which the program that runs stops, for each breakpoint. @type {Map<object, number[]>} */
+  #stops = new Map();
+  /** @type {Checked['variables']} */
+  #variables = [];
+  #run = element('run', HTMLButtonElement);
+  #pause = element('pause', HTMLButtonElement);
+  #push = element('push', HTMLButtonElement);
+  #world;
+  #drawing;
+  /** While a finger moves a part. @type {import('../world/parts.js').World | null} */
+  #preview = null;
+  #restored;
+  #remember;
+
+  /**
+   * @param {import('../python.js').Python} python
+   * @param {import('../writing/views.js').Views} editor where the line that runs is marked
+   * @param {Work} work
+   * @param {() => Checked | null} program what the compiler says of the newest text; null while it is at work
+   * @param {() => Promise<Checked | null>} whenCompiled the same, when it is done; null if it cannot say
+   * @param {() => void} remember
+   */
+  constructor(python, editor, work, program, whenCompiled, remember) {
+    this.#editor = editor;
+    this.#work = work;
+    this.#program = program;
+    this.#whenCompiled = whenCompiled;
+    this.#python = python;
+    this.#remember = remember;
+    this.#world = new WorldChoice(python, work, () => this.#enter());
+    this.#simulator = new Simulator(python, (state) => {
+      if (state) this.#keep(state);
+      const isSame = document.documentElement.dataset['phase'] === 'running' && this.#simulator.phase === 'running';
+      if (state && isSame && performance.now() - this.#shown_ms < READ_MS) this.#arena.draw(state);
+      else this.#show();
+    });
+    this.#drawing = new WorldDrawing(python, this.#arena, {
+      world: () => this.#shapes,
+      isOwn: () => this.#world.isOwn,
+      keepOwn: () => this.#world.keepOwn(),
+      write: (world) => this.#world.write(world),
+      robot: () => {
+        const [x, y] = this.#simulator.state?.pose ?? [this.#shapes.start.x_cm, this.#shapes.start.y_cm];
+        return [x, y];
+      },
+      isDriving: () => this.#isDriving,
+      rest: () => {
+        this.#rest();
+        this.#choose('seen_arena');
+      },
+      put: (world, isOther) => {
+        this.#preview = null;
+        this.#world.putOwn(world, isOther);
+        remember();
+        this.#rest();
+      },
+      preview: (world) => {
+        this.#preview = world;
+        this.#rest();
+      },
+      tell: () => this.#show(),
+    });
+    this.#run.addEventListener('click', () => this.#start(false));
+    this.#pause.addEventListener('click', () => {
+      if (this.#simulator.phase === 'paused') this.#simulator.goOn();
+      else this.#pauseIt();
+    });
+    element('step', HTMLButtonElement).addEventListener('click', () => {
+      if (this.#simulator.phase === 'running') this.#pauseIt();
+      else if (this.#simulator.phase === 'paused') this.#simulator.step();
+      else this.#start(true);
+    });
+    this.#push.addEventListener('click', () => this.#simulator.push());
+    element('stop', HTMLButtonElement).addEventListener('click', () => this.#stop());
+    addEventListener('keydown', (event) => {
+      if (event.key === 'Escape') this.#stop();
+    }, { capture: true });
+    const speed = element('speed', HTMLSelectElement);
+    speed.addEventListener('change', () => {
+      this.#simulator.speed = Number(speed.value);
+    });
+    element('save_trace', HTMLButtonElement).addEventListener('click', () => {
+      download(text('trace_name'), this.#simulator.trace.map((line) => `${line}\n`).join(''));
+    });
+    for (const each of Object.keys(SEEN)) element(each, HTMLButtonElement).addEventListener('click', () => this.#choose(each));
+    const sound = element('sound', HTMLButtonElement);
+    const hear = () => {
+      this.#sounds.mute(!work.sound);
+      sound.setAttribute('aria-pressed', String(work.sound));
+    };
+    sound.addEventListener('click', () => {
+      work.sound = !work.sound;
+      hear();
+      remember();
+    });
+    hear();
+    element('erase_ways', HTMLButtonElement).addEventListener('click', () => {
+      this.#arena.eraseWays();
+      this.#show();
+    });
+    new ResizeObserver(() => this.#plot.draw()).observe(element('plot_place', HTMLElement));
+    new ResizeObserver(() => {
+      this.#arena.resize();
+      this.#arena.draw(this.#simulator.state);
+    }).observe(element('arena', HTMLCanvasElement));
+    this.setLanguage();
+    this.begin();
+    this.#restored = this.#restore();
+  }
+
+  get #shapes() {
+    return this.#preview ?? this.#world.shapes;
+  }
+
+  /** Runs the program in a shipped world; resolves once the robot is on. @param {string} world */
+  async run(world) {
+    this.#world.choose(world);
+    this.#enter();
+    await this.#start(false);
+  }
+
+  /**
+   * Shows the run of a lesson that was judged; resolves when it is over, or another one begins.
+   * @param {import('../lesson/lessons.js').JudgedRun} run
+   */
+  async play(run) {
+    const isStill = matchMedia('(prefers-reduced-motion: reduce)').matches;
+    await this.#start(false, run, isStill ? run.until_ms : run.until_ms / PLAYED_MS);
+    if (this.#isDriving) await new Promise((resolve) => { this.#seenRun = () => resolve(undefined); });
+  }
+
+  stop() {
+    this.#stop();
+  }
+
+  get #isDriving() {
+    const { phase } = this.#simulator;
+    return phase === 'running' || phase === 'paused';
+  }
+
+  setLanguage() {
+    this.#world.setLanguage();
+    this.#drawing.setLanguage();
+    this.#show();
+  }
+
+  /** Shows the robot from above, or its values, or what it has done. @param {string} chosen a button */
+  #choose(chosen) {
+    for (const [each, place] of Object.entries(SEEN)) {
+      element(each, HTMLButtonElement).setAttribute('aria-pressed', String(each === chosen));
+      element(place, HTMLElement).hidden = each !== chosen;
+    }
+    this.#show();
+  }
+
+  /** What the worker is asked for to have the world that is shown. */
+  get world() {
+    return this.#world.request;
+  }
+
+  /** Another world has been chosen. */
+  #enter() {
+    this.#remember();
+    this.begin();
+  }
+
+  /**
+   * Shows a world of a lesson.
+   * @param {number} number
+   * @param {number} seed
+   * @param {() => string} label
+   */
+  async showLesson(number, seed, label) {
+    const { world, goals } = await this.#python.ask({ do: 'lesson_world', number, seed });
+    this.#world.bring({ request: { lesson: number, seed }, shapes: world, label, goals });
+    this.begin();
+    this.#choose('seen_arena');
+  }
+
+  /** Another robot or world: what drove there has ended. */
+  begin() {
+    this.#drawing.letGo();
+    this.#preview = null;
+    this.#rest();
+    this.#drawing.forget();
+  }
+
+  #pauseIt() {
+    this.#sounds.silence();
+    this.#simulator.pause();
+  }
+
+  /** Stops, and switches off. */
+  #rest() {
+    this.#stop();
+    this.#simulator.leave();
+    this.#plot.begin();
+    this.#variables = [];
+    this.#arena.begin(this.#shapes, this.#work.robot, this.#world.goals);
+    this.#show();
+  }
+
+  /** Brings the worlds back that were drawn here; none is drawn before, for it would take their place. */
+  async #restore() {
+    try {
+      const isWhole = await this.#world.restoreOwn();
+      if (this.#work.world !== OWN_WORLD) return;
+      if (!isWhole) this.#note = text('world_lost');
+      this.begin();
+    } catch {
+      // the page says that there is no compiler
+    } finally {
+      this.#drawing.allow();
+    }
+  }
+
+  /** The text has changed: what runs is no longer what is seen. */
+  forgetPlaces() {
+    this.#places = [];
+    this.#show();
+  }
+
+  /** The program is to stop elsewhere. */
+  breakpointsChanged() {
+    this.#editor.showBreakpoints();
+    const before = this.#offsets.join();
+    this.#findStops();
+    if (this.#offsets.join() !== before) this.#simulator.setBreakpoints(this.#offsets);
+  }
+
+  /** After a change of the text those remain whose breakpoints are still there. */
+  #findStops() {
+    const points = this.#editor.breakpoints;
+    this.#stops = new Map(points.map((each) => [
+      each.point, this.#places.length ? offsetsOf(this.#places, [each]) : this.#stops.get(each.point) ?? [],
+    ]));
+  }
+
+  get #offsets() {
+    return [...new Set([...this.#stops.values()].flat())];
+  }
+
+  /**
+   * @param {boolean} isPaused
+   * @param {import('../lesson/lessons.js').JudgedRun | null} judged
+   * @param {number} least times as quick as the robot
+   */
+  async #start(isPaused, judged = null, least = 0) {
+    this.#seenRun();
+    const start = ++this.#starts;
+    this.#drawing.said = '';
+    let program = this.#program();
+    if (!program) {
+      this.#isWaiting = true;
+      this.#note = text('still_compiling');
+      this.#show();
+      program = await this.#whenCompiled();
+      await this.#restored;
+      if (start !== this.#starts) return;
+      this.#isWaiting = false;
+    }
+    this.#note = !program || program.image ? '' : text('first_repair');
+    this.#show();
+    await this.#simulator.stop(); // also before a program with mistakes: what runs is not what is seen
+    if (start !== this.#starts || !program?.image) return;
+    this.#wasStopped = false;
+    this.#bumps = 0;
+    this.#arena.begin(this.#world.shapes, this.#work.robot, this.#world.goals);
+    this.#plot.begin();
+    this.#shown = '';
+    this.#places = program.places;
+    this.#variables = program.variables;
+    this.#findStops();
+    const world = judged ?? this.#world.request;
+    await this.#simulator.begin(program, this.#work.robot, world, judged ? [] : this.#offsets, isPaused, least);
+  }
+
+  #stop() {
+    this.#starts += 1;
+    if (this.#isWaiting) {
+      this.#isWaiting = false;
+      this.#note = '';
+      this.#show();
+    }
+    this.#sounds.silence();
+    if (!this.#isDriving) return;
+    this.#wasStopped = true;
+    this.#simulator.stop();
+  }
+
+  #show() {
+    const { phase, state, trace } = this.#simulator;
+    this.#shown_ms = performance.now();
+    this.#showPlaces(); // first: the editor has the page laid out, which is little as long as nothing else is new
+    this.#pause.disabled = !this.#isDriving;
+    say(this.#pause, text(phase === 'paused' ? 'go_on' : 'pause'));
+    this.#push.hidden = !state?.is_waiting || phase !== 'running';
+    say(element('doing', HTMLElement), this.#note || this.#drawing.said || this.#doing());
+    const told = trace.slice(-SHOWN).join('\n');
+    if (told !== this.#told) element('trace', HTMLElement).textContent = this.#told = told;
+    this.#showScore(state?.score ?? null);
+    this.#where.tell(state, phase);
+    this.#showValues();
+    this.#plot.draw();
+    this.#arena.draw(state);
+    document.documentElement.dataset['phase'] = phase;
+    if (!this.#isDriving) this.#seenRun();
+  }
+
+  /** Marks what runs, or where it had a fault. */
+  #showPlaces() {
+    const { state } = this.#simulator;
+    const range = this.#place();
+    const isAlone = !state || state.fault || state.is_held;
+    const ranges = isAlone ? [range] : state.places.map((at) => rangeAt(this.#places, at));
+    this.#editor.showRunning(ranges.filter((each) => each !== null), Boolean(state?.is_held));
+    this.#editor.showFault(state?.fault ? range : null, state?.fault ? faultSaid(state.fault) : '');
+  }
+
+  /** What runs in the text that is seen, or what had a fault. */
+  #place() {
+    const { state } = this.#simulator;
+    return rangeAt(this.#places, state?.fault ? state.fault_at : state?.at);
+  }
+
+  /** Keeps what is to be seen, and lets be heard what is. @param {import('../python.js').RobotState} state */
+  #keep(state) {
+    this.#arena.follow(state);
+    if (state.bumps > this.#bumps) {
+      this.#arena.shake();
+      this.#sounds.crash();
+    }
+    this.#bumps = state.bumps;
+    for (const [at_ms, what] of state.events) {
+      const [word, hertz, lasts_ms] = what.split(' ');
+      if (word !== 'BEEP') continue;
+      this.#arena.showBeep(at_ms + Number(lasts_ms));
+      this.#sounds.beep(Number(hertz), Number(lasts_ms) / 1000 / this.#simulator.speed);
+    }
+    if (state.began_ms === null) return;
+    const shown = state.events.findLast(([, what]) => what.startsWith('SHOW '));
+    if (shown) {
+      this.#shown = shown[1].slice('SHOW '.length);
+      this.#arena.say(this.#shown, shown[0]);
+    }
+    this.#plot.add(state.now_ms - state.began_ms, [
+      ...this.#sensors().map((device, k) => ({ name: nameOf(device), value: numberOf(state.readings[k]?.text) })),
+      ...this.#variables.map(({ name, is_yes_no }, k) => ({ name, value: is_yes_no ? Number(Boolean(state.variables[k])) : state.variables[k] })),
+      { name: 'SHOW', value: numberOf(this.#shown) },
+    ]);
+  }
+
+  #sensors() {
+    const robot = ROBOTS.find((each) => each.name === this.#work.robot);
+    return robot?.devices.filter((device) => device.role === 'sensor') ?? [];
+  }
+
+  #doing() {
+    const { phase, state, isStopping, failure } = this.#simulator;
+    if (failure) return failure;
+    if (isStopping) return text('robot_stopping');
+    if (phase === 'off' || !state) return this.#task() || text('robot_off');
+    if (state.fault) {
+      const what = faultSaid(state.fault);
+      const line = this.#place()?.line;
+      return line ? text('say_fault', { line, what }) : text('robot_fault', { what });
+    }
+    if (this.#wasStopped) return text('robot_stopped');
+    const held = state.is_held && this.#place()?.line;
+    if (phase === 'paused' && held) return text('robot_held', { line: held });
+    if (phase === 'paused') return text('robot_paused');
+    if (phase === 'ended') return text('robot_ended');
+    return text(state.is_waiting ? 'robot_waiting' : 'robot_running');
+  }
+
+  /** What is to be done in this world, if there is such a thing. */
+  #task() {
+    const { flags, seconds } = this.#shapes;
+    if (!flags.length) return '';
+    return text(seconds ? 'task_in_time' : 'task', { count: flags.length, seconds });
+  }
+
+  /** @param {import('../python.js').RobotState['score']} score */
+  #showScore(score) {
+    const place = element('score', HTMLElement);
+    place.hidden = !score;
+    if (!score) return;
+    const { taken, of, points, stars } = score;
+    say(place, `⚑ ${taken}/${of}   ${points}   ${starsShown(stars)}`);
+    place.classList.toggle('whole', stars > 0);
+  }
+
+  #showValues() {
+    const { state } = this.#simulator;
+    const seconds = state ? ((state.now_ms - (state.began_ms ?? state.now_ms)) / 1000).toFixed(1) : '–';
+    const rows = [
+      [text('time'), state ? `${seconds} s` : '–'],
+      [text('motors'), state ? state.motors.join('  ') : '–'],
+      [text('bumps'), state ? String(state.bumps) : '–'],
+      ...this.#sensors().map((device, k) => [nameOf(device), state ? measured(device, state.readings[k]?.text ?? '') : '–', partOf(device, state?.readings[k]?.value)]),
+      ...this.#variables.map(({ name, is_yes_no }, k) => [name, written(state?.variables[k], is_yes_no)]),
+      ...(this.#shown ? [['SHOW', this.#shown]] : []),
+    ];
+    const place = element('values', HTMLElement);
+    while (place.children.length > rows.length) place.lastElementChild?.remove();
+    rows.forEach(([name = '', value = '', part = ''], k) => {
+      const row = /** @type {HTMLElement} */ (place.children[k] ?? place.appendChild(valueRow()));
+      row.classList.toggle('wide', name.length > SHORT || part !== '');
+      if (part) row.style.setProperty('--part', part);
+      else row.removeAttribute('style');
+      [name, value].forEach((said, at) => {
+        const cell = row.children[at];
+        if (cell) say(cell, said);
+      });
+    });
+  }
+}
+
+/** A row of the values, still empty. */
+function valueRow() {
+  const row = document.createElement('div');
+  row.append(document.createElement('dt'), document.createElement('dd'));
+  return row;
+}
+
+/** How much of its range a reading is, for a bar. @param {typeof ROBOTS[number]['devices'][number]} device @param {number} [value] */
+function partOf({ arguments: [range] }, value) {
+  if (!range || value === undefined || range.high <= range.low) return '0%';
+  return `${Math.round((100 * (value - range.low)) / (range.high - range.low))}%`;
+}
+
+/**
+ * A reading with its unit, or with the most that it can be.
+ * @param {typeof ROBOTS[number]['devices'][number]} device
+ * @param {string} value
+ */
+function measured({ unit, arguments: [range] }, value) {
+  if (hasText(`block/${value}`)) return onBlock(value); // TRUE or FALSE
+  return unit || !range ? `${value} ${unit}` : text('of', { value, most: range.high });
+}
+
+/**
+ * A variable as SHOW says it.
+ * @param {number | undefined} value
+ * @param {boolean} isYesNo
+ */
+function written(value, isYesNo) {
+  if (value === undefined) return '–';
+  return isYesNo ? (value ? 'TRUE' : 'FALSE') : String(value);
+}
+
+/** @param {string | undefined} said a value as SHOW says it, or nothing */
+function numberOf(said) {
+  if (!said) return undefined;
+  return { TRUE: 1, FALSE: 0 }[said] ?? Number(said);
+}

@@ -1,0 +1,108 @@
+// Draws the floor of a world: what stands, lies and shines there, and its flags.
+//
+// x and y are centimetres from its lower left corner. Knows no robot.
+
+import { dot, path } from '../page/shapes.js';
+import { cornersOf } from './parts.js';
+
+/** @typedef {import('../page/shapes.js').Pen} Pen */
+/** @typedef {import('./parts.js').World} World */
+/** @typedef {{x_cm: number, y_cm: number, is_flag: boolean, radius_cm?: number, around?: import('./parts.js').Place[]}} Goal */
+
+const GRID_CM = 10; // while a world is changed
+
+/**
+ * @param {Pen} pen
+ * @param {World} world
+ * @param {Goal[]} goals where a task leads
+ * @param {number} taken flags
+ * @param {boolean} isChanged now, by a finger
+ */
+export function drawWorld(pen, world, goals, taken, isChanged) {
+  pen.fillStyle = '#fffdf6';
+  pen.fillRect(0, 0, world.width_cm, world.height_cm);
+  if (isChanged) drawGrid(pen, world);
+  for (const goal of goals) drawGoal(pen, goal);
+  world.flags.forEach((flag, k) => drawFlag(pen, flag, k - taken, k + 1));
+  for (const line of world.lines) path(pen, line.points, '#20242a', line.width_cm);
+  for (const { x_cm: x, y_cm: y } of world.lamps) {
+    dot(pen, x, y, 9, '#ffe9a3');
+    dot(pen, x, y, 3, '#e08a1e');
+  }
+  for (const box of world.boxes) {
+    path(pen, cornersOf(box), '#6b4a2f', 1, true);
+    pen.fillStyle = '#c79a6b';
+    pen.fill();
+  }
+  for (const wall of world.walls) path(pen, wall.points, '#6b4a2f', 2);
+  if (world.has_border) {
+    pen.strokeStyle = '#6b4a2f';
+    pen.lineWidth = 2;
+    pen.strokeRect(0, 0, world.width_cm, world.height_cm);
+  }
+}
+
+/** @param {Pen} pen @param {World} world */
+function drawGrid(pen, { width_cm, height_cm }) {
+  for (let at = GRID_CM; at < Math.max(width_cm, height_cm); at += GRID_CM) {
+    const color = at % (5 * GRID_CM) ? '#eee8d8' : '#d9cfb4';
+    if (at < width_cm) path(pen, [[at, 0], [at, height_cm]], color, 0.4);
+    if (at < height_cm) path(pen, [[0, at], [width_cm, at]], color, 0.4);
+  }
+}
+
+/** @param {Pen} pen @param {Goal} goal */
+function drawGoal(pen, { x_cm: x, y_cm: y, is_flag, radius_cm, around }) {
+  pen.setLineDash([4, 2.5]);
+  if (around) path(pen, around, '#0d6040', 0.8, true);
+  else {
+    dot(pen, x, y, radius_cm ?? 0, '#2a9d6f22');
+    pen.strokeStyle = '#0d6040';
+    pen.lineWidth = 0.8;
+    pen.stroke();
+  }
+  pen.setLineDash([]);
+  if (is_flag) drawCloth(pen, x, y, '#ffd84d');
+}
+
+/**
+ * A flag of the world: taken, the next one, or one of those behind it.
+ * @param {Pen} pen
+ * @param {import('./parts.js').Flag} flag
+ * @param {number} behind the next one, by so many flags
+ * @param {number} number
+ */
+function drawFlag(pen, { x_cm: x, y_cm: y, reach_cm, rests }, behind, number) {
+  const isTaken = behind < 0, isNext = behind === 0;
+  dot(pen, x, y, reach_cm, isTaken ? '#2a9d6f44' : isNext ? '#ffd84d77' : '#c8d2dc66');
+  if (!isTaken) pen.setLineDash(rests ? [] : [4, 2.5]);
+  pen.strokeStyle = isTaken || isNext ? '#0d6040' : '#66727e';
+  pen.lineWidth = rests ? 1.4 : 0.8;
+  pen.stroke();
+  pen.setLineDash([]);
+  if (isTaken) path(pen, [[x - 5, y], [x - 1.5, y - 4], [x + 6, y + 5]], '#0d6040', 2.4);
+  else {
+    drawCloth(pen, x, y, isNext ? '#ffd84d' : '#fff');
+    drawNumber(pen, x + 3.6, y + 9.6, String(number));
+  }
+}
+
+/** @param {Pen} pen @param {number} x @param {number} y of its foot @param {string} color */
+function drawCloth(pen, x, y, color) {
+  path(pen, [[x, y], [x, y + 14], [x + 11, y + 10], [x, y + 6]], '#0d6040', 1);
+  pen.fillStyle = color;
+  pen.fill();
+}
+
+/** @param {Pen} pen @param {number} x @param {number} y its middle @param {string} number */
+function drawNumber(pen, x, y, number) {
+  pen.save();
+  pen.translate(x, y);
+  pen.scale(1, -1);
+  pen.font = '700 6px system-ui, sans-serif';
+  pen.textAlign = 'center';
+  pen.textBaseline = 'middle';
+  pen.fillStyle = '#123b63';
+  pen.fillText(number, 0, 0);
+  pen.restore();
+}

@@ -1,0 +1,84 @@
+// Colors and completion of the editor. Knows which sort of word looks like which; the words
+// themselves come from `page/words.js`.
+
+import { HighlightStyle, StreamLanguage, syntaxHighlighting } from '@codemirror/language';
+import { tags } from '@lezer/highlight';
+import { wordsOf } from '../page/words.js';
+
+const ACTS = new Set(['move', 'wait', 'motors', 'stop', 'start', 'beep', 'show', 'fixed', 'until', 'actuator']);
+const VALUES = new Set(['value', 'function', 'sensor', 'forever']);
+
+/**
+ * @param {string | undefined} role
+ * @returns {string}
+ */
+function tokenOf(role) {
+  if (role === undefined) return 'variableName';
+  if (ACTS.has(role)) return 'atom';
+  return VALUES.has(role) ? 'typeName' : 'keyword';
+}
+
+/**
+ * Returns the language of a robot: its own words count.
+ * @param {string} robot
+ */
+export function languageOf(robot) {
+  const words = wordsOf(robot);
+  return StreamLanguage.define({
+    name: 'tiniscript',
+    token(stream) {
+      if (stream.eatSpace()) return null;
+      if (stream.match(/^\/\/.*/)) return 'comment';
+      if (stream.match(/^\d*\.?\d+/)) return 'number';
+      const word = stream.match(/^[A-Za-z_]\w*/);
+      if (word && word !== true) return tokenOf(words.get(word[0].toUpperCase())?.role);
+      stream.next();
+      return 'punctuation';
+    },
+    languageData: { commentTokens: { line: '//' } },
+  });
+}
+
+// Each has at least 4.5 times the contrast of the letters that a page must have.
+export const colors = syntaxHighlighting(
+  HighlightStyle.define([
+    { tag: tags.keyword, color: 'var(--said-keyword)', fontWeight: '600' },
+    { tag: tags.atom, color: 'var(--said-blue)', fontWeight: '600' },
+    { tag: tags.typeName, color: 'var(--said-right)' },
+    { tag: tags.number, color: 'var(--said-number)' },
+    { tag: tags.comment, color: 'var(--soft)' },
+    { tag: tags.variableName, color: 'var(--ink)' },
+  ]),
+);
+
+/**
+ * @param {string} robot
+ * @returns {(context: import('@codemirror/autocomplete').CompletionContext) =>
+ *   import('@codemirror/autocomplete').CompletionResult | null}
+ */
+export function completionOf(robot) {
+  const words = [...wordsOf(robot).values()];
+  return (context) => {
+    const word = context.matchBefore(/[A-Za-z_]\w*/);
+    if (!word && !context.explicit) return null;
+    const before = context.state.doc.lineAt(context.pos).text.slice(0, (word?.from ?? context.pos) - context.state.doc.lineAt(context.pos).from);
+    if (before.includes('//')) return null;
+    const names = new Set(
+      [...context.state.doc.toString().matchAll(/\b([A-Za-z]\w*)\s*=(?!=)|\bDEF\s+([A-Za-z]\w*)/gi)]
+        .map((found) => String(found[1] ?? found[2]).toUpperCase())
+        .filter((name) => name !== word?.text.toUpperCase()),
+    );
+    return {
+      from: word?.from ?? context.pos,
+      options: [
+        ...words.map((each) => ({
+          label: each.text,
+          type: tokenOf(each.role) === 'typeName' ? 'variable' : 'keyword',
+          detail: each.example === each.text ? '' : each.example,
+        })),
+        ...[...names].map((label) => ({ label, type: 'variable' })),
+      ],
+      validFor: /^\w*$/,
+    };
+  };
+}

@@ -1,0 +1,70 @@
+// The list of messages beneath the editor. Everything of a program is put there as text, never
+// as markup.
+
+import { text } from '../page/texts.js';
+
+/** @typedef {import('../python.js').Checked} Checked */
+/** @typedef {import('../python.js').Finding} Finding */
+
+const MOST = 50; // messages that are shown at once
+
+/**
+ * @param {HTMLElement} list
+ * @param {Finding[]} findings
+ * @param {(finding: Finding) => void} goTo
+ * @param {(finding: Finding) => void} repair
+ */
+export function showMessages(list, findings, goTo, repair) {
+  const rows = findings.slice(0, MOST).map((finding) => {
+    const row = document.createElement('li');
+    row.className = finding.severity;
+    const place = button(text('line', { line: finding.line }), () => goTo(finding));
+    place.className = 'place';
+    const said = document.createElement('span');
+    said.textContent = finding.message;
+    row.append(place, said);
+    if (finding.fix) {
+      const fix = document.createElement('span');
+      fix.className = 'fix';
+      fix.textContent = `${text('try')} ${finding.fix}`;
+      row.append(fix);
+    }
+    if (finding.repair.length) {
+      const does = button(text('repair'), () => repair(finding));
+      does.className = 'repair';
+      does.setAttribute('aria-label', text('repair_line', { line: finding.line, fix: finding.fix }));
+      row.append(does);
+    }
+    return row;
+  });
+  if (findings.length > MOST) {
+    const row = document.createElement('li');
+    row.textContent = text('more', { count: findings.length - MOST });
+    rows.push(row);
+  }
+  list.replaceChildren(...rows);
+}
+
+/** @param {Checked} checked @returns {string} */
+export function summary({ findings, bytes, loose }) {
+  const mistakes = findings.filter((each) => each.severity === 'mistake').length;
+  const warnings = findings.length - mistakes;
+  const parts = [];
+  if (mistakes) parts.push(text('mistakes', { count: mistakes }));
+  else if (!loose) parts.push(text('right', { bytes }));
+  if (loose) parts.push(text('loose', { count: loose }));
+  if (warnings) parts.push(text('warnings', { count: warnings }));
+  return parts.join(mistakes || loose ? ', ' : ' ');
+}
+
+/**
+ * @param {string} label
+ * @param {() => void} pressed
+ */
+function button(label, pressed) {
+  const made = document.createElement('button');
+  made.type = 'button';
+  made.textContent = label;
+  made.addEventListener('click', pressed);
+  return made;
+}

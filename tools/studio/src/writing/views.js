@@ -1,0 +1,353 @@
+// The program as blocks and as text, side by side or one at a time. The text is what is kept:
+// blocks are made of it when it changes, and it is made of them when they do.
+
+import { element } from '../page/elements.js';
+import { blocksPicture, offer, pictured } from '../page/pictures.js';
+import { text } from '../page/texts.js';
+
+/** @typedef {import('../blocks/blocks.js').Blocks} Blocks */
+/** @typedef {import('../blocks/form.js').Form} Form */
+/** @typedef {import('../python.js').Finding} Finding */
+/** @typedef {import('../programs/work.js').Work} Work */
+
+const TYPING_MS = 200; // of silence before blocks are made of a text
+const BUSY_MS = 50; // until a block that is dragged is looked at again
+const LEVELS = /** @type {const} */ ([['few', 'level_few'], ['usual', 'level_usual'], ['all', 'level_all']]);
+
+export class Views {
+  #python;
+  #editor;
+  #work;
+  #remember;
+  /** @type {Blocks | null} */
+  #blocks = null;
+  /** @type {Promise<void> | null} */
+  #fetching = null;
+  /** The text that the blocks show. @type {string | null} */
+  #shown = null;
+  #isReady = false;
+  #isAwake = false; // blocks may be fetched
+  #isRefreshing = false;
+  #isSending = false;
+  #isWanted = false; // blocks of a text that does not parse, too
+  #changes = 0; // of blocks that their text does not have yet
+  #form = ''; // what the blocks were when they and the text were the same
+  #typing = 0;
+  #sending = 0;
+  /** @type {Finding[]} */
+  #findings = [];
+  /** @type {[import('./editor.js').Range | null, string]} */
+  #fault = [null, ''];
+  /** @type {import('./editor.js').Range[]} */
+  #running = [];
+  /** The same on the virtual robot, and on a real one. @type {[import('./editor.js').Range[], import('./editor.js').Range[]]} */
+  #run = [[], []];
+  #isHeld = false; // the virtual robot, at a breakpoint or after a step
+  #pane = element('blocks', HTMLElement);
+  #note = element('blocks_note', HTMLElement);
+  #level = element('level', HTMLSelectElement);
+
+  /**
+   * @param {import('../python.js').Python} python
+   * @param {import('./editor.js').Editor} editor
+   * @param {Work} work
+   * @param {() => void} remember
+   */
+  constructor(python, editor, work, remember) {
+    this.#python = python;
+    this.#editor = editor;
+    this.#work = work;
+    this.#remember = remember;
+    for (const view of /** @type {const} */ (['blocks', 'text'])) {
+      element(`view_${view}`, HTMLButtonElement).addEventListener('click', () => this.#choose(view));
+    }
+    this.#level.addEventListener('change', () => {
+      work.level = LEVELS.find(([level]) => level === this.#level.value)?.[0] ?? 'few';
+      remember();
+      this.#blocks?.setLevel(work.level);
+    });
+    element('undo', HTMLButtonElement).addEventListener('click', () => this.#again(() => editor.undo()));
+    element('redo', HTMLButtonElement).addEventListener('click', () => this.#again(() => editor.redo()));
+    // A block that is touched while the text is ahead of it must not take the text back.
+    for (const kind of ['pointerdown', 'focusin']) {
+      this.#pane.addEventListener(kind, (event) => {
+        if (!this.#isStale()) return;
+        if (kind === 'pointerdown') event.stopPropagation();
+        this.#refresh(true);
+      }, { capture: true });
+    }
+    new ResizeObserver(() => this.#blocks?.resize()).observe(this.#pane);
+    this.setLanguage();
+    this.#lay();
+  }
+
+  get #isOn() {
+    return this.#work.view === 'blocks';
+  }
+
+  /** Python answers from now on. */
+  ready() {
+    this.#isReady = true;
+    if (this.#isOn) this.#refresh(true);
+  }
+
+  /** The program is seen from now on. */
+  wake() {
+    this.#isAwake = true;
+    this.#lay();
+  }
+
+  /** Has the file of the blocks fetched before they are seen. */
+  fetchAhead() {
+    if (this.#isOn) import('../blocks/blocks.js');
+  }
+
+  setLanguage() {
+    offer(this.#level, LEVELS.map(([level, name], k) => pictured(text(name), level, blocksPicture(k + 1))));
+    this.#level.value = this.#work.level;
+    this.#blocks?.setLanguage();
+    if (!this.#isStale()) this.#showAll();
+    if (this.#blocks) this.#refresh(true);
+  }
+
+  setRobot() {
+    this.#blocks?.setRobot(this.#work.robot);
+    this.#shown = null;
+    if (this.#isOn) this.#refresh(true);
+  }
+
+  /** Another program comes. */
+  begin() {
+    this.#blocks?.begin();
+  }
+
+  /** The text has changed, by whoever did it. */
+  textChanged() {
+    this.#findings = []; // those are of the text before
+    if (!this.#blocks || !this.#isStale()) return;
+    this.#showState();
+    clearTimeout(this.#typing);
+    this.#typing = window.setTimeout(() => this.#refresh(!this.#editor.hasFocus), TYPING_MS);
+  }
+
+  /** @param {Finding[]} findings of the newest text */
+  showFindings(findings) {
+    this.#findings = findings;
+    if (!this.#isStale()) this.#blocks?.showFindings(findings);
+  }
+
+  get breakpoints() {
+    return this.#editor.breakpoints;
+  }
+
+  /** Shows where the program is to stop, at the blocks, too. */
+  showBreakpoints() {
+    if (!this.#isStale()) this.#blocks?.showBreakpoints(this.#editor.breakpoints);
+  }
+
+  /**
+   * @param {import('./editor.js').Range[]} ranges one for each task
+   * @param {boolean} isHeld there, so somebody wants to see it
+   */
+  showRunning(ranges, isHeld) {
+    this.#run[0] = ranges;
+    this.#isHeld = isHeld;
+    this.#mark();
+  }
+
+  /** Where both robots run, this is what is seen of them, but where the virtual one is held. @param {import('./editor.js').Range | null} range */
+  showRunningThere(range) {
+    this.#run[1] = range ? [range] : [];
+    this.#mark();
+  }
+
+  #mark() {
+    const [virtual, real] = this.#run;
+    this.#running = this.#isHeld || !real.length ? virtual : real;
+    this.#editor.showRunning(this.#running, this.#isHeld);
+    if (!this.#isStale()) this.#blocks?.showRunning(this.#running);
+  }
+
+  /**
+   * @param {import('./editor.js').Range | null} range where a run had a fault
+   * @param {string} said
+   */
+  showFault(range, said) {
+    this.#fault = [range, said];
+    if (!range || !this.#isStale()) this.#blocks?.showFault(range, said);
+  }
+
+  /** @param {import('./editor.js').Range} finding */
+  goTo(finding) {
+    if (this.#isOn && this.#blocks && !this.#isStale()) this.#blocks.goTo(finding);
+    else this.#editor.goTo(finding);
+  }
+
+  /**
+   * Returns a picture of the program's blocks, which are made if only the text is seen.
+   * @returns {Promise<Blob | null>} null where there are none
+   */
+  async picture() {
+    const { view } = this.#work;
+    if (view !== 'blocks') this.#choose('blocks');
+    try {
+      await this.#fetching;
+      await this.#send();
+      this.#refresh(true);
+      while (this.#isRefreshing) await new Promise((resolve) => setTimeout(resolve, BUSY_MS));
+      return this.#blocks && !this.#isStale() ? await this.#blocks.picture() : null;
+    } finally {
+      if (view !== 'blocks') this.#choose(view);
+    }
+  }
+
+  /** @param {'blocks' | 'text'} view */
+  #choose(view) {
+    this.#work.view = view;
+    this.#remember();
+    this.#lay();
+    this.#blocks?.resize();
+    if (view === 'blocks') this.#refresh(true);
+  }
+
+  #lay() {
+    const { view } = this.#work;
+    element('writing', HTMLElement).dataset['view'] = view;
+    for (const each of ['blocks', 'text']) {
+      element(`view_${each}`, HTMLButtonElement).setAttribute('aria-pressed', String(each === view));
+    }
+    this.#level.hidden = view !== 'blocks';
+    if (view === 'blocks' && this.#isAwake) this.#fetching ??= this.#fetch();
+  }
+
+  async #fetch() {
+    const { Blocks: Kind } = await import('../blocks/blocks.js');
+    this.#blocks = new Kind(this.#pane, this.#work.robot, this.#work.level, {
+      changed: () => this.#blocksChanged(),
+      toggle: (place) => {
+        if (!this.#isStale()) this.#editor.toggleBreakpoint(place);
+      },
+    });
+    this.#pane.dataset['state'] = 'empty';
+    if (this.#isReady) this.#refresh(true);
+  }
+
+  #isStale() {
+    return this.#shown !== this.#editor.text;
+  }
+
+  /** Undo and redo once what the blocks are has become text; not while one is dragged. @param {() => void} act */
+  async #again(act) {
+    if (this.#blocks?.isBusy) return;
+    await this.#send();
+    act();
+    if (this.#isOn) this.#refresh(true);
+  }
+
+  #blocksChanged() {
+    this.#changes += 1;
+    if (this.#shown === null) return; // those are not the text's
+    this.#pane.dataset['state'] = 'changed';
+    clearTimeout(this.#sending);
+    this.#sending = window.setTimeout(() => this.#send(), 0);
+  }
+
+  /** Makes the text of the blocks, unless somebody has changed the text meanwhile. */
+  async #send() {
+    if (!this.#blocks || this.#shown === null || this.#isSending || !this.#changes) return;
+    if (this.#blocks.isBusy) {
+      clearTimeout(this.#sending);
+      this.#sending = window.setTimeout(() => this.#send(), BUSY_MS);
+      return;
+    }
+    this.#isSending = true;
+    const before = this.#editor.text;
+    try {
+      while (this.#changes && this.#shown === before) {
+        this.#changes = 0;
+        const { form, ids } = this.#blocks.read();
+        const whole = JSON.stringify(form);
+        if (whole === this.#form) break; // a block was only moved about
+        const answer = await this.#python.ask({ do: 'text', form });
+        if (this.#changes || this.#editor.text !== before) continue;
+        this.#shown = answer.text;
+        this.#form = whole;
+        this.#blocks.placed(ids, answer.places);
+        this.#editor.replaceByBlocks(answer.text);
+        this.showBreakpoints();
+      }
+    } catch (why) {
+      this.#fail(why);
+    } finally {
+      this.#isSending = false;
+    }
+    this.#changes = 0;
+    if (this.#isStale()) this.#refresh(true);
+    else this.#showState();
+  }
+
+  /**
+   * Makes the blocks of the text. While somebody types a text that does not parse, the blocks stay
+   * as they are, unless `isWanted`.
+   * @param {boolean} isWanted
+   */
+  async #refresh(isWanted) {
+    this.#isWanted ||= isWanted;
+    if (!this.#blocks || !this.#isReady || this.#isRefreshing || !this.#isOn) return;
+    this.#isRefreshing = true;
+    try {
+      while (this.#isStale()) {
+        const now = this.#editor.text;
+        /** @type {Form & {size: number}} */
+        const form = await this.#python.ask({ do: 'blocks', robot: this.#work.robot }, new TextEncoder().encode(now));
+        while (this.#blocks.isBusy) await new Promise((resolve) => setTimeout(resolve, BUSY_MS));
+        if (now !== this.#editor.text) continue;
+        const isKept = !this.#isWanted && this.#editor.hasFocus && this.#shown !== null && hasGrey(form);
+        if (!form.body || isKept) {
+          this.#showState(form.body ? text('blocks_wait') : text('blocks_many'));
+          return;
+        }
+        this.#shown = now;
+        this.#changes = 0;
+        this.#blocks.show(form);
+        this.#form = JSON.stringify(this.#blocks.read().form);
+        this.#showAll();
+      }
+      this.#showState();
+    } catch (why) {
+      this.#fail(why);
+    } finally {
+      this.#isRefreshing = false;
+      this.#isWanted = false;
+    }
+  }
+
+  /** Blocks that are new have nothing at them yet. */
+  #showAll() {
+    this.#blocks?.showFindings(this.#findings);
+    this.#blocks?.showFault(...this.#fault);
+    this.#blocks?.showRunning(this.#running);
+    this.showBreakpoints();
+  }
+
+  /** @param {unknown} why */
+  #fail(why) {
+    this.#note.textContent = text('bug', { why: String(why).split('\n').filter(Boolean).at(-1) ?? '' });
+  }
+
+  /** @param {string} note */
+  #showState(note = '') {
+    this.#note.textContent = note;
+    this.#pane.dataset['state'] = this.#isStale() ? 'stale' : 'shown';
+  }
+}
+
+/** @param {Form} form */
+function hasGrey(form) {
+  const waiting = [...(form.body ?? [])];
+  for (let block = waiting.pop(); block; block = waiting.pop()) {
+    if (block.kind === 'grey') return true;
+    waiting.push(...block.bodies.flat());
+  }
+  return false;
+}
