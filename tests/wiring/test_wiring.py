@@ -539,6 +539,6 @@ def test_parts_have_quantities() -> None:
         needs = next(each for each in page_of(plan) if each.kind == "list").rows
         assert all(re.search(r"\d+ × ", row[0]) for row in needs)
         wires = next(int(found[1]) for row in needs if (found := re.search(
-            r"(\d+) (?:jumper wires|cables de puente)", row[0])))  # fmt: skip
+            r"(\d+) (?:jumper wires|cables de puente|fios jumper)", row[0])))  # fmt: skip
         joins = sum(len(block.rows) - 1 for block in page_of(plan) if block.kind == "ticks")
         assert joins < wires < 2 * joins
