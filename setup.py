@@ -94,7 +94,7 @@ class Build(build_py):
     def _catalogues(self) -> dict[Path, bytes]:
         """Return the texts of each language as the package reads them."""
         sys.path.insert(0, str(ROOT / "compiler"))
-        from tiniscript.languages import machine_objects
+        from tiniscript.base.languages import machine_objects
 
         folder = Path(self.build_lib) / "tiniscript" / "languages"
         return {folder / name: data for name, data in machine_objects().items()}
@@ -151,7 +151,7 @@ def description() -> str:
     address = found_in("pyproject.toml", r'^Source = "(https://[^"]+)"$').rstrip("/")
     if not address:
         return text
-    version = found_in("compiler/tiniscript/version.py", r'^__version__ = "([^"]+)"$')
+    version = found_in("compiler/tiniscript/base/version.py", r'^__version__ = "([^"]+)"$')
     text = re.sub(r"(!\[[^]]*\]\()(?=[\w.])(?!https?:)", rf"\g<1>{address}/raw/v{version}/", text)
     return re.sub(
         r"((?<!!)\[[^]]*\]\()(?=[\w.])(?!https?:)", rf"\g<1>{address}/blob/v{version}/", text

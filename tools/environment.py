@@ -142,7 +142,7 @@ def language() -> str:
     sys.path.insert(0, str(ROOT / "compiler"))
     try:
         if sys.version_info >= NEEDED:  # an older one cannot read that code
-            from tiniscript.cli.texts.common import language_of
+            from tiniscript.cli.texts import language_of
 
             return language_of([])
     except ImportError:

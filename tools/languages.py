@@ -17,8 +17,8 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "compiler"))
 
-from tiniscript.languages import FOLDER, SOURCE, languages
-from tiniscript.languages.catalogue_file import Catalogue, Entry, load, written
+from tiniscript.base.catalogue_file import Catalogue, Entry, load, written
+from tiniscript.base.languages import FOLDER, SOURCE, languages
 
 PSEUDO = "qps"  # by custom: no language has this code
 ACCENTS = str.maketrans("aeiouncAEIOU", "àéîõüñçÀÉÎÕÜ")

@@ -35,7 +35,7 @@ ROOT = Path(__file__).resolve().parent.parent
 sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
 from tests.support import order
-from tiniscript.files import cache_folder
+from tiniscript.base.files import cache_folder
 
 EQUIVALENT = Path(__file__).with_name("equivalent_mutants.json")
 LIMIT_S = 300  # processor time of the tests of one mutant: an endless loop is noticed, too

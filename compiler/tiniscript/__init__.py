@@ -10,6 +10,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from tiniscript.base.version import __version__ as __version__
     from tiniscript.library.compiling import Compiled as Compiled
     from tiniscript.library.compiling import check_text as check_text
     from tiniscript.library.compiling import compile_text as compile_text
@@ -25,7 +26,6 @@ if TYPE_CHECKING:
     from tiniscript.library.programs import Message, Program, check, compile, show
     from tiniscript.library.runs import Fault, Trace, TraceEvent, run
     from tiniscript.library.simulated import VirtualRobotConnection, virtual_robot
-    from tiniscript.version import __version__ as __version__
 
 __all__ = (  # what `docs/api.en.md` promises
     "Ending",
@@ -65,7 +65,7 @@ _HOMES = {
     "library.programs": ("Message", "Program", "check", "compile", "show"),
     "library.runs": ("Fault", "Trace", "TraceEvent", "run"),
     "library.simulated": ("VirtualRobotConnection", "virtual_robot"),
-    "version": ("__version__",),
+    "base.version": ("__version__",),
 }
 
 if not TYPE_CHECKING:

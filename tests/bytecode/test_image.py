@@ -11,6 +11,7 @@ import pytest
 
 from tests.oracle import image as second_reader
 from tiniscript import compile_text, robots
+from tiniscript.base.kit import NUMBER, YES_NO, Device, Kit
 from tiniscript.bytecode.image import (
     HEADER_BYTES,
     REFUSALS,
@@ -24,7 +25,6 @@ from tiniscript.bytecode.image import (
 from tiniscript.bytecode.loading import check, loaded
 from tiniscript.bytecode.opcodes import ISA_MINOR
 from tiniscript.bytecode.verify import Refused
-from tiniscript.kit import NUMBER, YES_NO, Device, Kit
 
 KIT = robots.load("tinibot").kit
 CODE = bytes.fromhex("448c50")

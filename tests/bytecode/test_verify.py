@@ -12,9 +12,9 @@ from tests.oracle.programs import program
 from tests.support.casefile import ROOT, read
 from tests.support.kits import KITS
 from tiniscript import compile_text
+from tiniscript.base.kit import DEVICES
 from tiniscript.bytecode.opcodes import CODE_BYTES, OPS, STACK_VALUES
 from tiniscript.bytecode.verify import RULES, Refused, verify
-from tiniscript.kit import DEVICES
 from tiniscript.vm.machine import Machine
 
 SENSORS, ACTUATORS = 3, 2

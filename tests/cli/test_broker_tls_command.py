@@ -123,7 +123,7 @@ def test_options_that_make_no_sense(words: list[str], said: str, tmp_path: Path)
 
 def test_every_state_of_a_broker_has_a_sentence() -> None:
     from tiniscript.cli.robot.robot_broker import NOT_BEGUN
-    from tiniscript.cli.texts.common import has_text
+    from tiniscript.cli.texts import has_text
 
     for state, _ in WIFI_STATES:
         assert state in NOT_BEGUN or has_text(f"broker_{state.lower()}")

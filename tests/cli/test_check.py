@@ -224,7 +224,7 @@ def test_a_file_that_cannot_be_written_is_as_it_was(
     def full(*_: object, **__: object) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("tiniscript.files.replace", full)
+    monkeypatch.setattr("tiniscript.base.files.replace", full)
     done = tsc("check", "--fix", "b.ts")
     assert (done.code, (folder / "b.ts").read_text("utf-8")) == (2, WRONG)
     assert "b.ts cannot be written: No space left on device. The file stays as it was." in done.err

@@ -13,7 +13,7 @@ import pytest
 from tests.support.command import OBSTACLE, PROGRAM, TSC, Tsc, process
 from tiniscript.bytecode.image import unpack
 from tiniscript.bytecode.opcodes import CODE_BYTES, FAULTS
-from tiniscript.cli.texts.common import has_text
+from tiniscript.cli.texts import has_text
 from tiniscript.cli.texts.verbs import VERBS
 
 # -- compile ------------------------------------------------------------------------------------

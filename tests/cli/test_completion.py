@@ -14,10 +14,10 @@ import pytest
 from tests.support.command import Tsc
 from tests.support.verbs import parsers
 from tiniscript import robots
+from tiniscript.base.languages import languages
 from tiniscript.cli.commands import completion
 from tiniscript.cli.texts.verbs import VERBS
 from tiniscript.diagnostics.codes import CODES
-from tiniscript.languages import languages
 
 BASH = shutil.which("bash") or ""
 ZSH = shutil.which("zsh") or ""

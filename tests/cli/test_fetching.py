@@ -21,9 +21,9 @@ from tests.support.casefile import ROOT
 from tests.support.command import TSC, Done, Tsc, rest_of
 from tests.support.needs import need
 from tests.support.waiting import HANGS_S, until
+from tiniscript.base.files import cache_folder
 from tiniscript.cli import fetching, page_build
-from tiniscript.cli.texts.common import text
-from tiniscript.files import cache_folder
+from tiniscript.cli.texts import text
 from tiniscript.flash import children
 from tiniscript.library import install_advice
 from tiniscript.studio import building, serving

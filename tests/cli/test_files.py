@@ -17,7 +17,7 @@ import platformdirs
 import pytest
 
 from tests.support.command import PROGRAM, Tsc, process
-from tiniscript import files
+from tiniscript.base import files
 from tiniscript.cli import outputs
 from tiniscript.library import source_map
 from tiniscript.link.sharing import registry

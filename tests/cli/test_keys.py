@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from tests.support.command import Tsc
-from tiniscript import files
+from tiniscript.base import files
 from tiniscript.link.authority import RobotKey
 from tiniscript.link.keys import MOST, BadKeys, KeyFile, read, written
 from tiniscript.link.messages import KEY_OWNER, KEY_TEACHER

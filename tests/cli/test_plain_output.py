@@ -11,9 +11,9 @@ from tests.cli.test_outputs import PROFILE, WORLD
 from tests.support.command import PROGRAM, Tsc
 from tests.support.rows import each_row
 from tests.support.verbs import parsers, values_of
+from tiniscript.base.source import printable
 from tiniscript.cli.errors import CommandError
-from tiniscript.cli.texts.common import LONGEST, Said, text
-from tiniscript.source import printable
+from tiniscript.cli.texts import LONGEST, Said, text
 
 # ESC and a colour, a C1 control, a line of its own, backspaces, and marks that turn the direction
 EVIL = "\x1b[31mx\x9b2J\r\ntsc: done\x08\x7f\u202e\u2066\u200f\u2028"

@@ -11,6 +11,7 @@ import pytest
 from tests.support import texts
 from tests.support.command import Done, Tsc, process
 from tiniscript import compile
+from tiniscript.base.languages import languages
 from tiniscript.cli.commands import upload
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.paths import is_foreign
@@ -19,7 +20,6 @@ from tiniscript.cli.robot.event_printer import EventPrinter
 from tiniscript.cli.robot.recorder import Recorder
 from tiniscript.cli.robot.run_monitor import Saving
 from tiniscript.cli.robot.simulator import CommandSimulator
-from tiniscript.languages import languages
 from tiniscript.studio import recordings
 from tiniscript.studio.recordings import Recorded, read, replay
 from tiniscript.virtual import worlds

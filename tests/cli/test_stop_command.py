@@ -10,7 +10,7 @@ import pytest
 
 from tests.support.command import Command
 from tests.support.pty_robot import PtyRobot, on, uploading
-from tiniscript.cli.texts.common import text
+from tiniscript.cli.texts import text
 from tiniscript.library import opening
 from tiniscript.library.errors import RobotError
 from tiniscript.link.line import Line

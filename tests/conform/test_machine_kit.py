@@ -21,6 +21,7 @@ from tests.oracle import verifier
 from tests.support.casefile import ROOT
 from tests.support.command import Done, Tsc
 from tests.support.waiting import until
+from tiniscript.base.kit import Device, Kit
 from tiniscript.bytecode.image import GO
 from tiniscript.bytecode.loading import loaded
 from tiniscript.bytecode.opcodes import OPS
@@ -30,7 +31,6 @@ from tiniscript.conformance.kit import MachineCase, machine_cases
 from tiniscript.conformance.link_kit import link_kit
 from tiniscript.conformance.machine_process import MachineProcess, Problem
 from tiniscript.conformance.port_checks import all_checks
-from tiniscript.kit import Device, Kit
 from tiniscript.vm.state import DONE, FAULT
 from tiniscript.vm.tasks import machine_of
 from tiniscript.vm.trace import Senses as Lists

@@ -9,10 +9,10 @@ import pytest
 
 from tests.diagnostics.test_rendering import KIT, LANGUAGES, gaps
 from tiniscript import Compiled, check_text
+from tiniscript.base.source import Source, Span
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic
 from tiniscript.diagnostics.rendering import Message, as_text, message
-from tiniscript.source import Source, Span
 
 
 def at(text: str, start: int, end: int, code: Code = codes.EXTRA_CLOSE) -> Message:

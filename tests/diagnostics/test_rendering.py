@@ -10,13 +10,13 @@ import pytest
 from tests.support.rows import each_row
 from tests.support.texts import said as all_said
 from tiniscript import check_text, compile_text
+from tiniscript.base.catalogue_file import load
+from tiniscript.base.kit import NUMBER, YES_NO, Device, Kit
+from tiniscript.base.languages import FOLDER, SOURCE, languages
+from tiniscript.base.source import Source, Span
 from tiniscript.diagnostics import codes, rendering
 from tiniscript.diagnostics.codes import CODES, Diagnostic
 from tiniscript.diagnostics.rendering import Message, as_json, as_text, explain, message, titles
-from tiniscript.kit import NUMBER, YES_NO, Device, Kit
-from tiniscript.languages import FOLDER, SOURCE, languages
-from tiniscript.languages.catalogue_file import load
-from tiniscript.source import Source, Span
 
 KIT = Kit(
     sensors=(

@@ -15,7 +15,7 @@ import pytest
 from tests.firmware.test_host_firmware import computer, image_of, switched_on
 from tests.firmware.test_text import holding
 from tests.machines.host_firmware import HostFirmware
-from tiniscript.words import WORDS
+from tiniscript.base.words import WORDS
 
 SEEDS = 24  # in the tests; a campaign runs more
 TURNS = 25

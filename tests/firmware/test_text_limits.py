@@ -8,7 +8,7 @@ from tests.firmware.test_host_firmware import KIT, computer, happened, switched_
 from tests.firmware.test_text import LINE, done_after, holding, typed
 from tests.machines.host_firmware import EMPTY, HostFirmware
 from tests.support.command import OBSTACLE
-from tiniscript.kit import NUMBER, Device, Kit
+from tiniscript.base.kit import NUMBER, Device, Kit
 from tiniscript.link.requests import OK
 
 LINE_LETTERS = 63  # of an answer, without its end

@@ -22,7 +22,7 @@ from tests.support.platformio import firmware, prepared, shared
 from tests.support.waiting import HANGS_S
 from tiniscript import robots
 from tiniscript.cli.commands import firmware as firmware_command
-from tiniscript.cli.texts.common import has_text
+from tiniscript.cli.texts import has_text
 from tiniscript.flash import avrdude, ready
 from tiniscript.flash.bootloaders import BOARDS, UNO
 from tiniscript.robots.profile import answered

@@ -20,6 +20,7 @@ from hypothesis.strategies import SearchStrategy
 
 from tests.support.casefile import ROOT
 from tiniscript import compile_text, robots
+from tiniscript.base.source import Source
 from tiniscript.bytecode.image import pack, unpack
 from tiniscript.bytecode.verify import verify
 from tiniscript.diagnostics.rendering import as_text, message
@@ -31,7 +32,6 @@ from tiniscript.link.sharing.protocol import BadMessage, MessageReader
 from tiniscript.link.sharing.requests import ClientRequests, asked_for
 from tiniscript.robots.profile import ProfileRefused
 from tiniscript.robots.reader import read as read_profile
-from tiniscript.source import Source
 from tiniscript.virtual.worlds import read as read_world
 
 EXAMPLES = 150  # in the tests, of each kind

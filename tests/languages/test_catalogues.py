@@ -12,11 +12,12 @@ from pathlib import Path
 import pytest
 
 from tests.support.command import Tsc
-from tiniscript import languages
-from tiniscript.cli.texts.common import Said, language_of, text
+from tiniscript.base import catalogue_compiler as compiling
+from tiniscript.base import languages
+from tiniscript.base.catalogue_file import Catalogue, Entry, load, read, written
+from tiniscript.base.languages import FOLDER, SOURCE
+from tiniscript.cli.texts import Said, language_of, text
 from tiniscript.cli.texts.verbs import VERBS
-from tiniscript.languages import FOLDER, SOURCE, compiling
-from tiniscript.languages.catalogue_file import Catalogue, Entry, load, read, written
 from tools.languages import PSEUDO, in_step, pseudo
 
 NAMES = sorted(path.stem for path in (FOLDER / SOURCE).glob("*.po"))

@@ -9,7 +9,7 @@ import pytest
 
 from tests.support.texts import LANGUAGES
 from tiniscript import robots
-from tiniscript.languages import text
+from tiniscript.base.languages import text
 from tiniscript.lessons import catalogue, text_judging
 from tiniscript.lessons.findings import Finding
 from tiniscript.lessons.judging import JUDGES

@@ -17,7 +17,7 @@ import pytest
 from tests.cli.test_virtual_command import FOREVER, Robot, robot
 from tests.support.command import LONG, Command, Tsc, inside, process
 from tests.support.waiting import HANGS_S, until
-from tiniscript import files
+from tiniscript.base import files
 from tiniscript.link import known_ports, ports
 
 if TYPE_CHECKING:  # without zeroconf there is none

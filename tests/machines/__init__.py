@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from tests.machines import host, wasm
 from tests.machines.python import run_python
-from tiniscript.kit import Kit
+from tiniscript.base.kit import Kit
 
 
 class Senses(NamedTuple):

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 
 from tests.machines.chips import ran
 from tests.machines.host import SOURCES, WARNINGS, Ran, contents, kept, run_request
-from tiniscript.kit import Kit
+from tiniscript.base.kit import Kit
 
 if TYPE_CHECKING:
     from tests.machines import Senses

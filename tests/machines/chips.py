@@ -9,10 +9,10 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, NamedTuple
 
 from tests.machines.host import REFUSAL_NAMES, RULE_NAMES, Ran
+from tiniscript.base.kit import Kit
 from tiniscript.bytecode.image import HEADER_BYTES, ImageRefused
 from tiniscript.bytecode.opcodes import CODE_BYTES
 from tiniscript.bytecode.verify import Refused
-from tiniscript.kit import Kit
 
 if TYPE_CHECKING:
     from tests.machines import Senses

@@ -22,9 +22,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from tests.machines.child import Child
 from tests.support.needs import need
+from tiniscript.base.kit import Device, Kit
 from tiniscript.bytecode.image import REFUSALS, ImageRefused
 from tiniscript.bytecode.verify import RULES, Refused
-from tiniscript.kit import Device, Kit
 
 if TYPE_CHECKING:
     from tests.machines import Senses

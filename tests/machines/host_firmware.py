@@ -13,7 +13,7 @@ from struct import iter_unpack, pack
 from typing import Any, NamedTuple
 
 from tests.machines.host import FLAGS, SOURCES, Process, compiled
-from tiniscript.kit import Kit
+from tiniscript.base.kit import Kit
 from tiniscript.link.connection import PendingRequest
 from tiniscript.link.session import Session
 from tiniscript.robots.kit_words import kit_words

@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from tests.machines.host import Ran
+from tiniscript.base.kit import Kit
 from tiniscript.bytecode.image import EVERYTHING
 from tiniscript.bytecode.loading import loaded
-from tiniscript.kit import Kit
 from tiniscript.vm.trace import Ending, run
 from tiniscript.vm.trace import Senses as Lists
 

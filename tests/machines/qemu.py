@@ -18,8 +18,8 @@ from typing import TYPE_CHECKING
 from tests.machines.chips import ran
 from tests.machines.host import SOURCES, WARNINGS, Process, Ran, contents, kept, run_request
 from tests.machines.text_reader import Answer
+from tiniscript.base.kit import Kit
 from tiniscript.bytecode.image import STARTS
-from tiniscript.kit import Kit
 from tiniscript.robots.kit_words import kit_words
 from tiniscript.text.problems import NAMES
 from tools.builds import chips

@@ -12,8 +12,8 @@ from typing import NamedTuple
 
 from tests.machines.child import Child
 from tests.machines.host import BUILDS, FLAGS, SOURCES, compiled
+from tiniscript.base.kit import Kit
 from tiniscript.bytecode.image import STARTS
-from tiniscript.kit import Kit
 from tiniscript.robots.kit_words import kit_words
 from tiniscript.text.problems import NAMES
 

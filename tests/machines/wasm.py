@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from tests.machines.python import lists_of
+from tiniscript.base.kit import Kit
 from tiniscript.bytecode.image import HEADER_BYTES
-from tiniscript.kit import Kit
 from tiniscript.vm.trace import Ending, run
 
 if TYPE_CHECKING:

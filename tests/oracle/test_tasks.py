@@ -18,7 +18,7 @@ from tests.machines.python import run_python
 from tests.oracle.interpreter import PAPER_KIT, Mistake, run
 from tests.oracle.task_programs import task_program
 from tiniscript import compile_text, robots
-from tiniscript.source import Source
+from tiniscript.base.source import Source
 from tiniscript.syntax.formatter import formatted
 
 KIT = robots.load("tinibot").kit

@@ -21,8 +21,8 @@ from tests.oracle.task_programs import task_program
 from tests.support.kits import KITS
 from tests.vm.test_agreement import MAX_MS, MAX_STEPS, same
 from tiniscript import compile_text
+from tiniscript.base.source import Source
 from tiniscript.bytecode.image import GO, unpack
-from tiniscript.source import Source
 from tiniscript.syntax.formatter import formatted
 
 BATCH = 100

@@ -70,7 +70,7 @@ KNOWN: tuple[Known, ...] = (
     Known("a turn of a task's loop", "compiler/tiniscript/semantics/duration.py",
           "if body.least == 0 and body.most is not None:", "if False:",
           "tests/semantics/test_duration.py::test_a_program_that_ends"),
-    Known("a pipe that is written to", "compiler/tiniscript/files.py",
+    Known("a pipe that is written to", "compiler/tiniscript/base/files.py",
           "if found is not None and not stat.S_ISREG(found.st_mode):", "if False:",
           "tests/cli/test_files.py::test_another_hard_link_keeps_the_old_content_and_a_pipe_stays_one"),
     Known("a mistake right behind the first instruction", "vm_arduino/src/text/reader_code.cpp",

@@ -14,9 +14,10 @@ from tests.oracle.words import FIXED
 from tests.support.casefile import ROOT
 from tests.support.new_word import HORN
 from tiniscript import compile_text, robots
+from tiniscript.base.source import Source
+from tiniscript.base.words import WORDS
 from tiniscript.diagnostics import codes
 from tiniscript.sketch.writing import sketch_of
-from tiniscript.source import Source
 from tiniscript.studio.block_printing import print_blocks
 from tiniscript.studio.block_reading import read
 from tiniscript.studio.description import description
@@ -24,7 +25,6 @@ from tiniscript.syntax.formatter import formatted
 from tiniscript.text.fitting import misfits
 from tiniscript.text.levels import LEVELS, Level
 from tiniscript.text.line import line_of
-from tiniscript.words import WORDS
 from tools.generate import poster
 from tools.generate.paper import Line
 
@@ -86,7 +86,7 @@ def test_a_robot_that_reads_text_gets_what_it_stands_for(level: Level) -> None:
 # Of a process that knows the word before it imports what makes tables of all words.
 FRESH = """
 from tests.support.new_word import HORN
-from tiniscript.words import WORDS
+from tiniscript.base.words import WORDS
 WORDS[HORN.text] = HORN
 import json
 from tiniscript.studio import block_kinds

@@ -19,7 +19,7 @@ from tests.support.command import rest_of
 from tests.support.needs import need
 from tests.support.platformio import prepared
 from tests.support.waiting import HANGS_S
-from tiniscript.languages import machine_objects
+from tiniscript.base.languages import machine_objects
 from tools.release import facts
 from tools.release.packing import difference
 

@@ -9,8 +9,8 @@ import pytest
 
 from tests.support.casefile import ROOT
 from tiniscript import check_text, robots
-from tiniscript.languages import told_in
-from tiniscript.words import WORDS
+from tiniscript.base.languages import told_in
+from tiniscript.base.words import WORDS
 from tools.generate import paper, poster
 from tools.generate.paper import MONO, Line
 

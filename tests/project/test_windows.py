@@ -20,10 +20,10 @@ import pytest
 from tests.support.casefile import ROOT
 from tests.support.command import Tsc
 from tests.support.texts import said as said_in
-from tiniscript import files
+from tiniscript.base import files
+from tiniscript.base.languages import languages
 from tiniscript.cli import CLOSED, streams
 from tiniscript.cli.windows_names import has_no_file, is_device
-from tiniscript.languages import languages
 
 PROGRAM = "SI|F(2, 80)\n"
 

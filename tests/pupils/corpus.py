@@ -15,11 +15,11 @@ from pathlib import Path
 from typing import NamedTuple
 
 from tiniscript import robots
+from tiniscript.base.source import Source
 from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.diagnostics.rendering import message
 from tiniscript.library.compiling import compiled
 from tiniscript.repairs.fixing import fixed
-from tiniscript.source import Source
 
 FOLDER = Path(__file__).parent
 PART = re.compile(r"((?:(?![>=]).*\n)+)((?:>.*\n)*)((?:=.*\n)*)")

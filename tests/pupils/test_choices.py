@@ -5,11 +5,11 @@ from __future__ import annotations
 import pytest
 
 from tests.pupils.corpus import check
+from tiniscript.base.kit import Kit
+from tiniscript.base.source import Edit, Span
 from tiniscript.diagnostics.codes import Diagnostic
-from tiniscript.kit import Kit
 from tiniscript.library import compiling
 from tiniscript.repairs.fixing import CHECKS, fixed, is_better
-from tiniscript.source import Edit, Span
 
 
 @pytest.mark.parametrize(

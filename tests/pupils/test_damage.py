@@ -15,10 +15,10 @@ import pytest
 from tests.pupils.corpus import check
 from tests.pupils.test_pupils import OTHER_NUMBERS, mistakes
 from tests.support.casefile import ROOT, read
+from tiniscript.base.source import applied
 from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.repairs.fixing import fixed
 from tiniscript.repairs.placing import edits_of
-from tiniscript.source import applied
 
 IN_CI = 150
 # What is put in, or takes the place of a sign: of phones, of other languages, of Spanish.

@@ -5,10 +5,10 @@ from __future__ import annotations
 import pytest
 
 from tests.pupils.corpus import check
+from tiniscript.base.source import Source
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.rendering import message
 from tiniscript.repairs.fixing import fixed
-from tiniscript.source import Source
 
 
 @pytest.mark.parametrize(

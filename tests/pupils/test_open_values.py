@@ -7,8 +7,8 @@ import re
 import pytest
 
 from tests.pupils.corpus import check
+from tiniscript.base.source import Source
 from tiniscript.diagnostics.rendering import message
-from tiniscript.source import Source
 
 
 @pytest.mark.parametrize("language", ["en", "es"])

@@ -11,11 +11,11 @@ import pytest
 
 from tests.pupils.corpus import Entry, check, entries, found_in, write
 from tests.support.rows import each_row
+from tiniscript.base.source import Edit, Source, applied
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.repairs.fixing import fixed
 from tiniscript.repairs.placing import edits_of
-from tiniscript.source import Edit, Source, applied
 
 ENTRIES = entries()
 # Repairs that write a number in another way: a unit, a letter for a digit, `X++`, `50.`, and how

@@ -5,11 +5,11 @@ from __future__ import annotations
 import pytest
 
 from tests.pupils.corpus import check
+from tiniscript.base.source import Source, applied
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.rendering import message
 from tiniscript.repairs.fixing import fixed
 from tiniscript.repairs.placing import edits_of
-from tiniscript.source import Source, applied
 
 
 @pytest.mark.parametrize(

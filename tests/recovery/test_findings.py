@@ -8,12 +8,12 @@ from itertools import product
 import pytest
 
 from tests.pupils.corpus import check
+from tiniscript.base.source import Edit, Span
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.recovery.findings import moved_back
 from tiniscript.recovery.setup import Setup, setup
 from tiniscript.repairs.fixing import fixed
-from tiniscript.source import Edit, Span
 
 
 @pytest.mark.parametrize(

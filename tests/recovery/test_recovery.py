@@ -10,14 +10,14 @@ import pytest
 from tests.pupils.corpus import entries
 from tests.pupils.test_damage import programs
 from tiniscript import robots
-from tiniscript.kit import Kit
+from tiniscript.base.kit import Kit
+from tiniscript.base.source import Edit, Span
 from tiniscript.lessons import catalogue
 from tiniscript.library.compiling import analyzed
 from tiniscript.recovery import lines, rewrites, rows
 from tiniscript.recovery.concepts import Lexeme, Names, lexemes
 from tiniscript.recovery.explanation import Slip, explained
 from tiniscript.recovery.search import Recovery
-from tiniscript.source import Edit, Span
 from tiniscript.syntax.outline import Failure
 from tools.shadow import marks
 from tools.shadow.__main__ import SAMPLE, SCORES, sample

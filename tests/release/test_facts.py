@@ -17,7 +17,7 @@ from tools.release import facts
 VERSION = "9.8.7"
 URL = "https://example.org/tiniscript"
 FILES = ("CITATION.cff", "LICENSE", "docs/versions.md", "pyproject.toml", "CHANGELOG.md",
-         "compiler/tiniscript/version.py")  # fmt: skip
+         "compiler/tiniscript/base/version.py")  # fmt: skip
 CHANGES = f"# Changelog\n\n## Unreleased\n\n## {VERSION} (2031-02-03)\n\n- All.\n"
 
 

@@ -8,9 +8,9 @@ import pytest
 
 from tests.machines.board import VARIANTS
 from tests.support.casefile import ROOT
+from tiniscript.base.languages import languages
 from tiniscript.cli.texts.options import OPTIONS
 from tiniscript.flash import bootloaders
-from tiniscript.languages import languages
 from tiniscript.robots import firmware
 from tiniscript.robots.boards import CHIPS
 from tiniscript.robots.ports import AVRS

@@ -9,7 +9,7 @@ import pytest
 from tests.support.casefile import ROOT
 from tests.wiring.test_wiring import DEVICES, DISCS, MOTORS, robot_with, with_discs
 from tiniscript import compile_text, robots
-from tiniscript.kit import Device
+from tiniscript.base.kit import Device
 from tiniscript.robots import firmware
 from tiniscript.robots.driver import Driver, Part, SensorDriver
 from tiniscript.robots.drivers import DRIVERS

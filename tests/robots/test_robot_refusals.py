@@ -14,11 +14,11 @@ import pytest
 from tests.robots.test_robots import TEXTS, edited
 from tests.support.texts import LANGUAGES, said
 from tiniscript import robots
+from tiniscript.base.words import WORDS
 from tiniscript.robots.boards import NEEDS
 from tiniscript.robots.profile import ProfileRefused, Robot
 from tiniscript.robots.reader import read
 from tiniscript.robots.refusals import describe, shown
-from tiniscript.words import WORDS
 
 
 def refusal(text: str) -> ProfileRefused:

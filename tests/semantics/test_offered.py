@@ -9,10 +9,10 @@ import pytest
 
 from tests.pupils.corpus import check, entries
 from tests.semantics.test_lint import ADVISED
+from tiniscript.base.source import Source
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.diagnostics.rendering import message
-from tiniscript.source import Source
 
 WARNED = re.compile(r"[0-9]+ TS8")
 PROGRAMS = [text for text, _ in ADVISED]

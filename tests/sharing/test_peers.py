@@ -16,7 +16,7 @@ from tests.cli.test_virtual_command import robot, visitor
 from tests.sharing.test_strangers import few, registration_of
 from tests.support.command import FOREVER, process
 from tests.support.waiting import HANGS_S
-from tiniscript import files
+from tiniscript.base import files
 from tiniscript.link.sharing import peers, registry
 from tiniscript.link.sharing.registry import Registration
 from tiniscript.virtual.transports import Transports

@@ -379,7 +379,7 @@ def test_commands_that_come_at_once_are_all_served(pty_robot: PtyRobot) -> None:
 
 
 def test_a_tsc_of_another_version_can_be_stopped(pty_robot: PtyRobot) -> None:
-    newer = "import sys, tiniscript.version as own; own.__version__ = '9.1'; " + (
+    newer = "import sys, tiniscript.base.version as own; own.__version__ = '9.1'; " + (
         "from tiniscript.cli import main; sys.exit(main(sys.argv[1:]))"
     )
     command = Command("upload", "-e", FOREVER, "--port", pty_robot.port, code=newer)

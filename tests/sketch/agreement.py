@@ -17,7 +17,7 @@ from tests.oracle.interpreter import Kit as OracleKit
 from tests.robots.test_robots import TEXTS
 from tests.support.kits import KITS
 from tiniscript import compile_text
-from tiniscript.fixed_point import ONE
+from tiniscript.base.fixed_point import ONE
 from tiniscript.robots.profile import Robot
 from tiniscript.robots.reader import read
 from tiniscript.sketch.writing import sketch_of

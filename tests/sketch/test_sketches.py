@@ -28,7 +28,7 @@ from tests.sketch.agreement import (
 )
 from tests.support.casefile import example_robot, has_tasks, sketch_examples
 from tiniscript import compile_text, robots
-from tiniscript.fixed_point import ONE
+from tiniscript.base.fixed_point import ONE
 from tiniscript.lessons import catalogue
 from tiniscript.robots.profile import Robot
 from tiniscript.semantics.ir import every

@@ -15,8 +15,9 @@ from tests.support.kits import KITS
 from tests.support.new_word import HORN
 from tests.support.rows import each_row
 from tiniscript import compile_text, robots
-from tiniscript.kit import Kit
-from tiniscript.source import Source
+from tiniscript.base.kit import Kit
+from tiniscript.base.source import Source
+from tiniscript.base.words import ALIASES, UNIT_OF, WORDS
 from tiniscript.studio.block_form import (
     Block,
     Form,
@@ -33,7 +34,6 @@ from tiniscript.syntax import ast
 from tiniscript.syntax.formatter import formatted
 from tiniscript.syntax.lexer import scan
 from tiniscript.syntax.parser import parse
-from tiniscript.words import ALIASES, UNIT_OF, WORDS
 
 TINIBOT = robots.load("tinibot").kit
 GRABBER = robots.load("grabber").kit

@@ -12,9 +12,9 @@ import pytest
 
 from tests.support.casefile import ROOT
 from tests.support.needs import need
+from tiniscript.base.catalogue_file import load
+from tiniscript.base.languages import FOLDER, SOURCE, catalogue, languages
 from tiniscript.flash import ready
-from tiniscript.languages import FOLDER, SOURCE, catalogue, languages
-from tiniscript.languages.catalogue_file import load
 from tiniscript.studio import serving
 from tiniscript.studio.block_kinds import KINDS
 from tiniscript.studio.serving import POLICY

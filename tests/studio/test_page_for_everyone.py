@@ -13,7 +13,7 @@ from tests.support import studio
 from tests.support.needs import need
 from tests.support.studio import Pages, axe, checked, enter, image, shown, speak, turn, write
 from tiniscript import check, compile
-from tiniscript.languages import SOURCE, languages
+from tiniscript.base.languages import SOURCE, languages
 from tiniscript.studio import serving
 
 if TYPE_CHECKING:

@@ -13,9 +13,9 @@ from tests.support.cpp_edges import changed_code, kit_of
 from tests.support.kits import KITS
 from tests.support.random_codes import jump, simple
 from tiniscript import compile_text
+from tiniscript.base.kit import Kit
 from tiniscript.bytecode.image import ImageRefused
 from tiniscript.bytecode.verify import Refused
-from tiniscript.kit import Kit
 
 MOST_BYTES = 700
 MOST_SECONDS = 4  # an answer takes a hundredth of one

@@ -28,7 +28,9 @@ from tests.support.random_codes import (
     some_programs,
 )
 from tests.vm.test_cases import robot_and_senses
-from tiniscript import compile_text, fixed_point
+from tiniscript import compile_text
+from tiniscript.base import fixed_point
+from tiniscript.base.kit import Kit
 from tiniscript.bytecode.disassembly import read_listing
 from tiniscript.bytecode.image import (
     EVERYTHING,
@@ -44,7 +46,6 @@ from tiniscript.bytecode.opcodes import (
     OPS,
 )
 from tiniscript.bytecode.verify import RULES, Refused, verify
-from tiniscript.kit import Kit
 from tiniscript.vm.machine import Machine
 from tiniscript.vm.state import WAITING
 from tiniscript.vm.trace import Ending, MachineOf, TracedRobot, run

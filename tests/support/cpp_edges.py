@@ -12,6 +12,7 @@ from tests.machines.host import Host
 from tests.support.cpp_checks import WIDE, compare_runs, compare_verdicts
 from tests.support.images import image_for
 from tests.support.random_codes import jump, loop, simple
+from tiniscript.base.kit import DEVICES, NUMBER, Device, Kit
 from tiniscript.bytecode.opcodes import (
     BY_CODE,
     CALLS,
@@ -23,7 +24,6 @@ from tiniscript.bytecode.opcodes import (
     STACK_VALUES,
     VARIABLES,
 )
-from tiniscript.kit import DEVICES, NUMBER, Device, Kit
 
 
 def show(number: int) -> bytes:

@@ -14,9 +14,9 @@ from tests.support.cpp_checks import MAX_MS, MAX_STEPS, SIZES, compare_runs, com
 from tests.support.kits import KITS
 from tests.support.random_codes import any_number, likely_code, mutated, simple, task_codes
 from tiniscript import compile_text
+from tiniscript.base.kit import Kit
 from tiniscript.bytecode.image import EVERYTHING, GO, TASKS
 from tiniscript.bytecode.opcodes import ESCAPE, ESCAPED
-from tiniscript.kit import Kit
 
 TASK_MS = 600
 WAYS = [op.opcode for op in ESCAPED.values()]

@@ -5,10 +5,10 @@ from __future__ import annotations
 from functools import reduce
 from operator import or_
 
+from tiniscript.base.kit import Kit
 from tiniscript.bytecode.disassembly import rows
 from tiniscript.bytecode.image import pack
 from tiniscript.bytecode.verify import Refused, verify
-from tiniscript.kit import Kit
 
 
 def needs_of(code: bytes) -> int:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from tests.oracle import interpreter as oracle
 from tests.oracle import programs
-from tiniscript.kit import NUMBER, YES_NO, Device, Kit
+from tiniscript.base.kit import NUMBER, YES_NO, Device, Kit
 
 
 def _devices(theirs: tuple[oracle.Device, ...]) -> tuple[Device, ...]:

@@ -2,6 +2,6 @@
 
 from __future__ import annotations
 
-from tiniscript.words import Word
+from tiniscript.base.words import Word
 
 HORN = Word("HORN", "fixed", stands_for="BEEP(0.5, 440)", says=("honks", "toca la bocina"))

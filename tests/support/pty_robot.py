@@ -19,7 +19,7 @@ from tests.machines.host_firmware import EMPTY, POWER_ON, HostFirmware
 from tests.support import waiting
 from tests.support.command import FOREVER, Command, Done, inside
 from tests.support.simulated_port import STRIDE_MS, SimulatedPort, simulated
-from tiniscript.kit import Kit
+from tiniscript.base.kit import Kit
 
 PUSHED, RELEASED, HELD = 1, 2, 32  # flags of a step
 BEHIND_MS = 50  # more than that behind, the robot's clock goes slower

@@ -17,7 +17,7 @@ from tests.machines.host_firmware import EMPTY, TICKS, HostFirmware
 from tests.support import waiting
 from tests.support.pty_robot import damaged, drives_now
 from tests.support.simulated_port import SimulatedPort, simulated
-from tiniscript.kit import Kit
+from tiniscript.base.kit import Kit
 
 STEP_MS = 10  # between two steps of a robot for which nothing comes
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from functools import cache
 
-from tiniscript.languages import FOLDER, SOURCE, languages
-from tiniscript.languages.compiling import merged
+from tiniscript.base.catalogue_compiler import merged
+from tiniscript.base.languages import FOLDER, SOURCE, languages
 
 LANGUAGES = languages()
 

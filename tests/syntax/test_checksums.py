@@ -7,8 +7,8 @@ from zlib import crc32
 import pytest
 
 from tiniscript import Compiled, compile_text, robots
+from tiniscript.base.source import Source
 from tiniscript.library.compiling import compiled
-from tiniscript.source import Source
 from tiniscript.syntax.checksums import checksum_of, with_checksum
 from tiniscript.syntax.formatter import formatted
 

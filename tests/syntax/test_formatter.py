@@ -14,13 +14,14 @@ import pytest
 from tests.oracle.interpreter import PAPER_KIT
 from tests.oracle.interpreter import Kit as OracleKit
 from tests.oracle.programs import WIDE_KIT, broken, program
-from tiniscript import Compiled, compile_text, kit
+from tiniscript import Compiled, compile_text
+from tiniscript.base import kit
+from tiniscript.base.source import Source
+from tiniscript.base.words import ALIASES
 from tiniscript.diagnostics import codes
-from tiniscript.source import Source
 from tiniscript.syntax.formatter import formatted
 from tiniscript.syntax.lexer import END, NEWLINE, scan
 from tiniscript.syntax.parser import parse
-from tiniscript.words import ALIASES
 
 CHUNKS = 16
 PROGRAMS_PER_CHUNK = 150

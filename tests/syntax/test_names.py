@@ -9,9 +9,9 @@ from __future__ import annotations
 import pytest
 
 from tiniscript import compile_text
-from tiniscript.kit import NUMBER, YES_NO, Device, Kit
+from tiniscript.base.kit import NUMBER, YES_NO, Device, Kit
+from tiniscript.base.words import WORDS
 from tiniscript.recovery.concepts import concept_of, lexicon
-from tiniscript.words import WORDS
 
 FOREIGN = sorted(word for word in lexicon() if concept_of(word) in WORDS)
 SLIPS = ["END", "Y", "O", "THEN", "DO", "BEGIN", "NO", "YES", "IS", "LET", "VAR", "INT", "CALL",

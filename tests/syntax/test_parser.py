@@ -15,8 +15,8 @@ import pytest
 
 from tests.oracle.interpreter import PAPER_KIT
 from tests.oracle.programs import broken, program
-from tiniscript.fixed_point import as_text
-from tiniscript.source import Source, Span
+from tiniscript.base.fixed_point import as_text
+from tiniscript.base.source import Source, Span
 from tiniscript.syntax import ast
 from tiniscript.syntax.parser import ENOUGH, parse
 

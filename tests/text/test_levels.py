@@ -11,6 +11,7 @@ from tests.oracle import programs
 from tests.support.casefile import ROOT
 from tests.support.kits import KITS
 from tiniscript import compile_text, robots
+from tiniscript.base.words import SECONDS, WORDS, Word
 from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.robots.boards import CHIPS
 from tiniscript.syntax.lexer import scan
@@ -18,7 +19,6 @@ from tiniscript.text.fitting import misfits
 from tiniscript.text.levels import CODE_BYTES, LEVELS, UNREAD, Level
 from tiniscript.text.line import plain_code
 from tiniscript.text.memory import Reader
-from tiniscript.words import SECONDS, WORDS, Word
 from tools.generate import text_tables
 
 TINIBOT = robots.load("tinibot").kit

@@ -11,9 +11,9 @@ from tests.oracle import programs
 from tests.support.kits import KITS
 from tests.vm.test_cases import CASES, compiled, robot_and_senses
 from tiniscript import compile_text
+from tiniscript.base.kit import Kit
+from tiniscript.base.source import Source
 from tiniscript.diagnostics import codes
-from tiniscript.kit import Kit
-from tiniscript.source import Source
 from tiniscript.syntax.checksums import with_checksum
 from tiniscript.text.line import line_of, plain_code
 

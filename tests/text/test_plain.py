@@ -16,10 +16,10 @@ from tests.support.kits import KITS
 from tests.vm.test_agreement import MAX_MS, MAX_STEPS, same
 from tests.vm.test_cases import CASES, compiled, having, robot_and_senses
 from tiniscript import Compiled, compile_text, robots
+from tiniscript.base.kit import Kit
 from tiniscript.bytecode.disassembly import listing
 from tiniscript.bytecode.opcodes import BY_NAME, OPS, UNO_OPS
 from tiniscript.bytecode.verify import verify
-from tiniscript.kit import Kit
 from tiniscript.text.levels import CODE_BYTES
 from tiniscript.text.line import PlainCode, plain_code
 

@@ -22,15 +22,15 @@ from tests.support.casefile import Case, all_cases
 from tests.support.kits import KITS
 from tests.support.rows import each_row
 from tiniscript import check_text, compile_text, robots
+from tiniscript.base.kit import Kit
+from tiniscript.base.source import Unreadable, decode
+from tiniscript.base.words import WORDS
 from tiniscript.bytecode.verify import verify
-from tiniscript.kit import Kit
-from tiniscript.source import Unreadable, decode
 from tiniscript.syntax.lexer import scan
 from tiniscript.text.levels import CODE_BYTES, LEVELS, LONGEST_WORD, UNREAD
 from tiniscript.text.line import plain_code
 from tiniscript.text.memory import Reader as Model
 from tiniscript.vm.trace import run
-from tiniscript.words import WORDS
 
 MAX_MS, MAX_STEPS = 5_000, 5_000
 SHORT_BUFFER = 389 - 15

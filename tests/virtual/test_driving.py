@@ -9,7 +9,7 @@ import pytest
 
 from tests.support.virtual_robot import floor
 from tiniscript import robots
-from tiniscript.fixed_point import ONE
+from tiniscript.base.fixed_point import ONE
 from tiniscript.robots.kinematics import Pose, moved
 from tiniscript.robots.profile import Robot
 from tiniscript.virtual.driving import TOUCH_CM, Driving, Hull

@@ -6,8 +6,8 @@ import pytest
 
 from tests.support.virtual_robot import Talk, robot_in, trace
 from tiniscript import compile_text, robots, run
+from tiniscript.base.kit import Kit
 from tiniscript.bytecode.image import GO, TASKS, unpack
-from tiniscript.kit import Kit
 from tiniscript.link.messages import SAVED_STORED, STATUSES
 from tiniscript.robots.kinematics import START, moved
 

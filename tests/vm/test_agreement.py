@@ -16,12 +16,12 @@ from tests.machines import MACHINES, ONE_IN, Machine, Senses
 from tests.oracle import interpreter, programs
 from tests.support.kits import KITS
 from tiniscript import Compiled, compile_text
+from tiniscript.base.kit import Kit
+from tiniscript.base.source import Source
 from tiniscript.bytecode.disassembly import listing, read_listing
 from tiniscript.bytecode.opcodes import BY_NAME
 from tiniscript.bytecode.verify import verify
 from tiniscript.diagnostics.rendering import as_text, message
-from tiniscript.kit import Kit
-from tiniscript.source import Source
 from tiniscript.syntax.formatter import formatted
 
 MAX_MS, MAX_STEPS = 20_000, 20_000

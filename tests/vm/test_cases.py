@@ -9,11 +9,11 @@ from tests.support.casefile import Case, accept, all_cases
 from tests.support.images import image_for
 from tests.support.rows import each_row
 from tiniscript import Compiled, compile_text, robots
+from tiniscript.base.languages import SOURCE, languages
 from tiniscript.bytecode.disassembly import listing, read_listing
 from tiniscript.bytecode.verify import Refused, verify
 from tiniscript.cli.options import decimal
 from tiniscript.diagnostics.rendering import as_text, message
-from tiniscript.languages import SOURCE, languages
 from tiniscript.robots.profile import Robot
 from tiniscript.syntax.formatter import formatted
 from tiniscript.text.line import line_of, plain_code

@@ -16,7 +16,7 @@ import pytest
 
 from tests.support.cpp_checks import NUMBER_OF, OPERATIONS, python_result
 from tests.support.random_codes import EDGES
-from tiniscript import fixed_point
+from tiniscript.base import fixed_point
 from tiniscript.bytecode.opcodes import BY_NAME
 from tools.bench import avr_bench
 

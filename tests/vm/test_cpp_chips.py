@@ -29,10 +29,10 @@ from tests.support.kits import KITS
 from tests.support.random_codes import random_codes, simple
 from tests.vm.test_cases import compiled, having, listings_alone, robot_and_senses
 from tiniscript import compile_text
+from tiniscript.base.kit import Kit
 from tiniscript.bytecode.disassembly import read_listing
 from tiniscript.bytecode.image import EVERYTHING, TASKS, ImageRefused
 from tiniscript.bytecode.verify import Refused
-from tiniscript.kit import Kit
 from tools.builds import chips
 
 

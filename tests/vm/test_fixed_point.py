@@ -8,8 +8,8 @@ from decimal import ROUND_HALF_UP, Context, Decimal
 
 import pytest
 
-from tiniscript import fixed_point as t
-from tiniscript.fixed_point import HIGHEST, LOWEST, Fault
+from tiniscript.base import fixed_point as t
+from tiniscript.base.fixed_point import HIGHEST, LOWEST, Fault
 
 EXACT = Context(prec=60, rounding=ROUND_HALF_UP)  # half away from zero
 MILLI = Decimal("0.001")

@@ -17,10 +17,10 @@ from tests.support.command import Tsc
 from tests.support.cpp_checks import check_round, run_late
 from tests.support.kits import KITS
 from tiniscript import compile_text, robots
+from tiniscript.base.kit import Kit
 from tiniscript.bytecode.image import Image, ImageRefused, unpack
 from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
 from tiniscript.cli.commands import run
-from tiniscript.kit import Kit
 from tiniscript.library import install_advice
 from tiniscript.vm.machine import Machine
 from tiniscript.vm.state import WAITING

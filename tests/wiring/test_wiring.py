@@ -14,9 +14,9 @@ import pytest
 from tests.support.command import Tsc
 from tests.support.texts import LANGUAGES
 from tiniscript import robots
+from tiniscript.base.fixed_point import ONE
+from tiniscript.base.kit import NUMBER, Device, Kit
 from tiniscript.cli.commands import wiring
-from tiniscript.fixed_point import ONE
-from tiniscript.kit import NUMBER, Device, Kit
 from tiniscript.robots.boards import CHIPS, Chip
 from tiniscript.robots.driver import Driver
 from tiniscript.robots.drivers import DRIVERS

@@ -19,8 +19,8 @@ sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 from tests.machines.wired import Wired
 from tests.support.owners import Keys
 from tiniscript import compile_text
+from tiniscript.base.kit import NUMBER, Kit
 from tiniscript.bytecode.image import Image, unpack
-from tiniscript.kit import NUMBER, Kit
 from tiniscript.link.connection import PendingRequest
 from tiniscript.link.messages import KEY_OWNER
 from tiniscript.link.session import Session

@@ -18,8 +18,8 @@ from typing import NamedTuple
 
 from tests.machines.wired import Wired
 from tiniscript import compile_text
+from tiniscript.base.kit import NUMBER, Kit
 from tiniscript.bytecode.image import unpack
-from tiniscript.kit import NUMBER, Kit
 from tiniscript.link.session import Session
 from tiniscript.robots.profile import Robot
 from tools.bench.firmware_stack import BOARDS, must, pin

@@ -20,7 +20,7 @@ ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
 from tiniscript import __version__, compile_text, robots
-from tiniscript.kit import NUMBER, YES_NO, Device, Kit
+from tiniscript.base.kit import NUMBER, YES_NO, Device, Kit
 from tools.builds.library_rules import complaints
 from tools.release.facts import PEOPLE, address
 

@@ -6,9 +6,9 @@ import re
 from gettext import c2py
 from typing import Any
 
-from tiniscript.languages import FOLDER, ByLanguage, languages
-from tiniscript.languages.compiling import merged
-from tiniscript.words import WORDS
+from tiniscript.base.catalogue_compiler import merged
+from tiniscript.base.languages import FOLDER, ByLanguage, languages
+from tiniscript.base.words import WORDS
 
 # Of what the page's Python says; the sentences of lessons come with these.
 MESSAGES = ("messages", "statuses", "refusals", "library", "robot")

@@ -26,7 +26,7 @@ ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
 from tests.support import studio
-from tiniscript.languages import languages
+from tiniscript.base.languages import languages
 from tools.builds.page_texts import page_texts
 from tools.site.documents import sources
 

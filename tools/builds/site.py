@@ -24,7 +24,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
-from tiniscript.languages import SOURCE, about, languages, text
+from tiniscript.base.languages import SOURCE, about, languages, text
 from tools.builds import studio
 from tools.site import links, theme
 from tools.site.documents import FRONT, MOVED, PARTS, Document, documents, sources

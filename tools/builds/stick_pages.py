@@ -19,7 +19,7 @@ from markdown_it import MarkdownIt
 from markdown_it.token import Token
 
 from tiniscript import robots
-from tiniscript.languages import SOURCE, about, languages, text, told_in
+from tiniscript.base.languages import SOURCE, about, languages, text, told_in
 from tiniscript.lessons import catalogue
 from tiniscript.robots.wiring.html import html_of
 from tiniscript.robots.wiring.plan import plan_of

@@ -26,7 +26,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
-from tiniscript.languages import SOURCE, about, catalogue, languages
+from tiniscript.base.languages import SOURCE, about, catalogue, languages
 from tiniscript.studio import block_kinds, building
 from tiniscript.studio.building import MODULES, SOURCES, Tools
 from tiniscript.studio.description import description

@@ -10,7 +10,7 @@ import subprocess
 from pathlib import Path
 from typing import NamedTuple
 
-from tiniscript.files import replace
+from tiniscript.base.files import replace
 from tools.campaign.goals import GOALS, Goal
 
 ROOT = Path(__file__).resolve().parent.parent.parent

@@ -17,9 +17,9 @@ ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
 from tiniscript import robots
+from tiniscript.base.kit import DEVICES
+from tiniscript.base.languages import ByLanguage
 from tiniscript.bytecode import image, opcodes, verify
-from tiniscript.kit import DEVICES
-from tiniscript.languages import ByLanguage
 from tiniscript.robots import firmware
 from tiniscript.robots.profile import ProfileRefused, Robot
 from tiniscript.robots.reader import read
@@ -74,8 +74,8 @@ def shipped_robots() -> str:
         "\n"
         "from collections.abc import Callable\n"
         "\n"
-        "from tiniscript.kit import Device, Kit\n"
-        "from tiniscript.languages import ByLanguage\n"
+        "from tiniscript.base.kit import Device, Kit\n"
+        "from tiniscript.base.languages import ByLanguage\n"
         "from tiniscript.robots.profile import Board, Body, Place, Robot, Wiring\n"
     ]
     for path in paths:

@@ -7,10 +7,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 
+from tiniscript.base.languages import text, told_in
 from tiniscript.cli import help
 from tiniscript.cli.texts.options import Option, shown_of
 from tiniscript.cli.texts.verbs import NOTES, VERBS, of_verb, said
-from tiniscript.languages import text, told_in
 from tools.site.documents import links
 
 Table = Callable[[Sequence[str], Sequence[Sequence[object]]], str]

@@ -17,8 +17,8 @@ from tests.support.casefile import Case, read
 from tests.support.images import image_for, needs_of
 from tests.vm.test_cases import compiled, robot_and_senses
 from tiniscript import robots
+from tiniscript.base.kit import Device, Kit
 from tiniscript.bytecode.disassembly import read_listing
-from tiniscript.kit import Device, Kit
 
 CASES = ROOT / "tests" / "cases"
 GUARD = "TINISCRIPT_TEST_CASES_H_"

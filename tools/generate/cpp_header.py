@@ -10,8 +10,8 @@ from collections.abc import Iterable, Sequence
 from itertools import accumulate
 from typing import NamedTuple
 
+from tiniscript.base.kit import DEVICES, DEVICES_POLYNOMIAL
 from tiniscript.bytecode import image, opcodes, verify
-from tiniscript.kit import DEVICES, DEVICES_POLYNOMIAL
 
 HEADER_GUARD = "TINISCRIPT_VM_BYTECODE_H_"
 TASK_OPS = tuple(op for op in opcodes.OPS if op.needs == opcodes.NEEDS_TASKS)

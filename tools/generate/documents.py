@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 from pathlib import Path
 
-from tiniscript.languages import SOURCE, languages, text
+from tiniscript.base.languages import SOURCE, languages, text
 from tiniscript.text.levels import CODE_BYTES, LEVELS
 from tools.site.documents import LIST, documents, sources
 
@@ -55,7 +55,7 @@ def lessons_document() -> str:
 def bring_up_document(document: str, language: str) -> str:
     """Return a list for a real board, with the steps of the form that `tsc doctor` writes."""
     from tiniscript.cli.commands.doctor import STEPS
-    from tiniscript.cli.texts.common import text
+    from tiniscript.cli.texts import text
 
     kinds = ("step", "do", "see")
     rows = [

@@ -14,10 +14,10 @@ from io import StringIO
 from itertools import dropwhile
 from pathlib import Path
 
+from tiniscript.base.languages import text
+from tiniscript.base.words import WORDS
 from tiniscript.cli import main as tsc
-from tiniscript.languages import text
 from tiniscript.virtual import worlds
-from tiniscript.words import WORDS
 from tools.generate.arena import Way, arena, driven
 from tools.site.documents import sources
 

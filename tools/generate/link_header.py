@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from itertools import accumulate
 
-from tiniscript.languages import SOURCE, text
+from tiniscript.base.languages import SOURCE, text
 from tiniscript.link import messages
 from tiniscript.link.messages import MESSAGES, Field
 from tools.generate.cpp_header import array, camel, constants, enumeration

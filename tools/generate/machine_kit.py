@@ -23,13 +23,13 @@ from tests.support.kits import KITS
 from tests.vm.test_agreement import random_program
 from tests.vm.test_cases import compiled, robot_and_senses
 from tiniscript import compile_text, robots
+from tiniscript.base.kit import DEVICES, NUMBER, YES_NO, Device, Kit
 from tiniscript.bytecode.disassembly import read_listing
 from tiniscript.bytecode.image import GO, TASKS, ImageRefused, pack, sealed, unpack
 from tiniscript.bytecode.loading import loaded
 from tiniscript.bytecode.opcodes import BY_NAME, ESCAPE, ISA_MAJOR, ISA_MINOR, SHORTS, Op
 from tiniscript.bytecode.verify import Refused
 from tiniscript.conformance.kit import FORM, VERSION
-from tiniscript.kit import DEVICES, NUMBER, YES_NO, Device, Kit
 from tiniscript.vm.state import DONE, FAULT, WAITING
 from tiniscript.vm.tasks import machine_of
 from tiniscript.vm.trace import TracedRobot

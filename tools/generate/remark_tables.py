@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from tiniscript.base.languages import SOURCE
 from tiniscript.bytecode.opcodes import FAULTS
-from tiniscript.languages import SOURCE
 from tiniscript.link.messages import LINK_FAULTS
 from tiniscript.robots.profile import answered, language_number
 from tiniscript.text.problems import PROBLEMS, REMARKS, said

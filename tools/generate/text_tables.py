@@ -7,14 +7,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
+from tiniscript.base.fixed_point import HIGHEST, LOWEST
+from tiniscript.base.languages import SOURCE
+from tiniscript.base.words import ALIASES, WORDS, Word
 from tiniscript.bytecode.image import STARTS
 from tiniscript.bytecode.opcodes import BLOCKS, BY_NAME
-from tiniscript.fixed_point import HIGHEST, LOWEST
-from tiniscript.languages import SOURCE
 from tiniscript.robots.kit_words import packed, packed_range
 from tiniscript.text.levels import UNREAD
 from tiniscript.text.problems import PROBLEMS, said
-from tiniscript.words import ALIASES, WORDS, Word
 from tools.generate.cpp_header import camel
 
 FIRST_WORD = 0x40  # the token of the first word; those of signs lie below and above

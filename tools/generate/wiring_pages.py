@@ -10,7 +10,7 @@ from collections.abc import Callable
 from functools import partial
 
 from tiniscript import robots
-from tiniscript.languages import told_in
+from tiniscript.base.languages import told_in
 from tiniscript.robots.wiring.drawing import drawing_of
 from tiniscript.robots.wiring.finished import finished_of
 from tiniscript.robots.wiring.page import Block, page_of

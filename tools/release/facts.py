@@ -1,7 +1,7 @@
 """What a release says of itself in more than one place: version, date, address, people.
 
-Knows a clone as files, and git's answers about it. The version's home is `tiniscript/version.py`,
-the address's is `[project.urls]` of `pyproject.toml`.
+Knows a clone as files, and git's answers about it. The version's home is
+`tiniscript/base/version.py`, the address's is `[project.urls]` of `pyproject.toml`.
 """
 
 from __future__ import annotations
@@ -28,7 +28,8 @@ _PEOPLE = {
 
 def version(root: Path) -> str:
     """Return the version of a clone, `0.2.0`."""
-    return _first(root / "compiler" / "tiniscript" / "version.py", r'(?m)^__version__ = "(.+)"$')
+    home = root / "compiler" / "tiniscript" / "base" / "version.py"
+    return _first(home, r'(?m)^__version__ = "(.+)"$')
 
 
 def address(root: Path) -> str:
@@ -59,7 +60,7 @@ def complaints(root: Path) -> Iterator[str]:
     for name, pattern in _REPEATED.items():
         found = _first(root / name, pattern)
         if found != ours:
-            yield f"{name} has version {found or 'none'}; tiniscript/version.py has {ours}."
+            yield f"{name} has version {found or 'none'}; tiniscript/base/version.py has {ours}."
     for name, pattern in _PEOPLE.items():
         found = _first(root / name, pattern)
         if found != PEOPLE:

@@ -13,7 +13,7 @@ from sphinx.application import Sphinx
 from sphinx.search import languages as searches
 
 from tiniscript import __version__
-from tiniscript.words import WORDS
+from tiniscript.base.words import WORDS
 from tools.site.lexer import TiniScriptLexer
 
 project = "TiniScript"

@@ -14,7 +14,7 @@ from functools import cache
 from pathlib import Path, PurePosixPath
 from typing import NamedTuple
 
-from tiniscript.languages import SOURCE, about, languages, table
+from tiniscript.base.languages import SOURCE, about, languages, table
 
 LIST = "docs/README.md"  # of all others, made from here
 FRONT = "README.md"  # of each half of the site

@@ -11,7 +11,7 @@ from typing import ClassVar
 from pygments.lexer import RegexLexer, words
 from pygments.token import Comment, Keyword, Name, Number, Operator, Punctuation, String, Text
 
-from tiniscript.words import WORDS
+from tiniscript.base.words import WORDS
 
 _GRAMMAR = ("block", "arm", "end", "break", "operator", "alias")
 

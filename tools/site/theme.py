@@ -6,7 +6,7 @@ import html
 import re
 from pathlib import Path
 
-from tiniscript.languages import found
+from tiniscript.base.languages import found
 
 # A whole text between two tags, or a label.
 SAID = re.compile(r'(>\s*|(?:aria-label|title)=")([^<>"]*?)(\s*<|")')

@@ -10,8 +10,8 @@ import re
 from collections.abc import Mapping
 from typing import NamedTuple
 
+from tiniscript.base.kit import Kit
 from tiniscript.bytecode.opcodes import Op, instruction_text, op_at, read_operands
-from tiniscript.kit import Kit
 
 _ROW = re.compile(r"([0-9a-f]{4})  ((?:[0-9a-f]{2} )*[0-9a-f]{2})(?:  |$)")
 _BYTES_WIDTH = 18  # room for six bytes

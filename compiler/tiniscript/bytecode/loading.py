@@ -5,9 +5,9 @@ The three in this order, as every machine asks them. Knows no rule of its own.
 
 from __future__ import annotations
 
+from tiniscript.base.kit import Kit
 from tiniscript.bytecode.image import EVERYTHING, Image, ImageRefused, unpack
 from tiniscript.bytecode.verify import Verdict, verify
-from tiniscript.kit import Kit
 
 
 def loaded(data: bytes, kit: Kit, has: int = EVERYTHING) -> Image:

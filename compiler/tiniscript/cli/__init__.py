@@ -15,7 +15,7 @@ import sys
 from importlib import import_module
 
 from tiniscript.cli.errors import CommandError
-from tiniscript.cli.texts.common import language_of, text
+from tiniscript.cli.texts import language_of, text
 from tiniscript.cli.texts.options import LANGUAGE
 from tiniscript.cli.texts.verbs import VERBS
 
@@ -123,7 +123,7 @@ def _verb(arguments: list[str], language: str) -> int:
     if not arguments or arguments[0] in ("-h", "--help"):
         arguments = ["help"]
     if arguments[0] in ("-V", "--version"):
-        from tiniscript.version import __version__
+        from tiniscript.base.version import __version__
 
         print(f"tsc (TiniScript) {__version__}")
         _tell_missing(language)

@@ -16,7 +16,7 @@ from tiniscript.cli.errors import CommandError
 from tiniscript.cli.program_files import Found, programs
 from tiniscript.cli.repairing import print_difference, repaired
 from tiniscript.cli.spreadsheet import as_csv
-from tiniscript.cli.texts.common import text
+from tiniscript.cli.texts import text
 from tiniscript.diagnostics.rendering import Message, as_json, message
 from tiniscript.library.compiling import Compiled
 from tiniscript.robots.profile import Robot

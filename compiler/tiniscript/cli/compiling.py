@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from tiniscript.base.kit import Kit
+from tiniscript.base.source import Source
 from tiniscript.cli import inputs
 from tiniscript.diagnostics.codes import in_order
-from tiniscript.kit import Kit
 from tiniscript.library import compiling as library
 from tiniscript.library.compiling import Compiled
 from tiniscript.robots.profile import Robot
-from tiniscript.source import Source
 from tiniscript.syntax.parser import parse
 from tiniscript.text.levels import LEVELS
 

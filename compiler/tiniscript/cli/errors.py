@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from tiniscript import languages
-from tiniscript.cli.texts.common import text
+from tiniscript.base import languages
+from tiniscript.cli.texts import text
 
 
 class CommandError(Exception):

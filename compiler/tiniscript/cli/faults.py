@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tiniscript.cli.inputs import shown
-from tiniscript.cli.texts.common import text
+from tiniscript.cli.texts import text
 from tiniscript.library.source_map import Map
 
 

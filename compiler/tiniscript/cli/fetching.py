@@ -16,12 +16,12 @@ from pathlib import Path
 from time import monotonic
 from typing import NamedTuple
 
-from tiniscript import files
+from tiniscript.base import files
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.terminal.asking import agreed, can_ask
 from tiniscript.cli.terminal.progress import Progress
-from tiniscript.cli.texts.common import text
+from tiniscript.cli.texts import text
 from tiniscript.flash import children
 from tiniscript.library import install_advice
 

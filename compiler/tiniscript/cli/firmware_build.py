@@ -7,13 +7,14 @@ from argparse import Namespace
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 
-from tiniscript import files, robots
+from tiniscript import robots
+from tiniscript.base import files
 from tiniscript.cli import fetching
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.fetching import Part
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.terminal.progress import Progress
-from tiniscript.cli.texts.common import text
+from tiniscript.cli.texts import text
 from tiniscript.flash import building, ready
 from tiniscript.flash.building import LESS, CannotBuild, Seen, Sources
 from tiniscript.flash.ready import Ready

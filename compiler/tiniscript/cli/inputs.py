@@ -9,11 +9,11 @@ from pathlib import Path
 from typing import NamedTuple
 
 from tiniscript import robots
+from tiniscript.base.source import LARGEST_SOURCE, printable
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.paths import real_name
-from tiniscript.cli.texts.common import Said, text
+from tiniscript.cli.texts import Said, text
 from tiniscript.robots.profile import ProfileRefused, Robot
-from tiniscript.source import LARGEST_SOURCE, printable
 
 SHOWN = 200  # characters of a file's name
 

@@ -22,13 +22,14 @@ from typing import NamedTuple
 from rich.cells import cell_len, set_cell_size
 
 from tiniscript import robots
+from tiniscript.base.source import PROGRAM_ENDS, Unreadable, decode, printable
 from tiniscript.cli import compiling, inputs, outputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.options import whole_number
 from tiniscript.cli.program_files import Found, in_folder, read
 from tiniscript.cli.robot.simulator_options import check_picture, not_installed
 from tiniscript.cli.spreadsheet import as_csv
-from tiniscript.cli.texts.common import Said, text
+from tiniscript.cli.texts import Said, text
 from tiniscript.diagnostics.rendering import message
 from tiniscript.lessons.findings import Finding
 from tiniscript.lessons.lesson import Lesson
@@ -37,7 +38,6 @@ from tiniscript.lessons.running import Run
 from tiniscript.lessons.sentences import sentence
 from tiniscript.library.compiling import Compiled, for_robot, maker
 from tiniscript.robots.profile import Robot
-from tiniscript.source import PROGRAM_ENDS, Unreadable, decode, printable
 from tiniscript.virtual.module import NoWebAssembly
 from tiniscript.virtual.world import WorldRefused, describe
 

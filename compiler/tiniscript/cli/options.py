@@ -9,17 +9,17 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, NoReturn
 
 from tiniscript import robots
+from tiniscript.base.fixed_point import as_text, read_literal
+from tiniscript.base.words import nearest
 from tiniscript.cli import paths
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
-from tiniscript.cli.texts.common import text
+from tiniscript.cli.texts import text
 from tiniscript.cli.texts.options import Option, of_verb
 from tiniscript.cli.texts.verbs import said
-from tiniscript.fixed_point import as_text, read_literal
-from tiniscript.words import nearest
 
 if TYPE_CHECKING:
-    from tiniscript.kit import Device
+    from tiniscript.base.kit import Device
     from tiniscript.robots.profile import Robot
 
 # The messages of argparse, and what is said instead.

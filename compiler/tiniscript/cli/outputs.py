@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
-from tiniscript.cli.texts.common import text
+from tiniscript.cli.texts import text
 
 if TYPE_CHECKING:
     from tiniscript.library.compiling import Compiled
@@ -22,7 +22,7 @@ def write(path: Path, data: bytes, key: str, mode: int | None = None) -> None:
     `mode` is what its permissions become. Raises CommandError with the sentence `key` where that
     is not possible.
     """
-    from tiniscript import files
+    from tiniscript.base import files
 
     try:
         files.replace(path, data, mode, is_lasting=True)

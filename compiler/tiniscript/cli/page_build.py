@@ -11,7 +11,7 @@ from argparse import Namespace
 from tiniscript.cli import fetching
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.fetching import Part, Step
-from tiniscript.cli.texts.common import language_of, text
+from tiniscript.cli.texts import language_of, text
 from tiniscript.library import install_advice
 from tiniscript.studio import building, serving
 

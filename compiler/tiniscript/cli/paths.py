@@ -23,11 +23,11 @@ from pathlib import Path
 from typing import NamedTuple
 
 from tiniscript import robots
+from tiniscript.base.source import PROGRAM_ENDS
 from tiniscript.bytecode.image import MAGIC
 from tiniscript.cli.errors import CommandError
-from tiniscript.cli.texts.common import text
+from tiniscript.cli.texts import text
 from tiniscript.cli.texts.options import OPTIONS
-from tiniscript.source import PROGRAM_ENDS
 
 # Inputs by their name in `Namespace`: the sentence that describes the input.
 READS = {each.name: each.kind.reads for each in OPTIONS if each.kind and each.kind.reads}

@@ -11,10 +11,10 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
+from tiniscript.base.source import PROGRAM_ENDS
 from tiniscript.cli import inputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.paths import real_name
-from tiniscript.source import PROGRAM_ENDS
 
 
 class Found(NamedTuple):

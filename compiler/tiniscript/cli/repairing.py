@@ -10,11 +10,11 @@ from collections.abc import Iterator
 from difflib import unified_diff
 from typing import NamedTuple
 
+from tiniscript.base.source import printable
 from tiniscript.cli.streams import has_colors
 from tiniscript.library.compiling import Compiled, compiled, text_of
 from tiniscript.repairs.fixing import fixed
 from tiniscript.robots.profile import Robot
-from tiniscript.source import printable
 
 _BOM = b"\xef\xbb\xbf"
 _COLORS = {"+": "\033[32m", "-": "\033[31m", "@": "\033[36m"}

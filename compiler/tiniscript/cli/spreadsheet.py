@@ -12,9 +12,9 @@ import re
 from collections.abc import Iterable, Sequence
 from io import StringIO
 
-from tiniscript.cli.texts.common import text
-from tiniscript.languages import languages
-from tiniscript.source import printable
+from tiniscript.base.languages import languages
+from tiniscript.base.source import printable
+from tiniscript.cli.texts import text
 
 LONGEST = 2000  # characters of a cell
 TABLES = ("check", "lesson")

@@ -11,14 +11,14 @@ from math import log
 from pathlib import Path
 from typing import NoReturn
 
+from tiniscript.base.languages import languages
+from tiniscript.base.source import PROGRAM_ENDS
+from tiniscript.base.words import nearest
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.texts.options import of_verb
 from tiniscript.cli.texts.verbs import VERBS
 from tiniscript.cli.texts.verbs import of_verb as said_of
-from tiniscript.languages import languages
-from tiniscript.source import PROGRAM_ENDS
-from tiniscript.words import nearest
 
 MEANT = {  # what the same is called elsewhere
     "flash": "firmware", "burn": "firmware", "serial": "monitor", "repl": "live", "shell": "live",

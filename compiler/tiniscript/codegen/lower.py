@@ -10,6 +10,8 @@ Plain code is what one pass over the text can emit, as a robot does that reads t
 # No `from __future__ import annotations`: typing would compile each field's again, one by one.
 from typing import NamedTuple
 
+from tiniscript.base.fixed_point import limited, whole
+from tiniscript.base.source import Span
 from tiniscript.bytecode.opcodes import CODE_BYTES, time8
 from tiniscript.codegen.lower_expression import (
     Emitter,
@@ -20,7 +22,6 @@ from tiniscript.codegen.lower_expression import (
     stops,
     tests,
 )
-from tiniscript.fixed_point import limited, whole
 from tiniscript.semantics.ir import (
     Assign,
     Beep,
@@ -46,7 +47,6 @@ from tiniscript.semantics.ir import (
     goes_on,
 )
 from tiniscript.semantics.optimizer import constant
-from tiniscript.source import Span
 
 
 class Place(NamedTuple):

@@ -8,10 +8,10 @@ push: each operator is its instruction, and a condition is a value that IF or UN
 # No `from __future__ import annotations`: typing would compile each field's again, one by one.
 from typing import NamedTuple
 
+from tiniscript.base.source import Span
 from tiniscript.bytecode.opcodes import BY_NAME, PUSHED, SHORTS, Op
 from tiniscript.semantics.ir import Expression, Term
 from tiniscript.semantics.optimizer import is_safe
-from tiniscript.source import Span
 
 NEGATED = {"EQ": "NE", "NE": "EQ", "LT": "GE", "GE": "LT", "LE": "GT", "GT": "LE"}
 _SWAPPED = {"EQ": "EQ", "NE": "NE", "LT": "GT", "GT": "LT", "LE": "GE", "GE": "LE"}

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from tiniscript.source import Edit, Span
+from tiniscript.base.source import Edit, Span
 
 
 class Code(NamedTuple):

@@ -21,9 +21,9 @@ from itertools import count
 from pathlib import Path
 from typing import Literal, NamedTuple
 
-from tiniscript import languages
+from tiniscript.base import languages
+from tiniscript.base.source import Source, Span
 from tiniscript.diagnostics.codes import CODES, Diagnostic
-from tiniscript.source import Source, Span
 
 CATALOGUE = "messages"
 LINE_COLUMNS = 100  # of a program's line; of a longer one a window is shown

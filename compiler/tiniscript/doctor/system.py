@@ -11,7 +11,7 @@ import sys
 from pathlib import Path
 from typing import NamedTuple, Protocol
 
-from tiniscript.files import contents
+from tiniscript.base.files import contents
 from tiniscript.link import ports
 from tiniscript.link.ports import Found
 

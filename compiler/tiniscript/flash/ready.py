@@ -10,7 +10,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import NamedTuple
 
-from tiniscript.files import cache_folder, replace
+from tiniscript.base.files import cache_folder, replace
 from tiniscript.robots.profile import Robot, language_number
 
 FOLDER = Path(__file__).resolve().parent / "ready"

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from tiniscript import robots
-from tiniscript.languages import SOURCE
+from tiniscript.base.languages import SOURCE
 from tiniscript.lessons.lesson import Answer, Criterion, Lesson, LessonRefused
 from tiniscript.lessons.markdown import printed
 from tiniscript.lessons.reader import read, read_answers

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 
-from tiniscript.fixed_point import ONE, as_text
+from tiniscript.base.fixed_point import ONE, as_text
 from tiniscript.lessons import place_judging
 from tiniscript.lessons.findings import STILL_CM, Finding, Task, between, in_cm, in_seconds
 from tiniscript.lessons.lesson import ANY_VALUE, Criterion, Lesson

@@ -8,9 +8,9 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 from typing import NamedTuple
 
+from tiniscript.base.words import ALIASES, BLOCK_ENDS
 from tiniscript.lessons.running import DONE
 from tiniscript.syntax.lexer import NUMBER, WORD, Token
-from tiniscript.words import ALIASES, BLOCK_ENDS
 
 MOVES = frozenset("FBLRM")
 AHEAD = frozenset("FBM")  # what is more than a turn

@@ -13,7 +13,7 @@ import re
 from textwrap import fill
 from typing import NamedTuple
 
-from tiniscript.source import printable
+from tiniscript.base.source import printable
 
 WIDTH = 80  # columns of a page on a terminal
 ITEM = re.compile(r"(- \[ \]|-|[0-9]{1,2}\.) +(.*)")

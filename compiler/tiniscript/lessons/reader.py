@@ -9,9 +9,10 @@ import re
 from collections.abc import Mapping
 
 from tiniscript import robots
-from tiniscript.fixed_point import ONE
-from tiniscript.languages import SOURCE, ByLanguage, languages
-from tiniscript.languages import text as said_in
+from tiniscript.base.fixed_point import ONE
+from tiniscript.base.languages import SOURCE, ByLanguage, languages
+from tiniscript.base.languages import text as said_in
+from tiniscript.base.words import WORDS, nearest
 from tiniscript.lessons.lesson import (
     ANY_VALUE,
     AREA,
@@ -33,7 +34,6 @@ from tiniscript.robots.profile import Reason, Robot
 from tiniscript.robots.refusals import shown
 from tiniscript.robots.toml_table import Table, parse_toml
 from tiniscript.virtual.world import World
-from tiniscript.words import WORDS, nearest
 
 LABEL_CHARACTERS = 80
 PROGRAM_CHARACTERS = 20_000

@@ -5,10 +5,10 @@ Knows every key of `judging`. Does not know when one applies.
 
 from __future__ import annotations
 
-from tiniscript.languages import found, text
+from tiniscript.base.languages import found, text
+from tiniscript.base.source import printable
+from tiniscript.base.words import WORDS
 from tiniscript.lessons.findings import Finding
-from tiniscript.source import printable
-from tiniscript.words import WORDS
 
 # fmt: off
 # of words whose row in the table of words has no example, or one for another robot

@@ -9,7 +9,7 @@ import re
 from functools import partial
 from html import escape
 
-from tiniscript import languages
+from tiniscript.base import languages
 from tiniscript.lessons.lesson import Lesson
 from tiniscript.lessons.map import plan
 from tiniscript.lessons.markdown import Block, blocks

@@ -10,12 +10,12 @@ from collections.abc import Callable, Sequence
 from itertools import pairwise
 
 from tiniscript import robots
+from tiniscript.base.words import ALIASES, BLOCK_ENDS
 from tiniscript.lessons import kept
 from tiniscript.lessons.findings import Finding
 from tiniscript.lessons.kept import MOVES
 from tiniscript.lessons.lesson import Criterion, Lesson
 from tiniscript.syntax.lexer import NUMBER, WORD, Token, scan
-from tiniscript.words import ALIASES, BLOCK_ENDS
 
 # What a run lacked altogether, by the sentence for it, and the word that does it.
 MISSING = {

@@ -11,19 +11,19 @@ from collections.abc import Callable
 from functools import cache
 from typing import NamedTuple
 
+from tiniscript.base.kit import Kit
+from tiniscript.base.source import Source, Span, Unreadable, applied, decode
 from tiniscript.bytecode.image import GO, TASKS, Image, checksum, isa_of, pack
 from tiniscript.bytecode.opcodes import CODE_BYTES
 from tiniscript.bytecode.verify import Verdict, verify
 from tiniscript.codegen.lower import Place, lower
 from tiniscript.diagnostics import codes
-from tiniscript.kit import Kit
 from tiniscript.robots.profile import Robot
 from tiniscript.semantics import ir
 from tiniscript.semantics.checker import check
 from tiniscript.semantics.empty_blocks import empty_blocks
 from tiniscript.semantics.lint import advice
 from tiniscript.semantics.optimizer import optimized
-from tiniscript.source import Source, Span, Unreadable, applied, decode
 from tiniscript.syntax.parser import ENOUGH, parse
 
 

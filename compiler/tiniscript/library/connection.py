@@ -13,6 +13,7 @@ from types import TracebackType
 from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 from tiniscript import robots
+from tiniscript.base.source import printable
 from tiniscript.library import opening
 from tiniscript.library.client import Client, Saving
 from tiniscript.library.endings import Follower
@@ -27,7 +28,6 @@ from tiniscript.link.messages import STATE_RUNNING
 from tiniscript.link.names import saved_name
 from tiniscript.link.payloads import ReceiptReply
 from tiniscript.robots.profile import Robot
-from tiniscript.source import printable
 from tiniscript.virtual import directory
 
 if TYPE_CHECKING:

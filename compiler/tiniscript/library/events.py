@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from time import monotonic
 from typing import Literal, NamedTuple
 
+from tiniscript.base.source import printable
 from tiniscript.library import source_map
 from tiniscript.library.endings import DONE, FAULT
 from tiniscript.library.runs import Fault, Value, fault_of, value_of
@@ -14,7 +15,6 @@ from tiniscript.link.messages import STATES
 from tiniscript.link.names import cause_name, fault_name
 from tiniscript.link.outcomes import Event
 from tiniscript.link.payloads import StatusReply
-from tiniscript.source import printable
 
 
 class RobotEvent(NamedTuple):

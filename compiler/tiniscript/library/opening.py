@@ -13,6 +13,7 @@ import sys
 from time import monotonic, sleep
 from typing import IO, TYPE_CHECKING
 
+from tiniscript.base.source import printable
 from tiniscript.library.errors import RobotError
 from tiniscript.link import errors, known_ports
 from tiniscript.link.connection import LinkConnection
@@ -20,7 +21,6 @@ from tiniscript.link.errors import PortError
 from tiniscript.link.port_names import is_address, is_at_broker, is_name
 from tiniscript.link.sharing import registry
 from tiniscript.link.sharing.shared_line import OtherVersion, SharedLine, joined
-from tiniscript.source import printable
 from tiniscript.virtual import directory
 
 if TYPE_CHECKING:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import os
 
 from tiniscript import robots
+from tiniscript.base.kit import Kit
 from tiniscript.diagnostics.codes import OTHER_ROBOT, Diagnostic
-from tiniscript.kit import Kit
 from tiniscript.recovery.concepts import concept_of
 from tiniscript.robots import given
 from tiniscript.robots.profile import Robot

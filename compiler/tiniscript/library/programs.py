@@ -6,14 +6,15 @@ import os
 from pathlib import Path
 
 from tiniscript import robots
+from tiniscript.base.files import contents
+from tiniscript.base.languages import languages
+from tiniscript.base.source import PROGRAM_ENDS, printable
 from tiniscript.bytecode import loading
 from tiniscript.bytecode.disassembly import listing
 from tiniscript.bytecode.image import Image, ImageRefused, unpack
 from tiniscript.bytecode.verify import Refused
 from tiniscript.diagnostics.rendering import Message as Message
 from tiniscript.diagnostics.rendering import as_text, message
-from tiniscript.files import contents
-from tiniscript.languages import languages
 from tiniscript.library import source_map
 from tiniscript.library.compiling import Compiled, compiled, image_of
 from tiniscript.library.errors import ProgramError, UsageError
@@ -22,7 +23,6 @@ from tiniscript.library.source_map import Map
 from tiniscript.library.texts import sentence
 from tiniscript.robots.profile import ProfileRefused, Robot
 from tiniscript.robots.refusals import describe
-from tiniscript.source import PROGRAM_ENDS, printable
 
 Language = str  # "en" or "es"
 SHOWN = 200  # characters of a name or a value in a sentence

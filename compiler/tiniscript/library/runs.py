@@ -6,15 +6,15 @@ import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Literal, NamedTuple
 
+from tiniscript.base.kit import Device, Kit
+from tiniscript.base.source import printable
 from tiniscript.bytecode.image import Image, ImageRefused, pack
 from tiniscript.bytecode.verify import Refused
-from tiniscript.kit import Device, Kit
 from tiniscript.library.errors import UsageError
 from tiniscript.library.programs import Language, Program, program_of
 from tiniscript.library.source_map import Map
 from tiniscript.library.texts import sentence
 from tiniscript.robots.profile import Robot
-from tiniscript.source import printable
 from tiniscript.vm.tasks import machine_of as python_machine
 from tiniscript.vm.trace import Ending, Event, MachineOf, Senses
 from tiniscript.vm.trace import run as run_code

@@ -13,12 +13,12 @@ from itertools import takewhile
 from pathlib import Path
 from typing import NamedTuple
 
-from tiniscript import files
+from tiniscript.base import files
+from tiniscript.base.files import contents
+from tiniscript.base.source import Source
+from tiniscript.base.words import TASKS
 from tiniscript.bytecode import image as images
 from tiniscript.codegen.lower import Place
-from tiniscript.files import contents
-from tiniscript.source import Source
-from tiniscript.words import TASKS
 
 VERSION = 1
 FILE_BYTES = 32_000_000

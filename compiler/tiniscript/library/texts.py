@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from tiniscript import languages
+from tiniscript.base import languages
 
 
 def sentence(reason: str, language: str, values: Mapping[str, str]) -> str:

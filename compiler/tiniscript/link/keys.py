@@ -16,10 +16,10 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from threading import Lock
 
-from tiniscript import files
+from tiniscript.base import files
+from tiniscript.base.source import printable
 from tiniscript.link.authority import RobotKey
 from tiniscript.link.messages import KEY_BYTES, KEYS
-from tiniscript.source import printable
 
 FILE_BYTES = 1_000_000
 NAME_CHARACTERS = 16

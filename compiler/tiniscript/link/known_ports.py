@@ -10,10 +10,10 @@ from contextlib import suppress
 from pathlib import Path
 from typing import NamedTuple
 
-from tiniscript import files
-from tiniscript.files import contents
+from tiniscript.base import files
+from tiniscript.base.files import contents
+from tiniscript.base.source import printable
 from tiniscript.link.port_names import is_address, same_for_all
-from tiniscript.source import printable
 
 FILE_BYTES = 1_000_000
 KEPT = 2000  # ports; the oldest go first

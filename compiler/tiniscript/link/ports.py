@@ -12,10 +12,10 @@ from contextlib import contextmanager
 from importlib import import_module
 from typing import TYPE_CHECKING, NamedTuple, cast
 
+from tiniscript.base.source import printable
 from tiniscript.link.errors import NOT_INSTALLED, PortError
 from tiniscript.link.port_names import is_address, is_at_broker, is_bluetooth, is_network_name
 from tiniscript.link.transports import Port, Transport
-from tiniscript.source import printable
 
 if TYPE_CHECKING:
     from tiniscript.link.transports.bluetooth_search import Seen

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Generator, Mapping
 from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
 
+from tiniscript.base.source import printable
 from tiniscript.bytecode.image import HEADER_BYTES, STARTS, Image
 from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
 from tiniscript.bytecode.verify import RULES
@@ -38,7 +39,6 @@ from tiniscript.link.payloads import (
     ReceiptReply,
     SentReply,
 )
-from tiniscript.source import printable
 
 if TYPE_CHECKING:
     from tiniscript.link.seal import Seal

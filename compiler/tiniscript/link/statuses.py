@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from tiniscript import languages
+from tiniscript.base import languages
 from tiniscript.bytecode.image import REFUSALS
 from tiniscript.bytecode.verify import RULES
 from tiniscript.link.messages import FIRST_RULE, FIRST_STATUS, STATUS_NAMES

@@ -12,9 +12,11 @@ from functools import cache
 from itertools import islice
 from typing import NamedTuple
 
+from tiniscript.base.kit import Kit
+from tiniscript.base.source import Edit, Span
+from tiniscript.base.words import BLOCK_ENDS, OTHER_WAY, UNIT_OF, WORDS, nearest
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import CODES, Diagnostic
-from tiniscript.kit import Kit
 from tiniscript.recovery import advice_rows, lines, rewrites
 from tiniscript.recovery.behind import ASKING, Above, Behind, Placed, whole
 from tiniscript.recovery.concepts import ENDED, Lexeme, Names, lexemes, made, plain, said_of
@@ -22,12 +24,10 @@ from tiniscript.recovery.orders import Order, made_up, orders, question_in, writ
 from tiniscript.recovery.slots import filled
 from tiniscript.recovery.worded import Worded, sensors_of, worded
 from tiniscript.recovery.writing import laid_out, shortened, without_note
-from tiniscript.source import Edit, Span
 from tiniscript.syntax.free_names import for_a_number
 from tiniscript.syntax.lexer import WORD
 from tiniscript.syntax.operators import COMPARISONS
 from tiniscript.syntax.outline import Failure
-from tiniscript.words import BLOCK_ENDS, OTHER_WAY, UNIT_OF, WORDS, nearest
 
 LONGEST = 24  # words behind an instruction that are read
 MOST = 1_000  # of them in a text

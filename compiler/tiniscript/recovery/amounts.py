@@ -6,9 +6,9 @@ import re
 from collections.abc import Container
 from unicodedata import combining, normalize
 
+from tiniscript.base.source import Span
+from tiniscript.base.words import AMOUNT_WORDS, POWER_WORDS, WORDS
 from tiniscript.recovery.concepts import meant_by
-from tiniscript.source import Span
-from tiniscript.words import AMOUNT_WORDS, POWER_WORDS, WORDS
 
 _NEAR = 80  # characters around a value in which its call is looked for
 _BEFORE = re.compile(r"([A-Za-z]+)[ \t]*\(([^()\r\n;]*)\Z")

@@ -9,6 +9,8 @@ import re
 from collections.abc import Sequence
 from typing import NamedTuple
 
+from tiniscript.base.source import Span
+from tiniscript.base.words import NOTE_WORDS, OTHER_WAY, WAYS, WORDS, nearest
 from tiniscript.recovery import lines
 from tiniscript.recovery.concepts import (
     ENDED,
@@ -21,11 +23,9 @@ from tiniscript.recovery.concepts import (
     said_of,
 )
 from tiniscript.recovery.slots import MOVES
-from tiniscript.source import Span
 from tiniscript.syntax.lexer import NUMBER, ODD, QUOTES, WORD
 from tiniscript.syntax.operators import COMPARISONS
 from tiniscript.syntax.outline import Failure
-from tiniscript.words import NOTE_WORDS, OTHER_WAY, WAYS, WORDS, nearest
 
 DOTS = ".…"
 ASKING = ("IF", "ELSEIF", "WHILE", "UNTIL")

@@ -9,10 +9,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NamedTuple
 
+from tiniscript.base.words import BLOCK_ENDS
 from tiniscript.recovery.concepts import ENDED, Lexeme, made
 from tiniscript.recovery.rewrites import negated
 from tiniscript.syntax.outline import Item
-from tiniscript.words import BLOCK_ENDS
 
 ANY_END = "?"  # the word of an end that names no block: END, FIN
 BRACES = ("{", "}")

@@ -13,12 +13,12 @@ from functools import cache, cached_property, lru_cache
 from itertools import pairwise
 from typing import NamedTuple
 
-from tiniscript.kit import Kit
-from tiniscript.languages import SOURCE, languages, table
+from tiniscript.base.kit import Kit
+from tiniscript.base.languages import SOURCE, languages, table
+from tiniscript.base.words import ALIASES, BLOCK_ENDS, WAYS, WORDS, Speller, nearest
 from tiniscript.syntax.lexer import DASHES, NUMBER, ODD, WORD
 from tiniscript.syntax.operators import SIGNS
 from tiniscript.syntax.outline import Known
-from tiniscript.words import ALIASES, BLOCK_ENDS, WAYS, WORDS, Speller, nearest
 
 KNOWN, MISSPELT, NEAR = 1, 2, 3  # what a meaning costs: said, written nearly so, a slip away
 STARTS = frozenset(("IF", "LOOP", "WHILE", "WHEN", "TASK"))

@@ -13,6 +13,8 @@ from difflib import SequenceMatcher
 from itertools import groupby, pairwise, takewhile
 from typing import NamedTuple
 
+from tiniscript.base.source import Edit, Span
+from tiniscript.base.words import BLOCK_ENDS, WAYS, WORDS
 from tiniscript.diagnostics import codes
 from tiniscript.recovery import rows
 from tiniscript.recovery.blocks import BRACES
@@ -20,9 +22,7 @@ from tiniscript.recovery.concepts import ENDED, Lexeme, lexemes, meant_by, said_
 from tiniscript.recovery.lines import Step
 from tiniscript.recovery.search import Candidate, Change
 from tiniscript.recovery.writing import laid_out, without_note
-from tiniscript.source import Edit, Span
 from tiniscript.syntax.lexer import NUMBER, WORD
-from tiniscript.words import BLOCK_ENDS, WAYS, WORDS
 
 _WORD_CODE = rows.OTHER_WORD
 _BRACES, _UNENDED = codes.BRACES.number, codes.NEVER_ENDS.number

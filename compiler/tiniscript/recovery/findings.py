@@ -11,9 +11,11 @@ from collections import Counter
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
+from tiniscript.base.kit import Kit
+from tiniscript.base.source import Edit, Source, Span, applied, overlap
+from tiniscript.base.words import WORDS, nearest
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import CODES, Diagnostic, Repair
-from tiniscript.kit import Kit
 from tiniscript.recovery import lines, rows
 from tiniscript.recovery.advice import advised
 from tiniscript.recovery.concepts import Names, lexemes
@@ -21,9 +23,7 @@ from tiniscript.recovery.explanation import LONGEST_BLOCK, Explanation, explaine
 from tiniscript.recovery.search import Candidate, Recovery
 from tiniscript.recovery.setup import setup
 from tiniscript.recovery.writing import laid_out, without_note
-from tiniscript.source import Edit, Source, Span, applied, overlap
 from tiniscript.syntax.outline import Failure
-from tiniscript.words import WORDS, nearest
 
 LONGEST = 4_000  # characters of a text that is read as a whole
 # Codes whose sentence names what is right.

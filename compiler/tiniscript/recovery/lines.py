@@ -12,6 +12,7 @@ from functools import lru_cache
 from typing import NamedTuple
 from unicodedata import category
 
+from tiniscript.base.words import FUNCTIONS, WAYS, WORDS, nearest
 from tiniscript.recovery import rewrites, rows
 from tiniscript.recovery.blocks import ANY_END, BRACES
 from tiniscript.recovery.concepts import (
@@ -30,7 +31,6 @@ from tiniscript.recovery.slots import LONG_S, MILLISECONDS_FROM, MOVES, filled
 from tiniscript.syntax.lexer import NUMBER, WORD
 from tiniscript.syntax.operators import SIGNS
 from tiniscript.syntax.outline import Failure, Item, outline
-from tiniscript.words import FUNCTIONS, WAYS, WORDS, nearest
 
 STATES = 80  # of one line that are looked at
 SLIP_STATES = 40

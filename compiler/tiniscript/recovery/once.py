@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from tiniscript.base.source import Source
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic, Repair
-from tiniscript.source import Source
 
 MANY = 6  # calls that an example has
 # One message has the lines of the others, and their repairs.

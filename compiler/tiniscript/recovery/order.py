@@ -9,9 +9,9 @@ import re
 from collections.abc import Iterator
 from typing import NamedTuple
 
+from tiniscript.base.words import ALIASES, BLOCK_ENDS
 from tiniscript.recovery.concepts import ENDED
 from tiniscript.recovery.writing import without_note
-from tiniscript.words import ALIASES, BLOCK_ENDS
 
 _SETUP = re.compile(r"\s*S[IB]\s*\|\s*", re.IGNORECASE)
 _MOST_MOVES = 20

@@ -9,13 +9,13 @@ from collections.abc import Sequence
 from itertools import groupby
 from typing import NamedTuple
 
+from tiniscript.base.words import BLOCK_ENDS, WORDS
 from tiniscript.recovery import lines
 from tiniscript.recovery.concepts import CALLED, NEAR, Lexeme, Names, made, said_of
 from tiniscript.recovery.slots import Filled, filled
 from tiniscript.recovery.writing import laid_out
 from tiniscript.syntax.lexer import NUMBER
 from tiniscript.syntax.operators import COMPARISONS
-from tiniscript.words import BLOCK_ENDS, WORDS
 
 LONGEST = 40  # words of a sentence
 _NEAR_CM = "10"

@@ -12,12 +12,12 @@ from functools import cache
 from itertools import chain, product
 from typing import NamedTuple
 
+from tiniscript.base.words import BLOCK_ENDS, WORDS
 from tiniscript.recovery import rows
 from tiniscript.recovery.concepts import ANY, ENDED, Lexeme, Names, joined, made, said_of
 from tiniscript.recovery.slots import LONG_S
 from tiniscript.syntax.lexer import NUMBER, WORD
 from tiniscript.syntax.operators import COMPARISONS, OPPOSITES
-from tiniscript.words import BLOCK_ENDS, WORDS
 
 _ATOM = re.compile(r"'[^']*'|@\w+|[a-z]{2,}|[A-Z_0-9]+|\$|[^\w|'@\s$]+")
 _CAPTURE = re.compile(r"([a-z])=(?=.)")

@@ -12,7 +12,7 @@ from functools import cached_property
 from itertools import pairwise
 from typing import NamedTuple
 
-from tiniscript.kit import Kit
+from tiniscript.base.kit import Kit
 from tiniscript.recovery import lines, rewrites, rows
 from tiniscript.recovery.blocks import Edit, Line, Matched, matched
 from tiniscript.recovery.concepts import CALLED, Lexeme, Names, lexemes, made, plain, texts

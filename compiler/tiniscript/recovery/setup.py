@@ -6,10 +6,10 @@ import re
 from collections.abc import Sequence
 from typing import NamedTuple
 
+from tiniscript.base.words import WORDS
 from tiniscript.recovery import rows
 from tiniscript.recovery.concepts import plain
 from tiniscript.recovery.writing import without_note
-from tiniscript.words import WORDS
 
 
 class Setup(NamedTuple):

@@ -9,11 +9,11 @@ import re
 from collections.abc import Sequence
 from typing import NamedTuple
 
+from tiniscript.base.words import NOTE_WORDS, UNIT_OF, WAYS, WORDS, Argument
 from tiniscript.recovery import rows
 from tiniscript.recovery.concepts import CALLED, DONE, UNITS, Lexeme, Names, made, said_of
 from tiniscript.syntax.devices import actuator_word
 from tiniscript.syntax.lexer import NUMBER, WORD
-from tiniscript.words import NOTE_WORDS, UNIT_OF, WAYS, WORDS, Argument
 
 LONG_S = 20  # so much without a unit may be a power, degrees or centimetres
 MILLISECONDS_FROM = 100  # no wait is so many seconds

@@ -11,9 +11,11 @@ from collections.abc import Callable, Sequence
 from functools import cached_property
 from itertools import pairwise
 
+from tiniscript.base.kit import Kit
+from tiniscript.base.source import Edit, Source, Span
+from tiniscript.base.words import BLOCK_ENDS, UNIT_OF, WAYS, WORDS, said_instead
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic, Repair
-from tiniscript.kit import Kit
 from tiniscript.recovery import lines
 from tiniscript.recovery.amounts import with_number
 from tiniscript.recovery.concepts import (
@@ -28,12 +30,10 @@ from tiniscript.recovery.concepts import (
 )
 from tiniscript.recovery.orders import block, command, made_up, orders, written
 from tiniscript.recovery.writing import shortened, without_note
-from tiniscript.source import Edit, Source, Span
 from tiniscript.syntax.free_names import in_place_of
 from tiniscript.syntax.lexer import NUMBER, QUOTES, WORD
 from tiniscript.syntax.operators import COMPARISONS
 from tiniscript.syntax.outline import Failure
-from tiniscript.words import BLOCK_ENDS, UNIT_OF, WAYS, WORDS, said_instead
 
 _LAST_HEAD = re.compile(r"(?is)\b(IF|ELSEIF|WHILE|UNTIL)[ \t]*\((?!.*\b(?:IF|WHILE|UNTIL)\()")
 _DOTS = re.compile(r"(?:\.[ \t]*){2,}|\u2026")

@@ -10,11 +10,11 @@ from collections.abc import Sequence
 from itertools import pairwise
 from typing import NamedTuple
 
-from tiniscript.fixed_point import ONE
-from tiniscript.kit import Device
+from tiniscript.base.fixed_point import ONE
+from tiniscript.base.kit import Device
+from tiniscript.base.words import WORDS
 from tiniscript.recovery.concepts import Lexeme, Names, concept_of, said_of
 from tiniscript.syntax.lexer import NUMBER, WORD
-from tiniscript.words import WORDS
 
 _KINDS = ("little", "much", "light", "ahead", "none", "no", "without", "left", "right")
 _ASKING = frozenset(("little", "much", "light", "ahead", "none"))

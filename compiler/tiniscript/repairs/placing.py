@@ -6,9 +6,9 @@ alone), or names two ways, is no change. Does not know whether a repair is meant
 
 from __future__ import annotations
 
+from tiniscript.base.source import Edit
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic
-from tiniscript.source import Edit
 
 _WRITTEN = ("fix", "right", "near")  # the first of them that a diagnostic has
 _GAPS: dict[Code, tuple[str, ...]] = {

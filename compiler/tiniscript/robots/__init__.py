@@ -43,8 +43,8 @@ def load(name_or_path: str, chip: str | None = None) -> Robot:
 
         return read(text_of(name_or_path), Path(name_or_path).stem, chip)
 
+    from tiniscript.base.words import nearest
     from tiniscript.robots.refusals import shown
-    from tiniscript.words import nearest
 
     values = {"name": shown(name_or_path), "known": ", ".join(names())}
     raise ProfileRefused(

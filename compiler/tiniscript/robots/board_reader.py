@@ -9,8 +9,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from tiniscript.kit import Device, Kit
-from tiniscript.languages import languages
+from tiniscript.base.kit import Device, Kit
+from tiniscript.base.languages import languages
 from tiniscript.robots.boards import BAUDS, CHIPS, Chip
 from tiniscript.robots.driver import AT_STOP, Setting
 from tiniscript.robots.drivers import DRIVERS, drivers_for

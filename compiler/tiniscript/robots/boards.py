@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from tiniscript.fixed_point import ONE
+from tiniscript.base.fixed_point import ONE
 
 
 class Chip(NamedTuple):

@@ -11,8 +11,8 @@ import math
 from abc import ABC, abstractmethod
 from typing import ClassVar, NamedTuple, Protocol
 
-from tiniscript.fixed_point import ONE
-from tiniscript.kit import Device
+from tiniscript.base.fixed_point import ONE
+from tiniscript.base.kit import Device
 from tiniscript.robots.profile import Robot, Wiring
 
 SIDES = ("left", "right")

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from tiniscript.fixed_point import ONE
-from tiniscript.kit import Device, Kit
+from tiniscript.base.fixed_point import ONE
+from tiniscript.base.kit import Device, Kit
 from tiniscript.robots.boards import CHIPS
 from tiniscript.robots.driver import SIDES
 from tiniscript.robots.drivers import actuator_of, discs_of, motors_of, sensor_of

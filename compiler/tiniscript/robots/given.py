@@ -11,7 +11,8 @@ import json
 import os
 from pathlib import Path
 
-from tiniscript import files, robots
+from tiniscript import robots
+from tiniscript.base import files
 from tiniscript.robots.profile import ProfileRefused, Robot
 
 KEPT = 20  # profiles; the oldest go first

@@ -5,7 +5,7 @@ Knows the table of `vm_arduino/src/text/kit_words.h`.
 
 from __future__ import annotations
 
-from tiniscript.kit import Kit
+from tiniscript.base.kit import Kit
 
 LAST_LETTER = 0x80  # marks the last letter of a word
 _YES_NO, _ACTUATOR = 1, 2

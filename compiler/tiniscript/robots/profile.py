@@ -8,8 +8,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from tiniscript.kit import Kit
-from tiniscript.languages import told_in
+from tiniscript.base.kit import Kit
+from tiniscript.base.languages import told_in
 
 Reason = tuple[str, Mapping[str, str]]
 

@@ -8,9 +8,10 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 
-from tiniscript.fixed_point import ONE
-from tiniscript.kit import DEVICES, NUMBER, YES_NO, Device, Kit
-from tiniscript.languages import SOURCE, ByLanguage, languages
+from tiniscript.base.fixed_point import ONE
+from tiniscript.base.kit import DEVICES, NUMBER, YES_NO, Device, Kit
+from tiniscript.base.languages import SOURCE, ByLanguage, languages
+from tiniscript.base.words import WORDS
 from tiniscript.robots.board_reader import device_tables, read_board
 from tiniscript.robots.profile import (
     SEES,
@@ -22,7 +23,6 @@ from tiniscript.robots.profile import (
 )
 from tiniscript.robots.refusals import shown
 from tiniscript.robots.toml_table import Table, parse_toml
-from tiniscript.words import WORDS
 
 NAME_CHARACTERS = 24
 UNIT_CHARACTERS = 8

@@ -9,9 +9,9 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from tiniscript import languages
+from tiniscript.base import languages
+from tiniscript.base.source import printable
 from tiniscript.robots.profile import ProfileRefused, Reason
-from tiniscript.source import printable
 
 CATALOGUE = "refusals"
 SHOWN_CHARACTERS = 40

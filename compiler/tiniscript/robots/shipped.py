@@ -5,8 +5,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from tiniscript.kit import Device, Kit
-from tiniscript.languages import ByLanguage
+from tiniscript.base.kit import Device, Kit
+from tiniscript.base.languages import ByLanguage
 from tiniscript.robots.profile import Board, Body, Place, Robot, Wiring
 
 

@@ -10,10 +10,10 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterable, Mapping, Sequence
 
-from tiniscript.fixed_point import HIGHEST, LOWEST, as_text, read_literal
+from tiniscript.base.fixed_point import HIGHEST, LOWEST, as_text, read_literal
+from tiniscript.base.words import nearest
 from tiniscript.robots.profile import Reason
 from tiniscript.robots.refusals import shown
-from tiniscript.words import nearest
 
 
 class Written(str):

@@ -10,19 +10,19 @@ from collections.abc import Callable, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
+from tiniscript.base.kit import Kit
+from tiniscript.base.source import Source, Span
+from tiniscript.base.words import UNIT_OF, WAYS, WORDS, Argument, Word
 from tiniscript.bytecode.opcodes import BLOCKS, CALLS, DEFS, STACK_VALUES, VARIABLES
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
-from tiniscript.kit import Kit
 from tiniscript.semantics import ir
 from tiniscript.semantics.ir import Statement
 from tiniscript.semantics.symbols import ANY, Name, Scope
 from tiniscript.semantics.types import Kinds, Value
-from tiniscript.source import Source, Span
 from tiniscript.syntax import ast
 from tiniscript.syntax.devices import actuator_word
 from tiniscript.syntax.parser import parse
-from tiniscript.words import UNIT_OF, WAYS, WORDS, Argument, Word
 
 if TYPE_CHECKING:
     from tiniscript.semantics.wrong_calls import WrongCalls

@@ -8,8 +8,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from tiniscript.fixed_point import HIGHEST, as_text
-from tiniscript.kit import NUMBER, Device, Kit
+from tiniscript.base.fixed_point import HIGHEST, as_text
+from tiniscript.base.kit import NUMBER, Device, Kit
 from tiniscript.semantics.ir import Expression, Term
 from tiniscript.syntax.operators import SIGN_OF
 

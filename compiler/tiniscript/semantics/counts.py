@@ -8,10 +8,10 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
+from tiniscript.base.source import Source, Span
+from tiniscript.base.words import Word
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
-from tiniscript.source import Source, Span
-from tiniscript.words import Word
 
 LONG_TIME_S = 20  # a longer move is rarely meant: so much is a power, degrees or steps
 LOWEST_HERTZ = 30

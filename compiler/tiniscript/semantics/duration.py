@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from tiniscript.fixed_point import Fault, whole
-from tiniscript.kit import Kit
+from tiniscript.base.fixed_point import Fault, whole
+from tiniscript.base.kit import Kit
 from tiniscript.semantics.ir import (
     Beep,
     Body,

@@ -11,6 +11,8 @@ import re
 from collections.abc import Iterator, Sequence
 from itertools import takewhile
 
+from tiniscript.base.source import Source, Span
+from tiniscript.base.words import BLOCK_ENDS
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.semantics.ir import (
@@ -25,8 +27,6 @@ from tiniscript.semantics.ir import (
     bodies,
     routines,
 )
-from tiniscript.source import Source, Span
-from tiniscript.words import BLOCK_ENDS
 
 _NOTE_BEHIND = re.compile(r"[ \t;]{0,99}//")
 MANY = 12  # instructions that an example has

@@ -10,10 +10,11 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Mapping
 
+from tiniscript.base.fixed_point import as_text
+from tiniscript.base.kit import Kit
+from tiniscript.base.source import Source, Span
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic
-from tiniscript.fixed_point import as_text
-from tiniscript.kit import Kit
 from tiniscript.semantics.comparisons import (
     TIME,
     Comparison,
@@ -45,7 +46,6 @@ from tiniscript.semantics.ir import (
 )
 from tiniscript.semantics.optimizer import constant, fold
 from tiniscript.semantics.written_questions import question_of
-from tiniscript.source import Source, Span
 from tiniscript.syntax.operators import SIGN_OF
 
 SHORT = 1000  # ms: a loop looks again after so long

@@ -9,9 +9,9 @@ TRUE is 1 and FALSE is 0. All mistakes have been reported before.
 from collections.abc import Iterator
 from typing import Any, NamedTuple
 
-from tiniscript.fixed_point import as_text
-from tiniscript.kit import Kit
-from tiniscript.source import Span
+from tiniscript.base.fixed_point import as_text
+from tiniscript.base.kit import Kit
+from tiniscript.base.source import Span
 
 # An expression is flat, in the order in which a stack machine meets it. `op` is NUMBER, YES_NO,
 # VARIABLE, SENSOR, TIME, AND_LEFT, OR_LEFT, AND, OR or the name of a value instruction that

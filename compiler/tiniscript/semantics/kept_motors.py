@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from tiniscript.base.source import Source
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.semantics.ir import (
@@ -27,7 +28,6 @@ from tiniscript.semantics.ir import (
     walk,
 )
 from tiniscript.semantics.optimizer import constant, fold
-from tiniscript.source import Source
 
 
 def kept_motors(program: Program, source: Source) -> list[Diagnostic]:

@@ -6,10 +6,11 @@ of the questions. The repair is the move with that question behind UNTIL.
 
 from __future__ import annotations
 
+from tiniscript.base.fixed_point import as_text
+from tiniscript.base.kit import Kit
+from tiniscript.base.source import Source, Span
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
-from tiniscript.fixed_point import as_text
-from tiniscript.kit import Kit
 from tiniscript.semantics.comparisons import asks_if_near, comes_true, is_distance, looks_ahead
 from tiniscript.semantics.ir import (
     Assign,
@@ -30,7 +31,6 @@ from tiniscript.semantics.ir import (
 )
 from tiniscript.semantics.optimizer import constant, fold
 from tiniscript.semantics.written_questions import question_of
-from tiniscript.source import Source, Span
 from tiniscript.syntax.operators import OPPOSITES, SIGN_OF
 
 LONG_MOVE = 500  # ms: a robot goes a hand's breadth in this time

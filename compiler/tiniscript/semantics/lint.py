@@ -8,10 +8,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
+from tiniscript.base.fixed_point import as_text, whole
+from tiniscript.base.kit import Kit
+from tiniscript.base.source import Source, Span
+from tiniscript.base.words import DEVICE_WORDS
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic
-from tiniscript.fixed_point import as_text, whole
-from tiniscript.kit import Kit
 from tiniscript.semantics.frozen_questions import FrozenQuestions
 from tiniscript.semantics.ir import (
     Assign,
@@ -47,8 +49,6 @@ from tiniscript.semantics.unlikely_values import (
     swapped_names,
 )
 from tiniscript.semantics.unseen_motors import unseen
-from tiniscript.source import Source, Span
-from tiniscript.words import DEVICE_WORDS
 
 
 class _Around(NamedTuple):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tiniscript.words import POWER_WORDS, names_of
+from tiniscript.base.words import POWER_WORDS, names_of
 
 _TIMES = frozenset(names_of("time"))
 _POWERS = frozenset((*names_of("power"), *POWER_WORDS))

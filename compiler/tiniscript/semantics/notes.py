@@ -11,12 +11,12 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
+from tiniscript.base.source import Source
+from tiniscript.base.words import WORDS
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
-from tiniscript.source import Source
 from tiniscript.syntax.cursor import AT_END
 from tiniscript.syntax.lexer import NEWLINE, Token
-from tiniscript.words import WORDS
 
 _CALL = r"(?:[FBLRM]|BEEP)\(\s*-?[0-9.]+\s*,\s*-?[0-9.]+\s*\)|W\(\s*[0-9.]+\s*\)"
 _CALLS = re.compile(rf"/+\s*(?:{_CALL})(?:[;\s]*(?:{_CALL}|STOP|S))*[;\s]*", re.IGNORECASE)

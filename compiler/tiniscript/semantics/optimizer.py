@@ -9,8 +9,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from tiniscript import fixed_point
-from tiniscript.fixed_point import Fault, whole
+from tiniscript.base import fixed_point
+from tiniscript.base.fixed_point import Fault, whole
 from tiniscript.semantics.ir import (
     Arm,
     Body,

@@ -7,9 +7,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 
+from tiniscript.base.kit import Kit
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
-from tiniscript.kit import Kit
 from tiniscript.syntax.lexer import WORD, scan
 
 _UNKNOWN = (codes.UNKNOWN_NAME, codes.UNKNOWN_WORD)

@@ -9,11 +9,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
+from tiniscript.base.kit import Kit
+from tiniscript.base.source import Source, Span
+from tiniscript.base.words import nearest
 from tiniscript.diagnostics.codes import Code, Diagnostic
-from tiniscript.kit import Kit
-from tiniscript.source import Source, Span
 from tiniscript.syntax import ast
-from tiniscript.words import nearest
 
 NUMBER, YES_NO, ANY = "number", "yes_no", "any"  # ANY: a mistake was already reported there
 ENOUGH = 100  # mistakes after which a suggestion helps nobody

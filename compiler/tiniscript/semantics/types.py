@@ -9,10 +9,10 @@ from __future__ import annotations
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
+from tiniscript.base.source import Span
 from tiniscript.diagnostics import codes
 from tiniscript.semantics.ir import Expression, Term
 from tiniscript.semantics.symbols import ANY, NUMBER, YES_NO, Operand, Scope
-from tiniscript.source import Span
 from tiniscript.syntax.ast import Argument, Part
 
 if TYPE_CHECKING:

@@ -10,13 +10,8 @@ import re
 from collections.abc import Set as AbstractSet
 from itertools import chain, takewhile
 
-from tiniscript.diagnostics import codes
-from tiniscript.semantics.named_values import value_of
-from tiniscript.semantics.symbols import ENOUGH, Scope
-from tiniscript.source import Span
-from tiniscript.syntax import ast
-from tiniscript.syntax.lexer import WORD, scan
-from tiniscript.words import (
+from tiniscript.base.source import Span
+from tiniscript.base.words import (
     BLOCK_ENDS,
     NEAR_WORDS,
     PLACEHOLDERS,
@@ -24,6 +19,11 @@ from tiniscript.words import (
     WORDS,
     Word,
 )
+from tiniscript.diagnostics import codes
+from tiniscript.semantics.named_values import value_of
+from tiniscript.semantics.symbols import ENOUGH, Scope
+from tiniscript.syntax import ast
+from tiniscript.syntax.lexer import WORD, scan
 
 _DIGITS = "0123456789"
 MANY_TIMES = 20  # that a DEF is done by hand in a class

@@ -8,16 +8,16 @@ from __future__ import annotations
 
 import re
 
+from tiniscript.base.fixed_point import ONE, Fault, as_text
+from tiniscript.base.kit import Kit
+from tiniscript.base.source import Source, Span
+from tiniscript.base.words import HERTZ, POWER, UNIT_OF, Argument
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic
-from tiniscript.fixed_point import ONE, Fault, as_text
-from tiniscript.kit import Kit
 from tiniscript.semantics.ir import Assign, Beep, Body, Expression, Move, Program, every, walk
 from tiniscript.semantics.named_values import is_power, is_time
 from tiniscript.semantics.optimizer import constant, fold
 from tiniscript.semantics.ways import way_ms
-from tiniscript.source import Source, Span
-from tiniscript.words import HERTZ, POWER, UNIT_OF, Argument
 
 SECOND = 1000  # ms
 LONG_TIME = 20 * SECOND  # a power was meant, where the power is a time

@@ -5,12 +5,12 @@
 
 from __future__ import annotations
 
+from tiniscript.base.fixed_point import as_text
+from tiniscript.base.source import Source
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
-from tiniscript.fixed_point import as_text
 from tiniscript.semantics.ir import Assign, Body, If, Motors, Move, Read, Set, Show, Statement, Stop
 from tiniscript.semantics.optimizer import constant, fold
-from tiniscript.source import Source
 
 _TAKE_NO_TIME = (Read, Assign, Show, Set)
 _TIMES = range(1, 10_001)  # of `M(2, 80)`: a time was meant,

@@ -5,8 +5,8 @@ Knows how fast a kit says that its robot is.
 
 from __future__ import annotations
 
-from tiniscript.fixed_point import HIGHEST, Fault, limited, whole
-from tiniscript.kit import Kit
+from tiniscript.base.fixed_point import HIGHEST, Fault, limited, whole
+from tiniscript.base.kit import Kit
 from tiniscript.semantics.ir import Move, Statement, Term
 from tiniscript.semantics.optimizer import constant, fold
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from tiniscript.source import Source, Span
+from tiniscript.base.source import Source, Span
 
 LONGEST = 120  # characters of a question that a message can hold
 

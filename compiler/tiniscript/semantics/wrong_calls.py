@@ -10,8 +10,10 @@ import re
 from collections.abc import Iterator, Sequence
 from itertools import islice
 
+from tiniscript.base.fixed_point import HIGHEST, as_text
+from tiniscript.base.source import Source, Span
+from tiniscript.base.words import BLOCK_ENDS, OTHER_WAY, UNIT_OF, WORDS, Argument, Word
 from tiniscript.diagnostics import codes
-from tiniscript.fixed_point import HIGHEST, as_text
 from tiniscript.semantics import ir
 from tiniscript.semantics.comparisons import looks_ahead
 from tiniscript.semantics.counts import LONG_TIME_S, LOWEST_HERTZ, count_diagnostic
@@ -22,10 +24,8 @@ from tiniscript.semantics.unknown_words import (
     report_unknown,
     report_words_shown,
 )
-from tiniscript.source import Source, Span
 from tiniscript.syntax import ast
 from tiniscript.syntax.free_names import numbered
-from tiniscript.words import BLOCK_ENDS, OTHER_WAY, UNIT_OF, WORDS, Argument, Word
 
 _NEAR = 500  # characters behind a value for a sensor in which its use is looked for
 

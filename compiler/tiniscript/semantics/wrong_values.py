@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import re
 
+from tiniscript.base.source import Span
+from tiniscript.base.words import POWER_WORDS, SENSOR_STEMS, UNIT_OF, WORDS
 from tiniscript.diagnostics import codes
 from tiniscript.recovery.amounts import is_amount, with_number
 from tiniscript.recovery.concepts import meant_by, said_of
@@ -15,10 +17,8 @@ from tiniscript.semantics.comparisons import ASIDE
 from tiniscript.semantics.named_values import value_of
 from tiniscript.semantics.symbols import ENOUGH, NUMBER, Operand, Scope
 from tiniscript.semantics.unknown_words import meant_value, whole_name
-from tiniscript.source import Span
 from tiniscript.syntax.ast import Part
 from tiniscript.syntax.operators import SIGN_OF
-from tiniscript.words import POWER_WORDS, SENSOR_STEMS, UNIT_OF, WORDS
 
 _EQUAL = frozenset(("EQ", "NE"))
 _COMPARES = re.compile(r"\w+\s*((?:<=|>=|<>|[<>=])\s*[\w.]+)")  # `> 5` of `X > 5`

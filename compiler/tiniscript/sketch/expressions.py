@@ -11,7 +11,7 @@ import struct
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
-from tiniscript.fixed_point import ONE, as_text
+from tiniscript.base.fixed_point import ONE, as_text
 from tiniscript.semantics.ir import Expression
 from tiniscript.syntax.operators import SIGN_OF
 

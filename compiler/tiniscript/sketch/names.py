@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import re
 
-from tiniscript.languages import languages, text
+from tiniscript.base.languages import languages, text
 from tiniscript.sketch.texts import IDENTIFIERS, called
 
 RESERVED = frozenset(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from tiniscript.languages import found, text
+from tiniscript.base.languages import found, text
 
 # What has a name of its own in each language.
 IDENTIFIERS = [

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from typing import NamedTuple
 
-from tiniscript.fixed_point import ONE
-from tiniscript.kit import Device
+from tiniscript.base.fixed_point import ONE
+from tiniscript.base.kit import Device
 from tiniscript.robots.boards import CHIPS
 from tiniscript.robots.drivers import actuator_of, motors_of, sensor_of
 from tiniscript.robots.profile import Robot, Wiring

@@ -9,6 +9,7 @@ import re
 from collections.abc import Iterable
 from textwrap import wrap
 
+from tiniscript.base.source import Source
 from tiniscript.robots.profile import Robot
 from tiniscript.semantics import ir
 from tiniscript.semantics.optimizer import constant
@@ -18,7 +19,6 @@ from tiniscript.sketch.names import Names
 from tiniscript.sketch.statements import Comment, Named, Statements, harmless
 from tiniscript.sketch.texts import IDENTIFIERS, called, said, with_locals
 from tiniscript.sketch.wiring import Plan, is_count, is_small
-from tiniscript.source import Source
 from tiniscript.syntax.lexer import scan
 
 

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
-from tiniscript.words import UNIT_OF, WORDS
+from tiniscript.base.words import UNIT_OF, WORDS
 
 
 class Kind(NamedTuple):

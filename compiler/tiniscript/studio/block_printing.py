@@ -9,12 +9,12 @@ from __future__ import annotations
 import re
 from typing import NamedTuple
 
+from tiniscript.base.words import BLOCK_ENDS, WORDS
 from tiniscript.studio.block_form import Block, Form, Place, Stack, Value
 from tiniscript.studio.block_kinds import KINDS
 from tiniscript.studio.block_reading import LOOSE, LOOSE_VALUE
 from tiniscript.syntax.formatter import BEFORE_COMMENT, Row, lines_of
 from tiniscript.syntax.operators import BINARY, COMPARISON, MINUS, NOT
-from tiniscript.words import BLOCK_ENDS, WORDS
 
 ATOM = MINUS + 1  # needs no brackets anywhere
 

@@ -8,9 +8,10 @@ from __future__ import annotations
 
 import re
 
-from tiniscript.fixed_point import as_text
-from tiniscript.kit import Kit
-from tiniscript.source import Source, Span
+from tiniscript.base.fixed_point import as_text
+from tiniscript.base.kit import Kit
+from tiniscript.base.source import Source, Span
+from tiniscript.base.words import WORDS
 from tiniscript.studio.block_form import Block, Form, Place, Stack, Value
 from tiniscript.studio.block_kinds import KINDS
 from tiniscript.syntax.ast import (
@@ -28,7 +29,6 @@ from tiniscript.syntax.ast import (
 )
 from tiniscript.syntax.formatter import Piece, instruction_text, is_one_line, pieces_of
 from tiniscript.syntax.parser import Parsed, parse
-from tiniscript.words import WORDS
 
 LOOSE = "///"  # begins the lines of blocks that hang on nothing
 LOOSE_VALUE = "= "

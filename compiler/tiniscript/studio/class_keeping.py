@@ -16,8 +16,8 @@ from time import time
 from typing import Any, NamedTuple
 
 from tiniscript import robots
-from tiniscript.files import contents, replace, settings_folder
-from tiniscript.source import printable
+from tiniscript.base.files import contents, replace, settings_folder
+from tiniscript.base.source import printable
 
 Json = dict[str, Any]
 

@@ -8,8 +8,9 @@ from __future__ import annotations
 from typing import Any
 
 from tiniscript import robots
-from tiniscript.fixed_point import ONE
-from tiniscript.languages import languages
+from tiniscript.base.fixed_point import ONE
+from tiniscript.base.languages import languages
+from tiniscript.base.words import WORDS
 from tiniscript.library import opening
 from tiniscript.link.messages import NAME_BYTES, STOP_BYTES
 from tiniscript.robots.kinematics import Pose
@@ -17,7 +18,6 @@ from tiniscript.robots.profile import Robot
 from tiniscript.studio.world_form import form_of, limits
 from tiniscript.virtual import worlds
 from tiniscript.virtual.driving import Hull
-from tiniscript.words import WORDS
 
 _UNOFFERED = ("alias", "later")  # roles of words that a program is better off without
 

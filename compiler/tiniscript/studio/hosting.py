@@ -11,10 +11,10 @@ from time import monotonic
 from typing import Any
 
 from tiniscript import robots
-from tiniscript.languages import languages
+from tiniscript.base.languages import languages
+from tiniscript.base.source import printable
 from tiniscript.link import known_ports, ports
 from tiniscript.link.port_names import is_there, same_for_all
-from tiniscript.source import printable
 from tiniscript.studio.attending import LATCH_S
 from tiniscript.studio.hosted_robot import HostedRobot
 from tiniscript.studio.robot_link import BadRequest, Json

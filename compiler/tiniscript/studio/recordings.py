@@ -15,8 +15,8 @@ import re
 from codecs import BOM_UTF16_BE, BOM_UTF16_LE
 from typing import NamedTuple
 
+from tiniscript.base.fixed_point import ONE
 from tiniscript.bytecode.image import checksum
-from tiniscript.fixed_point import ONE
 from tiniscript.library.compiling import compiled, for_robot
 from tiniscript.library.source_map import made
 from tiniscript.semantics import ir

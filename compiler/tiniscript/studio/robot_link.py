@@ -14,8 +14,9 @@ from collections.abc import Callable
 from typing import Any, NamedTuple, Protocol, TypeVar
 
 from tiniscript import robots
+from tiniscript.base.fixed_point import as_text
+from tiniscript.base.source import printable
 from tiniscript.bytecode.image import Image, ImageRefused, unpack
-from tiniscript.fixed_point import as_text
 from tiniscript.library.known_kits import shipped_of_kit
 from tiniscript.library.refusing import refusal
 from tiniscript.link.authority import whose
@@ -34,7 +35,6 @@ from tiniscript.link.payloads import HelloReply, ReceiptReply, StatusReply, Trim
 from tiniscript.link.requests import OK, DeviceInfo, Reply
 from tiniscript.link.statuses import name_of, sentence
 from tiniscript.link.trim import Trim, told
-from tiniscript.source import printable
 
 Json = dict[str, Any]
 T = TypeVar("T")

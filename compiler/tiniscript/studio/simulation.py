@@ -8,8 +8,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from typing import Any, NamedTuple
 
+from tiniscript.base.fixed_point import ONE
 from tiniscript.bytecode.image import unpack
-from tiniscript.fixed_point import ONE
 from tiniscript.link.requests import OK
 from tiniscript.studio.checking import profile_of
 from tiniscript.virtual.computer import Computer

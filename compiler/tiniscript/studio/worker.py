@@ -9,10 +9,10 @@ import json
 from collections.abc import Callable
 from typing import Any
 
-from tiniscript import languages
+from tiniscript.base import catalogue_compiler as compiling
+from tiniscript.base import languages
 from tiniscript.bytecode.image import checksum
 from tiniscript.diagnostics.rendering import Message
-from tiniscript.languages import compiling
 from tiniscript.studio import checking
 from tiniscript.studio.block_form import data_of, from_data, in_order, size_of
 from tiniscript.studio.block_printing import print_blocks

@@ -9,7 +9,7 @@ import json
 import math
 from typing import Any
 
-from tiniscript.languages import SOURCE, languages
+from tiniscript.base.languages import SOURCE, languages
 from tiniscript.virtual.geometry import Point
 from tiniscript.virtual.world import World
 from tiniscript.virtual.worlds import PARTS, POINTS

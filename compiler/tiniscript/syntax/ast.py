@@ -8,7 +8,7 @@ stack. Between the two sides of an AND or OR stands AND_LEFT or OR_LEFT.
 # No `from __future__ import annotations`: typing would compile each field's again, one by one.
 from typing import NamedTuple
 
-from tiniscript.source import Span
+from tiniscript.base.source import Span
 
 
 class Part(NamedTuple):

@@ -5,14 +5,14 @@ Knows which instructions belong to which block. Knows no tokens but the names of
 
 from __future__ import annotations
 
+from tiniscript.base.source import Span
+from tiniscript.base.words import ALIASES, BLOCK_ENDS
+from tiniscript.base.words import TASKS as TASK_WORDS
 from tiniscript.bytecode.opcodes import BLOCKS, TASKS
 from tiniscript.diagnostics import codes
-from tiniscript.source import Span
 from tiniscript.syntax.ast import Argument, Arm, Def, If, Instruction, Loop, Task, While
 from tiniscript.syntax.lexer import Token
 from tiniscript.syntax.reporter import Reporter
-from tiniscript.words import ALIASES, BLOCK_ENDS
-from tiniscript.words import TASKS as TASK_WORDS
 
 HEADERS = frozenset(BLOCK_ENDS) - {"DEF", "TASK"}  # with brackets: IF, LOOP, WHILE, WHEN
 _AT_TOP = frozenset(("DEF", *TASK_WORDS))  # they stand in no other block, and do not count as one

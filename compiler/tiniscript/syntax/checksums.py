@@ -8,9 +8,9 @@ from __future__ import annotations
 import re
 from zlib import crc32
 
+from tiniscript.base.source import SPACES, Span
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
-from tiniscript.source import SPACES, Span
 
 _BYTE_ORDER_MARK = "\ufeff"
 

@@ -5,7 +5,7 @@ Knows how to look around and how to go on. Knows no grammar and reports nothing.
 
 from __future__ import annotations
 
-from tiniscript.source import Source, Span
+from tiniscript.base.source import Source, Span
 from tiniscript.syntax.lexer import END, NEWLINE, Token
 
 AT_END = frozenset((";", NEWLINE, END))  # where an instruction ends

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from tiniscript.fixed_point import as_text
-from tiniscript.kit import Device
-from tiniscript.words import Argument, Word
+from tiniscript.base.fixed_point import as_text
+from tiniscript.base.kit import Device
+from tiniscript.base.words import Argument, Word
 
 
 def actuator_word(device: Device) -> Word:

@@ -8,15 +8,15 @@ from __future__ import annotations
 
 from typing import NoReturn
 
+from tiniscript.base.fixed_point import HIGHEST, LOWEST, as_text, read_literal
+from tiniscript.base.source import Span
+from tiniscript.base.words import UNIT_OF, WAYS, WORDS, Word
 from tiniscript.diagnostics import codes
-from tiniscript.fixed_point import HIGHEST, LOWEST, as_text, read_literal
-from tiniscript.source import Span
 from tiniscript.syntax.ast import Argument, Part
 from tiniscript.syntax.cursor import AFTER_VALUE, Cursor
 from tiniscript.syntax.lexer import NEWLINE, NUMBER, ODD, WORD, Token
 from tiniscript.syntax.operators import AND, BINARY, COMPARISON, MINUS, NOT, OPEN, Operator, Postfix
 from tiniscript.syntax.reporter import Failed, Reporter
-from tiniscript.words import UNIT_OF, WAYS, WORDS, Word
 
 
 class ExpressionParser:

@@ -9,10 +9,10 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from tiniscript.source import Source
+from tiniscript.base.source import Source
+from tiniscript.base.words import ALIASES, BLOCK_ENDS
 from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, WORD, Scan, Token, scan
 from tiniscript.syntax.operators import SIGNS
-from tiniscript.words import ALIASES, BLOCK_ENDS
 
 INDENT = "  "
 BEFORE_COMMENT = "  "

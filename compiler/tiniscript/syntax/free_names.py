@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from functools import lru_cache
 from itertools import count
 
-from tiniscript.words import other_name
+from tiniscript.base.words import other_name
 
 _NAME = re.compile(r"\w+")
 

@@ -10,8 +10,8 @@ import re
 from collections.abc import Sequence
 from typing import NamedTuple
 
+from tiniscript.base.source import SPACES, Span
 from tiniscript.diagnostics.codes import Diagnostic
-from tiniscript.source import SPACES, Span
 
 WORD = "word"
 NUMBER = "number"

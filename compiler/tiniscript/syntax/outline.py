@@ -9,8 +9,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NamedTuple
 
+from tiniscript.base.source import Source, Span
+from tiniscript.base.words import BLOCK_ENDS, WORDS, Word
 from tiniscript.diagnostics import codes
-from tiniscript.source import Source, Span
 from tiniscript.syntax.ast import Argument
 from tiniscript.syntax.blocks import ENDS, Block, Blocks
 from tiniscript.syntax.expressions import ExpressionParser
@@ -18,7 +19,6 @@ from tiniscript.syntax.lexer import END, WORD, Scan, Token
 from tiniscript.syntax.operators import Postfix
 from tiniscript.syntax.parser import Parser
 from tiniscript.syntax.reporter import Failed, Reporter
-from tiniscript.words import BLOCK_ENDS, WORDS, Word
 
 
 class Known(NamedTuple):

@@ -30,15 +30,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NamedTuple
 
+from tiniscript.base.source import Source, Span
+from tiniscript.base.words import BLOCK_ENDS, WORDS, Word
 from tiniscript.diagnostics import codes
-from tiniscript.source import Source, Span
 from tiniscript.syntax.ast import Argument, Assign, Break, Command, Program
 from tiniscript.syntax.blocks import ENDS, HEADERS, Blocks
 from tiniscript.syntax.cursor import AT_END, Cursor
 from tiniscript.syntax.expressions import ExpressionParser, odd
 from tiniscript.syntax.lexer import END, NEWLINE, ODD, WORD, Scan, Token, scan
 from tiniscript.syntax.reporter import Failed, Reporter
-from tiniscript.words import BLOCK_ENDS, WORDS, Word
 
 ENOUGH = 100  # diagnostics after which reading on helps nobody
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NoReturn
 
+from tiniscript.base.source import Span
 from tiniscript.diagnostics.codes import Code, Diagnostic
-from tiniscript.source import Span
 
 
 class Failed(Exception):

@@ -6,11 +6,11 @@ those have been reported.
 
 from __future__ import annotations
 
+from tiniscript.base.kit import Kit
+from tiniscript.base.source import Source, Span
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
-from tiniscript.kit import Kit
 from tiniscript.semantics.ir import Program, first_way
-from tiniscript.source import Source, Span
 from tiniscript.syntax.lexer import WORD
 from tiniscript.syntax.parser import parse
 from tiniscript.text.levels import CODE_BYTES, LONGEST_WORD, Level

@@ -6,7 +6,7 @@ All other limits (variables, blocks, values on the stack, DEFs, calls) are those
 # No `from __future__ import annotations`: typing would compile each field's again, one by one.
 from typing import NamedTuple
 
-from tiniscript.words import ALIASES, BLOCK_ENDS, TASKS, WAYS, WORDS
+from tiniscript.base.words import ALIASES, BLOCK_ENDS, TASKS, WAYS, WORDS
 
 CODE_BYTES = 255  # of a typed program: a jump of one byte reaches over all of it
 LONGEST_WORD = 255  # letters of a word that a reader takes

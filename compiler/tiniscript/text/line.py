@@ -9,13 +9,13 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
+from tiniscript.base.source import Source, Span
+from tiniscript.base.words import ALIASES, WORDS
 from tiniscript.bytecode.opcodes import op_at
 from tiniscript.codegen.lower import lower
 from tiniscript.semantics.ir import Program
-from tiniscript.source import Source, Span
 from tiniscript.syntax.checksums import with_checksum
 from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, WORD, Token, scan
-from tiniscript.words import ALIASES, WORDS
 
 EMPTY = "SI|"  # a program that does nothing: an empty line would be none
 

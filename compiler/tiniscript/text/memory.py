@@ -10,16 +10,16 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from tiniscript.base.fixed_point import read_literal
+from tiniscript.base.kit import Kit
+from tiniscript.base.source import Span
+from tiniscript.base.words import WORDS
 from tiniscript.bytecode.opcodes import SHORTS
 from tiniscript.codegen.lower_expression import push_bytes
-from tiniscript.fixed_point import read_literal
-from tiniscript.kit import Kit
-from tiniscript.source import Span
 from tiniscript.syntax.blocks import ENDS
 from tiniscript.syntax.cursor import AT_END
 from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, WORD, Token
 from tiniscript.syntax.operators import AND, BINARY, MINUS, NOT, OPEN
-from tiniscript.words import WORDS
 
 MOST_BRACKETS = 254  # open at once
 _BLOCK_BYTES = 3  # and three sets of sensors

@@ -6,7 +6,7 @@ room for one language. A number is never used for something else. Texts are ASCI
 
 from __future__ import annotations
 
-from tiniscript.languages import found
+from tiniscript.base.languages import found
 
 LONGEST = 40  # characters of a text
 

@@ -10,8 +10,8 @@ import json
 from pathlib import Path
 from typing import NamedTuple
 
-from tiniscript import files
-from tiniscript.files import contents
+from tiniscript.base import files
+from tiniscript.base.files import contents
 from tiniscript.link.port_names import same_for_all
 from tiniscript.link.sharing.registry import is_taken
 

@@ -10,8 +10,8 @@ import math
 from collections.abc import Mapping, Sequence
 from random import Random
 
-from tiniscript.fixed_point import ONE
-from tiniscript.kit import Device
+from tiniscript.base.fixed_point import ONE
+from tiniscript.base.kit import Device
 from tiniscript.robots.kinematics import Pose
 from tiniscript.robots.profile import Place, Robot
 from tiniscript.virtual.driving import TOUCH_CM, Hull

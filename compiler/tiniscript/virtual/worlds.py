@@ -6,15 +6,15 @@ import math
 from pathlib import Path
 
 from tiniscript import robots
-from tiniscript.fixed_point import ONE
-from tiniscript.languages import ByLanguage, languages
+from tiniscript.base.fixed_point import ONE
+from tiniscript.base.languages import ByLanguage, languages
+from tiniscript.base.words import nearest
 from tiniscript.robots.kinematics import Pose
 from tiniscript.robots.profile import ProfileRefused, Reason
 from tiniscript.robots.refusals import shown
 from tiniscript.robots.toml_table import Table, parse_toml
 from tiniscript.virtual.geometry import Point
 from tiniscript.virtual.world import Flag, Lamp, Line, World, WorldRefused
-from tiniscript.words import nearest
 
 LARGEST_CM = 2000 * ONE
 PARTS = 100  # walls, and as many boxes, lines, lamps and flags

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from tiniscript.base.fixed_point import ONE, limited, whole
 from tiniscript.bytecode.opcodes import time8_ms
-from tiniscript.fixed_point import ONE, limited, whole
 from tiniscript.vm.handlers import HANDLERS, Handler, Step, does
 from tiniscript.vm.state import FOREVER, PAUSE, Execution, Powers
 from tiniscript.vm.values import COMPARE, Compare

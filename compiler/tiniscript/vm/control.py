@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tiniscript.fixed_point import ONE, whole
+from tiniscript.base.fixed_point import ONE, whole
 from tiniscript.vm.handlers import HANDLERS, Handler, Step, does
 from tiniscript.vm.state import Execution
 from tiniscript.vm.values import COMPARE, Compare

@@ -7,7 +7,7 @@ Runs verified code. Time comes in as `now_ms`, which does not wrap around here; 
 
 from __future__ import annotations
 
-from tiniscript.fixed_point import Fault
+from tiniscript.base.fixed_point import Fault
 from tiniscript.vm.handlers import STAY, stopped
 from tiniscript.vm.instructions import bound, instruction
 from tiniscript.vm.state import DONE, FAULT, MOVE, NOTHING, RUNNING, WAITING, Execution, Robot, Task

@@ -9,8 +9,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import NamedTuple, Protocol
 
-from tiniscript.fixed_point import as_text, limited, whole
-from tiniscript.kit import Kit
+from tiniscript.base.fixed_point import as_text, limited, whole
+from tiniscript.base.kit import Kit
 from tiniscript.vm.state import DONE, FAULT, WAITING, Robot
 from tiniscript.vm.tasks import machine_of as python_machine
 

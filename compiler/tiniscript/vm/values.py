@@ -5,9 +5,9 @@ from __future__ import annotations
 import operator
 from collections.abc import Callable
 
-from tiniscript import fixed_point
+from tiniscript.base import fixed_point
+from tiniscript.base.fixed_point import ONE, in_range, next_random, random_between
 from tiniscript.bytecode.opcodes import COMPARATORS, PUSHED
-from tiniscript.fixed_point import ONE, in_range, next_random, random_between
 from tiniscript.vm.handlers import HANDLERS, STAY, Handler, Step, does
 from tiniscript.vm.state import Execution
 

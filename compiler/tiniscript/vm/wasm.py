@@ -16,10 +16,10 @@ from weakref import ref
 
 from wasmtime import Func, FuncType, Instance, Memory
 
+from tiniscript.base.kit import Kit
 from tiniscript.bytecode.image import REFUSALS, ImageRefused
 from tiniscript.bytecode.opcodes import FAULTS
 from tiniscript.bytecode.verify import RULES, Refused
-from tiniscript.kit import Kit
 from tiniscript.vm import wasm_store
 from tiniscript.vm.state import CLOCK_MS, DONE, FAULT, RUNNING, WAITING, Robot
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from tiniscript.cli import inputs, outputs
 from tiniscript.cli.errors import CommandError
-from tiniscript.cli.texts.common import text
+from tiniscript.cli.texts import text
 from tiniscript.robots import firmware
 
 SKETCH, HOME = Path("vm_arduino"), Path("src/boards/kits/own.h")  # and the place in it

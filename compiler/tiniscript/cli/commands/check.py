@@ -9,7 +9,7 @@ from argparse import Namespace
 from tiniscript.cli import compiling, inputs, outputs, program_files
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import Input
-from tiniscript.cli.texts.common import text
+from tiniscript.cli.texts import text
 from tiniscript.diagnostics.rendering import as_json, message
 from tiniscript.library.compiling import Compiled
 from tiniscript.robots.profile import Robot

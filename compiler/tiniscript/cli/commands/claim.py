@@ -8,7 +8,7 @@ from argparse import Namespace
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot.connect import Connection, connected
-from tiniscript.cli.texts.common import text
+from tiniscript.cli.texts import text
 from tiniscript.link.authority import NOT_OWNER, OF_ANOTHER, whose
 from tiniscript.link.keys import KeyFile
 from tiniscript.link.messages import KEY_OWNER, KEY_TEACHER, OWNERS, STATUSES

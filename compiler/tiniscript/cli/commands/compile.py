@@ -6,13 +6,13 @@ import sys
 from argparse import Namespace
 from pathlib import Path
 
+from tiniscript.base.fixed_point import as_text
+from tiniscript.base.kit import Kit
 from tiniscript.bytecode.opcodes import STACK_VALUES
 from tiniscript.cli import compiling, inputs, outputs, paths
 from tiniscript.cli.errors import CommandError
-from tiniscript.cli.texts.common import text
+from tiniscript.cli.texts import text
 from tiniscript.diagnostics.codes import WILL_FAULT
-from tiniscript.fixed_point import as_text
-from tiniscript.kit import Kit
 from tiniscript.library.compiling import Compiled, for_robot
 from tiniscript.semantics.ir import Program
 from tiniscript.semantics.optimizer import optimized

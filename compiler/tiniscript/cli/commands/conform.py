@@ -14,7 +14,7 @@ from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.options import whole_number
 from tiniscript.cli.robot.connect import FASTEST_BAUD, SLOWEST_BAUD, port_failure
-from tiniscript.cli.texts.common import text
+from tiniscript.cli.texts import text
 from tiniscript.conformance import link_kit, port_checks
 from tiniscript.conformance.comparing import AGREES, DIFFERS, LACKS, Verdict, verdicts
 from tiniscript.conformance.kit import VERSION, machine_cases

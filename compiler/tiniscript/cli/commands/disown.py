@@ -5,7 +5,7 @@ from __future__ import annotations
 from argparse import Namespace
 
 from tiniscript.cli.robot.connect import connected
-from tiniscript.cli.texts.common import text
+from tiniscript.cli.texts import text
 from tiniscript.link.messages import KEY_OWNER, KEY_TEACHER, OWNED
 
 

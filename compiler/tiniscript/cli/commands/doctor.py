@@ -11,6 +11,7 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 
+from tiniscript.base.version import __version__
 from tiniscript.cli import inputs, outputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
@@ -19,7 +20,7 @@ from tiniscript.cli.robot.connect import Connection, baud_of, robot_of_kit
 from tiniscript.cli.robot.simulator import running_address
 from tiniscript.cli.streams import are_read
 from tiniscript.cli.terminal.asking import agreed, can_ask
-from tiniscript.cli.texts.common import has_text, text
+from tiniscript.cli.texts import has_text, text
 from tiniscript.doctor import report
 from tiniscript.doctor.diagnosis import Diagnosis, Doors, Question, diagnosed
 from tiniscript.doctor.examination import Expected
@@ -32,7 +33,6 @@ from tiniscript.link.keys import KeyFile
 from tiniscript.link.messages import RESETS
 from tiniscript.link.sharing.shared_line import joined
 from tiniscript.link.wire import SerialWire, Wire
-from tiniscript.version import __version__
 from tiniscript.virtual import directory
 
 LONGEST_WATCH_S = 600

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from argparse import Namespace
 
+from tiniscript.base.words import nearest
 from tiniscript.cli.errors import CommandError
 from tiniscript.diagnostics.codes import CODES
 from tiniscript.diagnostics.rendering import explain, titles
-from tiniscript.words import nearest
 
 
 def run(options: Namespace, language: str) -> int:

@@ -8,7 +8,7 @@ from pathlib import Path
 from tiniscript.cli import images, inputs, outputs
 from tiniscript.cli.commands import show
 from tiniscript.cli.robot.connect import connected
-from tiniscript.cli.texts.common import text
+from tiniscript.cli.texts import text
 
 
 def run(options: Namespace, language: str) -> int:

@@ -12,7 +12,7 @@ from tiniscript.cli.inputs import shown
 from tiniscript.cli.options import bad_choice
 from tiniscript.cli.robot.connect import Connection, port_failure
 from tiniscript.cli.terminal.progress import Progress, waiting
-from tiniscript.cli.texts.common import text
+from tiniscript.cli.texts import text
 from tiniscript.flash import avrdude
 from tiniscript.flash.avrdude import Ended, Seen
 from tiniscript.flash.bootloaders import BOARDS, UNO, Bootloader

@@ -5,10 +5,10 @@ from __future__ import annotations
 import sys
 from argparse import Namespace
 
+from tiniscript.base.source import LARGEST_SOURCE
 from tiniscript.cli import compiling, inputs, outputs
 from tiniscript.cli.errors import CommandError
-from tiniscript.cli.texts.common import text
-from tiniscript.source import LARGEST_SOURCE
+from tiniscript.cli.texts import text
 from tiniscript.syntax.formatter import formatted
 
 

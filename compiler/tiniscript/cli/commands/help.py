@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from argparse import Namespace
 
+from tiniscript.base.languages import languages
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.help import show_all, show_first, show_found, show_verb
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.texts.verbs import VERBS, said
 from tiniscript.cli.verbless import meant, refuse, verbs_for
-from tiniscript.languages import languages
 
 
 def run(options: Namespace, language: str) -> int:

@@ -14,7 +14,7 @@ from tiniscript.cli.robot.connect import Connection, robot_of_kit
 from tiniscript.cli.robot.event_printer import fault_sentence
 from tiniscript.cli.robot.fleet import together
 from tiniscript.cli.robot.member import Member, Result, are_many
-from tiniscript.cli.texts.common import text
+from tiniscript.cli.texts import text
 from tiniscript.library import source_map
 from tiniscript.link.authority import OF_ANOTHER, whose
 from tiniscript.link.messages import (

@@ -7,11 +7,11 @@ import sys
 from argparse import Namespace
 from pathlib import Path
 
-from tiniscript import files
+from tiniscript.base import files
 from tiniscript.cli import outputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
-from tiniscript.cli.texts.common import text
+from tiniscript.cli.texts import text
 from tiniscript.link import keys
 from tiniscript.link.authority import RobotKey
 from tiniscript.link.keys import BadKeys, KeyFile, TooManyKeys

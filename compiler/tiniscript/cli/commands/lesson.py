@@ -10,7 +10,7 @@ from tiniscript.cli import inputs, outputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.lesson_check import check
 from tiniscript.cli.terminal import pager
-from tiniscript.cli.texts.common import Said, text
+from tiniscript.cli.texts import Said, text
 from tiniscript.cli.texts.options import LESSON_ACTIONS as ACTIONS
 from tiniscript.cli.texts.options import of_verb
 from tiniscript.lessons import catalogue

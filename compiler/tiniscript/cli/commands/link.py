@@ -10,7 +10,7 @@ from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot.bookkeeping import Bookkeeping
 from tiniscript.cli.robot.connect import Connection, connected
 from tiniscript.cli.robot.event_printer import EventPrinter
-from tiniscript.cli.texts.common import text
+from tiniscript.cli.texts import text
 from tiniscript.link.connection import PendingRequest
 from tiniscript.link.outcomes import Event, Gone
 from tiniscript.link.payloads import HelloReply

@@ -8,7 +8,8 @@ import sys
 from argparse import Namespace
 from collections.abc import Callable, Iterable, Iterator
 
-from tiniscript import files
+from tiniscript.base import files
+from tiniscript.base.words import WORDS
 from tiniscript.cli import inputs, outputs
 from tiniscript.cli.commands.ping import ping
 from tiniscript.cli.errors import CommandError
@@ -18,7 +19,7 @@ from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.event_printer import EventPrinter, printer_of
 from tiniscript.cli.robot.live_state import Known, Line, Value, header, open_ends
 from tiniscript.cli.robot.run_monitor import RunMonitor, stop_and_say
-from tiniscript.cli.texts.common import text
+from tiniscript.cli.texts import text
 from tiniscript.library import source_map
 from tiniscript.library.compiling import kit_of, naming
 from tiniscript.library.known_kits import lacking
@@ -27,7 +28,6 @@ from tiniscript.link.outcomes import Event, Gone
 from tiniscript.link.payloads import ShowEvent
 from tiniscript.link.requests import SHORT_BYTES, short_bytes
 from tiniscript.robots.profile import Robot
-from tiniscript.words import WORDS
 
 PROMPT = "tini> "
 MORE = "....> "  # a block is open

@@ -10,7 +10,7 @@ from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot.connect import port_failure
 from tiniscript.cli.streams import are_read
-from tiniscript.cli.texts.common import text
+from tiniscript.cli.texts import text
 from tiniscript.link import errors, ports
 from tiniscript.link.modules import set_up
 from tiniscript.link.modules.dialects import BAUDS, DIALECTS, Dialect, value_of

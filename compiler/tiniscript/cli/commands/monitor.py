@@ -15,7 +15,7 @@ from tiniscript.cli.robot.connect import Connection, connected
 from tiniscript.cli.robot.event_printer import EventPrinter
 from tiniscript.cli.robot.recorder import Rows
 from tiniscript.cli.terminal.plot import Board
-from tiniscript.cli.texts.common import text
+from tiniscript.cli.texts import text
 from tiniscript.link.outcomes import Gone
 
 

@@ -13,7 +13,7 @@ from tiniscript.cli.options import whole_number
 from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.fleet import Work, together
 from tiniscript.cli.robot.member import Member, Result, are_many
-from tiniscript.cli.texts.common import text
+from tiniscript.cli.texts import text
 
 COUNT = 10
 

@@ -13,7 +13,7 @@ from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot.connect import about_virtual, baud_of, opened_client, robot_of_kit
 from tiniscript.cli.robot.in_reach import InReach, found
-from tiniscript.cli.texts.common import text
+from tiniscript.cli.texts import text
 from tiniscript.library import opening
 from tiniscript.library.errors import RobotError
 from tiniscript.link import known_ports, ports

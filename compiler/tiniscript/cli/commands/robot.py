@@ -22,7 +22,7 @@ from tiniscript.cli.terminal import FRAME_S
 from tiniscript.cli.terminal.keys import Keys, is_in_front
 from tiniscript.cli.terminal.screen import Screen
 from tiniscript.cli.terminal.world_drawing import WorldPicture
-from tiniscript.cli.texts.common import text
+from tiniscript.cli.texts import text
 from tiniscript.library import install_advice
 from tiniscript.link.keys import KeyFile
 from tiniscript.virtual import directory

@@ -9,14 +9,14 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from tiniscript import robots
+from tiniscript.base.version import __version__
 from tiniscript.cli import inputs, outputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.self_test import OK, OPEN, WRONG, Found, SelfTest
-from tiniscript.cli.texts.common import text
+from tiniscript.cli.texts import text
 from tiniscript.doctor import report
-from tiniscript.version import __version__
 
 
 def run(options: Namespace, language: str) -> int:

@@ -10,7 +10,7 @@ from pathlib import Path
 from tiniscript.bytecode.disassembly import listing, rows
 from tiniscript.cli import compiling, images, inputs, outputs
 from tiniscript.cli.errors import CommandError
-from tiniscript.cli.texts.common import text
+from tiniscript.cli.texts import text
 from tiniscript.library.programs import remarks
 from tiniscript.robots.profile import Robot
 from tiniscript.semantics.ir import every

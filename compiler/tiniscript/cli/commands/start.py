@@ -7,7 +7,7 @@ from argparse import Namespace
 from tiniscript.cli.robot.connect import Connection, connected
 from tiniscript.cli.robot.event_printer import EventPrinter
 from tiniscript.cli.robot.run_monitor import RunMonitor, stop_and_say
-from tiniscript.cli.texts.common import text
+from tiniscript.cli.texts import text
 
 
 def run(options: Namespace, language: str) -> int:

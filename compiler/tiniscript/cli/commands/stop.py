@@ -10,7 +10,7 @@ from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.member import Member, Result, are_many
-from tiniscript.cli.texts.common import text
+from tiniscript.cli.texts import text
 
 
 def run(options: Namespace, language: str) -> int:

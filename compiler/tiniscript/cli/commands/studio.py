@@ -17,7 +17,7 @@ from tiniscript.cli.commands.robot import ended_by_signal
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.options import whole_number
-from tiniscript.cli.texts.common import text
+from tiniscript.cli.texts import text
 from tiniscript.studio import building, class_keeping, serving
 from tiniscript.studio.classroom import Classroom
 from tiniscript.studio.hosting import Hosting

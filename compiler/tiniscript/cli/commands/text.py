@@ -6,7 +6,7 @@ from argparse import Namespace
 
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.robot.connect import connected
-from tiniscript.cli.texts.common import text
+from tiniscript.cli.texts import text
 from tiniscript.link.messages import OWNED, STATUSES
 
 

@@ -9,13 +9,13 @@ import json
 from argparse import Namespace
 from typing import Any
 
+from tiniscript.base.fixed_point import ONE
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.options import thousandths, whole_number
 from tiniscript.cli.robot.connect import Connection, connected
 from tiniscript.cli.robot.trim_wizard import guided
-from tiniscript.cli.texts.common import text
-from tiniscript.fixed_point import ONE
+from tiniscript.cli.texts import text
 from tiniscript.link.messages import MOST_BALANCE, MOST_LEAST
 from tiniscript.link.trim import MOST_PACE, Pace, Trim, told
 

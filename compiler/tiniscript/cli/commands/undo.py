@@ -14,7 +14,7 @@ from tiniscript.cli.robot.event_printer import EventPrinter, printer_of
 from tiniscript.cli.robot.fleet import together
 from tiniscript.cli.robot.member import Member, Result, are_many
 from tiniscript.cli.robot.run_monitor import Saving
-from tiniscript.cli.texts.common import text
+from tiniscript.cli.texts import text
 from tiniscript.library import source_map
 from tiniscript.link.names import saved_name
 from tiniscript.link.payloads import ReceiptReply

@@ -24,7 +24,7 @@ from tiniscript.cli.robot.program_upload import (
 )
 from tiniscript.cli.robot.run_monitor import Saving, stop_and_say
 from tiniscript.cli.terminal.progress import Progress
-from tiniscript.cli.texts.common import text
+from tiniscript.cli.texts import text
 from tiniscript.library import source_map
 from tiniscript.link.names import saved_name
 from tiniscript.link.payloads import ReceiptReply

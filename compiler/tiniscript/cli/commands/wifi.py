@@ -13,7 +13,7 @@ from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot import robot_broker
 from tiniscript.cli.robot.connect import Connection, connected
 from tiniscript.cli.terminal import asking
-from tiniscript.cli.texts.common import text
+from tiniscript.cli.texts import text
 from tiniscript.link.messages import (
     LEAST_PASSWORD,
     NETWORK_BYTES,

@@ -12,7 +12,7 @@ from rich.cells import cell_len, set_cell_size
 
 from tiniscript.cli import inputs, outputs
 from tiniscript.cli.errors import CommandError
-from tiniscript.cli.texts.common import text
+from tiniscript.cli.texts import text
 from tiniscript.robots import firmware
 from tiniscript.robots.wiring.html import html_of
 from tiniscript.robots.wiring.page import rail_rows, wire_rows

@@ -10,7 +10,7 @@ from typing import NamedTuple
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.terminal import asking
-from tiniscript.cli.texts.common import text
+from tiniscript.cli.texts import text
 from tiniscript.link.messages import NETWORK_BYTES, PASSWORD_BYTES
 from tiniscript.link.wifi import is_class
 

@@ -22,7 +22,7 @@ from tiniscript.cli.robot.fleet import together
 from tiniscript.cli.robot.member import Member, Result
 from tiniscript.cli.robot.recorder import Rows
 from tiniscript.cli.spreadsheet import no_formula
-from tiniscript.cli.texts.common import text
+from tiniscript.cli.texts import text
 from tiniscript.link.errors import NOT_INSTALLED, PortError
 from tiniscript.link.line import now_ms
 

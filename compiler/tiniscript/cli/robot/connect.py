@@ -17,7 +17,7 @@ from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.options import whole_number
 from tiniscript.cli.terminal.progress import waiting
-from tiniscript.cli.texts.common import text
+from tiniscript.cli.texts import text
 from tiniscript.cli.texts.options import virtual_names
 from tiniscript.library import opening
 from tiniscript.library.client import Client

@@ -9,12 +9,12 @@ import json
 import sys
 from collections.abc import Callable, Mapping
 
+from tiniscript.base.fixed_point import as_text
 from tiniscript.cli.faults import fault_text
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.spreadsheet import no_formula
-from tiniscript.cli.texts.common import has_text, text
-from tiniscript.fixed_point import as_text
+from tiniscript.cli.texts import has_text, text
 from tiniscript.library import source_map
 from tiniscript.library.source_map import Map
 from tiniscript.link.messages import STATE_FAULTED, STATE_IDLE

@@ -19,7 +19,7 @@ from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.member import Member, Result, Target, targets
-from tiniscript.cli.texts.common import text
+from tiniscript.cli.texts import text
 from tiniscript.library import opening
 from tiniscript.robots.profile import Robot
 

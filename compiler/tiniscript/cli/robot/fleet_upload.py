@@ -14,7 +14,7 @@ from tiniscript.cli.robot.event_printer import EventPrinter
 from tiniscript.cli.robot.fleet import together
 from tiniscript.cli.robot.member import Member, Result
 from tiniscript.cli.robot.run_monitor import Saving
-from tiniscript.cli.texts.common import text
+from tiniscript.cli.texts import text
 from tiniscript.robots.profile import Robot
 
 

@@ -10,7 +10,7 @@ from concurrent.futures import ThreadPoolExecutor
 from typing import NamedTuple
 
 from tiniscript.cli.robot.connect import port_failure
-from tiniscript.cli.texts.common import text
+from tiniscript.cli.texts import text
 from tiniscript.link import known_ports, ports
 from tiniscript.link.errors import PortError
 from tiniscript.link.port_names import (

@@ -10,17 +10,17 @@ from __future__ import annotations
 import re
 from typing import NamedTuple
 
+from tiniscript.base.fixed_point import as_text
+from tiniscript.base.kit import Kit
+from tiniscript.base.source import Source, Span
+from tiniscript.base.words import ALIASES, BLOCK_ENDS
 from tiniscript.cli.robot.bookkeeping import MARK
 from tiniscript.diagnostics import codes
-from tiniscript.fixed_point import as_text
-from tiniscript.kit import Kit
 from tiniscript.library.compiling import Compiled, compile_text
 from tiniscript.semantics.ir import Assign, walk
-from tiniscript.source import Source, Span
 from tiniscript.syntax import ast
 from tiniscript.syntax.lexer import WORD, scan
 from tiniscript.syntax.parser import parse
-from tiniscript.words import ALIASES, BLOCK_ENDS
 
 _HEADER = re.compile(r"[ \t]*(SI|SB|PING)[ \t]*\|", re.IGNORECASE | re.ASCII)
 _UNUSED = (codes.UNUSED_VARIABLE, codes.UNUSED_DEF)

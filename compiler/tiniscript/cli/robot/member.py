@@ -14,7 +14,7 @@ from typing import NamedTuple
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot.connect import Connection
-from tiniscript.cli.texts.common import text
+from tiniscript.cli.texts import text
 from tiniscript.link import known_ports
 from tiniscript.link.port_names import is_there, same_for_all
 from tiniscript.link.sharing.registry import all_found

@@ -12,7 +12,7 @@ from argparse import Namespace
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot.connect import Connection
-from tiniscript.cli.texts.common import text
+from tiniscript.cli.texts import text
 from tiniscript.library.known_kits import of_kit
 from tiniscript.robots.profile import Robot
 

@@ -17,7 +17,7 @@ from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.event_printer import EventPrinter
 from tiniscript.cli.robot.run_monitor import DONE, RunMonitor, Saving, ended
 from tiniscript.cli.terminal.keys import Keys, is_in_front
-from tiniscript.cli.texts.common import text
+from tiniscript.cli.texts import text
 from tiniscript.link.messages import STATUSES
 from tiniscript.link.names import cause_name, saved_name
 from tiniscript.link.outcomes import LOST, Event

@@ -14,7 +14,7 @@ from pathlib import Path
 from threading import Lock
 from time import monotonic
 
-from tiniscript import files
+from tiniscript.base import files
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.studio.recordings import MOST_MS, VERSION

@@ -8,7 +8,7 @@ from tiniscript import robots
 from tiniscript.cli import inputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.robot.simulator_options import not_installed, refused_world, world_of
-from tiniscript.cli.texts.common import text
+from tiniscript.cli.texts import text
 from tiniscript.studio import recordings
 from tiniscript.studio.recordings import BadRecording, Parting, Recorded, Recording, read
 from tiniscript.virtual.module import NoWebAssembly

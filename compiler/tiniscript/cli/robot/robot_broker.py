@@ -13,7 +13,7 @@ from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot import broker_options
 from tiniscript.cli.robot.connect import Connection
-from tiniscript.cli.texts.common import text
+from tiniscript.cli.texts import text
 from tiniscript.library.install_advice import quoted
 from tiniscript.link.messages import BROKER_NAME_BYTES, STATUSES, TRUST_BYTES
 from tiniscript.link.payloads import WifiReply

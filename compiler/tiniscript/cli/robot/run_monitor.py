@@ -12,7 +12,7 @@ from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.event_printer import EventPrinter
-from tiniscript.cli.texts.common import text
+from tiniscript.cli.texts import text
 from tiniscript.library import client
 from tiniscript.library.endings import Follower, end_of
 from tiniscript.library.errors import RobotError

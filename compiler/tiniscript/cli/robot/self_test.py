@@ -14,6 +14,7 @@ from statistics import median
 from time import perf_counter
 from typing import NamedTuple
 
+from tiniscript.base.kit import Device
 from tiniscript.bytecode.image import unpack
 from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
 from tiniscript.cli.commands.trim import words
@@ -21,8 +22,7 @@ from tiniscript.cli.errors import CommandError
 from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.event_printer import EventPrinter
 from tiniscript.cli.robot.run_monitor import RunMonitor
-from tiniscript.cli.texts.common import text
-from tiniscript.kit import Device
+from tiniscript.cli.texts import text
 from tiniscript.library.compiling import compile_text
 from tiniscript.library.known_kits import of_kit
 from tiniscript.link.messages import RESETS, SAVED

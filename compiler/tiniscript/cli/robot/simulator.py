@@ -17,7 +17,7 @@ from tiniscript.cli.errors import CommandError
 from tiniscript.cli.robot import simulator_options
 from tiniscript.cli.robot.bookkeeping import Bookkeeping
 from tiniscript.cli.terminal import FRAME_S
-from tiniscript.cli.texts.common import text
+from tiniscript.cli.texts import text
 from tiniscript.robots.profile import Robot
 from tiniscript.virtual import directory
 from tiniscript.virtual.simulator import Simulator

@@ -9,7 +9,7 @@ from tiniscript.cli import outputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.options import decimal, sensor_lists, thousandths, whole_number
-from tiniscript.cli.texts.common import Said, text
+from tiniscript.cli.texts import Said, text
 from tiniscript.cli.texts.options import virtual_names
 from tiniscript.robots.profile import Robot
 from tiniscript.virtual import worlds

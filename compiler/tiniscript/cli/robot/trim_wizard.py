@@ -13,7 +13,7 @@ from tiniscript.cli.errors import CommandError
 from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.event_printer import EventPrinter
 from tiniscript.cli.robot.run_monitor import RunMonitor
-from tiniscript.cli.texts.common import text
+from tiniscript.cli.texts import text
 from tiniscript.library.compiling import compile_text
 from tiniscript.link.messages import MOST_BALANCE, MOST_LEAST
 from tiniscript.link.trim import MOST_PACE, Pace, Trim

@@ -11,7 +11,7 @@ from rich.text import Text
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot.member import Member
 from tiniscript.cli.terminal.screen import Screen
-from tiniscript.cli.texts.common import text
+from tiniscript.cli.texts import text
 
 STYLES = {"": "", "ok": "green", "bad": "red", "absent": "dim"}
 

@@ -12,7 +12,7 @@ import sys
 from contextlib import suppress
 from shutil import get_terminal_size, which
 
-from tiniscript.cli.texts.common import text
+from tiniscript.cli.texts import text
 
 # What a shell answers where the command cannot be started.
 NOT_STARTED = (126, 127)

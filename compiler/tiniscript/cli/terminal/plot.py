@@ -10,10 +10,10 @@ from collections import deque
 
 from rich.text import Text
 
+from tiniscript.base.fixed_point import as_text
 from tiniscript.cli.terminal import FRAME_S
 from tiniscript.cli.terminal.canvas import ACROSS, DOWN, Canvas, layered
 from tiniscript.cli.terminal.screen import Screen
-from tiniscript.fixed_point import as_text
 from tiniscript.link.outcomes import Event
 
 SECONDS = 30  # from the left edge to the right one

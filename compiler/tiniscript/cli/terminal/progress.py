@@ -10,7 +10,7 @@ from time import monotonic
 from typing import TYPE_CHECKING
 
 from tiniscript.cli.inputs import shown
-from tiniscript.cli.texts.common import text
+from tiniscript.cli.texts import text
 
 if TYPE_CHECKING:
     from threading import Timer

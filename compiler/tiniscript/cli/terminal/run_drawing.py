@@ -12,10 +12,10 @@ from collections.abc import Iterator
 from rich.cells import cell_len, set_cell_size
 from rich.text import Text
 
+from tiniscript.base.fixed_point import as_text
 from tiniscript.cli.terminal.screen import Screen
 from tiniscript.cli.terminal.sketch import Sketch
-from tiniscript.cli.texts.common import text
-from tiniscript.fixed_point import as_text
+from tiniscript.cli.texts import text
 from tiniscript.robots.profile import Robot
 from tiniscript.vm.trace import Ending, Event
 

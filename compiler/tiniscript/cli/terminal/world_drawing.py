@@ -13,7 +13,7 @@ from rich.text import Text
 from tiniscript.cli.terminal.canvas import ACROSS, DOWN, Canvas, Dot, layered, put
 from tiniscript.cli.terminal.run_drawing import Picture
 from tiniscript.cli.terminal.sketch import ARROWS, ROBOT, WAY, Sketch, round_scale
-from tiniscript.cli.texts.common import text
+from tiniscript.cli.texts import text
 from tiniscript.robots.kinematics import Pose
 from tiniscript.virtual.geometry import Point
 from tiniscript.virtual.robot import VirtualRobot

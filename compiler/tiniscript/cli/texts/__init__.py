@@ -1,1 +1,82 @@
-"""Every sentence of the command, in English and Spanish."""
+"""The sentences of `tsc` itself, in the person's language; those on programs: `diagnostics`.
+
+Knows how values are put into a sentence, and which language a person has.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Mapping, Sequence
+
+from tiniscript.base import languages
+from tiniscript.base.source import printable
+
+CATALOGUE = "command"
+LONGEST = 2000  # characters of what is put into a sentence
+# What is counted, right behind its number: catalogues have how one of it is called, and several.
+# Other words have a sentence of their own for one.
+COUNTED = ("counted_bytes", "counted_checks")
+SEVERAL = 5  # as sentences have it
+
+
+class Said(str):
+    """A sentence, or several: `format` makes all values printable.
+
+    A value may come from a file or a robot: it must not move the cursor or begin a line. A value
+    that is a `Said` itself stays unchanged.
+    `language` is the one that it is in.
+    """
+
+    language = languages.SOURCE
+
+    def format(self, *values: object, **named: object) -> Said:
+        plain = {key: _plain(value) for key, value in named.items()}
+        template = str(self)
+        for key, value in plain.items():
+            if isinstance(value, int | str) and str(value).isdecimal():
+                for counted in COUNTED:
+                    several, form = (
+                        f"{{{key}}} {languages.counted(CATALOGUE, counted, n, self.language)}"
+                        for n in (SEVERAL, int(value))
+                    )
+                    template = template.replace(several, form)
+        return Said(template.format(*map(_plain, values), **plain))
+
+
+def _plain(value: object) -> object:
+    if isinstance(value, str) and not isinstance(value, Said):
+        return printable(value, LONGEST)
+    return value
+
+
+def text(key: str, language: str) -> str:
+    """Return a sentence as `Said`."""
+    said = Said(languages.text(CATALOGUE, key, language))
+    said.language = language
+    return said
+
+
+def has_text(key: str) -> bool:
+    return languages.found(CATALOGUE, key, languages.SOURCE) is not None
+
+
+def language_of(arguments: Sequence[str], environ: Mapping[str, str] = os.environ) -> str:
+    """Return the code of a language: from `--lang`, else from the locale, else English."""
+    for k, word in enumerate(arguments):
+        value = word[7:] if word.startswith("--lang=") else None
+        if word == "--lang" and k + 1 < len(arguments):
+            value = arguments[k + 1]
+        if value in languages.languages():
+            return value
+    names = (environ.get(name) for name in ("LC_ALL", "LC_MESSAGES", "LANG"))
+    return languages.find(next(filter(None, names), None) or _system_language())
+
+
+def _system_language() -> str:
+    """Return the language of Windows' own settings, which no variable names."""
+    if sys.platform != "win32":
+        return ""
+    import locale
+
+    return locale.getlocale()[0] or ""

@@ -7,8 +7,8 @@ Parsers, help, completion, `cli/paths.py` and the documents are made from it and
 # No `from __future__ import annotations`: typing would compile each field's again, one by one.
 from typing import NamedTuple
 
+from tiniscript.base.languages import languages
 from tiniscript.cli.texts.verbs import said
-from tiniscript.languages import languages
 from tiniscript.text.levels import LEVELS
 
 

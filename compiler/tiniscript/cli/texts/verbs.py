@@ -5,7 +5,7 @@ What is typed stands between backticks: documents show it as code, and on a term
 in it.
 """
 
-from tiniscript import languages
+from tiniscript.base import languages
 
 # A verb is a module of `cli/commands/`. Beside it is the heading below which help has it; where its
 # example stands beside that of another verb, that verb.

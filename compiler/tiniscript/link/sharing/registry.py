@@ -18,8 +18,8 @@ from socket import SO_REUSEADDR, SOL_SOCKET, gethostname, socket
 from typing import IO, NamedTuple
 from zlib import crc32
 
-from tiniscript import files
-from tiniscript.files import contents
+from tiniscript.base import files
+from tiniscript.base.files import contents
 from tiniscript.link.port_names import same_for_all
 
 FILE_BYTES = 4096

@@ -20,6 +20,7 @@ from threading import Thread
 from time import monotonic, sleep
 from typing import Any, NamedTuple
 
+from tiniscript.base.version import __version__
 from tiniscript.link.connection import PendingRequest
 from tiniscript.link.line import Line
 from tiniscript.link.outcomes import CANCELLED, Event, JoinedEvent, LeftEvent, MissedEvent, Told
@@ -30,7 +31,6 @@ from tiniscript.link.sharing import protocol, registry
 from tiniscript.link.sharing.protocol import BadMessage, JsonMessage
 from tiniscript.link.sharing.registry import Registration
 from tiniscript.link.sharing.requests import asked_for, is_detached
-from tiniscript.version import __version__
 
 GREETING_S = 2.0  # timeout for a new client's greeting
 CLIENTS = 64  # at a time, and as many connections without a greeting

@@ -13,6 +13,7 @@ from contextlib import suppress
 from time import monotonic
 from typing import Any, TypeVar
 
+from tiniscript.base.version import __version__
 from tiniscript.link.connection import PendingRequest, Requester
 from tiniscript.link.outcomes import LOOK_S, Event, Gone
 from tiniscript.link.payloads import HelloReply
@@ -21,7 +22,6 @@ from tiniscript.link.sharing import protocol, registry
 from tiniscript.link.sharing.protocol import BadMessage, JsonMessage
 from tiniscript.link.sharing.registry import Registration
 from tiniscript.link.sharing.requests import ClientRequest, ClientRequests
-from tiniscript.version import __version__
 
 ANSWER_S = 2.0  # timeout for the server's greeting
 SEND_S = 2.0  # timeout for a server that takes no bytes

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from tiniscript.fixed_point import ONE
-from tiniscript.kit import Device
+from tiniscript.base.fixed_point import ONE
+from tiniscript.base.kit import Device
 from tiniscript.robots.driver import (
     FULL_COUNT,
     MOTOR_BATTERY,

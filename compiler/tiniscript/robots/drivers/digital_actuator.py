@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tiniscript.kit import Device
+from tiniscript.base.kit import Device
 from tiniscript.robots.driver import ActuatorDriver, Part, PinKey, Plan, Setting, Shape, lamp
 from tiniscript.robots.profile import Wiring
 

@@ -5,7 +5,7 @@ Knows no robot's pins (`plan`), no places (`layout`) and no sentences (`texts`).
 
 from __future__ import annotations
 
-from tiniscript.kit import Device
+from tiniscript.base.kit import Device
 from tiniscript.robots.driver import (
     BOARD_3V3,
     BOARD_5V,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tiniscript import languages
+from tiniscript.base import languages
 
 
 def has_text(key: str) -> bool:

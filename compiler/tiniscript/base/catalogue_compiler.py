@@ -10,7 +10,7 @@ import struct
 from collections import Counter
 from pathlib import Path
 
-from tiniscript.languages.catalogue_file import Catalogue, Entry, load
+from tiniscript.base.catalogue_file import Catalogue, Entry, load
 
 MAGIC, HEADER = 0x950412DE, 28  # of a .mo
 

@@ -9,7 +9,7 @@ import zlib
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from tiniscript.fixed_point import Fault, as_text, divided, in_range
+from tiniscript.base.fixed_point import Fault, as_text, divided, in_range
 
 NUMBER = "number"
 YES_NO = "yes/no"

@@ -12,7 +12,7 @@ from collections.abc import Iterable, Iterator
 from functools import cache
 from typing import NamedTuple
 
-from tiniscript.fixed_point import HIGHEST, LOWEST
+from tiniscript.base.fixed_point import HIGHEST, LOWEST
 
 # Roles of instructions: these have values in brackets, and STOP does something, too. A new role of a
 # word that does something is a name here.

@@ -15,7 +15,7 @@ from io import BytesIO
 from pathlib import Path
 from typing import TypeVar
 
-FOLDER = Path(__file__).parent
+FOLDER = Path(__file__).parent.parent / "languages"
 SOURCE = "en"  # what is translated, and said where there is no translation
 
 
@@ -93,8 +93,8 @@ def catalogue(name: str, language: str) -> GNUTranslations:
             return GNUTranslations(file)
     if language != SOURCE and not any(map(Path.is_file, _files(name, language))):
         return catalogue(name, SOURCE)  # a page has not fetched it
-    from tiniscript.files import replace
-    from tiniscript.languages.compiling import compiled
+    from tiniscript.base.catalogue_compiler import compiled
+    from tiniscript.base.files import replace
 
     data = compiled(*_files(name, language))
     with suppress(OSError):  # a folder that nobody may write to
@@ -104,7 +104,7 @@ def catalogue(name: str, language: str) -> GNUTranslations:
 
 def machine_objects() -> dict[str, bytes]:
     """Return all catalogues as a package has them, by their paths in FOLDER."""
-    from tiniscript.languages.compiling import compiled
+    from tiniscript.base.catalogue_compiler import compiled
 
     names = sorted(path.stem for path in (FOLDER / SOURCE).glob("*.po"))
     pairs = [(name, language) for language in languages() for name in names]
