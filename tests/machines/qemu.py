@@ -20,8 +20,8 @@ from tests.machines.host import SOURCES, WARNINGS, Process, Ran, contents, kept,
 from tests.machines.text_reader import Answer
 from tiniscript.base.kit import Kit
 from tiniscript.bytecode.image import STARTS
+from tiniscript.codegen.text.problems import NAMES
 from tiniscript.robots.kit_words import kit_words
-from tiniscript.text.problems import NAMES
 from tools.builds import chips
 
 if TYPE_CHECKING:

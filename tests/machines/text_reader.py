@@ -14,8 +14,8 @@ from tests.machines.child import Child
 from tests.machines.host import BUILDS, FLAGS, SOURCES, compiled
 from tiniscript.base.kit import Kit
 from tiniscript.bytecode.image import STARTS
+from tiniscript.codegen.text.problems import NAMES
 from tiniscript.robots.kit_words import kit_words
-from tiniscript.text.problems import NAMES
 
 LARGEST_ROOM = 60_000
 NO_DEFS = ("-Dtiniscript_no_defs",)  # flags of a reader like an Uno's

@@ -16,15 +16,15 @@ from tests.support.new_word import HORN
 from tiniscript import compile_text, robots
 from tiniscript.base.source import Source
 from tiniscript.base.words import WORDS
+from tiniscript.codegen.sketch.writing import sketch_of
+from tiniscript.codegen.text.fitting import misfits
+from tiniscript.codegen.text.levels import LEVELS, Level
+from tiniscript.codegen.text.line import line_of
 from tiniscript.diagnostics import codes
-from tiniscript.sketch.writing import sketch_of
 from tiniscript.studio.block_printing import print_blocks
 from tiniscript.studio.block_reading import read
 from tiniscript.studio.description import description
 from tiniscript.syntax.formatter import formatted
-from tiniscript.text.fitting import misfits
-from tiniscript.text.levels import LEVELS, Level
-from tiniscript.text.line import line_of
 from tools.generate import poster
 from tools.generate.paper import Line
 

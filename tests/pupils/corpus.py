@@ -17,9 +17,9 @@ from typing import NamedTuple
 from tiniscript import robots
 from tiniscript.base.source import Source
 from tiniscript.diagnostics.codes import Diagnostic
+from tiniscript.diagnostics.fixing import fixed
 from tiniscript.diagnostics.rendering import message
 from tiniscript.library.compiling import compiled
-from tiniscript.repairs.fixing import fixed
 
 FOLDER = Path(__file__).parent
 PART = re.compile(r"((?:(?![>=]).*\n)+)((?:>.*\n)*)((?:=.*\n)*)")

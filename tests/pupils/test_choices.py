@@ -8,8 +8,8 @@ from tests.pupils.corpus import check
 from tiniscript.base.kit import Kit
 from tiniscript.base.source import Edit, Span
 from tiniscript.diagnostics.codes import Diagnostic
+from tiniscript.diagnostics.fixing import CHECKS, fixed, is_better
 from tiniscript.library import compiling
-from tiniscript.repairs.fixing import CHECKS, fixed, is_better
 
 
 @pytest.mark.parametrize(

@@ -17,8 +17,8 @@ from tests.pupils.test_pupils import OTHER_NUMBERS, mistakes
 from tests.support.casefile import ROOT, read
 from tiniscript.base.source import applied
 from tiniscript.diagnostics.codes import Diagnostic
-from tiniscript.repairs.fixing import fixed
-from tiniscript.repairs.placing import edits_of
+from tiniscript.diagnostics.fixing import fixed
+from tiniscript.diagnostics.placing import edits_of
 
 IN_CI = 150
 # What is put in, or takes the place of a sign: of phones, of other languages, of Spanish.

@@ -7,8 +7,8 @@ import pytest
 from tests.pupils.corpus import check
 from tiniscript.base.source import Source
 from tiniscript.diagnostics import codes
+from tiniscript.diagnostics.fixing import fixed
 from tiniscript.diagnostics.rendering import message
-from tiniscript.repairs.fixing import fixed
 
 
 @pytest.mark.parametrize(

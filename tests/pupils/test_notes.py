@@ -7,8 +7,8 @@ import pytest
 from tests.pupils.corpus import check
 from tiniscript.base.source import Source, applied
 from tiniscript.diagnostics import codes
+from tiniscript.diagnostics.placing import edits_of
 from tiniscript.diagnostics.rendering import message
-from tiniscript.repairs.placing import edits_of
 
 DANCE = "DEF DANCE;S;END_DEF;"
 

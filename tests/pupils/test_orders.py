@@ -7,9 +7,9 @@ import pytest
 from tests.pupils.corpus import check
 from tiniscript.base.source import Source, applied
 from tiniscript.diagnostics import codes
+from tiniscript.diagnostics.fixing import fixed
+from tiniscript.diagnostics.placing import edits_of
 from tiniscript.diagnostics.rendering import message
-from tiniscript.repairs.fixing import fixed
-from tiniscript.repairs.placing import edits_of
 
 
 def said(program: str) -> list[tuple[str, str]]:

@@ -6,8 +6,8 @@ import pytest
 
 from tests.pupils.corpus import check
 from tiniscript import robots
+from tiniscript.diagnostics.fixing import fixed
 from tiniscript.recovery.advice import Row, advised, rows
-from tiniscript.repairs.fixing import fixed
 
 KIT = robots.load(robots.DEFAULT).kit
 

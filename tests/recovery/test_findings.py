@@ -11,9 +11,9 @@ from tests.pupils.corpus import check
 from tiniscript.base.source import Edit, Span
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
+from tiniscript.diagnostics.fixing import fixed
 from tiniscript.recovery.findings import moved_back
 from tiniscript.recovery.setup import Setup, setup
-from tiniscript.repairs.fixing import fixed
 
 
 @pytest.mark.parametrize(

@@ -10,12 +10,12 @@ from tests.machines.board import VARIANTS
 from tests.support.casefile import ROOT
 from tiniscript.base.languages import languages
 from tiniscript.cli.texts.options import OPTIONS
+from tiniscript.codegen.sketch import writing
 from tiniscript.flash import bootloaders
 from tiniscript.robots import firmware
 from tiniscript.robots.boards import CHIPS
 from tiniscript.robots.ports import AVRS
 from tiniscript.robots.wiring.headers import SIDES
-from tiniscript.sketch import writing
 
 INI = ROOT / "vm_arduino" / "platformio.ini"
 

@@ -10,12 +10,12 @@ from tests.support.casefile import ROOT
 from tests.wiring.test_wiring import DEVICES, DISCS, MOTORS, robot_with, with_discs
 from tiniscript import compile_text, robots
 from tiniscript.base.kit import Device
+from tiniscript.codegen.sketch.wiring import Plan
+from tiniscript.codegen.sketch.writing import sketch_of
 from tiniscript.robots import firmware
 from tiniscript.robots.driver import Driver, Part, SensorDriver
 from tiniscript.robots.drivers import DRIVERS
 from tiniscript.robots.profile import Robot, Wiring
-from tiniscript.sketch.wiring import Plan
-from tiniscript.sketch.writing import sketch_of
 
 
 def written(robot: Robot) -> tuple[str, str]:

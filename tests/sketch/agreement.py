@@ -18,9 +18,9 @@ from tests.robots.test_robots import TEXTS
 from tests.support.kits import KITS
 from tiniscript import compile_text
 from tiniscript.base.fixed_point import ONE
+from tiniscript.codegen.sketch.writing import sketch_of
 from tiniscript.robots.profile import Robot
 from tiniscript.robots.reader import read
-from tiniscript.sketch.writing import sketch_of
 
 PRESS_MS, RELEASE_MS, UP_MS = 20.0, 60.0, 90.0  # the button of a program that begins with SB
 NEAR_MS = 6.0  # how late or early something may be

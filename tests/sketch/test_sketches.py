@@ -29,11 +29,11 @@ from tests.sketch.agreement import (
 from tests.support.casefile import example_robot, has_tasks, sketch_examples
 from tiniscript import compile_text, robots
 from tiniscript.base.fixed_point import ONE
+from tiniscript.codegen.sketch.writing import sketch_of
 from tiniscript.lessons import catalogue
 from tiniscript.robots.profile import Robot
 from tiniscript.semantics.ir import every
 from tiniscript.semantics.ways import is_open_way
-from tiniscript.sketch.writing import sketch_of
 
 EXAMPLES = sketch_examples()
 

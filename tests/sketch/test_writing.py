@@ -13,9 +13,9 @@ from tests.support.texts import LANGUAGES
 from tests.support.texts import said as all_said
 from tiniscript import compile_text, robots
 from tiniscript.cli.paths import is_foreign
-from tiniscript.sketch.names import RESERVED, Names, counter
-from tiniscript.sketch.texts import IDENTIFIERS, LOCALS, called
-from tiniscript.sketch.writing import sketch_of
+from tiniscript.codegen.sketch.names import RESERVED, Names, counter
+from tiniscript.codegen.sketch.texts import IDENTIFIERS, LOCALS, called
+from tiniscript.codegen.sketch.writing import sketch_of
 
 
 def sketch(text: str, language: str = "en", robot: str = "tinibot") -> str:

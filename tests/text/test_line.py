@@ -13,9 +13,9 @@ from tests.vm.test_cases import CASES, compiled, robot_and_senses
 from tiniscript import compile_text
 from tiniscript.base.kit import Kit
 from tiniscript.base.source import Source
+from tiniscript.codegen.text.line import line_of, plain_code
 from tiniscript.diagnostics import codes
 from tiniscript.syntax.checksums import with_checksum
-from tiniscript.text.line import line_of, plain_code
 
 
 @pytest.mark.parametrize(

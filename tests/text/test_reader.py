@@ -13,7 +13,7 @@ from tests.support.texts import LANGUAGES
 from tests.support.texts import said as all_said
 from tiniscript import robots
 from tiniscript.bytecode.disassembly import listing
-from tiniscript.text.problems import LONGEST, PROBLEMS
+from tiniscript.codegen.text.problems import LONGEST, PROBLEMS
 
 KIT = robots.load("tinibot").kit
 WIDE = KITS[1][1]

@@ -16,8 +16,8 @@ from tests.oracle import programs
 from tests.support.kits import KITS
 from tests.text.test_reader_agreement import damaged, soup
 from tiniscript.bytecode.image import STARTS
+from tiniscript.codegen.text.problems import NAMES
 from tiniscript.robots.kit_words import kit_words
-from tiniscript.text.problems import NAMES
 from tools.bench import avr_bench
 
 REASON = avr_bench.missing()

@@ -13,10 +13,10 @@ from tiniscript.base.languages import SOURCE, languages
 from tiniscript.bytecode.disassembly import listing, read_listing
 from tiniscript.bytecode.verify import Refused, verify
 from tiniscript.cli.options import decimal
+from tiniscript.codegen.text.line import line_of, plain_code
 from tiniscript.diagnostics.rendering import as_text, message
 from tiniscript.robots.profile import Robot
 from tiniscript.syntax.formatter import formatted
-from tiniscript.text.line import line_of, plain_code
 
 CASES = all_cases()
 

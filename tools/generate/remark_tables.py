@@ -6,9 +6,9 @@ from collections.abc import Sequence
 
 from tiniscript.base.languages import SOURCE
 from tiniscript.bytecode.opcodes import FAULTS
+from tiniscript.codegen.text.problems import PROBLEMS, REMARKS, said
 from tiniscript.link.messages import LINK_FAULTS
 from tiniscript.robots.profile import answered, language_number
-from tiniscript.text.problems import PROBLEMS, REMARKS, said
 from tools.generate.cpp_header import camel
 from tools.generate.packed_texts import DEEPEST, END, FIRST_COMMON, FIRST_LETTER, letters_of, packed
 from tools.generate.text_tables import bytes_of_table, file_of

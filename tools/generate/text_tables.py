@@ -12,9 +12,9 @@ from tiniscript.base.languages import SOURCE
 from tiniscript.base.words import ALIASES, WORDS, Word
 from tiniscript.bytecode.image import STARTS
 from tiniscript.bytecode.opcodes import BLOCKS, BY_NAME
+from tiniscript.codegen.text.levels import UNREAD
+from tiniscript.codegen.text.problems import PROBLEMS, said
 from tiniscript.robots.kit_words import packed, packed_range
-from tiniscript.text.levels import UNREAD
-from tiniscript.text.problems import PROBLEMS, said
 from tools.generate.cpp_header import camel
 
 FIRST_WORD = 0x40  # the token of the first word; those of signs lie below and above
@@ -42,7 +42,7 @@ def role_of(word: Word) -> str:
         raise LookupError(
             f"{word.text} has a role of its own, {role}. A robot's reader of text needs it: a name "
             "in ROLES of tools/generate/text_tables.py, and what it does in vm_arduino/src/text/; "
-            "or it reads it not: `lacks` of all LEVELS in compiler/tiniscript/text/levels.py"
+            "or it reads it not: `lacks` of all LEVELS in codegen/text/levels.py"
         )
     return role
 

@@ -35,10 +35,10 @@ sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 from tests.pupils.corpus import Entry, check, entries
 from tests.pupils.test_damage import programs
 from tiniscript.base.source import Source
+from tiniscript.diagnostics.fixing import fixed
 from tiniscript.diagnostics.rendering import message
 from tiniscript.lessons import catalogue
 from tiniscript.recovery.explanation import explained
-from tiniscript.repairs.fixing import fixed
 from tools.shadow import marks
 from tools.shadow.marks import EQUIVALENT, MARKS, QUESTION, SAME, WORSE, Answer
 

@@ -13,11 +13,11 @@ from typing import NamedTuple
 from tests.pupils.corpus import Entry, check
 from tiniscript import compile_text, robots
 from tiniscript.base.source import applied
+from tiniscript.diagnostics.fixing import fixed, offers
 from tiniscript.library.compiling import analyzed
 from tiniscript.recovery.advice import advised
 from tiniscript.recovery.concepts import plain
 from tiniscript.recovery.search import Candidate, Recovery
-from tiniscript.repairs.fixing import fixed, offers
 
 SAME, EQUIVALENT, QUESTION, USAGE, WORSE = "same", "equivalent", "question", "usage", "worse"
 OFFERS = 6  # of today's messages that are followed, one after the other

@@ -12,8 +12,8 @@ from typing import NamedTuple
 
 from tiniscript.base.source import printable
 from tiniscript.cli.streams import has_colors
+from tiniscript.diagnostics.fixing import fixed
 from tiniscript.library.compiling import Compiled, compiled, text_of
-from tiniscript.repairs.fixing import fixed
 from tiniscript.robots.profile import Robot
 
 _BOM = b"\xef\xbb\xbf"

@@ -1,1 +1,1 @@
-"""IR becomes instructions, and code bytes; each knows its source location."""
+"""IR becomes what robots run: instructions, each with its source location; text; sketches."""

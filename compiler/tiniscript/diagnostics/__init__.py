@@ -1,1 +1,1 @@
-"""Diagnostics: what is said of a program, by code and span, in words of two languages."""
+"""Diagnostics: what is said of a program, by code and span, and the edits that repair it."""

@@ -67,7 +67,7 @@ def _line(options: Namespace, given: inputs.Input, language: str) -> int:
     outputs.print_diagnostics(compiled, language)
     if not compiled.is_right:
         return 1
-    from tiniscript.text.line import line_of, plain_code
+    from tiniscript.codegen.text.line import line_of, plain_code
 
     assert compiled.program is not None
     line = (line_of(compiled.source) + "\n").encode()

@@ -11,11 +11,11 @@ from tiniscript.bytecode.disassembly import listing, rows
 from tiniscript.cli import compiling, images, inputs, outputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.texts import text
+from tiniscript.codegen.sketch.writing import BOARDS, sketch_of
 from tiniscript.library.programs import remarks
 from tiniscript.robots.profile import Robot
 from tiniscript.semantics.ir import every
 from tiniscript.semantics.ways import is_open_way
-from tiniscript.sketch.writing import BOARDS, sketch_of
 
 
 def run(options: Namespace, language: str) -> int:

@@ -12,12 +12,12 @@ from typing import NamedTuple
 from tiniscript.base.fixed_point import ONE, as_text, limited, whole
 from tiniscript.base.kit import Kit
 from tiniscript.base.source import Source, printable
+from tiniscript.codegen.sketch.expressions import Expressions, has_random, reads_once
+from tiniscript.codegen.sketch.names import counter
 from tiniscript.semantics import ir
 from tiniscript.semantics.ir import Term
 from tiniscript.semantics.optimizer import constant
 from tiniscript.semantics.ways import timed
-from tiniscript.sketch.expressions import Expressions, has_random, reads_once
-from tiniscript.sketch.names import counter
 
 WIDEST = 100  # columns of a line with what stands beside it
 BESIDE = 40  # the column of what stands beside code

@@ -10,15 +10,15 @@ from collections.abc import Iterable
 from textwrap import wrap
 
 from tiniscript.base.source import Source
+from tiniscript.codegen.sketch import helpers, numbers
+from tiniscript.codegen.sketch.expressions import FUNCTIONS, Expressions, is_float
+from tiniscript.codegen.sketch.names import Names
+from tiniscript.codegen.sketch.statements import Comment, Named, Statements, harmless
+from tiniscript.codegen.sketch.texts import IDENTIFIERS, called, said, with_locals
+from tiniscript.codegen.sketch.wiring import Plan, is_count, is_small
 from tiniscript.robots.profile import Robot
 from tiniscript.semantics import ir
 from tiniscript.semantics.optimizer import constant
-from tiniscript.sketch import helpers, numbers
-from tiniscript.sketch.expressions import FUNCTIONS, Expressions, is_float
-from tiniscript.sketch.names import Names
-from tiniscript.sketch.statements import Comment, Named, Statements, harmless
-from tiniscript.sketch.texts import IDENTIFIERS, called, said, with_locals
-from tiniscript.sketch.wiring import Plan, is_count, is_small
 from tiniscript.syntax.lexer import scan
 
 

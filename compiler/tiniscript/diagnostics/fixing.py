@@ -13,7 +13,7 @@ from typing import NamedTuple
 from tiniscript.base.source import Edit, Source, applied, overlap
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic
-from tiniscript.repairs.placing import edits_of
+from tiniscript.diagnostics.placing import edits_of
 
 # Codes of headers: how a block ends is not looked at before its header is right.
 _HEADERS = frozenset((

@@ -6,7 +6,7 @@ and `operator +` by `@ADD`.
 
 from __future__ import annotations
 
-from tiniscript.sketch.expressions import ARITHMETIC, COMPARED, SIGNS
+from tiniscript.codegen.sketch.expressions import ARITHMETIC, COMPARED, SIGNS
 
 STRUCT = """\
 struct $Number {

@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 
 from tiniscript.base.languages import languages, text
-from tiniscript.sketch.texts import IDENTIFIERS, called
+from tiniscript.codegen.sketch.texts import IDENTIFIERS, called
 
 RESERVED = frozenset(
     # a table of words
