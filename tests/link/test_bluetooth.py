@@ -26,7 +26,9 @@ from tests.support.ble_robot import (
 from tests.support.command import LONG, Command, ended, inside, running
 from tests.support.fake_bluez import ADVERTISED_S, FakeBluez
 from tests.support.pty_robot import PtyRobot
+from tests.support.waiting import until
 from tiniscript.link import known_ports
+from tiniscript.link.transports import event_loop
 
 OTHER = "AA:BB:CC:DD:EE:02"
 LARGEST = 65  # bytes of a frame on the wire
@@ -134,12 +136,15 @@ def test_ctrl_c_stops_the_robot_and_frees_it(ble: BleRobot, bluez: FakeBluez) ->
     assert inside("ping", "--port", NAME).code == 0
 
 
-def test_ctrl_c_ends_a_search(ble: BleRobot, bluez: FakeBluez) -> None:
-    command = Command("ping", "--port", "ble://nobody")
-    ble.robot.until(lambda: bluez.adapter.is_scanning, "it searches")
-    command.signal(signal.SIGINT)
-    assert command.ended().code == 2
-    ble.robot.until(lambda: not bluez.adapter.is_scanning, "BlueZ has heard it")
+def test_ctrl_c_ends_a_search(bluez: FakeBluez, monkeypatch: pytest.MonkeyPatch) -> None:
+    def interrupted(*_: object) -> None:
+        until(lambda: bluez.adapter.is_scanning, "it searches")
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as patch:
+        patch.setattr(event_loop, "wait", interrupted)
+        assert inside("ping", "--port", "ble://nobody").code == 2
+    until(lambda: not bluez.adapter.is_scanning, "BlueZ has heard it")
 
 
 def test_a_command_that_is_killed_leaves_a_robot_that_stops_and_can_be_reached(

@@ -274,3 +274,36 @@ def test_a_scan_that_fails_after_its_start_is_stopped(monkeypatch: pytest.Monkey
 
     asyncio.run(search())
     assert did == ["start", "stop"] * 2
+
+
+def test_a_scan_that_is_cancelled_while_it_starts_is_stopped(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    from tiniscript.link.transports import bluetooth_search
+
+    did: list[str] = []
+
+    async def search() -> None:
+        answer = asyncio.Event()
+
+        async def start() -> None:
+            did.append("start")
+            await answer.wait()
+            did.append("started")
+
+        async def stop() -> None:
+            did.append("stop")
+
+        scanner = SimpleNamespace(start=start, stop=stop)
+        monkeypatch.setattr(bluetooth_search, "BleakScanner", lambda _: scanner)
+        task = asyncio.create_task(bluetooth_search._Scan().__aenter__())
+        while not did:
+            await asyncio.sleep(0)
+        task.cancel()
+        await asyncio.sleep(0)
+        answer.set()
+        with pytest.raises(asyncio.CancelledError):
+            await task
+
+    asyncio.run(search())
+    assert did == ["start", "started", "stop"]

@@ -236,6 +236,11 @@ def test_keys_alone_are_enough(floor: Page) -> None:
 
 
 def test_a_handle_turns_the_robot_and_a_flag_is_put(floor: Page) -> None:
+    floor.click("#world_add_boxes")
+    drag(floor, [(140, 60), (200, 80)])
+    drag(floor, [(210, 70), (205, 105), (170, 110)])  # the handle of a part that is long
+    assert chosen(floor) == "Box 7" and abs(number(floor, "heading") - 90) <= 5
+    floor.select_option("#world_part", label="Floor")
     floor.mouse.click(*on_screen(floor, (56, 82.5)))
     drag(floor, [(75, 82.5), (75, 98), (56, 103)])  # the handle in front of it
     assert saved(floor).start == (56, 82.5, 90)

@@ -62,13 +62,14 @@ class _Scan:
         async with self._turn:
             if self._searches == 0:
                 self.seen = {}
-                scanner = BleakScanner(self._notice)
-                await scanner.start()
-                self._scanner = scanner
+                self._scanner = BleakScanner(self._notice)
+                started = asyncio.ensure_future(self._scanner.start())
                 try:
+                    await asyncio.shield(started)  # one that begins cannot be ended yet
                     for device in await _connected():
                         self._keep(Seen(device, device.name or "", True))
                 except BaseException:
+                    await asyncio.wait([started])
                     await self._end()
                     raise
             self._searches += 1
