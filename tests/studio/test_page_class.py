@@ -50,6 +50,13 @@ NOTES = """() => { window.noted = '';
   const all = {childList: true, subtree: true, characterData: true};
   new MutationObserver(() => { window.noted += wall.textContent; }).observe(wall, all); }"""
 
+# No picture is made but by `made()`.
+HOLDS = """() => { window.held = []; const all = HTMLCanvasElement.prototype, make = all.toBlob;
+  all.toBlob = function (...words) { held.push(() => make.apply(this, words)); };
+  window.made = () => held.shift()();
+  window.released = () => { all.toBlob = make; made(); }; }"""
+HELD = "() => held.length === 1"
+
 
 @pytest.fixture(scope="module")
 def robot() -> Iterator[PtyRobot]:
@@ -301,6 +308,33 @@ def test_thirty_tiles_are_seen_without_scrolling(teacher: Page, taught: Class) -
             room.teach({"do": "class_remove", "pupil": pupil["number"]})
     for kept in room.teach({"do": "class"})["kept"]:
         room.teach({"do": "class_forget", "name": kept["name"]})
+
+
+def test_a_picture_is_seen_large_while_the_next_one_is_made(
+    ana: Page, teacher: Page, taught: Class
+) -> None:
+    for pupil in taught.room.teach({"do": "class"})["pupils"]:
+        if pupil["name"] != "Ana":
+            taught.room.teach({"do": "class_remove", "pupil": pupil["number"]})
+    for kept in taught.room.teach({"do": "class"})["kept"]:
+        taught.room.teach({"do": "class_forget", "name": kept["name"]})
+    teacher.locator("#wall li:only-child img[src^=blob]").wait_for()
+    teacher.evaluate(HOLDS)
+    for language in ("es", "en"):  # each makes it anew
+        with teacher.expect_response(
+            lambda found: '"class_text"' in (found.request.post_data or "")
+        ):
+            speak(teacher, language)
+        teacher.wait_for_function(HELD)
+    first = tile(teacher, "Ana").locator("img").get_attribute("src")
+    teacher.evaluate("() => made()")
+    teacher.wait_for_function(HELD)
+    assert tile(teacher, "Ana").locator("img").get_attribute("src") != first
+    tile(teacher, "Ana").locator(".see").click()
+    large = teacher.locator("#big_pupil img[src^=blob]")
+    assert large.evaluate("async (image) => { await image.decode(); return image.width > 0; }")
+    teacher.click("#big_pupil [data-text=close]")
+    teacher.evaluate("() => released()")
 
 
 def test_a_robot_that_does_not_confirm_a_stop_is_red(

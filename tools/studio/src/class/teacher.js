@@ -17,7 +17,7 @@ import { known, text } from '../page/texts.js';
 /** @typedef {{port: string, name: string, pupil: string, left_s: number}} RobotRow */
 /** @typedef {{name: string, lessons: string[]}} KeptRow */
 /** @typedef {{code: string, turn_s: number, places: number, over: string, goes_on: boolean, lessons: number, kept: KeptRow[], pupils: PupilRow[], robots: RobotRow[]}} State */
-/** @typedef {{text: string, robot: string, version: number, picture: string}} Known what is known of a program */
+/** @typedef {{text: string, robot: string, version: number}} Known what is known of a program */
 
 const LOOK_MS = 1000;
 const SURE_MS = 5000;
@@ -296,10 +296,9 @@ export class Teacher {
       const pupil = this.#pupil(key);
       const found = pupil ? await post({ do: 'class_text', pupil: pupil.number })
         : (await workOfAll()).find(({ name }) => name === nameOf(key)) ?? { text: '', robot: '' };
-      const known = { text: String(found.text), robot: String(found.robot || 'tinibot'), version: pupil ? Number(found.version) : 0, picture: this.#known.get(key)?.picture ?? '' };
+      const known = { text: String(found.text), robot: String(found.robot || 'tinibot'), version: pupil ? Number(found.version) : 0 };
       this.#known.set(key, known);
       this.#pictures.want(key, known, (address) => {
-        known.picture = address;
         if (!this.#wall.picture(key, address)) URL.revokeObjectURL(address);
         if (this.#big.key === key) this.#showBig(key);
       });
@@ -328,7 +327,7 @@ export class Teacher {
     const drives = pupil?.robot ? text('class_drives', { robot: shown(pupil.robot) }) : '';
     const done = text('class_lessons', { done: tile.lessons.length, all: this.#state?.lessons ?? 0 });
     this.#big.show({
-      key, title: shown(tile.name), said: [drives, done].filter(Boolean).join(', '), picture: known?.picture ?? '', text: known?.text || text('class_empty'),
+      key, title: shown(tile.name), said: [drives, done].filter(Boolean).join(', '), picture: this.#wall.pictureOf(key), text: known?.text || text('class_empty'),
       drives: Boolean(drives), hand: Boolean(pupil?.hand), here: true,
     });
   }

@@ -64,6 +64,11 @@ export class Wall {
     return true;
   }
 
+  /** The address of the picture in a tile, or nothing; the one before it is no more. @param {string} key */
+  pictureOf(key) {
+    return this.#tiles.get(key)?.picture.getAttribute('src') ?? '';
+  }
+
   /** @param {Seen} of @returns {Tile} */
   #made({ key }) {
     const button = (/** @type {string} */ name, /** @type {(key: string) => void} */ act, /** @type {Node[]} */ ...inside) => {
