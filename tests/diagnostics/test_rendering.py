@@ -326,19 +326,18 @@ def test_each_code_is_explained(code: str, lang: str) -> None:
     text = explain(code, lang)
     assert text is not None
     assert TEXTS[lang][f"{code}/title"] in text
-    assert TEXTS[lang][f"{code}/more"] in " ".join(text.split())
+    assert TEXTS[lang][f"{code}/more"] in text
     for example in ("wrong", "right"):
         for row in PROGRAMS.get(code, {}).get(example, "").strip().split("\n"):
             assert row in text
-    assert max(map(len, text.split("\n"))) <= 100
 
 
 def test_an_explanation_whole() -> None:
     assert explain("012", "es") == (
         "TS012 (error): Un decimal con coma\n"
         "\n"
-        "En TiniScript la coma separa los valores; por eso F(1,5, 80) tiene tres: 1, 5 y 80. Uno\n"
-        "y medio se escribe con punto: 1.5.\n"
+        "En TiniScript la coma separa los valores; por eso F(1,5, 80) tiene tres: 1, 5 y 80. "
+        "Uno y medio se escribe con punto: 1.5.\n"
         "\n"
         "Mal:\n"
         "\n"

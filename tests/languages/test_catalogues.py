@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import os
 import re
+import sys
 from collections.abc import Iterator
 from gettext import GNUTranslations
 from pathlib import Path
@@ -16,6 +17,8 @@ from tiniscript.base import catalogue_compiler as compiling
 from tiniscript.base import languages
 from tiniscript.base.catalogue_file import Catalogue, Entry, load, read, written
 from tiniscript.base.languages import FOLDER, SOURCE
+from tiniscript.cli import main
+from tiniscript.cli.streams import wrapped
 from tiniscript.cli.texts import Said, language_of, text
 from tiniscript.cli.texts.verbs import VERBS
 from tools.languages import PSEUDO, in_step, pseudo
@@ -242,7 +245,52 @@ def _forget() -> None:
     languages.catalogue.cache_clear()
 
 
-# What is laid out. A sentence is one row, which the terminal breaks.
+class Terminal(io.StringIO):
+    def isatty(self) -> bool:
+        return True
+
+
+SAID = (
+    ("check", "-e", "F(2 80)\nAVANZA 20\n\nF(60, 80) UNTIL(DISTANCE < 10) AND LATER THAN EVER"),
+    ("check", "no_such_file.ts"), ("complie",), ("robot", "--world", "no_such_world"),
+    ("explain", "TS017"), ("upload", "-e", "S", "--port", "/dev/no_such_port"),
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("words", SAID, ids=" ".join)
+def test_a_terminal_has_sentences_in_its_width_and_a_pipe_each_in_one_row(
+    longer: str, words: tuple[str, ...], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("LC_ALL", longer)
+    monkeypatch.setenv("NO_COLOR", "1")
+    monkeypatch.setenv("COLUMNS", "80")
+    said = []
+    for kind in (Terminal, io.StringIO):
+        streams = kind(), kind()
+        for name, stream in zip(("stdout", "stderr"), streams, strict=True):
+            monkeypatch.setattr(sys, name, stream)
+        main([*words])
+        said.append("".join(each.getvalue() for each in streams))
+    narrow, wide = said
+    assert max(map(len, narrow.split("\n"))) <= 80 < max(map(len, wide.split("\n")))
+    assert narrow.split() == wide.split(), "nothing is lost, nor hidden"
+    frames = [row for row in wide.split("\n") if re.search(r"^\S+ \d+:  |^ +\^+$", row)]
+    assert [row for row in frames if row not in narrow.split("\n")] == []
+
+
+@pytest.mark.parametrize(("said", "rows"), [
+    ("Nothing is too long.", ["Nothing is too long."]),
+    ("Once upon a time, behind it", ["Once upon a time,", "behind it"]),
+    ("Lift it. Try:  tsc run -e S", ["Lift it. Try:", "tsc run -e S"]),
+    ("Try:  tsc run --sensor A=1,2,3", ["Try:  tsc run", "--sensor A=1,2,3"]),
+    ("  seen: a port that is", ["  seen: a port that", "  is"]),
+    ("one\n\nhttp://long.example/a/page", ["one", "", "http://long.example/a/page"]),
+])  # fmt: skip
+def test_a_command_stays_in_one_row_where_there_is_room(said: str, rows: list[str]) -> None:
+    assert wrapped(said, 20) == "\n".join(rows)
+
+
+# What is laid out, on a terminal and elsewhere.
 LAID_OUT = (("help",), ("help", "all"), *(("help", verb) for verb in VERBS))
 
 

@@ -13,6 +13,7 @@ import os
 import stat
 import sys
 from importlib import import_module
+from typing import TextIO
 
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.texts import language_of, text
@@ -85,8 +86,17 @@ def _mend_streams() -> None:
         if hasattr(stream, "reconfigure"):
             is_unicode = (stream.encoding or "").lower().startswith("utf")
             stream.reconfigure(errors="backslashreplace" if is_unicode else _plain_errors())
+        if stream.isatty():
+            _wrap(stream)
     if hasattr(sys.stdin, "reconfigure"):
         sys.stdin.reconfigure(errors="backslashreplace")  # invalid text becomes a mistake
+
+
+def _wrap(stream: TextIO) -> None:
+    from tiniscript.cli.streams import Wrapping
+
+    name = "stdout" if stream is sys.stdout else "stderr"
+    setattr(sys, name, Wrapping(stream))
 
 
 def _plain_errors() -> str:

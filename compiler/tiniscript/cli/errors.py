@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tiniscript.base import languages
-from tiniscript.cli.texts import text
+from tiniscript.cli.texts import Said, text
 
 
 class CommandError(Exception):
@@ -24,5 +24,5 @@ class CommandError(Exception):
             near = text("did_you_mean", language).format(near=self.values["near"])
             try_it = f" {languages.text('messages', 'label/try', language)}  "
             what, advice, example = said.rpartition(try_it)  # what was typed may have it, too
-            return f"{what} {near}{advice}{example}" if advice else f"{said} {near}"
+            return Said(f"{what} {near}{advice}{example}" if advice else f"{said} {near}")
         return said

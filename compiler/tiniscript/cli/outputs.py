@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
-from tiniscript.cli.texts import text
+from tiniscript.cli.texts import Said, text
 
 if TYPE_CHECKING:
     from tiniscript.library.compiling import Compiled
@@ -43,7 +43,9 @@ def print_diagnostics(compiled: Compiled, language: str) -> None:
     color = has_colors(sys.stderr)
     for diagnostic in compiled.diagnostics[:SHOWN]:
         said = message(diagnostic, compiled.source, language)
-        print(as_text(said, compiled.source, language, color) + "\n", file=sys.stderr)
+        rows = as_text(said, compiled.source, language, color).split("\n")
+        frame = rows[: 2 * bool(compiled.source.text)]
+        print(*frame, *map(Said, rows[len(frame) :]), "", sep="\n", file=sys.stderr)
     if len(compiled.diagnostics) > SHOWN:
         more = text("and_more", language).format(n=len(compiled.diagnostics) - SHOWN)
         print(more, file=sys.stderr)

@@ -1,4 +1,4 @@
-"""What an output can show: which characters, and whether colors and a moving cursor.
+"""What an output can show: which characters, how wide, and whether colors and a moving cursor.
 
 A window of Windows shows each character, but what goes from there into a file or a pipe is in
 cp1252, cp850 or another of its code pages, without Ω, arrows and dots. A sign that has a plain
@@ -13,8 +13,11 @@ from __future__ import annotations
 
 import codecs
 import os
+import re
 import sys
-from typing import TextIO
+from typing import Any, TextIO
+
+from tiniscript.cli.texts import Said
 
 NAME = "tiniscript_plain"  # of the handler of errors
 # for drawings: as wide as what they stand for
@@ -74,3 +77,40 @@ def are_read(stream: TextIO) -> bool:
 def has_colors(stream: TextIO) -> bool:
     """Return whether a stream shows colors, and the person has not declined them."""
     return not os.environ.get("NO_COLOR") and are_read(stream)
+
+
+class Wrapping:
+    """A terminal that breaks sentences, each a `Said`, at its width. Frames and tables are none."""
+
+    def __init__(self, stream: TextIO) -> None:
+        self._stream = stream
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._stream, name)
+
+    def write(self, text: str) -> int:
+        if isinstance(text, Said):
+            from shutil import get_terminal_size
+
+            text = wrapped(text, get_terminal_size().columns)
+        return self._stream.write(text)
+
+
+# A command: people copy it, so it stays in one row where there is room.
+_COMMAND = re.compile(r"(?<=[^ ] {2})[^ \n]+(?: [^ \n]+)*")
+
+
+def wrapped(said: str, columns: int) -> str:
+    """Return a sentence in rows; what stands behind two blanks is a command."""
+    from textwrap import fill
+
+    def whole(command: re.Match[str]) -> str:
+        return command[0].replace(" ", "\0") if len(command[0]) < columns else command[0]
+
+    rows = []
+    for row in _COMMAND.sub(whole, said).split("\n"):
+        indent = row[: len(row) - len(row.lstrip(" "))]
+        filled = fill(row, columns, replace_whitespace=False, subsequent_indent=indent,
+                      break_long_words=False, break_on_hyphens=False)  # fmt: skip
+        rows.append(filled if len(row) > columns else row)
+    return "\n".join(rows).replace("\0", " ")

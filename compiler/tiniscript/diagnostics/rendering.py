@@ -104,7 +104,7 @@ def as_text(message: Message, source: Source, lang: str, color: bool = False) ->
 
 def explain(code: str, lang: str) -> str | None:
     """Return the longer explanation of a code (`TS017`, `ts017` or `017`), None for no code."""
-    from textwrap import fill, indent
+    from textwrap import indent
 
     number = code.strip().upper()
     number = number if number.startswith("TS") else "TS" + number
@@ -113,7 +113,7 @@ def explain(code: str, lang: str) -> str | None:
     severity = _label("mistake" if CODES[number].is_mistake else "warning", lang)
     parts = [
         f"{number} ({severity}): {_text(f'{number}/title', lang)}",
-        fill(_text(f"{number}/more", lang), 88, break_on_hyphens=False),
+        _text(f"{number}/more", lang),
     ]
     for example, program in examples().get(number, {}).items():
         parts.append(_label(example, lang) + "\n\n" + indent(program.strip(), "    "))

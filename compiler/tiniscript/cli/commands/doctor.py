@@ -20,7 +20,7 @@ from tiniscript.cli.robot.connect import Connection, baud_of, robot_of_kit
 from tiniscript.cli.robot.simulator import running_address
 from tiniscript.cli.streams import are_read
 from tiniscript.cli.terminal.asking import agreed, can_ask
-from tiniscript.cli.texts import has_text, text
+from tiniscript.cli.texts import Said, has_text, text
 from tiniscript.doctor import report
 from tiniscript.doctor.diagnosis import Diagnosis, Doors, Question, diagnosed
 from tiniscript.doctor.examination import Expected
@@ -53,7 +53,7 @@ def run(options: Namespace, language: str) -> int:
     if options.json:
         print(json.dumps(_fields(diagnosis, language), indent=2))
     else:
-        print("\n".join(_lines(diagnosis, language)), flush=True)
+        print(Said("\n".join(_lines(diagnosis, language))), flush=True)
     if options.report is not None:
         data = "\n".join(_report(diagnosis, told, language)) + "\n"
         outputs.write(Path(options.report), data.encode(), "unwritable_report")

@@ -6,6 +6,7 @@ from argparse import Namespace
 
 from tiniscript.base.words import nearest
 from tiniscript.cli.errors import CommandError
+from tiniscript.cli.texts import Said
 from tiniscript.diagnostics.codes import CODES
 from tiniscript.diagnostics.rendering import explain, titles
 
@@ -13,11 +14,11 @@ from tiniscript.diagnostics.rendering import explain, titles
 def run(options: Namespace, language: str) -> int:
     if options.code is None:
         for code, title in titles(language):
-            print(f"{code}  {title}")
+            print(Said(f"{code}  {title}"))
         return 0
     said = explain(options.code, language)
     if said is None:
         near = nearest(options.code.upper(), list(CODES)) or ""
         raise CommandError(2, "no_code", found=options.code, near=near)
-    print(said, end="" if said.endswith("\n") else "\n")
+    print(Said(said), end="" if said.endswith("\n") else "\n")
     return 0

@@ -24,15 +24,18 @@ class Said(str):
     """A sentence, or several: `format` makes all values printable.
 
     A value may come from a file or a robot: it must not move the cursor or begin a line. A value
-    that is a `Said` itself stays unchanged.
+    that is a `Said` itself stays unchanged. Printed, it is still one: a terminal wraps it.
     `language` is the one that it is in.
     """
 
     language = languages.SOURCE
 
+    def __str__(self) -> str:
+        return self
+
     def format(self, *values: object, **named: object) -> Said:
         plain = {key: _plain(value) for key, value in named.items()}
-        template = str(self)
+        template = "".join(self)
         for key, value in plain.items():
             if isinstance(value, int | str) and str(value).isdecimal():
                 for counted in COUNTED:
