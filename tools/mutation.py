@@ -59,21 +59,21 @@ class Module(NamedTuple):
 
 
 def _python(name: str, *tests: str) -> Module:
-    return Module(name, (f"{_PY}/{name}/**/*.py",), tests or (f"tests/{name}",))
+    return Module(name, (f"{_PY}/{name}/**/*.py",), tests or (f"tests/{Path(name).name}",))
 
 
 # fmt: off
 MODULES = (
-    Module("shared", (f"{_PY}/*.py",), ("tests/vm/test_fixed_point.py", "tests/vm/test_cases.py", "tests/robots", "tests/cli/test_files.py", "tests/pupils/test_pupils.py")),
+    Module("base", (f"{_PY}/*.py", f"{_PY}/base/*.py"), ("tests/vm/test_fixed_point.py", "tests/vm/test_cases.py", "tests/languages", "tests/robots", "tests/cli/test_files.py", "tests/pupils/test_pupils.py")),
     _python("syntax", "tests/syntax", "tests/vm/test_cases.py", "tests/pupils"),
     _python("semantics", "tests/semantics", "tests/vm/test_cases.py", "tests/pupils/test_pupils.py"),
-    _python("repairs", "tests/pupils"), _python("recovery", "tests/recovery", "tests/pupils"),
-    _python("diagnostics", "tests/diagnostics", "tests/pupils/test_pupils.py"),
-    _python("codegen", "tests/codegen", "tests/vm/test_cases.py"),
+    _python("recovery", "tests/recovery", "tests/pupils"),
+    _python("diagnostics", "tests/diagnostics", "tests/pupils"),
+    Module("codegen", (f"{_PY}/codegen/*.py",), ("tests/codegen", "tests/vm/test_cases.py")),
     _python("bytecode", "tests/bytecode", "tests/vm/test_cases.py"),
     _python("vm", "tests/vm/test_cases.py", "tests/vm"),
-    _python("text"), _python("sketch"), _python("conformance", "tests/conform"),
-    _python("library"), _python("languages"), _python("doctor"), _python("virtual"),
+    _python("codegen/text"), _python("codegen/sketch"), _python("conformance", "tests/conform"),
+    _python("library"), _python("doctor"), _python("virtual"),
     _python("link", "tests/link", "tests/sharing", "tests/modules", "tests/cli/test_keys.py"),
     _python("robots", "tests/robots", "tests/wiring"), _python("lessons"), _python("flash"),
     _python("studio"), _python("cli", "tests/cli", "tests/wiring"),
