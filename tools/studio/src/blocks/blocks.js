@@ -146,8 +146,8 @@ export class Blocks {
     return this.#place.contains(document.activeElement);
   }
 
-  /** The language of the page is another one, or whether words of the text are shown. */
-  setLanguage() {
+  /** The words on blocks are others: of another language, or of the text, too. */
+  showWords() {
     const { form } = formOf(this.#workspace);
     const places = this.#places.map(([, place]) => place);
     const { scrollX, scrollY } = this.#workspace;

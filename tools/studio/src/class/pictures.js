@@ -72,7 +72,7 @@ export class Pictures {
   }
 
   /** The pictures' words are those of another language from now on. */
-  async setLanguage() {
-    (await this.#blocks)?.setLanguage();
+  async showWords() {
+    (await this.#blocks)?.showWords();
   }
 }

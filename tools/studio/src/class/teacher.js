@@ -11,6 +11,7 @@ import { clock, put, Wall } from './wall.js';
 import { element } from '../page/elements.js';
 import { hostPorts, post } from '../robot/host.js';
 import { shown } from '../robot/said.js';
+import { so } from '../page/so.js';
 import { known, text } from '../page/texts.js';
 
 /** @typedef {{number: number, name: string, silent_s: number, place: number, robot: string, left_s: number, version: number, is_right: boolean, hand: number, lessons: string[]}} PupilRow */
@@ -84,7 +85,7 @@ export class Teacher {
     const bar = made('div', '', this.#said, this.#chips, this.#giveBack, this.#anew, gear);
     bar.id = 'class_bar';
     element('class', HTMLElement).append(bar, this.#wall.element, this.#empty);
-    new MutationObserver(() => this.#setLanguage()).observe(document.documentElement, { attributeFilter: ['lang'] });
+    so.language.watch(() => this.#showWords());
     this.#lookForPorts();
     this.#ask({ do: 'class' });
     side.click();
@@ -146,8 +147,8 @@ export class Teacher {
     dispatchEvent(new Event('resize'));
   }
 
-  async #setLanguage() {
-    await this.#pictures.setLanguage();
+  async #showWords() {
+    await this.#pictures.showWords();
     for (const known of this.#known.values()) known.version = -1; // the words of the pictures are others
     if (this.#state) this.#show(this.#state);
   }

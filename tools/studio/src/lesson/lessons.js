@@ -6,6 +6,7 @@
 import { element } from '../page/elements.js';
 import { elementOf, filled } from './page.js';
 import { keepDone, lessonsDone } from './progress.js';
+import { so } from '../page/so.js';
 import { currentLanguage, text } from '../page/texts.js';
 
 /** @typedef {{name: string, title: string, robot: string, worlds: number}} Lesson */
@@ -22,13 +23,10 @@ import { currentLanguage, text } from '../page/texts.js';
 /**
  * @typedef {object} Page what the lessons need of the page
  * @property {import('../python.js').Python} python
- * @property {() => string} program
- * @property {(robot: string) => void} setRobot
  * @property {(program: {text: string, robot: string}) => void} put another program into the editor
  * @property {(lesson: number, seed: number, label: () => string) => Promise<void>} showWorld
  * @property {(run: JudgedRun) => Promise<void>} play resolves when it has been seen, or was stopped
  * @property {() => void} stop
- * @property {(note: string) => void} tell
  */
 
 /** What is said of each verdict, where a lesson has one world, and where it has several. */
@@ -84,16 +82,13 @@ export class Lessons {
       if (this.#step < this.#steps.length - 1) this.#go(this.#step + 1);
       else this.#choose(this.#number + 1).catch((why) => this.#fail(why));
     });
+    so.language.watch(() => {
+      if (this.#isShown) this.#fetch();
+    });
+    so.text.watch(() => { // what was said of the one before is not of it
+      if (this.#isShown) this.#forget();
+    });
     this.#setReady(false);
-  }
-
-  setLanguage() {
-    if (this.#isShown) this.#fetch();
-  }
-
-  /** The program is another one: what was said of the one before is not of it. */
-  textChanged() {
-    if (this.#isShown) this.#forget();
   }
 
   #show() {
@@ -175,7 +170,7 @@ export class Lessons {
     const { robot } = /** @type {Lesson} */ (this.#lessons[this.#number - 1]);
     element('lesson_step', HTMLElement).replaceChildren(...blocks.map((block) => elementOf(block, (program) => {
       this.#page.put({ text: program, robot });
-      this.#page.tell(text('lesson_used'));
+      so.note.say(text('lesson_used'));
     })));
     place.dataset['lesson'] = String(this.#number);
     element('lesson_page', HTMLElement).scrollTop = 0;
@@ -212,7 +207,7 @@ export class Lessons {
   async #seeWorld(seed) {
     const { worlds, robot } = /** @type {Lesson} */ (this.#lessons[this.#number - 1]);
     const values = { number: this.#number, seed };
-    this.#page.setRobot(robot);
+    if (robot !== so.robot.value) so.robot.say(robot);
     await this.#page.showWorld(values.number, seed,
       () => text(worlds > 1 ? 'world_of_lessons' : 'world_of_lesson', values));
   }
@@ -221,7 +216,7 @@ export class Lessons {
     this.#forget();
     const check = this.#checks;
     const number = this.#number;
-    const program = new TextEncoder().encode(this.#page.program());
+    const program = new TextEncoder().encode(so.text.value);
     const { worlds } = /** @type {Lesson} */ (this.#lessons[number - 1]);
     this.#end.hidden = false;
     this.#lay();
@@ -290,7 +285,7 @@ export class Lessons {
     }));
     this.#hint.open = false;
     element('lesson_page', HTMLElement).scrollTop = 0;
-    if (!isKept) this.#page.tell(text('not_kept'));
+    if (!isKept) so.note.say(text('not_kept'));
     if (hadFocus) (this.#next.hidden ? this.#check : this.#next).focus();
   }
 }

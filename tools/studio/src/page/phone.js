@@ -3,6 +3,7 @@
 
 import { element } from './elements.js';
 import { showSide } from './sides.js';
+import { so } from './so.js';
 import { text } from './texts.js';
 
 /** @typedef {'program' | 'robot'} Half */
@@ -32,12 +33,16 @@ export class Phone {
         this.#runReal();
         return;
       }
-      const isWrong = dataset['state'] === 'checked' && !dataset['image'];
+      const isWrong = so.checked.value?.image === '';
       if (isWrong) this.#putAway(false);
       else if (dataset['side'] !== 'side_lessons') showSide('side_virtual');
       this.show(isWrong ? 'program' : 'robot');
     }, { capture: true });
     this.#sheet.addEventListener('click', () => this.#putAway(!this.#isAway));
+    so.language.watch(() => this.#name());
+    so.checked.watch((answer) => {
+      if (answer) this.#said(answer.findings.length);
+    });
     this.show('program');
     this.#lay();
   }
@@ -45,15 +50,15 @@ export class Phone {
   /** @param {Half} half */
   show(half) {
     dataset['half'] = half;
-    this.setLanguage();
+    this.#name();
   }
 
-  setLanguage() {
+  #name() {
     element('other_name', HTMLElement).textContent = text(dataset['half'] === 'robot' ? 'editor' : 'half_robot');
   }
 
   /** @param {number} count of what the compiler says of the newest program */
-  said(count) {
+  #said(count) {
     this.#sheet.hidden = !count;
     this.#putAway(count > 0 && this.#isAway);
   }

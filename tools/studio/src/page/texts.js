@@ -4,6 +4,7 @@
 
 import languages from '../../made/languages.json';
 import { needLanguage } from './offline.js';
+import { so } from './so.js';
 
 /** @typedef {Exclude<keyof typeof import('../../made/texts.en.json'), ''>} Key */
 
@@ -12,14 +13,13 @@ export const LANGUAGES = /** @type {any} */ (languages);
 
 const SOURCE = LANGUAGES[0]?.[0] ?? ''; // what others fall back to
 
-let language = '';
 let wanted = '';
 /** A text, or its forms for numbers; which form is for which number has no key. @type {Record<string, string | string[]>} */
 let texts = {};
 
 /** @returns {string} */
 export function currentLanguage() {
-  return language;
+  return so.language.value;
 }
 
 /** @param {unknown} locale such as `pt-BR` @returns {string} the language to begin with */
@@ -30,10 +30,11 @@ export function languageOf(locale) {
 
 /** @param {string} chosen @returns {Promise<string>} the language that is seen now: without a connection it may be the one before */
 export async function setLanguage(chosen) {
+  let language = currentLanguage();
   wanted = chosen;
   for (const code of [chosen, ...(language ? [] : LANGUAGES.map(([each]) => each))]) {
     const found = await fetch(`./texts.${code}.json`).then((answer) => (answer.ok ? answer.json() : null)).catch(() => null);
-    if (chosen !== wanted) return language; // another one was chosen meanwhile
+    if (chosen !== wanted) return currentLanguage(); // another one was chosen meanwhile
     if (!found) continue;
     texts = found;
     language = code;
@@ -49,6 +50,7 @@ export async function setLanguage(chosen) {
     element.setAttribute('aria-label', label);
     if (element instanceof HTMLButtonElement) element.title = label;
   }
+  so.language.say(language);
   return language;
 }
 
@@ -87,5 +89,5 @@ export function textsOf(group) {
 
 /** @param {Record<string, string>} labels of a world, a robot or a device by language, or none @returns {string} what it is called */
 export function called(labels) {
-  return labels[language] ?? labels[SOURCE] ?? '';
+  return labels[currentLanguage()] ?? labels[SOURCE] ?? '';
 }

@@ -3,6 +3,7 @@
 
 import blocks from '../../made/blocks.json';
 import description from '../../made/description.json';
+import { so } from './so.js';
 import { called, hasText, text } from './texts.js';
 
 /** @typedef {{text: string, role: string, usage?: string, example: string}} Word */
@@ -24,16 +25,9 @@ const WORDS = new Map(
   ]),
 );
 
-let areShown = false;
-
-/** Whether the words of the text stand on blocks and at readings. @param {boolean} chosen */
-export function showWords(chosen) {
-  areShown = chosen;
-}
-
 /** @param {string} label with a word of the text: of `{IF} if %1` the rest, or `IF %1` @returns {string} */
 export function labelled(label) {
-  return areShown ? label.replace(/\{(\S+)\} (\1\b ?)?/i, '$1 ').trim() : label.replace(/\{\S+\} /, '');
+  return so.areWordsShown.value ? label.replace(/\{(\S+)\} (\1\b ?)?/i, '$1 ').trim() : label.replace(/\{\S+\} /, '');
 }
 
 /** @param {typeof ROBOTS[number]['devices'][number]} device @returns {string} */

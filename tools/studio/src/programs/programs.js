@@ -9,6 +9,7 @@ import { isAddress, keepPublic, publicAddress } from './public_address.js';
 import { reachOf } from './reach.js';
 import { isGiven } from '../start/beginnings.js';
 import { showInstead } from '../start/screens.js';
+import { so } from '../page/so.js';
 import { called, currentLanguage, text } from '../page/texts.js';
 import { keepVersion, MOST_CHARACTERS, versions } from './versions.js';
 import { ROBOTS } from '../page/words.js';
@@ -37,21 +38,18 @@ export class Programs {
   #work;
   #picturing;
   #put;
-  #tell;
   #asked = 0;
 
   /**
    * @param {import('../python.js').Python} python
    * @param {Work} work
    * @param {(program: {text: string, robot: string, name: string}) => void} put it into the editor
-   * @param {(note: string) => void} tell
    * @param {() => Promise<Blob | null>} picturing the program's blocks, as a file
    */
-  constructor(python, work, put, tell, picturing) {
+  constructor(python, work, put, picturing) {
     this.#python = python;
     this.#work = work;
     this.#put = put;
-    this.#tell = tell;
     this.#picturing = picturing;
     element('my_programs', HTMLButtonElement).addEventListener('click', () => this.#open());
     element('programs_close', HTMLButtonElement).addEventListener('click', () => this.#window.close());
@@ -81,7 +79,7 @@ export class Programs {
   /** Keeps what is in the editor among the earlier programs, unless the page has brought it. */
   keep() {
     if (isGiven(this.#work.text)) return;
-    if (!keepVersion(this.#work)) this.#tell(text(this.#work.text.length > MOST_CHARACTERS ? 'kept_too_long' : 'not_kept'));
+    if (!keepVersion(this.#work)) so.note.say(text(this.#work.text.length > MOST_CHARACTERS ? 'kept_too_long' : 'not_kept'));
   }
 
   /**
@@ -99,13 +97,13 @@ export class Programs {
     try {
       found = await sharedIn(location.hash);
     } catch {
-      this.#tell(text('link_wrong'));
+      so.note.say(text('link_wrong'));
     }
     if (found === null) return;
     showInstead();
     if (!found) return;
     this.replace({ ...found, name: '' });
-    this.#tell(text('link_opened'));
+    so.note.say(text('link_opened'));
   }
 
   #open() {
@@ -224,7 +222,7 @@ export class Programs {
       open.addEventListener('click', () => {
         this.replace(version);
         this.#window.close();
-        this.#tell(text('opened_again', { time: String(when.textContent) }));
+        so.note.say(text('opened_again', { time: String(when.textContent) }));
       });
       const robot = document.createElement('span');
       robot.textContent = called(ROBOTS.find((each) => each.name === version.robot)?.labels ?? {}) || version.robot;

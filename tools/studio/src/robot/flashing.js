@@ -4,12 +4,12 @@ import { element } from '../page/elements.js';
 import { chosenPort, hasSerial } from './serial.js';
 import { shown } from './said.js';
 import { Failed } from './way.js';
+import { so } from '../page/so.js';
 import { currentLanguage } from '../page/texts.js';
 
 /**
  * @typedef {object} Panel what is used of the part with a robot
  * @property {import('./speech.js').Speech} speech
- * @property {() => string} robot whose firmware is wanted
  * @property {() => any} port the known one that is chosen, if one is
  * @property {() => boolean} isFree
  * @property {(isBusy: boolean) => void} setBusy
@@ -56,9 +56,9 @@ export class Flashing {
   }
 
   async #flash() {
-    const { speech, robot, port: known, isFree, setBusy, meet } = this.#panel;
+    const { speech, port: known, isFree, setBusy, meet } = this.#panel;
     if (!isFree()) return;
-    const which = this.#file ?? { robot: robot(), language: currentLanguage() };
+    const which = this.#file ?? { robot: so.robot.value, language: currentLanguage() };
     const chosen = known() ? Promise.resolve(known()) : chosenPort();
     this.#cancelling = new AbortController();
     speech.say('say_flashing');

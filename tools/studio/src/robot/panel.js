@@ -15,6 +15,7 @@ import { refusal, shown } from './said.js';
 import { stopAll } from './stops.js';
 import { Speech } from './speech.js';
 import { Failed } from './way.js';
+import { so } from '../page/so.js';
 import { called, currentLanguage, known, text } from '../page/texts.js';
 import { LINK, ROBOTS } from '../page/words.js';
 
@@ -28,9 +29,6 @@ import { LINK, ROBOTS } from '../page/words.js';
 /**
  * @typedef {object} Page what the panel uses of the page
  * @property {import('../python.js').Python} python
- * @property {() => Checked | null} program what the compiler says of the newest text
- * @property {() => string} robot for which it compiles
- * @property {(name: string) => void} setRobot
  * @property {(place: import('../writing/editor.js').Range) => void} goTo
  * @property {import('./recorder.js').Recorder} recorder of what the robot tells
  * @property {import('./place.js').RobotPlace} place where its program is
@@ -79,7 +77,6 @@ export class RobotPanel {
     element('keys_file', HTMLInputElement).addEventListener('change', () => this.#import());
     new Flashing({
       speech: this.#speech,
-      robot: page.robot,
       port: () => this.#choices[this.#list.selectedIndex]?.serial,
       isFree: () => this.isFree,
       setBusy: (isBusy) => {
@@ -96,7 +93,8 @@ export class RobotPanel {
       if (document.visibilityState === 'hidden') this.#hide();
     });
     for (const name of ['pagehide', 'freeze']) addEventListener(name, () => this.#way?.leave());
-    this.setLanguage();
+    so.language.watch(() => this.#show());
+    this.#show();
     this.#look();
   }
 
@@ -104,11 +102,6 @@ export class RobotPanel {
     const about = this.#about;
     if (!about) return '';
     return shown(about.name) || called(ROBOTS.find((each) => each.name === about.robot)?.labels ?? {}) || about.id;
-  }
-
-  setLanguage() {
-    this.#speech.setLanguage();
-    this.#show();
   }
 
   /** Sends the program and runs it, or says that no robot is there. */
@@ -172,7 +165,7 @@ export class RobotPanel {
   byHost(port = 'turn') {
     return this.#connect(async (heard) => {
       const way = new HostRobot(heard);
-      return { way, met: way.connect(port, this.#page.robot(), currentLanguage()) };
+      return { way, met: way.connect(port, so.robot.value, currentLanguage()) };
     });
   }
 
@@ -187,13 +180,13 @@ export class RobotPanel {
   }
 
   get #baud() {
-    return ROBOTS.find((each) => each.name === this.#page.robot())?.baud ?? 9600;
+    return ROBOTS.find((each) => each.name === so.robot.value)?.baud ?? 9600;
   }
 
   /** @param {import('./direct.js').Port} port @param {import('./way.js').Heard} heard */
   #direct(port, heard) {
     const way = new DirectRobot(this.#page.python, port, heard, keepKeys);
-    return { way, met: way.connect(this.#page.robot(), currentLanguage(), keptKeys()) };
+    return { way, met: way.connect(so.robot.value, currentLanguage(), keptKeys()) };
   }
 
   /** @param {(heard: import('./way.js').Heard) => Promise<{way: Way, met: Promise<About>}>} open */
@@ -228,8 +221,8 @@ export class RobotPanel {
   /** @param {About} about */
   #begin(about) {
     this.#speech.clear();
-    const isOther = about.robot !== null && about.robot !== this.#page.robot();
-    if (about.robot !== null && isOther) this.#page.setRobot(about.robot);
+    const isOther = about.robot !== null && about.robot !== so.robot.value;
+    if (about.robot !== null && isOther) so.robot.say(about.robot);
     if (about.owner === 'other') this.#speech.say('say_owned', { name: this.#name });
     else if (isOther) this.#speech.say('say_other_kit', { name: this.#name, robot: String(about.robot) });
     else this.#speech.say('say_connected', { name: this.#name });
@@ -269,7 +262,7 @@ export class RobotPanel {
 
   /** @param {boolean} runs */
   #upload(runs) {
-    const program = this.#page.program();
+    const program = so.checked.value;
     if (!program?.image) {
       this.#speech.say(program ? 'first_repair' : 'press_again'); // a robot does not start late by itself
       this.#isBroken = runs && program !== null;
@@ -277,7 +270,7 @@ export class RobotPanel {
       return;
     }
     this.#speech.begin('say_sending');
-    this.#ask({ do: 'upload', image: program.image, robot: this.#page.robot(), runs }, (answer) => {
+    this.#ask({ do: 'upload', image: program.image, robot: so.robot.value, runs }, (answer) => {
       const { program: sum = '', saved = 'MEMORY' } = answer;
       this.#sent = { program: sum, places: program.places, of: program };
       if (runs && program.start === 'SB') this.#page.recorder.wait(sum);
@@ -288,7 +281,7 @@ export class RobotPanel {
   /** Runs a line now. @param {string} line */
   async #live(line) {
     if (!line.trim() || !this.#about) return;
-    const robot = this.#page.robot();
+    const robot = so.robot.value;
     const data = new TextEncoder().encode(`SI|${line}`);
     /** @type {Checked} */
     const found = await this.#page.python.ask({ do: 'check', robot, language: currentLanguage() }, data);
@@ -371,7 +364,7 @@ export class RobotPanel {
     const [, line, column, end_line, end_column] = place;
     this.#speech.tell(text('say_fault', { line, what }));
     // else the places are those of another text
-    if (this.#page.program() === sent?.of) this.#page.goTo({ line, column, end_line, end_column });
+    if (so.checked.value === sent?.of) this.#page.goTo({ line, column, end_line, end_column });
   }
 
   #show() {

@@ -1,5 +1,6 @@
 // The line that a real robot runs now, where it tells that and runs the program of the page.
 
+import { so } from '../page/so.js';
 import { rangeAt } from '../writing/parts.js';
 
 /** @typedef {import('./way.js').RobotEvent} RobotEvent */
@@ -7,18 +8,16 @@ import { rangeAt } from '../writing/parts.js';
 const ENDS = ['STARTED', 'DONE', 'FAULT', 'STOPPED', 'RESTARTED', 'LOST'];
 
 export class RobotPlace {
-  #page;
+  #shown;
   /** What the robot has told last. @type {RobotEvent | null} */
   #told = null;
 
-  /**
-   * @param {{
-   *   program: () => import('../python.js').Checked | null,
-   *   show: (range: import('../writing/editor.js').Range | null) => void,
-   * }} page `program` is what the compiler says of the newest text
-   */
-  constructor(page) {
-    this.#page = page;
+  /** @param {(range: import('../writing/editor.js').Range | null) => void} shown */
+  constructor(shown) {
+    this.#shown = shown;
+    so.checked.watch(() => {
+      if (this.#told) this.#show();
+    });
   }
 
   /** @param {RobotEvent} event */
@@ -32,11 +31,6 @@ export class RobotPlace {
     this.#tell(null);
   }
 
-  /** The text is another one, or was compiled. */
-  programChanged() {
-    if (this.#told) this.#show();
-  }
-
   /** @param {RobotEvent | null} told */
   #tell(told) {
     const isSame = this.#told === told;
@@ -45,9 +39,9 @@ export class RobotPlace {
   }
 
   #show() {
-    const program = this.#page.program();
+    const program = so.checked.value;
     const at = Number(this.#told?.at ?? -1);
     const isHere = program?.image && program.program === this.#told?.program && at >= 0 && at < program.bytes;
-    this.#page.show(isHere ? rangeAt(program.places, at) : null);
+    this.#shown(isHere ? rangeAt(program.places, at) : null);
   }
 }

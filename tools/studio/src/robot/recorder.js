@@ -4,6 +4,7 @@
 
 import { element } from '../page/elements.js';
 import { bytesOf, download } from '../page/files.js';
+import { so } from '../page/so.js';
 import { currentLanguage, known, text } from '../page/texts.js';
 
 /** @typedef {import('./way.js').RobotEvent} RobotEvent */
@@ -26,7 +27,7 @@ export class Recorder {
   #compare = element('record_compare', HTMLButtonElement);
 
   /**
-   * @param {{python: import('../python.js').Python, text: () => string, robot: () => string, world: () => unknown}} page
+   * @param {{python: import('../python.js').Python, world: () => unknown}} page
    */
   constructor(page) {
     this.#page = page;
@@ -44,17 +45,18 @@ export class Recorder {
         this.#tell(() => text('unreadable'));
       }
     });
+    so.language.watch(() => this.#say());
     this.#show();
   }
 
-  setLanguage() {
+  #say() {
     element('record_said', HTMLElement).textContent = this.#said();
   }
 
   /** @param {() => string} said */
   #tell(said) {
     this.#said = said;
-    this.setLanguage();
+    this.#say();
   }
 
   /** A program waits for the robot's button: no robot tells when it begins. @param {string} program its checksum, in hexadecimal */
@@ -103,7 +105,7 @@ export class Recorder {
 
   /** The file; of a run that goes on, what there is. */
   #whole() {
-    const head = { tiniscript_recording: VERSION, program: this.#program, robot: this.#page.robot() };
+    const head = { tiniscript_recording: VERSION, program: this.#program, robot: so.robot.value };
     const end = this.#isOver ? [] : [{ ms: Math.min(this.#ms, MOST_MS), event: 'STOPPED' }];
     return [head, ...this.#events, ...end].map((row) => `${JSON.stringify(row)}\n`).join('');
   }
@@ -115,9 +117,9 @@ export class Recorder {
   /** @param {Uint8Array} data a recording */
   async #replay(data) {
     this.#tell(() => text('record_comparing'));
-    const { python, text: program, robot, world } = this.#page;
+    const { python, world } = this.#page;
     try {
-      const request = { do: 'replay', robot: robot(), world: world(), text: program(), language: currentLanguage() };
+      const request = { do: 'replay', robot: so.robot.value, world: world(), text: so.text.value, language: currentLanguage() };
       const found = await python.ask(request, data);
       this.#tell(() => said(found));
     } catch (why) {

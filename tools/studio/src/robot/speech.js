@@ -2,6 +2,7 @@
 
 import { element } from '../page/elements.js';
 import { shown } from './said.js';
+import { so } from '../page/so.js';
 import { hasText, known, text } from '../page/texts.js';
 
 /** @typedef {import('./way.js').Failed} Failed */
@@ -17,7 +18,11 @@ export class Speech {
   #line = element('link_said', HTMLElement);
   #list = element('link_shown', HTMLElement);
 
-  setLanguage() {
+  constructor() {
+    so.language.watch(() => this.#say());
+  }
+
+  #say() {
     this.#line.textContent = this.#said();
   }
 
@@ -41,13 +46,13 @@ export class Speech {
   /** @param {string} said */
   tell(said) {
     this.#said = () => said;
-    this.setLanguage();
+    this.#say();
   }
 
   /** @param {() => string} said @param {string} name for tests */
   #put(said, name) {
     this.#said = said;
-    this.setLanguage();
+    this.#say();
     document.documentElement.dataset['link'] = name;
   }
 

@@ -1,6 +1,7 @@
 // The start screen: pictures that begin with a robot that moves, earlier programs, and ways onward.
 
 import { element } from '../page/elements.js';
+import { so } from '../page/so.js';
 import { currentLanguage, known, text } from '../page/texts.js';
 import { titleOf, versions } from '../programs/versions.js';
 import { BEGINNINGS } from './beginnings.js';
@@ -38,10 +39,11 @@ export class Start {
     whenScreen((screen) => {
       if (screen === 'start') this.#page.leave();
       else if (!this.#isBeginning) this.#page.see();
-      this.showPrograms();
+      this.#showPrograms();
       element(screen === 'start' ? 'start' : 'home', HTMLElement).focus({ preventScroll: true });
     });
-    if (isStart()) this.showPrograms();
+    so.language.watch(() => this.#showPrograms());
+    if (isStart()) this.#showPrograms();
     else page.see();
   }
 
@@ -61,7 +63,7 @@ export class Start {
   }
 
   /** Shows the earlier programs as they are now, in the page's language. */
-  showPrograms() {
+  #showPrograms() {
     if (!isStart()) return;
     const time = new Intl.DateTimeFormat(currentLanguage(), { dateStyle: 'short', timeStyle: 'short' });
     const rows = versions().slice(0, MOST).map((version) => {

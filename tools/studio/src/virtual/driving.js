@@ -8,6 +8,7 @@ import { offsetsOf, rangeAt } from '../writing/parts.js';
 import { Plot } from './plot.js';
 import { Simulator } from './simulator.js';
 import { Sounds } from './sounds.js';
+import { so } from '../page/so.js';
 import { hasText, text } from '../page/texts.js';
 import { nameOf, onBlock, ROBOTS } from '../page/words.js';
 import { OWN_WORLD } from '../programs/work.js';
@@ -28,7 +29,6 @@ const SEEN = { seen_arena: 'arena', seen_plot: 'plot_place', seen_trace: 'trace_
 export class Driving {
   #editor;
   #work;
-  #program;
   #whenCompiled;
   #starts = 0; // one that STOP or a newer one has overtaken does nothing
   #isWaiting = false; // for the compiler
@@ -65,14 +65,12 @@ export class Driving {
    * @param {import('../python.js').Python} python
    * @param {import('../writing/views.js').Views} editor where the line that runs is marked
    * @param {Work} work
-   * @param {() => Checked | null} program what the compiler says of the newest text; null while it is at work
-   * @param {() => Promise<Checked | null>} whenCompiled the same, when it is done; null if it cannot say
+   * @param {() => Promise<Checked | null>} whenCompiled what the compiler says of the newest text, when it is done; null if it cannot say
    * @param {() => void} remember
    */
-  constructor(python, editor, work, program, whenCompiled, remember) {
+  constructor(python, editor, work, whenCompiled, remember) {
     this.#editor = editor;
     this.#work = work;
-    this.#program = program;
     this.#whenCompiled = whenCompiled;
     this.#python = python;
     this.#remember = remember;
@@ -152,7 +150,13 @@ export class Driving {
       this.#arena.resize();
       this.#arena.draw(this.#simulator.state);
     }).observe(element('arena', HTMLCanvasElement));
-    this.setLanguage();
+    so.language.watch(() => this.#show());
+    so.areWordsShown.watch(() => this.#show());
+    so.robot.watch(() => this.begin());
+    so.text.watch(() => { // what runs is no longer what is seen
+      this.#places = [];
+      this.#show();
+    });
     this.begin();
     this.#restored = this.#restore();
   }
@@ -185,12 +189,6 @@ export class Driving {
   get #isDriving() {
     const { phase } = this.#simulator;
     return phase === 'running' || phase === 'paused';
-  }
-
-  setLanguage() {
-    this.#world.setLanguage();
-    this.#drawing.setLanguage();
-    this.#show();
   }
 
   /** Shows the robot from above, or its values, or what it has done. @param {string} chosen a button */
@@ -245,7 +243,7 @@ export class Driving {
     this.#simulator.leave();
     this.#plot.begin();
     this.#variables = [];
-    this.#arena.begin(this.#shapes, this.#work.robot, this.#world.goals);
+    this.#arena.begin(this.#shapes, so.robot.value, this.#world.goals);
     this.#show();
   }
 
@@ -261,12 +259,6 @@ export class Driving {
     } finally {
       this.#drawing.allow();
     }
-  }
-
-  /** The text has changed: what runs is no longer what is seen. */
-  forgetPlaces() {
-    this.#places = [];
-    this.#show();
   }
 
   /** The program is to stop elsewhere. */
@@ -298,7 +290,7 @@ export class Driving {
     this.#seenRun();
     const start = ++this.#starts;
     this.#drawing.said = '';
-    let program = this.#program();
+    let program = so.checked.value;
     if (!program) {
       this.#isWaiting = true;
       this.#note = text('still_compiling');
@@ -314,14 +306,14 @@ export class Driving {
     if (start !== this.#starts || !program?.image) return;
     this.#wasStopped = false;
     this.#bumps = 0;
-    this.#arena.begin(this.#world.shapes, this.#work.robot, this.#world.goals);
+    this.#arena.begin(this.#world.shapes, so.robot.value, this.#world.goals);
     this.#plot.begin();
     this.#shown = '';
     this.#places = program.places;
     this.#variables = program.variables;
     this.#findStops();
     const world = judged ?? this.#world.request;
-    await this.#simulator.begin(program, this.#work.robot, world, judged ? [] : this.#offsets, isPaused, least);
+    await this.#simulator.begin(program, so.robot.value, world, judged ? [] : this.#offsets, isPaused, least);
   }
 
   #stop() {
@@ -400,7 +392,7 @@ export class Driving {
   }
 
   #sensors() {
-    const robot = ROBOTS.find((each) => each.name === this.#work.robot);
+    const robot = ROBOTS.find((each) => each.name === so.robot.value);
     return robot?.devices.filter((device) => device.role === 'sensor') ?? [];
   }
 

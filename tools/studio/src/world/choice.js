@@ -3,6 +3,7 @@
 
 import { element } from '../page/elements.js';
 import { pictured, worldPicture } from '../page/pictures.js';
+import { so } from '../page/so.js';
 import { called, text } from '../page/texts.js';
 import { WORLDS } from '../page/words.js';
 import { OwnWorlds } from './own.js';
@@ -59,7 +60,8 @@ export class WorldChoice {
       }
       changed();
     });
-    this.setLanguage();
+    so.language.watch(() => this.#show());
+    this.#show();
   }
 
   /** Whether the world that is seen was drawn or opened here. */
@@ -88,13 +90,13 @@ export class WorldChoice {
   choose(name) {
     this.#work.world = name;
     this.#brought = null;
-    this.setLanguage();
+    this.#show();
   }
 
   /** @param {Brought} brought is chosen, until another one is */
   bring(brought) {
     this.#brought = brought;
-    this.setLanguage();
+    this.#show();
   }
 
   /**
@@ -105,27 +107,27 @@ export class WorldChoice {
     this.#own.put(world, isOther || !this.isOwn);
     this.#brought = null;
     this.#work.world = OWN_WORLD;
-    this.setLanguage();
+    this.#show();
   }
 
   /** @param {World} world it is written as a file has it */
   write(world) {
-    return this.#own.write(world, this.#work.robot);
+    return this.#own.write(world, so.robot.value);
   }
 
   /** Keeps this person's worlds on this device. */
   keepOwn() {
-    return this.#own.keep(this.#work.robot);
+    return this.#own.keep(so.robot.value);
   }
 
   /** Brings this person's worlds back; returns whether the newest can still be read. */
   async restoreOwn() {
     const isWhole = await this.#own.restore();
-    this.setLanguage();
+    this.#show();
     return isWhole;
   }
 
-  setLanguage() {
+  #show() {
     const brought = this.#brought;
     const { newest, before } = this.#own;
     /** @param {World} world */

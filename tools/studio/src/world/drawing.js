@@ -4,6 +4,7 @@
 import { element } from '../page/elements.js';
 import { bytesOf, download } from '../page/files.js';
 import { ownCopy } from './own.js';
+import { so } from '../page/so.js';
 import { currentLanguage, known, text } from '../page/texts.js';
 import {
   FLOOR, handleOf, isSame, KINDS, moved, NUMBERS, onFloor, partAt, partsOf, pointAt, pointsOf, START, turnedBy, turnedPart,
@@ -95,12 +96,11 @@ export class WorldDrawing {
     this.#canvas.addEventListener('pointerup', () => this.#up());
     this.#canvas.addEventListener('pointercancel', () => this.#giveUp());
     this.#canvas.addEventListener('keydown', (event) => this.#key(event));
-  }
-
-  setLanguage() {
-    if (!this.isOn) return;
-    this.said = text('world_hint');
-    this.#show();
+    so.language.watch(() => {
+      if (!this.isOn) return;
+      this.said = text('world_hint');
+      this.#show();
+    });
   }
 
   /** The kept worlds are there: from now on one can be changed. */

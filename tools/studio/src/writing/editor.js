@@ -12,6 +12,7 @@ import { Decoration, EditorView, highlightActiveLine, keymap, lineNumbers } from
 import { breakpoints, placesOf, pointsOf, pressed, setBreakpoints } from './breakpoints.js';
 import { colors, completionOf, languageOf } from './language.js';
 import { partAt } from './parts.js';
+import { so } from '../page/so.js';
 import { text, textsOf } from '../page/texts.js';
 
 /** @typedef {import('../python.js').Finding} Finding */
@@ -69,12 +70,10 @@ export class Editor {
 
   /**
    * @param {HTMLElement} parent
-   * @param {string} robot
-   * @param {() => void} changed
    * @param {() => void} breakpointsChanged
    * @param {(line: number) => void} noBreakpoint there is nothing to stop at
    */
-  constructor(parent, robot, changed, breakpointsChanged, noBreakpoint) {
+  constructor(parent, breakpointsChanged, noBreakpoint) {
     this.#noBreakpoint = noBreakpoint;
     /** @type {(at: number, isLine: boolean) => void} */
     const toggle = (at, isLine) => this.#toggle(at, isLine);
@@ -91,7 +90,7 @@ export class Editor {
             if (!update.docChanged) return;
             this.#places = null;
             this.#marked = '';
-            changed();
+            so.text.say(this.text);
           }),
           breakpoints(toggle, breakpointsChanged),
           lineNumbers({ domEventHandlers: { mousedown: (_, line, event) => pressed(line, event, toggle) } }),
@@ -105,10 +104,15 @@ export class Editor {
           colors,
           theme,
           EditorView.lineWrapping,
-          this.#robot.of(this.#forRobot(robot)),
+          this.#robot.of(forRobot()),
           this.#words.of(this.#inLanguage()),
         ],
       }),
+    });
+    so.robot.watch(() => this.#view.dispatch({ effects: this.#robot.reconfigure(forRobot()) }));
+    so.language.watch(() => this.#view.dispatch({ effects: this.#words.reconfigure(this.#inLanguage()) }));
+    so.checked.watch((answer) => {
+      if (answer) this.#places = answer.places.length ? answer.places : null;
     });
   }
 
@@ -148,15 +152,6 @@ export class Editor {
     });
   }
 
-  /** @param {string} robot */
-  setRobot(robot) {
-    this.#view.dispatch({ effects: this.#robot.reconfigure(this.#forRobot(robot)) });
-  }
-
-  setLanguage() {
-    this.#view.dispatch({ effects: this.#words.reconfigure(this.#inLanguage()) });
-  }
-
   /**
    * @param {Finding[]} findings
    * @param {(finding: Finding) => void} repair
@@ -172,11 +167,6 @@ export class Editor {
         : [],
     }));
     this.#view.dispatch(setDiagnostics(this.#view.state, marks));
-  }
-
-  /** The text is compiled: where its parts begin. @param {import('./parts.js').Places} places */
-  setPlaces(places) {
-    this.#places = places.length ? places : null;
   }
 
   /** Where the program is to stop; `point` stays the same while its text moves. */
@@ -276,14 +266,6 @@ export class Editor {
     return found.from + before;
   }
 
-  /** @param {string} robot */
-  #forRobot(robot) {
-    return [
-      languageOf(robot),
-      autocompletion({ override: [completionOf(robot)], icons: false }),
-    ];
-  }
-
   #inLanguage() {
     return [
       EditorState.phrases.of(textsOf('editor')),
@@ -297,4 +279,9 @@ export class Editor {
       }),
     ];
   }
+}
+
+function forRobot() {
+  const robot = so.robot.value;
+  return [languageOf(robot), autocompletion({ override: [completionOf(robot)], icons: false })];
 }

@@ -3,6 +3,7 @@
 
 import { element } from '../page/elements.js';
 import { blocksPicture, offer, pictured } from '../page/pictures.js';
+import { so } from '../page/so.js';
 import { text } from '../page/texts.js';
 
 /** @typedef {import('../blocks/blocks.js').Blocks} Blocks */
@@ -77,7 +78,14 @@ export class Views {
       }, { capture: true });
     }
     new ResizeObserver(() => this.#blocks?.resize()).observe(this.#pane);
-    this.setLanguage();
+    so.language.watch(() => this.#showWords());
+    so.areWordsShown.watch(() => this.#showWords());
+    so.robot.watch(() => this.#setRobot());
+    so.text.watch(() => this.#textChanged());
+    so.checked.watch((answer) => {
+      if (answer) this.#showFindings(answer.findings);
+    });
+    this.#showWords();
     this.#lay();
   }
 
@@ -102,16 +110,16 @@ export class Views {
     if (this.#isOn) import('../blocks/blocks.js');
   }
 
-  setLanguage() {
+  #showWords() {
     offer(this.#level, LEVELS.map(([level, name], k) => pictured(text(name), level, blocksPicture(k + 1))));
     this.#level.value = this.#work.level;
-    this.#blocks?.setLanguage();
+    this.#blocks?.showWords();
     if (!this.#isStale()) this.#showAll();
     if (this.#blocks) this.#refresh(true);
   }
 
-  setRobot() {
-    this.#blocks?.setRobot(this.#work.robot);
+  #setRobot() {
+    this.#blocks?.setRobot(so.robot.value);
     this.#shown = null;
     if (this.#isOn) this.#refresh(true);
   }
@@ -122,7 +130,7 @@ export class Views {
   }
 
   /** The text has changed, by whoever did it. */
-  textChanged() {
+  #textChanged() {
     this.#findings = []; // those are of the text before
     if (!this.#blocks || !this.#isStale()) return;
     this.#showState();
@@ -131,7 +139,7 @@ export class Views {
   }
 
   /** @param {Finding[]} findings of the newest text */
-  showFindings(findings) {
+  #showFindings(findings) {
     this.#findings = findings;
     if (!this.#isStale()) this.#blocks?.showFindings(findings);
   }
@@ -222,7 +230,7 @@ export class Views {
 
   async #fetch() {
     const { Blocks: Kind } = await import('../blocks/blocks.js');
-    this.#blocks = new Kind(this.#pane, this.#work.robot, this.#work.level, {
+    this.#blocks = new Kind(this.#pane, so.robot.value, this.#work.level, {
       changed: () => this.#blocksChanged(),
       toggle: (place) => {
         if (!this.#isStale()) this.#editor.toggleBreakpoint(place);
@@ -299,7 +307,7 @@ export class Views {
       while (this.#isStale()) {
         const now = this.#editor.text;
         /** @type {Form & {size: number}} */
-        const form = await this.#python.ask({ do: 'blocks', robot: this.#work.robot }, new TextEncoder().encode(now));
+        const form = await this.#python.ask({ do: 'blocks', robot: so.robot.value }, new TextEncoder().encode(now));
         while (this.#blocks.isBusy) await new Promise((resolve) => setTimeout(resolve, BUSY_MS));
         if (now !== this.#editor.text) continue;
         const isKept = !this.#isWanted && this.#editor.hasFocus && this.#shown !== null && hasGrey(form);

@@ -1,0 +1,39 @@
+// What is so: who changes something says it here once, and who shows it watches. So no two parts of the
+// page can show something else, and none has to know another one.
+
+/** @template T */
+class Fact {
+  #value;
+  /** @type {((value: T) => unknown)[]} */
+  #watchers = [];
+
+  /** @param {T} value at the beginning */
+  constructor(value) {
+    this.#value = value;
+  }
+
+  get value() {
+    return this.#value;
+  }
+
+  /** @param {T} value from now on */
+  say(value) {
+    this.#value = value;
+    for (const each of this.#watchers) each(value);
+  }
+
+  /** @param {(value: T) => unknown} act whenever it is said, in the order of those who asked */
+  watch(act) {
+    this.#watchers.push(act);
+  }
+}
+
+export const so = {
+  language: new Fact(''),
+  areWordsShown: new Fact(false), // of the text, on blocks and at readings
+  robot: new Fact(''), // its name
+  text: new Fact(''), // of the program
+  /** What the compiler says of the newest text; null while it is at work. */
+  checked: new Fact(/** @type {import('../python.js').Checked | null} */ (null)),
+  note: new Fact(''), // a sentence about what has just been done
+};
