@@ -5,6 +5,8 @@ from __future__ import annotations
 import pytest
 
 from tiniscript import compile_text, robots
+from tiniscript.base.limits import VARIABLES
+from tiniscript.base.words import COMPARATORS
 from tiniscript.bytecode import opcodes
 from tiniscript.bytecode.disassembly import listing, read_listing, rows
 from tiniscript.bytecode.image import unpack
@@ -17,7 +19,6 @@ from tiniscript.bytecode.opcodes import (
     OPS,
     PUSHED,
     SHORTS,
-    VARIABLES,
     Op,
     op_at,
     read_operands,
@@ -152,7 +153,7 @@ def test_an_instruction_of_one_byte_has_its_operand_in_its_last_bits() -> None:
 def test_the_last_bits_of_a_comparison_with_a_constant_are_the_comparator() -> None:
     for op in OPS:
         comparator = op.name.rpartition("_")[2]
-        if comparator in dict(opcodes.COMPARATORS):
+        if comparator in dict(COMPARATORS):
             assert op.code % 8 == BY_NAME[comparator].code % 8
 
 

@@ -13,7 +13,8 @@ from tests.support.casefile import ROOT, read
 from tests.support.kits import KITS
 from tiniscript import compile_text
 from tiniscript.base.kit import DEVICES
-from tiniscript.bytecode.opcodes import CODE_BYTES, OPS, STACK_VALUES
+from tiniscript.base.limits import CODE_BYTES, STACK_VALUES
+from tiniscript.bytecode.opcodes import OPS
 from tiniscript.bytecode.verify import RULES, Refused, verify
 from tiniscript.vm.machine import Machine
 

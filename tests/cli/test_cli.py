@@ -11,8 +11,9 @@ from pathlib import Path
 import pytest
 
 from tests.support.command import OBSTACLE, PROGRAM, TSC, Tsc, process
+from tiniscript.base.limits import CODE_BYTES
 from tiniscript.bytecode.image import unpack
-from tiniscript.bytecode.opcodes import CODE_BYTES, FAULTS
+from tiniscript.bytecode.opcodes import FAULTS
 from tiniscript.cli.texts import has_text
 from tiniscript.cli.texts.verbs import VERBS
 

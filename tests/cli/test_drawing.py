@@ -20,11 +20,12 @@ import pyte
 import pytest
 
 from tiniscript import compile_text, robots
+from tiniscript.base.trace import Ending, Event, Senses
 from tiniscript.cli.terminal import FRAME_S, run_drawing, sketch, world_drawing
 from tiniscript.cli.terminal import screen as terminal_screen
 from tiniscript.virtual import worlds
 from tiniscript.virtual.robot import Settings, VirtualRobot
-from tiniscript.vm.trace import Ending, Event, Senses, run
+from tiniscript.vm.runner import run
 
 OBSTACLES = (
     "SI|START;LOOP(FOREVER);F(1, 80) UNTIL(DISTANCE < 10);IF(DISTANCE < 10);STOP;R(1, 60);"

@@ -184,7 +184,7 @@ def test_a_curve_fits_each_terminal(width: int) -> None:
 
 def test_columns_of_values_only_grow() -> None:
     from tiniscript import robots
-    from tiniscript.vm.trace import Event
+    from tiniscript.base.trace import Event
 
     picture = Picture(robots.load("tinibot"), "en")
     places = []

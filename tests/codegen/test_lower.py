@@ -9,8 +9,8 @@ import pytest
 
 from tests.support.rows import each_row
 from tiniscript import Compiled, compile_text, robots
+from tiniscript.base.limits import CODE_BYTES
 from tiniscript.bytecode.disassembly import rows
-from tiniscript.bytecode.opcodes import CODE_BYTES
 
 KIT = robots.load("tinibot").kit
 

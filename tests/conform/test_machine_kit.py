@@ -22,6 +22,8 @@ from tests.support.casefile import ROOT
 from tests.support.command import Done, Tsc
 from tests.support.waiting import until
 from tiniscript.base.kit import Device, Kit
+from tiniscript.base.trace import Senses as Lists
+from tiniscript.base.trace import TracedRobot
 from tiniscript.bytecode.image import GO
 from tiniscript.bytecode.loading import loaded
 from tiniscript.bytecode.opcodes import OPS
@@ -33,8 +35,6 @@ from tiniscript.conformance.machine_process import MachineProcess, Problem
 from tiniscript.conformance.port_checks import all_checks
 from tiniscript.vm.state import DONE, FAULT
 from tiniscript.vm.tasks import machine_of
-from tiniscript.vm.trace import Senses as Lists
-from tiniscript.vm.trace import TracedRobot
 
 PAGE = ROOT / "docs" / "conformance.md"
 FROM_SPEC = shlex.join([sys.executable, "-m", "tests.conform.spec_machine"])

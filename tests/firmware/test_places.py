@@ -9,6 +9,7 @@ import pytest
 from tests.firmware.test_host_firmware import KIT, computer, image_of, switched_on
 from tests.machines.host_firmware import HostFirmware
 from tests.support.owners import Keys, Owned, owner_of
+from tiniscript.base.trace import TracedRobot
 from tiniscript.bytecode.image import Image
 from tiniscript.link.authority import YOUR_OWN
 from tiniscript.link.frames import Frame, decoded, encoded
@@ -17,7 +18,6 @@ from tiniscript.link.outcomes import Event, PlaceEvent
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
 from tiniscript.vm.machine import Machine
-from tiniscript.vm.trace import TracedRobot
 
 PROGRAMS = [
     "SI|F(1, 80);R(0.6, 60);F(1, 80)",

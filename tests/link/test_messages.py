@@ -12,7 +12,6 @@ from tests.support.rows import each_row
 from tests.support.texts import said
 from tiniscript.bytecode.image import REFUSALS
 from tiniscript.bytecode.verify import RULES
-from tiniscript.codegen.text.levels import LEVELS
 from tiniscript.link import messages, statuses
 from tiniscript.link.frames import Frame, checksum, decoded, encoded
 from tiniscript.link.messages import (
@@ -36,6 +35,7 @@ from tiniscript.link.messages import (
     sizes,
 )
 from tiniscript.link.requests import MODE_BYTES, OFFSET_BYTES, SHORT_BYTES
+from tiniscript.robots.text_levels import LEVELS
 
 
 def test_numbers_are_used_once_and_leave_the_bits_alone() -> None:

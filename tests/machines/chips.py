@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from tests.machines.host import REFUSAL_NAMES, RULE_NAMES, Ran
 from tiniscript.base.kit import Kit
+from tiniscript.base.limits import CODE_BYTES
 from tiniscript.bytecode.image import HEADER_BYTES, ImageRefused
-from tiniscript.bytecode.opcodes import CODE_BYTES
 from tiniscript.bytecode.verify import Refused
 
 if TYPE_CHECKING:

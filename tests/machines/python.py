@@ -6,10 +6,11 @@ from typing import TYPE_CHECKING
 
 from tests.machines.host import Ran
 from tiniscript.base.kit import Kit
+from tiniscript.base.trace import Ending
+from tiniscript.base.trace import Senses as Lists
 from tiniscript.bytecode.image import EVERYTHING
 from tiniscript.bytecode.loading import loaded
-from tiniscript.vm.trace import Ending, run
-from tiniscript.vm.trace import Senses as Lists
+from tiniscript.vm.runner import run
 
 if TYPE_CHECKING:
     from tests.machines import Senses

@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING
 
 from tests.machines.python import lists_of
 from tiniscript.base.kit import Kit
+from tiniscript.base.trace import Ending
 from tiniscript.bytecode.image import HEADER_BYTES
-from tiniscript.vm.trace import Ending, run
+from tiniscript.vm.runner import run
 
 if TYPE_CHECKING:
     from tests.machines import Senses

@@ -21,11 +21,11 @@ from tests.support.images import image_for
 from tests.support.kits import KITS
 from tests.support.random_codes import random_codes
 from tiniscript import compile_text
+from tiniscript.base.trace import Senses as Lists
+from tiniscript.base.trace import TracedRobot
 from tiniscript.bytecode.image import unpack
 from tiniscript.vm.machine import Machine
 from tiniscript.vm.state import WAITING
-from tiniscript.vm.trace import Senses as Lists
-from tiniscript.vm.trace import TracedRobot
 
 MAX_MS, MAX_STEPS = 20_000, 5000
 

@@ -17,10 +17,10 @@ from tiniscript import compile_text, robots
 from tiniscript.base.source import Source
 from tiniscript.base.words import WORDS
 from tiniscript.codegen.sketch.writing import sketch_of
-from tiniscript.codegen.text.fitting import misfits
-from tiniscript.codegen.text.levels import LEVELS, Level
 from tiniscript.codegen.text.line import line_of
 from tiniscript.diagnostics import codes
+from tiniscript.library.text_fitting import misfits
+from tiniscript.robots.text_levels import LEVELS, Level
 from tiniscript.studio.block_printing import print_blocks
 from tiniscript.studio.block_reading import read
 from tiniscript.studio.description import description

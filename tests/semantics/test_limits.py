@@ -7,7 +7,7 @@ from collections.abc import Callable
 import pytest
 
 from tiniscript import check_text, compile_text, robots
-from tiniscript.bytecode.opcodes import BLOCKS, CALLS, DEFS, STACK_VALUES, VARIABLES
+from tiniscript.base.limits import BLOCKS, CALLS, DEFS, STACK_VALUES, VARIABLES
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code
 

@@ -31,6 +31,9 @@ from tests.vm.test_cases import robot_and_senses
 from tiniscript import compile_text
 from tiniscript.base import fixed_point
 from tiniscript.base.kit import Kit
+from tiniscript.base.trace import Ending, TracedRobot
+from tiniscript.base.trace import Senses as Lists
+from tiniscript.base.words import COMPARATORS
 from tiniscript.bytecode.disassembly import read_listing
 from tiniscript.bytecode.image import (
     EVERYTHING,
@@ -38,18 +41,11 @@ from tiniscript.bytecode.image import (
     TASKS,
     unpack,
 )
-from tiniscript.bytecode.opcodes import (
-    BY_NAME,
-    COMPARATORS,
-    FAULTS,
-    NEEDS_GO,
-    OPS,
-)
+from tiniscript.bytecode.opcodes import BY_NAME, FAULTS, NEEDS_GO, OPS
 from tiniscript.bytecode.verify import RULES, Refused, verify
 from tiniscript.vm.machine import Machine
+from tiniscript.vm.runner import MachineOf, run
 from tiniscript.vm.state import WAITING
-from tiniscript.vm.trace import Ending, MachineOf, TracedRobot, run
-from tiniscript.vm.trace import Senses as Lists
 
 WIDE = KITS[1][1]
 SIZES = len(WIDE.sensors), len(WIDE.actuators)

@@ -13,17 +13,8 @@ from tests.support.cpp_checks import WIDE, compare_runs, compare_verdicts
 from tests.support.images import image_for
 from tests.support.random_codes import jump, loop, simple
 from tiniscript.base.kit import DEVICES, NUMBER, Device, Kit
-from tiniscript.bytecode.opcodes import (
-    BY_CODE,
-    CALLS,
-    COUNTERS,
-    DEFS,
-    JOINS,
-    OPS,
-    SHORTS,
-    STACK_VALUES,
-    VARIABLES,
-)
+from tiniscript.base.limits import CALLS, COUNTERS, DEFS, JOINS, STACK_VALUES, VARIABLES
+from tiniscript.bytecode.opcodes import BY_CODE, OPS, SHORTS
 
 
 def show(number: int) -> bytes:

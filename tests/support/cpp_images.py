@@ -9,6 +9,7 @@ from struct import pack as struct_pack
 from tests.machines import Senses
 from tests.machines.host import Process
 from tests.support.random_codes import changed_kit, images_of_programs, random_images
+from tiniscript.base.limits import CODE_BYTES
 from tiniscript.bytecode.image import (
     EVERYTHING,
     HEADER_BYTES,
@@ -19,7 +20,6 @@ from tiniscript.bytecode.image import (
     unpack,
 )
 from tiniscript.bytecode.loading import loaded
-from tiniscript.bytecode.opcodes import CODE_BYTES
 from tiniscript.bytecode.verify import Refused
 
 

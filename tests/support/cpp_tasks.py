@@ -13,11 +13,11 @@ from tests.support.cpp_checks import LATE_BUDGET, SIZES, compare_verdicts, run_l
 from tests.support.kits import KITS
 from tests.support.random_codes import mutated, task_codes
 from tiniscript import compile_text
+from tiniscript.base.trace import Senses as Lists
+from tiniscript.base.trace import TracedRobot
 from tiniscript.bytecode.image import TASKS, unpack
 from tiniscript.vm.state import DONE, FAULT, WAITING
 from tiniscript.vm.tasks import machine_of
-from tiniscript.vm.trace import Senses as Lists
-from tiniscript.vm.trace import TracedRobot
 
 KIT = KITS[0][1]
 MAX_MS = 600

@@ -15,8 +15,9 @@ from tests.oracle import programs
 from tests.support.kits import KITS
 from tiniscript import compile_text
 from tiniscript.base.kit import Kit
+from tiniscript.base.limits import TASKS
 from tiniscript.bytecode.image import HEADER_BYTES, pack, sealed
-from tiniscript.bytecode.opcodes import BY_NAME, TASKS, UNO_OPS, Op
+from tiniscript.bytecode.opcodes import BY_NAME, UNO_OPS, Op
 
 _NEAR = (0, 1, 2, 3, 5, 499, 500, 501, 999, 1000, 1001, 1499, 1500, 1501, 2500, 46_340, 46_341,
          65_535, 65_536, 1_465_431, 1_465_432, 2_147_483, 2_147_484, 10**6, 10**7, 5 * 10**7,

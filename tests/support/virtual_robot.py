@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from tiniscript import compile_text, robots
+from tiniscript.base.trace import Event
 from tiniscript.bytecode.image import unpack
 from tiniscript.link.authority import KeyRing
 from tiniscript.link.payloads import ReceiptReply
@@ -13,7 +14,6 @@ from tiniscript.virtual.computer import Computer
 from tiniscript.virtual.robot import Settings, VirtualRobot
 from tiniscript.virtual.world import World
 from tiniscript.virtual.worlds import read
-from tiniscript.vm.trace import Event
 
 
 def floor(parts: str = "", start: str = "x_cm = 100\ny_cm = 100", size: int = 200) -> World:

@@ -12,12 +12,12 @@ from tests.support.casefile import ROOT
 from tests.support.kits import KITS
 from tiniscript import compile_text, robots
 from tiniscript.base.words import SECONDS, WORDS, Word
-from tiniscript.codegen.text.fitting import misfits
-from tiniscript.codegen.text.levels import CODE_BYTES, LEVELS, UNREAD, Level
 from tiniscript.codegen.text.line import plain_code
 from tiniscript.codegen.text.memory import Reader
 from tiniscript.diagnostics.codes import Diagnostic
+from tiniscript.library.text_fitting import misfits
 from tiniscript.robots.boards import CHIPS
+from tiniscript.robots.text_levels import CODE_BYTES, LEVELS, UNREAD, Level
 from tiniscript.syntax.lexer import scan
 from tools.generate import text_tables
 

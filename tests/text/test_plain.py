@@ -20,8 +20,8 @@ from tiniscript.base.kit import Kit
 from tiniscript.bytecode.disassembly import listing
 from tiniscript.bytecode.opcodes import BY_NAME, OPS, UNO_OPS
 from tiniscript.bytecode.verify import verify
-from tiniscript.codegen.text.levels import CODE_BYTES
 from tiniscript.codegen.text.line import PlainCode, plain_code
+from tiniscript.robots.text_levels import CODE_BYTES
 
 TINIBOT, GRABBER = robots.load("tinibot").kit, robots.load("grabber").kit
 # what is for the optimising compiler alone: `docs/text.md` has none of it

@@ -26,11 +26,11 @@ from tiniscript.base.kit import Kit
 from tiniscript.base.source import Unreadable, decode
 from tiniscript.base.words import WORDS
 from tiniscript.bytecode.verify import verify
-from tiniscript.codegen.text.levels import CODE_BYTES, LEVELS, LONGEST_WORD, UNREAD
 from tiniscript.codegen.text.line import plain_code
 from tiniscript.codegen.text.memory import Reader as Model
+from tiniscript.robots.text_levels import CODE_BYTES, LEVELS, LONGEST_WORD, UNREAD
 from tiniscript.syntax.lexer import scan
-from tiniscript.vm.trace import run
+from tiniscript.vm.runner import run
 
 MAX_MS, MAX_STEPS = 5_000, 5_000
 SHORT_BUFFER = 389 - 15

@@ -5,8 +5,8 @@ from __future__ import annotations
 from tests.support.virtual_robot import Talk, robot_in
 from tiniscript import robots
 from tiniscript.bytecode.image import pack, unpack
-from tiniscript.codegen.text.levels import LEVELS
 from tiniscript.link.messages import SAVED_STORED, SMALL_FRAME, STATUSES
+from tiniscript.robots.text_levels import LEVELS
 from tools.bench import large_upload
 
 OK, TOO_LARGE = STATUSES["OK"], STATUSES["TOO_LARGE"]

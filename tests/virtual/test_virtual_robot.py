@@ -8,11 +8,12 @@ from tests.support.casefile import ROOT
 from tests.support.command import OBSTACLE
 from tests.support.virtual_robot import Talk, floor, robot_in, trace
 from tiniscript import compile_text, robots
+from tiniscript.base.trace import Ending, Senses
 from tiniscript.bytecode.image import unpack
 from tiniscript.link.messages import STATUSES
 from tiniscript.link.trim import Trim
 from tiniscript.virtual import worlds
-from tiniscript.vm.trace import Ending, Senses, run
+from tiniscript.vm.runner import run
 
 KIT = robots.load("tinibot").kit
 PROGRAMS = {

@@ -18,7 +18,8 @@ from tests.support import cpp_checks, cpp_edges, cpp_images, cpp_tasks, cpp_ways
 from tests.support.casefile import Case
 from tests.support.rows import each_row
 from tests.vm.test_cases import listings_alone
-from tiniscript.bytecode.opcodes import BY_NAME, CODE_BYTES
+from tiniscript.base.limits import CODE_BYTES
+from tiniscript.bytecode.opcodes import BY_NAME
 
 BATCH = 25_000
 BATCHES = 40  # in the tests

@@ -10,10 +10,10 @@ from tests.machines import Senses
 from tests.machines.python import lists_of, run_python
 from tests.oracle.task_programs import task_program
 from tiniscript import compile_text, robots
+from tiniscript.base.trace import TracedRobot
 from tiniscript.vm.machine import Machine
 from tiniscript.vm.state import DONE, FAULT, RUNNING, WAITING
 from tiniscript.vm.tasks import TaskMachine, machine_of
-from tiniscript.vm.trace import TracedRobot
 
 KIT = robots.load("tinibot").kit
 MAX_MS = 300

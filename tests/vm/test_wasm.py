@@ -23,8 +23,8 @@ from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
 from tiniscript.cli.commands import run
 from tiniscript.library import install_advice
 from tiniscript.vm.machine import Machine
+from tiniscript.vm.runner import AnyMachine
 from tiniscript.vm.state import WAITING
-from tiniscript.vm.trace import AnyMachine
 from tools.builds import wasm
 
 needs_zig = pytest.mark.skipif(bool(wasm.missing()), reason=wasm.missing() or "there is a compiler")

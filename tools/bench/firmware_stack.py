@@ -21,11 +21,11 @@ from tests.support.owners import Keys
 from tiniscript import compile_text
 from tiniscript.base.kit import NUMBER, Kit
 from tiniscript.bytecode.image import Image, unpack
-from tiniscript.codegen.text.levels import NO_TEXT, level_of
 from tiniscript.link.connection import PendingRequest
 from tiniscript.link.messages import KEY_OWNER
 from tiniscript.link.session import Session
 from tiniscript.robots.profile import Robot
+from tiniscript.robots.text_levels import NO_TEXT, level_of
 from tools.uno import Stack, Uno
 
 LEAST_FREE = 150  # bytes

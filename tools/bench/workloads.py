@@ -16,8 +16,9 @@ ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path[:0] = [str(ROOT / "compiler")]
 
 from tiniscript import compile_text, robots
+from tiniscript.base.trace import Ending, Senses
 from tiniscript.bytecode.image import HEADER_BYTES
-from tiniscript.vm.trace import Ending, Senses, run
+from tiniscript.vm.runner import run
 
 KIT = robots.load(robots.DEFAULT).kit
 SENSOR = [each.name for each in KIT.sensors].index("DISTANCE")

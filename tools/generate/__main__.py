@@ -17,6 +17,7 @@ ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
 from tiniscript import robots
+from tiniscript.base import limits
 from tiniscript.base.kit import DEVICES
 from tiniscript.base.languages import ByLanguage
 from tiniscript.bytecode import image, opcodes, verify
@@ -194,27 +195,27 @@ def limit_table() -> str:
     compiler, operand = "compiler", "verifier: `BAD_OPERAND`"
     both = "compiler, and verifier: `{}`"
     rows = (
-        ("code", opcodes.CODE_BYTES, "bytes", both.format("CODE_LENGTH")),
-        ("blocks in a text, those open around a call included", opcodes.BLOCKS, "", compiler),
-        ("stack", opcodes.STACK_VALUES, "values", both.format("STACK_OVERFLOW")),
-        ("variables", opcodes.VARIABLES, "", f"{compiler}, and {operand}"),
+        ("code", limits.CODE_BYTES, "bytes", both.format("CODE_LENGTH")),
+        ("blocks in a text, those open around a call included", limits.BLOCKS, "", compiler),
+        ("stack", limits.STACK_VALUES, "values", both.format("STACK_OVERFLOW")),
+        ("variables", limits.VARIABLES, "", f"{compiler}, and {operand}"),
         ("sensors of a kit, and actuators", DEVICES, "", f"the robot's profile, and {operand}"),
         (
             "counted loops open at once, those around a call included",
-            opcodes.COUNTERS,
+            limits.COUNTERS,
             "",
             "verifier: `TOO_DEEP`",
         ),
-        ("calls open at once", opcodes.CALLS, "", both.format("TOO_DEEP")),
-        ("procedures", opcodes.DEFS, "", both.format("TOO_MANY_DEFS")),
+        ("calls open at once", limits.CALLS, "", both.format("TOO_DEEP")),
+        ("procedures", limits.DEFS, "", both.format("TOO_MANY_DEFS")),
         (
             "open blocks of one routine",
-            opcodes.NEST_WORDS,
+            limits.NEST_WORDS,
             "words: 1 for an IF, 2 for a loop",
             "verifier: `TOO_DEEP`",
         ),
-        ("open joins", opcodes.JOINS, "", "verifier: `TOO_DEEP`"),
-        ("between two checks of an UNTIL", opcodes.CHECK_MS, "ms", "nobody: it is always so"),
+        ("open joins", limits.JOINS, "", "verifier: `TOO_DEEP`"),
+        ("between two checks of an UNTIL", limits.CHECK_MS, "ms", "nobody: it is always so"),
     )
     return table(("what", "at most", "", "refused by"), rows)
 

@@ -6,6 +6,7 @@ for each of them, so linking it fails where one is missing. `__main__.py` writes
 
 from __future__ import annotations
 
+from tiniscript.base import limits, words
 from tiniscript.bytecode import opcodes
 
 GUARD = "tini_bytecode_avr"
@@ -15,10 +16,10 @@ def header(command: str) -> str:
     """Return `bytecode_avr.S`."""
     numbers = [
         *((f"fault_{name.lower()}", number) for number, name, _ in opcodes.FAULTS),
-        ("variables", opcodes.VARIABLES),
-        ("stack_values", opcodes.STACK_VALUES),
-        ("counters", opcodes.COUNTERS),
-        ("calls", opcodes.CALLS),
+        ("variables", limits.VARIABLES),
+        ("stack_values", limits.STACK_VALUES),
+        ("counters", limits.COUNTERS),
+        ("calls", limits.CALLS),
         ("shorts", opcodes.SHORTS),
         ("push_num_0", opcodes.BY_NAME["PUSH_NUM_0"].code),
         *((f"comparator_{name.lower()}", number) for name, number in comparators().items()),
@@ -80,4 +81,4 @@ def comparator_bits() -> int:
 
 
 def comparators() -> dict[str, int]:
-    return {name: number for number, (name, _) in enumerate(opcodes.COMPARATORS)}
+    return {name: number for number, (name, _) in enumerate(words.COMPARATORS)}

@@ -10,6 +10,7 @@ from collections.abc import Iterable, Sequence
 from itertools import accumulate
 from typing import NamedTuple
 
+from tiniscript.base import limits
 from tiniscript.base.kit import DEVICES, DEVICES_POLYNOMIAL
 from tiniscript.bytecode import image, opcodes, verify
 
@@ -52,17 +53,17 @@ def header(command: str) -> str:
         + constants(("kIsaMajor", opcodes.ISA_MAJOR), ("kIsaMinor", opcodes.ISA_MINOR)),
         "// Limits, the same on every machine.\n"
         + constants(
-            ("kCodeBytes", opcodes.CODE_BYTES),
-            ("kStackValues", opcodes.STACK_VALUES),
-            ("kVariables", opcodes.VARIABLES),
-            ("kCounters", opcodes.COUNTERS),
-            ("kCalls", opcodes.CALLS),
-            ("kDefs", opcodes.DEFS),
-            ("kTasks", opcodes.TASKS),
-            ("kNestWords", opcodes.NEST_WORDS),
-            ("kJoins", opcodes.JOINS),
+            ("kCodeBytes", limits.CODE_BYTES),
+            ("kStackValues", limits.STACK_VALUES),
+            ("kVariables", limits.VARIABLES),
+            ("kCounters", limits.COUNTERS),
+            ("kCalls", limits.CALLS),
+            ("kDefs", limits.DEFS),
+            ("kTasks", limits.TASKS),
+            ("kNestWords", limits.NEST_WORDS),
+            ("kJoins", limits.JOINS),
             ("kDevices", DEVICES),
-            ("kCheckMs", opcodes.CHECK_MS),
+            ("kCheckMs", limits.CHECK_MS),
             ("kShorts", opcodes.SHORTS),
             ("kPowerHigh", opcodes.OPERAND_KINDS["power"].high),
             ("kPercentHigh", opcodes.OPERAND_KINDS["percent"].high),

@@ -11,7 +11,7 @@ from functools import partial
 from pathlib import Path
 
 from tiniscript.base.languages import SOURCE, languages, text
-from tiniscript.codegen.text.levels import CODE_BYTES, LEVELS
+from tiniscript.robots.text_levels import CODE_BYTES, LEVELS
 from tools.site.documents import LIST, documents, sources
 
 FOLDER = Path(__file__).resolve().parent.parent.parent / "docs"

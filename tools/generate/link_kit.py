@@ -12,6 +12,7 @@ import re
 from collections.abc import Iterator
 
 from tests.support.link_cases import LinkCase, has_session, link_cases
+from tiniscript.base.trace import TracedRobot
 from tiniscript.bytecode.disassembly import listing
 from tiniscript.bytecode.image import HEADER_BYTES, ImageRefused
 from tiniscript.bytecode.loading import loaded
@@ -21,7 +22,6 @@ from tiniscript.conformance.link_kit import FORM, VERSION
 from tiniscript.link.messages import MAJOR, MINOR
 from tiniscript.vm.machine import Machine
 from tiniscript.vm.state import DONE, FAULT, WAITING
-from tiniscript.vm.trace import TracedRobot
 from tools.generate.machine_kit import STEPS, TINIBOT, USUAL, Run, arithmetic, documented
 
 LONGEST_MS = 3000

@@ -24,6 +24,7 @@ from tests.vm.test_agreement import random_program
 from tests.vm.test_cases import compiled, robot_and_senses
 from tiniscript import compile_text, robots
 from tiniscript.base.kit import DEVICES, NUMBER, YES_NO, Device, Kit
+from tiniscript.base.trace import TracedRobot
 from tiniscript.bytecode.disassembly import read_listing
 from tiniscript.bytecode.image import GO, TASKS, ImageRefused, pack, sealed, unpack
 from tiniscript.bytecode.loading import loaded
@@ -32,7 +33,6 @@ from tiniscript.bytecode.verify import Refused
 from tiniscript.conformance.kit import FORM, VERSION
 from tiniscript.vm.state import DONE, FAULT, WAITING
 from tiniscript.vm.tasks import machine_of
-from tiniscript.vm.trace import TracedRobot
 
 TINIBOT = robots.load("tinibot").kit
 STEPS = 100_000  # a case that runs more without a wait says nothing about its end: it is left out

@@ -9,12 +9,13 @@ from collections.abc import Iterable, Sequence
 
 from tiniscript.base.fixed_point import HIGHEST, LOWEST
 from tiniscript.base.languages import SOURCE
+from tiniscript.base.limits import BLOCKS
 from tiniscript.base.words import ALIASES, WORDS, Word
 from tiniscript.bytecode.image import STARTS
-from tiniscript.bytecode.opcodes import BLOCKS, BY_NAME
-from tiniscript.codegen.text.levels import UNREAD
+from tiniscript.bytecode.opcodes import BY_NAME
 from tiniscript.codegen.text.problems import PROBLEMS, said
 from tiniscript.robots.kit_words import packed, packed_range
+from tiniscript.robots.text_levels import UNREAD
 from tools.generate.cpp_header import camel
 
 FIRST_WORD = 0x40  # the token of the first word; those of signs lie below and above
@@ -42,7 +43,7 @@ def role_of(word: Word) -> str:
         raise LookupError(
             f"{word.text} has a role of its own, {role}. A robot's reader of text needs it: a name "
             "in ROLES of tools/generate/text_tables.py, and what it does in vm_arduino/src/text/; "
-            "or it reads it not: `lacks` of all LEVELS in codegen/text/levels.py"
+            "or it reads it not: `lacks` of all LEVELS in robots/text_levels.py"
         )
     return role
 

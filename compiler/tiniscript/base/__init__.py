@@ -1,4 +1,5 @@
-"""What the stages share: words, numbers, kits, places in text, texts in each language, whole files.
+"""What the stages share: words, limits, numbers, kits, traces, places in text,
+texts in each language, whole files.
 
 Knows no stage.
 """

@@ -118,6 +118,8 @@ BLOCK_ENDS = {
     "IF": "ENDIF", "LOOP": "END_LOOP", "WHILE": "END_WHILE", "DEF": "END_DEF",
     "TASK": "END_TASK", "WHEN": "END_WHEN",
 }
+# Names and signs, in the order of their numbers in instructions.
+COMPARATORS = ("EQ", "="), ("NE", "<>"), ("LT", "<"), ("LE", "<="), ("GT", ">"), ("GE", ">=")
 TASKS = ("TASK", "WHEN")  # blocks that run beside the rest of the program
 
 # The sensor of which a robot has a left and a right one.

@@ -12,7 +12,8 @@ from struct import pack as struct_pack
 from struct import unpack as struct_unpack
 from typing import NamedTuple
 
-from tiniscript.bytecode.opcodes import CODE_BYTES, ISA_MAJOR, ISA_MINOR, NEEDS_GO, NEEDS_TASKS
+from tiniscript.base.limits import CODE_BYTES
+from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR, NEEDS_GO, NEEDS_TASKS
 
 
 class Field(NamedTuple):

@@ -8,12 +8,14 @@ A short instruction has its operand in its code: `PUSH_VAR_3` is `PUSH_VAR v3` i
 families are of eight, and the last three bits of the code are the operand. Families of comparators
 are of eight too, and the last three bits are the comparator.
 
-Knows numbers, operands, stack pictures, faults and limits. Does not know what anything does.
+Knows numbers, operands, stack pictures and faults. Does not know what anything does.
 """
 
 # No `from __future__ import annotations`: typing would compile each field's again, one by one.
 from struct import Struct
 from typing import NamedTuple
+
+from tiniscript.base.words import COMPARATORS
 
 ISA_MAJOR = 2  # a machine runs images of its own major version,
 ISA_MINOR = 1  # and of its own minor version or an earlier one
@@ -162,7 +164,6 @@ def _comparing(code: int, name: str, operands: str, picture: str, role: str, mea
 
 
 _MOVES = ("F", "forward"), ("B", "backward"), ("L", "left"), ("R", "right")
-COMPARATORS = ("EQ", "="), ("NE", "<>"), ("LT", "<"), ("LE", "<="), ("GT", ">"), ("GE", ">=")
 
 # The numbers that one byte pushes: what programs count with, and their powers.
 PUSHED = (*range(11), *range(20, 101, 10))
@@ -307,19 +308,6 @@ FAULTING = {
     "BAD_CODE":       (),
 }
 # fmt: on
-
-# Limits, the same on every machine.
-BLOCKS = 16  # nested in a text, those open around a call included
-CODE_BYTES = 32767
-STACK_VALUES = 16
-VARIABLES = 32
-COUNTERS = 16  # counted loops open at once, those around a call included
-CALLS = 8
-DEFS = 16
-TASKS = 4  # beside the main one
-NEST_WORDS = 32  # what a verifier remembers of open blocks: a word for an IF, two for a loop
-JOINS = 16  # AND_THEN and OR_ELSE open at once
-CHECK_MS = 20  # between two checks of an UNTIL
 
 UNO_OPS = tuple(op for op in OPS if not op.needs)  # an Uno has what every machine has
 BY_NAME = {op.name: op for op in OPS}

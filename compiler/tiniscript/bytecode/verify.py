@@ -12,18 +12,20 @@ from __future__ import annotations
 
 from typing import NamedTuple, NoReturn
 
-from tiniscript.bytecode.opcodes import (
+from tiniscript.base.limits import (
     CALLS,
     CODE_BYTES,
     COUNTERS,
     DEFS,
-    ESCAPE,
     JOINS,
-    NEEDS_GO,
     NEST_WORDS,
-    ROLES,
     STACK_VALUES,
     TASKS,
+)
+from tiniscript.bytecode.opcodes import (
+    ESCAPE,
+    NEEDS_GO,
+    ROLES,
     Op,
     OperandKind,
     op_at,

@@ -5,11 +5,11 @@ from __future__ import annotations
 from tiniscript.base.kit import Kit
 from tiniscript.base.source import Source
 from tiniscript.cli import inputs
-from tiniscript.codegen.text.levels import LEVELS
 from tiniscript.diagnostics.codes import in_order
 from tiniscript.library import compiling as library
 from tiniscript.library.compiling import Compiled
 from tiniscript.robots.profile import Robot
+from tiniscript.robots.text_levels import LEVELS
 from tiniscript.syntax.parser import parse
 
 
@@ -28,7 +28,7 @@ def for_level(found: Compiled, robot: Robot, name: str | None) -> Compiled:
     """Return `found` with what a robot of the level `name` lacks to read the program as text."""
     if name is None or found.program is None or not found.is_right:
         return found
-    from tiniscript.codegen.text.fitting import misfits
+    from tiniscript.library.text_fitting import misfits
 
     lacking = misfits(found.source, found.program, robot.kit, LEVELS[name])
     return found._replace(diagnostics=in_order([*found.diagnostics, *lacking]))

@@ -1,6 +1,6 @@
 """Repairs of a program's file: which text it gets, and how the change is shown.
 
-Knows bytes, lines and colors. What is repaired, and what is not, `repairs.fixing` knows.
+Knows bytes, lines and colors. What is repaired, and what is not, `diagnostics.fixing` knows.
 """
 
 from __future__ import annotations

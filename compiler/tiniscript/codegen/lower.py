@@ -11,8 +11,9 @@ Plain code is what one pass over the text can emit, as a robot does that reads t
 from typing import NamedTuple
 
 from tiniscript.base.fixed_point import limited, whole
+from tiniscript.base.limits import CODE_BYTES
 from tiniscript.base.source import Span
-from tiniscript.bytecode.opcodes import CODE_BYTES, time8
+from tiniscript.bytecode.opcodes import time8
 from tiniscript.codegen.lower_expression import (
     Emitter,
     Item,
@@ -57,7 +58,7 @@ class Place(NamedTuple):
 
 
 class Lowered(NamedTuple):
-    """`code` may be longer than `opcodes.CODE_BYTES`, the most that a machine takes."""
+    """`code` may be longer than CODE_BYTES, the most that a machine takes."""
 
     code: bytes
     places: tuple[Place, ...]

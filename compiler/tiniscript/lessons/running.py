@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from tiniscript.base.trace import Event
 from tiniscript.bytecode.image import Image
 from tiniscript.lessons.lesson import Lesson
 from tiniscript.lessons.variation import varied
@@ -18,7 +19,6 @@ from tiniscript.virtual.computer import Computer
 from tiniscript.virtual.geometry import joined
 from tiniscript.virtual.robot import Settings, VirtualRobot
 from tiniscript.virtual.world import World
-from tiniscript.vm.trace import Event
 
 STEP_MS = 20  # between two looks at where the robot is
 EVENTS = 200_000  # that a run may have

@@ -12,9 +12,9 @@ from functools import cache
 from typing import NamedTuple
 
 from tiniscript.base.kit import Kit
+from tiniscript.base.limits import CODE_BYTES
 from tiniscript.base.source import Source, Span, Unreadable, applied, decode
 from tiniscript.bytecode.image import GO, TASKS, Image, checksum, isa_of, pack
-from tiniscript.bytecode.opcodes import CODE_BYTES
 from tiniscript.bytecode.verify import Verdict, verify
 from tiniscript.codegen.lower import Place, lower
 from tiniscript.diagnostics import codes

@@ -8,6 +8,7 @@ from typing import Literal, NamedTuple
 
 from tiniscript.base.kit import Device, Kit
 from tiniscript.base.source import printable
+from tiniscript.base.trace import Ending, Event, Senses
 from tiniscript.bytecode.image import Image, ImageRefused, pack
 from tiniscript.bytecode.verify import Refused
 from tiniscript.library.errors import UsageError
@@ -15,9 +16,9 @@ from tiniscript.library.programs import Language, Program, program_of
 from tiniscript.library.source_map import Map
 from tiniscript.library.texts import sentence
 from tiniscript.robots.profile import Robot
+from tiniscript.vm.runner import MachineOf
+from tiniscript.vm.runner import run as run_code
 from tiniscript.vm.tasks import machine_of as python_machine
-from tiniscript.vm.trace import Ending, Event, MachineOf, Senses
-from tiniscript.vm.trace import run as run_code
 
 Value = float | bool | str  # an int where a number has no decimals
 Readings = Mapping[str, "float | bool | Sequence[float | bool]"]

@@ -350,7 +350,7 @@ RESETS = (
     ("BROWN_OUT", "The voltage was too low."),
     ("WATCHDOG",  "The watchdog: the robot's own program hung."),
 )
-# The levels of text by number, as `codegen/text/levels.py` names them; 0 is none.
+# The levels of text by number, as `robots/text_levels.py` names them; 0 is none.
 TEXT_LEVELS = (
     ("NONE",  "The robot reads no text."),
     ("UNO",   "Level `uno`."),

@@ -11,9 +11,9 @@ from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
 from tiniscript.base.kit import Kit
+from tiniscript.base.limits import BLOCKS, CALLS, DEFS, STACK_VALUES, VARIABLES
 from tiniscript.base.source import Source, Span
 from tiniscript.base.words import UNIT_OF, WAYS, WORDS, Argument, Word
-from tiniscript.bytecode.opcodes import BLOCKS, CALLS, DEFS, STACK_VALUES, VARIABLES
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.semantics import ir

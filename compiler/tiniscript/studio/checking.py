@@ -11,14 +11,14 @@ from typing import NamedTuple
 
 from tiniscript import robots
 from tiniscript.base.source import Edit, Source
-from tiniscript.codegen.text.fitting import misfits
-from tiniscript.codegen.text.levels import level_of
 from tiniscript.codegen.text.line import line_of
 from tiniscript.diagnostics.fixing import offers
 from tiniscript.diagnostics.rendering import Message, message
 from tiniscript.library import source_map
 from tiniscript.library.compiling import Compiled, compiled, for_robot, text_of
+from tiniscript.library.text_fitting import misfits
 from tiniscript.robots.profile import Robot
+from tiniscript.robots.text_levels import level_of
 from tiniscript.semantics import ir
 
 

@@ -5,10 +5,10 @@ Knows which instructions belong to which block. Knows no tokens but the names of
 
 from __future__ import annotations
 
+from tiniscript.base.limits import BLOCKS, TASKS
 from tiniscript.base.source import Span
 from tiniscript.base.words import ALIASES, BLOCK_ENDS
 from tiniscript.base.words import TASKS as TASK_WORDS
-from tiniscript.bytecode.opcodes import BLOCKS, TASKS
 from tiniscript.diagnostics import codes
 from tiniscript.syntax.ast import Argument, Arm, Def, If, Instruction, Loop, Task, While
 from tiniscript.syntax.lexer import Token

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from tiniscript.bytecode.opcodes import COMPARATORS
+from tiniscript.base.words import COMPARATORS
 from tiniscript.syntax.ast import Part
 from tiniscript.syntax.lexer import Token
 

@@ -10,6 +10,7 @@ from collections.abc import Mapping, Sequence
 from random import Random
 from typing import NamedTuple
 
+from tiniscript.base.trace import Event, TracedRobot
 from tiniscript.link.names import fault_name, saved_name
 from tiniscript.robots.driver import AT_STOP, HOLD
 from tiniscript.robots.drivers import discs_of
@@ -32,7 +33,6 @@ from tiniscript.virtual.module import (
 from tiniscript.virtual.sensing import Sensing
 from tiniscript.virtual.wheels import Roughness, Wheels
 from tiniscript.virtual.world import World, WorldRefused
-from tiniscript.vm.trace import Event, TracedRobot
 
 __all__ = ("POWER_ON", "RESET_BUTTON", "Settings", "VirtualRobot")
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Protocol
 
-from tiniscript.bytecode.opcodes import CHECK_MS, VARIABLES
+from tiniscript.base.limits import CHECK_MS, VARIABLES
 from tiniscript.vm.handlers import STAY, Step, stopped
 
 CLOCK_MS = 2**32  # where a machine's clock wraps around

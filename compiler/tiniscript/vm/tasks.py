@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from tiniscript.base.fixed_point import Fault
-from tiniscript.bytecode.opcodes import CHECK_MS
+from tiniscript.base.limits import CHECK_MS
 from tiniscript.vm.control import go
 from tiniscript.vm.handlers import STAY, Step, does, stopped
 from tiniscript.vm.instructions import instruction

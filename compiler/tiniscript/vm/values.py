@@ -7,7 +7,8 @@ from collections.abc import Callable
 
 from tiniscript.base import fixed_point
 from tiniscript.base.fixed_point import ONE, in_range, next_random, random_between
-from tiniscript.bytecode.opcodes import COMPARATORS, PUSHED
+from tiniscript.base.words import COMPARATORS
+from tiniscript.bytecode.opcodes import PUSHED
 from tiniscript.vm.handlers import HANDLERS, STAY, Handler, Step, does
 from tiniscript.vm.state import Execution
 

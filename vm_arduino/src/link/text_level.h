@@ -1,4 +1,4 @@
-// At which level this robot reads text, as `text/levels.py` numbers them.
+// At which level this robot reads text, as `robots/text_levels.py` numbers them.
 
 #ifndef TINISCRIPT_LINK_TEXT_LEVEL_H_
 #define TINISCRIPT_LINK_TEXT_LEVEL_H_

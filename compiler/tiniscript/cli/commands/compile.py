@@ -8,7 +8,7 @@ from pathlib import Path
 
 from tiniscript.base.fixed_point import as_text
 from tiniscript.base.kit import Kit
-from tiniscript.bytecode.opcodes import STACK_VALUES
+from tiniscript.base.limits import STACK_VALUES
 from tiniscript.cli import compiling, inputs, outputs, paths
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.texts import text

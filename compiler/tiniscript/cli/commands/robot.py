@@ -11,6 +11,7 @@ from pathlib import Path
 from time import monotonic
 from typing import TYPE_CHECKING, Any
 
+from tiniscript.base.trace import Event
 from tiniscript.cli import inputs, outputs
 from tiniscript.cli.commands.name import name_bytes
 from tiniscript.cli.errors import CommandError
@@ -30,7 +31,6 @@ from tiniscript.virtual.computer import Computer
 from tiniscript.virtual.robot import VirtualRobot
 from tiniscript.virtual.simulator import CALM_S, Simulator
 from tiniscript.virtual.transports import Transports, can_have_terminal
-from tiniscript.vm.trace import Event
 
 if TYPE_CHECKING:
     from tiniscript.virtual.announcement import Announcement

@@ -7,6 +7,7 @@ from argparse import Namespace
 from collections.abc import Iterator
 from typing import cast
 
+from tiniscript.base.trace import Ending, Event
 from tiniscript.bytecode.image import Image
 from tiniscript.cli import images, inputs
 from tiniscript.cli.errors import CommandError
@@ -14,7 +15,7 @@ from tiniscript.cli.faults import fault_text
 from tiniscript.cli.options import sensor_lists, thousandths, whole_number
 from tiniscript.library.runs import begun, cpp_machine
 from tiniscript.robots.profile import Robot
-from tiniscript.vm.trace import Ending, Event, MachineOf
+from tiniscript.vm.runner import MachineOf
 
 LONGEST = 10**12  # milliseconds
 STEPS = 10_000_000

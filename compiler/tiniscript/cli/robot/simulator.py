@@ -13,6 +13,7 @@ from threading import Condition, Thread
 from time import monotonic
 from typing import TYPE_CHECKING
 
+from tiniscript.base.trace import Event
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.robot import simulator_options
 from tiniscript.cli.robot.bookkeeping import Bookkeeping
@@ -22,7 +23,6 @@ from tiniscript.robots.profile import Robot
 from tiniscript.virtual import directory
 from tiniscript.virtual.simulator import Simulator
 from tiniscript.virtual.transports import Transports
-from tiniscript.vm.trace import Event
 
 if TYPE_CHECKING:
     from tiniscript.cli.terminal.screen import Screen

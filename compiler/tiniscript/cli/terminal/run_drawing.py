@@ -13,11 +13,11 @@ from rich.cells import cell_len, set_cell_size
 from rich.text import Text
 
 from tiniscript.base.fixed_point import as_text
+from tiniscript.base.trace import Ending, Event
 from tiniscript.cli.terminal.screen import Screen
 from tiniscript.cli.terminal.sketch import Sketch
 from tiniscript.cli.texts import text
 from tiniscript.robots.profile import Robot
-from tiniscript.vm.trace import Ending, Event
 
 SHOWN = 5  # values of SHOW that stay in the picture
 WIDEST = 80  # columns of the values, where the way leaves so many

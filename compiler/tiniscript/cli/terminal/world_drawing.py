@@ -10,6 +10,7 @@ from collections.abc import Sequence
 
 from rich.text import Text
 
+from tiniscript.base.trace import Event
 from tiniscript.cli.terminal.canvas import ACROSS, DOWN, Canvas, Dot, layered, put
 from tiniscript.cli.terminal.run_drawing import Picture
 from tiniscript.cli.terminal.sketch import ARROWS, ROBOT, WAY, Sketch, round_scale
@@ -18,7 +19,6 @@ from tiniscript.robots.kinematics import Pose
 from tiniscript.virtual.geometry import Point
 from tiniscript.virtual.robot import VirtualRobot
 from tiniscript.virtual.world import World
-from tiniscript.vm.trace import Event
 
 WALLS, LAMP = "", "bold yellow"
 

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from tiniscript.base.languages import languages
 from tiniscript.cli.texts.verbs import said
-from tiniscript.codegen.text.levels import LEVELS
+from tiniscript.robots.text_levels import LEVELS
 
 
 class Kind(NamedTuple):

@@ -8,11 +8,11 @@ from __future__ import annotations
 
 from tiniscript.base.kit import Kit
 from tiniscript.base.source import Source, Span
-from tiniscript.codegen.text.levels import CODE_BYTES, LONGEST_WORD, Level
 from tiniscript.codegen.text.line import PlainCode, plain_code, spelled_out
 from tiniscript.codegen.text.memory import MOST_BRACKETS, Reader
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
+from tiniscript.robots.text_levels import CODE_BYTES, LONGEST_WORD, Level
 from tiniscript.semantics.ir import Program, first_way
 from tiniscript.syntax.lexer import WORD
 from tiniscript.syntax.parser import parse

@@ -1,0 +1,13 @@
+"""What a program and its code may have at most, the same on every machine."""
+
+BLOCKS = 16  # nested in a text, those open around a call included
+CODE_BYTES = 32767
+STACK_VALUES = 16
+VARIABLES = 32
+COUNTERS = 16  # counted loops open at once, those around a call included
+CALLS = 8
+DEFS = 16
+TASKS = 4  # beside the main one
+NEST_WORDS = 32  # what a verifier remembers of open blocks: a word for an IF, two for a loop
+JOINS = 16  # AND_THEN and OR_ELSE open at once
+CHECK_MS = 20  # between two checks of an UNTIL

@@ -1,0 +1,81 @@
+"""Runs a program without a robot, and says what the robot did.
+
+The clock is simulated: only moves, waits and beeps move it. Yields the trace, one line for
+each thing that the robot did. Knows no files, no ports and no terminal.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import Protocol
+
+from tiniscript.base.kit import Kit
+from tiniscript.base.trace import Ending, Event, TracedRobot
+from tiniscript.vm.state import DONE, FAULT, WAITING, Robot
+from tiniscript.vm.tasks import machine_of as python_machine
+
+SLICE = 10_000  # instructions between two looks at the limit
+
+
+class AnyMachine(Protocol):
+    """What a run asks of a machine: `vm.Machine` and the one in C++ both answer."""
+
+    @property
+    def wake_ms(self) -> int: ...
+
+    @property
+    def steps(self) -> int: ...
+
+    @property
+    def fault(self) -> str: ...
+
+    @property
+    def at(self) -> int: ...
+
+    def tick(self, now_ms: int, budget: int) -> str: ...
+
+
+MachineOf = Callable[[bytes, Robot, int, int], AnyMachine]  # code, robot, sensors, seed
+
+
+def run(
+    code: bytes,
+    kit: Kit,
+    senses: Callable[[int], int],
+    max_ms: int = 60_000,
+    max_steps: int = 10_000_000,
+    seed: int = 1,
+    machine_of: MachineOf = python_machine,
+) -> Iterator[Event | Ending]:
+    """Yield what a robot with this kit does with verified `code`; the last one is its Ending.
+
+    `max_ms` cuts a wait that would pass it. `max_steps` limits the instructions that run without
+    time passing: it ends loops that take no time.
+    """
+    robot = TracedRobot(kit, senses)
+    machine = machine_of(code, robot, len(kit.sensors), seed)
+    before = 0  # instructions that ran before the clock last moved
+    while True:
+        left = max_steps - (machine.steps - before)
+        status = machine.tick(robot.now_ms, min(SLICE, left))
+        yield from robot.events
+        robot.events.clear()
+        if status in (DONE, FAULT):
+            what = status.upper()
+        elif status == WAITING and machine.wake_ms <= max_ms:
+            if machine.wake_ms > robot.now_ms:
+                before = machine.steps
+            robot.now_ms = machine.wake_ms
+            if machine.steps - before < max_steps:
+                continue
+            what = "LIMIT"
+        elif status == WAITING:
+            robot.now_ms, what = max_ms, "LIMIT"
+        elif machine.steps - before >= max_steps:
+            what = "LIMIT"
+        else:
+            continue
+        text = f"FAULT {machine.fault}" if what == "FAULT" else what
+        yield Event(robot.now_ms, what, (), text)
+        yield Ending(what, machine.fault, machine.at, machine.steps)
+        return
