@@ -8,7 +8,7 @@ from itertools import product
 import pytest
 
 from tests.pupils.corpus import check
-from tiniscript.base.source import Edit, Span
+from tiniscript.base.source import Edit, Source, Span
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.diagnostics.fixing import fixed
@@ -65,8 +65,13 @@ def test_a_line_with_a_checksum_is_left_alone() -> None:
 def test_a_place_behind_edits_was_elsewhere(span: tuple[int, int], before: object) -> None:
     found = Diagnostic(codes.ODD_CHARACTER, Span(*span), {"also": "LIGHT_R < 300"})
     edits = [Edit(Span(5, 6), ""), Edit(Span(0, 3), "SI|")]
-    moved = moved_back(found, edits)
+    moved = moved_back(found, edits, Source("SI|F(2, 80)"))
     assert (moved.span, moved.values) == (before, found.values)
+
+
+def test_a_question_that_nobody_reads_is_shown_as_it_is_written() -> None:
+    shown = {each.code.number: each.values for each in check("IF(esta listo) F(2, 80) ENDIF")}
+    assert shown["TS014"]["fix"] == "IF(esta listo);F(2, 80);ENDIF"
 
 
 def told(text: str) -> list[tuple[str, str]]:

@@ -137,9 +137,11 @@ DEVICE_WORDS = frozenset(["LED", "LUZ", "FOCO", "LIGHT", "LAMP", "LAMPARA", "SER
 NOT_DONE = {
     **dict.fromkeys(("DIGITALWRITE", "ANALOGWRITE", "PINMODE", "DIGITALREAD", "ANALOGREAD", "PIN"), "pins"),
     **dict.fromkeys(("CADA", "EVERY"), "every"),
+    "RETURN": "leaves",
     **dict.fromkeys(("GOTO", "GOSUB", "JUMP", "SALTA", "SALTAR", "IRA", "IR_A"), "jump"),
 }
-_INSTEAD = {"pins": "F(2, 80)", "jump": "LOOP(FOREVER)", "every": "LOOP(FOREVER)", "motors": "M(50, 50)"}
+_INSTEAD = {"pins": "F(2, 80)", "jump": "LOOP(FOREVER)", "every": "LOOP(FOREVER)", "motors": "M(50, 50)",
+            "leaves": "END_DEF"}
 
 
 def said_instead(word: str) -> dict[str, str]:

@@ -74,7 +74,7 @@ def _with_findings(found: Compiled, kit: Kit) -> Compiled:
             rest = read(applied(it.source.text, edits))
             # The warnings of what is left come when it is repaired.
             left = [] if rest.is_right else told_of(rest, rounds - 1).diagnostics
-            told = [*told, *(moved_back(each, edits) for each in left)]
+            told = [*told, *(moved_back(each, edits, it.source) for each in left)]
         return it._replace(diagnostics=said_once(told, it.source))
 
     return told_of(found, ROUNDS)

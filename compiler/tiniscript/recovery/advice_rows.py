@@ -72,6 +72,10 @@ ADVICE = """
 ^ @none s=@cond+ $ | TS042 | found={s}; asked={s}; fix=IF({alone}) | DISTANCE < 20 => fix=IF(DISTANCE < 20)
 ^ @none s=@cond+ ¿|¡ @any* $ | TS042 | found={s}; asked={s}; one=IF({alone}) | DISTANCE < 20 ¿si? S => one=IF(DISTANCE < 20)
 ^ @none v=@word|@num|+|-|*|/|%|(|)+ = x=@name $ | TS042 | found={x}; turned={x}; fix={free} = {v} | DISTANCE - 5 = FALTA => fix=FALTA = DISTANCE - 5
+^ @none F ( s=UNTIL|HASTA @word+ , n=@num ) $ | TS102 | found={s}; right=UNTIL; usage=F(FOREVER, {n}) UNTIL({distance} < 10) | F(hasta la pared, 60) => usage=F(FOREVER, 60) UNTIL(DISTANCE < 10)
+^ @none v=@name [ @num ] = @any* $ | TS067 | found={v} | NOTAS[1] = 5 => found=NOTAS
+^ @none most|least|on|off the? s=@noGRIPPER|@noLED $ | TS101 | found={s}; near= | OPEN GRIPPER => found=GRIPPER
+^ @none WHEN|CUANDO|IF @word* FLAG|BANDERA @word* $ | TS102 | found={words}; right=START; fix=START; usage=START | when green flag clicked => fix=START
 # letters for a way
 ^ @none s=FL|LF ( n=@num , @num ) $ | TS101 | found={s}; near=; curve=M(30, 60);W({n});S | FL(1, 60) => curve=M(30, 60);W(1);S
 ^ @none s=FR|RF ( n=@num , @num ) $ | TS101 | found={s}; near=; curve=M(60, 30);W({n});S | FR(1, 60) => curve=M(60, 30);W(1);S
@@ -103,7 +107,9 @@ ADVICE = """
 ^ <does> @any* AGAIN|NUEVAMENTE|REPITO|REPETIDO @any* $ | TS085 | again=LOOP(2);{c};END_LOOP | F(1, 80) again => again=LOOP(2);F(1, 80);END_LOOP
 ^ c=@move|W|M PARA? FOREVER|ETERNAMENTE $ | TS085 | endless=LOOP(FOREVER);{c};END_LOOP | F(1, 80) siempre => endless=LOOP(FOREVER);F(1, 80);END_LOOP
 ^ c=@move|W|M @any* SIN|TODO|ALL PARAR|FIN|DETENERSE|DETENER|STOPPING|EL|THE @any* $ | TS085 | endless=LOOP(FOREVER);{c};END_LOOP | F(1, 80) sin parar => endless=LOOP(FOREVER);F(1, 80);END_LOOP
+^ @none TASK s=@num :|.|-|=|)? r=@any+ $ | TS044 | found={s}; fix=TASK;{r};END_TASK | TASK 1: F(5, 60) => fix=TASK;F(5, 60);END_TASK
 # how long
+^ c=S|STOP AFTER|TRAS|IN|EN|DESPUES DE? n=@number @in_s $ | TS013 | fix=W({n});{c} | STOP AFTER 5 SECONDS => fix=W(5);STOP
 ^ c=M|S|STOP (? during|FOR? n=@number u=@in_s )? $ | TS085 | fix={paused} | S 2 segundos => fix=S;W(2)
 ^ c=@clock <lead> during|to|then|EN|X? n=@number u=@in_s <close> t=UNTIL? q=@any* $ | TS085 | time={n} s; longer={longer}{until?} | F(2,80) por 5 segundos => longer=F(5,80)
 # how fast

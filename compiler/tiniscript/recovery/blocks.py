@@ -309,7 +309,7 @@ class _Matching:
     def end_line(self, place: int, k: int, item: Item) -> None:
         while self.open and self.open[-1].line == k and item.kind != "open":
             block = self.open[-1]
-            if block.has_brace or not block.word:
+            if block.has_brace or not block.word or self.goes_on_below(place, block):
                 break
             is_closed, after = self.is_closed_later(place, block), self.after(place)
             has_outer = len(self.open) > 1
@@ -325,6 +325,10 @@ class _Matching:
                 is_sure = is_sure and after.word == block.name
             self.is_sure = self.is_sure and is_sure
             self.tails.setdefault(k, []).append(block.end)
+
+    def goes_on_below(self, place: int, block: _Block) -> bool:
+        below = self.flat[place + 1][0] if place + 1 < len(self.flat) else block.line
+        return self.lines[below].indent > block.indent
 
     def is_parted(self, k: int, items: Sequence[Item]) -> bool:
         """Whether a block may end before its line: at a `;` of the text, or at another block."""

@@ -202,11 +202,12 @@ class _OfLine(NamedTuple):
     defs: set[str]
     in_brackets: set[str]
     rows: set[tuple[str, ...]]
+    parameters: dict[str, tuple[str, ...]]  # of each DEF: names in brackets behind its own
 
 
 @lru_cache(REMEMBERED)
 def _names_of(line: tuple[Lexeme, ...]) -> _OfLine:
-    found = _OfLine(set(), set(), set(), set())
+    found = _OfLine(set(), set(), set(), set(), {})
     head = line[2:] if len(line) > 1 and line[1].text == "|" else line
     depth = 0
     for token, after in pairwise([*line, made(";")]):
@@ -221,6 +222,12 @@ def _names_of(line: tuple[Lexeme, ...]) -> _OfLine:
         if is_def and after.kind is WORD and after.text not in WORDS:
             if after.text not in ("MAIN", "SETUP", "PRINCIPAL"):
                 found.defs.add(after.text)
+                inside = texts(line)[texts(line).index(after.text) + 1 :]
+                is_open = inside[:1] == ("(",) and ")" in inside
+                given = inside[1 : inside.index(")")][::2] if is_open else ()
+                if all(each.isidentifier() and each not in WORDS for each in given):
+                    found.parameters[after.text] = given
+                    found.variables.update(given)
     if len(head) > 2 and (head[0].text == "DEF" or concept_of(head[0].text) == "DEF"):
         row, names = _name_in_words(head[1:], ";"), found.defs
     else:
@@ -264,6 +271,7 @@ class Names:
         self.variables = {name for each in told for name in each.variables}
         self.in_brackets = {name for each in told for name in each.in_brackets}
         self.rows = {row for each in told for row in each.rows}
+        self.parameters = {k: its for each in told for k, its in each.parameters.items()}
         self.defs = {name for each in told for name in each.defs} - {row[0] for row in self.rows}
         self._labels: dict[tuple[str, str, bool], str] = {}
 

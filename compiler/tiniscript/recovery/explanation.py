@@ -429,6 +429,8 @@ def _slip(code: str, step: Step | None, before: Sequence[Lexeme], after: Sequenc
         found = found[1:]
     if not right and code == _WORD_CODE and start:
         found, right = [old[start - 1], *found], [old[start - 1]]
+    elif code == _WORD_CODE and texts(found[-1:]) == (".",):  # `bot.forward`
+        found = old[start : start + len(found) + 1]
     elif not right and code == codes.BAD_NUMBER.number:
         found = old[start + len(found) - 1 : start + len(found) + 1]
     elif code == rows.WITH_UNIT:
@@ -448,6 +450,7 @@ def _slip(code: str, step: Step | None, before: Sequence[Lexeme], after: Sequenc
     now = laid_out(right) or shown
     now = shown if now == "FIN" and shown in ENDED else now  # of a block, whose end is known
     now = re.split("[()]", now, maxsplit=1)[0] if code == _WORD_CODE else now
+    now = f"{now} )" if now.endswith("(") else now
     word = _word(code, old, new, start, other)
     known = WORDS.get(word)
     until = len(fix[head]) if len(told) < len(fix) else None  # one instruction became two

@@ -246,15 +246,22 @@ def _mistakes(found: Sequence[Diagnostic]) -> list[str]:
     return [each.code.number for each in found if each.is_mistake]
 
 
-def moved_back(found: Diagnostic, edits: Sequence[Edit]) -> Diagnostic:
-    """Return a diagnostic of the text with these edits, as one of the text without them."""
+def moved_back(found: Diagnostic, edits: Sequence[Edit], source: Source) -> Diagnostic:
+    """Return a diagnostic of the text with these edits, as one of the text without them.
+
+    A question that nobody can read is shown as it is written, and not what it was passed over for.
+    """
+    values = dict(found.values)
+    for each in edits:
+        if each.text.endswith("(TRUE)") and "TRUE" not in (was := source[each.span].strip()):
+            values = {name: text.replace(each.text, was) for name, text in values.items()}
     place = found.place and _before(found.place, edits)
     repair = found.repair
     if repair is not None:
         own = tuple(Edit(_before(each.span, edits), each.text) for each in repair.edits)
         passed = [each for each in edits if each.text.isspace()]  # words that nothing may drop
         repair = Repair((), False) if overlap(own, passed) else repair._replace(edits=own)
-    return Diagnostic(found.code, _before(found.span, edits), found.values, place, repair)
+    return Diagnostic(found.code, _before(found.span, edits), values, place, repair)
 
 
 def _before(span: Span, edits: Sequence[Edit]) -> Span:

@@ -9,6 +9,7 @@ import heapq
 import re
 from collections.abc import Callable, Iterator, Sequence
 from functools import lru_cache
+from itertools import pairwise
 from typing import NamedTuple
 from unicodedata import category
 
@@ -196,7 +197,7 @@ class _Search:
             seen.add(text)
             items = right(reading.tokens, self.names)
             if not isinstance(items, Failure):
-                if not self.says_twice(reading, items, first):
+                if not (self.says_twice(reading, items, first) or _is_hollow(reading, items)):
                     found.append(reading._replace(items=items))
                 continue
             reading = reading._replace(failure=items)
@@ -331,6 +332,7 @@ class _Search:
                     is_sure = sign not in around
                     yield reading.changed(line, rows.CONFUSED_COST, code, is_sure, False)
             is_kept = token.text in _CALCULATES or (rest and rest[0].text in _CALCULATES)
+            is_kept = is_kept or _is_group(tokens, k)
             if is_sign and not is_kept and category(token.text[0]) != "Sm":
                 cost, code = rows.EXTRA_COST, rows.EXTRA.get(token.text, rows.OF_VALUES)
                 yield reading.changed([*tokens[:k], *rest], cost, code, is_bracket, False)
@@ -339,6 +341,21 @@ class _Search:
                     cost, code = rows.SWAPPED_COST
                     line = [*tokens[:k], rest[0], token, *rest[1:]]
                     yield reading.changed(line, cost, code, True, False)
+
+
+def _is_hollow(reading: Reading, items: Sequence[Item]) -> bool:
+    """Whether a block would have an arm with nothing in it, which nobody wrote."""
+    return bool(reading.steps) and any(
+        one.kind in ("open", "arm") and other.kind in ("arm", "end")
+        for one, other in pairwise(items)
+    )
+
+
+def _is_group(tokens: Sequence[Lexeme], k: int) -> bool:
+    """Whether a bracket groups a part of a sum: without it the sum is another one."""
+    before = tokens[k - 1].text if k else ""
+    rest = [each.text for each in tokens[k + 1 :]]
+    return tokens[k].text == "(" and before in ("=", *SIGNS) and bool(_CALCULATES & {*rest})
 
 
 def _code_of_call(words: Sequence[Lexeme]) -> str:

@@ -363,6 +363,16 @@ def _known_name(place: _Place) -> _Made:
     return name if name and place.line.names.is_name(name[0].text) else None
 
 
+def _parameter(k: int) -> Callable[[_Place], _Made]:
+    """Return the function for a name in the brackets of the DEF that is called."""
+
+    def name(place: _Place) -> _Made:
+        names = place.line.names.parameters.get(place.captured[0][0].text, ())
+        return [made(names[k])] if k < len(names) else None
+
+    return name
+
+
 def _most(place: _Place) -> _Made:
     return _end_of_range(place, is_high=True)
 
@@ -414,6 +424,7 @@ _FUNCTIONS: dict[str, Callable[[_Place], _Made]] = {
     "power": _number_if(lambda it: LONG_S <= it <= _MOST_POWER),
     "time": _number_if(lambda it: it < LONG_S),
     "whole": _number_if(float.is_integer),
+    "given": _parameter(0), "also": _parameter(1),
 }  # fmt: skip
 
 

@@ -16,7 +16,7 @@ but brackets: @nobrace.
 `becomes` is tokens: `$c` what was captured, `&c` that in words of the language, and functions:
 @not (the opposite question), @same (a number that is another one, too),
 @most and @least (the range of an actuator), @endof (the end of a header), @dec (a decimal comma), @cat (a zero
-apart), @mmss, @cm (of metres), @xn (`x4`), @brace (a brace that was captured), @join and @known (a name of two
+apart), @mmss, @cm (of metres), @xn (`x4`), @brace (a brace that was captured), @given and @also (the names in the brackets of a DEF), @join and @known (a name of two
 words). `how`: `first` is made before any other is tried, `applied` may be made without asking,
 `offered` is only shown, as is `first offered`. An example's lines are parted by ⏎.
 
@@ -31,6 +31,7 @@ PARTS = {
     "asks": "h=IF|WHILE|ELSEIF|WHEN",
     "question": "( c=@noclose+ )",
     "for": "LOOP|FOR|PARA",
+    "note": "DO|RE|MI|FA|SOL|LA|SI",
     "end": "BREAK ; ENDIF ; END_LOOP",
 }
 
@@ -89,7 +90,7 @@ SIGNS = r"""
 \bBEEP\(([1-9])\.(\d{3,4})\)  |  `BEEP(\1, \2)`  |  1  |  TS020  |  offered  |  BEEP(1.440) => BEEP(1, 440)
 (?<=\d)=(?=\s*\))  |  `0`  |  1  |  TS076  |  offered  |  F(2, 8=) => F(2, 80)
 (?<=\()=(?=\.\d)  |  `0`  |  1  |  TS076  |  offered  |  L(=.39, 60) => L(0.39, 60)
-(?<==)\s*(\d+)x(\d+)\b  |  ` \1 * \2`  |  1  |  TS008  |  offered  |  X = 3x2 => X = 3 * 2
+(?:(?<==)|(?<=SHOW\())\s*(\d+)x(\d+)\b  |  ` \1 * \2`  |  1  |  TS008  |  offered  |  X = 3x2 => X = 3 * 2
 (?<=[(,])(\s*)!(?=\s*[,)])  |  `\g<1>1`  |  1  |  TS076  |  offered  |  F(!, 80) => F(1, 80)
 (?<=[(,])(\s*)"(?=\s*[,)])  |  `\g<1>2`  |  1  |  TS076  |  offered  |  F(", 80) => F(2, 80)
 (?<=[(,])(\s*)\$(?=\s*[,)])  |  `\g<1>4`  |  1  |  TS076  |  offered  |  F($, 80) => F(4, 80)
@@ -101,6 +102,15 @@ SIGNS = r"""
 \b([FBLR])(?:8(\d),\s*(\d\d)[9)]|9(\d),\s*(\d\d)[0)])\s*(?=;|$)  |  `\1(\2\4, \3\5)`  |  1  |  TS010  |  offered  |  F82, 809 => F(2, 80)
 \b(IF|WHILE|UNTIL)\s*¿\s*([^?()¿]+?)\s*\?  |  `\1(\2)`  |  1  |  TS015  |  applied  |  IF ¿DISTANCE < 10?⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
 \b(\w+)\s*(?:\^|\*\*)\s*2\b  |  `\1 * \1`  |  1  |  TS010  |  offered  |  X = 7^2⏎SHOW(X) => X = 7 * 7⏎SHOW(X)
+\b(\w+)\s*(?:\^|\*\*)\s*3\b  |  `\1 * \1 * \1`  |  1  |  TS010  |  offered  |  X = 2^3⏎SHOW(X) => X = 2 * 2 * 2⏎SHOW(X)
+\(f"[^"{}]*\{(\w+)\}[^"{}]*"\)  |  `(\1)`  |  1  |  TS006  |  offered  |  print(f"{DISTANCE} cm") => SHOW(DISTANCE)
+\b((?:IF|WHILE|UNTIL|WHEN)\([^()"]*\d)"(?=\s*(?:;|$))  |  `\1)`  |  1  |  TS016  |  offered  |  IF(DISTANCE < 10"⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
+^\s*'\s*(?=[^\W\d])(?!.*')  |  `// `  |  1  |  TS007  |  offered  |  'adelante⏎F(2, 80) => // adelante⏎F(2, 80)
+\b([FBLRM])\[(\d+)\]\[(\d+)\]  |  `\1(\2, \3)`  |  1  |  TS010  |  applied  |  F[2][80] => F(2, 80)
+\s(?:semicolon|punto y coma)(?:\s|$)  |  `; `  |  1  |  TS010  |  offered  |  S semicolon F(2, 80) => S; F(2, 80)
+^ese i barra (?=\w)  |  `SI|`  |  1  |  TS010  |  offered  |  ese i barra F(2, 80) => SI|F(2, 80)
+\b([a-z]+) (?:abre |abrir )?par[eé]ntesis (\w+) coma (\w+)(?: cierra(?:r)? par[eé]ntesis)?  |  `\1(\2, \3)`  |  1  |  TS015  |  offered  |  efe paréntesis dos coma ochenta => F(2, 80)
+^(S[IB]\s*\|)?\s*¿([^?]+)\?\s*(?:s[ií]|yes)\s*[:,]?\s*(.+?)[\s,;.]*\bno\s*[:,]\s*(.+)$  |  `\1IF(\2); \3; ELSE; \4; ENDIF`  |  1  |  TS042  |  offered  |  ¿DISTANCE < 20? SÍ: S NO: F(1, 60) => IF(DISTANCE < 20); S; ELSE; F(1, 60); ENDIF
 (?<=\d)\. (?=\d)  |  `.`  |  1  |  TS008  |  applied  |  F(1. 5, 80) => F(1.5, 80)
 ^S ([IB])(?=\s*\|)  |  `S\1`  |  1  |  TS034  |  applied  |  S I|F(2, 80) => SI|F(2, 80)
 \bLOOP_?(\d+)(?=\s*(?:;|$))  |  `LOOP(\1)`  |  1  |  TS015  |  applied  |  LOOP4;F(2, 80);END_LOOP => LOOP(4);F(2, 80);END_LOOP
@@ -185,6 +195,7 @@ SIGNS = r"""
 (?<=[\w)])\s*\.\s*$  |  `;`  |  1  |  TS010  |  applied  |  S. => S;
 (?<=\))\s*\.\s+(?=\w)  |  `; `  |  1  |  TS010  |  applied  |  F(2,80). R(1,60). S. => F(2,80); R(1,60); S;
 /\*\s*(.*?)\s*\*/\s*$  |  `// \1`  |  1  |  TS007  |  applied  |  F(2,80) /* hola */ => F(2,80) // hola
+<!--\s*(.*?)\s*-->\s*$  |  `// \1`  |  1  |  TS007  |  applied  |  F(2, 80) <!-- adelante --> => F(2, 80) // adelante
 (?:^|(?<=\s))(?:#+|--+>?|<!--|^REM\b)\s*(?=[^\W\d])  |  `// `  |  1  |  TS007  |  applied  |  F(2, 80) # adelante => F(2, 80) // adelante
 ^\s*/\s*(?=(?-i:[a-z]+)(?! ?\())  |  `// `  |  1  |  TS007  |  applied  |  SI|F(2, 60) // avanza⏎/ gira⏎R(1, 50) => SI|F(2, 60) // avanza⏎// gira⏎R(1, 50)
 \b([A-Za-z]+)\.read\(\)  |  `\1`  |  1  |  TS102  |  applied  |  IF(DISTANCE.read()<10);S;ENDIF => IF(DISTANCE<10);S;ENDIF
@@ -234,6 +245,7 @@ no < | >= | 1 | TS010 | first | IF(DISTANCE NOT < 10);S;ENDIF => IF(DISTANCE >= 
 no > | <= | 1 | TS010 | first | IF(DISTANCE NOT > 10);S;ENDIF => IF(DISTANCE <= 10);S;ENDIF
 l=@val is|EQUALS|VALE equal? A|TO|QUE? r=@num|@val | $l = $r | 1 | TS010 | first | si distancia es 10 para => IF(DISTANCE = 10);S;ENDIF
 l=@val equal A|TO|QUE? r=@num|@val | $l = $r | 1 | TS010 | first | IF(DISTANCE igual a 10);S;ENDIF => IF(DISTANCE = 10);S;ENDIF
+= @word* RANDOM between|than|DESDE|FROM? a=@num A|AL|TO|Y|HASTA|AND|-|, b=@num $ | = RANDOM ( $a , $b ) | 1 | TS102 | offered | X = numero al azar entre 1 y 6⏎F(X, 50) => X = RANDOM(1, 6)⏎F(X, 50)
 l=@val is? between a=@num Y|AND b=@num | $l > $a AND $l < $b | 1 | TS010 | first | IF(DISTANCE entre 5 y 10);S;ENDIF => IF(DISTANCE > 5 AND DISTANCE < 10);S;ENDIF
 # questions and sums
 a=@num|@val s=<|<=|>|>= b=@val t=<|<=|>|>= c=@num|@val | $a $s $b AND $b $t $c | 1 | TS037 | applied | SI|IF(10>DISTANCE>5);S;ENDIF => SI|IF(10>DISTANCE AND DISTANCE>5);S;ENDIF
@@ -245,6 +257,10 @@ a=@num|@val MOD b=@num|@val | $a % $b | 1 | TS010 | first | X = 7⏎X = X MOD 2 
 a=@num|@val MAS b=@num|@val | $a + $b | 1 | TS010 | first | X = 5 mas 3⏎SHOW(X) => X = 5 + 3⏎SHOW(X)
 NO l=@val | NOT $l | 1 | TS010 | applied | IF(NO DISTANCE < 10)⏎F(1,50)⏎ENDIF => IF(NOT DISTANCE < 10)⏎F(1,50)⏎ENDIF
 l=@val s=<|>|<=|>= a=@num o=AND|OR t=<|>|<=|>= b=@num | $l $s $a &o $l $t $b | 1 | TS018 | offered | IF(DISTANCE < 10 OR < 5);S;ENDIF => IF(DISTANCE < 10 OR DISTANCE < 5);S;ENDIF
+l=@val = a=@num O|OR|U b=@num | $l = $a OR $l = $b | 1 | TS018 | offered | IF(DISTANCE = 10 O 20)⏎S⏎ENDIF => IF(DISTANCE = 10 OR DISTANCE = 20)⏎S⏎ENDIF
+h=IF|WHILE|ELSEIF v=@val ( n=@num ) | &h ( $v < $n ) | 1 | TS048 | offered | IF DISTANCE(10)⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
+^ c=@cond+ ? <body> : d=@start s=@all* $ | IF ( $c ) ; $b $r ; ELSE ; $d $s ; ENDIF | 1 | TS042 | offered | DISTANCE < 10 ? S : F(1, 60) => IF(DISTANCE < 10);S;ELSE;F(1, 60);ENDIF
+= ABS s='-'? n=@num|@val $ | = ABS ( $s $n ) | 1 | TS015 | applied | X = ABS -5⏎SHOW(X) => X = ABS(-5)⏎SHOW(X)
 = a=@num over POR? b=@num | = $a / $b | 1 | TS010 | applied | x = 10 dividido 2⏎mostrar x => x = 10 / 2⏎SHOW(X)
 h=IF|WHILE|UNTIL|WHEN|ELSEIF ( a=@val then|& b=@val s=<|> n=@num ) | &h ( $a $s $n AND $b $s $n ) | 1 | TS010 | first offered | IF(LIGHT_L y LIGHT_R > 500)⏎S⏎ENDIF => IF(LIGHT_L > 500 AND LIGHT_R > 500)⏎S⏎ENDIF
 SHOW ( a=@val & b=@val ) | SHOW ( $a ) ; SHOW ( $b ) | 1 | TS020 | first offered | SHOW(LIGHT_L & LIGHT_R) => SHOW(LIGHT_L);SHOW(LIGHT_R)
@@ -265,6 +281,7 @@ s=<|>|<=|>= n=@num M|METRO|METROS|METERS|METER e=) | $s @cm:n $e | 1 | TS049 | a
 s=<|>|<=|>=|=|<> n=@num @unit | $s $n | 1 | TS049 | first | x = 5 cm => x = 5
 v=@val CM|EN? CM | $v | 2 | TS049 | applied | SHOW DISTANCE cm => SHOW(DISTANCE)
 SHOW ( n=@num M|METRO|METROS|METERS|METER|@unit ) | SHOW ( $n ) | 1 | TS049 | applied | SHOW(2 M) => SHOW(2)
+ROUND ( v=@argt+ , n=@num DECIMALES|DECIMALS|PLACES|CIFRAS ) | ROUND ( $v , $n ) | 1 | TS049 | applied | SHOW(ROUND(DISTANCE, 1 decimales)) => SHOW(ROUND(DISTANCE, 1))
 v=@val seconds|@unit e=,|) | $v $e | 1 | TS049 | applied | SHOW(distancia cm) => SHOW(DISTANCE)
 the v=@val | $v | 1 | TS102 | first | lee la distancia => DISTANCE
 # variables
@@ -287,6 +304,8 @@ v=@name *= e=@any+ | $v = $v * $e | 1 | TS050 | applied | X = 1⏎X *= 2 => X = 
 ^ v=@usedname e=@num $ | $v = $e | 3 | TS050 | applied | VELOCIDAD 50⏎F(2, VELOCIDAD) => VELOCIDAD = 50⏎F(2, VELOCIDAD)
 ; v=@usedname e=@num f=;|$ | ; $v = $e $f | 3 | TS050 | applied | X = 15;X  17;SHOW(X) => X = 15;X = 17;SHOW(X)
 ^ v=@name <- e=@any+ $ | $v = $e | 1 | TS050 | applied | potencia <- 80⏎F(2, potencia) => potencia = 80⏎F(2, potencia)
+^ e=@num|@val ->|=> v=@newname $ | $v = $e | 1 | TS050 | offered | 5 -> X⏎F(X, 60) => X = 5⏎F(X, 60)
+^ v=SPEED|VELOCIDAD|VEL|POWER|POTENCIA ( n=@num ) $ | $v = $n | 1 | TS050 | offered | SPEED(60)⏎F(2, SPEED) => SPEED = 60⏎F(2, SPEED)
 = SI|YES $ | = TRUE | 1 | TS102 | applied | X = si⏎IF(X)⏎S⏎ENDIF => X = TRUE⏎IF(X)⏎S⏎ENDIF
 a=@num|@close b=@name = | $a ; $b = | 1.5 | TS013 | applied | F(1, 50) X = 2 => F(1, 50);X = 2
 ^ set the? v=@word A|TO|EN n=@num $ | $v = $n | 1.5 | TS050 | applied | X = 1⏎sube la X a 5 => X = 1⏎X = 5
@@ -305,7 +324,7 @@ a=@word b=@word|@num | @known:a:b | 1 | TS056 | first | MI_BANDERA = TRUE⏎IF(m
 # calls and their brackets
 x=@callw [ | $x ( | 1 | TS010 | first | F[2,80] => F(2,80)
 x=@callw '{' c=@nobrace+ '}' | $x ( $c ) | 1 | TS015 | applied | SI|F{2,80} => SI|F(2,80)
-RANDOM a=@num ,? b=@num | RANDOM ( $a , $b ) | 1 | TS015 | applied | X = RANDOM 1 3⏎F(X, 50) => X = RANDOM(1, 3)⏎F(X, 50)
+RANDOM between|than|DESDE? a=@num A|AL|TO|Y|HASTA|AND|-|,? b=@num | RANDOM ( $a , $b ) | 1 | TS015 | applied | X = RANDOM 1 3⏎F(X, 50) => X = RANDOM(1, 3)⏎F(X, 50)
 c=@callw ( a=@argt+ ; b=@argt+ e=)|$ | $c ( $a , $b ) | 1 | TS019 | applied | F(2;80 => F(2, 80)
 a=@callw b=@num ,? c=@num ,|;|Y? d=@callw | $a ( $b , $c ) ; $d | 1.5 | TS015 | applied | F 2,80,R 1,50 => F(2, 80);R(1, 50)
 v=@val ( ) | $v | 1 | TS028 | first | LIGHT_L() => LIGHT_L
@@ -333,6 +352,11 @@ TONE|TONO ( a=@num , b=@num ) | BEEP ( @ms:b , $a ) | 1 | TS102 | offered | tone
 TONE ( @num , a=@num , b=@num ) | BEEP ( @ms:b , $a ) | 1 | TS102 | offered | tone(8, 440, 500) => BEEP(0.5, 440)
 a=F|B|L|R ( u=CM|DEG (? n=@num )? , p=@num ) | $a ( $n $u , $p ) | 1 | TS076 | offered | B(CM(20), 60) => B(20 CM, 60)
 a=F|B|L|R ( p=@num , n=@num u=CM|DEG ) | $a ( $n $u , @power:p ) | 1 | TS076 | offered | R(60, 90 DEG) => R(90 DEG, 60)
+^ c=F|B|L|R TO|TOO ,? n=@num $ | $c ( 2 , $n ) | .5 | TS015 | offered | f to 80 => f(2, 80)
+c=F|B|L|R ( TOO , | $c ( 2 , | 1 | TS102 | offered | F(too, 80) => F(2, 80)
+BEEP ( a=<note> , b=<note> ) | BEEP ( 1 , $a ) ; BEEP ( 1 , $b ) | 1 | TS020 | offered | MUSICA(DO, RE) => BEEP(1, 262);BEEP(1, 294)
+BEEP ( a=<note> , b=<note> , c=<note> ) | BEEP ( 1 , $a ) ; BEEP ( 1 , $b ) ; BEEP ( 1 , $c ) | 1 | TS020 | offered | BEEP(DO, RE, MI) => BEEP(1, 262);BEEP(1, 294);BEEP(1, 330)
+@newname . c=F|B|L|R|W|BEEP ( | $c ( | 1 | TS102 | applied | bot.F(2, 80) => F(2, 80)
 # UNTIL
 ^ WHILE <question> ;|:? a=F|B|L|R ( FOREVER , p=@num|@val ) $ | $a ( FOREVER , $p ) UNTIL ( @not:c ) | .9 | TS031 | offered | WHILE(DISTANCE > 20) F(FOREVER, 50) => F(FOREVER, 50) UNTIL(DISTANCE <= 20)
 a=F|B|L|R ( FOREVER , p=@num|@val ) UNTIL ( n=@num ) | $a ( $n , $p ) | 2 | TS202 | offered | F(FOREVER, 80) UNTIL(2) => F(2, 80)
@@ -430,6 +454,10 @@ h=IF|WHILE ( a=@val s=<|> b=@num , c=@val t=<|> d=@num ) | &h ( $a $s $b AND $c 
 LOOP ( n=@num , <body> ) | LOOP ( $n ) ; $b $r | 2 | TS080 | applied | LOOP(4, F(1,50))⏎END_LOOP => LOOP(4);F(1, 50)⏎END_LOOP
 LOOP ( <body> , n=@num ) $ | LOOP ( $n ) ; $b $r ; END_LOOP | 2 | TS080 | applied | LOOP(F(1,50), 4) => LOOP(4);F(1, 50);END_LOOP
 LOOP ( n=@num <body> ) $ | LOOP ( $n ) ; $b $r ; END_LOOP | 2 | TS080 | applied | LOOP(3 F(1,50)) => LOOP(3);F(1, 50);END_LOOP
+<for> v=@usedname IN|EN range ( n=@num ) :? | $v = - 1 ; LOOP ( $n ) ; $v = $v + 1 ; | .5 | TS102 | offered | for i in range(4):⏎  F(i, 60) => I = -1;LOOP(4);I = I + 1;⏎  F(i, 60)⏎END_LOOP
+LOOP|FOR|PARA|DESDE v=@usedname =|DESDE|than 1 TO|A|HASTA n=@num do|:? | $v = 0 ; LOOP ( $n ) ; $v = $v + 1 ; | .5 | TS102 | offered | para n desde 1 hasta 4⏎F(n, 60)⏎fin para => N = 0;LOOP(4);N = N + 1;⏎F(n, 60)⏎END_LOOP
+LOOP ( v=@usedname , 1 , n=@num ) | $v = 0 ; LOOP ( $n ) ; $v = $v + 1 | .5 | TS063 | offered | LOOP(N, 1, 5)⏎F(N, 60)⏎END_LOOP => N = 0;LOOP(5);N = N + 1⏎F(N, 60)⏎END_LOOP
+<for> @name IN|EN range ( 1 , n=@num ) :? | LOOP ( $n - 1 ) ; | 1 | TS102 | offered | for side in range(1, 5):⏎F(1, 50)⏎END_LOOP => LOOP(5 - 1)⏎F(1, 50)⏎END_LOOP
 <for> @name IN|EN range ( n=@num ) :? | LOOP ( $n ) ; | 1 | TS102 | applied | for i in range(4): F(1,60); R(0.5,60) => LOOP(4);F(1, 60);R(0.5, 60);END_LOOP
 <for> @name IN|EN range ( 0 , n=@num ) :? | LOOP ( $n ) ; | 1 | TS102 | applied | for i in range(0, 4):⏎F(1, 50)⏎END_LOOP => LOOP(4)⏎F(1, 50)⏎END_LOOP
 LOOP|FOR|PARA|DESDE @name =|DESDE|than 1 TO|A|HASTA n=@num do|:? | LOOP ( $n ) ; | 1 | TS102 | offered | para i de 1 a 4⏎F(1,50)⏎fin para => LOOP(4)⏎F(1,50)⏎END_LOOP
@@ -451,6 +479,7 @@ h=TASK :|,|-|'|' | &h ; | 1 | TS014 | applied | TASK:⏎BEEP(1, 440)⏎END_TASK 
 h=TASK b=@start|'{' | &h ; $b | 1 | TS014 | applied | TASK BEEP(1, 440) END_TASK => TASK;BEEP(1, 440);END_TASK
 ^ TASK @num ':'? $ | TASK | 1 | TS044 | offered | TAREA 1⏎BEEP(1, 440)⏎END_TASK => TASK⏎BEEP(1, 440)⏎END_TASK
 TASK ( @num|@word? ) | TASK | 1 | TS039 | offered | TASK(1)⏎BEEP(1, 440)⏎END_TASK => TASK⏎BEEP(1, 440)⏎END_TASK
+^ LOOP UNTIL c=@cond+ ':'|do? b=@start|'{' | WHILE ( @not:c ) ; $b | 1 | TS102 | applied | repeat until DISTANCE < 10 { F(0.5, 60) } => WHILE(DISTANCE >= 10);F(0.5, 60);END_WHILE;
 ^ LOOP UNTIL c=@cond+ ':'|'{'? $ | WHILE ( @not:c ) | 1 | TS102 | applied | repetir hasta DISTANCE < 10⏎F(1,50)⏎fin => WHILE(DISTANCE >= 10)⏎F(1,50)⏎END_WHILE
 ^ UNTIL c=@cond+ $ | IF ( $c ) ; <end> | 2 | TS064 | applied | LOOP⏎F(1, 50)⏎UNTIL DISTANCE < 10 => LOOP(FOREVER)⏎F(1, 50)⏎IF(DISTANCE < 10);BREAK;ENDIF;END_LOOP
 ^ DO '{' b=@start | LOOP ( FOREVER ) ; $b | 3 | TS064 | applied | DO { F(1, 50)⏎} WHILE(DISTANCE > 9) => LOOP(FOREVER);F(1, 50)⏎IF(DISTANCE <= 9);BREAK;ENDIF;END_LOOP
@@ -458,12 +487,18 @@ TASK ( @num|@word? ) | TASK | 1 | TS039 | offered | TASK(1)⏎BEEP(1, 440)⏎END
 ^ n=@num b=@def $ | LOOP ( $n ) ; $b ; END_LOOP | 1 | TS062 | applied | DEF SALTO;F(0.2, 60);END_DEF⏎3 SALTO => DEF SALTO;F(0.2, 60);END_DEF⏎LOOP(3);SALTO;END_LOOP
 ^ n=@num times|X|* :|,|DE? <body> $ | LOOP ( $n ) ; $b $r ; END_LOOP | 1 | TS062 | applied | 3 * F(1,50) => LOOP(3);F(1, 50);END_LOOP
 ^ n=@num *|X|times? ( <body> ) $ | LOOP ( $n ) ; $b $r ; END_LOOP | 1 | TS080 | applied | SI|4*(F(2,80);R(1,50)) => SI|LOOP(4);F(2, 80);R(1, 50);END_LOOP
+^ ( <body> ) *|X|LOOP|POR? n=@num times? $ | LOOP ( $n ) ; $b $r ; END_LOOP | 1 | TS062 | applied | (F(2,80) R(1,60)) x 4 => LOOP(4);F(2, 80);R(1, 60);END_LOOP
+^ <body> ,|;? then* LOOP TODO|ALL|EVERYTHING|ESO|THAT|IT n=@num times $ | LOOP ( $n ) ; $b $r ; END_LOOP | .9 | TS062 | offered | F(2, 80) y B(2, 80) y repetir todo 3 veces => LOOP(3);F(2, 80);B(2, 80);END_LOOP
+^ <body> every|CADA n=@num seconds $ | LOOP ( FOREVER ) ; $b $r ; W ( $n ) ; END_LOOP | .9 | TS064 | offered | SHOW(DISTANCE) cada 1 segundo => LOOP(FOREVER);SHOW(DISTANCE);W(1);END_LOOP
+^ every|CADA n=@num seconds ,|:|do? <body> $ | LOOP ( FOREVER ) ; $b $r ; W ( $n ) ; END_LOOP | .9 | TS064 | offered | cada 2 segundos BEEP(1, 440) => LOOP(FOREVER);BEEP(1, 440);W(2);END_LOOP
 ^ b=@def n=X2|X3|X4|X5|X6 $ | LOOP ( @xn:n ) ; $b ; END_LOOP | 1 | TS062 | applied | DEF SALTO;F(0.2, 60);END_DEF⏎SALTO x3 => DEF SALTO;F(0.2, 60);END_DEF⏎LOOP(3);SALTO;END_LOOP
 ^ b=@def *|X? n=@num times? $ | LOOP ( $n ) ; $b ; END_LOOP | 1 | TS062 | applied | DEF SALTO;F(0.2, 60);END_DEF⏎SALTO*3 => DEF SALTO;F(0.2, 60);END_DEF⏎LOOP(3);SALTO;END_LOOP
 ^ do|make b=@start r=@any* n=@num times $ | LOOP ( $n ) ; $b $r ; END_LOOP | 1 | TS062 | offered | hacer F(1,50) 3 veces => LOOP(3);F(1, 50);END_LOOP
 ^ n=@num LOOP ( <body> ) $ | LOOP ( $n ) ; $b $r ; END_LOOP | 1 | TS080 | applied | 3 LOOP (F(1, 50)) => LOOP(3);F(1, 50);END_LOOP
 # words behind a call: shown, not made
-^ a=S|STOP during|(? n=@num seconds? )? $ | $a ; W ( $n ) | 2 | TS085 | offered | S(2) => S;W(2)
+^ a=S|STOP ( n=@num seconds? ) $ | $a ; W ( $n ) | 2 | TS039 | offered | S(2) => S;W(2)
+^ a=S|STOP during? n=@num seconds? $ | $a ; W ( $n ) | 2 | TS013 | offered | STOP 2 segundos => STOP;W(2)
+^ b=F|B|L|R|S|STOP|BEEP|SHOW|W r=@any* IF c=@cond+ ELSE d=@start s=@all* $ | IF ( $c ) ; $b $r ; ELSE ; $d $s ; ENDIF | .9 | TS071 | offered | F(2, 80) if DISTANCE > 10 else S => IF(DISTANCE > 10);F(2, 80);ELSE;S;ENDIF
 ^ BREAK IF|CUANDO? (? c=@cond+ )? $ | IF ( $c ) ; BREAK ; ENDIF | .9 | TS071 | offered | LOOP(FOREVER)⏎F(0.5, 60)⏎BREAK(DISTANCE < 10)⏎END_LOOP => LOOP(FOREVER)⏎F(0.5, 60)⏎IF(DISTANCE < 10);BREAK;ENDIF⏎END_LOOP
 # what the devices of a kit are set to
 d=@device v=lit|on e=;|$ | &d ( TRUE ) $e | 1 | TS015 | applied | LED ON => LED(TRUE)
@@ -478,6 +513,10 @@ d=@device ( v=least ) | &d ( @least:d ) | 1 | TS102 | applied | GRIPPER(CLOSED) 
 ^ v=off|dark the? d=@device $ | &d ( FALSE ) | 1 | TS102 | applied | apagar el foco => LED(FALSE)
 # DEF and its calls
 v=@def ( ) | $v | 1 | TS028 | first | DEF GIRO()⏎R(1, 60)⏎END_DEF⏎GIRO() => DEF GIRO⏎R(1, 60)⏎END_DEF⏎GIRO
+^ DEF n=@word ( v=@name ) ':'? | $v = 0 ; DEF $n ; | .5 | TS039 | offered | def cuadrado(lado):⏎  F(lado, 80)⏎cuadrado(2) => LADO = 0;DEF CUADRADO;⏎  F(lado, 80)⏎END_DEF⏎LADO = 2;CUADRADO
+^ DEF n=@word ( v=@name , w=@name ) ':'? | $v = 0 ; $w = 0 ; DEF $n ; | .5 | TS039 | offered | DEF IR(T, P)⏎F(T, P)⏎END_DEF⏎IR(2, 80) => T = 0;P = 0;DEF IR;⏎F(T, P)⏎END_DEF⏎T = 2;P = 80;IR
+^ n=@def ( a=@num|@val ) $ | @given:n = $a ; $n | .5 | TS039 | offered | DEF IR(T)⏎F(T, 80)⏎END_DEF⏎IR(2) => T = 0;DEF IR;⏎F(T, 80)⏎END_DEF⏎T = 2;IR
+^ n=@def ( a=@num|@val , b=@num|@val ) $ | @given:n = $a ; @also:n = $b ; $n | .5 | TS039 | offered | DEF IR(T, P)⏎F(T, P)⏎END_DEF⏎IR(2, 80) => T = 0;P = 0;DEF IR;⏎F(T, P)⏎END_DEF⏎T = 2;P = 80;IR
 ^ DEF n=@word ( <body> ) $ | DEF $n ; $b $r ; END_DEF | 1 | TS080 | applied | DEF SALUDO(BEEP(1,440))⏎SALUDO => DEF SALUDO;BEEP(1, 440);END_DEF⏎SALUDO
 ^ ( a=@callw ( c=@argt+ ) ) ( <body> ) $ | $a ( $c ) ; $b $r | 1 | TS080 | applied | (F(2,80))(R(1,60)) => F(2, 80);R(1, 60)
 v=@val A|TO the? wall | &v | 1 | TS102 | first | IF(distancia a la pared < 10)⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
@@ -492,6 +531,7 @@ DEF n=@word b=@start|'{' | DEF $n ; $b | 1 | TS014 | applied | procedure square 
 ^ end @def $ | END_DEF | 1 | TS022 | applied | DEF SALTO⏎F(1, 50)⏎FIN SALTO⏎SALTO => DEF SALTO⏎F(1, 50)⏎END_DEF⏎SALTO
 a=@close h=end $ | $a ; &h | 1 | TS013 | applied | F(2,80) fin => F(2, 80);
 ^ END_DEF @def $ | END_DEF | 1 | TS044 | first | DEF SALTO⏎F(1, 50)⏎END_DEF SALTO⏎SALTO => DEF SALTO⏎F(1, 50)⏎END_DEF⏎SALTO
+h=END_LOOP|ENDIF|END_WHILE|END_DEF|END_WHEN|END_TASK ( @noparen+ ) | &h | 1 | TS039 | first offered | LOOP(3)⏎F(2, 80)⏎END_LOOP(3) => LOOP(3)⏎F(2, 80)⏎END_LOOP
 ; LOOP $ | ; END_LOOP | 4 | TS014 | applied | LOOP(4) F(1,50) R(0.5,50) LOOP => LOOP(4);F(1, 50);R(0.5, 50);END_LOOP
 ^ S|STOP|SALIR|ROMPER LOOP|BUCLE|CICLO $ | BREAK | 1 | TS102 | applied | LOOP(FOREVER)⏎F(0.2,50)⏎IF(DISTANCE < 10)⏎STOP LOOP⏎ENDIF⏎END_LOOP => LOOP(FOREVER)⏎F(0.2,50)⏎IF(DISTANCE < 10)⏎BREAK⏎ENDIF⏎END_LOOP
 ^ program @word $ |  | 1 | TS044 | applied | programa baile⏎F(1, 50) => ⏎F(1, 50)
@@ -501,6 +541,7 @@ end -|.|DEL|DE|EL? k=IF|LOOP|WHILE|DEF|FOREVER|FOR|PARA ;|$ | @endof:k | 1 | TS0
 ^ idles $ |  | 1 | TS044 | offered | IF(DISTANCE < 10)⏎NADA⏎ELSE⏎F(1, 60)⏎ENDIF => IF(DISTANCE < 10)⏎⏎ELSE⏎F(1, 60)⏎ENDIF
 # what joins instructions
 ^ please b=@start | $b | 1 | TS044 | applied | please F(2, 80) => F(2, 80)
+^ = <body> $ | $b $r | 1 | TS054 | applied | =F(2,80)+R(1,60) => F(2, 80);R(1, 60)
 a=@close please please+ $ | $a | 1 | TS044 | applied | F(2, 80) thank you => F(2, 80)
 ^ @newname : b=@start | $b | 2.5 | TS054 | applied | square: F(1,50); R(1,50) => F(1,50); R(1,50)
 ^ a=F|B ( n=@num , p=@num ) CM|CENTIMETROS $ | $a ( $n CM , $p ) | .5 | TS076 | offered | F(20, 60) CM => F(20 CM, 60)
@@ -508,6 +549,7 @@ a=@close please please+ $ | $a | 1 | TS044 | applied | F(2, 80) thank you => F(2
 a=@close please|CM|CENTIMETROS|SEG|SEGS|SEGUNDO|SEGUNDOS|SECONDS $ | $a | 1 | TS044 | applied | SHOW(DISTANCE) cm => SHOW(DISTANCE)
 ( a=@num , p=@num|@val ) then|&|+|AND BEEP ( b=@num | ( $a , $p ) ; BEEP ( @same:a:b | .9 | TS074 | offered | F(2, 80) AND BEEP(2, 440) => F(2, 80);BEEP(2, 440)
 a=@close ,? then|soon+ b=@start | $a ; $b | 1 | TS044 | applied | F(1,75) y R(1,75) => F(1, 75);R(1, 75)
+W n=@num seconds? then+ b=@start | W ( $n ) ; $b | 1 | TS015 | applied | F(2, 80) THEN WAIT 1 THEN B(2, 80) => F(2, 80);W(1);B(2, 80)
 a=@close ,|.|: b=@start | $a ; $b | 1 | TS013 | applied | F(2,80), B(2,80) => F(2, 80);B(2, 80)
 a=@close &|+|AND|->|=>|/|>|>>|_|*|'|' b=@start | $a ; $b | 1 | TS061 | applied | F(2,80)&B(2,80) => F(2, 80);B(2, 80)
 a=@close +|&|AND|->|'|' $ | $a ; | 1 | TS061 | applied | F(2, 80) +⏎R(1, 50) => F(2, 80)⏎R(1, 50)
@@ -523,7 +565,7 @@ call b=@def n=@num | LOOP ( $n ) ; $b ; END_LOOP | 1 | TS062 | applied | DEF SAL
 # words of other languages around a program
 W8 | W | 1 | TS102 | offered | W8(1) => W(1)
 BRAKE | BREAK | 1 | TS102 | offered | LOOP(3)⏎S⏎BRAKE⏎END_LOOP => LOOP(3)⏎S⏎BREAK⏎END_LOOP
-EFE | F | 1 | TS102 | first offered | efe dos coma ochenta => F(2, 80)
+EFE|EF | F | 1 | TS102 | first offered | efe dos coma ochenta => F(2, 80)
 ^ import @any+ ;? $ |  | 1 | TS072 | applied | import robot⏎F(2,80) => ⏎F(2,80)
 v=S|STOP|BREAK|START|ELSE|ENDIF|END_LOOP ( ) | $v | 1 | TS028 | first | s() => s
 read ( v=@val ) | $v | 1 | TS102 | applied | X = leer(DISTANCE)⏎SHOW(X) => X =DISTANCE⏎SHOW(X)

@@ -254,6 +254,8 @@ class _Reader:
         elif meant:
             return k + 1 if self._take_command(word, meant, is_own=own is not None) else None
         elif said_of(word, "filler"):
+            is_in_place = k > 0 and self.words[k - 1].kind is NUMBER and self.text(k + 1) in ",)"
+            self.is_sure = self.is_sure and not is_in_place  # it may be a unit: `F(8 in, 60)`
             self.cost += 0.1
         else:
             return k + 1 if self._take_value(word) else None
@@ -409,6 +411,9 @@ class _Reader:
                     if self.words[0].text not in WORDS:
                         return None  # of another language: rarely seconds, as in `move(50, 50)`
                     self.is_sure = False
+        is_low = any(u == "%" and isinstance(v, float) and v < LONG_S for v, u in values)
+        if None in slots and is_low:
+            return None  # `F(2 VEL)`: the name of a power, and a time
         is_alone = None in slots and rest == [0] and isinstance(values[0].value, float)
         if is_alone and self.command in MOVES and float(values[0].value) >= LONG_S:
             return None  # a power, degrees or centimetres

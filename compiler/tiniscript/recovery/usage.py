@@ -176,7 +176,7 @@ class _Usage:
         if any(said_of(each, "on") or said_of(each, "off") for each in switched):
             return Diagnostic(codes.SWITCH_WHAT, found.span)
         if any(map(self.is_button, words)) and [each.text for each in tokens[1:2]] != ["("]:
-            return Diagnostic(codes.NO_BUTTON, found.span)
+            return self.no_button(found)
         endless = next((each for each in words if self.command(each) == "FOREVER"), "")
         if endless and not meant:
             values = {"found": endless, "right": "LOOP", "fix": "LOOP(FOREVER)"}
@@ -260,6 +260,16 @@ class _Usage:
         is_name = name not in _NO_NAMES and name[:3] not in ("END", "FIN")
         return found._replace(values={**found.values, "own": name if is_name else ""})
 
+    def until(self, found: Diagnostic) -> Diagnostic:
+        asked = re.compile(r"(?i)UNTIL\s*(\([^()\n]+\))").match(self.source.text, found.span.start)
+        example = f"F(2, 80) UNTIL{asked[1]}" if asked else ""
+        return found._replace(values={**found.values, "example": example})
+
+    def no_button(self, found: Diagnostic) -> Diagnostic:
+        """A button that nobody can ask for; a program may begin with the one that starts it."""
+        begun = re.match(r"(?i)\s*SB\s*\|", self.source.text)
+        return Diagnostic(codes.NO_BUTTON, found.span, {"begun": "SB|"} if begun else {})
+
     def is_button(self, word: str) -> bool:
         is_missing = "BUTTON" not in self.names.sensors
         return is_missing and (self.command(word) == "BUTTON" or word in _BUTTON)
@@ -278,7 +288,7 @@ class _Usage:
         """A word without its values; alone it gets an example of them."""
         piece, word = self.piece(found.span), found.values["word"]
         if any(self.is_button(each.text) for each in self.tokens(piece)):
-            return Diagnostic(codes.NO_BUTTON, found.span)
+            return self.no_button(found)
         said = self.orders(found, piece, word) if found.span.start == piece.start else None
         if said and said.code is codes.SEVERAL_ORDERS:
             return said
@@ -362,7 +372,7 @@ class _Usage:
             return Diagnostic(codes.SETUP_NEEDS_BAR, found.span, {"found": word, "fix": "PING|"})
         piece = self.piece(found.span)
         if word == "SI" and any(self.is_button(each.text) for each in self.tokens(piece)):
-            return Diagnostic(codes.NO_BUTTON, found.span)
+            return self.no_button(found)
         if word == "SI" and found.span.start == piece.start:
             if text_ := self.block(piece):
                 told = self.offered(codes.SPANISH_IF, piece, text_)
@@ -565,5 +575,7 @@ _SAYS: dict[Code, Callable[[_Usage, Diagnostic], Diagnostic | None]] = {
     codes.NOT_AN_INSTRUCTION: _Usage.no_order,
     codes.NO_FUNCTION: _Usage.function,
     codes.BAD_NUMBER: _Usage.number,
+    codes.NO_BUTTON: _Usage.no_button,
+    codes.UNTIL_ALONE: _Usage.until,
     codes.BAD_NAME: _Usage.letters,
 }

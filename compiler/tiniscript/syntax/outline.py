@@ -88,8 +88,8 @@ class _Line(Parser):
         super().__init__(Source(""), Scan(tokens, [], []))
         self.reporter = _Silent([])
         self.blocks = _Alone(self.reporter)
-        self.expressions = _Expressions(self.cursor, self.reporter)
-        self.expressions.values = known.values
+        self.expressions = self._own = _Expressions(self.cursor, self.reporter)
+        self._own.values = known.values
         self._known = known
         self._found: list[Item] = []
 
@@ -120,6 +120,7 @@ class _Line(Parser):
         if tokens[k].kind is WORD and tokens[k + 1].kind == "=":
             raise Failed  # `X = Y = 5` is rather two of them than a question
         super().assignment(name)
+        self._own.values |= {name.text}
 
     def block_end(self, word: Token) -> None:
         self.cursor.i += 1
