@@ -32,7 +32,7 @@ PARTS = {
     "either": "(? l=light|ahead r=<|>|<=|>= n=@num )?",
     "asks": "h=@ask",
     "body": "ENTONCES|THEN|DO|HACER|:?",
-    "often": "*|LOOP|POR|X? n=@often times?",
+    "often": "*|LOOP|POR|X|during? n=@often times?",
 }
 
 ADVICE = """
@@ -115,6 +115,7 @@ ADVICE = """
 # how fast
 ^ c=@move <lead> @told* n=@percent @told* <close> $ | TS085 | power={paced} | F(2,80) al 50% => power=F(2,50)
 ^ c=@move A n=@num $ | TS085 | power={paced} | F(1, 80) a 50 => power=F(1, 50)
+^ c=@move @word? @paced SPEED|VELOCIDAD|POWER|POTENCIA $ | TS085 | power={c} | F(2, 80) at half speed => power=F(2, 80)
 ^ c=@move @word? @word? @paced $ | TS085 | power={c} | F(2, 80) despacio => power=F(2, 80)
 # until when
 ^ c=@move|W ( q=@cond+ ) $ | TS071 | found={words}; until={c} UNTIL({question}) | F(5, 60) (DISTANCE < 30) => until=F(5, 60) UNTIL(DISTANCE < 30)
@@ -131,7 +132,7 @@ ADVICE = """
 ^ c=@unasked s=HASTA|UNTIL @word+ $ | TS102 | found={s}; right=UNTIL; usage={c} UNTIL({distance} < 10) | F(1, 80) hasta la pared => usage=F(1, 80) UNTIL(DISTANCE < 10)
 # which way, and what comes next
 ^ c=@move AL REVES $ | TS085 | other={other} | F(1, 80) al reves => other=B(1, 80)
-^ c=F|B s=+|&|then|beside BEEP ( n=@num , @num ) $ | TS061 | found={s}; both={both} | F(2, 80) con BEEP(1, 440) => both=M(80, 80);BEEP(1, 440);W(1);S
+^ c=F|B s=+|&|then|beside BEEP ( n=@num , @num ) @word* $ | TS061 | found={s}; both={both} | F(2, 80) con BEEP(1, 440) => both=M(80, 80);BEEP(1, 440);W(1);S
 ^ c=@cmd then @word+ $ | TS074 | fix={orders}; example={example?} | F(1, 80) y luego retrocede => fix=F(1, 80);B(2, 80)
 ^ c=@move <lead> @told* @other @told* <close> $ | TS085 | other={other} | F(1, 80) atras => other=B(1, 80)
 ^ c=@cmd act|most|least w=@told* $ | TS085 | order={words} | F(1, 80) abre la pinza => order=abre la pinza

@@ -346,8 +346,7 @@ class _Search:
 def _is_hollow(reading: Reading, items: Sequence[Item]) -> bool:
     """Whether a block would have an arm with nothing in it, which nobody wrote."""
     return bool(reading.steps) and any(
-        one.kind in ("open", "arm") and other.kind in ("arm", "end")
-        for one, other in pairwise(items)
+        one.kind == "open" and other.kind == "arm" for one, other in pairwise(items)
     )
 
 

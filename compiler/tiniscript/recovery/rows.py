@@ -261,7 +261,7 @@ l=@val = a=@num O|OR|U b=@num | $l = $a OR $l = $b | 1 | TS018 | offered | IF(DI
 h=IF|WHILE|ELSEIF v=@val ( n=@num ) | &h ( $v < $n ) | 1 | TS048 | offered | IF DISTANCE(10)⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
 ^ c=@cond+ ? <body> : d=@start s=@all* $ | IF ( $c ) ; $b $r ; ELSE ; $d $s ; ENDIF | 1 | TS042 | offered | DISTANCE < 10 ? S : F(1, 60) => IF(DISTANCE < 10);S;ELSE;F(1, 60);ENDIF
 = ABS s='-'? n=@num|@val $ | = ABS ( $s $n ) | 1 | TS015 | applied | X = ABS -5⏎SHOW(X) => X = ABS(-5)⏎SHOW(X)
-= a=@num over POR? b=@num | = $a / $b | 1 | TS010 | applied | x = 10 dividido 2⏎mostrar x => x = 10 / 2⏎SHOW(X)
+o==|( a=@num over POR? b=@num | $o $a / $b | 1 | TS010 | applied | SHOW(10 entre 2) => SHOW(10 / 2)
 h=IF|WHILE|UNTIL|WHEN|ELSEIF ( a=@val then|& b=@val s=<|> n=@num ) | &h ( $a $s $n AND $b $s $n ) | 1 | TS010 | first offered | IF(LIGHT_L y LIGHT_R > 500)⏎S⏎ENDIF => IF(LIGHT_L > 500 AND LIGHT_R > 500)⏎S⏎ENDIF
 SHOW ( a=@val & b=@val ) | SHOW ( $a ) ; SHOW ( $b ) | 1 | TS020 | first offered | SHOW(LIGHT_L & LIGHT_R) => SHOW(LIGHT_L);SHOW(LIGHT_R)
 a=@num|@val then|& b=@val|MENOR|MAYOR|NOT|< | $a AND $b | 1 | TS010 | first | IF(DISTANCE < 10 y LIGHT_L > 100);S;ENDIF => IF(DISTANCE < 10 AND LIGHT_L > 100);S;ENDIF
@@ -275,6 +275,8 @@ a=@num POR CIENTO|CIEN | $a % | 1 | TS049 | first | R(1, 50 por ciento) => R(1, 
 a=@num 0 | @cat:a | 1 | TS008 | offered | F(2, 8 0) => F(2, 80)
 a=@num , b=@num | @dec:a:b | 1 | TS012 | applied | W(2,5) => W(2.5)
 o=(|,|; a=@num % ) | $o $a ) | 1 | TS049 | first | F(2,80%) => F(2,80)
+a=@num % OF|DE b=@num|@val | $b * $a / 100 | 1 | TS049 | first offered | X = 50% of 80⏎SHOW(X) => X = 80 * 50 / 100⏎SHOW(X)
+half|MITAD OF|DE b=@num|@val | $b / 2 | 1 | TS010 | first offered | X = half of DISTANCE⏎SHOW(X) => X = DISTANCE / 2⏎SHOW(X)
 a=@num|@val s=+|- n=@num % e=)|$ | $a $s $a * $n / 100 $e | 1 | TS049 | offered | F(2, 80 - 20%) => F(2, 80 - 80 * 20 / 100)
 a=@num : b=@num | @mmss:a:b | 1 | TS008 | applied | W(1:30) => W(90)
 s=<|>|<=|>= n=@num M|METRO|METROS|METERS|METER e=) | $s @cm:n $e | 1 | TS049 | applied | IF(DISTANCE < 1 m);S;ENDIF => IF(DISTANCE < 100);S;ENDIF
@@ -294,6 +296,7 @@ v=@name -= e=@any+ | $v = $v - $e | 1 | TS050 | applied | X = 1⏎X -= 1 => X = 
 v=@name *= e=@any+ | $v = $v * $e | 1 | TS050 | applied | X = 1⏎X *= 2 => X = 1⏎X = X * 2
 ^ v=@name = w=@name = e=@any+ $ | $v = $e ; $w = $e | 1 | TS137 | offered | X = X = 5 => X = 5;X = 5
 ^ v=@name , w=@name = e=@num , f=@num $ | $v = $e ; $w = $f | 1 | TS050 | applied | X, Y = 5, 6⏎F(X, Y) => X = 5;Y = 6⏎F(X, Y)
+^ n=@newname = '{' | DEF $n ; { | 1 | TS051 | offered | BAILE = { L(1,60); R(1,60) }⏎BAILE => DEF BAILE;L(1, 60);R(1, 60);END_DEF;⏎BAILE
 ^ n=@newname = b=@callw r=@any+ $ | DEF $n ; $b $r | 2 | TS051 | applied | SALUDO = BEEP(1, 440)⏎SALUDO => DEF SALUDO;BEEP(1, 440);END_DEF⏎SALUDO
 ^ declare v=@newname ;? $ | $v = 0 | 1 | TS044 | offered | var vel⏎F(2, vel) => vel = 0⏎F(2, vel)
 ^ declare v=@name = | $v = | 1 | TS044 | applied | let v = 50⏎F(2, v) => v = 50⏎F(2, v)
@@ -343,6 +346,7 @@ c=@callw ( a=@argt+ s=*|/|%|- b=@num|@val t=+|-|*|/|% d=@argt+ ) ) e=;|$ | $c ( 
 c=@callw ( a=@argt+ ) ) e=;|$ | $c ( $a ) $e | 1 | TS041 | applied | F(2,80)) => F(2,80)
 c=@callw ( a=@num /|- b=@num ) | $c ( $a , $b ) | 2 | TS076 | offered | F(2/80) => F(2, 80)
 c=@callw ( a=@num _|.|;|&|<|'|'|Y|> b=@num ) | $c ( $a , $b ) | 1 | TS076 | applied | F(2|80) => F(2, 80)
+SHOW ( a=@argt+ = ) | SHOW ( $a ) | 1 | TS076 | offered | SHOW(2 + 2 =) => SHOW(2 + 2)
 SHOW ( a=@val , b=@val ) | SHOW ( $a ) ; SHOW ( $b ) | 2 | TS020 | offered | SHOW(DISTANCE, LIGHT_L) => SHOW(DISTANCE);SHOW(LIGHT_L)
 SHOW ( a=@val &|+|, " " &|+|, b=@val ) | SHOW ( $a ) ; SHOW ( $b ) | 1 | TS020 | offered | SHOW(LIGHT_L & " " & LIGHT_R) => SHOW(LIGHT_L);SHOW(LIGHT_R)
 SHOW ( a=@val , b=@val , c=@val ) | SHOW ( $a ) ; SHOW ( $b ) ; SHOW ( $c ) | 2 | TS020 | offered | SHOW(DISTANCE, LIGHT_L, LIGHT_R) => SHOW(DISTANCE);SHOW(LIGHT_L);SHOW(LIGHT_R)
@@ -362,6 +366,7 @@ BEEP ( a=<note> , b=<note> , c=<note> ) | BEEP ( 1 , $a ) ; BEEP ( 1 , $b ) ; BE
 a=F|B|L|R ( FOREVER , p=@num|@val ) UNTIL ( n=@num ) | $a ( $n , $p ) | 2 | TS202 | offered | F(FOREVER, 80) UNTIL(2) => F(2, 80)
 a=@close '|'|,|. UNTIL ( | $a UNTIL ( | 1 | TS029 | applied | F(5, 60).UNTIL(DISTANCE < 30) => F(5, 60) UNTIL(DISTANCE < 30)
 ^ W ( c=@val s=<|<=|>|>=|=|<> d=@num|@val ) $ | W ( FOREVER ) UNTIL ( $c $s $d ) | .5 | TS102 | applied | wait(DISTANCE < 10) => W(FOREVER) UNTIL(DISTANCE < 10)
+^ W FOR|QUE|A c=@val s=<|<=|>|>= d=@num|@val $ | W ( FOREVER ) UNTIL ( $c $s $d ) | .9 | TS102 | offered | wait for DISTANCE < 10 => W(FOREVER) UNTIL(DISTANCE < 10)
 ^ W UNTIL QUE? c=@cond+ $ | W ( FOREVER ) UNTIL ( $c ) | 1 | TS102 | applied | WAIT UNTIL DISTANCE < 10 => W(FOREVER) UNTIL(DISTANCE < 10)
 a=@close UNTIL|HASTA QUE? c=@cond+ then+ ,? b=@start | $a UNTIL ( $c ) ; $b | 1 | TS015 | applied | F(2, 80) hasta DISTANCE < 10 luego S => F(2, 80) UNTIL(DISTANCE < 10);S
 a=@close UNTIL|HASTA QUE? c=@noparen+ $ | $a UNTIL ( $c ) | 1 | TS015 | applied | F(3, 80) UNTIL DISTANCE < 10 => F(3, 80) UNTIL(DISTANCE < 10)
@@ -548,7 +553,7 @@ a=@close please please+ $ | $a | 1 | TS044 | applied | F(2, 80) thank you => F(2
 ^ a=L|R ( n=@num , p=@num ) DEG|GRADOS|DEGREES|° $ | $a ( $n DEG , $p ) | .5 | TS076 | offered | R(90, 60) DEG => R(90 DEG, 60)
 a=@close please|CM|CENTIMETROS|SEG|SEGS|SEGUNDO|SEGUNDOS|SECONDS $ | $a | 1 | TS044 | applied | SHOW(DISTANCE) cm => SHOW(DISTANCE)
 ( a=@num , p=@num|@val ) then|&|+|AND BEEP ( b=@num | ( $a , $p ) ; BEEP ( @same:a:b | .9 | TS074 | offered | F(2, 80) AND BEEP(2, 440) => F(2, 80);BEEP(2, 440)
-a=@close ,? then|soon+ b=@start | $a ; $b | 1 | TS044 | applied | F(1,75) y R(1,75) => F(1, 75);R(1, 75)
+a=@close ,? then|soon+ ,? b=@start | $a ; $b | 1 | TS044 | applied | F(1,75) y R(1,75) => F(1, 75);R(1, 75)
 W n=@num seconds? then+ b=@start | W ( $n ) ; $b | 1 | TS015 | applied | F(2, 80) THEN WAIT 1 THEN B(2, 80) => F(2, 80);W(1);B(2, 80)
 a=@close ,|.|: b=@start | $a ; $b | 1 | TS013 | applied | F(2,80), B(2,80) => F(2, 80);B(2, 80)
 a=@close &|+|AND|->|=>|/|>|>>|_|*|'|' b=@start | $a ; $b | 1 | TS061 | applied | F(2,80)&B(2,80) => F(2, 80);B(2, 80)
@@ -575,6 +580,7 @@ read ( v=@val ) | $v | 1 | TS102 | applied | X = leer(DISTANCE)⏎SHOW(X) => X =
 ^ APAGAR|APAGA|DETENER|PARAR the? engine $ | S | 1 | TS102 | applied | apaga motores => S
 ^ b=@start r=@all* '|' s=SI|SB $ | $s '|' $b $r | 1 | TS034 | offered | F(2, 80)|SI => SI |F(2, 80)
 ^ START '|' | SI '|' | 1 | TS034 | offered | start|F(2,80) => SI |F(2,80)
+IF c=@argt+ BREAK ;|$ | IF ( $c ) ; BREAK ; ENDIF ; | 1 | TS015 | applied | LOOP(FOREVER)⏎F(1, 50)⏎IF DISTANCE < 10 BREAK⏎END_LOOP => LOOP(FOREVER)⏎F(1, 50)⏎IF(DISTANCE < 10);BREAK;ENDIF;⏎END_LOOP
 IF <question> BREAK ;|$ | IF ( $c ) ; BREAK ; ENDIF ; | 1 | TS014 | applied | LOOP(FOREVER)⏎F(1, 50)⏎if (DISTANCE < 10) break;⏎END_LOOP => LOOP(FOREVER)⏎F(1, 50)⏎IF(DISTANCE < 10);BREAK;ENDIF⏎END_LOOP
 ^ INT|VOID? MAIN|PRINCIPAL ( ) '{' | START ; { | 1 | TS065 | applied | main() {⏎F(3, 70);⏎} => START;⏎F(3, 70);⏎
 ^ read the? v=@val $ | $v | 1 | TS102 | applied | leer DISTANCE => DISTANCE

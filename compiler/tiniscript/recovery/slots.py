@@ -250,6 +250,7 @@ class _Reader:
             self.values.append(_Value(float(NOTE_WORDS[word]), "Hz"))
         elif said_of(word, "power") and self.command:
             self.values.append(_Value(float(said_of(word, "power")[0]), "%"))
+            self.mark = None
             self.is_sure = False
         elif meant:
             return k + 1 if self._take_command(word, meant, is_own=own is not None) else None

@@ -63,6 +63,7 @@ def with_usage(found: Sequence[Diagnostic], source: Source, kit: Kit) -> list[Di
     """Return what is wrong with a text, in words that say how it is written."""
     ends = [each.values["right"] for each in found if each.code is codes.NOT_OPEN]
     teller = _Usage(source, kit, ends[0] if len(ends) == 1 and ends[0] == "LOOP" else "")
+    found = [each for each in found if len(found) == 1 or not teller.has_its_end(each)]
     told = [teller.told(each) for each in found[:_MANY]]
     near = {it.values.get("near", "").partition("(")[0] for it in told}
     is_near = bool(teller.unopened) and teller.unopened in near
@@ -259,6 +260,12 @@ class _Usage:
             return Diagnostic(codes.UNTAUGHT, found.span, {"name": name, "often": often})
         is_name = name not in _NO_NAMES and name[:3] not in ("END", "FIN")
         return found._replace(values={**found.values, "own": name if is_name else ""})
+
+    def has_its_end(self, found: Diagnostic) -> bool:
+        """Whether the end that is missed stands on the line of its header, behind a mistake."""
+        line = self.source.text[found.span.end :].partition("\n")[0]
+        words = lexemes(without_note(line)[0]) if found.code is codes.NEVER_ENDS else []
+        return any(ENDED.get(each.text) == found.values["word"] for each in words)
 
     def until(self, found: Diagnostic) -> Diagnostic:
         asked = re.compile(r"(?i)UNTIL\s*(\([^()\n]+\))").match(self.source.text, found.span.start)
