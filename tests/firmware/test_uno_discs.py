@@ -12,6 +12,7 @@ from tests.support.platformio import firmware, shared
 from tests.support.uno_with_discs import ENVIRONMENT, ROBOT, Driven
 from tiniscript import compile_text
 from tiniscript.bytecode.image import unpack
+from tiniscript.link.names import fault_name
 from tiniscript.link.requests import OK
 from tiniscript.virtual.wheels import Roughness
 
@@ -35,6 +36,8 @@ def test_a_wheel_whose_disc_tells_nothing_is_stuck(sketch: Path) -> None:
     robot.wheels.both[1].is_seen = False
     with robot.uno:
         assert robot.drive("F(30 CM, 60)") == "FAULT"
+        assert robot.until(status := robot.session.status()) == OK
+        assert status.outcome and fault_name(status.outcome.values.fault) == "STUCK_RIGHT"
         assert not any(wheel.wanted for wheel in robot.wheels.both)
 
 

@@ -11,7 +11,7 @@ import os
 from functools import lru_cache
 from hashlib import sha256
 from pathlib import Path
-from struct import pack
+from struct import pack, unpack
 from typing import NamedTuple
 
 from tests.machines.host import BUILDS, FLAGS, SOURCES, WARNINGS, Process, made, objects_of
@@ -27,6 +27,7 @@ STAND_INS = SOURCES / "extras" / "esp32"
 SIMULATED = (
     "main.cpp",
     "simulated_chip.cpp",
+    "simulated_counter.cpp",
     "simulated_radio.cpp",
     "simulated_tls.cpp",
     "tasks_in_turn.cpp",
@@ -86,6 +87,15 @@ class Esp32Robot(HostFirmware):
 
     def digital(self, pin: int, level: bool) -> None:
         self.ask(b"D", pack("<BB", pin, level))
+
+    def edges(self, *changes: tuple[int, int, bool]) -> tuple[int, int]:
+        """Let pins change, each some microseconds after the one before: these, pin and level.
+
+        Return how many edges of the left and right disc the board has counted, modulo 2**16.
+        """
+        rows = b"".join(pack("<IBB", *each) for each in changes)
+        found: tuple[int, int] = unpack("<HH", self.ask(b"K", pack("<I", len(changes)) + rows))
+        return found
 
     def sonar(self, trigger: int, echo: int, distance_cm: float) -> None:
         """Let a sensor hear something at a distance, or nothing at 0."""

@@ -14,6 +14,7 @@ from tests.support.virtual_robot import Talk, floor, trace
 from tiniscript import compile_text, robots
 from tiniscript.bytecode.image import unpack
 from tiniscript.bytecode.opcodes import BY_CODE, ESCAPE
+from tiniscript.cli.robot.event_printer import fault_sentence
 from tiniscript.link.messages import STATUSES, TEXT_LEVEL, TEXT_LEVELS
 from tiniscript.robots.profile import Robot
 from tiniscript.virtual.robot import Settings, VirtualRobot
@@ -161,14 +162,30 @@ def test_a_disc_that_tells_nothing_is_the_fault_stuck(
     talk.wait(480)
     assert robot.is_running
     talk.wait(100)
-    assert robot.fault == "STUCK" and not robot.is_running
-    at = talk.until(talk.session.status()).values.fault_at
+    assert robot.fault == ("STUCK_LEFT", "STUCK_RIGHT")[number] and not robot.is_running
+    status = talk.until(talk.session.status()).values
+    said = fault_sentence(status.fault, status.fault_at, 0, None, "en")
+    side = ("left", "right")[number]
+    assert said.startswith(f"fault {robot.fault}: the {side} wheel does not turn: free it")
+    at = status.fault_at
     code = unpack(compile_text(text, TWO.kit).image).code
     found = BY_CODE[code[at]]
     assert found.role == "until" if found else code[at] == ESCAPE, "the GO, or the UNTIL"
     assert (found is not None) == ("UNTIL" in text)
     talk.wait(300)
     assert is_still(robot)
+
+
+def test_wheels_that_both_stand_are_stuck_whoever_stood_first(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    robot, talk = begun(WAY)
+    talk.wait(600)
+    for number, later_ms in ((1, 120), (0, 0)):
+        monkeypatch.setattr(wheel(robot, number), "is_seen", False)
+        talk.wait(later_ms)
+    talk.wait(520)
+    assert robot.fault == "STUCK" and not robot.is_running
 
 
 @pytest.mark.parametrize(("profile", "sees"), [(TWO, False), (TWO_CHANNELS, True)])

@@ -41,8 +41,8 @@ bool robot_measures();
 // a degree where the signs differ. It stops by itself; `robot_motors` and `robot_off` end it.
 void robot_go(int8_t left, int8_t right, int32_t way);
 
-// Where it is on that way; `*rest` is what is left of it.
-enum class Going : uint8_t { kOn, kThere, kStuck };
+// Where it is on that way; `*rest` is what is left of it. From kStuck on it is the number of a fault.
+enum class Going : uint8_t { kOn, kThere, kStuck = 4, kStuckLeft, kStuckRight };
 Going robot_going(int32_t* rest);
 
 // The hash of a device of the kit by its number: first the sensors, then the actuators.

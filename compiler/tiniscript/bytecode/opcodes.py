@@ -294,17 +294,22 @@ FAULTS = (
     (1, "OVERFLOW",       "A result is outside -2147483.648 to 2147483.647."),
     (2, "DIVIDE_BY_ZERO", "A division or a remainder by 0."),
     (3, "NO_POWER",       "A way to go, with a power that never comes there."),
-    (4, "STUCK",          "A wheel does not turn, in a move that the robot measures."),
+    (4, "STUCK",          "No wheel turns, in a move that the robot measures."),
+    (5, "STUCK_LEFT",     "The left wheel does not turn there, the right one does."),
+    (6, "STUCK_RIGHT",    "The right wheel does not turn there, the left one does."),
     (255, "BAD_CODE",     "A check failed that verified code never fails: memory has changed."),
 )
 _GOES = tuple(op.name for op in OPS if op.needs == NEEDS_GO)
 _UNTILS = tuple(op.name for op in OPS if op.role == "until")
+_MEASURED = (*(f"GO_{d}" for d, _ in _MOVES), *_UNTILS)
 # Which instructions of verified code can fault.
 FAULTING = {
     "OVERFLOW":       ("TIME", "RANDOM", "ADD", "SUB", "MUL", "DIV", "NEG", "ABS", "ROUND", "ADD_VAR8", "ADD_VAR", "INC_VAR", "DEC_VAR", *_GOES),
     "DIVIDE_BY_ZERO": ("DIV", "MOD"),
     "NO_POWER":       _GOES,
-    "STUCK":          (*(f"GO_{d}" for d, _ in _MOVES), *_UNTILS),
+    "STUCK":          _MEASURED,
+    "STUCK_LEFT":     _MEASURED,
+    "STUCK_RIGHT":    _MEASURED,
     "BAD_CODE":       (),
 }
 # fmt: on

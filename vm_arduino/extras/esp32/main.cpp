@@ -11,6 +11,7 @@
 
 #include "../../src/boards/esp32/first_bytes.h"
 #include "../../src/boards/kit.h"
+#include "../../src/firmware/board.h"
 #include "../host/wire.h"
 #include "simulated_chip.h"
 #include "simulated_radio.h"
@@ -222,6 +223,19 @@ void answer_digital(RequestReader* request) {
   set_input(pin, request->u8() != 0);
 }
 
+// K: digital pins that change, each so many microseconds after the one before: pin and level. The
+// main loop stands still meanwhile. Says how many edges of each disc the board has counted then.
+void answer_edges(RequestReader* request, Writer* answer) {
+  for (uint32_t left = request->u32(); left > 0; left--) {
+    pass(request->u32());
+    const uint8_t pin = request->u8();
+    set_input(pin, request->u8() != 0);
+  }
+  pass(kTurnUs);
+  answer->u16(board_edges(false));
+  answer->u16(board_edges(true));
+}
+
 void answer_echo(RequestReader* request) {
   chip.trigger_pin = request->u8();
   chip.echo_pin = request->u8();
@@ -338,6 +352,9 @@ int main() {
         break;
       case 'D':
         answer_digital(&request);
+        break;
+      case 'K':
+        answer_edges(&request, &said);
         break;
       case 'U':
         answer_echo(&request);

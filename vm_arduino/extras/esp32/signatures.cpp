@@ -10,6 +10,9 @@
 #include <ESPmDNS.h>
 #include <WiFi.h>
 #include <driver/gpio.h>
+#ifdef CONFIG_IDF_TARGET_ESP32
+#include <driver/pcnt.h>
+#endif
 #include <esp_rom_gpio.h>
 #include <esp_system.h>
 #include <esp_task_wdt.h>
@@ -79,6 +82,18 @@ is_a(Serial.write(uint8_t{}), size_t);
 // ESP-IDF 4.4 and 5.1: driver/gpio.h, esp_rom_gpio.h, esp_system.h, esp_timer.h, nvs.h
 is_a(GPIO_OUT_W1TS_REG + GPIO_OUT_W1TC_REG + GPIO_FUNC0_OUT_SEL_CFG_REG > 0, bool);
 is_a(&gpio_get_level, int (*)(gpio_num_t));
+#ifdef CONFIG_IDF_TARGET_ESP32
+// driver/pcnt.h, in 5.1 below deprecated
+is_a(&pcnt_unit_config, esp_err_t (*)(const pcnt_config_t*));
+is_a(&pcnt_get_counter_value, esp_err_t (*)(pcnt_unit_t, int16_t*));
+is_a(&pcnt_counter_clear, esp_err_t (*)(pcnt_unit_t));
+is_a(&pcnt_counter_resume, esp_err_t (*)(pcnt_unit_t));
+is_a(&pcnt_set_filter_value, esp_err_t (*)(pcnt_unit_t, uint16_t));
+is_a(&pcnt_filter_enable, esp_err_t (*)(pcnt_unit_t));
+is_a(pcnt_config_t{}.pulse_gpio_num, int);
+is_a(pcnt_config_t{}.counter_h_lim, int16_t);
+static_assert(PCNT_PIN_NOT_USED == -1 && PCNT_UNIT_1 == 1 && PCNT_CHANNEL_0 == 0, "numbers");
+#endif
 is_a(&gpio_intr_enable, esp_err_t (*)(gpio_num_t));
 is_a(&gpio_intr_disable, esp_err_t (*)(gpio_num_t));
 is_a(&esp_rom_gpio_connect_out_signal, void (*)(uint32_t, uint32_t, bool, bool));

@@ -250,6 +250,7 @@ void set_input(uint8_t pin, bool level) {
   SimulatedPin& each = chip.pins[pin];
   if (each.input == level) return;
   each.input = level;
+  if (chip.on_input != nullptr) chip.on_input(pin, level);
   if (each.handler != nullptr && each.has_interrupt) each.handler();
 }
 

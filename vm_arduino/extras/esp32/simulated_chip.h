@@ -1,7 +1,7 @@
 // An ESP32 on a computer, for tests: what `core/` declares, done by variables.
 //
 // Knows time, pins, the GPIO matrix, LEDC, timers, UART 0, NVS and the watchdog; no instructions.
-// `simulated_radio` has the radios. What the real parts refuse ends the run.
+// `simulated_radio` has the radios, `simulated_counter` the pulse counter. What the real parts refuse ends the run.
 
 #ifndef TINISCRIPT_ESP32_SIMULATED_CHIP_H_
 #define TINISCRIPT_ESP32_SIMULATED_CHIP_H_
@@ -74,6 +74,7 @@ struct SimulatedChip {
   std::atomic<bool> has_wifi{false};
 
   bool is_ledc_stuck = false;  // no duty changes any more
+  void (*on_input)(uint8_t pin, bool level) = nullptr;  // of the pulse counter, where it is used
 
   uint8_t echo_pin = 0xff;
   uint8_t trigger_pin = 0xff;

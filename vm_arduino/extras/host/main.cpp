@@ -36,6 +36,10 @@ const char* name_of(Fault fault) {
       return "NO_POWER";
     case Fault::kStuck:
       return "STUCK";
+    case Fault::kStuckLeft:
+      return "STUCK_LEFT";
+    case Fault::kStuckRight:
+      return "STUCK_RIGHT";
     case Fault::kBadCode:
       return "BAD_CODE";
   }

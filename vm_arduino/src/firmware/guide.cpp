@@ -12,6 +12,7 @@ namespace {
 
 constexpr uint8_t kTurnMs = 10;      // of the controller
 constexpr uint16_t kStuckMs = 500;   // a wheel that drives and shows no edge for so long
+constexpr uint8_t kStandsMs = 250;   // the other one, for so long, does not turn either
 constexpr uint8_t kStillMs = 150;    // one that shows none for so long stands
 constexpr uint8_t kSlowMs = 150;     // one that shows none for so long gets more power
 constexpr uint16_t kGivesUpMs = 300;  // a correction that does nothing
@@ -23,7 +24,7 @@ constexpr int8_t kCreep = 35;        // percent: slow, but it moves
 constexpr uint8_t kCorrections = 2;  // of one move
 constexpr uint8_t kWheels = 2;
 
-enum class Phase : uint8_t { kNone, kDrives, kRolls, kCorrects, kThere, kStuck };
+enum class Phase : uint8_t { kNone, kDrives, kRolls, kCorrects };
 
 struct Wheel {
   int32_t edges;       // that it has gone in the direction of the move
@@ -40,6 +41,7 @@ struct Wheel {
 
 struct Guide {
   Phase phase;
+  Going going;
   uint8_t corrections;
   int8_t most;         // power that the program wants
   int8_t least;        // power that moves a wheel
@@ -131,12 +133,18 @@ void set_motors() {
   board_steer(levels.left, levels.right);
 }
 
-// Whether a wheel that its motor drives has shown no edge for so long.
+// Whether its motor drives the wheel, and it has shown no edge for so long.
+bool is_slow(const Wheel& wheel, uint16_t most_ms) {
+  return wheel.power != 0 && since(wheel.edge_ms) >= most_ms;
+}
+
 bool is_slow(uint16_t most_ms) {
-  for (const Wheel& wheel : guide.wheels) {
-    if (wheel.power != 0 && since(wheel.edge_ms) >= most_ms) return true;
-  }
-  return false;
+  return is_slow(guide.wheels[0], most_ms) || is_slow(guide.wheels[1], most_ms);
+}
+
+void end(Going going) {
+  guide.phase = Phase::kNone;
+  guide.going = going;
 }
 
 void turn_off() {
@@ -194,8 +202,7 @@ void settle() {
                                                                : found);
   }
   if (!is_off || guide.corrections == kCorrections) {
-    guide.phase = Phase::kThere;
-    return;
+    return end(Going::kThere);
   }
   guide.corrections++;
   guide.phase = Phase::kCorrects;
@@ -243,6 +250,7 @@ void guide_go(int8_t left, int8_t right, int32_t way) {
   guide.corrections = 0;
   if (guide.roll_ms == 0) guide.roll_ms = kRollMs;
   guide.phase = Phase::kDrives;
+  guide.going = Going::kOn;
   for (uint8_t k = 0; k < kWheels; k++) {
     Wheel& wheel = guide.wheels[k];
     wheel.edges = 0;
@@ -262,14 +270,13 @@ Going guide_going(int32_t* rest) {
   const int32_t missing = guide.target - (position(guide.wheels[0]) + position(guide.wheels[1])) / 2;
   const uint32_t left = missing > 0 ? static_cast<uint32_t>(missing) : 0;
   *rest = static_cast<int32_t>((left >> 12) * guide.edge + (((left & 4095) >> 2) * guide.edge >> 10));
-  if (guide.phase == Phase::kStuck) return Going::kStuck;
-  return guide.phase == Phase::kThere ? Going::kThere : Going::kOn;
+  return guide.going;
 }
 
 void guide_end() { guide.phase = Phase::kNone; }
 
 void guide_tick() {
-  if (guide.phase == Phase::kNone || guide.phase >= Phase::kThere) return;
+  if (guide.phase == Phase::kNone) return;
   const bool has_two = board_discs().has_two;
   for (uint8_t k = 0; k < kWheels; k++) count(guide.wheels + k, board_edges(k != 0), has_two);
   if (since(guide.turn_ms) < kTurnMs) return;
@@ -278,9 +285,10 @@ void guide_tick() {
   if (is_slow(kSlowMs) && guide.least < guide.most) guide.least++;
   if (guide.phase == Phase::kCorrects) return correct();
   if (is_slow(kStuckMs)) {
+    const bool left = is_slow(guide.wheels[0], kStandsMs);
+    const bool right = is_slow(guide.wheels[1], kStandsMs);
     turn_off();
-    guide.phase = Phase::kStuck;
-    return;
+    return end(left && right ? Going::kStuck : left ? Going::kStuckLeft : Going::kStuckRight);
   }
   drive();
 }

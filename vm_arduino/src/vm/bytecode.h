@@ -320,7 +320,9 @@ enum class Fault : uint8_t {
   kOverflow = 1,  // A result is outside -2147483.648 to 2147483.647.
   kDivideByZero = 2,  // A division or a remainder by 0.
   kNoPower = 3,  // A way to go, with a power that never comes there.
-  kStuck = 4,  // A wheel does not turn, in a move that the robot measures.
+  kStuck = 4,  // No wheel turns, in a move that the robot measures.
+  kStuckLeft = 5,  // The left wheel does not turn there, the right one does.
+  kStuckRight = 6,  // The right wheel does not turn there, the left one does.
   kBadCode = 255,  // A check failed that verified code never fails: memory has changed.
 };
 

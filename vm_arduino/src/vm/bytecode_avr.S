@@ -11,6 +11,8 @@
 #define tini_fault_divide_by_zero 2
 #define tini_fault_no_power 3
 #define tini_fault_stuck 4
+#define tini_fault_stuck_left 5
+#define tini_fault_stuck_right 6
 #define tini_fault_bad_code 255
 #define tini_variables 32
 #define tini_stack_values 16

@@ -163,6 +163,7 @@ void Machine::go_way() {
 bool Machine::is_on_the_way() {
 #ifdef tiniscript_has_discs
   constexpr uint8_t kGoBytes = 2;
+  static_assert(static_cast<Fault>(Going::kStuckRight) == Fault::kStuckRight, "a Fault");
   int32_t rest;
   const Going going = robot_going(&rest);
   if (going == Going::kOn) return true;
@@ -171,7 +172,7 @@ bool Machine::is_on_the_way() {
     return false;
   }
   at_ = static_cast<uint16_t>(task_.me->check - kGoBytes);  // an UNTIL sets its own behind
-  return goes_on(Fault::kStuck);
+  return goes_on(static_cast<Fault>(going));
 #else
   return false;
 #endif

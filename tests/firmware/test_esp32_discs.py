@@ -1,0 +1,195 @@
+"""An ESP32 with discs, on a simulated chip: what its pulse counter counts, and how far it goes.
+
+Wheels, motors and discs are those of the virtual robot. The pulse counter is
+`vm_arduino/extras/esp32/simulated_counter.cpp`, which refuses what Espressif's refuses; none of
+this has run on a chip.
+"""
+
+from __future__ import annotations
+
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from tests.machines.esp32 import STAND_INS, Esp32Robot, flags_of
+from tests.machines.host import SOURCES, missing
+from tests.wiring.test_wiring import with_discs
+from tiniscript import compile_text, robots
+from tiniscript.bytecode.image import unpack
+from tiniscript.link.outcomes import Event
+from tiniscript.link.requests import OK
+from tiniscript.link.session import Session
+from tiniscript.robots import firmware
+from tiniscript.robots.drivers import discs_of
+from tiniscript.robots.kinematics import Pose
+from tiniscript.robots.profile import Robot
+from tiniscript.virtual.driving import Driving
+from tiniscript.virtual.wheels import Roughness, Wheels
+
+pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
+# Its wheels turn it as their places say, as those of a tinibot2 do.
+BODY = robots.load("tinibot2").body
+SLOTTED = with_discs("esp32dev", "slotted")._replace(body=BODY)
+TWO_CHANNELS = with_discs("esp32dev", "two_channel")._replace(body=BODY)
+KINDS = pytest.mark.parametrize("profile", [SLOTTED, TWO_CHANNELS], ids=["slotted", "two_channel"])
+SETTLES_US = 100  # a line, before the other channel changes
+LONGEST_US = 12  # that the filter takes for a glitch: 1023 / 80 MHz is 12.8
+
+
+class Driven:
+    """A robot on an endless floor, whose motors have `motors` percent of their speed."""
+
+    def __init__(self, profile: Robot, motors: tuple[float, float], major: int = 2) -> None:
+        board = profile.board
+        assert board.discs
+        self.has_two = discs_of(board.discs).has_two
+        self.robot = Esp32Robot(profile, major=major)
+        self.session = Session(1, board.baud, profile.kit.fingerprint)
+        self._kit = profile.kit
+        self._pins = board.discs.pins
+        self._motors = motors
+        self._driving = Driving(profile.body, (), Pose(0, 0, 0))
+        self.wheels = Wheels(profile.body, board.discs, self.has_two, Roughness(0.005), 1,
+                             self._driving.set_motors)  # fmt: skip
+        self._counted = [0, 0]
+        self.robot.edges(*((0, pin, False) for pin in self._pins.values()))
+        self.robot.wait(300)
+
+    @property
+    def pose(self) -> Pose:
+        self.wheels.go_on(self.robot.now_ms)
+        return self._driving.go_on(self.robot.now_ms)
+
+    def run(self, milliseconds: int) -> None:
+        for _ in range(milliseconds):
+            self.robot.talk(self.session, 1)
+            driven = next((d for d in reversed(self.robot.did) if " MOTORS " in d), "0 MOTORS 0 0")
+            powers = zip(map(int, driven.split()[2:]), self._motors, strict=True)
+            self.wheels.set(self.robot.now_ms, *(power * part / 100 for power, part in powers))
+            for number, side in enumerate(("left", "right")):
+                wheel = self.wheels.both[number]
+                while self._counted[number] != wheel.counted:
+                    self._step(number, side, 1 if wheel.counted > self._counted[number] else -1)
+
+    def _step(self, number: int, side: str, step: int) -> None:
+        self._counted[number] += step
+        level = self._counted[number] % 2 == 1
+        second = [(0, self._pins[f"{side}_b"], level == (step < 0))] if self.has_two else []
+        self.robot.edges(*second, (SETTLES_US, self._pins[side], level))
+
+    def drive(self, text: str, limit_ms: int = 8000) -> Event:
+        """Run a program to its end and a little longer; return what has ended it."""
+        image = unpack(compile_text(text, self._kit).image)
+        assert self.robot.until(self.session, self.session.hello()) == OK
+        assert self.robot.until(self.session, self.session.upload(image)) == OK
+        for _ in range(limit_ms // 10):
+            self.run(10)
+            for event in self.session.events():
+                if event.name in ("DONE", "FAULT"):
+                    self.run(500)
+                    return event
+        raise AssertionError(f"not over after {limit_ms} ms")
+
+
+def pulses(pin: int, count: int, high_us: int, low_us: int = 400) -> list[tuple[int, int, bool]]:
+    return [change for _ in range(count) for change in ((low_us, pin, True), (high_us, pin, False))]
+
+
+def counting(profile: Robot) -> tuple[Esp32Robot, dict[str, int]]:
+    assert profile.board.discs
+    robot, pins = Esp32Robot(profile), dict(profile.board.discs.pins)
+    robot.edges(*((100, pin, False) for pin in pins.values()))
+    return robot, pins
+
+
+@KINDS
+@pytest.mark.parametrize("major", [2, 3])
+def test_it_goes_and_turns_as_far_as_was_said(profile: Robot, major: int) -> None:
+    driven = Driven(profile, (107.5, 92.5), major)
+    assert driven.drive("F(20 CM, 60); R(90 DEG, 60)").name == "DONE"
+    pose = driven.pose
+    assert abs(pose.x_cm - 20) <= 1.5 and abs(pose.y_cm) <= 2 and abs(pose.heading + 90) <= 6
+
+
+@pytest.mark.parametrize("number", [0, 1])
+def test_a_disc_that_is_unplugged_is_the_fault_of_its_wheel(number: int) -> None:
+    driven = Driven(SLOTTED, (100, 100))
+    driven.wheels.both[number].is_seen = False
+    event = driven.drive("F(20 CM, 60)")
+    assert event.name == "FAULT" and event.fault == (5, 6)[number]
+    assert not any(wheel.wanted for wheel in driven.wheels.both)
+
+
+def test_a_counter_that_is_full_begins_again() -> None:
+    """While nobody looks, at its limit; and in the middle of a way, where the driver clears it."""
+    driven = Driven(SLOTTED, (100, 100))
+    assert SLOTTED.board.discs
+    pins = [SLOTTED.board.discs.pins[side] for side in ("left", "right")]
+    robot = driven.robot
+    robot.edges(*pulses(pins[0], 17_000, 20, 20))
+    before = robot.edges()
+    robot.edges(*pulses(pins[0], 7_370, 20, 20), *pulses(pins[1], 16_380, 20, 20))
+    after = robot.edges()
+    counted = [(b - a) % 2**16 for a, b in zip(before, after, strict=True)]
+    assert counted == [14_740, 32_760]
+    assert driven.drive("F(20 CM, 60)").name == "DONE"
+    assert abs(driven.pose.x_cm - 20) <= 1.5
+
+
+def test_each_edge_counts_and_a_glitch_does_not() -> None:
+    robot, pins = counting(SLOTTED)
+    begun = robot.edges()
+    robot.edges(*pulses(pins["left"], 10, LONGEST_US), *pulses(pins["right"], 10, 1))
+    assert robot.edges() == begun
+    found = robot.edges(*pulses(pins["left"], 10, LONGEST_US + 1), *pulses(pins["right"], 3, 50))
+    assert [(b - a) % 2**16 for a, b in zip(begun, found, strict=True)] == [20, 6]
+
+
+def test_two_channels_count_back() -> None:
+    """As on an Uno: `test_board_discs.py` has the same lines."""
+    robot, pins = counting(TWO_CHANNELS)
+    a, b = pins["left"], pins["left_b"]
+    states = [(True, False), (True, True), (False, True), (False, False)]
+    begun = robot.edges()[0]
+
+    def moved(steps: list[int]) -> int:
+        changes = (
+            (SETTLES_US, pin, level)
+            for k in steps
+            for pin, level in zip((a, b), states[k % 4], strict=True)
+        )
+        return (robot.edges(*changes)[0] - begun) % 2**16
+
+    assert moved([k % 4 for k in range(16)]) == 8
+    assert moved([(2 - k) % 4 for k in range(10)]) == 3
+
+
+@pytest.mark.parametrize("pins", [{"left": 34, "right": 35}, {"left": 36, "right": 39}])
+def test_pins_that_only_read_count(pins: dict[str, int]) -> None:
+    """They have no pull-up: the sensor's own one is there."""
+    discs = SLOTTED.board.discs
+    assert discs
+    profile = SLOTTED._replace(
+        board=SLOTTED.board._replace(discs=discs._replace(pins=pins), sensors=()),
+        kit=SLOTTED.kit._replace(sensors=()),
+    )
+    robot, _ = counting(profile)
+    begun = robot.edges()
+    found = robot.edges(*pulses(pins["left"], 4, 50), *pulses(pins["right"], 2, 50))
+    assert [(b - a) % 2**16 for a, b in zip(begun, found, strict=True)] == [8, 4]
+
+
+@KINDS
+@pytest.mark.parametrize("major", [2, 3])
+def test_it_compiles_for_both_cores(profile: Robot, major: int, tmp_path: Path) -> None:
+    own = tmp_path / "own.h"
+    own.write_text(firmware.header([profile], "a test."), encoding="utf-8")
+    for standard in ("gnu++11", "gnu++23"):
+        done = subprocess.run(
+            ["g++", f"-std={standard}", "-Wall", "-Wextra", "-Werror", "-fsyntax-only",
+             f'-Dtiniscript_own="{own}"', *flags_of("esp32dev", major), f"-I{STAND_INS / 'core'}",
+             str(SOURCES / "src" / "boards" / "discs.cpp")],
+            capture_output=True, text=True, check=False,
+        )  # fmt: skip
+        assert done.returncode == 0, done.stderr[:3000]
