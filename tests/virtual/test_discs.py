@@ -188,6 +188,29 @@ def test_wheels_that_both_stand_are_stuck_whoever_stood_first(
     assert robot.fault == "STUCK" and not robot.is_running
 
 
+@pytest.mark.parametrize("number", [0, 1])
+@pytest.mark.parametrize("text", [WAY, "B(60 CM, 60)", "R(90 DEG, 60)"])
+def test_a_disc_whose_channels_are_exchanged_ends_the_move(
+    text: str, number: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It counts back while the wheel goes ahead: the robot drove in circles until somebody came."""
+    robot, talk = begun(text, profile=TWO_CHANNELS)
+    one = wheel(robot, number)
+    step = one.step
+
+    def back(has_two: bool) -> float:
+        before = one.counted
+        speed = step(has_two)
+        one.counted = 2 * before - one.counted
+        return speed
+
+    monkeypatch.setattr(one, "step", back)
+    talk.wait(600)
+    assert robot.fault == ("STUCK_LEFT", "STUCK_RIGHT")[number]
+    talk.wait(300)
+    assert is_still(robot)
+
+
 @pytest.mark.parametrize(("profile", "sees"), [(TWO, False), (TWO_CHANNELS, True)])
 def test_a_hand_that_turns_a_wheel_back(profile: Robot, sees: bool) -> None:
     """With two channels the wheel goes that again. With one it seems to have gone ahead."""

@@ -111,6 +111,8 @@ void count(Wheel* wheel, uint16_t counted, bool has_two) {
   const int16_t steps = edges < 0 ? static_cast<int16_t>(-edges) : edges;
   if (is_back) edges = static_cast<int16_t>(-edges);
   wheel->edges += edges;
+  // A hand turns it back, or its channels are exchanged: not its motor.
+  if (wheel->power != 0 && (edges < 0) != wheel->is_returning) return;
   if (wheel->edges == 1) wheel->first_ms = since(guide.begun_ms);
   if (wheel->edges == 3 && guide.phase == Phase::kDrives) find_first(wheel);
   if (steps == 1) {
