@@ -15,6 +15,7 @@ import sys
 from importlib import import_module
 from typing import TextIO
 
+from tiniscript.cli import streams
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.texts import language_of, text
 from tiniscript.cli.texts.options import LANGUAGE
@@ -93,15 +94,11 @@ def _mend_streams() -> None:
 
 
 def _wrap(stream: TextIO) -> None:
-    from tiniscript.cli.streams import Wrapping
-
     name = "stdout" if stream is sys.stdout else "stderr"
-    setattr(sys, name, Wrapping(stream))
+    setattr(sys, name, streams.Wrapping(stream))
 
 
 def _plain_errors() -> str:
-    from tiniscript.cli import streams
-
     streams.register()
     return streams.NAME
 

@@ -26,3 +26,10 @@ class CommandError(Exception):
             what, advice, example = said.rpartition(try_it)  # what was typed may have it, too
             return Said(f"{what} {near}{advice}{example}" if advice else f"{said} {near}")
         return said
+
+
+def not_installed(key: str, why: Exception) -> CommandError:
+    """Return what is said where the packages of a virtual robot are missing."""
+    from tiniscript.library import install_advice
+
+    return CommandError(2, key, why=str(why), how=install_advice.command(install_advice.VIRTUAL))

@@ -24,10 +24,10 @@ from rich.cells import cell_len, set_cell_size
 from tiniscript import robots
 from tiniscript.base.source import PROGRAM_ENDS, Unreadable, decode, printable
 from tiniscript.cli import compiling, inputs, outputs
-from tiniscript.cli.errors import CommandError
+from tiniscript.cli.errors import CommandError, not_installed
 from tiniscript.cli.options import whole_number
 from tiniscript.cli.program_files import Found, in_folder, read
-from tiniscript.cli.robot.simulator_options import check_picture, not_installed
+from tiniscript.cli.robot.simulator_options import check_picture
 from tiniscript.cli.spreadsheet import as_csv
 from tiniscript.cli.texts import Said, text
 from tiniscript.diagnostics.rendering import message

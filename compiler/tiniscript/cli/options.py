@@ -6,10 +6,11 @@ import re
 import sys
 from argparse import ArgumentParser, HelpFormatter, Namespace
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, NoReturn
+from typing import NoReturn
 
 from tiniscript import robots
 from tiniscript.base.fixed_point import as_text, read_literal
+from tiniscript.base.kit import Device
 from tiniscript.base.words import nearest
 from tiniscript.cli import paths
 from tiniscript.cli.errors import CommandError
@@ -17,10 +18,7 @@ from tiniscript.cli.inputs import shown
 from tiniscript.cli.texts import text
 from tiniscript.cli.texts.options import Option, of_verb
 from tiniscript.cli.texts.verbs import said
-
-if TYPE_CHECKING:
-    from tiniscript.base.kit import Device
-    from tiniscript.robots.profile import Robot
+from tiniscript.robots.profile import Robot
 
 # The messages of argparse, and what is said instead.
 _MESSAGES = {

@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
+from tiniscript.cli.streams import has_colors
 from tiniscript.cli.texts import Said, text
-
-if TYPE_CHECKING:
-    from tiniscript.library.compiling import Compiled
+from tiniscript.library.compiling import Compiled
 
 SHOWN = 20  # diagnostics that are printed; a person mends the first ones first
 
@@ -37,7 +35,6 @@ def print_diagnostics(compiled: Compiled, language: str) -> None:
     """Print a program's diagnostics to standard error, the first ones in full."""
     if not compiled.diagnostics:
         return
-    from tiniscript.cli.streams import has_colors
     from tiniscript.diagnostics.rendering import as_text, message
 
     color = has_colors(sys.stderr)

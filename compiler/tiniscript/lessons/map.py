@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
+from html import escape
 
 from tiniscript import robots
 from tiniscript.lessons.lesson import Criterion, Lesson
@@ -23,8 +24,6 @@ DASHED = ' stroke-dasharray="4 2.5"'
 
 def plan(lesson: Lesson, title: str) -> str:
     """Return the drawing, one unit of which is a centimetre. `title` is for who cannot see it."""
-    from html import escape
-
     world = lesson.world
     width, height = world.width_cm, world.height_cm
     moved = {(each.place.part, each.place.number) for each in lesson.variations}

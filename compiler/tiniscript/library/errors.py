@@ -9,6 +9,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
+from tiniscript.library.texts import sentence
+
 if TYPE_CHECKING:
     from tiniscript.diagnostics.rendering import Message
 
@@ -28,8 +30,6 @@ class TiniScriptError(Exception):
         said: str | None = None,
     ) -> None:  # fmt: skip
         """`said` replaces the sentence that `reason` has in `texts`."""
-        from tiniscript.library.texts import sentence
-
         self.key = reason  # of its sentence, which may say more than the reason
         self.reason = _SAME.get(reason, reason)
         self.values = dict(values or {})

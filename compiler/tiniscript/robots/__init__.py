@@ -7,7 +7,9 @@ Knows where a profile comes from. `profile` defines its fields; `reader` reads t
 from __future__ import annotations
 
 import os.path
+from pathlib import Path
 
+from tiniscript.base.words import nearest
 from tiniscript.robots.profile import ProfileRefused, Robot
 
 DEFAULT = "tinibot"
@@ -37,13 +39,10 @@ def load(name_or_path: str, chip: str | None = None) -> Robot:
             return robot
         name_or_path = f"{__path__[0]}{os.sep}{robot.name}.toml"
     if is_path(name_or_path):
-        from pathlib import Path
-
         from tiniscript.robots.reader import read
 
         return read(text_of(name_or_path), Path(name_or_path).stem, chip)
 
-    from tiniscript.base.words import nearest
     from tiniscript.robots.refusals import shown
 
     values = {"name": shown(name_or_path), "known": ", ".join(names())}
@@ -64,8 +63,6 @@ def is_path(text: str) -> bool:
 
 def text_of(path: str) -> str:
     """Return the text of a file of at most FILE_BYTES bytes of UTF-8. Raises ProfileRefused."""
-    from pathlib import Path
-
     from tiniscript.robots.refusals import shown
 
     values = {"file": shown(path)}

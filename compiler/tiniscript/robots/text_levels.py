@@ -39,9 +39,13 @@ class Level(NamedTuple):
 
         It is the memory for a program's image, without its header.
         """
-        from tiniscript.robots.boards import CHIPS
+        return _program_bytes(self.board)
 
-        return CHIPS[self.board].program_bytes
+
+def _program_bytes(board: str) -> int:
+    from tiniscript.robots.boards import CHIPS  # the options of every verb name the levels
+
+    return CHIPS[board].program_bytes
 
 
 LEVELS = {
@@ -68,8 +72,6 @@ def level_of(chip: str, has_discs: bool = False) -> Level:
 
     On an Uno or a Nano discs have the place of the reader.
     """
-    from tiniscript.robots.boards import CHIPS
-
-    room = CHIPS[chip].program_bytes
+    room = _program_bytes(chip)
     level = next(level for level in LEVELS.values() if level.room == room)
     return NO_TEXT if has_discs and level.name == "uno" else level

@@ -13,7 +13,9 @@ from tiniscript.cli import compiling, inputs, outputs, paths
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.texts import text
 from tiniscript.diagnostics.codes import WILL_FAULT
+from tiniscript.library import source_map
 from tiniscript.library.compiling import Compiled, for_robot
+from tiniscript.semantics.duration import duration
 from tiniscript.semantics.ir import Program
 from tiniscript.semantics.optimizer import optimized
 
@@ -32,8 +34,6 @@ def run(options: Namespace, language: str) -> int:
     outputs.print_diagnostics(compiled, language)
     if not compiled.is_right:
         return 1
-    from tiniscript.library import source_map
-
     places = source_map.made(compiled.source, compiled.places)
     if target is None:
         sys.stdout.buffer.write(compiled.image)
@@ -105,8 +105,6 @@ def _will_fault(compiled: Compiled) -> bool:
 
 
 def _runs(program: object, kit: Kit, language: str) -> str:
-    from tiniscript.semantics.duration import duration
-
     assert isinstance(program, Program)
     how = duration(optimized(program), kit)
     if how.never_ends:

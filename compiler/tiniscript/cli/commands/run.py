@@ -10,7 +10,7 @@ from typing import cast
 from tiniscript.base.trace import Ending, Event
 from tiniscript.bytecode.image import Image
 from tiniscript.cli import images, inputs
-from tiniscript.cli.errors import CommandError
+from tiniscript.cli.errors import CommandError, not_installed
 from tiniscript.cli.faults import fault_text
 from tiniscript.cli.options import sensor_lists, thousandths, whole_number
 from tiniscript.library.runs import begun, cpp_machine
@@ -59,10 +59,7 @@ def _cpp_machine(image: Image, robot: Robot) -> MachineOf:
     try:
         return cpp_machine(image, robot)
     except (ImportError, OSError, RuntimeError) as why:  # missing, or not for this computer
-        from tiniscript.library import install_advice
-
-        how = install_advice.command(install_advice.VIRTUAL)
-        raise CommandError(2, "no_wasmtime", why=str(why), how=how) from None
+        raise not_installed("no_wasmtime", why) from None
 
 
 def _print(events: object) -> Ending:

@@ -8,7 +8,8 @@ from time import monotonic
 from typing import TYPE_CHECKING
 
 from tiniscript.cli import inputs
-from tiniscript.cli.commands import stop as verb
+from tiniscript.cli.commands import stop as stop_verb
+from tiniscript.cli.commands import upload as upload_verb
 from tiniscript.cli.commands.info import one_of_many
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
@@ -108,16 +109,14 @@ def list_robots(room: Classroom) -> int:
 
 
 def upload(room: Classroom) -> int:
-    from tiniscript.cli.commands import upload as verb
-
-    return verb.run(room.targets(room.present(), "upload"), room.language)
+    return upload_verb.run(room.targets(room.present(), "upload"), room.language)
 
 
 def stop(room: Classroom) -> int:
     """Stop all at once, with one message; then ask each of them whether it stands."""
     for _ in range(STOPS):
         room.broker.stop(room.group)
-    return verb.run(room.targets(room.present(), "stop"), room.language)
+    return stop_verb.run(room.targets(room.present(), "stop"), room.language)
 
 
 def show(room: Classroom) -> int:

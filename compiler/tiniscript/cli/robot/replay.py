@@ -6,8 +6,8 @@ from argparse import Namespace
 
 from tiniscript import robots
 from tiniscript.cli import inputs
-from tiniscript.cli.errors import CommandError
-from tiniscript.cli.robot.simulator_options import not_installed, refused_world, world_of
+from tiniscript.cli.errors import CommandError, not_installed
+from tiniscript.cli.robot.simulator_options import refused_world, world_of
 from tiniscript.cli.texts import text
 from tiniscript.studio import recordings
 from tiniscript.studio.recordings import BadRecording, Parting, Recorded, Recording, read

@@ -6,7 +6,7 @@ from argparse import Namespace
 from pathlib import Path
 
 from tiniscript.cli import outputs
-from tiniscript.cli.errors import CommandError
+from tiniscript.cli.errors import CommandError, not_installed
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.options import decimal, sensor_lists, thousandths, whole_number
 from tiniscript.cli.texts import Said, text
@@ -146,9 +146,3 @@ def _motors(found: str | None, language: str) -> tuple[float, float]:
         number("--motors", each.strip(), 0, MOTOR_LOW, MOTOR_HIGH, language) for each in parts
     )
     return left, right
-
-
-def not_installed(key: str, why: Exception) -> CommandError:
-    from tiniscript.library import install_advice
-
-    return CommandError(2, key, why=str(why), how=install_advice.command(install_advice.VIRTUAL))
