@@ -16,7 +16,7 @@ from tests.studio.test_page_for_everyone import LOOK, SCREENS
 from tests.support.casefile import ROOT
 from tests.support.kits import KITS
 from tests.support.needs import need
-from tests.support.studio import Pages, axe, image, shown, speak, write
+from tests.support.studio import SETTLED, Pages, axe, image, shown, speak, write
 from tiniscript import check, compile, robots
 from tiniscript.studio.block_form import data_of
 from tiniscript.studio.block_reading import read
@@ -208,6 +208,44 @@ def test_undo_is_one_for_blocks_and_text(page: Page) -> None:
     becomes(page, "SI|F(2, 80);\nS;\n")
 
 
+def test_an_undo_keeps_the_place(page: Page) -> None:
+    """Also where the focus is on a block, which goes with all others and comes again."""
+    long = "SI|" + "".join(f"F({k % 9 + 1}, 80);\n" for k in range(30))
+    start(page, long)
+    zoom = page.locator("#blocks .blocklyZoomIn")
+    zoom.dispatch_event("pointerdown")
+    page.mouse.move(600, 300)
+    page.mouse.wheel(0, 500)
+    page.evaluate(SETTLED)
+    seen = page.locator(f"{PROGRAM} .blocklyNumberField").nth(30)
+    place = seen.bounding_box()
+    assert place is not None and 150 < place["y"] < 400
+    page.mouse.click(place["x"] + 8, place["y"] + 8)
+    page.keyboard.type("77")
+    page.keyboard.press("Enter")
+    after = long.splitlines()
+    after[15] = "F(77, 80);"
+    becomes(page, "\n".join(after) + "\n")
+    for _ in range(2):
+        before = box_of(page.locator(f"{PROGRAM} .blocklyBlock").nth(15))
+        page.keyboard.press("Control+z")
+        becomes(page, long)
+        page.wait_for_timeout(300)  # Blockly gives the focus, and scrolls, a moment later
+        assert box_of(page.locator(f"{PROGRAM} .blocklyBlock").nth(15)) == pytest.approx(
+            before, abs=2
+        )
+        assert page.locator("#editor .cm-activeLine").inner_text() == long.splitlines()[15]
+        page.keyboard.press("Control+y")
+        becomes(page, "\n".join(after) + "\n")
+    high = box_of(block(page, "forward"))["height"]
+    page.click("#words")
+    shown(page)
+    assert box_of(block(page, "forward"))["height"] == pytest.approx(high, abs=1)
+    page.click("#words")
+    page.locator("#blocks .blocklyZoomReset").dispatch_event("pointerdown")
+    shown(page)
+
+
 def test_a_block_that_is_dropped_near_its_place_is_joined(page: Page) -> None:
     drag(page, "Move", "back", block(page, "stop"), off=(20, 24))
     becomes(page, "SI|F(2, 80);\nS;\nB(2, 80);\n")
@@ -254,6 +292,8 @@ def test_a_block_that_hangs_on_nothing_is_kept(page: Page) -> None:
     loose = block(page, "forward")
     path = path_of(loose)
     grey = path.evaluate("e => getComputedStyle(e).fill")
+    white = "all => all.filter((e) => getComputedStyle(e).fill === 'rgb(255, 255, 255)').length"
+    assert page.locator(f"{PROGRAM} > .loose .blocklyText").evaluate_all(white) == 0
     place = box_of(loose)
     page.click("#undo")
     becomes(page, "SI|F(2, 80);\nS;\n")
@@ -319,6 +359,19 @@ def test_what_the_compiler_says_is_at_the_block(page: Page) -> None:
     shown(page)
     becomes(page, "SI|S;\nLOOP(2);\n  B(2, 80);\nEND_LOOP;\n")
     assert icons.count() == 0
+
+
+@pytest.mark.parametrize("size", [(1366, 768), (1024, 600), (390, 844)])
+def test_a_message_stands_on_no_block(page: Page, size: tuple[int, int]) -> None:
+    page.set_viewport_size({"width": size[0], "height": size[1]})
+    start(page, "SI|S;\nF(-2, 80);\n")
+    bubble = page.locator("#blocks .blocklyBubble")
+    bubble.wait_for()
+    page.evaluate(SETTLED)
+    said = bubble.evaluate("e => e.getBoundingClientRect().toJSON()")
+    program = page.locator(f"{PROGRAM} .blocklyBlock").first
+    whole = program.evaluate("e => e.getBoundingClientRect().toJSON()")
+    assert said["left"] > whole["right"] - 2 or said["top"] > whole["bottom"] - 2
 
 
 def test_the_block_that_runs_is_marked(page: Page) -> None:

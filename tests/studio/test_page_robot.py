@@ -91,7 +91,7 @@ def test_stop_stops_it(page: Page, how: str, is_paused: bool) -> None:
     if is_paused:
         page.click("#pause")
         in_phase(page, "paused")
-    assert value(page, "Motors").split() != ["0", "0"]
+    assert value(page, "Motors").split() != ["0", "%", "0", "%"]
     if how == "button":
         page.click("#stop")
     else:
@@ -99,7 +99,7 @@ def test_stop_stops_it(page: Page, how: str, is_paused: bool) -> None:
             page.locator(".cm-content").focus()
         page.keyboard.press("Escape")
     page.locator("#doing").filter(has_text="Stopped.").wait_for()
-    assert value(page, "Motors").split() == ["0", "0"]
+    assert value(page, "Motors").split() == ["0", "%", "0", "%"]
     in_phase(page, "ended")
     assert (page.locator("#trace").text_content() or "").endswith(" STOP")
     assert running(page) == ""

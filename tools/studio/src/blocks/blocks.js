@@ -22,6 +22,7 @@ const LONGEST_TIP = 42; // characters in a line of a message at a block
 const SNAPS = 48; // units of a workspace: how far off a block may be dropped
 const STAYS = 68; // the same while it is shown where it would go
 const BESIDE = 24; // units between a block and its message
+const BELOW = 12; // the same, where it stands below
 const LOW = 240; // pixels of height: in less, a message is seen when somebody asks
 const MOST_STOOD = 200; // stacks whose places are known
 
@@ -101,13 +102,7 @@ export class Blocks {
     Blockly.ShortcutRegistry.registry.register({
       name: 'breakpoint',
       keyCodes: [Blockly.utils.KeyCodes.F9],
-      callback: () => {
-        let node = Blockly.getFocusManager().getFocusedNode();
-        while (node && !(node instanceof Blockly.BlockSvg)) node = /** @type {any} */ (node).getSourceBlock?.() ?? null;
-        let block = /** @type {Blockly.BlockSvg | null} */ (node);
-        while (block && !this.#places.some(([id]) => id === block?.id)) block = block.getParent();
-        return toggle(block);
-      },
+      callback: () => toggle(this.#focused()),
     });
   }
 
@@ -150,9 +145,10 @@ export class Blocks {
   showWords() {
     const { form } = formOf(this.#workspace);
     const places = this.#places.map(([, place]) => place);
-    const { scrollX, scrollY } = this.#workspace;
+    const { scrollX, scrollY, scale } = this.#workspace;
     this.#workspace.dispose();
     this.#workspace = this.#begin();
+    this.#workspace.setScale(scale);
     this.show(form);
     if (this.#isTouched) this.#workspace.scroll(scrollX, scrollY);
     this.placed(this.#places.map(([id]) => id), places);
@@ -195,8 +191,10 @@ export class Blocks {
 
   /** Replaces the blocks: what stays the same stays in its place, and the focus, too. @param {Form} form */
   show(form) {
-    const { scrollX, scrollY } = this.#workspace;
-    const focus = this.hasFocus ? this.#focused() : null;
+    const workspace = this.#workspace;
+    const { scrollX, scrollY } = workspace;
+    const focus = this.hasFocus ? this.#places.findIndex(([id]) => id === this.#focused()?.id) : null;
+    if (focus !== null) Blockly.getFocusManager().focusNode(workspace); // else a block that goes gives it to a neighbour, later
     Blockly.hideChaff();
     this.#running = new Set();
     this.#fault = { id: '', said: '' };
@@ -206,16 +204,23 @@ export class Blocks {
     this.#greyLoose();
     const block = focus === null ? null : this.#workspace.getBlockById(ids[Math.min(focus, ids.length - 1)] ?? '');
     if (block) Blockly.getFocusManager().focusNode(block);
-    else if (focus !== null) Blockly.getFocusManager().focusTree(this.#workspace);
-    this.#workspace.scroll(scrollX, scrollY);
-    this.#seeBeginning();
+    else if (focus !== null) Blockly.getFocusManager().focusTree(workspace);
+    const stay = () => {
+      if (workspace !== this.#workspace) return;
+      workspace.scroll(scrollX, scrollY);
+      this.#seeBeginning();
+    };
+    stay();
+    if (focus !== null) Blockly.renderManagement.finishQueuedRenders().then(stay); // Blockly scrolls to what gets the focus
   }
 
-  /** @returns {number} which block of the text has the focus; -1 where none has */
+  /** @returns {Blockly.Block | null} the block of the text that has the focus, or is around what has it */
   #focused() {
-    const node = /** @type {any} */ (Blockly.getFocusManager().getFocusedNode());
-    const id = (node?.getSourceBlock?.() ?? node)?.id;
-    return this.#places.findIndex(([each]) => each === id);
+    let node = Blockly.getFocusManager().getFocusedNode();
+    while (node && !(node instanceof Blockly.BlockSvg)) node = /** @type {any} */ (node).getSourceBlock?.() ?? null;
+    let block = /** @type {Blockly.BlockSvg | null} */ (node);
+    while (block && !this.#places.some(([id]) => id === block?.id)) block = block.getParent();
+    return block;
   }
 
   /** @returns {{form: Form, ids: string[]}} */
@@ -293,7 +298,7 @@ export class Blocks {
     return this.#badgeOf(id)?.getText() ?? '';
   }
 
-  /** Shows the message of a block beside it, where there is room: over others it stands as Blockly has it. @param {string} id */
+  /** Shows the message of a block beside it or below all, where there is room: over others it stands as Blockly has it. @param {string} id */
   async #open(id) {
     const badge = this.#badgeOf(id);
     if (!badge || badge === this.#opening || this.#place.clientHeight < LOW) return;
@@ -305,9 +310,12 @@ export class Blocks {
     const block = this.#workspace.getBlockById(id);
     if (!bubble || !block) return;
     const { right, top } = block.getBoundingRectangleWithoutChildren();
-    const { left, width } = this.#workspace.getMetricsManager().getViewMetrics(true);
-    const isRoom = right + BESIDE + bubble.getBoundingRectangle().getWidth() <= left + width;
-    if (isRoom) bubble.moveDuringDrag(new Blockly.utils.Coordinate(right + BESIDE, top));
+    const view = this.#workspace.getMetricsManager().getViewMetrics(true);
+    const size = bubble.getBoundingRectangle();
+    const all = block.getRootBlock().getBoundingRectangle();
+    const { Coordinate } = Blockly.utils;
+    if (right + BESIDE + size.getWidth() <= view.left + view.width) bubble.moveDuringDrag(new Coordinate(right + BESIDE, top));
+    else if (all.bottom + BELOW + size.getHeight() <= view.top + view.height) bubble.moveDuringDrag(new Coordinate(all.left, all.bottom + BELOW));
   }
 
   /** Marks the blocks that run now, one in each task. @param {{line: number, column: number}[]} ranges */

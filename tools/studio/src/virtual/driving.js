@@ -436,7 +436,7 @@ export class Driving {
     const seconds = state ? ((state.now_ms - (state.began_ms ?? state.now_ms)) / 1000).toFixed(1) : '–';
     const rows = [
       [text('time'), state ? `${seconds} s` : '–'],
-      [text('motors'), state ? state.motors.join('  ') : '–'],
+      [text('motors'), state ? state.motors.map((power) => `${power} %`).join('  ') : '–'],
       [text('bumps'), state ? String(state.bumps) : '–'],
       ...this.#sensors().map((device, k) => [nameOf(device), state ? measured(device, state.readings[k]?.text ?? '') : '–', partOf(device, state?.readings[k]?.value)]),
       ...this.#variables.map(({ name, is_yes_no }, k) => [name, written(state?.variables[k], is_yes_no)]),

@@ -145,7 +145,9 @@ export class Editor {
     while (from < Math.min(before.length, whole.length) && before[from] === whole[from]) from += 1;
     let same = 0;
     while (same < Math.min(before.length, whole.length) - from && before.at(-1 - same) === whole.at(-1 - same)) same += 1;
+    this.#view.dispatch({ selection: { anchor: from } }); // where an undo goes back to
     this.#view.dispatch({
+      scrollIntoView: true,
       changes: { from, to: before.length - same, insert: whole.slice(from, whole.length - same) },
       annotations: isolateHistory.of('full'),
       userEvent: 'input.blocks',
