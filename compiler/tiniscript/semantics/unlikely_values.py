@@ -70,11 +70,13 @@ def of_way(move: Move, kit: Kit) -> list[Diagnostic]:
     """Return the warning about a move by its way: what its numbers surely make."""
     way = _number(move.time)
     if way is not None and way <= 0:
-        return [Diagnostic(codes.MOVE_OF_NO_TIME, move.span, {"word": move.direction})]
+        values = {"word": move.direction, "unit": move.unit}
+        return [Diagnostic(codes.MOVE_OF_NO_TIME, move.span, values)]
     try:
         way_ms(move, kit)
     except Fault as fault:
-        return [Diagnostic(codes.WILL_FAULT, move.span, {"fault": fault.name})]
+        values = {"fault": fault.name, "unit": move.unit if fault.name == "NO_POWER" else ""}
+        return [Diagnostic(codes.WILL_FAULT, move.span, values)]
     return of_power(move)
 
 
