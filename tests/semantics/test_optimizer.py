@@ -7,8 +7,8 @@ from __future__ import annotations
 
 import pytest
 
+from tests.support.ir_text import program_text
 from tiniscript import check_text, robots
-from tiniscript.semantics.ir import program_text
 from tiniscript.semantics.optimizer import optimized
 
 KIT = robots.load("tinibot").kit

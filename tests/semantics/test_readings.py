@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import pytest
 
+from tests.support.ir_text import program_text
 from tiniscript import check_text, robots
-from tiniscript.semantics.ir import program_text
 
 KIT = robots.load("tinibot").kit
 LIGHT_R, LIGHT_L, DISTANCE = range(3)  # their numbers in this kit

@@ -31,11 +31,21 @@ from tiniscript.robots.wiring.icons import ICONS
 from tiniscript.robots.wiring.layout import BOARD_WIDTH, PART_WIDTH, Layout, layout_of
 from tiniscript.robots.wiring.page import page_of, wire_rows
 from tiniscript.robots.wiring.parts import BOARD_RAILS
-from tiniscript.robots.wiring.plan import Plan, pins_of, plan_of
+from tiniscript.robots.wiring.plan import Plan, plan_of
 from tiniscript.robots.wiring.texts import has_text
 
 DRIVER_IDS = [f"{used_by} {name}" for used_by, name in DRIVERS]
 SVG = "{http://www.w3.org/2000/svg}"
+
+
+def pins_of(robot: Robot) -> set[int]:
+    """Return every pin that the robot's [board] names."""
+    board = robot.board
+    discs = [board.discs] if board.discs else []
+    wirings = (board.motors, *discs, *board.sensors, *board.actuators)
+    pins = {pin for wiring in wirings for pin in wiring.pins.values()}
+    single = (board.start_button, board.buzzer, board.status_led, board.bluetooth_state)
+    return pins | {pin for pin in single if pin is not None}
 
 
 def wired(driver: Driver, chip: Chip, taken: set[int], is_whole: bool = True) -> Wiring:

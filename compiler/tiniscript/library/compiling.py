@@ -30,7 +30,8 @@ from tiniscript.syntax.parser import ENOUGH, parse
 class Compiled(NamedTuple):
     """What became of a text. Where a diagnostic is a mistake, `image` is empty.
 
-    `program` is the checked program, as written; `places` says where in the text each
+    `program` is the checked program, as written, and `lowered` what the code was made of; `places`
+    says where in the text each
     instruction comes from.
     """
 
@@ -41,6 +42,7 @@ class Compiled(NamedTuple):
     places: tuple[Place, ...] = ()
     verdict: Verdict | None = None
     image: bytes = b""
+    lowered: ir.Program | None = None
 
     @property
     def is_right(self) -> bool:
@@ -155,7 +157,8 @@ def _compiled(text: str, kit: Kit, name: str, optimize: bool) -> Compiled:
     program = compiled.program
     if program is None or not compiled.is_right:
         return compiled
-    lowered = lower(optimized(program) if optimize else program)
+    program = optimized(program) if optimize else program
+    lowered = lower(program)
     if len(lowered.code) > CODE_BYTES:
         over = {"limit": str(CODE_BYTES), "over": str(len(lowered.code) - CODE_BYTES)}
         place = Span(len(text), len(text))
@@ -164,7 +167,8 @@ def _compiled(text: str, kit: Kit, name: str, optimize: bool) -> Compiled:
     verdict = verify(lowered.code, len(kit.sensors), len(kit.actuators))
     devices = kit.hash_of_used(verdict.uses)
     image = pack(program.start, devices, lowered.code, needs=verdict.needs)
-    return compiled._replace(code=lowered.code, places=lowered.places, verdict=verdict, image=image)
+    return compiled._replace(lowered=program, code=lowered.code, places=lowered.places,
+                             verdict=verdict, image=image)  # fmt: skip
 
 
 def compiled(

@@ -17,7 +17,6 @@ from tiniscript.library import source_map
 from tiniscript.library.compiling import Compiled, for_robot
 from tiniscript.semantics.duration import duration
 from tiniscript.semantics.ir import Program
-from tiniscript.semantics.optimizer import optimized
 
 
 def run(options: Namespace, language: str) -> int:
@@ -50,8 +49,8 @@ def run(options: Namespace, language: str) -> int:
         image=len(compiled.image),
         code=len(compiled.code),
         stack=compiled.verdict.stack_values if compiled.verdict else 0,
-        stacks=_stack_values(),
-        runs="" if _will_fault(compiled) else _runs(compiled.program, robot.kit, language),
+        stacks=STACK_VALUES,
+        runs="" if _will_fault(compiled) else _runs(compiled.lowered, robot.kit, language),
     )
     print(said, file=sys.stderr if target is None else sys.stdout)
     return 0
@@ -96,17 +95,13 @@ def _target(given: inputs.Input, output: str | None) -> Path | None:
     return Path(paths.default_output(given.name) if output is None else output)
 
 
-def _stack_values() -> int:
-    return STACK_VALUES
-
-
 def _will_fault(compiled: Compiled) -> bool:
     return any(diagnostic.code is WILL_FAULT for diagnostic in compiled.diagnostics)
 
 
-def _runs(program: object, kit: Kit, language: str) -> str:
-    assert isinstance(program, Program)
-    how = duration(optimized(program), kit)
+def _runs(program: Program | None, kit: Kit, language: str) -> str:
+    assert program is not None
+    how = duration(program, kit)
     if how.never_ends:
         key = "runs_forever"
     elif how.most is None:

@@ -6,7 +6,7 @@ comes from a profile is cut to a length here; the code that writes it must escap
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from typing import NamedTuple
 
 from tiniscript.robots.boards import CHIPS, Chip
@@ -19,7 +19,7 @@ from tiniscript.robots.driver import (
     lamp,
     switch,
 )
-from tiniscript.robots.profile import Body, Robot, Wiring
+from tiniscript.robots.profile import Body, Robot
 from tiniscript.robots.wiring import parts
 from tiniscript.robots.wiring.texts import text
 
@@ -198,13 +198,3 @@ def _with_servo_supply(shape: Shape) -> Shape:
         for terminal in shape.terminals
     )
     return shape._replace(terminals=tuple(renamed))
-
-
-def pins_of(robot: Robot) -> set[int]:
-    """Return every pin that the robot's [board] names."""
-    board = robot.board
-    discs = [board.discs] if board.discs else []
-    wirings: Iterable[Wiring] = (board.motors, *discs, *board.sensors, *board.actuators)
-    pins = {pin for wiring in wirings for pin in wiring.pins.values()}
-    single = (board.start_button, board.buzzer, board.status_led, board.bluetooth_state)
-    return pins | {pin for pin in single if pin is not None}
