@@ -109,6 +109,21 @@ def test_a_robot_turns_along_a_wall_that_it_drives_into(heading: float) -> None:
     assert 15 < abs(pose.y_cm - 100) < 90
 
 
+@pytest.mark.parametrize("turn_s", [180, 360, 500])
+def test_no_wheel_slips_aside_while_a_wall_turns_a_robot(turn_s: float) -> None:
+    """Its turns may be slower and faster than the distance of its wheels says."""
+    robot = TINIBOT._replace(body=TINIBOT.body._replace(turn_s=turn_s))
+    found = driving(floor(start="x_cm = 150\ny_cm = 100\nheading = 30"), robot=robot)
+    found.set_motors(0, 100, 100)
+    poses = [found.go_on(now_ms) for now_ms in range(0, 2400, 10)]
+    aside_cm = 0.0
+    for (x, y, heading), (next_x, next_y, next_heading) in pairwise(poses):
+        along = math.radians(heading + next_heading) / 2
+        aside_cm += abs((next_y - y) * math.cos(along) - (next_x - x) * math.sin(along))
+    assert poses[-1].heading == pytest.approx(90, abs=1)
+    assert aside_cm < 0.5
+
+
 @pytest.mark.parametrize("aside", [2, 5, -7])
 def test_the_end_of_a_wall_that_catches_a_side_of_it_does_not_hold_it(aside: float) -> None:
     end = 100 + aside

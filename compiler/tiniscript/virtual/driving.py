@@ -245,7 +245,8 @@ class Driving:
         ahead = away_x * cos + away_y * sin  # the part of the push that is along the robot,
         aside = away_y * cos - away_x * sin
         lever_cm = (contact.ours.x - pose.x_cm) * cos + (contact.ours.y - pose.y_cm) * sin
-        turning = 2 * aside * lever_cm / self.body.wheel_base_cm  # and the one that turns it
+        lever = lever_cm * math.radians(self.body.turn_s) / self.body.speed_cm_s
+        turning = aside * lever  # and the one that turns it
         comes = (left + right) / 2 * ahead + (right - left) / 2 * turning
         if comes >= 0:
             return left, right
