@@ -1,6 +1,7 @@
 """Brings all catalogues in step with the English ones: `python -m tools.languages`.
 
-What is new gets an empty place, what is gone goes, and the translation of a text whose English has
+The names in the package's `.toml` files are English texts of the catalogue `names`. What is new
+gets an empty place, what is gone goes, and the translation of a text whose English has
 changed is marked as fuzzy: it is not used until somebody has looked at it. With codes, `pt fr`, it
 makes their folders. `--check` writes nothing, and says what is wrong and how much is translated.
 `--pseudo` makes a language that shows where longer texts do not fit.
@@ -11,8 +12,14 @@ from __future__ import annotations
 import argparse
 import re
 import sys
+from collections.abc import Iterator
 from difflib import SequenceMatcher
 from pathlib import Path
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
 
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "compiler"))
@@ -22,6 +29,28 @@ from tiniscript.base.languages import FOLDER, SOURCE, languages
 
 PSEUDO = "qps"  # by custom: no language has this code
 ACCENTS = str.maketrans("aeiouncAEIOU", "àéîõüñçÀÉÎÕÜ")
+
+
+def names() -> Catalogue:
+    """Return the catalogue of what is said in the package's TOML, each text once."""
+    made = Catalogue(load(FOLDER / SOURCE / "command.po").head)
+    for folder in ("robots", "virtual/worlds", "lessons"):
+        for path in sorted((FOLDER.parent / folder).rglob("*.toml")):
+            place = path.relative_to(FOLDER.parent).as_posix()
+            for said in _said_in(tomllib.loads(path.read_text(encoding="utf-8"))):
+                made.entries.setdefault((said, said), Entry(said, said, notes=[place]))
+    return made
+
+
+def _said_in(value: object) -> Iterator[str]:
+    """Yield each text that stands in English in a TOML file, in a row `en` or a table `en`."""
+    if isinstance(value, dict):
+        for key, each in value.items():
+            said = each.values() if isinstance(each, dict) else [each]
+            yield from said if key == SOURCE else _said_in(each)
+    elif isinstance(value, list):
+        for each in value:
+            yield from _said_in(each)
 
 
 def in_step(source: Catalogue, own: Catalogue, language: str) -> Catalogue:
@@ -90,6 +119,8 @@ def main() -> int:
         for path in FOLDER.glob(f"{SOURCE}/*.po"):
             (FOLDER / PSEUDO / path.name).write_text(written(pseudo(load(path))), encoding="utf-8")
         return 0
+    if not options.check:
+        (FOLDER / SOURCE / "names.po").write_text(written(names()), encoding="utf-8")
     wrong = 0
     for language in options.languages:
         done = every = 0

@@ -5,6 +5,8 @@ from __future__ import annotations
 import io
 import os
 import re
+import shutil
+import subprocess
 import sys
 from collections.abc import Iterator
 from gettext import GNUTranslations
@@ -13,6 +15,8 @@ from pathlib import Path
 import pytest
 
 from tests.support.command import Tsc
+from tests.support.waiting import HANGS_S
+from tiniscript import robots
 from tiniscript.base import catalogue_compiler as compiling
 from tiniscript.base import languages
 from tiniscript.base.catalogue_file import Catalogue, Entry, load, read, written
@@ -21,7 +25,8 @@ from tiniscript.cli import main
 from tiniscript.cli.streams import wrapped
 from tiniscript.cli.texts import Said, language_of, text
 from tiniscript.cli.texts.verbs import VERBS
-from tools.languages import PSEUDO, in_step, pseudo
+from tiniscript.lessons import catalogue
+from tools.languages import PSEUDO, in_step, names, pseudo
 
 NAMES = sorted(path.stem for path in (FOLDER / SOURCE).glob("*.po"))
 FILES = sorted(FOLDER.glob("*/*.po"))
@@ -47,8 +52,51 @@ def test_a_catalogue_has_the_gaps_and_the_keys_of_the_english_one(path: Path) ->
     assert written(own) == path.read_text(encoding="utf-8"), "python -m tools.languages"
 
 
-def test_spanish_promises_to_be_complete() -> None:
-    assert all("X-Complete: yes" in load(FOLDER / "es" / f"{name}.po").head for name in NAMES)
+@pytest.mark.parametrize("language", ["es", "pt"])
+def test_a_whole_language_promises_to_be_complete(language: str) -> None:
+    heads = [load(FOLDER / language / f"{name}.po").head for name in NAMES]
+    assert all("X-Complete: yes" in head for head in heads)
+
+
+def test_the_names_in_toml_files_are_translated() -> None:
+    assert (FOLDER / SOURCE / "names.po").read_text(encoding="utf-8") == written(names())
+    titles = catalogue.load(catalogue.folders()[0]).titles
+    assert [titles[each] for each in ("en", "es", "tlh")] == [
+        "The first line", "La primera línea", "The first line",
+    ]  # fmt: skip
+    labels = robots.load("liner").labels
+    assert [labels[each]["BUTTON"] for each in ("en", "es", "tlh")] == [
+        "bumper", "parachoques", "bumper",
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize("language", languages.languages()[1:])
+def test_a_language_that_is_deleted_is_missed_by_no_other(language: str, tmp_path: Path) -> None:
+    """Nothing outside of its folder names it, so nothing becomes an unknown row."""
+    package = tmp_path / "tiniscript"
+    left_out = shutil.ignore_patterns("*.mo", "__pycache__", "page", "ready")
+    shutil.copytree(FOLDER.parent, package, ignore=left_out)
+    shutil.rmtree(package / "languages" / language)
+    others = [each for each in languages.languages() if each != language]
+    for words in (
+        ("check", "-e", "F(2 80)"), ("explain", "TS017"), ("lesson", "show", "1", "--teacher"),
+        ("wiring", "--robot", "liner"), ("show", "-e", "SI|F(2, 80)", "--arduino"),
+        ("run", "-e", "SI|F(2, 80)"), ("complie",), ("lesson",),
+    ):  # fmt: skip
+        done = [_from(tmp_path, *words, "--lang", each) for each in others]
+        assert done == [_from(FOLDER.parent.parent, *words, "--lang", each) for each in others]
+    refused = _from(tmp_path, "check", "-e", "W(1)", "--lang", language)
+    assert refused[0] == 2 and all(each in refused[2] for each in others)
+
+
+def _from(place: Path, *words: str) -> tuple[int, str, str]:
+    """Return what the command of a package says: its exit code, its output and its errors."""
+    done = subprocess.run(
+        [sys.executable, "-m", "tiniscript", *words], cwd=place, capture_output=True,
+        env={**os.environ, "PYTHONPATH": str(place), "PYTHONIOENCODING": "utf-8"}, text=True,
+        encoding="utf-8", timeout=HANGS_S,
+    )  # fmt: skip
+    return done.returncode, done.stdout, done.stderr
 
 
 @pytest.mark.parametrize(
@@ -58,7 +106,11 @@ def test_spanish_promises_to_be_complete() -> None:
         (ROW.replace("Lee {file}", "Lee {file}{x}"), 4, "a: {x} is no gap of the English text"),
         (ROW.replace("Lee {file}", "Lee {file}}"), 4, "a: a brace { or } has no other half"),
         (ROW + "\n" + ROW.replace("Lee", "Mira"), 8, "a is there twice"),
-        (ROW.replace("msgctxt", "#"), 5, "this text has no key: msgctxt is missing"),
+        (
+            ROW.replace("msgctxt", "#") + "\n" + ROW.replace("msgctxt", "#"),
+            9,
+            "Read {file}. is there twice",
+        ),
         (
             ROW.replace('msgid "', "msgid '"),
             5,

@@ -59,7 +59,7 @@ REFUSED = [
      "board.actuators.LED"),
     ("unknown_key", "tinibot", "baud = 9600", "baud = 9600\nzebra = 1", "board.zebra"),
     ("unknown_key", "tinibot", "unit =", "units =", "kit.sensors[3].units"),
-    ("unknown_key", "tinibot", "[labels.es]", "[labels.qu]", "labels.qu"),
+    ("unknown_key", "tinibot", "[labels.en]", "[labels.qu]", "labels.qu"),
     ("wrong_type", "tinibot", "range = [0, 400]", "range = 400", "kit.sensors[3].range"),
     ("wrong_type", "tinibot", "range = [0, 400]", "range = [0, 4, 5]", "kit.sensors[3].range"),
     ("wrong_type", "tinibot", "range = [0, 400]", 'range = [0, "4"]', "kit.sensors[3].range"),

@@ -11,7 +11,7 @@ from tiniscript.base.languages import FOLDER, ByLanguage, languages
 from tiniscript.base.words import WORDS
 
 # Of what the page's Python says; the sentences of lessons come with these.
-MESSAGES = ("messages", "statuses", "refusals", "library", "robot")
+MESSAGES = ("messages", "statuses", "refusals", "library", "robot", "names")
 PERIOD = 100  # after so many numbers a rule of plurals repeats itself, but for the first hundred
 
 

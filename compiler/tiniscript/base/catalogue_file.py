@@ -1,8 +1,8 @@
 """Reads and writes catalogues of gettext (`.po`), and says what is wrong with one.
 
-An entry is one text: its key is the context, and what is translated is the English text. Several
-texts may have one key: which one is meant is told by the English text, wherever it stands. Knows no
-language. A mistake in an entry costs that entry alone.
+An entry is one text: its key is the context, and what is translated is the English text. A text
+without a context is its own key. Several texts may have one key: which one is meant is told by the
+English text, wherever it stands. Knows no language. A mistake in an entry costs that entry alone.
 """
 
 from __future__ import annotations
@@ -74,7 +74,8 @@ def read(text: str) -> Catalogue:
     def end() -> None:
         nonlocal entry, parts, part
         if parts:
-            entry.key, entry.english = parts.get("msgctxt", ""), parts.get("msgid", "")
+            entry.english = parts.get("msgid", "")
+            entry.key = parts.get("msgctxt", entry.english)
             entry.plural = parts.get("msgid_plural", "")
             entry.said = [parts[each] for each in sorted(parts) if each.startswith("msgstr")]
             _take(found, entry)
@@ -113,8 +114,6 @@ def read(text: str) -> Catalogue:
 def _take(found: Catalogue, entry: Entry) -> None:
     if not entry.key and not entry.english:
         found.head = "".join(entry.said)
-    elif not entry.key:
-        found.problems.append((entry.line, "this text has no key: msgctxt is missing"))
     elif entry.at in found.entries:
         found.problems.append((entry.line, f"{entry.key} is there twice"))
     else:
@@ -171,7 +170,8 @@ def written(catalogue: Catalogue) -> str:
         flags = ["fuzzy"] * entry.is_fuzzy + [BRACES] * ("{" in entry.english + entry.plural)
         rows = [f"#. {note}" for note in entry.notes]
         rows += [f"#, {', '.join(flags)}"] * bool(flags)
-        rows += [_quoted("msgctxt", entry.key), _quoted("msgid", entry.english)]
+        rows += [_quoted("msgctxt", entry.key)] * (entry.key != entry.english)
+        rows.append(_quoted("msgid", entry.english))
         if entry.plural:
             rows.append(_quoted("msgid_plural", entry.plural))
             forms = entry.said or [""] * catalogue.plurals

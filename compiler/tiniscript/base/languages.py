@@ -23,10 +23,17 @@ T = TypeVar("T")
 
 
 class ByLanguage(dict[str, T]):
-    """Something in each language that it is there in: elsewhere in English, else in the first."""
+    """A name, or names, in each language that a file says: elsewhere what is said in English, else
+    in the first language, as the catalogue `names` translates it."""
 
     def __missing__(self, language: str) -> T:
-        return self.get(SOURCE) or next(iter(self.values()))
+        return _named(self.get(SOURCE) or next(iter(self.values())), language)
+
+
+def _named(name: T, language: str) -> T:
+    if isinstance(name, dict):
+        return {key: _named(each, language) for key, each in name.items()}  # type: ignore[return-value]
+    return found("names", name, language) or name  # type: ignore[arg-type, return-value]
 
 
 @cache
