@@ -96,8 +96,8 @@ class Wrapping:
         return self._stream.write(text)
 
 
-# A command: people copy it, so it stays in one row where there is room.
-_COMMAND = re.compile(r"(?<=[^ ] {2})[^ \n]+(?: [^ \n]+)*")
+# A command: people copy it, so it stays in one row, however long it is.
+_COMMAND = re.compile(r"(?:(?<=[^ ] {2})|(?<=^ {2})|(?<=\n {2}))[^ \n]+(?: [^ \n]+)*")
 
 
 def wrapped(said: str, columns: int) -> str:
@@ -105,7 +105,7 @@ def wrapped(said: str, columns: int) -> str:
     from textwrap import fill
 
     def whole(command: re.Match[str]) -> str:
-        return command[0].replace(" ", "\0") if len(command[0]) < columns else command[0]
+        return command[0].replace(" ", "\0")
 
     rows = []
     for row in _COMMAND.sub(whole, said).split("\n"):
