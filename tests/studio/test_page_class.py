@@ -129,6 +129,15 @@ def tile(teacher: Page, name: str) -> Locator:
     return teacher.locator("#wall li").filter(has_text=name)
 
 
+def only_ana(taught: Class) -> None:
+    """Remove the others, and what they leave."""
+    for pupil in taught.room.teach({"do": "class"})["pupils"]:
+        if pupil["name"] != "Ana":
+            taught.room.teach({"do": "class_remove", "pupil": pupil["number"]})
+    for kept in taught.room.teach({"do": "class"})["kept"]:
+        taught.room.teach({"do": "class_forget", "name": kept["name"]})
+
+
 def asks(page: Page) -> None:
     page.click("[data-text=class_ask]")
 
@@ -190,6 +199,7 @@ def test_three_pupils_share_a_robot(
     drives(teo, robot)
     teo.close()
     robot.until(lambda: not robot.moves, "a page that is closed stops it")
+    luz.close()
 
 
 def test_a_page_that_hangs_stops_its_robot(ana: Page, robot: PtyRobot) -> None:
@@ -244,6 +254,7 @@ def test_a_wrong_code_is_said_and_a_pupil_is_removed(
     row.locator(".see").and_(teacher.locator("[aria-label*='not here']")).wait_for()
     row.locator(".out").click()  # nor is the work kept then
     row.wait_for(state="detached")
+    page.close()
     assert [each for each in pages.wrong if "403" not in each] == []
     pages.wrong.clear()
 
@@ -303,21 +314,13 @@ def test_thirty_tiles_are_seen_without_scrolling(teacher: Page, taught: Class) -
     tile(teacher, "Pupil 7").locator("img[src^=blob]").wait_for()
     assert tile(teacher, "Pupil 7").locator("i.done").count() == 1
     speak(teacher, "en")
-    for pupil in room.teach({"do": "class"})["pupils"]:
-        if pupil["name"].startswith("Pupil "):
-            room.teach({"do": "class_remove", "pupil": pupil["number"]})
-    for kept in room.teach({"do": "class"})["kept"]:
-        room.teach({"do": "class_forget", "name": kept["name"]})
+    only_ana(taught)
 
 
 def test_a_picture_is_seen_large_while_the_next_one_is_made(
     ana: Page, teacher: Page, taught: Class
 ) -> None:
-    for pupil in taught.room.teach({"do": "class"})["pupils"]:
-        if pupil["name"] != "Ana":
-            taught.room.teach({"do": "class_remove", "pupil": pupil["number"]})
-    for kept in taught.room.teach({"do": "class"})["kept"]:
-        taught.room.teach({"do": "class_forget", "name": kept["name"]})
+    only_ana(taught)
     teacher.locator("#wall li:only-child img[src^=blob]").wait_for()
     teacher.evaluate(HOLDS)
     for language in ("es", "en"):  # each makes it anew
@@ -404,6 +407,8 @@ def test_everything_is_seen_and_axe_finds_nothing(
     speak(teacher, "en")
     tile(teacher, "A" * 24).locator(".hand").click()
     longest.locator("#class_hand[aria-pressed=false]").wait_for()
+    longest.close()
+    only_ana(taught)
 
 
 def test_the_work_of_a_class_is_saved_opened_and_given_back(
