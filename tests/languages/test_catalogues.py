@@ -335,6 +335,7 @@ def test_a_terminal_has_sentences_in_its_width_and_a_pipe_each_in_one_row(
     ("Once upon a time, behind it", ["Once upon a time,", "behind it"]),
     ("Lift it. Try:  tsc run -e S", ["Lift it. Try:", "tsc run -e S"]),
     ("Try:  tsc run --sensor A=1,2,3", ["Try:  tsc run", "--sensor A=1,2,3"]),
+    ("Try:  /a/long/path/python -m x", ["Try:", "/a/long/path/python -m x"]),
     ("  seen: a port that is", ["  seen: a port that", "  is"]),
     ("one\n\nhttp://long.example/a/page", ["one", "", "http://long.example/a/page"]),
 ])  # fmt: skip

@@ -96,8 +96,9 @@ class Wrapping:
         return self._stream.write(text)
 
 
-# A command: people copy it, so it stays in one row, however long it is.
-_COMMAND = re.compile(r"(?:(?<=[^ ] {2})|(?<=^ {2})|(?<=\n {2}))[^ \n]+(?: [^ \n]+)*")
+# A command, or a sentence: it stays in one row where there is room. People copy a command: one that
+# begins with the path of a program is never broken.
+_COMMAND = re.compile(r"(?<=[^ ] {2})[^ \n]+(?: [^ \n]+)*")
 
 
 def wrapped(said: str, columns: int) -> str:
@@ -105,7 +106,8 @@ def wrapped(said: str, columns: int) -> str:
     from textwrap import fill
 
     def whole(command: re.Match[str]) -> str:
-        return command[0].replace(" ", "\0")
+        is_kept = len(command[0]) < columns or os.sep in command[0].partition(" ")[0]
+        return command[0].replace(" ", "\0") if is_kept else command[0]
 
     rows = []
     for row in _COMMAND.sub(whole, said).split("\n"):
