@@ -11,7 +11,6 @@ SPECIAL = re.compile(r"""(?:==|===|!=) ?["'](?:es|en)["']|["'](?:es|en)["'] (?:=
 LEFT = {
     "tools/builds/stick/install.py": 3,  # runs before the package is there
     "tools/environment.py": 1,  # runs before the package is there
-    "tools/generate/poster.py": 1,  # of words that a developer adds: `Word.says`
 }
 
 

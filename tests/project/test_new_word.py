@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -12,8 +13,9 @@ import tiniscript
 from tests.oracle.interpreter import run as run_by_reference
 from tests.oracle.words import FIXED
 from tests.support.casefile import ROOT
-from tests.support.new_word import HORN
+from tests.support.new_word import HORN, SAID, with_texts
 from tiniscript import compile_text, robots
+from tiniscript.base import languages
 from tiniscript.base.source import Source
 from tiniscript.base.words import WORDS
 from tiniscript.codegen.sketch.writing import sketch_of
@@ -72,7 +74,7 @@ def test_it_is_kept_by_formatter_blocks_and_sketch() -> None:
     assert compiled.program is not None
     sketch = sketch_of(compiled.source, compiled.program, ROBOT, "en")
     assert "beep(0.5, 440);" in sketch and "// HORN" in sketch
-    assert HORN.says in [each["says"] for each in description()["words"]]
+    assert HORN.text in [each["text"] for each in description()["words"]]
 
 
 @pytest.mark.parametrize("level", LEVELS.values(), ids=LEVELS.keys())
@@ -85,7 +87,11 @@ def test_a_robot_that_reads_text_gets_what_it_stands_for(level: Level) -> None:
 
 # Of a process that knows the word before it imports what makes tables of all words.
 FRESH = """
-from tests.support.new_word import HORN
+import sys
+from pathlib import Path
+from tests.support.new_word import HORN, with_texts
+from tiniscript.base import languages
+languages.FOLDER = with_texts(Path(sys.argv[1]))
 from tiniscript.base.words import WORDS
 WORDS[HORN.text] = HORN
 import json
@@ -97,18 +103,27 @@ print(json.dumps([block_kinds.data(), labels, text_tables.words_tables("a test")
 """
 
 
-def test_blocks_and_the_robots_reader_have_it_in_their_tables() -> None:
+def test_blocks_and_the_robots_reader_have_it_in_their_tables(tmp_path: Path) -> None:
     ran = subprocess.run(
-        [sys.executable, "-c", FRESH], cwd=ROOT, check=True, capture_output=True, text=True
+        [sys.executable, "-c", FRESH, str(tmp_path / "said")],
+        cwd=ROOT,
+        check=True,
+        capture_output=True,
+        text=True,
     )
     blocks, labels, tables = json.loads(ran.stdout)
     assert HORN.text in blocks["kinds"]["fixed"]["words"]
-    assert labels == [f"{{{HORN.text}}} {says}" for says in HORN.says]
+    assert labels == [f"{{{HORN.text}}} {says}" for says in SAID.values()]
     packed, rows, _ = tables.split("tini_progmem = {")[1:]
     assert "// HORN" in packed and "// HORN" not in rows
 
 
-@pytest.mark.parametrize(("language", "says"), [("en", HORN.says[0]), ("es", HORN.says[1])])
-def test_it_is_on_the_poster(language: str, says: str) -> None:
+@pytest.mark.parametrize(("language", "says"), SAID.items())
+def test_it_is_on_the_poster(
+    language: str, says: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(languages, "FOLDER", with_texts(tmp_path / "said"))
+    languages.catalogue.cache_clear()
     lines = [each.text for each in poster.page(language) if isinstance(each, Line)]
+    languages.catalogue.cache_clear()
     assert lines[lines.index(HORN.text) + 1] == says

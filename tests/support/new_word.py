@@ -2,6 +2,22 @@
 
 from __future__ import annotations
 
+import shutil
+from pathlib import Path
+
+from tiniscript.base.languages import FOLDER, SOURCE
 from tiniscript.base.words import Word
 
-HORN = Word("HORN", "fixed", stands_for="BEEP(0.5, 440)", says=("honks", "toca la bocina"))
+HORN = Word("HORN", "fixed", stands_for="BEEP(0.5, 440)")
+SAID = {"en": "honks", "es": "toca la bocina"}
+
+
+def with_texts(folder: Path) -> Path:
+    """Return a copy of the languages that say what the word does."""
+    shutil.copytree(FOLDER, folder, ignore=shutil.ignore_patterns("*.mo"))
+    for language, said in SAID.items():
+        translated = "" if language == SOURCE else f"{{{HORN.text}}} {said}"
+        with (folder / language / "studio.po").open("a", encoding="utf-8") as file:
+            file.write(f'\nmsgctxt "block/{HORN.text}"\nmsgid "{{{HORN.text}}} {SAID[SOURCE]}"\n')
+            file.write(f'msgstr "{translated}"\n')
+    return folder

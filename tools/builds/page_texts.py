@@ -7,8 +7,7 @@ from gettext import c2py
 from typing import Any
 
 from tiniscript.base.catalogue_compiler import merged
-from tiniscript.base.languages import FOLDER, ByLanguage, languages
-from tiniscript.base.words import WORDS
+from tiniscript.base.languages import FOLDER
 
 # Of what the page's Python says; the sentences of lessons come with these.
 MESSAGES = ("messages", "statuses", "refusals", "library", "robot", "names")
@@ -26,12 +25,6 @@ def page_texts(language: str) -> dict[str, str | list[str]]:
     return {
         "": "".join(str(form(number)) for number in range(2 * PERIOD)),
         **{key: forms if len(forms) > 1 else forms[0] for key, forms in found.items()},
-        **{
-            f"block/{word.text}": f"{{{word.text}}} "
-            + ByLanguage(zip(languages(), word.says, strict=False))[language]
-            for word in WORDS.values()
-            if word.stands_for
-        },
     }
 
 

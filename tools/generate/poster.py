@@ -97,7 +97,7 @@ def _with_fixed(rows: Iterable[str], language: str) -> Iterator[tuple[str, str]]
         )
         for word in WORDS.values():
             if word.stands_for and f"{{{word.stands_for.partition('(')[0]}}}" in code:
-                yield word.text, word.says[language != "en"]
+                yield word.text, text("studio", f"block/{word.text}", language).partition("} ")[2]
 
 
 def posters(command: str) -> dict[str, Callable[[], str]]:

@@ -31,16 +31,12 @@ class Argument(NamedTuple):
 
 
 class Word(NamedTuple):
-    """A word with the role `fixed` stands for an instruction with its values, `BEEP(0.5, 440)`.
-
-    `says` is what the poster and its block say that it does, in English and Spanish.
-    """
+    """A word with the role `fixed` stands for an instruction with its values, `BEEP(0.5, 440)`."""
 
     text: str
     role: str
     arguments: tuple[Argument, ...] = ()
     stands_for: str = ""
-    says: tuple[str, str] = ("", "")
 
     @property
     def is_call(self) -> bool:

@@ -31,7 +31,6 @@ def description() -> dict[str, Any]:
                 "role": word.role,
                 "usage": word.usage,
                 "example": word.example,
-                "says": word.says,
                 "arguments": [_range(each.low, each.high, each.sample) for each in word.arguments],
             }
             for word in WORDS.values()
