@@ -79,6 +79,11 @@ def text(name: str, key: str, language: str) -> str:
     return said
 
 
+def keys(name: str) -> list[str]:
+    """Return the keys of a catalogue, which gettext itself tells nobody."""
+    return [key for key in vars(catalogue(name, SOURCE))["_catalog"] if isinstance(key, str)]
+
+
 def told_in(name: str, key: str) -> list[str]:
     """Return the languages in which a text is there, the one that is translated first."""
     english = text(name, key, SOURCE)

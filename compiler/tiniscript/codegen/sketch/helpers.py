@@ -2,7 +2,7 @@
 
 Each is text whose `$words` are names that `texts` has: a function that stands in another's text
 is written, too. `$N` is the type of numbers. Parameters and own variables are English here;
-`texts.LOCALS` has them in Spanish.
+the catalogue `sketch` has them in each language.
 """
 
 from __future__ import annotations
