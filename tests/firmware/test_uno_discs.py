@@ -14,6 +14,7 @@ from tiniscript import compile_text
 from tiniscript.bytecode.image import unpack
 from tiniscript.link.names import fault_name
 from tiniscript.link.requests import OK
+from tiniscript.link.session import Session
 from tiniscript.virtual.wheels import Roughness
 
 
@@ -39,6 +40,31 @@ def test_a_wheel_whose_disc_tells_nothing_is_stuck(sketch: Path) -> None:
         assert robot.until(status := robot.session.status()) == OK
         assert status.outcome and fault_name(status.outcome.values.fault) == "STUCK_RIGHT"
         assert not any(wheel.wanted for wheel in robot.wheels.both)
+
+
+@pytest.mark.parametrize("how", ["UNTIL", "S", "client", "lost link"])
+def test_what_ends_a_move_early_ends_it_at_once(how: str, sketch: Path) -> None:
+    """On the chip, too: both motors are off, and no correction drives them again."""
+    text = {"UNTIL": "F(200 CM, 40) UNTIL(TIME > 0.6); SHOW(1); W(1)",
+            "S": "F(200 CM, 40); W(1)\nTASK\nW(0.6); S\nEND_TASK"}  # fmt: skip
+    robot = Driven(sketch, 1, (107.5, 92.5), Roughness(0.005))
+    with robot.uno:
+        image = unpack(compile_text(text.get(how, "F(200 CM, 40)"), ROBOT.kit).image)
+        assert robot.until(robot.session.hello()) == OK
+        assert robot.until(robot.session.upload(image)) == OK
+        robot.run(500)
+        assert all(wheel.wanted for wheel in robot.wheels.both)
+        if how == "client":
+            robot.session.stop(robot.now_ms)
+        elif how == "lost link":
+            robot.session = Session(2, ROBOT.board.baud, 0)  # which says nothing
+            robot.run(1000)
+        robot.run(140)
+        assert not any(wheel.wanted for wheel in robot.wheels.both)
+        for _ in range(40):
+            robot.run(20)
+            assert not any(wheel.wanted for wheel in robot.wheels.both)
+        assert 3 < robot.pose.x_cm < 40
 
 
 def test_a_nano_with_discs_has_tasks(tmp_path_factory: pytest.TempPathFactory) -> None:
