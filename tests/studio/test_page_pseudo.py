@@ -69,29 +69,3 @@ def test_longer_texts_fit_into_every_screen(browser: Browser) -> None:
                 cut[screen, width] = page.evaluate(CUT)
         assert {where: each for where, each in cut.items() if each} == {}
         pages.close()
-
-
-def test_longer_texts_fit_on_the_wall_of_a_class(browser: Browser) -> None:
-    """Ten pupils, and what a teacher reads of one of them."""
-    with studio.taught([]) as made:
-        pages = Pages(browser, made.server.address)
-        page = pages.visit(made.server.entrance(), "wall", is_alone=True)
-        page.route("**/texts.en.json", _answer)
-        page.reload()
-        joined = {"do": "join", "code": made.room.code}
-        for number in range(10):
-            made.room.answer("", f"192.0.2.{number}", {**joined, "name": f"Maximiliano {number}"})
-        page.locator("#class button", has_text="lóñg").first.wait_for()
-        page.locator("#wall li").nth(9).wait_for()
-        cut = {}
-        for width, height in SIZES:
-            page.set_viewport_size({"width": width, "height": height})
-            page.evaluate(SETTLED)
-            cut[width, "all"] = page.evaluate(CUT)
-            page.locator("#wall li .see").first.click()
-            page.locator("#big_pupil h2").wait_for()
-            page.evaluate(SETTLED)
-            cut[width, "one"] = page.evaluate(CUT)
-            page.click("#big_pupil [data-text=close]")
-        assert {where: each for where, each in cut.items() if each} == {}
-        pages.close()
