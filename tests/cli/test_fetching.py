@@ -229,7 +229,7 @@ def test_a_page_of_other_sources_is_told(
             person = Person(clone, clone.studio(*words))
             started.append(person)
             seen = person.sees("http://127.0.0.1:")
-            assert (said in seen) is (' '.join(build) in seen) is changes, seen
+            assert (said in seen) is (" ".join(build) in seen) is changes, seen
         clone.root.joinpath(name).unlink()
 
 

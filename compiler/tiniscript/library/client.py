@@ -15,7 +15,7 @@ from tiniscript.bytecode.image import Image
 from tiniscript.library import opening
 from tiniscript.library.errors import ProgramError, RobotError
 from tiniscript.library.refusing import refusal
-from tiniscript.link import errors, ports
+from tiniscript.link import errors
 from tiniscript.link.connection import PendingRequest, Requester, reason_of
 from tiniscript.link.messages import SAVED_LOW_SUPPLY, SAVED_SAVING, SAVED_STORED
 from tiniscript.link.outcomes import CANCELLED, LOOK_S, Event, Gone
@@ -109,6 +109,8 @@ class Client:
         """Send HELLO, but not so early that a board stays in its bootloader."""
         if self.line.held_by:  # the port is open already
             return self.wait(self.search())
+        from tiniscript.link import ports
+
         if ports.is_radio(self.port):  # else opening it has reset the board
             return self.wait(self.search())
         sleep(opening.QUIET_S.get(board or self.profile.board.chip, 0.0))

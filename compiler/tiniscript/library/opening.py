@@ -15,7 +15,7 @@ from typing import IO, TYPE_CHECKING
 
 from tiniscript.base.source import printable
 from tiniscript.library.errors import RobotError
-from tiniscript.link import errors, known_ports, ports
+from tiniscript.link import errors, known_ports
 from tiniscript.link.connection import LinkConnection
 from tiniscript.link.errors import PortError
 from tiniscript.link.port_names import is_address, is_at_broker, is_name
@@ -84,10 +84,11 @@ def _opened_line(
     """
     from tiniscript.link.keys import KeyFile
     from tiniscript.link.line import Line
+    from tiniscript.link.ports import opened
     from tiniscript.link.session import Session
 
     try:
-        device = ports.opened(address, baud, limit_s)
+        device = opened(address, baud, limit_s)
     except BaseException as failure:
         if lock is not None:
             lock.close()
@@ -115,6 +116,8 @@ def port_error(port: str, failure: PortError, language: str = "en") -> RobotErro
     if failure.reason == errors.FORBIDDEN and sys.platform.startswith("linux"):
         reason = "port_forbidden_linux"
     if failure.reason == errors.MISSING:
+        from tiniscript.link import ports
+
         known = ", ".join(each.port for each in ports.listed())
         if known:
             reason, values["known"] = "port_missing_but", shown(known)
@@ -158,6 +161,8 @@ def _joined(port: str, verb: str, baud: int | None, language: str) -> SharedLine
 
 def _resolved(port: str, language: str) -> str:
     """Return the address of a robot that is named. Raises RobotError."""
+    from tiniscript.link import ports
+
     try:
         return ports.resolved(port)
     except errors.PortError as failure:

@@ -8,7 +8,7 @@ no retry: `session` does.
 from __future__ import annotations
 
 from collections.abc import Generator, Mapping
-from typing import Any, Generic, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
 
 from tiniscript.base.source import printable
 from tiniscript.bytecode.image import HEADER_BYTES, STARTS, Image
@@ -39,7 +39,9 @@ from tiniscript.link.payloads import (
     ReceiptReply,
     SentReply,
 )
-from tiniscript.link.seal import Seal
+
+if TYPE_CHECKING:
+    from tiniscript.link.seal import Seal
 
 OK = STATUSES["OK"]
 MODE_BYTES, OFFSET_BYTES = 1, 2  # of LIVE and PROGRAM before the code, of DATA before its bytes

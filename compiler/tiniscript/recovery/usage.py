@@ -63,7 +63,8 @@ def with_usage(found: Sequence[Diagnostic], source: Source, kit: Kit) -> list[Di
     """Return what is wrong with a text, in words that say how it is written."""
     ends = [each.values["right"] for each in found if each.code is codes.NOT_OPEN]
     teller = _Usage(source, kit, ends[0] if len(ends) == 1 and ends[0] == "LOOP" else "")
-    found = [each for each in found if len(found) == 1 or not teller.has_its_end(each)]
+    if len(found) > 1:
+        found = [*(e for e in found[:_MANY] if not teller.has_its_end(e)), *found[_MANY:]]
     told = [teller.told(each) for each in found[:_MANY]]
     near = {it.values.get("near", "").partition("(")[0] for it in told}
     is_near = bool(teller.unopened) and teller.unopened in near
@@ -263,9 +264,11 @@ class _Usage:
 
     def has_its_end(self, found: Diagnostic) -> bool:
         """Whether the end that is missed stands on the line of its header, behind a mistake."""
-        line = self.source.text[found.span.end :].partition("\n")[0]
-        words = lexemes(without_note(line)[0]) if found.code is codes.NEVER_ENDS else []
-        return any(ENDED.get(each.text) == found.values["word"] for each in words)
+        if found.code is not codes.NEVER_ENDS:
+            return False
+        line = self.source.text[found.span.end :].partition("\n")[0].partition("//")[0]
+        ends = "|".join(end for end, word in ENDED.items() if word == found.values["word"])
+        return bool(re.search(rf"(?i)\b(?:{ends})\b", line))
 
     def until(self, found: Diagnostic) -> Diagnostic:
         asked = re.compile(r"(?i)UNTIL\s*(\([^()\n]+\))").match(self.source.text, found.span.start)

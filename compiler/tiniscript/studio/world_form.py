@@ -9,7 +9,7 @@ import json
 import math
 from typing import Any
 
-from tiniscript.base.languages import SOURCE, languages
+from tiniscript.base.languages import SOURCE, ByLanguage, languages
 from tiniscript.virtual.geometry import Point
 from tiniscript.virtual.world import World
 from tiniscript.virtual.worlds import PARTS, POINTS
@@ -53,8 +53,9 @@ def toml_of(form: Form) -> str:
     labels = form["labels"]
     if set(labels.values()) == {form["name"]}:
         labels = {}  # the name of a file, which the next one may have differently
-    other = {each: label for each, label in labels.items() if label != labels[SOURCE]}
-    labels = {SOURCE: labels[SOURCE], **other} if labels else {}
+    else:  # without what the catalogue of names says of it
+        said = ByLanguage({SOURCE: labels[SOURCE]})
+        labels = {**said, **{each: name for each, name in labels.items() if name != said[each]}}
     tables = [
         _table("[floor]", floor),
         _table("[start]", form["start"]),

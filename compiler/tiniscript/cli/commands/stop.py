@@ -9,10 +9,8 @@ from tiniscript.cli import inputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot.connect import Connection
-from tiniscript.cli.robot.fleet import Again, together
 from tiniscript.cli.robot.member import Member, Result, are_many
 from tiniscript.cli.texts import text
-from tiniscript.link.authority import NOT_OWNER, WRONG_KEY
 
 
 def run(options: Namespace, language: str) -> int:
@@ -25,6 +23,8 @@ def run(options: Namespace, language: str) -> int:
         options.virtual = options.virtual and not options.ports
         is_many = are_many(options)
     if is_many:
+        from tiniscript.cli.robot.fleet import together
+
         return together(options, robot, language, _one_of_many)
     while True:
         with Connection(options, robot, language) as connection:
@@ -45,6 +45,8 @@ def run(options: Namespace, language: str) -> int:
 
 def _hold_back(connection: Connection) -> None:
     """Have a robot that was stopped wait for the teacher, or its button. Raises CommandError."""
+    from tiniscript.link.authority import NOT_OWNER, WRONG_KEY
+
     connection.meet()
     reply = connection.wait(connection.do(lambda session: session.hold_back()))
     if reply.status in (NOT_OWNER, WRONG_KEY):
@@ -66,5 +68,7 @@ def _one_of_many(connection: Connection, member: Member) -> Result:
             return Result(True, text("held_back_short", connection.language))
         return Result(True, text("robot_stopped", connection.language))
     if _may_be_opened(connection):
+        from tiniscript.cli.robot.fleet import Again
+
         raise Again
     raise CommandError(3, "not_confirmed", port=shown(connection.port))

@@ -23,7 +23,7 @@ from tiniscript.library import opening
 from tiniscript.library.client import Client
 from tiniscript.library.errors import TiniScriptError
 from tiniscript.library.known_kits import shipped_of_kit as found
-from tiniscript.link import known_ports, port_names, ports
+from tiniscript.link import known_ports, port_names
 from tiniscript.link.connection import PendingRequest, Requester, reason_of
 from tiniscript.link.errors import PortError
 from tiniscript.link.messages import OWNED, STATUSES, YOURS
@@ -310,6 +310,8 @@ def about_virtual(running: directory.Running, language: str) -> str:
 def _asked(language: str, can_bring: bool, virtual: list[directory.Running]) -> str:
     """Let the person choose a port, or one of the virtual robots."""
     names = known_ports.known().names
+    from tiniscript.link import ports
+
     found = ports.listed()
     choices = [each.port for each in found]
     choices += [port for port in names if port not in choices and is_address(port)

@@ -15,7 +15,7 @@ from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.texts import text
-from tiniscript.link import known_ports, ports
+from tiniscript.link import known_ports
 from tiniscript.link.port_names import is_there, same_for_all
 from tiniscript.link.sharing.registry import all_found
 from tiniscript.virtual import directory
@@ -54,6 +54,8 @@ def targets(options: Namespace) -> list[Target]:
     if options.all:
         wanted = [registration.port for registration in all_found()]
         wanted += [port for port in known if is_there(port) and not directory.is_gone(port)]
+        from tiniscript.link import ports
+
         wanted += [found.port for found in ports.listed()]
         wanted += [robot.address for robot in directory.running()]
     names = {same_for_all(port): name for port, name in reversed(known.items())}

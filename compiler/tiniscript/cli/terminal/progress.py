@@ -6,11 +6,14 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import partial
-from threading import Timer
 from time import monotonic
+from typing import TYPE_CHECKING
 
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.texts import text
+
+if TYPE_CHECKING:
+    from threading import Timer
 
 BLINK_S = 0.3
 COLUMNS = 30
@@ -48,13 +51,15 @@ MOMENT_S = 2.0
 
 
 class Silence:
-    """Somebody waits, and has been told nothing yet."""
+    """Somebody waits, and has been told nothing yet. Where nobody looks on, nothing is imported."""
 
     def __init__(self, said: str) -> None:
         self._timer: Timer | None = None
         if sys.stderr.isatty():
+            import threading
+
             say = partial(print, said, file=sys.stderr, flush=True)
-            self._timer = Timer(MOMENT_S, say)
+            self._timer = threading.Timer(MOMENT_S, say)
             self._timer.daemon = True
             self._timer.start()
 
