@@ -285,7 +285,8 @@ export class Blocks {
       Blockly.Events.enable();
     }
     const [first] = wrong;
-    if (first && this.#saidAt(first) !== this.#closed) this.#open(first);
+    if (!first) this.#closed = ''; // whoever makes the mistake again is told again
+    else if (this.#saidAt(first) !== this.#closed) this.#open(first);
   }
 
   /** @param {string | undefined} id @returns {Blockly.icons.WarningIcon | null} */
