@@ -53,7 +53,7 @@ def toml_of(form: Form) -> str:
     labels = form["labels"]
     if set(labels.values()) == {form["name"]}:
         labels = {}  # the name of a file, which the next one may have differently
-    else:  # without what the catalogue of names says of it
+    elif SOURCE in labels:  # without what the catalogue of names says of it
         said = ByLanguage({SOURCE: labels[SOURCE]})
         labels = {**said, **{each: name for each, name in labels.items() if name != said[each]}}
     tables = [
