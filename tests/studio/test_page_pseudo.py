@@ -14,6 +14,10 @@ if TYPE_CHECKING:
     from playwright.sync_api import Browser, Route
 
 SIZES = ((1366, 768), (390, 844))
+WINDOWS = (("#class_come", "#big_code"), ("#wall .see >> nth=0", "#big_pupil"),
+           ("#class_settings", "#class_window"))  # fmt: skip
+WANTS = {"do": "here", "text": "SI|F(1, 50)", "robot": "tinibot", "lessons": [], "wants": True,
+         "hand": True}  # fmt: skip
 # Each text that can be seen, and whether what holds it cuts it, or it leaves its button or the
 # page. What may be scrolled, and what only screen readers read, cuts nothing.
 CUT = """() => {
@@ -67,5 +71,37 @@ def test_longer_texts_fit_into_every_screen(browser: Browser) -> None:
                 turn(page, "robot" if screen in BESIDE else "program")
                 page.evaluate(SETTLED)
                 cut[screen, width] = page.evaluate(CUT)
+        assert {where: each for where, each in cut.items() if each} == {}
+        pages.close()
+
+
+def test_longer_texts_fit_on_the_wall_of_a_class(browser: Browser) -> None:
+    """The wall of ten pupils who want a robot and help, and each window in front of it."""
+    with studio.taught([]) as made:
+        joins = {"do": "join", "code": made.room.code}
+        for number in range(10):
+            join = {**joins, "name": f"Maximiliano {number}"}
+            token = made.room.answer("", f"192.0.2.{number}", join)["token"]
+            made.room.answer(token, f"192.0.2.{number}", WANTS)
+        pages = Pages(browser, made.server.address)
+        page = pages.visit(made.server.entrance(), "wall", is_alone=True)
+        page.route("**/texts.en.json", _answer)
+        page.reload()
+        page.locator("#class_settings", has_text="Cläss").wait_for()
+        page.locator("#wall li").nth(9).wait_for()
+        page.evaluate("document.querySelector('#class_settings').style.width = '3em'")
+        assert page.evaluate(CUT) != []  # it would be noticed
+        page.evaluate("document.querySelector('#class_settings').style.width = ''")
+        cut = {}
+        for width, height in SIZES:
+            page.set_viewport_size({"width": width, "height": height})
+            page.evaluate(SETTLED)
+            cut["wall", width] = page.evaluate(CUT)
+            for opens, window in WINDOWS:
+                page.click(opens)
+                page.locator(f"{window} [data-text=close]").wait_for()
+                page.evaluate(SETTLED)
+                cut[window, width] = page.evaluate(CUT)
+                page.click(f"{window} [data-text=close]")
         assert {where: each for where, each in cut.items() if each} == {}
         pages.close()
