@@ -20,6 +20,7 @@ from hypothesis.strategies import SearchStrategy
 
 from tests.support.casefile import ROOT
 from tiniscript import compile_text, robots
+from tiniscript.base.languages import languages
 from tiniscript.base.source import Source
 from tiniscript.bytecode.image import pack, unpack
 from tiniscript.bytecode.verify import verify
@@ -72,7 +73,7 @@ def changed_texts(pattern: str) -> SearchStrategy[str]:
 
 
 def check_program(text: str) -> None:
-    """It has an image that the verifier takes, or mistakes that can be said in both languages."""
+    """It has an image that the verifier takes, or mistakes that can be said in every language."""
     compiled = compile_text(text, KIT)
     assert compiled.is_right != any(each.is_mistake for each in compiled.diagnostics)
     if compiled.is_right:
@@ -80,7 +81,7 @@ def check_program(text: str) -> None:
         verify(image.code, len(KIT.sensors), len(KIT.actuators))
     source = Source(text, "x.ts")
     for each in compiled.diagnostics:
-        for language in ("en", "es"):
+        for language in languages():
             assert as_text(message(each, source, language), source, language)
 
 

@@ -6,7 +6,7 @@ import re
 
 from tests.support.casefile import ROOT
 
-SPECIAL = re.compile(r"""(?:==|===|!=) ?["'](?:es|en)["']|["'](?:es|en)["'] (?:==|===)""")
+SPECIAL = re.compile(r"""(?:==|===|!=) ?["'](?:es|en|pt)["']|["'](?:es|en|pt)["'] (?:==|===)""")
 # Places that still choose between English and Spanish themselves, by file. Take one out: never add.
 LEFT = {
     "tools/builds/stick/install.py": 3,  # runs before the package is there

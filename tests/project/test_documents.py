@@ -15,7 +15,7 @@ import pytest
 import tiniscript
 from tests.support.casefile import ROOT, Example, example_robot, examples
 from tiniscript.cli import main
-from tools.site.documents import sources
+from tools.site.documents import FRONT, links, sources
 
 DOCUMENTS = sorted([*ROOT.glob("*.md"), *ROOT.glob("docs/**/*.md")])
 
@@ -45,6 +45,12 @@ def commands() -> list[Command]:
             elif collecting:
                 found[-1] = found[-1]._replace(shown=found[-1].shown + row + "\n")
     return found
+
+
+@pytest.mark.parametrize(("language", "name"), sources(ROOT, FRONT).items())
+def test_every_readme_leads_to_the_others(language: str, name: str) -> None:
+    row = (ROOT / name).read_text(encoding="utf-8").splitlines()[2]
+    assert row == " · ".join(links(language, FRONT, sources(ROOT, FRONT)))
 
 
 @pytest.mark.parametrize("command", commands(), ids=lambda c: f"{c.document.name}:{c.line}")

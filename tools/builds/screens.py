@@ -1,6 +1,6 @@
 """Pictures of each screen of the studio, to look at: `python -m tools.builds.screens FOLDER`.
 
-Three sizes, both languages, light and dark. They show what is wrong; nobody keeps them.
+Three sizes, each language, light and dark. They show what is wrong; nobody keeps them.
 """
 
 from __future__ import annotations
@@ -9,6 +9,8 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
+
+from tiniscript.base.languages import languages
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
@@ -103,7 +105,7 @@ def pictures(folder: Path) -> list[Path]:
     found = []
     with driver() as playwright, browser(playwright) as opened, served() as server:
         for theme in ("light", "dark"):
-            for language in ("en", "es"):
+            for language in languages():
                 pages = Pages(opened, server.address)
                 page = pages.open("start", color_scheme=theme, reduced_motion="reduce")
                 speak(page, language)

@@ -92,7 +92,7 @@ GOALS: tuple[Goal, ...] = (
          "clients", 10_000, 100, "tests.firmware.test_hostile_client {count} --seed {seed}", 1000),
     Goal("fuzz-mqtt", f"Whatever a broker says, an ESP32's MQTT reader finds the same as a second reader, within its memory ({FUZZ}).",
          "inputs", 10_000_000, 200_000, "tests.fuzz.harnesses mqtt {count} --seed {seed}"),
-    Goal("fuzz-compiler", "The compiler compiles any text, or refuses it with mistakes that it can name in both languages.",
+    Goal("fuzz-compiler", "The compiler compiles any text, or refuses it with mistakes that it can name in every language.",
          "texts", 1_000_000, 5_000, "tests.fuzz.test_python compiler {count} --seed {seed}"),
     Goal("fuzz-profiles", "Any robot profile is read or refused.",
          "texts", 1_000_000, 5_000, "tests.fuzz.test_python profiles {count} --seed {seed}"),

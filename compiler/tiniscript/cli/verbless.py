@@ -1,6 +1,6 @@
 """Which verb is meant by a word that is none: `tsc uplod`, `tsc prog.ts`, `tsc help "put on"`.
 
-A question may have words of both languages: the tables of verbs and options have both.
+A question may have words of several languages: the tables of verbs and options have all of them.
 """
 
 from __future__ import annotations

@@ -24,7 +24,7 @@ from tiniscript.library.texts import sentence
 from tiniscript.robots.profile import ProfileRefused, Robot
 from tiniscript.robots.refusals import describe
 
-Language = str  # "en" or "es"
+Language = str  # the code of one, such as "en"
 SHOWN = 200  # characters of a name or a value in a sentence
 REMARK = 60  # characters of a line in a listing
 MOST_BYTES = 1_000_000  # of a file

@@ -133,7 +133,7 @@ class _Counter:
 
 
 def plan_of(robot: Robot, language: str) -> Plan:
-    """Return the plan of a robot, in `en` or `es`. The robot's chip is one that has firmware."""
+    """Return the plan of a robot, in a language. The robot's chip is one that has firmware."""
     kit, board, body = robot.kit, robot.board, robot.body
     chip = CHIPS[board.chip]
     counter = _Counter(chip, language)
