@@ -435,7 +435,7 @@ def test_all_sources_are_not_yet_all_of_it(tmp_path: Path, monkeypatch: pytest.M
     assert sources is not None
     with pytest.raises(building.CannotBuild):
         building.build(sources, robots.load("tinibot"), found.append)
-    assert {each.phase for each in found} == {COMPILING}, "nothing is left out for what fails so"
+    assert {each.phase for each in found} <= {COMPILING}, "nothing is left out for what fails so"
     assert 60 < found[-1].percent < 90
 
 

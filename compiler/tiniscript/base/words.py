@@ -199,8 +199,10 @@ def nearest(word: str, known: Iterable[str]) -> str | None:
         return None
     allowed = 1 if len(word) <= 5 else 2
     best, its_edits = None, allowed + 1
+    letters = set(word)
     for other in known:
-        if len(other) > 1 and abs(len(other) - len(word)) <= allowed:
+        is_far = abs(len(other) - len(word)) > allowed or len(letters.difference(other)) > allowed
+        if len(other) > 1 and not is_far:
             edits = _edits(word, other)
             if edits == 1 and len(word) <= 3 and len(other) == len(word):
                 edits += sorted(word) != sorted(other)

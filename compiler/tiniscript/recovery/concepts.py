@@ -10,7 +10,7 @@ import re
 import unicodedata
 from collections.abc import Iterable, Sequence
 from functools import cache, cached_property, lru_cache
-from itertools import pairwise
+from itertools import pairwise, takewhile
 from typing import NamedTuple
 
 from tiniscript.base.kit import Kit
@@ -210,7 +210,7 @@ def _names_of(line: tuple[Lexeme, ...]) -> _OfLine:
     found = _OfLine(set(), set(), set(), set(), {})
     head = line[2:] if len(line) > 1 and line[1].text == "|" else line
     depth = 0
-    for token, after in pairwise([*line, made(";")]):
+    for at, (token, after) in enumerate(pairwise([*line, made(";")]), 2):
         depth += (token.text == "(") - (token.text == ")")
         if token.kind is not WORD:
             continue
@@ -222,9 +222,11 @@ def _names_of(line: tuple[Lexeme, ...]) -> _OfLine:
         if is_def and after.kind is WORD and after.text not in WORDS:
             if after.text not in ("MAIN", "SETUP", "PRINCIPAL"):
                 found.defs.add(after.text)
-                inside = texts(line)[texts(line).index(after.text) + 1 :]
-                is_open = inside[:1] == ("(",) and ")" in inside
-                given = inside[1 : inside.index(")")][::2] if is_open else ()
+                given: tuple[str, ...] = ()
+                if at < len(line) and line[at].text == "(":
+                    inside = texts(takewhile(lambda each: each.text != ")", line[at + 1 :]))
+                    is_closed = at + 1 + len(inside) < len(line)
+                    given = inside[::2] if is_closed else ()
                 if all(each.isidentifier() and each not in WORDS for each in given):
                     found.parameters[after.text] = given
                     found.variables.update(given)
