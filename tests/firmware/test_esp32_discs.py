@@ -103,6 +103,7 @@ def counting(profile: Robot) -> tuple[Esp32Robot, dict[str, int]]:
     return robot, pins
 
 
+@pytest.mark.sampled("profile")
 @KINDS
 @pytest.mark.parametrize("major", [2, 3])
 def test_it_goes_and_turns_as_far_as_was_said(profile: Robot, major: int) -> None:

@@ -199,6 +199,7 @@ def test_a_mistake_that_waits_to_be_said_is_forgotten_by_the_next_line(
     assert set(others) <= {first, "// Waiting for ENDIF"} and others[-1] != first
 
 
+@pytest.mark.sampled("way")
 @pytest.mark.parametrize("way", ["live", "upload", "long upload"])
 def test_code_that_holds_a_typed_stop_runs(uno_at: tuple[Uno, int], way: str) -> None:
     """A frame that arrives whole is not stopped by a line of S among its bytes."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import json
 import os
 import re
 import shutil
@@ -78,25 +79,40 @@ def test_a_language_that_is_deleted_is_missed_by_no_other(language: str, tmp_pat
     shutil.copytree(FOLDER.parent, package, ignore=left_out)
     shutil.rmtree(package / "languages" / language)
     others = [each for each in languages.languages() if each != language]
-    for words in (
-        ("check", "-e", "F(2 80)"), ("explain", "TS017"), ("lesson", "show", "1", "--teacher"),
-        ("wiring", "--robot", "liner"), ("show", "-e", "SI|F(2, 80)", "--arduino"),
-        ("run", "-e", "SI|F(2, 80)"), ("complie",), ("lesson",),
-    ):  # fmt: skip
-        done = [_from(tmp_path, *words, "--lang", each) for each in others]
-        assert done == [_from(FOLDER.parent.parent, *words, "--lang", each) for each in others]
-    refused = _from(tmp_path, "check", "-e", "W(1)", "--lang", language)
-    assert refused[0] == 2 and all(each in refused[2] for each in others)
+    commands = [
+        [*words, "--lang", other]
+        for other in others
+        for words in (
+            ("check", "-e", "F(2 80)"), ("explain", "TS017"), ("lesson",), ("complie",),
+            ("lesson", "show", "1", "--teacher"), ("wiring", "--robot", "liner"),
+            ("show", "-e", "SI|F(2, 80)", "--arduino"), ("run", "-e", "SI|F(2, 80)"),
+        )
+    ]  # fmt: skip
+    commands.append(["check", "-e", "W(1)", "--lang", language])
+    *done, (code, refused) = _of_package(tmp_path, commands)
+    assert done == _of_package(FOLDER.parent.parent, commands)[:-1]
+    assert code == 2 and all(each in refused for each in others)
 
 
-def _from(place: Path, *words: str) -> tuple[int, str, str]:
-    """Return what the command of a package says: its exit code, its output and its errors."""
+def _of_package(place: Path, commands: list[list[str]]) -> list[tuple[int, str]]:
+    """Return what the command of a package says each time, in one process."""
+    script = (
+        "import contextlib, io, json, sys\n"
+        "from tiniscript.cli import main\n"
+        "done = []\n"
+        "for words in json.load(sys.stdin):\n"
+        "    said = io.StringIO()\n"
+        "    with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):\n"
+        "        code = main(words)\n"
+        "    done.append((code, said.getvalue()))\n"
+        "json.dump(done, sys.stdout)"
+    )
     done = subprocess.run(
-        [sys.executable, "-m", "tiniscript", *words], cwd=place, capture_output=True,
-        env={**os.environ, "PYTHONPATH": str(place), "PYTHONIOENCODING": "utf-8"}, text=True,
-        encoding="utf-8", timeout=HANGS_S,
+        [sys.executable, "-c", script], input=json.dumps(commands), cwd=place, check=True,
+        env={**os.environ, "PYTHONPATH": str(place)}, text=True, capture_output=True,
+        timeout=HANGS_S,
     )  # fmt: skip
-    return done.returncode, done.stdout, done.stderr
+    return [(code, said) for code, said in json.loads(done.stdout)]
 
 
 @pytest.mark.parametrize(

@@ -97,12 +97,13 @@ def test_every_block_says_something_and_nothing_else_does() -> None:
 def test_a_plural_has_the_form_of_its_number() -> None:
     """A rule repeats itself after a hundred: the page has a digit for each number before that."""
     for language in languages():
-        forms = page_texts(language)[""]
+        texts = page_texts(language)
+        forms = texts[""]
         said = catalogue("studio", language)
         for number in (*range(200), 1000, 1001, 2101, 1_000_000):
             form = forms[number if number < 100 else 100 + number % 100]
             wanted = said.ngettext("mistakes", "mistakes", number)
-            assert page_texts(language)["mistakes"][int(form)] == wanted, (language, number)
+            assert texts["mistakes"][int(form)] == wanted, (language, number)
 
 
 def test_nothing_makes_markup_of_a_text() -> None:
