@@ -154,7 +154,7 @@ def test_a_text_with_an_empty_gap_gives_way_to_the_next() -> None:
     source = Source("Y")
     assert message(known, source, "en").message.endswith("Did you mean YY?")
     assert message(unknown, source, "en").message == "There is no variable or sensor Y"
-    assert message(unknown, source, "en").fix.startswith("Write a number or a sensor there.")
+    assert message(unknown, source, "en").fix.startswith("Which number is Y?")
 
 
 def test_braces_ats_and_line_ends_in_a_program_are_only_shown() -> None:

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from tiniscript.base.kit import Kit
 from tiniscript.base.source import Edit, Source, Span, applied, overlap
-from tiniscript.base.words import WORDS, nearest
+from tiniscript.base.words import NOTE_WORDS, WORDS, nearest
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import CODES, Diagnostic, Repair
 from tiniscript.recovery import lines, rows
@@ -31,6 +31,7 @@ _WITH_RIGHT = (codes.OTHER_LANGUAGE, codes.OTHER_SIGN, codes.END_ALONE, codes.OT
 _AS_CHECKED = (codes.ARGUMENT_COUNT, codes.WANTS_CONDITION, codes.NO_BRACKETS_HERE)
 _FIRST_NUMBERS = (1, 10, 100)
 _NUMBER = re.compile(r"(?im)^[ \t]*([0-9]{1,4})[ \t]+(?=[A-Z])(?!veces|times|x\b|vez)")
+_NOTE = re.compile(rf"(?i)\b(?:{'|'.join(NOTE_WORDS)})\b")  # its 4 is no number: C4
 Check = Callable[[str], Sequence[Diagnostic]]
 
 
@@ -233,7 +234,7 @@ def _keeps(text: str, new: str, said_with: set[str], is_sure: bool) -> bool:
     closed = Counter(re.findall(r"\bEND_?DEF +(\w+)|\bFIN +(\w+)", _bare(text).upper()))
     before -= Counter({name: n for pair, n in closed.items() for name in pair if after[name] > 1})
     is_kept = all(after[name] >= before[name] for name in names)
-    old, kept = (Counter(re.findall("[0-9]", _bare(it))) for it in (text, new))
+    old, kept = (Counter(re.findall("[0-9]", _NOTE.sub("", _bare(it)))) for it in (text, new))
     has_all = old == kept if is_sure else not old - kept
     return is_kept and (has_all or bool(said_with & rows.OTHER_NUMBERS))
 

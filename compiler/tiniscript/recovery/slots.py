@@ -136,7 +136,7 @@ class _Reader:
             said == ("1",) and after not in (*UNITS, ",", ")") and not self._is_and_a_half(k + 1)
         )
         if said and self.command and not is_one:
-            number, k = self._sum(int(said[0]), k + 1)
+            number, k = self._sum(float(said[0]), k + 1)
             self.is_sure = self.is_sure and said != ("1",)
             self.cost += 0.5
             return number, k
@@ -156,7 +156,7 @@ class _Reader:
             said = said_of(self.text(place), "number")
             if not said or number % 10 ** len(said[0]):
                 break
-            number, k = number + int(said[0]), place + 1
+            number, k = number + float(said[0]), place + 1
         return float(number), k
 
     def _number(self, k: int) -> int | None:

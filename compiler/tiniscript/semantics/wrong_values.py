@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 
 from tiniscript.base.source import Span
-from tiniscript.base.words import POWER_WORDS, SENSOR_STEMS, UNIT_OF, WORDS
+from tiniscript.base.words import OTHER_WAY, POWER_WORDS, SENSOR_STEMS, WORDS
 from tiniscript.diagnostics import codes
 from tiniscript.recovery.amounts import is_amount, with_number
 from tiniscript.recovery.concepts import meant_by, said_of
@@ -26,8 +26,6 @@ _COMPARED = re.compile(r"[^<>=]{1,40}?\s*(?:<=|>=|<>|[<>=])(?=[^<>=]*$)")  # `X 
 _NEAR = 20  # characters before a name in which its word is looked for
 _TIMES_BEFORE = re.compile(r"(?i)\bLOOP[ \t]*\([ \t]*$")
 _DIGITS = "0123456789"
-_TIME = "2"  # an example of what a variable may hold
-_CALL_BEFORE = re.compile(r"([A-Za-z]+)[ \t]*\(([^()]*)$")
 _TIME_BEFORE = re.compile(r"(?i)\b(?:[FBLRW]|BEEP)[ \t]*\([ \t]*$")  # a time comes first
 
 
@@ -80,25 +78,18 @@ class WrongValues:
             scope.report(codes.USED_BEFORE_SET, span, None, name=name, near=near, **first)
         else:
             near = "" if which or is_variable else near
-            value = self._sample(before) or value_of(name)
             only = next((each for each in sensors if name.startswith(each + "_")), "")
             aside = only if name.rpartition("_")[2] in ASIDE else ""
             alike = near if near and near.rstrip(_DIGITS) == base else ""
             near = "" if aside or alike else only or near
             said = {"alike": alike} if alike and not which else {}
-            value = value or ("0" if said else "")
+            is_said = not (near or said or which or only or is_variable)
+            if is_said and meant in OTHER_WAY:
+                said = {"way": meant, "call": WORDS[meant].example}
+            elif is_said and said_of(name, "colour"):
+                said = {"colour": name}
             scope.report(codes.UNKNOWN_NAME, span, None, found=name, near=near,
-                         value=value, only=only, aside=aside, **said, **which)  # fmt: skip
-
-    @staticmethod
-    def _sample(before: str) -> str:
-        """Return an example of the value of a call in whose brackets a name stands alone."""
-        call = _CALL_BEFORE.search(before)
-        word = WORDS.get(call[1].upper()) if call else None
-        if call is None or word is None or word.text not in ("LOOP", *UNIT_OF, "W", "BEEP"):
-            return ""
-        its = word.arguments[call[2].count(",") :][:1]
-        return "".join(_TIME if each.unit == "s" else each.sample for each in its)
+                         value=value_of(name), only=only, aside=aside, **said, **which)  # fmt: skip
 
     def _amount(self, span: Span, name: str) -> dict[str, str]:
         """Return how the call around `poco` is written, or around the `lento` beside it."""
