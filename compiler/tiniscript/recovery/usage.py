@@ -235,6 +235,8 @@ class _Usage:
 
     def translated(self, span: Span, piece: Span, found: str, fix: str) -> Diagnostic:
         right = fix.partition("(")[0].partition(";")[0]
+        words = [each.text for each in self.tokens(piece)]
+        found = next((each for each in words if self.command(each) == right), found)
         values = {"found": found, "right": right, "fix": fix, "usage": _usage(right)}
         repair = Repair((Edit(piece, fix),), False)
         return Diagnostic(codes.OTHER_LANGUAGE, span, values, piece, repair)
@@ -566,7 +568,7 @@ class _Usage:
 
 def _usage(word: str) -> str:
     word = BLOCK_ENDS.get(ENDED.get(word, ""), word) if word in ENDED else word
-    return WORDS[word].usage if word in WORDS else word
+    return (WORDS[word].usage if word in WORDS else "") or word
 
 
 _SAYS: dict[Code, Callable[[_Usage, Diagnostic], Diagnostic | None]] = {
