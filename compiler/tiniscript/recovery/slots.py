@@ -149,7 +149,7 @@ class _Reader:
             return 0.5, k + 2
         return None
 
-    def _sum(self, number: int, k: int) -> tuple[float, int]:
+    def _sum(self, number: float, k: int) -> tuple[float, int]:
         """Return a number with the smaller ones behind it: `cuatrocientos cuarenta y cinco`."""
         while number % 10 == 0:
             place = k + (self.text(k) in ("Y", "AND"))
@@ -157,7 +157,7 @@ class _Reader:
             if not said or number % 10 ** len(said[0]):
                 break
             number, k = number + float(said[0]), place + 1
-        return float(number), k
+        return number, k
 
     def _number(self, k: int) -> int | None:
         """Read a number with its unit; return where to read on, None where none is here."""
