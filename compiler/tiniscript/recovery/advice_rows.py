@@ -74,8 +74,8 @@ ADVICE = """
 ^ @none v=@word|@num|+|-|*|/|%|(|)+ = x=@name $ | TS042 | found={x}; turned={x}; fix={free} = {v} | DISTANCE - 5 = FALTA => fix=FALTA = DISTANCE - 5
 ^ @none F ( s=UNTIL|HASTA @word+ , n=@num ) $ | TS102 | found={s}; right=UNTIL; usage=F(FOREVER, {n}) UNTIL({distance} < 10) | F(hasta la pared, 60) => usage=F(FOREVER, 60) UNTIL(DISTANCE < 10)
 ^ @none v=@name [ @num ] = @any* $ | TS067 | found={v} | NOTAS[1] = 5 => found=NOTAS
-^ @none most|least|on|off the? s=@noGRIPPER|@noLED $ | TS101 | found={s}; near= | OPEN GRIPPER => found=GRIPPER
-^ @none WHEN|CUANDO|IF @word* FLAG|BANDERA @word* $ | TS102 | found={words}; right=START; fix=START; usage=START | when green flag clicked => fix=START
+^ @none most|least|on|off the|A|O? s=@noGRIPPER|@noLED $ | TS101 | found={s}; near= | OPEN GRIPPER => found=GRIPPER
+^ @none WHEN|AL|AO|IF @word* flag @word* $ | TS102 | found={words}; right=START; fix=START; usage=START | when green flag clicked => fix=START
 # letters for a way
 ^ @none s=FL|LF ( n=@num , @num ) $ | TS101 | found={s}; near=; curve=M(30, 60);W({n});S | FL(1, 60) => curve=M(30, 60);W(1);S
 ^ @none s=FR|RF ( n=@num , @num ) $ | TS101 | found={s}; near=; curve=M(60, 30);W({n});S | FR(1, 60) => curve=M(60, 30);W(1);S
@@ -137,8 +137,8 @@ ADVICE = """
 ^ c=@move <lead> @told* @other @told* <close> $ | TS085 | other={other} | F(1, 80) atras => other=B(1, 80)
 ^ c=@cmd act|most|least w=@told* $ | TS085 | order={words} | F(1, 80) abre la pinza => order=abre la pinza
 ^ c=@cmd CON|WITH w=@start|act @any* $ | TS085 | order={behind} | F(2,80) con SHOW(1) => order=SHOW(1)
-^ c=@asked O|OR|U w=@start @any* $ | TS085 | order={behind} | F(1,50) UNTIL(DISTANCE<10) o L(1,60) => order=L(1,60)
-^ c=@cmd O|OR|U l=@any+ $ | TS136 | fix={choice}; example={choices} | L(1, 60) o R(2, 60) => fix=IF(RANDOM(1, 2) = 1);L(1, 60);ELSE;R(2, 60);ENDIF
+^ c=@asked or w=@start @any* $ | TS085 | order={behind} | F(1,50) UNTIL(DISTANCE<10) o L(1,60) => order=L(1,60)
+^ c=@cmd or l=@any+ $ | TS136 | fix={choice}; example={choices} | L(1, 60) o R(2, 60) => fix=IF(RANDOM(1, 2) = 1);L(1, 60);ELSE;R(2, 60);ENDIF
 # notes
 ^ @none SHOW s=@newname @word* $ | TS070 | words={shown} | SHOW Hola => words=Hola
 ^ c=@cmd ( ) $ | TS085 | extra={words} | F(2,80)() => extra=()

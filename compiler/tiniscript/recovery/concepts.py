@@ -174,7 +174,8 @@ def _in_two_words(word: str) -> str | None:
     """Return what `moverAdelante` means: two words that say one command."""
     for k in range(2, min(len(word), 24) - 1):
         halves = word[:k].rstrip("_"), word[k:].lstrip("_")
-        said = {half if half == "STOP" else concept_of(half) or "" for half in halves}
+        long = [half for half in halves if len(half) > 2]  # `there` is no THE RE
+        said = {half if half == "STOP" else concept_of(half) or "" for half in long}
         beside = [half for half in halves if said_of(half, "turn")]
         with_frame = halves if len(halves[1]) > 3 else halves[:1]  # `irAdelante`, and no GOAL
         beside += [half for half in with_frame if said_of(half, "filler")]

@@ -21,7 +21,6 @@ LONGEST = 40  # words of a sentence
 _NEAR_CM = "10"
 _ASIDE = ("L", "R", "B")  # DISTANCE looks ahead
 _SIDES = _ASIDE[:2]
-_ANDS = ("Y", "E", "AND", ",")
 
 
 class Order(NamedTuple):
@@ -145,12 +144,16 @@ def block(tokens: Sequence[Lexeme], names: Names, is_open: bool) -> str:
             continue
         if word != "LOOP" and command(texts[k], names) in _SIDES:
             return ""  # where the wall is, or where to go
-        is_mixed = any(said_of(each, "then") and each not in _ANDS for each in texts[k:])
+        is_mixed = any(said_of(each, "then") and not _is_and(each) for each in texts[k:])
         if (word == "LOOP" and is_mixed) or (arm < len(texts) and not other):
             return ""
         parts = [header, written(body), *(["ELSE", written(other)] if other else [])]
         return ";".join(parts if is_open else [*parts, BLOCK_ENDS[word]])
     return ""
+
+
+def _is_and(word: str) -> bool:
+    return word == "," or bool(said_of(word, "and"))
 
 
 def _head(word: str, words: Sequence[Lexeme], names: Names) -> str:

@@ -16,7 +16,7 @@ but brackets: @nobrace.
 `becomes` is tokens: `$c` what was captured, `&c` that in words of the language, and functions:
 @not (the opposite question), @same (a number that is another one, too),
 @most and @least (the range of an actuator), @endof (the end of a header), @dec (a decimal comma), @cat (a zero
-apart), @mmss, @cm (of metres), @xn (`x4`), @brace (a brace that was captured), @given and @also (the names in the brackets of a DEF), @join and @known (a name of two
+apart), @mmss, @cm (of metres), @xn (`x4`), @digits (`quatro`), @brace (a brace that was captured), @given and @also (the names in the brackets of a DEF), @join and @known (a name of two
 words). `how`: `first` is made before any other is tried, `applied` may be made without asking,
 `offered` is only shown, as is `first offered`. An example's lines are parted by ⏎.
 
@@ -234,8 +234,8 @@ TOKENS = r"""
 v=@val [ n=@num ) | $v < $n ) | 1 | TS010 | offered | IF(DISTANCE[30)⏎S⏎ENDIF => IF(DISTANCE < 30)⏎S⏎ENDIF
 ! v=@val|( | NOT $v | 1 | TS010 | first | X = TRUE⏎IF(!X);S;ENDIF => X = TRUE⏎IF(NOT X);S;ENDIF
 # comparisons in words: a row for each sense, and a sign
-is? less than? O|OR equal QUE|A|TO? | <= | 1 | TS010 | first | IF(DISTANCE es menor o igual que 10);S;ENDIF => IF(DISTANCE <= 10);S;ENDIF
-more O|OR? equal QUE|A|TO? | >= | 1 | TS010 | first | IF(DISTANCE mayor igual 10);F(1,50);ENDIF => IF(DISTANCE >= 10);F(1,50);ENDIF
+is? less than? or equal QUE|A|TO? | <= | 1 | TS010 | first | IF(DISTANCE es menor o igual que 10);S;ENDIF => IF(DISTANCE <= 10);S;ENDIF
+more or? equal QUE|A|TO? | >= | 1 | TS010 | first | IF(DISTANCE mayor igual 10);F(1,50);ENDIF => IF(DISTANCE >= 10);F(1,50);ENDIF
 is? A? less than|A? | < | 1 | TS010 | first | SI|IF(DISTANCE menor 10);S;ENDIF => SI|IF(DISTANCE < 10);S;ENDIF
 is? A? more than|A? | > | 1 | TS010 | first | IF DISTANCE IS BIGGER THAN 20 F(1,50) ENDIF => IF(DISTANCE > 20);F(1, 50);ENDIF
 is? MAS|MORE than | > | 1 | TS010 | first | IF(DISTANCE es mas de 10);S;ENDIF => IF(DISTANCE > 10);S;ENDIF
@@ -246,7 +246,7 @@ no > | <= | 1 | TS010 | first | IF(DISTANCE NOT > 10);S;ENDIF => IF(DISTANCE <= 
 l=@val is|EQUALS|VALE equal? A|TO|QUE? r=@num|@val | $l = $r | 1 | TS010 | first | si distancia es 10 para => IF(DISTANCE = 10);S;ENDIF
 l=@val equal A|TO|QUE? r=@num|@val | $l = $r | 1 | TS010 | first | IF(DISTANCE igual a 10);S;ENDIF => IF(DISTANCE = 10);S;ENDIF
 = @word* RANDOM between|than|DESDE|FROM? a=@num A|AL|TO|Y|HASTA|AND|-|, b=@num $ | = RANDOM ( $a , $b ) | 1 | TS102 | offered | X = numero al azar entre 1 y 6⏎F(X, 50) => X = RANDOM(1, 6)⏎F(X, 50)
-l=@val is? between a=@num Y|AND b=@num | $l > $a AND $l < $b | 1 | TS010 | first | IF(DISTANCE entre 5 y 10);S;ENDIF => IF(DISTANCE > 5 AND DISTANCE < 10);S;ENDIF
+l=@val is? between a=@num and b=@num | $l > $a AND $l < $b | 1 | TS010 | first | IF(DISTANCE entre 5 y 10);S;ENDIF => IF(DISTANCE > 5 AND DISTANCE < 10);S;ENDIF
 # questions and sums
 a=@num|@val s=<|<=|>|>= b=@val t=<|<=|>|>= c=@num|@val | $a $s $b AND $b $t $c | 1 | TS037 | applied | SI|IF(10>DISTANCE>5);S;ENDIF => SI|IF(10>DISTANCE AND DISTANCE>5);S;ENDIF
 a=@num|@val X b=@num|@val | $a * $b | 1 | TS010 | first | SHOW(2 X 3) => SHOW(2 * 3)
@@ -255,9 +255,9 @@ o==|(|,|+|-|*|<|> average ( a=@num|@val , b=@num|@val , c=@num|@val ) | $o ( $a 
 a=@num v=@val | @by:a:v | 1 | TS048 | offered | VEL = 30⏎F(2, 2VEL) => VEL = 30⏎F(2, 2 * VEL)
 a=@num|@val MOD b=@num|@val | $a % $b | 1 | TS010 | first | X = 7⏎X = X MOD 2 => X = 7⏎X = X % 2
 a=@num|@val MAS b=@num|@val | $a + $b | 1 | TS010 | first | X = 5 mas 3⏎SHOW(X) => X = 5 + 3⏎SHOW(X)
-NO l=@val | NOT $l | 1 | TS010 | applied | IF(NO DISTANCE < 10)⏎F(1,50)⏎ENDIF => IF(NOT DISTANCE < 10)⏎F(1,50)⏎ENDIF
+NO|NAO l=@val | NOT $l | 1 | TS010 | applied | IF(NO DISTANCE < 10)⏎F(1,50)⏎ENDIF => IF(NOT DISTANCE < 10)⏎F(1,50)⏎ENDIF
 l=@val s=<|>|<=|>= a=@num o=AND|OR t=<|>|<=|>= b=@num | $l $s $a &o $l $t $b | 1 | TS018 | offered | IF(DISTANCE < 10 OR < 5);S;ENDIF => IF(DISTANCE < 10 OR DISTANCE < 5);S;ENDIF
-l=@val = a=@num O|OR|U b=@num | $l = $a OR $l = $b | 1 | TS018 | offered | IF(DISTANCE = 10 O 20)⏎S⏎ENDIF => IF(DISTANCE = 10 OR DISTANCE = 20)⏎S⏎ENDIF
+l=@val = a=@num or b=@num | $l = $a OR $l = $b | 1 | TS018 | offered | IF(DISTANCE = 10 O 20)⏎S⏎ENDIF => IF(DISTANCE = 10 OR DISTANCE = 20)⏎S⏎ENDIF
 h=IF|WHILE|ELSEIF v=@val ( n=@num ) | &h ( $v < $n ) | 1 | TS048 | offered | IF DISTANCE(10)⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
 ^ c=@cond+ ? <body> : d=@start s=@all* $ | IF ( $c ) ; $b $r ; ELSE ; $d $s ; ENDIF | 1 | TS042 | offered | DISTANCE < 10 ? S : F(1, 60) => IF(DISTANCE < 10);S;ELSE;F(1, 60);ENDIF
 = ABS s='-'? n=@num|@val $ | = ABS ( $s $n ) | 1 | TS015 | applied | X = ABS -5⏎SHOW(X) => X = ABS(-5)⏎SHOW(X)
@@ -265,7 +265,7 @@ o==|( a=@num over POR? b=@num | $o $a / $b | 1 | TS010 | applied | SHOW(10 entre
 h=IF|WHILE|UNTIL|WHEN|ELSEIF ( a=@val then|& b=@val s=<|> n=@num ) | &h ( $a $s $n AND $b $s $n ) | 1 | TS010 | first offered | IF(LIGHT_L y LIGHT_R > 500)⏎S⏎ENDIF => IF(LIGHT_L > 500 AND LIGHT_R > 500)⏎S⏎ENDIF
 SHOW ( a=@val & b=@val ) | SHOW ( $a ) ; SHOW ( $b ) | 1 | TS020 | first offered | SHOW(LIGHT_L & LIGHT_R) => SHOW(LIGHT_L);SHOW(LIGHT_R)
 a=@num|@val then|& b=@val|MENOR|MAYOR|NOT|< | $a AND $b | 1 | TS010 | first | IF(DISTANCE < 10 y LIGHT_L > 100);S;ENDIF => IF(DISTANCE < 10 AND LIGHT_L > 100);S;ENDIF
-a=@num|@val O|U b=@val|NOT|MENOR|MAYOR | $a OR $b | 1 | TS010 | first | IF(DISTANCE < 10 o DISTANCE > 50);S;ENDIF => IF(DISTANCE < 10 OR DISTANCE > 50);S;ENDIF
+a=@num|@val or b=@val|NOT|MENOR|MAYOR | $a OR $b | 1 | TS010 | first | IF(DISTANCE < 10 o DISTANCE > 50);S;ENDIF => IF(DISTANCE < 10 OR DISTANCE > 50);S;ENDIF
 o=AND|OR IF | &o | 1 | TS010 | first | IF(DISTANCE > 5 AND IF DISTANCE < 9);S;ENDIF => IF(DISTANCE > 5 AND DISTANCE < 9);S;ENDIF
 TRUE = c=@any+ ) | $c ) | 1 | TS037 | applied | IF(TRUE = DISTANCE < 10);S;ENDIF => IF( DISTANCE < 10);S;ENDIF
 s=<|> n=@num = TRUE | $s $n | 1 | TS037 | applied | IF(DISTANCE < 10 = TRUE);S;ENDIF => IF(DISTANCE < 10);S;ENDIF
@@ -428,6 +428,7 @@ h=LOOP|IF|WHILE|ELSEIF <question> [ <body> ] $ | &h ( $c ) ; $b $r ; @endof:h | 
 ^ LOOP ;? <body> ;? UNTIL c=@cond+ $ | LOOP ( FOREVER ) ; $b $r ; IF ( $c ) ; <end> | 1.5 | TS064 | applied | repeat F(1,50) until DISTANCE < 10 => LOOP(FOREVER);F(1, 50);IF(DISTANCE < 10);BREAK;ENDIF;END_LOOP
 LOOP ( n=@num @unit ) | LOOP ( $n ) | 1 | TS049 | applied | LOOP(3 veces);F(1,50);END_LOOP => LOOP(3);F(1,50);END_LOOP
 LOOP X|=|-|-> n=@num | LOOP ( $n ) | 1 | TS015 | applied | LOOP x 3;F(1, 50);END_LOOP => LOOP(3);F(1, 50);END_LOOP
+LOOP n=number times :|,|do|;? | LOOP ( @digits:n ) ; | 1 | TS102 | applied | repite cuatro veces⏎F(1,60)⏎fin => LOOP(4)⏎F(1,60)⏎END_LOOP
 LOOP POR? n=@num times? :|,|do|; | LOOP ( $n ) ; | 1 | TS102 | applied | repite 4: F(1, 60) => LOOP(4);F(1, 60);END_LOOP
 LOOP n=@num times? b=@start|'{' | LOOP ( $n ) ; $b | 1 | TS102 | applied | LOOP 4 F(1,60) => LOOP(4);F(1, 60);END_LOOP
 LOOP POR? n=@num times? $ | LOOP ( $n ) | 1 | TS102 | applied | repetir 4⏎S⏎fin => LOOP(4)⏎S⏎END_LOOP
@@ -444,7 +445,7 @@ o=(|,|=|<|>|+|- '|' v=@num|@val c=@argt* '|' | $o ABS ( $v $c ) | 1 | TS010 | of
 ^ a=@callw ( b=@argt+ ) UNTIL ( c=@noclose+ ) UNTIL ( d=@noclose+ ) $ | $a ( $b ) UNTIL ( $c OR $d ) | 1 | TS029 | offered | F(5, 60) UNTIL(DISTANCE < 10) UNTIL(LIGHT_L > 500) => F(5, 60) UNTIL(DISTANCE < 10 OR LIGHT_L > 500)
 m=MIN|MAX ( a=@num|@val , b=@num|@val , c=@num|@val ) | $m ( $a , $m ( $b , $c ) ) | 1 | TS020 | offered | SHOW(MIN(DISTANCE, 5, 9)) => SHOW(MIN(DISTANCE, MIN(5, 9)))
 ^ LET v=@word BE|TO n=@num $ | $v = $n | 1 | TS050 | applied | LET SPEED BE 50⏎F(2, SPEED) => SPEED = 50⏎F(2, SPEED)
-LOOP ( @name = 1 TO|A|HASTA n=@num ) | LOOP ( $n ) | 1 | TS063 | offered | LOOP(I = 1 TO 5)⏎S⏎END_LOOP => LOOP(5)⏎S⏎END_LOOP
+LOOP ( @name = 1 TO|A|until n=@num ) | LOOP ( $n ) | 1 | TS063 | offered | LOOP(I = 1 TO 5)⏎S⏎END_LOOP => LOOP(5)⏎S⏎END_LOOP
 a=F|B ( FOREVER ) | $a ( FOREVER , 80 ) | 2 | TS020 | offered | F(FOREVER) UNTIL(DISTANCE < 10) => F(FOREVER, 80) UNTIL(DISTANCE < 10)
 RANDOM ( n=@num ) | RANDOM ( 1 , @whole:n ) | 2 | TS020 | offered | X = RANDOM(6)⏎F(X, 50) => X = RANDOM(1, 6)⏎F(X, 50)
 ROUND ( n=@num|@val ) | ROUND ( $n , 0 ) | 2 | TS020 | offered | X = ROUND(3.7)⏎SHOW(X) => X = ROUND(3.7, 0)⏎SHOW(X)
@@ -460,12 +461,12 @@ LOOP ( n=@num , <body> ) | LOOP ( $n ) ; $b $r | 2 | TS080 | applied | LOOP(4, F
 LOOP ( <body> , n=@num ) $ | LOOP ( $n ) ; $b $r ; END_LOOP | 2 | TS080 | applied | LOOP(F(1,50), 4) => LOOP(4);F(1, 50);END_LOOP
 LOOP ( n=@num <body> ) $ | LOOP ( $n ) ; $b $r ; END_LOOP | 2 | TS080 | applied | LOOP(3 F(1,50)) => LOOP(3);F(1, 50);END_LOOP
 <for> v=@usedname IN|EN range ( n=@num ) :? | $v = - 1 ; LOOP ( $n ) ; $v = $v + 1 ; | .5 | TS102 | offered | for i in range(4):⏎  F(i, 60) => I = -1;LOOP(4);I = I + 1;⏎  F(i, 60)⏎END_LOOP
-LOOP|FOR|PARA|DESDE v=@usedname =|DESDE|than 1 TO|A|HASTA n=@num do|:? | $v = 0 ; LOOP ( $n ) ; $v = $v + 1 ; | .5 | TS102 | offered | para n desde 1 hasta 4⏎F(n, 60)⏎fin para => N = 0;LOOP(4);N = N + 1;⏎F(n, 60)⏎END_LOOP
+LOOP|FOR|PARA|DESDE v=@usedname =|DESDE|than 1 TO|A|until n=@num do|:? | $v = 0 ; LOOP ( $n ) ; $v = $v + 1 ; | .5 | TS102 | offered | para n desde 1 hasta 4⏎F(n, 60)⏎fin para => N = 0;LOOP(4);N = N + 1;⏎F(n, 60)⏎END_LOOP
 LOOP ( v=@usedname , 1 , n=@num ) | $v = 0 ; LOOP ( $n ) ; $v = $v + 1 | .5 | TS063 | offered | LOOP(N, 1, 5)⏎F(N, 60)⏎END_LOOP => N = 0;LOOP(5);N = N + 1⏎F(N, 60)⏎END_LOOP
 <for> @name IN|EN range ( 1 , n=@num ) :? | LOOP ( $n - 1 ) ; | 1 | TS102 | offered | for side in range(1, 5):⏎F(1, 50)⏎END_LOOP => LOOP(5 - 1)⏎F(1, 50)⏎END_LOOP
 <for> @name IN|EN range ( n=@num ) :? | LOOP ( $n ) ; | 1 | TS102 | applied | for i in range(4): F(1,60); R(0.5,60) => LOOP(4);F(1, 60);R(0.5, 60);END_LOOP
 <for> @name IN|EN range ( 0 , n=@num ) :? | LOOP ( $n ) ; | 1 | TS102 | applied | for i in range(0, 4):⏎F(1, 50)⏎END_LOOP => LOOP(4)⏎F(1, 50)⏎END_LOOP
-LOOP|FOR|PARA|DESDE @name =|DESDE|than 1 TO|A|HASTA n=@num do|:? | LOOP ( $n ) ; | 1 | TS102 | offered | para i de 1 a 4⏎F(1,50)⏎fin para => LOOP(4)⏎F(1,50)⏎END_LOOP
+LOOP|FOR|PARA|DESDE @name =|DESDE|than 1 TO|A|until n=@num do|:? | LOOP ( $n ) ; | 1 | TS102 | offered | para i de 1 a 4⏎F(1,50)⏎fin para => LOOP(4)⏎F(1,50)⏎END_LOOP
 LOOP ( INT? @name = 0 ; @name < n=@num ; @name ++ ) | LOOP ( $n ) | 1 | TS063 | offered | LOOP(I = 0; I < 4; I++);F(1, 50);END_LOOP => LOOP(4);F(1, 50);END_LOOP
 ^ v=@name = c=@cond+ ? a=@num|@val : b=@num|@val $ | IF ( $c ) ; $v = $a ; ELSE ; $v = $b ; ENDIF | 1 | TS069 | applied | V = DISTANCE > 20 ? 80 : 30⏎F(1, V) => IF(DISTANCE > 20);V = 80;ELSE;V = 30;ENDIF⏎F(1, V)
 ^ w=@callw ( a=@argt+ , c=@val s=<|> n=@num ? x=@num : y=@num ) $ | IF ( $c $s $n ) ; $w ( $a , $x ) ; ELSE ; $w ( $a , $y ) ; ENDIF | 1 | TS069 | offered | F(1, DISTANCE > 20 ? 80 : 40) => IF(DISTANCE > 20);F(1, 80);ELSE;F(1, 40);ENDIF
@@ -512,10 +513,10 @@ d=@device ( v=lit ) | &d ( TRUE ) | 1 | TS102 | applied | LED(PRENDIDO) => LED(T
 d=@device ( v=dark ) | &d ( FALSE ) | 1 | TS102 | applied | LED(OFF) => LED(FALSE)
 d=@device ( v=most ) | &d ( @most:d ) | 1 | TS102 | applied | PINZA(ABIERTA) => GRIPPER(180)
 d=@device ( v=least ) | &d ( @least:d ) | 1 | TS102 | applied | GRIPPER(CLOSED) => GRIPPER(0)
-^ v=most the? d=@device $ | &d ( @most:d ) | 1 | TS102 | applied | ABRIR PINZA => GRIPPER(180)
-^ v=least the? d=@device $ | &d ( @least:d ) | 1 | TS102 | applied | cerrar la garra => GRIPPER(0)
-^ v=on|lit the? d=@device $ | &d ( TRUE ) | 1 | TS102 | applied | prende el LED => LED(TRUE)
-^ v=off|dark the? d=@device $ | &d ( FALSE ) | 1 | TS102 | applied | apagar el foco => LED(FALSE)
+^ v=most the|A|O? d=@device $ | &d ( @most:d ) | 1 | TS102 | applied | ABRIR PINZA => GRIPPER(180)
+^ v=least the|A|O? d=@device $ | &d ( @least:d ) | 1 | TS102 | applied | cerrar la garra => GRIPPER(0)
+^ v=on|lit the|A|O? d=@device $ | &d ( TRUE ) | 1 | TS102 | applied | prende el LED => LED(TRUE)
+^ v=off|dark the|A|O? d=@device $ | &d ( FALSE ) | 1 | TS102 | applied | apagar el foco => LED(FALSE)
 # DEF and its calls
 v=@def ( ) | $v | 1 | TS028 | first | DEF GIRO()⏎R(1, 60)⏎END_DEF⏎GIRO() => DEF GIRO⏎R(1, 60)⏎END_DEF⏎GIRO
 ^ DEF n=@word ( v=@name ) ':'? | $v = 0 ; DEF $n ; | .5 | TS039 | offered | def cuadrado(lado):⏎  F(lado, 80)⏎cuadrado(2) => LADO = 0;DEF CUADRADO;⏎  F(lado, 80)⏎END_DEF⏎LADO = 2;CUADRADO
@@ -577,7 +578,7 @@ read ( v=@val ) | $v | 1 | TS102 | applied | X = leer(DISTANCE)⏎SHOW(X) => X =
 ^ AL|WHEN|CUANDO INICIAR|EMPEZAR|COMENZAR|START|INICIO $ | START | 1 | TS102 | applied | al iniciar⏎F(2,80) => START⏎F(2,80)
 ^ no F|B|L|R|M extra? $ | S | .5 | TS102 | first | no avanzar mas => S
 ^ PARA|DEJA DE AVANZAR|MOVER|MOVERTE $ | S | .5 | TS102 | first | para de avanzar => S
-^ APAGAR|APAGA|DETENER|PARAR the? engine $ | S | 1 | TS102 | applied | apaga motores => S
+^ off|S the? engine $ | S | 1 | TS102 | applied | apaga motores => S
 ^ b=@start r=@all* '|' s=SI|SB $ | $s '|' $b $r | 1 | TS034 | offered | F(2, 80)|SI => SI |F(2, 80)
 ^ START '|' | SI '|' | 1 | TS034 | offered | start|F(2,80) => SI |F(2,80)
 IF c=@argt+ BREAK ;|$ | IF ( $c ) ; BREAK ; ENDIF ; | 1 | TS015 | applied | LOOP(FOREVER)⏎F(1, 50)⏎IF DISTANCE < 10 BREAK⏎END_LOOP => LOOP(FOREVER)⏎F(1, 50)⏎IF(DISTANCE < 10);BREAK;ENDIF;⏎END_LOOP

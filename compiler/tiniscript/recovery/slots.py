@@ -152,7 +152,7 @@ class _Reader:
     def _sum(self, number: float, k: int) -> tuple[float, int]:
         """Return a number with the smaller ones behind it: `cuatrocientos cuarenta y cinco`."""
         while number % 10 == 0:
-            place = k + (self.text(k) in ("Y", "AND"))
+            place = k + bool(said_of(self.text(k), "and"))
             said = said_of(self.text(place), "number")
             if not said or number % 10 ** len(said[0]):
                 break
@@ -170,7 +170,7 @@ class _Reader:
         if self.text(k) == "/" and k + 1 < len(self.words):
             return None
         unit, thousandths = self.mark, 1000.0
-        if self.text(k) == "POR" and self.text(k + 1) in ("CIENTO", "CIEN"):
+        if self.text(k) == "POR" and self.text(k + 1) in ("CIENTO", "CIEN", "CENTO"):
             unit, k = "%", k + 2
         elif self.text(k) in UNITS:
             unit, thousandths = UNITS[self.text(k)]
@@ -196,7 +196,8 @@ class _Reader:
         return k < len(self.words) and self.words[k].kind is NUMBER
 
     def _is_and_a_half(self, k: int) -> bool:
-        return self.text(k) in ("Y", "AND") and said_of(self.text(k + 1), "power") == ("50",)
+        is_and = bool(said_of(self.text(k), "and"))
+        return is_and and said_of(self.text(k + 1), "power") == ("50",)
 
     def _sign(self, k: int) -> int | None:
         sign, before = self.text(k), self.text(k - 1)

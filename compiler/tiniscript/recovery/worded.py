@@ -18,7 +18,7 @@ from tiniscript.syntax.lexer import NUMBER, WORD
 
 _KINDS = ("little", "much", "light", "ahead", "none", "no", "without", "left", "right")
 _ASKING = frozenset(("little", "much", "light", "ahead", "none"))
-_JOINED = {"Y": "AND", "E": "AND", "O": "OR", "U": "OR"}
+_JOINED = {"Y": "AND", "E": "AND", "O": "OR", "U": "OR", "OU": "OR"}
 _TOWARDS = ("A", "DE", "QUE")
 _FAR = 10  # centimetres, as in every example
 _MANY = 50  # of what a variable holds
