@@ -297,7 +297,9 @@ class _Matching:
             block = self.open.pop()
             self.is_sure = self.is_sure and not block.has_brace and line.is_do <= block.is_do
             if block.is_endless and self.open and self.open[-1].last is None:
-                self.open[-1].last = k
+                outer = self.open[-1]  # a WHEN that never ends looks no more
+                is_before = outer.word == "WHEN" and outer.line + 1 < block.line
+                outer.last = block.line - 1 if is_before else k
             return True
         if self.open or self.has_unread:
             return False

@@ -480,8 +480,8 @@ def _word(
     code: str, old: Sequence[Lexeme], new: Sequence[Lexeme], start: int, part: Sequence[Lexeme]
 ) -> str:
     """Return the word that is told of: the one before its brackets, else the first one."""
-    if code == codes.EMPTY_BRACKETS.number and start:
-        return old[start - 1].text
+    if code == codes.EMPTY_BRACKETS.number and "(" in (behind := texts(old[start:]))[start == 0 :]:
+        return old[start + behind.index("(") - 1].text
     if code == codes.GROUPED.number:
         if start and old[start - 1].text == ";":
             return ""

@@ -117,7 +117,9 @@ def _near(words: Sequence[Lexeme], names: Names, sign: str) -> tuple[str, tuple[
     """Return the question for something near that words ask, and what they do not say of it."""
     numbers = [each.text for each in words if each.kind is NUMBER]
     is_wall = any(said_of(each.text, "wall") for each in words)
-    is_ahead = not any(command(each.text, names) in _ASIDE for each in words)
+    is_ahead = not any(
+        command(each.text, names) in _ASIDE or said_of(each.text, "light") for each in words
+    )
     if not (numbers or is_wall) or not is_ahead or len(numbers) > 1:
         return "", ()
     far = numbers[0] if numbers else _NEAR_CM

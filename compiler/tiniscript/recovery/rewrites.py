@@ -426,7 +426,8 @@ def _number_if(is_so: Callable[[float], bool]) -> Callable[[_Place], _Made]:
 _FUNCTIONS: dict[str, Callable[[_Place], _Made]] = {
     "not": _not, "endof": _end_of, "dec": _decimal, "cat": _zero_behind, "mmss": _minutes,
     "xn": _times, "brace": _brace, "same": _same, "join": _name, "known": _known_name,
-    "ms": _seconds, "by": _by, "digits": _digits, "most": _most, "least": _least, "cm": _centimetres,
+    "ms": _seconds, "by": _by, "digits": _digits, "most": _most, "least": _least,
+    "cm": _centimetres,
     "power": _number_if(lambda it: LONG_S <= it <= _MOST_POWER),
     "time": _number_if(lambda it: it < LONG_S),
     "whole": _number_if(float.is_integer),

@@ -235,7 +235,7 @@ v=@val [ n=@num ) | $v < $n ) | 1 | TS010 | offered | IF(DISTANCE[30)⏎S⏎ENDI
 ! v=@val|( | NOT $v | 1 | TS010 | first | X = TRUE⏎IF(!X);S;ENDIF => X = TRUE⏎IF(NOT X);S;ENDIF
 # comparisons in words: a row for each sense, and a sign
 is? less than? or equal QUE|A|TO? | <= | 1 | TS010 | first | IF(DISTANCE es menor o igual que 10);S;ENDIF => IF(DISTANCE <= 10);S;ENDIF
-more or? equal QUE|A|TO? | >= | 1 | TS010 | first | IF(DISTANCE mayor igual 10);F(1,50);ENDIF => IF(DISTANCE >= 10);F(1,50);ENDIF
+is? more or? equal QUE|A|TO? | >= | 1 | TS010 | first | IF(DISTANCE mayor igual 10);F(1,50);ENDIF => IF(DISTANCE >= 10);F(1,50);ENDIF
 is? A? less than|A? | < | 1 | TS010 | first | SI|IF(DISTANCE menor 10);S;ENDIF => SI|IF(DISTANCE < 10);S;ENDIF
 is? A? more than|A? | > | 1 | TS010 | first | IF DISTANCE IS BIGGER THAN 20 F(1,50) ENDIF => IF(DISTANCE > 20);F(1, 50);ENDIF
 is? MAS|MORE than | > | 1 | TS010 | first | IF(DISTANCE es mas de 10);S;ENDIF => IF(DISTANCE > 10);S;ENDIF
@@ -245,7 +245,7 @@ no < | >= | 1 | TS010 | first | IF(DISTANCE NOT < 10);S;ENDIF => IF(DISTANCE >= 
 no > | <= | 1 | TS010 | first | IF(DISTANCE NOT > 10);S;ENDIF => IF(DISTANCE <= 10);S;ENDIF
 l=@val is|EQUALS|VALE equal? A|TO|QUE? r=@num|@val | $l = $r | 1 | TS010 | first | si distancia es 10 para => IF(DISTANCE = 10);S;ENDIF
 l=@val equal A|TO|QUE? r=@num|@val | $l = $r | 1 | TS010 | first | IF(DISTANCE igual a 10);S;ENDIF => IF(DISTANCE = 10);S;ENDIF
-= @word* RANDOM between|than|DESDE|FROM? a=@num A|AL|TO|Y|HASTA|AND|-|, b=@num $ | = RANDOM ( $a , $b ) | 1 | TS102 | offered | X = numero al azar entre 1 y 6⏎F(X, 50) => X = RANDOM(1, 6)⏎F(X, 50)
+= @word* RANDOM between|than|DESDE|FROM? a=@num A|AL|TO|and|until|-|, b=@num $ | = RANDOM ( $a , $b ) | 1 | TS102 | offered | X = numero al azar entre 1 y 6⏎F(X, 50) => X = RANDOM(1, 6)⏎F(X, 50)
 l=@val is? between a=@num and b=@num | $l > $a AND $l < $b | 1 | TS010 | first | IF(DISTANCE entre 5 y 10);S;ENDIF => IF(DISTANCE > 5 AND DISTANCE < 10);S;ENDIF
 # questions and sums
 a=@num|@val s=<|<=|>|>= b=@val t=<|<=|>|>= c=@num|@val | $a $s $b AND $b $t $c | 1 | TS037 | applied | SI|IF(10>DISTANCE>5);S;ENDIF => SI|IF(10>DISTANCE AND DISTANCE>5);S;ENDIF
@@ -327,11 +327,11 @@ a=@word b=@word|@num | @known:a:b | 1 | TS056 | first | MI_BANDERA = TRUE⏎IF(m
 # calls and their brackets
 x=@callw [ | $x ( | 1 | TS010 | first | F[2,80] => F(2,80)
 x=@callw '{' c=@nobrace+ '}' | $x ( $c ) | 1 | TS015 | applied | SI|F{2,80} => SI|F(2,80)
-RANDOM between|than|DESDE? a=@num A|AL|TO|Y|HASTA|AND|-|,? b=@num | RANDOM ( $a , $b ) | 1 | TS015 | applied | X = RANDOM 1 3⏎F(X, 50) => X = RANDOM(1, 3)⏎F(X, 50)
+RANDOM between|than|DESDE? a=@num A|AL|TO|and|until|-|,? b=@num | RANDOM ( $a , $b ) | 1 | TS015 | applied | X = RANDOM 1 3⏎F(X, 50) => X = RANDOM(1, 3)⏎F(X, 50)
 c=@callw ( a=@argt+ ; b=@argt+ e=)|$ | $c ( $a , $b ) | 1 | TS019 | applied | F(2;80 => F(2, 80)
 a=@callw b=@num ,? c=@num ,|;|Y? d=@callw | $a ( $b , $c ) ; $d | 1.5 | TS015 | applied | F 2,80,R 1,50 => F(2, 80);R(1, 50)
 v=@val ( ) | $v | 1 | TS028 | first | LIGHT_L() => LIGHT_L
-RANDOM ( between|than|DESDE? a=@num A|AL|TO|Y|HASTA|AND|- b=@num ) | RANDOM ( $a , $b ) | 1 | TS017 | applied | X = RANDOM(1 al 6) => X = RANDOM(1, 6)
+RANDOM ( between|than|DESDE? a=@num A|AL|TO|and|until|- b=@num ) | RANDOM ( $a , $b ) | 1 | TS017 | applied | X = RANDOM(1 al 6) => X = RANDOM(1, 6)
 c=@callw ( a=@argt+ ( e=;|$ | $c ( $a ) $e | 1 | TS076 | applied | F(2, 80( => F(2, 80)
 ^ ( c=@callw a=@num ,? b=@num ) $ | $c ( $a , $b ) | 1 | TS076 | applied | (F 2,80) => F(2, 80)
 ^ c=@callw :? a='-'? b=@num ; d='-'? e=@num )|]|$ | $c ( $a $b , $d $e ) | 1 | TS015 | applied | R 0.5; 60 => R(0.5, 60)

@@ -254,7 +254,9 @@ class _Reader:
             self.mark = None
             self.is_sure = False
         elif meant:
-            return k + 1 if self._take_command(word, meant, is_own=own is not None) else None
+            is_again = after is None and meant == self.command == "F"  # `avanza 20 cm adelante`
+            taken = is_again or self._take_command(word, meant, is_own=own is not None)
+            return k + 1 if taken else None
         elif said_of(word, "filler"):
             is_in_place = k > 0 and self.words[k - 1].kind is NUMBER and self.text(k + 1) in ",)"
             self.is_sure = self.is_sure and not is_in_place  # it may be a unit: `F(8 in, 60)`

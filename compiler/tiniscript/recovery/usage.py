@@ -50,6 +50,7 @@ _MANY = 30  # diagnostics of which more is said
 _PAUSE = "W(2)"
 _UNIT_NAMES = {"s": "seconds", "%": "percent", "Hz": "hertz", "cm": "centimetres"}
 _OF_ENDS = (codes.NEVER_ENDS, codes.NOT_OPEN, codes.CALLS_ITSELF)
+_NOT_TOP = (codes.TASK_NOT_TOP, codes.DEF_NOT_TOP)
 _OF_ITS_WORD = (codes.UNKNOWN_WORD, codes.WHICH_WAY)  # whose units say nothing more
 _TAUGHT = ("SALTO", "PASO", "BAILE", "JUMP", "STEP", "DANCE")  # by the poster and the lessons
 _NO_NAMES = ("RETURN", "CONTINUE", "CONTINUA", "HOLA", "HELLO", "IDEM", "ETC", "NULL")
@@ -63,6 +64,10 @@ def with_usage(found: Sequence[Diagnostic], source: Source, kit: Kit) -> list[Di
     """Return what is wrong with a text, in words that say how it is written."""
     ends = [each.values["right"] for each in found if each.code is codes.NOT_OPEN]
     teller = _Usage(source, kit, ends[0] if len(ends) == 1 and ends[0] == "LOOP" else "")
+    if any(each.code is codes.NEVER_ENDS for each in found):
+        top = [each for each in found if each.code in _NOT_TOP]
+        teller.at_top = [source.position(each.span.start)[0] - 1 for each in top]
+        found = [each for each in found if each not in top]
     if len(found) > 1:
         found = [*(e for e in found[:_MANY] if not teller.has_its_end(e)), *found[_MANY:]]
     told = [teller.told(each) for each in found[:_MANY]]
@@ -90,6 +95,7 @@ class _Usage:
         self.source = source
         self.kit = kit
         self.unopened = unopened  # a header that an end is left for
+        self.at_top: list[int] = []  # lines of headers behind a block that lacks its end
 
     @cached_property
     def lines(self) -> list[str]:
@@ -220,7 +226,7 @@ class _Usage:
         """Words that say a block, or orders, of which `meant` is a word; offered, never made."""
         tokens = self.tokens(piece)
         if text := self.block(piece):
-            return self.translated(found.span, piece, meant or tokens[0].text, text)
+            return self.translated(found.span, piece, tokens[0].text, text)
         said = orders(tokens, self.names) if meant else []
         if len(said) == 1 and not said[0].is_side_free:
             return self.translated(found.span, piece, meant, said[0].text)
@@ -418,8 +424,9 @@ class _Usage:
         elif not below:
             values |= {"head": self.source[found.span]}
         else:
-            inside = []
-            for n in below:
+            top = min((n for n in self.at_top if n > k), default=0)  # which no block is around
+            inside = [n for n in below if n < top]
+            for n in [] if top else below:
                 if len(self.lines[n]) - len(self.lines[n].lstrip()) <= depth:
                     break
                 inside.append(n)
