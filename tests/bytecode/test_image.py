@@ -22,9 +22,8 @@ from tiniscript.bytecode.image import (
     sealed,
     unpack,
 )
-from tiniscript.bytecode.loading import check, loaded
 from tiniscript.bytecode.opcodes import ISA_MINOR
-from tiniscript.bytecode.verify import Refused
+from tiniscript.bytecode.verify import Refused, check, loaded
 
 KIT = robots.load("tinibot").kit
 CODE = bytes.fromhex("448c50")

@@ -25,8 +25,8 @@ from tiniscript.base.kit import Device, Kit
 from tiniscript.base.trace import Senses as Lists
 from tiniscript.base.trace import TracedRobot
 from tiniscript.bytecode.image import GO
-from tiniscript.bytecode.loading import loaded
 from tiniscript.bytecode.opcodes import OPS
+from tiniscript.bytecode.verify import loaded
 from tiniscript.conformance import machine_process
 from tiniscript.conformance.comparing import AGREES, DIFFERS, LACKS, verdicts
 from tiniscript.conformance.kit import MachineCase, machine_cases

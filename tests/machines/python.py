@@ -9,7 +9,7 @@ from tiniscript.base.kit import Kit
 from tiniscript.base.trace import Ending
 from tiniscript.base.trace import Senses as Lists
 from tiniscript.bytecode.image import EVERYTHING
-from tiniscript.bytecode.loading import loaded
+from tiniscript.bytecode.verify import loaded
 from tiniscript.vm.runner import run
 
 if TYPE_CHECKING:

@@ -17,8 +17,7 @@ from tests.pupils.test_pupils import OTHER_NUMBERS, mistakes
 from tests.support.casefile import ROOT, read
 from tiniscript.base.source import applied
 from tiniscript.diagnostics.codes import Diagnostic
-from tiniscript.diagnostics.fixing import fixed
-from tiniscript.diagnostics.placing import edits_of
+from tiniscript.diagnostics.fixing import edits_of, fixed
 
 IN_CI = 150
 # What is put in, or takes the place of a sign: of phones, of other languages, of Spanish.

@@ -7,8 +7,7 @@ import pytest
 from tests.pupils.corpus import check
 from tiniscript.base.source import Source, applied
 from tiniscript.diagnostics import codes
-from tiniscript.diagnostics.fixing import fixed
-from tiniscript.diagnostics.placing import edits_of
+from tiniscript.diagnostics.fixing import edits_of, fixed
 from tiniscript.diagnostics.rendering import message
 
 

@@ -14,8 +14,7 @@ from tests.support.rows import each_row
 from tiniscript.base.source import Edit, Source, applied
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
-from tiniscript.diagnostics.fixing import fixed
-from tiniscript.diagnostics.placing import edits_of
+from tiniscript.diagnostics.fixing import edits_of, fixed
 
 ENTRIES = entries()
 # Repairs that write a number in another way: a unit, a letter for a digit, `X++`, `50.`, and how

@@ -13,8 +13,7 @@ from tests.support.texts import LANGUAGES
 from tests.support.texts import said as all_said
 from tiniscript import compile_text, robots
 from tiniscript.cli.paths import is_foreign
-from tiniscript.codegen.sketch.names import RESERVED, Names, counter
-from tiniscript.codegen.sketch.texts import IDENTIFIERS, LOCALS, called
+from tiniscript.codegen.sketch.names import IDENTIFIERS, LOCALS, RESERVED, Names, called, counter
 from tiniscript.codegen.sketch.writing import sketch_of
 
 

@@ -19,8 +19,7 @@ from tiniscript.bytecode.image import (
     sealed,
     unpack,
 )
-from tiniscript.bytecode.loading import loaded
-from tiniscript.bytecode.verify import Refused
+from tiniscript.bytecode.verify import Refused, loaded
 
 
 def python_refusal(data: bytes, has: int = EVERYTHING) -> int:

@@ -27,10 +27,9 @@ from tiniscript.robots.wiring.drawing import _width, drawing_of
 from tiniscript.robots.wiring.finished import _Finished, finished_of
 from tiniscript.robots.wiring.headers import SIDES
 from tiniscript.robots.wiring.html import html_of
-from tiniscript.robots.wiring.icons import ICONS
 from tiniscript.robots.wiring.layout import BOARD_WIDTH, PART_WIDTH, Layout, layout_of
 from tiniscript.robots.wiring.page import page_of, wire_rows
-from tiniscript.robots.wiring.parts import BOARD_RAILS
+from tiniscript.robots.wiring.parts import BOARD_RAILS, ICONS
 from tiniscript.robots.wiring.plan import Plan, plan_of
 from tiniscript.robots.wiring.texts import has_text
 

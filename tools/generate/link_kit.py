@@ -15,9 +15,8 @@ from tests.support.link_cases import LinkCase, has_session, link_cases
 from tiniscript.base.trace import TracedRobot
 from tiniscript.bytecode.disassembly import listing
 from tiniscript.bytecode.image import HEADER_BYTES, ImageRefused
-from tiniscript.bytecode.loading import loaded
 from tiniscript.bytecode.opcodes import FAULTS
-from tiniscript.bytecode.verify import Refused, verify
+from tiniscript.bytecode.verify import Refused, loaded, verify
 from tiniscript.conformance.link_kit import FORM, VERSION
 from tiniscript.link.messages import MAJOR, MINOR
 from tiniscript.vm.machine import Machine

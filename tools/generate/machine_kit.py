@@ -27,9 +27,8 @@ from tiniscript.base.kit import DEVICES, NUMBER, YES_NO, Device, Kit
 from tiniscript.base.trace import TracedRobot
 from tiniscript.bytecode.disassembly import read_listing
 from tiniscript.bytecode.image import GO, TASKS, ImageRefused, pack, sealed, unpack
-from tiniscript.bytecode.loading import loaded
 from tiniscript.bytecode.opcodes import BY_NAME, ESCAPE, ISA_MAJOR, ISA_MINOR, SHORTS, Op
-from tiniscript.bytecode.verify import Refused
+from tiniscript.bytecode.verify import Refused, loaded
 from tiniscript.conformance.kit import FORM, VERSION
 from tiniscript.vm.state import DONE, FAULT, WAITING
 from tiniscript.vm.tasks import machine_of

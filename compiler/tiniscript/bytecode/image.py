@@ -1,8 +1,8 @@
 """An image: code with the header that tells a robot whether it may run it.
 
 FIELDS is the one declaration of the header.
-Knows nothing of what the code does: `verify` does, and `loading` asks both. What code needs is told
-to `pack`: an image says the smallest minor version that has it.
+Knows nothing of what the code does: `verify` does. What code needs is told to `pack`: an image says
+the smallest minor version that has it.
 """
 
 from __future__ import annotations

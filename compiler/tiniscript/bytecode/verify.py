@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from typing import NamedTuple, NoReturn
 
+from tiniscript.base.kit import Kit
 from tiniscript.base.limits import (
     CALLS,
     CODE_BYTES,
@@ -22,6 +23,7 @@ from tiniscript.base.limits import (
     STACK_VALUES,
     TASKS,
 )
+from tiniscript.bytecode.image import EVERYTHING, Image, ImageRefused, unpack
 from tiniscript.bytecode.opcodes import (
     ESCAPE,
     NEEDS_GO,
@@ -447,3 +449,24 @@ _IN_CHECKS = ("read", "until", "look")
 _STEP_OF = {
     role: getattr(_Verifier, role, None) or getattr(_Verifier, role + "_") for role in ROLES
 }
+
+
+def loaded(data: bytes, kit: Kit, has: int = EVERYTHING) -> Image:
+    """Return the image in `data`, for a machine that has so much of `needs`.
+
+    Looks at its header, its code, and the devices that the code uses, as every machine does.
+
+    Raises ImageRefused, or Refused.
+    """
+    image = unpack(data, has)
+    check(image, kit)
+    return image
+
+
+def check(image: Image, kit: Kit) -> Verdict:
+    """Return what the code of an image needs. Raises Refused, or ImageRefused."""
+    verdict = verify(image.code, len(kit.sensors), len(kit.actuators), image.needs)
+    ours = kit.hash_of_used(verdict.uses)
+    if image.devices != ours:
+        raise ImageRefused("OTHER_KIT", theirs=f"{image.devices:04x}", ours=f"{ours:04x}")
+    return verdict

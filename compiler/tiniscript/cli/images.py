@@ -5,8 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from tiniscript.bytecode.image import Image, ImageRefused, unpack
-from tiniscript.bytecode.loading import check
-from tiniscript.bytecode.verify import Refused
+from tiniscript.bytecode.verify import Refused, check
 from tiniscript.cli import compiling, inputs, outputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.library import source_map

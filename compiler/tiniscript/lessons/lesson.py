@@ -2,7 +2,7 @@
 
 The table of criteria says what each kind takes.
 
-Knows no TOML (`reader`), no files (`catalogue`) and no sentences (`refusals`, `sentences`).
+Knows no TOML (`reader`), no files (`catalogue`) and no sentences (`sentences`).
 """
 
 from __future__ import annotations

@@ -9,10 +9,18 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-from tiniscript.library.texts import sentence
+from tiniscript.base import languages
 
 if TYPE_CHECKING:
     from tiniscript.diagnostics.rendering import Message
+
+
+def sentence(reason: str, language: str, values: Mapping[str, str]) -> str:
+    """Return the sentence for a reason, with its gaps filled.
+
+    The command has sentences of its own, which name its options.
+    """
+    return languages.text("library", reason, language).format(**values)
 
 
 _SAME = {
@@ -29,7 +37,7 @@ class TiniScriptError(Exception):
         self, reason: str, language: str = "en", values: Mapping[str, str] | None = None,
         said: str | None = None,
     ) -> None:  # fmt: skip
-        """`said` replaces the sentence that `reason` has in `texts`."""
+        """`said` replaces the sentence that `reason` has in the catalogue `library`."""
         self.key = reason  # of its sentence, which may say more than the reason
         self.reason = _SAME.get(reason, reason)
         self.values = dict(values or {})

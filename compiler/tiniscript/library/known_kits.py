@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from tiniscript import robots
 from tiniscript.bytecode.image import GO, TASKS, Image, ImageRefused
-from tiniscript.bytecode.loading import check
-from tiniscript.bytecode.verify import Refused
+from tiniscript.bytecode.verify import Refused, check
 from tiniscript.robots import given
 from tiniscript.robots.boards import CHIPS
 from tiniscript.robots.profile import Robot

@@ -9,7 +9,7 @@ from tiniscript import robots
 from tiniscript.base.files import contents
 from tiniscript.base.languages import languages
 from tiniscript.base.source import PROGRAM_ENDS, printable
-from tiniscript.bytecode import loading
+from tiniscript.bytecode import verify
 from tiniscript.bytecode.disassembly import listing
 from tiniscript.bytecode.image import Image, ImageRefused, unpack
 from tiniscript.bytecode.verify import Refused
@@ -17,10 +17,9 @@ from tiniscript.diagnostics.rendering import Message as Message
 from tiniscript.diagnostics.rendering import as_text, message
 from tiniscript.library import source_map
 from tiniscript.library.compiling import Compiled, compiled, image_of
-from tiniscript.library.errors import ProgramError, UsageError
+from tiniscript.library.errors import ProgramError, UsageError, sentence
 from tiniscript.library.known_kits import fitting
 from tiniscript.library.source_map import Map
-from tiniscript.library.texts import sentence
 from tiniscript.robots.profile import ProfileRefused, Robot
 from tiniscript.robots.refusals import describe
 
@@ -226,7 +225,7 @@ def _read(data: bytes, profile: Robot, language: Language) -> Image:
     """Return an image, verified for this robot. Raises ProgramError."""
     image = _unpacked(data, language)
     try:
-        loading.check(image, profile.kit)
+        verify.check(image, profile.kit)
     except Refused as refused:
         if refused.name == "NO_SUCH_DEVICE" and image.devices:  # an image for a larger kit
             raise ProgramError("OTHER_KIT", language, {"robot": profile.name}) from None

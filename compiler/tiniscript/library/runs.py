@@ -11,10 +11,9 @@ from tiniscript.base.source import printable
 from tiniscript.base.trace import Ending, Event, Senses
 from tiniscript.bytecode.image import Image, ImageRefused, pack
 from tiniscript.bytecode.verify import Refused
-from tiniscript.library.errors import UsageError
+from tiniscript.library.errors import UsageError, sentence
 from tiniscript.library.programs import Language, Program, program_of
 from tiniscript.library.source_map import Map
-from tiniscript.library.texts import sentence
 from tiniscript.robots.profile import Robot
 from tiniscript.vm.runner import MachineOf
 from tiniscript.vm.runner import run as run_code

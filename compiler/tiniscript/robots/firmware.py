@@ -1,7 +1,7 @@
 """Makes the C++ header that tells the firmware how a robot is wired.
 
-Knows the names that `vm_arduino/src/boards` uses. Opens no files. All numbers are calculated
-here (registers for pins, steps for ranges), so that the firmware looks nothing up.
+Knows the names that `vm_arduino/src/boards` uses. Opens no files. All numbers are calculated here
+(registers for pins, steps for ranges), so that the firmware looks nothing up.
 """
 
 from __future__ import annotations
@@ -11,10 +11,10 @@ from collections.abc import Sequence
 from tiniscript.base.fixed_point import ONE
 from tiniscript.base.kit import Device, Kit
 from tiniscript.robots.boards import CHIPS
-from tiniscript.robots.driver import SIDES
+from tiniscript.robots.driver import SIDES, PinTexts
 from tiniscript.robots.drivers import actuator_of, discs_of, motors_of, sensor_of
 from tiniscript.robots.kit_words import kit_words
-from tiniscript.robots.pin_texts import AvrPins, texts_of
+from tiniscript.robots.ledc import channels_of
 from tiniscript.robots.ports import AVRS, ESP32S
 from tiniscript.robots.profile import Robot, Wiring, language_number
 
@@ -223,3 +223,71 @@ def _switch(function: str, argument: str, cases: Sequence[str], last: str) -> li
     ending = [last] if last else []
     opening = f"inline {function}(uint8_t number, {argument}) {{"
     return [opening, "  switch (number) {", *cases, "  }", *ending, "}"]
+
+
+class AvrPins:
+    """Ports and bits, timers and their channels, and the interrupts of changes."""
+
+    def __init__(self, robot: Robot) -> None:
+        self._avr = AVRS[robot.board.chip]
+        self.vectors: list[str] = []
+        self.counters: list[str] = []
+
+    def pin(self, pin: int | None) -> str:
+        if pin is None:
+            return "kNoPin"
+        bit = self._avr.bits[pin]
+        return f"{{kPort{bit.port.upper()}, 1 << {bit.bit}}}"
+
+    def pwm(self, pin: int) -> str:
+        timer, channel = self._avr.compares[pin]
+        return f"{{{self.pin(pin)}, {timer}, kChannel{channel.upper()}}}"
+
+    def servo(self, pin: int) -> str:
+        return self.pin(pin)
+
+    def buzzer(self, pin: int) -> str:
+        return f"Pin kBuzzer = {self.pin(pin)}"
+
+    def echo(self, pin: int) -> str:
+        vector, group, bit = self._avr.interrupts[pin]
+        if vector not in self.vectors:
+            self.vectors.append(vector)
+        return f"{{{self.pin(pin)}, {group}, 1 << {bit}}}"
+
+    def count(self, pin: int) -> str:
+        vector, _, bit = self._avr.external[pin]
+        self.counters.append(vector)
+        return f"{self.pin(pin)}, 1 << {bit}"
+
+
+class Esp32Pins:
+    """Numbers of pins, and channels of LEDC."""
+
+    def __init__(self, robot: Robot) -> None:
+        self._channels = channels_of(robot.board)
+        self.vectors: list[str] = []
+        self.counters: list[str] = []
+
+    def pin(self, pin: int | None) -> str:
+        return "kNoPin" if pin is None else f"{{{pin}}}"
+
+    def pwm(self, pin: int) -> str:
+        return f"{{{self.pin(pin)}, {self._channels[pin]}}}"
+
+    def servo(self, pin: int) -> str:
+        return self.pwm(pin)
+
+    def buzzer(self, pin: int) -> str:
+        return f"Pwm kBuzzer = {self.pwm(pin)}"
+
+    def echo(self, pin: int) -> str:
+        return f"{{{self.pin(pin)}}}"
+
+    def count(self, pin: int) -> str:
+        return self.pin(pin)
+
+
+def texts_of(robot: Robot) -> PinTexts:
+    """Return what writes the pins of a robot."""
+    return Esp32Pins(robot) if robot.board.chip in ESP32S else AvrPins(robot)

@@ -1,5 +1,6 @@
-"""The session with a robot in the page: its bytes come and go by what a browser can open.
+"""What the page asks of a real robot and of its keys, and the session with that robot.
 
+Its bytes come and go by what a browser can open.
 The page's main thread owns the port, and calls `go`. So a page whose main thread stands still sends
 nothing, and the robot's dead-man timer ends what runs; `go` stops it where the page was away for
 longer than HEARD_MS. Knows no browser and no clock.
@@ -9,7 +10,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from tiniscript.link.authority import RobotKey
 from tiniscript.link.connection import PendingRequest, Requester
@@ -148,4 +149,38 @@ class PageRobot:
         return found
 
 
-__all__ = ("BadKeys", "PageKeys", "PageRobot")
+Answer = dict[str, Any]
+
+_robot: PageRobot | None = None  # a page has one
+
+
+def _connect(fields: Answer, data: bytes) -> Answer:
+    """Begin a session over what the page has opened; `data` is the file of its keys, or nothing."""
+    global _robot
+    try:
+        keys = PageKeys(data)
+    except BadKeys:
+        keys = PageKeys(b"")
+    _robot = PageRobot(fields["robot"], fields["language"], keys)
+    return {}
+
+
+def _link(fields: Answer, data: bytes) -> Answer:
+    """Go on with the session; `data` has arrived."""
+    assert _robot is not None, "no robot is connected"
+    return _robot.go(data, fields["now_ms"], fields["asked"])
+
+
+def _import_keys(fields: Answer, data: bytes) -> Answer:
+    """Add the keys of a file, `data`, to those of the page, whose file is `kept`."""
+    try:
+        keys = PageKeys(fields["kept"].encode()) if _robot is None else _robot.keys
+        count = keys.add(data)
+    except BadKeys:
+        return {"count": None}
+    return {"count": count, "keys": keys.file()}
+
+
+ASKED: dict[str, Callable[[Answer, bytes], Answer]] = {
+    "connect": _connect, "link": _link, "import_keys": _import_keys,
+}  # fmt: skip

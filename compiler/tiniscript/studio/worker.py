@@ -99,7 +99,7 @@ def _asked(do: str) -> Callable[[Answer, bytes], Answer]:
     if do in _ASKED:
         return _ASKED[do]
     if do in ("connect", "link", "import_keys"):
-        from tiniscript.studio.robot_requests import ASKED
+        from tiniscript.studio.page_line import ASKED
     else:
         from tiniscript.studio.virtual_requests import ASKED
     return ASKED[do]

@@ -1,16 +1,57 @@
 """The machine, in Python.
 
 Runs verified code. Time comes in as `now_ms`, which does not wrap around here; the world is behind
-`task.Robot`. `tick` does a little and returns: nothing here waits. What each instruction does is in
-`instructions`. The C++ machine has the same names and the same order.
+`task.Robot`. `tick` does a little and returns: nothing here waits. The C++ machine
+has the same names and the same order.
+
+`values`, `actions` and `control` have a handler for each row of the table in `bytecode`; importing
+this fails if one is missing. A short instruction shares the handler of its long form. Those of
+tasks come with `tasks`.
 """
 
 from __future__ import annotations
 
 from tiniscript.base.fixed_point import Fault
-from tiniscript.vm.handlers import STAY, stopped
-from tiniscript.vm.instructions import bound, instruction
+from tiniscript.bytecode.opcodes import NEEDS_TASKS, OPS, Op, op_at, read_operands
+from tiniscript.vm import actions, control, values
+from tiniscript.vm.handlers import HANDLERS, STAY, Step, stopped
 from tiniscript.vm.state import DONE, FAULT, MOVE, NOTHING, RUNNING, WAITING, Execution, Robot, Task
+
+_FAMILIES = (values, actions, control)  # importing them fills the table
+
+for _op in OPS:
+    if _op.implied is not None:
+        HANDLERS[_op.name] = HANDLERS[_op.family]
+
+_missing = [op.name for op in OPS if op.name not in HANDLERS and op.needs != NEEDS_TASKS]
+assert not _missing, f"no handler for {_missing}"
+
+
+def bound(m: Execution, code: bytes) -> list[Step]:
+    """Return the step of the instruction at each offset, for this machine. Jumps are offsets.
+
+    Behind the code stands END.
+    """
+    steps = [HANDLERS["END"](m, 0)] * (len(code) + 1)
+    at = 0
+    while at < len(code):
+        op, after = instruction(code, at)
+        operands = read_operands(op, code, at) if op.implied is None else (op.implied.value,)
+        kind = op.operands[-1].kind.name if op.operands else ""
+        if kind.startswith("fwd"):
+            operands = (*operands[:-1], after + operands[-1])
+        elif kind.startswith("back"):
+            operands = (*operands[:-1], after - operands[-1])
+        steps[at] = HANDLERS[op.name](m, after, *operands)
+        at = after
+    return steps
+
+
+def instruction(code: bytes, at: int) -> tuple[Op, int]:
+    """Return the instruction at an offset, and where the next one begins."""
+    op = op_at(code, at)
+    assert op is not None, "the code is not verified"
+    return op, at + op.size
 
 
 class Machine(Execution):

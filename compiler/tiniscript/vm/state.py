@@ -1,7 +1,7 @@
 """The state of a running program, and its interface to the robot.
 
 Knows the record `Task`, its waits, the robot's seam and the words for what a machine is doing. Does
-not know what instructions do (`instructions`) nor when they run (`machine`).
+not know what instructions do (`handlers`) nor when they run (`machine`).
 """
 
 from __future__ import annotations

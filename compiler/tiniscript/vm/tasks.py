@@ -12,8 +12,7 @@ from tiniscript.base.fixed_point import Fault
 from tiniscript.base.limits import CHECK_MS
 from tiniscript.vm.control import go
 from tiniscript.vm.handlers import STAY, Step, does, stopped
-from tiniscript.vm.instructions import instruction
-from tiniscript.vm.machine import Machine
+from tiniscript.vm.machine import Machine, instruction
 from tiniscript.vm.state import (
     CLOCK_MS,
     DONE,

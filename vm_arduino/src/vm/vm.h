@@ -1,7 +1,7 @@
 // The machine.
 //
 // Runs verified code. Time comes in as `now_ms`; the world is behind `robot.h`. `tick` does a
-// little and returns: nothing here blocks. Matches `machine.py` and `instructions.py`.
+// little and returns: nothing here blocks. Matches `machine.py`.
 //
 // Cheap checks guard against unverified code: stack, counters, calls, offsets, opcodes and the
 // numbers of variables and sensors. A violation is the fault kBadCode, not a wild write. On the AVR

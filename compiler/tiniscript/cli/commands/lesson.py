@@ -14,9 +14,9 @@ from tiniscript.cli.texts import Said, text
 from tiniscript.cli.texts.options import LESSON_ACTIONS as ACTIONS
 from tiniscript.cli.texts.options import of_verb
 from tiniscript.lessons import catalogue
+from tiniscript.lessons.catalogue import describe
 from tiniscript.lessons.lesson import Lesson, LessonRefused
 from tiniscript.lessons.markdown import as_text
-from tiniscript.lessons.refusals import describe
 from tiniscript.lessons.sheet import sheet
 
 LIST = "list"

@@ -1,6 +1,6 @@
 """The functions of a sketch that calculate: exactly as TiniScript does, in thousandths.
 
-Each is text whose `$words` are names that `texts` has. One that another needs is named there,
+Each is text whose `$words` are names that `names` has. One that another needs is named there,
 and `operator +` by `@ADD`.
 """
 

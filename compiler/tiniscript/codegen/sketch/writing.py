@@ -12,9 +12,8 @@ from textwrap import wrap
 from tiniscript.base.source import Source
 from tiniscript.codegen.sketch import helpers, numbers
 from tiniscript.codegen.sketch.expressions import FUNCTIONS, Expressions, is_float
-from tiniscript.codegen.sketch.names import Names
+from tiniscript.codegen.sketch.names import IDENTIFIERS, Names, called, said, with_locals
 from tiniscript.codegen.sketch.statements import Comment, Named, Statements, harmless
-from tiniscript.codegen.sketch.texts import IDENTIFIERS, called, said, with_locals
 from tiniscript.codegen.sketch.wiring import Plan, is_count, is_small
 from tiniscript.robots.profile import Robot
 from tiniscript.semantics import ir

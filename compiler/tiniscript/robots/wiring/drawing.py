@@ -13,9 +13,8 @@ from unicodedata import east_asian_width
 from tiniscript.robots.driver import GROUND
 from tiniscript.robots.wiring import layout as places
 from tiniscript.robots.wiring.headers import ROW_AT_THE_END, SIDES
-from tiniscript.robots.wiring.icons import ICONS
 from tiniscript.robots.wiring.layout import LEFT, RIGHT, STEP, ZONE, Box, Layout, Pin, Route
-from tiniscript.robots.wiring.parts import BOARD_RAILS, RAILS
+from tiniscript.robots.wiring.parts import BOARD_RAILS, ICONS, RAILS
 from tiniscript.robots.wiring.plan import End, Plan, Wire
 from tiniscript.robots.wiring.texts import text
 
