@@ -89,14 +89,19 @@ def report_words_shown(scope: Scope, said: int) -> None:
 
 
 def whole_name(scope: Scope, part: str, names: AbstractSet[str]) -> str:
-    """Return the one name that `part` is a word of: MI_VELOCIDAD for VELOCIDAD, else nothing.
+    """Return the one name that `part` is a word of, or shortened: MI_VELOCIDAD for VELOCIDAD, VEL.
 
     After ENOUGH mistakes the names are not searched, so that a long program stays fast.
     """
     if part in names or len(scope.diagnostics) >= ENOUGH:
         return ""
-    found = [each for each in names if part in each.split("_")]
+    found = [each for each in names if part in each.split("_") or _is_shortened(part, each)]
     return found[0] if len(found) == 1 else ""
+
+
+def _is_shortened(one: str, other: str) -> bool:
+    short, long = sorted((one, other), key=len)
+    return len(short) > 2 and long.isalpha() and long.startswith(short)
 
 
 def meant_value(scope: Scope, span: Span, name: str, is_assigned: bool) -> str:
