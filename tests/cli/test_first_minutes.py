@@ -368,6 +368,10 @@ def test_a_virtual_robot_does_not_print_what_live_keeps() -> None:
 def test_help_is_a_verb_too(tsc: Tsc) -> None:
     assert tsc("help", "upload").out == tsc("upload", "--help").out
     assert tsc("--lang", "es", "ayuda", "run").out == tsc("run", "--help", "--lang", "es").out
+    assert tsc("--lang", "pt", "ajuda", "run").out == tsc("run", "--help", "--lang", "pt").out
+    assert "¿Quisiste decir lesson?" in tsc("leccion", "--lang", "es").err
+    assert "Você quis dizer firmware?" in tsc("gravar", "--lang", "pt").err
+    assert "tsc upload" in tsc("help", "como enviar", "--lang", "pt").out
     assert tsc("help", "--lang", "es").out == tsc("--help", "--lang", "es").out
     assert tsc("help").out == tsc("--help").out
     done = tsc("help", "uplod")

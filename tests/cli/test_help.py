@@ -185,11 +185,11 @@ def test_every_text_of_help_is_shown() -> None:
     known |= {f"value/{each.value}" for each in OPTIONS} | {
         f"group/{each}" for each in VERBS.values()
     }
-    known |= {f"verb/{verb}/{each}" for verb in VERBS
-              for each in ("example", "summary", "says", "usage", "ends")}  # fmt: skip
+    known |= {f"verb/{verb}/{each}" for verb in (*VERBS, "--version")
+              for each in ("example", "summary", "says", "usage", "ends", "words")}  # fmt: skip
     left = set(all_said("en", "help")) - known - set(NOTES)
     assert {each.partition("/")[0] for each in left} == {
-        "title", "more", "usage", "virtual", "all", "wrong",
+        "title", "more", "usage", "virtual", "all", "idle", "wrong",
     }  # fmt: skip
 
 

@@ -136,7 +136,7 @@ def _verb(arguments: list[str], language: str) -> int:
         _tell_missing(language)
         return 0
     try:
-        name = "help" if arguments[0] == "ayuda" else arguments[0]
+        name = arguments[0]
         if name == "--lang" or name.startswith("--lang="):  # before the verb, too
             skip = 1 if "=" in name else 2
             found = name[7:] if "=" in name else arguments[1] if len(arguments) > 1 else ""
@@ -145,9 +145,9 @@ def _verb(arguments: list[str], language: str) -> int:
             rest = arguments[skip:]
             return _verb([*rest, *arguments[:skip]] if rest else [], language)
         if name not in VERBS:
-            from tiniscript.cli.verbless import refuse
+            from tiniscript.cli.verbless import is_help, refuse
 
-            refuse(name)
+            name = "help" if is_help(name) else refuse(name)
         options = Options(name, language).read(arguments[1:])
         if options is None:
             return 0

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import re
 import unicodedata
+from functools import cache
 from math import log
 from pathlib import Path
 from typing import NoReturn
@@ -17,22 +18,8 @@ from tiniscript.base.words import nearest
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.texts.options import of_verb
-from tiniscript.cli.texts.verbs import VERBS
+from tiniscript.cli.texts.verbs import VERBS, said
 from tiniscript.cli.texts.verbs import of_verb as said_of
-
-MEANT = {  # what the same is called elsewhere
-    "flash": "firmware", "burn": "firmware", "serial": "monitor", "repl": "live", "shell": "live",
-    "simulate": "robot", "simulator": "robot", "sim": "robot", "version": "--version",
-    "rename": "name", "owner": "claim", "diagram": "wiring", "send": "upload", "halt": "stop",
-    "blocks": "studio", "worksheet": "lesson", "lock": "claim", "answer": "doctor",
-    "problem": "doctor", "sensors": "live",
-    "nombre": "name", "dueño": "claim", "conexiones": "wiring", "enviar": "upload",
-    "cargar": "upload", "subir": "upload", "parar": "stop", "detener": "stop",
-    "compilar": "compile", "revisar": "check", "corregir": "check", "ejecutar": "run",
-    "lección": "lesson", "leccion": "lesson", "estudio": "studio", "puertos": "ports",
-    "bloques": "studio", "hoja": "lesson", "candado": "claim", "responde": "doctor",
-    "problema": "doctor", "sensores": "live",
-}  # fmt: skip
 
 
 def refuse(name: str) -> NoReturn:
@@ -43,7 +30,18 @@ def refuse(name: str) -> NoReturn:
 
 def meant(name: str) -> str:
     """Return the verb that somebody means with a word that is none, or nothing."""
-    return MEANT.get(name.lower()) or nearest(name, VERBS) or ""
+    called = (verb for verb in (*VERBS, "--version") if _plain(name) in _elsewhere(verb).split())
+    return next(called, None) or nearest(name, VERBS) or ""
+
+
+def is_help(name: str) -> bool:
+    """Whether a word is what help is called in a language: `tsc ayuda`."""
+    return _plain(name) in _elsewhere("help").split()
+
+
+def _elsewhere(verb: str) -> str:
+    """Return what the same is called elsewhere, in each language."""
+    return " ".join(_plain(said_of(verb, "words", each)) for each in languages())
 
 
 def refuse_program(name: str) -> None:
@@ -73,12 +71,6 @@ def _quoted(name: str, always: bool = False) -> str:
 MOST = 5  # verbs in an answer
 SHORTEST = 3  # letters of a word that says something
 STEM = 5  # letters in which forms of a word agree: connect, connected; conecta, conectar
-# Words that say nothing of what a command does.
-IDLE = re.compile(
-    "the|and|for|give|how|who|make|can|does|with|from|that|this|what|which|its|into|are|you|your"
-    "|want"
-    "|quien|una|uno|los|las|del|que|por|para|con|como|cual|sin|mas|puedo|quiero|hacer"
-)
 
 
 def verbs_for(said: str) -> list[str]:
@@ -106,17 +98,26 @@ def _weights(verb: str) -> dict[str, int]:
         return {stem for each in languages() for stem in _stems(said_of(verb, what, each))}
 
     helps = (each.help(language) for each in options for language in languages())
-    elsewhere = " ".join(word for word, meant in MEANT.items() if meant == verb)
     flags = (each.flags for each in options)
     weights = dict.fromkeys(_stems(" ".join((*flags, *helps))) | said("ends"), 1)
     weights |= dict.fromkeys(said("says"), 2)
     weights |= dict.fromkeys(said("summary"), 4)
-    weights |= dict.fromkeys(_stems(elsewhere), 6)
+    weights |= dict.fromkeys(_stems(_elsewhere(verb)), 6)
     return weights | dict.fromkeys(_stems(verb), 12)
 
 
 def _stems(text: str) -> set[str]:
-    plain = unicodedata.normalize("NFD", text.casefold())
-    words = re.findall("[a-z]+", re.sub("[\u0300-\u036f]", "", plain))
-    said = (word for word in words if len(word) >= SHORTEST and not IDLE.fullmatch(word))
+    words = re.findall("[a-z]+", _plain(text))
+    said = (word for word in words if len(word) >= SHORTEST and word not in _idle())
     return {word.removesuffix("s")[:STEM] for word in said}  # port and ports are one
+
+
+@cache
+def _idle() -> frozenset[str]:
+    """Return words that say nothing of what a command does."""
+    return frozenset(word for each in languages() for word in said("idle", each).split())
+
+
+def _plain(text: str) -> str:
+    """Return a text in small letters without accents."""
+    return re.sub("[\u0300-\u036f]", "", unicodedata.normalize("NFD", text.casefold()))

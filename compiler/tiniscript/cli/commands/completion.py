@@ -15,12 +15,12 @@ from tiniscript import robots
 from tiniscript.cli.texts.options import LESSON_ACTIONS, VERB, Kind, of_verb
 from tiniscript.cli.texts.verbs import VERBS
 from tiniscript.cli.texts.verbs import of_verb as summary_of
+from tiniscript.cli.verbless import is_help
 from tiniscript.diagnostics.codes import CODES
 from tiniscript.flash.bootloaders import BOARDS
 from tiniscript.link import ports
 from tiniscript.virtual import worlds
 
-ALIASES = {"ayuda": "help"}
 FILES = ("program", "robot", "world", "file", "action", "port")  # kinds that may name a file
 SCRIPTS = {
     "bash": """\
@@ -111,7 +111,7 @@ def _verb(before: list[str]) -> str:
         if word == "--lang":
             next(words, "")
         elif not word.startswith("-"):
-            return ALIASES.get(word, word)
+            return "help" if word not in VERBS and is_help(word) else word
     return "tsc"
 
 
