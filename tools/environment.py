@@ -14,33 +14,41 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 NEEDED = (3, 10)
+LANGUAGES = ("en", "es", "pt")  # of the sentences, in this order
 SAID = {
     "old": (
         "TiniScript needs Python 3.10 or newer; this is {version}. {get}",
         "TiniScript necesita Python 3.10 o posterior; este es {version}. {get}",
+        "TiniScript precisa de Python 3.10 ou mais novo; este é {version}. {get}",
     ),
     "get_windows": (
         "Get one from python.org (its installer asks for no administrator), then:  py tools\\try.py",
         "Descárgalo de python.org (su instalador no pide administrador); después:  py tools\\try.py",
+        "Baixe-o de python.org (o instalador não pede administrador); depois:  py tools\\try.py",
     ),
-    "get": ("Get one from python.org.", "Descárgalo de python.org."),
+    "get": ("Get one from python.org.", "Descárgalo de python.org.", "Baixe-o de python.org."),
     "making": (
         "Making a virtual environment in .venv",
         "Se crea un entorno virtual en .venv",
+        "Cria-se um ambiente virtual em .venv",
     ),
     "no_venv": (
         "This Python cannot make virtual environments. On Debian and Ubuntu:"
         "  sudo apt-get install python3-venv",
         "Este Python no puede crear entornos virtuales. En Debian y Ubuntu:"
         "  sudo apt-get install python3-venv",
+        "Este Python não pode criar ambientes virtuais. No Debian e no Ubuntu:"
+        "  sudo apt-get install python3-venv",
     ),
     "in_use": (
         "Cannot replace .venv: {why}. Close the windows that use it, and try again.",
         "No se puede reemplazar .venv: {why}. Cierra las ventanas que lo usan y repite.",
+        "Não dá para substituir .venv: {why}. Feche as janelas que o usam e repita.",
     ),
     "installing": (
         "Installing TiniScript and what it needs from PyPI into .venv",
         "Se instala TiniScript y lo que necesita, desde PyPI, en .venv",
+        "Instala-se o TiniScript e o que ele precisa, do PyPI, em .venv",
     ),
     "no_pip": (
         "pip could not install; is this computer online? A proxy is given by the variable"
@@ -49,6 +57,9 @@ SAID = {
         "pip no pudo instalar; ¿hay internet? Un proxy se indica con la variable"
         " HTTPS_PROXY, como http://proxy:3128. Sin internet: docs/lunes.es.md, una memoria USB."
         " Lo que dijo pip está en {log}; al final:\n{end}",
+        "pip não conseguiu instalar; há internet? Um proxy se indica com a variável"
+        " HTTPS_PROXY, como http://proxy:3128. Sem internet: docs/monday.pt.md, um pen drive (USB)."
+        " O que pip disse está em {log}; no fim:\n{end}",
     ),
 }
 
@@ -63,9 +74,10 @@ def said(key: str, **gaps: str) -> str:
     return in_language(SAID[key], **gaps)
 
 
-def in_language(both: tuple[str, str], **gaps: str) -> str:
-    """Return the English or the Spanish sentence."""
-    return both[language() == "es"].format(**gaps)
+def in_language(sentences: tuple[str, ...], **gaps: str) -> str:
+    """Return the sentence of the person's language, else the English one."""
+    found = language()
+    return sentences[LANGUAGES.index(found) if found in LANGUAGES else 0].format(**gaps)
 
 
 def say(line: str) -> None:
@@ -149,7 +161,7 @@ def language() -> str:
         pass
     finally:
         sys.path.remove(str(ROOT / "compiler"))
-    return "es" if os.environ.get("LANG", "").startswith("es") else "en"
+    return os.environ.get("LANG", "")[:2]
 
 
 def _fail(sentence: str) -> None:

@@ -24,10 +24,13 @@ SAID = {
         "turn right and go on.",
         "El programa {program}: avanzar hasta que haya algo a menos de 10 cm; entonces\n"
         "parar, girar a la derecha y seguir.",
+        "O programa {program}: andar para a frente até haver algo a menos de 10 cm; então\n"
+        "parar, virar à direita e seguir.",
     ),
     "watch": (
         "For 30 seconds a virtual robot does it here. Ctrl-C stops it earlier.",
         "Un robot virtual lo hace aquí durante 30 segundos. Ctrl-C lo detiene antes.",
+        "Um robô virtual faz isso aqui por 30 segundos. Ctrl-C o para antes.",
     ),
     "warning": (
         "The warning above: this robot drives for a second at a time without looking.\n"
@@ -35,20 +38,26 @@ SAID = {
         "a second.",
         "El aviso de arriba: este robot avanza un segundo entero sin mirar. En su mundo\n"
         "virtual eso basta; examples/obstacle_until.ts mira 50 veces por segundo.",
+        "O aviso acima: este robô anda um segundo inteiro sem olhar. No mundo virtual dele\n"
+        "isso basta; examples/obstacle_until.ts olha 50 vezes por segundo.",
     ),
     "drawn": (
         "way.png, in this folder, shows its path.",
         "way.png, en esta carpeta, muestra su recorrido.",
+        "way.png, nesta pasta, mostra o caminho dele.",
     ),
     "now": (
         'Now yours:  {activate}   and   tsc upload -e "SI|F(2, 80)" --virtual',
         'Ahora el tuyo:  {activate}   y   tsc upload -e "SI|F(2, 80)" --virtual',
+        'Agora o seu:  {activate}   e   tsc upload -e "SI|F(2, 80)" --virtual',
     ),
     "blocked": (
         "(Where PowerShell runs no scripts:  Set-ExecutionPolicy -Scope Process RemoteSigned"
         "   or, without it,  {tsc})",
         "(Si PowerShell no ejecuta scripts:  Set-ExecutionPolicy -Scope Process RemoteSigned"
         "   o, sin eso,  {tsc})",
+        "(Se o PowerShell não roda scripts:  Set-ExecutionPolicy -Scope Process RemoteSigned"
+        "   ou, sem isso,  {tsc})",
     ),
 }
 

@@ -1,4 +1,4 @@
-"""No language is a special case in code: what is left of that only gets less."""
+"""No language is a special case in code: none is chosen by its code."""
 
 from __future__ import annotations
 
@@ -7,11 +7,6 @@ import re
 from tests.support.casefile import ROOT
 
 SPECIAL = re.compile(r"""(?:==|===|!=) ?["'](?:es|en|pt)["']|["'](?:es|en|pt)["'] (?:==|===)""")
-# Places that still choose between English and Spanish themselves, by file. Take one out: never add.
-LEFT = {
-    "tools/builds/stick/install.py": 3,  # runs before the package is there
-    "tools/environment.py": 1,  # runs before the package is there
-}
 
 
 def test_no_code_asks_for_one_language() -> None:
@@ -26,4 +21,4 @@ def test_no_code_asks_for_one_language() -> None:
         count = len(SPECIAL.findall(path.read_text(encoding="utf-8")))
         if count:
             found["/".join(parts)] = count
-    assert found == LEFT
+    assert found == {}

@@ -220,7 +220,9 @@ def test_windows_has_its_interpreter_and_its_line_elsewhere() -> None:
     assert first.activation("posix") == ". .venv/bin/activate"
 
 
-@pytest.mark.parametrize(("language", "sentence"), [("en", "needs Python"), ("es", "necesita")])
+@pytest.mark.parametrize(
+    ("language", "sentence"), [("en", "needs Python"), ("es", "necesita"), ("pt", "precisa")]
+)
 def test_an_old_python_is_told_where_to_get_one(
     language: str, sentence: str, monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
@@ -238,7 +240,8 @@ def test_an_old_python_is_told_where_to_get_one(
 @pytest.mark.parametrize(
     ("language", "sentence"),
     [("en", "pip could not install; is this computer online?"),
-     ("es", "pip no pudo instalar; ¿hay internet?")],
+     ("es", "pip no pudo instalar; ¿hay internet?"),
+     ("pt", "pip não conseguiu instalar; há internet?")],
 )  # fmt: skip
 def test_a_computer_without_internet_is_told_of_proxies_and_the_stick(
     folder: Path, language: str, sentence: str
@@ -308,10 +311,10 @@ def test_the_first_command_drives_the_virtual_robot(
     assert "Ahora el tuyo" in said.err
 
 
-def test_every_sentence_of_the_first_command_has_two_languages() -> None:
+def test_every_sentence_of_the_first_command_has_all_languages() -> None:
     from tools import environment
 
     for table in (environment.SAID, loaded().SAID):
-        for english, spanish in table.values():
-            assert english != spanish or "{" in english
-            assert set(re.findall(r"\{\w+\}", english)) == set(re.findall(r"\{\w+\}", spanish))
+        for said in table.values():
+            assert len({*said}) == len(environment.LANGUAGES)
+            assert len({frozenset(re.findall(r"\{\w+\}", each)) for each in said}) == 1

@@ -107,6 +107,7 @@ def test_it_installs_with_the_network_off(stick: Path, tmp_path: Path) -> None:
     assert "Listo." in done.stdout
     assert "no funciona" not in done.stdout
     assert (home / "pages" / "indice.html").is_file()
+    assert (home / "pages" / "index.pt.html").is_file()
     tsc = home / "tsc" / "bin" / "tsc"
     ran = subprocess.run(
         [tsc, "run", "--machine", "cpp", "-e", "SI|F(2, 80)"], env=variables, cwd=tmp_path,

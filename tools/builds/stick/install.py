@@ -16,20 +16,28 @@ from pathlib import Path
 
 STICK = Path(__file__).resolve().parent
 IS_WINDOWS = os.name == "nt"
+LANGUAGES = ("en", "es", "pt")  # of the sentences, in this order
+TEAMS = {"spanish": "es", "portuguese": "pt"}  # as Windows says it
+PAGES = ("index.html", "indice.html", "index.pt.html")
 SAID = {
     "old": ("This Python is {version}; tsc needs 3.10 or newer.",
-            "Este Python es {version}; tsc necesita 3.10 o posterior."),
+            "Este Python es {version}; tsc necesita 3.10 o posterior.",
+            "Este Python é {version}; tsc precisa de 3.10 ou mais novo."),
     "no_venv": ("This Python cannot make virtual environments. On Debian and Ubuntu:  sudo apt-get install python3-venv",
-                "Este Python no puede crear entornos virtuales. En Debian y Ubuntu:  sudo apt-get install python3-venv"),
+                "Este Python no puede crear entornos virtuales. En Debian y Ubuntu:  sudo apt-get install python3-venv",
+                "Este Python não pode criar ambientes virtuais. No Debian e no Ubuntu:  sudo apt-get install python3-venv"),
     "where": ("Installing into {folder}. This takes a minute.",
-              "Se instala en {folder}. Tarda un minuto."),
+              "Se instala en {folder}. Tarda un minuto.", "Instala-se em {folder}. Demora um minuto."),
     "failed": ("The stick has no packages for this computer ({system}, Python {version}). README.txt says for which it has.",
-               "La memoria no tiene paquetes para esta computadora ({system}, Python {version}). README.txt dice para cuáles tiene."),
+               "La memoria no tiene paquetes para esta computadora ({system}, Python {version}). README.txt dice para cuáles tiene.",
+               "O pen drive não tem pacotes para este computador ({system}, Python {version}). README.txt diz para quais tem."),
     "no_robot": ("The virtual robot does not run on this computer: {why}",
-                 "El robot virtual no funciona en esta computadora: {why}"),
+                 "El robot virtual no funciona en esta computadora: {why}",
+                 "O robô virtual não funciona neste computador: {why}"),
     "done": ("Done. In each new window first:  {activate}",
-             "Listo. En cada ventana nueva, primero:  {activate}"),
-    "pages": ("The guides:  {page}", "Las guías:  {page}"),
+             "Listo. En cada ventana nueva, primero:  {activate}",
+             "Pronto. Em cada janela nova, primeiro:  {activate}"),
+    "pages": ("The guides:  {page}", "Las guías:  {page}", "Os guias:  {page}"),
 }  # fmt: skip
 
 
@@ -61,26 +69,26 @@ def main(words: list[str]) -> int:
     if IS_WINDOWS:
         activate = f'& "{programs}\\Activate.ps1"'
     _say("done", activate=activate)
-    _say("pages", page=folder / "pages" / ("indice.html" if _language() == "es" else "index.html"))
+    _say("pages", page=folder / "pages" / PAGES[_language()])
     return 0
 
 
-def _language() -> str:
-    for name in ("LC_ALL", "LC_MESSAGES", "LANG"):
-        if os.environ.get(name):
-            return "es" if os.environ[name].lower().startswith("es") else "en"
+def _language() -> int:
+    """Return the place of the person's language in LANGUAGES, that of English for any other."""
     import locale
 
-    found = (locale.getlocale()[0] or "").lower()
-    return "es" if found.startswith(("es", "spanish")) else "en"
+    names = (os.environ.get(name) for name in ("LC_ALL", "LC_MESSAGES", "LANG"))
+    found = (next(filter(None, names), None) or locale.getlocale()[0] or "").lower()
+    code = TEAMS.get(found.partition("_")[0], found[:2])
+    return LANGUAGES.index(code) if code in LANGUAGES else 0
 
 
 def _say(key: str, **gaps: object) -> None:
-    print(SAID[key][_language() == "es"].format(**gaps), flush=True)
+    print(SAID[key][_language()].format(**gaps), flush=True)
 
 
 def _fail(key: str, **gaps: object) -> int:
-    print(SAID[key][_language() == "es"].format(**gaps), file=sys.stderr)
+    print(SAID[key][_language()].format(**gaps), file=sys.stderr)
     return 2
 
 
