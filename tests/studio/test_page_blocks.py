@@ -230,7 +230,8 @@ def test_an_undo_keeps_the_place(page: Page) -> None:
         before = box_of(page.locator(f"{PROGRAM} .blocklyBlock").nth(15))
         page.keyboard.press("Control+z")
         becomes(page, long)
-        page.wait_for_timeout(300)  # Blockly gives the focus, and scrolls, a moment later
+        page.locator(f"{PROGRAM} .blocklyActiveFocus").wait_for(state="attached")
+        page.evaluate(SETTLED)  # Blockly scrolls to what has the focus, and the page back
         assert box_of(page.locator(f"{PROGRAM} .blocklyBlock").nth(15)) == pytest.approx(
             before, abs=2
         )

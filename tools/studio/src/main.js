@@ -74,15 +74,13 @@ so.areWordsShown.say(work.words);
 showRobots();
 so.robot.say(work.robot);
 
-const editor = new Editor(element('editor', HTMLElement), () => driving.breakpointsChanged(), (line) => {
-  so.note.say(text('no_breakpoint', { line }));
-});
+const editor = new Editor(element('editor', HTMLElement));
 const views = new Views(python, editor, work, remember);
-const driving = new Driving(python, views, work, () => checking.whenChecked(), remember);
+const driving = new Driving(python, work, () => checking.whenChecked(), remember);
 const programs = new Programs(python, work, putProgram, () => views.picture());
 
 const recorder = new Recorder({ python, world: () => driving.world });
-const place = new RobotPlace((range) => views.showRunningThere(range));
+const place = new RobotPlace();
 const panel = new RobotPanel({
   recorder,
   place,

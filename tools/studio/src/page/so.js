@@ -1,6 +1,9 @@
 // What is so: who changes something says it here once, and who shows it watches. So no two parts of the
 // page can show something else, and none has to know another one.
 
+/** @typedef {import('../writing/editor.js').Range} Range */
+/** @typedef {{line: number, column: number, point: object}} Breakpoint */
+
 /** @template T */
 class Fact {
   #value;
@@ -36,4 +39,10 @@ export const so = {
   /** What the compiler says of the newest text; null while it is at work. */
   checked: new Fact(/** @type {import('../python.js').Checked | null} */ (null)),
   note: new Fact(''), // a sentence about what has just been done
+  /** Where the program is to stop; a point stays the same while its text moves. */
+  breakpoints: new Fact(/** @type {Breakpoint[]} */ ([])),
+  /** What runs on the virtual robot, a range for each task; where it is held somebody wants to see it. */
+  running: new Fact({ ranges: /** @type {Range[]} */ ([]), isHeld: false }),
+  runningThere: new Fact(/** @type {Range | null} */ (null)), // on a real one
+  fault: new Fact({ range: /** @type {Range | null} */ (null), said: '' }), // of a run
 };

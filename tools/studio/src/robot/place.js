@@ -8,13 +8,10 @@ import { rangeAt } from '../writing/parts.js';
 const ENDS = ['STARTED', 'DONE', 'FAULT', 'STOPPED', 'RESTARTED', 'LOST'];
 
 export class RobotPlace {
-  #shown;
   /** What the robot has told last. @type {RobotEvent | null} */
   #told = null;
 
-  /** @param {(range: import('../writing/editor.js').Range | null) => void} shown */
-  constructor(shown) {
-    this.#shown = shown;
+  constructor() {
     so.checked.watch(() => {
       if (this.#told) this.#show();
     });
@@ -42,6 +39,6 @@ export class RobotPlace {
     const program = so.checked.value;
     const at = Number(this.#told?.at ?? -1);
     const isHere = program?.image && program.program === this.#told?.program && at >= 0 && at < program.bytes;
-    this.#shown(isHere ? rangeAt(program.places, at) : null);
+    so.runningThere.say(isHere ? rangeAt(program.places, at) : null);
   }
 }

@@ -27,7 +27,6 @@ const PLAYED_MS = 6000; // at most for a run of a lesson
 const SEEN = { seen_arena: 'arena', seen_plot: 'plot_place', seen_trace: 'trace_place' };
 
 export class Driving {
-  #editor;
   #work;
   #whenCompiled;
   #starts = 0; // one that STOP or a newer one has overtaken does nothing
@@ -63,13 +62,11 @@ export class Driving {
 
   /**
    * @param {import('../python.js').Python} python
-   * @param {import('../writing/views.js').Views} editor where the line that runs is marked
    * @param {Work} work
    * @param {() => Promise<Checked | null>} whenCompiled what the compiler says of the newest text, when it is done; null if it cannot say
    * @param {() => void} remember
    */
-  constructor(python, editor, work, whenCompiled, remember) {
-    this.#editor = editor;
+  constructor(python, work, whenCompiled, remember) {
     this.#work = work;
     this.#whenCompiled = whenCompiled;
     this.#python = python;
@@ -153,6 +150,7 @@ export class Driving {
     so.language.watch(() => this.#show());
     so.areWordsShown.watch(() => this.#show());
     so.robot.watch(() => this.begin());
+    so.breakpoints.watch(() => this.#breakpointsChanged());
     so.text.watch(() => { // what runs is no longer what is seen
       this.#places = [];
       this.#show();
@@ -262,8 +260,7 @@ export class Driving {
   }
 
   /** The program is to stop elsewhere. */
-  breakpointsChanged() {
-    this.#editor.showBreakpoints();
+  #breakpointsChanged() {
     const before = this.#offsets.join();
     this.#findStops();
     if (this.#offsets.join() !== before) this.#simulator.setBreakpoints(this.#offsets);
@@ -271,8 +268,7 @@ export class Driving {
 
   /** After a change of the text those remain whose breakpoints are still there. */
   #findStops() {
-    const points = this.#editor.breakpoints;
-    this.#stops = new Map(points.map((each) => [
+    this.#stops = new Map(so.breakpoints.value.map((each) => [
       each.point, this.#places.length ? offsetsOf(this.#places, [each]) : this.#stops.get(each.point) ?? [],
     ]));
   }
@@ -354,8 +350,8 @@ export class Driving {
     const range = this.#place();
     const isAlone = !state || state.fault || state.is_held;
     const ranges = isAlone ? [range] : state.places.map((at) => rangeAt(this.#places, at));
-    this.#editor.showRunning(ranges.filter((each) => each !== null), Boolean(state?.is_held));
-    this.#editor.showFault(state?.fault ? range : null, state?.fault ? faultSaid(state.fault) : '');
+    so.running.say({ ranges: ranges.filter((each) => each !== null), isHeld: Boolean(state?.is_held) });
+    so.fault.say({ range: state?.fault ? range : null, said: state?.fault ? faultSaid(state.fault) : '' });
   }
 
   /** What runs in the text that is seen, or what had a fault. */

@@ -49,7 +49,7 @@ const field = StateField.define({
  * The extension. `toggle` is asked with a place of the text, or the beginning of a line in whose
  * margin somebody has pressed.
  * @param {(at: number, isLine: boolean) => void} toggle
- * @param {() => void} changed
+ * @param {() => void} changed they, or the text they are in
  */
 export function breakpoints(toggle, changed) {
   return [
@@ -65,7 +65,7 @@ export function breakpoints(toggle, changed) {
       return true;
     } }]),
     EditorView.updateListener.of((update) => {
-      if (placesOf(update.startState).join() !== placesOf(update.state).join()) changed();
+      if (update.docChanged || placesOf(update.startState).join() !== placesOf(update.state).join()) changed();
     }),
   ];
 }

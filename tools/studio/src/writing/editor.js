@@ -64,17 +64,11 @@ export class Editor {
   #view;
   /** Where parts of the newest text begin; null while it is not compiled. @type {import('./parts.js').Places | null} */
   #places = null;
-  #noBreakpoint;
   #marked = ''; // what runs
   #held = -1; // where the program is held, and the editor has been scrolled to
 
-  /**
-   * @param {HTMLElement} parent
-   * @param {() => void} breakpointsChanged
-   * @param {(line: number) => void} noBreakpoint there is nothing to stop at
-   */
-  constructor(parent, breakpointsChanged, noBreakpoint) {
-    this.#noBreakpoint = noBreakpoint;
+  /** @param {HTMLElement} parent */
+  constructor(parent) {
     /** @type {(at: number, isLine: boolean) => void} */
     const toggle = (at, isLine) => this.#toggle(at, isLine);
     const root = parent.attachShadow({ mode: 'open' });
@@ -92,7 +86,7 @@ export class Editor {
             this.#marked = '';
             so.text.say(this.text);
           }),
-          breakpoints(toggle, breakpointsChanged),
+          breakpoints(toggle, () => so.breakpoints.say(this.#breakpoints)),
           lineNumbers({ domEventHandlers: { mousedown: (_, line, event) => pressed(line, event, toggle) } }),
           history(),
           // Tab leaves the editor: who has no mouse must get out.
@@ -171,8 +165,7 @@ export class Editor {
     this.#view.dispatch(setDiagnostics(this.#view.state, marks));
   }
 
-  /** Where the program is to stop; `point` stays the same while its text moves. */
-  get breakpoints() {
+  get #breakpoints() {
     return pointsOf(this.#view.state).map(({ at, point }) => ({ ...this.#placeAt(at), point }));
   }
 
@@ -193,7 +186,7 @@ export class Editor {
       return;
     }
     const begin = this.#partAt(at, isLine);
-    if (begin === null) this.#noBreakpoint(line.number);
+    if (begin === null) so.note.say(text('no_breakpoint', { line: line.number }));
     else setBreakpoints(this.#view, [begin], !placesOf(this.#view.state).includes(begin));
   }
 

@@ -37,13 +37,8 @@ export class Views {
   #sending = 0;
   /** @type {Finding[]} */
   #findings = [];
-  /** @type {[import('./editor.js').Range | null, string]} */
-  #fault = [null, ''];
   /** @type {import('./editor.js').Range[]} */
   #running = [];
-  /** The same on the virtual robot, and on a real one. @type {[import('./editor.js').Range[], import('./editor.js').Range[]]} */
-  #run = [[], []];
-  #isHeld = false; // the virtual robot, at a breakpoint or after a step
   #pane = element('blocks', HTMLElement);
   #note = element('blocks_note', HTMLElement);
   #level = element('level', HTMLSelectElement);
@@ -84,6 +79,12 @@ export class Views {
     so.text.watch(() => this.#textChanged());
     so.checked.watch((answer) => {
       if (answer) this.#showFindings(answer.findings);
+    });
+    so.breakpoints.watch(() => this.#showBreakpoints());
+    so.running.watch(() => this.#mark());
+    so.runningThere.watch(() => this.#mark());
+    so.fault.watch(({ range, said }) => {
+      if (!range || !this.#isStale()) this.#blocks?.showFault(range, said);
     });
     this.#showWords();
     this.#lay();
@@ -144,45 +145,17 @@ export class Views {
     if (!this.#isStale()) this.#blocks?.showFindings(findings);
   }
 
-  get breakpoints() {
-    return this.#editor.breakpoints;
+  #showBreakpoints() {
+    if (!this.#isStale()) this.#blocks?.showBreakpoints(so.breakpoints.value);
   }
 
-  /** Shows where the program is to stop, at the blocks, too. */
-  showBreakpoints() {
-    if (!this.#isStale()) this.#blocks?.showBreakpoints(this.#editor.breakpoints);
-  }
-
-  /**
-   * @param {import('./editor.js').Range[]} ranges one for each task
-   * @param {boolean} isHeld there, so somebody wants to see it
-   */
-  showRunning(ranges, isHeld) {
-    this.#run[0] = ranges;
-    this.#isHeld = isHeld;
-    this.#mark();
-  }
-
-  /** Where both robots run, this is what is seen of them, but where the virtual one is held. @param {import('./editor.js').Range | null} range */
-  showRunningThere(range) {
-    this.#run[1] = range ? [range] : [];
-    this.#mark();
-  }
-
+  /** Where both robots run, the real one is seen, but where the virtual one is held. */
   #mark() {
-    const [virtual, real] = this.#run;
-    this.#running = this.#isHeld || !real.length ? virtual : real;
-    this.#editor.showRunning(this.#running, this.#isHeld);
+    const { ranges, isHeld } = so.running.value;
+    const there = so.runningThere.value;
+    this.#running = isHeld || !there ? ranges : [there];
+    this.#editor.showRunning(this.#running, isHeld);
     if (!this.#isStale()) this.#blocks?.showRunning(this.#running);
-  }
-
-  /**
-   * @param {import('./editor.js').Range | null} range where a run had a fault
-   * @param {string} said
-   */
-  showFault(range, said) {
-    this.#fault = [range, said];
-    if (!range || !this.#isStale()) this.#blocks?.showFault(range, said);
   }
 
   /** @param {import('./editor.js').Range} finding */
@@ -282,7 +255,7 @@ export class Views {
         this.#form = whole;
         this.#blocks.placed(ids, answer.places);
         this.#editor.replaceByBlocks(answer.text);
-        this.showBreakpoints();
+        this.#showBreakpoints();
       }
     } catch (why) {
       this.#fail(why);
@@ -333,9 +306,9 @@ export class Views {
   /** Blocks that are new have nothing at them yet. */
   #showAll() {
     this.#blocks?.showFindings(this.#findings);
-    this.#blocks?.showFault(...this.#fault);
+    this.#blocks?.showFault(so.fault.value.range, so.fault.value.said);
     this.#blocks?.showRunning(this.#running);
-    this.showBreakpoints();
+    this.#showBreakpoints();
   }
 
   /** @param {unknown} why */
