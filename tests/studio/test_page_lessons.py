@@ -129,6 +129,11 @@ def test_who_has_seen_enough_gets_the_answer_at_once(page: Page) -> None:
 
 
 def test_a_lesson_is_one_step_at_a_time(page: Page) -> None:
+    choose(page, 7)  # of the longest title
+    shown = page.locator("#lesson selectedcontent")
+    assert shown.locator("svg").is_visible()
+    assert shown.locator("span").evaluate("e => e.scrollWidth <= e.clientWidth")
+    assert page.locator("#controls").evaluate("e => e.clientHeight") < 60  # one row
     choose(page, 2)
     steps = page.locator("#lesson_steps button")
     steps.first.click()

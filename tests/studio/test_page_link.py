@@ -308,6 +308,7 @@ def test_hostile_names_of_robots_are_text(page: Page, robot: PtyRobot) -> None:
     known_ports.remember(robot.port, HOSTILE)
     page.click("#link_look")
     page.locator("#link_port option").filter(has_text=HOSTILE).wait_for(state="attached")
+    assert page.locator("#link_port option use").first.get_attribute("href") == "#drawn_plug"
     assert page.locator("#link img").count() == 0
 
 

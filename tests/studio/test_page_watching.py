@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 # A browser's sound, which only notes what it is told.
 NOTING = """() => {
-  window.heard = []; window.shaken = 0; window.stopped = 0;
+  window.heard = []; window.shaken = window.started = window.stopped = 0;
   const param = () => ({set value(hertz) { window.heard.push(hertz); },
     setValueAtTime(hertz) { if (hertz > 1) window.heard.push(hertz); },
     linearRampToValueAtTime() {}, exponentialRampToValueAtTime() {}});
@@ -29,7 +29,7 @@ NOTING = """() => {
       return {...node(), gain: {setValueAtTime() {}, linearRampToValueAtTime() {}}};
     }
     createOscillator() {
-      return {...node(), frequency: param(), addEventListener() {}, start() {},
+      return {...node(), frequency: param(), addEventListener() {}, start() { window.started += 1; },
         stop(at) { if (at === undefined) window.stopped += 1; }};
     }
   };
@@ -59,7 +59,7 @@ def count(page: Page, color: str) -> int:
 def listening(page: Page) -> Page:
     """A page whose sound is noted, and in which no way is drawn."""
     page.evaluate(f"window.heard ? 0 : ({NOTING})()")
-    page.evaluate("window.heard = []; window.shaken = 0")
+    page.evaluate("window.heard = []; window.shaken = window.started = 0")
     erase(page)
     return page
 
@@ -111,10 +111,11 @@ def test_stop_and_pause_silence_it(listening: Page) -> None:
 
 def test_a_crash_is_heard_and_shakes(listening: Page) -> None:
     page = listening
+    noted = "[window.heard.length, window.started, window.shaken]"
     run(page, "W(1)")
-    assert page.evaluate("[window.heard.length, window.shaken]") == [0, 0]
+    assert page.evaluate(noted) == [0, 0, 0]
     run(page, CRASH)
-    assert page.evaluate("[window.heard.length, window.shaken]") == [1, 1]
+    assert page.evaluate(noted) == [1, 1, 1]
     assert count(page, "ffd84d") > 20  # the star where it touches the box
 
 

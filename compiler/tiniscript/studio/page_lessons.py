@@ -32,11 +32,11 @@ STEPS, TASK = 2, 3  # of a page's headings, behind what is needed
 
 
 def titles(language: str) -> list[dict[str, Any]]:
-    """Return what each lesson is called, and for which robot it is; the first one is lesson 1."""
+    """Return what each lesson is called, its robot, and how it looks; the first one is lesson 1."""
     return [
         {"name": lesson.name, "title": lesson.titles[language], "robot": lesson.robot,
-         "worlds": lesson.worlds}
-        for lesson in map(_lesson, range(1, len(catalogue.folders()) + 1))
+         "worlds": lesson.worlds, "world": world_form(number, 1)}
+        for number, lesson in enumerate(map(_lesson, range(1, len(catalogue.folders()) + 1)), 1)
     ]  # fmt: skip
 
 

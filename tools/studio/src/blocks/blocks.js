@@ -18,7 +18,7 @@ import { text, textsOf } from '../page/texts.js';
 /** @typedef {{changed: () => void, toggle: (place: {line: number, column: number}) => void}} Told */
 
 const NARROW = 700; // pixels of width, below which blocks are smaller
-const LONGEST_TIP = 42; // characters in a line of a message at a block
+const LONGEST_TIP = 30; // about so many characters are in a line of a message at a block
 const SNAPS = 48; // units of a workspace: how far off a block may be dropped
 const STAYS = 68; // the same while it is shown where it would go
 const BESIDE = 24; // units between a block and its message

@@ -5,7 +5,7 @@ import * as Blockly from 'blockly/core';
 import { COLOURS } from './colours.js';
 
 const MEDIA = './';
-export const RENDERER = 'tiniscript';
+const RENDERER = 'tiniscript';
 
 /** @param {string} css */
 function adopt(css) {

@@ -6,10 +6,11 @@
 import { element } from '../page/elements.js';
 import { elementOf, filled } from './page.js';
 import { keepDone, lessonsDone } from './progress.js';
+import { offer, pictured, worldPicture } from '../page/pictures.js';
 import { so } from '../page/so.js';
 import { currentLanguage, text } from '../page/texts.js';
 
-/** @typedef {{name: string, title: string, robot: string, worlds: number}} Lesson */
+/** @typedef {{name: string, title: string, robot: string, worlds: number, world: import('../world/parts.js').World}} Lesson */
 /** @typedef {{blocks: import('./page.js').Block[], hint: string}} Step */
 /** @typedef {{lesson: number, seed: number, until_ms: number}} JudgedRun */
 /**
@@ -139,9 +140,9 @@ export class Lessons {
 
   #list() {
     const done = lessonsDone();
-    this.#choice.replaceChildren(...this.#lessons.map((lesson, k) => {
+    offer(this.#choice, this.#lessons.map((lesson, k) => {
       const mark = done.has(lesson.name) ? ` ✓ ${text('lesson_is_done')}` : '';
-      return new Option(`${k + 1}. ${lesson.title}${mark}`, String(k + 1));
+      return pictured(`${k + 1}. ${lesson.title}${mark}`, String(k + 1), worldPicture(lesson.world));
     }));
     this.#choice.value = String(this.#number);
   }

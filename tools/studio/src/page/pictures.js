@@ -45,8 +45,24 @@ export function blocksPicture(count) {
   const picture = part('svg', { viewBox: '0 0 28 28', 'aria-hidden': 'true' });
   const first = 14 - 4.5 * count;
   for (let k = 0; k < count; k += 1) {
-    picture.append(part('path', { d: `M3 ${first + 9 * k}h5q1 2.500 3 2.500t3-2.500h11v8H14q-1 2.500-3 2.500t-3-2.500H3z`, fill: ['#0b4f9e', '#c56a1b', '#2a9d6f'][k] ?? '' }));
+    picture.append(part('path', { d: `M3 ${first + 9 * k}h5q1 2.500 3 2.500t3-2.500h11v8H14q-1 2.500-3 2.500t-3-2.500H3z`, fill: ['var(--said-blue)', '#c56a1b', '#2a9d6f'][k] ?? '' }));
   }
+  return picture;
+}
+
+/** @param {number} share of what it can show @returns {SVGElement} a dial */
+export function dialPicture(share) {
+  const angle = Math.PI * share;
+  const hand = `M14 19L${14 - 9 * Math.cos(angle)} ${19 - 9 * Math.sin(angle)}`;
+  const picture = part('svg', { viewBox: '0 0 28 28', 'aria-hidden': 'true' });
+  picture.append(part('path', { d: `M3 21a11.500 11.500 0 1 1 22 0${hand}`, fill: 'none', stroke: 'currentColor', 'stroke-width': 3, 'stroke-linecap': 'round' }));
+  return picture;
+}
+
+/** @param {string} id of a drawing of the page @returns {SVGElement} it alone */
+export function drawnPicture(id) {
+  const picture = part('svg', { viewBox: '-30 -24 60 48', 'aria-hidden': 'true' });
+  picture.append(part('use', { href: `#${id}` }));
   return picture;
 }
 

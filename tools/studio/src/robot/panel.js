@@ -15,6 +15,7 @@ import { refusal, shown } from './said.js';
 import { stopAll } from './stops.js';
 import { Speech } from './speech.js';
 import { Failed } from './way.js';
+import { drawnPicture, offer, pictured } from '../page/pictures.js';
 import { so } from '../page/so.js';
 import { called, currentLanguage, known, text } from '../page/texts.js';
 import { LINK, ROBOTS } from '../page/words.js';
@@ -24,7 +25,7 @@ import { LINK, ROBOTS } from '../page/words.js';
 /** @typedef {import('./way.js').Answer} Answer */
 /** @typedef {import('./way.js').RobotEvent} RobotEvent */
 /** @typedef {import('./way.js').Way} Way */
-/** @typedef {{label: string, connect: () => Promise<void>, serial?: any}} Choice */
+/** @typedef {{label: string, drawn: string, connect: () => Promise<void>, serial?: any}} Choice */
 
 /**
  * @typedef {object} Page what the panel uses of the page
@@ -142,17 +143,17 @@ export class RobotPanel {
         for (const { port, name, description, virtual } of await hostPorts()) {
           const about = virtual === null ? description : `${text('virtual_known')} ${virtual}`;
           const label = shown([name, about, port].filter(Boolean).join(' · '));
-          found.push({ label, connect: () => this.byHost(port) });
+          found.push({ label, drawn: virtual === null ? 'drawn_plug' : 'drawn_robot', connect: () => this.byHost(port) });
         }
       } catch (why) {
         failed = why;
       }
     }
     for (const [k, port] of (await knownPorts()).entries()) {
-      found.push({ label: text('serial_known', { number: k + 1 }), connect: () => this.#bySerial(Promise.resolve(port)), serial: port });
+      found.push({ label: text('serial_known', { number: k + 1 }), drawn: 'drawn_plug', connect: () => this.#bySerial(Promise.resolve(port)), serial: port });
     }
     this.#choices = found;
-    this.#list.replaceChildren(...found.map(({ label }) => new Option(label)));
+    offer(this.#list, found.map(({ label, drawn }) => pictured(label, label, drawnPicture(drawn))));
     this.#show();
     if (this.#way) return;
     if (failed instanceof Failed) this.#speech.fail(failed);

@@ -5,6 +5,7 @@ import { element, say } from '../page/elements.js';
 import { faultSaid } from '../page/faults.js';
 import { download } from '../page/files.js';
 import { offsetsOf, rangeAt } from '../writing/parts.js';
+import { dialPicture, offer, pictured } from '../page/pictures.js';
 import { Plot } from './plot.js';
 import { Simulator } from './simulator.js';
 import { Sounds } from './sounds.js';
@@ -22,6 +23,7 @@ import { WorldDrawing } from '../world/drawing.js';
 const SHOWN = 200; // lines of the trace
 const READ_MS = 100; // nobody reads what changes more often
 const SHORT = 12; // characters of a name whose value stands beside another one
+const SPEEDS = [0.1, 0.5, 1, 4, 20]; // times as quick as the robot
 const PLAYED_MS = 6000; // at most for a run of a lesson
 /** What of a run is seen, by the button that shows it. */
 const SEEN = { seen_arena: 'arena', seen_plot: 'plot_place', seen_trace: 'trace_place' };
@@ -120,6 +122,8 @@ export class Driving {
       if (event.key === 'Escape') this.#stop();
     }, { capture: true });
     const speed = element('speed', HTMLSelectElement);
+    offer(speed, SPEEDS.map((each, k) => pictured(`× ${each}`, String(each), dialPicture(k / (SPEEDS.length - 1)))));
+    speed.value = '1';
     speed.addEventListener('change', () => {
       this.#simulator.speed = Number(speed.value);
     });

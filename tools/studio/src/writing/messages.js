@@ -22,18 +22,18 @@ export function showMessages(list, findings, goTo, repair) {
     place.className = 'place';
     const said = document.createElement('span');
     said.textContent = finding.message;
-    row.append(place, said);
+    row.append(place, ' ', said);
     if (finding.fix) {
       const fix = document.createElement('span');
       fix.className = 'fix';
       fix.textContent = `${text('try')} ${finding.fix}`;
-      row.append(fix);
+      row.append(' ', fix);
     }
     if (finding.repair.length) {
       const does = button(text('repair'), () => repair(finding));
       does.className = 'repair';
       does.setAttribute('aria-label', text('repair_line', { line: finding.line, fix: finding.fix }));
-      row.append(does);
+      row.append(' ', does);
     }
     return row;
   });
