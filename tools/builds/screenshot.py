@@ -12,11 +12,13 @@ from __future__ import annotations
 import argparse
 import json
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from functools import cache
 from io import BytesIO
 from itertools import product
 from pathlib import Path
+from threading import Event, Thread
 from typing import TYPE_CHECKING
 
 from PIL import Image
@@ -27,6 +29,7 @@ sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
 from tests.support import studio
 from tiniscript.base.languages import languages
+from tiniscript.lessons import catalogue
 from tools.builds.page_texts import page_texts
 from tools.site.documents import sources
 
@@ -53,15 +56,23 @@ END_LOOP
 # in a lesson, after a check; and those of SHEETS.
 SCENES = {"": PROGRAM, ".held": COUNTED, ".start": COUNTED, ".lesson": "SI|F(5, 80)",
           ".drawing": PROGRAM, ".phone": PROGRAM, ".minute": PROGRAM,
-          ".teacher": PROGRAM}  # fmt: skip
+          ".teacher": PROGRAM, ".wall": ""}  # fmt: skip
+WALL = ".wall"  # of a teacher, with thirty pupils
+PUPILS = ["Ana", "Beto", "Carla", "Dani", "Elena", "Fabio", "Gabi", "Hugo", "Inés", "Julia",
+          "Karim", "Lucía", "Mateo", "Nina", "Oscar", "Paula", "Quim", "Rosa", "Saúl", "Tania",
+          "Ulises", "Vera", "Wara", "Ximena", "Yago", "Zoe", "Bruno", "Celia", "Emma",
+          "Diego"]  # fmt: skip
+TURNS = ("F(1, 80);\n", "F(1, 80);\nR(0.5, 60);\n", PROGRAM.removeprefix("SI|"))
+PUPIL, HAND = "192.0.2.7", 7  # their address, and whose hand is up
 HOLDS = 5  # the line of the breakpoint
 SIZE = {"width": 1280, "height": 760}
 GAP = 12  # pixels between the pictures of a sheet
 COLOURS = 128  # of a picture: its bytes are halved, and nobody sees it
 KEPT = "words"  # the text of the picture that has them
 SEEN = "button, label, h1, h2, .blocklyToolboxCategoryLabel"
+CLASS = sources(ROOT, "docs/class.en.md")
 GUIDES = {
-    each: (ROOT / name).read_text("utf-8")
+    each: "".join((ROOT / guide).read_text("utf-8") for guide in (name, CLASS.get(each)) if guide)
     for each, name in sources(ROOT, "docs/studio.en.md").items()
 }
 LANGUAGES = tuple(each for each, text in GUIDES.items() if f"(studio.{each}.png)" in text)
@@ -105,14 +116,16 @@ def take(language: str, scene: str, target: Path) -> None:
         shots.append(Image.open(BytesIO(page.screenshot())).convert("RGB"))
 
     with (
-        studio.served() as server,
+        _served(scene) as (address, entrance),
         studio.driver() as driver,
         studio.browser(driver) as opened,
     ):
-        pages = studio.Pages(opened, server.address, patience_s=120)
-        page = pages.open("text", viewport=SIZE, device_scale_factor=1)
+        pages = studio.Pages(opened, address, patience_s=120)
+        view = "wall" if scene == WALL else "text"
+        page = pages.visit(entrance, view, viewport=SIZE, device_scale_factor=1)
         studio.speak(page, language)
-        studio.write(page, PROGRAM)
+        if scene != WALL:
+            studio.write(page, PROGRAM)
         SHEETS.get(scene, _single)(page, scene, look)
         pages.close()
     if pages.wrong:
@@ -121,6 +134,37 @@ def take(language: str, scene: str, target: Path) -> None:
     said = sorted({row.strip() for each in words for row in each.splitlines() if row.strip()})
     kept.add_text(KEPT, json.dumps([each for each in said if is_said(each)]))
     _sheet(shots).quantize(COLOURS).save(target, optimize=True, pnginfo=kept)
+
+
+@contextmanager
+def _served(scene: str) -> Iterator[tuple[str, str]]:
+    """The address of a page, and where it is entered."""
+    if scene != WALL:
+        with studio.served() as server:
+            yield server.address, server.address
+        return
+    with studio.taught([]) as (server, room):
+        room.teach({"do": "class_places", "places": len(PUPILS)})
+        joins = {"do": "join", "code": room.code}
+        tokens = [room.answer("", PUPIL, {**joins, "name": name})["token"] for name in PUPILS]
+        is_over = Event()
+
+        def come() -> None:
+            while True:
+                for k, token in enumerate(tokens):
+                    here = {"do": "here", "text": f"SI|{TURNS[k % len(TURNS)]}", "robot": "tinibot"}
+                    done = [each.name for each in catalogue.folders()[: k % 5]]
+                    room.answer(token, PUPIL, {**here, "lessons": done, "hand": k == HAND})
+                if is_over.wait(1):
+                    return
+
+        pupils = Thread(target=come)
+        pupils.start()
+        try:
+            yield server.address, server.entrance()
+        finally:
+            is_over.set()
+            pupils.join()
 
 
 def _single(page: Page, scene: str, look: Callable[[], None]) -> None:
@@ -196,6 +240,7 @@ def _minute(page: Page, scene: str, look: Callable[[], None]) -> None:
     page.click("#view_blocks")
     page.select_option("#speed", "20")
     page.click("#run")
+    _in_phase(page, "running")  # the run before has ended, too
     _in_phase(page, "ended")
     look()
     page.select_option("#world", "maze")
@@ -216,8 +261,20 @@ def _teacher(page: Page, scene: str, look: Callable[[], None]) -> None:
     look()
 
 
+def _wall(page: Page, scene: str, look: Callable[[], None]) -> None:
+    """Thirty pupils, one with a hand up, without scrolling."""
+    page.locator("#wall img[src^=blob]").nth(len(PUPILS) - 1).wait_for()
+    look()
+
+
 # Scenes of several pictures, or beside the program.
-SHEETS = {".drawing": _drawing, ".phone": _phone, ".minute": _minute, ".teacher": _teacher}
+SHEETS = {
+    ".wall": _wall,
+    ".drawing": _drawing,
+    ".phone": _phone,
+    ".minute": _minute,
+    ".teacher": _teacher,
+}
 
 
 def _sheet(shots: list[Image.Image]) -> Image.Image:
