@@ -29,8 +29,7 @@ from tiniscript.bytecode.opcodes import OPS
 from tiniscript.bytecode.verify import loaded
 from tiniscript.conformance import machine_process
 from tiniscript.conformance.comparing import AGREES, DIFFERS, LACKS, verdicts
-from tiniscript.conformance.kit import MachineCase, machine_cases
-from tiniscript.conformance.link_kit import link_kit
+from tiniscript.conformance.kit import MachineCase, link_kit, machine_cases
 from tiniscript.conformance.machine_process import MachineProcess, Problem
 from tiniscript.conformance.port_checks import all_checks
 from tiniscript.vm.state import DONE, FAULT

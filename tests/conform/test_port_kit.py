@@ -21,7 +21,7 @@ from tests.support.command import Tsc
 from tests.support.pty_robot import PtyRobot, on
 from tests.support.simulated_port import simulated
 from tiniscript.conformance.comparing import AGREES
-from tiniscript.conformance.link_kit import link_kit
+from tiniscript.conformance.kit import link_kit
 from tiniscript.conformance.port_checks import all_checks, met, verdicts
 from tiniscript.conformance.wire_robot import WireRobot
 from tiniscript.link import ports

@@ -9,9 +9,9 @@ import pytest
 from tests.support.casefile import ROOT
 from tiniscript.virtual import worlds
 from tools.generate import arena, front
+from tools.generate.arena import DRIVES, world_picture
 from tools.generate.guide_pictures import DRIVES as DRIVES_OF_GUIDES
 from tools.generate.guide_pictures import guide_pictures
-from tools.generate.world_pictures import DRIVES, world_picture
 from tools.site.documents import sources
 
 SVG = "{http://www.w3.org/2000/svg}"

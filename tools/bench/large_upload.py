@@ -74,10 +74,9 @@ def program(code_bytes: int) -> Image:
 
 def uploaded(
     robot: HostFirmware, kit: int, code_bytes: int, baud: int = BAUD,
-    round_trip_ms: float = ROUND_TRIP_MS,
 ) -> Took:  # fmt: skip
     """Upload a program to a robot that has just begun. Raises RuntimeError where it is not done."""
-    there, back = (Wire(baud, round_trip_ms / 2) for _ in range(2))
+    there, back = (Wire(baud, ROUND_TRIP_MS / 2) for _ in range(2))
     session = Session(7, baud, kit)
     image = program(code_bytes)
     hello = session.hello()

@@ -74,9 +74,9 @@ SYSTEMS = {
 }  # fmt: skip
 
 
-def make_sources(folder: Path, sources: dict[str, bool] = SOURCES) -> None:
+def make_sources(folder: Path) -> None:
     """Put wheels of Python alone into a folder, for packages that PyPI has only as source."""
-    for name, has_parts_in_c in sources.items():
+    for name, has_parts_in_c in SOURCES.items():
         with tempfile.TemporaryDirectory() as place:
             _pip(["wheel", "--quiet", "--no-deps", "--wheel-dir", place, name], {})
             made = next(Path(place).glob("*.whl"))

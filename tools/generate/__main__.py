@@ -26,6 +26,7 @@ from tiniscript.robots.profile import ProfileRefused, Robot
 from tiniscript.robots.reader import read
 from tiniscript.robots.refusals import describe
 from tools.generate import avr_header, cpp_header, link_header, remark_tables, text_tables
+from tools.generate.arena import world_picture
 from tools.generate.command_pages import DOCUMENTED, page
 from tools.generate.cpp_cases import cases_header
 from tools.generate.documents import DOCUMENTS, list_of_documents, spliced, table
@@ -36,7 +37,6 @@ from tools.generate.link_payloads import payloads
 from tools.generate.machine_kit import machine_kit
 from tools.generate.poster import posters
 from tools.generate.wiring_pages import wiring_pages
-from tools.generate.world_pictures import world_picture
 from tools.site.documents import LIST, name_in
 
 COMMAND = "python -m tools.generate"

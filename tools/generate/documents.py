@@ -11,6 +11,7 @@ from functools import partial
 from pathlib import Path
 
 from tiniscript.base.languages import SOURCE, languages, text
+from tiniscript.lessons.lesson import AREA, KINDS, WHATS, Kind
 from tiniscript.robots.text_levels import CODE_BYTES, LEVELS
 from tools.site.documents import LIST, documents, sources
 
@@ -47,8 +48,6 @@ def promises_document() -> str:
 
 def lessons_document() -> str:
     """Return `docs/lessons.en.md` with the table of criteria."""
-    from tools.generate.lesson_table import criteria
-
     return spliced(_text("lessons.en.md"), "criteria", table(*criteria()))
 
 
@@ -130,3 +129,23 @@ DOCUMENTS: dict[str, Callable[[], str]] = {
     },
     "lessons.en.md": lessons_document,
 }
+
+
+def criteria() -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
+    """Return its head and its rows."""
+    rows: list[tuple[str, ...]] = [
+        (f"`{name}`", kind.meaning, ", ".join(_takes(kind))) for name, kind in KINDS.items()
+    ]
+    return ("criterion", "met if", "takes"), rows
+
+
+def _takes(kind: Kind) -> list[str]:
+    """Return the keys, with their defaults where these say something."""
+    found = ["`at`"] if kind.places else []
+    if kind.words:
+        found.append("`what`" if kind.words in WHATS else "`words`")
+    for each in kind.numbers:
+        is_said = each.default is not None and each.default < each.high
+        found.append(f"`{each.key}`" + (f" ({each.default:g})" if is_said else ""))
+    found += [f"`{each}`" for each in (*kind.flags, *(AREA if kind.has_area else ()))]
+    return found

@@ -17,7 +17,7 @@ from tiniscript.bytecode.disassembly import listing
 from tiniscript.bytecode.image import HEADER_BYTES, ImageRefused
 from tiniscript.bytecode.opcodes import FAULTS
 from tiniscript.bytecode.verify import Refused, loaded, verify
-from tiniscript.conformance.link_kit import FORM, VERSION
+from tiniscript.conformance.kit import LINK_FORM, LINK_VERSION
 from tiniscript.link.messages import MAJOR, MINOR
 from tiniscript.vm.machine import Machine
 from tiniscript.vm.state import DONE, FAULT, WAITING
@@ -40,7 +40,7 @@ def link_kit(command: str) -> str:
         "refused": list(refusals(runs)),
         "conversations": [conversation(case) for case in link_cases("link")],
     }
-    head = {"form": FORM, "version": VERSION, "made_by": command, "link": [MAJOR, MINOR]}
+    head = {"form": LINK_FORM, "version": LINK_VERSION, "made_by": command, "link": [MAJOR, MINOR]}
     text = json.dumps(head, ensure_ascii=False, indent=1).removesuffix("\n}")
     for name, rows in parts.items():
         lines = ",\n".join(json.dumps(row, ensure_ascii=False) for row in rows)

@@ -13,7 +13,7 @@ from tiniscript.bytecode.image import pack
 from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
 from tiniscript.bytecode.verify import RULES
 from tiniscript.conformance.comparing import Verdict, compared
-from tiniscript.conformance.link_kit import LinkKit, LinkProgram
+from tiniscript.conformance.kit import LinkKit, LinkProgram
 from tiniscript.conformance.wire_robot import STARTS, Answer, Silent, WireRobot
 from tiniscript.link.frames import Frame, encoded
 from tiniscript.link.messages import (

@@ -15,9 +15,9 @@ from tiniscript.cli.inputs import shown
 from tiniscript.cli.options import whole_number
 from tiniscript.cli.robot.connect import FASTEST_BAUD, SLOWEST_BAUD, port_failure
 from tiniscript.cli.texts import text
-from tiniscript.conformance import link_kit, port_checks
+from tiniscript.conformance import port_checks
 from tiniscript.conformance.comparing import AGREES, DIFFERS, LACKS, Verdict, verdicts
-from tiniscript.conformance.kit import VERSION, machine_cases
+from tiniscript.conformance.kit import LINK_VERSION, VERSION, link_kit, machine_cases
 from tiniscript.conformance.machine_process import CannotStart, MachineProcess
 from tiniscript.conformance.wire_robot import Silent, WireRobot
 from tiniscript.link import errors, ports
@@ -66,7 +66,7 @@ def _port(options: Namespace, language: str) -> int:
         raise CommandError(2, "no_such_port", found=shown(port) or "''")
     usual = robots.load(robots.DEFAULT).board.baud
     baud = whole_number("--baud", options.baud, usual, SLOWEST_BAUD, FASTEST_BAUD, language)
-    checks = port_checks.all_checks(link_kit.link_kit())
+    checks = port_checks.all_checks(link_kit())
     checks = [check for check in checks if (options.only or "") in check.name]
     if not checks:
         raise CommandError(2, "conform_no_case", found=shown(options.only))
@@ -92,7 +92,7 @@ def _port(options: Namespace, language: str) -> int:
     finally:
         _left_stopped(robot)
         wire.close()
-    facts = {"version": str(link_kit.VERSION), "link": f"{MAJOR}.{MINOR}", "isa": ISA}
+    facts = {"version": str(LINK_VERSION), "link": f"{MAJOR}.{MINOR}", "isa": ISA}
     return report(found, len(checks), facts, "conform_port_end", 0, options, language)
 
 

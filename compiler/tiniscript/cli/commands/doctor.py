@@ -16,7 +16,7 @@ from tiniscript.cli import inputs, outputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.options import whole_number
-from tiniscript.cli.robot.connect import Connection, baud_of, robot_of_kit
+from tiniscript.cli.robot.connect import Connection, baud_of
 from tiniscript.cli.robot.simulator import running_address
 from tiniscript.cli.streams import are_read
 from tiniscript.cli.terminal.asking import agreed, can_ask
@@ -26,7 +26,7 @@ from tiniscript.doctor.diagnosis import Diagnosis, Doors, Question, diagnosed
 from tiniscript.doctor.examination import Expected
 from tiniscript.doctor.findings import CAUSES, NOTE, Finding
 from tiniscript.doctor.system import ThisComputer
-from tiniscript.library.known_kits import of_kit
+from tiniscript.library.known_kits import of_kit, shipped_of_kit
 from tiniscript.link import known_ports, port_names, ports
 from tiniscript.link.connection import LinkConnection
 from tiniscript.link.keys import KeyFile
@@ -90,7 +90,7 @@ def _question(options: Namespace, language: str, told: dict[str, str]) -> Questi
 
 def _name_of_kit(kit: int) -> str | None:
     found = of_kit(kit)
-    return robot_of_kit(kit) or (None if found is None else found.name)
+    return shipped_of_kit(kit) or (None if found is None else found.name)
 
 
 def _has_key(robot: int) -> bool:

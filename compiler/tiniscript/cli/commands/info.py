@@ -10,12 +10,13 @@ from tiniscript.cli import inputs
 from tiniscript.cli.commands.trim import as_data, words
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
-from tiniscript.cli.robot.connect import Connection, robot_of_kit
+from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.event_printer import fault_sentence
 from tiniscript.cli.robot.fleet import together
 from tiniscript.cli.robot.member import Member, Result, are_many
 from tiniscript.cli.texts import text
 from tiniscript.library import source_map
+from tiniscript.library.known_kits import shipped_of_kit
 from tiniscript.link.authority import OF_ANOTHER, whose
 from tiniscript.link.messages import (
     RESETS,
@@ -76,7 +77,7 @@ class Description:
             "port": self.connection.port,
             "owner": whose(self.device_info),
             "kit": f"{self.device_info.kit:04x}",
-            "robot": robot_of_kit(self.device_info.kit),
+            "robot": shipped_of_kit(self.device_info.kit),
             "link": f"{self.hello.major}.{self.hello.minor}",
             "isa": f"{self.device_info.isa[0]}.{self.device_info.isa[1]}",
             "room": self.device_info.room,

@@ -11,11 +11,12 @@ from contextlib import closing
 from tiniscript.cli import inputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
-from tiniscript.cli.robot.connect import about_virtual, baud_of, opened_client, robot_of_kit
+from tiniscript.cli.robot.connect import about_virtual, baud_of, opened_client
 from tiniscript.cli.robot.in_reach import InReach, found
 from tiniscript.cli.texts import text
 from tiniscript.library import opening
 from tiniscript.library.errors import RobotError
+from tiniscript.library.known_kits import shipped_of_kit
 from tiniscript.link import known_ports, ports
 from tiniscript.link.authority import whose
 from tiniscript.link.port_names import is_there, same_for_all
@@ -108,7 +109,9 @@ def _ask(port: str, baud: int | None, robot: Robot, language: str) -> dict[str, 
         return {"answer": None, "said": str(gone)}
     if reply.status == OK and device_info is not None:
         opening.remember(port, device_info.name, is_used=False)
-        called = shown(device_info.name) or robot_of_kit(device_info.kit) or f"{device_info.id:08x}"
+        called = (
+            shown(device_info.name) or shipped_of_kit(device_info.kit) or f"{device_info.id:08x}"
+        )
         owner = whose(device_info)
         said = text("port_whose", language).format(
             said=text("port_robot", language).format(name=called),

@@ -22,7 +22,7 @@ from tiniscript.cli.texts.options import virtual_names
 from tiniscript.library import opening
 from tiniscript.library.client import Client
 from tiniscript.library.errors import TiniScriptError
-from tiniscript.library.known_kits import shipped_of_kit as found
+from tiniscript.library.known_kits import shipped_of_kit
 from tiniscript.link import known_ports, port_names
 from tiniscript.link.connection import PendingRequest, Requester, reason_of
 from tiniscript.link.errors import PortError
@@ -175,7 +175,7 @@ class Connection(Client):
         """The robot's name for messages: its own, else that of its profile, else its port."""
         if self.device_info.name:
             return shown(self.device_info.name)
-        return robot_of_kit(self.device_info.kit) or text("robot", self.language)
+        return shipped_of_kit(self.device_info.kit) or text("robot", self.language)
 
     def give(self, make: Callable[[Requester], PendingRequest[T]]) -> Reply[T]:
         """Send data for the robot to keep; raise CommandError if it refuses.
@@ -207,7 +207,7 @@ class Connection(Client):
         """Return the meaning of a robot's refusal, and what to do."""
         said, advice = sentence(reply.status, reply.detail, self.language)
         if reply.status == STATUSES["WRONG_KIT"]:
-            name = robot_of_kit(reply.detail)
+            name = shipped_of_kit(reply.detail)
             if name is not None:
                 advice = text("choose_kit", self.language).format(robot=name)
         return f"{said} {advice}".strip()
@@ -231,13 +231,11 @@ def told() -> Iterator[None]:
 
 def opened_client(
     port: str, robot: Robot, verb: str, baud: int | None, language: str,
-    limit_s: float = opening.OPEN_S, heed: Callable[[], None] = lambda: None,
+    limit_s: float,
 ) -> Client:  # fmt: skip
     """Connect to a port through its server, or open it. Raises CommandError."""
     with told():
-        return Client(
-            port, verb, robot, baud, language, limit_s, is_shared=verb in SHARED, heed=heed
-        )
+        return Client(port, verb, robot, baud, language, limit_s, is_shared=verb in SHARED)
 
 
 def port_failure(port: str, failure: PortError) -> CommandError:
@@ -252,10 +250,6 @@ def _remember_profile(options: Namespace, robot: Robot, kit: int) -> None:
     if name is None or kit != robot.kit.fingerprint or name.lower() in robots.names():
         return
     given.remember(name, kit)
-
-
-def robot_of_kit(kit: int) -> str | None:
-    return found(kit)
 
 
 def _chosen(options: Namespace, language: str) -> str:
