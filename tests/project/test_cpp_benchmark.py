@@ -8,7 +8,7 @@ from __future__ import annotations
 import pytest
 
 from tests.support.platformio import firmware, shared
-from tools.bench import avr_bench, machine_cycles, sizes, sketch_cycles
+from tools.bench import avr_bench, machine, sizes, sketch_cycles
 from tools.bench.workloads import MUST, WORKS, Work, WrongResult, check, expected
 
 needs_chip = pytest.mark.skipif(
@@ -32,7 +32,7 @@ def test_a_wrong_value_is_an_error(work: Work) -> None:
     [pytest.param(*each, id=each[0].name) for each in zip(WORKS, MUST, strict=True)],
 )
 def test_cycles_are_at_most_what_they_must(work: Work, must: float) -> None:
-    assert 1 < machine_cycles.per_iteration(work) <= must
+    assert 1 < machine.per_iteration(work) <= must
 
 
 @needs_chip
@@ -45,7 +45,7 @@ def test_the_shipped_sketch_takes_its_main_loop_more(
     sketch = firmware("uno", tmp_path_factory.mktemp("sketch"), shared(tmp_path_factory))
     for work in WORKS:
         short = work._replace(times=2000)
-        alone = machine_cycles.per_iteration(short)
+        alone = machine.per_iteration(short)
         assert alone < sketch_cycles.per_iteration(sketch, short) < 1.25 * alone
 
 

@@ -8,13 +8,53 @@ tools has a `-`, and a sentence says which.
 from __future__ import annotations
 
 import sys
+from collections import defaultdict
+from collections.abc import Sequence
 from pathlib import Path
+from struct import pack
+from typing import NamedTuple
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
-from tools.bench import avr_bench, machine_cycles, sketch_cycles, workloads
+from tools.bench import avr_bench, sketch_cycles, workloads
 from tools.bench.compiler import table
+from tools.bench.workloads import Work, check, code_of
+
+BUDGET = 100  # jumps back in a call of `tick`: it may take 200,000 cycles
+DONE = 2  # Status::kDone
+
+
+class Counted(NamedTuple):
+    """What the chip says of a run: values shown, jumps back, cycles in `tick` in all."""
+
+    shown: list[int]
+    jumps: int
+    cycles: int
+
+
+def count(code: bytes, readings: Sequence[int], budget: int, *more: str) -> Counted:
+    request = pack(f"<BB{len(readings)}iH", budget, len(readings), *readings, len(code)) + code
+    said = avr_bench.run(avr_bench.built("cycles", avr_bench.SOURCES, *more), request)
+    found: dict[str, list[list[int]]] = defaultdict(list)
+    for line in said:
+        word, *numbers = line.split()
+        found[word].append([int(number) for number in numbers])
+    [[status]] = found["STATUS"]
+    if status != DONE:
+        raise RuntimeError(f"the program did not end, or a tick was too long: {said[-5:]}")
+    return Counted(
+        [value for (value,) in found["SHOW"]],
+        found["JUMPS"][0][0],
+        found["CYCLES"][0][0],
+    )
+
+
+def per_iteration(work: Work) -> float:
+    """Return the cycles of a whole run, all but the robot, for each time around its loop."""
+    counted = count(code_of(work), work.thousandths, BUDGET)
+    check("ATmega328P", work, counted.shown)
+    return counted.cycles / work.times
 
 
 def main() -> int:
@@ -32,7 +72,7 @@ def main() -> int:
 def cycles() -> None:
     alone = sketch = ["-" for _ in workloads.WORKS]
     if not avr_bench.missing():
-        alone = [f"{machine_cycles.per_iteration(work):,.0f}" for work in workloads.WORKS]
+        alone = [f"{per_iteration(work):,.0f}" for work in workloads.WORKS]
     if not sketch_cycles.missing():
         firmware = sketch_cycles.built()
         found = [sketch_cycles.per_iteration(firmware, work) for work in workloads.WORKS]
@@ -46,7 +86,7 @@ def cycles() -> None:
     for work in workloads.WORKS:
         print(f"\n{work.name}: `{work.body[:-1]}`, {work.times:,} times.", end="")
     print(
-        f"\n`tick` is called for {machine_cycles.BUDGET} times around a loop. In the sketch all "
+        f"\n`tick` is called for {BUDGET} times around a loop. In the sketch all "
         "between is counted, its main loop and its interrupts."
     )
     for why in filter(None, (avr_bench.missing(), sketch_cycles.missing())):

@@ -23,7 +23,7 @@ from tiniscript.bytecode.image import unpack
 from tiniscript.link.session import Session
 from tools import uno
 from tools.bench import avr_bench, firmware_size
-from tools.bench.machine_cycles import BUDGET, count
+from tools.bench.machine import BUDGET, count
 from tools.bench.sketch_cycles import pin_of_sensor
 from tools.builds.platformio_offline import CannotStandIn
 from tools.uno import CYCLES_PER_MS, Uno

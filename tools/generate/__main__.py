@@ -32,8 +32,8 @@ from tools.generate.cpp_cases import cases_header
 from tools.generate.documents import DOCUMENTS, list_of_documents, spliced, table
 from tools.generate.front import fronts
 from tools.generate.guide_pictures import guide_pictures
+from tools.generate.link_header import payloads
 from tools.generate.link_kit import link_kit
-from tools.generate.link_payloads import payloads
 from tools.generate.machine_kit import machine_kit
 from tools.generate.poster import posters
 from tools.generate.wiring_pages import wiring_pages
