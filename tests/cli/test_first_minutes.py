@@ -234,7 +234,7 @@ def test_the_robots_that_have_a_word_are_named(tsc: Tsc) -> None:
     assert "--robot liner to" in tsc("check", "-e", "SHOW(BATERIA)").err
     # a name that no kit has
     assert "write LINE_X = and its number before it" in tsc("check", "-e", "F(LINE_X, 80)").err
-    assert "write LINE_X = 0 before it" in tsc("check", "-e", "SHOW(LINE_X)").err
+    assert "write LINE_X = and its number before it" in tsc("check", "-e", "SHOW(LINE_X)").err
     assert tsc("live", "LED(TRUE)", "--virtual").err.count("TS119") == 1
 
 
