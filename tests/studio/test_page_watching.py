@@ -29,8 +29,8 @@ NOTING = """() => {
       return {...node(), gain: {setValueAtTime() {}, linearRampToValueAtTime() {}}};
     }
     createOscillator() {
-      return {...node(), frequency: param(), addEventListener() {}, start() { window.started += 1; },
-        stop(at) { if (at === undefined) window.stopped += 1; }};
+      return {...node(), frequency: param(), addEventListener() {},
+        start() { window.started += 1; }, stop(at) { if (at === undefined) window.stopped += 1; }};
     }
   };
   const animate = Element.prototype.animate;
