@@ -114,13 +114,18 @@ def _on_one_line(value: object) -> str:
 
 
 def _parts_of(value: object) -> tuple[str, list[tuple[str, object]], str]:
-    """Return what opens a value, its parts with what stands before each, and what closes it."""
+    """Return what opens a value, its parts with what stands before each, and what closes it.
+
+    A field with its usual value is left out.
+    """
     if isinstance(value, ByLanguage):
         return "ByLanguage(", [("", dict(value))], ")"
     if isinstance(value, Mapping):
         return "{", [(f"{_on_one_line(key)}: ", part) for key, part in value.items()], "}"
     if isinstance(value, tuple) and hasattr(value, "_asdict"):
-        return f"{type(value).__name__}(", [(f"{k}=", v) for k, v in value._asdict().items()], ")"
+        usual = getattr(value, "_field_defaults", {})
+        said = [(f"{k}=", v) for k, v in value._asdict().items() if k not in usual or v != usual[k]]
+        return f"{type(value).__name__}(", said, ")"
     if isinstance(value, tuple):
         return "(", [("", part) for part in value], ")"
     return json.dumps(value, ensure_ascii=False) if isinstance(value, str) else repr(value), [], ""

@@ -43,7 +43,7 @@ class Kit(NamedTuple):
     """
 
     sensors: tuple[Device, ...]
-    actuators: tuple[Device, ...]
+    actuators: tuple[Device, ...] = ()
     speed: int = 0
     turn: int = 0
 

@@ -27,14 +27,14 @@ class Chip(NamedTuple):
     name: str
     program_bytes: int
     digital: frozenset[int]
-    reading: frozenset[int]
     analog: frozenset[int]
     echo: frozenset[int]
     pwm: Mapping[int, int]
     link_pins: frozenset[int]
-    first_analog: int | None
-    servo_timer: int | None
-    tone_timer: int | None
+    reading: frozenset[int] = frozenset()
+    first_analog: int | None = None
+    servo_timer: int | None = None
+    tone_timer: int | None = None
     boot_pins: frozenset[int] = frozenset()
     reset_pin: int | None = None
     counting: frozenset[int] = frozenset()  # count the edges of a disc, by interrupts of their own
@@ -110,7 +110,6 @@ CHIPS = {
             "uno",
             program_bytes=389,
             digital=_pins(range(2, 20)),
-            reading=frozenset(),
             analog=_pins(range(14, 20)),
             echo=_pins(range(2, 20)),
             pwm=_PWM_328P,
@@ -125,7 +124,6 @@ CHIPS = {
             "nano",
             program_bytes=389,
             digital=_pins(range(2, 20)),
-            reading=frozenset(),
             analog=_pins(range(14, 22)),  # A6 and A7 are analog inputs only
             echo=_pins(range(2, 20)),
             pwm=_PWM_328P,
@@ -140,7 +138,6 @@ CHIPS = {
             "mega",
             program_bytes=1900,
             digital=_pins(range(2, 70)),
-            reading=frozenset(),
             analog=_pins(range(54, 70)),
             echo=_pins(2, 3, range(10, 16), range(18, 22), range(50, 54), range(62, 70)),
             pwm=_PWM_2560,
@@ -160,9 +157,6 @@ CHIPS = {
             echo=_ESP32 | _pins(34, 35, 36, 39),
             pwm=dict.fromkeys(sorted(_ESP32), 0),
             link_pins=_pins(1, 3),
-            first_analog=None,
-            servo_timer=None,
-            tone_timer=None,
             boot_pins=_pins(0, 5, 12, 14, 15),
             reset_pin=0,
             counting=_ESP32 | _pins(34, 35, 36, 39),
@@ -174,14 +168,10 @@ CHIPS = {
             "esp32c3",
             program_bytes=8192,
             digital=_ESP32C3,
-            reading=frozenset(),
             analog=_pins(range(5)),
             echo=_ESP32C3,
             pwm=dict.fromkeys(sorted(_ESP32C3), 0),
             link_pins=_pins(20, 21),
-            first_analog=None,
-            servo_timer=None,
-            tone_timer=None,
             boot_pins=_pins(2, 6, 8, 9, 18, 19),
             reset_pin=9,
             pwm_timers=3,

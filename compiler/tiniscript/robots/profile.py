@@ -69,8 +69,8 @@ class Board(NamedTuple):
     actuators: tuple[Wiring, ...]
     start_button: int
     buzzer: int
-    status_led: int | None
-    bluetooth_state: int | None
+    status_led: int | None = None
+    bluetooth_state: int | None = None
     language: str = ""
     discs: Wiring | None = None
 
