@@ -46,7 +46,6 @@ ADVICE = """
 ^ @after|@later <rest> etc @any* $ | TS131 | found={said}; all={often?} | F(2, 80); R(1, 60), etc. => all=LOOP(4);F(2, 80);R(1, 60);END_LOOP
 ^ @after GO|GOTO|VOLVER|VUELVE|REGRESA|REGRESAR TO|A|AL START|INICIO|PRINCIPIO|COMIENZO $ | TS131 | found={said}; endless={endless} | F(1, 80)⏎GO TO START => endless=LOOP(FOREVER);F(1, 80);END_LOOP
 ^ @after|@later <rest> ASI|SO SUCESIVAMENTE|ON|FORTH|SIEMPRE|HASTA|VARIAS|MUCHAS|TODO @any* $ | TS131 | found={said}; all={often?} | F(2, 80)⏎y asi siempre => all=LOOP(4);F(2, 80);END_LOOP
-^ @after|@later ,? Y|E ASI @any* $ | TS131 | found={said}; all={often?} | F(2, 80)⏎y asi hasta el final => found=y asi hasta el final
 ^ @after|@later ,? Y|E SIGUE|MAS|TODO ASI|ESO? $ | TS131 | found={said}; all={often?} | F(2, 80)⏎y todo eso => found=y todo eso
 ^ @after|@later ,? @dots+ $ | TS131 | found={said}; all={often?} | F(2, 80)⏎R(1, 60) ... => all=LOOP(4);F(2, 80);R(1, 60);END_LOOP
 # how often, before what is repeated, and a loop behind it

@@ -77,7 +77,7 @@ class _Block:
         self.is_translated = line.tokens[item.start].source is None
         self.name = line.tokens[item.start + 1].text if self.word == "DEF" else ""
         head = [each.text for each in line.tokens[item.start + 1 : item.end]]
-        self.is_endless = head == ["(", "FOREVER", ")"]  # until a BREAK is read in it
+        self.is_endless = head in (["(", "FOREVER", ")"], ["(", "TRUE", ")"])
         self.last: int | None = None  # its last line that is ever done
 
     @property

@@ -220,6 +220,7 @@ def _names_of(line: tuple[Lexeme, ...]) -> _OfLine:
         elif after.text in ("=", "++", "+=", "-=", ":=") and token.text not in WORDS:
             found.variables.add(token.text)
         is_def = token.text in _BEFORE_NAME or concept_of(token.text) == "DEF"
+        is_def = is_def or (token.text == "TASK" and at == len(line))  # a name that it needs not
         if is_def and after.kind is WORD and after.text not in WORDS:
             if after.text not in ("MAIN", "SETUP", "PRINCIPAL"):
                 found.defs.add(after.text)

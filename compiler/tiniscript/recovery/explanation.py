@@ -337,8 +337,14 @@ class _Teller:
             last = laid_out(_parted(before)[-1]) if word and _parted(before) else ""
             slip = Unended(word or ENDED.get(end, ""), end, whole=whole, behind=last)
         if code in _SAID_ONCE and isinstance(slip, Slip):
-            count = sum(each.code == code for each in self.steps.get(k, []))
-            slip = slip._replace(times=str(count) if count > 1 else "")
+            same = [it for it in self.steps.get(k, []) if it.code == code]
+            names = dict.fromkeys(
+                w for it in same for w in texts(it.after) if w not in texts(it.before)
+            )
+            if slip.right in names and len(names) > 1:  # LIGHT_L and LIGHT_R
+                slip = slip._replace(right=", ".join(names))
+            elif len(same) > 1:
+                slip = slip._replace(times=str(len(same)))
         self.out.append(_Told(code, place, slip, edit, k))
         return self.out[-1]
 

@@ -97,7 +97,6 @@ SIGNS = r"""
 (?<=[(,])(\s*)%(?=\d)  |  `\g<1>5`  |  1  |  TS076  |  offered  |  F(2, %0) => F(2, 50)
 (?<=[(,])(\s*)/(?=\d)  |  `\g<1>7`  |  1  |  TS076  |  offered  |  F(2, /0) => F(2, 70)
 (?<=\()l(?=\s*,)  |  `1`  |  1  |  TS008  |  offered  |  F(l, 80) => F(1, 80)
-\((\d)\.,(\d+) +(\d+)\)  |  `(\1.\2, \3)`  |  1  |  TS008  |  applied  |  F(0.,5 60) => F(0.5, 60)
 (?<=\(\d) +(?=\.\d+,)  |  ``  |  1  |  TS008  |  applied  |  F(1 .5, 80) => F(1.5, 80)
 \b([FBLR])(?:8(\d),\s*(\d\d)[9)]|9(\d),\s*(\d\d)[0)])\s*(?=;|$)  |  `\1(\2\4, \3\5)`  |  1  |  TS010  |  offered  |  F82, 809 => F(2, 80)
 \b(IF|WHILE|UNTIL)\s*¿\s*([^?()¿]+?)\s*\?  |  `\1(\2)`  |  1  |  TS015  |  applied  |  IF ¿DISTANCE < 10?⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
@@ -115,7 +114,6 @@ SIGNS = r"""
 ^S ([IB])(?=\s*\|)  |  `S\1`  |  1  |  TS034  |  applied  |  S I|F(2, 80) => SI|F(2, 80)
 \bLOOP_?(\d+)(?=\s*(?:;|$))  |  `LOOP(\1)`  |  1  |  TS015  |  applied  |  LOOP4;F(2, 80);END_LOOP => LOOP(4);F(2, 80);END_LOOP
 ^(\s*S[IB]\s*\|)\s+\|  |  `\1`  |  1  |  TS054  |  applied  |  SI| |F(2, 80) => SI|F(2, 80)
-−  |  `-`  |  0  |  TS010  |  applied  |  M(−50 50) => M(-50, 50)
 &lt;  |  `<`  |  1  |  TS010  |  applied  |  IF(DISTANCE &lt; 10)⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
 &gt;  |  `>`  |  1  |  TS010  |  applied  |  IF(DISTANCE &gt; 10)⏎S⏎ENDIF => IF(DISTANCE > 10)⏎S⏎ENDIF
 &nbsp;  |  ` `  |  1  |  TS072  |  applied  |  F(2, 80);&nbsp;R(1, 50); => F(2, 80); R(1, 50);
@@ -140,6 +138,7 @@ SIGNS = r"""
 ≠  |  `<>`  |  0  |  TS010  |  applied  |  IF(DISTANCE ≠ 10);S;ENDIF => IF(DISTANCE <> 10);S;ENDIF
 ×  |  `*`  |  0  |  TS010  |  applied  |  X = 5⏎X = X × 2 => X = 5⏎X = X * 2
 ÷  |  `/`  |  0  |  TS010  |  applied  |  X = 5⏎X = X ÷ 2 => X = 5⏎X = X / 2
+(?<= )><  |  `<>`  |  1  |  TS010  |  applied  |  IF(LIGHT_L >< 5)⏎S⏎ENDIF => IF(LIGHT_L <> 5)⏎S⏎ENDIF
 ∞  |  `FOREVER`  |  0  |  TS010  |  applied  |  F(∞,50) UNTIL(DISTANCE<10) => F(FOREVER,50) UNTIL(DISTANCE<10)
 [→➜⇒]  |  `;`  |  1  |  TS061  |  applied  |  →F(2, 80) => ;F(2, 80)
 [，、]  |  `,`  |  0  |  TS010  |  applied  |  F(2、80) => F(2,80)
@@ -154,11 +153,9 @@ SIGNS = r"""
 ➡\ufe0f?  |  `R `  |  1  |  TS005  |  offered  |  ➡️ 1 => R(1, 80)
 [–—]>  |  `;`  |  1  |  TS061  |  applied  |  F(2, 80) –> R(1, 50) => F(2, 80) ; R(1, 50)
 (?<=\d) 1/2(?!\d)  |  `.5`  |  1  |  TS049  |  applied  |  F(1 1/2, 80) => F(1.5, 80)
-(?<=\b0)\. (?=\d)  |  `.`  |  1  |  TS008  |  applied  |  BEEP(0. 5, 440) => BEEP(0.5, 440)
 (?<=\d)'(?=\d+\s*,)  |  `.`  |  1  |  TS012  |  applied  |  F(1'5, 80) => F(1.5, 80)
 (?<=\d)['·](?=\d+\))  |  `,`  |  1  |  TS076  |  applied  |  F(2'80) => F(2,80)
 (?<=\d)[|¿?!"]+(?=\s*\))  |  ``  |  1  |  TS005  |  applied  |  F(2, 80?) => F(2, 80)
-\(([FBLRWM])(\d)  |  `\1(\2`  |  1  |  TS015  |  applied  |  (F2, 80) => F(2, 80)
 \b([FBLR])(\d(?:\.\d+)?),\s*(\d+)\)  |  `\1(\2, \3)`  |  1  |  TS015  |  applied  |  F2,80) => F(2, 80)
 \bW([1-7](?:\.\d+)?)(?:\(\)|\)|(?=\s*(?:;|$)))  |  `W(\1)`  |  1  |  TS015  |  applied  |  S; W2.5) => S; W(2.5)
 (?<=;)\s*[:.,]\s*(?=;)  |  ``  |  1  |  TS005  |  applied  |  S;:; F(2, 80) => S;; F(2, 80)
@@ -168,7 +165,6 @@ SIGNS = r"""
 ^\s*>+\s*  |  ``  |  1  |  TS054  |  applied  |  > F(2, 80) => F(2, 80)
 ^\s*(?:paso|step|linea|line)?\s*\d+\s*[.):-]+\s+(?=[A-Za-z])  |  ``  |  1  |  TS054  |  applied  |  1) F(2,80)⏎2) S => F(2,80)⏎S
 ^\s*\d+\s*[.)]\s*(?=[A-Za-z])  |  ``  |  1  |  TS054  |  applied  |  1.F(2, 80) => F(2, 80)
-^\*+(\S.*?)\*+$  |  `\1`  |  1  |  TS054  |  applied  |  *F(2,80)* => F(2,80)
 (?<![\w.])([1-9])[oO]{2}\b  |  `\g<1>00`  |  1  |  TS008  |  applied  |  SI|F(2, 1OO) => SI|F(2, 100)
 (?<![\w.])([1-9])[oO]\b  |  `\g<1>0`  |  1  |  TS008  |  applied  |  F(2,8O) => F(2,80)
 \b[O0]\.S\b  |  `0.5`  |  1  |  TS008  |  applied  |  F(O.S, 6O) => F(0.5, 60)
@@ -180,7 +176,6 @@ SIGNS = r"""
 (?<=\d),(?=\d+\s*(?:s|seg|segs|segundos?|sec|seconds?|minutos?)\b)  |  `.`  |  1  |  TS012  |  applied  |  F(2,5s,80) => F(2.5, 80)
 (?<=\d) (?=000\b)  |  ``  |  1  |  TS008  |  applied  |  F(1 000,80) => F(1000,80)
 (?<=[\w)])\s*(?:[¡¿!…?$¬^´`¨\\\u2600-\u2793\U0001F300-\U0001FAFF]+|<br>)\s*$  |  ``  |  1  |  TS005  |  applied  |  STOP! => STOP
-<br>  |  `;`  |  1  |  TS010  |  applied  |  F(2, 80)<br>R(1, 50) => F(2, 80);R(1, 50)
 \b4WARDS?\b(?=\s*\()  |  `F`  |  1  |  TS102  |  offered  |  4WARD(2, 80) => F(2, 80)
 ^(S[IB]) (?:bar|barra) (?=[A-Z])  |  `\1|`  |  1  |  TS010  |  offered  |  SI bar F(2, 80) => SI|F(2, 80)
 \b([A-Z]+) open (?:bracket|parenthesis) ([\d.]+) comma (\d+) close (?:bracket|parenthesis)  |  `\1(\2, \3)`  |  1  |  TS015  |  offered  |  F open bracket 2 comma 80 close bracket => F(2, 80)
@@ -209,8 +204,6 @@ SIGNS = r"""
 ^\s*(?:paso|step)\s*\d+\s*[:.-]?\s+(?=[A-Za-z])  |  ``  |  1  |  TS054  |  applied  |  Paso 1 F(2, 80) => F(2, 80)
 ^_+(\S.*?)_+$  |  `\1`  |  1  |  TS054  |  applied  |  _F(2, 80)_ => F(2, 80)
 [¿¡](?=\W)  |  ``  |  1  |  TS005  |  applied  |  F(2, 80) ¡ ; => F(2, 80)  ;
-(?<=\))\s+/\s+(?=(?-i:[a-z]))  |  ` // `  |  1  |  TS007  |  applied  |  F(2, 80) / adelante => F(2, 80) // adelante
-(?<=[A-Za-z])\((\d+(?:\.\d+)?) ; ?(\d)  |  `(\1, \2`  |  1  |  TS019  |  applied  |  F(2 ; 80) => F(2, 80)
 """
 
 TOKENS = r"""
@@ -363,6 +356,7 @@ BEEP ( a=<note> , b=<note> , c=<note> ) | BEEP ( 1 , $a ) ; BEEP ( 1 , $b ) ; BE
 @newname . c=F|B|L|R|W|BEEP ( | $c ( | 1 | TS102 | applied | bot.F(2, 80) => F(2, 80)
 # UNTIL
 ^ WHILE <question> ;|:? a=F|B|L|R ( FOREVER , p=@num|@val ) $ | $a ( FOREVER , $p ) UNTIL ( @not:c ) | .9 | TS031 | offered | WHILE(DISTANCE > 20) F(FOREVER, 50) => F(FOREVER, 50) UNTIL(DISTANCE <= 20)
+a=F|B|L|R|W ( b=@argt+ ) S|STOP ( c=@val s=<|<=|>|>= d=@num|@val ) $ | $a ( $b ) UNTIL ( $c $s $d ) | 2 | TS102 | offered | F(10, 60) STOP(DISTANCE < 12) => F(10, 60) UNTIL(DISTANCE < 12)
 a=F|B|L|R ( FOREVER , p=@num|@val ) UNTIL ( n=@num ) | $a ( $n , $p ) | 2 | TS202 | offered | F(FOREVER, 80) UNTIL(2) => F(2, 80)
 a=@close '|'|,|. UNTIL ( | $a UNTIL ( | 1 | TS029 | applied | F(5, 60).UNTIL(DISTANCE < 30) => F(5, 60) UNTIL(DISTANCE < 30)
 ^ W ( c=@val s=<|<=|>|>=|=|<> d=@num|@val ) $ | W ( FOREVER ) UNTIL ( $c $s $d ) | .5 | TS102 | applied | wait(DISTANCE < 10) => W(FOREVER) UNTIL(DISTANCE < 10)
@@ -487,6 +481,8 @@ h=TASK b=@start|'{' | &h ; $b | 1 | TS014 | applied | TASK BEEP(1, 440) END_TASK
 TASK ( @num|@word? ) | TASK | 1 | TS039 | offered | TASK(1)⏎BEEP(1, 440)⏎END_TASK => TASK⏎BEEP(1, 440)⏎END_TASK
 ^ LOOP UNTIL c=@cond+ ':'|do? b=@start|'{' | WHILE ( @not:c ) ; $b | 1 | TS102 | applied | repeat until DISTANCE < 10 { F(0.5, 60) } => WHILE(DISTANCE >= 10);F(0.5, 60);END_WHILE;
 ^ LOOP UNTIL c=@cond+ ':'|'{'? $ | WHILE ( @not:c ) | 1 | TS102 | applied | repetir hasta DISTANCE < 10⏎F(1,50)⏎fin => WHILE(DISTANCE >= 10)⏎F(1,50)⏎END_WHILE
+END_LOOP UNTIL ( c=@noclose+ ) $ | IF ( $c ) ; <end> | 1 | TS064 | offered | LOOP(FOREVER)⏎F(1, 50)⏎END_LOOP UNTIL(DISTANCE < 10) => LOOP(FOREVER)⏎F(1, 50)⏎IF(DISTANCE < 10);BREAK;ENDIF;END_LOOP
+^ LOOP ( FOREVER ) UNTIL ( c=@noclose+ ) $ | WHILE ( @not:c ) | 1 | TS102 | offered | LOOP(FOREVER) UNTIL(LIGHT_R > 800)⏎F(1, 40)⏎END_LOOP => WHILE(LIGHT_R <= 800)⏎F(1, 40)⏎END_WHILE
 ^ UNTIL c=@cond+ $ | IF ( $c ) ; <end> | 2 | TS064 | applied | LOOP⏎F(1, 50)⏎UNTIL DISTANCE < 10 => LOOP(FOREVER)⏎F(1, 50)⏎IF(DISTANCE < 10);BREAK;ENDIF;END_LOOP
 ^ DO '{' b=@start | LOOP ( FOREVER ) ; $b | 3 | TS064 | applied | DO { F(1, 50)⏎} WHILE(DISTANCE > 9) => LOOP(FOREVER);F(1, 50)⏎IF(DISTANCE <= 9);BREAK;ENDIF;END_LOOP
 # how often something is done, said behind it or before it

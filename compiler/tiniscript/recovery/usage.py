@@ -201,6 +201,8 @@ class _Usage:
             return Diagnostic(codes.WHICH_WAY, found.span, values)
         concept = self.command(words[0] if words else "") or (self.command(meant) if meant else "")
         is_order = concept in WORDS and WORDS[concept].role not in _NO_ORDER
+        others = {self.command(each) for each in words if self._is_order(each)} - {concept}
+        is_order = is_order and not (concept == "S" and others)  # `vaya para adelante`
         if is_order and concept not in words[:1]:
             named = words[0] if self.command(words[0]) else meant or words[0]
             if len(tokens) == 1 and not WORDS[concept].arguments:
