@@ -250,6 +250,16 @@ def test_no_advice(text: str) -> None:
     assert check_text(text, KIT).diagnostics == []
 
 
+def test_a_kit_without_numbers_has_a_usual_speed() -> None:
+    """Centimetres were meant there, too; as it has no CM, the message offers none."""
+    kit = KIT._replace(speed=0, turn=0)
+    (found,) = check_text("F(20, 60)", kit).diagnostics
+    assert found.code.number == "TS811"
+    assert "centimetres" in found.values
+    assert "way" not in found.values
+    assert check_text("F(20, 30);F(19, 60)", kit).diagnostics == []
+
+
 def test_advice_is_for_right_programs_alone() -> None:
     wrong = check_text("X = 5;S = 5", KIT)
     assert [diagnostic.is_mistake for diagnostic in wrong.diagnostics] == [True]

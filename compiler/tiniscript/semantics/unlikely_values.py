@@ -24,6 +24,7 @@ LONG_TIME = 20 * SECOND  # a power was meant, where the power is a time
 LONG_DRIVE = 30 * SECOND  # no classroom is so long: centimetres or degrees were meant
 LONGEST_DRIVE = 60 * SECOND  # … also where the number is no round one
 LONG_WAIT = 100 * SECOND
+USUAL_SPEED = 30 * SECOND  # cm in a second, of a robot whose kit does not say it
 FAR = 300 * SECOND * 100 * SECOND * SECOND  # 3 m, as a product of speed, power and time
 VERY_LONG_TIME = 500 * SECOND  # milliseconds were meant, as `delay(1000)` of an Arduino has them
 LONG_BEEP = 100 * SECOND
@@ -149,7 +150,8 @@ def _long(move: Move, time: int, power: int | None, kit: Kit, found: list[Diagno
     usage = f"{word}( , {shown})"
     length = as_text(time)
     way = f"{word}({length} {UNIT_OF.get(word, '')}, {shown})"
-    is_far = is_round and time >= LONG_TIME and kit.speed * (power or 0) * time >= FAR
+    speed = kit.speed or USUAL_SPEED
+    is_far = is_round and time >= LONG_TIME and speed * (power or 0) * time >= FAR
     if turns and _is_turn(time, kit, is_long):
         values = {"degrees": length, "word": word, "turn": usage}
         values |= {"way": way} if kit.turn else {}
