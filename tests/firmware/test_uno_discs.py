@@ -65,6 +65,12 @@ def test_what_ends_a_move_early_ends_it_at_once(how: str, sketch: Path) -> None:
             robot.run(20)
             assert not any(wheel.wanted for wheel in robot.wheels.both)
         assert 3 < robot.pose.x_cm < 40
+        if how == "client":  # nor does the next program go on with it
+            image = unpack(compile_text("W(1)", ROBOT.kit).image)
+            assert robot.until(robot.session.upload(image)) == OK
+            for _ in range(20):
+                robot.run(20)
+                assert not any(wheel.wanted for wheel in robot.wheels.both)
 
 
 def test_a_nano_with_discs_has_tasks(tmp_path_factory: pytest.TempPathFactory) -> None:
