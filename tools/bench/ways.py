@@ -6,14 +6,17 @@ long; discs of 20 holes have each edge up to a tenth from its place; a wheel sli
 column says on average. No real floor was seen. Ends with 1 if the limits do not hold at 0.5 %.
 
 `--uno` takes discs alone, and the firmware of an Uno on its simulated chip: the same wheels change
-its pins. That takes 12 s for a seed.
+its pins. That takes 12 s for a seed. `--size` prints what ways take of the flash of an Uno without discs.
 """
 
 from __future__ import annotations
 
 import argparse
 import math
+import re
+import shutil
 import sys
+import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -26,7 +29,7 @@ from tiniscript import robots
 from tiniscript.link.trim import Pace, Trim
 from tiniscript.virtual.robot import Settings, VirtualRobot
 from tiniscript.virtual.wheels import Roughness
-from tools.bench.firmware_size import measured
+from tools.bench.firmware_size import PROJECT, measured
 
 SEEDS = 100
 WANTED = 95  # of them
@@ -110,6 +113,22 @@ def off_uno(firmware: Path, seed: int, slip: float) -> tuple[float, float, float
     return abs(gone.x_cm - 100), abs(gone.y_cm), abs(turned + 360)
 
 
+def flash() -> int:
+    """Return the bytes that an Uno's firmware is larger than one that knows no ways."""
+    known = {r"(is_way\(uint8_t) code\) {.*}": r"\1) { return false; }",
+             r"(kNeedsWays =) \d+;": r"\1 0;"}  # fmt: skip
+    with tempfile.TemporaryDirectory() as folder:
+        project = Path(folder) / PROJECT.name
+        shutil.copytree(PROJECT, project, ignore=shutil.ignore_patterns(".pio"))
+        header = project / "src" / "vm" / "bytecode.h"
+        text = header.read_text(encoding="utf-8")
+        for pattern, none in known.items():
+            text, found = re.subn(pattern, none, text)
+            assert found == 1, pattern
+        header.write_text(text, encoding="utf-8")
+        return measured("uno").flash - measured("uno", project).flash
+
+
 def main(seeds: int = SEEDS, is_uno: bool = False) -> int:
     print(f"{'by':18} {'slip':>6} {'along':>8} {'aside':>8} {'turn':>7}   within the limits")
     if is_uno:
@@ -143,5 +162,9 @@ if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("seeds", nargs="?", type=int, default=SEEDS)
     parser.add_argument("--uno", action="store_true", help="the firmware on a simulated chip")
+    parser.add_argument("--size", action="store_true", help="only what they take of an Uno's flash")
     given = parser.parse_args()
+    if given.size:
+        print(f"{flash()} bytes of an Uno's flash")
+        sys.exit()
     sys.exit(main(given.seeds, given.uno))
