@@ -44,7 +44,7 @@ class Watched:
     powers: tuple[int, int] | None
     time: int | None  # None: forever
     check: int
-    begun: int | None = None
+    has_begun: bool = False
 
 
 @dataclass
@@ -312,22 +312,24 @@ class Run:
         """Steps 1 to 3."""
         move = self.watched
         if stop:
-            if move.begun is not None:
+            if move.has_begun:
                 self.clock = self.now
                 if move.powers is not None:
                     self.motors((0, 0))
             return
-        if move.begun is None:
+        if not move.has_begun:
             self.begin()
-            move.begun = self.clock
+            move.has_begun = True
             if move.powers is not None:
                 self.motors(move.powers)
-        following = ((self.now - move.begun) % WRAP // 20 + 1) * 20
+        following = ((self.now - self.clock) % WRAP // 20 + 1) * 20
         if move.time is not None and move.time <= following:
-            self.clock = (move.begun + move.time) % WRAP
+            self.clock = (self.clock + move.time) % WRAP
             self.waits = "PAUSE" if move.powers is None else "MOVE"
         else:
-            self.clock = (move.begun + following) % WRAP
+            self.clock = (self.clock + following) % WRAP
+            if move.time is not None:
+                move.time -= following
             self.waits = "PAUSE"
             self.pc = move.check
 

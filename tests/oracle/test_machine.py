@@ -103,12 +103,12 @@ def test_late_calls() -> None:
 
 
 def test_a_watched_move_may_last_longer_than_the_clock() -> None:
-    """The page's machine and Python's: where the time since the beginning wraps around."""
+    """The page's machine and Python's: where the clock wraps around."""
 
     def page(image: bytes, kit: object, senses: Senses, late_ms: Sequence[int]) -> str:
         code, theirs = unpack(image).code, KITS[0][0]
         said = machine.trace(code, theirs, senses.readings, 2**33, late=lambda k, _: late_ms[k - 1])
-        return said.removesuffix("4294967506 DONE\n")
+        return said.removesuffix("4294967510 DONE\n")
 
     check_round(run_late)
     check_round(page)

@@ -237,16 +237,16 @@ ROUND_TRACE = """\
 2147483640 READ DISTANCE 50
 4294967280 READ DISTANCE 50
 4294967300 READ DISTANCE 50
-4294967316 READ DISTANCE 50
-4294967336 READ DISTANCE 50
-4294967363 READ DISTANCE 50
-4294967406 READ DISTANCE 9
-4294967406 MOTORS 0 0
+4294967320 READ DISTANCE 50
+4294967340 READ DISTANCE 50
+4294967367 READ DISTANCE 50
+4294967410 READ DISTANCE 9
+4294967410 MOTORS 0 0
 """
 
 
 def check_round(run: Callable[[bytes, Kit, Senses, Sequence[int]], str]) -> None:
-    """Where the time since an UNTIL's beginning wraps around a new row of checks begins."""
+    """The checks of an UNTIL go on in the same row where the clock wraps around."""
     senses = Senses({"DISTANCE": [50_000] * 7 + [9_000]})
     kit = KITS[0][1]
     assert run(compile_text(ROUND, kit).image, kit, senses, ROUND_MS) == ROUND_TRACE

@@ -57,8 +57,8 @@ class Robot(Protocol):
 class Task:
     """The whole state of a running program: one small record."""
 
-    __slots__ = ("begun_ms", "calls", "check", "clock_ms", "counters", "is_watching", "move_ms",
-                 "pc", "powers", "random", "readings", "stack", "started_ms", "variables", "wait",
+    __slots__ = ("calls", "check", "clock_ms", "counters", "is_watching", "move_ms", "pc",
+                 "powers", "random", "readings", "stack", "started_ms", "variables", "wait",
                  "wake_ms")  # fmt: skip
 
     def __init__(self, seed: int, sensors: int, now_ms: int) -> None:
@@ -75,10 +75,9 @@ class Task:
         self.wake_ms = now_ms
         # the move that an UNTIL watches
         self.powers: Powers | None = None  # None: a wait, the motors stay as they are
-        self.move_ms = 0  # how long it may last, or FOREVER
+        self.move_ms = 0  # how long it may last from the clock on, or FOREVER
         self.check = 0  # where its check begins
-        self.is_watching = False  # it has begun,
-        self.begun_ms = now_ms  # at this time
+        self.is_watching = False  # it has begun
 
 
 class Execution:
@@ -161,14 +160,16 @@ class Execution:
         if not task.is_watching:
             task.is_watching = True
             self.begin()
-            task.begun_ms = task.clock_ms
             if task.powers is not None:
                 self.robot.motors(*task.powers)
-        gone_ms = (self.now_ms - task.begun_ms) % CLOCK_MS
-        next_ms = (gone_ms // CHECK_MS + 1) * CHECK_MS
+        late_ms = (self.now_ms - task.clock_ms) % CLOCK_MS
+        next_ms = (late_ms // CHECK_MS + 1) * CHECK_MS
         is_last = task.move_ms != FOREVER and next_ms >= task.move_ms
         due_ms = task.move_ms if is_last else next_ms
-        task.clock_ms = task.wake_ms = self.now_ms - gone_ms + due_ms
+        if task.move_ms != FOREVER:
+            task.move_ms -= due_ms
+        task.clock_ms += due_ms
+        task.wake_ms = task.clock_ms
         task.wait = MOVE if is_last and task.powers is not None else PAUSE
         self.status = WAITING
         return stopped(after if is_last else task.check)

@@ -37,10 +37,10 @@ class TaskRecord:
     since a higher task has taken them.
     """
 
-    __slots__ = ("after", "begun_ms", "calls", "check", "clock_ms", "counters", "drives",
-                 "has_begun", "has_ended", "has_set", "has_waited", "is_blocked", "is_moving",
-                 "is_when", "keeps", "move_ms", "pc", "powers", "rank", "set_to", "start",
-                 "to_its_end", "unsent")  # fmt: skip
+    __slots__ = ("after", "calls", "check", "clock_ms", "counters", "drives", "has_begun",
+                 "has_ended", "has_set", "has_waited", "is_blocked", "is_moving", "is_when",
+                 "keeps", "move_ms", "pc", "powers", "rank", "set_to", "start", "to_its_end",
+                 "unsent")  # fmt: skip
 
     def __init__(self, pc: int, is_when: bool, rank: int, now_ms: int) -> None:
         self.start = pc  # where it begins; a WHEN with its check
@@ -55,9 +55,8 @@ class TaskRecord:
         self.unsent: tuple[int, bool] | None = None  # the value of a SHOW that found no room
         # its move, or the wait that an UNTIL watches
         self.powers: Powers | None = None  # None: a wait, the motors stay as they are
-        self.move_ms = 0  # how long it may last from its beginning, or FOREVER
+        self.move_ms = 0  # how long it may last from its clock on, or FOREVER
         self.has_begun = False
-        self.begun_ms = now_ms  # then
         self.check = 0  # where that of its UNTIL begins, or where it goes on behind it
         self.after = 0  # behind the move
         self.is_moving = False  # its move drives or is blocked
@@ -82,7 +81,7 @@ class TaskRecord:
     def stand_still(self, now_ms: int) -> None:
         """Its move that drives loses the motors."""
         if self.move_ms != FOREVER:
-            left_ms = self.begun_ms + self.move_ms - now_ms
+            left_ms = self.clock_ms + self.move_ms - now_ms
             if left_ms <= 0:
                 self.end_move()
                 return
@@ -288,18 +287,16 @@ class TaskMachine(Machine):
             if me.powers is not None and self._is_below():
                 return self._block()
             self._begin_watched()
-        gone_ms = (self.now_ms - me.begun_ms) % CLOCK_MS
-        next_ms = (gone_ms // CHECK_MS + 1) * CHECK_MS
-        is_last = me.move_ms != FOREVER and next_ms >= me.move_ms
-        me.clock_ms = self.now_ms - gone_ms + (me.move_ms if is_last else next_ms)
-        return self._drive_on(after if is_last else me.check, is_last)
+        late_ms = (self.now_ms - me.clock_ms) % CLOCK_MS
+        next_ms = (late_ms // CHECK_MS + 1) * CHECK_MS
+        if me.move_ms == FOREVER or next_ms < me.move_ms:
+            return self._drive_on(me.check, next_ms, False)
+        return self._drive_on(after, me.move_ms, True)
 
     def _begin_move(self) -> int:
         """Begin a move that no UNTIL watches."""
-        me = self.me
         self._begin_watched()
-        me.clock_ms += me.move_ms
-        return self._drive_on(me.after, True)
+        return self._drive_on(self.me.after, self.me.move_ms, True)
 
     def _begin_watched(self) -> None:
         me = self.me
@@ -310,16 +307,18 @@ class TaskMachine(Machine):
             self._set(me.powers)
         me.has_begun = True
         self.begin()
-        me.begun_ms = me.clock_ms
 
-    def _drive_on(self, pc: int, is_last: bool) -> int:
-        """Wait for the clock, and go on at `pc`; `is_last`: the clock is the end of the move."""
+    def _drive_on(self, pc: int, due_ms: int, is_last: bool) -> int:
+        """Wait so long, and go on at `pc`; `is_last`: that is the end of the move."""
         me = self.me
         me.to_its_end = is_last and me.drives
-        if is_last and me.move_ms == 0:
+        if due_ms == 0:
             if me.drives:
                 self._end_move()
             return pc
+        if me.move_ms != FOREVER:
+            me.move_ms -= due_ms
+        me.clock_ms += due_ms
         me.has_waited = True
         return stopped(pc)
 

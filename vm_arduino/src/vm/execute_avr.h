@@ -21,10 +21,10 @@
 #define tini_looped_at 19
 #define tini_called_at 20
 #ifdef tiniscript_has_tasks
-#define tini_variables_at 47
-#define tini_stack_at (tini_variables_at + 128 + 140)
+#define tini_variables_at 48
+#define tini_stack_at (tini_variables_at + 128 + 120)
 #else
-#define tini_variables_at 59
+#define tini_variables_at 55
 #define tini_stack_at (tini_variables_at + 128)
 #endif
 #define tini_counters_at (tini_stack_at + 68)

@@ -40,9 +40,8 @@ struct TaskRecord {
   uint16_t check;     // where that of its UNTIL begins, or where it goes on behind its move
   uint16_t after;     // behind the move; 0: behind its UNTIL
   uint32_t clock_ms;  // its own clock; its next turn is due then
-  uint32_t begun_ms;  // when its move began,
-  uint32_t rest_ms;   // and how long it may last then, or kForever; or the value of `kUnsent`, or
-                      // the way of a move that is measured
+  uint32_t rest_ms;   // how long its move may last from then on, or kForever; or the value of
+                      // `kUnsent`, or the way of a move that is measured
   Powers powers;      // of its move; kNoPowers: a wait, the motors stay as they are
   Powers set;         // by its M; 0 where none is in force
   uint8_t looped;     // how many counters it has,
@@ -50,6 +49,7 @@ struct TaskRecord {
 
   bool is(uint8_t bits) const { return (state & bits) != 0; }
   bool measures() const;
+  bool is_forever() const { return static_cast<int32_t>(rest_ms) < 0; }
 };
 
 constexpr Powers kNoPowers = 0x8080;
@@ -91,12 +91,13 @@ struct Task {
   bool is_late;       // 2^31 ms have passed since the start: TIME can no longer express it
 #ifdef tiniscript_has_tasks
   bool has_others;  // there are tasks beside the main one
+  uint8_t open;     // tasks that have not ended, beside one
   bool is_between_turns;
   bool is_later_turn;   // than the first one of the main task, before all others
   bool is_later_round;  // than the first one
 #ifdef __AVR__
   uint8_t round_ms;      // when the last round was over, of 256; before that if one is due now
-  bool is_due;           // a task that has had its turn is due again
+  bool had_turn;         // a task in this round: it may be due again
 #else
   uint32_t wake_ms;      // when the next round begins
 #endif

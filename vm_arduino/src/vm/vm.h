@@ -136,9 +136,8 @@ class Machine {
   // the turns of tasks, in `vm_tasks.cpp`
   void find_tasks();
   void run_round();
-  bool run_turn();
-  bool finds_turn();
-  void begin_turn(TaskRecord* me);
+  bool finds_turn(bool is_over);
+  bool begin_turn(TaskRecord* me);
   void end_turn();
   bool waits_for_clock(const TaskRecord* task) const;
   void end_round();
@@ -154,12 +153,13 @@ class Machine {
   bool watch(uint32_t move_ms);
   void keep_move(uint32_t move_ms);
   void begin();
+  uint32_t next_check_ms() const;
   bool go_on(bool is_watched);
   void go_way();
   bool is_on_the_way();
   bool comes_to_end();
   void end_move();
-  bool block();
+  bool blocks();
   void motors(Powers powers);
   void stop_motors();
   bool is_below() const;  // whether a higher task has the motors

@@ -29,6 +29,12 @@ tini_noinline void Machine::keep_move(uint32_t move_ms) {
   me->state &= static_cast<uint8_t>(~kHasBegun);
 }
 
+// How long after its clock, where it last looked, its UNTIL looks again.
+inline uint32_t Machine::next_check_ms() const {
+  const uint32_t late_ms = now_ms_ - task_.me->clock_ms;
+  return late_ms - late_ms % kCheckMs + kCheckMs;
+}
+
 #ifdef tiniscript_has_discs
 
 __attribute__((weak)) bool robot_measures() { return false; }
@@ -58,8 +64,8 @@ void stand_still(TaskRecord* task, uint32_t now_ms) {
     if (robot_going(&rest) == Going::kThere || rest <= 0) return end_move_of(task);
     task->rest_ms = static_cast<uint32_t>(rest);
 #endif
-  } else if (task->rest_ms != kForever) {
-    const uint32_t left_ms = task->begun_ms + task->rest_ms - now_ms;
+  } else if (!task->is_forever()) {
+    const uint32_t left_ms = task->clock_ms + task->rest_ms - now_ms;
     if (static_cast<int32_t>(left_ms) <= 0) return end_move_of(task);
     task->rest_ms = left_ms;
   }
@@ -86,7 +92,7 @@ tini_noinline bool Machine::drive(uint32_t move_ms) {
 bool Machine::watch(uint32_t move_ms) {
   keep_move(move_ms);
   task_.me->after = 0;
-  return task_.me->powers == kNoPowers || !is_below() || block();
+  return !blocks();
 }
 
 // Continues or ends the watched move, as its UNTIL says.
@@ -105,8 +111,8 @@ tini_noinline bool Machine::go_on(bool is_watched) {
   TaskRecord* const me = task_.me;
   const bool measures = me->measures();
   if (!me->is(kHasBegun)) {
+    if (blocks()) return false;
     if (me->powers != kNoPowers) {
-      if (is_below()) return block();
       take();
       me->state |= kIsMoving | kDrives;
       if (measures) {
@@ -117,7 +123,6 @@ tini_noinline bool Machine::go_on(bool is_watched) {
     }
     me->state |= kHasBegun;
     begin();
-    me->begun_ms = task_.me->clock_ms;
   }
   uint32_t due_ms = me->rest_ms;
   bool is_last = true;
@@ -130,22 +135,21 @@ tini_noinline bool Machine::go_on(bool is_watched) {
     if (!is_watched) me->state |= kToItsEnd;
   }
   if (is_watched || measures) {
-    const uint32_t gone_ms = now_ms_ - me->begun_ms;
-    // Never kForever. After 2^32 ms it wraps around, and a new row of checks begins.
-    const uint32_t next_ms = gone_ms - gone_ms % kCheckMs + kCheckMs;
+    const uint32_t next_ms = next_check_ms();
     is_last = next_ms >= due_ms;
     if (!is_last) {
       due_ms = next_ms;
       if (is_watched) task_.pc = me->check;
     }
   }
-  const bool is_over = due_ms == 0 && has_tasks();
-  if (is_last && me->is(kDrives)) {
-    me->state |= kToItsEnd;
-    if (is_over) end_move();
+  const bool drives = me->is(kDrives);
+  if (due_ms == 0 && has_tasks()) {
+    if (drives) end_move();
+    return true;
   }
-  task_.me->clock_ms = me->begun_ms + due_ms;
-  if (is_over) return true;
+  if (is_last && drives) me->state |= kToItsEnd;
+  if (!measures && !me->is_forever()) me->rest_ms -= due_ms;
+  me->clock_ms += due_ms;
   me->state |= kHasWaited;
   return pause();
 }
@@ -194,22 +198,25 @@ tini_noinline void Machine::end_move() {
   if (drove) set_motors(kOff);
 }
 
-// Waits for the motors.
-tini_noinline bool Machine::block() {
+// Waits for the motors where its move needs them and a higher task has them.
+tini_noinline bool Machine::blocks() {
   TaskRecord* const me = task_.me;
+  if (me->powers == kNoPowers || !is_below()) return false;
   want();
   me->state |= kIsMoving | kIsBlocked | kHasWaited;
   task_.pc = me->check;
-  return pause();
+  return !pause();
 }
 
 void Machine::motors(Powers powers) {
-  const bool is_mine = !is_below();
-  if (is_mine) take();
-  want();
+  if (is_below()) {
+    want();
+  } else {
+    take();
+    set_motors(powers);
+  }
   task_.me->set = powers;
   task_.me->state |= kHasSet;
-  if (is_mine) set_motors(powers);
 }
 
 void Machine::stop_motors() {
@@ -236,9 +243,7 @@ tini_noinline void Machine::take() {
   want();
   TaskRecord* const holder = task_.holder;
   task_.holder = task_.me;
-  if (holder > task_.me && holder != task_.end && holder->is(kDrives)) {
-    stand_still(holder, now_ms_);
-  }
+  if (holder != task_.end && holder->is(kDrives)) stand_still(holder, now_ms_);
 }
 
 // Behind a turn: gives the motors to the highest task that wants them, if it is another.
@@ -291,19 +296,17 @@ bool Machine::until(bool stop) {
   if (!me->is(kHasBegun)) {
     me->state = kHasBegun;
     begin();
-    me->begun_ms = task_.me->clock_ms;
     if (drives) set_motors(me->powers);
   }
-  const uint32_t gone_ms = now_ms_ - me->begun_ms;
-  // Never kForever. After 2^32 ms it wraps around, and a new row of checks begins.
-  uint32_t next_ms = gone_ms - gone_ms % kCheckMs + kCheckMs;
+  uint32_t next_ms = next_check_ms();
   if (next_ms < me->rest_ms) {
     task_.pc = me->check;
+    if (!me->is_forever()) me->rest_ms -= next_ms;
   } else {
     next_ms = me->rest_ms;
     if (drives) me->state = kToItsEnd;
   }
-  task_.me->clock_ms = me->begun_ms + next_ms;
+  me->clock_ms += next_ms;
   return pause();
 }
 

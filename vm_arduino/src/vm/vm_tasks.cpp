@@ -57,6 +57,7 @@ void Machine::find_tasks() {
       if (kind == Role::kWhen) me->start = at;
       me++;
       task_.has_others = true;
+      task_.open++;
     }
     if (kind == Role::kTask) break;
     kind = Role::kTask;
@@ -68,42 +69,45 @@ void Machine::find_tasks() {
 // Goes on to where the next instruction begins. False: none may run now.
 bool Machine::arrive(uint32_t now_ms) {
   if (status_ >= Status::kDone) return false;
-  return fault_ != Fault::kNone || (may_go_on(now_ms) && finds_turn()) || fault_ != Fault::kNone;
+  return fault_ != Fault::kNone || (may_go_on(now_ms) && finds_turn(false)) ||
+         fault_ != Fault::kNone;
 }
 
 // Runs turns until the round is over or the budget is used up.
 tini_noinline void Machine::run_round() {
-  while (left_ != 0 && fault_ == Fault::kNone && finds_turn()) {
-    if (run_turn() || fault_ != Fault::kNone || status_ == Status::kDone) return;
-    // before all others the main task waits for a reading, too
-    if (!task_.is_later_turn && !task_.has_paused) return;
-    end_turn();
-  }
-}
-
-// Returns whether the budget ends it, and not the turn.
-bool Machine::run_turn() {
 #ifdef __AVR__
   // The inner loop leaves at each jump back, where a loop may wait.
   uint8_t left = left_;
-  bool is_over;
-  do {
+  bool is_over = false;
+  while (finds_turn(is_over) && left != 0) {
     execute(1);
-    is_over = left_ != 0 || fault_ != Fault::kNone;
-    if (is_over) break;
-    left--;
-    is_over = !is_call(code_[at_]) && !goes_back();
-  } while (!is_over && left != 0 && !Flag<Bit::kAttention>());
+    if (fault_ != Fault::kNone || status_ == Status::kDone) break;
+    is_over = true;
+    if (left_ == 0) {
+      left--;
+      is_over = !is_call(code_[at_]) && !goes_back();
+      if (!is_over && Flag<Bit::kAttention>()) break;
+    } else if (!task_.is_later_turn && !task_.has_paused) {
+      break;
+    }
+  }
   left_ = left;
-  return !is_over;
 #else
-  return execute(left_);
+  for (bool is_over = false; finds_turn(is_over) && left_ != 0; is_over = true) {
+    if (execute(left_) || fault_ != Fault::kNone || status_ == Status::kDone) return;
+    // before all others the main task waits for a reading, too
+    if (!task_.is_later_turn && !task_.has_paused) return;
+  }
 #endif
 }
 
-// Goes on with a turn, or begins the next one of the round. False: the round is over.
-bool Machine::finds_turn() {
-  while (task_.is_between_turns) {
+// Goes on with a turn, or begins the next one of the round; `is_over`: ends the turn before. False:
+// the round is over.
+bool Machine::finds_turn(bool is_over) {
+  for (;;) {
+    if (is_over) end_turn();
+    if (!task_.is_between_turns) return true;
+    if (kHasDiscs && fault_ != Fault::kNone) return false;
     TaskRecord* const task = task_.next;
     if (task == task_.end) {
       task_.next = task_.records;
@@ -116,12 +120,9 @@ bool Machine::finds_turn() {
     to_the_end(task_.counters, task->looped, task_.looped);
     to_the_end(task_.calls, task->called, task_.called);
     task_.next = task + 1;
-    if (waits_for_clock(task) && static_cast<int32_t>(now_ms_ - task->clock_ms) >= 0) {
-      begin_turn(task);
-      if (kHasDiscs && fault_ != Fault::kNone) return false;
-    }
+    is_over = waits_for_clock(task) && static_cast<int32_t>(now_ms_ - task->clock_ms) >= 0 &&
+              !begin_turn(task);
   }
-  return true;
 }
 
 // Whether it waits for its clock, and not for the motors or for nothing any more.
@@ -132,8 +133,8 @@ bool Machine::waits_for_clock(const TaskRecord* task) const {
 // A round is over.
 inline void Machine::end_round() {
 #ifdef __AVR__
-  task_.round_ms = static_cast<uint8_t>(now_ms_ - task_.is_due);
-  task_.is_due = false;
+  task_.round_ms = static_cast<uint8_t>(now_ms_ - task_.had_turn);
+  task_.had_turn = false;
 #else
   int32_t more_ms = kNeverMs;
   for (const TaskRecord* task = task_.records; task != task_.end; task++) {
@@ -145,22 +146,20 @@ inline void Machine::end_round() {
 #endif
 }
 
-void Machine::begin_turn(TaskRecord* me) {
+// Returns whether it goes on.
+bool Machine::begin_turn(TaskRecord* me) {
   task_.me = me;
   task_.is_between_turns = false;
   me->looped = static_cast<uint8_t>(me->looped - task_.looped);  // `end_turn` adds what it is then
   me->called = static_cast<uint8_t>(me->called - task_.called);
   task_.pc = me->pc;
-  bool goes_on = (me->more & kUnsent) == 0 || sends();
-  if (!goes_on) {
-  } else if (me->is(kIsBlocked)) {
+  if ((me->more & kUnsent) != 0 && !sends()) return false;
+  if (me->is(kIsBlocked)) {
     me->state &= static_cast<uint8_t>(~kIsBlocked);
     me->clock_ms = now_ms_;
-    goes_on = me->check != me->after || go_on(false);
-  } else if (me->is(kToItsEnd)) {
-    goes_on = comes_to_end();
+    return me->check != me->after || go_on(false);
   }
-  if (!goes_on) end_turn();
+  return !me->is(kToItsEnd) || comes_to_end();
 }
 
 void Machine::end_turn() {
@@ -171,7 +170,7 @@ void Machine::end_turn() {
   task_.is_between_turns = true;
   task_.has_paused = false;
 #ifdef __AVR__
-  if (static_cast<int32_t>(now_ms_ - me->clock_ms) >= 0) task_.is_due = true;
+  task_.had_turn = true;
 #endif
   status_ = Status::kRunning;
   if (!task_.is_later_turn) {
@@ -214,10 +213,7 @@ bool Machine::look_again() {
 // Ends this task. Returns whether it was the last one.
 bool Machine::ends_program() {
   task_.me->state = kHasEnded;
-  for (const TaskRecord* task = task_.records; task != task_.end; task++) {
-    if (task->state != kHasEnded) return pause();
-  }
-  return true;
+  return task_.open-- == 0 || pause();
 }
 
 }  // namespace tiniscript
