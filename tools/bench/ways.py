@@ -6,7 +6,8 @@ long; discs of 20 holes have each edge up to a tenth from its place; a wheel sli
 column says on average. No real floor was seen. Ends with 1 if the limits do not hold at 0.5 %.
 
 `--uno` takes discs alone, and the firmware of an Uno on its simulated chip: the same wheels change
-its pins. That takes 12 s for a seed. `--size` prints what ways take of the flash of an Uno without discs.
+its pins. That takes 12 s for a seed. `--size` prints what ways take of the flash of an Uno without
+discs.
 """
 
 from __future__ import annotations

@@ -25,14 +25,14 @@ void Machine::begin() {
 tini_noinline void Machine::keep_move(uint32_t move_ms) {
   TaskRecord* const me = task_.me;
   me->rest_ms = move_ms;
-  me->check = task_.pc;
+  me->check = me->after = task_.pc;
   me->state &= static_cast<uint8_t>(~kHasBegun);
 }
 
 // How long after its clock, where it last looked, its UNTIL looks again.
 inline uint32_t Machine::next_check_ms() const {
   const uint32_t late_ms = now_ms_ - task_.me->clock_ms;
-  return late_ms - late_ms % kCheckMs + kCheckMs;
+  return (late_ms / kCheckMs + 1) * kCheckMs;
 }
 
 #ifdef tiniscript_has_discs
@@ -84,7 +84,6 @@ bool Machine::wait(uint32_t duration_ms) {
 
 tini_noinline bool Machine::drive(uint32_t move_ms) {
   keep_move(move_ms);
-  task_.me->after = task_.pc;
   return go_on(false);
 }
 
@@ -142,12 +141,11 @@ tini_noinline bool Machine::go_on(bool is_watched) {
       if (is_watched) task_.pc = me->check;
     }
   }
-  const bool drives = me->is(kDrives);
+  if (is_last && me->is(kDrives)) me->state |= kToItsEnd;
   if (due_ms == 0 && has_tasks()) {
-    if (drives) end_move();
+    if (me->is(kToItsEnd)) end_move();
     return true;
   }
-  if (is_last && drives) me->state |= kToItsEnd;
   if (!measures && !me->is_forever()) me->rest_ms -= due_ms;
   me->clock_ms += due_ms;
   me->state |= kHasWaited;
