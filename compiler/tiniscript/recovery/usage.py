@@ -190,7 +190,7 @@ class _Usage:
             values = {"found": endless, "right": "LOOP", "fix": "LOOP(FOREVER)"}
             values["usage"] = _usage("LOOP")
             return Diagnostic(codes.OTHER_LANGUAGE, found.span, values, piece)
-        if any(said_of(each, "turn") or each in ("VUELTA", "VUELTAS") for each in words):
+        if any(said_of(each, "turn") or said_of(each, "lap") for each in words):
             way = next(
                 (self.command(each) for each in words if self.command(each) in ("L", "R")), ""
             )
