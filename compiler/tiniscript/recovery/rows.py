@@ -97,6 +97,7 @@ SIGNS = r"""
 (?<=[(,])(\s*)%(?=\d)  |  `\g<1>5`  |  1  |  TS076  |  offered  |  F(2, %0) => F(2, 50)
 (?<=[(,])(\s*)/(?=\d)  |  `\g<1>7`  |  1  |  TS076  |  offered  |  F(2, /0) => F(2, 70)
 (?<=\()l(?=\s*,)  |  `1`  |  1  |  TS008  |  offered  |  F(l, 80) => F(1, 80)
+\((\d)\.,(\d+) +(\d+)\)  |  `(\1.\2, \3)`  |  1  |  TS008  |  applied  |  F(0.,5 60) => F(0.5, 60)
 (?<=\(\d) +(?=\.\d+,)  |  ``  |  1  |  TS008  |  applied  |  F(1 .5, 80) => F(1.5, 80)
 \b([FBLR])(?:8(\d),\s*(\d\d)[9)]|9(\d),\s*(\d\d)[0)])\s*(?=;|$)  |  `\1(\2\4, \3\5)`  |  1  |  TS010  |  offered  |  F82, 809 => F(2, 80)
 \b(IF|WHILE|UNTIL)\s*¿\s*([^?()¿]+?)\s*\?  |  `\1(\2)`  |  1  |  TS015  |  applied  |  IF ¿DISTANCE < 10?⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
@@ -114,6 +115,7 @@ SIGNS = r"""
 ^S ([IB])(?=\s*\|)  |  `S\1`  |  1  |  TS034  |  applied  |  S I|F(2, 80) => SI|F(2, 80)
 \bLOOP_?(\d+)(?=\s*(?:;|$))  |  `LOOP(\1)`  |  1  |  TS015  |  applied  |  LOOP4;F(2, 80);END_LOOP => LOOP(4);F(2, 80);END_LOOP
 ^(\s*S[IB]\s*\|)\s+\|  |  `\1`  |  1  |  TS054  |  applied  |  SI| |F(2, 80) => SI|F(2, 80)
+−  |  `-`  |  0  |  TS010  |  applied  |  M(−50 50) => M(-50, 50)
 &lt;  |  `<`  |  1  |  TS010  |  applied  |  IF(DISTANCE &lt; 10)⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
 &gt;  |  `>`  |  1  |  TS010  |  applied  |  IF(DISTANCE &gt; 10)⏎S⏎ENDIF => IF(DISTANCE > 10)⏎S⏎ENDIF
 &nbsp;  |  ` `  |  1  |  TS072  |  applied  |  F(2, 80);&nbsp;R(1, 50); => F(2, 80); R(1, 50);
@@ -153,9 +155,11 @@ SIGNS = r"""
 ➡\ufe0f?  |  `R `  |  1  |  TS005  |  offered  |  ➡️ 1 => R(1, 80)
 [–—]>  |  `;`  |  1  |  TS061  |  applied  |  F(2, 80) –> R(1, 50) => F(2, 80) ; R(1, 50)
 (?<=\d) 1/2(?!\d)  |  `.5`  |  1  |  TS049  |  applied  |  F(1 1/2, 80) => F(1.5, 80)
+(?<=\b0)\. (?=\d)  |  `.`  |  1  |  TS008  |  applied  |  BEEP(0. 5, 440) => BEEP(0.5, 440)
 (?<=\d)'(?=\d+\s*,)  |  `.`  |  1  |  TS012  |  applied  |  F(1'5, 80) => F(1.5, 80)
 (?<=\d)['·](?=\d+\))  |  `,`  |  1  |  TS076  |  applied  |  F(2'80) => F(2,80)
 (?<=\d)[|¿?!"]+(?=\s*\))  |  ``  |  1  |  TS005  |  applied  |  F(2, 80?) => F(2, 80)
+\(([FBLRWM])(\d)  |  `\1(\2`  |  1  |  TS015  |  applied  |  (F2, 80) => F(2, 80)
 \b([FBLR])(\d(?:\.\d+)?),\s*(\d+)\)  |  `\1(\2, \3)`  |  1  |  TS015  |  applied  |  F2,80) => F(2, 80)
 \bW([1-7](?:\.\d+)?)(?:\(\)|\)|(?=\s*(?:;|$)))  |  `W(\1)`  |  1  |  TS015  |  applied  |  S; W2.5) => S; W(2.5)
 (?<=;)\s*[:.,]\s*(?=;)  |  ``  |  1  |  TS005  |  applied  |  S;:; F(2, 80) => S;; F(2, 80)
@@ -165,6 +169,7 @@ SIGNS = r"""
 ^\s*>+\s*  |  ``  |  1  |  TS054  |  applied  |  > F(2, 80) => F(2, 80)
 ^\s*(?:paso|step|linea|line)?\s*\d+\s*[.):-]+\s+(?=[A-Za-z])  |  ``  |  1  |  TS054  |  applied  |  1) F(2,80)⏎2) S => F(2,80)⏎S
 ^\s*\d+\s*[.)]\s*(?=[A-Za-z])  |  ``  |  1  |  TS054  |  applied  |  1.F(2, 80) => F(2, 80)
+^\*+(\S.*?)\*+$  |  `\1`  |  1  |  TS054  |  applied  |  *F(2,80)* => F(2,80)
 (?<![\w.])([1-9])[oO]{2}\b  |  `\g<1>00`  |  1  |  TS008  |  applied  |  SI|F(2, 1OO) => SI|F(2, 100)
 (?<![\w.])([1-9])[oO]\b  |  `\g<1>0`  |  1  |  TS008  |  applied  |  F(2,8O) => F(2,80)
 \b[O0]\.S\b  |  `0.5`  |  1  |  TS008  |  applied  |  F(O.S, 6O) => F(0.5, 60)
@@ -176,6 +181,7 @@ SIGNS = r"""
 (?<=\d),(?=\d+\s*(?:s|seg|segs|segundos?|sec|seconds?|minutos?)\b)  |  `.`  |  1  |  TS012  |  applied  |  F(2,5s,80) => F(2.5, 80)
 (?<=\d) (?=000\b)  |  ``  |  1  |  TS008  |  applied  |  F(1 000,80) => F(1000,80)
 (?<=[\w)])\s*(?:[¡¿!…?$¬^´`¨\\\u2600-\u2793\U0001F300-\U0001FAFF]+|<br>)\s*$  |  ``  |  1  |  TS005  |  applied  |  STOP! => STOP
+<br>  |  `;`  |  1  |  TS010  |  applied  |  F(2, 80)<br>R(1, 50) => F(2, 80);R(1, 50)
 \b4WARDS?\b(?=\s*\()  |  `F`  |  1  |  TS102  |  offered  |  4WARD(2, 80) => F(2, 80)
 ^(S[IB]) (?:bar|barra) (?=[A-Z])  |  `\1|`  |  1  |  TS010  |  offered  |  SI bar F(2, 80) => SI|F(2, 80)
 \b([A-Z]+) open (?:bracket|parenthesis) ([\d.]+) comma (\d+) close (?:bracket|parenthesis)  |  `\1(\2, \3)`  |  1  |  TS015  |  offered  |  F open bracket 2 comma 80 close bracket => F(2, 80)
@@ -204,6 +210,8 @@ SIGNS = r"""
 ^\s*(?:paso|step)\s*\d+\s*[:.-]?\s+(?=[A-Za-z])  |  ``  |  1  |  TS054  |  applied  |  Paso 1 F(2, 80) => F(2, 80)
 ^_+(\S.*?)_+$  |  `\1`  |  1  |  TS054  |  applied  |  _F(2, 80)_ => F(2, 80)
 [¿¡](?=\W)  |  ``  |  1  |  TS005  |  applied  |  F(2, 80) ¡ ; => F(2, 80)  ;
+(?<=\))\s+/\s+(?=(?-i:[a-z]))  |  ` // `  |  1  |  TS007  |  applied  |  F(2, 80) / adelante => F(2, 80) // adelante
+(?<=[A-Za-z])\((\d+(?:\.\d+)?) ; ?(\d)  |  `(\1, \2`  |  1  |  TS019  |  applied  |  F(2 ; 80) => F(2, 80)
 """
 
 TOKENS = r"""
