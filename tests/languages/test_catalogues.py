@@ -27,6 +27,7 @@ from tiniscript.cli.streams import wrapped
 from tiniscript.cli.texts import Said, language_of, text
 from tiniscript.cli.texts.verbs import VERBS
 from tiniscript.lessons import catalogue
+from tiniscript.recovery.concepts import lexicon
 from tools.languages import PSEUDO, in_step, names, pseudo
 
 NAMES = sorted(path.stem for path in (FOLDER / SOURCE).glob("*.po"))
@@ -302,6 +303,7 @@ def longer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
         made.write_text(written(pseudo(load(path))), encoding="utf-8")
         assert load(made).problems == []
         (tmp_path / SOURCE / path.name).write_bytes(path.read_bytes())
+    lexicon()  # is read once, and of this folder would be empty for all later tests
     monkeypatch.setattr(languages, "FOLDER", tmp_path)
     _forget()
     yield PSEUDO
