@@ -5,12 +5,17 @@ looks at a light sensor every 20 ms, and others that count and never wait by the
 goes on at moments that fit no 20 ms, and each time the WHEN turns the motors on. Its looks lie on a
 grid of 20 ms; what is printed is how far they lie apart on it. The clock of an AVR goes on every
 1.024 ms, so a millisecond is what a single task has, too.
+
+And what tasks take of flash and RAM, by part: the functions of the firmware with and without them.
 """
 
 from __future__ import annotations
 
+import re
+import subprocess
 import sys
 import tempfile
+from collections import Counter
 from itertools import pairwise
 from pathlib import Path
 
@@ -37,6 +42,17 @@ TURNS = 1000
 WITH_TASKS = "-Dtiniscript_with_tasks"
 WATCH = "WHEN(LIGHT_L > 500); M(50, 50); W(0.04); M(0, 0); W(0.06); END_WHEN;"
 
+# What belongs to each part, of the names of functions and tables.
+PARTS = {
+    "turns, rounds and waiting": r"run_round|end_turn|Machine::go_on",
+    "who has the motors, and moves that stand still":
+        r"Machine::(take|want|sends|motors|set_motors|drive|end_move|watch|until|block|keep_move)"
+        r"|robot_motors",
+    "verifier": r"::pass\(|kShape|bytes_to_the_end",
+    "the start of a run, and all else": "",
+}  # fmt: skip
+SYMBOL = re.compile(r"\d+ (\d+) (\w) (.*)")
+
 
 def main() -> int:
     if why := uno.missing() or avr_bench.missing():
@@ -44,6 +60,7 @@ def main() -> int:
         return 2
     try:
         firmware = firmware_size.measured("uno").firmware
+        without = firmware_size.measured(firmware_size.WITHOUT_TASKS).firmware
     except (RuntimeError, CannotStandIn) as failed:
         print(failed, file=sys.stderr)
         return 2
@@ -55,7 +72,24 @@ def main() -> int:
     for others in range(4):
         spread_ms = jitter_ms(firmware, others)
         print(f"{others:16} {spread_ms * 1000:37.0f} us")
+    print(f"{'part of the tasks':46} flash   RAM")
+    less = parts_of(without)
+    for part, size in parts_of(firmware).items():
+        print(
+            f"{part:46} {size['flash'] - less[part]['flash']:5} {size['ram'] - less[part]['ram']:5}"
+        )
     return 0
+
+
+def parts_of(firmware: Path) -> dict[str, Counter[str]]:
+    """Return the bytes of flash and RAM of a firmware, by part."""
+    command = ["avr-nm", "-S", "-C", "--radix=d", str(firmware)]
+    said = subprocess.run(command, capture_output=True, text=True, check=True).stdout
+    found: dict[str, Counter[str]] = {part: Counter() for part in PARTS}
+    for size, kind, name in SYMBOL.findall(said):
+        part = next(part for part, names in PARTS.items() if re.search(names, name))
+        found[part]["ram" if kind in "bBdD" else "flash"] += int(size)
+    return found
 
 
 def turns_cycles(tasks: int) -> int:
