@@ -36,7 +36,7 @@ def first_inputs(name: str, folder: Path) -> Path:
     return inputs
 
 
-@pytest.mark.sampled("name", keep=3)
+@pytest.mark.sampled("name")
 @pytest.mark.parametrize("name", NAMES)
 def test_nothing_is_wrong(name: str, tmp_path: Path) -> None:
     found = fuzz(harness(name), first_inputs(name, tmp_path), RUNS[name], SEED)

@@ -89,6 +89,7 @@ def test_a_board_that_is_not_the_one_stays_as_it_is(how: dict[str, Any], ended: 
     assert (found["ended"], found["is_untouched"]) == (ended, True)
 
 
+@pytest.mark.sampled("how", "ended")
 @pytest.mark.parametrize(
     ("how", "ended"),
     [

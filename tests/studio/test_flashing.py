@@ -169,6 +169,7 @@ def test_all_bytes_arrive_and_are_read_back(tmp_path: Path) -> None:
     assert board.commands[-1] == 0x51
 
 
+@pytest.mark.sampled("bends", "how", keep=5)
 @pytest.mark.parametrize(
     ("bends", "how"),
     [

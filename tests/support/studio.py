@@ -12,6 +12,7 @@ import socket
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from importlib.util import find_spec
+from pathlib import Path
 from threading import Thread
 from typing import TYPE_CHECKING, Any, NamedTuple
 from weakref import WeakKeyDictionary
@@ -34,10 +35,13 @@ if TYPE_CHECKING:
 # No sandbox: root has none, and these pages are our own. WebAssembly is compiled once and not again
 # for speed: Python does little in a page of a test. The tabs of a context share a renderer and what
 # it has compiled.
-OPTIONS = ("--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
+OPTIONS: tuple[str, ...] = ("--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
            "--disable-background-networking", "--disable-component-update", "--disable-sync",
-           "--disable-dev-shm-usage", "--js-flags=--liftoff-only",
+           "--js-flags=--liftoff-only",
            "--process-per-site")  # fmt: skip
+SHARED = Path("/dev/shm")
+if not SHARED.is_dir() or shutil.disk_usage(SHARED).free < 1 << 30:  # in a container it is small
+    OPTIONS += ("--disable-dev-shm-usage",)
 UPLOADS = 10  # after so many stops in a row the computer is not to blame
 
 
