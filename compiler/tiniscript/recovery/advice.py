@@ -372,6 +372,11 @@ def _then(gaps: _Gaps) -> str:
     return "" if isinstance(found, Failure) else _rest(gaps, "w")
 
 
+def _done(gaps: _Gaps) -> str:
+    """The orders that the words from a capture on say."""
+    return written(orders(gaps.part.row[gaps.span("w")[0] - 1 :], gaps.part.names))
+
+
 def _free(gaps: _Gaps) -> str:
     """A name that may get the value before it, which is no other name."""
     names, name = gaps.part.names, plain(gaps["x"])
@@ -559,7 +564,8 @@ _GAPS: dict[str, Callable[[_Gaps], str]] = {
         "(" in each or each == "S" for each in _choices(gaps)) else "",
     "choices": _choice, "apart": _apart, "number": lambda gaps: for_a_number(gaps.part.text),
     "example": lambda gaps: WORDS[plain(gaps["w"])].example,
-    "one": _sensor(0), "two": _sensor(1), "alone": _alone, "then": _then, "free": _free,
+    "one": _sensor(0), "two": _sensor(1), "alone": _alone, "then": _then, "done": _done,
+    "free": _free,
     "unlike": _questions(0, is_not=True), "orunlike?": _questions(1, is_not=True),
     "text": lambda gaps: shortened(gaps.part.text[slice(*gaps.part.place)]),
     "words": lambda gaps: shortened(gaps.part.words),

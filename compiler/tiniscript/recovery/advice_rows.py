@@ -54,7 +54,8 @@ ADVICE = """
 ^ @last <loop> (? n=@num )? times? $ | TS062 | found={words}; all={all} | F(1, 50)⏎repetir 3 => all=LOOP(3);F(1, 50);END_LOOP
 ^ @last <loop> (? @num? )? times? $ | TS062 | found={words} | F(1, 50)⏎repetir => found=repetir
 # questions in words
-^ @none @any* <asks> (? @any* s=@noBUTTON @any* )? <body> $ | TS120 | | IF(boton presionado)⏎S⏎ENDIF => before=
+^ @none WHEN|AL|AO|IF @word* flag @word* $ | TS102 | found={words}; right=START; fix=START; usage=START | when green flag clicked => fix=START
+^ @none @any* h=IF|ELSEIF|WHILE|UNTIL (? @any* s=@noBUTTON @any* )? <body> $ | TS120 | | IF(boton presionado)⏎S⏎ENDIF => before=
 ^ @none @any* <asks> (? s=@word|@num+ )? <body> $ | TS135 | word={head}; question=; joint={joint} | IF(hay luz y pared)⏎S⏎ENDIF => joint=AND
 ^ @none @any* <asks> (? s=@word|@num+ )? <body> $ | TS135 | word={head}; question=; asked={asked}; also={also?} | IF(pared a 1 metro)⏎S⏎ENDIF => asked=DISTANCE < 100
 ^ @none @any* <asks> (? s=@word|@num+ )? <body> $ | TS135 | word={head}; question=; example={nothing} | IF(esta listo)⏎S⏎ENDIF => example=DISTANCE < 10
@@ -64,6 +65,7 @@ ADVICE = """
 ^ @none @any* <asks> ( s=light = FALSE|0 ) $ | TS135 | word={head}; question={unlike}; another={orunlike?} | IF(oscuro = FALSE)⏎S⏎ENDIF => question=LIGHT_L > 500
 ^ @none s=FOREVER q=QUE c=@cond+ w=@startm $ | TS102 | found={s} {q}; right=WHILE; usage=WHILE({always}) | siempre que distancia > 20 avanza => usage=WHILE(DISTANCE > 20)
 # what asks or calculates, alone
+^ @none IF <either> do? w=@start @any* $ | TS042 | found={l}; asked={l} {r} {n}; one=IF({one} {r} {n});{done};ENDIF; another=IF({two} {r} {n});{done};ENDIF | si luz > 50 apita => another=IF(LIGHT_R > 50);BEEP(1, 440);ENDIF
 ^ @none h=SI <either> <body> $ | TS045 | one=IF({one} {r} {n}); two=IF({two} {r} {n}) | si luz > 50⏎S⏎fin => two=IF(LIGHT_R > 50)
 ^ @none <either> @any* $ | TS042 | found={l}; asked={l} {r} {n}; one=IF({one} {r} {n}); another=IF({two} {r} {n}) | luz > 50: F(2, 80) => one=IF(LIGHT_L > 50)
 ^ @none <either> @any* $ | TS042 | found={l}; asked={l} {r} {n}; one=IF({one} {r} {n}) | pared < 10⏎S => one=IF(DISTANCE < 10)
@@ -74,7 +76,6 @@ ADVICE = """
 ^ @none F ( s=UNTIL|HASTA @word+ , n=@num ) $ | TS102 | found={s}; right=UNTIL; usage=F(FOREVER, {n}) UNTIL({distance} < 10) | F(hasta la pared, 60) => usage=F(FOREVER, 60) UNTIL(DISTANCE < 10)
 ^ @none v=@name [ @num ] = @any* $ | TS067 | found={v} | NOTAS[1] = 5 => found=NOTAS
 ^ @none most|least|on|off the|A|O? s=@noGRIPPER|@noLED $ | TS101 | found={s}; near= | OPEN GRIPPER => found=GRIPPER
-^ @none WHEN|AL|AO|IF @word* flag @word* $ | TS102 | found={words}; right=START; fix=START; usage=START | when green flag clicked => fix=START
 # letters for a way
 ^ @none s=FL|LF ( n=@num , @num ) $ | TS101 | found={s}; near=; curve=M(30, 60);W({n});S | FL(1, 60) => curve=M(30, 60);W(1);S
 ^ @none s=FR|RF ( n=@num , @num ) $ | TS101 | found={s}; near=; curve=M(60, 30);W({n});S | FR(1, 60) => curve=M(60, 30);W(1);S

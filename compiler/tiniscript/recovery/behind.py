@@ -28,7 +28,7 @@ from tiniscript.syntax.operators import COMPARISONS
 from tiniscript.syntax.outline import Failure
 
 DOTS = ".…"
-ASKING = ("IF", "ELSEIF", "WHILE", "UNTIL")
+ASKING = ("IF", "ELSEIF", "WHILE", "WHEN", "UNTIL")
 _NOTHING = re.compile(r"\s*\Z")
 MARKS = f"{QUOTES}-–—_,"  # below a line that is meant again
 _HALF = 60  # a power that is neither fast nor slow

@@ -34,6 +34,7 @@ _TOKEN = re.compile(
 _SIGNS = SIGNS | frozenset("(),;|")
 _BEFORE_NAME = frozenset(("DEF", "VOID"))
 _LONGEST = 4  # words of a name
+_END = re.compile("(?:END|FIN|FIM)_?")
 REMEMBERED = 500  # lines: each is asked for often while one program is read
 
 
@@ -276,6 +277,7 @@ class Names:
         self.in_brackets = {name for each in told for name in each.in_brackets}
         self.rows = {row for each in told for row in each.rows}
         self.parameters = {k: its for each in told for k, its in each.parameters.items()}
+        self.begun = _begun(lines)
         self.defs = {name for each in told for name in each.defs} - {row[0] for row in self.rows}
         self._labels: dict[tuple[str, str, bool], str] = {}
 
@@ -290,7 +292,14 @@ class Names:
     @cached_property
     def _content(self) -> tuple[object, ...]:
         words = (frozenset(each) for each in (self.variables, self.defs, self.in_brackets))
-        return (self.sensors, *words, frozenset(self.rows), frozenset(self.actuators.values()))
+        begun = frozenset(self.begun.items())
+        return (
+            self.sensors,
+            *words,
+            begun,
+            frozenset(self.rows),
+            frozenset(self.actuators.values()),
+        )
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Names) and self._content == other._content
@@ -314,6 +323,8 @@ class Names:
         """Return what a word that is no name of the program may mean."""
         if self.is_name(word):
             return ()
+        if word in self.begun:
+            return (Meaning(self.begun[word], KNOWN),)
         if word[:4] in ("END_", "FIN_") and word[4:] in (*WORDS, *self.defs):
             return (Meaning("FIN", KNOWN),)
         found = concepts(word)
@@ -386,6 +397,19 @@ class Names:
             if "turn" not in found and not re.fullmatch("[FBLRWM][0-9]+", text):
                 found += ["@newname", *(["@usedname"] if text in self.in_brackets else [])]
         return found
+
+
+def _begun(lines: Sequence[Sequence[Lexeme]]) -> dict[str, str]:
+    """Return the orders that are the beginnings of blocks, since their ends are there: PARA."""
+    found = {}
+    for line in lines:
+        for one, other in pairwise([made(";"), *line]):
+            pair = [one.text, other.text] if said_of(one.text, "end") else [other.text]
+            block = ENDED.get(concept_of("_".join(pair)) or "", "")
+            word = _END.sub("", "_".join(pair), count=1)
+            if block and concept_of(word) in DONE:
+                found[word] = block
+    return found
 
 
 def _is_glued(tokens: Sequence[Lexeme]) -> bool:

@@ -68,6 +68,7 @@ class Unended(NamedTuple):
     """A block that begins with `word` lacks its end, `right`, behind line `line`, `last`.
 
     With it the block is `whole`, nothing where that is long. On its own line it ends with `behind`.
+    An IF may end behind line `early`, `first`, too, where nothing says that it goes on.
     """
 
     word: str
@@ -76,6 +77,8 @@ class Unended(NamedTuple):
     last: str = ""
     whole: str = ""
     behind: str = ""
+    early: str = ""
+    first: str = ""
 
 
 class Explanation(NamedTuple):
@@ -362,6 +365,13 @@ class _Teller:
         place = Span(self.starts[self.changes[first].first], behind)
         line = str(change.last + 1)
         slip = Unended(block.word if block else "", end, line, behind_this, whole)
+        if block and block.word == "IF" and last[0] == first + 2 and not self.found.has_sure_blocks:
+            early = self.changes[first + 1]
+            shown = lexemes(without_note(early.text)[0])
+            is_deeper = early.text[:1].isspace()
+            inside = {*texts(shown), *texts(lexemes(change.text.split("\n")[0]))}
+            if not (is_deeper or inside & _OF_BLOCKS):
+                slip = slip._replace(early=str(early.last + 1), first=laid_out(shown), whole="")
         self.out.append(_Told(_UNENDED, place, slip, edit, first))
 
 
@@ -382,6 +392,8 @@ def _code(
     fewer = Counter(texts(before)) - Counter(texts(after))
     if "SI" in fewer and "IF" in new - words:
         return codes.SPANISH_IF.number, None
+    if not after and len(before) == 1 and meant_by(before[0].text) in ENDED:
+        return codes.EXTRA_WORD.number, None
     if steps:
         own = [step for step in steps if step.code != _WORD_CODE]
         own.sort(key=lambda each: each.code == codes.OTHER_SIGN.number)

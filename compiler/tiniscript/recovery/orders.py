@@ -10,9 +10,9 @@ from itertools import groupby
 from typing import NamedTuple
 
 from tiniscript.base.words import BLOCK_ENDS, WORDS
-from tiniscript.recovery import lines
+from tiniscript.recovery import lines, rewrites
 from tiniscript.recovery.concepts import CALLED, NEAR, Lexeme, Names, made, said_of
-from tiniscript.recovery.slots import Filled, filled
+from tiniscript.recovery.slots import MOVES, Filled, filled
 from tiniscript.recovery.writing import laid_out
 from tiniscript.syntax.lexer import NUMBER
 from tiniscript.syntax.operators import COMPARISONS
@@ -50,6 +50,11 @@ def orders(words: Sequence[Lexeme], names: Names) -> list[Order]:
     found: list[Order] = []
     if len(words) > LONGEST:
         return []
+    while joined := rewrites.one_word(words, names):
+        words = joined[0]  # `para adelante`
+    asks = next((k for k, each in enumerate(words) if k and _is_if(each, names)), 0)
+    if asks:
+        return _asked_between(orders(words[:asks], names), words[asks:], names)
     joins = "" if any(each.text == "(" for each in words) else ",."  # `gira(2, 80)` is one
     groups = groupby(words, key=lambda it: it.text in (*joins,) or bool(said_of(it.text, "then")))
     for is_between, group in groups:
@@ -63,31 +68,69 @@ def orders(words: Sequence[Lexeme], names: Names) -> list[Order]:
     return found
 
 
+def _is_if(token: Lexeme, names: Names) -> bool:
+    return token.text == "SI" or command(token.text, names) == "IF"
+
+
+def _asked_between(first: list[Order], words: Sequence[Lexeme], names: Names) -> list[Order]:
+    """Return orders and the question behind them; a move that it stops is watched meanwhile."""
+    asked = block(words, names, is_open=False)
+    if not first or not asked:
+        return []
+    header, stop, *rest = asked.split(";")
+    number = any(each.kind is NUMBER for each in words)
+    samples = () if number else (f"{_NEAR_CM} cm",)
+    if stop in ("S", "STOP") and first[-1].word in MOVES and "UNTIL" not in first[-1].text:
+        if "ELSE" in rest:
+            return []
+        move = first[-1]
+        until = move.text + f" UNTIL{header[2:]}"
+        first = [*first[:-1], move._replace(text=until, samples=move.samples + samples)]
+        is_more = len(rest) > 1
+        return [*first, *([Order("IF", ";".join((header, *rest)), ())] if is_more else [])]
+    return [*first, Order("IF", asked, samples)]
+
+
 def _orders(words: list[Lexeme], names: Names) -> list[Order]:
     """Return the orders between two words that join, of which each begins with its own."""
     if whole := _order(words, names):
         return [whole]
     for k in range(2, len(words) - 1):
-        begins = said_of(words[k].text, "turn") or command(words[k].text, names) in (*CALLED, "S")
-        first = _order(words[:k], names) if begins else None
+        first = _order(words[:k], names) if _begins(words[k], names) else None
         rest = _orders(words[k:], names) if first and len(first.samples) < 2 else []
         if first and rest:
             return [first, *rest]
     return []
 
 
+def _begins(token: Lexeme, names: Names) -> bool:
+    """Whether a word begins an order."""
+    is_turn = bool(said_of(token.text, "turn"))
+    return is_turn or command(token.text, names) in (*CALLED, "S", "STOP")
+
+
 def _order(words: list[Lexeme], names: Names) -> Order | None:
     if to_wall := _until(words, names):
         return to_wall
     first = command(words[0].text, names)
+    rest = [each.text for each in words[1:]]
+    if (
+        first in ("S", "STOP")
+        and rest
+        and all(
+            said_of(each, "the") or said_of(each, "engine") or said_of(each, "filler")
+            for each in rest
+        )
+    ):
+        return Order("S", "S", ())
     if first in ("S", "STOP") and any(each.kind is NUMBER for each in words):
         pause = filled([made("W"), *words[1:]], names, has_until=False)
         return Order("S", f"{first};{laid_out(pause.tokens)}", ()) if pause else None
     is_free = False
     call = filled(words, names, has_until=False, is_order=True)
-    rest = [each for each in words if not said_of(each.text, "turn")]
-    if call is None and len(rest) < len(words):
-        call = filled([made("R"), *rest], names, has_until=False, is_order=True)
+    unturned = [each for each in words if not said_of(each.text, "turn")]
+    if call is None and len(unturned) < len(words):
+        call = filled([made("R"), *unturned], names, has_until=False, is_order=True)
         is_free = True
     if call is None:
         return None
@@ -135,6 +178,8 @@ def block(tokens: Sequence[Lexeme], names: Names, is_open: bool) -> str:
     word = "IF" if first == "SI" else command(first, names)
     if word not in ("IF", "WHILE", "LOOP") or len(tokens) > LONGEST:
         return ""
+    while any(said_of(each.text, "end") for each in tokens[-2:]):
+        tokens = tokens[:-1]  # `fin si`
     texts = [each.text for each in tokens]
     arm = next((k for k in range(1, len(texts)) if texts[k] in ("ELSE", "SINO")
                 or texts[k : k + 2] == ["SI", "NO"]), len(texts))  # fmt: skip
@@ -142,6 +187,8 @@ def block(tokens: Sequence[Lexeme], names: Names, is_open: bool) -> str:
     for k in range(2, arm):
         header = _head(word, tokens[1:k], names)
         body = orders(tokens[k:arm], names) if header else []
+        if header and not body and _begins(tokens[k], names):
+            return ""  # another order than the words behind it say
         if not body or any(each.is_side_free for each in (*body, *other)):
             continue
         if word != "LOOP" and command(texts[k], names) in _SIDES:
@@ -176,6 +223,8 @@ def question_in(words: Sequence[Lexeme], names: Names) -> list[Lexeme]:
     tokens = found[0].tokens if found else []
     end = next((k for k, each in enumerate(tokens) if each.text == ";"), len(tokens)) - 1
     asked = tokens[2:end]
+    if [each.text for each in asked if each.text in "()"] == ["(", ")"] and asked[-1].text == ")":
+        asked = asked[1:-1] if asked[0].text == "(" else asked
     return asked if any(each.text in COMPARISONS for each in asked) else []
 
 

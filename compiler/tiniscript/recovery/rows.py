@@ -88,6 +88,7 @@ SIGNS = r"""
 \b([FBLR])\((\d)\.([1-9]0|100)\)  |  `\1(\2, \3)`  |  1  |  TS020  |  offered  |  F(2.80) => F(2, 80)
 \bM\((-?[1-9]0|100)\.(-?[1-9]0|100)\)  |  `M(\1, \2)`  |  1  |  TS020  |  offered  |  M(-50.50) => M(-50, 50)
 \bBEEP\(([1-9])\.(\d{3,4})\)  |  `BEEP(\1, \2)`  |  1  |  TS020  |  offered  |  BEEP(1.440) => BEEP(1, 440)
+(?<=[(,\s])😎\s*$  |  `8)`  |  1  |  TS010  |  offered  |  W(😎 => W(8)
 (?<=\d)=(?=\s*\))  |  `0`  |  1  |  TS076  |  offered  |  F(2, 8=) => F(2, 80)
 (?<=\()=(?=\.\d)  |  `0`  |  1  |  TS076  |  offered  |  L(=.39, 60) => L(0.39, 60)
 (?:(?<==)|(?<=SHOW\())\s*(\d+)x(\d+)\b  |  ` \1 * \2`  |  1  |  TS008  |  offered  |  X = 3x2 => X = 3 * 2
@@ -491,6 +492,7 @@ TASK ( @num|@word? ) | TASK | 1 | TS039 | offered | TASK(1)⏎BEEP(1, 440)⏎END
 ^ LOOP UNTIL c=@cond+ ':'|'{'? $ | WHILE ( @not:c ) | 1 | TS102 | applied | repetir hasta DISTANCE < 10⏎F(1,50)⏎fin => WHILE(DISTANCE >= 10)⏎F(1,50)⏎END_WHILE
 END_LOOP UNTIL ( c=@noclose+ ) $ | IF ( $c ) ; <end> | 1 | TS064 | offered | LOOP(FOREVER)⏎F(1, 50)⏎END_LOOP UNTIL(DISTANCE < 10) => LOOP(FOREVER)⏎F(1, 50)⏎IF(DISTANCE < 10);BREAK;ENDIF;END_LOOP
 ^ LOOP ( FOREVER ) UNTIL ( c=@noclose+ ) $ | WHILE ( @not:c ) | 1 | TS102 | offered | LOOP(FOREVER) UNTIL(LIGHT_R > 800)⏎F(1, 40)⏎END_LOOP => WHILE(LIGHT_R <= 800)⏎F(1, 40)⏎END_WHILE
+^ LOOP ( n=@num ) UNTIL ( c=@noclose+ ) $ | LOOP ( $n ) ; IF ( $c ) ; BREAK ; ENDIF | 1 | TS064 | offered | LOOP(3) UNTIL(DISTANCE < 10)⏎F(1, 40)⏎END_LOOP => LOOP(3);IF(DISTANCE < 10);BREAK;ENDIF⏎F(1, 40)⏎END_LOOP
 ^ UNTIL c=@cond+ $ | IF ( $c ) ; <end> | 2 | TS064 | applied | LOOP⏎F(1, 50)⏎UNTIL DISTANCE < 10 => LOOP(FOREVER)⏎F(1, 50)⏎IF(DISTANCE < 10);BREAK;ENDIF;END_LOOP
 ^ DO '{' b=@start | LOOP ( FOREVER ) ; $b | 3 | TS064 | applied | DO { F(1, 50)⏎} WHILE(DISTANCE > 9) => LOOP(FOREVER);F(1, 50)⏎IF(DISTANCE <= 9);BREAK;ENDIF;END_LOOP
 # how often something is done, said behind it or before it

@@ -16,6 +16,7 @@ from tiniscript.syntax.devices import actuator_word
 from tiniscript.syntax.lexer import NUMBER, WORD
 
 LONG_S = 20  # so much without a unit may be a power, degrees or centimetres
+_STEPS_FROM = 10  # so many are as many centimetres
 MILLISECONDS_FROM = 100  # no wait is so many seconds
 _SIDES = ("left", "right")
 MOVES = ("F", "B", "L", "R")
@@ -381,6 +382,9 @@ class _Reader:
         order: dict[int, int] = {}
         way = UNIT_OF.get(self.command or "", "")
         for k, (value, unit) in enumerate(values):
+            is_of_scratch = unit == "steps" and self.words[0].text not in WORDS
+            if is_of_scratch and way == "CM" and isinstance(value, float) and value >= _STEPS_FROM:
+                unit, self.is_sure = WAYS[way].unit, False
             if way and unit == WAYS[way].unit:
                 if slots[0] is not None or any(each.unit is None for each in values[:k]):
                     return None

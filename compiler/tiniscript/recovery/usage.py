@@ -29,7 +29,7 @@ from tiniscript.recovery.concepts import (
     said_of,
 )
 from tiniscript.recovery.orders import block, command, made_up, orders, written
-from tiniscript.recovery.writing import shortened, without_note
+from tiniscript.recovery.writing import laid_out, shortened, without_note
 from tiniscript.syntax.free_names import in_place_of
 from tiniscript.syntax.lexer import NUMBER, QUOTES, WORD
 from tiniscript.syntax.operators import COMPARISONS
@@ -40,6 +40,7 @@ _DOTS = re.compile(r"(?:\.[ \t]*){2,}|\u2026")
 _BEFORE_DOTS = re.compile(r"(?i)\b((IF|LOOP|WHILE)[ \t]*\([^()\n]*\)|(DEF)[ \t]+(\w+))[\s;]*$")
 _BEHIND_DOTS = re.compile(r"(?i)[ \t]*\n?[ \t]*(END_?\w+|ELSE\w*)?")
 _MANY_BELOW = 6  # instructions that an example takes into a block
+_ENDS = re.compile(r"\b(?:END|FIN|FIM)")
 _IS_BLOCK = re.compile(rf"(?i)(?:{'|'.join((*BLOCK_ENDS, 'END', 'ELSE'))})\b|END_")
 _WORD = re.compile(r"\w")
 _MEMBER = re.compile(r"[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)+(?=[ \t]*\()")
@@ -68,6 +69,7 @@ def with_usage(found: Sequence[Diagnostic], source: Source, kit: Kit) -> list[Di
         top = [each for each in found if each.code in _NOT_TOP]
         teller.at_top = [source.position(each.span.start)[0] - 1 for each in top]
         found = [each for each in found if each not in top]
+    found = teller.with_name(found)
     if len(found) > 1:
         found = [*(e for e in found[:_MANY] if not teller.has_its_end(e)), *found[_MANY:]]
     told = [teller.told(each) for each in found[:_MANY]]
@@ -129,6 +131,33 @@ class _Usage:
 
     def command(self, word: str) -> str:
         return command(word, self.names)
+
+    def with_name(self, found: Sequence[Diagnostic]) -> Sequence[Diagnostic]:
+        """Return diagnostics in which the one DEF without a name has that of an unknown call."""
+        nameless = [each for each in found if each.code is codes.DEF_NEEDS_NAME]
+        if len(nameless) != 1:
+            return found
+        unknown = [each for each in found if each.code is codes.UNKNOWN_WORD
+                   and len(self.tokens(self.piece(each.span))) == 1
+                   and not self.names.is_lexical(each.values["found"])]  # fmt: skip
+        if not unknown or unknown[0].span < nameless[0].span:
+            return found
+        name = unknown[0].values["found"]
+        end = nameless[0].span.end
+        repair = Repair((Edit(Span(end, end), f" {name}"),), False)
+        said = nameless[0]._replace(values={"name": name}, repair=repair)
+        calls = [each for each in unknown if each.values["found"] == name]
+        return [said if each in nameless else each for each in found if each not in calls]
+
+    def usage(self, tokens: Sequence[Lexeme], word: str) -> str:
+        """Return how an instruction is written: a block with its end, where the text has none."""
+        if word not in BLOCK_ENDS or _ENDS.search(plain(self.source.text)):
+            return _usage(word)
+        found = lines.read(tokens, self.names).found if word == "LOOP" else []  # else a guess
+        items = (found[0].items or ()) if found else ()
+        is_head = [each.kind for each in items] == ["open"]
+        head = laid_out(found[0].tokens).strip("; ") if is_head else _usage(word)
+        return f"{head}; ...; {BLOCK_ENDS[word]}"
 
     def block(self, piece: Span) -> str:
         below = self.source.text[piece.end :].lstrip("; \t\r\n").upper()
@@ -196,8 +225,10 @@ class _Usage:
             )
             values = {"word": way, "way": "left" if way == "L" else "right", "usage": _usage(way)}
             turns = orders(tokens, self.names)
-            if [(each.is_side_free, each.samples) for each in turns] == [(True, ())]:
+            if len(turns) == 1 and turns[0].is_side_free and len(turns[0].samples) < 2:
                 values = {f"to_{side}": word + turns[0].text[1:] for side, word in _SIDES}
+            elif any(said_of(each, "half") for each in words) and not way:
+                values = {f"to_{side}": f"{word}(180 DEG, 60)" for side, word in _SIDES}
             return Diagnostic(codes.WHICH_WAY, found.span, values)
         concept = self.command(words[0] if words else "") or (self.command(meant) if meant else "")
         is_order = concept in WORDS and WORDS[concept].role not in _NO_ORDER
@@ -207,7 +238,7 @@ class _Usage:
             named = words[0] if self.command(words[0]) else meant or words[0]
             if len(tokens) == 1 and not WORDS[concept].arguments:
                 return self.translated(found.span, piece, named, concept)
-            values = {"found": named, "right": concept, "usage": _usage(concept)}
+            values = {"found": named, "right": concept, "usage": self.usage(tokens, concept)}
             return Diagnostic(codes.OTHER_LANGUAGE, found.span, values)
         signs = {each.text for each in tokens}
         if (
@@ -317,13 +348,18 @@ class _Usage:
             return found._replace(values=values, place=piece, repair=said.repair)
         known = WORDS.get(word)
         is_alone = len(self.tokens(piece)) == 1 and known is not None and bool(known.arguments)
-        example = known.example if known and is_alone else ""
-        return found._replace(values={**found.values, "example": example})
+        values = {**found.values, "example": known.example if known and is_alone else ""}
+        if "usage" in values and word in BLOCK_ENDS:
+            values["usage"] = self.usage(self.tokens(piece), word)
+        return found._replace(values=values)
 
     def question(self, found: Diagnostic) -> Diagnostic | None:
-        """A question in words, in the brackets of a header."""
+        """A question in words, in the brackets of a header; or nothing in brackets."""
         text = self.source.text
         tokens = self.tokens(self.piece(found.span))
+        if [each.text for each in tokens[1:]] == ["("] and tokens[0].text in WORDS:
+            usage = self.usage(tokens[:1], tokens[0].text)
+            return found._replace(values={**found.values, "usage": usage})
         if (said := self.foreign(found, tokens) or self.amount(found)) is not None:
             return said
         if (said := self.unit(found, tokens)) is not None:

@@ -27,6 +27,7 @@ from tiniscript.semantics.unknown_words import (
 from tiniscript.syntax import ast
 from tiniscript.syntax.free_names import numbered
 
+_PAIR = re.compile(r"(?i)\b([FBLR])[ \t]*\([ \t]*(\w+)[ \t]*(CM|DEG)\b")  # `F(20 DEG`
 _NEAR = 500  # characters behind a value for a sensor in which its use is looked for
 
 
@@ -70,6 +71,13 @@ class WrongCalls:
         said = {"found": unit.op, "right": right, "cm": right if right == "CM" else ""}
         called = "R" if right == "CM" else "F"
         said["other"] = called + self.scope.source[node.span][len(node.word) :] if fix else ""
+        others = [each for each in _PAIR.finditer(self.scope.source.text)
+                  if UNIT_OF[each[1].upper()] != each[3].upper()]  # fmt: skip
+        for one, other in (others, others[::-1]) if len(others) == 2 else ():
+            if one.start() == start and one[3].upper() != other[3].upper():
+                rest = self.scope.source[Span(unit.end, node.span.end)]
+                said["swapped"] = f"{node.word}({other[2]} {right}{rest}"
+                said["line"] = str(self.scope.source.position(other.start())[0])
         self.scope.report(codes.UNIT_PAIR, place, node.span, word=node.word, fix=fix, **said)
 
     def values(self, node: ast.Command, word: Word, said: int) -> None:

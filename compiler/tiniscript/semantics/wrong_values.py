@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 
 from tiniscript.base.source import Span
-from tiniscript.base.words import OTHER_WAY, POWER_WORDS, SENSOR_STEMS, WORDS
+from tiniscript.base.words import NOTE_WORDS, OTHER_WAY, POWER_WORDS, SENSOR_STEMS, WORDS
 from tiniscript.diagnostics import codes
 from tiniscript.recovery.amounts import is_amount, with_number
 from tiniscript.recovery.concepts import meant_by, said_of
@@ -25,6 +25,7 @@ _COMPARES = re.compile(r"\w+\s*((?:<=|>=|<>|[<>=])\s*[\w.]+)")  # `> 5` of `X > 
 _COMPARED = re.compile(r"[^<>=]{1,40}?\s*(?:<=|>=|<>|[<>=])(?=[^<>=]*$)")  # `X =` of `X = 5`
 _NEAR = 20  # characters before a name in which its word is looked for
 _TIMES_BEFORE = re.compile(r"(?i)\bLOOP[ \t]*\([ \t]*$")
+_TONE_BEFORE = re.compile(r"(?i)\bBEEP[ \t]*\([^(),]*,[ \t]*$")
 _DIGITS = "0123456789"
 _TIME_BEFORE = re.compile(r"(?i)\b(?:[FBLRW]|BEEP)[ \t]*\([ \t]*$")  # a time comes first
 
@@ -86,6 +87,8 @@ class WrongValues:
             is_said = not (near or said or which or only or is_variable)
             if is_said and meant in OTHER_WAY:
                 said = {"way": meant, "call": WORDS[meant].example}
+            elif is_said and name + "4" in NOTE_WORDS and _TONE_BEFORE.search(before):
+                said = {"pitch": NOTE_WORDS[name + "4"]}
             elif is_said and said_of(name, "colour"):
                 said = {"colour": name}
             scope.report(codes.UNKNOWN_NAME, span, None, found=name, near=near,
