@@ -41,6 +41,8 @@ _BEFORE_DOTS = re.compile(r"(?i)\b((IF|LOOP|WHILE)[ \t]*\([^()\n]*\)|(DEF)[ \t]+
 _BEHIND_DOTS = re.compile(r"(?i)[ \t]*\n?[ \t]*(END_?\w+|ELSE\w*)?")
 _MANY_BELOW = 6  # instructions that an example takes into a block
 _ENDS = re.compile(r"\b(?:END|FIN|FIM)")
+_IF_BEFORE = re.compile(r"(?i)\b(IF[ \t]*\([^\n;]*\))[\s;]*$")
+_ENDIF_BEHIND = re.compile(r"(?i)[\s;]*END_?IF\b")
 _IS_BLOCK = re.compile(rf"(?i)(?:{'|'.join((*BLOCK_ENDS, 'END', 'ELSE'))})\b|END_")
 _WORD = re.compile(r"\w")
 _MEMBER = re.compile(r"[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)+(?=[ \t]*\()")
@@ -473,6 +475,19 @@ class _Usage:
                 values |= {"line": str(inside[-1] + 1), "last": last}
         return found._replace(values=values)
 
+    def break_outside(self, found: Diagnostic) -> Diagnostic | None:
+        """A BREAK in an IF that no loop is around: what follows may be what is left out."""
+        head = _IF_BEFORE.search(self.source.text, 0, found.span.start)
+        end = _ENDIF_BEHIND.match(self.source.text, found.span.end)
+        if head is None or end is None:
+            return None
+        lines_ = [without_note(each)[0] for each in self.source.text[end.end() :].split("\n")]
+        rest = [each.strip() for line in lines_ for each in line.split(";") if each.strip()]
+        if not 0 < len(rest) <= _MANY_BELOW or any(_IS_BLOCK.match(each) for each in rest):
+            return None
+        skipped = ";".join((head[1], "S", "ELSE", *rest, BLOCK_ENDS["IF"]))
+        return found._replace(values={**found.values, "skipped": skipped})
+
     def unopened_part(self, found: Diagnostic) -> Diagnostic | None:
         """An ELSE behind the end of its block."""
         if not self.source[found.span].upper().startswith("ELSE"):
@@ -626,6 +641,7 @@ _SAYS: dict[Code, Callable[[_Usage, Diagnostic], Diagnostic | None]] = {
     codes.SETUP_UNKNOWN: _Usage.setup,
     codes.SETUP_TWICE: _Usage.begins,
     codes.NEVER_ENDS: _Usage.unended,
+    codes.BREAK_OUTSIDE: _Usage.break_outside,
     codes.NOT_OPEN: _Usage.unopened_part,
     codes.ODD_CHARACTER: _Usage.sign,
     codes.RESERVED: _Usage.name,
