@@ -52,6 +52,9 @@ def hostile(many: int) -> dict[str, bytes]:
         "decided": b"A=1;C=A/1=1" + b" AND FALSE" * (many * 4 // 5) + b";SHOW(C)",
         "not": b"A=TRUE;IF(" + b"NOT " * (2 * many) + b"A);S;ENDIF",
         "unknown names": b";".join(b"QWERTYUIO%d=Z%d" % (k, k) for k in range(many * 2 // 5)),
+        "units": b"F(20 DEG, 60);" * (many // 10),
+        "questions": b"IF(TIME>1) " * (many // 10),
+        "a call without its DEF": b"DEF;S;END_DEF\n" + b"PASO\n" * (many // 5),
         "wide header": b"IF(" + b"+".join([b"1"] * 60) + b", 2);S;ENDIF",
     }
 

@@ -81,10 +81,10 @@ def said(page: Page, text: str | re.Pattern[str]) -> None:
     expect(page.locator("#link_said")).to_contain_text(text, ignore_case=True, timeout=PATIENCE_MS)
 
 
-def connect(page: Page) -> None:
+def connect(page: Page, robot: PtyRobot) -> None:
     page.click("#side_real")
-    page.click("#link_look")
-    page.locator("#link_port option").first.wait_for(state="attached")
+    page.click("#link_look")  # the list from before the robot was known has other ports first
+    page.locator("#link_port option:first-of-type", has_text=robot.port).wait_for(state="attached")
     for _ in range(10):  # a page that was closed may not have said so: it has left after a while
         page.click("#link_connect")
         said(page, re.compile("Connected: |Another tab"))
@@ -101,7 +101,7 @@ def page(first: tuple[Pages, Page], robot: PtyRobot) -> Iterator[Page]:
     found.set_viewport_size({"width": 1366, "height": 768})
     speak(found, "en")
     found.evaluate("for (const each of document.querySelectorAll('details')) each.open = false")
-    connect(found)
+    connect(found, robot)
     yield found
     found.click("#side_real")
     if found.locator("html[data-robot=connected]").count():
@@ -115,7 +115,7 @@ def page(first: tuple[Pages, Page], robot: PtyRobot) -> Iterator[Page]:
 def own_page(pages: Pages, robot: PtyRobot) -> Page:
     """The same for one test, which does to the page what it does not outlive."""
     found = pages.open()
-    connect(found)
+    connect(found, robot)
     return found
 
 

@@ -136,10 +136,11 @@ def _parts(
         if k < len(placed) and placed[k].token.text == "|":
             begin = k + 1
             continue
+        tokens = [each.token for each in part]
         while part:
-            size = whole([each.token for each in part], names)
+            size = whole(tokens, names)
             rest = part[size:]
-            if not size and (found := _said_call([each.token for each in part], names)):
+            if not size and (found := _said_call(tokens, names)):
                 k, call = found
                 yield behind(part[:k], part[k:], call)
                 break
@@ -148,7 +149,8 @@ def _parts(
                 break
             if any(each.token.text in ASKING for each in part[:size]):
                 yield behind([], part[:size])
-            after = whole([each.token for each in rest], names)
+            tokens = tokens[size:]
+            after = whole(tokens, names)
             is_asked = rest[0].token.text in ("IF", "WHILE") and after == len(rest)
             if not after or (
                 is_asked and not _has_body(rest[0].token.text, text[rest[-1].span.end :])

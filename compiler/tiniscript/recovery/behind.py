@@ -44,11 +44,11 @@ class Placed(NamedTuple):
 
 def whole(tokens: Sequence[Lexeme], names: Names) -> int:
     """Return how many tokens begin a line as a whole instruction."""
-    first, signs = tokens[0].text, [*(each.text for each in tokens[1:]), ";"]
+    first, sign = tokens[0].text, tokens[1].text if len(tokens) > 1 else ";"
     word = first if first in WORDS else _meant_call(tokens[0], names)
-    if first in names.defs or (signs[0] == "=" and first not in WORDS):
-        if signs[0] != "=":
-            return 0 if signs[0] == "(" else 1
+    if first in names.defs or (sign == "=" and first not in WORDS):
+        if sign != "=":
+            return 0 if sign == "(" else 1
         found = lines.right(tokens, names)
         size = found.at if isinstance(found, Failure) and not found.start else 0
         is_right = size and not isinstance(lines.right(tokens[:size], names), Failure)
@@ -57,10 +57,10 @@ def whole(tokens: Sequence[Lexeme], names: Names) -> int:
     if known is None and not names.takes(word):
         return 0
     if first == "DEF":
-        return 2 if tokens[1:] and tokens[1].kind is WORD else 0
+        return 2 if len(tokens) > 1 and tokens[1].kind is WORD else 0
     if known is not None and not known.arguments:
         is_done = known.role in ("stop", "start", "break", "end", "arm")
-        return int(is_done and signs[0] not in ("(", "="))
+        return int(is_done and sign not in ("(", "="))
     end = _closed(tokens, 1)
     if end and end < len(tokens) and tokens[end].text == "UNTIL":
         return _closed(tokens, end + 1) or end

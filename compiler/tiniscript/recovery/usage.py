@@ -148,8 +148,9 @@ class _Usage:
         end = nameless[0].span.end
         repair = Repair((Edit(Span(end, end), f" {name}"),), False)
         said = nameless[0]._replace(values={"name": name}, repair=repair)
-        calls = [each for each in unknown if each.values["found"] == name]
-        return [said if each in nameless else each for each in found if each not in calls]
+        calls = {each.span for each in unknown if each.values["found"] == name}
+        left = (each for each in found if each.span not in calls)
+        return [said if each is nameless[0] else each for each in left]
 
     def usage(self, tokens: Sequence[Lexeme], word: str) -> str:
         """Return how an instruction is written: a block with its end, where the text has none."""

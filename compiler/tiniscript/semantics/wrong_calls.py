@@ -17,7 +17,7 @@ from tiniscript.diagnostics import codes
 from tiniscript.semantics import ir
 from tiniscript.semantics.comparisons import looks_ahead
 from tiniscript.semantics.counts import LONG_TIME_S, LOWEST_HERTZ, count_diagnostic
-from tiniscript.semantics.symbols import Name, Scope
+from tiniscript.semantics.symbols import ENOUGH, Name, Scope
 from tiniscript.semantics.unknown_words import (
     report_not_callable,
     report_placeholders,
@@ -70,9 +70,10 @@ class WrongCalls:
         fix = f"{self.scope.source[before]}{right}{self.scope.source[behind]}"
         said = {"found": unit.op, "right": right, "cm": right if right == "CM" else ""}
         called = "R" if right == "CM" else "F"
-        said["other"] = called + self.scope.source[node.span][len(node.word) :] if fix else ""
-        others = [each for each in _PAIR.finditer(self.scope.source.text)
-                  if UNIT_OF[each[1].upper()] != each[3].upper()]  # fmt: skip
+        said["other"] = called + self.scope.source[node.span][len(node.word) :]
+        is_early = len(self.scope.diagnostics) < ENOUGH
+        pairs = _PAIR.finditer(self.scope.source.text) if is_early else ()
+        others = [each for each in pairs if UNIT_OF[each[1].upper()] != each[3].upper()]
         for one, other in (others, others[::-1]) if len(others) == 2 else ():
             if one.start() == start and one[3].upper() != other[3].upper():
                 rest = self.scope.source[Span(unit.end, node.span.end)]
