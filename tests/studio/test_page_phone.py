@@ -115,7 +115,6 @@ def test_run_beside_a_real_robot_is_not_the_virtual_one(phone: Page) -> None:
 
 def test_a_phone_begins_with_the_pictures(pages: Pages) -> None:
     page = pages.open("start", viewport={"width": 390, "height": 844}, has_touch=True)
-    page.locator("#stop").wait_for()
     assert page.locator("#bar button:visible").evaluate_all("all => all.map(e => e.id)") == ["stop"]
     page.tap("[data-begin=dance]")
     page.locator("html[data-phase=running]").wait_for(state="attached")

@@ -24,7 +24,6 @@ START = "html[data-screen=start]"
 def start(pages: Pages) -> Page:
     """The page as somebody finds it who has never been here."""
     page = pages.open("start")
-    page.locator("html[data-screen=start]").wait_for(state="attached")
     checked(page)
     return page
 

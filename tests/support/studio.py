@@ -214,6 +214,7 @@ class Pages:
         self.watch(page)
         if view == "start":
             page.goto(address)
+            page.locator("html[data-screen=start]").wait_for(state="attached")  # with its texts
         else:
             enter(page, address)
         if view == "text":
