@@ -38,6 +38,7 @@ _SHOW_WHOLE = frozenset(each.number for each in (
 _OF_ARM = (_BRACES, _WORD_CODE, codes.HEADER_SEPARATOR.number)
 _OF_BLOCKS = frozenset((*BLOCK_ENDS, *ENDED, "ELSE", "ELSEIF", *BRACES))
 _WORD = re.compile(r"\w+")
+_MOST_LINES = {"IF": 2, "TASK": 20}  # in a block of which the last may as well be behind it
 LONGEST_BLOCK = 160  # characters of one that a message shows
 
 
@@ -47,7 +48,8 @@ class Slip(NamedTuple):
     `word`, written as in `usage`, begins the instruction, and `before` stands before the slip;
     `fix` is what the instruction becomes. Where more of its block changes, that becomes `whole`,
     which ends with `ends`. The same is wrong in `line`, or in `lines`, too, or `times` in its own.
-    `letter` stands in a number in the place of a digit.
+    `letter` stands in a number in the place of a digit; `takes` is the usage where `fix` has more
+    numbers than were written.
     """
 
     found: str
@@ -62,13 +64,14 @@ class Slip(NamedTuple):
     lines: str = ""
     times: str = ""
     letter: str = ""
+    takes: str = ""
 
 
 class Unended(NamedTuple):
     """A block that begins with `word` lacks its end, `right`, behind line `line`, `last`.
 
     With it the block is `whole`, nothing where that is long. On its own line it ends with `behind`.
-    An IF may end behind line `early`, `first`, too, where nothing says that it goes on.
+    An IF or a TASK may end behind line `early`, `first`, too, where nothing says that it goes on.
     """
 
     word: str
@@ -365,11 +368,12 @@ class _Teller:
         place = Span(self.starts[self.changes[first].first], behind)
         line = str(change.last + 1)
         slip = Unended(block.word if block else "", end, line, behind_this, whole)
-        if block and block.word == "IF" and last[0] == first + 2 and not self.found.has_sure_blocks:
-            early = self.changes[first + 1]
+        is_short = 2 <= last[0] - first <= _MOST_LINES.get(block.word if block else "", 0)
+        if is_short and not self.found.has_sure_blocks:
+            early = self.changes[last[0] - 1]
             shown = lexemes(without_note(early.text)[0])
             is_deeper = early.text[:1].isspace()
-            inside = {*texts(shown), *texts(lexemes(change.text.split("\n")[0]))}
+            inside = {*texts(shown)} - {*ENDED} | {*texts(lexemes(change.text.split("\n")[0]))}
             if not (is_deeper or inside & _OF_BLOCKS):
                 slip = slip._replace(early=str(early.last + 1), first=laid_out(shown), whole="")
         self.out.append(_Told(_UNENDED, place, slip, edit, first))
@@ -481,7 +485,10 @@ def _slip(code: str, step: Step | None, before: Sequence[Lexeme], after: Sequenc
     if code == codes.HEADER_SEPARATOR.number and not kept:
         kept = other[0].text  # `CADA VEZ QUE DISTANCE < 15 S`
     letter = _letter(was, now) if code == codes.BAD_NUMBER.number else ""
-    return Slip(was, now, kept, word, known.usage if known else "", shown, letter=letter)
+    usage = known.usage if known else ""
+    was_given = sum(each.kind is NUMBER for each in one)
+    takes = usage if sum(each.kind is NUMBER for each in other) > was_given else ""
+    return Slip(was, now, kept, word, usage, shown, letter=letter, takes=takes)
 
 
 def _with_when(tokens: Sequence[Lexeme]) -> list[Lexeme]:

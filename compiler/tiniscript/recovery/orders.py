@@ -6,7 +6,7 @@ Knows no separators of programs and no row. A sentence with a word that has no p
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import groupby
+from itertools import groupby, pairwise
 from typing import NamedTuple
 
 from tiniscript.base.words import BLOCK_ENDS, WORDS
@@ -52,6 +52,7 @@ def orders(words: Sequence[Lexeme], names: Names) -> list[Order]:
         return []
     while joined := rewrites.one_word(words, names):
         words = joined[0]  # `para adelante`
+    words = [one for one, after in pairwise([*words, made(";")]) if not _is_the(one, after)]
     asks = next((k for k, each in enumerate(words) if k and _is_if(each, names)), 0)
     if asks:
         return _asked_between(orders(words[:asks], names), words[asks:], names)
@@ -66,6 +67,12 @@ def orders(words: Sequence[Lexeme], names: Names) -> list[Order]:
             return []  # nobody knows how much of it is done so often
         found += own
     return found
+
+
+def _is_the(token: Lexeme, after: Lexeme) -> bool:
+    """Whether a word stands for no OR, but before who does it: `o robô`."""
+    is_noun = said_of(after.text, "idle") and not said_of(after.text, "the")
+    return bool(said_of(token.text, "the") and is_noun)
 
 
 def _is_if(token: Lexeme, names: Names) -> bool:

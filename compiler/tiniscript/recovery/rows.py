@@ -519,10 +519,10 @@ d=@device ( v=lit ) | &d ( TRUE ) | 1 | TS102 | applied | LED(PRENDIDO) => LED(T
 d=@device ( v=dark ) | &d ( FALSE ) | 1 | TS102 | applied | LED(OFF) => LED(FALSE)
 d=@device ( v=most ) | &d ( @most:d ) | 1 | TS102 | applied | PINZA(ABIERTA) => GRIPPER(180)
 d=@device ( v=least ) | &d ( @least:d ) | 1 | TS102 | applied | GRIPPER(CLOSED) => GRIPPER(0)
-^ v=most the|A|O? d=@device $ | &d ( @most:d ) | 1 | TS102 | applied | ABRIR PINZA => GRIPPER(180)
-^ v=least the|A|O? d=@device $ | &d ( @least:d ) | 1 | TS102 | applied | cerrar la garra => GRIPPER(0)
-^ v=on|lit the|A|O? d=@device $ | &d ( TRUE ) | 1 | TS102 | applied | prende el LED => LED(TRUE)
-^ v=off|dark the|A|O? d=@device $ | &d ( FALSE ) | 1 | TS102 | applied | apagar el foco => LED(FALSE)
+^ v=most the|A? d=@device $ | &d ( @most:d ) | 1 | TS102 | applied | ABRIR PINZA => GRIPPER(180)
+^ v=least the|A? d=@device $ | &d ( @least:d ) | 1 | TS102 | applied | cerrar la garra => GRIPPER(0)
+^ v=on|lit the|A? d=@device $ | &d ( TRUE ) | 1 | TS102 | applied | prende el LED => LED(TRUE)
+^ v=off|dark the|A? d=@device $ | &d ( FALSE ) | 1 | TS102 | applied | apagar el foco => LED(FALSE)
 # DEF and its calls
 v=@def ( ) | $v | 1 | TS028 | first | DEF GIRO()⏎R(1, 60)⏎END_DEF⏎GIRO() => DEF GIRO⏎R(1, 60)⏎END_DEF⏎GIRO
 ^ DEF n=@word ( v=@name ) ':'? | $v = 0 ; DEF $n ; | .5 | TS039 | offered | def cuadrado(lado):⏎  F(lado, 80)⏎cuadrado(2) => LADO = 0;DEF CUADRADO;⏎  F(lado, 80)⏎END_DEF⏎LADO = 2;CUADRADO

@@ -223,6 +223,10 @@ class _Usage:
             values["usage"] = _usage("LOOP")
             return Diagnostic(codes.OTHER_LANGUAGE, found.span, values, piece)
         if any(said_of(each, "turn") or said_of(each, "lap") for each in words):
+            others = {self.command(it) for it in words
+                      if self._is_order(it) and not said_of(it, "right")}  # fmt: skip
+            if others - {"L", "R", "B", "S"}:
+                return Diagnostic(codes.SEVERAL_ORDERS, piece)  # a turn alone would lose them
             way = next(
                 (self.command(each) for each in words if self.command(each) in ("L", "R")), ""
             )
@@ -265,7 +269,9 @@ class _Usage:
             return self.translated(found.span, piece, tokens[0].text, text)
         said = orders(tokens, self.names) if meant else []
         if len(said) == 1 and not said[0].is_side_free:
-            return self.translated(found.span, piece, meant, said[0].text)
+            told = self.translated(found.span, piece, meant, said[0].text)
+            takes = told.values["usage"] if said[0].samples else ""
+            return told._replace(values={**told.values, "takes": takes})
         if len(said) < 2:
             return None
         told = self.offered(codes.SEVERAL_ORDERS, piece, written(said))
@@ -617,6 +623,8 @@ class _Usage:
             if not self.command(plain(word)):
                 return Diagnostic(codes.UNKNOWN_WORD, found.span, {"found": word, "near": ""})
         right = re.sub(r"^[^A-Za-z]+|\W", "", plain(self.source[found.span]))
+        if is_order and len(self.tokens(self.piece(found.span))) > 1 and said_of(right, "filler"):
+            return self.unknown(Diagnostic(codes.UNKNOWN_WORD, found.span, {"found": right}))
         concept = self.command(right)
         if concept in WORDS and concept != right:
             values = {"found": right, "right": concept, "usage": _usage(concept)}
