@@ -139,6 +139,20 @@ def test_a_window_of_large_frames_waits_for_a_main_loop_that_writes() -> None:
     assert len(frame) * window > 1000
 
 
+@pytest.mark.sampled("line", "major", draw="what is shown", keep=2)
+@pytest.mark.parametrize("major", [2, 3])
+@pytest.mark.parametrize("line", [b"LOOP(FOREVER);SHOW(123456.789);END_LOOP", b"HELP"])
+def test_what_is_sent_faster_than_the_cable_takes_it_makes_nothing_wait(
+    line: bytes, major: int
+) -> None:
+    robot = switched_on(Esp32Robot(major=major))
+    robot.step(line + b"\r\n")
+    robot.wait(300)
+    robot.step(bytes(4))
+    robot.wait(300)
+    assert robot.is_latched
+
+
 @pytest.mark.parametrize("name", KITS)
 def test_a_stop_needs_nothing_of_ledc(name: str) -> None:
     """All motor pins are low, and LEDC's channels still run: no pin is joined to them."""

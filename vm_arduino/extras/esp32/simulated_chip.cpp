@@ -32,6 +32,8 @@ namespace {
 
 constexpr uint64_t kNever = ~uint64_t{0};
 constexpr uint32_t kEchoBeginsUs = 450;
+constexpr size_t kFifoBytes = 128;
+constexpr size_t kRingBytes = 32;
 constexpr uint32_t kNextPort = 0xc;  // from a register of pins 0 to 31 to that of the others
 constexpr int kMostHandles = 4;  // of NVS: the store's, and one that is just used
 
@@ -524,7 +526,12 @@ int HardwareSerial::available() {
   return static_cast<int>(chip.received.size());
 }
 
-int HardwareSerial::availableForWrite() { return static_cast<int>(chip.send_room - chip.sending); }
+// Behind the UART's FIFO the driver may have a ring. Then the core adds all of that ring, full or not;
+// a byte takes 32 of it, with its length and two heads, and waits where there is no room.
+int HardwareSerial::availableForWrite() {
+  const size_t waiting = chip.sending < kFifoBytes ? chip.sending : kFifoBytes;
+  return static_cast<int>(kFifoBytes - waiting + chip.send_room);
+}
 
 int HardwareSerial::read() {
   if (chip.received.empty()) return -1;
@@ -534,7 +541,8 @@ int HardwareSerial::read() {
 }
 
 size_t HardwareSerial::write(uint8_t byte) {
-  expect(availableForWrite() > 0, "a byte for a serial port that has no room");
+  const size_t room = kFifoBytes + chip.send_room / kRingBytes;
+  expect(chip.sending < room, "a byte that a serial port without room makes wait");
   chip.sent += static_cast<char>(byte);
   chip.sending++;
   return 1;

@@ -39,11 +39,14 @@ void on_error(hardwareSerial_error_t error) {
   }
 }
 
+// What is sent waits in its FIFO alone. Behind a ring the core would always say that there is room,
+// and a byte without room would make the main loop wait.
 inline void begin_port(HardwareSerial& port) { port.onReceiveError(on_error); }
 
 // The chip's own USB: it knows no errors of a line, and must not wait where nobody reads.
 template <class Port>
 void begin_port(Port& port) {
+  port.setTxBufferSize(kRoomBytes);
   port.setTxTimeoutMs(0);
 }
 
@@ -51,7 +54,6 @@ void begin_port(Port& port) {
 
 void uart_begin(uint32_t baud) {
   Serial.setRxBufferSize(kRoomBytes);
-  Serial.setTxBufferSize(kRoomBytes);
   begin_port(Serial);
   Serial.begin(baud);
 }
