@@ -371,6 +371,20 @@ def test_a_main_loop_that_goes_on_while_it_is_looked_at_is_no_stall() -> None:
     assert robot.did == []
 
 
+def test_a_page_that_is_erased_slowly_is_no_stall() -> None:
+    """Data sheets of flash chips allow 400 ms; the motors are off before anything is written."""
+    robot, session = switched_on(Esp32Robot()), computer()
+    robot.erase(150)
+    send(robot, session, "SI|W(9);F(1, 80)")
+    stored(robot, session)
+    request = session.status()
+    assert robot.until(session, request) == OK
+    assert outcome(request).values.fault == 0
+    robot.hang(150)  # with nothing to write
+    assert robot.until(session, request := session.status()) == OK
+    assert outcome(request).values.fault == STALL
+
+
 def test_a_short_stall_is_a_fault_and_no_restart() -> None:
     robot = driving()
     robot.hang(150)

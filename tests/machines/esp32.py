@@ -132,6 +132,10 @@ class Esp32Robot(HostFirmware):
         """Return how often the main loop has left its turn to the idle task."""
         return int.from_bytes(self.ask(b"M", b"")[8:12], "little")
 
+    def erase(self, milliseconds: int) -> None:
+        """Let each write of NVS stop the chip for so long."""
+        self.ask(b"Z", pack("<I", milliseconds))
+
     def fill_nvs(self, is_full: bool = True) -> None:
         self.ask(b"F", pack("<B", is_full))
 

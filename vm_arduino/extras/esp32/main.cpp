@@ -321,7 +321,8 @@ void answer_panic() {
   look();
 }
 
-// O: what a pin has, 0 to 255. F: whether NVS is full. L: LEDC does nothing any more.
+// O: what a pin has, 0 to 255. F: whether NVS is full. Z: for how many milliseconds a write of it stops
+// the chip. L: LEDC does nothing any more.
 void answer_output(RequestReader* request, Writer* answer) { answer->u8(output_of(request->u8())); }
 
 }  // namespace
@@ -382,6 +383,9 @@ int main() {
         break;
       case 'F':
         chip.is_nvs_full = request.u8() != 0;
+        break;
+      case 'Z':
+        chip.erase_ms = request.u32();
         break;
       default:
         return 1;

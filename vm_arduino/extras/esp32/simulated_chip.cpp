@@ -192,6 +192,14 @@ size_t used_entries() {
   return used;
 }
 
+// A page is erased: the chip stands still, and then the timer's task comes before the main loop.
+void erase() {
+  chip.now_us += chip.erase_ms * uint64_t{1000};
+  if (chip.erase_ms == 0 || timer.due_us > chip.now_us) return;
+  timer.due_us = chip.now_us + timer.period_us;
+  timer.callback(timer.argument);
+}
+
 // One write of NVS: an entry is as it was, as it becomes, or gone. The old one goes when the new
 // one is there, so for a moment there is room for both.
 esp_err_t put(const char* key, const std::string& value) {
@@ -202,6 +210,7 @@ esp_err_t put(const char* key, const std::string& value) {
   const auto before = chip.entries.find(key);
   if (before != chip.entries.end() && before->second == value) return ESP_OK;
   if (used_entries() + entries_of(value) > chip.nvs_room) return ESP_ERR_NVS_NOT_ENOUGH_SPACE;
+  erase();
   chip.nvs_writes++;
   if (chip.nvs_writes == chip.cut_at) {
     chip.is_off = true;

@@ -55,6 +55,7 @@ struct SimulatedChip {
   std::map<std::string, std::string> entries;  // of NVS
   uint32_t nvs_writes = 0;
   int nvs_handles = 0;  // that are open
+  uint32_t erase_ms = 0;  // how long a write stops the chip
   bool is_nvs_full = false;
   size_t nvs_room = 15 * kPageEntries;  // of 16 pages: one stays free
   uint32_t cut_at = 0;  // the power fails at this write; 0: it does not

@@ -6,7 +6,7 @@
 // program takes a few writes instead of one for each byte. NVS leaves an entry as it was when the
 // power fails, or writes it, or loses it; the store stands all three.
 //
-// A write may stop the chip for 50 ms and more, as long as a page is erased: `kWritesStopTheChip`
+// A write may stop the chip for 50 ms, and up to 400, as long as a page is erased: `kWritesStopTheChip`
 // lets the store wait until the motors are off.
 
 #ifdef ARDUINO_ARCH_ESP32
@@ -15,6 +15,7 @@
 
 #include "../../store/layout.h"
 #include "../../store/nvm.h"
+#include "watchdog.h"
 
 namespace tiniscript {
 
@@ -74,7 +75,9 @@ void load_head(uint8_t slot) {
 void write_head(uint8_t slot) {
   uint32_t head;
   __builtin_memcpy(&head, heads[slot], kBodyAt);
+  watchdog_pause(true);
   if (is_open && nvs_set_u32(handle, head_key(slot).text, head) == ESP_OK) nvs_commit(handle);
+  watchdog_pause(false);
   load_head(slot);
 }
 
@@ -91,9 +94,11 @@ void load_blob() {
 void write_blob() {
   if (!waits) return;
   waits = false;
+  watchdog_pause(true);
   if (is_open && nvs_set_blob(handle, blob_key().text, blob, its_bytes) == ESP_OK) {
     nvs_commit(handle);
   }
+  watchdog_pause(false);
   load_blob();
 }
 

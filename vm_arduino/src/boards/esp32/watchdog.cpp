@@ -33,6 +33,7 @@ RTC_NOINIT_ATTR Record last;
 // The main loop writes these, and the timer's task on the other core reads them, or the other way
 // round.
 uint32_t fed_ms;
+bool is_paused;
 bool is_hanging;
 bool has_stalled;
 
@@ -72,7 +73,8 @@ Reset cause_of(esp_reset_reason_t reason) {
 // The timer's task.
 void look(void*) {
   const uint32_t last_fed_ms = read(fed_ms);  // before the clock: it may be fed once more meanwhile
-  if (read(is_hanging) || clock_ms() - last_fed_ms <= kStallMs) return;
+  const bool is_known = read(is_paused) || read(is_hanging);
+  if (is_known || clock_ms() - last_fed_ms <= kStallMs) return;
   motors_stop();
   actuators_off(true);
   if (!firmware_runs(&last.place)) last.place = Place();
@@ -119,6 +121,11 @@ void watchdog_feed() {
     write_to(&is_hanging, false);
   }
   esp_task_wdt_reset();
+}
+
+void watchdog_pause(bool is_so) {
+  if (!is_so) write_to(&fed_ms, clock_ms());
+  write_to(&is_paused, is_so);
 }
 
 bool watchdog_has_stalled() {
