@@ -156,6 +156,19 @@ def test_who_leaves_ends_a_tethered_run_and_drives_no_more(make: Make) -> None:
     assert uploaded(robot, ends[1:], other) == "OK"
 
 
+def test_who_comes_at_once_when_another_one_leaves_is_not_taken_for_that_one() -> None:
+    """The task of a radio may wait in a write meanwhile."""
+    robot = booted()
+    driver, other = session(1, robot), session(2, robot)
+    end = SerialPort(robot)
+    assert uploaded(robot, [(end, driver)], driver) == "OK"
+    end.leave()
+    ends: Ends = [(SerialPort(robot), other)]
+    talk(robot, ends, 5)
+    assert happened(robot) == ["MOTORS 80 80", "MOTORS 0 0"]
+    assert uploaded(robot, ends, other) == "OK"
+
+
 @pytest.mark.parametrize("make", RADIOS)
 def test_who_leaves_ends_nothing_of_others(make: Make) -> None:
     robot = booted()

@@ -52,6 +52,7 @@ std::vector<std::string> notified;
 
 // the serial port
 bool has_port_client;
+esp_spp_cb_t on_port;
 std::deque<uint8_t> port_in;
 std::string port_out;
 
@@ -157,8 +158,13 @@ std::vector<std::string> low_energy_notified() {
 }
 
 void serial_port_connect(bool is_there) {
-  const Lock lock(guard);
-  has_port_client = is_there;
+  esp_spp_cb_t tell;
+  {
+    const Lock lock(guard);
+    has_port_client = is_there;
+    tell = on_port;
+  }
+  if (tell != nullptr) tell(is_there ? ESP_SPP_SRV_OPEN_EVT : ESP_SPP_CLOSE_EVT, nullptr);
 }
 
 void serial_port_write(const std::string& bytes) {
@@ -219,6 +225,12 @@ bool BluetoothSerial::begin(String localName, bool) {
 int BluetoothSerial::available() {
   const Lock lock(guard);
   return static_cast<int>(port_in.size());
+}
+
+esp_err_t BluetoothSerial::register_callback(esp_spp_cb_t callback) {
+  const Lock lock(guard);
+  on_port = callback;
+  return ESP_OK;
 }
 
 bool BluetoothSerial::hasClient() {

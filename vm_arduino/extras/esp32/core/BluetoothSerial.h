@@ -5,6 +5,16 @@
 
 #include "Arduino.h"
 
+// components/bt/host/bluedroid/api/include/api/esp_spp_api.h
+typedef enum {
+  ESP_SPP_CLOSE_EVT = 27,
+  ESP_SPP_SRV_OPEN_EVT = 34,
+} esp_spp_cb_event_t;
+typedef union {
+  int unused;
+} esp_spp_cb_param_t;
+typedef void (*esp_spp_cb_t)(esp_spp_cb_event_t event, esp_spp_cb_param_t* param);
+
 class BluetoothSerial {
  public:
 #if ESP_ARDUINO_VERSION_MAJOR >= 3
@@ -14,6 +24,7 @@ class BluetoothSerial {
 #endif
   int available();
   bool hasClient();
+  esp_err_t register_callback(esp_spp_cb_t callback);
   int read();
   size_t write(const uint8_t* buffer, size_t size);
 };

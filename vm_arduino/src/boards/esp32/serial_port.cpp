@@ -15,17 +15,30 @@ namespace {
 
 BluetoothSerial port;
 bool has_client;
+Tally leavings;  // the core's task counts them
+
+// Of a second client, which the core sends away, the first one stays.
+void on_event(esp_spp_cb_event_t event, esp_spp_cb_param_t*) {
+  if (event == ESP_SPP_CLOSE_EVT && !port.hasClient()) leavings.add();
+}
 
 }  // namespace
 
-bool serial_port_begin() { return port.begin(radio_name().name); }
+bool serial_port_begin() {
+  port.register_callback(on_event);
+  return port.begin(radio_name().name);
+}
 
-// `write` waits while the peer takes nothing: this task alone does.
+// `write` waits while the peer takes nothing, up to a second: this task alone does. The next client
+// may be there by then; what it has sent is none of the one before.
 void serial_port_turn() {
   Pipe& pipe = radio_pipe(Transport::kSerialPort);
+  int left = port.available();
+  const bool has_left = leavings.take();
   const bool is_there = port.hasClient();
-  if (is_there && !has_client) pipe.begin();
-  for (int left = port.available(); left > 0; left--) pipe.put(static_cast<uint8_t>(port.read()));
+  if (has_client && has_left && is_there) pipe.part();
+  if (is_there && (has_left || !has_client)) pipe.begin();
+  for (; left > 0; left--) pipe.put(static_cast<uint8_t>(port.read()));
   if (!is_there && has_client) pipe.part();
   has_client = is_there;
   uint8_t bytes[64];
