@@ -29,6 +29,9 @@ class ByLanguage(dict[str, T]):
     def __missing__(self, language: str) -> T:
         return _named(self.get(SOURCE) or next(iter(self.values())), language)
 
+    def __repr__(self) -> str:
+        return f"ByLanguage({super().__repr__()})"
+
 
 def _named(name: T, language: str) -> T:
     if isinstance(name, dict):
