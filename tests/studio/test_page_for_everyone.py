@@ -19,7 +19,7 @@ from tiniscript.studio import serving
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page, Playwright
 
-SCREENS = ((1366, 768), (1024, 600), (390, 844))
+SCREENS = ((1366, 768), (1024, 600), (390, 844), (844, 390))
 WRONG = "SI|" + "F(-2, 80);\nIF(DISTANCE < 10;\n" * 6
 # What can be pressed or chosen, and whether another such thing or the edge of the screen cuts it.
 LOOK = """() => {

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.support.studio import Pages, axe, checked, noted, speak, write
+from tests.support.studio import Pages, axe, checked, noted, speak, turn, write
 from tiniscript.lessons import catalogue
 
 if TYPE_CHECKING:
@@ -152,6 +152,31 @@ def test_a_lesson_is_one_step_at_a_time(page: Page) -> None:
     assert steps.first.get_attribute("aria-current") == "step"
     label = page.locator("#world option:checked").text_content()
     assert label == "Lesson 3"
+
+
+# How high a page of a step is at least, by the size of the screen.
+PAGES = {(1366, 768): 500, (1024, 600): 140, (390, 844): 200, (844, 390): 150}
+
+
+@pytest.mark.parametrize("size", PAGES, ids=lambda size: "x".join(map(str, size)))
+def test_a_step_and_the_robot_are_seen_at_once(page: Page, size: tuple[int, int]) -> None:
+    """On a laptop each step is seen whole, elsewhere six lines of it."""
+    page.set_viewport_size({"width": size[0], "height": size[1]})
+    turn(page, "robot")
+    for number in range(1, len(FOLDERS) + 1) if size[0] == 1366 else (1,):
+        page.select_option("#lesson", str(number))
+        page.locator(f"#lesson_page[data-lesson='{number}']").wait_for()
+        for button in page.locator("#lesson_steps button").all():
+            button.click()
+            seen, whole = page.evaluate(
+                "(({clientHeight, scrollHeight}) => [clientHeight, scrollHeight])"
+                "(document.querySelector('#lesson_page'))"
+            )
+            assert seen >= min(PAGES[size], whole), (number, button.inner_text())
+            assert size[0] != 1366 or seen == whole
+    box = page.locator("#arena").bounding_box()
+    assert box and box["height"] >= 110 and box["y"] + box["height"] <= size[1]
+    page.set_viewport_size({"width": 1366, "height": 768})
 
 
 def test_a_verdict_is_of_the_program_that_is_there(page: Page) -> None:

@@ -13,7 +13,7 @@ from tools.builds.screens import BESIDE, SCREENS
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Route
 
-SIZES = ((1366, 768), (390, 844))
+SIZES = ((1366, 768), (390, 844), (844, 390))
 WINDOWS = (("#class_come", "#big_code"), ("#wall .see >> nth=0", "#big_pupil"),
            ("#class_settings", "#class_window"))  # fmt: skip
 WANTS = {"do": "here", "text": "SI|F(1, 50)", "robot": "tinibot", "lessons": [], "wants": True,

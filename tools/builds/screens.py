@@ -1,6 +1,6 @@
 """Pictures of each screen of the studio, to look at: `python -m tools.builds.screens FOLDER`.
 
-Three sizes, each language, light and dark. They show what is wrong; nobody keeps them.
+Four sizes, each language, light and dark. They show what is wrong; nobody keeps them.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from tiniscript.base.languages import languages
 if TYPE_CHECKING:
     from playwright.sync_api import Page
 
-SIZES = {"laptop": (1366, 768), "small": (1024, 600), "phone": (390, 844)}
+SIZES = {"laptop": (1366, 768), "small": (1024, 600), "phone": (390, 844), "lying": (844, 390)}
 # Beside the program; on a phone a screen of their own.
 BESIDE = {"driven", "task", "plot", "drawing", "lesson", "real", "teacher", "programs"}
 WRONG = "SI|F(-2, 80)\nB(1, 80)\n"
