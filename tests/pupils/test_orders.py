@@ -26,6 +26,7 @@ def said(program: str) -> list[tuple[str, str]]:
         ("avanza 1 segundo gira 2 segundos a la derecha", "F(1, 80);R(2, 80)", "80 %"),
         ("avanza 2 s al 50% y despu\u00e9s retrocede 1 s al 30%", "F(2, 50);B(1, 30)", ""),
         ("turn right for half a second and go back 2 seconds", "R(0.5, 80);B(2, 80)", "80 %"),
+        ("d\u00ea r\u00e9 por 2 segundos e vire \u00e0 esquerda", "B(2, 80);L(2, 80)", "2 s, 80 %"),
         (
             "o rob\u00f4 anda pra frente at\u00e9 a parede e depois o robo vira pra direita",
             "F(FOREVER, 80) UNTIL(DISTANCE < 10);R(2, 80)",
@@ -102,6 +103,10 @@ def test_a_turn_without_a_way_is_asked_for() -> None:
          "IF(DISTANCE < 10);B(1, 80);R(2, 80);ENDIF"),
         ("si no hay una pared avanza 1 segundo si no gira a la derecha",
          "IF(DISTANCE > 10);F(1, 80);ELSE;R(2, 80);ENDIF"),
+        ("se tiver uma parede na frente, para e apita",
+         "IF(DISTANCE < 10);S;BEEP(1, 440);ENDIF"),
+        ("se a dist\u00e2ncia for maior que 20, vai pra frente",
+         "IF(DISTANCE > 20);F(2, 80);ENDIF"),
         ("if there is a wall ahead turn right for 1 second", "IF(DISTANCE < 10);R(1, 80);ENDIF"),
         ("mientras no hay pared avanza 0.5 segundos",
          "WHILE(DISTANCE > 10);F(0.5, 80);END_WHILE"),

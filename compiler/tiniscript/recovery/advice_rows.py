@@ -44,7 +44,7 @@ ADVICE = """
 ^ @after <again> POR? n=@often times $ | TS130 | right=; often={all} | F(2, 80)⏎lo mismo 3 veces => often=LOOP(3);F(2, 80);END_LOOP
 ^ @after <again> POR? n=@often times extra $ | TS130 | right=; often={more} | F(2, 80)⏎otra vez 2 veces mas => often=LOOP(3);F(2, 80);END_LOOP
 ^ @after|@later <rest> etc @any* $ | TS131 | found={said}; all={often?} | F(2, 80); R(1, 60), etc. => all=LOOP(4);F(2, 80);R(1, 60);END_LOOP
-^ @after GO|GOTO|VOLVER|VUELVE|REGRESA|REGRESAR TO|A|AL START|INICIO|PRINCIPIO|COMIENZO $ | TS131 | found={said}; endless={endless} | F(1, 80)⏎GO TO START => endless=LOOP(FOREVER);F(1, 80);END_LOOP
+^ @after goback to|AL|TO the|A? beginning $ | TS131 | found={said}; endless={endless} | F(1, 80)⏎GO TO START => endless=LOOP(FOREVER);F(1, 80);END_LOOP
 ^ @after|@later <rest> ASI|SO SUCESIVAMENTE|ON|FORTH|SIEMPRE|HASTA|VARIAS|MUCHAS|TODO @any* $ | TS131 | found={said}; all={often?} | F(2, 80)⏎y asi siempre => all=LOOP(4);F(2, 80);END_LOOP
 ^ @after|@later ,? Y|E SIGUE|MAS|TODO ASI|ESO? $ | TS131 | found={said}; all={often?} | F(2, 80)⏎y todo eso => found=y todo eso
 ^ @after|@later ,? @dots+ $ | TS131 | found={said}; all={often?} | F(2, 80)⏎R(1, 60) ... => all=LOOP(4);F(2, 80);R(1, 60);END_LOOP
@@ -103,8 +103,8 @@ ADVICE = """
 ^ c=M , n=@num $ | TS085 | seconds={n}; waiting={c};W({n});S | M(50,50), 2 => waiting=M(50,50);W(2);S
 ^ c=S|STOP n=@num $ | TS013 | fix={paused} | STOP 2 => fix=STOP;W(2)
 ^ c=@cmd (? n=@num )? $ | TS085 | times={few}; often={loop} | F(2,80)(3) => often=LOOP(3);F(2,80);END_LOOP
-^ <does> @any* OTRA|DE|ONCE|VEZ VEZ|NUEVO|MORE|MAS @any* $ | TS085 | again=LOOP(2);{c};END_LOOP | F(1, 80) otra vez => again=LOOP(2);F(1, 80);END_LOOP
-^ <does> @any* AGAIN|NUEVAMENTE|REPITO|REPETIDO @any* $ | TS085 | again=LOOP(2);{c};END_LOOP | F(1, 80) again => again=LOOP(2);F(1, 80);END_LOOP
+^ <does> @any* OTRA|OUTRA|UMA|DE|ONCE|VEZ VEZ|NUEVO|NOVO|MORE|MAS @any* $ | TS085 | again=LOOP(2);{c};END_LOOP | F(1, 80) otra vez => again=LOOP(2);F(1, 80);END_LOOP
+^ <does> @any* AGAIN|NUEVAMENTE|NOVAMENTE|REPITO|REPETIDO @any* $ | TS085 | again=LOOP(2);{c};END_LOOP | F(1, 80) again => again=LOOP(2);F(1, 80);END_LOOP
 ^ c=@move|W|M PARA? FOREVER|ETERNAMENTE $ | TS085 | endless=LOOP(FOREVER);{c};END_LOOP | F(1, 80) siempre => endless=LOOP(FOREVER);F(1, 80);END_LOOP
 ^ c=@move|W|M @any* SIN|TODO|ALL PARAR|FIN|DETENERSE|DETENER|STOPPING|EL|THE @any* $ | TS085 | endless=LOOP(FOREVER);{c};END_LOOP | F(1, 80) sin parar => endless=LOOP(FOREVER);F(1, 80);END_LOOP
 ^ @none TASK s=@num :|.|-|=|)? r=@any+ $ | TS044 | found={s}; fix=TASK;{r};END_TASK | TASK 1: F(5, 60) => fix=TASK;F(5, 60);END_TASK

@@ -215,7 +215,7 @@ class Behind:
         is_set = rf"(?i)\b{text}\s*="  # a variable that is told at its own line
         if known is not None and known.is_instruction and not re.search(is_set, self.text):
             found += ["@call", "@order"] if known.is_call else ["@order"]
-        found += ["@ask"] if text in ASKING else []
+        found += ["@ask"] if self.means(text) in ASKING else []
         found += ["@quote"] if text in QUOTES and text != "`" else []
         found += ["@mark"] if text in MARKS else []
         found += ["@dots"] if text == "…" or (text == "." and "." in (before, after)) else []
@@ -250,7 +250,7 @@ class Behind:
             return False
         said = said_of(text, "power")
         is_fast = said[:1] == ("100",)
-        is_changed = self.row[k - 1].text in ("MAS", "MORE") if k else False
+        is_changed = bool(k and said_of(self.row[k - 1].text, "extra"))
         is_other = (int(power) >= _HALF) is not is_fast
         return said_of(text, "pace") != () or bool(said and (is_changed or is_other))
 

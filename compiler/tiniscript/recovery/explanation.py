@@ -466,6 +466,8 @@ def _slip(code: str, step: Step | None, before: Sequence[Lexeme], after: Sequenc
     shown = shown or laid_out(after)
     is_all = code == codes.REPEATED.number or (code == codes.OTHER_SIGN.number and not right)
     is_found = bool(found) or code == codes.OTHER_ASSIGNMENT.number  # else a sign is missing
+    if code == _WORD_CODE and right:  # `oi robô, anda`
+        found = [each for each in found if meant_by(each.text) == right[0].text] or found
     was = _written(one if is_all or not is_found else found)
     if is_note:
         was = re.match(r"\w+|\W+", was).group().strip()  # type: ignore[union-attr]

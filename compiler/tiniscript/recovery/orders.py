@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from itertools import groupby, pairwise
 from typing import NamedTuple
 
-from tiniscript.base.words import BLOCK_ENDS, WORDS
+from tiniscript.base.words import BLOCK_ENDS, NOTE_WORDS, WORDS
 from tiniscript.recovery import lines, rewrites
 from tiniscript.recovery.concepts import CALLED, NEAR, Lexeme, Names, made, said_of
 from tiniscript.recovery.slots import MOVES, Filled, filled
@@ -104,6 +104,8 @@ def _orders(words: list[Lexeme], names: Names) -> list[Order]:
         return [whole]
     for k in range(2, len(words) - 1):
         first = _order(words[:k], names) if _begins(words[k], names) else None
+        if first and first.word == "BEEP" and words[k].text in NOTE_WORDS:
+            return []
         rest = _orders(words[k:], names) if first and len(first.samples) < 2 else []
         if first and rest:
             return [first, *rest]
@@ -170,7 +172,8 @@ def _near(words: Sequence[Lexeme], names: Names, sign: str) -> tuple[str, tuple[
     is_ahead = not any(
         command(each.text, names) in _ASIDE or said_of(each.text, "light") for each in words
     )
-    if not (numbers or is_wall) or not is_ahead or len(numbers) > 1:
+    is_other = any(said_of(each.text, "more") for each in words)
+    if not (numbers or is_wall) or not is_ahead or is_other or len(numbers) > 1:
         return "", ()
     far = numbers[0] if numbers else _NEAR_CM
     return f"DISTANCE {sign} {far}", () if numbers else (f"{far} cm",)
@@ -191,7 +194,8 @@ def block(tokens: Sequence[Lexeme], names: Names, is_open: bool) -> str:
     arm = next((k for k in range(1, len(texts)) if texts[k] in ("ELSE", "SINO")
                 or texts[k : k + 2] == ["SI", "NO"]), len(texts))  # fmt: skip
     other = orders(tokens[arm + 1 + (texts[arm : arm + 1] == ["SI"]) :], names)
-    for k in range(2, arm):
+    comma = next((k for k in range(2, arm) if texts[k] == "," and word != "LOOP"), 0)
+    for k in [comma] if comma else range(2, arm):
         header = _head(word, tokens[1:k], names)
         body = orders(tokens[k:arm], names) if header else []
         if header and not body and _begins(tokens[k], names):
@@ -200,12 +204,20 @@ def block(tokens: Sequence[Lexeme], names: Names, is_open: bool) -> str:
             continue
         if word != "LOOP" and command(texts[k], names) in _SIDES:
             return ""  # where the wall is, or where to go
+        place = next((j for j in range(k, arm) if not said_of(texts[j], "filler")), k)
+        if said_of(texts[place], "front") and place + 1 < arm and not _joined(texts, place):
+            continue  # `uma parede na frente, para`
         is_mixed = any(said_of(each, "then") and not _is_and(each) for each in texts[k:])
         if (word == "LOOP" and is_mixed) or (arm < len(texts) and not other):
             return ""
         parts = [header, written(body), *(["ELSE", written(other)] if other else [])]
         return ";".join(parts if is_open else [*parts, BLOCK_ENDS[word]])
     return ""
+
+
+def _joined(texts: Sequence[str], k: int) -> bool:
+    """Whether a word and the one before are one command: `pra frente`."""
+    return Names.is_lexical("_".join(texts[k - 1 : k + 1]))
 
 
 def _is_and(word: str) -> bool:

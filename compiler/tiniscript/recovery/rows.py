@@ -240,7 +240,7 @@ is? less than? or equal QUE|A|TO? | <= | 1 | TS010 | first | IF(DISTANCE es meno
 is? more or? equal QUE|A|TO? | >= | 1 | TS010 | first | IF(DISTANCE mayor igual 10);F(1,50);ENDIF => IF(DISTANCE >= 10);F(1,50);ENDIF
 is? A? less than|A? | < | 1 | TS010 | first | SI|IF(DISTANCE menor 10);S;ENDIF => SI|IF(DISTANCE < 10);S;ENDIF
 is? A? more than|A? | > | 1 | TS010 | first | IF DISTANCE IS BIGGER THAN 20 F(1,50) ENDIF => IF(DISTANCE > 20);F(1, 50);ENDIF
-is? MAS|MORE than | > | 1 | TS010 | first | IF(DISTANCE es mas de 10);S;ENDIF => IF(DISTANCE > 10);S;ENDIF
+is? extra than | > | 1 | TS010 | first | IF(DISTANCE es mas de 10);S;ENDIF => IF(DISTANCE > 10);S;ENDIF
 is? different than|A? | <> | 1 | TS010 | first | IF(DISTANCE distinto de 10);S;ENDIF => IF(DISTANCE <> 10);S;ENDIF
 no is|equal A|TO|IGUAL? A? | <> | 1 | TS010 | first | IF(DISTANCE NO ES 10);F(1,50);ENDIF => IF(DISTANCE <> 10);F(1,50);ENDIF
 no < | >= | 1 | TS010 | first | IF(DISTANCE NOT < 10);S;ENDIF => IF(DISTANCE >= 10);S;ENDIF
@@ -256,7 +256,7 @@ o==|(|,|+|-|*|<|> average ( a=@num|@val , b=@num|@val ) | $o ( $a + $b ) / 2 | 1
 o==|(|,|+|-|*|<|> average ( a=@num|@val , b=@num|@val , c=@num|@val ) | $o ( $a + $b + $c ) / 3 | 1 | TS010 | offered | SHOW(AVERAGE(LIGHT_L, LIGHT_R, 5)) => SHOW((LIGHT_L + LIGHT_R + 5) / 3)
 a=@num v=@val | @by:a:v | 1 | TS048 | offered | VEL = 30⏎F(2, 2VEL) => VEL = 30⏎F(2, 2 * VEL)
 a=@num|@val MOD b=@num|@val | $a % $b | 1 | TS010 | first | X = 7⏎X = X MOD 2 => X = 7⏎X = X % 2
-a=@num|@val MAS b=@num|@val | $a + $b | 1 | TS010 | first | X = 5 mas 3⏎SHOW(X) => X = 5 + 3⏎SHOW(X)
+a=@num|@val plus b=@num|@val | $a + $b | 1 | TS010 | first | X = 5 mas 3⏎SHOW(X) => X = 5 + 3⏎SHOW(X)
 NO|NAO l=@val | NOT $l | 1 | TS010 | applied | IF(NO DISTANCE < 10)⏎F(1,50)⏎ENDIF => IF(NOT DISTANCE < 10)⏎F(1,50)⏎ENDIF
 l=@val s=<|>|<=|>= a=@num o=AND|OR t=<|>|<=|>= b=@num | $l $s $a &o $l $t $b | 1 | TS018 | offered | IF(DISTANCE < 10 OR < 5);S;ENDIF => IF(DISTANCE < 10 OR DISTANCE < 5);S;ENDIF
 l=@val = a=@num or b=@num | $l = $a OR $l = $b | 1 | TS018 | offered | IF(DISTANCE = 10 O 20)⏎S⏎ENDIF => IF(DISTANCE = 10 OR DISTANCE = 20)⏎S⏎ENDIF
@@ -287,6 +287,7 @@ v=@val CM|EN? CM | $v | 2 | TS049 | applied | SHOW DISTANCE cm => SHOW(DISTANCE)
 SHOW ( n=@num M|METRO|METROS|METERS|METER|@unit ) | SHOW ( $n ) | 1 | TS049 | applied | SHOW(2 M) => SHOW(2)
 ROUND ( v=@argt+ , n=@num DECIMALES|DECIMALS|PLACES|CIFRAS ) | ROUND ( $v , $n ) | 1 | TS049 | applied | SHOW(ROUND(DISTANCE, 1 decimales)) => SHOW(ROUND(DISTANCE, 1))
 v=@val seconds|@unit e=,|) | $v $e | 1 | TS049 | applied | SHOW(distancia cm) => SHOW(DISTANCE)
+h=IF|WHILE|UNTIL|WHEN|ELSEIF|SHOW b=(? A v=@val | &h $b &v | 1 | TS102 | first | IF(a distância < 10);S;ENDIF => IF(DISTANCE < 10);S;ENDIF
 the v=@val | $v | 1 | TS102 | first | lee la distancia => DISTANCE
 # variables
 v=@name = a=@num|@val b=@start | $v = $a ; $b | 1 | TS013 | applied | vel = 50 F(2, vel) => VEL = 50;F(2, VEL)

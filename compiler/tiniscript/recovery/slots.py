@@ -234,7 +234,7 @@ class _Reader:
         elif self.command in MOVES and word in _LETTERS and is_before_number:
             self.mark = _LETTERS[word]
         elif said_of(word, "turn"):
-            if self.command == "F" and self.values:
+            if self.command in ("F", "B") and self.values:
                 return None  # another order
             self.is_turn = True
             self.command = None if self.command == "F" else self.command

@@ -24,6 +24,7 @@ from tiniscript.recovery.concepts import (
     UNITS,
     Lexeme,
     Names,
+    concept_of,
     lexemes,
     plain,
     said_of,
@@ -58,7 +59,6 @@ _OF_ITS_WORD = (codes.UNKNOWN_WORD, codes.WHICH_WAY)  # whose units say nothing 
 _TAUGHT = ("SALTO", "PASO", "BAILE", "JUMP", "STEP", "DANCE")  # by the poster and the lessons
 _NO_NAMES = ("RETURN", "CONTINUE", "CONTINUA", "HOLA", "HELLO", "IDEM", "ETC", "NULL")
 _NO_ORDER = ("value", "operator", "function", "setup", "forever")
-_BUTTON = ("BUTTON", "BOTON")
 _SIDES = (("left", "L"), ("right", "R"))
 _INPUT = frozenset(("INPUT", "READ", "SCAN", "SCANF", "PROMPT", "LEER", "PREGUNTAR"))
 
@@ -234,8 +234,8 @@ class _Usage:
             turns = orders(tokens, self.names)
             if len(turns) == 1 and turns[0].is_side_free and len(turns[0].samples) < 2:
                 values = {f"to_{side}": word + turns[0].text[1:] for side, word in _SIDES}
-            elif any(said_of(each, "half") for each in words) and not way:
-                values = {f"to_{side}": f"{word}(180 DEG, 60)" for side, word in _SIDES}
+            elif not way and (angle := next((its for its in map(_angle, words) if its), "")):
+                values = {f"to_{side}": f"{word}({angle} DEG, 60)" for side, word in _SIDES}
             return Diagnostic(codes.WHICH_WAY, found.span, values)
         concept = self.command(words[0] if words else "") or (self.command(meant) if meant else "")
         is_order = concept in WORDS and WORDS[concept].role not in _NO_ORDER
@@ -332,7 +332,7 @@ class _Usage:
 
     def is_button(self, word: str) -> bool:
         is_missing = "BUTTON" not in self.names.sensors
-        return is_missing and (self.command(word) == "BUTTON" or word in _BUTTON)
+        return is_missing and concept_of(word) == "BUTTON"
 
     def is_value(self, token: Lexeme) -> bool:
         text = token.text
@@ -424,7 +424,7 @@ class _Usage:
     def setup(self, found: Diagnostic) -> Diagnostic | None:
         """Another word before the bar: one that says the button, or looks like it."""
         word = found.values["found"]
-        is_button = word in ("S8", "B") or word in _BUTTON or self.command(word) == "BUTTON"
+        is_button = word in ("S8", "B") or concept_of(word) == "BUTTON"
         return found._replace(values={**found.values, "right": "SB|"}) if is_button else None
 
     def begins(self, found: Diagnostic) -> Diagnostic:
@@ -623,7 +623,7 @@ class _Usage:
             if not self.command(plain(word)):
                 return Diagnostic(codes.UNKNOWN_WORD, found.span, {"found": word, "near": ""})
         right = re.sub(r"^[^A-Za-z]+|\W", "", plain(self.source[found.span]))
-        if is_order and len(self.tokens(self.piece(found.span))) > 1 and said_of(right, "filler"):
+        if is_order and (said_of(right, "filler") or self.is_button(right)):
             return self.unknown(Diagnostic(codes.UNKNOWN_WORD, found.span, {"found": right}))
         concept = self.command(right)
         if concept in WORDS and concept != right:
@@ -633,6 +633,11 @@ class _Usage:
         if right in WORDS:
             values = {"word": right, "right": right}
         return found._replace(values=values) if right else None
+
+
+def _angle(word: str) -> str:
+    """Return the degrees of a half turn, or of a whole one."""
+    return "180" if said_of(word, "half") else "360" if said_of(word, "whole") else ""
 
 
 def _usage(word: str) -> str:
