@@ -22,8 +22,8 @@ from tiniscript.bytecode.image import (
     sealed,
     unpack,
 )
-from tiniscript.bytecode.opcodes import ISA_MINOR
-from tiniscript.bytecode.verify import Refused, check, loaded
+from tiniscript.bytecode.opcodes import FAULTS, ISA_MINOR
+from tiniscript.bytecode.verify import RULES, Refused, check, loaded
 
 KIT = robots.load("tinibot").kit
 CODE = bytes.fromhex("448c50")
@@ -209,6 +209,18 @@ def test_the_spec_has_the_devices_of_every_robot() -> None:
         for line, number in zip(kit.lines(), kit.hashes, strict=True):
             assert f"| `{line.rstrip()}` | `{number:04x}` |" in text
         assert f"`{name}`" in text
+
+
+def test_the_spec_promises_no_number_that_is_taken() -> None:
+    text = SPEC.read_text(encoding="utf-8")
+    later = text[text.index("### Room to grow") :]
+    promised = dict(re.findall(r"(NO_PLACE|LIST_FULL|NO_ROOM) \((\d+)\)", later))
+    assert int(promised.pop("NO_ROOM")) not in {number for number, _ in REFUSALS.values()}
+    assert not {int(each) for each in promised.values()} & {number for number, *_ in FAULTS}
+    assert len(promised) == 2
+    first = re.search(r"rules from (\d+) on", later)
+    assert first
+    assert int(first[1]) == 1 + max(number for number, *_ in RULES.values())
 
 
 def test_the_spec_has_a_whole_image() -> None:
