@@ -1,4 +1,5 @@
-"""Programs with TASK and WHEN: the compiler and the machine agree with the oracle.
+"""Programs with TASK and WHEN: the compiler, the machine and that of the specification agree with
+the oracle.
 
 `python -m tests.oracle.test_tasks 100000` compares more programs than the tests, and the machine in
 C++ as well.
@@ -15,10 +16,12 @@ import pytest
 
 from tests.machines import MACHINES, Machine, Senses
 from tests.machines.python import run_python
+from tests.oracle import task_machine
 from tests.oracle.interpreter import PAPER_KIT, Mistake, run
 from tests.oracle.task_programs import task_program
 from tiniscript import compile_text, robots
 from tiniscript.base.source import Source
+from tiniscript.bytecode.image import unpack
 from tiniscript.syntax.formatter import formatted
 
 KIT = robots.load("tinibot").kit
@@ -36,6 +39,8 @@ def check_program(seed: int, machines: Sequence[Machine] = (run_python,)) -> str
         for machine in machines:
             got = machine(compiled.image, KIT, Senses(senses, MAX_MS))
             assert got == want, f"seed {seed}, optimize {optimize}:\n{text}"
+        code = unpack(compiled.image).code
+        assert task_machine.trace(code, PAPER_KIT, senses, MAX_MS, 1, 20_000) == want, text
     laid_out = formatted(Source(text))
     assert compile_text(laid_out, KIT).image == compile_text(text, KIT).image, f"seed {seed}"
     assert formatted(Source(laid_out)) == laid_out, f"seed {seed}"
