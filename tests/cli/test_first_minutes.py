@@ -329,7 +329,7 @@ def test_the_mark_of_live_reaches_nobody(capsys: pytest.CaptureFixture[str]) -> 
         return ShowEvent(value, 0)
 
     known = Known(robots.load("tinibot").kit)
-    for end in ("STOPPED", "ENDED", "DONE"):
+    for end in ("STOPPED", "DONE"):
         catch = Catch(("X", "Y"), known, EventPrinter("en"), says_done=False)
         assert not catch.hold(show(7))
         told: list[Event] = [show(MARK), show(5000), MissedEvent(1)]

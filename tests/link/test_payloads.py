@@ -7,12 +7,10 @@ from typing import get_args
 import pytest
 
 from tests.support.link_events import EVENTS as SOME_EVENTS
-from tests.support.link_events import QUIET
 from tiniscript.link.messages import FIRST_EVENT, MESSAGES, Field, Malformed, Message
 from tiniscript.link.outcomes import (
     ALL_EVENTS,
     EchoEvent,
-    EndedEvent,
     Event,
     JoinedEvent,
     LeftEvent,
@@ -50,16 +48,13 @@ def test_an_event_has_the_fields_of_the_table_and_its_name() -> None:
 OTHERS: tuple[Event, ...] = (
     TextEvent(b"hello"), MissedEvent(3), EchoEvent(), JoinedEvent(b"live"), LeftEvent(b"live"),
     PlaceEvent(255, 2**32 - 1, -1), RestartedEvent(),
-    EndedEvent(QUIET._replace(state=3, fault_program=2**32 - 1)),
 )  # fmt: skip
 
 
 def test_every_event_comes_through_a_shared_port() -> None:
     """Its fields are written as JSON and read again."""
     told = (*SOME_EVENTS, *OTHERS)
-    assert {type(each) for each in told} == set(get_args(Event)) == {
-        *ALL_EVENTS.values(), EndedEvent
-    }  # fmt: skip
+    assert {type(each) for each in told} == set(get_args(Event)) == {*ALL_EVENTS.values()}
     reader = protocol.MessageReader(protocol.LINE_BYTES)
     for each in told:
         values = protocol.plain(of_event(each))

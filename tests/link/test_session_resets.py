@@ -6,8 +6,10 @@ import pytest
 
 from tests.machines.host_firmware import HostFirmware
 from tiniscript import compile_text, robots
+from tiniscript.bytecode.opcodes import FAULTS
 from tiniscript.link.messages import STATUSES
-from tiniscript.link.outcomes import StartedEvent
+from tiniscript.link.outcomes import Event, StartedEvent
+from tiniscript.link.payloads import DoneEvent, FaultEvent, StoppedEvent
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
 
@@ -92,7 +94,7 @@ def test_a_run_in_the_place_of_ours_is_no_end_of_it() -> None:
     found = session.events()
     assert StartedEvent in [type(event) for event in found], found
     assert "RESTARTED" not in [event.name for event in found]
-    assert "ENDED" not in [event.name for event in found]
+    assert "STOPPED" not in [event.name for event in found]
 
 
 def test_a_stop_that_nobody_has_told_is_no_reset() -> None:
@@ -100,7 +102,25 @@ def test_a_stop_that_nobody_has_told_is_no_reset() -> None:
     robot.push()  # STOPPED is lost
     robot.talk(session, 1500)
     [ended] = session.events()
-    assert ended.name == "ENDED" and session.is_latched
+    assert ended == StoppedEvent(0) and session.is_latched
+
+
+@pytest.mark.parametrize(
+    ("program", "end"),
+    [
+        ("W(0.6)", DoneEvent(1)),
+        ("W(0.6); SHOW(1 / DISTANCE)", FaultEvent(1, FAULTS[1][0], 5, 481506241)),
+    ],
+)
+def test_an_end_that_nobody_has_told_is_asked_for(program: str, end: Event) -> None:
+    session, robot = Session(1, 9600, KIT.fingerprint), HostFirmware(KIT)
+    robot.wait(100)
+    code = compile_text(program, KIT).code
+    assert code and robot.until(session, session.live(code)) == OK
+    robot.wait(900)  # its end is lost
+    robot.talk(session, 1500)
+    [found] = session.events()
+    assert found == end, found
 
 
 def test_nothing_is_asked_again_of_a_robot_that_was_stopped_after_its_reset() -> None:

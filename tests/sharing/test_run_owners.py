@@ -105,7 +105,7 @@ def test_a_port_with_two_names_is_listed_once(line: FakeLine) -> None:
         assert other is not None and other.token == own.token
 
 
-@pytest.mark.parametrize("end", ["STOPPED", "ENDED", "DONE"])
+@pytest.mark.parametrize("end", ["STOPPED", "DONE"])
 def test_an_end_that_is_told_late_takes_no_owner_from_the_next_run(
     end: str, line: FakeLine, server: Server, command: SharedLine
 ) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tiniscript.link.outcomes import EndedEvent, Event, LostEvent, StartedEvent
+from tiniscript.link.outcomes import Event, LostEvent, StartedEvent
 from tiniscript.link.payloads import (
     DoneEvent,
     FaultEvent,
@@ -20,7 +20,6 @@ EVENTS: tuple[Event, ...] = (
     DoneEvent(1),
     LostEvent(),
     StartedEvent(1, 1),
-    EndedEvent(QUIET),
 )
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from tiniscript.library.errors import RobotError
-from tiniscript.link.messages import FIRST_LINK_FAULT, STATE_FAULTED, STATE_IDLE
+from tiniscript.link.messages import FIRST_LINK_FAULT
 from tiniscript.link.outcomes import Event
 from tiniscript.link.payloads import DoneEvent, FaultEvent
 
@@ -43,7 +43,7 @@ class Follower:
             if self.has_begun and not is_it:
                 raise RobotError("replaced", language, {"port": port})
             self.has_begun = self.has_begun or is_it
-        return self.has_begun or event.name not in ("STOPPED", "ENDED")
+        return self.has_begun or event.name != "STOPPED"
 
     def end(self, event: Event) -> End | None:
         return end_of(event, self.run)
@@ -55,10 +55,4 @@ def end_of(event: Event, run: int | None) -> End | None:
         return End(DONE)
     if isinstance(event, FaultEvent) and run in (None, event.run):
         return End(FAULT, event.fault)
-    if event.name == "STOPPED":
-        return End(STOPPED)
-    if event.name == "ENDED":
-        if event.status.state == STATE_FAULTED:
-            return End(FAULT, event.status.fault)
-        return End(DONE if event.status.state == STATE_IDLE else STOPPED)
-    return None
+    return End(STOPPED) if event.name == "STOPPED" else None

@@ -11,10 +11,8 @@ from tiniscript.library import source_map
 from tiniscript.library.endings import DONE, FAULT
 from tiniscript.library.runs import Fault, Value, fault_of, value_of
 from tiniscript.library.source_map import Map
-from tiniscript.link.messages import STATES
 from tiniscript.link.names import cause_name, fault_name
 from tiniscript.link.outcomes import Event
-from tiniscript.link.payloads import StatusReply
 
 
 class RobotEvent(NamedTuple):
@@ -58,8 +56,6 @@ class Reader:
             found = {"value": value_of(event.value, bool(event.is_yes_no))}
         elif event.name == "STARTED":
             found = {"checksum": event.program}
-        elif event.name == "ENDED":
-            return self._told_end(time_ms, event.status)
         elif event.name == "FAULT":
             found = self._fault(event.fault, event.at, event.program)
         elif event.name == "STOPPED":
@@ -71,16 +67,6 @@ class Reader:
         elif event.name != "DONE":
             return None
         return RobotEvent(time_ms - self._began_ms, event.name, found)
-
-    def _told_end(self, time_ms: int, status: StatusReply) -> RobotEvent:
-        """Return the end of a run for which only the robot's state is known."""
-        state, ms = STATES[status.state][0], time_ms - self._began_ms
-        if state == "FAULTED":
-            fault = self._fault(status.fault, status.fault_at, status.fault_program)
-            return RobotEvent(ms, FAULT, fault)
-        if state == "IDLE":
-            return RobotEvent(ms, DONE, {})
-        return RobotEvent(ms, "STOPPED", {"cause": "NONE"})
 
     def _fault(self, number: int, offset: int, program: int) -> dict[str, Value]:
         places = self.maps.get(program) or source_map.recall(program)

@@ -15,7 +15,6 @@ from tiniscript.link.payloads import (
     DoneEvent,
     FaultEvent,
     ShowEvent,
-    StatusReply,
     StoppedEvent,
 )
 
@@ -49,13 +48,6 @@ class EchoEvent(NamedTuple):
     """The line returns what is sent."""
 
     name: Literal["ECHO"] = "ECHO"
-
-
-class EndedEvent(NamedTuple):
-    """The program has ended, but the event that says how did not arrive."""
-
-    status: StatusReply
-    name: Literal["ENDED"] = "ENDED"
 
 
 class RestartedEvent(NamedTuple):
@@ -107,7 +99,6 @@ Event = (
     | MissedEvent
     | LostEvent
     | EchoEvent
-    | EndedEvent
     | RestartedEvent
     | StartedEvent
     | PlaceEvent

@@ -23,6 +23,8 @@ from tiniscript.link.messages import (
     BY_NUMBER,
     FIRST_ACTING,
     FIRST_EVENT,
+    STATE_FAULTED,
+    STATE_IDLE,
     STATE_RUNNING,
     STATUSES,
     Malformed,
@@ -33,7 +35,6 @@ from tiniscript.link.outcomes import (
     CANCELLED,
     UNPROVEN,
     EchoEvent,
-    EndedEvent,
     Event,
     MissedEvent,
     RestartedEvent,
@@ -42,6 +43,7 @@ from tiniscript.link.outcomes import (
 )
 from tiniscript.link.payloads import (
     EVENTS,
+    DoneEvent,
     FaultEvent,
     NextReply,
     SentReply,
@@ -342,8 +344,15 @@ class Session(Exchanges):
         self._state.end()
         if status.state == STATE_RUNNING:
             self._events.append(StartedEvent(status.run, status.program))
+            return
+        run = self._state.run
+        assert run is not None
+        if status.state == STATE_FAULTED:
+            fault = FaultEvent(run, status.fault, status.fault_at, status.fault_program)
+            self._events.append(fault)
         else:
-            self._events.append(EndedEvent(status))
+            is_done = status.state == STATE_IDLE
+            self._events.append(DoneEvent(run) if is_done else StoppedEvent(0))
 
     def _take_event(self, frame: Frame) -> None:
         message = BY_NUMBER.get(frame.number)

@@ -25,13 +25,11 @@ from tiniscript.link.messages import (
     MOST_BALANCE,
     MOST_LEAST,
     NAME_BYTES,
-    STATE_FAULTED,
-    STATE_IDLE,
     STATE_RUNNING,
 )
 from tiniscript.link.names import cause_name, fault_name, saved_name
 from tiniscript.link.outcomes import Event
-from tiniscript.link.payloads import HelloReply, ReceiptReply, StatusReply, TrimReply
+from tiniscript.link.payloads import HelloReply, ReceiptReply, TrimReply
 from tiniscript.link.requests import OK, DeviceInfo, Reply
 from tiniscript.link.statuses import name_of, sentence
 from tiniscript.link.trim import Trim, told
@@ -158,7 +156,7 @@ class RobotLink:
             self._begun, self._over = self._known(event.run), None
         elif event.name in ("DONE", "FAULT"):
             self._over = self._known(event.run)
-        elif event.name in ("STOPPED", "ENDED"):
+        elif event.name == "STOPPED":
             self._over = self._begun
         if event.name in ("LOST", "RESTARTED") or (
             self._over is not None and self._over == self._run
@@ -211,14 +209,13 @@ class RobotLink:
     # -- events -----------------------------------------------------------------------------------
 
     def _event(self, event: Event) -> list[Json]:
-        if event.name == "ENDED":
-            return [_end(event.status)]
         found: Json = {"event": event.name}
         if event.name == "SHOW":
             yes_no = "TRUE" if event.value else "FALSE"
             found["value"] = yes_no if event.is_yes_no else as_text(event.value)
         elif event.name == "FAULT":
-            found |= _fault(event.fault, event.at, event.program)
+            found |= {"fault": fault_name(event.fault), "at": event.at,
+                      "program": f"{event.program:08x}"}  # fmt: skip
         elif event.name == "STOPPED":
             found["cause"] = cause_name(event.cause)
         elif event.name == "PLACE":
@@ -247,19 +244,6 @@ def about(robot: DeviceInfo) -> Json:
         "room": robot.room,
         "is_running": robot.values.state == STATE_RUNNING,
     }
-
-
-def _end(status: StatusReply) -> Json:
-    """Return the end of a run of which only the robot's state is known."""
-    if status.state == STATE_FAULTED:
-        return {"event": "FAULT", **_fault(status.fault, status.fault_at, status.fault_program)}
-    if status.state == STATE_IDLE:
-        return {"event": "DONE"}
-    return {"event": "STOPPED", "cause": cause_name(0)}
-
-
-def _fault(number: int, at: int, program: int) -> Json:
-    return {"fault": fault_name(number), "at": at, "program": f"{program:08x}"}
 
 
 # -- the fields of a request ----------------------------------------------------------------------

@@ -272,7 +272,6 @@ class Catch:
         self.printer = printer
         self.says_done = says_done
         self.held: list[ShowEvent] = []
-        self.has_missed = False  # events of this line
 
     def hold(self, event: Event) -> bool:
         if event.name == "SHOW":
@@ -289,15 +288,12 @@ class Catch:
             if len(told) == len(self.shown):
                 for name, each in zip(self.shown, told, strict=True):
                     self.known.values[name] = Value(each.value, bool(each.is_yes_no))
-            elif not self.has_missed:
-                self._release()
             self.held = []
             return not self.says_done
         if event.name == "FAULT":  # the instructions that show the values cannot fault
             self._release()
-        elif event.name in ("STOPPED", "ENDED"):
+        elif event.name == "STOPPED":
             self.held = []
-        self.has_missed = self.has_missed or event.name == "MISSED"
         return False
 
     def _release(self, count: int | None = None) -> None:

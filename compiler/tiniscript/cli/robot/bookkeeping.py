@@ -14,7 +14,7 @@ class Bookkeeping:
         self.is_on = False
 
     def hides(self, event: Event) -> bool:
-        if event.name in ("STARTED", "DONE", "FAULT", "STOPPED", "ENDED", "RESTARTED"):
+        if event.name in ("STARTED", "DONE", "FAULT", "STOPPED", "RESTARTED"):
             self.is_on = False
         elif event.name != "SHOW":
             return False

@@ -17,10 +17,9 @@ from tiniscript.cli.spreadsheet import no_formula
 from tiniscript.cli.texts import has_text, text
 from tiniscript.library import source_map
 from tiniscript.library.source_map import Map
-from tiniscript.link.messages import STATE_FAULTED, STATE_IDLE
 from tiniscript.link.names import cause_name, fault_name
 from tiniscript.link.outcomes import Event
-from tiniscript.link.payloads import ShowEvent, StatusReply
+from tiniscript.link.payloads import ShowEvent
 
 
 def fault_sentence(number: int, at: int, program: int, places: Map | None, language: str) -> str:
@@ -88,8 +87,6 @@ class EventPrinter:
             self.say(since_ms, "DONE", "", text("robot_done", self.language))
         elif event.name == "FAULT":
             self._tell_fault(since_ms, event.fault, event.at, event.program)
-        elif event.name == "ENDED":
-            self._tell_end(since_ms, event.status)
         elif event.name == "STOPPED":
             cause = cause_name(event.cause)
             said = text(f"stopped_{cause}", self.language)
@@ -103,15 +100,6 @@ class EventPrinter:
             words = shown(event.text.decode("utf-8", "replace"))
             said = text("robot_text", self.language).format(said=words)
             self.say(since_ms, "TEXT", no_formula(words), said, text=words)
-
-    def _tell_end(self, since_ms: int, status: StatusReply) -> None:
-        """Print the end of a run for which only the robot's state is known."""
-        if status.state == STATE_FAULTED:
-            self._tell_fault(since_ms, status.fault, status.fault_at, status.fault_program)
-            return
-        ended = "DONE" if status.state == STATE_IDLE else "STOPPED"
-        key = "robot_done" if ended == "DONE" else "stopped_NONE"
-        self.say(since_ms, ended, "", text(key, self.language))
 
     def _tell_fault(self, since_ms: int, number: int, at: int, program: int) -> None:
         fault = fault_name(number)

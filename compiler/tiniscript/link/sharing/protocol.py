@@ -28,8 +28,7 @@ from functools import cache
 from typing import NamedTuple, TypeVar, cast, get_type_hints
 
 from tiniscript.link.messages import Malformed
-from tiniscript.link.outcomes import ALL_EVENTS, EndedEvent, Event
-from tiniscript.link.payloads import StatusReply
+from tiniscript.link.outcomes import ALL_EVENTS, Event
 from tiniscript.link.requests import OK, Reply
 
 HOST = "127.0.0.1"
@@ -169,8 +168,6 @@ def event(message: JsonMessage) -> tuple[int, Event]:
 
 def of_event(event: Event) -> dict[str, int | bytes]:
     """Return the fields of an event, without its name."""
-    if isinstance(event, EndedEvent):
-        return event.status._asdict()
     fields = event._asdict()
     del fields["name"]
     return fields
@@ -186,8 +183,6 @@ def filled(kind: type[T], values: Mapping[str, int | bytes]) -> T:
 
 def event_of(name: str, values: Mapping[str, int | bytes]) -> Event:
     """Return an event. Raises Malformed if no event has this name and these fields."""
-    if name == "ENDED":
-        return EndedEvent(filled(StatusReply, values))
     if name not in ALL_EVENTS:
         raise Malformed
     return filled(ALL_EVENTS[name], values)

@@ -40,7 +40,7 @@ TOO_FULL_BYTES = 1_000_000  # in the send buffer: a client with more is disconne
 FULL_S = 0.02  # pause before the next try when the process has too many files open
 PAUSE_S = 0.1  # between two checks while a client has a run or a request
 REST_S = 1.0  # between two checks while none has
-_ENDS = ("DONE", "FAULT", "STOPPED", "ENDED", "RESTARTED", "LOST")
+_ENDS = ("DONE", "FAULT", "STOPPED", "RESTARTED", "LOST")
 _MAY_MISS = ("SHOW", "TEXT")
 _STARTING = ("upload", "live", "start")
 
