@@ -1,13 +1,9 @@
-"""A virtual robot in this process: its firmware, its body and its world.
-
-A thread runs its clock; the connection uses a socket, as with any other robot.
-"""
+"""A virtual robot in this process; the connection uses a socket, as with any other robot."""
 
 from __future__ import annotations
 
 import math
 import os
-from threading import Thread
 from typing import NamedTuple
 
 from tiniscript.library import install_advice
@@ -17,18 +13,15 @@ from tiniscript.library.programs import Language, profile_of
 from tiniscript.library.runs import LARGEST_SEED, Readings, thousandths, whole, within
 from tiniscript.robots.kinematics import Pose
 from tiniscript.robots.profile import Robot
-from tiniscript.virtual import directory, worlds
+from tiniscript.virtual import worlds
 from tiniscript.virtual.module import NoWebAssembly
 from tiniscript.virtual.robot import Settings, VirtualRobot
-from tiniscript.virtual.simulator import Simulator
-from tiniscript.virtual.transports import Transports
+from tiniscript.virtual.simulator import SimulatorThread
 from tiniscript.virtual.world import WorldRefused, describe
 
 MOST_NOISE = 0.5
 SLOWEST_HURRY, FASTEST_HURRY = 0.1, 10_000
 LEAST_MOTOR, MOST_MOTOR = 10, 200  # percent
-JOIN_S = 5.0
-TURN_S = 0.05  # the longest wait of the robot's thread
 
 
 def virtual_robot(
@@ -72,7 +65,7 @@ class VirtualRobotConnection(RobotConnection):
     def __init__(self, simulated: Simulated, profile: Robot, language: Language) -> None:
         """Internal: use `virtual_robot` instead."""
         self._simulated = simulated
-        super().__init__(simulated.address, profile, True, None, language)
+        super().__init__(simulated.port, profile, True, None, language)
 
     @property
     def pose(self) -> tuple[float, float, float]:
@@ -108,52 +101,16 @@ class Seen(NamedTuple):
     bumps: int
 
 
-class Simulated:
-    """The robot, and the thread that runs its clock until `close`."""
-
+class Simulated(SimulatorThread):
     def __init__(self, robot: VirtualRobot, hurry: float) -> None:
-        self._robot = robot
-        self._transports = Transports()
-        self.address = self._transports.address
-        self._simulator = Simulator(robot, self._transports, hurry)
-        self.seen = self._look()  # as of the last turn
-        self._is_pushed = self._is_over = False
-        self._bug: BaseException | None = None
-        running = directory.Running(
-            self.address, robot.profile.name, robot.world.name, "", "", VERB
-        )
-        self._note = directory.announce(running)
-        self._thread = Thread(target=self._run, name="virtual robot", daemon=True)
+        super().__init__(robot, VERB, hurry)
+        self.took_turn()
         self._thread.start()
 
-    def _look(self) -> Seen:
-        driving = self._robot.driving
-        return Seen(self._robot.pose, driving.driven_cm, driving.bumps)
-
-    def push(self) -> None:
-        self._is_pushed = True
-
-    def close(self) -> None:
-        directory.withdraw(self._note)
-        self._is_over = True
-        self._thread.join(JOIN_S)
-        self._transports.close()
-        if self._bug is not None:
-            raise self._bug
-
-    def _run(self) -> None:
-        try:
-            while not self._is_over:
-                if self._is_pushed:
-                    self._is_pushed = False
-                    self._simulator.push()
-                self._simulator.turn(TURN_S)
-                self._robot.take_events()  # discarded: nothing draws them
-                self.seen = self._look()
-            self._robot.switch_off()
-        except BaseException as bug:
-            self._bug = bug
-            self._transports.close()
+    def took_turn(self) -> None:
+        self.robot.take_events()  # discarded: nothing draws them
+        driving = self.robot.driving
+        self.seen = Seen(self.robot.pose, driving.driven_cm, driving.bumps)
 
 
 def _made(profile: Robot, world: str, settings: Settings, language: Language) -> VirtualRobot:

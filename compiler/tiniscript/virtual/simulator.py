@@ -8,9 +8,11 @@ computer is busy. A faster robot has its dead-man timer kept alive by heartbeats
 from __future__ import annotations
 
 from random import Random
+from threading import Thread
 from time import monotonic
 
 from tiniscript.link.messages import STOP_BYTES
+from tiniscript.virtual import directory
 from tiniscript.virtual.robot import VirtualRobot
 from tiniscript.virtual.transports import BadLine, Transports
 
@@ -195,3 +197,58 @@ class Simulator:
             self._traffic_s = self._wall_s
             self.back.put(sent, self.robot.now_ms)
         self.transports.send(self.back.take(self.robot.now_ms))
+
+
+JOIN_S = 5.0
+
+
+class SimulatorThread:
+    """A virtual robot of this process, at a port: a thread runs its clock until `close`.
+
+    Others find it as one of the command `verb`.
+    """
+
+    turn_s = 0.05  # the longest wait of the thread
+
+    def __init__(
+        self, robot: VirtualRobot, verb: str, hurry: float = 1.0, faults: float = 0.0
+    ) -> None:
+        self.robot = robot
+        self.transports = Transports()
+        self.port = self.transports.address
+        self.simulator = Simulator(robot, self.transports, hurry, faults)
+        self._is_pushed = self._is_over = False
+        self._bug: BaseException | None = None
+        names = robot.profile.name, robot.world.name
+        self._note = directory.announce(directory.Running(self.port, *names, "", "", verb))
+        self._thread = Thread(target=self._run, name="virtual robot", daemon=True)
+
+    def push(self) -> None:
+        """Have the thread push the start button, and let it go."""
+        self._is_pushed = True
+
+    def took_turn(self) -> None:
+        """The thread calls this when the robot has gone on, and when it is switched off."""
+
+    def close(self) -> None:
+        """Switch it off. Raises what the thread has raised."""
+        directory.withdraw(self._note)
+        self._is_over = True
+        self._thread.join(JOIN_S)
+        self.transports.close()
+        if self._bug is not None:
+            raise self._bug
+
+    def _run(self) -> None:
+        try:
+            while not self._is_over:
+                if self._is_pushed:
+                    self._is_pushed = False
+                    self.simulator.push()
+                self.simulator.turn(self.turn_s)
+                self.took_turn()
+            self.robot.switch_off()
+            self.took_turn()
+        except BaseException as bug:
+            self._bug = bug
+            self.transports.close()

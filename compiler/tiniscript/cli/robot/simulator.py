@@ -9,7 +9,7 @@ from __future__ import annotations
 import sys
 from argparse import Namespace
 from collections import deque
-from threading import Condition, Thread
+from threading import Condition
 from time import monotonic
 from typing import TYPE_CHECKING
 
@@ -21,14 +21,12 @@ from tiniscript.cli.terminal import FRAME_S
 from tiniscript.cli.texts import text
 from tiniscript.robots.profile import Robot
 from tiniscript.virtual import directory
-from tiniscript.virtual.simulator import Simulator
-from tiniscript.virtual.transports import Transports
+from tiniscript.virtual.simulator import SimulatorThread
 
 if TYPE_CHECKING:
     from tiniscript.cli.terminal.screen import Screen
     from tiniscript.cli.terminal.world_drawing import WorldPicture
 
-JOIN_S = 5.0
 ROUND_S = 1.0  # the longest round; a robot draws at least 15 pictures per second
 TOLD = ("SHOW", "DONE", "FAULT", "STOP")  # events of a robot that it tells its client, too
 MOST_EVENTS = 10_000  # that nobody has asked for yet; the oldest are lost
@@ -50,8 +48,10 @@ def running_address(options: Namespace) -> str | None:
     return found[0].address if found else None
 
 
-class CommandSimulator:
+class CommandSimulator(SimulatorThread):
     """The robot. It runs from the constructor until `close`. Raises CommandError."""
+
+    turn_s = FRAME_S
 
     def __init__(self, options: Namespace, profile: Robot, language: str) -> None:
         hurry = simulator_options.hurry_of(options, language)
@@ -59,27 +59,18 @@ class CommandSimulator:
         self.end_ms = simulator_options.end_ms(options, language)
         self.options = options
         self.language = language
-        self.robot = simulator_options.made(options, profile, language)
-        self.transports = Transports()
-        self.port = self.transports.address
-        self.simulator = Simulator(self.robot, self.transports, hurry, faults)
-        self.simulator.lasts_ms = self.end_ms
         self.screen: Screen | None = None
         self._picture: WorldPicture | None = None
         self._is_watched = False  # `watch` was called
-        self._bug: BaseException | None = None
-        self._is_over = self._is_pushed = False
         self._bookkeeping = Bookkeeping()
         self._frame_s = 0.0
         self._drawing = Condition()
         self._undrawn: deque[Event] = deque(maxlen=MOST_EVENTS)
         self._told: deque[Event] = deque(maxlen=MOST_EVENTS)  # what `told_ms` may be asked for
         self._rounds = 0  # rounds after which the picture is up to date
-        world = self.robot.world.name
-        self._note = directory.announce(
-            directory.Running(self.port, profile.name, world, "", "", options.verb)
-        )
-        self._thread = Thread(target=self._live, name="virtual robot", daemon=True)
+        robot = simulator_options.made(options, profile, language)
+        super().__init__(robot, options.verb, hurry, faults)
+        self.simulator.lasts_ms = self.end_ms
         self._thread.start()
 
     @property
@@ -111,10 +102,6 @@ class CommandSimulator:
             if self._picture is None:
                 self._picture = WorldPicture(self.robot, self.language, keys)
             self.screen.begin()
-
-    def push(self) -> None:
-        """Ask the robot's thread to push the start button."""
-        self._is_pushed = True
 
     def say(self, line: str) -> None:
         """Print a line, above the picture if there is one."""
@@ -168,13 +155,10 @@ class CommandSimulator:
 
     def close(self) -> None:
         """End the robot; print a summary, and draw the file of `--plot`."""
-        directory.withdraw(self._note)
-        self._is_over = True
-        self._thread.join(JOIN_S)
-        self.unwatch()
-        self.transports.close()
-        if self._bug is not None:
-            raise self._bug
+        try:
+            super().close()
+        finally:
+            self.unwatch()
         if not self._is_watched:
             return
         if self.options.plot is not None:
@@ -190,35 +174,20 @@ class CommandSimulator:
             return 0
         return (self.robot.now_ms if ended_ms is None else ended_ms) - began_ms
 
-    def _live(self) -> None:
-        try:
-            while True:
-                is_over = self._is_over
-                if is_over:
-                    self.robot.switch_off()
-                else:
-                    if self._is_pushed:
-                        self._is_pushed = False
-                        self.simulator.push()
-                    self.simulator.turn(FRAME_S)
-                with self._drawing:
-                    events = self.robot.take_events()
-                    self._told.extend(each for each in events if each.what in TOLD)
-                    self._undrawn.extend(events)
-                    while self._picture is not None and self._undrawn:
-                        event = self._undrawn.popleft()
-                        if not self._bookkeeping.hides_trace(event.what, event.values):
-                            self._picture.take(event)
-                    if self.screen is not None and monotonic() >= self._frame_s:
-                        self._frame_s = monotonic() + FRAME_S
-                        self._draw(self.screen)
-                    self._rounds += 1
-                    self._drawing.notify_all()
-                if is_over:
-                    return
-        except BaseException as bug:
-            self._bug = bug
-            self.transports.close()
+    def took_turn(self) -> None:
+        with self._drawing:
+            events = self.robot.take_events()
+            self._told.extend(each for each in events if each.what in TOLD)
+            self._undrawn.extend(events)
+            while self._picture is not None and self._undrawn:
+                event = self._undrawn.popleft()
+                if not self._bookkeeping.hides_trace(event.what, event.values):
+                    self._picture.take(event)
+            if self.screen is not None and monotonic() >= self._frame_s:
+                self._frame_s = monotonic() + FRAME_S
+                self._draw(self.screen)
+            self._rounds += 1
+            self._drawing.notify_all()
 
     def _draw(self, screen: Screen) -> None:
         if self._picture is not None:
