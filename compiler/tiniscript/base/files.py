@@ -162,7 +162,7 @@ def alone(path: Path, mode: int = 0o600) -> Iterator[None]:
     number = os.open(lock, flags, mode)
     try:
         end_s = monotonic() + LOCK_S
-        while not _is_locked(number):
+        while not is_locked(number):
             if monotonic() >= end_s:
                 raise TimeoutError(110, os.strerror(110))
             sleep(0.02)
@@ -171,7 +171,7 @@ def alone(path: Path, mode: int = 0o600) -> Iterator[None]:
         os.close(number)
 
 
-def _is_locked(number: int) -> bool:
+def is_locked(number: int) -> bool:
     """Lock an open file for this process, unless another one has."""
     try:
         if sys.platform == "win32":

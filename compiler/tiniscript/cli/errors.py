@@ -9,14 +9,14 @@ from tiniscript.cli.texts import Said, text
 class CommandError(Exception):
     """`key` names a sentence of `texts`; `values` fill its gaps.
 
-    A value `near` that is not empty adds a suggestion.
+    A value `near` that is not empty adds a suggestion; an exception says what the system says.
     """
 
-    def __init__(self, exit_code: int, key: str, **values: str) -> None:
+    def __init__(self, exit_code: int, key: str, **values: str | Exception) -> None:
         super().__init__(key)
         self.exit_code = exit_code
         self.key = key
-        self.values = values
+        self.values = {name: _said(each) for name, each in values.items()}
 
     def sentence(self, language: str) -> str:
         said = text(self.key, language).format(**self.values)
@@ -28,8 +28,12 @@ class CommandError(Exception):
         return said
 
 
+def _said(value: str | Exception) -> str:
+    return (value.strerror if isinstance(value, OSError) else None) or str(value)
+
+
 def not_installed(key: str, why: Exception) -> CommandError:
     """Return what is said where the packages of a virtual robot are missing."""
     from tiniscript.library import install_advice
 
-    return CommandError(2, key, why=str(why), how=install_advice.command(install_advice.VIRTUAL))
+    return CommandError(2, key, why=why, how=install_advice.command(install_advice.VIRTUAL))

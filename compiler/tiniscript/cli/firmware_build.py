@@ -59,16 +59,10 @@ def firmware(robot: Robot, options: Namespace, language: str) -> Ready:
         raise CommandError(2, "flash_no_sources")
     values = {"robot": robot.name, "board": robot.board.chip}
     _fetch(robot, options, language)
-    try:
-        data = _built(robot, sources, language)
+    with _failures(values):
+        with _shown(robot, language) as look:
+            data = building.build(sources, robot, look)
         return ready.keep(ready.title_of(robot), robot.board.chip, sources.digest(robot), data)
-    except building.CannotBuild as why:
-        raise _failure(why, values) from None
-    except OSError as why:
-        folder = shown(str(ready.cache()))
-        raise CommandError(
-            2, "flash_no_room", why=str(why.strerror or why), folder=folder
-        ) from None
 
 
 def _ready(robot: Robot, sources: Sources | None) -> Ready | None:
@@ -95,16 +89,20 @@ def upload(robot: Robot, port: str | None, options: Namespace, language: str) ->
         raise CommandError(2, "flash_no_sources")
     values = {"robot": robot.name, "board": robot.board.chip}
     _fetch(robot, options, language)
+    with _failures({**values, "port": shown(port or "")}), _shown(robot, language) as look:
+        building.upload(sources, robot, port, look)
+
+
+@contextmanager
+def _failures(values: dict[str, str]) -> Iterator[None]:
+    """Raise CommandError for all that can fail while firmware is made."""
     try:
-        with _shown(robot, language) as look:
-            building.upload(sources, robot, port, look)
+        yield
     except building.CannotBuild as why:
-        raise _failure(why, {**values, "port": shown(port or "")}) from None
+        raise _failure(why, values) from None
     except OSError as why:
         folder = shown(str(ready.cache()))
-        raise CommandError(
-            2, "flash_no_room", why=str(why.strerror or why), folder=folder
-        ) from None
+        raise CommandError(2, "flash_no_room", why=why, folder=folder) from None
 
 
 def _fetch(robot: Robot, options: Namespace, language: str) -> None:
@@ -126,11 +124,6 @@ def _fetch(robot: Robot, options: Namespace, language: str) -> None:
     fetching.agree(missing, parts, minutes, options, language)
     if not has_platformio:
         fetching.install(install_advice.FIRMWARE, platformio, language)
-
-
-def _built(robot: Robot, sources: Sources, language: str) -> bytes:
-    with _shown(robot, language) as look:
-        return building.build(sources, robot, look)
 
 
 @contextmanager

@@ -72,8 +72,14 @@ def file(name: str, typed: str | None = None) -> Input:
         key = "file_directory" if path.is_dir() and os.access(path, os.R_OK) else "file_forbidden"
         raise CommandError(2, key, file=said) from None
     except (OSError, ValueError) as why:  # ValueError: a name that no file can have
-        reason = why.strerror if isinstance(why, OSError) and why.strerror else str(why)
-        raise CommandError(2, "file_unreadable", file=said, why=reason) from None
+        raise CommandError(2, "file_unreadable", file=said, why=why) from None
+
+
+def port(name: str) -> str:
+    """Return the name of a port that a person has typed. Raises CommandError where it is none."""
+    if not name.strip() or not name.isprintable():
+        raise CommandError(2, "no_such_port", found=shown(name) or "''")
+    return name
 
 
 def shown(name: str) -> str:

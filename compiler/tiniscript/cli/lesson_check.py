@@ -181,8 +181,7 @@ def _programs(options: Namespace) -> Iterator[tuple[str, Found]]:
     try:
         os.scandir(folder).close()
     except OSError as why:
-        reason = why.strerror or str(why)
-        raise CommandError(2, "lesson_folder", file=inputs.shown(folder), why=reason) from None
+        raise CommandError(2, "lesson_folder", file=inputs.shown(folder), why=why) from None
     names = list(islice(in_folder(folder, TEXTS), PROGRAMS + 1))
     if len(names) > PROGRAMS:
         raise CommandError(2, "lesson_many", file=inputs.shown(folder), most=str(PROGRAMS))

@@ -27,8 +27,7 @@ def write(path: Path, data: bytes, key: str, mode: int | None = None) -> None:
     except (OSError, ValueError, RuntimeError) as why:  # RuntimeError: a link to itself
         if isinstance(why, BrokenPipeError):
             raise
-        reason = why.strerror if isinstance(why, OSError) and why.strerror else str(why)
-        raise CommandError(2, key, file=shown(str(path)), why=reason) from None
+        raise CommandError(2, key, file=shown(str(path)), why=why) from None
 
 
 def print_diagnostics(compiled: Compiled, language: str) -> None:

@@ -203,8 +203,7 @@ def _refuse_unwritable(path: str, key: str, language: str) -> None:
             if sys.platform != "win32" and not os.access(folder, os.W_OK | os.X_OK):
                 number = errno.EACCES
     except (OSError, ValueError) as why:
-        reason = why.strerror if isinstance(why, OSError) and why.strerror else str(why)
-        raise CommandError(2, key, file=path, why=reason) from None
+        raise CommandError(2, key, file=path, why=why) from None
     if number or not path:
         raise CommandError(2, key, file=path or "''", why=os.strerror(number or errno.ENOENT))
 

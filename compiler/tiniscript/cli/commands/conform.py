@@ -10,6 +10,7 @@ from collections.abc import Iterable
 
 from tiniscript import robots
 from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
+from tiniscript.cli import inputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.options import whole_number
@@ -61,9 +62,7 @@ def _machine(options: Namespace, timeout_s: int, language: str) -> int:
 def _port(options: Namespace, language: str) -> int:
     if options.timeout is not None:
         raise CommandError(2, "conform_timeout")
-    port: str = options.port
-    if not port.strip() or not port.isprintable():
-        raise CommandError(2, "no_such_port", found=shown(port) or "''")
+    port = inputs.port(options.port)
     usual = robots.load(robots.DEFAULT).board.baud
     baud = whole_number("--baud", options.baud, usual, SLOWEST_BAUD, FASTEST_BAUD, language)
     checks = port_checks.all_checks(link_kit())

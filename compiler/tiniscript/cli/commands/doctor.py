@@ -71,8 +71,7 @@ def _question(options: Namespace, language: str, told: dict[str, str]) -> Questi
         if port is not None:
             raise CommandError(2, "virtual_and_port")
         port = running_address(options)
-    if port is not None and (not port.strip() or not port.isprintable()):
-        raise CommandError(2, "no_such_port", found=shown(port) or "''")
+    port = None if port is None else inputs.port(port)
     last = known_ports.known().last
     if last is not None and (not port_names.is_there(last) or directory.is_gone(last)):
         last = None

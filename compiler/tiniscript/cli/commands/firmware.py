@@ -91,11 +91,9 @@ def _avrdude() -> list[str]:
 
 def _port(options: Namespace) -> str:
     """Return the port, which can be opened. Never the last used one: it may be that of a radio."""
-    port: str | None = options.port
-    if port is None:
+    if options.port is None:
         raise CommandError(2, "flash_no_port")
-    if not port.strip() or not port.isprintable():
-        raise CommandError(2, "no_such_port", found=shown(port) or "''")
+    port = inputs.port(options.port)
     if is_address(port):
         raise CommandError(2, "flash_address", port=shown(port))
     try:

@@ -12,7 +12,7 @@ from tiniscript.cli.robot.connect import Connection, connected
 from tiniscript.cli.robot.event_printer import EventPrinter
 from tiniscript.cli.texts import text
 from tiniscript.link.connection import PendingRequest
-from tiniscript.link.outcomes import Event, Gone
+from tiniscript.link.outcomes import Event
 from tiniscript.link.payloads import HelloReply
 from tiniscript.link.requests import OK
 
@@ -45,15 +45,12 @@ class _Log:
     def keep(self) -> None:
         """Print events until the port is gone."""
         self._say("LINKED", "linked", robot=self.connection.name, port=shown(self.connection.port))
-        try:
-            while True:
-                found = self.connection.line.event()
-                if found is not None:
-                    self._tell(*found)
-                if self.search is not None and self.search.outcome is not None:
-                    self._look_again()
-        except Gone as gone:
-            raise self.connection.gone(gone) from None
+        while True:
+            found = self.connection.event()
+            if found is not None:
+                self._tell(*found)
+            if self.search is not None and self.search.outcome is not None:
+                self._look_again()
 
     def _tell(self, time_ms: int, event: Event) -> None:
         if event.name == "JOINED" or event.name == "LEFT":

@@ -24,7 +24,7 @@ from tiniscript.library import source_map
 from tiniscript.library.compiling import kit_of, naming
 from tiniscript.library.known_kits import lacking
 from tiniscript.library.other_robots import is_other_robots
-from tiniscript.link.outcomes import Event, Gone
+from tiniscript.link.outcomes import Event
 from tiniscript.link.payloads import ShowEvent
 from tiniscript.link.requests import SHORT_BYTES, short_bytes
 from tiniscript.robots.profile import Robot
@@ -240,15 +240,9 @@ class Repl:
         The next line reports a lost robot, if it is still lost.
         """
         printer, bookkeeping = EventPrinter(self.language), Bookkeeping()
-        try:
-            while True:
-                found = self.connection.line.event(0)
-                if found is None:
-                    return
-                if not bookkeeping.hides(found[1]):
-                    printer.tell(*found)
-        except Gone as gone:
-            raise self.connection.gone(gone) from None
+        while (found := self.connection.event(0)) is not None:
+            if not bookkeeping.hides(found[1]):
+                printer.tell(*found)
 
 
 def wished(line: str, known: Known) -> str:

@@ -6,6 +6,7 @@ import re
 import sys
 from argparse import Namespace
 
+from tiniscript.cli import inputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot.connect import port_failure
@@ -79,11 +80,9 @@ def _refuse(wanted: Wanted, dialect: Dialect, what: str) -> None:
 
 
 def _wire(options: Namespace) -> Wire:
-    port: str | None = options.port
-    if port is None:
+    if options.port is None:
         raise CommandError(2, "module_no_port")
-    if not port.strip() or not port.isprintable():
-        raise CommandError(2, "no_such_port", found=shown(port) or "''")
+    port = inputs.port(options.port)
     try:
         if ports.is_radio(port):
             raise CommandError(2, "module_by_radio", port=shown(port))

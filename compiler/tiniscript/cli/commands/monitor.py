@@ -16,7 +16,6 @@ from tiniscript.cli.robot.event_printer import EventPrinter
 from tiniscript.cli.robot.recorder import Rows
 from tiniscript.cli.terminal.plot import Board
 from tiniscript.cli.texts import text
-from tiniscript.link.outcomes import Gone
 
 
 def run(options: Namespace, language: str) -> int:
@@ -52,17 +51,14 @@ def _watch(
 ) -> None:
     bookkeeping = Bookkeeping()
     end_s = monotonic() + seconds if seconds else None
-    try:
-        while end_s is None or monotonic() < end_s:
-            if board is not None:
-                board.draw(int(monotonic() * 1000))
-            found = connection.line.event()
-            if found is None or bookkeeping.hides(found[1]):
-                continue
-            if board is not None:
-                board.take(*found)
-            if found[1].name == "LOST":
-                raise CommandError(3, "link_lost", port=shown(connection.port))
-            printer.tell(*found)
-    except Gone as gone:
-        raise connection.gone(gone) from None
+    while end_s is None or monotonic() < end_s:
+        if board is not None:
+            board.draw(int(monotonic() * 1000))
+        found = connection.event()
+        if found is None or bookkeeping.hides(found[1]):
+            continue
+        if board is not None:
+            board.take(*found)
+        if found[1].name == "LOST":
+            raise CommandError(3, "link_lost", port=shown(connection.port))
+        printer.tell(*found)

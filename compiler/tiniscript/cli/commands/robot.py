@@ -243,9 +243,7 @@ def _transports(port: int, has_terminal: bool) -> Transports:
     try:
         return Transports(port, has_terminal)
     except OSError as why:
-        raise CommandError(
-            3, "listen_taken", port=str(port), why=why.strerror or str(why)
-        ) from None
+        raise CommandError(3, "listen_taken", port=str(port), why=why) from None
 
 
 def _announcement(name: str, number: int) -> Announcement:
@@ -259,7 +257,7 @@ def _announcement(name: str, number: int) -> Announcement:
     except NameTaken:
         raise CommandError(3, "name_taken", name=shown(name)) from None
     except OSError as why:
-        raise CommandError(3, "no_announcement", why=why.strerror or str(why)) from None
+        raise CommandError(3, "no_announcement", why=why) from None
 
 
 def _pushes_ms(option: str, found: str | None) -> list[int]:
@@ -282,8 +280,7 @@ def _memory(name: str | None) -> bytes | None:
     except FileNotFoundError:
         return None
     except (OSError, ValueError) as why:
-        reason = why.strerror if isinstance(why, OSError) and why.strerror else str(why)
-        raise CommandError(2, "unreadable_memory", file=shown(name), why=reason) from None
+        raise CommandError(2, "unreadable_memory", file=shown(name), why=why) from None
     if len(data) != MEMORY_BYTES:
         raise CommandError(2, "bad_memory", file=shown(name), bytes=str(MEMORY_BYTES))
     return data

@@ -12,7 +12,7 @@ from contextlib import suppress
 from ipaddress import IPv4Address
 from threading import Thread
 
-from tiniscript.cli import page_build
+from tiniscript.cli import inputs, page_build
 from tiniscript.cli.commands.robot import ended_by_signal
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
@@ -34,7 +34,7 @@ def run(options: Namespace, language: str) -> int:
     host = serving.HOST
     if options.is_class:
         host = _given(options.address) if options.address else _address()
-        classroom = Classroom(hosting, _ports(options.ports), 60 * minutes)
+        classroom = Classroom(hosting, list(map(inputs.port, options.ports)), 60 * minutes)
         went_on = _go_on(classroom)
     elif options.address or options.ports or options.turn:
         raise CommandError(2, "studio_needs_class")
@@ -44,11 +44,8 @@ def run(options: Namespace, language: str) -> int:
         server = _server(port, host, hosting, classroom)
     except OSError as why:
         address = f"http://{host}:{port}/"
-        reason = why.strerror or str(why)
         key = "studio_no_address" if options.is_class else "studio_taken"
-        raise CommandError(
-            3, key, port=str(port), why=shown(reason), address=shown(address)
-        ) from None
+        raise CommandError(3, key, port=str(port), why=why, address=shown(address)) from None
     thread = Thread(target=server.serve_forever, name="studio", daemon=True)
     try:
         with ended_by_signal():
@@ -128,10 +125,3 @@ def _given(address: str) -> str:
     if found.is_unspecified or found.is_multicast:
         raise CommandError(2, "studio_bad_address", found=shown(address))
     return str(found)
-
-
-def _ports(found: list[str] | None) -> list[str]:
-    for port in found or []:
-        if not port.strip() or not port.isprintable():
-            raise CommandError(2, "no_such_port", found=shown(port) or "''")
-    return found or []

@@ -66,5 +66,4 @@ def trust(options: Namespace) -> bytes | None:
     try:
         return Path(options.trust).read_bytes()
     except (OSError, ValueError) as why:
-        reason = (why.strerror if isinstance(why, OSError) else None) or str(why)
-        raise CommandError(2, "broker_unread", file=shown(options.trust), why=reason) from None
+        raise CommandError(2, "broker_unread", file=shown(options.trust), why=why) from None

@@ -270,9 +270,7 @@ def _chosen(options: Namespace, language: str) -> str:
         if getattr(options, name):
             raise CommandError(2, "only_virtual", option=f"--{name}")
     if port is not None:
-        if not port.strip() or not port.isprintable():
-            raise CommandError(2, "no_such_port", found=shown(port) or "''")
-        return port
+        return inputs.port(port)
     last = known_ports.known().last
     if last is not None and port_names.is_there(last) and not directory.is_gone(last):
         return last

@@ -11,6 +11,7 @@ from collections import deque
 from collections.abc import Mapping
 from typing import NamedTuple
 
+from tiniscript.cli import inputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot.connect import Connection
@@ -47,10 +48,7 @@ def targets(options: Namespace) -> list[Target]:
     Ports in use come first, then ports of known robots. Opens none.
     """
     known = known_ports.known().names
-    for port in options.ports:
-        if not port.strip() or not port.isprintable():
-            raise CommandError(2, "no_such_port", found=shown(port) or "''")
-    wanted = options.ports
+    wanted = [inputs.port(each) for each in options.ports]
     if options.all:
         wanted = [registration.port for registration in all_found()]
         wanted += [port for port in known if is_there(port) and not directory.is_gone(port)]

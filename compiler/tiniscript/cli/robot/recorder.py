@@ -64,8 +64,7 @@ class Rows:
             self._file.close()
 
     def _failure(self, why: Exception) -> CommandError:
-        reason = why.strerror if isinstance(why, OSError) and why.strerror else str(why)
-        return CommandError(2, self._key, file=shown(self._name), why=reason)
+        return CommandError(2, self._key, file=shown(self._name), why=why)
 
 
 MOST = 10_000  # events; then it is over

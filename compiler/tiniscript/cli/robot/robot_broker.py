@@ -47,8 +47,7 @@ def _address(place: broker_options.Place) -> IPv4Address:
         found = socket.getaddrinfo(place.host, place.port, socket.AF_INET, socket.SOCK_STREAM)
         return IPv4Address(found[0][4][0])
     except (OSError, UnicodeError, ValueError) as why:
-        reason = (why.strerror if isinstance(why, OSError) else None) or str(why)
-        raise CommandError(2, "broker_unknown", host=place.host, why=shown(reason)) from None
+        raise CommandError(2, "broker_unknown", host=place.host, why=why) from None
 
 
 def _tls(options: Namespace, place: broker_options.Place, is_name: bool) -> Tls | None:

@@ -188,21 +188,10 @@ def _locked(path: Path) -> _Lock | None:
 def _lock(file: FileIO) -> bool:
     """Lock a file for this process; return False where another process has locked it."""
     try:
-        if sys.platform == "win32":
-            import msvcrt
-
-            file.seek(0)
-            msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)
-        else:
-            import fcntl
-
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except (BlockingIOError, PermissionError):
-        return False
+        return files.is_locked(file.fileno())
     except OSError:
         file.close()
         raise
-    return True
 
 
 def _read(path: Path) -> Registration | None:
