@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import pytest
@@ -9,7 +10,7 @@ import pytest
 from tests.machines.host_firmware import EMPTY, HostFirmware
 from tiniscript import compile_text, robots
 from tiniscript.bytecode.image import Image, unpack
-from tiniscript.link.authority import RobotKey, whose
+from tiniscript.link.authority import KeyRing, RobotKey, whose
 from tiniscript.link.connection import PendingRequest
 from tiniscript.link.messages import STATUS_NAMES
 from tiniscript.link.session import Session
@@ -19,7 +20,7 @@ PRESSED, RELEASED, HELD = 1, 2, 32
 FOREVER = "SI|F(200, 40)"
 
 
-class Keys:
+class Keys(KeyRing):
     """A `KeyRing` in memory. Keys are numbered, so each run has the same."""
 
     def __init__(self, first: int = 1) -> None:
@@ -27,8 +28,12 @@ class Keys:
         self.next = first
         self.is_full = False
 
-    def of_robot(self, robot: int | None) -> list[RobotKey]:
-        return [key for key in self.found if robot in (None, key.id)]
+    def _kept(self) -> list[RobotKey]:
+        return self.found
+
+    def _change(self, change: Callable[[list[RobotKey]], list[RobotKey]]) -> bool:
+        self.found = change(self.found)
+        return True
 
     def made(self, robot: int, which: int, name: str) -> RobotKey | None:
         if self.is_full:
@@ -37,16 +42,6 @@ class Keys:
         self.next += 1
         self.found.append(key)
         return key
-
-    def settle(self, key: RobotKey) -> None:
-        self.found = [each for each in self.found if (each.id, each.which) != (key.id, key.which)]
-        self.found.append(key._replace(is_pending=False, is_stale=False))
-
-    def refuse(self, key: RobotKey) -> None:
-        self.found[self.found.index(key)] = key._replace(is_stale=True)
-
-    def drop(self, key: RobotKey) -> None:
-        self.found.remove(key)
 
 
 WITHOUT_SEALS = ("tiniscript_without_seals",)

@@ -5,11 +5,12 @@ Knows the order of messages and what a tag is made of. Knows no file: a `KeyRing
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from typing import NamedTuple, Protocol
+import os
+from collections.abc import Callable
+from typing import NamedTuple
 
 from tiniscript.link import requests
-from tiniscript.link.messages import KEY_TEACHER, OWNED, SEALS, STATUSES, YOURS
+from tiniscript.link.messages import KEY_BYTES, KEY_TEACHER, OWNED, SEALS, STATUSES, YOURS
 from tiniscript.link.outcomes import UNKEPT
 from tiniscript.link.payloads import AuthenticateReply, EmptyReply
 from tiniscript.link.requests import OK, TAKEN, DeviceInfo, Exchange, Reply, Request
@@ -18,6 +19,7 @@ from tiniscript.link.seal import Seal, session_key, siphash
 NOT_OWNER, WRONG_KEY, HOLD_BUTTON = (
     STATUSES[name] for name in ("NOT_OWNER", "WRONG_KEY", "HOLD_BUTTON")
 )
+MOST_PENDING = 1  # keys before a new one: a robot listens to few wrong keys
 HOLD_TRIES = 150  # while the button is not held down: 30 s
 HOLD_PAUSE_MS = 200
 FREE, YOUR_OWN, OF_ANOTHER = "free", "yours", "other"
@@ -39,32 +41,59 @@ class RobotKey(NamedTuple):
     is_stale: bool = False
     seals: bool = False
 
+    @property
+    def place(self) -> tuple[int, int]:
+        """A robot and a person, who have one key."""
+        return self.id, self.which
+
     def __repr__(self) -> str:  # a key is in no message
         return f"RobotKey({self.id:08x}, {self.which})"
 
 
-class KeyRing(Protocol):
-    """Where the keys of a person are. No method raises an exception."""
+class KeyRing:
+    """The keys of a person; a class of it says where they are. No method raises an exception."""
 
-    def of_robot(self, robot: int | None) -> Sequence[RobotKey]:
+    def _kept(self) -> list[RobotKey]:
+        """Return all keys."""
+        raise NotImplementedError
+
+    def _change(self, change: Callable[[list[RobotKey]], list[RobotKey]]) -> bool:
+        """Keep what is made of all keys; return whether that was possible."""
+        raise NotImplementedError
+
+    def of_robot(self, robot: int | None) -> list[RobotKey]:
         """Return the keys of a robot, or of all."""
-        ...
+        return [key for key in self._kept() if robot in (None, key.id)]
 
     def made(self, robot: int, which: int, name: str) -> RobotKey | None:
         """Make a key and keep it as a pending one; None if it cannot be kept."""
-        ...
+        key = RobotKey(robot, which, os.urandom(KEY_BYTES), name, is_pending=True)
+
+        def with_it(before: list[RobotKey]) -> list[RobotKey]:
+            pending = [each for each in before if each.is_pending and each.place == key.place]
+            return [*(each for each in before if each not in pending[:-MOST_PENDING]), key]
+
+        return key if self._change(with_it) else None
 
     def settle(self, key: RobotKey) -> None:
         """The robot has taken a pending key: it replaces the one before."""
-        ...
+        settled = key._replace(is_pending=False, is_stale=False)
+
+        def with_it(before: list[RobotKey]) -> list[RobotKey]:
+            if settled in before:
+                return before
+            return [*(each for each in before if each.place != key.place), settled]
+
+        self._change(with_it)
 
     def refuse(self, key: RobotKey) -> None:
         """The robot has another key than this one: it is stale, until it is right after all."""
-        ...
+        self._change(lambda before: [each._replace(is_stale=True) if each[:3] == key[:3] else each
+                                     for each in before])  # fmt: skip
 
     def drop(self, key: RobotKey) -> None:
         """The robot has not taken, or no longer has, this key."""
-        ...
+        self._change(lambda before: [each for each in before if each.key != key.key])
 
 
 def whose(robot: DeviceInfo) -> str:

@@ -8,23 +8,21 @@ in it.
 from __future__ import annotations
 
 import json
-import os
 import re
 import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from threading import Lock
 
 from tiniscript.base import files
 from tiniscript.base.source import printable
-from tiniscript.link.authority import RobotKey
+from tiniscript.link.authority import KeyRing, RobotKey
 from tiniscript.link.messages import KEY_BYTES, KEYS
 
 FILE_BYTES = 1_000_000
 NAME_CHARACTERS = 16
 MOST = 2000  # keys in a file
-MOST_PENDING = 1  # before a new one: a robot listens to few wrong keys
 MODE = 0o600  # only this person reads it
 _LOCK = Lock()  # the robots of a fleet have threads of their own
 _MARKS = ("is_pending", "is_stale", "seals")
@@ -43,7 +41,7 @@ class TooManyKeys(BadKeys):
     """More keys than a file has: none was written."""
 
 
-class KeyFile:
+class KeyFile(KeyRing):
     """The keys in a file; the user's own where no path is given. Each call reads it anew."""
 
     def __init__(self, path: Path | None = None, is_for_virtual: bool = False) -> None:
@@ -70,8 +68,8 @@ class KeyFile:
         """
         with self._alone():
             before = self.all()
-            given = {_place(key): key for key in known_seals(keys, before)}
-            rest = [key for key in before if key.is_pending or _place(key) not in given]
+            given = {key.place: key for key in known_seals(keys, before)}
+            rest = [key for key in before if key.is_pending or key.place not in given]
             changed = [key for key in given.values() if key not in before]
             if changed:
                 self._write([*rest, *given.values()])
@@ -84,45 +82,22 @@ class KeyFile:
 
     # -- as a KeyRing: where the file cannot be read there is no key ------------------------------
 
-    def of_robot(self, robot: int | None) -> list[RobotKey]:
+    def _kept(self) -> list[RobotKey]:
         with suppress(BadKeys):
-            found = [key for key in self.all() if robot in (None, key.id)]
+            found = self.all()
             return [key._replace(seals=False) for key in found] if self._is_for_virtual else found
         return []
 
-    def made(self, robot: int, which: int, name: str) -> RobotKey | None:
-        key = RobotKey(robot, which, os.urandom(KEY_BYTES), name, is_pending=True)
+    def _change(self, change: Callable[[list[RobotKey]], list[RobotKey]]) -> bool:
         try:
             with self._alone():
                 before = self.all()
-                pending = [
-                    each for each in before if each.is_pending and _place(each) == _place(key)
-                ]
-                rest = [each for each in before if each not in pending[:-MOST_PENDING]]
-                self._write([*rest, key])
+                after = change(before)
+                if after != before:
+                    self._write(after)
         except BadKeys:
-            return None
-        return key
-
-    def settle(self, key: RobotKey) -> None:
-        with suppress(BadKeys), self._alone():
-            settled = key._replace(is_pending=False, is_stale=False)
-            before = self.all()
-            if settled not in before:
-                self._write([*(each for each in before if _place(each) != _place(key)), settled])
-
-    def drop(self, key: RobotKey) -> None:
-        with suppress(BadKeys), self._alone():
-            self._write([each for each in self.all() if each.key != key.key])
-
-    def refuse(self, key: RobotKey) -> None:
-        with suppress(BadKeys), self._alone():
-            before = self.all()
-            after = [
-                each._replace(is_stale=True) if each[:3] == key[:3] else each for each in before
-            ]
-            if after != before:
-                self._write(after)
+            return False
+        return True
 
     @contextmanager
     def _alone(self) -> Iterator[None]:
@@ -205,7 +180,3 @@ def _key(row: dict[str, object]) -> RobotKey:
     name = printable(str(row.get("name", "")), NAME_CHARACTERS)
     marks = {name: row.get(name) is True for name in _MARKS}
     return RobotKey(int(robot, 16), _KINDS.index(kind), data, name, **marks)
-
-
-def _place(key: RobotKey) -> tuple[int, int]:
-    return key.id, key.which

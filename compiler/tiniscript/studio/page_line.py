@@ -12,10 +12,9 @@ import os
 from collections.abc import Callable
 from typing import Any, TypeVar
 
-from tiniscript.link.authority import RobotKey
+from tiniscript.link.authority import KeyRing, RobotKey
 from tiniscript.link.connection import PendingRequest, Requester
 from tiniscript.link.keys import BadKeys, known_seals, read, written
-from tiniscript.link.messages import KEY_BYTES
 from tiniscript.link.outcomes import Backlog, Event
 from tiniscript.link.requests import DeviceInfo
 from tiniscript.link.session import Session
@@ -27,8 +26,8 @@ T = TypeVar("T")
 HEARD_MS = 500  # a page that was away for longer no longer attends to its robot
 
 
-class PageKeys:
-    """The keys that a page keeps: a KeyRing. `has_changed`: the page has to keep them anew."""
+class PageKeys(KeyRing):
+    """The keys that a page keeps. `has_changed`: the page has to keep them anew."""
 
     def __init__(self, data: bytes) -> None:
         """`data` is a file of keys, or nothing. Raises BadKeys."""
@@ -46,28 +45,14 @@ class PageKeys:
             self.settle(key)
         return len(given)
 
-    def of_robot(self, robot: int | None) -> list[RobotKey]:
-        return [key for key in self.keys if robot in (None, key.id)]
+    def _kept(self) -> list[RobotKey]:
+        return self.keys
 
-    def made(self, robot: int, which: int, name: str) -> RobotKey:
-        key = RobotKey(robot, which, os.urandom(KEY_BYTES), name, is_pending=True)
-        self._set([*self.keys, key])
-        return key
-
-    def settle(self, key: RobotKey) -> None:
-        rest = [each for each in self.keys if (each.id, each.which) != (key.id, key.which)]
-        self._set([*rest, key._replace(is_pending=False, is_stale=False)])
-
-    def refuse(self, key: RobotKey) -> None:
-        self._set([each._replace(is_stale=True) if each[:3] == key[:3] else each
-                   for each in self.keys])  # fmt: skip
-
-    def drop(self, key: RobotKey) -> None:
-        self._set([each for each in self.keys if each.key != key.key])
-
-    def _set(self, keys: list[RobotKey]) -> None:
-        self.has_changed = self.has_changed or keys != self.keys
-        self.keys = keys
+    def _change(self, change: Callable[[list[RobotKey]], list[RobotKey]]) -> bool:
+        after = change(self.keys)
+        self.has_changed = self.has_changed or after != self.keys
+        self.keys = after
+        return True
 
 
 class PageLine:
