@@ -18,8 +18,8 @@ from tiniscript.cli.inputs import shown
 from tiniscript.cli.options import whole_number
 from tiniscript.cli.robot.connect import Connection, baud_of
 from tiniscript.cli.robot.simulator import running_address
-from tiniscript.cli.streams import are_read
 from tiniscript.cli.terminal.asking import agreed, can_ask
+from tiniscript.cli.terminal.progress import Doing
 from tiniscript.cli.texts import Said, has_text, text
 from tiniscript.doctor import report
 from tiniscript.doctor.diagnosis import Diagnosis, Doors, Question, diagnosed
@@ -45,7 +45,7 @@ STEPS = ("answers", "boot", "drive", "stop", "typed", "cable", "upload", "power"
 def run(options: Namespace, language: str) -> int:
     told: dict[str, str] = {}  # by a robot, of itself
     question = _question(options, language, told)
-    doing = _Doing(language, is_shown=not options.json and are_read(sys.stderr))
+    doing = Doing(not options.json)
     try:
         diagnosis = diagnosed(_doors(options, language, doing), question)
     finally:
@@ -96,7 +96,7 @@ def _has_key(robot: int) -> bool:
     return any(not key.is_stale for key in KeyFile().of_robot(robot))
 
 
-def _doors(options: Namespace, language: str, doing: _Doing) -> Doors:
+def _doors(options: Namespace, language: str, doing: Doing) -> Doors:
     def open_wire(port: str, baud: int) -> Wire:
         return SerialWire(ports.opened(port, baud))
 
@@ -117,25 +117,8 @@ def _doors(options: Namespace, language: str, doing: _Doing) -> Doors:
 
     return Doors(
         ThisComputer(), open_wire, lambda port: joined(port, "doctor"), may_open, ports.is_radio,
-        share, doing.tell,
+        share, lambda what: doing.tell(text(f"doing_{what}", language)),
     )  # fmt: skip
-
-
-class _Doing:
-    """The line on the terminal that says what is done just now."""
-
-    def __init__(self, language: str, is_shown: bool) -> None:
-        self.language = language
-        self.is_shown = is_shown
-
-    def tell(self, what: str) -> None:
-        if self.is_shown:
-            said = text(f"doing_{what}", self.language)
-            print(f"\r\x1b[K{said}", end="", file=sys.stderr, flush=True)
-
-    def end(self) -> None:
-        if self.is_shown:
-            print("\r\x1b[K", end="", file=sys.stderr, flush=True)
 
 
 def _said(finding: Finding, values: Mapping[str, str], language: str) -> tuple[str, str, str]:

@@ -10,7 +10,7 @@ from tiniscript.cli import inputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot.connect import port_failure
-from tiniscript.cli.streams import are_read
+from tiniscript.cli.terminal.progress import Doing
 from tiniscript.cli.texts import text
 from tiniscript.link import errors, ports
 from tiniscript.link.modules import set_up
@@ -100,8 +100,11 @@ class _SetUp:
         self.port = shown(options.port)
 
     def run(self) -> int:
-        module = found(self.wire, look=self._look)
-        self._clear()
+        doing = Doing()
+        module = found(
+            self.wire, look=lambda baud: doing.tell(self._text("module_looking", baud=str(baud)))
+        )
+        doing.end()
         if module is None:
             raise CommandError(3, "module_silent", port=self.port)
         what = set_up.misfit(self.wanted, module.dialect)
@@ -127,15 +130,6 @@ class _SetUp:
 
     def _text(self, key: str, **values: str) -> str:
         return text(key, self.language).format(**values)
-
-    def _look(self, baud: int) -> None:
-        if are_read(sys.stderr):
-            said = self._text("module_looking", baud=str(baud))
-            print(f"\r\x1b[K{said}", end="", file=sys.stderr, flush=True)
-
-    def _clear(self) -> None:
-        if are_read(sys.stderr):
-            print("\r\x1b[K", end="", file=sys.stderr, flush=True)
 
     def _values(self, module: Module) -> dict[str, str]:
         """Return what the module tells of what it keeps. Its PIN is not asked."""

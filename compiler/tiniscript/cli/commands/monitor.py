@@ -53,7 +53,7 @@ def _watch(
     end_s = monotonic() + seconds if seconds else None
     while end_s is None or monotonic() < end_s:
         if board is not None:
-            board.draw(int(monotonic() * 1000))
+            board.draw_plot(int(monotonic() * 1000))
         found = connection.event()
         if found is None or bookkeeping.hides(found[1]):
             continue

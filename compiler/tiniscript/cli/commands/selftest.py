@@ -95,7 +95,8 @@ def _said(key: str, values: Mapping[str, str], language: str) -> str:
 def _report(found: list[Found], name: str, port: str, language: str) -> list[str]:
     """Return the lines of a report: nothing in it tells whose robot or computer it is."""
     hidden = [(each, report.port(port)) for each in (port, shown(port)) if port]
-    hidden += [(name, report.HIDDEN)] if name and not _is_public(name) else []
+    if name and name not in robots.names():  # a shipped one's says what it is, not whose
+        hidden.append((name, report.HIDDEN))
 
     def without_names(row: str) -> str:
         for private, public in hidden:
@@ -107,8 +108,3 @@ def _report(found: list[Found], name: str, port: str, language: str) -> list[str
     head += [f"tsc: {__version__}, Python {platform.python_version()}"]
     head += [f"system: {platform.system()}", f"port: {kind}", ""]
     return [*head, *map(without_names, _rows(found, language))]
-
-
-def _is_public(name: str) -> bool:
-    """Whether a name is that of a shipped robot: it says what it is, not whose."""
-    return name in robots.names()

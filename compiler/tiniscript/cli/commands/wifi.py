@@ -5,8 +5,8 @@ A password is asked for, and kept nowhere.
 
 from __future__ import annotations
 
-import time
 from argparse import Namespace
+from functools import partial
 
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
@@ -26,8 +26,8 @@ from tiniscript.link.payloads import WifiReply
 from tiniscript.link.requests import Reply
 from tiniscript.link.wifi import MODES, STATES, Network, address
 
-READY_S = 20  # until the robot is in the network
-LOOK_S = 0.5
+# states from which nothing further follows by itself
+ENDS = tuple(map(STATES.index, ("READY", "REFUSED", "RESTS")))
 
 
 def run(options: Namespace, language: str) -> int:
@@ -79,22 +79,9 @@ def _refuse_itself(connection: Connection) -> None:
 
 def _join(connection: Connection, name: bytes, is_access_point: bool) -> None:
     network = Network(name, _password(connection.language), is_access_point)
-    _taken(connection, _given(connection, network))
-    end_s = time.monotonic() + READY_S
-    told = _told(connection)
-    while told.state not in _ends() and time.monotonic() < end_s:
-        time.sleep(LOOK_S)
-        told = _told(connection)
-    _tell(connection, told)
-
-
-def _ends() -> tuple[int, ...]:
-    """Return the states from which nothing further follows by itself."""
-    return STATES.index("READY"), STATES.index("REFUSED"), STATES.index("RESTS")
-
-
-def _given(connection: Connection, network: Network) -> Reply[WifiReply]:
-    return connection.give(lambda session: session.join(network))
+    _taken(connection, connection.give(lambda session: session.join(network)))
+    ask = partial(_told, connection)
+    _tell(connection, robot_broker.awaited(ask, lambda told: told.state in ENDS))
 
 
 def _taken(connection: Connection, reply: Reply[WifiReply]) -> None:

@@ -7,6 +7,8 @@ import socket
 import ssl
 import time
 from argparse import Namespace
+from collections.abc import Callable
+from functools import partial
 from ipaddress import IPv4Address
 
 from tiniscript.cli.errors import CommandError
@@ -21,7 +23,7 @@ from tiniscript.link.port_names import is_at_broker
 from tiniscript.link.requests import Reply
 from tiniscript.link.wifi import STATES, BrokerSettings, Tls, address
 
-READY_S = 20  # until the robot is at the broker
+READY_S = 20  # until the robot is in the network, or at the broker
 LOOK_S = 0.5
 NOT_BEGUN = ("OFF", "RESTS")  # states of the robot's WiFi
 _PEM = r"-----BEGIN CERTIFICATE-----.+?-----END CERTIFICATE-----"
@@ -96,12 +98,16 @@ def use(connection: Connection, broker: BrokerSettings | None, options: Namespac
     if broker is None:
         print(text("broker_off", connection.language).format(robot=connection.name))
         return
-    end_s = time.monotonic() + READY_S
-    told = _told(connection)
-    while _state(told) == "SEARCHING" and time.monotonic() < end_s:
-        time.sleep(LOOK_S)
-        told = _told(connection)
+    told = awaited(partial(_told, connection), lambda told: _state(told) != "SEARCHING")
     tell(connection, told, broker.name.decode(), _class_command(options))
+
+
+def awaited(ask: Callable[[], WifiReply], is_over: Callable[[WifiReply], bool]) -> WifiReply:
+    """Return what the robot tells when something has come of it, or after READY_S."""
+    end_s = time.monotonic() + READY_S
+    while not is_over(told := ask()) and time.monotonic() < end_s:
+        time.sleep(LOOK_S)
+    return told
 
 
 def tell_if_any(connection: Connection) -> None:

@@ -91,7 +91,9 @@ class TrimWizard:
             return found
         if self._choice("trim_measure", 2) != YES:
             return found._replace(pace=before.pace)
-        return found._replace(pace=Pace(*self._ahead(), *self._turning()))
+        ahead = self._measured("F", AHEAD_S, "trim_how_far")
+        turning = self._measured("R", TURN_S, "trim_how_round")
+        return found._replace(pace=Pace(*ahead, *turning))
 
     def _turned(self, motors: str, question: str) -> tuple[int, bool]:
         """Turn a motor; return the wheel, 1 left or 2 right, and whether it turned forward."""
@@ -110,12 +112,6 @@ class TrimWizard:
             if self._choice("trim_moves", 2, n=str(power)) == YES:
                 return power if power > LEAST_STEP else 0
         raise CommandError(3, "trim_too_weak", n=str(MOST_LEAST))
-
-    def _ahead(self) -> list[float]:
-        return self._measured("F", AHEAD_S, "trim_how_far")
-
-    def _turning(self) -> list[float]:
-        return self._measured("R", TURN_S, "trim_how_round")
 
     def _measured(self, move: str, seconds: int, question: str) -> list[float]:
         """Return how much it went, or turned, in a second at each power."""

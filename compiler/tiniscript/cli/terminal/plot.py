@@ -22,36 +22,30 @@ KEPT = 5000  # values, the newest
 STEPS = 4  # between the marks of the axis, about
 
 
-class Board:
+class Board(Screen):
     """The terminal while values come: what is told, and below it the curve."""
 
     def __init__(self, waiting: str) -> None:
-        self.screen = Screen()
+        super().__init__()
         self.plot = Plot(waiting)
         self.drawn_s = 0.0
 
     def __enter__(self) -> Board:
-        self.screen.begin()
+        self.begin()
         return self
 
     def __exit__(self, *_: object) -> None:
-        self.screen.end()
-
-    def say(self, line: str) -> None:
-        self.screen.say(line)
-
-    def warn(self, line: str) -> None:
-        self.screen.warn(line)
+        self.end()
 
     def take(self, time_ms: int, event: Event) -> None:
         if event.name == "SHOW":
             self.plot.take(time_ms, event.value, bool(event.is_yes_no))
 
-    def draw(self, now_ms: int) -> None:
+    def draw_plot(self, now_ms: int) -> None:
         """Draw the curve as it is now, where the last frame is over."""
         if time.monotonic() - self.drawn_s >= FRAME_S:
             self.drawn_s = time.monotonic()
-            self.screen.draw(self.plot, now_ms)
+            self.draw(self.plot, now_ms)
 
 
 class Plot:

@@ -10,6 +10,7 @@ from time import monotonic
 from typing import TYPE_CHECKING
 
 from tiniscript.cli.inputs import shown
+from tiniscript.cli.streams import are_read
 from tiniscript.cli.texts import text
 
 if TYPE_CHECKING:
@@ -45,6 +46,20 @@ class Progress:
         if self._drawn:
             print("\r" + " " * len(self._drawn) + "\r", end="", file=sys.stderr, flush=True)
             self._drawn = ""
+
+
+class Doing:
+    """The line on the terminal that says what is done just now."""
+
+    def __init__(self, is_shown: bool = True) -> None:
+        self._is_shown = is_shown and are_read(sys.stderr)
+
+    def tell(self, said: str) -> None:
+        if self._is_shown:
+            print(f"\r\x1b[K{said}", end="", file=sys.stderr, flush=True)
+
+    def end(self) -> None:
+        self.tell("")
 
 
 MOMENT_S = 2.0
