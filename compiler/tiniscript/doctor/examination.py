@@ -174,7 +174,7 @@ def _hearing(
     tell("pings")
     missed = robot.missed
     for _ in range(PINGS):
-        robot.ping()
+        robot.ask("PING")
         robot.pause(PAUSE_MS)
     missed = robot.missed - missed
     after = robot.status()

@@ -6,10 +6,11 @@ tsc that has the port.
 
 from __future__ import annotations
 
-from typing import Any, Protocol
+from abc import ABC, abstractmethod
+from typing import Any
 
 from tiniscript.bytecode.image import isa_of
-from tiniscript.link.connection import LinkConnection
+from tiniscript.link.connection import LinkConnection, PendingRequest, Requester
 from tiniscript.link.frames import Frame, decoded, encoded
 from tiniscript.link.messages import BY_NAME, MAJOR, MINOR, written
 from tiniscript.link.outcomes import CANCELLED, LOST
@@ -23,33 +24,33 @@ CABLE_MS, RADIO_MS = 300, 700  # for an answer
 SHARED_MS = 4000  # for one through another tsc, with its own retries
 
 
-class Robot(Protocol):
-    """`asked` requests were made, of which `missed` were not answered at the first try.
+class Robot(ABC):
+    """`missed` is how many requests were not answered at the first try."""
 
-    A reply is None where none came.
-    """
+    missed = 0
 
-    asked: int
-    missed: int
+    @abstractmethod
+    def ask(self, name: str, tries: int = TRIES) -> Reply[SentReply] | None:
+        """Return the reply to HELLO, STATUS or PING; None where none came."""
 
-    def hello(self) -> Reply[SentReply] | None: ...
-
-    def status(self) -> StatusReply | None: ...
-
-    def ping(self) -> int | None:
-        """Return the robot's state."""
-        ...
-
+    @abstractmethod
     def pause(self, wait_ms: int) -> None: ...
 
+    def hello(self, tries: int = TRIES) -> Reply[SentReply] | None:
+        return self.ask("HELLO", tries)
 
-class WireRobot:
+    def status(self) -> StatusReply | None:
+        reply = self.ask("STATUS")
+        values = reply.values if reply is not None and reply.status == OK else None
+        return values if isinstance(values, StatusReply) else None
+
+
+class WireRobot(Robot):
     """The robot on a wire. `heard` are all bytes that came, `spoken` all that were sent."""
 
     def __init__(self, wire: Wire, nonce: int, kit: int, answer_ms: int = CABLE_MS) -> None:
         self.wire = wire
         self.answer_ms = answer_ms
-        self.asked = self.missed = 0
         self.heard = self.spoken = b""
         self._seq = 0
         self._epoch = 0
@@ -57,27 +58,12 @@ class WireRobot:
         self._hello = {"major": MAJOR, "minor": MINOR, "isa_major": isa[0],
                        "isa_minor": isa[1], "kit": kit, "nonce": nonce}  # fmt: skip
 
-    def hello(self, tries: int = TRIES) -> Reply[SentReply] | None:
-        return self._ask("HELLO", self._hello, tries)
-
-    def status(self) -> StatusReply | None:
-        reply = self._ask("STATUS", {})
-        is_told = reply is not None and reply.status == OK
-        return reply.values if is_told and isinstance(reply.values, StatusReply) else None  # type: ignore[union-attr]
-
-    def ping(self) -> int | None:
-        reply = self._ask("PING", {})
-        state = getattr(reply.values, "state", None) if reply and reply.status == OK else None
-        return state if isinstance(state, int) else None
-
     def pause(self, wait_ms: int) -> None:
         self.heard += self.wire.heard(wait_ms, wait_ms)
 
-    def _ask(
-        self, name: str, values: dict[str, int], tries: int = TRIES
-    ) -> Reply[SentReply] | None:
+    def ask(self, name: str, tries: int = TRIES) -> Reply[SentReply] | None:
         """Ask until an answer comes: a 0x00 goes before each try, as `docs/link.md` says."""
-        self.asked += 1
+        values = self._hello if name == "HELLO" else {}
         self._seq = (self._seq + 1) & 0xFF
         message = BY_NAME[name]
         frame = Frame(message.number, self._seq, self._epoch, written(message.request, values))
@@ -109,36 +95,21 @@ class WireRobot:
         return None
 
 
-class SharedRobot:
+class SharedRobot(Robot):
     """The robot behind the connection of another tsc, which does the retries."""
 
     def __init__(self, line: LinkConnection) -> None:
         self.line = line
-        self.asked = self.missed = 0
-
-    def hello(self) -> Reply[SentReply] | None:
-        return self._done(lambda session: session.hello())
-
-    def status(self) -> StatusReply | None:
-        reply = self._done(lambda session: session.status())
-        values = reply.values if reply is not None and reply.status == OK else None
-        return values if isinstance(values, StatusReply) else None
-
-    def ping(self) -> int | None:
-        reply = self._done(lambda session: session.ping())
-        state = getattr(reply.values, "state", None) if reply and reply.status == OK else None
-        return state if isinstance(state, int) else None
 
     def pause(self, wait_ms: int) -> None:
         self.line.event(wait_ms / 1000)
 
-    def _done(self, make: Any) -> Reply[SentReply] | None:
-        def limited(session: Any) -> Any:
-            request = make(session)
+    def ask(self, name: str, tries: int = TRIES) -> Reply[SentReply] | None:
+        def limited(session: Requester) -> PendingRequest[Any]:
+            request: PendingRequest[Any] = getattr(session, name.lower())()
             request.limit_ms = SHARED_MS
             return request
 
-        self.asked += 1
         reply: Reply[SentReply] = self.line.wait(self.line.do(limited))
         if reply.status in (LOST, CANCELLED):
             self.missed += 1
