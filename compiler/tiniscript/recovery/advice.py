@@ -137,7 +137,7 @@ def _parts(
             begin = k + 1
             continue
         tokens = [each.token for each in part]
-        while part:
+        while 0 < len(part) <= lines.LONGEST:
             size = whole(tokens, names)
             rest = part[size:]
             if not size and (found := _said_call(tokens, names)):
@@ -207,7 +207,10 @@ def _advice(row: Row, gaps: _Gaps) -> Advice:
         values["fix"] = values["fix"][len(part.call) :].lstrip(" ")
     start, end = gaps.span("s") if "s" in row.pattern.of_labels.groupindex else (1, len(part.spans))
     span = Span(part.spans[start].start, part.spans[end - 1].end)
-    found = Diagnostic(CODES[row.code], span, values, place)
+    code = CODES[row.code]
+    if code is codes.OTHER_LANGUAGE and values["found"].upper() == values["right"]:
+        code, values = codes.MISSING_OPEN, {**values, "word": values["right"], "words": ""}
+    found = Diagnostic(code, span, values, place)
     if "h" in row.pattern.of_labels.groupindex:
         place = Span(part.spans[gaps.span("h")[0]].start, part.behind.end)
         question = values.get("asked") or values.get("question") or "TRUE"
@@ -323,7 +326,7 @@ def _worded(gaps: _Gaps, is_not: bool = False) -> Worded:
     row = gaps.part.row[start - 1 : end - 1]
     names = gaps.part.names
     is_bare = gaps.part.row[end - 1 : end] == [] or gaps.part.row[end - 1].text != ")"
-    is_order = is_bare and gaps["head"] == "UNTIL"
+    is_order = is_bare and gaps["head"] == "UNTIL" and not gaps.part.tokens
     is_order |= is_bare and any("|@start|" in names.label(each) for each in row)
     is_read = is_order or bool(_asked(gaps, "s"))
     found = None if is_read else worded([*[made("NOT")] * is_not, *row], names)

@@ -129,6 +129,7 @@ ADVICE = """
 ^ c=@cmd s=when @word* no @word* wall $ | TS071 | found={s}; fix=IF({distance} > 10);{c};ENDIF | F(2, 80) cuando no hay pared => fix=IF(DISTANCE > 10);F(2, 80);ENDIF
 ^ c=@cmd s=when @word* wall $ | TS071 | found={s}; fix=IF({distance} < 10);{c};ENDIF | S si hay una pared => fix=IF(DISTANCE < 10);S;ENDIF
 ^ c=@unasked s=HASTA|UNTIL @word* n=@num CM|CENTIMETROS? $ | TS102 | found={s}; right=UNTIL; usage={c} UNTIL({distance} < {n}) | F(2, 80) hasta 30 cm => usage=F(2, 80) UNTIL(DISTANCE < 30)
+^ c=@unasked h=HASTA|UNTIL s=light $ | TS135 | word={head}; question={like}; another={orlike?} | F(2, 60) UNTIL dark => another=LIGHT_R < 500
 ^ c=@unasked s=HASTA|UNTIL @word+ $ | TS102 | found={s}; right=UNTIL; usage={c} UNTIL({distance} < 10) | F(1, 80) hasta la pared => usage=F(1, 80) UNTIL(DISTANCE < 10)
 # which way, and what comes next
 ^ c=@move AL REVES $ | TS085 | other={other} | F(1, 80) al reves => other=B(1, 80)

@@ -301,10 +301,7 @@ class _Matching:
                 is_before = outer.word == "WHEN" and outer.line + 1 < block.line
                 outer.last = block.line - 1 if is_before else k
             return True
-        if self.open or self.has_unread:
-            return False
-        self.edit(k, item, 1)
-        return line.is_rewritten and len(line.items or ()) == 1
+        return False
 
     # -- the end of a line: a body behind its header ends there, unless an end is left for it ----
 

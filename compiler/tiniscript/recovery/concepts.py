@@ -152,7 +152,7 @@ def concepts(word: str) -> tuple[Meaning, ...]:
     in_two = _in_two_words(word)
     if in_two:
         return (Meaning(in_two, KNOWN),)
-    close = nearest(word, WORDS) if len(word) > 3 else None
+    close = nearest(word, WORDS) if len(word) > 2 else None
     if close:
         return (Meaning(close, NEAR),)
     return ()
@@ -400,15 +400,27 @@ class Names:
 
 
 def _begun(lines: Sequence[Sequence[Lexeme]]) -> dict[str, str]:
-    """Return the orders that are the beginnings of blocks, since their ends are there: PARA."""
-    found = {}
+    """Return the orders that are the beginnings of blocks, since their ends are there: PARA.
+
+    So is `PARA(3)` before a bare end that no other header is left for.
+    """
+    found: dict[str, str] = {}
+    counted: list[str] = []
+    left = 0
     for line in lines:
-        for one, other in pairwise([made(";"), *line]):
+        for k, (one, other) in enumerate(pairwise([made(";"), *line])):
             pair = [one.text, other.text] if said_of(one.text, "end") else [other.text]
             block = ENDED.get(concept_of("_".join(pair)) or "", "")
             word = _END.sub("", "_".join(pair), count=1)
             if block and concept_of(word) in DONE:
                 found[word] = block
+            is_called = k + 1 < len(line) and line[k + 1].text == "("
+            if is_called and said_of(other.text, "count") and concept_of(other.text):
+                counted.append(other.text)
+            left += (concept_of(other.text) or other.text) in BLOCK_ENDS
+            left -= bool(said_of(other.text, "end") or other.text in ENDED)
+    if left < 0:
+        found |= dict.fromkeys(counted, "LOOP")
     return found
 
 

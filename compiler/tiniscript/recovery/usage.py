@@ -13,7 +13,7 @@ from itertools import pairwise
 
 from tiniscript.base.kit import Kit
 from tiniscript.base.source import Edit, Source, Span
-from tiniscript.base.words import BLOCK_ENDS, UNIT_OF, WAYS, WORDS, said_instead
+from tiniscript.base.words import BLOCK_ENDS, QUESTION, UNIT_OF, WAYS, WORDS, said_instead
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic, Repair
 from tiniscript.recovery import lines
@@ -190,7 +190,7 @@ class _Usage:
             return told._replace(code=codes.OTHER_LANGUAGE, values=values) if is_said else told
         if instead := said_instead(first):
             return found._replace(values={**found.values, **instead})
-        is_name = not (self.command(first) or said_of(first, "turn"))
+        is_name = not (self.command(first) or said_of(first, "turn") or said_of(first, "end"))
         if len(tokens) == 2 and tokens[1].kind is NUMBER and is_name:
             fix = f"{first} = {tokens[1].text}"
             said = self.offered(codes.OTHER_ASSIGNMENT, piece, fix)
@@ -210,10 +210,10 @@ class _Usage:
     ) -> Diagnostic | None:
         """Words that say an instruction, or several, or none."""
         meant = next((each for each in words if self._is_order(each)), "")
-        if said := self.orders(found, piece, meant):
-            return said
-        switched = (*words, "_".join(words[:2]))  # `turn on the led`
-        if any(said_of(each, "on") or said_of(each, "off") for each in switched):
+        if told := self.orders(found, piece, meant):
+            return told
+        said = (*words, "_".join(words[:2]))  # `turn on the led`, `u turn`
+        if any(said_of(each, "on") or said_of(each, "off") for each in said):
             return Diagnostic(codes.SWITCH_WHAT, found.span)
         if any(map(self.is_button, words)) and [each.text for each in tokens[1:2]] != ["("]:
             return self.no_button(found)
@@ -231,11 +231,13 @@ class _Usage:
                 (self.command(each) for each in words if self.command(each) in ("L", "R")), ""
             )
             values = {"word": way, "way": "left" if way == "L" else "right", "usage": _usage(way)}
+            angle = next((its for its in map(_angle, said) if its), "")
+            is_timed = any(said_of(each, "unit") for each in words)
             turns = orders(tokens, self.names)
-            if len(turns) == 1 and turns[0].is_side_free and len(turns[0].samples) < 2:
-                values = {f"to_{side}": word + turns[0].text[1:] for side, word in _SIDES}
-            elif not way and (angle := next((its for its in map(_angle, words) if its), "")):
+            if angle and not way and not is_timed:
                 values = {f"to_{side}": f"{word}({angle} DEG, 60)" for side, word in _SIDES}
+            elif len(turns) == 1 and turns[0].is_side_free and len(turns[0].samples) < 2:
+                values = {f"to_{side}": word + turns[0].text[1:] for side, word in _SIDES}
             return Diagnostic(codes.WHICH_WAY, found.span, values)
         concept = self.command(words[0] if words else "") or (self.command(meant) if meant else "")
         is_order = concept in WORDS and WORDS[concept].role not in _NO_ORDER
@@ -358,7 +360,7 @@ class _Usage:
         known = WORDS.get(word)
         is_alone = len(self.tokens(piece)) == 1 and known is not None and bool(known.arguments)
         values = {**found.values, "example": known.example if known and is_alone else ""}
-        if "usage" in values and word in BLOCK_ENDS:
+        if known:
             values["usage"] = self.usage(self.tokens(piece), word)
         return found._replace(values=values)
 
@@ -642,7 +644,9 @@ def _angle(word: str) -> str:
 
 def _usage(word: str) -> str:
     word = BLOCK_ENDS.get(ENDED.get(word, ""), word) if word in ENDED else word
-    return (WORDS[word].usage if word in WORDS else "") or word
+    known = WORDS.get(word)
+    is_asking = known is not None and [each.name for each in known.arguments] == [QUESTION.name]
+    return (known.example if is_asking else known.usage) if known else word
 
 
 _SAYS: dict[Code, Callable[[_Usage, Diagnostic], Diagnostic | None]] = {

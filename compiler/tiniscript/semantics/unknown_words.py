@@ -113,7 +113,7 @@ def meant_value(scope: Scope, span: Span, name: str, is_assigned: bool) -> str:
     return POWER_WORDS.get(name, "") if is_assigned and before == "=" else ""
 
 
-_HEADER = re.compile(r"(?i)\b(IF|ELSEIF|UNTIL|WHILE)\s*\(\s*(NOT\s+)?$")
+_HEADER = re.compile(r"(?i)\b(IF|ELSEIF|UNTIL|WHILE|WHEN)\s*\(\s*(NOT\s+)?$")
 
 
 def _wanted(scope: Scope, name: str) -> list[str]:
