@@ -102,6 +102,16 @@ def replace(path: Path, data: bytes, mode: int | None = None, is_lasting: bool =
         raise
 
 
+def keep(path: Path, data: bytes) -> bool:
+    """Put data into a file of ours, in a folder of ours; return whether that was possible."""
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        replace(path, data)
+    except (OSError, ValueError):
+        return False
+    return True
+
+
 def _refuse_foreign_links(path: Path) -> None:
     """Raise PermissionError where another user's link, in a folder of many, is on the way.
 

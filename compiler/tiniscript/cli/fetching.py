@@ -144,11 +144,7 @@ def run(
 def _failure(doing: str, log: str) -> CommandError:
     """Return the sentence for a program that has failed, and keep what it has said."""
     kept = files.cache_folder() / LOG
-    try:
-        kept.parent.mkdir(parents=True, exist_ok=True)
-        files.replace(kept, log.encode("utf-8", "replace"))
-    except OSError:
-        pass  # then the sentence has to do
+    files.keep(kept, log.encode("utf-8", "replace"))  # else the sentence has to do
     kinds = (("fetch_no_room", _NO_ROOM), ("fetch_offline", _OFFLINE))
     key = next((key for key, pattern in kinds if pattern.search(log)), "fetch_failed")
     why = shown(children.reason(log))

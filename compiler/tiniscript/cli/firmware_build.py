@@ -158,11 +158,7 @@ def _failure(why: CannotBuild, values: dict[str, str]) -> CommandError:
     """Return the sentence for a failed build, and save the build's output."""
     log = ready.cache() / LOG
     if why.log:
-        try:
-            log.parent.mkdir(parents=True, exist_ok=True)
-            files.replace(log, why.log.encode("utf-8", "replace"))
-        except OSError:
-            pass  # then the sentence has to do
+        files.keep(log, why.log.encode("utf-8", "replace"))  # else the sentence has to do
     how = install_advice.command(install_advice.FIRMWARE)
     said = {"why": shown(why.said), "log": shown(str(log)), "how": how}
     return CommandError(2, f"flash_{why.why}", **said, **values)

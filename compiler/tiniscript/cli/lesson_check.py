@@ -27,7 +27,7 @@ from tiniscript.cli import compiling, inputs, outputs
 from tiniscript.cli.errors import CommandError, not_installed
 from tiniscript.cli.options import whole_number
 from tiniscript.cli.program_files import Found, in_folder, read
-from tiniscript.cli.robot.simulator_options import check_picture
+from tiniscript.cli.robot.simulator_options import check_picture, draw_picture
 from tiniscript.cli.spreadsheet import as_csv
 from tiniscript.cli.texts import Said, text
 from tiniscript.diagnostics.rendering import message
@@ -91,7 +91,7 @@ def check(options: Namespace, lesson: Lesson, language: str) -> int:
     if options.csv is not None:
         outputs.write(Path(options.csv), _rows(marks, language), "unwritable_rows")
     if options.plot is not None and marks[0].run is not None:
-        outputs.write(Path(options.plot), _picture(marks[0].run, language), "unwritable_picture")
+        draw_picture(options, marks[0].run.robot, language)
     if options.json:
         print(json.dumps([_data(mark) for mark in marks], indent=2, ensure_ascii=False))
     elif _is_folder(options):
@@ -283,14 +283,6 @@ def _rows(marks: Sequence[Mark], language: str) -> bytes:
         return mark.name, verdict, mark.seed or "", mark.said[0][1] if mark.said else ""
 
     return as_csv("lesson", language, map(cells, marks))
-
-
-def _picture(run: Run, language: str) -> bytes:
-    from tiniscript.virtual.picture import png
-
-    robot = run.robot
-    title = f"{robot.profile.labels[language]['robot']} - {robot.world.labels[language]}"
-    return png(robot.world, robot.driving.hull, robot.driving.corners, robot.pose, title)
 
 
 __all__ = ("FAILED", "MISTAKES", "NO_PROGRAM", "PASSED", "UNREADABLE", "Mark", "check")

@@ -117,12 +117,7 @@ def _labels(table: Table, most: int = LABEL_CHARACTERS) -> dict[str, str]:
     """Return a text in each language that it is there in; one must be."""
     found: ByLanguage[str] = ByLanguage()
     for language in [each for each in languages() if table.has(each)] or [SOURCE]:
-        label = table.text(language, f'{language} = "…"')
-        if label is not None and (
-            not label.strip() or len(label) > most or not label.isprintable()
-        ):
-            table.complain("label_bad", language, most=str(most))
-        found[language] = label or ""
+        found[language] = table.label(language, most, f'{language} = "…"') or ""
     return found
 
 

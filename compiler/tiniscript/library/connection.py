@@ -23,7 +23,7 @@ from tiniscript.library.known_kits import of_kit
 from tiniscript.library.programs import Language, Program, profile_of, program_of
 from tiniscript.library.refusing import refusal
 from tiniscript.library.runs import whole, within
-from tiniscript.link import known_ports, port_names, ports
+from tiniscript.link import known_ports, ports
 from tiniscript.link.messages import STATE_RUNNING
 from tiniscript.link.names import saved_name
 from tiniscript.link.payloads import ReceiptReply
@@ -323,9 +323,9 @@ def connect(
 
 def _usual_port(language: Language) -> str:
     """Return the last used port, else that of the only virtual robot. Raises RobotError."""
+    if (there := opening.last_port()) is not None:
+        return there
     last = known_ports.known().last
-    if last is not None and port_names.is_there(last) and not directory.is_gone(last):
-        return last
     running = directory.for_all()
     if len(running) == 1:
         return running[0].address

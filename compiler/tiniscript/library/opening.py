@@ -15,7 +15,7 @@ from typing import IO, TYPE_CHECKING
 
 from tiniscript.base.source import printable
 from tiniscript.library.errors import RobotError
-from tiniscript.link import errors, known_ports
+from tiniscript.link import errors, known_ports, port_names
 from tiniscript.link.connection import LinkConnection
 from tiniscript.link.errors import PortError
 from tiniscript.link.port_names import is_address, is_at_broker, is_name
@@ -129,6 +129,13 @@ def remember(port: str, name: str, is_used: bool = True) -> None:
     time."""
     if not is_at_broker(port) and not _is_virtual(port):
         known_ports.remember(port, name, is_used)
+
+
+def last_port() -> str | None:
+    """Return the last used port, unless it is known that it is not there."""
+    last = known_ports.known().last
+    is_there = last is not None and port_names.is_there(last) and not directory.is_gone(last)
+    return last if is_there else None
 
 
 def _is_virtual(port: str) -> bool:

@@ -124,12 +124,9 @@ def from_json(text: str) -> Map:
 def remember(image: bytes, places: Map) -> None:
     """Keep a map in the cache. If the cache cannot be written, the map is not kept."""
     path = _path(images.checksum(image))
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        files.replace(path, as_json(places).encode(errors="backslashreplace"))
-        _forget_oldest(path.parent)
-    except OSError:
-        pass
+    if files.keep(path, as_json(places).encode(errors="backslashreplace")):
+        with suppress(OSError):
+            _forget_oldest(path.parent)
 
 
 def recall(checksum: int) -> Map | None:

@@ -26,10 +26,7 @@ def remember(path: str, kit: int) -> None:
     if known[:1] == [entry]:
         return
     kept = [entry, *(each for each in known if each != entry)][:KEPT]
-    with contextlib.suppress(OSError, ValueError):
-        target = _path()
-        target.parent.mkdir(parents=True, exist_ok=True)
-        files.replace(target, json.dumps(kept).encode())
+    files.keep(_path(), json.dumps(kept).encode())
 
 
 def recall(kit: int) -> Robot | None:

@@ -189,10 +189,7 @@ def _read_language(table: Table, language: str, devices: Sequence[Device]) -> di
         if name is None:
             labels.not_in_kit(key, tuple(known))
             continue
-        label = labels.text(key)
-        if label is None:
-            continue
-        if not label.strip() or len(label) > LABEL_CHARACTERS or not label.isprintable():
-            labels.complain("label_bad", key, most=str(LABEL_CHARACTERS))
-        found[name] = label
+        label = labels.label(key, LABEL_CHARACTERS)
+        if label is not None:
+            found[name] = label
     return found

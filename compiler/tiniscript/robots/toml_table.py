@@ -76,6 +76,13 @@ class Table:
         self.expect("text", key, value)
         return None
 
+    def label(self, key: str, most: int, example: str = "") -> str | None:
+        """Return a text for people, at most `most` characters long."""
+        value = self.text(key, example)
+        if value is not None and not (value.strip() and len(value) <= most and value.isprintable()):
+            self.complain("label_bad", key, most=str(most))
+        return value
+
     def choice(self, key: str, choices: Sequence[str], code: str = "not_one_of") -> str:
         """Return one of `choices`, or an empty text."""
         value = self.text(key, f'{key} = "{choices[0]}"')

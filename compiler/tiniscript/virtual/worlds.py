@@ -171,12 +171,9 @@ def _labels(table: Table, name: str) -> dict[str, str]:
     """Return the world's name by language, or `name` in each where it has none."""
     written: ByLanguage[str] = ByLanguage()
     for language in languages():
-        label = table.text(language)
-        if label is None:
-            continue
-        if not label.strip() or len(label) > LABEL_CHARACTERS or not label.isprintable():
-            table.complain("label_bad", language, most=str(LABEL_CHARACTERS))
-        written[language] = label
+        label = table.label(language, LABEL_CHARACTERS)
+        if label is not None:
+            written[language] = label
     table.finish()
     return written or ByLanguage.fromkeys(languages(), name)
 

@@ -26,8 +26,9 @@ from tiniscript.doctor.diagnosis import Diagnosis, Doors, Question, diagnosed
 from tiniscript.doctor.examination import Expected
 from tiniscript.doctor.findings import CAUSES, NOTE, Finding
 from tiniscript.doctor.system import ThisComputer
+from tiniscript.library import opening
 from tiniscript.library.known_kits import of_kit, shipped_of_kit
-from tiniscript.link import known_ports, port_names, ports
+from tiniscript.link import ports
 from tiniscript.link.connection import LinkConnection
 from tiniscript.link.keys import KeyFile
 from tiniscript.link.messages import RESETS
@@ -72,13 +73,10 @@ def _question(options: Namespace, language: str, told: dict[str, str]) -> Questi
             raise CommandError(2, "virtual_and_port")
         port = running_address(options)
     port = None if port is None else inputs.port(port)
-    last = known_ports.known().last
-    if last is not None and (not port_names.is_there(last) or directory.is_gone(last)):
-        last = None
     kit = None if options.robot is None else robot.kit.fingerprint
     return Question(
         port,
-        last,
+        opening.last_port(),
         baud_of(options, robot, language),
         Expected(kit, robot.name, _name_of_kit, _has_key, told.update),
         int.from_bytes(os.urandom(4), "little"),

@@ -23,7 +23,7 @@ from tiniscript.library import opening
 from tiniscript.library.client import Client
 from tiniscript.library.errors import TiniScriptError
 from tiniscript.library.known_kits import shipped_of_kit
-from tiniscript.link import known_ports, port_names
+from tiniscript.link import known_ports
 from tiniscript.link.connection import PendingRequest, Requester, reason_of
 from tiniscript.link.errors import PortError
 from tiniscript.link.messages import OWNED, STATUSES, YOURS
@@ -271,9 +271,9 @@ def _chosen(options: Namespace, language: str) -> str:
             raise CommandError(2, "only_virtual", option=f"--{name}")
     if port is not None:
         return inputs.port(port)
+    if (there := opening.last_port()) is not None:
+        return there
     last = known_ports.known().last
-    if last is not None and port_names.is_there(last) and not directory.is_gone(last):
-        return last
     virtual = directory.for_all() if can_bring else directory.running()
     if len(virtual) == 1:
         return virtual[0].address

@@ -11,7 +11,8 @@ from typing import NamedTuple
 
 from tiniscript.cli.robot.connect import port_failure
 from tiniscript.cli.texts import text
-from tiniscript.link import known_ports, ports
+from tiniscript.library import opening
+from tiniscript.link import ports
 from tiniscript.link.errors import PortError
 from tiniscript.link.port_names import (
     BLE,
@@ -19,7 +20,6 @@ from tiniscript.link.port_names import (
     canonical,
     is_bluetooth,
     is_network_name,
-    is_there,
     name_in,
     same_for_all,
 )
@@ -131,7 +131,6 @@ def to_stop(is_virtual: bool = False) -> list[str]:
     They include that of the last used robot, which may drive on without any command.
     """
     found = in_use(is_virtual)
-    last = known_ports.known().last
-    if not is_virtual and last is not None and is_there(last) and not directory.is_gone(last):
-        found.append(last)
+    last = None if is_virtual else opening.last_port()
+    found += [last] if last is not None else []
     return list({same_for_all(port): port for port in found}.values())
