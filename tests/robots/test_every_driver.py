@@ -10,7 +10,7 @@ from tests.support.casefile import ROOT
 from tests.wiring.test_wiring import DEVICES, DISCS, MOTORS, robot_with, with_discs
 from tiniscript import compile_text, robots
 from tiniscript.base.kit import Device
-from tiniscript.codegen.sketch.wiring import Plan
+from tiniscript.codegen.sketch.wiring import SketchPlan
 from tiniscript.codegen.sketch.writing import sketch_of
 from tiniscript.robots import firmware
 from tiniscript.robots.driver import Driver, Part, SensorDriver
@@ -61,7 +61,7 @@ def test_a_driver_that_a_sketch_does_not_know_is_named() -> None:
         )
         with pytest.raises(LookupError, match="robots/drivers has no driver new"):
             firmware.header([robot._replace(board=board)], "a test.")
-        plan = Plan(robot._replace(board=board), str, is_exact=True)
+        plan = SketchPlan(robot._replace(board=board), str, is_exact=True)
         with pytest.raises(LookupError, match="robots/drivers has no driver new"):
             if board.sensors:
                 plan.reader(0, "d0", "readD0")

@@ -13,6 +13,8 @@ from typing import ClassVar, NamedTuple, Protocol
 
 from tiniscript.base.fixed_point import ONE
 from tiniscript.base.kit import Device
+from tiniscript.robots.boards import CHIPS
+from tiniscript.robots.ports import ESP32S
 from tiniscript.robots.profile import Robot, Wiring
 
 SIDES = ("left", "right")
@@ -101,48 +103,63 @@ class PinTexts(Protocol):
     def count(self, pin: int) -> str: ...
 
 
-class Part(Protocol):
-    """What drivers add to the header of a robot: `firmware.Part`."""
+class Part:
+    """What drivers add to the header of a robot, for one chip."""
+
+    def __init__(self, robot: Robot, pins: PinTexts) -> None:
+        self.robot = robot
+        self.pins = pins
+        self.servos: list[int] = []
+        self.ultrasonics: list[str] = []
+        self.off: list[str] = []  # lines that a stop runs for actuators
+        self.begin: list[str] = []
 
     @property
-    def pins(self) -> PinTexts: ...
+    def is_esp32(self) -> bool:
+        return self.robot.board.chip in ESP32S
 
-    servos: list[int]
-    ultrasonics: list[str]
-    off: list[str]  # lines that a stop runs for actuators
-    begin: list[str]
+    def analog_read(self, wiring: Wiring) -> str:
+        """Return the line that puts what the converter counts into `*value`."""
+        channel = wiring.pins["pin"] - (CHIPS[self.robot.board.chip].first_analog or 0)
+        return f"      if (!analog_read({channel}, value)) return false;"
 
-    @property
-    def is_esp32(self) -> bool: ...
-
-    def analog_read(self, wiring: Wiring) -> str: ...
-
-    def part_of_range(self, device: Device, first: int, last: int) -> str: ...
-
-
-class Lines(Protocol):
-    @property
-    def begin(self) -> list[str]: ...
-
-    @property
-    def off(self) -> list[str]: ...
+    @staticmethod
+    def part_of_range(device: Device, first: int, last: int) -> str:
+        """Return `value` as the part of `first` to `last` that it is of an actuator's range."""
+        return f"part_of_range(value, {device.low // ONE}, {device.high // ONE}, {first}, {last})"
 
 
-class Plan(Protocol):
-    """What drivers add to a sketch: `sketch.wiring.Plan`."""
+class Plan:
+    """What drivers add to a sketch: lines, in which `$words` stand for names."""
 
-    robot: Robot
+    def __init__(self, robot: Robot, is_exact: bool) -> None:
+        self.robot = robot
+        self.is_exact = is_exact
+        self.constants: list[str] = []  # pins, and comments
+        self.begin: list[str] = []
+        self.off: list[str] = []  # what a stop turns off besides the motors
+        self.servo_pins: list[str] = []
 
-    @property
-    def parts(self) -> Lines: ...
+    def pin(self, name: str, number: int, mode: str = "", beside: str = "") -> str:
+        """Add a pin, and return what it is called."""
+        note = f"  // {beside}" if beside else ""
+        written = CHIPS[self.robot.board.chip].pin_name(number)
+        self.constants.append(f"const int {name} = {written};{note}")
+        if mode:
+            self.begin.append(f"pinMode({name}, {mode});")
+        return name
 
-    def pin(self, name: str, number: int, mode: str = "", beside: str = "") -> str: ...
+    def servo(self, pin: str) -> int:
+        self.servo_pins.append(pin)
+        return len(self.servo_pins) - 1
 
-    def servo(self, pin: str) -> int: ...
+    def value(self, thousandths: str) -> str:
+        return f"$exactly({thousandths})" if self.is_exact else f"({thousandths}) / 1000.0"
 
-    def value(self, thousandths: str) -> str: ...
-
-    def part_of(self, device: Device, first: int, last: int) -> str: ...
+    @staticmethod
+    def part_of(device: Device, first: int, last: int) -> str:
+        """Return `value` as the part of `first` to `last` that it is of an actuator's range."""
+        return f"$part_of(value, {device.low // ONE}, {device.high // ONE}, {first}, {last})"
 
 
 class Driver(ABC):

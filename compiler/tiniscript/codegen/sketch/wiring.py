@@ -3,42 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from typing import NamedTuple
 
-from tiniscript.base.fixed_point import ONE
 from tiniscript.base.kit import Device
-from tiniscript.robots.boards import CHIPS
+from tiniscript.robots.driver import Plan
 from tiniscript.robots.drivers import actuator_of, motors_of, sensor_of
 from tiniscript.robots.profile import Robot, Wiring
 
 
-class Parts(NamedTuple):
-    """Lines of the sketch; `$words` stand for names. `constants` are pins, and comments."""
-
-    constants: list[str]
-    begin: list[str]
-    off: list[str]  # what a stop turns off besides the motors
-    functions: dict[str, str]
-    servo_pins: list[str]
-
-
-class Plan:
+class SketchPlan(Plan):
     """Writes what the program uses of a robot."""
 
     def __init__(self, robot: Robot, label: Callable[[str], str], is_exact: bool) -> None:
-        self.robot = robot
+        super().__init__(robot, is_exact)
         self.label = label
-        self.is_exact = is_exact
-        self.chip = CHIPS[robot.board.chip]
-        self.parts = Parts([], [], [], {}, [])
-
-    def pin(self, name: str, number: int, mode: str = "", beside: str = "") -> str:
-        """Add a pin, and return what it is called."""
-        note = f"  // {beside}" if beside else ""
-        self.parts.constants.append(f"const int {name} = {self.chip.pin_name(number)};{note}")
-        if mode:
-            self.parts.begin.append(f"pinMode({name}, {mode});")
-        return name
+        self.functions: dict[str, str] = {}
 
     # -- motors
 
@@ -46,12 +24,8 @@ class Plan:
         wiring = self.robot.board.motors
         driver = motors_of(wiring)
         body = "\n".join(driver.sketch(self, wiring))
-        self.parts.functions["motors"] = f"void $motors(int left, int right) {{\n{body}\n}}"
-        self.parts.functions["drive_motor"] = driver.drive
-
-    def servo(self, pin: str) -> int:
-        self.parts.servo_pins.append(pin)
-        return len(self.parts.servo_pins) - 1
+        self.functions["motors"] = f"void $motors(int left, int right) {{\n{body}\n}}"
+        self.functions["drive_motor"] = driver.drive
 
     # -- sensors
 
@@ -70,20 +44,12 @@ class Plan:
         body = "\n".join(f"  {line}" for line in (*lines, f"return {name};"))
         return f"{self.kind(sensor)} {function}() {{\n{body}\n}}"
 
-    def value(self, thousandths: str) -> str:
-        return f"$exactly({thousandths})" if self.is_exact else f"({thousandths}) / 1000.0"
-
     # -- actuators
 
     def setter(self, actuator: int, function: str) -> str:
         device, wiring = self.robot.kit.actuators[actuator], self.robot.board.actuators[actuator]
         beside = self.label(device.name)
         return actuator_of(device.kind, wiring).sketch(self, device, wiring, function, beside)
-
-    @staticmethod
-    def part_of(device: Device, first: int, last: int) -> str:
-        """Return `value` as the part of `first` to `last` that it is of an actuator's range."""
-        return f"$part_of(value, {device.low // ONE}, {device.high // ONE}, {first}, {last})"
 
 
 def is_count(device: Device, wiring: Wiring) -> bool:

@@ -14,7 +14,7 @@ from tiniscript.codegen.sketch import helpers, numbers
 from tiniscript.codegen.sketch.expressions import FUNCTIONS, Expressions, is_float
 from tiniscript.codegen.sketch.names import IDENTIFIERS, Names, called, said, with_locals
 from tiniscript.codegen.sketch.statements import Comment, Named, Statements, harmless
-from tiniscript.codegen.sketch.wiring import Plan, is_count, is_small
+from tiniscript.codegen.sketch.wiring import SketchPlan, is_count, is_small
 from tiniscript.robots.profile import Robot
 from tiniscript.semantics import ir
 from tiniscript.semantics.optimizer import constant
@@ -88,7 +88,7 @@ class _Sketch:
             [names.of(each) for each in program.variables],
         )
         self.write = Expressions(self.use, self.is_exact, self.named.variables, self.named.sensors)
-        self.plan = Plan(robot, self.label, self.is_exact)
+        self.plan = SketchPlan(robot, self.label, self.is_exact)
         self.functions = {**helpers.HELPERS, **numbers.NUMBERS}
         self.functions["to_ms"] = helpers.TO_MS[self.is_exact]
         self.functions["servo_pulse"] = helpers.SERVO_PULSE
@@ -160,7 +160,7 @@ class _Sketch:
         self, rows: Statements, main: list[str], repeated: list[str], procedures: list[str]
     ) -> str:
         """Return the sketch; what the program uses is known by now."""
-        is_ping, parts = self.program.start == "PING", self.plan.parts
+        is_ping, parts = self.program.start == "PING", self.plan
         if not is_ping:
             self.plan.motors()
         own = {
@@ -213,13 +213,13 @@ class _Sketch:
 
     def begin(self) -> list[str]:
         """Return what setup() does first."""
-        lines = list(self.plan.parts.begin)
+        lines = list(self.plan.begin)
         if self.needs_serial():
             lines.append(f"Serial.begin({self.robot.board.baud});")
         lines.append("pinMode($START_BUTTON_$PIN, INPUT_PULLUP);")
         self.plan.pin("$BUZZER_$PIN", self.robot.board.buzzer)
         self.plan.pin("$START_BUTTON_$PIN", self.robot.board.start_button)
-        if self.plan.parts.servo_pins:
+        if self.plan.servo_pins:
             lines.append("$begin_servos();")
         self.needed["due"] = None
         if self.program.start == "SB":
@@ -235,7 +235,7 @@ class _Sketch:
         )
 
     def halt(self) -> str:
-        lines = ["$stop_motors();", "noTone($BUZZER_PIN);", *self.plan.parts.off, "while (true) {"]
+        lines = ["$stop_motors();", "noTone($BUZZER_PIN);", *self.plan.off, "while (true) {"]
         body = "\n".join(f"  {line}" for line in lines)
         return f"void $halt() {{\n{body}\n  }}\n}}"
 
@@ -285,10 +285,10 @@ class _Sketch:
         return "\n".join(lines) + "\n"
 
     def constants(self) -> str:
-        if not self.plan.parts.constants:
+        if not self.plan.constants:
             return ""
         head = f"// {self.says('pins', robot=self.label('robot'))}"
-        return "\n".join([head, *self.plan.parts.constants]) + "\n"
+        return "\n".join([head, *self.plan.constants]) + "\n"
 
     def number(self) -> str:
         return self.commented(self.says("Number"), self.in_language(numbers.STRUCT.rstrip()))
@@ -308,8 +308,8 @@ class _Sketch:
         for key, (note, code) in helpers.SHARED.items():
             if key in self.needed:
                 pieces.append((f"// {self.says(note)}\n" if note else "") + code)
-        if self.plan.parts.servo_pins:
-            pieces.append(helpers.servo_shared(self.plan.parts.servo_pins))
+        if self.plan.servo_pins:
+            pieces.append(helpers.servo_shared(self.plan.servo_pins))
         if self.write.kept:
             kept = ", ".join(f"first{k + 1}" for k in range(self.write.kept))
             pieces.append(f"// {self.says('shared_first')}\n$N {kept};")

@@ -24,9 +24,9 @@ class DigitalActuator(ActuatorDriver):
     def sketch(self, plan: Plan, device: Device, wiring: Wiring, function: str, beside: str) -> str:
         pin = plan.pin(f"{device.name}_$PIN", wiring.pins["pin"], "OUTPUT", beside)
         on, off = ("LOW", "HIGH") if wiring.settings["yes_is_low"] else ("HIGH", "LOW")
-        plan.parts.off.append(f"digitalWrite({pin}, {off});")
+        plan.off.append(f"digitalWrite({pin}, {off});")
         if off == "HIGH":  # before the pin is an output, so that the part stays off
-            plan.parts.begin.insert(-1, f"digitalWrite({pin}, {off});")
+            plan.begin.insert(-1, f"digitalWrite({pin}, {off});")
         return f"void {function}(bool isOn) {{\n  digitalWrite({pin}, isOn ? {on} : {off});\n}}"
 
     def shape(self, wiring: Wiring, device: Device | None, sees: str, pin_volts: int) -> Shape:

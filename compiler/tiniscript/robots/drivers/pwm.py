@@ -23,7 +23,7 @@ class PwmActuator(ActuatorDriver):
 
     def sketch(self, plan: Plan, device: Device, wiring: Wiring, function: str, beside: str) -> str:
         pin = plan.pin(f"{device.name}_$PIN", wiring.pins["pin"], "OUTPUT", beside)
-        plan.parts.off.append(f"analogWrite({pin}, 0);")
+        plan.off.append(f"analogWrite({pin}, 0);")
         share = plan.part_of(device, 0, 255)
         return f"void {function}(long value) {{\n  analogWrite({pin}, {share});\n}}"
 

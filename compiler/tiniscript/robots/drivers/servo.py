@@ -52,7 +52,7 @@ class Servo(ActuatorDriver):
         number = plan.servo(pin)
         first, last = wiring.settings["low_us"], wiring.settings["high_us"]
         if wiring.settings[AT_STOP] != HOLD:
-            plan.parts.off.append(f"$servo_pulse({number}, 0, 0);")
+            plan.off.append(f"$servo_pulse({number}, 0, 0);")
         what = f"$servo_pulse({number}, {plan.part_of(device, first, last)}, 0);"
         return f"void {function}(long value) {{\n  {what}\n}}"
 
