@@ -27,13 +27,13 @@ from tiniscript.conformance.wire_robot import WireRobot
 from tiniscript.link import ports
 from tiniscript.link.frames import Frame, decoded, encoded
 from tiniscript.link.messages import BY_NAME
-from tiniscript.link.wire import SerialWire
+from tiniscript.link.wire import Wire
 from tools.uno import Uno
 
 Change = Callable[[Frame], "Frame | None"]
 
 
-class ChangedWire(SerialWire):
+class ChangedWire(Wire):
     """A wire on which the robot's frames are other ones, or get lost."""
 
     def __init__(self, port: str, change: Change) -> None:

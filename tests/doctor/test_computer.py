@@ -13,7 +13,7 @@ import pytest
 from tests.support.fake_computer import FakeComputer
 from tiniscript.doctor import computer, diagnosis
 from tiniscript.doctor.computer import NONE, OFF, ON, UNKNOWN, Adapter, is_module, looks_wireless
-from tiniscript.doctor.system import ThisComputer
+from tiniscript.doctor.system import System
 
 
 @pytest.fixture
@@ -205,7 +205,7 @@ def test_names_of_modules() -> None:
 
 def test_this_computer_can_be_looked_at() -> None:
     """Whatever it has: nothing is raised, and a program that does not exist is None."""
-    system = ThisComputer()
+    system = System()
     found = diagnosis.looked(system)
     assert found.platform == system.platform
     assert system.output("no-such-program-here") is None
@@ -217,5 +217,5 @@ def test_this_computer_can_be_looked_at() -> None:
 
 
 def test_nothing_is_written_through_the_door() -> None:
-    public = {name for name in dir(ThisComputer) if not name.startswith("_")}
+    public = {name for name in dir(System) if not name.startswith("_")}
     assert public == {"ports", "names", "text", "target", "owner", "groups", "user", "output"}

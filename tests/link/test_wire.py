@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tiniscript.link.wire import MOST_BYTES, SerialWire
+from tiniscript.link.wire import MOST_BYTES, Wire
 
 
 class Port:
@@ -36,19 +36,19 @@ class Port:
 
 def test_it_waits_for_the_first_byte_and_then_for_a_silence() -> None:
     port = Port(b"OK\r", b"\n+")
-    assert SerialWire(port).heard(500, 60) == b"OK\r\n+"
+    assert Wire(port).heard(500, 60) == b"OK\r\n+"
     assert port.waits == [0.5, 0.06, 0.06]
-    assert SerialWire(Port()).heard(500) == b""
+    assert Wire(Port()).heard(500) == b""
 
 
 def test_it_does_not_listen_for_ever() -> None:
     port = Port(*[b"x" * 100] * 1000)
-    assert MOST_BYTES <= len(SerialWire(port).heard(500)) < MOST_BYTES + 100
+    assert MOST_BYTES <= len(Wire(port).heard(500)) < MOST_BYTES + 100
 
 
 def test_a_board_restarts_when_its_lines_come_back() -> None:
     port = Port()
-    SerialWire(port).restart()
+    Wire(port).restart()
     assert port.lines == [("dtr", False), ("rts", False), ("dtr", True), ("rts", True)] or (
         port.lines == [("rts", False), ("dtr", False), ("rts", True), ("dtr", True)]
     )
@@ -62,7 +62,7 @@ def test_what_goes_wrong_is_an_os_error() -> None:
         def write(self, data: bytes) -> None:
             raise TypeError("None")
 
-    wire = SerialWire(Closed())
+    wire = Wire(Closed())
     for use in (lambda: wire.heard(10), lambda: wire.send(b"x"), lambda: wire.set_baud(7)):
         with pytest.raises(OSError):
             use()

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from tiniscript.doctor.system import Owner, ThisComputer
+from tiniscript.doctor.system import Owner, System
 from tiniscript.link.ports import Found
 
 
-class FakeComputer(ThisComputer):
+class FakeComputer(System):
     """`owners` are the group of a file and whether it may be used; `outputs` those of programs."""
 
     def __init__(self, root: Path, platform: str) -> None:

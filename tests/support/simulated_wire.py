@@ -5,7 +5,7 @@ from __future__ import annotations
 import random
 from typing import Protocol
 
-from tiniscript.link.wire import MOST_BYTES, QUIET_MS
+from tiniscript.link.wire import MOST_BYTES, QUIET_MS, Wire
 
 
 class OtherEnd(Protocol):
@@ -27,10 +27,11 @@ def garbled(data: bytes, sent: int, heard: int) -> bytes:
     return bytes(chance.choice((0x00, 0x80, 0xE0, 0xF8, 0xFE, 0x98)) for _ in range(count))
 
 
-class SimulatedWire:
-    """`link.wire.Wire`, and the time that goes by on it."""
+class SimulatedWire(Wire):
+    """A wire without a port, and the time that goes by on it."""
 
     def __init__(self, end: OtherEnd, baud: int = 9600) -> None:
+        super().__init__(None)
         self.end = end
         self.baud = baud
         self.now_ms = 0

@@ -9,7 +9,7 @@ import os
 import subprocess
 import sys
 from pathlib import Path
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 from tiniscript.base.files import contents
 from tiniscript.link import ports
@@ -26,36 +26,11 @@ class Owner(NamedTuple):
     may_use: bool
 
 
-class System(Protocol):
-    """What cannot be read is None or empty."""
+class System:
+    """The computer that this runs on, seen from the folder `root`.
 
-    platform: str  # as `sys.platform`
-
-    def ports(self) -> list[Found]: ...
-
-    def names(self, folder: str) -> list[str]: ...
-
-    def text(self, path: str) -> str | None: ...
-
-    def target(self, link: str) -> str | None: ...
-
-    def owner(self, path: str) -> Owner | None: ...
-
-    def groups(self) -> set[int]:
-        """Return the groups of this session: of those the user joined since, it has none."""
-        ...
-
-    def user(self) -> str:
-        """Return the user's name, to look it up in a list of members. It is never told."""
-        ...
-
-    def output(self, *words: str) -> str | None:
-        """Return what a program prints, or None where there is no such program."""
-        ...
-
-
-class ThisComputer:
-    """The computer that this runs on, seen from the folder `root`."""
+    What cannot be read is None or empty.
+    """
 
     def __init__(self, root: Path = Path("/")) -> None:
         self.platform = sys.platform
@@ -93,11 +68,13 @@ class ThisComputer:
         return Owner(found.st_gid, os.access(self._path(path), os.R_OK | os.W_OK))
 
     def groups(self) -> set[int]:
+        """Return the groups of this session: of those the user joined since, it has none."""
         if sys.platform == "win32":
             return set()
         return {os.getegid(), *os.getgroups()}
 
     def user(self) -> str:
+        """Return the user's name, to look it up in a list of members. It is never told."""
         if sys.platform == "win32":
             return ""
         import pwd
@@ -108,6 +85,7 @@ class ThisComputer:
             return ""
 
     def output(self, *words: str) -> str | None:
+        """Return what a program prints, or None where there is no such program."""
         try:
             done = subprocess.run(
                 words, stdin=subprocess.DEVNULL, capture_output=True, timeout=OUTPUT_S, check=False

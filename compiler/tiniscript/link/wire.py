@@ -7,33 +7,15 @@ robot and no clock: the port itself waits.
 from __future__ import annotations
 
 from contextlib import suppress
-from typing import Any, Protocol
+from typing import Any
 
 MOST_BYTES = 1024  # of one answer: whoever never stops is not listened to for ever
 QUIET_MS = 60  # after so long a silence an answer is over
 RESTART_MS = 100  # how long the lines that restart a board are off
 
 
-class Wire(Protocol):
-    """All but `close` raise OSError where the port is gone."""
-
-    def send(self, data: bytes) -> None: ...
-
-    def heard(self, wait_ms: int, quiet_ms: int = QUIET_MS) -> bytes:
-        """Wait `wait_ms` for a byte at most; return it and what follows until a silence."""
-        ...
-
-    def set_baud(self, baud: int) -> None: ...
-
-    def restart(self) -> None:
-        """Restart a board on a USB cable, as opening its port does."""
-        ...
-
-    def close(self) -> None: ...
-
-
-class SerialWire:
-    """The wire of a port that `link.ports` has opened."""
+class Wire:
+    """A port that `link.ports` has opened. All but `close` raise OSError where it is gone."""
 
     def __init__(self, port: Any) -> None:
         self._port = port
@@ -45,6 +27,7 @@ class SerialWire:
             raise OSError(str(why)) from None
 
     def heard(self, wait_ms: int, quiet_ms: int = QUIET_MS) -> bytes:
+        """Wait `wait_ms` for a byte at most; return it and what follows until a silence."""
         found = b""
         wait = wait_ms
         while len(found) < MOST_BYTES:
@@ -75,6 +58,7 @@ class SerialWire:
         self._drop_input()
 
     def restart(self) -> None:
+        """Restart a board on a USB cable, as opening its port does."""
         for is_on in (False, True):
             with suppress(OSError, NotImplementedError, TypeError):  # a port without such lines
                 self._port.dtr = self._port.rts = is_on

@@ -23,7 +23,7 @@ from tiniscript.conformance.machine_process import CannotStart, MachineProcess
 from tiniscript.conformance.wire_robot import Silent, WireRobot
 from tiniscript.link import errors, ports
 from tiniscript.link.messages import MAJOR, MINOR, OWNED, STOP_BYTES
-from tiniscript.link.wire import SerialWire
+from tiniscript.link.wire import Wire
 
 PATIENCE_S = 10
 MOST_SHOWN = 20
@@ -70,7 +70,7 @@ def _port(options: Namespace, language: str) -> int:
     if not checks:
         raise CommandError(2, "conform_no_case", found=shown(options.only))
     try:
-        wire = SerialWire(ports.opened(ports.resolved(port), baud))
+        wire = Wire(ports.opened(ports.resolved(port), baud))
     except errors.PortError as failure:
         raise port_failure(port, failure) from None
     is_radio = ports.is_radio(port)

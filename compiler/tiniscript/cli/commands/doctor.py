@@ -25,7 +25,7 @@ from tiniscript.doctor import report
 from tiniscript.doctor.diagnosis import Diagnosis, Doors, Question, diagnosed
 from tiniscript.doctor.examination import Expected
 from tiniscript.doctor.findings import CAUSES, NOTE, Finding
-from tiniscript.doctor.system import ThisComputer
+from tiniscript.doctor.system import System
 from tiniscript.library import opening
 from tiniscript.library.known_kits import of_kit, shipped_of_kit
 from tiniscript.link import ports
@@ -33,7 +33,7 @@ from tiniscript.link.connection import LinkConnection
 from tiniscript.link.keys import KeyFile
 from tiniscript.link.messages import RESETS
 from tiniscript.link.sharing.shared_line import joined
-from tiniscript.link.wire import SerialWire, Wire
+from tiniscript.link.wire import Wire
 from tiniscript.virtual import directory
 
 LONGEST_WATCH_S = 600
@@ -96,7 +96,7 @@ def _has_key(robot: int) -> bool:
 
 def _doors(options: Namespace, language: str, doing: Doing) -> Doors:
     def open_wire(port: str, baud: int) -> Wire:
-        return SerialWire(ports.opened(port, baud))
+        return Wire(ports.opened(port, baud))
 
     def may_open(port: str) -> bool:
         if options.yes:
@@ -114,7 +114,7 @@ def _doors(options: Namespace, language: str, doing: Doing) -> Doors:
             yield connection.line
 
     return Doors(
-        ThisComputer(), open_wire, lambda port: joined(port, "doctor"), may_open, ports.is_radio,
+        System(), open_wire, lambda port: joined(port, "doctor"), may_open, ports.is_radio,
         share, lambda what: doing.tell(text(f"doing_{what}", language)),
     )  # fmt: skip
 

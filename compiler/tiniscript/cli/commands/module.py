@@ -17,7 +17,7 @@ from tiniscript.link.modules import set_up
 from tiniscript.link.modules.dialects import BAUDS, DIALECTS, Dialect, value_of
 from tiniscript.link.modules.set_up import BAUD, DONE, GOOD, NAME, PIN, Outcome, Step, Wanted
 from tiniscript.link.modules.talk import Module, asked, found
-from tiniscript.link.wire import SerialWire, Wire
+from tiniscript.link.wire import Wire
 
 
 def run(options: Namespace, language: str) -> int:
@@ -86,7 +86,7 @@ def _wire(options: Namespace) -> Wire:
     try:
         if ports.is_radio(port):
             raise CommandError(2, "module_by_radio", port=shown(port))
-        return SerialWire(ports.opened(port, BAUDS[0]))
+        return Wire(ports.opened(port, BAUDS[0]))
     except errors.PortError as failure:
         raise port_failure(port, failure) from None
 
