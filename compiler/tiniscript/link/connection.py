@@ -1,16 +1,15 @@
 """The interface of a connection to a robot, as commands use it; the requests on it.
 
-Two classes implement it: a `Line` of this process, and a `SharedLine` of another process. A
-command works with either.
+A `Line` of this process has it, and a `SharedLine` of another process: a command works with either.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Generic, Protocol, TypeVar
+from typing import Generic, TypeVar
 
 from tiniscript.bytecode.image import Image
-from tiniscript.link.outcomes import CANCELLED, LOST, UNPROVEN, Event
+from tiniscript.link.outcomes import CANCELLED, LOOK_S, LOST, UNPROVEN, Event
 from tiniscript.link.payloads import (
     EmptyReply,
     HelloReply,
@@ -25,37 +24,6 @@ from tiniscript.link.requests import DeviceInfo, FetchedImage, Reply
 from tiniscript.link.wifi import BrokerSettings, Network
 
 STATUS = "status"  # the robot's status says why
-
-
-class Heard(Protocol):
-    """What is known of a connection: whether a robot has answered, and what else came.
-
-    `heard` counts received bytes; `is_echoed`: the line returns what is sent.
-    """
-
-    @property
-    def robot(self) -> DeviceInfo | None: ...
-
-    @property
-    def heard(self) -> int: ...
-
-    @property
-    def is_echoed(self) -> bool: ...
-
-
-def reason_of(line: Heard, reply: Reply[object]) -> str:
-    """Return why a reply is not OK."""
-    if reply.status == CANCELLED:
-        return "stopped_elsewhere"
-    if reply.status == UNPROVEN:
-        return "unproven"
-    if reply.status != LOST:
-        return STATUS
-    if line.robot is not None:
-        return "link_lost"
-    if line.is_echoed:
-        return "link_echo"
-    return "link_other" if line.heard else "link_silent"
 
 
 DEADLINE_MS = 20_000  # of a request, unless another is given
@@ -174,41 +142,66 @@ class Requester:
         return self._ask("use_broker", WifiReply, broker=broker)
 
 
-class LinkConnection(Heard, Protocol):
+class LinkConnection:
     """A connection to a robot. All methods but `close` and `stop` raise Gone once it has ended.
 
-    `held_by` is the verb of the command that holds the port, if that is another command;
-    `has_ended`: the connection is gone; `boot` is another number after each reset of the robot.
+    `held_by` is the verb of the command that holds the port, if that is another command. `heard`
+    counts received bytes; `is_echoed`: the line returns what is sent.
     """
 
-    @property
-    def held_by(self) -> str: ...
+    held_by = ""
+    heard = 0
+    is_echoed = False
 
     @property
-    def has_ended(self) -> bool: ...
+    def robot(self) -> DeviceInfo | None:
+        """The robot's description of itself, once it has answered."""
+        raise NotImplementedError
 
     @property
-    def boot(self) -> int: ...
+    def boot(self) -> int:
+        """A number of the robot that is another one after each of its resets."""
+        return self.robot.values.nonce if self.robot else 0
+
+    @property
+    def has_ended(self) -> bool:
+        """Whether the connection is gone."""
+        return False
 
     def do(self, make: Callable[[Requester], PendingRequest[T]]) -> PendingRequest[T]:
         """Start a request; return while it is in progress."""
-        ...
+        raise NotImplementedError
 
     def wait(self, request: PendingRequest[T], look: Callable[[], None] | None = None) -> Reply[T]:
         """Wait for the outcome of a request, and call `look` periodically."""
-        ...
+        raise NotImplementedError
 
-    def event(self, limit_s: float = ...) -> tuple[int, Event] | None:
+    def event(self, limit_s: float = LOOK_S) -> tuple[int, Event] | None:
         """Return the next event and its arrival time (ms), or None after the time limit."""
-        ...
+        raise NotImplementedError
 
     def tell_places(self) -> None:
         """Have PLACE events come from now on, from a robot that tells where its program is."""
-        ...
+        raise NotImplementedError
 
     def stop(self) -> int:
         """Stop the robot; return the time (ms). A later event STOPPED follows when the robot has
         confirmed."""
-        ...
+        raise NotImplementedError
 
     def close(self) -> None: ...
+
+
+def reason_of(line: LinkConnection, reply: Reply[object]) -> str:
+    """Return why a reply is not OK."""
+    if reply.status == CANCELLED:
+        return "stopped_elsewhere"
+    if reply.status == UNPROVEN:
+        return "unproven"
+    if reply.status != LOST:
+        return STATUS
+    if line.robot is not None:
+        return "link_lost"
+    if line.is_echoed:
+        return "link_echo"
+    return "link_other" if line.heard else "link_silent"

@@ -14,7 +14,7 @@ from typing import IO, Any, TypeVar
 
 import serial
 
-from tiniscript.link.connection import PendingRequest, Requester
+from tiniscript.link.connection import LinkConnection, PendingRequest, Requester
 from tiniscript.link.outcomes import LOOK_S, Backlog, Event, Gone, Told
 from tiniscript.link.requests import DeviceInfo, Reply
 from tiniscript.link.session import Session
@@ -29,13 +29,11 @@ def now_ms() -> int:
     return int(monotonic() * 1000)
 
 
-class Line:
+class Line(LinkConnection):
     """An open port and the session on it.
 
     Call `event` and `close` only from the thread that made it; any thread may call the rest.
     """
-
-    held_by = ""  # this process
 
     def __init__(
         self,
@@ -51,8 +49,6 @@ class Line:
         self.session = session
         self.address = address
         session.tells_starts = True  # other clients may share the line
-        self.heard = 0  # bytes
-        self.is_echoed = False
         self._port = port
         self._now_ms: Callable[[], int] = getattr(port, "now_ms", now_ms)
         self._lock = lock
@@ -72,11 +68,6 @@ class Line:
         return self.session.robot
 
     @property
-    def boot(self) -> int:
-        """A number of the robot that is another one after each of its resets."""
-        return self.robot.values.nonce if self.robot else 0
-
-    @property
     def gone(self) -> str | None:
         """Return why the port is gone, or None while it is open."""
         return self._gone
@@ -86,7 +77,6 @@ class Line:
         return self._gone is not None
 
     def do(self, make: Callable[[Requester], PendingRequest[T]]) -> PendingRequest[T]:
-        """Start a request; return while it is in progress."""
         with self._news:
             request = make(self.session)
             self._under_way.append(request)
@@ -94,7 +84,6 @@ class Line:
         return request
 
     def wait(self, request: PendingRequest[T], look: Callable[[], None] | None = None) -> Reply[T]:
-        """Wait for the outcome of a request, and call `look` periodically. Raises Gone."""
         while True:
             with self._news:
                 if request.outcome is None and self._gone is None:
@@ -107,7 +96,6 @@ class Line:
                 look()
 
     def event(self, limit_s: float = LOOK_S) -> Told | None:
-        """Return the next event and its time, or None after the time limit. Raises Gone."""
         with self._news:
             if not self._events and self._gone is None:
                 self._news.wait(limit_s)
@@ -125,7 +113,6 @@ class Line:
         return began_ms
 
     def tell_places(self) -> None:
-        """Have PLACE events come from now on: where the program is, while one runs."""
         self._takes_places = self.session.tells_places = True
 
     def tell(self, event: Event) -> None:

@@ -13,7 +13,7 @@ from collections.abc import Callable
 from typing import Any, TypeVar
 
 from tiniscript.link.authority import KeyRing, RobotKey
-from tiniscript.link.connection import PendingRequest, Requester
+from tiniscript.link.connection import LinkConnection, PendingRequest, Requester
 from tiniscript.link.keys import BadKeys, known_seals, read, written
 from tiniscript.link.outcomes import Backlog, Event
 from tiniscript.link.requests import DeviceInfo
@@ -55,26 +55,19 @@ class PageKeys(KeyRing):
         return True
 
 
-class PageLine:
+class PageLine(LinkConnection):
     """A session without a thread: what a RobotLink needs of a connection."""
 
     def __init__(self, baud: int, kit: int, keys: PageKeys) -> None:
         nonce = int.from_bytes(os.urandom(4), "little")
         self.session = Session(nonce, baud, kit, keys=keys)
         self.session.tells_starts = True
-        self.heard = 0
-        self.is_echoed = False
         self.now_ms = 0
         self._events = Backlog()
 
     @property
     def robot(self) -> DeviceInfo | None:
         return self.session.robot
-
-    @property
-    def boot(self) -> int:
-        """A number of the robot that is another one after each of its resets."""
-        return self.robot.values.nonce if self.robot else 0
 
     def do(self, make: Callable[[Requester], PendingRequest[T]]) -> PendingRequest[T]:
         return make(self.session)
@@ -85,8 +78,9 @@ class PageLine:
     def tell_places(self) -> None:
         self.session.tells_places = True
 
-    def stop(self) -> None:
+    def stop(self) -> int:
         self.session.stop(self.now_ms)
+        return self.now_ms
 
     def go(self, data: bytes, now_ms: int) -> bytes:
         """Take the bytes that have arrived; return those to send."""

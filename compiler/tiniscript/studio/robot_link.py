@@ -11,7 +11,7 @@ Knows no port, no browser and no clock.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, NamedTuple, Protocol, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 from tiniscript import robots
 from tiniscript.base.fixed_point import as_text
@@ -20,7 +20,7 @@ from tiniscript.bytecode.image import Image, ImageRefused, unpack
 from tiniscript.library.known_kits import shipped_of_kit
 from tiniscript.library.refusing import refusal
 from tiniscript.link.authority import whose
-from tiniscript.link.connection import STATUS, Heard, PendingRequest, Requester, reason_of
+from tiniscript.link.connection import STATUS, LinkConnection, PendingRequest, Requester, reason_of
 from tiniscript.link.messages import (
     MOST_BALANCE,
     MOST_LEAST,
@@ -48,21 +48,6 @@ class BadRequest(Exception):
     """What has come is no request: it is not of this page."""
 
 
-class Connection(Heard, Protocol):
-    """The part of a LinkConnection that is needed here; the page's has no more."""
-
-    @property
-    def boot(self) -> int: ...
-
-    def do(self, make: Callable[[Requester], PendingRequest[T]]) -> PendingRequest[T]: ...
-
-    def event(self, limit_s: float = ...) -> tuple[int, Event] | None: ...
-
-    def tell_places(self) -> None: ...
-
-    def stop(self) -> object: ...
-
-
 class _Asked(NamedTuple):
     number: int
     pending: PendingRequest[Any]
@@ -80,7 +65,7 @@ class RobotLink:
     """A page's part in a connection: one thread uses it. `has_run`: a run that the page has started
     may still go on."""
 
-    def __init__(self, connection: Connection, language: str) -> None:
+    def __init__(self, connection: LinkConnection, language: str) -> None:
         self.language = language
         self._connection = connection
         connection.tell_places()

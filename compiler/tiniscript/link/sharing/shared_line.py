@@ -14,7 +14,7 @@ from time import monotonic
 from typing import Any, TypeVar
 
 from tiniscript.base.version import __version__
-from tiniscript.link.connection import PendingRequest, Requester
+from tiniscript.link.connection import LinkConnection, PendingRequest, Requester
 from tiniscript.link.outcomes import LOOK_S, Event, Gone
 from tiniscript.link.payloads import HelloReply
 from tiniscript.link.requests import OK, DeviceInfo, Reply, described
@@ -40,16 +40,14 @@ class OtherVersion(Exception):
         self.version = version
 
 
-class SharedLine:
+class SharedLine(LinkConnection):
     """The connection through a server that has sent its greeting."""
 
     def __init__(
         self, peer: socket.socket, registration: Registration, rest: protocol.MessageReader
     ) -> None:
-        self.robot: DeviceInfo | None = None
-        self.heard = 0
-        self.is_echoed = False
-        self.boot = 0
+        self._robot: DeviceInfo | None = None
+        self._boot = 0
         self.held_by = registration.verb
         self.baud = registration.baud
         self._peer = peer
@@ -61,6 +59,14 @@ class SharedLine:
         self._over: Gone | None = None
         self._heartbeat_s = 0.0  # when the last heartbeat was sent
         self._unanswered_s: float | None = None  # since when a heartbeat is
+
+    @property
+    def robot(self) -> DeviceInfo | None:
+        return self._robot
+
+    @property
+    def boot(self) -> int:
+        return self._boot
 
     @property
     def has_ended(self) -> bool:
@@ -150,7 +156,7 @@ class SharedLine:
             return
         self.heard = protocol.number(message, "heard")
         self.is_echoed = protocol.answer(message, "is_echoed")
-        self.boot = protocol.number(message, "boot")
+        self._boot = protocol.number(message, "boot")
         reply = protocol.reply(message, request.kind)
         request.outcome = reply
         del self._pending[number]
@@ -160,10 +166,10 @@ class SharedLine:
     def _learn(self, request: ClientRequest[Any], values: object) -> None:
         """Remember who the robot is."""
         if isinstance(values, HelloReply):
-            self.robot = described(values)
+            self._robot = described(values)
         elif request.message["do"] == "name" and self.robot is not None:
             name = bytes.fromhex(str(request.message["name"]))
-            self.robot = described(self.robot.values._replace(name=name))
+            self._robot = described(self.robot.values._replace(name=name))
 
 
 def joined(port: str, verb: str) -> SharedLine | None:
