@@ -105,10 +105,6 @@ class Esp32Robot(HostFirmware):
         """Return what a pin has: 0 to 255, PWM as its share."""
         return self.ask(b"O", pack("<B", pin))[0]
 
-    def go_on_beside_the_timer(self) -> None:
-        """Let the main loop reach the next millisecond while the timer's task reads the clock."""
-        self.ask(b"Y", b"")
-
     def panic(self) -> None:
         """Let the chip do what it does first in a panic. Only its pins count from then on."""
         self.ask(b"X", b"")

@@ -315,7 +315,7 @@ void answer_moved(Writer* answer) {
   answer->u32(chip.rests);
 }
 
-// Y: the main loop goes on to the next millisecond while the timer's task reads the clock. X: a panic. What a stack that is not to be relied on would make is not simulated.
+// X: a panic. What a stack that is not to be relied on would make is not simulated.
 void answer_panic() {
   simulated_panic();
   look();
@@ -368,9 +368,6 @@ int main() {
         break;
       case 'X':
         answer_panic();
-        break;
-      case 'Y':
-        chip.meanwhile = watchdog_feed;
         break;
       case 'G':
         answer_guest(&request, &said);

@@ -21,7 +21,7 @@
 
 using namespace tiniscript;
 
-void tiniscript::watchdog_pause(bool) {}  // nobody watches here
+void tiniscript::ultrasonic_forget() {}  // there is none
 
 namespace {
 

@@ -64,11 +64,11 @@ struct Timer {
   void* argument;
   uint64_t period_us;
   uint64_t due_us;
+  bool skips;  // what it has missed
 };
 
-Timer timer = {nullptr, nullptr, 0, kNever};
+Timer timer = {nullptr, nullptr, 0, kNever, false};
 bool is_timer_taken;
-bool is_timer_on;
 OnReceiveErrorCb on_error;
 std::recursive_mutex critical;
 thread_local uint32_t in_critical;  // how many sections this core is in
@@ -104,9 +104,7 @@ void do_event() {
     set_input(chip.echo_pin, false);
   } else if (timer.due_us <= chip.now_us) {
     timer.due_us += timer.period_us;
-    is_timer_on = true;
     timer.callback(timer.argument);
-    is_timer_on = false;
   } else if (next_task_us != nullptr && next_task_us() <= chip.now_us) {
     run_tasks();
   } else {
@@ -192,12 +190,15 @@ size_t used_entries() {
   return used;
 }
 
-// A page is erased: the chip stands still, and then the timer's task comes before the main loop.
+// A page is erased: the chip stands still, and then the timer's task comes before the main loop, for
+// each time that it has missed, or for one.
 void erase() {
   chip.now_us += chip.erase_ms * uint64_t{1000};
-  if (chip.erase_ms == 0 || timer.due_us > chip.now_us) return;
-  timer.due_us = chip.now_us + timer.period_us;
-  timer.callback(timer.argument);
+  while (chip.erase_ms != 0 && timer.due_us <= chip.now_us) {
+    timer.due_us += timer.period_us;
+    if (timer.skips) timer.due_us = chip.now_us + timer.period_us;
+    timer.callback(timer.argument);
+  }
 }
 
 // One write of NVS: an entry is as it was, as it becomes, or gone. The old one goes when the new
@@ -273,16 +274,7 @@ void set_noinit(const std::string& bytes) {
 
 extern "C" {
 
-unsigned long millis() {
-  const unsigned long now = static_cast<unsigned long>(chip.now_us / 1000);
-  void (*const meanwhile)() = is_timer_on ? chip.meanwhile : nullptr;
-  if (meanwhile != nullptr) {
-    chip.meanwhile = nullptr;
-    chip.now_us += 1000;
-    meanwhile();
-  }
-  return now;
-}
+unsigned long millis() { return static_cast<unsigned long>(chip.now_us / 1000); }
 unsigned long micros() { return static_cast<unsigned long>(chip.now_us); }
 
 void pinMode(uint8_t pin, uint8_t mode) {
@@ -424,6 +416,7 @@ esp_err_t esp_timer_create(const esp_timer_create_args_t* create_args,
                            esp_timer_handle_t* out_handle) {
   timer.callback = create_args->callback;
   timer.argument = create_args->arg;
+  timer.skips = create_args->skip_unhandled_events;
   *out_handle = nullptr;
   return ESP_OK;
 }

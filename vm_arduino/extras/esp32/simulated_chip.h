@@ -69,7 +69,6 @@ struct SimulatedChip {
   bool has_restarted = false;
   uint32_t slept_us = 0;  // by the main loop, and not yet counted as turns of it
   uint32_t rests = 0;     // how often it slept
-  void (*meanwhile)() = nullptr;  // what another core does once, while the timer reads the clock
 
   bool is_heap_full = false;  // no stack finds room
   std::atomic<bool> has_wifi{false};

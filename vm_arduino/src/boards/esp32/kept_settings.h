@@ -12,7 +12,6 @@
 
 #include "../../link/messages.h"
 #include "pins.h"
-#include "watchdog.h"
 
 namespace tiniscript {
 
@@ -42,10 +41,8 @@ class KeptSettings {
   Answer keep(const Settings& settings) {
     nvs_handle_t handle;
     if (nvs_open(kNamespace, NVS_READWRITE, &handle) != ESP_OK) return Answer::kNotKept;
-    watchdog_pause(true);
     const bool is_kept = nvs_set_blob(handle, key_, &settings, settings.kept_bytes()) == ESP_OK &&
                          nvs_commit(handle) == ESP_OK;
-    watchdog_pause(false);
     nvs_close(handle);
     if (!is_kept) return Answer::kNotKept;
     use(settings);

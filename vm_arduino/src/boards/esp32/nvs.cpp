@@ -15,7 +15,7 @@
 
 #include "../../store/layout.h"
 #include "../../store/nvm.h"
-#include "watchdog.h"
+#include "../ultrasonic.h"
 
 namespace tiniscript {
 
@@ -75,9 +75,8 @@ void load_head(uint8_t slot) {
 void write_head(uint8_t slot) {
   uint32_t head;
   __builtin_memcpy(&head, heads[slot], kBodyAt);
-  watchdog_pause(true);
   if (is_open && nvs_set_u32(handle, head_key(slot).text, head) == ESP_OK) nvs_commit(handle);
-  watchdog_pause(false);
+  ultrasonic_forget();  // its interrupt has stood still, too
   load_head(slot);
 }
 
@@ -94,11 +93,10 @@ void load_blob() {
 void write_blob() {
   if (!waits) return;
   waits = false;
-  watchdog_pause(true);
   if (is_open && nvs_set_blob(handle, blob_key().text, blob, its_bytes) == ESP_OK) {
     nvs_commit(handle);
   }
-  watchdog_pause(false);
+  ultrasonic_forget();  // its interrupt has stood still, too
   load_blob();
 }
 

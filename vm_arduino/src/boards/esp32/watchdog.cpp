@@ -19,7 +19,7 @@ namespace tiniscript {
 namespace {
 
 constexpr uint32_t kRestartSeconds = 1;  // the core of version 2 counts whole seconds
-constexpr uint64_t kLookUs = 10000;
+constexpr uint8_t kLookMs = 10;
 constexpr uint32_t kHung = 0x93c5e21b;  // value of `mark` while the record counts
 
 // Survives a restart. After power-on its contents are random: `mark` says whether it counts.
@@ -32,10 +32,11 @@ RTC_NOINIT_ATTR Record last;
 
 // The main loop writes these, and the timer's task on the other core reads them, or the other way
 // round.
-uint32_t fed_ms;
-bool is_paused;
+bool is_fed;  // since the timer's task has looked
 bool is_hanging;
 bool has_stalled;
+
+uint8_t missed;  // the timer's: how often it has looked since
 
 template <class Value>
 Value read(const Value& from) {
@@ -70,11 +71,14 @@ Reset cause_of(esp_reset_reason_t reason) {
   }
 }
 
-// The timer's task.
+// The timer's task. It counts its looks, not the time: while a page of flash is erased, up to 400 ms
+// by data sheets, it stands still like the main loop.
 void look(void*) {
-  const uint32_t last_fed_ms = read(fed_ms);  // before the clock: it may be fed once more meanwhile
-  const bool is_known = read(is_paused) || read(is_hanging);
-  if (is_known || clock_ms() - last_fed_ms <= kStallMs) return;
+  if (read(is_fed)) {
+    missed = 0;
+    return write_to(&is_fed, false);
+  }
+  if (read(is_hanging) || ++missed < kStallMs / kLookMs) return;
   motors_stop();
   actuators_off(true);
   if (!firmware_runs(&last.place)) last.place = Place();
@@ -105,27 +109,23 @@ void watchdog_begin() {
   cause = cause_of(esp_reset_reason());
   has_hung = cause == Reset::kWatchdog && last.mark == hung_mark();
   last.mark = 0;
-  write_to(&fed_ms, clock_ms());
+  write_to(&is_fed, true);
   esp_timer_create_args_t settings = {};
   settings.callback = look;
   settings.name = "tiniscript";
+  settings.skip_unhandled_events = true;
   esp_timer_handle_t timer = nullptr;
-  if (esp_timer_create(&settings, &timer) == ESP_OK) esp_timer_start_periodic(timer, kLookUs);
+  if (esp_timer_create(&settings, &timer) == ESP_OK) esp_timer_start_periodic(timer, kLookMs * 1000);
   begin_restart();
 }
 
 void watchdog_feed() {
-  write_to(&fed_ms, clock_ms());
+  write_to(&is_fed, true);
   if (read(is_hanging)) {
     last.mark = 0;
     write_to(&is_hanging, false);
   }
   esp_task_wdt_reset();
-}
-
-void watchdog_pause(bool is_so) {
-  if (!is_so) write_to(&fed_ms, clock_ms());
-  write_to(&is_paused, is_so);
 }
 
 bool watchdog_has_stalled() {

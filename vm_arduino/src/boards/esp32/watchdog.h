@@ -21,10 +21,6 @@ void panic_begin();  // of `panic.cpp`
 // Call it at least every 10 ms.
 void watchdog_feed();
 
-// Around what writes flash while the motors are off: as long as a page is erased, up to 400 ms by
-// data sheets, the chip stands still, and that is no hang.
-void watchdog_pause(bool is_paused);
-
 // Whether the main loop has hung since the last call.
 bool watchdog_has_stalled();
 
