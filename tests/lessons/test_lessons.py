@@ -18,6 +18,7 @@ from tiniscript.lessons.markdown import blocks
 from tiniscript.lessons.sentences import sentence
 from tiniscript.lessons.sheet import sheet
 from tiniscript.library.compiling import compiled, maker
+from tools.builds.page_texts import page_texts
 
 FOLDERS = catalogue.folders()
 MINUTES = "45"
@@ -152,6 +153,19 @@ def test_pages_of_all_languages_have_the_same_parts(folder: Path) -> None:
             for lang in LANGUAGES
         ]
         assert all(each == kinds[0] for each in kinds)
+
+
+@each
+def test_a_page_names_the_button_that_the_studio_has(folder: Path) -> None:
+    counts = [
+        len(
+            re.findall(
+                rf"\b{page_texts(lang)['run']}\b", catalogue.page(folder, catalogue.PUPIL, lang)
+            )
+        )
+        for lang in LANGUAGES
+    ]
+    assert len(set(counts)) == 1
 
 
 @each

@@ -119,7 +119,7 @@ new Start({
     phone.show(id === 'side_virtual' ? 'program' : 'robot');
   },
   leave: () => {
-    driving.stop();
+    driving.leave();
     programs.keep();
   },
 });

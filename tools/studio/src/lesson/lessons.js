@@ -196,12 +196,14 @@ export class Lessons {
     this.#lay();
   }
 
-  /** Which buttons there are. */
+  /** Which buttons there are. Who pressed one that goes away is at the page. */
   #lay() {
+    const { activeElement } = document;
     const isTask = this.#step === this.#steps.length - 1;
     this.#check.hidden = !isTask || !this.#end.hidden;
     this.#next.hidden = isTask && !(this.#hasPassed && this.#number < this.#lessons.length);
     this.#next.textContent = text(isTask ? 'lesson_other' : 'lesson_next');
+    if (activeElement instanceof HTMLElement && activeElement.hidden) element('lesson_page', HTMLElement).focus();
   }
 
   /** @param {number} seed */

@@ -30,10 +30,13 @@ export class Start {
       button.addEventListener('click', () => this.#begin(String(button.getAttribute('data-begin'))));
     }
     element('home', HTMLButtonElement).addEventListener('click', () => show('start'));
-    for (const [way, side] of [['write', 'side_virtual'], ['lessons', 'side_lessons'], ['robot', 'side_real']]) {
+    for (const [way, side, place] of /** @type {const} */ ([
+      ['write', 'side_virtual', 'writing'], ['lessons', 'side_lessons', 'lesson_page'], ['robot', 'side_real', 'side_real'],
+    ])) {
       element(`start_${way}`, HTMLButtonElement).addEventListener('click', () => {
         show('program');
-        this.#page.side(String(side));
+        this.#page.side(side);
+        element(place, HTMLElement).focus({ preventScroll: true });
       });
     }
     whenScreen((screen) => {

@@ -188,6 +188,12 @@ export class Driving {
     this.#stop();
   }
 
+  /** Another screen is seen. */
+  leave() {
+    this.#stop();
+    this.#drawing.end();
+  }
+
   get #isDriving() {
     const { phase } = this.#simulator;
     return phase === 'running' || phase === 'paused';

@@ -119,6 +119,12 @@ export class WorldDrawing {
     if (this.isOn) this.#show();
   }
 
+  /** The floor is seen no more. */
+  end() {
+    this.#giveUp();
+    if (this.isOn) this.#turnOn(false);
+  }
+
   /** @param {boolean} isOn */
   #turnOn(isOn) {
     this.isOn = isOn;

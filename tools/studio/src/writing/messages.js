@@ -1,6 +1,7 @@
 // The list of messages beneath the editor. Everything of a program is put there as text, never
-// as markup.
+// as markup. A screen reader hears the first one.
 
+import { element, say } from '../page/elements.js';
 import { text } from '../page/texts.js';
 
 /** @typedef {import('../python.js').Checked} Checked */
@@ -15,18 +16,22 @@ const MOST = 50; // messages that are shown at once
  * @param {(finding: Finding) => void} repair
  */
 export function showMessages(list, findings, goTo, repair) {
+  let first = '';
   const rows = findings.slice(0, MOST).map((finding) => {
     const row = document.createElement('li');
     row.className = finding.severity;
     const place = button(text('line', { line: finding.line }), () => goTo(finding));
+    const fixes = finding.fix && `${text('try')} ${finding.fix}`;
     place.className = 'place';
+    place.ariaLabel = text('say_fault', { line: finding.line, what: `${finding.message} ${fixes}`.trim() });
+    first ||= place.ariaLabel;
     const said = document.createElement('span');
     said.textContent = finding.message;
     row.append(place, ' ', said);
     if (finding.fix) {
       const fix = document.createElement('span');
       fix.className = 'fix';
-      fix.textContent = `${text('try')} ${finding.fix}`;
+      fix.textContent = fixes;
       row.append(' ', fix);
     }
     if (finding.repair.length) {
@@ -43,6 +48,7 @@ export function showMessages(list, findings, goTo, repair) {
     rows.push(row);
   }
   list.replaceChildren(...rows);
+  say(element('first_message', HTMLElement), first);
 }
 
 /** @param {Checked} checked @returns {string} */
