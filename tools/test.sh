@@ -23,7 +23,7 @@ make_venv "[test]"
 
 cd "$ROOT"
 run() {
-    say "\$ $*"
+    say "\$ $*" "\$ $*" "\$ $*"
     "$PYTHON" -m "$@"
 }
 
@@ -46,7 +46,8 @@ beside &
 BESIDE=$!
 finish() {
     wait "$BESIDE" || fail "Types, generated files or branches: see above." \
-        "Tipos, archivos generados o ramas: mira arriba."
+        "Tipos, archivos generados o ramas: mira arriba." \
+        "Tipos, arquivos gerados ou ramos: veja acima."
 }
 if [ -n "$QUICK" ]; then
     # shellcheck disable=SC2086 # names of files
@@ -69,6 +70,7 @@ run pytest -n 4 --dist worksteal "$@" || {
     run pytest --last-failed --last-failed-no-failures none "$@" || exit
     say "Failed beside other tests and passed alone:
 $failed" "Fallaron junto a otras pruebas y pasaron solas:
+$failed" "Falharam junto com outros testes e passaram sozinhos:
 $failed"
 }
 finish

@@ -4,10 +4,11 @@
 ROOT=$(cd "$(dirname "$0")/.." && pwd)
 PYTHON="$ROOT/.venv/bin/python"
 
-# in_language ENGLISH SPANISH: the sentence in the person's language, as `tsc` finds it.
+# in_language ENGLISH SPANISH PORTUGUESE: the sentence in the person's language, as `tsc` finds it.
 in_language() {
     case "${LC_ALL:-${LC_MESSAGES:-${LANG:-}}}" in
     [eE][sS]*) printf '%s' "$2" ;;
+    [pP][tT]*) printf '%s' "$3" ;;
     *) printf '%s' "$1" ;;
     esac
 }
@@ -38,11 +39,14 @@ apt_get() {
 install_venv() {
     command -v apt-get >/dev/null 2>&1 || fail \
         "This Python cannot make virtual environments (no ensurepip). Install that part of it." \
-        "Este Python no puede crear entornos virtuales (falta ensurepip). Instala esa parte."
-    say "Installing python3-venv with apt-get" "Se instala python3-venv con apt-get"
+        "Este Python no puede crear entornos virtuales (falta ensurepip). Instala esa parte." \
+        "Este Python não pode criar ambientes virtuais (falta ensurepip). Instale essa parte."
+    say "Installing python3-venv with apt-get" "Se instala python3-venv con apt-get" \
+        "Instalando python3-venv com apt-get"
     { apt_get update -qq && apt_get install -y -qq python3-venv; } || fail \
         "That did not work. Who administers this computer installs it as root, online:  apt-get install python3-venv" \
-        "No se pudo. Quien administra esta computadora lo instala como root, con internet:  apt-get install python3-venv"
+        "No se pudo. Quien administra esta computadora lo instala como root, con internet:  apt-get install python3-venv" \
+        "Não deu certo. Quem administra este computador o instala como root, com internet:  apt-get install python3-venv"
 }
 
 # debian_packages NAMES: installs those that are missing, where apt-get is there to do it. A name
@@ -54,23 +58,26 @@ debian_packages() {
         dpkg -s "$package" >/dev/null 2>&1 || missing="$missing $package"
     done
     [ -n "$missing" ] || return 0
-    say "Installing with apt-get:$missing" "Se instala con apt-get:$missing"
+    say "Installing with apt-get:$missing" "Se instala con apt-get:$missing" \
+        "Instalando com apt-get:$missing"
     apt_get update -qq || say "apt-get could not ask for what is new." \
-        "apt-get no pudo preguntar qué hay de nuevo."
+        "apt-get no pudo preguntar qué hay de nuevo." "O apt-get não conseguiu ver o que há de novo."
     found=""
     for package in $missing; do
         if apt-cache show "$package" >/dev/null 2>&1; then
             found="$found $package"
         else
             say "This system has no package $package: the tests that need it will be skipped." \
-                "Este sistema no tiene el paquete $package: se omiten las pruebas que lo usan."
+                "Este sistema no tiene el paquete $package: se omiten las pruebas que lo usan." \
+                "Este sistema não tem o pacote $package: os testes que o usam são pulados."
         fi
     done
     [ -n "$found" ] || return 0
     # shellcheck disable=SC2086 # the names are words
     apt_get install -y -qq --no-install-recommends $found ||
         say "That did not work: the tests that need them will be skipped and say so." \
-            "No se pudo: las pruebas que los usan se omiten y lo dicen."
+            "No se pudo: las pruebas que los usan se omiten y lo dicen." \
+            "Não deu certo: os testes que os usam são pulados e dizem isso."
 }
 
 # What the tests need of Debian.
@@ -90,7 +97,8 @@ find_venv_python() {
     fi
     [ -n "$found" ] || fail \
         "TiniScript needs Python 3.10 or newer, and there is none here. Debian 12 and Ubuntu 22.04 have one." \
-        "TiniScript necesita Python 3.10 o posterior, y aquí no hay. Debian 12 y Ubuntu 22.04 lo tienen."
+        "TiniScript necesita Python 3.10 o posterior, y aquí no hay. Debian 12 y Ubuntu 22.04 lo tienen." \
+        "O TiniScript precisa de Python 3.10 ou mais novo, e aqui não há. O Debian 12 e o Ubuntu 22.04 têm."
     "$found" -c 'import ensurepip' 2>/dev/null || install_venv
 }
 

@@ -33,7 +33,7 @@ def stick(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder.mkdir()
     usb_stick.add_texts(folder)
     usb_stick.add_readme(
-        folder, "Linux", "3.11", [usb_stick.Missing("a wheel", "una rueda", "no network")]
+        folder, "Linux", "3.11", [usb_stick.Missing("no_radio", "BeOS", "no network")]
     )
     return folder
 
@@ -161,7 +161,9 @@ def test_each_system_has_its_script_with_its_line_ends(stick: Path) -> None:
         assert (stick / name).stat().st_mode & 0o111
         assert subprocess.run(["sh", "-n", stick / name]).returncode == 0
     readme = (stick / "README.txt").read_text(encoding="utf-8-sig")
-    assert "missing: a wheel\nfalta: una rueda\n" in readme
+    lacks = ("BeOS: no ports", "falta: BeOS: sin puertos", "falta: BeOS: sem portas")
+    assert all(each in readme for each in lacks)
+    assert all(page in readme for page in ("index.html", "indice.html", "index.pt.html"))
 
 
 def test_the_script_of_windows_keeps_the_rules_of_cmd(stick: Path) -> None:
@@ -196,8 +198,8 @@ def test_nothing_of_this_computer_is_on_the_stick(stick: Path) -> None:
 
 def test_an_installer_that_cannot_be_fetched_is_named(tmp_path: Path) -> None:
     missing = usb_stick.add_installer(tmp_path, "file:///nowhere/python-3.13.9-amd64.exe")
-    assert "by hand" in missing[0].en
-    assert "a mano" in missing[0].es
+    assert "by hand" in missing[0].said("en")
+    assert "a mano" in missing[0].said("es")
     assert "No such file" in missing[0].why
     page = tmp_path / "page.exe"
     page.write_text("<html>blocked by the school</html>")

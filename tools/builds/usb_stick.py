@@ -24,9 +24,11 @@ ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
 from tiniscript import __version__
+from tiniscript.base.languages import SOURCE, text, told_in
 from tiniscript.flash import ready
 from tools.builds import stick_pages, stick_wheels
 from tools.builds.stick_wheels import PYTHONS, SYSTEMS, CannotMake
+from tools.site.documents import name_in
 
 SCRIPTS = ROOT / "tools" / "builds" / "stick"
 # What is wanted, and what a class does without where a new Python has no wheels yet.
@@ -36,29 +38,17 @@ INSTALLER = "3.13.9"  # of Python for Windows: a release that has an installer f
 INSTALLER_URL = "https://www.python.org/ftp/python/{0}/python-{0}-amd64.exe"
 # As the catalogue of Windows' package manager has it (microsoft/winget-pkgs, Python.Python.3.13).
 INSTALLER_SHA256 = "200ddff856bbff949d2cc1be42e8807c07538abd6b6966d5113a094cf628c5c5"
-README = """\
-TiniScript {version}, without internet        TiniScript {version}, sin internet
-
-Windows: double-click start.bat                Windows: doble clic en start.bat
-macOS: double-click start.command              macOS: doble clic en start.command
-  refused? Terminal: sh, a space, drag it in     ¿no se abre? Terminal: sh, espacio, arrástralo
-Linux: sh start.sh                             Linux: sh start.sh
-
-It installs tsc into the folder TiniScript     Instala tsc en la carpeta TiniScript de tu
-of your home folder, and asks for no           carpeta personal y no pide administrador.
-administrator. Pages: pages/index.html         Páginas: pages/indice.html
-
-Systems: {systems}
-Python: {pythons}
-{missing}"""
 
 
 class Missing(NamedTuple):
-    """A sentence about what could not be had, in both languages, and why, for who builds it."""
+    """What could not be had: the key of its sentence, what fills it, and why, for who builds it."""
 
-    en: str
-    es: str
+    key: str
+    what: str
     why: str
+
+    def said(self, language: str) -> str:
+        return text("documents", f"stick/{self.key}", language).format(what=self.what)
 
 
 def main(words: Sequence[str] | None = None) -> int:
@@ -91,7 +81,7 @@ def main(words: Sequence[str] | None = None) -> int:
     titles = ", ".join(SYSTEMS[each].title for each in systems)
     add_readme(folder, titles, ", ".join(pythons), missing)
     for each in missing:
-        print(f"missing: {each.en} ({each.why})", file=sys.stderr)
+        print(f"missing: {each.said(SOURCE)} ({each.why})", file=sys.stderr)
     size = sum(path.stat().st_size for path in folder.rglob("*") if path.is_file())
     print(f"{folder}: {size / 1e6:.0f} MB. Copy what is in it to the stick.")
     return 1 if missing else 0
@@ -124,16 +114,8 @@ def _with_fewer(ours: Path, wheels: Path, name: str, python: str, why: str) -> M
     try:
         stick_wheels.fetch(ours, wheels, SYSTEMS[name], python, FEWER_EXTRAS)
     except CannotMake:
-        return Missing(
-            f"{title}: this stick does not install there.",
-            f"{title}: ahí esta memoria no se instala.",
-            why,
-        )
-    return Missing(
-        f"{title}: no ports ble:// and tcp://. All else works.",
-        f"{title}: sin puertos ble:// ni tcp://. Lo demás funciona.",
-        why,
-    )
+        return Missing("no_system", title, why)
+    return Missing("no_radio", title, why)
 
 
 def add_installer(folder: Path, url: str, sha256: str = INSTALLER_SHA256) -> list[Missing]:
@@ -148,13 +130,7 @@ def add_installer(folder: Path, url: str, sha256: str = INSTALLER_SHA256) -> lis
     except (OSError, ValueError) as failure:  # also what urllib raises
         why = str(getattr(failure, "reason", failure))
     target.unlink(missing_ok=True)
-    return [
-        Missing(
-            f"Python's installer for Windows. Put {url} beside start.bat by hand.",
-            f"el instalador de Python para Windows. Pon a mano {url} al lado de start.bat.",
-            why,
-        )
-    ]
+    return [Missing("no_installer", url, why)]
 
 
 def add_texts(folder: Path) -> None:
@@ -163,19 +139,26 @@ def add_texts(folder: Path) -> None:
     shutil.copytree(ROOT / "examples", folder / "examples")
     shutil.copy(ROOT / "LICENSE", folder)
     for path in sorted(SCRIPTS.iterdir()):
-        text = path.read_text(encoding="utf-8")
+        script = path.read_text(encoding="utf-8")
         # cmd finds a label by its line end; a shell of Unix takes a CR for a part of a word
         end = "\r\n" if path.suffix in (".bat", ".ps1") else "\n"
         target = folder / path.name
-        target.write_text(text, encoding="utf-8", newline=end)
+        target.write_text(script, encoding="utf-8", newline=end)
         if path.suffix in (".sh", ".command"):
             target.chmod(0o755)
 
 
 def add_readme(folder: Path, systems: str, pythons: str, missing: Sequence[Missing]) -> None:
-    lacks = "".join(f"missing: {each.en}\nfalta: {each.es}\n" for each in missing)
-    text = README.format(version=__version__, systems=systems, pythons=pythons, missing=lacks)
-    (folder / "README.txt").write_text(text, encoding="utf-8-sig", newline="\r\n")
+    parts = [f"TiniScript {__version__}\n{systems}\nPython {pythons}\n"]
+    for language in told_in("documents", "stick/title"):
+        index = name_in(language, stick_pages.INDEX)
+        lacks = text("documents", "stick/lacks", language)
+        how = text("documents", "stick/readme", language).format(index=index)
+        rows = [how, *(lacks.format(what=each.said(language)) for each in missing)]
+        title = text("documents", "stick/title", language)
+        parts.append("\n".join((title, "", *rows, "")))
+    said = "\n".join(parts)
+    (folder / "README.txt").write_text(said, encoding="utf-8-sig", newline="\r\n")
 
 
 def _firmware() -> list[Missing]:
@@ -185,13 +168,7 @@ def _firmware() -> list[Missing]:
     from tools.builds import firmware_files
 
     if firmware_files.main([]):
-        return [
-            Missing(
-                "ready firmware. tsc firmware builds it, with internet.",
-                "el firmware listo. tsc firmware lo construye, con internet.",
-                "see above",
-            )
-        ]
+        return [Missing("no_firmware", "", "see above")]
     return []
 
 

@@ -26,5 +26,6 @@ goto :eof
 :nothing
 echo Python 3.10 or newer is missing, and this stick has no installer: python.org
 echo Falta Python 3.10 o mas nuevo, y esta memoria no trae su instalador: python.org
+echo Falta o Python 3.10 ou mais novo, e este pen drive nao traz o instalador: python.org
 :failed
 pause

@@ -16,4 +16,5 @@ for name in python3 python3.15 python3.14 python3.13 python3.12 python3.11 pytho
 done
 echo "Python 3.10 or newer is missing: python.org, or the packages of this system." >&2
 echo "Falta Python 3.10 o posterior: python.org, o los paquetes de este sistema." >&2
+echo "Falta o Python 3.10 ou mais novo: python.org, ou os pacotes deste sistema." >&2
 exit 2
