@@ -10,6 +10,7 @@ import re
 from collections.abc import Callable, Sequence
 from functools import cached_property
 from itertools import pairwise
+from unicodedata import normalize
 
 from tiniscript.base.kit import Kit
 from tiniscript.base.source import Edit, Source, Span
@@ -48,6 +49,7 @@ _IS_BLOCK = re.compile(rf"(?i)(?:{'|'.join((*BLOCK_ENDS, 'END', 'ELSE'))})\b|END
 _WORD = re.compile(r"\w")
 _MEMBER = re.compile(r"[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)+(?=[ \t]*\()")
 _SEPARATOR = re.compile(r"[;|{}]")
+_SIGNS = "+-*/%=<>(),;|"
 _MOST_TIMES = 20  # that a DEF is done
 _LONGEST = 120  # characters of a sentence that a message shows
 _MANY = 30  # diagnostics of which more is said
@@ -520,6 +522,9 @@ class _Usage:
             return Diagnostic(codes.LISTS, found.span, {"found": tokens[0].text})
         if sign == "!" and self.source.text[found.span.end :][:1] not in ("", "\n", " "):
             return Diagnostic(codes.OTHER_SIGN, found.span, {"found": "!", "right": "NOT"})
+        usual = normalize("NFKC", sign)  # of the wide signs of other keyboards
+        if usual != sign and usual in _SIGNS:
+            return Diagnostic(codes.OTHER_SIGN, found.span, {"found": sign, "right": usual})
         around = self.source.text[found.span.start - 1 : found.span.end + 1]
         if re.fullmatch("[0-9]:[0-9]", around):
             return Diagnostic(codes.BAD_NUMBER, found.span, {"found": around})
