@@ -466,8 +466,9 @@ def _slip(code: str, step: Step | None, before: Sequence[Lexeme], after: Sequenc
     shown = shown or laid_out(after)
     is_all = code == codes.REPEATED.number or (code == codes.OTHER_SIGN.number and not right)
     is_found = bool(found) or code == codes.OTHER_ASSIGNMENT.number  # else a sign is missing
-    if code == _WORD_CODE and right:  # `oi robô, anda`
-        found = [each for each in found if meant_by(each.text) == right[0].text] or found
+    is_aside = bool(found) and all(said_of(each.text, "filler") for each in found)
+    if code == _WORD_CODE and right and is_aside:  # `oi robô, anda`
+        found = [each for each in old if meant_by(each.text) == right[0].text][:1] or found
     was = _written(one if is_all or not is_found else found)
     if is_note:
         was = re.match(r"\w+|\W+", was).group().strip()  # type: ignore[union-attr]

@@ -287,7 +287,7 @@ v=@val CM|EN? CM | $v | 2 | TS049 | applied | SHOW DISTANCE cm => SHOW(DISTANCE)
 SHOW ( n=@num M|METRO|METROS|METERS|METER|@unit ) | SHOW ( $n ) | 1 | TS049 | applied | SHOW(2 M) => SHOW(2)
 ROUND ( v=@argt+ , n=@num DECIMALES|DECIMALS|PLACES|CIFRAS ) | ROUND ( $v , $n ) | 1 | TS049 | applied | SHOW(ROUND(DISTANCE, 1 decimales)) => SHOW(ROUND(DISTANCE, 1))
 v=@val seconds|@unit e=,|) | $v $e | 1 | TS049 | applied | SHOW(distancia cm) => SHOW(DISTANCE)
-h=IF|WHILE|UNTIL|WHEN|ELSEIF|SHOW b=(? A v=@val | &h $b &v | 1 | TS102 | first | IF(a distância < 10);S;ENDIF => IF(DISTANCE < 10);S;ENDIF
+h=IF|WHILE|UNTIL|WHEN|ELSEIF b=(? A v=@val | &h $b &v | 1 | TS102 | first | IF(a distância < 10);S;ENDIF => IF(DISTANCE < 10);S;ENDIF
 the v=@val | $v | 1 | TS102 | first | lee la distancia => DISTANCE
 # variables
 v=@name = a=@num|@val b=@start | $v = $a ; $b | 1 | TS013 | applied | vel = 50 F(2, vel) => VEL = 50;F(2, VEL)
