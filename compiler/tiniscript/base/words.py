@@ -123,9 +123,6 @@ SENSOR_STEMS = {"LUZ": "LIGHT", "LINEA": "LINE"}
 
 # What a pupil asks for, where a robot measures how far something is.
 OTHER_WAY = {"F": "B", "B": "F", "L": "R", "R": "L"}  # the moves, and those that undo them
-NEAR_WORDS = frozenset(
-    "OBSTACULO OBSTACLE PARED WALL MURO OBJETO OBJECT CERCA NEAR CHOCA CHOQUE COLISION CERRADO BLOCKED".split()  # noqa: SIM905
-)
 # What a robot may have, and what nobody calls a variable.
 DEVICE_WORDS = frozenset(["LED", "LUZ", "FOCO", "LIGHT", "LAMP", "LAMPARA", "SERVO", "BUZZER", "ZUMBADOR", "BOCINA", "ALARMA", "MOTOR", "MOTORES", "GRIPPER", "GARRA", "PINZA", "PANTALLA", "LCD", "SCREEN"])
 

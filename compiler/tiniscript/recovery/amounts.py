@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Container
-from unicodedata import combining, normalize
 
 from tiniscript.base.source import Span
 from tiniscript.base.words import AMOUNT_WORDS, POWER_WORDS, WORDS
-from tiniscript.recovery.concepts import meant_by
+from tiniscript.recovery.concepts import meant_by, plain
 
 _NEAR = 80  # characters around a value in which its call is looked for
 _BEFORE = re.compile(r"([A-Za-z]+)[ \t]*\(([^()\r\n;]*)\Z")
@@ -19,7 +18,7 @@ _CENTIMETRES, _ANY = "10", "50"  # examples of what a sensor sees, and of a vari
 
 
 def is_amount(*words: str) -> bool:
-    return any(_plain(each) in AMOUNT_WORDS for each in words)
+    return any(plain(each) in AMOUNT_WORDS for each in words)
 
 
 def with_number(text: str, span: Span, own: Container[str] = ()) -> dict[str, str]:
@@ -46,15 +45,10 @@ def with_number(text: str, span: Span, own: Container[str] = ()) -> dict[str, st
     if not any(is_amount(*each.split()) for each in values):
         return {}
     for k, (value, its) in enumerate(zip(values, word.arguments, strict=False)):
-        words = [each for each in _plain(value).split() if each not in own]
+        words = [each for each in plain(value).split() if each not in own]
         said = [POWER_WORDS[each] for each in words if each in POWER_WORDS]
         if said or is_amount(*words) or k == place:
             sample = said[0] if said and its.unit == "%" else _SAMPLES.get(its.name, its.sample)
             values[k] = f"{' ' * (k > 0)}{sample}"
     head = call[0][: len(call[0]) - len(call[2])]
     return {"amount": amount, "example": f"{head.lstrip()}{','.join(values)})"}
-
-
-def _plain(text: str) -> str:
-    """Return a text in capitals and without accents."""
-    return "".join(each for each in normalize("NFD", text.upper()) if not combining(each))

@@ -15,7 +15,6 @@ from tiniscript.recovery import lines
 from tiniscript.recovery.concepts import (
     ENDED,
     KNOWN,
-    NEAR,
     Lexeme,
     Names,
     concept_of,
@@ -226,10 +225,8 @@ class Behind:
 
     def means(self, word: str) -> str:
         """Return the word of the language that is said, "" where none is."""
-        if word in WORDS and word != "SI" and word not in WAYS:
-            return ENDED.get(word, word)
-        meant = self.names.meanings(word)
-        return meant[0].concept if meant and meant[0].cost < NEAR else ""
+        meant = "" if word in WAYS else self.names.meant(word)
+        return ENDED.get(meant, meant)
 
     def number(self, k: int) -> str | None:
         """Return the number at a place in digits, None where there is none."""

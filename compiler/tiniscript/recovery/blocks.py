@@ -154,13 +154,6 @@ class _Matching:
         for block in self.open:
             if block.body is None and block.line < k:
                 block.body = indent if indent > block.indent else -1
-        while self.open and item.kind == "arm":
-            block = self.open[-1]
-            is_left = block.has_indented_body and indent <= block.indent and block.word != "IF"
-            if not is_left or block.has_brace:
-                break
-            self.open.pop()
-            self.close_behind(last, block)
 
     def has_end_further_down(self, place: int, block: _Block) -> bool:
         ends = (ANY_END, block.end)

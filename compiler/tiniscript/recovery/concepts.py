@@ -330,6 +330,13 @@ class Names:
         found = concepts(word)
         return tuple(each for each in found if each.concept in WORDS or self.has(each.concept))
 
+    def meant(self, word: str, most: int = MISSPELT) -> str:
+        """Return the word of the language that a word means, "" for none or a less likely one."""
+        if word in WORDS and word != "SI":
+            return word
+        found = self.meanings(word)
+        return found[0].concept if found and found[0].cost <= most else ""
+
     def has(self, concept: str) -> bool:
         """Whether a concept is a device of the kit, or the end of any block."""
         return concept in self.sensors or concept in self.actuators or concept == "FIN"

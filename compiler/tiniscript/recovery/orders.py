@@ -9,9 +9,9 @@ from collections.abc import Sequence
 from itertools import groupby, pairwise
 from typing import NamedTuple
 
-from tiniscript.base.words import BLOCK_ENDS, NOTE_WORDS, WORDS
+from tiniscript.base.words import BLOCK_ENDS, NOTE_WORDS
 from tiniscript.recovery import lines, rewrites
-from tiniscript.recovery.concepts import CALLED, NEAR, Lexeme, Names, made, said_of
+from tiniscript.recovery.concepts import CALLED, Lexeme, Names, made, said_of
 from tiniscript.recovery.slots import MOVES, Filled, filled
 from tiniscript.recovery.writing import laid_out
 from tiniscript.syntax.lexer import NUMBER
@@ -76,7 +76,7 @@ def _is_the(token: Lexeme, after: Lexeme) -> bool:
 
 
 def _is_if(token: Lexeme, names: Names) -> bool:
-    return token.text == "SI" or command(token.text, names) == "IF"
+    return token.text == "SI" or names.meant(token.text) == "IF"
 
 
 def _asked_between(first: list[Order], words: Sequence[Lexeme], names: Names) -> list[Order]:
@@ -115,13 +115,13 @@ def _orders(words: list[Lexeme], names: Names) -> list[Order]:
 def _begins(token: Lexeme, names: Names) -> bool:
     """Whether a word begins an order."""
     is_turn = bool(said_of(token.text, "turn"))
-    return is_turn or command(token.text, names) in (*CALLED, "S", "STOP")
+    return is_turn or names.meant(token.text) in (*CALLED, "S", "STOP")
 
 
 def _order(words: list[Lexeme], names: Names) -> Order | None:
     if to_wall := _until(words, names):
         return to_wall
-    first = command(words[0].text, names)
+    first = names.meant(words[0].text)
     rest = [each.text for each in words[1:]]
     if (
         first in ("S", "STOP")
@@ -152,7 +152,7 @@ def _order(words: list[Lexeme], names: Names) -> Order | None:
 
 def _until(words: Sequence[Lexeme], names: Names) -> Order | None:
     """Return the move that words say up to a question."""
-    k = next((k for k, each in enumerate(words) if command(each.text, names) == "UNTIL"), 0)
+    k = next((k for k, each in enumerate(words) if names.meant(each.text) == "UNTIL"), 0)
     call: Filled | None = filled(words[:k], names, has_until=True, is_order=True) if k else None
     if call is None or call.times or "DISTANCE" not in names.sensors:
         return None
@@ -170,7 +170,7 @@ def _near(words: Sequence[Lexeme], names: Names, sign: str) -> tuple[str, tuple[
     numbers = [each.text for each in words if each.kind is NUMBER]
     is_wall = any(said_of(each.text, "wall") for each in words)
     is_ahead = not any(
-        command(each.text, names) in _ASIDE or said_of(each.text, "light") for each in words
+        names.meant(each.text) in _ASIDE or said_of(each.text, "light") for each in words
     )
     is_other = any(said_of(each.text, "more") for each in words)
     if not (numbers or is_wall) or not is_ahead or is_other or len(numbers) > 1:
@@ -185,7 +185,7 @@ def block(tokens: Sequence[Lexeme], names: Names, is_open: bool) -> str:
     `is_open`: it goes on further down.
     """
     first = tokens[0].text
-    word = "IF" if first == "SI" else command(first, names)
+    word = "IF" if first == "SI" else names.meant(first)
     if word not in ("IF", "WHILE", "LOOP") or len(tokens) > LONGEST:
         return ""
     while any(said_of(each.text, "end") for each in tokens[-2:]):
@@ -202,7 +202,7 @@ def block(tokens: Sequence[Lexeme], names: Names, is_open: bool) -> str:
             return ""  # another order than the words behind it say
         if not body or any(each.is_side_free for each in (*body, *other)):
             continue
-        if word != "LOOP" and command(texts[k], names) in _SIDES:
+        if word != "LOOP" and names.meant(texts[k]) in _SIDES:
             return ""  # where the wall is, or where to go
         place = next((j for j in range(k, arm) if not said_of(texts[j], "filler")), k)
         if said_of(texts[place], "front") and place + 1 < arm and not _joined(texts, place):
@@ -245,11 +245,3 @@ def question_in(words: Sequence[Lexeme], names: Names) -> list[Lexeme]:
     if [each.text for each in asked if each.text in "()"] == ["(", ")"] and asked[-1].text == ")":
         asked = asked[1:-1] if asked[0].text == "(" else asked
     return asked if any(each.text in COMPARISONS for each in asked) else []
-
-
-def command(word: str, names: Names) -> str:
-    """Return the word of the language that a word surely means, "" for none."""
-    if word in WORDS and word != "SI":
-        return word
-    meant = names.meanings(word)
-    return meant[0].concept if meant and meant[0].cost < NEAR else ""

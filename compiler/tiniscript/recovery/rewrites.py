@@ -298,10 +298,7 @@ def negated(question: Sequence[Lexeme]) -> list[Lexeme]:
 
 
 def _end_of(place: _Place) -> _Made:
-    word = place.captured[0][0].text
-    if word not in WORDS or word == "SI":
-        meant = place.line.names.meanings(word)
-        word = meant[0].concept if meant else word
+    word = place.line.translated(place.captured[0][0]).text
     word = _HEADER_OF.get(word, word)
     end = BLOCK_ENDS.get(word, word if word in ENDED else "")
     return [made(end)] if end else None

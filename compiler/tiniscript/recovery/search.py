@@ -77,10 +77,6 @@ class _Text:
     def indent(self) -> int:
         return len(self.source) - len(self.source.lstrip(" \t"))
 
-    @property
-    def is_rewritten(self) -> bool:
-        return bool(self.reading and self.reading.steps)
-
 
 class Recovery:
     """What may have been meant by a wrong program; each line of it is read once."""

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from tiniscript.base.words import NOTE_WORDS, UNIT_OF, WAYS, WORDS, Argument
 from tiniscript.recovery import rows
-from tiniscript.recovery.concepts import CALLED, DONE, UNITS, Lexeme, Names, made, said_of
+from tiniscript.recovery.concepts import CALLED, DONE, NEAR, UNITS, Lexeme, Names, made, said_of
 from tiniscript.syntax.devices import actuator_word
 from tiniscript.syntax.lexer import NUMBER, WORD
 
@@ -109,19 +109,13 @@ class _Reader:
             if token.text == "(":
                 self.is_sure = self.is_sure and (not opened or (k == 2 and self.text(1) == "("))
                 opened += 1
-                first = self._meant(self.words[0].text)
-                if first != "M" and self._meant(after) in CALLED:
+                first = self.names.meant(self.words[0].text, NEAR)
+                if first != "M" and self.names.meant(after, NEAR) in CALLED:
                     self.is_sure = False
         return True
 
     def text(self, k: int) -> str:
         return self.words[k].text if 0 <= k < len(self.words) else ""
-
-    def _meant(self, word: str) -> str:
-        if word in WORDS and word != "SI":
-            return word
-        meanings = self.names.meanings(word)
-        return meanings[0].concept if meanings else ""
 
     def _value_of_words(self, k: int) -> tuple[float, int] | None:
         """Return the number that words say, where they can say nothing else, and what is next."""
@@ -145,9 +139,6 @@ class _Reader:
         if said_of(token.text, "power") == ("50",) and (after in UNITS or is_first):
             self.is_sure = False
             return 0.5, k + 1  # half a second
-        if said_of(token.text, "power") == ("50",) and after == "A" and self.text(k + 2) in UNITS:
-            self.is_sure = False
-            return 0.5, k + 2
         return None
 
     def _sum(self, number: float, k: int) -> tuple[float, int]:

@@ -30,7 +30,7 @@ from tiniscript.recovery.concepts import (
     plain,
     said_of,
 )
-from tiniscript.recovery.orders import block, command, made_up, orders, written
+from tiniscript.recovery.orders import block, made_up, orders, written
 from tiniscript.recovery.writing import laid_out, shortened, without_note
 from tiniscript.syntax.free_names import in_place_of
 from tiniscript.syntax.lexer import NUMBER, QUOTES, WORD
@@ -134,7 +134,7 @@ class _Usage:
         return lexemes(self.source[span])
 
     def command(self, word: str) -> str:
-        return command(word, self.names)
+        return self.names.meant(word)
 
     def with_name(self, found: Sequence[Diagnostic]) -> Sequence[Diagnostic]:
         """Return diagnostics in which the one DEF without a name has that of an unknown call."""

@@ -51,7 +51,9 @@ def worded(row: Sequence[Lexeme], names: Names) -> Worded | None:
     numbers = [text for text in texts if text[0].isdigit() or text[0] == "."]
     own = [text for text in texts if names.is_name(text) and text != number]
     is_known = all(names.is_name(text) or said_of(text, "number") for text in texts)
-    is_alone = len(texts) == 1 and not (said & {"light"} and not said_of(texts[0], "sensor"))
+    is_alone = len(texts) == 1 and not (
+        said & {"light", "ahead"} and not said_of(texts[0], "sensor")
+    )
     if is_alone or is_known or len(numbers) > 1 or names.is_name("_".join(texts)):
         return None
     has_subject = said & {"ahead", "none"} or ("light" in said and said & {"little", "much"})

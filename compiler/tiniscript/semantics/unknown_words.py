@@ -10,12 +10,9 @@ import re
 from collections.abc import Set as AbstractSet
 from itertools import chain, takewhile
 
-from tiniscript.base.source import Span
 from tiniscript.base.words import (
     BLOCK_ENDS,
-    NEAR_WORDS,
     PLACEHOLDERS,
-    POWER_WORDS,
     WORDS,
     Word,
 )
@@ -102,18 +99,6 @@ def whole_name(scope: Scope, part: str, names: AbstractSet[str]) -> str:
 def _is_shortened(one: str, other: str) -> bool:
     short, long = sorted((one, other), key=len)
     return len(short) > 2 and long.isalpha() and long.startswith(short)
-
-
-def meant_value(scope: Scope, span: Span, name: str, is_assigned: bool) -> str:
-    """Return what `IF(obstaculo)` asks, or the number that `v = rapido` gives, else nothing."""
-    text = scope.source.text
-    before, after = text[: span.start][-60:].rstrip()[-1:], text[span.end :][:60].lstrip()[:1]
-    if name in NEAR_WORDS and (before, after) == ("(", ")") and "DISTANCE" in scope.names:
-        return "DISTANCE < 10" if _HEADER.search(text[: span.start][-60:]) else ""
-    return POWER_WORDS.get(name, "") if is_assigned and before == "=" else ""
-
-
-_HEADER = re.compile(r"(?i)\b(IF|ELSEIF|UNTIL|WHILE|WHEN)\s*\(\s*(NOT\s+)?$")
 
 
 def _wanted(scope: Scope, name: str) -> list[str]:

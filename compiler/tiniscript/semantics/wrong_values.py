@@ -16,7 +16,7 @@ from tiniscript.recovery.concepts import meant_by, said_of
 from tiniscript.semantics.comparisons import ASIDE
 from tiniscript.semantics.named_values import value_of
 from tiniscript.semantics.symbols import ENOUGH, NUMBER, Operand, Scope
-from tiniscript.semantics.unknown_words import meant_value, whole_name
+from tiniscript.semantics.unknown_words import whole_name
 from tiniscript.syntax.ast import Part
 from tiniscript.syntax.operators import SIGN_OF
 
@@ -62,9 +62,8 @@ class WrongValues:
         known = [each for each, its in names if its.what in ("sensor", "variable")]
         is_forever = _TIME_BEFORE.search(before) or _TIMES_BEFORE.search(before)
         known += ["FOREVER"] if is_forever else []
-        near = "".join(said_of(name, "number")) or scope.near(name, known) or meant_value(
-            scope, span, name, is_assigned=target is not None
-        )  # fmt: skip
+        near = "".join(said_of(name, "number")) or scope.near(name, known)
+        near = near or (POWER_WORDS.get(name, "") if before.rstrip().endswith("=") else "")
         near = near or whole_name(scope, name, scope.set_somewhere)
         base = name.rstrip(_DIGITS).rstrip("_")  # DISTANCE, of DISTANCE2
         stem = SENSOR_STEMS.get(base, base) + "_"  # `LIGHT` of LIGHT_R and LIGHT_L

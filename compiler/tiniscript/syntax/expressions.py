@@ -208,7 +208,6 @@ class ExpressionParser:
 
     def wrong_count(self, word: Word, count: int, span: Span) -> NoReturn:
         example = "" if count else word.example
-        example = "" if count else word.example
         self.reporter.fail(codes.ARGUMENT_COUNT, span, word=word.text, usage=word.usage,
                            example=example, wanted=str(len(word.arguments)),
                            found=str(count))  # fmt: skip
