@@ -121,7 +121,6 @@ TASKS = ("TASK", "WHEN")  # blocks that run beside the rest of the program
 # The sensor of which a robot has a left and a right one.
 SENSOR_STEMS = {"LUZ": "LIGHT", "LINEA": "LINE"}
 
-# What a pupil asks for, where a robot measures how far something is.
 OTHER_WAY = {"F": "B", "B": "F", "L": "R", "R": "L"}  # the moves, and those that undo them
 # What a robot may have, and what nobody calls a variable.
 DEVICE_WORDS = frozenset(["LED", "LUZ", "FOCO", "LIGHT", "LAMP", "LAMPARA", "SERVO", "BUZZER", "ZUMBADOR", "BOCINA", "ALARMA", "MOTOR", "MOTORES", "GRIPPER", "GARRA", "PINZA", "PANTALLA", "LCD", "SCREEN"])

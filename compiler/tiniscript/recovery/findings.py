@@ -35,15 +35,6 @@ _NOTE = re.compile(rf"(?i)\b(?:{'|'.join(NOTE_WORDS)})\b")  # its 4 is no number
 Check = Callable[[str], Sequence[Diagnostic]]
 
 
-class NoBar(NamedTuple):
-    """`sign` or a `letter` that looks like it stands behind `found` in the place of the bar."""
-
-    found: str
-    sign: str
-    letter: str
-    fix: str
-
-
 class Findings(NamedTuple):
     """What is told of a text, and the edits with which the rest of it is read."""
 
@@ -144,16 +135,15 @@ def _meant(
     """
     if meant is None:
         return []
-    if "\r" in source.text.replace("\r\n", ""):
-        shown = Source(source.text.replace("\r", "\n"), source.name)
-        read = _meant(shown, found, meant, is_sure)
-        return [_with_line_ends(each, source.text) for each in read]
-    told = explained(source.text, meant)
+    text = source.text
+    if "\r" in text.replace("\r\n", ""):
+        text = text.replace("\r", "\n")
+    told = explained(text, meant)
     if not told and meant.is_whole:
         misplaced = [each for each in found if each.code.number in rows.MISPLACED]
         said_of_it = misplaced or [each for each in found if each.is_mistake]
-        return [_moved(each, source.text, meant) for each in said_of_it][:1]
-    text = source.text.replace("\r\n", "\n")
+        return [_moved(each, text, meant) for each in said_of_it][:1]
+    text = text.replace("\r\n", "\n")
     said_with = {each.code for each in told} | {step.code for _, step in meant.steps}
     if not told or not _keeps(text, meant.text, said_with, is_sure):
         return []
@@ -192,16 +182,6 @@ def _diagnostic(
             return Diagnostic(code, each.span, values, told.place, repair)
     code = codes.OTHER_CALL if code in _AS_CHECKED[:2] else code  # its values are not counted
     return Diagnostic(code, told.span, values, told.place, repair)
-
-
-def _with_line_ends(told: Diagnostic, text: str) -> Diagnostic:
-    """Return what is told of a text that has `\\r` for the end of a line."""
-    start, end = told.span
-    start -= text[max(0, start - 1) : start + 1] == "\r\n"
-    edits = told.repair.edits if told.repair else ()
-    edits = tuple(each._replace(text=each.text.replace("\n", "\r")) for each in edits)
-    span = Span(start, end)
-    return told._replace(span=span, repair=told.repair and told.repair._replace(edits=edits))
 
 
 def _moved(found: Diagnostic, text: str, meant: Candidate) -> Diagnostic:
@@ -295,9 +275,9 @@ def _no_bar(source: Source) -> Diagnostic | None:
         edits.append(Edit(close, ""))
         fix += source[Span(span.end, close.start)]
     sign = source[Span(span.start + len(begun.head), span.end)].strip()
-    said = NoBar(begun.head, "" if sign.isalpha() else sign, sign if sign.isalpha() else "", fix)
+    said = {"found": begun.head, "letter" if sign.isalpha() else "sign": sign, "fix": fix}
     repair = Repair(tuple(edits), begun.is_sure)
-    return Diagnostic(CODES[rows.SETUP_CODE], span, said._asdict(), None, repair)
+    return Diagnostic(CODES[rows.SETUP_CODE], span, said, None, repair)
 
 
 def _is_better(source: Source, found: Sequence[Diagnostic], repair: Repair, check: Check) -> bool:

@@ -9,7 +9,6 @@ import heapq
 import re
 from collections.abc import Callable, Iterator, Sequence
 from functools import lru_cache
-from itertools import pairwise
 from typing import NamedTuple
 from unicodedata import category
 
@@ -197,7 +196,7 @@ class _Search:
             seen.add(text)
             items = right(reading.tokens, self.names)
             if not isinstance(items, Failure):
-                if not (self.says_twice(reading, items, first) or _is_hollow(reading, items)):
+                if not self.says_twice(reading, items, first):
                     found.append(reading._replace(items=items))
                 continue
             reading = reading._replace(failure=items)
@@ -341,13 +340,6 @@ class _Search:
                     cost, code = rows.SWAPPED_COST
                     line = [*tokens[:k], rest[0], token, *rest[1:]]
                     yield reading.changed(line, cost, code, True, False)
-
-
-def _is_hollow(reading: Reading, items: Sequence[Item]) -> bool:
-    """Whether a block would have an arm with nothing in it, which nobody wrote."""
-    return bool(reading.steps) and any(
-        one.kind == "open" and other.kind == "arm" for one, other in pairwise(items)
-    )
 
 
 def _is_group(tokens: Sequence[Lexeme], k: int) -> bool:
