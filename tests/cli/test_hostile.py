@@ -54,6 +54,8 @@ def hostile(many: int) -> dict[str, bytes]:
         "unknown names": b";".join(b"QWERTYUIO%d=Z%d" % (k, k) for k in range(many * 2 // 5)),
         "units": b"F(20 DEG, 60);" * (many // 10),
         "questions": b"IF(TIME>1) " * (many // 10),
+        "calls on one line": b"beep(1 440) " * (many // 12),
+        "questions in words": b"F(5, 60) UNTIL(cerca);" * (many // 22),
         "a call without its DEF": b"DEF;S;END_DEF\n" + b"PASO\n" * (many // 5),
         "wide header": b"IF(" + b"+".join([b"1"] * 60) + b", 2);S;ENDIF",
     }

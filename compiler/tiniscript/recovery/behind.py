@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from functools import lru_cache
 from typing import NamedTuple
 
 from tiniscript.base.source import Span
@@ -70,6 +71,12 @@ def _meant_call(token: Lexeme, names: Names) -> str:
     """Return which instruction with values a word of another language means, "" for none."""
     meant = names.meanings(token.text) if token.kind is WORD else ()
     return next((each.concept for each in meant if names.takes(each.concept)), "")
+
+
+@lru_cache(32)
+def _is_set(word: str, text: str) -> bool:
+    """Whether a word is a variable of a text, which is told at its own line."""
+    return bool(re.search(rf"(?i)\b{word}\s*=", text))
 
 
 def _closed(tokens: Sequence[Lexeme], start: int) -> int:
@@ -211,8 +218,7 @@ class Behind:
         is_of_kit = concept is None or concept in WORDS or self.names.has(concept)
         found += [] if is_of_kit else [f"@no{concept}"]
         known = None if token.source == "l" else WORDS.get(text)
-        is_set = rf"(?i)\b{text}\s*="  # a variable that is told at its own line
-        if known is not None and known.is_instruction and not re.search(is_set, self.text):
+        if known is not None and known.is_instruction and not _is_set(text, self.text):
             found += ["@call", "@order"] if known.is_call else ["@order"]
         found += ["@ask"] if self.means(text) in ASKING else []
         found += ["@quote"] if text in QUOTES and text != "`" else []
