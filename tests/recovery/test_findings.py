@@ -37,7 +37,7 @@ def test_how_a_program_begins(wrong: str, found: Setup | None) -> None:
 
 def test_a_finding_has_typed_values_and_edits() -> None:
     (found,) = check("SI{F(2, 80)")
-    assert found.values == {"found": "SI", "sign": "{", "letter": "", "fix": "SI|"}
+    assert found.values == {"found": "SI", "sign": "{", "fix": "SI|"}
     assert found.repair is not None and found.repair.edits == (Edit(Span(0, 3), "SI|"),)
 
 

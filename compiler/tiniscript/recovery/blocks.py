@@ -178,8 +178,6 @@ class _Matching:
         if item.kind == "}":
             return self.closing_brace(place, k, item)
         if item.kind == "arm":
-            while self.open and self.open[-1].word != "IF" and self.open[-1].line == k:
-                self.edit(k, item, 0, self.open.pop().end, ";")
             return bool(self.open) and self.open[-1].word == "IF"
         if item.word == "BREAK" and (
             loop := next((each for each in self.open[::-1] if each.word in ("LOOP", "WHILE")), None)

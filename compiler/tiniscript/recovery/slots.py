@@ -136,9 +136,10 @@ class _Reader:
             self.cost += 0.5
             return number, k
         is_first = self.text(k - 1) == "(" and after == "," and self.command != "M"
-        if said_of(token.text, "power") == ("50",) and (after in UNITS or is_first):
+        unit = k + 1 + (after == "A")  # `half a second`
+        if said_of(token.text, "power") == ("50",) and (self.text(unit) in UNITS or is_first):
             self.is_sure = False
-            return 0.5, k + 1  # half a second
+            return 0.5, unit
         return None
 
     def _sum(self, number: float, k: int) -> tuple[float, int]:

@@ -42,13 +42,6 @@ class WrongValues:
         meant = meant_by(name) or ""
         before = scope.source.text[max(0, span.start - _NEAR) : span.start]
         is_variable = meant == "TIME" and _TIME_BEFORE.search(before) is not None
-        if not is_variable and name not in scope.set_somewhere and name != target and (
-            (meant in WORDS and WORDS[meant].role in ("value", "forever")) or meant in scope.names
-        ):  # fmt: skip
-            scope.report(
-                codes.OTHER_LANGUAGE, span, found=name, right=meant, fix=meant, usage=meant
-            )
-            return
         if meant == "BUTTON" or name == "BUTTON":
             scope.report(codes.NO_BUTTON, span)
             return
