@@ -20,7 +20,16 @@ TASK_OPS = tuple(op for op in opcodes.OPS if op.needs == opcodes.NEEDS_TASKS)
 # What a verifier distinguishes in the first two bytes of operands; devices come last.
 BYTES = ("any", "power", "percent", "variable", "count", "sensor", "actuator")
 FAR_BIT, BACK_BIT = 0x08, 0x10
-FIRST_TWIN = 0x80  # from here on an even code and the next one have the same shape
+
+# The families of which the machine asks the table: what its inner loop cannot do alone, and what
+# the verifier distinguishes. All others share rows. From WATCH_WAIT on the motors stay as they are.
+ASKED = (
+    "PUSH_READ", "TIME", "RANDOM", "SHOW", "SHOW_YES_NO", "SET", "STOP", "MOTORS", "MOTORS8",
+    "MOVE", "MOVE8", "WATCH", "WATCH_FOREVER",
+    "WATCH_WAIT", "WATCH_FOREVER_WAIT", "WAIT", "WAIT8", "BEEP", "BEEP8", "LOOK", "END_WHEN",
+)  # fmt: skip
+FIRST_FOUR = 0x80  # from here on four codes in a row have the same shape,
+FIRST_SIX = 0xC8  # and from here on six of eight; the other two are no opcodes
 
 
 def header(command: str) -> str:
@@ -190,15 +199,23 @@ def shape_of(op: opcodes.Op) -> Shape:
     first, second, *_ = [*kinds, "any", "any"]
     is_far = any(jumps) and op.operands[-1].kind.size == 2
     is_back = any(jumps) and op.operands[-1].kind.name.startswith("back")
-    return Shape(op.family, op.role, op.pops, op.pushes, op.size, is_far, is_back, first, second)
+    family = op.family if op.family in ASKED else ""
+    if family and op.implied:
+        family += "_SHORT"
+    return Shape(family, op.role, op.pops, op.pushes, op.size, is_far, is_back, first, second)
 
 
 def shapes() -> dict[Shape, list[opcodes.Op]]:
-    """Return the opcodes of each shape; the first one is that of what is no opcode."""
+    """Return the opcodes of each shape: first what is no opcode, then those with a family."""
     rows: dict[Shape, list[opcodes.Op]] = {NONE: []}
-    for op in in_order():
+    for op in sorted(in_order(), key=place_of):
         rows.setdefault(shape_of(op), []).append(op)
     return rows
+
+
+def place_of(op: opcodes.Op) -> tuple[bool, int]:
+    """Say where the row of an opcode stands: those that tasks alone have are the last ones."""
+    return op in TASK_OPS, (*ASKED, op.family).index(op.family)
 
 
 def in_order() -> tuple[opcodes.Op, ...]:
@@ -206,27 +223,25 @@ def in_order() -> tuple[opcodes.Op, ...]:
     return opcodes.UNO_OPS + TASK_OPS
 
 
-def families() -> list[str]:
-    return list(dict.fromkeys(shape.family for shape in shapes()))
-
-
 def form_numbers() -> str:
     """Return the families and what is declared of the tables, for the header."""
-    named = []
-    for number, family in enumerate(families()):
-        same = [op for op in in_order() if op.family == family]
-        named.append((family, number, names(same) if len(same) > 1 else ""))
+    named = [
+        (shape.family, number, names(same) if len(same) > 1 else "")
+        for number, (shape, same) in enumerate(shapes().items())
+        if shape.family
+    ]
     return "\n".join(
         (
-            "// What an instruction does: it begins in one place for a whole family.\n"
-            + enumeration("Family", named),
+            "// What an instruction does, where the inner loop cannot do it alone: the number of\n"
+            "// its shape. The others have no names.\n" + enumeration("Family", named),
             "// Bits of the size of a shape.\n" + constants(("kFar", FAR_BIT), ("kBack", BACK_BIT)),
-            "// The number of each opcode's shape; from kFirstTwin on one for two of them.\n"
-            f"constexpr uint8_t kFirstTwin = 0x{FIRST_TWIN:02x};\n"
+            "// The number of each opcode's shape; from kFirstFour on one for four of them. Of\n"
+            "// eight from kFirstSix on the last two are no opcodes.\n"
+            + constants(("kFirstFour", FIRST_FOUR), ("kFirstSix", FIRST_SIX)),
             "extern const uint8_t kShapeOf[] tini_progmem;\n",
             "// Of each shape: pops (2 bits), pushes (1) and role (5); the number of its\n"
-            "// operands (3), kBack, kFar and size (3); the family.\n"
-            "extern const uint8_t kShapes[][3] tini_progmem;\n",
+            "// operands (3), kBack, kFar and size (3).\n"
+            "extern const uint8_t kShapes[][2] tini_progmem;\n",
             "// Of operands: what the second byte is (4 bits) and the first (4).\n"
             "extern const uint8_t kOperands[] tini_progmem;\n",
             "// The least value of a Byte, and how much more than that it may be.\n"
@@ -240,10 +255,13 @@ def tables(command: str) -> str:
     rows = shapes()
     numbers = {op.code: number for number, same in enumerate(rows.values()) for op in same}
     numbered = [numbers.get(code, 0) for code in range(256)]
-    assert numbered[FIRST_TWIN::2] == numbered[FIRST_TWIN + 1 :: 2]
-    entries = [f"0x{each:02x}" for each in numbered[:FIRST_TWIN] + numbered[FIRST_TWIN::2]]
+    found = [numbered[code - code % 4 if code >= FIRST_FOUR else code] for code in range(256)]
+    for code in range(FIRST_SIX, 256):
+        found[code] = 0 if code % 8 >= 6 else found[code]
+    assert found == numbered
+    entries = [f"0x{each:02x}" for each in numbered[:FIRST_FOUR] + numbered[FIRST_FOUR::4]]
     for op in TASK_OPS:
-        assert op.code < FIRST_TWIN
+        assert op.code < FIRST_FOUR
         entries[op.code] = f"tini_task({entries[op.code]})"
     with_tasks = {shape_of(op) for op in TASK_OPS}
     assert list(rows)[-len(with_tasks) :] == [each for each in rows if each in with_tasks]
@@ -261,13 +279,13 @@ def tables(command: str) -> str:
                 (
                     (
                         ", ".join(entries[at : at + 16]),
-                        f"{at if at < FIRST_TWIN else 2 * at - FIRST_TWIN:02x}",
+                        f"{at if at < FIRST_FOUR else 4 * at - 3 * FIRST_FOUR:02x}",
                     )
                     for at in range(0, len(entries), 16)
                 ),
             ),
             array(
-                "kShapes[][3]",
+                "kShapes[][2]",
                 ((packed(shape), names(same)) for shape, same in rows.items()),
                 tasks=len(with_tasks),
             ),
@@ -306,8 +324,7 @@ def packed(shape: Shape) -> str:
     size = shape.size | FAR_BIT * shape.is_far | BACK_BIT * shape.is_back
     number = list(operands()).index(operand_bytes(shape))
     assert number < 8, "three bits say which operands a shape has"
-    family = families().index(shape.family)
-    return f"{{0x{effects:02x}, 0x{number << 5 | size:02x}, {family}}}"
+    return f"{{0x{effects:02x}, 0x{number << 5 | size:02x}}}"
 
 
 def operand_bytes(shape: Shape) -> int:

@@ -367,88 +367,49 @@ enum class Byte : uint8_t {
   kActuator = 6,
 };
 
-// What an instruction does: it begins in one place for a whole family.
+// What an instruction does, where the inner loop cannot do it alone: the number of
+// its shape. The others have no names.
 enum class Family : uint8_t {
   kNone = 0,
-  kEnd = 1,
-  kPush8 = 2,
-  kPush16 = 3,
-  kPushMilli = 4,
-  kPush32 = 5,
-  kPushFalse = 6,
-  kPushTrue = 7,
-  kPushVar = 8,  // PUSH_VAR, PUSH_VAR_0, PUSH_VAR_1, PUSH_VAR_2 ...
-  kPushSensor = 9,  // PUSH_SENSOR, PUSH_SENSOR_0, PUSH_SENSOR_1, PUSH_SENSOR_2 ...
-  kPushRead = 10,  // PUSH_READ, PUSH_READ_0, PUSH_READ_1, PUSH_READ_2 ...
-  kTime = 11,
-  kRandom = 12,
-  kPushTenths = 13,
-  kCalculate = 14,  // ADD, SUB, MUL, DIV ...
-  kAndThen = 15,  // AND_THEN, AND_THEN_FAR
-  kOrElse = 16,  // OR_ELSE, OR_ELSE_FAR
-  kSetVar = 17,  // SET_VAR, SET_VAR_0, SET_VAR_1, SET_VAR_2 ...
-  kSetVar8 = 18,
-  kAddVar8 = 19,
-  kAddVar = 20,
-  kIncVar = 21,
-  kDecVar = 22,
-  kRead = 23,  // READ, READ_0, READ_1, READ_2 ...
-  kShow = 24,
-  kShowYesNo = 25,
-  kSet = 26,  // SET, SET_0, SET_1, SET_2 ...
-  kMove = 27,  // MOVE_F, MOVE_B, MOVE_L, MOVE_R
-  kMove8 = 28,  // MOVE8_F, MOVE8_B, MOVE8_L, MOVE8_R
-  kWatch = 29,  // WATCH_F, WATCH_B, WATCH_L, WATCH_R
-  kWatchForever = 30,  // WATCH_FOREVER_F, WATCH_FOREVER_B, WATCH_FOREVER_L, WATCH_FOREVER_R
-  kWait = 31,
-  kWait8 = 32,
-  kWatchWait = 33,
-  kWatchForeverWait = 34,
-  kUntil = 35,
-  kBeep8 = 36,
-  kStop = 37,
-  kMotors = 38,
-  kMotors8 = 39,
-  kBeep = 40,
-  kIf = 41,  // IF, IF_FAR
-  kIfNot = 42,  // IF_NOT, IF_NOT_FAR
-  kElse = 43,  // ELSE, ELSE_FAR
-  kForever = 44,
-  kWhile = 45,  // WHILE, WHILE_FAR
-  kAgain = 46,  // AGAIN, AGAIN_FAR
-  kLoop8 = 47,
-  kLoop = 48,  // LOOP, LOOP_FAR
-  kNext = 49,  // NEXT, NEXT_FAR
-  kBreak = 50,  // BREAK, BREAK_FAR
-  kBreakLoop = 51,  // BREAK_LOOP, BREAK_LOOP_FAR
-  kDef = 52,  // DEF, DEF_FAR
-  kReturn = 53,
-  kCall = 54,  // CALL, CALL_FAR
-  kPushNum = 55,  // PUSH_NUM_0, PUSH_NUM_1, PUSH_NUM_2, PUSH_NUM_3 ...
-  kUntil8 = 56,  // UNTIL8_EQ, UNTIL8_NE, UNTIL8_LT, UNTIL8_LE ...
-  kUntil16 = 57,  // UNTIL16_EQ, UNTIL16_NE, UNTIL16_LT, UNTIL16_LE ...
-  kIf8 = 58,  // IF8_EQ, IF8_NE, IF8_LT, IF8_LE ...
-  kIf16 = 59,  // IF16_EQ, IF16_NE, IF16_LT, IF16_LE ...
-  kIfVar8 = 60,  // IF_VAR8_EQ, IF_VAR8_NE, IF_VAR8_LT, IF_VAR8_LE ...
-  kIfVar16 = 61,  // IF_VAR16_EQ, IF_VAR16_NE, IF_VAR16_LT, IF_VAR16_LE ...
-  kLook = 62,
-  kEndTask = 63,
-  kEndWhen = 64,
-  kTask = 65,
-  kWhen = 66,
+  kPushRead = 1,
+  kPushReadShort = 2,  // PUSH_READ_0, PUSH_READ_1, PUSH_READ_2, PUSH_READ_3 ...
+  kTime = 3,
+  kRandom = 4,
+  kShow = 5,
+  kShowYesNo = 6,
+  kSet = 7,
+  kSetShort = 8,  // SET_0, SET_1, SET_2, SET_3 ...
+  kStop = 9,
+  kMotors = 10,
+  kMotors8 = 11,
+  kMove = 12,  // MOVE_F, MOVE_B, MOVE_L, MOVE_R
+  kMove8 = 13,  // MOVE8_F, MOVE8_B, MOVE8_L, MOVE8_R
+  kWatch = 14,  // WATCH_F, WATCH_B, WATCH_L, WATCH_R
+  kWatchForever = 15,  // WATCH_FOREVER_F, WATCH_FOREVER_B, WATCH_FOREVER_L, WATCH_FOREVER_R
+  kWatchWait = 16,
+  kWatchForeverWait = 17,
+  kWait = 18,
+  kWait8 = 19,
+  kBeep = 20,
+  kBeep8 = 21,
+  kLook = 72,
+  kEndWhen = 73,
 };
 
 // Bits of the size of a shape.
 constexpr uint8_t kFar = 8;
 constexpr uint8_t kBack = 16;
 
-// The number of each opcode's shape; from kFirstTwin on one for two of them.
-constexpr uint8_t kFirstTwin = 0x80;
+// The number of each opcode's shape; from kFirstFour on one for four of them. Of
+// eight from kFirstSix on the last two are no opcodes.
+constexpr uint8_t kFirstFour = 128;
+constexpr uint8_t kFirstSix = 200;
+
 extern const uint8_t kShapeOf[] tini_progmem;
 
 // Of each shape: pops (2 bits), pushes (1) and role (5); the number of its
-// operands (3), kBack, kFar and size (3); the family.
-extern const uint8_t kShapes[][3] tini_progmem;
+// operands (3), kBack, kFar and size (3).
+extern const uint8_t kShapes[][2] tini_progmem;
 
 // Of operands: what the second byte is (4 bits) and the first (4).
 extern const uint8_t kOperands[] tini_progmem;

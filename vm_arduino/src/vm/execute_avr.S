@@ -27,8 +27,8 @@
 #define at1 r11
 #define mode r12        /* what two instructions that share their end differ in */
 #define budget r13
-#define looped r14
-#define count0 r16      /* what is left of the innermost counted loop: 24 bits */
+#define framed r14
+#define count0 r16      /* the innermost frame: what is left of a counted loop, 24 bits, or a place */
 #define count1 r17
 #define count2 r15
 
@@ -164,21 +164,21 @@ _ZN10tiniscript7Machine7executeEh:
     adc r19, r27
     movw code_end, r18
     rcall add_pc_to_x
-    clr looped
+    clr framed
     ldd r18, Z+tini_depth_at
-    ldd r19, Z+tini_looped_at
+    ldd r19, Z+tini_framed_at
     cpi r18, tini_stack_values + 1
     brsh 2f
-    cpi r19, tini_counters + 1
+    cpi r19, tini_counters + tini_calls + 1
     brsh 2f
     lsl r18
     lsl r18
     add r28, r18
     adc r29, r1
     load_a_from_y
-    mov looped, r19
-    cpse looped, r1         ; none: what its registers hold means nothing
-    rcall load_counter
+    mov framed, r19
+    cpse framed, r1         ; none: what its registers hold means nothing
+    rcall load_frame
     rjmp next_one
 2:  adiw r26, 1             ; memory has changed
     rjmp bad_1
@@ -221,9 +221,9 @@ leave:
     lsr r18
     lsr r18
     std Z+tini_depth_at, r18
-    std Z+tini_looped_at, looped
+    std Z+tini_framed_at, framed
     std Z+tini_left_at, budget
-    rcall store_counter
+    rcall store_frame
     in r28, SPL
     in r29, SPH
     ldi r30, 18             ; registers
@@ -268,29 +268,42 @@ let_y_be_empty:
     sbci r29, hi8(tini_variables_at - tini_stack_at)
     ret
 
-; The counter of the innermost loop is in registers, those around it are in memory. Without any, it
-; comes from before the first one and goes there: the stack's last place, which is empty then.
-let_z_be_counter:
-    mov r30, looped
+; The innermost frame is in registers, those around it are in memory. Without any, it comes from
+; before the first one and goes there: the stack's last place, which is empty then.
+let_z_be_frame:
+    mov r30, framed
     lsl r30
-    lsl r30
+    add r30, framed
     ldi r31, 0
-    subi r30, lo8(tini_variables_at - tini_counters_at + 4)
-    sbci r31, hi8(tini_variables_at - tini_counters_at + 4)
+    subi r30, lo8(tini_variables_at - tini_frames_at + tini_frame_bytes)
+    sbci r31, hi8(tini_variables_at - tini_frames_at + tini_frame_bytes)
     add r30, vars
     adc r31, vars1
     ret
 
-store_counter:
-    rcall let_z_be_counter
+; Opens a frame: a0 to a2.
+push_frame:
+    ldi r20, tini_counters + tini_calls
+    cp framed, r20
+    brsh 1f
+    rcall store_frame
+    inc framed
+    movw count0, a0
+    mov count2, a2
+    ret
+1:  rjmp bad_caller
+
+store_frame:
+    rcall let_z_be_frame
     st Z, count0
     std Z+1, count1
     std Z+2, count2
-    std Z+3, r1
     ret
 
-load_counter:
-    rcall let_z_be_counter
+pop_frame:
+    dec framed
+load_frame:
+    rcall let_z_be_frame
     ld count0, Z
     ldd count1, Z+1
     ldd count2, Z+2

@@ -18,16 +18,15 @@
 #define tini_readings_at 10
 #define tini_pc_at 16
 #define tini_depth_at 18
-#define tini_looped_at 19
-#define tini_called_at 20
+#define tini_framed_at 19
 #ifdef tiniscript_has_tasks
-#define tini_variables_at 48
-#define tini_stack_at (tini_variables_at + 128 + 120)
+#define tini_variables_at 47
+#define tini_stack_at (tini_variables_at + 128 + 115)
 #else
-#define tini_variables_at 55
+#define tini_variables_at 53
 #define tini_stack_at (tini_variables_at + 128)
 #endif
-#define tini_counters_at (tini_stack_at + 68)
-#define tini_calls_at (tini_stack_at + 132)
+#define tini_frames_at (tini_stack_at + 68)
+#define tini_frame_bytes 3
 
 #endif  // TINISCRIPT_VM_EXECUTE_AVR_H_

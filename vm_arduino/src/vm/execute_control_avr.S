@@ -30,10 +30,9 @@ op_break_loop_far:
 op_break_loop:
     clt
 1:  rcall distance
-    tst looped
+    tst framed
     breq bad_if
-    dec looped
-    rcall load_counter
+    rcall pop_frame
     rjmp jump
 
 op_if_far:
@@ -92,13 +91,7 @@ op_loop8:
     clr a1
     clr a2
 push_counter:
-    ldi r18, tini_counters
-    cp looped, r18
-    brsh bad_loop
-    rcall store_counter
-    inc looped
-    movw count0, a0
-    mov count2, a2
+    rcall push_frame
     rjmp next_one
 
 bad_loop:
@@ -148,10 +141,9 @@ op_again:
     rjmp leave_behind_jump
 
 2:  clt
-3:  tst looped
+3:  tst framed
     breq bad_back
-    dec looped
-    rcall load_counter
+    rcall pop_frame
     rcall distance
     next
 op_next_far:
@@ -200,36 +192,15 @@ op_call_far:
 op_call:
     clt
 5:  rcall distance
-    let_z_be_machine
-    ldd r20, Z+tini_called_at
-    cpi r20, tini_calls
-    brsh bad_back
-    mov r21, r20
-    inc r21
-    std Z+tini_called_at, r21
-    rcall let_z_be_call
-    st Z, r26
-    std Z+1, r27
+    movw a0, r26
+    rcall push_frame
     rjmp jump_back
 
 op_return:
-    let_z_be_machine
-    ldd r20, Z+tini_called_at
-    subi r20, 1
-    brcs bad_back
-    std Z+tini_called_at, r20
-    rcall let_z_be_call
-    ld r26, Z
-    ldd r27, Z+1
+    tst framed
+    breq bad_back
+    movw r26, count0
+    rcall pop_frame
     rjmp land
-
-; Points Z to the place where the call with this number continues: an address.
-let_z_be_call:
-    subi r30, lo8(-tini_calls_at)
-    sbci r31, hi8(-tini_calls_at)
-    lsl r20
-    add r30, r20
-    adc r31, r1
-    ret
 
 #endif

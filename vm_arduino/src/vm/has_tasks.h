@@ -1,12 +1,11 @@
-// Which machines have TASK and WHEN, in one place for C++ and assembly; and which firmware keeps how
-// fast its robot was measured to be, can measure a way with discs, and reads text.
+// Which machines have TASK and WHEN, in one place for C++ and assembly; and which firmware can measure
+// a way with discs, and reads text.
 //
-// Tasks take about 1,720 bytes of flash and 113 of RAM. An Uno has them with the compiler's options
+// Tasks take about 1,630 bytes of flash and 109 of RAM. An Uno has them with the compiler's options
 // of platformio.ini (`tiniscript_with_tasks`). With those of the Arduino IDE it has none, nor has a
 // Nano, whose old bootloader leaves 30,720 bytes.
 //
-// An ATmega328P keeps no pace, for want of flash: it goes by the numbers of its kit. It has discs in
-// the place of the reader of text (`tiniscript_with_discs`).
+// An ATmega328P has discs in the place of the reader of text (`tiniscript_with_discs`).
 
 #ifndef TINISCRIPT_VM_HAS_TASKS_H_
 #define TINISCRIPT_VM_HAS_TASKS_H_
@@ -16,7 +15,6 @@
 #endif
 
 #ifndef __AVR_ATmega328P__
-#define tiniscript_has_pace
 #define tiniscript_has_discs
 #elif defined(tiniscript_with_discs)
 #define tiniscript_has_discs

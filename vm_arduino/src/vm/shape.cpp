@@ -3,11 +3,14 @@
 namespace tiniscript {
 
 __attribute__((noinline)) Shape shape_of(uint8_t code) {
-  if (code >= kFirstTwin) code = static_cast<uint8_t>(kFirstTwin / 2 + code / 2);
-  const uint8_t* const row = kShapes[flash_byte(kShapeOf + code)];
+  uint8_t number = 0;
+  if (code < kFirstSix || (code & 6) != 6) {
+    if (code >= kFirstFour) code = static_cast<uint8_t>(kFirstFour / 4 * 3 + code / 4);
+    number = flash_byte(kShapeOf + code);
+  }
+  const uint8_t* const row = kShapes[number];
   const uint8_t bytes = flash_byte(row + 1);
-  return {flash_byte(row), bytes, flash_byte(kOperands + bytes / 32),
-          static_cast<Family>(flash_byte(row + 2))};
+  return {flash_byte(row), bytes, flash_byte(kOperands + bytes / 32), static_cast<Family>(number)};
 }
 
 }  // namespace tiniscript

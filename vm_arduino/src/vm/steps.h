@@ -134,35 +134,33 @@ tini_always_inline bool Machine::add_to(uint8_t number, int32_t more) {
 }
 
 // Loops and calls.
-tini_always_inline bool Machine::loop(int32_t times) {
-  if (task_.looped >= kCounters) return halt(Fault::kBadCode);
-  task_.counters[task_.looped++] = times;
+tini_always_inline bool Machine::open(Frame frame) {
+  if (task_.framed >= kFrames) return halt(Fault::kBadCode);
+  task_.frames[task_.framed++] = frame;
   return true;
 }
 
 tini_always_inline bool Machine::loop(Running* run, uint16_t distance) {
   if (!pop(run, 1)) return false;
   const int32_t times = whole(*run->top);
-  return times < 1 ? jump(run, distance) : loop(times);
+  return times < 1 ? jump(run, distance) : open(times);
 }
 
 tini_always_inline bool Machine::next(Running* run, uint16_t distance) {
-  if (task_.looped == 0) return halt(Fault::kBadCode);
-  if (--task_.counters[task_.looped - 1] != 0) return again(run, distance);
-  task_.looped--;
+  if (task_.framed == 0) return halt(Fault::kBadCode);
+  if (--task_.frames[task_.framed - 1] != 0) return again(run, distance);
+  task_.framed--;
   return true;
 }
 
 tini_always_inline bool Machine::break_loop(Running* run, uint16_t distance) {
-  if (task_.looped == 0) return halt(Fault::kBadCode);
-  task_.looped--;
+  if (task_.framed == 0) return halt(Fault::kBadCode);
+  task_.framed--;
   return jump(run, distance);
 }
 
 tini_always_inline bool Machine::call(Running* run, uint16_t distance) {
-  if (task_.called >= kCalls) return halt(Fault::kBadCode);
-  task_.calls[task_.called++] = offset(run->next);
-  return jump_back(run, distance);
+  return open(offset(run->next)) && jump_back(run, distance);
 }
 
 // Leaves the value on the stack and jumps if it is `decisive`, else drops it.

@@ -9,6 +9,7 @@
 #include <stdint.h>
 
 #include "bytecode.h"
+#include "execute_avr.h"
 
 namespace tiniscript {
 
@@ -44,8 +45,7 @@ struct TaskRecord {
                       // `kUnsent`, or the way of a move that is measured
   Powers powers;      // of its move; kNoPowers: a wait, the motors stay as they are
   Powers set;         // by its M; 0 where none is in force
-  uint8_t looped;     // how many counters it has,
-  uint8_t called;     // and calls
+  uint8_t framed;     // how many frames it has
 
   bool is(uint8_t bits) const { return (state & bits) != 0; }
   bool measures() const;
@@ -80,11 +80,22 @@ inline bool TaskRecord::measures() const {
   return kHasDiscs && (more & kMeasures) != 0 && powers != kNoPowers;
 }
 
+// Of a counted loop that is open: how often it still goes around. Of an open call: where it
+// continues. They lie in the order in which they were opened.
+#ifdef __AVR__
+struct Frame {
+  uint8_t bytes[tini_frame_bytes];  // as `execute_avr.S` knows them
+};
+#else
+using Frame = int32_t;
+#endif
+
+constexpr uint8_t kFrames = kCounters + kCalls;
+
 struct Task {
   uint16_t pc;
   uint8_t depth;    // values on `stack`
-  uint8_t looped;   // of `counters`
-  uint8_t called;   // of `calls`
+  uint8_t framed;   // of `frames`
   bool has_paused;  // the turn is over, and goes on behind the last instruction
   uint32_t random;
   uint32_t started_ms;
@@ -115,8 +126,7 @@ struct Task {
 #endif
   // Everything from here on is written before it is read.
   int32_t stack[kStackValues + 1];  // the last one only lies after the values
-  int32_t counters[kCounters];
-  uint16_t calls[kCalls];  // where each open call continues
+  Frame frames[kFrames];
 };
 
 }  // namespace tiniscript

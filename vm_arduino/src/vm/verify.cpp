@@ -50,6 +50,10 @@ bool in_range(Byte kind, uint8_t value) {
   return static_cast<uint8_t>(value - flash_byte(range)) <= flash_byte(range + 1);
 }
 
+bool is_push_read(Family family) {
+  return family == Family::kPushRead || family == Family::kPushReadShort;
+}
+
 // Adds a device to the hash: bytecode_spec.md defines it.
 uint16_t with_device(uint16_t hash, uint16_t device) {
   const uint16_t carry = hash & 0x8000 ? kDevicesPolynomial : 0;
@@ -149,7 +153,7 @@ __attribute__((noinline)) Verdict pass(const uint8_t* code, uint16_t length, uin
     if (shape.jumps_back()) target = static_cast<uint16_t>(after - distance);
 
     // place
-    if (kHasTasks && shape.family == Family::kPushRead && (depth > 1 || joins != 0)) {
+    if (kHasTasks && is_push_read(shape.family) && (depth > 1 || joins != 0)) {
       // there it would end a turn with values on the stack
       if (tasks != 0) return {Rule::kStackNotEmpty, at};
       reads_inside = true;

@@ -125,12 +125,10 @@ void Machine::check_places() {
   lies_at(readings_, tini_readings_at);
   lies_at(task_.pc, tini_pc_at);
   lies_at(task_.depth, tini_depth_at);
-  lies_at(task_.looped, tini_looped_at);
-  lies_at(task_.called, tini_called_at);
+  lies_at(task_.framed, tini_framed_at);
   lies_at(task_.variables, tini_variables_at);
   lies_at(task_.stack, tini_stack_at);
-  lies_at(task_.counters, tini_counters_at);
-  lies_at(task_.calls, tini_calls_at);
+  lies_at(task_.frames, tini_frames_at);
 }
 
 #undef lies_at

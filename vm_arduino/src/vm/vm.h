@@ -111,7 +111,7 @@ class Machine {
   bool push_read(Running* run, uint8_t number);
   bool set_variable(Running* run, uint8_t number);
   bool add_to(uint8_t number, int32_t more);
-  bool loop(int32_t times);
+  bool open(Frame frame);
   bool loop(Running* run, uint16_t distance);
   bool next(Running* run, uint16_t distance);
   bool break_loop(Running* run, uint16_t distance);
@@ -122,7 +122,6 @@ class Machine {
   bool act(uint8_t code, const uint8_t* bytes, int32_t* top) tini_called_by_assembly;
   bool until(bool stop) tini_called_by_assembly;
   bool sense(uint8_t number) tini_called_by_assembly;
-  void powers(uint8_t code, int8_t power);
   bool go_ms(uint8_t code, int32_t* top);
   bool show(int32_t value, bool is_yes_no);
   bool sends();
@@ -152,8 +151,9 @@ class Machine {
   bool drive(uint32_t move_ms);
   bool watch(uint32_t move_ms);
   void keep_move(uint32_t move_ms);
-  void begin();
-  uint32_t next_check_ms() const;
+  void set_clock(TaskRecord* task) const;
+  void begin(TaskRecord* me) const;
+  uint32_t next_check_ms(const TaskRecord* me) const;
   bool go_on(bool is_watched);
   void go_way();
   bool is_on_the_way();

@@ -227,7 +227,7 @@ tini_always_inline bool Machine::step(Running* run) {
     case Op::kAgainFar:
       return again(run, run->u16());
     case Op::kLoop8:
-      return loop(run->u8());
+      return open(run->u8());
     case Op::kLoop:
       return loop(run, run->u8());
     case Op::kLoopFar:
@@ -241,8 +241,8 @@ tini_always_inline bool Machine::step(Running* run) {
     case Op::kBreakLoopFar:
       return break_loop(run, run->u16());
     case Op::kReturn:
-      if (task_.called == 0) return halt(Fault::kBadCode);
-      run->next = code_ + task_.calls[--task_.called];
+      if (task_.framed == 0) return halt(Fault::kBadCode);
+      run->next = code_ + task_.frames[--task_.framed];
       return true;
     case Op::kCall:
       return call(run, run->u8());

@@ -15,10 +15,13 @@ constexpr Powers kOff = 0;
 
 }  // namespace
 
+// Sets a task's clock to now.
+tini_noinline void Machine::set_clock(TaskRecord* task) const { task->clock_ms = now_ms_; }
+
 // Sets the clock to the begin of the next wait or move, or to now if that is too long ago.
-void Machine::begin() {
+void Machine::begin(TaskRecord* me) const {
   constexpr uint8_t kLateMs = 20;
-  if (now_ms_ - task_.me->clock_ms > kLateMs) task_.me->clock_ms = now_ms_;
+  if (now_ms_ - me->clock_ms > kLateMs) set_clock(me);
 }
 
 // Keeps the move or wait that an UNTIL watches; its check begins after this instruction.
@@ -30,9 +33,11 @@ tini_noinline void Machine::keep_move(uint32_t move_ms) {
 }
 
 // How long after its clock, where it last looked, its UNTIL looks again.
-inline uint32_t Machine::next_check_ms() const {
-  const uint32_t late_ms = now_ms_ - task_.me->clock_ms;
-  return (late_ms / kCheckMs + 1) * kCheckMs;
+inline uint32_t Machine::next_check_ms(const TaskRecord* me) const {
+  const uint32_t late_ms = now_ms_ - me->clock_ms;
+  uint32_t next_ms = kCheckMs;
+  while (next_ms <= late_ms) next_ms += kCheckMs;  // rarely even once
+  return next_ms;
 }
 
 #ifdef tiniscript_has_discs
@@ -99,7 +104,7 @@ bool Machine::until(bool stop) {
   TaskRecord* const me = task_.me;
   me->after = task_.pc;
   if (!stop) return go_on(true);
-  if (me->is(kHasBegun)) task_.me->clock_ms = now_ms_;
+  if (me->is(kHasBegun)) set_clock(me);
   if (me->is(kIsMoving)) end_move();
   return true;
 }
@@ -121,7 +126,7 @@ tini_noinline bool Machine::go_on(bool is_watched) {
       }
     }
     me->state |= kHasBegun;
-    begin();
+    begin(me);
   }
   uint32_t due_ms = me->rest_ms;
   bool is_last = true;
@@ -134,7 +139,7 @@ tini_noinline bool Machine::go_on(bool is_watched) {
     if (!is_watched) me->state |= kToItsEnd;
   }
   if (is_watched || measures) {
-    const uint32_t next_ms = next_check_ms();
+    const uint32_t next_ms = next_check_ms(me);
     is_last = next_ms >= due_ms;
     if (!is_last) {
       due_ms = next_ms;
@@ -226,7 +231,7 @@ void Machine::stop_motors() {
   forget_set(holder);
   if (!holder->is(kDrives)) return;
   end_move_of(holder);
-  holder->clock_ms = now_ms_;
+  set_clock(holder);
 }
 
 // The M of this task is over; a WHEN goes on wanting the motors.
@@ -265,16 +270,15 @@ tini_noinline void Machine::set_motors(Powers powers) {
 
 #else
 
-bool Machine::wait(uint32_t duration_ms) {
-  begin();
-  task_.me->clock_ms += duration_ms;
-  return pause();
-}
-
 bool Machine::drive(uint32_t move_ms) {
-  set_motors(task_.me->powers);
-  task_.me->state = kToItsEnd;
-  return wait(move_ms);
+  TaskRecord* const me = task_.me;
+  if (me->powers != kNoPowers) {
+    set_motors(me->powers);
+    me->state = kToItsEnd;
+  }
+  begin(me);
+  me->clock_ms += move_ms;
+  return pause();
 }
 
 bool Machine::watch(uint32_t move_ms) {
@@ -287,16 +291,16 @@ bool Machine::until(bool stop) {
   const bool drives = me->powers != kNoPowers;
   if (stop) {
     if (!me->is(kHasBegun)) return true;
-    task_.me->clock_ms = now_ms_;
+    me->clock_ms = now_ms_;
     if (drives) set_motors(kOff);
     return true;
   }
   if (!me->is(kHasBegun)) {
     me->state = kHasBegun;
-    begin();
+    begin(me);
     if (drives) set_motors(me->powers);
   }
-  uint32_t next_ms = next_check_ms();
+  uint32_t next_ms = next_check_ms(me);
   if (next_ms < me->rest_ms) {
     task_.pc = me->check;
     if (!me->is_forever()) me->rest_ms -= next_ms;

@@ -37,21 +37,21 @@ tini_noinline int8_t percent(int32_t power) {
 // That of a move is not below 0.
 int8_t of_move(int8_t power) { return power < 0 ? 0 : power; }
 
+// The powers of a move. The last two bits of its code are the direction: F, B, L, R.
+Powers powers_of_move(uint8_t code, int8_t power) {
+  const uint8_t way = code & 3;
+  power = of_move(power);
+  const int8_t reversed = static_cast<int8_t>(-power);
+  return powers_of(way == 1 || way == 2 ? reversed : power,
+                   way == 1 || way == 3 ? reversed : power);
+}
+
 }  // namespace
 
 // Takes a reading. Returns false if the robot is not ready or has no such sensor.
 bool Machine::sense(uint8_t number) {
   if (number >= sensors_) return fail();
   return robot_read(number, readings_ + number);
-}
-
-// Keeps the powers of a move. The last two bits of its code are the direction: F, B, L, R.
-inline void Machine::powers(uint8_t code, int8_t power) {
-  const uint8_t way = code & 3;
-  power = of_move(power);
-  const int8_t reversed = static_cast<int8_t>(-power);
-  task_.me->powers =
-      powers_of(way == 1 || way == 2 ? reversed : power, way == 1 || way == 3 ? reversed : power);
 }
 
 // Shows a value. Where there is no room a task keeps it and ends its turn, so that nothing stays on
@@ -116,7 +116,8 @@ bool Machine::act(uint8_t code, const uint8_t* bytes, int32_t* top) {
   const int8_t power = takes ? percent(*top) : signed8(bytes[shape.size() - 1]);
   uint32_t time_ms = takes ? duration(shape.pops() == 1 ? *top : top[-1]) : time8(first);
   if (kHasDiscs && *bytes == code) task_.me->more &= static_cast<uint8_t>(~kMeasures);
-  powers(code, power);  // of a move; what is none leaves them to the next one, or has none
+  // of a move; what is neither move nor wait leaves them to the next one
+  task_.me->powers = family >= Family::kWatchWait ? kNoPowers : powers_of_move(code, power);
   switch (family) {
     case Family::kShowYesNo:
       if (*top != 0) *top = 1;
@@ -124,6 +125,7 @@ bool Machine::act(uint8_t code, const uint8_t* bytes, int32_t* top) {
     case Family::kShow:
       return show(*top, family == Family::kShowYesNo);
     case Family::kSet:
+    case Family::kSetShort:
       robot_set(first, *top);
       return true;
     case Family::kStop:
@@ -135,19 +137,12 @@ bool Machine::act(uint8_t code, const uint8_t* bytes, int32_t* top) {
     case Family::kMotors8:
       motors(powers_of(signed8(first), power));
       return true;
-    case Family::kMove:
-    case Family::kMove8:
-      return drive(time_ms);
     case Family::kWatchForever:
-      time_ms = kForever;
-      // fallthrough
-    case Family::kWatch:
-      return watch(time_ms);
     case Family::kWatchForeverWait:
       time_ms = kForever;
       // fallthrough
+    case Family::kWatch:
     case Family::kWatchWait:
-      task_.me->powers = kNoPowers;
       return watch(time_ms);
     case Family::kBeep:
     case Family::kBeep8: {
@@ -155,9 +150,11 @@ bool Machine::act(uint8_t code, const uint8_t* bytes, int32_t* top) {
       robot_beep(static_cast<uint16_t>(limited(hertz, 31, 20000)), time_ms);
     }
       // fallthrough
+    case Family::kMove:
+    case Family::kMove8:
     case Family::kWait:
     case Family::kWait8:
-      return wait(time_ms);
+      return drive(time_ms);
     default:  // kEnd or kEndTask: the others are in the inner loop
       stay();  // behind the last END lies nothing
       if (has_tasks() && !ends_program()) return false;

@@ -25,21 +25,14 @@ bool is_call(uint8_t code) {
 constexpr int32_t kNeverMs = 0x7fffffff;  // from now: nothing happens by itself
 #endif
 
-// Moves the first `count` of `all` bytes behind the others.
-tini_noinline void bytes_to_the_end(uint8_t* bytes, uint8_t count, uint8_t all) {
+// Moves the first `count` of `all` frames behind the others.
+void to_the_end(Frame* frames, uint8_t count, uint8_t all) {
   for (; count != 0; count--) {
-    const uint8_t first = *bytes;
-    uint8_t* at = bytes;
+    const Frame first = *frames;
+    Frame* at = frames;
     for (uint8_t left = all; left > 1; left--, at++) *at = at[1];
     *at = first;
   }
-}
-
-// The same of values.
-template <class Value>
-tini_always_inline void to_the_end(Value* values, uint8_t count, uint8_t all) {
-  bytes_to_the_end(reinterpret_cast<uint8_t*>(values), static_cast<uint8_t>(count * sizeof(Value)),
-                   static_cast<uint8_t>(all * sizeof(Value)));
 }
 
 }  // namespace
@@ -116,9 +109,8 @@ bool Machine::finds_turn(bool is_over) {
       end_round();
       return false;
     }
-    // The counters and calls of the next one come to the end of those that all tasks share.
-    to_the_end(task_.counters, task->looped, task_.looped);
-    to_the_end(task_.calls, task->called, task_.called);
+    // The frames of the next one come to the end of those that all tasks share.
+    to_the_end(task_.frames, task->framed, task_.framed);
     task_.next = task + 1;
     is_over = waits_for_clock(task) && static_cast<int32_t>(now_ms_ - task->clock_ms) >= 0 &&
               !begin_turn(task);
@@ -150,13 +142,12 @@ inline void Machine::end_round() {
 bool Machine::begin_turn(TaskRecord* me) {
   task_.me = me;
   task_.is_between_turns = false;
-  me->looped = static_cast<uint8_t>(me->looped - task_.looped);  // `end_turn` adds what it is then
-  me->called = static_cast<uint8_t>(me->called - task_.called);
+  me->framed = static_cast<uint8_t>(me->framed - task_.framed);  // `end_turn` adds what it is then
   task_.pc = me->pc;
   if ((me->more & kUnsent) != 0 && !sends()) return false;
   if (me->is(kIsBlocked)) {
     me->state &= static_cast<uint8_t>(~kIsBlocked);
-    me->clock_ms = now_ms_;
+    set_clock(me);
     return me->check != me->after || go_on(false);
   }
   return !me->is(kToItsEnd) || comes_to_end();
@@ -165,8 +156,7 @@ bool Machine::begin_turn(TaskRecord* me) {
 void Machine::end_turn() {
   TaskRecord* const me = task_.me;
   me->pc = task_.pc;
-  me->looped = static_cast<uint8_t>(me->looped + task_.looped);
-  me->called = static_cast<uint8_t>(me->called + task_.called);
+  me->framed = static_cast<uint8_t>(me->framed + task_.framed);
   task_.is_between_turns = true;
   task_.has_paused = false;
 #ifdef __AVR__
@@ -175,7 +165,7 @@ void Machine::end_turn() {
   status_ = Status::kRunning;
   if (!task_.is_later_turn) {
     task_.is_later_turn = true;
-    for (TaskRecord* task = task_.records; task != me; task++) task->clock_ms = now_ms_;
+    for (TaskRecord* task = task_.records; task != me; task++) set_clock(task);
   }
   pass_on();
 }
