@@ -315,10 +315,10 @@ def pace_of(memory: bytes) -> Pace | None:
     return told(asked.outcome.values).pace
 
 
-def test_a_robot_without_ways_keeps_none() -> None:
-    uno = TrimReply(0, 0, 0, b"")
-    assert told(uno).pace is None
-    assert "centimetres" not in words(told(uno), "en")
+def test_older_firmware_keeps_none() -> None:
+    older = TrimReply(0, 0, 0, b"")
+    assert told(older).pace is None
+    assert "centimetres" not in words(told(older), "en")
 
 
 def test_a_person_measures_with_tape_and_protractor(pty_robot: PtyRobot) -> None:

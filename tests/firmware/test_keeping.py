@@ -230,7 +230,7 @@ def test_what_a_worn_last_byte_has_spoilt_is_empty() -> None:
     slot = robot.memory().index(b"OLD") - 4 - 8
     robot.wear_out(slot + EACH - 1)
     assert robot.until(session, session.trim(bytes((0, 0, 3)))) == STATUSES["NOT_KEPT"]
-    robot.talk(session, 200)
+    robot.talk(session, 400)  # the pace's record, then this one again
     assert robot.memory()[slot : slot + 2] == b"\xff\xff", "the generation and its mark"
 
 

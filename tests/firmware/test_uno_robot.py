@@ -14,6 +14,7 @@ from tiniscript import compile_text, robots
 from tiniscript.bytecode.image import Image, unpack
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
+from tiniscript.link.trim import Pace, Trim, told
 from tools.uno import CYCLES_PER_MS, Uno
 
 KIT = robots.load("tinibot").kit
@@ -113,6 +114,35 @@ def test_what_is_saved_is_there_after_a_power_cut(sketch: Path, memory: Path) ->
         assert states(again) == FORWARD
         again.run_ms(300)
         assert states(again) == OFF
+
+
+def test_a_measured_robot_keeps_how_fast_it_is(sketch: Path, memory: Path) -> None:
+    uno = switched_on(sketch, memory)
+    wired = computer(uno)
+    assert drive_ms(uno, "SI|F(20 CM, 60)") == pytest.approx(741, abs=2)
+    pace = Pace(16.5, 33.25, 144, 288)  # 24.875 cm in a second at 60 %
+    assert wired.until(wired.session.trim(Trim(pace=pace).data())) == OK
+    assert drive_ms(uno, "SI|F(20 CM, 60)") == pytest.approx(804, abs=2)
+    uno.kill()
+    with switched_on(sketch, memory) as again:
+        wired = computer(again, 2)
+        request = wired.session.trim()
+        assert wired.until(request) == OK
+        assert request.outcome
+        assert told(request.outcome.values) == Trim(pace=pace)
+        assert drive_ms(again, "SI|F(20 CM, 60)") == pytest.approx(804, abs=2)
+        assert drive_ms(again, "SI|R(90 DEG, 60)") == pytest.approx(417, abs=2)
+
+
+def drive_ms(uno: Uno, text: str) -> float:
+    """Return for how long a program drives."""
+    wired = computer(uno, uno.cycle)
+    send(wired, text, saves=False)
+    assert states(uno) != OFF
+    begun = uno.pins["left"].cycle
+    while states(uno) != OFF:
+        wired.run(1)
+    return (uno.pins["left"].cycle - begun) / CYCLES_PER_MS
 
 
 def test_a_power_cut_in_the_middle_of_a_save(sketch: Path, memory: Path) -> None:

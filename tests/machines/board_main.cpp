@@ -10,6 +10,7 @@
 #include "boards/motors.h"
 #include "firmware/firmware.h"
 #include "firmware/trim.h"
+#include "link/port.h"
 #include "robot.h"
 #include "vm/image.h"
 #include "vm/verify.h"
@@ -67,8 +68,13 @@ bool firmware_runs(Place*) { return false; }
 
 bool robot_show(int32_t, bool) { return true; }
 
+const Tuning& port_tuning() {
+  static const Tuning none = {};
+  return none;
+}
+
 void robot_motors(int8_t left, int8_t right) {
-  const Levels levels = trimmed(Trim(), left, right);
+  const Levels levels = trimmed(port_tuning().trim, left, right);
   board_motors(levels.left, levels.right);
 }
 

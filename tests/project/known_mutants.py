@@ -25,7 +25,7 @@ KNOWN: tuple[Known, ...] = (
           "or to none\n    store.refuse();", "or to none\n",
           "tests/firmware/test_undo.py::test_a_robot_begins_with_the_newest_program_that_it_can_run"),
     Known("a stored trim", "vm_arduino/src/firmware/identity.cpp",
-          "if (is_sound(found)) change_trim(found);", "change_trim(found);",
+          "if (is_sound(found)) tuning.trim = found;", "tuning.trim = found;",
           "tests/firmware/test_other_versions.py::test_a_trim_that_other_firmware_has_kept_is_none"),
     Known("a request of who has left", "compiler/tiniscript/link/sharing/server.py",
           "self._detached_requests += client.requests.values()", "pass",

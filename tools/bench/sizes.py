@@ -86,9 +86,9 @@ namespace tiniscript {
 Identity identity; RobotStatus robot_status; DeviceInfo device_info; Receiver receiver;
 Identity& port_identity() { return identity; }
 const RobotStatus& port_status() { return robot_status; }
-Trim trim;
-const Trim& port_trim() { return trim; }
-Answer port_set_trim(const Trim& other, const Pace*) { trim = other; return (Answer)sink; }
+Tuning tuning;
+const Tuning& port_tuning() { return tuning; }
+Answer port_tune(const Tuning& other, bool) { tuning = other; return (Answer)sink; }
 const DeviceInfo& port_device_info() { return device_info; }
 LineErrors port_line_errors() { return {0, 0}; }
 uint16_t port_room() { return sink; }
@@ -123,7 +123,7 @@ void port_identify() { sink = 1; }
 """
 PORT_USED = """port_identity(); port_status(); port_device_info(); sink = port_room();
   sink = port_line_errors().framing;
-  port_set_trim(port_trim(), nullptr);
+  port_tune(port_tuning(), sink);
   port_may_prepare(); port_make_way(sink); port_memory(sink, 0); port_forget(); port_take(sink, 0);
   port_undo();
   port_seal(bytes); port_start(sink); port_stop(sink);

@@ -68,9 +68,7 @@ namespace tiniscript {
 const DeviceInfo& port_device_info() { return port.device_info; }
 Identity& port_identity() { return port.identity; }
 const RobotStatus& port_status() { return port.robot_status; }
-const Trim& port_trim() { return port.trim; }
-
-const Pace& port_pace() { return port.pace; }
+const Tuning& port_tuning() { return port.tuning; }
 LineErrors port_line_errors() { return {0, 0}; }
 uint16_t port_room() { return port.room; }
 
@@ -233,12 +231,12 @@ Answer port_keep_key(uint8_t which, const uint8_t* key) {
 
 void port_identify() { say("IDENTIFY"); }
 
-Answer port_set_trim(const Trim& trim, const Pace* pace) {
+Answer port_tune(const Tuning& wanted, bool has_pace) {
   if (port.is_busy) return Answer::kBusy;
-  if (trim.least > kMostLeast) return Answer::kBadValue;
-  port.trim = trim;
-  if (pace != nullptr) port.pace = *pace;
-  say("TRIM %u", trim.wheels);
+  if (wanted.trim.least > kMostLeast) return Answer::kBadValue;
+  port.tuning.trim = wanted.trim;
+  if (has_pace) port.tuning.pace = wanted.pace;
+  say("TRIM %u", wanted.trim.wheels);
   return port.is_saving ? Answer::kSaving : Answer::kOk;
 }
 

@@ -13,8 +13,7 @@ struct SimulatedPort {
   tiniscript::Identity identity = {};
   tiniscript::DeviceInfo device_info = {};
   tiniscript::RobotStatus robot_status = {};
-  tiniscript::Trim trim = {};
-  tiniscript::Pace pace = {};
+  tiniscript::Tuning tuning = {};
   uint8_t keys[2][tiniscript::kKeyBytes] = {};
   std::vector<uint16_t> hashes;  // of the kit's devices
   std::vector<uint8_t> words;    // its words, as `robot_words` says them

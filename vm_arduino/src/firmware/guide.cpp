@@ -131,7 +131,7 @@ int8_t signed_power(const Wheel& wheel) {
 
 void set_motors() {
   const Levels levels =
-      trimmed(port_trim(), signed_power(guide.wheels[0]), signed_power(guide.wheels[1]));
+      trimmed(port_tuning().trim, signed_power(guide.wheels[0]), signed_power(guide.wheels[1]));
   board_steer(levels.left, levels.right);
 }
 

@@ -14,9 +14,10 @@ namespace {
 
 Identity identity;
 DeviceInfo device_info;
-Trim trim;
+Tuning tuning;
 
-static_assert(sizeof trim == kTrimBytes, "it is kept as it is sent");
+static_assert(sizeof(Trim) == kTrimBytes && sizeof(Pace) == kPaceBytes,
+              "they are kept as they are sent");
 
 bool change(uint8_t* to, const uint8_t* from, uint8_t length) {
   bool is_changed = false;
@@ -46,13 +47,17 @@ void read_identity(const uint8_t* record) {
   while (length < kNameBytes && record[kNameAt + length] != 0) length++;
   change_name(record + kNameAt, length);
   const Trim& found = *reinterpret_cast<const Trim*>(record + kTrimAt);
-  if (is_sound(found)) change_trim(found);  // otherwise it was written by other firmware
+  if (is_sound(found)) tuning.trim = found;  // otherwise it was written by other firmware
 }
 
 void write_identity(uint8_t* record) {
   copy_bytes(&identity.id, record + kIdAt, sizeof identity.id);
   copy_bytes(device_info.name, record + kNameAt, device_info.name_length);
-  copy_bytes(&trim, record + kTrimAt, sizeof trim);
+  copy_bytes(&tuning.trim, record + kTrimAt, sizeof(Trim));
+}
+
+void read_pace(const uint8_t* record) {
+  copy_bytes(record + kPaceAt, reinterpret_cast<uint8_t*>(&tuning.pace), sizeof(Pace));
 }
 
 bool change_name(const uint8_t* name, uint8_t length) {
@@ -60,9 +65,9 @@ bool change_name(const uint8_t* name, uint8_t length) {
   return change(device_info.name, name, length) || is_other_length;
 }
 
-bool change_trim(const Trim& found) {
-  return change(reinterpret_cast<uint8_t*>(&trim), reinterpret_cast<const uint8_t*>(&found),
-                sizeof trim);
+bool change_tuning(const Tuning& wanted, bool has_pace) {
+  return change(reinterpret_cast<uint8_t*>(&tuning), reinterpret_cast<const uint8_t*>(&wanted),
+                has_pace ? sizeof(Tuning) : sizeof(Trim));
 }
 
 #ifdef tiniscript_transports
@@ -98,6 +103,6 @@ Identity& port_identity() { return identity; }
 
 const DeviceInfo& port_device_info() { return device_info; }
 
-const Trim& port_trim() { return trim; }
+const Tuning& port_tuning() { return tuning; }
 
 }  // namespace tiniscript

@@ -1,7 +1,7 @@
 // The robot's identity: its id, name, motor trim and kit.
 //
 // Knows the layout in a record, not when it is saved. `identity.cpp` also implements
-// `port_identity`, `port_device_info` and `port_trim`.
+// `port_identity`, `port_device_info` and `port_tuning`.
 
 #ifndef TINISCRIPT_FIRMWARE_IDENTITY_H_
 #define TINISCRIPT_FIRMWARE_IDENTITY_H_
@@ -22,9 +22,12 @@ void make_identity();
 void read_identity(const uint8_t* record);
 void write_identity(uint8_t* record);
 
-// Each returns whether it changes anything. The trim must be sound.
+// The pace has its place in a record beside the last fault.
+void read_pace(const uint8_t* record);
+
+// Each returns whether it changes anything. What is given must be sound.
 bool change_name(const uint8_t* name, uint8_t length);
-bool change_trim(const Trim& trim);
+bool change_tuning(const Tuning& wanted, bool has_pace);
 
 }  // namespace tiniscript
 

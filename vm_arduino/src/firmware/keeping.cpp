@@ -4,7 +4,6 @@
 #include "../store/nvm.h"
 #include "../vm/flags.h"
 #include "identity.h"
-#include "pace.h"
 #include "program.h"
 #include "run.h"
 #include "state.h"
@@ -23,7 +22,6 @@ constexpr uint8_t kProgramBit = 1;
 constexpr uint8_t kFaultBit = 2;
 constexpr uint8_t kIdentityBit = 4;
 constexpr uint8_t kOwnerBit = 8;
-constexpr uint8_t kAskedFor = kIdentityBit | kOwnerBit | (kHasPace ? kFaultBit : 0);  // by somebody
 
 Boot boot;
 uint8_t record[kOwnerBytes];
@@ -31,7 +29,7 @@ QuickByte<kToKeepAt> to_keep;
 QuickByte<kKeepingAt> keeping;  // the bits that the store is writing
 Flag<Bit::kLow> is_low;         // saving waits for more voltage
 uint16_t low_ms;                // when that wait began
-bool is_worn;                   // the memory has failed to save the identity or a key
+bool is_worn;                   // the memory has failed to save a record since one was asked for
 
 // -- after a reset ------------------------------------------------------------------------------
 
@@ -44,10 +42,7 @@ void load_identity() {
 // The record of a fault: what, where, in which image. A hang that the watchdog ended is newer.
 void load_fault() {
   const bool is_there = store.fetch_first(Area::kFault, record, kRecordBytes);
-#ifdef tiniscript_has_pace
-  const Pace& pace = *reinterpret_cast<const Pace*>(record + kPaceAt);
-  if (is_there && is_sound(pace)) change_pace(pace);  // otherwise it was written by other firmware
-#endif
+  if (is_there) read_pace(record);
   Place hung;
   if (board_has_hung(&hung)) {
     robot_status.fault = static_cast<uint8_t>(LinkFault::kStall);
@@ -94,9 +89,7 @@ void write_record() {
   } else {
     copy_bytes(&robot_status.fault, record + kFaultAt, kFaultBytes);
     record[kFaultAt + kFaultBytes] = static_cast<uint8_t>(port_identity().reset);
-#ifdef tiniscript_has_pace
-    copy_bytes(&port_pace(), record + kPaceAt, sizeof(Pace));
-#endif
+    copy_bytes(&port_tuning().pace, record + kPaceAt, sizeof(Pace));
   }
 }
 
@@ -155,7 +148,7 @@ void tick_keeping() {
     tell_saving();
   }
   if (is_busy) return;
-  if ((keeping & kAskedFor) != 0) is_worn = !is_kept;
+  if (keeping > kProgramBit && !is_kept) is_worn = true;
   if (keeping == kOwnerBit) read_owner();
   keeping = 0;
   if (to_keep != 0) keep_next();
@@ -170,17 +163,18 @@ void keep_program() {
 
 void keep_fault() { to_keep = to_keep | kFaultBit; }
 
-void keep_identity() { to_keep = to_keep | kIdentityBit; }
+void keep_identity() {
+  to_keep = to_keep | kIdentityBit;
+  is_worn = false;
+}
 
-Answer identity_kept(bool and_pace) {
-  const bool has_pace = kHasPace && and_pace;
-  const uint8_t asked = has_pace ? kIdentityBit | kFaultBit : kIdentityBit;
-  if (((to_keep | keeping) & asked) != 0) {
+Answer identity_kept() {
+  if (((to_keep | keeping) & (kIdentityBit | kFaultBit)) != 0) {
     return is_low ? Answer::kLowSupply : Answer::kSaving;
   }
   if (!is_worn) return Answer::kOk;
   keep_identity();
-  if (has_pace) keep_fault();
+  keep_fault();
   return Answer::kNotKept;
 }
 

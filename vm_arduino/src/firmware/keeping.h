@@ -23,9 +23,9 @@ void keep_program();
 void keep_fault();
 void keep_identity();
 
-// Whether the identity is saved, or also the pace, which is beside the fault. kOk: yes; kSaving and kLowSupply: not yet; kNotKept: the memory is
-// worn out, and it is tried again.
-Answer identity_kept(bool and_pace);
+// Whether the identity is saved, and the pace, which is beside the fault. kOk: yes; kSaving and
+// kLowSupply: not yet; kNotKept: the memory is worn out, and it is tried again.
+Answer identity_kept();
 
 // Puts a key of the robot into `key`: zeros if it has none. False: not available now.
 bool fetch_key(uint8_t which, uint8_t* key);

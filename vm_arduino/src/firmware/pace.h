@@ -1,6 +1,6 @@
 // How fast the robot was measured to be: what the numbers in its memory mean for a move.
 //
-// Does only arithmetic: no storage. `pace.cpp` implements `robot_speed` and `port_pace`.
+// Does only arithmetic: no storage. `pace.cpp` implements `robot_speed`.
 
 #ifndef TINISCRIPT_FIRMWARE_PACE_H_
 #define TINISCRIPT_FIRMWARE_PACE_H_
@@ -12,9 +12,6 @@ namespace tiniscript {
 
 // Whether each line rises, or is not there.
 bool is_sound(const Pace& pace);
-
-// Takes over a pace, which must be sound. Returns whether that changes anything.
-bool change_pace(const Pace& pace);
 
 }  // namespace tiniscript
 

@@ -146,20 +146,17 @@ Answer port_set_wifi(WifiStep step, const uint8_t* text, uint8_t length) {
 Answer port_rename(const uint8_t* name, uint8_t length) {
   if (!has_booted()) return not_now();
   if (change_name(name, length)) keep_identity();
-  return identity_kept(false);
+  return identity_kept();
 }
 
-Answer port_set_trim(const Trim& trim, const Pace* pace) {
-  if (!is_sound(trim)) return Answer::kBadValue;
-#ifdef tiniscript_has_pace
-  if (pace != nullptr && !is_sound(*pace)) return Answer::kBadValue;
-#endif
+Answer port_tune(const Tuning& wanted, bool has_pace) {
+  if (!is_sound(wanted.trim) || (has_pace && !is_sound(wanted.pace))) return Answer::kBadValue;
   if (!has_booted()) return not_now();
-  if (change_trim(trim)) keep_identity();
-#ifdef tiniscript_has_pace
-  if (pace != nullptr && change_pace(*pace)) keep_fault();
-#endif
-  return identity_kept(pace != nullptr);
+  if (change_tuning(wanted, has_pace)) {
+    keep_identity();
+    if (has_pace) keep_fault();
+  }
+  return identity_kept();
 }
 
 }  // namespace tiniscript

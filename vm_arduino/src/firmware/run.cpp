@@ -202,7 +202,7 @@ Going robot_going(int32_t* way) { return guide_going(way); }
 
 void robot_motors(int8_t left, int8_t right) {
   guide_end();
-  const Levels levels = trimmed(port_trim(), left, right);
+  const Levels levels = trimmed(port_tuning().trim, left, right);
   has_motors_on = (left | right) != 0;
   board_motors(levels.left, levels.right);
 }

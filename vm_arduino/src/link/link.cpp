@@ -326,11 +326,9 @@ Answer Link::clear() {
 }
 
 Answer Link::set_trim(const uint8_t* payload, uint8_t length) {
-  const Trim& trim = *reinterpret_cast<const Trim*>(payload);
-  if (kHasPace && length == sizeof(Trim) + sizeof(Pace))
-    return port_set_trim(trim, reinterpret_cast<const Pace*>(payload + sizeof(Trim)));
-  if (length != sizeof(Trim)) return Answer::kBadLength;
-  return port_set_trim(trim, nullptr);
+  const bool has_pace = length == sizeof(Tuning);
+  if (!has_pace && length != sizeof(Trim)) return Answer::kBadLength;
+  return port_tune(*reinterpret_cast<const Tuning*>(payload), has_pace);
 }
 
 uint8_t Link::hello(const uint8_t* payload) {

@@ -148,8 +148,7 @@ void Link::reply() {
       put16(next_);
       break;
     case Message::kTrim:
-      put_all(&port_trim(), sizeof(Trim));
-      if (kHasPace) put_all(&port_pace(), sizeof(Pace));
+      put_all(&port_tuning(), sizeof(Tuning));
       break;
     case Message::kAuthenticate:
     case Message::kText:

@@ -66,6 +66,12 @@ struct tini_packed Pace {
   } lines[2];  // ahead, turning
 };
 
+// Both, as messages and the robot's memory have them.
+struct tini_packed Tuning {
+  Trim trim;
+  Pace pace;
+};
+
 constexpr uint8_t kFaultBytes = 7;     // of a RobotStatus, from `fault` on
 constexpr uint8_t kFeaturesBytes = 2;  // of an Identity, from `features` on
 constexpr uint8_t kMoreByTeacher = kByTeacher >> 8;
@@ -83,13 +89,7 @@ struct DeviceInfo {
 const DeviceInfo& port_device_info();
 Identity& port_identity();
 const RobotStatus& port_status();
-const Trim& port_trim();
-#ifdef tiniscript_has_pace
-constexpr bool kHasPace = true;
-#else
-constexpr bool kHasPace = false;
-#endif
-const Pace& port_pace();
+const Tuning& port_tuning();
 LineErrors port_line_errors();
 
 // The largest code that fits, after a header of this version.
@@ -216,8 +216,8 @@ void port_identify();
 // tries again.
 Answer port_rename(const uint8_t* name, uint8_t length);
 
-// The same for a trim, and for a pace where one is given; also kBadValue.
-Answer port_set_trim(const Trim& trim, const Pace* pace);
+// The same for a trim, or for both; also kBadValue.
+Answer port_tune(const Tuning& wanted, bool has_pace);
 
 }  // namespace tiniscript
 

@@ -16,7 +16,6 @@ Receiver receiver;  // where `link/receiver.h` looks for it on an AVR
 namespace {
 
 TiniLink* only = nullptr;
-const Trim no_trim = {0, 0, 0};
 const uint8_t no_words[] tini_progmem = {0};
 
 uint32_t checksum_of(const uint8_t* image) {
@@ -156,7 +155,6 @@ namespace tiniscript {
 const DeviceInfo& port_device_info() { return only->device_info(); }
 Identity& port_identity() { return only->identity(); }
 const RobotStatus& port_status() { return only->status(); }
-const Trim& port_trim() { return no_trim; }
 LineErrors port_line_errors() { return {0, 0}; }
 uint16_t port_room() { return only->room(); }
 Answer port_make_way(bool) { return only->make_way(); }
@@ -185,11 +183,11 @@ Answer port_rename(const uint8_t* name, uint8_t length) {
   return only->rename(name, length) ? Answer::kNotKept : Answer::kBadValue;
 }
 
-Answer port_set_trim(const Trim&, const Pace*) { return Answer::kNotKept; }
+Answer port_tune(const Tuning&, bool) { return Answer::kNotKept; }
 
 // Not measured: `Robot::speed` says how fast it is.
-const Pace& port_pace() {
-  static const Pace none = {};
+const Tuning& port_tuning() {
+  static const Tuning none = {};
   return none;
 }
 
