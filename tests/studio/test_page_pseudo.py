@@ -45,6 +45,23 @@ CUT = """() => {
   return [...found];
 }"""
 
+# Each text that can be seen, or is read aloud, and is in no catalogue of the page. Python says what
+# is in the others: what is measured, mistakes, lessons and robots.
+PLAIN = """() => {
+  const is_plain = (text) => /[a-z]{3}/.test(text) && !/[äéîñöûóÄÉÎÑÖÛ]/.test(text);
+  const found = [];
+  const others = 'option, .cm-editor, .blocklySvg, #values, #messages, #lesson, #lesson_findings,' +
+    '#lesson_step, #versions';
+  for (const each of document.querySelectorAll('body *')) {
+    if (each.closest(others) || !each.checkVisibility()) continue;
+    const own = [...each.childNodes].filter((node) => node.nodeType === Node.TEXT_NODE);
+    const said = [...own.map((node) => node.textContent),
+      each.getAttribute('aria-label') ?? '', each.getAttribute('placeholder') ?? ''];
+    if (!/^(STYLE|SCRIPT)$/.test(each.tagName)) found.push(...said.filter(is_plain));
+  }
+  return found;
+}"""
+
 
 def _answer(route: Route) -> None:
     said = route.fetch().json()
@@ -61,17 +78,24 @@ def test_longer_texts_fit_into_every_screen(browser: Browser) -> None:
         page.evaluate("document.querySelector('#start_write').style.width = '3em'")
         assert page.evaluate(CUT) != []  # it would be noticed
         page.evaluate("document.querySelector('#start_write').style.width = ''")
+        page.evaluate("document.querySelector('#start_title').append(' in English')")
+        assert page.evaluate(PLAIN) == [" in English"]
+        page.evaluate("document.querySelector('#start_title').lastChild.remove()")
         cut = {}
+        plain = {}
         for screen, see in SCREENS.items():
             page.set_viewport_size({"width": 1366, "height": 768})
             page.evaluate(SETTLED)
             see(page)
+            page.evaluate(SETTLED)
+            plain[screen] = page.evaluate(PLAIN)
             for width, height in SIZES:
                 page.set_viewport_size({"width": width, "height": height})
                 turn(page, "robot" if screen in BESIDE else "program")
                 page.evaluate(SETTLED)
                 cut[screen, width] = page.evaluate(CUT)
         assert {where: each for where, each in cut.items() if each} == {}
+        assert {screen: each for screen, each in plain.items() if each} == {}
         pages.close()
 
 
