@@ -284,10 +284,12 @@ def test_the_keyboard_alone_leads_from_the_start_to_a_checked_lesson(pages: Page
     assert axe_of == [[], []]
 
 
-def test_the_start_leads_from_a_floor_that_is_drawn_to_the_lessons(pages: Pages) -> None:
+def test_the_start_leads_from_any_place_to_the_lessons(pages: Pages) -> None:
+    """From a floor that is drawn, and with Back from what stands in front of it."""
     page = pages.open()
     page.click("#world_draw:enabled")
-    page.click("#home")
+    page.click("#my_programs")
+    page.go_back()
     page.click("#start_lessons")
     page.locator("#lesson_next:enabled").wait_for()
     assert page.locator("#writing").is_visible()

@@ -56,7 +56,7 @@ END_LOOP
 # in a lesson, after a check; and those of SHEETS.
 SCENES = {"": PROGRAM, ".held": COUNTED, ".start": COUNTED, ".lesson": "SI|F(5, 80)",
           ".drawing": PROGRAM, ".phone": PROGRAM, ".minute": PROGRAM,
-          ".teacher": PROGRAM, ".wall": ""}  # fmt: skip
+          ".teacher": PROGRAM, ".wall": "", ".more": PROGRAM}  # fmt: skip
 WALL = ".wall"  # of a teacher, with thirty pupils
 PUPILS = ["Ana", "Beto", "Carla", "Dani", "Elena", "Fabio", "Gabi", "Hugo", "Inés", "Julia",
           "Karim", "Lucía", "Mateo", "Nina", "Oscar", "Paula", "Quim", "Rosa", "Saúl", "Tania",
@@ -67,7 +67,7 @@ PUPIL, HAND = "192.0.2.7", 7  # their address, and whose hand is up
 HOLDS = 5  # the line of the breakpoint
 SIZE = {"width": 1280, "height": 760}
 GAP = 12  # pixels between the pictures of a sheet
-COLOURS = 128  # of a picture: its bytes are halved, and nobody sees it
+COLOURS = 72  # of a picture: its bytes are less than half, and nobody sees it
 KEPT = "words"  # the text of the picture that has them
 SEEN = "button, label, h1, h2, .blocklyToolboxCategoryLabel"
 CLASS = sources(ROOT, "docs/class.en.md")
@@ -267,8 +267,38 @@ def _wall(page: Page, scene: str, look: Callable[[], None]) -> None:
     look()
 
 
+def _more(page: Page, scene: str, look: Callable[[], None]) -> None:
+    """A loose block, a wrong one, a link, a phone on its side twice, a block that keys move."""
+    page.click("#view_blocks")
+    for text in ("SI|F(1, 80)\n\n/// R(0.5, 60)\n/// B(1, 80)\n", "SI|F(-2, 80)\nR(0.5, 60)\n"):
+        studio.write(page, text)
+        studio.shown(page)
+        if "-2" in text:
+            page.locator(".blocklyBubble").wait_for()
+        look()
+    studio.write(page, "SI|F(1, 80)\nR(0.5, 60)\n")
+    page.click("#my_programs")
+    page.locator("#programs:not([data-shared=asked])").wait_for()
+    look()
+    page.click("#programs_close")
+    page.set_viewport_size({"width": 844, "height": 390})
+    look()
+    page.click("#other")
+    page.click("#side_lessons")
+    page.locator("#lesson_next:enabled").wait_for()
+    look()
+    page.click("#side_virtual")
+    page.set_viewport_size({"width": SIZE["width"], "height": SIZE["height"]})
+    page.evaluate(studio.SETTLED)
+    page.locator("#redo").focus()
+    for key in ("Tab", "Tab", "Tab", "ArrowDown", "ArrowDown", "m", "ArrowDown"):
+        page.keyboard.press(key)
+    look()
+
+
 # Scenes of several pictures, or beside the program.
 SHEETS = {
+    ".more": _more,
     ".wall": _wall,
     ".drawing": _drawing,
     ".phone": _phone,

@@ -119,6 +119,7 @@ new Start({
     phone.show(id === 'side_virtual' ? 'program' : 'robot');
   },
   leave: () => {
+    element('programs', HTMLDialogElement).close();
     driving.leave();
     programs.keep();
   },
