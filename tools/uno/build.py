@@ -15,9 +15,9 @@ from pathlib import Path
 
 SOURCES = Path(__file__).resolve().parent
 HEADER = Path("/usr/include/simavr/sim_avr.h")
-FLAGS = ("-std=gnu11", "-O2")
+FLAGS = ("-std=gnu11", "-O2", "-flto")
 WARNINGS = ("-Wall", "-Wextra", "-Wconversion", "-Wshadow", "-Werror")
-LIBRARIES = ("-lsimavr", "-lelf", "-lutil", "-lm")
+LIBRARIES = ("-Wl,-Bstatic", "-lsimavr", "-Wl,-Bdynamic", "-lelf", "-lutil", "-lm")
 
 
 def missing() -> str:

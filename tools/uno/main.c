@@ -169,7 +169,7 @@ static void run(void) {
       look(-1);
       continue;
     }
-    if (reset_where_wanted()) was_asleep = false;
+    if (reset_is_wanted() && reset_where_wanted()) was_asleep = false;
     const int state = avr_run(avr);
     if (stack_is_watched()) stack_look();
     if (masked_is_watched()) masked_look();
