@@ -9,7 +9,8 @@ import pytest
 from PIL import Image
 
 from tests.studio.test_page_robot import in_phase
-from tests.support.studio import SETTLED, checked, speak, write
+from tests.support.studio import SETTLED, Pages, checked, shown, speak, write
+from tests.support.waiting import until
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
@@ -22,8 +23,8 @@ NOTING = """() => {
     linearRampToValueAtTime() {}, exponentialRampToValueAtTime() {}});
   const node = () => ({connect: (to) => to});
   window.AudioContext = class {
-    state = 'running'; destination = {};
-    close() {}  // Blockly does, of its own
+    destination = {};
+    resume() {}
     get currentTime() { return performance.now() / 1000; }
     createGain() {
       return {...node(), gain: {setValueAtTime() {}, linearRampToValueAtTime() {}}};
@@ -38,6 +39,10 @@ NOTING = """() => {
     window.shaken += 1;
     return animate.apply(this, how);
   };
+}"""
+# The computer's sound, noted as often as it is opened.
+OPENED = """window.opened = []; window.AudioContext = class extends AudioContext {
+  constructor() { super(); window.opened.push(this); }
 }"""
 CRASH = "F(9, 100)"  # into the box to the right
 WAY, WAY_BEFORE = "2f74c0", "bcd2ea"
@@ -92,6 +97,18 @@ def test_the_buzzer_is_heard_unless_it_is_muted(listening: Page) -> None:
     page.click("#sound")
     run(page, "BEEP(0.1, 550)")
     assert page.evaluate("window.heard") == [550]
+
+
+def test_no_sound_is_open_at_rest(pages: Pages) -> None:
+    """An open one works all the time, and empties a battery."""
+    page = pages.open("blocks", is_alone=True)
+    page.context.add_init_script(OPENED)
+    page.reload()
+    shown(page)
+    assert page.evaluate("window.opened.length") == 0
+    page.click("#view_text")
+    run(page, "BEEP(0.1, 440)")
+    until(lambda: page.evaluate("window.opened.map(({state}) => state)") == ["suspended"], "rest")
 
 
 def test_stop_and_pause_silence_it(listening: Page) -> None:

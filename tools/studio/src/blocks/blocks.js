@@ -110,7 +110,7 @@ export class Blocks {
     Blockly.setLocale(textsOf('blockly'));
     defineBlocks();
     const isNarrow = innerWidth < NARROW;
-    const workspace = Blockly.inject(this.#place, {
+    const workspace = withoutSound(() => Blockly.inject(this.#place, {
       ...this.#looks,
       plugins: { connectionChecker: 'tiniscript' },
       toolbox: toolbox(this.#level, this.#used),
@@ -120,7 +120,7 @@ export class Blocks {
       disable: false,
       move: { scrollbars: true, drag: true, wheel: true },
       zoom: { controls: !isNarrow, wheel: false, pinch: true, startScale: isNarrow ? 0.62 : 0.75, minScale: 0.4, maxScale: 1.6 },
-    });
+    }));
     workspace.MAX_UNDO = 0;
     hideMeasure();
     hideConnections(workspace.getFlyout()?.getWorkspace().getCanvas());
@@ -400,4 +400,21 @@ function hideMeasure() {
     observer.disconnect();
   }).observe(document.body, { childList: true });
   document.querySelector('.blocklyComputeCanvas')?.setAttribute('aria-hidden', 'true');
+}
+
+/**
+ * Blockly opens the computer's sound for each of its workspaces, and what has it open works all the time.
+ * Nothing of them sounds here: while they are made, there is none.
+ * @template T
+ * @param {() => T} make
+ */
+function withoutSound(make) {
+  const page = /** @type {{AudioContext: unknown}} */ (window);
+  const { AudioContext } = page;
+  page.AudioContext = undefined;
+  try {
+    return make();
+  } finally {
+    page.AudioContext = AudioContext;
+  }
 }

@@ -49,7 +49,7 @@ export class Sounds {
   #awake() {
     if (this.isMuted || !('AudioContext' in window) || navigator.userActivation?.hasBeenActive === false) return null;
     this.#context ??= new AudioContext();
-    if (this.#context.state === 'suspended') this.#context.resume();
+    this.#context.resume(); // also of one that is about to rest
     return this.#context;
   }
 
@@ -72,7 +72,10 @@ export class Sounds {
     tone.start(begin_s);
     tone.stop(end_s);
     this.#playing.add(tone);
-    tone.addEventListener('ended', () => this.#playing.delete(tone));
+    tone.addEventListener('ended', () => {
+      this.#playing.delete(tone);
+      if (!this.#playing.size) context.suspend(); // an open one works without a sound, too
+    });
     return tone;
   }
 }
