@@ -8,7 +8,14 @@ from struct import pack as struct_pack
 
 import pytest
 
-from tests.firmware.test_host_firmware import KIT, computer, image_of, outcome, switched_on
+from tests.firmware.test_host_firmware import (
+    KIT,
+    computer,
+    image_of,
+    outcome,
+    send,
+    switched_on,
+)
 from tests.firmware.test_keeping import EACH, FIRST, SECOND, saved
 from tests.machines.host_firmware import EMPTY, HostFirmware
 from tests.support.owners import Keys
@@ -140,6 +147,21 @@ def test_a_trim_that_other_firmware_has_kept_is_none(trim: bytes) -> None:
     request = session.trim()
     assert robot.until(session, request) == OK
     assert outcome(request).values.least == 7
+
+
+@pytest.mark.parametrize("pace", [(0xFFFF, 0xFFFF), (900, 100), (500, 500), (0, 0)])
+def test_a_pace_that_other_firmware_has_kept_is_none(pace: tuple[int, int]) -> None:
+    """What no line leads through would end a way too early: the kit's speed holds."""
+    body = bytes(15) + struct_pack("<4H", *pace, *pace)
+    record = struct_pack("<I", zlib.crc32(body)) + body
+    robot, session = met(kept((4 + 2 * EACH, 3, record)))
+    request = session.trim()
+    assert robot.until(session, request) == OK
+    assert outcome(request).values.pace == struct_pack("<4H", *pace, *pace), "it is read"
+    send(robot, session, "SI|F(20 CM, 60)", saves=False)
+    robot.talk(session, 1000)
+    begun, ended = [int(line.split()[0]) for line in robot.did if "MOTORS" in line][-2:]
+    assert ended - begun == pytest.approx(741, abs=2)
 
 
 def test_an_owner_beside_a_program_of_version_0_1_0_gives_the_robot_up() -> None:

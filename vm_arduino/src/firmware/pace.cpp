@@ -15,7 +15,7 @@ bool is_sound(const Pace& pace) {
 // The line through what was measured at 40 and at 80 %, times 40, in thousandths.
 uint32_t robot_speed(bool is_turn, uint8_t power) {
   const Pace::Line& line = port_tuning().pace.lines[is_turn];
-  if (line.at80 == 0) return board_speed(is_turn) * power;
+  if (line.at80 <= line.at40) return board_speed(is_turn) * power;  // not measured, or not sound
   const uint16_t rise = static_cast<uint16_t>(line.at80 - line.at40);
   const uint16_t quarters = static_cast<uint16_t>(25 * power);
   const int32_t found =
