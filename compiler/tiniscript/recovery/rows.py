@@ -228,6 +228,9 @@ TOKENS = r"""
 = > | >= | 0 | TS010 | first | IF(DISTANCE = > 10);S;ENDIF => IF(DISTANCE >= 10);S;ENDIF
 < = | <= | 0 | TS010 | first | IF(DISTANCE < = 10);S;ENDIF => IF(DISTANCE <= 10);S;ENDIF
 > = | >= | 0 | TS010 | first | IF(DISTANCE > = 10);S;ENDIF => IF(DISTANCE >= 10);S;ENDIF
+> or = | >= | 0 | TS010 | first | IF(DISTANCE > or = 10);S;ENDIF => IF(DISTANCE >= 10);S;ENDIF
+< or = | <= | 0 | TS010 | first | IF(DISTANCE < o = 10);S;ENDIF => IF(DISTANCE <= 10);S;ENDIF
+= / = | <> | 0 | TS010 | first | IF(DISTANCE =/= 10);S;ENDIF => IF(DISTANCE <> 10);S;ENDIF
 ! < | >= | 0 | TS010 | first | IF(DISTANCE !< 10)⏎S⏎ENDIF => IF(DISTANCE >= 10)⏎S⏎ENDIF
 ! > | <= | 0 | TS010 | first | IF(DISTANCE !> 10);S;ENDIF => IF(DISTANCE <= 10);S;ENDIF
 && | AND | 0 | TS010 | first | SI|IF(DISTANCE<10 && LIGHT_L>50);S;ENDIF => SI|IF(DISTANCE<10 AND LIGHT_L>50);S;ENDIF
@@ -248,7 +251,7 @@ no > | <= | 1 | TS010 | first | IF(DISTANCE NOT > 10);S;ENDIF => IF(DISTANCE <= 
 l=@val is|EQUALS|VALE equal? A|TO|QUE? r=@num|@val | $l = $r | 1 | TS010 | first | si distancia es 10 para => IF(DISTANCE = 10);S;ENDIF
 l=@val equal A|TO|QUE? r=@num|@val | $l = $r | 1 | TS010 | first | IF(DISTANCE igual a 10);S;ENDIF => IF(DISTANCE = 10);S;ENDIF
 = @word* RANDOM between|than|DESDE|FROM? a=@num A|AL|TO|and|until|-|, b=@num $ | = RANDOM ( $a , $b ) | 1 | TS102 | offered | X = numero al azar entre 1 y 6⏎F(X, 50) => X = RANDOM(1, 6)⏎F(X, 50)
-l=@val is? between a=@num and b=@num | $l > $a AND $l < $b | 1 | TS010 | first | IF(DISTANCE entre 5 y 10);S;ENDIF => IF(DISTANCE > 5 AND DISTANCE < 10);S;ENDIF
+l=@val is? between a=@num and b=@num | $l > $a AND $l < $b | 1 | TS037 | offered | IF(DISTANCE entre 5 y 10);S;ENDIF => IF(DISTANCE > 5 AND DISTANCE < 10);S;ENDIF
 # questions and sums
 a=@num|@val s=<|<=|>|>= b=@val t=<|<=|>|>= c=@num|@val | $a $s $b AND $b $t $c | 1 | TS037 | applied | SI|IF(10>DISTANCE>5);S;ENDIF => SI|IF(10>DISTANCE AND DISTANCE>5);S;ENDIF
 a=@num|@val X b=@num|@val | $a * $b | 1 | TS010 | first | SHOW(2 X 3) => SHOW(2 * 3)
