@@ -209,15 +209,17 @@ def changed_code(sensors: int) -> Iterator[tuple[bytes, int | None]]:
     for op in OPS:  # instructions of one byte name what a machine has, or may have not
         if op.implied and op.implied.kind.name == "sensor":
             yield bytes([op.code]), 0 if op.implied.value >= sensors else None
-    yield count * COUNTERS, None
-    yield count * (COUNTERS + 1), 2 * COUNTERS
+    frames = COUNTERS + CALLS  # of both, in the order in which they are opened
+    yield count * frames, None
+    yield count * (frames + 1), 2 * frames
+    yield simple("LOOP8") + b"\xc8" + end, 200  # a loop is closed as a call
     close = jump("NEXT", False, 0)
     yield count + close, None
     yield close, 0
     yield jump("BREAK_LOOP", False, 0), 0
-    calls = b"".join(jump("CALL", False, 0) for _ in range(CALLS + 1))
+    calls = b"".join(jump("CALL", False, 0) for _ in range(frames + 1))
     yield calls[:-2], None
-    yield calls, 2 * CALLS
+    yield calls, 2 * frames
     yield end, 0
     for far in (False, True):
         skip = jump("ELSE", far, 0)

@@ -164,6 +164,7 @@ jump_back:
     rjmp leave_behind_jump
     sub r26, r18
     sbc r27, r19
+land_behind:                ; also not before the code
     let_z_be_machine
     ldd r18, Z+tini_code_at
     ldd r19, Z+tini_code_at+1
@@ -199,8 +200,8 @@ op_call:
 op_return:
     tst framed
     breq bad_back
-    movw r26, count0
+    movw r26, count0        ; of a loop where memory has changed
     rcall pop_frame
-    rjmp land
+    rjmp land_behind
 
 #endif
