@@ -52,7 +52,7 @@ def own(tmp_path: Path) -> Path:
 # -- PlatformIO builds
 
 
-@pytest.mark.sampled(of="builds of PlatformIO", keep=4)
+@pytest.mark.sampled(of="builds of PlatformIO", keep=2)
 def test_a_robot_of_ones_own_is_built_and_written(clone: Path, own: Path) -> None:
     """Once: then it is ready, until anything that it is made from is another."""
     needed()

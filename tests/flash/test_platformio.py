@@ -107,7 +107,7 @@ def test_every_robot_has_a_sketch_for_its_board() -> None:
         assert (board if name == robots.DEFAULT else f"{board}_{name}") in SKETCHES
 
 
-@pytest.mark.sampled(of="builds of PlatformIO", keep=3)
+@pytest.mark.sampled(of="builds of PlatformIO", keep=2)
 @pytest.mark.parametrize("name", SKETCHES)
 def test_sketch_builds(project: Path, name: str) -> None:
     code, log = pio(project, "run", "-e", name)
@@ -120,7 +120,7 @@ def test_sketch_builds(project: Path, name: str) -> None:
     assert (project / ".pio" / "build" / name / "firmware.hex").is_file()
 
 
-@pytest.mark.sampled(of="builds of PlatformIO", keep=3)
+@pytest.mark.sampled(of="builds of PlatformIO", keep=2)
 def test_a_sketch_that_the_board_does_not_hold_is_refused(project: Path) -> None:
     with changed(
         project / "platformio.ini",
@@ -131,7 +131,7 @@ def test_a_sketch_that_the_board_does_not_hold_is_refused(project: Path) -> None
     assert "is greater than maximum allowed (20000 bytes)" in log
 
 
-@pytest.mark.sampled(of="builds of PlatformIO", keep=3)
+@pytest.mark.sampled(of="builds of PlatformIO", keep=2)
 @pytest.mark.parametrize(("new", "old"), NEW_NANOS.items())
 def test_a_nano_with_a_new_bootloader_gets_the_same_sketch(
     project: Path, new: str, old: str
@@ -149,7 +149,7 @@ def test_a_nano_with_a_new_bootloader_gets_the_same_sketch(
     assert held == [32_256, 30_720]  # bytes that the bootloader leaves
 
 
-@pytest.mark.sampled(of="builds of PlatformIO", keep=3)
+@pytest.mark.sampled(of="builds of PlatformIO", keep=2)
 def test_sketch_of_a_robot_of_ones_own(project: Path) -> None:
     """`tsc board` writes its header, and from then on the sketch is for it."""
     own = project / "src" / "boards" / "kits" / "own.h"

@@ -166,7 +166,7 @@ def test_a_description_leads_to_files_wherever_it_is_shown(wheel: Path, repo: Pa
     assert ours > 30
 
 
-@pytest.mark.sampled(of="builds of PlatformIO", keep=4)
+@pytest.mark.sampled(of="builds of PlatformIO", keep=2)
 def test_a_wheel_builds_its_own_firmware(wheel: Path, tmp_path: Path) -> None:
     variables, why = prepared()
     need(why)
