@@ -74,6 +74,9 @@ ADVICE = """
 ^ @none s=@cond+ ¿|¡ @any* $ | TS042 | found={s}; asked={s}; one=IF({alone}) | DISTANCE < 20 ¿si? S => one=IF(DISTANCE < 20)
 ^ @none v=@word|@num|+|-|*|/|%|(|)+ = x=@name $ | TS042 | found={x}; turned={x}; fix={free} = {v} | DISTANCE - 5 = FALTA => fix=FALTA = DISTANCE - 5
 ^ @none F ( s=UNTIL|HASTA @word+ , n=@num ) $ | TS102 | found={s}; right=UNTIL; usage=F(FOREVER, {n}) UNTIL({distance} < 10) | F(hasta la pared, 60) => usage=F(FOREVER, 60) UNTIL(DISTANCE < 10)
+^ @none c=F|B|L|R ( s=FOREVER , n=@num ) $ | TS102 | found={s}; right=FOREVER; usage={c}(FOREVER, {n}) UNTIL({distance} < 10) | F(siempre, 60) => usage=F(FOREVER, 60) UNTIL(DISTANCE < 10)
+^ @none c=F|B|L|R ( s=@word+ t=endless , n=@num ) $ | TS102 | found={s} {t}; right=FOREVER; usage={c}(FOREVER, {n}) UNTIL({distance} < 10) | F(sin fin, 60) => usage=F(FOREVER, 60) UNTIL(DISTANCE < 10)
+^ @none W ( s=FOREVER ) $ | TS102 | found={s}; right=FOREVER; usage=W(FOREVER) UNTIL({distance} < 10) | W(siempre) => usage=W(FOREVER) UNTIL(DISTANCE < 10)
 ^ @none v=@name [ @num ] = @any* $ | TS067 | found={v} | NOTAS[1] = 5 => found=NOTAS
 ^ @none most|least|on|off the|A? s=@noGRIPPER|@noLED $ | TS101 | found={s}; near= | OPEN GRIPPER => found=GRIPPER
 # letters for a way

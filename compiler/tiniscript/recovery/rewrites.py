@@ -24,6 +24,8 @@ _CAPTURE = re.compile(r"([a-z])=(?=.)")
 _PART = re.compile(r"<(\w+)>")
 _OF_NUMBERS = re.compile(r"@(?:dec|cat|cm|mmss|xn|same)\b|(?<![\w@])\d")
 _MOST_POWER = 100
+_SET = "TS050"  # of a variable that gets its value: in brackets that would be a question
+_BEFORE_VALUE = COMPARISONS | frozenset("(,+-*/%")
 _HEADER_OF = {"FOREVER": "LOOP", "FOR": "LOOP", "PARA": "LOOP", "ELSEIF": "IF"}
 
 
@@ -236,6 +238,8 @@ class Encoded:
             new += made_of
         new = _without_double_brackets(new)
         start, end = self.span(match)
+        if row.code == _SET and start and self.tokens[start - 1].text in _BEFORE_VALUE:
+            return None
         if new and new[-1].text == ";" and end < len(self.tokens) and self.tokens[end].text == ";":
             new.pop()
         old = self.tokens[start:end]

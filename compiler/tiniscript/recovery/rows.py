@@ -296,6 +296,9 @@ the v=@val | $v | 1 | TS102 | first | lee la distancia => DISTANCE
 v=@name = a=@num|@val b=@start | $v = $a ; $b | 1 | TS013 | applied | vel = 50 F(2, vel) => VEL = 50;F(2, VEL)
 v=@name = a=@val s=<|>|<=|>= n=@num b=@start | $v = $a $s $n ; $b | 1 | TS013 | applied | X = DISTANCE > 30 IF(X);S;ENDIF => X = DISTANCE > 30;IF(X);S;ENDIF
 v=@name ++ | $v = $v + 1 | 1 | TS050 | applied | v = 0⏎v++⏎F(2, v) => v = 0⏎v = v + 1⏎F(2, v)
+^ v=@name = w=@name ++ $ | $v = $w + 1 | 1 | TS050 | offered | X = 1⏎X = X++ => X = 1⏎X = X + 1
+^ c=@callw ( v=@name ++ r=@any* $ | $v = $v + 1 ; $c ( $v $r | 1 | TS050 | offered | X = 1⏎SHOW(X++) => X = 1⏎X = X + 1;SHOW(X)
+^ c=@callw ( v=@name += e=@num r=@any* $ | $v = $v + $e ; $c ( $v $r | 1 | TS050 | offered | X = 1⏎SHOW(X += 2) => X = 1⏎X = X + 2;SHOW(X)
 v=@name - - $ | $v = $v - 1 | 1 | TS050 | applied | X = 1⏎X-- => X = 1⏎X = X -1
 v=@name += e=@any+ | $v = $v + $e | 1 | TS050 | applied | v = 10⏎v += 5⏎F(2, v) => v = 10⏎v = v + 5⏎F(2, v)
 v=@name -= e=@any+ | $v = $v - $e | 1 | TS050 | applied | X = 1⏎X -= 1 => X = 1⏎X = X - 1

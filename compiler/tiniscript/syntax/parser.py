@@ -37,7 +37,7 @@ from tiniscript.syntax.ast import Argument, Assign, Break, Command, Program
 from tiniscript.syntax.blocks import ENDS, HEADERS, Blocks
 from tiniscript.syntax.cursor import AT_END, Cursor
 from tiniscript.syntax.expressions import ExpressionParser, odd
-from tiniscript.syntax.lexer import END, NEWLINE, ODD, WORD, Scan, Token, scan
+from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, ODD, WORD, Scan, Token, scan
 from tiniscript.syntax.reporter import Failed, Reporter
 
 ENOUGH = 100  # diagnostics after which reading on helps nobody
@@ -226,9 +226,11 @@ class Parser:
         cursor.i += 1
         self.no_arguments(word)
         name = cursor.token
-        if name.kind is WORD:
+        while cursor.token.kind in (WORD, NUMBER):
             cursor.i += 1
-            self.reporter.report(codes.TASK_HAS_NAME, name.span, found=name.text)
+        if cursor.token is not name:
+            span = cursor.span_from(name)
+            self.reporter.report(codes.TASK_HAS_NAME, span, found=cursor.source[span])
         self.blocks.begin("TASK", word.span)
 
     def arm(self, word: Token) -> None:
