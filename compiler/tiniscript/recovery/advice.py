@@ -18,7 +18,7 @@ from tiniscript.base.words import BLOCK_ENDS, OTHER_WAY, UNIT_OF, WORDS, nearest
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import CODES, Diagnostic
 from tiniscript.recovery import advice_rows, lines, rewrites
-from tiniscript.recovery.behind import ASKING, Above, Behind, Placed, whole
+from tiniscript.recovery.behind import ASKING, Above, Behind, Placed, reads, whole
 from tiniscript.recovery.concepts import ENDED, Lexeme, Names, lexemes, made, plain, said_of
 from tiniscript.recovery.orders import Order, made_up, orders, question_in, written
 from tiniscript.recovery.slots import filled
@@ -86,7 +86,7 @@ def advised(text: str, kit: Kit) -> list[Advice]:
     for body, line in zip(bodies, text.split("\n"), strict=True):
         told: list[Advice] = []
         words = lexemes(body)
-        is_right = not isinstance(lines.right(words, names), Failure)
+        is_right = reads(words, names)
         if "~" not in body and not is_right:
             parts = filter(_is_read, _parts(body, start, text, names, depth, above))
             read = list(islice(parts, left))

@@ -56,13 +56,13 @@ ADVICE = """
 # questions in words
 ^ @none WHEN|AL|AO|IF @word* flag @word* $ | TS102 | found={words}; right=START; fix=START; usage=START | when green flag clicked => fix=START
 ^ @none @any* h=IF|ELSEIF|WHILE|UNTIL (? @any* s=@noBUTTON @any* )? <body> $ | TS120 | | IF(boton presionado)⏎S⏎ENDIF => before=
-^ @none @any* <asks> (? s=@word|@num+ )? <body> $ | TS135 | word={head}; question=; joint={joint} | IF(hay luz y pared)⏎S⏎ENDIF => joint=AND
-^ @none @any* <asks> (? s=@word|@num+ )? <body> $ | TS135 | word={head}; question=; asked={asked}; also={also?} | IF(pared a 1 metro)⏎S⏎ENDIF => asked=DISTANCE < 100
-^ @none @any* <asks> (? s=@word|@num+ )? <body> $ | TS135 | word={head}; question=; example={nothing} | IF(esta listo)⏎S⏎ENDIF => example=DISTANCE < 10
-^ @none @any* <asks> (? s=@word|@num+ )? <body> $ | TS135 | word={head}; question={like}; another={orlike?} | F(5, 60) UNTIL(luz mucha) => question=LIGHT_L > 500
+^ @none @any* <asks> ( s=light|ahead =|is TRUE|1 ) $ | TS135 | word={head}; question={like}; another={orlike?} | IF(oscuro = TRUE)⏎S⏎ENDIF => question=LIGHT_L < 500
+^ @none @any* <asks> ( s=light|ahead =|is FALSE|0 ) $ | TS135 | word={head}; question={unlike}; another={orunlike?} | IF(oscuro = FALSE)⏎S⏎ENDIF => question=LIGHT_L > 500
+^ @none @any* <asks> (? s='='|@word|@num+ )? <body> $ | TS135 | word={head}; question=; joint={joint} | IF(hay luz y pared)⏎S⏎ENDIF => joint=AND
+^ @none @any* <asks> (? s='='|@word|@num+ )? <body> $ | TS135 | word={head}; question=; asked={asked}; also={also?} | IF(pared a 1 metro)⏎S⏎ENDIF => asked=DISTANCE < 100
+^ @none @any* <asks> (? s='='|@word|@num+ )? <body> $ | TS135 | word={head}; question=; example={nothing} | IF(esta listo)⏎S⏎ENDIF => example=DISTANCE < 10
+^ @none @any* <asks> (? s='='|@word|@num+ )? <body> $ | TS135 | word={head}; question={like}; another={orlike?} | F(5, 60) UNTIL(luz mucha) => question=LIGHT_L > 500
 ^ @none g=IF|WHILE ( s=@any+ , w=@start @any* ) $ | TS080 | word={g}; head={g}({s}); right={end} | IF(distancia < poca, S) => head=IF(distancia < poca)
-^ @none @any* <asks> ( s=light = TRUE|1 ) $ | TS135 | word={head}; question={like}; another={orlike?} | IF(oscuro = TRUE)⏎S⏎ENDIF => question=LIGHT_L < 500
-^ @none @any* <asks> ( s=light = FALSE|0 ) $ | TS135 | word={head}; question={unlike}; another={orunlike?} | IF(oscuro = FALSE)⏎S⏎ENDIF => question=LIGHT_L > 500
 ^ @none s=FOREVER q=QUE c=@cond+ w=@startm $ | TS102 | found={s} {q}; right=WHILE; usage=WHILE({always}) | siempre que distancia > 20 avanza => usage=WHILE(DISTANCE > 20)
 # what asks or calculates, alone
 ^ @none IF <either> do? w=@start @any* $ | TS042 | found={l}; asked={l} {r} {n}; one=IF({one} {r} {n});{done};ENDIF; another=IF({two} {r} {n});{done};ENDIF | si luz > 50 apita => another=IF(LIGHT_R > 50);BEEP(1, 440);ENDIF
@@ -108,7 +108,7 @@ ADVICE = """
 ^ c=@cmd (? n=@num )? $ | TS085 | times={few}; often={loop} | F(2,80)(3) => often=LOOP(3);F(2,80);END_LOOP
 ^ <does> @any* OTRA|OUTRA|UMA|DE|ONCE|VEZ VEZ|NUEVO|NOVO|MORE|MAS @any* $ | TS085 | again=LOOP(2);{c};END_LOOP | F(1, 80) otra vez => again=LOOP(2);F(1, 80);END_LOOP
 ^ <does> @any* AGAIN|NUEVAMENTE|NOVAMENTE|REPITO|REPETIDO @any* $ | TS085 | again=LOOP(2);{c};END_LOOP | F(1, 80) again => again=LOOP(2);F(1, 80);END_LOOP
-^ c=@move|W|M PARA? FOREVER|ETERNAMENTE $ | TS085 | endless=LOOP(FOREVER);{c};END_LOOP | F(1, 80) siempre => endless=LOOP(FOREVER);F(1, 80);END_LOOP
+^ c=@cmd PARA? FOREVER|ETERNAMENTE $ | TS085 | endless=LOOP(FOREVER);{c};END_LOOP | F(1, 80) siempre => endless=LOOP(FOREVER);F(1, 80);END_LOOP
 ^ c=@move|W|M @any* SIN|TODO|ALL PARAR|FIN|DETENERSE|DETENER|STOPPING|EL|THE @any* $ | TS085 | endless=LOOP(FOREVER);{c};END_LOOP | F(1, 80) sin parar => endless=LOOP(FOREVER);F(1, 80);END_LOOP
 ^ @none TASK s=@num :|.|-|=|)? r=@any+ $ | TS044 | found={s}; fix=TASK;{r};END_TASK | TASK 1: F(5, 60) => fix=TASK;F(5, 60);END_TASK
 # how long

@@ -23,6 +23,7 @@ from tiniscript.recovery.concepts import (
     said_of,
 )
 from tiniscript.recovery.slots import MOVES
+from tiniscript.recovery.worded import ASKED
 from tiniscript.syntax.lexer import NUMBER, ODD, QUOTES, WORD
 from tiniscript.syntax.operators import COMPARISONS
 from tiniscript.syntax.outline import Failure
@@ -65,6 +66,14 @@ def whole(tokens: Sequence[Lexeme], names: Names) -> int:
     if end and end < len(tokens) and tokens[end].text == "UNTIL":
         return _closed(tokens, end + 1) or end
     return end
+
+
+def reads(row: Sequence[Lexeme], names: Names) -> bool:
+    """Whether a row can be read, and no word stands for a name that asks: `DISTANCE = NEAR`."""
+    is_asking = any(
+        said_of(each.text, kind) and not names.is_name(each.text) for each in row for kind in ASKED
+    )
+    return not is_asking and not isinstance(lines.right(row, names), Failure)
 
 
 def _meant_call(token: Lexeme, names: Names) -> str:
@@ -154,7 +163,7 @@ class Behind:
     def is_aside(self) -> bool:
         """Whether the words may say something: of no instruction, where they are none."""
         if not self.tokens:
-            return isinstance(lines.right(self.row, self.names), Failure)
+            return not reads(self.row, self.names)
         has_dots = self.is_later and all(each.text in DOTS for each in self.row)
         has_number = any(each.kind is NUMBER for each in self.row)
         has_word = any(each.kind is WORD for each in self.row)

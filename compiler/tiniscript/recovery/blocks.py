@@ -16,6 +16,7 @@ from tiniscript.syntax.outline import Item
 
 ANY_END = "?"  # the word of an end that names no block: END, FIN
 BRACES = ("{", "}")
+LONGEST = 200  # items behind an ELSE whose ends are counted
 
 
 class Line(NamedTuple):
@@ -183,6 +184,12 @@ class _Matching:
             loop := next((each for each in self.open[::-1] if each.word in ("LOOP", "WHILE")), None)
         ):
             loop.is_endless = False
+        if item.kind == "end" and self.is_before_arm(place, item):
+            start = item.start - (
+                self.lines[k].tokens[item.start - 1].text == ";" and item.start > 0
+            )
+            self.edit(k, item._replace(start=start), item.start + 1 - start)
+            return True
         if item.kind == "end":
             return self.bare_end(place, k, item) if item.word == ANY_END else self.end(k, item)
         return True
@@ -251,6 +258,21 @@ class _Matching:
         self.edit(k, item, 1, *((";", block.end, ";") if block.word else ()))
         return True
 
+    def is_before_arm(self, place: int, item: Item) -> bool:
+        """Whether an end comes too early: the ELSE behind it belongs to its IF."""
+        after = self.after(place)
+        is_its = item.word == ANY_END or ENDED[item.word] == "IF"
+        if not (
+            is_its and after and after.kind == "arm" and self.open and self.open[-1].word == "IF"
+        ):
+            return False
+        outer = sum(block.word == "IF" for block in self.open[:-1])
+        if not outer:
+            return True
+        rest = [it for _, it in self.flat[place + 1 : place + LONGEST]]
+        ends = sum(it.kind == "end" and it.word in (ANY_END, "ENDIF", "END_IF") for it in rest)
+        return ends - sum(it.kind == "open" and it.word == "IF" for it in rest) > outer
+
     def bare_end(self, place: int, k: int, item: Item) -> bool:
         """`FIN` ends the innermost block; one too many is dropped."""
         after = self.after(place)
@@ -261,8 +283,6 @@ class _Matching:
             is_behind = after is None and before.text == ";" and before.source is not None
             is_alone = len(self.lines[k].items or ()) == 1 or is_behind
             self.is_sure = self.is_sure and is_alone and len(self.flat) > 1
-            self.edit(k, item, 1)
-        elif self.open[-1].word == "IF" and after and after.kind == "arm":
             self.edit(k, item, 1)
         elif self.open[-1].word:
             self.edit(k, item, 1, self.open.pop().end)

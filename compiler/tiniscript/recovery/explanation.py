@@ -38,6 +38,7 @@ _SHOW_WHOLE = frozenset(each.number for each in (
 _OF_ARM = (_BRACES, _WORD_CODE, codes.HEADER_SEPARATOR.number)
 _OF_BLOCKS = frozenset((*BLOCK_ENDS, *ENDED, "ELSE", "ELSEIF", *BRACES))
 _WORD = re.compile(r"\w+")
+_BEHIND = re.compile(r"\W*\w+[\s;]+(\w+)")
 _MOST_LINES = {"IF": 2, "TASK": 20}  # in a block of which the last may as well be behind it
 LONGEST_BLOCK = 160  # characters of one that a message shows
 
@@ -65,6 +66,7 @@ class Slip(NamedTuple):
     times: str = ""
     letter: str = ""
     takes: str = ""
+    early: str = ""
 
 
 class Unended(NamedTuple):
@@ -335,6 +337,11 @@ class _Teller:
         slip: Slip | Unended = _slip(code, step, before, after)
         if code == codes.OTHER_NOTE.number:
             slip = slip._replace(right=self.changes[k].text.strip())
+        if code == codes.EXTRA_WORD.number and isinstance(slip, Slip):
+            behind = _BEHIND.match(self.program, self.words(edit.span).start)
+            word = behind[1].upper() if behind else ""
+            if {word, meant_by(word)} & {"ELSE", "ELSEIF"}:
+                slip = slip._replace(early=slip.found)
         if code == _UNENDED:
             word = next((each.text for each in after if each.text in BLOCK_ENDS), "")
             added = [each.text for each in after if each.text not in texts(before)]
@@ -396,7 +403,8 @@ def _code(
     fewer = Counter(texts(before)) - Counter(texts(after))
     if "SI" in fewer and "IF" in new - words:
         return codes.SPANISH_IF.number, None
-    if not after and len(before) == 1 and meant_by(before[0].text) in ENDED:
+    dropped = {each for each in fewer if {each, meant_by(each)} & {*ENDED}}
+    if dropped and not new - words and fewer.keys() <= dropped | {";"}:
         return codes.EXTRA_WORD.number, None
     if steps:
         own = [step for step in steps if step.code != _WORD_CODE]
@@ -449,6 +457,8 @@ def _slip(code: str, step: Step | None, before: Sequence[Lexeme], after: Sequenc
     start, found, right = _first_difference(old, new)
     if code == _WORD_CODE and texts(found[:1]) == (";",):
         found = found[1:]
+    if code == codes.EXTRA_WORD.number and texts(found[1:]) == (";",):
+        found = found[:1]
     if not right and code == _WORD_CODE and start:
         found, right = [old[start - 1], *found], [old[start - 1]]
     elif code == _WORD_CODE and texts(found[-1:]) == (".",):  # `bot.forward`

@@ -44,9 +44,9 @@ MISPLACED = frozenset(("TS112", "TS113", "TS114", "TS026"))  # of a DEF or an en
 NO_BRACKETS, NAMED_VALUE, WITH_UNIT, OTHER_CALL = "TS015", "TS052", "TS049", "TS076"
 
 # Those that write a number in another way: `500 ms`, `8O`, `X++`, `1) F(2, 80)`, `tres segundos`,
-# or drop one: `TASK(1)`.
+# or drop one: `TASK(1)`, `LOOP(1 TO 5)`.
 OTHER_NUMBERS = frozenset(
-    ("TS008", "TS065", "TS010", "TS049", "TS050", "TS054", "TS102", "TS137", "TS039")
+    ("TS008", "TS065", "TS010", "TS049", "TS050", "TS054", "TS063", "TS102", "TS137", "TS039")
 )
 
 # Slips of one sign, tried where no row reads a line: cost and code of one that is missing, of one
@@ -114,6 +114,7 @@ SIGNS = r"""
 ^(S[IB]\s*\|)?\s*¿([^?]+)\?\s*(?:s[ií]|yes)\s*[:,]?\s*(.+?)[\s,;.]*\bno\s*[:,]\s*(.+)$  |  `\1IF(\2); \3; ELSE; \4; ENDIF`  |  1  |  TS042  |  offered  |  ¿DISTANCE < 20? SÍ: S NO: F(1, 60) => IF(DISTANCE < 20); S; ELSE; F(1, 60); ENDIF
 (?<=\d)\. (?=\d)  |  `.`  |  1  |  TS008  |  applied  |  F(1. 5, 80) => F(1.5, 80)
 ^S ([IB])(?=\s*\|)  |  `S\1`  |  1  |  TS034  |  applied  |  S I|F(2, 80) => SI|F(2, 80)
+^(S[IB]\s*\|)?\s*(\d+) (?:loop|repe[a-z]+)\s*:?$  |  `\1LOOP(\2)`  |  1  |  TS015  |  applied  |  5 LOOP⏎F(1, 50)⏎END_LOOP => LOOP(5)⏎F(1, 50)⏎END_LOOP
 \bLOOP_?(\d+)(?=\s*(?:;|$))  |  `LOOP(\1)`  |  1  |  TS015  |  applied  |  LOOP4;F(2, 80);END_LOOP => LOOP(4);F(2, 80);END_LOOP
 ^(\s*S[IB]\s*\|)\s+\|  |  `\1`  |  1  |  TS054  |  applied  |  SI| |F(2, 80) => SI|F(2, 80)
 −  |  `-`  |  0  |  TS010  |  applied  |  M(−50 50) => M(-50, 50)
@@ -306,7 +307,7 @@ v=@name *= e=@any+ | $v = $v * $e | 1 | TS050 | applied | X = 1⏎X *= 2 => X = 
 ^ v=@name = w=@name = e=@any+ $ | $v = $e ; $w = $e | 1 | TS137 | offered | X = X = 5 => X = 5;X = 5
 ^ v=@name , w=@name = e=@num , f=@num $ | $v = $e ; $w = $f | 1 | TS050 | applied | X, Y = 5, 6⏎F(X, Y) => X = 5;Y = 6⏎F(X, Y)
 ^ n=@newname = '{' | DEF $n ; { | 1 | TS051 | offered | BAILE = { L(1,60); R(1,60) }⏎BAILE => DEF BAILE;L(1, 60);R(1, 60);END_DEF;⏎BAILE
-^ n=@newname = b=@callw r=@any+ $ | DEF $n ; $b $r | 2 | TS051 | applied | SALUDO = BEEP(1, 440)⏎SALUDO => DEF SALUDO;BEEP(1, 440);END_DEF⏎SALUDO
+^ n=@newname = b=@callw|LOOP r=@any+ $ | DEF $n ; $b $r | 2 | TS051 | applied | SALUDO = BEEP(1, 440)⏎SALUDO => DEF SALUDO;BEEP(1, 440);END_DEF⏎SALUDO
 ^ declare v=@newname ;? $ | $v = 0 | 1 | TS044 | offered | var vel⏎F(2, vel) => vel = 0⏎F(2, vel)
 ^ declare v=@name = | $v = | 1 | TS044 | applied | let v = 50⏎F(2, v) => v = 50⏎F(2, v)
 ^ CONST declare v=@name = | $v = | 1 | TS044 | applied | const int potencia = 80;⏎F(2, potencia); => potencia = 80;⏎F(2, potencia);
@@ -483,6 +484,8 @@ LOOP ( INT? @name = 0 ; @name < n=@num ; @name ++ ) | LOOP ( $n ) | 1 | TS063 | 
 a=@num ( c=@noparen+ ) | $a * ( $c ) | 1 | TS048 | offered | X = 2(20 + 10)⏎F(1, X) => X = 2 *(20 + 10)⏎F(1, X)
 ^ q=@val s=<|>|<=|>= n=@num|@val :|do|=|->|=>? b=@start r=@all* | IF ( $q $s $n ) ; $b $r | 1 | TS042 | offered | DISTANCE < 10: S => IF(DISTANCE < 10);S;ENDIF
 ^ @name = 1 TO|HASTA n=@num do|:? $ | LOOP ( $n ) | 1 | TS102 | offered | veces = 1 hasta 5⏎F(1,50)⏎fin => LOOP(5)⏎F(1,50)⏎END_LOOP
+LOOP ( 1 to|A|, n=@num ) | LOOP ( $n ) | 1 | TS063 | offered | LOOP(1 TO 5);F(1, 50);END_LOOP => LOOP(5);F(1, 50);END_LOOP
+^ BREAK LOOP $ | BREAK | 1 | TS044 | applied | LOOP(2)⏎F(1, 50)⏎BREAK LOOP⏎END_LOOP => LOOP(2)⏎F(1, 50)⏎BREAK⏎END_LOOP
 <for> ( INT? @name = 1 ; @name <= n=@num ; @name ++ ) | LOOP ( $n ) ; | 1 | TS102 | offered | for(i=1; i<=3; i++){ F(1,80); } => LOOP(3);F(1, 80);END_LOOP;
 ^ FOREVER|SIEMPRE : $ | LOOP ( FOREVER ) ; | 1 | TS032 | applied | forever:⏎  F(1,50) => LOOP(FOREVER)⏎  F(1,50)⏎END_LOOP
 ^ FOREVER|SIEMPRE $ | LOOP ( FOREVER ) | 1 | TS032 | applied | siempre⏎F(1,50)⏎fin => LOOP(FOREVER)⏎F(1,50)⏎END_LOOP

@@ -79,8 +79,7 @@ def with_usage(found: Sequence[Diagnostic], source: Source, kit: Kit) -> list[Di
     told = [teller.told(each) for each in found[:_MANY]]
     near = {it.values.get("near", "").partition("(")[0] for it in told}
     is_near = bool(teller.unopened) and teller.unopened in near
-    late = [each for each in told if each.code is codes.NOT_OPEN and each.values.get("line")]
-    has_no_ends = is_near or late or any(it.code in (codes.BRACES, codes.DOTS) for it in told)
+    has_no_ends = is_near or any(it.code in (codes.BRACES, codes.DOTS) for it in told)
     reserved = {each.values["word"] for each in told if each.code is codes.RESERVED}
     unknown = {teller.piece(it.span) for it in told if it.code in _OF_ITS_WORD}
     part = next((it.values["part"] for it in told if it.values.get("part")), "")
@@ -93,7 +92,7 @@ def with_usage(found: Sequence[Diagnostic], source: Source, kit: Kit) -> list[Di
         if (each.code is not codes.NO_VALUE or each.values.get("word") not in reserved)
         and (each.code is not codes.UNIT_PLACE or teller.piece(each.span) not in unknown)
     ]
-    return [each for each in kept if each in late or not (has_no_ends and each.code in _OF_ENDS)]
+    return [each for each in kept if not (has_no_ends and each.code in _OF_ENDS)]
 
 
 class _Usage:
@@ -500,16 +499,14 @@ class _Usage:
         return found._replace(values={**found.values, "skipped": skipped})
 
     def unopened_part(self, found: Diagnostic) -> Diagnostic | None:
-        """An ELSE behind the end of its block."""
+        """An ELSE in a WHEN."""
         if not self.source[found.span].upper().startswith("ELSE"):
             return None
         before = self.source.text[: found.span.start]
         whens = re.findall(r"(?i)\b(?:END_?)?WHEN\b", before)
         if whens and not whens[-1].upper().startswith("END"):
             return found._replace(values={**found.values, "part": found.values["found"]})
-        ends = [*re.finditer(r"(?i)\bENDIF\b", before)]
-        line = str(self.source.position(ends[-1].start())[0]) if ends else ""
-        return found._replace(values={**found.values, "line": line})
+        return None
 
     def sign(self, found: Diagnostic) -> Diagnostic | None:
         sign, piece = self.source[found.span], self.piece(found.span)
