@@ -132,7 +132,7 @@ NOT_DONE = {
     "RETURN": "leaves",
     **dict.fromkeys(("GOTO", "GOSUB", "JUMP", "SALTA", "SALTAR", "IRA", "IR_A"), "jump"),
 }
-_INSTEAD = {"pins": "F(2, 80)", "jump": "LOOP(FOREVER)", "every": "LOOP(FOREVER)", "motors": "M(50, 50)",
+_INSTEAD = {"pins": "F(2, 80)", "jump": "LOOP(FOREVER)", "every": "LOOP(FOREVER)", "motors": "M(left, right)",
             "leaves": "END_DEF"}
 
 

@@ -136,6 +136,8 @@ ADVICE = """
 ^ c=@unasked s=HASTA|UNTIL @word+ $ | TS102 | found={s}; right=UNTIL; usage={c} UNTIL({distance} < 10) | F(1, 80) hasta la pared => usage=F(1, 80) UNTIL(DISTANCE < 10)
 # which way, and what comes next
 ^ c=@move AL REVES $ | TS085 | other={other} | F(1, 80) al reves => other=B(1, 80)
+^ c=@cmd then|+|&|,? w=@call ( v=@noparen+ ) s=@word+ t=together $ | TS061 | found={s} {t}; together=TASK;{w}({v});END_TASK;{c} | F(2, 80) y BEEP(1, 440) al mismo tiempo => together=TASK;BEEP(1, 440);END_TASK;F(2, 80)
+^ c=@cmd s=@word+ t=together w=@call ( v=@noparen+ ) $ | TS061 | found={s} {t}; together=TASK;{w}({v});END_TASK;{c} | F(2, 80) at the same time BEEP(1, 440) => together=TASK;BEEP(1, 440);END_TASK;F(2, 80)
 ^ c=F|B s=+|&|then|beside BEEP ( n=@num , @num ) @word* $ | TS061 | found={s}; both={both} | F(2, 80) con BEEP(1, 440) => both=M(80, 80);BEEP(1, 440);W(1);S
 ^ c=@cmd then @word+ $ | TS074 | fix={orders}; example={example?} | F(1, 80) y luego retrocede => fix=F(1, 80);B(2, 80)
 ^ c=@move <lead> @told* @other @told* <close> $ | TS085 | other={other} | F(1, 80) atras => other=B(1, 80)

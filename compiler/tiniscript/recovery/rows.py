@@ -91,7 +91,7 @@ SIGNS = r"""
 (?<=[(,\s])😎\s*$  |  `8)`  |  1  |  TS010  |  offered  |  W(😎 => W(8)
 (?<=\d)=(?=\s*\))  |  `0`  |  1  |  TS076  |  offered  |  F(2, 8=) => F(2, 80)
 (?<=\()=(?=\.\d)  |  `0`  |  1  |  TS076  |  offered  |  L(=.39, 60) => L(0.39, 60)
-(?:(?<==)|(?<=SHOW\())\s*(\d+)x(\d+)\b  |  ` \1 * \2`  |  1  |  TS008  |  offered  |  X = 3x2 => X = 3 * 2
+((?<==)\s*|(?<=SHOW\())(\d+) ?x ?(\d+)\b  |  `\1\2 * \3`  |  1  |  TS010  |  applied  |  X = 3x2 => X = 3 * 2
 (?<=[(,])(\s*)!(?=\s*[,)])  |  `\g<1>1`  |  1  |  TS076  |  offered  |  F(!, 80) => F(1, 80)
 (?<=[(,])(\s*)"(?=\s*[,)])  |  `\g<1>2`  |  1  |  TS076  |  offered  |  F(", 80) => F(2, 80)
 (?<=[(,])(\s*)\$(?=\s*[,)])  |  `\g<1>4`  |  1  |  TS076  |  offered  |  F($, 80) => F(4, 80)
@@ -102,7 +102,7 @@ SIGNS = r"""
 (?<=\(\d) +(?=\.\d+,)  |  ``  |  1  |  TS008  |  applied  |  F(1 .5, 80) => F(1.5, 80)
 \b([FBLR])(?:8(\d),\s*(\d\d)[9)]|9(\d),\s*(\d\d)[0)])\s*(?=;|$)  |  `\1(\2\4, \3\5)`  |  1  |  TS010  |  offered  |  F82, 809 => F(2, 80)
 \b(IF|WHILE|UNTIL)\s*¿\s*([^?()¿]+?)\s*\?  |  `\1(\2)`  |  1  |  TS015  |  applied  |  IF ¿DISTANCE < 10?⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
-\b(\w+)\s*(?:\^|\*\*)\s*2\b  |  `\1 * \1`  |  1  |  TS010  |  offered  |  X = 7^2⏎SHOW(X) => X = 7 * 7⏎SHOW(X)
+\b(\w+?)\s*(?:(?:\^|\*\*)\s*2\b|²)  |  `\1 * \1`  |  1  |  TS010  |  offered  |  X = 7^2⏎SHOW(X) => X = 7 * 7⏎SHOW(X)
 \b(\w+)\s*(?:\^|\*\*)\s*3\b  |  `\1 * \1 * \1`  |  1  |  TS010  |  offered  |  X = 2^3⏎SHOW(X) => X = 2 * 2 * 2⏎SHOW(X)
 \(f"[^"{}]*\{(\w+)\}[^"{}]*"\)  |  `(\1)`  |  1  |  TS006  |  offered  |  print(f"{DISTANCE} cm") => SHOW(DISTANCE)
 \b((?:IF|WHILE|UNTIL|WHEN)\([^()"]*\d)"(?=\s*(?:;|$))  |  `\1)`  |  1  |  TS016  |  offered  |  IF(DISTANCE < 10"⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
@@ -112,6 +112,7 @@ SIGNS = r"""
 ^ese i barra (?=\w)  |  `SI|`  |  1  |  TS010  |  offered  |  ese i barra F(2, 80) => SI|F(2, 80)
 \b([a-z]+) (?:abre |abrir )?par[eé]ntesis (\w+) coma (\w+)(?: cierra(?:r)? par[eé]ntesis)?  |  `\1(\2, \3)`  |  1  |  TS015  |  offered  |  efe paréntesis dos coma ochenta => F(2, 80)
 ^(S[IB]\s*\|)?\s*¿([^?]+)\?\s*(?:s[ií]|yes)\s*[:,]?\s*(.+?)[\s,;.]*\bno\s*[:,]\s*(.+)$  |  `\1IF(\2); \3; ELSE; \4; ENDIF`  |  1  |  TS042  |  offered  |  ¿DISTANCE < 20? SÍ: S NO: F(1, 60) => IF(DISTANCE < 20); S; ELSE; F(1, 60); ENDIF
+(?<==) *(\w+) ?: (?=\w+\s*(?:;|$))  |  ` \1 / `  |  1  |  TS010  |  offered  |  X = 10 : 4⏎SHOW(X) => X = 10 / 4⏎SHOW(X)
 (?<=\d)\. (?=\d)  |  `.`  |  1  |  TS008  |  applied  |  F(1. 5, 80) => F(1.5, 80)
 ^S ([IB])(?=\s*\|)  |  `S\1`  |  1  |  TS034  |  applied  |  S I|F(2, 80) => SI|F(2, 80)
 ^(S[IB]\s*\|)?\s*(\d+) (?:loop|repe[a-z]+)\s*:?$  |  `\1LOOP(\2)`  |  1  |  TS015  |  applied  |  5 LOOP⏎F(1, 50)⏎END_LOOP => LOOP(5)⏎F(1, 50)⏎END_LOOP
@@ -158,7 +159,7 @@ SIGNS = r"""
 [–—]>  |  `;`  |  1  |  TS061  |  applied  |  F(2, 80) –> R(1, 50) => F(2, 80) ; R(1, 50)
 (?<=\d) 1/2(?!\d)  |  `.5`  |  1  |  TS049  |  applied  |  F(1 1/2, 80) => F(1.5, 80)
 (?<=\b0)\. (?=\d)  |  `.`  |  1  |  TS008  |  applied  |  BEEP(0. 5, 440) => BEEP(0.5, 440)
-(?<=\d)'(?=\d+\s*,)  |  `.`  |  1  |  TS012  |  applied  |  F(1'5, 80) => F(1.5, 80)
+(?<=\d)'(?=\d+\s*(?:[,;]|$))  |  `.`  |  1  |  TS012  |  applied  |  F(1'5, 80) => F(1.5, 80)
 (?<=\d)['·](?=\d+\))  |  `,`  |  1  |  TS076  |  applied  |  F(2'80) => F(2,80)
 (?<=\d)[|¿?!"]+(?=\s*\))  |  ``  |  1  |  TS005  |  applied  |  F(2, 80?) => F(2, 80)
 \(([FBLRWM])(\d)  |  `\1(\2`  |  1  |  TS015  |  applied  |  (F2, 80) => F(2, 80)
@@ -249,7 +250,6 @@ is? different than|A? | <> | 1 | TS010 | first | IF(DISTANCE distinto de 10);S;E
 no is|equal A|TO|IGUAL? A? | <> | 1 | TS010 | first | IF(DISTANCE NO ES 10);F(1,50);ENDIF => IF(DISTANCE <> 10);F(1,50);ENDIF
 no < | >= | 1 | TS010 | first | IF(DISTANCE NOT < 10);S;ENDIF => IF(DISTANCE >= 10);S;ENDIF
 no > | <= | 1 | TS010 | first | IF(DISTANCE NOT > 10);S;ENDIF => IF(DISTANCE <= 10);S;ENDIF
-l=@val is|EQUALS|VALE equal? A|TO|QUE? r=@num|@val | $l = $r | 1 | TS010 | first | si distancia es 10 para => IF(DISTANCE = 10);S;ENDIF
 l=@val equal A|TO|QUE? r=@num|@val | $l = $r | 1 | TS010 | first | IF(DISTANCE igual a 10);S;ENDIF => IF(DISTANCE = 10);S;ENDIF
 = @word* RANDOM between|than|DESDE|FROM? a=@num A|AL|TO|and|until|-|, b=@num $ | = RANDOM ( $a , $b ) | 1 | TS102 | offered | X = numero al azar entre 1 y 6⏎F(X, 50) => X = RANDOM(1, 6)⏎F(X, 50)
 l=@val is? between a=@num and b=@num | $l > $a AND $l < $b | 1 | TS037 | offered | IF(DISTANCE entre 5 y 10);S;ENDIF => IF(DISTANCE > 5 AND DISTANCE < 10);S;ENDIF
@@ -269,8 +269,10 @@ h=IF|WHILE|ELSEIF v=@val ( n=@num ) | &h ( $v < $n ) | 1 | TS048 | offered | IF 
 = ABS s='-'? n=@num|@val $ | = ABS ( $s $n ) | 1 | TS015 | applied | X = ABS -5⏎SHOW(X) => X = ABS(-5)⏎SHOW(X)
 o==|( a=@num over POR? b=@num | $o $a / $b | 1 | TS010 | applied | SHOW(10 entre 2) => SHOW(10 / 2)
 h=IF|WHILE|UNTIL|WHEN|ELSEIF ( a=@val then|& b=@val s=<|> n=@num ) | &h ( $a $s $n AND $b $s $n ) | 1 | TS010 | first offered | IF(LIGHT_L y LIGHT_R > 500)⏎S⏎ENDIF => IF(LIGHT_L > 500 AND LIGHT_R > 500)⏎S⏎ENDIF
-SHOW ( a=@val & b=@val ) | SHOW ( $a ) ; SHOW ( $b ) | 1 | TS020 | first offered | SHOW(LIGHT_L & LIGHT_R) => SHOW(LIGHT_L);SHOW(LIGHT_R)
+h=IF|WHILE|UNTIL|WHEN|ELSEIF ( a=@val or|OR b=@val s=<|> n=@num ) | &h ( $a $s $n OR $b $s $n ) | 1 | TS010 | first offered | IF(LIGHT_L o LIGHT_R > 500)⏎S⏎ENDIF => IF(LIGHT_L > 500 OR LIGHT_R > 500)⏎S⏎ENDIF
+SHOW ( a=@val &|then|and then? b=@val ) | SHOW ( $a ) ; SHOW ( $b ) | 1 | TS020 | first offered | SHOW(LIGHT_L & LIGHT_R) => SHOW(LIGHT_L);SHOW(LIGHT_R)
 a=@num|@val then|& b=@val|MENOR|MAYOR|NOT|< | $a AND $b | 1 | TS010 | first | IF(DISTANCE < 10 y LIGHT_L > 100);S;ENDIF => IF(DISTANCE < 10 AND LIGHT_L > 100);S;ENDIF
+l=@val is|EQUALS|VALE equal? A|TO|QUE? r=@num|@val | $l = $r | 1 | TS010 | first | si distancia es 10 para => IF(DISTANCE = 10);S;ENDIF
 a=@num|@val or b=@val|NOT|MENOR|MAYOR | $a OR $b | 1 | TS010 | first | IF(DISTANCE < 10 o DISTANCE > 50);S;ENDIF => IF(DISTANCE < 10 OR DISTANCE > 50);S;ENDIF
 o=AND|OR IF | &o | 1 | TS010 | first | IF(DISTANCE > 5 AND IF DISTANCE < 9);S;ENDIF => IF(DISTANCE > 5 AND DISTANCE < 9);S;ENDIF
 TRUE = c=@any+ ) | $c ) | 1 | TS037 | applied | IF(TRUE = DISTANCE < 10);S;ENDIF => IF( DISTANCE < 10);S;ENDIF
@@ -292,6 +294,8 @@ SHOW ( n=@num M|METRO|METROS|METERS|METER|@unit ) | SHOW ( $n ) | 1 | TS049 | ap
 ROUND ( v=@argt+ , n=@num DECIMALES|DECIMALS|PLACES|CIFRAS ) | ROUND ( $v , $n ) | 1 | TS049 | applied | SHOW(ROUND(DISTANCE, 1 decimales)) => SHOW(ROUND(DISTANCE, 1))
 v=@val seconds|@unit e=,|) | $v $e | 1 | TS049 | applied | SHOW(distancia cm) => SHOW(DISTANCE)
 h=IF|WHILE|UNTIL|WHEN|ELSEIF b=(? A v=@val | &h $b &v | 1 | TS102 | first | IF(a distância < 10);S;ENDIF => IF(DISTANCE < 10);S;ENDIF
+^ v=@val '->' SHOW $ | SHOW ( $v ) | 1 | TS015 | offered | DISTANCE -> SHOW => SHOW(DISTANCE)
+v=@val ROUND n=@num | ROUND ( $v , $n ) | 1 | TS015 | offered | SHOW(DISTANCE ROUND 1) => SHOW(ROUND(DISTANCE, 1))
 the v=@val | $v | 1 | TS102 | first | lee la distancia => DISTANCE
 # variables
 v=@name = a=@num|@val b=@start | $v = $a ; $b | 1 | TS013 | applied | vel = 50 F(2, vel) => VEL = 50;F(2, VEL)
@@ -445,7 +449,7 @@ LOOP n=@num times? b=@start|'{' | LOOP ( $n ) ; $b | 1 | TS102 | applied | LOOP 
 LOOP POR? n=@num times? $ | LOOP ( $n ) | 1 | TS102 | applied | repetir 4⏎S⏎fin => LOOP(4)⏎S⏎END_LOOP
 LOOP n=@val o=*|+|- m=@num $ | LOOP ( $n &o $m ) | 1 | TS015 | applied | X = 2⏎LOOP X * 4⏎F(1,50)⏎END_LOOP => X = 2⏎LOOP(X * 4)⏎F(1,50)⏎END_LOOP
 ^ START b=@start | START ; $b | 1 | TS013 | applied | START F(2,80) => START;F(2, 80)
-a=L|R ( MEDIA|HALF A? VUELTA|GIRO|TURN , | $a ( 180 DEG , | 1 | TS102 | offered | R(media vuelta, 60) => R(180 DEG, 60)
+a=L|R ( half A? lap|GIRO|TURN , | $a ( 180 DEG , | 1 | TS102 | offered | R(media vuelta, 60) => R(180 DEG, 60)
 a=L|R ( UNA|A|ONE|FULL VUELTA|GIRO|TURN COMPLETA? , | $a ( 360 DEG , | 1 | TS102 | offered | L(una vuelta completa, 60) => L(360 DEG, 60)
 a=L|R ( A? CUARTO|QUARTER DE? VUELTA|GIRO|TURN , | $a ( 90 DEG , | 1 | TS102 | offered | R(cuarto de vuelta, 60) => R(90 DEG, 60)
 a=@callw ( n=@num A|TO|HASTA m=@num , | $a ( RANDOM ( $n , $m ) , | 1 | TS076 | offered | F(1 a 3, 60) => F(RANDOM(1, 3), 60)
@@ -453,6 +457,7 @@ a=L|R ( 1 / 4 DE? VUELTA|GIRO|TURN , | $a ( 90 DEG , | 1 | TS102 | offered | R(1
 a=L|R ( 1 / 2 DE? VUELTA|GIRO|TURN , | $a ( 180 DEG , | 1 | TS102 | offered | R(1/2 turn, 60) => R(180 DEG, 60)
 o=(|,|=|<|>|+|- '|' v=@num|@val c=@argt* '|' | $o ABS ( $v $c ) | 1 | TS010 | offered | D = |LIGHT_L - LIGHT_R|⏎SHOW(D) => D = ABS(LIGHT_L - LIGHT_R)⏎SHOW(D)
 ^ W ( UNTIL (? q=@argt+ )? ) $ | W ( FOREVER ) UNTIL ( $q ) | 1 | TS029 | offered | W(UNTIL DISTANCE < 10) => W(FOREVER) UNTIL(DISTANCE < 10)
+h=UNTIL|IF|WHILE|WHEN|ELSEIF ( c=@noclose+ ) o=AND|OR (? d=@noclose+ )? e=;|$ | &h ( $c &o $d ) $e | 1 | TS015 | offered | F(5, 60) UNTIL(LIGHT_L > 9) OR (LIGHT_R > 9) => F(5, 60) UNTIL(LIGHT_L > 9 OR LIGHT_R > 9)
 ^ a=@callw ( b=@argt+ ) UNTIL ( c=@noclose+ ) UNTIL ( d=@noclose+ ) $ | $a ( $b ) UNTIL ( $c OR $d ) | 1 | TS029 | offered | F(5, 60) UNTIL(DISTANCE < 10) UNTIL(LIGHT_L > 500) => F(5, 60) UNTIL(DISTANCE < 10 OR LIGHT_L > 500)
 m=MIN|MAX ( a=@num|@val , b=@num|@val , c=@num|@val ) | $m ( $a , $m ( $b , $c ) ) | 1 | TS020 | offered | SHOW(MIN(DISTANCE, 5, 9)) => SHOW(MIN(DISTANCE, MIN(5, 9)))
 ^ LET v=@word BE|TO n=@num $ | $v = $n | 1 | TS050 | applied | LET SPEED BE 50⏎F(2, SPEED) => SPEED = 50⏎F(2, SPEED)
@@ -548,7 +553,7 @@ a=@close '|' h=END_LOOP|ENDIF|END_WHILE|END_DEF|END_WHEN|END_TASK | $a ; &h | 1 
 DEF n=@word :|'|'|=|'->'|'=>' | DEF $n ; | 1 | TS014 | applied | DEF SALUDO = BEEP(1,440)⏎SALUDO => DEF SALUDO;BEEP(1, 440);END_DEF⏎SALUDO
 DEF n=@word b=@start|'{' | DEF $n ; $b | 1 | TS014 | applied | procedure square F(1,50) end => DEF SQUARE;F(1, 50);END_DEF
 ; call b=@def | ; $b | 1 | TS044 | applied | DEF SALTO;F(0.2, 60);END_DEF;CALL SALTO => DEF SALTO;F(0.2, 60);END_DEF;SALTO
-^ call|do b=@def | $b | 1 | TS044 | applied | DEF SALTO;F(0.2, 60);END_DEF⏎hacer SALTO => DEF SALTO;F(0.2, 60);END_DEF⏎SALTO
+^ call|do|make the|O|A|EL|LA|UN|UNA|UM|UMA? b=@def | $b | 1 | TS044 | applied | DEF SALTO;F(0.2, 60);END_DEF⏎hacer SALTO => DEF SALTO;F(0.2, 60);END_DEF⏎SALTO
 # ends of blocks
 ^ end @def $ | END_DEF | 1 | TS022 | applied | DEF SALTO⏎F(1, 50)⏎FIN SALTO⏎SALTO => DEF SALTO⏎F(1, 50)⏎END_DEF⏎SALTO
 a=@close h=end $ | $a ; &h | 1 | TS013 | applied | F(2,80) fin => F(2, 80);
