@@ -47,7 +47,7 @@ bool robot_read(uint8_t sensor, int32_t* value) { *value = sensor; return sink; 
 void robot_beep(uint16_t hertz, uint32_t) { sink = hertz; }
 bool robot_show(int32_t value, bool) { sink = value; return sink; }
 void robot_set(uint8_t actuator, int32_t value) { sink = actuator; sink = value; }
-uint32_t robot_speed(bool, uint8_t) { return sink; }
+int32_t robot_speed(bool, uint8_t) { return sink; }
 uint16_t robot_device_hash(uint16_t device) { sink = device; return sink; }
 #define once __attribute__((noinline))
 once bool nvm_is_ready() { return sink; }

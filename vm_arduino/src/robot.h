@@ -29,9 +29,9 @@ bool robot_show(int32_t value, bool is_yes_no);
 void robot_set(uint8_t actuator, int32_t value);
 
 // How fast it goes, or turns, at a power of 1 to 100 %: hundred thousandths of a centimetre or a
-// degree in a second, at most 10^9; 0: it does not move, or does not know. Only a machine with ways
-// asks.
-uint32_t robot_speed(bool is_turn, uint8_t power);
+// degree in a second, at most 10^9; 0 or less: it does not move, or does not know. Only a machine
+// with ways asks.
+int32_t robot_speed(bool is_turn, uint8_t power);
 
 // Of a robot with a disc on each wheel, which measures its ways. Where no build defines them it has
 // none.

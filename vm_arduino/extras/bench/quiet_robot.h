@@ -34,7 +34,7 @@ bool robot_show(int32_t value, bool) {
 
 void robot_set(uint8_t, int32_t) {}
 
-uint32_t robot_speed(bool, uint8_t) { return 0; }
+int32_t robot_speed(bool, uint8_t) { return 0; }
 
 uint16_t robot_device_hash(uint16_t) { return 0; }
 

@@ -61,7 +61,7 @@ bool robot_read(uint8_t sensor, int32_t* value) {
 void robot_beep(uint16_t hertz, uint32_t) { must(hertz >= 31 && hertz <= 20000); }
 bool robot_show(int32_t, bool) { return is_ready(); }
 void robot_set(uint8_t, int32_t) {}
-uint32_t robot_speed(bool is_turn, uint8_t power) { return is_turn ? 360000 * power : 0; }
+int32_t robot_speed(bool is_turn, uint8_t power) { return is_turn ? 360000 * power : 0; }
 uint16_t robot_device_hash(uint16_t device) { return static_cast<uint16_t>(device * 0x1235); }
 
 }  // namespace tiniscript

@@ -64,8 +64,8 @@ bool robot_show(int32_t value, bool is_yes_no) {
   return true;
 }
 
-uint32_t robot_speed(bool is_turn, uint8_t power) {
-  return (is_turn ? robot.turn : robot.speed) * power;
+int32_t robot_speed(bool is_turn, uint8_t power) {
+  return static_cast<int32_t>((is_turn ? robot.turn : robot.speed) * power);
 }
 
 uint16_t robot_device_hash(uint16_t device) {

@@ -202,7 +202,7 @@ const uint8_t* port_run_image() { return bytes_of(port.run_image); }
 
 uint16_t port_image_length() { return static_cast<uint16_t>(port.held.size()); }
 
-uint32_t robot_speed(bool, uint8_t) { return 0; }
+int32_t robot_speed(bool, uint8_t) { return 0; }
 
 uint16_t robot_device_hash(uint16_t device) { return port.hashes.at(device); }
 

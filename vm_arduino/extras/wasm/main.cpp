@@ -81,7 +81,7 @@ bool robot_show(int32_t value, bool is_yes_no) {
 
 void robot_set(uint8_t actuator, int32_t value) { ask(host_set, actuator, value); }
 
-uint32_t robot_speed(bool is_turn, uint8_t power) { return speeds[is_turn] * power; }
+int32_t robot_speed(bool is_turn, uint8_t power) { return static_cast<int32_t>(speeds[is_turn] * power); }
 
 uint16_t robot_device_hash(uint16_t device) { return hashes[device]; }
 

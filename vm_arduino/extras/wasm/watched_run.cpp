@@ -63,7 +63,7 @@ class HeldMachine : public Machine {
  private:
   // Whether the program waits for a later time.
   bool is_early(uint32_t now_ms) const {
-    return task().has_paused && static_cast<int32_t>(now_ms - wake_ms()) < 0;
+    return status() == Status::kWaiting && static_cast<int32_t>(now_ms - wake_ms()) < 0;
   }
 
   bool is_marked(uint32_t now_ms) const {

@@ -12,15 +12,15 @@ bool is_sound(const Pace& pace) {
   return true;
 }
 
-// The line through what was measured at 40 and at 80 %, times 40, in thousandths.
-uint32_t robot_speed(bool is_turn, uint8_t power) {
-  const Pace::Line& line = port_tuning().pace.lines[is_turn];
-  if (line.at80 <= line.at40) return board_speed(is_turn) * power;  // not measured, or not sound
-  const uint16_t rise = static_cast<uint16_t>(line.at80 - line.at40);
-  const uint16_t quarters = static_cast<uint16_t>(25 * power);
-  const int32_t found =
-      (int32_t{line.at40} - rise) * 1000 + static_cast<int32_t>(uint32_t{rise} * quarters);
-  return found < 0 ? 0 : static_cast<uint32_t>(found);
+// The line through what was measured at 40 and at 80 %, times 1000.
+int32_t robot_speed(bool is_turn, uint8_t power) {
+  const Pace& pace = port_tuning().pace;
+  const Pace::Line& line = is_turn ? pace.lines[1] : pace.lines[0];
+  if (line.at80 <= line.at40) {  // not measured, or not sound
+    return static_cast<int32_t>(board_speed(is_turn) * power);
+  }
+  const int16_t above = static_cast<int16_t>(25 * power - 1000);
+  return int32_t{line.at80} * above + int32_t{line.at40} * (1000 - above);
 }
 
 }  // namespace tiniscript

@@ -16,17 +16,21 @@
 #define tini_length_at 6
 #define tini_code_at 8
 #define tini_readings_at 10
+#define tini_now_at 12
 #define tini_pc_at 16
 #define tini_depth_at 18
 #define tini_framed_at 19
 #ifdef tiniscript_has_tasks
-#define tini_variables_at 47
+#define tini_variables_at 44
 #define tini_stack_at (tini_variables_at + 128 + 115)
 #else
-#define tini_variables_at 53
+#define tini_variables_at 52
 #define tini_stack_at (tini_variables_at + 128)
 #endif
 #define tini_frames_at (tini_stack_at + 68)
 #define tini_frame_bytes 3
+
+// in a TaskRecord
+#define tini_clock_at 10
 
 #endif  // TINISCRIPT_VM_EXECUTE_AVR_H_

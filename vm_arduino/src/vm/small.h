@@ -6,11 +6,14 @@
 #include <stddef.h>
 #include <stdint.h>
 
-// Marks a function that is not copied into each of its callers.
+// Marks a function that is not copied into each of its callers; and one that finds the machine where
+// its caller has it, and does not know the address.
 #ifdef __AVR__
 #define tini_noinline __attribute__((noinline, noclone))
+#define tini_noclone __attribute__((noclone))
 #else
 #define tini_noinline
+#define tini_noclone
 #endif
 
 // Marks a function that is copied to where it is called, whatever the compiler thinks of it.

@@ -26,6 +26,8 @@ enum class Status : uint8_t {
 // Powers of both wheels in percent, the left one in the low byte.
 using Powers = uint16_t;
 
+constexpr Powers kNoPowers = 0x8080;  // no power of a wheel is -128
+
 constexpr Powers powers_of(int8_t left, int8_t right) {
   return static_cast<uint16_t>(static_cast<uint8_t>(left) | static_cast<uint8_t>(right) << 8);
 }
@@ -48,11 +50,10 @@ struct TaskRecord {
   uint8_t framed;     // how many frames it has
 
   bool is(uint8_t bits) const { return (state & bits) != 0; }
+  bool is_move() const { return static_cast<uint8_t>(powers) != static_cast<uint8_t>(kNoPowers); }
   bool measures() const;
   bool is_forever() const { return static_cast<int32_t>(rest_ms) < 0; }
 };
-
-constexpr Powers kNoPowers = 0x8080;
 
 // Bits of `state`.
 constexpr uint8_t kIsMoving = 1;  // its move drives or is blocked
@@ -77,8 +78,10 @@ constexpr bool kHasDiscs = false;
 #endif
 
 inline bool TaskRecord::measures() const {
-  return kHasDiscs && (more & kMeasures) != 0 && powers != kNoPowers;
+  return kHasDiscs && (more & kMeasures) != 0 && is_move();
 }
+
+constexpr uint8_t kHasOthers = 128;  // there are tasks beside the main one
 
 // Of a counted loop that is open: how often it still goes around. Of an open call: where it
 // continues. They lie in the order in which they were opened.
@@ -96,16 +99,13 @@ struct Task {
   uint16_t pc;
   uint8_t depth;    // values on `stack`
   uint8_t framed;   // of `frames`
-  bool has_paused;  // the turn is over, and goes on behind the last instruction
   uint32_t random;
   uint32_t started_ms;
   bool is_late;       // 2^31 ms have passed since the start: TIME can no longer express it
 #ifdef tiniscript_has_tasks
-  bool has_others;  // there are tasks beside the main one
-  uint8_t open;     // tasks that have not ended, beside one
+  uint8_t others;  // kHasOthers, and how many tasks have not ended, beside one
   bool is_between_turns;
-  bool is_later_turn;   // than the first one of the main task, before all others
-  bool is_later_round;  // than the first one
+  uint8_t turns;   // 0: the first one, of the main task; 1: the first round; 2: the others
 #ifdef __AVR__
   uint8_t round_ms;      // when the last round was over, of 256; before that if one is due now
   bool had_turn;         // a task in this round: it may be due again

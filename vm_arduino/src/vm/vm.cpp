@@ -51,7 +51,7 @@ uint32_t Machine::wake_ms() const {
 inline bool Machine::is_early(uint32_t now_ms) const {
 #if defined(tiniscript_has_tasks) && defined(__AVR__)
   if (has_tasks()) return task_.round_ms == static_cast<uint8_t>(now_ms);
-  return static_cast<int32_t>(now_ms - task_.me->clock_ms) < 0;
+  return static_cast<int32_t>(late_ms(task_.me)) < 0;
 #else
   return static_cast<int32_t>(now_ms - wake_ms()) < 0;
 #endif
@@ -62,12 +62,11 @@ bool Machine::may_go_on(uint32_t now_ms) {
   now_ms_ = now_ms;
   // No wait is longer than that, so no tick skips the whole second half of the clock.
   if (static_cast<int32_t>(now_ms - task_.started_ms) < 0) task_.is_late = true;
-  if (task_.has_paused) {
+  if (status_ == Status::kWaiting) {
     if (is_early(now_ms)) return false;
-    task_.has_paused = false;
+    status_ = Status::kRunning;
     if (!has_tasks() && task_.me->is(kToItsEnd) && !comes_to_end()) return false;
   }
-  status_ = Status::kRunning;
   return true;
 }
 
@@ -86,12 +85,15 @@ Status Machine::tick(uint32_t now_ms, uint8_t budget) {
     robot_off();
     status_ = Status::kFault;
   }
+#if defined(tiniscript_has_tasks) && !defined(__AVR__)
+  // the next round is due
+  if (has_tasks() && status_ == Status::kWaiting && !is_early(now_ms)) return Status::kRunning;
+#endif
   return status_;
 }
 
 // Ends the turn, and in a program without tasks the tick.
 bool Machine::pause() {
-  task_.has_paused = true;
   status_ = Status::kWaiting;
   return false;
 }
@@ -123,12 +125,14 @@ void Machine::check_places() {
   lies_at(length_, tini_length_at);
   lies_at(code_, tini_code_at);
   lies_at(readings_, tini_readings_at);
+  lies_at(now_ms_, tini_now_at);
   lies_at(task_.pc, tini_pc_at);
   lies_at(task_.depth, tini_depth_at);
   lies_at(task_.framed, tini_framed_at);
   lies_at(task_.variables, tini_variables_at);
   lies_at(task_.stack, tini_stack_at);
   lies_at(task_.frames, tini_frames_at);
+  static_assert(offsetof(TaskRecord, clock_ms) == tini_clock_at, "clock_ms");
 }
 
 #undef lies_at

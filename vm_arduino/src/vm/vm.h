@@ -126,6 +126,7 @@ class Machine {
   bool show(int32_t value, bool is_yes_no);
   bool sends();
 
+  uint32_t late_ms(const TaskRecord* task) const;
   bool is_early(uint32_t now_ms) const;
   bool may_go_on(uint32_t now_ms);
   bool goes_on(Fault fault);
@@ -163,7 +164,6 @@ class Machine {
   void motors(Powers powers);
   void stop_motors();
   bool is_below() const;  // whether a higher task has the motors
-  void want();
   void take();
   void pass_on();
   void set_motors(Powers powers);
@@ -181,7 +181,7 @@ class Machine {
 };
 
 #ifdef tiniscript_has_tasks
-inline bool Machine::has_tasks() const { return task_.has_others; }
+inline bool Machine::has_tasks() const { return task_.others != 0; }
 inline bool Machine::is_below() const { return task_.holder < task_.me; }
 #else
 inline bool Machine::has_tasks() const { return false; }

@@ -18,10 +18,17 @@ constexpr Powers kOff = 0;
 // Sets a task's clock to now.
 tini_noinline void Machine::set_clock(TaskRecord* task) const { task->clock_ms = now_ms_; }
 
+#ifndef __AVR__
+
+// How far the clock of a task is behind now.
+uint32_t Machine::late_ms(const TaskRecord* task) const { return now_ms_ - task->clock_ms; }
+
+#endif
+
 // Sets the clock to the begin of the next wait or move, or to now if that is too long ago.
 void Machine::begin(TaskRecord* me) const {
   constexpr uint8_t kLateMs = 20;
-  if (now_ms_ - me->clock_ms > kLateMs) set_clock(me);
+  if (late_ms(me) > kLateMs) set_clock(me);
 }
 
 // Keeps the move or wait that an UNTIL watches; its check begins after this instruction.
@@ -34,9 +41,9 @@ tini_noinline void Machine::keep_move(uint32_t move_ms) {
 
 // How long after its clock, where it last looked, its UNTIL looks again.
 inline uint32_t Machine::next_check_ms(const TaskRecord* me) const {
-  const uint32_t late_ms = now_ms_ - me->clock_ms;
+  const uint32_t late = late_ms(me);
   uint32_t next_ms = kCheckMs;
-  while (next_ms <= late_ms) next_ms += kCheckMs;  // rarely even once
+  while (next_ms <= late) next_ms += kCheckMs;  // rarely even once
   return next_ms;
 }
 
@@ -53,6 +60,13 @@ __attribute__((weak)) Going robot_going(int32_t*) { return Going::kThere; }
 namespace {
 
 void forget_set(TaskRecord* task) { task->state &= static_cast<uint8_t>(~kHasSet); }
+
+// Its M is over; a WHEN goes on wanting the motors.
+tini_noinline void want(TaskRecord* task) {
+  uint8_t state = static_cast<uint8_t>(task->state & ~kHasSet);
+  if (task->start != 0) state |= kKeeps;
+  task->state = state;
+}
 
 // Its move is over, and so is its M. It goes on behind the move.
 void end_move_of(TaskRecord* task) {
@@ -116,7 +130,7 @@ tini_noinline bool Machine::go_on(bool is_watched) {
   const bool measures = me->measures();
   if (!me->is(kHasBegun)) {
     if (blocks()) return false;
-    if (me->powers != kNoPowers) {
+    if (me->is_move()) {
       take();
       me->state |= kIsMoving | kDrives;
       if (measures) {
@@ -186,7 +200,7 @@ bool Machine::is_on_the_way() {
 }
 
 // At the end of a move, or at a look at one that is measured. False: it goes on.
-bool Machine::comes_to_end() {
+tini_noclone bool Machine::comes_to_end() {
   if (task_.me->measures()) return go_on(false);
   end_move();
   return true;
@@ -204,8 +218,8 @@ tini_noinline void Machine::end_move() {
 // Waits for the motors where its move needs them and a higher task has them.
 tini_noinline bool Machine::blocks() {
   TaskRecord* const me = task_.me;
-  if (me->powers == kNoPowers || !is_below()) return false;
-  want();
+  if (!me->is_move() || !is_below()) return false;
+  want(me);
   me->state |= kIsMoving | kIsBlocked | kHasWaited;
   task_.pc = me->check;
   return !pause();
@@ -213,7 +227,7 @@ tini_noinline bool Machine::blocks() {
 
 void Machine::motors(Powers powers) {
   if (is_below()) {
-    want();
+    want(task_.me);
   } else {
     take();
     set_motors(powers);
@@ -223,7 +237,7 @@ void Machine::motors(Powers powers) {
 }
 
 void Machine::stop_motors() {
-  want();
+  want(task_.me);
   if (is_below()) return;
   set_motors(kOff);
   TaskRecord* const holder = task_.holder;
@@ -234,30 +248,23 @@ void Machine::stop_motors() {
   set_clock(holder);
 }
 
-// The M of this task is over; a WHEN goes on wanting the motors.
-tini_noinline void Machine::want() {
-  TaskRecord* const me = task_.me;
-  forget_set(me);
-  if (me->start != 0) me->state |= kKeeps;
-}
-
 // Gives the motors to the task whose turn it is; no higher one has them.
 tini_noinline void Machine::take() {
-  want();
+  want(task_.me);
   TaskRecord* const holder = task_.holder;
   task_.holder = task_.me;
   if (holder != task_.end && holder->is(kDrives)) stand_still(holder, now_ms_);
 }
 
 // Behind a turn: gives the motors to the highest task that wants them, if it is another.
-void Machine::pass_on() {
+tini_noclone void Machine::pass_on() {
   TaskRecord* highest = task_.records;
   while (highest != task_.end && !highest->is(kWantsMotors)) highest++;
   if (highest == task_.holder) return;
   task_.holder = highest;
   Powers powers = kOff;
   if (highest != task_.end) {
-    if (highest->is(kIsBlocked)) highest->clock_ms = now_ms_ + !task_.is_later_round;
+    if (highest->is(kIsBlocked)) highest->clock_ms = now_ms_ + (task_.turns & 1);
     if (highest->is(kHasSet)) powers = highest->set;
   }
   if (powers != task_.powers) set_motors(powers);
@@ -272,7 +279,7 @@ tini_noinline void Machine::set_motors(Powers powers) {
 
 bool Machine::drive(uint32_t move_ms) {
   TaskRecord* const me = task_.me;
-  if (me->powers != kNoPowers) {
+  if (me->is_move()) {
     set_motors(me->powers);
     me->state = kToItsEnd;
   }
@@ -288,7 +295,7 @@ bool Machine::watch(uint32_t move_ms) {
 
 bool Machine::until(bool stop) {
   TaskRecord* const me = task_.me;
-  const bool drives = me->powers != kNoPowers;
+  const bool drives = me->is_move();
   if (stop) {
     if (!me->is(kHasBegun)) return true;
     me->clock_ms = now_ms_;

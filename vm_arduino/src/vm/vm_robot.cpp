@@ -60,7 +60,7 @@ inline bool Machine::show(int32_t value, bool is_yes_no) {
 #ifdef tiniscript_has_tasks
   task_.me->rest_ms = static_cast<uint32_t>(value);
   task_.me->more = static_cast<uint8_t>(kUnsent | is_yes_no);
-  return sends() || (has_tasks() && task_.is_later_turn ? pause() : stay());
+  return sends() || (has_tasks() && task_.turns != 0 ? pause() : stay());
 #else
   return robot_show(value, is_yes_no) || stay();
 #endif
@@ -80,9 +80,10 @@ inline bool Machine::go_ms(uint8_t code, int32_t* top) {
     return goes_on(power == 0 ? Fault::kNoPower : Fault::kNone);
   }
 #endif
-  const uint32_t divisor = power == 0 ? 0 : robot_speed((code & 2) != 0, power);
-  if (divisor == 0) return goes_on(Fault::kNoPower);
-  *way = static_cast<int32_t>(scaled(static_cast<uint32_t>(*way), 100000, divisor));
+  const int32_t speed = power == 0 ? 0 : robot_speed((code & 2) != 0, power);
+  if (speed <= 0) return goes_on(Fault::kNoPower);
+  *way = static_cast<int32_t>(scaled(static_cast<uint32_t>(*way), 100000,
+                                     static_cast<uint32_t>(speed)));
   return *way >= 0 || goes_on(Fault::kOverflow);
 }
 

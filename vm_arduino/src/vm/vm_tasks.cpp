@@ -28,8 +28,8 @@ constexpr int32_t kNeverMs = 0x7fffffff;  // from now: nothing happens by itself
 // Moves the first `count` of `all` frames behind the others.
 void to_the_end(Frame* frames, uint8_t count, uint8_t all) {
   for (; count != 0; count--) {
-    const Frame first = *frames;
     Frame* at = frames;
+    const Frame first = *at;
     for (uint8_t left = all; left > 1; left--, at++) *at = at[1];
     *at = first;
   }
@@ -49,8 +49,7 @@ void Machine::find_tasks() {
       me->pc = at;
       if (kind == Role::kWhen) me->start = at;
       me++;
-      task_.has_others = true;
-      task_.open++;
+      task_.others = static_cast<uint8_t>((task_.others + 1) | kHasOthers);
     }
     if (kind == Role::kTask) break;
     kind = Role::kTask;
@@ -80,7 +79,7 @@ tini_noinline void Machine::run_round() {
       left--;
       is_over = !is_call(code_[at_]) && !goes_back();
       if (!is_over && Flag<Bit::kAttention>()) break;
-    } else if (!task_.is_later_turn && !task_.has_paused) {
+    } else if (task_.turns == 0 && status_ == Status::kRunning) {
       break;
     }
   }
@@ -89,14 +88,14 @@ tini_noinline void Machine::run_round() {
   for (bool is_over = false; finds_turn(is_over) && left_ != 0; is_over = true) {
     if (execute(left_) || fault_ != Fault::kNone || status_ == Status::kDone) return;
     // before all others the main task waits for a reading, too
-    if (!task_.is_later_turn && !task_.has_paused) return;
+    if (task_.turns == 0 && status_ == Status::kRunning) return;
   }
 #endif
 }
 
 // Goes on with a turn, or begins the next one of the round; `is_over`: ends the turn before. False:
 // the round is over.
-bool Machine::finds_turn(bool is_over) {
+tini_noclone bool Machine::finds_turn(bool is_over) {
   for (;;) {
     if (is_over) end_turn();
     if (!task_.is_between_turns) return true;
@@ -104,7 +103,7 @@ bool Machine::finds_turn(bool is_over) {
     TaskRecord* const task = task_.next;
     if (task == task_.end) {
       task_.next = task_.records;
-      task_.is_later_round = true;
+      task_.turns = 2;
       pause();
       end_round();
       return false;
@@ -112,18 +111,18 @@ bool Machine::finds_turn(bool is_over) {
     // The frames of the next one come to the end of those that all tasks share.
     to_the_end(task_.frames, task->framed, task_.framed);
     task_.next = task + 1;
-    is_over = waits_for_clock(task) && static_cast<int32_t>(now_ms_ - task->clock_ms) >= 0 &&
+    is_over = waits_for_clock(task) && static_cast<int32_t>(late_ms(task)) >= 0 &&
               !begin_turn(task);
   }
 }
 
 // Whether it waits for its clock, and not for the motors or for nothing any more.
-bool Machine::waits_for_clock(const TaskRecord* task) const {
+tini_noclone bool Machine::waits_for_clock(const TaskRecord* task) const {
   return !task->is(kIsBlocked) || task_.holder == task;
 }
 
 // A round is over.
-inline void Machine::end_round() {
+tini_noclone inline void Machine::end_round() {
 #ifdef __AVR__
   task_.round_ms = static_cast<uint8_t>(now_ms_ - task_.had_turn);
   task_.had_turn = false;
@@ -134,12 +133,11 @@ inline void Machine::end_round() {
     if (its_ms < more_ms && waits_for_clock(task)) more_ms = its_ms;
   }
   task_.wake_ms = now_ms_ + static_cast<uint32_t>(more_ms);
-  if (more_ms <= 0) status_ = Status::kRunning;
 #endif
 }
 
 // Returns whether it goes on.
-bool Machine::begin_turn(TaskRecord* me) {
+tini_noclone bool Machine::begin_turn(TaskRecord* me) {
   task_.me = me;
   task_.is_between_turns = false;
   me->framed = static_cast<uint8_t>(me->framed - task_.framed);  // `end_turn` adds what it is then
@@ -153,18 +151,17 @@ bool Machine::begin_turn(TaskRecord* me) {
   return !me->is(kToItsEnd) || comes_to_end();
 }
 
-void Machine::end_turn() {
+tini_noclone void Machine::end_turn() {
   TaskRecord* const me = task_.me;
   me->pc = task_.pc;
   me->framed = static_cast<uint8_t>(me->framed + task_.framed);
   task_.is_between_turns = true;
-  task_.has_paused = false;
 #ifdef __AVR__
   task_.had_turn = true;
 #endif
   status_ = Status::kRunning;
-  if (!task_.is_later_turn) {
-    task_.is_later_turn = true;
+  if (task_.turns == 0) {
+    task_.turns = 1;
     for (TaskRecord* task = task_.records; task != me; task++) set_clock(task);
   }
   pass_on();
@@ -179,7 +176,7 @@ bool Machine::sends() {
 }
 
 // Goes back to the start of a loop, where a task that has not waited since it last did so waits.
-bool Machine::goes_back() {
+tini_noclone bool Machine::goes_back() {
   TaskRecord* const me = task_.me;
   const bool has_waited = me->is(kHasWaited);
   if (!has_waited) wait(1);
@@ -203,7 +200,7 @@ bool Machine::look_again() {
 // Ends this task. Returns whether it was the last one.
 bool Machine::ends_program() {
   task_.me->state = kHasEnded;
-  return task_.open-- == 0 || pause();
+  return task_.others-- == kHasOthers || pause();
 }
 
 }  // namespace tiniscript

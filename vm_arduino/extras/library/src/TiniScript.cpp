@@ -109,8 +109,8 @@ bool robot_show(int32_t value, bool is_yes_no) {
   return show != nullptr ? show(value, is_yes_no) : player->robot()->show(value, is_yes_no);
 }
 void robot_set(uint8_t actuator, int32_t value) { player->robot()->set(actuator, value); }
-uint32_t robot_speed(bool is_turn, uint8_t power) {
-  return player->robot()->speed(is_turn) * power;
+int32_t robot_speed(bool is_turn, uint8_t power) {
+  return static_cast<int32_t>(player->robot()->speed(is_turn) * power);
 }
 uint16_t robot_device_hash(uint16_t device) { return player->kit().hash(device); }
 
