@@ -25,7 +25,7 @@ from tests.oracle.arithmetic import (
     whole,
     within,
 )
-from tests.oracle.spec_tables import Instruction, instruction_at
+from tests.oracle.spec_tables import Instruction, decoded
 from tests.oracle.words import Device, Kit
 
 TOO_MANY = "TOO MANY STEPS"  # the last line of a run that this machine gives up
@@ -118,10 +118,7 @@ class Run:
 
     def step(self) -> None:
         """Run one instruction."""
-        row = instruction_at(self.code, self.pc)
-        operands = row.values(self.code, self.pc)
-        after = self.pc + row.size
-        to = row.target(self.code, self.pc)
+        row, operands, after, to = decoded(self.code, self.pc)
         self.pc = after
         self.do(row, row.stem, operands, to)
 

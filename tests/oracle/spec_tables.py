@@ -126,6 +126,13 @@ def instruction_at(code: bytes, at: int) -> Instruction:
     return instructions()[code_at(code, at)]
 
 
+@lru_cache(maxsize=1024)
+def decoded(code: bytes, at: int) -> tuple[Instruction, list[int], int, int]:
+    """Return the instruction there, its values, where the next one begins, and where it jumps."""
+    row = instruction_at(code, at)
+    return row, row.values(code, at), at + row.size, row.target(code, at)
+
+
 def _halves(word: str) -> tuple[str, str]:
     label, _, kind = word.partition(":")
     return label, kind
