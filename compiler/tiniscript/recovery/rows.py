@@ -304,6 +304,7 @@ v=@name ++ | $v = $v + 1 | 1 | TS050 | applied | v = 0⏎v++⏎F(2, v) => v = 0�
 ^ v=@name = w=@name ++ $ | $v = $w + 1 | 1 | TS050 | offered | X = 1⏎X = X++ => X = 1⏎X = X + 1
 ^ c=@callw ( v=@name ++ r=@any* $ | $v = $v + 1 ; $c ( $v $r | 1 | TS050 | offered | X = 1⏎SHOW(X++) => X = 1⏎X = X + 1;SHOW(X)
 ^ c=@callw ( v=@name += e=@num r=@any* $ | $v = $v + $e ; $c ( $v $r | 1 | TS050 | offered | X = 1⏎SHOW(X += 2) => X = 1⏎X = X + 2;SHOW(X)
+^ v=@name = + e=@num $ | $v = $v + $e | 1 | TS050 | offered | X = 1⏎X = +1 => X = 1⏎X = X + 1
 v=@name - - $ | $v = $v - 1 | 1 | TS050 | applied | X = 1⏎X-- => X = 1⏎X = X -1
 v=@name += e=@any+ | $v = $v + $e | 1 | TS050 | applied | v = 10⏎v += 5⏎F(2, v) => v = 10⏎v = v + 5⏎F(2, v)
 v=@name -= e=@any+ | $v = $v - $e | 1 | TS050 | applied | X = 1⏎X -= 1 => X = 1⏎X = X - 1
@@ -462,6 +463,7 @@ h=UNTIL|IF|WHILE|WHEN|ELSEIF ( c=@noclose+ ) o=AND|OR (? d=@noclose+ )? e=;|$ | 
 m=MIN|MAX ( a=@num|@val , b=@num|@val , c=@num|@val ) | $m ( $a , $m ( $b , $c ) ) | 1 | TS020 | offered | SHOW(MIN(DISTANCE, 5, 9)) => SHOW(MIN(DISTANCE, MIN(5, 9)))
 ^ LET v=@word BE|TO n=@num $ | $v = $n | 1 | TS050 | applied | LET SPEED BE 50⏎F(2, SPEED) => SPEED = 50⏎F(2, SPEED)
 LOOP ( @name = 1 TO|A|until n=@num ) | LOOP ( $n ) | 1 | TS063 | offered | LOOP(I = 1 TO 5)⏎S⏎END_LOOP => LOOP(5)⏎S⏎END_LOOP
+^ a=L|R n=@num $ | $a ( @angle:n DEG , 80 ) | 2 | TS015 | offered | L 90 => L(90 DEG, 80)
 a=F|B ( FOREVER ) | $a ( FOREVER , 80 ) | 2 | TS020 | offered | F(FOREVER) UNTIL(DISTANCE < 10) => F(FOREVER, 80) UNTIL(DISTANCE < 10)
 RANDOM ( n=@num ) | RANDOM ( 1 , @whole:n ) | 2 | TS020 | offered | X = RANDOM(6)⏎F(X, 50) => X = RANDOM(1, 6)⏎F(X, 50)
 ROUND ( n=@num|@val ) | ROUND ( $n , 0 ) | 2 | TS020 | offered | X = ROUND(3.7)⏎SHOW(X) => X = ROUND(3.7, 0)⏎SHOW(X)

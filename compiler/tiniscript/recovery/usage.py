@@ -380,7 +380,8 @@ class _Usage:
         before = self.source[Span(self.piece(found.span).start, found.span.end)]
         head = _LAST_HEAD.search(before)
         end = text.find(")", found.span.start)
-        if tokens and self.command(tokens[0].text) == "SHOW":
+        is_in_words = any(each.kind is WORD for each in tokens[1:])
+        if tokens and self.command(tokens[0].text) == "SHOW" and is_in_words:
             return Diagnostic(codes.WORDS_SHOWN, found.span)
         if head is None:
             return None
