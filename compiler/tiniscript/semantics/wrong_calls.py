@@ -75,7 +75,7 @@ class WrongCalls:
         pairs = _PAIR.finditer(self.scope.source.text) if is_early else ()
         others = [each for each in pairs if UNIT_OF[each[1].upper()] != each[3].upper()]
         for one, other in (others, others[::-1]) if len(others) == 2 else ():
-            if one.start() == start and one[3].upper() != other[3].upper():
+            if one.start() == start and one[2] != other[2] and one[3].upper() != other[3].upper():
                 rest = self.scope.source[Span(unit.end, node.span.end)]
                 said["swapped"] = f"{node.word}({other[2]} {right}{rest}"
                 said["line"] = str(self.scope.source.position(other.start())[0])
