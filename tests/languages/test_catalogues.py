@@ -22,12 +22,12 @@ from tiniscript.base import catalogue_compiler as compiling
 from tiniscript.base import languages
 from tiniscript.base.catalogue_file import Catalogue, Entry, load, read, written
 from tiniscript.base.languages import FOLDER, SOURCE
+from tiniscript.base.words import lexicon
 from tiniscript.cli import main
 from tiniscript.cli.streams import wrapped
 from tiniscript.cli.texts import Said, language_of, text
 from tiniscript.cli.texts.verbs import VERBS
 from tiniscript.lessons import catalogue
-from tiniscript.recovery.concepts import lexicon
 from tools.languages import PSEUDO, in_step, names, pseudo
 
 NAMES = sorted(path.stem for path in (FOLDER / SOURCE).glob("*.po"))

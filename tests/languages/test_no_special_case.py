@@ -1,10 +1,15 @@
-"""No language is a special case in code: none is chosen by its code."""
+"""No language is a special case in code: none is chosen by its code, or has its words there."""
 
 from __future__ import annotations
 
+import ast
 import re
 
+import pytest
+
 from tests.support.casefile import ROOT
+from tiniscript.base.languages import SOURCE, languages, table
+from tiniscript.base.words import WORDS
 
 SPECIAL = re.compile(r"""(?:==|===|!=) ?["'](?:es|en|pt)["']|["'](?:es|en|pt)["'] (?:==|===)""")
 
@@ -22,3 +27,36 @@ def test_no_code_asks_for_one_language() -> None:
         if count:
             found["/".join(parts)] = count
     assert found == {}
+
+
+def _rows(language: str) -> list[tuple[str, list[str]]]:
+    """What something means, and the words that mean it."""
+    rows = [row for row in table(language, "lexicon.txt").split("\n") if not row.startswith("#")]
+    return [(meaning, words.split()) for meaning, _, words in (row.partition("|") for row in rows)]
+
+
+def _words(language: str) -> set[str]:
+    return {word for _, words in _rows(language) for word in words}
+
+
+def test_words_of_a_language_are_in_its_folder() -> None:
+    """Only the rows of `recovery` name words, each beside the English one."""
+    theirs = set().union(*map(_words, languages())) - _words(SOURCE) - {*WORDS}
+    found = set()
+    for path in sorted((ROOT / "compiler/tiniscript").rglob("*.py")):
+        if {"recovery", "page"} & set(path.parts):
+            continue
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.Constant) and isinstance(node.value, str):
+                said = theirs.intersection(re.findall(r"\b[A-Z_]{4,}\b", node.value))
+                if " " not in node.value.strip() or node.value.isupper():
+                    found |= {f"{path.name}: {each}" for each in said}
+    assert found == set()
+
+
+@pytest.mark.parametrize("language", languages()[1:])
+def test_each_language_says_how_much_and_what_pupils_call_things(language: str) -> None:
+    """What a word is taken for in one language, `poco`, is in each, `pouco`."""
+    kinds = {meaning.split()[0] for meaning, words in _rows(language) if words}
+    wanted = "amount note device stem short power value bye help each every jump colour number unit"
+    assert kinds >= {*wanted.split()}

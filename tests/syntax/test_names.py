@@ -10,8 +10,7 @@ import pytest
 
 from tiniscript import compile_text
 from tiniscript.base.kit import NUMBER, YES_NO, Device, Kit
-from tiniscript.base.words import WORDS
-from tiniscript.recovery.concepts import concept_of, lexicon
+from tiniscript.base.words import WORDS, concept_of, lexicon
 
 FOREIGN = sorted(word for word in lexicon() if concept_of(word) in WORDS)
 SLIPS = ["END", "Y", "O", "THEN", "DO", "BEGIN", "NO", "YES", "IS", "LET", "VAR", "INT", "CALL",

@@ -2,6 +2,7 @@
 
 Knows names, argument counts, ranges and units. Does not know how they are compiled. Ranges
 are thousandths. The words of a kit (its sensors and actuators) come from `kit`, not from here.
+`lexicon` has what words of people mean, from the folder of each language.
 `Speller` finds the word that a misspelt one was meant to be; it knows how Spanish sounds.
 """
 
@@ -9,10 +10,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator
-from functools import cache
+from functools import cache, lru_cache
 from typing import NamedTuple
 
 from tiniscript.base.fixed_point import HIGHEST, LOWEST
+from tiniscript.base.languages import SOURCE, languages, table
 
 # Roles of instructions: these have values in brackets, and STOP does something, too. A new role of a
 # word that does something is a name here.
@@ -118,65 +120,55 @@ BLOCK_ENDS = {
 COMPARATORS = ("EQ", "="), ("NE", "<>"), ("LT", "<"), ("LE", "<="), ("GT", ">"), ("GE", ">=")
 TASKS = ("TASK", "WHEN")  # blocks that run beside the rest of the program
 
-# The sensor of which a robot has a left and a right one.
-SENSOR_STEMS = {"LUZ": "LIGHT", "LINEA": "LINE"}
-
 OTHER_WAY = {"F": "B", "B": "F", "L": "R", "R": "L"}  # the moves, and those that undo them
-# What a robot may have, and what nobody calls a variable.
-DEVICE_WORDS = frozenset(["LED", "LUZ", "FOCO", "LIGHT", "LAMP", "LAMPARA", "SERVO", "BUZZER", "ZUMBADOR", "BOCINA", "ALARMA", "MOTOR", "MOTORES", "GRIPPER", "GARRA", "PINZA", "PANTALLA", "LCD", "SCREEN"])
-
 # What other languages do, and this one does not: pins, jumps, clocks. What the robot knows instead.
-NOT_DONE = {
-    **dict.fromkeys(("DIGITALWRITE", "ANALOGWRITE", "PINMODE", "DIGITALREAD", "ANALOGREAD", "PIN"), "pins"),
-    **dict.fromkeys(("CADA", "EVERY"), "every"),
-    "RETURN": "leaves",
-    **dict.fromkeys(("GOTO", "GOSUB", "JUMP", "SALTA", "SALTAR", "IRA", "IR_A"), "jump"),
-}
-_INSTEAD = {"pins": "F(2, 80)", "jump": "LOOP(FOREVER)", "every": "LOOP(FOREVER)", "motors": "M(left, right)",
-            "leaves": "END_DEF"}
-
-
-def said_instead(word: str) -> dict[str, str]:
-    """Return what a message says of a word of another language that has no like here."""
-    kind = "motors" if word.startswith("MOTOR") else NOT_DONE.get(word, "")
-    return {kind: _INSTEAD[kind]} if kind else {}
-
-
-# What documents write for a value, and pupils copy.
-PLACEHOLDERS = {
-    "time": ("TIME", "TIEMPO", "T"), "seconds": ("SECONDS", "SEGUNDOS", "TIME", "TIEMPO"),
-    "power": ("POWER", "POTENCIA", "P"), "left": ("LEFT", "IZQUIERDA"), "right": ("RIGHT", "DERECHA"),
-    "hertz": ("HERTZ", "HERCIOS", "HZ"),
-}
-# How pupils name a value, beside its placeholders: `F(t=2, vel=80)`.
-_OTHER_NAMES = {
-    "time": ("SECONDS", "SEGUNDOS", "SEG", "DURACION", "DURATION"),
-    "seconds": ("T", "SEG", "DURACION", "DURATION"),
-    "hertz": ("FRECUENCIA", "FREQUENCY", "FREQ", "TONO", "TONE", "NOTA", "NOTE"),
-    "power": ("VEL", "VELOCIDAD", "SPEED", "V", "FUERZA", "POT"),
-}
-
-# How much power a word says, where a power is wanted, and how high the notes of a song sound.
-POWER_WORDS = {name: str(value) for value, names in (
-    (100, "ALTA MAX MAXIMO MAXIMA FULL HIGH FAST RAPIDO RAPIDA RAPIDAMENTE FUERTE TODO TODA"),
-    (80, "NORMAL"), (50, "MEDIO MEDIA HALF MEDIUM MITAD"), (40, "SLOW LENTO LENTA DESPACIO DESPACITO LENTAMENTE"),
-) for name in names.split()}
-# How much, in words that are no number.
-AMOUNT_WORDS = frozenset((
-    "MAS", "MENOS", "POCO", "POCA", "POQUITO", "POQUITITO", "MUCHO", "MUCHA", "MUCHOS", "MUCHAS",
-    "VARIOS", "VARIAS", "RATO", "RATITO", "MOMENTO", "MOMENTITO", "ALGO", "BASTANTE", "TANTO",
-    "TANTAS", "UNOS", "UNAS", "MUY", "DEMASIADO", "AGUDO", "GRAVE", "MORE", "LESS", "LITTLE",
-    "MUCH", "MANY", "SOME", "BIT", "MOMENT", "VERY", "SEVERAL",
-))
-NOTE_WORDS = {"DO": "262", "RE": "294", "MI": "330", "FA": "349", "SOL": "392", "LA": "440",
-              "C4": "262", "D4": "294", "E4": "330", "F4": "349", "G4": "392", "A4": "440", "B4": "494", "C5": "523"}
+_INSTEAD = {"pins": "F(2, 80)", "jump": "LOOP(FOREVER)", "every": "LOOP(FOREVER)", "leaves": "END_DEF"}
 
 # fmt: on
 
 
-def names_of(argument: str) -> tuple[str, ...]:
-    """Return how pupils name a value of a call, `power`: POWER, POTENCIA, VEL."""
-    return (*PLACEHOLDERS.get(argument, ()), *_OTHER_NAMES.get(argument, ()))
+@cache
+def lexicon() -> dict[str, list[str]]:
+    """What each word means: all that the languages say of it, English last."""
+    found: dict[str, list[str]] = {}
+    for language in (*languages()[1:], SOURCE):
+        for row in table(language, "lexicon.txt").split("\n"):
+            if not row.startswith("#"):
+                meaning, _, words = row.partition("|")
+                for word in words.split():
+                    found.setdefault(word, []).append(meaning.strip())
+    return found
+
+
+@lru_cache(4000)
+def said_of(word: str, kind: str) -> tuple[str, ...]:
+    """Return what the lexicon says of a word, of one kind: `("s", "1000")` of SEG, `unit`."""
+    for meaning in lexicon().get(word, ()):
+        first, *rest = meaning.split()
+        if first == kind:
+            return tuple(rest) or (kind,)
+    return ()
+
+
+def concept_of(word: str) -> str | None:
+    """Return the word of the language or of a kit that the lexicon says a word for."""
+    for meaning in lexicon().get(word, ()):
+        if meaning.isupper() and " " not in meaning:
+            return meaning
+    return None
+
+
+def names(word: str, argument: Argument) -> bool:
+    """Whether a word is what documents and pupils call a value of a call: POTENCIA, VEL, T."""
+    said = said_of(word, "value") or said_of(word, "letter")
+    return said[:1] == (argument.name if argument in (LEFT, RIGHT) else argument.unit,)
+
+
+def said_instead(word: str) -> dict[str, str]:
+    """Return what a message says of a word of another language that has no like here."""
+    if word.startswith("MOTOR"):
+        return {"motors": "M(left, right)"}
+    return {kind: its for kind, its in _INSTEAD.items() if said_of(word, kind)}
 
 
 def other_name(word: str) -> str:

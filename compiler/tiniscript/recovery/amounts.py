@@ -6,7 +6,7 @@ import re
 from collections.abc import Container
 
 from tiniscript.base.source import Span
-from tiniscript.base.words import AMOUNT_WORDS, POWER_WORDS, WORDS
+from tiniscript.base.words import WORDS, said_of
 from tiniscript.recovery.concepts import meant_by, plain
 
 _NEAR = 80  # characters around a value in which its call is looked for
@@ -18,7 +18,7 @@ _CENTIMETRES, _ANY = "10", "50"  # examples of what a sensor sees, and of a vari
 
 
 def is_amount(*words: str) -> bool:
-    return any(plain(each) in AMOUNT_WORDS for each in words)
+    return any(said_of(plain(each), "amount") for each in words)
 
 
 def with_number(text: str, span: Span, own: Container[str] = ()) -> dict[str, str]:
@@ -46,7 +46,7 @@ def with_number(text: str, span: Span, own: Container[str] = ()) -> dict[str, st
         return {}
     for k, (value, its) in enumerate(zip(values, word.arguments, strict=False)):
         words = [each for each in plain(value).split() if each not in own]
-        said = [POWER_WORDS[each] for each in words if each in POWER_WORDS]
+        said = [said_of(each, "power")[0] for each in words if said_of(each, "power")]
         if said or is_amount(*words) or k == place:
             sample = said[0] if said and its.unit == "%" else _SAMPLES.get(its.name, its.sample)
             values[k] = f"{' ' * (k > 0)}{sample}"

@@ -11,7 +11,7 @@ from functools import lru_cache
 from typing import NamedTuple
 
 from tiniscript.base.source import Span
-from tiniscript.base.words import NOTE_WORDS, OTHER_WAY, WAYS, WORDS, nearest
+from tiniscript.base.words import OTHER_WAY, WAYS, WORDS, nearest
 from tiniscript.recovery import lines
 from tiniscript.recovery.concepts import (
     ENDED,
@@ -299,7 +299,7 @@ class Behind:
         words = [each for each in self.row if each.kind is WORD]
         if self.names.is_name(token.text):
             return len(words) == 1 or token.text in self.names.defs
-        if len(words) == 1 and token.text in WORDS and token.text not in NOTE_WORDS:
+        if len(words) == 1 and token.text in WORDS and not said_of(token.text, "note"):
             return True
         if len(words) > 1 or self.means(token.text) or said_of(token.text, "power"):
             return False
@@ -312,7 +312,7 @@ class Behind:
     def _is_order(self, k: int) -> bool:
         """Whether the word at a place says what the instruction does not."""
         text, own = self.row[k].text, self.own
-        if own == "BEEP" and text in NOTE_WORDS:
+        if own == "BEEP" and said_of(text, "note"):
             return False
         is_last = not any(each.kind in (WORD, NUMBER) for each in self.row[k + 1 :])
         if said_of(text, "small") and not is_last and (k or text in ("A", "E", "PARA")):

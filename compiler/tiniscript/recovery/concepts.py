@@ -14,8 +14,9 @@ from itertools import pairwise, takewhile
 from typing import NamedTuple
 
 from tiniscript.base.kit import Kit
-from tiniscript.base.languages import SOURCE, languages, table
-from tiniscript.base.words import ALIASES, BLOCK_ENDS, WAYS, WORDS, Speller, nearest
+from tiniscript.base.words import ALIASES, BLOCK_ENDS, WAYS, WORDS, Speller, lexicon, nearest
+from tiniscript.base.words import concept_of as concept_of
+from tiniscript.base.words import said_of as said_of
 from tiniscript.syntax.lexer import DASHES, NUMBER, ODD, WORD
 from tiniscript.syntax.operators import SIGNS
 from tiniscript.syntax.outline import Known
@@ -95,19 +96,6 @@ def plain(text: str) -> str:
 # -- the lexicon ----------------------------------------------------------------------------
 
 
-@cache
-def lexicon() -> dict[str, list[str]]:
-    """What each word means: all that the languages say of it, English last."""
-    found: dict[str, list[str]] = {}
-    for language in (*languages()[1:], SOURCE):
-        for row in table(language, "lexicon.txt").split("\n"):
-            if not row.startswith("#"):
-                meaning, _, words = row.partition("|")
-                for word in words.split():
-                    found.setdefault(word, []).append(meaning.strip())
-    return found
-
-
 # The unit that a word says behind a number, and how many thousandths of it one is.
 UNITS = {
     word: (said[1], int(said[2]))
@@ -115,16 +103,6 @@ UNITS = {
     for said in map(str.split, meanings)
     if said[0] == "unit"
 }
-
-
-@lru_cache(4000)
-def said_of(word: str, kind: str) -> tuple[str, ...]:
-    """Return what the lexicon says of a word, of one kind: `("s", "1000")` of SEG, `unit`."""
-    for meaning in lexicon().get(word, ()):
-        first, *rest = meaning.split()
-        if first == kind:
-            return tuple(rest) or (kind,)
-    return ()
 
 
 @cache
@@ -161,14 +139,6 @@ def concepts(word: str) -> tuple[Meaning, ...]:
 def meant_by(word: str) -> str | None:
     """Return the word of the language that a word of another one surely says, misspelt or not."""
     return next((each.concept for each in concepts(word) if each.cost < NEAR), None)
-
-
-def concept_of(word: str) -> str | None:
-    """Return the word of the language or of a kit that the lexicon says a word for."""
-    for meaning in lexicon().get(word, ()):
-        if meaning.isupper() and " " not in meaning:
-            return meaning
-    return None
 
 
 def _in_two_words(word: str) -> str | None:

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from tiniscript.base.kit import Kit
 from tiniscript.base.source import Edit, Source, Span, applied, overlap
-from tiniscript.base.words import NOTE_WORDS, WORDS, nearest
+from tiniscript.base.words import WORDS, lexicon, nearest, said_of
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import CODES, Diagnostic, Repair
 from tiniscript.recovery import lines, rows
@@ -31,7 +31,8 @@ _WITH_RIGHT = (codes.OTHER_LANGUAGE, codes.OTHER_SIGN, codes.END_ALONE, codes.OT
 _AS_CHECKED = (codes.ARGUMENT_COUNT, codes.WANTS_CONDITION, codes.NO_BRACKETS_HERE)
 _FIRST_NUMBERS = (1, 10, 100)
 _NUMBER = re.compile(r"(?im)^[ \t]*([0-9]{1,4})[ \t]+(?=[A-Z])(?!veces|times|x\b|vez)")
-_NOTE = re.compile(rf"(?i)\b(?:{'|'.join(NOTE_WORDS)})\b")  # its 4 is no number: C4
+_NOTES = "|".join(word for word in lexicon() if said_of(word, "note"))
+_NOTE = re.compile(rf"(?i)\b(?:{_NOTES})\b")  # its 4 is no number: C4
 Check = Callable[[str], Sequence[Diagnostic]]
 
 

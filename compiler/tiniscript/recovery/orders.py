@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from itertools import groupby, pairwise
 from typing import NamedTuple
 
-from tiniscript.base.words import BLOCK_ENDS, NOTE_WORDS
+from tiniscript.base.words import BLOCK_ENDS
 from tiniscript.recovery import lines, rewrites
 from tiniscript.recovery.concepts import CALLED, Lexeme, Names, made, said_of
 from tiniscript.recovery.slots import MOVES, Filled, filled
@@ -104,7 +104,7 @@ def _orders(words: list[Lexeme], names: Names) -> list[Order]:
         return [whole]
     for k in range(2, len(words) - 1):
         first = _order(words[:k], names) if _begins(words[k], names) else None
-        if first and first.word == "BEEP" and words[k].text in NOTE_WORDS:
+        if first and first.word == "BEEP" and said_of(words[k].text, "note"):
             return []
         rest = _orders(words[k:], names) if first and len(first.samples) < 2 else []
         if first and rest:

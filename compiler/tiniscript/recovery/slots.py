@@ -9,7 +9,7 @@ import re
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from tiniscript.base.words import NOTE_WORDS, UNIT_OF, WAYS, WORDS, Argument
+from tiniscript.base.words import UNIT_OF, WAYS, WORDS, Argument
 from tiniscript.recovery import rows
 from tiniscript.recovery.concepts import CALLED, DONE, NEAR, UNITS, Lexeme, Names, made, said_of
 from tiniscript.syntax.devices import actuator_word
@@ -240,8 +240,8 @@ class _Reader:
         elif is_name and self.command:
             self.mark = marked[0] if marked else self.mark
             self._take(word)
-        elif self.command == "BEEP" and word in NOTE_WORDS:
-            self.values.append(_Value(float(NOTE_WORDS[word]), "Hz"))
+        elif self.command == "BEEP" and said_of(word, "note"):
+            self.values.append(_Value(float(said_of(word, "note")[0]), "Hz"))
         elif said_of(word, "power") and self.command:
             self.values.append(_Value(float(said_of(word, "power")[0]), "%"))
             self.mark = None

@@ -10,11 +10,11 @@ from typing import NamedTuple
 
 from tiniscript.base.fixed_point import HIGHEST, as_text
 from tiniscript.base.kit import NUMBER, Device, Kit
+from tiniscript.base.words import OTHER_WAY, concept_of
 from tiniscript.semantics.ir import Expression, Term
 from tiniscript.syntax.operators import SIGN_OF
 
 MANY_VALUES = 100_000  # thousandths: a sensor with such a range is hardly ever at one of them
-ASIDE = ("L", "R", "LEFT", "RIGHT", "IZQ", "DER", "IZQUIERDA", "DERECHA", "BACK", "ATRAS")
 TIME = Device("TIME", NUMBER, "s", 0, HIGHEST)
 _MIRRORED = {"LT": "GT", "LE": "GE", "GT": "LT", "GE": "LE", "EQ": "EQ", "NE": "NE"}
 _LESS = ("LT", "LE")
@@ -55,7 +55,13 @@ def looks_ahead(device: Device) -> bool:
     Its name says so: `DISTANCE`, `DISTANCE_FRONT`, but not `TRAVEL` or `DISTANCE_BACK`.
     """
     kind, _, way = device.name.partition("_")
-    return is_distance(device) and kind == "DISTANCE" and way not in ASIDE
+    return is_distance(device) and kind == "DISTANCE" and not is_aside(way)
+
+
+def is_aside(way: str) -> bool:
+    """Whether a word is no way ahead: R, LEFT, ATRAS."""
+    words = (way, concept_of(way)) if way else ()
+    return not OTHER_WAY.keys().isdisjoint({*words} - {"F", None})
 
 
 def is_between(device: Device, number: int) -> bool:

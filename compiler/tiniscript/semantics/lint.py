@@ -11,7 +11,7 @@ from typing import NamedTuple
 from tiniscript.base.fixed_point import as_text, whole
 from tiniscript.base.kit import Kit
 from tiniscript.base.source import Source, Span
-from tiniscript.base.words import DEVICE_WORDS
+from tiniscript.base.words import said_of
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic
 from tiniscript.semantics.frozen_questions import FrozenQuestions
@@ -212,7 +212,7 @@ def _unused(
         if isinstance(statement, Assign) and statement.variable not in used:
             used.add(statement.variable)  # said once
             name = program.variables[statement.variable]
-            device = name if name in DEVICE_WORDS else ""
+            device = name if said_of(name, "device") else ""
             values = {"name": name, "device": device, "example": use_of(name)}
             yield Diagnostic(codes.UNUSED_VARIABLE, statement.span, values)
     yield from _unused_readings(kit, statements)

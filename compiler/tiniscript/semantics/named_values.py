@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-from tiniscript.base.words import POWER_WORDS, names_of
-
-_TIMES = frozenset(names_of("time"))
-_POWERS = frozenset((*names_of("power"), *POWER_WORDS))
+from tiniscript.base.words import POWER, TIME, Argument, names, said_of
 
 
 def is_time(name: str) -> bool:
-    return _says(name, _TIMES)
+    return _says(name, TIME)
 
 
 def is_power(name: str) -> bool:
-    return _says(name, _POWERS)
+    return _says(name, POWER) or any(said_of(part, "power") for part in _parts(name))
 
 
 def value_of(name: str) -> str:
@@ -30,6 +27,10 @@ def use_of(name: str) -> str:
     return f"F({name}, 80)" if is_time(name) else f"SHOW({name})"
 
 
-def _says(name: str, meanings: frozenset[str]) -> bool:
-    """Whether a part of a name is in `meanings`."""
-    return any(part.rstrip("0123456789") in meanings for part in name.split("_"))
+def _says(name: str, argument: Argument) -> bool:
+    """Whether a part of a name is what such a value is called."""
+    return any(names(part, argument) for part in _parts(name))
+
+
+def _parts(name: str) -> list[str]:
+    return [part.rstrip("0123456789") for part in name.split("_")]

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 
 from tiniscript.base.kit import Kit
-from tiniscript.base.words import SENSOR_STEMS
+from tiniscript.base.words import said_of
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.syntax.lexer import WORD, scan
@@ -43,7 +43,7 @@ def naming_robots(
     for diagnostic in found:
         word = diagnostic.values.get("found", "").upper()
         word = word if word in of_kits else meant(word) or word
-        side = f"{SENSOR_STEMS.get(word, word)}_L"  # `LINEA`, where others have LINE_L
+        side = f"{''.join(said_of(word, 'stem')) or word}_L"  # `LINEA`, where others have LINE_L
         word = side if side in of_kits - words(own[1]) else word
         having = [robot for robot, its in known.items() if word in its - words(own[1])]
         if diagnostic.code in _UNKNOWN and having:

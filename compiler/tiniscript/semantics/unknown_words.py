@@ -12,9 +12,10 @@ from itertools import chain, takewhile
 
 from tiniscript.base.words import (
     BLOCK_ENDS,
-    PLACEHOLDERS,
     WORDS,
     Word,
+    names,
+    said_of,
 )
 from tiniscript.diagnostics import codes
 from tiniscript.semantics.named_values import value_of
@@ -24,13 +25,6 @@ from tiniscript.syntax.lexer import WORD, scan
 
 _DIGITS = "0123456789"
 MANY_TIMES = 20  # that a DEF is done by hand in a class
-# Short for derecha, izquierda, parar, esperar …, and what pupils say of the way that they go.
-_SHORT = {
-    "D": "R", "I": "L", "P": "S", "E": "W", "DE": "R", "IZ": "L", "ES": "W", "AD": "F", "AV": "F",
-    "AT": "B", "RE": "B", "BP": "BEEP", "BE": "BEEP", "BIIP": "BEEP",
-    "VE": "F", "VOY": "F", "VAMOS": "F", "VAYA": "F", "DALE": "F",
-    "VUELVE": "B", "VUELVO": "B", "VOLVER": "B", "V": "B",
-}  # fmt: skip
 
 
 def report_unknown(scope: Scope, node: ast.Command, inside: str | None) -> None:
@@ -56,7 +50,7 @@ def _report_unknown_word(scope: Scope, node: ast.Command) -> None:
     if is_own and near.rstrip(_DIGITS) == word.rstrip(_DIGITS):
         near = ""  # `PASO2`, where there is a DEF PASO1
     is_held = len(word) <= 3 and len(set(word)) == 1  # `FF(2, 80)`: a key that was held
-    letter = word[0] if is_held and word[0] in WORDS else _SHORT.get(word, "")
+    letter = word[0] if is_held and word[0] in WORDS else "".join(said_of(word, "short"))
     if letter and len(node.arguments or ()) == len(WORDS[letter].arguments):
         near = letter
     scope.report(codes.UNKNOWN_WORD, span, None, found=scope.source[span].upper(), near=near)
@@ -65,10 +59,7 @@ def _report_unknown_word(scope: Scope, node: ast.Command) -> None:
 def report_placeholders(scope: Scope, node: ast.Command, word: Word, said: int) -> None:
     """`F(tiempo, potencia)`: these names stand for numbers. Drops the diagnostics since `said`."""
     texts = [scope.source[each.span].upper() for each in node.arguments or ()]
-    names = [PLACEHOLDERS.get(its.name, ()) for its in word.arguments]
-    if len(texts) == len(names) and all(
-        text in its for text, its in zip(texts, names, strict=True)
-    ):
+    if len(texts) == len(word.arguments) and all(map(names, texts, word.arguments)):
         del scope.diagnostics[said:]
         scope.report(codes.PLACEHOLDER, node.span, usage=word.usage, example=word.example)
 

@@ -9,11 +9,11 @@ from __future__ import annotations
 import re
 
 from tiniscript.base.source import Span
-from tiniscript.base.words import NOTE_WORDS, OTHER_WAY, POWER_WORDS, SENSOR_STEMS, WORDS
+from tiniscript.base.words import OTHER_WAY, WORDS
 from tiniscript.diagnostics import codes
 from tiniscript.recovery.amounts import is_amount, with_number
 from tiniscript.recovery.concepts import meant_by, said_of
-from tiniscript.semantics.comparisons import ASIDE
+from tiniscript.semantics.comparisons import is_aside
 from tiniscript.semantics.named_values import value_of
 from tiniscript.semantics.symbols import ENOUGH, NUMBER, Operand, Scope
 from tiniscript.semantics.unknown_words import whole_name
@@ -56,10 +56,10 @@ class WrongValues:
         is_forever = _TIME_BEFORE.search(before) or _TIMES_BEFORE.search(before)
         known += ["FOREVER"] if is_forever else []
         near = "".join(said_of(name, "number")) or scope.near(name, known)
-        near = near or (POWER_WORDS.get(name, "") if before.rstrip().endswith("=") else "")
+        near = near or ("".join(said_of(name, "power")) if before.rstrip().endswith("=") else "")
         near = near or whole_name(scope, name, scope.set_somewhere)
         base = name.rstrip(_DIGITS).rstrip("_")  # DISTANCE, of DISTANCE2
-        stem = SENSOR_STEMS.get(base, base) + "_"  # `LIGHT` of LIGHT_R and LIGHT_L
+        stem = ("".join(said_of(base, "stem")) or base) + "_"  # `LIGHT` of LIGHT_R and LIGHT_L
         several = [each for each in known if each.startswith(stem)]
         which = {} if len(several) != 2 else {"first": several[0], "second": several[1]}
         sensors = [each for each, its in names if its.what == "sensor"]
@@ -72,15 +72,15 @@ class WrongValues:
         else:
             near = "" if which or is_variable else near
             only = next((each for each in sensors if name.startswith(each + "_")), "")
-            aside = only if name.rpartition("_")[2] in ASIDE else ""
+            aside = only if is_aside(name.rpartition("_")[2]) else ""
             alike = near if near and near.rstrip(_DIGITS) == base else ""
             near = "" if aside or alike else only or near
             said = {"alike": alike} if alike and not which else {}
             is_said = not (near or said or which or only or is_variable)
             if is_said and meant in OTHER_WAY:
                 said = {"way": meant, "call": WORDS[meant].example}
-            elif is_said and name + "4" in NOTE_WORDS and _TONE_BEFORE.search(before):
-                said = {"pitch": NOTE_WORDS[name + "4"]}
+            elif is_said and said_of(name + "4", "note") and _TONE_BEFORE.search(before):
+                said = {"pitch": said_of(name + "4", "note")[0]}
             elif is_said and said_of(name, "colour"):
                 said = {"colour": name}
             scope.report(codes.UNKNOWN_NAME, span, None, found=name, near=near,
@@ -89,7 +89,7 @@ class WrongValues:
     def _amount(self, span: Span, name: str) -> dict[str, str]:
         """Return how the call around `poco` is written, or around the `lento` beside it."""
         scope = self.scope
-        if not is_amount(name) and name not in POWER_WORDS:
+        if not is_amount(name) and not said_of(name, "power"):
             return {}
         said = with_number(scope.source.text, span, scope.set_somewhere)
         return said if is_amount(name) or "(" in said.get("example", "") else {}

@@ -9,7 +9,7 @@ from argparse import Namespace
 from collections.abc import Callable, Iterable, Iterator
 
 from tiniscript.base import files
-from tiniscript.base.words import WORDS
+from tiniscript.base.words import WORDS, said_of
 from tiniscript.cli import inputs, outputs
 from tiniscript.cli.commands.ping import ping
 from tiniscript.cli.errors import CommandError
@@ -31,15 +31,7 @@ from tiniscript.robots.profile import Robot
 
 PROMPT = "tini> "
 MORE = "....> "  # a block is open
-LEAVE, HELP_ME = "leave", "help"
-WISHES = {
-    "EXIT": LEAVE,
-    "QUIT": LEAVE,
-    "SALIR": LEAVE,
-    "HELP": HELP_ME,
-    "AYUDA": HELP_ME,
-    "?": HELP_ME,
-}
+LEAVE, HELP_ME = "bye", "help"  # as the lexicon calls them
 
 
 def run(options: Namespace, language: str) -> int:
@@ -252,7 +244,9 @@ def wished(line: str, known: Known) -> str:
     """
     word = re.sub(r"\s*(\(\s*\))?[\s;]*$", "", line.lstrip()).upper()
     devices = (device.name for device in (*known.kit.sensors, *known.kit.actuators))
-    return "" if word in (*known.defs, *devices) else WISHES.get(word, "")
+    if word in (*known.defs, *devices):
+        return ""
+    return HELP_ME if word == "?" else "".join(said_of(word, LEAVE) or said_of(word, HELP_ME))
 
 
 class Catch:
