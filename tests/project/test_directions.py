@@ -41,7 +41,7 @@ UPSTREAM: dict[str, set[str]] = {
     "base.kit": {"base.fixed_point"},
     "base.limits": set(),
     "base.trace": {"base.fixed_point", "base.kit"},
-    "base.words": {"base.fixed_point"},
+    "base.words": {"base.fixed_point", "base.languages"},
     "diagnostics": {"base.source", "base.languages"},
     "bytecode": {"base.kit", "base.limits", "base.words"},
     "syntax": TEXT,
