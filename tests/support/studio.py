@@ -32,16 +32,16 @@ if TYPE_CHECKING:
 
     from tests.support.pty_robot import PtyRobot
 
-# No sandbox: root has none, and these pages are our own. WebAssembly is compiled once and not again
-# for speed: Python does little in a page of a test. The tabs of a context share a renderer and what
-# it has compiled.
-OPTIONS: tuple[str, ...] = ("--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
-           "--disable-background-networking", "--disable-component-update", "--disable-sync",
-           "--js-flags=--liftoff-only",
-           "--process-per-site")  # fmt: skip
+# No sandbox: root has none, and these pages are our own.
+WHOLE: tuple[str, ...] = ("--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
+           "--disable-background-networking", "--disable-component-update",
+           "--disable-sync")  # fmt: skip
 SHARED = Path("/dev/shm")
 if not SHARED.is_dir() or shutil.disk_usage(SHARED).free < 1 << 30:  # in a container it is small
-    OPTIONS += ("--disable-dev-shm-usage",)
+    WHOLE += ("--disable-dev-shm-usage",)
+# WebAssembly is compiled once and not again for speed: Python does little in a page of a test. The
+# tabs of a context share a renderer and what it has compiled.
+OPTIONS = (*WHOLE, "--js-flags=--liftoff-only", "--process-per-site")
 UPLOADS = 10  # after so many stops in a row the computer is not to blame
 
 
@@ -154,9 +154,9 @@ def driver(of_studio: bool = True) -> Iterator[Playwright]:
 
 @contextmanager
 def browser(playwright: Playwright, *more: str, is_whole: bool = False) -> Iterator[Browser]:
-    """A browser, with its windows if it is to be whole; `more` are options of it."""
-    path = chromium() if is_whole else headless()
-    opened = playwright.chromium.launch(executable_path=path, args=[*OPTIONS, *more])
+    """A browser; one that is to be whole is what people have. `more` are options of it."""
+    path, options = (chromium(), WHOLE) if is_whole else (headless(), OPTIONS)
+    opened = playwright.chromium.launch(executable_path=path, args=[*options, *more])
     try:
         yield opened
     finally:

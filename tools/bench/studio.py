@@ -234,7 +234,7 @@ def _rated(address: str) -> dict[str, float]:
     tools = found_tools()
     call = [*tools.npm, "exec", "--yes", "--ignore-scripts", LIGHTHOUSE, "--", address,
             "--preset=desktop", "--quiet", "--output=json", f"--only-categories={','.join(RATED)}",
-            f"--chrome-flags=--headless=new {' '.join(studio.OPTIONS)}"]  # fmt: skip
+            f"--chrome-flags=--headless=new {' '.join(studio.WHOLE)}"]  # fmt: skip
     node = str(Path(tools.node[0]).parent)  # npm starts Lighthouse by the first node in PATH
     settings = {**os.environ, "CHROME_PATH": studio.chromium() or "",
                 "PATH": os.pathsep.join((node, os.environ["PATH"]))}  # fmt: skip
