@@ -390,6 +390,9 @@ def test_everything_is_seen_and_axe_finds_nothing(
                 speak(page, language)
                 checked(page)
                 assert page.evaluate(LOOK) == []
+            if page is teacher:  # the code is whole, and the tiles have most of a low screen
+                assert page.locator("#class_come strong").last.bounding_box()["height"] < 40  # type: ignore[index]
+                assert 2 * page.locator("#wall").bounding_box()["height"] > height  # type: ignore[index]
         assert axe(page) == []
     for opens, window in (
         ("#class_come", "#big_code"),
