@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import socket
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -140,12 +141,55 @@ def test_axe_finds_nothing_in_any_state(page: Page, theme: Literal["light", "dar
     page.click("#my_programs")
     seen("programs")
     page.click("#programs_close")
-    page.set_viewport_size({"width": 390, "height": 844})
-    for half in ("robot", "program"):
-        turn(page, half)
-        seen(f"{half} on a phone")
+    page.emulate_media(color_scheme="null")
+
+
+@pytest.mark.sampled("theme", "size")
+@pytest.mark.parametrize("theme", ["light", "dark"])
+@pytest.mark.parametrize("size", SCREENS[2:], ids=["upright", "lying"])
+def test_axe_finds_nothing_on_a_phone(
+    page: Page, size: tuple[int, int], theme: Literal["light", "dark"]
+) -> None:
+    page.emulate_media(color_scheme=theme)
+    page.set_viewport_size({"width": size[0], "height": size[1]})
+    for state in _screens(page):
+        page.evaluate(studio.SETTLED)
+        assert axe(page) == [], state
+    page.click("#programs_close")
+    page.click("#link_teacher summary")
+    page.click("#side_virtual")
     page.emulate_media(color_scheme="null")
     page.set_viewport_size({"width": 1366, "height": 768})
+
+
+def _screens(page: Page) -> Iterator[str]:
+    """Go from screen to screen of a phone; yield what is seen."""
+    page.click("#home")
+    yield "start"
+    page.click("#start_write")
+    page.click("#view_blocks")
+    shown(page)
+    yield "blocks"
+    page.click("#view_text")
+    write(page, WRONG)
+    yield "wrong text"
+    page.click("#sheet")
+    yield "messages that are put away"
+    write(page, "SI|F(1, 80)")
+    turn(page, "robot")
+    yield "robot"
+    page.click("#world_draw")
+    page.select_option("#world_part", index=1)
+    yield "a world that is drawn"
+    page.click("#world_done")
+    page.click("#side_lessons")
+    page.locator("#lesson_check:enabled").wait_for(state="attached")
+    yield "a lesson"
+    page.click("#side_real")
+    page.click("#link_teacher summary")
+    yield "a real robot, and the teacher's part"
+    page.click("#my_programs")
+    yield "programs"
 
 
 def test_it_is_dark_where_the_system_is_or_somebody_wants_it(page: Page) -> None:
