@@ -13,7 +13,7 @@ from itertools import islice
 from typing import NamedTuple
 
 from tiniscript.base.kit import Kit
-from tiniscript.base.source import Edit, Span
+from tiniscript.base.source import Edit, Span, overlap
 from tiniscript.base.words import BLOCK_ENDS, OTHER_WAY, UNIT_OF, WORDS, nearest
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import CODES, Diagnostic
@@ -90,7 +90,9 @@ def advised(text: str, kit: Kit) -> list[Advice]:
         if "~" not in body and not is_right:
             parts = filter(_is_read, _parts(body, start, text, names, depth, above))
             read = list(islice(parts, left))
-            told = [each for part in read if (each := _told(part))]
+            for each in filter(None, map(_told, read)):
+                if not (told and overlap([told[-1].passed], [each.passed])):
+                    told.append(each)
             left -= len(read)
         found += told
         if body.strip() and not any(each.diagnostic.code is codes.SAME_AGAIN for each in told):
@@ -148,7 +150,8 @@ def _parts(
                 yield behind([], part)
                 break
             if any(each.token.text in ASKING for each in part[:size]):
-                yield behind([], part[:size])
+                is_ended = all(said_of(each.token.text, "do") for each in rest)  # by a THEN
+                yield behind([], part if is_ended else part[:size])
             tokens = tokens[size:]
             after = whole(tokens, names)
             is_asked = rest[0].token.text in ("IF", "WHILE") and after == len(rest)
@@ -472,21 +475,10 @@ def _by_way(gaps: _Gaps) -> str:
     return f"{call[:end]} {UNIT_OF[plain(call.partition('(')[0])]}{call[end:]}" if end else ""
 
 
-def _both(gaps: _Gaps) -> str:
-    """A move and a sound at once, where the sound does not end later."""
-    part = gaps.part
-    if len(part.values) != 2:
-        return ""
-    time, power = (part.call[slice(*each)] for each in part.values)
-    if not re.fullmatch(r"[\d.]+", time):
-        return ""
-    longer = round(float(time) - float(gaps["n"]), 3)
-    if longer < 0 or (longer and not said_of(gaps["s"].upper(), "beside")):
-        return ""
-    power = power if part.own == "F" else f"-{power}"
-    rest = f"W({longer:g});" if longer else ""
-    beep = part.words[part.words.upper().index("BEEP") :]
-    return f"M({power}, {power});{beep};{rest}S"
+def _previous(gaps: _Gaps) -> str:
+    """The instruction before the words, or before the call that has them behind it."""
+    found = [*(gaps.part.above.orders or ()), *(gaps.part.before or ())]
+    return found[-1] if found else ""
 
 
 def _paused(gaps: _Gaps) -> str:
@@ -574,7 +566,7 @@ _GAPS: dict[str, Callable[[_Gaps], str]] = {
     "unlike": _questions(0, is_not=True), "orunlike?": _questions(1, is_not=True),
     "text": lambda gaps: shortened(gaps.part.text[slice(*gaps.part.place)]),
     "words": lambda gaps: shortened(gaps.part.words),
-    "both": _both, "loop": _loop, "line": _line, "few": _few, "paused": _paused,
+    "previous": _previous, "loop": _loop, "line": _line, "few": _few, "paused": _paused,
     "end": lambda gaps: "" if _asked(gaps, "s") else BLOCK_ENDS[plain(gaps["g"])],
     "always": lambda gaps: laid_out(_asked(gaps, "c")), "shown": _shown,
     "other": _other, "note": _note,

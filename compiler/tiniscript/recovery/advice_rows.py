@@ -9,7 +9,8 @@ the others are the words behind it. Classes of the instruction, beside its word:
 language), @did (a DEF), @arm (a header, ELSE or an end), @more (others stand before it on its
 line), @later (others stand before it), @outer (in no block), @move, @clock (its first value is its
 time), @asked (has its UNTIL) and @unasked (may get one). Words without an instruction have @none there, also @after where
-one stands before them, and @last where they end the text, too. Classes of the words: @number (in
+one stands before them, @last where they end the text, and @unbegun
+in a text without `SI|`. Classes of the words: @number (in
 words, too), @often (a number that says how often), @percent (one that says a power), @in_s (a unit
 of time), @other (the other way), @paced (another pace than its power), @told (says nothing that the
 instruction does not), @no_order (a word that begins no instruction), @quote, @mark (what is written
@@ -29,6 +30,7 @@ PARTS = {
     "again": "then|filler* same then|filler|same|above*",
     "rest": ",? then*",
     "loop": "REPETIR|REPITE|REPITES|REPEAT|BUCLE|CICLO",
+    "again_on": "@word* FOREVER|AGAIN|OVER|OTRA|OUTRA|NUEVO|NOVO|NUEVAMENTE @word*",
     "either": "(? l=light|ahead r=<|>|<=|>= n=@num )?",
     "asks": "h=@ask",
     "body": "ENTONCES|THEN|DO|HACER|:?",
@@ -54,7 +56,10 @@ ADVICE = """
 ^ @last <loop> (? n=@num )? times? $ | TS062 | found={words}; all={all} | F(1, 50)⏎repetir 3 => all=LOOP(3);F(1, 50);END_LOOP
 ^ @last <loop> (? @num? )? times? $ | TS062 | found={words} | F(1, 50)⏎repetir => found=repetir
 # questions in words
-^ @none WHEN|AL|AO|IF @word* flag @word* $ | TS102 | found={words}; right=START; fix=START; usage=START | when green flag clicked => fix=START
+^ @unbegun WHEN|AL|AO|IF @word* flag @word* $ | TS102 | found={words}; right=SI|; usage=SI|F(2, 80); fix= | when green flag clicked => right=SI|
+^ @unbegun WHEN|CUANDO|QUANDO|ON|AL|AO @word? @word? beginning :? $ | TS102 | found={words}; right=SI|; usage=SI|F(2, 80); fix= | on start => right=SI|
+^ @none WHEN|CUANDO|QUANDO|ON|AL|AO @word? @word? beginning :? $ | TS102 | found={words}; right=START; usage=START; fix=START | SI|al iniciar => fix=START
+^ @none WHEN|AL|AO|IF @word* flag @word* $ | TS102 | found={words}; right=START; fix=START; usage=START | SI|when green flag clicked => fix=START
 ^ @none @any* h=IF|ELSEIF|WHILE|UNTIL (? @any* s=@noBUTTON @any* )? <body> $ | TS120 | | IF(boton presionado)⏎S⏎ENDIF => before=
 ^ @none @any* <asks> ( s=light|ahead =|is TRUE|1 ) $ | TS135 | word={head}; question={like}; another={orlike?} | IF(oscuro = TRUE)⏎S⏎ENDIF => question=LIGHT_L < 500
 ^ @none @any* <asks> ( s=light|ahead =|is FALSE|0 ) $ | TS135 | word={head}; question={unlike}; another={orunlike?} | IF(oscuro = FALSE)⏎S⏎ENDIF => question=LIGHT_L > 500
@@ -64,6 +69,9 @@ ADVICE = """
 ^ @none @any* <asks> (? s='='|@word|@num+ )? <body> $ | TS135 | word={head}; question={like}; another={orlike?} | F(5, 60) UNTIL(luz mucha) => question=LIGHT_L > 500
 ^ @none g=IF|WHILE ( s=@any+ , w=@start @any* ) $ | TS080 | word={g}; head={g}({s}); right={end} | IF(distancia < poca, S) => head=IF(distancia < poca)
 ^ @none s=FOREVER q=QUE c=@cond+ w=@startm $ | TS102 | found={s} {q}; right=WHILE; usage=WHILE({always}) | siempre que distancia > 20 avanza => usage=WHILE(DISTANCE > 20)
+^ @none s=ELSEIF :? $ | TS015 | word=ELSEIF; words=; usage=ELSEIF; example=ELSEIF({distance} < 10); bare=ELSE | IF(DISTANCE < 10)⏎S⏎ELIF⏎F(1, 60)⏎ENDIF => bare=ELSE
+^ @none ELSE s=IF|SI|SE :? $ | TS015 | word=ELSEIF; words=; usage=ELSEIF; example=ELSEIF({distance} < 10); bare=ELSE | IF(DISTANCE < 10)⏎S⏎SINO SI⏎F(1, 60)⏎ENDIF => bare=ELSE
+^ c=ELSE s=IF :? $ | TS015 | word=ELSEIF; words=; usage=ELSEIF; example=ELSEIF({distance} < 10); bare=ELSE | IF(DISTANCE < 10)⏎S⏎ELSE IF⏎F(1, 60)⏎ENDIF => bare=ELSE
 # what asks or calculates, alone
 ^ @none IF <either> do? w=@start @any* $ | TS042 | found={l}; asked={l} {r} {n}; one=IF({one} {r} {n});{done};ENDIF; another=IF({two} {r} {n});{done};ENDIF | si luz > 50 apita => another=IF(LIGHT_R > 50);BEEP(1, 440);ENDIF
 ^ @none h=SI <either> <body> $ | TS045 | one=IF({one} {r} {n}); two=IF({two} {r} {n}) | si luz > 50⏎S⏎fin => two=IF(LIGHT_R > 50)
@@ -96,6 +104,7 @@ ADVICE = """
 ^ c=@any s=idle+ $ | TS044 | found={s} | SHOW(DISTANCE) cm => found=cm
 ^ c=S|STOP s=LOOP $ | TS102 | found={text}; right=BREAK; fix=BREAK; usage=BREAK | STOP LOOP => fix=BREAK
 ^ c=@move|W s=UN u=TIL q=@any+ $ | TS102 | found={s} {u}; right=UNTIL; usage=UNTIL{q} | F(5, 60) UN TIL(DISTANCE < 30) => usage=UNTIL(DISTANCE < 30)
+^ c=@set s=X|multiplied POR|BY? b=@num|@val $ | TS010 | found={s}; right=*; fix={c} * {b} | X = 3 x 4 => fix=X = 3 * 4
 # how often
 ^ c=@more <lead> <often> <close> $ | TS062 | found={text}; last={loop}; all={line} | F(1, 60); L(1, 60) x4 => last=LOOP(4);L(1, 60);END_LOOP
 ^ <does> <lead> <often> <close> $ | TS062 | found={text}; fix={loop} | F(2, 80) 3 veces => fix=LOOP(3);F(2, 80);END_LOOP
@@ -106,10 +115,14 @@ ADVICE = """
 ^ c=M , n=@num $ | TS085 | seconds={n}; waiting={c};W({n});S | M(50,50), 2 => waiting=M(50,50);W(2);S
 ^ c=S|STOP n=@num $ | TS013 | fix={paused} | STOP 2 => fix=STOP;W(2)
 ^ c=@cmd (? n=@num )? $ | TS085 | times={few}; often={loop} | F(2,80)(3) => often=LOOP(3);F(2,80);END_LOOP
+^ <does> AGAIN|OVER then AGAIN|OVER $ | TS085 | endless=LOOP(FOREVER);{c};END_LOOP | F(1, 80) over and over => endless=LOOP(FOREVER);F(1, 80);END_LOOP
+^ <does> UNA|UMA then OTRA|OUTRA VEZ $ | TS085 | endless=LOOP(FOREVER);{c};END_LOOP | F(1, 80) una y otra vez => endless=LOOP(FOREVER);F(1, 80);END_LOOP
+^ @none do|LOOP|make w=@callw ( v=@noparen+ ) <again_on> $ | TS064 | fix=LOOP(FOREVER);{w}({v});END_LOOP | repeat F(1, 80) again and again => fix=LOOP(FOREVER);F(1, 80);END_LOOP
+^ @none do|LOOP|make w=@def <again_on> $ | TS064 | fix=LOOP(FOREVER);{w};END_LOOP | DEF A1;S;END_DEF⏎do A1 again and again => fix=LOOP(FOREVER);A1;END_LOOP
 ^ <does> @any* OTRA|OUTRA|UMA|DE|ONCE|VEZ VEZ|NUEVO|NOVO|MORE|MAS @any* $ | TS085 | again=LOOP(2);{c};END_LOOP | F(1, 80) otra vez => again=LOOP(2);F(1, 80);END_LOOP
 ^ <does> @any* AGAIN|NUEVAMENTE|NOVAMENTE|REPITO|REPETIDO @any* $ | TS085 | again=LOOP(2);{c};END_LOOP | F(1, 80) again => again=LOOP(2);F(1, 80);END_LOOP
 ^ c=@cmd PARA? FOREVER|ETERNAMENTE $ | TS085 | endless=LOOP(FOREVER);{c};END_LOOP | F(1, 80) siempre => endless=LOOP(FOREVER);F(1, 80);END_LOOP
-^ c=@move|W|M @any* SIN|TODO|ALL PARAR|FIN|DETENERSE|DETENER|STOPPING|EL|THE @any* $ | TS085 | endless=LOOP(FOREVER);{c};END_LOOP | F(1, 80) sin parar => endless=LOOP(FOREVER);F(1, 80);END_LOOP
+^ c=@cmd @any* SIN|TODO|ALL PARAR|FIN|DETENERSE|DETENER|STOPPING|EL|THE @any* $ | TS085 | endless=LOOP(FOREVER);{c};END_LOOP | F(1, 80) sin parar => endless=LOOP(FOREVER);F(1, 80);END_LOOP
 ^ @none TASK s=@num :|.|-|=|)? r=@any+ $ | TS044 | found={s}; fix=TASK;{r};END_TASK | TASK 1: F(5, 60) => fix=TASK;F(5, 60);END_TASK
 # how long
 ^ c=S|STOP AFTER|TRAS|IN|EN|DESPUES DE? n=@number @in_s $ | TS013 | fix=W({n});{c} | STOP AFTER 5 SECONDS => fix=W(5);STOP
@@ -122,6 +135,7 @@ ADVICE = """
 ^ c=@move @word? @word? @paced $ | TS085 | power={c} | F(2, 80) despacio => power=F(2, 80)
 # until when
 ^ c=@move|W ( q=@cond+ ) $ | TS071 | found={words}; until={c} UNTIL({question}) | F(5, 60) (DISTANCE < 30) => until=F(5, 60) UNTIL(DISTANCE < 30)
+^ c=@cmd s=WHEN (? q=@cond+ )? w=@start @any* $ | TS071 | found={s}; fix=WHEN({question});{then};END_WHEN;{c} | F(10, 50) WHEN DISTANCE < 15 BEEP(1, 440) => fix=WHEN(DISTANCE < 15);BEEP(1, 440);END_WHEN;F(10, 50)
 ^ c=@cmd s=SI|CUANDO|WHEN (? q=@cond+ )? $ | TS071 | found={s}; fix=IF({question});{c};ENDIF | F(2, 80) si DISTANCE > 10 => fix=IF(DISTANCE > 10);F(2, 80);ENDIF
 ^ c=F s=IF (? q=@cond+ )? $ | TS071 | found={s}; until={c} UNTIL({near}) | F(5, 60) IF(DISTANCE < 20) => until=F(5, 60) UNTIL(DISTANCE < 20)
 ^ c=@cmd s=unless (? q=@cond+ )? $ | TS071 | found={s}; fix=IF({contrary});{c};ENDIF | F(2, 80) unless DISTANCE < 10 => fix=IF(DISTANCE >= 10);F(2, 80);ENDIF
@@ -136,9 +150,14 @@ ADVICE = """
 ^ c=@unasked s=HASTA|UNTIL @word+ $ | TS102 | found={s}; right=UNTIL; usage={c} UNTIL({distance} < 10) | F(1, 80) hasta la pared => usage=F(1, 80) UNTIL(DISTANCE < 10)
 # which way, and what comes next
 ^ c=@move AL REVES $ | TS085 | other={other} | F(1, 80) al reves => other=B(1, 80)
-^ c=@cmd then|+|&|,? w=@call ( v=@noparen+ ) s=@word+ t=together $ | TS061 | found={s} {t}; together=TASK;{w}({v});END_TASK;{c} | F(2, 80) y BEEP(1, 440) al mismo tiempo => together=TASK;BEEP(1, 440);END_TASK;F(2, 80)
-^ c=@cmd s=@word+ t=together w=@call ( v=@noparen+ ) $ | TS061 | found={s} {t}; together=TASK;{w}({v});END_TASK;{c} | F(2, 80) at the same time BEEP(1, 440) => together=TASK;BEEP(1, 440);END_TASK;F(2, 80)
-^ c=F|B s=+|&|then|beside BEEP ( n=@num , @num ) @word* $ | TS061 | found={s}; both={both} | F(2, 80) con BEEP(1, 440) => both=M(80, 80);BEEP(1, 440);W(1);S
+^ c=@cmd then|+|&|,|beside? w=@call ( v=@noparen+ ) s=@word+ k=SAME|MISMO|MESMO|LA t=moment $ | TS061 | found={s} {k} {t}; together=TASK;{w}({v});END_TASK;{c} | F(2, 80) y BEEP(1, 440) al mismo tiempo => together=TASK;BEEP(1, 440);END_TASK;F(2, 80)
+^ c=@cmd s=@word+ k=SAME|MISMO|MESMO|LA t=moment w=@call ( v=@noparen+ ) $ | TS061 | found={s} {k} {t}; together=TASK;{w}({v});END_TASK;{c} | F(2, 80) at the same time BEEP(1, 440) => together=TASK;BEEP(1, 440);END_TASK;F(2, 80)
+^ c=@more|@later @word* together $ | TS061 | found={words}; together=TASK;{c};END_TASK;{previous} | F(2, 80); BEEP(1, 440) juntos => together=TASK;BEEP(1, 440);END_TASK;F(2, 80)
+^ c=@more|@later @word+ SAME|MISMO|MESMO|LA moment $ | TS061 | found={words}; together=TASK;{c};END_TASK;{previous} | F(2, 80); BEEP(1, 440) a la vez => together=TASK;BEEP(1, 440);END_TASK;F(2, 80)
+^ @after s=@word+ k=SAME|MISMO|MESMO|LA t=moment w=@call ( v=@noparen+ ) $ | TS061 | found={s} {k} {t}; together=TASK;{w}({v});END_TASK;{previous} | F(2, 80); a la vez BEEP(1, 440) => together=TASK;BEEP(1, 440);END_TASK;F(2, 80)
+^ @none s=@word+ k=SAME|MISMO|MESMO|LA t=moment ,|:? w=@call ( v=@noparen+ ) then|+|&|, x=@call ( u=@noparen+ ) $ | TS061 | found={s} {k} {t}; together=TASK;{x}({u});END_TASK;{w}({v}) | al mismo tiempo F(2, 80) y BEEP(1, 440) => together=TASK;BEEP(1, 440);END_TASK;F(2, 80)
+^ @after s=@word+ k=SAME|MISMO|MESMO|LA t=moment :? $ | TS061 | found={s} {k} {t}; together=TASK;...;END_TASK;{previous} | F(2, 80)⏎al mismo tiempo => together=TASK;...;END_TASK;F(2, 80)
+^ c=@move s=+|&|AND|then|beside w=BEEP ( v=@noparen+ ) @word* $ | TS061 | found={s}; both=TASK;{w}({v});END_TASK;{c} | F(2, 80) con BEEP(1, 440) => both=TASK;BEEP(1, 440);END_TASK;F(2, 80)
 ^ c=@cmd then @word+ $ | TS074 | fix={orders}; example={example?} | F(1, 80) y luego retrocede => fix=F(1, 80);B(2, 80)
 ^ c=@move <lead> @told* @other @told* <close> $ | TS085 | other={other} | F(1, 80) atras => other=B(1, 80)
 ^ c=@cmd act|most|least w=@told* $ | TS085 | order={words} | F(1, 80) abre la pinza => order=abre la pinza

@@ -31,6 +31,7 @@ from tiniscript.syntax.outline import Failure
 DOTS = ".…"
 ASKING = ("IF", "ELSEIF", "WHILE", "WHEN", "UNTIL")
 _NOTHING = re.compile(r"\s*\Z")
+_BEGUN = re.compile(r"(?i)\s*(?:S[IB]|PING)\s*\|")
 MARKS = f"{QUOTES}-–—_,"  # below a line that is meant again
 _HALF = 60  # a power that is neither fast nor slow
 _BEFORE_NOTE = frozenset(("=", ">", "<", "*", ":", ",", "(", *COMPARISONS))
@@ -184,6 +185,7 @@ class Behind:
             is_end = bool(_NOTHING.match(self.text, self.place.end)) and not self.is_in_block
             found = ["@none"]
             found += ["@after", *["@last"] * is_end] if self.is_later else []
+            found += [] if _BEGUN.match(self.text) else ["@unbegun"]
             return f"\x01|{'|'.join(found)}|\x02"
         found = [own]
         if known is not None and not self.is_arm and known.role != "start":

@@ -479,6 +479,12 @@ def _slip(code: str, step: Step | None, before: Sequence[Lexeme], after: Sequenc
     has_end = bool(head) and any(each.text in ENDED for each in other)
     shown = ";".join(laid_out(part) for part in fix[0 if has_end else head : len(fix) - tail])
     shown = shown or laid_out(after)
+    if code == _WORD_CODE:  # `FOR I = 1 TO`: FOR alone
+        cut = next((k for k, it in enumerate(found) if it.text in ("=", "(")), len(found))
+        is_set = cut < len(found) and found[cut].text == "="
+        found = found[: cut - is_set] or found
+    if code == codes.QUESTION_BEHIND.number:
+        found = [each for each in (*old, *new) if each.text in BLOCK_ENDS][:1] or found
     is_all = code == codes.REPEATED.number or (code == codes.OTHER_SIGN.number and not right)
     is_found = bool(found) or code == codes.OTHER_ASSIGNMENT.number  # else a sign is missing
     is_aside = bool(found) and all(said_of(each.text, "filler") for each in found)

@@ -240,6 +240,17 @@ TOKENS = r"""
 ] | ) | 1 | TS010 | applied | F(2, 80] => F(2, 80)
 v=@val [ n=@num ) | $v < $n ) | 1 | TS010 | offered | IF(DISTANCE[30)⏎S⏎ENDIF => IF(DISTANCE < 30)⏎S⏎ENDIF
 ! v=@val|( | NOT $v | 1 | TS010 | first | X = TRUE⏎IF(!X);S;ENDIF => X = TRUE⏎IF(NOT X);S;ENDIF
+# sums in words
+o==|, a=@num|@val minus b=@num|@val | $o $a - $b | 1 | TS010 | first | X = 8 menos 4⏎SHOW(X) => X = 8 - 4⏎SHOW(X)
+SHOW ( a=@num|@val minus b=@num|@val | SHOW ( $a - $b | 1 | TS010 | first | SHOW(8 minus 4) => SHOW(8 - 4)
+o== a=@num|@val multiplied POR|BY? b=@num|@val | $o $a * $b | 1 | TS010 | first | X = 3 por 4⏎SHOW(X) => X = 3 * 4⏎SHOW(X)
+SHOW ( a=@num|@val multiplied POR|BY? b=@num|@val | SHOW ( $a * $b | 1 | TS010 | first | SHOW(3 times 4) => SHOW(3 * 4)
+o==|(|,|+|-|*|<|> largest ( a=@num|@val ,|then b=@num|@val ) | $o MAX ( $a , $b ) | 1 | TS010 | first offered | SHOW(BIGGEST(LIGHT_L, LIGHT_R)) => SHOW(MAX(LIGHT_L, LIGHT_R))
+o==|( the? largest OF|DE|BETWEEN|ENTRE? a=@num|@val ,|then b=@num|@val e=)|,|$ | $o MAX ( $a , $b ) $e | 1 | TS010 | first offered | SHOW(el mayor de LIGHT_L y LIGHT_R) => SHOW(MAX(LIGHT_L, LIGHT_R))
+o==|(|,|+|-|*|<|> smallest ( a=@num|@val ,|then b=@num|@val ) | $o MIN ( $a , $b ) | 1 | TS010 | first offered | SHOW(SMALLER(LIGHT_L, LIGHT_R)) => SHOW(MIN(LIGHT_L, LIGHT_R))
+o==|( the? smallest OF|DE|BETWEEN|ENTRE? a=@num|@val ,|then b=@num|@val e=)|,|$ | $o MIN ( $a , $b ) $e | 1 | TS010 | first offered | SHOW(el menor de LIGHT_L y LIGHT_R) => SHOW(MIN(LIGHT_L, LIGHT_R))
+o==|( a=@num|@val ,|then|or b=@num|@val the? largest e=)|,|$ | $o MAX ( $a , $b ) $e | 1 | TS010 | first offered | SHOW(LIGHT_L y LIGHT_R el mayor) => SHOW(MAX(LIGHT_L, LIGHT_R))
+o==|( a=@num|@val ,|then|or b=@num|@val the? smallest e=)|,|$ | $o MIN ( $a , $b ) $e | 1 | TS010 | first offered | SHOW(LIGHT_L or LIGHT_R the smaller) => SHOW(MIN(LIGHT_L, LIGHT_R))
 # comparisons in words: a row for each sense, and a sign
 is? less than? or equal QUE|A|TO? | <= | 1 | TS010 | first | IF(DISTANCE es menor o igual que 10);S;ENDIF => IF(DISTANCE <= 10);S;ENDIF
 is? more or? equal QUE|A|TO? | >= | 1 | TS010 | first | IF(DISTANCE mayor igual 10);F(1,50);ENDIF => IF(DISTANCE >= 10);F(1,50);ENDIF
@@ -267,7 +278,7 @@ l=@val = a=@num or b=@num | $l = $a OR $l = $b | 1 | TS018 | offered | IF(DISTAN
 h=IF|WHILE|ELSEIF v=@val ( n=@num ) | &h ( $v < $n ) | 1 | TS048 | offered | IF DISTANCE(10)⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
 ^ c=@cond+ ? <body> : d=@start s=@all* $ | IF ( $c ) ; $b $r ; ELSE ; $d $s ; ENDIF | 1 | TS042 | offered | DISTANCE < 10 ? S : F(1, 60) => IF(DISTANCE < 10);S;ELSE;F(1, 60);ENDIF
 = ABS s='-'? n=@num|@val $ | = ABS ( $s $n ) | 1 | TS015 | applied | X = ABS -5⏎SHOW(X) => X = ABS(-5)⏎SHOW(X)
-o==|( a=@num over POR? b=@num | $o $a / $b | 1 | TS010 | applied | SHOW(10 entre 2) => SHOW(10 / 2)
+o==|( a=@num|@val over POR|BY|ENTRE? b=@num|@val | $o $a / $b | 1 | TS010 | applied | SHOW(10 entre 2) => SHOW(10 / 2)
 h=IF|WHILE|UNTIL|WHEN|ELSEIF ( a=@val then|& b=@val s=<|> n=@num ) | &h ( $a $s $n AND $b $s $n ) | 1 | TS010 | first offered | IF(LIGHT_L y LIGHT_R > 500)⏎S⏎ENDIF => IF(LIGHT_L > 500 AND LIGHT_R > 500)⏎S⏎ENDIF
 h=IF|WHILE|UNTIL|WHEN|ELSEIF ( a=@val or|OR b=@val s=<|> n=@num ) | &h ( $a $s $n OR $b $s $n ) | 1 | TS010 | first offered | IF(LIGHT_L o LIGHT_R > 500)⏎S⏎ENDIF => IF(LIGHT_L > 500 OR LIGHT_R > 500)⏎S⏎ENDIF
 SHOW ( a=@val &|then|and then? b=@val ) | SHOW ( $a ) ; SHOW ( $b ) | 1 | TS020 | first offered | SHOW(LIGHT_L & LIGHT_R) => SHOW(LIGHT_L);SHOW(LIGHT_R)
@@ -459,6 +470,9 @@ a=L|R ( 1 / 2 DE? VUELTA|GIRO|TURN , | $a ( 180 DEG , | 1 | TS102 | offered | R(
 o=(|,|=|<|>|+|- '|' v=@num|@val c=@argt* '|' | $o ABS ( $v $c ) | 1 | TS010 | offered | D = |LIGHT_L - LIGHT_R|⏎SHOW(D) => D = ABS(LIGHT_L - LIGHT_R)⏎SHOW(D)
 ^ W ( UNTIL (? q=@argt+ )? ) $ | W ( FOREVER ) UNTIL ( $q ) | 1 | TS029 | offered | W(UNTIL DISTANCE < 10) => W(FOREVER) UNTIL(DISTANCE < 10)
 h=UNTIL|IF|WHILE|WHEN|ELSEIF ( c=@noclose+ ) o=AND|OR (? d=@noclose+ )? e=;|$ | &h ( $c &o $d ) $e | 1 | TS015 | offered | F(5, 60) UNTIL(LIGHT_L > 9) OR (LIGHT_R > 9) => F(5, 60) UNTIL(LIGHT_L > 9 OR LIGHT_R > 9)
+^ a=F|B|L|R|M|W|BEEP ( c=@argt+ ) WHEN (? q=@cond+ )? ;|:|,? b=@start r=@all* END_WHEN $ | WHEN ( $q ) ; $b $r ; END_WHEN ; $a ( $c ) | .8 | TS071 | offered | F(10, 50) WHEN(DISTANCE < 15); BEEP(1, 440); END_WHEN => WHEN(DISTANCE < 15);BEEP(1, 440);END_WHEN;F(10, 50)
+^ a=F|B|L|R|M|W|BEEP ( c=@argt+ ) WHEN (? q=@cond+ )? ;|:|,? <body> $ | WHEN ( $q ) ; $b $r ; END_WHEN ; $a ( $c ) | .9 | TS071 | offered | F(10, 50) WHEN(DISTANCE < 15) BEEP(1, 440) => WHEN(DISTANCE < 15);BEEP(1, 440);END_WHEN;F(10, 50)
+UNTIL ( a=@noclose+ ) OR|or UNTIL ( b=@noclose+ ) e=;|$ | UNTIL ( $a OR $b ) $e | 1 | TS015 | offered | F(5, 60) UNTIL(LIGHT_L > 9) OR UNTIL(LIGHT_R > 9) => F(5, 60) UNTIL(LIGHT_L > 9 OR LIGHT_R > 9)
 ^ a=@callw ( b=@argt+ ) UNTIL ( c=@noclose+ ) UNTIL ( d=@noclose+ ) $ | $a ( $b ) UNTIL ( $c OR $d ) | 1 | TS029 | offered | F(5, 60) UNTIL(DISTANCE < 10) UNTIL(LIGHT_L > 500) => F(5, 60) UNTIL(DISTANCE < 10 OR LIGHT_L > 500)
 m=MIN|MAX ( a=@num|@val , b=@num|@val , c=@num|@val ) | $m ( $a , $m ( $b , $c ) ) | 1 | TS020 | offered | SHOW(MIN(DISTANCE, 5, 9)) => SHOW(MIN(DISTANCE, MIN(5, 9)))
 ^ LET v=@word BE|TO n=@num $ | $v = $n | 1 | TS050 | applied | LET SPEED BE 50⏎F(2, SPEED) => SPEED = 50⏎F(2, SPEED)
@@ -580,7 +594,8 @@ a=@close please|CM|CENTIMETROS|SEG|SEGS|SEGUNDO|SEGUNDOS|SECONDS $ | $a | 1 | TS
 a=@close ,? then|soon+ ,? b=@start | $a ; $b | 1 | TS044 | applied | F(1,75) y R(1,75) => F(1, 75);R(1, 75)
 W n=@num seconds? then+ b=@start | W ( $n ) ; $b | 1 | TS015 | applied | F(2, 80) THEN WAIT 1 THEN B(2, 80) => F(2, 80);W(1);B(2, 80)
 a=@close ,|.|: b=@start | $a ; $b | 1 | TS013 | applied | F(2,80), B(2,80) => F(2, 80);B(2, 80)
-a=@close &|+|AND|->|=>|/|>|>>|_|*|'|' b=@start | $a ; $b | 1 | TS061 | applied | F(2,80)&B(2,80) => F(2, 80);B(2, 80)
+a=@close &|+|AND b=@startm | $a ; $b | 1 | TS061 | applied | F(2,80)&B(2,80) => F(2, 80);B(2, 80)
+a=@close ->|=>|/|>|>>|_|*|'|' b=@start | $a ; $b | 1 | TS061 | applied | F(2,80)->B(2,80) => F(2, 80);B(2, 80)
 a=@close +|&|AND|->|'|' $ | $a ; | 1 | TS061 | applied | F(2, 80) +⏎R(1, 50) => F(2, 80)⏎R(1, 50)
 a=@close , $ | $a ; | .8 | TS013 | applied | F(2,80),⏎R(1,50), => F(2, 80)⏎R(1, 50)
 a=@close b=@start | $a ; $b | 1 | TS013 | applied | S STOP => S;STOP
@@ -598,7 +613,6 @@ EFE|EF | F | 1 | TS102 | first offered | efe dos coma ochenta => F(2, 80)
 ^ import @any+ ;? $ |  | 1 | TS072 | applied | import robot⏎F(2,80) => ⏎F(2,80)
 v=S|STOP|BREAK|START|ELSE|ENDIF|END_LOOP ( ) | $v | 1 | TS028 | first | s() => s
 read ( v=@val ) | $v | 1 | TS102 | applied | X = leer(DISTANCE)⏎SHOW(X) => X =DISTANCE⏎SHOW(X)
-^ AL|WHEN|CUANDO INICIAR|EMPEZAR|COMENZAR|START|INICIO $ | START | 1 | TS102 | applied | al iniciar⏎F(2,80) => START⏎F(2,80)
 ^ no F|B|L|R|M extra? $ | S | .5 | TS102 | first | no avanzar mas => S
 ^ PARA|DEJA DE AVANZAR|MOVER|MOVERTE $ | S | .5 | TS102 | first | para de avanzar => S
 ^ off|S the? engine $ | S | 1 | TS102 | applied | apaga motores => S

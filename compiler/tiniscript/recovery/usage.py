@@ -361,7 +361,6 @@ class _Usage:
         known = WORDS.get(word)
         is_alone = len(self.tokens(piece)) == 1 and known is not None and bool(known.arguments)
         values = {**found.values, "example": known.example if known and is_alone else ""}
-        values |= {"bare": "ELSE"} if word == "ELSEIF" else {}
         if known:
             values["usage"] = self.usage(self.tokens(piece), word)
         return found._replace(values=values)
