@@ -26,6 +26,7 @@ from tiniscript.syntax.formatter import formatted
 
 KIT = robots.load("tinibot").kit
 MAX_MS = 600
+MAX_STEPS = 1_000_000  # of a machine that never stands still
 BATCH = 50
 
 
@@ -40,7 +41,7 @@ def check_program(seed: int, machines: Sequence[Machine] = (run_python,)) -> str
             got = machine(image, KIT, Senses(senses, MAX_MS))
             assert got == want, f"seed {seed}, {image.hex()}:\n{text}"
         code = unpack(image).code
-        assert task_machine.trace(code, PAPER_KIT, senses, MAX_MS, 1, 20_000) == want, text
+        assert task_machine.trace(code, PAPER_KIT, senses, MAX_MS, 1, MAX_STEPS) == want, text
     laid_out = formatted(Source(text))
     assert compile_text(laid_out, KIT).image == both[0].image, f"seed {seed}"
     assert formatted(Source(laid_out)) == laid_out, f"seed {seed}"
