@@ -270,7 +270,7 @@ def played(table: Table, press: str) -> None:
     table.talk(13_000 if press == FOR_EVER else 700)
 
 
-@pytest.mark.sampled("press", keep=5)
+@pytest.mark.sampled("press", keep=3)
 @pytest.mark.parametrize("press", PRESSES)
 @pytest.mark.parametrize("state", STATES)
 def test_the_button(state: str, press: str) -> None:

@@ -44,7 +44,7 @@ def told(uno: Uno, data: bytes) -> list[str]:
     return said(uno, before).splitlines()
 
 
-@pytest.mark.sampled("line", keep=4)
+@pytest.mark.sampled("line", keep=2)
 @pytest.mark.parametrize("line", LINES, ids=lambda line: line[:20])
 def test_a_pasted_line_that_is_lost_is_told(quick_uno: Uno, line: str) -> None:
     uno, data = quick_uno, line.encode() + b"\r\n"

@@ -127,7 +127,7 @@ def test_a_key_that_this_computer_cannot_keep_is_not_given_to_the_robot() -> Non
     assert owner_of(table, session) == FREE
 
 
-@pytest.mark.sampled("cut_ms", keep=18)
+@pytest.mark.sampled("cut_ms", keep=9)
 @pytest.mark.parametrize("cut_ms", range(1, 260, 7))
 def test_a_pulled_plug_leaves_the_old_key_or_the_new_one(cut_ms: int) -> None:
     table, keys = Owned(), Keys()

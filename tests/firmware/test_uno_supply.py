@@ -171,7 +171,7 @@ LOOKS = "SI|LOOP(FOREVER);SHOW(DISTANCE);SHOW(LIGHT_L);SHOW(LIGHT_R);END_LOOP"
 STEP = 69  # thousandths of a centimetre in the 4 us of the robot's clock
 
 
-@pytest.mark.sampled("board", "distance_cm", keep=2)
+@pytest.mark.sampled("board", "distance_cm", keep=1)
 @pytest.mark.parametrize("board", ["uno", "mega"])
 @pytest.mark.parametrize("distance_cm", [3, 50, 390])
 def test_readings_are_right_while_names_are_kept_and_the_line_is_bad(

@@ -93,7 +93,7 @@ def lasting(settings: list[Setting]) -> list[Setting]:
     return found[1:]
 
 
-@pytest.mark.sampled("case", keep=5)
+@pytest.mark.sampled("case", keep=3)
 @pytest.mark.parametrize("case", [*PAPER, *map(program, OTHERS)], ids=lambda case: case.title)
 def test_the_pins_follow_the_trace(case: Case, sketch: Path, tmp_path: Path) -> None:  # noqa: F811
     with switched_on(sketch, tmp_path / "eeprom") as uno:

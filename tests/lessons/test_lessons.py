@@ -52,7 +52,7 @@ def test_they_are_numbered_without_a_gap() -> None:
     assert len(FOLDERS) >= 12
 
 
-@pytest.mark.sampled("folder", "answer", keep=len(answers_of(True)) // 2)
+@pytest.mark.sampled("folder", "answer", keep=len(answers_of(True)) // 4)
 @pytest.mark.parametrize(("folder", "answer"), answers_of(True), ids=name_of)
 def test_a_right_answer_is_right(folder: Path, answer: Answer) -> None:
     """In the worlds of the task, and in others."""

@@ -207,9 +207,10 @@ PLACES = """() => 'arena run pause step speed world doing values'.split(' ').map
 def test_nothing_jumps_when_a_run_begins(page: Page, screen: tuple[int, int]) -> None:
     page.set_viewport_size({"width": screen[0], "height": screen[1]})
     speak(page, "es")
+    turn(page, "program")
+    write(page, f"SB|X = 1\n{FOREVER}")
     turn(page, "robot")
     page.select_option("#world", "obstacles")  # nothing has run in it
-    write(page, f"SB|X = 1\n{FOREVER}")
     before = page.evaluate(PLACES)
     page.click("#run")
     page.locator("#push").wait_for()
