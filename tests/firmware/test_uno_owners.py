@@ -46,7 +46,7 @@ def owner_of(wired: Wired) -> str:
 def test_a_claim_outlives_a_reset_and_ten_seconds_of_the_button_forget_it(sketch: Path) -> None:
     keys = Keys()
     with Uno(sketch, baud=ROBOT.board.baud, tells_sleep=False) as uno:
-        button = pin(uno, ROBOT.board.start_button)
+        button = pin(ROBOT, ROBOT.board.start_button)
         uno.run_ms(300)
         wired = Wired(uno, session(keys, 1))
         assert owner_of(wired) == FREE
@@ -85,7 +85,7 @@ def test_a_stop_acts_at_once_while_a_tag_is_made(sketch: Path) -> None:
         wired = Wired(uno, session(keys, 1))
         request = wired.session.claim(KEY_OWNER)
         wired.run(300)
-        uno.press(pin(uno, ROBOT.board.start_button), 2100)
+        uno.press(pin(ROBOT, ROBOT.board.start_button), 2100)
         assert wired.until(request) == 0
         wired.session = session(keys, 2)
         begun_ms = wired.now_ms

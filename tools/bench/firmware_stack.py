@@ -78,17 +78,18 @@ def surround(uno: Uno, robot: Robot) -> None:
     """Give its sensors something to measure."""
     for device in robot.board.sensors:
         if device.driver == "hc_sr04":
-            uno.sonar(pin(uno, device.pins["trigger"]), pin(uno, device.pins["echo"]), 40)
+            uno.sonar(pin(robot, device.pins["trigger"]), pin(robot, device.pins["echo"]), 40)
 
 
-def pin(uno: Uno, number: int) -> str:
-    digital = 54 if uno.board == "mega" else 14
+def pin(robot: Robot, number: int) -> str:
+    """Return the name of a pin of the profile, whose numbers are those of its own board."""
+    digital = 54 if robot.board.chip == "mega" else 14
     return f"D{number}" if number < digital else f"A{number - digital}"
 
 
 def wear_out(wired: Wired, robot: Robot) -> None:
     uno, session, kit = wired.uno, wired.session, robot.kit
-    button = pin(uno, robot.board.start_button)
+    button = pin(robot, robot.board.start_button)
     must(wired, session.hello())
     must(wired, session.name(b"sixteen letters!"))
     must(wired, session.upload(longest(kit, robot.board.program_bytes)))

@@ -69,12 +69,12 @@ class Busy:
             firmware, board=BOARDS[board], baud=baud, tells_sleep=False, watches_masked=True
         )
         self._wired = Wired(self.chip, Session(1, baud, robot.kit.fingerprint))
-        self._motors = {pin(self.chip, number) for number in robot.board.motors.pins.values()}
+        self._motors = {pin(robot, number) for number in robot.board.motors.pins.values()}
         self._sonar = ""
         for device in robot.board.sensors:
             if device.driver == "hc_sr04":
                 self._trigger, self._sonar = (
-                    pin(self.chip, device.pins[name]) for name in ("trigger", "echo")
+                    pin(robot, device.pins[name]) for name in ("trigger", "echo")
                 )
                 self.chip.sonar(self._trigger, self._sonar, None)
         self.chip.run_ms(300)
