@@ -104,7 +104,6 @@ ADVICE = """
 ^ c=@any s=idle+ $ | TS044 | found={s} | SHOW(DISTANCE) cm => found=cm
 ^ c=S|STOP s=LOOP $ | TS102 | found={text}; right=BREAK; fix=BREAK; usage=BREAK | STOP LOOP => fix=BREAK
 ^ c=@move|W s=UN u=TIL q=@any+ $ | TS102 | found={s} {u}; right=UNTIL; usage=UNTIL{q} | F(5, 60) UN TIL(DISTANCE < 30) => usage=UNTIL(DISTANCE < 30)
-^ c=@set s=X|multiplied POR|BY? b=@num|@val $ | TS010 | found={s}; right=*; fix={c} * {b} | X = 3 x 4 => fix=X = 3 * 4
 # how often
 ^ c=@more <lead> <often> <close> $ | TS062 | found={text}; last={loop}; all={line} | F(1, 60); L(1, 60) x4 => last=LOOP(4);L(1, 60);END_LOOP
 ^ <does> <lead> <often> <close> $ | TS062 | found={text}; fix={loop} | F(2, 80) 3 veces => fix=LOOP(3);F(2, 80);END_LOOP

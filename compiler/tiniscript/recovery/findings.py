@@ -33,6 +33,7 @@ _FIRST_NUMBERS = (1, 10, 100)
 _NUMBER = re.compile(r"(?im)^[ \t]*([0-9]{1,4})[ \t]+(?=[A-Z])(?!veces|times|x\b|vez)")
 _NOTES = "|".join(word for word in lexicon() if said_of(word, "note"))
 _NOTE = re.compile(rf"(?i)\b(?:{_NOTES})\b")  # its 4 is no number: C4
+_TIMES = re.compile(r"(?i)(?<=[\w)]) x (?=[\w(])")  # a sign, and no variable X
 Check = Callable[[str], Sequence[Diagnostic]]
 
 
@@ -214,6 +215,7 @@ def _keeps(text: str, new: str, said_with: set[str], is_sure: bool) -> bool:
     names = {each.upper() for each in re.findall(r"(?i)(?<=\bDEF )\w+|\w+(?=\s*=)", new)} - {*WORDS}
     closed = Counter(re.findall(r"\bEND_?DEF +(\w+)|\bFIN +(\w+)", _bare(text).upper()))
     before -= Counter({name: n for pair, n in closed.items() for name in pair if after[name] > 1})
+    before -= Counter(X=len(_TIMES.findall(_bare(text))))
     is_kept = all(after[name] >= before[name] for name in names)
     old, kept = (Counter(re.findall("[0-9]", _NOTE.sub("", _bare(it)))) for it in (text, new))
     has_all = old == kept if is_sure else not old - kept

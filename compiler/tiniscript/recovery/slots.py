@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from tiniscript.base.words import UNIT_OF, WAYS, WORDS, Argument
+from tiniscript.base.words import names as is_called
 from tiniscript.recovery import rows
 from tiniscript.recovery.concepts import CALLED, DONE, NEAR, UNITS, Lexeme, Names, made, said_of
 from tiniscript.syntax.devices import actuator_word
@@ -323,16 +324,25 @@ class _Reader:
             sample = (
                 next(each for each in slots if each is not None) if is_pair else argument.sample
             )
-            text = sample if value is None else value
+            text = (self._own(argument) or sample) if value is None else value
             text = told(text) if isinstance(text, float) else text
             out += [made("-"), made(text[1:])] if text.startswith("-") else [made(text)]
             out += [made(self.way)] if self.way and not k else []
         samples = tuple(
             f"{each.sample} {each.unit}"
             for value, each in zip(slots, word.arguments, strict=True)
-            if value is None
+            if value is None and not self._own(each)
         )
         return Filled([*out, made(")")], self.cost, self.is_sure, times, samples)
+
+    def _own(self, argument: Argument) -> str:
+        """Return the one variable that is called what an argument is: VELOCIDAD for `F(2)`."""
+        own = [
+            each
+            for each in self.names.variables
+            if any(is_called(part, argument) for part in each.split("_"))
+        ]
+        return own[0] if len(own) == 1 else ""
 
     def _with_decimals(self, count: int) -> list[_Value] | None:
         """Join whole numbers that are halves of decimal ones: `F(1,5,80,0)`, `W(0,5)`."""
