@@ -38,7 +38,7 @@ _SHOW_WHOLE = frozenset(each.number for each in (
 _OF_ARM = (_BRACES, _WORD_CODE, codes.HEADER_SEPARATOR.number)
 _OF_BLOCKS = frozenset((*BLOCK_ENDS, *ENDED, "ELSE", "ELSEIF", *BRACES))
 _WORD = re.compile(r"\w+")
-_BEHIND = re.compile(r"\W*\w+[\s;]+(\w+)")
+_BEHIND = re.compile(r"\W*(\w+)[\s;]+(\w+)")
 _MOST_LINES = {"IF": 2, "TASK": 20}  # in a block of which the last may as well be behind it
 LONGEST_BLOCK = 160  # characters of one that a message shows
 
@@ -339,8 +339,9 @@ class _Teller:
             slip = slip._replace(right=self.changes[k].text.strip())
         if code == codes.EXTRA_WORD.number and isinstance(slip, Slip):
             behind = _BEHIND.match(self.program, self.words(edit.span).start)
-            word = behind[1].upper() if behind else ""
-            if {word, meant_by(word)} & {"ELSE", "ELSEIF"}:
+            end, arm = (each.upper() for each in behind.groups()) if behind else ("", "")
+            is_end = {end, meant_by(end)} & {*ENDED} or said_of(end, "end")
+            if is_end and {arm, meant_by(arm)} & {"ELSE", "ELSEIF"}:
                 slip = slip._replace(early=slip.found)
         if code == _UNENDED:
             word = next((each.text for each in after if each.text in BLOCK_ENDS), "")

@@ -24,7 +24,7 @@ _CAPTURE = re.compile(r"([a-z])=(?=.)")
 _PART = re.compile(r"<(\w+)>")
 _OF_NUMBERS = re.compile(r"@(?:dec|cat|cm|mmss|xn|same)\b|(?<![\w@])\d")
 _MOST_POWER = 100
-_EIGHTH = 45  # degrees: from there on a number behind a turn is rather an angle
+_EIGHTH = 45  # degrees: eighths of a turn, and what is no power, are rather an angle
 _SET = "TS050"  # of a variable that gets its value: in brackets that would be a question
 _BEFORE_VALUE = COMPARISONS | frozenset("(,+-*/%")
 _HEADER_OF = {"FOREVER": "LOOP", "FOR": "LOOP", "PARA": "LOOP", "ELSEIF": "IF"}
@@ -432,7 +432,7 @@ _FUNCTIONS: dict[str, Callable[[_Place], _Made]] = {
     "cm": _centimetres,
     "power": _number_if(lambda it: LONG_S <= it <= _MOST_POWER),
     "time": _number_if(lambda it: it < LONG_S),
-    "angle": _number_if(lambda it: it >= _EIGHTH),
+    "angle": _number_if(lambda it: it >= _EIGHTH and (it % _EIGHTH == 0 or it > _MOST_POWER)),
     "whole": _number_if(float.is_integer),
     "given": _parameter(0), "also": _parameter(1),
 }  # fmt: skip

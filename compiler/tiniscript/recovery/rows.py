@@ -478,6 +478,7 @@ m=MIN|MAX ( a=@num|@val , b=@num|@val , c=@num|@val ) | $m ( $a , $m ( $b , $c )
 ^ LET v=@word BE|TO n=@num $ | $v = $n | 1 | TS050 | applied | LET SPEED BE 50⏎F(2, SPEED) => SPEED = 50⏎F(2, SPEED)
 LOOP ( @name = 1 TO|A|until n=@num ) | LOOP ( $n ) | 1 | TS063 | offered | LOOP(I = 1 TO 5)⏎S⏎END_LOOP => LOOP(5)⏎S⏎END_LOOP
 ^ a=L|R n=@num $ | $a ( @angle:n DEG , 80 ) | 2 | TS015 | offered | L 90 => L(90 DEG, 80)
+^ a=L|R ( n=@num ) $ | $a ( @angle:n DEG , 80 ) | 2 | TS020 | offered | R(90) => R(90 DEG, 80)
 a=F|B ( FOREVER ) | $a ( FOREVER , 80 ) | 2 | TS020 | offered | F(FOREVER) UNTIL(DISTANCE < 10) => F(FOREVER, 80) UNTIL(DISTANCE < 10)
 RANDOM ( n=@num ) | RANDOM ( 1 , @whole:n ) | 2 | TS020 | offered | X = RANDOM(6)⏎F(X, 50) => X = RANDOM(1, 6)⏎F(X, 50)
 ROUND ( n=@num|@val ) | ROUND ( $n , 0 ) | 2 | TS020 | offered | X = ROUND(3.7)⏎SHOW(X) => X = ROUND(3.7, 0)⏎SHOW(X)

@@ -9,14 +9,13 @@ import re
 from collections.abc import Sequence
 
 from tiniscript.base.source import Source, Span
-from tiniscript.base.words import UNIT_OF, Word
+from tiniscript.base.words import Word
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
 
 LONG_TIME_S = 20  # a longer move is rarely meant: so much is a power, degrees or steps
 LOWEST_HERTZ = 30
 _MOST_POWER = 100
-_EIGHTH = 45  # degrees of a turn
 _TIME_AND_POWER = (0, 1)  # their places
 _NUMBER = re.compile(r"[0-9]+(\.[0-9]+)?|\.[0-9]+")
 _UNTIL = re.compile(r"(?i)\s*\bUNTIL\b.*")  # with its question
@@ -41,19 +40,11 @@ def count_diagnostic(
 def _said_of_count(texts: Sequence[str], word: Word, until: re.Match[str] | None) -> dict[str, str]:
     """Return what is said of a wrong number of values: `power` of F(80), `spare` of F(2, 80, 5).
 
-    `kept` is W(2) for W(2, 80): a wait has no power. With UNTIL the time may be FOREVER. R(90) is
-    rather an angle.
+    `kept` is W(2) for W(2, 80): a wait has no power. With UNTIL the time may be FOREVER.
     """
     numbers = [float(text) if _NUMBER.fullmatch(text) else -1 for text in texts]
     said = {"power": "", "spare": "", "kept": ""}
-    is_turn = UNIT_OF.get(word.text) == "DEG" and len(texts) == 1
-    if (
-        is_turn
-        and numbers[0] >= _EIGHTH
-        and (numbers[0] % _EIGHTH == 0 or numbers[0] > _MOST_POWER)
-    ):
-        said["example"] = f"{word.text}({texts[0]} DEG, 80)"
-    elif word.role == "move" and len(texts) == 1 and LONG_TIME_S <= numbers[0] <= _MOST_POWER:
+    if word.role == "move" and len(texts) == 1 and LONG_TIME_S <= numbers[0] <= _MOST_POWER:
         said["power"] = f"{word.text}( , {texts[0]})"
         if until is not None:
             said["endless"] = f"{word.text}(FOREVER, {texts[0]}){until[0]}"
