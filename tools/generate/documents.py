@@ -5,6 +5,7 @@ Knows the documents of `docs/` with tables of their own. The spec's tables are i
 
 from __future__ import annotations
 
+import ast
 import os
 from collections.abc import Callable, Iterable, Sequence
 from functools import partial
@@ -16,6 +17,17 @@ from tiniscript.robots.text_levels import CODE_BYTES, LEVELS
 from tools.site.documents import LIST, documents, sources
 
 FOLDER = Path(__file__).resolve().parent.parent.parent / "docs"
+PACKAGE = FOLDER.parent / "compiler" / "tiniscript"
+
+
+def architecture_document() -> str:
+    """Return `docs/architecture.md` with what each folder of the package says of itself."""
+    rows = []
+    for path in sorted(PACKAGE.glob("*/**/__init__.py")):
+        said = ast.get_docstring(ast.parse(path.read_bytes())) or ""
+        about = " ".join(said.split("\n\n")[0].split())
+        rows.append((f"`{path.parent.relative_to(PACKAGE).as_posix()}/`", about))
+    return spliced(_text("architecture.md"), "packages", table(("folder", "content"), rows))
 
 
 def link_document(document: str) -> str:
@@ -118,6 +130,7 @@ def table(head: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
 
 
 DOCUMENTS: dict[str, Callable[[], str]] = {
+    "architecture.md": architecture_document,
     "link.md": partial(link_document, "link.md"),
     "network.md": partial(link_document, "network.md"),
     "owners.md": partial(link_document, "owners.md"),

@@ -1,1 +1,1 @@
-"""The front end: text becomes tokens, tokens become an abstract syntax tree (AST)."""
+"""Text becomes tokens, tokens an AST: lexer, parser, formatter; of wrong ones what was expected."""
