@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import itertools
 import os
 import signal
@@ -36,7 +37,11 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """In CI what will stop working is a failure: of pytest, and of Python in our own code."""
+    """In CI what will stop working is a failure: of pytest, and of Python in our own code.
+
+    What is collected stays: looking for garbage in it would take two of five seconds.
+    """
+    gc.disable()
     if os.environ.get("CI"):
         for warned in (
             "pytest.PytestDeprecationWarning",
@@ -50,6 +55,11 @@ def pytest_configure(config: pytest.Config) -> None:
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     sampling.leave_out(config, items)
     order.spread(items)
+
+
+def pytest_collection_finish() -> None:
+    gc.freeze()  # nor is it looked through during the tests
+    gc.enable()
 
 
 def pytest_terminal_summary(
