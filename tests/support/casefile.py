@@ -4,8 +4,9 @@ Each heading `## sentence` that has fences is a case; each fence states one thin
 language of the fence says which: `tiniscript` (the program), `senses` (readings and limits),
 `robot` (the trace), `bytecode` (the listing), `plain` (that of its plain code), `line` (what a
 robot that reads text gets), `mistake` and `warning` (what is said; without a program above, the
-line that it shows is the program). The rule that a listing breaks is its last row, behind the word
-`refused`. Fences of other languages are for people.
+line that it shows is the program). A fence `refused` has many cases: the rule that a listing breaks
+and what the case is about, above the listing; rows that begin with `//` are for people, and so are
+fences of other languages.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from typing import NamedTuple
 ROOT = Path(__file__).resolve().parent.parent.parent
 PARTS = ("tiniscript", "senses", "robot", "bytecode", "plain", "line", "mistake", "warning",
          "formatted")  # fmt: skip
-REFUSED = "refused "
+LISTED = re.compile("[0-9a-f]{4}  ")
 SHOWN = re.compile(r"(?:line|línea) 1:  (.*\n)")
 
 
@@ -51,8 +52,6 @@ def read(path: Path) -> list[Case]:
             if fence:
                 if fence in PARTS:
                     found = cases[-1].parts
-                    if fence == "bytecode" and lines and lines[-1].startswith(REFUSED):
-                        found["refused"] = lines.pop().removeprefix(REFUSED) + "\n"
                     found[fence] = "".join(line + "\n" for line in lines)
                     if fence in ("mistake", "warning") and (shown := SHOWN.match(found[fence])):
                         found.setdefault("tiniscript", shown[1])
@@ -66,6 +65,12 @@ def read(path: Path) -> list[Case]:
                         count += 1
                         name = title if count == 1 else f"{title} #{count}"
                         cases.append(Case(path, number, name, {}))
+        elif fence == "refused":
+            if LISTED.match(row):
+                cases[-1].parts["bytecode"] += f"{row}\n"
+            elif not row.startswith("//"):
+                rule, name = row.split(": ", 1)
+                cases.append(Case(path, number, name, {"refused": f"{rule}\n", "bytecode": ""}))
         elif fence:
             lines.append(row)
         elif row.startswith("#"):
@@ -133,12 +138,17 @@ def accept(case: Case, part: str, actual: str) -> None:
     rows = case.path.read_text(encoding="utf-8").splitlines(keepends=True)
     # where the case stands now: what was accepted before may have moved it
     line = next(each.line for each in read(case.path) if each.title == case.title)
-    fence = "```bytecode" if part == "refused" else f"```{part}"
-    start = next(k for k, row in enumerate(rows) if k >= line - 1 and row.rstrip() == fence)
-    end = next(k for k in range(start + 1, len(rows)) if rows[k].startswith("```"))
-    if part == "refused":
-        start, actual = end - 2, REFUSED + actual
-    elif part == "bytecode" and "refused" in case.parts:
-        end -= 1
-    rows[start + 1 : end] = [actual]
+    if "refused" in case.parts:
+        listed = [k for k in range(line, len(rows)) if LISTED.match(rows[k])]
+        end = next(k for k in range(listed[0], len(rows)) if k not in listed)
+        if part == "bytecode":
+            rows[listed[0] : end] = [actual]
+        else:
+            rows[line - 1] = f"{actual.rstrip()}: {case.title}\n"
+    else:
+        start = next(
+            k for k, row in enumerate(rows) if k >= line - 1 and row.rstrip() == f"```{part}"
+        )
+        end = next(k for k in range(start + 1, len(rows)) if rows[k].startswith("```"))
+        rows[start + 1 : end] = [actual]
     case.path.write_text("".join(rows), encoding="utf-8")
