@@ -4,14 +4,15 @@ Each heading `## sentence` that has fences is a case; each fence states one thin
 language of the fence says which: `tiniscript` (the program), `senses` (readings and limits),
 `robot` (the trace), `bytecode` (the listing), `plain` (that of its plain code), `line` (what a
 robot that reads text gets), `mistake` and `warning` (what is said; without a program above, the
-line that it shows is the program). A fence `refused` has many cases: the rule that a listing breaks
-and what the case is about, above the listing; rows that begin with `//` are for people, and so are
-fences of other languages.
+line that it shows is the program). A fence `mistake` or `warning` may have many cases, each below a
+row that says what it is about. So has a fence `refused`, where the rule that a listing breaks is in
+that row; rows that begin with `//` are for people, and so are fences of other languages.
 """
 
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
@@ -20,6 +21,7 @@ PARTS = ("tiniscript", "senses", "robot", "bytecode", "plain", "line", "mistake"
          "formatted")  # fmt: skip
 LISTED = re.compile("[0-9a-f]{4}  ")
 SHOWN = re.compile(r"(?:line|línea) 1:  (.*\n)")
+ABOUT = re.compile(r"(?m)^(\S.*)\n(?=(?:line|línea) \d+:  )")
 
 
 class Case(NamedTuple):
@@ -50,11 +52,11 @@ def read(path: Path) -> list[Case]:
         if row.startswith("```"):
             language = row[3:].strip()
             if fence:
-                if fence in PARTS:
-                    found = cases[-1].parts
-                    found[fence] = "".join(line + "\n" for line in lines)
-                    if fence in ("mistake", "warning") and (shown := SHOWN.match(found[fence])):
-                        found.setdefault("tiniscript", shown[1])
+                text = "".join(line + "\n" for line in lines)
+                if fence in ("mistake", "warning"):
+                    cases[-1:] = _said(cases[-1], fence, text, number)
+                elif fence in PARTS:
+                    cases[-1].parts[fence] = text
                 fence = ""
             else:
                 fence, lines = language or "text", []
@@ -77,6 +79,23 @@ def read(path: Path) -> list[Case]:
             title, count = row.lstrip("#").strip(), 0
     assert not fence, f"{path.name}: a fence is not closed"
     return cases
+
+
+def _said(case: Case, fence: str, text: str, end: int) -> Iterator[Case]:
+    """Yield a case with what is said of it, and one for each row that says what it is about."""
+    before, *titled = ABOUT.split(text)
+    found = [(case, before)] if before else []
+    if case.parts and not before:
+        yield case  # of the heading above, which has said all
+    line = end - sum(each.count("\n") for each in titled) - len(titled) // 2
+    for title, said in zip(titled[::2], titled[1::2], strict=True):
+        found.append((Case(case.path, line, title, {}), said))
+        line += 1 + said.count("\n")
+    for each, said in found:
+        each.parts[fence] = said.rstrip("\n") + "\n"
+        if shown := SHOWN.match(said):
+            each.parts.setdefault("tiniscript", shown[1])
+        yield each
 
 
 class Example(NamedTuple):
@@ -137,18 +156,14 @@ def accept(case: Case, part: str, actual: str) -> None:
     """Write `actual` where the case says something else; git shows what changed."""
     rows = case.path.read_text(encoding="utf-8").splitlines(keepends=True)
     # where the case stands now: what was accepted before may have moved it
-    line = next(each.line for each in read(case.path) if each.title == case.title)
-    if "refused" in case.parts:
-        listed = [k for k in range(line, len(rows)) if LISTED.match(rows[k])]
-        end = next(k for k in range(listed[0], len(rows)) if k not in listed)
-        if part == "bytecode":
-            rows[listed[0] : end] = [actual]
-        else:
-            rows[line - 1] = f"{actual.rstrip()}: {case.title}\n"
+    now = next(each for each in read(case.path) if each.title == case.title)
+    if part == "refused":
+        rows[now.line - 1] = f"{actual.rstrip()}: {now.title}\n"
     else:
-        start = next(
-            k for k, row in enumerate(rows) if k >= line - 1 and row.rstrip() == f"```{part}"
-        )
-        end = next(k for k in range(start + 1, len(rows)) if rows[k].startswith("```"))
-        rows[start + 1 : end] = [actual]
+        start = now.line
+        if rows[start - 1].startswith("```"):
+            start = rows.index(f"```{part}\n", start - 1) + 1
+        while rows[start].startswith("//") and "refused" in now.parts:
+            start += 1
+        rows[start : start + now.parts[part].count("\n")] = [actual]
     case.path.write_text("".join(rows), encoding="utf-8")
