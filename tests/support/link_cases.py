@@ -8,7 +8,8 @@ the robot is played.
 Rows with a time say what comes of it: `>` the bytes from the computer, `<` those from the robot
 (with `x` where they are lost) and what they mean, `did` what the robot's link asks of the robot,
 `tells` and `outcome` what the session says. Each side is played against the written bytes of the
-other.
+other. What is said often has a name: a `rows NAME` fence has the rows without their time, and in
+the cases of its file a time and the name stand for them.
 
 An `items` fence is for a receiver alone: `> bytes`, `wait N`, `held N` (bytes before an item is
 taken), and `=` what it finds. A `computer items` fence is for the one in Python, a `robot items`
@@ -72,6 +73,7 @@ def link_cases(kind: str) -> list[LinkCase]:
 
 def _read(path: Path) -> list[LinkCase]:
     cases: list[LinkCase] = []
+    named = names_of(path)
     title, fence = "", ""
     for number, row in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
         if row.startswith("```"):
@@ -79,19 +81,42 @@ def _read(path: Path) -> list[LinkCase]:
             if fence in KINDS:
                 cases.append(LinkCase(path, number, fence, title, []))
         elif fence in KINDS:
-            cases[-1].rows.append(row)
+            time, _, name = row.lstrip().partition(" ")
+            found = named.get(name, []) if time.isdigit() else []
+            cases[-1].rows.extend([f"{time:>6} {each}" for each in found] or [row])
         elif not fence and row.startswith("#"):
             title = row.lstrip("# ")
     return cases
 
 
+def names_of(path: Path) -> dict[str, list[str]]:
+    """Return the rows that have a name, without their time."""
+    fences = re.findall(r"(?ms)^```rows (\w+)\n(.*?)^```$", path.read_text(encoding="utf-8"))
+    return {name: rows.splitlines() for name, rows in fences}
+
+
 def accept(case: LinkCase, rows: list[str]) -> None:
     """Write what was found where the case says something else; git shows what changed."""
-    old = case.path.read_text(encoding="utf-8")
-    before = "```" + case.kind + "\n" + "".join(row + "\n" for row in case.rows) + "```"
-    after = "```" + case.kind + "\n" + "".join(row + "\n" for row in rows) + "```"
-    assert old.count(before) == 1, case.id
-    case.path.write_text(old.replace(before, after), encoding="utf-8")
+    now = next(each for each in _read(case.path) if each[2:] == case[2:])
+    old = case.path.read_text(encoding="utf-8").splitlines()
+    old[now.line : old.index("```", now.line)] = shortened(rows, names_of(case.path))
+    case.path.write_text("\n".join(old) + "\n", encoding="utf-8")
+
+
+def shortened(rows: list[str], named: Mapping[str, list[str]]) -> list[str]:
+    """Return rows with names for those that have one."""
+    found = []
+    while rows:
+        time = rows[0][:7]
+        for name, each in named.items():
+            if rows[: len(each)] == [time + row for row in each]:
+                found.append(time + name)
+                rows = rows[len(each) :]
+                break
+        else:
+            found.append(rows[0])
+            rows = rows[1:]
+    return found
 
 
 # -- conversations --------------------------------------------------------------------------------
