@@ -71,7 +71,7 @@ def test_our_firmware_passes_all(pty_robot: PtyRobot, tsc: Tsc) -> None:
     assert not any("MOTORS" in row and row != "MOTORS 0 0" for row in pty_robot.did)
 
 
-@pytest.mark.sampled("group", keep=2)
+@pytest.mark.sampled("group")
 @pytest.mark.parametrize("group", ["link: ", "images: ", "stops: ", "programs: moves"])
 def test_an_uno_passes(group: str, sketch: Path, tmp_path: Path, tsc: Tsc) -> None:  # noqa: F811
     with Uno(sketch, names=NAMES, eeprom=tmp_path / "eeprom", baud=BAUD, tells_sleep=False) as uno:
@@ -133,6 +133,7 @@ CHANGES: dict[str, tuple[Change, str]] = {
 }  # fmt: skip
 
 
+@pytest.mark.sampled("what", keep=len(CHANGES) // 2)
 @pytest.mark.parametrize("what", CHANGES)
 def test_what_is_changed_on_its_way_is_named(what: str, pty_robot: PtyRobot) -> None:
     change, named = CHANGES[what]

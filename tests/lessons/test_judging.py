@@ -248,6 +248,7 @@ def test_what_is_wrong_with_the_run_as_a_whole(tmp_path: Path, text: str, senten
     assert sentence in found
 
 
+@pytest.mark.sampled("body", "ending", keep=2)
 @pytest.mark.parametrize(
     ("body", "ending"),
     [

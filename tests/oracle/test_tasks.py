@@ -48,6 +48,7 @@ def check_program(seed: int, machines: Sequence[Machine] = (run_python,)) -> str
     return want.split()[-1]
 
 
+@pytest.mark.sampled("first", keep=3)
 @pytest.mark.parametrize("first", range(0, 400, BATCH))
 def test_random_programs(first: int) -> None:
     ends = Counter(check_program(seed) for seed in range(first, first + BATCH))

@@ -72,6 +72,7 @@ def check_task_program(seed: int, machines: Sequence[Machine] = (run_python,)) -
     return want.split()[-1]
 
 
+@pytest.mark.sampled("first")
 @pytest.mark.parametrize("first", range(0, 4 * BATCH, BATCH))
 def test_random_programs(first: int) -> None:
     ends = Counter(check_program(seed) for seed in range(first, first + BATCH))

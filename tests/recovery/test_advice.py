@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tests.pupils.corpus import check
+from tests.support.rows import each_row
 from tiniscript import robots
 from tiniscript.diagnostics.fixing import fixed
 from tiniscript.recovery.advice import Row, advised, rows
@@ -12,7 +13,7 @@ from tiniscript.recovery.advice import Row, advised, rows
 KIT = robots.load(robots.DEFAULT).kit
 
 
-@pytest.mark.parametrize("row", rows(), ids=lambda row: row.example[0])
+@each_row("row", [pytest.param(row, id=row.example[0]) for row in rows()])
 def test_the_example_of_a_row_is_told_as_it_says(row: Row) -> None:
     wrong, told = row.example
     name, _, value = told.partition("=")

@@ -9,6 +9,7 @@ import pytest
 
 from tests.pupils.corpus import entries
 from tests.pupils.test_damage import programs
+from tests.support.rows import each_row
 from tiniscript import robots
 from tiniscript.base.kit import Kit
 from tiniscript.base.source import Edit, Span
@@ -24,10 +25,10 @@ from tools.shadow.__main__ import SAMPLE, SCORES, sample
 
 KITS = [robots.load(name).kit for name in ("tinibot", "grabber", "liner")]
 _F = "F(time, power)"
-ROWS = [*rewrites.of_signs(), *rewrites.of_tokens()]
+ROWS: list[rewrites.SignRow | rewrites.Row] = [*rewrites.of_signs(), *rewrites.of_tokens()]
 
 
-@pytest.mark.parametrize("row", ROWS, ids=lambda row: row.example[0][:50])
+@each_row("row", [pytest.param(row, id=row.example[0][:50]) for row in ROWS])
 def test_the_example_of_a_row_is_read_as_it_says(row: rewrites.Row | rewrites.SignRow) -> None:
     wrong, right = row.example
     found = (Recovery(wrong, kit, partial(mistakes, kit)).best() for kit in KITS)

@@ -143,6 +143,7 @@ def test_a_set_of_sensors_is_wider_where_there_may_be_more() -> None:
     assert most("DEF A;END_DEF", LEVELS["mega"]) == most("DEF A;END_DEF") + 4 * 2
 
 
+@pytest.mark.sampled("first")
 @pytest.mark.parametrize("first", range(0, 2000, 500))
 def test_the_reader_and_the_compiler_count_the_same_code(first: int) -> None:
     for seed in range(first, first + 500):

@@ -25,9 +25,9 @@ from tiniscript.diagnostics.rendering import as_text, message
 from tiniscript.syntax.formatter import formatted
 
 MAX_MS, MAX_STEPS = 20_000, 20_000
-BATCH = 250
+BATCH = 125
 PUSH32_BYTES = BY_NAME["PUSH32"].size
-BATCHES = 80  # in the tests, of which a commit runs one; a campaign runs more
+BATCHES = 160  # in the tests, of which a commit runs one; a campaign runs more
 
 
 def same(want: str, got: str) -> bool:
@@ -139,11 +139,11 @@ def test_broken_programs(seeds: range) -> None:
 
 
 @pytest.mark.sampled("part")
-@pytest.mark.parametrize("part", range(64))
+@pytest.mark.parametrize("part", range(128))
 def test_the_compiler_never_makes_what_verify_refuses(part: int) -> None:
-    """10^5 random programs in all, 1,500 of them on a commit; optimised or not."""
-    for number in range(1563):
-        seed = 1_000_000 + part * 1563 + number
+    """10^5 random programs in all, 780 of them on a commit; optimised or not."""
+    for number in range(782):
+        seed = 1_000_000 + part * 782 + number
         rng = random.Random(seed)
         oracle_kit, kit = KITS[seed % len(KITS)]
         compiled = compile_text(programs.program(rng, oracle_kit), kit, optimize=seed % 3 > 0)

@@ -78,7 +78,7 @@ def test_program_compiles_or_its_mistake_is_stated(case: Case) -> None:
 
 
 @pytest.mark.parametrize("machine", MACHINES)
-@pytest.mark.parametrize("case", having("tiniscript", "robot"))
+@each_row("case", having("tiniscript", "robot"))
 def test_robot(case: Case, machine: str, request: pytest.FixtureRequest) -> None:
     expect(case, "robot", trace_of(case, MACHINES[machine]), request)
 
@@ -100,9 +100,7 @@ def test_line_of_a_program(case: Case, request: pytest.FixtureRequest) -> None:
     expect(case, "line", line_of(compiled(case).source) + "\n", request)
 
 
-@pytest.mark.parametrize(
-    "case", [*having("tiniscript", "mistake"), *having("tiniscript", "warning")]
-)
+@each_row("case", [*having("tiniscript", "mistake"), *having("tiniscript", "warning")])
 def test_what_is_said(case: Case, request: pytest.FixtureRequest) -> None:
     found = compiled(case)
     for part, is_mistake in (("mistake", True), ("warning", False)):
@@ -129,7 +127,7 @@ def listings_alone() -> list[pytest.ParameterSet]:
 
 
 @pytest.mark.parametrize("machine", MACHINES)
-@pytest.mark.parametrize("case", listings_alone())
+@each_row("case", listings_alone())
 def test_listing_runs_or_is_refused(
     case: Case, machine: str, request: pytest.FixtureRequest
 ) -> None:

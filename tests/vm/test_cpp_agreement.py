@@ -21,8 +21,8 @@ from tests.vm.test_cases import listings_alone
 from tiniscript.base.limits import CODE_BYTES
 from tiniscript.bytecode.opcodes import BY_NAME
 
-BATCH = 25_000
-BATCHES = 40  # in the tests
+BATCH = 12_500
+BATCHES = 80  # in the tests
 
 
 # -- code ---------------------------------------------------------------------------------------
@@ -47,6 +47,7 @@ def test_all_codes_of_up_to_two_bytes() -> None:
     cpp_checks.check_short_codes(host())
 
 
+@pytest.mark.sampled("few_at")
 @pytest.mark.parametrize("few_at", [1, 2])
 def test_codes_of_three_bytes_with_two_opcodes(few_at: int) -> None:
     cpp_checks.check_pairs(host(), few_at)
@@ -57,6 +58,7 @@ def test_all_codes_of_three_bytes_run_safely(first: int) -> None:
     cpp_checks.check_runs_safely(host(), first)
 
 
+@pytest.mark.sampled("name", keep=3)
 @pytest.mark.parametrize(
     "name",
     ["PUSH_TRUE", "PUSH_VAR", "ADD_VAR", "READ", "MOVE8_F", "MOTORS8", "STOP", "FOREVER", "DEF"],
@@ -69,7 +71,7 @@ def test_codes_of_three_bytes_that_begin_alike(name: str) -> None:
 @pytest.mark.sampled("seed")
 @pytest.mark.parametrize("seed", range(BATCHES))
 def test_random_codes(seed: int) -> None:
-    """A million in all, a fortieth of it on a commit."""
+    """A million in all, an eightieth of it on a commit."""
     cpp_checks.check_a_batch(host(), seed, BATCH)
 
 
@@ -133,12 +135,13 @@ def test_a_robot_that_is_not_ready_is_asked_again() -> None:
 # -- tasks --------------------------------------------------------------------------------------
 
 
+@pytest.mark.sampled("seed")
 @pytest.mark.parametrize("seed", range(2))
 def test_random_codes_with_tasks(seed: int) -> None:
     cpp_tasks.check_task_codes(host(), seed, 5000)
 
 
-@pytest.mark.sampled("first", keep=3)
+@pytest.mark.sampled("first", keep=2)
 @pytest.mark.parametrize("first", range(0, 2000, 250))
 def test_random_programs_with_tasks(first: int) -> None:
     cpp_tasks.check_task_programs(host(), first, 250)
@@ -169,12 +172,13 @@ def test_a_task_whose_reading_is_not_ready_lets_the_others_go_on(not_ready: int)
 # -- ways ---------------------------------------------------------------------------------------
 
 
+@pytest.mark.sampled("seed")
 @pytest.mark.parametrize("seed", range(2))
 def test_random_codes_with_ways(seed: int) -> None:
     cpp_ways.check_way_codes(host(), seed, 3000)
 
 
-@pytest.mark.sampled("first", keep=2)
+@pytest.mark.sampled("first")
 @pytest.mark.parametrize("first", range(0, 1600, 200))
 def test_random_programs_with_ways(first: int) -> None:
     cpp_ways.check_way_programs(host(), first, 200)
@@ -183,11 +187,13 @@ def test_random_programs_with_ways(first: int) -> None:
 # -- images and arithmetic ----------------------------------------------------------------------
 
 
+@pytest.mark.sampled("seed")
 @pytest.mark.parametrize("seed", range(4))
 def test_images(seed: int) -> None:
     cpp_images.check_images(host(), seed, BATCH)
 
 
+@pytest.mark.sampled("seed")
 @pytest.mark.parametrize("seed", range(2))
 def test_images_of_programs(seed: int) -> None:
     """Header, code and devices, in this order, for robots of which some have other devices."""

@@ -107,6 +107,7 @@ def test_there_are_operations_of_every_kind() -> None:
 
 
 @needs_chip
+@pytest.mark.sampled("seed", keep=2)
 @pytest.mark.parametrize("seed", range(1, 5))
 def test_arithmetic(seed: int) -> None:
     """25,000 operations for each seed; a hundred thousand in all."""

@@ -36,6 +36,7 @@ def limited(code: str) -> str:
     return done.stdout
 
 
+@pytest.mark.sampled("each", keep=2)
 @pytest.mark.parametrize("each", [
     "loaded()",
     "loaded().machine(image, None)",
