@@ -11,6 +11,16 @@ from tiniscript.base.languages import FOLDER
 
 # Of what the page's Python says; the sentences of lessons come with these.
 MESSAGES = ("messages", "statuses", "refusals", "library", "robot", "names")
+# What the page says as the command does: how a recording compares, and why a run has ended.
+OF_COMMAND = {
+    **{f"record_{what}": f"replay_{what}" for what in (
+        "same", "missed", "empty", "value", "time", "robot_more", "virtual_more", "end", "at",
+    )},
+    **{key: key for key in (
+        "fault_NO_POWER", "fault_STUCK", "fault_STUCK_LEFT", "fault_STUCK_RIGHT",
+        "stopped_NONE", "stopped_BUTTON", "stopped_TEXT",
+    )},
+}  # fmt: skip
 PERIOD = 100  # after so many numbers a rule of plurals repeats itself, but for the first hundred
 
 
@@ -20,6 +30,8 @@ def page_texts(language: str) -> dict[str, str | list[str]]:
     The one without a key has which form is for which number, from 0 to 199.
     """
     head, found = _texts("studio", language)
+    _, said = _texts("command", language)
+    found |= {key: said[each] for key, each in OF_COMMAND.items()}
     rule = re.search(r"plural=([^;\n]+)", head)
     form = c2py(rule[1] if rule else "0")
     return {
