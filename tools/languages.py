@@ -12,7 +12,7 @@ from __future__ import annotations
 import argparse
 import re
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from difflib import SequenceMatcher
 from pathlib import Path
 
@@ -54,13 +54,19 @@ def _said_in(value: object) -> Iterator[str]:
 
 
 def in_step(source: Catalogue, own: Catalogue, language: str) -> Catalogue:
-    """Return a catalogue with the texts of the English one, and the translations that it has."""
+    """Return a catalogue with the texts of the English one, and the translations that it has.
+
+    Other languages lack what has no words.
+    """
     head = own.head or re.sub(
         r"^(Language|X-Name): .*$", rf"\1: {language}", source.head, flags=re.M
     )
     made = Catalogue(head)
-    olds = _before(source, own)
-    for at, entry in source.entries.items():
+    entries = {
+        at: each for at, each in source.entries.items() if language == SOURCE or not each.is_gap
+    }
+    olds = _before(entries, own)
+    for at, entry in entries.items():
         old = olds.get(at, entry)
         has_changed = (old.at, old.plural) != (at, entry.plural)
         is_fuzzy = any(old.said) and (old.is_fuzzy or has_changed)
@@ -69,16 +75,18 @@ def in_step(source: Catalogue, own: Catalogue, language: str) -> Catalogue:
     return made
 
 
-def _before(source: Catalogue, own: Catalogue) -> dict[tuple[str, str], Entry]:
+def _before(
+    source: Mapping[tuple[str, str], Entry], own: Catalogue
+) -> dict[tuple[str, str], Entry]:
     """Return what each text was before: itself, else what is gone and most like it.
 
     That one has the same key, or the same English text under another key.
     """
-    found = {at: own.entries[at] for at in source.entries if at in own.entries}
+    found = {at: own.entries[at] for at in source if at in own.entries}
     for entry in own.entries.values():
         if entry.at in found or not any(entry.said):
             continue
-        new = [at for at in source.entries if at not in found]
+        new = [at for at in source if at not in found]
         places = [at for at in new if at[0] == entry.key]
         places = places or [at for at in new if at[1] == entry.english]
         if places:

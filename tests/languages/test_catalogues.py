@@ -47,7 +47,7 @@ def test_a_catalogue_has_the_gaps_and_the_keys_of_the_english_one(path: Path) ->
     assert own.problems == []
     assert set(own.entries) <= set(source.entries)
     if "X-Complete: yes" in own.head:
-        assert list(own.entries) == list(source.entries)
+        assert list(own.entries) == [at for at, each in source.entries.items() if not each.is_gap]
         for at, entry in own.entries.items():
             assert entry.is_translated, at
             assert entry.plural == source.entries[at].plural, at

@@ -15,6 +15,7 @@ from string import Formatter
 ESCAPES = {"n": "\n", "t": "\t", "r": "\r", '"': '"', "\\": "\\"}
 BRACES = "python-brace-format"  # gettext's flag for a text with gaps like {file}
 _ROW = re.compile(r'(msgctxt|msgid|msgid_plural|msgstr|msgstr\[(\d)\])?\s*"((?:[^"\\]|\\.)*)"\s*')
+_GAP = re.compile(r"\{@?\w+\}")
 _PLURALS = re.compile(r"nplurals\s*=\s*(\d+)")
 
 
@@ -36,6 +37,11 @@ class Entry:
     @property
     def at(self) -> tuple[str, str]:
         return self.key, self.english
+
+    @property
+    def is_gap(self) -> bool:
+        """Whether it is a gap and nothing else, which no language says in another way."""
+        return _GAP.fullmatch(self.english) is not None
 
     @property
     def is_translated(self) -> bool:
