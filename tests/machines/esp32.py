@@ -31,6 +31,7 @@ SIMULATED = (
     "simulated_radio.cpp",
     "simulated_tls.cpp",
     "tasks_in_turn.cpp",
+    "wires.cpp",
 )  # of extras: the others are programs of their own
 HAS_TLS = Path("/usr/include/mbedtls/ssl.h").exists()
 TLS = ("-lmbedtls", "-lmbedx509", "-lmbedcrypto") if HAS_TLS else ()

@@ -4,17 +4,16 @@
 // with what it asks; an answer is four bytes of length and what was found.
 // `tests/machines/esp32.py` is the other side. Ends with its input.
 
-#include <math.h>
-
 #include <algorithm>
 #include <chrono>
 
 #include "../../src/boards/esp32/first_bytes.h"
-#include "../../src/boards/kit.h"
+#include "../../src/boards/motors.h"
 #include "../../src/firmware/board.h"
 #include "../host/wire.h"
 #include "simulated_chip.h"
 #include "simulated_radio.h"
+#include "wires.h"
 
 using namespace tiniscript;
 
@@ -24,9 +23,7 @@ constexpr uint32_t kTurnUs = 50;    // of the main loop
 constexpr size_t kBytesPerMs = 12;  // at 115200 baud
 
 std::string log_of_robot;
-int shown_left;
-int shown_right;
-uint32_t shown_hertz;
+Wired shown;
 
 // Since the last request began: turns of the main loop, and those until a motor pin has changed.
 typedef std::chrono::steady_clock Watch;
@@ -37,71 +34,20 @@ uint64_t moved_ns;
 
 void say(const std::string& line) { log_of_robot += line + "\n"; }
 
-int percent(double level) { return static_cast<int>(lround(level / 2.55)); }
-
-// What reaches a motor, from the pins alone.
-#if defined(tiniscript_motors_bridge)
-int power_of(const Bridge& motor) {
-  const bool is_forward = output_of(motor.forward.number) != 0;
-  const bool is_backward = output_of(motor.backward.number) != 0;
-  if (is_forward == is_backward) return 0;
-  return (is_forward ? 1 : -1) * percent(output_of(motor.pwm.pin.number));
-}
-
-#elif defined(tiniscript_motors_two_wire)
-int power_of(const TwoWire& motor) {
-  return percent(output_of(motor.forward.pin.number) - output_of(motor.backward.pin.number));
-}
-#endif
-
-#ifdef tiniscript_servos
-uint32_t pulse_us(const Pwm& servo) {
-  const SimulatedPin& pin = chip.pins[servo.pin.number];
-  if (pin.signal != signal_of(servo.channel)) return 0;
-  const SimulatedChannel& channel = chip.channels[servo.channel];
-  return static_cast<uint32_t>((uint64_t{channel.duty} * 20000 + 8192) >> 14);
-}
-
-#ifdef tiniscript_motors_servos
-int power_of(const TurningServo& motor) {
-  const uint32_t us = pulse_us(kServos[motor.number]);
-  if (us == 0) return 0;
-  const int more = static_cast<int>(us) - motor.still_us;
-  return percent((motor.is_reversed ? -more : more) / 2.0);
-}
-#endif
-
-uint32_t shown_us[sizeof kServos / sizeof *kServos];
-#endif
-
-uint32_t tone() {
-  const bool is_joined = chip.pins[kBuzzer.pin.number].signal == signal_of(kBuzzer.channel);
-  const SimulatedChannel& channel = chip.channels[kBuzzer.channel];
-  return is_joined && channel.duty != 0 ? channel.hertz : 0;
-}
-
 void look() {
-  const int left = power_of(kLeftMotor);
-  const int right = power_of(kRightMotor);
-  if (left != shown_left || right != shown_right) {
-    say("MOTORS " + std::to_string(left) + " " + std::to_string(right));
+  const Wired now = wired_now();
+  if (now.left != shown.left || now.right != shown.right) {
+    say("MOTORS " + std::to_string(now.left) + " " + std::to_string(now.right));
     turns_until_moved = turns_begun;
     const Watch::duration took = Watch::now() - begun;
     moved_ns = static_cast<uint64_t>(std::chrono::nanoseconds(took).count());
   }
-  shown_left = left;
-  shown_right = right;
-  const uint32_t hertz = tone();
-  if (hertz != shown_hertz) say("TONE " + std::to_string(hertz));
-  shown_hertz = hertz;
-#ifdef tiniscript_servos
-  uint8_t number = 0;
-  for (const Pwm& servo : kServos) {
-    const uint32_t us = pulse_us(servo);
-    if (us != shown_us[number]) say("SERVO " + std::to_string(number) + " " + std::to_string(us));
-    shown_us[number++] = us;
+  if (now.hertz != shown.hertz) say("TONE " + std::to_string(now.hertz));
+  for (uint8_t k = 0; k < now.servos; k++) {
+    const uint32_t us = now.pulse_us[k];
+    if (us != shown.pulse_us[k]) say("SERVO " + std::to_string(k) + " " + std::to_string(us));
   }
-#endif
+  shown = now;
 }
 
 void pass(uint32_t us) {
@@ -158,12 +104,12 @@ void answer_step(RequestReader* request, Writer* answer) {
   const uint16_t count = request->u16();
   const Bytes heard = request->bytes();
   hear(heard, 0, heard.length);
-  if ((flags & 1) != 0) set_input(kStartButton.number, false);
-  if ((flags & 2) != 0) set_input(kStartButton.number, true);
+  if ((flags & 1) != 0) push_button(true);
+  if ((flags & 2) != 0) push_button(false);
   turns(count);
   answer->text(chip.sent);
   answer->text(log_of_robot);
-  answer->u8(is_there(kLight) ? output_of(kLight.number) != 0 : 0);
+  answer->u8(light_is_on());
   answer->u8(motors_are_stopped());
   chip.sent.clear();
   log_of_robot.clear();
@@ -191,7 +137,7 @@ void answer_wait(RequestReader* request, Writer* answer) {
   }
   answer->text(chip.sent);
   answer->text(did);
-  answer->u8(is_there(kLight) ? output_of(kLight.number) != 0 : 0);
+  answer->u8(light_is_on());
   answer->text(stopped);
   chip.sent.clear();
 }

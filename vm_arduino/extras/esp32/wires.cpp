@@ -1,0 +1,69 @@
+#include "wires.h"
+
+#include <math.h>
+
+#include "../../src/boards/kit.h"
+#include "simulated_chip.h"
+
+using namespace tiniscript;
+
+namespace {
+
+int percent(double level) { return static_cast<int>(lround(level / 2.55)); }
+
+#if defined(tiniscript_motors_bridge)
+int power_of(const Bridge& motor) {
+  const bool is_forward = output_of(motor.forward.number) != 0;
+  const bool is_backward = output_of(motor.backward.number) != 0;
+  if (is_forward == is_backward) return 0;
+  return (is_forward ? 1 : -1) * percent(output_of(motor.pwm.pin.number));
+}
+
+#elif defined(tiniscript_motors_two_wire)
+int power_of(const TwoWire& motor) {
+  return percent(output_of(motor.forward.pin.number) - output_of(motor.backward.pin.number));
+}
+#endif
+
+#ifdef tiniscript_servos
+uint32_t pulse_us(const Pwm& servo) {
+  const SimulatedPin& pin = chip.pins[servo.pin.number];
+  if (pin.signal != signal_of(servo.channel)) return 0;
+  const SimulatedChannel& channel = chip.channels[servo.channel];
+  return static_cast<uint32_t>((uint64_t{channel.duty} * 20000 + 8192) >> 14);
+}
+
+#ifdef tiniscript_motors_servos
+int power_of(const TurningServo& motor) {
+  const uint32_t us = pulse_us(kServos[motor.number]);
+  if (us == 0) return 0;
+  const int more = static_cast<int>(us) - motor.still_us;
+  return percent((motor.is_reversed ? -more : more) / 2.0);
+}
+#endif
+
+static_assert(sizeof kServos / sizeof *kServos <= kMostServos, "more servos than are looked at");
+#endif
+
+uint32_t tone() {
+  const bool is_joined = chip.pins[kBuzzer.pin.number].signal == signal_of(kBuzzer.channel);
+  const SimulatedChannel& channel = chip.channels[kBuzzer.channel];
+  return is_joined && channel.duty != 0 ? channel.hertz : 0;
+}
+
+}  // namespace
+
+Wired wired_now() {
+  Wired found = {};
+  found.left = power_of(kLeftMotor);
+  found.right = power_of(kRightMotor);
+  found.hertz = tone();
+#ifdef tiniscript_servos
+  for (const Pwm& servo : kServos) found.pulse_us[found.servos++] = pulse_us(servo);
+#endif
+  return found;
+}
+
+bool light_is_on() { return is_there(kLight) && output_of(kLight.number) != 0; }
+
+void push_button(bool is_down) { set_input(kStartButton.number, !is_down); }

@@ -1,0 +1,25 @@
+// What is wired to the pins of the simulated chip: motors, buzzer, servos, light, button of a kit.
+//
+// Knows the pins and what drives them. Alone compiled for each robot, so that little is.
+
+#ifndef TINISCRIPT_ESP32_WIRES_H_
+#define TINISCRIPT_ESP32_WIRES_H_
+
+#include <stdint.h>
+
+constexpr uint8_t kMostServos = 8;
+
+// What reaches the parts, from the pins alone.
+struct Wired {
+  int left;  // a motor's power, -100 to 100
+  int right;
+  uint32_t hertz;  // of the buzzer; 0: none
+  uint8_t servos;
+  uint32_t pulse_us[kMostServos];  // 0: none
+};
+
+Wired wired_now();
+bool light_is_on();
+void push_button(bool is_down);
+
+#endif  // TINISCRIPT_ESP32_WIRES_H_
