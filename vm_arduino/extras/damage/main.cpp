@@ -439,30 +439,13 @@ void answer_line(RequestReader* request, Writer* answer) {
   for (const std::string& each : accepted) answer->text(each);
 }
 
+const Answers answers = {
+    {'J', answer_judged},
+    {'F', answer_false_stops},
+    {'T', answer_typed},
+    {'L', answer_line},
+};
+
 }  // namespace
 
-int main() {
-  std::string asked;
-  while (next_request(&asked)) {
-    RequestReader request(asked);
-    Writer said;
-    switch (request.u8()) {
-      case 'J':
-        answer_judged(&request, &said);
-        break;
-      case 'F':
-        answer_false_stops(&request, &said);
-        break;
-      case 'T':
-        answer_typed(&request, &said);
-        break;
-      case 'L':
-        answer_line(&request, &said);
-        break;
-      default:
-        return 1;
-    }
-    send_answer(said);
-  }
-  return 0;
-}
+int main() { return all_answered(answers) ? 0 : 1; }

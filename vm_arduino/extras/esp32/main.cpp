@@ -60,7 +60,7 @@ void pass(uint32_t us) {
 }
 
 // B: a reset, and what it leaves alone: the bytes of `noinit`, the entries of NVS.
-void answer_begin(RequestReader* request) {
+void answer_begin(RequestReader* request, Writer*) {
   chip.reset = static_cast<esp_reset_reason_t>(request->u8());
   chip.random = request->u32();
   set_noinit(request->text());
@@ -143,7 +143,7 @@ void answer_wait(RequestReader* request, Writer* answer) {
 }
 
 // E: what a reset leaves alone.
-void answer_kept(Writer* answer) {
+void answer_kept(RequestReader*, Writer* answer) {
   answer->text(noinit());
   answer->u32(static_cast<uint32_t>(chip.entries.size()));
   for (const auto& each : chip.entries) {
@@ -154,17 +154,17 @@ void answer_kept(Writer* answer) {
 }
 
 // H: the main loop stands still for so many milliseconds.
-void answer_hang(RequestReader* request) {
+void answer_hang(RequestReader* request, Writer*) {
   for (uint32_t left = request->u32(); left > 0; left--) pass(1000);
 }
 
 // A: what an analog pin has, 0 to 4095; D: a digital one; U: how long the echo of a sensor is.
-void answer_analog(RequestReader* request) {
+void answer_analog(RequestReader* request, Writer*) {
   const uint8_t pin = request->u8();
   chip.analog[pin] = request->u16();
 }
 
-void answer_digital(RequestReader* request) {
+void answer_digital(RequestReader* request, Writer*) {
   const uint8_t pin = request->u8();
   set_input(pin, request->u8() != 0);
 }
@@ -182,7 +182,7 @@ void answer_edges(RequestReader* request, Writer* answer) {
   answer->u16(board_edges(true));
 }
 
-void answer_echo(RequestReader* request) {
+void answer_echo(RequestReader* request, Writer*) {
   chip.trigger_pin = request->u8();
   chip.echo_pin = request->u8();
   chip.echo_us = request->u32();
@@ -255,14 +255,14 @@ void answer_guest(RequestReader* request, Writer* answer) {
 
 // M: how many turns of the main loop, and nanoseconds of this computer, the last step took until a
 // motor pin changed.
-void answer_moved(Writer* answer) {
+void answer_moved(RequestReader*, Writer* answer) {
   answer->u32(turns_until_moved);
   answer->u32(static_cast<uint32_t>(moved_ns));
   answer->u32(chip.rests);
 }
 
 // X: a panic. What a stack that is not to be relied on would make is not simulated.
-void answer_panic() {
+void answer_panic(RequestReader*, Writer*) {
   simulated_panic();
   look();
 }
@@ -271,70 +271,30 @@ void answer_panic() {
 // the chip. L: LEDC does nothing any more.
 void answer_output(RequestReader* request, Writer* answer) { answer->u8(output_of(request->u8())); }
 
+const Answers answers = {
+    {'B', answer_begin},
+    {'S', answer_step},
+    {'W', answer_wait},
+    {'E', answer_kept},
+    {'H', answer_hang},
+    {'A', answer_analog},
+    {'D', answer_digital},
+    {'K', answer_edges},
+    {'U', answer_echo},
+    {'O', answer_output},
+    {'R', answer_radio},
+    {'X', answer_panic},
+    {'G', answer_guest},
+    {'M', answer_moved},
+    {'L', [](RequestReader*, Writer*) { chip.is_ledc_stuck = true; }},
+    {'F', [](RequestReader* request, Writer*) { chip.is_nvs_full = request->u8() != 0; }},
+    {'Z', [](RequestReader* request, Writer*) { chip.erase_ms = request->u32(); }},
+};
+
 }  // namespace
 
 int main() {
-  std::string asked;
-  while (next_request(&asked)) {
-    RequestReader request(asked);
-    Writer said;
-    switch (request.u8()) {
-      case 'B':
-        answer_begin(&request);
-        break;
-      case 'S':
-        answer_step(&request, &said);
-        break;
-      case 'W':
-        answer_wait(&request, &said);
-        break;
-      case 'E':
-        answer_kept(&said);
-        break;
-      case 'H':
-        answer_hang(&request);
-        break;
-      case 'A':
-        answer_analog(&request);
-        break;
-      case 'D':
-        answer_digital(&request);
-        break;
-      case 'K':
-        answer_edges(&request, &said);
-        break;
-      case 'U':
-        answer_echo(&request);
-        break;
-      case 'O':
-        answer_output(&request, &said);
-        break;
-      case 'R':
-        answer_radio(&request, &said);
-        break;
-      case 'X':
-        answer_panic();
-        break;
-      case 'G':
-        answer_guest(&request, &said);
-        break;
-      case 'M':
-        answer_moved(&said);
-        break;
-      case 'L':
-        chip.is_ledc_stuck = true;
-        break;
-      case 'F':
-        chip.is_nvs_full = request.u8() != 0;
-        break;
-      case 'Z':
-        chip.erase_ms = request.u32();
-        break;
-      default:
-        return 1;
-    }
-    send_answer(said);
-  }
+  const bool is_known = all_answered(answers);
   fflush(nullptr);
-  _Exit(0);  // tasks go on until then
+  _Exit(is_known ? 0 : 1);  // tasks go on until then
 }

@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include <map>
 #include <memory>
 #include <string>
 #include <utility>
@@ -100,6 +101,29 @@ inline void send_answer(const Writer& said) {
   fwrite(head.data().data(), 1, head.data().size(), stdout);
   fwrite(said.data().data(), 1, said.data().size(), stdout);
   fflush(stdout);
+}
+
+// What answers a request, by its first byte.
+using Answers = std::map<char, void (*)(RequestReader*, Writer*)>;
+
+// Answers a request; false if its first byte is none of these.
+inline bool answered(const Answers& answers, const std::string& asked, Writer* said) {
+  RequestReader request(asked);
+  const auto found = answers.find(static_cast<char>(request.u8()));
+  if (found == answers.end()) return false;
+  found->second(&request, said);
+  return true;
+}
+
+// Answers requests up to the end of the input; returns false at one that it does not know.
+inline bool all_answered(const Answers& answers) {
+  std::string asked;
+  while (next_request(&asked)) {
+    Writer said;
+    if (!answered(answers, asked, &said)) return false;
+    send_answer(said);
+  }
+  return true;
 }
 
 #endif  // TINISCRIPT_HOST_WIRE_H_

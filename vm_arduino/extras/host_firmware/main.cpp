@@ -101,7 +101,7 @@ void check_code() {
 }
 
 // B: power on, with what the memory holds.
-void answer_begin(RequestReader* request) {
+void answer_begin(RequestReader* request, Writer*) {
   table.kit = request->u16();
   table.sensors = request->u8();
   table.actuators = request->u8();
@@ -189,21 +189,21 @@ void answer_wait(RequestReader* request, Writer* answer) {
 }
 
 // E: the contents of the memory.
-void answer_memory(Writer* answer) { answer->text(table.memory); }
+void answer_memory(RequestReader*, Writer* answer) { answer->text(table.memory); }
 
 // L: whether the supply is too low.
-void answer_supply(RequestReader* request) { table.is_low = request->u8() != 0; }
+void answer_supply(RequestReader* request, Writer*) { table.is_low = request->u8() != 0; }
 
 // D: selects a byte of the memory that never changes.
-void answer_dead(RequestReader* request) { table.dead = request->u16(); }
+void answer_dead(RequestReader* request, Writer*) { table.dead = request->u16(); }
 
 // V: sets the readings of the sensors.
-void answer_readings(RequestReader* request) {
+void answer_readings(RequestReader* request, Writer*) {
   for (int32_t& reading : table.readings) reading = request->i32();
 }
 
 // C: the codes that were started since this was asked last.
-void answer_codes(Writer* answer) {
+void answer_codes(RequestReader*, Writer* answer) {
   for (const std::string& code : table.codes) answer->text(code);
   table.codes.clear();
 }
@@ -337,45 +337,18 @@ void nvm_write(uint16_t place, uint8_t value) {
 
 void nvm_clear(uint16_t place) { nvm_write(place, 0); }
 
+const Answers answers = {
+    {'B', answer_begin},
+    {'S', answer_step},
+    {'W', answer_wait},
+    {'E', answer_memory},
+    {'L', answer_supply},
+    {'D', answer_dead},
+    {'V', answer_readings},
+    {'C', answer_codes},
+    {'T', answer_trim},
+};
+
 }  // namespace tiniscript
 
-int main() {
-  std::string asked;
-  while (next_request(&asked)) {
-    RequestReader request(asked);
-    Writer said;
-    switch (request.u8()) {
-      case 'B':
-        answer_begin(&request);
-        break;
-      case 'S':
-        answer_step(&request, &said);
-        break;
-      case 'W':
-        answer_wait(&request, &said);
-        break;
-      case 'E':
-        answer_memory(&said);
-        break;
-      case 'L':
-        answer_supply(&request);
-        break;
-      case 'D':
-        answer_dead(&request);
-        break;
-      case 'V':
-        answer_readings(&request);
-        break;
-      case 'C':
-        answer_codes(&said);
-        break;
-      case 'T':
-        answer_trim(&request, &said);
-        break;
-      default:
-        return 1;
-    }
-    send_answer(said);
-  }
-  return 0;
-}
+int main() { return all_answered(answers) ? 0 : 1; }

@@ -27,7 +27,7 @@ Receiver receiver;
 Link link_half;
 
 // B: switches a robot on.
-void answer_begin(RequestReader* request) {
+void answer_begin(RequestReader* request, Writer*) {
   port = SimulatedPort();
   port.room = request->u16();
   port.identity.kit = request->u16();
@@ -231,37 +231,17 @@ void answer_seal(RequestReader* request, Writer* answer) {
 }
 
 // M: the image that the robot holds, and whether it is what a robot may run.
-void answer_image(Writer* answer) { answer->text(port.held); }
+void answer_image(RequestReader*, Writer* answer) { answer->text(port.held); }
 
-bool answer(const std::string& asked, Writer* said) {
-  RequestReader request(asked);
-  switch (request.u8()) {
-    case 'B':
-      answer_begin(&request);
-      break;
-    case 'S':
-      answer_step(&request, said);
-      break;
-    case 'R':
-      answer_robot(&request, said);
-      break;
-    case 'I':
-      answer_items(&request, said);
-      break;
-    case 'H':
-      answer_hash(&request, said);
-      break;
-    case 'X':
-      answer_seal(&request, said);
-      break;
-    case 'M':
-      answer_image(said);
-      break;
-    default:
-      return false;
-  }
-  return true;
-}
+const Answers answers = {
+    {'B', answer_begin},
+    {'S', answer_step},
+    {'R', answer_robot},
+    {'I', answer_items},
+    {'H', answer_hash},
+    {'X', answer_seal},
+    {'M', answer_image},
+};
 
 }  // namespace
 
@@ -270,17 +250,9 @@ extern "C" const char* link_answer(const char* asked, uint32_t length, uint32_t*
 extern "C" const char* link_answer(const char* asked, uint32_t length, uint32_t* answer_length) {
   static Writer said;
   said = Writer();
-  if (!answer(std::string(asked, asked + length), &said)) abort();
+  if (!answered(answers, std::string(asked, asked + length), &said)) abort();
   *answer_length = static_cast<uint32_t>(said.data().size());
   return said.data().data();
 }
 
-int main() {
-  std::string asked;
-  while (next_request(&asked)) {
-    Writer said;
-    if (!answer(asked, &said)) return 1;
-    send_answer(said);
-  }
-  return 0;
-}
+int main() { return all_answered(answers) ? 0 : 1; }
