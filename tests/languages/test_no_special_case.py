@@ -10,6 +10,8 @@ import pytest
 from tests.support.casefile import ROOT
 from tiniscript.base.languages import SOURCE, languages, table
 from tiniscript.base.words import WORDS
+from tiniscript.recovery import advice_rows, rows
+from tiniscript.recovery.rewrites import cells
 
 SPECIAL = re.compile(r"""(?:==|===|!=) ?["'](?:es|en|pt)["']|["'](?:es|en|pt)["'] (?:==|===)""")
 
@@ -40,11 +42,11 @@ def _words(language: str) -> set[str]:
 
 
 def test_words_of_a_language_are_in_its_folder() -> None:
-    """Only the rows of `recovery` name words, each beside the English one."""
+    """Patterns of characters have some that are said for signs: `punto y coma`."""
     theirs = set().union(*map(_words, languages())) - _words(SOURCE) - {*WORDS}
     found = set()
     for path in sorted((ROOT / "compiler/tiniscript").rglob("*.py")):
-        if {"recovery", "page"} & set(path.parts):
+        if "page" in path.parts:
             continue
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             if isinstance(node, ast.Constant) and isinstance(node.value, str):
@@ -52,6 +54,17 @@ def test_words_of_a_language_are_in_its_folder() -> None:
                 if " " not in node.value.strip() or node.value.isupper():
                     found |= {f"{path.name}: {each}" for each in said}
     assert found == set()
+
+
+# What is written so in each language: signs, functions of Arduino, letters, two words that are one.
+WRITTEN = {"X", "TONE", "A", "FL", "LF", "FR", "RF", "UN", "TIL"}
+
+
+def test_rows_name_no_word_of_a_language() -> None:
+    pieces = [*rows.PARTS.values(), *advice_rows.PARTS.values()]
+    patterns = [row[0] for table in (rows.TOKENS, advice_rows.ADVICE) for row in cells(table)]
+    words = re.findall(r"(?<![@\w])[A-Z][A-Z_]*\b", " ".join([*pieces, *patterns]))
+    assert {*words} - {*WORDS} <= WRITTEN
 
 
 @pytest.mark.parametrize("language", languages()[1:])

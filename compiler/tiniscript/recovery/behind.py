@@ -211,10 +211,14 @@ class Behind:
         if number is not None:
             found.append("@number")
             is_counted = said_of(after, "times") or said_of(text, "often") or text[0] == "X"
-            is_often = is_counted or before in ("POR", "X", "*") or self.means(before) == "LOOP"
+            is_often = (
+                is_counted
+                or said_of(before, "multiplied")
+                or before in ("X", "*")
+                or self.means(before) == "LOOP"
+            )
             unit = said_of(after, "unit")
-            is_power = any(said_of(each.text, "value")[:1] == ("%",) or each.text in (
-                "%", "CIENTO", "PERCENT", "PORCIENTO") for each in self.row)  # fmt: skip
+            is_power = any(_is_percent(each.text) for each in self.row)
             found += ["@often"] if is_often and (is_counted or not unit) else []
             found += ["@percent"] if is_power else []
         unit_of = said_of(text, "unit")
@@ -317,15 +321,21 @@ class Behind:
         if own == "BEEP" and said_of(text, "note"):
             return False
         is_last = not any(each.kind in (WORD, NUMBER) for each in self.row[k + 1 :])
-        if said_of(text, "small") and not is_last and (k or text in ("A", "E", "PARA")):
+        if (
+            said_of(text, "small")
+            and not is_last
+            and (k or len(text) == 1 or said_of(text, "count"))
+        ):
             return False
-        if said_of(text, "turn") or text in ("VUELTA", "VUELTAS"):
-            return own not in ("L", "R", "M", *("B" * (text[0] == "V")))
+        if said_of(text, "lap"):
+            return own not in ("L", "R", "M", "B")
+        if said_of(text, "turn"):
+            return own not in ("L", "R", "M")
         if any(said_of(text, each) for each in ("on", "off", "act")):
             return True
         if said_of(text, "end") or text in ENDED:
             return self.is_in_block and not self.is_arm
-        if text in ("HASTA", "UNTIL"):
+        if said_of(text, "until"):
             return own != "SHOW" and self.row[0].text != "(" and not self.is_asked
         meant = self.means(text)
         is_sure = text in WORDS or not meant or self.names.meanings(text)[0].cost <= KNOWN
@@ -339,3 +349,9 @@ class Behind:
         if meant == own or (meant == "S" and self.is_asked):
             return False
         return own not in ("LOOP", "DEF", "S", "STOP") or meant not in ("S", "LOOP", "DEF")
+
+
+def _is_percent(text: str) -> bool:
+    """Whether a word says that a number is one of a power: POTENCIA, and CIENTO behind POR."""
+    is_hundred = said_of(text, "number") == ("100",)
+    return is_hundred or "%" in said_of(text, "value") + said_of(text, "unit")

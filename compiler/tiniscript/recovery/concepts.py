@@ -25,6 +25,7 @@ KNOWN, MISSPELT, NEAR = 1, 2, 3  # what a meaning costs: said, written nearly so
 STARTS = frozenset(("IF", "LOOP", "WHILE", "WHEN", "TASK"))
 ENDED = {end: word for word, end in BLOCK_ENDS.items()}
 ENDED |= {alias: ENDED[end] for alias, end in ALIASES.items()}
+SOME_END = "FIN"  # of a block that its word does not name
 CALLED = frozenset(word.text for word in WORDS.values() if word.is_call)
 DONE = CALLED | {"S", "STOP", "BREAK"}
 
@@ -33,9 +34,13 @@ _TOKEN = re.compile(
     r"|(<=|>=|<>|==|!=|=!|=>|=<|&&|\|\||->|<-|:=|\+\+|\+=|-=|\*=|\S)"
 )
 _SIGNS = SIGNS | frozenset("(),;|")
-_BEFORE_NAME = frozenset(("DEF", "VOID"))
 _LONGEST = 4  # words of a name
-_END = re.compile("(?:END|FIN|FIM)_?")
+# Classes by what the lexicon says of a word that is none of the language.
+_CLASSES = {
+    "unit cm 1000": "@in_cm", "unit cm 100000": "@in_m", "unit s 1000": "@in_secs",
+    "unit ° 1000": "@in_deg", "value %": "@of_power", "value s": "@of_time",
+    "value Hz": "@of_pitch", "number 1": "@one", "number 100": "@hundred",
+}  # fmt: skip
 REMEMBERED = 500  # lines: each is asked for often while one program is read
 
 
@@ -96,6 +101,13 @@ def plain(text: str) -> str:
 # -- the lexicon ----------------------------------------------------------------------------
 
 
+def words_of(*kinds: str) -> str:
+    """Return a pattern of the words that the lexicon says one of these of."""
+    found = (word for word in lexicon() if any(said_of(word, kind) for kind in kinds))
+    return f"(?:{'|'.join(sorted(found, key=len, reverse=True))})"
+
+
+_END = re.compile(words_of("end") + "_?")
 # The unit that a word says behind a number, and how many thousandths of it one is.
 UNITS = {
     word: (said[1], int(said[2]))
@@ -190,10 +202,10 @@ def _names_of(line: tuple[Lexeme, ...]) -> _OfLine:
             found.in_brackets.add(token.text)
         elif after.text in ("=", "++", "+=", "-=", ":=") and token.text not in WORDS:
             found.variables.add(token.text)
-        is_def = token.text in _BEFORE_NAME or concept_of(token.text) == "DEF"
+        is_def = "DEF" in (token.text, concept_of(token.text))
         is_def = is_def or (token.text == "TASK" and at == len(line))  # a name that it needs not
         if is_def and after.kind is WORD and after.text not in WORDS:
-            if after.text not in ("MAIN", "SETUP", "PRINCIPAL"):
+            if not said_of(after.text, "main") and concept_of(after.text) != "START":
                 found.defs.add(after.text)
                 given: tuple[str, ...] = ()
                 if at < len(line) and line[at].text == "(":
@@ -295,8 +307,9 @@ class Names:
             return ()
         if word in self.begun:
             return (Meaning(self.begun[word], KNOWN),)
-        if word[:4] in ("END_", "FIN_") and word[4:] in (*WORDS, *self.defs):
-            return (Meaning("FIN", KNOWN),)
+        end, _, block = word.partition("_")
+        if said_of(end, "end") and block in (*WORDS, *self.defs):
+            return (Meaning(SOME_END, KNOWN),)
         found = concepts(word)
         return tuple(each for each in found if each.concept in WORDS or self.has(each.concept))
 
@@ -309,7 +322,7 @@ class Names:
 
     def has(self, concept: str) -> bool:
         """Whether a concept is a device of the kit, or the end of any block."""
-        return concept in self.sensors or concept in self.actuators or concept == "FIN"
+        return concept in self.sensors or concept in self.actuators or concept == SOME_END
 
     @staticmethod
     def is_lexical(word: str) -> bool:
@@ -346,6 +359,8 @@ class Names:
         said = [meaning.split()[0] for meaning in lexicon().get(text, ())]
         is_own = text in self.variables or text in self.defs
         found = [each for each in said if each.islower() and not is_own]
+        if text not in WORDS:
+            found += [_CLASSES[each] for each in lexicon().get(text, ()) if each in _CLASSES]
         found += ["@unit"] if "unit" in said and text not in WORDS else []
         meant = [each.concept for each in self.meanings(text) if each.cost < NEAR]
         word = text if text in WORDS else meant[0] if meant else ""

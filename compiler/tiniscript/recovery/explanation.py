@@ -18,7 +18,7 @@ from tiniscript.base.words import BLOCK_ENDS, WAYS, WORDS
 from tiniscript.diagnostics import codes
 from tiniscript.recovery import rows
 from tiniscript.recovery.blocks import BRACES
-from tiniscript.recovery.concepts import ENDED, Lexeme, lexemes, meant_by, said_of, texts
+from tiniscript.recovery.concepts import ENDED, SOME_END, Lexeme, lexemes, meant_by, said_of, texts
 from tiniscript.recovery.lines import Step
 from tiniscript.recovery.search import Candidate, Change
 from tiniscript.recovery.writing import laid_out, without_note
@@ -495,7 +495,7 @@ def _slip(code: str, step: Step | None, before: Sequence[Lexeme], after: Sequenc
     if is_note:
         was = re.match(r"\w+|\W+", was).group().strip()  # type: ignore[union-attr]
     now = laid_out(right) or shown
-    now = shown if now == "FIN" and shown in ENDED else now  # of a block, whose end is known
+    now = shown if now == SOME_END and shown in ENDED else now  # of a block, whose end is known
     now = re.split("[()]", now, maxsplit=1)[0] if code == _WORD_CODE else now
     now = f"{now} )" if now.endswith("(") else now
     word = _word(code, old, new, start, other)

@@ -18,7 +18,7 @@ from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import CODES, Diagnostic, Repair
 from tiniscript.recovery import lines, rows
 from tiniscript.recovery.advice import advised
-from tiniscript.recovery.concepts import Names, lexemes
+from tiniscript.recovery.concepts import Names, lexemes, words_of
 from tiniscript.recovery.explanation import LONGEST_BLOCK, Explanation, explained, trimmed
 from tiniscript.recovery.search import Candidate, Recovery
 from tiniscript.recovery.setup import setup
@@ -213,8 +213,8 @@ def _keeps(text: str, new: str, said_with: set[str], is_sure: bool) -> bool:
     bodies = ([without_note(line)[0] for line in it.split("\n")] for it in (text, new))
     before, after = (Counter(each.text for it in of for each in lexemes(it)) for of in bodies)
     names = {each.upper() for each in re.findall(r"(?i)(?<=\bDEF )\w+|\w+(?=\s*=)", new)} - {*WORDS}
-    closed = Counter(re.findall(r"\bEND_?DEF +(\w+)|\bFIN +(\w+)", _bare(text).upper()))
-    before -= Counter({name: n for pair, n in closed.items() for name in pair if after[name] > 1})
+    closed = Counter(re.findall(rf"\b(?:END_?DEF|{words_of('end')}) +(\w+)", _bare(text).upper()))
+    before -= Counter({name: n for name, n in closed.items() if after[name] > 1})
     before -= Counter(X=len(_TIMES.findall(_bare(text))))
     is_kept = all(after[name] >= before[name] for name in names)
     old, kept = (Counter(re.findall("[0-9]", _NOTE.sub("", _bare(it)))) for it in (text, new))

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from tiniscript.base.words import BLOCK_ENDS
 from tiniscript.recovery import lines, rewrites
-from tiniscript.recovery.concepts import CALLED, Lexeme, Names, made, said_of
+from tiniscript.recovery.concepts import CALLED, Lexeme, Names, concept_of, made, said_of
 from tiniscript.recovery.slots import MOVES, Filled, filled
 from tiniscript.recovery.writing import laid_out
 from tiniscript.syntax.lexer import NUMBER
@@ -73,6 +73,12 @@ def _is_the(token: Lexeme, after: Lexeme) -> bool:
     """Whether a word stands for no OR, but before who does it: `o robô`."""
     is_noun = said_of(after.text, "idle") and not said_of(after.text, "the")
     return bool(said_of(token.text, "the") and is_noun)
+
+
+def _begins_else(texts: Sequence[str]) -> int:
+    """Return how many of two words say ELSE: `si no`."""
+    is_one = "ELSE" in (texts[0], concept_of(texts[0]))
+    return 1 if is_one else 2 * (concept_of("_".join(texts)) == "ELSE")
 
 
 def _is_if(token: Lexeme, names: Names) -> bool:
@@ -191,9 +197,9 @@ def block(tokens: Sequence[Lexeme], names: Names, is_open: bool) -> str:
     while any(said_of(each.text, "end") for each in tokens[-2:]):
         tokens = tokens[:-1]  # `fin si`
     texts = [each.text for each in tokens]
-    arm = next((k for k in range(1, len(texts)) if texts[k] in ("ELSE", "SINO")
-                or texts[k : k + 2] == ["SI", "NO"]), len(texts))  # fmt: skip
-    other = orders(tokens[arm + 1 + (texts[arm : arm + 1] == ["SI"]) :], names)
+    arm = next((k for k in range(1, len(texts)) if _begins_else(texts[k : k + 2])), len(texts))
+    behind = arm + (_begins_else(texts[arm : arm + 2]) if arm < len(texts) else 1)
+    other = orders(tokens[behind:], names)
     comma = next((k for k in range(2, arm) if texts[k] == "," and word != "LOOP"), 0)
     for k in [comma] if comma else range(2, arm):
         header = _head(word, tokens[1:k], names)

@@ -12,7 +12,7 @@ from functools import cache
 from itertools import chain, product
 from typing import NamedTuple
 
-from tiniscript.base.words import BLOCK_ENDS, WORDS
+from tiniscript.base.words import BLOCK_ENDS, WORDS, concept_of
 from tiniscript.recovery import rows
 from tiniscript.recovery.concepts import ANY, ENDED, Lexeme, Names, joined, made, said_of
 from tiniscript.recovery.slots import LONG_S
@@ -27,7 +27,7 @@ _MOST_POWER = 100
 _EIGHTH = 45  # degrees: eighths of a turn, and what is no power, are rather an angle
 _SET = "TS050"  # of a variable that gets its value: in brackets that would be a question
 _BEFORE_VALUE = COMPARISONS | frozenset("(,+-*/%")
-_HEADER_OF = {"FOREVER": "LOOP", "FOR": "LOOP", "PARA": "LOOP", "ELSEIF": "IF"}
+_HEADER_OF = {"FOREVER": "LOOP", "ELSEIF": "IF"}
 
 
 class Row(NamedTuple):
@@ -304,7 +304,7 @@ def negated(question: Sequence[Lexeme]) -> list[Lexeme]:
 
 def _end_of(place: _Place) -> _Made:
     word = place.line.translated(place.captured[0][0]).text
-    word = _HEADER_OF.get(word, word)
+    word = "LOOP" if said_of(word, "count") else _HEADER_OF.get(word, word)
     end = BLOCK_ENDS.get(word, word if word in ENDED else "")
     return [made(end)] if end else None
 
@@ -469,7 +469,7 @@ def one_word(tokens: Sequence[Lexeme], names: Names) -> tuple[list[Lexeme], bool
             continue
         text = "_".join(row)
         after = tokens[k + count].text if k + count < len(tokens) else ""
-        if text == "SI_NO" and (said_of(after, "is") or said_of(after, "there")):
+        if concept_of(text) == "ELSE" and (said_of(after, "is") or said_of(after, "there")):
             continue
         if names.is_lexical(text) or (text in WORDS and row[0] == "END"):
             meant = names.meanings(text)

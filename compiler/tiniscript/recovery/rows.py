@@ -5,7 +5,7 @@
     pattern | becomes | cost | code | how | example => what becomes of it
 
 A pattern is tokens with spaces between: a word of the language or one that means it (`LOOP`), a
-word of the text (`HASTA`), a part of a sentence of the lexicon (`then`), a sign, or a class. `A|B`
+part of a sentence of the lexicon (`then`), a sign, or a class. `A|B`
 are alternatives, `'|'` is a sign that would be one of the signs here, `?`, `*` and `+` stand behind
 what may be missing or come more often, and `^` and `$` are the ends of a line. `c=` captures, and
 `<part>` is a piece of PARTS. Classes: @num @word @val (a value with a name) @name @newname
@@ -30,8 +30,8 @@ PARTS = {
     "block": "h=IF|WHILE|ELSEIF|LOOP|WHEN",
     "asks": "h=IF|WHILE|ELSEIF|WHEN",
     "question": "( c=@noclose+ )",
-    "for": "LOOP|FOR|PARA",
-    "note": "DO|RE|MI|FA|SOL|LA|SI",
+    "for": "LOOP|count",
+    "note": "note|SI",
     "end": "BREAK ; ENDIF ; END_LOOP",
 }
 
@@ -70,9 +70,6 @@ SETUP = (
 )
 BARS = (":", "||", "/", "\\", "¦", "!", "¡")  # signs that stand for the bar whatever follows
 NOTES = ("//", "#")  # which stand for it before a call alone
-
-# A line that begins a block whose question comes at its end.
-DO_ALONE = r"\s*(?:S[IB]\s*\|\s*)?(?:REPEAT|REPETIR|REPITE|DO|LOOP|HACER)\b\s*\{?\s*$"
 
 SIGNS = r"""
 (?<!\) )(["'«»`])([A-Za-z0-9_.,()| <>=]*[A-Za-z0-9)][A-Za-z0-9_.,()| <>=]*)(?:\1|»)  |  `\2`  |  1  |  TS006  |  applied  |  F("2","80") => F(2,80)
@@ -243,26 +240,26 @@ v=@val [ n=@num ) | $v < $n ) | 1 | TS010 | offered | IF(DISTANCE[30)⏎S⏎ENDI
 # sums in words
 o==|, a=@num|@val minus b=@num|@val | $o $a - $b | 1 | TS010 | first | X = 8 menos 4⏎SHOW(X) => X = 8 - 4⏎SHOW(X)
 SHOW ( a=@num|@val minus b=@num|@val | SHOW ( $a - $b | 1 | TS010 | first | SHOW(8 minus 4) => SHOW(8 - 4)
-o== a=@num|@val multiplied POR|BY? b=@num|@val | $o $a * $b | 1 | TS010 | first | X = 3 por 4⏎SHOW(X) => X = 3 * 4⏎SHOW(X)
-SHOW ( a=@num|@val multiplied POR|BY? b=@num|@val | SHOW ( $a * $b | 1 | TS010 | first | SHOW(3 times 4) => SHOW(3 * 4)
+o== a=@num|@val multiplied by? b=@num|@val | $o $a * $b | 1 | TS010 | first | X = 3 por 4⏎SHOW(X) => X = 3 * 4⏎SHOW(X)
+SHOW ( a=@num|@val multiplied by? b=@num|@val | SHOW ( $a * $b | 1 | TS010 | first | SHOW(3 times 4) => SHOW(3 * 4)
 o==|(|,|+|-|*|<|> largest ( a=@num|@val ,|then b=@num|@val ) | $o MAX ( $a , $b ) | 1 | TS010 | first offered | SHOW(BIGGEST(LIGHT_L, LIGHT_R)) => SHOW(MAX(LIGHT_L, LIGHT_R))
-o==|( the? largest OF|DE|BETWEEN|ENTRE? a=@num|@val ,|then b=@num|@val e=)|,|$ | $o MAX ( $a , $b ) $e | 1 | TS010 | first offered | SHOW(el mayor de LIGHT_L y LIGHT_R) => SHOW(MAX(LIGHT_L, LIGHT_R))
+o==|( the? largest of|between? a=@num|@val ,|then b=@num|@val e=)|,|$ | $o MAX ( $a , $b ) $e | 1 | TS010 | first offered | SHOW(el mayor de LIGHT_L y LIGHT_R) => SHOW(MAX(LIGHT_L, LIGHT_R))
 o==|(|,|+|-|*|<|> smallest ( a=@num|@val ,|then b=@num|@val ) | $o MIN ( $a , $b ) | 1 | TS010 | first offered | SHOW(SMALLER(LIGHT_L, LIGHT_R)) => SHOW(MIN(LIGHT_L, LIGHT_R))
-o==|( the? smallest OF|DE|BETWEEN|ENTRE? a=@num|@val ,|then b=@num|@val e=)|,|$ | $o MIN ( $a , $b ) $e | 1 | TS010 | first offered | SHOW(el menor de LIGHT_L y LIGHT_R) => SHOW(MIN(LIGHT_L, LIGHT_R))
+o==|( the? smallest of|between? a=@num|@val ,|then b=@num|@val e=)|,|$ | $o MIN ( $a , $b ) $e | 1 | TS010 | first offered | SHOW(el menor de LIGHT_L y LIGHT_R) => SHOW(MIN(LIGHT_L, LIGHT_R))
 o==|( a=@num|@val ,|then|or b=@num|@val the? largest e=)|,|$ | $o MAX ( $a , $b ) $e | 1 | TS010 | first offered | SHOW(LIGHT_L y LIGHT_R el mayor) => SHOW(MAX(LIGHT_L, LIGHT_R))
 o==|( a=@num|@val ,|then|or b=@num|@val the? smallest e=)|,|$ | $o MIN ( $a , $b ) $e | 1 | TS010 | first offered | SHOW(LIGHT_L or LIGHT_R the smaller) => SHOW(MIN(LIGHT_L, LIGHT_R))
 # comparisons in words: a row for each sense, and a sign
-is? less than? or equal QUE|A|TO? | <= | 1 | TS010 | first | IF(DISTANCE es menor o igual que 10);S;ENDIF => IF(DISTANCE <= 10);S;ENDIF
-is? more or? equal QUE|A|TO? | >= | 1 | TS010 | first | IF(DISTANCE mayor igual 10);F(1,50);ENDIF => IF(DISTANCE >= 10);F(1,50);ENDIF
-is? A? less than|A? | < | 1 | TS010 | first | SI|IF(DISTANCE menor 10);S;ENDIF => SI|IF(DISTANCE < 10);S;ENDIF
-is? A? more than|A? | > | 1 | TS010 | first | IF DISTANCE IS BIGGER THAN 20 F(1,50) ENDIF => IF(DISTANCE > 20);F(1, 50);ENDIF
+is? less than? or equal to|than? | <= | 1 | TS010 | first | IF(DISTANCE es menor o igual que 10);S;ENDIF => IF(DISTANCE <= 10);S;ENDIF
+is? more or? equal to|than? | >= | 1 | TS010 | first | IF(DISTANCE mayor igual 10);F(1,50);ENDIF => IF(DISTANCE >= 10);F(1,50);ENDIF
+is? one? less than? | < | 1 | TS010 | first | SI|IF(DISTANCE menor 10);S;ENDIF => SI|IF(DISTANCE < 10);S;ENDIF
+is? one? more than? | > | 1 | TS010 | first | IF DISTANCE IS BIGGER THAN 20 F(1,50) ENDIF => IF(DISTANCE > 20);F(1, 50);ENDIF
 is? extra than | > | 1 | TS010 | first | IF(DISTANCE es mas de 10);S;ENDIF => IF(DISTANCE > 10);S;ENDIF
-is? different than|A? | <> | 1 | TS010 | first | IF(DISTANCE distinto de 10);S;ENDIF => IF(DISTANCE <> 10);S;ENDIF
-no is|equal A|TO|IGUAL? A? | <> | 1 | TS010 | first | IF(DISTANCE NO ES 10);F(1,50);ENDIF => IF(DISTANCE <> 10);F(1,50);ENDIF
+is? different than? | <> | 1 | TS010 | first | IF(DISTANCE distinto de 10);S;ENDIF => IF(DISTANCE <> 10);S;ENDIF
+no is|equal to|equal? one? | <> | 1 | TS010 | first | IF(DISTANCE NO ES 10);F(1,50);ENDIF => IF(DISTANCE <> 10);F(1,50);ENDIF
 no < | >= | 1 | TS010 | first | IF(DISTANCE NOT < 10);S;ENDIF => IF(DISTANCE >= 10);S;ENDIF
 no > | <= | 1 | TS010 | first | IF(DISTANCE NOT > 10);S;ENDIF => IF(DISTANCE <= 10);S;ENDIF
-l=@val equal A|TO|QUE? r=@num|@val | $l = $r | 1 | TS010 | first | IF(DISTANCE igual a 10);S;ENDIF => IF(DISTANCE = 10);S;ENDIF
-= @word* RANDOM between|than|DESDE|FROM? a=@num A|AL|TO|and|until|-|, b=@num $ | = RANDOM ( $a , $b ) | 1 | TS102 | offered | X = numero al azar entre 1 y 6⏎F(X, 50) => X = RANDOM(1, 6)⏎F(X, 50)
+l=@val equal to|than? r=@num|@val | $l = $r | 1 | TS010 | first | IF(DISTANCE igual a 10);S;ENDIF => IF(DISTANCE = 10);S;ENDIF
+= @word* RANDOM between|from? a=@num to|and|until|-|, b=@num $ | = RANDOM ( $a , $b ) | 1 | TS102 | offered | X = numero al azar entre 1 y 6⏎F(X, 50) => X = RANDOM(1, 6)⏎F(X, 50)
 l=@val is? between a=@num and b=@num | $l > $a AND $l < $b | 1 | TS037 | offered | IF(DISTANCE entre 5 y 10);S;ENDIF => IF(DISTANCE > 5 AND DISTANCE < 10);S;ENDIF
 # questions and sums
 a=@num|@val s=<|<=|>|>= b=@val t=<|<=|>|>= c=@num|@val | $a $s $b AND $b $t $c | 1 | TS037 | applied | SI|IF(10>DISTANCE>5);S;ENDIF => SI|IF(10>DISTANCE AND DISTANCE>5);S;ENDIF
@@ -270,39 +267,39 @@ a=@num|@val X b=@num|@val | $a * $b | 1 | TS010 | first | SHOW(2 X 3) => SHOW(2 
 o==|(|,|+|-|*|<|> average ( a=@num|@val , b=@num|@val ) | $o ( $a + $b ) / 2 | 1 | TS010 | offered | X = PROMEDIO(LIGHT_L, LIGHT_R)⏎SHOW(X) => X =(LIGHT_L + LIGHT_R) / 2⏎SHOW(X)
 o==|(|,|+|-|*|<|> average ( a=@num|@val , b=@num|@val , c=@num|@val ) | $o ( $a + $b + $c ) / 3 | 1 | TS010 | offered | SHOW(AVERAGE(LIGHT_L, LIGHT_R, 5)) => SHOW((LIGHT_L + LIGHT_R + 5) / 3)
 a=@num v=@val | @by:a:v | 1 | TS048 | offered | VEL = 30⏎F(2, 2VEL) => VEL = 30⏎F(2, 2 * VEL)
-a=@num|@val MOD b=@num|@val | $a % $b | 1 | TS010 | first | X = 7⏎X = X MOD 2 => X = 7⏎X = X % 2
+a=@num|@val modulo b=@num|@val | $a % $b | 1 | TS010 | first | X = 7⏎X = X MOD 2 => X = 7⏎X = X % 2
 a=@num|@val plus b=@num|@val | $a + $b | 1 | TS010 | first | X = 5 mas 3⏎SHOW(X) => X = 5 + 3⏎SHOW(X)
-NO|NAO l=@val | NOT $l | 1 | TS010 | applied | IF(NO DISTANCE < 10)⏎F(1,50)⏎ENDIF => IF(NOT DISTANCE < 10)⏎F(1,50)⏎ENDIF
+no l=@val | NOT $l | 1 | TS010 | applied | IF(NO DISTANCE < 10)⏎F(1,50)⏎ENDIF => IF(NOT DISTANCE < 10)⏎F(1,50)⏎ENDIF
 l=@val s=<|>|<=|>= a=@num o=AND|OR t=<|>|<=|>= b=@num | $l $s $a &o $l $t $b | 1 | TS018 | offered | IF(DISTANCE < 10 OR < 5);S;ENDIF => IF(DISTANCE < 10 OR DISTANCE < 5);S;ENDIF
 l=@val = a=@num or b=@num | $l = $a OR $l = $b | 1 | TS018 | offered | IF(DISTANCE = 10 O 20)⏎S⏎ENDIF => IF(DISTANCE = 10 OR DISTANCE = 20)⏎S⏎ENDIF
 h=IF|WHILE|ELSEIF v=@val ( n=@num ) | &h ( $v < $n ) | 1 | TS048 | offered | IF DISTANCE(10)⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
 ^ c=@cond+ ? <body> : d=@start s=@all* $ | IF ( $c ) ; $b $r ; ELSE ; $d $s ; ENDIF | 1 | TS042 | offered | DISTANCE < 10 ? S : F(1, 60) => IF(DISTANCE < 10);S;ELSE;F(1, 60);ENDIF
 = ABS s='-'? n=@num|@val $ | = ABS ( $s $n ) | 1 | TS015 | applied | X = ABS -5⏎SHOW(X) => X = ABS(-5)⏎SHOW(X)
-o==|( a=@num|@val over POR|BY|ENTRE? b=@num|@val | $o $a / $b | 1 | TS010 | applied | SHOW(10 entre 2) => SHOW(10 / 2)
+o==|( a=@num|@val over by|over? b=@num|@val | $o $a / $b | 1 | TS010 | applied | SHOW(10 entre 2) => SHOW(10 / 2)
 h=IF|WHILE|UNTIL|WHEN|ELSEIF ( a=@val then|& b=@val s=<|> n=@num ) | &h ( $a $s $n AND $b $s $n ) | 1 | TS010 | first offered | IF(LIGHT_L y LIGHT_R > 500)⏎S⏎ENDIF => IF(LIGHT_L > 500 AND LIGHT_R > 500)⏎S⏎ENDIF
 h=IF|WHILE|UNTIL|WHEN|ELSEIF ( a=@val or|OR b=@val s=<|> n=@num ) | &h ( $a $s $n OR $b $s $n ) | 1 | TS010 | first offered | IF(LIGHT_L o LIGHT_R > 500)⏎S⏎ENDIF => IF(LIGHT_L > 500 OR LIGHT_R > 500)⏎S⏎ENDIF
 SHOW ( a=@val &|then|and then? b=@val ) | SHOW ( $a ) ; SHOW ( $b ) | 1 | TS020 | first offered | SHOW(LIGHT_L & LIGHT_R) => SHOW(LIGHT_L);SHOW(LIGHT_R)
-a=@num|@val then|& b=@val|MENOR|MAYOR|NOT|< | $a AND $b | 1 | TS010 | first | IF(DISTANCE < 10 y LIGHT_L > 100);S;ENDIF => IF(DISTANCE < 10 AND LIGHT_L > 100);S;ENDIF
-l=@val is|EQUALS|VALE equal? A|TO|QUE? r=@num|@val | $l = $r | 1 | TS010 | first | si distancia es 10 para => IF(DISTANCE = 10);S;ENDIF
-a=@num|@val or b=@val|NOT|MENOR|MAYOR | $a OR $b | 1 | TS010 | first | IF(DISTANCE < 10 o DISTANCE > 50);S;ENDIF => IF(DISTANCE < 10 OR DISTANCE > 50);S;ENDIF
+a=@num|@val then|& b=@val|less|more|NOT|< | $a AND $b | 1 | TS010 | first | IF(DISTANCE < 10 y LIGHT_L > 100);S;ENDIF => IF(DISTANCE < 10 AND LIGHT_L > 100);S;ENDIF
+l=@val is|equal equal? to|than? r=@num|@val | $l = $r | 1 | TS010 | first | si distancia es 10 para => IF(DISTANCE = 10);S;ENDIF
+a=@num|@val or b=@val|NOT|less|more | $a OR $b | 1 | TS010 | first | IF(DISTANCE < 10 o DISTANCE > 50);S;ENDIF => IF(DISTANCE < 10 OR DISTANCE > 50);S;ENDIF
 o=AND|OR IF | &o | 1 | TS010 | first | IF(DISTANCE > 5 AND IF DISTANCE < 9);S;ENDIF => IF(DISTANCE > 5 AND DISTANCE < 9);S;ENDIF
 TRUE = c=@any+ ) | $c ) | 1 | TS037 | applied | IF(TRUE = DISTANCE < 10);S;ENDIF => IF( DISTANCE < 10);S;ENDIF
 s=<|> n=@num = TRUE | $s $n | 1 | TS037 | applied | IF(DISTANCE < 10 = TRUE);S;ENDIF => IF(DISTANCE < 10);S;ENDIF
 a=@num|@val '|' b=@val | $a OR $b | 1 | TS010 | applied | IF(DISTANCE<10 | LIGHT_R>50)⏎S⏎ENDIF => IF(DISTANCE<10 OR LIGHT_R>50)⏎S⏎ENDIF
 # numbers, units, values
-a=@num POR CIENTO|CIEN | $a % | 1 | TS049 | first | R(1, 50 por ciento) => R(1, 50)
 a=@num 0 | @cat:a | 1 | TS008 | offered | F(2, 8 0) => F(2, 80)
 a=@num , b=@num | @dec:a:b | 1 | TS012 | applied | W(2,5) => W(2.5)
 o=(|,|; a=@num % ) | $o $a ) | 1 | TS049 | first | F(2,80%) => F(2,80)
-a=@num % OF|DE b=@num|@val | $b * $a / 100 | 1 | TS049 | first offered | X = 50% of 80⏎SHOW(X) => X = 80 * 50 / 100⏎SHOW(X)
-half|MITAD OF|DE b=@num|@val | $b / 2 | 1 | TS010 | first offered | X = half of DISTANCE⏎SHOW(X) => X = DISTANCE / 2⏎SHOW(X)
+a=@num by @hundred | $a % | 1 | TS049 | first | R(1, 50 por ciento) => R(1, 50)
+a=@num % of b=@num|@val | $b * $a / 100 | 1 | TS049 | first offered | X = 50% of 80⏎SHOW(X) => X = 80 * 50 / 100⏎SHOW(X)
+half of b=@num|@val | $b / 2 | 1 | TS010 | first offered | X = half of DISTANCE⏎SHOW(X) => X = DISTANCE / 2⏎SHOW(X)
 a=@num|@val s=+|- n=@num % e=)|$ | $a $s $a * $n / 100 $e | 1 | TS049 | offered | F(2, 80 - 20%) => F(2, 80 - 80 * 20 / 100)
 a=@num : b=@num | @mmss:a:b | 1 | TS008 | applied | W(1:30) => W(90)
-s=<|>|<=|>= n=@num M|METRO|METROS|METERS|METER e=) | $s @cm:n $e | 1 | TS049 | applied | IF(DISTANCE < 1 m);S;ENDIF => IF(DISTANCE < 100);S;ENDIF
+s=<|>|<=|>= n=@num M|@in_m e=) | $s @cm:n $e | 1 | TS049 | applied | IF(DISTANCE < 1 m);S;ENDIF => IF(DISTANCE < 100);S;ENDIF
 s=<|>|<=|>=|=|<> n=@num @unit | $s $n | 1 | TS049 | first | x = 5 cm => x = 5
-v=@val CM|EN? CM | $v | 2 | TS049 | applied | SHOW DISTANCE cm => SHOW(DISTANCE)
-SHOW ( n=@num M|METRO|METROS|METERS|METER|@unit ) | SHOW ( $n ) | 1 | TS049 | applied | SHOW(2 M) => SHOW(2)
-ROUND ( v=@argt+ , n=@num DECIMALES|DECIMALS|PLACES|CIFRAS ) | ROUND ( $v , $n ) | 1 | TS049 | applied | SHOW(ROUND(DISTANCE, 1 decimales)) => SHOW(ROUND(DISTANCE, 1))
+v=@val CM|in? CM | $v | 2 | TS049 | applied | SHOW DISTANCE cm => SHOW(DISTANCE)
+SHOW ( n=@num M|@unit ) | SHOW ( $n ) | 1 | TS049 | applied | SHOW(2 M) => SHOW(2)
+ROUND ( v=@argt+ , n=@num decimals ) | ROUND ( $v , $n ) | 1 | TS049 | applied | SHOW(ROUND(DISTANCE, 1 decimales)) => SHOW(ROUND(DISTANCE, 1))
 v=@val seconds|@unit e=,|) | $v $e | 1 | TS049 | applied | SHOW(distancia cm) => SHOW(DISTANCE)
 h=IF|WHILE|UNTIL|WHEN|ELSEIF b=(? A v=@val | &h $b &v | 1 | TS102 | first | IF(a distância < 10);S;ENDIF => IF(DISTANCE < 10);S;ENDIF
 ^ v=@val '->' SHOW $ | SHOW ( $v ) | 1 | TS015 | offered | DISTANCE -> SHOW => SHOW(DISTANCE)
@@ -326,38 +323,38 @@ v=@name *= e=@any+ | $v = $v * $e | 1 | TS050 | applied | X = 1⏎X *= 2 => X = 
 ^ n=@newname = b=@callw|LOOP r=@any+ $ | DEF $n ; $b $r | 2 | TS051 | applied | SALUDO = BEEP(1, 440)⏎SALUDO => DEF SALUDO;BEEP(1, 440);END_DEF⏎SALUDO
 ^ declare v=@newname ;? $ | $v = 0 | 1 | TS044 | offered | var vel⏎F(2, vel) => vel = 0⏎F(2, vel)
 ^ declare v=@name = | $v = | 1 | TS044 | applied | let v = 50⏎F(2, v) => v = 50⏎F(2, v)
-^ CONST declare v=@name = | $v = | 1 | TS044 | applied | const int potencia = 80;⏎F(2, potencia); => potencia = 80;⏎F(2, potencia);
-^ set|LET v=@name =|TO|A|EN|COMO? e=@num $ | $v = $e | 1 | TS050 | applied | set x to 5 => x = 5
-^ v=@newname is|VALE|equal A|IGUAL? A? e=@num $ | $v = $e | 2 | TS050 | applied | velocidad es 60⏎F(2, velocidad) => velocidad = 60⏎F(2, velocidad)
+^ declare declare v=@name = | $v = | 1 | TS044 | applied | const int potencia = 80;⏎F(2, potencia); => potencia = 80;⏎F(2, potencia);
+^ set v=@name =|to? e=@num $ | $v = $e | 1 | TS050 | applied | set x to 5 => x = 5
+^ v=@newname is|equal to|equal? one? e=@num $ | $v = $e | 2 | TS050 | applied | velocidad es 60⏎F(2, velocidad) => velocidad = 60⏎F(2, velocidad)
 ^ v=@newname : e=@num $ | $v = $e | 2 | TS050 | applied | velocidad: 60⏎F(2, velocidad) => velocidad = 60⏎F(2, velocidad)
 ^ v=@usedname e=@num $ | $v = $e | 3 | TS050 | applied | VELOCIDAD 50⏎F(2, VELOCIDAD) => VELOCIDAD = 50⏎F(2, VELOCIDAD)
 ; v=@usedname e=@num f=;|$ | ; $v = $e $f | 3 | TS050 | applied | X = 15;X  17;SHOW(X) => X = 15;X = 17;SHOW(X)
 ^ v=@name <- e=@any+ $ | $v = $e | 1 | TS050 | applied | potencia <- 80⏎F(2, potencia) => potencia = 80⏎F(2, potencia)
 ^ e=@num|@val ->|=> v=@newname $ | $v = $e | 1 | TS050 | offered | 5 -> X⏎F(X, 60) => X = 5⏎F(X, 60)
-^ v=SPEED|VELOCIDAD|VEL|POWER|POTENCIA ( n=@num ) $ | $v = $n | 1 | TS050 | offered | SPEED(60)⏎F(2, SPEED) => SPEED = 60⏎F(2, SPEED)
-= SI|YES $ | = TRUE | 1 | TS102 | applied | X = si⏎IF(X)⏎S⏎ENDIF => X = TRUE⏎IF(X)⏎S⏎ENDIF
+^ v=@of_power ( n=@num ) $ | $v = $n | 1 | TS050 | offered | SPEED(60)⏎F(2, SPEED) => SPEED = 60⏎F(2, SPEED)
+= SI|TRUE $ | = TRUE | 1 | TS102 | applied | X = si⏎IF(X)⏎S⏎ENDIF => X = TRUE⏎IF(X)⏎S⏎ENDIF
 a=@num|@close b=@name = | $a ; $b = | 1.5 | TS013 | applied | F(1, 50) X = 2 => F(1, 50);X = 2
-^ set the? v=@word A|TO|EN n=@num $ | $v = $n | 1.5 | TS050 | applied | X = 1⏎sube la X a 5 => X = 1⏎X = 5
-^ CAMBIAR|CHANGE v=@name POR|BY n=@num $ | $v = $v + $n | 1.5 | TS050 | offered | N = 5⏎cambiar N por 1 => N = 5⏎N = N + 1
-^ CAMBIAR|CHANGE v=@name POR|BY - n=@num $ | $v = $v - $n | 1.5 | TS050 | offered | N = 5⏎cambiar N por -1 => N = 5⏎N = N -1
-^ add n=@num|@val TO|A|AL|EN|EM|AO the? v=@name $ | $v = $v + $n | 1 | TS050 | offered | VEL = 40⏎SUMAR 10 A VEL⏎F(1, VEL) => VEL = 40⏎VEL = VEL + 10⏎F(1, VEL)
-^ subtract n=@num|@val FROM|A|DE|AL|EN the? v=@name $ | $v = $v - $n | 1 | TS050 | offered | X = 40⏎resta 5 a X⏎F(1, X) => X = 40⏎X = X - 5⏎F(1, X)
-^ multiply the? v=@name BY|POR n=@num|@val $ | $v = $v * $n | 1 | TS050 | offered | X = 40⏎multiply X by 2⏎F(1, X) => X = 40⏎X = X * 2⏎F(1, X)
-^ divide the? v=@name BY|POR|ENTRE n=@num|@val $ | $v = $v / $n | 1 | TS050 | offered | X = 40⏎divide X entre 2⏎F(1, X) => X = 40⏎X = X / 2⏎F(1, X)
-^ increase the? v=@name BY|EN|EM|POR n=@num|@val $ | $v = $v + $n | 1 | TS050 | offered | X = 40⏎aumenta X en 5⏎F(1, X) => X = 40⏎X = X + 5⏎F(1, X)
-^ decrease the? v=@name BY|EN|EM|POR n=@num|@val $ | $v = $v - $n | 1 | TS050 | offered | X = 40⏎decrease X by 5⏎F(1, X) => X = 40⏎X = X - 5⏎F(1, X)
-^ keep the? e=@val|@num EN|IN|COMO v=@word $ | $v = $e | 1.5 | TS050 | applied | guardar 80 en potencia⏎F(2, potencia) => potencia = 80⏎F(2, potencia)
+^ set the? v=@word to n=@num $ | $v = $n | 1.5 | TS050 | applied | X = 1⏎sube la X a 5 => X = 1⏎X = 5
+^ change v=@name by n=@num $ | $v = $v + $n | 1.5 | TS050 | offered | N = 5⏎cambiar N por 1 => N = 5⏎N = N + 1
+^ change v=@name by - n=@num $ | $v = $v - $n | 1.5 | TS050 | offered | N = 5⏎cambiar N por -1 => N = 5⏎N = N -1
+^ add n=@num|@val to the? v=@name $ | $v = $v + $n | 1 | TS050 | offered | VEL = 40⏎SUMAR 10 A VEL⏎F(1, VEL) => VEL = 40⏎VEL = VEL + 10⏎F(1, VEL)
+^ subtract n=@num|@val from|to the? v=@name $ | $v = $v - $n | 1 | TS050 | offered | X = 40⏎resta 5 a X⏎F(1, X) => X = 40⏎X = X - 5⏎F(1, X)
+^ multiply the? v=@name by n=@num|@val $ | $v = $v * $n | 1 | TS050 | offered | X = 40⏎multiply X by 2⏎F(1, X) => X = 40⏎X = X * 2⏎F(1, X)
+^ divide the? v=@name by|over n=@num|@val $ | $v = $v / $n | 1 | TS050 | offered | X = 40⏎divide X entre 2⏎F(1, X) => X = 40⏎X = X / 2⏎F(1, X)
+^ increase the? v=@name by n=@num|@val $ | $v = $v + $n | 1 | TS050 | offered | X = 40⏎aumenta X en 5⏎F(1, X) => X = 40⏎X = X + 5⏎F(1, X)
+^ decrease the? v=@name by n=@num|@val $ | $v = $v - $n | 1 | TS050 | offered | X = 40⏎decrease X by 5⏎F(1, X) => X = 40⏎X = X - 5⏎F(1, X)
+^ keep the? e=@val|@num to v=@word $ | $v = $e | 1.5 | TS050 | applied | guardar 80 en potencia⏎F(2, potencia) => potencia = 80⏎F(2, potencia)
 ^ a=@name = b=@num ,? c=@name = d=@num $ | $a = $b ; $c = $d | 1 | TS013 | applied | x = 5, y = 80⏎F(x, y) => X = 5;Y = 80⏎F(x, y)
 ^ v=@name = ( a=@num $ | $v = ( $a ) | 1 | TS016 | applied | vel = (50⏎F(1, vel) => vel =(50)⏎F(1, vel)
 a=@word b=@word|@num | @known:a:b | 1 | TS056 | first | MI_BANDERA = TRUE⏎IF(mi bandera)⏎S⏎ENDIF => MI_BANDERA = TRUE⏎IF(MI_BANDERA)⏎S⏎ENDIF
 # calls and their brackets
 x=@callw [ | $x ( | 1 | TS010 | first | F[2,80] => F(2,80)
 x=@callw '{' c=@nobrace+ '}' | $x ( $c ) | 1 | TS015 | applied | SI|F{2,80} => SI|F(2,80)
-RANDOM between|than|DESDE? a=@num A|AL|TO|and|until|-|,? b=@num | RANDOM ( $a , $b ) | 1 | TS015 | applied | X = RANDOM 1 3⏎F(X, 50) => X = RANDOM(1, 3)⏎F(X, 50)
+RANDOM between|from? a=@num to|and|until|-|,? b=@num | RANDOM ( $a , $b ) | 1 | TS015 | applied | X = RANDOM 1 3⏎F(X, 50) => X = RANDOM(1, 3)⏎F(X, 50)
 c=@callw ( a=@argt+ ; b=@argt+ e=)|$ | $c ( $a , $b ) | 1 | TS019 | applied | F(2;80 => F(2, 80)
-a=@callw b=@num ,? c=@num ,|;|Y? d=@callw | $a ( $b , $c ) ; $d | 1.5 | TS015 | applied | F 2,80,R 1,50 => F(2, 80);R(1, 50)
+a=@callw b=@num ,? c=@num ,|;|and? d=@callw | $a ( $b , $c ) ; $d | 1.5 | TS015 | applied | F 2,80,R 1,50 => F(2, 80);R(1, 50)
 v=@val ( ) | $v | 1 | TS028 | first | LIGHT_L() => LIGHT_L
-RANDOM ( between|than|DESDE? a=@num A|AL|TO|and|until|- b=@num ) | RANDOM ( $a , $b ) | 1 | TS017 | applied | X = RANDOM(1 al 6) => X = RANDOM(1, 6)
+RANDOM ( between|from? a=@num to|and|until|- b=@num ) | RANDOM ( $a , $b ) | 1 | TS017 | applied | X = RANDOM(1 al 6) => X = RANDOM(1, 6)
 c=@callw ( a=@argt+ ( e=;|$ | $c ( $a ) $e | 1 | TS076 | applied | F(2, 80( => F(2, 80)
 ^ ( c=@callw a=@num ,? b=@num ) $ | $c ( $a , $b ) | 1 | TS076 | applied | (F 2,80) => F(2, 80)
 ^ c=@callw :? a='-'? b=@num ; d='-'? e=@num )|]|$ | $c ( $a $b , $d $e ) | 1 | TS015 | applied | R 0.5; 60 => R(0.5, 60)
@@ -371,19 +368,19 @@ c=@callw ( ( a=@nobrace+ ) ) | $c ( $a ) | 1 | TS076 | applied | F((2,80)) => F(
 c=@callw ( a=@argt+ s=*|/|%|- b=@num|@val t=+|-|*|/|% d=@argt+ ) ) e=;|$ | $c ( $a $s ( $b $t $d ) ) $e | 1 | TS041 | applied | SHOW(5 / 3 - 3)) => SHOW(5 /(3 - 3))
 c=@callw ( a=@argt+ ) ) e=;|$ | $c ( $a ) $e | 1 | TS041 | applied | F(2,80)) => F(2,80)
 c=@callw ( a=@num /|- b=@num ) | $c ( $a , $b ) | 2 | TS076 | offered | F(2/80) => F(2, 80)
-c=@callw ( a=@num _|.|;|&|<|'|'|Y|> b=@num ) | $c ( $a , $b ) | 1 | TS076 | applied | F(2|80) => F(2, 80)
+c=@callw ( a=@num _|.|;|&|<|'|'|and|> b=@num ) | $c ( $a , $b ) | 1 | TS076 | applied | F(2|80) => F(2, 80)
 SHOW ( a=@argt+ = ) | SHOW ( $a ) | 1 | TS076 | offered | SHOW(2 + 2 =) => SHOW(2 + 2)
 SHOW ( a=@val , b=@val ) | SHOW ( $a ) ; SHOW ( $b ) | 2 | TS020 | offered | SHOW(DISTANCE, LIGHT_L) => SHOW(DISTANCE);SHOW(LIGHT_L)
 SHOW ( a=@val &|+|, " " &|+|, b=@val ) | SHOW ( $a ) ; SHOW ( $b ) | 1 | TS020 | offered | SHOW(LIGHT_L & " " & LIGHT_R) => SHOW(LIGHT_L);SHOW(LIGHT_R)
 SHOW ( a=@val , b=@val , c=@val ) | SHOW ( $a ) ; SHOW ( $b ) ; SHOW ( $c ) | 2 | TS020 | offered | SHOW(DISTANCE, LIGHT_L, LIGHT_R) => SHOW(DISTANCE);SHOW(LIGHT_L);SHOW(LIGHT_R)
 ^ SHOW a=@val ,? b=@val $ | SHOW ( $a ) ; SHOW ( $b ) | 2 | TS015 | applied | SHOW DISTANCE LIGHT_R => SHOW(DISTANCE);SHOW(LIGHT_R)
 c=@callw ( a=@argt* b=@num|@word e=;|$|UNTIL|@start | $c ( $a $b ) $e | 1 | TS016 | applied | F(2,80 => F(2,80)
-TONE|TONO ( a=@num , b=@num ) | BEEP ( @ms:b , $a ) | 1 | TS102 | offered | tone(440, 1000) => BEEP(1, 440)
+TONE|@of_pitch ( a=@num , b=@num ) | BEEP ( @ms:b , $a ) | 1 | TS102 | offered | tone(440, 1000) => BEEP(1, 440)
 TONE ( @num , a=@num , b=@num ) | BEEP ( @ms:b , $a ) | 1 | TS102 | offered | tone(8, 440, 500) => BEEP(0.5, 440)
 a=F|B|L|R ( u=CM|DEG (? n=@num )? , p=@num ) | $a ( $n $u , $p ) | 1 | TS076 | offered | B(CM(20), 60) => B(20 CM, 60)
 a=F|B|L|R ( p=@num , n=@num u=CM|DEG ) | $a ( $n $u , @power:p ) | 1 | TS076 | offered | R(60, 90 DEG) => R(90 DEG, 60)
-^ c=F|B|L|R TO|TOO ,? n=@num $ | $c ( 2 , $n ) | .5 | TS015 | offered | f to 80 => f(2, 80)
-c=F|B|L|R ( TOO , | $c ( 2 , | 1 | TS102 | offered | F(too, 80) => F(2, 80)
+^ c=F|B|L|R two ,? n=@num $ | $c ( 2 , $n ) | .5 | TS015 | offered | f to 80 => f(2, 80)
+c=F|B|L|R ( two , | $c ( 2 , | 1 | TS102 | offered | F(too, 80) => F(2, 80)
 BEEP ( a=<note> , b=<note> ) | BEEP ( 1 , $a ) ; BEEP ( 1 , $b ) | 1 | TS020 | offered | MUSICA(DO, RE) => BEEP(1, 262);BEEP(1, 294)
 BEEP ( a=<note> , b=<note> , c=<note> ) | BEEP ( 1 , $a ) ; BEEP ( 1 , $b ) ; BEEP ( 1 , $c ) | 1 | TS020 | offered | BEEP(DO, RE, MI) => BEEP(1, 262);BEEP(1, 294);BEEP(1, 330)
 @newname . c=F|B|L|R|W|BEEP ( | $c ( | 1 | TS102 | applied | bot.F(2, 80) => F(2, 80)
@@ -393,11 +390,11 @@ a=F|B|L|R|W ( b=@argt+ ) S|STOP ( c=@val s=<|<=|>|>= d=@num|@val ) $ | $a ( $b )
 a=F|B|L|R ( FOREVER , p=@num|@val ) UNTIL ( n=@num ) | $a ( $n , $p ) | 2 | TS202 | offered | F(FOREVER, 80) UNTIL(2) => F(2, 80)
 a=@close '|'|,|. UNTIL ( | $a UNTIL ( | 1 | TS029 | applied | F(5, 60).UNTIL(DISTANCE < 30) => F(5, 60) UNTIL(DISTANCE < 30)
 ^ W ( c=@val s=<|<=|>|>=|=|<> d=@num|@val ) $ | W ( FOREVER ) UNTIL ( $c $s $d ) | .5 | TS102 | applied | wait(DISTANCE < 10) => W(FOREVER) UNTIL(DISTANCE < 10)
-^ W FOR|QUE|A c=@val s=<|<=|>|>= d=@num|@val $ | W ( FOREVER ) UNTIL ( $c $s $d ) | .9 | TS102 | offered | wait for DISTANCE < 10 => W(FOREVER) UNTIL(DISTANCE < 10)
-^ W UNTIL QUE? c=@cond+ $ | W ( FOREVER ) UNTIL ( $c ) | 1 | TS102 | applied | WAIT UNTIL DISTANCE < 10 => W(FOREVER) UNTIL(DISTANCE < 10)
-a=@close UNTIL|HASTA QUE? c=@cond+ then+ ,? b=@start | $a UNTIL ( $c ) ; $b | 1 | TS015 | applied | F(2, 80) hasta DISTANCE < 10 luego S => F(2, 80) UNTIL(DISTANCE < 10);S
-a=@close UNTIL|HASTA QUE? c=@noparen+ $ | $a UNTIL ( $c ) | 1 | TS015 | applied | F(3, 80) UNTIL DISTANCE < 10 => F(3, 80) UNTIL(DISTANCE < 10)
-a=@close HASTA|UNTIL QUE? ( | $a UNTIL ( | 1 | TS102 | applied | F(2,80) HASTA(DISTANCE<10) => F(2,80) UNTIL(DISTANCE<10)
+^ W during|that|to c=@val s=<|<=|>|>= d=@num|@val $ | W ( FOREVER ) UNTIL ( $c $s $d ) | .9 | TS102 | offered | wait for DISTANCE < 10 => W(FOREVER) UNTIL(DISTANCE < 10)
+^ W UNTIL that? c=@cond+ $ | W ( FOREVER ) UNTIL ( $c ) | 1 | TS102 | applied | WAIT UNTIL DISTANCE < 10 => W(FOREVER) UNTIL(DISTANCE < 10)
+a=@close UNTIL that? c=@cond+ then+ ,? b=@start | $a UNTIL ( $c ) ; $b | 1 | TS015 | applied | F(2, 80) hasta DISTANCE < 10 luego S => F(2, 80) UNTIL(DISTANCE < 10);S
+a=@close UNTIL that? c=@noparen+ $ | $a UNTIL ( $c ) | 1 | TS015 | applied | F(3, 80) UNTIL DISTANCE < 10 => F(3, 80) UNTIL(DISTANCE < 10)
+a=@close UNTIL that? ( | $a UNTIL ( | 1 | TS102 | applied | F(2,80) HASTA(DISTANCE<10) => F(2,80) UNTIL(DISTANCE<10)
 ^ UNTIL <question> ':'|'{'? $ | WHILE ( @not:c ) | 3 | TS029 | offered | UNTIL(DISTANCE < 10)⏎F(1, 60)⏎END_WHILE => WHILE(DISTANCE >= 10)⏎F(1, 60)⏎END_WHILE
 ^ a=F|B|L|R ( UNTIL (? c=@cond+ )? , b=@num ) $ | $a ( FOREVER , $b ) UNTIL ( $c ) | 2 | TS029 | offered | F(UNTIL(DISTANCE < 20), 60) => F(FOREVER, 60) UNTIL(DISTANCE < 20)
 ^ UNTIL (? c=@cond+ )? a=F|B|L|R|W ( b=@argt+ ) $ | $a ( $b ) UNTIL ( $c ) | 2 | TS029 | offered | UNTIL DISTANCE < 10 F(2, 60) => F(2, 60) UNTIL(DISTANCE < 10)
@@ -410,8 +407,8 @@ h=IF|WHILE ( c=@argt+ ) ( d=@argt+ ) | &h ( $c AND $d ) | 1.5 | TS010 | applied 
 c=IF|WHILE|ELSEIF|UNTIL ( ( a=@argt* b=@num|@word ) e=;|$ | $c ( ( $a $b ) ) $e | 1 | TS016 | applied | IF((DISTANCE < 10)⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
 h=IF|WHILE|LOOP|UNTIL|ELSEIF [ | &h ( | 1 | TS010 | applied | IF[DISTANCE < 10]⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
 ^ unless <question> | IF ( @not:c ) ; | 1 | TS102 | applied | unless(DISTANCE < 10)⏎F(2, 70)⏎end => IF(DISTANCE >= 10)⏎F(2, 70)⏎ENDIF
-^ unless QUE? c=@argt+ :|,|; | IF ( @not:c ) ; | 1.2 | TS102 | applied | unless DISTANCE < 5:⏎F(1, 50)⏎ENDIF => IF(DISTANCE >= 5)⏎F(1, 50)⏎ENDIF
-^ unless QUE? c=@argt+ b=@start | IF ( @not:c ) ; $b | 1.3 | TS102 | applied | unless distance < 10 F(1,50) => IF(DISTANCE >= 10);F(1, 50);ENDIF
+^ unless that? c=@argt+ :|,|; | IF ( @not:c ) ; | 1.2 | TS102 | applied | unless DISTANCE < 5:⏎F(1, 50)⏎ENDIF => IF(DISTANCE >= 5)⏎F(1, 50)⏎ENDIF
+^ unless that? c=@argt+ b=@start | IF ( @not:c ) ; $b | 1.3 | TS102 | applied | unless distance < 10 F(1,50) => IF(DISTANCE >= 10);F(1, 50);ENDIF
 <asks> ( c=@any+ ) o=AND|OR ( d=@any+ ) | &h ( ( $c ) &o ( $d ) ) | 1 | TS015 | applied | IF(DISTANCE > 5) AND (LIGHT_R > 9);S;ENDIF => IF((DISTANCE > 5) AND(LIGHT_R > 9));S;ENDIF
 h=IF|WHILE|LOOP|UNTIL|ELSEIF :|.|->|, ( | &h ( | 1 | TS015 | applied | IF:(DISTANCE < 10)⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
 h=IF|WHILE|ELSEIF|LOOP|UNTIL '{' c=@nob+ '}' | &h ( $c ) | 1 | TS015 | applied | IF{DISTANCE < 10}⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
@@ -420,12 +417,12 @@ h=IF|WHILE|ELSEIF|LOOP|UNTIL '{' c=@nob+ '}' | &h ( $c ) | 1 | TS015 | applied |
 <asks> c=@cond+ ;|$ | &h ( $c ) ; | 1.3 | TS015 | applied | si DISTANCE > 10⏎S⏎fin => IF(DISTANCE > 10)⏎S⏎ENDIF
 <asks> c=@cond+ b=@start | &h ( $c ) ; $b | 2 | TS014 | applied | IF DISTANCE < 10 STOP => IF(DISTANCE < 10);STOP;ENDIF
 h=IF|WHILE|LOOP|WHEN ( c=@noclose+ , <body> ) $ | &h ( $c ) ; $b $r ; @endof:h | 1 | TS080 | applied | SI|IF(DISTANCE < 10, S) => SI|IF(DISTANCE < 10);S;ENDIF
-^ '='? IF|SE ( c=@noclose+ , <body> , d=@start s=@all* ) $ | IF ( $c ) ; $b $r ; ELSE ; $d $s ; ENDIF | .9 | TS080 | offered | IF(DISTANCE < 15, B(1, 50), F(1, 50)) => IF(DISTANCE < 15);B(1, 50);ELSE;F(1, 50);ENDIF
-^ '=' IF|SE ( c=@argt+ ; <body> ; d=@start s=@all* ) $ | IF ( $c ) ; $b $r ; ELSE ; $d $s ; ENDIF | .8 | TS080 | offered | =SI(DISTANCE<10;B(1;60);F(1;60)) => IF(DISTANCE < 10);B(1, 60);ELSE;F(1, 60);ENDIF
+^ '='? IF ( c=@noclose+ , <body> , d=@start s=@all* ) $ | IF ( $c ) ; $b $r ; ELSE ; $d $s ; ENDIF | .9 | TS080 | offered | IF(DISTANCE < 15, B(1, 50), F(1, 50)) => IF(DISTANCE < 15);B(1, 50);ELSE;F(1, 50);ENDIF
+^ '=' IF ( c=@argt+ ; <body> ; d=@start s=@all* ) $ | IF ( $c ) ; $b $r ; ELSE ; $d $s ; ENDIF | .8 | TS080 | offered | =SI(DISTANCE<10;B(1;60);F(1;60)) => IF(DISTANCE < 10);B(1, 60);ELSE;F(1, 60);ENDIF
 h=IF|WHILE ( c=@noclose+ , b=@start | &h ( $c ) ; $b | 2 | TS080 | applied | IF(DISTANCE < 10, S) ELSE F(1, 60) ENDIF => IF(DISTANCE < 10);S;ELSE;F(1, 60);ENDIF
 <block> <question> do|times ':'? | &h ( $c ) ; | 1 | TS044 | applied | LOOP(3) TIMES⏎F(1,50)⏎END_LOOP => LOOP(3)⏎F(1,50)⏎END_LOOP
 <block> <question> :|,|=|?|'|'|- ':'? | &h ( $c ) ; | 1 | TS014 | applied | LOOP(3): F(1,50) => LOOP(3);F(1, 50);END_LOOP
-<block> <question> b=@start|'{'|SALUDO | &h ( $c ) ; $b | 1 | TS014 | applied | LOOP(3) F(1,50) => LOOP(3);F(1, 50);END_LOOP
+<block> <question> b=@start|'{' | &h ( $c ) ; $b | 1 | TS014 | applied | LOOP(3) F(1,50) => LOOP(3);F(1, 50);END_LOOP
 <block> <question> ;? ( <body> ) $ | &h ( $c ) ; $b $r ; @endof:h | 1 | TS080 | applied | LOOP(4)(F(1,60)) => LOOP(4);F(1, 60);END_LOOP
 c=IF|WHILE|ELSEIF|UNTIL|LOOP ( a=@argt* b=@num|@word e=;|$ | $c ( $a $b ) $e | 1 | TS016 | applied | F(2,80)UNTIL(DISTANCE<10 => F(2,80)UNTIL(DISTANCE<10)
 # ELSE and ELSEIF
@@ -435,20 +432,20 @@ ELSE IF | ELSEIF | 1 | TS022 | first | IF(DISTANCE < 10);S;ELSE IF(DISTANCE < 30
 ELSE , IF | ELSEIF | 1 | TS022 | applied | IF(DISTANCE < 5);S;ELSE, IF(DISTANCE < 9);F(1, 50);ENDIF => IF(DISTANCE < 5);S; ELSEIF(DISTANCE < 9);F(1, 50);ENDIF
 IF <question> ? a=@any+ : b=@any+ $ | IF ( $c ) ; $a ; ELSE ; $b ; ENDIF | 1 | TS014 | applied | IF(DISTANCE < 10) ? S : F(1,50) => IF(DISTANCE < 10);S;ELSE;F(1, 50);ENDIF
 ELSE ( <body> ) $ | ELSE ; $b $r | 1 | TS014 | applied | IF(DISTANCE < 10)(S)ELSE(F(1,50)) => IF(DISTANCE < 10);S;ELSE;F(1, 50);ENDIF
-h=ELSE :|,|THEN|=|'|' | &h ; | 1 | TS014 | applied | IF DISTANCE<10: STOP ELSE: F(1,50) => IF(DISTANCE < 10);STOP;ELSE;F(1, 50);ENDIF
+h=ELSE :|,|do|=|'|' | &h ; | 1 | TS014 | applied | IF DISTANCE<10: STOP ELSE: F(1,50) => IF(DISTANCE < 10);STOP;ELSE;F(1, 50);ENDIF
 h=ELSE b=@start|'{' | &h ; $b | 1 | TS014 | applied | IF(DISTANCE<10);R(1,60);ELSE F(1,80);ENDIF => IF(DISTANCE < 10);R(1, 60);ELSE;F(1, 80);ENDIF
 a=@nosep|@close h=ELSE|ELSEIF|ENDIF|END_LOOP|END_WHILE|END_DEF|END_WHEN|END_TASK | $a ; &h | 1 | TS013 | applied | IF LIGHT_R>100 F(4,70) ENDIF => IF(LIGHT_R > 100);F(4, 70);ENDIF
 # LOOP
 ^ LOOP FOREVER :|,? b=@start|'{' | LOOP ( FOREVER ) ; $b | 1 | TS015 | applied | LOOP FOREVER F(0.5,60) R(0.5,60) => LOOP(FOREVER);F(0.5, 60);R(0.5, 60);END_LOOP
 ^ LOOP n=@num ( <body> ) $ | LOOP ( $n ) ; $b $r ; END_LOOP | 1 | TS080 | applied | LOOP 3 (F(1, 50); R(1, 50)) => LOOP(3);F(1, 50);R(1, 50);END_LOOP
-^ LOOP n=@num VECES? [ <body> ] $ | LOOP ( $n ) ; $b $r ; END_LOOP | 1 | TS080 | applied | repite 4 [F(1, 60) R(0.5, 60)] => LOOP(4);F(1, 60);R(0.5, 60);END_LOOP
+^ LOOP n=@num times? [ <body> ] $ | LOOP ( $n ) ; $b $r ; END_LOOP | 1 | TS080 | applied | repite 4 [F(1, 60) R(0.5, 60)] => LOOP(4);F(1, 60);R(0.5, 60);END_LOOP
 h=LOOP|WHILE <question> ( <body> ) e=@start | &h ( $c ) ; $b $r ; @endof:h ; $e | 1 | TS080 | applied | LOOP(3)(S)F(1,50) => LOOP(3);S;END_LOOP;F(1, 50)
 LOOP ( ) b=':'|'{' | LOOP ( FOREVER ) ; @brace:b | 2 | TS064 | offered | LOOP() {⏎F(1, 80)⏎} => LOOP(FOREVER);⏎F(1, 80)⏎END_LOOP
 ^ FOREVER ( ) '{' | LOOP ( FOREVER ) ; { | 1 | TS102 | applied | void loop() {⏎  F(1, 50);⏎} => LOOP(FOREVER);⏎  F(1, 50);⏎END_LOOP
-^ <for> each? @word IN|EN|DE n=@num :? $ | LOOP ( $n ) | 1 | TS102 | applied | for each paso in 4⏎F(1, 50)⏎end => LOOP(4)⏎F(1, 50)⏎END_LOOP
+^ <for> each? @word in|of n=@num :? $ | LOOP ( $n ) | 1 | TS102 | applied | for each paso in 4⏎F(1, 50)⏎end => LOOP(4)⏎F(1, 50)⏎END_LOOP
 ^ do n=@num times :? | LOOP ( $n ) ; | 1 | TS102 | applied | hacer 4 veces⏎F(1,50)⏎R(1,50)⏎fin => LOOP(4)⏎F(1,50)⏎R(1,50)⏎END_LOOP
 LOOP n=X1|X2|X3|X4|X5|X6|X8 | LOOP ( @xn:n ) | 1 | TS015 | applied | LOOP x4⏎F(1,60)⏎END_LOOP => LOOP(4)⏎F(1,60)⏎END_LOOP
-^ LOOP|DO ':'|'{'? $ | LOOP ( FOREVER ) | 3 | TS064 | applied | repite⏎S⏎fin => LOOP(FOREVER)⏎S⏎END_LOOP
+^ LOOP ':'|'{'? $ | LOOP ( FOREVER ) | 3 | TS064 | applied | repite⏎S⏎fin => LOOP(FOREVER)⏎S⏎END_LOOP
 LOOP n=@val $ | LOOP ( $n ) | 1 | TS015 | applied | X4 = 3⏎LOOP X4⏎F(1,50)⏎END_LOOP => X4 = 3⏎LOOP(X4)⏎F(1,50)⏎END_LOOP
 h=LOOP|IF|WHILE|ELSEIF <question> [ <body> ] $ | &h ( $c ) ; $b $r ; @endof:h | 1 | TS080 | applied | LOOP(4) [F(1,50); R(0.5,50)] => LOOP(4);F(1, 50);R(0.5, 50);END_LOOP
 ^ LOOP <body> n=@num times $ | LOOP ( $n ) ; $b $r ; END_LOOP | 1.5 | TS102 | applied | repeat F(1,60) R(1,60) 4 times => LOOP(4);F(1, 60);R(1, 60);END_LOOP
@@ -456,17 +453,17 @@ h=LOOP|IF|WHILE|ELSEIF <question> [ <body> ] $ | &h ( $c ) ; $b $r ; @endof:h | 
 LOOP ( n=@num @unit ) | LOOP ( $n ) | 1 | TS049 | applied | LOOP(3 veces);F(1,50);END_LOOP => LOOP(3);F(1,50);END_LOOP
 LOOP X|=|-|-> n=@num | LOOP ( $n ) | 1 | TS015 | applied | LOOP x 3;F(1, 50);END_LOOP => LOOP(3);F(1, 50);END_LOOP
 LOOP n=number times :|,|do|;? | LOOP ( @digits:n ) ; | 1 | TS102 | applied | repite cuatro veces⏎F(1,60)⏎fin => LOOP(4)⏎F(1,60)⏎END_LOOP
-LOOP POR? n=@num times? :|,|do|; | LOOP ( $n ) ; | 1 | TS102 | applied | repite 4: F(1, 60) => LOOP(4);F(1, 60);END_LOOP
+LOOP by? n=@num times? :|,|do|; | LOOP ( $n ) ; | 1 | TS102 | applied | repite 4: F(1, 60) => LOOP(4);F(1, 60);END_LOOP
 LOOP n=@num times? b=@start|'{' | LOOP ( $n ) ; $b | 1 | TS102 | applied | LOOP 4 F(1,60) => LOOP(4);F(1, 60);END_LOOP
-LOOP POR? n=@num times? $ | LOOP ( $n ) | 1 | TS102 | applied | repetir 4⏎S⏎fin => LOOP(4)⏎S⏎END_LOOP
+LOOP by? n=@num times? $ | LOOP ( $n ) | 1 | TS102 | applied | repetir 4⏎S⏎fin => LOOP(4)⏎S⏎END_LOOP
 LOOP n=@val o=*|+|- m=@num $ | LOOP ( $n &o $m ) | 1 | TS015 | applied | X = 2⏎LOOP X * 4⏎F(1,50)⏎END_LOOP => X = 2⏎LOOP(X * 4)⏎F(1,50)⏎END_LOOP
 ^ START b=@start | START ; $b | 1 | TS013 | applied | START F(2,80) => START;F(2, 80)
-a=L|R ( half A? lap|GIRO|TURN , | $a ( 180 DEG , | 1 | TS102 | offered | R(media vuelta, 60) => R(180 DEG, 60)
-a=L|R ( UNA|A|ONE|FULL VUELTA|GIRO|TURN COMPLETA? , | $a ( 360 DEG , | 1 | TS102 | offered | L(una vuelta completa, 60) => L(360 DEG, 60)
-a=L|R ( A? CUARTO|QUARTER DE? VUELTA|GIRO|TURN , | $a ( 90 DEG , | 1 | TS102 | offered | R(cuarto de vuelta, 60) => R(90 DEG, 60)
-a=@callw ( n=@num A|TO|HASTA m=@num , | $a ( RANDOM ( $n , $m ) , | 1 | TS076 | offered | F(1 a 3, 60) => F(RANDOM(1, 3), 60)
-a=L|R ( 1 / 4 DE? VUELTA|GIRO|TURN , | $a ( 90 DEG , | 1 | TS102 | offered | R(1/4 vuelta, 60) => R(90 DEG, 60)
-a=L|R ( 1 / 2 DE? VUELTA|GIRO|TURN , | $a ( 180 DEG , | 1 | TS102 | offered | R(1/2 turn, 60) => R(180 DEG, 60)
+a=L|R ( half one? lap , | $a ( 180 DEG , | 1 | TS102 | offered | R(media vuelta, 60) => R(180 DEG, 60)
+a=L|R ( @one|one|whole lap whole? , | $a ( 360 DEG , | 1 | TS102 | offered | L(una vuelta completa, 60) => L(360 DEG, 60)
+a=L|R ( one? quarter of? lap , | $a ( 90 DEG , | 1 | TS102 | offered | R(cuarto de vuelta, 60) => R(90 DEG, 60)
+a=@callw ( n=@num to|until m=@num , | $a ( RANDOM ( $n , $m ) , | 1 | TS076 | offered | F(1 a 3, 60) => F(RANDOM(1, 3), 60)
+a=L|R ( 1 / 4 of? lap , | $a ( 90 DEG , | 1 | TS102 | offered | R(1/4 vuelta, 60) => R(90 DEG, 60)
+a=L|R ( 1 / 2 of? lap , | $a ( 180 DEG , | 1 | TS102 | offered | R(1/2 turn, 60) => R(180 DEG, 60)
 o=(|,|=|<|>|+|- '|' v=@num|@val c=@argt* '|' | $o ABS ( $v $c ) | 1 | TS010 | offered | D = |LIGHT_L - LIGHT_R|⏎SHOW(D) => D = ABS(LIGHT_L - LIGHT_R)⏎SHOW(D)
 ^ W ( UNTIL (? q=@argt+ )? ) $ | W ( FOREVER ) UNTIL ( $q ) | 1 | TS029 | offered | W(UNTIL DISTANCE < 10) => W(FOREVER) UNTIL(DISTANCE < 10)
 h=UNTIL|IF|WHILE|WHEN|ELSEIF ( c=@noclose+ ) o=AND|OR (? d=@noclose+ )? e=;|$ | &h ( $c &o $d ) $e | 1 | TS015 | offered | F(5, 60) UNTIL(LIGHT_L > 9) OR (LIGHT_R > 9) => F(5, 60) UNTIL(LIGHT_L > 9 OR LIGHT_R > 9)
@@ -475,8 +472,8 @@ h=UNTIL|IF|WHILE|WHEN|ELSEIF ( c=@noclose+ ) o=AND|OR (? d=@noclose+ )? e=;|$ | 
 UNTIL ( a=@noclose+ ) OR|or UNTIL ( b=@noclose+ ) e=;|$ | UNTIL ( $a OR $b ) $e | 1 | TS015 | offered | F(5, 60) UNTIL(LIGHT_L > 9) OR UNTIL(LIGHT_R > 9) => F(5, 60) UNTIL(LIGHT_L > 9 OR LIGHT_R > 9)
 ^ a=@callw ( b=@argt+ ) UNTIL ( c=@noclose+ ) UNTIL ( d=@noclose+ ) $ | $a ( $b ) UNTIL ( $c OR $d ) | 1 | TS029 | offered | F(5, 60) UNTIL(DISTANCE < 10) UNTIL(LIGHT_L > 500) => F(5, 60) UNTIL(DISTANCE < 10 OR LIGHT_L > 500)
 m=MIN|MAX ( a=@num|@val , b=@num|@val , c=@num|@val ) | $m ( $a , $m ( $b , $c ) ) | 1 | TS020 | offered | SHOW(MIN(DISTANCE, 5, 9)) => SHOW(MIN(DISTANCE, MIN(5, 9)))
-^ LET v=@word BE|TO n=@num $ | $v = $n | 1 | TS050 | applied | LET SPEED BE 50⏎F(2, SPEED) => SPEED = 50⏎F(2, SPEED)
-LOOP ( @name = 1 TO|A|until n=@num ) | LOOP ( $n ) | 1 | TS063 | offered | LOOP(I = 1 TO 5)⏎S⏎END_LOOP => LOOP(5)⏎S⏎END_LOOP
+^ declare v=@word is|to n=@num $ | $v = $n | 1 | TS050 | applied | LET SPEED BE 50⏎F(2, SPEED) => SPEED = 50⏎F(2, SPEED)
+LOOP ( @name = 1 to|until n=@num ) | LOOP ( $n ) | 1 | TS063 | offered | LOOP(I = 1 TO 5)⏎S⏎END_LOOP => LOOP(5)⏎S⏎END_LOOP
 ^ a=L|R n=@num $ | $a ( @angle:n DEG , 80 ) | 2 | TS015 | offered | L 90 => L(90 DEG, 80)
 ^ a=L|R ( n=@num ) $ | $a ( @angle:n DEG , 80 ) | 2 | TS020 | offered | R(90) => R(90 DEG, 80)
 a=F|B ( FOREVER ) | $a ( FOREVER , 80 ) | 2 | TS020 | offered | F(FOREVER) UNTIL(DISTANCE < 10) => F(FOREVER, 80) UNTIL(DISTANCE < 10)
@@ -493,29 +490,29 @@ h=IF|WHILE ( a=@val s=<|> b=@num , c=@val t=<|> d=@num ) | &h ( $a $s $b AND $c 
 LOOP ( n=@num , <body> ) | LOOP ( $n ) ; $b $r | 2 | TS080 | applied | LOOP(4, F(1,50))⏎END_LOOP => LOOP(4);F(1, 50)⏎END_LOOP
 LOOP ( <body> , n=@num ) $ | LOOP ( $n ) ; $b $r ; END_LOOP | 2 | TS080 | applied | LOOP(F(1,50), 4) => LOOP(4);F(1, 50);END_LOOP
 LOOP ( n=@num <body> ) $ | LOOP ( $n ) ; $b $r ; END_LOOP | 2 | TS080 | applied | LOOP(3 F(1,50)) => LOOP(3);F(1, 50);END_LOOP
-<for> v=@usedname IN|EN range ( n=@num ) :? | $v = - 1 ; LOOP ( $n ) ; $v = $v + 1 ; | .5 | TS102 | offered | for i in range(4):⏎  F(i, 60) => I = -1;LOOP(4);I = I + 1;⏎  F(i, 60)⏎END_LOOP
-LOOP|FOR|PARA|DESDE v=@usedname =|DESDE|than 1 TO|A|until n=@num do|:? | $v = 0 ; LOOP ( $n ) ; $v = $v + 1 ; | .5 | TS102 | offered | para n desde 1 hasta 4⏎F(n, 60)⏎fin para => N = 0;LOOP(4);N = N + 1;⏎F(n, 60)⏎END_LOOP
+<for> v=@usedname in range ( n=@num ) :? | $v = - 1 ; LOOP ( $n ) ; $v = $v + 1 ; | .5 | TS102 | offered | for i in range(4):⏎  F(i, 60) => I = -1;LOOP(4);I = I + 1;⏎  F(i, 60)⏎END_LOOP
+LOOP|count v=@usedname =|from 1 to|until n=@num do|:? | $v = 0 ; LOOP ( $n ) ; $v = $v + 1 ; | .5 | TS102 | offered | para n desde 1 hasta 4⏎F(n, 60)⏎fin para => N = 0;LOOP(4);N = N + 1;⏎F(n, 60)⏎END_LOOP
 LOOP ( v=@usedname , 1 , n=@num ) | $v = 0 ; LOOP ( $n ) ; $v = $v + 1 | .5 | TS063 | offered | LOOP(N, 1, 5)⏎F(N, 60)⏎END_LOOP => N = 0;LOOP(5);N = N + 1⏎F(N, 60)⏎END_LOOP
-<for> @name IN|EN range ( 1 , n=@num ) :? | LOOP ( $n - 1 ) ; | 1 | TS102 | offered | for side in range(1, 5):⏎F(1, 50)⏎END_LOOP => LOOP(5 - 1)⏎F(1, 50)⏎END_LOOP
-<for> @name IN|EN range ( n=@num ) :? | LOOP ( $n ) ; | 1 | TS102 | applied | for i in range(4): F(1,60); R(0.5,60) => LOOP(4);F(1, 60);R(0.5, 60);END_LOOP
-<for> @name IN|EN range ( 0 , n=@num ) :? | LOOP ( $n ) ; | 1 | TS102 | applied | for i in range(0, 4):⏎F(1, 50)⏎END_LOOP => LOOP(4)⏎F(1, 50)⏎END_LOOP
-LOOP|FOR|PARA|DESDE @name =|DESDE|than 1 TO|A|until n=@num do|:? | LOOP ( $n ) ; | 1 | TS102 | offered | para i de 1 a 4⏎F(1,50)⏎fin para => LOOP(4)⏎F(1,50)⏎END_LOOP
-LOOP ( INT? @name = 0 ; @name < n=@num ; @name ++ ) | LOOP ( $n ) | 1 | TS063 | offered | LOOP(I = 0; I < 4; I++);F(1, 50);END_LOOP => LOOP(4);F(1, 50);END_LOOP
+<for> @name in range ( 1 , n=@num ) :? | LOOP ( $n - 1 ) ; | 1 | TS102 | offered | for side in range(1, 5):⏎F(1, 50)⏎END_LOOP => LOOP(5 - 1)⏎F(1, 50)⏎END_LOOP
+<for> @name in range ( n=@num ) :? | LOOP ( $n ) ; | 1 | TS102 | applied | for i in range(4): F(1,60); R(0.5,60) => LOOP(4);F(1, 60);R(0.5, 60);END_LOOP
+<for> @name in range ( 0 , n=@num ) :? | LOOP ( $n ) ; | 1 | TS102 | applied | for i in range(0, 4):⏎F(1, 50)⏎END_LOOP => LOOP(4)⏎F(1, 50)⏎END_LOOP
+LOOP|count @name =|from 1 to|until n=@num do|:? | LOOP ( $n ) ; | 1 | TS102 | offered | para i de 1 a 4⏎F(1,50)⏎fin para => LOOP(4)⏎F(1,50)⏎END_LOOP
+LOOP ( declare? @name = 0 ; @name < n=@num ; @name ++ ) | LOOP ( $n ) | 1 | TS063 | offered | LOOP(I = 0; I < 4; I++);F(1, 50);END_LOOP => LOOP(4);F(1, 50);END_LOOP
 ^ v=@name = c=@cond+ ? a=@num|@val : b=@num|@val $ | IF ( $c ) ; $v = $a ; ELSE ; $v = $b ; ENDIF | 1 | TS069 | applied | V = DISTANCE > 20 ? 80 : 30⏎F(1, V) => IF(DISTANCE > 20);V = 80;ELSE;V = 30;ENDIF⏎F(1, V)
 ^ w=@callw ( a=@argt+ , c=@val s=<|> n=@num ? x=@num : y=@num ) $ | IF ( $c $s $n ) ; $w ( $a , $x ) ; ELSE ; $w ( $a , $y ) ; ENDIF | 1 | TS069 | offered | F(1, DISTANCE > 20 ? 80 : 40) => IF(DISTANCE > 20);F(1, 80);ELSE;F(1, 40);ENDIF
 a=@num ( c=@noparen+ ) | $a * ( $c ) | 1 | TS048 | offered | X = 2(20 + 10)⏎F(1, X) => X = 2 *(20 + 10)⏎F(1, X)
 ^ q=@val s=<|>|<=|>= n=@num|@val :|do|=|->|=>? b=@start r=@all* | IF ( $q $s $n ) ; $b $r | 1 | TS042 | offered | DISTANCE < 10: S => IF(DISTANCE < 10);S;ENDIF
-^ @name = 1 TO|HASTA n=@num do|:? $ | LOOP ( $n ) | 1 | TS102 | offered | veces = 1 hasta 5⏎F(1,50)⏎fin => LOOP(5)⏎F(1,50)⏎END_LOOP
-LOOP ( 1 to|A|, n=@num ) | LOOP ( $n ) | 1 | TS063 | offered | LOOP(1 TO 5);F(1, 50);END_LOOP => LOOP(5);F(1, 50);END_LOOP
+^ @name = 1 to|until n=@num do|:? $ | LOOP ( $n ) | 1 | TS102 | offered | veces = 1 hasta 5⏎F(1,50)⏎fin => LOOP(5)⏎F(1,50)⏎END_LOOP
+LOOP ( 1 to|, n=@num ) | LOOP ( $n ) | 1 | TS063 | offered | LOOP(1 TO 5);F(1, 50);END_LOOP => LOOP(5);F(1, 50);END_LOOP
 ^ BREAK LOOP $ | BREAK | 1 | TS044 | applied | LOOP(2)⏎F(1, 50)⏎BREAK LOOP⏎END_LOOP => LOOP(2)⏎F(1, 50)⏎BREAK⏎END_LOOP
-<for> ( INT? @name = 1 ; @name <= n=@num ; @name ++ ) | LOOP ( $n ) ; | 1 | TS102 | offered | for(i=1; i<=3; i++){ F(1,80); } => LOOP(3);F(1, 80);END_LOOP;
-^ FOREVER|SIEMPRE : $ | LOOP ( FOREVER ) ; | 1 | TS032 | applied | forever:⏎  F(1,50) => LOOP(FOREVER)⏎  F(1,50)⏎END_LOOP
-^ FOREVER|SIEMPRE $ | LOOP ( FOREVER ) | 1 | TS032 | applied | siempre⏎F(1,50)⏎fin => LOOP(FOREVER)⏎F(1,50)⏎END_LOOP
-^ LOOP|REPETIR FOREVER|SIEMPRE :? $ | LOOP ( FOREVER ) | 1 | TS102 | applied | repetir siempre⏎F(1, 50)⏎fin repetir => LOOP(FOREVER)⏎F(1, 50)⏎END_LOOP
+<for> ( declare? @name = 1 ; @name <= n=@num ; @name ++ ) | LOOP ( $n ) ; | 1 | TS102 | offered | for(i=1; i<=3; i++){ F(1,80); } => LOOP(3);F(1, 80);END_LOOP;
+^ FOREVER : $ | LOOP ( FOREVER ) ; | 1 | TS032 | applied | forever:⏎  F(1,50) => LOOP(FOREVER)⏎  F(1,50)⏎END_LOOP
+^ FOREVER $ | LOOP ( FOREVER ) | 1 | TS032 | applied | siempre⏎F(1,50)⏎fin => LOOP(FOREVER)⏎F(1,50)⏎END_LOOP
+^ LOOP FOREVER :? $ | LOOP ( FOREVER ) | 1 | TS102 | applied | repetir siempre⏎F(1, 50)⏎fin repetir => LOOP(FOREVER)⏎F(1, 50)⏎END_LOOP
 ^ FOREVER :|;? b=@start|'{' | LOOP ( FOREVER ) ; $b | 1 | TS032 | applied | forever: F(1,50) => LOOP(FOREVER);F(1, 50);END_LOOP
 ^ FOREVER ( <body> ) $ | LOOP ( FOREVER ) ; $b $r | 1 | TS080 | applied | FOREVER(F(1, 80)) => LOOP(FOREVER);F(1, 80);END_LOOP
-^ FOREVER QUE c=@cond+ b=@start|'{' | WHILE ( $c ) ; $b | 1 | TS102 | offered | siempre que DISTANCE > 10 F(1, 50) => WHILE(DISTANCE > 10);F(1, 50);END_WHILE
-^ FOREVER QUE c=@cond+ ':'? $ | WHILE ( $c ) | 1 | TS102 | offered | siempre que DISTANCE > 10⏎F(1, 50)⏎fin => WHILE(DISTANCE > 10)⏎F(1, 50)⏎END_WHILE
+^ FOREVER that c=@cond+ b=@start|'{' | WHILE ( $c ) ; $b | 1 | TS102 | offered | siempre que DISTANCE > 10 F(1, 50) => WHILE(DISTANCE > 10);F(1, 50);END_WHILE
+^ FOREVER that c=@cond+ ':'? $ | WHILE ( $c ) | 1 | TS102 | offered | siempre que DISTANCE > 10⏎F(1, 50)⏎fin => WHILE(DISTANCE > 10)⏎F(1, 50)⏎END_WHILE
 h=TASK :|,|-|'|' | &h ; | 1 | TS014 | applied | TASK:⏎BEEP(1, 440)⏎END_TASK => TASK⏎BEEP(1, 440)⏎END_TASK
 h=TASK b=@start|'{' | &h ; $b | 1 | TS014 | applied | TASK BEEP(1, 440) END_TASK => TASK;BEEP(1, 440);END_TASK
 ^ TASK @num ':'? $ | TASK | 1 | TS044 | offered | TAREA 1⏎BEEP(1, 440)⏎END_TASK => TASK⏎BEEP(1, 440)⏎END_TASK
@@ -526,15 +523,15 @@ END_LOOP UNTIL ( c=@noclose+ ) $ | IF ( $c ) ; <end> | 1 | TS064 | offered | LOO
 ^ LOOP ( FOREVER ) UNTIL ( c=@noclose+ ) $ | WHILE ( @not:c ) | 1 | TS102 | offered | LOOP(FOREVER) UNTIL(LIGHT_R > 800)⏎F(1, 40)⏎END_LOOP => WHILE(LIGHT_R <= 800)⏎F(1, 40)⏎END_WHILE
 ^ LOOP ( n=@num ) UNTIL ( c=@noclose+ ) $ | LOOP ( $n ) ; IF ( $c ) ; BREAK ; ENDIF | 1 | TS064 | offered | LOOP(3) UNTIL(DISTANCE < 10)⏎F(1, 40)⏎END_LOOP => LOOP(3);IF(DISTANCE < 10);BREAK;ENDIF⏎F(1, 40)⏎END_LOOP
 ^ UNTIL c=@cond+ $ | IF ( $c ) ; <end> | 2 | TS064 | applied | LOOP⏎F(1, 50)⏎UNTIL DISTANCE < 10 => LOOP(FOREVER)⏎F(1, 50)⏎IF(DISTANCE < 10);BREAK;ENDIF;END_LOOP
-^ DO '{' b=@start | LOOP ( FOREVER ) ; $b | 3 | TS064 | applied | DO { F(1, 50)⏎} WHILE(DISTANCE > 9) => LOOP(FOREVER);F(1, 50)⏎IF(DISTANCE <= 9);BREAK;ENDIF;END_LOOP
+^ do '{' b=@start | LOOP ( FOREVER ) ; $b | 3 | TS064 | applied | DO { F(1, 50)⏎} WHILE(DISTANCE > 9) => LOOP(FOREVER);F(1, 50)⏎IF(DISTANCE <= 9);BREAK;ENDIF;END_LOOP
 # how often something is done, said behind it or before it
 ^ n=@num b=@def $ | LOOP ( $n ) ; $b ; END_LOOP | 1 | TS062 | applied | DEF SALTO;F(0.2, 60);END_DEF⏎3 SALTO => DEF SALTO;F(0.2, 60);END_DEF⏎LOOP(3);SALTO;END_LOOP
-^ n=@num times|X|* :|,|DE? <body> $ | LOOP ( $n ) ; $b $r ; END_LOOP | 1 | TS062 | applied | 3 * F(1,50) => LOOP(3);F(1, 50);END_LOOP
+^ n=@num times|X|* :|,|of? <body> $ | LOOP ( $n ) ; $b $r ; END_LOOP | 1 | TS062 | applied | 3 * F(1,50) => LOOP(3);F(1, 50);END_LOOP
 ^ n=@num *|X|times? ( <body> ) $ | LOOP ( $n ) ; $b $r ; END_LOOP | 1 | TS080 | applied | SI|4*(F(2,80);R(1,50)) => SI|LOOP(4);F(2, 80);R(1, 50);END_LOOP
-^ ( <body> ) *|X|LOOP|POR? n=@num times? $ | LOOP ( $n ) ; $b $r ; END_LOOP | 1 | TS062 | applied | (F(2,80) R(1,60)) x 4 => LOOP(4);F(2, 80);R(1, 60);END_LOOP
-^ <body> ,|;? then* LOOP TODO|ALL|EVERYTHING|ESO|THAT|IT n=@num times $ | LOOP ( $n ) ; $b $r ; END_LOOP | .9 | TS062 | offered | F(2, 80) y B(2, 80) y repetir todo 3 veces => LOOP(3);F(2, 80);B(2, 80);END_LOOP
-^ <body> every|CADA n=@num seconds $ | LOOP ( FOREVER ) ; $b $r ; W ( $n ) ; END_LOOP | .9 | TS064 | offered | SHOW(DISTANCE) cada 1 segundo => LOOP(FOREVER);SHOW(DISTANCE);W(1);END_LOOP
-^ every|CADA n=@num seconds ,|:|do? <body> $ | LOOP ( FOREVER ) ; $b $r ; W ( $n ) ; END_LOOP | .9 | TS064 | offered | cada 2 segundos BEEP(1, 440) => LOOP(FOREVER);BEEP(1, 440);W(2);END_LOOP
+^ ( <body> ) *|X|LOOP|by? n=@num times? $ | LOOP ( $n ) ; $b $r ; END_LOOP | 1 | TS062 | applied | (F(2,80) R(1,60)) x 4 => LOOP(4);F(2, 80);R(1, 60);END_LOOP
+^ <body> ,|;? then* LOOP all n=@num times $ | LOOP ( $n ) ; $b $r ; END_LOOP | .9 | TS062 | offered | F(2, 80) y B(2, 80) y repetir todo 3 veces => LOOP(3);F(2, 80);B(2, 80);END_LOOP
+^ <body> every n=@num seconds $ | LOOP ( FOREVER ) ; $b $r ; W ( $n ) ; END_LOOP | .9 | TS064 | offered | SHOW(DISTANCE) cada 1 segundo => LOOP(FOREVER);SHOW(DISTANCE);W(1);END_LOOP
+^ every n=@num seconds ,|:|do? <body> $ | LOOP ( FOREVER ) ; $b $r ; W ( $n ) ; END_LOOP | .9 | TS064 | offered | cada 2 segundos BEEP(1, 440) => LOOP(FOREVER);BEEP(1, 440);W(2);END_LOOP
 ^ b=@def n=X2|X3|X4|X5|X6 $ | LOOP ( @xn:n ) ; $b ; END_LOOP | 1 | TS062 | applied | DEF SALTO;F(0.2, 60);END_DEF⏎SALTO x3 => DEF SALTO;F(0.2, 60);END_DEF⏎LOOP(3);SALTO;END_LOOP
 ^ b=@def *|X? n=@num times? $ | LOOP ( $n ) ; $b ; END_LOOP | 1 | TS062 | applied | DEF SALTO;F(0.2, 60);END_DEF⏎SALTO*3 => DEF SALTO;F(0.2, 60);END_DEF⏎LOOP(3);SALTO;END_LOOP
 ^ do|make b=@start r=@any* n=@num times $ | LOOP ( $n ) ; $b $r ; END_LOOP | 1 | TS062 | offered | hacer F(1,50) 3 veces => LOOP(3);F(1, 50);END_LOOP
@@ -543,7 +540,7 @@ END_LOOP UNTIL ( c=@noclose+ ) $ | IF ( $c ) ; <end> | 1 | TS064 | offered | LOO
 ^ a=S|STOP ( n=@num seconds? ) $ | $a ; W ( $n ) | 2 | TS039 | offered | S(2) => S;W(2)
 ^ a=S|STOP during? n=@num seconds? $ | $a ; W ( $n ) | 2 | TS013 | offered | STOP 2 segundos => STOP;W(2)
 ^ b=F|B|L|R|S|STOP|BEEP|SHOW|W r=@any* IF c=@cond+ ELSE d=@start s=@all* $ | IF ( $c ) ; $b $r ; ELSE ; $d $s ; ENDIF | .9 | TS071 | offered | F(2, 80) if DISTANCE > 10 else S => IF(DISTANCE > 10);F(2, 80);ELSE;S;ENDIF
-^ BREAK IF|CUANDO? (? c=@cond+ )? $ | IF ( $c ) ; BREAK ; ENDIF | .9 | TS071 | offered | LOOP(FOREVER)⏎F(0.5, 60)⏎BREAK(DISTANCE < 10)⏎END_LOOP => LOOP(FOREVER)⏎F(0.5, 60)⏎IF(DISTANCE < 10);BREAK;ENDIF⏎END_LOOP
+^ BREAK when? (? c=@cond+ )? $ | IF ( $c ) ; BREAK ; ENDIF | .9 | TS071 | offered | LOOP(FOREVER)⏎F(0.5, 60)⏎BREAK(DISTANCE < 10)⏎END_LOOP => LOOP(FOREVER)⏎F(0.5, 60)⏎IF(DISTANCE < 10);BREAK;ENDIF⏎END_LOOP
 # what the devices of a kit are set to
 d=@device v=lit|on e=;|$ | &d ( TRUE ) $e | 1 | TS015 | applied | LED ON => LED(TRUE)
 d=@device v=dark|off e=;|$ | &d ( FALSE ) $e | 1 | TS015 | applied | LED OFF => LED(FALSE)
@@ -551,10 +548,10 @@ d=@device ( v=lit ) | &d ( TRUE ) | 1 | TS102 | applied | LED(PRENDIDO) => LED(T
 d=@device ( v=dark ) | &d ( FALSE ) | 1 | TS102 | applied | LED(OFF) => LED(FALSE)
 d=@device ( v=most ) | &d ( @most:d ) | 1 | TS102 | applied | PINZA(ABIERTA) => GRIPPER(180)
 d=@device ( v=least ) | &d ( @least:d ) | 1 | TS102 | applied | GRIPPER(CLOSED) => GRIPPER(0)
-^ v=most the|A? d=@device $ | &d ( @most:d ) | 1 | TS102 | applied | ABRIR PINZA => GRIPPER(180)
-^ v=least the|A? d=@device $ | &d ( @least:d ) | 1 | TS102 | applied | cerrar la garra => GRIPPER(0)
-^ v=on|lit the|A? d=@device $ | &d ( TRUE ) | 1 | TS102 | applied | prende el LED => LED(TRUE)
-^ v=off|dark the|A? d=@device $ | &d ( FALSE ) | 1 | TS102 | applied | apagar el foco => LED(FALSE)
+^ v=most the|one? d=@device $ | &d ( @most:d ) | 1 | TS102 | applied | ABRIR PINZA => GRIPPER(180)
+^ v=least the|one? d=@device $ | &d ( @least:d ) | 1 | TS102 | applied | cerrar la garra => GRIPPER(0)
+^ v=on|lit the|one? d=@device $ | &d ( TRUE ) | 1 | TS102 | applied | prende el LED => LED(TRUE)
+^ v=off|dark the|one? d=@device $ | &d ( FALSE ) | 1 | TS102 | applied | apagar el foco => LED(FALSE)
 # DEF and its calls
 v=@def ( ) | $v | 1 | TS028 | first | DEF GIRO()⏎R(1, 60)⏎END_DEF⏎GIRO() => DEF GIRO⏎R(1, 60)⏎END_DEF⏎GIRO
 ^ DEF n=@word ( v=@name ) ':'? | $v = 0 ; DEF $n ; | .5 | TS039 | offered | def cuadrado(lado):⏎  F(lado, 80)⏎cuadrado(2) => LADO = 0;DEF CUADRADO;⏎  F(lado, 80)⏎END_DEF⏎LADO = 2;CUADRADO
@@ -563,34 +560,34 @@ v=@def ( ) | $v | 1 | TS028 | first | DEF GIRO()⏎R(1, 60)⏎END_DEF⏎GIRO() =
 ^ n=@def ( a=@num|@val , b=@num|@val ) $ | @given:n = $a ; @also:n = $b ; $n | .5 | TS039 | offered | DEF IR(T, P)⏎F(T, P)⏎END_DEF⏎IR(2, 80) => T = 0;P = 0;DEF IR;⏎F(T, P)⏎END_DEF⏎T = 2;P = 80;IR
 ^ DEF n=@word ( <body> ) $ | DEF $n ; $b $r ; END_DEF | 1 | TS080 | applied | DEF SALUDO(BEEP(1,440))⏎SALUDO => DEF SALUDO;BEEP(1, 440);END_DEF⏎SALUDO
 ^ ( a=@callw ( c=@argt+ ) ) ( <body> ) $ | $a ( $c ) ; $b $r | 1 | TS080 | applied | (F(2,80))(R(1,60)) => F(2, 80);R(1, 60)
-v=@val A|TO the? wall | &v | 1 | TS102 | first | IF(distancia a la pared < 10)⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
-^ v=TIEMPO n=@num $ | $v = $n | 1 | TS050 | applied | tiempo 2⏎F(tiempo,80) => tiempo = 2⏎F(tiempo,80)
+v=@val to the? wall | &v | 1 | TS102 | first | IF(distancia a la pared < 10)⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
+^ v=@of_time n=@num $ | $v = $n | 1 | TS050 | applied | tiempo 2⏎F(tiempo,80) => tiempo = 2⏎F(tiempo,80)
 a=@close '|' h=END_LOOP|ENDIF|END_WHILE|END_DEF|END_WHEN|END_TASK | $a ; &h | 1 | TS061 | applied | LOOP(2);F(1, 80)|END_LOOP => LOOP(2);F(1, 80);END_LOOP
 ^ DEF ( n=@word ) | DEF $n | 1 | TS039 | offered | DEF(SALUDO)⏎BEEP(1,440)⏎END_DEF⏎SALUDO => DEF SALUDO⏎BEEP(1,440)⏎END_DEF⏎SALUDO
 DEF n=@word :|'|'|=|'->'|'=>' | DEF $n ; | 1 | TS014 | applied | DEF SALUDO = BEEP(1,440)⏎SALUDO => DEF SALUDO;BEEP(1, 440);END_DEF⏎SALUDO
 DEF n=@word b=@start|'{' | DEF $n ; $b | 1 | TS014 | applied | procedure square F(1,50) end => DEF SQUARE;F(1, 50);END_DEF
 ; call b=@def | ; $b | 1 | TS044 | applied | DEF SALTO;F(0.2, 60);END_DEF;CALL SALTO => DEF SALTO;F(0.2, 60);END_DEF;SALTO
-^ call|do|make the|O|A|EL|LA|UN|UNA|UM|UMA? b=@def | $b | 1 | TS044 | applied | DEF SALTO;F(0.2, 60);END_DEF⏎hacer SALTO => DEF SALTO;F(0.2, 60);END_DEF⏎SALTO
+^ call|do|make the|one? b=@def | $b | 1 | TS044 | applied | DEF SALTO;F(0.2, 60);END_DEF⏎hacer SALTO => DEF SALTO;F(0.2, 60);END_DEF⏎SALTO
 # ends of blocks
 ^ end @def $ | END_DEF | 1 | TS022 | applied | DEF SALTO⏎F(1, 50)⏎FIN SALTO⏎SALTO => DEF SALTO⏎F(1, 50)⏎END_DEF⏎SALTO
 a=@close h=end $ | $a ; &h | 1 | TS013 | applied | F(2,80) fin => F(2, 80);
 ^ END_DEF @def $ | END_DEF | 1 | TS044 | first | DEF SALTO⏎F(1, 50)⏎END_DEF SALTO⏎SALTO => DEF SALTO⏎F(1, 50)⏎END_DEF⏎SALTO
 h=END_LOOP|ENDIF|END_WHILE|END_DEF|END_WHEN|END_TASK ( @noparen+ ) | &h | 1 | TS039 | first offered | LOOP(3)⏎F(2, 80)⏎END_LOOP(3) => LOOP(3)⏎F(2, 80)⏎END_LOOP
 ; LOOP $ | ; END_LOOP | 4 | TS014 | applied | LOOP(4) F(1,50) R(0.5,50) LOOP => LOOP(4);F(1, 50);R(0.5, 50);END_LOOP
-^ S|STOP|SALIR|ROMPER LOOP|BUCLE|CICLO $ | BREAK | 1 | TS102 | applied | LOOP(FOREVER)⏎F(0.2,50)⏎IF(DISTANCE < 10)⏎STOP LOOP⏎ENDIF⏎END_LOOP => LOOP(FOREVER)⏎F(0.2,50)⏎IF(DISTANCE < 10)⏎BREAK⏎ENDIF⏎END_LOOP
+^ S|STOP|BREAK LOOP $ | BREAK | 1 | TS102 | applied | LOOP(FOREVER)⏎F(0.2,50)⏎IF(DISTANCE < 10)⏎STOP LOOP⏎ENDIF⏎END_LOOP => LOOP(FOREVER)⏎F(0.2,50)⏎IF(DISTANCE < 10)⏎BREAK⏎ENDIF⏎END_LOOP
 ^ program @word $ |  | 1 | TS044 | applied | programa baile⏎F(1, 50) => ⏎F(1, 50)
-^ RETURN 0 ;? $ |  | 1 | TS065 | applied | F(1, 50)⏎return 0; => F(1, 50)⏎
+^ leaves 0 ;? $ |  | 1 | TS065 | applied | F(1, 50)⏎return 0; => F(1, 50)⏎
 ^ end program? $ | FIN | 0 | TS044 | first | F(1, 50)⏎fin programa => F(1, 50)⏎
-end -|.|DEL|DE|EL? k=IF|LOOP|WHILE|DEF|FOREVER|FOR|PARA ;|$ | @endof:k | 1 | TS022 | first | definir bailar⏎L(1,50)⏎fin definir⏎bailar => DEF bailar⏎L(1,50)⏎END_DEF⏎bailar
+end -|.|of|the? k=IF|LOOP|WHILE|DEF|FOREVER|count ;|$ | @endof:k | 1 | TS022 | first | definir bailar⏎L(1,50)⏎fin definir⏎bailar => DEF bailar⏎L(1,50)⏎END_DEF⏎bailar
 ^ idles $ |  | 1 | TS044 | offered | IF(DISTANCE < 10)⏎NADA⏎ELSE⏎F(1, 60)⏎ENDIF => IF(DISTANCE < 10)⏎⏎ELSE⏎F(1, 60)⏎ENDIF
 # what joins instructions
 ^ please b=@start | $b | 1 | TS044 | applied | please F(2, 80) => F(2, 80)
 ^ = <body> $ | $b $r | 1 | TS054 | applied | =F(2,80)+R(1,60) => F(2, 80);R(1, 60)
 a=@close please please+ $ | $a | 1 | TS044 | applied | F(2, 80) thank you => F(2, 80)
 ^ @newname : b=@start | $b | 2.5 | TS054 | applied | square: F(1,50); R(1,50) => F(1,50); R(1,50)
-^ a=F|B ( n=@num , p=@num ) CM|CENTIMETROS $ | $a ( $n CM , $p ) | .5 | TS076 | offered | F(20, 60) CM => F(20 CM, 60)
-^ a=L|R ( n=@num , p=@num ) DEG|GRADOS|DEGREES|° $ | $a ( $n DEG , $p ) | .5 | TS076 | offered | R(90, 60) DEG => R(90 DEG, 60)
-a=@close please|CM|CENTIMETROS|SEG|SEGS|SEGUNDO|SEGUNDOS|SECONDS $ | $a | 1 | TS044 | applied | SHOW(DISTANCE) cm => SHOW(DISTANCE)
+^ a=F|B ( n=@num , p=@num ) CM|@in_cm $ | $a ( $n CM , $p ) | .5 | TS076 | offered | F(20, 60) CM => F(20 CM, 60)
+^ a=L|R ( n=@num , p=@num ) DEG|@in_deg|° $ | $a ( $n DEG , $p ) | .5 | TS076 | offered | R(90, 60) DEG => R(90 DEG, 60)
+a=@close please|CM|@in_cm|@in_secs $ | $a | 1 | TS044 | applied | SHOW(DISTANCE) cm => SHOW(DISTANCE)
 ( a=@num , p=@num|@val ) then|&|+|AND BEEP ( b=@num | ( $a , $p ) ; BEEP ( @same:a:b | .9 | TS074 | offered | F(2, 80) AND BEEP(2, 440) => F(2, 80);BEEP(2, 440)
 a=@close ,? then|soon+ ,? b=@start | $a ; $b | 1 | TS044 | applied | F(1,75) y R(1,75) => F(1, 75);R(1, 75)
 W n=@num seconds? then+ b=@start | W ( $n ) ; $b | 1 | TS015 | applied | F(2, 80) THEN WAIT 1 THEN B(2, 80) => F(2, 80);W(1);B(2, 80)
@@ -609,18 +606,18 @@ call b=@def n=@num | LOOP ( $n ) ; $b ; END_LOOP | 1 | TS062 | applied | DEF SAL
 ^ then ,? $ |  | 1 | TS044 | applied | F(1, 50);⏎luego, => F(1, 50);⏎
 # words of other languages around a program
 W8 | W | 1 | TS102 | offered | W8(1) => W(1)
-BRAKE | BREAK | 1 | TS102 | offered | LOOP(3)⏎S⏎BRAKE⏎END_LOOP => LOOP(3)⏎S⏎BREAK⏎END_LOOP
-EFE|EF | F | 1 | TS102 | first offered | efe dos coma ochenta => F(2, 80)
+brake | BREAK | 1 | TS102 | offered | LOOP(3)⏎S⏎BRAKE⏎END_LOOP => LOOP(3)⏎S⏎BREAK⏎END_LOOP
+letterf | F | 1 | TS102 | first offered | efe dos coma ochenta => F(2, 80)
 ^ import @any+ ;? $ |  | 1 | TS072 | applied | import robot⏎F(2,80) => ⏎F(2,80)
 v=S|STOP|BREAK|START|ELSE|ENDIF|END_LOOP ( ) | $v | 1 | TS028 | first | s() => s
 read ( v=@val ) | $v | 1 | TS102 | applied | X = leer(DISTANCE)⏎SHOW(X) => X =DISTANCE⏎SHOW(X)
 ^ no F|B|L|R|M extra? $ | S | .5 | TS102 | first | no avanzar mas => S
-^ PARA|DEJA DE AVANZAR|MOVER|MOVERTE $ | S | .5 | TS102 | first | para de avanzar => S
+^ cease of F $ | S | .5 | TS102 | first | para de avanzar => S
 ^ off|S the? engine $ | S | 1 | TS102 | applied | apaga motores => S
 ^ b=@start r=@all* '|' s=SI|SB $ | $s '|' $b $r | 1 | TS034 | offered | F(2, 80)|SI => SI |F(2, 80)
 ^ START '|' | SI '|' | 1 | TS034 | offered | start|F(2,80) => SI |F(2,80)
 IF c=@argt+ BREAK ;|$ | IF ( $c ) ; BREAK ; ENDIF ; | 1 | TS015 | applied | LOOP(FOREVER)⏎F(1, 50)⏎IF DISTANCE < 10 BREAK⏎END_LOOP => LOOP(FOREVER)⏎F(1, 50)⏎IF(DISTANCE < 10);BREAK;ENDIF;⏎END_LOOP
 IF <question> BREAK ;|$ | IF ( $c ) ; BREAK ; ENDIF ; | 1 | TS014 | applied | LOOP(FOREVER)⏎F(1, 50)⏎if (DISTANCE < 10) break;⏎END_LOOP => LOOP(FOREVER)⏎F(1, 50)⏎IF(DISTANCE < 10);BREAK;ENDIF⏎END_LOOP
-^ INT|VOID? MAIN|PRINCIPAL ( ) '{' | START ; { | 1 | TS065 | applied | main() {⏎F(3, 70);⏎} => START;⏎F(3, 70);⏎
+^ declare|DEF? main ( ) '{' | START ; { | 1 | TS065 | applied | main() {⏎F(3, 70);⏎} => START;⏎F(3, 70);⏎
 ^ read the? v=@val $ | $v | 1 | TS102 | applied | leer DISTANCE => DISTANCE
 """

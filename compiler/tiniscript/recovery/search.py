@@ -15,7 +15,16 @@ from typing import NamedTuple
 from tiniscript.base.kit import Kit
 from tiniscript.recovery import lines, rewrites, rows
 from tiniscript.recovery.blocks import Edit, Line, Matched, matched
-from tiniscript.recovery.concepts import CALLED, Lexeme, Names, lexemes, made, plain, texts
+from tiniscript.recovery.concepts import (
+    CALLED,
+    Lexeme,
+    Names,
+    lexemes,
+    made,
+    plain,
+    texts,
+    words_of,
+)
 from tiniscript.recovery.lines import MARGIN, Reading, Step
 from tiniscript.recovery.order import Moved, ordered
 from tiniscript.recovery.setup import setup
@@ -26,7 +35,10 @@ UNREAD = 5  # lines that nobody can read, after which others are read quickly
 CHECKS = 40  # of candidates of one program
 ALTERNATIVES = 12  # readings of a line that are tried beside the cheapest ones
 PARTS = 6  # readings of a part of a line
-_WHEN = re.compile(r"\s*(S[IB]\s*\|)?\s*CUANDO\b")
+# A line that begins a block whose question comes at its end, and its last line.
+_DO_ALONE = re.compile(rf"\s*(?:S[IB]\s*\|\s*)?(?:LOOP|{words_of('repeat', 'make')})\b\s*\{{?\s*$")
+_END_UNTIL = re.compile(rf"\b{words_of('end')}[ _]?{words_of('until')}\b")
+_WHEN = re.compile(rf"\s*(S[IB]\s*\|)?\s*{words_of('whenever')}\b")
 _QUOTES = str.maketrans("“”„‘’", '"""\'\'')
 _QUOTES |= {wide: wide - 0xFEE0 for wide in range(0xFF01, 0xFF5F)}  # of Chinese keyboards
 
@@ -166,9 +178,9 @@ class Recovery:
     def join_until(self) -> None:
         """Put an UNTIL on a line of its own behind the instruction before it."""
         kept: list[_Text] = []
-        until = re.compile(r"^\s*(?:UNTIL|HASTA)\b", re.MULTILINE)
+        until = re.compile(rf"^\s*{words_of('until')}\b", re.MULTILINE)
         text = plain(self.program)
-        if not until.search(text) or re.search(r"\b(?:END|FIN)[ _]?(?:UNTIL|HASTA)\b", text):
+        if not until.search(text) or _END_UNTIL.search(text):
             return  # there is none, or it is taken for a block
         for line in self.lines:
             is_until = until.match(plain(line.body))
@@ -178,7 +190,7 @@ class Recovery:
             if (
                 not (is_until and is_behind)
                 or before is None
-                or any(re.match(rows.DO_ALONE, plain(each.body)) for each in kept)
+                or any(_DO_ALONE.match(plain(each.body)) for each in kept)
             ):
                 kept.append(line)
                 continue

@@ -164,7 +164,7 @@ class _Reader:
         if self.text(k) == "/" and k + 1 < len(self.words):
             return None
         unit, thousandths = self.mark, 1000.0
-        if self.text(k) == "POR" and self.text(k + 1) in ("CIENTO", "CIEN", "CENTO"):
+        if said_of(self.text(k), "by") and said_of(self.text(k + 1), "number") == ("100",):
             unit, k = "%", k + 2
         elif self.text(k) in UNITS:
             unit, thousandths = UNITS[self.text(k)]
@@ -175,7 +175,7 @@ class _Reader:
             self.is_sure, k = self.is_sure and not (is_stop or is_comma), k + 1
             if self._is_and_a_half(k):
                 number, k, self.is_sure = number + 0.5, k + 2, False
-        elif self.text(k) in ("DE", "OF") and (marked := said_of(self.text(k + 1), "value")):
+        elif said_of(self.text(k), "of") and (marked := said_of(self.text(k + 1), "value")):
             unit, k = marked[0], k + 2
         if unit == "times":
             if self.times is not None:

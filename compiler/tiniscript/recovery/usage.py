@@ -29,6 +29,7 @@ from tiniscript.recovery.concepts import (
     lexemes,
     plain,
     said_of,
+    words_of,
 )
 from tiniscript.recovery.orders import block, made_up, orders, written
 from tiniscript.recovery.writing import laid_out, shortened, without_note
@@ -42,7 +43,7 @@ _DOTS = re.compile(r"(?:\.[ \t]*){2,}|\u2026")
 _BEFORE_DOTS = re.compile(r"(?i)\b((IF|LOOP|WHILE)[ \t]*\([^()\n]*\)|(DEF)[ \t]+(\w+))[\s;]*$")
 _BEHIND_DOTS = re.compile(r"(?i)[ \t]*\n?[ \t]*(END_?\w+|ELSE\w*)?")
 _MANY_BELOW = 6  # instructions that an example takes into a block
-_ENDS = re.compile(r"\b(?:END|FIN|FIM)")
+_ENDS = re.compile(rf"\b{words_of('end')}")
 _IF_BEFORE = re.compile(r"(?i)\b(IF[ \t]*\([^\n;]*\))[\s;]*$")
 _ENDIF_BEHIND = re.compile(r"(?i)[\s;]*END_?IF\b")
 _IS_BLOCK = re.compile(rf"(?i)(?:{'|'.join((*BLOCK_ENDS, 'END', 'ELSE'))})\b|END_")
@@ -58,11 +59,9 @@ _UNIT_NAMES = {"s": "seconds", "%": "percent", "Hz": "hertz", "cm": "centimetres
 _OF_ENDS = (codes.NEVER_ENDS, codes.NOT_OPEN, codes.CALLS_ITSELF)
 _NOT_TOP = (codes.TASK_NOT_TOP, codes.DEF_NOT_TOP)
 _OF_ITS_WORD = (codes.UNKNOWN_WORD, codes.WHICH_WAY)  # whose units say nothing more
-_TAUGHT = ("SALTO", "PASO", "BAILE", "JUMP", "STEP", "DANCE")  # by the poster and the lessons
-_NO_NAMES = ("RETURN", "CONTINUE", "CONTINUA", "HOLA", "HELLO", "IDEM", "ETC", "NULL")
+_NO_NAMES = ("leaves", "again", "filler", "same", "etc", "end")
 _NO_ORDER = ("value", "operator", "function", "setup", "forever")
 _SIDES = (("left", "L"), ("right", "R"))
-_INPUT = frozenset(("INPUT", "READ", "SCAN", "SCANF", "PROMPT", "LEER", "PREGUNTAR"))
 
 
 def with_usage(found: Sequence[Diagnostic], source: Source, kit: Kit) -> list[Diagnostic]:
@@ -178,7 +177,7 @@ class _Usage:
             return None
         words = [each.text for each in tokens if each.kind is WORD]
         first = tokens[0].text
-        if first in ("SWITCH", "CASE", "SEGUN", "CASO"):
+        if said_of(first, "cases"):
             value = "".join(each.text for each in tokens[2:3] if first == "SWITCH") or "X"
             values = {"found": first, "first": f"IF({value} = 1)"}
             values |= {"second": f"ELSEIF({value} = 2)"} if first == "SWITCH" else {}
@@ -309,10 +308,10 @@ class _Usage:
         times = signs[1] if is_counted else str(len(lone))
         if signs not in ([], ["(", ")"]) and not (is_counted and 1 < int(times) <= _MOST_TIMES):
             return None  # a function of another language
-        if signs or len(lone) > 1 or self.names.defs or name in _TAUGHT:
+        if signs or len(lone) > 1 or self.names.defs or said_of(name, "taught"):
             often = f"LOOP({times});{name};END_LOOP" if int(times) > 1 else ""
             return Diagnostic(codes.UNTAUGHT, found.span, {"name": name, "often": often})
-        is_name = name not in _NO_NAMES and name[:3] not in ("END", "FIN")
+        is_name = not any(said_of(name, kind) for kind in _NO_NAMES)
         return found._replace(values={**found.values, "own": name if is_name else ""})
 
     def has_its_end(self, found: Diagnostic) -> bool:
@@ -591,7 +590,7 @@ class _Usage:
         name = found.values["found"]
         if name in self.names.sensors:
             return Diagnostic(codes.NO_BRACKETS_HERE, found.span, {"word": name, "right": name})
-        return Diagnostic(codes.NO_INPUT, found.span) if name in _INPUT else None
+        return Diagnostic(codes.NO_INPUT, found.span) if said_of(name, "input") else None
 
     def number(self, found: Diagnostic) -> Diagnostic | None:
         return self.unit(found, self.tokens(self.piece(found.span)))

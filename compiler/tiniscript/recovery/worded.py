@@ -18,8 +18,6 @@ from tiniscript.syntax.lexer import NUMBER, WORD
 
 _KINDS = ("little", "much", "light", "ahead", "none", "no", "without", "left", "right")
 ASKED = frozenset(("little", "much", "light", "ahead", "none"))
-_JOINED = {"Y": "AND", "E": "AND", "O": "OR", "U": "OR", "OU": "OR"}
-_TOWARDS = ("A", "DE", "QUE")
 _FAR = 10  # centimetres, as in every example
 _MANY = 50  # of what a variable holds
 _EVEN = 100  # above it an example is a round number
@@ -101,10 +99,11 @@ def _is_done(texts: Sequence[str], k: int) -> bool:
 
 def _joint(texts: Sequence[str], names: Names) -> str:
     """Return AND or OR, if two questions are joined and each is in words."""
-    places = [k for k, text in enumerate(texts) if text in _JOINED and not names.is_name(text)]
+    joints = [said_of(text, "and") or said_of(text, "or") for text in texts]
+    places = [k for k, text in enumerate(texts) if joints[k] and not names.is_name(text)]
     pieces = [texts[a + 1 : b] for a, b in pairwise((-1, *places, len(texts)))]
     are_asking = all(_said(piece, names) & {"ahead", "light", "none"} for piece in pieces)
-    return _JOINED[texts[places[0]]] if places and are_asking else ""
+    return joints[places[0]][0].upper() if places and are_asking else ""
 
 
 def _measured(row: Sequence[Lexeme], names: Names) -> tuple[list[str], str]:
@@ -121,7 +120,7 @@ def _measured(row: Sequence[Lexeme], names: Names) -> tuple[list[str], str]:
             said = said_of(text, "number") or (("0.5",) if said_of(text, "half") else ())
             if said:
                 return [*texts[:k], *texts[k + 2 :]], _in_centimetres(said[0], unit)
-        is_last = k == len(texts) - 1 and k > 1 and texts[k - 1] in _TOWARDS
+        is_last = k == len(texts) - 1 and k > 1 and said_of(texts[k - 1], "than")
         if is_near and text in names.variables and (is_last or unit == ("cm", "1000")):
             return without, text
     return texts, ""
