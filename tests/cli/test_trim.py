@@ -106,9 +106,7 @@ def test_a_trim_survives_and_so_does_the_name() -> None:
     assert robot.until(session, session.trim(trim.data())) == OK
     robot.talk(session, 1000)
     again, other = switched_on(robot.memory()), computer(2)
-    asked = other.trim()
-    assert again.until(other, asked) == OK
-    assert asked.outcome is not None and told(asked.outcome.values) == trim._replace(pace=Pace())
+    assert told(again.done(other, other.trim())) == trim._replace(pace=Pace())
     assert other.robot is not None and other.robot.name == "TINI"
 
 
@@ -120,9 +118,7 @@ def test_a_trim_that_makes_no_sense_is_refused(data: bytes) -> None:
     assert robot.until(session, session.trim(Trim(balance=3).data())) == OK
     expected = "BAD_VALUE" if len(data) == 3 else "BAD_LENGTH"
     assert robot.until(session, session.trim(data)) == STATUSES[expected]
-    asked = session.trim()
-    assert robot.until(session, asked) == OK
-    assert asked.outcome is not None and told(asked.outcome.values) == Trim(balance=3, pace=Pace())
+    assert told(robot.done(session, session.trim())) == Trim(balance=3, pace=Pace())
 
 
 # -- the command ----------------------------------------------------------------------------------
@@ -283,10 +279,7 @@ def test_a_robot_refuses_a_pace_that_does_not_rise_whole(pace: Pace) -> None:
     assert robot.until(session, session.trim(Trim(balance=3, pace=PACE).data())) == OK
     refused = robot.until(session, session.trim(Trim(balance=9, pace=pace).data()))
     assert refused == STATUSES["BAD_VALUE"]
-    asked = session.trim()
-    assert robot.until(session, asked) == OK
-    assert asked.outcome is not None
-    assert told(asked.outcome.values) == Trim(balance=3, pace=PACE)
+    assert told(robot.done(session, session.trim())) == Trim(balance=3, pace=PACE)
 
 
 def test_a_pace_survives_a_fault_and_a_torn_save() -> None:
@@ -309,10 +302,7 @@ def test_a_pace_survives_a_fault_and_a_torn_save() -> None:
 
 def pace_of(memory: bytes) -> Pace | None:
     robot, session = switched_on(memory), computer(2)
-    asked = session.trim()
-    assert robot.until(session, asked) == OK
-    assert asked.outcome is not None
-    return told(asked.outcome.values).pace
+    return told(robot.done(session, session.trim())).pace
 
 
 def test_older_firmware_keeps_none() -> None:

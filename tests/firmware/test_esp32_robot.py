@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 import pytest
 
-from tests.firmware.test_host_firmware import computer, happened, outcome, send, stored
+from tests.firmware.test_host_firmware import computer, happened, outcome, pushed, send, stored
 from tests.machines.esp32 import (
     BROWN_OUT,
     EMPTY,
@@ -333,14 +333,10 @@ def test_a_full_nvs_is_said_and_the_program_before_stays() -> None:
     robot.fill_nvs()
     send(robot, session, "SB|B(0.5, 60)")
     robot.talk(session, 1000)
-    request = session.status()
-    assert robot.until(session, request) == OK
-    assert outcome(request).values.saved == 1  # in memory alone
+    assert robot.done(session, session.status()).saved == 1  # in memory alone
     assert robot.kept().entries == kept.entries
     again = switched_on(Esp32Robot(kept=robot.kept()))
-    again.push()
-    again.wait(100)
-    assert happened(again) == ["MOTORS 80 80"]
+    assert pushed(again, 100) == ["MOTORS 80 80"]
 
 
 # -- what goes wrong
@@ -366,9 +362,7 @@ def test_a_main_loop_that_hangs_is_stopped_and_restarted() -> None:
     again = Esp32Robot(kept=robot.kept(), reset=TASK_WATCHDOG)
     again.wait(200)
     session = computer(2)
-    request = session.status()
-    assert again.until(session, request) == OK
-    values = outcome(request).values
+    values = again.done(session, session.status())
     assert values.fault == STALL
     assert values.fault_program != 0
     assert again.is_latched
@@ -406,9 +400,7 @@ def test_a_short_stall_is_a_fault_and_no_restart() -> None:
 def test_the_cause_of_a_reset(reset: int, said: int) -> None:
     robot, session = Esp32Robot(reset=reset), computer()
     robot.wait(200)
-    request = session.hello()
-    assert robot.until(session, request) == OK
-    assert outcome(request).values.reset == said
+    assert robot.done(session, session.hello()).reset == said
 
 
 def test_a_lost_client_stops_the_robot() -> None:

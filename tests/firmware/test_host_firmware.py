@@ -52,18 +52,14 @@ def outcome(request: PendingRequest[T]) -> Reply[T]:
 
 
 def held(robot: HostFirmware, session: Session) -> bytes:
-    request = session.fetch()
-    assert robot.until(session, request) == OK
-    return outcome(request).values.image
+    return robot.done(session, session.fetch()).image
 
 
 def stored(robot: HostFirmware, session: Session, limit_ms: int = 10_000) -> int:
     """Wait until the robot says that its program is saved; return how long that took."""
     begun_ms = robot.now_ms
     while robot.now_ms < begun_ms + limit_ms:
-        request = session.status()
-        assert robot.until(session, request) == OK
-        if outcome(request).values.saved == SAVED_STORED:
+        if robot.done(session, session.status()).saved == SAVED_STORED:
             return robot.now_ms - begun_ms
         robot.talk(session, 50)
     raise AssertionError("the program is not saved")
@@ -71,6 +67,14 @@ def stored(robot: HostFirmware, session: Session, limit_ms: int = 10_000) -> int
 
 def happened(robot: HostFirmware) -> list[str]:
     return [line.split(" ", 1)[1] for line in robot.did]
+
+
+def pushed(robot: HostFirmware, milliseconds: int = 400) -> list[str]:
+    """Push the button; return what the robot does then."""
+    robot.did.clear()
+    robot.push()
+    robot.wait(milliseconds)
+    return happened(robot)
 
 
 def test_a_program_in_one_frame_drives_at_once() -> None:
@@ -88,9 +92,7 @@ def test_a_program_in_one_frame_drives_at_once() -> None:
 def test_code_in_one_frame_is_the_program_that_was_compiled(more: str) -> None:
     """Its image, which says what it needs, is made by the robot."""
     robot, session, image = switched_on(), computer(), image_of(f"SI|F(9, 80){more}")
-    request = session.live(image.code)
-    assert robot.until(session, request) == OK
-    assert outcome(request).values.program == image.checksum
+    assert robot.done(session, session.live(image.code)).program == image.checksum
 
 
 def test_a_longer_program_drives_and_shows() -> None:
@@ -127,9 +129,7 @@ def test_what_is_not_saved_is_gone_and_what_was_saved_is_there() -> None:
     send(robot, session, "SI|B(0.2, 60)", saves=False)
     robot.talk(session, 2000)
     again = switched_on(robot.memory())
-    again.push()
-    again.wait(400)
-    assert happened(again)[0] == "MOTORS 80 80"
+    assert pushed(again)[0] == "MOTORS 80 80"
 
 
 def test_sb_waits_for_the_button() -> None:
@@ -187,9 +187,7 @@ def test_without_frames_the_motors_go_off_in_time() -> None:
     assert happened(robot)[1:] == ["MOTORS 0 0", "FAULTED"]
     off_ms = int(robot.did[1].split()[0])
     assert off_ms - silent_ms <= 1050
-    request = session.status()
-    assert robot.until(session, request) == OK
-    assert outcome(request).values.fault == 64
+    assert robot.done(session, session.status()).fault == 64
 
 
 def test_what_is_detached_goes_on_alone_until_its_longest_time() -> None:
@@ -211,9 +209,7 @@ def test_a_fault_stops_and_is_remembered() -> None:
     assert event.fault == 2
     again = switched_on(robot.memory())
     other = computer(2)
-    request = other.status()
-    assert again.until(other, request) == OK
-    values = outcome(request).values
+    values = again.done(other, other.status())
     assert (values.fault, values.fault_at) == (2, event.at)
     assert values.fault_program == values.program
 
@@ -251,9 +247,7 @@ def test_nothing_is_finished_while_it_drives() -> None:
     robot, session = switched_on(), computer()
     send(robot, session, "SI|F(3, 80)")
     robot.talk(session, 2500)
-    request = session.status()
-    assert robot.until(session, request) == OK
-    assert outcome(request).values.saved == SAVED_SAVING
+    assert robot.done(session, session.status()).saved == SAVED_SAVING
     robot.talk(session, 800)
     stored(robot, session)
 
@@ -398,16 +392,14 @@ def test_a_fault_at_once_names_the_program(is_live: bool) -> None:
     """A program in one frame starts before its checksum is known."""
     robot, session = switched_on(), computer()
     image = image_of("SI|X = 1 / 0")
-    request = session.live(image.code) if is_live else session.upload(image)
-    assert robot.until(session, request) == OK
+    values = robot.done(session, session.live(image.code) if is_live else session.upload(image))
     robot.talk(session, 300)
     faults = [event.program for event in session.events() if event.name == "FAULT"]
     assert faults == [image.checksum]
-    assert outcome(request).values.program == image.checksum
-    status = session.status()
-    assert robot.until(session, status) == OK
-    assert outcome(status).values.fault_program == image.checksum
-    assert outcome(status).values.program == (0 if is_live else image.checksum)
+    assert values.program == image.checksum
+    state = robot.done(session, session.status())
+    assert state.fault_program == image.checksum
+    assert state.program == (0 if is_live else image.checksum)
 
 
 def test_one_clear_is_enough() -> None:
@@ -429,10 +421,9 @@ def test_a_robot_tells_which_program_it_holds_before_it_is_saved(text: str) -> N
     send(robot, session, "SB|F(0.1, 40)")
     stored(robot, session)
     send(robot, session, text)
-    request = session.status()
-    assert robot.until(session, request) == OK
-    assert outcome(request).values.program == image_of(text).checksum
-    assert outcome(request).values.saved != SAVED_STORED
+    values = robot.done(session, session.status())
+    assert values.program == image_of(text).checksum
+    assert values.saved != SAVED_STORED
 
 
 def test_a_program_of_one_frame_may_use_every_sensor_of_the_kit() -> None:

@@ -11,6 +11,7 @@ from tests.firmware.test_host_firmware import (
     happened,
     image_of,
     outcome,
+    pushed,
     send,
     stored,
     switched_on,
@@ -31,9 +32,7 @@ FIRST, SECOND, EACH = 128, 576, 31  # where the slots of the program lie, and by
 
 
 def saved(robot: HostFirmware, session: Session) -> str:
-    request = session.status()
-    assert robot.until(session, request) == OK
-    return SAVED[outcome(request).values.saved][0]
+    return SAVED[robot.done(session, session.status()).saved][0]
 
 
 def name_after_power_off(robot: HostFirmware) -> str:
@@ -148,9 +147,7 @@ def test_a_trim_is_ok_when_it_is_kept() -> None:
     for trim in (b"\1\5\7", b"\1\5\1", b"\0\0\0"):
         assert robot.until(session, session.trim(trim)) == OK
         again, other = switched_on(robot.memory()), computer(2)
-        request = other.trim()
-        assert again.until(other, request) == OK
-        values = outcome(request).values
+        values = again.done(other, other.trim())
         assert bytes((values.wheels, values.balance, values.least)) == trim
     send(robot, session, DRIVES, saves=False)
     assert robot.until(session, session.trim(b"\1\2\3")) == STATUSES["SAVING"]
@@ -178,9 +175,7 @@ def test_a_plug_pulled_while_a_pace_is_kept_leaves_a_whole_one() -> None:
 
 def trim_after_power_off(robot: HostFirmware) -> Trim:
     again, other = switched_on(robot.memory()), computer(2)
-    request = other.trim()
-    assert again.until(other, request) == OK
-    return told(outcome(request).values)
+    return told(again.done(other, other.trim()))
 
 
 def test_a_worn_memory_is_told() -> None:
@@ -277,10 +272,7 @@ def test_with_a_low_supply_another_program_can_still_be_tried() -> None:
     robot.talk(session, 3)
     assert request.outcome is None
     robot.wait(3000)
-    robot.did.clear()
-    robot.push()
-    robot.wait(400)
-    assert happened(robot) == ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
+    assert pushed(robot) == ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
     robot.supply(is_low=False)
     robot.talk(session, 3000)
     assert saved(robot, session) == "STORED"
@@ -331,9 +323,7 @@ def test_a_program_is_fetched_whole_while_a_name_is_written() -> None:
     other.name(b"A LONG NAME")
     robot.talk(other, 5)  # the robot has it, and writes
     another = computer(4)
-    request = another.fetch()
-    assert robot.until(another, request) == OK
-    assert outcome(request).values.image == bytes_of(text)
+    assert robot.done(another, another.fetch()).image == bytes_of(text)
 
 
 def test_a_robot_that_writes_says_busy_to_fetch() -> None:

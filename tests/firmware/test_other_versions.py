@@ -12,7 +12,6 @@ from tests.firmware.test_host_firmware import (
     KIT,
     computer,
     image_of,
-    outcome,
     send,
     switched_on,
 )
@@ -85,9 +84,7 @@ def test_the_next_program_replaces_it() -> None:
     assert saved(robot, session) == "STORED"
     again, session = met(robot.memory())
     assert saved(again, session) == "STORED"
-    task = session.fetch()
-    assert again.until(session, task) == OK
-    assert outcome(task).values.image[15:] == image.code
+    assert again.done(session, session.fetch()).image[15:] == image.code
 
 
 def test_one_of_this_version_before_it_counts() -> None:
@@ -109,9 +106,7 @@ def test_a_program_with_a_longer_header_is_run() -> None:
     longer = pack("SB", image.devices, image.code, b"what a later version says")
     robot, session = met(kept((FIRST, 3, longer)))
     assert saved(robot, session) == "STORED"
-    task = session.fetch()
-    assert robot.until(session, task) == OK
-    assert outcome(task).values.image == longer
+    assert robot.done(session, session.fetch()).image == longer
     robot.push()
     robot.wait(300)
     assert [line.split(" ", 1)[1] for line in robot.did if "MOTORS" in line] == [
@@ -138,15 +133,11 @@ def test_a_trim_that_other_firmware_has_kept_is_none(trim: bytes) -> None:
     robot, session = met(kept((4, 3, struct_pack("<I", zlib.crc32(body)) + body)))
     assert session.robot is not None
     assert (session.robot.id, session.robot.name) == (77, "Ada")
-    request = session.trim()
-    assert robot.until(session, request) == OK
-    values = outcome(request).values
+    values = robot.done(session, session.trim())
     assert (values.wheels, values.balance, values.least) == (0, 0, 0)
     sound = body[:-3] + b"\1\5\7"
     robot, session = met(kept((4, 3, struct_pack("<I", zlib.crc32(sound)) + sound)))
-    request = session.trim()
-    assert robot.until(session, request) == OK
-    assert outcome(request).values.least == 7
+    assert robot.done(session, session.trim()).least == 7
 
 
 @pytest.mark.parametrize("pace", [(0xFFFF, 0xFFFF), (900, 100), (500, 500), (0, 0)])
@@ -155,9 +146,8 @@ def test_a_pace_that_other_firmware_has_kept_is_none(pace: tuple[int, int]) -> N
     body = bytes(15) + struct_pack("<4H", *pace, *pace)
     record = struct_pack("<I", zlib.crc32(body)) + body
     robot, session = met(kept((4 + 2 * EACH, 3, record)))
-    request = session.trim()
-    assert robot.until(session, request) == OK
-    assert outcome(request).values.pace == struct_pack("<4H", *pace, *pace), "it is read"
+    values = robot.done(session, session.trim())
+    assert values.pace == struct_pack("<4H", *pace, *pace), "it is read"
     send(robot, session, "SI|F(20 CM, 60)", saves=False)
     robot.talk(session, 1000)
     begun, ended = [int(line.split()[0]) for line in robot.did if "MOTORS" in line][-2:]

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import pytest
 
-from tests.firmware.test_host_firmware import happened, outcome
+from tests.firmware.test_host_firmware import happened
 from tests.machines.esp32 import Esp32Robot
 from tests.robots.test_robots import TEXTS
 from tests.vm.test_tasks import STATES
@@ -65,9 +65,7 @@ def test_all_tasks_end(state: str, end: str) -> None:
     moves = [each for each in happened(robot) if each.startswith("MOTORS")]
     assert moves == ["MOTORS 0 0"] * len(begun)
     assert shows(session) == 0
-    status = session.status()
-    assert robot.until(session, status) == OK
-    values = outcome(status).values
+    values = robot.done(session, session.status())
     assert (values.state, values.fault) == (STATE_FAULTED if fault else STATE_STOPPED, fault)
 
     robot.analog(LIGHT_L, 0)

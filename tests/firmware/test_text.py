@@ -15,6 +15,7 @@ from tests.firmware.test_host_firmware import (
     happened,
     image_of,
     outcome,
+    pushed,
     send,
     stored,
     switched_on,
@@ -155,15 +156,11 @@ def holding(text: str = "SB|B(0.2, 60)", saves: bool = True) -> tuple[HostFirmwa
 
 
 def status(robot: HostFirmware, session: Session) -> StatusReply:
-    request = session.status()
-    assert robot.until(session, request) == OK
-    return outcome(request).values
+    return robot.done(session, session.status())
 
 
 def fetched(robot: HostFirmware, session: Session) -> bytes:
-    request = session.fetch()
-    assert robot.until(session, request) == OK
-    return outcome(request).values.image
+    return robot.done(session, session.fetch()).image
 
 
 def done_after(robot: HostFirmware, text: str | bytes, milliseconds: int = 1200) -> list[str]:
@@ -195,10 +192,7 @@ def test_the_program_that_it_holds_is_untouched(saves: bool) -> None:
     assert fetched(robot, session) == before
     assert status(robot, session).saved == (SAVED_STORED if saves else SAVED_MEMORY)
     robot.wait(4000)
-    robot.did.clear()
-    robot.push()
-    robot.wait(400)
-    assert happened(robot) == SAVED_BACK
+    assert pushed(robot) == SAVED_BACK
 
 
 def test_sb_waits_for_the_button_and_is_gone_with_the_power() -> None:
@@ -212,15 +206,10 @@ def test_sb_waits_for_the_button_and_is_gone_with_the_power() -> None:
         robot.wait(400)
     assert happened(robot) == LINE * 2
     assert done_after(robot, "SI|R(0.1,40)\n")[0] == "MOTORS 40 -40"
-    robot.did.clear()
-    robot.push()
-    robot.wait(400)
-    assert happened(robot) == LINE, "a line that runs at once leaves the button's program"
+    assert pushed(robot) == LINE, "a line that runs at once leaves the button's program"
     assert status(robot, session).saved == SAVED_MEMORY
     again = switched_on(robot.memory())
-    again.push()
-    again.wait(400)
-    assert happened(again) == SAVED_BACK
+    assert pushed(again) == SAVED_BACK
     assert fetched(again, computer(2)) == before
 
 
@@ -228,10 +217,7 @@ def test_a_program_of_frames_replaces_sb() -> None:
     robot, session = holding()
     typed(robot, "SB|F(0.2,50)\n")
     send(robot, session, "SB|L(0.1, 40)")
-    robot.did.clear()
-    robot.push()
-    robot.wait(400)
-    assert happened(robot)[0] == "MOTORS -40 40"
+    assert pushed(robot)[0] == "MOTORS -40 40"
 
 
 @pytest.mark.parametrize(
@@ -265,10 +251,7 @@ def test_what_stops_it_latches(how: str) -> None:
     assert typed(robot, "F(1,50)\n", 1100) == ["// It was stopped. Begin with SI|"]
     assert happened(robot) == ["MOTORS 50 50", "MOTORS 0 0"]
     assert typed(robot, "SI|F(0.2,50)\n", 400) == ["// OK", "// DONE"]
-    robot.did.clear()
-    robot.push()
-    robot.wait(400)
-    assert happened(robot) == SAVED_BACK
+    assert pushed(robot) == SAVED_BACK
 
 
 @pytest.mark.parametrize("how", ["s\n", "zeros", "button"])
@@ -450,9 +433,7 @@ def test_a_program_in_the_same_turn_as_text_has_its_checksum(text: bytes) -> Non
     typed(robot, "W(0)\n")
     stored(robot, session)
     again = switched_on(robot.memory())
-    again.push()
-    again.wait(300)
-    assert happened(again) == ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
+    assert pushed(again, 300) == ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
 
 
 @pytest.mark.parametrize("line", ["FOO\n", "SI|F(0.2,50)\n", "SB|F(0.2,50)\n", "S\n"])

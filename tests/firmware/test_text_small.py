@@ -14,6 +14,7 @@ from tests.firmware.test_host_firmware import (
     computer,
     happened,
     image_of,
+    pushed,
     send,
     stored,
     switched_on,
@@ -73,10 +74,7 @@ def test_a_stored_program_comes_back_with_the_button() -> None:
     assert fetched(robot, session) == before
     assert status(robot, session).saved == SAVED_STORED
     robot.wait(4000)
-    robot.did.clear()
-    robot.push()
-    robot.wait(400)
-    assert happened(robot) == SAVED_BACK
+    assert pushed(robot) == SAVED_BACK
 
 
 @pytest.mark.parametrize("has_stored", [True, False])
@@ -87,10 +85,7 @@ def test_a_program_in_memory_only_is_lost_and_that_is_said(has_stored: bool) -> 
     robot.wait(4000)
     assert typed(robot, "SI|F(0.2,50)\n", 400) == [LOST, "// DONE"]
     assert typed(robot, "SI|F(0.2,50)\n", 400) == ["// OK", "// DONE"]
-    robot.did.clear()
-    robot.push()
-    robot.wait(400)
-    assert happened(robot) == (SAVED_BACK if has_stored else [])
+    assert pushed(robot) == (SAVED_BACK if has_stored else [])
     assert robot.is_lit == has_stored
 
 
@@ -106,10 +101,7 @@ def test_sb_keeps_the_button_until_the_next_line() -> None:
     assert happened(robot) == LINE * 2
     robot.did.clear()
     assert typed(robot, "SI|R(0.1,40)\n", 300) == [LOST, "// DONE"]
-    robot.did.clear()
-    robot.push()
-    robot.wait(400)
-    assert happened(robot) == SAVED_BACK
+    assert pushed(robot) == SAVED_BACK
     assert fetched(robot, session) == before
 
 
@@ -193,9 +185,7 @@ def test_power_that_goes_while_text_is_read_takes_nothing_that_is_stored(at_ms: 
     robot.wait(4000)
     typed(robot, "SI|LOOP(3);F(0.01,50);END_LOOP;SHOW(1)\n"[: at_ms + 1], at_ms)
     again = switched_on(robot.memory())
-    again.push()
-    again.wait(400)
-    assert happened(again) == SAVED_BACK
+    assert pushed(again) == SAVED_BACK
     assert fetched(again, computer(2)) == before
 
 

@@ -13,7 +13,7 @@ from tests.firmware.test_host_firmware import (
     happened,
     held,
     image_of,
-    outcome,
+    pushed,
     send,
     stored,
     switched_on,
@@ -56,9 +56,7 @@ def undo(robot: HostFirmware, session: Session) -> int:
 def test_the_program_before_comes_back_and_the_later_one_after_it() -> None:
     robot, session = with_two()
     for text in (A, B, A, B):
-        request = session.undo()
-        assert robot.until(session, request) == OK
-        receipt = outcome(request).values
+        receipt = robot.done(session, session.undo())
         assert receipt.program == image_of(text).checksum
         assert SAVED[receipt.saved][0] == "SAVING"
         assert held(robot, session) == bytes_of(text)
@@ -71,9 +69,7 @@ def test_what_is_back_runs_and_is_what_the_button_starts() -> None:
     assert undo(robot, session) == OK
     stored(robot, session)
     again = switched_on(robot.memory())
-    again.push()
-    again.wait(400)
-    assert happened(again) == ["MOTORS 50 50", "MOTORS 0 0", "FINISHED"]
+    assert pushed(again) == ["MOTORS 50 50", "MOTORS 0 0", "FINISHED"]
 
 
 def test_what_runs_ends_and_nothing_starts() -> None:
@@ -204,9 +200,7 @@ def test_a_program_that_is_not_saved_makes_way_for_the_saved_one() -> None:
     send(robot, session, C, saves=False)
     robot.talk(session, 500)
     memory = robot.memory()
-    request = session.undo()
-    assert robot.until(session, request) == OK
-    assert SAVED[outcome(request).values.saved][0] == "STORED"
+    assert SAVED[robot.done(session, session.undo()).saved][0] == "STORED"
     assert held(robot, session) == bytes_of(B)
     robot.talk(session, 500)
     assert robot.memory() == memory, "nothing is written"

@@ -10,11 +10,12 @@ from collections.abc import Sequence
 from functools import lru_cache
 from pathlib import Path
 from struct import iter_unpack, pack
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 from tests.machines.host import FLAGS, SOURCES, Process, compiled
 from tiniscript.base.kit import Kit
 from tiniscript.link.connection import PendingRequest
+from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
 from tiniscript.robots.kit_words import kit_words
 from tiniscript.robots.profile import language_number
@@ -24,6 +25,7 @@ __all__ = ("EMPTY", "HostFirmware", "Seen")
 EMPTY = bytes(1024).replace(b"\0", b"\xff")  # what a new EEPROM holds
 TICKS = 20  # in a millisecond
 POWER_ON, RESET_BUTTON = 1, 2
+T = TypeVar("T")
 
 
 class Seen(NamedTuple):
@@ -148,6 +150,12 @@ class HostFirmware(Process):
                 return request.outcome.status
             self.talk(session, 1)
         raise AssertionError(f"the request is not over after {limit_ms} ms: {self.did[-5:]}")
+
+    def done(self, session: Session, request: PendingRequest[T]) -> T:
+        """Let a computer talk until the robot has done a request; return what it answers."""
+        status = self.until(session, request)
+        assert status == OK and request.outcome, status
+        return request.outcome.values
 
 
 def _text(answer: bytes) -> tuple[bytes, bytes]:
