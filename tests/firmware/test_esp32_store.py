@@ -50,6 +50,7 @@ def run(
     return subprocess.run(words, capture_output=True, text=True, check=False, timeout=300)
 
 
+@pytest.mark.sampled("size")
 @pytest.mark.parametrize("size", [3, 389, 8192])
 def test_old_or_new(size: int) -> None:
     done = run(program(), 1, size)

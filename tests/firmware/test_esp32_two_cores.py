@@ -18,7 +18,7 @@ CLANG = "clang++-22"
 pytestmark = pytest.mark.skipif(
     shutil.which(CLANG) is None, reason=f"no {CLANG}: apt-get install clang-22 libclang-rt-22-dev"
 )
-FLAGS = ("-std=gnu++11", "-O1", "-g", "-fsanitize=thread", "-fno-exceptions", "-fno-rtti",
+FLAGS = ("-std=gnu++11", "-O1", "-g1", "-fsanitize=thread", "-fno-exceptions", "-fno-rtti",
          *flags_of("esp32dev", 2))  # fmt: skip
 THREADS = (
     "two_cores.cpp",

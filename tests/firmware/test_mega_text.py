@@ -86,7 +86,7 @@ def in_flash(elf: Path, language: str) -> bool:
     return packed(rows(language)).texts in elf.read_bytes()
 
 
-@pytest.mark.sampled(of="long ways of a chip", keep=2)
+@pytest.mark.sampled(of="long ways of a chip")
 def test_a_profile_in_spanish_makes_a_robot_that_answers_in_spanish(tmp_path: Path) -> None:
     """As `tsc firmware` makes it. The other language takes no flash."""
     needed()

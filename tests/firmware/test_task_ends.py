@@ -35,6 +35,7 @@ def shows(session: Session) -> int:
     return sum(event.name == "SHOW" for event in session.events())
 
 
+@pytest.mark.sampled("end", keep=3)
 @pytest.mark.parametrize("end", ENDS)
 @pytest.mark.parametrize("state", STATES)
 def test_all_tasks_end(state: str, end: str) -> None:

@@ -144,7 +144,7 @@ def stop_behind(
     assert late_ms < MOST_MS or is_held, f"{what}: {late_ms} ms"
     changes = len(uno.pins.history("left"))
     uno.send(b"F(1,80)\n")  # not before a second of silence
-    uno.run_ms(300)
+    uno.run_ms(150)
     assert states(uno) == OFF and len(uno.pins.history("left")) == changes, what
     return late_ms
 
@@ -152,13 +152,14 @@ def stop_behind(
 @pytest.mark.parametrize("name", PREFIXES)
 def test_a_typed_stop_in_every_state(driving_at: tuple[Uno, int], name: str) -> None:
     """No sample here: a commit that loses a stop must not pass. Each spelling is typed behind each
-    prefix, at one of the rates; half of them are typed at the other one."""
+    prefix, at one of the rates; half of them are typed at the other one. Behind the last one the
+    robot is asked whether it is latched."""
     uno, baud = driving_at
     spellings = SPELLINGS[(list(PREFIXES).index(name) + BAUDS.index(baud)) % 2 :: 2]
     for spelling in spellings:
         with uno.aside():
             stop_behind(uno, baud, PREFIXES[name], spelling)
-            if spelling == spellings[-1]:
+            if spelling == SPELLINGS[-1]:
                 is_latched(uno)
 
 

@@ -42,7 +42,7 @@ def owner_of(wired: Wired) -> str:
     return whose(wired.session.robot)
 
 
-@pytest.mark.sampled(of="long ways of a chip", keep=2)
+@pytest.mark.sampled(of="long ways of a chip")
 def test_a_claim_outlives_a_reset_and_ten_seconds_of_the_button_forget_it(sketch: Path) -> None:
     keys = Keys()
     with Uno(sketch, baud=ROBOT.board.baud, tells_sleep=False) as uno:

@@ -40,7 +40,7 @@ def test_what_is_left_at_least_is_what_is_left_where_they_meet() -> None:
     assert apart.least_free == pytest.approx(met.least_free, abs=4)
 
 
-@pytest.mark.sampled(of="long ways of a chip", keep=2)
+@pytest.mark.sampled(of="long ways of a chip")
 @pytest.mark.parametrize(
     ("environment", "robot"),
     [("uno", "tinibot"), ("nano_liner", "liner"), ("uno_tinibot2", "tinibot2")],

@@ -159,7 +159,7 @@ def last_zero(uno: Uno, since: int) -> int:
     return max(byte.cycle for byte in heard if byte.cycle < end and byte.value == 0)
 
 
-@pytest.mark.sampled(of="long ways of a chip", keep=2)
+@pytest.mark.sampled(of="long ways of a chip")
 def test_a_thousand_short_waits_take_a_minute(sketch: Path, tmp_path: Path) -> None:  # noqa: F811
     """A wait begins where the one before has ended, not when the machine comes to it."""
     with switched_on(sketch, tmp_path / "eeprom") as uno:
