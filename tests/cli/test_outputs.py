@@ -94,6 +94,7 @@ def test_every_file_that_the_command_writes_comes_from_such_an_option() -> None:
     assert {places[each] for each in found} == {*paths.WRITES, "program", "programs"}
 
 
+@pytest.mark.sampled("how")
 @pytest.mark.parametrize("how", ["same", "dot", "link", "hard"])
 @pytest.mark.parametrize(("verb", "output", "other"), PAIRS)
 def test_no_output_is_another_file_of_its_command(

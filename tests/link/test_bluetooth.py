@@ -64,6 +64,7 @@ def test_lines_are_done_at_once(ble: BleRobot) -> None:
     assert ble.robot.did[0::3] == ["MOTORS 50 50", "MOTORS 40 -40"]
 
 
+@pytest.mark.sampled("service", "mtu", "late_s", keep=3)
 @pytest.mark.parametrize(("service", "mtu", "late_s"), [
     (HM10, 23, 0.0), (HM10, 185, 0.0), (HM10, 23, 0.15),
     (NORDIC, 23, 0.0), (NORDIC, 64, 0.0), (NORDIC, 185, 0.0), (NORDIC, 23, 0.15),

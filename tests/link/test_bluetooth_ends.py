@@ -48,6 +48,7 @@ def test_a_connection_that_is_never_made(ble: BleRobot, stage: str, language: st
     assert ble.robot.did == DROVE
 
 
+@pytest.mark.sampled("heard", keep=3)
 @pytest.mark.parametrize("heard", [1, 20, 40, 60, 100, 160, 220, 280])
 def test_a_program_that_is_cut_leaves_the_one_before(
     ble: BleRobot, tmp_path: Path, heard: int

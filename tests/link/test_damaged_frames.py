@@ -21,11 +21,11 @@ from tests.support.link_cases import items_of
 from tiniscript.link.frames import Frame, decoded, encoded
 from tiniscript.link.messages import CRC_BYTES, HEAD_BYTES, SMALL_FRAME
 
-FRAMES = 500_000  # damaged ones, in the tests
+FRAMES = 250_000  # damaged ones, in the tests
 LARGE_FRAMES = 100_000
 LINES = 200  # that are judged at a time; a line has about 500 damaged frames
-SAMPLED = 10  # lines in the tests
-LARGE_SAMPLED = 2
+SAMPLED = 5  # lines in the tests
+LARGE_SAMPLED = 1
 SAMPLED_OF = 1000  # one line of so many, in a campaign
 SEED = 4
 

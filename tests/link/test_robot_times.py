@@ -106,6 +106,7 @@ def test_many_stops_that_nobody_has_looked_at_are_not_none() -> None:
         assert "STOP" in cpp.step(10, bytes(4 * count), is_late=True).did
 
 
+@pytest.mark.sampled("late_ms", keep=2)
 @pytest.mark.parametrize("late_ms", [0, 300, 1500, 2900, 4000])
 @pytest.mark.parametrize(("piece_bytes", "gap_ms"), [(99, 0), (10, 0), (7, 1100), (45, 1100)])
 @pytest.mark.parametrize("before", [b"", b"> "], ids=["plain", "prompt"])
