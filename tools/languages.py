@@ -128,7 +128,9 @@ def main() -> int:
             (FOLDER / PSEUDO / path.name).write_text(written(pseudo(load(path))), encoding="utf-8")
         return 0
     if not options.check:
-        (FOLDER / SOURCE / "names.po").write_text(written(names()), encoding="utf-8")
+        (FOLDER / SOURCE / "names.po").write_text(
+            written(names(), is_source=True), encoding="utf-8"
+        )
     wrong = 0
     for language in options.languages:
         done = every = 0
@@ -143,7 +145,7 @@ def main() -> int:
             every += len(made.entries)
             if not options.check and not own.problems:
                 target.parent.mkdir(exist_ok=True)
-                target.write_text(written(made), encoding="utf-8")
+                target.write_text(written(made, language == SOURCE), encoding="utf-8")
         if language != SOURCE:
             print(f"{language}: {done} of {every} texts are translated")
     return 1 if wrong else 0

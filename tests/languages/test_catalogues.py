@@ -51,7 +51,8 @@ def test_a_catalogue_has_the_gaps_and_the_keys_of_the_english_one(path: Path) ->
         for at, entry in own.entries.items():
             assert entry.is_translated, at
             assert entry.plural == source.entries[at].plural, at
-    assert written(own) == path.read_text(encoding="utf-8"), "python -m tools.languages"
+    text = written(own, is_source=path.parent.name == SOURCE)
+    assert text == path.read_text(encoding="utf-8"), "python -m tools.languages"
 
 
 @pytest.mark.parametrize("language", ["es", "pt"])
@@ -61,7 +62,9 @@ def test_a_whole_language_promises_to_be_complete(language: str) -> None:
 
 
 def test_the_names_in_toml_files_are_translated() -> None:
-    assert (FOLDER / SOURCE / "names.po").read_text(encoding="utf-8") == written(names())
+    assert (FOLDER / SOURCE / "names.po").read_text(encoding="utf-8") == written(
+        names(), is_source=True
+    )
     titles = catalogue.load(catalogue.folders()[0]).titles
     assert [titles[each] for each in ("en", "es", "tlh")] == [
         "The first line", "La primera línea", "The first line",
