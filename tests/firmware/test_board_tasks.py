@@ -10,15 +10,7 @@ from typing import TypeVar
 import pytest
 
 from tests.firmware.test_host_firmware import outcome
-from tests.firmware.test_uno_robot import (
-    FORWARD,
-    MOTORS,
-    OFF,
-    computer,
-    send,
-    states,
-    switched_on,
-)
+from tests.firmware.test_uno_robot import FORWARD, MOTORS, OFF, computer, send, states, switched_on
 from tests.firmware.test_uno_trace import OFF_MS, Setting, check_pins, last_zero, program, seen
 from tests.machines.uno import needed
 from tests.support.casefile import ROOT, Case, read

@@ -8,14 +8,7 @@ from collections.abc import Callable
 import pytest
 
 from tests.firmware.test_host_firmware import computer, happened, outcome, pushed, send, stored
-from tests.machines.esp32 import (
-    BROWN_OUT,
-    EMPTY,
-    EXTERNAL,
-    TASK_WATCHDOG,
-    Esp32Robot,
-    Kept,
-)
+from tests.machines.esp32 import BROWN_OUT, EMPTY, EXTERNAL, TASK_WATCHDOG, Esp32Robot, Kept
 from tests.robots.test_robots import TEXTS
 from tiniscript import compile_text, robots
 from tiniscript.bytecode.image import unpack

@@ -8,14 +8,7 @@ import pytest
 
 from tests.firmware.test_esp32_transports import AWAY, Ends, booted, ended, uploaded
 from tests.firmware.test_host_firmware import happened, image_of
-from tests.machines.esp32 import (
-    BROWN_OUT,
-    EXTERNAL,
-    POWER_ON,
-    TASK_WATCHDOG,
-    Esp32Robot,
-    Kept,
-)
+from tests.machines.esp32 import BROWN_OUT, EXTERNAL, POWER_ON, TASK_WATCHDOG, Esp32Robot, Kept
 from tests.support.esp32_radio import (
     Bytes,
     LowEnergy,

@@ -8,13 +8,7 @@ from struct import pack as struct_pack
 
 import pytest
 
-from tests.firmware.test_host_firmware import (
-    KIT,
-    computer,
-    image_of,
-    send,
-    switched_on,
-)
+from tests.firmware.test_host_firmware import KIT, computer, image_of, send, switched_on
 from tests.firmware.test_keeping import EACH, FIRST, SECOND, saved
 from tests.machines.host_firmware import EMPTY, HostFirmware
 from tests.support.owners import Keys

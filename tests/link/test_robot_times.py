@@ -11,12 +11,7 @@ from tests.support.link_cases import KIT, items_of
 from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
 from tiniscript.link import messages
 from tiniscript.link.frames import Frame, decoded, encoded
-from tiniscript.link.messages import (
-    AGAIN_MS,
-    BY_NAME,
-    LISTEN_MS,
-    TETHER_MS,
-)
+from tiniscript.link.messages import AGAIN_MS, BY_NAME, LISTEN_MS, TETHER_MS
 
 FORWARD = bytes.fromhex("448c50")  # F(5,80)
 ANSWERS = 17  # to mistakes, without a pause of five seconds: the last one says that these are all

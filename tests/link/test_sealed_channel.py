@@ -14,12 +14,7 @@ import sys
 import time
 from collections import Counter
 
-from tests.link.test_link_channel import (
-    World,
-    damaged,
-    one_upload,
-    program,
-)
+from tests.link.test_link_channel import World, damaged, one_upload, program
 from tests.machines.link import CppLink, cpp_link, link_library
 from tests.support.link_cases import KIT
 from tests.support.owners import Keys

@@ -15,11 +15,7 @@ from tiniscript.bytecode.verify import RULES
 from tiniscript.link import messages
 from tiniscript.link.connection import DEADLINE_MS, PendingRequest
 from tiniscript.link.frames import Frame, decoded, encoded
-from tiniscript.link.messages import (
-    BY_NAME,
-    BY_NUMBER,
-    STATUSES,
-)
+from tiniscript.link.messages import BY_NAME, BY_NUMBER, STATUSES
 from tiniscript.link.outcomes import CANCELLED, LOST, TextEvent
 from tiniscript.link.payloads import ReceiptReply
 from tiniscript.link.requests import SHORT_BYTES

@@ -14,16 +14,7 @@ from dataclasses import dataclass, field
 
 from tests.oracle.text import Parser
 from tests.oracle.tree import Do, Expression, If, Loop, Program, Statement, Value, While
-from tests.oracle.words import (
-    COMPARATORS,
-    HIGHEST,
-    LOWEST,
-    MOVES,
-    PAPER_KIT,
-    Device,
-    Kit,
-    Mistake,
-)
+from tests.oracle.words import COMPARATORS, HIGHEST, LOWEST, MOVES, PAPER_KIT, Device, Kit, Mistake
 
 __all__ = ["PAPER_KIT", "Device", "Kit", "Mistake", "run"]
 

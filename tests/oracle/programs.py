@@ -11,11 +11,7 @@ import random
 from tests.oracle.author import Author
 from tests.oracle.breaking import broken
 from tests.oracle.layout import Layout
-from tests.oracle.words import (
-    PAPER_KIT,
-    Device,
-    Kit,
-)
+from tests.oracle.words import PAPER_KIT, Device, Kit
 
 WIDE_KIT = Kit(
     sensors=(

@@ -9,11 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from tests.oracle.expressions import ExpressionParser
-from tests.oracle.readings import (
-    calling,
-    nesting,
-    settle_readings,
-)
+from tests.oracle.readings import calling, nesting, settle_readings
 from tests.oracle.tree import (
     Arm,
     Do,

@@ -18,14 +18,7 @@ from tiniscript import compile_text, robots
 from tiniscript.base.kit import Kit
 from tiniscript.base.source import Source
 from tiniscript.base.words import ALIASES, UNIT_OF, WORDS
-from tiniscript.studio.block_form import (
-    Block,
-    Form,
-    data_of,
-    from_data,
-    in_order,
-    size_of,
-)
+from tiniscript.studio.block_form import Block, Form, data_of, from_data, in_order, size_of
 from tiniscript.studio.block_kinds import KINDS
 from tiniscript.studio.block_printing import print_blocks
 from tiniscript.studio.block_reading import read

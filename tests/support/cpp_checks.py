@@ -20,13 +20,7 @@ from tests.oracle import programs
 from tests.support.casefile import Case
 from tests.support.images import image_for
 from tests.support.kits import KITS
-from tests.support.random_codes import (
-    EDGES,
-    any_number,
-    random_codes,
-    simple,
-    some_programs,
-)
+from tests.support.random_codes import EDGES, any_number, random_codes, simple, some_programs
 from tests.vm.test_cases import robot_and_senses
 from tiniscript import compile_text
 from tiniscript.base import fixed_point
@@ -35,12 +29,7 @@ from tiniscript.base.trace import Ending, TracedRobot
 from tiniscript.base.trace import Senses as Lists
 from tiniscript.base.words import COMPARATORS
 from tiniscript.bytecode.disassembly import read_listing
-from tiniscript.bytecode.image import (
-    EVERYTHING,
-    GO,
-    TASKS,
-    unpack,
-)
+from tiniscript.bytecode.image import EVERYTHING, GO, TASKS, unpack
 from tiniscript.bytecode.opcodes import BY_NAME, FAULTS, NEEDS_GO, OPS
 from tiniscript.bytecode.verify import RULES, Refused, verify
 from tiniscript.vm.machine import Machine

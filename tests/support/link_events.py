@@ -3,13 +3,7 @@
 from __future__ import annotations
 
 from tiniscript.link.outcomes import Event, LostEvent, StartedEvent
-from tiniscript.link.payloads import (
-    DoneEvent,
-    FaultEvent,
-    ShowEvent,
-    StatusReply,
-    StoppedEvent,
-)
+from tiniscript.link.payloads import DoneEvent, FaultEvent, ShowEvent, StatusReply, StoppedEvent
 
 QUIET = StatusReply(*[0] * len(StatusReply._fields))  # of an idle robot that has done nothing
 

@@ -2,16 +2,7 @@
 
 from __future__ import annotations
 
-from tiniscript.doctor.computer import (
-    FREE,
-    NONE,
-    OFF,
-    ON,
-    Access,
-    Adapter,
-    Computer,
-    chip_of,
-)
+from tiniscript.doctor.computer import FREE, NONE, OFF, ON, Access, Adapter, Computer, chip_of
 from tiniscript.doctor.system import System
 from tiniscript.link.port_names import is_address
 

@@ -6,15 +6,7 @@ import math
 from collections.abc import Callable, Iterable, Sequence
 from itertools import pairwise
 
-from tiniscript.lessons.findings import (
-    STILL_CM,
-    Finding,
-    On,
-    Task,
-    between,
-    in_cm,
-    in_seconds,
-)
+from tiniscript.lessons.findings import STILL_CM, Finding, On, Task, between, in_cm, in_seconds
 from tiniscript.lessons.lesson import Criterion
 from tiniscript.lessons.running import DONE, LIMIT, STEP_MS, Run
 from tiniscript.lessons.variation import shape_of

@@ -10,13 +10,7 @@ from collections import deque
 from collections.abc import Iterable
 from typing import Literal, NamedTuple
 
-from tiniscript.link.payloads import (
-    EVENTS,
-    DoneEvent,
-    FaultEvent,
-    ShowEvent,
-    StoppedEvent,
-)
+from tiniscript.link.payloads import EVENTS, DoneEvent, FaultEvent, ShowEvent, StoppedEvent
 
 # Outcomes that the session produces. UNKEPT: of a key; UNPROVEN: whoever answers does not seal, and
 # our key says that the robot does.

@@ -13,15 +13,7 @@ from typing import NamedTuple
 from tiniscript.base.source import Span
 from tiniscript.base.words import OTHER_WAY, WAYS, WORDS, nearest
 from tiniscript.recovery import lines
-from tiniscript.recovery.concepts import (
-    ENDED,
-    KNOWN,
-    Lexeme,
-    Names,
-    concept_of,
-    lexemes,
-    said_of,
-)
+from tiniscript.recovery.concepts import ENDED, KNOWN, Lexeme, Names, concept_of, lexemes, said_of
 from tiniscript.recovery.slots import MOVES
 from tiniscript.recovery.worded import ASKED
 from tiniscript.syntax.lexer import NUMBER, ODD, QUOTES, WORD

@@ -13,14 +13,7 @@ from tiniscript.base.kit import DEVICES, NUMBER, YES_NO, Device, Kit
 from tiniscript.base.languages import SOURCE, ByLanguage, languages
 from tiniscript.base.words import WORDS
 from tiniscript.robots.board_reader import device_tables, read_board
-from tiniscript.robots.profile import (
-    SEES,
-    Body,
-    Place,
-    ProfileRefused,
-    Reason,
-    Robot,
-)
+from tiniscript.robots.profile import SEES, Body, Place, ProfileRefused, Reason, Robot
 from tiniscript.robots.refusals import shown
 from tiniscript.robots.toml_table import Table, parse_toml
 

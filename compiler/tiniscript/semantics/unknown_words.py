@@ -10,13 +10,7 @@ import re
 from collections.abc import Set as AbstractSet
 from itertools import chain, takewhile
 
-from tiniscript.base.words import (
-    BLOCK_ENDS,
-    WORDS,
-    Word,
-    names,
-    said_of,
-)
+from tiniscript.base.words import BLOCK_ENDS, WORDS, Word, names, said_of
 from tiniscript.diagnostics import codes
 from tiniscript.semantics.named_values import value_of
 from tiniscript.semantics.symbols import ENOUGH, Scope

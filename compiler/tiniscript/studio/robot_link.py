@@ -21,12 +21,7 @@ from tiniscript.library.known_kits import shipped_of_kit
 from tiniscript.library.refusing import refusal
 from tiniscript.link.authority import whose
 from tiniscript.link.connection import STATUS, LinkConnection, PendingRequest, Requester, reason_of
-from tiniscript.link.messages import (
-    MOST_BALANCE,
-    MOST_LEAST,
-    NAME_BYTES,
-    STATE_RUNNING,
-)
+from tiniscript.link.messages import MOST_BALANCE, MOST_LEAST, NAME_BYTES, STATE_RUNNING
 from tiniscript.link.names import cause_name, fault_name, saved_name
 from tiniscript.link.outcomes import Event
 from tiniscript.link.payloads import HelloReply, ReceiptReply, TrimReply

@@ -11,14 +11,7 @@ from threading import Event
 from time import monotonic
 from typing import NamedTuple
 
-from zeroconf import (
-    DNSQuestionType,
-    Error,
-    IPVersion,
-    ServiceBrowser,
-    ServiceInfo,
-    Zeroconf,
-)
+from zeroconf import DNSQuestionType, Error, IPVersion, ServiceBrowser, ServiceInfo, Zeroconf
 
 from tiniscript.link import errors
 from tiniscript.link.errors import PortError
