@@ -6,13 +6,15 @@ language of the fence says which: `tiniscript` (the program), `senses` (readings
 robot that reads text gets), `mistake` and `warning` (what is said; without a program above, the
 line that it shows is the program). A fence `mistake` or `warning` may have many cases, each below a
 row that says what it is about. So has a fence `refused`, where the rule that a listing breaks is in
-that row; rows that begin with `//` are for people, and so are fences of other languages.
+that row; rows that begin with `//` are for people, and so are fences of other languages. A row of a
+listing that ends in `, 17 times` stands for so many.
 """
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from itertools import groupby
 from pathlib import Path
 from typing import NamedTuple
 
@@ -20,6 +22,8 @@ ROOT = Path(__file__).resolve().parent.parent.parent
 PARTS = ("tiniscript", "senses", "robot", "bytecode", "plain", "line", "mistake", "warning",
          "formatted")  # fmt: skip
 LISTED = re.compile("[0-9a-f]{4}  ")
+TIMES = re.compile(r"([0-9a-f]{4})  (((?:[0-9a-f]{2} )+) .*), (\d+) times")
+FOLDED = 4  # rows alike, and more, are one
 SHOWN = re.compile(r"(?:line|línea) 1:  (.*\n)")
 ABOUT = re.compile(r"(?m)^(\S.*)\n(?=(?:line|línea) \d+:  )")
 
@@ -69,16 +73,34 @@ def read(path: Path) -> list[Case]:
                         cases.append(Case(path, number, name, {}))
         elif fence == "refused":
             if LISTED.match(row):
-                cases[-1].parts["bytecode"] += f"{row}\n"
+                cases[-1].parts["bytecode"] += "".join(f"{each}\n" for each in _unfolded(row))
             elif not row.startswith("//"):
                 rule, name = row.split(": ", 1)
                 cases.append(Case(path, number, name, {"refused": f"{rule}\n", "bytecode": ""}))
         elif fence:
-            lines.append(row)
+            lines += _unfolded(row)
         elif row.startswith("#"):
             title, count = row.lstrip("#").strip(), 0
     assert not fence, f"{path.name}: a fence is not closed"
     return cases
+
+
+def _unfolded(row: str) -> list[str]:
+    """Return the rows that a row stands for."""
+    if match := TIMES.fullmatch(row):
+        at, size = int(match[1], 16), len(bytes.fromhex(match[3]))
+        return [f"{at + k * size:04x}  {match[2]}" for k in range(int(match[4]))]
+    return [row]
+
+
+def _folded(text: str) -> str:
+    """Return a listing with one row for several that are alike."""
+    found = []
+    for _, group in groupby(text.splitlines(), lambda row: row[4:] if LISTED.match(row) else row):
+        rows = list(group)
+        is_many = len(rows) >= FOLDED and LISTED.match(rows[0])
+        found += [f"{rows[0]}, {len(rows)} times"] if is_many else rows
+    return "".join(f"{row}\n" for row in found)
 
 
 def _said(case: Case, fence: str, text: str, end: int) -> Iterator[Case]:
@@ -165,5 +187,5 @@ def accept(case: Case, part: str, actual: str) -> None:
             start = rows.index(f"```{part}\n", start - 1) + 1
         while rows[start].startswith("//") and "refused" in now.parts:
             start += 1
-        rows[start : start + now.parts[part].count("\n")] = [actual]
+        rows[start : start + _folded(now.parts[part]).count("\n")] = [_folded(actual)]
     case.path.write_text("".join(rows), encoding="utf-8")
