@@ -150,6 +150,11 @@ def said_of(word: str, kind: str) -> tuple[str, ...]:
     return ()
 
 
+def shortened(word: str) -> list[str]:
+    """Return the commands that a word is short for in some language: E for W, and for L."""
+    return [it.split()[1] for it in lexicon().get(word, ()) if it.startswith("short ")]
+
+
 def concept_of(word: str) -> str | None:
     """Return the word of the language or of a kit that the lexicon says a word for."""
     for meaning in lexicon().get(word, ()):

@@ -38,7 +38,7 @@ PARTS = {
 # Codes of what no row says: a name of several words, a word of another language, `SI|`, an UNTIL on
 # a line of its own, and the one mistake of a program that has a DEF behind its call.
 NAME_IN_WORDS, OTHER_WORD, SETUP_CODE, UNTIL_ALONE = "TS056", "TS102", "TS036", "TS029"
-DO_CODE = "TS064"
+DO_CODE, SETUP_TWICE = "TS064", "TS033"
 MISPLACED = frozenset(("TS112", "TS113", "TS114", "TS026"))  # of a DEF or an end
 # Codes of calls whose values are told in another way, by what is odd in them.
 NO_BRACKETS, NAMED_VALUE, WITH_UNIT, OTHER_CALL = "TS015", "TS052", "TS049", "TS076"
@@ -409,7 +409,8 @@ h=IF|WHILE|LOOP|UNTIL|ELSEIF [ | &h ( | 1 | TS010 | applied | IF[DISTANCE < 10]�
 ^ unless <question> | IF ( @not:c ) ; | 1 | TS102 | applied | unless(DISTANCE < 10)⏎F(2, 70)⏎end => IF(DISTANCE >= 10)⏎F(2, 70)⏎ENDIF
 ^ unless that? c=@argt+ :|,|; | IF ( @not:c ) ; | 1.2 | TS102 | applied | unless DISTANCE < 5:⏎F(1, 50)⏎ENDIF => IF(DISTANCE >= 5)⏎F(1, 50)⏎ENDIF
 ^ unless that? c=@argt+ b=@start | IF ( @not:c ) ; $b | 1.3 | TS102 | applied | unless distance < 10 F(1,50) => IF(DISTANCE >= 10);F(1, 50);ENDIF
-<asks> ( c=@any+ ) o=AND|OR ( d=@any+ ) | &h ( ( $c ) &o ( $d ) ) | 1 | TS015 | applied | IF(DISTANCE > 5) AND (LIGHT_R > 9);S;ENDIF => IF((DISTANCE > 5) AND(LIGHT_R > 9));S;ENDIF
+<asks> ( c=@any+ ) and ( d=@any+ ) | &h ( ( $c ) AND ( $d ) ) | 1 | TS015 | applied | IF(DISTANCE > 5) y (LIGHT_R > 9);S;ENDIF => IF((DISTANCE > 5) AND(LIGHT_R > 9));S;ENDIF
+<asks> ( c=@any+ ) or ( d=@any+ ) | &h ( ( $c ) OR ( $d ) ) | 1 | TS015 | applied | IF(DISTANCE > 5) o (LIGHT_R > 9);S;ENDIF => IF((DISTANCE > 5) OR(LIGHT_R > 9));S;ENDIF
 h=IF|WHILE|LOOP|UNTIL|ELSEIF :|.|->|, ( | &h ( | 1 | TS015 | applied | IF:(DISTANCE < 10)⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
 h=IF|WHILE|ELSEIF|LOOP|UNTIL '{' c=@nob+ '}' | &h ( $c ) | 1 | TS015 | applied | IF{DISTANCE < 10}⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
 <asks> ( c=@argt+ b=@start | &h ( $c ) ; $b | 1 | TS016 | offered | si DISTANCE < 10 S si DISTANCE > 10 F(1,50) => IF(DISTANCE < 10);S;IF(DISTANCE > 10);F(1, 50);ENDIF;ENDIF
@@ -567,7 +568,7 @@ a=@close '|' h=END_LOOP|ENDIF|END_WHILE|END_DEF|END_WHEN|END_TASK | $a ; &h | 1 
 DEF n=@word :|'|'|=|'->'|'=>' | DEF $n ; | 1 | TS014 | applied | DEF SALUDO = BEEP(1,440)⏎SALUDO => DEF SALUDO;BEEP(1, 440);END_DEF⏎SALUDO
 DEF n=@word b=@start|'{' | DEF $n ; $b | 1 | TS014 | applied | procedure square F(1,50) end => DEF SQUARE;F(1, 50);END_DEF
 ; call b=@def | ; $b | 1 | TS044 | applied | DEF SALTO;F(0.2, 60);END_DEF;CALL SALTO => DEF SALTO;F(0.2, 60);END_DEF;SALTO
-^ call|do|make the|one? b=@def | $b | 1 | TS044 | applied | DEF SALTO;F(0.2, 60);END_DEF⏎hacer SALTO => DEF SALTO;F(0.2, 60);END_DEF⏎SALTO
+^ call|do|make|the the|one? b=@def | $b | 1 | TS044 | applied | DEF SALTO;F(0.2, 60);END_DEF⏎hacer SALTO => DEF SALTO;F(0.2, 60);END_DEF⏎SALTO
 # ends of blocks
 ^ end @def $ | END_DEF | 1 | TS022 | applied | DEF SALTO⏎F(1, 50)⏎FIN SALTO⏎SALTO => DEF SALTO⏎F(1, 50)⏎END_DEF⏎SALTO
 a=@close h=end $ | $a ; &h | 1 | TS013 | applied | F(2,80) fin => F(2, 80);

@@ -38,6 +38,7 @@ PARTS = 6  # readings of a part of a line
 # A line that begins a block whose question comes at its end, and its last line.
 _DO_ALONE = re.compile(rf"\s*(?:S[IB]\s*\|\s*)?(?:LOOP|{words_of('repeat', 'make')})\b\s*\{{?\s*$")
 _END_UNTIL = re.compile(rf"\b{words_of('end')}[ _]?{words_of('until')}\b")
+_SETUP = re.compile(r"^\s*SI\s*\|\s*(?=\w)", re.IGNORECASE)
 _WHEN = re.compile(rf"\s*(S[IB]\s*\|)?\s*{words_of('whenever')}\b")
 _QUOTES = str.maketrans("“”„‘’", '"""\'\'')
 _QUOTES |= {wide: wide - 0xFEE0 for wide in range(0xFF01, 0xFF5F)}  # of Chinese keyboards
@@ -164,7 +165,12 @@ class Recovery:
             line.note = note + line.note
 
     def read_setup(self) -> None:
-        """Put the bar behind `SI`, where another sign stands or none."""
+        """Put the bar behind `SI`, where another sign stands or none; drop a `SI|` further down."""
+        for line in [each for each in self.lines if each.body.strip()][1:]:
+            body = _SETUP.sub("", line.body)
+            if body != line.body:
+                line.steps.append(Step(rows.SETUP_TWICE, lexemes(line.body), lexemes(body)))
+                line.body = body
         begun = setup([line.source for line in self.lines])
         if begun is None:
             return

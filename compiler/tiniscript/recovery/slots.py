@@ -315,16 +315,12 @@ class _Reader:
         slots = self._slots(values or [], word.arguments, has_until) if is_said else None
         if not slots:
             return None
-        is_pair = word.role == "motors" and len(values or ()) == 1  # both motors alike
-        if is_pair and not (isinstance(slots[0], float) and slots[0] >= 0):
-            return None
+        if word.role == "motors" and len(values or ()) == 1:
+            return None  # of which motor?
         out = [made(word.text), made("(")]
         for k, (value, argument) in enumerate(zip(slots, word.arguments, strict=True)):
             out += [made(",")] if k else []
-            sample = (
-                next(each for each in slots if each is not None) if is_pair else argument.sample
-            )
-            text = (self._own(argument) or sample) if value is None else value
+            text = (self._own(argument) or argument.sample) if value is None else value
             text = told(text) if isinstance(text, float) else text
             out += [made("-"), made(text[1:])] if text.startswith("-") else [made(text)]
             out += [made(self.way)] if self.way and not k else []

@@ -60,6 +60,7 @@ _OF_ENDS = (codes.NEVER_ENDS, codes.NOT_OPEN, codes.CALLS_ITSELF)
 _NOT_TOP = (codes.TASK_NOT_TOP, codes.DEF_NOT_TOP)
 _OF_ITS_WORD = (codes.UNKNOWN_WORD, codes.WHICH_WAY)  # whose units say nothing more
 _NO_NAMES = ("leaves", "again", "filler", "same", "etc", "end")
+_NO_VARIABLE = ("turn", "end", "short")
 _NO_ORDER = ("value", "operator", "function", "setup", "forever")
 _SIDES = (("left", "L"), ("right", "R"))
 
@@ -190,7 +191,7 @@ class _Usage:
             return told._replace(code=codes.OTHER_LANGUAGE, values=values) if is_said else told
         if instead := said_instead(first):
             return found._replace(values={**found.values, **instead})
-        is_name = not (self.command(first) or said_of(first, "turn") or said_of(first, "end"))
+        is_name = not (self.command(first) or any(said_of(first, it) for it in _NO_VARIABLE))
         if len(tokens) == 2 and tokens[1].kind is NUMBER and is_name:
             fix = f"{first} = {tokens[1].text}"
             said = self.offered(codes.OTHER_ASSIGNMENT, piece, fix)
@@ -449,9 +450,9 @@ class _Usage:
             if word == "SI":
                 return Diagnostic(codes.SPANISH_IF, found.span)
         first = re.match(r"\s*(S[IB])\s*\|", text, re.IGNORECASE)
-        values = {"found": word}
+        here = word + "|" * (text[end : end + 9].lstrip()[:1] == "|")
+        values = {"found": here}
         if word == "SB":
-            here = "SB|" if text[end : end + 9].lstrip()[:1] == "|" else "SB"
             values |= {"button": "SB", "pause": _PAUSE}
             is_twice = first is not None and first[1].upper() == "SB"
             values |= {"twice": here} if is_twice else {"here": here}

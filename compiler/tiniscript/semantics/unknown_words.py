@@ -10,7 +10,7 @@ import re
 from collections.abc import Set as AbstractSet
 from itertools import chain, takewhile
 
-from tiniscript.base.words import BLOCK_ENDS, WORDS, Word, names, said_of
+from tiniscript.base.words import BLOCK_ENDS, WORDS, Word, names, shortened
 from tiniscript.diagnostics import codes
 from tiniscript.semantics.named_values import value_of
 from tiniscript.semantics.symbols import ENOUGH, Scope
@@ -44,9 +44,9 @@ def _report_unknown_word(scope: Scope, node: ast.Command) -> None:
     if is_own and near.rstrip(_DIGITS) == word.rstrip(_DIGITS):
         near = ""  # `PASO2`, where there is a DEF PASO1
     is_held = len(word) <= 3 and len(set(word)) == 1  # `FF(2, 80)`: a key that was held
-    letter = word[0] if is_held and word[0] in WORDS else "".join(said_of(word, "short"))
-    if letter and len(node.arguments or ()) == len(WORDS[letter].arguments):
-        near = letter
+    letters = [word[0]] if is_held and word[0] in WORDS else shortened(word)
+    count = len(node.arguments or ())
+    near = next((each for each in letters if len(WORDS[each].arguments) == count), near)
     scope.report(codes.UNKNOWN_WORD, span, None, found=scope.source[span].upper(), near=near)
 
 

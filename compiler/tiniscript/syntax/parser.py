@@ -119,6 +119,10 @@ class Parser:
             self.no_word(token)
         following = tokens[cursor.i + 1]
         text = token.text
+        if following.kind == "|" and text in ("SI", "SB"):
+            self.reporter.report(codes.SETUP_TWICE, token.span, word=text, found=text)
+            cursor.i += 2
+            return
         if following.kind == "=":
             self.assignment(token)
         elif text in HEADERS:
