@@ -31,6 +31,12 @@ PSEUDO = "qps"  # by custom: no language has this code
 ACCENTS = str.maketrans("aeiouncAEIOU", "àéîõüñçÀÉÎÕÜ")
 
 
+def sources() -> dict[str, Catalogue]:
+    """Return the English catalogues by name; that of `names` is nowhere but in TOML files."""
+    found = {path.stem: load(path) for path in (FOLDER / SOURCE).glob("*.po")}
+    return dict(sorted({**found, "names": names()}.items()))
+
+
 def names() -> Catalogue:
     """Return the catalogue of what is said in the package's TOML, each text once."""
     made = Catalogue(load(FOLDER / SOURCE / "command.po").head)
@@ -124,26 +130,23 @@ def main() -> int:
     options = parser.parse_args()
     if options.pseudo:
         (FOLDER / PSEUDO).mkdir(exist_ok=True)
-        for path in FOLDER.glob(f"{SOURCE}/*.po"):
-            (FOLDER / PSEUDO / path.name).write_text(written(pseudo(load(path))), encoding="utf-8")
+        for name, source in sources().items():
+            target = FOLDER / PSEUDO / f"{name}.po"
+            target.write_text(written(pseudo(source)), encoding="utf-8")
         return 0
-    if not options.check:
-        (FOLDER / SOURCE / "names.po").write_text(
-            written(names(), is_source=True), encoding="utf-8"
-        )
     wrong = 0
     for language in options.languages:
         done = every = 0
-        for path in sorted((FOLDER / SOURCE).glob("*.po")):
-            target = FOLDER / language / path.name
+        for name, source in sources().items():
+            target = FOLDER / language / f"{name}.po"
             own = load(target)
-            made = in_step(load(path), own, language)
+            made = in_step(source, own, language)
             for line, problem in own.problems:
                 print(f"{target.relative_to(ROOT)}:{line}: {problem}")
             wrong += len(own.problems)
             done += sum(entry.is_translated for entry in made.entries.values())
             every += len(made.entries)
-            if not options.check and not own.problems:
+            if not options.check and not own.problems and (language, name) != (SOURCE, "names"):
                 target.parent.mkdir(exist_ok=True)
                 target.write_text(written(made, language == SOURCE), encoding="utf-8")
         if language != SOURCE:

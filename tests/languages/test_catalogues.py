@@ -28,9 +28,9 @@ from tiniscript.cli.streams import wrapped
 from tiniscript.cli.texts import Said, language_of, text
 from tiniscript.cli.texts.verbs import VERBS
 from tiniscript.lessons import catalogue
-from tools.languages import PSEUDO, in_step, names, pseudo
+from tools.languages import PSEUDO, in_step, pseudo, sources
 
-NAMES = sorted(path.stem for path in (FOLDER / SOURCE).glob("*.po"))
+SOURCES = sources()
 FILES = sorted(FOLDER.glob("*/*.po"))
 HEAD = (
     'msgid ""\nmsgstr "Content-Type: text/plain; charset=UTF-8\\n'
@@ -43,7 +43,7 @@ COUNT = 'msgctxt "n"\nmsgid "{n} byte"\nmsgid_plural "{n} bytes"\n'
 @pytest.mark.parametrize("path", FILES, ids=lambda path: f"{path.parent.name}/{path.stem}")
 def test_a_catalogue_has_the_gaps_and_the_keys_of_the_english_one(path: Path) -> None:
     """Every text has its gaps. Spanish lacks none: a head that says X-Complete promises that."""
-    own, source = load(path), load(FOLDER / SOURCE / path.name)
+    own, source = load(path), SOURCES[path.stem]
     assert own.problems == []
     assert set(own.entries) <= set(source.entries)
     if "X-Complete: yes" in own.head:
@@ -57,14 +57,13 @@ def test_a_catalogue_has_the_gaps_and_the_keys_of_the_english_one(path: Path) ->
 
 @pytest.mark.parametrize("language", ["es", "pt"])
 def test_a_whole_language_promises_to_be_complete(language: str) -> None:
-    heads = [load(FOLDER / language / f"{name}.po").head for name in NAMES]
+    heads = [load(FOLDER / language / f"{name}.po").head for name in SOURCES]
     assert all("X-Complete: yes" in head for head in heads)
 
 
 def test_the_names_in_toml_files_are_translated() -> None:
-    assert (FOLDER / SOURCE / "names.po").read_text(encoding="utf-8") == written(
-        names(), is_source=True
-    )
+    path = FOLDER / "es" / "names.po"  # as for other catalogues, with the place of each text
+    assert written(in_step(SOURCES["names"], load(path), "es")) == path.read_text(encoding="utf-8")
     titles = catalogue.load(catalogue.folders()[0]).titles
     assert [titles[each] for each in ("en", "es", "tlh")] == [
         "The first line", "La primera línea", "The first line",
@@ -301,10 +300,11 @@ def longer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
     """A language whose texts are a third longer, beside English."""
     for code in (*languages.languages(), PSEUDO):
         (tmp_path / code).mkdir()
-    for path in FOLDER.glob(f"{SOURCE}/*.po"):
-        made = tmp_path / PSEUDO / path.name
-        made.write_text(written(pseudo(load(path))), encoding="utf-8")
+    for name, source in SOURCES.items():
+        made = tmp_path / PSEUDO / f"{name}.po"
+        made.write_text(written(pseudo(source)), encoding="utf-8")
         assert load(made).problems == []
+    for path in FOLDER.glob(f"{SOURCE}/*.po"):
         (tmp_path / SOURCE / path.name).write_bytes(path.read_bytes())
     lexicon()  # is read once, and of this folder would be empty for all later tests
     monkeypatch.setattr(languages, "FOLDER", tmp_path)

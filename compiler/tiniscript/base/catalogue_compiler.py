@@ -16,8 +16,12 @@ MAGIC, HEADER = 0x950412DE, 28  # of a .mo
 
 
 def merged(source: Path, own: Path) -> tuple[str, dict[str, list[str]]]:
-    """Return the head of a catalogue, and the forms of each text by key."""
-    english, translated = load(source), load(own)
+    """Return the head of a catalogue, and the forms of each text by key.
+
+    Where there is no English catalogue, the English texts are those that are translated.
+    """
+    translated = load(own)
+    english = load(source) if source.is_file() else translated
     texts: dict[str, list[str]] = {}
     numbers = Counter[str]()
     for (key, _), entry in english.entries.items():

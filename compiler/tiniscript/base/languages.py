@@ -2,8 +2,8 @@
 
 A catalogue, `es/command.po`, has its texts by key, which is their context. A language is there as
 soon as its folder is, and what it lacks is said in English, text by text. Catalogues are read as
-`.mo`: `setup.py` makes them for a package, and in a clone they are made where a `.po` is newer.
-Knows no text.
+`.mo`: `setup.py` makes them for a package, and in a clone they are made where a `.po` is newer. The
+English texts of the catalogue `names` are in the package's `.toml` files alone. Knows no text.
 """
 
 from __future__ import annotations
@@ -121,7 +121,7 @@ def machine_objects() -> dict[str, bytes]:
     """Return all catalogues as a package has them, by their paths in FOLDER."""
     from tiniscript.base.catalogue_compiler import compiled
 
-    names = sorted(path.stem for path in (FOLDER / SOURCE).glob("*.po"))
+    names = sorted({path.stem for path in FOLDER.glob("*/*.po")})
     pairs = [(name, language) for language in languages() for name in names]
     return {f"{language}/{name}.mo": compiled(*_files(name, language)) for name, language in pairs}
 
