@@ -69,7 +69,7 @@ def answer(entry: Entry) -> Answer:
     if Recovery(entry.program, KIT, mistakes).sure() is None:
         if advised(entry.program, KIT):
             text = fixed(entry.program, check).text
-            found = Candidate(text, True, False, (), 0) if text != entry.program else None
+            found = Candidate(text, True, False, ()) if text != entry.program else None
         elif found and entry.mended is None:
             found = found._replace(is_applied=False)
     return Answer(entry, mark_of(entry, found), found)

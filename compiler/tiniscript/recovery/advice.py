@@ -18,7 +18,7 @@ from tiniscript.base.words import BLOCK_ENDS, OTHER_WAY, UNIT_OF, WORDS, nearest
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import CODES, Diagnostic
 from tiniscript.recovery import advice_rows, lines, rewrites
-from tiniscript.recovery.behind import ASKING, Above, Behind, Placed, reads, whole
+from tiniscript.recovery.behind import ASKING, Above, Behind, Placed, whole
 from tiniscript.recovery.concepts import ENDED, Lexeme, Names, lexemes, made, plain, said_of
 from tiniscript.recovery.orders import Order, made_up, orders, question_in, written
 from tiniscript.recovery.slots import filled
@@ -86,7 +86,7 @@ def advised(text: str, kit: Kit) -> list[Advice]:
     for body, line in zip(bodies, text.split("\n"), strict=True):
         told: list[Advice] = []
         words = lexemes(body)
-        is_right = reads(words, names)
+        is_right = not isinstance(lines.right(words, names), Failure)
         if "~" not in body and not is_right:
             parts = filter(_is_read, _parts(body, start, text, names, depth, above))
             read = list(islice(parts, left))
@@ -195,7 +195,7 @@ def _is_read_surely(part: Behind) -> bool:
         rf"(?im)(?:^|;)\s*{part.tokens[-1].text}\s*(?:;|$)", part.text
     ):  # fmt: skip
         return False  # it is called by its first word
-    found = lines.read([*part.tokens, *part.row], part.names, is_quick=True).found
+    found = lines.read([*part.tokens, *part.row], part.names, is_quick=True)
     is_alone = len(found) == 1 or (found and found[1].cost >= found[0].cost + lines.MARGIN)
     return bool(is_alone) and found[0].is_sure and len(found[0].items or ()) == 1
 

@@ -61,7 +61,6 @@ ADVICE = """
 ^ @none when|at @word? @word? beginning :? $ | TS102 | found={words}; right=START; usage=START; fix=START | SI|al iniciar => fix=START
 ^ @none when|at @word* flag @word* $ | TS102 | found={words}; right=START; fix=START; usage=START | SI|when green flag clicked => fix=START
 ^ @none @any* h=IF|ELSEIF|WHILE|UNTIL (? @any* s=@noBUTTON @any* )? <body> $ | TS120 | | IF(boton presionado)⏎S⏎ENDIF => before=
-^ @none @any* <asks> ( s=light|ahead =|is TRUE|1 ) $ | TS135 | word={head}; question={like}; another={orlike?} | IF(oscuro = TRUE)⏎S⏎ENDIF => question=LIGHT_L < 500
 ^ @none @any* <asks> ( s=light|ahead =|is FALSE|0 ) $ | TS135 | word={head}; question={unlike}; another={orunlike?} | IF(oscuro = FALSE)⏎S⏎ENDIF => question=LIGHT_L > 500
 ^ @none @any* <asks> (? s='='|@word|@num+ )? <body> $ | TS135 | word={head}; question=; joint={joint} | IF(hay luz y pared)⏎S⏎ENDIF => joint=AND
 ^ @none @any* <asks> (? s='='|@word|@num+ )? <body> $ | TS135 | word={head}; question=; asked={asked}; also={also?} | IF(pared a 1 metro)⏎S⏎ENDIF => asked=DISTANCE < 100
@@ -101,7 +100,6 @@ ADVICE = """
 # words for nothing, and those that are no words behind it
 ^ c=F|B CM|@in_cm $ | TS085 | fix={by_way} | F(20, 60) cm => fix=F(20 CM, 60)
 ^ c=L|R @in_deg|° $ | TS085 | fix={by_way} | R(90, 60) grados => fix=R(90 DEG, 60)
-^ c=@any s=idle+ $ | TS044 | found={s} | SHOW(DISTANCE) cm => found=cm
 ^ c=S|STOP s=LOOP $ | TS102 | found={text}; right=BREAK; fix=BREAK; usage=BREAK | STOP LOOP => fix=BREAK
 ^ c=@move|W s=UN u=TIL q=@any+ $ | TS102 | found={s} {u}; right=UNTIL; usage=UNTIL{q} | F(5, 60) UN TIL(DISTANCE < 30) => usage=UNTIL(DISTANCE < 30)
 # how often

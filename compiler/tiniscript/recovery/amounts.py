@@ -38,9 +38,6 @@ def with_number(text: str, span: Span, own: Container[str] = ()) -> dict[str, st
     if call is None or after is None or word is None:
         return {}
     place = call[2].count(",")
-    takes = word.is_call or word.text == "LOOP" or word.role == "function"
-    if place >= len(word.arguments) or not takes:
-        return {}
     values = f"{call[2]}{amount}{after[0][:-1]}".split(",")
     if not any(is_amount(*each.split()) for each in values):
         return {}

@@ -15,7 +15,6 @@ from tiniscript.base.words import OTHER_WAY, WAYS, WORDS, nearest
 from tiniscript.recovery import lines
 from tiniscript.recovery.concepts import ENDED, KNOWN, Lexeme, Names, concept_of, lexemes, said_of
 from tiniscript.recovery.slots import MOVES
-from tiniscript.recovery.worded import ASKED
 from tiniscript.syntax.lexer import NUMBER, ODD, QUOTES, WORD
 from tiniscript.syntax.operators import COMPARISONS
 from tiniscript.syntax.outline import Failure
@@ -59,14 +58,6 @@ def whole(tokens: Sequence[Lexeme], names: Names) -> int:
     if end and end < len(tokens) and tokens[end].text == "UNTIL":
         return _closed(tokens, end + 1) or end
     return end
-
-
-def reads(row: Sequence[Lexeme], names: Names) -> bool:
-    """Whether a row can be read, and no word stands for a name that asks: `DISTANCE = NEAR`."""
-    is_asking = any(
-        said_of(each.text, kind) and not names.is_name(each.text) for each in row for kind in ASKED
-    )
-    return not is_asking and not isinstance(lines.right(row, names), Failure)
 
 
 def _meant_call(token: Lexeme, names: Names) -> str:
@@ -156,7 +147,7 @@ class Behind:
     def is_aside(self) -> bool:
         """Whether the words may say something: of no instruction, where they are none."""
         if not self.tokens:
-            return not reads(self.row, self.names)
+            return isinstance(lines.right(self.row, self.names), Failure)
         has_dots = self.is_later and all(each.text in DOTS for each in self.row)
         has_number = any(each.kind is NUMBER for each in self.row)
         has_word = any(each.kind is WORD for each in self.row)
@@ -266,8 +257,6 @@ class Behind:
 
     def _begins_no_order(self, k: int) -> bool:
         text = self._text(k)
-        if said_of(text, "then"):
-            return k + 1 < len(self.row) and self._begins_no_order(k + 1)
         is_known = self.means(text) or self.names.is_name(text) or text in WORDS
         is_asked_for = any(said_of(text, each) for each in ("turn", "on", "off"))
         return not (is_known or is_asked_for or nearest(text, _LONG_WORDS))
@@ -333,8 +322,6 @@ class Behind:
         is_sure = text in WORDS or not meant or self.names.meanings(text)[0].cost <= KNOWN
         if not (is_sure or is_last or self.row[k + 1].kind is NUMBER):
             return False
-        if meant in ("IF", "WHILE", "ELSE"):
-            return own not in ("IF", "WHILE")
         known = WORDS.get(meant)
         if known is None or known.role in ("value", "operator", "function", "start"):
             return False

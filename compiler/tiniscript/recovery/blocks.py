@@ -147,7 +147,7 @@ class _Matching:
         while self.open and item.kind in ("open", "do"):
             block = self.open[-1]
             is_left = block.body is not None and indent < block.body and indent <= block.indent
-            if not is_left or block.has_brace or self.has_end_further_down(place, block):
+            if not is_left or block.has_brace:
                 break
             self.open.pop()
             self.is_sure = self.is_sure and block.is_begun
@@ -155,13 +155,6 @@ class _Matching:
         for block in self.open:
             if block.body is None and block.line < k:
                 block.body = indent if indent > block.indent else -1
-
-    def has_end_further_down(self, place: int, block: _Block) -> bool:
-        ends = (ANY_END, block.end)
-        return len(self.open) == 1 and any(
-            item.kind == "end" and item.word in ends and self.lines[k].indent <= block.indent
-            for k, item in self.flat[place:]
-        )
 
     # -- items --------------------------------------------------------------------------------
 
@@ -180,10 +173,6 @@ class _Matching:
             return self.closing_brace(place, k, item)
         if item.kind == "arm":
             return bool(self.open) and self.open[-1].word == "IF"
-        if item.word == "BREAK" and (
-            loop := next((each for each in self.open[::-1] if each.word in ("LOOP", "WHILE")), None)
-        ):
-            loop.is_endless = False
         if item.kind == "end" and self.is_before_arm(place, item):
             start = item.start - (
                 self.lines[k].tokens[item.start - 1].text == ";" and item.start > 0
@@ -214,8 +203,6 @@ class _Matching:
     def is_end_of_do(self, place: int, k: int, item: Item) -> bool:
         """Whether a WHILE ends the block that a DO has begun: then it leaves that."""
         if item.word != "WHILE" or not self.open or not self.open[-1].is_do:
-            return False
-        if any(other.kind == "end" for line, other in self.flat[place:] if line > k):
             return False
         question = self.lines[k].tokens[item.start + 2 : item.end - 1]
         new = [made("IF"), made("("), *negated(question), made(")")]
@@ -267,8 +254,6 @@ class _Matching:
         ):
             return False
         outer = sum(block.word == "IF" for block in self.open[:-1])
-        if not outer:
-            return True
         rest = [it for _, it in self.flat[place + 1 : place + LONGEST]]
         ends = sum(it.kind == "end" and it.word in (ANY_END, "ENDIF", "END_IF") for it in rest)
         return ends - sum(it.kind == "open" and it.word == "IF" for it in rest) > outer

@@ -382,8 +382,6 @@ class Names:
             found += ["@start", "@startm"]
         if word in ENDED:
             found.append("@close")
-        if word in ("ELSE", "ELSEIF", *ENDED) and "@nosep" in found:
-            found.remove("@nosep")
         if text in self.variables or (text not in WORDS and not meant):
             found.append("@name")
             if "turn" not in found and not re.fullmatch("[FBLRWM][0-9]+", text):

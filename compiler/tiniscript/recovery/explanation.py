@@ -433,11 +433,6 @@ def _code(
                 it for it in steps if foreign in texts(it.before) and foreign not in texts(it.after)
             )
             return _WORD_CODE, next(changed, own[0])
-        if own[0].code == codes.HEADER_SEPARATOR.number:
-            told, fix = _parted(before), _parted(after)
-            (first, *_) = fix[_alike(told, fix)[0]] or after
-            if first.text not in (*BLOCK_ENDS, "ELSE", "ELSEIF"):
-                return codes.MISSING_SEPARATOR.number, own[0]
         return own[0].code, own[0]
     if words & {*BRACES}:
         return _BRACES, None

@@ -89,13 +89,6 @@ class Reading(NamedTuple):
         return text
 
 
-class Readings(NamedTuple):
-    """The readings of a line, the cheapest first, and what was on the way to them."""
-
-    found: list[Reading]
-    tried: list[Reading]
-
-
 def right(tokens: Sequence[Lexeme], names: Names) -> Sequence[Item] | Failure:
     """Return the items of a line, or where it is wrong. Braces and bare ends are items, too."""
     return _right(tuple((each.kind, _alike(each)) for each in tokens), names)
@@ -134,7 +127,7 @@ def _is_bare_end(tokens: Sequence[tuple[str, str]], k: int, names: Names) -> boo
     return all(each in (";", "|", *BRACES) for each in around)
 
 
-def read(tokens: Sequence[Lexeme], names: Names, is_quick: bool = False) -> Readings:
+def read(tokens: Sequence[Lexeme], names: Names, is_quick: bool = False) -> list[Reading]:
     """Return the cheapest readings of a line, which nobody may change: they are kept.
 
     `is_quick`: those that few rows lead to.
@@ -143,20 +136,16 @@ def read(tokens: Sequence[Lexeme], names: Names, is_quick: bool = False) -> Read
 
 
 @lru_cache(maxsize=_REMEMBERED)
-def _read(tokens: tuple[Lexeme, ...], names: Names, is_quick: bool) -> Readings:
+def _read(tokens: tuple[Lexeme, ...], names: Names, is_quick: bool) -> list[Reading]:
     has_setup = len(tokens) > 1 and tokens[1].text == "|" and tokens[0].text in ("SI", "SB")
     setup = list(tokens[:_SETUP]) if has_setup else []
-    search = _Search(names)
-    readings = search.read(list(tokens[len(setup) :]), is_quick)
-    if not setup:
-        return readings
+    readings = _Search(names).read(list(tokens[len(setup) :]), is_quick)
     found = []
-    for each in readings.found:
+    for each in readings:
         items = right([*setup, *each.tokens], names)
         if not isinstance(items, Failure):
             found.append(each._replace(tokens=[*setup, *each.tokens], items=items))
-    tried = [each._replace(tokens=[*setup, *each.tokens]) for each in readings.tried]
-    return Readings(found, tried)
+    return found
 
 
 _Successors = Callable[[Reading], Iterator[Reading]]
@@ -166,26 +155,24 @@ class _Search:
     def __init__(self, names: Names) -> None:
         self.names = names
 
-    def read(self, tokens: list[Lexeme], is_quick: bool) -> Readings:
+    def read(self, tokens: list[Lexeme], is_quick: bool) -> list[Reading]:
         first = self.at_once(Reading(0, tokens, (), True, False))
         readings = self.search(first, QUICK_STATES if is_quick else STATES, self.rewritten)
         has_words = any(each.kind in (WORD, NUMBER) for each in tokens)
-        if not is_quick and not readings.found and has_words and len(tokens) < LONGEST_WITH_SLIPS:
-            found = self.search(first, SLIP_STATES, self.with_slips).found
+        if not is_quick and not readings and has_words and len(tokens) < LONGEST_WITH_SLIPS:
+            found = self.search(first, SLIP_STATES, self.with_slips)
             found = [
                 each for each in found if each.items and each.cost < found[0].cost + SLIP_MARGIN
             ]
             is_alone = len({each.said for each in found}) == 1
-            found = [each._replace(is_sure=each.is_sure and is_alone) for each in found]
-            readings = Readings(found, readings.tried)
+            readings = [each._replace(is_sure=each.is_sure and is_alone) for each in found]
         return readings
 
-    def search(self, first: Reading, states: int, successors: _Successors) -> Readings:
+    def search(self, first: Reading, states: int, successors: _Successors) -> list[Reading]:
         order = 0
         heap = [(first.cost, order, first)]
         seen: set[tuple[str, ...]] = set()
         found: list[Reading] = []
-        tried: list[Reading] = []
         while heap and len(seen) < states:
             cost, _, reading = heapq.heappop(heap)
             if found and (cost > found[0].cost + FARTHEST or len(found) >= RIVALS):
@@ -200,12 +187,11 @@ class _Search:
                     found.append(reading._replace(items=items))
                 continue
             reading = reading._replace(failure=items)
-            tried.append(reading)
             for after in successors(reading):
                 if len(after.tokens) < LONGEST:
                     order += 1
                     heapq.heappush(heap, (after.cost, order, after))
-        return Readings(found, tried)
+        return found
 
     @staticmethod
     def says_twice(reading: Reading, items: Sequence[Item], first: Reading) -> bool:
@@ -369,8 +355,6 @@ def _touches(failure: Failure, start: int, end: int) -> bool:
 
 
 def _is_in_milliseconds(tokens: Sequence[Lexeme], k: int, concept: str) -> bool:
-    if said_of(tokens[k].text, "milliseconds"):
-        return True
     numbers = [each for each in tokens[k + 1 : k + 3] if each.kind is NUMBER]
     return concept == "W" and bool(numbers) and float(numbers[0].text) >= MILLISECONDS_FROM
 

@@ -244,7 +244,7 @@ def _head(word: str, words: Sequence[Lexeme], names: Names) -> str:
 
 def question_in(words: Sequence[Lexeme], names: Names) -> list[Lexeme]:
     """Return the comparison that words ask, in words of the language; nothing for none."""
-    found = lines.read([made("IF"), made("("), *words, made(")")], names, is_quick=True).found
+    found = lines.read([made("IF"), made("("), *words, made(")")], names, is_quick=True)
     tokens = found[0].tokens if found else []
     end = next((k for k, each in enumerate(tokens) if each.text == ";"), len(tokens)) - 1
     asked = tokens[2:end]

@@ -78,7 +78,6 @@ SIGNS = r"""
 (?<=\(\d)\)\s+\((?=\d+\))  |  `, `  |  1  |  TS017  |  applied  |  F (2) (80) => F (2, 80)
 (?<=\))\s*[✓✔]\s*(?=\w)  |  `; `  |  1  |  TS005  |  applied  |  F(2, 80) ✓ R(1, 50) => F(2, 80); R(1, 50)
 \b([A-Za-z_]\w*)\s*=\+\s+(?=\d)  |  `\1 = \1 + `  |  1  |  TS050  |  applied  |  V = 5⏎V =+ 10⏎F(2, V) => V = 5⏎V = V + 10⏎F(2, V)
-\b([A-Za-z_]\w*)\s*=\+(?=\d)  |  `\1 = \1 + `  |  1  |  TS050  |  offered  |  X = 5⏎X =+1⏎SHOW(X) => X = 5⏎X = X + 1⏎SHOW(X)
 (?<![^;])\s*([*/+=-]+)([A-Za-z](?:[^;]*[\w)])?)\1\s*(?![^;])  |  `\2`  |  1  |  TS054  |  applied  |  **F(2, 80)** => F(2, 80)
 ^\s*-(?=[A-Z]\w*\()  |  ``  |  1  |  TS054  |  applied  |  -F(2,80) => F(2,80)
 ^"(S[IB]\|[^"]*)"$  |  `\1`  |  1  |  TS006  |  applied  |  "SI|F(2,80);R(1,50)" => SI|F(2,80);R(1,50)
@@ -155,12 +154,10 @@ SIGNS = r"""
 ➡\ufe0f?  |  `R `  |  1  |  TS005  |  offered  |  ➡️ 1 => R(1, 80)
 [–—]>  |  `;`  |  1  |  TS061  |  applied  |  F(2, 80) –> R(1, 50) => F(2, 80) ; R(1, 50)
 (?<=\d) 1/2(?!\d)  |  `.5`  |  1  |  TS049  |  applied  |  F(1 1/2, 80) => F(1.5, 80)
-(?<=\b0)\. (?=\d)  |  `.`  |  1  |  TS008  |  applied  |  BEEP(0. 5, 440) => BEEP(0.5, 440)
 (?<=\d)'(?=\d+\s*(?:[,;]|$))  |  `.`  |  1  |  TS012  |  applied  |  F(1'5, 80) => F(1.5, 80)
 (?<=\d)['·](?=\d+\))  |  `,`  |  1  |  TS076  |  applied  |  F(2'80) => F(2,80)
 (?<=\d)[|¿?!"]+(?=\s*\))  |  ``  |  1  |  TS005  |  applied  |  F(2, 80?) => F(2, 80)
 \(([FBLRWM])(\d)  |  `\1(\2`  |  1  |  TS015  |  applied  |  (F2, 80) => F(2, 80)
-\b([FBLR])(\d(?:\.\d+)?),\s*(\d+)\)  |  `\1(\2, \3)`  |  1  |  TS015  |  applied  |  F2,80) => F(2, 80)
 \bW([1-7](?:\.\d+)?)(?:\(\)|\)|(?=\s*(?:;|$)))  |  `W(\1)`  |  1  |  TS015  |  applied  |  S; W2.5) => S; W(2.5)
 (?<=;)\s*[:.,]\s*(?=;)  |  ``  |  1  |  TS005  |  applied  |  S;:; F(2, 80) => S;; F(2, 80)
 ^\s*```\w*\s*$  |  ``  |  1  |  TS072  |  applied  |  ```tiniscript⏎F(2, 80)⏎R(1, 50)⏎``` => ⏎F(2, 80)⏎R(1, 50)⏎
@@ -169,7 +166,6 @@ SIGNS = r"""
 ^\s*>+\s*  |  ``  |  1  |  TS054  |  applied  |  > F(2, 80) => F(2, 80)
 ^\s*(?:paso|step|linea|line)?\s*\d+\s*[.):-]+\s+(?=[A-Za-z])  |  ``  |  1  |  TS054  |  applied  |  1) F(2,80)⏎2) S => F(2,80)⏎S
 ^\s*\d+\s*[.)]\s*(?=[A-Za-z])  |  ``  |  1  |  TS054  |  applied  |  1.F(2, 80) => F(2, 80)
-^\*+(\S.*?)\*+$  |  `\1`  |  1  |  TS054  |  applied  |  *F(2,80)* => F(2,80)
 (?<![\w.])([1-9])[oO]{2}\b  |  `\g<1>00`  |  1  |  TS008  |  applied  |  SI|F(2, 1OO) => SI|F(2, 100)
 (?<![\w.])([1-9])[oO]\b  |  `\g<1>0`  |  1  |  TS008  |  applied  |  F(2,8O) => F(2,80)
 \b[O0]\.S\b  |  `0.5`  |  1  |  TS008  |  applied  |  F(O.S, 6O) => F(0.5, 60)
@@ -181,7 +177,6 @@ SIGNS = r"""
 (?<=\d),(?=\d+\s*(?:s|seg|segs|segundos?|sec|seconds?|minutos?)\b)  |  `.`  |  1  |  TS012  |  applied  |  F(2,5s,80) => F(2.5, 80)
 (?<=\d) (?=000\b)  |  ``  |  1  |  TS008  |  applied  |  F(1 000,80) => F(1000,80)
 (?<=[\w)])\s*(?:[¡¿!…?$¬^´`¨\\\u2600-\u2793\U0001F300-\U0001FAFF]+|<br>)\s*$  |  ``  |  1  |  TS005  |  applied  |  STOP! => STOP
-<br>  |  `;`  |  1  |  TS010  |  applied  |  F(2, 80)<br>R(1, 50) => F(2, 80);R(1, 50)
 \b4WARDS?\b(?=\s*\()  |  `F`  |  1  |  TS102  |  offered  |  4WARD(2, 80) => F(2, 80)
 ^(S[IB]) (?:bar|barra) (?=[A-Z])  |  `\1|`  |  1  |  TS010  |  offered  |  SI bar F(2, 80) => SI|F(2, 80)
 \b([A-Z]+) open (?:bracket|parenthesis) ([\d.]+) comma (\d+) close (?:bracket|parenthesis)  |  `\1(\2, \3)`  |  1  |  TS015  |  offered  |  F open bracket 2 comma 80 close bracket => F(2, 80)
@@ -210,8 +205,6 @@ SIGNS = r"""
 ^\s*(?:paso|step)\s*\d+\s*[:.-]?\s+(?=[A-Za-z])  |  ``  |  1  |  TS054  |  applied  |  Paso 1 F(2, 80) => F(2, 80)
 ^_+(\S.*?)_+$  |  `\1`  |  1  |  TS054  |  applied  |  _F(2, 80)_ => F(2, 80)
 [¿¡](?=\W)  |  ``  |  1  |  TS005  |  applied  |  F(2, 80) ¡ ; => F(2, 80)  ;
-(?<=\))\s+/\s+(?=(?-i:[a-z]))  |  ` // `  |  1  |  TS007  |  applied  |  F(2, 80) / adelante => F(2, 80) // adelante
-(?<=[A-Za-z])\((\d+(?:\.\d+)?) ; ?(\d)  |  `(\1, \2`  |  1  |  TS019  |  applied  |  F(2 ; 80) => F(2, 80)
 """
 
 TOKENS = r"""
@@ -263,7 +256,6 @@ l=@val equal to|than? r=@num|@val | $l = $r | 1 | TS010 | first | IF(DISTANCE ig
 l=@val is? between a=@num and b=@num | $l > $a AND $l < $b | 1 | TS037 | offered | IF(DISTANCE entre 5 y 10);S;ENDIF => IF(DISTANCE > 5 AND DISTANCE < 10);S;ENDIF
 # questions and sums
 a=@num|@val s=<|<=|>|>= b=@val t=<|<=|>|>= c=@num|@val | $a $s $b AND $b $t $c | 1 | TS037 | applied | SI|IF(10>DISTANCE>5);S;ENDIF => SI|IF(10>DISTANCE AND DISTANCE>5);S;ENDIF
-a=@num|@val X b=@num|@val | $a * $b | 1 | TS010 | first | SHOW(2 X 3) => SHOW(2 * 3)
 o==|(|,|+|-|*|<|> average ( a=@num|@val , b=@num|@val ) | $o ( $a + $b ) / 2 | 1 | TS010 | offered | X = PROMEDIO(LIGHT_L, LIGHT_R)⏎SHOW(X) => X =(LIGHT_L + LIGHT_R) / 2⏎SHOW(X)
 o==|(|,|+|-|*|<|> average ( a=@num|@val , b=@num|@val , c=@num|@val ) | $o ( $a + $b + $c ) / 3 | 1 | TS010 | offered | SHOW(AVERAGE(LIGHT_L, LIGHT_R, 5)) => SHOW((LIGHT_L + LIGHT_R + 5) / 3)
 a=@num v=@val | @by:a:v | 1 | TS048 | offered | VEL = 30⏎F(2, 2VEL) => VEL = 30⏎F(2, 2 * VEL)
@@ -531,7 +523,6 @@ END_LOOP UNTIL ( c=@noclose+ ) $ | IF ( $c ) ; <end> | 1 | TS064 | offered | LOO
 ^ n=@num *|X|times? ( <body> ) $ | LOOP ( $n ) ; $b $r ; END_LOOP | 1 | TS080 | applied | SI|4*(F(2,80);R(1,50)) => SI|LOOP(4);F(2, 80);R(1, 50);END_LOOP
 ^ ( <body> ) *|X|LOOP|by? n=@num times? $ | LOOP ( $n ) ; $b $r ; END_LOOP | 1 | TS062 | applied | (F(2,80) R(1,60)) x 4 => LOOP(4);F(2, 80);R(1, 60);END_LOOP
 ^ <body> ,|;? then* LOOP all n=@num times $ | LOOP ( $n ) ; $b $r ; END_LOOP | .9 | TS062 | offered | F(2, 80) y B(2, 80) y repetir todo 3 veces => LOOP(3);F(2, 80);B(2, 80);END_LOOP
-^ <body> every n=@num seconds $ | LOOP ( FOREVER ) ; $b $r ; W ( $n ) ; END_LOOP | .9 | TS064 | offered | SHOW(DISTANCE) cada 1 segundo => LOOP(FOREVER);SHOW(DISTANCE);W(1);END_LOOP
 ^ every n=@num seconds ,|:|do? <body> $ | LOOP ( FOREVER ) ; $b $r ; W ( $n ) ; END_LOOP | .9 | TS064 | offered | cada 2 segundos BEEP(1, 440) => LOOP(FOREVER);BEEP(1, 440);W(2);END_LOOP
 ^ b=@def n=X2|X3|X4|X5|X6 $ | LOOP ( @xn:n ) ; $b ; END_LOOP | 1 | TS062 | applied | DEF SALTO;F(0.2, 60);END_DEF⏎SALTO x3 => DEF SALTO;F(0.2, 60);END_DEF⏎LOOP(3);SALTO;END_LOOP
 ^ b=@def *|X? n=@num times? $ | LOOP ( $n ) ; $b ; END_LOOP | 1 | TS062 | applied | DEF SALTO;F(0.2, 60);END_DEF⏎SALTO*3 => DEF SALTO;F(0.2, 60);END_DEF⏎LOOP(3);SALTO;END_LOOP

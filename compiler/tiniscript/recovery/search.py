@@ -15,16 +15,7 @@ from typing import NamedTuple
 from tiniscript.base.kit import Kit
 from tiniscript.recovery import lines, rewrites, rows
 from tiniscript.recovery.blocks import Edit, Line, Matched, matched
-from tiniscript.recovery.concepts import (
-    CALLED,
-    Lexeme,
-    Names,
-    lexemes,
-    made,
-    plain,
-    texts,
-    words_of,
-)
+from tiniscript.recovery.concepts import Lexeme, Names, lexemes, made, plain, texts, words_of
 from tiniscript.recovery.lines import MARGIN, Reading, Step
 from tiniscript.recovery.order import Moved, ordered
 from tiniscript.recovery.setup import setup
@@ -32,9 +23,7 @@ from tiniscript.recovery.writing import as_written, laid_out, without_note
 from tiniscript.syntax.outline import Failure
 
 UNREAD = 5  # lines that nobody can read, after which others are read quickly
-CHECKS = 40  # of candidates of one program
 ALTERNATIVES = 12  # readings of a line that are tried beside the cheapest ones
-PARTS = 6  # readings of a part of a line
 # A line that begins a block whose question comes at its end, and its last line.
 _DO_ALONE = re.compile(rf"\s*(?:S[IB]\s*\|\s*)?(?:LOOP|{words_of('repeat', 'make')})\b\s*\{{?\s*$")
 _END_UNTIL = re.compile(rf"\b{words_of('end')}[ _]?{words_of('until')}\b")
@@ -59,14 +48,12 @@ class Candidate(NamedTuple):
 
     `is_whole`: it has no mistakes; else fewer than the text. `steps` are all rewrites, with
     the change that has them. `changes` are of all lines, none where a DEF is moved: `move`.
-    `checks`: how many candidates were compiled.
     """
 
     text: str
     is_applied: bool
     is_whole: bool
     steps: tuple[tuple[int, Step], ...]
-    checks: int
     changes: tuple[Change, ...] = ()
     unsure: frozenset[int] = frozenset()  # changes that are a guess
     has_sure_blocks: bool = True
@@ -84,7 +71,6 @@ class _Text:
         self.is_sure = True
         self.reading: Reading | None = None
         self.rivals: list[Reading] = []
-        self.tried: list[Reading] = []
 
     @property
     def indent(self) -> int:
@@ -97,9 +83,8 @@ class Recovery:
     def __init__(self, program: str, kit: Kit, mistakes: Mistakes) -> None:
         self.program = program
         self.kit = kit
-        self._mistakes = mistakes
+        self.mistakes = mistakes
         self.count = len(mistakes(program))
-        self.checks = 0
         self.unread = 0
         self.lines = [_Text(line, k) for k, line in enumerate(program.split("\n"))]
         self.read_setup()
@@ -107,10 +92,6 @@ class Recovery:
         self.join_until()
         self.names = Names([lexemes(each.body) for each in self.lines], kit)
         self._reading = self._read_lines()
-
-    def mistakes(self, text: str) -> Sequence[str]:
-        self.checks += 1
-        return self._mistakes(text)
 
     def sure(self) -> Candidate | None:
         """Return the program that is meant wholly and surely: soon, where a line is not read so."""
@@ -126,9 +107,7 @@ class Recovery:
         for _ in self._reading:
             pass
         best = self.whole
-        if best is None or not best.is_whole:
-            best = self.of_parts(self.names, best) or best
-        return best
+        return best if best and best.is_whole else self.of_parts(best) or best
 
     def _read_lines(self) -> Iterator[bool]:
         """Read each line, and give whether it is read surely."""
@@ -211,7 +190,7 @@ class Recovery:
         if not isinstance(items, Failure):
             line.reading = Reading(0, tokens, (), True, False, items)
             return
-        found, line.tried = lines.read(tokens, names, is_quick=self.unread > UNREAD)
+        found = lines.read(tokens, names, is_quick=self.unread > UNREAD)
         if not found:
             self.unread += 1
             return
@@ -291,7 +270,7 @@ class Recovery:
             for k, (line, reading) in enumerate(zip(self.lines, readings, strict=True))
             for step in (*line.steps, *(reading.steps if reading else ()))
         ]
-        return Candidate(text, is_applied, is_whole, tuple(steps), self.checks, changes)
+        return Candidate(text, is_applied, is_whole, tuple(steps), changes)
 
     def changes(self, out: Sequence[str]) -> tuple[Change, ...]:
         return tuple(
@@ -335,30 +314,44 @@ class Recovery:
 
     # -- parts ----------------------------------------------------------------------------------
 
-    def of_parts(self, names: Names, best: Candidate | None) -> Candidate | None:
-        """Return the text with the rewrites of lines that leave fewer mistakes, if not none."""
-        is_based = best is not None and best.is_applied and bool(best.changes)
-        out = [each.text for each in best.changes] if best and is_based else []
-        out = out or [each.source for each in self.lines]
-        count = len(self.mistakes("\n".join(out))) if is_based else self.count
-        steps = list(best.steps) if best and is_based else []
+    def of_parts(self, best: Candidate | None) -> Candidate | None:
+        """Return the text with what is read alone, where fewer mistakes are left."""
+        base = best if best and best.is_applied and best.changes else None
+        out = [each.text for each in base.changes] if base else [it.source for it in self.lines]
+        steps = list(base.steps) if base else []
+        count = len(self.mistakes("\n".join(out)))
         is_changed = False
         for k, line in enumerate(self.lines):
             if line.reading is not None or line.source != out[k]:
                 continue
-            for reading in _likely(line, names):
-                if self.checks > CHECKS:
-                    break
-                new = as_written(reading.tokens).rstrip() + line.note
-                left = len(self.mistakes("\n".join([*out[:k], new, *out[k + 1 :]])))
-                if left < count:
-                    out[k], count, is_changed = new, left, True
-                    steps += [(k, step) for step in (*line.steps, *reading.steps)]
-                    break
+            tokens, own = self.read_parts(line)
+            new = as_written(tokens).rstrip() + line.note
+            left = len(self.mistakes("\n".join([*out[:k], new, *out[k + 1 :]]))) if own else count
+            if left < count:
+                out[k], count, is_changed = new, left, True
+                steps += [(k, step) for step in (*line.steps, *own)]
         if not is_changed:
             return None
-        text, changes = "\n".join(out), self.changes(out)
-        return Candidate(text, self.are_sure(), False, tuple(steps), self.checks, changes)
+        changes = self.changes(out)
+        return Candidate("\n".join(out), self.are_sure(), False, tuple(steps), changes)
+
+    def read_parts(self, line: _Text) -> tuple[list[Lexeme], list[Step]]:
+        """Read each instruction of a line alone; return the line with those that are sure."""
+        tokens = lexemes(line.body)
+        steps: list[Step] = []
+        ends = [k for k, each in enumerate([*tokens, made(";")]) if each.text == ";"]
+        for start, end in [*pairwise((-1, *ends))][::-1]:
+            head, part, tail = tokens[: start + 1], tokens[start + 1 : end], tokens[end:]
+            if not isinstance(lines.right(part, self.names), Failure):
+                continue
+            found = lines.read(part, self.names, is_quick=True)[:1]
+            for each in found if found and found[0].is_sure else ():
+                tokens = [*head, *each.tokens, *tail]
+                steps += [
+                    Step(code, [*head, *before, *tail], [*head, *after, *tail])
+                    for code, before, after in each.steps
+                ]
+        return tokens, steps
 
 
 def _is_alone(reading: Reading) -> bool:
@@ -382,36 +375,6 @@ def _words(text: str) -> set[str]:
 def _kept(reading: Reading) -> int:
     """Return how many tokens of the text are in a reading: one with fewer is no equal rival."""
     return sum(each.source is not None for each in reading.tokens)
-
-
-def _likely(line: _Text, names: Names) -> list[Reading]:
-    """Return what a line became on the way to no reading: the more was done, the better."""
-    found = [
-        each
-        for each in line.tried[:40]
-        if each.is_sure
-        and (each.cost or line.steps)
-        and not _has_bare_call(each.tokens, names)
-        and _is_before_failure(line.tried[0], each)
-    ]
-    return sorted(found, key=lambda each: -each.cost if each.cost <= 4 else 99)[:PARTS]
-
-
-def _is_before_failure(first: Reading, reading: Reading) -> bool:
-    """Whether what was rewritten is right now: the instruction that is still wrong comes later."""
-    old, new = first.text[::-1], reading.text[::-1]
-    most = min(len(old), len(new))
-    alike = next((k for k in range(most) if old[k] != new[k]), most)
-    return len(new) - alike <= reading.failure.start
-
-
-def _has_bare_call(tokens: Sequence[Lexeme], names: Names) -> bool:
-    """Whether a word was translated into a call, and its values are still missing."""
-    after = [*(each.text for each in tokens[1:]), ""]
-    return any(
-        one.source is None and one.text in CALLED and sign != "("
-        for one, sign in zip(tokens, after, strict=True)
-    )
 
 
 def _line(line: _Text, reading: Reading, edits: Sequence[Edit], tails: Sequence[str]) -> str:

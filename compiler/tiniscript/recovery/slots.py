@@ -222,9 +222,7 @@ class _Reader:
         if k and self.words[k].space == "" and self.words[k - 1].kind is NUMBER:
             self.is_sure = False  # `1velocidad`
         is_before_number = after is not None and (after.kind is NUMBER or after.text in "=:")
-        if self.command == "M" and word in ("L", "R"):
-            self.mark = _SIDES[word == "R"]
-        elif self.command in MOVES and word in _LETTERS and is_before_number:
+        if self.command in MOVES and word in _LETTERS and is_before_number:
             self.mark = _LETTERS[word]
         elif said_of(word, "turn"):
             if self.command in ("F", "B") and self.values:

@@ -10,7 +10,6 @@ import re
 from collections.abc import Callable, Sequence
 from functools import cached_property
 from itertools import pairwise
-from unicodedata import normalize
 
 from tiniscript.base.kit import Kit
 from tiniscript.base.source import Edit, Source, Span
@@ -50,7 +49,6 @@ _IS_BLOCK = re.compile(rf"(?i)(?:{'|'.join((*BLOCK_ENDS, 'END', 'ELSE'))})\b|END
 _WORD = re.compile(r"\w")
 _MEMBER = re.compile(r"[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)+(?=[ \t]*\()")
 _SEPARATOR = re.compile(r"[;|{}]")
-_SIGNS = "+-*/%=<>(),;|"
 _MOST_TIMES = 20  # that a DEF is done
 _LONGEST = 120  # characters of a sentence that a message shows
 _MANY = 30  # diagnostics of which more is said
@@ -74,8 +72,6 @@ def with_usage(found: Sequence[Diagnostic], source: Source, kit: Kit) -> list[Di
         teller.at_top = [source.position(each.span.start)[0] - 1 for each in top]
         found = [each for each in found if each not in top]
     found = teller.with_name(found)
-    if len(found) > 1:
-        found = [*(e for e in found[:_MANY] if not teller.has_its_end(e)), *found[_MANY:]]
     told = [teller.told(each) for each in found[:_MANY]]
     near = {it.values.get("near", "").partition("(")[0] for it in told}
     is_near = bool(teller.unopened) and teller.unopened in near
@@ -157,7 +153,7 @@ class _Usage:
         """Return how an instruction is written: a block with its end, where the text has none."""
         if word not in BLOCK_ENDS or _ENDS.search(plain(self.source.text)):
             return _usage(word)
-        found = lines.read(tokens, self.names).found if word == "LOOP" else []  # else a guess
+        found = lines.read(tokens, self.names) if word == "LOOP" else []  # else a guess
         items = (found[0].items or ()) if found else ()
         is_head = [each.kind for each in items] == ["open"]
         head = laid_out(found[0].tokens).strip("; ") if is_head else _usage(word)
@@ -200,10 +196,6 @@ class _Usage:
             by = next((each.text for each in tokens[2:] if each.kind is NUMBER), "1")
             fix = f"{first} = {first} {tokens[1].text[0]} {by}"
             return self.offered(codes.OTHER_ASSIGNMENT, piece, fix)
-        if self.is_value(tokens[0]) and any(each.text in COMPARISONS for each in tokens[1:2]):
-            asked = self.source[piece]
-            values = {"found": first, "asked": asked, "one": f"IF({asked})"}
-            return Diagnostic(codes.NOT_AN_INSTRUCTION, piece, values)
         return self.sentence(found, piece, tokens, words) or self.own_word(found, tokens)
 
     def sentence(
@@ -314,14 +306,6 @@ class _Usage:
             return Diagnostic(codes.UNTAUGHT, found.span, {"name": name, "often": often})
         is_name = not any(said_of(name, kind) for kind in _NO_NAMES)
         return found._replace(values={**found.values, "own": name if is_name else ""})
-
-    def has_its_end(self, found: Diagnostic) -> bool:
-        """Whether the end that is missed stands on the line of its header, behind a mistake."""
-        if found.code is not codes.NEVER_ENDS:
-            return False
-        line = self.source.text[found.span.end :].partition("\n")[0].partition("//")[0]
-        ends = "|".join(end for end, word in ENDED.items() if word == found.values["word"])
-        return bool(re.search(rf"(?i)\b(?:{ends})\b", line))
 
     def until(self, found: Diagnostic) -> Diagnostic:
         asked = re.compile(r"(?i)UNTIL\s*(\([^()\n]+\))").match(self.source.text, found.span.start)
@@ -501,8 +485,6 @@ class _Usage:
 
     def unopened_part(self, found: Diagnostic) -> Diagnostic | None:
         """An ELSE in a WHEN."""
-        if not self.source[found.span].upper().startswith("ELSE"):
-            return None
         before = self.source.text[: found.span.start]
         whens = re.findall(r"(?i)\b(?:END_?)?WHEN\b", before)
         if whens and not whens[-1].upper().startswith("END"):
@@ -520,9 +502,6 @@ class _Usage:
             return Diagnostic(codes.LISTS, found.span, {"found": tokens[0].text})
         if sign == "!" and self.source.text[found.span.end :][:1] not in ("", "\n", " "):
             return Diagnostic(codes.OTHER_SIGN, found.span, {"found": "!", "right": "NOT"})
-        usual = normalize("NFKC", sign)  # of the wide signs of other keyboards
-        if usual != sign and usual in _SIGNS:
-            return Diagnostic(codes.OTHER_SIGN, found.span, {"found": sign, "right": usual})
         around = self.source.text[found.span.start - 1 : found.span.end + 1]
         if re.fullmatch("[0-9]:[0-9]", around):
             return Diagnostic(codes.BAD_NUMBER, found.span, {"found": around})
@@ -604,8 +583,6 @@ class _Usage:
         ends = (text.find(sign, found.span.start, piece.end) for sign in ",)")
         end = min((each for each in ends if each >= 0), default=0)
         value = Span(start + text[start:end].startswith(" "), end)
-        if not piece.start < start <= end:
-            return None
         values = with_number(text, value)
         return Diagnostic(codes.UNKNOWN_NAME, value, values) if values else None
 
@@ -635,8 +612,6 @@ class _Usage:
             values = {"found": right, "right": concept, "usage": _usage(concept)}
             return Diagnostic(codes.OTHER_LANGUAGE, found.span, values)
         values = {"right": right if self.source[found.span].isupper() else right.capitalize()}
-        if right in WORDS:
-            values = {"word": right, "right": right}
         return found._replace(values=values) if right else None
 
 

@@ -17,7 +17,7 @@ from tiniscript.recovery.concepts import Lexeme, Names, concept_of, said_of
 from tiniscript.syntax.lexer import NUMBER, WORD
 
 _KINDS = ("little", "much", "light", "ahead", "none", "no", "without", "left", "right")
-ASKED = frozenset(("little", "much", "light", "ahead", "none"))
+_ASKED = frozenset(("little", "much", "light", "ahead", "none"))
 _FAR = 10  # centimetres, as in every example
 _MANY = 50  # of what a variable holds
 _EVEN = 100  # above it an example is a round number
@@ -38,7 +38,7 @@ class Worded(NamedTuple):
 def worded(row: Sequence[Lexeme], names: Names) -> Worded | None:
     """Return what a question in words asks, None where it is none or cannot be understood."""
     unsigned = [each for each in row if each.text != "="]  # `DISTANCE = NEAR`
-    is_asked = _said([each.text for each in unsigned], names) & ASKED
+    is_asked = _said([each.text for each in unsigned], names) & _ASKED
     row = unsigned if is_asked and row[-1].kind is WORD else row
     texts = [each.text for each in row]
     is_done = {*texts} & {"AND", "OR"} or any(_is_done(texts, k) for k in range(len(texts)))
@@ -65,7 +65,7 @@ def worded(row: Sequence[Lexeme], names: Names) -> Worded | None:
         f"{name} {_sign(name, texts, said)} {number or _example(names.asked.get(name), name)}"
         for name in _subjects(own, texts, said, names)
     ]
-    return Worded(asked, bool(number), bool(own or said & ASKED))
+    return Worded(asked, bool(number), bool(own or said & _ASKED))
 
 
 def sensors_of(word: str, names: Names) -> list[str]:

@@ -6,26 +6,16 @@ import re
 from collections.abc import Sequence
 
 from tiniscript.recovery.concepts import Lexeme, plain
-from tiniscript.syntax.lexer import NUMBER, WORD
-from tiniscript.syntax.operators import COMPARISONS
+from tiniscript.syntax.formatter import instruction_text
+from tiniscript.syntax.lexer import NUMBER, WORD, Token
 
 _NOTE = re.compile(r"(?i)(?<!\bSI)(?<!\bSB)//")
-_CLOSED_UP = frozenset(",);|")  # no space stands before them
 
 
 def laid_out(tokens: Sequence[Lexeme]) -> str:
     """Return a line as the formatter would write it."""
-    out, before, before_that = "", "", ""
-    for token in tokens:
-        text = token.text
-        is_call = text == "(" and before[:1].isalpha() and before not in ("AND", "OR", "NOT")
-        is_sign_of_number = before == "-" and (before_that in ("(", ",", "=", *COMPARISONS))
-        is_closed_up = text in _CLOSED_UP or before in ("", "(", ";", "|")
-        if not (is_closed_up or is_call or is_sign_of_number):
-            out += " "
-        out += text
-        before, before_that = text, before
-    return out
+    line = [Token(each.kind, each.text, 0, 0) for each in tokens]
+    return instruction_text(line) if line else ""
 
 
 def as_written(tokens: Sequence[Lexeme]) -> str:

@@ -88,7 +88,7 @@ def pieces_of(scanned: Scan) -> list[Piece]:
         if is_comment:
             piece.comments.append(comment_text(token.text))
             continue
-        piece.tokens.append(token)
+        piece.tokens.append(token._replace(text=ALIASES.get(token.text, token.text)))
         piece.last_line = line
         brackets += (kind == "(") - (kind == ")")
         if kind == "|":
@@ -164,7 +164,7 @@ def _row(group: list[Piece], one_line: bool) -> Row:
     word = ""
     if instructions and not one_line:
         text += ";"
-        word = _first_word(group[-1].tokens)
+        word = group[-1].tokens[0].text
     comment = " ".join(group[-1].comments)
     if text and comment:
         text += BEFORE_COMMENT
@@ -199,14 +199,9 @@ def _depths(rows: list[Row]) -> list[int]:
 # -- within an instruction -----------------------------------------------------------------------
 
 
-def _first_word(tokens: list[Token]) -> str:
-    text = tokens[0].text
-    return ALIASES.get(text, text)
-
-
 def instruction_text(tokens: list[Token]) -> str:
     """Return an instruction on one line, with spaces where they belong."""
-    parts = [_first_word(tokens)]
+    parts = [tokens[0].text]
     before = tokens[0]
     is_sign = False  # whether `before` is a minus that belongs to what follows
     for token in tokens[1:]:
@@ -221,7 +216,7 @@ def instruction_text(tokens: list[Token]) -> str:
 
 def _space_between(before: Token, is_sign: bool, token: Token) -> bool:
     """Whether a space stands between two tokens; `is_sign`: the first is the minus of -X."""
-    if is_sign or before.kind == "(" or token.kind in (")", ","):
+    if is_sign or before.kind in ("(", ";", "|") or token.kind in (")", ",", ";", "|"):
         return False
     if token.kind == "(":
         return before.kind is not WORD or before.text in _WORD_OPERATORS
