@@ -2,9 +2,10 @@
 
 They are in the files `*.txt` here. Below a program stands a row for each message,
 `> 1 TS012 F(1.5, 80)`: its line, its code and what to try, in Spanish. Behind `>=` that is what
-`tsc check --fix` makes of the line. `=3 F(1, 80)` is another line that it changes; where it
-changes how many lines there are, all that it makes stands there, each line behind a `=`. None has
-spaces at its end. A program of which nothing is said has a `>` alone below it.
+`tsc check --fix` makes of the line, or of the part of it that is named: `>= 1 TS036 SI|  for  SI-`.
+`=3 F(1, 80)` is another line that it changes; where it changes how many lines there are, all that
+it makes stands there, each line behind a `=`. None has spaces at its end. A program of which
+nothing is said has a `>` alone below it.
 """
 
 from __future__ import annotations
@@ -22,6 +23,7 @@ from tiniscript.diagnostics.rendering import message
 from tiniscript.library.compiling import compiled
 
 FOLDER = Path(__file__).parent
+FOR = "  for  "
 PART = re.compile(r"((?:(?![>=]).*\n)+)((?:>.*\n)*)((?:=.*\n)*)")
 
 
@@ -40,7 +42,7 @@ def entries() -> tuple[Entry, ...]:
     for file in sorted(FOLDER.glob("*.txt")):
         for part in PART.findall(file.read_text(encoding="utf-8")):
             program, said, changed = (each.split("\n")[:-1] for each in part)
-            messages = tuple(row.partition(" ")[2] for row in said if row != ">")
+            messages = tuple(row.partition(" ")[2].partition(FOR)[0] for row in said if row != ">")
             mended = _mended(program, said, changed)
             found.append(Entry(file.name, "\n".join(program), messages, mended))
     return tuple(found)
@@ -55,10 +57,24 @@ def _mended(program: list[str], said: list[str], changed: list[str]) -> str | No
     for row in said:
         if row.startswith(">="):
             number, _, fix = row[3:].split(" ", 2)
-            rows.append([number, _indent(program[int(number) - 1]) + fix])
+            line = program[int(number) - 1]
+            fix, _, part = fix.partition(FOR)
+            rows.append([number, line.replace(part, fix, 1) if part else _indent(line) + fix])
     for number, *text in rows:
         lines[int(number) - 1] = "".join(text)
     return "\n".join(lines) if rows else None
+
+
+def _part(line: str, fix: str, new: str) -> str:
+    """Return the part of a line in whose place `fix` makes a new line of it, or nothing."""
+    for start in range(len(line)):
+        if new.startswith(line[:start] + fix):
+            rest = len(new) - start - len(fix)
+            part = line[start : len(line) - rest]
+            is_plain = part == part.strip() and FOR not in part
+            if part and is_plain and line.replace(part, fix, 1) == new:
+                return part
+    return ""
 
 
 def _indent(line: str) -> str:
@@ -101,8 +117,12 @@ def _rows(entry: Entry) -> list[str]:
     marked = list(said)
     for k, each in enumerate(entry.said):
         number, _, fix = (*each.split(" ", 2), "")[:3]
-        if fix and changed.get(int(number)) == _indent(program[int(number) - 1]) + fix:
+        line, new = program[int(number) - 1], changed.get(int(number))
+        if fix and new == _indent(line) + fix:
             marked[k] = f">= {each}"
+            del changed[int(number)]
+        elif fix and new is not None and (part := _part(line, fix, new)):
+            marked[k] = f">= {each}{FOR}{part}"
             del changed[int(number)]
     rows = [f"={number} {line}".rstrip() for number, line in changed.items()]
     if _mended(program, marked, rows) == entry.mended:
