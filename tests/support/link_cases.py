@@ -13,7 +13,7 @@ the cases of its file a time and the name stand for them.
 
 An `items` fence is for a receiver alone: `> bytes`, `wait N`, `held N` (bytes before an item is
 taken), and `=` what it finds. A `computer items` fence is for the one in Python, a `robot items`
-fence for the one in C++.
+fence for the one in C++. It may have many cases, each below a row that says what it is about.
 """
 
 from __future__ import annotations
@@ -47,6 +47,7 @@ from tiniscript.link.statuses import name_of
 STEP_MS = 10
 KIT = 0x231B
 SHOWN_BYTES = 24  # of a longer item, the first ones are written
+OF_ITEMS = re.compile("[>=]|wait |held ")
 KINDS = ("link", "items", "computer items", "robot items")
 
 
@@ -80,6 +81,10 @@ def _read(path: Path) -> list[LinkCase]:
             fence = "" if fence else row[3:].strip() or "text"
             if fence in KINDS:
                 cases.append(LinkCase(path, number, fence, title, []))
+        elif fence in KINDS[1:] and not OF_ITEMS.match(row):
+            if not cases[-1].rows:
+                cases.pop()  # of the heading above, which has none of its own
+            cases.append(LinkCase(path, number, fence, row, []))
         elif fence in KINDS:
             time, _, name = row.lstrip().partition(" ")
             found = named.get(name, []) if time.isdigit() else []
@@ -99,7 +104,9 @@ def accept(case: LinkCase, rows: list[str]) -> None:
     """Write what was found where the case says something else; git shows what changed."""
     now = next(each for each in _read(case.path) if each[2:] == case[2:])
     old = case.path.read_text(encoding="utf-8").splitlines()
-    old[now.line : old.index("```", now.line)] = shortened(rows, names_of(case.path))
+    is_over = re.compile(r"```" if case.kind == "link" else rf"(?!{OF_ITEMS.pattern})").match
+    end = next(k for k in range(now.line, len(old)) if is_over(old[k]))
+    old[now.line : end] = shortened(rows, names_of(case.path))
     case.path.write_text("\n".join(old) + "\n", encoding="utf-8")
 
 
