@@ -25,7 +25,11 @@ NOT_HERE = {"wasmtime", "serial", "bleak", "zeroconf", "platformdirs", "tomli",
             "ctypes", "multiprocessing", "urllib.request", "ssl",
             "asyncio.windows_events", "asyncio.windows_utils",
             "pydoc", "doctest", "unittest", "pdb", "argparse"}  # fmt: skip
-DATA = {"languages": ("*/lexicon.txt",), "virtual": ("*.wasm",), "virtual/worlds": ("*.toml",)}
+DATA = {
+    "languages": ("*/lexicon.txt", "*/sounds.txt"),
+    "virtual": ("*.wasm",),
+    "virtual/worlds": ("*.toml",),
+}
 DATA_OF_LESSONS = {"lessons": ("*/lesson.toml", "*/world.toml", "*/pupil.*.md"),
                    "languages": ("*/lessons.mo",)}  # fmt: skip
 ENCODINGS = ("encodings.latin_1", "encodings.ascii", "encodings.utf_8_sig", "encodings.cp437")

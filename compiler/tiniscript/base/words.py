@@ -3,7 +3,7 @@
 Knows names, argument counts, ranges and units. Does not know how they are compiled. Ranges
 are thousandths. The words of a kit (its sensors and actuators) come from `kit`, not from here.
 `lexicon` has what words of people mean, from the folder of each language.
-`Speller` finds the word that a misspelt one was meant to be; it knows how Spanish sounds.
+`Speller` finds the word that a misspelt one was meant to be, by what sounds alike in each language.
 """
 
 from __future__ import annotations
@@ -226,27 +226,26 @@ _LONGEST = 24
 
 
 @cache
-def _sounds() -> tuple[tuple[re.Pattern[str], str], ...]:
-    """What sounds the same in Lima: the sign on the right stands for all that is on the left."""
+def _sounds() -> tuple[tuple[tuple[re.Pattern[str], str], ...], ...]:
+    """What sounds the same in each language that says so: patterns, and the sign for them."""
+    tables = (table(language, "sounds.txt").split("\n") for language in languages())
+    parted = ([row.rpartition("|") for row in rows if "|" in row] for rows in tables)
     return tuple(
-        (re.compile(pattern), sound)
-        for pattern, sound in (
-            ("CH", "9"), ("SH", "9"), ("X", "9"), ("H", ""), ("QU(?=[EI])", "K"),
-            ("C(?=[EI])", "S"), ("[CQ]", "K"), ("Z", "S"), ("V", "B"), ("LL", "Y"),
-            ("G(?=[EI])", "J"), (r"(.)\1", r"\1"),
-        )
-    )  # fmt: skip
+        tuple((re.compile(pattern.strip()), sign.strip()) for pattern, _, sign in rows)
+        for rows in parted
+        if rows
+    )
 
 
 class Speller:
     """The words that are looked for. A lookup takes the same time however many they are."""
 
     def __init__(self, words: Iterable[str]) -> None:
-        self._by_sound: dict[str, str] = {}
+        self._by_sound: dict[tuple[int, str], str] = {}
         self._by_rest: dict[str, list[str]] = {}
         for word in words:
-            if len(word) >= _ALIKE:
-                self._by_sound.setdefault(_sound(word), word)
+            for sound in _sounds_of(word) if len(word) >= _ALIKE else ():
+                self._by_sound.setdefault(sound, word)
             if len(word) >= _SWAPPED:
                 for rest in _rests(word):
                     self._by_rest.setdefault(rest, []).append(word)
@@ -255,7 +254,7 @@ class Speller:
         """Return the word that sounds like `word`, or None."""
         if not _ALIKE <= len(word) <= _LONGEST:
             return None
-        return self._by_sound.get(_sound(word))
+        return next(filter(None, map(self._by_sound.get, _sounds_of(word))), None)
 
     def near(self, word: str) -> str | None:
         """Return a word that is one slip of the finger away from `word`, or None."""
@@ -268,10 +267,13 @@ class Speller:
         return None
 
 
-def _sound(word: str) -> str:
-    for pattern, sound in _sounds():
-        word = pattern.sub(sound, word)
-    return word
+def _sounds_of(word: str) -> Iterator[tuple[int, str]]:
+    """Give how a word sounds in each language, beside the language's number."""
+    for k, rows in enumerate(_sounds()):
+        sound = word
+        for pattern, sign in rows:
+            sound = pattern.sub(sign, sound)
+        yield k, sound
 
 
 def _rests(word: str) -> Iterator[str]:
