@@ -18,6 +18,7 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -31,6 +32,7 @@ from tools.site.documents import FRONT, MOVED, PARTS, Document, documents, sourc
 from tools.site.pages import FILES, Missing, Place, Shelf, page, shelf
 
 SITE = ROOT / "tools" / "site"
+AT_ONCE = 2  # halves of the site
 
 
 LEADS_ON = """\
@@ -83,7 +85,8 @@ def _build(root: Path, folder: Path, scratch: Path, has_studio: bool) -> None:
     found = documents(root)
     on = shelf(root, found)
     halves = halves_of(found)
-    for language in halves:
+
+    def make(language: str) -> None:
         half = scratch / language
         stage(half, found, on, language)
         render(half, folder / language, found, has_studio)
@@ -92,6 +95,9 @@ def _build(root: Path, folder: Path, scratch: Path, has_studio: bool) -> None:
                 (folder / language / f"{old}.html").write_text(
                     LEADS_ON.format(f"{new}.html"), "utf-8"
                 )
+
+    with ThreadPoolExecutor(AT_ONCE) as pool:
+        list(pool.map(make, halves))
     for name in sorted(on.files):
         _copy(root / name, folder / FILES / name)
     link = ""
@@ -147,7 +153,7 @@ def render(half: Path, folder: Path, found: list[Document], has_studio: bool) ->
     told = {"others": others, "pages": {each.name: list(each.sources) for each in found},
             "has_studio": has_studio, "moved": moved_places(language)}  # fmt: skip
     (half / "half.json").write_text(json.dumps(told), encoding="utf-8")
-    words = [sys.executable, "-m", "sphinx", "-b", "html", "-q", "-j", "2", "-W", "--keep-going",
+    words = [sys.executable, "-m", "sphinx", "-b", "html", "-q", "-W", "--keep-going",
              "-E", "-D", f"language={language}", "-d", str(half.parent / f"{language}.trees"),
              str(half), str(folder)]  # fmt: skip
     paths = os.pathsep.join([str(ROOT), str(ROOT / "compiler")])
