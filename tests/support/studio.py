@@ -348,6 +348,7 @@ def noted(page: Page, text: str) -> None:
 def write(page: Page, text: str) -> None:
     """Replace the program as a person does, and wait until it is compiled."""
     content = page.locator(".cm-content")
+    assert content.is_visible(), "nobody writes into an editor that is not seen"
     content.focus()
     page.keyboard.press("Control+a")
     page.keyboard.press("Delete")
@@ -360,11 +361,16 @@ def axe(page: Page, *rules: str, within: str = "html") -> list[tuple[str, str]]:
     """Return what axe finds in an element, of these rules or of all: the rule, the first place."""
     if not page.evaluate("'axe' in window"):
         page.evaluate((MODULES / "axe-core" / "axe.min.js").read_text(encoding="utf-8"))
-    found: dict[str, Any] = page.evaluate(
-        "([within, ...rules]) => axe.run(within, rules.length ? {runOnly: rules} : {})",
-        [within, *rules],
-    )
-    return [(each["id"], each["nodes"][0]["html"]) for each in found["violations"]]
+    found: list[tuple[str, str]] = page.evaluate(_AXE, [within, *rules])
+    return [(rule, html) for rule, html in found]
+
+
+# What passes is neither described nor sent to Python.
+_AXE = """async ([within, ...rules]) => {
+  const only = rules.length ? {runOnly: rules} : {};
+  const found = await axe.run(within, {...only, resultTypes: ['violations']});
+  return found.violations.map(({id, nodes}) => [id, nodes[0].html]);
+}"""
 
 
 def image(page: Page) -> bytes:
