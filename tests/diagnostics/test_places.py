@@ -152,7 +152,7 @@ def is_told_well(found: Compiled) -> None:
             assert rows[-1].endswith(f"[{diagnostic.code.number}]")
 
 
-@pytest.mark.sampled("seed", keep=2)
+@pytest.mark.sampled("seed")
 @pytest.mark.parametrize("seed", range(20))
 def test_any_text_is_told_well(seed: int) -> None:
     dice = random.Random(seed)

@@ -63,6 +63,7 @@ class Damaged(Firmware):
         return bytes(said)
 
 
+@pytest.mark.sampled("seed", keep=7)
 @pytest.mark.parametrize("seed", range(15))
 @pytest.mark.parametrize("kind", [Chance, Damaged])
 def test_anything_at_the_other_end(kind: type[Chance | Damaged], seed: int) -> None:

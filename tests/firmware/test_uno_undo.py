@@ -78,6 +78,7 @@ def test_the_program_before_is_back_also_after_power_off(sketch: Path, memory: P
         assert undo(wired) == second
 
 
+@pytest.mark.sampled("count", keep=4)
 @pytest.mark.parametrize("count", range(EVENTS + 1))
 def test_switched_off_after_each_byte_it_has_one_of_the_two(
     sketch: Path,

@@ -217,6 +217,7 @@ def test_offline_it_says_what_to_do(
     assert not ready.files(ready.cache())
 
 
+@pytest.mark.sampled("body", "said", keep=2)
 @pytest.mark.parametrize(("body", "said"), [
     ('print("Compiling a\\nsrc/a.cpp:3:1: error: no such thing"); sys.exit(1)', "no such thing"),
     ('print("Compiling a\\nLinking"); sys.exit(0)', "Linking"),  # and there is no file

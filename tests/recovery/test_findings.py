@@ -119,6 +119,7 @@ FORMS = ("{}{}", "{} {}", "{}: {}", "{}({}", "{}[{}]", "{}( {} )", "{} {})", "{}
 BETWEEN = (", ", " ", ";", "; ", " y ", ".")
 
 
+@pytest.mark.sampled("word", keep=2)
 @pytest.mark.parametrize("word", ["R", "derecha", "M", "motores"])
 def test_no_repair_loses_a_sign_or_a_point(word: str) -> None:
     """`R .5 60` is not `R(5, 60)`, nor `M: -50 50` `M(50, 50)`."""

@@ -133,6 +133,7 @@ def test_the_end_of_a_wall_that_catches_a_side_of_it_does_not_hold_it(aside: flo
     assert found.bumps >= 1
 
 
+@pytest.mark.sampled("robot")
 @pytest.mark.parametrize("robot", [TINIBOT, LINER, GRABBER], ids=lambda robot: robot.name)
 @pytest.mark.parametrize("powers", [(100, 100), (100, 90), (-100, -80), (100, -100), (90, 0)])
 def test_nothing_is_driven_through(robot: Robot, powers: tuple[int, int]) -> None:
