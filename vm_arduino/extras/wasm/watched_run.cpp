@@ -109,9 +109,9 @@ const int32_t* watched_tasks() {
 #ifdef tiniscript_has_tasks
   if (!is_running() || !machine.has_tasks()) return found;
   const Task& task = machine.task();
-  for (const TaskRecord* each = task.records; each != task.end; each++) {
-    const uint16_t at = !task.is_between_turns && each == task.me ? task.pc : each->pc;
-    if (each->state != kHasEnded && at != 0) found[++found[0]] = at - 1;
+  for (const TaskRecord& each : task.records) {
+    const uint16_t at = &each == task.me ? task.pc : each.pc;
+    if (each.state != 0 && at != 0) found[++found[0]] = at - 1;
   }
 #endif
   return found;

@@ -5,6 +5,11 @@
 
 #include "has_tasks.h"
 
+// Moves that no discs measure.
+#if defined(__AVR__) && defined(tiniscript_has_tasks) && !defined(tiniscript_has_discs)
+#define tiniscript_moves_in_assembly
+#endif
+
 // The bit of GPIOR0 that interrupts set: `boards/avr/attention.h`.
 #define tini_attention_bit 0
 
@@ -21,16 +26,57 @@
 #define tini_depth_at 18
 #define tini_framed_at 19
 #ifdef tiniscript_has_tasks
-#define tini_variables_at 44
-#define tini_stack_at (tini_variables_at + 128 + 115)
+#define tini_others_at 29
+#define tini_round_at 30
+#define tini_me_at 31
+#define tini_after_at 33
+#define tini_holder_at 35
+#define tini_variables_at 37
+#define tini_records_at (tini_variables_at + 128)
+#define tini_main_task_at (tini_records_at + tini_tasks * tini_record_bytes)
+#define tini_stack_at (tini_main_task_at + tini_record_bytes)
 #else
-#define tini_variables_at 52
+#define tini_variables_at 49
 #define tini_stack_at (tini_variables_at + 128)
 #endif
 #define tini_frames_at (tini_stack_at + 68)
 #define tini_frame_bytes 3
 
-// in a TaskRecord
+// in a TaskRecord, and bits of its state and its code
+#define tini_task_code_at 1
+#define tini_task_power_at 2
+#define tini_task_framed_at 3
+#define tini_task_pc_at 4
+#define tini_task_start_at 6
+#define tini_task_check_at 8
 #define tini_clock_at 10
+#define tini_task_rest_at 14
+#define tini_task_set_at 18
+#define tini_record_bytes 20
+#define tini_is_moving_bit 0
+#define tini_has_time_bit 1
+#define tini_drives_bit 2
+#define tini_to_its_end_bit 3
+#define tini_has_begun_bit 4
+#define tini_has_set_bit 5
+#define tini_keeps_bit 6
+#define tini_has_waited_bit 7
+#define tini_wants_motors 0x61
+#define tini_waits_bit 4
+#define tini_watches_bit 5
+
+// bits of `others`
+#define tini_is_first_round 1
+#define tini_has_had_turn_bit 6
+
+// other numbers
+#define tini_tasks 4
+#define tini_waiting 1
+#define tini_done 2
+#define tini_show 0x39
+#define tini_wait 0x50
+#define tini_call 0x7b
+#define tini_check_ms 20
+#define tini_late_ms 20
 
 #endif  // TINISCRIPT_VM_EXECUTE_AVR_H_

@@ -1,7 +1,7 @@
 // Which machines have TASK and WHEN, in one place for C++ and assembly; and which firmware can measure
 // a way with discs, and reads text.
 //
-// Tasks take about 1,570 bytes of flash and 107 of RAM. An Uno has them with the compiler's options
+// Tasks take about 1,200 bytes of flash and 88 of RAM. An Uno has them with the compiler's options
 // of platformio.ini (`tiniscript_with_tasks`). With those of the Arduino IDE it has none, nor has a
 // Nano, whose old bootloader leaves 30,720 bytes.
 //

@@ -13,6 +13,7 @@
 
 namespace tiniscript {
 
+constexpr uint8_t kLateMs = 20;            // so late a move or wait may begin and lose nothing
 constexpr uint32_t kForever = 0xffffffff;  // the time of a move that only its UNTIL ends
 
 // What `tick` returns.
@@ -26,7 +27,7 @@ enum class Status : uint8_t {
 // Powers of both wheels in percent, the left one in the low byte.
 using Powers = uint16_t;
 
-constexpr Powers kNoPowers = 0x8080;  // no power of a wheel is -128
+constexpr Powers kMotorsOff = 0;
 
 constexpr Powers powers_of(int8_t left, int8_t right) {
   return static_cast<uint16_t>(static_cast<uint8_t>(left) | static_cast<uint8_t>(right) << 8);
@@ -36,28 +37,36 @@ constexpr Powers powers_of(int8_t left, int8_t right) {
 // its own **drives**, or it is **blocked**: it waits for the motors, or stands still since a higher
 // task has taken them.
 struct TaskRecord {
+  static constexpr uint8_t kWaits = 0x10;  // tells a wait from a move
+  // beside the code
+  static constexpr uint8_t kWatches = 0x20;   // an UNTIL follows
+  static constexpr uint8_t kMeasures = 0x80;  // it lasts until the way is gone
+  static constexpr uint8_t kFirstShow = static_cast<uint8_t>(Op::kShow);
+
   uint8_t state;      // bits, see below
-  uint8_t more;       // bits, see below
+  uint8_t code;       // of its move or wait; or of a SHOW that found no room
+  int8_t power;       // of its move
+  uint8_t framed;     // how many frames it has
   uint16_t pc;        // where its next turn begins
   uint16_t start;     // of a WHEN, its check; of others 0
   uint16_t check;     // where that of its UNTIL begins, or where it goes on behind its move
-  uint16_t after;     // behind the move; 0: behind its UNTIL
   uint32_t clock_ms;  // its own clock; its next turn is due then
   uint32_t rest_ms;   // how long its move may last from then on, or kForever; or the value of
-                      // `kUnsent`, or the way of a move that is measured
-  Powers powers;      // of its move; kNoPowers: a wait, the motors stay as they are
-  Powers set;         // by its M; 0 where none is in force
-  uint8_t framed;     // how many frames it has
+                      // the SHOW, or the way of a move that is measured
+  Powers set;         // by its M; of who has the motors, what they are set to
 
   bool is(uint8_t bits) const { return (state & bits) != 0; }
-  bool is_move() const { return static_cast<uint8_t>(powers) != static_cast<uint8_t>(kNoPowers); }
+  bool is_move() const { return (code & kWaits) == 0; }
+  bool is_watched() const { return (code & kWatches) != 0; }
+  bool has_unsent() const { return static_cast<uint8_t>(code - kFirstShow) < 2; }
+  bool shows_yes_no() const { return code != kFirstShow; }
   bool measures() const;
   bool is_forever() const { return static_cast<int32_t>(rest_ms) < 0; }
 };
 
 // Bits of `state`.
 constexpr uint8_t kIsMoving = 1;  // its move drives or is blocked
-constexpr uint8_t kIsBlocked = 2;
+constexpr uint8_t kHasTime = 2;  // its clock says when it is due: it is not blocked, and has not ended
 constexpr uint8_t kDrives = 4;
 constexpr uint8_t kToItsEnd = 8;     // the clock is the end of the move
 constexpr uint8_t kHasBegun = 16;    // its move
@@ -65,11 +74,6 @@ constexpr uint8_t kHasSet = 32;      // its M is in force
 constexpr uint8_t kKeeps = 64;       // a WHEN has wanted the motors, and has not found FALSE since
 constexpr uint8_t kHasWaited = 128;  // since it last went back to the start of a loop
 constexpr uint8_t kWantsMotors = kIsMoving | kHasSet | kKeeps;
-constexpr uint8_t kHasEnded = kIsBlocked;  // alone: it waits for nothing that ever comes
-// Bits of `more`.
-constexpr uint8_t kYesNo = 1;   // the value of `kUnsent` is one
-constexpr uint8_t kUnsent = 2;    // a SHOW found no room
-constexpr uint8_t kMeasures = 4;  // its move lasts until the robot has gone its way
 
 #ifdef tiniscript_has_discs
 constexpr bool kHasDiscs = true;
@@ -78,9 +82,14 @@ constexpr bool kHasDiscs = false;
 #endif
 
 inline bool TaskRecord::measures() const {
-  return kHasDiscs && (more & kMeasures) != 0 && is_move();
+  return kHasDiscs && (code & kMeasures) != 0;
 }
 
+// Bits of `others`.
+constexpr uint8_t kIsFirstRound = 1;
+constexpr uint8_t kOneOther = 2;     // so much for each task that has not ended, beside one
+constexpr uint8_t kAllOthers = 14;
+constexpr uint8_t kHasHadTurn = 64;   // the first turn, of the main task before all others, is over
 constexpr uint8_t kHasOthers = 128;  // there are tasks beside the main one
 
 // Of a counted loop that is open: how often it still goes around. Of an open call: where it
@@ -103,26 +112,21 @@ struct Task {
   uint32_t started_ms;
   bool is_late;       // 2^31 ms have passed since the start: TIME can no longer express it
 #ifdef tiniscript_has_tasks
-  uint8_t others;  // kHasOthers, and how many tasks have not ended, beside one
-  bool is_between_turns;
-  uint8_t turns;   // 0: the first one, of the main task; 1: the first round; 2: the others
+  uint8_t others;        // bits, see above
 #ifdef __AVR__
-  uint8_t round_ms;      // when the last round was over, of 256; before that if one is due now
-  bool had_turn;         // a task in this round: it may be due again
+  uint8_t round_ms;      // when a round began, of 256; less where a task has had a turn since then
 #else
   uint32_t wake_ms;      // when the next round begins
 #endif
-  TaskRecord* me;        // whose turn it is, or was last
-  TaskRecord* next;      // in this round
-  TaskRecord* end;       // behind the main task
-  TaskRecord* holder;    // who has the motors; `end`: nobody
-  Powers powers;         // that the motors were set to last
+  TaskRecord* me;        // whose turn it is; null: a round is over
+  uint16_t after;        // behind the move that drives, where its UNTIL looks again before
+  TaskRecord* holder;    // who has the motors; where nobody wants them, the main task
 #else
   TaskRecord me[1];
 #endif
   int32_t variables[kVariables];
 #ifdef tiniscript_has_tasks
-  TaskRecord records[kTasks + 1];  // in the order of rank, the main task last
+  TaskRecord records[kTasks + 1];  // in the order of rank; the last one is the main task
 #endif
   // Everything from here on is written before it is read.
   int32_t stack[kStackValues + 1];  // the last one only lies after the values

@@ -116,6 +116,7 @@ bool Machine::stay() {
 
 // The layout that `execute_avr.S` relies on.
 #define lies_at(member, place) static_assert(offsetof(Machine, member) == place, #member)
+#define is_bit(mask, bit) static_assert(mask == 1 << bit, #mask)
 
 void Machine::check_places() {
   lies_at(fault_, tini_fault_at);
@@ -133,8 +134,49 @@ void Machine::check_places() {
   lies_at(task_.stack, tini_stack_at);
   lies_at(task_.frames, tini_frames_at);
   static_assert(offsetof(TaskRecord, clock_ms) == tini_clock_at, "clock_ms");
+#ifdef tiniscript_has_tasks
+  lies_at(status_, 0);
+  lies_at(task_.others, tini_others_at);
+  lies_at(task_.round_ms, tini_round_at);
+  lies_at(task_.me, tini_me_at);
+  lies_at(task_.after, tini_after_at);
+  lies_at(task_.holder, tini_holder_at);
+  lies_at(task_.records, tini_records_at);
+  static_assert(offsetof(TaskRecord, state) == 0, "state");
+  static_assert(offsetof(TaskRecord, code) == tini_task_code_at, "code");
+  static_assert(offsetof(TaskRecord, power) == tini_task_power_at, "power");
+  static_assert(offsetof(TaskRecord, framed) == tini_task_framed_at, "framed");
+  static_assert(offsetof(TaskRecord, pc) == tini_task_pc_at, "pc");
+  static_assert(offsetof(TaskRecord, start) == tini_task_start_at, "start");
+  static_assert(offsetof(TaskRecord, check) == tini_task_check_at, "check");
+  static_assert(offsetof(TaskRecord, rest_ms) == tini_task_rest_at, "rest_ms");
+  static_assert(offsetof(TaskRecord, set) == tini_task_set_at, "set");
+  static_assert(sizeof(TaskRecord) == tini_record_bytes, "TaskRecord");
+  is_bit(kIsMoving, tini_is_moving_bit);
+  is_bit(kHasTime, tini_has_time_bit);
+  is_bit(kDrives, tini_drives_bit);
+  is_bit(kToItsEnd, tini_to_its_end_bit);
+  is_bit(kHasBegun, tini_has_begun_bit);
+  is_bit(kHasSet, tini_has_set_bit);
+  is_bit(kKeeps, tini_keeps_bit);
+  is_bit(kHasWaited, tini_has_waited_bit);
+  is_bit(kHasHadTurn, tini_has_had_turn_bit);
+  is_bit(TaskRecord::kWaits, tini_waits_bit);
+  is_bit(TaskRecord::kWatches, tini_watches_bit);
+  static_assert(kWantsMotors == tini_wants_motors, "kWantsMotors");
+  static_assert(kIsFirstRound == tini_is_first_round, "kIsFirstRound");
+  static_assert(kTasks == tini_tasks, "kTasks");
+  static_assert(Status::kRunning == static_cast<Status>(0), "kRunning");
+  static_assert(Status::kWaiting == static_cast<Status>(tini_waiting), "kWaiting");
+  static_assert(Status::kDone == static_cast<Status>(tini_done), "kDone");
+  static_assert(TaskRecord::kFirstShow == tini_show, "kShow");
+  static_assert(Op::kWait == static_cast<Op>(tini_wait), "kWait");
+  static_assert(kCheckMs == tini_check_ms && kLateMs == tini_late_ms, "times");
+  static_assert(Op::kCall == static_cast<Op>(tini_call), "kCall");
+#endif
 }
 
+#undef is_bit
 #undef lies_at
 
 #endif

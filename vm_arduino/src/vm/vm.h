@@ -123,8 +123,8 @@ class Machine {
   bool until(bool stop) tini_called_by_assembly;
   bool sense(uint8_t number) tini_called_by_assembly;
   bool go_ms(uint8_t code, int32_t* top);
-  bool show(int32_t value, bool is_yes_no);
-  bool sends();
+  bool show(int32_t value);
+  bool sends() tini_called_by_assembly;
 
   uint32_t late_ms(const TaskRecord* task) const;
   bool is_early(uint32_t now_ms) const;
@@ -140,6 +140,7 @@ class Machine {
   bool begin_turn(TaskRecord* me);
   void end_turn();
   bool waits_for_clock(const TaskRecord* task) const;
+  void begin_others();
   void end_round();
   bool pause();
   bool goes_back();
@@ -148,25 +149,30 @@ class Machine {
   bool ends_program();
 
   // their moves and motors, in `vm_moves.cpp`
-  bool wait(uint32_t duration_ms);
+  bool wait(uint32_t duration_ms) tini_called_by_assembly;
   bool drive(uint32_t move_ms);
   bool watch(uint32_t move_ms);
   void keep_move(uint32_t move_ms);
   void set_clock(TaskRecord* task) const;
   void begin(TaskRecord* me) const;
   uint32_t next_check_ms(const TaskRecord* me) const;
-  bool go_on(bool is_watched);
+  bool go_on() tini_called_by_assembly;
   void go_way();
   bool is_on_the_way();
-  bool comes_to_end();
+  bool comes_to_end() tini_called_by_assembly;
   void end_move();
+  void leave_move(TaskRecord* task);
+  void stand_still(TaskRecord* task);
   bool blocks();
   void motors(Powers powers);
   void stop_motors();
   bool is_below() const;  // whether a higher task has the motors
+  TaskRecord* main_task();
+  bool has_had_turn() const;  // the main task, before all others
   void take();
   void pass_on();
-  void set_motors(Powers powers);
+  void set_motors(Powers powers) tini_called_by_assembly;
+  void set_motors_of_move();
 
   Status status_;
   Fault fault_;
@@ -183,6 +189,8 @@ class Machine {
 #ifdef tiniscript_has_tasks
 inline bool Machine::has_tasks() const { return task_.others != 0; }
 inline bool Machine::is_below() const { return task_.holder < task_.me; }
+inline TaskRecord* Machine::main_task() { return task_.records + kTasks; }
+inline bool Machine::has_had_turn() const { return (task_.others & kHasHadTurn) != 0; }
 #else
 inline bool Machine::has_tasks() const { return false; }
 inline bool Machine::is_below() const { return false; }

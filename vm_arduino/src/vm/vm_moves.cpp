@@ -1,6 +1,6 @@
 // Waits and moves, and who has the motors.
 //
-// Matches `tasks.py` method by method. Where a machine has no tasks, nobody takes the motors away,
+// Matches `tasks.py` method by method; `tasks_avr.S` is the same for an Uno. Where a machine has no tasks, nobody takes the motors away,
 // and much less is needed: see the end.
 
 #include "../robot.h"
@@ -9,9 +9,18 @@
 
 namespace tiniscript {
 
+#ifndef tiniscript_moves_in_assembly
+
 namespace {
 
-constexpr Powers kOff = 0;
+// The powers of a move. The last two bits of its code are the direction: F, B, L, R.
+Powers powers_of_move(const TaskRecord* task) {
+  int8_t left = task->power < 0 ? 0 : task->power;
+  if ((task->code & 1) != 0) left = static_cast<int8_t>(-left);
+  const int8_t right = left;
+  if ((task->code & 2) != 0) left = static_cast<int8_t>(-left);
+  return powers_of(left, right);
+}
 
 }  // namespace
 
@@ -27,7 +36,6 @@ uint32_t Machine::late_ms(const TaskRecord* task) const { return now_ms_ - task-
 
 // Sets the clock to the begin of the next wait or move, or to now if that is too long ago.
 void Machine::begin(TaskRecord* me) const {
-  constexpr uint8_t kLateMs = 20;
   if (late_ms(me) > kLateMs) set_clock(me);
 }
 
@@ -35,7 +43,7 @@ void Machine::begin(TaskRecord* me) const {
 tini_noinline void Machine::keep_move(uint32_t move_ms) {
   TaskRecord* const me = task_.me;
   me->rest_ms = move_ms;
-  me->check = me->after = task_.pc;
+  me->check = task_.pc;
   me->state &= static_cast<uint8_t>(~kHasBegun);
 }
 
@@ -68,56 +76,58 @@ tini_noinline void want(TaskRecord* task) {
   task->state = state;
 }
 
-// Its move is over, and so is its M. It goes on behind the move.
+// Its move is over, and so is its M.
 void end_move_of(TaskRecord* task) {
-  forget_set(task);
-  task->state &= static_cast<uint8_t>(~(kIsMoving | kIsBlocked | kDrives | kToItsEnd));
-  task->pc = task->after;
-}
-
-// Its move that drives loses the motors.
-void stand_still(TaskRecord* task, uint32_t now_ms) {
-  if (task->measures()) {
-#ifdef tiniscript_has_discs
-    int32_t rest;
-    if (robot_going(&rest) == Going::kThere || rest <= 0) return end_move_of(task);
-    task->rest_ms = static_cast<uint32_t>(rest);
-#endif
-  } else if (!task->is_forever()) {
-    const uint32_t left_ms = task->clock_ms + task->rest_ms - now_ms;
-    if (static_cast<int32_t>(left_ms) <= 0) return end_move_of(task);
-    task->rest_ms = left_ms;
-  }
-  task->state &= static_cast<uint8_t>(~(kDrives | kHasBegun | kToItsEnd));
-  task->state |= kIsBlocked;
-  task->pc = task->check;
+  task->state &= static_cast<uint8_t>(~(kHasSet | kIsMoving | kDrives | kToItsEnd));
 }
 
 }  // namespace
 
+// Ends a move that drives, of whatever task. It goes on behind the move, and behind its UNTIL.
+tini_noinline void Machine::leave_move(TaskRecord* task) {
+  if (!task->is(kToItsEnd)) task->pc = task_.after;
+  end_move_of(task);
+}
+
+// A move that drives loses the motors.
+inline void Machine::stand_still(TaskRecord* task) {
+  if (task->measures()) {
+#ifdef tiniscript_has_discs
+    int32_t rest;
+    if (robot_going(&rest) == Going::kThere || rest <= 0) return leave_move(task);
+    task->rest_ms = static_cast<uint32_t>(rest);
+#endif
+  } else if (!task->is_forever()) {
+    const uint32_t left_ms = task->rest_ms - late_ms(task);
+    if (static_cast<int32_t>(left_ms) <= 0) return leave_move(task);
+    task->rest_ms = left_ms;
+  }
+  task->state &= static_cast<uint8_t>(~(kHasTime | kDrives | kHasBegun | kToItsEnd));
+  task->pc = task->check;
+}
+
 // A wait is a move that leaves the motors as they are. One of 0 ms ends no turn of a task.
 bool Machine::wait(uint32_t duration_ms) {
-  task_.me->powers = kNoPowers;
+  task_.me->code = static_cast<uint8_t>(Op::kWait);
   return drive(duration_ms);
 }
 
 tini_noinline bool Machine::drive(uint32_t move_ms) {
   keep_move(move_ms);
-  return go_on(false);
+  return go_on();
 }
 
 // Begins to watch a move or a wait.
 bool Machine::watch(uint32_t move_ms) {
   keep_move(move_ms);
-  task_.me->after = 0;
+  task_.me->code |= TaskRecord::kWatches;
   return !blocks();
 }
 
 // Continues or ends the watched move, as its UNTIL says.
 bool Machine::until(bool stop) {
   TaskRecord* const me = task_.me;
-  me->after = task_.pc;
-  if (!stop) return go_on(true);
+  if (!stop) return go_on();
   if (me->is(kHasBegun)) set_clock(me);
   if (me->is(kIsMoving)) end_move();
   return true;
@@ -125,8 +135,9 @@ bool Machine::until(bool stop) {
 
 // Begins a move where it has not begun, and waits for its end, or for the next check of its UNTIL.
 // Returns whether the next instruction may run now.
-tini_noinline bool Machine::go_on(bool is_watched) {
+tini_noinline bool Machine::go_on() {
   TaskRecord* const me = task_.me;
+  const bool is_watched = me->is_watched();
   const bool measures = me->measures();
   if (!me->is(kHasBegun)) {
     if (blocks()) return false;
@@ -136,31 +147,33 @@ tini_noinline bool Machine::go_on(bool is_watched) {
       if (measures) {
         go_way();
       } else {
-        set_motors(me->powers);
+        set_motors(powers_of_move(me));
       }
     }
     me->state |= kHasBegun;
     begin(me);
   }
-  uint32_t due_ms = me->rest_ms;
-  bool is_last = true;
-  if (measures) {
-    if (!is_on_the_way()) {
-      me->clock_ms = now_ms_;
-      return fault_ == Fault::kNone;
-    }
-    due_ms = kForever;
-    if (!is_watched) me->state |= kToItsEnd;
+  if (measures && !is_on_the_way()) {
+    me->clock_ms = now_ms_;
+    return fault_ == Fault::kNone;
   }
+  uint32_t due_ms = measures ? kForever : me->rest_ms;
+  bool goes_back = false;
   if (is_watched || measures) {
     const uint32_t next_ms = next_check_ms(me);
-    is_last = next_ms >= due_ms;
-    if (!is_last) {
+    if (next_ms < due_ms) {
       due_ms = next_ms;
-      if (is_watched) task_.pc = me->check;
+      goes_back = is_watched;
     }
   }
-  if (is_last && me->is(kDrives)) me->state |= kToItsEnd;
+  if (me->is(kDrives)) {
+    if (goes_back) {
+      task_.after = task_.pc;
+    } else {
+      me->state |= kToItsEnd;
+    }
+  }
+  if (goes_back) task_.pc = me->check;
   if (due_ms == 0 && has_tasks()) {
     if (me->is(kToItsEnd)) end_move();
     return true;
@@ -174,7 +187,7 @@ tini_noinline bool Machine::go_on(bool is_watched) {
 // Lets the robot go a way that it measures.
 void Machine::go_way() {
 #ifdef tiniscript_has_discs
-  const Powers powers = task_.powers = task_.me->powers;
+  const Powers powers = task_.me->set = powers_of_move(task_.me);
   robot_go(static_cast<int8_t>(powers), static_cast<int8_t>(powers >> 8),
            static_cast<int32_t>(task_.me->rest_ms));
 #endif
@@ -201,7 +214,7 @@ bool Machine::is_on_the_way() {
 
 // At the end of a move, or at a look at one that is measured. False: it goes on.
 tini_noclone bool Machine::comes_to_end() {
-  if (task_.me->measures()) return go_on(false);
+  if (task_.me->measures()) return go_on();
   end_move();
   return true;
 }
@@ -212,7 +225,7 @@ tini_noinline void Machine::end_move() {
   TaskRecord* const me = task_.me;
   const bool drove = me->is(kDrives);
   end_move_of(me);
-  if (drove) set_motors(kOff);
+  if (drove) set_motors(kMotorsOff);
 }
 
 // Waits for the motors where its move needs them and a higher task has them.
@@ -220,7 +233,7 @@ tini_noinline bool Machine::blocks() {
   TaskRecord* const me = task_.me;
   if (!me->is_move() || !is_below()) return false;
   want(me);
-  me->state |= kIsMoving | kIsBlocked | kHasWaited;
+  me->state = static_cast<uint8_t>((me->state & ~kHasTime) | kIsMoving | kHasWaited);
   task_.pc = me->check;
   return !pause();
 }
@@ -239,12 +252,11 @@ void Machine::motors(Powers powers) {
 void Machine::stop_motors() {
   want(task_.me);
   if (is_below()) return;
-  set_motors(kOff);
+  set_motors(kMotorsOff);
   TaskRecord* const holder = task_.holder;
-  if (holder == task_.end) return;
   forget_set(holder);
   if (!holder->is(kDrives)) return;
-  end_move_of(holder);
+  leave_move(holder);
   set_clock(holder);
 }
 
@@ -253,26 +265,7 @@ tini_noinline void Machine::take() {
   want(task_.me);
   TaskRecord* const holder = task_.holder;
   task_.holder = task_.me;
-  if (holder != task_.end && holder->is(kDrives)) stand_still(holder, now_ms_);
-}
-
-// Behind a turn: gives the motors to the highest task that wants them, if it is another.
-tini_noclone void Machine::pass_on() {
-  TaskRecord* highest = task_.records;
-  while (highest != task_.end && !highest->is(kWantsMotors)) highest++;
-  if (highest == task_.holder) return;
-  task_.holder = highest;
-  Powers powers = kOff;
-  if (highest != task_.end) {
-    if (highest->is(kIsBlocked)) highest->clock_ms = now_ms_ + (task_.turns & 1);
-    if (highest->is(kHasSet)) powers = highest->set;
-  }
-  if (powers != task_.powers) set_motors(powers);
-}
-
-tini_noinline void Machine::set_motors(Powers powers) {
-  task_.powers = powers;
-  robot_motors(static_cast<int8_t>(powers), static_cast<int8_t>(powers >> 8));
+  if (holder->is(kDrives)) stand_still(holder);
 }
 
 #else
@@ -280,7 +273,7 @@ tini_noinline void Machine::set_motors(Powers powers) {
 bool Machine::drive(uint32_t move_ms) {
   TaskRecord* const me = task_.me;
   if (me->is_move()) {
-    set_motors(me->powers);
+    set_motors_of_move();
     me->state = kToItsEnd;
   }
   begin(me);
@@ -299,13 +292,13 @@ bool Machine::until(bool stop) {
   if (stop) {
     if (!me->is(kHasBegun)) return true;
     me->clock_ms = now_ms_;
-    if (drives) set_motors(kOff);
+    if (drives) set_motors(kMotorsOff);
     return true;
   }
   if (!me->is(kHasBegun)) {
     me->state = kHasBegun;
     begin(me);
-    if (drives) set_motors(me->powers);
+    if (drives) set_motors_of_move();
   }
   uint32_t next_ms = next_check_ms(me);
   if (next_ms < me->rest_ms) {
@@ -321,7 +314,7 @@ bool Machine::until(bool stop) {
 
 void Machine::end_move() {
   task_.me->state = 0;
-  set_motors(kOff);
+  set_motors(kMotorsOff);
 }
 
 bool Machine::comes_to_end() {
@@ -329,10 +322,22 @@ bool Machine::comes_to_end() {
   return true;
 }
 
+tini_noinline void Machine::set_motors_of_move() { set_motors(powers_of_move(task_.me)); }
 void Machine::motors(Powers powers) { set_motors(powers); }
-void Machine::stop_motors() { set_motors(kOff); }
+void Machine::stop_motors() { set_motors(kMotorsOff); }
 
 void Machine::set_motors(Powers powers) {
+  robot_motors(static_cast<int8_t>(powers), static_cast<int8_t>(powers >> 8));
+}
+
+#endif
+
+#endif
+
+#ifdef tiniscript_has_tasks
+
+void Machine::set_motors(Powers powers) {
+  task_.holder->set = powers;
   robot_motors(static_cast<int8_t>(powers), static_cast<int8_t>(powers >> 8));
 }
 

@@ -37,15 +37,6 @@ tini_noinline int8_t percent(int32_t power) {
 // That of a move is not below 0.
 int8_t of_move(int8_t power) { return power < 0 ? 0 : power; }
 
-// The powers of a move. The last two bits of its code are the direction: F, B, L, R.
-Powers powers_of_move(uint8_t code, int8_t power) {
-  const uint8_t way = code & 3;
-  power = of_move(power);
-  const int8_t reversed = static_cast<int8_t>(-power);
-  return powers_of(way == 1 || way == 2 ? reversed : power,
-                   way == 1 || way == 3 ? reversed : power);
-}
-
 }  // namespace
 
 // Takes a reading. Returns false if the robot is not ready or has no such sensor.
@@ -56,13 +47,12 @@ bool Machine::sense(uint8_t number) {
 
 // Shows a value. Where there is no room a task keeps it and ends its turn, so that nothing stays on
 // the stack; a program without tasks waits for room, and so does the main task before all others.
-inline bool Machine::show(int32_t value, bool is_yes_no) {
+inline bool Machine::show(int32_t value) {
 #ifdef tiniscript_has_tasks
   task_.me->rest_ms = static_cast<uint32_t>(value);
-  task_.me->more = static_cast<uint8_t>(kUnsent | is_yes_no);
-  return sends() || (has_tasks() && task_.turns != 0 ? pause() : stay());
+  return sends() || (has_had_turn() ? pause() : stay());
 #else
-  return robot_show(value, is_yes_no) || stay();
+  return robot_show(value, task_.me->shows_yes_no()) || stay();
 #endif
 }
 
@@ -71,14 +61,10 @@ inline bool Machine::show(int32_t value, bool is_yes_no) {
 inline bool Machine::go_ms(uint8_t code, int32_t* top) {
   if (!is_way(code)) return fail();
   int32_t* const way = top - 1;
-  if (kHasDiscs) task_.me->more &= static_cast<uint8_t>(~kMeasures);
   if (*way <= 0) return true;
   const uint8_t power = static_cast<uint8_t>(of_move(percent(*top)));
 #ifdef tiniscript_has_discs
-  if (robot_measures()) {
-    task_.me->more |= kMeasures;
-    return goes_on(power == 0 ? Fault::kNoPower : Fault::kNone);
-  }
+  if (robot_measures()) return goes_on(power == 0 ? Fault::kNoPower : Fault::kNone);
 #endif
   const int32_t speed = power == 0 ? 0 : robot_speed((code & 2) != 0, power);
   if (speed <= 0) return goes_on(Fault::kNoPower);
@@ -116,15 +102,20 @@ bool Machine::act(uint8_t code, const uint8_t* bytes, int32_t* top) {
   const uint8_t first = shape.size() == 1 ? static_cast<uint8_t>(code % kShorts) : bytes[1];
   const int8_t power = takes ? percent(*top) : signed8(bytes[shape.size() - 1]);
   uint32_t time_ms = takes ? duration(shape.pops() == 1 ? *top : top[-1]) : time8(first);
-  if (kHasDiscs && *bytes == code) task_.me->more &= static_cast<uint8_t>(~kMeasures);
   // of a move; what is neither move nor wait leaves them to the next one
-  task_.me->powers = family >= Family::kWatchWait ? kNoPowers : powers_of_move(code, power);
+  task_.me->code = code;
+  task_.me->power = power;
+#ifdef tiniscript_has_discs
+  if (*bytes != code && time_ms != 0 && robot_measures()) {
+    task_.me->code |= TaskRecord::kMeasures;
+  }
+#endif
   switch (family) {
     case Family::kShowYesNo:
       if (*top != 0) *top = 1;
       // fallthrough
     case Family::kShow:
-      return show(*top, family == Family::kShowYesNo);
+      return show(*top);
     case Family::kSet:
     case Family::kSetShort:
       robot_set(first, *top);
