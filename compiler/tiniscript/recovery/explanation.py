@@ -460,7 +460,7 @@ def _slip(code: str, step: Step | None, before: Sequence[Lexeme], after: Sequenc
         found = found[1:]
     if code == codes.EXTRA_WORD.number and texts(found[1:]) == (";",):
         found = found[:1]
-    if not right and code == _WORD_CODE and start:
+    if not right and code == _WORD_CODE and start and old[start - 1].text != "|":
         found, right = [old[start - 1], *found], [old[start - 1]]
     elif code == _WORD_CODE and texts(found[-1:]) == (".",):  # `bot.forward`
         found = old[start : start + len(found) + 1]

@@ -82,7 +82,9 @@ def _titles(source: Source, kit: Kit) -> list[Diagnostic]:
         if not title:
             continue
         words = lexemes(title)
-        if not isinstance(lines.right(words, names), Failure) or "(" in title or "{" in title:
+        is_set = said_of(words[0].text, "set")  # `set SPEED to 70`
+        is_right = not isinstance(lines.right(words, names), Failure)
+        if is_set or is_right or "(" in title or "{" in title:
             return []
         span, fix = Span(at, at + len(title)), f"// {title}"
         is_command = words[0].text == "TSC"
