@@ -85,6 +85,9 @@ ADVICE = """
 ^ @none c=F|B|L|R ( s=@word+ t=endless , n=@num ) $ | TS102 | found={s} {t}; right=FOREVER; usage={c}(FOREVER, {n}) UNTIL({distance} < 10) | F(sin fin, 60) => usage=F(FOREVER, 60) UNTIL(DISTANCE < 10)
 ^ @none W ( s=FOREVER ) $ | TS102 | found={s}; right=FOREVER; usage=W(FOREVER) UNTIL({distance} < 10) | W(siempre) => usage=W(FOREVER) UNTIL(DISTANCE < 10)
 ^ @none v=@name [ @num ] = @any* $ | TS067 | found={v} | NOTAS[1] = 5 => found=NOTAS
+^ @none v=@name = s=[ @any* $ | TS067 | found={v} | V = [50, 60] => found=V
+^ @none s=SWITCH ( v=@word @any* $ | TS066 | found={s}; first=IF({v} = 1); second=ELSEIF({v} = 2) | SWITCH(X) => second=ELSEIF(X = 2)
+^ @none s=cases @any* $ | TS066 | found={s}; first=IF(X = 1) | CASE 1: F(1, 50) => first=IF(X = 1)
 ^ @none most|least|on|off the|one? s=@noGRIPPER|@noLED $ | TS101 | found={s}; near= | OPEN GRIPPER => found=GRIPPER
 # letters for a way
 ^ @none s=FL|LF ( n=@num , @num ) $ | TS101 | found={s}; near=; curve=M(30, 60);W({n});S | FL(1, 60) => curve=M(30, 60);W(1);S

@@ -212,19 +212,16 @@ TOKENS = r"""
 ^ v=@usedname == e=@any+ $ | $v = $e | 0 | TS010 | first | X == 5⏎F(X, 80) => X = 5⏎F(X, 80)
 ^ v=@name == e=@any+ $ | $v = $e | 1 | TS050 | first offered | X == 6 => X = 6
 == | = | 0 | TS010 | first | IF(DISTANCE == 10);S;ENDIF => IF(DISTANCE = 10);S;ENDIF
-!= | <> | 0 | TS010 | first | SI|IF(DISTANCE!=10);S;ENDIF => SI|IF(DISTANCE <>10);S;ENDIF
-=! | <> | 0 | TS010 | first | IF(DISTANCE =! 10);S;ENDIF => IF(DISTANCE <> 10);S;ENDIF
+!=|=! | <> | 0 | TS010 | first | SI|IF(DISTANCE!=10);S;ENDIF => SI|IF(DISTANCE <>10);S;ENDIF
 => | >= | 0 | TS010 | first | IF(DISTANCE => 10);S;ENDIF => IF(DISTANCE >= 10);S;ENDIF
 =< | <= | 0 | TS010 | first | IF(DISTANCE =< 10);S;ENDIF => IF(DISTANCE <= 10);S;ENDIF
 = < | <= | 0 | TS010 | first | IF DISTANCE = < 10⏎S⏎ENDIF => IF(DISTANCE <= 10)⏎S⏎ENDIF
 = > | >= | 0 | TS010 | first | IF(DISTANCE = > 10);S;ENDIF => IF(DISTANCE >= 10);S;ENDIF
-< = | <= | 0 | TS010 | first | IF(DISTANCE < = 10);S;ENDIF => IF(DISTANCE <= 10);S;ENDIF
-> = | >= | 0 | TS010 | first | IF(DISTANCE > = 10);S;ENDIF => IF(DISTANCE >= 10);S;ENDIF
-> or = | >= | 0 | TS010 | first | IF(DISTANCE > or = 10);S;ENDIF => IF(DISTANCE >= 10);S;ENDIF
-< or = | <= | 0 | TS010 | first | IF(DISTANCE < o = 10);S;ENDIF => IF(DISTANCE <= 10);S;ENDIF
+< or? = | <= | 0 | TS010 | first | IF(DISTANCE < = 10);S;ENDIF => IF(DISTANCE <= 10);S;ENDIF
+> or? = | >= | 0 | TS010 | first | IF(DISTANCE > = 10);S;ENDIF => IF(DISTANCE >= 10);S;ENDIF
 = / = | <> | 0 | TS010 | first | IF(DISTANCE =/= 10);S;ENDIF => IF(DISTANCE <> 10);S;ENDIF
-! < | >= | 0 | TS010 | first | IF(DISTANCE !< 10)⏎S⏎ENDIF => IF(DISTANCE >= 10)⏎S⏎ENDIF
-! > | <= | 0 | TS010 | first | IF(DISTANCE !> 10);S;ENDIF => IF(DISTANCE <= 10);S;ENDIF
+!|no < | >= | 0 | TS010 | first | IF(DISTANCE !< 10)⏎S⏎ENDIF => IF(DISTANCE >= 10)⏎S⏎ENDIF
+!|no > | <= | 0 | TS010 | first | IF(DISTANCE !> 10);S;ENDIF => IF(DISTANCE <= 10);S;ENDIF
 && | AND | 0 | TS010 | first | SI|IF(DISTANCE<10 && LIGHT_L>50);S;ENDIF => SI|IF(DISTANCE<10 AND LIGHT_L>50);S;ENDIF
 := | = | 0 | TS050 | first | v := 50⏎F(2, v) => v = 50⏎F(2, v)
 ] | ) | 1 | TS010 | applied | F(2, 80] => F(2, 80)
@@ -249,8 +246,6 @@ is? one? more than? | > | 1 | TS010 | first | IF DISTANCE IS BIGGER THAN 20 F(1,
 is? extra than | > | 1 | TS010 | first | IF(DISTANCE es mas de 10);S;ENDIF => IF(DISTANCE > 10);S;ENDIF
 is? different than? | <> | 1 | TS010 | first | IF(DISTANCE distinto de 10);S;ENDIF => IF(DISTANCE <> 10);S;ENDIF
 no is|equal to|equal? one? | <> | 1 | TS010 | first | IF(DISTANCE NO ES 10);F(1,50);ENDIF => IF(DISTANCE <> 10);F(1,50);ENDIF
-no < | >= | 1 | TS010 | first | IF(DISTANCE NOT < 10);S;ENDIF => IF(DISTANCE >= 10);S;ENDIF
-no > | <= | 1 | TS010 | first | IF(DISTANCE NOT > 10);S;ENDIF => IF(DISTANCE <= 10);S;ENDIF
 l=@val equal to|than? r=@num|@val | $l = $r | 1 | TS010 | first | IF(DISTANCE igual a 10);S;ENDIF => IF(DISTANCE = 10);S;ENDIF
 = @word* RANDOM between|from? a=@num to|and|until|-|, b=@num $ | = RANDOM ( $a , $b ) | 1 | TS102 | offered | X = numero al azar entre 1 y 6⏎F(X, 50) => X = RANDOM(1, 6)⏎F(X, 50)
 l=@val is? between a=@num and b=@num | $l > $a AND $l < $b | 1 | TS037 | offered | IF(DISTANCE entre 5 y 10);S;ENDIF => IF(DISTANCE > 5 AND DISTANCE < 10);S;ENDIF
@@ -314,8 +309,7 @@ v=@name *= e=@any+ | $v = $v * $e | 1 | TS050 | applied | X = 1⏎X *= 2 => X = 
 ^ n=@newname = '{' | DEF $n ; { | 1 | TS051 | offered | BAILE = { L(1,60); R(1,60) }⏎BAILE => DEF BAILE;L(1, 60);R(1, 60);END_DEF;⏎BAILE
 ^ n=@newname = b=@callw|LOOP r=@any+ $ | DEF $n ; $b $r | 2 | TS051 | applied | SALUDO = BEEP(1, 440)⏎SALUDO => DEF SALUDO;BEEP(1, 440);END_DEF⏎SALUDO
 ^ declare v=@newname ;? $ | $v = 0 | 1 | TS044 | offered | var vel⏎F(2, vel) => vel = 0⏎F(2, vel)
-^ declare v=@name = | $v = | 1 | TS044 | applied | let v = 50⏎F(2, v) => v = 50⏎F(2, v)
-^ declare declare v=@name = | $v = | 1 | TS044 | applied | const int potencia = 80;⏎F(2, potencia); => potencia = 80;⏎F(2, potencia);
+^ declare declare? v=@name = | $v = | 1 | TS044 | applied | let v = 50⏎F(2, v) => v = 50⏎F(2, v)
 ^ set v=@name =|to? e=@num $ | $v = $e | 1 | TS050 | applied | set x to 5 => x = 5
 ^ v=@newname is|equal to|equal? one? e=@num $ | $v = $e | 2 | TS050 | applied | velocidad es 60⏎F(2, velocidad) => velocidad = 60⏎F(2, velocidad)
 ^ v=@newname : e=@num $ | $v = $e | 2 | TS050 | applied | velocidad: 60⏎F(2, velocidad) => velocidad = 60⏎F(2, velocidad)
@@ -345,7 +339,7 @@ x=@callw '{' c=@nobrace+ '}' | $x ( $c ) | 1 | TS015 | applied | SI|F{2,80} => S
 RANDOM between|from? a=@num to|and|until|-|,? b=@num | RANDOM ( $a , $b ) | 1 | TS015 | applied | X = RANDOM 1 3⏎F(X, 50) => X = RANDOM(1, 3)⏎F(X, 50)
 c=@callw ( a=@argt+ ; b=@argt+ e=)|$ | $c ( $a , $b ) | 1 | TS019 | applied | F(2;80 => F(2, 80)
 a=@callw b=@num ,? c=@num ,|;|and? d=@callw | $a ( $b , $c ) ; $d | 1.5 | TS015 | applied | F 2,80,R 1,50 => F(2, 80);R(1, 50)
-v=@val ( ) | $v | 1 | TS028 | first | LIGHT_L() => LIGHT_L
+v=@val|@def|S|STOP|BREAK|START|ELSE|ENDIF|END_LOOP ( ) | $v | 1 | TS028 | first | LIGHT_L() => LIGHT_L
 RANDOM ( between|from? a=@num to|and|until|- b=@num ) | RANDOM ( $a , $b ) | 1 | TS017 | applied | X = RANDOM(1 al 6) => X = RANDOM(1, 6)
 c=@callw ( a=@argt+ ( e=;|$ | $c ( $a ) $e | 1 | TS076 | applied | F(2, 80( => F(2, 80)
 ^ ( c=@callw a=@num ,? b=@num ) $ | $c ( $a , $b ) | 1 | TS076 | applied | (F 2,80) => F(2, 80)
@@ -380,7 +374,7 @@ BEEP ( a=<note> , b=<note> , c=<note> ) | BEEP ( 1 , $a ) ; BEEP ( 1 , $b ) ; BE
 ^ WHILE <question> ;|:? a=F|B|L|R ( FOREVER , p=@num|@val ) $ | $a ( FOREVER , $p ) UNTIL ( @not:c ) | .9 | TS031 | offered | WHILE(DISTANCE > 20) F(FOREVER, 50) => F(FOREVER, 50) UNTIL(DISTANCE <= 20)
 a=F|B|L|R|W ( b=@argt+ ) S|STOP ( c=@val s=<|<=|>|>= d=@num|@val ) $ | $a ( $b ) UNTIL ( $c $s $d ) | 2 | TS102 | offered | F(10, 60) STOP(DISTANCE < 12) => F(10, 60) UNTIL(DISTANCE < 12)
 a=F|B|L|R ( FOREVER , p=@num|@val ) UNTIL ( n=@num ) | $a ( $n , $p ) | 2 | TS202 | offered | F(FOREVER, 80) UNTIL(2) => F(2, 80)
-a=@close '|'|,|. UNTIL ( | $a UNTIL ( | 1 | TS029 | applied | F(5, 60).UNTIL(DISTANCE < 30) => F(5, 60) UNTIL(DISTANCE < 30)
+a=@close '|'|,|.|; UNTIL ( | $a UNTIL ( | 1 | TS029 | applied | F(5, 60).UNTIL(DISTANCE < 30) => F(5, 60) UNTIL(DISTANCE < 30)
 ^ W ( c=@val s=<|<=|>|>=|=|<> d=@num|@val ) $ | W ( FOREVER ) UNTIL ( $c $s $d ) | .5 | TS102 | applied | wait(DISTANCE < 10) => W(FOREVER) UNTIL(DISTANCE < 10)
 ^ W during|that|to c=@val s=<|<=|>|>= d=@num|@val $ | W ( FOREVER ) UNTIL ( $c $s $d ) | .9 | TS102 | offered | wait for DISTANCE < 10 => W(FOREVER) UNTIL(DISTANCE < 10)
 ^ W UNTIL that? c=@cond+ $ | W ( FOREVER ) UNTIL ( $c ) | 1 | TS102 | applied | WAIT UNTIL DISTANCE < 10 => W(FOREVER) UNTIL(DISTANCE < 10)
@@ -390,7 +384,6 @@ a=@close UNTIL that? ( | $a UNTIL ( | 1 | TS102 | applied | F(2,80) HASTA(DISTAN
 ^ UNTIL <question> ':'|'{'? $ | WHILE ( @not:c ) | 3 | TS029 | offered | UNTIL(DISTANCE < 10)⏎F(1, 60)⏎END_WHILE => WHILE(DISTANCE >= 10)⏎F(1, 60)⏎END_WHILE
 ^ a=F|B|L|R ( UNTIL (? c=@cond+ )? , b=@num ) $ | $a ( FOREVER , $b ) UNTIL ( $c ) | 2 | TS029 | offered | F(UNTIL(DISTANCE < 20), 60) => F(FOREVER, 60) UNTIL(DISTANCE < 20)
 ^ UNTIL (? c=@cond+ )? a=F|B|L|R|W ( b=@argt+ ) $ | $a ( $b ) UNTIL ( $c ) | 2 | TS029 | offered | UNTIL DISTANCE < 10 F(2, 60) => F(2, 60) UNTIL(DISTANCE < 10)
-a=@close ; UNTIL ( | $a UNTIL ( | 1 | TS029 | applied | F(3, 80);UNTIL(DISTANCE < 10) => F(3, 80) UNTIL(DISTANCE < 10)
 c=@callw ( a=@argt+ UNTIL ( d=@noclose+ ) ) | $c ( $a ) UNTIL ( $d ) | 1 | TS016 | applied | F(5, 60 UNTIL(DISTANCE < 15)) => F(5, 60) UNTIL(DISTANCE < 15)
 # IF and WHILE
 ELSE ( a=@val s=<|<=|>|>= b=@num|@val ) | ELSEIF ( $a $s $b ) | 1 | TS039 | offered | IF(DISTANCE < 10)⏎S⏎ELSE(DISTANCE < 30)⏎B(1, 50)⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ELSEIF(DISTANCE < 30)⏎B(1, 50)⏎ENDIF
@@ -426,7 +419,7 @@ ELSE , IF | ELSEIF | 1 | TS022 | applied | IF(DISTANCE < 5);S;ELSE, IF(DISTANCE 
 IF <question> ? a=@any+ : b=@any+ $ | IF ( $c ) ; $a ; ELSE ; $b ; ENDIF | 1 | TS014 | applied | IF(DISTANCE < 10) ? S : F(1,50) => IF(DISTANCE < 10);S;ELSE;F(1, 50);ENDIF
 ELSE ( <body> ) $ | ELSE ; $b $r | 1 | TS014 | applied | IF(DISTANCE < 10)(S)ELSE(F(1,50)) => IF(DISTANCE < 10);S;ELSE;F(1, 50);ENDIF
 h=ELSE :|,|do|=|'|' | &h ; | 1 | TS014 | applied | IF DISTANCE<10: STOP ELSE: F(1,50) => IF(DISTANCE < 10);STOP;ELSE;F(1, 50);ENDIF
-h=ELSE b=@start|'{' | &h ; $b | 1 | TS014 | applied | IF(DISTANCE<10);R(1,60);ELSE F(1,80);ENDIF => IF(DISTANCE < 10);R(1, 60);ELSE;F(1, 80);ENDIF
+h=ELSE|TASK b=@start|'{' | &h ; $b | 1 | TS014 | applied | IF(DISTANCE<10);R(1,60);ELSE F(1,80);ENDIF => IF(DISTANCE < 10);R(1, 60);ELSE;F(1, 80);ENDIF
 a=@nosep|@close h=ELSE|ELSEIF|ENDIF|END_LOOP|END_WHILE|END_DEF|END_WHEN|END_TASK | $a ; &h | 1 | TS013 | applied | IF LIGHT_R>100 F(4,70) ENDIF => IF(LIGHT_R > 100);F(4, 70);ENDIF
 # LOOP
 ^ LOOP FOREVER :|,? b=@start|'{' | LOOP ( FOREVER ) ; $b | 1 | TS015 | applied | LOOP FOREVER F(0.5,60) R(0.5,60) => LOOP(FOREVER);F(0.5, 60);R(0.5, 60);END_LOOP
@@ -507,7 +500,6 @@ LOOP ( 1 to|, n=@num ) | LOOP ( $n ) | 1 | TS063 | offered | LOOP(1 TO 5);F(1, 5
 ^ FOREVER that c=@cond+ b=@start|'{' | WHILE ( $c ) ; $b | 1 | TS102 | offered | siempre que DISTANCE > 10 F(1, 50) => WHILE(DISTANCE > 10);F(1, 50);END_WHILE
 ^ FOREVER that c=@cond+ ':'? $ | WHILE ( $c ) | 1 | TS102 | offered | siempre que DISTANCE > 10⏎F(1, 50)⏎fin => WHILE(DISTANCE > 10)⏎F(1, 50)⏎END_WHILE
 h=TASK :|,|-|'|' | &h ; | 1 | TS014 | applied | TASK:⏎BEEP(1, 440)⏎END_TASK => TASK⏎BEEP(1, 440)⏎END_TASK
-h=TASK b=@start|'{' | &h ; $b | 1 | TS014 | applied | TASK BEEP(1, 440) END_TASK => TASK;BEEP(1, 440);END_TASK
 ^ TASK @num ':'? $ | TASK | 1 | TS044 | offered | TAREA 1⏎BEEP(1, 440)⏎END_TASK => TASK⏎BEEP(1, 440)⏎END_TASK
 TASK ( @num|@word? ) | TASK | 1 | TS039 | offered | TASK(1)⏎BEEP(1, 440)⏎END_TASK => TASK⏎BEEP(1, 440)⏎END_TASK
 ^ LOOP UNTIL c=@cond+ ':'|do? b=@start|'{' | WHILE ( @not:c ) ; $b | 1 | TS102 | applied | repeat until DISTANCE < 10 { F(0.5, 60) } => WHILE(DISTANCE >= 10);F(0.5, 60);END_WHILE;
@@ -520,14 +512,13 @@ END_LOOP UNTIL ( c=@noclose+ ) $ | IF ( $c ) ; <end> | 1 | TS064 | offered | LOO
 # how often something is done, said behind it or before it
 ^ n=@num b=@def $ | LOOP ( $n ) ; $b ; END_LOOP | 1 | TS062 | applied | DEF SALTO;F(0.2, 60);END_DEF⏎3 SALTO => DEF SALTO;F(0.2, 60);END_DEF⏎LOOP(3);SALTO;END_LOOP
 ^ n=@num times|X|* :|,|of? <body> $ | LOOP ( $n ) ; $b $r ; END_LOOP | 1 | TS062 | applied | 3 * F(1,50) => LOOP(3);F(1, 50);END_LOOP
-^ n=@num *|X|times? ( <body> ) $ | LOOP ( $n ) ; $b $r ; END_LOOP | 1 | TS080 | applied | SI|4*(F(2,80);R(1,50)) => SI|LOOP(4);F(2, 80);R(1, 50);END_LOOP
+^ n=@num *|X|times|LOOP? ( <body> ) $ | LOOP ( $n ) ; $b $r ; END_LOOP | 1 | TS080 | applied | SI|4*(F(2,80);R(1,50)) => SI|LOOP(4);F(2, 80);R(1, 50);END_LOOP
 ^ ( <body> ) *|X|LOOP|by? n=@num times? $ | LOOP ( $n ) ; $b $r ; END_LOOP | 1 | TS062 | applied | (F(2,80) R(1,60)) x 4 => LOOP(4);F(2, 80);R(1, 60);END_LOOP
 ^ <body> ,|;? then* LOOP all n=@num times $ | LOOP ( $n ) ; $b $r ; END_LOOP | .9 | TS062 | offered | F(2, 80) y B(2, 80) y repetir todo 3 veces => LOOP(3);F(2, 80);B(2, 80);END_LOOP
 ^ every n=@num seconds ,|:|do? <body> $ | LOOP ( FOREVER ) ; $b $r ; W ( $n ) ; END_LOOP | .9 | TS064 | offered | cada 2 segundos BEEP(1, 440) => LOOP(FOREVER);BEEP(1, 440);W(2);END_LOOP
 ^ b=@def n=X2|X3|X4|X5|X6 $ | LOOP ( @xn:n ) ; $b ; END_LOOP | 1 | TS062 | applied | DEF SALTO;F(0.2, 60);END_DEF⏎SALTO x3 => DEF SALTO;F(0.2, 60);END_DEF⏎LOOP(3);SALTO;END_LOOP
 ^ b=@def *|X? n=@num times? $ | LOOP ( $n ) ; $b ; END_LOOP | 1 | TS062 | applied | DEF SALTO;F(0.2, 60);END_DEF⏎SALTO*3 => DEF SALTO;F(0.2, 60);END_DEF⏎LOOP(3);SALTO;END_LOOP
 ^ do|make b=@start r=@any* n=@num times $ | LOOP ( $n ) ; $b $r ; END_LOOP | 1 | TS062 | offered | hacer F(1,50) 3 veces => LOOP(3);F(1, 50);END_LOOP
-^ n=@num LOOP ( <body> ) $ | LOOP ( $n ) ; $b $r ; END_LOOP | 1 | TS080 | applied | 3 LOOP (F(1, 50)) => LOOP(3);F(1, 50);END_LOOP
 # words behind a call: shown, not made
 ^ a=S|STOP ( n=@num seconds? ) $ | $a ; W ( $n ) | 2 | TS039 | offered | S(2) => S;W(2)
 ^ a=S|STOP during? n=@num seconds? $ | $a ; W ( $n ) | 2 | TS013 | offered | STOP 2 segundos => STOP;W(2)
@@ -545,7 +536,6 @@ d=@device ( v=least ) | &d ( @least:d ) | 1 | TS102 | applied | GRIPPER(CLOSED) 
 ^ v=on|lit the|one? d=@device $ | &d ( TRUE ) | 1 | TS102 | applied | prende el LED => LED(TRUE)
 ^ v=off|dark the|one? d=@device $ | &d ( FALSE ) | 1 | TS102 | applied | apagar el foco => LED(FALSE)
 # DEF and its calls
-v=@def ( ) | $v | 1 | TS028 | first | DEF GIRO()⏎R(1, 60)⏎END_DEF⏎GIRO() => DEF GIRO⏎R(1, 60)⏎END_DEF⏎GIRO
 ^ DEF n=@word ( v=@name ) ':'? | $v = 0 ; DEF $n ; | .5 | TS039 | offered | def cuadrado(lado):⏎  F(lado, 80)⏎cuadrado(2) => LADO = 0;DEF CUADRADO;⏎  F(lado, 80)⏎END_DEF⏎LADO = 2;CUADRADO
 ^ DEF n=@word ( v=@name , w=@name ) ':'? | $v = 0 ; $w = 0 ; DEF $n ; | .5 | TS039 | offered | DEF IR(T, P)⏎F(T, P)⏎END_DEF⏎IR(2, 80) => T = 0;P = 0;DEF IR;⏎F(T, P)⏎END_DEF⏎T = 2;P = 80;IR
 ^ n=@def ( a=@num|@val ) $ | @given:n = $a ; $n | .5 | TS039 | offered | DEF IR(T)⏎F(T, 80)⏎END_DEF⏎IR(2) => T = 0;DEF IR;⏎F(T, 80)⏎END_DEF⏎T = 2;IR
@@ -583,12 +573,11 @@ a=@close please|CM|@in_cm|@in_secs $ | $a | 1 | TS044 | applied | SHOW(DISTANCE)
 ( a=@num , p=@num|@val ) then|&|+|AND BEEP ( b=@num | ( $a , $p ) ; BEEP ( @same:a:b | .9 | TS074 | offered | F(2, 80) AND BEEP(2, 440) => F(2, 80);BEEP(2, 440)
 a=@close ,? then|soon+ ,? b=@start | $a ; $b | 1 | TS044 | applied | F(1,75) y R(1,75) => F(1, 75);R(1, 75)
 W n=@num seconds? then+ b=@start | W ( $n ) ; $b | 1 | TS015 | applied | F(2, 80) THEN WAIT 1 THEN B(2, 80) => F(2, 80);W(1);B(2, 80)
-a=@close ,|.|: b=@start | $a ; $b | 1 | TS013 | applied | F(2,80), B(2,80) => F(2, 80);B(2, 80)
+a=@close ,|.|:? b=@start | $a ; $b | 1 | TS013 | applied | F(2,80), B(2,80) => F(2, 80);B(2, 80)
 a=@close &|+|AND b=@startm | $a ; $b | 1 | TS061 | applied | F(2,80)&B(2,80) => F(2, 80);B(2, 80)
 a=@close ->|=>|/|>|>>|_|*|'|' b=@start | $a ; $b | 1 | TS061 | applied | F(2,80)->B(2,80) => F(2, 80);B(2, 80)
 a=@close +|&|AND|->|'|' $ | $a ; | 1 | TS061 | applied | F(2, 80) +⏎R(1, 50) => F(2, 80)⏎R(1, 50)
 a=@close , $ | $a ; | .8 | TS013 | applied | F(2,80),⏎R(1,50), => F(2, 80)⏎R(1, 50)
-a=@close b=@start | $a ; $b | 1 | TS013 | applied | S STOP => S;STOP
 call b=@def n=@num | LOOP ( $n ) ; $b ; END_LOOP | 1 | TS062 | applied | DEF SALTO;F(0.2, 60);END_DEF⏎CALL SALTO 3 => DEF SALTO;F(0.2, 60);END_DEF⏎LOOP(3);SALTO;END_LOOP
 ^ first ,? b=@start | $b | 1 | TS044 | applied | Primero, avanza 2 segundos⏎Luego gira a la izquierda 1 segundo => F(2, 80)⏎L(1, 80)
 ; ( b=@start r=@all* e=@close ) ; | ; $b $r $e ; | 1 | TS080 | applied | LOOP(4);(F(1, 60);R(1, 50));END_LOOP => LOOP(4);F(1, 60);R(1, 50);END_LOOP
@@ -601,7 +590,6 @@ W8 | W | 1 | TS102 | offered | W8(1) => W(1)
 brake | BREAK | 1 | TS102 | offered | LOOP(3)⏎S⏎BRAKE⏎END_LOOP => LOOP(3)⏎S⏎BREAK⏎END_LOOP
 letterf | F | 1 | TS102 | first offered | efe dos coma ochenta => F(2, 80)
 ^ import @any+ ;? $ |  | 1 | TS072 | applied | import robot⏎F(2,80) => ⏎F(2,80)
-v=S|STOP|BREAK|START|ELSE|ENDIF|END_LOOP ( ) | $v | 1 | TS028 | first | s() => s
 read ( v=@val ) | $v | 1 | TS102 | applied | X = leer(DISTANCE)⏎SHOW(X) => X =DISTANCE⏎SHOW(X)
 ^ no F|B|L|R|M extra? $ | S | .5 | TS102 | first | no avanzar mas => S
 ^ cease of F $ | S | .5 | TS102 | first | para de avanzar => S

@@ -174,11 +174,6 @@ class _Usage:
             return None
         words = [each.text for each in tokens if each.kind is WORD]
         first = tokens[0].text
-        if said_of(first, "cases"):
-            value = "".join(each.text for each in tokens[2:3] if first == "SWITCH") or "X"
-            values = {"found": first, "first": f"IF({value} = 1)"}
-            values |= {"second": f"ELSEIF({value} = 2)"} if first == "SWITCH" else {}
-            return Diagnostic(codes.CASES, found.span, values)
         if parts := _MEMBER.match(self.source.text, found.span.start):  # `Serial.begin`
             right = self.command(plain(parts[0].rpartition(".")[2]))
             told = found._replace(span=Span(*parts.span()), values={"found": parts[0]})
@@ -498,8 +493,6 @@ class _Usage:
             return self.offered(codes.PROSE, piece, f"// {self.source[piece]}")
         if sign in ".\u2026" and (said := self.dots(found)) is not None:
             return said
-        if sign == "[" and [each.text for each in tokens[1:3]] == ["=", "["]:
-            return Diagnostic(codes.LISTS, found.span, {"found": tokens[0].text})
         if sign == "!" and self.source.text[found.span.end :][:1] not in ("", "\n", " "):
             return Diagnostic(codes.OTHER_SIGN, found.span, {"found": "!", "right": "NOT"})
         around = self.source.text[found.span.start - 1 : found.span.end + 1]
