@@ -22,7 +22,7 @@ from tiniscript.recovery.behind import ASKING, Above, Behind, Placed, whole
 from tiniscript.recovery.concepts import ENDED, Lexeme, Names, lexemes, made, plain, said_of
 from tiniscript.recovery.orders import Order, made_up, orders, question_in, written
 from tiniscript.recovery.slots import filled
-from tiniscript.recovery.worded import Worded, sensors_of, worded
+from tiniscript.recovery.worded import sensors_of, worded
 from tiniscript.recovery.writing import laid_out, shortened, without_note
 from tiniscript.syntax.free_names import for_a_number
 from tiniscript.syntax.lexer import WORD
@@ -204,6 +204,8 @@ def _advice(row: Row, gaps: _Gaps) -> Advice:
     part = gaps.part
     values = {"before": shortened(part.call), "words": shortened(part.words), "fix": ""}
     values |= {name: template.format_map(gaps) for name, template in row.values}
+    if row.code == codes.IN_WORDS.number:
+        values |= _worded(gaps, is_not="f" in row.pattern.of_labels.groupindex)
     place = part.place if values["fix"] else None
     if place and not part.is_right() and values["fix"].startswith(part.call):
         place = part.behind  # of a call with a mistake of its own
@@ -323,7 +325,7 @@ def _twice(gaps: _Gaps) -> str:
     return found if found.count(";") > _ONE_IN_LOOP else ""
 
 
-def _worded(gaps: _Gaps, is_not: bool = False) -> Worded:
+def _worded(gaps: _Gaps, is_not: bool) -> dict[str, str]:
     """What the words of a question ask, or the opposite."""
     start, end = gaps.span("s")
     row = gaps.part.row[start - 1 : end - 1]
@@ -336,19 +338,6 @@ def _worded(gaps: _Gaps, is_not: bool = False) -> Worded:
     if found is None:
         raise _NoGap
     return found
-
-
-def _questions(
-    k: int, has_number: bool = False, is_asking: bool = True, is_not: bool = False
-) -> Callable[[_Gaps], str]:
-    """Return the gap for the question at a place among those that may be meant."""
-
-    def question(gaps: _Gaps) -> str:
-        found = _worded(gaps, is_not)
-        is_so = (found.has_number, found.is_asking) == (has_number, is_asking)
-        return found.questions[k] if is_so and k < len(found.questions) else ""
-
-    return question
 
 
 def _head(gaps: _Gaps) -> str:
@@ -553,17 +542,13 @@ _GAPS: dict[str, Callable[[_Gaps], str]] = {
     "endless": lambda gaps: _all(gaps, "FOREVER"),
     "more": lambda gaps: _all(gaps, str(int(gaps["n"]) + 1)), "twice": _twice,
     "said": lambda gaps: gaps.part.words.strip(" ,:"),
-    "joint": lambda gaps: _worded(gaps).joint, "head": _head,
-    "asked": _questions(0, has_number=True), "also?": _questions(1, has_number=True),
-    "nothing": _questions(0, is_asking=False),
-    "like": _questions(0), "orlike?": _questions(1),
+    "head": _head,
     "choice": lambda gaps: _choice(gaps, ";") if all(
         "(" in each or each == "S" for each in _choices(gaps)) else "",
     "choices": _choice, "apart": _apart, "number": lambda gaps: for_a_number(gaps.part.text),
     "example": lambda gaps: WORDS[plain(gaps["w"])].example,
     "one": _sensor(0), "two": _sensor(1), "alone": _alone, "then": _then, "done": _done,
     "free": _free,
-    "unlike": _questions(0, is_not=True), "orunlike?": _questions(1, is_not=True),
     "text": lambda gaps: shortened(gaps.part.text[slice(*gaps.part.place)]),
     "words": lambda gaps: shortened(gaps.part.words),
     "previous": _previous, "loop": _loop, "line": _line, "few": _few, "paused": _paused,

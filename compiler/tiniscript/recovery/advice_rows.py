@@ -61,11 +61,8 @@ ADVICE = """
 ^ @none when|at @word? @word? beginning :? $ | TS102 | found={words}; right=START; usage=START; fix=START | SI|al iniciar => fix=START
 ^ @none when|at @word* flag @word* $ | TS102 | found={words}; right=START; fix=START; usage=START | SI|when green flag clicked => fix=START
 ^ @none @any* h=IF|ELSEIF|WHILE|UNTIL (? @any* s=@noBUTTON @any* )? <body> $ | TS120 | | IF(boton presionado)⏎S⏎ENDIF => before=
-^ @none @any* <asks> ( s=light|ahead =|is FALSE|0 ) $ | TS135 | word={head}; question={unlike}; another={orunlike?} | IF(oscuro = FALSE)⏎S⏎ENDIF => question=LIGHT_L > 500
-^ @none @any* <asks> (? s='='|@word|@num+ )? <body> $ | TS135 | word={head}; question=; joint={joint} | IF(hay luz y pared)⏎S⏎ENDIF => joint=AND
-^ @none @any* <asks> (? s='='|@word|@num+ )? <body> $ | TS135 | word={head}; question=; asked={asked}; also={also?} | IF(pared a 1 metro)⏎S⏎ENDIF => asked=DISTANCE < 100
-^ @none @any* <asks> (? s='='|@word|@num+ )? <body> $ | TS135 | word={head}; question=; example={nothing} | IF(esta listo)⏎S⏎ENDIF => example=DISTANCE < 10
-^ @none @any* <asks> (? s='='|@word|@num+ )? <body> $ | TS135 | word={head}; question={like}; another={orlike?} | F(5, 60) UNTIL(luz mucha) => question=LIGHT_L > 500
+^ @none @any* <asks> ( s=light|ahead =|is f=FALSE|0 ) $ | TS135 | word={head} | IF(oscuro = FALSE)⏎S⏎ENDIF => question=LIGHT_L > 500
+^ @none @any* <asks> (? s='='|@word|@num+ )? <body> $ | TS135 | word={head} | F(5, 60) UNTIL(luz mucha) => question=LIGHT_L > 500
 ^ @none g=IF|WHILE ( s=@any+ , w=@start @any* ) $ | TS080 | word={g}; head={g}({s}); right={end} | IF(distancia < poca, S) => head=IF(distancia < poca)
 ^ @none s=FOREVER q=that c=@cond+ w=@startm $ | TS102 | found={s} {q}; right=WHILE; usage=WHILE({always}) | siempre que distancia > 20 avanza => usage=WHILE(DISTANCE > 20)
 ^ @none s=ELSEIF :? $ | TS015 | word=ELSEIF; words=; usage=ELSEIF; example=ELSEIF({distance} < 10); bare=ELSE | IF(DISTANCE < 10)⏎S⏎ELIF⏎F(1, 60)⏎ENDIF => bare=ELSE
@@ -86,7 +83,7 @@ ADVICE = """
 ^ @none W ( s=FOREVER ) $ | TS102 | found={s}; right=FOREVER; usage=W(FOREVER) UNTIL({distance} < 10) | W(siempre) => usage=W(FOREVER) UNTIL(DISTANCE < 10)
 ^ @none v=@name [ @num ] = @any* $ | TS067 | found={v} | NOTAS[1] = 5 => found=NOTAS
 ^ @none v=@name = s=[ @any* $ | TS067 | found={v} | V = [50, 60] => found=V
-^ @none s=SWITCH ( v=@word @any* $ | TS066 | found={s}; first=IF({v} = 1); second=ELSEIF({v} = 2) | SWITCH(X) => second=ELSEIF(X = 2)
+^ @none s=cases ( v=@word @any* $ | TS066 | found={s}; first=IF({v} = 1); second=ELSEIF({v} = 2) | SWITCH(X) => second=ELSEIF(X = 2)
 ^ @none s=cases @any* $ | TS066 | found={s}; first=IF(X = 1) | CASE 1: F(1, 50) => first=IF(X = 1)
 ^ @none most|least|on|off the|one? s=@noGRIPPER|@noLED $ | TS101 | found={s}; near= | OPEN GRIPPER => found=GRIPPER
 # letters for a way
@@ -146,7 +143,7 @@ ADVICE = """
 ^ c=@cmd s=when @word* no @word* wall $ | TS071 | found={s}; fix=IF({distance} > 10);{c};ENDIF | F(2, 80) cuando no hay pared => fix=IF(DISTANCE > 10);F(2, 80);ENDIF
 ^ c=@cmd s=when @word* wall $ | TS071 | found={s}; fix=IF({distance} < 10);{c};ENDIF | S si hay una pared => fix=IF(DISTANCE < 10);S;ENDIF
 ^ c=@unasked s=UNTIL @word* n=@num CM|@in_cm? $ | TS102 | found={s}; right=UNTIL; usage={c} UNTIL({distance} < {n}) | F(2, 80) hasta 30 cm => usage=F(2, 80) UNTIL(DISTANCE < 30)
-^ c=@unasked h=UNTIL s=light $ | TS135 | word={head}; question={like}; another={orlike?} | F(2, 60) UNTIL dark => another=LIGHT_R < 500
+^ c=@unasked h=UNTIL s=light $ | TS135 | word={head} | F(2, 60) UNTIL dark => another=LIGHT_R < 500
 ^ c=@unasked s=UNTIL @word+ $ | TS102 | found={s}; right=UNTIL; usage={c} UNTIL({distance} < 10) | F(1, 80) hasta la pared => usage=F(1, 80) UNTIL(DISTANCE < 10)
 # which way, and what comes next
 ^ c=@move to reversed $ | TS085 | other={other} | F(1, 80) al reves => other=B(1, 80)

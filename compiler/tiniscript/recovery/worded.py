@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import pairwise
-from typing import NamedTuple
 
 from tiniscript.base.fixed_point import ONE
 from tiniscript.base.kit import Device
@@ -23,20 +22,12 @@ _MANY = 50  # of what a variable holds
 _EVEN = 100  # above it an example is a round number
 
 
-class Worded(NamedTuple):
-    """`questions` are two where either sensor may be meant, and none where `joint` joins several.
+def worded(row: Sequence[Lexeme], names: Names) -> dict[str, str] | None:
+    """Return what a question in words asks, None where it is none or cannot be understood.
 
-    `has_number`: the number is no example. `is_asking`: a word says what is asked.
+    It is `asked` where it has its number, a `question` where a word says what, and else an
+    `example`; `also` and `another` ask the other sensor that may be meant. `joint` joins several.
     """
-
-    questions: list[str]
-    has_number: bool = False
-    is_asking: bool = True
-    joint: str = ""
-
-
-def worded(row: Sequence[Lexeme], names: Names) -> Worded | None:
-    """Return what a question in words asks, None where it is none or cannot be understood."""
     unsigned = [each for each in row if each.text != "="]  # `DISTANCE = NEAR`
     is_asked = _said([each.text for each in unsigned], names) & _ASKED
     row = unsigned if is_asked and row[-1].kind is WORD else row
@@ -46,7 +37,7 @@ def worded(row: Sequence[Lexeme], names: Names) -> Worded | None:
         return None
     joint = _joint(texts, names)
     if joint:
-        return Worded([], joint=joint)
+        return {"question": "", "joint": joint}
     texts, number = _measured(row, names)
     said = _said(texts, names)
     numbers = [text for text in texts if text[0].isdigit() or text[0] == "."]
@@ -65,7 +56,11 @@ def worded(row: Sequence[Lexeme], names: Names) -> Worded | None:
         f"{name} {_sign(name, texts, said)} {number or _example(names.asked.get(name), name)}"
         for name in _subjects(own, texts, said, names)
     ]
-    return Worded(asked, bool(number), bool(own or said & _ASKED))
+    is_asking = bool(own or said & _ASKED)
+    if number and not is_asking:
+        return None
+    kinds = ("asked", "also") if number else ("question", "another") if is_asking else ("example",)
+    return {"question": "", **dict(zip(kinds, asked, strict=False))}
 
 
 def sensors_of(word: str, names: Names) -> list[str]:
