@@ -188,7 +188,7 @@ def test_random_programs_with_ways(first: int) -> None:
 
 
 @pytest.mark.sampled("seed")
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", range(8))
 def test_images(seed: int) -> None:
     cpp_images.check_images(host(), seed, BATCH)
 
