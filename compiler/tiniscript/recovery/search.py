@@ -319,18 +319,16 @@ class Recovery:
         base = best if best and best.is_applied and best.changes else None
         out = [each.text for each in base.changes] if base else [it.source for it in self.lines]
         steps = list(base.steps) if base else []
-        count = len(self.mistakes("\n".join(out)))
-        is_changed = False
+        before = out[:]
         for k, line in enumerate(self.lines):
-            if line.reading is not None or line.source != out[k]:
-                continue
-            tokens, own = self.read_parts(line)
-            new = as_written(tokens).rstrip() + line.note
-            left = len(self.mistakes("\n".join([*out[:k], new, *out[k + 1 :]]))) if own else count
-            if left < count:
-                out[k], count, is_changed = new, left, True
-                steps += [(k, step) for step in (*line.steps, *own)]
-        if not is_changed:
+            if line.reading is None and line.source == out[k]:
+                tokens, own = self.read_parts(line)
+                if own:
+                    out[k] = as_written(tokens).rstrip() + line.note
+                    steps += [(k, step) for step in (*line.steps, *own)]
+        if out == before or len(self.mistakes("\n".join(out))) >= len(
+            self.mistakes("\n".join(before))
+        ):
             return None
         changes = self.changes(out)
         return Candidate("\n".join(out), self.are_sure(), False, tuple(steps), changes)
