@@ -39,7 +39,8 @@ _OF_ARM = (_BRACES, _WORD_CODE, codes.HEADER_SEPARATOR.number)
 _OF_BLOCKS = frozenset((*BLOCK_ENDS, *ENDED, "ELSE", "ELSEIF", *BRACES))
 _WORD = re.compile(r"\w+")
 _BEHIND = re.compile(r"\W*(\w+)[\s;]+(\w+)")
-_MOST_LINES = {"IF": 2, "TASK": 20}  # in a block of which the last may as well be behind it
+# Lines in a block of which the last may as well be behind it, as a stop may in any.
+_MOST_LINES, _OF_STOP = {"IF": 2, "TASK": 20, "WHEN": 20}, 20
 LONGEST_BLOCK = 160  # characters of one that a message shows
 
 
@@ -73,7 +74,7 @@ class Unended(NamedTuple):
     """A block that begins with `word` lacks its end, `right`, behind line `line`, `last`.
 
     With it the block is `whole`, nothing where that is long. On its own line it ends with `behind`.
-    An IF or a TASK may end behind line `early`, `first`, too, where nothing says that it goes on.
+    It may end behind line `early`, `first`, too, where nothing says that it goes on.
     """
 
     word: str
@@ -376,7 +377,8 @@ class _Teller:
         place = Span(self.starts[self.changes[first].first], behind)
         line = str(change.last + 1)
         slip = Unended(block.word if block else "", end, line, behind_this, whole)
-        is_short = 2 <= last[0] - first <= _MOST_LINES.get(block.word if block else "", 0)
+        most = _OF_STOP if behind_this in ("S", "STOP") else _MOST_LINES.get(slip.word, 0)
+        is_short = 2 <= last[0] - first <= most
         if is_short and not self.found.has_sure_blocks:
             early = self.changes[last[0] - 1]
             shown = lexemes(without_note(early.text)[0])

@@ -13,7 +13,7 @@ from itertools import pairwise
 
 from tiniscript.base.kit import Kit
 from tiniscript.base.source import Edit, Source, Span
-from tiniscript.base.words import BLOCK_ENDS, QUESTION, UNIT_OF, WAYS, WORDS, said_instead
+from tiniscript.base.words import BLOCK_ENDS, QUESTION, UNIT_OF, WAYS, WORDS, nearest, said_instead
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic, Repair
 from tiniscript.recovery import lines
@@ -541,6 +541,8 @@ class _Usage:
             r"(?i)\bDEF\s+$", text[max(0, found.span.start - 9) : found.span.start]
         )
         right = in_place_of(text, word) if is_set or is_taught else ""
+        if is_set and (near := nearest(word, self.names.variables - {word})):
+            right = near  # `ROUND = ROUNDS + 1`
         gap = "clock" if is_set and word == "TIME" and not is_set[1] else "right"
         values = {**found.values, gap: right}
         if is_set and word == "TIME":
