@@ -25,9 +25,12 @@ ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "compiler"))
 
 from tiniscript.base.catalogue_file import Catalogue, Entry, load, written
-from tiniscript.base.languages import FOLDER, SOURCE, languages
+from tiniscript.base.languages import FOLDER, SOURCE, languages, table
+from tiniscript.base.words import WORDS
+from tiniscript.recovery.concepts import plain
 
 PSEUDO = "qps"  # by custom: no language has this code
+ROBOT_SIGNS = 40
 ACCENTS = str.maketrans("aeiouncAEIOU", "àéîõüñçÀÉÎÕÜ")
 
 
@@ -122,6 +125,28 @@ def _longer(text: str) -> str:
     return f"{''.join(parts)} {more}".rstrip()
 
 
+def check_robot(own: Catalogue) -> Iterator[tuple[int, str]]:
+    """What a robot cannot say in its few bytes."""
+    for entry in own.entries.values():
+        for said in entry.said:
+            if not said.isascii() or len(said) > ROBOT_SIGNS:
+                yield entry.line, f"a robot says at most {ROBOT_SIGNS} signs, in ASCII: {said}"
+
+
+def check_lexicon(language: str) -> Iterator[str]:
+    """Rows of a lexicon without a meaning that the English one has, or with other than capitals."""
+    known = {row.split()[0] for row in _rows(SOURCE)} | {"short"} | {*WORDS}
+    for row in _rows(language):
+        meaning, bar, words = row.partition("|")
+        if not bar or not known.issuperset(meaning.split()[:1]) or plain(words) != words:
+            yield row
+
+
+def _rows(language: str) -> list[str]:
+    rows = table(language, "lexicon.txt").split("\n")
+    return [row for row in rows if row and not row.startswith("#")]
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("languages", nargs="*", default=list(languages()))
@@ -141,6 +166,8 @@ def main() -> int:
             target = FOLDER / language / f"{name}.po"
             own = load(target)
             made = in_step(source, own, language)
+            if name == "robot":
+                own.problems += check_robot(own)
             for line, problem in own.problems:
                 print(f"{target.relative_to(ROOT)}:{line}: {problem}")
             wrong += len(own.problems)
@@ -149,6 +176,9 @@ def main() -> int:
             if not options.check and not own.problems and (language, name) != (SOURCE, "names"):
                 target.parent.mkdir(exist_ok=True)
                 target.write_text(written(made, language == SOURCE), encoding="utf-8")
+        for row in check_lexicon(language):
+            print(f"languages/{language}/lexicon.txt: no row of a lexicon: {row}")
+            wrong += 1
         if language != SOURCE:
             print(f"{language}: {done} of {every} texts are translated")
     return 1 if wrong else 0

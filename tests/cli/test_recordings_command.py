@@ -8,10 +8,8 @@ from time import monotonic
 
 import pytest
 
-from tests.support import texts
 from tests.support.command import Done, Tsc, process
 from tiniscript import compile
-from tiniscript.base.languages import languages
 from tiniscript.cli.commands import upload
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.paths import is_foreign
@@ -118,15 +116,6 @@ def test_a_recording_that_another_program_has_saved_is_read(
     file.write_bytes((mark + text.replace("\n", end)).encode(encoding))
     done = tsc("run", "-e", TEXT, "--replay", file)
     assert (done.code, done.out) == (0, "Both did the same. Comparisons: 2.\n"), done.err
-
-
-@pytest.mark.parametrize(
-    "what", ["same", "missed", "empty", "value", "time", "robot_more", "virtual_more"]
-)
-def test_the_command_says_what_the_page_says(what: str) -> None:
-    for language in languages():
-        wanted = texts.said(language)[f"replay_{what}"]
-        assert texts.said(language, "studio")[f"record_{what}"] == wanted
 
 
 @pytest.mark.parametrize(
