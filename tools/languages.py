@@ -43,7 +43,7 @@ def sources() -> dict[str, Catalogue]:
 def names() -> Catalogue:
     """Return the catalogue of what is said in the package's TOML, each text once."""
     made = Catalogue(load(FOLDER / SOURCE / "command.po").head)
-    for folder in ("robots", "virtual/worlds", "lessons"):
+    for folder in ("robots", "virtual/worlds", "lessons", "diagnostics"):
         for path in sorted((FOLDER.parent / folder).rglob("*.toml")):
             place = path.relative_to(FOLDER.parent).as_posix()
             for said in _said_in(tomllib.loads(path.read_text(encoding="utf-8"))):

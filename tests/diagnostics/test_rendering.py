@@ -34,7 +34,8 @@ KIT = Kit(
 )
 LANGUAGES = languages()
 TEXTS = {language: all_said(language, "messages") for language in languages()}
-PROGRAMS = rendering.examples()
+SAID = {language: rendering.examples(language) for language in languages()}
+PROGRAMS = SAID[SOURCE]
 EXAMPLES = sorted(PROGRAMS)
 BOARD = {"robot": "TINIBOT", "limit": "900", "code": "1000", "over": "100"}
 LEVEL = {"level": "uno", "limit": "255", "code": "260", "over": "5"}
@@ -105,13 +106,15 @@ def test_a_translator_sees_the_wrong_program_of_a_message() -> None:
 
 @each_row("code", EXAMPLES)
 def test_the_wrong_example_has_its_diagnostic_first(code: str) -> None:
-    found = compile_text(PROGRAMS[code]["wrong"], KIT).diagnostics
-    assert [diagnostic.code.number for diagnostic in found][:1] == [code]
+    for programs in SAID.values():
+        found = compile_text(programs[code]["wrong"], KIT).diagnostics
+        assert [diagnostic.code.number for diagnostic in found][:1] == [code]
 
 
 @each_row("code", EXAMPLES)
 def test_the_right_example_has_no_diagnostic(code: str) -> None:
-    assert compile_text(PROGRAMS[code]["right"], KIT).diagnostics == []
+    for programs in SAID.values():
+        assert compile_text(programs[code]["right"], KIT).diagnostics == []
 
 
 @each_row("code", EXAMPLES)
@@ -328,7 +331,7 @@ def test_each_code_is_explained(code: str, lang: str) -> None:
     assert TEXTS[lang][f"{code}/title"] in text
     assert TEXTS[lang][f"{code}/more"] in text
     for example in ("wrong", "right"):
-        for row in PROGRAMS.get(code, {}).get(example, "").strip().split("\n"):
+        for row in SAID[lang].get(code, {}).get(example, "").strip().split("\n"):
             assert row in text
 
 

@@ -115,7 +115,7 @@ def explain(code: str, lang: str) -> str | None:
         f"{number} ({severity}): {_text(f'{number}/title', lang)}",
         _text(f"{number}/more", lang),
     ]
-    for example, program in examples().get(number, {}).items():
+    for example, program in examples(lang).get(number, {}).items():
         parts.append(_label(example, lang) + "\n\n" + indent(program.strip(), "    "))
     return "\n\n".join(parts)
 
@@ -125,14 +125,19 @@ def titles(lang: str) -> list[tuple[str, str]]:
     return [(number, _text(f"{number}/title", lang)) for number in sorted(CODES)]
 
 
-def examples() -> dict[str, dict[str, str]]:
+def examples(lang: str) -> dict[str, dict[str, str]]:
     """Return a wrong and a right program for each code that is in a short text."""
     if sys.version_info >= (3, 11):
         import tomllib
     else:
         import tomli as tomllib
     path = Path(__file__).with_name("examples.toml")
-    return tomllib.loads(path.read_text(encoding="utf-8"))
+    found = tomllib.loads(path.read_text(encoding="utf-8"))
+    return {
+        code: {name: languages.ByLanguage(it)[lang] if isinstance(it, dict) else it
+               for name, it in programs.items()}
+        for code, programs in found.items()
+    }  # fmt: skip
 
 
 # -- words --------------------------------------------------------------------------------------
