@@ -13,6 +13,7 @@ import tempfile
 from collections.abc import Sequence
 from functools import lru_cache
 from pathlib import Path
+from struct import pack
 from typing import TYPE_CHECKING
 
 from tests.machines.chips import ran
@@ -61,9 +62,21 @@ def compiled(what: str, flags: Sequence[str], code: Sequence[str], made_from: li
     return kept("avr-g++", flags, made_from, make)
 
 
-def ran_on(chip: str, image: bytes, kit: Kit, senses: Senses, not_ready: int = 0) -> Ran:
-    """Run an image, which is read and verified by the simulated chip."""
-    return ran(answer(chip, b"R" + run_request(image, kit, senses, not_ready)))
+def ran_on(
+    chip: str,
+    image: bytes,
+    kit: Kit,
+    senses: Senses,
+    not_ready: int = 0,
+    late_ms: int = 0,
+    begin_ms: int = 0,
+) -> Ran:
+    """Run an image, which is read and verified by the simulated chip.
+
+    A tick after a wait comes `late_ms` late.
+    """
+    request = pack("<cI", b"L", late_ms) + run_request(image, kit, senses, not_ready, begin_ms)
+    return ran(answer(chip, request))
 
 
 def answer(chip: str, request: bytes, most_seconds: int = 120) -> str:

@@ -24,11 +24,17 @@ MAX_MS = 600
 Program = tuple[bytes, Senses]
 
 
-def some_task_programs(first: int, count: int) -> Iterator[Program]:
-    """Yield images of random programs with tasks, and what their sensors read."""
+FAR = f"A = 0;N = 0;IF(N > 0);{'SHOW(8);' * 140}ENDIF;"  # more than 256 bytes
+
+
+def some_task_programs(first: int, count: int, before: str = "") -> Iterator[Program]:
+    """Yield images of random programs with tasks, and what their sensors read.
+
+    All that a program does lies behind the code of the text `before`.
+    """
     for seed in range(first, first + count):
         text, readings = task_program(random.Random(seed))
-        yield compile_text(text, KIT).image, Senses(readings, MAX_MS, seed=seed + 1)
+        yield compile_text(before + text, KIT).image, Senses(readings, MAX_MS, seed=seed + 1)
 
 
 def check_task_codes(machine: Process, seed: int, count: int) -> None:
@@ -81,7 +87,7 @@ class SlowRobot(TracedRobot):
 
     def is_ready(self) -> bool:
         self.asked += 1
-        return self.asked % self.not_ready != 0
+        return not self.not_ready or self.asked % self.not_ready != 0
 
     def read(self, sensor: int) -> int | None:
         return super().read(sensor) if self.is_ready() else None
@@ -90,8 +96,12 @@ class SlowRobot(TracedRobot):
         return self.is_ready() and super().show(value, is_yes_no)
 
 
-def slow_run(image: bytes, senses: Senses, not_ready: int) -> str:
-    """Return the trace of Python's machine on a robot that is not always ready."""
+def slow_run(image: bytes, senses: Senses, not_ready: int, late_ms: int = 0) -> str:
+    """Return the trace of Python's machine on a robot that is not always ready.
+
+    Its clock moves by more than a millisecond at once, so that ticks come up to `late_ms` late.
+    """
+    step_ms = late_ms + 1
     lists = {k: senses.readings.get(each.name, ()) for k, each in enumerate(KIT.sensors)}
     robot = SlowRobot(KIT, Lists(KIT, lists))
     robot.not_ready = not_ready
@@ -101,8 +111,8 @@ def slow_run(image: bytes, senses: Senses, not_ready: int) -> str:
         status = machine.tick(robot.now_ms, LATE_BUDGET)
         if status in (DONE, FAULT):
             end = f"{robot.now_ms} {status.upper()} {machine.fault}".strip()
-        elif status == WAITING and machine.wake_ms > senses.max_ms:
-            end = f"{senses.max_ms} LIMIT"
         elif status == WAITING:
-            robot.now_ms = machine.wake_ms
+            robot.now_ms = -(-machine.wake_ms // step_ms) * step_ms
+            if robot.now_ms > senses.max_ms:
+                end = f"{senses.max_ms} LIMIT"
     return "".join(f"{event}\n" for event in robot.events) + end + "\n"

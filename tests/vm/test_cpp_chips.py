@@ -21,7 +21,7 @@ from tests.machines.python import ran_python
 from tests.machines.qemu import emulated
 from tests.machines.qemu import missing as emulator_missing
 from tests.oracle import programs
-from tests.support import cpp_checks, cpp_images, cpp_tasks, cpp_ways
+from tests.support import avr_tasks, cpp_checks, cpp_images, cpp_tasks, cpp_ways
 from tests.support.avr_questions import of_changed_code, of_long_loops
 from tests.support.casefile import Case
 from tests.support.images import image_for, needs_of
@@ -193,6 +193,25 @@ def test_programs_with_tasks_in_assembly(chip: str) -> None:
         same_on_the_chip(chip, image, cpp_tasks.KIT, senses)
         ran = avr.ran_on(chip, image, cpp_tasks.KIT, senses, 2 + number % 3)
         assert ran.trace == cpp_tasks.slow_run(image, senses, 2 + number % 3), ran.trace
+
+
+@some_chips(avr.UNO, avr.MEGA)
+@pytest.mark.parametrize("name", avr_tasks.PROGRAMS)
+def test_hard_programs_with_tasks(chip: str, name: str) -> None:
+    program = avr_tasks.PROGRAMS[name]
+    image = compile_text(program.text, cpp_tasks.KIT).image
+    for not_ready, late_ms, begin_ms, max_ms in program.how:
+        senses = Senses(program.readings, max_ms)
+        ran = avr.ran_on(chip, image, cpp_tasks.KIT, senses, not_ready, late_ms, begin_ms)
+        assert ran.trace == cpp_tasks.slow_run(image, senses, not_ready, late_ms), ran.trace
+
+
+@some_chips(avr.UNO, avr.MEGA)
+def test_late_tasks_behind_byte_256(chip: str) -> None:
+    for number, (image, senses) in enumerate(cpp_tasks.some_task_programs(0, 40, cpp_tasks.FAR)):
+        late_ms = (0, 7, 36)[number % 3]
+        ran = avr.ran_on(chip, image, cpp_tasks.KIT, senses, late_ms=late_ms, begin_ms=2**32 - 100)
+        assert ran.trace == cpp_tasks.slow_run(image, senses, 0, late_ms), ran.trace
 
 
 @one_chip

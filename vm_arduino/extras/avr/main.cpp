@@ -1,9 +1,10 @@
 // Runs one image, or code, on a simulated ATmega328P, for tests, and reports over the UART what the robot
 // did.
 //
-// The request lies in flash: `tests/machines/avr.py` writes it into the built program. It begins with
-// R for an image, and with U for code that is not verified. The clock
-// is simulated as in `run.py`. Ends by sleeping without interrupts: that ends the simulator too.
+// The request lies in flash: `tests/machines/avr.py` writes it into the built program. It begins
+// with R for an image, with L and 4 bytes for an image whose ticks after a wait come so many
+// milliseconds late, and with U for code that is not verified. The clock is simulated as in `run.py`.
+// Ends by sleeping without interrupts: that ends the simulator too.
 
 #include <avr/interrupt.h>
 #include <avr/io.h>
@@ -50,7 +51,10 @@ int main() {
   UCSR0A = _BV(U2X0);
   UCSR0B = _BV(TXEN0);
   UBRR0 = 0;
-  tiniscript::answer_run(tiniscript::Request(1), tiniscript::request_byte(0) == 'R');
+  tiniscript::Request request(0);
+  const uint8_t kind = request.u8();
+  const uint32_t late_ms = kind == 'L' ? request.u32() : 0;
+  tiniscript::answer_run(request, kind != 'U', late_ms);
   while ((UCSR0A & _BV(TXC0)) == 0) {
   }
   cli();

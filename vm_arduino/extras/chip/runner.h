@@ -10,8 +10,9 @@ namespace tiniscript {
 // Reads and verifies the image of a request, and runs it with a simulated clock as `run.py` does.
 // The answer is the trace, and a last line: RAN and where the code was at the end and how many
 // instructions ran; REFUSED and the reason; BREAKS and the rule and the offset; or NO ROOM. If it
-// is not verified, the request has code in place of an image, whatever it is.
-void answer_run(Request request, bool is_verified = true);
+// is not verified, the request has code in place of an image, whatever it is. A tick after a wait
+// comes `late_ms` late.
+void answer_run(Request request, bool is_verified = true, uint32_t late_ms = 0);
 
 }  // namespace tiniscript
 
