@@ -29,6 +29,7 @@ PROGRAMS = {
         f"""A = 0;N = 0
 B(FOREVER, 30) UNTIL(DISTANCE{" + N" * 130} > 60);SHOW(TIME)
 B(0.3, 30) UNTIL(DISTANCE > 90);SHOW(TIME);L(0.2, 20);F(0.1, N - 20)
+R(0.021, 20) UNTIL(LIGHT_L > 500)
 LOOP(5)
 N = N + 1;A = TIME;F(0.3, 50) UNTIL(TIME > A + 0.03)
 W(0.008);W(0.1) UNTIL(N > 0);W(0.008);SHOW(TIME)
@@ -48,7 +49,7 @@ TASK;LOOP(FOREVER);W(0.01);SHOW(TIME);END_LOOP;END_TASK""",
     ),
     "a SHOW finds no room": Runs(
         f"""{FAR}TASK;LOOP(9);LIGHT_L;F(0.004, 60);W(0.003);END_LOOP;END_TASK
-TASK;LOOP(9);SHOW(TIME);SHOW(7);W(0.004);END_LOOP;END_TASK
+TASK;LOOP(9);SHOW(TIME);SHOW(TRUE);S;A = LIGHT_L;W(0.004);END_LOOP;END_TASK
 LOOP(9);B(0.01, 30) UNTIL(DISTANCE < 15 OR LIGHT_L > 500);SHOW(TIME);END_LOOP""",
         ((2, 0, 0, SOON), (3, 0, 0, SOON)),
         {"DISTANCE": [50_000] * 12 + [12_000]},
@@ -58,6 +59,10 @@ LOOP(9);B(0.01, 30) UNTIL(DISTANCE < 15 OR LIGHT_L > 500);SHOW(TIME);END_LOOP"""
 LOOP(9);B(0.03, 30) UNTIL(DISTANCE < 15 OR LIGHT_L > 500);SHOW(TIME);END_LOOP""",
         ((2, 0, 0, SOON),),
         {"DISTANCE": [50_000]},
+    ),
+    "nobody has the motors any more": Runs(
+        "TASK;M(20, 20);W(0.05);SHOW(0.004);END_TASK;W(1)",
+        ((0, 0, 0, SOON),),
     ),
     "a move is taken behind its end": Runs(
         f"""{FAR}F(0.09, 30);SHOW(TIME);F(FOREVER, 20)
@@ -80,9 +85,9 @@ F(16777.226, 30) UNTIL(LIGHT_L > 500);SHOW(TIME)""",
         ((0, 3000, 0, 34_000_000),),
         {"DISTANCE": [50_000] * 20 + [80_000], "LIGHT_L": [0, 0, 600_000]},
     ),
-    "each byte of how late it is": Runs(
+    "so late, and each byte of it": Runs(
         f"{STEPS};F(FOREVER, 50) UNTIL(DISTANCE > 60)",
-        ((0, 0x11B, 0, 6000), (0, 0x1001B, 0, 1_500_000)),
+        ((0, 20, 0, SOON), (0, 21, 0, SOON), (0, 0x11B, 0, 6000), (0, 0x1001B, 0, 1_500_000)),
         {"DISTANCE": [50_000]},
     ),
     "hours late": Runs(f"{STEPS};B(30, 50)", ((0, 0x1000005, 2**31, 10**8),)),

@@ -207,6 +207,17 @@ def test_hard_programs_with_tasks(chip: str, name: str) -> None:
 
 
 @some_chips(avr.UNO, avr.MEGA)
+def test_calls_of_a_task_use_up_the_budget(chip: str) -> None:
+    """Nothing else ends a tick there. They lie at all low bytes of an address, in a long loop."""
+    calls = "D;" * 130
+    text = f"A = 0;DEF D;A = A + 1;END_DEF;TASK;LOOP(2);{calls}END_LOOP;SHOW(A);END_TASK"
+    image = compile_text(text, cpp_tasks.KIT).image
+    for most, want in ((100, ("0 LIMIT\n", 100)), (150, ("1 SHOW 260\n1 DONE\n", 261))):
+        ran = avr.ran_on(chip, image, cpp_tasks.KIT, Senses(max_steps=most))
+        assert (ran.trace, ran.steps) == want
+
+
+@some_chips(avr.UNO, avr.MEGA)
 def test_late_tasks_behind_byte_256(chip: str) -> None:
     for number, (image, senses) in enumerate(cpp_tasks.some_task_programs(0, 40, cpp_tasks.FAR)):
         late_ms = (0, 7, 36)[number % 3]
