@@ -14,6 +14,7 @@ from gettext import GNUTranslations
 from pathlib import Path
 
 import pytest
+from babel.messages.pofile import read_po
 
 from tests.support.command import Tsc
 from tests.support.waiting import HANGS_S
@@ -53,6 +54,26 @@ def test_a_catalogue_has_the_gaps_and_the_keys_of_the_english_one(path: Path) ->
             assert entry.plural == source.entries[at].plural, at
     text = written(own, is_source=path.parent.name == SOURCE)
     assert text == path.read_text(encoding="utf-8"), "python -m tools.languages"
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda path: f"{path.parent.name}/{path.stem}")
+def test_babel_reads_what_we_read(path: Path) -> None:
+    """A catalogue is one that translators' tools know, and they find no fault in it."""
+    with path.open("rb") as file:
+        found = read_po(file, abort_invalid=True)
+    # `5 % of` looks like a gap of the other kind to it: ours are in braces.
+    assert [(at.id, said) for at, said in found.check() if "%" not in str(at.id)] == []
+    theirs = {}
+    for each in found:
+        english, *plural = [each.id] if isinstance(each.id, str) else each.id
+        said = [each.string] if isinstance(each.string, str) else [*each.string]
+        if english:
+            theirs[each.context or english, english] = (*plural, said, each.fuzzy)
+    own = load(path).entries
+    assert theirs.keys() == own.keys()
+    for at, entry in own.items():
+        plural = [entry.plural] if entry.plural else []
+        assert theirs[at] == (*plural, entry.said, entry.is_fuzzy), at
 
 
 @pytest.mark.parametrize("language", ["es", "pt"])
