@@ -272,6 +272,12 @@ def test_what_a_robot_cannot_say_and_a_lexicon_does_not_know_is_said(
     assert [*check_lexicon("fr")] == rows[1:5]
 
 
+@pytest.mark.parametrize("language", languages.languages())
+def test_each_robot_can_say_its_texts_and_each_row_of_a_lexicon_is_known(language: str) -> None:
+    assert [*check_robot(load(FOLDER / language / "robot.po"))] == []
+    assert [*check_lexicon(language)] == []
+
+
 def test_a_text_that_changed_keeps_its_translation_as_fuzzy() -> None:
     """Not one that is new beside it, nor one whose key has another text of the same words."""
     old = [Entry("try", "Read {file}.", "", ["Lee {file}."]), Entry("gone", "Stop.", "", ["Alto."])]

@@ -25,7 +25,7 @@ KNOWN, MISSPELT, NEAR = 1, 2, 3  # what a meaning costs: said, written nearly so
 STARTS = frozenset(("IF", "LOOP", "WHILE", "WHEN", "TASK"))
 ENDED = {end: word for word, end in BLOCK_ENDS.items()}
 ENDED |= {alias: ENDED[end] for alias, end in ALIASES.items()}
-SOME_END = "FIN"  # of a block that its word does not name
+SOME_END = "END"  # of a block that its word does not name
 CALLED = frozenset(word.text for word in WORDS.values() if word.is_call)
 DONE = CALLED | {"S", "STOP", "BREAK"}
 
@@ -101,10 +101,11 @@ def plain(text: str) -> str:
 # -- the lexicon ----------------------------------------------------------------------------
 
 
+@cache
 def words_of(*kinds: str) -> str:
     """Return a pattern of the words that the lexicon says one of these of."""
     found = (word for word in lexicon() if any(said_of(word, kind) for kind in kinds))
-    return f"(?:{'|'.join(sorted(found, key=len, reverse=True))})"
+    return f"(?:{'|'.join(map(re.escape, sorted(found, key=len, reverse=True)))})"
 
 
 _END = re.compile(words_of("end") + "_?")

@@ -76,9 +76,9 @@ def _is_the(token: Lexeme, after: Lexeme) -> bool:
 
 
 def _begins_else(texts: Sequence[str]) -> int:
-    """Return how many of two words say ELSE: `si no`."""
-    is_one = "ELSE" in (texts[0], concept_of(texts[0]))
-    return 1 if is_one else 2 * (concept_of("_".join(texts)) == "ELSE")
+    """Return how many of the first two words say ELSE: `si no`."""
+    said = (count for count in (1, 2) if concept_of("_".join(texts[:count])) == "ELSE")
+    return 1 if texts[:1] == ["ELSE"] else next(said, 0)
 
 
 def _is_if(token: Lexeme, names: Names) -> bool:
@@ -197,9 +197,8 @@ def block(tokens: Sequence[Lexeme], names: Names, is_open: bool) -> str:
     while any(said_of(each.text, "end") for each in tokens[-2:]):
         tokens = tokens[:-1]  # `fin si`
     texts = [each.text for each in tokens]
-    arm = next((k for k in range(1, len(texts)) if _begins_else(texts[k : k + 2])), len(texts))
-    behind = arm + (_begins_else(texts[arm : arm + 2]) if arm < len(texts) else 1)
-    other = orders(tokens[behind:], names)
+    arm = next((k for k in range(1, len(texts)) if _begins_else(texts[k:])), len(texts))
+    other = orders(tokens[arm + _begins_else(texts[arm:]) :], names)
     comma = next((k for k in range(2, arm) if texts[k] == "," and word != "LOOP"), 0)
     for k in [comma] if comma else range(2, arm):
         header = _head(word, tokens[1:k], names)

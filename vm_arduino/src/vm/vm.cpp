@@ -116,6 +116,8 @@ bool Machine::stay() {
 
 // The layout that `execute_avr.S` relies on.
 #define lies_at(member, place) static_assert(offsetof(Machine, member) == place, #member)
+#define lies_in_record(member, place) \
+  static_assert(offsetof(TaskRecord, member) == place, #member)
 #define is_bit(mask, bit) static_assert(mask == 1 << bit, #mask)
 
 void Machine::check_places() {
@@ -133,7 +135,7 @@ void Machine::check_places() {
   lies_at(task_.variables, tini_variables_at);
   lies_at(task_.stack, tini_stack_at);
   lies_at(task_.frames, tini_frames_at);
-  static_assert(offsetof(TaskRecord, clock_ms) == tini_clock_at, "clock_ms");
+  lies_in_record(clock_ms, tini_clock_at);
 #ifdef tiniscript_has_tasks
   lies_at(status_, 0);
   lies_at(task_.others, tini_others_at);
@@ -142,15 +144,15 @@ void Machine::check_places() {
   lies_at(task_.after, tini_after_at);
   lies_at(task_.holder, tini_holder_at);
   lies_at(task_.records, tini_records_at);
-  static_assert(offsetof(TaskRecord, state) == 0, "state");
-  static_assert(offsetof(TaskRecord, code) == tini_task_code_at, "code");
-  static_assert(offsetof(TaskRecord, power) == tini_task_power_at, "power");
-  static_assert(offsetof(TaskRecord, framed) == tini_task_framed_at, "framed");
-  static_assert(offsetof(TaskRecord, pc) == tini_task_pc_at, "pc");
-  static_assert(offsetof(TaskRecord, start) == tini_task_start_at, "start");
-  static_assert(offsetof(TaskRecord, check) == tini_task_check_at, "check");
-  static_assert(offsetof(TaskRecord, rest_ms) == tini_task_rest_at, "rest_ms");
-  static_assert(offsetof(TaskRecord, set) == tini_task_set_at, "set");
+  lies_in_record(state, 0);
+  lies_in_record(code, tini_task_code_at);
+  lies_in_record(power, tini_task_power_at);
+  lies_in_record(framed, tini_task_framed_at);
+  lies_in_record(pc, tini_task_pc_at);
+  lies_in_record(start, tini_task_start_at);
+  lies_in_record(check, tini_task_check_at);
+  lies_in_record(rest_ms, tini_task_rest_at);
+  lies_in_record(set, tini_task_set_at);
   static_assert(sizeof(TaskRecord) == tini_record_bytes, "TaskRecord");
   is_bit(kIsMoving, tini_is_moving_bit);
   is_bit(kHasTime, tini_has_time_bit);
