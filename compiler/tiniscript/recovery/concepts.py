@@ -25,7 +25,7 @@ KNOWN, MISSPELT, NEAR = 1, 2, 3  # what a meaning costs: said, written nearly so
 STARTS = frozenset(("IF", "LOOP", "WHILE", "WHEN", "TASK"))
 ENDED = {end: word for word, end in BLOCK_ENDS.items()}
 ENDED |= {alias: ENDED[end] for alias, end in ALIASES.items()}
-SOME_END = "END"  # of a block that its word does not name
+SOME_END = "FIN"  # of a block that its word does not name: what a row makes of each such end
 CALLED = frozenset(word.text for word in WORDS.values() if word.is_call)
 DONE = CALLED | {"S", "STOP", "BREAK"}
 

@@ -559,7 +559,7 @@ h=END_LOOP|ENDIF|END_WHILE|END_DEF|END_WHEN|END_TASK ( @noparen+ ) | &h | 1 | TS
 ^ S|STOP|BREAK LOOP $ | BREAK | 1 | TS102 | applied | LOOP(FOREVER)⏎F(0.2,50)⏎IF(DISTANCE < 10)⏎STOP LOOP⏎ENDIF⏎END_LOOP => LOOP(FOREVER)⏎F(0.2,50)⏎IF(DISTANCE < 10)⏎BREAK⏎ENDIF⏎END_LOOP
 ^ program @word $ |  | 1 | TS044 | applied | programa baile⏎F(1, 50) => ⏎F(1, 50)
 ^ leaves 0 ;? $ |  | 1 | TS065 | applied | F(1, 50)⏎return 0; => F(1, 50)⏎
-^ end program? $ | END | 0 | TS044 | first | F(1, 50)⏎fin programa => F(1, 50)⏎
+^ end program? $ | FIN | 0 | TS044 | first | F(1, 50)⏎fin programa => F(1, 50)⏎
 end -|.|of|the? k=IF|LOOP|WHILE|DEF|FOREVER|count ;|$ | @endof:k | 1 | TS022 | first | definir bailar⏎L(1,50)⏎fin definir⏎bailar => DEF bailar⏎L(1,50)⏎END_DEF⏎bailar
 ^ idles $ |  | 1 | TS044 | offered | IF(DISTANCE < 10)⏎NADA⏎ELSE⏎F(1, 60)⏎ENDIF => IF(DISTANCE < 10)⏎⏎ELSE⏎F(1, 60)⏎ENDIF
 # what joins instructions
