@@ -98,7 +98,8 @@ def judge(program: str, lang: str) -> None:
     print("-" * 80, program, sep="\n")
     for each in check(program):
         said = message(each, Source(program), lang)
-        print(f"  line {said.line}: {said.message} | try: {said.fix}")
+        label = "line" if each.is_mistake else "warning, the program runs: line"
+        print(f"  {label} {said.line}: {said.message} | try: {said.fix}")
     made = fixed(program, check).text
     if made != program:
         print("  repaired:", *made.split("\n"), sep="\n    ")

@@ -39,8 +39,8 @@ _OF_ARM = (_BRACES, _WORD_CODE, codes.HEADER_SEPARATOR.number)
 _OF_BLOCKS = frozenset((*BLOCK_ENDS, *ENDED, "ELSE", "ELSEIF", *BRACES))
 _WORD = re.compile(r"\w+")
 _BEHIND = re.compile(r"\W*(\w+)[\s;]+(\w+)")
-# Lines in a block of which the last may as well be behind it, as a stop may in any.
-_MOST_LINES, _OF_STOP = {"IF": 2, "TASK": 20, "WHEN": 20}, 20
+_ARMS = ("ELSE", "ELSEIF")
+_SIGNS = ("BEEP", "SHOW", "S", "STOP")
 LONGEST_BLOCK = 160  # characters of one that a message shows
 
 
@@ -74,7 +74,7 @@ class Unended(NamedTuple):
     """A block that begins with `word` lacks its end, `right`, behind line `line`, `last`.
 
     With it the block is `whole`, nothing where that is long. On its own line it ends with `behind`.
-    It may end behind line `early`, `first`, too, where nothing says that it goes on.
+    Of `several` instructions the last one may as well be behind it: there `last` is empty.
     """
 
     word: str
@@ -83,8 +83,7 @@ class Unended(NamedTuple):
     last: str = ""
     whole: str = ""
     behind: str = ""
-    early: str = ""
-    first: str = ""
+    several: str = ""
 
 
 class Explanation(NamedTuple):
@@ -251,7 +250,7 @@ class _Teller:
             code, step = _code(self.steps.get(k, []), before, after)
             is_brace = code == _BRACES and before[0].text in BRACES
             told = None
-            is_arm = bool(after) and after[0].text in ("ELSE", "ELSEIF")
+            is_arm = bool(after) and after[0].text in _ARMS
             if code in (_OF_ARM if is_arm else _OF_BLOCK) and (closed or is_brace or is_arm):
                 told = self.added(closed or around, edit, (k, 1), after)
             if told is None:
@@ -377,16 +376,32 @@ class _Teller:
         place = Span(self.starts[self.changes[first].first], behind)
         line = str(change.last + 1)
         slip = Unended(block.word if block else "", end, line, behind_this, whole)
-        most = _OF_STOP if behind_this in ("S", "STOP") else _MOST_LINES.get(slip.word, 0)
-        is_short = 2 <= last[0] - first <= most
-        if is_short and not self.found.has_sure_blocks:
-            early = self.changes[last[0] - 1]
-            shown = lexemes(without_note(early.text)[0])
-            is_deeper = early.text[:1].isspace()
-            inside = {*texts(shown)} - {*ENDED} | {*texts(lexemes(change.text.split("\n")[0]))}
-            if not (is_deeper or inside & _OF_BLOCKS):
-                slip = slip._replace(early=str(early.last + 1), first=laid_out(shown), whole="")
+        if self.may_end_earlier(slip.word, first, last[0]):
+            slip = slip._replace(several=behind_this, last="", whole="")
         self.out.append(_Told(_UNENDED, place, slip, edit, first))
+
+    def may_end_earlier(self, word: str, first: int, last: int) -> bool:
+        """Whether nothing says that the last instruction of a block is in it.
+
+        A sign or a stop behind others may as well come when a LOOP or a DEF is over.
+        """
+        inside: list[str] = []  # the first word of each instruction of the last arm
+        depth = 0
+        header, *body = (self.changes[k].text.split("\n")[0] for k in range(first, last + 1))
+        for line in body:
+            head = next(iter(texts(lexemes(without_note(line)[0]))), "")
+            depth -= head in ENDED
+            if depth == 0 and head in _ARMS:
+                inside.clear()
+            elif depth == 0 and head and head not in ENDED:
+                inside.append(head)
+            depth += head in BLOCK_ENDS
+        is_deeper = bool(body) and body[-1][:1].isspace() > header[:1].isspace()
+        is_endless = {*texts(lexemes(header))} & {"FOREVER", "TRUE"}
+        if len(inside) < 2 or self.found.has_sure_blocks or is_deeper or is_endless:
+            return False
+        is_sign = inside[-1] in _SIGNS and inside[-1] not in inside[:-1]
+        return is_sign or word not in ("LOOP", "DEF")
 
 
 def trimmed(start: int, old: str, new: str) -> Edit:

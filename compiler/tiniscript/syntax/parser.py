@@ -268,6 +268,9 @@ class Parser:
             line = str(self.cursor.source.position(block.header.start)[0])
             right = BLOCK_ENDS[block.word]
             values = {"found": word.text, "word": block.word, "line": line, "right": right}
+            if block.word != "LOOP" and len(block.here) > 1:
+                if not isinstance(block.here[-1], Break):  # nothing comes behind one
+                    values["several"] = self.cursor.source[block.here[-1].span]
             self.reporter.report(codes.WRONG_END, word.span, **values)
             blocks.end(word.span)
         blocks.end(word.span)
