@@ -88,7 +88,6 @@ void write_record() {
     write_identity(record);
   } else {
     copy_bytes(&robot_status.fault, record + kFaultAt, kFaultBytes);
-    record[kFaultAt + kFaultBytes] = static_cast<uint8_t>(port_identity().reset);
     copy_bytes(&port_tuning().pace, record + kPaceAt, sizeof(Pace));
   }
 }
