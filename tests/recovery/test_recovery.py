@@ -76,6 +76,8 @@ def test_a_sample_of_the_corpus_reaches_its_score() -> None:
          Edit(Span(3, 3), ",")),
         ("S\navanzar(2, 80)", "TS102", Slip("avanzar", "F", "", "F", _F, "F(2, 80)"),
          Edit(Span(2, 9), "F")),
+        ("SI|robot.forward(2, 80)", "TS102", Slip("robot.forward", "F", "", "F", _F, "F(2, 80)"),
+         Edit(Span(3, 16), "F")),
         ("F(2, 80 %)", "TS049", Slip("80 %", "F(2, 80)", "F(2, 80", "F", _F, "F(2, 80)"),
          Edit(Span(7, 9), "")),
     ],

@@ -85,6 +85,7 @@ inline const std::vector<RefusedCase>& refused_cases() {
       {"The code ends inside a far jump: 22 CUT_OPERAND at 0000", {101, 0}, 0, Rule::kCutOperand, 0x0000},
       {"A power over 100: 23 BAD_OPERAND at 0000", {68, 10, 101}, 0, Rule::kBadOperand, 0x0000},
       {"A motor power under -100: 23 BAD_OPERAND at 0000", {90, 155, 0}, 0, Rule::kBadOperand, 0x0000},
+      {"A motor power over 100: 23 BAD_OPERAND at 0000", {90, 0, 101}, 0, Rule::kBadOperand, 0x0000},
       {"A loop of no times: 23 BAD_OPERAND at 0000", {109, 0, 112, 2}, 0, Rule::kBadOperand, 0x0000},
       {"Variable 32: 23 BAD_OPERAND at 0000", {49, 32, 1}, 0, Rule::kBadOperand, 0x0000},
       {"Sensor 32, which no kit has: 23 BAD_OPERAND at 0000", {56, 32}, 0, Rule::kBadOperand, 0x0000},
