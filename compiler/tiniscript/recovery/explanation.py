@@ -350,6 +350,10 @@ class _Teller:
             whole = laid_out(after) if word else ""
             last = laid_out(_parted(before)[-1]) if word and _parted(before) else ""
             slip = Unended(word or ENDED.get(end, ""), end, whole=whole, behind=last)
+            above = next((it for it in self.changes[k - 1 :: -1] if it.text.strip()), None)
+            if not word and k and above:  # its indentation says where it ends
+                own = laid_out(lexemes(without_note(above.text.split("\n")[0])[0]))
+                slip = slip._replace(line=str(above.last + 1), last=own)
         if code in _SAID_ONCE and isinstance(slip, Slip):
             same = [it for it in self.steps.get(k, []) if it.code == code]
             names = dict.fromkeys(

@@ -171,7 +171,7 @@ def meant(source: Source, node: ast.Command, word: Word) -> dict[str, str]:
         if re.fullmatch(r"\d+\.\d{3}", second):  # `BEEP(1, 1.000)`
             values["fix"] = f"{word.text}({first}, {second.replace('.', '')})"
         elif _is_whole(first) > LOWEST_HERTZ:
-            values["fix"] = f"{word.text}({second}, {first})"
+            values |= {"fix": f"{word.text}({second}, {first})", "usage": word.usage}
         elif is_short:
             values["tone"] = f"{word.text}({first}, {WORDS['BEEP'].arguments[1].sample})"
     elif word.role == "move" and word.text in OTHER_WAY:
