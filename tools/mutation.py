@@ -5,8 +5,8 @@ still has some, and runs the tests of each one's module until one fails, two mut
 `--file PATTERN` draws from less, `--list` only shows them. What was tried is kept in the cache
 folder, so an interrupted run goes on. Exit code 1: mutants survived.
 
-A survivor gets a test, and a row in `tests/project/known_mutants.py`, of which CI tries a fourth;
-or a row in `tools/equivalent_mutants.json`, where nothing can notice it. Knows how the languages
+A survivor gets a test, and a row in `tests/project/known_mutants.py`, which CI tries; or a
+row in `tools/equivalent_mutants.json`, where nothing can notice it. Knows how the languages
 are written here (formatters put blanks around binary operators), not what the code does.
 """
 

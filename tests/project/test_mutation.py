@@ -1,14 +1,16 @@
 """`python -m tools.mutation`: each source is of a module that has tests; and the mutants that
-once survived, of which each commit has a fourth noticed by their tests."""
+once survived are noticed by their tests."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 
-from tests.project.known_mutants import KNOWN, Known
+from tests.project.known_mutants import KNOWN
+from tests.support import exchanged
 from tests.support.casefile import ROOT
+from tests.support.exchanged import Try
 from tools import mutation
 from tools.mutation import MODULES, Copy, Module, Mutant, equivalent, mutants
 
@@ -40,20 +42,16 @@ def test_what_is_listed_as_equivalent_is_still_there() -> None:
         assert was in {line.strip() for line in lines}, f"{file}: {was}"
 
 
-# -- mutants that once survived --------------------------------------------------------------------
-
-
-@pytest.fixture(scope="module")
-def copy(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Copy]:
-    yield Copy(tmp_path_factory.mktemp("mutants"))
-
-
-@pytest.mark.sampled("each", keep=len(KNOWN) // 4)
-@pytest.mark.parametrize("each", KNOWN, ids=lambda each: each.missing)
-def test_a_known_mutant_is_noticed(each: Known, copy: Copy) -> None:
-    text = (ROOT / each.file).read_text(encoding="utf-8")
-    assert text.count(each.was) == 1, "the code has changed: find the place again"
-    line = text[: text.index(each.was)].count("\n") + 1
-    mutant = Mutant(each.file, line, each.was, each.becomes, text.replace(each.was, each.becomes))
-    noticed = copy.notices(mutant, [each.test])
-    assert noticed.startswith(f"FAILED {each.test}"), noticed or "no test notices it"
+def test_known_mutants_are_noticed(tmp_path: Path) -> None:
+    copy, tries = Copy(tmp_path), []
+    for each in KNOWN:
+        text = (ROOT / each.file).read_text(encoding="utf-8")
+        assert text.count(each.was) == 1, f"{each.missing}: the code has changed: find it again"
+        tries.append(Try(each.file, text.replace(each.was, each.becomes), each.test))
+    answers = exchanged.answers(tries, tmp_path)
+    for each, one, answer in zip(KNOWN, tries, answers, strict=True):
+        assert answer != exchanged.PASSES, f"no test notices {each.missing}"
+        if answer != exchanged.FAILS:
+            mutant = Mutant(each.file, 0, each.was, each.becomes, one.text)
+            noticed = copy.notices(mutant, [each.test])
+            assert noticed.startswith(f"FAILED {each.test}"), f"{each.missing}: {answer}, {noticed}"

@@ -1,0 +1,176 @@
+"""Tries mutants in children of one process, which has imported and collected everything.
+
+For a mutant of Python a child exchanges the code of the functions that differ, in their place; the
+file of any other is written while its child builds it and runs the test.
+"""
+
+from __future__ import annotations
+
+import importlib
+import inspect
+import json
+import os
+import resource
+import signal
+import subprocess
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
+from pathlib import Path
+from types import CodeType, FunctionType, ModuleType
+from typing import NamedTuple
+
+import pytest
+from _pytest.runner import runtestprotocol
+
+from tests.support.casefile import ROOT
+
+LIMIT_S = 60  # processor time
+TROUBLE = 2  # exit code of a child whose test was not run
+PASSES, FAILS = "passes", "fails"
+Pair = tuple[CodeType, CodeType]
+
+
+class Try(NamedTuple):
+    """A file, its text with a mistake, and the test that is to notice it."""
+
+    file: str
+    text: str
+    test: str
+
+
+class Elsewhere(Exception):
+    """What differs is in no function that can be found."""
+
+
+def answers(tries: Sequence[Try], folder: Path) -> list[str]:
+    """Say of each that its test FAILS or PASSES, or why that cannot be said here.
+
+    `folder` is a copy of the repository. There the tests of Python, which are quick, must pass
+    without a mistake.
+    """
+    environment = {"PYTHONPATH": str(folder / "compiler"), "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"}
+    done = subprocess.run(
+        [sys.executable, "-m", "tests.support.exchanged"], cwd=folder, text=True,
+        capture_output=True, input=json.dumps(tries), env={**os.environ, **environment},
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    found: list[str] = json.loads(done.stdout)
+    return found
+
+
+class Plugin:
+    """Runs the test of each try instead of all that are collected."""
+
+    def __init__(self, tries: Sequence[Try]) -> None:
+        self.tries = tries
+        self.answers: list[str] = []
+
+    def pytest_runtestloop(self, session: pytest.Session) -> bool:
+        found = [
+            [item for item in session.items if item.nodeid.split("[")[0] == each.test]
+            for each in self.tries
+        ]
+        quick = [item for each, row in zip(self.tries, found, strict=True) for item in row
+                 if each.file.endswith(".py")]  # fmt: skip
+        assert _in_child(quick, lambda: None) == PASSES, "they fail without a mutant, too"
+        self.answers += map(_tried, self.tries, found)
+        return True
+
+
+def _tried(each: Try, items: Sequence[pytest.Item]) -> str:
+    path = ROOT / each.file
+    if path.suffix == ".py":
+        try:
+            return _in_child(items, _exchange(each))
+        except Elsewhere as why:
+            return str(why)
+    right = path.read_bytes()
+    path.write_text(each.text, encoding="utf-8")
+    try:
+        return _in_child(items, lambda: None)
+    finally:
+        path.write_bytes(right)
+
+
+def _in_child(items: Sequence[pytest.Item], begin: Callable[[], None]) -> str:
+    """Run tests behind `begin`; an endless loop fails."""
+    child = os.fork()
+    if child == 0:
+        code = TROUBLE
+        try:
+            os.setsid()
+            resource.setrlimit(resource.RLIMIT_CPU, (LIMIT_S, LIMIT_S))
+            begin()
+            reports = (runtestprotocol(item, log=False, nextitem=None) for item in items)
+            code = int(any(each.failed for row in reports for each in row if each.when == "call"))
+        finally:
+            os._exit(code)
+    _, status = os.waitpid(child, 0)
+    with suppress(ProcessLookupError):
+        os.killpg(child, signal.SIGKILL)  # what its tests have started
+    code = os.waitstatus_to_exitcode(status)
+    assert code != TROUBLE
+    return FAILS if code else PASSES
+
+
+def _exchange(each: Try) -> Callable[[], None]:
+    """Return what makes the mutant of the module that is imported."""
+    name = each.file.removeprefix("compiler/").removesuffix(".py").replace("/", ".")
+    module = importlib.import_module(name.removesuffix(".__init__"))
+    right = (ROOT / each.file).read_text(encoding="utf-8")
+    there = {function.__code__: function for function in _functions(module, module)}
+    pairs = list(_pairs(*(compile(text, each.file, "exec") for text in (right, each.text))))
+    if not pairs or any(was not in there for was, _ in pairs):
+        raise Elsewhere("a function that differs is not found")
+
+    def exchange() -> None:
+        for was, becomes in pairs:
+            there[was].__code__ = becomes
+
+    return exchange
+
+
+def _pairs(was: CodeType, becomes: CodeType) -> Iterator[Pair]:
+    """Yield the functions that differ in the code of a module or a class, outermost ones."""
+    old, new = ([each for each in code.co_consts if isinstance(each, CodeType)]
+                for code in (was, becomes))  # fmt: skip
+    if _own(was) != _own(becomes) or len(old) != len(new):
+        raise Elsewhere("what differs is in no function")
+    for pair in zip(old, new, strict=True):
+        if pair[0] != pair[1]:
+            if pair[0].co_flags & inspect.CO_OPTIMIZED:
+                yield pair
+            else:
+                yield from _pairs(*pair)
+
+
+def _own(code: CodeType) -> tuple[object, ...]:
+    others = [each for each in code.co_consts if not isinstance(each, CodeType)]
+    return code.co_code, code.co_names, repr(others)
+
+
+def _functions(owner: ModuleType | type, module: ModuleType) -> Iterator[FunctionType]:
+    """Yield the functions of a module, and of its classes."""
+    for value in vars(owner).values():
+        for name in ("", "__func__", "fget", "fset", "func", "__wrapped__"):
+            found = getattr(value, name, None) if name else value
+            if isinstance(found, FunctionType):
+                yield found
+        if isinstance(value, type) and value.__module__ == module.__name__:
+            yield from _functions(value, module)
+
+
+def main() -> int:
+    plugin = Plugin([Try(*each) for each in json.load(sys.stdin)])
+    answers = os.fdopen(os.dup(1), "w")
+    os.dup2(2, 1)  # what pytest says
+    tests = dict.fromkeys(each.test for each in plugin.tries)
+    code = pytest.main(["-q", "-p", "no:cacheprovider", "-s", "--whole", *tests], [plugin])
+    json.dump(plugin.answers, answers)
+    answers.flush()
+    return int(code)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
