@@ -167,7 +167,7 @@ def _in_two_words(word: str) -> str | None:
         is_engine = any(said_of(half, "engine") for half in halves)
         meant = said - {"", "M", "F"} or said - {"", "M"}
         rest = [each for each in halves if each not in beside and not concept_of(each)]
-        is_framed = bool(said & {"F", "M"}) or bool(beside)
+        is_framed = bool(said & {"F", "M"} or beside) or len({*map(concept_of, halves)}) == 1
         if len(meant) == 1 and is_framed and not set(rest) - {"STOP"}:
             only = next(iter(meant))
             if only == "STOP" and is_engine:

@@ -17,8 +17,8 @@ from tiniscript.syntax.operators import SIGN_OF
 MANY_VALUES = 100_000  # thousandths: a sensor with such a range is hardly ever at one of them
 TIME = Device("TIME", NUMBER, "s", 0, HIGHEST)
 _MIRRORED = {"LT": "GT", "LE": "GE", "GT": "LT", "GE": "LE", "EQ": "EQ", "NE": "NE"}
-_LESS = ("LT", "LE")
-_COMES = {"F": _LESS, "B": ("GT", "GE")}  # what comes true, by the way that the robot goes
+_LESS, _MORE = ("LT", "LE"), ("GT", "GE")
+_COMES = {"F": _LESS, "B": _MORE}  # what comes true, by the way that the robot goes
 
 
 class Comparison(NamedTuple):
@@ -91,6 +91,28 @@ def answer_of(compared: Comparison) -> str:
     if is_never.get(op):
         return "answer_no"
     return "answer_yes" if is_always.get(op) else ""
+
+
+def answer_of_both(condition: Expression, kit: Kit) -> tuple[str, str]:
+    """Return the answer that `DISTANCE < 10 AND DISTANCE > 40` always has, and what was meant.
+
+    Nothing, twice, where no two comparisons of a sensor exclude each other or leave nothing out.
+    """
+    sign = condition[-1].op if len(condition) == 8 else ""
+    one, other = (comparison(condition[k : k + 3], kit) for k in (0, 4))
+    if sign not in ("AND", "OR") or not one or not other or one.device is not other.device:
+        return "", ""
+    below, above = (one, other) if one.op in _LESS else (other, one)
+    if below.op not in _LESS or above.op not in _MORE:
+        return "", ""
+    is_exact = below.op == "LE" and above.op == "GE"
+    if sign == "AND":
+        is_known = below.number < above.number or (below.number == above.number and not is_exact)
+        return ("answer_no", f"{one} OR {other}") if is_known else ("", "")
+    is_known = above.number < below.number or (
+        above.number == below.number and "E" in below.op + above.op
+    )
+    return ("answer_yes", f"{one} AND {other}") if is_known else ("", "")
 
 
 def comes_true(condition: Expression, direction: str, kit: Kit) -> bool | None:

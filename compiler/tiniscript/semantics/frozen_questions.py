@@ -19,6 +19,7 @@ from tiniscript.semantics.comparisons import (
     TIME,
     Comparison,
     answer_of,
+    answer_of_both,
     comes_true,
     comparison,
     is_between,
@@ -99,12 +100,14 @@ class FrozenQuestions:
             self._while(statement)
             head = Span(statement.span.start, statement.span.start + len("WHILE"))
             self._known(self._comparison(statement.condition), head)
+            self._known_of_both(statement.condition, head)
         elif isinstance(statement, Show) and outermost is not None:
             self._frozen_show(statement, outermost)
         elif isinstance(statement, If):
             self._late_arms(statement)
             for arm in statement.arms:
                 self._subtracted(arm.condition, arm.span)
+                self._known_of_both(arm.condition, arm.span)
                 if not self._known(self._comparison(arm.condition), arm.span):
                     self._exact_if(arm)
                 if outermost is not None and _is_endless(outermost):
@@ -115,6 +118,7 @@ class FrozenQuestions:
     def _until(
         self, move: Move, condition: Expression, is_repeated: bool, asked: Collection[int]
     ) -> None:
+        self._known_of_both(condition, move.span)
         variables = _variables(condition)
         if variables and not any(term.op in _CHANGING for term in condition):
             time = None if move.time is None else constant(fold(move.time))
@@ -306,6 +310,12 @@ class FrozenQuestions:
             self._report(codes.KNOWN_ANSWER, span, sensor=device.name, low=as_text(device.low),
                          high=as_text(device.high), answer=answer)  # fmt: skip
         return bool(answer)
+
+    def _known_of_both(self, condition: Expression, span: Span) -> None:
+        """`DISTANCE < 10 AND DISTANCE > 40`: no distance is both, and OR was meant."""
+        answer, meant = answer_of_both(condition, self._kit)
+        if answer:
+            self._report(codes.KNOWN_ANSWER, span, answer=answer, either=meant)
 
     def _subtracted(self, condition: Expression, span: Span) -> None:
         """`DISTANCE = 5-20`: no distance is -15, and between is asked with two signs."""

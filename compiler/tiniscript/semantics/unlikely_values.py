@@ -30,6 +30,7 @@ VERY_LONG_TIME = 500 * SECOND  # milliseconds were meant, as `delay(1000)` of an
 LONG_BEEP = 100 * SECOND
 LOW_HERTZ = 100_000  # thousandths: a power was meant
 ANGLES = (360 * SECOND, 720 * SECOND)
+_PART = 45 * SECOND  # turns of more than one round have such parts
 _LENGTHS = ("cm", "mm", "m")
 _ZERO = re.compile(r"\w+\s*\(\s*(0[0-9]{2,})\s*[,)]")  # a point is missing behind its 0
 _ZERO_OF_TURN = re.compile(r"(?i)[LR]\s*\(\s*(0[1-9])\s*,\s*[1-9]")  # `L(03, 60)`
@@ -152,7 +153,7 @@ def _long(move: Move, time: int, power: int | None, kit: Kit, found: list[Diagno
     way = f"{word}({length} {UNIT_OF.get(word, '')}, {shown})"
     speed = kit.speed or USUAL_SPEED
     is_far = is_round and time >= LONG_TIME and speed * (power or 0) * time >= FAR
-    if turns and _is_turn(time, kit, is_long):
+    if turns and _is_turn(time, kit, is_long) and not (is_very_long and time % _PART):
         values = {"degrees": length, "word": word, "turn": usage}
         values |= {"way": way} if kit.turn else {}
         _report(found, codes.LONG_TIME, move.span, **values)
