@@ -32,7 +32,6 @@ def test_the_example_of_a_row_is_told_as_it_says(row: Row) -> None:
         "X = 5 + 3",
         "F(2, 80) AND",
         "LOOP(4) ... S ... END_LOOP",
-        "B(1, 60) IF(DISTANCE < 10)\nS\nENDIF",  # a block, without its separator
         "LOOP(3)\nF(1, 80) fin",  # the end of the block
         "F(2, 80) hola~B77E7BD9",
         "F(1, 80) " + "la " * 30,
@@ -40,6 +39,11 @@ def test_the_example_of_a_row_is_told_as_it_says(row: Row) -> None:
 )
 def test_what_is_no_note_is_left_to_others(wrong: str) -> None:
     found = {each.diagnostic.code.number for each in advised(wrong, KIT)}
+    assert not found & {"TS071", "TS085"}
+
+
+def test_a_block_is_no_note_of_what_stands_before_it() -> None:
+    found = {each.code.number for each in check("B(1, 60) IF(DISTANCE < 10)\nS\nENDIF")}
     assert not found & {"TS071", "TS085"}
 
 

@@ -17,7 +17,7 @@ from tiniscript.lessons import catalogue
 from tiniscript.library.compiling import analyzed
 from tiniscript.recovery import lines, rewrites, rows
 from tiniscript.recovery.concepts import Lexeme, Names, lexemes
-from tiniscript.recovery.explanation import Slip, explained
+from tiniscript.recovery.explanation import explained
 from tiniscript.recovery.search import Recovery
 from tiniscript.syntax.outline import Failure
 from tools.shadow import marks
@@ -69,26 +69,32 @@ def test_a_sample_of_the_corpus_reaches_its_score() -> None:
     assert 100 * good / len(chosen) >= json.loads(SCORES.read_text())[SAMPLE]
 
 
+def slip(*values: str) -> dict[str, str]:
+    names = ("found", "right", "before", "word", "usage", "fix")
+    return dict(zip(names, values, strict=True))
+
+
 @pytest.mark.parametrize(
-    ("wrong", "code", "slip", "edit"),
+    ("wrong", "code", "values", "edit"),
     [
-        ("F(2 80)", "TS017", Slip("F(2 80)", ",", "F(2", "F", _F, "F(2, 80)"),
+        ("F(2 80)", "TS017", slip("F(2 80)", ",", "F(2", "F", _F, "F(2, 80)"),
          Edit(Span(3, 3), ",")),
-        ("S\navanzar(2, 80)", "TS102", Slip("avanzar", "F", "", "F", _F, "F(2, 80)"),
+        ("S\navanzar(2, 80)", "TS102", slip("avanzar", "F", "", "F", _F, "F(2, 80)"),
          Edit(Span(2, 9), "F")),
-        ("SI|robot.forward(2, 80)", "TS102", Slip("robot.forward", "F", "", "F", _F, "F(2, 80)"),
+        ("SI|robot.forward(2, 80)", "TS102", slip("robot.forward", "F", "", "F", _F, "F(2, 80)"),
          Edit(Span(3, 16), "F")),
-        ("F(2, 80 %)", "TS049", Slip("80 %", "F(2, 80)", "F(2, 80", "F", _F, "F(2, 80)"),
+        ("F(2, 80 %)", "TS049", slip("80 %", "F(2, 80)", "F(2, 80", "F", _F, "F(2, 80)"),
          Edit(Span(7, 9), "")),
     ],
 )  # fmt: skip
 def test_an_explanation_has_a_slip_and_its_edits(
-    wrong: str, code: str, slip: Slip, edit: Edit
+    wrong: str, code: str, values: dict[str, str], edit: Edit
 ) -> None:
     found = marks.meant(wrong)
     assert found is not None
     (said,) = explained(wrong, found)
-    assert (said.code, said.slip, said.edits) == (code, slip, [edit])
+    assert (said.code, said.edits) == (code, [edit])
+    assert values.items() <= said.values.items()
 
 
 def test_a_line_is_searched_once_for_the_same_names() -> None:

@@ -33,13 +33,12 @@ LONGEST = 24  # words behind an instruction that are read
 MOST = 1_000  # of them in a text
 # Codes of words that a repair may read better.
 _ASIDE = (codes.REPEATED.number, codes.WORDS_BEHIND.number)
-_MOST_TIMES, _DEGREES = 50, 20  # a number behind a turn that is rather an angle
-_BODY = 2_000  # characters in which the end of a block is looked for
+_MOST_TIMES = 20  # a number behind a turn that is rather an angle
 _MOST_BEFORE = 8  # instructions that an example repeats
 _FARTHEST = 40  # instructions of a text that are looked at for what is done again
 _ONE_IN_LOOP = 2  # separators of a loop of one instruction
 _BEGIN_BODY = (*BLOCK_ENDS, "ELSE", "ELSEIF")
-_IN_CALL = frozenset("0123456789.,() ")
+_CHOICE = re.compile(r"\s*(\w+)\s*(\([0-9., ]*\))?\s*")
 _SHORTEST_WORD = 3  # letters: X is rather a variable
 _BARE = ".:,\\* \"'`´“”‘’«»"  # signs that a note needs not
 
@@ -155,12 +154,9 @@ def _parts(
             tokens = tokens[size:]
             after = whole(tokens, names)
             is_asked = rest[0].token.text in ("IF", "WHILE") and after == len(rest)
-            if not after or (
-                is_asked and not _has_body(rest[0].token.text, text[rest[-1].span.end :])
-            ):
+            if not after or is_asked:
                 yield behind(part[:size], rest)
                 break
-            depth += part[0].token.text in BLOCK_ENDS
             part = rest
         if part and before is not None:
             is_block = part[0].token.text in (*_BEGIN_BODY, *ENDED)
@@ -238,17 +234,6 @@ def _said_call(tokens: Sequence[Lexeme], names: Names) -> tuple[int, str] | None
     return None
 
 
-def _has_body(block: str, text: str) -> bool:
-    """Whether an end of such a block comes that no header of a text begins."""
-    depth = 0
-    for token in lexemes(text[:_BODY]):
-        is_end = token.text in ENDED or bool(said_of(token.text, "end"))
-        if is_end and not depth:
-            return ENDED.get(token.text, block) == block
-        depth += (token.text in BLOCK_ENDS) - is_end
-    return False
-
-
 class _NoGap(Exception):
     """A gap of a row cannot be filled."""
 
@@ -294,9 +279,7 @@ class _Gaps(dict[str, str]):
 def _few(gaps: _Gaps) -> str:
     """A number that may say how often, and is no angle."""
     number = gaps["n"]
-    is_angle = gaps.part.own in ("L", "R") and number.isdecimal() and int(number) >= _DEGREES
-    is_few = number.isdecimal() and 1 < int(number[:9]) <= _MOST_TIMES
-    return number if is_few and not is_angle else ""
+    return number if number.isdecimal() and 1 < int(number[:9]) < _MOST_TIMES else ""
 
 
 def _all(gaps: _Gaps, times: str) -> str:
@@ -386,24 +369,12 @@ def _free(gaps: _Gaps) -> str:
 def _choices(gaps: _Gaps) -> list[str]:
     """The orders of which one is done, where the words say two or more."""
     part, found = gaps.part, [gaps.part.call] if gaps.part.call else []
-    start, end = gaps.span("l")
-    words: list[int] = []
-    depth = 0
-    for k in range(start, end + 1):
-        text = part.row[k - 1].text if k < end else ","
-        depth += (text == "(") - (text == ")")
-        if depth or text != ",":
-            words.append(k)
-            continue
-        order = part.means(part.row[words[0] - 1].text) if words else ""
-        if order not in WORDS or not WORDS[order].is_instruction:
+    for piece in re.split(r",(?![^(]*\))", gaps["l"]):
+        match = _CHOICE.fullmatch(piece)
+        order = part.means(plain(match[1])) if match else ""
+        if match is None or order not in WORDS or not WORDS[order].is_instruction:
             return []
-        behind = [part.row[each - 1].text for each in words[1:]]
-        if behind and (behind[0] != "(" or not all(set(each) <= _IN_CALL for each in behind)):
-            return []
-        values = Span(part.spans[words[0]].end, part.spans[words[-1]].end)
-        found.append(order + part.text[slice(*values)].strip())
-        words = []
+        found.append(order + (match[2] or ""))
     return found if len(found) > 1 else []
 
 
@@ -429,20 +400,12 @@ def _apart(gaps: _Gaps) -> str:
         return ""
     fits = order.arguments == owner.arguments
     behind = f"{order.text}({', '.join(values)})" if fits else order.example
-    behind = order.text if order.role == "stop" else behind
     return f"{owner.text}({', '.join(values)}); {behind}"
 
 
 def _loop(gaps: _Gaps) -> str:
     number = gaps["n"]
     return "" if number in ("0", "1") else f"LOOP({number});{gaps.part.call};{BLOCK_ENDS['LOOP']}"
-
-
-def _line(gaps: _Gaps) -> str:
-    before = [each for each in gaps.part.before or () if each.upper() != "START"]
-    if not 0 < len(before) <= _MOST_BEFORE or gaps["n"] in ("0", "1"):
-        return ""
-    return ";".join((f"LOOP({gaps['n']})", *before, gaps.part.call, BLOCK_ENDS["LOOP"]))
 
 
 def _with_value(gaps: _Gaps, place: int) -> str:
@@ -551,7 +514,7 @@ _GAPS: dict[str, Callable[[_Gaps], str]] = {
     "free": _free,
     "text": lambda gaps: shortened(gaps.part.text[slice(*gaps.part.place)]),
     "words": lambda gaps: shortened(gaps.part.words),
-    "previous": _previous, "loop": _loop, "line": _line, "few": _few, "paused": _paused,
+    "previous": _previous, "loop": _loop, "few": _few, "paused": _paused,
     "end": lambda gaps: "" if _asked(gaps, "s") else BLOCK_ENDS[plain(gaps["g"])],
     "always": lambda gaps: laid_out(_asked(gaps, "c")), "shown": _shown,
     "other": _other, "note": _note,

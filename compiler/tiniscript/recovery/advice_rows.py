@@ -103,7 +103,7 @@ ADVICE = """
 ^ c=S|STOP s=LOOP $ | TS102 | found={text}; right=BREAK; fix=BREAK; usage=BREAK | STOP LOOP => fix=BREAK
 ^ c=@move|W s=UN u=TIL q=@any+ $ | TS102 | found={s} {u}; right=UNTIL; usage=UNTIL{q} | F(5, 60) UN TIL(DISTANCE < 30) => usage=UNTIL(DISTANCE < 30)
 # how often
-^ c=@more <lead> <often> <close> $ | TS062 | found={text}; last={loop}; all={line} | F(1, 60); L(1, 60) x4 => last=LOOP(4);L(1, 60);END_LOOP
+^ c=@more <lead> <often> <close> $ | TS062 | found={text}; last={loop}; all={all} | F(1, 60); L(1, 60) x4 => last=LOOP(4);L(1, 60);END_LOOP
 ^ <does> <lead> <often> <close> $ | TS062 | found={text}; fix={loop} | F(2, 80) 3 veces => fix=LOOP(3);F(2, 80);END_LOOP
 ^ <does> <lead> <often> <close> $ | TS062 | found={text}; once={once} | F(1, 80) x1 => once=F(1, 80)
 ^ <does> <lead> <often> <close> $ | TS062 | found={text} | F(1, 80) x0 => found=F(1, 80) x0

@@ -44,83 +44,41 @@ _SIGNS = ("BEEP", "SHOW", "S", "STOP")
 LONGEST_BLOCK = 160  # characters of one that a message shows
 
 
-class Slip(NamedTuple):
-    """`found` is written `right`; all of the instruction, where a sign is missing or too much.
+class Explanation:
+    """What is told of a line: code and values. `is_sure`: nothing that it changes is a guess.
 
+    `found` is written `right`; all of the instruction, where a sign is missing or too much.
     `word`, written as in `usage`, begins the instruction, and `before` stands before the slip;
     `fix` is what the instruction becomes. Where more of its block changes, that becomes `whole`,
     which ends with `ends`. The same is wrong in `line`, or in `lines`, too, or `times` in its own.
     `letter` stands in a number in the place of a digit; `takes` is the usage where `fix` has more
     numbers than were written.
+
+    A block that begins with `word` and lacks its end, `right`, has `behind` on its own line, and
+    line `line`, `last`, is its last one. With its end it is `whole`, nothing where that is long. Of
+    `several` instructions the last one may as well be behind it: there `last` is empty.
+
+    `place` is what `fix` stands for; `edits` are all that belong to it: ends, braces. It begins in
+    change `first`, from 0; `last` is a change, and how many of its lines belong to it; `opened` are
+    the changes in which blocks begin that it ends.
     """
 
-    found: str
-    right: str
-    before: str = ""
-    word: str = ""
-    usage: str = ""
-    fix: str = ""
-    whole: str = ""
-    ends: str = ""
-    line: str = ""
-    lines: str = ""
-    times: str = ""
-    letter: str = ""
-    takes: str = ""
-    early: str = ""
-
-
-class Unended(NamedTuple):
-    """A block that begins with `word` lacks its end, `right`, behind line `line`, `last`.
-
-    With it the block is `whole`, nothing where that is long. On its own line it ends with `behind`.
-    Of `several` instructions the last one may as well be behind it: there `last` is empty.
-    """
-
-    word: str
-    right: str
-    line: str = ""
-    last: str = ""
-    whole: str = ""
-    behind: str = ""
-    several: str = ""
-
-
-class Explanation(NamedTuple):
-    """A slip, and the code it is told with.
-
-    `place` is what the slip's `fix` stands for; `edits` are all that belong to it: ends, braces.
-    """
-
-    code: str
-    span: Span
-    place: Span
-    slip: Slip | Unended
-    edits: list[Edit]
-    is_sure: bool = True
+    def __init__(
+        self, code: str, place: Span, values: dict[str, str], edit: Edit, first: int
+    ) -> None:
+        self.code = code
+        self.place = self.span = place
+        self.values = values
+        self.edits = [edit]
+        self.first = first
+        self.last = (first, 1)
+        self.opened: set[int] = set()
+        self.is_sure = True
 
 
 def explained(program: str, found: Candidate) -> list[Explanation]:
     """Return what is wrong with each line that a candidate changes, in the order of the text."""
     return _Teller(program, found).told()
-
-
-class _Told:
-    """An explanation that is not complete yet.
-
-    It begins in change `first`, from 0; `last` is a change, and how many of its lines belong to it.
-    """
-
-    def __init__(
-        self, code: str, place: Span, slip: Slip | Unended, edit: Edit, first: int
-    ) -> None:
-        self.code = code
-        self.place = place
-        self.slip = slip
-        self.edits = [edit]
-        self.first = first
-        self.last = (first, 1)
-        self.opened: set[int] = set()  # changes in which blocks begin that it ends
 
 
 class _Block:
@@ -129,32 +87,24 @@ class _Block:
     def __init__(self, word: str, first: int) -> None:
         self.word = word
         self.first = first
-        self.told: _Told | None = None
+        self.told: Explanation | None = None
 
 
-class _Tokens(NamedTuple):
+class _Part(NamedTuple):
+    """An instruction of a line, and where in it that stands."""
+
     span: Span
     tokens: list[Lexeme]
 
 
-class _Part(NamedTuple):
-    """An instruction of a line: `span` in it, and what becomes of it by which rewrites."""
-
-    span: Span
-    edit: Edit
-    before: list[Lexeme]
-    after: list[Lexeme]
-    steps: list[Step]
-
-
-def _spans(tokens: Sequence[Lexeme]) -> list[_Tokens]:
-    """Return the instructions of a line of the text, and where in it they stand."""
-    found: list[_Tokens] = []
+def _parts(tokens: Sequence[Lexeme]) -> list[_Part]:
+    """Return the instructions of a line; what is between two separators is one."""
+    found: list[_Part] = []
     own: list[Lexeme] = []
     start = end = 0
     for token in (*tokens, None):
         if token is None or token.text == ";":
-            found.append(_Tokens(Span(start if own else end, end), own))
+            found.append(_Part(Span(start if own else end, end), own))
             own = []
         if token is not None:
             end += len(token.space or "")
@@ -163,6 +113,16 @@ def _spans(tokens: Sequence[Lexeme]) -> list[_Tokens]:
                 own.append(token)
             end += len(token.source or token.text)
     return found
+
+
+class _Change(NamedTuple):
+    """What is told of an instruction, or of a line: `place` becomes `after` by these rewrites."""
+
+    place: Span
+    edit: Edit
+    steps: Sequence[Step]
+    before: Sequence[Lexeme]
+    after: Sequence[Lexeme]
 
 
 class _Teller:
@@ -179,28 +139,28 @@ class _Teller:
         self.steps = {
             k: [step for _, step in own] for k, own in groupby(found.steps, key=lambda it: it[0])
         }
-        self.out: list[_Told] = []
+        self.out: list[Explanation] = []
         self.open: list[_Block] = []
 
     def told(self) -> list[Explanation]:
         for k, change in enumerate(self.changes):
             self.tell(k, change)
-        return [self.complete(each) for each in self.out]
+        for each in self.out:
+            self.complete(each)
+        return self.out
 
-    def complete(self, told: _Told) -> Explanation:
-        slip = told.slip
-        if isinstance(slip, Slip):
+    def complete(self, told: Explanation) -> None:
+        if told.code != _UNENDED:
             is_shown = self.is_whole and told.last > (told.first, 1)
-            whole = self.whole(told.first, told.last) if is_shown else ""
-            slip = slip._replace(whole=whole)
+            told.values["whole"] = self.whole(told.first, told.last) if is_shown else ""
         start, end = self.words(told.edits[0].span)
         while start < end and self.program[start] in "\r\n":
             start += 1
         start -= self.program[max(0, start - 1) : start + 1] == "\r\n"
-        span = Span(start, end)
-        return Explanation(told.code, span, told.place, slip, told.edits, self.is_sure(told))
+        told.span = Span(start, end)
+        told.is_sure = self.is_sure(told)
 
-    def is_sure(self, told: _Told) -> bool:
+    def is_sure(self, told: Explanation) -> bool:
         """Whether nothing that an explanation changes is a guess."""
         places = [place for each in told.edits for place in each.span]
         touched = {told.first, *told.opened, *map(self.change_at, places)}
@@ -241,25 +201,25 @@ class _Teller:
         before, after = lexemes(without_note(old)[0]), lexemes(without_note(own)[0])
         closed = self.walk(k, after)
         parts = [] if closed or "\n" in old else self.parts(k, old, own, before, after)
-        if len(parts) > 1:
-            for part in parts:
-                self.new_part(k, change, part)
-        elif own != old:
+        for part in parts:
+            self.new(k, part, *_code(part))
+        if own != old and not parts:
             place = Span(self.starts[change.first], self.starts[change.first] + len(old))
             edit = trimmed(place.start, old, own)
-            code, step = _code(self.steps.get(k, []), before, after)
+            part = _Change(place, edit, self.steps.get(k, []), before, after)
+            code, step = _code(part)
             is_brace = code == _BRACES and before[0].text in BRACES
             told = None
             is_arm = bool(after) and after[0].text in _ARMS
             if code in (_OF_ARM if is_arm else _OF_BLOCK) and (closed or is_brace or is_arm):
                 told = self.added(closed or around, edit, (k, 1), after)
             if told is None:
-                told = self.new(code, place, edit, k, step, before, after)
+                told = self.new(k, part, code, step)
             told.opened |= {closed.first} if closed else set()
-            if code == codes.WRONG_END.number and isinstance(told.slip, Slip):
+            if code == codes.WRONG_END.number:
+                right = told.values["right"]
                 line = str(self.changes[closed.first if closed else k].first + 1)
-                word = ENDED.get(told.slip.right, "")
-                told.slip = told.slip._replace(word=word, line=line, fix=told.slip.right)
+                told.values |= {"word": ENDED.get(right, ""), "line": line, "fix": right}
             for block in (*self.open, *([around] if around and is_brace else [])):
                 if block.first == k or is_brace:
                     block.told = block.told or told
@@ -268,37 +228,32 @@ class _Teller:
 
     def parts(
         self, k: int, old: str, own: str, before: Sequence[Lexeme], after: Sequence[Lexeme]
-    ) -> list[_Part]:
-        """Return the instructions of a line that change, nothing where they are others or more."""
+    ) -> list[_Change]:
+        """Return the instructions of a line that change; nothing for one, or for others."""
         steps: dict[int, list[Step]] = {}
         for step in self.steps.get(k, []):
-            pairs = enumerate(zip(step.before, step.after, strict=False))
-            first = next((at for at, (one, other) in pairs if one.text != other.text), None)
-            number = sum(each.text == ";" for each in step.before[:first])
-            is_kept = texts(step.before).count(";") == texts(step.after).count(";")
-            if not is_kept or step.code == rows.DO_CODE:
+            one, other = (_parts(each) for each in step[1:])
+            if len(one) != len(other) or step.code == rows.DO_CODE:
                 return []
-            own_steps = steps.setdefault(number, [])
-            own_steps.append(Step(step.code, *(_instruction(each, number) for each in step[1:])))
-        was, now = _spans(before), _spans(after)
+            pairs = enumerate(zip(one, other, strict=True))
+            differ = (n for n, (a, b) in pairs if texts(a.tokens) != texts(b.tokens))
+            n = next(differ, len(one) - 1)
+            steps.setdefault(n, []).append(Step(step.code, one[n].tokens, other[n].tokens))
+        was, now = _parts(before), _parts(after)
         notes = (without_note(each)[1] for each in (old, own))
         if len(was) != len(now) or len({*notes}) > 1 or {*texts(before)} & {*BRACES}:
             return []
         found = []
-        for number, (one, other) in enumerate(zip(was, now, strict=True)):
-            text, new = old[slice(*one.span)], own[slice(*other.span)]
+        start = self.starts[self.changes[k].first]
+        for n, (part, meant) in enumerate(zip(was, now, strict=True)):
+            text, new = old[slice(*part.span)], own[slice(*meant.span)]
             if text != new:
-                edit = trimmed(self.starts[self.changes[k].first] + one.span.start, text, new)
-                part = _Part(one.span, edit, one.tokens, other.tokens, steps.get(number, []))
-                found.append(part)
-        are_told = (each.steps or not old[slice(*each.span)].isascii() for each in found)
-        return found if all(are_told) else []
-
-    def new_part(self, k: int, change: Change, part: _Part) -> None:
-        code, step = _code(part.steps, part.before, part.after)
-        start = self.starts[change.first]
-        place = Span(start + part.span.start, start + part.span.end)
-        self.new(code, place, part.edit, k, step, part.before, part.after)
+                place = Span(start + part.span.start, start + part.span.end)
+                edit = trimmed(place.start, text, new)
+                found.append(_Change(place, edit, steps.get(n, []), part.tokens, meant.tokens))
+                if not steps.get(n) and text.isascii():
+                    return []
+        return found if len(found) > 1 else []
 
     def walk(self, k: int, tokens: Sequence[Lexeme]) -> _Block | None:
         """Open and close blocks; return the first one that began in an earlier change."""
@@ -315,11 +270,10 @@ class _Teller:
 
     def added(
         self, block: _Block | None, edit: Edit, last: tuple[int, int], after: Sequence[Lexeme]
-    ) -> _Told | None:
+    ) -> Explanation | None:
         """Make an edit part of what is told of the beginning of its block, None where too long."""
         told = block.told if block else None
-        is_shown = told is not None and told.code in _SHOW_WHOLE
-        if block is None or told is None or not (is_shown and isinstance(told.slip, Slip)):
+        if block is None or told is None or told.code not in _SHOW_WHOLE:
             return None
         first = min(told.first, block.first)
         if len(self.whole(first, last)) > LONGEST_BLOCK:
@@ -327,43 +281,40 @@ class _Teller:
         told.edits.append(edit)
         told.first, told.last = first, max(told.last, last)
         ends = next((each.text for each in after if each.text in ENDED), "")
-        told.slip = told.slip._replace(ends=told.slip.ends or ends)
+        told.values["ends"] = told.values["ends"] or ends
         return told
 
-    def new(
-        self, code: str, place: Span, edit: Edit, k: int, step: Step | None,
-        before: Sequence[Lexeme], after: Sequence[Lexeme],
-    ) -> _Told:  # fmt: skip
-        slip: Slip | Unended = _slip(code, step, before, after)
+    def new(self, k: int, part: _Change, code: str, step: Step | None) -> Explanation:
+        _, edit, _, before, after = part
+        values = _slip(code, step, before, after)
         if code == codes.OTHER_NOTE.number:
-            slip = slip._replace(right=self.changes[k].text.strip())
-        if code == codes.EXTRA_WORD.number and isinstance(slip, Slip):
+            values["right"] = self.changes[k].text.strip()
+        if code == codes.EXTRA_WORD.number:
             behind = _BEHIND.match(self.program, self.words(edit.span).start)
             end, arm = (each.upper() for each in behind.groups()) if behind else ("", "")
             is_end = {end, meant_by(end)} & {*ENDED} or said_of(end, "end")
             if is_end and {arm, meant_by(arm)} & {"ELSE", "ELSEIF"}:
-                slip = slip._replace(early=slip.found)
+                values["early"] = values["found"]
         if code == _UNENDED:
             word = next((each.text for each in after if each.text in BLOCK_ENDS), "")
             added = [each.text for each in after if each.text not in texts(before)]
             end = BLOCK_ENDS.get(word) or next((each for each in added if each in ENDED), "")
             whole = laid_out(after) if word else ""
             last = laid_out(_parted(before)[-1]) if word and _parted(before) else ""
-            slip = Unended(word or ENDED.get(end, ""), end, whole=whole, behind=last)
+            values = {"word": word or ENDED.get(end, ""), "right": end, "whole": whole}
+            values["behind"] = last
             above = next((it for it in self.changes[k - 1 :: -1] if it.text.strip()), None)
             if not word and k and above:  # its indentation says where it ends
                 own = laid_out(lexemes(without_note(above.text.split("\n")[0])[0]))
-                slip = slip._replace(line=str(above.last + 1), last=own)
-        if code in _SAID_ONCE and isinstance(slip, Slip):
+                values |= {"line": str(above.last + 1), "last": own}
+        if code in _SAID_ONCE:
             same = [it for it in self.steps.get(k, []) if it.code == code]
             names = dict.fromkeys(
                 w for it in same for w in texts(it.after) if w not in texts(it.before)
             )
-            if slip.right in names and len(names) > 1:  # LIGHT_L and LIGHT_R
-                slip = slip._replace(right=", ".join(names))
-            elif len(same) > 1:
-                slip = slip._replace(times=str(len(same)))
-        self.out.append(_Told(code, place, slip, edit, k))
+            if values["right"] in names:
+                values["right"] = ", ".join(names)  # LIGHT_L and LIGHT_R
+        self.out.append(Explanation(code, part.place, values, edit, k))
         return self.out[-1]
 
     def end(self, last: tuple[int, int], change: Change, end: str, text: str) -> None:
@@ -379,10 +330,11 @@ class _Teller:
         behind_this = laid_out(lexemes(without_note(change.text.split("\n")[0])[0]))
         place = Span(self.starts[self.changes[first].first], behind)
         line = str(change.last + 1)
-        slip = Unended(block.word if block else "", end, line, behind_this, whole)
-        if self.may_end_earlier(slip.word, first, last[0]):
-            slip = slip._replace(several=behind_this, last="", whole="")
-        self.out.append(_Told(_UNENDED, place, slip, edit, first))
+        word = block.word if block else ""
+        values = {"word": word, "right": end, "line": line, "last": behind_this, "whole": whole}
+        if self.may_end_earlier(word, first, last[0]):
+            values |= {"several": behind_this, "last": "", "whole": ""}
+        self.out.append(Explanation(_UNENDED, place, values, edit, first))
 
     def may_end_earlier(self, word: str, first: int, last: int) -> bool:
         """Whether nothing says that the last instruction of a block is in it.
@@ -417,10 +369,9 @@ def trimmed(start: int, old: str, new: str) -> Edit:
     return Edit(Span(start + head, start + len(old) - tail), new[head : len(new) - tail])
 
 
-def _code(
-    steps: Sequence[Step], before: Sequence[Lexeme], after: Sequence[Lexeme]
-) -> tuple[str, Step | None]:
-    """Return with which code a line is told, and the rewrite that it is told of."""
+def _code(part: _Change) -> tuple[str, Step | None]:
+    """Return with which code a change is told, and the rewrite that it is told of."""
+    _, _, steps, before, after = part
     words, new = set(texts(before)), set(texts(after))
     fewer = Counter(texts(before)) - Counter(texts(after))
     if "SI" in fewer and "IF" in new - words:
@@ -471,7 +422,9 @@ def _code(
     return _UNENDED, None
 
 
-def _slip(code: str, step: Step | None, before: Sequence[Lexeme], after: Sequence[Lexeme]) -> Slip:
+def _slip(
+    code: str, step: Step | None, before: Sequence[Lexeme], after: Sequence[Lexeme]
+) -> dict[str, str]:
     is_note = code == codes.OTHER_NOTE.number
     old, new = (step.before, step.after) if step and not is_note else (before, after)
     if "WHEN" in texts(after):  # what the steps took for an IF
@@ -529,7 +482,8 @@ def _slip(code: str, step: Step | None, before: Sequence[Lexeme], after: Sequenc
     usage = known.usage if known else ""
     was_given = sum(each.kind is NUMBER for each in one)
     takes = usage if sum(each.kind is NUMBER for each in other) > was_given else ""
-    return Slip(was, now, kept, word, usage, shown, letter=letter, takes=takes)
+    return {"found": was, "right": now, "before": kept, "word": word, "usage": usage, "fix": shown,
+            "ends": "", "letter": letter, "takes": takes}  # fmt: skip
 
 
 def _with_when(tokens: Sequence[Lexeme]) -> list[Lexeme]:
@@ -594,19 +548,10 @@ def _written(tokens: Sequence[Lexeme]) -> str:
     return "".join((each.space or "") + (each.source or each.text) for each in tokens).strip()
 
 
-def _instruction(tokens: Sequence[Lexeme], number: int) -> list[Lexeme]:
-    """Return the tokens behind so many separators, up to the next one."""
-    for _ in range(number):
-        tokens = tokens[texts(tokens).index(";") + 1 :]
-    return [*takewhile(lambda each: each.text != ";", tokens)]
-
-
 def _parted(tokens: Sequence[Lexeme]) -> list[list[Lexeme]]:
     """Return the instructions of a line, without `SI|`."""
     has_setup = len(tokens) > 1 and tokens[1].text == "|" and tokens[0].text in ("SI", "SB")
-    tokens = tokens[2:] if has_setup else tokens
-    parts = groupby(tokens, key=lambda each: each.text == ";")
-    return [list(part) for is_end, part in parts if not is_end]
+    return [each.tokens for each in _parts(tokens[2:] if has_setup else tokens) if each.tokens]
 
 
 def _alike(one: Sequence[Sequence[Lexeme]], other: Sequence[Sequence[Lexeme]]) -> tuple[int, int]:

@@ -168,7 +168,7 @@ def _is_sure(told: Explanation, meant: Candidate) -> bool:
 def _diagnostic(
     told: Explanation, is_sure: bool, has_sure_blocks: bool, found: Sequence[Diagnostic]
 ) -> Diagnostic:
-    code, values = CODES[told.code], told.slip._asdict()
+    code, values = CODES[told.code], told.values
     if not has_sure_blocks and "FOREVER" not in values.get("fix", ""):
         values |= {"whole": ""}  # where it ends is a guess
     if code in _WITH_RIGHT and not values["right"]:

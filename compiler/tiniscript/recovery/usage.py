@@ -137,16 +137,14 @@ class _Usage:
         if len(nameless) != 1:
             return found
         unknown = [each for each in found if each.code is codes.UNKNOWN_WORD
-                   and len(self.tokens(self.piece(each.span))) == 1
-                   and not self.names.is_lexical(each.values["found"])]  # fmt: skip
-        if not unknown or unknown[0].span < nameless[0].span:
+                   and len(self.tokens(self.piece(each.span))) == 1]  # fmt: skip
+        if not unknown:
             return found
         name = unknown[0].values["found"]
         end = nameless[0].span.end
         repair = Repair((Edit(Span(end, end), f" {name}"),), False)
         said = nameless[0]._replace(values={"name": name}, repair=repair)
-        calls = {each.span for each in unknown if each.values["found"] == name}
-        left = (each for each in found if each.span not in calls)
+        left = (it for it in found if it not in unknown or it.values["found"] != name)
         return [said if each is nameless[0] else each for each in left]
 
     def usage(self, tokens: Sequence[Lexeme], word: str) -> str:
@@ -186,7 +184,7 @@ class _Usage:
         if len(tokens) == 2 and tokens[1].kind is NUMBER and is_name:
             fix = f"{first} = {tokens[1].text}"
             said = self.offered(codes.OTHER_ASSIGNMENT, piece, fix)
-            return said._replace(values={"found": "", "fix": fix})
+            return said._replace(values={"fix": fix})
         if tokens[1:] and tokens[1].text in ("++", "--", "+", "-") and is_name:
             by = next((each.text for each in tokens[2:] if each.kind is NUMBER), "1")
             fix = f"{first} = {first} {tokens[1].text[0]} {by}"
@@ -316,12 +314,6 @@ class _Usage:
         is_missing = "BUTTON" not in self.names.sensors
         return is_missing and concept_of(word) == "BUTTON"
 
-    def is_value(self, token: Lexeme) -> bool:
-        text = token.text
-        if text in self.names.known.values or said_of(text, "sensor") or said_of(text, "wall"):
-            return True
-        return text == "TIME" or self.command(text) in self.names.sensors
-
     def _is_order(self, word: str) -> bool:
         known = WORDS.get(self.command(word))
         return known is not None and known.is_instruction and word not in WORDS
@@ -365,11 +357,11 @@ class _Usage:
             return None
         start = self.piece(found.span).start + head.end()
         inner = self.tokens(Span(start, max(start, end)))
-        if len(inner) == 2 and self.is_value(inner[0]) and inner[1].kind is NUMBER:
+        if [each.kind for each in inner] == [WORD, NUMBER]:
             values = {"before": inner[0].text, "found": inner[1].text}
             return Diagnostic(codes.MISSING_SIGN, found.span, values)
-        words = [each for each in inner if each.kind is WORD and each.text not in WORDS]
-        if all(self.is_value(each) for each in words):
+        own = {*WORDS, *self.names.known.values}
+        if all(each.kind is not WORD or each.text in own for each in inner):
             return None
         word = head[1].upper()
         values = {"word": word, "question": WORDS[word].arguments[0].sample}
@@ -383,8 +375,7 @@ class _Usage:
         if not word or self.command(word) or word in known.instructions | known.actuators:
             return None
         start = self.piece(found.span).start
-        span = Span(start, start + len(tokens[0].source or word))
-        told = Diagnostic(codes.UNKNOWN_WORD, span, {"found": word})
+        told = Diagnostic(codes.UNKNOWN_WORD, Span(start, start + len(word)), {"found": word})
         return self.unknown(told) or told
 
     def unit(self, found: Diagnostic, tokens: list[Lexeme]) -> Diagnostic | None:
@@ -407,7 +398,7 @@ class _Usage:
     def setup(self, found: Diagnostic) -> Diagnostic | None:
         """Another word before the bar: one that says the button, or looks like it."""
         word = found.values["found"]
-        is_button = word in ("S8", "B") or concept_of(word) == "BUTTON"
+        is_button = word == "S8" or concept_of(word) == "BUTTON"
         return found._replace(values={**found.values, "right": "SB|"}) if is_button else None
 
     def begins(self, found: Diagnostic) -> Diagnostic:
@@ -418,18 +409,14 @@ class _Usage:
             return Diagnostic(codes.PING_ALONE, found.span)
         if word == "PING":
             return Diagnostic(codes.SETUP_NEEDS_BAR, found.span, {"found": word, "fix": "PING|"})
+        is_bar = text[end : end + 9].lstrip()[:1] == "|"
         piece = self.piece(found.span)
-        if word == "SI" and any(self.is_button(each.text) for each in self.tokens(piece)):
-            return self.no_button(found)
-        if word == "SI" and found.span.start == piece.start:
-            if text_ := self.block(piece):
-                told = self.offered(codes.SPANISH_IF, piece, text_)
-                return told._replace(span=found.span)
-        if text[end : end + 9].lstrip()[:1] not in ("|", "", "\n", "\r", ";"):
-            if word == "SI":
-                return Diagnostic(codes.SPANISH_IF, found.span)
+        if text_ := self.block(piece):
+            return self.offered(codes.SPANISH_IF, piece, text_)._replace(span=found.span)
+        if word == "SI" and not is_bar:
+            return Diagnostic(codes.SPANISH_IF, found.span)
         first = re.match(r"\s*(S[IB])\s*\|", text, re.IGNORECASE)
-        here = word + "|" * (text[end : end + 9].lstrip()[:1] == "|")
+        here = word + "|" * is_bar
         values = {"found": here}
         if word == "SB":
             values |= {"button": "SB", "pause": _PAUSE}
@@ -594,18 +581,17 @@ class _Usage:
         """A name with letters that a name has not."""
         if (said := self.amount(found)) is not None:
             return said
-        is_order = self.piece(found.span).start == found.span.start
-        if is_order and self.source.text[found.span.end :].lstrip(" ").startswith("("):
-            word = self.source[found.span].upper()
-            if not self.command(plain(word)):
-                return Diagnostic(codes.UNKNOWN_WORD, found.span, {"found": word, "near": ""})
         right = re.sub(r"^[^A-Za-z]+|\W", "", plain(self.source[found.span]))
-        if is_order and (said_of(right, "filler") or self.is_button(right)):
-            return self.unknown(Diagnostic(codes.UNKNOWN_WORD, found.span, {"found": right}))
         concept = self.command(right)
-        if concept in WORDS and concept != right:
+        if concept in WORDS:
             values = {"found": right, "right": concept, "usage": _usage(concept)}
             return Diagnostic(codes.OTHER_LANGUAGE, found.span, values)
+        word = self.source[found.span].upper()
+        if self.source.text[found.span.end :].lstrip(" ").startswith("("):
+            return Diagnostic(codes.UNKNOWN_WORD, found.span, {"found": word, "near": ""})
+        is_order = self.piece(found.span).start == found.span.start
+        if is_order and (said_of(right, "filler") or self.is_button(right)):
+            return self.unknown(Diagnostic(codes.UNKNOWN_WORD, found.span, {"found": right}))
         values = {"right": right if self.source[found.span].isupper() else right.capitalize()}
         return found._replace(values=values) if right else None
 
