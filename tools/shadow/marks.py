@@ -18,6 +18,7 @@ from tiniscript.library.compiling import analyzed
 from tiniscript.recovery.advice import advised
 from tiniscript.recovery.concepts import plain
 from tiniscript.recovery.search import Candidate, Recovery
+from tiniscript.recovery.setup import setup
 
 SAME, EQUIVALENT, QUESTION, USAGE, WORSE = "same", "equivalent", "question", "usage", "worse"
 OFFERS = 6  # of today's messages that are followed, one after the other
@@ -61,13 +62,14 @@ class Answer(NamedTuple):
 def answer(entry: Entry) -> Answer:
     """Compare what becomes of a program with what is pinned.
 
-    Where words are told beside it, that is what `--fix` makes. Where nothing is repaired, it is the
-    same to repair nothing, equivalent to make what the messages tell to try, and worse to make
-    anything else: of a reading of the whole text, since one of a part is not made.
+    Where words are told beside it, or what stands for its `SI|`, that is what `--fix` makes. Where
+    nothing is repaired, it is the same to repair nothing, equivalent to make what the messages
+    tell to try, and worse to make anything else: of a reading of the whole text, since one of a
+    part is not made.
     """
     found = meant(entry.program)
     if Recovery(entry.program, KIT, mistakes).sure() is None:
-        if advised(entry.program, KIT):
+        if advised(entry.program, KIT) or setup(entry.program.split("\n")):
             text = fixed(entry.program, check).text
             found = Candidate(text, True, False, ()) if text != entry.program else None
         elif found and entry.mended is None:

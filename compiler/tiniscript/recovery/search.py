@@ -10,7 +10,7 @@ import re
 from collections.abc import Callable, Iterator, Sequence
 from functools import cached_property
 from itertools import pairwise
-from typing import NamedTuple
+from typing import NamedTuple, TypeGuard
 
 from tiniscript.base.kit import Kit
 from tiniscript.recovery import lines, rewrites, rows
@@ -18,7 +18,6 @@ from tiniscript.recovery.blocks import Edit, Line, Matched, matched
 from tiniscript.recovery.concepts import Lexeme, Names, lexemes, made, plain, texts, words_of
 from tiniscript.recovery.lines import MARGIN, Reading, Step
 from tiniscript.recovery.order import Moved, ordered
-from tiniscript.recovery.setup import setup
 from tiniscript.recovery.writing import as_written, laid_out, without_note
 from tiniscript.syntax.outline import Failure
 
@@ -87,7 +86,7 @@ class Recovery:
         self.count = len(mistakes(program))
         self.unread = 0
         self.lines = [_Text(line, k) for k, line in enumerate(program.split("\n"))]
-        self.read_setup()
+        self.drop_setups()
         self.read_signs()
         self.join_until()
         self.names = Names([lexemes(each.body) for each in self.lines], kit)
@@ -106,20 +105,19 @@ class Recovery:
             return None
         for _ in self._reading:
             pass
-        best = self.whole
-        return best if best and best.is_whole else self.of_parts(best) or best
+        return self.whole
 
     def _read_lines(self) -> Iterator[bool]:
         """Read each line, and give whether it is read surely."""
         names = self.names
         for line in self.lines:
             self.read_line(line, names)
-            yield bool(line.reading and line.reading.is_sure)
+            yield _is_whole(line.reading) and line.reading.is_sure
         told = Names([each.reading.tokens for each in self.lines if each.reading], self.kit)
         if told.variables | told.defs > names.variables | names.defs:
             self.names = names.joined(told)
             for line in self.lines:
-                if line.reading is None:
+                if not _is_whole(line.reading):
                     self.read_line(line, self.names)
 
     # -- lines ----------------------------------------------------------------------------------
@@ -143,22 +141,13 @@ class Recovery:
             line.body, note = without_note(body)
             line.note = note + line.note
 
-    def read_setup(self) -> None:
-        """Put the bar behind `SI`, where another sign stands or none; drop a `SI|` further down."""
+    def drop_setups(self) -> None:
+        """Drop a `SI|` below the first line."""
         for line in [each for each in self.lines if each.body.strip()][1:]:
             body = _SETUP.sub("", line.body)
             if body != line.body:
                 line.steps.append(Step(rows.SETUP_TWICE, lexemes(line.body), lexemes(body)))
                 line.body = body
-        begun = setup([line.source for line in self.lines])
-        if begun is None:
-            return
-        first = self.lines[begun.line]
-        old, close = first.body, begun.close
-        rest = old[begun.end :] if close is None else old[begun.end : close] + old[close + 1 :]
-        first.body = old[: begun.start] + begun.right + rest
-        first.steps.append(Step(rows.SETUP_CODE, lexemes(old), lexemes(first.body)))
-        first.is_sure = begun.is_sure
 
     def join_until(self) -> None:
         """Put an UNTIL on a line of its own behind the instruction before it."""
@@ -193,6 +182,7 @@ class Recovery:
         found = lines.read(tokens, names, is_quick=self.unread > UNREAD)
         if not found:
             self.unread += 1
+            line.reading = self.parts(tokens, names)
             return
         first = found[0]
         line.rivals = [each for each in found[1:] if each.said != first.said]
@@ -203,6 +193,23 @@ class Recovery:
         is_sure = first.is_sure and not is_close and not _is_key(tokens, first.tokens)
         line.reading = first._replace(is_sure=is_sure)
 
+    def parts(self, tokens: list[Lexeme], names: Names) -> Reading | None:
+        """Read each instruction of a line alone, where one cannot be read; None for no sure one."""
+        steps: list[Step] = []
+        ends = [k for k, each in enumerate([*tokens, made(";")]) if each.text == ";"]
+        for start, end in [*pairwise((-1, *ends))][::-1]:
+            head, part, tail = tokens[: start + 1], tokens[start + 1 : end], tokens[end:]
+            if not isinstance(lines.right(part, names), Failure):
+                continue
+            found = lines.read(part, names, is_quick=True)[:1]
+            for each in found if found and found[0].is_sure else ():
+                tokens = [*head, *each.tokens, *tail]
+                steps += [
+                    Step(code, [*head, *before, *tail], [*head, *after, *tail])
+                    for code, before, after in each.steps
+                ]
+        return Reading(0, tokens, tuple(steps), True, False) if steps else None
+
     # -- programs -------------------------------------------------------------------------------
 
     @cached_property
@@ -212,7 +219,7 @@ class Recovery:
         for readings, has_blocks in self.choices():
             if best is not None and best.is_applied and best.is_whole:
                 break
-            if best is not None and has_blocks and None not in readings:
+            if best is not None and has_blocks and all(map(_is_whole, readings)):
                 continue
             made_of = self.written(readings, has_blocks)
             if made_of is None:
@@ -225,14 +232,12 @@ class Recovery:
                 for moved in ordered(text):
                     if left and not self.mistakes(moved.text):
                         text, left, changes, move = moved.text, [], (), moved
-            if not left:
-                is_applied = is_sure and bool(text.strip(" ;\n")) and not (move and move.is_guess)
-                if best is None or not best.is_whole or is_applied:
-                    best = self.made(text, is_applied, True, readings, changes)
-                    best = best._replace(unsure=unsure, has_sure_blocks=has_sure_blocks, move=move)
-            elif len(left) < self.count and is_sure:
-                if best is None or not (best.is_applied or best.is_whole):
-                    best = self.made(text, self.are_sure(), False, readings, changes)
+            if left and not (is_sure and len(left) < self.count):
+                continue
+            is_applied = is_sure and bool(text.strip(" ;\n")) and not (move and move.is_guess)
+            if best is None or (not left, is_applied) > (best.is_whole, best.is_applied):
+                best = Candidate(text, is_applied, not left, self.steps(readings), changes,
+                                 unsure, has_sure_blocks, move)  # fmt: skip
         return best
 
     def choices(self) -> Iterator[tuple[list[Reading | None], bool]]:
@@ -254,23 +259,12 @@ class Recovery:
         first = self.lines[rival[0]].reading
         return rival[1].cost - (first.cost if first else 0.0)
 
-    def are_sure(self) -> bool:
-        return all(each.is_sure for each in self.lines)
-
-    def made(
-        self,
-        text: str,
-        is_applied: bool,
-        is_whole: bool,
-        readings: Sequence[Reading | None],
-        changes: tuple[Change, ...] = (),
-    ) -> Candidate:
-        steps = [
+    def steps(self, readings: Sequence[Reading | None]) -> tuple[tuple[int, Step], ...]:
+        return tuple(
             (k, step)
             for k, (line, reading) in enumerate(zip(self.lines, readings, strict=True))
             for step in (*line.steps, *(reading.steps if reading else ()))
-        ]
-        return Candidate(text, is_applied, is_whole, tuple(steps), changes)
+        )
 
     def changes(self, out: Sequence[str]) -> tuple[Change, ...]:
         return tuple(
@@ -312,44 +306,9 @@ class Recovery:
         )
         return out, unsure, found.is_sure
 
-    # -- parts ----------------------------------------------------------------------------------
 
-    def of_parts(self, best: Candidate | None) -> Candidate | None:
-        """Return the text with what is read alone, where fewer mistakes are left."""
-        base = best if best and best.is_applied and best.changes else None
-        out = [each.text for each in base.changes] if base else [it.source for it in self.lines]
-        steps = list(base.steps) if base else []
-        before = out[:]
-        for k, line in enumerate(self.lines):
-            if line.reading is None and line.source == out[k]:
-                tokens, own = self.read_parts(line)
-                if own:
-                    out[k] = as_written(tokens).rstrip() + line.note
-                    steps += [(k, step) for step in (*line.steps, *own)]
-        if out == before or len(self.mistakes("\n".join(out))) >= len(
-            self.mistakes("\n".join(before))
-        ):
-            return None
-        changes = self.changes(out)
-        return Candidate("\n".join(out), self.are_sure(), False, tuple(steps), changes)
-
-    def read_parts(self, line: _Text) -> tuple[list[Lexeme], list[Step]]:
-        """Read each instruction of a line alone; return the line with those that are sure."""
-        tokens = lexemes(line.body)
-        steps: list[Step] = []
-        ends = [k for k, each in enumerate([*tokens, made(";")]) if each.text == ";"]
-        for start, end in [*pairwise((-1, *ends))][::-1]:
-            head, part, tail = tokens[: start + 1], tokens[start + 1 : end], tokens[end:]
-            if not isinstance(lines.right(part, self.names), Failure):
-                continue
-            found = lines.read(part, self.names, is_quick=True)[:1]
-            for each in found if found and found[0].is_sure else ():
-                tokens = [*head, *each.tokens, *tail]
-                steps += [
-                    Step(code, [*head, *before, *tail], [*head, *after, *tail])
-                    for code, before, after in each.steps
-                ]
-        return tokens, steps
+def _is_whole(reading: Reading | None) -> TypeGuard[Reading]:
+    return reading is not None and reading.items is not None
 
 
 def _is_alone(reading: Reading) -> bool:
