@@ -181,8 +181,6 @@ def _read_language(table: Table, language: str, devices: Sequence[Device]) -> di
         name = "robot" if key == "robot" else known.get(key.upper())
         if name is None:
             labels.not_in_kit(key, tuple(known))
-            continue
-        label = labels.label(key, LABEL_CHARACTERS)
-        if label is not None:
+        elif (label := labels.label(key, LABEL_CHARACTERS)) is not None:
             found[name] = label
     return found

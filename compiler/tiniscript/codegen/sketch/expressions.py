@@ -133,7 +133,7 @@ def _inside(operand: _Operand, binds: int) -> str:
 def is_float(value: int) -> bool:
     """Whether a literal means this number of thousandths: C++ reads it as a float of 24 bits."""
     if value % ONE == 0:
-        return value > -(2**31)
+        return True
     near: float = struct.unpack("f", struct.pack("f", abs(value) / ONE))[0]
     grown: float = struct.unpack("f", struct.pack("f", near * ONE))[0]
     return int(struct.unpack("f", struct.pack("f", grown + 0.5))[0]) == abs(value)
