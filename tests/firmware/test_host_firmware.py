@@ -147,8 +147,10 @@ def test_the_button_stops_and_the_next_push_starts() -> None:
     robot, session = switched_on(), computer()
     send(robot, session, AWAY)
     robot.talk(session, 300)
+    assert not robot.is_lit
     robot.talk(session, 1, flags=1)
     assert happened(robot) == ["MOTORS 80 80", "MOTORS 0 0"]
+    assert robot.is_lit
     robot.talk(session, 100)
     robot.talk(session, 1, flags=2)
     robot.talk(session, 2000)

@@ -55,6 +55,7 @@ CASES = [
     (HEAD + TOUCH + '[[varies]]\npart = "walls[1]"\n', "world.toml has 0 of them"),
     (HEAD + TOUCH + '[[varies]]\npart = "start"\nx_cm = [5, -5]\n', "the first number is not the smaller one"),
     (HEAD + TOUCH + '[[varies]]\npart = "start"\nheading = [-900, 5]\n', "from -360 to 360"),
+    (HEAD + TOUCH * 101, "criteria has 101"),
     ("worlds = 99\n" + HEAD + TOUCH, "Write a number from 1 to 20."),
     (HEAD.replace("tinibot", "tinibt") + TOUCH, "robot is tinibt. Write one of these: tinibot"),
     (HEAD.replace('en = "A"\nes = "B"\n', "") + TOUCH, "title.en is missing"),
