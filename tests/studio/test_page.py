@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -18,6 +19,16 @@ from tiniscript.library.known_kits import lacks
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
+
+# The compiler gets what it is asked, or only once it is let go.
+HOLD = """() => {
+  const { postMessage } = Worker.prototype, held = [];
+  Worker.prototype.postMessage = function (...said) { held.push([this, said]); };
+  window.letGo = () => {
+    Worker.prototype.postMessage = postMessage;
+    for (const [worker, said] of held) worker.postMessage(...said);
+  };
+}"""
 
 
 def checks(page: Page, requests: list[dict[str, str]]) -> list[dict[str, Any]]:
@@ -71,6 +82,19 @@ def test_what_is_typed_is_compiled(page: Page) -> None:
     assert page.inner_text("#status") == "The program is correct: 4 bytes."
     write(page, "")
     assert image(page) == compile("").image
+
+
+def test_a_text_that_is_not_compiled_yet_is_not_called_right(page: Page) -> None:
+    write(page, "F(1, 80)")
+    status = page.locator("#status")
+    assert status.get_attribute("class") == "right"
+    page.evaluate(HOLD)
+    page.keyboard.type("1, ")
+    status.filter(has_text=re.compile("^…$")).wait_for()
+    assert status.get_attribute("class") == ""
+    page.evaluate("letGo()")
+    checked(page)
+    assert (status.inner_text(), status.get_attribute("class")) == ("1 mistake", "wrong")
 
 
 def test_a_mistake_is_marked_where_it_is_and_its_button_repairs_it(page: Page) -> None:

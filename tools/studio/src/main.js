@@ -30,6 +30,8 @@ import { keep, keptWork, LONGEST } from './programs/work.js';
 
 /** @typedef {import('./python.js').Finding} Finding */
 
+const UNCHECKED_MS = 400; // that what was said of a text may stay over the next one: most are checked before
+
 const robots = element('robot', HTMLSelectElement);
 const languages = element('language', HTMLSelectElement);
 const words = element('words', HTMLButtonElement);
@@ -102,7 +104,7 @@ so.language.watch(() => {
   remember();
 });
 const checking = new Checking(python, (why) => {
-  status.textContent = text('bug', { why: String(why).split('\n').filter(Boolean).at(-1) ?? '' });
+  sayStatus(text('bug', { why: String(why).split('\n').filter(Boolean).at(-1) ?? '' }), 'wrong');
 });
 const phone = new Phone(() => panel.run());
 beginScreens(whyOutside !== '' || bringsProgram(location.hash), !('class' in document.documentElement.dataset));
@@ -131,13 +133,18 @@ if ('class' in document.documentElement.dataset) {
 }
 
 let isReady = false;
+let unchecked = 0; // while what is said may be of the text before
 
 so.checked.watch((answer) => {
-  if (!answer) return;
+  if (!answer) {
+    unchecked ||= window.setTimeout(() => {
+      if (isReady) sayStatus('…', '');
+    }, UNCHECKED_MS);
+    return;
+  }
   editor.showFindings(answer.findings, repair);
   showMessages(list, answer.findings, (finding) => views.goTo(finding), repair);
-  status.textContent = summary(answer);
-  status.className = answer.image ? (answer.loose ? 'loose' : 'right') : 'wrong';
+  sayStatus(summary(answer), answer.image ? (answer.loose ? 'loose' : 'right') : 'wrong');
 });
 if (whyOutside) so.note.say(text(known(`why_${whyOutside}`)));
 editor.replace(work.text);
@@ -154,6 +161,14 @@ python.ready.then(
     checking.failed();
   },
 );
+
+/** @param {string} said of the newest text @param {string} look */
+function sayStatus(said, look) {
+  clearTimeout(unchecked);
+  unchecked = 0;
+  status.textContent = said;
+  status.className = look;
+}
 
 /** @param {Finding} finding */
 function repair(finding) {
