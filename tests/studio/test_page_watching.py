@@ -41,8 +41,10 @@ NOTING = """() => {
   };
 }"""
 # The computer's sound, noted as often as it is opened.
-OPENED = """window.opened = []; window.AudioContext = class extends AudioContext {
+OPENED = """window.opened = []; window.closings = 0;
+window.AudioContext = class extends AudioContext {
   constructor() { super(); window.opened.push(this); }
+  suspend() { window.closings += 1; return super.suspend(); }
 }"""
 CRASH = "F(9, 100)"  # into the box to the right
 WAY, WAY_BEFORE = "2f74c0", "bcd2ea"
@@ -100,15 +102,17 @@ def test_the_buzzer_is_heard_unless_it_is_muted(listening: Page) -> None:
 
 
 def test_no_sound_is_open_at_rest(pages: Pages) -> None:
-    """An open one works all the time, and empties a battery."""
+    """An open one works all the time, and empties a battery. To close it, a page waits."""
     page = pages.open("blocks", is_alone=True)
     page.context.add_init_script(OPENED)
     page.reload()
     shown(page)
     assert page.evaluate("window.opened.length") == 0
     page.click("#view_text")
-    run(page, "BEEP(0.1, 440)")
+    run(page, "LOOP(3);BEEP(0.1, 440);W(4);END_LOOP")
+    assert page.evaluate("window.closings") == 0
     until(lambda: page.evaluate("window.opened.map(({state}) => state)") == ["suspended"], "rest")
+    assert page.evaluate("window.closings") == 1
 
 
 def test_stop_and_pause_silence_it(listening: Page) -> None:

@@ -16,3 +16,8 @@ export function element(id, kind) {
 export function say(place, said) {
   if (place.textContent !== said) place.textContent = said;
 }
+
+/** Hides it or shows it, unless it is so. @param {HTMLElement} place @param {boolean} isHidden */
+export function hide(place, isHidden) {
+  if (place.hidden !== isHidden) place.hidden = isHidden;
+}

@@ -1,7 +1,7 @@
 // The part of the page with the virtual robot: its buttons, its picture and what is told of it.
 
 import { Arena } from './arena.js';
-import { element, say } from '../page/elements.js';
+import { element, hide, say } from '../page/elements.js';
 import { faultSaid } from '../page/faults.js';
 import { download } from '../page/files.js';
 import { offsetsOf, rangeAt } from '../writing/parts.js';
@@ -21,7 +21,7 @@ import { WorldDrawing } from '../world/drawing.js';
 /** @typedef {import('../programs/work.js').Work} Work */
 
 const SHOWN = 200; // lines of the trace
-const READ_MS = 100; // nobody reads what changes more often
+const READ_MS = 100; // nobody reads what changes more often; where the program is and what is measured take turns
 const SHORT = 12; // characters of a name whose value stands beside another one
 const SPEEDS = [0.1, 0.5, 1, 4, 20]; // times as quick as the robot
 const PLAYED_MS = 6000; // at most for a run of a lesson
@@ -45,7 +45,8 @@ export class Driving {
   #wasStopped = false;
   #note = '';
   #told = ''; // of the trace
-  #shown_ms = 0; // when all was shown last
+  #shown_ms = 0; // when more than the robot was shown last
+  #isReadingNext = false; // what is measured, not where the program is
   /** @type {Checked['places']} */
   #places = [];
   /** Offsets at which the program that runs stops, for each breakpoint. @type {Map<object, number[]>} */
@@ -77,7 +78,7 @@ export class Driving {
     this.#simulator = new Simulator(python, (state) => {
       if (state) this.#keep(state);
       const isSame = document.documentElement.dataset['phase'] === 'running' && this.#simulator.phase === 'running';
-      if (state && isSame && performance.now() - this.#shown_ms < READ_MS) this.#arena.draw(state);
+      if (state && isSame) this.#goOn(state);
       else this.#show();
     });
     this.#drawing = new WorldDrawing(python, this.#arena, {
@@ -336,12 +337,29 @@ export class Driving {
   }
 
   #show() {
+    const { phase, state } = this.#simulator;
+    this.#showPlaces(); // first: the editor has the page laid out, which is little as long as nothing else is new
+    this.#showReadings();
+    this.#arena.draw(state);
+    document.documentElement.dataset['phase'] = phase;
+    if (!this.#isDriving) this.#seenRun();
+  }
+
+  /** A picture of a run: beside the robot, one thing at a time is new. @param {import('../python.js').RobotState} state */
+  #goOn(state) {
+    this.#arena.draw(state);
+    if (performance.now() - this.#shown_ms < READ_MS / 2) return;
+    if (this.#isReadingNext) this.#showReadings();
+    else this.#showPlaces();
+  }
+
+  #showReadings() {
     const { phase, state, trace } = this.#simulator;
     this.#shown_ms = performance.now();
-    this.#showPlaces(); // first: the editor has the page laid out, which is little as long as nothing else is new
+    this.#isReadingNext = false;
     this.#pause.disabled = !this.#isDriving;
     say(this.#pause, text(phase === 'paused' ? 'go_on' : 'pause'));
-    this.#push.hidden = !state?.is_waiting || phase !== 'running';
+    hide(this.#push, !state?.is_waiting || phase !== 'running');
     say(element('doing', HTMLElement), this.#note || this.#drawing.said || this.#doing());
     const told = trace.slice(-SHOWN).join('\n');
     if (told !== this.#told) element('trace', HTMLElement).textContent = this.#told = told;
@@ -349,14 +367,13 @@ export class Driving {
     this.#where.tell(state, phase);
     this.#showValues();
     this.#plot.draw();
-    this.#arena.draw(state);
-    document.documentElement.dataset['phase'] = phase;
-    if (!this.#isDriving) this.#seenRun();
   }
 
   /** Marks what runs, or where it had a fault. */
   #showPlaces() {
     const { state } = this.#simulator;
+    this.#shown_ms = performance.now();
+    this.#isReadingNext = true;
     const range = this.#place();
     const isAlone = !state || state.fault || state.is_held;
     const ranges = isAlone ? [range] : state.places.map((at) => rangeAt(this.#places, at));
@@ -430,7 +447,7 @@ export class Driving {
   /** @param {import('../python.js').RobotState['score']} score */
   #showScore(score) {
     const place = element('score', HTMLElement);
-    place.hidden = !score;
+    hide(place, !score);
     if (!score) return;
     const { taken, of, points, stars } = score;
     say(place, `⚑ ${taken}/${of}   ${points}   ${starsShown(stars)}`);

@@ -55,7 +55,7 @@ export class Plot {
   draw() {
     const canvas = this.#canvas;
     const place = canvas.parentElement;
-    if (!place || !place.clientHeight) return;
+    if (!place || place.hidden || !place.clientHeight) return; // what is hidden is not laid out for it
     const names = this.names;
     const row = Math.max(LEAST_ROW, Math.floor((place.clientHeight - 22) / Math.max(1, names.length)));
     canvas.style.height = `${Math.max(place.clientHeight, names.length * row + 20)}px`;

@@ -3,6 +3,7 @@
 const VOLUME = 0.06;
 const EDGE_S = 0.005; // in which a tone begins and ends: without it, it clicks
 const LATE_S = 0.5; // a tone that would come later is left out: the robot runs faster than it plays
+const OPEN_MS = 3000; // after a sound, until the computer's sound is closed: the page has to wait for it
 const LOWEST_HZ = 20;
 const HIGHEST_HZ = 16_000;
 
@@ -13,6 +14,7 @@ export class Sounds {
   #free_s = 0; // when the last tone has ended
   /** What sounds, or is going to. @type {Set<OscillatorNode>} */
   #playing = new Set();
+  #closing = 0;
 
   /** @param {number} hertz @param {number} duration_s of this computer's time */
   beep(hertz, duration_s) {
@@ -48,6 +50,7 @@ export class Sounds {
   /** Browsers let a page sound once somebody has touched it, and say so of one that tries before. */
   #awake() {
     if (this.isMuted || !('AudioContext' in window) || navigator.userActivation?.hasBeenActive === false) return null;
+    clearTimeout(this.#closing);
     this.#context ??= new AudioContext();
     this.#context.resume(); // also of one that is about to rest
     return this.#context;
@@ -74,7 +77,8 @@ export class Sounds {
     this.#playing.add(tone);
     tone.addEventListener('ended', () => {
       this.#playing.delete(tone);
-      if (!this.#playing.size) context.suspend(); // an open one works without a sound, too
+      clearTimeout(this.#closing);
+      if (!this.#playing.size) this.#closing = window.setTimeout(() => context.suspend(), OPEN_MS); // an open one works without a sound, too
     });
     return tone;
   }

@@ -73,7 +73,7 @@ export class Editor {
     const toggle = (at, isLine) => this.#toggle(at, isLine);
     const root = parent.attachShadow({ mode: 'open' });
     const place = document.createElement('div');
-    place.style.height = '100%';
+    place.style.cssText = 'position: absolute; inset: 0; overflow: hidden'; // laid out without the rest of the page
     root.append(place);
     this.#view = new EditorView({
       parent: place,
