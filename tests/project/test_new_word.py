@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -27,7 +28,8 @@ from tiniscript.studio.block_printing import print_blocks
 from tiniscript.studio.block_reading import read
 from tiniscript.studio.description import description
 from tiniscript.syntax.formatter import formatted
-from tools.generate import poster
+from tools.generate import paper, poster
+from tools.generate.documents import language_document
 from tools.generate.paper import Line
 
 ROBOT = robots.load("tinibot")
@@ -94,11 +96,13 @@ from tiniscript.base import languages
 languages.FOLDER = with_texts(Path(sys.argv[1]))
 from tiniscript.base.words import WORDS
 WORDS[HORN.text] = HORN
+WORDS["CHIME"] = HORN._replace(text="CHIME")
 import json
 from tiniscript.studio import block_kinds
 from tools.builds.page_texts import page_texts
 from tools.generate import text_tables
-labels = [page_texts(language)["block/HORN"] for language in ("en", "es")]
+texts = [page_texts(language) for language in ("en", "es")]
+labels = [each["block/" + word] for word in ("HORN", "CHIME") for each in texts]
 print(json.dumps([block_kinds.data(), labels, text_tables.words_tables("a test")]))
 """
 
@@ -113,7 +117,8 @@ def test_blocks_and_the_robots_reader_have_it_in_their_tables(tmp_path: Path) ->
     )
     blocks, labels, tables = json.loads(ran.stdout)
     assert HORN.text in blocks["kinds"]["fixed"]["words"]
-    assert labels == [f"{{{HORN.text}}} {says}" for says in SAID.values()]
+    own = "{CHIME} CHIME = BEEP(0.5, 440)"  # the catalogue has nothing to say of it
+    assert labels == [*(f"{{{HORN.text}}} {says}" for says in SAID.values()), own, own]
     packed, rows, _ = tables.split("tini_progmem = {")[1:]
     assert "// HORN" in packed and "// HORN" not in rows
 
@@ -124,6 +129,29 @@ def test_it_is_on_the_poster(
 ) -> None:
     monkeypatch.setattr(languages, "FOLDER", with_texts(tmp_path / "said"))
     languages.catalogue.cache_clear()
-    lines = [each.text for each in poster.page(language) if isinstance(each, Line)]
+    monkeypatch.setitem(WORDS, "CHIME", HORN._replace(text="CHIME"))
+    lines = [each for each in poster.page(language) if isinstance(each, Line)]
     languages.catalogue.cache_clear()
-    assert lines[lines.index(HORN.text) + 1] == says
+    texts = [each.text for each in lines]
+    assert texts[texts.index(HORN.text) + 1] == says
+    assert texts[texts.index("CHIME") + 1] == "= BEEP(0.5, 440)"
+    assert max(each.y for each in lines[:-1]) <= paper.HEIGHT - 26
+
+
+def test_a_page_that_is_full_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
+    for number in range(20):
+        monkeypatch.setitem(WORDS, f"HORN{number}", HORN._replace(text=f"HORN{number}"))
+    with pytest.raises(AssertionError, match="the page has room for 45 rows"):
+        poster.page("en")
+
+
+@pytest.mark.parametrize(
+    ("document", "language", "says"),
+    [
+        ("language.en.md", "en", "With fixed values"),
+        ("lenguaje.es.md", "es", "Con valores fijos"),
+    ],
+)
+def test_it_is_in_the_references(document: str, language: str, says: str) -> None:
+    row = rf"(?m)^- {says}: .*`HORN` = `BEEP\(0\.5, 440\)`$"
+    assert re.search(row, language_document(document, language))

@@ -12,6 +12,7 @@ from functools import partial
 from pathlib import Path
 
 from tiniscript.base.languages import SOURCE, languages, text
+from tiniscript.base.words import WORDS
 from tiniscript.lessons.lesson import AREA, KINDS, WHATS, Kind
 from tiniscript.robots.text_levels import CODE_BYTES, LEVELS
 from tools.site.documents import LIST, documents, sources
@@ -77,6 +78,13 @@ def bring_up_document(document: str, language: str) -> str:
     return spliced(_text(document), "steps", table(["", *head], rows))
 
 
+def language_document(document: str, language: str) -> str:
+    """Return a reference of the language, whose list of words has those with fixed values."""
+    words = [f"`{word.text}` = `{word.stands_for}`" for word in WORDS.values() if word.stands_for]
+    row = f"- {text('documents', 'language/fixed', language)}: {' '.join(words)}\n"
+    return spliced(_text(document), "fixed", row if words else "")
+
+
 def list_of_documents(command: str) -> str:
     """Return `docs/README.md`: the documents' titles, in all languages side by side."""
     found = [each for each in documents(FOLDER.parent) if each.sources.get(SOURCE) != LIST]
@@ -139,6 +147,10 @@ DOCUMENTS: dict[str, Callable[[], str]] = {
     **{
         Path(path).name: partial(bring_up_document, Path(path).name, language)
         for language, path in sources(FOLDER.parent, "docs/bring-up.md").items()
+    },
+    **{
+        Path(path).name: partial(language_document, Path(path).name, language)
+        for language, path in sources(FOLDER.parent, "docs/language.en.md").items()
     },
     "lessons.en.md": lessons_document,
 }

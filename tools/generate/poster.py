@@ -18,7 +18,7 @@ from tools.generate.paper import BOLD, MONO, SANS, Box, Line, Page
 
 LEFT, RIGHT = 36.0, 559.0
 CODE_X, SAYS_X = 44.0, 252.0
-HEAD_PT, ROW_PT = 20.5, 15.4
+HEAD_PT, ROW_PT, LEAST_ROW_PT = 20.5, 15.4, 12.0
 CODE_SIZE, SAYS_SIZE = 9.8, 10.0
 CODE_SIGNS, SAYS_SIGNS = 34, 60  # that fit
 NOT_SHOWN = ("alias", "later")  # roles: other spellings, and words that do nothing yet
@@ -97,7 +97,8 @@ def _with_fixed(rows: Iterable[str], language: str) -> Iterator[tuple[str, str]]
         )
         for word in WORDS.values():
             if word.stands_for and f"{{{word.stands_for.partition('(')[0]}}}" in code:
-                yield word.text, text("studio", f"block/{word.text}", language).partition("} ")[2]
+                says = translated("studio", f"block/{word.text}", language)
+                yield word.text, says.partition("} ")[2] if says else f"= {word.stands_for}"
 
 
 def posters(command: str) -> dict[str, Callable[[], str]]:
@@ -124,20 +125,23 @@ def page(language: str) -> Page:
     ]
     y = 74.0
     shown: list[str] = []
-    for heading, rows in GROUPS:
+    groups = [(heading, list(_with_fixed(rows, language))) for heading, rows in GROUPS]
+    room = paper.HEIGHT - 26 - y - (HEAD_PT + 2) * len(groups)
+    row_pt = min(ROW_PT, room / sum(len(rows) for _, rows in groups))
+    assert row_pt >= LEAST_ROW_PT, f"the page has room for {room / LEAST_ROW_PT:.0f} rows"
+    for heading, rows in groups:
         found.append(Line(LEFT, y + 15, 12, BOLD, BLUE, _said(heading, language)))
         y += HEAD_PT
-        for number, (code, says) in enumerate(_with_fixed(rows, language)):
+        for number, (code, says) in enumerate(rows):
             assert len(code) <= CODE_SIGNS and len(says) <= SAYS_SIGNS, (code, says)
             shown += re.findall(r"[A-Z_]+", re.sub(r"\(.*?\)", "", code.replace(",", "")))
             shown += re.findall(r"\b(?:UNTIL|FOREVER|CM|DEG)\b", code)
             if number % 2 == 0:
-                found.append(Box(LEFT, y, RIGHT - LEFT, ROW_PT, PALE))
-            found.append(Line(CODE_X, y + 11.8, CODE_SIZE, MONO, BLACK, code))
-            found.append(Line(SAYS_X, y + 11.8, SAYS_SIZE, SANS, BLACK, says))
-            y += ROW_PT
+                found.append(Box(LEFT, y, RIGHT - LEFT, row_pt, PALE))
+            found.append(Line(CODE_X, y + (row_pt + 8.2) / 2, CODE_SIZE, MONO, BLACK, code))
+            found.append(Line(SAYS_X, y + (row_pt + 8.2) / 2, SAYS_SIZE, SANS, BLACK, says))
+            y += row_pt
         y += 2
-    assert y <= paper.HEIGHT - 26, f"the page is too short by {y - paper.HEIGHT + 26} points"
     missing = {word.text for word in WORDS.values() if word.role not in NOT_SHOWN} - set(shown)
     assert not missing, f"the poster lacks {sorted(missing)}"
     found.append(Line(LEFT, paper.HEIGHT - 16, 9, SANS, GREY, _said("foot", language)))

@@ -36,7 +36,11 @@ class Kind(NamedTuple):
 
 # fmt: off
 MOVES = tuple(UNIT_OF)
-FIXED = tuple(word.text for word in WORDS.values() if word.stands_for)
+# What a word with fixed values says where the catalogue has no `block/HORN`: `HORN = BEEP(0.5, 440)`.
+FIXED = {
+    word.text: f"{{{word.text}}} {word.text} = {word.stands_for}"
+    for word in WORDS.values() if word.stands_for
+}
 
 KINDS = {kind.name: kind for kind in (
     Kind("move", "move", ("number", "number"), words=MOVES, units=UNIT_OF),
@@ -48,7 +52,7 @@ KINDS = {kind.name: kind for kind in (
     Kind("start", "others"),
     Kind("beep", "time", ("number", "number")),
     Kind("show", "time", ("any",)),
-    Kind("fixed", "time", words=FIXED, says="%1"),
+    Kind("fixed", "time", words=tuple(FIXED), says="%1"),
     Kind("read", "sensors", field="sensor"),
     Kind("set", "sensors", ("any",), field="actuator"),
     Kind("call", "words", field="name"),
