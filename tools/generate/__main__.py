@@ -28,6 +28,7 @@ from tools.generate.arena import world_picture
 from tools.generate.command_pages import DOCUMENTED, page
 from tools.generate.cpp_cases import cases_header
 from tools.generate.documents import DOCUMENTS, list_of_documents, spliced, table
+from tools.generate.driver_lists import with_drivers
 from tools.generate.front import fronts
 from tools.generate.guide_pictures import guide_pictures
 from tools.generate.link_header import payloads
@@ -225,6 +226,7 @@ WIRED = ROOT / "vm_arduino" / "src" / "boards" / "kits"
 WIRING = ROOT / "docs" / "wiring"
 
 OUTPUTS: list[tuple[Path, Callable[[], str]]] = [
+    (ROBOTS / "tinibot.toml", partial(with_drivers, ROBOTS / "tinibot.toml")),
     (ROBOTS / "shipped.py", shipped_robots),
     (SPEC, spec),
     (MACHINE / "bytecode.h", partial(cpp_header.header, COMMAND)),

@@ -165,12 +165,15 @@ class Plan:
 class Driver(ABC):
     """`used_by` is the table of [board] and the kind of the device: `sensors number`.
 
+    `profile` says to who writes a profile which keys it has: `tinibot.toml` lists it.
+
     `looks` is its shape, where that is always the same; the catalogue `wiring` has the sentences by
     the keys that its shape has.
     """
 
     name: ClassVar[str]
     used_by: ClassVar[str]
+    profile: ClassVar[str]
     pins: ClassVar[tuple[PinKey, ...]]
     settings: ClassVar[tuple[Setting, ...]] = ()
     looks: ClassVar[Shape]
@@ -229,7 +232,10 @@ class DiscDriver(Driver):
 class SensorDriver(Driver):
     @abstractmethod
     def firmware(self, part: Part, device: Device, wiring: Wiring) -> list[str]:
-        """Return the lines that put a reading into `*value` and return whether there was one."""
+        """Return the lines that put a reading into `*value` and return whether there was one.
+
+        Of a number `*value` has thousandths, in between also what the converter counts.
+        """
 
     @abstractmethod
     def sketch(
@@ -302,6 +308,7 @@ class Bridge(MotorDriver):
     """A chip that takes PWM and two directions for each motor."""
 
     module = "motors_bridge"
+    profile = "left_pwm, left_forward, left_backward and the same for right"
     pins = tuple(
         PinKey(f"{side}_{key}", need)
         for side in SIDES

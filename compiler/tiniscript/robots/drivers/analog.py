@@ -32,6 +32,7 @@ class Analog(SensorDriver):
     """
 
     name = "analog"
+    profile = "pin; zero and full: what 0 V and the highest voltage mean (0 and 1023)"
     used_by = "sensors number"
     pins = (PinKey("pin", "analog"),)
     settings = (

@@ -9,6 +9,7 @@ from tiniscript.robots.profile import Wiring
 
 class DigitalActuator(ActuatorDriver):
     name = "digital"
+    profile = "pin; yes_is_low = true"
     used_by = "actuators yes/no"
     pins = (PinKey("pin", "output"),)
     settings = (Setting("yes_is_low", "yes/no"),)

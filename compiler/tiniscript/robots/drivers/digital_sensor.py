@@ -18,6 +18,7 @@ from tiniscript.robots.profile import Wiring
 
 class DigitalSensor(SensorDriver):
     name = "digital"
+    profile = "pin; pull_up = true, yes_is_low = true"
     used_by = "sensors yes/no"
     pins = (PinKey("pin", "input"),)
     settings = (Setting("pull_up", "yes/no"), Setting("yes_is_low", "yes/no"))

@@ -22,6 +22,7 @@ FARTHEST = 400 * ONE  # reading without an echo
 
 class HcSr04(SensorDriver):
     name = "hc_sr04"
+    profile = "trigger, echo; in cm"
     used_by = "sensors number"
     pins = (PinKey("trigger", "output"), PinKey("echo", "echo"))
     looks = Shape(

@@ -9,6 +9,7 @@ from tiniscript.robots.profile import Wiring
 
 class PwmActuator(ActuatorDriver):
     name = "pwm"
+    profile = "pin"
     used_by = "actuators number"
     pins = (PinKey("pin", "pwm"),)
     looks = lamp(is_on_low=False)

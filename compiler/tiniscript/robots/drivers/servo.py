@@ -21,6 +21,10 @@ from tiniscript.robots.profile import Wiring
 
 class Servo(ActuatorDriver):
     name = "servo"
+    profile = (
+        'pin; low_us and high_us: the pulse at the ends of its range; at_stop = "release", or '
+        '"hold" where it shall stay as it is when a program is stopped'
+    )
     used_by = "actuators number"
     pins = (PinKey("pin", "servo"),)
     settings = (

@@ -21,6 +21,10 @@ _STILL = Setting("left_still_us", "whole", 1500, 1000, 2000)
 
 class Servos(MotorDriver):
     name = "servos"
+    profile = (
+        "left_pin, right_pin of servos that turn without end; left_reversed, right_reversed, "
+        "left_still_us, right_still_us"
+    )
     module = "motors_servos"
     pins = tuple(PinKey(f"{side}_pin", "servo") for side in SIDES)
     settings = (

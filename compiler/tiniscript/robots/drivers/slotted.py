@@ -7,6 +7,10 @@ from tiniscript.robots.driver import BOARD_5V, GROUND, DiscDriver, Shape, Termin
 
 class Slotted(DiscDriver):
     name = "slotted"
+    profile = (
+        "left, right: pins that count, on an uno and a nano 2 and 3, on a mega also 18 to 21; "
+        "holes of a disc, 20; wheel_cm, the diameter of a wheel, 6.5"
+    )
     looks = Shape(
         "disc",
         "need_slotted",

@@ -18,6 +18,7 @@ from tiniscript.robots.profile import Wiring
 
 class TB6612(Bridge):
     name = "tb6612"
+    profile = f"{Bridge.profile}; standby, if it is wired"
     pins = (*Bridge.pins, PinKey("standby", "output", True))
 
     def shape(self, wiring: Wiring, device: Device | None, sees: str, pin_volts: int) -> Shape:

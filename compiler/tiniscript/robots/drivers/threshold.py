@@ -18,6 +18,7 @@ from tiniscript.robots.profile import Wiring
 
 class Threshold(SensorDriver):
     name = "threshold"
+    profile = "pin, analog; threshold of 1023, yes_is_low = true"
     used_by = "sensors yes/no"
     pins = (PinKey("pin", "analog"),)
     settings = (

@@ -7,6 +7,9 @@ from tiniscript.robots.driver import BOARD_5V, GROUND, DiscDriver, PinKey, Shape
 
 class TwoChannel(DiscDriver):
     name = "two_channel"
+    profile = (
+        "what slotted has, and left_b, right_b: it sees a wheel that turns back; holes are pulses"
+    )
     pins = (*DiscDriver.pins, PinKey("left_b", "input"), PinKey("right_b", "input"))
     has_two = True
     looks = Shape(

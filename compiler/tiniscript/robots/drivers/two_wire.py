@@ -21,6 +21,7 @@ from tiniscript.robots.profile import Wiring
 
 class TwoWire(MotorDriver):
     name = "two_wire"
+    profile = "left_forward, left_backward, right_forward, right_backward, all PWM"
     module = "motors_two_wire"
     pins = tuple(PinKey(f"{side}_{way}", "pwm") for side in SIDES for way in WAYS)
     drive = """\

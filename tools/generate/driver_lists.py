@@ -1,0 +1,43 @@
+"""The lists of drivers in `robots/tinibot.toml`, the profile that people copy."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from textwrap import wrap
+
+from tiniscript.robots.drivers import DRIVERS
+
+# How the line above each list ends, by what uses the drivers in it.
+LISTS = {
+    "motors": "Drivers of motors:",
+    "discs": "tinibot2.toml has some.",
+    "sensors number": "Drivers of sensors that are numbers:",
+    "sensors yes/no": "Drivers of sensors that are yes/no:",
+    "actuators number": "Drivers of actuators that are numbers, [board.actuators.NAME]:",
+    "actuators yes/no": "Drivers of actuators that are yes/no:",
+}
+NAME_SIGNS, ROW_SIGNS = 12, 96
+
+
+def with_drivers(profile: Path) -> str:
+    """Return the text of a profile with what each driver says of its keys."""
+    text = profile.read_text(encoding="utf-8")
+    for used_by, end in LISTS.items():
+        rows = "".join(
+            _row(driver.name, driver.profile)
+            for driver in DRIVERS.values()
+            if driver.used_by == used_by
+        )
+        head, found, tail = text.partition(f"{end}\n")
+        assert found, f"{profile.name} has no line that ends with {end}"
+        text = head + found + rows + re.sub(r"^(#   .*\n)*", "", tail)
+    return text
+
+
+def _row(name: str, keys: str) -> str:
+    """Return `#   hc_sr04     trigger, echo; in cm`, on as many lines as it needs."""
+    first = f"#   {name:{NAME_SIGNS}}"
+    more = "#".ljust(len(first))
+    rows = wrap(keys, ROW_SIGNS, initial_indent=first, subsequent_indent=more)
+    return "".join(f"{row}\n" for row in rows)
