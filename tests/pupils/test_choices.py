@@ -95,4 +95,4 @@ def test_a_repair_with_a_mistake_in_it_is_none() -> None:
     edits = [Edit(Span(3, 3), ",,,"), Edit(Span(5, 6), "")]
     for start, is_repair in ((2, True), (3, False), (5, False), (6, True)):
         other = missing._replace(span=Span(start, 9))
-        assert is_better([other], [missing], missing.code, edits) == is_repair
+        assert is_better([other], [missing], edits) == is_repair

@@ -6,8 +6,7 @@ guess a name, and with it the program has fewer mistakes. All others are left to
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
 from typing import NamedTuple
 
 from tiniscript.base.source import Edit, Source, applied, overlap
@@ -39,16 +38,9 @@ def edits_of(diagnostic: Diagnostic) -> list[Edit] | None:
     return [Edit(place or diagnostic.span, new)]
 
 
-# Codes of headers: how a block ends is not looked at before its header is right.
-_HEADERS = frozenset((
-    codes.SPANISH_IF, codes.OTHER_LANGUAGE, codes.MISSING_OPEN, codes.HEADER_SEPARATOR,
-    codes.BRACES, codes.ASKED_BEHIND, codes.NEEDLESS_FRAME, codes.CASES, codes.PASTED,
-))  # fmt: skip
 MANY = 100  # diagnostics after which a program is not read on
 CHECKS = 400  # of one program, fewer of a long one
 CHECKED_CHARACTERS = 600_000
-
-
 OFFERS = 20  # repairs of one text that are tried
 
 
@@ -60,41 +52,38 @@ class Fixed(NamedTuple):
     left: list[Diagnostic]
 
 
-_Step = tuple[str, list[Diagnostic], int]
 Check = Callable[[str], list[Diagnostic]]
 
 
-class _Allowed:
-    """Counts how often a text is checked: a long program takes long, and has many mistakes."""
-
-    def __init__(self, check: Check, left: int) -> None:
-        self._check = check
-        self.left = left
-
-    def check(self, text: str) -> list[Diagnostic]:
-        self.left -= 1
-        return self._check(text)
-
-
-class _Repair(NamedTuple):
-    code: Code
-    edits: list[Edit]
-
-
 def fixed(text: str, check: Check) -> Fixed:
-    """Return a program with its sure repairs. `check` finds the diagnostics of a text."""
-    allowed = _Allowed(check, min(CHECKS, 20 + CHECKED_CHARACTERS // (len(text) + 1)))
-    check = allowed.check
+    """Return a program with its sure repairs. `check` finds the diagnostics of a text.
+
+    A long program takes long, and has many mistakes: it is not checked so often.
+    """
+    left = min(CHECKS, 20 + CHECKED_CHARACTERS // (len(text) + 1)) - 1
     found = check(text)
     count = 0
-    while allowed.left > 0:
-        repairs = _sure(found, text)
-        step = _all_of(repairs, text, found, check) or _one_of(repairs, text, found, check)
-        if step is None:
-            break
-        text, found, made = step
-        count += made
+    steps = _steps(found)
+    while left > 0 and (repairs := next(steps, None)):
+        edits = [edit for each in repairs for edit in each]
+        changed = applied(text, edits)
+        after = check(changed)
+        left -= 1
+        if is_better(after, found, edits):
+            text, found, count, steps = changed, after, count + len(repairs), _steps(after)
     return Fixed(text, count, found)
+
+
+def _steps(found: list[Diagnostic]) -> Iterator[list[tuple[Edit, ...]]]:
+    """Give the sure repairs that do not touch, and then each one alone."""
+    sure = [it.repair.edits for it in found[:MANY] if it.repair and it.repair.is_sure]
+    together: list[tuple[Edit, ...]] = []
+    for edits in sure:
+        if not any(overlap(edits, other) for other in together):
+            together.append(edits)
+    if len(together) > 1:
+        yield together
+    yield from ([edits] for edits in sure)
 
 
 def offers(text: str, found: list[Diagnostic], check: Check) -> list[list[Edit]]:
@@ -111,46 +100,11 @@ def offers(text: str, found: list[Diagnostic], check: Check) -> list[list[Edit]]
             continue
         tried += 1
         after = check(applied(text, edits))
-        offered.append(edits if is_better(after, found, diagnostic.code, edits) else [])
+        offered.append(edits if is_better(after, found, edits) else [])
     return offered
 
 
-def _all_of(
-    repairs: list[_Repair], text: str, found: list[Diagnostic], check: Check
-) -> _Step | None:
-    """Make all repairs at once that do not touch, if each of them counts."""
-    chosen: list[_Repair] = []
-    for repair in repairs:
-        if not any(overlap(repair.edits, other.edits) for other in chosen):
-            chosen.append(repair)
-    if len(chosen) < 2:
-        return None
-    changed = applied(text, [edit for repair in chosen for edit in repair.edits])
-    after = check(changed)
-    # The reader stops at so many, of which several may be one here: what comes after it comes now.
-    is_cut = len(found) > MANY // 4
-    if is_cut and _mistakes(after) <= _mistakes(found) and _first(after) > _first(found):
-        return changed, after, len(chosen)
-    if _mistakes(after) > _mistakes(found) - len(chosen):
-        return None
-    return changed, after, len(chosen)
-
-
-def _one_of(
-    repairs: list[_Repair], text: str, found: list[Diagnostic], check: Check
-) -> _Step | None:
-    """Make the first repair that leaves fewer mistakes."""
-    for repair in repairs:
-        changed = applied(text, repair.edits)
-        after = check(changed)
-        if is_better(after, found, repair.code, repair.edits):
-            return changed, after, 1
-    return None
-
-
-def is_better(
-    after: list[Diagnostic], found: list[Diagnostic], code: Code, edits: list[Edit]
-) -> bool:
+def is_better(after: list[Diagnostic], found: list[Diagnostic], edits: Sequence[Edit]) -> bool:
     """Whether a repair leaves fewer mistakes.
 
     Or as many, where it has uncovered one elsewhere: how a block ends is not looked at before its
@@ -158,8 +112,6 @@ def is_better(
     """
     if _mistakes(after) != _mistakes(found):
         return _mistakes(after) < _mistakes(found)
-    if code not in _HEADERS and not any(each.code is code for each in after):
-        return False
     shift = 0
     for span, new in sorted(edits):
         start = span.start + shift
@@ -170,22 +122,9 @@ def is_better(
     return True
 
 
-def _sure(found: list[Diagnostic], text: str) -> list[_Repair]:
-    return [
-        _Repair(each.code, [*each.repair.edits])
-        for each in found[:MANY]  # the others come when these are made
-        if each.repair is not None and each.repair.is_sure
-    ]
-
-
 def _is_sealed(edit: Edit, source: Source) -> bool:
     """Whether a change is in a line that has a checksum: it is to be copied again."""
     return "~" in source.line_text(source.position(edit.span.start)[0])
-
-
-def _first(found: list[Diagnostic]) -> int:
-    """Return where the first mistake is in the text."""
-    return min((each.span.start for each in found if each.is_mistake), default=sys.maxsize)
 
 
 def _mistakes(found: list[Diagnostic]) -> int:
