@@ -256,6 +256,10 @@ class _Gaps(dict[str, str]):
         """Return where a capture stands: from which token on, and before which."""
         return self._line.span(self._match, name)
 
+    def meant(self, name: str) -> str:
+        """Return the word of the language that a capture begins with."""
+        return self.part.means(self.part.row[self.span(name)[0] - 1].text)
+
     def captured(self, name: str) -> str:
         start, end = self.span(name)
         if start == end:
@@ -321,11 +325,6 @@ def _worded(gaps: _Gaps, is_not: bool) -> dict[str, str]:
     if found is None:
         raise _NoGap
     return found
-
-
-def _head(gaps: _Gaps) -> str:
-    token = gaps.part.row[gaps.span("h")[0] - 1]
-    return gaps.part.means(token.text)
 
 
 def _sensor(k: int) -> Callable[[_Gaps], str]:
@@ -505,7 +504,8 @@ _GAPS: dict[str, Callable[[_Gaps], str]] = {
     "endless": lambda gaps: _all(gaps, "FOREVER"),
     "more": lambda gaps: _all(gaps, str(int(gaps["n"]) + 1)), "twice": _twice,
     "said": lambda gaps: gaps.part.words.strip(" ,:"),
-    "head": _head,
+    "head": lambda gaps: gaps.meant("h"), "called": lambda gaps: gaps.meant("w"),
+    "usage": lambda gaps: WORDS[gaps.meant("w")].usage,
     "choice": lambda gaps: _choice(gaps, ";") if all(
         "(" in each or each == "S" for each in _choices(gaps)) else "",
     "choices": _choice, "apart": _apart, "number": lambda gaps: for_a_number(gaps.part.text),

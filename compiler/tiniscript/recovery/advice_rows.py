@@ -55,6 +55,7 @@ ADVICE = """
 ^ @none n=@number times :? $ | TS062 | found={words}; fix=LOOP({n}) | 4 veces:⏎S => fix=LOOP(4)
 ^ @last <loop> (? n=@num )? times? $ | TS062 | found={words}; all={all} | F(1, 50)⏎repetir 3 => all=LOOP(3);F(1, 50);END_LOOP
 ^ @last <loop> (? @num? )? times? $ | TS062 | found={words} | F(1, 50)⏎repetir => found=repetir
+^ @last @word s=FOREVER $ | TS062 | found={words}; all={endless} | F(1, 50)⏎por siempre => all=LOOP(FOREVER);F(1, 50);END_LOOP
 # questions in words
 ^ @unbegun when|at @word* flag @word* $ | TS102 | found={words}; right=SI|; usage=SI|F(2, 80); fix= | when green flag clicked => right=SI|
 ^ @unbegun when|at @word? @word? beginning :? $ | TS102 | found={words}; right=SI|; usage=SI|F(2, 80); fix= | on start => right=SI|
@@ -86,6 +87,9 @@ ADVICE = """
 ^ @none s=cases ( v=@word @any* $ | TS066 | found={s}; first=IF({v} = 1); second=ELSEIF({v} = 2) | SWITCH(X) => second=ELSEIF(X = 2)
 ^ @none s=cases @any* $ | TS066 | found={s}; first=IF(X = 1) | CASE 1: F(1, 50) => first=IF(X = 1)
 ^ @none most|least|on|off the|one? s=@noGRIPPER|@noLED $ | TS101 | found={s}; near= | OPEN GRIPPER => found=GRIPPER
+^ @none w=F|B|L|R ( @num s=@in_steps|times @any* $ | TS053 | word={called}; name=time; wanted=seconds; unit={s}; usage={usage} | F(3 pasos, 60) => usage=F(time, power)
+^ @none w=BEEP|W ( @num s=@in_steps|times|@in_cm|@in_deg @any* $ | TS053 | word={called}; name=seconds; wanted=seconds; unit={s}; usage={usage} | BEEP(3 veces) => usage=BEEP(seconds, hertz)
+^ @none s=@num @call @any* $ | TS054 | found={s} | 2 F(1, 50) => found=2
 # letters for a way
 ^ @none s=FL|LF ( n=@num , @num ) $ | TS101 | found={s}; near=; curve=M(30, 60);W({n});S | FL(1, 60) => curve=M(30, 60);W(1);S
 ^ @none s=FR|RF ( n=@num , @num ) $ | TS101 | found={s}; near=; curve=M(60, 30);W({n});S | FR(1, 60) => curve=M(60, 30);W(1);S

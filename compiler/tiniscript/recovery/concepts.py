@@ -38,8 +38,8 @@ _LONGEST = 4  # words of a name
 # Classes by what the lexicon says of a word that is none of the language.
 _CLASSES = {
     "unit cm 1000": "@in_cm", "unit cm 100000": "@in_m", "unit s 1000": "@in_secs",
-    "unit ° 1000": "@in_deg", "value %": "@of_power", "value s": "@of_time",
-    "value Hz": "@of_pitch", "number 1": "@one", "number 100": "@hundred",
+    "unit ° 1000": "@in_deg", "unit steps 1000": "@in_steps", "value %": "@of_power",
+    "value s": "@of_time", "value Hz": "@of_pitch", "number 1": "@one", "number 100": "@hundred",
 }  # fmt: skip
 REMEMBERED = 500  # lines: each is asked for often while one program is read
 

@@ -9,11 +9,10 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Sequence
 from functools import cached_property
-from itertools import pairwise
 
 from tiniscript.base.kit import Kit
 from tiniscript.base.source import Edit, Source, Span
-from tiniscript.base.words import BLOCK_ENDS, QUESTION, UNIT_OF, WAYS, WORDS, nearest, said_instead
+from tiniscript.base.words import BLOCK_ENDS, QUESTION, WORDS, nearest, said_instead
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic, Repair
 from tiniscript.recovery import lines
@@ -21,7 +20,6 @@ from tiniscript.recovery.amounts import with_number
 from tiniscript.recovery.concepts import (
     CALLED,
     ENDED,
-    UNITS,
     Lexeme,
     Names,
     concept_of,
@@ -53,7 +51,6 @@ _MOST_TIMES = 20  # that a DEF is done
 _LONGEST = 120  # characters of a sentence that a message shows
 _MANY = 30  # diagnostics of which more is said
 _PAUSE = "W(2)"
-_UNIT_NAMES = {"s": "seconds", "%": "percent", "Hz": "hertz", "cm": "centimetres"}
 _OF_ENDS = (codes.NEVER_ENDS, codes.NOT_OPEN, codes.CALLS_ITSELF)
 _NOT_TOP = (codes.TASK_NOT_TOP, codes.DEF_NOT_TOP)
 _OF_ITS_WORD = (codes.UNKNOWN_WORD, codes.WHICH_WAY)  # whose units say nothing more
@@ -203,11 +200,6 @@ class _Usage:
             return Diagnostic(codes.SWITCH_WHAT, found.span)
         if any(map(self.is_button, words)) and [each.text for each in tokens[1:2]] != ["("]:
             return self.no_button(found)
-        endless = next((each for each in words if self.command(each) == "FOREVER"), "")
-        if endless and not meant:
-            values = {"found": endless, "right": "LOOP", "fix": "LOOP(FOREVER)"}
-            values["usage"] = _usage("LOOP")
-            return Diagnostic(codes.OTHER_LANGUAGE, found.span, values, piece)
         if any(said_of(each, "turn") or said_of(each, "lap") for each in words):
             others = {self.command(it) for it in words
                       if self._is_order(it) and not said_of(it, "right")}  # fmt: skip
@@ -345,8 +337,6 @@ class _Usage:
             return found._replace(values={**found.values, "usage": usage})
         if (said := self.foreign(found, tokens) or self.amount(found)) is not None:
             return said
-        if (said := self.unit(found, tokens)) is not None:
-            return said
         before = self.source[Span(self.piece(found.span).start, found.span.end)]
         head = _LAST_HEAD.search(before)
         end = text.find(")", found.span.start)
@@ -377,23 +367,6 @@ class _Usage:
         start = self.piece(found.span).start
         told = Diagnostic(codes.UNKNOWN_WORD, Span(start, start + len(word)), {"found": word})
         return self.unknown(told) or told
-
-    def unit(self, found: Diagnostic, tokens: list[Lexeme]) -> Diagnostic | None:
-        """A move that is said in degrees, steps or centimetres: it takes a time."""
-        word = WORDS.get(self.command(tokens[0].text)) if tokens else None
-        signs = [each.text for each in tokens]
-        own = tokens[: signs.index(")") if ")" in signs else len(tokens)]
-        for k, (number, unit) in enumerate(pairwise(own)):
-            said = UNITS.get(unit.text, ("",))[0] if number.kind is NUMBER else ""
-            if word is None or word.role not in ("move", "wait", "beep") or not said:
-                continue
-            own_way = WAYS[UNIT_OF[word.text]].unit if word.text in UNIT_OF and k == 2 else ""
-            if said not in (own_way, *(each.unit for each in word.arguments)):
-                its = word.arguments[min(signs[:k].count(","), len(word.arguments) - 1)]
-                values = {"word": word.text, "name": its.name, "usage": word.usage}
-                values |= {"wanted": _UNIT_NAMES[its.unit], "unit": _UNIT_NAMES.get(said, said)}
-                return Diagnostic(codes.OTHER_UNIT, found.span, values)
-        return None
 
     def setup(self, found: Diagnostic) -> Diagnostic | None:
         """Another word before the bar: one that says the button, or looks like it."""
@@ -539,23 +512,14 @@ class _Usage:
         return found._replace(values=values)
 
     def no_order(self, found: Diagnostic) -> Diagnostic | None:
-        """A value where an instruction is expected."""
-        piece, sign = self.piece(found.span), found.values.get("found", "")
-        tokens = self.tokens(piece)
-        if self.source.text.startswith("/*", found.span.start):
-            return Diagnostic(codes.OTHER_NOTE, found.span, {"found": "/*"})
-        if sign.isdecimal() and len(tokens) > 2 and tokens[1].text in WORDS:
-            return Diagnostic(codes.LINE_NUMBER, found.span, {"found": sign})
-        return None
+        is_note = self.source.text.startswith("/*", found.span.start)
+        return Diagnostic(codes.OTHER_NOTE, found.span, {"found": "/*"}) if is_note else None
 
     def function(self, found: Diagnostic) -> Diagnostic | None:
         name = found.values["found"]
         if name in self.names.sensors:
             return Diagnostic(codes.NO_BRACKETS_HERE, found.span, {"word": name, "right": name})
         return Diagnostic(codes.NO_INPUT, found.span) if said_of(name, "input") else None
-
-    def number(self, found: Diagnostic) -> Diagnostic | None:
-        return self.unit(found, self.tokens(self.piece(found.span)))
 
     def amount(self, found: Diagnostic) -> Diagnostic | None:
         """Words that say how much, in the place of a number."""
@@ -624,7 +588,6 @@ _SAYS: dict[Code, Callable[[_Usage, Diagnostic], Diagnostic | None]] = {
     codes.RESERVED: _Usage.name,
     codes.NOT_AN_INSTRUCTION: _Usage.no_order,
     codes.NO_FUNCTION: _Usage.function,
-    codes.BAD_NUMBER: _Usage.number,
     codes.NO_BUTTON: _Usage.no_button,
     codes.UNTIL_ALONE: _Usage.until,
     codes.BAD_NAME: _Usage.letters,
