@@ -251,19 +251,18 @@ class Saving:
         """Take what the robot says; of another program: somebody has sent that since."""
         self.saved = status.saved if status.program == self.program else SAVED_STORED
 
-    def wait(self, ask: Callable[[], None], pause: Callable[[], object]) -> str:
-        """Wait while the motors stand; return the reason where it is not saved, else nothing.
-
-        `ask` has the status learned; `pause` is called between two of them.
-        """
+    def rounds(self) -> Iterator[None]:
+        """Yield while it is worth waiting, as the motors stand: learn the status each time."""
         begun_s = monotonic()
         low_s: float | None = None
         while not self.is_over and monotonic() < begun_s + SAVE_S:
-            ask()
+            yield
             low_s = (low_s or monotonic()) if self.saved == SAVED_LOW_SUPPLY else None
             if low_s is not None and monotonic() > low_s + LOW_S:
-                break
-            if not self.is_over:
-                pause()
+                return
+
+    @property
+    def reason(self) -> str:
+        """The key of why it is not saved, or nothing."""
         reasons = {SAVED_STORED: "", SAVED_SAVING: "saves_later", SAVED_LOW_SUPPLY: "low_supply"}
         return reasons.get(self.saved, "not_saved")  # its memory is worn out

@@ -24,6 +24,7 @@ from tiniscript.library.programs import Language, Program, profile_of, program_o
 from tiniscript.library.refusing import refusal
 from tiniscript.library.runs import whole, within
 from tiniscript.link import known_ports, ports
+from tiniscript.link.connection import Requester
 from tiniscript.link.messages import STATE_RUNNING
 from tiniscript.link.names import saved_name
 from tiniscript.link.payloads import ReceiptReply
@@ -257,18 +258,18 @@ class RobotConnection:
         saving, self._saving = self._saving, None
         if saving is None:
             return
-        status = self._client.ask(lambda session: session.status()).values
+        status = self._client.ask(Requester.status).values
         if status.state == STATE_RUNNING:  # detached: it saves later
             self._saving = saving
             return
 
-        def ask() -> None:
-            saving.learn(self._client.ask(lambda session: session.status()).values)
-
         saving.learn(status)
-        reason = saving.wait(ask, lambda: self._client.event(LOOK_S))
-        if reason:
-            raise RobotError(reason, self.language)
+        for _ in saving.rounds():
+            saving.learn(self._client.ask(Requester.status).values)
+            if not saving.is_over:
+                self._client.event(LOOK_S)
+        if saving.reason:
+            raise RobotError(saving.reason, self.language)
 
     # -- asking -----------------------------------------------------------------------------------
 

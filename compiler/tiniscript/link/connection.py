@@ -38,11 +38,10 @@ class PendingRequest(Generic[T]):
     `starts`: a program runs when the request is done.
     """
 
-    def __init__(self, limit_ms: int = DEADLINE_MS, starts: bool = False) -> None:
-        self.limit_ms = limit_ms
-        self.starts = starts
-        self.done_bytes = 0
-        self.outcome: Reply[T] | None = None
+    limit_ms = DEADLINE_MS
+    starts = False
+    done_bytes = 0
+    outcome: Reply[T] | None = None
 
 
 class Requester:

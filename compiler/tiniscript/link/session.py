@@ -80,7 +80,7 @@ class PendingExchange(PendingRequest[T]):
         starts: bool = False,
         is_own: bool = False,
     ) -> None:
-        super().__init__(limit_ms, starts)
+        self.limit_ms, self.starts = limit_ms, starts
         self.exchange = exchange
         self.deadline_ms = 0
         self.is_own = is_own  # made by the session itself

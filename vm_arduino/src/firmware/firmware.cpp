@@ -19,8 +19,6 @@ Store store;
 Receiver receiver;
 #endif
 
-void show_light() { board_light(!is_running() && holds_program()); }
-
 void firmware_begin(const Board& what) {
   robot_status.slot = kNoSlot;
   begin_identity(what);

@@ -1,6 +1,7 @@
 #include "identify.h"
 
 #include "../robot.h"
+#include "program.h"
 #include "state.h"
 
 namespace tiniscript {

@@ -80,6 +80,8 @@ bool hold_previous() {
   return is_there;
 }
 
+void show_light() { board_light(!is_running() && holds_program()); }
+
 bool has_program() { return is_whole || !holds_program(); }
 
 bool load_program() {

@@ -55,6 +55,9 @@ void hold_memory();
 // and it holds what it held. The store must be ready.
 bool hold_previous();
 
+// Tells the board whether a press of the button would start a program.
+void show_light();
+
 // Whether there is nothing to load.
 bool has_program();
 

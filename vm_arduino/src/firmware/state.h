@@ -30,9 +30,6 @@ inline bool holds_program() {
   return robot_status.saved != Saved::kNothing && robot_status.saved != Saved::kOtherVersion;
 }
 
-// Tells the board whether a press of the button would start a program.
-void show_light();
-
 }  // namespace tiniscript
 
 #endif  // TINISCRIPT_FIRMWARE_STATE_H_

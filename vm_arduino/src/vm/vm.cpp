@@ -92,12 +92,6 @@ Status Machine::tick(uint32_t now_ms, uint8_t budget) {
   return status_;
 }
 
-// Ends the turn, and in a program without tasks the tick.
-bool Machine::pause() {
-  status_ = Status::kWaiting;
-  return false;
-}
-
 bool Machine::goes_on(Fault fault) {
   fault_ = fault;
   return fault == Fault::kNone;
@@ -105,12 +99,6 @@ bool Machine::goes_on(Fault fault) {
 
 // A run-time check has failed, which verified code never causes.
 bool Machine::fail() { return goes_on(Fault::kBadCode); }
-
-// Ends the tick before this instruction; the next tick begins with it.
-bool Machine::stay() {
-  task_.pc = at_;
-  return false;
-}
 
 #ifdef __AVR__
 

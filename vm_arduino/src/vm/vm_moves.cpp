@@ -9,6 +9,12 @@
 
 namespace tiniscript {
 
+// Ends the turn, and in a program without tasks the tick.
+bool Machine::pause() {
+  status_ = Status::kWaiting;
+  return false;
+}
+
 #ifndef tiniscript_moves_in_assembly
 
 namespace {

@@ -39,6 +39,12 @@ int8_t of_move(int8_t power) { return power < 0 ? 0 : power; }
 
 }  // namespace
 
+// Ends the tick before this instruction; the next tick begins with it.
+bool Machine::stay() {
+  task_.pc = at_;
+  return false;
+}
+
 // Takes a reading. Returns false if the robot is not ready or has no such sensor.
 bool Machine::sense(uint8_t number) {
   if (number >= sensors_) return fail();

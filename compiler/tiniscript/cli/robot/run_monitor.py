@@ -16,7 +16,7 @@ from tiniscript.cli.texts import text
 from tiniscript.library import client
 from tiniscript.library.endings import Follower, end_of
 from tiniscript.library.errors import RobotError
-from tiniscript.link.connection import PendingRequest
+from tiniscript.link.connection import PendingRequest, Requester
 from tiniscript.link.messages import SAVED_LOW_SUPPLY, SAVED_STORED
 from tiniscript.link.outcomes import Event
 from tiniscript.link.payloads import ReceiptReply, StatusReply
@@ -126,17 +126,17 @@ class Saving:
             self._asked is None and not self._robots.is_over and monotonic() - self._asked_s > ASK_S
         ):
             self._asked_s = monotonic()
-            self._asked = self.connection.do(lambda session: session.status())
+            self._asked = self.connection.do(Requester.status)
 
     def wait(self) -> None:
         """Wait until it is saved. Raises CommandError where it is not."""
         if self._robots.is_over:
             return
-
-        def ask() -> None:
-            self._learn(self.connection.ask(lambda session: session.status()), is_running=False)
-
-        reason = self._robots.wait(ask, self.connection.event)
+        for _ in self._robots.rounds():
+            self._learn(self.connection.ask(Requester.status), is_running=False)
+            if not self._robots.is_over:
+                self.connection.event()
+        reason = self._robots.reason
         if reason:
             said = text(self.SAID.get(reason, reason), self.connection.language)
             raise CommandError(3, "plain", said=said)

@@ -32,7 +32,7 @@ class ClientRequest(PendingRequest[T]):
     """A request of a client: the values of its reply have the type `kind`."""
 
     def __init__(self, do: str, kind: type[T], starts: bool = False, **fields: object) -> None:
-        super().__init__(starts=starts)
+        self.starts = starts
         self.message: JsonMessage = {"do": do, **fields}
         self.kind = kind
 
