@@ -50,6 +50,8 @@ ADVICE = """
 ^ @after|@later <rest> so forth @any* $ | TS131 | found={said}; all={often?} | F(2, 80)⏎y asi siempre => all=LOOP(4);F(2, 80);END_LOOP
 ^ @after|@later ,? and forth so|all? $ | TS131 | found={said}; all={often?} | F(2, 80)⏎y todo eso => found=y todo eso
 ^ @after|@later ,? @dots+ $ | TS131 | found={said}; all={often?} | F(2, 80)⏎R(1, 60) ... => all=LOOP(4);F(2, 80);R(1, 60);END_LOOP
+# notes
+^ @none this @word @word+ $ | TS073 | fix=// {said} | this makes it turn to the light => fix=// this makes it turn to the light
 # how often, before what is repeated, and a loop behind it
 ^ @none 1|@one times :? $ | TS062 | found={words}; line={said} | 1 vez:⏎S => line=1 vez
 ^ @none n=@number times :? $ | TS062 | found={words}; fix=LOOP({n}) | 4 veces:⏎S => fix=LOOP(4)

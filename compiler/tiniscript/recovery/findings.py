@@ -22,6 +22,7 @@ from tiniscript.recovery.concepts import Names, lexemes, words_of
 from tiniscript.recovery.explanation import LONGEST_BLOCK, Explanation, explained, trimmed
 from tiniscript.recovery.search import Candidate, Recovery
 from tiniscript.recovery.setup import setup
+from tiniscript.recovery.usage import with_usage
 from tiniscript.recovery.writing import laid_out, without_note
 from tiniscript.syntax.outline import Failure
 
@@ -55,10 +56,16 @@ def findings(source: Source, found: Sequence[Diagnostic], check: Check, kit: Kit
     if aside := _titles(source, kit) or _numbers(source):
         edits = [edit for each in aside if each.repair for edit in each.repair.edits]
         return Findings(aside, edits)
+    begun = next((each for each in found if each.code is codes.SETUP_UNKNOWN), None)
+    first = lexemes(source.text[:LONGEST].lstrip().partition("\n")[0])[:1]
+    if begun and not (first and first[0].text in ("SI", "SB")):  # another word before the bar
+        return Findings(with_usage([begun], source, kit), [Edit(begun.span, "SI")])
     recovery = _recovery(source, found, check, kit)
     if recovery and (repaired := _meant(source, found, recovery.sure(), is_sure=True)):
         return _with_edits(repaired)
     told = advised(source.text, kit)
+    if recovery:  # what is behind an instruction belongs to it by its sign: `X = 20 x 3`
+        told = [each for each in told if not recovery.has_signs(each.passed.span.start)]
     if told:
         return Findings([each.diagnostic for each in told], [each.passed for each in told])
     return _with_edits(_meant(source, found, recovery.best() if recovery else None, is_sure=False))
@@ -111,15 +118,12 @@ def _numbers(source: Source) -> list[Diagnostic]:
 def _recovery(
     source: Source, found: Sequence[Diagnostic], check: Check, kit: Kit
 ) -> Recovery | None:
-    """Return what reads a text, unless it is long, has a checksum, or begins as none of ours."""
+    """Return what reads a text, unless it is long or has a checksum."""
     text = source.text.replace("\r\n", "\n")
     if "\r" in text:  # each line ends with one alone
         text = source.text.replace("\r", "\n")
     said = {text: _mistakes(found)}
-    first = lexemes(text[:LONGEST].lstrip().partition("\n")[0])[:1]
-    is_setup = bool(first) and first[0].text in ("SI", "SB")
-    is_begun_otherwise = codes.SETUP_UNKNOWN.number in said[text] and not is_setup
-    if len(text) > LONGEST or "~" in text or is_begun_otherwise:
+    if len(text) > LONGEST or "~" in text:
         return None
 
     def mistakes(program: str) -> Sequence[str]:
@@ -150,6 +154,8 @@ def _meant(
     text = text.replace("\r\n", "\n")
     said_with = {each.code for each in told} | {step.code for _, step in meant.steps}
     if not told or not _keeps(text, meant.text, said_with, is_sure):
+        return []
+    if not meant.is_whole and not meant.is_applied and _lost(text, meant.text):
         return []
     is_exact = is_sure or _keeps(text, meant.text, said_with, is_sure=True)
     are_sure = (is_exact and _is_sure(each, meant) for each in told)
@@ -222,6 +228,15 @@ def _keeps(text: str, new: str, said_with: set[str], is_sure: bool) -> bool:
     old, kept = (Counter(re.findall("[0-9]", _NOTE.sub("", _bare(it)))) for it in (text, new))
     has_all = old == kept if is_sure else not old - kept
     return is_kept and (has_all or bool(said_with & rows.OTHER_NUMBERS))
+
+
+def _lost(text: str, new: str) -> bool:
+    """Whether a text gives up one of its numbers, or a word that it gives a value."""
+    bare, kept = _bare(text), _bare(new)
+    given = {*re.findall(r"\w+(?=\s*=)", bare.upper())}
+    words = [Counter(re.findall(r"[A-Z_]\w*", each.upper())) for each in (bare, kept)]
+    numbers = [Counter(re.findall("[0-9]", each)) for each in (bare, kept)]
+    return bool(numbers[0] - numbers[1]) or any(words[0][it] > words[1][it] for it in given)
 
 
 def _bare(text: str) -> str:

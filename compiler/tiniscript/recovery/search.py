@@ -15,7 +15,7 @@ from typing import NamedTuple, TypeGuard
 from tiniscript.base.kit import Kit
 from tiniscript.recovery import lines, rewrites, rows
 from tiniscript.recovery.blocks import Edit, Line, Matched, matched
-from tiniscript.recovery.concepts import Lexeme, Names, lexemes, made, plain, texts, words_of
+from tiniscript.recovery.concepts import ENDED, Lexeme, Names, lexemes, made, plain, texts, words_of
 from tiniscript.recovery.lines import MARGIN, Reading, Step
 from tiniscript.recovery.order import Moved, ordered
 from tiniscript.recovery.writing import as_written, laid_out, without_note
@@ -84,6 +84,7 @@ class Recovery:
         self.kit = kit
         self.mistakes = mistakes
         self.count = len(mistakes(program))
+        self.ends = _ends(program)
         self.unread = 0
         self.lines = [_Text(line, k) for k, line in enumerate(program.split("\n"))]
         self.drop_setups()
@@ -140,6 +141,14 @@ class Recovery:
                         body = new
             line.body, note = without_note(body)
             line.note = note + line.note
+
+    def has_signs(self, start: int) -> bool:
+        """Whether rewrites of signs alone make the line right that a place is in."""
+        at = self.program.count("\n", 0, start)
+        line = next((each for each in self.lines if each.first <= at <= each.last), None)
+        if line is None or not line.steps:
+            return False
+        return not isinstance(lines.right(lexemes(line.body), self.names), Failure)
 
     def drop_setups(self) -> None:
         """Drop a `SI|` below the first line."""
@@ -232,7 +241,8 @@ class Recovery:
                 for moved in ordered(text):
                     if left and not self.mistakes(moved.text):
                         text, left, changes, move = moved.text, [], (), moved
-            if left and not (is_sure and len(left) < self.count):
+            is_alone = has_sure_blocks and _ends(text) == self.ends
+            if left and not ((is_sure or is_alone) and len(left) < self.count):
                 continue
             is_applied = is_sure and bool(text.strip(" ;\n")) and not (move and move.is_guess)
             if best is None or (not left, is_applied) > (best.is_whole, best.is_applied):
@@ -323,6 +333,10 @@ def _is_key(old: Sequence[Lexeme], new: Sequence[Lexeme]) -> bool:
         sign.text == ")" and sign.source is None and re.fullmatch(f".+{rows.CLOSE_KEY}", one.text)
         for one, sign in pairwise(new)
     )
+
+
+def _ends(text: str) -> int:
+    return sum(each.text in ENDED for each in lexemes(text))
 
 
 def _words(text: str) -> set[str]:

@@ -1,4 +1,4 @@
-"""Warns where two tasks drive for ever: the lower one never gets the motors.
+"""Warns where two tasks drive at once: the lower one waits, or never gets the motors.
 
 Is silent where a task lets the motors go now and then, as far as that can be seen. Knows the IR,
 before it is optimised.
@@ -31,7 +31,7 @@ from tiniscript.semantics.optimizer import constant, fold
 
 
 def kept_motors(program: Program, source: Source) -> list[Diagnostic]:
-    """Return a warning for each task that never drives again once a higher TASK does."""
+    """Return a warning for each task that waits for a higher TASK, or never drives again."""
     motors = _Motors(program)
     higher = [each.body for each in program.tasks if each.look is not None]
     tasks = [each for each in program.tasks if each.look is None]
@@ -45,7 +45,16 @@ def kept_motors(program: Program, source: Source) -> list[Diagnostic]:
             return [Diagnostic(codes.NO_MOTORS, each.span, {"line": line})
                     for each in waiting if each is not None]  # fmt: skip
         higher.append(task.body)
-    return []
+    return _waiting(program, [each.body for each in tasks], source)
+
+
+def _waiting(program: Program, tasks: list[Body], source: Source) -> list[Diagnostic]:
+    """`TASK;F(4, 60);END_TASK;TASK;R(4, 60);END_TASK`: they take turns, and make no curve."""
+    begin = [body[0] for body in (*tasks, program.body) if body and _drives(body[0])]
+    if len(begin) < 2 or not tasks[0] or begin[0] is not tasks[0][0]:
+        return []
+    values = {"first": source[begin[0].span], "both": "M(60, 30);W(4)"}
+    return [Diagnostic(codes.NO_MOTORS, each.span, values) for each in begin[1:]]
 
 
 class _Motors:
