@@ -17,6 +17,7 @@ from tiniscript.bytecode.opcodes import BY_CODE, ESCAPE
 from tiniscript.cli.robot.event_printer import fault_sentence
 from tiniscript.link.messages import STATUSES, TEXT_LEVEL, TEXT_LEVELS
 from tiniscript.robots.profile import Robot
+from tiniscript.virtual import wheels
 from tiniscript.virtual.robot import Settings, VirtualRobot
 from tiniscript.virtual.wheels import Roughness, Wheel
 
@@ -81,6 +82,16 @@ def test_it_turns_as_far_as_was_said(profile: Robot, text: str, turn: int) -> No
     robot, talk = begun(text, 2, profile)
     talk.wait(6000)
     assert abs(gone(robot)[2] - turn) <= 6
+
+
+def test_it_learns_how_its_wheels_roll(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of wheels that stand sooner than most, later moves are over sooner: fewer are corrected."""
+    monkeypatch.setattr(wheels, "LAG_MS", 30)
+    robot, talk = begun("LOOP(6); F(30 CM, 70); SHOW(TIME); END_LOOP", slip=0.0)
+    talk.wait(9000)
+    lines = [line.partition("SHOW ")[2] for line in trace(robot.take_events())]
+    at_s = [float(each) for each in lines if each]
+    assert at_s[5] - at_s[2] < at_s[2] - 0.25
 
 
 def test_back_and_short_ways_and_no_way() -> None:

@@ -223,6 +223,7 @@ inline const std::vector<RefusedCase>& refused_cases() {
       {"A TASK in a loop: 35 BAD_DEF at 0001", {104, 125, 1, 0, 118, 107, 6}, 1, Rule::kBadDef, 0x0001},
       {"A DEF in a TASK: 35 BAD_DEF at 0003", {125, 4, 0, 120, 1, 122, 118}, 1, Rule::kBadDef, 0x0003},
       {"A fifth task: 40 TOO_MANY_TASKS at 0010", {125, 1, 0, 118, 125, 1, 0, 118, 125, 1, 0, 118, 125, 1, 0, 118, 126, 3, 0, 6, 85, 119}, 1, Rule::kTooManyTasks, 0x0010},
+      {"A fifth task, behind a WHEN: 40 TOO_MANY_TASKS at 0012", {126, 3, 0, 6, 85, 119, 125, 1, 0, 118, 125, 1, 0, 118, 125, 1, 0, 118, 125, 1, 0, 118}, 1, Rule::kTooManyTasks, 0x0012},
       {"A reading upon a value, behind a task: 27 STACK_NOT_EMPTY at 0005", {125, 1, 0, 118, 181, 144, 16, 57}, 1, Rule::kStackNotEmpty, 0x0005},
       {"A reading upon a value, before a task: 27 STACK_NOT_EMPTY at 0004", {181, 144, 16, 57, 125, 1, 0, 118}, 1, Rule::kStackNotEmpty, 0x0004},
       {"A reading in a join, behind a task: 27 STACK_NOT_EMPTY at 0007", {125, 1, 0, 118, 5, 42, 1, 144, 58}, 1, Rule::kStackNotEmpty, 0x0007},
