@@ -37,7 +37,9 @@ def on(pty_robot: PtyRobot, *arguments: str, data: str = "") -> Done:
 
 def keeps(pty_robot: PtyRobot) -> Trim:
     """What the robot says that it keeps."""
-    fields = json.loads(on(pty_robot, "--show", "--json").out)
+    done = on(pty_robot, "--show", "--json")
+    assert done.code == 0
+    fields = json.loads(done.out)
     pace = fields["pace"]
     found = Trim(*(fields[name] for name in Trim._fields))
     return found._replace(pace=pace and Pace(**pace))

@@ -432,6 +432,7 @@ def test_a_crash_ends_no_class(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) 
     room = Room()
     ana, luz = room.joins("Ana"), room.joins("Luz")
     room.here(ana, text="F(1, 50)", robot="tinibot", lessons=["01_first_line"])
+    room.here(luz, text="S")
     room.teaches("class_remove", pupil=room.number("Luz"))
     newest = command._keep(room.made, "")
     assert file.stat().st_mode & 0o077 == 0  # it has tokens
