@@ -120,7 +120,7 @@ KNOWN: tuple[Known, ...] = (
           "self._numbers[start + 1 : start + 2 + count]]\n\n    def variables",
           "tests/virtual/test_virtual_robot.py::test_each_task_that_has_not_ended_has_a_place"),
     Known("checks of a program without end", "compiler/tiniscript/diagnostics/fixing.py",
-          "self.left -= 1", "self.left += 1",
+          "left -= 1", "left += 1",
           "tests/pupils/test_choices.py::test_a_program_is_checked_so_often_and_no_more"),
     Known("a mistake in what a repair writes", "compiler/tiniscript/diagnostics/fixing.py",
           "end = start + len(new)", "end = start - len(new)",
