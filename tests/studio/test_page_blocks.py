@@ -365,7 +365,7 @@ def test_what_the_compiler_says_is_at_the_block(page: Page) -> None:
 @pytest.mark.parametrize("size", [(1366, 768), (1024, 600), (390, 844)])
 def test_a_message_stands_on_no_block(page: Page, size: tuple[int, int]) -> None:
     page.set_viewport_size({"width": size[0], "height": size[1]})
-    start(page, "SI|S;\nF(-2, 80);\n")
+    start(page, "SI|S;\nF(-2);\nF(2, 80);\n")  # the block below it is wider
     bubble = page.locator("#blocks .blocklyBubble")
     bubble.wait_for()
     page.evaluate(SETTLED)
@@ -373,6 +373,13 @@ def test_a_message_stands_on_no_block(page: Page, size: tuple[int, int]) -> None
     program = page.locator(f"{PROGRAM} .blocklyBlock").first
     whole = program.evaluate("e => e.getBoundingClientRect().toJSON()")
     assert said["left"] > whole["right"] - 2 or said["top"] > whole["bottom"] - 2
+
+
+def test_a_message_for_which_no_room_is_left_is_put_away(page: Page) -> None:
+    start(page, "SI|S;\nF(-2, 80);\n" + 9 * "F(2, 80);\n")
+    page.locator("#blocks .blocklyBubble").wait_for()
+    page.set_viewport_size({"width": 900, "height": 560})
+    page.locator("#blocks .blocklyBubble").wait_for(state="detached")
 
 
 def test_the_block_that_runs_is_marked(page: Page) -> None:

@@ -176,6 +176,7 @@ export class Blocks {
     if (!this.#place.clientWidth) return; // hidden: Blockly would forget what was seen
     Blockly.svgResize(this.#workspace);
     this.#seeBeginning();
+    for (const [id] of this.#places) if (!this.#put(id)) this.#badgeOf(id)?.setBubbleVisible(false);
   }
 
   /** Until somebody scrolls: Blockly keeps the place of its scrollbars, not that of the blocks. */
@@ -299,24 +300,34 @@ export class Blocks {
     return this.#badgeOf(id)?.getText() ?? '';
   }
 
-  /** Shows the message of a block beside it or below all, where there is room: over others it stands as Blockly has it. @param {string} id */
+  /** Shows the message of a block. @param {string} id */
   async #open(id) {
     const badge = this.#badgeOf(id);
     if (!badge || badge === this.#opening || this.#place.clientHeight < LOW) return;
     this.#opening = badge; // asked twice, Blockly would show it twice
     await badge.setBubbleVisible(true);
     this.#opening = null;
-    const bubble = badge.getBubble();
-    if (badge !== this.#badgeOf(id)) return bubble?.dispose(); // that block is gone
+    if (badge !== this.#badgeOf(id)) badge.getBubble()?.dispose(); // that block is gone
+    else this.#put(id);
+  }
+
+  /** Has an open message beside all blocks of its height, or below all. @param {string} id @returns {boolean} whether there is room */
+  #put(id) {
     const block = this.#workspace.getBlockById(id);
-    if (!bubble || !block) return;
-    const { right, top } = block.getBoundingRectangleWithoutChildren();
+    const bubble = this.#badgeOf(id)?.getBubble();
+    if (!block || !bubble) return true;
+    const { top } = block.getBoundingRectangleWithoutChildren();
     const view = this.#workspace.getMetricsManager().getViewMetrics(true);
     const size = bubble.getBoundingRectangle();
     const all = block.getRootBlock().getBoundingRectangle();
+    const beside = block.getRootBlock().getDescendants(false).map((each) => each.getBoundingRectangleWithoutChildren());
+    const right = Math.max(...beside.filter((each) => each.top < top + size.getHeight() && each.bottom > top).map((each) => each.right));
     const { Coordinate } = Blockly.utils;
-    if (right + BESIDE + size.getWidth() <= view.left + view.width) bubble.moveDuringDrag(new Coordinate(right + BESIDE, top));
-    else if (all.bottom + BELOW + size.getHeight() <= view.top + view.height) bubble.moveDuringDrag(new Coordinate(all.left, all.bottom + BELOW));
+    const isBeside = right + BESIDE + size.getWidth() <= view.left + view.width;
+    const isBelow = !isBeside && all.bottom + BELOW + size.getHeight() <= view.top + view.height;
+    if (isBeside) bubble.moveDuringDrag(new Coordinate(right + BESIDE, top));
+    if (isBelow) bubble.moveDuringDrag(new Coordinate(all.left, all.bottom + BELOW));
+    return isBeside || isBelow;
   }
 
   /** Marks the blocks that run now, one in each task. @param {{line: number, column: number}[]} ranges */
