@@ -27,6 +27,7 @@ sys.path.insert(0, str(ROOT / "compiler"))
 from tiniscript.base.catalogue_file import Catalogue, Entry, load, written
 from tiniscript.base.languages import FOLDER, SOURCE, languages, table
 from tiniscript.base.words import WORDS
+from tiniscript.diagnostics.rendering import examples
 from tiniscript.recovery.concepts import plain
 
 PSEUDO = "qps"  # by custom: no language has this code
@@ -35,8 +36,15 @@ ACCENTS = str.maketrans("aeiouncAEIOU", "àéîõüñçÀÉÎÕÜ")
 
 
 def sources() -> dict[str, Catalogue]:
-    """Return the English catalogues by name; that of `names` is nowhere but in TOML files."""
+    """Return the English catalogues by name; that of `names` is nowhere but in TOML files.
+
+    Beside a message stands the wrong program of `diagnostics/examples.toml`.
+    """
     found = {path.stem: load(path) for path in (FOLDER / SOURCE).glob("*.po")}
+    programs = examples(SOURCE)
+    for entry in found["messages"].entries.values():
+        wrong = programs.get(entry.key.partition("/")[0], {}).get("wrong", "")
+        entry.notes = [f"wrong: {row}" for row in wrong.strip().splitlines()] or entry.notes
     return dict(sorted({**found, "names": names()}.items()))
 
 
