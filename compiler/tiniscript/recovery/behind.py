@@ -13,7 +13,16 @@ from typing import NamedTuple
 from tiniscript.base.source import Span
 from tiniscript.base.words import OTHER_WAY, WAYS, WORDS, nearest
 from tiniscript.recovery import lines
-from tiniscript.recovery.concepts import ENDED, KNOWN, Lexeme, Names, concept_of, lexemes, said_of
+from tiniscript.recovery.concepts import (
+    ENDED,
+    KNOWN,
+    Lexeme,
+    Names,
+    closed,
+    concept_of,
+    lexemes,
+    said_of,
+)
 from tiniscript.recovery.slots import MOVES
 from tiniscript.syntax.lexer import NUMBER, ODD, QUOTES, WORD
 from tiniscript.syntax.operators import COMPARISONS
@@ -40,11 +49,9 @@ def whole(tokens: Sequence[Lexeme], names: Names) -> int:
     first, sign = tokens[0].text, tokens[1].text if len(tokens) > 1 else ";"
     word = first if first in WORDS else _meant_call(tokens[0], names)
     if first in names.defs or (sign == "=" and first not in WORDS):
-        if sign != "=":
-            return 0 if sign == "(" else 1
         found = lines.right(tokens, names)
-        size = found.at if isinstance(found, Failure) and not found.start else 0
-        is_right = size and not isinstance(lines.right(tokens[:size], names), Failure)
+        size = found.at if isinstance(found, Failure) else 0
+        is_right = not isinstance(lines.right(tokens[:size], names), Failure)
         return size if is_right and tokens[size].space else 0
     known = WORDS.get(word)
     if known is None and not names.takes(word):
@@ -54,9 +61,9 @@ def whole(tokens: Sequence[Lexeme], names: Names) -> int:
     if known is not None and not known.arguments:
         is_done = known.role in ("stop", "start", "break", "end", "arm")
         return int(is_done and sign not in ("(", "="))
-    end = _closed(tokens, 1)
+    end = closed(tokens, 1)
     if end and end < len(tokens) and tokens[end].text == "UNTIL":
-        return _closed(tokens, end + 1) or end
+        return closed(tokens, end + 1) or end
     return end
 
 
@@ -72,20 +79,10 @@ def _is_set(word: str, text: str) -> bool:
     return bool(re.search(rf"(?i)\b{word}\s*=", text))
 
 
-def _closed(tokens: Sequence[Lexeme], start: int) -> int:
-    """Return where the brackets end that begin at a token, 0 where they do not."""
-    depth = 0
-    for k in range(start, len(tokens)):
-        depth += (tokens[k].text == "(") - (tokens[k].text == ")")
-        if depth <= 0:
-            return k + 1 if k > start else 0
-    return 0
-
-
 def _values(call: Sequence[Placed]) -> list[Span]:
     """Return where the values of a call stand in its text."""
     found, depth, start = [], 0, 0
-    for k, each in enumerate(call[: _closed([each.token for each in call], 1)]):
+    for k, each in enumerate(call[: closed([each.token for each in call], 1)]):
         sign = each.token.text
         depth -= sign == ")"
         if depth <= (sign != ")") and sign in (",", ")") and start < k:

@@ -6,7 +6,7 @@ items of each line, not how they were read.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from tiniscript.base.words import BLOCK_ENDS
@@ -187,18 +187,9 @@ class _Matching:
         """Whether an IF is meant as a WHEN: at the top level, with lines and an end of its own."""
         if self.open or not self.lines[k].is_when or item.word != "IF":
             return False
-        depth = 0
-        for line, inner in self.flat[place + 1 :]:
-            if inner.kind == "open":
-                depth += 1
-            elif inner.kind == "end" and depth == 0:
-                ended = ENDED.get(inner.word)
-                return ended == "WHEN" or (line != k and ended != "IF")
-            elif inner.kind in ("end", "}"):
-                depth -= 1
-            elif inner.kind == "arm" and depth == 0:
-                return False
-        return False
+        line, part = next(self.parts(place), (k, item))
+        ended = ENDED.get(part.word)
+        return part.kind == "end" and (ended == "WHEN" or (line != k and ended != "IF"))
 
     def is_end_of_do(self, place: int, k: int, item: Item) -> bool:
         """Whether a WHILE ends the block that a DO has begun: then it leaves that."""
@@ -306,7 +297,8 @@ class _Matching:
             block = self.open[-1]
             if block.has_brace or not block.word or self.goes_on_below(place, block):
                 break
-            is_closed, after = self.is_closed_later(place, block), self.after(place)
+            parts, after = self.parts(place), self.after(place)
+            is_closed = any(each.kind != "arm" or block.word == "IF" for _, each in parts)
             has_outer = len(self.open) > 1
             is_arm = block.word == "IF" and after is not None and after.kind == "arm"
             if is_closed and (not has_outer or is_arm):
@@ -332,15 +324,11 @@ class _Matching:
         headers = sum(each.kind == "open" and each.word == "IF" for each in items)
         return headers > 1 or any(each.text == ";" and each.source is not None for each in between)
 
-    def is_closed_later(self, place: int, block: _Block) -> bool:
+    def parts(self, place: int) -> Iterator[tuple[int, Item]]:
+        """Give the arms and ends behind a place, but those of blocks that begin behind it."""
         depth = 0
-        for _, item in self.flat[place + 1 :]:
-            if item.kind == "open":
-                depth += 1
-            elif item.kind in ("end", "}"):
-                if depth == 0:
-                    return True
-                depth -= 1
-            elif item.kind == "arm" and depth == 0 and block.word == "IF":
-                return True
-        return False
+        for line, item in self.flat[place + 1 :]:
+            is_end = item.kind in ("end", "}")
+            if not depth and (is_end or item.kind == "arm"):
+                yield line, item
+            depth += (item.kind == "open") - (is_end and depth > 0)

@@ -92,6 +92,16 @@ def texts(tokens: Iterable[Lexeme]) -> tuple[str, ...]:
     return tuple(token.text for token in tokens)
 
 
+def closed(tokens: Sequence[Lexeme], start: int) -> int:
+    """Return where the brackets end that begin at a token, 0 where they do not."""
+    depth = 0
+    for k in range(start, len(tokens)):
+        depth += (tokens[k].text == "(") - (tokens[k].text == ")")
+        if depth <= 0:
+            return k + 1 if k > start else 0
+    return 0
+
+
 def plain(text: str) -> str:
     """Return a text in capitals, without accents."""
     parts = unicodedata.normalize("NFD", text)
@@ -274,15 +284,9 @@ class Names:
 
     @cached_property
     def _content(self) -> tuple[object, ...]:
-        words = (frozenset(each) for each in (self.variables, self.defs, self.in_brackets))
-        begun = frozenset(self.begun.items())
-        return (
-            self.sensors,
-            *words,
-            begun,
-            frozenset(self.rows),
-            frozenset(self.actuators.values()),
-        )
+        words = (frozenset(each) for each in (self.defs, self.in_brackets, self.rows))
+        kit = frozenset(self.actuators.values())
+        return (self.known, *words, frozenset(self.begun.items()), kit)
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Names) and self._content == other._content
@@ -390,28 +394,42 @@ class Names:
         return found
 
 
+class _Begun(NamedTuple):
+    """What one line says of orders that begin blocks; `left` is how many headers lack an end."""
+
+    found: dict[str, str]
+    counted: list[str]
+    left: int
+
+
+@lru_cache(REMEMBERED)
+def _begun_in(line: tuple[Lexeme, ...]) -> _Begun:
+    found: dict[str, str] = {}
+    counted: list[str] = []
+    left = 0
+    for k, (one, other) in enumerate(pairwise([made(";"), *line])):
+        pair = [one.text, other.text] if said_of(one.text, "end") else [other.text]
+        block = ENDED.get(concept_of("_".join(pair)) or "", "")
+        word = _END.sub("", "_".join(pair), count=1)
+        if block and concept_of(word) in DONE:
+            found[word] = block
+        is_called = k + 1 < len(line) and line[k + 1].text == "("
+        if is_called and said_of(other.text, "count") and concept_of(other.text):
+            counted.append(other.text)
+        left += (concept_of(other.text) or other.text) in BLOCK_ENDS
+        left -= bool(said_of(other.text, "end") or other.text in ENDED)
+    return _Begun(found, counted, left)
+
+
 def _begun(lines: Sequence[Sequence[Lexeme]]) -> dict[str, str]:
     """Return the orders that are the beginnings of blocks, since their ends are there: PARA.
 
     So is `PARA(3)` before a bare end that no other header is left for.
     """
-    found: dict[str, str] = {}
-    counted: list[str] = []
-    left = 0
-    for line in lines:
-        for k, (one, other) in enumerate(pairwise([made(";"), *line])):
-            pair = [one.text, other.text] if said_of(one.text, "end") else [other.text]
-            block = ENDED.get(concept_of("_".join(pair)) or "", "")
-            word = _END.sub("", "_".join(pair), count=1)
-            if block and concept_of(word) in DONE:
-                found[word] = block
-            is_called = k + 1 < len(line) and line[k + 1].text == "("
-            if is_called and said_of(other.text, "count") and concept_of(other.text):
-                counted.append(other.text)
-            left += (concept_of(other.text) or other.text) in BLOCK_ENDS
-            left -= bool(said_of(other.text, "end") or other.text in ENDED)
-    if left < 0:
-        found |= dict.fromkeys(counted, "LOOP")
+    told = [_begun_in(tuple(line)) for line in lines]
+    found = {word: block for each in told for word, block in each.found.items()}
+    if sum(each.left for each in told) < 0:
+        found |= {word: "LOOP" for each in told for word in each.counted}
     return found
 
 

@@ -22,6 +22,7 @@ from tiniscript.recovery.concepts import (
     UNITS,
     Lexeme,
     Names,
+    closed,
     lexemes,
     made,
     said_of,
@@ -42,7 +43,6 @@ RIVALS = 4
 LONGEST = 300  # tokens of a line
 LONGEST_WITH_SLIPS = 80
 _FIRST_STEPS = 30
-_REMEMBERED = 128  # lines: a repair that is tried changes one line of a program
 _CALCULATES = SIGNS | {"°"}  # without it another number would be meant
 _NEEDLESS = re.compile(r"(?<=[(,=<>+*/-] )\( ([^() ]+) \)|\( (\( [^()]* \)) \)")
 _PLAIN_DIGITS = 4
@@ -135,7 +135,7 @@ def read(tokens: Sequence[Lexeme], names: Names, is_quick: bool = False) -> list
     return _read(tuple(tokens), names, is_quick)
 
 
-@lru_cache(maxsize=_REMEMBERED)
+@lru_cache(REMEMBERED)
 def _read(tokens: tuple[Lexeme, ...], names: Names, is_quick: bool) -> list[Reading]:
     has_setup = len(tokens) > 1 and tokens[1].text == "|" and tokens[0].text in ("SI", "SB")
     setup = list(tokens[:_SETUP]) if has_setup else []
@@ -286,11 +286,11 @@ class _Search:
             if token.kind is not WORD or (token.text in WORDS and token.text != "SI"):
                 continue
             meanings = self.names.meanings(token.text)
-            if _is_in_milliseconds(tokens, k, meanings[0].concept if meanings else ""):
+            if _is_long(tokens, k, meanings[0].concept if meanings else ""):
                 continue
             for concept, cost in meanings:
                 cost = NEAR if token.text[-1].isdigit() else cost
-                if _is_long(tokens, k, concept) or _is_duration(tokens, k, concept):
+                if _is_duration(tokens, k, concept):
                     continue
                 is_sure = cost < 2 and concept != "TIME"
                 line = [*tokens[:k], made(concept)._replace(space=token.space), *tokens[k + 1 :]]
@@ -354,21 +354,18 @@ def _touches(failure: Failure, start: int, end: int) -> bool:
     return start <= failure.at + 1 and end >= failure.start - 1
 
 
-def _is_in_milliseconds(tokens: Sequence[Lexeme], k: int, concept: str) -> bool:
+def _is_long(tokens: Sequence[Lexeme], k: int, concept: str) -> bool:
+    """Whether the number behind a translated word is rarely meant for seconds: `move(50, 50)`."""
     numbers = [each for each in tokens[k + 1 : k + 3] if each.kind is NUMBER]
-    return concept == "W" and bool(numbers) and float(numbers[0].text) >= MILLISECONDS_FROM
+    least = LONG_S if concept in (*MOVES, "BEEP") else MILLISECONDS_FROM
+    is_timed = concept in (*MOVES, "BEEP", "W")
+    return is_timed and bool(numbers) and float(numbers[0].text) >= least
 
 
 def _is_duration(tokens: Sequence[Lexeme], k: int, concept: str) -> bool:
     """Whether a word for the time stands for the first value of a call: `F(tiempo, 80)`."""
     before = [each.text for each in tokens[max(0, k - 2) : k]]
     return concept == "TIME" and len(before) > 1 and before[0] in CALLED and before[1] == "("
-
-
-def _is_long(tokens: Sequence[Lexeme], k: int, concept: str) -> bool:
-    """Whether a number behind a translated word is rarely meant for seconds: `move(50, 50)`."""
-    first = tokens[k + 2] if k + 2 < len(tokens) and concept in (*MOVES, "BEEP") else None
-    return first is not None and first.kind is NUMBER and float(first.text) >= LONG_S
 
 
 def _calls(tokens: Sequence[Lexeme]) -> Iterator[tuple[int, int]]:
@@ -387,10 +384,4 @@ def _calls(tokens: Sequence[Lexeme]) -> Iterator[tuple[int, int]]:
             yield start, k
         start = max(start, k + 1)
         if token.text in _AT_END:
-            depth, j = 0, k + 1
-            while j < len(tokens):
-                depth += (tokens[j].text == "(") - (tokens[j].text == ")")
-                if depth <= 0:
-                    break
-                j += 1
-            start = max(start, j + 1)
+            start = max(start, closed(tokens, k + 1) or k + 2)

@@ -162,7 +162,7 @@ def _until(words: Sequence[Lexeme], names: Names) -> Order | None:
     call: Filled | None = filled(words[:k], names, has_until=True, is_order=True) if k else None
     if call is None or call.times or "DISTANCE" not in names.sensors:
         return None
-    rest = [each for each in words[k + 1 :] if each.text not in ("(", ")")]
+    rest = words[k + 1 :]
     question, samples = laid_out(question_in(rest, names)), call.samples
     if not question and call.tokens[0].text == "F":
         question, sample = _near(rest, names, "<")

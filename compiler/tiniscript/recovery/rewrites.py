@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 from tiniscript.base.words import BLOCK_ENDS, WORDS, concept_of
 from tiniscript.recovery import rows
-from tiniscript.recovery.concepts import ANY, ENDED, Lexeme, Names, joined, made, said_of
+from tiniscript.recovery.concepts import ANY, ENDED, Lexeme, Names, closed, joined, made, said_of
 from tiniscript.recovery.slots import LONG_S
 from tiniscript.syntax.lexer import NUMBER, WORD
 from tiniscript.syntax.operators import COMPARISONS, OPPOSITES
@@ -375,38 +375,32 @@ def _parameter(k: int) -> Callable[[_Place], _Made]:
     return name
 
 
-def _most(place: _Place) -> _Made:
-    return _end_of_range(place, is_high=True)
+def _limit(is_high: bool) -> Callable[[_Place], _Made]:
+    """Return the function for the end of what an actuator takes."""
+
+    def limit(place: _Place) -> _Made:
+        (device,) = place.captured[0]
+        known = place.line.names.actuators[place.line.translated(device).text]
+        most = known.high if is_high else known.low
+        return None if known.is_yes_no else [made(f"{most / 1000:g}")]
+
+    return limit
 
 
-def _least(place: _Place) -> _Made:
-    return _end_of_range(place, is_high=False)
+def _in(thousandths: int) -> Callable[[_Place], _Made]:
+    """Return the function for a number in another unit: `1000` milliseconds are 1, `1` m is 100."""
 
+    def number(place: _Place) -> _Made:
+        (token,) = place.captured[0]
+        return [made(f"{float(token.text) * thousandths / 1000:g}")]
 
-def _end_of_range(place: _Place, is_high: bool) -> _Made:
-    (device,) = place.captured[0]
-    known = place.line.names.actuators[place.line.translated(device).text]
-    if known.is_yes_no:
-        return None
-    return [made(f"{(known.high if is_high else known.low) / 1000:g}")]
-
-
-def _seconds(place: _Place) -> _Made:
-    """`1000` milliseconds are 1."""
-    (number,) = place.captured[0]
-    return [made(f"{float(number.text) / 1000:g}")]
+    return number
 
 
 def _by(place: _Place) -> _Made:
     """`2VEL` is 2 * VEL."""
     (number,), (name,) = place.captured
     return [number, made("*"), name._replace(space=None)] if name.space == "" else None
-
-
-def _centimetres(place: _Place) -> _Made:
-    """`1 m` is 100."""
-    (metres,) = place.captured[0]
-    return [made(f"{100 * float(metres.text):g}")]
 
 
 def _digits(place: _Place) -> _Made:
@@ -428,8 +422,8 @@ def _number_if(is_so: Callable[[float], bool]) -> Callable[[_Place], _Made]:
 _FUNCTIONS: dict[str, Callable[[_Place], _Made]] = {
     "not": _not, "endof": _end_of, "dec": _decimal, "cat": _zero_behind, "mmss": _minutes,
     "xn": _times, "brace": _brace, "same": _same, "join": _name, "known": _known_name,
-    "ms": _seconds, "by": _by, "digits": _digits, "most": _most, "least": _least,
-    "cm": _centimetres,
+    "ms": _in(1), "cm": _in(100_000), "by": _by, "digits": _digits,
+    "most": _limit(is_high=True), "least": _limit(is_high=False),
     "power": _number_if(lambda it: LONG_S <= it <= _MOST_POWER),
     "time": _number_if(lambda it: it < LONG_S),
     "angle": _number_if(lambda it: it >= _EIGHTH and (it % _EIGHTH == 0 or it > _MOST_POWER)),
@@ -442,13 +436,10 @@ def _without_double_brackets(tokens: list[Lexeme]) -> list[Lexeme]:
     """Drop a pair of brackets of a row right around one of the text."""
     for k in range(len(tokens) - 1):
         if tokens[k].text == "(" == tokens[k + 1].text and tokens[k].source is None:
-            depth = 0
-            for j in range(k + 1, len(tokens) - 1):
-                depth += (tokens[j].text == "(") - (tokens[j].text == ")")
-                if depth == 0:
-                    if tokens[j + 1].text == ")" and tokens[j + 1].source is None:
-                        return tokens[:k] + tokens[k + 1 : j + 1] + tokens[j + 2 :]
-                    break
+            end = closed(tokens, k + 1)
+            after = tokens[end : end + 1] if end else []
+            if after and after[0].text == ")" and after[0].source is None:
+                return tokens[:k] + tokens[k + 1 : end] + tokens[end + 1 :]
     return tokens
 
 

@@ -69,7 +69,6 @@ SETUP = (
     r"(?!IF\([^)]*[<>=])[lLI1](?=\s+[^\W\d]|(?i:[FBLRWM]|IF|LOOP|WHILE|BEEP)\())?)\s*"
 )
 BARS = (":", "||", "/", "\\", "¦", "!", "¡")  # signs that stand for the bar whatever follows
-NOTES = ("//", "#")  # which stand for it before a call alone
 
 SIGNS = r"""
 (?<!\) )(["'«»`])([A-Za-z0-9_.,()| <>=]*[A-Za-z0-9)][A-Za-z0-9_.,()| <>=]*)(?:\1|»)  |  `\2`  |  1  |  TS006  |  applied  |  F("2","80") => F(2,80)

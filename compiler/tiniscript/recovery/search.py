@@ -17,7 +17,7 @@ from tiniscript.recovery import lines, rewrites, rows
 from tiniscript.recovery.blocks import Edit, Line, Matched, matched
 from tiniscript.recovery.concepts import ENDED, Lexeme, Names, lexemes, made, plain, texts, words_of
 from tiniscript.recovery.lines import MARGIN, Reading, Step
-from tiniscript.recovery.order import Moved, ordered
+from tiniscript.recovery.moved import Moved, ordered
 from tiniscript.recovery.writing import as_written, laid_out, without_note
 from tiniscript.syntax.outline import Failure
 
@@ -258,8 +258,6 @@ class Recovery:
         for k, rival in sorted(rivals, key=self.costs_more)[:ALTERNATIVES]:
             yield [*cheapest[:k], rival, *cheapest[k + 1 :]], True
         sure = [each if each is None or each.is_sure else None for each in cheapest]
-        if sure != cheapest:
-            yield sure, True
         yield sure, False
         alone = [each if each is not None and _is_alone(each) else None for each in sure]
         if alone != sure:

@@ -11,6 +11,8 @@ from tiniscript.recovery import rows
 from tiniscript.recovery.concepts import plain
 from tiniscript.recovery.writing import without_note
 
+_INSIDE = re.compile(r"(?:[^()]|\([^()]*\))*(?=\))")  # brackets that are open before it
+
 
 class Setup(NamedTuple):
     """Of line `line`, from 0, columns `start` to `end` are `head` and the bar.
@@ -40,38 +42,25 @@ def setup(lines: Sequence[str]) -> Setup | None:
         return None
     head, sign, rest = plain(match["head"]), match["sep"].strip(), body[match.end() :]
     end = match.end("head") + len(match["sep"].rstrip())
-    if sign in rows.NOTES and not re.match(r"\w+\s*\(", rest):
-        sign, rest, end = "", "", match.end("head")
     is_own = head in ("SI", "SB")
-    is_sign = bool(sign) and not sign.isalnum()
-    is_apart = bool(sign) or body[match.end("head") : match.end()].isspace()
-    is_alone = not rest and is_own and (is_sign or not sign)
-    if not (is_alone or (is_own and sign in rows.BARS) or _begins(rest, is_sign, is_apart)):
+    is_apart = match.end() > match.end("head")
+    if not ((is_own and (not rest or sign in rows.BARS)) or _begins(rest, sign, is_apart)):
         return None
-    close = _close(rest) if sign == "(" else None
-    close = None if close is None else match.end() + close
+    inside = _INSIDE.match(rest) if sign == "(" else None
+    close = match.end() + inside.end() if inside else None
     is_sure = not any(each.isdecimal() for each in head + sign)
     return Setup(k, match.start("head"), end, head if is_own else "SI", close, is_sure)
 
 
-def _begins(rest: str, is_sign: bool, is_apart: bool) -> bool:
+def _begins(rest: str, sign: str, is_apart: bool) -> bool:
     """Whether an instruction begins, and no question; a sign before it says that by itself."""
     match = re.match(r"([^\W\d]\w*)\s*(\(|=|;|$)?", rest)
     if match is None:
         return False
     word, after = plain(match[1]), match[2]
     known = WORDS.get(word)
-    if known is not None and known.role not in ("setup", "value", "operator", "function"):
-        is_call = after == "(" or (is_apart and (after is not None or known.is_call))
-        return is_sign or is_call or (is_apart and word == "DEF")
-    return is_sign and known is None and after in ("=", "(")
-
-
-def _close(text: str) -> int | None:
-    """Return where the bracket closes that is open before a text."""
-    depth = 1
-    for k, sign in enumerate(text):
-        depth += (sign == "(") - (sign == ")")
-        if not depth:
-            return k
-    return None
+    if known is None:
+        return bool(sign) and after in ("=", "(")
+    is_apart = is_apart and (after is not None or known.is_call or word == "DEF")
+    is_order = known.role not in ("setup", "value", "operator", "function")
+    return is_order and (bool(sign) or after == "(" or is_apart)

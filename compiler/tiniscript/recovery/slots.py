@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from itertools import pairwise
 from typing import NamedTuple
 
 from tiniscript.base.words import UNIT_OF, WAYS, WORDS, Argument
@@ -97,22 +98,16 @@ class _Reader:
 
     def _has_one_group(self) -> bool:
         """Whether nothing follows the brackets of the call; what is odd in them is a guess."""
-        depth = opened = 0
-        for k, token in enumerate(self.words):
-            depth += (token.text == "(") - (token.text == ")")
-            after = self.text(k + 1)
+        signs = [each.text for each in self.words]
+        for k, (sign, after) in enumerate(pairwise([*signs, ""])):
             rest = self.words[k + 1 :]
-            if token.text == ")" and depth <= 0:
-                if any(each.kind in (WORD, NUMBER) or each.text == "(" for each in rest):
-                    return False
-            if token.text == "," and after in (",", ")"):
+            if sign == ")" and any(it.kind in (WORD, NUMBER) or it.text == "(" for it in rest):
+                return False
+            is_odd = sign == "," and after in (",", ")")
+            is_again = sign == "(" and k > 2 and "(" in signs[:k]
+            is_call = sign == "(" and self.names.meant(after, NEAR) in CALLED
+            if is_odd or is_again or (is_call and self.names.meant(signs[0], NEAR) != "M"):
                 self.is_sure = False
-            if token.text == "(":
-                self.is_sure = self.is_sure and (not opened or (k == 2 and self.text(1) == "("))
-                opened += 1
-                first = self.names.meant(self.words[0].text, NEAR)
-                if first != "M" and self.names.meant(after, NEAR) in CALLED:
-                    self.is_sure = False
         return True
 
     def text(self, k: int) -> str:

@@ -11,9 +11,8 @@ from itertools import pairwise
 
 from tiniscript.base.fixed_point import ONE
 from tiniscript.base.kit import Device
-from tiniscript.base.words import WORDS
-from tiniscript.recovery.concepts import Lexeme, Names, concept_of, said_of
-from tiniscript.syntax.lexer import NUMBER, WORD
+from tiniscript.recovery.concepts import NEAR, Lexeme, Names, concept_of, said_of
+from tiniscript.syntax.lexer import NUMBER
 
 _KINDS = ("little", "much", "light", "ahead", "none", "no", "without", "left", "right")
 _ASKED = frozenset(("little", "much", "light", "ahead", "none"))
@@ -28,68 +27,41 @@ def worded(row: Sequence[Lexeme], names: Names) -> dict[str, str] | None:
     It is `asked` where it has its number, a `question` where a word says what, and else an
     `example`; `also` and `another` ask the other sensor that may be meant. `joint` joins several.
     """
-    unsigned = [each for each in row if each.text != "="]  # `DISTANCE = NEAR`
-    is_asked = _said([each.text for each in unsigned], names) & _ASKED
-    row = unsigned if is_asked and row[-1].kind is WORD else row
+    is_compared = any(each.text == "=" for each in row)  # `DISTANCE = NEAR`
+    row = [each for each in row if each.text != "="]
     texts = [each.text for each in row]
-    is_done = {*texts} & {"AND", "OR"} or any(_is_done(texts, k) for k in range(len(texts)))
-    if is_done or any(each.kind not in (WORD, NUMBER) for each in row):
+    if is_compared and not _said(texts, names) & _ASKED:
         return None
-    joint = _joint(texts, names)
-    if joint:
+    if joint := _joint(texts, names):
         return {"question": "", "joint": joint}
     texts, number = _measured(row, names)
     said = _said(texts, names)
     numbers = [text for text in texts if text[0].isdigit() or text[0] == "."]
     own = [text for text in texts if names.is_name(text) and text != number]
-    is_known = all(names.is_name(text) or said_of(text, "number") for text in texts)
     is_alone = len(texts) == 1 and not (
         said & {"light", "ahead"} and not said_of(texts[0], "sensor")
     )
-    if is_alone or is_known or len(numbers) > 1 or names.is_name("_".join(texts)):
-        return None
-    has_subject = said & {"ahead", "none"} or ("light" in said and said & {"little", "much"})
     is_button = any(concept_of(text) == "BUTTON" for text in texts)
-    if (numbers and not has_subject and not _is_no_sign(texts)) or is_button:
+    if is_alone or is_button or (numbers and not said & {"ahead", "light", "none"}):
         return None
     asked = [
         f"{name} {_sign(name, texts, said)} {number or _example(names.asked.get(name), name)}"
         for name in _subjects(own, texts, said, names)
     ]
     is_asking = bool(own or said & _ASKED)
-    if number and not is_asking:
-        return None
     kinds = ("asked", "also") if number else ("question", "another") if is_asking else ("example",)
     return {"question": "", **dict(zip(kinds, asked, strict=False))}
 
 
 def sensors_of(word: str, names: Names) -> list[str]:
-    """Return the sensors that a word may mean: both lights for `luz`."""
-    if names.is_name(word):
-        return []
-    found = [_meant(word, names)]
-    if said_of(word, "light"):
-        found = _lights(names)
-    elif said_of(word, "ahead"):
-        found = ["DISTANCE"]
-    return [name for name in found if name in names.asked]
+    """Return the sensors that a word for what they see may mean: both lights for `luz`."""
+    found = _lights(names) if said_of(word, "light") else ["DISTANCE"]
+    return [] if names.is_name(word) else [name for name in found if name in names.asked]
 
 
 def _said(texts: Sequence[str], names: Names) -> set[str]:
     own = {text for text in texts if names.is_name(text)}
     return {kind for kind in _KINDS for text in texts if text not in own and said_of(text, kind)}
-
-
-def _meant(word: str, names: Names) -> str:
-    return word if word in names.sensors else next((m.concept for m in names.meanings(word)), "")
-
-
-def _is_done(texts: Sequence[str], k: int) -> bool:
-    """Whether a word is an instruction, and no unit behind its number."""
-    word = WORDS.get(texts[k])
-    if word is None or (k and said_of(texts[k], "unit") and said_of(texts[k], "unit")[0] == "cm"):
-        return False
-    return word.is_instruction or word.role not in ("operator", "value")
 
 
 def _joint(texts: Sequence[str], names: Names) -> str:
@@ -127,10 +99,8 @@ def _in_centimetres(number: str, unit: Sequence[str]) -> str:
 
 def _subjects(own: Sequence[str], texts: Sequence[str], said: set[str], names: Names) -> list[str]:
     """Return the sensors that are asked, or the variable."""
-    pairs = ["_".join(pair) for pair in pairwise(texts)]  # `luz derecha`
-    named = [
-        name for text in (*own, *pairs, *texts) if (name := _meant(text, names)) in names.asked
-    ]
+    named = [text for text in own if text in names.asked]
+    named += [meant for text in texts if (meant := names.meant(text, NEAR)) in names.asked]
     found = named[:1] or list(own[:1])
     if not found and "light" in said and "ahead" not in said:
         found = _lights(names)[:2]
