@@ -58,7 +58,8 @@ def findings(source: Source, found: Sequence[Diagnostic], check: Check, kit: Kit
         return Findings(aside, edits)
     begun = next((each for each in found if each.code is codes.SETUP_UNKNOWN), None)
     first = lexemes(source.text[:LONGEST].lstrip().partition("\n")[0])[:1]
-    if begun and not (first and first[0].text in ("SI", "SB")):  # another word before the bar
+    is_sealed = "~" in source.text  # what has a checksum is copied again
+    if begun and not (is_sealed or (first and first[0].text in ("SI", "SB"))):  # another word
         return Findings(with_usage([begun], source, kit), [Edit(begun.span, "SI")])
     recovery = _recovery(source, found, check, kit)
     if recovery and (repaired := _meant(source, found, recovery.sure(), is_sure=True)):
