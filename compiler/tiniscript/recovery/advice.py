@@ -153,8 +153,7 @@ def _parts(
                 yield behind([], part if is_ended else part[:size])
             tokens = tokens[size:]
             after = whole(tokens, names)
-            is_asked = rest[0].token.text in ("IF", "WHILE") and after == len(rest)
-            if not after or is_asked:
+            if not after or rest[0].token.text in ("IF", "WHILE"):
                 yield behind(part[:size], rest)
                 break
             part = rest
@@ -192,8 +191,7 @@ def _is_read_surely(part: Behind) -> bool:
     ):  # fmt: skip
         return False  # it is called by its first word
     found = lines.read([*part.tokens, *part.row], part.names, is_quick=True)
-    is_alone = len(found) == 1 or (found and found[1].cost >= found[0].cost + lines.MARGIN)
-    return bool(is_alone) and found[0].is_sure and len(found[0].items or ()) == 1
+    return bool(found) and found[0].is_sure and len(found[0].items or ()) == 1
 
 
 def _advice(row: Row, gaps: _Gaps) -> Advice:
@@ -219,9 +217,7 @@ def _advice(row: Row, gaps: _Gaps) -> Advice:
     if part.is_said:
         return Advice(found, Edit(part.place, values["fix"] or part.call))
     fix = "" if part.tokens else values["fix"]
-    is_right = not isinstance(lines.right(lexemes(fix), part.names), Failure)
-    nothing = " " * (part.behind.end - part.behind.start)
-    return Advice(found, Edit(part.behind, fix if fix and is_right else nothing))
+    return Advice(found, Edit(part.behind, fix or " " * (part.behind.end - part.behind.start)))
 
 
 def _said_call(tokens: Sequence[Lexeme], names: Names) -> tuple[int, str] | None:

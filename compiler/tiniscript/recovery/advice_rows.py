@@ -122,7 +122,6 @@ ADVICE = """
 ^ <does> one then anew times $ | TS085 | endless=LOOP(FOREVER);{c};END_LOOP | F(1, 80) una y otra vez => endless=LOOP(FOREVER);F(1, 80);END_LOOP
 ^ @none do|LOOP|make w=@callw ( v=@noparen+ ) <again_on> $ | TS064 | fix=LOOP(FOREVER);{w}({v});END_LOOP | repeat F(1, 80) again and again => fix=LOOP(FOREVER);F(1, 80);END_LOOP
 ^ @none do|LOOP|make w=@def <again_on> $ | TS064 | fix=LOOP(FOREVER);{w};END_LOOP | DEF A1;S;END_DEF⏎do A1 again and again => fix=LOOP(FOREVER);A1;END_LOOP
-^ <does> @any* times|same extra @any* $ | TS085 | again=LOOP(2);{c};END_LOOP | F(1, 80) otra vez => again=LOOP(2);F(1, 80);END_LOOP
 ^ <does> @any* anew @any* $ | TS085 | again=LOOP(2);{c};END_LOOP | F(1, 80) again => again=LOOP(2);F(1, 80);END_LOOP
 ^ c=@cmd count? FOREVER $ | TS085 | endless=LOOP(FOREVER);{c};END_LOOP | F(1, 80) siempre => endless=LOOP(FOREVER);F(1, 80);END_LOOP
 ^ c=@cmd @any* without|all endless|the @any* $ | TS085 | endless=LOOP(FOREVER);{c};END_LOOP | F(1, 80) sin parar => endless=LOOP(FOREVER);F(1, 80);END_LOOP
@@ -177,5 +176,4 @@ ADVICE = """
 ^ c=@cmd @word|@number+ $ | TS074 | fix={orders}; example={example?} | F(2, 80) gira a la derecha => fix=F(2, 80);R(2, 80)
 ^ c=@cmd " w=@noparen+ " $ | TS085 | order={w} | F(1, 80) "para" => order=para
 ^ c=@cmd ( w=@any+ ) $ | TS085 | order={w} | F(2, 80) (y gira) => order=y gira
-^ c=@cmd @no_order @noparen+ $ | TS085 | order={words} | F(2,80) y luego la vuelta => order=y luego la vuelta
 """

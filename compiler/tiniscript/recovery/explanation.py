@@ -37,7 +37,7 @@ _SHOW_WHOLE = frozenset(each.number for each in (
 ))  # fmt: skip
 _OF_ARM = (_BRACES, _WORD_CODE, codes.HEADER_SEPARATOR.number)
 _OF_BLOCKS = frozenset((*BLOCK_ENDS, *ENDED, "ELSE", "ELSEIF", *BRACES))
-_WORD = re.compile(r"\w+")
+_WORD, _WORD_BEFORE = re.compile(r"\w+"), re.compile(r"\w+\Z")
 _BEHIND = re.compile(r"\W*(\w+)[\s;]+(\w+)")
 _ARMS = ("ELSE", "ELSEIF")
 _SIGNS = ("BEEP", "SHOW", "S", "STOP")
@@ -180,11 +180,10 @@ class _Teller:
         """Return a span with all of the words that it begins and ends in."""
         start, end = span
         if start < end:
-            for match in _WORD.finditer(self.program, max(0, start - LONGEST_BLOCK)):
-                if match.start() >= end:
-                    break
-                if match.end() > start:
-                    start, end = min(start, match.start()), max(end, match.end())
+            before = _WORD_BEFORE.search(self.program, max(0, start - LONGEST_BLOCK), start + 1)
+            behind = _WORD.match(self.program, end - 1)
+            start -= len(before[0]) - 1 if before else 0
+            end += len(behind[0]) - 1 if behind else 0
         return Span(start, end)
 
     def whole(self, first: int, last: tuple[int, int]) -> str:

@@ -121,8 +121,6 @@ def _recovery(
 ) -> Recovery | None:
     """Return what reads a text, unless it is long or has a checksum."""
     text = source.text.replace("\r\n", "\n")
-    if "\r" in text:  # each line ends with one alone
-        text = source.text.replace("\r", "\n")
     said = {text: _mistakes(found)}
     if len(text) > LONGEST or "~" in text:
         return None
@@ -145,8 +143,6 @@ def _meant(
     if meant is None:
         return []
     text = source.text
-    if "\r" in text.replace("\r\n", ""):
-        text = text.replace("\r", "\n")
     told = explained(text, meant)
     if not told and meant.is_whole:
         misplaced = [each for each in found if each.code.number in rows.MISPLACED]
@@ -202,14 +198,14 @@ def _moved(found: Diagnostic, text: str, meant: Candidate) -> Diagnostic:
     )
     whole = "; ".join(each for each in lines_ if each)
     values = {**found.values, "whole": whole if len(whole) <= LONGEST_BLOCK else ""}
-    if meant.move and meant.move.is_end and meant.move.last > len(text.splitlines()):
-        values |= {"open": meant.move.name}  # its end is in no line
     if found.code is codes.WRONG_END:
         values["swapped"] = found.values["right"]
     elif (move := meant.move) is not None:
         values |= {"name": move.name, "line": str(move.before), "last": str(move.last)}
         is_one_line = move.first == move.last and not move.is_end
         values |= {"row": values.pop("last")} if is_one_line else {"first": str(move.first)}
+        if move.is_end and move.last > len(text.splitlines()):
+            values |= {"open": move.name}  # its end is in no line
     repair = Repair((trimmed(0, text, meant.text),), meant.is_applied)
     return found._replace(values=values, repair=repair)
 

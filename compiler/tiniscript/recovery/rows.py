@@ -246,7 +246,6 @@ is? one? more than? | > | 1 | TS010 | first | IF DISTANCE IS BIGGER THAN 20 F(1,
 is? extra than | > | 1 | TS010 | first | IF(DISTANCE es mas de 10);S;ENDIF => IF(DISTANCE > 10);S;ENDIF
 is? different than? | <> | 1 | TS010 | first | IF(DISTANCE distinto de 10);S;ENDIF => IF(DISTANCE <> 10);S;ENDIF
 no is|equal to|equal? one? | <> | 1 | TS010 | first | IF(DISTANCE NO ES 10);F(1,50);ENDIF => IF(DISTANCE <> 10);F(1,50);ENDIF
-l=@val equal to|than? r=@num|@val | $l = $r | 1 | TS010 | first | IF(DISTANCE igual a 10);S;ENDIF => IF(DISTANCE = 10);S;ENDIF
 = @word* RANDOM between|from? a=@num to|and|until|-|, b=@num $ | = RANDOM ( $a , $b ) | 1 | TS102 | offered | X = numero al azar entre 1 y 6⏎F(X, 50) => X = RANDOM(1, 6)⏎F(X, 50)
 l=@val is? between a=@num and b=@num | $l > $a AND $l < $b | 1 | TS037 | offered | IF(DISTANCE entre 5 y 10);S;ENDIF => IF(DISTANCE > 5 AND DISTANCE < 10);S;ENDIF
 # questions and sums
@@ -560,7 +559,6 @@ h=END_LOOP|ENDIF|END_WHILE|END_DEF|END_WHEN|END_TASK ( @noparen+ ) | &h | 1 | TS
 ^ program @word $ |  | 1 | TS044 | applied | programa baile⏎F(1, 50) => ⏎F(1, 50)
 ^ leaves 0 ;? $ |  | 1 | TS065 | applied | F(1, 50)⏎return 0; => F(1, 50)⏎
 ^ end program? $ | FIN | 0 | TS044 | first | F(1, 50)⏎fin programa => F(1, 50)⏎
-end -|.|of|the? k=IF|LOOP|WHILE|DEF|FOREVER|count ;|$ | @endof:k | 1 | TS022 | first | definir bailar⏎L(1,50)⏎fin definir⏎bailar => DEF bailar⏎L(1,50)⏎END_DEF⏎bailar
 ^ idles $ |  | 1 | TS044 | offered | IF(DISTANCE < 10)⏎NADA⏎ELSE⏎F(1, 60)⏎ENDIF => IF(DISTANCE < 10)⏎⏎ELSE⏎F(1, 60)⏎ENDIF
 # what joins instructions
 ^ please b=@start | $b | 1 | TS044 | applied | please F(2, 80) => F(2, 80)
@@ -595,7 +593,6 @@ read ( v=@val ) | $v | 1 | TS102 | applied | X = leer(DISTANCE)⏎SHOW(X) => X =
 ^ cease of F $ | S | .5 | TS102 | first | para de avanzar => S
 ^ off|S the? engine $ | S | 1 | TS102 | applied | apaga motores => S
 ^ b=@start r=@all* '|' s=SI|SB $ | $s '|' $b $r | 1 | TS034 | offered | F(2, 80)|SI => SI |F(2, 80)
-^ START '|' | SI '|' | 1 | TS034 | offered | start|F(2,80) => SI |F(2,80)
 IF c=@argt+ BREAK ;|$ | IF ( $c ) ; BREAK ; ENDIF ; | 1 | TS015 | applied | LOOP(FOREVER)⏎F(1, 50)⏎IF DISTANCE < 10 BREAK⏎END_LOOP => LOOP(FOREVER)⏎F(1, 50)⏎IF(DISTANCE < 10);BREAK;ENDIF;⏎END_LOOP
 IF <question> BREAK ;|$ | IF ( $c ) ; BREAK ; ENDIF ; | 1 | TS014 | applied | LOOP(FOREVER)⏎F(1, 50)⏎if (DISTANCE < 10) break;⏎END_LOOP => LOOP(FOREVER)⏎F(1, 50)⏎IF(DISTANCE < 10);BREAK;ENDIF⏎END_LOOP
 ^ declare|DEF? main ( ) '{' | START ; { | 1 | TS065 | applied | main() {⏎F(3, 70);⏎} => START;⏎F(3, 70);⏎
