@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Sequence
 from functools import cached_property
+from itertools import takewhile
 
 from tiniscript.base.kit import Kit
 from tiniscript.base.source import Edit, Source, Span
@@ -50,31 +51,29 @@ _SEPARATOR = re.compile(r"[;|{}]")
 _MOST_TIMES = 20  # that a DEF is done
 _LONGEST = 120  # characters of a sentence that a message shows
 _MANY = 30  # diagnostics of which more is said
-_PAUSE = "W(2)"
 _OF_ENDS = (codes.NEVER_ENDS, codes.NOT_OPEN, codes.CALLS_ITSELF)
 _NOT_TOP = (codes.TASK_NOT_TOP, codes.DEF_NOT_TOP)
 _OF_ITS_WORD = (codes.UNKNOWN_WORD, codes.WHICH_WAY)  # whose units say nothing more
 _NO_NAMES = ("leaves", "again", "filler", "same", "etc", "end")
 _NO_VARIABLE = ("turn", "end", "short")
 _NO_ORDER = ("value", "operator", "function", "setup", "forever")
-_SIDES = (("left", "L"), ("right", "R"))
 
 
 def with_usage(found: Sequence[Diagnostic], source: Source, kit: Kit) -> list[Diagnostic]:
     """Return what is wrong with a text, in words that say how it is written."""
     ends = [each.values["right"] for each in found if each.code is codes.NOT_OPEN]
-    teller = _Usage(source, kit, ends[0] if len(ends) == 1 and ends[0] == "LOOP" else "")
+    text = _Text(source, kit, ends[0] if len(ends) == 1 and ends[0] == "LOOP" else "")
     if any(each.code is codes.NEVER_ENDS for each in found):
         top = [each for each in found if each.code in _NOT_TOP]
-        teller.at_top = [source.position(each.span.start)[0] - 1 for each in top]
+        text.at_top = [source.position(each.span.start)[0] - 1 for each in top]
         found = [each for each in found if each not in top]
-    found = teller.with_name(found)
-    told = [teller.told(each) for each in found[:_MANY]]
+    found = text.with_name(found)
+    told = [_told(text, each) for each in found[:_MANY]]
     near = {it.values.get("near", "").partition("(")[0] for it in told}
-    is_near = bool(teller.unopened) and teller.unopened in near
+    is_near = bool(text.unopened) and text.unopened in near
     has_no_ends = is_near or any(it.code in (codes.BRACES, codes.DOTS) for it in told)
     reserved = {each.values["word"] for each in told if each.code is codes.RESERVED}
-    unknown = {teller.piece(it.span) for it in told if it.code in _OF_ITS_WORD}
+    unknown = {text.piece(it.span) for it in told if it.code in _OF_ITS_WORD}
     part = next((it.values["part"] for it in told if it.values.get("part")), "")
     if part and any(each.code is codes.TASK_NOT_TOP for each in told):  # rather an IF
         told = [it._replace(values={**it.values, "part": part}) for it in told
@@ -83,12 +82,18 @@ def with_usage(found: Sequence[Diagnostic], source: Source, kit: Kit) -> list[Di
         each
         for each in (*told, *found[_MANY:])
         if (each.code is not codes.NO_VALUE or each.values.get("word") not in reserved)
-        and (each.code is not codes.UNIT_PLACE or teller.piece(each.span) not in unknown)
+        and (each.code is not codes.UNIT_PLACE or text.piece(each.span) not in unknown)
     ]
     return [each for each in kept if not (has_no_ends and each.code in _OF_ENDS)]
 
 
-class _Usage:
+def _told(text: _Text, found: Diagnostic) -> Diagnostic:
+    say = _SAYS.get(found.code)
+    said = say(_Usage(text, found)) if say and found.repair is None else None
+    return said or found
+
+
+class _Text:
     def __init__(self, source: Source, kit: Kit, unopened: str) -> None:
         self.source = source
         self.kit = kit
@@ -104,11 +109,6 @@ class _Usage:
         bodies = (without_note(line)[0] for line in self.source.text.split("\n"))
         return Names([lexemes(body) for body in bodies], self.kit)
 
-    def told(self, found: Diagnostic) -> Diagnostic:
-        say = _SAYS.get(found.code)
-        said = say(self, found) if say and found.repair is None else None
-        return said or found
-
     def piece(self, span: Span) -> Span:
         """Return the instruction around a place: between the separators of its line."""
         text = self.source.text
@@ -122,19 +122,13 @@ class _Usage:
         begin += len(text[begin:end]) - len(text[begin:end].lstrip())
         return Span(begin, begin + len(text[begin:end].rstrip()))
 
-    def tokens(self, span: Span) -> list[Lexeme]:
-        return lexemes(self.source[span])
-
-    def command(self, word: str) -> str:
-        return self.names.meant(word)
-
     def with_name(self, found: Sequence[Diagnostic]) -> Sequence[Diagnostic]:
         """Return diagnostics in which the one DEF without a name has that of an unknown call."""
         nameless = [each for each in found if each.code is codes.DEF_NEEDS_NAME]
         if len(nameless) != 1:
             return found
         unknown = [each for each in found if each.code is codes.UNKNOWN_WORD
-                   and len(self.tokens(self.piece(each.span))) == 1]  # fmt: skip
+                   and len(lexemes(self.source[self.piece(each.span)])) == 1]  # fmt: skip
         if not unknown:
             return found
         name = unknown[0].values["found"]
@@ -144,142 +138,159 @@ class _Usage:
         left = (it for it in found if it not in unknown or it.values["found"] != name)
         return [said if each is nameless[0] else each for each in left]
 
-    def usage(self, tokens: Sequence[Lexeme], word: str) -> str:
+
+class _Usage:
+    """A diagnostic, and the instruction around its place."""
+
+    def __init__(self, text: _Text, found: Diagnostic) -> None:
+        self.text = text
+        self.source = text.source
+        self.names = text.names
+        self.found = found
+        self.piece = text.piece(found.span)
+        self.is_first = found.span.start == self.piece.start
+        self.behind_it = text.source.text[found.span.end :]
+        self.tokens = lexemes(self.source[self.piece])
+        self.words = [each.text for each in self.tokens if each.kind is WORD]
+        self.signs = [each.text for each in self.tokens]
+
+    def adds(self, **values: str) -> Diagnostic:
+        """Return the diagnostic with values beside its own."""
+        return self.found._replace(values={**self.found.values, **values})
+
+    def says(self, code: Code, **values: str) -> Diagnostic:
+        """Return another diagnostic of the same place."""
+        return Diagnostic(code, self.found.span, values)
+
+    def offers(self, code: Code, fix: str, **values: str) -> Diagnostic:
+        """Return one with what the instruction becomes, which is never made without asking."""
+        repair = Repair((Edit(self.piece, fix),), False)
+        return Diagnostic(code, self.piece, {"fix": fix, **values}, self.piece, repair)
+
+    def translated(self, found: str, fix: str, is_longer: bool = False) -> Diagnostic:
+        right = fix.partition("(")[0].partition(";")[0]
+        same = (each for each in self.signs if self.names.meant(each) == right != each)
+        found = next(same, found)
+        usage = _usage(right)
+        told = self.offers(codes.OTHER_LANGUAGE, fix, found=found, right=right, usage=usage,
+                           takes=usage if is_longer else "")  # fmt: skip
+        return told._replace(span=self.found.span)
+
+    def usage(self, word: str, tokens: Sequence[Lexeme]) -> str:
         """Return how an instruction is written: a block with its end, where the text has none."""
         if word not in BLOCK_ENDS or _ENDS.search(plain(self.source.text)):
             return _usage(word)
         found = lines.read(tokens, self.names) if word == "LOOP" else []  # else a guess
-        items = (found[0].items or ()) if found else ()
-        is_head = [each.kind for each in items] == ["open"]
+        is_head = bool(found) and [each.kind for each in found[0].items or ()] == ["open"]
         head = laid_out(found[0].tokens).strip("; ") if is_head else _usage(word)
         return f"{head}; ...; {BLOCK_ENDS[word]}"
 
-    def block(self, piece: Span) -> str:
-        below = self.source.text[piece.end :].lstrip("; \t\r\n").upper()
+    def block(self) -> str:
+        below = self.source.text[self.piece.end :].lstrip("; \t\r\n").upper()
         is_open = bool(re.match(r"SI ?NO\b|ELSE", below))
-        return block(self.tokens(piece), self.names, is_open)
+        return block(self.tokens, self.names, is_open)
 
     # -- words that are none of the language ----------------------------------------------------
 
-    def unknown(self, found: Diagnostic) -> Diagnostic | None:
+    def unknown(self) -> Diagnostic | None:
         """A word that nobody knows, or that an instruction is said with."""
-        piece = self.piece(found.span)
-        tokens = self.tokens(piece)
-        if found.span.start != piece.start or found.values.get("near") or not tokens:
+        if not self.is_first or self.found.values.get("near") or not self.tokens:
             return None
-        words = [each.text for each in tokens if each.kind is WORD]
-        first = tokens[0].text
-        if parts := _MEMBER.match(self.source.text, found.span.start):  # `Serial.begin`
-            right = self.command(plain(parts[0].rpartition(".")[2]))
-            told = found._replace(span=Span(*parts.span()), values={"found": parts[0]})
-            values = {**told.values, "right": right, "usage": _usage(right)}
-            is_said = right in CALLED
-            return told._replace(code=codes.OTHER_LANGUAGE, values=values) if is_said else told
+        first, sign = self.signs[0], "".join(self.signs[1:2])
+        if parts := _MEMBER.match(self.source.text, self.found.span.start):  # `Serial.begin`
+            right = self.names.meant(plain(parts[0].rpartition(".")[2]))
+            values = {"right": right, "usage": _usage(right)} if right in CALLED else {}
+            code = codes.OTHER_LANGUAGE if values else codes.UNKNOWN_WORD
+            return Diagnostic(code, Span(*parts.span()), {"found": parts[0], **values})
         if instead := said_instead(first):
-            return found._replace(values={**found.values, **instead})
-        is_name = not (self.command(first) or any(said_of(first, it) for it in _NO_VARIABLE))
-        if len(tokens) == 2 and tokens[1].kind is NUMBER and is_name:
-            fix = f"{first} = {tokens[1].text}"
-            said = self.offered(codes.OTHER_ASSIGNMENT, piece, fix)
-            return said._replace(values={"fix": fix})
-        if tokens[1:] and tokens[1].text in ("++", "--", "+", "-") and is_name:
-            by = next((each.text for each in tokens[2:] if each.kind is NUMBER), "1")
-            fix = f"{first} = {first} {tokens[1].text[0]} {by}"
-            return self.offered(codes.OTHER_ASSIGNMENT, piece, fix)
-        return self.sentence(found, piece, tokens, words) or self.own_word(found, tokens)
+            return self.adds(**instead)
+        number = next((each.text for each in self.tokens[1:] if each.kind is NUMBER), "1")
+        if not (self.names.meant(first) or any(said_of(first, it) for it in _NO_VARIABLE)):
+            if len(self.tokens) == 2 and sign == number:
+                return self.offers(codes.OTHER_ASSIGNMENT, f"{first} = {number}")
+            if sign in ("++", "--", "+", "-"):
+                fix = f"{first} = {first} {sign[0]} {number}"
+                return self.offers(codes.OTHER_ASSIGNMENT, fix, found=sign)
+        return self.sentence() or self.own_word()
 
-    def sentence(
-        self, found: Diagnostic, piece: Span, tokens: list[Lexeme], words: list[str]
-    ) -> Diagnostic | None:
+    def sentence(self) -> Diagnostic | None:
         """Words that say an instruction, or several, or none."""
-        meant = next((each for each in words if self._is_order(each)), "")
-        if told := self.orders(found, piece, meant):
+        words = self.words
+        meant = next(filter(self.is_order, words), "")
+        if told := self.orders(meant):
             return told
         said = (*words, "_".join(words[:2]))  # `turn on the led`, `u turn`
         if any(said_of(each, "on") or said_of(each, "off") for each in said):
-            return Diagnostic(codes.SWITCH_WHAT, found.span)
-        if any(map(self.is_button, words)) and [each.text for each in tokens[1:2]] != ["("]:
-            return self.no_button(found)
+            return self.says(codes.SWITCH_WHAT)
+        if any(map(self.is_button, words)) and self.signs[1:2] != ["("]:
+            return self.no_button()
+        endless = next((each for each in words if self.names.meant(each) == "FOREVER"), "")
+        if endless and not meant:
+            return self.translated(endless, "LOOP(FOREVER)")
         if any(said_of(each, "turn") or said_of(each, "lap") for each in words):
-            others = {self.command(it) for it in words
-                      if self._is_order(it) and not said_of(it, "right")}  # fmt: skip
-            if others - {"L", "R", "B", "S"}:
-                return Diagnostic(codes.SEVERAL_ORDERS, piece)  # a turn alone would lose them
-            way = next(
-                (self.command(each) for each in words if self.command(each) in ("L", "R")), ""
-            )
-            values = {"word": way, "way": "left" if way == "L" else "right", "usage": _usage(way)}
-            angle = next((its for its in map(_angle, said) if its), "")
-            is_timed = any(said_of(each, "unit") for each in words)
-            turns = orders(tokens, self.names)
-            if angle and not way and not is_timed:
-                values = {f"to_{side}": f"{word}({angle} DEG, 60)" for side, word in _SIDES}
-            elif len(turns) == 1 and turns[0].is_side_free and len(turns[0].samples) < 2:
-                values = {f"to_{side}": word + turns[0].text[1:] for side, word in _SIDES}
-            return Diagnostic(codes.WHICH_WAY, found.span, values)
-        concept = self.command(words[0] if words else "") or (self.command(meant) if meant else "")
+            return self.turn(said)
+        concept = self.names.meant(words[0] if words else "") or self.names.meant(meant)
         is_order = concept in WORDS and WORDS[concept].role not in _NO_ORDER
-        others = {self.command(each) for each in words if self._is_order(each)} - {concept}
+        others = {self.names.meant(each) for each in words if self.is_order(each)} - {concept}
         is_order = is_order and not (concept == "S" and others)  # `vaya para adelante`
         if is_order and concept not in words[:1]:
-            named = words[0] if self.command(words[0]) else meant or words[0]
-            if len(tokens) == 1 and not WORDS[concept].arguments:
-                return self.translated(found.span, piece, named, concept)
-            values = {"found": named, "right": concept, "usage": self.usage(tokens, concept)}
-            return Diagnostic(codes.OTHER_LANGUAGE, found.span, values)
-        signs = {each.text for each in tokens}
-        if (
-            len(words) < 2
-            or signs & {*COMPARISONS, "(", "="}
-            or len(piece_ := self.source[piece]) > _LONGEST
-        ):
+            named = words[0] if self.names.meant(words[0]) else meant or words[0]
+            if len(self.tokens) == 1 and not WORDS[concept].arguments:
+                return self.translated(named, concept)
+            usage = self.usage(concept, self.tokens)
+            return self.says(codes.OTHER_LANGUAGE, found=named, right=concept, usage=usage)
+        text = self.source[self.piece]
+        if len(words) < 2 or {*self.signs} & {*COMPARISONS, "(", "="} or len(text) > _LONGEST:
             return None
         if words[0] == "TSC":
-            return Diagnostic(codes.PROSE, piece, {"command": piece_})
+            return Diagnostic(codes.PROSE, self.piece, {"command": text})
         if name := next((each for each in words if each in self.names.variables), ""):
-            by = next((each.text for each in tokens if each.kind is NUMBER), "1")
-            values = {"name": name, "example": f"{name} = {name} + {by}", "fix": ""}
-            return Diagnostic(codes.PROSE, piece, values)
-        return self.offered(codes.PROSE, piece, f"// {piece_}")
+            by = next((each.text for each in self.tokens if each.kind is NUMBER), "1")
+            values = {"name": name, "example": f"{name} = {name} + {by}"}
+            return Diagnostic(codes.PROSE, self.piece, values)
+        return self.offers(codes.PROSE, f"// {text}")
 
-    def orders(self, found: Diagnostic, piece: Span, meant: str) -> Diagnostic | None:
+    def turn(self, said: Sequence[str]) -> Diagnostic:
+        """A turn that says no way, or no number."""
+        meant = {each: self.names.meant(each) for each in self.words}
+        others = {meant[it] for it in meant if self.is_order(it) and not said_of(it, "right")}
+        if others - {"L", "R", "B", "S"}:
+            return Diagnostic(codes.SEVERAL_ORDERS, self.piece)  # a turn alone would lose them
+        way = next((each for each in meant.values() if each in ("L", "R")), "")
+        angle = next((its for its in map(_angle, said) if its), "")
+        is_timed = any(said_of(each, "unit") for each in self.words)
+        turns = orders(self.tokens, self.names)
+        if angle and not way and not is_timed:
+            turned = f"({angle} DEG, 60)"
+        elif len(turns) == 1 and turns[0].is_side_free and len(turns[0].samples) < 2:
+            turned = turns[0].text[1:]
+        else:
+            side = "left" if way == "L" else "right"
+            return self.says(codes.WHICH_WAY, word=way, way=side, usage=_usage(way))
+        return self.says(codes.WHICH_WAY, to_left=f"L{turned}", to_right=f"R{turned}")
+
+    def orders(self, meant: str) -> Diagnostic | None:
         """Words that say a block, or orders, of which `meant` is a word; offered, never made."""
-        tokens = self.tokens(piece)
-        if text := self.block(piece):
-            return self.translated(found.span, piece, tokens[0].text, text)
-        said = orders(tokens, self.names) if meant else []
+        if text := self.block():
+            return self.translated(self.signs[0], text)
+        said = orders(self.tokens, self.names) if meant else []
         if len(said) == 1 and not said[0].is_side_free:
-            told = self.translated(found.span, piece, meant, said[0].text)
-            takes = told.values["usage"] if said[0].samples else ""
-            return told._replace(values={**told.values, "takes": takes})
+            return self.translated(meant, said[0].text, bool(said[0].samples))
         if len(said) < 2:
             return None
-        told = self.offered(codes.SEVERAL_ORDERS, piece, written(said))
-        values = {**told.values, "example": made_up(said)}
+        fix, example = written(said), made_up(said)
         if any(each.is_side_free for each in said):
-            values |= {"right": values["fix"], "fix": ""}
-            return told._replace(values=values, place=None, repair=None)
-        return told._replace(values=values)
+            values = {"right": fix, "example": example, "fix": ""}
+            return Diagnostic(codes.SEVERAL_ORDERS, self.piece, values)
+        return self.offers(codes.SEVERAL_ORDERS, fix, example=example)
 
-    def translated(self, span: Span, piece: Span, found: str, fix: str) -> Diagnostic:
-        right = fix.partition("(")[0].partition(";")[0]
-        words = [each.text for each in self.tokens(piece)]
-        found = next((each for each in words if self.command(each) == right), found)
-        values = {"found": found, "right": right, "fix": fix, "usage": _usage(right)}
-        repair = Repair((Edit(piece, fix),), False)
-        return Diagnostic(codes.OTHER_LANGUAGE, span, values, piece, repair)
-
-    def offered(self, code: Code, piece: Span, fix: str) -> Diagnostic:
-        repair = Repair((Edit(piece, fix),), False)
-        found = (self.tokens(piece)[1:2] or self.tokens(piece))[0].text
-        return Diagnostic(code, piece, {"found": found, "fix": fix}, piece, repair)
-
-    def own_word(self, found: Diagnostic, tokens: list[Lexeme]) -> Diagnostic | None:
+    def own_word(self) -> Diagnostic | None:
         """A word of the program's own that nothing teaches."""
-        name, signs = tokens[0].text, [each.text for each in tokens[1:]]
-        if [each.kind is NUMBER for each in tokens[1:]] == [False, True, False] and self.unopened:
-            return found._replace(values={**found.values, "near": self.unopened})
-        if len(name) < 3 or self.command(name) or (signs and signs[0] != "("):
+        name, *signs = self.signs
+        if [each.kind is NUMBER for each in self.tokens[1:]] == [False, True, False]:
+            if self.text.unopened:
+                return self.adds(near=self.text.unopened)
+        if len(name) < 3 or self.names.meant(name) or (signs and signs[0] != "("):
             return None
         lone = re.findall(rf"(?im)(?:^|[;|])[ \t]*{name}[ \t]*(?=;|\r?$)", self.source.text)
         is_counted = len(signs) == 3 and signs[1].isdecimal() and len(signs[1]) < 4
@@ -288,276 +299,257 @@ class _Usage:
             return None  # a function of another language
         if signs or len(lone) > 1 or self.names.defs or said_of(name, "taught"):
             often = f"LOOP({times});{name};END_LOOP" if int(times) > 1 else ""
-            return Diagnostic(codes.UNTAUGHT, found.span, {"name": name, "often": often})
+            return self.says(codes.UNTAUGHT, name=name, often=often)
         is_name = not any(said_of(name, kind) for kind in _NO_NAMES)
-        return found._replace(values={**found.values, "own": name if is_name else ""})
+        return self.adds(own=name if is_name else "")
 
-    def until(self, found: Diagnostic) -> Diagnostic:
-        asked = re.compile(r"(?i)UNTIL\s*(\([^()\n]+\))").match(self.source.text, found.span.start)
-        example = f"F(2, 80) UNTIL{asked[1]}" if asked else ""
-        return found._replace(values={**found.values, "example": example})
+    def until(self) -> Diagnostic:
+        asked = re.match(r"\s*(\([^()\n]+\))", self.source.text[self.found.span.start + 5 :])
+        return self.adds(example=f"F(2, 80) UNTIL{asked[1]}" if asked else "")
 
-    def no_button(self, found: Diagnostic) -> Diagnostic:
+    def no_button(self) -> Diagnostic:
         """A button that nobody can ask for; a program may begin with the one that starts it."""
         begun = re.match(r"(?i)\s*SB\s*\|", self.source.text)
-        return Diagnostic(codes.NO_BUTTON, found.span, {"begun": "SB|"} if begun else {})
+        return self.says(codes.NO_BUTTON, begun="SB|" if begun else "")
 
     def is_button(self, word: str) -> bool:
         is_missing = "BUTTON" not in self.names.sensors
         return is_missing and concept_of(word) == "BUTTON"
 
-    def _is_order(self, word: str) -> bool:
-        known = WORDS.get(self.command(word))
+    def is_order(self, word: str) -> bool:
+        known = WORDS.get(self.names.meant(word))
         return known is not None and known.is_instruction and word not in WORDS
 
-    def brackets(self, found: Diagnostic) -> Diagnostic:
+    def brackets(self) -> Diagnostic:
         """A word without its values; alone it gets an example of them."""
-        piece, word = self.piece(found.span), found.values["word"]
-        if any(self.is_button(each.text) for each in self.tokens(piece)):
-            return self.no_button(found)
-        said = self.orders(found, piece, word) if found.span.start == piece.start else None
+        word = self.found.values["word"]
+        if any(map(self.is_button, self.signs)):
+            return self.no_button()
+        said = self.orders(word) if self.is_first else None
         if said and said.code is codes.SEVERAL_ORDERS:
             return said
         if said:
-            values = {**found.values, "fix": said.values["fix"], "example": ""}
-            return found._replace(values=values, place=piece, repair=said.repair)
+            told = self.adds(fix=said.values["fix"])
+            return told._replace(place=self.piece, repair=said.repair)
         known = WORDS.get(word)
-        is_alone = len(self.tokens(piece)) == 1 and known is not None and bool(known.arguments)
-        values = {**found.values, "example": known.example if known and is_alone else ""}
-        if known:
-            values["usage"] = self.usage(self.tokens(piece), word)
-        return found._replace(values=values)
+        if known is None:
+            return self.found
+        is_alone = len(self.tokens) == 1 and bool(known.arguments)
+        return self.adds(
+            example=known.example if is_alone else "", usage=self.usage(word, self.tokens)
+        )
 
-    def question(self, found: Diagnostic) -> Diagnostic | None:
+    def question(self) -> Diagnostic | None:
         """A question in words, in the brackets of a header; or nothing in brackets."""
-        text = self.source.text
-        tokens = self.tokens(self.piece(found.span))
-        if [each.text for each in tokens[1:]] == ["("] and tokens[0].text in WORDS:
-            usage = self.usage(tokens[:1], tokens[0].text)
-            return found._replace(values={**found.values, "usage": usage})
-        if (said := self.foreign(found, tokens) or self.amount(found)) is not None:
+        if self.signs[1:] == ["("] and self.signs[0] in WORDS:
+            return self.adds(usage=self.usage(self.signs[0], self.tokens[:1]))
+        if (said := self.foreign() or self.amount()) is not None:
             return said
-        before = self.source[Span(self.piece(found.span).start, found.span.end)]
-        head = _LAST_HEAD.search(before)
-        end = text.find(")", found.span.start)
-        is_in_words = any(each.kind is WORD for each in tokens[1:])
-        if tokens and self.command(tokens[0].text) == "SHOW" and is_in_words:
-            return Diagnostic(codes.WORDS_SHOWN, found.span)
+        if self.tokens and self.names.meant(self.signs[0]) == "SHOW":
+            if any(each.kind is WORD for each in self.tokens[1:]):
+                return self.says(codes.WORDS_SHOWN)
+        start, place = self.piece.start, self.found.span
+        head = _LAST_HEAD.search(self.source[Span(start, place.end)])
         if head is None:
             return None
-        start = self.piece(found.span).start + head.end()
-        inner = self.tokens(Span(start, max(start, end)))
+        start += head.end()
+        end = self.source.text.find(")", place.start)
+        inner = lexemes(self.source[Span(start, max(start, end))])
         if [each.kind for each in inner] == [WORD, NUMBER]:
-            values = {"before": inner[0].text, "found": inner[1].text}
-            return Diagnostic(codes.MISSING_SIGN, found.span, values)
+            return self.says(codes.MISSING_SIGN, before=inner[0].text, found=inner[1].text)
         own = {*WORDS, *self.names.known.values}
         if all(each.kind is not WORD or each.text in own for each in inner):
             return None
         word = head[1].upper()
-        values = {"word": word, "question": WORDS[word].arguments[0].sample}
-        return Diagnostic(codes.IN_WORDS, found.span, values)
+        return self.says(codes.IN_WORDS, word=word, question=WORDS[word].arguments[0].sample)
 
-    def foreign(self, found: Diagnostic, tokens: list[Lexeme]) -> Diagnostic | None:
+    def foreign(self) -> Diagnostic | None:
         """The values of a word that this robot does not have: whoever writes it wants the word."""
-        called = [each.text for each in tokens[1:2]] == ["("] and tokens[0].kind is WORD
-        word = tokens[0].text if called else ""
         known = self.names.known
-        if not word or self.command(word) or word in known.instructions | known.actuators:
+        if self.signs[1:2] != ["("] or self.tokens[0].kind is not WORD:
             return None
-        start = self.piece(found.span).start
+        word, start = self.signs[0], self.piece.start
+        if self.names.meant(word) or word in known.instructions | known.actuators:
+            return None
         told = Diagnostic(codes.UNKNOWN_WORD, Span(start, start + len(word)), {"found": word})
-        return self.unknown(told) or told
+        return _Usage(self.text, told).unknown() or told
 
-    def setup(self, found: Diagnostic) -> Diagnostic | None:
+    def setup(self) -> Diagnostic | None:
         """Another word before the bar: one that says the button, or looks like it."""
-        word = found.values["found"]
-        is_button = word == "S8" or concept_of(word) == "BUTTON"
-        return found._replace(values={**found.values, "right": "SB|"}) if is_button else None
+        word = self.found.values["found"]
+        return self.adds(right="SB|") if word == "S8" or concept_of(word) == "BUTTON" else None
 
-    def begins(self, found: Diagnostic) -> Diagnostic:
+    def begins(self) -> Diagnostic:
         """`SI` in the midst of a program begins a question, or the program once more."""
-        text, (_, end) = self.source.text, found.span
-        word = self.source[found.span].upper()
+        word = self.source[self.found.span].upper()
         if word == "CHECK_CONNECTION":
-            return Diagnostic(codes.PING_ALONE, found.span)
+            return self.says(codes.PING_ALONE)
         if word == "PING":
-            return Diagnostic(codes.SETUP_NEEDS_BAR, found.span, {"found": word, "fix": "PING|"})
-        is_bar = text[end : end + 9].lstrip()[:1] == "|"
-        piece = self.piece(found.span)
-        if text_ := self.block(piece):
-            return self.offered(codes.SPANISH_IF, piece, text_)._replace(span=found.span)
+            return self.says(codes.SETUP_NEEDS_BAR, found=word, fix="PING|")
+        is_bar = self.behind_it.lstrip()[:1] == "|"
+        if text := self.block():
+            return self.offers(codes.SPANISH_IF, text)._replace(span=self.found.span)
         if word == "SI" and not is_bar:
-            return Diagnostic(codes.SPANISH_IF, found.span)
-        first = re.match(r"\s*(S[IB])\s*\|", text, re.IGNORECASE)
+            return self.says(codes.SPANISH_IF)
         here = word + "|" * is_bar
-        values = {"found": here}
-        if word == "SB":
-            values |= {"button": "SB", "pause": _PAUSE}
-            is_twice = first is not None and first[1].upper() == "SB"
-            values |= {"twice": here} if is_twice else {"here": here}
-            values |= {"instead": "SI"} if first and not is_twice else {}
-        return found._replace(values=values)
+        if word != "SB":
+            return self.adds(found=here)
+        first = re.match(r"\s*(S[IB])\s*\|", self.source.text, re.IGNORECASE)
+        is_twice = first is not None and first[1].upper() == "SB"
+        values = {
+            "found": here,
+            "button": "SB",
+            "pause": "W(2)",
+            "twice" if is_twice else "here": here,
+        }
+        return self.adds(**values, instead="SI" if first and not is_twice else "")
 
     # -- blocks, signs and names ------------------------------------------------------------------
 
-    def unended(self, found: Diagnostic) -> Diagnostic:
+    def unended(self) -> Diagnostic:
         """A block without its end: where its indentation, or its line, says that it ends."""
-        k = self.source.position(found.span.start)[0] - 1
-        header = self.lines[k]
-        behind = without_note(self.source[Span(found.span.end, found.span.end + len(header))])[0]
+        rows = self.text.lines
+        k = self.source.position(self.found.span.start)[0] - 1
+        behind = without_note(self.behind_it[: len(rows[k])])[0]
         rest = [each.strip() for each in behind.split("\n")[0].split(";") if _WORD.search(each)]
-        depth = len(header) - len(header.lstrip())
-        below = [n for n in range(k + 1, len(self.lines)) if self.lines[n].strip()]
-        values = dict(found.values)
-        if rest and k + 1 == len(self.lines):
-            values |= {"behind": rest[-1]}
-        elif not below:
-            values |= {"head": self.source[found.span]}
+        below = [n for n in range(k + 1, len(rows)) if rows[n].strip()]
+        if rest and k + 1 == len(rows):
+            return self.adds(behind=rest[-1])
+        if not below:
+            return self.adds(head=self.source[self.found.span])
+        if top := [n for n in self.text.at_top if n > k]:  # which no block is around
+            inside = [n for n in below if n < min(top)]
         else:
-            top = min((n for n in self.at_top if n > k), default=0)  # which no block is around
-            inside = [n for n in below if n < top]
-            for n in [] if top else below:
-                if len(self.lines[n]) - len(self.lines[n].lstrip()) <= depth:
-                    break
-                inside.append(n)
-            if inside:
-                last = without_note(self.lines[inside[-1]])[0].strip(" \t;")
-                values |= {"line": str(inside[-1] + 1), "last": last}
-        return found._replace(values=values)
+            inside = [*takewhile(lambda n: _depth(rows[n]) > _depth(rows[k]), below)]
+        if not inside:
+            return self.found
+        last = without_note(rows[inside[-1]])[0].strip(" \t;")
+        return self.adds(line=str(inside[-1] + 1), last=last)
 
-    def break_outside(self, found: Diagnostic) -> Diagnostic | None:
+    def break_outside(self) -> Diagnostic | None:
         """A BREAK in an IF that no loop is around: what follows may be what is left out."""
-        head = _IF_BEFORE.search(self.source.text, 0, found.span.start)
-        end = _ENDIF_BEHIND.match(self.source.text, found.span.end)
-        if head is None or end is None:
+        head = _IF_BEFORE.search(self.source.text, 0, self.found.span.start)
+        end = _ENDIF_BEHIND.match(self.behind_it)
+        rest = _row(self.behind_it[end.end() :]) if end else []
+        if head is None or not rest:
             return None
-        lines_ = [without_note(each)[0] for each in self.source.text[end.end() :].split("\n")]
-        rest = [each.strip() for line in lines_ for each in line.split(";") if each.strip()]
-        if not 0 < len(rest) <= _MANY_BELOW or any(_IS_BLOCK.match(each) for each in rest):
-            return None
-        skipped = ";".join((head[1], "S", "ELSE", *rest, BLOCK_ENDS["IF"]))
-        return found._replace(values={**found.values, "skipped": skipped})
+        return self.adds(skipped=";".join((head[1], "S", "ELSE", *rest, BLOCK_ENDS["IF"])))
 
-    def unopened_part(self, found: Diagnostic) -> Diagnostic | None:
+    def unopened_part(self) -> Diagnostic | None:
         """An ELSE in a WHEN."""
-        before = self.source.text[: found.span.start]
+        before = self.source.text[: self.found.span.start]
         whens = re.findall(r"(?i)\b(?:END_?)?WHEN\b", before)
-        if whens and not whens[-1].upper().startswith("END"):
-            return found._replace(values={**found.values, "part": found.values["found"]})
-        return None
+        is_open = bool(whens) and not whens[-1].upper().startswith("END")
+        return self.adds(part=self.found.values["found"]) if is_open else None
 
-    def sign(self, found: Diagnostic) -> Diagnostic | None:
-        sign, piece = self.source[found.span], self.piece(found.span)
-        tokens = self.tokens(piece)
-        if sign in "\u00a1\u00bf" and sum(each.kind is WORD for each in tokens) > 1:
-            return self.offered(codes.PROSE, piece, f"// {self.source[piece]}")
-        if sign in ".\u2026" and (said := self.dots(found)) is not None:
+    def sign(self) -> Diagnostic | None:
+        text, (start, end) = self.source.text, self.found.span
+        sign = text[start:end]
+        if sign in "\u00a1\u00bf" and len(self.words) > 1:
+            return self.offers(codes.PROSE, f"// {self.source[self.piece]}")
+        if sign in ".\u2026" and (said := self.dots()) is not None:
             return said
-        if sign == "!" and self.source.text[found.span.end :][:1] not in ("", "\n", " "):
-            return Diagnostic(codes.OTHER_SIGN, found.span, {"found": "!", "right": "NOT"})
-        around = self.source.text[found.span.start - 1 : found.span.end + 1]
-        if re.fullmatch("[0-9]:[0-9]", around):
-            return Diagnostic(codes.BAD_NUMBER, found.span, {"found": around})
+        if sign == "!" and text[end : end + 1] not in ("", "\n", " "):
+            return self.says(codes.OTHER_SIGN, found="!", right="NOT")
+        if re.fullmatch("[0-9]:[0-9]", around := text[start - 1 : end + 1]):
+            return self.says(codes.BAD_NUMBER, found=around)
         if sign in ("{", "}"):
-            return found._replace(code=codes.BRACES, values={"found": sign})
-        if sign in QUOTES:
-            end = self.source.text.find(sign, found.span.end)
-            line_end = self.source.text.find("\n", found.span.end)
-            is_closed = end >= 0 and (line_end < 0 or end < line_end)
-            span = Span(found.span.start, end + 1) if is_closed else found.span
-            if self.command(tokens[0].text) == "SHOW":
-                return Diagnostic(codes.WORDS_SHOWN, span)
-            return Diagnostic(codes.QUOTE, span, {"found": sign})
-        return None
+            return self.says(codes.BRACES, found=sign)
+        if sign not in QUOTES:
+            return None
+        closed = re.compile(rf"[^\n]*?{sign}").match(text, end)
+        span = Span(start, closed.end() if closed else end)
+        if self.names.meant(self.signs[0]) == "SHOW":
+            return Diagnostic(codes.WORDS_SHOWN, span)
+        return Diagnostic(codes.QUOTE, span, {"found": sign})
 
-    def dots(self, found: Diagnostic) -> Diagnostic | None:
+    def dots(self) -> Diagnostic | None:
         """Dots for what goes inside a block, as the poster has them."""
         text = self.source.text
-        dots = _DOTS.match(text, found.span.start)
-        head = _BEFORE_DOTS.search(text, 0, found.span.start)
+        dots = _DOTS.match(text, self.found.span.start)
+        head = _BEFORE_DOTS.search(text, 0, self.found.span.start)
         if dots is None or head is None:
             return None
         right = BLOCK_ENDS[(head[2] or head[3]).upper()]
         behind = _BEHIND_DOTS.match(text, dots.end())
         end = behind[1].upper() if behind and behind[1] else ""
-        values = {"head": head[1], "right": right}
-        if not end:
-            values["out"] = dots[0].strip()
-        elif end == right and behind:
-            below = [without_note(each)[0].strip("; ") for each in text[behind.end() :].split("\n")]
-            below = [each for each in below if each]
-            calls = [each for each in below if each.upper() == (head[4] or "").upper()]
-            inside = [each for each in below if each not in calls]
-            if 0 < len(inside) <= _MANY_BELOW and not any(_IS_BLOCK.match(each) for each in inside):
-                values["example"] = "; ".join((head[1], *inside, right, *calls))
-        return Diagnostic(codes.DOTS, Span(dots.start(), dots.end()), values)
+        values = {"head": head[1], "right": right, "out": "" if end else dots[0].strip()}
+        below = _row(text[behind.end() :]) if behind and end == right else []
+        calls = [each for each in below if each.upper() == (head[4] or "").upper()]
+        if inside := [each for each in below if each not in calls]:
+            values["example"] = "; ".join((head[1], *inside, right, *calls))
+        return Diagnostic(codes.DOTS, Span(*dots.span()), values)
 
-    def name(self, found: Diagnostic) -> Diagnostic:
+    def name(self) -> Diagnostic:
         """A word of the language as a name: another one for it."""
-        word = found.values["word"]
-        text = self.source.text
-        is_set = re.match(r"\s*=\s*([1-9]?)", text[found.span.end :])
-        is_taught = re.search(
-            r"(?i)\bDEF\s+$", text[max(0, found.span.start - 9) : found.span.start]
-        )
+        word, text, start = self.found.values["word"], self.source.text, self.found.span.start
+        is_set = re.match(r"\s*=\s*([1-9]?)", self.behind_it)
+        is_taught = re.search(r"(?i)\bDEF\s+$", text[max(0, start - 9) : start])
         right = in_place_of(text, word) if is_set or is_taught else ""
-        if is_set and (near := nearest(word, self.names.variables - {word})):
-            right = near  # `ROUND = ROUNDS + 1`
-        gap = "clock" if is_set and word == "TIME" and not is_set[1] else "right"
-        values = {**found.values, gap: right}
-        if is_set and word == "TIME":
-            used = [str(self.source.position(each.start())[0])
-                    for each in re.finditer(r"(?i)\bTIME\b", text)][1:]  # fmt: skip
-            values |= {"line": used[0]} if len(used) == 1 else {"lines": ", ".join(used)}
-        return found._replace(values=values)
+        if is_set is None or word != "TIME":
+            near = nearest(word, self.names.variables - {word}) if is_set else None
+            return self.adds(right=near or right)  # `ROUND = ROUNDS + 1`
+        used = [str(self.source.position(each.start())[0])
+                for each in re.finditer(r"(?i)\bTIME\b", text)][1:]  # fmt: skip
+        values = {"line" if len(used) == 1 else "lines": ", ".join(used)}
+        return self.adds(**{"right" if is_set[1] else "clock": right}, **values)
 
-    def no_order(self, found: Diagnostic) -> Diagnostic | None:
-        is_note = self.source.text.startswith("/*", found.span.start)
-        return Diagnostic(codes.OTHER_NOTE, found.span, {"found": "/*"}) if is_note else None
+    def no_order(self) -> Diagnostic | None:
+        is_note = self.source.text.startswith("/*", self.found.span.start)
+        return self.says(codes.OTHER_NOTE, found="/*") if is_note else None
 
-    def function(self, found: Diagnostic) -> Diagnostic | None:
-        name = found.values["found"]
+    def function(self) -> Diagnostic | None:
+        name = self.found.values["found"]
         if name in self.names.sensors:
-            return Diagnostic(codes.NO_BRACKETS_HERE, found.span, {"word": name, "right": name})
-        return Diagnostic(codes.NO_INPUT, found.span) if said_of(name, "input") else None
+            return self.says(codes.NO_BRACKETS_HERE, word=name, right=name)
+        return self.says(codes.NO_INPUT) if said_of(name, "input") else None
 
-    def amount(self, found: Diagnostic) -> Diagnostic | None:
+    def amount(self) -> Diagnostic | None:
         """Words that say how much, in the place of a number."""
-        piece = self.piece(found.span)
-        text = self.source.text
-        start = 1 + max(text.rfind(sign, piece.start, found.span.start) for sign in "(,")
-        ends = (text.find(sign, found.span.start, piece.end) for sign in ",)")
+        text, place = self.source.text, self.found.span
+        start = 1 + max(text.rfind(sign, self.piece.start, place.start) for sign in "(,")
+        ends = (text.find(sign, place.start, self.piece.end) for sign in ",)")
         end = min((each for each in ends if each >= 0), default=0)
         value = Span(start + text[start:end].startswith(" "), end)
         values = with_number(text, value)
         return Diagnostic(codes.UNKNOWN_NAME, value, values) if values else None
 
-    def behind(self, found: Diagnostic) -> Diagnostic | None:
+    def behind(self) -> Diagnostic | None:
         """What begins no instruction comes behind one: with a `;` between them it is as wrong."""
-        span = Span(found.span.start, self.piece(found.span).end)
-        right = lines.right(self.tokens(span), self.names)
+        span = Span(self.found.span.start, self.piece.end)
+        right = lines.right(lexemes(self.source[span]), self.names)
         words = shortened(self.source[span])
-        values = {"before": found.values["before"], "words": words, "order": words}
+        values = {"before": self.found.values["before"], "words": words, "order": words}
         is_none = isinstance(right, Failure) and right.at == 0
         return Diagnostic(codes.WORDS_BEHIND, span, values) if is_none else None
 
-    def letters(self, found: Diagnostic) -> Diagnostic | None:
+    def letters(self) -> Diagnostic | None:
         """A name with letters that a name has not."""
-        if (said := self.amount(found)) is not None:
+        if (said := self.amount()) is not None:
             return said
-        right = re.sub(r"^[^A-Za-z]+|\W", "", plain(self.source[found.span]))
-        concept = self.command(right)
+        word = self.source[self.found.span]
+        right = re.sub(r"^[^A-Za-z]+|\W", "", plain(word))
+        concept = self.names.meant(right)
         if concept in WORDS:
-            values = {"found": right, "right": concept, "usage": _usage(concept)}
-            return Diagnostic(codes.OTHER_LANGUAGE, found.span, values)
-        word = self.source[found.span].upper()
-        if self.source.text[found.span.end :].lstrip(" ").startswith("("):
-            return Diagnostic(codes.UNKNOWN_WORD, found.span, {"found": word, "near": ""})
-        is_order = self.piece(found.span).start == found.span.start
-        if is_order and (said_of(right, "filler") or self.is_button(right)):
-            return self.unknown(Diagnostic(codes.UNKNOWN_WORD, found.span, {"found": right}))
-        values = {"right": right if self.source[found.span].isupper() else right.capitalize()}
-        return found._replace(values=values) if right else None
+            usage = _usage(concept)
+            return self.says(codes.OTHER_LANGUAGE, found=right, right=concept, usage=usage)
+        if self.behind_it.lstrip(" ").startswith("("):
+            return self.says(codes.UNKNOWN_WORD, found=word.upper(), near="")
+        if self.is_first and (said_of(right, "filler") or self.is_button(right)):
+            return _Usage(self.text, self.says(codes.UNKNOWN_WORD, found=right)).unknown()
+        return self.adds(right=right if word.isupper() else right.capitalize()) if right else None
+
+
+def _row(text: str) -> list[str]:
+    """Return the instructions of a text, nothing where they are many, or a block is among them."""
+    rows = (without_note(line)[0].split(";") for line in text.split("\n"))
+    found = [each.strip() for row in rows for each in row if each.strip()]
+    is_long = len(found) > _MANY_BELOW or any(map(_IS_BLOCK.match, found))
+    return [] if is_long else found
+
+
+def _depth(line: str) -> int:
+    return len(line) - len(line.lstrip())
 
 
 def _angle(word: str) -> str:
@@ -572,7 +564,7 @@ def _usage(word: str) -> str:
     return (known.example if is_asking else known.usage) if known else word
 
 
-_SAYS: dict[Code, Callable[[_Usage, Diagnostic], Diagnostic | None]] = {
+_SAYS: dict[Code, Callable[[_Usage], Diagnostic | None]] = {
     codes.UNKNOWN_WORD: _Usage.unknown,
     codes.MISSING_OPEN: _Usage.brackets,
     codes.MISSING_SEPARATOR: _Usage.behind,
