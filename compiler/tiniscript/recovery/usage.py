@@ -112,10 +112,9 @@ class _Text:
     def piece(self, span: Span) -> Span:
         """Return the instruction around a place: between the separators of its line."""
         text = self.source.text
-        start = max(text.rfind("\n", 0, span.start), text.rfind("\r", 0, span.start)) + 1
-        ends = [k for k in (text.find("\n", span.start), text.find("\r", span.start)) if k >= 0]
-        line = text[start : min(ends, default=len(text))]
-        body = without_note(line)[0]
+        row, column = self.source.position(span.start)
+        start = span.start - column + 1
+        body = without_note(self.source.line_text(row))[0]
         signs = [match.start() + start for match in _SEPARATOR.finditer(body)]
         begin = max((k + 1 for k in signs if k < span.start), default=start)
         end = min((k for k in signs if k >= span.start), default=start + len(body))
@@ -396,13 +395,10 @@ class _Usage:
             return self.adds(found=here)
         first = re.match(r"\s*(S[IB])\s*\|", self.source.text, re.IGNORECASE)
         is_twice = first is not None and first[1].upper() == "SB"
-        values = {
-            "found": here,
-            "button": "SB",
-            "pause": "W(2)",
-            "twice" if is_twice else "here": here,
-        }
-        return self.adds(**values, instead="SI" if first and not is_twice else "")
+        if is_twice:
+            return self.adds(found=here, button="SB", pause="W(2)", twice=here)
+        instead = "SI" if first else ""
+        return self.adds(found=here, button="SB", pause="W(2)", here=here, instead=instead)
 
     # -- blocks, signs and names ------------------------------------------------------------------
 
