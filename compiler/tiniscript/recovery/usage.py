@@ -242,10 +242,10 @@ class _Usage:
         if len(words) < 2 or {*self.signs} & {*COMPARISONS, "(", "="} or len(text) > _LONGEST:
             return None
         if words[0] == "TSC":
-            return Diagnostic(codes.PROSE, self.piece, {"command": text})
+            return Diagnostic(codes.PROSE, self.piece, {"command": text, "fix": ""})
         if name := next((each for each in words if each in self.names.variables), ""):
             by = next((each.text for each in self.tokens if each.kind is NUMBER), "1")
-            values = {"name": name, "example": f"{name} = {name} + {by}"}
+            values = {"name": name, "example": f"{name} = {name} + {by}", "fix": ""}
             return Diagnostic(codes.PROSE, self.piece, values)
         return self.offers(codes.PROSE, f"// {text}")
 
