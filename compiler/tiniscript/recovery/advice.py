@@ -186,10 +186,8 @@ def _told(part: Behind) -> Advice | None:
 
 def _is_read_surely(part: Behind) -> bool:
     """Whether a repair of the whole instruction can mean nothing else."""
-    if part.own == "DEF" and re.search(
-        rf"(?im)(?:^|;)\s*{part.tokens[-1].text}\s*(?:;|$)", part.text
-    ):  # fmt: skip
-        return False  # it is called by its first word
+    if part.own == "DEF":
+        return False  # it may be called by its first word
     found = lines.read([*part.tokens, *part.row], part.names, is_quick=True)
     return bool(found) and found[0].is_sure and len(found[0].items or ()) == 1
 

@@ -298,10 +298,8 @@ class _Teller:
             word = next((each.text for each in after if each.text in BLOCK_ENDS), "")
             added = [each.text for each in after if each.text not in texts(before)]
             end = BLOCK_ENDS.get(word) or next((each for each in added if each in ENDED), "")
-            whole = laid_out(after) if word else ""
             last = laid_out(_parted(before)[-1]) if word and _parted(before) else ""
-            values = {"word": word or ENDED.get(end, ""), "right": end, "whole": whole}
-            values["behind"] = last
+            values = {"word": word or ENDED.get(end, ""), "right": end, "behind": last}
             above = next((it for it in self.changes[k - 1 :: -1] if it.text.strip()), None)
             if not word and k and above:  # its indentation says where it ends
                 own = laid_out(lexemes(without_note(above.text.split("\n")[0])[0]))
