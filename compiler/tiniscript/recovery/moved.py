@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from itertools import pairwise
 from typing import NamedTuple
 
 from tiniscript.base.words import ALIASES, BLOCK_ENDS
@@ -85,15 +86,10 @@ def _pieces(text: str) -> Iterator[_Piece]:
 
 def _joined(pieces: list[_Piece]) -> str:
     """Return a program in which pieces of one line stay in it, where they are neighbours."""
-    text = ""
-    is_one_line = all(each.line == 1 for each in pieces)
-    before: _Piece | None = None
-    for each in pieces:
-        is_near = before is not None and before.line == each.line and "//" not in before.text
-        if before is not None:
-            text += ";" if is_one_line or is_near else "\n"
-        text += each.text.lstrip() if before is None else each.text
-        before = each
+    text = pieces[0].text.lstrip()
+    for before, each in pairwise(pieces):
+        is_near = before.line == each.line and "//" not in before.text
+        text += (";" if is_near else "\n") + each.text
     return text
 
 
