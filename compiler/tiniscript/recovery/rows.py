@@ -594,6 +594,7 @@ read ( v=@val ) | $v | 1 | TS102 | applied | X = leer(DISTANCE)⏎SHOW(X) => X =
 ^ cease of F $ | S | .5 | TS102 | first | para de avanzar => S
 ^ off|S the? engine $ | S | 1 | TS102 | applied | apaga motores => S
 ^ b=@start r=@all* '|' s=SI|SB $ | $s '|' $b $r | 1 | TS034 | offered | F(2, 80)|SI => SI |F(2, 80)
+^ START '|' | SI '|' | 1 | TS034 | offered | start|F(2,80) => SI |F(2,80)
 IF c=@argt+ BREAK ;|$ | IF ( $c ) ; BREAK ; ENDIF ; | 1 | TS015 | applied | LOOP(FOREVER)⏎F(1, 50)⏎IF DISTANCE < 10 BREAK⏎END_LOOP => LOOP(FOREVER)⏎F(1, 50)⏎IF(DISTANCE < 10);BREAK;ENDIF;⏎END_LOOP
 IF <question> BREAK ;|$ | IF ( $c ) ; BREAK ; ENDIF ; | 1 | TS014 | applied | LOOP(FOREVER)⏎F(1, 50)⏎if (DISTANCE < 10) break;⏎END_LOOP => LOOP(FOREVER)⏎F(1, 50)⏎IF(DISTANCE < 10);BREAK;ENDIF⏎END_LOOP
 ^ declare|DEF? main ( ) '{' | START ; { | 1 | TS065 | applied | main() {⏎F(3, 70);⏎} => START;⏎F(3, 70);⏎
