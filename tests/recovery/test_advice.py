@@ -104,6 +104,8 @@ def test_a_number_of_another_unit_is_converted() -> None:
         ("F(2, 80) mientras DISTANCE > 10", {"fix": "F(2, 80) UNTIL(DISTANCE <= 10)"}),
         ("avanza 2 segundos si la distancia es mayor que 10",
          {"fix": "IF(DISTANCE > 10);F(2, 80);ENDIF"}),
+        ("se nao tiver parede pra frente 2 segundos",
+         {"fix": "IF(DISTANCE > 10);F(2, 80);ENDIF"}),  # where to go, and not where the wall is
         ("L(1,60) (45)", {"extra": "(45)"}),  # rather degrees than how often
     ],
 )  # fmt: skip

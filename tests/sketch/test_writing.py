@@ -98,6 +98,7 @@ def test_brackets_are_those_that_cpp_needs() -> None:
 def test_random_is_asked_from_left_to_right() -> None:
     text = sketch("X = RANDOM(1, 6) - RANDOM(1, 3);M(RANDOM(1, 2), RANDOM(3, 4))")
     assert "x = (first1 = randomFrom(1, 6), first1 - randomFrom(1, 3));" in text
+    assert "motors(limited(first2, -100, 100), limited(randomFrom(3, 4), -100, 100));" in text
     assert "first2 = randomFrom(1, 2);" in text and "Number first1, first2;" in text
 
 

@@ -469,6 +469,8 @@ def test_a_small_plate_is_drawn_with_small_wheels(
     ]
     drawn = [float(wheels[0].attrib[side]) / (520 / size_cm) for side in ("height", "width")]
     assert len(wheels) == 2 and drawn == pytest.approx(wheel_cm)
+    left, right = (float(each.attrib["x"]) for each in wheels)
+    assert right - left == pytest.approx(520)  # on the axle, which is as wide as the plate
 
 
 def test_a_gripper_is_drawn_around_its_button_and_another_servo_has_an_arm() -> None:
