@@ -59,8 +59,8 @@ ADVICE = """
 ^ @last <loop> (? @num? )? times? $ | TS062 | found={words} | F(1, 50)⏎repetir => found=repetir
 ^ @last @word s=FOREVER $ | TS062 | found={words}; all={endless} | F(1, 50)⏎por siempre => all=LOOP(FOREVER);F(1, 50);END_LOOP
 # questions in words
-^ @unbegun when|at @word* flag @word* $ | TS102 | found={words}; right=SI|; usage=SI|F(2, 80); fix= | when green flag clicked => right=SI|
-^ @unbegun when|at @word? @word? beginning :? $ | TS102 | found={words}; right=SI|; usage=SI|F(2, 80); fix= | on start => right=SI|
+^ @unbegun when|at @word* flag @word* $ | TS102 | found={words}; right=SI|; usage=SI|; fix= | when green flag clicked => right=SI|
+^ @unbegun when|at @word? @word? beginning :? $ | TS102 | found={words}; right=SI|; usage=SI|; fix= | on start => right=SI|
 ^ @none when|at @word? @word? beginning :? $ | TS102 | found={words}; right=START; usage=START; fix=START | SI|al iniciar => fix=START
 ^ @none when|at @word* flag @word* $ | TS102 | found={words}; right=START; fix=START; usage=START | SI|when green flag clicked => fix=START
 ^ @none @any* h=IF|ELSEIF|WHILE|UNTIL (? @any* s=@noBUTTON @any* )? <body> $ | TS120 | | IF(boton presionado)⏎S⏎ENDIF => before=
