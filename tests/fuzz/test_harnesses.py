@@ -7,8 +7,14 @@ from pathlib import Path
 import pytest
 
 from tests.fuzz.harnesses import NAMES, fuzz, harness, missing, seeds
+from tests.support.needs import need
 
-pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is libFuzzer")
+
+@pytest.fixture(autouse=True)
+def needs_a_fuzzer() -> None:
+    """Not where the tests are collected, by each process: to find out takes half a second."""
+    need(missing())
+
 
 RUNS = {"machine": 30_000, "link": 6_000, "large_link": 3_000, "store": 1_500, "mqtt": 7_500}
 SEED = 1
