@@ -86,7 +86,7 @@ def test_ci_of_root_runs_the_tests_as_a_new_user(tmp_path: Path) -> None:
     for _ in range(2):
         rows, seen = ci(clone)
         assert rows[:2] == ["packages by 0", f"-m not root, {seen['USER']}"]
-        assert rows[-1] == "-m pytest -p no:cacheprovider -m root tests/x.py by 0"
+        assert rows[-1] == "-m pytest -n 2 -p no:cacheprovider -m root tests/x.py by 0"
         assert not {*SPECIAL, "SECRET"} & set(seen)
         assert (seen["CI"], seen["PIP_INDEX_URL"]) == ("true", "file:///no 'ne")
         assert (seen["https_proxy"], seen["FILES"]) == ("http://p:1", "1024")
