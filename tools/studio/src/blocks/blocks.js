@@ -311,23 +311,25 @@ export class Blocks {
     else this.#put(id);
   }
 
-  /** Has an open message beside all blocks of its height, or below all. @param {string} id @returns {boolean} whether there is room */
+  /** Has an open message beside all blocks of its height, else below all, else beside its own block. @param {string} id @returns {boolean} whether there is room */
   #put(id) {
     const block = this.#workspace.getBlockById(id);
     const bubble = this.#badgeOf(id)?.getBubble();
     if (!block || !bubble) return true;
-    const { top } = block.getBoundingRectangleWithoutChildren();
+    const own = block.getBoundingRectangleWithoutChildren();
+    const { top } = own;
     const view = this.#workspace.getMetricsManager().getViewMetrics(true);
     const size = bubble.getBoundingRectangle();
     const all = block.getRootBlock().getBoundingRectangle();
     const beside = block.getRootBlock().getDescendants(false).map((each) => each.getBoundingRectangleWithoutChildren());
     const right = Math.max(...beside.filter((each) => each.top < top + size.getHeight() && each.bottom > top).map((each) => each.right));
     const { Coordinate } = Blockly.utils;
-    const isBeside = right + BESIDE + size.getWidth() <= view.left + view.width;
-    const isBelow = !isBeside && all.bottom + BELOW + size.getHeight() <= view.top + view.height;
-    if (isBeside) bubble.moveDuringDrag(new Coordinate(right + BESIDE, top));
-    if (isBelow) bubble.moveDuringDrag(new Coordinate(all.left, all.bottom + BELOW));
-    return isBeside || isBelow;
+    const fits = (/** @type {number} */ edge) => edge + BESIDE + size.getWidth() <= view.left + view.width;
+    const isBelow = all.bottom + BELOW + size.getHeight() <= view.top + view.height;
+    const edge = [right, ...(isBelow ? [] : [own.right])].find(fits);
+    if (edge !== undefined) bubble.moveDuringDrag(new Coordinate(edge + BESIDE, top));
+    else if (isBelow) bubble.moveDuringDrag(new Coordinate(all.left, all.bottom + BELOW));
+    return edge !== undefined || isBelow;
   }
 
   /** Marks the blocks that run now, one in each task. @param {{line: number, column: number}[]} ranges */
