@@ -121,6 +121,8 @@ def _recovery(
 ) -> Recovery | None:
     """Return what reads a text, unless it is long or has a checksum."""
     text = source.text.replace("\r\n", "\n")
+    if "\r" in text:  # each line ends with one alone
+        text = source.text.replace("\r", "\n")
     said = {text: _mistakes(found)}
     if len(text) > LONGEST or "~" in text:
         return None
@@ -143,6 +145,8 @@ def _meant(
     if meant is None:
         return []
     text = source.text
+    if "\r" in text.replace("\r\n", ""):
+        text = text.replace("\r", "\n")
     told = explained(text, meant)
     if not told and meant.is_whole:
         misplaced = [each for each in found if each.code.number in rows.MISPLACED]
