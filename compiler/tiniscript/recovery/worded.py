@@ -30,7 +30,8 @@ def worded(row: Sequence[Lexeme], names: Names) -> dict[str, str] | None:
     is_compared = any(each.text == "=" for each in row)  # `DISTANCE = NEAR`
     row = [each for each in row if each.text != "="]
     texts = [each.text for each in row]
-    if is_compared and not _said(texts, names) & _ASKED:
+    is_question = any(text in ("AND", "OR") for text in texts)  # of the language itself
+    if is_question or (is_compared and not _said(texts, names) & _ASKED):
         return None
     if joint := _joint(texts, names):
         return {"question": "", "joint": joint}
