@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from tiniscript.base.kit import Kit
 from tiniscript.base.source import Edit, Source, Span, applied, overlap
-from tiniscript.base.words import WORDS, lexicon, nearest, said_of
+from tiniscript.base.words import lexicon, nearest, said_of
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import CODES, Diagnostic, Repair
 from tiniscript.recovery import lines, rows
@@ -156,8 +156,8 @@ def _meant(
     said_with = {each.code for each in told} | {step.code for _, step in meant.steps}
     if not told or not _keeps(text, meant.text, said_with, is_sure):
         return []
-    if not meant.is_whole and not meant.is_applied and _lost(text, meant.text):
-        return []
+    if not (meant.is_whole or meant.is_applied or _keeps(text, meant.text, set(), is_sure=False)):
+        return []  # a guess at a part gives up no number
     is_exact = is_sure or _keeps(text, meant.text, said_with, is_sure=True)
     are_sure = (is_exact and _is_sure(each, meant) for each in told)
     return [
@@ -221,7 +221,7 @@ def _keeps(text: str, new: str, said_with: set[str], is_sure: bool) -> bool:
     """
     bodies = ([without_note(line)[0] for line in it.split("\n")] for it in (text, new))
     before, after = (Counter(each.text for it in of for each in lexemes(it)) for of in bodies)
-    names = {each.upper() for each in re.findall(r"(?i)(?<=\bDEF )\w+|\w+(?=\s*=)", new)} - {*WORDS}
+    names = {each.upper() for each in re.findall(r"(?i)(?<=\bDEF )\w+|\w+(?=\s*=)", new)}
     closed = Counter(re.findall(rf"\b(?:END_?DEF|{words_of('end')}) +(\w+)", _bare(text).upper()))
     before -= Counter({name: n for name, n in closed.items() if after[name] > 1})
     before -= Counter(X=len(_TIMES.findall(_bare(text))))
@@ -229,15 +229,6 @@ def _keeps(text: str, new: str, said_with: set[str], is_sure: bool) -> bool:
     old, kept = (Counter(re.findall("[0-9]", _NOTE.sub("", _bare(it)))) for it in (text, new))
     has_all = old == kept if is_sure else not old - kept
     return is_kept and (has_all or bool(said_with & rows.OTHER_NUMBERS))
-
-
-def _lost(text: str, new: str) -> bool:
-    """Whether a text gives up one of its numbers, or a word that it gives a value."""
-    bare, kept = _bare(text), _bare(new)
-    given = {*re.findall(r"\w+(?=\s*=)", bare.upper())}
-    words = [Counter(re.findall(r"[A-Z_]\w*", each.upper())) for each in (bare, kept)]
-    numbers = [Counter(re.findall("[0-9]", each)) for each in (bare, kept)]
-    return bool(numbers[0] - numbers[1]) or any(words[0][it] > words[1][it] for it in given)
 
 
 def _bare(text: str) -> str:
