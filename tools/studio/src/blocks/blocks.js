@@ -300,7 +300,7 @@ export class Blocks {
     return this.#badgeOf(id)?.getText() ?? '';
   }
 
-  /** Shows the message of a block. @param {string} id */
+  /** Shows the message of a block, where there is room. @param {string} id */
   async #open(id) {
     const badge = this.#badgeOf(id);
     if (!badge || badge === this.#opening || this.#place.clientHeight < LOW) return;
@@ -308,7 +308,7 @@ export class Blocks {
     await badge.setBubbleVisible(true);
     this.#opening = null;
     if (badge !== this.#badgeOf(id)) badge.getBubble()?.dispose(); // that block is gone
-    else this.#put(id);
+    else if (!this.#put(id)) badge.setBubbleVisible(false); // the list below has it
   }
 
   /** Has an open message beside all blocks of its height, else below all, else beside its own block. @param {string} id @returns {boolean} whether there is room */
