@@ -1,9 +1,9 @@
-"""Brings all catalogues in step with the English ones: `python -m tools.languages`.
+"""Brings all catalogues in step with the English texts: `python -m tools.languages`.
 
-The names in the package's `.toml` files are English texts of the catalogue `names`. What is new
-gets an empty place, what is gone goes, and the translation of a text whose English has
-changed is marked as fuzzy: it is not used until somebody has looked at it. With codes, `pt fr`, it
-makes their folders. `--check` writes nothing, and says what is wrong and how much is translated.
+These are in `languages/en/*.toml`, those of `names` in other `.toml` files of the package. What is
+new gets an empty place, what is gone goes, and the translation of a text whose English has changed
+is marked as fuzzy: it is not used until somebody has looked at it. With codes, `pt fr`, it makes
+their folders. `--check` writes nothing, and says what is wrong and how much is translated.
 `--pseudo` makes a language that shows where longer texts do not fit.
 """
 
@@ -24,8 +24,9 @@ else:
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "compiler"))
 
+from tiniscript.base import catalogue_source
 from tiniscript.base.catalogue_file import Catalogue, Entry, load, written
-from tiniscript.base.languages import FOLDER, SOURCE, languages, table
+from tiniscript.base.languages import FOLDER, SOURCE, files, languages, table
 from tiniscript.base.words import WORDS
 from tiniscript.diagnostics.rendering import examples
 from tiniscript.recovery.concepts import plain
@@ -36,21 +37,22 @@ ACCENTS = str.maketrans("aeiouncAEIOU", "àéîõüñçÀÉÎÕÜ")
 
 
 def sources() -> dict[str, Catalogue]:
-    """Return the English catalogues by name; that of `names` is nowhere but in TOML files.
+    """Return the English catalogues by name.
 
-    Beside a message stands the wrong program of `diagnostics/examples.toml`.
+    Beside a message, and what to try, stands the wrong program of `diagnostics/examples.toml`.
     """
-    found = {path.stem: load(path) for path in (FOLDER / SOURCE).glob("*.po")}
+    found = {path.stem: catalogue_source.load(path) for path in (FOLDER / SOURCE).glob("*.toml")}
     programs = examples(SOURCE)
     for entry in found["messages"].entries.values():
-        wrong = programs.get(entry.key.partition("/")[0], {}).get("wrong", "")
-        entry.notes = [f"wrong: {row}" for row in wrong.strip().splitlines()] or entry.notes
+        code, _, part = entry.key.partition("/")
+        if code in programs and part in ("message", "try"):
+            entry.notes = [f"wrong: {row}" for row in programs[code]["wrong"].strip().splitlines()]
     return dict(sorted({**found, "names": names()}.items()))
 
 
 def names() -> Catalogue:
-    """Return the catalogue of what is said in the package's TOML, each text once."""
-    made = Catalogue(load(FOLDER / SOURCE / "command.po").head)
+    """Return the catalogue of what is said in other TOML files of the package, each text once."""
+    made = Catalogue(catalogue_source.HEAD)
     for folder in ("robots", "virtual/worlds", "lessons", "diagnostics"):
         for path in sorted((FOLDER.parent / folder).rglob("*.toml")):
             place = path.relative_to(FOLDER.parent).as_posix()
@@ -71,17 +73,12 @@ def _said_in(value: object) -> Iterator[str]:
 
 
 def in_step(source: Catalogue, own: Catalogue, language: str) -> Catalogue:
-    """Return a catalogue with the texts of the English one, and the translations that it has.
-
-    Other languages lack what has no words.
-    """
+    """Return a catalogue with the English texts that have words, and its own translations."""
     head = own.head or re.sub(
         r"^(Language|X-Name): .*$", rf"\1: {language}", source.head, flags=re.M
     )
     made = Catalogue(head)
-    entries = {
-        at: each for at, each in source.entries.items() if language == SOURCE or not each.is_gap
-    }
+    entries = {at: each for at, each in source.entries.items() if not each.is_gap}
     olds = _before(entries, own)
     for at, entry in entries.items():
         old = olds.get(at, entry)
@@ -136,7 +133,7 @@ def _longer(text: str) -> str:
 def check_robot(own: Catalogue) -> Iterator[tuple[int, str]]:
     """What a robot cannot say in its few bytes."""
     for entry in own.entries.values():
-        for said in entry.said:
+        for said in entry.said or [entry.english]:
             if not said.isascii() or len(said) > ROBOT_SIGNS:
                 yield entry.line, f"a robot says at most {ROBOT_SIGNS} signs, in ASCII: {said}"
 
@@ -161,35 +158,44 @@ def main() -> int:
     parser.add_argument("--check", action="store_true")
     parser.add_argument("--pseudo", action="store_true", help=f"make the language {PSEUDO}")
     options = parser.parse_args()
+    english = sources()
     if options.pseudo:
         (FOLDER / PSEUDO).mkdir(exist_ok=True)
-        for name, source in sources().items():
+        for name, source in english.items():
             target = FOLDER / PSEUDO / f"{name}.po"
             target.write_text(written(pseudo(source)), encoding="utf-8")
         return 0
-    wrong = 0
+    english["robot"].problems += check_robot(english["robot"])
+    wrong = sum(tell(files(name, SOURCE)[0], source) for name, source in english.items())
     for language in options.languages:
         done = every = 0
-        for name, source in sources().items():
-            target = FOLDER / language / f"{name}.po"
+        for name, source in english.items():
+            if language == SOURCE or source.problems:
+                continue
+            target = files(name, language)[1]
             own = load(target)
             made = in_step(source, own, language)
             if name == "robot":
                 own.problems += check_robot(own)
-            for line, problem in own.problems:
-                print(f"{target.relative_to(ROOT)}:{line}: {problem}")
-            wrong += len(own.problems)
+            wrong += tell(target, own)
             done += sum(entry.is_translated for entry in made.entries.values())
             every += len(made.entries)
-            if not options.check and not own.problems and (language, name) != (SOURCE, "names"):
+            if not options.check and not own.problems:
                 target.parent.mkdir(exist_ok=True)
-                target.write_text(written(made, language == SOURCE), encoding="utf-8")
+                target.write_text(written(made), encoding="utf-8")
         for row in check_lexicon(language):
             print(f"languages/{language}/lexicon.txt: no row of a lexicon: {row}")
             wrong += 1
         if language != SOURCE:
             print(f"{language}: {done} of {every} texts are translated")
     return 1 if wrong else 0
+
+
+def tell(path: Path, found: Catalogue) -> int:
+    """Print what is wrong with a file, and return how much that is."""
+    for line, problem in found.problems:
+        print(f"{path.relative_to(FOLDER.parent)}:{line}: {problem}")
+    return len(found.problems)
 
 
 if __name__ == "__main__":

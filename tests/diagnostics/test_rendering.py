@@ -12,7 +12,7 @@ from tests.support.texts import said as all_said
 from tiniscript import check_text, compile_text
 from tiniscript.base.catalogue_file import load
 from tiniscript.base.kit import NUMBER, YES_NO, Device, Kit
-from tiniscript.base.languages import FOLDER, SOURCE, languages
+from tiniscript.base.languages import SOURCE, files, languages
 from tiniscript.base.source import Source, Span
 from tiniscript.diagnostics import codes, rendering
 from tiniscript.diagnostics.codes import CODES, Diagnostic
@@ -96,12 +96,13 @@ def test_each_code_has_all_texts_in_every_language(code: str) -> None:
             assert part in ("message", "try") or "{" not in texts[f"{code}/{part}"]
 
 
-def test_a_translator_sees_the_wrong_program_of_a_message() -> None:
-    entries = load(FOLDER / SOURCE / "messages.po").entries.values()
+@each_row("language", languages()[1:])
+def test_a_translator_sees_the_wrong_program_of_a_message(language: str) -> None:
+    entries = load(files("messages", language)[1]).entries.values()
     notes = {entry.key: entry.notes for entry in entries}
     for code, programs in PROGRAMS.items():
         rows = [f"wrong: {row}" for row in programs["wrong"].strip().splitlines()]
-        assert notes[f"{code}/message"] == rows, f"fix the notes of {code}"
+        assert notes[f"{code}/message"] == rows, "python -m tools.languages"
 
 
 @each_row("code", EXAMPLES)

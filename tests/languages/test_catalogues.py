@@ -20,7 +20,7 @@ from tests.support.command import Tsc
 from tests.support.waiting import HANGS_S
 from tiniscript import robots
 from tiniscript.base import catalogue_compiler as compiling
-from tiniscript.base import languages
+from tiniscript.base import catalogue_source, languages
 from tiniscript.base.catalogue_file import Catalogue, Entry, load, read, written
 from tiniscript.base.languages import FOLDER, SOURCE
 from tiniscript.base.words import lexicon
@@ -30,6 +30,7 @@ from tiniscript.cli.texts import Said, language_of, text
 from tiniscript.cli.texts.verbs import VERBS
 from tiniscript.lessons import catalogue
 from tools.languages import PSEUDO, check_lexicon, check_robot, in_step, pseudo, sources
+from tools.languages import main as bring_in_step
 
 SOURCES = sources()
 FILES = sorted(FOLDER.glob("*/*.po"))
@@ -46,13 +47,12 @@ def test_a_catalogue_has_the_gaps_and_the_keys_of_the_english_one(path: Path) ->
     """Every text has its gaps. Spanish lacks none: a head that says X-Complete promises that."""
     own, source = load(path), SOURCES[path.stem]
     assert own.problems == []
-    assert set(own.entries) <= set(source.entries)
     if "X-Complete: yes" in own.head:
         assert list(own.entries) == [at for at, each in source.entries.items() if not each.is_gap]
         for at, entry in own.entries.items():
             assert entry.is_translated, at
             assert entry.plural == source.entries[at].plural, at
-    text = written(own, is_source=path.parent.name == SOURCE)
+    text = written(in_step(source, own, path.parent.name))
     assert text == path.read_text(encoding="utf-8"), "python -m tools.languages"
 
 
@@ -83,8 +83,6 @@ def test_a_whole_language_promises_to_be_complete(language: str) -> None:
 
 
 def test_the_names_in_toml_files_are_translated() -> None:
-    path = FOLDER / "es" / "names.po"  # as for other catalogues, with the place of each text
-    assert written(in_step(SOURCES["names"], load(path), "es")) == path.read_text(encoding="utf-8")
     titles = catalogue.load(catalogue.folders()[0]).titles
     assert [titles[each] for each in ("en", "es", "tlh")] == [
         "The first line", "La primera línea", "The first line",
@@ -196,12 +194,10 @@ def test_what_is_not_translated_is_english_text_by_text(
 ) -> None:
     """A wrong or fuzzy text, and one whose English has changed, are not translated."""
     other = 'msgctxt "b"\nmsgid "Stop."\nmsgstr "Alto."\n'
-    for language, rows in (("en", ROW.replace("Lee {file}.", "")), ("xx", own)):
-        (tmp_path / language).mkdir()
-        (tmp_path / language / "t.po").write_text(f"{HEAD}{rows}\n{other}", encoding="utf-8")
-    found = GNUTranslations(
-        io.BytesIO(compiling.compiled(tmp_path / "en" / "t.po", tmp_path / "xx" / "t.po"))
-    )
+    source, translated = tmp_path / "en.toml", tmp_path / "xx.po"
+    source.write_text('[note]\na = "Read {file}."\nb = "Stop."\n', encoding="utf-8")
+    translated.write_text(f"{HEAD}{own}\n{other}", encoding="utf-8")
+    found = GNUTranslations(io.BytesIO(compiling.compiled(source, translated)))
     assert found.gettext("a") == said
     assert found.gettext("b") == "Alto."
 
@@ -224,6 +220,45 @@ def test_plurals_follow_the_rule_of_the_language() -> None:
         assert said.format(n=0) != f"0 {one[2:]}"
 
 
+@pytest.mark.parametrize(
+    ("text", "line", "said"),
+    [
+        ('a = "A."\nb = "B.\n', 2, "this is no TOML: Illegal character"),
+        ('a = "A."\na = "B."\n', 2, "this is no TOML: Cannot overwrite a value"),
+        ('[x]\na = "A."\n[y]\na = "B."\n', 4, "a: it is there twice"),
+        ('[x]\n"a/b" = ["A.", "A."]\n', 2, "a/b: it has a text twice"),
+        ('[x]\na = "Read {file."\n', 2, "a: a brace { or } has no other half"),
+        ('[x]\na = { one = "{n}", other = "{n" }\n', 2, "a: a brace { or } has no other half"),
+        ("[x]\na = 5\n", 2, "a: it has no text"),
+        ('[x]\na = ""\n', 2, "a: it has no text"),
+        ('[x]\na = { one = "{n} byte" }\n', 2, "a: it has no text"),
+    ],
+)
+def test_what_is_wrong_in_an_english_text_is_said_with_its_line(
+    text: str, line: int, said: str, tmp_path: Path
+) -> None:
+    source = tmp_path / "en.toml"
+    source.write_text(text, encoding="utf-8")
+    ((at, why),) = catalogue_source.load(source).problems
+    assert at == line and why.startswith(said)
+
+
+@pytest.mark.parametrize("spoilt", ["x = ", 'x = "{"', f'x = "{"y" * 41}"'])
+def test_a_wrong_english_text_goes_into_no_language(
+    spoilt: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = tmp_path / "languages"
+    shutil.copytree(FOLDER, folder, ignore=shutil.ignore_patterns("*.mo"))
+    monkeypatch.setattr(languages, "FOLDER", folder)
+    monkeypatch.setattr("tools.languages.FOLDER", folder)
+    source, own = folder / SOURCE / "robot.toml", folder / "es" / "robot.po"
+    source.write_text(f"{spoilt}\n{source.read_text(encoding='utf-8')}", encoding="utf-8")
+    monkeypatch.setattr(sys, "argv", ["tools.languages"])
+    assert bring_in_step() == 1
+    assert capsys.readouterr().out.startswith("languages/en/robot.toml:1: ")
+    assert own.read_bytes() == (FOLDER / "es" / "robot.po").read_bytes()
+
+
 def test_a_catalogue_that_is_written_is_the_one_that_was_read() -> None:
     hard = 'a "b" \\ c\n\n d\t{x}\n'
     entry = Entry("k", hard, "", [hard], ["a note"])
@@ -241,12 +276,16 @@ def test_a_text_in_front_of_others_moves_and_loses_no_translation(
     language: str, tmp_path: Path
 ) -> None:
     """The number of a text is its place in English alone, of which no translation knows."""
-    source, own = load(FOLDER / SOURCE / "messages.po"), load(FOLDER / language / "messages.po")
-    new = [Entry(key, f"New: {english}") for key, english in source.entries if "/title" not in key]
-    many = Catalogue(source.head, {each.at: each for each in [*new, *source.entries.values()]})
-    files = tmp_path / "en.po", tmp_path / "own.po"
-    files[0].write_text(written(many), encoding="utf-8")
-    english = compiling.merged(files[0], files[0])[1]
+    source, own = SOURCES["messages"], load(FOLDER / language / "messages.po")
+    new = [(key, f"New: {english}") for key, english in source.entries if "/title" not in key]
+    texts: dict[str, list[str]] = {}
+    for at in (*new, *source.entries):
+        texts.setdefault(at[0], []).append(at[1])
+    files = tmp_path / "en.toml", tmp_path / "own.po"
+    rows = (f"{json.dumps(key)} = {json.dumps(each)}\n" for key, each in texts.items())
+    files[0].write_text("".join(rows), encoding="utf-8")
+    many = catalogue_source.load(files[0])
+    english = compiling.merged(*files)[1]
     said = {at: entry.said for at, entry in own.entries.items() if entry.is_translated}
     for each in (own, in_step(many, own, language)):  # before somebody runs the tool, and after it
         files[1].write_text(written(each), encoding="utf-8")
@@ -274,7 +313,8 @@ def test_what_a_robot_cannot_say_and_a_lexicon_does_not_know_is_said(
 
 @pytest.mark.parametrize("language", languages.languages())
 def test_each_robot_can_say_its_texts_and_each_row_of_a_lexicon_is_known(language: str) -> None:
-    assert [*check_robot(load(FOLDER / language / "robot.po"))] == []
+    own = SOURCES["robot"] if language == SOURCE else load(FOLDER / language / "robot.po")
+    assert [*check_robot(own)] == []
     assert [*check_lexicon(language)] == []
 
 
@@ -314,7 +354,7 @@ def test_an_unknown_language_is_refused_with_the_known_ones(tsc: Tsc) -> None:
 def test_a_clone_makes_what_is_stale_and_needs_no_folder_to_write_to(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    for path in (FOLDER / SOURCE / "command.po", FOLDER / "es" / "command.po"):
+    for path in languages.files("command", "es"):
         (tmp_path / path.parent.name).mkdir()
         (tmp_path / path.parent.name / path.name).write_bytes(path.read_bytes())
     monkeypatch.setattr(languages, "FOLDER", tmp_path)
@@ -346,7 +386,7 @@ def longer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
         made = tmp_path / PSEUDO / f"{name}.po"
         made.write_text(written(pseudo(source)), encoding="utf-8")
         assert load(made).problems == []
-    for path in FOLDER.glob(f"{SOURCE}/*.po"):
+    for path in FOLDER.glob(f"{SOURCE}/*.toml"):
         (tmp_path / SOURCE / path.name).write_bytes(path.read_bytes())
     lexicon()  # is read once, and of this folder would be empty for all later tests
     monkeypatch.setattr(languages, "FOLDER", tmp_path)

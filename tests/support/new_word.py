@@ -5,7 +5,7 @@ from __future__ import annotations
 import shutil
 from pathlib import Path
 
-from tiniscript.base.languages import FOLDER, SOURCE
+from tiniscript.base.languages import FOLDER
 from tiniscript.base.words import Word
 
 HORN = Word("HORN", "fixed", stands_for="BEEP(0.5, 440)")
@@ -15,9 +15,9 @@ SAID = {"en": "honks", "es": "toca la bocina"}
 def with_texts(folder: Path) -> Path:
     """Return a copy of the languages that say what the word does."""
     shutil.copytree(FOLDER, folder, ignore=shutil.ignore_patterns("*.mo"))
-    for language, said in SAID.items():
-        translated = "" if language == SOURCE else f"{{{HORN.text}}} {said}"
-        with (folder / language / "studio.po").open("a", encoding="utf-8") as file:
-            file.write(f'\nmsgctxt "block/{HORN.text}"\nmsgid "{{{HORN.text}}} {SAID[SOURCE]}"\n')
-            file.write(f'msgstr "{translated}"\n')
+    english, spanish = (f"{{{HORN.text}}} {said}" for said in SAID.values())
+    with (folder / "en" / "studio.toml").open("a", encoding="utf-8") as file:
+        file.write(f'"block/{HORN.text}" = "{english}"\n')
+    with (folder / "es" / "studio.po").open("a", encoding="utf-8") as file:
+        file.write(f'\nmsgctxt "block/{HORN.text}"\nmsgid "{english}"\nmsgstr "{spanish}"\n')
     return folder

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cache
 
 from tiniscript.base.catalogue_compiler import merged
-from tiniscript.base.languages import FOLDER, SOURCE, languages
+from tiniscript.base.languages import files, languages
 
 LANGUAGES = languages()
 
@@ -13,8 +13,7 @@ LANGUAGES = languages()
 @cache
 def said(language: str, name: str = "command") -> dict[str, str]:
     """Return all texts of a catalogue by key; of one with a plural, its last form."""
-    files = (FOLDER / each / f"{name}.po" for each in (SOURCE, language))
-    return {key: forms[-1] for key, forms in merged(*files)[1].items()}
+    return {key: forms[-1] for key, forms in merged(*files(name, language))[1].items()}
 
 
 def in_all(key: str, name: str = "command") -> list[str]:

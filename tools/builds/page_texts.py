@@ -7,7 +7,7 @@ from gettext import c2py
 from typing import Any
 
 from tiniscript.base.catalogue_compiler import merged
-from tiniscript.base.languages import FOLDER
+from tiniscript.base.languages import files
 from tiniscript.studio.block_kinds import FIXED
 
 # Of what the page's Python says; the sentences of lessons come with these.
@@ -49,4 +49,4 @@ def messages(language: str) -> dict[str, dict[str, Any]]:
 
 
 def _texts(name: str, language: str) -> tuple[str, dict[str, list[str]]]:
-    return merged(FOLDER / "en" / f"{name}.po", FOLDER / language / f"{name}.po")
+    return merged(*files(name, language))

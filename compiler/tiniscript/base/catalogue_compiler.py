@@ -10,6 +10,7 @@ import struct
 from collections import Counter
 from pathlib import Path
 
+from tiniscript.base import catalogue_source
 from tiniscript.base.catalogue_file import Catalogue, Entry, load
 
 MAGIC, HEADER = 0x950412DE, 28  # of a .mo
@@ -18,10 +19,12 @@ MAGIC, HEADER = 0x950412DE, 28  # of a .mo
 def merged(source: Path, own: Path) -> tuple[str, dict[str, list[str]]]:
     """Return the head of a catalogue, and the forms of each text by key.
 
-    Where there is no English catalogue, the English texts are those that are translated.
+    Where there is no English source, the English texts are those that are translated.
     """
     translated = load(own)
-    english = load(source) if source.is_file() else translated
+    english = catalogue_source.load(source) if source.is_file() else translated
+    if english.problems and not english.entries:
+        raise ValueError(f"{source}: {english.problems[0][1]}")
     texts: dict[str, list[str]] = {}
     numbers = Counter[str]()
     for (key, _), entry in english.entries.items():

@@ -169,14 +169,11 @@ def _quoted(name: str, text: str) -> str:
     return "\n".join([f'{name} ""', *(f'"{line}"' for line in lines)])
 
 
-def written(catalogue: Catalogue, is_source: bool = False) -> str:
-    """Return a catalogue as the text of a file.
-
-    In the source, which nobody translates where it is, no text is marked as one with gaps.
-    """
+def written(catalogue: Catalogue) -> str:
+    """Return a catalogue as the text of a file."""
     parts = ["\n".join(['msgid ""', _quoted("msgstr", catalogue.head)])]
     for entry in catalogue.entries.values():
-        has_gaps = not is_source and "{" in entry.english + entry.plural
+        has_gaps = "{" in entry.english + entry.plural
         flags = ["fuzzy"] * entry.is_fuzzy + [BRACES] * has_gaps
         rows = [f"#. {note}" for note in entry.notes]
         rows += [f"#, {', '.join(flags)}"] * bool(flags)

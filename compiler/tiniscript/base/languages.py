@@ -1,9 +1,10 @@
 """The languages: a folder each, with the catalogues that a translator fills.
 
-A catalogue, `es/command.po`, has its texts by key, which is their context. A language is there as
-soon as its folder is, and what it lacks is said in English, text by text. Catalogues are read as
-`.mo`: `setup.py` makes them for a package, and in a clone they are made where a `.po` is newer. The
-English texts of the catalogue `names` are in the package's `.toml` files alone. Knows no text.
+A catalogue, `es/command.po`, has its texts by key, which is their context; the English ones are in
+`en/command.toml`. A language is there as soon as its folder is, and what it lacks is said in
+English, text by text. Catalogues are read as `.mo`: `setup.py` makes them for a package, and in a
+clone they are made where a source is newer. The English texts of the catalogue `names` are in other
+`.toml` files of the package. Knows no text.
 """
 
 from __future__ import annotations
@@ -103,15 +104,15 @@ def catalogue(name: str, language: str) -> GNUTranslations:
     """Return a catalogue of a language; of an unknown one it is English."""
     language = language if language in languages() else SOURCE
     made = FOLDER / language / f"{name}.mo"
-    if _is_fresh(made, _files(name, language)):
+    if _is_fresh(made, files(name, language)):
         with made.open("rb") as file:
             return GNUTranslations(file)
-    if language != SOURCE and not any(map(Path.is_file, _files(name, language))):
+    if language != SOURCE and not any(map(Path.is_file, files(name, language))):
         return catalogue(name, SOURCE)  # a page has not fetched it
     from tiniscript.base.catalogue_compiler import compiled
     from tiniscript.base.files import replace
 
-    data = compiled(*_files(name, language))
+    data = compiled(*files(name, language))
     with suppress(OSError):  # a folder that nobody may write to
         replace(made, data)
     return GNUTranslations(BytesIO(data))
@@ -121,14 +122,14 @@ def machine_objects() -> dict[str, bytes]:
     """Return all catalogues as a package has them, by their paths in FOLDER."""
     from tiniscript.base.catalogue_compiler import compiled
 
-    names = sorted({path.stem for path in FOLDER.glob("*/*.po")})
+    names = sorted({path.stem for path in FOLDER.glob("*/*") if path.suffix in (".toml", ".po")})
     pairs = [(name, language) for language in languages() for name in names]
-    return {f"{language}/{name}.mo": compiled(*_files(name, language)) for name, language in pairs}
+    return {f"{language}/{name}.mo": compiled(*files(name, language)) for name, language in pairs}
 
 
-def _files(name: str, language: str) -> tuple[Path, Path]:
-    """Return the English catalogue, and that of a language."""
-    return FOLDER / SOURCE / f"{name}.po", FOLDER / language / f"{name}.po"
+def files(name: str, language: str) -> tuple[Path, Path]:
+    """Return the English source of a catalogue, and what a language has of it."""
+    return FOLDER / SOURCE / f"{name}.toml", FOLDER / language / f"{name}.po"
 
 
 def _is_fresh(made: Path, sources: tuple[Path, Path]) -> bool:

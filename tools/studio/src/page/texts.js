@@ -1,6 +1,6 @@
-// Every sentence of the page, in the language that is chosen. They come from the catalogues
-// `languages/*/studio.po`, of which the build makes a file for each language. What is said of programs
-// comes from the compiler.
+// Every sentence of the page, in the language that is chosen. They come from the catalogue `studio`
+// of `languages/`, of which the build makes a file for each language. What is said of programs comes
+// from the compiler.
 
 import languages from '../../made/languages.json';
 import { needLanguage } from './offline.js';

@@ -1,0 +1,91 @@
+"""Reads the English texts, `en/*.toml`, from which all languages are translated.
+
+A row is a text by its key. A list has several texts with one key, of which a message says the first
+whose gaps all have values; `one` and `other` are a text with a plural. The name of a table is the
+note that translators read beside each of its texts; rows above all tables need none.
+"""
+
+from __future__ import annotations
+
+import re
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+from tiniscript.base.catalogue_file import Catalogue, Entry, gaps
+
+HEAD = """\
+Project-Id-Version: TiniScript
+Language: en
+Language-Team: English
+X-Name: English
+MIME-Version: 1.0
+Content-Type: text/plain; charset=UTF-8
+Content-Transfer-Encoding: 8bit
+Plural-Forms: nplurals=2; plural=(n != 1);
+"""
+
+
+def load(path: Path) -> Catalogue:
+    """Read a file. What is wrong in it is a problem."""
+    if sys.version_info >= (3, 11):
+        import tomllib
+    else:
+        import tomli as tomllib
+
+    found = Catalogue(HEAD)
+    text = path.read_text(encoding="utf-8-sig", errors="replace")
+    try:
+        tables = tomllib.loads(text)
+    except ValueError as error:
+        at = re.search(r"at line (\d+)", str(error))
+        found.problems.append((int(at[1]) if at else text.count("\n"), f"this is no TOML: {error}"))
+        return found
+    rows = enumerate(text.split("\n"), 1)
+    lines = {row.partition(" = ")[0].strip("\"'"): number for number, row in rows}
+    keys = set[str]()
+    for key, value, notes in _rows(tables):
+        line = lines.get(key, 1)
+        entries = [Entry(key, *texts, [], notes, line=line) for texts in _texts(value)]
+        if why := "it is there twice" if key in keys else _problem(entries):
+            found.problems.append((line, f"{key}: {why}"))
+        keys.add(key)
+        for entry in entries:
+            found.entries.setdefault(entry.at, entry)
+    return found
+
+
+def _rows(tables: dict[str, object]) -> Iterator[tuple[str, object, list[str]]]:
+    """Yield each key, what stands behind it, and the notes for translators."""
+    for name, value in tables.items():
+        if isinstance(value, dict) and not _texts(value):
+            yield from ((key, each, [name]) for key, each in value.items())
+        else:
+            yield name, value, []
+
+
+def _texts(value: object) -> list[tuple[str, str]]:
+    """Return the texts of a row, each with its plural, empty without one."""
+    match value:
+        case str():
+            return [(value, "")]
+        case {"one": str(one), "other": str(other), **more} if not more:
+            return [(one, other)]
+        case list() if all(isinstance(each, str) for each in value):
+            return [(each, "") for each in value]
+    return []
+
+
+def _problem(entries: list[Entry]) -> str:
+    """Return what is wrong with the texts of a key, or nothing."""
+    texts = [each.english for each in entries]
+    if not all(texts) or not texts:
+        return "it has no text"
+    if len(set(texts)) < len(texts):
+        return "it has a text twice"
+    try:
+        for entry in entries:
+            gaps(entry.english), gaps(entry.plural)
+    except ValueError:
+        return "a brace { or } has no other half"
+    return ""
