@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import functools
 import http.server
-import json
 import re
 import shutil
 from collections.abc import Iterator
 from pathlib import Path
 from threading import Thread
 from typing import TYPE_CHECKING
-from urllib.parse import quote
 
 import pytest
 
@@ -21,7 +19,7 @@ from tests.support.casefile import ROOT
 from tests.support.platformio import shared
 from tools.builds import site
 from tools.builds import studio as studio_build
-from tools.site.documents import MOVED, PARTS, documents
+from tools.site.documents import PARTS, documents
 from tools.site.lexer import TiniScriptLexer
 from tools.site.pages import Missing, page, shelf
 
@@ -228,38 +226,6 @@ def _around(path: Path) -> set[str]:
     text = re.sub(r"(?s)<(script|style|article).*?</\1>", "", path.read_text(encoding="utf-8"))
     labels = re.findall(r'(?:aria-label|title|placeholder)="([^"]+)"', text)
     return {" ".join(each.split()) for each in (*re.findall(r">([^<>]+)<", text), *labels)} - {""}
-
-
-@pytest.mark.parametrize("half", MOVED)
-def test_an_old_name_leads_to_a_place_that_is_there(built: Path, half: str) -> None:
-    for old, new in MOVED[half].items():
-        page_name, is_place, place = old.partition("#")
-        text = (built / half / f"{page_name}.html").read_text(encoding="utf-8")
-        target = f"{new}.html"
-        if is_place:
-            known = re.search(r"const moved = (\{.*\})\[", text)
-            assert known, old
-            target = json.loads(known[1])[place]
-            there, mark, name = new.partition("#")
-            assert target == f"{'../' * page_name.count('/')}{there}.html{mark}{name}", old
-        else:
-            assert f'url={target}"' in text, old
-        path, _, name = target.partition("#")
-        found = ((built / half / page_name).parent / path).read_text(encoding="utf-8")
-        assert not name or f' id="{name}"' in found, old
-
-
-@pytest.mark.parametrize(("half", "old"), [
-    ("en", "house"), ("en", "link#ports"), ("en", "wiring/liner#mind"),
-    ("es", "class#qué-ves-y-qué-puedes-hacer"),
-])  # fmt: skip
-def test_an_old_address_leads_on(visitor: Page, address: str, half: str, old: str) -> None:
-    before, after = (
-        f"{address}{half}/{name}.html{mark}{quote(place)}"
-        for name, mark, place in (each.partition("#") for each in (old, MOVED[half][old]))
-    )
-    visitor.goto(before)
-    visitor.wait_for_url(after)
 
 
 def test_the_studio_is_on_the_site(visitor: Page, address: str, built: Path) -> None:

@@ -28,20 +28,11 @@ sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 from tiniscript.base.languages import SOURCE, about, languages, text
 from tools.builds import studio
 from tools.site import links, theme
-from tools.site.documents import FRONT, MOVED, PARTS, Document, documents, sources
+from tools.site.documents import FRONT, PARTS, Document, documents, sources
 from tools.site.pages import FILES, Missing, Place, Shelf, page, shelf
 
 SITE = ROOT / "tools" / "site"
 AT_ONCE = 2  # halves of the site
-
-
-LEADS_ON = """\
-<!doctype html>
-<meta charset="utf-8">
-<meta http-equiv="refresh" content="0; url={0}">
-<title>TiniScript</title>
-<a href="{0}">{0}</a>
-"""
 
 
 class CannotBuild(Exception):
@@ -90,11 +81,6 @@ def _build(root: Path, folder: Path, scratch: Path, has_studio: bool) -> None:
         half = scratch / language
         stage(half, found, on, language)
         render(half, folder / language, found, has_studio)
-        for old, new in MOVED.get(language, {}).items():
-            if "#" not in old:
-                (folder / language / f"{old}.html").write_text(
-                    LEADS_ON.format(f"{new}.html"), "utf-8"
-                )
 
     with ThreadPoolExecutor(AT_ONCE) as pool:
         list(pool.map(make, halves))
@@ -151,7 +137,7 @@ def render(half: Path, folder: Path, found: list[Document], has_studio: bool) ->
     language = folder.name
     others = {each: about("x-name", each) for each in halves_of(found) if each != language}
     told = {"others": others, "pages": {each.name: list(each.sources) for each in found},
-            "has_studio": has_studio, "moved": moved_places(language)}  # fmt: skip
+            "has_studio": has_studio}  # fmt: skip
     (half / "half.json").write_text(json.dumps(told), encoding="utf-8")
     words = [sys.executable, "-m", "sphinx", "-b", "html", "-q", "-W", "--keep-going",
              "-E", "-D", f"language={language}", "-d", str(half.parent / f"{language}.trees"),
@@ -163,18 +149,6 @@ def render(half: Path, folder: Path, found: list[Document], has_studio: bool) ->
         raise CannotBuild((ended.stdout + ended.stderr).replace(f"{half}{os.sep}", "").strip())
     if language != SOURCE:
         theme.translate(folder, language)
-
-
-def moved_places(language: str) -> dict[str, dict[str, str]]:
-    """Return where the places that have moved in one half are now, by page and old name."""
-    found: dict[str, dict[str, str]] = {}
-    for old, new in MOVED.get(language, {}).items():
-        page_name, is_place, place = old.partition("#")
-        if is_place:
-            target, mark, there = new.partition("#")
-            up = "../" * page_name.count("/")
-            found.setdefault(page_name, {})[place] = f"{up}{target}.html{mark}{there}"
-    return found
 
 
 def contents(found: list[Document], language: str) -> str:

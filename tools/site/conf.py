@@ -68,7 +68,6 @@ def lead_to_the_other_halves(
     ]
     context["has_studio"] = HALF["has_studio"]
     context["studio_address"] = f"{up}studio/index.html"
-    context["moved"] = HALF["moved"].get(name, {})
 
 
 def find_words_of_the_language() -> None:
