@@ -15,7 +15,6 @@ from tests.support.command import process
 from tests.support.needs import need
 from tests.support.platformio import shared
 from tools.builds import chips, library
-from tools.builds.library_rules import complaints
 from tools.uno import Uno
 
 URL = "https://example.org/tiniscript"
@@ -151,13 +150,6 @@ def test_the_link_of_an_example_conforms(
         assert "SHOW 2" in done.out, done.out + done.err
 
 
-# -- the rules ------------------------------------------------------------------------------------
-
-
-def test_the_library_keeps_the_rules(made: Path) -> None:
-    assert complaints(made) == []
-
-
 def test_platformio_packs_it(made: Path, tmp_path: Path) -> None:
     """Its list of licences comes from the internet, so one stands in for it."""
     pytest.importorskip("platformio")
@@ -185,7 +177,3 @@ def test_a_folder_of_somebody_else_stays(
     assert library.main([str(tmp_path), "--url", URL]) == 2
     assert (tmp_path / "kept.txt").read_text(encoding="utf-8") == "mine"
     assert "no library" in capsys.readouterr().err
-
-
-def test_a_wrong_address_is_told(tmp_path: Path) -> None:
-    assert library.main([str(tmp_path / "new"), "--url", "nowhere"]) == 1
