@@ -466,7 +466,7 @@ def ends(pages: Pages, taught: Class, erases: bool) -> None:
     teacher.click("#class_settings")
     if erases:
         teacher.check("#class_window input[type=checkbox]")
-    teacher.click("button[data-text=class_end]")
+    teacher.dblclick("button[data-text=class_end]")
     teacher.click("[data-text=class_end_sure]")
     teacher.locator("[data-teacher=class_over]").wait_for(state="attached")
     assert teacher.locator("#class").inner_text().strip() == "The class is over."

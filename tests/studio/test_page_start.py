@@ -137,6 +137,23 @@ def test_earlier_programs_are_there_with_a_picture(start: Page) -> None:
     assert image(start) == compile("SI|LOOP(2)\nF(1, 80)\nBEEP(0.1, 440)\nEND_LOOP").image
 
 
+def test_a_second_press_is_not_for_what_comes_to_the_place_of_the_first(start: Page) -> None:
+    start.dblclick("#start_write")
+    assert start.get_attribute("#side_real", "aria-pressed") == "false"
+    shown(start)
+    start.click("#home")
+    start.dblclick("[data-begin=dance]", position={"x": 40, "y": 100})
+    assert screen(start) == "program"
+    assert start.locator(".blocklyToolboxSelected").count() == 0
+    start.locator("html[data-phase=running]").wait_for(state="attached")
+    start.click("#home")
+    start.dblclick("#start_write")  # and STOP is heard at once
+    start.dblclick("#run")
+    start.locator("html[data-phase=running]").wait_for(state="attached")
+    start.click("#stop")
+    start.locator("html[data-phase=ended]").wait_for(state="attached")
+
+
 def test_hostile_programs_are_only_text(start: Page) -> None:
     start.click("#start_write")
     start.click("#view_text")

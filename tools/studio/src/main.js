@@ -20,6 +20,7 @@ import { whyOutside } from './robot/host.js';
 import { RobotPanel } from './robot/panel.js';
 import { RobotPlace } from './robot/place.js';
 import { chooseSide } from './page/sides.js';
+import { beginTwice } from './page/twice.js';
 import { FIRST_PROGRAM } from './start/beginnings.js';
 import { beginScreens, isStart, show as showScreen } from './start/screens.js';
 import { Start } from './start/start.js';
@@ -41,6 +42,7 @@ const note = element('note', HTMLElement);
 const list = element('messages', HTMLElement);
 
 beginTheme();
+beginTwice();
 const kept = keptWork();
 const work = kept ?? {
   text: FIRST_PROGRAM,

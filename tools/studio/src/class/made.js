@@ -19,7 +19,7 @@ export function made(kind, key = '', ...inside) {
   return found;
 }
 
-/** @param {import('../page/texts.js').Key} key @param {() => void} pressed */
+/** @param {import('../page/texts.js').Key} key @param {(event: MouseEvent) => void} pressed */
 export function button(key, pressed) {
   const found = made('button', key);
   found.type = 'button';

@@ -351,7 +351,8 @@ export class Teacher {
 /** A button of what cannot be taken back: it acts at the second press. @param {'class_end' | 'class_anew'} key @param {() => void} act */
 function pressedTwice(key, act) {
   let isSure = false;
-  const found = button(key, () => {
+  const found = button(key, ({ detail }) => {
+    if (detail > 1) return; // a habit is no second thought
     if (isSure) act();
     sure(!isSure);
   });

@@ -79,7 +79,8 @@ export class Lessons {
       this.#said.textContent = text('lesson_ended');
       this.#check.focus();
     });
-    this.#next.addEventListener('click', () => {
+    this.#next.addEventListener('click', ({ detail }) => {
+      if (detail > 1) return; // one step is seen after the other
       if (this.#step < this.#steps.length - 1) this.#go(this.#step + 1);
       else this.#choose(this.#number + 1).catch((why) => this.#fail(why));
     });
