@@ -125,6 +125,7 @@ def test_the_parser_says_where_it_cannot_go_on() -> None:
         "F -1 80",
         "move(50, 50)",
         "F.1.5",
+        "M(1,-50,80,0)",
         "LOOP(4) {",
         "S\n,,",
         "DEF PASO F(1, 60)\nR(1, 60)\nPASO",  # where it ends is not said

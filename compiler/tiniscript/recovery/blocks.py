@@ -43,22 +43,15 @@ class Edit(NamedTuple):
     new: list[Lexeme]
 
 
-class LineBehind(NamedTuple):
-    """An end that gets a line of its own."""
-
-    indent: int
-    word: str
-
-
 class Matched(NamedTuple):
-    """What each line needs so that all blocks end: edits, ends behind its text, and new lines.
+    """What each line needs so that all blocks end: edits, ends behind its text, and on new lines.
 
     `is_sure`: no end is a guess.
     """
 
     edits: dict[int, list[Edit]]
     tails: dict[int, list[str]]
-    behind: dict[int, list[LineBehind]]
+    behind: dict[int, list[str]]
     is_sure: bool
 
 
@@ -107,7 +100,7 @@ class _Matching:
         self.open: list[_Block] = []
         self.edits: dict[int, list[Edit]] = {}
         self.tails: dict[int, list[str]] = {}
-        self.behind: dict[int, list[LineBehind]] = {}
+        self.behind: dict[int, list[str]] = {}
         self.is_sure = True
 
     def run(self) -> Matched | None:
@@ -135,7 +128,7 @@ class _Matching:
         self.edits.setdefault(k, []).append(Edit(item.start, old, [made(each) for each in new]))
 
     def close_behind(self, k: int, block: _Block) -> None:
-        self.behind.setdefault(k, []).append(LineBehind(block.indent, block.end))
+        self.behind.setdefault(k, []).append(" " * block.indent + block.end)
 
     def after(self, place: int) -> Item | None:
         return self.flat[place + 1][1] if place + 1 < len(self.flat) else None
@@ -219,16 +212,13 @@ class _Matching:
         if not self.open:
             return False
         block, after = self.open[-1], self.after(place)
-        if block.is_do and after and after.word == "WHILE":
+        goes_on = after is not None and (
+            (block.word == "IF" and after.kind == "arm")
+            or (block.word and after.kind == "end" and after.word == block.end)
+        )
+        if goes_on or (block.is_do and after and after.word == "WHILE"):
             self.edit(k, item, 1, ";")
-            return True
-        if block.word == "IF" and after and after.kind == "arm":
-            self.edit(k, item, 1, ";")
-            block.has_brace = False
-            return True
-        if block.word and after and after.kind == "end" and after.word == block.end:
-            self.edit(k, item, 1, ";")
-            block.has_brace = False
+            block.has_brace = block.has_brace and not goes_on
             return True
         if not block.has_brace:
             return False

@@ -14,17 +14,17 @@ from itertools import pairwise, takewhile
 from typing import NamedTuple
 
 from tiniscript.base.kit import Kit
-from tiniscript.base.words import ALIASES, BLOCK_ENDS, WAYS, WORDS, Speller, lexicon, nearest
+from tiniscript.base.words import BLOCK_ENDS, WAYS, WORDS, Speller, lexicon, nearest
 from tiniscript.base.words import concept_of as concept_of
 from tiniscript.base.words import said_of as said_of
+from tiniscript.syntax.blocks import ENDS
 from tiniscript.syntax.lexer import DASHES, NUMBER, ODD, WORD
 from tiniscript.syntax.operators import SIGNS
 from tiniscript.syntax.outline import Known
 
+ENDED = ENDS
 KNOWN, MISSPELT, NEAR = 1, 2, 3  # what a meaning costs: said, written nearly so, a slip away
-STARTS = frozenset(("IF", "LOOP", "WHILE", "WHEN", "TASK"))
-ENDED = {end: word for word, end in BLOCK_ENDS.items()}
-ENDED |= {alias: ENDED[end] for alias, end in ALIASES.items()}
+STARTS = frozenset(BLOCK_ENDS) - {"DEF"}
 SOME_END = "FIN"  # of a block that its word does not name: what a row makes of each such end
 CALLED = frozenset(word.text for word in WORDS.values() if word.is_call)
 DONE = CALLED | {"S", "STOP", "BREAK"}
@@ -198,11 +198,14 @@ class _OfLine(NamedTuple):
     in_brackets: set[str]
     rows: set[tuple[str, ...]]
     parameters: dict[str, tuple[str, ...]]  # of each DEF: names in brackets behind its own
+    begun: dict[str, str]  # orders that begin blocks, since their ends are there: PARA
+    counted: list[str]  # `PARA(3)`, which begins one, where a bare end is left for it
+    left: int  # headers that lack an end
 
 
 @lru_cache(REMEMBERED)
 def _names_of(line: tuple[Lexeme, ...]) -> _OfLine:
-    found = _OfLine(set(), set(), set(), set(), {})
+    found = _OfLine(set(), set(), set(), set(), {}, *_begun_in(line))
     head = line[2:] if len(line) > 1 and line[1].text == "|" else line
     depth = 0
     for at, (token, after) in enumerate(pairwise([*line, made(";")]), 2):
@@ -239,20 +242,17 @@ def _names_of(line: tuple[Lexeme, ...]) -> _OfLine:
 def _name_in_words(tokens: Sequence[Lexeme], after: str) -> tuple[str, ...]:
     """Return a name of several words that ends before `after`: `mi vel = 5`, `DEF paso 1`."""
     row: list[str] = []
+    is_glued = after == ";" and len(tokens) > 1 and tokens[1].kind is WORD and tokens[1].space == ""
     for token in tokens[: _LONGEST + 1]:
-        is_own = token.text not in WORDS and not said_of(token.text, "declare")
-        is_first_number = token.kind is NUMBER and not row
-        if is_first_number and not (after == ";" and _is_glued(tokens)):
+        text = token.text
+        if token.kind not in (WORD, NUMBER, "-") or text in STARTS or text in DONE:
             break
-        if token.kind not in (WORD, NUMBER, "-"):
+        if not row and (said_of(text, "count") or (token.kind is NUMBER and not is_glued)):
             break
-        if token.text in STARTS or token.text in DONE:
+        is_other = text in WORDS or said_of(text, "declare") or said_of(text, "set")
+        if token.kind is WORD and is_other and len(row) != 1:
             break
-        if not row and said_of(token.text, "count"):
-            break
-        if token.kind is WORD and (not is_own or said_of(token.text, "set")) and len(row) != 1:
-            break
-        row.append(token.text)
+        row.append(text)
     ends = tokens[len(row)].text if len(tokens) > len(row) else ";"
     is_name = len(row) > 1 and ends == after and row[0] not in WORDS and row[-1] != "-"
     return tuple(row) if is_name else ()
@@ -270,7 +270,9 @@ class Names:
         self.in_brackets = {name for each in told for name in each.in_brackets}
         self.rows = {row for each in told for row in each.rows}
         self.parameters = {k: its for each in told for k, its in each.parameters.items()}
-        self.begun = _begun(lines)
+        self.begun = {word: block for each in told for word, block in each.begun.items()}
+        if sum(each.left for each in told) < 0:
+            self.begun |= {word: "LOOP" for each in told for word in each.counted}
         self.defs = {name for each in told for name in each.defs} - {row[0] for row in self.rows}
         self._labels: dict[tuple[str, str, bool], str] = {}
 
@@ -329,11 +331,6 @@ class Names:
         """Whether a concept is a device of the kit, or the end of any block."""
         return concept in self.sensors or concept in self.actuators or concept == SOME_END
 
-    @staticmethod
-    def is_lexical(word: str) -> bool:
-        """Whether the lexicon has this word as a word of the language."""
-        return concept_of(word) is not None
-
     def takes(self, word: str) -> bool:
         """Whether a word is an instruction with values in brackets."""
         return word in CALLED or word in self.actuators
@@ -352,7 +349,7 @@ class Names:
     def _classes(self, token: Lexeme) -> list[str]:
         text = token.text
         if token.kind is NUMBER:
-            return [text, "@num", *_ANY]
+            return [text, "@num", *ANY]
         if token.kind is not WORD:
             found = [f"s{text}"]
             found += [name for name, without in _BUT.items() if text not in without]
@@ -371,7 +368,7 @@ class Names:
         word = text if text in WORDS else meant[0] if meant else ""
         is_name = self.is_name(text)
         found += meant
-        found += [each for each in _ANY if not said_of(text, "do") or each not in _NO_DO]
+        found += [each for each in ANY if not said_of(text, "do") or each not in _NO_DO]
         if text in self.known.values or word in ("TRUE", "FALSE", "TIME") or word in self.sensors:
             found.append("@val")
         if text in self.defs:
@@ -394,16 +391,8 @@ class Names:
         return found
 
 
-class _Begun(NamedTuple):
-    """What one line says of orders that begin blocks; `left` is how many headers lack an end."""
-
-    found: dict[str, str]
-    counted: list[str]
-    left: int
-
-
-@lru_cache(REMEMBERED)
-def _begun_in(line: tuple[Lexeme, ...]) -> _Begun:
+def _begun_in(line: tuple[Lexeme, ...]) -> tuple[dict[str, str], list[str], int]:
+    """Return what a line says of orders that begin blocks, and how many headers lack an end."""
     found: dict[str, str] = {}
     counted: list[str] = []
     left = 0
@@ -418,24 +407,7 @@ def _begun_in(line: tuple[Lexeme, ...]) -> _Begun:
             counted.append(other.text)
         left += (concept_of(other.text) or other.text) in BLOCK_ENDS
         left -= bool(said_of(other.text, "end") or other.text in ENDED)
-    return _Begun(found, counted, left)
-
-
-def _begun(lines: Sequence[Sequence[Lexeme]]) -> dict[str, str]:
-    """Return the orders that are the beginnings of blocks, since their ends are there: PARA.
-
-    So is `PARA(3)` before a bare end that no other header is left for.
-    """
-    told = [_begun_in(tuple(line)) for line in lines]
-    found = {word: block for each in told for word, block in each.found.items()}
-    if sum(each.left for each in told) < 0:
-        found |= {word: "LOOP" for each in told for word in each.counted}
-    return found
-
-
-def _is_glued(tokens: Sequence[Lexeme]) -> bool:
-    """Whether a word follows the first number without a space: `2PASOS`."""
-    return len(tokens) > 1 and tokens[1].kind is WORD and tokens[1].space == ""
+    return found, counted, left
 
 
 def joined(row: Iterable[str]) -> str:
@@ -447,11 +419,8 @@ def joined(row: Iterable[str]) -> str:
 
 # Classes of pieces: any token but these.
 _BUT: dict[str, tuple[str, ...]] = {
-    "@all": ("{", "}"), "@any": (";", "{", "}"), "@nosep": (";", "{", "}"), "@nob": (";", "{", "}"),
-    "@noclose": (";", "{", "}"), "@cond": (";", ":", "{", "}", "?"),
-    "@argt": (";", "{", "}", "(", ")"),
+    "@all": ("{", "}"), "@any": (";", "{", "}"), "@cond": (";", ":", "{", "}", "?"),
     "@nobrace": ("{", "}", "(", ")", "<", ">"), "@noparen": (";", "{", "}", "(", ")"),
 }  # fmt: skip
-_ANY = tuple(_BUT)
-ANY = frozenset(_BUT)
-_NO_DO = ("@cond", "@argt", "@noparen")
+ANY = tuple(_BUT)
+_NO_DO = ("@cond", "@noparen")

@@ -23,6 +23,7 @@ from tiniscript.recovery.concepts import (
     Lexeme,
     Names,
     closed,
+    concept_of,
     lexemes,
     made,
     said_of,
@@ -70,8 +71,9 @@ class Reading(NamedTuple):
     failure: Failure = Failure(0, 0)
 
     def changed(
-        self, tokens: list[Lexeme], cost: float, code: str, is_sure: bool, is_new_line: bool
-    ) -> Reading:
+        self, tokens: list[Lexeme], cost: float, code: str, is_sure: bool = True,
+        is_new_line: bool = False,
+    ) -> Reading:  # fmt: skip
         steps = (*self.steps, Step(code, self.tokens, tokens))
         sure, new = self.is_sure and is_sure, self.is_new_line or is_new_line
         return Reading(self.cost + cost, tokens, steps, sure, new)
@@ -214,7 +216,7 @@ class _Search:
             if one is not None:
                 tokens, is_name = one
                 cost, code = (1.0, rows.NAME_IN_WORDS) if is_name else (0.5, rows.OTHER_WORD)
-                reading = reading.changed(tokens, cost, code, True, False)
+                reading = reading.changed(tokens, cost, code)
                 continue
             after = next(self._by_rows(reading, is_first=True), self._with_function(reading))
             if after is None:
@@ -234,10 +236,10 @@ class _Search:
         for k, token in enumerate(reading.tokens):
             is_value = around[k] in ("(", ",", *SIGNS) and around[k + 2] == "("
             near = nearest(token.text, FUNCTIONS) if is_value and token.kind is WORD else None
-            if near and token.text not in WORDS and not self.names.is_lexical(token.text):
+            if near and token.text not in WORDS and not concept_of(token.text):
                 line = [*reading.tokens]
                 line[k] = made(near)._replace(space=token.space)
-                return reading.changed(line, 1.0, rows.OTHER_WORD, True, False)
+                return reading.changed(line, 1.0, rows.OTHER_WORD)
         return None
 
     def _by_rows(self, reading: Reading, is_first: bool) -> Iterator[Reading]:
@@ -249,8 +251,9 @@ class _Search:
                     continue
                 tokens = line.rewritten(row, match)
                 if tokens is not None:
+                    is_new_line = ";" in row.becomes
                     yield reading.changed(
-                        tokens, row.cost, row.code, not row.is_offered, row.is_new_line
+                        tokens, row.cost, row.code, not row.is_offered, is_new_line
                     )
                     break
 
@@ -258,7 +261,10 @@ class _Search:
         tokens = reading.tokens
         for start, end in _calls(tokens):
             words = tokens[start:end]
-            if not _touches(reading.failure, start, end) or self._is_right(words):
+            if not _touches(reading.failure, start, end):
+                continue
+            items = right(words, self.names)
+            if not isinstance(items, Failure) and items:
                 continue
             has_until = end < len(tokens) and tokens[end].text == "UNTIL"
             call = filled(words, self.names, has_until)
@@ -275,10 +281,6 @@ class _Search:
             code = _code_of_call(words)
             yield reading.changed(line, call.cost, code, is_sure, bool(call.times))
 
-    def _is_right(self, words: list[Lexeme]) -> bool:
-        items = right(words, self.names)
-        return not isinstance(items, Failure) and bool(items)
-
     def _by_words(self, reading: Reading) -> Iterator[Reading]:
         """Translate the first word that is none of the language."""
         tokens = reading.tokens
@@ -294,7 +296,7 @@ class _Search:
                     continue
                 is_sure = cost < 2 and concept != "TIME"
                 line = [*tokens[:k], made(concept)._replace(space=token.space), *tokens[k + 1 :]]
-                yield reading.changed(line, cost, rows.OTHER_WORD, is_sure, False)
+                yield reading.changed(line, cost, rows.OTHER_WORD, is_sure)
             if meanings:
                 break
 
@@ -302,30 +304,25 @@ class _Search:
         """One sign wrong, missing, too much or behind its neighbour, where the line fails."""
         tokens, (start, at) = reading.tokens, reading.failure
         for k in reversed(range(max(0, start - 1), min(len(tokens) + 1, at + 2))):
+            head, rest = tokens[:k], tokens[k + 1 :]
             for sign, cost, code in rows.MISSING:
-                line = [*tokens[:k], made(sign), *tokens[k:]]
-                yield reading.changed(line, cost, code, True, False)
+                yield reading.changed([*head, made(sign), *tokens[k:]], cost, code)
             if k == len(tokens):
                 continue
-            token, rest = tokens[k], tokens[k + 1 :]
+            token = tokens[k]
             is_sign, is_bracket = token.kind not in (WORD, NUMBER), token.text in ("(", ")")
-            if is_sign:
-                around = {each.text for each in (*tokens[max(0, k - 1) : k], *rest[:1])}
-                for sign in rows.CONFUSED.get(token.text, ""):
-                    code = rows.OF_INSTRUCTIONS if sign == ";" else rows.OF_VALUES
-                    line = [*tokens[:k], made(sign), *rest]
-                    is_sure = sign not in around
-                    yield reading.changed(line, rows.CONFUSED_COST, code, is_sure, False)
-            is_kept = token.text in _CALCULATES or (rest and rest[0].text in _CALCULATES)
-            is_kept = is_kept or _is_group(tokens, k)
+            around = texts((*head[-1:], *rest[:1]))
+            for sign in rows.CONFUSED.get(token.text, ""):
+                code = rows.OF_INSTRUCTIONS if sign == ";" else rows.OF_VALUES
+                line = [*head, made(sign), *rest]
+                yield reading.changed(line, rows.CONFUSED_COST, code, sign not in around)
+            is_kept = _CALCULATES & {token.text, *texts(rest[:1])} or _is_group(tokens, k)
             if is_sign and not is_kept and category(token.text[0]) != "Sm":
-                cost, code = rows.EXTRA_COST, rows.EXTRA.get(token.text, rows.OF_VALUES)
-                yield reading.changed([*tokens[:k], *rest], cost, code, is_bracket, False)
+                code = rows.EXTRA.get(token.text, rows.OF_VALUES)
+                yield reading.changed([*head, *rest], rows.EXTRA_COST, code, is_bracket)
             if rest and (is_bracket or rest[0].text in ("(", ")")):
                 if not is_sign or rest[0].kind in (WORD, NUMBER):
-                    cost, code = rows.SWAPPED_COST
-                    line = [*tokens[:k], rest[0], token, *rest[1:]]
-                    yield reading.changed(line, cost, code, True, False)
+                    yield reading.changed([*head, rest[0], token, *rest[1:]], *rows.SWAPPED)
 
 
 def _is_group(tokens: Sequence[Lexeme], k: int) -> bool:

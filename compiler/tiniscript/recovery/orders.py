@@ -129,18 +129,12 @@ def _order(words: list[Lexeme], names: Names) -> Order | None:
         return to_wall
     first = names.meant(words[0].text)
     rest = [each.text for each in words[1:]]
-    if (
-        first in ("S", "STOP")
-        and rest
-        and all(
-            said_of(each, "the") or said_of(each, "engine") or said_of(each, "filler")
-            for each in rest
-        )
-    ):
-        return Order("S", "S", ())
-    if first in ("S", "STOP") and any(each.kind is NUMBER for each in words):
-        pause = filled([made("W"), *words[1:]], names, has_until=False)
-        return Order("S", f"{first};{laid_out(pause.tokens)}", ()) if pause else None
+    if first in ("S", "STOP") and rest:
+        if all(any(said_of(each, it) for it in ("the", "engine", "filler")) for each in rest):
+            return Order("S", "S", ())
+        if any(each.kind is NUMBER for each in words):
+            pause = filled([made("W"), *words[1:]], names, has_until=False)
+            return Order("S", f"{first};{laid_out(pause.tokens)}", ()) if pause else None
     is_free = False
     call = filled(words, names, has_until=False, is_order=True)
     unturned = [each for each in words if not said_of(each.text, "turn")]
@@ -210,7 +204,8 @@ def block(tokens: Sequence[Lexeme], names: Names, is_open: bool) -> str:
         if word != "LOOP" and names.meant(texts[k]) in _SIDES:
             return ""  # where the wall is, or where to go
         place = next((j for j in range(k, arm) if not said_of(texts[j], "filler")), k)
-        if said_of(texts[place], "front") and place + 1 < arm and not _joined(texts, place):
+        pair = "_".join(texts[place - 1 : place + 1])  # `pra frente`
+        if said_of(texts[place], "front") and place + 1 < arm and not concept_of(pair):
             continue  # `uma parede na frente, para`
         is_mixed = any(said_of(each, "then") and not _is_and(each) for each in texts[k:])
         if (word == "LOOP" and is_mixed) or (arm < len(texts) and not other):
@@ -218,11 +213,6 @@ def block(tokens: Sequence[Lexeme], names: Names, is_open: bool) -> str:
         parts = [header, written(body), *(["ELSE", written(other)] if other else [])]
         return ";".join(parts if is_open else [*parts, BLOCK_ENDS[word]])
     return ""
-
-
-def _joined(texts: Sequence[str], k: int) -> bool:
-    """Whether a word and the one before are one command: `pra frente`."""
-    return Names.is_lexical("_".join(texts[k - 1 : k + 1]))
 
 
 def _is_and(word: str) -> bool:

@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from functools import cache
+from functools import cache, partial
 from itertools import chain, product
 from typing import NamedTuple
 
@@ -45,27 +45,25 @@ class Row(NamedTuple):
     may_lose_numbers: bool
     example: tuple[str, str]
 
-    @property
-    def is_new_line(self) -> bool:
-        """Whether what was one line of instructions becomes several."""
-        return ";" in self.becomes
-
 
 class SignRow(NamedTuple):
     """A row of the table of signs: a pattern of characters, of which no token is made."""
 
     pattern: re.Pattern[str]
     becomes: str
-    cost: float
     code: str
     is_offered: bool
     example: tuple[str, str]
 
 
 def cells(table: str) -> Iterator[list[str]]:
+    """Give the cells of each row; of one with choices, those of each."""
     for row in table.strip("\n").split("\n"):
         if row.strip() and not row.startswith("# "):
-            yield [cell.strip() for cell in re.split(r"\s\|(?=\s|$)", row, maxsplit=5)]
+            parts = [each.split("¦") for each in re.split("[⟨⟩]", row)]
+            for k in range(max(map(len, parts))):
+                one = "".join(each[k % len(each)] for each in parts)
+                yield [cell.strip() for cell in re.split(r"\s\|(?=\s|$)", one, maxsplit=5)]
 
 
 @cache
@@ -95,14 +93,11 @@ def tried(line: Encoded, is_first: bool) -> Iterator[Row]:
 
 @cache
 def of_signs() -> tuple[SignRow, ...]:
-    found = []
-    for row in rows.SIGNS.strip("\n").split("\n"):
-        if not row.startswith("# "):
-            pattern, becomes, cost, code, how, example = row.split("  |  ", 5)
-            new = SignRow(re.compile(pattern, re.IGNORECASE), becomes.strip("`"), float(cost), code,
-                          how.strip() == "offered", _texts(example))  # fmt: skip
-            found.append(new)
-    return tuple(found)
+    return tuple(
+        SignRow(re.compile(pattern, re.IGNORECASE), becomes.strip("`"), code, how == "offered",
+                _texts(example))
+        for pattern, becomes, code, how, example in cells(rows.SIGNS)
+    )  # fmt: skip
 
 
 def _texts(example: str) -> tuple[str, str]:
@@ -123,17 +118,9 @@ class Pattern(NamedTuple):
 
 def compiled(pattern: str, pieces: Mapping[str, str]) -> Pattern:
     """Return a row's pattern, in which `pieces` stand for its `<parts>`."""
-    atoms = [_parsed(atom) for atom in _whole(pattern, pieces).split()]
-    needed = (
-        frozenset(atom.labels)
-        for atom in atoms
-        if atom.labels
-        and atom.often != "?"
-        and atom.often != "*"
-        and not atom.is_end
-        and not {*atom.labels} & {*ANY, "s|"}
-    )
-    return Pattern(re.compile("".join(map(_of_labels, atoms))), tuple(needed))
+    atoms = [_atom(each) for each in _whole(pattern, pieces).split()]
+    needed = tuple(labels for _, labels in atoms if labels and not labels & {*ANY, "s|"})
+    return Pattern(re.compile("".join(text for text, _ in atoms)), needed)
 
 
 def _whole(pattern: str, pieces: Mapping[str, str]) -> str:
@@ -143,39 +130,26 @@ def _whole(pattern: str, pieces: Mapping[str, str]) -> str:
     return pattern
 
 
-class _Atom(NamedTuple):
-    """One token of a pattern: what captures it, and its labels; none is a `^` or only a `$`."""
-
-    name: str
-    labels: tuple[str, ...]
-    often: str
-    is_end: bool
-
-
-def _parsed(atom: str) -> _Atom:
-    capture = _CAPTURE.match(atom)
-    name, atom = (capture[1], atom[2:]) if capture and len(atom) > 2 else ("", atom)
-    if atom in ("^", "$"):
-        return _Atom(name, (), "", atom == "$")
+def _atom(atom: str) -> tuple[str, frozenset[str]]:
+    """Return the pattern of one token, and labels of which there is one, none where it may miss."""
+    if atom == "^":
+        return r"\A", frozenset()
+    capture = _CAPTURE.match(atom) if len(atom) > 2 else None
+    name, atom = (capture[1], atom[2:]) if capture else ("", atom)
     often = ""
     if len(atom) > 1 and atom[-1] in "?*+" and (atom[-2].isalnum() or atom[-2] in "':,;()"):
         atom, often = atom[:-1], atom[-1]
     found = _ATOM.findall(atom)
-    words = [each for each in found if each[0] == "@" or each[0].isalnum() or each[:2] == "_"]
-    labels = [each for each in words if each != "_"]
-    labels += ["s" + each.strip("'") for each in found if each not in (*words, "$")]
-    return _Atom(name, tuple(labels), often, "$" in found)
-
-
-def _of_labels(atom: _Atom) -> str:
-    """Return the pattern of one token."""
-    name, labels, often, is_end = atom
-    if not labels:
-        return r"\A" if not is_end else rf"(?P<{name}>\Z)" if name else r"(?=\Z)"
+    labels = [
+        each if each[0] in "@_" or each[0].isalnum() else "s" + each.strip("'")
+        for each in found
+        if each != "$"
+    ]
     one = rf"\x01[^\x02]*\|(?:{'|'.join(map(re.escape, labels))})\|[^\x02]*\x02"
-    one = rf"(?:{one}|\Z)" if is_end else one
-    body = f"(?:{one}){often}{'?' if often in ('+', '*') and often else ''}"
-    return f"(?P<{name}>{body})" if name else body
+    choices = [*([one] if labels else []), *([r"\Z"] if "$" in found else [])]
+    body = f"(?:{'|'.join(choices)}){often}{'?' if often and often in '+*' else ''}"
+    is_needed = often in ("", "+") and "$" not in found
+    return f"(?P<{name}>{body})" if name else body, frozenset(labels if is_needed else ())
 
 
 Places = Mapping[str, Sequence[int]]
@@ -289,10 +263,6 @@ class _Place(NamedTuple):
 _Made = list[Lexeme] | None
 
 
-def _not(place: _Place) -> _Made:
-    return negated(place.captured[0])
-
-
 def negated(question: Sequence[Lexeme]) -> list[Lexeme]:
     """Return the question that is TRUE where `question` is not."""
     signs = [k for k, each in enumerate(question) if each.text in COMPARISONS]
@@ -355,46 +325,32 @@ def _brace(place: _Place) -> _Made:
     return [each for each in place.captured[0] if each.text == "{"]
 
 
-def _name(place: _Place) -> _Made:
-    words = [each for part in place.captured for each in part]
-    return [made(joined(each.text for each in words))._replace(space=words[0].space)]
-
-
 def _known_name(place: _Place) -> _Made:
-    name = _name(place)
-    return name if name and place.line.names.is_name(name[0].text) else None
+    """`mi vel` is MI_VEL, where the program has that."""
+    words = [each for part in place.captured for each in part]
+    name = joined(each.text for each in words)
+    is_known = place.line.names.is_name(name)
+    return [made(name)._replace(space=words[0].space)] if is_known else None
 
 
-def _parameter(k: int) -> Callable[[_Place], _Made]:
-    """Return the function for a name in the brackets of the DEF that is called."""
-
-    def name(place: _Place) -> _Made:
-        names = place.line.names.parameters.get(place.captured[0][0].text, ())
-        return [made(names[k])] if k < len(names) else None
-
-    return name
+def _parameter(k: int, place: _Place) -> _Made:
+    """A name in the brackets of the DEF that is called."""
+    names = place.line.names.parameters.get(place.captured[0][0].text, ())
+    return [made(names[k])] if k < len(names) else None
 
 
-def _limit(is_high: bool) -> Callable[[_Place], _Made]:
-    """Return the function for the end of what an actuator takes."""
-
-    def limit(place: _Place) -> _Made:
-        (device,) = place.captured[0]
-        known = place.line.names.actuators[place.line.translated(device).text]
-        most = known.high if is_high else known.low
-        return None if known.is_yes_no else [made(f"{most / 1000:g}")]
-
-    return limit
+def _limit(is_high: bool, place: _Place) -> _Made:
+    """The end of what an actuator takes."""
+    (device,) = place.captured[0]
+    known = place.line.names.actuators[place.line.translated(device).text]
+    most = known.high if is_high else known.low
+    return None if known.is_yes_no else [made(f"{most / 1000:g}")]
 
 
-def _in(thousandths: int) -> Callable[[_Place], _Made]:
-    """Return the function for a number in another unit: `1000` milliseconds are 1, `1` m is 100."""
-
-    def number(place: _Place) -> _Made:
-        (token,) = place.captured[0]
-        return [made(f"{float(token.text) * thousandths / 1000:g}")]
-
-    return number
+def _in(thousandths: int, place: _Place) -> _Made:
+    """A number in another unit: `1000` milliseconds are 1, `1` m is 100."""
+    (token,) = place.captured[0]
+    return [made(f"{float(token.text) * thousandths / 1000:g}")]
 
 
 def _by(place: _Place) -> _Made:
@@ -409,26 +365,24 @@ def _digits(place: _Place) -> _Made:
     return [made(*said_of(word.text, "number"))]
 
 
-def _number_if(is_so: Callable[[float], bool]) -> Callable[[_Place], _Made]:
-    """Return the function for a number that has a property."""
-
-    def number(place: _Place) -> _Made:
-        (token,) = place.captured[0]
-        return [token] if is_so(float(token.text)) else None
-
-    return number
+def _number_if(is_so: Callable[[float], bool], place: _Place) -> _Made:
+    """A number that has a property."""
+    (token,) = place.captured[0]
+    return [token] if is_so(float(token.text)) else None
 
 
 _FUNCTIONS: dict[str, Callable[[_Place], _Made]] = {
-    "not": _not, "endof": _end_of, "dec": _decimal, "cat": _zero_behind, "mmss": _minutes,
-    "xn": _times, "brace": _brace, "same": _same, "join": _name, "known": _known_name,
-    "ms": _in(1), "cm": _in(100_000), "by": _by, "digits": _digits,
-    "most": _limit(is_high=True), "least": _limit(is_high=False),
-    "power": _number_if(lambda it: LONG_S <= it <= _MOST_POWER),
-    "time": _number_if(lambda it: it < LONG_S),
-    "angle": _number_if(lambda it: it >= _EIGHTH and (it % _EIGHTH == 0 or it > _MOST_POWER)),
-    "whole": _number_if(float.is_integer),
-    "given": _parameter(0), "also": _parameter(1),
+    "not": lambda it: negated(it.captured[0]), "endof": _end_of, "dec": _decimal, "xn": _times,
+    "cat": _zero_behind, "mmss": _minutes, "brace": _brace, "same": _same, "known": _known_name,
+    "ms": partial(_in, 1), "cm": partial(_in, 100_000), "by": _by, "digits": _digits,
+    "most": partial(_limit, True), "least": partial(_limit, False),
+    "power": partial(_number_if, lambda it: LONG_S <= it <= _MOST_POWER),
+    "time": partial(_number_if, lambda it: it < LONG_S),
+    "angle": partial(
+        _number_if, lambda it: it >= _EIGHTH and (it % _EIGHTH == 0 or it > _MOST_POWER)
+    ),
+    "whole": partial(_number_if, float.is_integer),
+    "given": partial(_parameter, 0), "also": partial(_parameter, 1),
 }  # fmt: skip
 
 
@@ -462,7 +416,7 @@ def one_word(tokens: Sequence[Lexeme], names: Names) -> tuple[list[Lexeme], bool
         after = tokens[k + count].text if k + count < len(tokens) else ""
         if concept_of(text) == "ELSE" and (said_of(after, "is") or said_of(after, "there")):
             continue
-        if names.is_lexical(text) or (text in WORDS and row[0] == "END"):
+        if concept_of(text) or (text in WORDS and row[0] == "END"):
             meant = names.meanings(text)
             word = made(meant[0].concept if meant else text)._replace(space=tokens[k].space)
             return [*tokens[:k], word, *tokens[k + count :]], False

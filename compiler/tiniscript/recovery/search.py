@@ -10,7 +10,7 @@ import re
 from collections.abc import Callable, Iterator, Sequence
 from functools import cached_property
 from itertools import pairwise
-from typing import NamedTuple, TypeGuard
+from typing import NamedTuple
 
 from tiniscript.base.kit import Kit
 from tiniscript.recovery import lines, rewrites, rows
@@ -59,6 +59,9 @@ class Candidate(NamedTuple):
     move: Moved | None = None
 
 
+_UNREAD = Reading(0, [], (), True, False)
+
+
 class _Text:
     """A line on its way: what was written, and the readings of it."""
 
@@ -68,7 +71,7 @@ class _Text:
         self.body, self.note = without_note(source)
         self.steps: list[Step] = []
         self.is_sure = True
-        self.reading: Reading | None = None
+        self.reading = _UNREAD
         self.rivals: list[Reading] = []
 
     @property
@@ -113,12 +116,12 @@ class Recovery:
         names = self.names
         for line in self.lines:
             self.read_line(line, names)
-            yield _is_whole(line.reading) and line.reading.is_sure
-        told = Names([each.reading.tokens for each in self.lines if each.reading], self.kit)
+            yield line.reading.items is not None and line.reading.is_sure
+        told = Names([each.reading.tokens for each in self.lines], self.kit)
         if told.variables | told.defs > names.variables | names.defs:
             self.names = names.joined(told)
             for line in self.lines:
-                if not _is_whole(line.reading):
+                if line.reading.items is None:
                     self.read_line(line, self.names)
 
     # -- lines ----------------------------------------------------------------------------------
@@ -165,21 +168,17 @@ class Recovery:
         text = plain(self.program)
         if not until.search(text) or _END_UNTIL.search(text):
             return  # there is none, or it is taken for a block
+        is_do = False
         for line in self.lines:
-            is_until = until.match(plain(line.body))
-            before = next((each for each in reversed(kept) if each.body.strip()), None)
-            body = before.body.rstrip().rstrip(";") if before else ""
-            is_behind = before is not None and body.endswith(")") and not before.note.strip()
-            if (
-                not (is_until and is_behind)
-                or before is None
-                or any(_DO_ALONE.match(plain(each.body)) for each in kept)
-            ):
+            above = next((each for each in reversed(kept) if each.body.strip()), None)
+            body = above.body.rstrip().rstrip(";") if above and not above.note.strip() else ""
+            if above and body.endswith(")") and not is_do and until.match(plain(line.body)):
+                above.body, above.note = f"{body} {line.body.strip()}", line.note
+                above.last = line.last
+                above.steps.append(Step(rows.UNTIL_ALONE, lexemes(line.body), lexemes(above.body)))
+            else:
                 kept.append(line)
-                continue
-            before.body, before.note = f"{body} {line.body.strip()}", line.note
-            before.last = line.last
-            before.steps.append(Step(rows.UNTIL_ALONE, lexemes(line.body), lexemes(before.body)))
+            is_do = is_do or _DO_ALONE.match(plain(line.body)) is not None
         self.lines = kept
 
     def read_line(self, line: _Text, names: Names) -> None:
@@ -202,8 +201,8 @@ class Recovery:
         is_sure = first.is_sure and not is_close and not _is_key(tokens, first.tokens)
         line.reading = first._replace(is_sure=is_sure)
 
-    def parts(self, tokens: list[Lexeme], names: Names) -> Reading | None:
-        """Read each instruction of a line alone, where one cannot be read; None for no sure one."""
+    def parts(self, tokens: list[Lexeme], names: Names) -> Reading:
+        """Read each instruction of a line alone, where one cannot be read, if it is sure."""
         steps: list[Step] = []
         ends = [k for k, each in enumerate([*tokens, made(";")]) if each.text == ";"]
         for start, end in [*pairwise((-1, *ends))][::-1]:
@@ -217,7 +216,7 @@ class Recovery:
                     Step(code, [*head, *before, *tail], [*head, *after, *tail])
                     for code, before, after in each.steps
                 ]
-        return Reading(0, tokens, tuple(steps), True, False) if steps else None
+        return Reading(0, tokens, tuple(steps), True, False) if steps else _UNREAD
 
     # -- programs -------------------------------------------------------------------------------
 
@@ -228,14 +227,16 @@ class Recovery:
         for readings, has_blocks in self.choices():
             if best is not None and best.is_applied and best.is_whole:
                 break
-            if best is not None and has_blocks and all(map(_is_whole, readings)):
+            if best is not None and has_blocks and all(it.items is not None for it in readings):
                 continue
             made_of = self.written(readings, has_blocks)
             if made_of is None:
                 continue
             out, unsure, has_sure_blocks = made_of
             is_sure = not unsure and has_sure_blocks
-            text, changes, move = "\n".join(out), self.changes(out), None
+            text, move = "\n".join(out), None
+            pairs = [*zip(self.lines, readings, out, strict=True)]
+            changes = tuple(Change(line.first, line.last, own) for line, _, own in pairs)
             left = self.mistakes(text)
             if left and set(left) & rows.MISPLACED:
                 for moved in ordered(text):
@@ -246,77 +247,59 @@ class Recovery:
                 continue
             is_applied = is_sure and bool(text.strip(" ;\n")) and not (move and move.is_guess)
             if best is None or (not left, is_applied) > (best.is_whole, best.is_applied):
-                best = Candidate(text, is_applied, not left, self.steps(readings), changes,
-                                 unsure, has_sure_blocks, move)  # fmt: skip
+                steps = (
+                    (k, step)
+                    for k, (line, reading, _) in enumerate(pairs)
+                    for step in (*line.steps, *reading.steps)
+                )
+                best = Candidate(text, is_applied, not left, tuple(steps), changes, unsure,
+                                 has_sure_blocks, move)  # fmt: skip
         return best
 
-    def choices(self) -> Iterator[tuple[list[Reading | None], bool]]:
+    def choices(self) -> Iterator[tuple[list[Reading], bool]]:
         """Give what each line may be read as; at last without the blocks of a program."""
         cheapest = [each.reading for each in self.lines]
         yield cheapest, True
-        rivals = [(k, rival) for k, each in enumerate(self.lines) for rival in each.rivals]
-        for k, rival in sorted(rivals, key=self.costs_more)[:ALTERNATIVES]:
+        rivals = [
+            (rival.cost - each.reading.cost, k, rival)
+            for k, each in enumerate(self.lines)
+            for rival in each.rivals
+        ]
+        for _, k, rival in sorted(rivals, key=lambda it: it[0])[:ALTERNATIVES]:
             yield [*cheapest[:k], rival, *cheapest[k + 1 :]], True
-        sure = [each if each is None or each.is_sure else None for each in cheapest]
+        sure = [each if each.is_sure else _UNREAD for each in cheapest]
         yield sure, False
-        alone = [each if each is not None and _is_alone(each) else None for each in sure]
+        alone = [each if _is_alone(each) else _UNREAD for each in sure]
         if alone != sure:
             yield alone, False
 
-    def costs_more(self, rival: tuple[int, Reading]) -> float:
-        first = self.lines[rival[0]].reading
-        return rival[1].cost - (first.cost if first else 0.0)
-
-    def steps(self, readings: Sequence[Reading | None]) -> tuple[tuple[int, Step], ...]:
-        return tuple(
-            (k, step)
-            for k, (line, reading) in enumerate(zip(self.lines, readings, strict=True))
-            for step in (*line.steps, *(reading.steps if reading else ()))
-        )
-
-    def changes(self, out: Sequence[str]) -> tuple[Change, ...]:
-        return tuple(
-            Change(line.first, line.last, text) for line, text in zip(self.lines, out, strict=True)
-        )
-
     def written(
-        self, readings: Sequence[Reading | None], has_blocks: bool
+        self, readings: Sequence[Reading], has_blocks: bool
     ) -> tuple[list[str], frozenset[int], bool] | None:
         """Return what lines become, which are a guess, and whether the blocks are none.
 
         None where no block fits.
         """
-        found = Matched({}, {}, {}, True)
+        pairs = [*zip(self.lines, readings, strict=True)]
+        found: Matched | None = Matched({}, {}, {}, True)
         if has_blocks:
-            blocks = matched([
-                Line(line.indent, reading.tokens if reading else [],
-                     reading.items if reading else None, bool(reading and reading.steps),
-                     bool(reading and reading.is_new_line),
-                     any(step.code == rows.DO_CODE for step in reading.steps) if reading else False,
+            found = matched([
+                Line(line.indent, each.tokens, each.items, bool(each.steps), each.is_new_line,
+                     any(step.code == rows.DO_CODE for step in each.steps),
                      _WHEN.match(line.source.upper()) is not None)
-                for line, reading in zip(self.lines, readings, strict=True)
+                for line, each in pairs
             ])  # fmt: skip
-            if blocks is None:
-                return None
-            found = blocks
+        if found is None:
+            return None
         out = []
-        for k, (line, reading) in enumerate(zip(self.lines, readings, strict=True)):
+        for k, (line, reading) in enumerate(pairs):
             text = line.source
-            if reading is not None:
+            if reading is not _UNREAD:
                 text = _line(line, reading, found.edits.get(k, []), found.tails.get(k, []))
                 text += line.note
-            ends = [" " * end.indent + end.word for end in found.behind.get(k, [])]
-            out.append("\n".join((text, *ends)))
-        unsure = frozenset(
-            k
-            for k, (line, reading) in enumerate(zip(self.lines, readings, strict=True))
-            if not line.is_sure or (reading is not None and not reading.is_sure)
-        )
-        return out, unsure, found.is_sure
-
-
-def _is_whole(reading: Reading | None) -> TypeGuard[Reading]:
-    return reading is not None and reading.items is not None
+            out.append("\n".join((text, *found.behind.get(k, []))))
+        guesses = (k for k, (line, it) in enumerate(pairs) if not (line.is_sure and it.is_sure))
+        return out, frozenset(guesses), found.is_sure
 
 
 def _is_alone(reading: Reading) -> bool:
@@ -350,8 +333,7 @@ def _line(line: _Text, reading: Reading, edits: Sequence[Edit], tails: Sequence[
     tokens = list(reading.tokens)
     for edit in sorted(edits, key=lambda each: -each.at):
         tokens[edit.at : edit.at + edit.old] = edit.new
-    if edits:
-        tokens = _without_empty(tokens)
+    tokens = _without_empty(tokens) if edits else tokens
     if not reading.steps and not edits and not tails and line.body.isascii():
         return line.body
     for word in tails:

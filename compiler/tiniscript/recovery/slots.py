@@ -8,12 +8,23 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from itertools import pairwise
+from math import nan
 from typing import NamedTuple
 
 from tiniscript.base.words import UNIT_OF, WAYS, WORDS, Argument
 from tiniscript.base.words import names as is_called
 from tiniscript.recovery import rows
-from tiniscript.recovery.concepts import CALLED, DONE, NEAR, UNITS, Lexeme, Names, made, said_of
+from tiniscript.recovery.concepts import (
+    CALLED,
+    DONE,
+    NEAR,
+    UNITS,
+    Lexeme,
+    Names,
+    lexemes,
+    made,
+    said_of,
+)
 from tiniscript.syntax.devices import actuator_word
 from tiniscript.syntax.lexer import NUMBER, WORD
 
@@ -42,8 +53,13 @@ class Filled(NamedTuple):
 class _Value(NamedTuple):
     """A number, or the name of what has one, and its unit where that is said."""
 
-    value: float | str
+    text: str
     unit: str | None
+
+    @property
+    def number(self) -> float:
+        """Of a name none: no comparison with it holds."""
+        return nan if self.text.isidentifier() else float(self.text)
 
 
 def filled(
@@ -61,10 +77,6 @@ def filled(
     return reader.call(has_until, is_order)
 
 
-def told(number: float) -> str:
-    return f"{number:.3f}".rstrip("0").rstrip(".")
-
-
 class _Reader:
     """Reads the words from left to right."""
 
@@ -74,7 +86,7 @@ class _Reader:
         self.command: str | None = None
         self.values: list[_Value] = []
         self.mark: str | None = None  # the unit of the next value, by its name: `potencia 80`
-        self.times: float | None = None
+        self.times: str | None = None
         self.is_turn = False
         self.way = ""  # the unit behind the first value of a move: `20 CM`
         self.is_sure = True
@@ -175,14 +187,13 @@ class _Reader:
         if unit == "times":
             if self.times is not None:
                 return None
-            self.times = number
+            self.times = _told(number)
             return k
-        self.values.append(_Value(number * thousandths / 1000, unit))
-        self.mark = None
+        self._take(_told(number * thousandths / 1000), unit)
         return k
 
     def _is_number(self, k: int) -> bool:
-        return k < len(self.words) and self.words[k].kind is NUMBER
+        return 0 <= k < len(self.words) and self.words[k].kind is NUMBER
 
     def _is_and_a_half(self, k: int) -> bool:
         is_and = bool(said_of(self.text(k), "and"))
@@ -190,11 +201,10 @@ class _Reader:
 
     def _sign(self, k: int) -> int | None:
         sign, before = self.text(k), self.text(k - 1)
-        is_minus = sign == "-" and [each.kind for each in self.words[k + 1 : k + 2]] == [NUMBER]
+        is_minus = sign == "-" and self._is_number(k + 1)
         if is_minus and self.command in ("M", "SHOW"):
             self.is_sure = self.is_sure and not (self.values and before != ",")
-            self.values.append(_Value(-float(self.text(k + 1)), self.mark))
-            self.mark = None
+            self._take("-" + _told(float(self.text(k + 1))), self.mark)
             return k + 2
         if is_minus and self.words[k].space and self.words[k + 1].space == "":
             return None  # `R -1 50`: nobody drops a sign
@@ -203,20 +213,17 @@ class _Reader:
         if sign == "," and self.mark and before != ",":
             return None  # a value that is only named
         self.cost += 0.0 if sign in "(),%" else 0.2
-        is_behind_number = k > 0 and self.words[k - 1].kind is NUMBER
-        is_odd = sign in ("-", ".") or (sign == "%" and not is_behind_number)
+        is_odd = sign in ("-", ".") or (sign == "%" and not self._is_number(k - 1))
         self.is_sure = self.is_sure and not is_odd
         return k + 1
 
     def _word(self, k: int) -> int | None:
-        word, after = self.text(k), self.words[k + 1] if k + 1 < len(self.words) else None
-        names, marked = self.names, said_of(self.text(k), "value")
-        is_name = word in names.known.values
-        own = word if word in DONE and word != "BREAK" else None
-        meant = own or self._command_of(word)
-        if k and self.words[k].space == "" and self.words[k - 1].kind is NUMBER:
+        word, after = self.text(k), self.text(k + 1)
+        names, marked = self.names, said_of(word, "value")
+        meant = self._command_of(word)
+        if k and self.words[k].space == "" and self._is_number(k - 1):
             self.is_sure = False  # `1velocidad`
-        is_before_number = after is not None and (after.kind is NUMBER or after.text in "=:")
+        is_before_number = self._is_number(k + 1) or after in ("=", ":")
         if self.command in MOVES and word in _LETTERS and is_before_number:
             self.mark = _LETTERS[word]
         elif said_of(word, "turn"):
@@ -226,26 +233,23 @@ class _Reader:
             self.command = None if self.command == "F" else self.command
         elif self._is_mark(word, marked):
             last = self.values[-1] if self.values else None
-            is_behind = (after is None or after.text in (",", ")")) and self.text(k - 1) != ","
+            is_behind = after in ("", ",", ")") and self.text(k - 1) != ","
             if last and last.unit in (None, marked[0]) and is_behind and marked != ("s",):
-                self.values[-1] = _Value(last.value, marked[0])
+                self.values[-1] = last._replace(unit=marked[0])
             else:
                 self.mark = marked[0]
-        elif is_name and self.command:
-            self.mark = marked[0] if marked else self.mark
-            self._take(word)
+        elif word in names.known.values and self.command:
+            self._take(word, marked[0] if marked else self.mark)
         elif self.command == "BEEP" and said_of(word, "note"):
-            self.values.append(_Value(float(said_of(word, "note")[0]), "Hz"))
+            self.values.append(_Value(said_of(word, "note")[0], "Hz"))
         elif said_of(word, "power") and self.command:
-            self.values.append(_Value(float(said_of(word, "power")[0]), "%"))
-            self.mark = None
+            self._take(said_of(word, "power")[0], "%")
             self.is_sure = False
         elif meant:
-            is_again = after is None and meant == self.command == "F"  # `avanza 20 cm adelante`
-            taken = is_again or self._take_command(word, meant, is_own=own is not None)
-            return k + 1 if taken else None
+            is_again = not after and meant == self.command == "F"  # `avanza 20 cm adelante`
+            return k + 1 if is_again or self._take_command(word, meant) else None
         elif said_of(word, "filler"):
-            is_in_place = k > 0 and self.words[k - 1].kind is NUMBER and self.text(k + 1) in ",)"
+            is_in_place = self._is_number(k - 1) and after in ",)"
             self.is_sure = self.is_sure and not is_in_place  # it may be a unit: `F(8 in, 60)`
             self.cost += 0.1
         else:
@@ -253,25 +257,25 @@ class _Reader:
         return k + 1
 
     def _is_mark(self, word: str, marked: tuple[str, ...]) -> bool:
-        is_free = bool(marked) and word not in self.names.known.values
-        is_side = is_free and marked[0] in _SIDES
-        return (
-            is_free and bool(self.command or self.is_turn) and (self.command == "M" or not is_side)
-        )
+        if not marked or word in self.names.known.values or not (self.command or self.is_turn):
+            return False
+        return self.command == "M" or marked[0] not in _SIDES
 
-    def _take(self, value: str) -> None:
-        self.values.append(_Value(value, self.mark))
+    def _take(self, text: str, unit: str | None) -> None:
+        self.values.append(_Value(text, unit))
         self.mark = None
 
     def _command_of(self, word: str) -> str | None:
         if self.names.is_name(word):
             return word if word in self.names.actuators else None
+        if word in DONE and word != "BREAK":
+            return word
         found = [each.concept for each in self.names.meanings(word)]
         return next((each for each in found if each in CALLED or each == "S"), None)
 
-    def _take_command(self, word: str, meant: str, is_own: bool) -> bool:
-        meanings = self.names.meanings(word)
-        cost = 0 if is_own or not meanings else meanings[0].cost
+    def _take_command(self, word: str, meant: str) -> bool:
+        meanings = () if word in DONE else self.names.meanings(word)
+        cost = meanings[0].cost if meanings else 0
         self.is_sure = self.is_sure and cost < 2
         before = self.command
         is_way = before == "F" and meant in ("B", "L", "R") and not self.values
@@ -299,128 +303,112 @@ class _Reader:
         assert self.command is not None
         device = self.names.actuators.get(self.command)
         word = actuator_word(device) if device else WORDS[self.command]
-        times = None if self.times is None else told(self.times)
         if not word.arguments:
-            is_sure = self.is_sure and times is None
-            return None if self.values else Filled([made(word.text)], self.cost, is_sure, times)
+            is_sure = self.is_sure and self.times is None
+            stop = Filled([made(word.text)], self.cost, is_sure, self.times)
+            return None if self.values else stop
         values = self._in_seconds(self._with_decimals(len(word.arguments)))
-        is_said = bool(values) or (is_order and values is not None)
-        slots = self._slots(values or [], word.arguments, has_until) if is_said else None
-        if not slots:
+        if values is None or not (values or is_order):
             return None
-        if word.role == "motors" and len(values or ()) == 1:
+        slots = self._slots(values, word.arguments, has_until)
+        if not slots or (word.role == "motors" and len(values) == 1):
             return None  # of which motor?
-        out = [made(word.text), made("(")]
-        for k, (value, argument) in enumerate(zip(slots, word.arguments, strict=True)):
-            out += [made(",")] if k else []
-            text = (self._own(argument) or argument.sample) if value is None else value
-            text = told(text) if isinstance(text, float) else text
-            out += [made("-"), made(text[1:])] if text.startswith("-") else [made(text)]
-            out += [made(self.way)] if self.way and not k else []
-        samples = tuple(
-            f"{each.sample} {each.unit}"
-            for value, each in zip(slots, word.arguments, strict=True)
-            if value is None and not self._own(each)
-        )
-        return Filled([*out, made(")")], self.cost, self.is_sure, times, samples)
+        texts: list[str] = []
+        samples: list[str] = []
+        for value, its in zip(slots, word.arguments, strict=True):
+            own = value.text if value else self._own(its)
+            samples += [] if own else [f"{its.sample} {its.unit}"]
+            texts.append(own or its.sample)
+        call = f"{word.text}({','.join(texts)})".replace(",", f" {self.way},", 1)
+        tokens = [made(each.text) for each in lexemes(call)]
+        return Filled(tokens, self.cost, self.is_sure, self.times, tuple(samples))
 
     def _own(self, argument: Argument) -> str:
         """Return the one variable that is called what an argument is: VELOCIDAD for `F(2)`."""
         own = [
-            each
-            for each in self.names.variables
-            if any(is_called(part, argument) for part in each.split("_"))
+            it
+            for it in self.names.variables
+            if any(is_called(part, argument) for part in it.split("_"))
         ]
         return own[0] if len(own) == 1 else ""
 
     def _with_decimals(self, count: int) -> list[_Value] | None:
         """Join whole numbers that are halves of decimal ones: `F(1,5,80,0)`, `W(0,5)`."""
-        values, numbers = self.values, [each.value for each in self.values]
+        values = self.values
         is_double = len(values) == 2 * count and (count == 2 or self.command == "W")
-        if not is_double or not all(
-            isinstance(each, float) and each.is_integer() for each in numbers
-        ):
+        if not is_double or not all(each.text.isdecimal() for each in values):
             return values
-        if count == 1 and numbers[0] != 0:
+        if count == 1 and values[0].text != "0":
             return None
         if any(re.fullmatch("0[0-9]+", each.text) for each in self.words):
             return None  # `W(0, 05)`: a zero may not be lost
         pairs = zip(values[::2], values[1::2], strict=True)
-        return [_Value(float(f"{int(a.value)}.{int(b.value)}"), b.unit) for a, b in pairs]
+        return [_Value(_told(float(f"{a.text}.{b.text}")), b.unit) for a, b in pairs]
 
     def _in_seconds(self, values: list[_Value] | None) -> list[_Value] | None:
         """Take a plain number behind a command that counts milliseconds for these."""
-        if values is None or not any(isinstance(v, float) and u is None for v, u in values):
-            return values
-        if said_of(self.words[0].text, "milliseconds"):
+        plain = [it for it in values or () if it.unit is None and not it.text.isidentifier()]
+        if plain and values and said_of(self.words[0].text, "milliseconds"):
             self.is_sure = False
-            return [
-                _Value(v / 1000, "s") if isinstance(v, float) and u is None else _Value(v, u)
-                for v, u in values
-            ]
-        is_long = any(isinstance(v, float) and v >= MILLISECONDS_FROM for v, u in values if not u)
+            return [_Value(_told(it.number / 1000), "s") if it in plain else it for it in values]
+        is_long = any(it.number >= MILLISECONDS_FROM for it in plain)
         return None if self.command == "W" and is_long else values
-
-    @staticmethod
-    def _is_tone(value: float | str) -> bool:
-        return isinstance(value, float) and value >= LONG_S
 
     def _slots(
         self, values: list[_Value], arguments: tuple[Argument, ...], has_until: bool
-    ) -> list[float | str | None] | None:
+    ) -> list[_Value | None] | None:
         """Return the value of each argument: by its unit, by its range, and then in order."""
-        slots: list[float | str | None] = [None] * len(arguments)
+        slots: list[_Value | None] = [None] * len(arguments)
         order: dict[int, int] = {}
         way = UNIT_OF.get(self.command or "", "")
-        for k, (value, unit) in enumerate(values):
+        for k, value in enumerate(values):
+            unit = value.unit
             is_of_scratch = unit == "steps" and self.words[0].text not in WORDS
-            if is_of_scratch and way == "CM" and isinstance(value, float) and value >= _STEPS_FROM:
+            if is_of_scratch and way == "CM" and value.number >= _STEPS_FROM:
                 unit, self.is_sure = WAYS[way].unit, False
             if way and unit == WAYS[way].unit:
                 if slots[0] is not None or any(each.unit is None for each in values[:k]):
                     return None
                 slots[0], order[k], self.way = value, 0, way
             elif unit is not None:
-                free = (i for i, a in enumerate(arguments) if slots[i] is None)
-                place = next(
-                    (i for i in free if unit in (arguments[i].unit, arguments[i].name)), None
-                )
+                fits = (i for i, its in enumerate(arguments) if unit in (its.unit, its.name))
+                place = next((i for i in fits if slots[i] is None), None)
                 if place is None:
                     return None
                 slots[place], order[k] = value, place
         rest = [k for k in range(len(values)) if k not in order]
         if self.command == "BEEP" and len(rest) == 2:
-            rest.sort(key=lambda k: self._is_tone(values[k].value))
+            rest.sort(key=lambda k: values[k].number >= LONG_S)
         if has_until and slots[0] is None and arguments[0].unit == "s" and not rest:
-            slots[0] = "FOREVER"
+            slots[0] = _Value("FOREVER", None)
         for k in rest:
-            value = values[k].value
             place = next((i for i, slot in enumerate(slots) if slot is None), None)
-            if self.command == "BEEP" and len(values) == 1 and isinstance(value, float):
-                place = 1 if value * 1000 >= arguments[1].low else place
+            if self.command == "BEEP" and len(values) == 1:
+                place = 1 if values[k].number * 1000 >= arguments[1].low else place
             if place is None:
                 return None
-            slots[place], order[k] = value, place
+            slots[place], order[k] = values[k], place
         places = [order[k] for k in sorted(order)]
         self.is_sure = self.is_sure and places == sorted(places)
         for k, place in order.items():
-            value, unit = values[k]
-            if arguments[place].unit == "s" and unit is None and isinstance(value, float):
-                if value >= LONG_S and len(arguments) > 1:
-                    if self.words[0].text not in WORDS:
-                        return None  # of another language: rarely seconds, as in `move(50, 50)`
-                    self.is_sure = False
-        is_low = any(u == "%" and isinstance(v, float) and v < LONG_S for v, u in values)
-        if None in slots and is_low:
-            return None  # `F(2 VEL)`: the name of a power, and a time
-        is_alone = None in slots and rest == [0] and isinstance(values[0].value, float)
-        if is_alone and self.command in MOVES and float(values[0].value) >= LONG_S:
-            return None  # a power, degrees or centimetres
+            is_long = values[k].number >= LONG_S and values[k].unit is None
+            if is_long and arguments[place].unit == "s" and len(arguments) > 1:
+                if self.words[0].text not in WORDS:
+                    return None  # of another language: rarely seconds, as in `move(50, 50)`
+                self.is_sure = False
         if None in slots:
+            if any(each.unit == "%" and each.number < LONG_S for each in values):
+                return None  # `F(2 VEL)`: the name of a power, and a time
+            is_move = self.command in MOVES and rest == [0]
+            if self.command == "SHOW" or (is_move and values[0].number >= LONG_S):
+                return None  # a power, degrees or centimetres
             self.is_sure, self.cost = False, self.cost + 2
-            if self.command == "SHOW":
-                return None
         for slot, argument in zip(slots, arguments, strict=True):
-            if isinstance(slot, float) and not argument.low <= slot * 1000 <= argument.high:
+            thousandths = slot.number * 1000 if slot else nan
+            if thousandths < argument.low or thousandths > argument.high:
                 return None
         return slots
+
+
+def _told(number: float) -> str:
+    return f"{number:.3f}".rstrip("0").rstrip(".")
