@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-import re
 import subprocess
 from pathlib import Path
 
@@ -15,7 +14,6 @@ from tiniscript.base.limits import CODE_BYTES
 from tiniscript.bytecode.image import unpack
 from tiniscript.bytecode.opcodes import FAULTS
 from tiniscript.cli.texts import has_text
-from tiniscript.cli.texts.verbs import VERBS
 
 # -- compile ------------------------------------------------------------------------------------
 
@@ -78,13 +76,6 @@ def test_a_map_overwrites_nothing(tsc: Tsc, program: Path) -> None:
         assert done.code == 2
     assert program.read_text(encoding="utf-8") == PROGRAM
     assert not (program.parent / "-").exists()
-
-
-def test_compile_to_a_device_keeps_the_device(tsc: Tsc, program: Path) -> None:
-    if not Path(os.devnull).is_char_device():
-        pytest.skip("this system has no devices among its files")
-    assert tsc("compile", program, "-o", os.devnull).code == 0
-    assert Path(os.devnull).is_char_device()
 
 
 def test_compile_to_standard_output(program: Path) -> None:
@@ -405,10 +396,3 @@ def test_explain(tsc: Tsc) -> None:
     assert tsc("explain", "ts012", "--lang", "es").out != done.out
     assert tsc("explain").out.count("\nTS") > 50
     assert tsc("explain", "TS999").code == 2
-
-
-@pytest.mark.parametrize("language", ["en", "es"])
-def test_help_names_every_verb(tsc: Tsc, language: str) -> None:
-    said = tsc("help", "all", "--lang", language).out
-    assert not [verb for verb in VERBS if not re.search(rf"^  tsc (\w+, )*{verb}\b", said, re.M)]
-    assert all(len(line) <= 80 for line in said.splitlines())

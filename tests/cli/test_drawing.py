@@ -1,24 +1,18 @@
 """`tsc run --show` on a real pseudo-terminal: what a person sees, and what a file gets.
 
-`pyte` plays the terminal. Nothing here measures time: what depends on it has a clock of its own.
+Nothing here measures time: what depends on it has a clock of its own.
 """
 
 from __future__ import annotations
 
-import fcntl
-import os
-import pty
-import signal
-import struct
 import subprocess
 import sys
-import termios
 from pathlib import Path
 from types import SimpleNamespace
 
-import pyte
 import pytest
 
+from tests.support.terminal import Terminal
 from tiniscript import compile_text, robots
 from tiniscript.base.trace import Ending, Event, Senses
 from tiniscript.cli.terminal import FRAME_S, run_drawing, sketch, world_drawing
@@ -39,58 +33,20 @@ GRABBER = (
 HIDE, REVEAL = b"\x1b[?25l", b"\x1b[?25h"
 
 
-def on_terminal(
-    *arguments: str,
-    size: tuple[int, int] = (80, 24),
-    output: Path | None = None,
-    interrupt_at: bytes | None = None,
-    environ: dict[str, str] | None = None,
-) -> tuple[int, bytes]:
-    """Run `tsc run` on a terminal of so many columns and rows; return its exit code and bytes.
-
-    Standard output is the same terminal, or a file. Ctrl-C is sent once `interrupt_at` arrives.
-    """
-    ours, theirs = pty.openpty()
-    fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("HHHH", size[1], size[0], 0, 0))
-    hidden = ("COLUMNS", "LINES", "NO_COLOR", "FORCE_COLOR", "TTY_COMPATIBLE", "TTY_INTERACTIVE")
-    env = {name: value for name, value in os.environ.items() if name not in hidden}
-    env |= {"TERM": "xterm-256color", **(environ or {})}
-    out = output.open("wb") if output else None
-    process = subprocess.Popen(
-        [sys.executable, "-m", "tiniscript", "run", *arguments, "--show"],
-        stdin=subprocess.DEVNULL, stdout=out or theirs, stderr=theirs, env=env,
-    )  # fmt: skip
-    os.close(theirs)
-    if out:
-        out.close()
-    written = b""
-    while True:
-        try:
-            part = os.read(ours, 65536)
-        except OSError:  # Linux: the other end is closed
-            break
-        if not part:
-            break
-        written += part
-        if interrupt_at is not None and interrupt_at in written:
-            process.send_signal(signal.SIGINT)
-            interrupt_at = None
-    os.close(ours)
-    return process.wait(), written
+def ended(
+    *words: str, code: int = 0, size: tuple[int, int] = (80, 24),
+    output: Path | None = None, env: dict[str, str] | None = None,
+) -> Terminal:  # fmt: skip
+    """Run `tsc run --show` to its end."""
+    terminal = Terminal("run", *words, "--show", size=size, output=output, env=env, types=False)
+    assert terminal.end() == code
+    return terminal
 
 
 def plain(*arguments: str) -> bytes:
     """What `tsc run` prints with no terminal."""
     command = [sys.executable, "-m", "tiniscript", "run", *arguments]
     return subprocess.run(command, stdout=subprocess.PIPE, check=False).stdout
-
-
-def screen(written: bytes, size: tuple[int, int] = (80, 24)) -> list[str]:
-    """What is to be seen at the end, with all that has scrolled away, line by line."""
-    terminal = pyte.HistoryScreen(*size, history=100_000)
-    pyte.ByteStream(terminal).feed(written)
-    gone = ["".join(line[k].data for k in range(size[0])) for line in terminal.history.top]
-    return [line.rstrip() for line in [*gone, *terminal.display]]
 
 
 def row(lines: list[str], name: str) -> list[str]:
@@ -107,86 +63,62 @@ def picture(lines: list[str]) -> list[str]:
 
 
 @pytest.mark.parametrize("pace", ["0", "20"])
-def test_the_picture_shows_the_way_and_the_values(pace: str) -> None:
-    code, written = on_terminal("-e", OBSTACLES, *SEEN, "--pace", pace)
-    assert code == 0
-    seen = picture(screen(written))
-    assert any(arrow in "".join(seen) for arrow in sketch.ARROWS)
-    assert any("⠀" < c <= "⣿" for c in "".join(seen))
-    assert row(seen, "DISTANCE")[:2] == ["DISTANCE", "50"]
-    assert row(seen, "DISTANCE")[2:] == ["cm", "distance", "sensor"]
-    assert row(seen, "time") == ["time", "4", "s", "cut", "at", "the", "limit"]
-    assert row(seen, "left motor")[2] == "0"
-
-
-@pytest.mark.parametrize("pace", ["0", "20"])
 @pytest.mark.parametrize("size", [(80, 24), (40, 15), (24, 6)])
 def test_the_trace_stands_above_the_picture(pace: str, size: tuple[int, int]) -> None:
-    _, written = on_terminal("-e", OBSTACLES, *SEEN, "--pace", pace, size=size)
-    seen = screen(written, size)
+    """Which shows the way in color and the values, beside it or below; the cursor comes back."""
+    terminal = ended("-e", OBSTACLES, *SEEN, "--pace", pace, size=size)
+    written, seen = terminal.written, terminal.whole()
+    if pace != "0":  # then it is drawn once
+        assert written.count(HIDE) == 1 and written.rindex(REVEAL) > written.rindex(HIDE)
     trace = plain("-e", OBSTACLES, *SEEN).decode().splitlines()
     top = next(k for k in range(len(seen)) if seen[k].startswith("0 "))
     assert seen[top : top + len(trace)] == trace
-    assert seen[top + len(trace)].startswith("── TiniBot")
+    drawn = picture(seen)
+    assert seen[top + len(trace) :] == drawn and drawn[0].startswith("── TiniBot")
+    if size[0] >= 40:
+        assert b"\x1b[36m" in written
+        way = drawn if size[0] == 80 else drawn[1:8]
+        assert any(arrow in line for line in way for arrow in sketch.ARROWS)
+        assert any("⠀" < c <= "⣿" for line in way for c in line)
+        assert row(drawn, "DISTANCE") == ["DISTANCE", "50", "cm", "distance", "sensor"]
+        assert row(drawn, "time") == ["time", "4", "s", "cut", "at", "the", "limit"]
+        assert row(drawn, "left motor")[2] == "0"
 
 
 @pytest.mark.parametrize("pace", ["0", "20"])
 def test_a_file_gets_the_trace_byte_for_byte(pace: str, tmp_path: Path) -> None:
     file = tmp_path / "trace"
-    code, written = on_terminal("-e", OBSTACLES, *SEEN, "--pace", pace, output=file)
-    assert code == 0
+    terminal = ended("-e", OBSTACLES, *SEEN, "--pace", pace, output=file)
     assert file.read_bytes() == plain("-e", OBSTACLES, *SEEN)
-    assert b"MOTORS" not in written
-    assert picture(screen(written))[0].startswith("── TiniBot")
-
-
-@pytest.mark.parametrize("pace", ["0", "20"])
-def test_a_narrow_terminal_has_the_values_below_the_way(pace: str) -> None:
-    _, written = on_terminal("-e", OBSTACLES, *SEEN, "--pace", pace, size=(40, 15))
-    seen = picture(screen(written, (40, 15)))
-    assert row(seen, "DISTANCE") == ["DISTANCE", "50", "cm", "distance", "sensor"]
-    assert any(any(arrow in line for arrow in sketch.ARROWS) for line in seen[1:8])
+    assert b"MOTORS" not in terminal.written
+    assert picture(terminal.whole())[0].startswith("── TiniBot")
 
 
 def test_actuators_shown_values_and_yes_no_are_drawn() -> None:
-    _, written = on_terminal("-e", GRABBER, "--robot", "grabber", "--pace", "10")
-    seen = picture(screen(written))
+    terminal = ended("-e", GRABBER, "--robot", "grabber", "--pace", "10")
+    seen = picture(terminal.whole())
     assert row(seen, "GRIPPER") == ["GRIPPER", "90", "°", "gripper"]
     assert row(seen, "LED") == ["LED", "TRUE", "lamp"]
     assert row(seen, "BUTTON")[:2] == ["BUTTON", "FALSE"]
     assert row(seen, "SHOW") == ["SHOW", "FALSE", "before:", "1.5"]
     assert row(seen, "time")[-1] == "done"
-    assert "♪ 440 Hz".encode() in written  # while it sounded
+    assert "♪ 440 Hz".encode() in terminal.written  # while it sounded
     assert not any("♪" in line for line in seen)
 
 
-def test_the_reader_s_language_is_used() -> None:
-    _, written = on_terminal("-e", OBSTACLES, *SEEN, "--pace", "0", "--lang", "es")
-    seen = picture(screen(written))
-    assert row(seen, "tiempo")[-3:] == ["en", "el", "límite"]
-    assert row(seen, "DISTANCE")[-3:] == ["sensor", "de", "distancia"]
+def test_a_terminal_without_color_or_braille_gets_plain_signs_in_its_language() -> None:
+    env = {"PYTHONIOENCODING": "latin-1", "NO_COLOR": "1"}
+    terminal = ended("-e", OBSTACLES, *SEEN, "--pace", "10", "--lang", "es", env=env)
+    said = terminal.written.decode("latin-1")
+    assert "[36m" not in said and "\\u28" not in said and "*" in said
+    assert "en el límite" in said and "sensor de distancia" in said
 
 
 def test_a_fault_is_in_the_picture_and_explained_below_it() -> None:
-    code, written = on_terminal("-e", "SI|F(1, 50);X = 0;Y = 1 / X", "--pace", "10")
-    assert code == 1
-    seen = picture(screen(written))
+    terminal = ended("-e", "SI|F(1, 50);X = 0;Y = 1 / X", "--pace", "10", code=1)
+    seen = picture(terminal.whole())
     assert row(seen, "time")[-1] == "fault"
     assert any(line.startswith("fault DIVIDE_BY_ZERO") for line in seen)
-
-
-def test_no_color_is_respected() -> None:
-    _, written = on_terminal("-e", OBSTACLES, *SEEN, "--pace", "0")
-    assert b"\x1b[36m" in written
-    _, written = on_terminal("-e", OBSTACLES, *SEEN, "--pace", "0", environ={"NO_COLOR": "1"})
-    assert b"[36m" not in written
-
-
-def test_a_terminal_without_braille_gets_plain_signs() -> None:
-    environ = {"PYTHONIOENCODING": "latin-1"}
-    _, written = on_terminal("-e", OBSTACLES, *SEEN, "--pace", "10", environ=environ)
-    assert b"\\u28" not in written
-    assert b"*" in written
 
 
 def test_without_a_terminal_there_is_no_picture() -> None:
@@ -199,21 +131,16 @@ def test_without_a_terminal_there_is_no_picture() -> None:
 # ---- how it ends
 
 
-def test_the_cursor_comes_back() -> None:
-    _, written = on_terminal("-e", OBSTACLES, *SEEN, "--pace", "20")
-    assert written.count(HIDE) == 1
-    assert written.rindex(REVEAL) > written.rindex(HIDE)
-
-
 @pytest.mark.parametrize("to_a_file", [False, True])
 def test_ctrl_c_leaves_a_clean_terminal(to_a_file: bool, tmp_path: Path) -> None:
-    code, written = on_terminal(
-        "-e", "SI|LOOP(FOREVER);F(1, 80);END_LOOP", "--max-time", "1000000",
-        interrupt_at="↑".encode(), output=tmp_path / "trace" if to_a_file else None,
-    )  # fmt: skip
-    assert code == 2
-    assert written.rindex(REVEAL) > written.rindex(HIDE)
-    seen = screen(written)
+    words = ("run", "-e", "SI|LOOP(FOREVER);F(1, 80);END_LOOP", "--max-time", "1000000", "--show")
+    output = tmp_path / "trace" if to_a_file else None
+    terminal = Terminal(*words, output=output, types=False)
+    terminal.until("↑")
+    terminal.interrupt()
+    assert terminal.end() == 2
+    assert terminal.written.rindex(REVEAL) > terminal.written.rindex(HIDE)
+    seen = terminal.whole()
     assert seen[-seen[::-1].index("Stopped.") - 1 :].count("Stopped.") == 1
     assert not any("Traceback" in line for line in seen)
 

@@ -8,7 +8,6 @@ from __future__ import annotations
 import os
 import re
 import shutil
-import signal
 import subprocess
 import sys
 from collections.abc import Iterator, Mapping
@@ -18,8 +17,9 @@ import pytest
 
 from tests.flash.test_flash import copied
 from tests.support.casefile import ROOT
-from tests.support.command import TSC, Done, Tsc, rest_of
+from tests.support.command import TSC, Done, Tsc
 from tests.support.needs import need
+from tests.support.terminal import Terminal
 from tests.support.waiting import HANGS_S, until
 from tiniscript.base.files import cache_folder
 from tiniscript.cli import fetching, page_build
@@ -139,35 +139,29 @@ class Clone:
         return Done(done.returncode, done.stdout, done.stderr)
 
 
-class Person:
+class Person(Terminal):
     """Somebody at a terminal in which a command runs."""
 
     def __init__(self, clone: Clone, command: list[str]) -> None:
-        self.ours, theirs = os.openpty()
-        self.process = subprocess.Popen(command, env=clone.variables(), stdin=theirs,
-                                        stdout=theirs, stderr=theirs)  # fmt: skip
-        os.close(theirs)
-        self.seen = ""
+        super().__init__(command=command, env=clone.variables())
+
+    @property
+    def seen(self) -> str:
+        return self.written.decode()
 
     def sees(self, words: str) -> str:
         """Wait for these words."""
         while words not in self.seen:
-            more = rest_of(self.ours)
-            assert more, f"never said: {words}. {self.seen}"
-            self.seen += more.decode()
+            assert self.take(), f"never said: {words}. {self.seen}"
         return self.seen
 
     def types(self, answer: str) -> None:
-        os.write(self.ours, f"{answer}\n".encode())
-
-    def presses_ctrl_c(self) -> None:
-        self.process.send_signal(signal.SIGINT)
+        self.type(f"{answer}\n")
 
     def ended(self) -> int:
-        while more := rest_of(self.ours):
-            self.seen += more.decode()
+        code = self.end()
         assert "Traceback" not in self.seen, self.seen
-        return self.process.wait(HANGS_S)
+        return code
 
 
 @pytest.fixture
@@ -183,7 +177,6 @@ def started() -> Iterator[list[Person]]:
     for person in found:
         person.process.kill()
         person.process.wait()
-        os.close(person.ours)
 
 
 @pytest.mark.sampled("words", "size", "asks", "yes")
@@ -208,7 +201,7 @@ def test_a_page_that_is_missing_is_built_after_a_yes(
     shown = before.rpartition(first)[2]
     assert behind and re.search(r"\r {40,}\r", shown), "nothing is left of the step before"
     assert clone.page.exists()
-    person.presses_ctrl_c()
+    person.interrupt()
     assert person.ended() == 0
 
 
@@ -339,7 +332,7 @@ def test_ctrl_c_ends_the_build_and_leaves_no_page(clone: Clone, started: list[Pe
     person = Person(clone, clone.studio("--yes"))
     started.append(person)
     until(lambda: told.exists() and bool(told.read_text()), "the build has begun")
-    person.presses_ctrl_c()
+    person.interrupt()
     assert person.ended() == 2 and "Stopped." in person.seen
     assert not clone.page.exists()
     stat = Path(f"/proc/{told.read_text()}/stat")

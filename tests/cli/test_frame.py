@@ -10,7 +10,6 @@ import pytest
 from rich.console import Console
 from rich.text import Text
 
-from tiniscript.cli.terminal.fleet_table import FleetTable
 from tiniscript.cli.terminal.plot import ROWS, Plot, scale
 from tiniscript.cli.terminal.run_drawing import Picture
 from tiniscript.cli.terminal.screen import BEGIN, END, Frame
@@ -173,15 +172,6 @@ def test_a_small_change_of_the_values_does_not_move_the_axis() -> None:
     assert sum(bool(each.plain[:5].strip()) for each in after[1:]) >= 3, "marks"
 
 
-@pytest.mark.parametrize("width", [10, 24, 80, 240])
-def test_a_curve_fits_each_terminal(width: int) -> None:
-    plot = Plot()
-    for k in range(50):
-        plot.take(k * 100, (-1) ** k * 10**k % 10**9, False)
-        for each in plot.lines(width, 8, k * 100):
-            assert each.cell_len <= width
-
-
 def test_columns_of_values_only_grow() -> None:
     from tiniscript import robots
     from tiniscript.base.trace import Event
@@ -193,7 +183,3 @@ def test_columns_of_values_only_grow() -> None:
         row = next(each for each in picture.lines(100, 20, k * 100) if "DISTANCE" in each.plain)
         places.append(row.plain.index(" cm"))
     assert places[0] <= places[1] == places[2]
-
-
-def test_a_table_of_robots_keeps_its_columns() -> None:
-    assert FleetTable([], "en").wide == [0, 0]

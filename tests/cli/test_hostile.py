@@ -10,9 +10,9 @@ from pathlib import Path
 
 import pytest
 
-from tests.support.command import PROGRAM, TSC, Tsc, process
+from tests.support.command import PROGRAM, TSC, Tsc
 from tiniscript.bytecode.image import unpack
-from tiniscript.cli import CLOSED, help, main
+from tiniscript.cli import help
 
 # -- anything whatever --------------------------------------------------------------------------
 
@@ -118,17 +118,6 @@ def test_the_language_comes_from_the_locale(tsc: Tsc, monkeypatch: pytest.Monkey
         assert word in tsc("check", "-e", "S = 5;F = 6").err
 
 
-def test_a_closed_pipe_ends_the_command_as_any_other() -> None:
-    text = "LOOP(100000);SHOW(1);END_LOOP"
-    command = [*TSC, "run", "-e", text]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as running:
-        assert running.stdout and running.stderr
-        running.stdout.readline()
-        running.stdout.close()
-        said = running.stderr.read().decode()
-    assert (running.returncode, said) == (CLOSED, "")
-
-
 @pytest.mark.parametrize("closed", ["2>&-", "<&-", ">&-", ">/dev/full"])
 def test_closed_and_full_streams(closed: str) -> None:
     """With nowhere to write there is still an exit code, and the trace stays the trace."""
@@ -146,12 +135,6 @@ def test_closed_and_full_streams(closed: str) -> None:
             assert done.returncode == code
         if closed == "2>&-":
             assert done.stdout == ("0 MOTORS 0 0\n" * 3 + "0 DONE\n" if code == 0 else "")
-
-
-def test_an_image_goes_into_a_pipe(program: Path) -> None:
-    command = f"{shlex.join(TSC)} compile {shlex.quote(str(program))} -o /dev/stdout | cat"
-    done = subprocess.run(command, shell=True, capture_output=True)
-    assert done.stdout.startswith(b"TS\x02")
 
 
 def test_ctrl_c_is_said() -> None:
@@ -266,23 +249,3 @@ def test_the_cache_keeps_a_thousand_maps(
     for seconds in range(1, 7):
         tsc("compile", "-e", f"W({seconds})", "-o", program.with_suffix(".bin"))
     assert len(list(source_map._path(0).parent.iterdir())) == 3
-
-
-def test_the_module_is_the_command() -> None:
-    done = process("run", "-e", "W(1)")
-    assert (done.code, done.out) == (0, "1000 DONE\n")
-
-
-def test_a_bug_is_ours(
-    tsc: Tsc, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    """Should anything else go wrong, a person still gets a sentence."""
-
-    def broken(arguments: list[str], language: str) -> int:
-        raise RuntimeError("the moon")
-
-    monkeypatch.setattr("tiniscript.cli.commands.check.run", broken)
-    assert main(["check"]) == 2
-    said = capsys.readouterr().err
-    assert "RuntimeError: the moon" in said
-    assert "Traceback" not in said

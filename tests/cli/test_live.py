@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-import os
-import pty
-import subprocess
-import time
+import re
 
-import pyte
 import pytest
 
-from tests.support.command import TSC, inside
+from tests.support.command import inside
 from tests.support.pty_robot import PtyRobot
-from tests.support.waiting import HANGS_S
+from tests.support.terminal import Terminal
 from tiniscript import robots
 from tiniscript.cli.robot.live_state import Known, Value, open_ends
 
@@ -55,52 +51,40 @@ def test_variables_and_defs_live_on(pty_robot: PtyRobot) -> None:
 
 def test_a_person_at_the_prompt(pty_robot: PtyRobot) -> None:
     """Types lines, makes a mistake, presses Ctrl-C while it drives, and leaves with Ctrl-D."""
-    ours, theirs = pty.openpty()
-    environ = {**os.environ, "TERM": "xterm", "COLUMNS": "80", "LINES": "24"}
-    command = subprocess.Popen(
-        [*TSC, "live", "--port", pty_robot.port], stdin=theirs, stdout=theirs, stderr=theirs,
-        env=environ, start_new_session=True, preexec_fn=_take_terminal,
-    )  # fmt: skip
-    os.close(theirs)
-    screen = pyte.Screen(80, 24)
-    stream = pyte.ByteStream(screen)
+    terminal = Terminal("live", "--port", pty_robot.port)
 
     def see(text: str, times: int = 1) -> None:
-        end_s = time.monotonic() + HANGS_S
-        while "\n".join(screen.display).count(text) < times:
-            assert time.monotonic() < end_s, (text, screen.display)
-            stream.feed(os.read(ours, 4096))
+        terminal.until("(?s)" + ".*".join([re.escape(text.rstrip())] * times))
 
     see("tini> ")
-    os.write(ours, b"SPEED = 55\n")
+    terminal.type("SPEED = 55\n")
     see("tini> ", 2)
-    os.write(ours, b"F(1 SPEED)\n")
+    terminal.type("F(1 SPEED)\n")
     see("need a comma")
     see("tini> ", 3)
-    os.write(ours, b"LOOP(FOREVER);F(1, SPE\t);END_LOOP\n")
+    terminal.type("LOOP(FOREVER);F(1, SPE\t);END_LOOP\n")
     pty_robot.until(lambda: pty_robot.moves, "it drives")
     assert pty_robot.did[-1] == "MOTORS 55 55"
-    os.write(ours, b"\x03")
+    terminal.type("\x03")
     see("the robot has confirmed it.")
     assert not pty_robot.moves
     see("tini> ", 4)
-    os.write(ours, b"SHOW(SPEED)\n")
+    terminal.type("SHOW(SPEED)\n")
     see("SHOW 55")
     see("tini> ", 5)
-    os.write(ours, b"LOOP(2)\n")
+    terminal.type("LOOP(2)\n")
     see("....> ")
-    os.write(ours, b"\x03")  # the block is dropped
+    terminal.type("\x03")  # the block is dropped
     see("tini> ", 6)
-    os.write(ours, b"LOOP(2)\nSHOW(SPEED + 1)\nEND_LOOP\n")
+    terminal.type("LOOP(2)\nSHOW(SPEED + 1)\nEND_LOOP\n")
     see("SHOW 56", 2)
     see("tini> ", 7)
-    screen.reset()
-    os.write(ours, b"help\n")
+    terminal.screen.reset()
+    terminal.type("help\n")
     see("LIGHT_R, LIGHT_L, DISTANCE")
     see("tini> ")
-    os.write(ours, b"\x04")
-    assert command.wait(HANGS_S) == 0
-    os.close(ours)
+    terminal.type("\x04")
+    assert terminal.end() == 0
 
 
 def test_a_block_goes_on_over_lines(pty_robot: PtyRobot) -> None:
@@ -131,14 +115,6 @@ def test_a_block_goes_on_over_lines(pty_robot: PtyRobot) -> None:
 ])  # fmt: skip
 def test_which_ends_are_missing(text: str, ends: str) -> None:
     assert open_ends(text) == ends
-
-
-def _take_terminal() -> None:
-    """Make standard input the terminal whose Ctrl-C this process gets."""
-    import fcntl
-    import termios
-
-    fcntl.ioctl(0, termios.TIOCSCTTY, 0)
 
 
 def test_what_a_line_needs_goes_with_it_and_nothing_else() -> None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import os
 import signal
-import subprocess
 from argparse import Namespace
 from collections import deque
 from collections.abc import Iterator
@@ -13,9 +12,9 @@ from contextlib import closing
 
 import pytest
 
-from tests.support.command import FOREVER, TSC, Done, Tsc, ended, inside, process, rest_of, running
+from tests.support.command import FOREVER, Done, Tsc, ended, inside, process, running
 from tests.support.robot_fleet import RobotFleet
-from tests.support.waiting import HANGS_S
+from tests.support.terminal import Terminal
 from tiniscript import robots
 from tiniscript.cli.robot.fleet import Fleet
 from tiniscript.cli.robot.member import Member, Result, Target
@@ -243,31 +242,18 @@ def test_nobody_and_wrong_use(tsc: Tsc, monkeypatch: pytest.MonkeyPatch) -> None
 
 
 def test_the_table_shows_every_robot_and_leaves_plain_rows(class_: RobotFleet) -> None:
-    import pty
-
-    import pyte
-
-    ours, theirs = pty.openpty()
-    environ = {**os.environ, "TERM": "xterm", "COLUMNS": "100", "LINES": "24"}
-    command = subprocess.Popen(
-        [*TSC, "upload", "-e", "SI|F(1, 80);SHOW(7);F(1, 80)", "--all", "--no-save"],
-        stdin=subprocess.DEVNULL, stdout=theirs, stderr=theirs, env=environ,
-    )  # fmt: skip
-    os.close(theirs)
-    screen = pyte.Screen(100, 24)
-    stream = pyte.ByteStream(screen)
+    words = ("upload", "-e", "SI|F(1, 80);SHOW(7);F(1, 80)", "--all", "--no-save")
+    terminal = Terminal(*words, size=(100, 24), types=False)
     seen = set()
-    while part := rest_of(ours):
-        stream.feed(part)
-        text = "\n".join(screen.display)
+    while terminal.take():
+        text = "\n".join(terminal.lines())
         if text.count("running   SHOW 7") == 4:
             seen.add("values")
         if text.count("running") == 4:
             seen.add("running")
-    os.close(ours)
-    assert command.wait(HANGS_S) == 0
+    assert terminal.end() == 0
     assert seen == {"values", "running"}
-    rows = [line.rstrip() for line in screen.display if line.strip()]
+    rows = list(filter(None, terminal.lines()))
     assert "Done: 4 of 4." in rows
     assert sum(row.endswith("Done.") for row in rows) == 4
     assert not any("running" in row for row in rows)

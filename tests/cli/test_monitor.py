@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import json
-import os
 import signal
-import subprocess
 from pathlib import Path
 
 import pytest
 
-from tests.support.command import TSC, ended, process, rest_of, running
+from tests.support.command import ended, process, running
 from tests.support.pty_robot import PtyRobot, on
-from tests.support.waiting import HANGS_S
+from tests.support.terminal import Terminal
 
 
 def test_monitor_writes_what_the_robot_shows(pty_robot: PtyRobot, tmp_path: Path) -> None:
@@ -47,35 +45,14 @@ def test_monitor_keeps_the_last_rows_where_no_robot_answers(tmp_path: Path) -> N
 
 def test_monitor_draws_a_curve(pty_robot: PtyRobot) -> None:
     """What is written is read as a terminal reads it: of the title only the value changes."""
-    import pty
-
-    import pyte
-
-    screen = pyte.Screen(80, 24)
-    stream = pyte.ByteStream(screen)
     assert on(pty_robot, "upload", "-e", "SB|SHOW(-2.5);W(0.3);SHOW(7);W(0.3);SHOW(TRUE)").code == 0
-    ours, theirs = pty.openpty()
-    environ = {**os.environ, "TERM": "xterm", "COLUMNS": "80", "LINES": "24"}
-    command = subprocess.Popen(
-        [*TSC, "monitor", "--port", pty_robot.port, "--plot"],
-        stdin=subprocess.DEVNULL, stdout=theirs, stderr=theirs, env=environ,
-    )  # fmt: skip
-    os.close(theirs)
-    written = b""
-    while "── SHOW".encode() not in written:
-        written += os.read(ours, 65536)
-    stream.feed(written)
+    terminal = Terminal("monitor", "--port", pty_robot.port, "--plot", types=False)
+    terminal.until("── SHOW")
     pty_robot.push()
-    while b"Done." not in written or not any("── SHOW 1 " in row for row in screen.display):
-        part = os.read(ours, 65536)
-        stream.feed(part)
-        written += part
-    command.send_signal(signal.SIGINT)
-    while part := rest_of(ours):
-        written += part
-    assert command.wait(HANGS_S) == 0
-    os.close(ours)
-    seen = written.decode()
+    terminal.until(r"(?s)── SHOW 1 .*Done\.|Done\..*── SHOW 1 ")
+    terminal.interrupt()
+    assert terminal.end() == 0
+    seen = terminal.written.decode()
     assert "SHOW -2.5" in seen and "SHOW TRUE" in seen
     assert any("⠀" < letter <= "⣿" for letter in seen)
     assert seen.endswith("\n")

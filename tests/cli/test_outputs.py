@@ -188,6 +188,7 @@ def test_devices_and_pipes_may_be_written(tmp_path: Path) -> None:
     tsc = " ".join(TSC)
     for words in ("compile a.ts -o /dev/null --map /dev/null", "compile /dev/null -o /dev/null"):
         assert run(f"{tsc} {words}", tmp_path).code == 0
+    assert Path("/dev/null").is_char_device()
     done = run(f"mkfifo p; cat p & {tsc} compile a.ts -o p >/dev/null; wait", tmp_path)
     assert done.code == 0 and done.out.startswith("TS\x02")
     assert (tmp_path / "p").is_fifo()

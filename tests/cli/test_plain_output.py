@@ -126,11 +126,13 @@ def test_a_bug_is_told_in_plain_text(tsc: Tsc, monkeypatch: pytest.MonkeyPatch, 
     from tiniscript.cli import main
 
     def broken(arguments: list[str], language: str) -> int:
-        raise RuntimeError(EVIL)
+        raise RuntimeError(f"the moon {EVIL}")
 
     monkeypatch.setattr("tiniscript.cli.commands.check.run", broken)
     assert main(["check"]) == 2
-    assert_plain(capsys.readouterr().err)
+    said = capsys.readouterr().err
+    assert "RuntimeError: the moon" in said and "Traceback" not in said
+    assert_plain(said)
 
 
 def test_a_sentence_keeps_the_lines_of_other_sentences_alone() -> None:

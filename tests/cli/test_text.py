@@ -35,11 +35,6 @@ def test_the_line_goes_to_a_file(tsc: Tsc, program: Path) -> None:
     assert f"{program} -> {target}   20 bytes de texto" in done.out
 
 
-def test_never_over_the_program(tsc: Tsc, program: Path) -> None:
-    assert tsc("compile", "--text", program, "-o", program).code == 2
-    assert program.read_text(encoding="utf-8") == PROGRAM
-
-
 def test_the_line_runs_and_compiles_as_the_program_does(tsc: Tsc, program: Path) -> None:
     line = program.parent / "line.ts"
     tsc("compile", "--text", program, "-o", line)

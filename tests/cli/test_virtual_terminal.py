@@ -1,101 +1,23 @@
-"""The virtual robot on a real pseudo-terminal: what a person sees, and what keys do.
-
-`pyte` plays the terminal.
-"""
+"""The virtual robot on a real pseudo-terminal: what a person sees, and what keys do."""
 
 from __future__ import annotations
 
-import fcntl
-import os
-import pty
 import re
-import signal
-import struct
 import subprocess
 import sys
-import termios
 from pathlib import Path
-from queue import Queue
-from threading import Thread
 
-import pyte
 import pytest
 
-COLUMNS, ROWS = 90, 30
-GLANCE = 1000  # bytes
+from tests.support.terminal import Terminal
 
-
-class Terminal:
-    """A command on a terminal of its own."""
-
-    def __init__(self, *arguments: str | Path) -> None:
-        self._ours, theirs = pty.openpty()
-        fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("HHHH", ROWS, COLUMNS, 0, 0))
-        hidden = ("COLUMNS", "LINES", "NO_COLOR", "FORCE_COLOR", "CI", "TTY_COMPATIBLE")
-        env = {name: value for name, value in os.environ.items() if name not in hidden}
-        env |= {"TERM": "xterm-256color"}
-        self._process = subprocess.Popen(
-            [sys.executable, "-m", "tiniscript", *map(str, arguments)],
-            stdin=theirs, stdout=theirs, stderr=theirs, env=env,
-        )  # fmt: skip
-        os.close(theirs)
-        self._screen = pyte.Screen(COLUMNS, ROWS)
-        self._stream = pyte.ByteStream(self._screen)
-        self.written = b""
-        self._unseen = b""
-        self._read: Queue[bytes] = Queue()
-        self._reader = Thread(target=self._read_on, daemon=True)
-        self._reader.start()
-
-    def lines(self) -> list[str]:
-        return [line.rstrip() for line in self._screen.display]
-
-    def until(self, pattern: str) -> re.Match[str]:
-        """Wait until something is to be seen."""
-        while True:
-            found = re.search(pattern, "\n".join(self.lines()))
-            if found:
-                return found
-            assert self._take(), f"it ends without {pattern}: {self.lines()}"
-
-    def _read_on(self) -> None:
-        """Read at once: whoever writes to a terminal that is full waits."""
-        part = b"begun"
-        while part:
-            try:
-                part = os.read(self._ours, 65536)
-            except OSError:  # Linux: the other end is closed
-                part = b""
-            self._read.put(part)
-
-    def type(self, keys: str) -> None:
-        os.write(self._ours, keys.encode())
-
-    def interrupt(self) -> None:
-        """Do what Ctrl-C does on the terminal of a shell."""
-        self._process.send_signal(signal.SIGINT)
-
-    def end(self) -> int:
-        while self._take():
-            pass
-        self._reader.join()
-        os.close(self._ours)
-        return self._process.wait()
-
-    def _take(self) -> bool:
-        """Draw a small part of what was written: nothing is missed that is seen briefly."""
-        if not self._unseen:
-            self._unseen = self._read.get()
-            self.written += self._unseen
-        part, self._unseen = self._unseen[:GLANCE], self._unseen[GLANCE:]
-        self._stream.feed(part)
-        return bool(part)
+SIZE = (90, 30)
 
 
 def test_upload_draws_the_world_and_the_way(tmp_path: Path) -> None:
     program = tmp_path / "drive.ts"
     program.write_text("SI|F(0.6, 80)\nSHOW(DISTANCE)\nX = 0; SHOW(1 / X)", encoding="utf-8")
-    terminal = Terminal("upload", program, "--virtual", "--world", "light")
+    terminal = Terminal("upload", program, "--virtual", "--world", "light", size=SIZE)
     terminal.until(r"left motor +80 %")
     assert terminal.end() == 1
     lines = terminal.lines()
@@ -113,7 +35,7 @@ def test_upload_draws_the_world_and_the_way(tmp_path: Path) -> None:
 
 def test_keys_push_the_buttons_of_the_robot(tmp_path: Path) -> None:
     memory = tmp_path / "kept.bin"
-    terminal = Terminal("robot", "--memory", memory, "--lang", "es")
+    terminal = Terminal("robot", "--memory", memory, "--lang", "es", size=SIZE)
     terminal.until("q: terminar   b: botón   h: botón 2 s   r: reinicio   p: apagar y encender")
     upload = [sys.executable, "-m", "tiniscript", "upload", "--virtual", "-e",
               "SB|LOOP(FOREVER);L(1, 40);END_LOOP"]  # fmt: skip
@@ -137,7 +59,7 @@ def test_keys_push_the_buttons_of_the_robot(tmp_path: Path) -> None:
 @pytest.mark.parametrize("is_wanted", [True, False])
 def test_without_a_robot_the_virtual_one_is_offered(is_wanted: bool) -> None:
     """On a computer without any port with a question, else as one of the ports."""
-    terminal = Terminal("upload", "-e", "SI|F(0.1, 50)")
+    terminal = Terminal("upload", "-e", "SI|F(0.1, 50)", size=SIZE)
     asked = terminal.until(r"\[Y/n\]|(\d+) +\S[^\n]*\nIts number:")
     if asked[1]:
         terminal.type(f"{asked[1]}\n" if is_wanted else "\x04")
@@ -149,7 +71,7 @@ def test_without_a_robot_the_virtual_one_is_offered(is_wanted: bool) -> None:
 
 
 def test_the_button_of_a_program_that_waits_is_a_key() -> None:
-    terminal = Terminal("upload", "-e", "SB|F(30, 80)", "--virtual", "--lang", "es")
+    terminal = Terminal("upload", "-e", "SB|F(30, 80)", "--virtual", "--lang", "es", size=SIZE)
     terminal.until(r"s +su botón lo inicia")
     terminal.until("b: botón de inicio +q: terminar")
     terminal.type("b")
@@ -168,18 +90,18 @@ def test_the_button_of_a_program_that_waits_is_a_key() -> None:
 
 
 def test_a_program_that_waits_ends_when_it_has_ended_or_its_time_is_over() -> None:
-    terminal = Terminal("upload", "-e", "SB|F(0.2, 80)", "--virtual")
+    terminal = Terminal("upload", "-e", "SB|F(0.2, 80)", "--virtual", size=SIZE)
     terminal.until("q: end")
     terminal.type("xb")
     assert terminal.end() == 0
     assert "Done." in "\n".join(terminal.lines())
-    terminal = Terminal("upload", "-e", "SB|F(0.2, 80)", "--virtual", "--for", "1")
+    terminal = Terminal("upload", "-e", "SB|F(0.2, 80)", "--virtual", "--for", "1", size=SIZE)
     assert terminal.end() == 0  # nobody has pushed it
     assert "The virtual robot drove 0 cm in 0.0 s" in "\n".join(terminal.lines())
 
 
 def test_after_ctrl_c_the_motors_are_off_in_the_picture_too() -> None:
-    terminal = Terminal("upload", "-e", "SI|F(30, 80)", "--virtual")
+    terminal = Terminal("upload", "-e", "SI|F(30, 80)", "--virtual", size=SIZE)
     terminal.until(r"left motor +80 %")
     terminal.interrupt()
     assert terminal.end() == 2
@@ -190,7 +112,7 @@ def test_after_ctrl_c_the_motors_are_off_in_the_picture_too() -> None:
 
 
 def test_the_prompt_shows_what_a_person_shows_and_nothing_else() -> None:
-    terminal = Terminal("live", "--virtual")
+    terminal = Terminal("live", "--virtual", size=SIZE)
     terminal.until("tini>")
     terminal.type("X = 5; SHOW(7)\n")
     terminal.until("SHOW +7")

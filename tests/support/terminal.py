@@ -1,0 +1,110 @@
+"""A command on a terminal of its own, whose Ctrl-C it gets; `pyte` plays the terminal."""
+
+from __future__ import annotations
+
+import fcntl
+import os
+import pty
+import re
+import signal
+import struct
+import subprocess
+import termios
+from collections.abc import Mapping, Sequence
+from contextlib import nullcontext
+from pathlib import Path
+from queue import Queue
+from threading import Thread
+
+import pyte
+
+from tests.support.command import TSC, rest_of
+from tests.support.waiting import HANGS_S
+
+GLANCE = 1000  # bytes
+HIDDEN = ("COLUMNS", "LINES", "NO_COLOR", "FORCE_COLOR", "CI", "TTY_COMPATIBLE", "TTY_INTERACTIVE")
+
+
+class Terminal:
+    """`tsc` with these words, or another command, on a terminal of so many columns and rows.
+
+    Standard output is the terminal, too, or a file.
+    """
+
+    def __init__(
+        self, *words: str | Path, command: Sequence[str] = TSC, size: tuple[int, int] = (80, 24),
+        output: Path | None = None, env: Mapping[str, str] | None = None, types: bool = True,
+    ) -> None:  # fmt: skip
+        """With `types` standard input is the terminal, else nothing."""
+        self._ours, theirs = pty.openpty()
+        fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("HHHH", size[1], size[0], 0, 0))
+        kept = {name: value for name, value in os.environ.items() if name not in HIDDEN}
+        with output.open("wb") if output else nullcontext(theirs) as out:
+            self.process = subprocess.Popen(
+                [*command, *map(str, words)], stdin=theirs if types else subprocess.DEVNULL,
+                stdout=out, stderr=theirs, env={**kept, "TERM": "xterm-256color", **(env or {})},
+                start_new_session=True, preexec_fn=_take_terminal,
+            )  # fmt: skip
+        os.close(theirs)
+        self.screen = pyte.HistoryScreen(*size, history=100_000)
+        self.written = b""
+        self._stream = pyte.ByteStream(self.screen)
+        self._unseen = b""
+        self._is_over = False
+        self._read: Queue[bytes] = Queue()
+        self._reader = Thread(target=self._read_on, daemon=True)
+        self._reader.start()
+
+    def lines(self) -> list[str]:
+        return [line.rstrip() for line in self.screen.display]
+
+    def whole(self) -> list[str]:
+        """Return the lines with those that have scrolled away."""
+        columns = range(self.screen.columns)
+        gone = ["".join(line[k].data for k in columns) for line in self.screen.history.top]
+        return [*(line.rstrip() for line in gone), *self.lines()]
+
+    def until(self, pattern: str) -> re.Match[str]:
+        """Wait until something is to be seen."""
+        while True:
+            found = re.search(pattern, "\n".join(self.lines()))
+            if found:
+                return found
+            assert self.take(), f"it ends without {pattern}: {self.lines()}"
+
+    def type(self, keys: str) -> None:
+        os.write(self._ours, keys.encode())
+
+    def interrupt(self) -> None:
+        """Do what Ctrl-C does on the terminal of a shell."""
+        self.process.send_signal(signal.SIGINT)
+
+    def end(self) -> int:
+        """Wait until it has ended; return its exit code."""
+        while self.take():
+            pass
+        self._reader.join()
+        os.close(self._ours)
+        return self.process.wait(HANGS_S)
+
+    def take(self) -> bool:
+        """Draw a small part of what was written: nothing is missed that is seen briefly."""
+        if not self._unseen and not self._is_over:
+            self._unseen = self._read.get(timeout=HANGS_S)
+            self._is_over = not self._unseen
+            self.written += self._unseen
+        part, self._unseen = self._unseen[:GLANCE], self._unseen[GLANCE:]
+        self._stream.feed(part)
+        return bool(part)
+
+    def _read_on(self) -> None:
+        """Read at once: whoever writes to a terminal that is full waits."""
+        part = b"begun"
+        while part:
+            part = rest_of(self._ours)
+            self._read.put(part)
+
+
+def _take_terminal() -> None:
+    """Make standard error the terminal whose Ctrl-C this process gets."""
+    fcntl.ioctl(2, termios.TIOCSCTTY, 0)
