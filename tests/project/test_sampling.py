@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import inspect
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
@@ -35,7 +35,6 @@ def test_kit(kit, tone): ...
 @pytest.mark.parametrize("kit", range(4))
 def test_same_kit(kit): ...
 """
-Found = list[tuple[str, dict[str, object]]]
 
 
 class Plugin:
@@ -43,7 +42,7 @@ class Plugin:
 
     def __init__(self, commits: Sequence[str]) -> None:
         self.commits = commits
-        self.found: list[tuple[Found, str]] = []
+        self.found: list[tuple[list[str], str]] = []
 
     def pytest_addoption(self, parser: pytest.Parser) -> None:
         sampling.add_options(parser)
@@ -57,71 +56,51 @@ class Plugin:
         for config.option.sample in self.commits:
             left = list(items)
             sampling.leave_out(config, left)
-            self.found.append(([_row(item) for item in left], sampling.said(config)))
+            self.found.append(([item.name for item in left], sampling.said(config)))
 
 
-def _row(item: pytest.Item) -> tuple[str, dict[str, object]]:
-    assert isinstance(item, pytest.Function)
-    return item.originalname, dict(item.callspec.params) if hasattr(item, "callspec") else {}
+def collected(
+    folder: Path, *words: str, of: str = "", commits: Sequence[str] = ("7",)
+) -> list[tuple[list[str], str]]:
+    (folder / "test_rows.py").write_text(ROWS, encoding="utf-8")
+    (folder / "pytest.ini").write_text("[pytest]", encoding="utf-8")
+    plugin = Plugin(commits)
+    options = ("-q", "--collect-only", "--import-mode=importlib", "-p", "no:cacheprovider",
+               "-p", "no:xdist", *words, f"{folder / 'test_rows.py'}{of}")  # fmt: skip
+    assert pytest.main([*options], [plugin]) == pytest.ExitCode.OK
+    return plugin.found
 
 
-@pytest.fixture
-def collected(tmp_path: Path) -> Callable[..., list[tuple[Found, str]]]:
-    (tmp_path / "test_rows.py").write_text(ROWS, encoding="utf-8")
-    (tmp_path / "pytest.ini").write_text("[pytest]", encoding="utf-8")
-
-    def run(*words: str, of: str = "", commits: Sequence[str] = ("7",)) -> list[tuple[Found, str]]:
-        plugin = Plugin(commits)
-        options = ("-q", "--collect-only", "--import-mode=importlib", "-p", "no:cacheprovider",
-                   "-p", "no:xdist")  # fmt: skip
-        code = pytest.main([*options, *words, f"{tmp_path / 'test_rows.py'}{of}"], [plugin])
-        assert code == pytest.ExitCode.OK
-        return plugin.found
-
-    return run
-
-
-def test_each_value_is_in_each_sample_and_each_row_in_one(
-    collected: Callable[..., list[tuple[Found, str]]],
-) -> None:
-    seen: Counter[tuple[object, object]] = Counter()
-    together: Counter[tuple[str, object]] = Counter()
+def test_each_value_is_in_each_sample_and_each_row_in_one(tmp_path: Path) -> None:
     commits = [*map(str, range(15)), "7"]
-    drawn = dict(enumerate(collected(commits=commits)))
-    for commit, (found, said) in drawn.items():
-        assert f"--sample {commits[commit]} " in said
-        cases = [row for name, row in found if name == "test_case"]
-        assert [row["case"] for row in cases] == list(range(20))
-        assert set(Counter(row["chip"] for row in cases).values()) == {6, 7}
-        boards = [(name, row.get("board")) for name, row in found if "board" in name]
-        assert len(boards) == 2
-        together.update(boards)
-        kits = [row["kit"] for name, row in found if "kit" in name]
-        assert len(kits) == 6 and len(set(kits)) == 1
-        together.update(("kit", kit) for kit in kits[:1])
-        assert Counter(
-            name for name, _ in found if name in ("test_case", "test_pin", "test_usual")
-        ) == {
-            "test_case": 20,
-            "test_pin": 2,
-            "test_usual": 1,
-        }
-        seen.update((row["case"], row["chip"]) for row in cases if commit < 15)
-    assert len(seen) > 55
-    assert len(together) == 3 + 4 and min(together.values()) >= 2
+    drawn = collected(tmp_path, commits=commits)
+    seen = Counter[str]()
+    for commit, (found, said) in zip(commits, drawn, strict=True):
+        assert f"--sample {commit} " in said
+        count = Counter(name.partition("[")[0] for name in found)
+        assert (count["test_case"], count["test_pin"], count["test_usual"]) == (20, 2, 1)
+        assert count["test_board"] + count["test_other_board"] == 2
+        cases = [name[len("test_case[") : -1].split("-") for name in found if "_case" in name]
+        assert [int(case) for case, _ in cases] == list(range(20))
+        assert set(Counter(chip for _, chip in cases).values()) == {6, 7}
+        kits = {name.split("[")[1][0] for name in found if "same_kit" in name}
+        kits |= {name[:-1].split("-")[1] for name in found if "test_kit" in name}
+        assert count["test_kit"] == 5 and len(kits) == 1
+        seen.update(found)
+    assert sum("_case" in name for name in seen) > 55
+    assert sum("board" in name for name in seen) == 3
+    assert sum("same_kit" in name for name in seen) == 4
     assert drawn[7] == drawn[15]
-    ((asked, said),) = collected("-k", "not usual")  # which asks for none
-    assert len([name for name, _ in asked if name == "test_case"]) == 20 and said
+    ((asked, said),) = collected(tmp_path, "-k", "not usual")  # which asks for none
+    assert sum("_case" in name for name in asked) == 20 and said
 
 
 @pytest.mark.parametrize(
     ("words", "of"), [(["--whole"], ""), (["-k", "case"], ""), ([], "::test_case")]
 )
-def test_what_is_asked_for_has_all_its_rows(
-    words: list[str], of: str, collected: Callable[..., list[tuple[Found, str]]]
-) -> None:
-    ((found, said),) = collected(*words, of=of)
-    assert len([name for name, _ in found if name == "test_case"]) == 60 and said == ""
+def test_what_is_asked_for_has_all_its_rows(words: list[str], of: str, tmp_path: Path) -> None:
+    ((found, said),) = collected(tmp_path, *words, of=of)
+    assert sum("_case" in name for name in found) == 60 and said == ""
 
 
 def test_all_rows_of_one_test_run_and_each_that_fails_is_named() -> None:

@@ -159,43 +159,55 @@ def test_a_folder_that_has_moved_is_installed_again(folder: Path) -> None:
     assert installed(moved)
 
 
+def script(
+    folder: Path, programs: dict[str, str], **variables: str
+) -> subprocess.CompletedProcess[str]:
+    """Run a script that makes the environment, where there are these programs alone."""
+    tools, found = folder / "tools", folder / "bin"
+    tools.mkdir()
+    found.mkdir()
+    shutil.copy(ROOT / "tools" / "venv.sh", tools)
+    sh, dirname, chmod = (shutil.which(name) for name in ("sh", "dirname", "chmod"))
+    always = {"id": "echo 1000", "dirname": f'exec {dirname} "$@"', "chmod": f'exec {chmod} "$@"'}
+    for name, text in {**always, **programs}.items():
+        (found / name).parent.mkdir(parents=True, exist_ok=True)
+        (found / name).write_text(f"#!{sh}\n{text}\n")
+        (found / name).chmod(0o755)
+    (tools / "script.sh").write_text('set -eu\n. "$(dirname "$0")/venv.sh"\nmake_venv "[test]"\n')
+    return subprocess.run([str(sh), tools / "script.sh"], capture_output=True, encoding="utf-8",
+                          env={"PATH": str(found), **variables})  # fmt: skip
+
+
 def test_the_shell_leaves_the_work_to_python(tmp_path: Path) -> None:
     """`make_venv` gives the extras on, with the interpreter of `.venv` where it has pip."""
-    (tmp_path / "tools").mkdir()
-    (tmp_path / ".venv" / "bin").mkdir(parents=True)
-    shutil.copy(ROOT / "tools" / "venv.sh", tmp_path / "tools")
-    python = tmp_path / ".venv" / "bin" / "python"
-    python.write_text('#!/bin/sh\ncase "$*" in *environment*) echo "$*";; esac\n')
-    python.chmod(0o755)
-    script = tmp_path / "tools" / "some.sh"
-    script.write_text('. "$(dirname "$0")/venv.sh"\nmake_venv "[test]"\n')
-    done = subprocess.run(["sh", str(script)], capture_output=True, text=True, check=True)
-    assert done.stdout == f"{tmp_path / 'tools' / 'environment.py'} [test]\n"
+    python = {"../.venv/bin/python": 'case "$*" in *environment*) echo "$*";; esac'}
+    done = script(tmp_path, python)
+    assert done.stdout == f"{tmp_path / 'tools' / 'environment.py'} [test]\n", done.stderr
 
 
 @pytest.mark.parametrize(("has_apt", "code"), [(True, 0), (False, 2)])
 def test_a_debian_without_any_python_gets_one(has_apt: bool, code: int, tmp_path: Path) -> None:
-    tools, programs = tmp_path / "tools", tmp_path / "bin"
-    tools.mkdir()
-    programs.mkdir()
-    shutil.copy(ROOT / "tools" / "venv.sh", tools)
-    for name in ("sh", "dirname", "id", "chmod"):
-        (programs / name).symlink_to(shutil.which(name) or name)
-    python = programs / "python3"
-    if has_apt:
-        brings = f'printf "#!/bin/sh\\n" >{python}; chmod +x {python}'
-        apt = f'#!/bin/sh\ncase "$*" in *"install -y"*python3-venv*) {brings};; esac\n'
-        (programs / "apt-get").write_text(apt)
-        (programs / "apt-get").chmod(0o755)
-        (programs / "sudo").write_text('#!/bin/sh\n"$@"\n')
-        (programs / "sudo").chmod(0o755)
-    script = tools / "script.sh"
-    script.write_text('set -eu\n. "$(dirname "$0")/venv.sh"\nmake_venv "[test]"\n')
-    done = subprocess.run([programs / "sh", script], capture_output=True, text=True,
-                          env={"PATH": str(programs), "LC_ALL": "C"})  # fmt: skip
+    python = tmp_path / "bin" / "python3"
+    brings = f'printf "#!/bin/sh\\n" >{python}; chmod +x {python}'
+    apt = f'case "$*" in *"install -y"*python3-venv*) {brings};; esac'
+    done = script(tmp_path, {"apt-get": apt, "sudo": '"$@"'} if has_apt else {}, LC_ALL="C")
     assert done.returncode == code, done.stderr
     assert ("needs Python 3.10 or newer" in done.stderr) != has_apt
     assert python.exists() == has_apt
+
+
+@pytest.mark.parametrize("sudo", [{}, {"sudo": "exit 1"}, {"sudo": '"$@"'}],
+                         ids=["no sudo", "no rights", "no network"])  # fmt: skip
+@pytest.mark.parametrize(("locale", "english"), [("C", True), ("es_MX.UTF-8", False)])
+def test_who_cannot_install_venv_is_not_told_to_do_it_again(
+    sudo: dict[str, str], locale: str, english: bool, tmp_path: Path
+) -> None:
+    fakes = {"python3": "case $* in *ensurepip*) exit 1;; esac", "apt-get": "exit 100", **sudo}
+    done = script(tmp_path, fakes, LANG=locale)
+    assert done.returncode == 2
+    assert ("Who administers" in done.stderr) == english
+    assert ("Quien administra" in done.stderr) != english
+    assert "sudo" not in done.stderr
 
 
 # -- tools/try.py, for every system
@@ -261,35 +273,6 @@ def test_a_computer_without_internet_is_told_of_proxies_and_the_stick(
     assert "Traceback" not in done.stderr
     assert done.stderr.endswith("\nERROR: no setuptools\nERROR: no network\n")
     assert (folder / ".venv" / "pip.log").read_text() == said
-
-
-@pytest.mark.parametrize("why", ["no sudo", "no rights", "no network"])
-@pytest.mark.parametrize(("locale", "english"), [("C", True), ("es_MX.UTF-8", False)])
-def test_who_cannot_install_venv_is_not_told_to_do_it_again(
-    why: str, locale: str, english: bool, tmp_path: Path
-) -> None:
-    tools, programs = tmp_path / "tools", tmp_path / "bin"
-    tools.mkdir()
-    programs.mkdir()
-    shutil.copy(ROOT / "tools" / "venv.sh", tools)
-    sh, dirname = (shutil.which(name) for name in ("sh", "dirname"))
-    fakes = {
-        "id": "echo 1000", "dirname": f'exec {dirname} "$@"',
-        "python3": "case $* in *ensurepip*) exit 1;; esac", "apt-get": "exit 100",
-    }  # fmt: skip
-    if why != "no sudo":
-        fakes["sudo"] = "exit 1" if why == "no rights" else '"$@"'
-    for name, text in fakes.items():
-        (programs / name).write_text(f"#!{sh}\n{text}\n")
-        (programs / name).chmod(0o755)
-    script = tools / "script.sh"
-    script.write_text('set -eu\n. "$(dirname "$0")/venv.sh"\nmake_venv "[virtual]"\n')
-    done = subprocess.run([str(sh), script], capture_output=True, encoding="utf-8",
-                          env={"PATH": str(programs), "LANG": locale})  # fmt: skip
-    assert done.returncode == 2
-    assert ("Who administers" in done.stderr) == english
-    assert ("Quien administra" in done.stderr) != english
-    assert "sudo" not in done.stderr
 
 
 def test_the_first_command_drives_the_virtual_robot(
