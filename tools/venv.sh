@@ -83,7 +83,7 @@ debian_packages() {
 # What the tests need of Debian.
 test_packages() {
     debian_packages g++ gcc-avr avr-libc binutils-avr simavr libsimavr-dev libelf-dev \
-        arduino-core-avr arduino-builder avrdude clang-22 libclang-rt-22-dev \
+        arduino-core-avr arduino-builder avrdude doctest-dev clang-22 libclang-rt-22-dev \
         gcc-xtensa-lx106 gcc-riscv64-unknown-elf qemu-system-misc zsh less dbus-daemon mosquitto \
         libmbedtls-dev chromium chromium-headless-shell firefox-esr
 }

@@ -1,4 +1,4 @@
-"""PlatformIO builds the sketch."""
+"""PlatformIO builds the sketch and runs the tests in C++."""
 
 from __future__ import annotations
 
@@ -46,6 +46,43 @@ def says_what_it_is(log: str) -> bool:
     return not prepared()[0] or "Offline stand-in for PlatformIO's platform" in log
 
 
+# -- the tests in C++ ---------------------------------------------------------------------------
+
+
+def test_tests_pass(project: Path) -> None:
+    code, log = pio(project, "test", "-e", "native")
+    assert code == 0, log
+    count = re.search(r"(\d+) test cases: (\d+) succeeded", log)
+    files = "".join(path.read_text(encoding="utf-8") for path in project.glob("test/test_*.cpp"))
+    assert count and int(count[1]) == int(count[2]) == files.count("\nTEST_CASE("), log
+    assert says_what_it_is(log)
+
+
+def test_no_test_case_fails(project: Path) -> None:
+    code, log = pio(project, "test", "-e", "native", "-a", "--test-case=no such case")
+    assert code == 1, log
+    assert "no test case has run" in log
+
+
+def test_early_end_fails(project: Path) -> None:
+    """A run that stops in the middle is no success, whatever its exit code."""
+    broken = project / "test" / "test_number.cpp"
+    with changed(
+        broken,
+        ('TEST_CASE("a number is', 'TEST_CASE("ends") { exit(0); }\nTEST_CASE("a number is'),
+        ("#include <doctest.h>", "#include <doctest.h>\n#include <stdlib.h>"),
+    ):
+        code, log = pio(project, "test", "-e", "native")
+    assert code == 1, log
+    assert "have ended before their end" in log
+
+
+def test_tests_are_for_a_computer(project: Path) -> None:
+    code, log = pio(project, "test", "-e", "uno")
+    assert code == 1, log
+    assert "pio test -e native" in log
+
+
 # -- the sketch ---------------------------------------------------------------------------------
 
 
@@ -61,7 +98,7 @@ ESP32 = {"esp32dev": "tinibot32", "esp32c3": "tinibotc3"}
 def test_every_robot_has_a_sketch_for_its_board() -> None:
     text = (SKETCH / "platformio.ini").read_text(encoding="utf-8")
     named = re.findall(r"\[env:(\w+)\]", text)
-    assert set(named) == {*SKETCHES, *NEW_NANOS, *ESP32, "uno_without_tasks"}
+    assert set(named) == {*SKETCHES, *NEW_NANOS, *ESP32, "uno_without_tasks", "native"}
     assert set(environments()) == set(SKETCHES)
     for board, name in ESP32.items():
         assert robots.load(name).board.chip == board
@@ -159,12 +196,12 @@ def offline(*words: str, **variables: str) -> tuple[int, str, str]:
 
 
 def test_own_installation_is_left_alone(project: Path, tmp_path: Path) -> None:
-    manifest = tmp_path / "platforms" / "atmelavr" / "platform.json"
+    manifest = tmp_path / "platforms" / "native" / "platform.json"
     manifest.parent.mkdir(parents=True)
     manifest.write_text("{}")
     code, out, err = offline("--project", str(project), PLATFORMIO_CORE_DIR=str(tmp_path))
     assert (code, out) == (0, "")
-    assert "platforms of its own (atmelavr)" in err
+    assert "platforms of its own (native)" in err
     assert [path for path in tmp_path.rglob("*") if path.is_file()] == [manifest]
 
 
@@ -183,4 +220,4 @@ def test_every_platform_has_its_version_and_another_one_is_refused(
 def test_command_runs_in_the_project(project: Path) -> None:
     code, out, _ = offline("--project", str(project), "pio", "project", "config")
     assert code == 0
-    assert "env:uno" in out
+    assert "env:native" in out

@@ -1,12 +1,12 @@
 """Lets `pio` work where PlatformIO's registry cannot be reached, with what PyPI and Debian hold.
 
-    python -m tools.builds.platformio_offline pio run -e uno     runs a command in vm_arduino
-    eval "$(python -m tools.builds.platformio_offline)"          for all commands of this shell
+    python -m tools.builds.platformio_offline pio test -e native     runs a command in vm_arduino
+    eval "$(python -m tools.builds.platformio_offline)"              for all commands of this shell
 
 Nobody who is online needs it: where the registry answers, or PlatformIO has platforms of its own,
-it changes nothing. Elsewhere it makes a stand-in for the platform atmelavr in a folder of its own
-(below .venv), from `tools/builds/platformio_stand_ins`, SCons from PyPI, and Debian's packages.
-Every build says that it uses it. A version that does not match is refused.
+it changes nothing. Elsewhere it makes stand-ins for two platforms in a folder of its own (below
+.venv), from `tools/builds/platformio_stand_ins`, SCons from PyPI, and Debian's packages. Every
+build says that it uses them. A version that does not match is refused.
 """
 
 from __future__ import annotations
@@ -27,6 +27,7 @@ import time
 import urllib.request
 from collections.abc import Callable
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 ROOT = Path(__file__).resolve().parent.parent.parent
@@ -35,15 +36,19 @@ STAND_INS = ROOT / "tools" / "builds" / "platformio_stand_ins"
 HOME = ROOT / ".venv" / "platformio_offline"
 REGISTRY_SECONDS = 5.0
 
+GXX = Path("/usr/bin/g++")
 AVR_GCC = Path("/usr/bin/avr-gcc")
 AVR_OBJCOPY = Path("/usr/bin/avr-objcopy")
 AVR_LIBC = Path("/usr/lib/avr/include/avr/io.h")
 ARDUINO = Path("/usr/share/arduino/hardware/arduino/avr")
+DOCTEST = Path("/usr/include/doctest/doctest.h")
 DEBIAN = {
+    GXX: "g++",
     AVR_GCC: "gcc-avr",
     AVR_OBJCOPY: "binutils-avr",
     AVR_LIBC: "avr-libc",
     ARDUINO: "arduino-core-avr",
+    DOCTEST: "doctest-dev",
 }
 # Of the platform atmelavr: name, chip, variant and macro, and the bytes of flash and RAM.
 BOARDS = {
@@ -95,10 +100,12 @@ def settings_for(project: Path, offline: bool, may_install: bool) -> dict[str, s
     install_packages(may_install)
     refuse_others(project)
     made = stand_ins()
+    libraries = HOME / "libraries"
+    add_doctest(libraries / "native" / "doctest", project)
     say(f"the offline stand-ins in {made.relative_to(ROOT)} are used")
     return {
         "PLATFORMIO_CORE_DIR": str(made),
-        "PLATFORMIO_LIBDEPS_DIR": str(HOME / "libraries"),
+        "PLATFORMIO_LIBDEPS_DIR": str(libraries),
         "PLATFORMIO_SETTING_ENABLE_TELEMETRY": "no",
         "PLATFORMIO_DISABLE_UPGRADE_CHECK": "true",
     }
@@ -140,10 +147,10 @@ def registry_answers() -> bool:
     answers: list[str] = []
 
     def ask(host: str) -> None:
-        url = f"https://api.{host}/v3/packages/platformio/platform/atmelavr"
+        url = f"https://api.{host}/v3/packages/platformio/platform/native"
         try:
             with urllib.request.urlopen(url, timeout=REGISTRY_SECONDS) as answer:
-                if json.load(answer)["name"] == "atmelavr":
+                if json.load(answer)["name"] == "native":
                     answers.append(host)
         except (OSError, ValueError, KeyError, TypeError):
             return
@@ -215,6 +222,45 @@ def scons_wanted() -> tuple[str, str]:
             f"PlatformIO wants tool-scons {wanted}: which SCons that is, I cannot say"
         )
     return found[1], ".".join(str(int(part)) for part in found.groups()[1:])
+
+
+def add_doctest(folder: Path, project: Path) -> None:
+    """Put Debian's doctest where PlatformIO looks for the library that the tests want."""
+    from platformio.package.meta import PackageSpec
+    from semantic_version import Version
+
+    text = DOCTEST.read_text(encoding="utf-8")
+    parts = [re.search(rf"DOCTEST_VERSION_{part}\s+(\d+)", text) for part in PARTS]
+    version = ".".join(found[1] for found in parts if found)
+    runner = load(project / "test" / "test_custom_runner.py").CustomTestRunner
+    wanted = next(PackageSpec(each) for each in runner.EXTRA_LIB_DEPS if "doctest" in each)
+    if Version(version) not in wanted.requirements:
+        raise CannotStandIn(
+            f"doctest-dev is doctest {version}, the tests want {wanted.requirements}"
+        )
+    if folder.exists():
+        return
+
+    def fill(new: Path) -> None:
+        (new / "include").mkdir()
+        shutil.copy(DOCTEST, new / "include" / "doctest.h")
+        describe(new, "library.json", "library", "doctest", version, wanted.owner)
+
+    make(folder, fill)
+
+
+PARTS = ("MAJOR", "MINOR", "PATCH")
+
+
+def load(path: Path) -> Any:
+    """Return a Python file as a module, from its text.
+
+    An import would take the bytecode of an older text of the same length and the same second.
+    """
+    module = ModuleType(path.stem)
+    module.__file__ = str(path)
+    exec(compile(path.read_bytes(), str(path), "exec"), module.__dict__)
+    return module
 
 
 # -- what is made -------------------------------------------------------------------------------
@@ -295,12 +341,14 @@ def said_by(program: Path, option: str) -> str:
     ).stdout.strip()
 
 
-def describe(folder: Path, manifest: str, kind: str, name: str, version: str) -> None:
+def describe(
+    folder: Path, manifest: str, kind: str, name: str, version: str, owner: str = "platformio"
+) -> None:
     """Write by what PlatformIO knows an installed package: its manifest and `.piopm`."""
     if manifest:
         about = {"name": name, "version": version, "description": "An offline stand-in."}
         (folder / manifest).write_text(json.dumps(about), encoding="utf-8")
-    spec = {"owner": "platformio", "id": None, "name": name, "requirements": None, "uri": None}
+    spec = {"owner": owner, "id": None, "name": name, "requirements": None, "uri": None}
     piopm = {"type": kind, "name": name, "version": version, "spec": spec}
     (folder / ".piopm").write_text(json.dumps(piopm), encoding="utf-8")
 
