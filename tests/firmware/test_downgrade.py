@@ -6,16 +6,14 @@ they like. They have no key. `python -m tests.firmware.test_downgrade 10000` has
 
 from __future__ import annotations
 
-import argparse
 import random
-import sys
-import time
 from collections import Counter
 from collections.abc import Callable
 from typing import Any, Protocol
 
 import pytest
 
+from tests.support.campaign import wanted
 from tests.support.owners import FOREVER, KIT, Keys, Owned, image_of
 from tests.support.virtual_robot import Talk, robot_in
 from tiniscript.link.connection import PendingRequest
@@ -303,19 +301,8 @@ def test_a_key_learns_that_its_robot_seals_from_the_robot_alone(end_of: Callable
     assert keys.found[0].seals
 
 
-def main() -> int:
-    parser = argparse.ArgumentParser(description="Stand between computer and robot for long.")
-    parser.add_argument("trials", type=int, nargs="?", default=10_000)
-    parser.add_argument("--seed", type=int, default=1)
-    options = parser.parse_args()
-    started = time.monotonic()
-    for name, end in (("host", HostEnd()), ("virtual robot", VirtualEnd())):
-        count = options.trials // 2
-        found = trials(end, options.seed, count)
-        print(f"{name}: {count} trials, {dict(sorted(found.items()))}, none believed: "
-              f"{time.monotonic() - started:.0f} s")  # fmt: skip
-    return 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    given = wanted(10_000, 1)
+    for name, end in (("host", HostEnd()), ("virtual robot", VirtualEnd())):
+        found = trials(end, given.seed, given.count // 2)
+        print(f"{name}: {dict(sorted(found.items()))}, none believed", flush=True)

@@ -7,12 +7,12 @@ is the one that was sent. Afterwards a stop stops it, and the next line is done.
 
 from __future__ import annotations
 
-import argparse
 import random
 
 import pytest
 
 from tests.firmware.test_host_firmware import KIT, switched_on
+from tests.support.campaign import each_seed, wanted
 from tiniscript.bytecode.image import HEADER_BYTES, pack
 from tiniscript.link.frames import Frame, begins_text, decoded, encoded
 from tiniscript.link.messages import (
@@ -209,10 +209,4 @@ def test_a_hostile_client_is_answered_and_the_robot_lives(seed: int) -> None:
 
 
 if __name__ == "__main__":
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("count", nargs="?", type=int, default=1000)
-    parser.add_argument("--seed", type=int, default=1000)
-    options = parser.parse_args()
-    for number in range(options.seed, options.seed + options.count):
-        play(number)
-    print(f"{options.count} clients, {options.count * TURNS} turns: the robot lives")
+    each_seed(play, wanted(1000, 1000))

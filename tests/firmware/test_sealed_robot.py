@@ -5,14 +5,13 @@
 
 from __future__ import annotations
 
-import argparse
 import random
-import sys
 from collections import Counter
 
 import pytest
 
 from tests.firmware.test_authority import is_accepted
+from tests.support.campaign import wanted
 from tests.support.owners import FOREVER, PRESSED, Keys, Owned, image_of, owner_of, state_of
 from tests.support.thief import Thief, wire_of
 from tiniscript.link.authority import OF_ANOTHER, YOUR_OWN, whose
@@ -400,17 +399,8 @@ def _stop(chance: random.Random) -> bytes:
     return wire_of(Frame(BY_NAME["STOP"].number, chance.randrange(256), 0, payload, is_sealed=True))
 
 
-def main() -> int:
-    parser = argparse.ArgumentParser(description="Write into the line of a robot's owner for long.")
-    parser.add_argument("frames", type=int, nargs="?", default=100_000)
-    parser.add_argument("--seed", type=int, default=1)
-    options = parser.parse_args()
-    found = attacked(options.frames, options.seed)
-    kinds = ", ".join(f"{n} {how}" for how, n in sorted(found.items()) if how != "accepted")
-    print(f"{options.frames} frames of a thief ({kinds}): {found['accepted']} accepted "
-          f"(seed {options.seed})")  # fmt: skip
-    return int(found["accepted"] != 0)
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    given = wanted(100_000, 1)
+    kinds = attacked(given.count, given.seed)
+    print(f"{given.count} frames of a thief: {dict(sorted(kinds.items()))}")
+    assert kinds["accepted"] == 0

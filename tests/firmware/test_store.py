@@ -7,11 +7,9 @@ than the tests.
 
 from __future__ import annotations
 
-import argparse
 import random
 import re
 import subprocess
-import time
 from itertools import count
 from pathlib import Path
 from struct import pack as struct_pack
@@ -21,6 +19,7 @@ from zlib import crc32
 import pytest
 
 from tests.machines.host import FLAGS, ROOT, SOURCES, compiled
+from tests.support.campaign import wanted
 from tiniscript.bytecode.image import HEADER_BYTES, pack
 from tools.bench import avr_bench
 
@@ -143,29 +142,12 @@ def test_on_a_chip(size: int, ticks: int) -> None:
 # -- the campaign -------------------------------------------------------------------------------
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description="Pull the plug of the store, many times.")
-    parser.add_argument("cases", type=int, help="how many cases, at least")
-    parser.add_argument("--seed", type=int, default=1)
-    options = parser.parse_args()
-    program = compiled(parts(SOURCES), FLAGS)
-    begun = time.monotonic()
-    cases = saves = erases = 0
-    for seed in count(options.seed):
-        for sample in CAMPAIGN:
-            found = run(program, seed, sample)
-            cases += found.cases
-            saves += found.saves
-            erases = max(erases, found.most_erases)
-            seconds = time.monotonic() - begun
-            print(
-                f"{cases:,} cases in {seconds:.0f} s: nothing wrong; {saves} whole saves, at most "
-                f"{erases} erase of a byte in one; seed {seed}, {sample[0]}",
-                flush=True,
-            )
-        if cases >= options.cases:
-            return
-
-
 if __name__ == "__main__":
-    main()
+    given = wanted(10_000_000, 1)
+    cases = 0
+    for number in count(given.seed):
+        for which in CAMPAIGN:
+            cases += run(compiled(parts(SOURCES), FLAGS), number, which).cases
+        print(f"{cases:,} cases to seed {number}: nothing wrong", flush=True)
+        if cases >= given.count:
+            break

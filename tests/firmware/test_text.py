@@ -5,8 +5,6 @@
 
 from __future__ import annotations
 
-import argparse
-
 import pytest
 
 from tests.firmware.test_host_firmware import (
@@ -21,6 +19,7 @@ from tests.firmware.test_host_firmware import (
     switched_on,
 )
 from tests.machines.host_firmware import HostFirmware
+from tests.support.campaign import each_seed, wanted
 from tiniscript import robots
 from tiniscript.link.frames import Frame, encoded
 from tiniscript.link.messages import BY_NAME, SAVED_STORED, STATUSES
@@ -488,10 +487,6 @@ def test_values_wait_for_room_and_none_is_lost() -> None:
 
 
 if __name__ == "__main__":
-    from tests.firmware.test_text_fuzz import campaign
+    from tests.firmware.test_text_fuzz import run
 
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("count", nargs="?", type=int, default=1000)
-    parser.add_argument("--seed", type=int, default=1_000_000)
-    options = parser.parse_args()
-    campaign(options.count, options.seed)
+    each_seed(run, wanted(1000, 1_000_000))

@@ -195,15 +195,3 @@ def run(seed: int) -> None:
 @pytest.mark.parametrize("seed", range(SEEDS))
 def test_anything_and_then_a_line(seed: int) -> None:
     run(seed)
-
-
-def campaign(count: int, first: int) -> None:
-    """Run so many seeds."""
-    for seed in range(first, first + count):
-        try:
-            run(seed)
-        except BaseException:
-            print(f"seed {seed}", flush=True)
-            raise
-        if (seed - first) % 100 == 99 or seed == first + count - 1:
-            print(f"{seed - first + 1} robots have done the line after anything", flush=True)

@@ -5,7 +5,6 @@
 
 from __future__ import annotations
 
-import argparse
 import random
 from itertools import cycle
 
@@ -13,6 +12,7 @@ import pytest
 
 from tests.firmware.test_host_firmware import KIT, computer, happened, image_of
 from tests.machines.host_firmware import HostFirmware
+from tests.support.campaign import wanted
 from tiniscript import compile_text
 from tiniscript.bytecode.image import HEADER_BYTES
 from tiniscript.link.frames import Frame, decoded, encoded
@@ -177,11 +177,8 @@ def test_one_letter_makes_no_move_of_a_number(text: bytes) -> None:
 
 
 if __name__ == "__main__":
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("count", nargs="?", type=int, default=1000)
-    parser.add_argument("--seed", type=int, default=1_000_000)
-    options = parser.parse_args()
-    trials = Trials(options.seed)
-    for _ in range(options.count):
-        trials.trial()
-    print(f"{options.count} trials: {trials.ran} programs have run, each as it was verified")
+    given = wanted(1000, 1_000_000)
+    many = Trials(given.seed)
+    for _ in range(given.count):
+        many.trial()
+    print(f"{given.count} trials: {many.ran} programs have run, each as it was verified")

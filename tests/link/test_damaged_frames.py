@@ -8,15 +8,13 @@ receiver and the decoder in Python, and through the C++ with sanitizers, which f
 
 from __future__ import annotations
 
-import argparse
-import sys
-import time
 from typing import NamedTuple
 
 import pytest
 
 from tests.machines.damage import CppDamage, DamagedLine, cpp_damage
 from tests.machines.link import cpp_link
+from tests.support.campaign import wanted
 from tests.support.link_cases import items_of
 from tiniscript.link.frames import Frame, decoded, encoded
 from tiniscript.link.messages import CRC_BYTES, HEAD_BYTES, SMALL_FRAME
@@ -111,25 +109,10 @@ def test_python_finds_the_same_in_them(is_large: bool) -> None:
         judge_in_python(cpp_damage(is_large).line(SEED, number), is_large)
 
 
-def main() -> int:
-    parser = argparse.ArgumentParser(description="Damage many frames.")
-    parser.add_argument("frames", type=int, nargs="?", default=10_000_000, help="damaged ones")
-    parser.add_argument("--seed", type=int, default=1_000_000)
-    parser.add_argument("--large", action="store_true", help="large frames")
-    options = parser.parse_args()
-    begun = time.monotonic()
-    cpp = cpp_damage(options.large)
-    count, lines = damage_frames(cpp, options.frames, options.seed)
-    seconds = time.monotonic() - begun
-    print(f"{count} damaged frames in {lines} lines, 0 wrong accepted: {seconds:.0f} s")
-    begun = time.monotonic()
-    sampled = range(0, lines, SAMPLED_OF)
-    for number in sampled:
-        judge_in_python(cpp.line(options.seed, number), options.large)
-    seconds = time.monotonic() - begun
-    print(f"{len(sampled)} of these lines in Python and with sanitizers, the same: {seconds:.0f} s")
-    return 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    given = wanted(10_000_000, 1_000_000, "large")
+    judges = cpp_damage(given.large)
+    damaged, lines = damage_frames(judges, given.count, given.seed)
+    for sampled in range(0, lines, SAMPLED_OF):
+        judge_in_python(judges.line(given.seed, sampled), given.large)
+    print(f"{damaged} damaged frames in {lines} lines: nothing wrong")

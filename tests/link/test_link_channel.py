@@ -6,16 +6,15 @@ drawn from a seed. `test_damaged_frames` asks receivers alone, and far more.
 
 from __future__ import annotations
 
-import argparse
 import random
 import re
-import sys
-import time
 from collections import Counter, deque
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 from tests.machines.link import CppLink, cpp_link, link_library
+from tests.support.campaign import each_seed, wanted
 from tests.support.link_cases import KIT
 from tiniscript.bytecode.image import pack, unpack
 from tiniscript.bytecode.opcodes import BY_NAME
@@ -287,26 +286,7 @@ def test_undos_over_a_bad_radio() -> None:
     assert found["4 confirmed"] > UNDOS * 0.8, found
 
 
-def main() -> int:
-    parser = argparse.ArgumentParser(description="Play the link on a bad line for long.")
-    parser.add_argument("uploads", type=int, nargs="?", default=10_000)
-    parser.add_argument("--undos", type=int, default=0)
-    parser.add_argument("--seed", type=int, default=1_000_000)
-    parser.add_argument("--large", action="store_true", help="large frames, several under way")
-    options = parser.parse_args()
-    cpp = link_library(options.large)
-    begun = time.monotonic()
-    found: Counter[str] = Counter()
-    for seed in range(options.seed, options.seed + options.uploads):
-        found[one_upload(cpp, seed)] += 1
-    print(f"{options.uploads} uploads, {dict(found)}, 0 false, 0 double: "
-          f"{time.monotonic() - begun:.0f} s")  # fmt: skip
-    begun = time.monotonic()
-    told = Counter(one_undo(cpp, options.seed + number) for number in range(options.undos))
-    print(f"{options.undos} robots with undos, {dict(told)}, 0 false, 0 double: "
-          f"{time.monotonic() - begun:.0f} s")  # fmt: skip
-    return 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    given = wanted(10_000, 1_000_000, "large", "undos")
+    one = one_undo if given.undos else one_upload
+    each_seed(partial(one, link_library(given.large)), given)

@@ -5,14 +5,12 @@
 
 from __future__ import annotations
 
-import argparse
 import random
-import sys
-import time
 from collections import Counter
 
 from tests.link.test_link_channel import OUTCOMES, World
 from tests.machines.link import CppLink, cpp_link, link_library
+from tests.support.campaign import wanted
 from tiniscript.bytecode.image import pack, unpack
 from tiniscript.bytecode.opcodes import BY_NAME as OPCODES
 from tiniscript.link.frames import decoded
@@ -76,17 +74,6 @@ def test_live_lines_over_a_bad_radio() -> None:
     assert found["OK"] > LIVES * 0.8 and found["sent again"] > LIVES * 0.1, found
 
 
-def main() -> int:
-    parser = argparse.ArgumentParser(description="Send live lines over a bad radio.")
-    parser.add_argument("lines", type=int, nargs="?", default=100_000)
-    parser.add_argument("--seed", type=int, default=1_000_000)
-    options = parser.parse_args()
-    begun = time.monotonic()
-    found = lives(link_library(), options.lines, options.seed)
-    seconds = time.monotonic() - begun
-    print(f"{options.lines} live lines, {dict(found)}, 0 double: {seconds:.0f} s")
-    return 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    given = wanted(100_000, 1_000_000)
+    print(lives(link_library(), given.count, given.seed))

@@ -8,14 +8,12 @@ HELLO and what was asked last, as a robot that seals nothing does.
 
 from __future__ import annotations
 
-import argparse
 import random
-import sys
-import time
 from collections import Counter
 
 from tests.link.test_link_channel import World, damaged, one_upload, program
 from tests.machines.link import CppLink, cpp_link, link_library
+from tests.support.campaign import each_seed, wanted
 from tests.support.link_cases import KIT
 from tests.support.owners import Keys
 from tiniscript.link.frames import Frame, decoded, encoded
@@ -174,21 +172,7 @@ def test_a_stop_works_whatever_is_wrong_with_its_seal() -> None:
         world.run(None, 300)
 
 
-def main() -> int:
-    parser = argparse.ArgumentParser(description="Play a sealed line with a stranger for long.")
-    parser.add_argument("uploads", type=int, nargs="?", default=10_000)
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--large", action="store_true", help="large frames, several under way")
-    options = parser.parse_args()
-    begun = time.monotonic()
-    found: Counter[str] = Counter()
-    for number in range(options.seed, options.seed + options.uploads):
-        found[one_upload(link_library(options.large), number, SealedWorld)] += 1
-    seconds = time.monotonic() - begun
-    print(f"{options.uploads} sealed uploads beside a stranger, {dict(found)}, "
-          f"0 false, 0 double: {seconds:.0f} s")  # fmt: skip
-    return 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    given = wanted(10_000, 1, "large")
+    robot = link_library(given.large)
+    each_seed(lambda seed: one_upload(robot, seed, SealedWorld), given)

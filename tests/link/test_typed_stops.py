@@ -2,18 +2,16 @@
 
 Prefixes, frames and damage are made and judged in C++ with the robot's receiver, which reads a line
 backwards to know whether it is a stop.
-`python -m tests.link.test_typed_stops 1000000 --frames 100000000` tries more than the tests.
+`python -m tests.link.test_typed_stops 1000000` tries more than the tests, and a hundred frames for
+each prefix.
 """
 
 from __future__ import annotations
 
-import argparse
-import sys
-import time
-
 import pytest
 
 from tests.machines.damage import CppDamage, cpp_damage
+from tests.support.campaign import wanted
 from tiniscript.link.frames import begins_text
 from tiniscript.link.session import Session
 
@@ -63,32 +61,13 @@ def test_a_request_that_would_be_text_gets_another_number(monkeypatch: pytest.Mo
     assert begins_text(b"\r\nA") and not begins_text(b"\r\n\x7f") and not begins_text(b"\n\nA")
 
 
-def main() -> int:
-    parser = argparse.ArgumentParser(description="Type stops behind many prefixes.")
-    parser.add_argument("prefixes", type=int, nargs="?", default=1_000_000)
-    parser.add_argument("--frames", type=int, default=0, help="undamaged ones, looked at for stops")
-    parser.add_argument("--seed", type=int, default=1_000_000)
-    options = parser.parse_args()
-    begun = time.monotonic()
-    for is_large in (False, True):
-        for first in range(0, options.prefixes, PREFIXES):
-            count = min(PREFIXES, options.prefixes - first)
-            cpp_damage(is_large).type_behind(options.seed, first, count)
-    seconds = time.monotonic() - begun
-    print(
-        f"{options.prefixes} stops behind any bytes, on both receivers, all seen: {seconds:.0f} s"
-    )
-    if not options.frames:
-        return 0
-    begun = time.monotonic()
-    frames, stops = false_stops(cpp_damage(), options.frames, options.seed)
-    print(f"{frames} undamaged frames, {stops} stops: {time.monotonic() - begun:.0f} s")
-    for is_odd in (False, True):
-        of, found = false_stops(cpp_damage(), FRAMES, options.seed, True, is_odd)
-        what = "some of few values" if is_odd else "of any bytes"
-        print(f"{of} damaged frames, {what}: {found} stops")
-    return int(stops != 0)
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    given = wanted(1_000_000, 1_000_000)
+    for both in (False, True):
+        for begin in range(0, given.count, PREFIXES):
+            some = min(PREFIXES, given.count - begin)
+            cpp_damage(both).type_behind(given.seed, begin, some)
+    looked_at, found = false_stops(cpp_damage(), 100 * given.count, given.seed)
+    assert found == 0, f"{found} of {looked_at} undamaged frames stop"
+    of, found = false_stops(cpp_damage(), FRAMES, given.seed, is_damaged=True, is_odd=False)
+    print(f"{found} of {of} damaged frames stop, and none of {looked_at} whole ones")

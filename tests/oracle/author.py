@@ -20,12 +20,9 @@ from tests.oracle.author_values import (
 
 
 class Author(ValueAuthor):
-    """Writes one program."""
-
     # Instructions
 
     def move(self) -> None:
-        """F B L R or W, perhaps with UNTIL."""
         word = self.rng.choice("FBLRFW")
         time, until = self.seconds(), []
         if self.chance(0.25):
@@ -53,7 +50,6 @@ class Author(ValueAuthor):
         return [*way, self.rng.choice(words)]
 
     def simple(self) -> None:
-        """M, S, W, BEEP or START."""
         word = self.rng.choice(("M", "M", "S", "STOP", "W", "BEEP", "BEEP", "START"))
         if word == "M":
             self.say("M", "(", *self.within(-100, 100), ",", *self.within(-100, 100), ")")
@@ -65,12 +61,10 @@ class Author(ValueAuthor):
             self.say(word)
 
     def show(self) -> None:
-        """SHOW of either kind."""
         value = self.yes_no() if self.chance(0.25) else self.number(3)
         self.say("SHOW", "(", *value, ")")
 
     def assign(self) -> None:
-        """An assignment, to a new variable or to an old one."""
         targets = [name for name in self.variables if name not in self.counters]
         if self.names and len(self.variables) < MAX_VARIABLES and self.chance(0.5):
             name = self.names.pop(self.rng.randrange(len(self.names)))
@@ -98,12 +92,10 @@ class Author(ValueAuthor):
         return tokens
 
     def read(self) -> None:
-        """A sensor's name."""
         if self.kit.sensors:
             self.say(self.rng.choice(self.kit.sensors).name)
 
     def set(self) -> None:
-        """An actuator."""
         if self.kit.actuators:
             device = self.rng.choice(self.kit.actuators)
             if device.is_yes_no:
@@ -140,7 +132,6 @@ class Author(ValueAuthor):
     # Blocks
 
     def open_block(self, *header: str) -> None:
-        """Writes a header."""
         self.say(*header)
         self.depth += 1
         self.deepest = max(self.deepest, self.depth)
@@ -156,7 +147,6 @@ class Author(ValueAuthor):
         self.depth -= 1
 
     def choose(self) -> None:
-        """IF with ELSEIF and ELSE."""
         self.open_block("IF", *self.condition())
         self.body()
         while self.chance(0.25):
@@ -241,12 +231,10 @@ class Author(ValueAuthor):
             self.close_block(word)
 
     def body(self) -> None:
-        """A few instructions, perhaps none."""
         for _ in range(self.rng.choice((0, 1, 1, 1, 2, 2, 3, 4))):
             self.statement()
 
     def statement(self) -> None:
-        """Any instruction."""
         blocks: list[tuple[int, Callable[[], None]]] = []
         if self.left > 0 and self.depth < MAX_NESTING:
             blocks = [(9, self.choose), (7, self.loop), (5, self.repeat)]
@@ -266,7 +254,6 @@ class Author(ValueAuthor):
         self.rng.choices(writers, weights)[0]()
 
     def define(self) -> None:
-        """A DEF."""
         free = self.free_defs
         if not free or len(self.defs) == MAX_DEFS:
             return
@@ -300,7 +287,6 @@ class Author(ValueAuthor):
             self.variables[name] = False
 
     def program(self) -> list[Tokens]:
-        """A whole program."""
         roll = self.rng.random()
         size = self.rng.randint(1, 8)
         if roll < 0.4:

@@ -36,7 +36,6 @@ class ValueAuthor:
     """Writes the values of a program: numbers, yes/no values and conditions of random shape."""
 
     def __init__(self, rng: random.Random, kit: Kit, ways: bool = False) -> None:
-        """Starts with an empty page."""
         self.ways = ways
         self.rng = rng
         self.kit = kit
@@ -57,18 +56,15 @@ class ValueAuthor:
         self.constant = False  # expressions have only literals for leaves
 
     def chance(self, probability: float) -> bool:
-        """Happens that often."""
         return self.rng.random() < probability
 
     def say(self, *tokens: str) -> None:
-        """Writes an instruction."""
         self.page.append(list(tokens))
         self.left -= 1
 
     # Expressions
 
     def literal(self) -> Tokens:
-        """A number."""
         roll = self.rng.random()
         if roll < 0.55:
             return [self.rng.choice(SMALL)]
@@ -88,7 +84,6 @@ class ValueAuthor:
         return [self.rng.choice(names)] if names else None
 
     def leaf(self) -> Tokens:
-        """A number without operators."""
         if not self.constant and self.chance(0.55):
             if self.chance(0.12):
                 return ["TIME"]
@@ -96,7 +91,6 @@ class ValueAuthor:
         return self.literal()
 
     def number(self, size: int = 2) -> Tokens:
-        """An expression of the kind number; size bounds how deep it branches."""
         roll = self.rng.random()
         if size <= 0 or roll < 0.3:
             return self.leaf()
@@ -122,7 +116,6 @@ class ValueAuthor:
         return [name, "(", *first, ",", *second, ")"]
 
     def yes_no(self, size: int = 2) -> Tokens:
-        """An expression of the kind yes/no."""
         roll = self.rng.random()
         if size <= 0 or roll < 0.12:
             found = None if self.constant or self.chance(0.3) else self.named(True)

@@ -15,7 +15,6 @@ class ExpressionParser:
     """Reads expressions, and checks everything that can be wrong with them."""
 
     def __init__(self, text: str, kit: Kit) -> None:
-        """Cuts the text."""
         self.tokens = tokens_of(text)
         self.at = 0
         self.sensors = {device.name: device for device in kit.sensors}
@@ -34,11 +33,9 @@ class ExpressionParser:
 
     @property
     def token(self) -> Token:
-        """The next token."""
         return self.tokens[self.at]
 
     def fail(self, why: str) -> NoReturn:
-        """Refuses the program."""
         raise Mistake(f"line {self.token.line}: {why}")
 
     def next_is(self, *texts: str) -> bool:
@@ -93,12 +90,10 @@ class ExpressionParser:
         return condition
 
     def want_number(self, expression: Expression | None) -> None:
-        """Refuses a yes/no value."""
         if expression is not None and expression.is_yes_no:
             self.fail("a number is needed, not a yes/no value")
 
     def want_yes_no(self, expression: Expression | None) -> None:
-        """Refuses a number."""
         if expression is not None and not expression.is_yes_no:
             self.fail("a yes/no value is needed, not a number")
 
@@ -116,7 +111,6 @@ class ExpressionParser:
     # Expressions, from loosest to tightest
 
     def expression(self) -> Expression:
-        """An expression of any kind."""
         return self.logic("OR", lambda: self.logic("AND", self.negation))
 
     def logic(self, operator: str, tighter: Callable[[], Expression]) -> Expression:
@@ -153,11 +147,9 @@ class ExpressionParser:
         return Expression(operator, True, (left, right))
 
     def sum(self) -> Expression:
-        """Terms with + and -."""
         return self.arithmetic(("+", "-"), self.product)
 
     def product(self) -> Expression:
-        """Factors with *, / and %."""
         return self.arithmetic(("*", "/", "%"), self.factor)
 
     def arithmetic(
@@ -185,7 +177,6 @@ class ExpressionParser:
         return self.leaf()
 
     def number(self, sign: int) -> Expression:
-        """A literal."""
         value = sign * thousandths(self.token.text)
         if not LOWEST <= value <= HIGHEST:
             self.fail("the number is out of range")

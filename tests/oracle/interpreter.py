@@ -12,61 +12,44 @@ import sys
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
+from tests.oracle.arithmetic import (
+    Fault,
+    answer,
+    calculated,
+    divided,
+    fits,
+    printed,
+    random_between,
+    stepped,
+    whole,
+    within,
+)
 from tests.oracle.text import Parser
 from tests.oracle.tree import Do, Expression, If, Loop, Program, Statement, Value, While
-from tests.oracle.words import COMPARATORS, HIGHEST, LOWEST, MOVES, PAPER_KIT, Device, Kit, Mistake
+from tests.oracle.words import MOVES, PAPER_KIT, Device, Kit, Mistake
 
 __all__ = ["PAPER_KIT", "Device", "Kit", "Mistake", "run"]
 
 
-# --- Arithmetic -------------------------------------------------------------------------------
+# What the words and signs of the language calculate.
+NAMES = {
+    "+": "ADD", "-": "SUB", "*": "MUL", "/": "DIV", "%": "MOD", "MINUS": "NEG",
+    "=": "EQ", "<>": "NE", "<": "LT", ">": "GT", "<=": "LE", ">=": "GE",
+    **{word: word for word in ("ABS", "MIN", "MAX", "ROUND", "AND", "OR", "NOT")},
+}  # fmt: skip
 
 
 class Ending(Exception):
-    """The run is over: FAULT …, or LIMIT."""
+    """The run is over: LIMIT."""
 
 
 class Break(Exception):
     """BREAK, on its way to the loop that it leaves."""
 
 
-def divided(value: int, divisor: int) -> int:
-    """The quotient rounded to a whole number, half away from zero."""
-    size = (2 * abs(value) + abs(divisor)) // (2 * abs(divisor))
-    return size if (value < 0) == (divisor < 0) else -size
-
-
-def whole(value: int) -> int:
-    """Thousandths rounded to a whole number; this never faults."""
-    return divided(value, 1000)
-
-
-def limited(value: int, low: int, high: int) -> int:
-    """The nearest value in the range."""
-    return max(low, min(high, value))
-
-
-def in_range(value: int) -> int:
-    """The same value, or the fault."""
-    if not LOWEST <= value <= HIGHEST:
-        raise Ending("FAULT OVERFLOW")
-    return value
-
-
-def rounded(value: int, decimals: int) -> int:
-    """ROUND: decimals is a whole number here; 3 or more change nothing, below 0 is tens."""
-    if decimals >= 3:
-        return value
-    unit = int(10 ** (3 - max(decimals, -10)))  # beyond -10 everything is 0
-    return divided(value, unit) * unit
-
-
 def written(value: Value) -> str:
     """A value as the run prints it."""
-    if isinstance(value, bool):
-        return "TRUE" if value else "FALSE"
-    sign = "-" if value < 0 else ""
-    return (f"{sign}{abs(value) // 1000}.{abs(value) % 1000:03}").rstrip("0").rstrip(".")
+    return answer(value) if isinstance(value, bool) else printed(value)
 
 
 # --- Runs -------------------------------------------------------------------------------------
@@ -90,17 +73,20 @@ class Robot:
     taken: dict[str, int] = field(default_factory=dict)  # how many readings so far
 
     def run(self) -> None:
-        """Runs the program to its end."""
         for name, is_yes_no in self.program.variables.items():
             self.variables[name] = False if is_yes_no else 0
         try:
-            self.block(self.program.main)
+            self.play()
             self.note("DONE")
+        except Fault as fault:
+            self.note(f"FAULT {fault}")
         except Ending as ending:
             self.note(str(ending))
 
+    def play(self) -> None:
+        self.block(self.program.main)
+
     def note(self, what: str) -> None:
-        """Prints a line with the time."""
         self.trace.append(f"{self.now} {what}\n")
 
     def step(self) -> None:
@@ -119,7 +105,6 @@ class Robot:
             self.steps = 0
 
     def motors(self, left: int, right: int) -> None:
-        """Sets both motors."""
         self.note(f"MOTORS {left} {right}")
 
     def read(self, names: Iterable[str]) -> None:
@@ -136,7 +121,6 @@ class Robot:
     # Statements
 
     def block(self, body: list[Statement]) -> None:
-        """Does instructions one after the other."""
         for statement in body:
             self.step()
             if isinstance(statement, Do):
@@ -172,7 +156,6 @@ class Robot:
             turns = None if turns is None else turns - 1
 
     def do(self, statement: Do) -> None:
-        """Does an instruction that has no body."""
         word = statement.word
         self.read(statement.reads)
         values = self.values(statement)
@@ -188,10 +171,10 @@ class Robot:
         elif word == "BREAK":
             raise Break
         elif word == "M":
-            left, right = (limited(whole(v or 0), -100, 100) for v in values)
+            left, right = (within(whole(v or 0), -100, 100) for v in values)
             self.motors(left, right)
         elif word == "BEEP":
-            duration, hertz = max(0, values[0] or 0), limited(whole(values[1] or 0), 31, 20_000)
+            duration, hertz = max(0, values[0] or 0), within(whole(values[1] or 0), 31, 20_000)
             self.note(f"BEEP {hertz} {duration}")
             self.wait(duration)
         else:
@@ -208,18 +191,18 @@ class Robot:
         """The values of an instruction; a way becomes the time that it takes."""
         values = [None if each is None else self.value(each) for each in statement.arguments]
         if statement.unit:
-            way, power = max(0, values[0] or 0), limited(whole(values[1] or 0), 0, 100)
+            way, power = max(0, values[0] or 0), within(whole(values[1] or 0), 0, 100)
             speed = self.kit.speed if statement.unit == "CM" else self.kit.turn
             if way > 0 and power == 0:
-                raise Ending("FAULT NO_POWER")
-            values[0] = in_range(divided(1000 * way * 100, speed * power)) if way > 0 else 0
+                raise Fault("NO_POWER")
+            values[0] = fits(divided(1000 * way * 100, speed * power)) if way > 0 else 0
         return values
 
     def set(self, name: str, value: Value) -> None:
         """Sets an actuator: a number is rounded, then limited to the actuator's range."""
         device = next(device for device in self.kit.actuators if device.name == name)
         if not device.is_yes_no:
-            value = limited(1000 * whole(value), device.low, device.high)
+            value = within(1000 * whole(value), device.low, device.high)
         self.note(f"SET {name} {written(value)}")
 
     def move(self, statement: Do, values: list[Value | None]) -> None:
@@ -228,7 +211,7 @@ class Robot:
         if self.may_end(statement):
             return  # the motors are not touched
         if statement.word != "W":
-            power = limited(whole(values[1] or 0), 0, 100)
+            power = within(whole(values[1] or 0), 0, 100)
             sides = {"F": (1, 1), "B": (-1, -1), "L": (-1, 1), "R": (1, -1)}[statement.word]
             self.motors(sides[0] * power, sides[1] * power)
         if statement.until is None:
@@ -264,60 +247,16 @@ class Robot:
         if operator == "SENSOR":
             return self.kept[expression.name]
         if operator == "TIME":
-            return in_range(self.now)
+            return fits(self.now)
         first = self.value(expression.parts[0])
-        if operator == "NOT":
-            return not first
-        if operator == "MINUS":
-            return in_range(-first)
-        if operator == "ABS":
-            return in_range(abs(first))
         if (operator == "AND" and not first) or (operator == "OR" and first):
             return first  # the right side is not evaluated
-        second = self.value(expression.parts[1])
-        if operator in ("AND", "OR"):
-            return second
-        if operator in COMPARATORS:
-            return {
-                "=": first == second,
-                "<>": first != second,
-                "<": first < second,
-                ">": first > second,
-                "<=": first <= second,
-                ">=": first >= second,
-            }[operator]
-        if operator in ("/", "%") and second == 0:
-            raise Ending("FAULT DIVIDE_BY_ZERO")
-        return in_range(self.calculated(operator, first, second))
-
-    def calculated(self, operator: str, first: int, second: int) -> int:
-        """A result of two numbers, perhaps out of range."""
-        if operator == "+":
-            return first + second
-        if operator == "-":
-            return first - second
-        if operator == "*":
-            return divided(first * second, 1000)
-        if operator == "/":
-            return divided(first * 1000, second)
-        if operator == "%":
-            return first % second  # Python's % is exact and takes the sign of the divisor too
-        if operator == "MIN":
-            return min(first, second)
-        if operator == "MAX":
-            return max(first, second)
-        if operator == "ROUND":
-            return rounded(first, whole(second))
-        assert operator == "RANDOM"
-        low, high = sorted((whole(first), whole(second)))
-        return 1000 * (low + self.random() % (high - low + 1))
-
-    def random(self) -> int:
-        """One step of xorshift32."""
-        self.state ^= self.state << 13 & 0xFFFFFFFF
-        self.state ^= self.state >> 17
-        self.state ^= self.state << 5 & 0xFFFFFFFF
-        return self.state
+        values = [first, *map(self.value, expression.parts[1:])]
+        if operator == "RANDOM":
+            self.state = stepped(self.state)
+            return random_between(values[0], values[1], self.state)
+        found = calculated(NAMES[operator], *values)
+        return bool(found) if expression.is_yes_no else found
 
 
 _NO_SENSES: Mapping[str, Sequence[int]] = {}

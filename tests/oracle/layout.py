@@ -15,7 +15,6 @@ class Layout:
     """Turns instructions into text, with one style for the whole of it."""
 
     def __init__(self, rng: random.Random) -> None:
-        """Chooses the style."""
         self.rng = rng
         self.case = rng.choice(("upper", "upper", "lower", "any"))
         self.gaps = rng.choice(("tight", "normal", "normal", "wild"))
@@ -24,7 +23,6 @@ class Layout:
         self.newline = rng.choice(("\n", "\n", "\r\n"))
 
     def comment(self) -> str:
-        """A comment and the end of its line."""
         return f"//{self.rng.choice(COMMENTS)}{self.newline}"
 
     def word(self, token: str) -> str:
@@ -51,7 +49,6 @@ class Layout:
         return " " if wordy and not space else space
 
     def instruction(self, tokens: Tokens) -> str:
-        """One instruction, without its end."""
         text, depth = self.word(tokens[0]), 0
         for left, right in itertools.pairwise(tokens):
             depth += {"(": 1, ")": -1}.get(left, 0)
@@ -74,7 +71,6 @@ class Layout:
         return rng.choice((";", "; ", f";{line}", line, line))
 
     def program(self, page: list[Tokens]) -> str:
-        """The whole text."""
         rng = self.rng
         setup = rng.choice(("", "", "SI|", "SB|"))
         if setup:

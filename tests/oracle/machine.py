@@ -1,8 +1,8 @@
 """A second machine for the bytecode, written from the words of `bytecode_spec.md` alone.
 
 It shares nothing with the package: opcodes and operands come from the tables of the page. It runs
-verified code on the clock of a trace, plainly and slowly. What a robot has comes in as the kit of
-the interpreter beside it.
+verified code on the clock of a trace, plainly and slowly, but for what an image has to say that it
+needs. What a robot has comes in as the kit of the interpreter beside it.
 """
 
 from __future__ import annotations
@@ -16,7 +16,6 @@ from tests.oracle.arithmetic import (
     Fault,
     answer,
     calculated,
-    divided,
     fits,
     printed,
     random_between,
@@ -79,11 +78,9 @@ class Run:
         return (self.begin_ms + self.passed) % WRAP
 
     def note(self, what: str) -> None:
-        """Print a line."""
         self.lines.append(f"{self.passed} {what}\n")
 
     def run(self) -> None:
-        """Run to the end."""
         steps = 0
         try:
             while self.pc < len(self.code):
@@ -117,7 +114,6 @@ class Run:
         self.waits = ""
 
     def step(self) -> None:
-        """Run one instruction."""
         row, operands, after, to = decoded(self.code, self.pc)
         self.pc = after
         self.do(row, row.stem, operands, to)
@@ -135,8 +131,6 @@ class Run:
             elif not holds:
                 self.pc = to
         elif last in WAYS:
-            if "GO" in family:
-                taken[0] = self.way(taken[0], within(whole(taken[1]), 0, 100), last in "LR")
             self.drive(family, WAYS[last], taken, operands)
         elif name in ("WATCH_WAIT", "WATCH_FOREVER_WAIT"):
             self.watch(None, max(taken[0], 0) if taken else None)
@@ -209,7 +203,6 @@ class Run:
                 self.control(name, taken, operands, to)
 
     def control(self, name: str, taken: list[int], operands: Sequence[int], to: int) -> None:
-        """Jumps."""
         match name:
             case "FOREVER" | "WHILE":
                 pass
@@ -243,11 +236,9 @@ class Run:
     # The robot
 
     def motors(self, powers: tuple[int, int]) -> None:
-        """Set both."""
         self.note(f"MOTORS {powers[0]} {powers[1]}")
 
     def read(self, number: int) -> int:
-        """Take a reading, and keep it."""
         sensor = self.kit.sensors[number]
         values = self.readings.get(sensor.name) or (0,)
         count = self.taken.get(number, 0)
@@ -258,7 +249,6 @@ class Run:
         return value
 
     def set(self, actuator: Device, value: int) -> None:
-        """Set an actuator."""
         rounded = within(1000 * whole(value), actuator.low, actuator.high)
         said = answer(value) if actuator.is_yes_no else printed(rounded)
         self.note(f"SET {actuator.name} {said}")
@@ -271,7 +261,6 @@ class Run:
             self.clock = self.now
 
     def wait(self, duration: int, what: str) -> None:
-        """Wait for so long."""
         self.begin()
         self.clock = (self.clock + duration) % WRAP
         self.waits = what
@@ -291,15 +280,6 @@ class Run:
             assert time is not None
             self.motors(powers)
             self.wait(time, "MOVE")
-
-    def way(self, way: int, power: int, turns: bool) -> int:
-        """How many milliseconds a way takes."""
-        if way <= 0:
-            return 0
-        per_second = (self.kit.turn if turns else self.kit.speed) * power
-        if per_second == 0:
-            raise Fault("NO_POWER")
-        return fits(divided(100_000 * way, per_second))
 
     def watch(self, powers: tuple[int, int] | None, time: int | None) -> None:
         """Keep a prepared move; its check begins behind the instruction."""

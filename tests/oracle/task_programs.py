@@ -15,8 +15,6 @@ DEPTH = 3  # blocks of one task
 
 
 class TaskAuthor:
-    """Writes one program."""
-
     def __init__(self, rng: random.Random, ways: bool = False) -> None:
         self.rng = rng
         self.ways = ways  # some moves go by centimetres or degrees
@@ -42,7 +40,6 @@ class TaskAuthor:
         return ";".join(self.lines)
 
     def task(self) -> None:
-        """A TASK or a WHEN."""
         if self.rng.random() < 0.5:
             self.lines.append("TASK")
             self.body(self.rng.randint(0, 4), 0)

@@ -11,7 +11,8 @@ import contextlib
 from collections.abc import Generator
 from dataclasses import dataclass, field
 
-from tests.oracle.interpreter import Break, Ending, Robot, limited, whole
+from tests.oracle.arithmetic import whole, within
+from tests.oracle.interpreter import Break, Ending, Robot
 from tests.oracle.tree import Do, If, Loop, Statement, Task, Value, While
 from tests.oracle.words import MOVES
 
@@ -60,10 +61,7 @@ class TaskRobot(Robot):
     wheels: Powers = (0, 0)
     is_first_round: bool = True  # behind the main task's first turn
 
-    def run(self) -> None:
-        """Runs the program to its end."""
-        for name, is_yes_no in self.program.variables.items():
-            self.variables[name] = False if is_yes_no else 0
+    def play(self) -> None:
         whens = [task for task in self.program.tasks if task.condition is not None]
         others = [task for task in self.program.tasks if task.condition is None]
         for rank, task in enumerate([*whens, *others]):
@@ -73,13 +71,9 @@ class TaskRobot(Robot):
         main = Runner(len(self.crew), False)
         main.turns = self.body(self.program.main)
         self.crew.append(main)
-        try:
-            self.turn(main)
-            while any(runner.turns is not None for runner in self.crew):
-                self.round()
-            self.note("DONE")
-        except Ending as ending:
-            self.note(str(ending))
+        self.turn(main)
+        while any(runner.turns is not None for runner in self.crew):
+            self.round()
 
     def round(self) -> None:
         """Goes to the next time at which something is due, and gives each its turn."""
@@ -140,7 +134,6 @@ class TaskRobot(Robot):
     # -- the motors ---------------------------------------------------------------------------
 
     def motors(self, left: int, right: int) -> None:
-        """Sets both motors."""
         self.wheels = left, right
         super().motors(left, right)
 
@@ -196,7 +189,6 @@ class TaskRobot(Robot):
                     yield from self.repeating(statement)
 
     def repeating(self, statement: Loop | While) -> Turns:
-        """LOOP and WHILE."""
         if isinstance(statement, While):
             self.read(statement.reads)
             while self.value(statement.condition):
@@ -213,7 +205,6 @@ class TaskRobot(Robot):
                 yield from self.back_to_start()
 
     def doing(self, statement: Do) -> Turns:
-        """An instruction without a body."""
         word, me = statement.word, self.who
         if word == "CALL":
             yield from self.body(self.program.defs[statement.name])
@@ -226,10 +217,10 @@ class TaskRobot(Robot):
                 yield from self.waiting(statement, values[0])
             elif word == "BEEP":
                 duration = max(0, values[0] or 0)
-                self.note(f"BEEP {limited(whole(values[1] or 0), 31, 20_000)} {duration}")
+                self.note(f"BEEP {within(whole(values[1] or 0), 31, 20_000)} {duration}")
                 yield from self.until_clock(duration)
             elif word == "M":
-                left, right = (limited(whole(each or 0), -100, 100) for each in values)
+                left, right = (within(whole(each or 0), -100, 100) for each in values)
                 me.m, me.insists = (left, right), me.is_when
                 if not self.is_outranked:
                     self.seize()
@@ -240,7 +231,6 @@ class TaskRobot(Robot):
             super().do(statement)
 
     def stopping(self) -> None:
-        """S."""
         me, owner = self.who, self.owner
         me.m, me.insists = None, me.is_when
         if self.is_outranked:
@@ -258,7 +248,6 @@ class TaskRobot(Robot):
             self.seize()
 
     def waiting(self, statement: Do, time: Value | None) -> Turns:
-        """W."""
         left = None if time is None else max(0, time)
         if statement.until is None:
             if left is None:
@@ -273,10 +262,9 @@ class TaskRobot(Robot):
                 return
 
     def moving(self, statement: Do, values: list[Value | None]) -> Turns:
-        """F B L R."""
         me = self.who
         left = None if values[0] is None else max(0, values[0])
-        power = limited(whole(values[1] or 0), 0, 100)
+        power = within(whole(values[1] or 0), 0, 100)
         side = SIDES[statement.word]
         powers = side[0] * power, side[1] * power
         if self.is_outranked:

@@ -5,9 +5,7 @@
 
 from __future__ import annotations
 
-import argparse
 import random
-import time
 from collections.abc import Iterator, Sequence
 
 import pytest
@@ -15,17 +13,13 @@ import pytest
 from tests.machines import Senses
 from tests.machines.python import run_python
 from tests.oracle import machine, programs
-from tests.oracle.interpreter import Kit
+from tests.support.campaign import wanted
 from tests.support.cpp_checks import check_round, python_verdict, run_late
 from tests.support.images import image_for
 from tests.support.kits import KITS
 from tests.support.random_codes import random_codes
 from tiniscript import compile_text
-from tiniscript.base.trace import Senses as Lists
-from tiniscript.base.trace import TracedRobot
 from tiniscript.bytecode.image import unpack
-from tiniscript.vm.machine import Machine
-from tiniscript.vm.state import WAITING
 
 MAX_MS, MAX_STEPS = 20_000, 5000
 
@@ -73,30 +67,17 @@ def test_random_numbers(seed: int) -> None:
     assert compare(compile_text(text, KITS[0][1]).code, 0, {}, seed) == "DONE"
 
 
-def late_trace(code: bytes, number: int, readings: dict[str, list[int]], seed: int) -> list[str]:
-    """Return what Python's machine prints where each call after a wait comes late."""
-    kit = KITS[number][1]
-    lists = {k: readings.get(each.name, ()) for k, each in enumerate(kit.sensors)}
-    robot = TracedRobot(kit, Lists(kit, lists))
-    runs = Machine(code, robot, len(kit.sensors), seed)
-    waited = 0
-    while runs.tick(robot.now_ms, MAX_STEPS) == WAITING and runs.wake_ms <= MAX_MS:
-        waited += 1
-        robot.now_ms = max(robot.now_ms, runs.wake_ms) + late(waited)
-    return [str(event) for event in robot.events]
-
-
-def late(waited: int, reached: int = 0) -> int:
-    """From 0 to 40 ms: up to 20 of them a program's own clock catches up."""
-    return waited * 7 % 41
-
-
 def test_late_calls() -> None:
+    """From 0 to 40 ms: up to 20 of them a program's own clock catches up."""
     lines = 0
+    late_ms = [waited * 7 % 41 for waited in range(1, MAX_STEPS)]
     for code, number, readings, seed in codes(2, 500):
-        ours = late_trace(code, number, readings, seed)
-        theirs = KITS[number][0]
-        said = machine.trace(code, theirs, readings, MAX_MS, seed, MAX_STEPS, late).splitlines()
+        theirs, kit = KITS[number]
+        senses = Senses(readings, MAX_MS, seed=seed)
+        ours = run_late(image_for(code, kit), kit, senses, late_ms).splitlines()
+        said = machine.trace(
+            code, theirs, readings, MAX_MS, seed, MAX_STEPS, lambda waited, _: late_ms[waited - 1]
+        ).splitlines()
         assert said[: len(ours)] == ours or said[:-1] == ours[: len(said) - 1], code.hex(" ")
         lines += min(len(ours), len(said) - 1)
     assert lines > 5000
@@ -114,23 +95,7 @@ def test_a_watched_move_may_last_longer_than_the_clock() -> None:
     check_round(page)
 
 
-def test_the_kits_are_those_of_the_other_oracle() -> None:
-    assert all(isinstance(theirs, Kit) for theirs, _ in KITS)
-
-
-def campaign(count: int, seed: int) -> None:
-    begun = time.monotonic()
-    for done, each in enumerate(codes(seed, count), 1):
-        compare(*each)
-        if done % 1000 == 0:
-            print(
-                f"{done} runs agree, {done / (time.monotonic() - begun):.0f} a second", flush=True
-            )
-
-
 if __name__ == "__main__":
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("count", nargs="?", type=int, default=10_000)
-    parser.add_argument("--seed", type=int, default=5000)
-    options = parser.parse_args()
-    campaign(options.count, options.seed)
+    given = wanted(10_000, 5000)
+    for one in codes(given.seed, given.count):
+        compare(*one)

@@ -1,0 +1,31 @@
+"""A test that is played for long by command, as `python -m tests.link.test_live_lines 1000000`."""
+
+from __future__ import annotations
+
+import time
+from argparse import ArgumentParser, Namespace
+from collections import Counter
+from collections.abc import Callable
+
+
+def wanted(count: int, seed: int, *flags: str) -> Namespace:
+    """Return the `count` and the first `seed` of a command, and whether each flag was given."""
+    parser = ArgumentParser()
+    parser.add_argument("count", type=int, nargs="?", default=count)
+    parser.add_argument("--seed", type=int, default=seed)
+    for flag in flags:
+        parser.add_argument(f"--{flag}", action="store_true")
+    return parser.parse_args()
+
+
+def each_seed(check: Callable[[int], object], given: Namespace) -> None:
+    """Run a check with each seed; print how often each thing came of it, or a seed that fails."""
+    found: Counter[str] = Counter()
+    begun_s = time.monotonic()
+    for seed in range(given.seed, given.seed + given.count):
+        try:
+            found[str(check(seed))] += 1
+        except BaseException:
+            print(f"seed {seed}", flush=True)
+            raise
+    print(f"{given.count}, nothing wrong: {dict(found)}, {time.monotonic() - begun_s:.0f} s")
