@@ -10,10 +10,10 @@ import pytest
 from tests.cli.test_owner_commands import as_another, claimed
 from tests.machines.esp32 import Esp32Robot
 from tests.machines.host_firmware import HostFirmware
-from tests.support.bad_network import BadNetwork
 from tests.support.command import FOREVER, LONG, Command, inside, process
 from tests.support.esp32_pty_robot import Esp32PtyRobot
 from tests.support.esp32_radio import in_reach, port_of, radios
+from tests.support.network import BadNetwork
 from tests.support.pty_robot import on
 
 NETWORK, PASSWORD = "Aula 3", b"a secret of the school"

@@ -32,10 +32,16 @@ BROKER_KEY = b"broker"
 
 
 @pytest.fixture(scope="module")
-def broker(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Mosquitto]:
+def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Mosquitto]:
     found = Mosquitto(tmp_path_factory.mktemp("broker"))
     yield found
     found.kill()
+
+
+@pytest.fixture
+def broker(server: Mosquitto) -> Iterator[Mosquitto]:
+    yield server
+    server.part()
 
 
 def at(
@@ -119,16 +125,14 @@ def test_the_owner_drives_over_a_broker(broker: Mosquitto) -> None:
     talk(robot, ends, 60)
     assert motors(robot) == "MOTORS 0 0"
     assert any(event.name == "STOPPED" for event in owner.events())
-    teacher.close()
 
 
 def test_a_long_program_and_what_it_shows(broker: Mosquitto) -> None:
     lines = "".join(f"X = {k}; " for k in range(400))
-    robot, teacher, owner, ends = driving(broker, f"SI|{lines}SHOW(X); SHOW(X > 1)")
+    robot, _, owner, ends = driving(broker, f"SI|{lines}SHOW(X); SHOW(X > 1)")
     talk(robot, ends, 300)
     names = [event.name for event in owner.events()]
     assert names.count("SHOW") == 2 and "DONE" in names
-    teacher.close()
 
 
 def test_it_is_kept_and_told_and_forgotten(broker: Mosquitto) -> None:
@@ -139,7 +143,6 @@ def test_it_is_kept_and_told_and_forgotten(broker: Mosquitto) -> None:
     again.wait(400)
     teacher = broker.connected()
     until(again, lambda: present(again, teacher) == [Present(ID, "tini-5678", True)])
-    teacher.close()
     assert ended(robot, [(None, owner)], owner.use_broker(None)) == "OK"
     assert told(robot, owner) == ("OFF", "OFF", "")
     assert ended(robot, [(None, owner)], owner.use_broker(broker.settings())) == "OK"
@@ -199,8 +202,6 @@ def test_who_has_the_robot_keeps_it_while_it_speaks(broker: Mosquitto) -> None:
     other.ping()
     talk(robot, [(end, other)], 300)
     assert end.has_ended, "it is told that another one has the robot"
-    teacher.close()
-    stranger.close()
 
 
 def test_a_robot_that_is_told_its_broker_often_has_one_connection(broker: Mosquitto) -> None:
@@ -215,7 +216,7 @@ def test_a_robot_that_is_told_its_broker_often_has_one_connection(broker: Mosqui
 
 
 def test_one_message_stops_the_class_and_no_other_class(broker: Mosquitto) -> None:
-    robot, teacher, _, ends = driving(broker)
+    robot, _, _, ends = driving(broker)
     other = broker.connected()
     other.stop("another")
     talk(robot, ends, 200)
@@ -223,8 +224,6 @@ def test_one_message_stops_the_class_and_no_other_class(broker: Mosquitto) -> No
     other.stop("aula")
     talk(robot, ends, 100)
     assert motors(robot) == "MOTORS 0 0"
-    teacher.close()
-    other.close()
 
 
 def test_a_stranger_stops_and_does_nothing_else(broker: Mosquitto) -> None:
@@ -256,14 +255,12 @@ def test_a_stranger_stops_and_does_nothing_else(broker: Mosquitto) -> None:
     stranger.publish(f"{ROOT}/aula/{ID}/in/{stranger.peer}", bytes(STOP_BYTES))
     talk(robot, ends, 100)
     assert motors(robot) == "MOTORS 0 0"
-    teacher.close()
-    stranger.close()
 
 
 @pytest.mark.parametrize("stop", [b"S\n", b"F(1,80)\r\n ; stop ;\r", b"Stop"])
 def test_a_typed_stop_of_a_stranger_is_one(broker: Mosquitto, stop: bytes) -> None:
     """In one message, which ends a line; not where that is a frame, whose code may hold one."""
-    robot, teacher, _, ends = driving(broker)
+    robot, _, _, ends = driving(broker)
     stranger = broker.connected()
     topic = f"{ROOT}/aula/{ID}/in/{stranger.peer}"
     for none in (b"SS\n", b"SI", encoded(Frame(BY_NAME["LIVE"].number, 9, 0, b"\1Z\nS\n"))):
@@ -273,8 +270,6 @@ def test_a_typed_stop_of_a_stranger_is_one(broker: Mosquitto, stop: bytes) -> No
     stranger.publish(topic, stop)
     talk(robot, ends, 100)
     assert motors(robot) == "MOTORS 0 0"
-    teacher.close()
-    stranger.close()
 
 
 def test_what_is_retained_was_said_before(broker: Mosquitto) -> None:
@@ -332,8 +327,6 @@ def test_what_is_said_again_has_nothing_done(broker: Mosquitto) -> None:
             robot.step()
             time.sleep(0.0005)
     assert not [line for line in robot.did[before:] if "MOTORS" in line]
-    teacher.close()
-    thief.close()
 
 
 def test_a_robot_without_an_owner_does_nothing_at_a_broker(broker: Mosquitto) -> None:
@@ -349,7 +342,6 @@ def test_a_robot_without_an_owner_does_nothing_at_a_broker(broker: Mosquitto) ->
                    client.name(b"x")):  # fmt: skip
         assert ended(robot, ends, acting) == "UNOWNED"
     assert not [line for line in robot.did[before:] if "MOTORS" in line]
-    teacher.close()
 
 
 # -- ends ---------------------------------------------------------------------------------------
@@ -402,8 +394,6 @@ def test_a_client_that_leaves_ends_its_run_and_makes_room(broker: Mosquitto) -> 
     until(robot, lambda: motors(robot) == "MOTORS 0 0", 200)
     again = remote(robot, keys, 13)
     assert uploaded(robot, [(AtBroker(robot, second), again)], again) == "OK"
-    first.close()
-    second.close()
 
 
 def test_a_driver_that_hangs_keeps_no_run_alive(broker: Mosquitto) -> None:
@@ -417,7 +407,6 @@ def test_a_driver_that_hangs_keeps_no_run_alive(broker: Mosquitto) -> None:
     time.sleep(0.6)
     talk(robot, ends, 400)
     assert motors(robot) == "MOTORS 0 0"
-    teacher.close()
 
 
 @pytest.mark.parametrize("is_silent", [False, True])
@@ -429,7 +418,6 @@ def test_the_last_will_says_who_is_not_there(broker: Mosquitto, is_silent: bool)
         robot.close()
     gone = [Present(ID, "tini-5678", False)]
     in_time(lambda: teacher.present("aula") == gone, "its last will")
-    teacher.close()
 
 
 def test_what_strangers_say_of_robots_is_bounded(broker: Mosquitto) -> None:
@@ -448,17 +436,13 @@ def test_what_strangers_say_of_robots_is_bounded(broker: Mosquitto) -> None:
     for topic in topics:
         stranger._client.publish(topic, b"", retain=True)
     in_time(lambda: teacher.present("many") == [], "they are forgotten")
-    stranger.close()
-    teacher.close()
 
 
 def test_a_message_that_is_too_long_is_skipped(broker: Mosquitto) -> None:
-    robot, teacher, owner, ends = driving(broker)
+    robot, _, owner, ends = driving(broker)
     stranger = broker.connected()
     for length in (513, 20_000):
         stranger.publish(f"{ROOT}/aula/{ID}/in/{stranger.peer}", bytes(length))
     talk(robot, ends, 500)
     assert motors(robot) == "MOTORS 80 80", "neither has it stopped, nor is the run over"
     assert ended(robot, ends, owner.ping()) == "OK"
-    teacher.close()
-    stranger.close()

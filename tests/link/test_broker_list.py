@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
-import socket
-import threading
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -12,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from tests.support.mosquitto import Mosquitto
+from tests.support.network import Network
 
 paho = pytest.importorskip("paho.mqtt.publish")
 from tiniscript.link.errors import PortError  # noqa: E402
@@ -20,40 +18,26 @@ from tiniscript.link.transports import broker  # noqa: E402
 ROBOTS = 30
 
 
-class SlowNetwork:
-    """Passes one connection on. What the broker says is `late_s` on its way, and stands still for
-    `gap_s` once, in the middle of what it retains; `is_cut` says nothing of that at all.
+class SlowNetwork(Network):
+    """What the broker hears is `late_s` on its way, and what it says stands still for `gap_s` once,
+    in the middle of what it retains; `is_cut` says nothing of that at all.
     """
+
+    most = 200
 
     def __init__(self, target: int, late_s: float, gap_s: float, is_cut: bool) -> None:
         self.late_s, self.gap_s, self.is_cut = late_s, gap_s, is_cut
-        self._listener = socket.create_server(("127.0.0.1", 0))
-        self.port: int = self._listener.getsockname()[1]
-        self._target = target
-        threading.Thread(target=self._run, daemon=True).start()
+        self.is_silent = False
+        super().__init__(target)
 
-    def _run(self) -> None:
-        with contextlib.suppress(OSError):
-            ours, _ = self._listener.accept()
-            theirs = socket.create_connection(("127.0.0.1", self._target))
-            threading.Thread(target=self._back, args=(theirs, ours), daemon=True).start()
-            while data := ours.recv(4096):
-                time.sleep(self.late_s)
-                theirs.sendall(data)
-
-    def _back(self, theirs: socket.socket, ours: socket.socket) -> None:
-        with contextlib.suppress(OSError):
-            while data := theirs.recv(200):
-                retained = b"tiniscript/" in data
-                if retained and self.is_cut:
-                    return
-                ours.sendall(data)
-                if retained and self.gap_s:
-                    time.sleep(self.gap_s)
-                    self.gap_s = 0
-
-    def close(self) -> None:
-        self._listener.close()
+    def passed(self, data: bytes, is_back: bool, number: int) -> bytes:
+        if not is_back:
+            time.sleep(self.late_s)
+        elif b"tiniscript/" in data:
+            time.sleep(self.gap_s)
+            self.gap_s = 0
+            self.is_silent = self.is_cut
+        return b"" if is_back and self.is_silent else data
 
 
 @pytest.fixture

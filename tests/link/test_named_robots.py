@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import random
 import socket
 import threading
 import time
@@ -16,6 +15,7 @@ import pytest
 
 from tests.cli.test_virtual_command import FOREVER, Robot, robot
 from tests.support.command import LONG, Command, Tsc, inside, process
+from tests.support.network import BadNetwork
 from tests.support.waiting import HANGS_S, until
 from tiniscript.base import files
 from tiniscript.link import known_ports, ports
@@ -110,40 +110,6 @@ def packets(*names: str, number: int, lonely: int = 0) -> Iterator[None]:
     finally:
         is_over.set()
         sender.join()
-
-
-@contextmanager
-def bad_network(number: int) -> Iterator[int]:
-    """A TCP port that passes bytes on to another one: late, and not all of them."""
-    chance = random.Random(7)
-    server = socket.create_server(("127.0.0.1", 0))
-
-    def pass_on(source: socket.socket, target: socket.socket) -> None:
-        try:
-            while data := source.recv(1000):
-                time.sleep(LATE_S)
-                if chance.random() > LOST:
-                    target.sendall(data)
-            target.shutdown(socket.SHUT_WR)
-        except OSError:
-            pass  # one of them has left
-
-    def serve() -> None:
-        while True:
-            try:
-                peer, _ = server.accept()
-            except OSError:
-                return
-            robot_side = socket.create_connection(("127.0.0.1", number))
-            for ends in ((peer, robot_side), (robot_side, peer)):
-                threading.Thread(target=pass_on, args=ends, daemon=True).start()
-
-    threading.Thread(target=serve, daemon=True).start()
-    try:
-        yield server.getsockname()[1]
-    finally:
-        server.shutdown(socket.SHUT_RDWR)
-        server.close()
 
 
 def ours(found: list[Announced], number: int) -> list[Announced]:
@@ -312,8 +278,8 @@ def test_a_bad_network_costs_time_and_nothing_else() -> None:
     port = f"tcp://far-{HERE}"
     with (
         robot() as found,
-        bad_network(number_of(found.port)) as number,
-        announced(f"far-{HERE}", "127.0.0.1", number),
+        closing(BadNetwork(number_of(found.port), LATE_S, every=2000, lost=LOST)) as network,
+        announced(f"far-{HERE}", "127.0.0.1", network.port),
     ):
         done = inside("upload", "-e", f"SB|{LONG}", "--port", port)
         assert (done.code, done.err) == (0, "")

@@ -29,6 +29,7 @@ class Mosquitto:
     def __init__(self, folder: Path, user: str = "", password: str = "", more: str = "") -> None:
         need("" if PROGRAM else "needs the broker mosquitto")
         assert PROGRAM
+        self.clients: list[Broker] = []
         lines = ["persistence false", f"user {_me()}", more]
         if user:
             passwords = folder / "passwords"
@@ -78,15 +79,21 @@ class Mosquitto:
         return wifi.BrokerSettings(LOCAL, self.port, group, user.encode(), password.encode())
 
     def connected(self, access: Access | None = None) -> Broker:
-        """Return a connection of its own."""
-        return Broker("127.0.0.1", self.port, access or Access())
+        """Return a connection of its own, until `part`."""
+        self.clients.append(Broker("127.0.0.1", self.port, access or Access()))
+        return self.clients[-1]
+
+    def part(self) -> None:
+        """Close the connections that tests have made."""
+        while self.clients:
+            self.clients.pop().close()
 
 
 class AtBroker:
     """A robot's client at a broker, as an `End` of `esp32_radio`."""
 
     def __init__(self, robot: Esp32Robot, at: Broker, group: str = "aula") -> None:
-        self.port: BrokerPort = at.robot(group, f"{robot_id(robot):08x}")
+        self.port: BrokerPort = at.robot(group, f"{ID:08x}")
         self.has_ended = False
 
     def send(self, data: bytes) -> None:
@@ -108,12 +115,7 @@ class AtBroker:
         self.port.close()
 
 
-def robot_id(robot: Esp32Robot) -> int:
-    """Return the id that a simulated chip has: its first random number."""
-    return ID
-
-
-ID = 0x12345678
+ID = 0x12345678  # that a simulated chip has: its first random number
 
 
 def free_port() -> int:

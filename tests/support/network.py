@@ -1,0 +1,96 @@
+"""Networks in between, which are slow, lose something, or break off."""
+
+from __future__ import annotations
+
+import contextlib
+import random
+import socket
+import threading
+import time
+from collections.abc import Sequence
+from itertools import count
+
+RESENT_S = 0.2  # for which TCP waits before it sends a packet again
+
+
+class Network:
+    """Passes connections on to a TCP port of this computer; `port` is its own."""
+
+    most = 4096  # bytes of a piece
+
+    def __init__(self, target: int) -> None:
+        self._target = target
+        self._ends: list[socket.socket] = []
+        self._listener = socket.create_server(("127.0.0.1", 0))
+        self.port: int = self._listener.getsockname()[1]
+        threading.Thread(target=self._accept, daemon=True).start()
+
+    def passed(self, data: bytes, is_back: bool, number: int) -> bytes | None:
+        """Return what goes on of a piece of a connection, from 0 on; None: it ends."""
+        return data
+
+    def cut(self) -> None:
+        """End all connections."""
+        for end in self._ends:
+            with contextlib.suppress(OSError):
+                end.shutdown(socket.SHUT_RDWR)
+
+    def close(self) -> None:
+        self._listener.shutdown(socket.SHUT_RDWR)
+        self._listener.close()
+        self.cut()
+
+    def _accept(self) -> None:
+        with contextlib.suppress(OSError):
+            for number in count():
+                client, _ = self._listener.accept()
+                server = socket.create_connection(("127.0.0.1", self._target))
+                for end in (client, server):
+                    end.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+                    self._ends.append(end)
+                for ends in ((client, server, False), (server, client, True)):
+                    threading.Thread(target=self._pass, args=(*ends, number), daemon=True).start()
+
+    def _pass(self, source: socket.socket, sink: socket.socket, is_back: bool, number: int) -> None:
+        with contextlib.suppress(OSError):
+            while data := source.recv(self.most):
+                going_on = self.passed(data, is_back, number)
+                if going_on is None:
+                    break
+                sink.sendall(going_on)
+        for end in (source, sink):
+            with contextlib.suppress(OSError):
+                end.shutdown(socket.SHUT_RDWR)
+
+
+class BadNetwork(Network):
+    """Each piece is `late_s` on its way, one of `every` much longer; some are lost."""
+
+    def __init__(
+        self, target: int, late_s: float = 0.02, every: int = 10, lost: float = 0.0
+    ) -> None:
+        self.late_s, self.every, self.lost = late_s, every, lost
+        self._chance = random.Random(1)
+        super().__init__(target)
+
+    def passed(self, data: bytes, is_back: bool, number: int) -> bytes:
+        time.sleep(self.late_s + RESENT_S * (self._chance.randrange(self.every) == 0))
+        return b"" if self._chance.random() < self.lost else data
+
+
+class CuttingNetwork(Network):
+    """What a server says comes in small pieces. The first connection ends after `left[0]` bytes of
+    it, the second after `left[1]`; later ones stay."""
+
+    most = 7
+
+    def __init__(self, target: int, left: Sequence[int]) -> None:
+        self.left = list(left)
+        super().__init__(target)
+
+    def passed(self, data: bytes, is_back: bool, number: int) -> bytes | None:
+        if not is_back or number >= len(self.left):
+            return data
+        data = data[: self.left[number]]
+        self.left[number] -= len(data)
+        return data or None
