@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from tiniscript.base.fixed_point import Fault, as_text, divided, in_range
+from tiniscript.base.words import Argument, Word
 
 NUMBER = "number"
 YES_NO = "yes/no"
@@ -30,6 +31,14 @@ class Device(NamedTuple):
     @property
     def is_yes_no(self) -> bool:
         return self.kind == YES_NO
+
+    @property
+    def word(self) -> Word:
+        """An actuator as a word that takes one value."""
+        middle = self.low + (self.high - self.low) // 2000 * 1000
+        sample = "TRUE" if self.is_yes_no else as_text(middle)
+        value = Argument("value", self.unit, self.low, self.high, sample)
+        return Word(self.name, "actuator", (value,))
 
     def text(self, value: int) -> str:
         """Return a reading or a setting as a run prints it."""

@@ -94,13 +94,13 @@ def offers(text: str, found: list[Diagnostic], check: Check) -> list[list[Edit]]
     source, tried = Source(text), 0
     offered: list[list[Edit]] = []
     for diagnostic in found:
-        edits = edits_of(diagnostic) if diagnostic.is_mistake else None
-        if not edits or tried >= OFFERS or any(_is_sealed(edit, source) for edit in edits):
+        edits = edits_of(diagnostic) if diagnostic.is_mistake and tried < OFFERS else None
+        if edits and not any(_is_sealed(edit, source) for edit in edits):
+            tried += 1
+            after = check(applied(text, edits))
+            offered.append(edits if is_better(after, found, edits) else [])
+        else:
             offered.append([])
-            continue
-        tried += 1
-        after = check(applied(text, edits))
-        offered.append(edits if is_better(after, found, edits) else [])
     return offered
 
 

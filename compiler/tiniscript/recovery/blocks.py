@@ -83,12 +83,9 @@ class _Block:
         return self.body is not None and self.body >= 0
 
 
-def matched(lines: Sequence[Line]) -> Matched | None:
-    """Return what is missing for all blocks to end, or None where no reading fits."""
-    return _Matching(lines).run()
+class Matching:
+    """Takes item after item of all lines; `after` is the next one, of no kind at the end."""
 
-
-class _Matching:
     def __init__(self, lines: Sequence[Line]) -> None:
         self.lines = lines
         self.flat = [
@@ -96,7 +93,7 @@ class _Matching:
             for k, line in enumerate(lines)
             for item in (_UNREAD if line.items is None else line.items)
         ]
-        self.has_unread = any(line.items is None for line in lines)
+        self.flat.append((len(lines), Item("", "", 0, 0)))
         self.open: list[_Block] = []
         self.edits: dict[int, list[Edit]] = {}
         self.tails: dict[int, list[str]] = {}
@@ -104,18 +101,21 @@ class _Matching:
         self.is_sure = True
 
     def run(self) -> Matched | None:
+        """Return what is missing for all blocks to end, or None where no reading fits."""
         last = -1
-        for place, (k, item) in enumerate(self.flat):
+        for place, (k, item) in enumerate(self.flat[:-1]):
+            self.place, self.k, self.line, self.item = place, k, self.lines[k], item
+            below, self.after = self.flat[place + 1]
             if k != last:
-                self.begin_line(place, k, item, last)
+                self.begin_line(last)
                 last = k
-            if not self.read(place, k, item):
+            if not self.read():
                 return None
-            if place + 1 == len(self.flat) or self.flat[place + 1][0] != k:
-                self.end_line(place, k, item)
+            if below != k:
+                self.end_line(self.lines[below].indent if below < len(self.lines) else 0)
         while self.open:
             block = self.open.pop()
-            if not block.word or item.kind in ("open", "{"):
+            if not block.word or self.item.kind in ("open", "{"):
                 return None  # nothing is in it
             if block.has_brace and block.line == last:
                 self.tails.setdefault(last, []).append(block.end)
@@ -124,20 +124,20 @@ class _Matching:
             self.close_behind(last if block.last is None else block.last, block)
         return Matched(self.edits, self.tails, self.behind, self.is_sure)
 
-    def edit(self, k: int, item: Item, old: int, *new: str) -> None:
-        self.edits.setdefault(k, []).append(Edit(item.start, old, [made(each) for each in new]))
+    def edit(self, old: int, *new: str) -> None:
+        self.edit_tokens(self.item.start, old, [made(each) for each in new])
+
+    def edit_tokens(self, at: int, old: int, new: list[Lexeme]) -> None:
+        self.edits.setdefault(self.k, []).append(Edit(at, old, new))
 
     def close_behind(self, k: int, block: _Block) -> None:
         self.behind.setdefault(k, []).append(" " * block.indent + block.end)
 
-    def after(self, place: int) -> Item | None:
-        return self.flat[place + 1][1] if place + 1 < len(self.flat) else None
-
     # -- the beginning of a line: its indentation may close what is open -----------------------
 
-    def begin_line(self, place: int, k: int, item: Item, last: int) -> None:
-        indent = self.lines[k].indent
-        while self.open and item.kind in ("open", "do"):
+    def begin_line(self, last: int) -> None:
+        indent = self.line.indent
+        while self.open and self.item.kind in ("open", "do"):
             block = self.open[-1]
             is_left = block.body is not None and indent < block.body and indent <= block.indent
             if not is_left or block.has_brace:
@@ -146,133 +146,127 @@ class _Matching:
             self.is_sure = self.is_sure and block.is_begun
             self.close_behind(last, block)
         for block in self.open:
-            if block.body is None and block.line < k:
+            if block.body is None and block.line < self.k:
                 block.body = indent if indent > block.indent else -1
 
     # -- items --------------------------------------------------------------------------------
 
-    def read(self, place: int, k: int, item: Item) -> bool:
+    def read(self) -> bool:
         """Take an item; return whether it has a place among the blocks."""
-        if item.kind == "open":
-            if not self.is_end_of_do(place, k, item):
-                if self.is_when(place, k, item):
-                    self.edit(k, item, 1, "WHEN")
-                    item = item._replace(word="WHEN")
-                self.open.append(_Block(item, k, self.lines[k]))
-            return True
-        if item.kind == "{":
-            return self.brace(k, item)
-        if item.kind == "}":
-            return self.closing_brace(place, k, item)
-        if item.kind == "arm":
+        kind = self.item.kind
+        if kind == "open":
+            if not self.is_end_of_do():
+                if self.is_when():
+                    self.edit(1, "WHEN")
+                    self.item = self.item._replace(word="WHEN")
+                self.open.append(_Block(self.item, self.k, self.line))
+        elif kind == "{":
+            return self.brace()
+        elif kind == "}":
+            return self.closing_brace()
+        elif kind == "arm":
             return bool(self.open) and self.open[-1].word == "IF"
-        if item.kind == "end" and self.is_before_arm(place, item):
-            start = item.start - (
-                self.lines[k].tokens[item.start - 1].text == ";" and item.start > 0
-            )
-            self.edit(k, item._replace(start=start), item.start + 1 - start)
-            return True
-        if item.kind == "end":
-            return self.bare_end(place, k, item) if item.word == ANY_END else self.end(k, item)
+        elif kind == "end" and not self.is_before_arm():
+            return self.bare_end() if self.item.word == ANY_END else self.end()
         return True
 
-    def is_when(self, place: int, k: int, item: Item) -> bool:
+    def is_when(self) -> bool:
         """Whether an IF is meant as a WHEN: at the top level, with lines and an end of its own."""
-        if self.open or not self.lines[k].is_when or item.word != "IF":
+        if self.open or not self.line.is_when or self.item.word != "IF":
             return False
-        line, part = next(self.parts(place), (k, item))
+        line, part = next(self.parts(), (self.k, self.item))
         ended = ENDED.get(part.word)
-        return part.kind == "end" and (ended == "WHEN" or (line != k and ended != "IF"))
+        return part.kind == "end" and (ended == "WHEN" or (line != self.k and ended != "IF"))
 
-    def is_end_of_do(self, place: int, k: int, item: Item) -> bool:
+    def is_end_of_do(self) -> bool:
         """Whether a WHILE ends the block that a DO has begun: then it leaves that."""
+        item = self.item
         if item.word != "WHILE" or not self.open or not self.open[-1].is_do:
             return False
-        question = self.lines[k].tokens[item.start + 2 : item.end - 1]
+        question = self.line.tokens[item.start + 2 : item.end - 1]
         new = [made("IF"), made("("), *negated(question), made(")")]
         new += map(made, (";", "BREAK", ";", BLOCK_ENDS["IF"], ";", BLOCK_ENDS["LOOP"]))
-        self.edits.setdefault(k, []).append(Edit(item.start, item.end - item.start, new))
+        self.edit_tokens(item.start, item.end - item.start, new)
         self.open.pop()
         return True
 
-    def brace(self, k: int, item: Item) -> bool:
+    def brace(self) -> bool:
         if not self.open:
-            is_first = item.start == 0 or self.lines[k].tokens[0].text == "START"
+            is_first = self.item.start == 0 or self.line.tokens[0].text == "START"
             self.is_sure = self.is_sure and is_first
-            self.edit(k, item, 1)
-            self.open.append(_Block(item, k, self.lines[k]))
+            self.edit(1)
+            self.open.append(_Block(self.item, self.k, self.line))
             return True
         if self.open[-1].has_brace:
             return False
         self.open[-1].has_brace = True
-        self.edit(k, item, 1, ";")
+        self.edit(1, ";")
         return True
 
-    def closing_brace(self, place: int, k: int, item: Item) -> bool:
+    def closing_brace(self) -> bool:
         if not self.open:
             return False
-        block, after = self.open[-1], self.after(place)
-        goes_on = after is not None and (
-            (block.word == "IF" and after.kind == "arm")
-            or (block.word and after.kind == "end" and after.word == block.end)
-        )
-        if goes_on or (block.is_do and after and after.word == "WHILE"):
-            self.edit(k, item, 1, ";")
+        block, after = self.open[-1], self.after
+        is_arm = block.word == "IF" and after.kind == "arm"
+        goes_on = is_arm or (block.word and after.kind == "end" and after.word == block.end)
+        if goes_on or (block.is_do and after.word == "WHILE"):
+            self.edit(1, ";")
             block.has_brace = block.has_brace and not goes_on
             return True
         if not block.has_brace:
             return False
         self.open.pop()
-        self.edit(k, item, 1, *((";", block.end, ";") if block.word else ()))
+        self.edit(1, *((";", block.end, ";") if block.word else ()))
         return True
 
-    def is_before_arm(self, place: int, item: Item) -> bool:
-        """Whether an end comes too early: the ELSE behind it belongs to its IF."""
-        after = self.after(place)
+    def is_before_arm(self) -> bool:
+        """Whether an end comes too early, and is dropped: the ELSE behind it belongs to its IF."""
+        item = self.item
         is_its = item.word == ANY_END or ENDED[item.word] == "IF"
-        if not (
-            is_its and after and after.kind == "arm" and self.open and self.open[-1].word == "IF"
-        ):
+        if not (is_its and self.after.kind == "arm" and self.open and self.open[-1].word == "IF"):
             return False
         outer = sum(block.word == "IF" for block in self.open[:-1])
-        rest = [it for _, it in self.flat[place + 1 : place + LONGEST]]
+        rest = [it for _, it in self.flat[self.place + 1 : self.place + LONGEST]]
         ends = sum(it.kind == "end" and it.word in (ANY_END, "ENDIF", "END_IF") for it in rest)
-        return ends - sum(it.kind == "open" and it.word == "IF" for it in rest) > outer
+        is_early = ends - sum(it.kind == "open" and it.word == "IF" for it in rest) > outer
+        if is_early:
+            is_parted = item.start > 0 and self.line.tokens[item.start - 1].text == ";"
+            self.edit_tokens(item.start - is_parted, 1 + is_parted, [])
+        return is_early
 
-    def bare_end(self, place: int, k: int, item: Item) -> bool:
+    def bare_end(self) -> bool:
         """`FIN` ends the innermost block; one too many is dropped."""
-        after = self.after(place)
         if not self.open:
-            if self.has_unread:
+            if any(line.items is None for line in self.lines):
                 return False
-            before = self.lines[k].tokens[item.start - 1]
-            is_behind = after is None and before.text == ";" and before.source is not None
-            is_alone = len(self.lines[k].items or ()) == 1 or is_behind
-            self.is_sure = self.is_sure and is_alone and len(self.flat) > 1
-            self.edit(k, item, 1)
+            before = self.line.tokens[self.item.start - 1]
+            is_behind = not self.after.kind and before.text == ";" and before.source is not None
+            is_alone = len(self.line.items or ()) == 1 or is_behind
+            self.is_sure = self.is_sure and is_alone and len(self.flat) > 2
+            self.edit(1)
         elif self.open[-1].word:
-            self.edit(k, item, 1, self.open.pop().end)
+            self.edit(1, self.open.pop().end)
         else:
             return False
         return True
 
-    def end(self, k: int, item: Item) -> bool:
-        want, line = ENDED[item.word], self.lines[k]
+    def end(self) -> bool:
+        want, k = ENDED[self.item.word], self.k
         if self.open and self.open[-1].word not in ("", want):
             words = [block.word for block in self.open]
             block = self.open[-1]
             is_inside = (len(words) > 1 and block.line == k) or block.has_indented_body
             if want not in words:
-                self.edit(k, item, 1, self.open.pop().end)
-                self.is_sure = self.is_sure and (line.is_rewritten or block.is_translated)
+                self.edit(1, self.open.pop().end)
+                self.is_sure = self.is_sure and (self.line.is_rewritten or block.is_translated)
                 return True
             if is_inside:
                 self.open.pop()
                 self.is_sure = self.is_sure and (block.is_begun or block.line == k)
-                self.edit(k, item, 0, block.end, ";")
+                self.edit(0, block.end, ";")
         if self.open and self.open[-1].word == want:
             block = self.open.pop()
-            self.is_sure = self.is_sure and not block.has_brace and line.is_do <= block.is_do
+            self.is_sure = self.is_sure and not block.has_brace and self.line.is_do <= block.is_do
             if block.is_endless and self.open and self.open[-1].last is None:
                 outer = self.open[-1]  # a WHEN that never ends looks no more
                 is_before = outer.word == "WHEN" and outer.line + 1 < block.line
@@ -282,42 +276,37 @@ class _Matching:
 
     # -- the end of a line: a body behind its header ends there, unless an end is left for it ----
 
-    def end_line(self, place: int, k: int, item: Item) -> None:
-        while self.open and self.open[-1].line == k and item.kind != "open":
+    def end_line(self, indent_below: int) -> None:
+        after = self.after
+        while self.open and self.open[-1].line == self.k and self.item.kind != "open":
             block = self.open[-1]
-            if block.has_brace or not block.word or self.goes_on_below(place, block):
+            if block.has_brace or not block.word or indent_below > block.indent:
                 break
-            parts, after = self.parts(place), self.after(place)
-            is_closed = any(each.kind != "arm" or block.word == "IF" for _, each in parts)
-            has_outer = len(self.open) > 1
-            is_arm = block.word == "IF" and after is not None and after.kind == "arm"
-            if is_closed and (not has_outer or is_arm):
+            is_closed = any(each.kind != "arm" or block.word == "IF" for _, each in self.parts())
+            is_arm = block.word == "IF" and after.kind == "arm"
+            if is_closed and (len(self.open) == 1 or is_arm):
                 break
             self.open.pop()
-            items = self.lines[k].items or []
             is_sure = block.is_begun
+            items = self.line.items or []
             if block.word in ("IF", "WHILE") and not any(each.kind == "arm" for each in items):
-                is_sure = is_sure and not self.is_parted(k, items)
-            elif block.word == "DEF" and after is not None and after.kind == "do":
+                is_sure = is_sure and not self.is_parted(items)
+            elif block.word == "DEF" and after.kind == "do":
                 is_sure = is_sure and after.word == block.name
             self.is_sure = self.is_sure and is_sure
-            self.tails.setdefault(k, []).append(block.end)
+            self.tails.setdefault(self.k, []).append(block.end)
 
-    def goes_on_below(self, place: int, block: _Block) -> bool:
-        below = self.flat[place + 1][0] if place + 1 < len(self.flat) else block.line
-        return self.lines[below].indent > block.indent
-
-    def is_parted(self, k: int, items: Sequence[Item]) -> bool:
+    def is_parted(self, items: Sequence[Item]) -> bool:
         """Whether a block may end before its line: at a `;` of the text, or at another block."""
         told = [each for each in items if each.kind == "do"]
-        between = self.lines[k].tokens[told[0].end : told[-1].start] if told else []
+        between = self.line.tokens[told[0].end : told[-1].start] if told else []
         headers = sum(each.kind == "open" and each.word == "IF" for each in items)
         return headers > 1 or any(each.text == ";" and each.source is not None for each in between)
 
-    def parts(self, place: int) -> Iterator[tuple[int, Item]]:
+    def parts(self) -> Iterator[tuple[int, Item]]:
         """Give the arms and ends behind a place, but those of blocks that begin behind it."""
         depth = 0
-        for line, item in self.flat[place + 1 :]:
+        for line, item in self.flat[self.place + 1 :]:
             is_end = item.kind in ("end", "}")
             if not depth and (is_end or item.kind == "arm"):
                 yield line, item

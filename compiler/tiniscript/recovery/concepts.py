@@ -10,7 +10,7 @@ import re
 import unicodedata
 from collections.abc import Iterable, Sequence
 from functools import cache, cached_property, lru_cache
-from itertools import pairwise, takewhile
+from itertools import pairwise
 from typing import NamedTuple
 
 from tiniscript.base.kit import Kit
@@ -170,19 +170,17 @@ def _in_two_words(word: str) -> str | None:
         halves = word[:k].rstrip("_"), word[k:].lstrip("_")
         long = [half for half in halves if len(half) > 2]  # `there` is no THE RE
         said = {half if half == "STOP" else concept_of(half) or "" for half in long}
-        beside = [half for half in halves if said_of(half, "turn")]
+        turns = [half for half in halves if said_of(half, "turn")]
         with_frame = halves if len(halves[1]) > 3 else halves[:1]  # `irAdelante`, and no GOAL
-        beside += [half for half in with_frame if said_of(half, "filler")]
-        is_turn = any(said_of(half, "turn") for half in halves)
-        is_engine = any(said_of(half, "engine") for half in halves)
+        beside = [*turns, *(half for half in with_frame if said_of(half, "filler"))]
         meant = said - {"", "M", "F"} or said - {"", "M"}
-        rest = [each for each in halves if each not in beside and not concept_of(each)]
         is_framed = bool(said & {"F", "M"} or beside) or len({*map(concept_of, halves)}) == 1
-        if len(meant) == 1 and is_framed and not set(rest) - {"STOP"}:
+        is_all = all(half in beside or half == "STOP" or concept_of(half) for half in halves)
+        if len(meant) == 1 and is_framed and is_all:
             only = next(iter(meant))
-            if only == "STOP" and is_engine:
+            if only == "STOP" and any(said_of(half, "engine") for half in halves):
                 return "S"
-            if only in (("L", "R") if is_turn else ("F", "B", "L", "R", "S", "STOP", "BEEP")):
+            if only in (("L", "R") if turns else ("F", "B", "L", "R", "S", "STOP", "BEEP")):
                 return only
     return None
 
@@ -221,15 +219,12 @@ def _names_of(line: tuple[Lexeme, ...]) -> _OfLine:
         if is_def and after.kind is WORD and after.text not in WORDS:
             if not said_of(after.text, "main") and concept_of(after.text) != "START":
                 found.defs.add(after.text)
-                given: tuple[str, ...] = ()
-                if at < len(line) and line[at].text == "(":
-                    inside = texts(takewhile(lambda each: each.text != ")", line[at + 1 :]))
-                    is_closed = at + 1 + len(inside) < len(line)
-                    given = inside[::2] if is_closed else ()
+                end = closed(line, at)
+                given = texts(line[at + 1 : end - 1 : 2]) if end else ()
                 if all(each.isidentifier() and each not in WORDS for each in given):
                     found.parameters[after.text] = given
                     found.variables.update(given)
-    if len(head) > 2 and (head[0].text == "DEF" or concept_of(head[0].text) == "DEF"):
+    if len(head) > 2 and "DEF" in (head[0].text, concept_of(head[0].text)):
         row, names = _name_in_words(head[1:], ";"), found.defs
     else:
         row, names = _name_in_words(head, "="), found.variables

@@ -9,6 +9,7 @@ import heapq
 import re
 from collections.abc import Callable, Iterator, Sequence
 from functools import lru_cache
+from itertools import chain, count
 from typing import NamedTuple
 from unicodedata import category
 
@@ -107,10 +108,11 @@ def _alike(token: Lexeme) -> str:
 def _right(tokens: tuple[tuple[str, str], ...], names: Names) -> Sequence[Item] | Failure:
     found: list[Item] = []
     start = 0
-    for k in range(len(tokens) + 1):
-        text = tokens[k][1] if k < len(tokens) else BRACES[1]
-        is_brace, is_end = text in BRACES, _is_bare_end(tokens, k, names)
-        if not is_brace and not is_end:
+    around = [";", *(text for _, text in tokens), BRACES[1], ";"]
+    for k, (before, text, after) in enumerate(zip(around, around[1:], around[2:], strict=False)):
+        is_apart = {before, after} <= {";", "|", *BRACES}
+        is_end = is_apart and bool(said_of(text, "end")) and not names.is_name(text)
+        if text not in BRACES and not is_end:
             continue
         part = outline(tokens[start:k], names.known)
         if isinstance(part, Failure):
@@ -120,13 +122,6 @@ def _right(tokens: tuple[tuple[str, str], ...], names: Names) -> Sequence[Item] 
             found.append(Item("end" if is_end else text, ANY_END if is_end else text, k, k + 1))
         start = k + 1
     return found
-
-
-def _is_bare_end(tokens: Sequence[tuple[str, str]], k: int, names: Names) -> bool:
-    if k >= len(tokens) or not said_of(tokens[k][1], "end") or names.is_name(tokens[k][1]):
-        return False
-    around = (tokens[each][1] if 0 <= each < len(tokens) else ";" for each in (k - 1, k + 1))
-    return all(each in (";", "|", *BRACES) for each in around)
 
 
 def read(tokens: Sequence[Lexeme], names: Names, is_quick: bool = False) -> list[Reading]:
@@ -171,8 +166,8 @@ class _Search:
         return readings
 
     def search(self, first: Reading, states: int, successors: _Successors) -> list[Reading]:
-        order = 0
-        heap = [(first.cost, order, first)]
+        order = count()
+        heap = [(first.cost, next(order), first)]
         seen: set[tuple[str, ...]] = set()
         found: list[Reading] = []
         while heap and len(seen) < states:
@@ -191,8 +186,7 @@ class _Search:
             reading = reading._replace(failure=items)
             for after in successors(reading):
                 if len(after.tokens) < LONGEST:
-                    order += 1
-                    heapq.heappush(heap, (after.cost, order, after))
+                    heapq.heappush(heap, (after.cost, next(order), after))
         return found
 
     @staticmethod
@@ -225,10 +219,8 @@ class _Search:
         return reading
 
     def rewritten(self, reading: Reading) -> Iterator[Reading]:
-        for after in self._by_rows(reading, is_first=False):
-            yield self.at_once(after)
-        for after in (*self._by_slots(reading), *self._by_words(reading)):
-            yield self.at_once(after)
+        found = (self._by_rows(reading, is_first=False), self._by_slots(reading))
+        return map(self.at_once, chain(*found, self._by_words(reading)))
 
     def _with_function(self, reading: Reading) -> Reading | None:
         """Mend the first word before a bracket in the place of a value: it can be no other."""
@@ -251,10 +243,8 @@ class _Search:
                     continue
                 tokens = line.rewritten(row, match)
                 if tokens is not None:
-                    is_new_line = ";" in row.becomes
-                    yield reading.changed(
-                        tokens, row.cost, row.code, not row.is_offered, is_new_line
-                    )
+                    is_new = ";" in row.becomes
+                    yield reading.changed(tokens, row.cost, row.code, not row.is_offered, is_new)
                     break
 
     def _by_slots(self, reading: Reading) -> Iterator[Reading]:
@@ -371,14 +361,11 @@ def _calls(tokens: Sequence[Lexeme]) -> Iterator[tuple[int, int]]:
     for k, token in enumerate([*tokens, made(";")]):
         role = WORDS[token.text].role if token.text in WORDS else ""
         is_edge = role in ("block", "arm", "end", "until") or token.text in (";", *BRACES)
-        before = tokens[k - 1].text if k else ""
-        if before == ")" and token.text in CALLED and start < k:  # the next call of a line
+        is_next = k > 0 and tokens[k - 1].text == ")" and token.text in CALLED
+        if (is_edge or is_next) and start < k:
             yield start, k
             start = k
-        if not is_edge:
-            continue
-        if start < k:
-            yield start, k
-        start = max(start, k + 1)
+        if is_edge:
+            start = max(start, k + 1)
         if token.text in _AT_END:
             start = max(start, closed(tokens, k + 1) or k + 2)

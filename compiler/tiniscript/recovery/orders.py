@@ -53,7 +53,7 @@ def orders(words: Sequence[Lexeme], names: Names) -> list[Order]:
     while joined := rewrites.one_word(words, names):
         words = joined[0]  # `para adelante`
     words = [one for one, after in pairwise([*words, made(";")]) if not _is_the(one, after)]
-    asks = next((k for k, each in enumerate(words) if k and _is_if(each, names)), 0)
+    asks = next((k for k, each in enumerate(words) if k and names.meant(each.text) == "IF"), 0)
     if asks:
         return _asked_between(orders(words[:asks], names), words[asks:], names)
     joins = "" if any(each.text == "(" for each in words) else ",."  # `gira(2, 80)` is one
@@ -79,10 +79,6 @@ def _begins_else(texts: Sequence[str]) -> int:
     """Return how many of the first two words say ELSE: `si no`."""
     said = (count for count in (1, 2) if concept_of("_".join(texts[:count])) == "ELSE")
     return 1 if texts[:1] == ["ELSE"] else next(said, 0)
-
-
-def _is_if(token: Lexeme, names: Names) -> bool:
-    return token.text == "SI" or names.meant(token.text) == "IF"
 
 
 def _asked_between(first: list[Order], words: Sequence[Lexeme], names: Names) -> list[Order]:
@@ -184,8 +180,7 @@ def block(tokens: Sequence[Lexeme], names: Names, is_open: bool) -> str:
 
     `is_open`: it goes on further down.
     """
-    first = tokens[0].text
-    word = "IF" if first == "SI" else names.meant(first)
+    word = names.meant(tokens[0].text)
     if word not in ("IF", "WHILE", "LOOP") or len(tokens) > LONGEST:
         return ""
     while any(said_of(each.text, "end") for each in tokens[-2:]):
@@ -207,16 +202,12 @@ def block(tokens: Sequence[Lexeme], names: Names, is_open: bool) -> str:
         pair = "_".join(texts[place - 1 : place + 1])  # `pra frente`
         if said_of(texts[place], "front") and place + 1 < arm and not concept_of(pair):
             continue  # `uma parede na frente, para`
-        is_mixed = any(said_of(each, "then") and not _is_and(each) for each in texts[k:])
+        is_mixed = any(said_of(each, "then") and not said_of(each, "and") for each in texts[k:])
         if (word == "LOOP" and is_mixed) or (arm < len(texts) and not other):
             return ""
         parts = [header, written(body), *(["ELSE", written(other)] if other else [])]
         return ";".join(parts if is_open else [*parts, BLOCK_ENDS[word]])
     return ""
-
-
-def _is_and(word: str) -> bool:
-    return word == "," or bool(said_of(word, "and"))
 
 
 def _head(word: str, words: Sequence[Lexeme], names: Names) -> str:

@@ -14,7 +14,17 @@ from typing import NamedTuple
 
 from tiniscript.base.words import BLOCK_ENDS, WORDS, concept_of
 from tiniscript.recovery import rows
-from tiniscript.recovery.concepts import ANY, ENDED, Lexeme, Names, closed, joined, made, said_of
+from tiniscript.recovery.concepts import (
+    ANY,
+    ENDED,
+    NEAR,
+    Lexeme,
+    Names,
+    closed,
+    joined,
+    made,
+    said_of,
+)
 from tiniscript.recovery.slots import LONG_S
 from tiniscript.syntax.lexer import NUMBER, WORD
 from tiniscript.syntax.operators import COMPARISONS, OPPOSITES
@@ -241,10 +251,8 @@ class Encoded:
         return _FUNCTIONS[function](place)
 
     def translated(self, token: Lexeme) -> Lexeme:
-        if token.kind is not WORD or (token.text in WORDS and token.text != "SI"):
-            return token
-        meant = self.names.meanings(token.text)
-        return made(meant[0].concept) if meant else token
+        meant = self.names.meant(token.text, NEAR) if token.kind is WORD else ""
+        return made(meant) if meant not in ("", token.text) else token
 
 
 def _numbers(tokens: Sequence[Lexeme]) -> Counter[str]:
@@ -417,7 +425,6 @@ def one_word(tokens: Sequence[Lexeme], names: Names) -> tuple[list[Lexeme], bool
         if concept_of(text) == "ELSE" and (said_of(after, "is") or said_of(after, "there")):
             continue
         if concept_of(text) or (text in WORDS and row[0] == "END"):
-            meant = names.meanings(text)
-            word = made(meant[0].concept if meant else text)._replace(space=tokens[k].space)
+            word = made(names.meant(text, NEAR) or text)._replace(space=tokens[k].space)
             return [*tokens[:k], word, *tokens[k + count :]], False
     return None

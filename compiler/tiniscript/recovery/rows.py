@@ -109,12 +109,10 @@ SIGNS = r"""
 ^(S[IB]\s*\|)?\s*(\d+) (?:loop|repe[a-z]+)\s*:?$  |  `\1LOOP(\2)`  |  TS015  |  applied  |  5 LOOP⏎F(1, 50)⏎END_LOOP => LOOP(5)⏎F(1, 50)⏎END_LOOP
 \bLOOP_?(\d+)(?=\s*(?:;|$))  |  `LOOP(\1)`  |  TS015  |  applied  |  LOOP4;F(2, 80);END_LOOP => LOOP(4);F(2, 80);END_LOOP
 ^(\s*S[IB]\s*\|)\s+\|  |  `\1`  |  TS054  |  applied  |  SI| |F(2, 80) => SI|F(2, 80)
-&⟨lt¦gt⟩;  |  `⟨<¦>⟩`  |  TS010  |  applied  |  IF(DISTANCE &⟨lt¦gt⟩; 10)⏎S⏎ENDIF => IF(DISTANCE ⟨<¦>⟩ 10)⏎S⏎ENDIF
-&nbsp;  |  ` `  |  TS072  |  applied  |  F(2, 80);&nbsp;R(1, 50); => F(2, 80); R(1, 50);
+&⟨lt¦gt¦nbsp⟩;  |  `⟨<¦>¦ ⟩`  |  ⟨TS010¦TS010¦TS072⟩  |  applied  |  IF(DISTANCE⟨ &lt; 10¦ &gt; 10¦&nbsp;< 10⟩);S;END IF => IF(DISTANCE ⟨<¦>¦<⟩ 10);S;END_IF
 (?<=\d) ?⟨½¦¼¦¾⟩  |  `⟨.5¦.25¦.75⟩`  |  TS010  |  applied  |  F(1 ⟨½¦¼¦¾⟩, 80) => F(⟨1.5¦1.25¦1.75⟩, 80)
 ⟨½¦¼¦¾⟩  |  `⟨0.5¦0.25¦0.75⟩`  |  TS010  |  applied  |  W(⟨½¦¼¦¾⟩) => W(⟨0.5¦0.25¦0.75⟩)
 (?<=\d)(?:[´"`]|\)\s*,\s*\()(?=\d+\))  |  `, `  |  TS076  |  applied  |  F(2´80) => F(2, 80)
-\\n  |  `;`  |  TS010  |  applied  |  SI|F(2,80)\nR(1,60) => SI|F(2,80);R(1,60)
 \b([FBLR])/(\d+)[/,](\d+)/?  |  `\1(\2, \3)`  |  TS015  |  applied  |  F/2/80 => F(2, 80)
 (?<=\))\s+(?:/\s*|-)(?=(?-i:[a-zñáéíóú]+)/?\s*$)  |  ` // `  |  TS007  |  applied  |  F(1, 80) / adelante => F(1, 80) // adelante
 (?i:\bFOREVER)\.(?=\d)  |  `FOREVER, `  |  TS017  |  applied  |  F(FOREVER.60) UNTIL(DISTANCE < 9) => F(FOREVER, 60) UNTIL(DISTANCE < 9)
@@ -122,9 +120,8 @@ SIGNS = r"""
 (?<=\d)\s*([×✕])\s*(?=\d)  |  `*`  |  TS010  |  applied  |  SHOW(3 × 4) => SHOW(3*4)
 ⟨≤¦≥¦≠¦¡=¦(?<= )><⟩  |  `⟨<=¦>=¦<>¦<>¦<>⟩`  |  TS010  |  applied  |  IF(DISTANCE ⟨≤¦≥¦≠¦¡=¦><⟩ 10);S;ENDIF => IF(DISTANCE ⟨<=¦>=¦<>¦<>¦<>⟩ 10);S;ENDIF
 ⟨×¦÷¦−⟩  |  `⟨*¦/¦-⟩`  |  TS010  |  applied  |  ⟨SHOW(TIME × 2)¦SHOW(TIME ÷ 2)¦M(−50 50)⟩ => ⟨SHOW(TIME * 2)¦SHOW(TIME / 2)¦M(-50, 50)⟩
-∞  |  `FOREVER`  |  TS010  |  applied  |  F(∞,50) UNTIL(DISTANCE<10) => F(FOREVER,50) UNTIL(DISTANCE<10)
+⟨∞¦[，、]¦\\n⟩  |  `⟨FOREVER¦,¦;⟩`  |  TS010  |  applied  |  ⟨F(∞,50) UNTIL(DISTANCE<10)¦F(2、80)¦SI|F(2,80)\nR(1,60)⟩ => ⟨F(FOREVER,50) UNTIL(DISTANCE<10)¦F(2,80)¦SI|F(2,80);R(1,60)⟩
 [→➜⇒]|[–—]>  |  `;`  |  TS061  |  applied  |  →F(2, 80) => ;F(2, 80)
-[，、]  |  `,`  |  TS010  |  applied  |  F(2、80) => F(2,80)
 </?[a-z]+/?>|^\s*(?:[$>] tsc\b.*|```\w*\s*)$  |  ``  |  TS072  |  applied  |  <b>F(2, 80)</b> => F(2, 80)
 ^\s*tsc(?: run)? (?=S[IB]\|)  |  ``  |  TS044  |  applied  |  tsc SI|F(2, 80) => SI|F(2, 80)
 ^\s*\.\s*$  |  ``  |  TS005  |  applied  |  F(2,80)⏎.⏎.⏎. => F(2,80)⏎⏎⏎
@@ -233,8 +230,7 @@ h=IF|WHILE|UNTIL|WHEN|ELSEIF b=(? A v=@val | &h $b &v | 1 | TS102 | first | IF(a
 v=@val ROUND n=@num | ROUND ( $v , $n ) | 1 | TS015 | offered | SHOW(DISTANCE ROUND 1) => SHOW(ROUND(DISTANCE, 1))
 the v=@val | $v | 1 | TS102 | first | lee la distancia => DISTANCE
 # variables
-v=@name = a=@num|@val b=@start | $v = $a ; $b | 1 | TS013 | applied | vel = 50 F(2, vel) => VEL = 50;F(2, VEL)
-v=@name = a=@val s=<|>|<=|>= n=@num b=@start | $v = $a $s $n ; $b | 1 | TS013 | applied | X = DISTANCE > 30 IF(X);S;ENDIF => X = DISTANCE > 30;IF(X);S;ENDIF
+v=@name = a=@num|@val ⟨¦s=<|>|<=|>= n=@num⟩ b=@start | $v = $a ⟨¦$s $n⟩ ; $b | 1 | TS013 | applied | X = DISTANCE⟨¦ > 30⟩ F(1, 50) => X = DISTANCE⟨¦ > 30⟩;F(1, 50)
 v=@name ⟨++¦- - $⟩ | $v = $v ⟨+¦-⟩ 1 | 1 | TS050 | applied | v = 0⏎v⟨++¦--⟩ => v = 0⏎v = v ⟨+ 1¦-1⟩
 ^ v=@name = w=@name ++ $ | $v = $w + 1 | 1 | TS050 | offered | X = 1⏎X = X++ => X = 1⏎X = X + 1
 ^ c=@callw ( v=@name ⟨++¦+= e=@num⟩ r=@any* $ | $v = $v + ⟨1¦$e⟩ ; $c ( $v $r | 1 | TS050 | offered | X = 1⏎SHOW(X⟨++¦ += 2⟩) => X = 1⏎X = X + ⟨1¦2⟩;SHOW(X)
@@ -246,7 +242,7 @@ v=@name ⟨+=¦-=¦*=⟩ e=@any+ | $v = $v ⟨+¦-¦*⟩ $e | 1 | TS050 | applie
 ^ n=@newname = b=@callw|LOOP r=@any+ $ | DEF $n ; $b $r | 2 | TS051 | applied | SALUDO = BEEP(1, 440)⏎SALUDO => DEF SALUDO;BEEP(1, 440);END_DEF⏎SALUDO
 ^ declare v=@newname ;? $ | $v = 0 | 1 | TS044 | offered | var vel⏎F(2, vel) => vel = 0⏎F(2, vel)
 ^ declare declare? v=@name = | $v = | 1 | TS044 | applied | let v = 50⏎F(2, v) => v = 50⏎F(2, v)
-^ set v=@name =|to? e=@num $ | $v = $e | 1 | TS050 | applied | set x to 5 => x = 5
+^ set|declare the? v=@word =|to|is? e=@num $ | $v = $e | 1 | TS050 | applied | set x to 5 => x = 5
 ^ v=@newname is|equal|: to|equal? one? e=@num $ | $v = $e | 2 | TS050 | applied | velocidad es 60⏎F(2, velocidad) => velocidad = 60⏎F(2, velocidad)
 ⟨^¦;⟩ v=@usedname e=@num f=;|$ | ⟨¦;⟩ $v = $e $f | 3 | TS050 | applied | ⟨¦S;⟩X 17⏎SHOW(X) => ⟨¦S;⟩X = 17⏎SHOW(X)
 ^ v=@name <- e=@any+ $ | $v = $e | 1 | TS050 | applied | potencia <- 80⏎F(2, potencia) => potencia = 80⏎F(2, potencia)
@@ -254,7 +250,6 @@ v=@name ⟨+=¦-=¦*=⟩ e=@any+ | $v = $v ⟨+¦-¦*⟩ $e | 1 | TS050 | applie
 ^ v=@of_power ( n=@num ) $ | $v = $n | 1 | TS050 | offered | SPEED(60)⏎F(2, SPEED) => SPEED = 60⏎F(2, SPEED)
 = SI|TRUE $ | = TRUE | 1 | TS102 | applied | X = si⏎IF(X)⏎S⏎ENDIF => X = TRUE⏎IF(X)⏎S⏎ENDIF
 a=@num|@close b=@name = | $a ; $b = | 1.5 | TS013 | applied | F(1, 50) X = 2 => F(1, 50);X = 2
-^ set the? v=@word to n=@num $ | $v = $n | 1.5 | TS050 | applied | X = 1⏎sube la X a 5 => X = 1⏎X = 5
 ^ change v=@name by ⟨¦-⟩ n=@num $ | $v = $v ⟨+¦-⟩ $n | 1.5 | TS050 | offered | N = 5⏎cambiar N por ⟨¦-⟩1 => N = 5⏎N = N ⟨+ ¦-⟩1
 ^ ⟨add¦subtract⟩ n=@num|@val from|to the? v=@name $ | $v = $v ⟨+¦-⟩ $n | 1 | TS050 | offered | X = 40⏎⟨suma¦resta⟩ 5 a X⏎F(1, X) => X = 40⏎X = X ⟨+¦-⟩ 5⏎F(1, X)
 ^ ⟨multiply¦divide¦increase¦decrease⟩ the? v=@name by|over n=@num|@val $ | $v = $v ⟨*¦/¦+¦-⟩ $n | 1 | TS050 | offered | X = 40⏎⟨multiply¦divide¦increase¦decrease⟩ X by 2 => X = 40⏎X = X ⟨*¦/¦+¦-⟩ 2
@@ -283,8 +278,7 @@ c=@callw ( a=@noparen+ ) ) e=;|$ | $c ( $a ) $e | 1 | TS041 | applied | F(2,80))
 c=@callw ( a=@num /|- b=@num ) | $c ( $a , $b ) | 2 | TS076 | offered | F(2/80) => F(2, 80)
 c=@callw ( a=@num _|.|;|&|<|'|'|and|> b=@num ) | $c ( $a , $b ) | 1 | TS076 | applied | F(2|80) => F(2, 80)
 SHOW ( a=@noparen+ = ) | SHOW ( $a ) | 1 | TS076 | offered | SHOW(2 + 2 =) => SHOW(2 + 2)
-SHOW ( a=@val , b=@val ⟨¦, c=@val⟩ ) | SHOW ( $a ) ; SHOW ( $b ) ⟨¦; SHOW ( $c )⟩ | 2 | TS020 | offered | SHOW(DISTANCE, LIGHT_L⟨¦, LIGHT_R⟩) => SHOW(DISTANCE);SHOW(LIGHT_L)⟨¦;SHOW(LIGHT_R)⟩
-SHOW ( a=@val &|+|, " " &|+|, b=@val ) | SHOW ( $a ) ; SHOW ( $b ) | 1 | TS020 | offered | SHOW(LIGHT_L & " " & LIGHT_R) => SHOW(LIGHT_L);SHOW(LIGHT_R)
+SHOW ( a=@val ⟨,¦,¦&|+|, " " &|+|,⟩ b=@val ⟨¦, c=@val¦⟩ ) | SHOW ( $a ) ; SHOW ( $b ) ⟨¦; SHOW ( $c )¦⟩ | ⟨2¦2¦1⟩ | TS020 | offered | SHOW(DISTANCE⟨,¦,¦ & " " &⟩ LIGHT_L⟨¦, LIGHT_R¦⟩) => SHOW(DISTANCE);SHOW(LIGHT_L)⟨¦;SHOW(LIGHT_R)¦⟩
 ^ SHOW a=@val ,? b=@val $ | SHOW ( $a ) ; SHOW ( $b ) | 2 | TS015 | applied | SHOW DISTANCE LIGHT_R => SHOW(DISTANCE);SHOW(LIGHT_R)
 c=@callw ( a=@noparen* b=@num|@word e=;|$|UNTIL|@start | $c ( $a $b ) $e | 1 | TS016 | applied | F(2,80 => F(2,80)
 ⟨TONE|@of_pitch (¦TONE ( @num ,⟩ a=@num , b=@num ) | BEEP ( @ms:b , $a ) | 1 | TS102 | offered | tone(⟨¦8, ⟩440, 1000) => BEEP(1, 440)
@@ -314,18 +308,16 @@ ELSE ( a=@val s=<|<=|>|>= b=@num|@val ) | ELSEIF ( $a $s $b ) | 1 | TS039 | offe
 <block> <question> b=@name = | &h ( $c ) ; $b = | 1 | TS014 | applied | X = 5⏎IF(X = 5) X = 6 ELSE X = 7 => X = 5⏎IF(X = 5);X = 6;ELSE;X = 7;ENDIF
 h=IF|WHILE ( c=@noparen+ ) ( d=@noparen+ ) | &h ( $c AND $d ) | 1.5 | TS010 | applied | IF(DISTANCE < 10)(LIGHT_R > 50)⏎S⏎ENDIF => IF(DISTANCE < 10 AND LIGHT_R > 50)⏎S⏎ENDIF
 c=IF|WHILE|ELSEIF|UNTIL ( ( a=@noparen* b=@num|@word ) e=;|$ | $c ( ( $a $b ) ) $e | 1 | TS016 | applied | IF((DISTANCE < 10)⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
-h=IF|WHILE|LOOP|UNTIL|ELSEIF [ | &h ( | 1 | TS010 | applied | IF[DISTANCE < 10]⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
+h=IF|WHILE|LOOP|UNTIL|ELSEIF ⟨[¦:|.|->|, (⟩ | &h ( | 1 | ⟨TS010¦TS015⟩ | applied | IF⟨[¦:(⟩DISTANCE < 10⟨]¦)⟩⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
 ^ unless <question> | IF ( @not:c ) ; | 1 | TS102 | applied | unless(DISTANCE < 10)⏎F(2, 70)⏎end => IF(DISTANCE >= 10)⏎F(2, 70)⏎ENDIF
 ^ unless that? c=@noparen+ ⟨:|,|;¦b=@start⟩ | IF ( @not:c ) ; ⟨¦$b⟩ | 1.2 | TS102 | applied | unless distance < 10⟨:⏎¦ ⟩F(1,50)⟨⏎ENDIF¦⟩ => IF(DISTANCE >= 10)⟨⏎F(1,50)⏎¦;F(1, 50);⟩ENDIF
 <asks> ( c=@any+ ) ⟨and¦or⟩ ( d=@any+ ) | &h ( ( $c ) ⟨AND¦OR⟩ ( $d ) ) | 1 | TS015 | applied | IF(DISTANCE > 5) ⟨y¦o⟩ (LIGHT_R > 9);S;ENDIF => IF((DISTANCE > 5) ⟨AND¦OR⟩(LIGHT_R > 9));S;ENDIF
-h=IF|WHILE|LOOP|UNTIL|ELSEIF :|.|->|, ( | &h ( | 1 | TS015 | applied | IF:(DISTANCE < 10)⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
 h=IF|WHILE|ELSEIF|LOOP|UNTIL '{' c=@any+ '}' | &h ( $c ) | 1 | TS015 | applied | IF{DISTANCE < 10}⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
 <asks> ( c=@noparen+ b=@start | &h ( $c ) ; $b | 1 | TS016 | offered | si DISTANCE < 10 S si DISTANCE > 10 F(1,50) => IF(DISTANCE < 10);S;IF(DISTANCE > 10);F(1, 50);ENDIF;ENDIF
 <asks> c=@cond+ t=do|:|,|'|'|'{'|;|$ | &h ( $c ) ; @brace:t | 1.3 | TS015 | applied | SI DISTANCE < 10 | S => IF(DISTANCE < 10);S;ENDIF
 <asks> c=@cond+ b=@start | &h ( $c ) ; $b | 2 | TS014 | applied | IF DISTANCE < 10 STOP => IF(DISTANCE < 10);STOP;ENDIF
 h=IF|WHILE|LOOP|WHEN ( c=@any+ , <body> ) $ | &h ( $c ) ; $b $r ; @endof:h | 1 | TS080 | applied | SI|IF(DISTANCE < 10, S) => SI|IF(DISTANCE < 10);S;ENDIF
-^ '='? IF ( c=@any+ , <body> , d=@start s=@all* ) $ | IF ( $c ) ; $b $r ; ELSE ; $d $s ; ENDIF | .9 | TS080 | offered | IF(DISTANCE < 15, B(1, 50), F(1, 50)) => IF(DISTANCE < 15);B(1, 50);ELSE;F(1, 50);ENDIF
-^ '=' IF ( c=@noparen+ ; <body> ; d=@start s=@all* ) $ | IF ( $c ) ; $b $r ; ELSE ; $d $s ; ENDIF | .8 | TS080 | offered | =SI(DISTANCE<10;B(1;60);F(1;60)) => IF(DISTANCE < 10);B(1, 60);ELSE;F(1, 60);ENDIF
+^ '='⟨?¦⟩ IF ( c=@any+ ⟨,¦;⟩ <body> ⟨,¦;⟩ d=@start s=@all* ) $ | IF ( $c ) ; $b $r ; ELSE ; $d $s ; ENDIF | ⟨.9¦.8⟩ | TS080 | offered | ⟨IF(DISTANCE < 10, B(1, 60), ¦=SI(DISTANCE<10;B(1;60);⟩F(1, 60)) => IF(DISTANCE < 10);B(1, 60);ELSE;F(1, 60);ENDIF
 h=IF|WHILE ( c=@any+ , b=@start | &h ( $c ) ; $b | 2 | TS080 | applied | IF(DISTANCE < 10, S) ELSE F(1, 60) ENDIF => IF(DISTANCE < 10);S;ELSE;F(1, 60);ENDIF
 <block> <question> ⟨do|times¦:|,|=|?|'|'|-⟩ ':'? | &h ( $c ) ; | 1 | ⟨TS044¦TS014⟩ | applied | LOOP(3)⟨ TIMES¦:⟩⏎F(1,50)⏎END_LOOP => LOOP(3)⏎F(1,50)⏎END_LOOP
 <block> <question> b=@start|'{' | &h ( $c ) ; $b | 1 | TS014 | applied | LOOP(3) F(1,50) => LOOP(3);F(1, 50);END_LOOP
@@ -337,7 +329,7 @@ h=IF|ELSEIF <question> ( <body> ) e=ELSEIF|ELSE | &h ( $c ) ; $b $r ; $e | .9 | 
 ELSE ⟨¦,⟩ IF | ELSEIF | 1 | TS022 | ⟨first¦applied⟩ | IF(DISTANCE < 5);S;ELSE⟨¦,⟩ IF(DISTANCE < 9);F(1, 50);ENDIF => IF(DISTANCE < 5);S; ELSEIF(DISTANCE < 9);F(1, 50);ENDIF
 IF <question> ? a=@any+ : b=@any+ $ | IF ( $c ) ; $a ; ELSE ; $b ; ENDIF | 1 | TS014 | applied | IF(DISTANCE < 10) ? S : F(1,50) => IF(DISTANCE < 10);S;ELSE;F(1, 50);ENDIF
 ELSE ( <body> ) $ | ELSE ; $b $r | 1 | TS014 | applied | IF(DISTANCE < 10)(S)ELSE(F(1,50)) => IF(DISTANCE < 10);S;ELSE;F(1, 50);ENDIF
-h=ELSE :|,|do|=|'|' | &h ; | 1 | TS014 | applied | IF DISTANCE<10: STOP ELSE: F(1,50) => IF(DISTANCE < 10);STOP;ELSE;F(1, 50);ENDIF
+h=ELSE|TASK :|,|-|do|=|'|' | &h ; | 1 | TS014 | applied | IF DISTANCE<10: STOP ELSE: F(1,50) => IF(DISTANCE < 10);STOP;ELSE;F(1, 50);ENDIF
 h=ELSE|TASK b=@start|'{' | &h ; $b | 1 | TS014 | applied | IF(DISTANCE<10);R(1,60);ELSE F(1,80);ENDIF => IF(DISTANCE < 10);R(1, 60);ELSE;F(1, 80);ENDIF
 a=@any|@close h=ELSE|ELSEIF|ENDIF|END_LOOP|END_WHILE|END_DEF|END_WHEN|END_TASK | $a ; &h | 1 | TS013 | applied | IF LIGHT_R>100 F(4,70) ENDIF => IF(LIGHT_R > 100);F(4, 70);ENDIF
 # LOOP
@@ -364,12 +356,10 @@ a=@callw ( n=@num to|until m=@num , | $a ( RANDOM ( $n , $m ) , | 1 | TS076 | of
 o=(|,|=|<|>|+|- '|' v=@num|@val c=@noparen* '|' | $o ABS ( $v $c ) | 1 | TS010 | offered | D = |LIGHT_L - LIGHT_R|⏎SHOW(D) => D = ABS(LIGHT_L - LIGHT_R)⏎SHOW(D)
 ^ W ( UNTIL (? q=@noparen+ )? ) $ | W ( FOREVER ) UNTIL ( $q ) | 1 | TS029 | offered | W(UNTIL DISTANCE < 10) => W(FOREVER) UNTIL(DISTANCE < 10)
 h=UNTIL|IF|WHILE|WHEN|ELSEIF ( c=@any+ ) o=AND|OR (? d=@any+ )? e=;|$ | &h ( $c &o $d ) $e | 1 | TS015 | offered | F(5, 60) UNTIL(LIGHT_L > 9) OR (LIGHT_R > 9) => F(5, 60) UNTIL(LIGHT_L > 9 OR LIGHT_R > 9)
-^ a=F|B|L|R|M|W|BEEP ( c=@noparen+ ) WHEN (? q=@cond+ )? ;|:|,? b=@start r=@all* END_WHEN $ | WHEN ( $q ) ; $b $r ; END_WHEN ; $a ( $c ) | .8 | TS071 | offered | F(10, 50) WHEN(DISTANCE < 15); BEEP(1, 440); END_WHEN => WHEN(DISTANCE < 15);BEEP(1, 440);END_WHEN;F(10, 50)
-^ a=F|B|L|R|M|W|BEEP ( c=@noparen+ ) WHEN (? q=@cond+ )? ;|:|,? <body> $ | WHEN ( $q ) ; $b $r ; END_WHEN ; $a ( $c ) | .9 | TS071 | offered | F(10, 50) WHEN(DISTANCE < 15) BEEP(1, 440) => WHEN(DISTANCE < 15);BEEP(1, 440);END_WHEN;F(10, 50)
+^ a=F|B|L|R|M|W|BEEP ( c=@noparen+ ) WHEN (? q=@cond+ )? ;|:|,? <body> ⟨END_WHEN¦⟩ $ | WHEN ( $q ) ; $b $r ; END_WHEN ; $a ( $c ) | ⟨.8¦.9⟩ | TS071 | offered | F(9, 50) WHEN(DISTANCE < 9)⟨;¦⟩ S⟨; END_WHEN¦⟩ => WHEN(DISTANCE < 9);S;END_WHEN;F(9, 50)
 UNTIL ( a=@any+ ) OR|or UNTIL ( b=@any+ ) e=;|$ | UNTIL ( $a OR $b ) $e | 1 | TS015 | offered | F(5, 60) UNTIL(LIGHT_L > 9) OR UNTIL(LIGHT_R > 9) => F(5, 60) UNTIL(LIGHT_L > 9 OR LIGHT_R > 9)
 ^ a=@callw ( b=@noparen+ ) UNTIL ( c=@any+ ) UNTIL ( d=@any+ ) $ | $a ( $b ) UNTIL ( $c OR $d ) | 1 | TS029 | offered | F(5, 60) UNTIL(DISTANCE < 10) UNTIL(LIGHT_L > 500) => F(5, 60) UNTIL(DISTANCE < 10 OR LIGHT_L > 500)
 m=MIN|MAX ( a=@num|@val , b=@num|@val , c=@num|@val ) | $m ( $a , $m ( $b , $c ) ) | 1 | TS020 | offered | SHOW(MIN(DISTANCE, 5, 9)) => SHOW(MIN(DISTANCE, MIN(5, 9)))
-^ declare v=@word is|to n=@num $ | $v = $n | 1 | TS050 | applied | LET SPEED BE 50⏎F(2, SPEED) => SPEED = 50⏎F(2, SPEED)
 LOOP ( ⟨@name =¦⟩ 1 to|until⟨¦|,⟩ n=@num ) | LOOP ( $n ) | 1 | TS063 | offered | LOOP(⟨I = ¦⟩1 TO 5)⏎S⏎END_LOOP => LOOP(5)⏎S⏎END_LOOP
 ^ a=L|R ⟨n=@num¦( n=@num )⟩ $ | $a ( @angle:n DEG , 80 ) | 2 | ⟨TS015¦TS020⟩ | offered | L⟨ 90¦(90)⟩ => L(90 DEG, 80)
 a=F|B ( FOREVER ) | $a ( FOREVER , 80 ) | 2 | TS020 | offered | F(FOREVER) UNTIL(DISTANCE < 10) => F(FOREVER, 80) UNTIL(DISTANCE < 10)
@@ -389,24 +379,20 @@ LOOP ( v=@usedname , 1 , n=@num ) | $v = 0 ; LOOP ( $n ) ; $v = $v + 1 | .5 | TS
 <for> @name in range ( 1 , n=@num ) :? | LOOP ( $n - 1 ) ; | 1 | TS102 | offered | for side in range(1, 5):⏎F(1, 50)⏎END_LOOP => LOOP(5 - 1)⏎F(1, 50)⏎END_LOOP
 <for> @name in range ( ⟨¦0 ,⟩ n=@num ) :? | LOOP ( $n ) ; | 1 | TS102 | applied | for i in range(⟨¦0, ⟩4): F(1,60); R(0.5,60) => LOOP(4);F(1, 60);R(0.5, 60);END_LOOP
 ⟨LOOP|count @name =|from¦^ @name =⟩ 1 to|until n=@num do|:? ⟨¦$⟩ | LOOP ( $n ) ⟨;¦⟩ | 1 | TS102 | offered | ⟨para i de¦veces =⟩ 1 a 4⏎F(1,50)⏎fin ⟨para¦⟩ => LOOP(4)⏎F(1,50)⏎END_LOOP
-LOOP ( declare? @name = 0 ; @name < n=@num ; @name ++ ) | LOOP ( $n ) | 1 | TS063 | offered | LOOP(I = 0; I < 4; I++);F(1, 50);END_LOOP => LOOP(4);F(1, 50);END_LOOP
+⟨LOOP¦<for>⟩ ( declare? @name = ⟨0¦1⟩ ; @name ⟨<¦<=⟩ n=@num ; @name ++ ) | LOOP ( $n ) ⟨¦;⟩ | 1 | ⟨TS063¦TS102⟩ | offered | ⟨LOOP(I = 0; I < 4¦for(I = 1; I <= 4⟩; I++);F(1, 50);END_LOOP => LOOP(4);F(1, 50);END_LOOP
 ^ v=@name = c=@cond+ ? a=@num|@val : b=@num|@val $ | IF ( $c ) ; $v = $a ; ELSE ; $v = $b ; ENDIF | 1 | TS069 | applied | V = DISTANCE > 20 ? 80 : 30⏎F(1, V) => IF(DISTANCE > 20);V = 80;ELSE;V = 30;ENDIF⏎F(1, V)
 ^ w=@callw ( a=@noparen+ , c=@val s=<|> n=@num ? x=@num : y=@num ) $ | IF ( $c $s $n ) ; $w ( $a , $x ) ; ELSE ; $w ( $a , $y ) ; ENDIF | 1 | TS069 | offered | F(1, DISTANCE > 20 ? 80 : 40) => IF(DISTANCE > 20);F(1, 80);ELSE;F(1, 40);ENDIF
 a=@num ( c=@noparen+ ) | $a * ( $c ) | 1 | TS048 | offered | X = 2(20 + 10)⏎F(1, X) => X = 2 *(20 + 10)⏎F(1, X)
 ^ q=@val s=<|>|<=|>= n=@num|@val :|do|=|->|=>? b=@start r=@all* | IF ( $q $s $n ) ; $b $r | 1 | TS042 | offered | DISTANCE < 10: S => IF(DISTANCE < 10);S;ENDIF
-^ BREAK LOOP $ | BREAK | 1 | TS044 | applied | LOOP(2)⏎F(1, 50)⏎BREAK LOOP⏎END_LOOP => LOOP(2)⏎F(1, 50)⏎BREAK⏎END_LOOP
-<for> ( declare? @name = 1 ; @name <= n=@num ; @name ++ ) | LOOP ( $n ) ; | 1 | TS102 | offered | for(i=1; i<=3; i++){ F(1,80); } => LOOP(3);F(1, 80);END_LOOP;
-^ FOREVER ⟨:¦⟩ $ | LOOP ( FOREVER ) ⟨;¦⟩ | 1 | TS032 | applied | forever⟨:¦⟩⏎  F(1,50)⟨¦⏎end⟩ => LOOP(FOREVER)⏎  F(1,50)⏎END_LOOP
-^ LOOP FOREVER :? $ | LOOP ( FOREVER ) | 1 | TS102 | applied | repetir siempre⏎F(1, 50)⏎fin repetir => LOOP(FOREVER)⏎F(1, 50)⏎END_LOOP
+^ ⟨BREAK¦S|STOP⟩ LOOP $ | BREAK | 1 | ⟨TS044¦TS102⟩ | applied | LOOP(2)⏎F(1, 50)⏎⟨BREAK¦STOP⟩ LOOP⏎END_LOOP => LOOP(2)⏎F(1, 50)⏎BREAK⏎END_LOOP
+^ ⟨FOREVER :¦FOREVER¦LOOP FOREVER :?⟩ $ | LOOP ( FOREVER ) ⟨;¦¦⟩ | 1 | ⟨TS032¦TS032¦TS102⟩ | applied | ⟨forever:¦forever¦repetir siempre⟩⏎  F(1,50)⟨¦⏎end¦⏎fin repetir⟩ => LOOP(FOREVER)⏎  F(1,50)⏎END_LOOP
 ^ FOREVER ( <body> ) $ | LOOP ( FOREVER ) ; $b $r | 1 | TS080 | applied | FOREVER(F(1, 80)) => LOOP(FOREVER);F(1, 80);END_LOOP
 ^ FOREVER that c=@cond+ ⟨b=@start|'{'¦':'? $⟩ | WHILE ( $c ) ⟨; $b¦⟩ | 1 | TS102 | offered | siempre que DISTANCE > 10⟨ ¦⏎⟩F(1, 50)⟨¦⏎fin⟩ => WHILE(DISTANCE > 10)⟨;¦⏎⟩F(1, 50)⟨;¦⏎⟩END_WHILE
-h=TASK :|,|-|'|' | &h ; | 1 | TS014 | applied | TASK:⏎BEEP(1, 440)⏎END_TASK => TASK⏎BEEP(1, 440)⏎END_TASK
 ⟨^ TASK @num ':'? $¦TASK ( @num|@word? )⟩ | TASK | 1 | ⟨TS044¦TS039⟩ | offered | TASK⟨ 1¦(1)⟩⏎BEEP(1, 440)⏎END_TASK => TASK⏎BEEP(1, 440)⏎END_TASK
 ^ LOOP UNTIL c=@cond+ ⟨':'|do? b=@start|'{'¦':'|'{'? $⟩ | WHILE ( @not:c ) ⟨; $b¦⟩ | 1 | TS102 | applied | repeat until DISTANCE < 10⟨ ¦⏎⟩F(1, 50)⟨¦⏎end⟩ => WHILE(DISTANCE >= 10)⟨;¦⏎⟩F(1, 50)⟨;¦⏎⟩END_WHILE
-END_LOOP UNTIL ( c=@any+ ) $ | IF ( $c ) ; <end> | 1 | TS064 | offered | LOOP(FOREVER)⏎F(1, 50)⏎END_LOOP UNTIL(DISTANCE < 10) => LOOP(FOREVER)⏎F(1, 50)⏎IF(DISTANCE < 10);BREAK;ENDIF;END_LOOP
+⟨END_LOOP UNTIL ( c=@any+ )¦^ UNTIL c=@cond+⟩ $ | IF ( $c ) ; <end> | ⟨1¦2⟩ | TS064 | ⟨offered¦applied⟩ | LOOP⟨(FOREVER)¦⟩⏎F(1, 50)⏎⟨END_LOOP UNTIL(DISTANCE < 10)¦UNTIL DISTANCE < 10⟩ => LOOP(FOREVER)⏎F(1, 50)⏎IF(DISTANCE < 10);BREAK;ENDIF;END_LOOP
 ^ LOOP ( FOREVER ) UNTIL ( c=@any+ ) $ | WHILE ( @not:c ) | 1 | TS102 | offered | LOOP(FOREVER) UNTIL(LIGHT_R > 800)⏎F(1, 40)⏎END_LOOP => WHILE(LIGHT_R <= 800)⏎F(1, 40)⏎END_WHILE
 ^ LOOP ( n=@num ) UNTIL ( c=@any+ ) $ | LOOP ( $n ) ; IF ( $c ) ; BREAK ; ENDIF | 1 | TS064 | offered | LOOP(3) UNTIL(DISTANCE < 10)⏎F(1, 40)⏎END_LOOP => LOOP(3);IF(DISTANCE < 10);BREAK;ENDIF⏎F(1, 40)⏎END_LOOP
-^ UNTIL c=@cond+ $ | IF ( $c ) ; <end> | 2 | TS064 | applied | LOOP⏎F(1, 50)⏎UNTIL DISTANCE < 10 => LOOP(FOREVER)⏎F(1, 50)⏎IF(DISTANCE < 10);BREAK;ENDIF;END_LOOP
 ^ do '{' b=@start | LOOP ( FOREVER ) ; $b | 3 | TS064 | applied | DO { F(1, 50)⏎} WHILE(DISTANCE > 9) => LOOP(FOREVER);F(1, 50)⏎IF(DISTANCE <= 9);BREAK;ENDIF;END_LOOP
 # how often something is done, said behind it or before it
 ⟨^ n=@num b=@def $¦^ b=@def *|X? n=@num times? $¦call b=@def n=@num⟩ | LOOP ( $n ) ; $b ; END_LOOP | 1 | TS062 | applied | DEF SALTO;F(0.2, 60);END_DEF⏎⟨3 SALTO¦SALTO*3¦CALL SALTO 3⟩ => DEF SALTO;F(0.2, 60);END_DEF⏎LOOP(3);SALTO;END_LOOP
@@ -433,16 +419,14 @@ v=@val to the? wall | &v | 1 | TS102 | first | IF(distancia a la pared < 10)⏎S
 ^ v=@of_time n=@num $ | $v = $n | 1 | TS050 | applied | tiempo 2⏎F(tiempo,80) => tiempo = 2⏎F(tiempo,80)
 a=@close '|' h=END_LOOP|ENDIF|END_WHILE|END_DEF|END_WHEN|END_TASK | $a ; &h | 1 | TS061 | applied | LOOP(2);F(1, 80)|END_LOOP => LOOP(2);F(1, 80);END_LOOP
 ^ DEF ( n=@word ) | DEF $n | 1 | TS039 | offered | DEF(SALUDO)⏎BEEP(1,440)⏎END_DEF⏎SALUDO => DEF SALUDO⏎BEEP(1,440)⏎END_DEF⏎SALUDO
-DEF n=@word :|'|'|=|'->'|'=>' | DEF $n ; | 1 | TS014 | applied | DEF SALUDO = BEEP(1,440)⏎SALUDO => DEF SALUDO;BEEP(1, 440);END_DEF⏎SALUDO
-DEF n=@word b=@start|'{' | DEF $n ; $b | 1 | TS014 | applied | procedure square F(1,50) end => DEF SQUARE;F(1, 50);END_DEF
+DEF n=@word ⟨:|'|'|=|'->'|'=>'¦b=@start|'{'⟩ | DEF $n ; ⟨¦$b⟩ | 1 | TS014 | applied | DEF SALUDO⟨ = ¦ ⟩BEEP(1,440)⏎SALUDO => DEF SALUDO;BEEP(1, 440);END_DEF⏎SALUDO
 ⟨; call¦^ call|do|make|the the|one?⟩ b=@def | ⟨;¦⟩ $b | 1 | TS044 | applied | DEF SALTO;F(0.2, 60);END_DEF⟨;CALL¦⏎hacer⟩ SALTO => DEF SALTO;F(0.2, 60);END_DEF⟨;¦⏎⟩SALTO
 # ends of blocks
 ^ ⟨end¦END_DEF⟩ @def $ | END_DEF | 1 | ⟨TS022¦TS044⟩ | ⟨applied¦first⟩ | DEF SALTO⏎F(1, 50)⏎⟨FIN¦END_DEF⟩ SALTO⏎SALTO => DEF SALTO⏎F(1, 50)⏎END_DEF⏎SALTO
 a=@close h=end $ | $a ; &h | 1 | TS013 | applied | F(2,80) fin => F(2, 80);
 h=END_LOOP|ENDIF|END_WHILE|END_DEF|END_WHEN|END_TASK ( @noparen+ ) | &h | 1 | TS039 | first offered | LOOP(3)⏎F(2, 80)⏎END_LOOP(3) => LOOP(3)⏎F(2, 80)⏎END_LOOP
 ; LOOP $ | ; END_LOOP | 4 | TS014 | applied | LOOP(4) F(1,50) R(0.5,50) LOOP => LOOP(4);F(1, 50);R(0.5, 50);END_LOOP
-^ S|STOP|BREAK LOOP $ | BREAK | 1 | TS102 | applied | LOOP(FOREVER)⏎F(0.2,50)⏎IF(DISTANCE < 10)⏎STOP LOOP⏎ENDIF⏎END_LOOP => LOOP(FOREVER)⏎F(0.2,50)⏎IF(DISTANCE < 10)⏎BREAK⏎ENDIF⏎END_LOOP
-^ program @word $ |  | 1 | TS044 | applied | programa baile⏎F(1, 50) => ⏎F(1, 50)
+^ ⟨program @word¦then ,?⟩ $ |  | 1 | TS044 | applied | ⟨programa baile¦luego,⟩⏎F(1, 50) => ⏎F(1, 50)
 ^ leaves 0 ;? $ |  | 1 | TS065 | applied | F(1, 50)⏎return 0; => F(1, 50)⏎
 ^ end program? $ | FIN | 0 | TS044 | first | F(1, 50)⏎fin programa => F(1, 50)⏎
 end -|.|of|the? k=IF|LOOP|WHILE|DEF|FOREVER|count ;|$ | @endof:k | 1 | TS022 | first | definir bailar⏎L(1,50)⏎fin definir⏎bailar => DEF bailar⏎L(1,50)⏎END_DEF⏎bailar
@@ -464,10 +448,8 @@ a=@close , $ | $a ; | .8 | TS013 | applied | F(2,80),⏎R(1,50), => F(2, 80)⏎R
 ; ( b=@start r=@all* e=@close ) ; | ; $b $r $e ; | 1 | TS080 | applied | LOOP(4);(F(1, 60);R(1, 50));END_LOOP => LOOP(4);F(1, 60);R(1, 50);END_LOOP
 ; first+ ,? b=@start | ; $b | 1 | TS044 | applied | F(2, 80); y despues B(1, 80) => F(2, 80);B(1, 80)
 ^ ⟨(¦[⟩ <body> ⟨)¦]⟩ $ | $b $r | 1 | TS080 | applied | ⟨(¦[⟩F(2,80), R(1,60)⟨)¦]⟩ => F(2, 80);R(1, 60)
-^ then ,? $ |  | 1 | TS044 | applied | F(1, 50);⏎luego, => F(1, 50);⏎
 # words of other languages around a program
-⟨W8¦brake⟩ | ⟨W¦BREAK⟩ | 1 | TS102 | offered | ⟨W8(1)¦LOOP(3)⏎S⏎BRAKE⏎END_LOOP⟩ => ⟨W(1)¦LOOP(3)⏎S⏎BREAK⏎END_LOOP⟩
-eff | F | 1 | TS102 | first offered | efe dos coma ochenta => F(2, 80)
+⟨W8¦brake¦eff⟩ | ⟨W¦BREAK¦F⟩ | 1 | TS102 | ⟨offered¦offered¦first offered⟩ | ⟨W8(1)¦LOOP(3)⏎S⏎BRAKE⏎END_LOOP¦efe dos coma ochenta⟩ => ⟨W(1)¦LOOP(3)⏎S⏎BREAK⏎END_LOOP¦F(2, 80)⟩
 ^ import @any+ ;? $ |  | 1 | TS072 | applied | import robot⏎F(2,80) => ⏎F(2,80)
 ⟨read ( v=@val )¦^ read the? v=@val $⟩ | $v | 1 | TS102 | applied | ⟨X = leer(DISTANCE)¦leer DISTANCE⟩ => ⟨X =DISTANCE¦DISTANCE⟩
 ^ ⟨no F|B|L|R|M extra?¦cease of F⟩ $ | S | .5 | TS102 | first | ⟨no avanzar mas¦para de avanzar⟩ => S

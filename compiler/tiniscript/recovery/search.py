@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 from tiniscript.base.kit import Kit
 from tiniscript.recovery import lines, rewrites, rows
-from tiniscript.recovery.blocks import Edit, Line, Matched, matched
+from tiniscript.recovery.blocks import Edit, Line, Matched, Matching
 from tiniscript.recovery.concepts import ENDED, Lexeme, Names, lexemes, made, plain, texts, words_of
 from tiniscript.recovery.lines import MARGIN, Reading, Step
 from tiniscript.recovery.moved import Moved, ordered
@@ -283,12 +283,12 @@ class Recovery:
         pairs = [*zip(self.lines, readings, strict=True)]
         found: Matched | None = Matched({}, {}, {}, True)
         if has_blocks:
-            found = matched([
+            found = Matching([
                 Line(line.indent, each.tokens, each.items, bool(each.steps), each.is_new_line,
                      any(step.code == rows.DO_CODE for step in each.steps),
                      _WHEN.match(line.source.upper()) is not None)
                 for line, each in pairs
-            ])  # fmt: skip
+            ]).run()  # fmt: skip
         if found is None:
             return None
         out = []

@@ -25,7 +25,6 @@ from tiniscript.recovery.concepts import (
     made,
     said_of,
 )
-from tiniscript.syntax.devices import actuator_word
 from tiniscript.syntax.lexer import NUMBER, WORD
 
 LONG_S = 20  # so much without a unit may be a power, degrees or centimetres
@@ -302,7 +301,7 @@ class _Reader:
     def call(self, has_until: bool, is_order: bool) -> Filled | None:
         assert self.command is not None
         device = self.names.actuators.get(self.command)
-        word = actuator_word(device) if device else WORDS[self.command]
+        word = device.word if device else WORDS[self.command]
         if not word.arguments:
             is_sure = self.is_sure and self.times is None
             stop = Filled([made(word.text)], self.cost, is_sure, self.times)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from tiniscript.recovery.concepts import Lexeme, plain
+from tiniscript.recovery.concepts import Lexeme, made, plain
 from tiniscript.syntax.formatter import instruction_text
 from tiniscript.syntax.lexer import NUMBER, WORD, Token
 
@@ -20,16 +20,15 @@ def laid_out(tokens: Sequence[Lexeme]) -> str:
 
 def as_written(tokens: Sequence[Lexeme]) -> str:
     """Return a line as it was written, with its own spaces where nothing was changed."""
-    out, before = "", None
+    out, before = "", made("(")
     for token in tokens:
         space = token.space
         if space is None:
-            is_closed_up = before is None or token.text in (",", ")", ";", "(")
-            space = "" if is_closed_up or (before and before.text in ("(", "-", "|")) else " "
-        elif not space and before is not None:
-            are_words = all(each.kind in (WORD, NUMBER) for each in (token, before))
-            space = " " if are_words else ""
-        if before is not None and before.text == "(" and before.source is None:
+            is_closed_up = token.text in (",", ")", ";", "(") or before.text in ("(", "-", "|")
+            space = "" if is_closed_up else " "
+        elif not space and {token.kind, before.kind} <= {WORD, NUMBER}:
+            space = " "
+        if before.text == "(" and before.source is None:
             space = ""
         out += space + _source(token)
         before = token

@@ -21,7 +21,6 @@ from tiniscript.semantics.ir import Statement
 from tiniscript.semantics.symbols import ANY, Name, Scope
 from tiniscript.semantics.types import Kinds, Value
 from tiniscript.syntax import ast
-from tiniscript.syntax.devices import actuator_word
 from tiniscript.syntax.parser import parse
 
 if TYPE_CHECKING:
@@ -264,7 +263,7 @@ class _Checker(Scope):
 
     def actuator(self, node: ast.Command, number: int, made: list[Statement]) -> None:
         device = self.kit.actuators[number]
-        word = actuator_word(device)
+        word = device.word
         if node.arguments is None:
             self.report(codes.MISSING_OPEN, node.span, word=device.name, usage=word.usage,
                         fix=word.example)  # fmt: skip

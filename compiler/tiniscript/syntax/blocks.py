@@ -15,7 +15,6 @@ from tiniscript.syntax.lexer import Token
 from tiniscript.syntax.reporter import Reporter
 
 HEADERS = frozenset(BLOCK_ENDS) - {"DEF", "TASK"}  # with brackets: IF, LOOP, WHILE, WHEN
-_AT_TOP = frozenset(("DEF", *TASK_WORDS))  # they stand in no other block, and do not count as one
 ENDS = {end: word for word, end in BLOCK_ENDS.items()}  # ENDIF: IF …
 ENDS |= {alias: ENDS[end] for alias, end in ALIASES.items()}
 

@@ -215,8 +215,7 @@ class ExpressionParser:
     def no_value(self, token: Token) -> NoReturn:
         """A value is expected, and this token begins none."""
         known = WORDS.get(token.text) if token.kind is WORD else None
-        if token.kind is ODD:
-            self.reporter.fail(*odd(token), found=token.text)
+        self.no_odd(token)
         if known is not None:
             self.no_unit(token)
             if known.role == "forever":
@@ -229,6 +228,18 @@ class ExpressionParser:
         before = self.cursor.tokens[self.cursor.before(self.cursor.i)] if self.cursor.i else token
         shown = {} if before.kind is ODD else {"before": before.text}
         self.reporter.fail(codes.MISSING_VALUE, token.span or before.span, **shown)
+
+    def no_odd(self, token: Token) -> None:
+        """A token that the language does not have."""
+        if token.kind is not ODD:
+            return
+        first, is_gap = token.text[0], not token.text.strip("_")  # a gap to fill
+        code = codes.BAD_NAME if first.isalnum() or first == "_" else codes.ODD_CHARACTER
+        if first.isdigit() or is_gap or (first == "." and len(token.text) > 1):
+            code = codes.BAD_NUMBER
+        elif first == "~":
+            code = codes.CHECKSUM_FORM
+        self.reporter.fail(code, token.span, found=token.text)
 
     def no_unit(self, token: Token) -> None:
         """CM or DEG anywhere but behind the whole of a value."""
@@ -249,23 +260,10 @@ class ExpressionParser:
         """In brackets a comma or their end is expected."""
         token, before = self.cursor.inner(), self.cursor.last
         self.no_unit(token if before.text not in WAYS else before)
-        if token.kind is ODD:
-            self.reporter.fail(*odd(token), found=token.text)
+        self.no_odd(token)
         if token.kind in (NUMBER, WORD, "("):
             word = self.cursor.source[Span(0, bracket.start)].rpartition("\n")[2].split("(")[-1]
             word = word.split(";")[-1].split("|")[-1].strip().upper()
             usage = {"usage": WORDS[word].usage} if word in WORDS else {}
             self.reporter.fail(codes.MISSING_COMMA, token.span, **usage)
         self.reporter.fail(codes.MISSING_CLOSE, bracket.span, before=before.text)
-
-
-def odd(token: Token) -> tuple[codes.Code, Span]:
-    """Return what is wrong with a token that the language does not have."""
-    first = token.text[0]
-    if first.isdigit() or (first == "." and len(token.text) > 1):
-        return codes.BAD_NUMBER, token.span
-    if not token.text.strip("_"):
-        return codes.BAD_NUMBER, token.span  # a gap to fill
-    if first == "~":
-        return codes.CHECKSUM_FORM, token.span
-    return codes.BAD_NAME if first.isalnum() or first == "_" else codes.ODD_CHARACTER, token.span

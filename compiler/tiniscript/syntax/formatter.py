@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from tiniscript.base.source import Source
 from tiniscript.base.words import ALIASES, BLOCK_ENDS
-from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, WORD, Scan, Token, scan
+from tiniscript.syntax.lexer import NEWLINE, NUMBER, WORD, Scan, Token, scan
 from tiniscript.syntax.operators import SIGNS
 
 INDENT = "  "
@@ -62,13 +62,10 @@ def pieces_of(scanned: Scan) -> list[Piece]:
     brackets = 0  # open in it
     line = 0
     line_is_empty, after_blank = True, False
-    for token in sorted((*scanned.tokens, *scanned.comments), key=_start):
+    for token in sorted((*scanned.tokens[:-1], *scanned.comments), key=lambda it: it.start):
         kind = token.kind
-        if kind is END:
-            break
         if kind is NEWLINE:
-            if line_is_empty and not is_open:
-                after_blank = True
+            after_blank = after_blank or (line_is_empty and not is_open)
             line += 1
             line_is_empty = True
             is_open = is_open and brackets > 0
@@ -94,10 +91,6 @@ def pieces_of(scanned: Scan) -> list[Piece]:
         if kind == "|":
             is_open = False
     return pieces
-
-
-def _start(token: Token) -> int:
-    return token.start
 
 
 def comment_text(text: str) -> str:

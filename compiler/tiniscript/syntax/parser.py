@@ -36,8 +36,8 @@ from tiniscript.diagnostics import codes
 from tiniscript.syntax.ast import Argument, Assign, Break, Command, Program
 from tiniscript.syntax.blocks import ENDS, HEADERS, Blocks
 from tiniscript.syntax.cursor import AT_END, Cursor
-from tiniscript.syntax.expressions import ExpressionParser, odd
-from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, ODD, WORD, Scan, Token, scan
+from tiniscript.syntax.expressions import ExpressionParser
+from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, WORD, Scan, Token, scan
 from tiniscript.syntax.reporter import Failed, Reporter
 
 ENOUGH = 100  # diagnostics after which reading on helps nobody
@@ -204,10 +204,9 @@ class Parser:
         cursor = self.cursor
         cursor.i += 1
         tokens, head = cursor.tokens, None
-        if word.text == "LOOP" and tokens[min(cursor.i + 2, len(tokens) - 1)].kind == "=":
-            self.blocks.begin(word.text, word.span)
-            self.reporter.fail(codes.LOOP_COUNTS, tokens[cursor.i + 1].span)
         try:
+            if word.text == "LOOP" and tokens[min(cursor.i + 2, len(tokens) - 1)].kind == "=":
+                self.reporter.fail(codes.LOOP_COUNTS, tokens[cursor.i + 1].span)
             head = self.argument_of(word)
         finally:
             self.blocks.begin(word.text, cursor.span_from(word), head)
@@ -268,9 +267,9 @@ class Parser:
             line = str(self.cursor.source.position(block.header.start)[0])
             right = BLOCK_ENDS[block.word]
             values = {"found": word.text, "word": block.word, "line": line, "right": right}
-            if block.word != "LOOP" and len(block.here) > 1:
-                if not isinstance(block.here[-1], Break):  # nothing comes behind one
-                    values["several"] = self.cursor.source[block.here[-1].span]
+            last = block.here[-1] if len(block.here) > 1 and block.word != "LOOP" else None
+            if last and not isinstance(last, Break):  # nothing comes behind one
+                values["several"] = self.cursor.source[last.span]
             self.reporter.report(codes.WRONG_END, word.span, **values)
             blocks.end(word.span)
         blocks.end(word.span)
@@ -312,8 +311,7 @@ class Parser:
 
     def no_word(self, token: Token) -> None:
         """An instruction begins with a sign or a number."""
-        if token.kind is ODD:
-            self.reporter.fail(*odd(token), found=token.text)
+        self.expressions.no_odd(token)
         code = codes.EXTRA_CLOSE if token.kind == ")" else codes.NOT_AN_INSTRUCTION
         self.reporter.fail(code, token.span, found=token.text)
 
@@ -327,8 +325,7 @@ class Parser:
     def no_bracket(self, known: Word) -> None:
         """After a word its values are expected, in brackets."""
         token = self.cursor.token
-        if token.kind is ODD:
-            self.reporter.fail(*odd(token), found=token.text)
+        self.expressions.no_odd(token)
         word = self.cursor.last
         self.reporter.fail(codes.MISSING_OPEN, word.span, word=known.text, usage=known.usage)
 
@@ -336,8 +333,7 @@ class Parser:
         """The end of an instruction is expected."""
         cursor = self.cursor
         token = cursor.token
-        if token.kind is ODD:
-            self.reporter.fail(*odd(token), found=token.text)
+        self.expressions.no_odd(token)
         if token.kind == ")":
             self.reporter.fail(codes.EXTRA_CLOSE, token.span)
         self.expressions.no_unit(token)
