@@ -62,9 +62,10 @@ class _Block:
     def __init__(self, item: Item, k: int, line: Line) -> None:
         is_header = item.kind == "open"
         self.word = item.word if is_header else ""  # nothing for braces that belong to no header
+        self.end = BLOCK_ENDS.get(self.word, "")
         self.line = k
         self.indent = line.indent
-        self.body: int | None = None  # its lines' indentation, -1 where that is not deeper
+        self.body: int | None = None  # its lines' indentation, 0 where that is not deeper
         self.has_brace = not self.word
         self.is_begun = is_header and line.has_body  # a row says that its body begins
         self.is_do = is_header and line.is_do
@@ -73,14 +74,6 @@ class _Block:
         head = [each.text for each in line.tokens[item.start + 1 : item.end]]
         self.is_endless = head in (["(", "FOREVER", ")"], ["(", "TRUE", ")"])
         self.last: int | None = None  # its last line that is ever done
-
-    @property
-    def end(self) -> str:
-        return BLOCK_ENDS[self.word]
-
-    @property
-    def has_indented_body(self) -> bool:
-        return self.body is not None and self.body >= 0
 
 
 class Matching:
@@ -120,7 +113,7 @@ class Matching:
             if block.has_brace and block.line == last:
                 self.tails.setdefault(last, []).append(block.end)
                 continue
-            self.is_sure = self.is_sure and block.has_indented_body and block.is_begun
+            self.is_sure = self.is_sure and bool(block.body) and block.is_begun
             self.close_behind(last if block.last is None else block.last, block)
         return Matched(self.edits, self.tails, self.behind, self.is_sure)
 
@@ -139,7 +132,7 @@ class Matching:
         indent = self.line.indent
         while self.open and self.item.kind in ("open", "do"):
             block = self.open[-1]
-            is_left = block.body is not None and indent < block.body and indent <= block.indent
+            is_left = indent < (block.body or 0) and indent <= block.indent
             if not is_left or block.has_brace:
                 break
             self.open.pop()
@@ -147,7 +140,7 @@ class Matching:
             self.close_behind(last, block)
         for block in self.open:
             if block.body is None and block.line < self.k:
-                block.body = indent if indent > block.indent else -1
+                block.body = indent if indent > block.indent else 0
 
     # -- items --------------------------------------------------------------------------------
 
@@ -255,7 +248,7 @@ class Matching:
         if self.open and self.open[-1].word not in ("", want):
             words = [block.word for block in self.open]
             block = self.open[-1]
-            is_inside = (len(words) > 1 and block.line == k) or block.has_indented_body
+            is_inside = (len(words) > 1 and block.line == k) or bool(block.body)
             if want not in words:
                 self.edit(1, self.open.pop().end)
                 self.is_sure = self.is_sure and (self.line.is_rewritten or block.is_translated)

@@ -9,7 +9,7 @@ import copy
 import re
 import unicodedata
 from collections.abc import Iterable, Sequence
-from functools import cache, cached_property, lru_cache
+from functools import cache, lru_cache
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -119,13 +119,6 @@ def words_of(*kinds: str) -> str:
 
 
 _END = re.compile(words_of("end") + "_?")
-# The unit that a word says behind a number, and how many thousandths of it one is.
-UNITS = {
-    word: (said[1], int(said[2]))
-    for word, meanings in lexicon().items()
-    for said in map(str.split, meanings)
-    if said[0] == "unit"
-}
 
 
 @cache
@@ -261,29 +254,23 @@ class Names:
         self.asked = {each.name: each for each in kit.sensors if not each.is_yes_no}
         self.actuators = {each.name: each for each in kit.actuators}
         told = [_names_of(tuple(line)) for line in lines]
-        self.variables = {name for each in told for name in each.variables}
         self.in_brackets = {name for each in told for name in each.in_brackets}
         self.rows = {row for each in told for row in each.rows}
         self.parameters = {k: its for each in told for k, its in each.parameters.items()}
         self.begun = {word: block for each in told for word, block in each.begun.items()}
         if sum(each.left for each in told) < 0:
             self.begun |= {word: "LOOP" for each in told for word in each.counted}
-        self.defs = {name for each in told for name in each.defs} - {row[0] for row in self.rows}
-        self._labels: dict[tuple[str, str, bool], str] = {}
+        defs = {name for each in told for name in each.defs} - {row[0] for row in self.rows}
+        self._name({name for each in told for name in each.variables}, defs)
 
-    @cached_property
-    def known(self) -> Known:
-        return Known(
-            frozenset(self.variables) | self.sensors,
-            frozenset(self.defs) | self.sensors,
-            frozenset(self.actuators),
-        )
-
-    @cached_property
-    def _content(self) -> tuple[object, ...]:
-        words = (frozenset(each) for each in (self.defs, self.in_brackets, self.rows))
+    def _name(self, variables: set[str], defs: set[str]) -> None:
+        self.variables, self.defs = variables, defs
+        values, instructions = self.sensors | variables, self.sensors | defs
+        self.known = Known(values, instructions, frozenset(self.actuators))
+        words = (frozenset(each) for each in (defs, self.in_brackets, self.rows))
         kit = frozenset(self.actuators.values())
-        return (self.known, *words, frozenset(self.begun.items()), kit)
+        self._content = (self.known, *words, frozenset(self.begun.items()), kit)
+        self._labels: dict[tuple[str, str, bool], str] = {}
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Names) and self._content == other._content
@@ -294,10 +281,7 @@ class Names:
     def joined(self, other: Names) -> Names:
         """Return the names of two readings of one program."""
         found = copy.copy(self)
-        found.variables, found.defs = self.variables | other.variables, self.defs | other.defs
-        for cached in ("known", "_content"):
-            found.__dict__.pop(cached, None)
-        found._labels = {}
+        found._name(self.variables | other.variables, self.defs | other.defs)
         return found
 
     def is_name(self, word: str) -> bool:
@@ -333,8 +317,8 @@ class Names:
     def label(self, token: Lexeme) -> str:
         """Return all classes of a token, as one text that a pattern finds them in."""
         is_glued = token.space == "" or token.text in WAYS
-        is_unit = is_glued and token.text in WORDS and token.text in UNITS  # `5S`, `5 CM`
-        key = (token.kind, token.text, is_unit)
+        is_unit = is_glued and token.text in WORDS and said_of(token.text, "unit")  # `5S`, `5 CM`
+        key = (token.kind, token.text, bool(is_unit))
         if key not in self._labels:
             classes = [*self._classes(token), *(["@unit"] if is_unit else [])]
             labels = "|".join(dict.fromkeys(classes))

@@ -13,23 +13,10 @@ from itertools import chain, count
 from typing import NamedTuple
 from unicodedata import category
 
-from tiniscript.base.words import FUNCTIONS, WAYS, WORDS, nearest
-from tiniscript.recovery import rewrites, rows
+from tiniscript.base.words import FUNCTIONS, WAYS, WORDS, concept_of, nearest, said_of
+from tiniscript.recovery import concepts, rewrites, rows
 from tiniscript.recovery.blocks import ANY_END, BRACES
-from tiniscript.recovery.concepts import (
-    CALLED,
-    NEAR,
-    REMEMBERED,
-    UNITS,
-    Lexeme,
-    Names,
-    closed,
-    concept_of,
-    lexemes,
-    made,
-    said_of,
-    texts,
-)
+from tiniscript.recovery.concepts import CALLED, NEAR, Lexeme, Names, lexemes, made, texts
 from tiniscript.recovery.slots import LONG_S, MILLISECONDS_FROM, MOVES, filled
 from tiniscript.syntax.lexer import NUMBER, WORD
 from tiniscript.syntax.operators import SIGNS
@@ -104,7 +91,7 @@ def _alike(token: Lexeme) -> str:
     return "1" if is_plain else text
 
 
-@lru_cache(REMEMBERED)
+@lru_cache(concepts.REMEMBERED)
 def _right(tokens: tuple[tuple[str, str], ...], names: Names) -> Sequence[Item] | Failure:
     found: list[Item] = []
     start = 0
@@ -132,7 +119,7 @@ def read(tokens: Sequence[Lexeme], names: Names, is_quick: bool = False) -> list
     return _read(tuple(tokens), names, is_quick)
 
 
-@lru_cache(REMEMBERED)
+@lru_cache(concepts.REMEMBERED)
 def _read(tokens: tuple[Lexeme, ...], names: Names, is_quick: bool) -> list[Reading]:
     has_setup = len(tokens) > 1 and tokens[1].text == "|" and tokens[0].text in ("SI", "SB")
     setup = list(tokens[:_SETUP]) if has_setup else []
@@ -332,7 +319,7 @@ def _code_of_call(words: Sequence[Lexeme]) -> str:
     if "=" in signs:
         return rows.NAMED_VALUE
     inside = words[signs.index("(") :]
-    if any(each.text in UNITS and each.text not in (*WAYS, "°", "º") for each in inside):
+    if any(said_of(it.text, "unit") and it.text not in (*WAYS, "°", "º") for it in inside):
         return rows.WITH_UNIT
     return rows.OTHER_CALL
 
@@ -368,4 +355,4 @@ def _calls(tokens: Sequence[Lexeme]) -> Iterator[tuple[int, int]]:
         if is_edge:
             start = max(start, k + 1)
         if token.text in _AT_END:
-            start = max(start, closed(tokens, k + 1) or k + 2)
+            start = max(start, concepts.closed(tokens, k + 1) or k + 2)

@@ -12,7 +12,7 @@ from functools import cache, partial
 from itertools import chain, product
 from typing import NamedTuple
 
-from tiniscript.base.words import BLOCK_ENDS, WORDS, concept_of
+from tiniscript.base.words import BLOCK_ENDS, WORDS, concept_of, said_of
 from tiniscript.recovery import rows
 from tiniscript.recovery.concepts import (
     ANY,
@@ -23,7 +23,7 @@ from tiniscript.recovery.concepts import (
     closed,
     joined,
     made,
-    said_of,
+    texts,
 )
 from tiniscript.recovery.slots import LONG_S
 from tiniscript.syntax.lexer import NUMBER, WORD
@@ -228,7 +228,7 @@ class Encoded:
         if new and new[-1].text == ";" and end < len(self.tokens) and self.tokens[end].text == ";":
             new.pop()
         old = self.tokens[start:end]
-        if [each.text for each in new] == [each.text for each in old]:
+        if texts(new) == texts(old):
             return None
         if not row.may_lose_numbers and _numbers(old) - _numbers(new):
             return None
@@ -413,11 +413,11 @@ def one_word(tokens: Sequence[Lexeme], names: Names) -> tuple[list[Lexeme], bool
     tokens = list(tokens)
     for row in names.rows:
         for k in range(len(tokens) - len(row) + 1):
-            if tuple(each.text for each in tokens[k : k + len(row)]) == row:
+            if texts(tokens[k : k + len(row)]) == row:
                 name = made(joined(row))._replace(space=tokens[k].space)
                 return [*tokens[:k], name, *tokens[k + len(row) :]], True
     for k, count in product(range(len(tokens)), (3, 2)):
-        row = tuple(each.text for each in tokens[k : k + count])
+        row = texts(tokens[k : k + count])
         if len(row) < count or any(each.kind is not WORD for each in tokens[k : k + count]):
             continue
         text = "_".join(row)

@@ -168,8 +168,7 @@ SIGNS = r"""
 
 TOKENS = r"""
 # signs that other languages have
-^ v=@usedname == e=@any+ $ | $v = $e | 0 | TS010 | first | X == 5⏎F(X, 80) => X = 5⏎F(X, 80)
-^ v=@name == e=@any+ $ | $v = $e | 1 | TS050 | first offered | X == 6 => X = 6
+^ v=⟨@usedname¦@name⟩ == e=@any+ $ | $v = $e | ⟨0¦1⟩ | ⟨TS010¦TS050⟩ | ⟨first¦first offered⟩ | X == 5⟨⏎F(X, 80)¦⟩ => X = 5⟨⏎F(X, 80)¦⟩
 ⟨==¦!=|=!¦=>¦=<⟩ | ⟨=¦<>¦>=¦<=⟩ | 0 | TS010 | first | IF(DISTANCE ⟨==¦!=¦=>¦=<⟩ 10);S;ENDIF => IF(DISTANCE ⟨=¦<>¦>=¦<=⟩ 10);S;ENDIF
 ⟨= <¦= >¦< or? =¦> or? =¦= / =⟩ | ⟨<=¦>=¦<=¦>=¦<>⟩ | 0 | TS010 | first | IF(DISTANCE ⟨= <¦= >¦< =¦> =¦=/=⟩ 10);S;ENDIF => IF(DISTANCE ⟨<=¦>=¦<=¦>=¦<>⟩ 10);S;ENDIF
 !|no ⟨<¦>⟩ | ⟨>=¦<=⟩ | 0 | TS010 | first | IF(DISTANCE !⟨<¦>⟩ 10)⏎S⏎ENDIF => IF(DISTANCE ⟨>=¦<=⟩ 10)⏎S⏎ENDIF
@@ -264,7 +263,6 @@ RANDOM ⟨(¦⟩ between|from? a=@num to|and|until|-⟨¦|,?⟩ b=@num ⟨)¦⟩
 c=@callw ( a=@noparen+ ; b=@noparen+ e=)|$ | $c ( $a , $b ) | 1 | TS019 | applied | F(2;80 => F(2, 80)
 a=@callw b=@num ,? c=@num ,|;|and? d=@callw | $a ( $b , $c ) ; $d | 1.5 | TS015 | applied | F 2,80,R 1,50 => F(2, 80);R(1, 50)
 v=@val|@def|S|STOP|BREAK|START|ELSE|ENDIF|END_LOOP ( ) | $v | 1 | TS028 | first | LIGHT_L() => LIGHT_L
-c=@callw ( a=@noparen+ ( e=;|$ | $c ( $a ) $e | 1 | TS076 | applied | F(2, 80( => F(2, 80)
 ^ ( c=@callw a=@num ,? b=@num ) $ | $c ( $a , $b ) | 1 | TS076 | applied | (F 2,80) => F(2, 80)
 ^ c=@callw :? a='-'? b=@num ; d='-'? e=@num )|]|$ | $c ( $a $b , $d $e ) | 1 | TS015 | applied | R 0.5; 60 => R(0.5, 60)
 ^ ( a=@num , b=@num ) c=F|B|L|R $ | $c ( $a , $b ) | 1 | TS015 | applied | (2,80)F => F(2, 80)
@@ -274,13 +272,12 @@ F ( - a=@num b=@num )|;|$ | B ( $a , $b ) | .5 | TS017 | offered | F(-1 80) => B
 SHOW ( TIME ) | SHOW ( TIME ) | 1 | TS102 | applied | mostrar(tiempo) => SHOW(TIME)
 c=@callw ( ( a=@nobrace+ ) ) | $c ( $a ) | 1 | TS076 | applied | F((2,80)) => F(2,80)
 c=@callw ( a=@noparen+ s=*|/|%|- b=@num|@val t=+|-|*|/|% d=@noparen+ ) ) e=;|$ | $c ( $a $s ( $b $t $d ) ) $e | 1 | TS041 | applied | SHOW(5 / 3 - 3)) => SHOW(5 /(3 - 3))
-c=@callw ( a=@noparen+ ) ) e=;|$ | $c ( $a ) $e | 1 | TS041 | applied | F(2,80)) => F(2,80)
-c=@callw ( a=@num /|- b=@num ) | $c ( $a , $b ) | 2 | TS076 | offered | F(2/80) => F(2, 80)
-c=@callw ( a=@num _|.|;|&|<|'|'|and|> b=@num ) | $c ( $a , $b ) | 1 | TS076 | applied | F(2|80) => F(2, 80)
+c=@callw ( a=@noparen+ ⟨(¦) )⟩ e=;|$ | $c ( $a ) $e | 1 | ⟨TS076¦TS041⟩ | applied | F(2, 80⟨(¦))⟩ => F(2, 80)
+c=@callw ( a=@num ⟨/|-¦_|.|;|&|<|'|'|and|>⟩ b=@num ) | $c ( $a , $b ) | ⟨2¦1⟩ | TS076 | ⟨offered¦applied⟩ | F(2⟨/¦|⟩80) => F(2, 80)
 SHOW ( a=@noparen+ = ) | SHOW ( $a ) | 1 | TS076 | offered | SHOW(2 + 2 =) => SHOW(2 + 2)
 SHOW ( a=@val ⟨,¦,¦&|+|, " " &|+|,⟩ b=@val ⟨¦, c=@val¦⟩ ) | SHOW ( $a ) ; SHOW ( $b ) ⟨¦; SHOW ( $c )¦⟩ | ⟨2¦2¦1⟩ | TS020 | offered | SHOW(DISTANCE⟨,¦,¦ & " " &⟩ LIGHT_L⟨¦, LIGHT_R¦⟩) => SHOW(DISTANCE);SHOW(LIGHT_L)⟨¦;SHOW(LIGHT_R)¦⟩
 ^ SHOW a=@val ,? b=@val $ | SHOW ( $a ) ; SHOW ( $b ) | 2 | TS015 | applied | SHOW DISTANCE LIGHT_R => SHOW(DISTANCE);SHOW(LIGHT_R)
-c=@callw ( a=@noparen* b=@num|@word e=;|$|UNTIL|@start | $c ( $a $b ) $e | 1 | TS016 | applied | F(2,80 => F(2,80)
+c=⟨@callw¦IF|WHILE|ELSEIF|UNTIL|LOOP⟩ ( a=@noparen* b=@num|@word e=;|$⟨|UNTIL|@start¦⟩ | $c ( $a $b ) $e | 1 | TS016 | applied | F(2,80⟨¦) UNTIL(DISTANCE<10⟩ => F(2,80)⟨¦ UNTIL(DISTANCE<10)⟩
 ⟨TONE|@of_pitch (¦TONE ( @num ,⟩ a=@num , b=@num ) | BEEP ( @ms:b , $a ) | 1 | TS102 | offered | tone(⟨¦8, ⟩440, 1000) => BEEP(1, 440)
 a=F|B|L|R ( u=CM|DEG (? n=@num )? , p=@num ) | $a ( $n $u , $p ) | 1 | TS076 | offered | B(CM(20), 60) => B(20 CM, 60)
 a=F|B|L|R ( p=@num , n=@num u=CM|DEG ) | $a ( $n $u , @power:p ) | 1 | TS076 | offered | R(60, 90 DEG) => R(90 DEG, 60)
@@ -293,8 +290,7 @@ BEEP ( a=<note> , b=<note> ⟨¦, c=<note>⟩ ) | BEEP ( 1 , $a ) ; BEEP ( 1 , $
 a=F|B|L|R|W ( b=@noparen+ ) S|STOP ( c=@val s=<|<=|>|>= d=@num|@val ) $ | $a ( $b ) UNTIL ( $c $s $d ) | 2 | TS102 | offered | F(10, 60) STOP(DISTANCE < 12) => F(10, 60) UNTIL(DISTANCE < 12)
 a=F|B|L|R ( FOREVER , p=@num|@val ) UNTIL ( n=@num ) | $a ( $n , $p ) | 2 | TS202 | offered | F(FOREVER, 80) UNTIL(2) => F(2, 80)
 a=@close '|'|,|.|; UNTIL ( | $a UNTIL ( | 1 | TS029 | applied | F(5, 60).UNTIL(DISTANCE < 30) => F(5, 60) UNTIL(DISTANCE < 30)
-^ W ( c=@val s=<|<=|>|>=|=|<> d=@num|@val ) $ | W ( FOREVER ) UNTIL ( $c $s $d ) | .5 | TS102 | applied | wait(DISTANCE < 10) => W(FOREVER) UNTIL(DISTANCE < 10)
-^ W during|that|to c=@val s=<|<=|>|>= d=@num|@val $ | W ( FOREVER ) UNTIL ( $c $s $d ) | .9 | TS102 | offered | wait for DISTANCE < 10 => W(FOREVER) UNTIL(DISTANCE < 10)
+^ W ⟨( c=@val s=<|<=|>|>=|=|<> d=@num|@val )¦during|that|to c=@val s=<|<=|>|>= d=@num|@val⟩ $ | W ( FOREVER ) UNTIL ( $c $s $d ) | ⟨.5¦.9⟩ | TS102 | ⟨applied¦offered⟩ | wait⟨(DISTANCE < 10)¦ for DISTANCE < 10⟩ => W(FOREVER) UNTIL(DISTANCE < 10)
 ^ W UNTIL that? c=@cond+ $ | W ( FOREVER ) UNTIL ( $c ) | 1 | TS102 | applied | WAIT UNTIL DISTANCE < 10 => W(FOREVER) UNTIL(DISTANCE < 10)
 a=@close UNTIL that? c=@cond+ then+ ,? b=@start | $a UNTIL ( $c ) ; $b | 1 | TS015 | applied | F(2, 80) hasta DISTANCE < 10 luego S => F(2, 80) UNTIL(DISTANCE < 10);S
 a=@close UNTIL that? c=@noparen+ $ | $a UNTIL ( $c ) | 1 | TS015 | applied | F(3, 80) UNTIL DISTANCE < 10 => F(3, 80) UNTIL(DISTANCE < 10)
@@ -322,7 +318,6 @@ h=IF|WHILE ( c=@any+ , b=@start | &h ( $c ) ; $b | 2 | TS080 | applied | IF(DIST
 <block> <question> ⟨do|times¦:|,|=|?|'|'|-⟩ ':'? | &h ( $c ) ; | 1 | ⟨TS044¦TS014⟩ | applied | LOOP(3)⟨ TIMES¦:⟩⏎F(1,50)⏎END_LOOP => LOOP(3)⏎F(1,50)⏎END_LOOP
 <block> <question> b=@start|'{' | &h ( $c ) ; $b | 1 | TS014 | applied | LOOP(3) F(1,50) => LOOP(3);F(1, 50);END_LOOP
 <block> <question> ⟨;? (¦[⟩ <body> ⟨)¦]⟩ $ | &h ( $c ) ; $b $r ; @endof:h | 1 | TS080 | applied | LOOP(4) ⟨(¦[⟩F(1,60); R(1,50)⟨)¦]⟩ => LOOP(4);F(1, 60);R(1, 50);END_LOOP
-c=IF|WHILE|ELSEIF|UNTIL|LOOP ( a=@noparen* b=@num|@word e=;|$ | $c ( $a $b ) $e | 1 | TS016 | applied | F(2,80)UNTIL(DISTANCE<10 => F(2,80)UNTIL(DISTANCE<10)
 # ELSE and ELSEIF
 a=@any ELSE b=@name = | $a ; ELSE ; $b = | 1 | TS014 | applied | X = 5⏎IF(X = 5) X = 6 ELSE X = 7 => X = 5⏎IF(X = 5);X = 6;ELSE;X = 7;ENDIF
 h=IF|ELSEIF <question> ( <body> ) e=ELSEIF|ELSE | &h ( $c ) ; $b $r ; $e | .9 | TS080 | applied | IF(DISTANCE < 10)(S)ELSE(F(1,50)) => IF(DISTANCE < 10);S;ELSE;F(1, 50);ENDIF
@@ -331,7 +326,7 @@ IF <question> ? a=@any+ : b=@any+ $ | IF ( $c ) ; $a ; ELSE ; $b ; ENDIF | 1 | T
 ELSE ( <body> ) $ | ELSE ; $b $r | 1 | TS014 | applied | IF(DISTANCE < 10)(S)ELSE(F(1,50)) => IF(DISTANCE < 10);S;ELSE;F(1, 50);ENDIF
 h=ELSE|TASK :|,|-|do|=|'|' | &h ; | 1 | TS014 | applied | IF DISTANCE<10: STOP ELSE: F(1,50) => IF(DISTANCE < 10);STOP;ELSE;F(1, 50);ENDIF
 h=ELSE|TASK b=@start|'{' | &h ; $b | 1 | TS014 | applied | IF(DISTANCE<10);R(1,60);ELSE F(1,80);ENDIF => IF(DISTANCE < 10);R(1, 60);ELSE;F(1, 80);ENDIF
-a=@any|@close h=ELSE|ELSEIF|ENDIF|END_LOOP|END_WHILE|END_DEF|END_WHEN|END_TASK | $a ; &h | 1 | TS013 | applied | IF LIGHT_R>100 F(4,70) ENDIF => IF(LIGHT_R > 100);F(4, 70);ENDIF
+⟨a=@any|@close h=ELSE|ELSEIF|ENDIF|END_LOOP|END_WHILE|END_DEF|END_WHEN|END_TASK¦a=@close h=end $⟩ | $a ; &h | 1 | TS013 | applied | LOOP(3); F(2,80) ⟨END_LOOP¦fin⟩ => LOOP(3);F(2, 80);END_LOOP
 # LOOP
 ^ ⟨LOOP FOREVER :|,?¦FOREVER :|;?⟩ b=@start|'{' | LOOP ( FOREVER ) ; $b | 1 | ⟨TS015¦TS032⟩ | applied | ⟨LOOP FOREVER¦forever:⟩ F(1,50) => LOOP(FOREVER);F(1, 50);END_LOOP
 ^ LOOP n=@num ⟨(¦times? [⟩ <body> ⟨)¦]⟩ $ | LOOP ( $n ) ; $b $r ; END_LOOP | 1 | TS080 | applied | repite 4 ⟨(¦[⟩F(1, 60) R(0.5, 60)⟨)¦]⟩ => LOOP(4);F(1, 60);R(0.5, 60);END_LOOP
@@ -342,11 +337,10 @@ LOOP ( ) b=':'|'{' | LOOP ( FOREVER ) ; @brace:b | 2 | TS064 | offered | LOOP() 
 ^ do n=@num times :? | LOOP ( $n ) ; | 1 | TS102 | applied | hacer 4 veces⏎F(1,50)⏎R(1,50)⏎fin => LOOP(4)⏎F(1,50)⏎R(1,50)⏎END_LOOP
 LOOP n=X1|X2|X3|X4|X5|X6|X8 | LOOP ( @xn:n ) | 1 | TS015 | applied | LOOP x4⏎F(1,60)⏎END_LOOP => LOOP(4)⏎F(1,60)⏎END_LOOP
 ^ LOOP ':'|'{'? $ | LOOP ( FOREVER ) | 3 | TS064 | applied | repite⏎S⏎fin => LOOP(FOREVER)⏎S⏎END_LOOP
-LOOP n=@val $ | LOOP ( $n ) | 1 | TS015 | applied | X4 = 3⏎LOOP X4⏎F(1,50)⏎END_LOOP => X4 = 3⏎LOOP(X4)⏎F(1,50)⏎END_LOOP
+LOOP ⟨n=@val $¦X|=|-|-> n=@num⟩ | LOOP ( $n ) | 1 | TS015 | applied | X4 = 3⏎LOOP ⟨X4¦x 3⟩⏎F(1,50)⏎END_LOOP => X4 = 3⏎LOOP(⟨X4¦3⟩)⏎F(1,50)⏎END_LOOP
 ^ LOOP <body> n=@num times $ | LOOP ( $n ) ; $b $r ; END_LOOP | 1.5 | TS102 | applied | repeat F(1,60) R(1,60) 4 times => LOOP(4);F(1, 60);R(1, 60);END_LOOP
 ^ LOOP ;? <body> ;? UNTIL c=@cond+ $ | LOOP ( FOREVER ) ; $b $r ; IF ( $c ) ; <end> | 1.5 | TS064 | applied | repeat F(1,50) until DISTANCE < 10 => LOOP(FOREVER);F(1, 50);IF(DISTANCE < 10);BREAK;ENDIF;END_LOOP
 LOOP ( n=@num @unit ) | LOOP ( $n ) | 1 | TS049 | applied | LOOP(3 veces);F(1,50);END_LOOP => LOOP(3);F(1,50);END_LOOP
-LOOP X|=|-|-> n=@num | LOOP ( $n ) | 1 | TS015 | applied | LOOP x 3;F(1, 50);END_LOOP => LOOP(3);F(1, 50);END_LOOP
 LOOP n=number times :|,|do|;? | LOOP ( @digits:n ) ; | 1 | TS102 | applied | repite cuatro veces⏎F(1,60)⏎fin => LOOP(4)⏎F(1,60)⏎END_LOOP
 LOOP by? n=@num times? ⟨:|,|do|;¦b=@start|'{'¦$⟩ | LOOP ( $n ) ⟨;¦; $b¦⟩ | 1 | TS102 | applied | repite 4⟨:⏎¦ ¦⏎⟩F(1, 60)⟨¦¦⏎fin⟩ => LOOP(4)⟨⏎¦;¦⏎⟩F(1, 60)⟨⏎¦;¦⏎⟩END_LOOP
 LOOP n=@val o=*|+|- m=@num $ | LOOP ( $n &o $m ) | 1 | TS015 | applied | X = 2⏎LOOP X * 4⏎F(1,50)⏎END_LOOP => X = 2⏎LOOP(X * 4)⏎F(1,50)⏎END_LOOP
@@ -423,21 +417,17 @@ DEF n=@word ⟨:|'|'|=|'->'|'=>'¦b=@start|'{'⟩ | DEF $n ; ⟨¦$b⟩ | 1 | TS
 ⟨; call¦^ call|do|make|the the|one?⟩ b=@def | ⟨;¦⟩ $b | 1 | TS044 | applied | DEF SALTO;F(0.2, 60);END_DEF⟨;CALL¦⏎hacer⟩ SALTO => DEF SALTO;F(0.2, 60);END_DEF⟨;¦⏎⟩SALTO
 # ends of blocks
 ^ ⟨end¦END_DEF⟩ @def $ | END_DEF | 1 | ⟨TS022¦TS044⟩ | ⟨applied¦first⟩ | DEF SALTO⏎F(1, 50)⏎⟨FIN¦END_DEF⟩ SALTO⏎SALTO => DEF SALTO⏎F(1, 50)⏎END_DEF⏎SALTO
-a=@close h=end $ | $a ; &h | 1 | TS013 | applied | F(2,80) fin => F(2, 80);
 h=END_LOOP|ENDIF|END_WHILE|END_DEF|END_WHEN|END_TASK ( @noparen+ ) | &h | 1 | TS039 | first offered | LOOP(3)⏎F(2, 80)⏎END_LOOP(3) => LOOP(3)⏎F(2, 80)⏎END_LOOP
 ; LOOP $ | ; END_LOOP | 4 | TS014 | applied | LOOP(4) F(1,50) R(0.5,50) LOOP => LOOP(4);F(1, 50);R(0.5, 50);END_LOOP
-^ ⟨program @word¦then ,?⟩ $ |  | 1 | TS044 | applied | ⟨programa baile¦luego,⟩⏎F(1, 50) => ⏎F(1, 50)
-^ leaves 0 ;? $ |  | 1 | TS065 | applied | F(1, 50)⏎return 0; => F(1, 50)⏎
+^ ⟨program @word¦then ,?¦leaves 0 ;?¦import @any+ ;?¦idles⟩ $ |  | 1 | ⟨TS044¦TS044¦TS065¦TS072¦TS044⟩ | ⟨applied¦applied¦applied¦applied¦offered⟩ | ⟨programa baile¦luego,¦return 0;¦import robot¦NADA⟩⏎F(1, 50) => ⏎F(1, 50)
 ^ end program? $ | FIN | 0 | TS044 | first | F(1, 50)⏎fin programa => F(1, 50)⏎
 end -|.|of|the? k=IF|LOOP|WHILE|DEF|FOREVER|count ;|$ | @endof:k | 1 | TS022 | first | definir bailar⏎L(1,50)⏎fin definir⏎bailar => DEF bailar⏎L(1,50)⏎END_DEF⏎bailar
-^ idles $ |  | 1 | TS044 | offered | IF(DISTANCE < 10)⏎NADA⏎ELSE⏎F(1, 60)⏎ENDIF => IF(DISTANCE < 10)⏎⏎ELSE⏎F(1, 60)⏎ENDIF
 # what joins instructions
 ^ please|first ,? b=@start | $b | 1 | TS044 | applied | please F(2, 80) => F(2, 80)
 ^ = <body> $ | $b $r | 1 | TS054 | applied | =F(2,80)+R(1,60) => F(2, 80);R(1, 60)
-a=@close please please+ $ | $a | 1 | TS044 | applied | F(2, 80) thank you => F(2, 80)
+a=@close please|CM|@in_cm|@in_secs+ $ | $a | 1 | TS044 | applied | SHOW(DISTANCE) cm => SHOW(DISTANCE)
 ^ @newname : b=@start | $b | 2.5 | TS054 | applied | square: F(1,50); R(1,50) => F(1,50); R(1,50)
 ^ a=⟨F|B¦L|R⟩ ( n=@num , p=@num ) ⟨CM|@in_cm¦DEG|@in_deg|°⟩ $ | $a ( $n ⟨CM¦DEG⟩ , $p ) | .5 | TS076 | offered | ⟨F(20, 60) CM¦R(90, 60) DEG⟩ => ⟨F(20 CM, 60)¦R(90 DEG, 60)⟩
-a=@close please|CM|@in_cm|@in_secs $ | $a | 1 | TS044 | applied | SHOW(DISTANCE) cm => SHOW(DISTANCE)
 ( a=@num , p=@num|@val ) then|&|+|AND BEEP ( b=@num | ( $a , $p ) ; BEEP ( @same:a:b | .9 | TS074 | offered | F(2, 80) AND BEEP(2, 440) => F(2, 80);BEEP(2, 440)
 a=@close ,? then|soon+ ,? b=@start | $a ; $b | 1 | TS044 | applied | F(1,75) y R(1,75) => F(1, 75);R(1, 75)
 W n=@num seconds? then+ b=@start | W ( $n ) ; $b | 1 | TS015 | applied | F(2, 80) THEN WAIT 1 THEN B(2, 80) => F(2, 80);W(1);B(2, 80)
@@ -450,7 +440,6 @@ a=@close , $ | $a ; | .8 | TS013 | applied | F(2,80),⏎R(1,50), => F(2, 80)⏎R
 ^ ⟨(¦[⟩ <body> ⟨)¦]⟩ $ | $b $r | 1 | TS080 | applied | ⟨(¦[⟩F(2,80), R(1,60)⟨)¦]⟩ => F(2, 80);R(1, 60)
 # words of other languages around a program
 ⟨W8¦brake¦eff⟩ | ⟨W¦BREAK¦F⟩ | 1 | TS102 | ⟨offered¦offered¦first offered⟩ | ⟨W8(1)¦LOOP(3)⏎S⏎BRAKE⏎END_LOOP¦efe dos coma ochenta⟩ => ⟨W(1)¦LOOP(3)⏎S⏎BREAK⏎END_LOOP¦F(2, 80)⟩
-^ import @any+ ;? $ |  | 1 | TS072 | applied | import robot⏎F(2,80) => ⏎F(2,80)
 ⟨read ( v=@val )¦^ read the? v=@val $⟩ | $v | 1 | TS102 | applied | ⟨X = leer(DISTANCE)¦leer DISTANCE⟩ => ⟨X =DISTANCE¦DISTANCE⟩
 ^ ⟨no F|B|L|R|M extra?¦cease of F⟩ $ | S | .5 | TS102 | first | ⟨no avanzar mas¦para de avanzar⟩ => S
 ^ off|S the? engine $ | S | 1 | TS102 | applied | apaga motores => S

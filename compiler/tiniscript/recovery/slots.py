@@ -11,20 +11,10 @@ from itertools import pairwise
 from math import nan
 from typing import NamedTuple
 
-from tiniscript.base.words import UNIT_OF, WAYS, WORDS, Argument
+from tiniscript.base.words import UNIT_OF, WAYS, WORDS, Argument, said_of
 from tiniscript.base.words import names as is_called
 from tiniscript.recovery import rows
-from tiniscript.recovery.concepts import (
-    CALLED,
-    DONE,
-    NEAR,
-    UNITS,
-    Lexeme,
-    Names,
-    lexemes,
-    made,
-    said_of,
-)
+from tiniscript.recovery.concepts import CALLED, DONE, NEAR, Lexeme, Names, lexemes, made
 from tiniscript.syntax.lexer import NUMBER, WORD
 
 LONG_S = 20  # so much without a unit may be a power, degrees or centimetres
@@ -134,9 +124,8 @@ class _Reader:
         if token.kind is not WORD or token.text in self.names.known.values:
             return None
         said = said_of(token.text, "number")
-        is_one = (
-            said == ("1",) and after not in (*UNITS, ",", ")") and not self._is_and_a_half(k + 1)
-        )
+        is_told = after in (",", ")") or said_of(after, "unit") or self._is_and_a_half(k + 1)
+        is_one = said == ("1",) and not is_told
         if said and self.command and not is_one:
             number, k = self._sum(float(said[0]), k + 1)
             self.is_sure = self.is_sure and said != ("1",)
@@ -144,7 +133,9 @@ class _Reader:
             return number, k
         is_first = self.text(k - 1) == "(" and after == "," and self.command != "M"
         unit = k + 1 + (after == "A")  # `half a second`
-        if said_of(token.text, "power") == ("50",) and (self.text(unit) in UNITS or is_first):
+        if said_of(token.text, "power") == ("50",) and (
+            said_of(self.text(unit), "unit") or is_first
+        ):
             self.is_sure = False
             return 0.5, unit
         return None
@@ -172,8 +163,8 @@ class _Reader:
         unit, thousandths = self.mark, 1000.0
         if said_of(self.text(k), "by") and said_of(self.text(k + 1), "number") == ("100",):
             unit, k = "%", k + 2
-        elif self.text(k) in UNITS:
-            unit, thousandths = UNITS[self.text(k)]
+        elif its := said_of(self.text(k), "unit"):
+            unit, thousandths = its[0], float(its[1])
             is_stop = self.words[k].source == "S" and bool(self.words[k].space)
             if is_stop and self.values and k + 1 == len(self.words):
                 return None  # `R 1 50 S`: an order of its own

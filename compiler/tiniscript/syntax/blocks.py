@@ -71,8 +71,13 @@ class Blocks:
     def begin(
         self, word: str, span: Span, head: Argument | None = None, name: Token | None = None
     ) -> Block:
-        if word in TASK_WORDS:
-            self._begin_task(word, span)
+        if word in TASK_WORDS and self.open:
+            around = self.open[-1].word
+            self._reporter.report(codes.TASK_NOT_TOP, span, word=word, around=around)
+        elif word in TASK_WORDS:
+            self.tasks += 1
+            if self.tasks == TASKS + 1:
+                self._reporter.report(codes.TOO_MANY_TASKS, span, limit=str(TASKS))
         elif word == "DEF":
             if self.open:
                 self._reporter.report(codes.DEF_NOT_TOP, span)
@@ -82,15 +87,6 @@ class Blocks:
                 self._reporter.report(codes.BLOCKS_TOO_DEEP, span, limit=str(BLOCKS))
         self.open.append(Block(word, span, head, name))
         return self.open[-1]
-
-    def _begin_task(self, word: str, span: Span) -> None:
-        if self.open:
-            around = self.open[-1].word
-            self._reporter.report(codes.TASK_NOT_TOP, span, word=word, around=around)
-            return
-        self.tasks += 1
-        if self.tasks == TASKS + 1:
-            self._reporter.report(codes.TOO_MANY_TASKS, span, limit=str(TASKS))
 
     def end(self, end: Span) -> None:
         """Close the innermost block. It becomes an instruction of the one around it.

@@ -70,13 +70,6 @@ class Cursor:
             k -= 1
         return k
 
-    # -- skipping -------------------------------------------------------------------------------
-
-    def skip_separators(self) -> None:
-        """Go past line ends and empty instructions."""
-        while self.tokens[self.i].kind is NEWLINE or self.tokens[self.i].kind == ";":
-            self.i += 1
-
     def skip_instruction(self) -> None:
         """Go to where the instruction ends: at a separator that stands in no bracket."""
         depth = 0

@@ -47,12 +47,8 @@ class ExpressionParser:
             cursor.i += 1
             part = Part("FOREVER", 0, token.start, token.end)
             return Argument((part,), token.span, False)
-        return self.with_unit(self.expression(in_brackets=True))
-
-    def with_unit(self, argument: Argument) -> Argument:
-        """Read the CM or DEG that may stand behind the whole of an argument."""
-        cursor = self.cursor
-        token = cursor.inner()
+        argument = self.expression(in_brackets=True)
+        token = cursor.inner()  # the CM or DEG that may stand behind the whole of it
         if token.kind is not WORD or token.text not in WAYS:
             return argument
         cursor.to_inner()

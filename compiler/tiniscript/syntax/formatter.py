@@ -132,11 +132,9 @@ def is_one_line(pieces: list[Piece]) -> bool:
     if not places:
         return False
     first, last = places[0], places[-1]
-    for piece in reversed(pieces[:first]):
-        if piece.is_setup:
-            if piece.comments or piece is not pieces[first - 1]:
-                return False
-            break
+    setup = next((piece for piece in pieces[:first] if piece.is_setup), None)
+    if setup and (setup.comments or setup is not pieces[first - 1]):
+        return False
     return first == last or pieces[first].first_line == pieces[last].last_line
 
 

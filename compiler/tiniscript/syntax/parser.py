@@ -82,8 +82,7 @@ class Parser:
                 self.instruction()
             except Failed:
                 cursor.skip_instruction()
-        if self.blocks.open:
-            self.never_ended()
+        self.never_ended()
         return Program(start, tuple(self.blocks.program))
 
     def setup(self) -> str:
@@ -94,22 +93,14 @@ class Parser:
             return "SI"
         cursor.i += 2
         if word.text == "PING":
-            self.check_connection(word)
+            token, *rest = cursor.tokens[cursor.i :]
+            if token.text != "CHECK_CONNECTION" or any(it.kind not in AT_END for it in rest):
+                self.reporter.report(codes.PING_ALONE, word.span)
+            cursor.i = len(cursor.tokens) - 1
         elif word.text not in ("SI", "SB"):
             self.reporter.report(codes.SETUP_UNKNOWN, word.span, found=word.text, right="SI|")
             return "SI"
         return word.text
-
-    def check_connection(self, ping: Token) -> None:
-        cursor = self.cursor
-        token = cursor.token
-        if token.kind is WORD and token.text == "CHECK_CONNECTION":
-            cursor.i += 1
-            cursor.skip_separators()
-            if cursor.token.kind is END:
-                return
-        self.reporter.report(codes.PING_ALONE, ping.span)
-        cursor.i = len(cursor.tokens) - 1
 
     def instruction(self) -> None:
         cursor = self.cursor
@@ -284,15 +275,13 @@ class Parser:
 
     def argument_of(self, word: Token) -> Argument:
         """Read the `(argument)` of a header, an ELSEIF or an UNTIL."""
-        cursor = self.cursor
-        if cursor.token.kind != "(":
-            self.no_bracket(WORDS[word.text])
+        cursor, known = self.cursor, WORDS[word.text]
         bracket = cursor.token
+        if bracket.kind != "(":
+            self.no_bracket(known)
         arguments = self.expressions.arguments()
         if len(arguments) != 1:
-            self.expressions.wrong_count(
-                WORDS[word.text], len(arguments), cursor.span_from(bracket)
-            )
+            self.expressions.wrong_count(known, len(arguments), cursor.span_from(bracket))
         self.no_units(arguments)
         return arguments[0]
 
