@@ -12,7 +12,6 @@ import time
 from collections.abc import Sequence
 from typing import Protocol
 
-from rich.cells import cell_len
 from rich.console import Console
 from rich.text import Text
 
@@ -40,14 +39,11 @@ class Frame:
 
     def draw(self, lines: Sequence[Text], above: str = "") -> None:
         """Show these lines in place of the last ones, and print `above` over them, to stay."""
-        width, height = self.console.size
-        rows = above.split("\n") if above else []
-        is_narrow = any(cell_len(row) >= width for row in rows)  # then it wraps
-        is_full = len(rows) + max(len(self.lines), len(lines)) >= height
-        if width != self._width or not self.lines or not lines or is_narrow or is_full:
+        width = self.console.size.width
+        if above or width != self._width or len(lines) != len(self.lines):
             written = self._whole(lines, above)
         else:
-            written = self._inserted(rows) + self._changes(lines)
+            written = self._changes(lines)
         self.lines = [line.copy() for line in lines]
         self._width = width
         if written:
@@ -65,55 +61,13 @@ class Frame:
         erased = TO_SCREEN_END if width != self._width else ""
         return f"\r{_up(rows)}{erased}{''.join(parts)}{TO_SCREEN_END}"
 
-    def _inserted(self, rows: Sequence[str]) -> str:
-        """Return what writes rows over the picture, which is moved down and not written again."""
-        if not rows:
-            return ""
-        count, before = len(rows), len(self.lines)
-        room = "\n" * count + _up(count + before - 1) + f"\x1b[{count}L"  # insert lines
-        said = "".join(f"{row}\r\n" for row in rows)
-        return f"\r{room}{said}{_up(1 - before)}{_right(self.lines[-1].cell_len)}"
-
     def _changes(self, lines: Sequence[Text]) -> str:
-        """Return what writes the lines that are not as they were."""
-        before = len(self.lines)
-        at = before - 1  # the row of the cursor
-        parts = []
-        for row, line in enumerate(lines):
-            if row < before and line == self.lines[row] and line.style == self.lines[row].style:
-                continue
-            if row < before:
-                parts.append("\r" + _up(at - row) + self._change(self.lines[row], line))
-            else:
-                parts.append(_up(at - row + 1) + "\r\n" + self._styled(line) + TO_LINE_END)
-            at = row
-        if len(lines) < before:
-            parts.append(f"\r{_up(at - len(lines))}{TO_SCREEN_END}")
-            at = len(lines)
-        if not parts:
-            return ""
-        last = lines[-1].cell_len
-        return f"{''.join(parts)}\r{_up(at - len(lines) + 1)}{_right(last)}"
-
-    def _change(self, old: Text, new: Text) -> str:
-        """Return what makes a line of another one: what is between the same begin and end."""
-        before, after = _signs(old), _signs(new)
-        begin = 0
-        for begin, (was, now) in enumerate(zip(before, after, strict=False)):  # noqa: B007
-            if was != now:
-                break
-        else:
-            begin = min(len(before), len(after))
-        end = len(after)
-        if new.cell_len >= old.cell_len:
-            if len(before) == len(after) and new.cell_len == old.cell_len:
-                while end > begin and before[end - 1] == after[end - 1]:
-                    end -= 1
-            rest = ""
-        else:
-            rest = TO_LINE_END
-        changed = self._styled(new[begin:end]) if end > begin else ""
-        return _right(new[:begin].cell_len) + changed + rest
+        """Return what writes the lines that are not as they were; there are as many as before."""
+        rows = [
+            "" if new == old and new.style == old.style else self._styled(new) + TO_LINE_END
+            for new, old in zip(lines, self.lines, strict=True)
+        ]
+        return f"\r{_up(len(rows) - 1)}" + "\r\n".join(rows) if any(rows) else ""
 
     def _styled(self, line: Text) -> str:
         with self.console.capture() as capture:
@@ -125,22 +79,8 @@ class Frame:
         self.console.file.flush()
 
 
-def _signs(line: Text) -> list[tuple[str, tuple[str, ...]]]:
-    """Return each sign of a line with its styles."""
-    styles: list[tuple[str, ...]] = [(str(line.style),)] * len(line.plain)
-    for begin, end, style in line.spans:
-        for k in range(max(0, begin), min(end, len(styles))):
-            styles[k] = (*styles[k], str(style))
-    return list(zip(line.plain, styles, strict=True))
-
-
-def _right(columns: int) -> str:
-    return f"\x1b[{columns}C" if columns else ""
-
-
 def _up(rows: int) -> str:
-    """Return what moves the cursor so many rows up; down, if there are less than none."""
-    return f"\x1b[{abs(rows)}{'A' if rows > 0 else 'B'}" if rows else ""
+    return f"\x1b[{rows}A" if rows else ""
 
 
 SLOWEST_S = 0.2  # a frame that took longer (a long computation, Ctrl-Z) does not skip a move
