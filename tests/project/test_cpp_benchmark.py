@@ -8,6 +8,7 @@ from __future__ import annotations
 import pytest
 
 from tests.support.platformio import firmware, shared
+from tools import uno
 from tools.bench import avr_bench, machine, sizes, sketch_cycles
 from tools.bench.workloads import MUST, WORKS, Work, WrongResult, check, expected
 
@@ -40,8 +41,8 @@ def test_the_shipped_sketch_takes_its_main_loop_more(
     tmp_path_factory: pytest.TempPathFactory,
 ) -> None:
     """Its values are right; and the machine runs for so long that the rest costs little."""
-    if sketch_cycles.missing():
-        pytest.skip(sketch_cycles.missing())
+    if uno.missing():
+        pytest.skip(uno.missing())
     sketch = firmware("uno", tmp_path_factory.mktemp("sketch"), shared(tmp_path_factory))
     for work in WORKS:
         short = work._replace(times=2000)

@@ -11,18 +11,18 @@ import shutil
 import sys
 import tempfile
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
-from tiniscript import compile_text, robots
-from tiniscript.bytecode.image import unpack
-from tiniscript.link.connection import PendingRequest
+from tests.machines.wired import Wired
+from tiniscript import robots
 from tiniscript.link.session import Session
 from tools import uno
 from tools.bench import firmware_size, stops
 from tools.bench.compiler import PROGRAMS
+from tools.bench.firmware_stack import image_of, must
 from tools.uno import CYCLES_PER_MS, Uno
 
 PROJECT = ROOT / "vm_arduino"
@@ -40,34 +40,6 @@ TOGETHER_US = 12.0  # on an ATmega328P; a Mega's timers and ports have longer in
 STOPPED = "nano_liner", "mega", "mega_liner", "mega_grabber"  # and the Uno
 UPLOADS = 20  # the main loop is elsewhere each time: the slowest counts
 PHASE_CYCLES = 37
-
-
-class Talk:
-    """A session and a simulated robot on one wire."""
-
-    def __init__(self, board: Uno, baud: int) -> None:
-        self.board, self.session = board, Session(1, baud, KIT.fingerprint)
-        self._seen = len(board.events)
-
-    def run(self, milliseconds: int) -> None:
-        for _ in range(milliseconds):
-            now_ms = self.board.cycle // CYCLES_PER_MS
-            data = self.session.poll(now_ms)
-            if data:
-                self.board.send(data)
-            self.board.run_ms(1)
-            new = self.board.events[self._seen :]
-            self._seen += len(new)
-            arrived = bytes(event["byte"] for event in new if event.what == "sent")
-            self.session.receive(arrived, now_ms + 1)
-
-    def until(self, request: PendingRequest[Any]) -> None:
-        for _ in range(10_000):
-            if request.outcome is not None:
-                break
-            self.run(1)
-        if request.outcome is None or request.outcome.status != 0:
-            raise RuntimeError(f"the robot did not do it: {request.outcome}")
 
 
 class Figures(NamedTuple):
@@ -109,31 +81,32 @@ def first_move(board: Uno, since: int) -> int:
 def measured(firmware: Path, baud: int) -> Figures:
     with Uno(firmware, baud=baud) as board:
         board.run_ms(300)
-        talk = Talk(board, baud)
-        talk.until(talk.session.hello())
-        start_ms = max(started(talk, 300 + k)[0] for k in range(UPLOADS))
-        live_us = max(started(talk, 300 + k, is_live=True)[1] for k in range(UPLOADS))
+        wired = Wired(board, Session(1, baud, KIT.fingerprint))
+        must(wired, wired.session.hello())
+        start_ms = max(started(wired, 300 + k)[0] for k in range(UPLOADS))
+        live_us = max(started(wired, 300 + k, is_live=True)[1] for k in range(UPLOADS))
     stop = stops.slowest(firmware, robots.load(ROBOT), "uno", baud)
     return Figures(start_ms, live_us, stop)
 
 
-def started(talk: Talk, wait_ms: int, *, is_live: bool = False) -> tuple[float, float]:
+def started(wired: Wired, wait_ms: int, *, is_live: bool = False) -> tuple[float, float]:
     """Return ms from a frame's first start bit and us from its end to the pins.
 
     The frame is PROGRAM, or LIVE, which nothing runs before.
     """
-    image = unpack(compile_text(SHORT, KIT).image)
+    board, session = wired.uno, wired.session
+    image = image_of(SHORT, KIT)
     if is_live:
-        talk.until(talk.session.clear())
-    talk.board.run_to(talk.board.cycle + wait_ms * PHASE_CYCLES)
-    began = talk.board.cycle
-    talk.until(talk.session.live(image.code) if is_live else talk.session.upload(image))
-    moved = first_move(talk.board, began)
-    heard = [byte for byte in talk.board.received if byte.cycle <= moved]
+        must(wired, session.clear())
+    board.run_to(board.cycle + wait_ms * PHASE_CYCLES)
+    began = board.cycle
+    must(wired, session.live(image.code) if is_live else session.upload(image))
+    moved = first_move(board, began)
+    heard = [byte for byte in board.received if byte.cycle <= moved]
     ends = [k for k, byte in enumerate(heard[:-1]) if byte.value == 0]
     frame = heard[ends[-1] + 1 :]
-    talk.session.stop(talk.board.cycle // CYCLES_PER_MS)
-    talk.run(wait_ms)
+    session.stop(wired.now_ms)
+    wired.run(wait_ms)
     return (
         (moved - frame[0].began) / CYCLES_PER_MS,
         (moved - frame[-1].cycle) / CYCLES_PER_MS * 1000,

@@ -17,6 +17,7 @@ from typing import NamedTuple
 ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
+from tools import uno
 from tools.bench import avr_bench, sketch_cycles, workloads
 from tools.bench.compiler import table
 from tools.bench.workloads import Work, check, code_of
@@ -73,7 +74,7 @@ def cycles() -> None:
     alone = sketch = ["-" for _ in workloads.WORKS]
     if not avr_bench.missing():
         alone = [f"{per_iteration(work):,.0f}" for work in workloads.WORKS]
-    if not sketch_cycles.missing():
+    if not uno.missing():
         firmware = sketch_cycles.built()
         found = [sketch_cycles.per_iteration(firmware, work) for work in workloads.WORKS]
         sketch = [f"{each:,.0f}" for each in found]
@@ -89,7 +90,7 @@ def cycles() -> None:
         f"\n`tick` is called for {BUDGET} times around a loop. In the sketch all "
         "between is counted, its main loop and its interrupts."
     )
-    for why in filter(None, (avr_bench.missing(), sketch_cycles.missing())):
+    for why in filter(None, (avr_bench.missing(), uno.missing())):
         print(f"\n{why}")
 
 

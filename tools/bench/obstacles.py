@@ -7,7 +7,6 @@ robot is stuck where it stays within 3 cm of one place for 5 s.
 
 from __future__ import annotations
 
-import argparse
 import math
 import sys
 from concurrent.futures import ProcessPoolExecutor
@@ -27,7 +26,7 @@ from tiniscript.virtual import worlds
 from tiniscript.virtual.driving import Driving
 from tiniscript.virtual.robot import Settings, VirtualRobot
 
-SECONDS = 1800
+SECONDS = 1800  # of the robot's time
 SEEDS = 20
 STUCK_S = 5
 STUCK_CM = 3.0
@@ -43,30 +42,25 @@ class Drive(NamedTuple):
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("programs", nargs="*", default=PROGRAMS, help="of examples/")
-    parser.add_argument("--seconds", type=int, default=SECONDS, help="of the robot's time")
-    parser.add_argument("--seeds", type=int, default=SEEDS)
-    given = parser.parse_args()
     head = ("program", "contacts: median", "most", "metres: median", "longest in a place", "stuck")
     print("{:14} {:>16} {:>5} {:>14} {:>18} {:>8}".format(*head))
-    for name in given.programs:
+    for name in PROGRAMS:
         text = (ROOT / "examples" / name).read_text(encoding="utf-8")
         with ProcessPoolExecutor() as pool:
-            drives = list(pool.map(partial(drive, text, given.seconds), range(given.seeds)))
+            drives = list(pool.map(partial(drive, text), range(SEEDS)))
         contacts = [each.contacts for each in drives]
         metres = median(each.driven_m for each in drives)
         stood_s = max(each.stood_s for each in drives)
         stuck = sum(each.stood_s >= STUCK_S for each in drives)
         print(f"{name:14} {median(contacts):16.0f} {max(contacts):5} {metres:14.0f}"
-              f" {stood_s:16.1f} s {stuck:2} of {given.seeds}", flush=True)  # fmt: skip
+              f" {stood_s:16.1f} s {stuck:2} of {SEEDS}", flush=True)  # fmt: skip
 
 
-def drive(text: str, seconds: int, seed: int) -> Drive:
+def drive(text: str, seed: int) -> Drive:
     """Return how a program drives that begins at a place of this seed."""
     chance = Random(seed)
     profile = robots.load(ROBOT)
-    board = profile.board._replace(max_run_seconds=seconds + 60)  # ten minutes would end it
+    board = profile.board._replace(max_run_seconds=SECONDS + 60)  # ten minutes would end it
     profile = profile._replace(board=board)
     world = worlds.load("obstacles")
     start = world.start
@@ -77,14 +71,15 @@ def drive(text: str, seconds: int, seed: int) -> Drive:
     settings = Settings(seed + 1, noise=0.02, motors=(100.0, chance.uniform(95, 105)))
     robot = VirtualRobot(profile, world._replace(start=start), settings)
     Talk(robot).upload(text, is_detached=True)
-    begins_ms = ends_ms = robot.now_ms
+    ends_ms = robot.now_ms
+    over_ms = ends_ms + SECONDS * 1000
     place = robot.pose
     stood_ms = 0
-    while ends_ms < begins_ms + seconds * 1000:
+    while ends_ms < over_ms:
         since_ms = ends_ms
         while math.dist(place[:2], robot.pose[:2]) <= STUCK_CM:
             stood_ms = max(stood_ms, ends_ms - since_ms)
-            if ends_ms >= begins_ms + seconds * 1000:
+            if ends_ms >= over_ms:
                 break
             ends_ms += LOOK_MS
             robot.step(ends_ms)

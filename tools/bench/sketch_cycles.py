@@ -11,31 +11,24 @@ from __future__ import annotations
 import re
 import sys
 from pathlib import Path
-from typing import Any
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
 from tests.machines.wired import Wired
-from tiniscript import compile_text, robots
-from tiniscript.bytecode.image import unpack
-from tiniscript.link.connection import PendingRequest
+from tiniscript import robots
 from tiniscript.link.session import Session
-from tools import uno
 from tools.bench import firmware_size
+from tools.bench.firmware_stack import image_of, must, pin
 from tools.bench.workloads import Work, WrongResult, expected
 from tools.builds.platformio_offline import CannotStandIn
 from tools.uno import Uno
 
 ROBOT = robots.load(robots.DEFAULT)
 SENSOR = "LIGHT_L"  # the one for which the constants are
-FIRST_ANALOG = 14  # of an Uno's pins
+_NUMBER = [each.name for each in ROBOT.kit.sensors].index(SENSOR)
+SENSOR_PIN = pin(ROBOT, ROBOT.board.sensors[_NUMBER].pins["pin"])
 BOOT_MS, WORK_MS, SHOW_MS = 300, 10_000, 500
-
-
-def missing() -> str:
-    """Return why there is no simulated Uno, or nothing."""
-    return uno.missing()
 
 
 def built() -> Path:
@@ -62,18 +55,13 @@ def text_of(work: Work, has_loop: bool = True) -> str:
     return f"SI|{before} M(50, 50); {loop} M(0, 0); {work.after}"
 
 
-def pin_of_sensor() -> str:
-    number = [each.name for each in ROBOT.kit.sensors].index(SENSOR)
-    return f"A{ROBOT.board.sensors[number].pins['pin'] - FIRST_ANALOG}"
-
-
 def per_iteration(firmware: Path, work: Work) -> float:
     """Return the cycles of one time around the loop of a work. Raises WrongResult."""
     with Uno(firmware, baud=ROBOT.board.baud, tells_sleep=False) as board:
         board.run_ms(BOOT_MS)
         wired = Wired(board, Session(1, ROBOT.board.baud, ROBOT.kit.fingerprint))
         if work.readings:
-            board.analog(pin_of_sensor(), work.readings[0])
+            board.analog(SENSOR_PIN, work.readings[0])
         with_loop, shown = _cycles(wired, text_of(work))
         if tuple(shown) != expected(work).shown:
             raise WrongResult(f"the sketch, work {work.name}: {shown}, not {expected(work).shown}")
@@ -85,10 +73,10 @@ def _cycles(wired: Wired, text: str) -> tuple[int, list[object]]:
     """Return how long a motor turns while a program runs, and what it shows."""
     board, session = wired.uno, wired.session
     motor = f"D{ROBOT.board.motors.pins['left_pwm']}"
-    image = unpack(compile_text(text, ROBOT.kit).image)
+    image = image_of(text, ROBOT.kit)
     session.events()
     since = len(board.events)
-    _done(wired, session.upload(image, saves=False, is_detached=True))
+    must(wired, session.upload(image, saves=False, is_detached=True))
     if board.pins[motor].state == "pwm":
         board.run_until(motor, "low", WORK_MS)
     wired.run(SHOW_MS)
@@ -99,9 +87,3 @@ def _cycles(wired: Wired, text: str) -> tuple[int, list[object]]:
         for state in ("pwm", "low")
     )  # fmt: skip
     return ended - began, shown
-
-
-def _done(wired: Wired, request: PendingRequest[Any]) -> None:
-    status = wired.until(request)
-    if status:
-        raise RuntimeError(f"the robot has answered {status}")

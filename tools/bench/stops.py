@@ -17,12 +17,10 @@ from pathlib import Path
 from typing import NamedTuple
 
 from tests.machines.wired import Wired
-from tiniscript import compile_text
 from tiniscript.base.kit import NUMBER, Kit
-from tiniscript.bytecode.image import unpack
 from tiniscript.link.session import Session
 from tiniscript.robots.profile import Robot
-from tools.bench.firmware_stack import BOARDS, must, pin
+from tools.bench.firmware_stack import BOARDS, image_of, must, pin
 from tools.uno import CYCLES_PER_MS, HERTZ, Masked, Uno
 
 TEXT = b"// nobody reads that\n", b"// nor this line, which nobody ends"
@@ -79,8 +77,7 @@ class Busy:
                 self.chip.sonar(self._trigger, self._sonar, None)
         self.chip.run_ms(300)
         must(self._wired, self._wired.session.hello())
-        image = compile_text(busy(robot.kit), robot.kit).image
-        must(self._wired, self._wired.session.upload(unpack(image)))
+        must(self._wired, self._wired.session.upload(image_of(busy(robot.kit), robot.kit)))
 
     def __enter__(self) -> Busy:
         return self

@@ -23,13 +23,13 @@ ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
 from tests.machines.wired import Wired
-from tiniscript import compile_text, robots
-from tiniscript.bytecode.image import unpack
+from tiniscript import robots
 from tiniscript.link.session import Session
 from tools import uno
 from tools.bench import avr_bench, firmware_size
+from tools.bench.firmware_stack import image_of, must
 from tools.bench.machine import BUDGET, count
-from tools.bench.sketch_cycles import pin_of_sensor
+from tools.bench.sketch_cycles import SENSOR_PIN
 from tools.builds.platformio_offline import CannotStandIn
 from tools.uno import CYCLES_PER_MS, Uno
 
@@ -95,7 +95,7 @@ def parts_of(firmware: Path) -> dict[str, Counter[str]]:
 def turns_cycles(tasks: int) -> int:
     """Return the cycles of the machine while each task goes so often around an empty loop."""
     text = f"TASK;LOOP({TURNS});END_LOOP;END_TASK;" * tasks + "W(1.2)"
-    code = unpack(compile_text(text, ROBOT.kit).image).code
+    code = image_of(text, ROBOT.kit).code
     return count(code, (), BUDGET, WITH_TASKS).cycles
 
 
@@ -109,16 +109,15 @@ def jitter_ms(firmware: Path, others: int) -> float:
     ) as board:  # fmt: skip
         board.run_ms(BOOT_MS)
         wired = Wired(board, Session(1, ROBOT.board.baud, ROBOT.kit.fingerprint))
-        image = unpack(compile_text(text, ROBOT.kit).image)
-        if status := wired.until(wired.session.upload(image, saves=False, is_detached=True)):
-            raise RuntimeError(f"the robot has answered {status}")
+        image = image_of(text, ROBOT.kit)
+        must(wired, wired.session.upload(image, saves=False, is_detached=True))
         at_ms: list[float] = []
         for number in range(LOOKS):
             board.run_ms(LOOK_MS * number / LOOKS + 0.3)
-            board.analog(pin_of_sensor(), 900)
+            board.analog(SENSOR_PIN, 900)
             seen = board.run_until("left", "pwm", 3 * LOOK_MS)
             at_ms.append(seen.cycle / CYCLES_PER_MS)
-            board.analog(pin_of_sensor(), 100)
+            board.analog(SENSOR_PIN, 100)
             board.run_ms(120)
         first = at_ms[0]
         late = [(each - first + LOOK_MS / 2) % LOOK_MS for each in at_ms]
