@@ -8,25 +8,20 @@ from __future__ import annotations
 import os
 import re
 import shutil
-import signal
 import subprocess
 import sys
 from collections.abc import Callable
-from contextlib import suppress
 from pathlib import Path
-from queue import Empty, SimpleQueue
-from threading import Thread
 from time import monotonic
-from typing import IO, NamedTuple
+from typing import NamedTuple
 
+from tiniscript.flash import children
 from tiniscript.flash.bootloaders import Bootloader
 
 # Timeouts without output: before a bootloader has answered, and after that.
 NOBODY_S, SILENCE_S = 15.0, 30.0
 WHOLE_S = 300.0  # timeout of the whole run: writing and reading back a Mega's 256 KB takes 50 s
 MOST_BYTES = 200_000  # limit of its output; about 2,000 are normal
-LEAVE_S = 5.0  # timeout of its exit after its last output
-LOOK_S = 0.1
 MOST_ATTEMPTS = 2  # of its ten, which take five seconds each
 MARKS = 50  # of a whole bar
 
@@ -104,78 +99,49 @@ def write(
     """Write a firmware, read it back, and compare. `look` is called periodically."""
     words = [*command, "-c", to.programmer, "-p", to.part, "-P", port, "-b", str(to.baud), "-D"]
     try:
-        running = subprocess.Popen(
-            [*words, "-U", f"flash:w:{firmware}:i"],
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            start_new_session=sys.platform != "win32",  # so that its children end with it
-        )
+        code, said = children.run([*words, "-U", f"flash:w:{firmware}:i"], None, _Watch(look))
+    except _Over as over:
+        return over.ended
+    except subprocess.TimeoutExpired:
+        return Ended(ENDLESS)
     except OSError as why:
         return Ended(FAILED, str(why.strerror or why))
-    try:
-        return _watched(running, look)
-    finally:
-        _kill(running)
+    return outcome(code, said)
 
 
-def _kill(running: subprocess.Popen[bytes]) -> None:
-    """End it and all that it has started: a child would keep the port."""
-    with suppress(OSError):  # it has ended, and nothing is left of it
-        if sys.platform != "win32":
-            os.killpg(running.pid, signal.SIGKILL)
-        elif running.poll() is None:
-            words = ["taskkill", "/F", "/T", "/PID", str(running.pid)]
-            subprocess.run(words, capture_output=True, check=False)
-    running.kill()
-    running.wait()
+class _Over(Exception):
+    """It is not waited for any longer."""
+
+    def __init__(self, how: str) -> None:
+        super().__init__(how)
+        self.ended = Ended(how)
 
 
-def _watched(running: subprocess.Popen[bytes], look: Callable[[Seen | None], None]) -> Ended:
-    assert running.stdout
-    heard: SimpleQueue[bytes] = SimpleQueue()
-    Thread(target=_listen, args=(running.stdout, heard), daemon=True).start()
-    output, said, silent_s, end_s = b"", "", 0.0, monotonic() + WHOLE_S
-    while True:
-        if monotonic() >= end_s or len(output) > MOST_BYTES:
-            return Ended(ENDLESS)
-        try:
-            data = heard.get(timeout=LOOK_S)
-        except Empty:
-            silent_s += LOOK_S
-            look(seen(said))
-            has_begun = seen(said) is not None
-            if silent_s >= (SILENCE_S if has_begun else NOBODY_S):
-                return Ended(BROKEN_OFF if has_begun else NOBODY)
-            continue
-        if not data:
-            try:
-                return outcome(running.wait(LEAVE_S), said)
-            except subprocess.TimeoutExpired:
-                return Ended(ENDLESS)
-        silent_s = 0.0
-        output += data
-        said = output.decode(errors="replace")
-        look(seen(said))
-        attempts = [int(number) for number in _ATTEMPT.findall(said)]
-        if attempts and attempts[-1] >= MOST_ATTEMPTS and seen(said) is None:
-            return Ended(NOBODY)
+class _Watch:
+    """Looks at its whole output again and again. Raises _Over."""
+
+    def __init__(self, look: Callable[[Seen | None], None]) -> None:
+        self._look = look
+        self._said = ""
+        self._began_s = self._heard_s = monotonic()
+
+    def __call__(self, said: str) -> None:
+        now_s, found = monotonic(), seen(said)
+        self._look(found)
+        if said != self._said:
+            self._said, self._heard_s = said, now_s
+        if now_s - self._began_s >= WHOLE_S or len(said) > MOST_BYTES:
+            raise _Over(ENDLESS)
+        if found is not None:
+            if now_s - self._heard_s >= SILENCE_S:
+                raise _Over(BROKEN_OFF)
+        elif now_s - self._heard_s >= NOBODY_S or _attempt(said) >= MOST_ATTEMPTS:
+            raise _Over(NOBODY)
 
 
-def _listen(pipe: IO[bytes], heard: SimpleQueue[bytes]) -> None:
-    """Pass its output on in pieces; an empty piece marks the end.
-
-    Stops after MOST_BYTES: the rest is not read. Closes the pipe itself: closed by another thread,
-    its number may be that of the port that is opened next, whose bytes would be read here.
-    """
-    said_bytes = 0
-    with pipe:
-        while said_bytes <= MOST_BYTES:
-            data = os.read(pipe.fileno(), 4096)
-            heard.put(data)
-            said_bytes += len(data)
-            if not data:
-                return
+def _attempt(said: str) -> int:
+    """Return the number of its last attempt."""
+    return max(map(int, _ATTEMPT.findall(said)), default=0)
 
 
 def seen(said: str) -> Seen | None:

@@ -11,26 +11,28 @@ import signal
 import subprocess
 import sys
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from pathlib import Path
 from threading import Thread
 
 LOG_BYTES = 1 << 20  # of what a program says; the last ones
-LOOK_S = 0.2
+LOOK_S = 0.1
 KILLED_AFTER_S = 5.0  # that a program has to end by itself
+LEAVE_S = 5.0  # that it has after its last output
 
 
 def run(
     command: list[str],
-    folder: Path,
+    folder: Path | None,
     look: Callable[[str], None],
     environment: Mapping[str, str] | None = None,
     may_end: Callable[[str], bool] = lambda said: True,
 ) -> tuple[int, str]:
-    """Run a program in a folder; return its exit code, and what it has said.
+    """Run a program in a folder, or here; return its exit code, and what it has said.
 
-    `look` gets what it has said until now, five times a second. An exception, such as Ctrl-C,
+    `look` gets what it has said until now, ten times a second. An exception, such as Ctrl-C,
     ends the program and its children; where it may not end after what it has said, it is waited for
-    first. Raises OSError where it cannot be started.
+    first. Raises OSError where it cannot be started, and TimeoutExpired where it does not end.
     """
     running = subprocess.Popen(
         command,
@@ -51,35 +53,40 @@ def run(
                 del said[:-LOG_BYTES]
 
     reader = Thread(target=read, daemon=True)
-    reader.start()
     try:
+        reader.start()
         while reader.is_alive():
             reader.join(LOOK_S)
             look(said.decode(errors="replace"))
-        code = running.wait()
+        code = running.wait(LEAVE_S)
     except BaseException:
         if may_end(said.decode(errors="replace")):
             _end(running)
         else:
             running.wait()
         raise
+    _kill(running)  # what it has started may go on, and hold a port
     return code, said.decode(errors="replace")
 
 
 def _end(running: subprocess.Popen[bytes]) -> None:
     """End a program and its children: it may be in the middle of keeping what it has fetched."""
-    for gently in (True, False):
-        try:
-            if sys.platform == "win32":
-                running.kill()
-            else:
-                os.killpg(running.pid, signal.SIGINT if gently else signal.SIGKILL)
+    if sys.platform != "win32":
+        with suppress(OSError, subprocess.TimeoutExpired):
+            os.killpg(running.pid, signal.SIGINT)
             running.wait(KILLED_AFTER_S)
-        except subprocess.TimeoutExpired:
-            continue
-        except OSError:
-            pass
-        return
+    _kill(running)
+
+
+def _kill(running: subprocess.Popen[bytes]) -> None:
+    with suppress(OSError):  # it has ended, and nothing is left of it
+        if sys.platform != "win32":
+            os.killpg(running.pid, signal.SIGKILL)
+        elif running.poll() is None:
+            words = ["taskkill", "/F", "/T", "/PID", str(running.pid)]
+            subprocess.run(words, capture_output=True, check=False)
+    running.kill()
+    running.wait()
 
 
 def reason(log: str) -> str:
