@@ -315,6 +315,26 @@ def test_names_are_plain(name: str, shown: str) -> None:
     assert room.teaches("class")["pupils"][1]["name"] == f"{shown} (2)"
 
 
+def test_who_comes_back_to_a_computer_is_not_a_second_one() -> None:
+    room = Room()
+    room.joins("Ana")
+    second = room.joins("Ana", "198.51.100.1")
+
+    def names() -> list[str]:
+        return [each["name"] for each in room.teaches("class")["pupils"]]
+
+    room.now_s += 4
+    room.joins("Ana")  # the first one may be there
+    assert names() == ["Ana", "Ana (2)", "Ana (3)"]
+    room.now_s += 2
+    room.joins("Ana")
+    assert names() == ["Ana (2)", "Ana (3)", "Ana"]
+    room.now_s += 6
+    room.here(second)
+    room.joins("Ana", "198.51.100.1")  # another one, and here
+    assert names() == ["Ana (2)", "Ana (3)", "Ana", "Ana (4)"]
+
+
 @pytest.mark.parametrize("name", ["", "   ", 5, None, ["a"]])
 def test_nobody_joins_without_a_name(name: object) -> None:
     room = Room()

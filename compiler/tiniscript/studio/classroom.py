@@ -203,16 +203,19 @@ class Classroom:
         plain = plain_name(name)
         if not plain:
             return {"failure": "class_nameless"}
+        names = [plain, *(f"{plain} ({k})" for k in range(2, MOST_PUPILS + 2))]
         same = [token for token, each in self._pupils.items() if each.address == address]
+        again = [token for token in same if self._pupils[token].name in names]
+        if self._give_place_away(now_s, PLACE_S, again):  # who comes back is not a second one
+            same = [token for token in same if token in self._pupils]
         if len(same) >= self._places and not self._give_place_away(now_s, PLACE_S, same):
             return {"failure": "class_crowded"}
         if len(self._pupils) >= MOST_PUPILS and not self._give_place_away(
             now_s, SILENT_S, list(self._pupils)
         ):
             return {"failure": "class_full"}
-        names = {each.name for each in self._pupils.values()}
-        others = [f"{plain} ({k})" for k in range(2, MOST_PUPILS + 2)]
-        free = next(each for each in [plain, *others] if each not in names)
+        taken = {each.name for each in self._pupils.values()}
+        free = next(each for each in names if each not in taken)
         self._count += 1
         token = new_token()
         self._pupils[token] = Pupil(self._count, free, address, now_s)

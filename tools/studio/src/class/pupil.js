@@ -44,6 +44,7 @@ export class Pupil {
   /** What the teacher's page knows. @type {Record<string, string>} */
   #told = {};
   #took = false;
+  #isEntering = false;
   #place = -1;
   #timer = 0;
 
@@ -83,6 +84,8 @@ export class Pupil {
   }
 
   async #enter() {
+    if (this.#isEntering) return; // who presses twice is one pupil
+    this.#isEntering = true;
     try {
       const answer = await post({ do: 'join', code: this.#code.value, name: this.#name.value });
       if (answer.failure) this.#say(answer.failure);
@@ -90,6 +93,7 @@ export class Pupil {
     } catch {
       this.#say('class_silent');
     }
+    this.#isEntering = false;
   }
 
   /** @param {string} token */
