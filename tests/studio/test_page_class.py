@@ -120,8 +120,9 @@ def joined(pages: Pages, taught: Class, name: str) -> Page:
     page.click("#side_real")
     page.locator("#class_pupil input").nth(0).fill(taught.room.code.lower())
     page.locator("#class_pupil input").nth(1).fill(name)
-    page.keyboard.press("Enter")
+    page.dblclick("[data-text=class_join]")
     said(page, "You are in the class, ")
+    assert f"{name} (2)" not in json.dumps(taught.room.teach({"do": "class"})["pupils"])
     return page
 
 
@@ -309,6 +310,7 @@ def test_thirty_tiles_are_seen_without_scrolling(teacher: Page, taught: Class) -
         teacher.set_viewport_size({"width": width, "height": height})
         speak(teacher, language)
         teacher.locator("#wall li").nth(29).wait_for()
+        assert not teacher.locator("#wall .empty:visible").count()  # its picture comes
         teacher.wait_for_function(WHOLE)  # a wall fits its tiles once it knows its size
         assert teacher.evaluate(LOOK) == []
     tile(teacher, "Pupil 7").locator("img[src^=blob]").wait_for()

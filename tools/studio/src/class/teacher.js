@@ -237,7 +237,7 @@ export class Teacher {
       return;
     }
     const hands = pupils.filter(({ hand }) => hand).sort((one, other) => one.hand - other.hand);
-    const named = hands.slice(0, MOST_NAMED).map(({ name }) => shown(name)).join(', ') + (hands.length > MOST_NAMED ? '…' : '');
+    const named = hands.slice(0, MOST_NAMED).map(({ name }) => shown(name)).join(', ') + (hands.length > MOST_NAMED ? ` +${hands.length - MOST_NAMED}` : '');
     const count = text('class_count', { pupils: pupils.length, robots: robots.length, waiting: pupils.filter(({ place }) => place).length });
     put(this.#said, [count, hands.length ? text('class_hands', { names: named }) : '', this.#told || (goes_on ? text('class_goes_on') : '')].filter(Boolean).join(' '));
     document.documentElement.dataset['teacher'] = 'class_count';

@@ -89,6 +89,7 @@ export class Wall {
     pips.className = 'pips';
     said.className = 'said';
     empty.className = 'empty';
+    empty.hidden = true; // until its program is known
     const item = made('li', '', name, made('div', '', picture, empty), made('p', '', pips, said), badge, see, hand, out);
     return { item, see, name, hand, out, picture, empty, badge, pips, said };
   }
