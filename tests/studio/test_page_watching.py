@@ -101,6 +101,15 @@ def test_the_buzzer_is_heard_unless_it_is_muted(listening: Page) -> None:
     assert page.evaluate("window.heard") == [550]
 
 
+def test_a_computer_without_sound_runs_a_program(pages: Pages) -> None:
+    page = pages.open()
+    page.evaluate("() => { window.AudioContext = function () { throw new DOMException('no'); }; }")
+    write(page, "BEEP(0.1, 440); SHOW(7)")
+    page.click("#run")
+    page.locator("html[data-phase=ended]").wait_for(state="attached")
+    assert "SHOW 7" in (page.locator("#trace").text_content() or "")
+
+
 def test_no_sound_is_open_at_rest(pages: Pages) -> None:
     """An open one works all the time, and empties a battery. To close it, a page waits."""
     page = pages.open("blocks", is_alone=True)

@@ -51,7 +51,11 @@ export class Sounds {
   #awake() {
     if (this.isMuted || !('AudioContext' in window) || navigator.userActivation?.hasBeenActive === false) return null;
     clearTimeout(this.#closing);
-    this.#context ??= new AudioContext();
+    try {
+      this.#context ??= new AudioContext();
+    } catch {
+      return null; // no device
+    }
     this.#context.resume(); // also of one that is about to rest
     return this.#context;
   }
