@@ -93,8 +93,14 @@ def test_a_program_gets_a_name(page: Page) -> None:
     assert download.value.suggested_filename == "my bdance 2.ts"
     page.click("#my_programs")
     assert page.input_value("#program_name") == "my bdance 2"
+    page.fill("#program_name", "..ñandú 🤖.ts")
+    assert opened(page)[0] == "ñandú 🤖.ts: SI|F(1, 33)"
     page.fill("#program_name", "  ")
     assert opened(page)[0] == "SI|F(1, 33)"
+    page.click("#programs_close")
+    write(page, "SI|S //" + 99 * "🤖")
+    page.click("#my_programs")
+    assert opened(page)[0] == "SI|S //" + 53 * "🤖" + "…"
     page.click("#programs_close")
 
 

@@ -5,7 +5,7 @@ import { Checking } from './writing/checking.js';
 import { Editor } from './writing/editor.js';
 import { bytesOf, download } from './page/files.js';
 import { Lessons } from './lesson/lessons.js';
-import { showMessages, summary } from './writing/messages.js';
+import { showMessages, summary, whole } from './writing/messages.js';
 import { whenOffline } from './page/offline.js';
 import { Phone } from './page/phone.js';
 import { Programs } from './programs/programs.js';
@@ -226,8 +226,7 @@ file.addEventListener('change', async () => {
     return;
   }
   if (answer.text === undefined) {
-    const why = [answer.message, answer.fix && `${text('try')} ${answer.fix}`].filter(Boolean).join(' ');
-    so.note.say(text('not_opened', { name: chosen.name, why }));
+    so.note.say(text('not_opened', { name: chosen.name, why: whole(answer) }));
     return;
   }
   programs.replace({ text: answer.text, robot: work.robot, name: chosen.name });

@@ -11,9 +11,10 @@ import { isGiven } from '../start/beginnings.js';
 import { showInstead } from '../start/screens.js';
 import { so } from '../page/so.js';
 import { called, currentLanguage, text } from '../page/texts.js';
-import { keepVersion, MOST_CHARACTERS, versions } from './versions.js';
+import { beginOf, keepVersion, MOST_CHARACTERS, versions } from './versions.js';
 import { ROBOTS } from '../page/words.js';
 import { keep } from './work.js';
+import { whole } from '../writing/messages.js';
 
 /** @typedef {import('./versions.js').Version} Version */
 /** @typedef {import('./work.js').Work} Work */
@@ -117,7 +118,7 @@ export class Programs {
 
   /** Gives the program another name; its file gets it, too. */
   #rename() {
-    const name = this.#name.value.replace(/[\\/:*?"<>|\u0000-\u001f]/g, '').trim();
+    const name = this.#name.value.replace(/[\\/:*?"<>|\u0000-\u001f]|^[ .]+|\.ts$/g, '').trim();
     this.#work.name = name && `${name}.ts`;
     keep(this.#work);
     this.keep();
@@ -158,7 +159,7 @@ export class Programs {
     const request = { do: 'line', robot: this.#work.robot, language: currentLanguage() };
     const answer = await this.#python.ask(request, new TextEncoder().encode(this.#work.text));
     if (answer.text !== undefined) return { text: answer.text };
-    return { wrong: [answer.message, answer.fix && `${text('try')} ${answer.fix}`].filter(Boolean).join(' ') };
+    return { wrong: whole(answer) };
   }
 
   /**
@@ -215,7 +216,7 @@ export class Programs {
       const at = new Date(version.at_ms);
       when.dateTime = at.toISOString();
       when.textContent = time.format(at);
-      what.textContent = beginOf(version);
+      what.textContent = (version.name ? `${version.name}: ` : '') + beginOf(version.text);
       open.type = 'button';
       open.textContent = text('open_again');
       open.setAttribute('aria-label', text('open_again_from', { time: when.textContent }));
@@ -231,10 +232,4 @@ export class Programs {
     });
     element('versions', HTMLElement).replaceChildren(...rows);
   }
-}
-
-/** @param {Version} version */
-function beginOf({ name, text: whole }) {
-  const begin = whole.trim().split('\n', 3).join(' ');
-  return (name ? `${name}: ` : '') + (begin.length > 60 ? `${begin.slice(0, 60)}…` : begin);
 }

@@ -47,7 +47,12 @@ export function keepVersion({ text, robot, name }, at_ms = Date.now()) {
 
 /** Its name, or else how it begins. @param {Version} version @returns {string} */
 export function titleOf({ name, text }) {
-  return name.replace(/\.\w+$/, '') || text.trim().split('\n', 3).join(' ').slice(0, 60);
+  return name.replace(/\.\w+$/, '') || beginOf(text);
+}
+
+/** Its first lines as one, with no character cut in two. @param {string} text @returns {string} */
+export function beginOf(text) {
+  return text.trim().split('\n', 3).join(' ').replace(/^(.{60}).+/su, '$1…');
 }
 
 /**

@@ -19,6 +19,7 @@ import { drawnPicture, offer, pictured } from '../page/pictures.js';
 import { so } from '../page/so.js';
 import { called, currentLanguage, known, text } from '../page/texts.js';
 import { LINK, ROBOTS } from '../page/words.js';
+import { whole } from '../writing/messages.js';
 
 /** @typedef {import('../python.js').Checked} Checked */
 /** @typedef {import('./way.js').About} About */
@@ -288,7 +289,7 @@ export class RobotPanel {
     const found = await this.#page.python.ask({ do: 'check', robot, language: currentLanguage() }, data);
     const mistake = found.findings.find((each) => each.severity === 'mistake');
     if (mistake) {
-      this.#speech.tell([mistake.message, mistake.fix && `${text('try')} ${mistake.fix}`].filter(Boolean).join(' '));
+      this.#speech.tell(whole(mistake));
       return;
     }
     await this.#ask({ do: 'live', image: found.image, robot }, () => this.#speech.say('say_line'));

@@ -11,6 +11,7 @@ import { Compartment, EditorState, StateEffect, StateField } from '@codemirror/s
 import { Decoration, EditorView, highlightActiveLine, keymap, lineNumbers } from '@codemirror/view';
 import { breakpoints, placesOf, pointsOf, pressed, setBreakpoints } from './breakpoints.js';
 import { colors, completionOf, languageOf } from './language.js';
+import { whole } from './messages.js';
 import { partAt } from './parts.js';
 import { so } from '../page/so.js';
 import { text, textsOf } from '../page/texts.js';
@@ -157,7 +158,7 @@ export class Editor {
       ...this.#offsets(finding),
       /** @type {'error' | 'warning'} */
       severity: finding.severity === 'mistake' ? 'error' : 'warning',
-      message: finding.fix ? `${finding.message}  ${text('try')} ${finding.fix}` : finding.message,
+      message: whole(finding),
       actions: finding.repair.length
         ? [{ name: text('repair'), apply: () => repair(finding) }]
         : [],

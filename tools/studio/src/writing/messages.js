@@ -9,6 +9,12 @@ import { text } from '../page/texts.js';
 
 const MOST = 50; // messages that are shown at once
 
+/** What is said, and what to try, as one line. @param {{message?: string, fix?: string}} said @returns {string} */
+export function whole({ message = '', fix = '' }) {
+  const gap = /[.!?:]$/.test(message) ? ' ' : ' – ';
+  return [message, fix && `${text('try')} ${fix}`].filter(Boolean).join(gap);
+}
+
 /**
  * @param {HTMLElement} list
  * @param {Finding[]} findings
@@ -21,19 +27,10 @@ export function showMessages(list, findings, goTo, repair) {
     const row = document.createElement('li');
     row.className = finding.severity;
     const place = button(text('line', { line: finding.line }), () => goTo(finding));
-    const fixes = finding.fix && `${text('try')} ${finding.fix}`;
     place.className = 'place';
-    place.ariaLabel = text('say_fault', { line: finding.line, what: `${finding.message} ${fixes}`.trim() });
+    place.ariaLabel = text('say_fault', { line: finding.line, what: whole(finding) });
     first ||= place.ariaLabel;
-    const said = document.createElement('span');
-    said.textContent = finding.message;
-    row.append(place, ' ', said);
-    if (finding.fix) {
-      const fix = document.createElement('span');
-      fix.className = 'fix';
-      fix.textContent = fixes;
-      row.append(' ', fix);
-    }
+    row.append(place, ' ', whole(finding));
     if (finding.repair.length) {
       const does = button(text('repair'), () => repair(finding));
       does.className = 'repair';
