@@ -174,6 +174,14 @@ def test_a_step_and_the_robot_are_seen_at_once(page: Page, size: tuple[int, int]
             )
             assert seen >= min(PAGES[size], whole), (number, button.inner_text())
             assert size[0] != 1366 or seen == whole
+    for number in (1, 7):  # its name is whole, beside its number or over the step
+        page.select_option("#lesson", str(number))
+        page.locator(f"#lesson_page[data-lesson='{number}']").wait_for()
+        is_phone = page.locator("html[data-phone]").count()
+        name = page.locator("#lesson_name" if is_phone else "#lesson selectedcontent span")
+        title = catalogue.load(FOLDERS[number - 1]).titles["en"]
+        assert name.inner_text().removeprefix(f"{number}. ").removesuffix(" ✓ done") == title
+        assert name.evaluate("e => e.scrollHeight <= e.clientHeight + 1"), number
     box = page.locator("#arena").bounding_box()
     assert box and box["height"] >= 110 and box["y"] + box["height"] <= size[1]
     page.set_viewport_size({"width": 1366, "height": 768})

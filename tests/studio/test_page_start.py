@@ -14,7 +14,7 @@ from tests.support.studio import Pages, axe, checked, image, noted, shown, speak
 from tiniscript import compile
 
 if TYPE_CHECKING:
-    from playwright.sync_api import Page
+    from playwright.sync_api import Page, Route
 
 PICTURES = ("dance", "square", "obstacle", "line", "light", "music")
 START = "html[data-screen=start]"
@@ -79,6 +79,49 @@ def test_the_robot_moves_before_the_blocks_are_fetched(pages: Pages) -> None:
     page.locator("html[data-phase=running]").wait_for(state="attached")
     shown(page)
     assert any("/blocks-" in each for each in fetched)
+
+
+def test_lessons_that_come_late_leave_a_run_alone(pages: Pages) -> None:
+    page = pages.open("start")
+    held: list[Route] = []
+    page.route("**/lessons.zip", lambda route: held.append(route))
+    page.click("#start_lessons")
+    while not held:
+        page.wait_for_timeout(20)
+    assert not page.locator("#lesson_hint").is_visible()
+    page.click("#home")
+    page.click("[data-begin=obstacle]")
+    page.locator("html[data-phase=running]").wait_for(state="attached")
+    held[0].continue_()
+    page.locator("#lesson_page[data-lesson]").wait_for(state="attached")
+    assert page.get_attribute("html", "data-phase") == "running"
+    assert page.input_value("#world") == "obstacles"
+    page.click("#side_lessons")
+    page.locator("#world option:checked", has_text="Lesson 1").wait_for(state="attached")
+
+
+def test_who_gets_no_compiler_is_told_so_beside_the_robot(pages: Pages) -> None:
+    page = pages.open("start", is_alone=True).context.new_page()
+    page.route("**/tiniscript.zip", lambda route: route.abort())
+    page.goto(pages.address)
+    page.click("[data-begin=dance]")
+    page.locator("#doing", has_text="The compiler did not start. Reload the page").wait_for()
+    page.click("#side_lessons")
+    page.locator("#lesson_said", has_text="The compiler did not start.").wait_for()
+
+
+def test_nothing_empty_is_seen_before_the_texts_come(pages: Pages) -> None:
+    page = pages.open("start", is_alone=True).context.new_page()
+    held: list[Route] = []
+    page.route("**/texts.*.json", lambda route: held.append(route))
+    page.goto(pages.address, wait_until="domcontentloaded")
+    while not held:
+        page.wait_for_timeout(20)
+    seen = page.locator("header :is(button, select):visible")
+    assert seen.all_inner_texts() == ["STOP"]
+    held[0].continue_()
+    page.locator(START).wait_for(state="attached")
+    assert seen.count() > 3
 
 
 def test_the_address_says_which_screen_is_seen(pages: Pages, start: Page) -> None:

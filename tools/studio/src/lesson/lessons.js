@@ -134,7 +134,8 @@ export class Lessons {
     } catch (why) {
       this.#isShown = false;
       this.#setReady(false);
-      if (String(why).includes(ARCHIVE)) this.#said.textContent = text('lessons_unreachable');
+      if (document.documentElement.dataset['state'] === 'failed') this.#said.textContent = text('no_compiler');
+      else if (String(why).includes(ARCHIVE)) this.#said.textContent = text('lessons_unreachable');
       else this.#fail(why);
     }
   }
@@ -159,7 +160,7 @@ export class Lessons {
     const { steps } = await this.#page.python.ask({ do: 'lesson_steps', number, language });
     if (asked !== this.#asked) return;
     this.#steps = steps;
-    if (isOther) await this.#seeWorld(1);
+    if (isOther && !element('lessons', HTMLElement).hidden) await this.#seeWorld(1);
     this.#go(isOther ? 0 : this.#step);
     this.#setReady(true);
   }
@@ -169,7 +170,8 @@ export class Lessons {
     this.#step = step;
     const place = element('lesson_page', HTMLElement);
     const { blocks, hint } = /** @type {Step} */ (this.#steps[step]);
-    const { robot } = /** @type {Lesson} */ (this.#lessons[this.#number - 1]);
+    const { robot, title } = /** @type {Lesson} */ (this.#lessons[this.#number - 1]);
+    element('lesson_name', HTMLElement).textContent = title;
     element('lesson_step', HTMLElement).replaceChildren(...blocks.map((block) => elementOf(block, (program) => {
       this.#page.put({ text: program, robot });
       so.note.say(text('lesson_used'));

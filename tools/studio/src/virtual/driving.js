@@ -307,7 +307,7 @@ export class Driving {
       if (start !== this.#starts) return;
       this.#isWaiting = false;
     }
-    this.#note = !program || program.image ? '' : text('first_repair');
+    this.#note = !program ? text('no_compiler') : program.image ? '' : text('first_repair');
     this.#show();
     await this.#simulator.stop(); // also before a program with mistakes: what runs is not what is seen
     if (start !== this.#starts || !program?.image) return;
