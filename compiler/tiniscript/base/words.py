@@ -141,12 +141,12 @@ def lexicon() -> dict[str, list[str]]:
 
 
 @lru_cache(4000)
-def said_of(word: str, kind: str) -> tuple[str, ...]:
-    """Return what the lexicon says of a word, of one kind: `("s", "1000")` of SEG, `unit`."""
+def said_of(word: str, *kinds: str) -> tuple[str, ...]:
+    """Return what the lexicon says of a word, of these kinds: `("s", "1000")` of SEG, `unit`."""
     for meaning in lexicon().get(word, ()):
         first, *rest = meaning.split()
-        if first == kind:
-            return tuple(rest) or (kind,)
+        if first in kinds:
+            return tuple(rest) or (first,)
     return ()
 
 

@@ -104,7 +104,9 @@ def offers(text: str, found: list[Diagnostic], check: Check) -> list[list[Edit]]
     return offered
 
 
-def is_better(after: list[Diagnostic], found: list[Diagnostic], edits: Sequence[Edit]) -> bool:
+def is_better(
+    after: Sequence[Diagnostic], found: Sequence[Diagnostic], edits: Sequence[Edit]
+) -> bool:
     """Whether a repair leaves fewer mistakes.
 
     Or as many, where it has uncovered one elsewhere: how a block ends is not looked at before its
@@ -127,5 +129,5 @@ def _is_sealed(edit: Edit, source: Source) -> bool:
     return "~" in source.line_text(source.position(edit.span.start)[0])
 
 
-def _mistakes(found: list[Diagnostic]) -> int:
+def _mistakes(found: Sequence[Diagnostic]) -> int:
     return sum(each.is_mistake for each in found)

@@ -18,7 +18,7 @@ from tiniscript.base.words import BLOCK_ENDS, OTHER_WAY, UNIT_OF, WORDS, nearest
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import CODES, Diagnostic
 from tiniscript.recovery import advice_rows, lines, rewrites
-from tiniscript.recovery.behind import ASKING, Above, Behind, Placed, whole
+from tiniscript.recovery.behind import ASKING, Above, Behind, Placed, placed, whole
 from tiniscript.recovery.concepts import ENDED, Lexeme, Names, lexemes, made, plain, said_of
 from tiniscript.recovery.orders import Order, made_up, orders, question_in, written
 from tiniscript.recovery.slots import filled
@@ -30,14 +30,17 @@ from tiniscript.syntax.operators import COMPARISONS
 from tiniscript.syntax.outline import Failure
 
 LONGEST = 24  # words behind an instruction that are read
-MOST = 1_000  # of them in a text
+MOST = 1_000  # instructions of a text that are read
 # Codes of words that a repair may read better.
 _ASIDE = (codes.REPEATED.number, codes.WORDS_BEHIND.number)
-_MOST_TIMES = 20  # a number behind a turn that is rather an angle
+_FEW = frozenset(map(str, range(2, 20)))  # times: more behind a turn are rather an angle
 _MOST_BEFORE = 8  # instructions that an example repeats
 _FARTHEST = 40  # instructions of a text that are looked at for what is done again
 _ONE_IN_LOOP = 2  # separators of a loop of one instruction
 _BEGIN_BODY = (*BLOCK_ENDS, "ELSE", "ELSEIF")
+# An instruction of a line, and the bar of a `SI|`.
+_PART = re.compile(r"((?:[^;{}|]|\|\|)+)(\|?)")
+_ONCE = re.compile(r"(.+?;)\1*")  # orders that the others repeat
 _CHOICE = re.compile(r"\s*(\w+)\s*(\([0-9., ]*\))?\s*")
 _SHORTEST_WORD = 3  # letters: X is rather a variable
 _BARE = ".:,\\* \"'`´“”‘’«»"  # signs that a note needs not
@@ -87,12 +90,11 @@ def advised(text: str, kit: Kit) -> list[Advice]:
         words = lexemes(body)
         is_right = not isinstance(lines.right(words, names), Failure)
         if "~" not in body and not is_right:
-            parts = filter(_is_read, _parts(body, start, text, names, depth, above))
-            read = list(islice(parts, left))
-            for each in filter(None, map(_told, read)):
-                if not (told and overlap([told[-1].passed], [each.passed])):
+            for part in islice(_parts(body, start, text, names, depth, above), left):
+                left -= 1
+                each = _told(part)
+                if each and not (told and overlap([told[-1].passed], [each.passed])):
                     told.append(each)
-            left -= len(read)
         found += told
         if body.strip() and not any(each.diagnostic.code is codes.SAME_AGAIN for each in told):
             above = _below(above, body.partition("|")[2] or body, is_right)
@@ -119,24 +121,16 @@ def _parts(
     body: str, start: int, text: str, names: Names, depth: int, above: Above
 ) -> Iterator[Behind]:
     """Give each instruction of a line that has words behind it, and words without one."""
-    placed: list[Placed] = []
-    for token in lexemes(body):
-        start += len(token.space or "")
-        placed.append(Placed(token, Span(start, start + len(token.source or ""))))
-        start = placed[-1].span.end
-    begin = 0
     before: list[str] | None = []
 
     def behind(call: Sequence[Placed], row: Sequence[Placed], said: str = "") -> Behind:
         return Behind(call, row, before, above, text, names, depth, said)
 
-    for k in range(len(placed) + 1):
-        if k < len(placed) and placed[k].token.text not in (";", "{", "}", "|"):
+    for match in _PART.finditer(body):
+        part = placed(match[1], start + match.start())
+        if not part or match[2]:
             continue
-        part = placed[begin:k]
-        if k < len(placed) and placed[k].token.text == "|":
-            begin = k + 1
-            continue
+        first = part[0].token.text
         tokens = [each.token for each in part]
         while 0 < len(part) <= lines.LONGEST:
             size = whole(tokens, names)
@@ -157,18 +151,14 @@ def _parts(
                 yield behind(part[:size], rest)
                 break
             part = rest
-        if part and before is not None:
-            is_block = part[0].token.text in (*_BEGIN_BODY, *ENDED)
-            source = text[part[0].span.start : part[-1].span.end]
-            before = None if is_block else [*before, source]
-        begin = k + 1
-
-
-def _is_read(part: Behind) -> bool:
-    return len(part.row) <= LONGEST and part.is_aside()
+        if before is not None:
+            is_block = first in (*_BEGIN_BODY, *ENDED)
+            before = None if is_block else [*before, match[1].strip()]
 
 
 def _told(part: Behind) -> Advice | None:
+    if len(part.row) > LONGEST or not part.is_aside():
+        return None
     line = rewrites.Encoded([made(";"), *part.row], part.names, part.labels())
     for k in line.tried(_places()):
         row = rows()[k]
@@ -250,9 +240,17 @@ class _Gaps(dict[str, str]):
         """Return where a capture stands: from which token on, and before which."""
         return self._line.span(self._match, name)
 
+    def tokens(self, name: str) -> list[Lexeme]:
+        start, end = self.span(name)
+        return self.part.row[start - 1 : end - 1]
+
+    def from_on(self, name: str) -> list[Lexeme]:
+        """Return the words from a capture on."""
+        return self.part.row[self.span(name)[0] - 1 :]
+
     def meant(self, name: str) -> str:
         """Return the word of the language that a capture begins with."""
-        return self.part.means(self.part.row[self.span(name)[0] - 1].text)
+        return self.part.means(self.from_on(name)[0].text)
 
     def captured(self, name: str) -> str:
         start, end = self.span(name)
@@ -274,30 +272,18 @@ class _Gaps(dict[str, str]):
         return number
 
 
-def _few(gaps: _Gaps) -> str:
-    """A number that may say how often, and is no angle."""
-    number = gaps["n"]
-    return number if number.isdecimal() and 1 < int(number[:9]) < _MOST_TIMES else ""
-
-
 def _all(gaps: _Gaps, times: str) -> str:
     """The loop that does so often all that stands before, nothing where that is long."""
     part = gaps.part
     if part.before is None or part.above.orders is None or part.is_in_block or times in ("0", "1"):
         return ""
-    orders = _once([*part.above.orders, *part.before, *([part.call] if part.call else [])])
+    orders = [*part.above.orders, *part.before, *([part.call] if part.call else [])]
+    said = "".join(f"{each};" for each in orders)
+    if once := _ONCE.fullmatch("".join(said.split()).upper()):  # F and L of `F; L; F; L`
+        orders = orders[: once[1].count(";")]
     if not 0 < len(orders) <= _MOST_BEFORE:
         return ""
     return ";".join((f"LOOP({times})", *orders, BLOCK_ENDS["LOOP"]))
-
-
-def _once(orders: list[str]) -> list[str]:
-    """Return the orders that the others repeat: F and L of `F; L; F; L`."""
-    said = ["".join(each.split()).upper() for each in orders]
-    for size in range(1, len(orders) // 2 + 1):
-        if len(orders) % size == 0 and said == said[:size] * (len(orders) // size):
-            return orders[:size]
-    return orders
 
 
 def _twice(gaps: _Gaps) -> str:
@@ -308,10 +294,8 @@ def _twice(gaps: _Gaps) -> str:
 
 def _worded(gaps: _Gaps, is_not: bool) -> dict[str, str]:
     """What the words of a question ask, or the opposite."""
-    start, end = gaps.span("s")
-    row = gaps.part.row[start - 1 : end - 1]
-    names = gaps.part.names
-    is_bare = gaps.part.row[end - 1 : end] == [] or gaps.part.row[end - 1].text != ")"
+    row, names = gaps.tokens("s"), gaps.part.names
+    is_bare = [each.text for each in gaps.from_on("s")[len(row) :][:1]] != [")"]
     is_order = is_bare and gaps["head"] == "UNTIL" and not gaps.part.tokens
     is_order |= is_bare and any("|@start|" in names.label(each) for each in row)
     is_read = is_order or bool(_asked(gaps, "s"))
@@ -321,40 +305,33 @@ def _worded(gaps: _Gaps, is_not: bool) -> dict[str, str]:
     return found
 
 
-def _sensor(k: int) -> Callable[[_Gaps], str]:
-    """Return the gap for one of the sensors that a word may mean."""
-
-    def sensor(gaps: _Gaps) -> str:
-        found = sensors_of(plain(gaps["l"]), gaps.part.names)
-        return found[k] if k < len(found) else ""
-
-    return sensor
+def _sensor(gaps: _Gaps, k: int) -> str:
+    """One of the sensors that a word may mean."""
+    found = sensors_of(plain(gaps["l"]), gaps.part.names)
+    return found[k] if k < len(found) else ""
 
 
 def _alone(gaps: _Gaps) -> str:
     """A question that stands alone, and sets nothing."""
-    start, end = gaps.span("s")
-    signs = {each.text for each in gaps.part.row[start - 1 : end - 1]}
+    signs = {each.text for each in gaps.tokens("s")}
     return laid_out(_asked(gaps, "s")) if signs & {*COMPARISONS} - {"="} else ""
 
 
 def _then(gaps: _Gaps) -> str:
     """The instruction that a row captures, where it is right."""
-    start = gaps.span("w")[0]
-    found = lines.right(gaps.part.row[start - 1 :], gaps.part.names)
+    found = lines.right(gaps.from_on("w"), gaps.part.names)
     return "" if isinstance(found, Failure) else _rest(gaps, "w")
 
 
 def _done(gaps: _Gaps) -> str:
     """The orders that the words from a capture on say."""
-    return written(orders(gaps.part.row[gaps.span("w")[0] - 1 :], gaps.part.names))
+    return written(orders(gaps.from_on("w"), gaps.part.names))
 
 
 def _free(gaps: _Gaps) -> str:
     """A name that may get the value before it, which is no other name."""
     names, name = gaps.part.names, plain(gaps["x"])
-    start, end = gaps.span("v")
-    is_name = all(each.kind is WORD for each in gaps.part.row[start - 1 : end - 1])
+    is_name = all(each.kind is WORD for each in gaps.tokens("v"))
     is_taken = name in names.sensors or name in names.defs or name in names.actuators
     return "" if is_name or is_taken else name
 
@@ -401,23 +378,23 @@ def _loop(gaps: _Gaps) -> str:
     return "" if number in ("0", "1") else f"LOOP({number});{gaps.part.call};{BLOCK_ENDS['LOOP']}"
 
 
-def _with_value(gaps: _Gaps, place: int) -> str:
-    """The call with another number, where it has one that differs."""
-    call, values, number = gaps.part.call, gaps.part.values, gaps["n"]
-    if not values or (gaps.part.is_asked and place == 0):
+def _with(gaps: _Gaps, value: re.Match[str] | None, new: str) -> str:
+    """The call with another value, where it has one that differs."""
+    if value is None or value[1] == new:
         return ""
-    start, end = values[place]
-    is_power = place < 0
-    is_sensible = not is_power or (call[start:end].isdecimal() and 9 < float(number) <= 100)
-    is_same = call[start:end] == number
-    return "" if is_same or not is_sensible else f"{call[:start]}{number}{call[end:]}"
+    return f"{gaps.part.call[: value.start(1)]}{new}{gaps.part.call[value.end(1) :]}"
+
+
+def _paced(gaps: _Gaps) -> str:
+    """The call with another power."""
+    number = gaps["n"]
+    return _with(gaps, gaps.part.power, number) if 9 < float(number) <= 100 else ""
 
 
 def _by_way(gaps: _Gaps) -> str:
     """The call by centimetres or degrees instead of seconds."""
-    call, values = gaps.part.call, gaps.part.values
-    end = values[0][1] if values else 0
-    return f"{call[:end]} {UNIT_OF[plain(call.partition('(')[0])]}{call[end:]}" if end else ""
+    time = gaps.part.time
+    return _with(gaps, time, f"{time[1]} {UNIT_OF[gaps.part.own]}") if time else ""
 
 
 def _previous(gaps: _Gaps) -> str:
@@ -436,9 +413,7 @@ def _other(gaps: _Gaps) -> str:
 
 def _asked(gaps: _Gaps, name: str = "q") -> list[Lexeme]:
     """The question that words ask, in words of the language; nothing where they ask none."""
-    start, end = gaps.span(name)
-    words = gaps.part.row[start - 1 : end - 1]
-    return [] if gaps.part.is_asked else question_in(words, gaps.part.names)
+    return [] if gaps.part.is_asked else question_in(gaps.tokens(name), gaps.part.names)
 
 
 def _shown(gaps: _Gaps) -> str:
@@ -504,17 +479,20 @@ _GAPS: dict[str, Callable[[_Gaps], str]] = {
         "(" in each or each == "S" for each in _choices(gaps)) else "",
     "choices": _choice, "apart": _apart, "number": lambda gaps: for_a_number(gaps.part.text),
     "example": lambda gaps: WORDS[plain(gaps["w"])].example,
-    "one": _sensor(0), "two": _sensor(1), "alone": _alone, "then": _then, "done": _done,
-    "free": _free,
+    "one": lambda gaps: _sensor(gaps, 0), "two": lambda gaps: _sensor(gaps, 1),
+    "alone": _alone, "then": _then, "done": _done, "free": _free,
     "text": lambda gaps: shortened(gaps.part.text[slice(*gaps.part.place)]),
     "words": lambda gaps: shortened(gaps.part.words),
-    "previous": _previous, "loop": _loop, "few": _few, "paused": _paused,
-    "end": lambda gaps: "" if _asked(gaps, "s") else BLOCK_ENDS[plain(gaps["g"])],
+    "previous": _previous, "loop": _loop, "paused": _paused,
+    "few": lambda gaps: gaps["n"] if gaps["n"] in _FEW else "",
+    "end": lambda gaps: "" if _asked(gaps, "s") else BLOCK_ENDS[gaps.meant("g")],
+    "block": lambda gaps: gaps.meant("g"),
     "always": lambda gaps: laid_out(_asked(gaps, "c")), "shown": _shown,
     "other": _other, "note": _note,
     "once": lambda gaps: gaps.part.call if gaps["n"] == "1" else "",
     "by_way": _by_way,
-    "longer": lambda gaps: _with_value(gaps, 0), "paced": lambda gaps: _with_value(gaps, -1),
+    "longer": lambda gaps: _with(gaps, gaps.part.time, gaps["n"]),
+    "paced": _paced,
     "question": lambda gaps: laid_out(_asked(gaps)), "contrary": _contrary, "near": _near,
     "example?": _example,
     "until?": lambda gaps: f" {_rest(gaps, 't')}".rstrip(),

@@ -6,14 +6,14 @@
 
 A pattern is one of `rows`. Its first token is a whole instruction, with its brackets and its UNTIL;
 the others are the words behind it. Classes of the instruction, beside its word: @cmd (of the
-language), @did (a DEF), @arm (a header, ELSE or an end), @more (others stand before it on its
+language), @did (a DEF), @more (others stand before it on its
 line), @later (others stand before it), @outer (in no block), @move, @clock (its first value is its
 time), @asked (has its UNTIL) and @unasked (may get one). Words without an instruction have @none there, also @after where
 one stands before them, @last where they end the text, and @unbegun
 in a text without `SI|`. Classes of the words: @number (in
 words, too), @often (a number that says how often), @percent (one that says a power), @in_s (a unit
 of time), @other (the other way), @paced (another pace than its power), @told (says nothing that the
-instruction does not), @no_order (a word that begins no instruction), @quote, @mark (what is written
+instruction does not), @quote, @mark (what is written
 below a line that is meant again), @dots, @ask (a word of the language that asks) and @noBUTTON (a
 word for BUTTON, which the kit lacks), @call and @order (of the language: with values, or without). What `s` captures is pointed at. `h` is a header: the rest is
 read with what is asked as its question, else with TRUE.
@@ -66,7 +66,7 @@ ADVICE = """
 ^ @none @any* h=IF|ELSEIF|WHILE|UNTIL (? @any* s=@noBUTTON @any* )? <body> $ | TS120 | | IF(boton presionado)⏎S⏎ENDIF => before=
 ^ @none @any* <asks> ( s=light|ahead =|is f=FALSE|0 ) $ | TS135 | word={head} | IF(oscuro = FALSE)⏎S⏎ENDIF => question=LIGHT_L > 500
 ^ @none @any* <asks> (? s='='|@word|@num+ )? <body> $ | TS135 | word={head} | F(5, 60) UNTIL(luz mucha) => question=LIGHT_L > 500
-^ @none g=IF|WHILE ( s=@any+ , w=@start @any* ) $ | TS080 | word={g}; head={g}({s}); right={end} | IF(distancia < poca, S) => head=IF(distancia < poca)
+^ @none g=IF|WHILE ( s=@any+ , w=@start @any* ) $ | TS080 | word={block}; head={block}({s}); right={end} | IF(distancia < poca, S) => head=IF(distancia < poca)
 ^ @none s=FOREVER q=that c=@cond+ w=@startm $ | TS102 | found={s} {q}; right=WHILE; usage=WHILE({always}) | siempre que distancia > 20 avanza => usage=WHILE(DISTANCE > 20)
 ^ @none s=ELSEIF :? $ | TS015 | word=ELSEIF; words=; usage=ELSEIF; example=ELSEIF({distance} < 10); bare=ELSE | IF(DISTANCE < 10)⏎S⏎ELIF⏎F(1, 60)⏎ENDIF => bare=ELSE
 ^ @none ELSE s=IF :? $ | TS015 | word=ELSEIF; words=; usage=ELSEIF; example=ELSEIF({distance} < 10); bare=ELSE | IF(DISTANCE < 10)⏎S⏎SINO SI⏎F(1, 60)⏎ENDIF => bare=ELSE

@@ -33,6 +33,9 @@ ASKING = ("IF", "ELSEIF", "WHILE", "WHEN", "UNTIL")
 _NOTHING = re.compile(r"\s*\Z")
 _BEGUN = re.compile(r"(?i)\s*(?:S[IB]|PING)\s*\|")
 MARKS = f"{QUOTES}-–—_,"  # below a line that is meant again
+# The first value of a call, and the last one where that is a whole number.
+_TIME = re.compile(r"\w+\s*\(\s*((?:[^(),]|\([^()]*\))+?)(?=\s*[,)])")
+_POWER = re.compile(r"(?i)[(,]\s*([0-9]{1,3})\s*\)(?=\s*(?:UNTIL\b|$))")
 _HALF = 60  # a power that is neither fast nor slow
 _BEFORE_NOTE = frozenset(("=", ">", "<", "*", ":", ",", "(", *COMPARISONS))
 _IN_NO_NOTE = frozenset((*COMPARISONS, "*", "+", "==", "!=", "{", "}"))
@@ -42,6 +45,16 @@ _LONG_WORDS = tuple(word for word in WORDS if len(word) > 2)
 class Placed(NamedTuple):
     token: Lexeme
     span: Span
+
+
+def placed(line: str, start: int) -> list[Placed]:
+    """Return the tokens of a line that begins at `start`."""
+    found = []
+    for token in lexemes(line):
+        start += len(token.space or "")
+        found.append(Placed(token, Span(start, start + len(token.source or ""))))
+        start = found[-1].span.end
+    return found
 
 
 def whole(tokens: Sequence[Lexeme], names: Names) -> int:
@@ -77,21 +90,6 @@ def _meant_call(token: Lexeme, names: Names) -> str:
 def _is_set(word: str, text: str) -> bool:
     """Whether a word is a variable of a text, which is told at its own line."""
     return bool(re.search(rf"(?i)\b{word}\s*=", text))
-
-
-def _values(call: Sequence[Placed]) -> list[Span]:
-    """Return where the values of a call stand in its text."""
-    found, depth, start = [], 0, 0
-    for k, each in enumerate(call[: closed([each.token for each in call], 1)]):
-        sign = each.token.text
-        depth -= sign == ")"
-        if depth <= (sign != ")") and sign in (",", ")") and start < k:
-            found.append(Span(call[start].span.start, call[k - 1].span.end))
-        depth += sign == "("
-        if depth == 1 and sign in ("(", ","):
-            start = k + 1
-    begin = call[0].span.start
-    return [Span(each.start - begin, each.end - begin) for each in found]
 
 
 class Above(NamedTuple):
@@ -138,7 +136,8 @@ class Behind:
         self.is_arm = known is not None and known.role in ("block", "arm", "end")
         self.own = ENDED.get(meant, meant)
         self.is_asked = any(each.text == "UNTIL" for each in self.tokens)
-        self.values = [] if said or not call else _values(call)
+        self.time = _TIME.match(self.call)
+        self.power = _POWER.search(self.call)
         self.numbers = {each.text for each in self.tokens if each.kind is NUMBER}
 
     def is_aside(self) -> bool:
@@ -159,28 +158,33 @@ class Behind:
         return [self._label_of_call(), *(self._label(k) for k in range(len(self.row)))]
 
     def _label_of_call(self) -> str:
-        own = self.own
-        known = WORDS.get(own)
-        if not self.tokens:
-            is_end = bool(_NOTHING.match(self.text, self.place.end)) and not self.is_in_block
-            found = ["@none"]
-            found += ["@after", *["@last"] * is_end] if self.is_later else []
-            found += [] if _BEGUN.match(self.text) else ["@unbegun"]
-            return f"\x01|{'|'.join(found)}|\x02"
-        found = [own]
-        if known is not None and not self.is_arm and known.role != "start":
-            found.append("@cmd")
-        found += ["@did"] if self.tokens[0].text in self.names.defs else []
-        found += ["@set"] if self.tokens[1:] and self.tokens[1].text == "=" else []
-        found += ["@arm"] if self.is_arm else []
-        is_clock = own in (*MOVES, "W", "BEEP") and not self.is_asked
-        found += ["@move"] if own in MOVES else []
-        found += ["@clock"] if is_clock else []
-        found += ["@asked"] if self.is_asked else ["@unasked"] if own in (*MOVES, "W") else []
-        found += [] if self.is_in_block else ["@outer"]
-        found += ["@more"] if self.before and "@cmd" in found else []
-        found += ["@later"] if self.is_later and not self.is_arm else []
-        return f"\x01|{'|'.join([*found, '@any'])}|\x02"
+        own, known = self.own, WORDS.get(self.own)
+        is_timed = own in (*MOVES, "W")
+        if self.tokens:
+            is_order = known is not None and not self.is_arm and known.role != "start"
+            labels = {
+                own: True,
+                "@any": True,
+                "@cmd": is_order,
+                "@did": self.tokens[0].text in self.names.defs,
+                "@set": [each.text for each in self.tokens[1:2]] == ["="],
+                "@move": own in MOVES,
+                "@clock": (is_timed or own == "BEEP") and not self.is_asked,
+                "@asked": self.is_asked,
+                "@unasked": is_timed and not self.is_asked,
+                "@outer": not self.is_in_block,
+                "@more": is_order and bool(self.before),
+                "@later": self.is_later and not self.is_arm,
+            }
+        else:
+            is_end = _NOTHING.match(self.text, self.place.end) and not self.is_in_block
+            labels = {
+                "@none": True,
+                "@after": self.is_later,
+                "@last": self.is_later and bool(is_end),
+                "@unbegun": not _BEGUN.match(self.text),
+            }
+        return f"\x01|{'|'.join(label for label, is_so in labels.items() if is_so)}|\x02"
 
     def _label(self, k: int) -> str:
         token = self.row[k]
@@ -191,23 +195,17 @@ class Behind:
         if number is not None:
             found.append("@number")
             is_counted = said_of(after, "times") or said_of(text, "often") or text[0] == "X"
-            is_often = (
-                is_counted
-                or said_of(before, "multiplied")
-                or before in ("X", "*")
-                or self.means(before) == "LOOP"
-            )
-            unit = said_of(after, "unit")
-            is_power = any(_is_percent(each.text) for each in self.row)
-            found += ["@often"] if is_often and (is_counted or not unit) else []
-            found += ["@percent"] if is_power else []
+            is_multiplied = said_of(before, "multiplied") or before in ("X", "*")
+            is_often = is_multiplied or self.means(before) == "LOOP"
+            if is_counted or (is_often and not said_of(after, "unit")):
+                found.append("@often")
+            found += ["@percent"] if any(_is_percent(each.text) for each in self.row) else []
         unit_of = said_of(text, "unit")
         found += ["@in_s"] if unit_of and unit_of[0] == "s" else []
         if token.kind is WORD:
             is_other = text not in WORDS and self.means(text) == OTHER_WAY.get(self.own)
             found += ["@other"] if is_other else []
             found += ["@paced"] if self._is_paced(k) else []
-            found += ["@no_order"] if self.tokens and not k and self._begins_no_order(k) else []
         found += ["@told"] if self.tokens and self._is_told(k) else []
         concept = concept_of(text) if token.kind is WORD and not self.names.is_name(text) else None
         is_of_kit = concept is None or concept in WORDS or self.names.has(concept)
@@ -243,20 +241,13 @@ class Behind:
 
     def _is_paced(self, k: int) -> bool:
         text = self.row[k].text
-        power = self.call[slice(*self.values[-1])] if self.values else ""
-        if not re.fullmatch("[0-9]{1,3}", power):
+        if self.power is None:
             return False
         said = said_of(text, "power")
         is_fast = said[:1] == ("100",)
         is_changed = bool(k and said_of(self.row[k - 1].text, "extra"))
-        is_other = (int(power) >= _HALF) is not is_fast
+        is_other = (int(self.power[1]) >= _HALF) is not is_fast
         return said_of(text, "pace") != () or bool(said and (is_changed or is_other))
-
-    def _begins_no_order(self, k: int) -> bool:
-        text = self._text(k)
-        is_known = self.means(text) or self.names.is_name(text) or text in WORDS
-        is_asked_for = any(said_of(text, each) for each in ("turn", "on", "off"))
-        return not (is_known or is_asked_for or nearest(text, _LONG_WORDS))
 
     def _is_told(self, k: int) -> bool:
         """Whether a token says nothing that the instruction does not."""
@@ -299,17 +290,14 @@ class Behind:
         if own == "BEEP" and said_of(text, "note"):
             return False
         is_last = not any(each.kind in (WORD, NUMBER) for each in self.row[k + 1 :])
-        if (
-            said_of(text, "small")
-            and not is_last
-            and (k or len(text) == 1 or said_of(text, "count"))
-        ):
+        is_begun = k or len(text) == 1 or said_of(text, "count")
+        if said_of(text, "small") and not is_last and is_begun:
             return False
         if said_of(text, "lap"):
             return own not in ("L", "R", "M", "B")
         if said_of(text, "turn"):
             return own not in ("L", "R", "M")
-        if any(said_of(text, each) for each in ("on", "off", "act")):
+        if said_of(text, "on", "off", "act"):
             return True
         if said_of(text, "end") or text in ENDED:
             return self.is_in_block and not self.is_arm

@@ -114,7 +114,7 @@ def plain(text: str) -> str:
 @cache
 def words_of(*kinds: str) -> str:
     """Return a pattern of the words that the lexicon says one of these of."""
-    found = (word for word in lexicon() if any(said_of(word, kind) for kind in kinds))
+    found = (word for word in lexicon() if said_of(word, *kinds))
     return f"(?:{'|'.join(map(re.escape, sorted(found, key=len, reverse=True)))})"
 
 

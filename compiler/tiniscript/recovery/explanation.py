@@ -6,11 +6,10 @@ Typed values and edits. Knows no sentence of any language.
 from __future__ import annotations
 
 import re
-from bisect import bisect_right
 from collections import Counter
 from collections.abc import Sequence
 from difflib import SequenceMatcher
-from itertools import groupby, pairwise, takewhile
+from itertools import accumulate, groupby, pairwise, takewhile
 from typing import NamedTuple
 
 from tiniscript.base.source import Edit, Span
@@ -21,7 +20,7 @@ from tiniscript.recovery.blocks import BRACES
 from tiniscript.recovery.concepts import ENDED, SOME_END, Lexeme, lexemes, meant_by, said_of, texts
 from tiniscript.recovery.lines import Step
 from tiniscript.recovery.search import Candidate, Change
-from tiniscript.recovery.writing import laid_out, without_note
+from tiniscript.recovery.writing import in_one_line, laid_out, tokens_of, without_note
 from tiniscript.syntax.lexer import NUMBER, WORD
 
 _WORD_CODE = rows.OTHER_WORD
@@ -90,28 +89,14 @@ class _Block:
         self.told: Explanation | None = None
 
 
-class _Part(NamedTuple):
-    """An instruction of a line, and where in it that stands."""
-
-    span: Span
-    tokens: list[Lexeme]
-
-
-def _parts(tokens: Sequence[Lexeme]) -> list[_Part]:
+def _parts(tokens: Sequence[Lexeme]) -> list[list[Lexeme]]:
     """Return the instructions of a line; what is between two separators is one."""
-    found: list[_Part] = []
-    own: list[Lexeme] = []
-    start = end = 0
-    for token in (*tokens, None):
-        if token is None or token.text == ";":
-            found.append(_Part(Span(start if own else end, end), own))
-            own = []
-        if token is not None:
-            end += len(token.space or "")
-            if token.text != ";":
-                start = start if own else end
-                own.append(token)
-            end += len(token.source or token.text)
+    found: list[list[Lexeme]] = [[]]
+    for token in tokens:
+        if token.text == ";":
+            found.append([])
+        else:
+            found[-1].append(token)
     return found
 
 
@@ -133,9 +118,7 @@ class _Teller:
         self.is_whole = found.is_whole
         self.line_end = "\r\n" if "\r" in program else "\n"
         self.lines = program.split("\n")
-        self.starts = [0]
-        for line in self.lines:
-            self.starts.append(self.starts[-1] + len(line) + 1)
+        self.starts = [0, *accumulate(len(line) + 1 for line in self.lines)]
         self.steps = {
             k: [step for _, step in own] for k, own in groupby(found.steps, key=lambda it: it[0])
         }
@@ -173,7 +156,7 @@ class _Teller:
         return not touched & self.found.unsure
 
     def change_at(self, place: int) -> int:
-        line = bisect_right(self.starts, place) - 1
+        line = self.program.count("\n", 0, place)
         return next((k for k, each in enumerate(self.changes) if each.last >= line), 0)
 
     def words(self, span: Span) -> Span:
@@ -188,16 +171,14 @@ class _Teller:
 
     def whole(self, first: int, last: tuple[int, int]) -> str:
         """Return what changes become, as one line."""
-        texts_of = [each.text.split("\n") for each in self.changes[first : last[0] + 1]]
-        lines = [each for it in (*texts_of[:-1], texts_of[-1][: last[1]]) for each in it]
-        parts = (laid_out(lexemes(without_note(each)[0])).strip("; ") for each in lines)
-        return "; ".join(each for each in parts if each)
+        *others, text = (each.text for each in self.changes[first : last[0] + 1])
+        return in_one_line("\n".join((*others, *text.split("\n")[: last[1]])))
 
     def tell(self, k: int, change: Change) -> None:
         old = "\n".join(self.lines[change.first : change.last + 1]).rstrip("\r")
         own, *ends = change.text.split("\n")
         around = self.open[-1] if self.open else None
-        before, after = lexemes(without_note(old)[0]), lexemes(without_note(own)[0])
+        before, after = tokens_of(old), tokens_of(own)
         closed = self.walk(k, after)
         parts = [] if closed or "\n" in old else self.parts(k, old, own, before, after)
         for part in parts:
@@ -235,21 +216,22 @@ class _Teller:
             if len(one) != len(other) or step.code == rows.DO_CODE:
                 return []
             pairs = enumerate(zip(one, other, strict=True))
-            differ = (n for n, (a, b) in pairs if texts(a.tokens) != texts(b.tokens))
-            n = next(differ, len(one) - 1)
-            steps.setdefault(n, []).append(Step(step.code, one[n].tokens, other[n].tokens))
+            n = next((n for n, (a, b) in pairs if texts(a) != texts(b)), len(one) - 1)
+            steps.setdefault(n, []).append(Step(step.code, one[n], other[n]))
         was, now = _parts(before), _parts(after)
         notes = (without_note(each)[1] for each in (old, own))
         if len(was) != len(now) or len({*notes}) > 1 or {*texts(before)} & {*BRACES}:
             return []
         found = []
-        start = self.starts[self.changes[k].first]
+        first, end = self.starts[self.changes[k].first], 0
         for n, (part, meant) in enumerate(zip(was, now, strict=True)):
-            text, new = old[slice(*part.span)], own[slice(*meant.span)]
+            text, new = _written(part), _written(meant)
+            start = old.index(text, end)
+            end = start + len(text)
             if text != new:
-                place = Span(start + part.span.start, start + part.span.end)
+                place = Span(first + start, first + end)
                 edit = trimmed(place.start, text, new)
-                found.append(_Change(place, edit, steps.get(n, []), part.tokens, meant.tokens))
+                found.append(_Change(place, edit, steps.get(n, []), part, meant))
                 if not steps.get(n) and text.isascii():
                     return []
         return found if len(found) > 1 else []
@@ -302,8 +284,8 @@ class _Teller:
             values = {"word": word or ENDED.get(end, ""), "right": end, "behind": last}
             above = next((it for it in self.changes[k - 1 :: -1] if it.text.strip()), None)
             if not word and k and above:  # its indentation says where it ends
-                own = laid_out(lexemes(without_note(above.text.split("\n")[0])[0]))
-                values |= {"line": str(above.last + 1), "last": own}
+                last = laid_out(tokens_of(above.text.split("\n")[0]))
+                values |= {"line": str(above.last + 1), "last": last}
         if code in _SAID_ONCE:
             same = [it for it in self.steps.get(k, []) if it.code == code]
             names = dict.fromkeys(
@@ -324,7 +306,7 @@ class _Teller:
         first = block.first if block else last[0]
         whole = self.whole(first, last)
         whole = whole if len(whole) <= LONGEST_BLOCK else ""
-        behind_this = laid_out(lexemes(without_note(change.text.split("\n")[0])[0]))
+        behind_this = laid_out(tokens_of(change.text.split("\n")[0]))
         place = Span(self.starts[self.changes[first].first], behind)
         line = str(change.last + 1)
         word = block.word if block else ""
@@ -342,7 +324,7 @@ class _Teller:
         depth = 0
         header, *body = (self.changes[k].text.split("\n")[0] for k in range(first, last + 1))
         for line in body:
-            head = next(iter(texts(lexemes(without_note(line)[0]))), "")
+            head = next(iter(texts(tokens_of(line))), "")
             depth -= head in ENDED
             if depth == 0 and head in _ARMS:
                 inside.clear()
@@ -359,11 +341,16 @@ class _Teller:
 
 def trimmed(start: int, old: str, new: str) -> Edit:
     """Return the edit of what differs."""
+    head, tail = _alike(old, new)
+    return Edit(Span(start + head, start + len(old) - tail), new[head : len(new) - tail])
+
+
+def _alike(old: Sequence[object], new: Sequence[object]) -> tuple[int, int]:
+    """Return how much two texts, or two lines, have alike at their beginning and at their end."""
     most = min(len(old), len(new))
     head = next((k for k in range(most) if old[k] != new[k]), most)
     most -= head
-    tail = next((k for k in range(most) if old[-1 - k] != new[-1 - k]), most)
-    return Edit(Span(start + head, start + len(old) - tail), new[head : len(new) - tail])
+    return head, next((k for k in range(most) if old[-1 - k] != new[-1 - k]), most)
 
 
 def _code(part: _Change) -> tuple[str, Step | None]:
@@ -378,31 +365,26 @@ def _code(part: _Change) -> tuple[str, Step | None]:
         return codes.EXTRA_WORD.number, None
     if steps:
         own = [step for step in steps if step.code != _WORD_CODE]
-        own.sort(key=lambda each: each.code == codes.OTHER_SIGN.number)
-        do = [step for step in own if step.code == rows.DO_CODE]
-        if do:
-            return rows.DO_CODE, do[0]
-        translated = [step for step in steps if step not in own]
+        own.sort(key=lambda it: (it.code != rows.DO_CODE, it.code == codes.OTHER_SIGN.number))
+        if own and own[0].code == rows.DO_CODE:
+            return rows.DO_CODE, own[0]
         foreign = next(
             (each.text for each in before
              if each.kind is WORD and each.text not in new and meant_by(each.text) in new - words),
             "",
         )  # fmt: skip
-        is_translated = bool(foreign)
-        has_brackets = "(" in words or "(" not in new
-        if translated and (is_translated or not own):
-            is_said = is_translated or has_brackets or before[0].text not in new
-            return _WORD_CODE if is_said else rows.NO_BRACKETS, translated[0]
-        if own[0].code == codes.OTHER_CALL.number and not is_translated:
-            right = _first_difference(own[0].before, own[0].after)[2]
-            if texts(right) == (",",):
-                return codes.MISSING_COMMA.number, own[0]
-        if is_translated:
+        translated = next((step for step in steps if step.code == _WORD_CODE), None)
+        if translated and (foreign or not own):
+            is_said = foreign or "(" in words or "(" not in new or before[0].text not in new
+            return _WORD_CODE if is_said else rows.NO_BRACKETS, translated
+        if foreign:
             changed = (
                 it for it in steps if foreign in texts(it.before) and foreign not in texts(it.after)
             )
             return _WORD_CODE, next(changed, own[0])
-        return own[0].code, own[0]
+        right = _first_difference(own[0].before, own[0].after)[2]
+        is_comma = own[0].code == codes.OTHER_CALL.number and texts(right) == (",",)
+        return codes.MISSING_COMMA.number if is_comma else own[0].code, own[0]
     if words & {*BRACES}:
         return _BRACES, None
     source = "".join(each.source or "" for each in before)
@@ -440,7 +422,7 @@ def _slip(
     elif code == rows.WITH_UNIT:
         found = _with_unit(old) or found
     told, fix = _parted(before), _parted(after)
-    head, tail = _alike(told, fix)
+    head, tail = _alike([*map(texts, told)], [*map(texts, fix)])
     one = [each for part in told[head : len(told) - tail] for each in part]
     other = [each for part in fix[head : len(fix) - tail] for each in part]
     has_end = bool(head) and any(each.text in ENDED for each in other)
@@ -548,13 +530,4 @@ def _written(tokens: Sequence[Lexeme]) -> str:
 def _parted(tokens: Sequence[Lexeme]) -> list[list[Lexeme]]:
     """Return the instructions of a line, without `SI|`."""
     has_setup = len(tokens) > 1 and tokens[1].text == "|" and tokens[0].text in ("SI", "SB")
-    return [each.tokens for each in _parts(tokens[2:] if has_setup else tokens) if each.tokens]
-
-
-def _alike(one: Sequence[Sequence[Lexeme]], other: Sequence[Sequence[Lexeme]]) -> tuple[int, int]:
-    """Return how many instructions begin and end two lines alike."""
-    old, new = [texts(each) for each in one], [texts(each) for each in other]
-    most = min(len(old), len(new))
-    head = next((k for k in range(most) if old[k] != new[k]), most)
-    most -= head
-    return head, next((k for k in range(most) if old[-1 - k] != new[-1 - k]), most)
+    return [each for each in _parts(tokens[2:] if has_setup else tokens) if each]

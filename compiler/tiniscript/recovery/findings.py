@@ -16,14 +16,15 @@ from tiniscript.base.source import Edit, Source, Span, applied, overlap
 from tiniscript.base.words import lexicon, nearest, said_of
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import CODES, Diagnostic, Repair
+from tiniscript.diagnostics.fixing import is_better
 from tiniscript.recovery import lines, rows
 from tiniscript.recovery.advice import advised
-from tiniscript.recovery.concepts import Names, lexemes, words_of
+from tiniscript.recovery.concepts import Names, lexemes, texts, words_of
 from tiniscript.recovery.explanation import LONGEST_BLOCK, Explanation, explained, trimmed
 from tiniscript.recovery.search import Candidate, Recovery
 from tiniscript.recovery.setup import setup
 from tiniscript.recovery.usage import with_usage
-from tiniscript.recovery.writing import laid_out, without_note
+from tiniscript.recovery.writing import in_one_line, without_note
 from tiniscript.syntax.outline import Failure
 
 LONGEST = 4_000  # characters of a text that is read as a whole
@@ -51,25 +52,26 @@ def findings(source: Source, found: Sequence[Diagnostic], check: Check, kit: Kit
     `found` is what the parser and the checker, which `check` asks, say of the text.
     """
     said = _no_bar(source)
-    if said and said.repair and _is_better(source, found, said.repair, check):
-        return Findings([said], [*said.repair.edits])
+    if said and said.repair:
+        after = check(applied(source.text, said.repair.edits))
+        if is_better(after, found, said.repair.edits):
+            return _with_edits([said])
     if aside := _titles(source, kit) or _numbers(source):
-        edits = [edit for each in aside if each.repair for edit in each.repair.edits]
-        return Findings(aside, edits)
+        return _with_edits(aside)
     begun = next((each for each in found if each.code is codes.SETUP_UNKNOWN), None)
     first = lexemes(source.text[:LONGEST].lstrip().partition("\n")[0])[:1]
     is_sealed = "~" in source.text  # what has a checksum is copied again
     if begun and not (is_sealed or (first and first[0].text in ("SI", "SB"))):  # another word
         return Findings(with_usage([begun], source, kit), [Edit(begun.span, "SI")])
     recovery = _recovery(source, found, check, kit)
-    if recovery and (repaired := _meant(source, found, recovery.sure(), is_sure=True)):
+    if recovery and (repaired := _meant(source, found, recovery, is_sure=True)):
         return _with_edits(repaired)
     told = advised(source.text, kit)
     if recovery:  # what is behind an instruction belongs to it by its sign: `X = 20 x 3`
         told = [each for each in told if not recovery.has_signs(each.passed.span.start)]
     if told:
         return Findings([each.diagnostic for each in told], [each.passed for each in told])
-    return _with_edits(_meant(source, found, recovery.best() if recovery else None, is_sure=False))
+    return _with_edits(_meant(source, found, recovery, is_sure=False) if recovery else [])
 
 
 def _with_edits(told: list[Diagnostic]) -> Findings:
@@ -108,11 +110,10 @@ def _numbers(source: Source) -> list[Diagnostic]:
     is_counting = len(counted) > 1 and counted[0] in _FIRST_NUMBERS
     if not is_counting or counted != [*range(counted[0], counted[-1] + 1, counted[0])]:
         return []
-    spans = [Span(*each.span()) for each in numbers]
     return [
-        Diagnostic(codes.LINE_NUMBER, Span(*number.span(1)), {"found": number[1]}, None,
-                   Repair((Edit(span, ""),), True))
-        for number, span in zip(numbers, spans, strict=True)
+        Diagnostic(codes.LINE_NUMBER, Span(*each.span(1)), {"found": each[1]}, None,
+                   Repair((Edit(Span(*each.span()), ""),), True))
+        for each in numbers
     ]  # fmt: skip
 
 
@@ -136,23 +137,22 @@ def _recovery(
 
 
 def _meant(
-    source: Source, found: Sequence[Diagnostic], meant: Candidate | None, is_sure: bool
+    source: Source, found: Sequence[Diagnostic], recovery: Recovery, is_sure: bool
 ) -> list[Diagnostic]:
     """Return what is wrong with a text where it is known what is meant by it.
 
     `is_sure`: by all of it surely; else by the lines that are read.
     """
+    meant = recovery.sure() if is_sure else recovery.best()
     if meant is None:
         return []
-    text = source.text
-    if "\r" in text.replace("\r\n", ""):
-        text = text.replace("\r", "\n")
-    told = explained(text, meant)
+    text = recovery.program
+    written = source.text if len(source.text) > len(text) else text  # with the \r of its lines
+    told = explained(written, meant)
     if not told and meant.is_whole:
         misplaced = [each for each in found if each.code.number in rows.MISPLACED]
         said_of_it = misplaced or [each for each in found if each.is_mistake]
-        return [_moved(each, text, meant) for each in said_of_it][:1]
-    text = text.replace("\r\n", "\n")
+        return [_moved(each, written, meant) for each in said_of_it][:1]
     said_with = {each.code for each in told} | {step.code for _, step in meant.steps}
     if not told or not _keeps(text, meant.text, said_with, is_sure):
         return []
@@ -197,10 +197,7 @@ def _diagnostic(
 
 def _moved(found: Diagnostic, text: str, meant: Candidate) -> Diagnostic:
     """Return a mistake that goes when lines change their places."""
-    lines_ = (
-        laid_out(lexemes(without_note(each)[0])).strip("; ") for each in meant.text.split("\n")
-    )
-    whole = "; ".join(each for each in lines_ if each)
+    whole = in_one_line(meant.text)
     values = {**found.values, "whole": whole if len(whole) <= LONGEST_BLOCK else ""}
     if found.code is codes.WRONG_END:
         values["swapped"] = found.values["right"]
@@ -219,8 +216,7 @@ def _keeps(text: str, new: str, said_with: set[str], is_sure: bool) -> bool:
 
     `is_sure`: and no others.
     """
-    bodies = ([without_note(line)[0] for line in it.split("\n")] for it in (text, new))
-    before, after = (Counter(each.text for it in of for each in lexemes(it)) for of in bodies)
+    before, after = (Counter(texts(lexemes(_bare(it)))) for it in (text, new))
     names = {each.upper() for each in re.findall(r"(?i)(?<=\bDEF )\w+|\w+(?=\s*=)", new)}
     closed = Counter(re.findall(rf"\b(?:END_?DEF|{words_of('end')}) +(\w+)", _bare(text).upper()))
     before -= Counter({name: n for name, n in closed.items() if after[name] > 1})
@@ -290,11 +286,3 @@ def _no_bar(source: Source) -> Diagnostic | None:
     said = {"found": begun.head, "letter" if sign.isalpha() else "sign": sign, "fix": fix}
     repair = Repair(tuple(edits), begun.is_sure)
     return Diagnostic(CODES[rows.SETUP_CODE], span, said, None, repair)
-
-
-def _is_better(source: Source, found: Sequence[Diagnostic], repair: Repair, check: Check) -> bool:
-    """Whether fewer mistakes are left, or the first one comes behind what was repaired."""
-    after = [each for each in check(applied(source.text, repair.edits)) if each.is_mistake]
-    first = repair.edits[0]
-    is_behind = all(each.span.start >= first.span.start + len(first.text) for each in after)
-    return is_behind or len(after) < sum(each.is_mistake for each in found)

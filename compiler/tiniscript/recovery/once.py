@@ -9,41 +9,41 @@ from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic, Repair
 
 MANY = 6  # calls that an example has
-# One message has the lines of the others, and their repairs.
-_OF_WORDS = (codes.BAD_NAME, codes.EMPTY_BRACKETS, codes.NAME_WITH_SPACE)  # in any instruction
-_WITH_LINES = (codes.RESERVED, codes.SAME_AGAIN, *_OF_WORDS)
-_DROPPED = (codes.BRACES, codes.DOTS, codes.UNTAUGHT, codes.CALLS_ITSELF, codes.UNKNOWN_NAME,
-            codes.CASES)  # fmt: skip
 _OF_CASES = (codes.BRACES, codes.BREAK_OUTSIDE)  # which go with them
+# What is said once for the same values, these or all of them.
+_ONCE: dict[Code, tuple[str, ...] | None] = {
+    codes.BRACES: (),
+    codes.CASES: (),
+    codes.EMPTY_BRACKETS: ("word",),
+    **dict.fromkeys((codes.BAD_NAME, codes.NAME_WITH_SPACE), ("found", "right")),
+    **dict.fromkeys((codes.RESERVED, codes.SAME_AGAIN, codes.DOTS, codes.UNTAUGHT,
+                     codes.CALLS_ITSELF, codes.UNKNOWN_NAME)),
+}  # fmt: skip
+# One message has the lines of the others, and their repairs.
+_WITH_LINES = (codes.RESERVED, codes.SAME_AGAIN, codes.BAD_NAME, codes.EMPTY_BRACKETS,
+               codes.NAME_WITH_SPACE)  # fmt: skip
 
 
 def said_once(found: Sequence[Diagnostic], source: Source) -> list[Diagnostic]:
     """Return diagnostics without those that say the same as one before."""
     if any(each.code is codes.CASES for each in found):
         found = [each for each in found if each.code not in _OF_CASES]
-    groups: dict[tuple[Code, tuple[tuple[str, str], ...]], list[Diagnostic]] = {}
-    bare = [each for each in found if each.code is codes.MISSING_OPEN and _is_bare(each, source)]
     meant = {
         it.values.get("found") for it in found if it.values.get("near") or it.values.get("first")
     }
+    groups: dict[object, list[Diagnostic]] = {}
     for each in found:
-        is_meant = each.code is codes.UNKNOWN_NAME and each.values.get("found") in meant
-        is_one = each.code in (*_WITH_LINES, *_DROPPED) and not is_meant
-        is_any = each.code in (codes.BRACES, codes.CASES)
-        kind = () if is_any else tuple(sorted(each.values.items()))
-        if each.code in _OF_WORDS:
-            its = ("word",) if each.code is codes.EMPTY_BRACKETS else ("found", "right")
-            kind = tuple((name, each.values.get(name, "").upper()) for name in its)
-        key = (each.code, kind if is_one else (("at", str(each.span)),))
-        groups.setdefault(key, []).append(each)
-    kept = [
-        _with_lines(same, source) if same[0].code in _WITH_LINES else same[0]
-        for same in groups.values()
-    ]
-    if len(bare) > 1:
-        kept = [each for each in kept if each not in bare[1:]]
-        kept[kept.index(bare[0])] = _with_calls(bare)
-    return codes.in_order(kept)
+        code, values = each.code, each.values
+        key: object = each.span
+        if code is codes.MISSING_OPEN and _is_bare(each, source):
+            key = ""
+        elif code in _ONCE and not (code is codes.UNKNOWN_NAME and values.get("found") in meant):
+            names = _ONCE[code]
+            key = tuple(
+                values.get(name, "").upper() for name in (values if names is None else names)
+            )
+        groups.setdefault((code, key), []).append(each)
+    return codes.in_order([_together(same, source) for same in groups.values()])
 
 
 def _is_bare(found: Diagnostic, source: Source) -> bool:
@@ -52,18 +52,15 @@ def _is_bare(found: Diagnostic, source: Source) -> bool:
     return is_word and bool(found.values.get("fix") or found.values.get("example"))
 
 
-def _with_calls(bare: Sequence[Diagnostic]) -> Diagnostic:
-    first = bare[0]
-    words = ", ".join(dict.fromkeys(each.values["word"] for each in bare))
-    calls = (each.values.get("fix") or each.values["example"] for each in bare[:MANY])
-    values = {**first.values, "words": words, "fix": "", "example": "; ".join(calls)}
-    return first._replace(values=values, place=None, repair=None)
-
-
-def _with_lines(same: Sequence[Diagnostic], source: Source) -> Diagnostic:
-    first, *others = same
-    if not others:
+def _together(same: Sequence[Diagnostic], source: Source) -> Diagnostic:
+    first = same[0]
+    if len(same) == 1 or first.code not in (*_WITH_LINES, codes.MISSING_OPEN):
         return first
+    if first.code is codes.MISSING_OPEN:
+        words = ", ".join(dict.fromkeys(each.values["word"] for each in same))
+        calls = (each.values.get("fix") or each.values["example"] for each in same[:MANY])
+        values = {**first.values, "words": words, "fix": "", "example": "; ".join(calls)}
+        return first._replace(values=values, place=None, repair=None)
     here, *lines = (str(source.position(each.span.start)[0]) for each in same)
     lines = [each for each in dict.fromkeys(lines) if each != here]
     gaps = {"line": "".join(lines[:1]), "lines": ", ".join(lines) if len(lines) > 1 else "",

@@ -30,7 +30,7 @@ from tiniscript.recovery.concepts import (
     words_of,
 )
 from tiniscript.recovery.orders import block, made_up, orders, written
-from tiniscript.recovery.writing import laid_out, shortened, without_note
+from tiniscript.recovery.writing import laid_out, shortened, tokens_of, without_note
 from tiniscript.syntax.free_names import in_place_of
 from tiniscript.syntax.lexer import NUMBER, QUOTES, WORD
 from tiniscript.syntax.operators import COMPARISONS
@@ -55,14 +55,13 @@ _OF_ENDS = (codes.NEVER_ENDS, codes.NOT_OPEN, codes.CALLS_ITSELF)
 _NOT_TOP = (codes.TASK_NOT_TOP, codes.DEF_NOT_TOP)
 _OF_ITS_WORD = (codes.UNKNOWN_WORD, codes.WHICH_WAY)  # whose units say nothing more
 _NO_NAMES = ("leaves", "again", "filler", "same", "etc", "end")
-_NO_VARIABLE = ("turn", "end", "short")
 _NO_ORDER = ("value", "operator", "function", "setup", "forever")
 
 
 def with_usage(found: Sequence[Diagnostic], source: Source, kit: Kit) -> list[Diagnostic]:
     """Return what is wrong with a text, in words that say how it is written."""
     ends = [each.values["right"] for each in found if each.code is codes.NOT_OPEN]
-    text = _Text(source, kit, ends[0] if len(ends) == 1 and ends[0] == "LOOP" else "")
+    text = _Text(source, kit, "LOOP" if ends == ["LOOP"] else "")
     if any(each.code is codes.NEVER_ENDS for each in found):
         top = [each for each in found if each.code in _NOT_TOP]
         text.at_top = [source.position(each.span.start)[0] - 1 for each in top]
@@ -100,14 +99,14 @@ class _Text:
         self.unopened = unopened  # a header that an end is left for
         self.at_top: list[int] = []  # lines of headers behind a block that lacks its end
 
-    @cached_property
-    def lines(self) -> list[str]:
-        return self.source.text.splitlines() or [""]
+    @property
+    def begun(self) -> str:
+        begun = re.match(r"\s*(S[IB])\s*\|", self.source.text.upper())
+        return begun[1] if begun else ""
 
     @cached_property
     def names(self) -> Names:
-        bodies = (without_note(line)[0] for line in self.source.text.split("\n"))
-        return Names([lexemes(body) for body in bodies], self.kit)
+        return Names([*map(tokens_of, self.source.text.split("\n"))], self.kit)
 
     def piece(self, span: Span) -> Span:
         """Return the instruction around a place: between the separators of its line."""
@@ -152,6 +151,8 @@ class _Usage:
         self.tokens = lexemes(self.source[self.piece])
         self.words = [each.text for each in self.tokens if each.kind is WORD]
         self.signs = [each.text for each in self.tokens]
+        numbers = (each.text for each in self.tokens[1:] if each.kind is NUMBER)
+        self.number = next(numbers, "1")
 
     def adds(self, **values: str) -> Diagnostic:
         """Return the diagnostic with values beside its own."""
@@ -203,12 +204,11 @@ class _Usage:
             return Diagnostic(code, Span(*parts.span()), {"found": parts[0], **values})
         if instead := said_instead(first):
             return self.adds(**instead)
-        number = next((each.text for each in self.tokens[1:] if each.kind is NUMBER), "1")
-        if not (self.names.meant(first) or any(said_of(first, it) for it in _NO_VARIABLE)):
-            if len(self.tokens) == 2 and sign == number:
-                return self.offers(codes.OTHER_ASSIGNMENT, f"{first} = {number}")
+        if not (self.names.meant(first) or said_of(first, "turn", "end", "short")):
+            if self.signs == [first, self.number]:
+                return self.offers(codes.OTHER_ASSIGNMENT, f"{first} = {sign}")
             if sign in ("++", "--", "+", "-"):
-                fix = f"{first} = {first} {sign[0]} {number}"
+                fix = f"{first} = {first} {sign[0]} {self.number}"
                 return self.offers(codes.OTHER_ASSIGNMENT, fix, found=sign)
         return self.sentence() or self.own_word()
 
@@ -219,14 +219,14 @@ class _Usage:
         if told := self.orders(meant):
             return told
         said = (*words, "_".join(words[:2]))  # `turn on the led`, `u turn`
-        if any(said_of(each, "on") or said_of(each, "off") for each in said):
+        if any(said_of(each, "on", "off") for each in said):
             return self.says(codes.SWITCH_WHAT)
         if any(map(self.is_button, words)) and self.signs[1:2] != ["("]:
             return self.no_button()
         endless = next((each for each in words if self.names.meant(each) == "FOREVER"), "")
         if endless and not meant:
             return self.translated(endless, "LOOP(FOREVER)")
-        if any(said_of(each, "turn") or said_of(each, "lap") for each in words):
+        if any(said_of(each, "turn", "lap") for each in words):
             return self.turn(said)
         concept = self.names.meant(words[0] if words else "") or self.names.meant(meant)
         is_order = concept in WORDS and WORDS[concept].role not in _NO_ORDER
@@ -242,11 +242,10 @@ class _Usage:
         if len(words) < 2 or {*self.signs} & {*COMPARISONS, "(", "="} or len(text) > _LONGEST:
             return None
         if words[0] == "TSC":
-            return Diagnostic(codes.PROSE, self.piece, {"command": text, "fix": ""})
+            return Diagnostic(codes.PROSE, self.piece, {"command": text})
         if name := next((each for each in words if each in self.names.variables), ""):
-            by = next((each.text for each in self.tokens if each.kind is NUMBER), "1")
-            values = {"name": name, "example": f"{name} = {name} + {by}", "fix": ""}
-            return Diagnostic(codes.PROSE, self.piece, values)
+            example = f"{name} = {name} + {self.number}"
+            return Diagnostic(codes.PROSE, self.piece, {"name": name, "example": example})
         return self.offers(codes.PROSE, f"// {text}")
 
     def turn(self, said: Sequence[str]) -> Diagnostic:
@@ -279,7 +278,7 @@ class _Usage:
             return None
         fix, example = written(said), made_up(said)
         if any(each.is_side_free for each in said):
-            values = {"right": fix, "example": example, "fix": ""}
+            values = {"right": fix, "example": example, "fix": ""}  # right is no change
             return Diagnostic(codes.SEVERAL_ORDERS, self.piece, values)
         return self.offers(codes.SEVERAL_ORDERS, fix, example=example)
 
@@ -299,7 +298,7 @@ class _Usage:
         if signs or len(lone) > 1 or self.names.defs or said_of(name, "taught"):
             often = f"LOOP({times});{name};END_LOOP" if int(times) > 1 else ""
             return self.says(codes.UNTAUGHT, name=name, often=often)
-        is_name = not any(said_of(name, kind) for kind in _NO_NAMES)
+        is_name = not said_of(name, *_NO_NAMES)
         return self.adds(own=name if is_name else "")
 
     def until(self) -> Diagnostic:
@@ -308,8 +307,7 @@ class _Usage:
 
     def no_button(self) -> Diagnostic:
         """A button that nobody can ask for; a program may begin with the one that starts it."""
-        begun = re.match(r"(?i)\s*SB\s*\|", self.source.text)
-        return self.says(codes.NO_BUTTON, begun="SB|" if begun else "")
+        return self.says(codes.NO_BUTTON, begun="SB|" if self.text.begun == "SB" else "")
 
     def is_button(self, word: str) -> bool:
         is_missing = "BUTTON" not in self.names.sensors
@@ -391,20 +389,16 @@ class _Usage:
         if word == "SI" and not is_bar:
             return self.says(codes.SPANISH_IF)
         here = word + "|" * is_bar
-        if word != "SB":
-            return self.adds(found=here)
-        first = re.match(r"\s*(S[IB])\s*\|", self.source.text, re.IGNORECASE)
-        is_twice = first is not None and first[1].upper() == "SB"
-        if is_twice:
-            return self.adds(found=here, button="SB", pause="W(2)", twice=here)
-        instead = "SI" if first else ""
-        return self.adds(found=here, button="SB", pause="W(2)", here=here, instead=instead)
+        button = "SB" if word == "SB" else ""
+        twice = here if word == self.text.begun == "SB" else ""
+        return self.adds(found=here, button=button, pause="W(2)", here=here, twice=twice,
+                         instead=self.text.begun)  # fmt: skip
 
     # -- blocks, signs and names ------------------------------------------------------------------
 
     def unended(self) -> Diagnostic:
         """A block without its end: where its indentation, or its line, says that it ends."""
-        rows = self.text.lines
+        rows = self.source.text.splitlines()
         k = self.source.position(self.found.span.start)[0] - 1
         behind = without_note(self.behind_it[: len(rows[k])])[0]
         rest = [each.strip() for each in behind.split("\n")[0].split(";") if _WORD.search(each)]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from tiniscript.recovery.concepts import Lexeme, made, plain
+from tiniscript.recovery.concepts import Lexeme, lexemes, made, plain
 from tiniscript.syntax.formatter import instruction_text
 from tiniscript.syntax.lexer import NUMBER, WORD, Token
 
@@ -49,6 +49,17 @@ def without_note(line: str) -> tuple[str, str]:
     note = _NOTE.search(line) if "//" in line else None
     body = line[: note.start() if note else None].rstrip(" \t")
     return body, line[len(body) :]
+
+
+def tokens_of(line: str) -> list[Lexeme]:
+    """Return the tokens of a line without its comment."""
+    return lexemes(without_note(line)[0])
+
+
+def in_one_line(text: str) -> str:
+    """Return the instructions of a text, laid out."""
+    parts = (laid_out(tokens_of(line)).strip("; ") for line in text.split("\n"))
+    return "; ".join(each for each in parts if each)
 
 
 def shortened(text: str) -> str:
