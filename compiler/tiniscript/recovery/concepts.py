@@ -8,7 +8,7 @@ from __future__ import annotations
 import copy
 import re
 import unicodedata
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from functools import cache, lru_cache
 from itertools import pairwise
 from typing import NamedTuple
@@ -40,6 +40,15 @@ _CLASSES = {
     "unit cm 1000": "@in_cm", "unit cm 100000": "@in_m", "unit s 1000": "@in_secs",
     "unit ° 1000": "@in_deg", "unit steps 1000": "@in_steps", "value %": "@of_power",
     "value s": "@of_time", "value Hz": "@of_pitch", "number 1": "@one", "number 100": "@hundred",
+}  # fmt: skip
+LONG_S = 20  # so much without a unit may be a power, degrees or centimetres
+_MOST_POWER = 100
+_EIGHTH = 45  # degrees: eighths of a turn, and what is no power, are rather an angle
+# Classes of numbers by what they may be.
+_MAY_BE: dict[str, Callable[[float], bool]] = {
+    "@whole": float.is_integer, "@time": lambda it: it < LONG_S,
+    "@power": lambda it: LONG_S <= it <= _MOST_POWER,
+    "@angle": lambda it: it > _MOST_POWER or (it >= _EIGHTH and it % _EIGHTH == 0),
 }  # fmt: skip
 REMEMBERED = 500  # lines: each is asked for often while one program is read
 
@@ -108,9 +117,6 @@ def plain(text: str) -> str:
     return "".join(sign for sign in parts if not unicodedata.combining(sign)).upper()
 
 
-# -- the lexicon ----------------------------------------------------------------------------
-
-
 @cache
 def words_of(*kinds: str) -> str:
     """Return a pattern of the words that the lexicon says one of these of."""
@@ -176,9 +182,6 @@ def _in_two_words(word: str) -> str | None:
             if only in (("L", "R") if turns else ("F", "B", "L", "R", "S", "STOP", "BEEP")):
                 return only
     return None
-
-
-# -- the names of a program -----------------------------------------------------------------
 
 
 class _OfLine(NamedTuple):
@@ -328,7 +331,8 @@ class Names:
     def _classes(self, token: Lexeme) -> list[str]:
         text = token.text
         if token.kind is NUMBER:
-            return [text, "@num", *ANY]
+            fitting = (name for name, fits in _MAY_BE.items() if fits(float(text)))
+            return [text, "@num", *ANY, *fitting]
         if token.kind is not WORD:
             found = [f"s{text}"]
             found += [name for name, without in _BUT.items() if text not in without]

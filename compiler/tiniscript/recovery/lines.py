@@ -16,8 +16,8 @@ from unicodedata import category
 from tiniscript.base.words import FUNCTIONS, WAYS, WORDS, concept_of, nearest, said_of
 from tiniscript.recovery import concepts, rewrites, rows
 from tiniscript.recovery.blocks import ANY_END, BRACES
-from tiniscript.recovery.concepts import CALLED, NEAR, Lexeme, Names, lexemes, made, texts
-from tiniscript.recovery.slots import LONG_S, MILLISECONDS_FROM, MOVES, filled
+from tiniscript.recovery.concepts import CALLED, LONG_S, NEAR, Lexeme, Names, lexemes, made, texts
+from tiniscript.recovery.slots import MILLISECONDS_FROM, MOVES, filled
 from tiniscript.syntax.lexer import NUMBER, WORD
 from tiniscript.syntax.operators import SIGNS
 from tiniscript.syntax.outline import Failure, Item, outline
@@ -35,7 +35,6 @@ _FIRST_STEPS = 30
 _CALCULATES = SIGNS | {"°"}  # without it another number would be meant
 _NEEDLESS = re.compile(r"(?<=[(,=<>+*/-] )\( ([^() ]+) \)|\( (\( [^()]* \)) \)")
 _PLAIN_DIGITS = 4
-_SETUP = 2  # tokens: `SI|`
 _AT_END = ("LOOP", "IF", "WHILE", "DEF", "ELSEIF", "UNTIL")
 
 
@@ -122,14 +121,11 @@ def read(tokens: Sequence[Lexeme], names: Names, is_quick: bool = False) -> list
 @lru_cache(concepts.REMEMBERED)
 def _read(tokens: tuple[Lexeme, ...], names: Names, is_quick: bool) -> list[Reading]:
     has_setup = len(tokens) > 1 and tokens[1].text == "|" and tokens[0].text in ("SI", "SB")
-    setup = list(tokens[:_SETUP]) if has_setup else []
+    setup = list(tokens[:2]) if has_setup else []
     readings = _Search(names).read(list(tokens[len(setup) :]), is_quick)
-    found = []
-    for each in readings:
-        items = right([*setup, *each.tokens], names)
-        if not isinstance(items, Failure):
-            found.append(each._replace(tokens=[*setup, *each.tokens], items=items))
-    return found
+    whole = [each._replace(tokens=[*setup, *each.tokens]) for each in readings]
+    told = ((each, right(each.tokens, names)) for each in whole)
+    return [each._replace(items=its) for each, its in told if not isinstance(its, Failure)]
 
 
 _Successors = Callable[[Reading], Iterator[Reading]]
@@ -187,8 +183,6 @@ class _Search:
                 if not reading.is_sure and one == other == first.text[: len(one)]:
                     return True
         return False
-
-    # -- successors -----------------------------------------------------------------------------
 
     def at_once(self, reading: Reading) -> Reading:
         """Make the rewrites that come before all others, and make words one that are one."""

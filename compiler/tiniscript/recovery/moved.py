@@ -16,7 +16,7 @@ from tiniscript.recovery.writing import without_note
 
 _SETUP = re.compile(r"\s*S[IB]\s*\|\s*", re.IGNORECASE)
 _MOST_MOVES = 20
-_FIRST = re.compile(r"\s*(\w+)[ \t]*(\w*)")
+_FIRST = re.compile(r"\s*(\w*)[ \t]*(\w*)")
 
 
 class Moved(NamedTuple):
@@ -78,8 +78,7 @@ def _pieces(text: str) -> Iterator[_Piece]:
         body, note = without_note(row)
         parts = [each for each in body.split(";") if each.strip()] or [""]
         for k, part in enumerate(parts):
-            found = _FIRST.match(part.upper())
-            word, name = (found[1], found[2]) if found else ("", "")
+            ((word, name), *_) = _FIRST.findall(part.upper())
             shown = part + note if note and k + 1 == len(parts) else part.rstrip()
             yield _Piece(shown, line, ALIASES.get(word, word), name)
 

@@ -25,7 +25,6 @@ from tiniscript.recovery.concepts import (
     made,
     texts,
 )
-from tiniscript.recovery.slots import LONG_S
 from tiniscript.syntax.lexer import NUMBER, WORD
 from tiniscript.syntax.operators import COMPARISONS, OPPOSITES
 
@@ -33,8 +32,6 @@ _ATOM = re.compile(r"'[^']*'|@\w+|[a-z]{2,}|[A-Z_0-9]+|\$|[^\w|'@\s$]+")
 _CAPTURE = re.compile(r"([a-z])=(?=.)")
 _PART = re.compile(r"<(\w+)>")
 _OF_NUMBERS = re.compile(r"@(?:dec|cat|cm|mmss|xn|same)\b|(?<![\w@])\d")
-_MOST_POWER = 100
-_EIGHTH = 45  # degrees: eighths of a turn, and what is no power, are rather an angle
 _SET = "TS050"  # of a variable that gets its value: in brackets that would be a question
 _BEFORE_VALUE = COMPARISONS | frozenset("(,+-*/%")
 _HEADER_OF = {"FOREVER": "LOOP", "ELSEIF": "IF"}
@@ -246,12 +243,12 @@ class Encoded:
         if part[0] != "@":
             return [made(part.strip("'"))]
         function, *named = part[1:].split(":")
-        start, end = self.span(match)
-        place = _Place(self, [captured(each) for each in named], self.tokens[start:end], start)
+        place = _Place(self, [captured(each) for each in named], self.span(match)[0])
         return _FUNCTIONS[function](place)
 
     def translated(self, token: Lexeme) -> Lexeme:
         meant = self.names.meant(token.text, NEAR) if token.kind is WORD else ""
+        meant = meant or "".join(said_of(token.text, "number"))
         return made(meant) if meant not in ("", token.text) else token
 
 
@@ -260,11 +257,10 @@ def _numbers(tokens: Sequence[Lexeme]) -> Counter[str]:
 
 
 class _Place(NamedTuple):
-    """What a function of the table gets: the line, its captures, and all tokens of the match."""
+    """What a function of the table gets: the line, its captures, and where the match begins."""
 
     line: Encoded
     captured: list[list[Lexeme]]
-    match: list[Lexeme]
     start: int
 
 
@@ -289,11 +285,11 @@ def _end_of(place: _Place) -> _Made:
 
 def _decimal(place: _Place) -> _Made:
     """`1,5` is 1.5 where nobody takes it for two values."""
-    (whole,), (rest,) = place.captured
+    (whole,), (comma,), (rest,) = place.captured
     before = place.line.tokens[place.start - 1].text if place.start else ""
     longest = 3 if whole.text == "0" else 2 if before == "=" else 1
     is_list = rest.text == "0" or (len(whole.text) > 1 and rest.text != "5")
-    has_space = any(each.space for each in place.match[1:])
+    has_space = bool(comma.space or rest.space)
     if "." in whole.text + rest.text or is_list or len(rest.text) > longest or has_space:
         return None
     text = f"{whole.text}.{rest.text}"
@@ -302,8 +298,8 @@ def _decimal(place: _Place) -> _Made:
 
 def _zero_behind(place: _Place) -> _Made:
     """`8 0` is 80."""
-    (number,) = place.captured[0]
-    is_one = place.match[-1].space == " " and "." not in number.text
+    (number,), (zero,) = place.captured
+    is_one = zero.space == " " and "." not in number.text
     return [made(number.text + "0")] if is_one else None
 
 
@@ -327,10 +323,6 @@ def _same(place: _Place) -> _Made:
     """The second of two numbers, where they are the same."""
     (one,), (two,) = place.captured
     return [two] if one.text == two.text else None
-
-
-def _brace(place: _Place) -> _Made:
-    return [each for each in place.captured[0] if each.text == "{"]
 
 
 def _known_name(place: _Place) -> _Made:
@@ -367,29 +359,11 @@ def _by(place: _Place) -> _Made:
     return [number, made("*"), name._replace(space=None)] if name.space == "" else None
 
 
-def _digits(place: _Place) -> _Made:
-    """`quatro` is 4."""
-    (word,) = place.captured[0]
-    return [made(*said_of(word.text, "number"))]
-
-
-def _number_if(is_so: Callable[[float], bool], place: _Place) -> _Made:
-    """A number that has a property."""
-    (token,) = place.captured[0]
-    return [token] if is_so(float(token.text)) else None
-
-
 _FUNCTIONS: dict[str, Callable[[_Place], _Made]] = {
     "not": lambda it: negated(it.captured[0]), "endof": _end_of, "dec": _decimal, "xn": _times,
-    "cat": _zero_behind, "mmss": _minutes, "brace": _brace, "same": _same, "known": _known_name,
-    "ms": partial(_in, 1), "cm": partial(_in, 100_000), "by": _by, "digits": _digits,
+    "cat": _zero_behind, "mmss": _minutes, "same": _same, "known": _known_name, "by": _by,
+    "ms": partial(_in, 1), "cm": partial(_in, 100_000),
     "most": partial(_limit, True), "least": partial(_limit, False),
-    "power": partial(_number_if, lambda it: LONG_S <= it <= _MOST_POWER),
-    "time": partial(_number_if, lambda it: it < LONG_S),
-    "angle": partial(
-        _number_if, lambda it: it >= _EIGHTH and (it % _EIGHTH == 0 or it > _MOST_POWER)
-    ),
-    "whole": partial(_number_if, float.is_integer),
     "given": partial(_parameter, 0), "also": partial(_parameter, 1),
 }  # fmt: skip
 
@@ -425,6 +399,7 @@ def one_word(tokens: Sequence[Lexeme], names: Names) -> tuple[list[Lexeme], bool
         if concept_of(text) == "ELSE" and (said_of(after, "is") or said_of(after, "there")):
             continue
         if concept_of(text) or (text in WORDS and row[0] == "END"):
-            word = made(names.meant(text, NEAR) or text)._replace(space=tokens[k].space)
+            meant = names.meanings(text)  # `END IF` ends any block
+            word = made(meant[0].concept if meant else text)._replace(space=tokens[k].space)
             return [*tokens[:k], word, *tokens[k + count :]], False
     return None

@@ -10,14 +10,13 @@ are alternatives, `'|'` is a sign that would be one of the signs here, `?`, `*` 
 what may be missing or come more often, and `^` and `$` are the ends of a line. `c=` captures, and
 `<part>` is a piece of PARTS. Classes: @num @word @val (a value with a name) @name @newname
 @usedname @def @callw (takes values) @device (an actuator) @start (begins an instruction) @close
-(ends one) @unit; any token but separators and braces: @any, nor `:` and `?`: @cond, nor brackets:
+(ends one) @unit, numbers that are @whole or may be a @time, a @power, an @angle; any token but separators and braces: @any, nor `:` and `?`: @cond, nor brackets:
 @noparen; but braces: @all; but braces, brackets and `<`: @nobrace.
 
 `becomes` is tokens: `$c` what was captured, `&c` that in words of the language, and functions: @not
 (the opposite question), @same (a number that is another one, too), @most and @least (the range of
 an actuator), @endof (the end of a header), @dec (a decimal comma), @cat (a zero apart), @mmss, @cm
-(of metres), @xn (`x4`), @digits (`quatro`), @brace (a brace that was captured), @given and @also
-(the names in the brackets of a DEF), @known (a name of two words). `how`: `first` is made before
+(of metres), @xn (`x4`), @given and @also (the names in the brackets of a DEF), @known (a name of two words). `how`: `first` is made before
 any other is tried, `applied` may be made without asking, `offered` is only shown, as is
 `first offered`. An example's lines are parted by ⏎.
 
@@ -76,22 +75,20 @@ BARS = (":", "||", "/", "\\", "¦", "!", "¡")  # signs that stand for the bar w
 
 SIGNS = r"""
 (?<!\) )(["'«»`])([A-Za-z0-9_.,()| <>=]*[A-Za-z0-9)][A-Za-z0-9_.,()| <>=]*)(?:\1|»)  |  `\2`  |  TS006  |  applied  |  F("2","80") => F(2,80)
-(?<=\([1-9])\. (?=\d\d\s*\))  |  `, `  |  TS017  |  applied  |  F(2. 80) => F(2, 80)
-(?<=[( ])0?0:(\d\d)(?=\))  |  `\1`  |  TS008  |  applied  |  W(0:30) => W(30)
-(?<=\(\d)\)\s+\((?=\d+\))  |  `, `  |  TS017  |  applied  |  F (2) (80) => F (2, 80)
+(?<=\(⟨[1-9])\. (?=\d\d\s*\))¦\d)\)\s+\((?=\d+\))⟩  |  `, `  |  TS017  |  applied  |  F(2⟨. 80)¦) (80)⟩ => F(2, 80)
+⟨(?<=[( ])0?0:(\d\d)(?=\))¦(?<==)\s*(\d{1,3}),(?=000\b)⟩  |  `\1`  |  TS008  |  applied  |  ⟨W(0:30)¦X=1,000⟩ => ⟨W(30)¦X=1000⟩
 (?<=\))\s*[✓✔]\s*(?=\w)  |  `; `  |  TS005  |  applied  |  F(2, 80) ✓ R(1, 50) => F(2, 80); R(1, 50)
 \b([A-Za-z_]\w*)\s*=\+\s+(?=\d)  |  `\1 = \1 + `  |  TS050  |  applied  |  V = 5⏎V =+ 10⏎F(2, V) => V = 5⏎V = V + 10⏎F(2, V)
 (?<![^;])\s*([*/+=-]+)([A-Za-z](?:[^;]*[\w)])?)\1\s*(?![^;])  |  `\2`  |  TS054  |  applied  |  **F(2, 80)** => F(2, 80)
 ^"(S[IB]\|[^"]*)"$  |  `\1`  |  TS006  |  applied  |  "SI|F(2,80);R(1,50)" => SI|F(2,80);R(1,50)
-\b(⟨[FBLR]¦BEEP⟩)\((\d)\.(⟨[1-9]0|100¦\d{3,4}⟩)\)  |  `\1(\2, \3)`  |  TS020  |  offered  |  ⟨F(2.80)¦BEEP(1.440)⟩ => ⟨F(2, 80)¦BEEP(1, 440)⟩
-\bM\((-?[1-9]0|100)\.(-?[1-9]0|100)\)  |  `M(\1, \2)`  |  TS020  |  offered  |  M(-50.50) => M(-50, 50)
+\b(⟨[FBLR]¦BEEP¦M⟩)\((⟨\d¦\d¦-?[1-9]0|100⟩)\.(⟨[1-9]0|100¦\d{3,4}¦-?[1-9]0|100⟩)\)  |  `\1(\2, \3)`  |  TS020  |  offered  |  ⟨F(2.80)¦BEEP(1.440)¦M(-50.50)⟩ => ⟨F(2, 80)¦BEEP(1, 440)¦M(-50, 50)⟩
 (?<=[(,\s])😎\s*$  |  `8)`  |  TS010  |  offered  |  W(😎 => W(8)
 (?<=\d)=(?=\s*\))|(?<=\()=(?=\.\d)  |  `0`  |  TS076  |  offered  |  F(2, 8=) => F(2, 80)
 ((?<=[=,])\s*|(?<=SHOW\())(\w+(?= x )|\d+) ?x ?(\d+)\b  |  `\1\2 * \3`  |  TS010  |  applied  |  X = 3x2 => X = 3 * 2
 (?<=[(,])(\s*)⟨!(?=\s*[,)])¦"(?=\s*[,)])¦\$(?=\s*[,)])¦%(?=\d)¦/(?=\d)⟩  |  `\g<1>⟨1¦2¦4¦5¦7⟩`  |  TS076  |  offered  |  F(⟨!, 80¦", 80¦$, 80¦2, %0¦2, /0⟩) => F(⟨1, 80¦2, 80¦4, 80¦2, 50¦2, 70⟩)
 (?<=\()l(?=\s*,)  |  `1`  |  TS008  |  offered  |  F(l, 80) => F(1, 80)
 \((\d)\.,(\d+) +(\d+)\)  |  `(\1.\2, \3)`  |  TS008  |  applied  |  F(0.,5 60) => F(0.5, 60)
-(?<=\(\d) +(?=\.\d+,)  |  ``  |  TS008  |  applied  |  F(1 .5, 80) => F(1.5, 80)
+⟨(?<=\(\d) +(?=\.\d+,)¦(?<=[(,])\s*\+(?=\d)¦(?<=\d) (?=000\b)⟩  |  ``  |  TS008  |  applied  |  F(⟨1 .5, 80¦+2, 80¦2, 80); SHOW(1 000⟩) => F(⟨1.5, 80¦2, 80¦2, 80); SHOW(1000⟩)
 \b([FBLR])(?:8(\d),\s*(\d\d)[9)]|9(\d),\s*(\d\d)[0)])\s*(?=;|$)  |  `\1(\2\4, \3\5)`  |  TS010  |  offered  |  F82, 809 => F(2, 80)
 \b(IF|WHILE|UNTIL)\s*¿\s*([^?()¿]+?)\s*\?  |  `\1(\2)`  |  TS015  |  applied  |  IF ¿DISTANCE < 10?⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
 \b(\w+?)\s*(?:(?:\^|\*\*)\s*⟨2¦3⟩\b⟨|²¦|³⟩)  |  `\1 * \1⟨¦ * \1⟩`  |  TS010  |  offered  |  X = 7^⟨2¦3⟩⏎SHOW(X) => X = 7 * 7⟨¦ * 7⟩⏎SHOW(X)
@@ -124,29 +121,22 @@ SIGNS = r"""
 [→➜⇒]|[–—]>  |  `;`  |  TS061  |  applied  |  →F(2, 80) => ;F(2, 80)
 </?[a-z]+/?>|^\s*(?:[$>] tsc\b.*|```\w*\s*)$  |  ``  |  TS072  |  applied  |  <b>F(2, 80)</b> => F(2, 80)
 ^\s*tsc(?: run)? (?=S[IB]\|)  |  ``  |  TS044  |  applied  |  tsc SI|F(2, 80) => SI|F(2, 80)
-^\s*\.\s*$  |  ``  |  TS005  |  applied  |  F(2,80)⏎.⏎.⏎. => F(2,80)⏎⏎⏎
-^\s*(?:➤|[\u2600-\u2793\U0001F300-\U0001FAFF])\s*(?=[A-Za-z]+\()  |  ``  |  TS054  |  applied  |  ✅ F(2,80)⏎🚗 R(1,50) => F(2,80)⏎R(1,50)
+(?:^\s*\.|(?<=;)\s*[:.,])\s*(?=;|$)  |  ``  |  TS005  |  applied  |  F(2,80)⏎.⏎.⏎. => F(2,80)⏎⏎⏎
+^\s*(?:(?:[•·►▶✔✓*–—-]|[a-h]\))\s+(?=[A-Za-z])|-(?=[A-Z]\w*\()|>+\s*|(?:➤|[\u2600-\u2793\U0001F300-\U0001FAFF])\s*(?=[A-Za-z]+\())  |  ``  |  TS054  |  applied  |  ⟨*¦>¦✅⟩ F(2,80) => F(2,80)
 ⟨⬆¦⬇¦⬅¦➡⟩\ufe0f?  |  `⟨F¦B¦L¦R⟩ `  |  TS005  |  offered  |  ⟨⬆️¦⬇️¦⬅️¦➡️⟩ 2 => ⟨F¦B¦L¦R⟩(2, 80)
 (?<=\d) 1/2(?!\d)  |  `.5`  |  TS049  |  applied  |  F(1 1/2, 80) => F(1.5, 80)
-(?<=\d)[|¿?!"]+(?=\s*\))  |  ``  |  TS005  |  applied  |  F(2, 80?) => F(2, 80)
+(?:^|(?<=[|(]))[¡¿]+|[¿¡](?=\W)|\?(?=\))|(?<=\d)[|¿?!"]+(?=\s*\))  |  ``  |  TS005  |  applied  |  F(5, 60) UNTIL(¿DISTANCE < 20?) => F(5, 60) UNTIL(DISTANCE < 20)
 \(([FBLRWM])(\d)  |  `\1(\2`  |  TS015  |  applied  |  (F2, 80) => F(2, 80)
 \bW([1-7](?:\.\d+)?)(?:\(\)|\)|(?=\s*(?:;|$)))  |  `W(\1)`  |  TS015  |  applied  |  S; W2.5) => S; W(2.5)
-(?<=;)\s*[:.,]\s*(?=;)  |  ``  |  TS005  |  applied  |  S;:; F(2, 80) => S;; F(2, 80)
-^\s*(?:(?:[•·►▶✔✓*–—-]|[a-h]\))\s+(?=[A-Za-z])|-(?=[A-Z]\w*\())  |  ``  |  TS054  |  applied  |  * F(2,80) => F(2,80)
-^\s*>+\s*  |  ``  |  TS054  |  applied  |  > F(2, 80) => F(2, 80)
 ^\s*(?:(?:paso|step|linea|line)\s*\d+\s*[.):-]*\s|\d+\s*(?:[.)]|[.):-]+\s))\s*(?=[A-Za-z])  |  ``  |  TS054  |  applied  |  1) F(2,80)⏎2) S => F(2,80)⏎S
 (?<![\w.])([1-9])[oO]⟨[oO]¦⟩\b  |  `\g<1>0⟨0¦⟩`  |  TS008  |  applied  |  F(2,⟨1OO¦8O⟩) => F(2,⟨100¦80⟩)
-\b[O0]\.S\b  |  `0.5`  |  TS008  |  applied  |  F(O.S, 6O) => F(0.5, 60)
-\b[oO]\.(\d+)  |  `0.\1`  |  TS008  |  applied  |  F(O.5, 80) => F(0.5, 80)
+\b⟨[O0]\.S\b¦[oO]\.(\d+)⟩  |  `0.⟨5¦\1⟩`  |  TS008  |  applied  |  F(O.⟨S, 6O¦5, 60⟩) => F(0.5, 60)
 \b(\d)[oO](\d)\b  |  `\g<1>0\2`  |  TS008  |  applied  |  BEEP(1, 4O4) => BEEP(1, 404)
 (?<=\d)\.(?=\s*[,);])  |  ``  |  TS008  |  offered  |  F(2, 80.) => F(2, 80)
-(?<=[(,])\s*\+(?=\d)  |  ``  |  TS008  |  applied  |  F(+2, 80) => F(2, 80)
 (?<!\d)1/2(?!\d)(?=\s*(?:s|seg|min|h))  |  `0.5`  |  TS049  |  applied  |  F(1/2 minuto, 80) => F(30, 80)
 (?<=\d)(?:'(?=\d+\s*(?:[,;]|$))|,(?=\d+\s*(?:s|segs?|segundos?|sec|seconds?|minutos?)\b))  |  `.`  |  TS012  |  applied  |  F(1'5, 80) => F(1.5, 80)
-(?<=\d) (?=000\b)  |  ``  |  TS008  |  applied  |  F(1 000,80) => F(1000,80)
 (?<=[\w)])(?:\s*(?:[¡¿!…?$¬^´`¨\\\u2600-\u2793\U0001F300-\U0001FAFF]+|<br>)|\.{2,})\s*$  |  ``  |  TS005  |  applied  |  STOP! => STOP
 \b4WARDS?\b(?=\s*\()  |  `F`  |  TS102  |  offered  |  4WARD(2, 80) => F(2, 80)
-(?:^|(?<=[|(]))[¡¿]+|[¿¡](?=\W)|\?(?=\))  |  ``  |  TS005  |  applied  |  F(5, 60) UNTIL(¿DISTANCE < 20?) => F(5, 60) UNTIL(DISTANCE < 20)
 (?:(?<=\|)|(?<=;)|^)(\s*)([FBLR])(?!\s+-\d|\s+\.\d|\.\d+(?![\d.]))\s*[_.<=,;" -]?\s*([12]?\d(?:\.\d+)?)(?:[_,;<=-]+ ?| +|[ .]+(?=[1-9]0\b|100\b))(?:= ?)?(\d+)\s*[])>"]?\s*(?=;|$)  |  `\1\2(\3, \4)`  |  TS015  |  applied  |  F2,80 => F(2, 80)
 (?:^|(?<=[;|]))(\s*)M(-?\d+)[\s,;]+(-?\d+)\s*\)?\s*(?=;|$)  |  `\1M(\2, \3)`  |  TS015  |  applied  |  M50 -50 => M(50, -50)
 (?<=\d)(?:\)\((?=\d)|['·_=&<]\s*(?=\d+\)))  |  `,`  |  TS076  |  applied  |  F(3)(70) => F(3,70)
@@ -154,14 +144,12 @@ SIGNS = r"""
 (?<=[\w)])\s*\.\s*$  |  `;`  |  TS010  |  applied  |  S. => S;
 (?<=\))\s*\.\s+(?=\w)  |  `; `  |  TS010  |  applied  |  F(2,80). R(1,60). S. => F(2,80); R(1,60); S;
 ⟨/\*¦<!--⟩\s*(.*?)\s*⟨\*/¦-->⟩\s*$  |  `// \1`  |  TS007  |  applied  |  F(2,80) ⟨/* hola */¦<!-- hola -->⟩ => F(2,80) // hola
-(?:^|(?<=\s))(?:#+|--+>?|<!--|^REM\b)\s*(?=[^\W\d])  |  `// `  |  TS007  |  applied  |  F(2, 80) # adelante => F(2, 80) // adelante
-^\s*/\s*(?=(?-i:[a-z]+)(?! ?\())  |  `// `  |  TS007  |  applied  |  SI|F(2, 60) // avanza⏎/ gira⏎R(1, 50) => SI|F(2, 60) // avanza⏎// gira⏎R(1, 50)
+⟨(?:^|(?<=\s))(?:#+|--+>?|<!--|^REM\b)\s*(?=[^\W\d])¦^\s*/\s*(?=(?-i:[a-z]+)(?! ?\())⟩  |  `// `  |  TS007  |  applied  |  SI|F(2, 60)⟨ # gira¦⏎/ gira⟩⏎R(1, 50) => SI|F(2, 60)⟨ // gira¦⏎// gira⟩⏎R(1, 50)
 \b([A-Za-z]+)\.read\(\)  |  `\1`  |  TS102  |  applied  |  IF(DISTANCE.read()<10);S;ENDIF => IF(DISTANCE<10);S;ENDIF
 \b(?:time|robot|console|serial|self|car|motor|System\.out|random|math)\.(?=[A-Za-z]+\s*\()  |  ``  |  TS102  |  applied  |  time.sleep(0.5) => W(0.5)
 \b(END|FIN)(?: _|[. -](?=(?:LOOP|IF|WHILE|DEF|TASK|WHEN)\b))  |  `END_`  |  TS022  |  applied  |  IF(DISTANCE < 10);S;END IF => IF(DISTANCE < 10);S;END_IF
 \b(LIGHT|LUZ)[ -](?=[LRID]\b)  |  `\1_`  |  TS056  |  applied  |  SHOW(LIGHT-R) => SHOW(LIGHT_R)
 ^\s*(\d+)\s*([FBLR])\s*(\d+)\s*$  |  `\2(\1, \3)`  |  TS015  |  applied  |  2F80 => F(2, 80)
-(?<==)\s*(\d{1,3}),(?=000\b)  |  `\1`  |  TS008  |  applied  |  X=1,000 => X=1000
 (?<=\))_(?=UNTIL\b)  |  ` `  |  TS009  |  applied  |  F(5, 60)_UNTIL(DISTANCE < 30) => F(5, 60) UNTIL(DISTANCE < 30)
 ^_+(\S.*?)_+$  |  `\1`  |  TS054  |  applied  |  _F(2, 80)_ => F(2, 80)
 """
@@ -210,8 +198,8 @@ TRUE = c=@any+ ) | $c ) | 1 | TS037 | applied | IF(TRUE = DISTANCE < 10);S;ENDIF
 s=<|> n=@num = TRUE | $s $n | 1 | TS037 | applied | IF(DISTANCE < 10 = TRUE);S;ENDIF => IF(DISTANCE < 10);S;ENDIF
 a=@num|@val '|' b=@val | $a OR $b | 1 | TS010 | applied | IF(DISTANCE<10 | LIGHT_R>50)⏎S⏎ENDIF => IF(DISTANCE<10 OR LIGHT_R>50)⏎S⏎ENDIF
 # numbers, units, values
-a=@num 0 | @cat:a | 1 | TS008 | offered | F(2, 8 0) => F(2, 80)
-a=@num , b=@num | @dec:a:b | 1 | TS012 | applied | W(2,5) => W(2.5)
+a=@num b=0 | @cat:a:b | 1 | TS008 | offered | F(2, 8 0) => F(2, 80)
+a=@num c=, b=@num | @dec:a:c:b | 1 | TS012 | applied | W(2,5) => W(2.5)
 o=(|,|; a=@num % ) | $o $a ) | 1 | TS049 | first | F(2,80%) => F(2,80)
 a=@num by @hundred | $a % | 1 | TS049 | first | R(1, 50 por ciento) => R(1, 50)
 a=@num % of b=@num|@val | $b * $a / 100 | 1 | TS049 | first offered | X = 50% of 80⏎SHOW(X) => X = 80 * 50 / 100⏎SHOW(X)
@@ -280,7 +268,7 @@ SHOW ( a=@val ⟨,¦,¦&|+|, " " &|+|,⟩ b=@val ⟨¦, c=@val¦⟩ ) | SHOW ( $
 c=⟨@callw¦IF|WHILE|ELSEIF|UNTIL|LOOP⟩ ( a=@noparen* b=@num|@word e=;|$⟨|UNTIL|@start¦⟩ | $c ( $a $b ) $e | 1 | TS016 | applied | F(2,80⟨¦) UNTIL(DISTANCE<10⟩ => F(2,80)⟨¦ UNTIL(DISTANCE<10)⟩
 ⟨TONE|@of_pitch (¦TONE ( @num ,⟩ a=@num , b=@num ) | BEEP ( @ms:b , $a ) | 1 | TS102 | offered | tone(⟨¦8, ⟩440, 1000) => BEEP(1, 440)
 a=F|B|L|R ( u=CM|DEG (? n=@num )? , p=@num ) | $a ( $n $u , $p ) | 1 | TS076 | offered | B(CM(20), 60) => B(20 CM, 60)
-a=F|B|L|R ( p=@num , n=@num u=CM|DEG ) | $a ( $n $u , @power:p ) | 1 | TS076 | offered | R(60, 90 DEG) => R(90 DEG, 60)
+a=F|B|L|R ( p=@power , n=@num u=CM|DEG ) | $a ( $n $u , $p ) | 1 | TS076 | offered | R(60, 90 DEG) => R(90 DEG, 60)
 ^ c=F|B|L|R two ,? n=@num $ | $c ( 2 , $n ) | .5 | TS015 | offered | f to 80 => f(2, 80)
 c=F|B|L|R ( two , | $c ( 2 , | 1 | TS102 | offered | F(too, 80) => F(2, 80)
 BEEP ( a=<note> , b=<note> ⟨¦, c=<note>⟩ ) | BEEP ( 1 , $a ) ; BEEP ( 1 , $b ) ⟨¦; BEEP ( 1 , $c )⟩ | 1 | TS020 | offered | BEEP(DO, RE⟨¦, MI⟩) => BEEP(1, 262);BEEP(1, 294)⟨¦;BEEP(1, 330)⟩
@@ -310,7 +298,7 @@ h=IF|WHILE|LOOP|UNTIL|ELSEIF ⟨[¦:|.|->|, (⟩ | &h ( | 1 | ⟨TS010¦TS015⟩
 <asks> ( c=@any+ ) ⟨and¦or⟩ ( d=@any+ ) | &h ( ( $c ) ⟨AND¦OR⟩ ( $d ) ) | 1 | TS015 | applied | IF(DISTANCE > 5) ⟨y¦o⟩ (LIGHT_R > 9);S;ENDIF => IF((DISTANCE > 5) ⟨AND¦OR⟩(LIGHT_R > 9));S;ENDIF
 h=IF|WHILE|ELSEIF|LOOP|UNTIL '{' c=@any+ '}' | &h ( $c ) | 1 | TS015 | applied | IF{DISTANCE < 10}⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
 <asks> ( c=@noparen+ b=@start | &h ( $c ) ; $b | 1 | TS016 | offered | si DISTANCE < 10 S si DISTANCE > 10 F(1,50) => IF(DISTANCE < 10);S;IF(DISTANCE > 10);F(1, 50);ENDIF;ENDIF
-<asks> c=@cond+ t=do|:|,|'|'|'{'|;|$ | &h ( $c ) ; @brace:t | 1.3 | TS015 | applied | SI DISTANCE < 10 | S => IF(DISTANCE < 10);S;ENDIF
+<asks> c=@cond+ ⟨'{'¦do|:|,|'|'|;|$⟩ | &h ( $c ) ; ⟨{¦⟩ | 1.3 | TS015 | applied | SI DISTANCE < 10⟨ {⏎S⏎}¦ | S⟩ => IF(DISTANCE < 10);⟨⏎S⏎END¦S;END⟩IF
 <asks> c=@cond+ b=@start | &h ( $c ) ; $b | 2 | TS014 | applied | IF DISTANCE < 10 STOP => IF(DISTANCE < 10);STOP;ENDIF
 h=IF|WHILE|LOOP|WHEN ( c=@any+ , <body> ) $ | &h ( $c ) ; $b $r ; @endof:h | 1 | TS080 | applied | SI|IF(DISTANCE < 10, S) => SI|IF(DISTANCE < 10);S;ENDIF
 ^ '='⟨?¦⟩ IF ( c=@any+ ⟨,¦;⟩ <body> ⟨,¦;⟩ d=@start s=@all* ) $ | IF ( $c ) ; $b $r ; ELSE ; $d $s ; ENDIF | ⟨.9¦.8⟩ | TS080 | offered | ⟨IF(DISTANCE < 10, B(1, 60), ¦=SI(DISTANCE<10;B(1;60);⟩F(1, 60)) => IF(DISTANCE < 10);B(1, 60);ELSE;F(1, 60);ENDIF
@@ -331,7 +319,7 @@ h=ELSE|TASK b=@start|'{' | &h ; $b | 1 | TS014 | applied | IF(DISTANCE<10);R(1,6
 ^ ⟨LOOP FOREVER :|,?¦FOREVER :|;?⟩ b=@start|'{' | LOOP ( FOREVER ) ; $b | 1 | ⟨TS015¦TS032⟩ | applied | ⟨LOOP FOREVER¦forever:⟩ F(1,50) => LOOP(FOREVER);F(1, 50);END_LOOP
 ^ LOOP n=@num ⟨(¦times? [⟩ <body> ⟨)¦]⟩ $ | LOOP ( $n ) ; $b $r ; END_LOOP | 1 | TS080 | applied | repite 4 ⟨(¦[⟩F(1, 60) R(0.5, 60)⟨)¦]⟩ => LOOP(4);F(1, 60);R(0.5, 60);END_LOOP
 h=LOOP|WHILE <question> ( <body> ) e=@start | &h ( $c ) ; $b $r ; @endof:h ; $e | 1 | TS080 | applied | LOOP(3)(S)F(1,50) => LOOP(3);S;END_LOOP;F(1, 50)
-LOOP ( ) b=':'|'{' | LOOP ( FOREVER ) ; @brace:b | 2 | TS064 | offered | LOOP() {⏎F(1, 80)⏎} => LOOP(FOREVER);⏎F(1, 80)⏎END_LOOP
+LOOP ( ) ⟨'{'¦':'⟩ | LOOP ( FOREVER ) ; ⟨{¦⟩ | 2 | TS064 | offered | LOOP()⟨ {¦:⟩⏎  F(1, 80)⟨⏎}¦⟩ => LOOP(FOREVER)⟨;¦⟩⏎  F(1, 80)⏎END_LOOP
 ^ FOREVER ( ) '{' | LOOP ( FOREVER ) ; { | 1 | TS102 | applied | void loop() {⏎  F(1, 50);⏎} => LOOP(FOREVER);⏎  F(1, 50);⏎END_LOOP
 ^ <for> each? @word in|of n=@num :? $ | LOOP ( $n ) | 1 | TS102 | applied | for each paso in 4⏎F(1, 50)⏎end => LOOP(4)⏎F(1, 50)⏎END_LOOP
 ^ do n=@num times :? | LOOP ( $n ) ; | 1 | TS102 | applied | hacer 4 veces⏎F(1,50)⏎R(1,50)⏎fin => LOOP(4)⏎F(1,50)⏎R(1,50)⏎END_LOOP
@@ -341,7 +329,7 @@ LOOP ⟨n=@val $¦X|=|-|-> n=@num⟩ | LOOP ( $n ) | 1 | TS015 | applied | X4 = 
 ^ LOOP <body> n=@num times $ | LOOP ( $n ) ; $b $r ; END_LOOP | 1.5 | TS102 | applied | repeat F(1,60) R(1,60) 4 times => LOOP(4);F(1, 60);R(1, 60);END_LOOP
 ^ LOOP ;? <body> ;? UNTIL c=@cond+ $ | LOOP ( FOREVER ) ; $b $r ; IF ( $c ) ; <end> | 1.5 | TS064 | applied | repeat F(1,50) until DISTANCE < 10 => LOOP(FOREVER);F(1, 50);IF(DISTANCE < 10);BREAK;ENDIF;END_LOOP
 LOOP ( n=@num @unit ) | LOOP ( $n ) | 1 | TS049 | applied | LOOP(3 veces);F(1,50);END_LOOP => LOOP(3);F(1,50);END_LOOP
-LOOP n=number times :|,|do|;? | LOOP ( @digits:n ) ; | 1 | TS102 | applied | repite cuatro veces⏎F(1,60)⏎fin => LOOP(4)⏎F(1,60)⏎END_LOOP
+LOOP n=number times :|,|do|;? | LOOP ( &n ) ; | 1 | TS102 | applied | repite cuatro veces⏎F(1,60)⏎fin => LOOP(4)⏎F(1,60)⏎END_LOOP
 LOOP by? n=@num times? ⟨:|,|do|;¦b=@start|'{'¦$⟩ | LOOP ( $n ) ⟨;¦; $b¦⟩ | 1 | TS102 | applied | repite 4⟨:⏎¦ ¦⏎⟩F(1, 60)⟨¦¦⏎fin⟩ => LOOP(4)⟨⏎¦;¦⏎⟩F(1, 60)⟨⏎¦;¦⏎⟩END_LOOP
 LOOP n=@val o=*|+|- m=@num $ | LOOP ( $n &o $m ) | 1 | TS015 | applied | X = 2⏎LOOP X * 4⏎F(1,50)⏎END_LOOP => X = 2⏎LOOP(X * 4)⏎F(1,50)⏎END_LOOP
 ^ START b=@start | START ; $b | 1 | TS013 | applied | START F(2,80) => START;F(2, 80)
@@ -355,12 +343,12 @@ UNTIL ( a=@any+ ) OR|or UNTIL ( b=@any+ ) e=;|$ | UNTIL ( $a OR $b ) $e | 1 | TS
 ^ a=@callw ( b=@noparen+ ) UNTIL ( c=@any+ ) UNTIL ( d=@any+ ) $ | $a ( $b ) UNTIL ( $c OR $d ) | 1 | TS029 | offered | F(5, 60) UNTIL(DISTANCE < 10) UNTIL(LIGHT_L > 500) => F(5, 60) UNTIL(DISTANCE < 10 OR LIGHT_L > 500)
 m=MIN|MAX ( a=@num|@val , b=@num|@val , c=@num|@val ) | $m ( $a , $m ( $b , $c ) ) | 1 | TS020 | offered | SHOW(MIN(DISTANCE, 5, 9)) => SHOW(MIN(DISTANCE, MIN(5, 9)))
 LOOP ( ⟨@name =¦⟩ 1 to|until⟨¦|,⟩ n=@num ) | LOOP ( $n ) | 1 | TS063 | offered | LOOP(⟨I = ¦⟩1 TO 5)⏎S⏎END_LOOP => LOOP(5)⏎S⏎END_LOOP
-^ a=L|R ⟨n=@num¦( n=@num )⟩ $ | $a ( @angle:n DEG , 80 ) | 2 | ⟨TS015¦TS020⟩ | offered | L⟨ 90¦(90)⟩ => L(90 DEG, 80)
+^ a=L|R ⟨n=@angle¦( n=@angle )⟩ $ | $a ( $n DEG , 80 ) | 2 | ⟨TS015¦TS020⟩ | offered | L⟨ 90¦(90)⟩ => L(90 DEG, 80)
 a=F|B ( FOREVER ) | $a ( FOREVER , 80 ) | 2 | TS020 | offered | F(FOREVER) UNTIL(DISTANCE < 10) => F(FOREVER, 80) UNTIL(DISTANCE < 10)
-RANDOM ( n=@num ) | RANDOM ( 1 , @whole:n ) | 2 | TS020 | offered | X = RANDOM(6)⏎F(X, 50) => X = RANDOM(1, 6)⏎F(X, 50)
+RANDOM ( n=@whole ) | RANDOM ( 1 , $n ) | 2 | TS020 | offered | X = RANDOM(6)⏎F(X, 50) => X = RANDOM(1, 6)⏎F(X, 50)
 ROUND ( n=@num|@val ) | ROUND ( $n , 0 ) | 2 | TS020 | offered | X = ROUND(3.7)⏎SHOW(X) => X = ROUND(3.7, 0)⏎SHOW(X)
-^ M ( ⟨¦n=@num ,⟩ s='-'? a=@num , t='-'? b=@num ⟨, n=@num¦⟩ ) $ | M ( $s @power:a , $t @power:b ) ; W ( @time:n ) ; S | 2 | TS020 | offered | M(⟨¦2, ⟩50, -80⟨, 2¦⟩) => M(50, -80);W(2);S
-^ BEEP ( n=@num , a=@num , b=@num ⟨¦, c=@num⟩ ) $ | BEEP ( @time:n , $a ) ; BEEP ( $n , $b ) ⟨¦; BEEP ( $n , $c )⟩ | 2 | TS020 | offered | BEEP(0.2, 440, 660⟨¦, 880⟩) => BEEP(0.2, 440);BEEP(0.2, 660)⟨¦;BEEP(0.2, 880)⟩
+^ M ( ⟨¦n=@time ,⟩ s='-'? a=@power , t='-'? b=@power ⟨, n=@time¦⟩ ) $ | M ( $s $a , $t $b ) ; W ( $n ) ; S | 2 | TS020 | offered | M(⟨¦2, ⟩50, -80⟨, 2¦⟩) => M(50, -80);W(2);S
+^ BEEP ( n=@time , a=@num , b=@num ⟨¦, c=@num⟩ ) $ | BEEP ( $n , $a ) ; BEEP ( $n , $b ) ⟨¦; BEEP ( $n , $c )⟩ | 2 | TS020 | offered | BEEP(0.2, 440, 660⟨¦, 880⟩) => BEEP(0.2, 440);BEEP(0.2, 660)⟨¦;BEEP(0.2, 880)⟩
 ^ a=F|B|L|R ( b=@num|FOREVER ,? c=@num ,? UNTIL (? q=@noparen+ )? ) $ | $a ( $b , $c ) UNTIL ( $q ) | 2 | TS029 | offered | F(5, 60, UNTIL DISTANCE < 10) => F(5, 60) UNTIL(DISTANCE < 10)
 ^ a=F|B|L|R ( b=@num , c=@num , d=@val e=<|> f=@num ) $ | $a ( $b , $c ) UNTIL ( $d $e $f ) | 2 | TS020 | offered | F(3, 80, DISTANCE < 10) => F(3, 80) UNTIL(DISTANCE < 10)
 h=IF|WHILE ( a=@val s=<|> b=@num , c=@val t=<|> d=@num ) | &h ( $a $s $b AND $c $t $d ) | 2 | TS020 | offered | IF(DISTANCE < 10, LIGHT_R > 50)⏎S⏎ENDIF => IF(DISTANCE < 10 AND LIGHT_R > 50)⏎S⏎ENDIF

@@ -124,8 +124,6 @@ class Recovery:
                 if line.reading.items is None:
                     self.read_line(line, self.names)
 
-    # -- lines ----------------------------------------------------------------------------------
-
     def read_signs(self) -> None:
         """Make the rewrites of signs, in the lines that have them."""
         names = Names([lexemes(each.body) for each in self.lines], self.kit)
@@ -217,8 +215,6 @@ class Recovery:
                     for code, before, after in each.steps
                 ]
         return Reading(0, tokens, tuple(steps), True, False) if steps else _UNREAD
-
-    # -- programs -------------------------------------------------------------------------------
 
     @cached_property
     def whole(self) -> Candidate | None:

@@ -14,10 +14,9 @@ from typing import NamedTuple
 from tiniscript.base.words import UNIT_OF, WAYS, WORDS, Argument, said_of
 from tiniscript.base.words import names as is_called
 from tiniscript.recovery import rows
-from tiniscript.recovery.concepts import CALLED, DONE, NEAR, Lexeme, Names, lexemes, made
+from tiniscript.recovery.concepts import CALLED, DONE, LONG_S, NEAR, Lexeme, Names, lexemes, made
 from tiniscript.syntax.lexer import NUMBER, WORD
 
-LONG_S = 20  # so much without a unit may be a power, degrees or centimetres
 _STEPS_FROM = 10  # so many are as many centimetres
 MILLISECONDS_FROM = 100  # no wait is so many seconds
 _SIDES = ("left", "right")
@@ -80,8 +79,6 @@ class _Reader:
         self.way = ""  # the unit behind the first value of a move: `20 CM`
         self.is_sure = True
         self.cost = 1.0
-
-    # -- words ------------------------------------------------------------------------------
 
     def read(self) -> bool:
         """Return whether each word has its place."""
@@ -286,8 +283,6 @@ class _Reader:
                 self.values.append(_Value(concept, None))
                 return True
         return False
-
-    # -- the call ---------------------------------------------------------------------------
 
     def call(self, has_until: bool, is_order: bool) -> Filled | None:
         assert self.command is not None

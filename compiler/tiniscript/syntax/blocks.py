@@ -55,7 +55,6 @@ class Blocks:
         self._reporter = reporter
         self.program: list[Instruction] = []
         self.open: list[Block] = []
-        self.defs: set[str] = set()  # the names of those that have ended
         self.tasks = 0  # TASKs and WHENs that have begun at the top level
         self._depth = 0  # open blocks, those that stand at the top level alone not counted
 
@@ -95,22 +94,17 @@ class Blocks:
         reported.
         """
         block = self.open.pop()
-        span = Span(block.span.start, end.end)
+        span, body = Span(block.span.start, end.end), tuple(block.body)
         if block.word == "DEF":
             if block.name is not None and not self.open:
-                name = block.name
-                self.defs.add(name.text)
-                self.program.append(Def(name.text, name.span, tuple(block.body), span))
-            return
-        if block.word in TASK_WORDS:
+                self.program.append(Def(block.name.text, block.name.span, body, span))
+        elif block.word in TASK_WORDS:
             if not self.open:
-                is_when = block.word == "WHEN"
-                self.program.append(Task(is_when, block.head, tuple(block.body), span))
-            return
-        is_too_deep = self._depth > BLOCKS
-        self._depth -= 1
-        if not is_too_deep:
-            self.here.append(_node(block, span))
+                self.program.append(Task(block.word == "WHEN", block.head, body, span))
+        else:
+            if self._depth <= BLOCKS:
+                self.here.append(_node(block, span))
+            self._depth -= 1
 
 
 def _node(block: Block, span: Span) -> Instruction:

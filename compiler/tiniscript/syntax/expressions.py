@@ -214,13 +214,9 @@ class ExpressionParser:
         self.no_odd(token)
         if known is not None:
             self.no_unit(token)
-            if known.role == "forever":
-                self.reporter.fail(codes.FOREVER_NOT_HERE, token.span)
-            if known.role == "until":
-                self.reporter.fail(codes.UNTIL_ALONE, token.span)
-            if known.is_instruction:
-                self.reporter.fail(codes.NO_VALUE, token.span, word=token.text)
-            self.reporter.fail(codes.RESERVED, token.span, word=token.text)
+            by_role = {"forever": codes.FOREVER_NOT_HERE, "until": codes.UNTIL_ALONE}
+            other = codes.NO_VALUE if known.is_instruction else codes.RESERVED
+            self.reporter.fail(by_role.get(known.role, other), token.span, word=token.text)
         before = self.cursor.tokens[self.cursor.before(self.cursor.i)] if self.cursor.i else token
         shown = {} if before.kind is ODD else {"before": before.text}
         self.reporter.fail(codes.MISSING_VALUE, token.span or before.span, **shown)
