@@ -209,7 +209,6 @@ a=@num : b=@num | @mmss:a:b | 1 | TS008 | applied | W(1:30) => W(90)
 s=<|>|<=|>= n=@num M|@in_m e=) | $s @cm:n $e | 1 | TS049 | applied | IF(DISTANCE < 1 m);S;ENDIF => IF(DISTANCE < 100);S;ENDIF
 s=<|>|<=|>=|=|<> n=@num @unit | $s $n | 1 | TS049 | first | x = 5 cm => x = 5
 v=@val CM|in? CM | $v | 2 | TS049 | applied | SHOW DISTANCE cm => SHOW(DISTANCE)
-SHOW ( n=@num M|@unit ) | SHOW ( $n ) | 1 | TS049 | applied | SHOW(2 M) => SHOW(2)
 ROUND ( v=@noparen+ , n=@num decimals ) | ROUND ( $v , $n ) | 1 | TS049 | applied | SHOW(ROUND(DISTANCE, 1 decimales)) => SHOW(ROUND(DISTANCE, 1))
 v=@val seconds|@unit e=,|) | $v $e | 1 | TS049 | applied | SHOW(distancia cm) => SHOW(DISTANCE)
 h=IF|WHILE|UNTIL|WHEN|ELSEIF b=(? A v=@val | &h $b &v | 1 | TS102 | first | IF(a distância < 10);S;ENDIF => IF(DISTANCE < 10);S;ENDIF
@@ -225,16 +224,14 @@ v=@name ⟨++¦- - $⟩ | $v = $v ⟨+¦-⟩ 1 | 1 | TS050 | applied | v = 0⏎v
 v=@name ⟨+=¦-=¦*=⟩ e=@any+ | $v = $v ⟨+¦-¦*⟩ $e | 1 | TS050 | applied | X = 1⏎X ⟨+=¦-=¦*=⟩ 2 => X = 1⏎X = X ⟨+¦-¦*⟩ 2
 ^ v=@name = w=@name = e=@any+ $ | $v = $e ; $w = $e | 1 | TS137 | offered | X = X = 5 => X = 5;X = 5
 ^ v=@name , w=@name = e=@num , f=@num $ | $v = $e ; $w = $f | 1 | TS050 | applied | X, Y = 5, 6⏎F(X, Y) => X = 5;Y = 6⏎F(X, Y)
-^ n=@newname = '{' | DEF $n ; { | 1 | TS051 | offered | BAILE = { L(1,60); R(1,60) }⏎BAILE => DEF BAILE;L(1, 60);R(1, 60);END_DEF;⏎BAILE
-^ n=@newname = b=@callw|LOOP r=@any+ $ | DEF $n ; $b $r | 2 | TS051 | applied | SALUDO = BEEP(1, 440)⏎SALUDO => DEF SALUDO;BEEP(1, 440);END_DEF⏎SALUDO
-^ declare v=@newname ;? $ | $v = 0 | 1 | TS044 | offered | var vel⏎F(2, vel) => vel = 0⏎F(2, vel)
-^ declare declare? v=@name = | $v = | 1 | TS044 | applied | let v = 50⏎F(2, v) => v = 50⏎F(2, v)
+^ n=@newname = ⟨'{'¦b=@callw|LOOP r=@any+ $⟩ | DEF $n ; ⟨{¦$b $r⟩ | ⟨1¦2⟩ | TS051 | ⟨offered¦applied⟩ | BAILE = ⟨{ ¦⟩L(1,60)⟨; R(1,60) }¦⟩⏎BAILE => DEF BAILE;L(1, 60);⟨R(1, 60);¦⟩END_DEF⟨;¦⟩⏎BAILE
+^ declare ⟨v=@newname ;? $¦declare? v=@name =⟩ | $v = ⟨0¦⟩ | 1 | TS044 | ⟨offered¦applied⟩ | var vel⟨¦ = 50⟩⏎F(2, vel) => vel = ⟨0¦50⟩⏎F(2, vel)
 ^ set|declare the? v=@word =|to|is? e=@num $ | $v = $e | 1 | TS050 | applied | set x to 5 => x = 5
 ^ v=@newname is|equal|: to|equal? one? e=@num $ | $v = $e | 2 | TS050 | applied | velocidad es 60⏎F(2, velocidad) => velocidad = 60⏎F(2, velocidad)
 ⟨^¦;⟩ v=@usedname e=@num f=;|$ | ⟨¦;⟩ $v = $e $f | 3 | TS050 | applied | ⟨¦S;⟩X 17⏎SHOW(X) => ⟨¦S;⟩X = 17⏎SHOW(X)
 ^ v=@name <- e=@any+ $ | $v = $e | 1 | TS050 | applied | potencia <- 80⏎F(2, potencia) => potencia = 80⏎F(2, potencia)
 ^ e=@num|@val ->|=> v=@newname $ | $v = $e | 1 | TS050 | offered | 5 -> X⏎F(X, 60) => X = 5⏎F(X, 60)
-^ v=@of_power ( n=@num ) $ | $v = $n | 1 | TS050 | offered | SPEED(60)⏎F(2, SPEED) => SPEED = 60⏎F(2, SPEED)
+^ v=⟨@of_power ( n=@num )¦@of_time n=@num⟩ $ | $v = $n | 1 | TS050 | ⟨offered¦applied⟩ | ⟨SPEED(60)⏎F(2, SPEED)¦tiempo 2⏎F(tiempo,80)⟩ => ⟨SPEED = 60⏎F(2, SPEED)¦tiempo = 2⏎F(tiempo,80)⟩
 = SI|TRUE $ | = TRUE | 1 | TS102 | applied | X = si⏎IF(X)⏎S⏎ENDIF => X = TRUE⏎IF(X)⏎S⏎ENDIF
 a=@num|@close b=@name = | $a ; $b = | 1.5 | TS013 | applied | F(1, 50) X = 2 => F(1, 50);X = 2
 ^ change v=@name by ⟨¦-⟩ n=@num $ | $v = $v ⟨+¦-⟩ $n | 1.5 | TS050 | offered | N = 5⏎cambiar N por ⟨¦-⟩1 => N = 5⏎N = N ⟨+ ¦-⟩1
@@ -253,8 +250,7 @@ a=@callw b=@num ,? c=@num ,|;|and? d=@callw | $a ( $b , $c ) ; $d | 1.5 | TS015 
 v=@val|@def|S|STOP|BREAK|START|ELSE|ENDIF|END_LOOP ( ) | $v | 1 | TS028 | first | LIGHT_L() => LIGHT_L
 ^ ( c=@callw a=@num ,? b=@num ) $ | $c ( $a , $b ) | 1 | TS076 | applied | (F 2,80) => F(2, 80)
 ^ c=@callw :? a='-'? b=@num ; d='-'? e=@num )|]|$ | $c ( $a $b , $d $e ) | 1 | TS015 | applied | R 0.5; 60 => R(0.5, 60)
-^ ( a=@num , b=@num ) c=F|B|L|R $ | $c ( $a , $b ) | 1 | TS015 | applied | (2,80)F => F(2, 80)
-^ c=F|B|L|R - a=@num - b=@num $ | $c ( $a , $b ) | 1 | TS015 | applied | F - 2 - 80 => F(2, 80)
+^ ⟨( a=@num , b=@num ) c=F|B|L|R¦c=F|B|L|R - a=@num - b=@num⟩ $ | $c ( $a , $b ) | 1 | TS015 | applied | ⟨(2,80)F¦F - 2 - 80⟩ => F(2, 80)
 ⟨F¦B⟩ - a=@num ,? b=@num e=;|$ | ⟨B¦F⟩ ( $a , $b ) $e | 1 | TS102 | offered | ⟨F¦B⟩ -1, 80 => ⟨B¦F⟩(1, 80)
 F ( - a=@num b=@num )|;|$ | B ( $a , $b ) | .5 | TS017 | offered | F(-1 80) => B(1, 80)
 SHOW ( TIME ) | SHOW ( TIME ) | 1 | TS102 | applied | mostrar(tiempo) => SHOW(TIME)
@@ -269,21 +265,18 @@ c=⟨@callw¦IF|WHILE|ELSEIF|UNTIL|LOOP⟩ ( a=@noparen* b=@num|@word e=;|$⟨|U
 ⟨TONE|@of_pitch (¦TONE ( @num ,⟩ a=@num , b=@num ) | BEEP ( @ms:b , $a ) | 1 | TS102 | offered | tone(⟨¦8, ⟩440, 1000) => BEEP(1, 440)
 a=F|B|L|R ( u=CM|DEG (? n=@num )? , p=@num ) | $a ( $n $u , $p ) | 1 | TS076 | offered | B(CM(20), 60) => B(20 CM, 60)
 a=F|B|L|R ( p=@power , n=@num u=CM|DEG ) | $a ( $n $u , $p ) | 1 | TS076 | offered | R(60, 90 DEG) => R(90 DEG, 60)
-^ c=F|B|L|R two ,? n=@num $ | $c ( 2 , $n ) | .5 | TS015 | offered | f to 80 => f(2, 80)
-c=F|B|L|R ( two , | $c ( 2 , | 1 | TS102 | offered | F(too, 80) => F(2, 80)
+⟨^ c=F|B|L|R two ,? n=@num $¦c=F|B|L|R ( two ,⟩ | $c ( 2 , ⟨$n )¦⟩ | ⟨.5¦1⟩ | ⟨TS015¦TS102⟩ | offered | ⟨f to 80¦F(too, 80)⟩ => ⟨f¦F⟩(2, 80)
 BEEP ( a=<note> , b=<note> ⟨¦, c=<note>⟩ ) | BEEP ( 1 , $a ) ; BEEP ( 1 , $b ) ⟨¦; BEEP ( 1 , $c )⟩ | 1 | TS020 | offered | BEEP(DO, RE⟨¦, MI⟩) => BEEP(1, 262);BEEP(1, 294)⟨¦;BEEP(1, 330)⟩
 @newname . c=F|B|L|R|W|BEEP ( | $c ( | 1 | TS102 | applied | bot.F(2, 80) => F(2, 80)
 # UNTIL
 ^ WHILE <question> ;|:? a=F|B|L|R ( FOREVER , p=@num|@val ) $ | $a ( FOREVER , $p ) UNTIL ( @not:c ) | .9 | TS031 | offered | WHILE(DISTANCE > 20) F(FOREVER, 50) => F(FOREVER, 50) UNTIL(DISTANCE <= 20)
 a=F|B|L|R|W ( b=@noparen+ ) S|STOP ( c=@val s=<|<=|>|>= d=@num|@val ) $ | $a ( $b ) UNTIL ( $c $s $d ) | 2 | TS102 | offered | F(10, 60) STOP(DISTANCE < 12) => F(10, 60) UNTIL(DISTANCE < 12)
 a=F|B|L|R ( FOREVER , p=@num|@val ) UNTIL ( n=@num ) | $a ( $n , $p ) | 2 | TS202 | offered | F(FOREVER, 80) UNTIL(2) => F(2, 80)
-a=@close '|'|,|.|; UNTIL ( | $a UNTIL ( | 1 | TS029 | applied | F(5, 60).UNTIL(DISTANCE < 30) => F(5, 60) UNTIL(DISTANCE < 30)
+a=@close ⟨'|'|,|.|; UNTIL¦UNTIL that?⟩ ( | $a UNTIL ( | 1 | ⟨TS029¦TS102⟩ | applied | F(2,80)⟨.UNTIL¦ HASTA⟩(DISTANCE<10) => F(2,80) UNTIL(DISTANCE<10)
 ^ W ⟨( c=@val s=<|<=|>|>=|=|<> d=@num|@val )¦during|that|to c=@val s=<|<=|>|>= d=@num|@val⟩ $ | W ( FOREVER ) UNTIL ( $c $s $d ) | ⟨.5¦.9⟩ | TS102 | ⟨applied¦offered⟩ | wait⟨(DISTANCE < 10)¦ for DISTANCE < 10⟩ => W(FOREVER) UNTIL(DISTANCE < 10)
-^ W UNTIL that? c=@cond+ $ | W ( FOREVER ) UNTIL ( $c ) | 1 | TS102 | applied | WAIT UNTIL DISTANCE < 10 => W(FOREVER) UNTIL(DISTANCE < 10)
-a=@close UNTIL that? c=@cond+ then+ ,? b=@start | $a UNTIL ( $c ) ; $b | 1 | TS015 | applied | F(2, 80) hasta DISTANCE < 10 luego S => F(2, 80) UNTIL(DISTANCE < 10);S
-a=@close UNTIL that? c=@noparen+ $ | $a UNTIL ( $c ) | 1 | TS015 | applied | F(3, 80) UNTIL DISTANCE < 10 => F(3, 80) UNTIL(DISTANCE < 10)
-a=@close UNTIL that? ( | $a UNTIL ( | 1 | TS102 | applied | F(2,80) HASTA(DISTANCE<10) => F(2,80) UNTIL(DISTANCE<10)
-^ UNTIL <question> ':'|'{'? $ | WHILE ( @not:c ) | 3 | TS029 | offered | UNTIL(DISTANCE < 10)⏎F(1, 60)⏎END_WHILE => WHILE(DISTANCE >= 10)⏎F(1, 60)⏎END_WHILE
+^ W ⟨UNTIL that? c=@cond+¦( UNTIL (? c=@noparen+ )? )⟩ $ | W ( FOREVER ) UNTIL ( $c ) | 1 | ⟨TS102¦TS029⟩ | ⟨applied¦offered⟩ | ⟨WAIT UNTIL DISTANCE < 10¦W(UNTIL DISTANCE < 10)⟩ => W(FOREVER) UNTIL(DISTANCE < 10)
+a=@close UNTIL that? ⟨c=@cond+ then+ ,? b=@start¦c=@noparen+ $⟩ | $a UNTIL ( $c ) ⟨; $b¦⟩ | 1 | TS015 | applied | F(2, 80) hasta DISTANCE < 10⟨ luego S¦⟩ => F(2, 80) UNTIL(DISTANCE < 10)⟨;S¦⟩
+^ ⟨UNTIL <question> ':'|'{'?¦LOOP ( FOREVER ) UNTIL <question>⟩ $ | WHILE ( @not:c ) | ⟨3¦1⟩ | ⟨TS029¦TS102⟩ | offered | ⟨¦LOOP(FOREVER) ⟩UNTIL(DISTANCE < 10)⏎F(1, 60)⏎END_⟨WHILE¦LOOP⟩ => WHILE(DISTANCE >= 10)⏎F(1, 60)⏎END_WHILE
 ^ a=F|B|L|R ( UNTIL (? c=@cond+ )? , b=@num ) $ | $a ( FOREVER , $b ) UNTIL ( $c ) | 2 | TS029 | offered | F(UNTIL(DISTANCE < 20), 60) => F(FOREVER, 60) UNTIL(DISTANCE < 20)
 ^ UNTIL (? c=@cond+ )? a=F|B|L|R|W ( b=@noparen+ ) $ | $a ( $b ) UNTIL ( $c ) | 2 | TS029 | offered | UNTIL DISTANCE < 10 F(2, 60) => F(2, 60) UNTIL(DISTANCE < 10)
 c=@callw ( a=@noparen+ UNTIL ( d=@any+ ) ) | $c ( $a ) UNTIL ( $d ) | 1 | TS016 | applied | F(5, 60 UNTIL(DISTANCE < 15)) => F(5, 60) UNTIL(DISTANCE < 15)
@@ -328,7 +321,7 @@ LOOP n=X1|X2|X3|X4|X5|X6|X8 | LOOP ( @xn:n ) | 1 | TS015 | applied | LOOP x4⏎F
 LOOP ⟨n=@val $¦X|=|-|-> n=@num⟩ | LOOP ( $n ) | 1 | TS015 | applied | X4 = 3⏎LOOP ⟨X4¦x 3⟩⏎F(1,50)⏎END_LOOP => X4 = 3⏎LOOP(⟨X4¦3⟩)⏎F(1,50)⏎END_LOOP
 ^ LOOP <body> n=@num times $ | LOOP ( $n ) ; $b $r ; END_LOOP | 1.5 | TS102 | applied | repeat F(1,60) R(1,60) 4 times => LOOP(4);F(1, 60);R(1, 60);END_LOOP
 ^ LOOP ;? <body> ;? UNTIL c=@cond+ $ | LOOP ( FOREVER ) ; $b $r ; IF ( $c ) ; <end> | 1.5 | TS064 | applied | repeat F(1,50) until DISTANCE < 10 => LOOP(FOREVER);F(1, 50);IF(DISTANCE < 10);BREAK;ENDIF;END_LOOP
-LOOP ( n=@num @unit ) | LOOP ( $n ) | 1 | TS049 | applied | LOOP(3 veces);F(1,50);END_LOOP => LOOP(3);F(1,50);END_LOOP
+⟨LOOP¦SHOW⟩ ( n=@num ⟨¦M|⟩@unit ) | ⟨LOOP¦SHOW⟩ ( $n ) | 1 | TS049 | applied | ⟨LOOP(3 veces);F(1,50);END_LOOP¦SHOW(2 M)⟩ => ⟨LOOP(3);F(1,50);END_LOOP¦SHOW(2)⟩
 LOOP n=number times :|,|do|;? | LOOP ( &n ) ; | 1 | TS102 | applied | repite cuatro veces⏎F(1,60)⏎fin => LOOP(4)⏎F(1,60)⏎END_LOOP
 LOOP by? n=@num times? ⟨:|,|do|;¦b=@start|'{'¦$⟩ | LOOP ( $n ) ⟨;¦; $b¦⟩ | 1 | TS102 | applied | repite 4⟨:⏎¦ ¦⏎⟩F(1, 60)⟨¦¦⏎fin⟩ => LOOP(4)⟨⏎¦;¦⏎⟩F(1, 60)⟨⏎¦;¦⏎⟩END_LOOP
 LOOP n=@val o=*|+|- m=@num $ | LOOP ( $n &o $m ) | 1 | TS015 | applied | X = 2⏎LOOP X * 4⏎F(1,50)⏎END_LOOP => X = 2⏎LOOP(X * 4)⏎F(1,50)⏎END_LOOP
@@ -336,7 +329,6 @@ LOOP n=@val o=*|+|- m=@num $ | LOOP ( $n &o $m ) | 1 | TS015 | applied | X = 2�
 a=L|R ( ⟨half one?¦@one|one|whole¦one? quarter of?¦1 / 4 of?¦1 / 2 of?⟩ lap whole? , | $a ( ⟨180¦360¦90¦90¦180⟩ DEG , | 1 | TS102 | offered | R(⟨media vuelta¦una vuelta completa¦cuarto de vuelta¦1/4 vuelta¦1/2 turn⟩, 60) => R(⟨180¦360¦90¦90¦180⟩ DEG, 60)
 a=@callw ( n=@num to|until m=@num , | $a ( RANDOM ( $n , $m ) , | 1 | TS076 | offered | F(1 a 3, 60) => F(RANDOM(1, 3), 60)
 o=(|,|=|<|>|+|- '|' v=@num|@val c=@noparen* '|' | $o ABS ( $v $c ) | 1 | TS010 | offered | D = |LIGHT_L - LIGHT_R|⏎SHOW(D) => D = ABS(LIGHT_L - LIGHT_R)⏎SHOW(D)
-^ W ( UNTIL (? q=@noparen+ )? ) $ | W ( FOREVER ) UNTIL ( $q ) | 1 | TS029 | offered | W(UNTIL DISTANCE < 10) => W(FOREVER) UNTIL(DISTANCE < 10)
 h=UNTIL|IF|WHILE|WHEN|ELSEIF ( c=@any+ ) o=AND|OR (? d=@any+ )? e=;|$ | &h ( $c &o $d ) $e | 1 | TS015 | offered | F(5, 60) UNTIL(LIGHT_L > 9) OR (LIGHT_R > 9) => F(5, 60) UNTIL(LIGHT_L > 9 OR LIGHT_R > 9)
 ^ a=F|B|L|R|M|W|BEEP ( c=@noparen+ ) WHEN (? q=@cond+ )? ;|:|,? <body> ⟨END_WHEN¦⟩ $ | WHEN ( $q ) ; $b $r ; END_WHEN ; $a ( $c ) | ⟨.8¦.9⟩ | TS071 | offered | F(9, 50) WHEN(DISTANCE < 9)⟨;¦⟩ S⟨; END_WHEN¦⟩ => WHEN(DISTANCE < 9);S;END_WHEN;F(9, 50)
 UNTIL ( a=@any+ ) OR|or UNTIL ( b=@any+ ) e=;|$ | UNTIL ( $a OR $b ) $e | 1 | TS015 | offered | F(5, 60) UNTIL(LIGHT_L > 9) OR UNTIL(LIGHT_R > 9) => F(5, 60) UNTIL(LIGHT_L > 9 OR LIGHT_R > 9)
@@ -344,9 +336,7 @@ UNTIL ( a=@any+ ) OR|or UNTIL ( b=@any+ ) e=;|$ | UNTIL ( $a OR $b ) $e | 1 | TS
 m=MIN|MAX ( a=@num|@val , b=@num|@val , c=@num|@val ) | $m ( $a , $m ( $b , $c ) ) | 1 | TS020 | offered | SHOW(MIN(DISTANCE, 5, 9)) => SHOW(MIN(DISTANCE, MIN(5, 9)))
 LOOP ( ⟨@name =¦⟩ 1 to|until⟨¦|,⟩ n=@num ) | LOOP ( $n ) | 1 | TS063 | offered | LOOP(⟨I = ¦⟩1 TO 5)⏎S⏎END_LOOP => LOOP(5)⏎S⏎END_LOOP
 ^ a=L|R ⟨n=@angle¦( n=@angle )⟩ $ | $a ( $n DEG , 80 ) | 2 | ⟨TS015¦TS020⟩ | offered | L⟨ 90¦(90)⟩ => L(90 DEG, 80)
-a=F|B ( FOREVER ) | $a ( FOREVER , 80 ) | 2 | TS020 | offered | F(FOREVER) UNTIL(DISTANCE < 10) => F(FOREVER, 80) UNTIL(DISTANCE < 10)
-RANDOM ( n=@whole ) | RANDOM ( 1 , $n ) | 2 | TS020 | offered | X = RANDOM(6)⏎F(X, 50) => X = RANDOM(1, 6)⏎F(X, 50)
-ROUND ( n=@num|@val ) | ROUND ( $n , 0 ) | 2 | TS020 | offered | X = ROUND(3.7)⏎SHOW(X) => X = ROUND(3.7, 0)⏎SHOW(X)
+⟨a=F|B ( FOREVER¦a=RANDOM ( n=@whole¦a=ROUND ( n=@num|@val⟩ ) | $a ( ⟨FOREVER , 80¦1 , $n¦$n , 0⟩ ) | 2 | TS020 | offered | ⟨F(FOREVER) UNTIL(DISTANCE < 10)¦SHOW(RANDOM(6))¦SHOW(ROUND(3))⟩ => ⟨F(FOREVER, 80) UNTIL(DISTANCE < 10)¦SHOW(RANDOM(1, 6))¦SHOW(ROUND(3, 0))⟩
 ^ M ( ⟨¦n=@time ,⟩ s='-'? a=@power , t='-'? b=@power ⟨, n=@time¦⟩ ) $ | M ( $s $a , $t $b ) ; W ( $n ) ; S | 2 | TS020 | offered | M(⟨¦2, ⟩50, -80⟨, 2¦⟩) => M(50, -80);W(2);S
 ^ BEEP ( n=@time , a=@num , b=@num ⟨¦, c=@num⟩ ) $ | BEEP ( $n , $a ) ; BEEP ( $n , $b ) ⟨¦; BEEP ( $n , $c )⟩ | 2 | TS020 | offered | BEEP(0.2, 440, 660⟨¦, 880⟩) => BEEP(0.2, 440);BEEP(0.2, 660)⟨¦;BEEP(0.2, 880)⟩
 ^ a=F|B|L|R ( b=@num|FOREVER ,? c=@num ,? UNTIL (? q=@noparen+ )? ) $ | $a ( $b , $c ) UNTIL ( $q ) | 2 | TS029 | offered | F(5, 60, UNTIL DISTANCE < 10) => F(5, 60) UNTIL(DISTANCE < 10)
@@ -373,7 +363,6 @@ a=@num ( c=@noparen+ ) | $a * ( $c ) | 1 | TS048 | offered | X = 2(20 + 10)⏎F(
 ⟨^ TASK @num ':'? $¦TASK ( @num|@word? )⟩ | TASK | 1 | ⟨TS044¦TS039⟩ | offered | TASK⟨ 1¦(1)⟩⏎BEEP(1, 440)⏎END_TASK => TASK⏎BEEP(1, 440)⏎END_TASK
 ^ LOOP UNTIL c=@cond+ ⟨':'|do? b=@start|'{'¦':'|'{'? $⟩ | WHILE ( @not:c ) ⟨; $b¦⟩ | 1 | TS102 | applied | repeat until DISTANCE < 10⟨ ¦⏎⟩F(1, 50)⟨¦⏎end⟩ => WHILE(DISTANCE >= 10)⟨;¦⏎⟩F(1, 50)⟨;¦⏎⟩END_WHILE
 ⟨END_LOOP UNTIL ( c=@any+ )¦^ UNTIL c=@cond+⟩ $ | IF ( $c ) ; <end> | ⟨1¦2⟩ | TS064 | ⟨offered¦applied⟩ | LOOP⟨(FOREVER)¦⟩⏎F(1, 50)⏎⟨END_LOOP UNTIL(DISTANCE < 10)¦UNTIL DISTANCE < 10⟩ => LOOP(FOREVER)⏎F(1, 50)⏎IF(DISTANCE < 10);BREAK;ENDIF;END_LOOP
-^ LOOP ( FOREVER ) UNTIL ( c=@any+ ) $ | WHILE ( @not:c ) | 1 | TS102 | offered | LOOP(FOREVER) UNTIL(LIGHT_R > 800)⏎F(1, 40)⏎END_LOOP => WHILE(LIGHT_R <= 800)⏎F(1, 40)⏎END_WHILE
 ^ LOOP ( n=@num ) UNTIL ( c=@any+ ) $ | LOOP ( $n ) ; IF ( $c ) ; BREAK ; ENDIF | 1 | TS064 | offered | LOOP(3) UNTIL(DISTANCE < 10)⏎F(1, 40)⏎END_LOOP => LOOP(3);IF(DISTANCE < 10);BREAK;ENDIF⏎F(1, 40)⏎END_LOOP
 ^ do '{' b=@start | LOOP ( FOREVER ) ; $b | 3 | TS064 | applied | DO { F(1, 50)⏎} WHILE(DISTANCE > 9) => LOOP(FOREVER);F(1, 50)⏎IF(DISTANCE <= 9);BREAK;ENDIF;END_LOOP
 # how often something is done, said behind it or before it
@@ -398,7 +387,6 @@ d=@device ( ⟨lit¦dark¦most¦least⟩ ) | &d ( ⟨TRUE¦FALSE¦@most:d¦@leas
 ^ DEF n=@word ( <body> ) $ | DEF $n ; $b $r ; END_DEF | 1 | TS080 | applied | DEF SALUDO(BEEP(1,440))⏎SALUDO => DEF SALUDO;BEEP(1, 440);END_DEF⏎SALUDO
 ^ ( a=@callw ( c=@noparen+ ) ) ( <body> ) $ | $a ( $c ) ; $b $r | 1 | TS080 | applied | (F(2,80))(R(1,60)) => F(2, 80);R(1, 60)
 v=@val to the? wall | &v | 1 | TS102 | first | IF(distancia a la pared < 10)⏎S⏎ENDIF => IF(DISTANCE < 10)⏎S⏎ENDIF
-^ v=@of_time n=@num $ | $v = $n | 1 | TS050 | applied | tiempo 2⏎F(tiempo,80) => tiempo = 2⏎F(tiempo,80)
 a=@close '|' h=END_LOOP|ENDIF|END_WHILE|END_DEF|END_WHEN|END_TASK | $a ; &h | 1 | TS061 | applied | LOOP(2);F(1, 80)|END_LOOP => LOOP(2);F(1, 80);END_LOOP
 ^ DEF ( n=@word ) | DEF $n | 1 | TS039 | offered | DEF(SALUDO)⏎BEEP(1,440)⏎END_DEF⏎SALUDO => DEF SALUDO⏎BEEP(1,440)⏎END_DEF⏎SALUDO
 DEF n=@word ⟨:|'|'|=|'->'|'=>'¦b=@start|'{'⟩ | DEF $n ; ⟨¦$b⟩ | 1 | TS014 | applied | DEF SALUDO⟨ = ¦ ⟩BEEP(1,440)⏎SALUDO => DEF SALUDO;BEEP(1, 440);END_DEF⏎SALUDO
