@@ -89,8 +89,7 @@ def of_tokens() -> tuple[Row, ...]:
 
 @cache
 def _places(is_first: bool) -> Places:
-    rows_ = enumerate(of_tokens())
-    return places({k: row.pattern for k, row in rows_ if row.is_first is is_first})
+    return places({k: row.pattern for k, row in enumerate(of_tokens()) if row.is_first is is_first})
 
 
 def tried(line: Encoded, is_first: bool) -> Iterator[Row]:

@@ -5,20 +5,21 @@
     pattern | becomes | cost | code | how | example => what becomes of it
 
 A pattern is tokens with spaces between: a word of the language or one that means it (`LOOP`), a
-part of a sentence of the lexicon (`then`), a sign, or a class. `A|B`
-are alternatives, `'|'` is a sign that would be one of the signs here, `?`, `*` and `+` stand behind
-what may be missing or come more often, and `^` and `$` are the ends of a line. `c=` captures, and
-`<part>` is a piece of PARTS. Classes: @num @word @val (a value with a name) @name @newname
-@usedname @def @callw (takes values) @device (an actuator) @start (begins an instruction) @close
-(ends one) @unit, numbers that are @whole or may be a @time, a @power, an @angle; any token but separators and braces: @any, nor `:` and `?`: @cond, nor brackets:
-@noparen; but braces: @all; but braces, brackets and `<`: @nobrace.
+part of a sentence of the lexicon (`then`), a sign, or a class. `A|B` are alternatives, `'|'` is a
+sign that would be one of the signs here, `?`, `*` and `+` stand behind what may be missing or come
+more often, and `^` and `$` are the ends of a line. `c=` captures, and `<part>` is a piece of PARTS.
+Classes: @num @word @val (a value with a name) @name @newname @usedname @def @callw (takes values)
+@device (an actuator) @start (begins an instruction) @close (ends one) @unit; a number that is
+@whole, or may be a @time, a @power or an @angle; any token but separators and braces: @any, nor `:`
+and `?`: @cond, nor brackets: @noparen; but braces: @all; but braces, brackets and `<`: @nobrace.
 
-`becomes` is tokens: `$c` what was captured, `&c` that in words of the language, and functions: @not
-(the opposite question), @same (a number that is another one, too), @most and @least (the range of
-an actuator), @endof (the end of a header), @dec (a decimal comma), @cat (a zero apart), @mmss, @cm
-(of metres), @xn (`x4`), @given and @also (the names in the brackets of a DEF), @known (a name of two words). `how`: `first` is made before
-any other is tried, `applied` may be made without asking, `offered` is only shown, as is
-`first offered`. An example's lines are parted by ⏎.
+`becomes` is tokens: `$c` what was captured, `&c` that in words of the language or in digits, and
+functions: @not (the opposite question), @same (a number that is another one, too), @most and @least
+(the range of an actuator), @endof (the end of a header), @dec (a decimal comma), @cat (a zero
+apart), @mmss, @cm (of metres), @xn (`x4`), @given and @also (the names in the brackets of a DEF),
+@known (a name of two words). `how`: `first` is made before any other is tried, `applied` may be
+made without asking, `offered` is only shown, as is `first offered`. An example's lines are parted
+by ⏎.
 
 `⟨less¦more⟩` and, in the same row, `⟨<¦>⟩` make a row of each: one with `less` and `<`, and one
 with `more` and `>`. Each has its own example.
