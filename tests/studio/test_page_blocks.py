@@ -12,11 +12,11 @@ import pytest
 
 from tests.oracle import programs as oracle_programs
 from tests.studio.programs import programs
-from tests.studio.test_page_for_everyone import LOOK, SCREENS
+from tests.studio.test_page_for_everyone import SCREENS
 from tests.support.casefile import ROOT
 from tests.support.kits import KITS
 from tests.support.needs import need
-from tests.support.studio import SETTLED, Pages, axe, image, shown, speak, write
+from tests.support.studio import SETTLED, Pages, image, shown, speak, write
 from tiniscript import check, compile, robots
 from tiniscript.studio.block_form import data_of
 from tiniscript.studio.block_reading import read
@@ -521,27 +521,6 @@ def test_a_long_program_stays_text(page: Page) -> None:
     page.locator("#blocks_note", has_text="too long").wait_for()
     start(page, "SI|S\n")
     assert page.inner_text("#blocks_note") == ""
-
-
-@pytest.mark.sampled("language", "screen", keep=2)
-@pytest.mark.parametrize("language", ["en", "es"])
-@pytest.mark.parametrize("screen", SCREENS, ids=lambda screen: "x".join(map(str, screen)))
-def test_blocks_are_seen(page: Page, screen: tuple[int, int], language: str) -> None:
-    page.set_viewport_size({"width": screen[0], "height": screen[1]})
-    speak(page, language)
-    for text in ("SI|F(2, 80)", "SI|F(-2, 80);\nIF(DISTANCE < 10;\n"):
-        start(page, text)
-        assert page.evaluate(LOOK) == []
-        box = page.locator("#blocks").bounding_box()
-        assert box is not None and box["height"] >= 96 and box["width"] >= 300
-        for each in page.locator(".blocklyToolboxCategory").all():
-            found = each.bounding_box()
-            assert found is not None and found["height"] >= 40
-
-
-def test_axe_finds_nothing_with_blocks(page: Page) -> None:
-    start(page, "SI|F(-2, 80);\nIF(DISTANCE < 10);\n  S;\nENDIF;\n")
-    assert axe(page) == []
 
 
 def test_keys_alone_add_a_block(page: Page) -> None:

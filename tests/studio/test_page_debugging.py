@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.studio.test_page_for_everyone import LOOK, SCREENS
 from tests.studio.test_page_robot import in_phase, running, value
-from tests.support.studio import axe, checked, noted, shown, speak, turn, write
+from tests.support.studio import checked, noted, shown, write
 from tiniscript import run
 
 if TYPE_CHECKING:
@@ -207,23 +206,6 @@ def test_a_breakpoint_in_every_line_is_no_hurdle(page: Page) -> None:
     held(page, 1)
     page.click("#pause")
     held(page, 2)
-
-
-@pytest.mark.parametrize("seen", ["plot", "trace"])
-def test_everything_is_seen_of_values_and_lists(page: Page, seen: str) -> None:
-    write(page, COUNT + ";" + ";".join(f"V{k} = {k}" for k in range(12)))
-    page.click("#run")
-    in_phase(page, "ended")
-    for language in ("en", "es"):
-        speak(page, language)
-        page.click(f"#seen_{seen}")
-        for width, height in SCREENS:
-            page.set_viewport_size({"width": width, "height": height})
-            turn(page, "robot")
-            assert page.evaluate(LOOK) == [], (width, language)
-            box = page.locator(f"#{seen}_place").bounding_box()
-            assert box is not None and box["height"] >= 60 and box["width"] > 300
-    assert axe(page) == []
 
 
 def test_curves_are_drawn_of_sensors_variables_and_what_is_shown(page: Page) -> None:

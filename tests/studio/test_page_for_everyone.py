@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import json
 import socket
-from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 import pytest
 
+from tests.studio.screens import each_screen
 from tests.support import studio
 from tests.support.needs import need
-from tests.support.studio import Pages, axe, checked, enter, image, shown, speak, turn, write
+from tests.support.studio import Pages, axe, checked, enter, image, speak, write
 from tiniscript import check, compile
 from tiniscript.base.languages import SOURCE, languages
 from tiniscript.studio import serving
@@ -21,7 +21,11 @@ if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page, Playwright
 
 SCREENS = ((1366, 768), (1024, 600), (390, 844), (844, 390))
-WRONG = "SI|" + "F(-2, 80);\nIF(DISTANCE < 10;\n" * 6
+LOW = ((683, 384), (640, 512), (320, 256))  # 1366x768 and 1280x1024 at 200 and 400 %
+AXED = (SCREENS[0], *SCREENS[2:])
+# How wide and high something is at least.
+LEAST = {"wrong": ("#editor", 0, 96), "blocks": ("#blocks", 300, 96), "drawing": ("#arena", 120, 120),
+         "plot": ("#plot_place", 300, 60), "trace": ("#trace_place", 300, 60)}  # fmt: skip
 # What can be pressed or chosen, and whether another such thing or the edge of the screen cuts it.
 LOOK = """() => {
   const found = [];
@@ -47,149 +51,73 @@ LOOK = """() => {
   if (document.documentElement.scrollWidth > innerWidth) found.push('the page is too wide');
   return found;
 }"""
+# The same where the page is scrolled: it is at most too long, and STOP lies over it.
+SCROLLED = LOOK.replace(
+    ".map((e) => [e.id || e.tagName, e.getBoundingClientRect()])",
+    ".filter((e) => e.id !== 'stop').map((e) => [e.id || e.tagName, e.getBoundingClientRect()])"
+    ".map(([id, box]) => [id, new DOMRect(box.x, box.y + scrollY, box.width, box.height)])",
+).replace(
+    "box.bottom > innerHeight", "box.bottom > document.documentElement.scrollHeight"
+).replace(
+    "return found;",
+    "const stop = document.querySelector('#stop').getBoundingClientRect();"
+    "const top = document.elementFromPoint(stop.x + stop.width / 2, stop.y + stop.height / 2);"
+    "if (top?.id !== 'stop') found.push('no STOP in reach');"
+    "return found;",
+)  # fmt: skip
+# The same in the window of programs.
+DIALOG = """() => {
+  const found = [];
+  const boxes = [...document.querySelectorAll('#programs button, #programs h2, #programs textarea, #programs canvas')]
+    .filter((e) => e.checkVisibility()).map((e) => [e.id || e.textContent, e.getBoundingClientRect(), e]);
+  const own = document.querySelector('#programs').getBoundingClientRect();
+  for (const [name, box, e] of boxes) {
+    if (box.left < own.left || box.right > own.right) found.push(name + ' is cut off');
+    if (e.tagName === 'BUTTON' && (box.height < 44 || box.width < 44)) found.push(name + ' is too small');
+    if (e.tagName === 'BUTTON' && e.scrollWidth > e.clientWidth + 1) found.push(name + ' does not fit');
+  }
+  const header = document.querySelectorAll('#programs header *');
+  for (const [k, one] of boxes.entries()) for (const other of boxes.slice(k + 1)) {
+    const a = one[1], b = other[1];
+    if ([...header].includes(one[2]) !== [...header].includes(other[2])) continue;  // it stays on top
+    if (Math.min(a.right, b.right) - Math.max(a.left, b.left) > 1
+        && Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top) > 1) found.push(one[0] + ' is over ' + other[0]);
+  }
+  const stop = document.querySelector('#programs_stop').getBoundingClientRect();
+  if (stop.top < 0 || stop.bottom > innerHeight) found.push('no stop in reach');
+  return found;
+}"""
 THEMES = {"dark": "[data-dark]", "light": ":not([data-dark])"}
 
 
-@pytest.mark.sampled("language", "screen", keep=2)
+@pytest.mark.sampled("language", "theme")
 @pytest.mark.parametrize("language", ["en", "es"])
-@pytest.mark.parametrize("screen", SCREENS, ids=lambda screen: "x".join(map(str, screen)))
-def test_everything_is_seen(page: Page, screen: tuple[int, int], language: str) -> None:
-    page.set_viewport_size({"width": screen[0], "height": screen[1]})
-    speak(page, language)
-    for text in ("SI|F(2, 80)", WRONG):
-        write(page, text)
-        assert page.evaluate(LOOK) == []
-        turn(page, "robot")
-        for side in ("lessons", "virtual"):
-            page.click(f"#side_{side}")
-            page.locator("#lesson_check:enabled").wait_for(state="attached")
-            assert page.evaluate(LOOK) == [], side
-        turn(page, "program")
-    page.locator("#messages li").last.scroll_into_view_if_needed()
-    assert page.locator("#editor").bounding_box()["height"] >= 96  # type: ignore[index]
-
-
-@pytest.mark.sampled("theme")
 @pytest.mark.parametrize("theme", ["light", "dark"])
-def test_axe_finds_nothing_in_any_state(page: Page, theme: Literal["light", "dark"]) -> None:
-    """From the start to a world that is drawn; the class has its own (`test_page_class.py`)."""
-
-    def seen(state: str) -> None:
-        assert axe(page) == [], state
-
-    def in_phase(phase: str) -> None:
-        page.locator(f"html[data-phase={phase}]").wait_for(state="attached")
-
-    def text(program: str) -> None:
-        page.click("#view_text")
-        write(page, program)
-
-    page.set_viewport_size({"width": 1366, "height": 768})
-    page.emulate_media(color_scheme=theme)
-    page.click("#home")
-    seen("start")
-    page.click("#start_write")
-    page.click("#view_blocks")
-    shown(page)
-    page.locator(".blocklyToolboxCategory").first.click()
-    seen("blocks, and what can be added")
-    page.click("#words")
-    seen("blocks with words")
-    page.click("#words")
-    text(WRONG)
-    seen("wrong text")
-    page.click("#view_blocks")
-    seen("blocks that wait")
-    text("F(3, 80);SHOW(1 / 0)")
-    page.select_option("#world", "maze")
-    page.select_option("#speed", "0.1")
-    page.click("#run")
-    in_phase("running")
-    seen("running")
-    page.click("#pause")
-    in_phase("paused")
-    seen("paused")
-    page.select_option("#speed", "20")
-    page.click("#pause")
-    in_phase("ended")
-    seen("a fault, and a score")
-    for view in ("plot", "trace", "arena"):
-        page.click(f"#seen_{view}")
-        seen(view)
-    for part in (0, 1, 2, -1):
-        if part == 0:
-            page.click("#world_draw")
-        count = page.locator("#world_part option").count()
-        page.select_option("#world_part", index=part % count)
-        seen(f"part {part} of a world that is drawn")
-    page.click("#world_done")
-    page.select_option("#world", "obstacles")
-    page.click("#side_lessons")
-    page.locator("#lesson_check:enabled").wait_for(state="attached")
-    seen("a lesson")
-    page.locator("#lesson_steps button").last.click()
-    page.click("#lesson_hint summary")
-    page.click("#lesson_check")
-    page.locator("#lesson_said[data-verdict]").wait_for()
-    seen("a lesson that is checked")
-    page.click("#lesson_hint summary")
-    page.click("#side_real")
-    page.click("#link_teacher summary")
-    seen("a real robot, and the teacher's part")
-    page.click("#link_teacher summary")
-    page.click("#side_virtual")
-    page.click("#my_programs")
-    seen("programs")
-    page.click("#programs_close")
-    page.emulate_media(color_scheme="null")
-
-
-@pytest.mark.sampled("theme", "size")
-@pytest.mark.parametrize("theme", ["light", "dark"])
-@pytest.mark.parametrize("size", SCREENS[2:], ids=["upright", "lying"])
-def test_axe_finds_nothing_on_a_phone(
-    page: Page, size: tuple[int, int], theme: Literal["light", "dark"]
+def test_each_screen_is_seen_whole_and_axe_finds_nothing(
+    page: Page, theme: Literal["light", "dark"], language: str
 ) -> None:
+    """At each size; of the class there is `test_page_class.py`."""
     page.emulate_media(color_scheme=theme)
-    page.set_viewport_size({"width": size[0], "height": size[1]})
-    for state in _screens(page):
-        page.evaluate(studio.SETTLED)
-        assert axe(page) == [], state
+    speak(page, language)
+    page.click("#home")
+    for screen, size in each_screen(page, (*SCREENS, *LOW)):
+        assert page.locator("#stop").is_visible()
+        if screen not in ("teacher", "programs"):  # one is scrolled, one in front of all
+            assert page.evaluate(LOOK if size in SCREENS else SCROLLED) == [], (screen, size)
+        if size in SCREENS and screen in LEAST:
+            where, width, height = LEAST[screen]
+            box = page.locator(where).bounding_box()
+            assert box is not None and box["width"] >= width and box["height"] >= height, screen
+        if screen == "programs":
+            for how in ("link", "line"):
+                page.click(f"#share_{how}")
+                page.locator("#programs:not([data-shared=asked])").wait_for()
+                assert page.evaluate(DIALOG) == [], (how, size)
+        if size in AXED:
+            assert axe(page) == [], (screen, size)
     page.click("#programs_close")
-    page.click("#link_teacher summary")
-    page.click("#side_virtual")
     page.emulate_media(color_scheme="null")
     page.set_viewport_size({"width": 1366, "height": 768})
-
-
-def _screens(page: Page) -> Iterator[str]:
-    """Go from screen to screen of a phone; yield what is seen."""
-    page.click("#home")
-    yield "start"
-    page.click("#start_write")
-    page.click("#view_blocks")
-    shown(page)
-    yield "blocks"
-    page.click("#view_text")
-    write(page, WRONG)
-    yield "wrong text"
-    page.click("#sheet")
-    yield "messages that are put away"
-    write(page, "SI|F(1, 80)")
-    turn(page, "robot")
-    yield "robot"
-    page.click("#world_draw")
-    page.select_option("#world_part", index=1)
-    yield "a world that is drawn"
-    page.click("#world_done")
-    page.click("#side_lessons")
-    page.locator("#lesson_check:enabled").wait_for(state="attached")
-    yield "a lesson"
-    page.click("#side_real")
-    page.click("#link_teacher summary")
-    yield "a real robot, and the teacher's part"
-    page.click("#my_programs")
-    yield "programs"
 
 
 def test_it_is_dark_where_the_system_is_or_somebody_wants_it(page: Page) -> None:

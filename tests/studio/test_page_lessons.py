@@ -313,9 +313,3 @@ def test_lessons_that_do_not_come_are_told_and_come_later(pages: Pages) -> None:
     pages.wrong.clear()
     page.click("#side_lessons")
     page.locator("#lesson_next:enabled").wait_for()
-
-
-def test_axe_finds_nothing(page: Page) -> None:
-    choose(page, 6)
-    assert check(page, "SI|S")[0] == "failed"
-    assert axe(page) == []

@@ -125,3 +125,40 @@ def test_a_phone_begins_with_the_pictures(pages: Pages) -> None:
     page.tap("#home")
     page.tap("#start_write")
     assert half(page) == "program" and page.locator("#writing").is_visible()
+
+
+def test_a_phone_is_turned_while_a_program_runs(phone: Page) -> None:
+    write(phone, "SI|LOOP(FOREVER); F(1, 80); END_LOOP")
+    phone.click("#run")
+    phone.locator("html[data-phase=running]").wait_for(state="attached")
+    for width, height in ((844, 390), (390, 844), (844, 390)):
+        phone.set_viewport_size({"width": width, "height": height})
+        ratio = phone.evaluate(
+            "() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame("
+            "() => { const a = document.querySelector('#arena');"
+            " resolve(a.width / a.clientWidth / (a.height / a.clientHeight)); })))"
+        )
+        assert ratio == pytest.approx(1, abs=0.02)  # what is drawn is not stretched
+        assert phone.evaluate("document.documentElement.dataset.phase") == "running"
+    phone.evaluate("scrollTo(0, document.documentElement.scrollHeight)")
+    phone.click("#stop")
+    phone.locator("html[data-phase=ended]").wait_for(state="attached")
+
+
+def test_what_is_chosen_and_runs_is_seen_without_backgrounds(page: Page) -> None:
+    write(page, "SI|LOOP(FOREVER); F(1, 80); END_LOOP")
+    page.emulate_media(forced_colors="active")
+    width = "(e) => parseFloat(getComputedStyle(e).outlineWidth)"
+    style = "(e) => getComputedStyle(e).outlineStyle"
+    for name, is_chosen in (("#view_text", True), ("#view_blocks", False), ("#side_virtual", True)):
+        assert (page.locator(name).evaluate(style) == "solid") == is_chosen, name
+        assert not is_chosen or page.locator(name).evaluate(width) >= 3
+    page.click("#run")
+    assert page.locator(".cm-running").first.evaluate(style) == "solid"
+    page.click("#view_blocks")
+    shown(page)
+    page.locator("#blocks .running").wait_for()
+    assert axe(page) == []
+    page.keyboard.press("Escape")
+    page.emulate_media(forced_colors="none")
+    page.click("#view_text")

@@ -13,8 +13,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from tests.studio.programs import programs
-from tests.studio.test_page_for_everyone import SCREENS
-from tests.support.studio import Pages, asked, axe, checked, image, noted, speak, write
+from tests.support.studio import Pages, asked, checked, image, noted, write
 from tiniscript import check, compile
 from tiniscript.studio.building import MODULES
 from tiniscript.studio.checking import line
@@ -439,45 +438,6 @@ def test_a_stop_is_in_reach(page: Page) -> None:
         page.locator("html[data-phase=ended]").wait_for(state="attached")
         if page.locator("#programs").is_visible():
             page.click("#programs_close")
-
-
-LOOK = """() => {
-  const found = [];
-  const boxes = [...document.querySelectorAll('#programs button, #programs h2, #programs textarea, #programs canvas')]
-    .filter((e) => e.checkVisibility()).map((e) => [e.id || e.textContent, e.getBoundingClientRect(), e]);
-  const own = document.querySelector('#programs').getBoundingClientRect();
-  for (const [name, box, e] of boxes) {
-    if (box.left < own.left || box.right > own.right) found.push(name + ' is cut off');
-    if (e.tagName === 'BUTTON' && (box.height < 44 || box.width < 44)) found.push(name + ' is too small');
-    if (e.tagName === 'BUTTON' && e.scrollWidth > e.clientWidth + 1) found.push(name + ' does not fit');
-  }
-  const header = document.querySelectorAll('#programs header *');
-  for (const [k, one] of boxes.entries()) for (const other of boxes.slice(k + 1)) {
-    const a = one[1], b = other[1];
-    if ([...header].includes(one[2]) !== [...header].includes(other[2])) continue;  // it stays on top
-    if (Math.min(a.right, b.right) - Math.max(a.left, b.left) > 1
-        && Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top) > 1) found.push(one[0] + ' is over ' + other[0]);
-  }
-  const stop = document.querySelector('#programs_stop').getBoundingClientRect();
-  if (stop.top < 0 || stop.bottom > innerHeight) found.push('no stop in reach');
-  return found;
-}"""
-
-
-@pytest.mark.sampled("language", "screen", keep=2)
-@pytest.mark.parametrize("language", ["en", "es"])
-@pytest.mark.parametrize("screen", SCREENS)
-def test_everything_is_seen(page: Page, screen: tuple[int, int], language: str) -> None:
-    page.set_viewport_size({"width": screen[0], "height": screen[1]})
-    speak(page, language)
-    write(page, TEXT)
-    for how in ("link", "line"):
-        share(page, how)
-        assert page.evaluate(LOOK) == []
-        assert screen != SCREENS[0] or axe(page) == []
-    page.locator("#versions li").last.scroll_into_view_if_needed()
-    assert page.evaluate(LOOK) == []
-    page.keyboard.press("Escape")
 
 
 def test_the_keyboard_alone_is_enough(page: Page) -> None:

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
 from typing import TYPE_CHECKING
 
+from tests.studio.screens import each_screen
 from tests.support import studio
 from tests.support.pseudo import pseudo
-from tests.support.studio import SETTLED, Pages, shown, turn, write
+from tests.support.studio import SETTLED, Pages
 
 if TYPE_CHECKING:
-    from playwright.sync_api import Browser, Page, Route
+    from playwright.sync_api import Browser, Route
 
 SIZES = ((1366, 768), (390, 844), (844, 390))
 WINDOWS = (("#class_come", "#big_code"), ("#wall .see >> nth=0", "#big_pupil"),
@@ -27,7 +27,7 @@ CUT = """() => {
   for (let node = walker.nextNode(); node; node = walker.nextNode()) {
     const holder = node.parentElement;
     if (!node.textContent.trim() || !holder.checkVisibility()) continue;
-    if (holder.closest('option, .blocklySvg') || holder.getBoundingClientRect().width < 2) continue;
+    if (holder.closest('option, svg') || holder.getBoundingClientRect().width < 2) continue;
     range.selectNodeContents(node);
     const text = range.getBoundingClientRect();
     const said = holder.closest('[id]')?.id + ': ' + node.textContent.trim().slice(0, 40);
@@ -50,7 +50,7 @@ CUT = """() => {
 PLAIN = """() => {
   const is_plain = (text) => /[a-z]{3}/.test(text) && !/[äéîñöûóÄÉÎÑÖÛ]/.test(text);
   const found = [];
-  const others = 'option, .cm-editor, .blocklySvg, #values, #messages, #lesson, #lesson_findings,' +
+  const others = 'option, .cm-editor, svg, #values, #messages, #lesson, #lesson_findings,' +
     '#lesson_step, #versions';
   for (const each of document.querySelectorAll('body *')) {
     if (each.closest(others) || !each.checkVisibility()) continue;
@@ -61,79 +61,6 @@ PLAIN = """() => {
   }
   return found;
 }"""
-
-
-# Screens beside the program; on a phone of their own.
-BESIDE = {"driven", "task", "plot", "drawing", "lesson", "real", "teacher", "programs"}
-WRONG = "SI|F(-2, 80)\nB(1, 80)\n"
-
-
-def _start(page: Page) -> None:
-    page.locator("#pictures").wait_for()
-
-
-def _blocks(page: Page) -> None:
-    page.click("#start_write")
-    shown(page)
-
-
-def _wrong(page: Page) -> None:
-    turn(page, "program")
-    page.click("#view_text")
-    write(page, WRONG)
-
-
-def _driven(page: Page) -> None:
-    write(page, "SI|F(1, 80)\nSHOW(DISTANCE)\n")
-    turn(page, "robot")
-    page.click("#side_virtual")
-    page.click("#run")
-    page.locator("html[data-phase=ended]").wait_for(state="attached")
-
-
-def _task(page: Page) -> None:
-    write(page, "SI|F(1.8, 80)\nR(0.3, 60)\nF(1, 80)\n")
-    page.select_option("#world", "maze")
-    page.click("#run")
-    page.locator("html[data-phase=ended]").wait_for(state="attached")
-
-
-def _plot(page: Page) -> None:
-    page.click("#seen_plot")
-
-
-def _drawing(page: Page) -> None:
-    page.click("#seen_arena")
-    page.click("#world_draw")
-    page.select_option("#world_part", index=1)
-
-
-def _lesson(page: Page) -> None:
-    page.click("#world_done")
-    page.click("#side_lessons")
-    page.locator("#lesson_steps button").last.click()
-    page.locator("#lesson_check:enabled").click()
-    page.locator("#lesson_said[data-verdict]").wait_for()
-
-
-def _real(page: Page) -> None:
-    page.click("#side_real")
-
-
-def _teacher(page: Page) -> None:
-    page.click("#link_teacher summary")
-
-
-def _programs(page: Page) -> None:
-    page.click("#my_programs")
-    page.locator("#programs:not([data-shared=asked])").wait_for()
-
-
-SCREENS: dict[str, Callable[[Page], None]] = {
-    "start": _start, "blocks": _blocks, "wrong": _wrong, "driven": _driven, "task": _task,
-    "plot": _plot, "drawing": _drawing, "lesson": _lesson, "real": _real, "teacher": _teacher,
-    "programs": _programs,
-}  # fmt: skip
 
 
 def _answer(route: Route) -> None:
@@ -156,17 +83,10 @@ def test_longer_texts_fit_into_every_screen(browser: Browser) -> None:
         page.evaluate("document.querySelector('#start_title').lastChild.remove()")
         cut = {}
         plain = {}
-        for screen, see in SCREENS.items():
-            page.set_viewport_size({"width": 1366, "height": 768})
-            page.evaluate(SETTLED)
-            see(page)
-            page.evaluate(SETTLED)
-            plain[screen] = page.evaluate(PLAIN)
-            for width, height in SIZES:
-                page.set_viewport_size({"width": width, "height": height})
-                turn(page, "robot" if screen in BESIDE else "program")
-                page.evaluate(SETTLED)
-                cut[screen, width] = page.evaluate(CUT)
+        for screen, size in each_screen(page, SIZES):
+            cut[screen, size] = page.evaluate(CUT)
+            if size == SIZES[0]:
+                plain[screen] = page.evaluate(PLAIN)
         assert {where: each for where, each in cut.items() if each} == {}
         assert {screen: each for screen, each in plain.items() if each} == {}
         pages.close()

@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.studio.test_page_for_everyone import LOOK, SCREENS
 from tests.studio.test_page_programs import GOOD
-from tests.support.studio import Pages, axe, checked, image, noted, shown, speak, write
+from tests.support.studio import Pages, checked, image, noted, shown, write
 from tiniscript import compile
 
 if TYPE_CHECKING:
@@ -204,22 +203,6 @@ def test_hostile_programs_are_only_text(start: Page) -> None:
     start.click("#home")
     assert start.locator("#start_programs strong").inner_text() == "<img src=x onerror=alert(1)>"
     assert start.locator("img").count() == 0
-
-
-@pytest.mark.sampled("language")
-@pytest.mark.parametrize("language", ["en", "es"])
-def test_everything_is_seen(again: Page, language: str) -> None:
-    speak(again, language)
-    for k in range(2):
-        for width, height in SCREENS:
-            again.set_viewport_size({"width": width, "height": height})
-            assert again.evaluate(LOOK) == [], (width, k)
-            assert again.locator("#stop").is_visible()
-        assert axe(again) == []
-        again.click("#start_write")
-        again.click("#view_text")
-        write(again, "SI|F(1, 80)\n" * 9)
-        again.click("#home")
 
 
 def test_the_keyboard_alone_is_enough(start: Page) -> None:

@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.studio.test_page_for_everyone import LOOK, SCREENS
 from tests.studio.test_page_robot import in_phase
-from tests.support.studio import Pages, axe, checked, speak, turn, write
+from tests.support.studio import Pages, checked, speak, turn, write
 from tiniscript import compile
 from tiniscript.studio.simulation import Simulation
 from tiniscript.virtual import worlds
@@ -409,23 +408,3 @@ def test_a_damaged_world_does_no_harm(page: Page) -> None:
     page.click("#run")
     page.locator("html[data-phase=running]").wait_for(state="attached")
     page.keyboard.press("Escape")
-
-
-@pytest.mark.sampled("language")
-@pytest.mark.parametrize("language", ["en", "es"])
-def test_everything_is_seen(floor: Page, language: str) -> None:
-    speak(floor, language)
-    floor.locator("#world_add_lines").focus()
-    floor.keyboard.press("Enter")
-    line = floor.locator("#world_part option:checked").inner_text()
-    parts = floor.locator("#world_part option")
-    for screen in SCREENS:
-        floor.set_viewport_size({"width": screen[0], "height": screen[1]})
-        turn(floor, "robot")
-        for name in (*parts.all_inner_texts()[:3], line):
-            floor.select_option("#world_part", label=name)
-            assert floor.evaluate(LOOK) == [], (screen, name)
-        arena = floor.locator("#arena").bounding_box()
-        assert arena is not None and min(arena["width"], arena["height"]) >= 120
-    floor.set_viewport_size({"width": 1366, "height": 768})
-    assert axe(floor) == []

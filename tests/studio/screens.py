@@ -1,0 +1,136 @@
+"""A walk through all screens of the studio's page, but those of a class."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from typing import TYPE_CHECKING
+
+from tests.support.studio import SETTLED, shown, turn, write
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Page
+
+Size = tuple[int, int]  # in pixels
+# Beside the program; on a phone a screen of their own.
+BESIDE = {"running", "paused", "driven", "trace", "plot", "floor", "drawing", "box", "flag",
+          "lesson", "checked", "real", "teacher", "programs"}  # fmt: skip
+WRONG = "SI|" + "F(-2, 80);\nIF(DISTANCE < 10;\n" * 6
+See = Callable[["Page"], None]
+
+
+def _in_phase(page: Page, phase: str) -> None:
+    page.locator(f"html[data-phase={phase}]").wait_for(state="attached")
+
+
+def _write(page: Page, text: str) -> None:
+    turn(page, "program")
+    page.click("#view_text")
+    write(page, text)
+
+
+def _blocks(page: Page) -> None:
+    page.click("#start_write")
+    page.click("#view_blocks")
+    shown(page)
+
+
+def _wrong(page: Page) -> None:
+    page.click("#words")
+    _write(page, WRONG)
+
+
+def _running(page: Page) -> None:
+    _write(page, "F(3, 80);SHOW(1 / 0)")
+    page.select_option("#world", "maze")
+    page.select_option("#speed", "0.1")
+    page.click("#run")
+    _in_phase(page, "running")
+
+
+def _paused(page: Page) -> None:
+    page.click("#pause")
+    _in_phase(page, "paused")
+
+
+def _driven(page: Page) -> None:
+    """A fault, and a score."""
+    page.select_option("#speed", "20")
+    page.click("#pause")
+    _in_phase(page, "ended")
+
+
+def _part(index: int) -> See:
+    def see(page: Page) -> None:
+        count = page.locator("#world_part option").count()
+        page.select_option("#world_part", index=index % count)
+
+    return see
+
+
+def _floor(page: Page) -> None:
+    page.click("#seen_arena")
+    page.click("#world_draw")
+    _part(0)(page)
+
+
+def _lesson(page: Page) -> None:
+    page.click("#world_done")
+    page.select_option("#world", "obstacles")
+    page.click("#side_lessons")
+    page.locator("#lesson_check:enabled").wait_for(state="attached")
+
+
+def _checked(page: Page) -> None:
+    page.locator("#lesson_steps button").last.click()
+    page.click("#lesson_hint summary")
+    page.click("#lesson_check")
+    page.locator("#lesson_said[data-verdict]").wait_for()
+
+
+def _real(page: Page) -> None:
+    page.click("#lesson_hint summary")
+    page.click("#side_real")
+
+
+def _programs(page: Page) -> None:
+    page.click("#link_teacher summary")
+    page.click("#side_virtual")
+    page.click("#my_programs")
+    page.locator("#programs:not([data-shared=asked])").wait_for()
+
+
+SCREENS: dict[str, See] = {
+    "start": lambda page: page.locator("#pictures").wait_for(),
+    "blocks": _blocks,
+    "toolbox": lambda page: page.locator(".blocklyToolboxCategory").first.click(),
+    "words": lambda page: page.click("#words"),
+    "wrong": _wrong,
+    "waiting blocks": lambda page: page.click("#view_blocks"),
+    "running": _running,
+    "paused": _paused,
+    "driven": _driven,
+    "trace": lambda page: page.click("#seen_trace"),
+    "plot": lambda page: page.click("#seen_plot"),
+    "floor": _floor,
+    "drawing": _part(1),
+    "box": _part(2),
+    "flag": _part(-1),
+    "lesson": _lesson,
+    "checked": _checked,
+    "real": _real,
+    "teacher": lambda page: page.click("#link_teacher summary"),
+    "programs": _programs,
+}
+
+
+def each_screen(page: Page, sizes: Iterable[Size]) -> Iterator[tuple[str, Size]]:
+    """See each screen of a page, from its start on, at each size; yield which one it is."""
+    for screen, see in SCREENS.items():
+        page.set_viewport_size({"width": 1366, "height": 768})
+        page.evaluate(SETTLED)
+        see(page)
+        for width, height in sizes:
+            page.set_viewport_size({"width": width, "height": height})
+            turn(page, "robot" if screen in BESIDE else "program")
+            page.evaluate(SETTLED)
+            yield screen, (width, height)
