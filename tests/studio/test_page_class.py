@@ -1,15 +1,10 @@
-"""A class in browsers: pupils at an address of the network, a teacher, and robots behind ptys.
-
-`python -m tests.studio.test_page_class 30` lets thirty pupils share four robots.
-"""
+"""A class in browsers: pupils at an address of the network, a teacher, and robots behind ptys."""
 
 from __future__ import annotations
 
 import json
-import sys
 import time
 from collections.abc import Iterator
-from contextlib import ExitStack
 from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -484,72 +479,3 @@ def ends(pages: Pages, taught: Class, erases: bool) -> None:
         write(ana, "F(1, 44)")  # what is written now is kept nowhere
         assert "tiniscript." not in ana.evaluate(kept)
     assert taught.room.has_ended
-
-
-def has_run(page: Page, shows: str) -> bool:
-    """Return whether a pupil has run the program and left the robot, in a turn that has come."""
-    if page.get_attribute("html", "data-robot") != "connected":
-        if page.get_attribute("html", "data-link") == "turn_over":
-            asks(page)  # it came, and this thread was elsewhere
-            page.evaluate("delete document.documentElement.dataset.link")
-        return False
-    page.click("#link_upload")
-    page.locator("html:is([data-link=say_done], [data-link=turn_over])").wait_for(state="attached")
-    if page.locator("#link_shown").inner_text() != shows:
-        return False
-    page.click("#link_leave")
-    return True
-
-
-def lesson(pupils: int, robots_count: int, turn_s: int = 30) -> None:
-    """Let pupils in contexts of their own ask for a robot, run a program, and give it back."""
-    with ExitStack() as stack:
-        found = [stack.enter_context(PtyRobot(KIT)) for _ in range(robots_count)]
-        taught = stack.enter_context(studio.taught([each.port for each in found], turn_s))
-        taught.room.teach({"do": "class_places", "places": pupils})
-        playwright = stack.enter_context(studio.driver())
-        browser = stack.enter_context(studio.browser(playwright))
-        pages = Pages(browser, taught.server.address, patience_s=300)
-        began_s = time.monotonic()
-        rooms = []
-        for k in range(pupils):
-            page = joined(pages, taught, f"Pupil {k + 1}")
-            write(page, f"F(0.2, {40 + k % 40});\nSHOW({k + 1})")
-            rooms.append(page)
-        print(f"{pupils} pupils are in the class after {time.monotonic() - began_s:.0f} s")
-        began_s = time.monotonic()
-        for page in rooms:
-            asks(page)
-        waiting = dict(enumerate(rooms))
-        shown: dict[int, float] = {}
-        while waiting:
-            for k, page in list(waiting.items()):
-                if has_run(page, str(k + 1)):
-                    shown[k] = time.monotonic() - began_s
-                    del waiting[k]
-                    print(f"{len(waiting)} pupils wait", flush=True)
-            rooms[0].wait_for_timeout(50)
-        slowest_s = max(shown.values())
-        print(f"each has run a program on one of {robots_count} robots after {slowest_s:.0f} s")
-        drivers = rooms[:robots_count]
-        for page in drivers:
-            asks(page)
-            linked(page, "Connected: ")
-            write(page, FOREVER)
-            page.click("#link_upload")
-            linked(page, "The robot has it")
-        # A page that a busy computer does not hear within 500 ms has stopped its robot already.
-        teacher = teaches(pages, taught)
-        moving = sum(robot.moves for robot in found)
-        began_s = time.monotonic()
-        teacher.click("#stop")
-        for robot in found:
-            robot.until(lambda robot=robot: not robot.moves, "it stands")  # type: ignore[misc]
-        took_ms = 1000 * (time.monotonic() - began_s)
-        print(f"the teacher's STOP stops {moving} of {robots_count} in {took_ms:.0f} ms")
-        assert not pages.wrong, pages.wrong[:3]
-
-
-if __name__ == "__main__":
-    count = int(sys.argv[1]) if len(sys.argv) > 1 else 30
-    lesson(count, min(4, count))

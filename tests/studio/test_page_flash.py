@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from threading import Thread
 from typing import TYPE_CHECKING
 
 import pytest
@@ -13,7 +12,7 @@ from tests.flash.test_flash import new_board, to_hex
 from tests.machines.bootloaders import bootloader
 from tests.machines.uno import needed
 from tests.studio.test_page_link import said
-from tests.support import studio_serial
+from tests.support import studio, studio_serial
 from tests.support.platformio import firmware, shared
 from tests.support.studio import enter
 from tests.support.waiting import until
@@ -40,9 +39,8 @@ def test_a_new_board_becomes_a_robot(
         serving.FIRMWARE: serving.File(json.dumps(rows).encode(), "application/json"),
         file.name: serving.File(file.read_bytes(), "text/plain"),
     }
-    server = serving.Server(page, 0)
-    Thread(target=server.serve_forever, args=(0.02,), daemon=True).start()
     with (
+        studio.served(page=page) as server,
         new_board(bootloader("uno")) as uno,
         studio_serial.context(playwright, tmp_path, uno.pty, server.address) as context,
     ):
@@ -71,5 +69,3 @@ def test_a_new_board_becomes_a_robot(
         assert found.locator("#flash_cancel, #flash_progress").filter(visible=True).count() == 0
         found.click("#flash_write")
         said(found, "Connected: ")
-    server.shutdown()
-    server.server_close()

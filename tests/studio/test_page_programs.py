@@ -400,19 +400,6 @@ def test_damaged_programs_do_no_harm(page: Page, kept: str) -> None:
     page.evaluate("localStorage.removeItem('tiniscript.versions')")
 
 
-def test_hostile_names_are_only_text(page: Page) -> None:
-    hostile = "<img src=x onerror=alert(1)>"
-    version = {"text": hostile, "robot": "tinibot", "name": hostile, "at_ms": 1}
-    page.evaluate(
-        "kept => localStorage.setItem('tiniscript.versions', kept)", json.dumps([version])
-    )
-    page.click("#my_programs")
-    assert f"{hostile}: {hostile}" in opened(page)
-    assert page.locator("img").count() == 0
-    page.keyboard.press("Escape")
-    page.evaluate("localStorage.removeItem('tiniscript.versions')")
-
-
 def test_a_browser_that_keeps_nothing_says_so(page: Page) -> None:
     write(page, "SI|F(1, 11)")
     page.evaluate(

@@ -9,7 +9,7 @@ import pytest
 from PIL import Image
 
 from tests.studio.test_page_robot import in_phase
-from tests.support.studio import SETTLED, Pages, checked, shown, speak, write
+from tests.support.studio import Pages, checked, shown, write
 from tests.support.waiting import until
 
 if TYPE_CHECKING:
@@ -219,32 +219,3 @@ def test_a_crash_is_said_with_where_it_was(listening: Page) -> None:
     first, *_, last = listening.evaluate("window.told")
     assert first.startswith("It bumps into something. The robot is ")
     assert last.startswith("Collisions: 1. The robot is ") and last.endswith("to the right.")
-
-
-PLACES = """() => ['arena', 'controls', 'told', 'values'].map((id) =>
-  Object.values(document.getElementById(id).getBoundingClientRect().toJSON()).map(Math.round))"""
-
-
-@pytest.mark.parametrize("language", ["en", "es"])
-@pytest.mark.parametrize("size", [(1366, 768), (1024, 600)])
-def test_nothing_jumps_when_a_run_begins(
-    listening: Page, size: tuple[int, int], language: str
-) -> None:
-    """Nor when it ends; the sentence of a task is the longest that is said above the values."""
-    page = listening
-    page.set_viewport_size({"width": size[0], "height": size[1]})
-    write(page, "SI|F(0.5, 80)")
-    page.select_option("#speed", "1")
-    speak(page, language)
-    checked(page)
-    for world in ("obstacles", "maze"):
-        page.select_option("#world", world)
-        page.evaluate(SETTLED)
-        before = page.evaluate(PLACES)
-        page.click("#run")
-        in_phase(page, "running")
-        assert page.evaluate(PLACES) == before
-        in_phase(page, "ended")
-        assert page.evaluate(PLACES) == before
-    speak(page, "en")
-    checked(page)

@@ -12,12 +12,13 @@ from collections.abc import Iterator
 from contextlib import ExitStack
 from http.client import HTTPConnection, HTTPResponse
 from pathlib import Path
-from threading import Thread, active_count
+from threading import active_count
 
 import pytest
 
 from tests.support.command import Tsc
 from tests.support.crowd import HALF_A_REQUEST, crowd
+from tests.support.page_server import serves
 from tests.support.studio import Class
 from tests.support.waiting import HANGS_S
 from tiniscript.studio import serving
@@ -38,12 +39,8 @@ def taught(tmp_path: Path) -> Iterator[Class]:
         server = serving.Server(page, 0, room.teach, room, HOST)
     except OSError:
         pytest.skip("this system has no 127.0.0.2")
-    thread = Thread(target=server.serve_forever, args=(0.02,), daemon=True)
-    thread.start()
-    yield Class(server, room)
-    server.shutdown()
-    server.server_close()
-    thread.join()
+    with serves(server):
+        yield Class(server, room)
 
 
 def own(taught: Class) -> str:

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from contextlib import ExitStack
 from http.client import HTTPConnection
 from pathlib import Path
-from threading import Thread, active_count
+from threading import active_count
 from typing import Any
 
 import pytest
@@ -157,15 +157,9 @@ def test_the_token_is_another_one_each_time_and_in_no_file(
 
 def test_a_server_without_robots_has_none(tmp_path: Path) -> None:
     (tmp_path / "index.html").write_text("<!doctype html>")
-    made = serving.Server(serving.files(tmp_path), 0)
-    thread = Thread(target=made.serve_forever, args=(0.02,), daemon=True)
-    thread.start()
-    try:
+    with serves(serving.Server(serving.files(tmp_path), 0)) as made:
         assert post(made)[0] == 404
         assert made.entrance() == made.address
-    finally:
-        made.shutdown()
-        made.server_close()
 
 
 def test_a_thousand_connections_keep_nobody_out(server: serving.Server) -> None:

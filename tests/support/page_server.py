@@ -13,7 +13,9 @@ from tiniscript.studio import serving
 def serves(made: serving.Server) -> Iterator[serving.Server]:
     thread = Thread(target=made.serve_forever, args=(0.02,), daemon=True)
     thread.start()
-    yield made
-    made.shutdown()
-    made.server_close()
-    thread.join()
+    try:
+        yield made
+    finally:
+        made.shutdown()
+        made.server_close()
+        thread.join()

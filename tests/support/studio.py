@@ -13,12 +13,12 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from importlib.util import find_spec
 from pathlib import Path
-from threading import Thread
 from typing import TYPE_CHECKING, Any, NamedTuple
 from weakref import WeakKeyDictionary
 
 from tests.support.command import FOREVER
 from tests.support.needs import need
+from tests.support.page_server import serves
 from tiniscript import run
 from tiniscript.studio import serving
 from tiniscript.studio.attending import LEFT_S
@@ -81,31 +81,19 @@ def headless() -> str | None:
 @contextmanager
 def served(port: int = 0, page: dict[str, serving.File] | None = None) -> Iterator[serving.Server]:
     """The built page, or another one, at an address of this computer."""
-    server = serving.Server(page or serving.files(), port)
-    thread = Thread(target=server.serve_forever, args=(0.02,), daemon=True)
-    thread.start()
-    try:
+    with serves(serving.Server(page or serving.files(), port)) as server:
         yield server
-    finally:
-        server.shutdown()
-        server.server_close()
-        thread.join()
 
 
 @contextmanager
 def hosted() -> Iterator[serving.Server]:
     """The same with the robots of this computer, as `tsc studio` has them."""
     hosting = Hosting()
-    server = serving.Server(serving.files(), 0, hosting.answer)
-    thread = Thread(target=server.serve_forever, args=(0.02,), daemon=True)
-    thread.start()
     try:
-        yield server
+        with serves(serving.Server(serving.files(), 0, hosting.answer)) as server:
+            yield server
     finally:
-        server.shutdown()
         hosting.close()
-        server.server_close()
-        thread.join()
 
 
 def room_address() -> str:
@@ -130,16 +118,11 @@ def taught(ports: list[str], turn_s: int = 180) -> Iterator[Class]:
     hosting = Hosting()
     room = Classroom(hosting, ports, turn_s)
     page = serving.for_class(serving.files())
-    server = serving.Server(page, 0, room.teach, room, room_address())
-    thread = Thread(target=server.serve_forever, args=(0.02,), daemon=True)
-    thread.start()
     try:
-        yield Class(server, room)
+        with serves(serving.Server(page, 0, room.teach, room, room_address())) as server:
+            yield Class(server, room)
     finally:
-        server.shutdown()
         hosting.close()
-        server.server_close()
-        thread.join()
 
 
 @contextmanager
