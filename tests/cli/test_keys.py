@@ -13,7 +13,7 @@ import pytest
 from tests.support.command import Tsc
 from tiniscript.base import files
 from tiniscript.link.authority import RobotKey
-from tiniscript.link.keys import MOST, BadKeys, KeyFile, read, written
+from tiniscript.link.keys import MOST, BadKeys, KeyFile, written
 from tiniscript.link.messages import KEY_OWNER, KEY_TEACHER
 
 ONE = RobotKey(0x12345678, KEY_OWNER, bytes(range(16)), "TINI")
@@ -23,23 +23,6 @@ SECRET = ONE.key.hex()
 @pytest.fixture
 def own(tmp_path: Path) -> KeyFile:
     return KeyFile(tmp_path / "settings" / "keys.json")
-
-
-def test_a_claim_that_the_robot_takes_replaces_the_key_before(own: KeyFile) -> None:
-    assert own.all() == []
-    first = own.made(1, KEY_OWNER, "A")
-    assert first and first.is_pending and own.of_robot(1) == [first]
-    own.settle(first)
-    second = own.made(1, KEY_OWNER, "A")
-    assert second and second.key != first.key
-    assert len(own.of_robot(1)) == 2  # until it is known which one the robot has
-    own.settle(second)
-    assert own.of_robot(1) == [second._replace(is_pending=False)]
-    teacher = own.made(1, KEY_TEACHER, "A")
-    assert teacher
-    own.drop(teacher)
-    assert len(own.of_robot(1)) == 1
-    assert own.of_robot(2) == []
 
 
 def test_only_this_person_reads_the_file(own: KeyFile) -> None:
@@ -71,16 +54,6 @@ def test_a_file_that_is_none_is_left_as_it_is(own: KeyFile, data: bytes) -> None
     own.settle(ONE)
     own.drop(ONE)
     assert own.path.read_bytes() == data
-
-
-def test_keys_go_to_another_computer(own: KeyFile, tmp_path: Path) -> None:
-    teacher = ONE._replace(which=KEY_TEACHER, key=b"\1" * 16)
-    other = KeyFile(tmp_path / "other" / "keys.json")
-    assert other.add(read(written([ONE, teacher]))) == 2
-    assert other.add([ONE]) == 0
-    newer = ONE._replace(key=b"\2" * 16)
-    assert other.add([newer]) == 1
-    assert sorted(other.all()) == sorted([newer, teacher])
 
 
 def test_what_is_known_of_a_robots_seals_outlives_a_list_that_does_not_say_it(own: KeyFile) -> None:
@@ -146,19 +119,6 @@ def test_a_command_that_stands_still_keeps_no_other_one_waiting_for_ever(
         own.drop(ONE)
         assert own.all() == [ONE]
     assert own.made(1, KEY_OWNER, "A")
-
-
-def test_a_refused_key_is_kept_as_a_stale_one(own: KeyFile, tsc: Tsc) -> None:
-    own.add([ONE, ONE._replace(id=7)])
-    own.refuse(ONE)
-    assert [key.is_stale for key in own.of_robot(ONE.id)] == [True]
-    assert [key.is_stale for key in own.of_robot(7)] == [False]
-    own.settle(own.of_robot(ONE.id)[0])
-    assert own.of_robot(ONE.id) == [ONE]
-    KeyFile().add([ONE])
-    KeyFile().refuse(ONE)
-    assert "refused by the robot" in tsc("keys").out
-    assert [row["is_stale"] for row in json.loads(tsc("keys", "--json").out)] == [True]
 
 
 def test_no_text_of_a_key_has_its_bytes() -> None:

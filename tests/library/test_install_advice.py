@@ -35,13 +35,6 @@ def clone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return folder
 
 
-def test_a_clone_is_installed_with_its_extra(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    folder = clone(tmp_path, monkeypatch)
-    assert install_advice.command("virtual") == f'pip install -e "{folder}[virtual]"'
-
-
 def test_a_package_names_what_pypi_has() -> None:
     assert install_advice.command("virtual") == 'pip install "pillow>=10.1" "wasmtime>=20"'
     assert install_advice.command("firmware") == 'pip install "platformio>=6.1"'

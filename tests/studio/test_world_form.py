@@ -40,13 +40,6 @@ def test_the_text_of_a_form_is_the_same_world() -> None:
         assert is_near(tuple(again), tuple(world)), world.name
 
 
-@pytest.mark.parametrize("labels", [{}, {"es": "Mi piso"}, {"en": "Mine"}])
-def test_a_world_keeps_the_names_that_it_has(labels: dict[str, str]) -> None:
-    made = form_of(worlds.load("free")) | {"name": "own", "labels": labels}
-    rows = [f'{each} = "{name}"' for each, name in labels.items()]
-    assert "\n".join(["[labels]", *rows]) in toml_of(made)
-
-
 def test_random_forms_keep_every_number() -> None:
     chance = Random(16)
 
