@@ -30,7 +30,7 @@ sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
 from tools.builds.studio import CannotBuild, found_tools
 from tools.release import facts
-from tools.release.packing import difference, sha256
+from tools.release.packing import sha256
 from tools.release.parts import PARTS, CannotMake, Clone, chosen
 
 SUMS = "SHA256SUMS"
@@ -88,7 +88,8 @@ def rehearse(folder: Path, parts: Sequence[str], options: argparse.Namespace) ->
         except CannotMake as why:
             return _fail(str(why))
         files = [file for each in made[0].values() for file in each]
-        failed = [what for file in files if (what := difference(file, clones[1].parts / file.name))]
+        again = clones[1].parts
+        failed = [each.name for each in files if sha256(each) != sha256(again / each.name)]
         shutil.copytree(clones[0].parts, folder, dirs_exist_ok=True)
     sums = "".join(f"{sha256(folder / file.name)}  {file.name}\n" for file in files)
     (folder / SUMS).write_text(sums, encoding="utf-8", newline="\n")

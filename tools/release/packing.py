@@ -1,4 +1,4 @@
-"""Archives whose bytes depend on what is in them alone, and how two of them differ.
+"""Archives whose bytes depend on what is in them alone.
 
 Knows files and folders. Names are sorted, every time is the release's, owners are nobody.
 """
@@ -6,13 +6,11 @@ Knows files and folders. Names are sorted, every time is the release's, owners a
 from __future__ import annotations
 
 import hashlib
-import tarfile
 import time
 import zipfile
 from pathlib import Path
 
 OLDEST = 315_532_800  # 1980-01-01: a ZIP file knows no earlier time
-SHOWN = 5  # names of what differs
 
 
 def pack(folder: Path, target: Path, epoch: int) -> Path:
@@ -35,29 +33,3 @@ def pack(folder: Path, target: Path, epoch: int) -> Path:
 
 def sha256(path: Path) -> str:
     return hashlib.sha256(path.read_bytes()).hexdigest()
-
-
-def difference(one: Path, other: Path) -> str:
-    """Return what two files of the same name do not have in common, or nothing."""
-    if one.read_bytes() == other.read_bytes():
-        return ""
-    ours, theirs = _members(one), _members(other)
-    names = sorted(name for name in ours.keys() | theirs.keys()
-                   if ours.get(name) != theirs.get(name))  # fmt: skip
-    if not names:
-        return f"{one.name}: times, rights or the order of its files"
-    more = f" and {len(names) - SHOWN} more" if len(names) > SHOWN else ""
-    return f"{one.name}: {', '.join(names[:SHOWN])}{more}"
-
-
-def _members(path: Path) -> dict[str, str]:
-    """Return a digest of each file of an archive; a file that is none has no members."""
-    found: dict[str, bytes] = {}
-    if zipfile.is_zipfile(path):
-        with zipfile.ZipFile(path) as packed:
-            found = {name: packed.read(name) for name in packed.namelist()}
-    elif tarfile.is_tarfile(path):
-        with tarfile.open(path) as tar:
-            rows = ((row.name, tar.extractfile(row)) for row in tar.getmembers())
-            found = {name: content.read() for name, content in rows if content is not None}
-    return {name: hashlib.sha256(data).hexdigest() for name, data in found.items()}
