@@ -10,29 +10,31 @@ import pytest
 from tests.pupils.corpus import check
 from tiniscript.base.source import Edit, Source, Span
 from tiniscript.diagnostics import codes
-from tiniscript.diagnostics.codes import Diagnostic
+from tiniscript.diagnostics.codes import Diagnostic, Repair
 from tiniscript.diagnostics.fixing import fixed
 from tiniscript.recovery.findings import moved_back
-from tiniscript.recovery.setup import Setup, setup
+from tiniscript.recovery.setup import setup
 
 
 @pytest.mark.parametrize(
-    ("wrong", "found"),
+    ("wrong", "edits", "is_sure"),
     [
-        ("SI:F(2, 80)", Setup(0, 0, 3, "SI", None, True)),
-        ("\n sb F(2, 80)", Setup(1, 1, 3, "SB", None, True)),
-        ("SI(F(2, 80)); S", Setup(0, 0, 3, "SI", 11, True)),
-        ("SIF(2, 80)", Setup(0, 0, 2, "SI", None, True)),
-        ("S1F(2, 80)", Setup(0, 0, 2, "SI", None, False)),
-        ("SI 1 F(2, 80)", Setup(0, 0, 4, "SI", None, False)),
-        ("SI| F(2, 80)", None),
-        ("SI DISTANCE < 10", None),
-        ("si hay una pared para", None),
-        ("", None),
+        ("SI:F(2, 80)", (Edit(Span(0, 3), "SI|"),), True),
+        ("\n sb F(2, 80)", (Edit(Span(2, 4), "SB|"),), True),
+        ("SI(F(2, 80)); S", (Edit(Span(0, 3), "SI|"), Edit(Span(11, 12), "")), True),
+        ("SIF(2, 80)", (Edit(Span(0, 2), "SI|"),), True),
+        ("S1F(2, 80)", (Edit(Span(0, 2), "SI|"),), False),
+        ("SI 1 F(2, 80)", (Edit(Span(0, 4), "SI|"),), False),
     ],
 )
-def test_how_a_program_begins(wrong: str, found: Setup | None) -> None:
-    assert setup(wrong.split("\n")) == found
+def test_how_a_program_begins(wrong: str, edits: tuple[Edit, ...], is_sure: bool) -> None:
+    found = setup(wrong)
+    assert found is not None and found.repair == Repair(edits, is_sure)
+
+
+@pytest.mark.parametrize("text", ["SI| F(2, 80)", "SI DISTANCE < 10", "si hay una pared para", ""])
+def test_how_no_program_begins(text: str) -> None:
+    assert setup(text) is None
 
 
 def test_a_finding_has_typed_values_and_edits() -> None:

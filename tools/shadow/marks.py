@@ -69,7 +69,7 @@ def answer(entry: Entry) -> Answer:
     """
     found = meant(entry.program)
     if Recovery(entry.program, KIT, mistakes).sure() is None:
-        if advised(entry.program, KIT) or setup(entry.program.split("\n")):
+        if advised(entry.program, KIT) or setup(entry.program):
             text = fixed(entry.program, check).text
             found = Candidate(text, True, False, ()) if text != entry.program else None
         elif found and entry.mended is None:

@@ -19,7 +19,7 @@ from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import CODES, Diagnostic
 from tiniscript.recovery import advice_rows, lines, rewrites
 from tiniscript.recovery.behind import ASKING, Above, Behind, Placed, placed, whole
-from tiniscript.recovery.concepts import ENDED, Lexeme, Names, lexemes, made, plain, said_of
+from tiniscript.recovery.concepts import ENDED, NEAR, Lexeme, Names, lexemes, made, plain, said_of
 from tiniscript.recovery.orders import Order, made_up, orders, question_in, written
 from tiniscript.recovery.slots import filled
 from tiniscript.recovery.worded import sensors_of, worded
@@ -183,22 +183,22 @@ def _is_read_surely(part: Behind) -> bool:
 
 
 def _advice(row: Row, gaps: _Gaps) -> Advice:
-    part = gaps.part
+    part, named = gaps.part, row.pattern.of_labels.groupindex
     values = {"before": shortened(part.call), "words": shortened(part.words), "fix": ""}
     values |= {name: template.format_map(gaps) for name, template in row.values}
     if row.code == codes.IN_WORDS.number:
-        values |= _worded(gaps, is_not="f" in row.pattern.of_labels.groupindex)
+        values |= _worded(gaps, is_not="f" in named)
     place = part.place if values["fix"] else None
     if place and not part.is_right() and values["fix"].startswith(part.call):
         place = part.behind  # of a call with a mistake of its own
         values["fix"] = values["fix"][len(part.call) :].lstrip(" ")
-    start, end = gaps.span("s") if "s" in row.pattern.of_labels.groupindex else (1, len(part.spans))
+    start, end = gaps.span("s") if "s" in named else (1, len(part.spans))
     span = Span(part.spans[start].start, part.spans[end - 1].end)
     code = CODES[row.code]
     if code is codes.OTHER_LANGUAGE and values["found"].upper() == values["right"]:
         code, values = codes.MISSING_OPEN, {**values, "word": values["right"], "words": ""}
     found = Diagnostic(code, span, values, place)
-    if "h" in row.pattern.of_labels.groupindex:
+    if "h" in named:
         place = Span(part.spans[gaps.span("h")[0]].start, part.behind.end)
         question = values.get("asked") or values.get("question") or "TRUE"
         return Advice(found, Edit(place, f"{gaps['head']}({question})"))
@@ -211,9 +211,9 @@ def _advice(row: Row, gaps: _Gaps) -> Advice:
 def _said_call(tokens: Sequence[Lexeme], names: Names) -> tuple[int, str] | None:
     """Return the call that words before a question say, and how many they are."""
     for k, token in enumerate(tokens):
-        meant = [each.concept for each in names.meanings(token.text)] or [token.text]
-        if k and meant[0] in ("IF", "WHILE"):
-            call = filled(tokens[:k], names, has_until=meant[0] == "WHILE", is_order=True)
+        meant = names.meant(token.text, NEAR)
+        if k and meant in ("IF", "WHILE"):
+            call = filled(tokens[:k], names, has_until=meant == "WHILE", is_order=True)
             return (k, laid_out(call.tokens)) if call and not call.times else None
     return None
 

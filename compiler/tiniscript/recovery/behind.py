@@ -60,7 +60,7 @@ def placed(line: str, start: int) -> list[Placed]:
 def whole(tokens: Sequence[Lexeme], names: Names) -> int:
     """Return how many tokens begin a line as a whole instruction."""
     first, sign = tokens[0].text, tokens[1].text if len(tokens) > 1 else ";"
-    word = first if first in WORDS else _meant_call(tokens[0], names)
+    word = _first_word(tokens[0], names)
     if first in names.defs or (sign == "=" and first not in WORDS):
         found = lines.right(tokens, names)
         size = found.at if isinstance(found, Failure) else 0
@@ -80,10 +80,12 @@ def whole(tokens: Sequence[Lexeme], names: Names) -> int:
     return end
 
 
-def _meant_call(token: Lexeme, names: Names) -> str:
-    """Return which instruction with values a word of another language means, "" for none."""
-    meant = names.meanings(token.text) if token.kind is WORD else ()
-    return next((each.concept for each in meant if names.takes(each.concept)), "")
+def _first_word(token: Lexeme, names: Names) -> str:
+    """Return the word of the language, or else what an instruction of another one means, or ""."""
+    if token.text in WORDS:
+        return token.text
+    meant = (each.concept for each in names.meanings(token.text))
+    return next(filter(names.takes, meant), "")
 
 
 @lru_cache(32)
@@ -130,8 +132,7 @@ class Behind:
         self.words = text[slice(*self.behind)]
         self.spans = [Span(begin, end), *(each.span for each in row)]
         self.text = text
-        first = self.tokens[0].text if call else ""
-        meant = first if first in WORDS or not call else _meant_call(self.tokens[0], names)
+        meant = _first_word(self.tokens[0], names) if call else ""
         known = WORDS.get(meant)
         self.is_arm = known is not None and known.role in ("block", "arm", "end")
         self.own = ENDED.get(meant, meant)
@@ -145,9 +146,8 @@ class Behind:
         if not self.tokens:
             return isinstance(lines.right(self.row, self.names), Failure)
         has_dots = self.is_later and all(each.text in DOTS for each in self.row)
-        has_number = any(each.kind is NUMBER for each in self.row)
-        has_word = any(each.kind is WORD for each in self.row)
-        return has_word or (self.is_right() and (has_number or has_dots or self.words == "()"))
+        has_words = any(each.kind in (WORD, NUMBER) for each in self.row)
+        return has_words or has_dots or self.words == "()"
 
     def is_right(self) -> bool:
         """Whether the instruction is, without the words behind it."""
@@ -162,7 +162,7 @@ class Behind:
         is_timed = own in (*MOVES, "W")
         if self.tokens:
             is_order = known is not None and not self.is_arm and known.role != "start"
-            labels = {
+            labels: dict[str, object] = {
                 own: True,
                 "@any": True,
                 "@cmd": is_order,
@@ -181,10 +181,10 @@ class Behind:
             labels = {
                 "@none": True,
                 "@after": self.is_later,
-                "@last": self.is_later and bool(is_end),
+                "@last": self.is_later and is_end,
                 "@unbegun": not _BEGUN.match(self.text),
             }
-        return f"\x01|{'|'.join(label for label, is_so in labels.items() if is_so)}|\x02"
+        return "|".join(("\x01", *(label for label, is_so in labels.items() if is_so), "\x02"))
 
     def _label(self, k: int) -> str:
         token = self.row[k]
@@ -202,10 +202,9 @@ class Behind:
             found += ["@percent"] if any(_is_percent(each.text) for each in self.row) else []
         unit_of = said_of(text, "unit")
         found += ["@in_s"] if unit_of and unit_of[0] == "s" else []
-        if token.kind is WORD:
-            is_other = text not in WORDS and self.means(text) == OTHER_WAY.get(self.own)
-            found += ["@other"] if is_other else []
-            found += ["@paced"] if self._is_paced(k) else []
+        is_other = text not in WORDS and self.means(text) == OTHER_WAY.get(self.own)
+        found += ["@other"] if is_other else []
+        found += ["@paced"] if self._is_paced(k) else []
         found += ["@told"] if self.tokens and self._is_told(k) else []
         concept = concept_of(text) if token.kind is WORD and not self.names.is_name(text) else None
         is_of_kit = concept is None or concept in WORDS or self.names.has(concept)

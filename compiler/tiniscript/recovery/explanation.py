@@ -8,6 +8,7 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Sequence
+from dataclasses import dataclass, field
 from difflib import SequenceMatcher
 from itertools import accumulate, groupby, pairwise, takewhile
 from typing import NamedTuple
@@ -43,6 +44,7 @@ _SIGNS = ("BEEP", "SHOW", "S", "STOP")
 LONGEST_BLOCK = 160  # characters of one that a message shows
 
 
+@dataclass
 class Explanation:
     """What is told of a line: code and values. `is_sure`: nothing that it changes is a guess.
 
@@ -62,17 +64,15 @@ class Explanation:
     the changes in which blocks begin that it ends.
     """
 
-    def __init__(
-        self, code: str, place: Span, values: dict[str, str], edit: Edit, first: int
-    ) -> None:
-        self.code = code
-        self.place = self.span = place
-        self.values = values
-        self.edits = [edit]
-        self.first = first
-        self.last = (first, 1)
-        self.opened: set[int] = set()
-        self.is_sure = True
+    code: str
+    place: Span
+    span: Span
+    values: dict[str, str]
+    edits: list[Edit]
+    first: int
+    last: tuple[int, int]
+    opened: set[int] = field(default_factory=set)
+    is_sure: bool = True
 
 
 def explained(program: str, found: Candidate) -> list[Explanation]:
@@ -80,13 +80,13 @@ def explained(program: str, found: Candidate) -> list[Explanation]:
     return _Teller(program, found).told()
 
 
+@dataclass
 class _Block:
     """A block that is open: what is told of its beginning, which is in change `first`."""
 
-    def __init__(self, word: str, first: int) -> None:
-        self.word = word
-        self.first = first
-        self.told: Explanation | None = None
+    word: str
+    first: int
+    told: Explanation | None = None
 
 
 def _parts(tokens: Sequence[Lexeme]) -> list[list[Lexeme]]:
@@ -115,8 +115,6 @@ class _Teller:
         self.program = program
         self.found = found
         self.changes = found.changes
-        self.is_whole = found.is_whole
-        self.line_end = "\r\n" if "\r" in program else "\n"
         self.lines = program.split("\n")
         self.starts = [0, *accumulate(len(line) + 1 for line in self.lines)]
         self.steps = {
@@ -134,12 +132,11 @@ class _Teller:
 
     def complete(self, told: Explanation) -> None:
         if told.code != _UNENDED:
-            is_shown = self.is_whole and told.last > (told.first, 1)
+            is_shown = self.found.is_whole and told.last > (told.first, 1)
             told.values["whole"] = self.whole(told.first, told.last) if is_shown else ""
         start, end = self.words(told.edits[0].span)
         while start < end and self.program[start] in "\r\n":
             start += 1
-        start -= self.program[max(0, start - 1) : start + 1] == "\r\n"
         told.span = Span(start, end)
         told.is_sure = self.is_sure(told)
 
@@ -189,22 +186,21 @@ class _Teller:
             part = _Change(place, edit, self.steps.get(k, []), before, after)
             code, step = _code(part)
             is_brace = code == _BRACES and before[0].text in BRACES
-            told = None
             is_arm = bool(after) and after[0].text in _ARMS
-            if code in (_OF_ARM if is_arm else _OF_BLOCK) and (closed or is_brace or is_arm):
-                told = self.added(closed or around, edit, (k, 1), after)
-            if told is None:
-                told = self.new(k, part, code, step)
+            is_more = code in (_OF_ARM if is_arm else _OF_BLOCK) and (closed or is_brace or is_arm)
+            told = self.added(closed or around, edit, (k, 1), after) if is_more else None
+            told = told or self.new(k, part, code, step)
             told.opened |= {closed.first} if closed else set()
             if code == codes.WRONG_END.number:
                 right = told.values["right"]
                 line = str(self.changes[closed.first if closed else k].first + 1)
                 told.values |= {"word": ENDED.get(right, ""), "line": line, "fix": right}
-            for block in (*self.open, *([around] if around and is_brace else [])):
+            for block in self.open:
                 if block.first == k or is_brace:
                     block.told = block.told or told
+        line_end = "\r\n" if "\r" in self.program else "\n"
         for count, end in enumerate(ends, 2):
-            self.end((k, count), change, end.strip(), self.line_end + end)
+            self.end((k, count), change, end.strip(), line_end + end)
 
     def parts(
         self, k: int, old: str, own: str, before: Sequence[Lexeme], after: Sequence[Lexeme]
@@ -266,7 +262,7 @@ class _Teller:
         return told
 
     def new(self, k: int, part: _Change, code: str, step: Step | None) -> Explanation:
-        _, edit, _, before, after = part
+        place, edit, _, before, after = part
         values = _slip(code, step, before, after)
         if code == codes.OTHER_NOTE.number:
             values["right"] = self.changes[k].text.strip()
@@ -293,7 +289,7 @@ class _Teller:
             )
             if values["right"] in names:
                 values["right"] = ", ".join(names)  # LIGHT_L and LIGHT_R
-        self.out.append(Explanation(code, part.place, values, edit, k))
+        self.out.append(Explanation(code, place, place, values, [edit], k, (k, 1)))
         return self.out[-1]
 
     def end(self, last: tuple[int, int], change: Change, end: str, text: str) -> None:
@@ -313,7 +309,7 @@ class _Teller:
         values = {"word": word, "right": end, "line": line, "last": behind_this, "whole": whole}
         if self.may_end_earlier(word, first, last[0]):
             values |= {"several": behind_this, "last": "", "whole": ""}
-        self.out.append(Explanation(_UNENDED, place, values, edit, first))
+        self.out.append(Explanation(_UNENDED, place, place, values, [edit], first, (first, 1)))
 
     def may_end_earlier(self, word: str, first: int, last: int) -> bool:
         """Whether nothing says that the last instruction of a block is in it.
@@ -471,7 +467,7 @@ def _with_when(tokens: Sequence[Lexeme]) -> list[Lexeme]:
 
 def _letter(found: str, right: str) -> str:
     """Return the letter that stands for a digit of a number, nothing where there is another."""
-    letters = {one for one, other in zip(found, right) if one != other and one.isalpha()}  # noqa: B905
+    letters = {each for each in found if each.isalpha()} - {*right}
     return letters.pop() if len(found) == len(right) and len(letters) == 1 else ""
 
 
@@ -496,9 +492,7 @@ def _word(
         if made_at and new[made_at - 1].kind is WORD:
             return new[made_at - 1].text
     words = [each.text for each in part if each.kind is WORD]
-    return next((each for each in words if each in WORDS and WORDS[each].usage), "") or (
-        words[0] if words else ""
-    )
+    return next((each for each in words if each in WORDS), "".join(words[:1]))
 
 
 def _with_unit(tokens: Sequence[Lexeme]) -> list[Lexeme]:

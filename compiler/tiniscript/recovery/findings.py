@@ -51,7 +51,7 @@ def findings(source: Source, found: Sequence[Diagnostic], check: Check, kit: Kit
 
     `found` is what the parser and the checker, which `check` asks, say of the text.
     """
-    said = _no_bar(source)
+    said = setup(source.text)
     if said and said.repair:
         after = check(applied(source.text, said.repair.edits))
         if is_better(after, found, said.repair.edits):
@@ -124,16 +124,9 @@ def _recovery(
     text = source.text.replace("\r\n", "\n")
     if "\r" in text:  # each line ends with one alone
         text = source.text.replace("\r", "\n")
-    said = {text: _mistakes(found)}
     if len(text) > LONGEST or "~" in text:
         return None
-
-    def mistakes(program: str) -> Sequence[str]:
-        if program not in said:
-            said[program] = _mistakes(check(program))
-        return said[program]
-
-    return Recovery(text, kit, mistakes)
+    return Recovery(text, kit, lambda new: _mistakes(found if new == text else check(new)))
 
 
 def _meant(
@@ -159,29 +152,21 @@ def _meant(
     if not (meant.is_whole or meant.is_applied or _keeps(text, meant.text, set(), is_sure=False)):
         return []  # a guess at a part gives up no number
     is_exact = is_sure or _keeps(text, meant.text, said_with, is_sure=True)
-    are_sure = (is_exact and _is_sure(each, meant) for each in told)
-    return [
-        _diagnostic(each, is_sure, meant.has_sure_blocks, found)
-        for each, is_sure in zip(told, are_sure, strict=True)
-    ]
-
-
-def _is_sure(told: Explanation, meant: Candidate) -> bool:
-    if told.code == rows.DO_CODE and not re.search(r"(?i)\bBREAK\b", meant.text):
-        return False  # nothing says how often
-    return meant.is_applied or (meant.is_whole and told.is_sure)
+    return [_diagnostic(each, meant, is_exact, found) for each in told]
 
 
 def _diagnostic(
-    told: Explanation, is_sure: bool, has_sure_blocks: bool, found: Sequence[Diagnostic]
+    told: Explanation, meant: Candidate, is_exact: bool, found: Sequence[Diagnostic]
 ) -> Diagnostic:
     code, values = CODES[told.code], told.values
-    if not has_sure_blocks and "FOREVER" not in values.get("fix", ""):
+    is_said = told.code != rows.DO_CODE or re.search(r"(?i)\bBREAK\b", meant.text)  # how often
+    is_sure = meant.is_applied or (meant.is_whole and told.is_sure)
+    repair = Repair(tuple(told.edits), is_exact and bool(is_said) and is_sure)
+    if not meant.has_sure_blocks and "FOREVER" not in values.get("fix", ""):
         values |= {"whole": ""}  # where it ends is a guess
     if code in _WITH_RIGHT and not values["right"]:
         has_bracket = "(" in values.get("before", "") + values["found"]
         code = codes.OTHER_CALL if has_bracket else codes.MISSING_OPEN
-    repair = Repair(tuple(told.edits), is_sure)
     was, right = values.get("found", ""), values.get("right", "")
     if code is codes.OTHER_LANGUAGE and nearest(was.upper(), [right]):
         code, values = codes.UNKNOWN_WORD, {**values, "found": was.upper(), "near": right}
@@ -267,22 +252,3 @@ def _before(span: Span, edits: Sequence[Edit]) -> Span:
         if span.end > begin:
             end = shift if span.end >= behind else span.end - each.span.end
     return Span(span.start - start, max(span.start - start, span.end - end))
-
-
-def _no_bar(source: Source) -> Diagnostic | None:
-    lines = source.text.split("\n")
-    begun = setup(lines)
-    if begun is None or "~" in lines[begun.line][begun.end :]:
-        return None  # what has a checksum is copied again
-    at = sum(len(line) + 1 for line in lines[: begun.line])
-    span = Span(at + begun.start, at + begun.end)
-    edits = [Edit(span, begun.right)]
-    fix = begun.right
-    if begun.close is not None:
-        close = Span(at + begun.close, at + begun.close + 1)
-        edits.append(Edit(close, ""))
-        fix += source[Span(span.end, close.start)]
-    sign = source[Span(span.start + len(begun.head), span.end)].strip()
-    said = {"found": begun.head, "letter" if sign.isalpha() else "sign": sign, "fix": fix}
-    repair = Repair(tuple(edits), begun.is_sure)
-    return Diagnostic(CODES[rows.SETUP_CODE], span, said, None, repair)

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
-from typing import NamedTuple
 
+from tiniscript.base.source import Edit, Span
 from tiniscript.base.words import WORDS
+from tiniscript.diagnostics.codes import CODES, Diagnostic, Repair
 from tiniscript.recovery import rows
 from tiniscript.recovery.concepts import plain
 from tiniscript.recovery.writing import without_note
@@ -14,42 +14,33 @@ from tiniscript.recovery.writing import without_note
 _INSIDE = re.compile(r"(?:[^()]|\([^()]*\))*(?=\))")  # brackets that are open before it
 
 
-class Setup(NamedTuple):
-    """Of line `line`, from 0, columns `start` to `end` are `head` and the bar.
-
-    `close` is the column of the `)` that belongs to a `(` in the bar's place, None without one.
-    `is_sure`: no digit stands in their place.
-    """
-
-    line: int
-    start: int
-    end: int
-    head: str
-    close: int | None
-    is_sure: bool
-
-    @property
-    def right(self) -> str:
-        return self.head + "|"
-
-
-def setup(lines: Sequence[str]) -> Setup | None:
-    """Return what stands for `SI|` at the beginning of a program, None where nothing does."""
-    k = next((k for k, line in enumerate(lines) if line.strip()), 0)
-    body = without_note(lines[k])[0] if lines else ""
+def setup(text: str) -> Diagnostic | None:
+    """Return what is told of the beginning of a program where something stands for its `SI|`."""
+    start = len(text) - len(text.lstrip())
+    line = text[start:].split("\n", 1)[0]
+    body = without_note(line)[0]
     match = re.match(rows.SETUP, body)
     if match is None or match["sep"].strip() == "|":
         return None
     head, sign, rest = plain(match["head"]), match["sep"].strip(), body[match.end() :]
     end = match.end("head") + len(match["sep"].rstrip())
     is_own = head in ("SI", "SB")
+    is_begun = is_own and (not rest or sign in rows.BARS)
     is_apart = match.end() > match.end("head")
-    if not ((is_own and (not rest or sign in rows.BARS)) or _begins(rest, sign, is_apart)):
+    is_sealed = "~" in line[end:]  # what has a checksum is copied again
+    if is_sealed or not (is_begun or _begins(rest, sign, is_apart)):
         return None
-    inside = _INSIDE.match(rest) if sign == "(" else None
-    close = match.end() + inside.end() if inside else None
+    head_meant = head if is_own else "SI"
+    fix = head_meant + "|"
+    span = Span(start, start + end)
+    edits = [Edit(span, fix)]
+    if sign == "(" and (inside := _INSIDE.match(rest)):
+        close = start + match.end() + inside.end()
+        edits.append(Edit(Span(close, close + 1), ""))
+        fix += text[span.end : close]
+    said = {"found": head_meant, "letter" if sign.isalpha() else "sign": sign, "fix": fix}
     is_sure = not any(each.isdecimal() for each in head + sign)
-    return Setup(k, match.start("head"), end, head if is_own else "SI", close, is_sure)
+    return Diagnostic(CODES[rows.SETUP_CODE], span, said, None, Repair(tuple(edits), is_sure))
 
 
 def _begins(rest: str, sign: str, is_apart: bool) -> bool:

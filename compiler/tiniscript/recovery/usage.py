@@ -13,14 +13,13 @@ from itertools import takewhile
 
 from tiniscript.base.kit import Kit
 from tiniscript.base.source import Edit, Source, Span
-from tiniscript.base.words import BLOCK_ENDS, QUESTION, WORDS, nearest, said_instead
+from tiniscript.base.words import ALIASES, BLOCK_ENDS, QUESTION, WORDS, nearest, said_instead
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic, Repair
 from tiniscript.recovery import lines
 from tiniscript.recovery.amounts import with_number
 from tiniscript.recovery.concepts import (
     CALLED,
-    ENDED,
     Lexeme,
     Names,
     concept_of,
@@ -37,17 +36,17 @@ from tiniscript.syntax.operators import COMPARISONS
 from tiniscript.syntax.outline import Failure
 
 _LAST_HEAD = re.compile(r"(?is)\b(IF|ELSEIF|WHILE|UNTIL)[ \t]*\((?!.*\b(?:IF|WHILE|UNTIL)\()")
-_DOTS = re.compile(r"(?:\.[ \t]*){2,}|\u2026")
-_BEFORE_DOTS = re.compile(r"(?i)\b((IF|LOOP|WHILE)[ \t]*\([^()\n]*\)|(DEF)[ \t]+(\w+))[\s;]*$")
-_BEHIND_DOTS = re.compile(r"(?i)[ \t]*\n?[ \t]*(END_?\w+|ELSE\w*)?")
+_DOTS = re.compile(
+    r"(?i)\b(?P<head>(?P<word>IF|LOOP|WHILE)[ \t]*\([^()\n]*\)|DEF[ \t]+(?P<name>\w+))[\s;]*"
+    r"(?P<here>(?:\.[ \t]*){2,}|\u2026)[ \t]*\n?[ \t]*(?P<end>END_?\w+|ELSE\w*)?"
+)
 _MANY_BELOW = 6  # instructions that an example takes into a block
 _ENDS = re.compile(rf"\b{words_of('end')}")
-_IF_BEFORE = re.compile(r"(?i)\b(IF[ \t]*\([^\n;]*\))[\s;]*$")
-_ENDIF_BEHIND = re.compile(r"(?i)[\s;]*END_?IF\b")
+_BREAK = re.compile(r"(?i)\b(IF[ \t]*\([^\n;]*\))[\s;]*(?P<here>BREAK)[\s;]*END_?IF\b")
 _IS_BLOCK = re.compile(rf"(?i)(?:{'|'.join((*BLOCK_ENDS, 'END', 'ELSE'))})\b|END_")
 _WORD = re.compile(r"\w")
 _MEMBER = re.compile(r"[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)+(?=[ \t]*\()")
-_SEPARATOR = re.compile(r"[;|{}]")
+_PIECE = re.compile(r"[^;|{}]*")
 _MOST_TIMES = 20  # that a DEF is done
 _LONGEST = 120  # characters of a sentence that a message shows
 _MANY = 30  # diagnostics of which more is said
@@ -110,30 +109,26 @@ class _Text:
 
     def piece(self, span: Span) -> Span:
         """Return the instruction around a place: between the separators of its line."""
-        text = self.source.text
         row, column = self.source.position(span.start)
-        start = span.start - column + 1
         body = without_note(self.source.line_text(row))[0]
-        signs = [match.start() + start for match in _SEPARATOR.finditer(body)]
-        begin = max((k + 1 for k in signs if k < span.start), default=start)
-        end = min((k for k in signs if k >= span.start), default=start + len(body))
-        begin += len(text[begin:end]) - len(text[begin:end].lstrip())
-        return Span(begin, begin + len(text[begin:end].rstrip()))
+        at = min(column - 1, len(body))
+        own = next(each for each in _PIECE.finditer(body) if each.end() >= at)
+        end = span.start - column + 1 + own.end()
+        begin = end - len(own[0].lstrip())
+        return Span(begin, begin + len(own[0].strip()))
 
     def with_name(self, found: Sequence[Diagnostic]) -> Sequence[Diagnostic]:
         """Return diagnostics in which the one DEF without a name has that of an unknown call."""
         nameless = [each for each in found if each.code is codes.DEF_NEEDS_NAME]
-        if len(nameless) != 1:
+        lone = (each.values["found"] for each in found if each.code is codes.UNKNOWN_WORD
+                and len(lexemes(self.source[self.piece(each.span)])) == 1)  # fmt: skip
+        if len(nameless) != 1 or not (name := next(lone, "")):
             return found
-        unknown = [each for each in found if each.code is codes.UNKNOWN_WORD
-                   and len(lexemes(self.source[self.piece(each.span)])) == 1]  # fmt: skip
-        if not unknown:
-            return found
-        name = unknown[0].values["found"]
         end = nameless[0].span.end
         repair = Repair((Edit(Span(end, end), f" {name}"),), False)
         said = nameless[0]._replace(values={"name": name}, repair=repair)
-        left = (it for it in found if it not in unknown or it.values["found"] != name)
+        called = (codes.UNKNOWN_WORD, name)
+        left = (each for each in found if (each.code, each.values.get("found")) != called)
         return [said if each is nameless[0] else each for each in left]
 
 
@@ -153,6 +148,11 @@ class _Usage:
         self.signs = [each.text for each in self.tokens]
         numbers = (each.text for each in self.tokens[1:] if each.kind is NUMBER)
         self.number = next(numbers, "1")
+
+    def around(self, pattern: re.Pattern[str]) -> re.Match[str] | None:
+        """Return the match of a pattern whose part `here` begins at the place."""
+        found = pattern.finditer(self.source.text)
+        return next((it for it in found if it.start("here") == self.found.span.start), None)
 
     def adds(self, **values: str) -> Diagnostic:
         """Return the diagnostic with values beside its own."""
@@ -298,8 +298,7 @@ class _Usage:
         if signs or len(lone) > 1 or self.names.defs or said_of(name, "taught"):
             often = f"LOOP({times});{name};END_LOOP" if int(times) > 1 else ""
             return self.says(codes.UNTAUGHT, name=name, often=often)
-        is_name = not said_of(name, *_NO_NAMES)
-        return self.adds(own=name if is_name else "")
+        return self.adds(own="" if said_of(name, *_NO_NAMES) else name)
 
     def until(self) -> Diagnostic:
         asked = re.match(r"\s*(\([^()\n]+\))", self.source.text[self.found.span.start + 5 :])
@@ -418,12 +417,11 @@ class _Usage:
 
     def break_outside(self) -> Diagnostic | None:
         """A BREAK in an IF that no loop is around: what follows may be what is left out."""
-        head = _IF_BEFORE.search(self.source.text, 0, self.found.span.start)
-        end = _ENDIF_BEHIND.match(self.behind_it)
-        rest = _row(self.behind_it[end.end() :]) if end else []
-        if head is None or not rest:
+        match = self.around(_BREAK)
+        rest = _row(self.source.text[match.end() :]) if match else []
+        if match is None or not rest:
             return None
-        return self.adds(skipped=";".join((head[1], "S", "ELSE", *rest, BLOCK_ENDS["IF"])))
+        return self.adds(skipped=";".join((match[1], "S", "ELSE", *rest, BLOCK_ENDS["IF"])))
 
     def unopened_part(self) -> Diagnostic | None:
         """An ELSE in a WHEN."""
@@ -455,20 +453,17 @@ class _Usage:
 
     def dots(self) -> Diagnostic | None:
         """Dots for what goes inside a block, as the poster has them."""
-        text = self.source.text
-        dots = _DOTS.match(text, self.found.span.start)
-        head = _BEFORE_DOTS.search(text, 0, self.found.span.start)
-        if dots is None or head is None:
+        match = self.around(_DOTS)
+        if match is None:
             return None
-        right = BLOCK_ENDS[(head[2] or head[3]).upper()]
-        behind = _BEHIND_DOTS.match(text, dots.end())
-        end = behind[1].upper() if behind and behind[1] else ""
-        values = {"head": head[1], "right": right, "out": "" if end else dots[0].strip()}
-        below = _row(text[behind.end() :]) if behind and end == right else []
-        calls = [each for each in below if each.upper() == (head[4] or "").upper()]
+        head, end = match["head"], (match["end"] or "").upper()
+        right = BLOCK_ENDS[(match["word"] or "DEF").upper()]
+        values = {"head": head, "right": right, "out": "" if end else match["here"].strip()}
+        below = _row(self.source.text[match.end() :]) if end == right else []
+        calls = [each for each in below if each.upper() == (match["name"] or "").upper()]
         if inside := [each for each in below if each not in calls]:
-            values["example"] = "; ".join((head[1], *inside, right, *calls))
-        return Diagnostic(codes.DOTS, Span(*dots.span()), values)
+            values["example"] = "; ".join((head, *inside, right, *calls))
+        return Diagnostic(codes.DOTS, Span(*match.span("here")), values)
 
     def name(self) -> Diagnostic:
         """A word of the language as a name: another one for it."""
@@ -548,8 +543,7 @@ def _angle(word: str) -> str:
 
 
 def _usage(word: str) -> str:
-    word = BLOCK_ENDS.get(ENDED.get(word, ""), word) if word in ENDED else word
-    known = WORDS.get(word)
+    known = WORDS.get(ALIASES.get(word, word))
     is_asking = known is not None and [each.name for each in known.arguments] == [QUESTION.name]
     return (known.example if is_asking else known.usage) if known else word
 
