@@ -11,7 +11,7 @@ from tests.machines.host_firmware import EMPTY, HostFirmware
 from tiniscript import compile_text, robots
 from tiniscript.bytecode.image import Image, unpack
 from tiniscript.link.connection import PendingRequest
-from tiniscript.link.messages import SAVED_SAVING, SAVED_STORED, STATUSES
+from tiniscript.link.messages import SAVED_STORED
 from tiniscript.link.requests import OK, Reply
 from tiniscript.link.session import Session
 
@@ -216,44 +216,6 @@ def test_a_fault_stops_and_is_remembered() -> None:
     assert values.fault_program == values.program
 
 
-def test_a_live_line_leaves_the_program_as_it_is() -> None:
-    robot, session = switched_on(), computer()
-    send(robot, session, "SB|B(0.2, 60)")
-    stored(robot, session)
-    request = session.live(image_of("SI|F(0.1, 80)").code)
-    assert robot.until(session, request) == OK
-    robot.talk(session, 300)
-    robot.push()
-    robot.wait(300)
-    drives = [line for line in happened(robot) if line != "FINISHED"]
-    assert drives == ["MOTORS 80 80", "MOTORS 0 0", "MOTORS -60 -60", "MOTORS 0 0"]
-
-
-def test_an_upload_that_breaks_off_leaves_the_stored_program() -> None:
-    robot, session = switched_on(), computer()
-    send(robot, session, "SI|F(0.2, 80)")
-    robot.talk(session, 400)
-    stored(robot, session)
-    robot.did.clear()
-    request = session.upload(image_of(LONG))
-    robot.talk(session, 3)
-    assert request.outcome is None
-    robot.wait(3000)
-    robot.push()
-    robot.wait(400)
-    assert happened(robot) == ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
-
-
-def test_nothing_is_finished_while_it_drives() -> None:
-    """Motors pull at the supply: what is saved counts only when they are off."""
-    robot, session = switched_on(), computer()
-    send(robot, session, "SI|F(3, 80)")
-    robot.talk(session, 2500)
-    assert robot.done(session, session.status()).saved == SAVED_SAVING
-    robot.talk(session, 800)
-    stored(robot, session)
-
-
 def test_a_main_loop_that_stood_still_is_a_fault() -> None:
     robot, session = switched_on(), computer()
     send(robot, session, AWAY)
@@ -276,16 +238,6 @@ def test_nobody_is_connected_any_more(is_detached: bool) -> None:
     assert happened(robot) == ["MOTORS 80 80"] + ["MOTORS 0 0"] * (not is_detached)
     causes = [event.cause for event in session.events() if event.name == "STOPPED"]
     assert causes == [4] * (not is_detached)
-
-
-def test_a_run_of_the_button_needs_nobody() -> None:
-    robot, session = switched_on(), computer()
-    send(robot, session, AWAY, runs=False)
-    robot.talk(session, 1500)
-    robot.push()
-    robot.step(flags=8)
-    robot.wait(1500)
-    assert happened(robot) == ["MOTORS 80 80"]
 
 
 @pytest.mark.parametrize("starts", [1, 256])
@@ -318,18 +270,6 @@ def test_a_press_that_lasts_stops_what_began_meanwhile() -> None:
     robot.step(flags=2)
     robot.wait(100)
     assert happened(robot) == ["MOTORS 80 80", "MOTORS 0 0"]
-
-
-def test_a_name_survives() -> None:
-    robot, session = switched_on(), computer()
-    assert robot.until(session, session.name("Ñandú".encode())) == OK
-    robot.talk(session, 1000)
-    again, other = switched_on(robot.memory()), computer(2)
-    assert again.until(other, other.hello()) == OK
-    assert other.robot is not None
-    assert other.robot.name == "Ñandú"
-    assert session.robot is not None
-    assert other.robot.id == session.robot.id
 
 
 @pytest.mark.parametrize("seed", range(6))
@@ -371,22 +311,6 @@ def test_an_upload_that_breaks_off_while_a_fault_is_noted_leaves_the_stored_prog
     robot.push()
     robot.wait(400)
     assert happened(robot)[-3:] == ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
-
-
-def test_the_button_in_the_middle_of_an_upload_starts_what_is_stored() -> None:
-    """What is on its way must not be written into the program that runs."""
-    robot, session = switched_on(), computer()
-    send(robot, session, "SB|F(0.5, 80)")
-    stored(robot, session)
-    robot.talk(session, 500)
-    request = session.upload(image_of(LONG))
-    robot.talk(session, 3)
-    assert request.outcome is None
-    robot.step(flags=1)
-    robot.step(flags=2)
-    assert robot.until(session, request) == STATUSES["NOT_BEGUN"]
-    robot.talk(session, 600)
-    assert happened(robot) == ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
 
 
 @pytest.mark.parametrize("is_live", [False, True])

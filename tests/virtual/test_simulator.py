@@ -46,13 +46,6 @@ def received(client: socket.socket, into: bytearray) -> bytearray:
     return into
 
 
-def test_a_client_is_answered(simulator: Simulator) -> None:
-    with visit(simulator) as client:
-        client.sendall(PING)
-        heard = bytearray()
-        until(simulator, lambda: b"\0" in received(client, heard))
-
-
 def test_a_flood_waits_outside(simulator: Simulator) -> None:
     """The line is as slow as it is; what has no room on it stays with whoever sends."""
     flood = b"\0\0" + bytes(range(1, 256)) * 400

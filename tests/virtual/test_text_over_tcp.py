@@ -6,8 +6,6 @@ import socket
 import time
 from pathlib import Path
 
-import pytest
-
 from tests.cli.test_virtual_command import FOREVER, robot, visitor
 from tests.robots.test_robots import TEXTS
 from tests.support.waiting import HANGS_S
@@ -57,22 +55,3 @@ def test_it_speaks_the_language_of_the_command_unless_its_profile_has_one(tmp_pa
         with robot("--listen", "0", "--lang", "es", *words) as found, visitor(found.port) as client:
             client.sendall(b"SI|F(0.1,50)\n")
             assert heard(client, answers[-1][3:]) == answers
-
-
-@pytest.mark.parametrize(
-    "first", [b"GET / HTTP/1.1\r\n", b"SI|F / HTTP/1.1\r\n", b"\x16\x03\x01\x02\x00"]
-)
-def test_what_a_browser_begins_with_is_refused_and_a_line_gets_through(first: bytes) -> None:
-    with robot("--listen", "0") as found:
-        with visitor(found.port) as page:
-            page.settimeout(HANGS_S)
-            page.sendall(first)
-            try:
-                page.sendall(b"\r\nSI|F(9,50)\r\n")
-                assert page.recv(1000) == b""
-            except ConnectionError:
-                pass  # it has hung up at once
-        with visitor(found.port) as client:
-            client.sendall(b"SI|F(0.1,50)\n")
-            assert heard(client, "DONE") == ["// OK", "// DONE"]
-        assert found.until("DONE")[1:3] == ["0 MOTORS 50 50", "100 MOTORS 0 0"]

@@ -301,34 +301,3 @@ def test_a_running_robot_goes_on_by_itself() -> None:
     robot._firmware.call = counted  # type: ignore[method-assign]
     robot.step(robot.now_ms + 40_000)
     assert asked == 1
-
-
-def test_every_stop_stops_and_is_confirmed() -> None:
-    """Also one after its button, while the computer goes on to send zeros."""
-    robot = robot_in()
-    talk = Talk(robot)
-    assert talk.upload("SB|F(60, 80)").status == 0
-    for _ in range(3):
-        robot.press()
-        robot.let_go()
-        talk.wait(300)
-        assert robot.is_running
-        for _ in range(2):
-            talk.session.events()
-            talk.session.stop(robot.now_ms)
-            talk.wait(300)
-            assert "STOPPED" in [event.name for event in talk.session.events()]
-            assert not robot.is_running
-
-
-def test_a_button_that_was_down_during_a_stop_starts_nothing() -> None:
-    robot = robot_in()
-    talk = Talk(robot)
-    assert talk.upload("SB|F(60, 80)").status == 0
-    robot.press()
-    talk.wait(50)
-    talk.session.stop(robot.now_ms)
-    talk.wait(300)
-    robot.let_go()
-    talk.wait(300)
-    assert not robot.is_running
