@@ -7,14 +7,17 @@ import itertools
 import os
 import signal
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from functools import lru_cache
 from pathlib import Path
 
 import pytest
 
 from tests.machines.host import USER
+from tests.machines.uno import needed
 from tests.support import order, sampling
 from tests.support.command import PROGRAM, Command, Tsc
+from tests.support.platformio import firmware, shared
 from tests.support.pty_robot import PtyRobot
 from tiniscript import robots
 
@@ -129,6 +132,23 @@ def program(tmp_path: Path) -> Path:
     path = tmp_path / "drive.ts"
     path.write_text(PROGRAM, encoding="utf-8")
     return path
+
+
+@pytest.fixture(scope="session")
+def sketches(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
+    """Return what builds the firmware of an environment of PlatformIO, once."""
+    needed()
+
+    @lru_cache
+    def sketch(environment: str) -> Path:
+        return firmware(environment, tmp_path_factory.mktemp("sketch"), shared(tmp_path_factory))
+
+    return sketch
+
+
+@pytest.fixture(scope="session")
+def sketch(sketches: Callable[[str], Path]) -> Path:
+    return sketches("uno")
 
 
 @pytest.fixture

@@ -12,11 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.firmware.test_uno_robot import (
-    BAUD,
-    NAMES,
-    sketch,  # noqa: F401
-)
+from tests.firmware.test_uno_robot import BAUD, NAMES
 from tests.support.command import Tsc
 from tests.support.pty_robot import PtyRobot, on
 from tests.support.simulated_port import simulated
@@ -73,7 +69,7 @@ def test_our_firmware_passes_all(pty_robot: PtyRobot, tsc: Tsc) -> None:
 
 @pytest.mark.sampled("group")
 @pytest.mark.parametrize("group", ["link: ", "images: ", "stops: ", "programs: moves"])
-def test_an_uno_passes(group: str, sketch: Path, tmp_path: Path, tsc: Tsc) -> None:  # noqa: F811
+def test_an_uno_passes(group: str, sketch: Path, tmp_path: Path, tsc: Tsc) -> None:
     with Uno(sketch, names=NAMES, eeprom=tmp_path / "eeprom", baud=BAUD, tells_sleep=False) as uno:
         uno.go()
         done = tsc("conform", "--port", uno.pty, "--only", group)

@@ -52,12 +52,6 @@ def test_a_stop_turns_actuators_off(holds: bool) -> None:
     assert all(abs(us - 1500) < 6 for _, us in pulses(board, GRIPPER)), "a pulse was cut"
 
 
-def test_at_its_own_end_a_program_leaves_them() -> None:
-    board = busy(grabber(), "SI|GRIPPER(90);LED(TRUE);W(0.1)").ran(START + 400)
-    assert board.pin(LED, START + 390) == "high"
-    assert pulses_from(board, START + 110) >= 10
-
-
 def test_what_was_turned_off_stays_off_until_a_program_sets_it() -> None:
     board = busy(grabber(), "SI|W(0.1);GRIPPER(90);LED(TRUE);W(5)")
     board.press(START + 150, START + 200)

@@ -2,19 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from functools import lru_cache
-from pathlib import Path
+from collections.abc import Callable
 from typing import TypeVar
 
 import pytest
 
 from tests.firmware.test_host_firmware import outcome
-from tests.firmware.test_uno_robot import FORWARD, MOTORS, OFF, computer, send, states, switched_on
+from tests.firmware.test_uno_robot import FORWARD, MOTORS, OFF, computer, send, states
 from tests.firmware.test_uno_trace import OFF_MS, Setting, check_pins, last_zero, program, seen
-from tests.machines.uno import needed
 from tests.support.casefile import ROOT, Case, read
-from tests.support.platformio import firmware, shared
 from tests.vm.test_tasks import STATES
 from tiniscript.link.messages import STATE_STOPPED
 from tiniscript.link.requests import OK
@@ -38,24 +34,6 @@ def without_readings() -> list[Case]:
     """Return the cases of tasks that a simulated board can follow to the millisecond."""
     found = [each for each in read(ROOT / "tests" / "cases" / "tasks.md") if "robot" in each.parts]
     return [each for each in found if not {"READ", "FAULT"} & set(each.parts["robot"].split())]
-
-
-@pytest.fixture(scope="session")
-def sketches(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
-    """Return what builds the firmware of a board, once."""
-    needed()
-
-    @lru_cache
-    def sketch(board: str) -> Path:
-        return firmware(board, tmp_path_factory.mktemp("sketch"), shared(tmp_path_factory))
-
-    return sketch
-
-
-@pytest.fixture
-def robot(board: str, sketches: Callable[[str], Path], tmp_path: Path) -> Iterator[Uno]:
-    with switched_on(sketches(board), tmp_path / "eeprom", board) as found:
-        yield found
 
 
 BOARDS = pytest.mark.parametrize("board", ["uno", "mega"])

@@ -132,41 +132,6 @@ def test_a_button_that_is_down_after_a_reset_starts_nothing() -> None:
     assert board.ran(300).moved() == []
 
 
-def test_a_spike_on_the_button_starts_nothing() -> None:
-    board = Board(robots.load("tinibot"), MOVES)
-    board.press(100, 101)
-    assert board.ran(300).moved() == []
-
-
-def test_the_press_that_stops_does_not_start() -> None:
-    board = started(robots.load("tinibot"), "SI|LOOP(FOREVER);F(1, 80);END_LOOP")
-    board.press(500, 600)
-    board.press(900, 1000)
-    board.ran(1100)
-    assert board.motors(499)[0] == "pwm 204"
-    for ms in (500.5, 599, 650, 899, 999, 1020):
-        assert board.motors(ms) == ("low",) * 6
-    assert board.motors(1032)[0] == "pwm 204"
-
-
-def test_a_press_just_after_the_start_stops_at_once() -> None:
-    board = started(robots.load("tinibot"), "SI|M(80, 80);W(5)")
-    board.press(START + 3, START + 100)
-    board.ran(START + 120)
-    assert board.motors(START + 2.9)[0] == "pwm 204"
-    assert board.motors(START + 3.5)[0] == "low"
-
-
-def test_a_release_that_does_not_last_starts_nothing() -> None:
-    """A spike while the button is down, and a finger that slips."""
-    board = Board(robots.load("tinibot"), MOVES)
-    board.level(100, robots.load("tinibot").board.start_button, False)
-    for ms, up_ms in ((200, 0.15), (229, 0.15), (300, 5), (340, 28)):
-        board.press(ms + up_ms, 2000)
-        board.level(ms, board.robot.board.start_button, True)
-    assert board.ran(500).moved() == []
-
-
 # -- servos that turn without end
 
 LATE_US = 6  # a pulse ends when no other interrupt is at work

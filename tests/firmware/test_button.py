@@ -8,13 +8,11 @@ from collections.abc import Iterable, Sequence
 
 import pytest
 
-from tests.firmware.test_uno_robot import AWAY, OFF, computer, memory, send, sketch, states, uno
+from tests.firmware.test_uno_robot import AWAY, OFF, computer, send, states
 from tests.machines.host import FLAGS, SOURCES, compiled
 from tests.machines.uno import needed
 from tests.support.casefile import ROOT
 from tools.uno import CYCLES_PER_MS, Uno
-
-__all__ = ("memory", "sketch", "uno")  # fixtures
 
 Told = list[tuple[int, str]]  # when in us, and P, H or R
 SPIKE_US = 150

@@ -396,20 +396,6 @@ def test_the_cause_of_a_reset(reset: int, said: int) -> None:
     assert robot.done(session, session.hello()).reset == said
 
 
-def test_a_lost_client_stops_the_robot() -> None:
-    robot = driving()
-    robot.wait(1500)
-    assert happened(robot)[0] == "MOTORS 0 0"
-
-
-def test_too_many_bytes_at_once_are_counted() -> None:
-    robot, session = switched_on(Esp32Robot()), computer()
-    robot.step(bytes([1]) * 600)
-    robot.wait(2500)
-    request = session.status()
-    assert robot.until(session, request) == OK
-
-
 @pytest.mark.parametrize("take", [lambda kept: EMPTY, lambda kept: kept._replace(noinit=b"")])
 def test_what_a_reset_leaves_alone_may_be_anything(take: Callable[[Kept], Kept]) -> None:
     robot = driving()

@@ -7,23 +7,21 @@ frame less than that behind 100 ms of silence. What came before it starts nothin
 
 from __future__ import annotations
 
-import argparse
 import random
 import shutil
-import sys
 import tempfile
-import time
 from collections.abc import Iterator
 from contextlib import nullcontext
 from pathlib import Path
 
 import pytest
 
+from tests.firmware.test_board_text import OBSTACLE
 from tests.firmware.test_uno_robot import FORWARD, KIT, NAMES, OFF, image_of, states
-from tests.firmware.test_uno_text import OBSTACLE
 from tests.machines.host import once
 from tests.machines.uno import needed
 from tests.machines.wired import Wired
+from tests.support.campaign import wanted
 from tests.support.platformio import firmware, shared
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
@@ -231,32 +229,28 @@ def random_prefix(draw: random.Random) -> bytes:
     )
 
 
-def main() -> int:
-    parser = argparse.ArgumentParser(
-        description="Type stops behind random bytes on a simulated Uno."
-    )
-    parser.add_argument("prefixes", type=int, nargs="?", default=10_000)
-    parser.add_argument("--seed", type=int, default=1)
-    options = parser.parse_args()
-    draw = random.Random(options.seed)
-    begun, slowest_ms = time.monotonic(), 0.0
-    with tempfile.TemporaryDirectory() as folder:
-        for baud in BAUDS:
-            sketch = built(baud, Path(folder))
-            for first in range(0, options.prefixes // len(BAUDS), 500):
-                with switched_on(sketch, baud) as uno:
-                    for k in range(min(500, options.prefixes // len(BAUDS) - first)):
-                        if k % FROM_ONE_STATE == 0:
-                            drive(uno)
-                        prefix, spelling = random_prefix(draw), draw.choice(SPELLINGS)
-                        is_last = k % FROM_ONE_STATE == FROM_ONE_STATE - 1
-                        with nullcontext() if is_last else uno.aside():
-                            late_ms = stop_behind(uno, baud, prefix, spelling, is_busy=True)
-                        slowest_ms = max(slowest_ms, late_ms)
-    took_s = time.monotonic() - begun
-    print(f"{options.prefixes} stops on the chip, the slowest {slowest_ms:.1f} ms: {took_s:.0f} s")
-    return 0
+def stop_behind_random_bytes(sketch: Path, baud: int, draw: random.Random, count: int) -> float:
+    """Type so many stops behind random bytes; return the ms that the slowest took."""
+    slowest_ms = 0.0
+    with switched_on(sketch, baud) as uno:
+        for k in range(count):
+            if k % FROM_ONE_STATE == 0:
+                drive(uno)
+            prefix, spelling = random_prefix(draw), draw.choice(SPELLINGS)
+            is_last = k % FROM_ONE_STATE == FROM_ONE_STATE - 1
+            with nullcontext() if is_last else uno.aside():
+                late_ms = stop_behind(uno, baud, prefix, spelling, is_busy=True)
+            slowest_ms = max(slowest_ms, late_ms)
+    return slowest_ms
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    given = wanted(10_000, 1)
+    drawn = random.Random(given.seed)
+    with tempfile.TemporaryDirectory() as folder:
+        for rate in BAUDS:
+            made = built(rate, Path(folder))
+            for first in range(0, given.count // 2, 500):
+                some = min(500, given.count // 2 - first)
+                slowest = stop_behind_random_bytes(made, rate, drawn, some)
+                print(f"{some} stops at {rate} baud, the slowest {slowest:.1f} ms", flush=True)

@@ -15,13 +15,10 @@ from tests.firmware.test_uno_robot import (
     NAMES,
     OFF,
     computer,
-    memory,
     saved,
     send,
-    sketch,
     states,
     switched_on,
-    uno,
 )
 from tests.firmware.test_uno_watchdog import built
 from tests.machines.wired import Wired
@@ -30,7 +27,6 @@ from tiniscript.link.messages import BY_NAME
 from tiniscript.link.requests import OK
 from tools.uno import CYCLES_PER_MS, Uno
 
-__all__ = ("memory", "sketch", "uno")  # fixtures
 PHASES = 160  # the quickest turn of the main loop takes some 110 cycles
 BUSY = "{ cli(); __builtin_avr_delay_cycles(170000); sei(); }"  # over 10 ms
 
@@ -161,38 +157,6 @@ def test_a_line_that_nobody_has_ever_pulled_up_keeps_no_button_from_starting(
         uno.press("button", ms=100)
         uno.run_ms(1000)
         assert states(uno) == FORWARD
-
-
-def test_a_stop_a_button_and_a_stop(uno: Uno) -> None:
-    """The computer repeats its zeros all the time, as it does where nothing comes back."""
-    wired = computer(uno)
-    send(wired, "SB|F(60, 80)")
-    for _ in range(3):
-        uno.send(bytes(8))
-        uno.run_ms(100)
-        assert states(uno) == OFF
-        uno.press("button", ms=60)
-        uno.run_ms(120)
-        assert states(uno) == FORWARD
-        uno.send(bytes(8))
-        uno.run_ms(20)
-        assert states(uno) == OFF
-        assert told(uno, uno.cycle - 20 * CYCLES_PER_MS)[-1].number == BY_NAME["STOPPED"].number
-
-
-def test_a_button_that_was_down_during_a_stop_starts_nothing(uno: Uno) -> None:
-    wired = computer(uno)
-    send(wired, "SB|F(60, 80)")
-    uno.drive("button", False)
-    wired.run(100)
-    uno.send(bytes(4))
-    wired.run(100)
-    uno.drive("button", None)
-    wired.run(300)
-    assert states(uno) == OFF
-    uno.press("button", ms=60)
-    uno.run_ms(150)
-    assert states(uno) == FORWARD
 
 
 def test_a_message_is_heard_wherever_the_main_loop_is(uno: Uno) -> None:

@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
-from tests.machines.uno import needed
 from tests.machines.wired import Wired
-from tests.support.platformio import firmware, shared
 from tiniscript import compile_text, robots
 from tiniscript.bytecode.image import Image, unpack
 from tiniscript.link.requests import OK
@@ -32,23 +29,6 @@ AWAY = "SI|F(70, 80)"
 CABLE = 4  # a cause in docs/link.md
 LIVE_CYCLES = 2160  # from the last byte of a frame to the pins: 135 us in three of four
 LATE_CYCLES = 2640  # 165 us: the work for a millisecond has just begun
-
-
-@pytest.fixture(scope="session")
-def sketch(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    needed()
-    return firmware("uno", tmp_path_factory.mktemp("sketch"), shared(tmp_path_factory))
-
-
-@pytest.fixture
-def memory(tmp_path: Path) -> Path:
-    return tmp_path / "eeprom"
-
-
-@pytest.fixture
-def uno(sketch: Path, memory: Path) -> Iterator[Uno]:
-    with switched_on(sketch, memory) as found:
-        yield found
 
 
 def switched_on(sketch: Path, memory: Path, board: str = "uno") -> Uno:
@@ -145,48 +125,6 @@ def drive_ms(uno: Uno, text: str) -> float:
     return (uno.pins["left"].cycle - begun) / CYCLES_PER_MS
 
 
-def test_a_power_cut_in_the_middle_of_a_save(sketch: Path, memory: Path) -> None:
-    uno = switched_on(sketch, memory)
-    wired = computer(uno)
-    send(wired, "SI|F(0.2, 80)")
-    wired.run(300)
-    while saved(wired) != 3:
-        wired.run(20)
-    send(wired, "SI|B(0.2, 60); " + "SHOW(1); " * 20)
-    wired.run(40)
-    uno.kill()
-    with switched_on(sketch, memory) as again:
-        again.press("button")
-        again.run_ms(130)
-        driven = states(again)
-        assert driven["left"] == driven["right"] == "pwm"
-        assert (driven["left forward"], driven["left backward"]) in (
-            ("high", "low"),
-            ("low", "high"),
-        )
-
-
-def test_the_stop_sequence_is_at_once(uno: Uno, capsys: pytest.CaptureFixture[str]) -> None:
-    wired = computer(uno)
-    send(wired, AWAY)
-    wired.run(300)
-    assert states(uno) == FORWARD
-    begun = uno.cycle
-    uno.send(bytes(8))
-    uno.run_ms(10)
-    assert states(uno) == OFF
-    off = max(uno.pins[name].cycle for name in MOTORS)
-    zero = max(byte.cycle for byte in uno.received if byte.cycle < off)
-    with capsys.disabled():
-        print(f"\n  last zero to pins off: {(off - zero) / CYCLES_PER_MS * 1000:.1f} us", end=" ")
-    assert begun < zero
-    assert off - zero < CYCLES_PER_MS
-    wired.run(500)
-    assert "STOPPED" in [event.name for event in wired.session.events()]
-    uno.run_ms(2000)
-    assert states(uno) == OFF
-
-
 def test_a_stop_silences_the_buzzer(uno: Uno) -> None:
     wired = computer(uno)
     buzzer = f"D{robots.load('tinibot').board.buzzer}"
@@ -225,33 +163,6 @@ def test_a_live_line_is_at_the_motors_at_once(uno: Uno) -> None:
     assert wired.until(status) == OK
     assert status.outcome
     assert status.outcome.values.damaged == 0
-
-
-def test_the_motors_go_off_without_frames(uno: Uno) -> None:
-    wired = computer(uno)
-    send(wired, AWAY)
-    wired.run(500)
-    last = max(byte.cycle for byte in uno.received)
-    assert states(uno) == FORWARD
-    uno.run_ms(1500)
-    assert states(uno) == OFF
-    off = max(uno.pins[name].cycle for name in MOTORS)
-    assert off - last <= 1050 * CYCLES_PER_MS
-    wired.run(1500)
-    assert wired.session.is_latched
-
-
-def test_the_button_stops(uno: Uno) -> None:
-    wired = computer(uno)
-    send(wired, AWAY)
-    wired.run(200)
-    uno.drive("button", False)
-    wired.run(2)
-    assert states(uno) == OFF
-    uno.drive("button", None)
-    wired.run(500)
-    assert states(uno) == OFF
-    assert "STOPPED" in [event.name for event in wired.session.events()]
 
 
 def low_for(uno: Uno, ms: float) -> None:

@@ -6,12 +6,11 @@ come before a stop is bounded: all that keeps interrupts off, each at its longes
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
-from tests.machines.uno import needed
-from tests.support.platformio import firmware, shared
 from tiniscript import robots
 from tools.bench.stops import Busy, Place, sample
 from tools.uno import CYCLES_PER_MS
@@ -32,15 +31,13 @@ def test_a_stop_is_at_the_pins_in_12_us(
     environment: str,
     name: str,
     more_cycles: int,
-    tmp_path_factory: pytest.TempPathFactory,
+    sketches: Callable[[str], Path],
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    needed()
-    sketch: Path = firmware(
-        environment, tmp_path_factory.mktemp("sketch"), shared(tmp_path_factory)
-    )
     robot = robots.load(name)
-    with Busy(sketch, robot, environment.partition("_")[0], robot.board.baud) as stopped:
+    with Busy(
+        sketches(environment), robot, environment.partition("_")[0], robot.board.baud
+    ) as stopped:
         places = sample(stopped, COUNT, SEED)
         if stopped.has_echo:
             places += [Place(places[0].at, echo, True) for echo in ECHO_AT_BEST]

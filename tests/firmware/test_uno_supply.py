@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable
 from itertools import pairwise
 from pathlib import Path
 
@@ -14,26 +14,14 @@ from tests.firmware.test_uno_robot import (
     image_of,
     saved,
     send,
-    sketch,
-    switched_on,
 )
-from tests.machines.uno import needed
 from tests.machines.wired import Wired
-from tests.support.platformio import firmware, shared
-from tiniscript.link.messages import SAVED_LOW_SUPPLY, SAVED_STORED, STATUSES
+from tiniscript.link.messages import SAVED_LOW_SUPPLY, SAVED_STORED
 from tiniscript.link.requests import OK
 from tools.uno import CYCLES_PER_MS, Uno
 
-__all__ = ["sketch"]
-
 LOW, STORED = SAVED_LOW_SUPPLY, SAVED_STORED
 SAVES = "SI|SHOW(1)"
-
-
-@pytest.fixture
-def uno(sketch: Path, tmp_path: Path) -> Iterator[Uno]:
-    with switched_on(sketch, tmp_path / "eeprom") as found:
-        yield found
 
 
 def until_saved(wired: Wired, limit_ms: int = 4000) -> int:
@@ -83,18 +71,6 @@ def test_a_supply_that_falls_between_two_marks_is_noticed(uno: Uno) -> None:
     assert len(marks(uno, begun)) == 3
 
 
-def test_what_waits_for_the_supply_is_kept_when_there_is_enough(uno: Uno) -> None:
-    wired = computer(uno)
-    uno.supply(3.5)
-    send(wired, SAVES)
-    assert until_saved(wired) == LOW
-    assert wired.until(wired.session.name(b"TINI")) == STATUSES["LOW_SUPPLY"]
-    uno.supply(5)
-    wired.run(1000)
-    assert until_saved(wired) == STORED
-    assert wired.until(wired.session.name(b"TINI")) == OK
-
-
 LIGHT = "SI|LOOP(FOREVER);SHOW(LIGHT_L);SHOW(LIGHT_R);END_LOOP"
 
 
@@ -115,12 +91,6 @@ def test_sensors_and_the_supply_take_turns(uno: Uno, volts: float) -> None:
     assert set(shown) == {200_000, 800_000}
     assert all(one != other for one, other in pairwise(shown))
     assert until_saved(wired) == (STORED if volts > 4 else LOW)
-
-
-def test_a_program_that_measures_all_the_time_is_saved(uno: Uno) -> None:
-    wired = computer(uno)
-    send(wired, "SI|LOOP(FOREVER); X = LIGHT_L; END_LOOP")
-    assert until_saved(wired) == STORED
 
 
 def test_a_measurement_that_a_motor_ends_leaves_the_converter_to_the_sensors(uno: Uno) -> None:
@@ -151,12 +121,8 @@ def test_a_program_that_drives_in_short_pushes_is_saved_in_between(uno: Uno) -> 
     assert wired.session.is_running
 
 
-def test_a_mega_measures_its_supply_too(
-    tmp_path: Path, tmp_path_factory: pytest.TempPathFactory
-) -> None:
-    needed()
-    elf = firmware("mega", tmp_path_factory.mktemp("mega"), shared(tmp_path_factory))
-    with Uno(elf, board="mega", baud=9600) as mega:
+def test_a_mega_measures_its_supply_too(sketches: Callable[[str], Path]) -> None:
+    with Uno(sketches("mega"), board="mega", baud=9600) as mega:
         mega.run_ms(300)
         wired = computer(mega)
         mega.supply(3.9)
@@ -175,12 +141,10 @@ STEP = 69  # thousandths of a centimetre in the 4 us of the robot's clock
 @pytest.mark.parametrize("board", ["uno", "mega"])
 @pytest.mark.parametrize("distance_cm", [3, 50, 390])
 def test_readings_are_right_while_names_are_kept_and_the_line_is_bad(
-    board: str, distance_cm: int, tmp_path_factory: pytest.TempPathFactory
+    board: str, distance_cm: int, sketches: Callable[[str], Path]
 ) -> None:
     """Saving keeps a program from running, the line interrupts it: readings come late at most."""
-    needed()
-    elf = firmware(board, tmp_path_factory.mktemp(board), shared(tmp_path_factory))
-    with Uno(elf, names=NAMES, board=board, baud=9600) as uno:
+    with Uno(sketches(board), names=NAMES, board=board, baud=9600) as uno:
         uno.run_ms(300)
         uno.analog("A0", 200)
         uno.analog("A1", 800)

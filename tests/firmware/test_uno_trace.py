@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import pytest
 
-from tests.firmware.test_uno_robot import MOTORS, computer, send, sketch, switched_on  # noqa: F401
+from tests.firmware.test_uno_robot import MOTORS, computer, send, switched_on
 from tests.machines import MACHINES
 from tests.support.casefile import ROOT, Case, read
 from tests.vm.test_cases import compiled, robot_and_senses
@@ -95,7 +95,7 @@ def lasting(settings: list[Setting]) -> list[Setting]:
 
 @pytest.mark.sampled("case", keep=3)
 @pytest.mark.parametrize("case", [*PAPER, *map(program, OTHERS)], ids=lambda case: case.title)
-def test_the_pins_follow_the_trace(case: Case, sketch: Path, tmp_path: Path) -> None:  # noqa: F811
+def test_the_pins_follow_the_trace(case: Case, sketch: Path, tmp_path: Path) -> None:
     with switched_on(sketch, tmp_path / "eeprom") as uno:
         check_pins(case, uno)
 
@@ -160,7 +160,7 @@ def last_zero(uno: Uno, since: int) -> int:
 
 
 @pytest.mark.sampled(of="long ways of a chip")
-def test_a_thousand_short_waits_take_a_minute(sketch: Path, tmp_path: Path) -> None:  # noqa: F811
+def test_a_thousand_short_waits_take_a_minute(sketch: Path, tmp_path: Path) -> None:
     """A wait begins where the one before has ended, not when the machine comes to it."""
     with switched_on(sketch, tmp_path / "eeprom") as uno:
         heard = len(uno.received)

@@ -14,11 +14,8 @@ from tests.firmware.test_uno_robot import (
     OFF,
     computer,
     image_of,
-    memory,
     send,
-    sketch,
     states,
-    uno,
 )
 from tests.machines.uno import needed
 from tests.machines.wired import Wired
@@ -26,8 +23,6 @@ from tests.support.platformio import changed
 from tiniscript.link.payloads import HelloReply
 from tiniscript.link.requests import OK
 from tools.uno import CYCLES_PER_MS, Uno
-
-__all__ = ("memory", "sketch", "uno")  # fixtures
 
 PRESSED = "if (press == Press::kPressed) firmware_on_pressed();"
 WATCHDOG, STALL = 4, 66  # a reset and a fault in docs/link.md

@@ -1,0 +1,32 @@
+"""Simulated boards with the firmware that goes onto them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+from tools.uno import Uno
+
+
+@pytest.fixture
+def memory(tmp_path: Path) -> Path:
+    return tmp_path / "eeprom"
+
+
+@pytest.fixture
+def uno(sketch: Path, memory: Path) -> Iterator[Uno]:
+    from tests.firmware.test_uno_robot import switched_on
+
+    with switched_on(sketch, memory) as found:
+        yield found
+
+
+@pytest.fixture
+def robot(board: str, sketches: Callable[[str], Path], memory: Path) -> Iterator[Uno]:
+    """The one of the parameter `board`."""
+    from tests.firmware.test_uno_robot import switched_on
+
+    with switched_on(sketches(board), memory, board) as found:
+        yield found

@@ -1,0 +1,128 @@
+"""The firmware as it goes onto an Uno and a Mega reads text: seen from its wire and its pins.
+
+What a line does is tested with the whole firmware on this computer: `test_text` and
+`test_text_small`.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.firmware.test_board_tasks import each_board
+from tests.firmware.test_uno_robot import BAUD, FORWARD, NAMES, OFF, computer, states
+from tests.machines.uno import needed
+from tests.support.platformio import copied, pio
+from tiniscript import robots
+from tiniscript.flash import building
+from tiniscript.link.messages import TEXT_LEVEL, TEXT_LEVELS
+from tiniscript.link.requests import OK
+from tools.generate.packed_texts import packed
+from tools.generate.remark_tables import rows
+from tools.uno import CYCLES_PER_MS, Uno
+
+LINE_MS = 5  # from the end of a line to the pins, at most
+STOP_MS = 2  # the same for S
+PROGRAM_MS = 10  # and for the last line of the obstacle program
+STOP_CYCLES = 192  # from the last byte of a stop to the pins: 12 us
+BYTE_MS = 10_000 / BAUD
+OBSTACLE = (
+    "SI|LOOP(FOREVER);", "  F(1, 80);", "  DISTANCE;", "  IF(DISTANCE < 10);", "    STOP;",
+    "    R(1, 60);", "  ENDIF;", "END_LOOP;",
+)  # fmt: skip
+
+
+def typed(uno: Uno, text: str, milliseconds: float) -> list[str]:
+    """Type a text; return what the robot has answered after so many milliseconds."""
+    before = len(uno.sent)
+    uno.send(text.encode())
+    uno.run_ms(milliseconds)
+    return bytes(byte.value for byte in uno.sent[before:]).decode().splitlines()
+
+
+def since_the_line_end_ms(uno: Uno) -> float:
+    """Return the time from the end of the last line that came to the last change of a motor."""
+    pins = [uno.pins[name].cycle for name in ("left", "right")]
+    return (max(pins) - uno.received[-1].cycle) / CYCLES_PER_MS
+
+
+@each_board
+def test_a_line_turns_the_motors_and_s_stops_them(robot: Uno) -> None:
+    assert typed(robot, "SI|F(2,80)\n", 60) == ["// OK"]
+    assert states(robot) == FORWARD
+    assert 0 < since_the_line_end_ms(robot) <= LINE_MS
+    assert typed(robot, "S\n", 60) == ["// STOPPED"]
+    assert states(robot) == OFF
+    assert 0 < since_the_line_end_ms(robot) <= STOP_MS
+    typed(robot, "SI|F(2,80)\n", 60)
+    assert states(robot) == OFF
+    robot.run_ms(1100)
+    assert typed(robot, "F(2,80)\n", 80) == ["// It was stopped. Begin with SI|"]
+
+
+@each_board
+def test_the_obstacle_program_in_lines(robot: Uno) -> None:
+    robot.sonar("trigger", "echo", 40)
+    *lines, last = OBSTACLE
+    for line in lines:
+        assert typed(robot, f"{line}\r\n", 40) == []
+    assert states(robot) == OFF
+    assert typed(robot, f"{last}\r", 40) == ["// OK"]
+    assert states(robot) == FORWARD
+    assert 0 < since_the_line_end_ms(robot) <= PROGRAM_MS
+    robot.sonar("trigger", "echo", 5)
+    robot.run_ms(1500)
+    assert states(robot)["left forward"] == "high" and states(robot)["right backward"] == "high"
+
+
+@pytest.mark.sampled("text", keep=2)
+@pytest.mark.parametrize("text", ["", "SI|F(2, 80", "LOOP(2); F(1,", "// a comment", "9" * 90])
+def test_a_stop_is_as_quick_while_text_is_read(uno: Uno, text: str) -> None:
+    typed(uno, "SI|LOOP(FOREVER);M(80,80);END_LOOP\n", 100)
+    assert states(uno) == FORWARD
+    uno.send(text.encode() + bytes(4))
+    uno.run_ms((len(text) + 4) * BYTE_MS + 20)
+    stop = uno.received[len(uno.received) - 1]
+    assert stop.value == 0
+    pins = max(uno.pins[name].cycle for name in ("left", "right"))
+    assert states(uno) == OFF
+    assert pins - stop.cycle <= STOP_CYCLES
+
+
+@each_board
+def test_its_words_are_those_of_its_level(board: str, robot: Uno) -> None:
+    wired = computer(robot)
+    assert wired.until(wired.session.hello()) == OK
+    assert wired.session.robot is not None
+    features = wired.session.robot.values.features
+    assert TEXT_LEVELS[features & TEXT_LEVEL][0] == board.upper()
+    robot.run_ms(4000)
+    words = " ".join(typed(robot, "HELP\n", 600)).replace("// ", "").split()
+    assert {"F", "LOOP", "END_LOOP", "ROUND", "UNTIL", "DISTANCE"} <= {*words}
+    assert bool({"DEF", "END_DEF", "ENDDEF", "TASK"} & {*words}) == (board == "mega")
+
+
+@pytest.mark.parametrize("board", ["mega"])
+def test_a_wrong_line_leaves_what_runs_where_there_is_room_for_two(robot: Uno) -> None:
+    assert typed(robot, "SI|LOOP(FOREVER)\r\nM(50,50)\r\nW(0.1)\r\nEND_LOOP\r\n", 200) == ["// OK"]
+    assert typed(robot, "SI|R(1,500)\r\n", 100) == ["// 500: 0 to 100"]
+    assert states(robot) == FORWARD
+
+
+@pytest.mark.sampled(of="long ways of a chip")
+def test_a_profile_in_spanish_makes_a_robot_that_answers_in_spanish(tmp_path: Path) -> None:
+    """As `tsc firmware` makes it. The other language takes no flash."""
+    needed()
+    project = copied(tmp_path)
+    for language, answer, other in (("es", "500: 0 a 100", "en"), ("en", "500: 0 to 100", "es")):
+        robot = robots.load("tinibot", "mega").speaking(language)
+        (project / building.HEADER).write_text(building.header(robot), encoding="utf-8")
+        code, log = pio(project, "run", "-e", "mega")
+        assert code == 0, log
+        elf = project / ".pio" / "build" / "mega" / "firmware.elf"
+        for each in (language, other):
+            assert (packed(rows(each)).texts in elf.read_bytes()) == (each == language)
+        with Uno(elf, names=NAMES, board="mega", baud=BAUD, resets_on_open=False) as mega:
+            mega.run_ms(300)
+            assert typed(mega, "SI|R(1, 500)\n", 100) == [f"// {answer}"]
