@@ -1,6 +1,6 @@
-"""Runs a program with TASK and WHEN straight from its text.
+"""How the instructions of a program follow each other, in one task or in several.
 
-Written from the language reference, section "Tasks", and from nothing of the compiler or the
+Written from the language reference, section "Tasks" too, and from nothing of the compiler or the
 machine: there a task is a record, here it is a generator that gives its place away whenever it has
 to wait.
 """
@@ -12,7 +12,7 @@ from collections.abc import Generator
 from dataclasses import dataclass, field
 
 from tests.oracle.arithmetic import whole, within
-from tests.oracle.interpreter import Break, Ending, Robot
+from tests.oracle.robot import Break, Ending, Robot
 from tests.oracle.tree import Do, If, Loop, Statement, Task, Value, While
 from tests.oracle.words import MOVES
 
@@ -122,10 +122,10 @@ class TaskRobot(Robot):
             yield
 
     def back_to_start(self) -> Turns:
-        """What going back to the start of a loop takes."""
+        """What going back to the start of a loop takes: a millisecond where there are tasks."""
         me = self.who
         self.step()
-        if not me.waited:
+        if not me.waited and self.program.tasks:
             me.clock += 1
             me.due = me.clock
             yield
@@ -135,7 +135,7 @@ class TaskRobot(Robot):
 
     def motors(self, left: int, right: int) -> None:
         self.wheels = left, right
-        super().motors(left, right)
+        self.note(f"MOTORS {left} {right}")
 
     @property
     def is_outranked(self) -> bool:
@@ -177,16 +177,20 @@ class TaskRobot(Robot):
         for statement in body:
             self.step()
             if isinstance(statement, If):
-                for arm in statement.arms:
-                    self.read(arm.reads)
-                    if arm.condition is None or self.value(arm.condition):
-                        yield from self.body(arm.body)
-                        break
+                yield from self.choosing(statement)
             elif isinstance(statement, Do):
                 yield from self.doing(statement)
             else:
                 with contextlib.suppress(Break):
                     yield from self.repeating(statement)
+
+    def choosing(self, statement: If) -> Turns:
+        """Does the first arm whose condition holds."""
+        for arm in statement.arms:
+            self.read(arm.reads)
+            if arm.condition is None or self.value(arm.condition):
+                yield from self.body(arm.body)
+                return
 
     def repeating(self, statement: Loop | While) -> Turns:
         if isinstance(statement, While):

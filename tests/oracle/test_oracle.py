@@ -6,33 +6,29 @@ import random
 
 import pytest
 
-from tests.oracle import interpreter
 from tests.oracle.interpreter import PAPER_KIT, Mistake, run
 from tests.oracle.programs import WIDE_KIT, broken, program, senses
-from tests.oracle.tree import Do, If, Loop, While
+from tests.oracle.tasks import TaskRobot, Turns
+from tests.oracle.tree import Do, Statement
 
 
 def test_random_programs(monkeypatch: pytest.MonkeyPatch) -> None:
     """Are valid, and together do every instruction and end in every way."""
     seen: set[str] = set()
-    robot = interpreter.Robot
-    do, choose, repeat = robot.do, robot.choose, robot.repeat
 
-    def watched_do(self: interpreter.Robot, statement: Do) -> None:
-        seen.add(statement.word + (" UNTIL" if statement.until else ""))
-        do(self, statement)
+    def watch(name: str) -> None:
+        does = getattr(TaskRobot, name)
 
-    def watched_choose(self: interpreter.Robot, statement: If) -> None:
-        seen.add("IF")
-        choose(self, statement)
+        def watched(self: TaskRobot, statement: Statement) -> Turns:
+            word = statement.word if isinstance(statement, Do) else type(statement).__name__.upper()
+            seen.add(f"{word} UNTIL" if isinstance(statement, Do) and statement.until else word)
+            turns: Turns = does(self, statement)
+            return turns
 
-    def watched_repeat(self: interpreter.Robot, statement: Loop | While) -> None:
-        seen.add("WHILE" if isinstance(statement, While) else "LOOP")
-        repeat(self, statement)
+        monkeypatch.setattr(TaskRobot, name, watched)
 
-    monkeypatch.setattr(robot, "do", watched_do)
-    monkeypatch.setattr(robot, "choose", watched_choose)
-    monkeypatch.setattr(robot, "repeat", watched_repeat)
+    for name in ("doing", "choosing", "repeating"):
+        watch(name)
     for number in range(2000):
         rng = random.Random(number)
         kit = WIDE_KIT if number % 2 else PAPER_KIT

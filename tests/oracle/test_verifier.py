@@ -143,7 +143,17 @@ def test_no_device_has_a_number_above_31() -> None:
             assert said == {0 if number == 31 else RULES["BAD_OPERAND"][0]}
 
 
-READS = ("words", "tokens", "tree", "readings", "expressions", "text", "tasks", "interpreter")
+READS = (
+    "words",
+    "tokens",
+    "tree",
+    "readings",
+    "expressions",
+    "text",
+    "robot",
+    "tasks",
+    "interpreter",
+)
 CHECKS = ("spec_tables", "verifier", "arithmetic", "machine")
 
 

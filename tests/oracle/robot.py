@@ -1,0 +1,169 @@
+"""What a robot has, and what an instruction does at once: readings, values, actuators, the trace.
+
+Numbers are Python integers that count thousandths; yes/no values are bools.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+
+from tests.oracle.arithmetic import (
+    Fault,
+    answer,
+    calculated,
+    divided,
+    fits,
+    printed,
+    random_between,
+    stepped,
+    whole,
+    within,
+)
+from tests.oracle.tree import Do, Expression, Program, Value
+from tests.oracle.words import Kit
+
+# What the words and signs of the language calculate.
+NAMES = {
+    "+": "ADD", "-": "SUB", "*": "MUL", "/": "DIV", "%": "MOD", "MINUS": "NEG",
+    "=": "EQ", "<>": "NE", "<": "LT", ">": "GT", "<=": "LE", ">=": "GE",
+    **{word: word for word in ("ABS", "MIN", "MAX", "ROUND", "AND", "OR", "NOT")},
+}  # fmt: skip
+
+
+class Ending(Exception):
+    """The run is over: LIMIT."""
+
+
+class Break(Exception):
+    """BREAK, on its way to the loop that it leaves."""
+
+
+def written(value: Value) -> str:
+    """A value as the run prints it."""
+    return answer(value) if isinstance(value, bool) else printed(value)
+
+
+# --- Runs -------------------------------------------------------------------------------------
+
+
+@dataclass
+class Robot:
+    """A robot, its clock and its trace: all of it but how the instructions follow each other."""
+
+    program: Program
+    kit: Kit
+    sensors: Mapping[str, Sequence[int]]
+    max_time: int
+    max_steps: int
+    state: int
+    now: int = 0
+    steps: int = 0
+    trace: list[str] = field(default_factory=list)
+    variables: dict[str, Value] = field(default_factory=dict)
+    kept: dict[str, Value] = field(default_factory=dict)
+    taken: dict[str, int] = field(default_factory=dict)  # how many readings so far
+
+    def run(self) -> None:
+        for name, is_yes_no in self.program.variables.items():
+            self.variables[name] = False if is_yes_no else 0
+        try:
+            self.play()
+            self.note("DONE")
+        except Fault as fault:
+            self.note(f"FAULT {fault}")
+        except Ending as ending:
+            self.note(str(ending))
+
+    def play(self) -> None:
+        """Does what the program says, to its end."""
+        raise NotImplementedError
+
+    def note(self, what: str) -> None:
+        self.trace.append(f"{self.now} {what}\n")
+
+    def step(self) -> None:
+        """Counts something that could go on without any time passing."""
+        self.steps += 1
+        if self.steps > self.max_steps:
+            raise Ending("LIMIT")
+
+    def read(self, names: Iterable[str]) -> None:
+        """Takes a reading of each sensor and keeps it."""
+        for name in names:
+            device = next(device for device in self.kit.sensors if device.name == name)
+            values = self.sensors.get(name) or (0,)
+            count = self.taken.get(name, 0)
+            self.taken[name] = count + 1
+            raw = values[min(count, len(values) - 1)]
+            self.kept[name] = bool(raw) if device.is_yes_no else raw
+            self.note(f"READ {name} {written(self.kept[name])}")
+
+    # Statements
+
+    def do(self, statement: Do) -> None:
+        """Does an instruction that takes no time and has nothing to do with the motors."""
+        self.read(statement.reads)
+        word, values = statement.word, self.values(statement)
+        if word == "READ":
+            self.read((statement.name,))
+        elif word == "BREAK":
+            raise Break
+        else:
+            (value,) = values
+            assert value is not None
+            if word == "=":
+                self.variables[statement.name] = value
+            elif word == "SHOW":
+                self.note(f"SHOW {written(value)}")
+            else:
+                self.set(statement.name, value)
+
+    def values(self, statement: Do) -> list[Value | None]:
+        """The values of an instruction; a way becomes the time that it takes."""
+        values = [None if each is None else self.value(each) for each in statement.arguments]
+        if statement.unit:
+            way, power = max(0, values[0] or 0), within(whole(values[1] or 0), 0, 100)
+            speed = self.kit.speed if statement.unit == "CM" else self.kit.turn
+            if way > 0 and power == 0:
+                raise Fault("NO_POWER")
+            values[0] = fits(divided(1000 * way * 100, speed * power)) if way > 0 else 0
+        return values
+
+    def set(self, name: str, value: Value) -> None:
+        """Sets an actuator: a number is rounded, then limited to the actuator's range."""
+        device = next(device for device in self.kit.actuators if device.name == name)
+        if not device.is_yes_no:
+            value = within(1000 * whole(value), device.low, device.high)
+        self.note(f"SET {name} {written(value)}")
+
+    def may_end(self, statement: Do) -> bool:
+        """Takes the readings of an UNTIL, if there is one, and checks it."""
+        if statement.until is None:
+            return False
+        self.step()
+        self.read(statement.until_reads)
+        return bool(self.value(statement.until))
+
+    # Values
+
+    def value(self, expression: Expression) -> Value:
+        """The value of an expression: operands once each, from left to right."""
+        operator = expression.operator
+        if operator in ("NUMBER", "TRUTH"):
+            return expression.value
+        if operator == "VARIABLE":
+            return self.variables[expression.name]
+        if operator == "SENSOR":
+            return self.kept[expression.name]
+        if operator == "TIME":
+            return fits(self.now)
+        first = self.value(expression.parts[0])
+        if (operator == "AND" and not first) or (operator == "OR" and first):
+            return first  # the right side is not evaluated
+        values = [first, *map(self.value, expression.parts[1:])]
+        if operator == "RANDOM":
+            self.state = stepped(self.state)
+            return random_between(values[0], values[1], self.state)
+        found = calculated(NAMES[operator], *values)
+        return bool(found) if expression.is_yes_no else found
