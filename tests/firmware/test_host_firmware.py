@@ -65,6 +65,22 @@ def stored(robot: HostFirmware, session: Session, limit_ms: int = 10_000) -> int
     raise AssertionError("the program is not saved")
 
 
+def holding(text: str = "SB|F(0.2, 80)") -> tuple[HostFirmware, Session]:
+    """Return a robot that has saved a program, and its session."""
+    robot, session = switched_on(), computer()
+    send(robot, session, text)
+    stored(robot, session)
+    return robot, session
+
+
+def broken_upload(robot: HostFirmware, session: Session) -> None:
+    """Let the robot hold what is stored, and nothing of it in memory."""
+    request = session.upload(image_of(LONG))
+    robot.talk(session, 3)
+    assert request.outcome is None
+    robot.wait(3000)
+
+
 def happened(robot: HostFirmware) -> list[str]:
     return [line.split(" ", 1)[1] for line in robot.did]
 
@@ -107,11 +123,8 @@ def test_a_longer_program_drives_and_shows() -> None:
 
 
 def test_after_power_on_nothing_moves_and_the_button_starts_what_is_stored() -> None:
-    robot, session = switched_on(), computer()
-    assert not robot.is_lit
-    send(robot, session, "SI|F(0.5, 80)")
-    robot.talk(session, 700)
-    stored(robot, session)
+    assert not switched_on().is_lit
+    robot, _ = holding("SI|F(0.5, 80)")
     again = switched_on(robot.memory())
     assert again.is_lit
     again.wait(2000)
@@ -122,10 +135,7 @@ def test_after_power_on_nothing_moves_and_the_button_starts_what_is_stored() -> 
 
 
 def test_what_is_not_saved_is_gone_and_what_was_saved_is_there() -> None:
-    robot, session = switched_on(), computer()
-    send(robot, session, "SI|F(0.2, 80)")
-    robot.talk(session, 400)
-    stored(robot, session)
+    robot, session = holding()
     send(robot, session, "SI|B(0.2, 60)", saves=False)
     robot.talk(session, 2000)
     again = switched_on(robot.memory())
@@ -276,11 +286,7 @@ def test_a_press_that_lasts_stops_what_began_meanwhile() -> None:
 def test_a_pulled_plug_leaves_one_program_or_the_other(seed: int) -> None:
     """Whenever it is pulled: while it arrives, while it drives, while it is saved."""
     rng = random.Random(seed)
-    robot, session = switched_on(), computer()
-    send(robot, session, "SI|F(0.2, 80)")
-    robot.talk(session, 400)
-    stored(robot, session)
-    memory = robot.memory()
+    memory = holding()[0].memory()
     for _ in range(6):
         robot, session = switched_on(memory), computer(rng.getrandbits(32))
         session.upload(image_of("SI|B(0.1, 60); " + "SHOW(1); " * rng.randrange(30)))
@@ -296,18 +302,13 @@ def test_a_pulled_plug_leaves_one_program_or_the_other(seed: int) -> None:
 
 def test_an_upload_that_breaks_off_while_a_fault_is_noted_leaves_the_stored_program() -> None:
     """The memory cannot be read while it is written: what it holds must not be forgotten then."""
-    robot, session = switched_on(), computer()
-    send(robot, session, "SB|F(0.2, 80)")
-    stored(robot, session)
+    robot, session = holding()
     robot.talk(session, 500)
     request = session.live(image_of("SI|X = 0; SHOW(5 / X)").code)
     assert robot.until(session, request) == OK
     while "FAULTED" not in happened(robot):
         robot.talk(session, 1)
-    request = session.upload(image_of(LONG))
-    robot.talk(session, 3)
-    assert request.outcome is None
-    robot.wait(3000)
+    broken_upload(robot, session)
     robot.push()
     robot.wait(400)
     assert happened(robot)[-3:] == ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
@@ -343,9 +344,7 @@ def test_one_clear_is_enough() -> None:
 @pytest.mark.parametrize("text", ["SB|F(0.1, 50)", LONG.replace("SI|", "SB|")])
 def test_a_robot_tells_which_program_it_holds_before_it_is_saved(text: str) -> None:
     """In one frame, and in several."""
-    robot, session = switched_on(), computer()
-    send(robot, session, "SB|F(0.1, 40)")
-    stored(robot, session)
+    robot, session = holding()
     send(robot, session, text)
     values = robot.done(session, session.status())
     assert values.program == image_of(text).checksum

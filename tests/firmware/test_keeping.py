@@ -7,8 +7,10 @@ import pytest
 
 from tests.firmware.test_host_firmware import (
     KIT,
+    broken_upload,
     computer,
     happened,
+    holding,
     image_of,
     outcome,
     pushed,
@@ -27,7 +29,6 @@ from tiniscript.link.trim import Pace, Trim, told
 WAITS = "SI|LOOP(FOREVER);W(1);END_LOOP"
 DRIVES = "SI|LOOP(FOREVER);F(1, 80);END_LOOP"
 PAUSES = "SI|LOOP(FOREVER);F(0.05, 80);W(0.004);END_LOOP"
-LONG = "SI|" + "F(0.1, 80); B(0.1, 60); SHOW(1); " * 20
 FIRST, SECOND, EACH = 128, 576, 31  # where the slots of the program lie, and bytes of a record's
 
 
@@ -257,9 +258,7 @@ def test_a_low_supply_is_told_and_waited_for() -> None:
 
 def test_with_a_low_supply_another_program_can_still_be_tried() -> None:
     """What counted before is kept, what was to be kept is given up for the new one."""
-    robot, session = switched_on(), computer()
-    send(robot, session, "SB|F(0.2, 80)")
-    stored(robot, session)
+    robot, session = holding()
     robot.supply(is_low=True)
     for power in (20, 30, 40):
         text = f"SI|F(0.1, {power}); " + "SHOW(1); " * 20
@@ -268,10 +267,7 @@ def test_with_a_low_supply_another_program_can_still_be_tried() -> None:
         assert f"MOTORS {power} {power}" in happened(robot)
         assert saved(robot, session) == "LOW_SUPPLY"
     assert program_after_power_off(robot) == bytes_of("SB|F(0.2, 80)")
-    request = session.upload(image_of(LONG))  # breaks off
-    robot.talk(session, 3)
-    assert request.outcome is None
-    robot.wait(3000)
+    broken_upload(robot, session)
     assert pushed(robot) == ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
     robot.supply(is_low=False)
     robot.talk(session, 3000)
@@ -281,9 +277,7 @@ def test_with_a_low_supply_another_program_can_still_be_tried() -> None:
 
 def test_a_low_supply_after_a_cut_in_a_save_is_told() -> None:
     """What a cut has left is put in order with enough voltage only; until then nothing is known."""
-    robot, session = switched_on(), computer()
-    send(robot, session, "SB|F(0.2, 80)")
-    stored(robot, session)
+    robot, session = holding()
     memory = bytearray(robot.memory())
     assert memory[FIRST] == 0
     memory[FIRST + 3] = 0  # the third mark was not written
@@ -304,32 +298,26 @@ def test_a_low_supply_after_a_cut_in_a_save_is_told() -> None:
 # -- reading while it is written ------------------------------------------------------------------
 
 
-def broken_upload(robot: HostFirmware, session: Session) -> None:
-    """Let the robot hold what is stored, and nothing of it in memory."""
-    request = session.upload(image_of(LONG))
-    robot.talk(session, 3)
-    assert request.outcome is None
-    robot.wait(3000)
-
-
-def test_a_program_is_fetched_whole_while_a_name_is_written() -> None:
-    robot, session = switched_on(), computer()
-    text = "SB|" + "F(0.2, 80); " * 30
-    send(robot, session, text)
-    stored(robot, session)
+def writing_a_name(robot: HostFirmware, session: Session) -> Session:
+    """Return another session of a robot that holds what is stored, and writes its name."""
     broken_upload(robot, session)
     other = computer(3)
     assert robot.until(other, other.hello()) == OK
     other.name(b"A LONG NAME")
-    robot.talk(other, 5)  # the robot has it, and writes
+    robot.talk(other, 5)
+    return other
+
+
+def test_a_program_is_fetched_whole_while_a_name_is_written() -> None:
+    text = "SB|" + "F(0.2, 80); " * 30
+    robot, session = holding(text)
+    writing_a_name(robot, session)
     another = computer(4)
     assert robot.done(another, another.fetch()).image == bytes_of(text)
 
 
 def test_a_robot_that_writes_says_busy_to_fetch() -> None:
-    robot, session = switched_on(), computer()
-    send(robot, session, "SB|F(0.2, 80)")
-    stored(robot, session)
+    robot, session = holding()
     broken_upload(robot, session)
     other = computer(3)
     assert robot.until(other, other.hello()) == OK
@@ -341,14 +329,8 @@ def test_a_robot_that_writes_says_busy_to_fetch() -> None:
 
 
 def test_the_button_starts_the_program_while_something_is_written() -> None:
-    robot, session = switched_on(), computer()
-    send(robot, session, "SB|F(0.2, 80)")
-    stored(robot, session)
-    broken_upload(robot, session)
-    other = computer(3)
-    assert robot.until(other, other.hello()) == OK
-    other.name(b"A LONG NAME")
-    robot.talk(other, 5)
+    robot, session = holding()
+    other = writing_a_name(robot, session)
     robot.push(1)
     robot.talk(other, 500)
     assert happened(robot) == ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
@@ -358,11 +340,7 @@ def test_a_stop_ends_a_start_that_waits_for_the_memory() -> None:
     robot, session = switched_on(write_ms=12), computer()
     send(robot, session, "SB|F(0.2, 80)")
     robot.talk(session, 2000)
-    broken_upload(robot, session)
-    other = computer(3)
-    assert robot.until(other, other.hello()) == OK
-    other.name(b"A LONG NAME")
-    robot.talk(other, 5)
+    other = writing_a_name(robot, session)
     robot.push(1)
     other.stop(robot.now_ms)
     robot.talk(other, 2000)

@@ -9,6 +9,7 @@ import pytest
 
 from tests.firmware.test_host_firmware import (
     KIT,
+    LONG,
     computer,
     happened,
     held,
@@ -20,7 +21,6 @@ from tests.firmware.test_host_firmware import (
 from tests.firmware.test_keeping import (
     DRIVES,
     FIRST,
-    LONG,
     SECOND,
     bytes_of,
     program_after_power_off,

@@ -23,7 +23,7 @@ from tests.support.casefile import ROOT
 from tests.support.command import Tsc, process
 from tests.support.needs import need
 from tests.support.platformio import prepared
-from tests.support.waiting import HANGS_S, until
+from tests.support.waiting import HANGS_S, has_ended, until
 from tiniscript import robots
 from tiniscript.cli import firmware_build
 from tiniscript.cli.errors import CommandError
@@ -194,6 +194,20 @@ def pretending(folder: Path, body: str) -> dict[str, str]:
     return {"PYTHONPATH": str(package.parent)}
 
 
+TOO_LARGE = """\
+print("Compiling a"); \
+print("Error: The program size (33000 bytes) is greater than maximum allowed (32256 bytes)"); \
+sys.exit(1)"""
+# Makes the file of a board: its name, and the rows in it.
+MAKES = """
+def make(name, rows):
+    made = os.path.join(sys.argv[sys.argv.index("-d") + 1], ".pio", "build", name)
+    os.makedirs(made)
+    print("Compiling a", flush=True)
+    open(os.path.join(made, "firmware.hex"), "w").write(rows)
+"""
+
+
 def built(clone: Path, variables: dict[str, str], *words: str) -> tuple[int, str, str]:
     path = variables["PYTHONPATH"] + os.pathsep + str(clone)
     done = tsc(clone, "--build", *words, **{**variables, "PYTHONPATH": path})
@@ -238,12 +252,7 @@ def test_a_build_that_fails_has_its_reason(
 def test_a_firmware_that_the_board_does_not_hold_is_refused_before_it_is_written(
     words: list[str], said: str, clone: Path, tmp_path: Path
 ) -> None:
-    body = """
-print("Compiling a")
-print("Error: The program size (33000 bytes) is greater than maximum allowed (32256 bytes)")
-sys.exit(1)
-"""
-    code, out, err = built(clone, pretending(tmp_path, body), *words)
+    code, out, err = built(clone, pretending(tmp_path, TOO_LARGE), *words)
     assert (code, out) == (2, "")
     assert said in err and "33000 > 32256" in err and "upgrade" not in err
     assert not ready.files(ready.cache())
@@ -256,15 +265,12 @@ sys.exit(1)
 def test_a_firmware_that_is_too_large_with_tasks_is_built_without_and_says_so(
     words: list[str], said: str, clone: Path, tmp_path: Path
 ) -> None:
-    body = """
+    body = f"""
+{MAKES}
 name = sys.argv[sys.argv.index("-e") + 1]
-print("Compiling a", flush=True)
 if name == "uno":
-    print("Error: The program size (33000 bytes) is greater than maximum allowed (32256 bytes)")
-    sys.exit(1)
-made = os.path.join(sys.argv[sys.argv.index("-d") + 1], ".pio", "build", name)
-os.makedirs(made)
-open(os.path.join(made, "firmware.hex"), "w").write(":00000001FF\\n")
+    {TOO_LARGE}
+make(name, ":00000001FF\\n")
 """
     code, _, err = built(clone, pretending(tmp_path, body), *words)
     assert code == 0 and err.count(said) == 1, err
@@ -272,12 +278,7 @@ open(os.path.join(made, "firmware.hex"), "w").write(":00000001FF\\n")
 
 
 def test_half_a_file_from_platformio_is_not_kept(clone: Path, tmp_path: Path) -> None:
-    body = """
-made = os.path.join(sys.argv[sys.argv.index("-d") + 1], ".pio", "build", "uno")
-os.makedirs(made)
-print("Compiling a", flush=True)
-open(os.path.join(made, "firmware.hex"), "w").write(":0400")
-"""
+    body = f'{MAKES}\nmake("uno", ":0400")'
     code, _, err = built(clone, pretending(tmp_path, body))
     assert code == 2 and "could not be built" in err
     assert not list(ready.cache().glob("*.hex"))
@@ -314,11 +315,7 @@ def test_a_pupils_files_are_not_taken_for_platformios(clone: Path, tmp_path: Pat
 
 
 def test_where_nothing_can_be_kept_it_says_so(clone: Path, tmp_path: Path) -> None:
-    body = """
-made = os.path.join(sys.argv[sys.argv.index("-d") + 1], ".pio", "build", "uno")
-os.makedirs(made)
-open(os.path.join(made, "firmware.hex"), "w").write(":00000001FF\\n")
-"""
+    body = f'{MAKES}\nmake("uno", ":00000001FF\\n")'
     (tmp_path / "cache").write_text("a file")
     code, _, err = built(clone, pretending(tmp_path, body))
     assert code == 2
@@ -357,15 +354,6 @@ time.sleep(600)
     assert running.returncode == 2 and "Traceback" not in said
     for number in told.read_text().split():
         until(partial(has_ended, number), f"the end of {number}")
-
-
-def has_ended(number: str) -> bool:
-    """Whether a process is gone, or waits only for somebody to ask how it ended."""
-    try:
-        stat = Path(f"/proc/{number}/stat").read_text()
-    except (FileNotFoundError, ProcessLookupError):
-        return True
-    return stat.rpartition(")")[2].split()[0] == "Z"
 
 
 # -- what is missing

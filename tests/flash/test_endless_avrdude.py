@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+from functools import partial
 from pathlib import Path
 from socket import socketpair
 from time import sleep as sleep_s
@@ -11,6 +12,7 @@ from time import sleep as sleep_s
 import pytest
 
 from tests.support.texts import in_all
+from tests.support.waiting import has_ended, until
 from tiniscript.flash import avrdude, children
 from tiniscript.flash.avrdude import Ended, Seen
 from tiniscript.flash.bootloaders import UNO
@@ -85,19 +87,7 @@ def test_its_children_end_with_it(tmp_path: Path, rest: str) -> None:
         f" stderr=subprocess.DEVNULL)\nopen({str(note)!r}, 'w').write(str(child.pid))\n{rest}\n"
     )
     ended(tmp_path, body)
-    child = Path(f"/proc/{note.read_text()}/stat")
-    for _ in range(1000):  # it is killed, and the system takes it away when it has time
-        if state_of(child) in ("gone", "Z"):
-            return
-        sleep_s(0.02)
-    raise AssertionError("it goes on")
-
-
-def state_of(process: Path) -> str:
-    try:
-        return process.read_text().rpartition(")")[2].split()[0]
-    except (FileNotFoundError, ProcessLookupError):
-        return "gone"
+    until(partial(has_ended, note.read_text()), "its child has ended")
 
 
 def test_the_sentence_says_what_to_do() -> None:

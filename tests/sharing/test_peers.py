@@ -119,15 +119,8 @@ def test_a_system_that_does_not_tell_lets_in(monkeypatch: pytest.MonkeyPatch) ->
 @pytest.mark.parametrize("how", ["stays", "leaves", "reset"])
 def test_another_user_moves_nothing(how: str) -> None:
     with robot("--listen", "0") as found:
-        words = [
-            sys.executable,
-            "-I",
-            "-c",
-            STRANGER,
-            found.port.rpartition(":")[2],
-            how,
-            LINE.hex(),
-        ]
+        number = found.port.rpartition(":")[2]
+        words = [sys.executable, "-I", "-c", STRANGER, number, how, LINE.hex()]
         for _ in range(3):
             done = subprocess.run(words, capture_output=True, text=True, timeout=HANGS_S)
             assert done.returncode == 0, done.stderr
@@ -190,18 +183,6 @@ def test_the_token_is_in_one_private_file() -> None:
             seen += [out, err]
     assert len(having) == 1 and len(seen) > 6
     assert not [each for each in seen for secret in secrets if secret in each]
-
-
-def test_the_file_with_the_token_is_for_its_user_alone() -> None:
-    registration = Registration("/dev/x", 1, "a" * 32, "b" * 32, "link", 9600, os.getpid())
-    before = os.umask(0)
-    try:
-        registry.write(registration)
-    finally:
-        os.umask(before)
-    [path] = (files.cache_folder() / "held").glob("*.json")
-    assert path.stat().st_mode & 0o777 == 0o600
-    assert path.parent.stat().st_mode & 0o777 == 0o700
 
 
 def test_files_of_dead_commands_go_and_those_of_servers_stay() -> None:

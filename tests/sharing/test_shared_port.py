@@ -6,6 +6,7 @@ import json
 import signal
 import socket
 import time
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -96,19 +97,6 @@ def test_all_names_of_a_port_lead_to_its_server(
     assert "shared already, by tsc link" in done.err
 
 
-def test_an_address_is_held_like_a_port(pty_robot: PtyRobot) -> None:
-    bridge = Command(code=BRIDGE.format(port=pty_robot.port))
-    assert bridge.process.stdout
-    address = f"socket://localhost:{int(bridge.process.stdout.readline())}"
-    command = Command("upload", "-e", FOREVER, "--port", address)
-    command.until("running")
-    assert process("stop", "--port", address.replace("localhost", "127.0.0.1")).code == 0
-    assert command.ended().code == 3
-    assert hellos(pty_robot) == 1
-    bridge.process.kill()
-    bridge.process.communicate()
-
-
 BRIDGE = """
 import socket, threading, serial
 tcp = socket.create_server(("127.0.0.1", 0))
@@ -122,6 +110,24 @@ threading.Thread(target=back, daemon=True).start()
 while data := peer.recv(1000):
     device.write(data)
 """
+
+
+@pytest.fixture
+def address(pty_robot: PtyRobot) -> Iterator[str]:
+    """A network address with the robot behind it."""
+    bridge = Command(code=BRIDGE.format(port=pty_robot.port))
+    assert bridge.process.stdout
+    yield f"socket://127.0.0.1:{int(bridge.process.stdout.readline())}"
+    bridge.process.kill()
+    bridge.process.communicate()
+
+
+def test_an_address_is_held_like_a_port(pty_robot: PtyRobot, address: str) -> None:
+    command = Command("upload", "-e", FOREVER, "--port", address.replace("127.0.0.1", "localhost"))
+    command.until("running")
+    assert process("stop", "--port", address).code == 0
+    assert command.ended().code == 3
+    assert hellos(pty_robot) == 1
 
 
 def test_a_client_may_have_chosen_another_robot(pty_robot: PtyRobot) -> None:
@@ -327,39 +333,23 @@ def test_a_robot_that_was_lost_is_found_again(pty_robot: PtyRobot, link: Command
     assert "SHOW 7" in on(pty_robot, "live", "SHOW(7)").out
 
 
-def test_of_two_who_want_a_port_one_gets_it(pty_robot: PtyRobot) -> None:
-    commands = [Command("link", "--port", pty_robot.port) for _ in range(3)]
-    held: list[str] = []
+@pytest.mark.parametrize("place", ["port", "address"])
+def test_of_three_who_want_a_place_one_gets_it(
+    pty_robot: PtyRobot, place: str, request: pytest.FixtureRequest
+) -> None:
+    wanted = pty_robot.port if place == "port" else request.getfixturevalue("address")
+    commands = [Command("link", "--port", wanted) for _ in range(3)]
     pty_robot.until(
         lambda: sum(each.process.poll() is not None for each in commands) == 2, "one stays"
     )
-    for each in commands:
-        if each.process.poll() is None:
-            assert on(pty_robot, "stop").code == 0
-            each.signal(signal.SIGINT)
-            done = each.ended()
-            assert (done.code, done.err) == (0, "\n")
-        else:
-            done = each.ended()
-            assert done.code == 3
-            held.append(done.err)
-    assert all("shared already" in said for said in held)
-
-
-def test_of_two_who_want_an_address_one_gets_it(pty_robot: PtyRobot) -> None:
-    bridge = Command(code=BRIDGE.format(port=pty_robot.port))
-    assert bridge.process.stdout
-    address = f"socket://127.0.0.1:{int(bridge.process.stdout.readline())}"
-    commands = [Command("link", "--port", address) for _ in range(3)]
-    pty_robot.until(
-        lambda: sum(each.process.poll() is not None for each in commands) == 2, "one stays"
-    )
-    losers = [each.ended() for each in commands if each.process.poll() is not None]
+    [holder] = [each for each in commands if each.process.poll() is None]
+    losers = [each.ended() for each in commands if each is not holder]
     assert [done.code for done in losers] == [3, 3]
     assert all("shared already" in done.err for done in losers)
-    for each in (*commands, bridge):
-        each.process.kill()
-        each.process.communicate()
+    assert process("stop", "--port", wanted).code == 0
+    holder.signal(signal.SIGINT)
+    done = holder.ended()
+    assert (done.code, done.err) == (0, "\n")
 
 
 def test_commands_that_come_at_once_are_all_served(pty_robot: PtyRobot) -> None:

@@ -83,6 +83,13 @@ def say(registration: Registration, data: bytes, chance: Random) -> None:
             assert said == b"", "a stranger is answered"
 
 
+def say_all(port: str, seed: int, count: int) -> None:
+    """Say everything strange, and so much that is a little otherwise."""
+    chance, registration = Random(seed), registration_of(port)
+    for data in (*STRANGE, *(mutated(chance) for _ in range(count))):
+        say(registration, data, chance)
+
+
 def registration_of(port: str) -> Registration:
     found = registry.found(port)
     assert found is not None
@@ -91,13 +98,8 @@ def registration_of(port: str) -> Registration:
 
 def test_no_bytes_of_a_stranger_end_a_run(pty_robot: PtyRobot) -> None:
     """The command that has started it holds the port; its heartbeat goes on."""
-    chance = Random(14)
     command = uploading(pty_robot)
-    registration = registration_of(pty_robot.port)
-    for data in STRANGE:
-        say(registration, data, chance)
-    for _ in range(1500):
-        say(registration, mutated(chance), chance)
+    say_all(pty_robot.port, 14, 1500)
     assert pty_robot.moves
     assert not [line for line in pty_robot.did if "FAULT" in line or "STOP" in line]
     assert json.loads(on(pty_robot, "info", "--json").out)["state"] == "RUNNING"
@@ -108,13 +110,8 @@ def test_no_bytes_of_a_stranger_end_a_run(pty_robot: PtyRobot) -> None:
 
 
 def test_no_bytes_of_a_stranger_end_a_client_of_link(pty_robot: PtyRobot, link: Command) -> None:
-    chance = Random(15)
     command = uploading(pty_robot)
-    registration = registration_of(pty_robot.port)
-    for data in STRANGE:
-        say(registration, data, chance)
-    for _ in range(500):
-        say(registration, mutated(chance), chance)
+    say_all(pty_robot.port, 15, 500)
     assert pty_robot.moves
     assert not [line for line in pty_robot.did if "FAULT" in line or "STOP" in line]
     assert on(pty_robot, "stop").code == 0

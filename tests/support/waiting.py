@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from pathlib import Path
 
 HANGS_S = 120.0
 
@@ -14,3 +15,12 @@ def until(is_so: Callable[[], bool], what: str, limit_s: float = HANGS_S) -> Non
     while not is_so():
         assert time.monotonic() < end_s, f"not after {limit_s} s: {what}"
         time.sleep(0.01)
+
+
+def has_ended(number: str) -> bool:
+    """Whether a process of Linux is gone, or waits only for somebody to ask how it ended."""
+    try:
+        stat = Path(f"/proc/{number}/stat").read_text()
+    except (FileNotFoundError, ProcessLookupError):
+        return True
+    return stat.rpartition(")")[2].split()[0] == "Z"

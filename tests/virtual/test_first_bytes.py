@@ -5,13 +5,12 @@ from __future__ import annotations
 import contextlib
 import socket
 import ssl
-from collections.abc import Iterator
 from random import Random
 
 import pytest
 
 from tests.support.virtual_robot import floor, robot_in
-from tests.virtual.test_simulator import PING, until, visit
+from tests.virtual.test_simulator import PING, received, until, until_answered, visit
 from tiniscript import compile_text, robots
 from tiniscript.bytecode.image import unpack
 from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
@@ -21,7 +20,7 @@ from tiniscript.link.session import Session
 from tiniscript.virtual import transports as limits
 from tiniscript.virtual.first_bytes import LONGEST, is_for_robot
 from tiniscript.virtual.simulator import Simulator
-from tiniscript.virtual.transports import CALLERS, Transports
+from tiniscript.virtual.transports import CALLERS
 
 
 def verdicts(data: bytes) -> list[bool | None]:
@@ -144,13 +143,6 @@ def test_a_first_line_has_an_end() -> None:
 # -- at the port --------------------------------------------------------------------------------
 
 
-@pytest.fixture
-def simulator() -> Iterator[Simulator]:
-    transports = Transports()
-    yield Simulator(robot_in(floor()), transports)
-    transports.close()
-
-
 def is_let_go(simulator: Simulator, client: socket.socket) -> bool:
     """Whether it was hung up on without a word."""
     said = b"?"
@@ -198,18 +190,11 @@ def test_a_page_does_not_come_in_after_another_client_either(simulator: Simulato
 
 def test_a_line_that_comes_letter_by_letter_is_answered(simulator: Simulator) -> None:
     with visit(simulator) as client:
-        heard = bytearray()
         for letter in b"PING|\r\n":
             client.send(bytes([letter]))
             for _ in range(3):
                 simulator.turn(0.01)
-
-        def is_answered() -> bool:
-            with contextlib.suppress(BlockingIOError):
-                heard.extend(client.recv(1000))
-            return b"\n" in heard
-
-        until(simulator, is_answered)
+        until_answered(simulator, client, b"\n")
         assert simulator.transports.visits == 1
 
 
@@ -243,9 +228,7 @@ def test_many_who_say_nothing_keep_nobody_out(simulator: Simulator, says: bytes)
         with contextlib.suppress(BlockingIOError, BrokenPipeError):  # it does not stand yet
             if not is_said:
                 is_said = client.send(PING) > 0
-        with contextlib.suppress(BlockingIOError):
-            heard.extend(client.recv(1000) if is_said else b"")
-        return b"\0" in heard
+        return is_said and b"\0" in received(client, heard)
 
     until(simulator, is_answered)
     assert CALLERS / 2 < most <= CALLERS
@@ -277,14 +260,7 @@ def test_a_silent_client_leaves_its_place_to_one_who_speaks(
         assert simulator.transports.visits == 1
         monkeypatch.setattr(limits, "IDLE_S", 0.0)
         until(simulator, lambda: simulator.transports.visits == 2)
-        heard = bytearray()
-
-        def is_answered() -> bool:
-            with contextlib.suppress(BlockingIOError):
-                heard.extend(second.recv(1000))
-            return b"\0" in heard
-
-        until(simulator, is_answered)
+        until_answered(simulator, second)
 
 
 def test_too_many_open_files_of_this_process_are_no_end(

@@ -4,26 +4,17 @@ from __future__ import annotations
 
 import contextlib
 import socket
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 
 import pytest
 
-from tests.support.virtual_robot import floor, robot_in
 from tiniscript.link.frames import Frame, encoded
 from tiniscript.link.messages import BY_NAME
 from tiniscript.virtual import transports as limits
 from tiniscript.virtual.simulator import FULL_BYTES, HEARTBEAT_MS, SILENT_S, Heartbeat, Simulator
-from tiniscript.virtual.transports import Transports
 
 PING = encoded(Frame(BY_NAME["PING"].number, 1, 0))
 TURNS = 3000  # far more than anything here takes
-
-
-@pytest.fixture
-def simulator() -> Iterator[Simulator]:
-    transports = Transports()
-    yield Simulator(robot_in(floor()), transports)
-    transports.close()
 
 
 def visit(simulator: Simulator) -> socket.socket:
@@ -38,6 +29,11 @@ def until(simulator: Simulator, is_so: Callable[[], bool]) -> None:
             return
         simulator.turn(0.01)
     raise AssertionError("it does not come to that")
+
+
+def until_answered(simulator: Simulator, client: socket.socket, end: bytes = b"\0") -> None:
+    heard = bytearray()
+    until(simulator, lambda: end in received(client, heard))
 
 
 def received(client: socket.socket, into: bytearray) -> bytearray:

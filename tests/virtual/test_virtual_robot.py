@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from random import Random
+
 import pytest
 
 from tests.support.casefile import ROOT
@@ -13,6 +15,7 @@ from tiniscript.bytecode.image import unpack
 from tiniscript.link.messages import STATUSES
 from tiniscript.link.trim import Trim
 from tiniscript.virtual import worlds
+from tiniscript.virtual.transports import BadLine
 from tiniscript.vm.runner import run
 
 KIT = robots.load("tinibot").kit
@@ -241,10 +244,6 @@ def test_another_kit_is_refused_by_the_robot_itself() -> None:
 
 @pytest.mark.parametrize("seed", range(1, 6))
 def test_on_a_bad_line_everything_arrives_or_ends(seed: int) -> None:
-    from random import Random
-
-    from tiniscript.virtual.transports import BadLine
-
     robot = robot_in(seed=seed)
     chance = Random(seed)
     there, back = BadLine(15, chance), BadLine(15, chance)
@@ -272,10 +271,6 @@ def test_on_a_bad_line_everything_arrives_or_ends(seed: int) -> None:
 
 
 def test_a_bad_line_is_the_same_with_the_same_seed_and_loses_nothing_in_order() -> None:
-    from random import Random
-
-    from tiniscript.virtual.transports import BadLine
-
     def through(rate: float, seed: int) -> bytes:
         line = BadLine(rate, Random(seed))
         line.put(bytes(range(256)) * 8, 0)

@@ -8,13 +8,11 @@ import pytest
 
 from tests.firmware.test_typed_stops import RUNS, SILENCE_MS
 from tests.support.virtual_robot import robot_in
-from tests.virtual.test_simulator import simulator, until, visit
+from tests.virtual.test_simulator import until, visit
 from tiniscript.link.messages import STOP_BYTES
 from tiniscript.virtual.first_bytes import is_at_stop, is_for_robot
 from tiniscript.virtual.robot import VirtualRobot
 from tiniscript.virtual.simulator import Simulator
-
-__all__ = ("simulator",)
 
 BITS = 10
 
