@@ -146,10 +146,9 @@ class Recovery:
     def has_signs(self, start: int) -> bool:
         """Whether rewrites of signs alone make the line right that a place is in."""
         at = self.program.count("\n", 0, start)
-        line = next((each for each in self.lines if each.first <= at <= each.last), None)
-        if line is None or not line.steps:
-            return False
-        return not isinstance(lines.right(lexemes(line.body), self.names), Failure)
+        near = (each for each in self.lines if each.steps and each.first <= at <= each.last)
+        read = (lines.right(lexemes(each.body), self.names) for each in near)
+        return any(not isinstance(each, Failure) for each in read)
 
     def drop_setups(self) -> None:
         """Drop a `SI|` below the first line."""

@@ -69,7 +69,7 @@ class Blocks:
 
     def begin(
         self, word: str, span: Span, head: Argument | None = None, name: Token | None = None
-    ) -> Block:
+    ) -> None:
         if word in TASK_WORDS and self.open:
             around = self.open[-1].word
             self._reporter.report(codes.TASK_NOT_TOP, span, word=word, around=around)
@@ -85,7 +85,6 @@ class Blocks:
             if self._depth == BLOCKS + 1:
                 self._reporter.report(codes.BLOCKS_TOO_DEEP, span, limit=str(BLOCKS))
         self.open.append(Block(word, span, head, name))
-        return self.open[-1]
 
     def end(self, end: Span) -> None:
         """Close the innermost block. It becomes an instruction of the one around it.

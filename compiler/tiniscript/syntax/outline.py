@@ -68,10 +68,8 @@ class _Alone(Blocks):
     def innermost(self) -> Block:
         return Block("IF", Span(0, 0), None, None)
 
-    def begin(
-        self, word: str, span: Span, head: Argument | None = None, name: Token | None = None
-    ) -> Block:
-        return Block(word, span, head, name)
+    def begin(self, *header: object, **name: object) -> None:
+        pass
 
 
 class _Expressions(ExpressionParser):
