@@ -137,8 +137,7 @@ def concepts(word: str) -> tuple[Meaning, ...]:
     """Return which words of the language a word may mean, the likeliest first."""
     if word == "SI":
         return (Meaning("IF", KNOWN),)
-    found = concept_of(word)
-    if found:
+    if found := concept_of(word):
         return (Meaning(found, KNOWN),)
     if word in WORDS or word in lexicon():
         return ()
@@ -146,16 +145,13 @@ def concepts(word: str) -> tuple[Meaning, ...]:
     if less != word:
         return (Meaning(less, MISSPELT),) if less in WORDS else concepts(less)
     alike, near = _speller().alike(word), _speller().near(word)
-    for spelt, cost in ((alike, KNOWN), (near, MISSPELT)):
-        if spelt and (found := concept_of(spelt)):
-            return (Meaning(found, cost),)
-    in_two = _in_two_words(word)
-    if in_two:
-        return (Meaning(in_two, KNOWN),)
-    close = nearest(word, WORDS) if len(word) > 2 else None
-    if close:
-        return (Meaning(close, NEAR),)
-    return ()
+    guesses = (
+        (concept_of(alike or ""), KNOWN),
+        (concept_of(near or ""), MISSPELT),
+        (_in_two_words(word), KNOWN),
+        (nearest(word, WORDS), NEAR),
+    )
+    return next(((Meaning(each, cost),) for each, cost in guesses if each), ())
 
 
 def meant_by(word: str) -> str | None:
