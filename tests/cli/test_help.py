@@ -228,12 +228,6 @@ def test_a_program_on_the_command_line_works_in_every_verb_that_takes_one(
     assert "-e" in {flag for each in PARSERS["live"]._actions for flag in each.option_strings}
 
 
-def test_help_of_a_verb_that_there_is_not(tsc: Tsc) -> None:
-    done = tsc("help", "uplod", "--lang", "es")
-    assert done.code == 2
-    assert "¿Quisiste decir upload?" in done.err
-
-
 @pytest.mark.parametrize("language", DOCUMENTED)
 @of_each
 def test_the_page_of_the_documents_says_all_of_it_too(verb: str, language: str) -> None:

@@ -204,20 +204,3 @@ def test_a_shared_port_has_the_authority_and_its_messages_no_key(
     client: Any = ClientRequests()
     for request in (client.claim(KEY_OWNER), client.disown(KEY_OWNER)):
         assert set(request.message) == {"do", "which"}
-
-
-def test_no_key_is_in_an_argument_or_in_debug_output(pty_robot: PtyRobot) -> None:
-    from tests.support.command import process
-
-    assert claimed(pty_robot).code == 0
-    (key,) = KeyFile().all()
-    kept = KeyFile().path.read_text()
-    assert key.key.hex() in kept
-    import os
-
-    os.environ["TINISCRIPT_DEBUG"] = "1"
-    try:
-        said = process("info", "--json", "--port", pty_robot.port)
-    finally:
-        del os.environ["TINISCRIPT_DEBUG"]
-    assert key.key.hex() not in said.out + said.err

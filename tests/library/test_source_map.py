@@ -108,23 +108,12 @@ def test_places_are_in_order_and_the_first_is_at_the_beginning() -> None:
 # -- the map of a program -------------------------------------------------------------------------
 
 
-def test_a_map_has_lines_and_columns_from_1_to_the_end() -> None:
-    found = mapped(compiled("S\r\n  F(1,\n 80)"))
-    assert found == Map("drive.ts", ("S", "  F(1,", " 80)"),
-                        (MapPlace(0, 1, 1, 1, 2), MapPlace(1, 2, 3, 3, 5)))  # fmt: skip
-
-
 def test_an_offset_inside_an_instruction_is_the_instruction_s() -> None:
     found = mapped(compiled("S; F(1, 80); W(1)"))
     columns = [None if (place := found.at(offset)) is None else place.column
                for offset in range(-1, 7)]  # fmt: skip
     assert columns == [None, 1, 4, 4, 4, 14, 14, 14]
     assert (found.line(0), found.line(1), found.line(2)) == ("", "S; F(1, 80); W(1)", "")
-
-
-def test_a_map_comes_back_from_json_as_it_was() -> None:
-    found = mapped(compiled("S // ñandú 🤖\nW(1)"))
-    assert source_map.from_json(source_map.as_json(found)) == found
 
 
 def test_a_map_is_written_as_json_writes_it() -> None:
@@ -154,14 +143,6 @@ def test_what_is_no_map_is_refused(changed: dict[str, object]) -> None:
     del fields["places"]
     with pytest.raises(ValueError, match="no map"):
         source_map.from_json(json.dumps(fields))
-
-
-def test_a_map_is_found_by_its_image_alone() -> None:
-    one, other = compiled("S"), compiled("W(1)")
-    source_map.remember(one.image, mapped(one))
-    recalled = source_map.recall(checksum(one.image))
-    assert recalled == mapped(one)
-    assert source_map.recall(checksum(other.image)) is None
 
 
 def test_the_oldest_maps_make_room(monkeypatch: pytest.MonkeyPatch) -> None:

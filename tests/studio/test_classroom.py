@@ -96,19 +96,6 @@ class Room:
                     if each["name"] == name)  # fmt: skip
 
 
-def test_pupils_share_a_robot_one_after_the_other() -> None:
-    room = Room()
-    ana, luz, teo = (room.joins(name) for name in ("Ana", "Luz", "Teo"))
-    assert room.here(ana)["place"] == -1
-    assert room.here(ana, True)["place"] == 0
-    assert room.here(luz, True)["place"] == 1
-    assert room.here(teo, True)["place"] == 2
-    robot = room.connects(ana)
-    assert room.hosting.asked[-1]["port"] == "port0"
-    robot.has_ended = True  # Ana has left it
-    assert [room.here(each)["place"] for each in (luz, teo, ana)] == [0, 1, -1]
-
-
 def test_a_turn_ends_after_its_time_only_if_somebody_waits() -> None:
     room = Room()
     ana, luz = room.joins("Ana"), room.joins("Luz")
@@ -575,15 +562,6 @@ def test_the_end_reaches_every_page(erases: bool, over: str) -> None:
     assert [each["pupil"] for each in room.teaches("class")["robots"]] == [""]
     late = {"do": "join", "code": room.made.code, "name": "Teo"}
     assert room.made.answer("", HERE, late) == {"failure": "class_over"}
-
-
-def test_the_end_waits_for_no_page_that_is_gone() -> None:
-    room = Room()
-    room.joins("Ana")
-    room.teaches("class_over")
-    assert not room.made.has_ended
-    room.now_s += 7
-    assert room.made.has_ended
 
 
 def test_who_has_asked_is_forgotten_after_a_thousand_others() -> None:
