@@ -20,7 +20,7 @@ from tests.support.casefile import ROOT
 from tests.support.command import TSC, Done, Tsc
 from tests.support.needs import need
 from tests.support.terminal import Terminal
-from tests.support.waiting import HANGS_S, until
+from tests.support.waiting import HANGS_S, has_ended, until
 from tiniscript.base.files import cache_folder
 from tiniscript.cli import fetching, page_build
 from tiniscript.cli.texts import text
@@ -335,8 +335,7 @@ def test_ctrl_c_ends_the_build_and_leaves_no_page(clone: Clone, started: list[Pe
     person.interrupt()
     assert person.ended() == 2 and "Stopped." in person.seen
     assert not clone.page.exists()
-    stat = Path(f"/proc/{told.read_text()}/stat")
-    assert not stat.exists() or stat.read_text().rpartition(")")[2].split()[0] == "Z"
+    assert has_ended(told.read_text())
 
 
 # -- PlatformIO and its compiler

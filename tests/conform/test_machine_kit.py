@@ -9,6 +9,7 @@ import shlex
 import sys
 import time
 from collections.abc import Sequence
+from functools import partial
 from itertools import count
 from pathlib import Path
 from types import ModuleType, SimpleNamespace
@@ -20,7 +21,7 @@ from tests.machines import MACHINES, Senses
 from tests.oracle import verifier
 from tests.support.casefile import ROOT
 from tests.support.command import Done, Tsc
-from tests.support.waiting import until
+from tests.support.waiting import has_ended, until
 from tiniscript.base.kit import Device, Kit
 from tiniscript.base.trace import Senses as Lists
 from tiniscript.base.trace import TracedRobot
@@ -336,15 +337,7 @@ def test_what_it_has_started_ends_with_it(tsc: Tsc, tmp_path: Path) -> None:
         conform(tsc, machine(tmp_path, source), "--only", "images: whole", "--timeout", timeout_s)
         if note.exists():
             break
-    stat = Path(f"/proc/{note.read_text()}/stat")
-
-    def has_ended() -> bool:
-        try:
-            return stat.read_text().rpartition(")")[2].split()[0] == "Z"
-        except OSError:  # it is gone, or goes just now
-            return True
-
-    until(has_ended, "the child has ended")
+    until(partial(has_ended, note.read_text()), "the child has ended")
 
 
 @pytest.mark.parametrize("command", ["no_such_command", "", "'", "/"])

@@ -79,14 +79,10 @@ def test_every_request_has_a_side() -> None:
         if message.number >= 32 or message.name in OPEN_TO_ALL | {"CLAIM", "AUTHENTICATE"}:
             continue
         payload = bytes(sum(field.low for field in message.request))
-        stranger._seq = (stranger._seq + 1) & 0xFF
-        frame = Frame(message.number, stranger._seq, stranger._epoch, payload)
-        sent = table.robot.wait(20, b"\0" + encoded(frame)).strip(b"\0")
-        answer = decoded(sent)
-        assert answer, message.name
+        status = table.asked(stranger, message.name, payload)[0]
         has_it = message.number <= LAST_WITHOUT_RADIO  # `test_esp32_wifi.py` asks who has a radio
         wanted = STATUSES["NOT_OWNER" if has_it else "UNKNOWN_MESSAGE"]
-        assert answer.payload[0] == wanted, message.name
+        assert status == wanted, message.name
 
 
 def test_authority_lapses_and_is_shown_again() -> None:
@@ -120,21 +116,14 @@ def test_authority_ends_with_its_connection(how: str) -> None:
 
 def test_a_recorded_session_opens_nothing() -> None:
     table, keys = Owned(), Keys()
-    session = table.claimed(keys)
-    recorded: list[bytes] = []
+    table.claimed(keys)
     again = table.session(keys, nonce=4)
-    request = again.upload(image_of("SI|F(1, 80)"))
-    while request.outcome is None:
-        data = again.poll(table.robot.now_ms)
-        recorded.append(data)
-        again.receive(table.robot.step(data), table.robot.now_ms)
-    assert request.outcome.status == 0
+    recorded, _ = table.frames(again, again.upload(image_of("SI|F(1, 80)")))
     table.pass_time(None, 4000)
-    del session
     table.robot.did.clear()
     for _ in range(300):  # the epoch goes around
         for data in recorded:
-            table.robot.wait(3, data)
+            table.robot.wait(3, b"\0" + data + b"\0")
     assert not [line for line in table.robot.did if "MOTORS" in line]
 
 
@@ -142,22 +131,12 @@ def test_a_recorded_tag_opens_nothing_in_its_own_epoch() -> None:
     table, keys = Owned(), Keys()
     table.claimed(keys)
     owner = table.session(keys, nonce=4)
-    recorded: list[Frame] = []
-    request = owner.hello()
-    while request.outcome is None:
-        data = owner.poll(table.robot.now_ms)
-        frame = decoded(data.strip(b"\0")) if data else None
-        recorded += [frame] if frame is not None else []
-        owner.receive(table.robot.step(data), table.robot.now_ms)
-    (shown,) = (each for each in recorded if len(each.payload) == 9)
+    recorded, _ = table.frames(owner, owner.hello())
+    (shown,) = (each for each in map(decoded, recorded) if each and len(each.payload) == 9)
     assert table.outcome(owner, owner.trim()) == "OK"
 
     def answers(thief: Session, tag: bytes) -> int:
-        thief._seq = (thief._seq + 1) & 0xFF
-        frame = Frame(shown.number, thief._seq, thief._epoch, shown.payload[:1] + tag)
-        answer = decoded(table.robot.wait(20, b"\0" + encoded(frame)).strip(b"\0"))
-        assert answer
-        return answer.payload[0]
+        return table.asked(thief, "AUTHENTICATE", shown.payload[:1] + tag)[0]
 
     assert answers(owner, shown.payload[1:]) == STATUSES["NOT_OWNER"]  # twice to one challenge
     table.pass_time(None, 2100)
@@ -217,15 +196,13 @@ def test_no_challenge_is_a_tag() -> None:
     table, keys = Owned(), Keys()
     owner = table.claimed(keys)
     assert owner.robot is not None
-    number, nonce = BY_NAME["AUTHENTICATE"].number, owner.robot.values.nonce.to_bytes(4, "little")
+    nonce = owner.robot.values.nonce.to_bytes(4, "little")
     [key] = keys.of_robot(owner.robot.id)
     challenges = []
     for _ in range(2):
-        owner._seq = (owner._seq + 1) & 0xFF
-        asks = Frame(number, owner._seq, owner._epoch, bytes([key.which]))
-        answer = decoded(table.robot.wait(20, b"\0" + encoded(asks)).strip(b"\0"))
-        assert answer is not None and answer.payload[0] == 0
-        challenges.append(answer.payload[3:])
+        answer = table.asked(owner, "AUTHENTICATE", bytes([key.which]))
+        assert answer[0] == 0
+        challenges.append(answer[3:])
     first, second = challenges
     times = range(table.robot.now_ms - 100, table.robot.now_ms + 100)
     texts = [first + nonce + (each & 0xFFFF).to_bytes(2, "little") for each in times]
@@ -242,14 +219,9 @@ def test_the_same_seed_after_a_reset_is_another_challenge_or_needs_the_key() -> 
     for seed in range(12):
         later = Owned(memory, seed=seed)
         session = later.session(keys, nonce=4)
-        asked: list[bytes] = []
-        request = session.hello()
-        while request.outcome is None:
-            sent = later.robot.step(session.poll(later.robot.now_ms))
-            asked.append(sent)
-            session.receive(sent, later.robot.now_ms)
-        reply = max(asked, key=len)
-        challenges.add(b"".join(asked).replace(reply, b""))
+        _, answers = later.frames(session, session.hello())
+        reply = max(answers, key=len)
+        challenges.add(b"".join(each for each in answers if each != reply))
     assert len(challenges) == 12
 
 
@@ -269,13 +241,7 @@ def forged(frames: int, seed: int) -> int:
     table, keys = Owned(), Keys()
     table.claimed(keys)
     owner = table.session(keys, nonce=4)
-    request = owner.upload(image_of("SI|F(0.1, 80)"))
-    recorded = []
-    while request.outcome is None:
-        data = owner.poll(table.robot.now_ms)
-        if data:
-            recorded.append(data)
-        owner.receive(table.robot.step(data), table.robot.now_ms)
+    recorded, _ = table.frames(owner, owner.upload(image_of("SI|F(0.1, 80)")))
     table.pass_time(None, 6000)
     table.robot.did.clear()
     memory = table.robot.memory()
@@ -291,7 +257,7 @@ def forged(frames: int, seed: int) -> int:
             table.robot.wait(1100)
         how = chance.randrange(3)
         if how == 0:
-            data = chance.choice(recorded)
+            data = chance.choice(recorded) + b"\0"
         else:
             message = chance.choice([each for each in BY_NAME.values() if each.number < 32])
             low = sum(field.low for field in message.request)

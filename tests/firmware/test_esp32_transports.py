@@ -49,6 +49,14 @@ def ended(robot: Esp32Robot, ends: Ends, request: PendingRequest[Any], limit_ms:
     raise AssertionError("the request is not over")
 
 
+def claimed(robot: Esp32Robot, ends: Ends, who: Session, which: int = 0) -> None:
+    """Let somebody claim a robot, and hold its button."""
+    claim = who.claim(which)
+    for milliseconds, flags in ((300, 0), (2500, 1), (800, 2)):
+        talk(robot, ends, milliseconds, flags)
+    assert claim.outcome and claim.outcome.status == 0
+
+
 def uploaded(robot: Esp32Robot, ends: Ends, who: Session, text: str = AWAY) -> str:
     return ended(robot, ends, who.upload(image_of(text), saves=False))
 
@@ -360,11 +368,7 @@ def test_a_teachers_stop_holds_on_every_transport() -> None:
     teacher = Session(1, 115200, robot.robot.kit.fingerprint, keys=keys)
     pupil = session(2, robot)
     ends: Ends = [(LowEnergy(robot), teacher), (None, pupil)]
-    claim = teacher.claim(1)
-    talk(robot, ends, 300)
-    talk(robot, ends, 2500, flags=1)
-    talk(robot, ends, 500, flags=2)
-    assert claim.outcome and claim.outcome.status == 0
+    claimed(robot, ends, teacher, which=1)
     assert ended(robot, ends, teacher.hold_back()) == "OK"
     talk(robot, ends[1:], AUTHORITY_MS + 100)
     assert ended(robot, ends[1:], pupil.clear()) == "HELD_BACK"

@@ -6,7 +6,7 @@ import socket
 
 import pytest
 
-from tests.firmware.test_esp32_transports import AWAY, Ends, booted, ended, uploaded
+from tests.firmware.test_esp32_transports import AWAY, Ends, booted, claimed, ended, uploaded
 from tests.firmware.test_host_firmware import happened, image_of
 from tests.machines.esp32 import BROWN_OUT, EXTERNAL, POWER_ON, TASK_WATCHDOG, Esp32Robot, Kept
 from tests.support.esp32_radio import (
@@ -36,13 +36,15 @@ def owned(keys: Keys, robot: Esp32Robot | None = None) -> tuple[Esp32Robot, Sess
     """Return a robot with an owner, and the owner's session over the cable."""
     robot = robot or booted()
     owner = Session(7, 115200, robot.robot.kit.fingerprint, keys=keys)
-    ends: Ends = [(None, owner)]
-    claim = owner.claim(0)
-    talk(robot, ends, 300)
-    talk(robot, ends, 2500, flags=1)
-    talk(robot, ends, 800, flags=2)
-    assert claim.outcome and claim.outcome.status == 0
+    claimed(robot, [(None, owner)], owner)
     return robot, owner
+
+
+def far_owner(keys: Keys) -> tuple[Esp32Robot, Network, Session]:
+    """Return a robot in a network, and its owner's session over TCP."""
+    robot, _ = joined(keys)
+    talk(robot, [], AUTHORITY_MS + 100)
+    return robot, Network(robot), remote(robot, keys)
 
 
 def joined(keys: Keys, network: wifi.Network = SCHOOL) -> tuple[Esp32Robot, Session]:
@@ -262,11 +264,9 @@ def again_epoch(who: Bytes) -> int:
 
 
 def test_the_owner_drives_over_wifi_and_a_stranger_looks_and_stops() -> None:
-    keys = Keys()
-    robot, _ = joined(keys)
-    talk(robot, [], AUTHORITY_MS + 100)
-    owner, stranger = remote(robot, keys), remote(robot, Keys(50), 11)
-    ends: Ends = [(Network(robot), owner), (Network(robot), stranger)]
+    robot, end, owner = far_owner(Keys())
+    stranger = remote(robot, Keys(50), 11)
+    ends: Ends = [(end, owner), (Network(robot), stranger)]
     assert uploaded(robot, ends, owner) == "OK"
     for request in (stranger.hello(), stranger.ping(), stranger.status(), stranger.identify()):
         assert ended(robot, ends, request) == "OK"
@@ -306,10 +306,8 @@ def test_a_robot_that_was_given_up_does_not_move_over_wifi() -> None:
 
 def test_a_network_that_drops_ends_the_run_and_the_cable_goes_on() -> None:
     keys = Keys()
-    robot, _ = joined(keys)
-    talk(robot, [], AUTHORITY_MS + 100)
-    owner, cable = remote(robot, keys), session(12, robot)
-    end = Network(robot)
+    robot, end, owner = far_owner(keys)
+    cable = session(12, robot)
     ends: Ends = [(end, owner), (None, cable)]
     assert uploaded(robot, ends, owner) == "OK"
     in_reach(robot, "", "")
@@ -324,11 +322,7 @@ def test_a_network_that_drops_ends_the_run_and_the_cable_goes_on() -> None:
 
 
 def test_a_client_that_leaves_ends_its_run_at_once() -> None:
-    keys = Keys()
-    robot, _ = joined(keys)
-    talk(robot, [], AUTHORITY_MS + 100)
-    owner = remote(robot, keys)
-    end = Network(robot)
+    robot, end, owner = far_owner(Keys())
     assert uploaded(robot, [(end, owner)], owner) == "OK"
     end.leave()
     robot.wait(5)
@@ -337,11 +331,7 @@ def test_a_client_that_leaves_ends_its_run_at_once() -> None:
 
 def test_strangers_who_trickle_bytes_keep_no_stop_out() -> None:
     """Two have both places, and say a letter of a line now and then; an owner's keeps his."""
-    keys = Keys()
-    robot, _ = joined(keys)
-    talk(robot, [], AUTHORITY_MS + 100)
-    owner = remote(robot, keys)
-    end = Network(robot)
+    robot, end, owner = far_owner(Keys())
     ends: Ends = [(end, owner)]
     assert uploaded(robot, ends, owner) == "OK"
     for _ in range(3):  # the place of one makes room for the next

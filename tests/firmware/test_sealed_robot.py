@@ -39,23 +39,7 @@ SHORT = "SI|F(0.1, 80)"
 
 def recorded(table: Owned, session: Session, text: str) -> tuple[list[bytes], list[bytes]]:
     """Have a program run; return the frames to the robot and those back."""
-    there: list[bytes] = []
-    back: list[bytes] = []
-    request = session.upload(image_of(text), saves=False)
-    while request.outcome is None:
-        data = session.poll(table.robot.now_ms)
-        sent = table.robot.step(data)
-        session.receive(sent, table.robot.now_ms)
-        there += [each for each in data.split(b"\0") if each]
-        back.append(sent)
-    assert request.outcome.status == 0
-    return there, [each for each in b"".join(back).split(b"\0") if each]
-
-
-def answer(table: Owned, frame: Frame | bytes) -> Frame | None:
-    data = frame + b"\0" if isinstance(frame, bytes) else encoded(frame)
-    found = [each for each in table.robot.wait(20, b"\0" + data).split(b"\0") if each]
-    return decoded(found[0]) if found else None
+    return table.frames(session, session.upload(image_of(text), saves=False))
 
 
 def open_(table: Owned, nonce: int = 4) -> tuple[Session, Keys]:
@@ -83,7 +67,7 @@ def test_a_firmware_without_seals_does_as_before() -> None:
     there, _ = recorded(table, session, SHORT)
     assert not any(frame.is_sealed for frame in map(decoded, there) if frame)
     sealed = Seal(bytes(16)).closed(Frame(BY_NAME["START"].number, 1, 0, b"\0"))
-    said = answer(table, sealed)
+    said = table.answer(sealed)
     assert said and said.payload[0] == STATUSES["NOT_SEALED"]
 
 
@@ -98,11 +82,11 @@ def test_what_is_not_sealed_has_no_authority() -> None:
             continue
         payload = bytes(sum(field.low for field in message.request))
         frame = Frame(message.number, (session._seq + 1) & 0xFF, session._epoch, payload)
-        said = answer(table, frame)
+        said = table.answer(frame)
         assert said and said.payload[0] == STATUSES["NOT_OWNER"] and not said.is_sealed, message
     for which in (0, 1):
         claim = Frame(16, (session._seq + 1) & 0xFF, session._epoch, bytes([which]))
-        said = answer(table, claim)
+        said = table.answer(claim)
         assert said and said.payload[0] == STATUSES["NOT_OWNER"]
     assert state_of(table, session) == STATE_RUNNING
 
@@ -115,7 +99,7 @@ def test_an_answer_is_told_again_to_nobody_else() -> None:
     request = session.fetch()
     assert table.outcome(session, request) == "OK"
     frame = Frame(BY_NAME["FETCH"].number, session._seq, session._epoch, b"\0\0")
-    said = answer(table, frame)
+    said = table.answer(frame)
     assert said and said.payload == bytes([STATUSES["NOT_OWNER"], 0, 0])
 
 
@@ -132,7 +116,7 @@ def test_a_stranger_keeps_no_program_running() -> None:
         while table.robot.now_ms < begun_ms + 1010:
             table.robot.wait(50, b"\0" + encoded(Frame(ping, 1, 0)))
         assert "MOTORS 0 0" in table.robot.did[-2] + table.robot.did[-1]
-        said = answer(table, Frame(ping, 1, 0))
+        said = table.answer(Frame(ping, 1, 0))
         assert said and said.payload[1] == STATE_FAULTED
 
 
@@ -240,7 +224,7 @@ def test_a_stop_whose_seal_is_wrong_stops_all_the_same(payload: bytes) -> None:
         else:
             session = table.session()
         recorded(table, session, FOREVER)
-        answer(table, Frame(BY_NAME["STOP"].number, 1, 0, payload, is_sealed=True))
+        table.answer(Frame(BY_NAME["STOP"].number, 1, 0, payload, is_sealed=True))
         assert table.robot.is_latched
 
 
@@ -251,7 +235,7 @@ def test_a_teachers_stop_needs_the_teachers_seal() -> None:
     table.claimed(pupil)
     session = table.session(teacher, nonce=6)
     assert table.tries(session) == "OK"
-    answer(table, Frame(BY_NAME["STOP"].number, 77, session._epoch))
+    table.answer(Frame(BY_NAME["STOP"].number, 77, session._epoch))
     assert state_of(table, session) == STATE_STOPPED
     mine = table.session(pupil, nonce=7)
     assert table.tries(mine) == "OK"
@@ -322,7 +306,7 @@ def test_a_stranger_is_told_all_that_is_for_all_beside_a_seal() -> None:
     session, _ = open_(table)
     for name, payload in (("PING", b""), ("STATUS", b""), ("IDENTIFY", b"")):
         frame = Frame(BY_NAME[name].number, (session._seq + 9) & 0xFF, session._epoch, payload)
-        said = answer(table, frame)
+        said = table.answer(frame)
         assert said and said.payload[0] == 0 and not said.is_sealed
     assert table.tries(session) == "OK"
     stranger = table.session(nonce=50)

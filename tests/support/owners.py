@@ -12,7 +12,8 @@ from tiniscript import compile_text, robots
 from tiniscript.bytecode.image import Image, unpack
 from tiniscript.link.authority import KeyRing, RobotKey, whose
 from tiniscript.link.connection import PendingRequest
-from tiniscript.link.messages import STATUS_NAMES
+from tiniscript.link.frames import Frame, decoded, encoded
+from tiniscript.link.messages import BY_NAME, STATUS_NAMES
 from tiniscript.link.session import Session
 
 KIT = robots.load("tinibot").kit
@@ -74,6 +75,34 @@ class Owned:
 
     def outcome(self, session: Session, request: PendingRequest[Any]) -> str:
         return STATUS_NAMES.get(status := self.robot.until(session, request, 60_000), str(status))
+
+    def frames(
+        self, session: Session, request: PendingRequest[Any]
+    ) -> tuple[list[bytes], list[bytes]]:
+        """Let both talk until a request is done; return the frames to the robot, and those back."""
+        there = back = b""
+        while request.outcome is None:
+            data = session.poll(self.robot.now_ms)
+            sent = self.robot.step(data)
+            session.receive(sent, self.robot.now_ms)
+            there, back = there + data, back + sent
+        assert request.outcome.status == 0
+        return [each for each in there.split(b"\0") if each], [
+            each for each in back.split(b"\0") if each
+        ]
+
+    def answer(self, frame: Frame | bytes) -> Frame | None:
+        """Return what the robot answers a frame, or bytes of one."""
+        data = frame + b"\0" if isinstance(frame, bytes) else encoded(frame)
+        found = [each for each in self.robot.wait(20, b"\0" + data).split(b"\0") if each]
+        return decoded(found[0]) if found else None
+
+    def asked(self, session: Session, name: str, payload: bytes) -> bytes:
+        """Return what the robot answers the next frame of a session, which needs no seal."""
+        session._seq = (session._seq + 1) & 0xFF
+        answer = self.answer(Frame(BY_NAME[name].number, session._seq, session._epoch, payload))
+        assert answer, name
+        return answer.payload
 
     def hold(self, session: Session | None, milliseconds: int) -> None:
         """Hold the button down, while a computer talks."""
