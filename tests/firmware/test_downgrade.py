@@ -7,15 +7,14 @@ they like. They have no key. `python -m tests.firmware.test_downgrade 10000` has
 from __future__ import annotations
 
 import random
-from collections import Counter
 from collections.abc import Callable
-from typing import Any, Protocol
+from functools import partial
+from typing import Any
 
 import pytest
 
-from tests.support.campaign import wanted
-from tests.support.owners import FOREVER, KIT, Keys, Owned, image_of
-from tests.support.virtual_robot import Talk, robot_in
+from tests.support.campaign import each_seed, wanted
+from tests.support.owners import FOREVER, Keys, Owned, image_of
 from tiniscript.link.connection import PendingRequest
 from tiniscript.link.frames import Frame, decoded, encoded
 from tiniscript.link.messages import (
@@ -32,7 +31,6 @@ from tiniscript.link.messages import (
 )
 from tiniscript.link.outcomes import LOST, UNPROVEN
 from tiniscript.link.session import Session
-from tiniscript.virtual.simulator import HOLD_MS
 
 TRIALS = 150
 HELLO, AUTHENTICATE, STATUS, STOPPED = (
@@ -42,17 +40,9 @@ LIMIT_MS = 9000
 CLEARED = (OWNED, SEALS, OWNED | SEALS)
 
 
-class End(Protocol):
+class End:
     """A robot with an owner, whose time passes as we like; `keys` has its key."""
 
-    keys: Keys
-
-    def passes(self, milliseconds: int, data: bytes = b"") -> bytes: ...
-
-    def session(self, nonce: int, keys: Keys | None) -> Session: ...
-
-
-class HostEnd:
     def __init__(self, which: int = KEY_OWNER) -> None:
         self.keys = Keys()
         self.table = Owned()
@@ -61,28 +51,8 @@ class HostEnd:
     def passes(self, milliseconds: int, data: bytes = b"") -> bytes:
         return self.table.robot.wait(milliseconds, data)
 
-    def session(self, nonce: int, keys: Keys | None) -> Session:
+    def session(self, nonce: int, keys: Keys) -> Session:
         return self.table.session(keys, nonce)
-
-
-class VirtualEnd:
-    def __init__(self, which: int = KEY_OWNER) -> None:
-        self.keys = Keys()
-        self.robot = robot_in(baud=115200)
-        talk = Talk(self.robot, keys=self.keys)
-        request = talk.session.claim(which)
-        talk.wait(500)
-        self.robot.press()
-        talk.wait(HOLD_MS)
-        self.robot.let_go()
-        assert talk.until(request).status == 0
-
-    def passes(self, milliseconds: int, data: bytes = b"") -> bytes:
-        said = self.robot.step(self.robot.now_ms + 1, data)
-        return said + self.robot.step(self.robot.now_ms + milliseconds - 1)
-
-    def session(self, nonce: int, keys: Keys | None) -> Session:
-        return Session(nonce, 115200, KIT.fingerprint, keys=keys)
 
 
 class Between:
@@ -236,26 +206,16 @@ def one_trial(end: End, seed: int) -> str:
     return f"{kind}, cleared" if cleared else kind
 
 
-def trials(end: End, seed: int, count: int) -> Counter[str]:
-    return Counter(one_trial(end, each) for each in range(seed, seed + count))
+def test_nobody_between_takes_the_seals_away() -> None:
+    end = End()
+    assert len({one_trial(end, seed) for seed in range(1, TRIALS + 1)}) == 10  # each kind
 
 
-ENDS = [HostEnd, VirtualEnd]
-
-
-@pytest.mark.parametrize("end_of", ENDS)
-def test_nobody_between_takes_the_seals_away(end_of: Callable[[], End]) -> None:
-    assert len(trials(end_of(), 1, TRIALS)) == 10  # each kind
-
-
-@pytest.mark.parametrize("end_of", ENDS)
 @pytest.mark.parametrize("which", [KEY_OWNER, KEY_TEACHER])
 @pytest.mark.parametrize("is_greeted", [False, True])
-def test_a_stop_that_the_robot_has_heard_is_confirmed(
-    end_of: Callable[[int], End], which: int, is_greeted: bool
-) -> None:
+def test_a_stop_that_the_robot_has_heard_is_confirmed(which: int, is_greeted: bool) -> None:
     """A robot that seals says so under the seal, with a teacher's key alone, too."""
-    end = end_of(which)
+    end = End(which)
     begun(end, random.Random(3))
     session = end.session(99, end.keys)
     if is_greeted:
@@ -266,11 +226,8 @@ def test_a_stop_that_the_robot_has_heard_is_confirmed(
     assert state_of(end) == STATE_STOPPED
 
 
-@pytest.mark.parametrize("end_of", ENDS)
-def test_a_robot_that_was_claimed_by_another_is_stopped_and_does_not_prove_it(
-    end_of: Callable[[], End],
-) -> None:
-    end = end_of()
+def test_a_robot_that_was_claimed_by_another_is_stopped_and_does_not_prove_it() -> None:
+    end = End()
     begun(end, random.Random(3))
     keys = Keys()
     keys.found = [key._replace(key=bytes(15) + b"\7") for key in end.keys.found]
@@ -286,9 +243,8 @@ def test_a_robot_that_was_claimed_by_another_is_stopped_and_does_not_prove_it(
     assert honest(end, stranger, None)[-1] == "STOPPED"
 
 
-@pytest.mark.parametrize("end_of", ENDS)
-def test_a_key_learns_that_its_robot_seals_from_the_robot_alone(end_of: Callable[[], End]) -> None:
-    end = end_of()
+def test_a_key_learns_that_its_robot_seals_from_the_robot_alone() -> None:
+    end = End()
     assert [key.seals for key in end.keys.found] == [True]  # from its claim
     keys = Keys()
     keys.found = [key._replace(seals=False) for key in end.keys.found]  # as older files have it
@@ -302,7 +258,4 @@ def test_a_key_learns_that_its_robot_seals_from_the_robot_alone(end_of: Callable
 
 
 if __name__ == "__main__":
-    given = wanted(10_000, 1)
-    for name, end in (("host", HostEnd()), ("virtual robot", VirtualEnd())):
-        found = trials(end, given.seed, given.count // 2)
-        print(f"{name}: {dict(sorted(found.items()))}, none believed", flush=True)
+    each_seed(partial(one_trial, End()), wanted(10_000, 1))
