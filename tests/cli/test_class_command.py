@@ -174,16 +174,13 @@ def test_the_times_of_all_robots_count_from_one_start() -> None:
     shown = ShowEvent(5000, False)
 
     def listen(robot: int, after_ms: int) -> None:
-        events = iter([(began_ms + after_ms, shown), (began_ms + after_ms + 100, shown)])
-
-        def event() -> tuple[int, ShowEvent]:
-            try:
-                return next(events)
-            except StopIteration:
-                raise KeyboardInterrupt from None
+        def watch(_: float | None) -> Iterator[tuple[int, ShowEvent]]:
+            yield began_ms + after_ms, shown
+            yield began_ms + after_ms + 100, shown
+            raise KeyboardInterrupt
 
         connection = SimpleNamespace(
-            port="x", name="tini", language="en", device_info=SimpleNamespace(id=robot), event=event
+            port="x", name="tini", language="en", device_info=SimpleNamespace(id=robot), watch=watch
         )
         member = SimpleNamespace(meet=lambda _: None, print=printed.append)
         listener.listen(cast(Connection, connection), cast(Member, member))

@@ -6,11 +6,9 @@ import sys
 from argparse import Namespace
 from time import monotonic
 
-from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.options import whole_number
 from tiniscript.cli.paths import ROWS
-from tiniscript.cli.robot.bookkeeping import Bookkeeping
 from tiniscript.cli.robot.connect import Connection, connected
 from tiniscript.cli.robot.event_printer import EventPrinter
 from tiniscript.cli.robot.recorder import Rows
@@ -49,16 +47,10 @@ def run(options: Namespace, language: str) -> int:
 def _watch(
     connection: Connection, printer: EventPrinter, seconds: int, board: Board | None = None
 ) -> None:
-    bookkeeping = Bookkeeping()
-    end_s = monotonic() + seconds if seconds else None
-    while end_s is None or monotonic() < end_s:
+    for found in connection.watch(monotonic() + seconds if seconds else None):
         if board is not None:
             board.draw_plot(int(monotonic() * 1000))
-        found = connection.event()
-        if found is None or bookkeeping.hides(found[1]):
-            continue
-        if board is not None:
-            board.take(*found)
-        if found[1].name == "LOST":
-            raise CommandError(3, "link_lost", port=shown(connection.port))
-        printer.tell(*found)
+        if found is not None:
+            if board is not None:
+                board.take(*found)
+            printer.tell(*found)

@@ -29,7 +29,7 @@ from tiniscript.link.keys import KeyFile
 from tiniscript.virtual import directory
 from tiniscript.virtual.computer import Computer
 from tiniscript.virtual.robot import VirtualRobot
-from tiniscript.virtual.simulator import CALM_S, Simulator
+from tiniscript.virtual.simulator import CALM_S, HOLD_MS, PUSH_MS, Simulator
 from tiniscript.virtual.transports import Transports, can_have_terminal
 
 if TYPE_CHECKING:
@@ -39,7 +39,6 @@ FASTEST_BAUD = 2_000_000
 MEMORY_BYTES = 1024  # of an Uno's EEPROM
 SAVE_S = 1.0  # between two looks at what the robot keeps
 QUIT = "qQ\x04"
-PUSH_MS, HOLD_MS = 60, 2300  # as `virtual.simulator`, which takes long to import
 
 
 def run(options: Namespace, language: str) -> int:

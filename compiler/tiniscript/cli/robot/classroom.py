@@ -16,7 +16,6 @@ from tiniscript.cli.inputs import shown
 from tiniscript.cli.options import whole_number
 from tiniscript.cli.paths import CLASS_ROWS
 from tiniscript.cli.robot import broker_options
-from tiniscript.cli.robot.bookkeeping import Bookkeeping
 from tiniscript.cli.robot.connect import Connection, port_failure
 from tiniscript.cli.robot.event_printer import EventPrinter
 from tiniscript.cli.robot.fleet import together
@@ -161,15 +160,10 @@ class Listener:
             err=out, rows=partial(add, *who) if add is not None else None,
             began_ms=self.began_ms,
         )  # fmt: skip
-        bookkeeping = Bookkeeping()
         try:
-            while self.end_s is None or monotonic() < self.end_s:
-                found = connection.event()
-                if found is None or bookkeeping.hides(found[1]):
-                    continue
-                if found[1].name == "LOST":
-                    raise CommandError(3, "link_lost", port=shown(connection.port))
-                printer.tell(*found)
+            for found in connection.watch(self.end_s):
+                if found is not None:
+                    printer.tell(*found)
         except KeyboardInterrupt:
             pass
         return Result(True, text("class_over", connection.language))

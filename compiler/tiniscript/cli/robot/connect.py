@@ -9,6 +9,7 @@ import sys
 from argparse import Namespace
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext, suppress
+from time import monotonic
 from typing import TYPE_CHECKING, TypeVar
 
 from tiniscript import robots
@@ -16,6 +17,7 @@ from tiniscript.cli import inputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.options import whole_number
+from tiniscript.cli.robot.bookkeeping import Bookkeeping
 from tiniscript.cli.terminal.progress import waiting
 from tiniscript.cli.texts import text
 from tiniscript.cli.texts.options import virtual_names
@@ -27,7 +29,7 @@ from tiniscript.link import known_ports
 from tiniscript.link.connection import PendingRequest, Requester, reason_of
 from tiniscript.link.errors import PortError
 from tiniscript.link.messages import OWNED, STATUSES, YOURS
-from tiniscript.link.outcomes import Gone
+from tiniscript.link.outcomes import Event, Gone
 from tiniscript.link.port_names import is_address
 from tiniscript.link.requests import TAKEN, DeviceInfo, Reply
 from tiniscript.link.statuses import sentence
@@ -186,6 +188,20 @@ class Connection(Client):
         if reply.status and reply.status not in TAKEN:
             raise self.failure(reply)
         return reply
+
+    def watch(self, end_s: float | None) -> Iterator[tuple[int, Event] | None]:
+        """Yield what happens until then, of whoever drives; None now and then.
+
+        Raises CommandError where the robot is lost.
+        """
+        bookkeeping = Bookkeeping()
+        while end_s is None or monotonic() < end_s:
+            found = self.event()
+            if found is not None and bookkeeping.hides(found[1]):
+                continue
+            if found is not None and found[1].name == "LOST":
+                raise CommandError(3, "link_lost", port=shown(self.port))
+            yield found
 
     def interrupt(self) -> None:
         """Pass a Ctrl-C to the thread that waits here; Python reports it only to the main one."""

@@ -26,6 +26,7 @@ from tiniscript.cli.texts import text
 from tiniscript.library.compiling import compile_text
 from tiniscript.library.known_kits import of_kit
 from tiniscript.link.messages import RESETS, SAVED
+from tiniscript.link.names import row_name
 from tiniscript.link.outcomes import Event
 from tiniscript.link.payloads import StatusReply
 from tiniscript.link.trim import told
@@ -145,8 +146,8 @@ class SelfTest:
             self._add("line", OK, "self_line_is", **said)
 
     def _supply(self, status: StatusReply) -> None:
-        reset = _name(RESETS, self.connection.device_info.values.reset)
-        if reset == "BROWN_OUT" or _name(SAVED, status.saved) == "LOW_SUPPLY":
+        reset = row_name(RESETS, self.connection.device_info.values.reset)
+        if reset == "BROWN_OUT" or row_name(SAVED, status.saved) == "LOW_SUPPLY":
             self._add("supply", WRONG, "self_supply_low", "then_batteries")
         elif reset == "WATCHDOG":
             self._add("supply", WRONG, "self_hung", "then_again")
@@ -154,7 +155,7 @@ class SelfTest:
             self._add("supply", OK, "self_supply_is", reset=text(f"reset_{reset}", self.language))
 
     def _store(self, status: StatusReply) -> None:
-        saved = _name(SAVED, status.saved)
+        saved = row_name(SAVED, status.saved)
         if saved == "OTHER_VERSION":
             self._add("store", WRONG, "self_other_version", "then_upload")
         elif saved in ("STORED", "NOTHING"):
@@ -279,10 +280,6 @@ class SelfTest:
 
 def _lost(status: StatusReply) -> int:
     return status.damaged + status.dropped + status.framing + status.overrun
-
-
-def _name(table: tuple[tuple[str, str], ...], number: int) -> str:
-    return table[number if number < len(table) else 0][0]
 
 
 def _range(sensor: Device, values: list[int]) -> str:
