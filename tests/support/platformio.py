@@ -15,7 +15,7 @@ import pytest
 
 from tests.machines.host import once
 from tests.support.casefile import ROOT
-from tests.support.needs import IS_CI, need
+from tests.support.needs import need
 
 OFFLINE = ROOT / "tools" / "builds" / "platformio_offline.py"
 SKETCH = ROOT / "vm_arduino"
@@ -23,15 +23,11 @@ SKETCH = ROOT / "vm_arduino"
 
 @lru_cache(maxsize=1)
 def prepared() -> tuple[dict[str, str], str]:
-    """Return the variables that `pio` needs here, none where it is online, and why it cannot run.
-
-    Only in CI packages of Debian are installed.
-    """
+    """Return the variables that `pio` needs, none where it is online, and why it cannot run."""
     if importlib.util.find_spec("platformio") is None:
         return {}, "PlatformIO is not installed"
-    options = [] if IS_CI else ["--no-apt"]
     done = subprocess.run(
-        [sys.executable, str(OFFLINE), *options], capture_output=True, text=True, check=False
+        [sys.executable, str(OFFLINE)], capture_output=True, text=True, check=False
     )
     exports = (shlex.split(row)[1].partition("=")[::2] for row in done.stdout.splitlines())
     return dict(exports), done.stderr if done.returncode else ""

@@ -50,7 +50,7 @@ def environments() -> list[str]:
 
 def measured(name: str, project: Path = PROJECT) -> Sketch:
     """Build one environment and return its sizes. Raises RuntimeError with the log."""
-    command = [sys.executable, str(OFFLINE), "--no-apt", "--project", str(project)]
+    command = [sys.executable, str(OFFLINE), "--project", str(project)]
     done = subprocess.run(
         [*command, "pio", "run", "-e", name],
         stdout=subprocess.PIPE,

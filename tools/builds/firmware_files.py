@@ -79,7 +79,7 @@ def build_all(target: Path, licence: Path) -> list[Path]:
     if building.platformio() is None:
         how = install_advice.command(install_advice.FIRMWARE)
         raise CannotBuild(f"PlatformIO is not installed. Install it:  {how}")
-    os.environ.update(settings_for(PROJECT, offline=False, may_install=False))
+    os.environ.update(settings_for(PROJECT, offline=False))
     target.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(dir=target.parent) as scratch:
         new = Path(scratch) / "ready"

@@ -70,13 +70,12 @@ def main(arguments: list[str] | None = None) -> int:
         description="Let pio work where PlatformIO's registry cannot be reached."
     )
     parser.add_argument("--offline", action="store_true", help="do not ask the registry")
-    parser.add_argument("--no-apt", action="store_true", help="install no packages of Debian")
     parser.add_argument("--project", type=Path, default=PROJECT, help="where platformio.ini is")
     parser.add_argument("command", nargs=argparse.REMAINDER, help="what to run there")
     options = parser.parse_args(arguments)
     project: Path = options.project.resolve()
     try:
-        settings = settings_for(project, options.offline, not options.no_apt)
+        settings = settings_for(project, options.offline)
     except CannotStandIn as why:
         print(f"platformio_offline: {why}", file=sys.stderr)
         return 2
@@ -90,14 +89,14 @@ def main(arguments: list[str] | None = None) -> int:
     return 0
 
 
-def settings_for(project: Path, offline: bool, may_install: bool) -> dict[str, str]:
+def settings_for(project: Path, offline: bool) -> dict[str, str]:
     """Return the environment in which `pio` works, with everything made that it needs."""
     if importlib.util.find_spec("platformio") is None:
         raise CannotStandIn("PlatformIO is not installed. Try:  pip install platformio")
     if why := needless(project, offline):
         say(f"nothing to do: {why}")
         return {}
-    install_packages(may_install)
+    look_for_packages()
     refuse_others(project)
     made = stand_ins()
     libraries = HOME / "libraries"
@@ -167,21 +166,12 @@ def registry_answers() -> bool:
 # -- what Debian has ----------------------------------------------------------------------------
 
 
-def install_packages(may_install: bool) -> None:
-    """Install those packages of Debian that are missing, or say which."""
-    names = [name for path, name in DEBIAN.items() if not path.exists()]
-    if not names:
-        return
-    install = ["apt-get", "install", "--yes", "--no-install-recommends", *names]
-    is_root = hasattr(os, "geteuid") and os.geteuid() == 0
-    command = install if is_root else ["sudo", *install]
-    if not may_install or not all(map(shutil.which, ("apt-get", command[0]))):
-        raise CannotStandIn(f"{' '.join(names)} missing. Try:  sudo {' '.join(install)}")
-    say(f"installing {' '.join(names)} with apt-get")
-    update = [*command[: command.index("install")], "update", "--quiet"]
-    for each in (update, command):
-        if subprocess.run(each, stdout=sys.stderr, check=False).returncode != 0:
-            raise CannotStandIn(f"that did not work. Try yourself:  {' '.join(each)}")
+def look_for_packages() -> None:
+    """Say which packages of Debian are missing. Raises CannotStandIn."""
+    names = " ".join(name for path, name in DEBIAN.items() if not path.exists())
+    if names:
+        install = "sudo apt-get install --no-install-recommends"
+        raise CannotStandIn(f"{names} missing. Try:  {install} {names}")
 
 
 # -- what does not match ------------------------------------------------------------------------
