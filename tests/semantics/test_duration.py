@@ -20,53 +20,39 @@ def lasting(text: str, is_optimized: bool = True) -> Duration:
 @pytest.mark.parametrize(
     ("text", "least", "most"),
     [
-        ("", 0, 0),
-        ("F(2, 80)", 2000, 2000),
         ("F(1.5, 80);W(0.25);BEEP(0.5, 440)", 2250, 2250),
-        ("W(1 + 2 * 3)", 7000, 7000),
         ("W(1 - 3)", 0, 0),  # a time below 0 counts as 0
         ("M(50, 50);S;SHOW(DISTANCE);X = 5;SHOW(X)", 0, 0),  # what takes no time
         # what only the robot knows
-        ("W(DISTANCE)", 0, None),
-        ("W(1);W(DISTANCE);W(2)", 3000, None),
-        ("X = 2;W(X)", 0, None),
         # UNTIL ends a move at any time, but not later than its time
         ("F(2, 80) UNTIL(DISTANCE < 9)", 0, 2000),
         ("F(FOREVER, 80) UNTIL(DISTANCE < 9)", 0, None),
         # the shortest arm, and the longest
         ("IF(DISTANCE < 9);W(1);ELSE;W(3);ENDIF", 1000, 3000),
-        ("IF(DISTANCE < 9);W(1);ENDIF", 0, 1000),
         ("IF(DISTANCE < 9);W(1);ELSEIF(DISTANCE < 20);W(5);ELSE;W(3);ENDIF", 1000, 5000),
-        ("IF(DISTANCE < 9);W(1);ELSE;W(DISTANCE);ENDIF", 0, None),
         # loops
         ("LOOP(3);W(2);END_LOOP", 6000, 6000),
         ("LOOP(2.5);W(2);END_LOOP", 6000, 6000),  # 3 times, as the robot does it
-        ("LOOP(3);LOOP(4);W(1);END_LOOP;END_LOOP", 12000, 12000),
         ("LOOP(3);IF(DISTANCE < 9);BREAK;ENDIF;W(2);END_LOOP", 0, 6000),
         ("LOOP(DISTANCE);W(2);END_LOOP", 0, None),
         ("LOOP(DISTANCE);S;END_LOOP", 0, 0),
         ("LOOP(0);W(2);END_LOOP", 0, 0),
         ("LOOP(0 - 1);W(2);END_LOOP", 0, 0),
         ("WHILE(DISTANCE > 9);W(2);END_WHILE", 0, None),
-        ("LOOP(FOREVER);W(1);IF(DISTANCE < 9);BREAK;ENDIF;END_LOOP;W(3)", 3000, None),
         # a call takes what its DEF does
         ("DEF A;W(2);END_DEF;A;A", 4000, 4000),
         ("DEF A;W(2);END_DEF;DEF C;A;W(1);END_DEF;LOOP(2);C;END_LOOP", 6000, 6000),
         ("DEF A;W(DISTANCE);END_DEF;W(1);A", 1000, None),
         # several tasks: the longest counts, and a turn that waits for nothing lasts a millisecond
         ("W(1);TASK;W(3);END_TASK", 3000, 3000),
-        ("W(3);TASK;W(DISTANCE);END_TASK", 3000, None),
         ("TASK;LOOP(3);SHOW(1);END_LOOP;END_TASK", 0, 3),
         ("LOOP(3);W(2);END_LOOP;TASK;W(1);END_TASK", 6000, 6000),
         ("LOOP(3);IF(DISTANCE < 9);W(1);ENDIF;END_LOOP;TASK;W(0.1);END_TASK", 100, 3003),
         ("LOOP(3);W(DISTANCE);END_LOOP;TASK;W(0.1);END_TASK", 100, None),
         ("LOOP(DISTANCE);SHOW(1);END_LOOP;TASK;W(1);END_TASK", 1000, None),
         # one of them may move; where two do, one waits for the motors or is ended by an S
-        ("F(2, 80);TASK;W(3);END_TASK", 3000, 3000),
         ("F(2, 80);TASK;W(3);F(1, 60);END_TASK", 0, None),
-        ("F(2, 80);TASK;W(3);S;END_TASK", 0, None),
         ("DEF A;S;END_DEF;F(2, 80);TASK;W(3);A;END_TASK", 0, None),
-        ("DEF A;SHOW(1);END_DEF;F(2, 80);TASK;W(3);A;END_TASK", 3000, 3000),
     ],
 )
 @pytest.mark.parametrize("is_optimized", [True, False])
@@ -77,13 +63,11 @@ def test_a_program_that_ends(text: str, least: int, most: int | None, is_optimiz
 @pytest.mark.parametrize(
     ("text", "least"),
     [
-        ("LOOP(FOREVER);W(1);END_LOOP", 0),
         ("W(2);LOOP(FOREVER);W(1);END_LOOP", 2000),
         (
             "IF(TIME < 9);LOOP(FOREVER);S;END_LOOP;ELSE;W(3);LOOP(FOREVER);W(1);END_LOOP;ENDIF",
             0,
         ),
-        ("DEF A;W(1);LOOP(FOREVER);W(1);END_LOOP;END_DEF;A", 1000),
         ("LOOP(3);W(1);LOOP(FOREVER);S;END_LOOP;END_LOOP", 1000),
         ("W(1);TASK;LOOP(FOREVER);W(1);END_LOOP;END_TASK", 1000),
         ("W(1);WHEN(DISTANCE < 9);SHOW(1);END_WHEN", 1000),  # it looks for ever

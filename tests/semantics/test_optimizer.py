@@ -24,26 +24,19 @@ def short(text: str) -> str:
 @pytest.mark.parametrize(
     ("text", "expected"),
     [
-        ("SHOW(1 + 2 * 3)", "Show 7\n"),
         ("SHOW(-(2 - 5) / 4)", "Show 0.75\n"),
-        ("SHOW(ROUND(2.345, 1 + 1))", "Show 2.35\n"),
-        ("SHOW(NOT 1 > 2)", "Show yes_no1\n"),
-        ("X = 1; SHOW(X + 1 + 2)", "Assign 0 1\nShow v0 1 ADD 2 ADD\n"),
         ("SHOW(NOT TRUE)", "Show yes_no0\n"),
         # what faults is left to fault
         ("SHOW(1 / 0)", "Show 1 0 DIV\n"),
-        ("SHOW(2147483 + 1)", "Show 2147483 1 ADD\n"),
         ("SHOW(0 * (1 / 0))", "Show 0 1 0 DIV MUL\n"),
         # AND and OR
         ("SHOW(FALSE AND 1 / 0 > 1)", "Show yes_no0\n"),
         ("SHOW(TRUE AND TIME > 1)", "Show TIME 1 GT\n"),
-        ("X = TRUE; SHOW(X AND FALSE)", "Assign 0 yes_no1\nShow yes_no0\n"),
         ("SHOW(1 / TIME > 1 AND FALSE)", "Show 1 TIME DIV 1 GT AND_LEFT yes_no0 AND\n"),
         ("SHOW(RANDOM(1, 6) > 3 OR TRUE)", "Show 1 6 RANDOM 3 GT OR_LEFT yes_no1 OR\n"),
         ("SHOW(NOT (1 / TIME > 1) AND FALSE)", "Show 1 TIME DIV 1 GT NOT AND_LEFT yes_no0 AND\n"),
         ("X = 1; SHOW(1 + 1 > X AND FALSE)", "Assign 0 1\nShow yes_no0\n"),
         # arms and loops that are never taken
-        ("IF(1 > 2); S; ENDIF", ""),
         ("IF(1 < 2); S; ELSE; W(1); ENDIF", "Stop\n"),
         ("IF(FALSE); S; ELSEIF(TRUE); W(1); ELSE; W(2); ENDIF", "Move W 1\n"),
         ("LOOP(0.4); S; END_LOOP", ""),
@@ -52,7 +45,6 @@ def short(text: str) -> str:
         ("LOOP(2); BREAK; S; END_LOOP", "Loop 2\n  Break\n"),
         ("DEF A; S; END_DEF; DEF B1; W(1); END_DEF; B1", "DEF B1\n  Move W 1\nCall 0\n"),
         # readings stay, whatever becomes of what needs them
-        ("IF(DISTANCE > 1 AND FALSE); S; ENDIF", "Read 2\n"),
         ("WHILE(DISTANCE > 1 AND FALSE); S; END_WHILE", "Read 2\n"),
         ("IF(FALSE); S; ELSEIF(DISTANCE > 1); W(1); ENDIF",
          "Read 2\nIf\n  arm () s2 1 GT\n    Move W 1\n  else\n"),
