@@ -27,7 +27,6 @@ from tiniscript.recovery.writing import laid_out, shortened, without_note
 from tiniscript.syntax.free_names import for_a_number
 from tiniscript.syntax.lexer import WORD
 from tiniscript.syntax.operators import COMPARISONS
-from tiniscript.syntax.outline import Failure
 
 LONGEST = 24  # words behind an instruction that are read
 MOST = 1_000  # instructions of a text that are read
@@ -88,7 +87,7 @@ def advised(text: str, kit: Kit) -> list[Advice]:
     for body, line in zip(bodies, text.split("\n"), strict=True):
         told: list[Advice] = []
         words = lexemes(body)
-        is_right = not isinstance(lines.right(words, names), Failure)
+        is_right = lines.is_right(words, names)
         if "~" not in body and not is_right:
             for part in islice(_parts(body, start, text, names, depth, above), left):
                 left -= 1
@@ -189,7 +188,8 @@ def _advice(row: Row, gaps: _Gaps) -> Advice:
     if row.code == codes.IN_WORDS.number:
         values |= _worded(gaps, is_not="f" in named)
     place = part.place if values["fix"] else None
-    if place and not part.is_right() and values["fix"].startswith(part.call):
+    is_right = lines.is_right(part.tokens, part.names)
+    if place and not is_right and values["fix"].startswith(part.call):
         place = part.behind  # of a call with a mistake of its own
         values["fix"] = values["fix"][len(part.call) :].lstrip(" ")
     start, end = gaps.span("s") if "s" in named else (1, len(part.spans))
@@ -319,8 +319,7 @@ def _alone(gaps: _Gaps) -> str:
 
 def _then(gaps: _Gaps) -> str:
     """The instruction that a row captures, where it is right."""
-    found = lines.right(gaps.from_on("w"), gaps.part.names)
-    return "" if isinstance(found, Failure) else _rest(gaps, "w")
+    return _rest(gaps, "w") if lines.is_right(gaps.from_on("w"), gaps.part.names) else ""
 
 
 def _done(gaps: _Gaps) -> str:

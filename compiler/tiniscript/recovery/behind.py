@@ -64,7 +64,7 @@ def whole(tokens: Sequence[Lexeme], names: Names) -> int:
     if first in names.defs or (sign == "=" and first not in WORDS):
         found = lines.right(tokens, names)
         size = found.at if isinstance(found, Failure) else 0
-        is_right = not isinstance(lines.right(tokens[:size], names), Failure)
+        is_right = lines.is_right(tokens[:size], names)
         return size if is_right and tokens[size].space else 0
     known = WORDS.get(word)
     if known is None and not names.takes(word):
@@ -144,14 +144,10 @@ class Behind:
     def is_aside(self) -> bool:
         """Whether the words may say something: of no instruction, where they are none."""
         if not self.tokens:
-            return isinstance(lines.right(self.row, self.names), Failure)
+            return not lines.is_right(self.row, self.names)
         has_dots = self.is_later and all(each.text in DOTS for each in self.row)
         has_words = any(each.kind in (WORD, NUMBER) for each in self.row)
         return has_words or has_dots or self.words == "()"
-
-    def is_right(self) -> bool:
-        """Whether the instruction is, without the words behind it."""
-        return not isinstance(lines.right(self.tokens, self.names), Failure)
 
     def labels(self) -> list[str]:
         """Return the classes of the instruction and of each word, as patterns match them."""

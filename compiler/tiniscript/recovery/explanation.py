@@ -10,7 +10,7 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from difflib import SequenceMatcher
-from itertools import accumulate, groupby, pairwise, takewhile
+from itertools import accumulate, groupby, pairwise
 from typing import NamedTuple
 
 from tiniscript.base.source import Edit, Span
@@ -443,20 +443,16 @@ def _slip(
     now = re.split("[()]", now, maxsplit=1)[0] if code == _WORD_CODE else now
     now = f"{now} )" if now.endswith("(") else now
     word = _word(code, old, new, start, other)
-    known = WORDS.get(word)
+    usage = WORDS[word].usage if word in WORDS else ""
     until = len(fix[head]) if len(told) < len(fix) else None  # one instruction became two
-    alike = takewhile(
-        lambda both: both[0].text == both[1].text, zip(one, other[:until], strict=False)
-    )
-    kept = _written([each for each, _ in alike])
+    kept = _written(one[: _alike(texts(one), texts(other[:until]))[0]])
     if code in (codes.MISSING_VALUE.number, codes.MISSING_SIGN.number) and not found and start:
         was, kept = _written(old[start : start + 1]), _written(old[start - 1 : start])
     if code == codes.HEADER_SEPARATOR.number and not kept:
         kept = other[0].text  # `CADA VEZ QUE DISTANCE < 15 S`
     letter = _letter(was, now) if code == codes.BAD_NUMBER.number else ""
-    usage = known.usage if known else ""
-    was_given = sum(each.kind is NUMBER for each in one)
-    takes = usage if sum(each.kind is NUMBER for each in other) > was_given else ""
+    given, needed = (sum(each.kind is NUMBER for each in it) for it in (one, other))
+    takes = usage if needed > given else ""
     return {"found": was, "right": now, "before": kept, "word": word, "usage": usage, "fix": shown,
             "ends": "", "letter": letter, "takes": takes}  # fmt: skip
 

@@ -25,7 +25,6 @@ from tiniscript.recovery.search import Candidate, Recovery
 from tiniscript.recovery.setup import setup
 from tiniscript.recovery.usage import with_usage
 from tiniscript.recovery.writing import in_one_line, without_note
-from tiniscript.syntax.outline import Failure
 
 LONGEST = 4_000  # characters of a text that is read as a whole
 # Codes whose sentence names what is right.
@@ -93,7 +92,7 @@ def _titles(source: Source, kit: Kit) -> list[Diagnostic]:
             continue
         words = lexemes(title)
         is_set = said_of(words[0].text, "set")  # `set SPEED to 70`
-        is_right = not isinstance(lines.right(words, names), Failure)
+        is_right = lines.is_right(words, names)
         if is_set or is_right or "(" in title or "{" in title:
             return []
         span, fix = Span(at, at + len(title)), f"// {title}"

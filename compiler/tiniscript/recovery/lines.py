@@ -83,6 +83,10 @@ def right(tokens: Sequence[Lexeme], names: Names) -> Sequence[Item] | Failure:
     return _right(tuple((each.kind, _alike(each)) for each in tokens), names)
 
 
+def is_right(tokens: Sequence[Lexeme], names: Names) -> bool:
+    return not isinstance(right(tokens, names), Failure)
+
+
 def _alike(token: Lexeme) -> str:
     """Return the text of a token, and one for all numbers that any instruction reads alike."""
     text = token.text
